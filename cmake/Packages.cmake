@@ -1,0 +1,16 @@
+# Everything comes from Debian packages; ./dev installs them.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(SYSTEMC REQUIRED IMPORTED_TARGET systemc)
+find_package(verilator REQUIRED HINTS /usr/share/verilator)
+find_package(GTest REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)  # FST files
+pkg_check_modules(TOMLPP REQUIRED IMPORTED_TARGET tomlplusplus)
+
+# SystemC headers are not ours: no warnings from them.
+add_library(brick_systemc INTERFACE)
+target_link_libraries(brick_systemc INTERFACE systemc Threads::Threads)
+target_include_directories(brick_systemc SYSTEM INTERFACE ${SYSTEMC_INCLUDE_DIRS})

@@ -1,0 +1,21 @@
+/* Text scanner shared by on-line commands and program lines (firmware.md 1.1): case-insensitive, spaces skipped, `;` ends the line. */
+#ifndef FIRMWARE_LANGUAGE_LEXER_H
+#define FIRMWARE_LANGUAGE_LEXER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/host/error.h"
+
+struct lexer {
+  const char *at;     /* next character not consumed; text is upper case already, NUL-terminated */
+};
+
+char lexer_peek(struct lexer *lx);                          /* next character after spaces, 0 at the end of the line */
+bool lexer_accept(struct lexer *lx, char c);                /* consumes c if it is next */
+bool lexer_keyword(struct lexer *lx, const char *word);     /* consumes `word` (upper case) if it is next */
+bool lexer_number(struct lexer *lx, double *value);         /* unsigned decimal or $hex constant; false: not a number */
+error_t lexer_constant(struct lexer *lx, double *value);    /* optional sign and number; ERR_DATA outside +-2^35 */
+error_t lexer_integer(struct lexer *lx, int32_t *value);    /* constant without fraction */
+
+#endif

@@ -1,0 +1,37 @@
+// The face of the controller board: every engine stands behind it (rtl, systemc, lockstep), chosen at run time.
+// Whoever owns the board advances it; see docs/architecture.md, "Who may run ahead of whom".
+#pragma once
+
+#include <functional>
+
+#include "systemc/core/board_pins.h"
+#include "systemc/core/ticks.h"
+
+namespace brick {
+
+class Board {
+ public:
+  virtual ~Board() = default;
+
+  // Clock edges executed so far. Tick 0 is power-on; clk_ref rises at ticks 3, 6, 9, ...
+  virtual Tick now() const = 0;
+
+  // Applies inputs: the clock edge now()+1 is the first to see them. Outputs do not change by this call.
+  virtual void set_inputs(const BoardInputs& inputs) = 0;
+
+  // Outputs as they stand after the edge now().
+  virtual const BoardOutputs& outputs() const = 0;
+
+  // Executes edges up to and including `limit`, or up to and including the first edge at which an output selected by
+  // `stop_on` changes. Returns now().
+  virtual Tick run_until(Tick limit, const BoardOutputs& stop_on = {}) = 0;
+
+  // A tick up to which (inclusive) no pin selected by `watched` can change as long as the inputs stay as they are.
+  // now() is always a correct answer; an engine that can predict gives a later one. Only speed depends on it.
+  virtual Tick quiet_until(const BoardOutputs& watched) const { (void)watched; return now(); }
+
+  // Called after each edge at which an output changed, in order of ticks, with the values before and after.
+  std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)> on_change;
+};
+
+}  // namespace brick

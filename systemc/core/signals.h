@@ -1,0 +1,50 @@
+// Named signals of the running machine: the one place that knows every value a user can see, for `@signal`, `@until` and
+// the waveform. Sources set values with their own time stamp and may run ahead of each other; the trace sorts.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "systemc/core/ticks.h"
+
+namespace brick {
+
+class TraceWriter;  // systemc/core/trace.h
+
+enum class Radix { kBinary, kHex, kDecimal, kText };
+
+class Signals {
+ public:
+  using Id = std::uint32_t;
+
+  // Declares a signal. `name` is dotted, without the top scope `brick` (design.md section 7), e.g. "host.isa.sa".
+  Id add(const std::string& name, unsigned width, Radix radix, std::uint64_t initial = 0);
+
+  void set(Id id, TimeFs time, std::uint64_t value);
+  void set_text(Id id, TimeFs time, const std::string& text);
+
+  struct Info { std::string name; unsigned width; Radix radix; };
+  const Info& info(Id id) const { return info_[id]; }
+  std::size_t size() const { return info_.size(); }
+  std::uint64_t value(Id id) const { return value_[id]; }
+  const std::string& text(Id id) const { return text_.at(id); }
+  std::optional<Id> find(std::string_view name) const;  // accepts a leading "brick."
+
+  // Attaches the waveform file; not owned. Values set from now on are written, the present ones first.
+  void attach(TraceWriter* trace);
+  bool traced() const { return trace_ != nullptr; }
+
+ private:
+  std::vector<Info> info_;
+  std::vector<std::uint64_t> value_;
+  std::map<Id, std::string> text_;
+  std::map<std::string, Id, std::less<>> by_name_;
+  TraceWriter* trace_ = nullptr;
+};
+
+}  // namespace brick

@@ -1,0 +1,75 @@
+// The whole controller: a board (any engine), the CPU with its Port A bus, and the rule of who may run ahead of whom
+// (docs/architecture.md). A host (script, bench, socket) owns the Machine and advances it; between two calls the board
+// stands exactly at now() and the CPU at most kInterruptLatency ticks later.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <systemc>
+
+#include "systemc/core/board.h"
+#include "systemc/core/signals.h"
+#include "systemc/cpu/cpu.h"
+
+namespace brick {
+
+enum class Engine { kRtl, kSystemC, kLockstep };
+
+// Board description as far as the machine needs it (boards/*.toml, read by app/ through systemc/machine/board_file.h).
+struct BoardConfig {
+  std::string name = "geobrick-lv-8";
+  std::string title;
+  std::uint32_t fitted = 0x3;            // as BoardInputs::fitted
+  std::uint32_t dpram_words = 32768;     // 16-bit words: 8192 or 32768
+  bool jpan = false;                     // Turbo PMAC control panel port fitted
+  std::uint32_t card = 603382;           // CID reply
+};
+
+struct MachineConfig {
+  Engine engine = Engine::kSystemC;
+  BoardConfig board;
+  std::string firmware;                  // ELF path
+  std::string flash_file;                // "" = flash content is lost at the end
+  bool jumper_e3 = false;
+  std::uint64_t seed = 1;                // initial content of RAM and DPRAM
+  Tick batch = 0;                        // 0 = as long as the rule allows; else no advance longer than this many ticks
+  bool seeded_bug = false;               // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
+};
+
+class Machine : public sc_core::sc_module {
+ public:
+  Machine(sc_core::sc_module_name name, const MachineConfig& config);
+  ~Machine() override;
+
+  Tick now() const;
+  TimeFs now_fs() const { return tick_to_fs(now()); }
+
+  // Advances everything to `limit`, or to the first edge at which an output selected by `stop_on` changes.
+  // Throws LockstepDifference (systemc/cosim/lockstep.h) at the first difference of the two engines.
+  Tick run_until(Tick limit, const BoardOutputs& stop_on = {});
+
+  // The pins that the host owns. The host edits them and calls apply(); edge now()+1 is the first to see them.
+  BoardInputs& inputs();
+  void apply();
+  const BoardOutputs& outputs() const;
+
+  Signals& signals();                    // every named signal of design.md section 7
+  Cpu& cpu();
+  std::uint64_t instructions() const;
+
+  void reset();                          // pulls the reset line: board and CPU start again, RAM and flash keep their content
+  void power_cycle();                    // RAM content is lost, flash stays
+  void set_jumper_e3(bool on);           // read by the firmware at start
+
+  // Bus cycles of the CPU, newest last, for reports.
+  struct BusCycle { Tick tick; char space; std::uint32_t address; bool write; std::uint32_t data; std::uint32_t pc; };
+  const std::vector<BusCycle>& last_bus_cycles() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace brick
