@@ -1,0 +1,80 @@
+// Simulation wrapper of the board: the same inputs, the outputs packed into three 32-bit words (pins_o[31:0] is w[0]) in the
+// layout of systemc/core/board_pins.h. seeded_bug_i is the negative control of every comparison: the SERVO pin's
+// SeededBugEdge-th falling edge since reset comes one tick late.
+`default_nettype none
+
+module board_sim #(
+  parameter logic [17:0] ServoIcMask   = 18'h00003,
+  parameter logic [7:0]  SeededBugEdge = 8'd5
+) (
+  input  wire logic        clk_pwm_i,
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic [18:0] pa_addr_i,
+  input  wire logic        pa_x_i,
+  input  wire logic [3:0]  pa_aa_i,
+  input  wire logic        pa_int_i,
+  input  wire logic        pa_rd_ni,
+  input  wire logic        pa_wr_ni,
+  input  wire logic [23:0] pa_wdata_i,
+  input  wire logic [19:0] isa_sa_i,
+  input  wire logic [15:0] isa_sd_i,
+  input  wire logic        isa_ior_ni,
+  input  wire logic        isa_iow_ni,
+  input  wire logic        isa_memr_ni,
+  input  wire logic        isa_memw_ni,
+  input  wire logic        isa_aen_i,
+  input  wire logic        isa_sbhe_ni,
+  input  wire logic [21:0] fitted_i,
+  input  wire logic        ext_clock_i,
+  input  wire logic        ext_phase_i,
+  input  wire logic        ext_servo_i,
+  input  wire logic        seeded_bug_i,
+  output logic [95:0]      pins_o
+);
+
+  logic [23:0] pa_data;
+  logic        pa_ta_n, irq_host;
+  logic [15:0] isa_sd;
+  logic        isa_iochrdy, isa_memcs16_n, isa_irq;
+  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict;
+  logic [4:0]  source;
+  logic [7:0]  ist, sig, msk, elr;
+
+  board_top #(.ServoIcMask(ServoIcMask)) u_board (
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
+    .pa_data_o(pa_data), .pa_ta_n_o(pa_ta_n), .irq_host_o(irq_host),
+    .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
+    .isa_sd_o(isa_sd), .isa_iochrdy_o(isa_iochrdy), .isa_memcs16_n_o(isa_memcs16_n), .isa_irq_o(isa_irq),
+    .fitted_i, .ext_clock_i, .ext_phase_i, .ext_servo_i,
+    .phase_o(phase), .servo_o(servo), .breq_o(breq), .ipos_o(ipos), .eror_o(eror), .f1er_o(f1er), .hreq_o(hreq),
+    .wdo_o(wdo), .wd_tripped_o(wd_tripped), .busy_host_o(busy_host), .busy_cpu_o(busy_cpu),
+    .phase_source_o(source), .source_conflict_o(conflict),
+    .pic_ist_o(ist), .pic_sig_o(sig), .pic_msk_o(msk), .pic_elr_o(elr)
+  );
+
+  // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
+  logic       servo_last_q;
+  logic [7:0] falls_q;
+  logic       fell, late;
+  assign fell = servo_last_q & ~servo;
+  assign late = seeded_bug_i & fell & (falls_q == SeededBugEdge - 8'd1);
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      servo_last_q <= 1'b1;
+      falls_q      <= 8'd0;
+    end else if (seeded_bug_i) begin
+      servo_last_q <= servo;
+      if (fell && falls_q != 8'hFF) falls_q <= falls_q + 8'd1;
+    end
+  end
+
+  assign pins_o[31:0]  = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
+  assign pins_o[63:32] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n, isa_iochrdy,
+                          isa_sd};
+  assign pins_o[95:64] = {elr, msk, sig, ist};
+
+endmodule : board_sim
+
+`default_nettype wire

@@ -1,0 +1,212 @@
+// The controller board: servo ICs, clock selection, bus decoding, watchdog and the host side, from Port A pins to ISA pins.
+// clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing between them is synchronous.
+// ServoIcMask says which servo ICs are built (bit i as in fitted_i), fitted_i which of those are present at run time.
+// All outputs are registers or gates behind registers: they change at clock edges only. docs/architecture.md has the map.
+`default_nettype none
+
+module board_top #(
+  parameter logic [17:0] ServoIcMask = 18'h00003
+) (
+  input  wire logic        clk_pwm_i,
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  // Port A
+  input  wire logic [18:0] pa_addr_i,
+  input  wire logic        pa_x_i,
+  input  wire logic [3:0]  pa_aa_i,
+  input  wire logic        pa_int_i,
+  input  wire logic        pa_rd_ni,
+  input  wire logic        pa_wr_ni,
+  input  wire logic [23:0] pa_wdata_i,
+  output logic [23:0]      pa_data_o,
+  output logic             pa_ta_n_o,
+  output logic             irq_host_o,
+  // ISA
+  input  wire logic [19:0] isa_sa_i,
+  input  wire logic [15:0] isa_sd_i,
+  input  wire logic        isa_ior_ni,
+  input  wire logic        isa_iow_ni,
+  input  wire logic        isa_memr_ni,
+  input  wire logic        isa_memw_ni,
+  input  wire logic        isa_aen_i,
+  input  wire logic        isa_sbhe_ni,
+  output logic [15:0]      isa_sd_o,
+  output logic             isa_iochrdy_o,
+  output logic             isa_memcs16_n_o,
+  output logic             isa_irq_o,
+  // straps and external clocks
+  input  wire logic [21:0] fitted_i,
+  input  wire logic        ext_clock_i,
+  input  wire logic        ext_phase_i,
+  input  wire logic        ext_servo_i,
+  // clocks, host signals, watchdog, interrupt controller as seen from outside
+  output logic             phase_o,
+  output logic             servo_o,
+  output logic             breq_o,
+  output logic             ipos_o,
+  output logic             eror_o,
+  output logic             f1er_o,
+  output logic             hreq_o,
+  output logic             wdo_o,
+  output logic             wd_tripped_o,
+  output logic             busy_host_o,
+  output logic             busy_cpu_o,
+  output logic [4:0]       phase_source_o,
+  output logic             source_conflict_o,
+  output logic [7:0]       pic_ist_o,
+  output logic [7:0]       pic_sig_o,
+  output logic [7:0]       pic_msk_o,
+  output logic [7:0]       pic_elr_o
+);
+
+  // ------------------------------------------------------------------ Port A: synchroniser and decoding
+  logic [18:0] bus_addr, bus_rd_addr;
+  logic        bus_x, bus_rd_x, bus_int, bus_rd_int, bus_we, bus_rd_done;
+  logic [3:0]  bus_aa, bus_rd_aa;
+  logic [23:0] bus_wdata;
+
+  bus_sync u_bus_sync (
+    .clk_ref_i, .rst_ni,
+    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
+    .addr_o(bus_addr), .x_o(bus_x), .aa_o(bus_aa), .int_o(bus_int), .wdata_o(bus_wdata),
+    .we_o(bus_we), .rd_done_o(bus_rd_done),
+    .rd_addr_o(bus_rd_addr), .rd_x_o(bus_rd_x), .rd_aa_o(bus_rd_aa), .rd_int_o(bus_rd_int)
+  );
+
+  logic        sel_any, sel_int, sel_signals, sel_strobe;
+  logic [17:0] sel_ic;
+  address_decode u_address_decode (
+    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_i[17:0] & ServoIcMask),
+    .sel_any_o(sel_any), .sel_int_o(sel_int), .sel_signals_o(sel_signals), .sel_strobe_o(sel_strobe), .sel_ic_o(sel_ic)
+  );
+
+  // Side effects of a read belong to the address one stage later: the CPU may have moved on by then.
+  logic       rd_done_int;
+  logic [5:0] int_addr;
+  assign rd_done_int = bus_rd_done & bus_rd_int;
+  assign int_addr    = rd_done_int ? bus_rd_addr[5:0] : bus_addr[5:0];
+  logic unused_rd;
+  assign unused_rd = &{1'b0, bus_rd_addr[18:6], bus_rd_x, bus_rd_aa};
+
+  // ------------------------------------------------------------------ servo ICs and the board's clock nets
+  logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
+  logic [18*24-1:0] ic_rdata;
+  assign {ic_phase[21:18], ic_servo[21:18], ic_phase_oe[21:18], ic_servo_oe[21:18]} = {4'hF, 4'hF, 4'h0, 4'h0};  // MACRO ICs: none yet
+
+  for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
+    if (ServoIcMask[i]) begin : gen_built
+      servo_ic u_servo_ic (
+        .clk_pwm_i, .clk_ref_i, .rst_ni,
+        .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
+        .rdata_o(ic_rdata[24*i+:24]),
+        .phase_i(phase_o), .servo_i(servo_o),
+        .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i])
+      );
+    end else begin : gen_absent
+      assign ic_rdata[24*i+:24] = 24'h0;
+      assign ic_phase[i]        = 1'b1;
+      assign ic_servo[i]        = 1'b1;
+      assign ic_phase_oe[i]     = 1'b0;
+      assign ic_servo_oe[i]     = 1'b0;
+    end
+  end
+
+  clock_select u_clock_select (
+    .clk_pwm_i, .clk_ref_i, .rst_ni, .fitted_i,
+    .phase_i(ic_phase), .servo_i(ic_servo), .phase_oe_i(ic_phase_oe), .servo_oe_i(ic_servo_oe),
+    .ext_clock_i, .ext_phase_i, .ext_servo_i,
+    .phase_o, .servo_o, .phase_source_o, .conflict_o(source_conflict_o)
+  );
+
+  watchdog u_watchdog (
+    .clk_ref_i, .rst_ni, .strobe_i(bus_we & sel_strobe), .servo_i(servo_o), .trip_o(wd_tripped_o)
+  );
+  assign wdo_o = wd_tripped_o;
+
+  // ------------------------------------------------------------------ host side
+  logic       hp_sel, hp_rd_done, hp_wr;
+  logic [2:0] hp_addr;
+  logic [7:0] hp_wdata, hp_rdata;
+  logic       pic_sel, pic_wr;
+  logic [1:0] pic_addr;
+  logic [7:0] pic_wdata, pic_rdata;
+  logic        mem_sel, mem_rd, mem_wr, mem_busy;
+  logic [14:0] mem_addr;
+  logic [1:0]  mem_be;
+  logic [15:0] mem_wdata, mem_rdata;
+
+  isa_slave u_isa_slave (
+    .clk_ref_i, .rst_ni,
+    .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
+    .isa_sd_o, .isa_iochrdy_o, .isa_memcs16_no(isa_memcs16_n_o),
+    .hp_sel_o(hp_sel), .hp_rd_done_o(hp_rd_done), .hp_wr_o(hp_wr), .hp_addr_o(hp_addr), .hp_wdata_o(hp_wdata),
+    .hp_rdata_i(hp_rdata),
+    .pic_sel_o(pic_sel), .pic_wr_o(pic_wr), .pic_addr_o(pic_addr), .pic_wdata_o(pic_wdata), .pic_rdata_i(pic_rdata),
+    .mem_sel_o(mem_sel), .mem_rd_o(mem_rd), .mem_wr_o(mem_wr), .mem_addr_o(mem_addr), .mem_be_o(mem_be),
+    .mem_wdata_o(mem_wdata), .mem_rdata_i(mem_rdata), .mem_busy_i(mem_busy)
+  );
+
+  logic [23:0] int_rdata;
+  host_port u_host_port (
+    .clk_ref_i, .rst_ni,
+    .hp_sel_i(hp_sel), .hp_rd_done_i(hp_rd_done), .hp_wr_i(hp_wr), .hp_addr_i(hp_addr), .hp_wdata_i(hp_wdata),
+    .hp_rdata_o(hp_rdata),
+    .dsp_sel_i(sel_int | rd_done_int), .dsp_we_i(bus_we & sel_int), .dsp_rd_done_i(rd_done_int), .dsp_addr_i(int_addr),
+    .dsp_wdata_i(bus_wdata), .dsp_rdata_o(int_rdata), .hreq_o, .irq_o(irq_host_o)
+  );
+
+  logic [3:0] signals_rdata;
+  host_signals u_host_signals (
+    .clk_ref_i, .rst_ni, .wr_i(bus_we & sel_signals), .wdata_i(bus_wdata[3:0]), .rdata_o(signals_rdata),
+    .ipos_o, .breq_o, .eror_o, .f1er_o
+  );
+
+  // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up.
+  logic [7:0] pic_line;
+  assign pic_line = {wdo_o, 2'b00, hreq_o, f1er_o, eror_o, breq_o, ipos_o};
+  interrupt_controller u_interrupt_controller (
+    .clk_ref_i, .rst_ni, .line_i(pic_line),
+    .wr_i(pic_sel & pic_wr), .addr_i(pic_addr), .wdata_i(pic_wdata), .rdata_o(pic_rdata),
+    .ist_o(pic_ist_o), .sig_o(pic_sig_o), .msk_o(pic_msk_o), .elr_o(pic_elr_o), .irq_o(isa_irq_o)
+  );
+
+  logic        dpram_sel;
+  logic [15:0] dpram_rdata;
+  assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
+  dpram #(.Words(32768)) u_dpram (
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .cpu_sel_i(dpram_sel), .cpu_x_i(pa_x_i), .cpu_addr_i(pa_addr_i[13:0]), .cpu_rd_ni(pa_rd_ni), .cpu_wr_ni(pa_wr_ni),
+    .cpu_wdata_i(pa_wdata_i[15:0]), .cpu_rdata_o(dpram_rdata), .cpu_busy_o(busy_cpu_o),
+    .mem_sel_i(mem_sel), .mem_rd_i(mem_rd), .mem_wr_i(mem_wr), .mem_addr_i(mem_addr), .mem_be_i(mem_be),
+    .mem_wdata_i(mem_wdata), .mem_rdata_o(mem_rdata), .mem_busy_o(mem_busy), .host_busy_o(busy_host_o)
+  );
+  assign pa_ta_n_o = busy_cpu_o;
+
+  // ------------------------------------------------------------------ read data towards the CPU
+  // Registered while a register region is addressed, so that a value is never torn; holds otherwise.
+  logic [23:0] rdata_d, rdata_q;
+  always_comb begin
+    rdata_d = rdata_q;
+    if (sel_any) begin
+      rdata_d = sel_int ? int_rdata : (sel_signals ? {20'h0, signals_rdata} : 24'h0);
+      for (int unsigned k = 0; k < 18; k++) begin
+        rdata_d = rdata_d | (ic_rdata[24*k+:24] & {24{sel_ic[k]}});
+      end
+    end
+  end
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) rdata_q <= 24'h0;
+    else         rdata_q <= rdata_d;
+  end
+
+  logic from_dpram_q;
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) from_dpram_q <= 1'b0;
+    else         from_dpram_q <= dpram_sel;
+  end
+  assign pa_data_o = from_dpram_q ? {8'h0, dpram_rdata} : rdata_q;
+
+endmodule : board_top
+
+`default_nettype wire
