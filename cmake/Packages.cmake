@@ -1,5 +1,6 @@
 # Everything comes from Debian packages; ./dev installs them.
 find_package(PkgConfig REQUIRED)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)  # the scripts in tools/
 pkg_check_modules(SYSTEMC REQUIRED IMPORTED_TARGET systemc)
 find_package(verilator REQUIRED HINTS /usr/share/verilator)
 find_package(GTest REQUIRED)

@@ -1,0 +1,13 @@
+# Checks of the tree itself, as tests: lint of the RTL by three tools, formatting, links, traceability. A tool that is not
+# installed makes its test "Skipped" (exit status 77), with the reason in the log; nothing else does.
+function(brick_add_check name)
+  add_test(NAME ${name} COMMAND Python3::Interpreter ${ARGN} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS check)
+endfunction()
+
+brick_add_check(lint.verilator tools/lint_rtl.py verilator)  # -Wall over every module as a top, waivers in rtl/lint.vlt
+brick_add_check(lint.yosys tools/lint_rtl.py yosys)          # reads, elaborates and checks board_top
+brick_add_check(lint.icarus tools/lint_rtl.py icarus)        # parses and elaborates board_top
+brick_add_check(format.clang tools/check_format.py)
+brick_add_check(docs.links tools/check_links.py)
+brick_add_check(trace.requirements tools/traceability.py --check)

@@ -1,0 +1,136 @@
+"""Negative controls of the scripts in tools/: each rule is broken in a small tree of its own, and the check must fail."""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
+
+TEST_FILE = 'TEST(Breq, FallsOnALine) {\n  BRICK_COVERS("BREQ-1");\n}\n'
+
+
+class Tree(unittest.TestCase):
+    """A temporary tree, and a way to run a tool on it."""
+
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+
+    def write(self, path, text):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+    def run_tool(self, tool, *arguments):
+        return subprocess.run([sys.executable, TOOLS / tool, "--root", self.root, *arguments], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def expect(self, done, status, text):
+        self.assertEqual(done.returncode, status, done.stdout)
+        self.assertIn(text, done.stdout)
+
+
+class Traceability(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("docs/requirements.txt", "# comment\nBREQ-1 | R S | a line takes BREQ low\nBREQ-2 | R S | BREQ returns high\n")
+        self.write("docs/claimed.txt", "BREQ-1\n")
+        self.write("testbench/unit/a_test.cpp", TEST_FILE)
+        self.run_tool("traceability.py", "--write")
+
+    def test_a_claim_with_a_test_passes(self):
+        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
+
+    def test_a_claim_without_a_test_fails(self):
+        self.write("docs/claimed.txt", "BREQ-1\nBREQ-2\n")
+        self.run_tool("traceability.py", "--write")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-2 is claimed, but no test names it")
+
+    def test_a_claim_whose_test_is_commented_out_fails(self):
+        self.write("testbench/unit/a_test.cpp", TEST_FILE.replace("  BRICK_COVERS", "  // BRICK_COVERS"))
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-1 is claimed, but no test names it")
+
+    def test_an_unknown_id_fails(self):
+        self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("BREQ-1", "BREQ-99"))
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-99")
+
+    def test_a_claim_of_no_requirement_fails(self):
+        self.write("docs/claimed.txt", "BREQ-1\nBREQ-77\n")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "'BREQ-77' is no requirement")
+
+    def test_a_stale_page_fails(self):
+        self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "FallsAgain"))
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "stale")
+
+    def test_benches_and_ctest_entries_count(self):
+        self.write("testbench/benches/b.cpp", 'const Bench b{.name = "breq-rotary",\n .covers = "BREQ-2"};\n')
+        self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nadd_test(NAME bench.breq COMMAND x)\n")
+        self.run_tool("traceability.py", "--write")
+        page = (self.root / "docs/traceability.md").read_text()
+        self.assertIn("bench breq-rotary<br>bench.breq", page)
+
+    def test_covers_above_no_test_fails(self):
+        self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nset(x 1)\n")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "no test below it")
+
+    def test_results_show_a_failed_test(self):
+        self.write("r.xml", '<testsuite><testcase name="Breq.FallsOnALine" status="fail"/></testsuite>')
+        self.expect(self.run_tool("traceability.py", "--results", str(self.root / "r.xml")), 0, "BREQ-1   failed   Breq.FallsOnALine")
+
+
+class Links(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("README.md", "[plan](docs/plan.md) and `rtl/{a,b}.sv`, `waves/out/x.vcd`, `tools/*.py`\n```\n`rtl/none.sv`\n```\n")
+        for file in ["CONTRIBUTING.md", "docs/plan.md", "rtl/a.sv", "rtl/b.sv", "tools/x.py"]:
+            self.write(file, "")
+
+    def test_existing_files_pass(self):
+        self.expect(self.run_tool("check_links.py"), 0, "clean")
+
+    def test_a_missing_file_fails(self):
+        (self.root / "rtl/b.sv").unlink()
+        self.expect(self.run_tool("check_links.py"), 1, "README.md:1: 'rtl/b.sv' does not exist")
+
+    def test_a_broken_link_fails(self):
+        self.write("docs/plan.md", "![machine](images/machine.svg)\n")
+        self.expect(self.run_tool("check_links.py"), 1, "docs/plan.md:1: 'images/machine.svg' does not exist")
+
+
+@unittest.skipUnless(shutil.which("verilator"), "verilator is not installed")
+class Lint(Tree):
+    GOOD = "`default_nettype none\nmodule board_top (input wire a_i, output wire b_o);\n  assign b_o = a_i;\nendmodule : board_top\n"
+
+    def test_clean_rtl_passes(self):
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 0, "clean")
+
+    def test_an_unused_input_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i", "= 1'b0"))
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "UNUSED")
+
+    def test_a_waiver_without_a_reason_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.write("rtl/lint.vlt", "`verilator_config\nlint_off -rule WIDTH -file \"*\"\n")
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "waiver without a reason")
+
+    def test_a_latch_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("  assign b_o = a_i;", "  always_latch if (a_i) b_o = 1'b1;").replace("output wire", "output logic"))
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "latch or initial block")
+
+    @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
+    def test_yosys_fails_on_an_undriven_net(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i;", "= a_i ^ c;\n  wire c;"))
+        self.expect(self.run_tool("lint_rtl.py", "yosys"), 1, "has no driver")
+
+    @unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
+    def test_icarus_fails_on_an_unknown_module(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("  assign", "  nothing u_nothing ();\n  assign"))
+        self.expect(self.run_tool("lint_rtl.py", "icarus"), 1, "nothing")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Checks that what README, CONTRIBUTING and docs/ name exists: links, images, and `paths/in/backticks` of the tree.
+
+A path in backticks counts when its first folder is one of the tree's; * and {a,b} may stand in it. Build products
+(build/, waves/out/) are not looked for.
+"""
+
+import argparse
+import itertools
+import pathlib
+import re
+
+from common import ROOT, finish
+
+FOLDERS = {"app", "boards", "cmake", "docs", "firmware", "rtl", "systemc", "testbench", "tools", "waves", ".ci"}
+GENERATED = ("build/", "waves/out")
+
+
+def alternatives(path):
+    """`a/{b,c}.sv` names a/b.sv and a/c.sv."""
+    parts = re.split(r"\{([^}]*)\}", path)
+    choices = [part.split(",") if i % 2 else [part] for i, part in enumerate(parts)]
+    return ["".join(choice) for choice in itertools.product(*choices)]
+
+
+def exists(root, path):
+    path = path.rstrip("/")
+    return any(root.glob(path)) if any(c in path for c in "*?[") else (root / path).exists()
+
+
+def named_paths(text):
+    """(line number, path, is_link) of everything in a Markdown text that should exist."""
+    fenced = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+            continue
+        if fenced:
+            continue
+        for target in re.findall(r"\]\(([^)\s]+)\)", line) + re.findall(r"(?:src|href)=\"([^\"]+)\"", line):
+            if not re.match(r"[a-z]+:|#", target):
+                yield number, target.split("#")[0], True
+        for code in re.findall(r"`([^`]+)`", line):
+            path = re.sub(r":\d+$", "", code)
+            if re.fullmatch(r"[\w./*{},+-]+", path) and "/" in path and path.split("/")[0] in FOLDERS:
+                yield number, path, False
+
+
+def problems_in(root):
+    pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").rglob("*.md"))]
+    for page in pages:
+        if not page.exists():
+            yield f"{page.relative_to(root)}: missing"
+            continue
+        for number, path, is_link in named_paths(page.read_text()):
+            base = page.parent if is_link else root
+            for choice in alternatives(path):
+                if not choice.startswith(GENERATED) and not exists(base, choice):
+                    yield f"{page.relative_to(root)}:{number}: '{choice}' does not exist"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
+    finish("links", list(problems_in(parser.parse_args().root.resolve())))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Lints the RTL: lint_rtl.py verilator|yosys|icarus.
+
+verilator  --lint-only -Wall with every module as a top in turn; warnings are errors. Waivers stand in rtl/lint.vlt only,
+           each with its reason in a comment on the line above it.
+yosys      reads all of it, elaborates board_top and checks for undriven and multiply driven nets.
+icarus     reads and elaborates board_top.
+Packages are read first. Exit status 0 clean, 1 problems, 77 the tool is not installed.
+"""
+
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+from common import ROOT, files, finish, skip
+
+TOP = "board_top"
+SIMULATION_ONLY = {"board_sim"}  # tops for simulation, never synthesized
+
+
+def rtl_files(root):
+    """Packages first (register maps before those that use them), then modules."""
+    found = files(root, ["rtl"], {".sv"})
+    packages = [f for f in found if f.stem.endswith("_pkg")]
+    packages.sort(key=lambda f: (f.parts[1] != "regs", f))
+    return packages, [f for f in found if f not in packages]
+
+
+def run(command, root):
+    done = subprocess.run(command, cwd=root, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return done.returncode, done.stdout
+
+
+def waiver_problems(root):
+    """Each waiver in rtl/lint.vlt needs a comment above it; waivers inside the sources are not allowed."""
+    problems = []
+    waivers = root / "rtl/lint.vlt"
+    previous_is_reason = False
+    for number, line in enumerate(waivers.read_text().splitlines() if waivers.exists() else [], 1):
+        text = line.strip()
+        if text.startswith("lint_off") and not previous_is_reason:
+            problems.append(f"rtl/lint.vlt:{number}: waiver without a reason above it: {text}")
+        if text.startswith("//"):
+            previous_is_reason = True
+        elif not text.startswith("lint_off"):  # one reason may stand over several waivers
+            previous_is_reason = False
+    for file in files(root, ["rtl"], {".sv"}):
+        for number, line in enumerate((root / file).read_text().splitlines(), 1):
+            if re.search(r"verilator\s+lint_off", line):
+                problems.append(f"{file}:{number}: waivers belong in rtl/lint.vlt")
+    return problems
+
+
+def module_problems(root, modules):
+    """One module a file, named after it, `default_nettype none, no import, no latch, no initial block."""
+    problems = []
+    for file in modules:
+        text = re.sub(r"//[^\n]*|/\*.*?\*/", "", (root / file).read_text(), flags=re.S)
+        names = re.findall(r"^\s*module\s+(\w+)", text, flags=re.M)
+        if names != [file.stem]:
+            problems.append(f"{file}: must hold the one module '{file.stem}', holds {names}")
+        if "`default_nettype none" not in text:
+            problems.append(f"{file}: `default_nettype none is missing")
+        if re.search(r"\bimport\s+\w+::", text):
+            problems.append(f"{file}: import: qualify the name instead, Yosys reads no import")
+        if re.search(r"\b(always_latch|initial)\b", text) and file.stem not in SIMULATION_ONLY:
+            problems.append(f"{file}: latch or initial block in synthesizable code")
+    return problems
+
+
+def lint_verilator(root, packages, modules):
+    problems = waiver_problems(root) + module_problems(root, modules)
+    folders = sorted({str(f.parent) for f in modules})
+    waivers = ["rtl/lint.vlt"] if (root / "rtl/lint.vlt").exists() else []
+    for module in modules:
+        command = ["verilator", "--lint-only", "-Wall", *(a for folder in folders for a in ("-y", folder)), *waivers, *map(str, packages),
+                   str(module), "--top-module", module.stem]
+        status, output = run(command, root)
+        if status != 0 or "%Warning" in output or "%Error" in output:
+            problems.append(f"{module}:\n{output.strip()}")
+    return problems
+
+
+def lint_yosys(root, packages, modules):
+    sources = [str(f) for f in packages + modules if f.stem not in SIMULATION_ONLY]
+    script = f"read_verilog -sv {' '.join(sources)}; hierarchy -check -top {TOP}; proc; check -assert"
+    status, output = run(["yosys", "-q", "-p", script], root)
+    latches = [line for line in output.splitlines() if "Latch inferred" in line]
+    return [output.strip()[-3000:] or "yosys failed"] if status != 0 else latches
+
+
+def lint_icarus(root, packages, modules):
+    sources = [str(f) for f in packages + modules if f.stem not in SIMULATION_ONLY]
+    status, output = run(["iverilog", "-g2012", "-t", "null", "-s", TOP, *sources], root)
+    # Icarus 11 says "sorry" where it only simulates more slowly; what it cannot read is an error and a non-zero status.
+    return [output.strip()[-3000:] or "iverilog failed"] if status != 0 else []
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tool", choices=["verilator", "yosys", "icarus"])
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
+    options = parser.parse_args()
+    program = {"icarus": "iverilog"}.get(options.tool, options.tool)
+    if shutil.which(program) is None:
+        skip(f"{program} is not installed")
+    packages, modules = rtl_files(options.root)
+    if not any(f.stem == TOP for f in modules):
+        sys.exit(f"{TOP}.sv was not found below rtl/")
+    lint = {"verilator": lint_verilator, "yosys": lint_yosys, "icarus": lint_icarus}[options.tool]
+    finish(f"{options.tool}, {len(packages)} packages, {len(modules)} modules", lint(options.root, packages, modules))
+
+
+if __name__ == "__main__":
+    main()
