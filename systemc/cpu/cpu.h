@@ -44,6 +44,8 @@ class Cpu {
   void set_wait(std::uint32_t base, Cycle wait);
   std::uint8_t* memory(std::uint32_t address, std::uint32_t bytes);  // nullptr where not mapped
   void invalidate_code();                                            // after memory was changed from outside
+  struct Mapping { std::uint32_t base, bytes; };
+  std::vector<Mapping> mappings() const;                             // in the order of mapping
 
   // State ------------------------------------------------------------------------------------------------------------
   void reset(std::uint32_t pc);  // registers zero, interrupts off, asleep false; memory is kept

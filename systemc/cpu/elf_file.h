@@ -17,6 +17,8 @@ class ElfFile {
   explicit ElfFile(const std::string& path);
   struct Segment { std::uint32_t address; std::uint32_t memory_size; std::vector<std::uint8_t> data; };
   const std::vector<Segment>& segments() const { return segments_; }
+  struct Range { std::uint32_t address, bytes; };
+  const std::vector<Range>& ranges() const { return ranges_; }  // what the program occupies when stored and when running
   std::uint32_t entry() const { return entry_; }
   std::optional<std::uint32_t> symbol(const std::string& name) const;
   std::string symbol_at(std::uint32_t address) const;  // name of the function that holds the address, "" if none
@@ -27,6 +29,8 @@ class ElfFile {
   std::uint32_t entry_ = 0;
   std::map<std::string, std::uint32_t> symbols_;
   std::map<std::uint32_t, std::string> functions_;
+  std::map<std::uint32_t, std::uint32_t> function_ends_;
+  std::vector<Range> ranges_;
 };
 
 }  // namespace brick
