@@ -1,0 +1,46 @@
+// Decodes the synchronised Port A address into one select per register block (docs/architecture.md, memory map):
+// gate ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010 and X:$070011, on-chip page by int_i.
+// Combinational. A gate IC that is not fitted is not selected: its words read 0.
+`default_nettype none
+
+module address_decode (
+  input  wire logic [18:0] addr_i,
+  input  wire logic        x_i,
+  input  wire logic [3:0]  aa_i,
+  input  wire logic        int_i,
+  input  wire logic [17:0] fitted_i,      // servo IC 0..9, 2*..9*
+  output logic             sel_any_o,     // a register region: its read data goes to the bus
+  output logic             sel_int_o,     // host port
+  output logic             sel_signals_o, // X:$070010 host signals
+  output logic             sel_strobe_o,  // X:$070011 watchdog strobe
+  output logic [17:0]      sel_ic_o
+);
+
+  logic gate, latch;
+  assign gate  = ~int_i & aa_i[1] & (addr_i[18:14] == 5'b11110);
+  assign latch = ~int_i & (aa_i == 4'h0) & (addr_i[18:8] == 11'h700);
+
+  // Servo ICs 0, 1: $000, $100 of the first 4 KiB word page; 2..9: $200, $300 of pages 0..3; the starred ones $20 above.
+  logic [3:0] ic;
+  logic       servo_page, star;
+  assign star       = addr_i[5];
+  assign servo_page = (addr_i[11:6] == 6'b001000 || addr_i[11:6] == 6'b001100) ||
+                      (addr_i[13:5] == 9'b000000000 || addr_i[13:5] == 9'b000001000);
+  assign ic         = addr_i[9] ? {1'b0, addr_i[13:12], addr_i[8]} + 4'd2 : {3'b000, addr_i[8]};
+
+  always_comb begin
+    sel_ic_o = 18'h0;
+    if (gate && servo_page) begin
+      // IC m is bit m, IC m* bit m + 8.
+      sel_ic_o = (18'h1 << (star ? {1'b0, ic} + 5'd8 : {1'b0, ic})) & fitted_i;
+    end
+  end
+
+  assign sel_int_o     = int_i;
+  assign sel_signals_o = latch & x_i & (addr_i[7:0] == 8'h10);
+  assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == 8'h11);
+  assign sel_any_o     = int_i | gate | latch;
+
+endmodule : address_decode
+
+`default_nettype wire

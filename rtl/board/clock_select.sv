@@ -1,0 +1,96 @@
+// The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins, the conflict flag tells when
+// there is more than one driver; with no driver the net idles high; with jumper E1 (ext_clock_i) both come from outside.
+// The choice is registered on clk_ref_i, external clocks are sampled on clk_pwm_i. Asynchronous reset. docs/clock.md.
+`default_nettype none
+
+module clock_select (
+  input  wire logic        clk_pwm_i,
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic [21:0] fitted_i,
+  input  wire logic [21:0] phase_i,
+  input  wire logic [21:0] servo_i,
+  input  wire logic [21:0] phase_oe_i,
+  input  wire logic [21:0] servo_oe_i,
+  input  wire logic        ext_clock_i,
+  input  wire logic        ext_phase_i,
+  input  wire logic        ext_servo_i,
+  output logic             phase_o,
+  output logic             servo_o,
+  output logic [4:0]       phase_source_o,  // index as in fitted_i; 30 external, 31 none
+  output logic             conflict_o
+);
+
+  localparam logic [4:0] External = 5'd30;
+  localparam logic [4:0] None     = 5'd31;
+
+  logic [44:0] drivers_d, drivers_q;  // {ext, servo, phase}
+  logic [21:0] phase_grant_d, phase_grant_q, servo_grant_d, servo_grant_q;
+  logic        phase_idle_d, phase_idle_q, servo_idle_d, servo_idle_q;
+  logic [4:0]  source_d, source_q;
+  logic        conflict_d, conflict_q;
+  assign drivers_d = {ext_clock_i, servo_oe_i & fitted_i, phase_oe_i & fitted_i};
+
+  // Recomputed only when the set of drivers changes.
+  logic        ext;
+  logic [21:0] p, s;
+  always_comb begin
+    {ext, s, p}   = drivers_d;
+    phase_grant_d = phase_grant_q;
+    servo_grant_d = servo_grant_q;
+    phase_idle_d  = phase_idle_q;
+    servo_idle_d  = servo_idle_q;
+    source_d      = source_q;
+    conflict_d    = conflict_q;
+    if (drivers_d != drivers_q) begin
+      phase_grant_d = ext ? 22'h0 : p & -p;
+      servo_grant_d = ext ? 22'h0 : s & -s;
+      phase_idle_d  = ~ext & (p == 22'h0);
+      servo_idle_d  = ~ext & (s == 22'h0);
+      conflict_d    = ext ? (|p | |s) : (p != (p & -p)) | (s != (s & -s));
+      source_d      = ext ? External : None;
+      for (int unsigned i = 0; i < 22; i++) begin
+        if (phase_grant_d[i]) source_d = 5'(i);
+      end
+    end
+  end
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      drivers_q     <= 45'h0;
+      phase_grant_q <= 22'h0;
+      servo_grant_q <= 22'h0;
+      phase_idle_q  <= 1'b1;
+      servo_idle_q  <= 1'b1;
+      source_q      <= None;
+      conflict_q    <= 1'b0;
+    end else begin
+      drivers_q     <= drivers_d;
+      phase_grant_q <= phase_grant_d;
+      servo_grant_q <= servo_grant_d;
+      phase_idle_q  <= phase_idle_d;
+      servo_idle_q  <= servo_idle_d;
+      source_q      <= source_d;
+      conflict_q    <= conflict_d;
+    end
+  end
+
+  logic ext_phase_q, ext_servo_q;
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      ext_phase_q <= 1'b1;
+      ext_servo_q <= 1'b1;
+    end else begin
+      ext_phase_q <= ext_phase_i;
+      ext_servo_q <= ext_servo_i;
+    end
+  end
+
+  assign phase_o        = phase_idle_q | (drivers_q[44] & ext_phase_q) | (|(phase_grant_q & phase_i));
+  assign servo_o        = servo_idle_q | (drivers_q[44] & ext_servo_q) | (|(servo_grant_q & servo_i));
+  assign phase_source_o = source_q;
+  assign conflict_o     = conflict_q;
+
+endmodule : clock_select
+
+`default_nettype wire

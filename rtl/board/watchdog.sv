@@ -1,0 +1,56 @@
+// Hardware watchdog: trips when 25 ms pass without a strobe from the firmware, or without an edge of the servo clock, and
+// stays tripped until reset. Two timers count a 38.4 kHz clock (clk_ref_i / 1024) down from 960. Both run from reset on.
+// Clock clk_ref_i, asynchronous reset. docs/watchdog.md, servo-ic.md section 10.
+`default_nettype none
+
+module watchdog (
+  input  wire logic clk_ref_i,
+  input  wire logic rst_ni,
+  input  wire logic strobe_i,  // one clk_ref: any write to X:$070011
+  input  wire logic servo_i,
+  output logic      trip_o
+);
+
+  localparam logic [15:0] Timeout = 16'd960;  // 25 ms
+
+  logic [9:0]  prescale_q;
+  logic [15:0] strobe_left_d, strobe_left_q, servo_left_d, servo_left_q;
+  logic        servo_last_q, trip_d, trip_q;
+  logic        count, servo_edge;
+  assign count      = &prescale_q;
+  assign servo_edge = servo_i != servo_last_q;
+
+  always_comb begin
+    strobe_left_d = strobe_left_q;
+    servo_left_d  = servo_left_q;
+    trip_d        = trip_q;
+    if (count && !trip_q) begin
+      strobe_left_d = strobe_left_q - 16'd1;
+      servo_left_d  = servo_left_q - 16'd1;
+      trip_d        = (strobe_left_q == 16'd1 && !strobe_i) || (servo_left_q == 16'd1 && !servo_edge);
+    end
+    if (strobe_i) strobe_left_d = Timeout;
+    if (servo_edge) servo_left_d = Timeout;
+  end
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      prescale_q    <= 10'd0;
+      strobe_left_q <= Timeout;
+      servo_left_q  <= Timeout;
+      servo_last_q  <= 1'b1;
+      trip_q        <= 1'b0;
+    end else begin
+      prescale_q    <= prescale_q + 10'd1;
+      strobe_left_q <= strobe_left_d;
+      servo_left_q  <= servo_left_d;
+      servo_last_q  <= servo_i;
+      trip_q        <= trip_d;
+    end
+  end
+
+  assign trip_o = trip_q;
+
+endmodule : watchdog
+
+`default_nettype wire

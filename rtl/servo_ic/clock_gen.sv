@@ -1,0 +1,169 @@
+// Clock chain of a servo IC: triangle counter (MaxPhase), phase divider, servo divider, PHASE and SERVO outputs, and the
+// re-alignment to an external phase clock. Clock clk_pwm_i (117.9648 MHz), asynchronous reset. docs/clock.md, servo-ic.md 5.1.
+//
+// The triangle is kept as a ramp: ramp = up ? cnt : ~cnt, which counts up in both directions from -(I+1) to I+1 (I = I7m00).
+// So a turnaround is ramp == top, half way is ramp == -1, and nearly every tick is one increment and two comparisons.
+`default_nettype none
+
+module clock_gen (
+  input  wire logic        clk_pwm_i,
+  input  wire logic        rst_ni,
+  input  wire logic [14:0] max_count_i,   // I7m00
+  input  wire logic [3:0]  phase_div_i,   // I7m01
+  input  wire logic [3:0]  servo_div_i,   // I7m02
+  input  wire logic        phase_ext_i,   // I7m07 bit 0: the PHASE pin is an input
+  input  wire logic        servo_ext_i,   // I7m07 bit 1: the SERVO pin is an input
+  input  wire logic        phase_i,
+  input  wire logic        servo_i,
+  output logic             phase_o,       // phase clock of this IC, own or external
+  output logic             servo_o,
+  output logic [16:0]      cnt_o,         // triangle counter, signed
+  output logic             turn_o,        // this edge leaves a turnaround
+  output logic             phase_rise_o,  // this edge raises, lowers the phase clock, lowers the servo clock
+  output logic             phase_fall_o,
+  output logic             servo_fall_o
+);
+
+  localparam logic [16:0] MaxCountReset = 17'd6527;
+  localparam logic signed [17:0] Window = 18'sd8;  // clk in which a turnaround follows the external edge at once
+  localparam logic [1:0] MissLimit = 2'd3;         // the fourth edge in a row outside the window forces it
+
+  logic [16:0] ramp_d, ramp_q, top_d, top_q;
+  logic        up_d, up_q;
+  logic [3:0]  phase_cnt_d, phase_cnt_q;  // turnarounds to the next phase tick
+  logic [3:0]  fall_cnt_d, fall_cnt_q;    // turnarounds to the middle of the phase period
+  logic        odd_d, odd_q;              // odd number of half triangles a period: PHASE falls half way up or down
+  logic [3:0]  servo_cnt_d, servo_cnt_q;  // phase periods to the next servo tick
+  logic [1:0]  miss_d, miss_q;
+  logic        phase_d, phase_q, servo_d, servo_q;
+  logic [1:0]  sync1_q, sync2_q;          // {servo, phase} pins, two-flop synchroniser
+
+  logic at_top, at_middle, ext_rise, turn, retard;
+  assign at_top    = ramp_q == top_q;
+  assign at_middle = &ramp_q;
+  assign ext_rise  = phase_ext_i & sync2_q[0] & ~phase_q;
+
+  // External rising edge: the nearest turnaround is moved to this edge, the coming one forward or the last one back.
+  logic signed [17:0] to_next, from_last;
+  always_comb begin
+    turn      = at_top;
+    retard    = 1'b0;
+    miss_d    = miss_q;
+    to_next   = 18'sd0;
+    from_last = 18'sd0;
+    if (ext_rise) begin
+      to_next   = $signed({top_q[16], top_q}) - $signed({ramp_q[16], ramp_q});
+      from_last = $signed({top_q[16], top_q}) + $signed({ramp_q[16], ramp_q}) + 18'sd1;
+      if (to_next <= Window || from_last <= Window || miss_q == MissLimit) begin
+        miss_d = 2'd0;
+        if (to_next <= from_last) turn = 1'b1;
+        else                      retard = 1'b1;
+      end else begin
+        miss_d = miss_q + 2'd1;
+      end
+    end
+  end
+
+  // Triangle. A new maximum count is taken at the bottom turnaround.
+  always_comb begin
+    ramp_d = ramp_q + 17'd1;
+    top_d  = top_q;
+    up_d   = up_q;
+    if (turn || retard) begin
+      ramp_d = -top_q;
+    end
+    if (turn) begin
+      up_d = ~up_q;
+      if (!up_q) top_d = {2'b00, max_count_i} + 17'd1;
+    end
+  end
+
+  // Phase clock. While external, the divider stands ready for a full period and PHASE follows the pin.
+  always_comb begin
+    phase_d     = phase_q;
+    phase_cnt_d = phase_cnt_q;
+    fall_cnt_d  = fall_cnt_q;
+    odd_d       = odd_q;
+    if (phase_ext_i) begin
+      phase_d     = sync2_q[0];
+      phase_cnt_d = phase_div_i;
+      fall_cnt_d  = 4'd0;
+      odd_d       = 1'b0;
+    end else if (turn) begin
+      if (phase_cnt_q == 4'd0) begin
+        phase_d     = 1'b1;
+        phase_cnt_d = phase_div_i;
+        fall_cnt_d  = {1'b0, phase_div_i[3:1]} + {3'b000, phase_div_i[0]};
+        odd_d       = ~phase_div_i[0];
+      end else begin
+        phase_cnt_d = phase_cnt_q - 4'd1;
+        if (fall_cnt_q != 4'd0) fall_cnt_d = fall_cnt_q - 4'd1;
+        if (fall_cnt_q == 4'd1 && !odd_q) phase_d = 1'b0;
+      end
+    end else if (at_middle && odd_q && fall_cnt_q == 4'd0) begin
+      phase_d = 1'b0;
+    end
+  end
+
+  // Servo clock: falls with every (I7m02+1)-th fall of the phase clock and rises with the next one, or, when it is as fast
+  // as the phase clock, with the next rise.
+  always_comb begin
+    servo_d     = servo_q;
+    servo_cnt_d = servo_cnt_q;
+    if (servo_ext_i) begin
+      servo_d     = sync2_q[1];
+      servo_cnt_d = servo_div_i;
+    end else if (phase_q != phase_d) begin
+      if (phase_d) begin
+        if (servo_cnt_q == 4'd0) servo_d = 1'b1;
+      end else if (servo_cnt_q == 4'd0) begin
+        servo_d     = 1'b0;
+        servo_cnt_d = servo_div_i;
+      end else begin
+        servo_d     = 1'b1;
+        servo_cnt_d = servo_cnt_q - 4'd1;
+      end
+    end
+  end
+
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      ramp_q      <= 17'd0;
+      top_q       <= MaxCountReset + 17'd1;
+      up_q        <= 1'b1;
+      phase_cnt_q <= 4'd0;
+      fall_cnt_q  <= 4'd0;
+      odd_q       <= 1'b0;
+      servo_cnt_q <= 4'd3;
+      miss_q      <= 2'd0;
+      phase_q     <= 1'b1;
+      servo_q     <= 1'b1;
+      sync1_q     <= 2'b11;
+      sync2_q     <= 2'b11;
+    end else begin
+      ramp_q      <= ramp_d;
+      top_q       <= top_d;
+      up_q        <= up_d;
+      phase_cnt_q <= phase_cnt_d;
+      fall_cnt_q  <= fall_cnt_d;
+      odd_q       <= odd_d;
+      servo_cnt_q <= servo_cnt_d;
+      miss_q      <= miss_d;
+      phase_q     <= phase_d;
+      servo_q     <= servo_d;
+      sync1_q     <= {servo_i, phase_i};
+      sync2_q     <= sync1_q;
+    end
+  end
+
+  assign phase_o      = phase_q;
+  assign servo_o      = servo_q;
+  assign cnt_o        = up_q ? ramp_q : ~ramp_q;
+  assign turn_o       = turn;
+  assign phase_rise_o = ~phase_q & phase_d;
+  assign phase_fall_o = phase_q & ~phase_d;
+  assign servo_fall_o = servo_q & ~servo_d;
+
+endmodule : clock_gen
+
+`default_nettype wire
