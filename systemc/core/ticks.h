@@ -29,7 +29,7 @@ constexpr Tick fs_to_tick(TimeFs time) {
 
 // Last tick whose clock edge is not after `time`: an output sampled at `time` shows the state after this edge.
 constexpr Tick fs_to_tick_floor(TimeFs time) {
-  return static_cast<Tick>((static_cast<__int128>(time) + 1) * 9216 / detail::kFsPer9216Ticks);
+  return static_cast<Tick>(((static_cast<__int128>(time) + 1) * 9216 - 1) / detail::kFsPer9216Ticks);
 }
 
 constexpr TimeFs kFsPerNs = 1'000'000;

@@ -1,0 +1,67 @@
+// FST, the compressed format of GTKWave, through the C library that ships with Verilator.
+#include <fstapi.h>
+
+#include <stdexcept>
+
+#include "systemc/core/trace_formats.h"
+#include "systemc/core/trace_queue.h"
+
+namespace brick {
+
+namespace {
+
+constexpr int kPicoseconds = -12;
+
+class FstWriter : public TraceQueue {
+ public:
+  FstWriter(const std::string& file, TimeFs from, TimeFs to) : TraceQueue(from, to), context_(fstWriterCreate(file.c_str(), 1)) {
+    if (!context_) throw std::runtime_error(file + ": cannot write the waveform");
+    fstWriterSetTimescale(context_.get(), kPicoseconds);
+    fstWriterSetVersion(context_.get(), "brick");
+    fstWriterSetPackType(context_.get(), FST_WR_PT_LZ4);
+  }
+  ~FstWriter() override { close(); }
+
+ private:
+  void write_header(const TraceScope& top) override {
+    handles_.resize(declared().size());
+    write_scope("brick", top);
+  }
+  void write_scope(const std::string& name, const TraceScope& scope) {
+    fstWriterSetScope(context_.get(), FST_ST_VCD_MODULE, name.c_str(), nullptr);
+    for (const auto& [signal, id] : scope.signals) {
+      const Signals::Info& info = declared()[id].info;
+      const bool text = info.radix == Radix::kText;
+      const std::string range = !text && info.width > 1 ? " [" + std::to_string(info.width - 1) + ":0]" : "";
+      handles_[id] = fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : FST_VT_VCD_WIRE, FST_VD_IMPLICIT, text ? 0 : info.width,
+                                        (signal + range).c_str(), 0);
+    }
+    for (const auto& [child, sub] : scope.scopes) write_scope(child, sub);
+    fstWriterSetUpscope(context_.get());
+  }
+  void write_time(std::int64_t ps, bool) override { fstWriterEmitTimeChange(context_.get(), static_cast<std::uint64_t>(ps)); }
+  void write_value(Signals::Id id, std::uint64_t value) override {
+    const unsigned width = declared()[id].info.width;
+    char bits[64];
+    for (unsigned i = 0; i < width; ++i) bits[i] = static_cast<char>('0' + ((value >> (width - 1 - i)) & 1));
+    fstWriterEmitValueChange(context_.get(), handles_[id], bits);
+  }
+  void write_text(Signals::Id id, const std::string& text) override {
+    fstWriterEmitVariableLengthValueChange(context_.get(), handles_[id], text.data(), static_cast<std::uint32_t>(text.size()));
+  }
+  void finish() override { context_.reset(); }
+
+  struct Closer {
+    void operator()(void* context) const { fstWriterClose(context); }
+  };
+  std::unique_ptr<void, Closer> context_;
+  std::vector<fstHandle> handles_;
+};
+
+}  // namespace
+
+std::unique_ptr<TraceWriter> open_fst(const std::string& file, TimeFs from, TimeFs to) {
+  return std::make_unique<FstWriter>(file, from, to);
+}
+
+}  // namespace brick

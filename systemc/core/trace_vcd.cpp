@@ -1,0 +1,117 @@
+// Value change dump (IEEE 1364 clause 18) with the `string` variables that GTKWave reads as an extension.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "systemc/core/trace_formats.h"
+#include "systemc/core/trace_queue.h"
+
+namespace brick {
+
+namespace {
+
+constexpr std::size_t kFileBuffer = 1 << 16;
+
+// Identifier codes are numbers to base 94 in the printable characters.
+std::string code_of(Signals::Id id) {
+  std::string code;
+  for (++id; id != 0; id = (id - 1) / 94) code += static_cast<char>('!' + (id - 1) % 94);
+  return code;
+}
+
+// White space ends a string value, so it is written as an octal escape, as GTKWave does.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c > ' ' && c < 0x7F && c != '\\')
+      out += c;
+    else
+      out += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+class VcdWriter : public TraceQueue {
+ public:
+  VcdWriter(const std::string& file, TimeFs from, TimeFs to) : TraceQueue(from, to), name_(file), file_(std::fopen(file.c_str(), "w")) {
+    if (!file_) throw std::runtime_error(file + ": cannot write the waveform: " + std::strerror(errno));
+  }
+  ~VcdWriter() override {
+    try {
+      close();
+    } catch (const std::exception& e) { fmt::print(stderr, "{}\n", e.what()); }
+  }
+
+ private:
+  void write_header(const TraceScope& top) override {
+    for (Signals::Id id = 0; id < declared().size(); ++id) codes_.push_back(code_of(id));
+    out_ += "$version brick $end\n$timescale 1 ps $end\n";
+    write_scope("brick", top);
+    out_ += "$enddefinitions $end\n";
+  }
+  void write_scope(const std::string& name, const TraceScope& scope) {
+    out_ += fmt::format("$scope module {} $end\n", name);
+    for (const auto& [signal, id] : scope.signals) {
+      const Signals::Info& info = declared()[id].info;
+      if (info.radix == Radix::kText)
+        out_ += fmt::format("$var string 1 {} {} $end\n", codes_[id], signal);
+      else if (info.width == 1)
+        out_ += fmt::format("$var wire 1 {} {} $end\n", codes_[id], signal);
+      else
+        out_ += fmt::format("$var wire {} {} {} [{}:0] $end\n", info.width, codes_[id], signal, info.width - 1);
+    }
+    for (const auto& [child, sub] : scope.scopes) write_scope(child, sub);
+    out_ += "$upscope $end\n";
+  }
+  void write_time(std::int64_t ps, bool first) override {
+    if (dumping_) out_ += "$end\n";
+    dumping_ = first;
+    out_ += '#';
+    out_ += fmt::format_int(ps).c_str();
+    out_ += first ? "\n$dumpvars\n" : "\n";
+    if (out_.size() > kFileBuffer) write_out();
+  }
+  void write_value(Signals::Id id, std::uint64_t value) override {
+    const unsigned width = declared()[id].info.width;
+    if (width == 1) {
+      out_ += static_cast<char>('0' + (value & 1));
+    } else {
+      out_ += 'b';
+      for (unsigned i = width; i-- > 0;) out_ += static_cast<char>('0' + ((value >> i) & 1));
+      out_ += ' ';
+    }
+    out_ += codes_[id];
+    out_ += '\n';
+  }
+  void write_text(Signals::Id id, const std::string& text) override { out_ += fmt::format("s{} {}\n", escaped(text), codes_[id]); }
+  void write_out() {
+    if (std::fwrite(out_.data(), 1, out_.size(), file_.get()) != out_.size()) fail();
+    out_.clear();
+  }
+  void finish() override {
+    if (dumping_) out_ += "$end\n";
+    write_out();
+    if (std::fclose(file_.release()) != 0) fail();
+  }
+  [[noreturn]] void fail() const { throw std::runtime_error(name_ + ": cannot write the waveform: " + std::strerror(errno)); }
+
+  struct Closer {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  std::string name_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::vector<std::string> codes_;
+  std::string out_;
+  bool dumping_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<TraceWriter> open_vcd(const std::string& file, TimeFs from, TimeFs to) {
+  return std::make_unique<VcdWriter>(file, from, to);
+}
+
+}  // namespace brick

@@ -1,0 +1,170 @@
+// Waveform files: order of records that come from sources that run ahead of each other, window, both formats.
+#include "systemc/core/trace.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+constexpr TimeFs kPs = 1000;
+
+std::string read(const std::string& file) {
+  std::ifstream in(file);
+  std::stringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+std::string body(const std::string& vcd) {
+  const std::string mark = "$enddefinitions $end\n";
+  const auto at = vcd.find(mark);
+  return at == std::string::npos ? "" : vcd.substr(at + mark.size());
+}
+
+class Trace : public ::testing::Test {
+ protected:
+  // One file a process: ctest runs the tests side by side.
+  std::string path(const std::string& ending) const {
+    return ::testing::TempDir() + "brick_trace_" + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ending;
+  }
+  // Two signals and a text, as every test below uses them.
+  Signals signals;
+  Signals::Id rd_n = signals.add("bus.rd_n", 1, Radix::kBinary, 1);
+  Signals::Id addr = signals.add("bus.addr", 4, Radix::kHex, 0);
+  Signals::Id symbol = signals.add("cpu.symbol", 1, Radix::kText);
+
+  std::string vcd(TimeFs from, TimeFs to, const std::function<void(TraceWriter&)>& run) {
+    const std::string file = path(".vcd");
+    {
+      auto writer = TraceWriter::open(file, from, to);
+      signals.attach(writer.get());
+      run(*writer);
+      writer->close();
+      signals.attach(nullptr);
+    }
+    const std::string text = read(file);
+    std::remove(file.c_str());
+    return text;
+  }
+};
+
+TEST_F(Trace, VcdHasTopScopeAndOneScopeADot) {
+  BRICK_COVERS("CARD-4");
+  const std::string text = vcd(0, INT64_MAX, [](TraceWriter&) {});
+  EXPECT_THAT(text, ::testing::HasSubstr("$timescale 1 ps $end\n"));
+  EXPECT_THAT(text, ::testing::HasSubstr("$scope module brick $end\n"
+                                         "$scope module bus $end\n"
+                                         "$var wire 4 \" addr [3:0] $end\n"
+                                         "$var wire 1 ! rd_n $end\n"
+                                         "$upscope $end\n"
+                                         "$scope module cpu $end\n"
+                                         "$var string 1 # symbol $end\n"
+                                         "$upscope $end\n"
+                                         "$upscope $end\n"));
+  EXPECT_EQ(body(text), "#0\n$dumpvars\n1!\nb0000 \"\ns #\n$end\n");
+}
+
+TEST_F(Trace, RecordsOfSourcesThatRunAheadComeOutInOrder) {
+  BRICK_COVERS("CARD-4");
+  const std::string text = vcd(0, INT64_MAX, [&](TraceWriter& w) {
+    signals.set(addr, 30 * kPs, 0xA);  // one source is ahead
+    signals.set(rd_n, 20 * kPs, 0);
+    w.flush_until(25 * kPs);
+    signals.set(rd_n, 30 * kPs, 1);
+    signals.set(addr, 40 * kPs, 0xB);
+    signals.set_text(symbol, 35 * kPs, "a b\\");
+    w.flush_until(50 * kPs);
+  });
+  EXPECT_EQ(body(text), "#0\n$dumpvars\n1!\nb0000 \"\ns #\n$end\n#20\n0!\n#30\nb1010 \"\n1!\n#35\nsa\\040b\\134 #\n#40\nb1011 \"\n#50\n");
+}
+
+TEST_F(Trace, ManyLotsStayInOrder) {
+  const std::string text = vcd(0, INT64_MAX, [&](TraceWriter& w) {
+    for (int i = 1; i <= 100'000; ++i) {
+      signals.set(addr, (2 * i + 9) * kPs, static_cast<std::uint64_t>(i & 15));  // up to 9 ps ahead
+      signals.set(rd_n, 2 * i * kPs, static_cast<std::uint64_t>(i & 1));
+      w.flush_until(2 * i * kPs);
+    }
+  });
+  std::istringstream in(body(text));
+  long long last = -1;
+  int times = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line[0] != '#') continue;
+    const long long t = std::stoll(line.substr(1));
+    ASSERT_GT(t, last);
+    last = t;
+    ++times;
+  }
+  EXPECT_EQ(last, 200'009);
+  // time 0, rd_n at 4, 6, ... 200000 (it is 1 already at 2), addr at 11, 13, ... 200009
+  EXPECT_EQ(times, 1 + 99'999 + 100'000);
+}
+
+TEST_F(Trace, WindowBeginsWithTheValuesThatStandThere) {
+  BRICK_COVERS("CARD-4");
+  const std::string text = vcd(100 * kPs, 200 * kPs, [&](TraceWriter& w) {
+    signals.set(addr, 50 * kPs, 5);
+    signals.set(rd_n, 100 * kPs, 0);  // at the very start: part of the dump
+    signals.set(addr, 150 * kPs, 6);
+    signals.set(rd_n, 200 * kPs, 1);  // at the very end: inside
+    signals.set(addr, 201 * kPs, 7);
+    w.flush_until(500 * kPs);
+  });
+  EXPECT_EQ(body(text), "#100\n$dumpvars\n0!\nb0101 \"\ns #\n$end\n#150\nb0110 \"\n#200\n1!\n");
+}
+
+TEST_F(Trace, FstHoldsTheSameAsVcd) {
+  BRICK_COVERS("CARD-4");
+  if (std::system("fst2vcd --help >/dev/null 2>&1") == 127 << 8) GTEST_SKIP() << "fst2vcd is not installed";
+  const std::string file = path(".fst"), converted = path(".out");
+  {
+    auto writer = TraceWriter::open(file, 0, 60 * kPs);
+    signals.attach(writer.get());
+    signals.set(addr, 30 * kPs, 0xA);
+    signals.set(rd_n, 20 * kPs, 0);
+    signals.set_text(symbol, 40 * kPs, "main");
+    signals.set(addr, 61 * kPs, 0xF);
+    writer->flush_until(100 * kPs);
+    writer->close();
+    signals.attach(nullptr);
+  }
+  ASSERT_EQ(std::system(("fst2vcd -f " + file + " -o " + converted).c_str()), 0);
+  const std::string text = read(converted);
+  EXPECT_THAT(text, ::testing::HasSubstr("1ps"));
+  EXPECT_THAT(text, ::testing::HasSubstr("$scope module brick $end\n$scope module bus $end\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("wire 4 . addr \\[3:0\\]"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("string [01] . symbol"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("#20\n0.\n#30\nb1010 .\n#40\nsmain .\n"));
+  EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("b1111")));
+  std::remove(file.c_str());
+  std::remove(converted.c_str());
+}
+
+TEST(TraceOpen, SaysWhatIsWrongWithTheFileName) {
+  EXPECT_THROW(
+      {
+        try {
+          TraceWriter::open("wave.txt");
+        } catch (const std::runtime_error& e) {
+          EXPECT_STREQ(e.what(), "wave.txt: waveform files end in .vcd or .fst");
+          throw;
+        }
+      },
+      std::runtime_error);
+  EXPECT_THROW(TraceWriter::open("/nonexistent/folder/wave.vcd"), std::runtime_error);
+  EXPECT_THROW(TraceWriter::open("/nonexistent/folder/wave.fst"), std::runtime_error);
+  EXPECT_THROW(TraceWriter::open("wave.vcd", 10, 5), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace brick
