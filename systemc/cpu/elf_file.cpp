@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -29,9 +30,9 @@ class Image {
  public:
   explicit Image(const std::string& path) : path_(path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) fail("cannot be read; expected an ELF program");
+    if (!file || std::filesystem::is_directory(path)) fail("cannot be read; expected an ELF program");
     bytes_.assign(std::istreambuf_iterator<char>(file), {});
-    if (file.bad() || !file.eof()) fail("cannot be read; expected an ELF program");
+    if (file.bad()) fail("cannot be read to its end; expected an ELF program");
   }
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(path_ + ": " + what); }
   std::size_t size() const { return bytes_.size(); }
