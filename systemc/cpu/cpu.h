@@ -15,10 +15,12 @@ namespace brick {
 using Cycle = std::int64_t;
 
 // Where loads and stores outside DMI memory go. Called at cycle `now`; returns the cycle at which the instruction goes on.
+// `retry`: the access is still under way. run() returns kDevice before the instruction, which has not retired; the next
+// run() makes the same access again, and the instruction ends when the answer says so.
 class DeviceBus {
  public:
   virtual ~DeviceBus() = default;
-  struct Result { bool fault; std::uint32_t data; Cycle done; };
+  struct Result { bool fault; std::uint32_t data; Cycle done; bool retry = false; };
   virtual Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) = 0;
 };
 

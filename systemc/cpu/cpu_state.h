@@ -75,7 +75,7 @@ struct StoreEntry {
   Cycle wait = 0;
 };
 
-enum class Access { kDone, kDevice, kHalt, kFault };
+enum class Access { kDone, kDevice, kHalt, kFault, kRetry };
 
 }  // namespace cpu
 

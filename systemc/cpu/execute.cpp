@@ -111,6 +111,7 @@ std::uint32_t remainder(std::uint32_t a, std::uint32_t b) {
     outcome = s.load(address, sizeof(Type));                                                  \
     cycle = s.cycle;                                                                          \
     if (outcome == Access::kFault) goto access_fault;                                         \
+    if (outcome == Access::kRetry) goto retry;                                                \
     x[d->rd] = static_cast<std::uint32_t>(static_cast<Extended>(static_cast<Type>(s.value))); \
     d += step;                                                                                \
     if (outcome == Access::kDone) NEXT(cost::kLoad);                                          \
@@ -135,6 +136,7 @@ std::uint32_t remainder(std::uint32_t a, std::uint32_t b) {
     outcome = s.store(address, sizeof(Type), x[d->rs2]);                              \
     cycle = s.cycle;                                                                  \
     if (outcome == Access::kFault) goto access_fault;                                 \
+    if (outcome == Access::kRetry) goto retry;                                        \
     d += step;                                                                        \
     if (outcome == Access::kDone) NEXT(cost::kStore);                                 \
     cycle += cost::kStore;                                                            \
@@ -203,6 +205,9 @@ exception:  // the instruction at d does not retire
     return Stop::kDevice;
   }
   goto boundary;
+
+retry:  // the instruction at d waits for a device; s.pc, s.cycle and s.retired stand before it
+  return Stop::kDevice;
 
 leave:  // the instruction before d made the caller's attention due
   s.pc = PC_OF(d);
