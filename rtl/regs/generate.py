@@ -160,7 +160,7 @@ def write_sv(blocks, ics, memories):
         width = 24 if memory.words else 20
         out += ["", f"  // {memory.title}",
                 f"  localparam logic [{width - 1}:0] {camel(memory.name)}Base = {width}'h{memory.base:X};",
-                f"  localparam int unsigned {camel(memory.name)}Size = {memory.size};"]
+                f"  localparam int {camel(memory.name)}Size = {memory.size};"]
     out += ["", "  // Gate ICs"]
     for ic in ics:
         out.append(f"  localparam logic [23:0] {camel(ic.name)}Base = 24'h{ic.base:06X};")
@@ -179,9 +179,9 @@ def write_sv(blocks, ics, memories):
             for f in reg.fields:
                 if f.width == reg.width:
                     continue
-                out.append(f"  localparam int unsigned {full}{camel(f.name)}Lsb = {f.lsb};")
+                out.append(f"  localparam int {full}{camel(f.name)}Lsb = {f.lsb};")
                 if f.width > 1:
-                    out.append(f"  localparam int unsigned {full}{camel(f.name)}Width = {f.width};")
+                    out.append(f"  localparam int {full}{camel(f.name)}Width = {f.width};")
     return out + ["endpackage : brick_regs_pkg", "", "`default_nettype wire", ""]
 
 

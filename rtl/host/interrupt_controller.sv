@@ -1,0 +1,72 @@
+// Interrupt controller between the board's eight signal lines and the one interrupt of the host bus.
+// Registers (addr_i): 0 read IST, write clears the latches; 1 SIG; 2 MSK, 1 = enabled; 3 ELR, 0 = rising edge, 1 = level.
+// IST = MSK & (ELR ? line : latch), IRQ = any IST. A latch is set by a rising edge while enabled and edge-sensed, and
+// cleared by a write to 0 or while masked; a coincident edge wins over the clear. Lines pass two flip-flops, so a line
+// must stay for three clocks to be seen for sure, and raises IRQ at the third edge.
+// Clock clk_ref_i, asynchronous reset. docs/interrupt_controller.md.
+`default_nettype none
+
+module interrupt_controller (
+  input  wire logic       clk_ref_i,
+  input  wire logic       rst_ni,
+  input  wire logic [7:0] line_i,
+  input  wire logic       wr_i,
+  input  wire logic [1:0] addr_i,
+  input  wire logic [7:0] wdata_i,
+  output logic [7:0]      rdata_o,
+  output logic [7:0]      ist_o,
+  output logic [7:0]      sig_o,
+  output logic [7:0]      msk_o,
+  output logic [7:0]      elr_o,
+  output logic            irq_o
+);
+
+  localparam logic [1:0] AddrStatus    = 2'd0;
+  localparam logic [1:0] AddrSignal    = 2'd1;
+  localparam logic [1:0] AddrMask      = 2'd2;
+  localparam logic [1:0] AddrEdgeLevel = 2'd3;
+
+  logic [7:0] line1_q, line2_q, line3_q;  // line3_q is line2_q one clock ago, for the edge
+  logic [7:0] msk_q, elr_q, latch_d, latch_q, rise;
+  logic       clear;
+
+  assign rise    = line2_q & ~line3_q;
+  assign clear   = wr_i & (addr_i == AddrStatus);
+  assign latch_d = (rise & msk_q & ~elr_q) | (latch_q & msk_q & ~{8{clear}});
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      line1_q <= 8'h00;
+      line2_q <= 8'h00;
+      line3_q <= 8'h00;
+      latch_q <= 8'h00;
+      msk_q   <= 8'h00;
+      elr_q   <= 8'h00;
+    end else begin
+      line1_q <= line_i;
+      line2_q <= line1_q;
+      line3_q <= line2_q;
+      latch_q <= latch_d;
+      if (wr_i && addr_i == AddrMask)      msk_q <= wdata_i;
+      if (wr_i && addr_i == AddrEdgeLevel) elr_q <= wdata_i;
+    end
+  end
+
+  assign sig_o = line2_q;
+  assign msk_o = msk_q;
+  assign elr_o = elr_q;
+  assign ist_o = msk_q & ((elr_q & line2_q) | (~elr_q & latch_q));
+  assign irq_o = |ist_o;
+
+  always_comb begin
+    unique case (addr_i)
+      AddrStatus: rdata_o = ist_o;
+      AddrSignal: rdata_o = sig_o;
+      AddrMask:   rdata_o = msk_q;
+      default:    rdata_o = elr_q;
+    endcase
+  end
+
+endmodule : interrupt_controller
+
+`default_nettype wire
