@@ -1,4 +1,6 @@
-/* Hardware access. Device addresses come from the generated rtl/regs/brick_regs.h; memory map in docs/architecture.md. */
+/* Hardware access. Device addresses come from the generated rtl/regs/brick_regs.h; memory map in docs/architecture.md.
+ * The firmware reaches hardware through this header only, so that testbench/unit/firmware_platform can compile it for the
+ * build machine with BRICK_NATIVE and put memory arrays behind it. */
 #ifndef FIRMWARE_HAL_HAL_H
 #define FIRMWARE_HAL_HAL_H
 
@@ -7,17 +9,45 @@
 
 #define HAL_WORD_MASK 0xFFFFFFu
 
-static inline volatile uint32_t *hal_x(uint32_t address) { return (volatile uint32_t *)(0xC0000004u + 8u * address); }
-static inline volatile uint32_t *hal_y(uint32_t address) { return (volatile uint32_t *)(0xC0000000u + 8u * address); }
+#ifdef BRICK_NATIVE
+volatile uint32_t* hal_x(uint32_t address);
+volatile uint32_t* hal_y(uint32_t address);
+#else
+static inline volatile uint32_t* hal_x(uint32_t address) { return (volatile uint32_t*)(0xC0000004u + 8u * address); }
+static inline volatile uint32_t* hal_y(uint32_t address) { return (volatile uint32_t*)(0xC0000000u + 8u * address); }
+#endif
+
+/* A 24-bit word as a signed number. */
+static inline int32_t hal_signed(uint32_t word) { return (int32_t)(word << 8) >> 8; }
 
 /* Critical sections. The state returned by the first call is given back to the second. */
-uint32_t hal_mask_real_time(void);          /* holds off the real-time task (background use) */
-uint32_t hal_mask_servo(void);              /* holds off servo and real-time tasks */
+uint32_t hal_mask_real_time(void); /* holds off the real-time task (background use) */
+uint32_t hal_mask_servo(void);     /* holds off servo and real-time tasks */
+uint32_t hal_mask_all(void);       /* holds off every task and the host port */
 void hal_unmask(uint32_t state);
 
-uint32_t hal_cycles(void);                  /* CPU cycle counter, low 32 bits */
-void hal_delay_us(uint32_t us);             /* busy wait */
-void hal_host_signals(uint32_t set, uint32_t clear);   /* bits HAL_SIGNAL_*: latch X:$070010 */
+uint32_t hal_cycles(void);                           /* CPU cycle counter, low 32 bits */
+void hal_delay_us(uint32_t us);                      /* busy wait */
+void hal_host_signals(uint32_t set, uint32_t clear); /* bits HAL_SIGNAL_*: latch X:$070010 */
 enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL_F1ER = 8 };
+
+/* Kernel only. ------------------------------------------------------------------------------------------------------ */
+void hal_set_cpu_clock(uint32_t i52); /* cycles a microsecond for hal_delay_us and hal_cycles_per_ms */
+uint32_t hal_cycles_per_ms(void);
+void hal_interrupts_off(void);    /* no task enabled, nothing latched */
+void hal_interrupts_on(void);     /* all tasks enabled */
+void hal_request_real_time(void); /* sets the real-time interrupt pending */
+bool hal_real_time_pending(void);
+void hal_idle(const volatile uint32_t* work); /* sleeps until the next interrupt unless *work is not zero already */
+void hal_watchdog_strobe(void);
+void hal_host_transmit_enable(bool on); /* HTIE: the host port asks for characters */
+
+/* Straps, read-only words of the board description. */
+enum { HAL_STRAP_E3 = 0, HAL_STRAP_FITTED, HAL_STRAP_CARD, HAL_STRAP_DPRAM_WORDS, HAL_STRAP_POWER_ON, HAL_STRAP_JPAN };
+uint32_t hal_strap(unsigned word);
+
+/* Flash store: plain memory, erased to all ones. */
+enum { HAL_FLASH_BYTES = 0x100000 };
+uint32_t* hal_flash(void);
 
 #endif

@@ -1,0 +1,101 @@
+/* Servo ICs and MACRO ICs on the expansion bus. Shadows make a field write one bus cycle; they are owned by the background and
+ * real-time tasks, and the servo task is held off because it switches amplifier enables in the same words. */
+#include "firmware/hal/gate_ic.h"
+
+#include "firmware/hal/hal.h"
+
+static const uint32_t bases[GATE_IC_COUNT] = GATE_IC_BASES;
+static const uint32_t direction_variables[GATE_IC_COUNT] = GATE_IC_DIRECTION_VARIABLES;
+
+struct gate_ic {
+  uint32_t clock, pwm, channel[GATE_IC_CHANNELS];
+};
+
+static struct gate_ic shadow[GATE_IC_COUNT];
+static uint32_t found;
+
+uint32_t gate_ic_base(unsigned ic) { return bases[ic]; }
+uint32_t gate_ic_direction_variable(unsigned ic) { return direction_variables[ic]; }
+
+unsigned gate_ic_of_direction(uint32_t variable) {
+  unsigned ic = 0;
+  while (ic < GATE_IC_COUNT && gate_ic_direction_variable(ic) != variable) ++ic;
+  return ic;
+}
+
+static uint32_t strobe_address(unsigned ic) {
+  return gate_ic_base(ic) + (ic >= GATE_IC_MACRO ? MACRO_IC_X_ADC_STROBE : SERVO_IC_X_ADC_STROBE);
+}
+
+/* Two patterns, so that neither a floating bus nor a stuck word can pass. */
+static bool answers(uint32_t address) {
+  const uint32_t before = *hal_x(address) & HAL_WORD_MASK;
+  *hal_x(address) = 0x5A3C96u;
+  bool good = (*hal_x(address) & HAL_WORD_MASK) == 0x5A3C96u;
+  *hal_x(address) = 0xA5C368u;
+  good = good && (*hal_x(address) & HAL_WORD_MASK) == 0xA5C368u;
+  *hal_x(address) = before;
+  return good;
+}
+
+void gate_ic_find(void) {
+  found = 0;
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
+    const struct gate_ic reset = {SERVO_IC_CLOCK_CONTROL_RESET, SERVO_IC_PWM_CONTROL_RESET, {0, 0, 0, 0}};
+    shadow[ic] = reset;
+    if (answers(strobe_address(ic))) found |= 1u << ic;
+  }
+}
+
+uint32_t gate_ic_found(void) { return found; }
+bool gate_ic_present(unsigned ic) { return ic < GATE_IC_COUNT && ((found >> ic) & 1u) != 0u; }
+
+static uint32_t* shadow_of(unsigned ic, gate_word_t word, unsigned channel) {
+  switch (word) {
+    case GATE_WORD_CLOCK:
+      return &shadow[ic].clock;
+    case GATE_WORD_PWM:
+      return &shadow[ic].pwm;
+    default:
+      return &shadow[ic].channel[channel];
+  }
+}
+
+static uint32_t address_of(unsigned ic, gate_word_t word, unsigned channel) {
+  const bool macro = ic >= GATE_IC_MACRO;
+  const uint32_t base = gate_ic_base(ic);
+  switch (word) {
+    case GATE_WORD_CLOCK:
+      return base + (macro ? MACRO_IC_X_CLOCK_CONTROL : SERVO_IC_X_CLOCK_CONTROL);
+    case GATE_WORD_PWM:
+      return base + (macro ? MACRO_IC_X_PWM_CONTROL : SERVO_IC_X_PWM_CONTROL);
+    case GATE_WORD_DAC_STROBE:
+      return base + SERVO_IC_X_DAC_STROBE;
+    case GATE_WORD_ADC_STROBE:
+      return strobe_address(ic);
+    default:
+      return base + SERVO_CHANNEL_X_CONTROL + SERVO_CHANNEL_STRIDE * channel;
+  }
+}
+
+static void set_field(unsigned ic, gate_word_t word, unsigned channel, unsigned lsb, unsigned width, uint32_t value) {
+  if (!gate_ic_present(ic)) return;
+  const uint32_t mask = ((1u << width) - 1u) << lsb;
+  const uint32_t state = hal_mask_servo();
+  uint32_t* kept = shadow_of(ic, word, channel);
+  *kept = (*kept & ~mask) | ((value << lsb) & mask);
+  *hal_x(address_of(ic, word, channel)) = *kept;
+  hal_unmask(state);
+}
+
+void gate_ic_set_field(unsigned ic, gate_word_t word, unsigned lsb, unsigned width, uint32_t value) {
+  set_field(ic, word, 0, lsb, width, value);
+}
+
+void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width, uint32_t value) {
+  set_field(ic, GATE_WORD_CHANNEL, channel, lsb, width, value);
+}
+
+void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value) {
+  if (gate_ic_present(ic)) *hal_x(address_of(ic, word, 0)) = value & HAL_WORD_MASK;
+}

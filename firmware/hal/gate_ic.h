@@ -1,0 +1,26 @@
+/* Servo ICs and MACRO ICs: which are fitted, where they are, and their global and channel-control words.
+ * Index of an IC: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3. */
+#ifndef FIRMWARE_HAL_GATE_IC_H
+#define FIRMWARE_HAL_GATE_IC_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "rtl/regs/brick_regs.h" /* GATE_IC_COUNT */
+
+enum { GATE_IC_STARRED = 10, GATE_IC_MACRO = 18, GATE_IC_CHANNELS = 4 };
+
+void gate_ic_find(void); /* probes every possible place by write and read-back of a strobe word */
+bool gate_ic_present(unsigned ic);
+uint32_t gate_ic_found(void); /* bit per IC */
+uint32_t gate_ic_base(unsigned ic);
+uint32_t gate_ic_direction_variable(unsigned ic); /* 7007 ... 7957, 6807 ... 6957 */
+unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT when it is none */
+
+/* Words of an IC. The firmware keeps what it wrote: read-modify-write never reads the bus. */
+typedef enum { GATE_WORD_CLOCK, GATE_WORD_PWM, GATE_WORD_DAC_STROBE, GATE_WORD_ADC_STROBE, GATE_WORD_CHANNEL } gate_word_t;
+void gate_ic_set_field(unsigned ic, gate_word_t word, unsigned lsb, unsigned width, uint32_t value);
+void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width, uint32_t value); /* channel 0..3 */
+void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value);
+
+#endif

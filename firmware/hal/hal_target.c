@@ -1,0 +1,84 @@
+/* The hardware behind hal.h on the modelled board: machine-mode CSRs, straps, flash and the bus-control latches. */
+#include "firmware/hal/hal.h"
+#include "rtl/regs/brick_regs.h"
+
+/* mie and mip bits, docs/architecture.md "Interrupts". */
+#define TASK_PHASE (1u << 16)
+#define TASK_SERVO (1u << 17)
+#define TASK_HOST (1u << 18)
+#define TASK_REAL_TIME (1u << 19)
+#define TASK_ALL (TASK_PHASE | TASK_SERVO | TASK_HOST | TASK_REAL_TIME)
+
+#define CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
+
+static uint32_t cycles_per_ms = 78643u; /* 8 x 9.8304 MHz until I52 is known */
+static uint32_t host_signals;
+static uint32_t watchdog_phase;
+
+static uint32_t mie_clear(uint32_t bits) {
+  uint32_t old;
+  __asm__ volatile(CSR("csrrc %0, mie, %1") : "=r"(old) : "r"(bits) : "memory");
+  return old;
+}
+
+uint32_t hal_mask_real_time(void) { return mie_clear(TASK_REAL_TIME); }
+uint32_t hal_mask_servo(void) { return mie_clear(TASK_REAL_TIME | TASK_SERVO); }
+uint32_t hal_mask_all(void) { return mie_clear(TASK_ALL); }
+void hal_unmask(uint32_t state) { __asm__ volatile(CSR("csrw mie, %0") : : "r"(state) : "memory"); }
+
+uint32_t hal_cycles(void) {
+  uint32_t cycles;
+  __asm__ volatile(CSR("csrr %0, mcycle") : "=r"(cycles));
+  return cycles;
+}
+
+void hal_set_cpu_clock(uint32_t i52) { cycles_per_ms = (98304u * (i52 + 1u)) / 10u; }
+uint32_t hal_cycles_per_ms(void) { return cycles_per_ms; }
+
+void hal_delay_us(uint32_t us) {
+  const uint32_t start = hal_cycles();
+  const uint32_t cycles = (uint32_t)(((uint64_t)us * cycles_per_ms) / 1000u);
+  while (hal_cycles() - start < cycles) {}
+}
+
+void hal_host_signals(uint32_t set, uint32_t clear) {
+  const uint32_t state = hal_mask_servo();
+  const uint32_t next = (host_signals & ~clear) | set;
+  if (next != host_signals) {
+    host_signals = next;
+    *hal_x(BOARD_LATCHES_X_HOST_SIGNALS) = next;
+  }
+  hal_unmask(state);
+}
+
+void hal_interrupts_off(void) {
+  (void)mie_clear(~0u);
+  __asm__ volatile(CSR("csrc mip, %0") : : "r"(TASK_ALL) : "memory");
+}
+
+void hal_interrupts_on(void) { __asm__ volatile(CSR("csrs mie, %0\n csrsi mstatus, 8") : : "r"(TASK_ALL) : "memory"); }
+
+void hal_request_real_time(void) { __asm__ volatile(CSR("csrs mip, %0") : : "r"(TASK_REAL_TIME) : "memory"); }
+
+bool hal_real_time_pending(void) {
+  uint32_t pending;
+  __asm__ volatile(CSR("csrr %0, mip") : "=r"(pending));
+  return (pending & TASK_REAL_TIME) != 0u;
+}
+
+/* With mstatus.MIE clear an interrupt that arrives between the test and WFI still ends the sleep, and is taken afterwards. */
+void hal_idle(const volatile uint32_t* work) {
+  __asm__ volatile(CSR("csrci mstatus, 8") : : : "memory");
+  if (*work == 0u) __asm__ volatile("wfi" : : : "memory");
+  __asm__ volatile(CSR("csrsi mstatus, 8") : : : "memory");
+}
+
+void hal_watchdog_strobe(void) {
+  watchdog_phase ^= 1u;
+  *hal_x(BOARD_LATCHES_X_WATCHDOG_STROBE) = watchdog_phase;
+}
+
+void hal_host_transmit_enable(bool on) { *hal_x(HI08_X_HCR) = on ? (HI08_HCR_HRIE_MASK | HI08_HCR_HTIE_MASK) : HI08_HCR_HRIE_MASK; }
+
+uint32_t hal_strap(unsigned word) { return ((const volatile uint32_t*)0x3FFFF000u)[word]; }
+uint32_t* hal_flash(void) { return (uint32_t*)0x30000000u; }

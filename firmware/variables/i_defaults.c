@@ -1,0 +1,106 @@
+/* Factory defaults. Most are numbers in i_variables.def; these depend on the ICs found, the card or the motor's number. */
+#include "firmware/variables/i_defaults.h"
+
+#include "firmware/hal/gate_ic.h"
+#include "firmware/hal/hal.h"
+
+#define CONVERSION_RESULTS 0x3501u /* result of line 0 of the encoder conversion table */
+#define OPEN_MEMORY_END 0x010800u
+#define CS_REGISTERS 0x2000u
+
+/* servo-ic data sheet 7.1: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
+uint32_t i_default_clock_source(void) {
+  if (gate_ic_present(0)) return gate_ic_direction_variable(0);
+  if (gate_ic_present(GATE_IC_MACRO)) return gate_ic_direction_variable(GATE_IC_MACRO);
+  for (unsigned ic = 1; ic < GATE_IC_COUNT; ++ic)
+    if (gate_ic_present(ic)) return gate_ic_direction_variable(ic);
+  return 0;
+}
+
+/* Channels are counted through the servo ICs that are present, four each. Returns the first address, 0 when there is none. */
+static uint32_t channel_base(uint32_t channel) {
+  uint32_t skip = channel / GATE_IC_CHANNELS;
+  for (unsigned ic = 0; ic < GATE_IC_MACRO; ++ic) {
+    if (!gate_ic_present(ic)) continue;
+    if (skip == 0u) return gate_ic_base(ic) + 8u * (channel % GATE_IC_CHANNELS);
+    --skip;
+  }
+  return 0;
+}
+
+static uint32_t channel_address(uint32_t motor, uint32_t offset) {
+  const uint32_t base = channel_base(motor - 1u);
+  return base == 0u ? 0u : base + offset;
+}
+
+static uint32_t macro_base(uint32_t position) {
+  for (unsigned ic = GATE_IC_MACRO; ic < GATE_IC_COUNT; ++ic) {
+    if (!gate_ic_present(ic)) continue;
+    if (position == 0u) return gate_ic_base(ic);
+    --position;
+  }
+  return 0;
+}
+
+/* I4900: bits 0..9 servo IC 0..9, 10..19 servo IC 0*..9*. */
+static uint32_t servo_ics(void) {
+  const uint32_t found = gate_ic_found();
+  return (found & 0x3FFu) | (((found >> GATE_IC_STARRED) & 0xFFu) << 12);
+}
+
+static double configuration(uint32_t offset) {
+  const uint32_t macro_ics = gate_ic_found() >> GATE_IC_MACRO;
+  const uint32_t card = hal_strap(HAL_STRAP_CARD);
+  switch (offset) {
+    case 0:
+    case 1:
+      return servo_ics(); /* every one is PMAC2-style, type 1 */
+    case 2:
+    case 3:
+      return macro_ics;
+    case 4:
+      return hal_strap(HAL_STRAP_DPRAM_WORDS) != 0u ? 1.0 : 0.0;
+    case 8:
+      return OPEN_MEMORY_END;
+    /* Vendor 1 in bits 0..7, no options, revision 1 in bits 18..21, card number less 600000 in bits 22..35. */
+    case 9:
+      return 1.0 + 262144.0 + 4194304.0 * (card >= 600000u ? card - 600000u : card);
+    default:
+      return 0.0;
+  }
+}
+
+double i_default_value(struct i_place place, const struct i_entry* entry, uint32_t clock_source) {
+  const bool of_ic = place.group == I_GROUP_SERVO || place.group == I_GROUP_CHANNEL || place.group == I_GROUP_MACRO;
+  if (of_ic && !gate_ic_present(place.instance)) return 0.0;
+  switch (entry->field) {
+    case I_FIELD_CLOCK_SOURCE:
+      return clock_source;
+    case I_FIELD_MACRO_BASE:
+      return macro_base(place.offset - 20u);
+    case I_FIELD_DPRAM_BASE:
+      return hal_strap(HAL_STRAP_DPRAM_WORDS) != 0u ? DPRAM_BASE : 0u;
+    case I_FIELD_MOTOR_ACTIVE:
+      return place.instance == 1u ? 1.0 : 0.0;
+    case I_FIELD_MOTOR_OUTPUT:
+      return channel_address(place.instance, 2);
+    case I_FIELD_MOTOR_FEEDBACK:
+      return CONVERSION_RESULTS - 1u + place.instance;
+    case I_FIELD_MOTOR_FLAGS:
+      return channel_address(place.instance, 0);
+    case I_FIELD_MOTOR_PHASE:
+      return channel_address(place.instance, 1);
+    case I_FIELD_CONFIGURATION:
+      return configuration(place.offset);
+    case I_FIELD_TIME_BASE:
+      return CS_REGISTERS + 0x100u * place.instance;
+    case I_FIELD_CONVERSION:
+      return channel_base(place.offset);
+    case I_FIELD_IC_CLOCK_DIRECTION:
+      return gate_ic_direction_variable(place.instance) == clock_source ? 0.0 : 3.0;
+    case I_FIELD_IC_CHANNEL:
+      return place.channel == 0u && place.offset == 1u ? 1.0 : entry->value;
+    default:
+      return entry->value;
+  }
+}

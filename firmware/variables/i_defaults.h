@@ -1,0 +1,10 @@
+/* Factory defaults of I-variables that depend on what is fitted. */
+#ifndef FIRMWARE_VARIABLES_I_DEFAULTS_H
+#define FIRMWARE_VARIABLES_I_DEFAULTS_H
+
+#include "firmware/variables/i_table.h"
+
+uint32_t i_default_clock_source(void); /* I19: first IC found in the documented order; 0 when there is none */
+double i_default_value(struct i_place place, const struct i_entry* entry, uint32_t clock_source);
+
+#endif

@@ -1,0 +1,67 @@
+/* The rows of i_variables.def and how a variable number finds its row. */
+#ifndef FIRMWARE_VARIABLES_I_TABLE_H
+#define FIRMWARE_VARIABLES_I_TABLE_H
+
+#include <stdint.h>
+
+typedef enum {
+  I_GROUP_GLOBAL,
+  I_GROUP_MOTOR,
+  I_GROUP_ESA,
+  I_GROUP_SYSTEM,
+  I_GROUP_GATHER,
+  I_GROUP_CS,
+  I_GROUP_MACRO,
+  I_GROUP_SERVO,
+  I_GROUP_CHANNEL,
+  I_GROUP_TABLE,
+  I_GROUP_COUNT
+} i_group_t;
+
+typedef enum { I_KIND_U, I_KIND_S, I_KIND_F, I_KIND_R } i_kind_t;
+
+typedef enum {
+  I_FIELD_NONE,
+  I_FIELD_BUFFER_REQUEST,
+  I_FIELD_CLOCK_SOURCE,
+  I_FIELD_MACRO_BASE,
+  I_FIELD_DPRAM_BASE,
+  I_FIELD_MOTOR_ACTIVE,
+  I_FIELD_MOTOR_OUTPUT,
+  I_FIELD_MOTOR_FEEDBACK,
+  I_FIELD_MOTOR_FLAGS,
+  I_FIELD_MOTOR_PHASE,
+  I_FIELD_CONFIGURATION,
+  I_FIELD_TIMER,
+  I_FIELD_TIME_BASE,
+  I_FIELD_CONVERSION,
+  I_FIELD_IC_MAX_PHASE,
+  I_FIELD_IC_PHASE_DIVIDER,
+  I_FIELD_IC_SERVO_DIVIDER,
+  I_FIELD_IC_HARDWARE_CLOCKS,
+  I_FIELD_IC_DEAD_TIME,
+  I_FIELD_IC_DAC_STROBE,
+  I_FIELD_IC_ADC_STROBE,
+  I_FIELD_IC_CLOCK_DIRECTION,
+  I_FIELD_IC_CHANNEL,
+  I_FIELD_IC_SHADOW
+} i_field_t;
+
+struct i_entry {
+  uint8_t group, first, count, kind, bits, hex, field;
+  double value; /* default */
+};
+
+/* Where a number stands: group, number inside the group, and which motor (1..32), coordinate system (0..15) or IC (index of
+ * hal/gate_ic.h) it belongs to. `channel` 0..3 for the CHANNEL group. */
+struct i_place {
+  i_group_t group;
+  uint32_t offset, instance, channel;
+};
+
+void i_table_initialize(void);
+struct i_place i_table_place(uint32_t number);
+const struct i_entry* i_table_entry(struct i_place place);
+uint32_t i_table_group_numbers(i_group_t group); /* numbers inside the group: 100, 50, ... */
+
+#endif

@@ -1,0 +1,222 @@
+/* I-variables: values, range reduction, the lock of I41 and the hardware fields behind them.
+ * Written by the background and real-time tasks; a double is two stores, so the real-time task is held off meanwhile. */
+#include "firmware/hal/gate_ic.h"
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/kernel.h"
+#include "firmware/motion/motion.h"
+#include "firmware/variables/i_defaults.h"
+#include "firmware/variables/i_table.h"
+#include "firmware/variables/variables.h"
+
+#define TIMER_LOWEST (-8388608)
+
+static double value_of[VARIABLE_COUNT];
+static int32_t integer_of[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
+static uint32_t timer_start[16][2];        /* servo count when Isx11, Isx12 were written */
+static uint32_t directions_pending;        /* bit per IC: direction written, not yet in the IC */
+
+/* Reading ------------------------------------------------------------------------------------------------------------ */
+
+static bool is_timer(uint32_t number) {
+  const uint32_t inside = number % 100u;
+  return number >= 5111u && number < 6700u && (inside == 11u || inside == 12u);
+}
+
+/* A timer is its written value less the servo interrupts since; it stops at the lowest 24-bit number. */
+static int32_t timer_read(uint32_t number) {
+  const uint32_t elapsed = kernel_servo_count() - timer_start[(number - 5100u) / 100u][number % 100u - 11u];
+  const int64_t left = (int64_t)integer_of[number] - (int64_t)elapsed;
+  return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
+}
+
+int32_t i_integer(uint32_t number) { return is_timer(number) ? timer_read(number) : integer_of[number]; }
+
+double i_variable_read(uint32_t number) {
+  if (number >= VARIABLE_COUNT) return 0.0;
+  if (is_timer(number)) return timer_read(number);
+  const uint32_t state = hal_mask_real_time();
+  const double value = value_of[number];
+  hal_unmask(state);
+  return value;
+}
+
+i_format_t i_variable_format(uint32_t number) { return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL; }
+
+double* i_variable_storage(void) { return value_of; }
+
+/* Hardware ----------------------------------------------------------------------------------------------------------- */
+
+/* Control-word fields of I7mn0..I7mn9, servo-ic data sheet 2.5. */
+static const struct {
+  uint8_t lsb, width;
+} channel_fields[10] = {{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 2}, {22, 2}, {20, 2}, {19, 1}, {18, 1}};
+
+static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t value) {
+  const unsigned ic = place.instance;
+  switch (entry->field) {
+    case I_FIELD_IC_MAX_PHASE:
+      gate_ic_set_field(ic, GATE_WORD_PWM, 8, 16, value);
+      break;
+    case I_FIELD_IC_PHASE_DIVIDER:
+      gate_ic_set_field(ic, GATE_WORD_CLOCK, 16, 4, value);
+      break;
+    case I_FIELD_IC_SERVO_DIVIDER:
+      gate_ic_set_field(ic, GATE_WORD_CLOCK, 20, 4, value);
+      break;
+    case I_FIELD_IC_HARDWARE_CLOCKS:
+      gate_ic_set_field(ic, GATE_WORD_CLOCK, 0, 12, value);
+      break;
+    case I_FIELD_IC_DEAD_TIME:
+      gate_ic_set_field(ic, GATE_WORD_PWM, 0, 8, value);
+      break;
+    case I_FIELD_IC_DAC_STROBE:
+      gate_ic_set_word(ic, GATE_WORD_DAC_STROBE, value);
+      break;
+    case I_FIELD_IC_ADC_STROBE:
+      gate_ic_set_word(ic, GATE_WORD_ADC_STROBE, value);
+      break;
+    case I_FIELD_IC_CHANNEL:
+      gate_ic_set_channel_field(ic, place.channel, channel_fields[place.offset].lsb, channel_fields[place.offset].width, value);
+      break;
+    default:
+      break;
+  }
+}
+
+/* Two ICs must never drive PHASE and SERVO together: every input first, the output last. */
+void i_variable_apply_clock_directions(void) {
+  if (directions_pending == 0u) return;
+  const uint32_t state = hal_mask_real_time();
+  const uint32_t pending = directions_pending;
+  directions_pending = 0;
+  hal_unmask(state);
+  for (unsigned output = 0; output < 2u; ++output) {
+    for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
+      const uint32_t direction = (uint32_t)integer_of[gate_ic_direction_variable(ic)];
+      if (((pending >> ic) & 1u) != 0u && (direction != 3u) == (output != 0u)) gate_ic_set_field(ic, GATE_WORD_CLOCK, 12, 2, direction);
+    }
+  }
+  kernel_clock_changed();
+}
+
+/* Writing ------------------------------------------------------------------------------------------------------------ */
+
+static void store(uint32_t number, double value) {
+  int32_t whole = INT32_MAX;
+  if (value < 2147483647.0) whole = value > -2147483648.0 ? (int32_t)value : INT32_MIN;
+  const uint32_t state = hal_mask_real_time();
+  value_of[number] = value;
+  integer_of[number] = whole;
+  hal_unmask(state);
+}
+
+/* Limited-range integers never fail: the bits above the range are dropped. */
+static int32_t reduce(const struct i_entry* entry, double value) {
+  if (!(value < 140737488355328.0)) value = 140737488355327.0; /* +-2^47, the controller's own limit */
+  if (!(value > -140737488355328.0)) value = -140737488355328.0;
+  const int64_t whole = value < 0.0 ? -(int64_t)(0.5 - value) : (int64_t)(value + 0.5);
+  const uint32_t bits = (uint32_t)whole & ((1u << entry->bits) - 1u);
+  if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u) return (int32_t)(bits | ~((1u << entry->bits) - 1u));
+  return (int32_t)bits;
+}
+
+static bool locked(uint32_t number) {
+  const uint32_t locks = (uint32_t)integer_of[41];
+  if (locks == 0u) return false;
+  if (number >= 100u && number < 4900u) return (locks & 1u) != 0u;
+  if (number >= 5100u && number < 6700u) return (locks & 2u) != 0u;
+  if (number >= 6800u && number < 8000u) return (locks & 4u) != 0u;
+  return number >= 8000u && (locks & 8u) != 0u;
+}
+
+static bool of_gate_ic(struct i_place place) {
+  return place.group == I_GROUP_SERVO || place.group == I_GROUP_CHANNEL || place.group == I_GROUP_MACRO;
+}
+
+void i_variable_write(uint32_t number, double value) {
+  if (number >= VARIABLE_COUNT || locked(number)) return;
+  const struct i_place place = i_table_place(number);
+  const struct i_entry* entry = i_table_entry(place);
+  if (entry->kind == I_KIND_R) return;
+  if (of_gate_ic(place) && !gate_ic_present(place.instance)) return;
+  if (entry->kind == I_KIND_F) {
+    store(number, value);
+    return;
+  }
+  const int32_t whole = reduce(entry, value);
+  const uint32_t state = hal_mask_real_time();
+  switch (entry->field) {
+    case I_FIELD_CLOCK_SOURCE:
+      if (gate_ic_of_direction((uint32_t)whole) == GATE_IC_COUNT) break; /* I19 takes numbers of direction variables only */
+      store(number, whole);
+      break;
+    case I_FIELD_TIMER:
+      store(number, whole);
+      timer_start[place.instance][place.offset - 11u] = kernel_servo_count();
+      break;
+    case I_FIELD_IC_CLOCK_DIRECTION:
+      store(number, whole);
+      directions_pending |= 1u << place.instance;
+      break;
+    case I_FIELD_IC_CHANNEL:
+      if (place.channel == 0u && place.offset == 1u) break; /* channel 1 has its own counter only: reads 1 */
+      store(number, whole);
+      write_ic(place, entry, (uint32_t)whole);
+      break;
+    default:
+      store(number, whole);
+      if (of_gate_ic(place)) write_ic(place, entry, (uint32_t)whole);
+      break;
+  }
+  hal_unmask(state);
+  if (entry->field == I_FIELD_BUFFER_REQUEST) buffer_request_evaluate();
+  if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) kernel_clock_changed();
+}
+
+/* Start-up ----------------------------------------------------------------------------------------------------------- */
+
+double i_variable_default(uint32_t number) {
+  const struct i_place place = i_table_place(number);
+  const uint32_t source = number == 19u ? i_default_clock_source() : (uint32_t)integer_of[19];
+  return i_default_value(place, i_table_entry(place), source);
+}
+
+static void defaults(uint32_t first, uint32_t count, uint32_t source) {
+  for (uint32_t number = first; number < first + count; ++number) {
+    const struct i_place place = i_table_place(number);
+    const struct i_entry* entry = i_table_entry(place);
+    if (entry->field == I_FIELD_NONE && entry->value == 0.0) continue;
+    store(number, i_default_value(place, entry, source));
+  }
+}
+
+void i_variable_initialize(void) {
+  i_table_initialize();
+  const uint32_t source = i_default_clock_source();
+  for (uint32_t number = 0; number < VARIABLE_COUNT; ++number) {
+    value_of[number] = 0.0;
+    integer_of[number] = 0;
+  }
+  directions_pending = 0;
+  defaults(0, 3300, source);
+  defaults(4900, 10, source);
+  defaults(5100, 1600, source);
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
+    if (gate_ic_present(ic)) defaults(gate_ic_direction_variable(ic) - 7u, 50, source);
+  defaults(8000, 72, source); /* at most 18 servo ICs of four channels */
+}
+
+/* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */
+void i_variable_write_hardware(void) {
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
+    if (!gate_ic_present(ic)) continue;
+    const uint32_t direction = gate_ic_direction_variable(ic);
+    store(direction, direction == (uint32_t)integer_of[19] ? 0.0 : 3.0);
+    directions_pending |= 1u << ic;
+    for (uint32_t number = direction - 7u; number < direction + 43u; ++number) {
+      const struct i_place place = i_table_place(number);
+      write_ic(place, i_table_entry(place), (uint32_t)integer_of[number]);
+    }
+  }
+  i_variable_apply_clock_directions();
+}

@@ -1,0 +1,20 @@
+/* Definitions of M-variables (firmware.md 1.8). */
+#ifndef FIRMWARE_VARIABLES_M_VARIABLES_H
+#define FIRMWARE_VARIABLES_M_VARIABLES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum { M_FORM_NONE, M_FORM_X, M_FORM_Y, M_FORM_D, M_FORM_L, M_FORM_DP } m_form_t;
+
+struct m_definition {
+  m_form_t form;
+  uint32_t address;
+  uint8_t lsb, width; /* X and Y forms: bits lsb .. lsb+width-1 */
+  bool is_signed;
+};
+
+struct m_definition m_variable_definition(uint32_t number);
+void m_variable_define(uint32_t number, const struct m_definition* definition);
+
+#endif

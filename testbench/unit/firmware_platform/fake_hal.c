@@ -1,0 +1,112 @@
+/* Fake hardware for firmware compiled natively. A store through hal_x or hal_y is noticed at the next call: it is masked to
+ * 24 bits, and dropped when no IC stands at the address. */
+#include "testbench/unit/firmware_platform/fake_hal.h"
+
+#include <string.h>
+
+#include "firmware/hal/hal.h"
+#include "rtl/regs/brick_regs.h"
+
+enum { WORDS = 0x80000, PERIPHERALS = 0x80, LOG_LENGTH = 4096 };
+
+static uint32_t memory[2][WORDS], peripheral[2][PERIPHERALS], nothing;
+static uint32_t flash[HAL_FLASH_BYTES / 4];
+static uint32_t straps[6];
+static uint32_t fitted, signals, cycles, real_time;
+static unsigned breq_falls, writes;
+static struct fake_write write_log[LOG_LENGTH];
+
+static uint32_t* last;           /* word handed out by the latest call */
+static struct fake_write before; /* and what it held then */
+
+static bool fitted_at(uint32_t address) {
+  static const uint32_t bases[GATE_IC_COUNT] = GATE_IC_BASES;
+  if (address < SERVO_IC_0_BASE) return true;
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
+    if (address - bases[ic] < 0x20u) return ((fitted >> ic) & 1u) != 0u;
+  return false;
+}
+
+static void settle(void) {
+  if (last == NULL || *last == before.value) return;
+  *last &= HAL_WORD_MASK;
+  if (before.address >= DPRAM_BASE && writes < LOG_LENGTH) {
+    write_log[writes].x = before.x;
+    write_log[writes].address = before.address;
+    write_log[writes++].value = *last;
+  }
+  nothing = HAL_WORD_MASK; /* nobody drives the bus */
+}
+
+static volatile uint32_t* word(bool x, uint32_t address) {
+  settle();
+  if (address < WORDS)
+    last = fitted_at(address) ? &memory[x][address] : &nothing;
+  else
+    last = &peripheral[x][address & (PERIPHERALS - 1u)];
+  before.x = x;
+  before.address = address;
+  before.value = *last;
+  return last;
+}
+
+volatile uint32_t* hal_x(uint32_t address) { return word(true, address); }
+volatile uint32_t* hal_y(uint32_t address) { return word(false, address); }
+
+void fake_hal_power_on(uint32_t ics) {
+  static const uint32_t geo_brick[6] = {0, 0, 603382, 32768, 1, 0};
+  memset(memory, 0, sizeof memory);
+  memset(peripheral, 0, sizeof peripheral);
+  memset(flash, 0xFF, sizeof flash);
+  memcpy(straps, geo_brick, sizeof straps);
+  straps[HAL_STRAP_FITTED] = fitted = ics;
+  signals = cycles = real_time = 0;
+  breq_falls = writes = 0;
+  nothing = HAL_WORD_MASK;
+  last = NULL;
+}
+
+void fake_hal_set_strap(unsigned index, uint32_t value) { straps[index] = value; }
+uint32_t fake_hal_signals(void) { return signals; }
+unsigned fake_hal_breq_falls(void) { return breq_falls; }
+void fake_hal_set_cycles(uint32_t value) { cycles = value; }
+
+unsigned fake_hal_writes(const struct fake_write** log) {
+  settle();
+  last = NULL;
+  *log = write_log;
+  return writes;
+}
+
+void fake_hal_clear_writes(void) {
+  settle();
+  last = NULL;
+  writes = 0;
+}
+
+uint32_t hal_mask_real_time(void) { return 0; }
+uint32_t hal_mask_servo(void) { return 0; }
+uint32_t hal_mask_all(void) { return 0; }
+void hal_unmask(uint32_t state) { (void)state; }
+
+/* Time passes by looking at it. */
+uint32_t hal_cycles(void) { return cycles += 100; }
+void hal_delay_us(uint32_t us) { cycles += us * 79u; }
+void hal_set_cpu_clock(uint32_t i52) { (void)i52; }
+uint32_t hal_cycles_per_ms(void) { return 78643; }
+
+void hal_host_signals(uint32_t set, uint32_t clear) {
+  const uint32_t next = (signals & ~clear) | set;
+  if ((signals & ~next & HAL_SIGNAL_BREQ) != 0) ++breq_falls;
+  signals = next;
+}
+
+void hal_interrupts_off(void) { real_time = 0; }
+void hal_interrupts_on(void) {}
+void hal_request_real_time(void) { real_time = 1; }
+bool hal_real_time_pending(void) { return real_time != 0; }
+void hal_idle(const volatile uint32_t* work) { (void)work; }
+void hal_watchdog_strobe(void) {}
+void hal_host_transmit_enable(bool on) { (void)on; }
+uint32_t hal_strap(unsigned index) { return straps[index]; }
+uint32_t* hal_flash(void) { return flash; }

@@ -1,0 +1,31 @@
+/* Controls of the fake hardware behind firmware/hal/hal.h: two arrays of PMAC words, strap words, and the host's side of the
+ * character queues. Plain C, so that the firmware is compiled exactly as for the target. */
+#ifndef TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
+#define TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+void fake_hal_power_on(uint32_t fitted); /* memory cleared, ICs as BoardInputs::fitted, flash erased */
+void fake_hal_set_strap(unsigned word, uint32_t value);
+uint32_t fake_hal_signals(void);    /* bits HAL_SIGNAL_* now on the latch */
+unsigned fake_hal_breq_falls(void); /* falling edges of BREQ since power-on */
+void fake_hal_set_cycles(uint32_t cycles);
+
+/* Writes to device words (gate ICs, latches) in order, newest last. */
+struct fake_write {
+  bool x;
+  uint32_t address, value;
+};
+unsigned fake_hal_writes(const struct fake_write** log); /* count; only words whose value changed are listed */
+void fake_hal_clear_writes(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
