@@ -51,7 +51,7 @@ void Cpu::reset(std::uint32_t pc) {
   State& s = *s_;
   s.x.fill(0);
   s.pc = pc & ~1u;
-  s.sleeping = false;
+  s.sleeping = s.access_waits = false;
   s.interrupts_on = s.interrupts_were = false;
   s.mie = s.mip = s.mtvec = s.mepc = s.mcause = s.mtval = s.mscratch = 0;
   s.mcycle_offset = 0 - static_cast<std::uint64_t>(s.cycle);

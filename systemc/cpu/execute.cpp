@@ -168,7 +168,7 @@ boundary:  // between two instructions, the next one at `target`; interrupts may
     s.retired = retired;
     return Stop::kLimit;
   }
-  if (__builtin_expect(s.interrupt_ready(), 0)) {
+  if (__builtin_expect(s.interrupt_ready() && !s.access_waits, 0)) {
     s.pc = target;
     s.cycle = cycle;
     s.retired = retired;

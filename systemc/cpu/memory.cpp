@@ -41,6 +41,7 @@ Access Cpu::State::load(std::uint32_t address, unsigned bytes) {
     return Access::kFault;
   }
   const DeviceBus::Result result = devices->access(address, bytes, false, 0, cycle);
+  access_waits = result.retry;
   if (result.retry) return Access::kRetry;
   cycle = std::max(cycle, result.done);
   device_accessed = result.fault;
@@ -83,6 +84,7 @@ Access Cpu::State::store(std::uint32_t address, unsigned bytes, std::uint32_t da
     if (devices == nullptr) return Access::kFault;
     const std::uint32_t used = bytes == 4 ? data : data & ((1u << 8 * bytes) - 1);
     const DeviceBus::Result result = devices->access(address, bytes, true, used, cycle);
+    access_waits = result.retry;
     if (result.retry) return Access::kRetry;
     cycle = std::max(cycle, result.done);
     device_accessed = result.fault;
