@@ -28,19 +28,18 @@ module servo_ic_regs (
   logic global_reg;
   assign global_reg = sel_i & x_i & (addr_i[2:0] == 3'd4);
 
-  // Bits that do not exist read 0: 15..14 of the clock word, 23 of the PWM word.
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      clock_q      <= 24'h3038D2;
-      dac_strobe_q <= 24'h7FFFC0;
-      adc_strobe_q <= 24'hFFFFFE;
-      pwm_q        <= 24'h197F0F;
+      clock_q      <= brick_regs_pkg::ServoIcClockControlReset;
+      dac_strobe_q <= brick_regs_pkg::ServoIcDacStrobeReset;
+      adc_strobe_q <= brick_regs_pkg::ServoIcAdcStrobeReset;
+      pwm_q        <= brick_regs_pkg::ServoIcPwmControlReset;
     end else if (we_i && global_reg) begin
       case (addr_i[4:3])
-        2'd0:    clock_q      <= {wdata_i[23:16], 2'b00, wdata_i[13:0]};
+        2'd0:    clock_q      <= wdata_i & brick_regs_pkg::ServoIcClockControlWritten;
         2'd1:    dac_strobe_q <= wdata_i;
         2'd2:    adc_strobe_q <= wdata_i;
-        default: pwm_q        <= {1'b0, wdata_i[22:0]};
+        default: pwm_q        <= wdata_i & brick_regs_pkg::ServoIcPwmControlWritten;
       endcase
     end
   end
@@ -65,7 +64,9 @@ module servo_ic_regs (
   assign dac_strobe_o     = dac_strobe_q;
   assign adc_strobe_o     = adc_strobe_q;
   assign deadtime_o       = pwm_q[7:0];
-  assign max_count_o      = pwm_q[22:8];
+  assign max_count_o      = pwm_q[22:8];  // 0..32767; bit 23 is stored only
+  logic unused_bits;
+  assign unused_bits = &{1'b0, clock_q[15:14], pwm_q[23]};
 
 endmodule : servo_ic_regs
 
