@@ -1,0 +1,199 @@
+#include "systemc/host/host_port.h"
+
+#include "rtl/regs/brick_regs.hpp"
+#include "systemc/host/register_access.h"
+
+namespace brick {
+namespace {
+
+enum HostByte : unsigned { kIcr = 0, kCvr = 1, kIsr = 2, kIvr = 3, kData5 = 5, kData6 = 6, kData7 = 7 };
+
+constexpr unsigned low6(const regs::Register& reg) { return reg.address & 0x3F; }
+constexpr unsigned kHcr = low6(regs::hi08::kHcr), kHsr = low6(regs::hi08::kHsr), kHpcr = low6(regs::hi08::kHpcr),
+                   kHbar = low6(regs::hi08::kHbar), kHorx = low6(regs::hi08::kHorx), kHotx = low6(regs::hi08::kHotx);
+
+constexpr std::uint8_t kHlend = 0x20, kInit = 0x80;
+
+constexpr unsigned byte_of(std::uint32_t word, unsigned lsb) { return (word >> lsb) & 0xFF; }
+void set_byte(std::uint32_t& word, unsigned lsb, std::uint8_t value) {
+  word = (word & ~(0xFFu << lsb)) | (static_cast<std::uint32_t>(value) << lsb);
+}
+
+}  // namespace
+
+HostPort::HostPort(const sc_core::sc_module_name& name) : sc_module(name), host_socket("host_socket"), cpu_socket("cpu_socket") {
+  host_socket.register_b_transport(this, &HostPort::host_transport);
+  cpu_socket.register_b_transport(this, &HostPort::cpu_transport);
+}
+
+std::uint8_t HostPort::host_read(unsigned addr) const {
+  const bool hlend = icr_ & kHlend;
+  switch (addr & 7) {
+    case kIcr:
+      return icr_;
+    case kCvr:
+      return cvr_;
+    case kIsr:
+      return static_cast<std::uint8_t>(hreq() << 7 | (hcr_ >> 3 & 3) << 3 | (txde_ && !hrdf_) << 2 | txde_ << 1 | (rxdf_ ? 1 : 0));
+    case kIvr:
+      return ivr_;
+    case kData5:
+      return static_cast<std::uint8_t>(byte_of(rx_, hlend ? 0 : 16));
+    case kData6:
+      return static_cast<std::uint8_t>(byte_of(rx_, 8));
+    case kData7:
+      return static_cast<std::uint8_t>(byte_of(rx_, hlend ? 16 : 0));
+    default:
+      return 0;
+  }
+}
+
+std::uint32_t HostPort::cpu_read(unsigned addr) const {
+  switch (addr & 0x3F) {
+    case kHcr:
+      return hcr_;
+    case kHsr:
+      return static_cast<std::uint32_t>((cvr_ & 0x7F) << 8 | (icr_ >> 3 & 3) << 3 | (cvr_ >> 7) << 2 | htde_ << 1 | (hrdf_ ? 1 : 0));
+    case kHpcr:
+      return hpcr_;
+    case kHbar:
+      return hbar_;
+    case kHorx:
+      return horx_;
+    default:
+      return 0;
+  }
+}
+
+bool HostPort::idle() const {
+  const bool host = in.hp_sel && (in.hp_wr || in.hp_rd_done);
+  const bool cpu = in.dsp_sel && (in.dsp_we || in.dsp_rd_done);
+  return !host && !cpu && !tx_move() && !rx_move();
+}
+
+// Registers first move by themselves, then the strobes of this edge act on top; INIT is part of the host's write and comes
+// last. Everything that a strobe tests is the state before the edge, as with the RTL's flip-flops.
+void HostPort::step() {
+  const bool hrdf_before = hrdf_, rxdf_before = rxdf_;
+  if (tx_move()) {
+    horx_ = tx_;
+    hrdf_ = txde_ = true;
+  }
+  if (rx_move()) {
+    rx_ = hotx_;
+    rxdf_ = htde_ = true;
+  }
+  if (in.dsp_sel && in.dsp_rd_done && in.dsp_addr == kHorx && hrdf_before) hrdf_ = false;
+  if (in.hp_sel && in.hp_rd_done && in.hp_addr == kData7 && rxdf_before) rxdf_ = false;
+  if (in.dsp_sel && in.dsp_we) cpu_write();
+  if (in.hp_sel && in.hp_wr) host_write();
+}
+
+void HostPort::cpu_write() {
+  const std::uint32_t value = in.dsp_wdata & 0xFFFFFF;
+  switch (in.dsp_addr) {
+    case kHcr:
+      hcr_ = value & 0x1F;
+      break;
+    case kHsr:
+      if (value & regs::hi08::hsr::kHcp.mask()) cvr_ &= 0x7F;
+      break;
+    case kHpcr:
+      hpcr_ = static_cast<std::uint16_t>(value & regs::hi08::kHpcr.written);
+      break;
+    case kHbar:
+      hbar_ = static_cast<std::uint8_t>(value);
+      break;
+    case kHotx:
+      hotx_ = value;
+      htde_ = false;
+      break;
+    default:
+      break;
+  }
+}
+
+void HostPort::host_write() {
+  const bool hlend = icr_ & kHlend;
+  switch (in.hp_addr) {
+    case kIcr:
+      icr_ = in.hp_wdata & 0x3F;
+      if ((in.hp_wdata & kInit) && (in.hp_wdata & 2)) {
+        txde_ = true;
+        hrdf_ = false;
+      }
+      if ((in.hp_wdata & kInit) && (in.hp_wdata & 1)) {
+        rxdf_ = false;
+        htde_ = true;
+      }
+      break;
+    case kCvr:
+      cvr_ = in.hp_wdata;
+      break;
+    case kIvr:
+      ivr_ = in.hp_wdata;
+      break;
+    case kData5:
+      set_byte(tx_, hlend ? 0 : 16, in.hp_wdata);
+      break;
+    case kData6:
+      set_byte(tx_, 8, in.hp_wdata);
+      break;
+    case kData7:
+      set_byte(tx_, hlend ? 16 : 0, in.hp_wdata);
+      txde_ = false;
+      break;
+    default:
+      break;
+  }
+}
+
+void HostPort::reset_registers() {
+  icr_ = hcr_ = 0;
+  cvr_ = 0x32;
+  ivr_ = 0x0F;
+  hbar_ = 0x80;
+  hpcr_ = 0;
+  tx_ = horx_ = hotx_ = rx_ = 0;
+  txde_ = htde_ = true;
+  hrdf_ = rxdf_ = false;
+}
+
+void HostPort::host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  if (!check_payload(payload, 1, 8)) return;
+  const Tick edge = catch_up(*this, now(), delay);
+  const Inputs before = in;
+  in.hp_sel = true;
+  in.hp_addr = static_cast<std::uint8_t>(payload.get_address());
+  if (payload.is_read()) {
+    set_payload_value(payload, host_read(in.hp_addr));
+    in.hp_rd_done = true;
+  } else {
+    in.hp_wr = true;
+    in.hp_wdata = payload_value<std::uint8_t>(payload);
+  }
+  advance(edge);
+  in = before;
+  delay = delay_until(edge);
+}
+
+void HostPort::cpu_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  if (!check_payload(payload, 4, 48)) return;
+  const bool x = payload.get_address() % 8 == 4;  // the Y words of the page do not exist: they read 0
+  const Tick edge = catch_up(*this, now(), delay);
+  const Inputs before = in;
+  in.dsp_sel = x;
+  in.dsp_addr = static_cast<std::uint8_t>(kHcr + payload.get_address() / 8);
+  if (payload.is_read()) {
+    set_payload_value(payload, x ? cpu_read(in.dsp_addr) : std::uint32_t{0});
+    in.dsp_rd_done = true;
+  } else {
+    in.dsp_we = true;
+    in.dsp_wdata = payload_value<std::uint32_t>(payload);
+  }
+  advance(edge);
+  in = before;
+  delay = delay_until(edge);
+}
+
+}  // namespace brick

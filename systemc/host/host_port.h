@@ -1,0 +1,60 @@
+// Model of rtl/host/host_port.sv, the HI08: eight bytes for the host, six words for the CPU, a word of buffering on either
+// side of each way. The names of the registers are those of rtl/regs/host_io.rdl and board.rdl. docs/host-bus.md.
+#pragma once
+
+#include <cstdint>
+
+#include <tlm_utils/simple_target_socket.h>
+#include <systemc>
+#include <tlm>
+
+#include "systemc/host/ref_clocked_block.h"
+
+namespace brick {
+
+class HostPort : public sc_core::sc_module, public RefClockedBlock {
+ public:
+  explicit HostPort(const sc_core::sc_module_name& name);
+
+  // For use without the pins of a board. Host: bytes 0..7. CPU: X:$FFFFC2.. as 32-bit words at byte 8(a - $FFFFC2) + 4.
+  tlm_utils::simple_target_socket_optional<HostPort> host_socket;
+  tlm_utils::simple_target_socket_optional<HostPort> cpu_socket;
+
+  struct Inputs {
+    bool hp_sel = false, hp_rd_done = false, hp_wr = false;
+    std::uint8_t hp_addr = 0;  // 0..7
+    std::uint8_t hp_wdata = 0;
+    bool dsp_sel = false, dsp_we = false, dsp_rd_done = false;
+    std::uint8_t dsp_addr = 0;  // low six bits of X:$FFFFxx
+    std::uint32_t dsp_wdata = 0;
+  };
+  Inputs in;
+
+  std::uint8_t hp_rdata() const { return host_read(in.hp_addr); }
+  std::uint32_t dsp_rdata() const { return cpu_read(in.dsp_addr); }
+  bool hreq() const { return ((icr_ & 1) && rxdf_) || ((icr_ & 2) && txde_); }
+  bool irq() const { return ((hcr_ & 1) && hrdf_) || ((hcr_ & 2) && htde_) || ((hcr_ & 4) && (cvr_ & 0x80)); }
+
+  // Without side effects.
+  std::uint8_t host_read(unsigned addr) const;
+  std::uint32_t cpu_read(unsigned addr) const;
+
+ private:
+  bool idle() const override;
+  void step() override;
+  void reset_registers() override;
+  void host_write();
+  void cpu_write();
+  void host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  void cpu_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+
+  bool tx_move() const { return !txde_ && !hrdf_; }
+  bool rx_move() const { return !htde_ && !rxdf_; }
+
+  std::uint8_t icr_ = 0, cvr_ = 0x32, ivr_ = 0x0F, hcr_ = 0, hbar_ = 0x80;
+  std::uint16_t hpcr_ = 0;
+  std::uint32_t tx_ = 0, horx_ = 0, hotx_ = 0, rx_ = 0;
+  bool txde_ = true, hrdf_ = false, htde_ = true, rxdf_ = false;
+};
+
+}  // namespace brick

@@ -1,0 +1,43 @@
+// Model of rtl/host/host_signals.sv: the latch of IPOS, BREQ, EROR and F1ER. docs/host-bus.md.
+#pragma once
+
+#include <cstdint>
+
+#include <tlm_utils/simple_target_socket.h>
+#include <systemc>
+#include <tlm>
+
+#include "systemc/host/ref_clocked_block.h"
+
+namespace brick {
+
+class HostSignals : public sc_core::sc_module, public RefClockedBlock {
+ public:
+  explicit HostSignals(const sc_core::sc_module_name& name);
+
+  tlm_utils::simple_target_socket_optional<HostSignals> socket;  // one 32-bit word: X:$070010
+
+  struct Inputs {
+    bool wr = false;
+    std::uint8_t wdata = 0;  // 4 bits
+  };
+  Inputs in;
+
+  std::uint8_t rdata() const { return latch_; }
+  bool ipos() const { return latch_ & 1; }
+  bool breq() const { return latch_ & 2; }
+  bool eror() const { return latch_ & 4; }
+  bool f1er() const { return latch_ & 8; }
+
+ private:
+  bool idle() const override { return !in.wr || (in.wdata & 0xF) == latch_; }
+  void step() override {
+    if (in.wr) latch_ = in.wdata & 0xF;
+  }
+  void reset_registers() override { latch_ = 0; }
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+
+  std::uint8_t latch_ = 0;
+};
+
+}  // namespace brick

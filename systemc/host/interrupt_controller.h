@@ -1,0 +1,51 @@
+// Model of rtl/host/interrupt_controller.sv: eight lines, edge latches, mask, one interrupt. docs/interrupt_controller.md.
+#pragma once
+
+#include <cstdint>
+
+#include <tlm_utils/simple_target_socket.h>
+#include <systemc>
+#include <tlm>
+
+#include "systemc/host/ref_clocked_block.h"
+
+namespace brick {
+
+class InterruptController : public sc_core::sc_module, public RefClockedBlock {
+ public:
+  explicit InterruptController(const sc_core::sc_module_name& name);
+
+  // Registers as bytes 0..3: status and clear, signal, mask, edge/level. For use without the pins of a board.
+  tlm_utils::simple_target_socket_optional<InterruptController> socket;
+
+  struct Inputs {
+    std::uint8_t line = 0;
+    bool wr = false;
+    std::uint8_t addr = 0;  // 0..3
+    std::uint8_t wdata = 0;
+  };
+  Inputs in;
+
+  std::uint8_t rdata() const { return read(in.addr); }
+  std::uint8_t ist() const { return msk_ & ((elr_ & line2_) | (~elr_ & latch_)); }
+  std::uint8_t sig() const { return line2_; }
+  std::uint8_t msk() const { return msk_; }
+  std::uint8_t elr() const { return elr_; }
+  bool irq() const { return ist() != 0; }
+
+  std::uint8_t read(unsigned addr) const;
+
+ private:
+  enum Address : unsigned { kStatus, kSignal, kMask, kEdgeLevel };
+
+  bool idle() const override;
+  void step() override;
+  void reset_registers() override;
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  unsigned transport_dbg(tlm::tlm_generic_payload& payload);
+
+  std::uint8_t line1_ = 0, line2_ = 0, line3_ = 0;  // line3_ is line2_ one edge ago
+  std::uint8_t latch_ = 0, msk_ = 0, elr_ = 0;
+};
+
+}  // namespace brick
