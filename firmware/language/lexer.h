@@ -7,15 +7,17 @@
 
 #include "firmware/host/error.h"
 
+#define LEXER_CONSTANT_LIMIT 34359738368.0 /* 2^35, firmware.md 1.1 */
+
 struct lexer {
-  const char *at;     /* next character not consumed; text is upper case already, NUL-terminated */
+  const char* at; /* next character not consumed; text is upper case already, NUL-terminated */
 };
 
-char lexer_peek(struct lexer *lx);                          /* next character after spaces, 0 at the end of the line */
-bool lexer_accept(struct lexer *lx, char c);                /* consumes c if it is next */
-bool lexer_keyword(struct lexer *lx, const char *word);     /* consumes `word` (upper case) if it is next */
-bool lexer_number(struct lexer *lx, double *value);         /* unsigned decimal or $hex constant; false: not a number */
-error_t lexer_constant(struct lexer *lx, double *value);    /* optional sign and number; ERR_DATA outside +-2^35 */
-error_t lexer_integer(struct lexer *lx, int32_t *value);    /* constant without fraction */
+char lexer_peek(struct lexer* lx);                       /* next character after spaces, 0 at the end of the line */
+bool lexer_accept(struct lexer* lx, char c);             /* consumes c if it is next */
+bool lexer_keyword(struct lexer* lx, const char* word);  /* consumes `word` (upper case) if it is next */
+bool lexer_number(struct lexer* lx, double* value);      /* unsigned decimal or $hex constant; false: not a number */
+error_t lexer_constant(struct lexer* lx, double* value); /* optional sign and number; ERR_DATA outside +-2^35 */
+error_t lexer_integer(struct lexer* lx, int32_t* value); /* constant without fraction */
 
 #endif

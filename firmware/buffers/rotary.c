@@ -1,0 +1,111 @@
+/* Rotary buffers. The words of a line are written into free space first and published in one short section with the real-time task
+ * held off, so the reader never sees half a line. */
+#include "firmware/buffers/rotary.h"
+
+#include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/user_memory.h"
+
+struct rotary rotary_buffers[COORDINATE_SYSTEMS];
+
+static void reset(struct rotary* ring) {
+  ring->write = ring->read = 0;
+  ring->used = ring->lines = 0;
+  ring->full = false;
+}
+
+static void forget(uint32_t cs) {
+  struct rotary* ring = &rotary_buffers[cs];
+  uint32_t state = hal_mask_real_time();
+  reset(ring);
+  ring->size = 0;
+  ring->requested = false;
+  buffer_request_emptied(cs);
+  hal_unmask(state);
+}
+
+void rotary_initialize(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) rotary_buffers[cs] = (struct rotary){0};
+}
+
+error_t rotary_define(uint32_t cs, uint32_t words) {
+  error_t error = region_define(REGION_ROTARY, cs, words);
+  if (error != ERR_NONE) return error;
+  struct rotary* ring = &rotary_buffers[cs];
+  uint32_t state = hal_mask_real_time();
+  reset(ring);
+  ring->base = region_base(REGION_ROTARY, cs);
+  ring->size = words;
+  ring->requested = false;
+  buffer_request_emptied(cs);
+  hal_unmask(state);
+  return ERR_NONE;
+}
+
+error_t rotary_delete(uint32_t cs) {
+  error_t error = region_delete(REGION_ROTARY, cs);
+  if (error == ERR_NONE) forget(cs);
+  return error;
+}
+
+void rotary_delete_all(void) {
+  region_delete_temporaries();
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) forget(cs);
+}
+
+bool rotary_any(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (rotary_buffers[cs].size != 0) return true;
+  return false;
+}
+
+void rotary_clear(uint32_t cs) {
+  uint32_t state = hal_mask_real_time();
+  reset(&rotary_buffers[cs]);
+  buffer_request_emptied(cs);
+  hal_unmask(state);
+}
+
+error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count) {
+  struct rotary* ring = &rotary_buffers[cs];
+  if (count == 0 || count > ring->size - ring->used) return ERR_NO_ROOM; /* `used` can only fall meanwhile */
+  uint32_t write = ring->write;
+  for (uint32_t i = 0; i < count; i++) {
+    user_memory_write(ring->base + write, i == 0 ? words[0] | WORD_START_OF_LINE : words[i]);
+    if (++write == ring->size) write = 0;
+  }
+  uint32_t state = hal_mask_real_time();
+  buffer_request_begin_line(cs);
+  ring->write = write;
+  ring->used += count;
+  ring->lines++;
+  buffer_request_line_stored(cs);
+  hal_unmask(state);
+  return ERR_NONE;
+}
+
+bool rotary_peek(uint32_t cs, uint32_t ahead, word48_t* word) {
+  const struct rotary* ring = &rotary_buffers[cs];
+  if (ahead >= ring->used) return false;
+  uint32_t offset = ring->read + ahead;
+  if (offset >= ring->size) offset -= ring->size;
+  *word = user_memory_read(ring->base + offset);
+  return true;
+}
+
+bool rotary_consume(uint32_t cs, uint32_t count) {
+  struct rotary* ring = &rotary_buffers[cs];
+  word48_t next;
+  ring->read += count;
+  if (ring->read >= ring->size) ring->read -= ring->size;
+  ring->used -= count;
+  if (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0) return false;
+  ring->lines--;
+  buffer_request_line_calculated(cs);
+  return true;
+}
+
+void rotary_skip_line_rest(uint32_t cs) {
+  word48_t next;
+  while (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0)
+    if (rotary_consume(cs, 1)) break;
+}

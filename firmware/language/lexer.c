@@ -1,0 +1,96 @@
+/* Text scanner of the command interpreter. Works on the upper-case, NUL-terminated line in place; nothing is copied. Numbers are
+ * gathered as integers and divided once by a power of ten, which is exact to the last bit for up to 15 digits and keeps the
+ * parsing of a program line well inside the time that the buffer request allows (host-bus.md 5.7, T_FALL). */
+#include "firmware/language/lexer.h"
+
+enum { NUMBER_DIGITS = 18 }; /* decimal digits kept; 10^18 fits 63 bits */
+
+static const double POWER_OF_TEN[NUMBER_DIGITS + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
+                                                       1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+static int hex_digit(char c) {
+  if (is_digit(c)) return c - '0';
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+char lexer_peek(struct lexer* lx) {
+  while (*lx->at == ' ' || *lx->at == '\t') lx->at++;
+  return *lx->at == ';' ? '\0' : *lx->at;
+}
+
+bool lexer_accept(struct lexer* lx, char c) {
+  if (c == '\0' || lexer_peek(lx) != c) return false;
+  lx->at++;
+  return true;
+}
+
+bool lexer_keyword(struct lexer* lx, const char* word) {
+  if (lexer_peek(lx) == '\0') return false;
+  const char* text = lx->at;
+  for (; *word != '\0'; word++, text++)
+    if (*text != *word) return false;
+  lx->at = text;
+  return true;
+}
+
+static bool hex_number(struct lexer* lx, double* value) {
+  const char* text = lx->at + 1;
+  uint64_t sum = 0;
+  if (hex_digit(*text) < 0) return false;
+  for (; hex_digit(*text) >= 0; text++) {
+    if ((sum >> 56) != 0) sum = 1ull << 55; /* far outside any limit already: keep it so */
+    sum = sum * 16u + (uint64_t)hex_digit(*text);
+  }
+  lx->at = text;
+  *value = (double)sum;
+  return true;
+}
+
+bool lexer_number(struct lexer* lx, double* value) {
+  char first = lexer_peek(lx);
+  if (first == '$') return hex_number(lx, value);
+  if (!is_digit(first) && !(first == '.' && is_digit(lx->at[1]))) return false;
+  const char* text = lx->at;
+  uint64_t sum = 0;
+  unsigned digits = 0, decimals = 0;
+  double scale = 1.0;
+  for (; is_digit(*text); text++) {
+    if (digits < NUMBER_DIGITS) {
+      sum = sum * 10u + (uint64_t)(*text - '0');
+      if (sum != 0) digits++;
+    } else {
+      scale *= 10.0;
+    }
+  }
+  if (*text == '.' && text[1] != '.') { /* two points are a range such as I0..99 */
+    for (text++; is_digit(*text); text++) {
+      if (digits >= NUMBER_DIGITS || decimals >= NUMBER_DIGITS) continue;
+      sum = sum * 10u + (uint64_t)(*text - '0');
+      if (sum != 0) digits++;
+      decimals++;
+    }
+  }
+  lx->at = text;
+  *value = (double)sum * scale / POWER_OF_TEN[decimals];
+  return true;
+}
+
+error_t lexer_constant(struct lexer* lx, double* value) {
+  bool negative = lexer_accept(lx, '-');
+  if (!negative) (void)lexer_accept(lx, '+');
+  if (!lexer_number(lx, value) || *value > LEXER_CONSTANT_LIMIT) return ERR_DATA;
+  if (negative) *value = -*value;
+  return ERR_NONE;
+}
+
+error_t lexer_integer(struct lexer* lx, int32_t* value) {
+  double constant;
+  error_t error = lexer_constant(lx, &constant);
+  if (error != ERR_NONE) return error;
+  if (constant > 2147483647.0 || constant < -2147483648.0 || (double)(int32_t)constant != constant) return ERR_DATA;
+  *value = (int32_t)constant;
+  return ERR_NONE;
+}

@@ -1,0 +1,80 @@
+/* The program line being entered. Its statements are compiled as they are met and stored together when the host line has ended without
+ * an error; a change of the addressed coordinate system inside the line ends the program line of the one before. */
+#include "firmware/language/program.h"
+
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/language/statement.h"
+#include "firmware/motion/run_control.h"
+
+enum { LINE_WORDS = 300 }; /* a host line has at most 255 characters; a two-word constant takes two of them at least */
+
+static struct {
+  word48_t words[LINE_WORDS];
+  uint32_t count;
+  uint32_t cs;
+} line;
+
+bool program_buffer_open(void) { return open_buffer_kind() == OPEN_ROTARY; }
+
+bool program_starts_statement(struct lexer lx) { return statement_starts(lx); }
+
+void program_line_begin(void) { line.count = 0; }
+
+void program_line_abandon(void) { line.count = 0; }
+
+error_t program_line_commit(void) {
+  uint32_t count = line.count;
+  line.count = 0;
+  return count == 0 ? ERR_NONE : rotary_store(line.cs, line.words, count);
+}
+
+/* The pending line belongs to the addressed coordinate system, which needs a rotary buffer. */
+static error_t address(void) {
+  error_t error = ERR_NONE;
+  if (line.count != 0 && line.cs != command_cs()) error = program_line_commit();
+  line.cs = command_cs();
+  if (error == ERR_NONE && rotary_buffers[line.cs].size == 0) error = ERR_NO_ROOM;
+  return error;
+}
+
+error_t program_statement(struct lexer* lx) {
+  error_t error = address();
+  struct word_list list = {line.words, line.count, LINE_WORDS};
+  if (error != ERR_NONE) return error;
+  error = statement_compile(lx, &list);
+  if (error == ERR_NONE) line.count = list.count;
+  return error;
+}
+
+error_t program_blank_line(void) {
+  error_t error = address();
+  struct instruction blank = {OP_BLANK, 0, 0, 0.0};
+  struct word_list list = {line.words, line.count, LINE_WORDS};
+  if (error != ERR_NONE) return error;
+  error = word_list_add_instruction(&list, &blank);
+  if (error == ERR_NONE) line.count = list.count;
+  return error;
+}
+
+error_t program_control_open(void) { return open_buffer_open(OPEN_ROTARY); }
+
+void program_control_close(void) {
+  if (open_buffer_kind() == OPEN_ROTARY || open_buffer_kind() == OPEN_BINARY_ROTARY) open_buffer_close();
+}
+
+void program_control_run(bool single_step) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) (void)run_start(cs, single_step);
+}
+
+void program_control_quit(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_quit(cs);
+}
+
+void program_control_abort(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_abort(cs);
+}
+
+void program_control_hold(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_hold(cs);
+}

@@ -1,0 +1,180 @@
+/* Compiler of program statements. Branches, loops, calls and arcs are recognised as statements, so that they are answered with ERR005
+ * when no buffer is open, and refused with ERR003: a ring of words cannot be jumped about in. */
+#include "firmware/language/statement.h"
+
+static const char AXIS_LETTERS[] = "ABCUVWXYZ"; /* in the order of enum axis */
+static const char CLASS_LETTERS[] = "MPQI";     /* in the order of enum variable_class */
+
+static const struct {
+  const char* name;
+  uint8_t operation;
+  uint8_t number;
+} KEYWORDS[] = {/* longer names first */
+                {"DWELL", OP_RATE, RATE_DWELL},
+                {"DWE", OP_RATE, RATE_DWELL},
+                {"DELAY", OP_RATE, RATE_DELAY},
+                {"DLY", OP_RATE, RATE_DELAY},
+                {"TM", OP_RATE, RATE_TM},
+                {"TA", OP_RATE, RATE_TA},
+                {"TS", OP_RATE, RATE_TS},
+                {"LINEAR", OP_MODE, MODE_LINEAR},
+                {"LIN", OP_MODE, MODE_LINEAR},
+                {"RAPID", OP_MODE, MODE_RAPID},
+                {"RPD", OP_MODE, MODE_RAPID},
+                {"ABS", OP_ABS, 0},
+                {"INC", OP_INC, 0},
+                {"NOFRAX", OP_FRAX, 1},
+                {"FRAX", OP_FRAX, 0}};
+
+/* Statements of fixed programs. */
+static const char* const OTHERS[] = {"ADIS",  "AROT", "BLOCKST",  "BSTART", "BSTOP",  "CALL", "CC0",     "CC1",  "CC2",
+                                     "CC3",   "CCR",  "CIR",      "ELSE",   "ENDI",   "ENDW", "GOS",     "GOTO", "IDIS",
+                                     "IF(",   "IROT", "MOVETIME", "MVTM",   "NORMAL", "NRM",  "PRELUDE", "PSET", "PVT",
+                                     "READ(", "RET",  "SPLINE",   "STOP",   "TINIT",  "TSEL", "WHILE",   "WAIT"};
+
+enum { KEYWORD_COUNT = sizeof KEYWORDS / sizeof KEYWORDS[0], OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
+
+static bool number_starts(struct lexer* lx) {
+  char c = lexer_peek(lx);
+  return (c >= '0' && c <= '9') || c == '.' || c == '$' || c == '-' || c == '+' || c == '(';
+}
+
+static bool find_letter(struct lexer* lx, const char* letters, uint32_t* index) {
+  char c = lexer_peek(lx);
+  for (uint32_t i = 0; letters[i] != '\0'; i++)
+    if (letters[i] == c) {
+      lx->at++;
+      *index = i;
+      return true;
+    }
+  return false;
+}
+
+static bool skip_brackets(struct lexer* lx) {
+  uint32_t depth = 0;
+  do {
+    char c = lexer_peek(lx);
+    if (c == '\0') return false;
+    if (c == '(') depth++;
+    if (c == ')') depth--;
+    lx->at++;
+  } while (depth > 0);
+  return true;
+}
+
+/* `P5=`, `P(..)=`: an assignment. A query such as `P5` is an on-line command whatever is open. */
+static bool assignment_starts(struct lexer lx) {
+  uint32_t class;
+  double number;
+  if (!find_letter(&lx, CLASS_LETTERS, &class)) return false;
+  bool indexed = lexer_peek(&lx) == '(' ? skip_brackets(&lx) : lexer_number(&lx, &number);
+  return indexed && lexer_peek(&lx) == '=';
+}
+
+bool statement_starts(struct lexer lx) {
+  struct lexer start = lx;
+  uint32_t axis;
+  for (uint32_t i = 0; i < KEYWORD_COUNT; i++)
+    if (lexer_keyword(&lx, KEYWORDS[i].name)) return KEYWORDS[i].operation != OP_RATE || number_starts(&lx);
+  for (uint32_t i = 0; i < OTHER_COUNT; i++)
+    if (lexer_keyword(&lx, OTHERS[i])) return true;
+  if (lexer_accept(&lx, 'F') || lexer_accept(&lx, 'N') || lexer_accept(&lx, 'O') || lexer_accept(&lx, 'G') ||
+      find_letter(&lx, AXIS_LETTERS, &axis))
+    return number_starts(&lx);
+  return assignment_starts(start);
+}
+
+error_t statement_axis_list(struct lexer* lx, uint32_t bare, uint32_t* mask) {
+  uint32_t axis;
+  *mask = bare;
+  if (!lexer_accept(lx, '(')) return ERR_NONE;
+  *mask = 0;
+  do {
+    if (lexer_accept(lx, 'R'))
+      *mask |= AXIS_VECTOR;
+    else if (find_letter(lx, AXIS_LETTERS, &axis))
+      *mask |= 1u << axis;
+    else
+      return ERR_DATA;
+  } while (lexer_accept(lx, ','));
+  return lexer_accept(lx, ')') ? ERR_NONE : ERR_DATA;
+}
+
+/* A value behind an axis letter or a keyword: a constant in the same word, or an expression in brackets before it. */
+static error_t compile_value(struct lexer* lx, enum operation constant, enum operation popped, uint32_t number, struct word_list* out) {
+  struct instruction in = {constant, 0, number, 0.0};
+  error_t error;
+  if (lexer_peek(lx) == '(') {
+    in.operation = popped;
+    error = expression_compile(lx, true, out);
+  } else {
+    error = lexer_constant(lx, &in.value);
+    if (error == ERR_NONE && constant == OP_RATE && (in.value < 0.0 || (number == RATE_F && in.value == 0.0))) error = ERR_DATA;
+    if (error == ERR_NONE && number == RATE_TM && constant == OP_RATE && in.value > 8388607.0) error = ERR_DATA;
+  }
+  return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
+}
+
+static error_t compile_assignment(struct lexer* lx, uint32_t class, struct word_list* out) {
+  struct instruction in = {OP_ASSIGN_POP, class, 0, 0.0};
+  double number;
+  error_t error = ERR_NONE;
+  if (lexer_peek(lx) == '(') {
+    in.operation = OP_ASSIGN_INDEXED;
+    error = expression_compile(lx, true, out);
+  } else {
+    if (!lexer_number(lx, &number) || number > 8191.0 || (double)(uint32_t)number != number) return ERR_DATA;
+    in.number = (uint32_t)number;
+  }
+  if (error != ERR_NONE || !lexer_accept(lx, '=')) return ERR_DATA;
+  struct word_list before = *out;
+  error = expression_compile(lx, false, out);
+  if (error != ERR_NONE) return error;
+  struct instruction constant = word_decode(out->words[before.count]);
+  bool single = out->count == before.count + 1 && constant.operation == OP_PUSH;
+  if (single && in.operation == OP_ASSIGN_POP && in.number < 1024 && word_holds_short(constant.value)) { /* one word holds it all */
+    *out = before;
+    in.operation = OP_ASSIGN;
+    in.value = constant.value;
+  }
+  return word_list_add_instruction(out, &in);
+}
+
+static error_t compile_keyword(struct lexer* lx, uint32_t index, struct word_list* out) {
+  struct instruction in = {(enum operation)KEYWORDS[index].operation, 0, KEYWORDS[index].number, 0.0};
+  error_t error = ERR_NONE;
+  switch (in.operation) {
+    case OP_RATE:
+      return compile_value(lx, OP_RATE, OP_RATE_POP, in.number, out);
+    case OP_ABS:
+    case OP_INC:
+      error = statement_axis_list(lx, AXIS_ALL, &in.number);
+      break;
+    case OP_FRAX:
+      if (in.number == 1)
+        in.number = 0; /* NOFRAX */
+      else
+        error = statement_axis_list(lx, AXIS_XYZ, &in.number);
+      if (in.number & AXIS_VECTOR) error = ERR_DATA;
+      break;
+    default:
+      break;
+  }
+  return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
+}
+
+error_t statement_compile(struct lexer* lx, struct word_list* out) {
+  uint32_t index;
+  struct lexer start = *lx;
+  for (index = 0; index < KEYWORD_COUNT; index++)
+    if (lexer_keyword(lx, KEYWORDS[index].name)) return compile_keyword(lx, index, out);
+  for (index = 0; index < OTHER_COUNT; index++)
+    if (lexer_keyword(lx, OTHERS[index])) return ERR_DATA;
+  if (assignment_starts(start)) {
+    (void)find_letter(lx, CLASS_LETTERS, &index);
+    return compile_assignment(lx, index, out);
+  }
+  if (lexer_accept(lx, 'F')) return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
+  if (find_letter(lx, AXIS_LETTERS, &index)) return compile_value(lx, OP_AXIS, OP_AXIS_POP, index, out);
+  return ERR_DATA;
+}

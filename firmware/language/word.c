@@ -1,0 +1,207 @@
+/* Coding of program words.
+ *   bits    47   46..43  42..40  39..30  29..24       23..0
+ *   field   SOL  CODE1   CODE2   N       EXP (s6)     mantissa (s24, fraction of 23 bits) or an integer
+ * Wide constants (CODE1 10 to 13) use the 45 bits below SOL, counted from CODE1 = 10, as kind(5) exponent(s7) mantissa(s33). */
+#include "firmware/language/word.h"
+
+#include "firmware/language/mathematics.h"
+
+enum code1 {
+  CODE_BLANK = 0,
+  CODE_AXIS = 1,
+  CODE_MODAL = 2,
+  CODE_RATE = 3,
+  CODE_M = 4,
+  CODE_I = 7,
+  CODE_WIDE = 10,
+  CODE_WIDE_LAST = 13,
+  CODE_STACK = 14,
+  CODE_PREFIX = 15
+};
+enum modal { MODAL_MODE, MODAL_ABS, MODAL_INC, MODAL_FRAX };
+enum wide { WIDE_AXIS = 0, WIDE_RATE = 9, WIDE_PUSH = 31 };
+enum { SHORT_FRACTION = 23, WIDE_FRACTION = 32 };
+
+#define FIELD(word, low, width) ((uint32_t)((word) >> (low)) & ((1u << (width)) - 1u))
+
+static const struct {
+  uint8_t code2;
+  uint8_t operation;
+} STACK_CODES[] = {{0, OP_APPLY},    {1, OP_PUSH_VARIABLE}, {2, OP_PUSH_INDEXED}, {3, OP_PUSH_DOUBLE},
+                   {4, OP_AXIS_POP}, {5, OP_RATE_POP},      {6, OP_ASSIGN_POP},   {7, OP_ASSIGN_INDEXED}};
+
+static double fraction(uint64_t field, unsigned bits, int exponent) { /* signed fraction of `bits` bits and a sign */
+  uint64_t sign = UINT64_C(1) << bits;
+  int64_t mantissa = (int64_t)(field ^ sign) - (int64_t)sign;
+  return math_scale((double)mantissa, exponent - (int)bits);
+}
+
+static word48_t fields(uint32_t code1, uint32_t code2, uint32_t n, uint32_t low) {
+  return ((word48_t)code1 << 43) | ((word48_t)code2 << 40) | ((word48_t)(n & 0x3FFu) << 30) | (low & 0xFFFFFFu);
+}
+
+/* Mantissa and exponent of value in `bits` fraction bits. False: rounded, or the exponent does not fit. */
+static bool pack(double value, unsigned bits, int exponent_limit, uint64_t* mantissa, uint32_t* exponent) {
+  int e;
+  double scaled = math_scale(math_split(value, &e), (int)bits);
+  int64_t m = math_to_integer(scaled + 0.5);
+  bool exact = (double)m == scaled;
+  if (m >= (INT64_C(1) << bits)) { /* rounded up to the next power of two */
+    m >>= 1;
+    e++;
+  }
+  if (e < -exponent_limit) {
+    exact = false;
+    m = 0;
+    e = 0;
+  }
+  *mantissa = (uint64_t)m & ((UINT64_C(2) << bits) - 1u);
+  *exponent = (uint32_t)e;
+  return exact && e < exponent_limit;
+}
+
+static word48_t encode_wide(uint32_t kind, double value) {
+  uint64_t mantissa;
+  uint32_t exponent;
+  (void)pack(value, WIDE_FRACTION, 64, &mantissa, &exponent);
+  word48_t body = ((word48_t)kind << 40) | ((word48_t)(exponent & 0x7Fu) << 33) | mantissa;
+  return body + ((word48_t)CODE_WIDE << 43);
+}
+
+static word48_t encode_value(uint32_t code1, uint32_t n, double value, uint32_t wide_kind) {
+  uint64_t mantissa;
+  uint32_t exponent;
+  if (!pack(value, SHORT_FRACTION, 32, &mantissa, &exponent)) return encode_wide(wide_kind, value);
+  return fields(code1, 0, n, (uint32_t)mantissa) | ((word48_t)(exponent & 0x3Fu) << 24);
+}
+
+bool word_holds_exactly(double value) {
+  uint64_t mantissa;
+  uint32_t exponent;
+  return pack(value, WIDE_FRACTION, 64, &mantissa, &exponent);
+}
+
+bool word_holds_short(double value) {
+  uint64_t mantissa;
+  uint32_t exponent;
+  return pack(value, SHORT_FRACTION, 32, &mantissa, &exponent);
+}
+
+word48_t word_encode(const struct instruction* in) {
+  switch (in->operation) {
+    case OP_AXIS:
+      return encode_value(CODE_AXIS, in->number, in->value, WIDE_AXIS + in->number);
+    case OP_RATE:
+      return encode_value(CODE_RATE, in->number, in->value, WIDE_RATE + in->number);
+    case OP_ASSIGN:
+      return encode_value(CODE_M + in->class, in->number, in->value, WIDE_PUSH);
+    case OP_PUSH:
+      return encode_wide(WIDE_PUSH, in->value);
+    case OP_MODE:
+      return fields(CODE_MODAL, MODAL_MODE, in->number, 0);
+    case OP_ABS:
+      return fields(CODE_MODAL, MODAL_ABS, in->number, 0);
+    case OP_INC:
+      return fields(CODE_MODAL, MODAL_INC, in->number, 0);
+    case OP_FRAX:
+      return fields(CODE_MODAL, MODAL_FRAX, in->number, 0);
+    case OP_PREFIX:
+      return fields(CODE_PREFIX, 0, in->number, 0);
+    default:
+      break;
+  }
+  for (unsigned i = 0; i < sizeof STACK_CODES / sizeof STACK_CODES[0]; i++)
+    if (STACK_CODES[i].operation == (uint8_t)in->operation) return fields(CODE_STACK, STACK_CODES[i].code2, in->class, in->number);
+  return fields(CODE_BLANK, 0, 0, 0);
+}
+
+static struct instruction decode_wide(word48_t word) {
+  struct instruction in = {OP_ILLEGAL, 0, 0, 0.0};
+  word48_t body = (word & ~WORD_START_OF_LINE) - ((word48_t)CODE_WIDE << 43);
+  uint32_t kind = FIELD(body, 40, 5), exponent = FIELD(body, 33, 7);
+  in.value = fraction(body & ((UINT64_C(1) << 33) - 1u), WIDE_FRACTION, (int)(exponent ^ 0x40u) - 0x40);
+  if (kind < AXIS_COUNT) {
+    in.operation = OP_AXIS;
+    in.number = kind;
+  } else if (kind - WIDE_RATE < RATE_COUNT) {
+    in.operation = OP_RATE;
+    in.number = kind - WIDE_RATE;
+  } else if (kind == WIDE_PUSH) {
+    in.operation = OP_PUSH;
+  }
+  return in;
+}
+
+static enum operation modal_operation(uint32_t code2, uint32_t n) {
+  switch (code2) {
+    case MODAL_MODE:
+      return n <= MODE_RAPID ? OP_MODE : OP_ILLEGAL;
+    case MODAL_ABS:
+      return OP_ABS;
+    case MODAL_INC:
+      return OP_INC;
+    case MODAL_FRAX:
+      return OP_FRAX;
+    default:
+      return OP_ILLEGAL;
+  }
+}
+
+struct instruction word_decode(word48_t word) {
+  uint32_t code1 = FIELD(word, 43, 4), code2 = FIELD(word, 40, 3), n = FIELD(word, 30, 10), exponent = FIELD(word, 24, 6);
+  if (code1 >= CODE_WIDE && code1 <= CODE_WIDE_LAST) return decode_wide(word);
+  struct instruction in = {OP_ILLEGAL, 0, n, 0.0};
+  if (code1 >= CODE_M && code1 <= CODE_I && code2 == 0) {
+    in.operation = OP_ASSIGN;
+    in.class = code1 - CODE_M; /* M, P, Q, I: the order of enum variable_class */
+  }
+  switch (code1) {
+    case CODE_BLANK:
+      if (code2 == 0 && n == 0) in.operation = OP_BLANK;
+      break;
+    case CODE_AXIS:
+      if (code2 == 0 && n < AXIS_COUNT) in.operation = OP_AXIS;
+      break;
+    case CODE_RATE:
+      if (code2 == 0 && n < RATE_COUNT) in.operation = OP_RATE;
+      break;
+    case CODE_MODAL:
+      in.operation = modal_operation(code2, n);
+      break;
+    case CODE_STACK:
+      in.operation = (enum operation)STACK_CODES[code2].operation;
+      in.class = n;
+      in.number = (uint32_t)word & 0xFFFFFFu;
+      break;
+    case CODE_PREFIX:
+      in.operation = OP_PREFIX;
+      break;
+    default:
+      break;
+  }
+  if (in.operation == OP_AXIS || in.operation == OP_RATE || in.operation == OP_ASSIGN)
+    in.value = fraction(word & 0xFFFFFFu, SHORT_FRACTION, (int)(exponent ^ 0x20u) - 0x20);
+  return in;
+}
+
+union double_bits {
+  double value;
+  uint64_t bits;
+};
+
+word48_t word_double_head(double value) {
+  union double_bits d = {value};
+  struct instruction in = {OP_PUSH_DOUBLE, 0, (uint32_t)(d.bits >> 48), 0.0};
+  return word_encode(&in);
+}
+
+word48_t word_double_tail(double value) {
+  union double_bits d = {value};
+  return d.bits & WORD48_MASK;
+}
+
+double word_double_join(word48_t head, word48_t tail) {
+  union double_bits d = {0.0};
+  d.bits = ((head & 0xFFFFu) << 48) | (tail & WORD48_MASK);
+  return d.value;
+}

@@ -1,0 +1,66 @@
+/* The 48-bit words in which program lines are stored: X half in bits 47..24, Y half in bits 23..0. The layout of codes 0 to 9 and 15
+ * is that of the binary rotary buffer (host-bus.md 7.7), so that lines copied from DPRAM need no translation; codes 10 to 14 are
+ * for what that format cannot hold: constants of 33 bits, and expressions as a stack program (docs/language.md). */
+#ifndef FIRMWARE_LANGUAGE_WORD_H
+#define FIRMWARE_LANGUAGE_WORD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef uint64_t word48_t;
+
+#define WORD48_MASK UINT64_C(0xFFFFFFFFFFFF)
+#define WORD_START_OF_LINE (UINT64_C(1) << 47) /* on the first word of each program line */
+
+enum axis { AXIS_A, AXIS_B, AXIS_C, AXIS_U, AXIS_V, AXIS_W, AXIS_X, AXIS_Y, AXIS_Z, AXIS_COUNT };
+
+enum {
+  AXIS_ALL = 0x1FF,
+  AXIS_XYZ = 0x1C0,
+  AXIS_VECTOR = 0x200 /* R in ABS(...) and INC(...): the arc vector */
+};
+
+enum rate { RATE_F, RATE_TM, RATE_TA, RATE_TS, RATE_DWELL, RATE_DELAY, RATE_COUNT };
+
+enum mode { MODE_LINEAR, MODE_RAPID };
+
+enum variable_class { VARIABLE_M, VARIABLE_P, VARIABLE_Q, VARIABLE_I, VARIABLE_CLASSES };
+
+enum operation {
+  OP_ILLEGAL,
+  OP_BLANK,
+  OP_AXIS, /* number = axis, value */
+  OP_RATE, /* number = rate, value */
+  OP_MODE, /* number = mode */
+  OP_ABS,  /* number = axis mask */
+  OP_INC,
+  OP_FRAX,
+  OP_PREFIX,        /* number = bits 10 and up of the next command's variable number */
+  OP_ASSIGN,        /* class, number 0..1023, value that word_holds_short */
+  OP_PUSH,          /* value */
+  OP_PUSH_DOUBLE,   /* value's upper 16 bits here, lower 48 in the next word, which is not an operation */
+  OP_PUSH_VARIABLE, /* class, number */
+  OP_PUSH_INDEXED,  /* class; pops the number */
+  OP_APPLY,         /* number = enum operator_code; pops its operands, pushes the result */
+  OP_AXIS_POP,      /* as OP_AXIS, OP_RATE, OP_ASSIGN, with the value popped */
+  OP_RATE_POP,
+  OP_ASSIGN_POP,
+  OP_ASSIGN_INDEXED /* class; pops the value, then the number */
+};
+
+struct instruction {
+  enum operation operation;
+  uint32_t class;
+  uint32_t number;
+  double value;
+};
+
+struct instruction word_decode(word48_t word);
+word48_t word_encode(const struct instruction* in); /* one word; a value is rounded to 33 bits when it has to be */
+bool word_holds_exactly(double value);              /* OP_PUSH of this value loses nothing */
+bool word_holds_short(double value);                /* nor does the 24-bit form of OP_ASSIGN, which has no wide form */
+word48_t word_double_head(double value);            /* OP_PUSH_DOUBLE and the raw word that follows it */
+word48_t word_double_tail(double value);
+double word_double_join(word48_t head, word48_t tail);
+
+#endif

@@ -1,0 +1,23 @@
+/* Axis definitions `#n->...` (firmware.md 7.4): which axes of which coordinate system a motor carries, and its scale. */
+#ifndef FIRMWARE_MOTION_AXIS_DEFINITION_H
+#define FIRMWARE_MOTION_AXIS_DEFINITION_H
+
+#include "firmware/language/lexer.h"
+#include "firmware/language/word.h"
+
+enum { MOTORS = 32 };
+
+struct axis_definition {
+  bool assigned, kinematic; /* `I`: inverse kinematics */
+  uint32_t cs;
+  double scale[AXIS_COUNT]; /* counts a user unit */
+  double offset;            /* counts */
+};
+
+extern struct axis_definition axis_definitions[MOTORS]; /* background; part of the SAVE image */
+
+error_t axis_definition_command(struct lexer* lx); /* behind `->`: query or definition of the addressed motor */
+error_t axis_undefine_command(struct lexer* lx);   /* UNDEFINE, UNDEFINE ALL */
+uint32_t axis_definition_motors(uint32_t cs);      /* motors assigned to it */
+
+#endif

@@ -1,0 +1,111 @@
+/* State of the 16 coordinate systems. Axes are virtual: a coordinate system runs without motors, its positions are kept here.
+ * Times of the trajectory are in trajectory units, 2^-23 ms, the unit of I10, so that the servo task adds and compares integers only.
+ * Owners: B background, R real-time task, S servo task. B changes what R or S own only while they are held off. */
+#ifndef FIRMWARE_MOTION_COORDINATE_SYSTEM_H
+#define FIRMWARE_MOTION_COORDINATE_SYSTEM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/buffers/regions.h"
+#include "firmware/language/expression.h"
+#include "firmware/language/word.h"
+
+#define TRAJECTORY_UNITS_PER_MS 8388608.0
+#define TRAJECTORY_LONGEST_MS 8388607.0
+
+enum {
+  VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
+  MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware.md 7.5) */
+  CALCULATED_LINES_LIMIT = 32,  /* lines without a move that one real-time interrupt works off for a coordinate system */
+  I_CS_BASE = 5100              /* I5100 + 100 * cs + nn is Isxnn */
+};
+
+enum i_cs {
+  I_CS_TA = 87,
+  I_CS_TS = 88,
+  I_CS_FEED = 89,
+  I_CS_TIME_UNIT = 90,
+  I_CS_ALTERNATE_FEED = 86,
+  I_CS_NO_BLEND = 92,
+  I_CS_SLEW = 94,
+  I_CS_HOLD_SLEW = 95,
+  I_CS_FEED_LIMIT = 98
+};
+
+enum program_pointer { POINTER_NONE, POINTER_ROTARY, POINTER_FIXED };
+
+enum move_kind { MOVE_LINEAR, MOVE_DWELL };
+
+/* One calculated move. Written by R while it is not the executing one; S adds how it began. */
+struct move {
+  enum move_kind kind;
+  int64_t time;             /* Tm, or the length of the DWELL */
+  int64_t acceleration;     /* Ta, even */
+  int64_t s_curve;          /* TS */
+  bool joins;               /* may blend with the move before it */
+  int64_t blend_in;         /* S: length of the velocity change at its start */
+  bool blended;             /* S: began at the velocity of the move before */
+  double start[AXIS_COUNT]; /* corner at which it begins */
+  double delta[AXIS_COUNT];
+  double velocity_before[AXIS_COUNT]; /* of the move before, units a trajectory unit */
+  uint32_t line_offset;               /* PE: ring offset of its line */
+};
+
+struct coordinate_system {
+  /* program pointer and requests */
+  enum program_pointer pointer; /* B */
+  uint32_t fixed_program;       /* B: number given to B{n} */
+  volatile bool running;        /* B sets, R clears */
+  bool continuous;              /* B: R, not S */
+  bool stepping;                /* B sets, R clears when the step's move is calculated */
+  volatile bool quit;           /* Q, or the end of a step: calculate no more */
+  volatile bool end_block;      /* `/`: S starts no further move */
+  bool run_time_error;          /* R */
+  /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
+  uint32_t incremental, feedrate_axes; /* axis masks */
+  bool vector_absolute, time_mode;
+  enum mode mode;
+  bool may_join; /* the last calculated move can blend with one after it */
+  /* calculation, R */
+  struct evaluator evaluator;
+  uint32_t prefix;             /* OP_PREFIX: added to the number of the next command */
+  double position[AXIS_COUNT]; /* end of the last calculated move */
+  double velocity[AXIS_COUNT]; /* of the last calculated move */
+  double pending[AXIS_COUNT];  /* targets of the line being calculated */
+  uint32_t pending_axes;
+  uint32_t line_offset;
+  /* moves: moves[executing] belongs to S, the other one is the next */
+  struct move moves[2];
+  volatile uint32_t executing;
+  volatile bool active;     /* S: moves[executing] is under way */
+  volatile bool next_valid; /* R sets when complete, S clears when it starts it */
+  bool blend_decided;       /* S: the next move came before the executing one began to stop */
+  int64_t elapsed;          /* S: trajectory time since the executing move began to change velocity */
+  /* time base: trajectory units a servo cycle */
+  volatile int32_t increment;        /* S */
+  volatile int32_t increment_target; /* B */
+  volatile int32_t increment_slew;   /* B */
+  int32_t increment_full;            /* B: I10, taken over by %100 */
+  int32_t increment_command;         /* B: target without the hold of H */
+  bool held;                         /* B: H */
+  /* status, B */
+  bool in_position;
+};
+
+extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
+
+double cs_variable(uint32_t cs, enum i_cs number);
+
+/* calculate.c, real-time task */
+void calculate_ahead(uint32_t cs);
+void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
+/* plan.c, real-time task: fills the move that is not executing */
+void plan_line(uint32_t cs);
+void plan_wait(uint32_t cs, enum rate kind, double milliseconds);
+/* servo_update.c, servo task */
+void cs_servo_update(struct coordinate_system* s);
+/* position.c, with the servo task held off */
+void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]);
+
+#endif

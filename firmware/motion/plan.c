@@ -1,0 +1,81 @@
+/* Planning of moves (firmware.md 7.5), real-time task. RAPID moves are planned as unblended LINEAR moves at the feedrate: their own
+ * speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
+#include "firmware/language/mathematics.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/variables/variables.h"
+
+double cs_variable(uint32_t cs, enum i_cs number) { return i_variable_read((uint32_t)I_CS_BASE + 100u * cs + (uint32_t)number); }
+
+static int64_t units(double milliseconds) { return math_to_integer(milliseconds * TRAJECTORY_UNITS_PER_MS + 0.5); }
+
+static double larger(double a, double b) { return a > b ? a : b; }
+
+static struct move* next_move(struct coordinate_system* s) { return &s->moves[s->executing ^ 1u]; }
+
+/* Tm of a feed-specified move in ms. */
+static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT]) {
+  double unit = cs_variable(cs, I_CS_TIME_UNIT), feed = cs_variable(cs, I_CS_FEED);
+  double limit = cs_variable(cs, I_CS_FEED_LIMIT), alternate = cs_variable(cs, I_CS_ALTERNATE_FEED);
+  double square = 0.0, other = 0.0;
+  if (limit > 0.0 && feed > limit) feed = limit;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    if ((s->feedrate_axes >> axis) & 1u)
+      square += delta[axis] * delta[axis];
+    else
+      other = larger(other, math_absolute(delta[axis]));
+  }
+  if (square == 0.0) return other == 0.0 ? 0.0 : math_divide(other, alternate > 0.0 ? alternate : feed) * unit;
+  double time = math_divide(math_square_root(square), feed) * unit;
+  return alternate > 0.0 ? larger(time, other / alternate * unit) : time;
+}
+
+/* Acceleration and the least move time that it allows; both 0: 0.5 ms. */
+static void set_times(uint32_t cs, struct move* m, double milliseconds) {
+  double ts = cs_variable(cs, I_CS_TS);
+  m->acceleration = units(larger(cs_variable(cs, I_CS_TA), 2.0 * ts)) & ~INT64_C(1);
+  m->s_curve = units(ts);
+  m->time = units(milliseconds < TRAJECTORY_LONGEST_MS ? milliseconds : TRAJECTORY_LONGEST_MS);
+  int64_t least = m->acceleration > 0 ? m->acceleration : MOVE_MINIMUM_UNITS;
+  if (m->time < least) m->time = least;
+}
+
+static void finish(struct coordinate_system* s, struct move* m, bool blends) {
+  m->joins = blends && s->may_join;
+  m->line_offset = s->line_offset;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    m->start[axis] = s->position[axis];
+    m->velocity_before[axis] = s->velocity[axis];
+    s->position[axis] += m->delta[axis];
+    s->velocity[axis] = m->kind == MOVE_LINEAR ? m->delta[axis] / (double)m->time : 0.0;
+  }
+  s->may_join = blends;
+  s->next_valid = true; /* last: from here on the servo task may start it */
+}
+
+void plan_line(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct move* m = next_move(s);
+  m->kind = MOVE_LINEAR;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+    m->delta[axis] = ((s->pending_axes >> axis) & 1u) ? s->pending[axis] - s->position[axis] : 0.0;
+  s->pending_axes = 0;
+  set_times(cs, m, s->time_mode ? cs_variable(cs, I_CS_FEED) : feed_time(cs, s, m->delta));
+  finish(s, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
+}
+
+/* DWELL stops blending and is timed by the servo clock alone; DELAY is a move of no distance. */
+void plan_wait(uint32_t cs, enum rate kind, double milliseconds) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct move* m = next_move(s);
+  double length = milliseconds > 0.0 ? milliseconds : 0.0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) m->delta[axis] = 0.0;
+  m->kind = kind == RATE_DWELL ? MOVE_DWELL : MOVE_LINEAR;
+  if (kind == RATE_DWELL) {
+    m->acceleration = m->s_curve = 0;
+    m->time = units(length < TRAJECTORY_LONGEST_MS ? length : TRAJECTORY_LONGEST_MS);
+    finish(s, m, false);
+  } else {
+    set_times(cs, m, length);
+    finish(s, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
+  }
+}

@@ -1,0 +1,38 @@
+/* Where the virtual axes of a coordinate system are: the executing move's profile evaluated at the present trajectory time. Used when
+ * a program is aborted; the servo task is held off meanwhile. */
+#include "firmware/motion/coordinate_system.h"
+
+/* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`. */
+static double rise(double t, double length, double s) {
+  if (t <= 0.0 || length <= 0.0) return 0.0;
+  if (t >= length) return t - length / 2.0;
+  if (t > length / 2.0) return t - length / 2.0 + rise(length - t, length, s);
+  double slope = 1.0 / (length - s);
+  if (t < s) return slope * t * t * t / (6.0 * s);
+  double straight = t - s;
+  return slope * (s * s / 6.0 + s * straight / 2.0 + straight * straight / 2.0);
+}
+
+static double s_part(const struct move* m, double length) {
+  if (m->acceleration == 0) return 0.0;
+  double s = (double)m->s_curve * length / (double)m->acceleration;
+  return s > length / 2.0 ? length / 2.0 : s;
+}
+
+void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]) {
+  const struct move* m = &s->moves[s->executing];
+  if (!s->active) {
+    const struct move* next = &s->moves[s->executing ^ 1u];
+    for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = s->next_valid ? next->start[axis] : s->position[axis];
+    return;
+  }
+  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->acceleration, half = in / 2.0;
+  double stop = t - (half + (double)m->time - out / 2.0);
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    double before = m->blended ? m->velocity_before[axis] : 0.0;
+    double now = m->kind == MOVE_LINEAR ? m->delta[axis] / (double)m->time : 0.0;
+    double x = m->start[axis] + before * (t - half) + (now - before) * rise(t, in, s_part(m, in));
+    if (!s->blend_decided) x -= now * rise(stop, out, s_part(m, out));
+    position[axis] = before == 0.0 && now == 0.0 ? m->start[axis] : x;
+  }
+}
