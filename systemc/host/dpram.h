@@ -10,6 +10,7 @@
 #include <tlm>
 
 #include "systemc/core/model_block.h"
+#include "systemc/host/inputs.h"
 
 namespace brick {
 
@@ -20,18 +21,7 @@ class Dpram : public sc_core::sc_module, public ModelBlock {
   // Memory without arbitration, for software that has no pins: 16-bit accesses at the host's byte offset.
   tlm_utils::simple_target_socket_optional<Dpram> socket;
 
-  struct Inputs {
-    // Port A pins
-    bool cpu_sel = false, cpu_x = false;
-    std::uint16_t cpu_addr = 0;  // 14 bits
-    bool cpu_rd_n = true, cpu_wr_n = true;
-    std::uint16_t cpu_wdata = 0;
-    // from isa_slave
-    bool mem_sel = false, mem_rd = false, mem_wr = false;
-    std::uint16_t mem_addr = 0;  // 15 bits
-    std::uint8_t mem_be = 0;
-    std::uint16_t mem_wdata = 0;
-  };
+  using Inputs = DpramInputs;
   Inputs in;
 
   std::uint16_t cpu_rdata() const { return cpu_rdata_; }

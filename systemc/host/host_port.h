@@ -8,6 +8,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
 namespace brick {
@@ -20,14 +21,7 @@ class HostPort : public sc_core::sc_module, public RefClockedBlock {
   tlm_utils::simple_target_socket_optional<HostPort> host_socket;
   tlm_utils::simple_target_socket_optional<HostPort> cpu_socket;
 
-  struct Inputs {
-    bool hp_sel = false, hp_rd_done = false, hp_wr = false;
-    std::uint8_t hp_addr = 0;  // 0..7
-    std::uint8_t hp_wdata = 0;
-    bool dsp_sel = false, dsp_we = false, dsp_rd_done = false;
-    std::uint8_t dsp_addr = 0;  // low six bits of X:$FFFFxx
-    std::uint32_t dsp_wdata = 0;
-  };
+  using Inputs = HostPortInputs;
   Inputs in;
 
   std::uint8_t hp_rdata() const { return host_read(in.hp_addr); }

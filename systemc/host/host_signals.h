@@ -7,6 +7,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
 namespace brick {
@@ -17,10 +18,7 @@ class HostSignals : public sc_core::sc_module, public RefClockedBlock {
 
   tlm_utils::simple_target_socket_optional<HostSignals> socket;  // one 32-bit word: X:$070010
 
-  struct Inputs {
-    bool wr = false;
-    std::uint8_t wdata = 0;  // 4 bits
-  };
+  using Inputs = HostSignalsInputs;
   Inputs in;
 
   std::uint8_t rdata() const { return latch_; }

@@ -7,6 +7,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
 namespace brick {
@@ -18,12 +19,7 @@ class InterruptController : public sc_core::sc_module, public RefClockedBlock {
   // Registers as bytes 0..3: status and clear, signal, mask, edge/level. For use without the pins of a board.
   tlm_utils::simple_target_socket_optional<InterruptController> socket;
 
-  struct Inputs {
-    std::uint8_t line = 0;
-    bool wr = false;
-    std::uint8_t addr = 0;  // 0..3
-    std::uint8_t wdata = 0;
-  };
+  using Inputs = InterruptControllerInputs;
   Inputs in;
 
   std::uint8_t rdata() const { return read(in.addr); }

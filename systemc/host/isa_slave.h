@@ -6,6 +6,7 @@
 
 #include <systemc>
 
+#include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
 namespace brick {
@@ -20,15 +21,7 @@ class IsaSlave : public sc_core::sc_module, public RefClockedBlock {
   explicit IsaSlave(const sc_core::sc_module_name& name) : IsaSlave(name, Config()) {}
   IsaSlave(const sc_core::sc_module_name& name, const Config& config) : sc_module(name), config_(config) {}
 
-  struct Inputs {
-    std::uint32_t isa_sa = 0;
-    std::uint16_t isa_sd = 0;
-    bool isa_ior_n = true, isa_iow_n = true, isa_memr_n = true, isa_memw_n = true;
-    bool isa_aen = false, isa_sbhe_n = true;
-    std::uint8_t hp_rdata = 0, pic_rdata = 0;
-    std::uint16_t mem_rdata = 0;
-    bool mem_busy = false;
-  };
+  using Inputs = IsaSlaveInputs;
   Inputs in;
 
   // Host bus

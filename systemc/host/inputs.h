@@ -1,0 +1,53 @@
+// Input pins of the host-side blocks, named as the RTL ports without _i. Free of SystemC, so that the model and whoever
+// drives the Verilated module can share them.
+#pragma once
+
+#include <cstdint>
+
+namespace brick {
+
+struct InterruptControllerInputs {
+  std::uint8_t line = 0;
+  bool wr = false;
+  std::uint8_t addr = 0;  // 0..3
+  std::uint8_t wdata = 0;
+};
+
+struct HostSignalsInputs {
+  bool wr = false;
+  std::uint8_t wdata = 0;  // 4 bits
+};
+
+struct HostPortInputs {
+  bool hp_sel = false, hp_rd_done = false, hp_wr = false;
+  std::uint8_t hp_addr = 0;  // 0..7
+  std::uint8_t hp_wdata = 0;
+  bool dsp_sel = false, dsp_we = false, dsp_rd_done = false;
+  std::uint8_t dsp_addr = 0;  // low six bits of X:$FFFFxx
+  std::uint32_t dsp_wdata = 0;
+};
+
+struct DpramInputs {
+  // Port A pins
+  bool cpu_sel = false, cpu_x = false;
+  std::uint16_t cpu_addr = 0;  // 14 bits
+  bool cpu_rd_n = true, cpu_wr_n = true;
+  std::uint16_t cpu_wdata = 0;
+  // from isa_slave
+  bool mem_sel = false, mem_rd = false, mem_wr = false;
+  std::uint16_t mem_addr = 0;  // 15 bits
+  std::uint8_t mem_be = 0;
+  std::uint16_t mem_wdata = 0;
+};
+
+struct IsaSlaveInputs {
+  std::uint32_t isa_sa = 0;
+  std::uint16_t isa_sd = 0;
+  bool isa_ior_n = true, isa_iow_n = true, isa_memr_n = true, isa_memw_n = true;
+  bool isa_aen = false, isa_sbhe_n = true;
+  std::uint8_t hp_rdata = 0, pic_rdata = 0;
+  std::uint16_t mem_rdata = 0;
+  bool mem_busy = false;
+};
+
+}  // namespace brick
