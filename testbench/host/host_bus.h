@@ -1,41 +1,87 @@
 // The host's side of the bus: ISA / PC104 cycles with real edges (host-bus.md 3.4), the host port by polling or by
-// interrupt, the interrupt controller and the dual-ported RAM window. Every call advances the machine.
+// interrupt, the interrupt controller and the dual-ported RAM window. Every call advances the machine; a host reads and
+// drives pins only while the board stands at that time, so the result is the same on every engine.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "systemc/machine/machine.h"
+#include "testbench/host/isa_timing.h"
 
 namespace brick {
 
+// The board broke a rule of the bus cycle, e.g. held IOCHRDY low for longer than t10.
+class HostBusError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 class HostBus {
  public:
-  static constexpr std::uint32_t kIoBase = 0x210;          // host-bus.md 3.1
-  static constexpr std::uint32_t kDpramWindow = 0xD0000;   // 64 KiB, docs/architecture.md "Host bus"
+  static constexpr std::uint32_t kIoBase = 0x210;         // host-bus.md 3.1
+  static constexpr std::uint32_t kDpramWindow = 0xD0000;  // 64 KiB, docs/architecture.md "Host bus"
+  static constexpr std::uint32_t kDpramBytes = 0x10000;
+  static constexpr std::uint8_t kRxdf = 0x01;  // ISR: a character waits to be read
+  static constexpr std::uint8_t kTxde = 0x02;  // ISR: the next character may be written
 
   explicit HostBus(Machine& machine) : machine_(machine) {}
 
-  std::uint8_t io_read(std::uint32_t offset);              // offset 0..15 from kIoBase
+  // Bus cycles --------------------------------------------------------------------------------------------------------
+  std::uint8_t io_read(std::uint32_t offset);  // offset 0..15 from kIoBase
   void io_write(std::uint32_t offset, std::uint8_t value);
-  std::uint16_t dpram_read(std::uint32_t byte_offset);     // even offsets
+  std::uint16_t dpram_read(std::uint32_t byte_offset);  // even offsets
   void dpram_write(std::uint32_t byte_offset, std::uint16_t value);
 
-  bool put_char(std::uint8_t c, Tick timeout);             // spins on TXDE; false at the time-out
-  std::optional<std::uint8_t> get_char(Tick timeout);      // spins on RXDF
+  // Host port, host-bus.md 3.1 "polling recipe" -------------------------------------------------------------------------
+  std::uint8_t port_status() { return io_read(2); }
+  void open_port();                                    // once: high and middle byte zero
+  bool put_char(std::uint8_t c, Tick timeout);         // spins on TXDE; false at the time-out
+  std::optional<std::uint8_t> get_char(Tick timeout);  // spins on RXDF
 
-  struct Pic { std::uint8_t ist, sig, msk, elr; };
+  // Interrupt controller, host-bus.md 4.1 -------------------------------------------------------------------------------
+  struct Pic {
+    std::uint8_t ist, sig, msk, elr;
+  };
   Pic read_pic();
+  std::uint8_t read_pic_status() { return io_read(8); }
+  std::uint8_t read_pic_signals() { return io_read(9); }
   void write_pic_mask(std::uint8_t v);
   void write_pic_edge_level(std::uint8_t v);
   void clear_pic();
 
+  // Time --------------------------------------------------------------------------------------------------------------
+  Tick now() const { return machine_.now(); }
+  void advance_to(Tick tick);
+  void wait(Tick ticks) { advance_to(now() + ticks); }
+  bool wait_pin(const PinField& pin, std::uint32_t value, Tick timeout);  // stops at the edge; false at the time-out
+
+  // Hooks -------------------------------------------------------------------------------------------------------------
+  // `on_edge` is called at each change of a pin selected by `pins`, whatever the host does meanwhile.
+  using EdgeHook = std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)>;
+  void watch(const BoardOutputs& pins, EdgeHook on_edge);
+  void set_pace(std::function<unsigned()> idle_bclk) { pace_ = std::move(idle_bclk); }        // idle BCLKs before each cycle
+  void set_heartbeat(std::function<void()> heartbeat) { heartbeat_ = std::move(heartbeat); }  // called often, for progress
+
   Machine& machine() { return machine_; }
 
  private:
+  enum class Command { kIoRead, kIoWrite, kMemoryRead, kMemoryWrite };
+  std::uint16_t cycle(Command command, std::uint32_t address, std::uint16_t data);
+  void drive_at(TimeFs time, const std::function<void(BoardInputs&)>& edit);
+  TimeFs cycle_start();
+  void step_to(Tick limit, const BoardOutputs& stop_on);
+
   Machine& machine_;
+  TimeFs free_at_ = 0;  // the bus is free for the next cycle
+  BoardOutputs watched_{};
+  EdgeHook on_edge_;
+  std::function<unsigned()> pace_;
+  std::function<void()> heartbeat_;
 };
 
 }  // namespace brick

@@ -1,34 +1,58 @@
-// Talks to the controller as host software does: sends command lines, collects replies, understands the framing of
-// I3 and I6 (firmware.md section 6).
+// Talks to the controller as host software does: sends command lines through the host port, collects replies, understands
+// the framing of I3, I4 and I6 (firmware.md section 6) and follows changes of them that pass through it.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "testbench/host/host_bus.h"
+#include "testbench/host/reply_parser.h"
 
 namespace brick {
 
-struct Reply {
-  std::vector<std::string> lines;  // data lines without framing, error as "ERRnnn" in the last one
-  std::string raw;                 // every byte received
-  bool error = false;              // BELL was received
-  bool complete = false;           // false: time-out
-};
-
 class HostLink {
  public:
+  static constexpr Tick kBootTime = ns_to_ticks(500'000'000);     // longest wait for the firmware after power-on or reset
+  static constexpr Tick kReplyTime = ns_to_ticks(1'000'000'000);  // longest wait for an answer
+  static constexpr Tick kSaveTime = ns_to_ticks(10'000'000'000);  // SAVE takes seconds
+  static constexpr Tick kQuietTime = ns_to_ticks(5'000'000);      // I3 = 0 and 1: nothing for so long means the end
+
   explicit HostLink(HostBus& bus) : bus_(bus) {}
 
   // Waits for the firmware and selects I3=2, I6=1, I4=0 as host programs do. False when nothing answers within `timeout`.
   bool connect(Tick timeout);
-  // Sends `line` and CR, returns the reply. Control characters may be inside.
+
+  // Sends `line` and CR, returns the reply. Control characters may be inside. A line that restarts the controller
+  // ($$$, $$$***) connects again.
   Reply command(const std::string& line);
   Reply command(const std::string& line, Tick timeout);
+
+  // Sends one control character without CR; the reply ends at ACK or when nothing comes for kQuietTime.
+  Reply control(std::uint8_t c);
+
+  // Sends `line` and CR and returns at once; finish() collects the reply. `send` is false when the port takes no character.
+  bool send(const std::string& line, Tick timeout = kReplyTime);
+  Reply finish(Tick timeout = kReplyTime);
+
+  // Lines that came without being asked for (SEND, CMD in programs) since the last call.
+  std::vector<std::string> take_unsolicited();
+  void poll();  // reads what waits in the host port
+
   HostBus& bus() { return bus_; }
+  const Framing& framing() const { return framing_; }
 
  private:
+  bool put(std::uint8_t c, Tick deadline);
+  bool receive(Tick deadline);  // one byte into incoming_
+  void follow_framing(const std::string& line);
+  bool try_connect(Tick deadline);
+
   HostBus& bus_;
+  Framing framing_;
+  std::string incoming_;  // received while sending, not yet looked at
+  std::string stray_;     // begun line of unsolicited text
+  std::vector<std::string> unsolicited_;
+  std::string sent_;  // line that finish() waits for
 };
 
 }  // namespace brick

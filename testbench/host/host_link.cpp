@@ -1,0 +1,167 @@
+#include "testbench/host/host_link.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace brick {
+
+namespace {
+
+constexpr Tick kConnectQuiet = ns_to_ticks(2'000'000);
+
+std::string squeezed(const std::string& line) {
+  std::string text;
+  for (const unsigned char c : line)
+    if (c > ' ') text.push_back(static_cast<char>(std::toupper(c)));
+  return text;
+}
+
+bool restarts(const std::string& line) { return squeezed(line).rfind("$$$", 0) == 0; }
+
+}  // namespace
+
+// ---------------------------------------------------------------------------------------------------------- characters
+
+// The status register is read once for both directions, so that an answer never waits behind a character to be sent.
+bool HostLink::put(std::uint8_t c, Tick deadline) {
+  for (;;) {
+    const std::uint8_t status = bus_.port_status();
+    if (status & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(7)));
+    if (status & HostBus::kTxde) break;
+    if (bus_.now() >= deadline) return false;
+  }
+  bus_.io_write(7, c);
+  return true;
+}
+
+bool HostLink::receive(Tick deadline) {
+  const auto c = bus_.get_char(std::max<Tick>(0, deadline - bus_.now()));
+  if (c) incoming_.push_back(static_cast<char>(*c));
+  return c.has_value();
+}
+
+void HostLink::poll() {
+  while (bus_.port_status() & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(7)));
+  for (const char c : incoming_) {
+    if (c == '\r') {
+      unsolicited_.push_back(stray_);
+      stray_.clear();
+    } else if (static_cast<unsigned char>(c) >= ' ') {
+      stray_.push_back(c);
+    }
+  }
+  incoming_.clear();
+}
+
+std::vector<std::string> HostLink::take_unsolicited() { return std::exchange(unsolicited_, {}); }
+
+// --------------------------------------------------------------------------------------------------------------- lines
+
+bool HostLink::send(const std::string& line, Tick timeout) {
+  poll();
+  sent_ = line;
+  const Tick deadline = bus_.now() + timeout;
+  for (const char c : line)
+    if (!put(static_cast<std::uint8_t>(c), deadline)) return false;
+  return put('\r', deadline);
+}
+
+Reply HostLink::finish(Tick timeout) {
+  ReplyParser parser(framing_);
+  const Tick deadline = bus_.now() + timeout;
+  const bool by_quiet = framing_.i3 < 2;
+  std::size_t taken = 0;
+  for (;;) {
+    while (taken < incoming_.size() && !parser.complete()) parser.take(static_cast<std::uint8_t>(incoming_[taken++]));
+    if (parser.complete()) break;
+    const Tick limit = by_quiet ? std::min(deadline, bus_.now() + kQuietTime) : deadline;
+    if (receive(limit)) continue;
+    if (parser.quiet() || bus_.now() >= deadline) break;
+  }
+  incoming_.erase(0, taken);
+  Reply reply = parser.reply();
+  unsolicited_.insert(unsolicited_.end(), reply.unsolicited.begin(), reply.unsolicited.end());
+  if (reply.complete && !reply.error) follow_framing(sent_);
+  return reply;
+}
+
+Reply HostLink::command(const std::string& line) {
+  return command(line, squeezed(line).find("SAVE") != std::string::npos ? kSaveTime : kReplyTime);
+}
+
+Reply HostLink::command(const std::string& line, Tick timeout) {
+  if (!send(line, timeout)) return {};
+  if (!restarts(line)) return finish(timeout);
+  incoming_.clear();
+  Reply reply;
+  reply.complete = connect(kBootTime);
+  return reply;
+}
+
+Reply HostLink::control(std::uint8_t c) {
+  poll();
+  Reply reply;
+  if (!put(c, bus_.now() + kReplyTime)) return reply;
+  ReplyParser parser(framing_);
+  while (receive(bus_.now() + kQuietTime)) {
+    for (const char byte : incoming_) parser.take(static_cast<std::uint8_t>(byte));
+    incoming_.clear();
+    if (parser.complete()) break;
+  }
+  parser.quiet();
+  reply = parser.reply();
+  reply.complete = true;  // no answer is an answer to most control characters
+  return reply;
+}
+
+// -------------------------------------------------------------------------------------------------------------- framing
+
+// An assignment to I3, I4 or I6 changes the form of the next answer.
+void HostLink::follow_framing(const std::string& line) {
+  const std::string text = squeezed(line);
+  const auto follow = [&](const char* name, unsigned& value) {
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+      const char before = at == 0 ? ' ' : text[at - 1];
+      const char digit = at + 3 < text.size() ? text[at + 3] : ' ';
+      const char after = at + 4 < text.size() ? text[at + 4] : ' ';
+      if (!std::isalpha(static_cast<unsigned char>(before)) && digit >= '0' && digit <= '3' &&
+          !std::isdigit(static_cast<unsigned char>(after)))
+        value = static_cast<unsigned>(digit - '0');
+    }
+  };
+  follow("I3=", framing_.i3);
+  follow("I4=", framing_.i4);
+  follow("I6=", framing_.i6);
+}
+
+// -------------------------------------------------------------------------------------------------------------- connect
+
+// Before this the framing is not known, so the answer is only waited for until the line is quiet; then I3 is asked for.
+bool HostLink::try_connect(Tick deadline) {
+  incoming_.clear();
+  for (const char c : std::string("I6=1I3=2I4=0\r"))
+    if (!put(static_cast<std::uint8_t>(c), deadline)) return false;
+  if (incoming_.empty() && !receive(std::min(deadline, bus_.now() + kReplyTime))) return false;
+  while (receive(std::min(deadline, bus_.now() + kConnectQuiet))) {}
+  incoming_.clear();
+  framing_ = {2, 0, 1};
+  if (!send("I3", std::max<Tick>(1, deadline - bus_.now()))) return false;
+  const Reply reply = finish(std::min(kReplyTime, std::max<Tick>(1, deadline - bus_.now())));
+  if (!reply.complete || reply.error || reply.lines.size() != 1) return false;
+  return reply.lines[0] == "2" || reply.lines[0] == "I3=2";
+}
+
+bool HostLink::connect(Tick timeout) {
+  const Tick deadline = bus_.now() + timeout;
+  bus_.open_port();
+  do {
+    if (try_connect(deadline)) {
+      stray_.clear();
+      unsolicited_.clear();
+      return true;
+    }
+  } while (bus_.now() < deadline);
+  return false;
+}
+
+}  // namespace brick
