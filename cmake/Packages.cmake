@@ -13,5 +13,7 @@ pkg_check_modules(TOMLPP REQUIRED IMPORTED_TARGET tomlplusplus)
 
 # SystemC headers are not ours: no warnings from them.
 add_library(brick_systemc INTERFACE)
-target_link_libraries(brick_systemc INTERFACE systemc Threads::Threads)
+add_library(brick_sc_main STATIC ${CMAKE_SOURCE_DIR}/systemc/core/sc_main.cpp)
+target_include_directories(brick_sc_main SYSTEM PRIVATE ${SYSTEMC_INCLUDE_DIRS})
+target_link_libraries(brick_systemc INTERFACE systemc brick_sc_main Threads::Threads)
 target_include_directories(brick_systemc SYSTEM INTERFACE ${SYSTEMC_INCLUDE_DIRS})

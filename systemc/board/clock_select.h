@@ -1,0 +1,68 @@
+// Model of rtl/board/clock_select.sv: the board's PHASE and SERVO nets from the ICs that drive them or from jumper E1.
+#pragma once
+
+#include <cstdint>
+
+#include <systemc>
+
+#include "systemc/core/model_block.h"
+
+namespace brick {
+
+class ClockSelect : public sc_core::sc_module, public ModelBlock {
+ public:
+  explicit ClockSelect(const sc_core::sc_module_name& name) : sc_module(name) {}
+
+  struct Drivers {  // bits as in BoardInputs::fitted, absent ICs already taken out
+    std::uint32_t phase = 0;
+    std::uint32_t servo = 0;
+    bool ext = false;
+    bool operator!=(const Drivers& o) const { return phase != o.phase || servo != o.servo || ext != o.ext; }
+  };
+  Drivers in;
+  bool ext_phase = true, ext_servo = true;             // inputs
+  std::uint32_t phase_level = ~0u, servo_level = ~0u;  // levels of the IC outputs
+
+  bool phase() const { return net(q_.phase, phase_level, ext_phase_q_); }
+  bool servo() const { return net(q_.servo, servo_level, ext_servo_q_); }
+  std::uint32_t phase_source() const {
+    if (q_.ext) return 30;
+    return q_.phase == 0 ? 31 : static_cast<std::uint32_t>(__builtin_ctz(q_.phase));
+  }
+  bool conflict() const {
+    if (q_.ext) return q_.phase != 0 || q_.servo != 0;
+    return (q_.phase & (q_.phase - 1)) != 0 || (q_.servo & (q_.servo - 1)) != 0;
+  }
+  // True when the nets cannot change but by the IC outputs and nothing is about to switch.
+  bool settled() const { return !(in != q_); }
+
+  Tick next_event() const override {
+    const bool ext_moves = q_.ext && (ext_phase != ext_phase_q_ || ext_servo != ext_servo_q_);
+    if (ext_moves) return now_ + 1;
+    return in != q_ ? next_ref_edge(now_) : kNever;
+  }
+  void advance(Tick t) override {
+    if (t <= now_) return;
+    ext_phase_q_ = ext_phase;
+    ext_servo_q_ = ext_servo;
+    if (next_ref_edge(now_) <= t) q_ = in;
+    now_ = t;
+  }
+  void reset(Tick t) override {
+    q_ = Drivers{};
+    ext_phase_q_ = ext_servo_q_ = true;
+    now_ = t;
+  }
+
+ private:
+  bool net(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
+    if (q_.ext) return ext_level;
+    return drivers == 0 || (level & drivers & (0u - drivers)) != 0;  // lowest-numbered driver wins, idle is high
+  }
+
+  Drivers q_;
+  bool ext_phase_q_ = true, ext_servo_q_ = true;
+  Tick now_ = 0;
+};
+
+}  // namespace brick

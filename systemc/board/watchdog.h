@@ -1,0 +1,58 @@
+// Model of rtl/board/watchdog.sv: trips when 25 ms pass without a firmware strobe or without an edge of SERVO. Closed form:
+// a timer that was reloaded at clk_ref edge number n runs out at the 960th multiple of 1024 after n.
+#pragma once
+
+#include <algorithm>
+
+#include <systemc>
+
+#include "systemc/core/model_block.h"
+
+namespace brick {
+
+class Watchdog : public sc_core::sc_module, public ModelBlock {
+ public:
+  explicit Watchdog(const sc_core::sc_module_name& name) : sc_module(name) {}
+
+  bool strobe = false;  // input: seen by the next clk_ref edge only, the board takes it away after that
+  bool servo = true;    // input
+
+  bool trip() const { return trip_; }
+
+  Tick next_event() const override { return trip_ ? kNever : tick_of(std::min(strobe_end_, servo_end())); }
+
+  void advance(Tick t) override {
+    const std::int64_t last = edge_at(t);
+    if (last > edge_) {
+      // The first of these edges sees the inputs; the later ones see nothing new.
+      ++edge_;
+      const bool servo_edge = servo != servo_last_;
+      servo_last_ = servo;
+      trip_ = trip_ || (strobe_end_ == edge_ && !strobe) || (servo_end_ == edge_ && !servo_edge);
+      if (strobe) strobe_end_ = end_after(edge_);
+      if (servo_edge) servo_end_ = end_after(edge_);
+      trip_ = trip_ || std::min(strobe_end_, servo_end_) <= last;
+      edge_ = last;
+    }
+  }
+
+  void reset(Tick t) override {
+    first_ = t / kTicksPerRef;
+    edge_ = 0;
+    strobe_end_ = servo_end_ = end_after(0);
+    servo_last_ = true;
+    trip_ = false;
+  }
+
+ private:
+  static constexpr std::int64_t kPrescale = 1024, kTimeout = 960;
+  static std::int64_t end_after(std::int64_t edge) { return (edge / kPrescale + kTimeout) * kPrescale; }
+  std::int64_t edge_at(Tick t) const { return t / kTicksPerRef - first_; }  // clk_ref edges executed since reset
+  Tick tick_of(std::int64_t edge) const { return (edge + first_) * kTicksPerRef; }
+  std::int64_t servo_end() const { return servo_end_; }
+
+  std::int64_t first_ = 0, edge_ = 0, strobe_end_ = end_after(0), servo_end_ = end_after(0);
+  bool servo_last_ = true, trip_ = false;
+};
+
+}  // namespace brick

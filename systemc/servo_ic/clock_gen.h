@@ -1,0 +1,59 @@
+// Model of rtl/servo_ic/clock_gen.sv: triangle counter, phase and servo dividers, re-alignment to an external phase clock.
+// Closed form between events: the ramp of the triangle is linear in ticks, the synchroniser is a delay. Only edges that do
+// more (turnaround, half way, edge of an external clock) are executed one by one, with the same rules as the RTL.
+#pragma once
+
+#include <cstdint>
+
+#include <systemc>
+
+#include "systemc/core/model_block.h"
+
+namespace brick {
+
+class ClockGen : public sc_core::sc_module, public ModelBlock {
+ public:
+  explicit ClockGen(const sc_core::sc_module_name& name) : sc_module(name) {}
+
+  struct Inputs {
+    unsigned max_count = 6527;  // I7m00
+    unsigned phase_div = 0;     // I7m01
+    unsigned servo_div = 3;     // I7m02
+    bool phase_ext = true;      // I7m07 bit 0
+    bool servo_ext = true;      // I7m07 bit 1
+    bool phase = true;          // pins
+    bool servo = true;
+  };
+  Inputs in;
+
+  bool phase() const { return s_.phase; }
+  bool servo() const { return s_.servo; }
+  int cnt() const { return s_.up ? s_.ramp : ~s_.ramp; }
+
+  Tick next_event() const override;  // next change of an output that is driven
+  void advance(Tick t) override;
+  void reset(Tick t) override;
+
+ private:
+  struct State {
+    int ramp = 0;  // up ? cnt : ~cnt, counts up from -top to top
+    int top = 6528;
+    bool up = true;
+    unsigned phase_cnt = 0, fall_cnt = 0, servo_cnt = 3, miss = 0;
+    bool odd = false;
+    bool phase = true, servo = true;
+    bool phase1 = true, phase2 = true, servo1 = true, servo2 = true;  // synchroniser
+  };
+
+  Tick next_turn() const { return now_ + 1 + (s_.top - s_.ramp); }
+  Tick next_special_edge() const;  // first edge that is not just one more step of the ramp
+  Tick turn_after(unsigned turns) const;
+  void skip(Tick edges);
+  void step();
+  bool align(bool& retard);
+
+  State s_;
+  Tick now_ = 0;
+};
+
+}  // namespace brick

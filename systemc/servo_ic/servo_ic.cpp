@@ -1,0 +1,48 @@
+#include "systemc/servo_ic/servo_ic.h"
+
+namespace brick {
+
+ServoIc::ServoIc(const sc_core::sc_module_name& name) : sc_module(name), socket("socket"), regs_("regs"), clock_gen_("clock_gen") {
+  socket.register_b_transport(this, &ServoIc::b_transport);
+  apply_registers();
+}
+
+void ServoIc::reset(Tick t) {
+  regs_.reset();
+  clock_gen_.reset(t);
+  apply_registers();
+}
+
+void ServoIc::write(bool x, unsigned offset, std::uint32_t value) {
+  regs_.write(x, offset, value);
+  apply_registers();
+}
+
+void ServoIc::apply_registers() {
+  clock_gen_.in.max_count = regs_.max_count();
+  clock_gen_.in.phase_div = regs_.phase_div();
+  clock_gen_.in.servo_div = regs_.servo_div();
+  clock_gen_.in.phase_ext = regs_.phase_ext();
+  clock_gen_.in.servo_ext = regs_.servo_ext();
+}
+
+void ServoIc::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) {
+  const sc_dt::uint64 address = payload.get_address();
+  if (address >= 32 * 8 || address % 4 != 0) return payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  if (payload.get_data_length() != 4 || payload.get_streaming_width() < 4)
+    return payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
+  if (payload.get_byte_enable_ptr() != nullptr) return payload.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
+
+  const bool x = (address & 4) != 0;
+  const auto offset = static_cast<unsigned>(address / 8);
+  unsigned char* data = payload.get_data_ptr();
+  if (payload.is_write()) {
+    write(x, offset, data[0] | data[1] << 8 | data[2] << 16);
+  } else if (payload.is_read()) {
+    const std::uint32_t value = read(x, offset);
+    for (unsigned i = 0; i < 4; ++i) data[i] = static_cast<unsigned char>(value >> (8 * i));
+  }
+  payload.set_response_status(tlm::TLM_OK_RESPONSE);
+}
+
+}  // namespace brick

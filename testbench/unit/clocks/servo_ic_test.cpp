@@ -1,0 +1,212 @@
+// Registers and clock outputs of a servo IC as the source of the clocks, the same expectations on both engines. Expected
+// periods are arithmetic on servo-ic.md 3.1, 3.2 and 5.1.
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "testbench/unit/clocks/servo_ic_rig.h"
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+template <class Rig>
+class ServoIcOn : public ::testing::Test {
+ protected:
+  ServoIcOn() { rig.power_up(); }
+
+  void drive(unsigned max_count, unsigned phase_div, unsigned servo_div) {
+    rig.write(true, kPwmWord, pwm_word(max_count));
+    rig.write(true, kClockWord, clock_word(phase_div, servo_div, 0));
+  }
+
+  // Runs until the level has the given edge; returns its tick.
+  Tick edge_of(bool (ServoIcRig::*level)(), bool rising, Tick limit = 100'000'000) {
+    const Tick end = rig.now() + limit;
+    bool last = (rig.*level)();
+    while (rig.now() < end) {
+      rig.tick();
+      const bool now = (rig.*level)();
+      if (now != last && now == rising) return rig.now();
+      last = now;
+    }
+    ADD_FAILURE() << "no edge within " << limit << " ticks";
+    return kNever;
+  }
+
+  Rig rig;
+};
+
+using Engines = ::testing::Types<RtlRig, ModelRig>;
+class EngineNames {
+ public:
+  template <class T>
+  static std::string GetName(int i) {
+    return i == 0 ? "Rtl" : "Model";
+  }
+};
+TYPED_TEST_SUITE(ServoIcOn, Engines, EngineNames);
+
+TYPED_TEST(ServoIcOn, GlobalRegistersHaveTheirResetValuesWithBothClocksAsInputs) {
+  EXPECT_EQ(this->rig.read(true, kClockWord), 0x3038D2u);
+  EXPECT_EQ(this->rig.read(true, kDacStrobe), 0x7FFFC0u);
+  EXPECT_EQ(this->rig.read(true, kAdcStrobe), 0xFFFFFEu);
+  EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
+  EXPECT_FALSE(this->rig.phase_oe());
+  EXPECT_FALSE(this->rig.servo_oe());
+}
+
+// Check vector 17: the factory settings as clock and PWM word.
+TYPED_TEST(ServoIcOn, FactorySettingsReadBackAsDocumented) {
+  this->drive(6527, 0, 3);
+  EXPECT_EQ(this->rig.read(true, kClockWord), 0x3008D2u);
+  EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
+  EXPECT_TRUE(this->rig.phase_oe());
+  EXPECT_TRUE(this->rig.servo_oe());
+}
+
+TYPED_TEST(ServoIcOn, EveryBitOfTheGlobalRegistersReadsBackButTheTwoThatDoNotExist) {
+  for (const std::uint32_t value : {0xFFFFFFu, 0x000000u, 0xA5C35Au, 0x5A3CA5u}) {
+    for (const unsigned offset : {kDacStrobe, kAdcStrobe, kPwmWord}) {
+      this->rig.write(true, offset, value);
+      EXPECT_EQ(this->rig.read(true, offset), value);
+    }
+    this->rig.write(true, kClockWord, value);
+    EXPECT_EQ(this->rig.read(true, kClockWord), value & 0xFF3FFFu) << "bits 15 and 14 are 0";
+  }
+}
+
+TYPED_TEST(ServoIcOn, OtherWordsAreUntouchedByAWriteToOneOfThem) {
+  this->rig.write(true, kAdcStrobe, 0xF84DFE);
+  EXPECT_EQ(this->rig.read(true, kAdcStrobe), 0xF84DFEu);
+  EXPECT_EQ(this->rig.read(true, kClockWord), 0x3038D2u);
+  EXPECT_EQ(this->rig.read(true, kDacStrobe), 0x7FFFC0u);
+  EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
+}
+
+TYPED_TEST(ServoIcOn, WordsOfChannelsThatAreNotBuiltReadZeroAndIgnoreWrites) {
+  for (unsigned offset = 0; offset < 32; ++offset) {
+    for (const bool x : {false, true}) {
+      if (x && offset % 8 == 4) continue;  // the global registers
+      this->rig.write(x, offset, 0xFFFFFF);
+      EXPECT_EQ(this->rig.read(x, offset), 0u) << (x ? "X:+" : "Y:+") << offset;
+    }
+  }
+  EXPECT_EQ(this->rig.read(true, kClockWord), 0x3038D2u);
+}
+
+// Check vectors 1 and 4, and other settings: {I7m00, I7m01, I7m02}.
+TYPED_TEST(ServoIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
+  BRICK_COVERS("CLK-3 CLK-6");
+  const std::tuple<unsigned, unsigned, unsigned> settings[] = {
+      {6527, 0, 3},                                                // factory: 9.0346 kHz, 2.2587 kHz
+      {1473, 3, 1},                                                // 10.0004 kHz, 5.0002 kHz
+      {2948, 0, 0},                                                // servo as fast as phase
+      {100, 2, 2},  {7, 4, 15}, {6, 15, 1}, {1, 0, 7}, {0, 1, 3},  // the shortest triangle
+  };
+  for (const auto& [max_count, phase_div, servo_div] : settings) {
+    SCOPED_TRACE(::testing::Message() << "I7m00=" << max_count << " I7m01=" << phase_div << " I7m02=" << servo_div);
+    this->drive(max_count, phase_div, servo_div);
+    this->rig.run(3 * (2 * 6527 + 3) * 16);  // past everything that still ran with the setting before
+    const Tick phase = Tick{2 * max_count + 3} * (phase_div + 1);
+    const Tick rise = this->edge_of(&ServoIcRig::phase, true);
+    const Tick fall = this->edge_of(&ServoIcRig::phase, false);
+    const Tick rise2 = this->edge_of(&ServoIcRig::phase, true);
+    EXPECT_EQ(rise2 - rise, phase);
+    EXPECT_EQ(fall - rise, phase / 2);
+
+    const Tick servo_fall = this->edge_of(&ServoIcRig::servo, false);
+    EXPECT_FALSE(this->rig.phase());
+    const Tick servo_rise = this->edge_of(&ServoIcRig::servo, true);
+    const Tick servo_fall2 = this->edge_of(&ServoIcRig::servo, false);
+    EXPECT_EQ(servo_fall2 - servo_fall, phase * (servo_div + 1));
+    EXPECT_EQ(servo_rise - servo_fall, servo_div > 0 ? phase : phase - phase / 2);
+    EXPECT_EQ((servo_fall - fall) % phase, 0) << "SERVO falls with a fall of PHASE";
+  }
+}
+
+// CLK-5: 6.67 kHz phase, 3.33 kHz servo with I7m02 = 1. I7m00 = floor(117964.8 / 13.333 - 1) = 8846, one MaxPhase a phase.
+TYPED_TEST(ServoIcOn, ServoIsHalfOfPhaseWithADividerOfOne) {
+  BRICK_COVERS("CLK-6");
+  this->drive(8846, 0, 1);
+  this->rig.run(200'000);
+  const Tick rise = this->edge_of(&ServoIcRig::phase, true);
+  const Tick phase = this->edge_of(&ServoIcRig::phase, true) - rise;
+  EXPECT_NEAR(static_cast<double>(kPwmClockHz) / static_cast<double>(phase), 6670, 4);
+  const Tick fall = this->edge_of(&ServoIcRig::servo, false);
+  EXPECT_EQ(this->edge_of(&ServoIcRig::servo, false) - fall, 2 * phase);
+}
+
+// A new I7m00 counts from the next bottom turnaround on, so no period is longer or shorter than both settings explain:
+// half triangles of 2*20+3 = 43 ticks, then one from the old bottom (-22) to the new top (11), 33 ticks, then 2*10+3 = 23.
+TYPED_TEST(ServoIcOn, NewMaximumCountIsTakenAtTheBottomTurnaround) {
+  this->drive(20, 0, 0);
+  this->rig.run(2 * 13057 + 1000);
+  this->edge_of(&ServoIcRig::phase, true);
+  this->rig.write(true, kPwmWord, pwm_word(10));
+  Tick last = this->edge_of(&ServoIcRig::phase, true), longest = 0, between = 0;
+  for (int i = 0; i < 6; ++i) {
+    const Tick next = this->edge_of(&ServoIcRig::phase, true);
+    const Tick period = next - last;
+    last = next;
+    if (period != 43 && period != 23) between += period;
+    longest = std::max(longest, period);
+    if (i == 5) { EXPECT_EQ(period, 23); }
+  }
+  EXPECT_EQ(between, 33);
+  EXPECT_LE(longest, 43);
+}
+
+// A new divider waits for the end of the running period.
+TYPED_TEST(ServoIcOn, NewPhaseDividerIsTakenAtTheTerminalCount) {
+  this->drive(20, 3, 0);
+  this->rig.run(2 * 13057 + 1000);
+  const Tick rise = this->edge_of(&ServoIcRig::phase, true);
+  this->rig.write(true, kClockWord, clock_word(0, 0, 0));
+  EXPECT_EQ(this->edge_of(&ServoIcRig::phase, true) - rise, 4 * 43);
+  const Tick next = this->rig.now();
+  EXPECT_EQ(this->edge_of(&ServoIcRig::phase, true) - next, 43);
+}
+
+TYPED_TEST(ServoIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
+  this->drive(20, 0, 0);
+  this->rig.run(30'000);
+  this->rig.reset(true);
+  this->rig.tick();
+  EXPECT_FALSE(this->rig.phase_oe());
+  EXPECT_FALSE(this->rig.servo_oe());
+  this->rig.reset(false);
+  this->rig.tick();
+  EXPECT_EQ(this->rig.read(true, kClockWord), 0x3038D2u);
+  EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
+}
+
+// The model's register face for SystemC users.
+TEST(ServoIcSocket, ReadsAndWritesTheSameRegisters) {
+  ServoIc ic(sc_core::sc_gen_unique_name("servo_ic"));
+  ic.reset(0);
+  auto access = [&](tlm::tlm_command command, std::uint64_t address, std::uint32_t value, unsigned length = 4) {
+    unsigned char data[4];
+    for (unsigned i = 0; i < 4; ++i) data[i] = static_cast<unsigned char>(value >> (8 * i));
+    tlm::tlm_generic_payload payload;
+    payload.set_command(command);
+    payload.set_address(address);
+    payload.set_data_ptr(data);
+    payload.set_data_length(length);
+    payload.set_streaming_width(length);
+    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+    ic.socket.get_base_export()->b_transport(payload, delay);
+    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
+    return std::make_pair(payload.get_response_status(),
+                          data[0] | data[1] << 8 | data[2] << 16 | static_cast<std::uint32_t>(data[3]) << 24);
+  };
+  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 8 * kClockWord + 4, 0), std::make_pair(tlm::TLM_OK_RESPONSE, 0x3038D2u));
+  EXPECT_EQ(access(tlm::TLM_WRITE_COMMAND, 8 * kAdcStrobe + 4, 0xF84DFE).first, tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(ic.read(true, kAdcStrobe), 0xF84DFEu);
+  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 8 * kAdcStrobe, 0).second, 0u) << "the Y word";
+  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 256, 0).first, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 0, 0, 2).first, tlm::TLM_BURST_ERROR_RESPONSE);
+}
+
+}  // namespace
+}  // namespace brick
