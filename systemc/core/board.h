@@ -28,7 +28,10 @@ class Board {
 
   // A tick up to which (inclusive) no pin selected by `watched` can change as long as the inputs stay as they are.
   // now() is always a correct answer; an engine that can predict gives a later one. Only speed depends on it.
-  virtual Tick quiet_until(const BoardOutputs& watched) const { (void)watched; return now(); }
+  virtual Tick quiet_until(const BoardOutputs& watched) const {
+    (void)watched;
+    return now();
+  }
 
   // Called after each edge at which an output changed, in order of ticks, with the values before and after.
   std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)> on_change;

@@ -28,7 +28,11 @@ class Signals {
   void set(Id id, TimeFs time, std::uint64_t value);
   void set_text(Id id, TimeFs time, const std::string& text);
 
-  struct Info { std::string name; unsigned width; Radix radix; };
+  struct Info {
+    std::string name;
+    unsigned width;
+    Radix radix;
+  };
   const Info& info(Id id) const { return info_[id]; }
   std::size_t size() const { return info_.size(); }
   std::uint64_t value(Id id) const { return value_[id]; }

@@ -16,20 +16,26 @@ constexpr Tick kTicksPerRef = 3;                   // clk_ref (39.3216 MHz) rise
 constexpr Tick kNever = INT64_MAX / 4;
 
 namespace detail {
-constexpr __int128 kFsPer9216Ticks = 78'125'000'000;  // 9216 ticks are exactly 78.125 us
-}
+// 144 ticks are exactly this many femtoseconds; working in such blocks keeps every product below in 64 bits.
+constexpr TimeFs kBlockFs = 1'220'703'125;
+constexpr Tick kBlockTicks = 144;
+}  // namespace detail
 
 // Time of clock edge `t` in femtoseconds, rounded down (less than 1 fs early; the functions below allow for it).
-constexpr TimeFs tick_to_fs(Tick t) { return static_cast<TimeFs>(t * detail::kFsPer9216Ticks / 9216); }
+constexpr TimeFs tick_to_fs(Tick t) {
+  return t / detail::kBlockTicks * detail::kBlockFs + t % detail::kBlockTicks * detail::kBlockFs / detail::kBlockTicks;
+}
 
 // First tick whose clock edge is not before `time`: an input that changes at `time` is seen by this edge.
 constexpr Tick fs_to_tick(TimeFs time) {
-  return static_cast<Tick>((static_cast<__int128>(time) * 9216 + detail::kFsPer9216Ticks - 1) / detail::kFsPer9216Ticks);
+  const TimeFs rest = time % detail::kBlockFs;
+  return time / detail::kBlockFs * detail::kBlockTicks + (rest * detail::kBlockTicks + detail::kBlockFs - 1) / detail::kBlockFs;
 }
 
 // Last tick whose clock edge is not after `time`: an output sampled at `time` shows the state after this edge.
 constexpr Tick fs_to_tick_floor(TimeFs time) {
-  return static_cast<Tick>(((static_cast<__int128>(time) + 1) * 9216 - 1) / detail::kFsPer9216Ticks);
+  const TimeFs rest = time % detail::kBlockFs;
+  return time / detail::kBlockFs * detail::kBlockTicks + ((rest + 1) * detail::kBlockTicks - 1) / detail::kBlockFs;
 }
 
 constexpr TimeFs kFsPerNs = 1'000'000;

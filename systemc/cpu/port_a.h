@@ -1,0 +1,99 @@
+// Port A bus master: turns one device access of the CPU into one bus cycle with the edges of the DSP563xx, in femtoseconds
+// (docs/port-a.md). It also holds the two on-chip registers that shape the cycles: BCR (wait states) and PCTL (CPU clock).
+// A cycle spans many clock edges at which others act, so b_transport() does not block: the response status stays
+// TLM_INCOMPLETE_RESPONSE while the cycle runs, and the same payload is presented again for the answer.
+#pragma once
+
+#include <tlm_utils/simple_target_socket.h>
+#include <tlm>
+
+#include <functional>
+#include <systemc>
+
+#include "systemc/core/board_pins.h"
+#include "systemc/core/cpu_clock.h"
+#include "systemc/core/signals.h"
+#include "systemc/cpu/port_a_timing.h"
+
+namespace brick {
+
+// CPU byte address of PMAC word X:a is kPmacBase + 8 a + 4, of Y:a kPmacBase + 8 a.
+constexpr std::uint32_t kPmacBase = 0xC0000000;
+
+// Travels with the payload: when the CPU asks, who asks, and when it may go on.
+struct PortARequest : tlm::tlm_extension<PortARequest> {
+  std::int64_t start = 0;  // CPU cycle
+  std::int64_t done = 0;
+  std::uint32_t pc = 0;
+  tlm::tlm_extension_base* clone() const override { return std::make_unique<PortARequest>(*this).release(); }
+  void copy_from(const tlm::tlm_extension_base& other) override { *this = static_cast<const PortARequest&>(other); }
+};
+
+// A finished cycle with all its edges, for checkers and reports.
+struct PortACycle {
+  std::uint32_t address = 0;  // PMAC word address
+  bool x = false;
+  std::uint8_t aa = 0;
+  bool on_chip = false;
+  bool write = false;
+  std::uint32_t data = 0;
+  std::uint32_t pc = 0;
+  unsigned wait_states = 0;  // programmed
+  unsigned stretched = 0;    // clocks added by /TA
+  unsigned multiplier = 0;   // of the CPU clock
+  TimeFs start = 0;          // address and AA valid
+  TimeFs strobe_low = 0;
+  TimeFs data_time = 0;  // write: data driven; read: data sampled
+  TimeFs ta_time = 0;    // last sample of /TA
+  TimeFs strobe_high = 0;
+  TimeFs end = 0;  // address and AA no longer valid
+};
+
+class PortA : public sc_core::sc_module {
+ public:
+  PortA(sc_core::sc_module_name name, Signals& signals);
+
+  tlm_utils::simple_target_socket<PortA> socket{"socket"};
+
+  // Registers to their reset values, no cycle under way; CPU cycle `cycle` begins with edge `edge`. Pins go idle.
+  void reset(Tick edge, std::int64_t cycle, BoardInputs& pins);
+  const CpuClock& clock() const { return clock_; }
+  unsigned wait_states(unsigned area) const;  // 0..3, 4 = default area
+
+  // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
+  bool running() const { return state_ == State::kRunning; }
+  Tick stands_at() const { return stand_; }
+  void step(BoardInputs& pins, const BoardOutputs& board);   // pins are seen first by the edge after stands_at()
+  void board_changed(Tick tick, const BoardOutputs& board);  // for the waveform: read data while /RD is low
+
+  std::function<void(const PortACycle&)> on_cycle;  // at the end of each cycle
+  std::function<void()> on_control;                 // BCR or PCTL was written
+
+ private:
+  enum class State { kIdle, kRunning, kDone };
+  enum class Step { kAddress, kDriveData, kStrobeLow, kSampleTa, kSampleData, kStrobeHigh, kEnd };
+
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  bool begin(tlm::tlm_generic_payload& payload, PortARequest& request);
+  void control_register(tlm::tlm_generic_payload& payload, PortARequest& request);
+  void next(Step step);
+  void after_low();
+  TimeFs time_of(Step step) const;
+
+  Signals& signals_;
+  Signals::Id addr_, data_, aa_, x_, rd_n_, wr_n_;
+  CpuClock clock_;
+  std::uint32_t bcr_ = 0, pctl_ = 0;
+
+  State state_ = State::kIdle;
+  Step step_ = Step::kAddress;
+  Tick stand_ = 0;
+  TimeFs time_ = 0;  // of step_
+  PortAShape shape_{};
+  PortACycle cycle_;
+  std::int64_t start_ = 0;       // CPU cycle at which the cycle begins
+  std::int64_t next_start_ = 0;  // earliest next one
+  bool ta_sampled_ = false, data_sampled_ = false, acknowledged_ = false;
+};
+
+}  // namespace brick
