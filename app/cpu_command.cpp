@@ -69,6 +69,7 @@ std::string run_program(Cpu& cpu, const ElfFile& elf, std::uint64_t max_instruct
     return value != 0;
   };
   cpu.on_trap = [&](std::uint32_t trap_cause, std::uint32_t pc, Cycle) {
+    if (pc == (cpu.csr(0x305) & ~3u)) return;  // the handler itself: what led there says more
     cause = trap_cause;
     trap_pc = pc;
   };
@@ -82,8 +83,8 @@ std::string run_program(Cpu& cpu, const ElfFile& elf, std::uint64_t max_instruct
     if (stop == Cpu::Stop::kSleep) return "failed: sleeps at " + place(elf, cpu.pc()) + " and nothing can wake it";
     stuck = cpu.instructions() == before ? stuck + slice : 0;
     if (stuck > kStuck) {
-      return "failed: traps for ever, cause " + std::to_string(cause) + " at " + place(elf, trap_pc) + ", handler " +
-             hex(cpu.csr(0x305) & ~3u);
+      return "failed: trap " + std::to_string(cause) + " at " + place(elf, trap_pc) + " and its handler at " + hex(cpu.csr(0x305) & ~3u) +
+             " traps again";
     }
   }
   return "failed: " + std::to_string(max_instructions) + " instructions without a write to tohost, at " + place(elf, cpu.pc());
