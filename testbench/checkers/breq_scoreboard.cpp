@@ -24,14 +24,10 @@ unsigned BreqScoreboard::lowest(const System& s, Tick now) const {
   return taken >= s.low ? 0 : s.low - static_cast<unsigned>(taken);
 }
 
-// Moves the start of the range to `now`; what is no longer certain is given up.
+// A system that was not shown may have left Full unseen.
 void BreqScoreboard::age(System& s, Tick now) {
-  const bool seen = &s == &systems_[selected_];
-  if (!s.running) {
-    s.since = now;
-  } else if (!seen && s.full == true && lowest(s, now) < i16_) {
-    s.full.reset();  // it may have left Full unseen
-  }
+  const bool shown = &s == &now_selected();
+  if (!shown && s.running && s.full == true && lowest(s, now) < i16_) s.full.reset();
 }
 
 void BreqScoreboard::limits(unsigned i16, unsigned i17) {
@@ -47,11 +43,11 @@ void BreqScoreboard::empty(unsigned cs) {
 }
 
 void BreqScoreboard::select(unsigned cs, Tick now) {
-  age(systems_[selected_], now);
-  selected_ = cs;
+  decide_pulse(now);
   age(systems_[cs], now);
+  selected_ = cs;
   reselect_ = true;
-  pulse_ = low_owed_ = line_under_way_ = false;
+  pulse_ = may_fall_ = must_fall_ = line_under_way_ = false;
 }
 
 void BreqScoreboard::run(unsigned cs, Tick now) {
@@ -70,9 +66,10 @@ void BreqScoreboard::halt(unsigned cs, Tick now) {
 // --------------------------------------------------------------------------------------------------------------- lines
 
 void BreqScoreboard::line_sent(Tick now) {
+  decide_pulse(now);
   System& s = now_selected();
-  line_under_way_ = true;
-  low_owed_ = level_;
+  line_under_way_ = may_fall_ = true;
+  must_fall_ = level_;
   sent_at_ = now;
   ++s.high;
 }
@@ -84,6 +81,7 @@ void BreqScoreboard::stored(Tick now) {
   ++counts_.lines;
   s.low = lowest(s, now) + 1;  // rule 1: the line has entered
   s.since = now;
+  s.exact_start = false;
   if (s.full == false && s.low >= i17_) s.full = true;  // rule 3, certain whatever was taken meanwhile
 }
 
@@ -92,23 +90,24 @@ void BreqScoreboard::line_stored(Tick now) { stored(now); }
 // --------------------------------------------------------------------------------------------------------------- edges
 
 void BreqScoreboard::edge(Tick now, bool level) {
+  decide_pulse(now);
   System& s = now_selected();
   level_ = level;
   last_edge_ = now;
   if (reselect_) return;  // judged by settled()
   if (!level) {
-    if (!low_owed_) {
+    if (!may_fall_) {
       violate(now, "BREQ falls although no program line came; expected: high");
       return;
     }
-    low_owed_ = false;
+    may_fall_ = must_fall_ = false;
     pulse_ = true;
     fell_at_ = now;
     longest_fall_ = std::max(longest_fall_, now - sent_at_);
     stored(now);
     return;
   }
-  if (pulse_ && now - fell_at_ <= kLongestPulse) {
+  if (pulse_) {
     pulse_ = false;
     shortest_ = std::min(shortest_, now - fell_at_);
     longest_ = std::max(longest_, now - fell_at_);
@@ -123,7 +122,6 @@ void BreqScoreboard::edge(Tick now, bool level) {
     s.low = std::min(s.low, s.high);
     return;
   }
-  pulse_ = false;
   if (s.full == false) {
     violate(now, "BREQ rises although Full is 0 and no line was being stored; expected: no edge");
     return;
@@ -144,23 +142,26 @@ void BreqScoreboard::edge(Tick now, bool level) {
 // ------------------------------------------------------------------------------------------------------------- queries
 
 void BreqScoreboard::lines_ahead(Tick from, Tick now, unsigned pr) {
+  decide_pulse(now);
   System& s = now_selected();
   ++counts_.queries;
-  const unsigned low = lowest(s, now);
-  if (pr < low || pr > s.high)
-    violate(now, low == s.high ? fmt::format("PR answers {}; expected: {}", pr, low)
-                               : fmt::format("PR answers {}; expected: {} to {}", pr, low, s.high));
+  const bool moved = edge_since(from);  // a line was taken while the question was being answered: counted with it or without
+  const unsigned low = lowest(s, now), high = s.high + (moved ? 1 : 0);
+  if (pr < low || pr > high)
+    violate(now, low == high ? fmt::format("PR answers {}; expected: {}", pr, low)
+                             : fmt::format("PR answers {}; expected: {} to {}", pr, low, high));
+  if (moved) return;
   s.low = s.high = pr;
-  s.since = edge_since(from) ? last_edge_ : from;
-  s.exact_start = edge_since(from) && s.running;
-  if (!edge_since(from) && s.full == true && pr < i16_ && i16_ <= i17_)
+  s.since = from;
+  s.exact_start = false;
+  if (s.full == true && pr < i16_ && i16_ <= i17_)
     violate(now, fmt::format("{} lines ahead and BREQ is still low; expected: high below I16={} (rule 4)", pr, i16_));
 }
 
 void BreqScoreboard::full_bit(Tick from, Tick now, bool full) {
+  decide_pulse(now);
   System& s = now_selected();
   ++counts_.queries;
-  age(s, now);
   if (edge_since(from)) return;  // it changed while the question was being answered
   if (s.full && *s.full != full)
     violate(now, fmt::format("Rotary Buffer Full is {}; expected: {} ({} to {} lines ahead)", full ? 1 : 0, *s.full ? 1 : 0, lowest(s, now),
@@ -174,20 +175,22 @@ void BreqScoreboard::signal(Tick from, Tick now, bool level, const char* source)
   if (level != level_) violate(now, fmt::format("{} shows BREQ {}; expected: {} as the pin", source, level ? 1 : 0, level_ ? 1 : 0));
 }
 
-void BreqScoreboard::settled(Tick now) {
+// Low for longer than T_PULSE allows: the line has made the buffer full, or a rule is broken.
+void BreqScoreboard::decide_pulse(Tick now) {
+  if (!pulse_ || now - fell_at_ <= kLongestPulse) return;
   System& s = now_selected();
-  if (low_owed_) {
-    violate(now, "the line was stored and BREQ did not go low; expected: low at least momentarily (rule 1)");
-    low_owed_ = false;
-  }
-  if (pulse_) {
-    pulse_ = false;
-    ++counts_.stays_low;
-    if (s.high < i17_)
-      violate(now, fmt::format("BREQ stays low with at most {} lines ahead; expected: high again below I17={} (rule 2)", s.high, i17_));
-    s.full = true;
-  }
-  reselect_ = false;
+  pulse_ = false;
+  ++counts_.stays_low;
+  if (s.high < i17_)
+    violate(now, fmt::format("BREQ stays low with at most {} lines ahead; expected: high again below I17={} (rule 2)", s.high, i17_));
+  s.full = true;
+}
+
+void BreqScoreboard::settled(Tick now) {
+  decide_pulse(now);
+  System& s = now_selected();
+  if (must_fall_) violate(now, "the line was stored and BREQ did not go low; expected: low at least momentarily (rule 1)");
+  may_fall_ = must_fall_ = reselect_ = false;
   if (!s.full) s.full = !level_;
   if (level_ == *s.full)
     violate(now, fmt::format("BREQ is {} and Rotary Buffer Full should be {}; expected: BREQ {}", level_ ? 1 : 0, *s.full ? 1 : 0,

@@ -64,6 +64,7 @@ class BreqScoreboard {
   unsigned lowest(const System& s, Tick now) const;
   void age(System& s, Tick now);
   void stored(Tick now);
+  void decide_pulse(Tick now);
   void violate(Tick now, const std::string& text);
   bool edge_since(Tick from) const { return last_edge_ >= from; }
 
@@ -75,7 +76,8 @@ class BreqScoreboard {
   Tick last_edge_ = -1;
   bool reselect_ = false;        // &n, OPEN or CLEAR under way: any edge is allowed until settled()
   bool line_under_way_ = false;  // sent, not yet known to be stored
-  bool low_owed_ = false;        // the pin was high when the line was sent and must fall
+  bool may_fall_ = false;        // a line was sent and its fall has not come
+  bool must_fall_ = false;       // ... and the pin was high, so it must come
   bool pulse_ = false;           // fell for a line, not yet decided
   Tick sent_at_ = 0, fell_at_ = 0;
   Tick longest_fall_ = 0, shortest_ = kNever, longest_ = 0;

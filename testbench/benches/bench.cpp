@@ -1,0 +1,39 @@
+#include "testbench/benches/bench.h"
+
+#include <algorithm>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "testbench/benches/benches.h"
+
+namespace brick {
+
+bool BenchReport::step(const std::string& name, bool passed, const std::string& detail) {
+  steps_.push_back({machine_.now(), name, passed, detail});
+  const TimeFs time = machine_.now_fs();
+  out_ << fmt::format("{:>6}.{:03} ms  {}  {}{}{}\n", time / 1'000'000'000'000, time / 1'000'000'000 % 1000, passed ? "ok  " : "FAIL", name,
+                      detail.empty() ? "" : ": ", detail)
+       << std::flush;
+  return passed;
+}
+
+bool BenchReport::passed() const {
+  return !steps_.empty() && std::all_of(steps_.begin(), steps_.end(), [](const BenchStep& s) { return s.passed; });
+}
+
+const std::vector<Bench>& all_benches() {
+  static const std::vector<Bench> benches{smoke_bench(), breq_rotary_bench()};
+  return benches;
+}
+
+const Bench* find_bench(const std::string& name) {
+  for (const Bench& bench : all_benches())
+    if (bench.name == name) return &bench;
+  return nullptr;
+}
+
+std::string printed(const std::string& value) { return value; }
+std::string printed(std::int64_t value) { return std::to_string(value); }
+
+}  // namespace brick

@@ -1,0 +1,73 @@
+// A testbench: a named host program with steps and a verdict. Each has a negative control, a deliberately wrong rule or a
+// seeded bug with which it must fail, so that its verdict means something.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "systemc/machine/machine.h"
+#include "testbench/host/host_bus.h"
+#include "testbench/host/host_link.h"
+
+namespace brick {
+
+struct BenchStep {
+  Tick at = 0;
+  std::string name;
+  bool passed = true;
+  std::string detail;  // what was measured; with a failure also what was expected
+};
+
+// Collects steps, and prints each as it comes.
+class BenchReport {
+ public:
+  BenchReport(std::ostream& out, Machine& machine) : out_(out), machine_(machine) {}
+
+  bool step(const std::string& name, bool passed, const std::string& detail);
+  template <class T>
+  bool equal(const std::string& name, const T& measured, const T& expected);
+  void fail(const std::string& name, const std::string& detail) { step(name, false, detail); }
+
+  const std::vector<BenchStep>& steps() const { return steps_; }
+  bool passed() const;  // at least one step, and none failed
+
+ private:
+  std::ostream& out_;
+  Machine& machine_;
+  std::vector<BenchStep> steps_;
+};
+
+struct BenchContext {
+  Machine& machine;
+  HostBus& bus;
+  HostLink& link;
+  BenchReport& report;
+  std::uint64_t seed;
+  bool negative;
+};
+
+struct Bench {
+  std::string name;
+  std::string description;                       // one line
+  std::string negative;                          // what --negative does, one line
+  std::function<void(MachineConfig&)> seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
+  std::function<void(BenchContext&)> run;
+};
+
+// Every bench there is, in the order of `brick list`.
+const std::vector<Bench>& all_benches();
+const Bench* find_bench(const std::string& name);
+
+std::string printed(const std::string& value);
+std::string printed(std::int64_t value);
+
+template <class T>
+bool BenchReport::equal(const std::string& name, const T& measured, const T& expected) {
+  const bool same = measured == expected;
+  return step(name, same, same ? printed(measured) : printed(measured) + ", expected " + printed(expected));
+}
+
+}  // namespace brick

@@ -1,0 +1,11 @@
+// The benches, one function each; bench.cpp puts them into the list.
+#pragma once
+
+#include "testbench/benches/bench.h"
+
+namespace brick {
+
+Bench smoke_bench();
+Bench breq_rotary_bench();
+
+}  // namespace brick

@@ -1,0 +1,56 @@
+// A host that feeds rotary buffers and tells the scoreboard everything it does and sees: lines, selections, PR, ??, the
+// interrupt controller, and every edge of BREQ at its tick.
+#pragma once
+
+#include <random>
+#include <string>
+
+#include "testbench/benches/bench.h"
+#include "testbench/checkers/breq_scoreboard.h"
+
+namespace brick {
+
+class BreqHost {
+ public:
+  BreqHost(BenchContext& context, Tick line_time);
+  ~BreqHost();
+
+  // Empties the buffers and sets I16 and I17, for both sides. With the negative control the controller is given I17 + 1.
+  void set_limits(unsigned i16, unsigned i17);
+  void select(unsigned cs);            // &n, cs 0..15; waits until the pin has settled
+  void clear();                        // CLEAR of the addressed buffer
+  void run();                          // R
+  void stop();                         // A; nothing more is taken
+  bool line(const std::string& text);  // one program line; false when refused
+  void settle();                       // waits until BREQ shows its final state, and checks it
+  unsigned lines_ahead();              // PR
+  bool full();                         // ??
+  bool signal();                       // SIG bit 1
+  void check();                        // PR, ?? and SIG
+
+  // A host program's loop: waits for the interrupt line, reads and clears the interrupt controller; false at the time-out.
+  bool wait_interrupt(Tick timeout);
+  void enable_interrupt();
+
+  // Any command that must be accepted; a refusal is a failed step.
+  Reply must(const std::string& command);
+  std::string ask(const std::string& command);  // first data line
+  std::string motion_line();                    // a line with one short move, content by seed
+  unsigned random(unsigned below) { return static_cast<unsigned>(random_() % below); }
+
+  BreqScoreboard& scoreboard() { return scoreboard_; }
+  // One step: no violation since the last call of this kind.
+  bool verdict(const std::string& step);
+  unsigned interrupts() const { return interrupts_; }
+
+ private:
+  BenchContext& context_;
+  BreqScoreboard scoreboard_;
+  std::mt19937_64 random_;
+  unsigned selected_ = 0;
+  std::size_t reported_ = 0;
+  BreqScoreboard::Counts counted_;
+  unsigned interrupts_ = 0;
+};
+
+}  // namespace brick

@@ -1,0 +1,106 @@
+// smoke: the controller starts and every road between host and controller is open: identification, phase and servo clock
+// to the tick, interrupt controller, dual-ported RAM, and all printable characters both ways.
+#include <fmt/format.h>
+
+#include "testbench/benches/benches.h"
+
+namespace brick {
+namespace {
+
+// Falling edges of `pin`: the tick of the next one.
+Tick next_fall(HostBus& bus, const PinField& pin, Tick limit) {
+  if (!bus.wait_pin(pin, 1, limit) || !bus.wait_pin(pin, 0, limit)) return -1;
+  return bus.now();
+}
+
+void ask(BenchContext& b, const std::string& line, const std::string& expected) {
+  const Reply reply = b.link.command(line);
+  std::string text = reply.complete ? "" : "no reply";
+  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
+  b.report.equal(line, text, expected);
+}
+
+// Default clocks (servo-ic.md 3.1, 3.2): MaxPhase is 2 x 6527 + 3 = 13057 ticks, I7001 = 0, servo = 4 phases.
+void clocks(BenchContext& b) {
+  constexpr Tick kPhase = 2 * 6527 + 3, kServo = 4 * kPhase, kLimit = 4 * kServo;
+  const Tick phase = next_fall(b.bus, pin::kPhase, kLimit);
+  for (int i = 1; i <= 3; ++i)
+    b.report.equal<std::int64_t>(fmt::format("phase period {}, ticks", i), next_fall(b.bus, pin::kPhase, kLimit) - phase, i * kPhase);
+  Tick last = next_fall(b.bus, pin::kServo, kLimit);
+  for (int i = 1; i <= 2; ++i) {
+    const Tick servo = next_fall(b.bus, pin::kServo, kLimit);
+    b.report.equal<std::int64_t>(fmt::format("servo period {}, ticks", i), servo - last, kServo);
+    last = servo;
+  }
+  const auto source = b.machine.signals().find("clock.source");
+  if (source)
+    b.report.equal<std::int64_t>("clock.source", static_cast<std::int64_t>(b.machine.signals().value(*source)), 7007);
+  else
+    b.report.fail("clock.source", "no such signal, expected 7007");
+}
+
+void interrupt_controller(BenchContext& b) {
+  const auto text = [](const HostBus::Pic& p) { return fmt::format("IST={:02X} MSK={:02X} ELR={:02X}", p.ist, p.msk, p.elr); };
+  b.bus.write_pic_edge_level(0xA5);
+  b.bus.write_pic_mask(0x00);
+  b.bus.clear_pic();
+  b.report.equal<std::string>("interrupt controller, edge/level register", text(b.bus.read_pic()), "IST=00 MSK=00 ELR=A5");
+  b.bus.write_pic_edge_level(0x10);  // HREQ level sensed
+  b.bus.write_pic_mask(0x10);
+  b.bus.io_write(0, 0x02);  // ICR: TREQ, the port can take a character: HREQ = 1
+  b.report.equal<std::string>("HREQ by level", text(b.bus.read_pic()), "IST=10 MSK=10 ELR=10");
+  b.report.equal<std::int64_t>("IRQ pin", b.machine.outputs().get(pin::kIsaIrq), 1);
+  b.bus.io_write(0, 0x00);
+  b.report.equal<std::string>("HREQ gone", text(b.bus.read_pic()), "IST=00 MSK=10 ELR=10");
+  b.bus.write_pic_mask(0x00);
+  b.bus.write_pic_edge_level(0x00);
+}
+
+// Walking ones by the host alone, then words across: the firmware sees Y:$063000 and X:$063000 at host offset 0xC000 and
+// 0xC002 (host-bus.md 6.1), a place that no automatic function uses.
+void dual_ported_ram(BenchContext& b) {
+  unsigned wrong = 0;
+  for (unsigned i = 0; i < 16; ++i) b.bus.dpram_write(0xC010 + 2 * i, static_cast<std::uint16_t>(1u << i));
+  for (unsigned i = 0; i < 16; ++i) wrong += b.bus.dpram_read(0xC010 + 2 * i) != 1u << i;
+  b.report.equal<std::int64_t>("dual-ported RAM, wrong words of 16", wrong, 0);
+  b.bus.dpram_write(0xC000, 0x1234);
+  b.bus.dpram_write(0xC002, 0x0567);
+  ask(b, "RY$063000", "4660");
+  ask(b, "RX$063000", "1383");
+  ask(b, "WY$063001,$5AA5", "");
+  b.report.equal<std::int64_t>("word written by the controller", b.bus.dpram_read(0xC004), 0x5AA5);
+}
+
+// Every printable character in a line that must be refused, and one that must be taken.
+void characters(BenchContext& b) {
+  std::string comment = "VERSION;";
+  for (char c = ' '; c < 0x7F; ++c) comment.push_back(c);
+  const Reply reply = b.link.command(comment);
+  b.report.equal<std::string>("all printable characters in a comment", reply.lines.empty() ? "no reply" : reply.lines[0], "1.947");
+  std::string digits = "P1=";
+  for (int i = 0; i < 200; ++i) digits += i % 2 ? "+1" : "+2";
+  ask(b, digits, "");
+  ask(b, "P1", "300");
+  ask(b, "UUU", "ERR003");
+}
+
+void run(BenchContext& b) {
+  if (b.negative) b.link.command("I7002=2");
+  ask(b, "VERSION", "1.947");
+  ask(b, "CID", "603382");
+  ask(b, "I19", "7007");
+  clocks(b);
+  interrupt_controller(b);
+  dual_ported_ram(b);
+  characters(b);
+}
+
+}  // namespace
+
+Bench smoke_bench() {
+  return {"smoke", "boot, identification, clocks to the tick, interrupt controller, dual-ported RAM, characters",
+          "servo divider I7002 changed behind the bench's back; in lock-step also SERVO of the RTL one tick late",
+          [](MachineConfig& c) { c.seeded_bug = true; }, run};
+}
+
+}  // namespace brick
