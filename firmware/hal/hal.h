@@ -40,7 +40,9 @@ void hal_request_real_time(void); /* sets the real-time interrupt pending */
 bool hal_real_time_pending(void);
 void hal_idle(const volatile uint32_t* work); /* sleeps until the next interrupt unless *work is not zero already */
 void hal_watchdog_strobe(void);
-void hal_host_transmit_enable(bool on); /* HTIE: the host port asks for characters */
+void hal_host_interrupts(bool receive, bool transmit); /* HRIE, HTIE of the host port */
+void hal_clear_words(uint32_t first, uint32_t count);  /* X and Y words of main memory */
+bool hal_servo_pending(void);                          /* the next servo interrupt waits already */
 
 /* Straps, read-only words of the board description. */
 enum { HAL_STRAP_E3 = 0, HAL_STRAP_FITTED, HAL_STRAP_CARD, HAL_STRAP_DPRAM_WORDS, HAL_STRAP_POWER_ON, HAL_STRAP_JPAN };

@@ -60,11 +60,14 @@ void hal_interrupts_on(void) { __asm__ volatile(CSR("csrs mie, %0\n csrsi mstatu
 
 void hal_request_real_time(void) { __asm__ volatile(CSR("csrs mip, %0") : : "r"(TASK_REAL_TIME) : "memory"); }
 
-bool hal_real_time_pending(void) {
-  uint32_t pending;
-  __asm__ volatile(CSR("csrr %0, mip") : "=r"(pending));
-  return (pending & TASK_REAL_TIME) != 0u;
+static uint32_t pending(void) {
+  uint32_t bits;
+  __asm__ volatile(CSR("csrr %0, mip") : "=r"(bits));
+  return bits;
 }
+
+bool hal_real_time_pending(void) { return (pending() & TASK_REAL_TIME) != 0u; }
+bool hal_servo_pending(void) { return (pending() & TASK_SERVO) != 0u; }
 
 /* With mstatus.MIE clear an interrupt that arrives between the test and WFI still ends the sleep, and is taken afterwards. */
 void hal_idle(const volatile uint32_t* work) {
@@ -78,7 +81,16 @@ void hal_watchdog_strobe(void) {
   *hal_x(BOARD_LATCHES_X_WATCHDOG_STROBE) = watchdog_phase;
 }
 
-void hal_host_transmit_enable(bool on) { *hal_x(HI08_X_HCR) = on ? (HI08_HCR_HRIE_MASK | HI08_HCR_HTIE_MASK) : HI08_HCR_HRIE_MASK; }
+void hal_host_interrupts(bool receive, bool transmit) {
+  *hal_x(HI08_X_HCR) = (receive ? HI08_HCR_HRIE_MASK : 0u) | (transmit ? HI08_HCR_HTIE_MASK : 0u);
+}
+
+/* X and Y of an address lie side by side; eight stores a turn, because start-up clears 67,584 addresses. */
+void hal_clear_words(uint32_t first, uint32_t count) {
+  volatile uint32_t* at = hal_y(first);
+  volatile uint32_t* end = hal_y(first + count);
+  for (; at < end; at += 8) at[0] = at[1] = at[2] = at[3] = at[4] = at[5] = at[6] = at[7] = 0;
+}
 
 uint32_t hal_strap(unsigned word) { return ((const volatile uint32_t*)0x3FFFF000u)[word]; }
 uint32_t* hal_flash(void) { return (uint32_t*)0x30000000u; }

@@ -5,15 +5,24 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Start-up */
 typedef enum { KERNEL_START_SAVED, KERNEL_START_DEFAULTS } kernel_start_t;
-
 void kernel_start(kernel_start_t mode); /* power-up, $$$ and $$$***: background only */
-void kernel_background_pass(void);      /* one pass of the background loop: housekeeping and one command line */
-void kernel_wake_background(void);      /* there is something to do: any task */
-uint32_t kernel_servo_count(void);      /* servo interrupts since start, 32 bits */
-uint32_t kernel_status_word(void);      /* first global status word: bits of firmware.md 5.7 */
-bool kernel_motors_may_enable(void);    /* false while the phase clock is missing or the IC set differs */
-void kernel_clock_changed(void);        /* a divider or direction was written: the expected phase period is computed anew */
+void kernel_save(void);                 /* SAVE: I, P, Q and M definitions to flash */
+
+/* Background */
+void kernel_background_pass(void); /* housekeeping and one command line */
+void kernel_wake_background(void); /* there is something to do: any task */
+
+/* Status */
+uint32_t kernel_status_word(void);   /* first global status word: bits of firmware.md 5.7 */
+bool kernel_motors_may_enable(void); /* false while the phase clock is missing or the IC set differs */
+
+/* Clocks and time */
+uint32_t kernel_servo_count(void);  /* servo interrupts since start, 32 bits */
+uint32_t kernel_phase_period(void); /* nominal, CPU cycles */
+void kernel_clock_changed(void);    /* a divider or direction was written: the clocks are watched closely for a while */
+void kernel_watchdog_reload(void);  /* Y:$25 from I40 */
 
 /* Interrupt handlers, called by boot/trap.S. */
 void kernel_phase_interrupt(void);

@@ -42,8 +42,6 @@ double i_variable_read(uint32_t number) {
 
 i_format_t i_variable_format(uint32_t number) { return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL; }
 
-double* i_variable_storage(void) { return value_of; }
-
 /* Hardware ----------------------------------------------------------------------------------------------------------- */
 
 /* Control-word fields of I7mn0..I7mn9, servo-ic data sheet 2.5. */
@@ -204,6 +202,24 @@ void i_variable_initialize(void) {
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
     if (gate_ic_present(ic)) defaults(gate_ic_direction_variable(ic) - 7u, 50, source);
   defaults(8000, 72, source); /* at most 18 servo ICs of four channels */
+}
+
+static bool is_saved(uint32_t number) {
+  const struct i_place place = i_table_place(number);
+  const struct i_entry* entry = i_table_entry(place);
+  return entry->kind != I_KIND_R && entry->field != I_FIELD_TIMER && !(of_gate_ic(place) && !gate_ic_present(place.instance));
+}
+
+double i_variable_stored(uint32_t number) { return is_saved(number) ? value_of[number] : 0.0; }
+
+void i_variable_restore(uint32_t number, double value) {
+  if (number < VARIABLE_COUNT && is_saved(number)) store(number, value);
+}
+
+/* Everything that SAVE keeps becomes 0, because zeros are not written down. */
+void i_variable_clear(void) {
+  for (uint32_t number = 0; number < VARIABLE_COUNT; ++number)
+    if ((integer_of[number] != 0 || value_of[number] != 0.0) && is_saved(number)) store(number, 0.0);
 }
 
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */

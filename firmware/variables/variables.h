@@ -25,7 +25,11 @@ void i_variable_apply_clock_directions(void);
 /* Start-up: all I-variables to their defaults; I19, I20..I23 and I4900.. from the ICs found. Hardware is not written. */
 void i_variable_initialize(void);
 void i_variable_write_hardware(void); /* every servo and MACRO IC register from its I-variables */
-double* i_variable_storage(void);     /* 8192 values, for SAVE */
+
+/* SAVE and restore: the raw value; 0 where nothing is saved (read-only variables, timers). */
+double i_variable_stored(uint32_t number);
+void i_variable_restore(uint32_t number, double value);
+void i_variable_clear(void);
 
 /* How a value is reported under I9 bit 1. */
 typedef enum { I_FORMAT_DECIMAL, I_FORMAT_HEX } i_format_t;

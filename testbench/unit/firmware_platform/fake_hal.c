@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "firmware/hal/hal.h"
+#include "firmware/host/host_port.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { WORDS = 0x80000, PERIPHERALS = 0x80, LOG_LENGTH = 4096 };
@@ -107,6 +108,12 @@ void hal_request_real_time(void) { real_time = 1; }
 bool hal_real_time_pending(void) { return real_time != 0; }
 void hal_idle(const volatile uint32_t* work) { (void)work; }
 void hal_watchdog_strobe(void) {}
-void hal_host_transmit_enable(bool on) { (void)on; }
+void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)transmit; }
+bool hal_servo_pending(void) { return false; }
+void hal_clear_words(uint32_t first, uint32_t count) {
+  memset(&memory[0][first], 0, 4u * count);
+  memset(&memory[1][first], 0, 4u * count);
+}
+
 uint32_t hal_strap(unsigned index) { return straps[index]; }
 uint32_t* hal_flash(void) { return flash; }

@@ -1,0 +1,14 @@
+/* Tables and parts of the command interpreter (host/command.c). */
+#ifndef FIRMWARE_HOST_COMMAND_TABLES_H
+#define FIRMWARE_HOST_COMMAND_TABLES_H
+
+#include "firmware/host/command.h"
+
+extern const struct command_entry report_commands[]; /* ? ?? ??? P V F VER TYPE CID CPU ... */
+extern const struct command_entry system_commands[]; /* $$$ $$$*** SAVE ... */
+extern const struct command_entry memory_commands[]; /* R and W of X, Y, L, D words */
+
+/* Query or assignment of I-, P-, Q- or M-variables; the letter is consumed, a digit or `(` comes next. */
+error_t variable_command(struct lexer* lx, char letter);
+
+#endif

@@ -1,0 +1,129 @@
+/* Host port queues. The interrupt owns the head of the receive queue and the tail of the transmit queue, the background the other
+ * two; both indices of a queue run freely and are reduced when used. A full receive queue leaves the character in the port, so
+ * that the host sees its transmit register occupied and waits. */
+#include "firmware/host/host_port.h"
+
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/kernel.h"
+#include "firmware/variables/variables.h"
+#include "rtl/regs/brick_regs.h"
+
+enum { RECEIVE_SIZE = 2048, TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500 };
+
+/* ^A ^D ^K ^O ^Q stop things: they act before lines that arrived earlier, and again in their own place. */
+#define URGENT ((1u << 0x01) | (1u << 0x04) | (1u << 0x0B) | (1u << 0x0F) | (1u << 0x11))
+
+static uint8_t receive[RECEIVE_SIZE], transmit[TRANSMIT_SIZE];
+static volatile uint32_t receive_head, receive_tail, transmit_head, transmit_tail;
+static volatile uint32_t urgent, flushed, discard;
+static volatile bool receiving, transmitting; /* as in HCR */
+
+static void enable(bool receive_on, bool transmit_on) {
+  receiving = receive_on;
+  transmitting = transmit_on;
+  hal_host_interrupts(receive_on, transmit_on);
+}
+
+void host_port_initialize(void) {
+  receive_head = receive_tail = transmit_head = transmit_tail = 0;
+  urgent = flushed = discard = 0;
+  enable(true, false);
+}
+
+void host_port_character(uint8_t c) {
+  if (c == CONTROL_X) {
+    receive_tail = receive_head;
+    transmit_head = transmit_tail;
+    flushed = discard = 1;
+    if (i_integer(63) != 0) {
+      transmit[transmit_head % TRANSMIT_SIZE] = c;
+      ++transmit_head;
+      if (!transmitting) enable(receiving, true);
+    }
+    kernel_wake_background();
+    return;
+  }
+  receive[receive_head % RECEIVE_SIZE] = c;
+  ++receive_head;
+  if (c >= ' ') return;
+  if (((URGENT >> c) & 1u) != 0u) urgent |= 1u << c;
+  kernel_wake_background();
+}
+
+bool host_port_next_output(uint8_t* c) {
+  if (transmit_tail == transmit_head) return false;
+  *c = transmit[transmit_tail % TRANSMIT_SIZE];
+  ++transmit_tail;
+  return true;
+}
+
+void host_port_interrupt(void) {
+  const uint32_t status = *hal_x(HI08_X_HSR);
+  if ((status & HI08_HSR_HRDF_MASK) != 0u && receiving) {
+    if (receive_head - receive_tail < RECEIVE_SIZE) {
+      host_port_character((uint8_t)*hal_x(HI08_X_HORX));
+    } else {
+      enable(false, transmitting);
+    }
+  }
+  if ((status & HI08_HSR_HTDE_MASK) != 0u && transmitting) {
+    uint8_t c;
+    if (host_port_next_output(&c)) *hal_x(HI08_X_HOTX) = c;
+    if (transmit_tail == transmit_head) enable(receiving, false);
+  }
+}
+
+bool host_port_waiting(void) { return receive_tail != receive_head; }
+
+bool host_port_take(uint8_t* c, bool* void_before) {
+  const uint32_t state = hal_mask_all(); /* a ^X may move the tail */
+  *void_before = flushed != 0u;
+  flushed = 0;
+  const bool some = receive_tail != receive_head;
+  if (some) {
+    *c = receive[receive_tail % RECEIVE_SIZE];
+    ++receive_tail;
+  }
+  if (!receiving && receive_head - receive_tail < RECEIVE_SIZE / 2u) enable(true, transmitting);
+  hal_unmask(state);
+  return some;
+}
+
+/* False when the host has not read for ROOM_TIMEOUT_MS. */
+static bool wait_for_room(void) {
+  static const uint32_t never = 0;
+  const uint32_t start = hal_cycles();
+  const uint32_t limit = ROOM_TIMEOUT_MS * hal_cycles_per_ms();
+  const uint32_t tail = transmit_tail;
+  while (transmit_head - transmit_tail >= TRANSMIT_SIZE) {
+    if (transmit_tail == tail && hal_cycles() - start > limit) return false;
+    kernel_watchdog_reload();
+    hal_idle(&never);
+  }
+  return true;
+}
+
+void host_port_send(uint8_t c) {
+  if (discard != 0u) return;
+  if (transmit_head - transmit_tail >= TRANSMIT_SIZE && !wait_for_room()) {
+    discard = 1;
+    return;
+  }
+  const uint32_t state = hal_mask_all();
+  if (discard == 0u) {
+    transmit[transmit_head % TRANSMIT_SIZE] = c;
+    ++transmit_head;
+    if (!transmitting) enable(receiving, true);
+  }
+  hal_unmask(state);
+}
+
+void host_port_open_output(void) { discard = 0; }
+
+uint32_t host_port_urgent(void) {
+  const uint32_t state = hal_mask_all();
+  const uint32_t codes = urgent;
+  urgent = 0;
+  hal_unmask(state);
+  return codes;
+}

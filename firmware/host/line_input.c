@@ -1,0 +1,156 @@
+/* Host lines of up to 255 characters. Control characters act where they stand, also inside a line; a carriage return hands the
+ * line to the command interpreter and frames its reply by I3, I4 and I6. One line a background pass. */
+#include "firmware/host/line_input.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/host/command.h"
+#include "firmware/host/control.h"
+#include "firmware/host/host_port.h"
+#include "firmware/host/reply.h"
+#include "firmware/host/reply_frame.h"
+#include "firmware/variables/variables.h"
+
+enum { LINE_LIMIT = 255, ACKNOWLEDGE = 0x06, BELL = 0x07, BACKSPACE = 0x08, REPEAT = 0x09, LINE_FEED = 0x0A, RETURN = 0x0D };
+enum { CHECKSUM_SO_FAR = 0x0E, LAST_LINE = 0x19 };
+
+static char line[LINE_LIMIT + 1], last_line[LINE_LIMIT + 1];
+static uint32_t length, last_length;
+static bool too_long, bad_character;
+
+void line_input_initialize(void) {
+  length = last_length = 0;
+  too_long = bad_character = false;
+}
+
+static uint8_t checksum(const char* text, uint32_t count) {
+  uint32_t sum = 0;
+  for (uint32_t i = 0; i < count; ++i) sum += (uint8_t)text[i];
+  return (uint8_t)sum;
+}
+
+static void report_error(error_t error) {
+  const int32_t style = i_integer(6);
+  host_port_send(BELL);
+  if ((style & 1) == 0) return;
+  if (style == 3) host_port_send(RETURN);
+  if ((i_integer(3) & 1) != 0) host_port_send(LINE_FEED);
+  host_port_send('E');
+  host_port_send('R');
+  host_port_send('R');
+  host_port_send((uint8_t)('0' + error / 100));
+  host_port_send((uint8_t)('0' + error / 10 % 10));
+  host_port_send((uint8_t)('0' + error % 10));
+  host_port_send(RETURN);
+}
+
+/* A line that turns acknowledging by ACK on or off is acknowledged by ACK itself: both what a client that goes by the old
+ * setting and what one that goes by the new setting waits for. */
+static void acknowledge(int32_t style_before, uint8_t sum) {
+  const int32_t style = i_integer(3);
+  if (style >= 2 || style_before >= 2)
+    host_port_send(ACKNOWLEDGE);
+  else if (style == 1)
+    host_port_send(LINE_FEED);
+  else
+    return;
+  if ((i_integer(4) & 1) != 0) host_port_send(sum);
+}
+
+static void execute(void) {
+  const int32_t style_before = i_integer(3);
+  const uint8_t sum = checksum(line, length);
+  error_t error = ERR_NONE;
+  host_port_open_output();
+  if (bad_character)
+    error = ERR_CHARACTER;
+  else if (too_long)
+    error = ERR_DATA;
+  else {
+    line[length] = '\0';
+    for (uint32_t i = 0; i <= length; ++i) last_line[i] = line[i];
+    last_length = length;
+    bool quoted = false; /* text in quotes keeps its case */
+    for (uint32_t i = 0; i < length; ++i) {
+      if (line[i] == '"') quoted = !quoted;
+      if (!quoted && line[i] >= 'a' && line[i] <= 'z') line[i] = (char)(line[i] - 'a' + 'A');
+    }
+    error = command_line(line);
+  }
+  length = 0;
+  too_long = bad_character = false;
+  if (reply_line_is_open()) reply_end_line();
+  if (error != ERR_NONE)
+    report_error(error);
+  else
+    acknowledge(style_before, sum);
+}
+
+static void repeat_last(void) {
+  for (uint32_t i = 0; i < last_length; ++i) line[i] = last_line[i];
+  length = last_length;
+}
+
+/* True when a line was executed. */
+static bool character(uint8_t c) {
+  if (c == RETURN) {
+    execute();
+    return true;
+  }
+  if (c >= ' ') {
+    if (c > 0x7Eu) bad_character = true;
+    if (length < LINE_LIMIT)
+      line[length++] = (char)c;
+    else
+      too_long = true;
+    return false;
+  }
+  switch (c) {
+    case LINE_FEED:
+      break;
+    case BACKSPACE:
+      if (too_long)
+        too_long = false;
+      else if (length != 0u)
+        --length;
+      break;
+    case REPEAT:
+      repeat_last();
+      execute();
+      return true;
+    case CHECKSUM_SO_FAR:
+      host_port_send(checksum(line, length));
+      break;
+    case LAST_LINE:
+      host_port_open_output();
+      reply_text(last_line);
+      reply_end_line();
+      acknowledge(0, 0);
+      break;
+    default:
+      host_port_open_output();
+      if (control_character(c)) acknowledge(0, c);
+      break;
+  }
+  return false;
+}
+
+void line_input_pass(void) {
+  uint32_t urgent = host_port_urgent();
+  for (uint8_t c = 0; urgent != 0u; ++c, urgent >>= 1)
+    if ((urgent & 1u) != 0u) (void)control_character(c);
+  uint8_t c;
+  bool flushed;
+  while (host_port_take(&c, &flushed)) {
+    if (flushed) {
+      length = 0;
+      too_long = bad_character = false;
+    }
+    if (character(c)) return;
+  }
+  if (flushed) {
+    length = 0;
+    too_long = bad_character = false;
+  }
+}

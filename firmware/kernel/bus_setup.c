@@ -1,0 +1,51 @@
+/* CPU clock and Port A wait states: I52 sets the clock, the bus control register gets the factory wait states for it plus those of
+ * I37 (host-bus.md 2.4, 2.5). Both take effect at power-up and reset only. */
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/internal.h"
+#include "rtl/regs/brick_regs.h"
+
+enum { RESET_I52 = 7, AREAS = 5 };
+
+/* Areas AA0 main memory, AA1 gate ICs, AA2 DPRAM, AA3 flash, default. The rows above I52 = 15 are the same device budgets at
+ * the higher clock: access time (W + 0.75) Tc - 5 ns. */
+static const struct {
+  uint8_t i52, wait[AREAS];
+} rows[] = {
+    {7, {1, 7, 3, 7, 15}}, {9, {1, 10, 4, 7, 15}}, {15, {2, 15, 7, 7, 31}}, {23, {4, 22, 7, 7, 31}}, {31, {5, 31, 7, 7, 31}},
+};
+
+static const struct {
+  uint8_t lsb, width, added_lsb, added_width; /* field of BCR; bits of I37 that are added to it */
+} areas[AREAS] = {{0, 5, 0, 2}, {5, 5, 0, 0}, {10, 3, 10, 1}, {13, 3, 13, 1}, {16, 5, 16, 2}};
+
+static uint32_t clock_in_force = RESET_I52;
+
+uint32_t bus_setup_cpu_clock(void) { return clock_in_force; }
+
+static uint32_t wait_states(uint32_t i52, uint32_t i37) {
+  unsigned row = 0;
+  while (rows[row].i52 < i52) ++row;
+  uint32_t word = 0;
+  for (unsigned area = 0; area < AREAS; ++area) {
+    const uint32_t most = (1u << areas[area].width) - 1u;
+    uint32_t wait = rows[row].wait[area] + ((i37 >> areas[area].added_lsb) & ((1u << areas[area].added_width) - 1u));
+    if (wait > most) wait = most;
+    word |= wait << areas[area].lsb;
+  }
+  return word;
+}
+
+void bus_setup_first(void) {
+  clock_in_force = RESET_I52;
+  hal_set_cpu_clock(RESET_I52);
+  *hal_x(CPU_BUS_X_BCR) = wait_states(RESET_I52, 0);
+}
+
+/* The slowest bus while the clock changes, so that no cycle is ever too short. */
+void bus_setup(uint32_t i52, uint32_t i37) {
+  *hal_x(CPU_BUS_X_BCR) = CPU_BUS_BCR_RESET;
+  *hal_x(CPU_BUS_X_PCTL) = i52;
+  *hal_x(CPU_BUS_X_BCR) = wait_states(i52, i37);
+  clock_in_force = i52;
+  hal_set_cpu_clock(i52);
+}

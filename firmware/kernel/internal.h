@@ -1,0 +1,33 @@
+/* What the parts of the kernel share among themselves. */
+#ifndef FIRMWARE_KERNEL_INTERNAL_H
+#define FIRMWARE_KERNEL_INTERNAL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* bus_setup.c */
+void bus_setup_first(void); /* wait states for the clock after reset */
+void bus_setup(uint32_t i52, uint32_t i37);
+uint32_t bus_setup_cpu_clock(void); /* I52 in force */
+
+/* clock_watch.c */
+void clock_watch_start(void); /* waits for the first phase interrupt, ten phase periods at most */
+bool clock_watch_missing(void);
+bool clock_watch_close(void); /* the background polls instead of sleeping */
+void clock_watch_pass(void);  /* background: looks at the age of the last phase interrupt */
+void clock_watch_poll(void);  /* background without clocks: servo and real-time tasks from the cycle counter */
+
+/* tasks.c */
+void tasks_initialize(void);
+extern volatile uint32_t kernel_phase_stamp; /* cycle counter at the last phase interrupt, written by boot/trap.S */
+extern volatile uint32_t kernel_phase_work;  /* not zero: kernel_phase_interrupt is called every phase interrupt */
+
+/* saved_data.c */
+typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;
+saved_t saved_data_restore(uint32_t* ics); /* I, P, Q, M over the defaults; ICs found at the last re-initialisation */
+void saved_data_write(uint32_t ics);
+
+/* kernel.c: status bits of the first global word */
+void kernel_status_set(uint32_t bits); /* any task */
+
+#endif

@@ -1,0 +1,75 @@
+/* The interrupt tasks (firmware.md 8.1). The phase task has no work of its own as long as no motor is commutated: boot/trap.S then
+ * only notes the time. The servo task counts, runs timers, the watchdog counter and the trajectories, and every I8+1 cycles
+ * requests the real-time task, which plans moves and strobes the hardware watchdog. */
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/internal.h"
+#include "firmware/kernel/kernel.h"
+#include "firmware/motion/motion.h"
+#include "firmware/variables/variables.h"
+
+#define SERVO_COUNTER 0x000000u
+#define WATCHDOG_COUNTER 0x000025u /* Y: counter, X: lowest value since reset */
+enum { WATCHDOG_DEFAULT = 4095 };
+
+volatile uint32_t kernel_phase_stamp, kernel_phase_work;
+
+static volatile uint32_t servo_count;  /* S */
+static volatile int32_t watchdog;      /* S decrements, B reloads with S held off */
+static int32_t watchdog_lowest;        /* S */
+static uint32_t real_time_prescaler;   /* S */
+static volatile bool real_time_active; /* R */
+
+void tasks_initialize(void) {
+  servo_count = 0;
+  real_time_prescaler = 0;
+  real_time_active = false;
+  kernel_phase_work = 0;
+  watchdog_lowest = WATCHDOG_DEFAULT;
+  kernel_watchdog_reload();
+  *hal_x(WATCHDOG_COUNTER) = (uint32_t)watchdog;
+  watchdog_lowest = watchdog;
+}
+
+uint32_t kernel_servo_count(void) { return servo_count; }
+
+void kernel_watchdog_reload(void) {
+  const int32_t reload = i_integer(40);
+  const uint32_t state = hal_mask_servo();
+  watchdog = reload == 0 ? WATCHDOG_DEFAULT : reload;
+  *hal_y(WATCHDOG_COUNTER) = (uint32_t)watchdog;
+  hal_unmask(state);
+}
+
+void kernel_phase_interrupt(void) {}
+
+static void count_watchdog(void) {
+  const int32_t left = watchdog - 1;
+  if (left < -8388607) return;
+  watchdog = left;
+  *hal_y(WATCHDOG_COUNTER) = (uint32_t)left & HAL_WORD_MASK;
+  if (left >= watchdog_lowest) return;
+  watchdog_lowest = left;
+  *hal_x(WATCHDOG_COUNTER) = (uint32_t)left & HAL_WORD_MASK;
+}
+
+void kernel_servo_interrupt(void) {
+  const uint32_t count = servo_count + 1u;
+  servo_count = count;
+  *hal_x(SERVO_COUNTER) = count & HAL_WORD_MASK;
+  count_watchdog();
+  motion_servo_update();
+  if (++real_time_prescaler > (uint32_t)i_integer(8)) {
+    real_time_prescaler = 0;
+    if (real_time_active) kernel_status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
+    hal_request_real_time();
+  }
+  if (hal_servo_pending()) kernel_status_set(STATUS_SERVO_ERROR);
+}
+
+void kernel_real_time_interrupt(void) {
+  real_time_active = true;
+  motion_real_time_update();
+  if (watchdog >= 0) hal_watchdog_strobe();
+  kernel_wake_background();
+  real_time_active = false;
+}
