@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that what README, CONTRIBUTING and docs/ name exists: links, images, and `paths/in/backticks` of the tree.
 
-A path in backticks counts when its first folder is one of the tree's; * and {a,b} may stand in it. Build products
+Every page in docs/ must be linked from docs/README.md. A path in backticks counts when its first folder is one of the tree's; * and {a,b} may stand in it. Build products
 (build/, waves/out/) are not looked for.
 """
 
@@ -59,10 +59,19 @@ def problems_in(root):
                     yield f"{page.relative_to(root)}:{number}: '{choice}' does not exist"
 
 
+def unlisted_pages(root):
+    index = root / "docs/README.md"
+    linked = {path for _, path, is_link in named_paths(index.read_text()) if is_link} if index.exists() else set()
+    for page in sorted((root / "docs").glob("*.md")):
+        if page != index and page.name not in linked:
+            yield f"docs/{page.name}: not listed in docs/README.md"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
-    finish("links", list(problems_in(parser.parse_args().root.resolve())))
+    root = parser.parse_args().root.resolve()
+    finish("links", [*problems_in(root), *unlisted_pages(root)])
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 
 A test names its requirements in one of these ways:
   GoogleTest   BRICK_COVERS("BREQ-1 BREQ-3");           first line of a TEST, TEST_F or TEST_P
-  bench        .name = "breq-rotary", ... .covers = "BREQ-1"   in the bench's registration
+  bench        // covers: BREQ-1                         on the line above Bench breq_rotary_bench() {
   ctest        # covers: BREQ-1                          on the line above add_test(NAME ...)
   Python       # covers: BREQ-1                          on the line above def test_...
 
@@ -51,24 +51,21 @@ def tests_in_cpp(text, file):
     for m in re.finditer(r'BRICK_COVERS\(\s*((?:"[^"]*"\s*)+)\)', text):
         before = [name for start, name in heads if start < m.start()]
         yield Test(before[-1] if before else f"{file}:{line_of(text, m.start())}", file, ids_in(" ".join(re.findall(r'"([^"]*)"', m[1]))))
-    for m in re.finditer(r'\.covers\s*=\s*((?:"[^"]*"\s*)+)', text):
-        names = re.findall(r'\.name\s*=\s*"([^"]+)"', text[:m.start()])
-        yield Test(f"bench {names[-1]}" if names else file, file, ids_in(" ".join(re.findall(r'"([^"]*)"', m[1]))))
 
 
-def tests_in_comments(text, file, head):
+def tests_in_comments(text, file, head, comment="#"):
     """`# covers:` above the line that `head` matches, with nothing but comments and blank lines between."""
     pending = []
     for line in text.splitlines():
-        covers = re.match(r"\s*#\s*covers:(.*)", line)
+        covers = re.match(rf"\s*{comment}\s*covers:(.*)", line)
         name = re.search(head, line)
         if covers:
             pending += ids_in(covers[1])
         elif name and pending:
             yield Test(name[1], file, pending)
             pending = []
-        elif line.strip() and not line.strip().startswith("#") and pending:
-            yield Test(f"{file}: '# covers:' with no test below it", file, ["?"])
+        elif line.strip() and not line.strip().startswith(comment) and pending:
+            yield Test(f"{file}: '# covers:' with no test below it", file, ["nothing"])
             pending = []
 
 
@@ -82,6 +79,8 @@ def find_tests(root):
         text, name = (root / file).read_text(errors="replace"), str(file)
         if file.suffix == ".cpp":
             found += tests_in_cpp(text, name)
+            found += [Test("bench " + t.name.replace("_", "-"), t.file, t.ids)
+                      for t in tests_in_comments(text, name, r"^Bench (\w+)_bench\(", "//")]
         elif file.suffix == ".py":
             found += tests_in_comments(text, name, r"def\s+(test_\w+)")
         elif file.name == "CMakeLists.txt" or file.suffix == ".cmake":

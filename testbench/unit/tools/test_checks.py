@@ -66,7 +66,7 @@ class Traceability(Tree):
         self.expect(self.run_tool("traceability.py", "--check"), 1, "stale")
 
     def test_benches_and_ctest_entries_count(self):
-        self.write("testbench/benches/b.cpp", 'const Bench b{.name = "breq-rotary",\n .covers = "BREQ-2"};\n')
+        self.write("testbench/benches/b.cpp", '// covers: BREQ-2\nBench breq_rotary_bench() {\n')
         self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nadd_test(NAME bench.breq COMMAND x)\n")
         self.run_tool("traceability.py", "--write")
         page = (self.root / "docs/traceability.md").read_text()
@@ -85,6 +85,7 @@ class Links(Tree):
     def setUp(self):
         super().setUp()
         self.write("README.md", "[plan](docs/plan.md) and `rtl/{a,b}.sv`, `waves/out/x.vcd`, `tools/*.py`\n```\n`rtl/none.sv`\n```\n")
+        self.write("docs/README.md", "[plan](plan.md)\n")
         for file in ["CONTRIBUTING.md", "docs/plan.md", "rtl/a.sv", "rtl/b.sv", "tools/x.py"]:
             self.write(file, "")
 
@@ -94,6 +95,10 @@ class Links(Tree):
     def test_a_missing_file_fails(self):
         (self.root / "rtl/b.sv").unlink()
         self.expect(self.run_tool("check_links.py"), 1, "README.md:1: 'rtl/b.sv' does not exist")
+
+    def test_a_page_that_the_index_does_not_list_fails(self):
+        self.write("docs/lost.md", "")
+        self.expect(self.run_tool("check_links.py"), 1, "docs/lost.md: not listed")
 
     def test_a_broken_link_fails(self):
         self.write("docs/plan.md", "![machine](images/machine.svg)\n")
