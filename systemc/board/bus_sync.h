@@ -34,9 +34,9 @@ class BusSync : public sc_core::sc_module, public ModelBlock {
   std::uint32_t wdata() const { return wdata1_; }
   bool we() const { return !wr1_n_ && wr2_n_; }
   bool rd_done() const { return rd1_n_ && !rd2_n_; }
-  // True while a write that the pins or stage 1 show has not been executed yet, or a read's side effect has not.
+  // A write that the pins or stage 1 show has not been executed yet; an access to the on-chip page is in the pipe.
   bool write_pending() const { return we() || (!wr0_n_ && wr1_n_); }
-  bool read_pending() const { return !rd0_n_ || !rd1_n_ || !rd2_n_; }
+  bool internal_pending() const { return where0_.internal || where1_.internal || where2_.internal; }
 
   Tick next_event() const override {
     const bool still = where0_ == where1_ && where1_ == where2_ && wdata0_ == wdata1_ && rd0_n_ == rd1_n_ && rd1_n_ == rd2_n_ &&

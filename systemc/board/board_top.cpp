@@ -1,0 +1,265 @@
+#include "systemc/board/board_top.h"
+
+#include <algorithm>
+#include <string>
+
+#include "systemc/cosim/engines.h"
+
+namespace brick {
+
+BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t servo_ics)
+    : sc_module(name),
+      bus_sync_("bus_sync"),
+      address_decode_("address_decode"),
+      clock_select_("clock_select"),
+      watchdog_("watchdog"),
+      isa_slave_("isa_slave"),
+      host_port_("host_port"),
+      interrupt_controller_("interrupt_controller"),
+      host_signals_("host_signals"),
+      dpram_("dpram"),
+      built_(servo_ics & ((1u << kServoIcs) - 1)) {
+  for (ModelBlock* block : std::initializer_list<ModelBlock*>{&bus_sync_, &clock_select_, &watchdog_, &isa_slave_, &host_port_,
+                                                              &interrupt_controller_, &host_signals_, &dpram_})
+    block_[blocks_++] = block;
+  for (unsigned i = 0; i < kServoIcs; ++i) {
+    if ((built_ >> i & 1) == 0) continue;
+    servo_ic_[i] = std::make_unique<ServoIc>(("servo_ic" + std::to_string(i)).c_str());
+    block_[blocks_++] = servo_ic_[i].get();
+  }
+  inputs_.fitted = servo_ics;
+  reset_all(0);
+  outputs_ = pins();
+}
+
+void BoardTop::set_inputs(const BoardInputs& inputs) {
+  if (!in_reset_) advance_all(now_);  // what has passed saw the old inputs
+  inputs_ = inputs;
+  connect();
+}
+
+void BoardTop::reset_all(Tick t) {
+  for (unsigned i = 0; i < blocks_; ++i) block_[i]->reset(t);
+  rdata_ = 0;
+  from_dpram_ = false;
+  connect();
+}
+
+void BoardTop::advance_all(Tick t) {
+  for (unsigned i = 0; i < blocks_; ++i) block_[i]->advance(t);
+}
+
+// The edge t. Everything that looks at a register of another block does so before any block executes the edge.
+void BoardTop::execute(Tick t) {
+  const bool ref = is_ref_edge(t);
+  const bool write_ic = ref && bus_sync_.we() && select_.ic >= 0;
+  const BusSync::Where where = bus_sync_.where();
+  const std::uint32_t wdata = bus_sync_.wdata();
+  if (ref && select_.any) rdata_ = read_data();
+  const int written_ic = select_.ic;
+
+  advance_all(t);
+  from_dpram_ = dpram_.in.cpu_sel;
+  if (write_ic) servo_ic_[static_cast<unsigned>(written_ic)]->write(where.x, where.addr & 31, wdata);
+  now_ = t;
+  connect();
+}
+
+std::uint32_t BoardTop::read_data() const {
+  if (select_.internal) return host_port_.dsp_rdata();
+  if (select_.signals) return host_signals_.rdata();
+  if (select_.ic >= 0) {
+    const BusSync::Where& where = bus_sync_.where();
+    return servo_ic_[static_cast<unsigned>(select_.ic)]->read(where.x, where.addr & 31);
+  }
+  return 0;
+}
+
+void BoardTop::connect() {
+  bus_sync_.set_pins(inputs_);
+  select_ = AddressDecode::decode(bus_sync_.where(), inputs_.fitted & built_);
+  connect_clocks();
+  connect_host();
+}
+
+void BoardTop::connect_clocks() {
+  ClockSelect::Drivers drivers;
+  drivers.ext = inputs_.ext_clock;
+  std::uint32_t phase = 0, servo = 0;
+  for (unsigned i = 0; i < kServoIcs; ++i) {
+    if (servo_ic_[i] == nullptr) continue;
+    const ServoIc& ic = *servo_ic_[i];
+    drivers.phase |= static_cast<std::uint32_t>(ic.phase_oe()) << i;
+    drivers.servo |= static_cast<std::uint32_t>(ic.servo_oe()) << i;
+    phase |= static_cast<std::uint32_t>(ic.phase()) << i;
+    servo |= static_cast<std::uint32_t>(ic.servo()) << i;
+  }
+  drivers.phase &= inputs_.fitted;
+  drivers.servo &= inputs_.fitted;
+  clock_select_.in = drivers;
+  clock_select_.phase_level = phase;
+  clock_select_.servo_level = servo;
+  clock_select_.ext_phase = inputs_.ext_phase;
+  clock_select_.ext_servo = inputs_.ext_servo;
+
+  for (auto& ic : servo_ic_)
+    if (ic != nullptr) ic->set_pins(clock_select_.phase(), clock_select_.servo());
+  watchdog_.servo = clock_select_.servo();
+  watchdog_.strobe = bus_sync_.we() && select_.strobe;
+}
+
+void BoardTop::connect_host() {
+  // Port A side
+  const bool read_done = bus_sync_.rd_done() && bus_sync_.rd_where().internal;
+  HostPort::Inputs& hp = host_port_.in;
+  hp.dsp_sel = select_.internal || read_done;
+  hp.dsp_we = bus_sync_.we() && select_.internal;
+  hp.dsp_rd_done = read_done;
+  hp.dsp_addr = (read_done ? bus_sync_.rd_where() : bus_sync_.where()).addr & 0x3F;
+  hp.dsp_wdata = bus_sync_.wdata();
+  host_signals_.in.wr = bus_sync_.we() && select_.signals;
+  host_signals_.in.wdata = bus_sync_.wdata() & 0xF;
+  Dpram::Inputs& ram = dpram_.in;
+  ram.cpu_sel = (inputs_.pa_aa & 4) != 0 && !inputs_.pa_int;
+  ram.cpu_x = inputs_.pa_x;
+  ram.cpu_addr = inputs_.pa_addr & 0x3FFF;
+  ram.cpu_rd_n = inputs_.pa_rd_n;
+  ram.cpu_wr_n = inputs_.pa_wr_n;
+  ram.cpu_wdata = inputs_.pa_wdata & 0xFFFF;
+
+  // ISA side
+  IsaSlave::Inputs& isa = isa_slave_.in;
+  isa.isa_sa = inputs_.isa_sa & 0xFFFFF;
+  isa.isa_sd = inputs_.isa_sd;
+  isa.isa_ior_n = inputs_.isa_ior_n;
+  isa.isa_iow_n = inputs_.isa_iow_n;
+  isa.isa_memr_n = inputs_.isa_memr_n;
+  isa.isa_memw_n = inputs_.isa_memw_n;
+  isa.isa_aen = inputs_.isa_aen;
+  isa.isa_sbhe_n = inputs_.isa_sbhe_n;
+  isa.mem_rdata = dpram_.mem_rdata();
+  isa.mem_busy = dpram_.mem_busy();
+  hp.hp_sel = isa_slave_.hp_sel();
+  hp.hp_rd_done = isa_slave_.hp_rd_done();
+  hp.hp_wr = isa_slave_.hp_wr();
+  hp.hp_addr = isa_slave_.hp_addr();
+  hp.hp_wdata = isa_slave_.hp_wdata();
+  ram.mem_sel = isa_slave_.mem_sel();
+  ram.mem_rd = isa_slave_.mem_rd();
+  ram.mem_wr = isa_slave_.mem_wr();
+  ram.mem_addr = isa_slave_.mem_addr();
+  ram.mem_be = isa_slave_.mem_be();
+  ram.mem_wdata = isa_slave_.mem_wdata();
+  InterruptController::Inputs& pic = interrupt_controller_.in;
+  pic.wr = isa_slave_.pic_sel() && isa_slave_.pic_wr();
+  pic.addr = isa_slave_.pic_addr();
+  pic.wdata = isa_slave_.pic_wdata();
+  isa.hp_rdata = host_port_.hp_rdata();
+  isa.pic_rdata = interrupt_controller_.rdata();
+
+  // IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up; the compare outputs come with the channels.
+  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | watchdog_.trip() << 7);
+}
+
+BoardOutputs BoardTop::pins() const {
+  BoardOutputs o;
+  o.set(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_);
+  o.set(pin::kPaTaN, dpram_.cpu_busy());
+  o.set(pin::kIrqHost, host_port_.irq());
+  o.set(pin::kPhase, clock_select_.phase());
+  o.set(pin::kServo, clock_select_.servo());
+  o.set(pin::kBreq, host_signals_.breq());
+  o.set(pin::kIpos, host_signals_.ipos());
+  o.set(pin::kEror, host_signals_.eror());
+  o.set(pin::kF1er, host_signals_.f1er());
+  o.set(pin::kIsaSd, isa_slave_.isa_sd());
+  o.set(pin::kIsaIochrdy, isa_slave_.isa_iochrdy());
+  o.set(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n());
+  o.set(pin::kIsaIrq, interrupt_controller_.irq());
+  o.set(pin::kHreq, host_port_.hreq());
+  o.set(pin::kWdo, watchdog_.trip());
+  o.set(pin::kWdTripped, watchdog_.trip());
+  o.set(pin::kBusyHost, dpram_.host_busy());
+  o.set(pin::kBusyCpu, dpram_.cpu_busy());
+  o.set(pin::kPhaseSource, clock_select_.phase_source());
+  o.set(pin::kSourceConflict, clock_select_.conflict());
+  o.set(pin::kPicIst, interrupt_controller_.ist());
+  o.set(pin::kPicSig, interrupt_controller_.sig());
+  o.set(pin::kPicMsk, interrupt_controller_.msk());
+  o.set(pin::kPicElr, interrupt_controller_.elr());
+  return o;
+}
+
+bool BoardTop::show_pins() {
+  const BoardOutputs after = pins();
+  if (after == outputs_) return false;
+  const BoardOutputs before = outputs_;
+  outputs_ = after;
+  if (on_change) on_change(now_, before, after);
+  return before.differs(after, stop_on_);
+}
+
+Tick BoardTop::next_clock_event() const {
+  Tick next = clock_select_.next_event();
+  for (const auto& ic : servo_ic_)
+    if (ic != nullptr) next = std::min(next, ic->next_event());
+  return next;
+}
+
+Tick BoardTop::next_event() const {
+  Tick next = kNever;
+  for (unsigned i = 0; i < blocks_; ++i) next = std::min(next, block_[i]->next_event());
+  if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
+  if (select_.any && next > next_ref_edge(now_) && read_data() != rdata_) next = next_ref_edge(now_);
+  return next;
+}
+
+Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
+  stop_on_ = stop_on;
+  while (now_ < limit) {
+    if (!inputs_.rst_n) {
+      now_ = in_reset_ ? limit : now_ + 1;
+      in_reset_ = true;
+      reset_all(now_);
+    } else {
+      in_reset_ = false;
+      const Tick event = next_event();
+      if (event > limit) {
+        now_ = limit;
+        break;
+      }
+      execute(event);
+    }
+    if (show_pins()) break;
+  }
+  return now_;
+}
+
+Tick BoardTop::quiet_until(const BoardOutputs& watched) const {
+  if (!inputs_.rst_n) return in_reset_ ? kNever : now_;
+  const Tick any_pin = next_event() - 1;
+  if (bus_sync_.write_pending()) return any_pin;
+
+  // With no write under way each group of pins has its own cause; only those that interrupt the CPU are told apart.
+  constexpr BoardOutputs kClocks = select_pins(pin::kPhase, pin::kServo, pin::kPhaseSource, pin::kSourceConflict);
+  constexpr BoardOutputs kTripped = select_pins(pin::kWdTripped, pin::kWdo);
+  constexpr BoardOutputs kHost = select_pins(pin::kIrqHost);
+  Tick quiet = kNever;
+  for (unsigned i = 0; i < kBoardOutputWords; ++i) {
+    const std::uint32_t w = watched.w[i];
+    if ((w & kClocks.w[i]) != 0) quiet = std::min(quiet, next_clock_event() - 1);
+    if ((w & kTripped.w[i]) != 0) quiet = std::min(quiet, watchdog_.next_event() - 1);
+    if ((w & kHost.w[i]) != 0) {
+      const bool busy = isa_slave_.next_event() != kNever || bus_sync_.internal_pending();
+      quiet = std::min(quiet, busy ? any_pin : host_port_.next_event() - 1);
+    }
+    if ((w & ~(kClocks.w[i] | kTripped.w[i] | kHost.w[i])) != 0) return any_pin;
+  }
+  return quiet;
+}
+
+std::unique_ptr<Board> make_model_board(std::uint32_t fitted) {
+  return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), fitted);
+}
+
+}  // namespace brick

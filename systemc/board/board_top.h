@@ -1,0 +1,79 @@
+// Model of rtl/board/board_top.sv: the controller board behind the Board face, event-driven. Time jumps from one event to
+// the next; at an event every block executes its edges, then the wires between them are copied (systemc/core/model_block.h).
+// Servo ICs are built for the bits of `servo_ics`, as the RTL's parameter ServoIcMask; BoardInputs::fitted selects at run time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include <systemc>
+
+#include "systemc/board/address_decode.h"
+#include "systemc/board/bus_sync.h"
+#include "systemc/board/clock_select.h"
+#include "systemc/board/watchdog.h"
+#include "systemc/core/board.h"
+#include "systemc/host/dpram.h"
+#include "systemc/host/host_port.h"
+#include "systemc/host/host_signals.h"
+#include "systemc/host/interrupt_controller.h"
+#include "systemc/host/isa_slave.h"
+#include "systemc/servo_ic/servo_ic.h"
+
+namespace brick {
+
+class BoardTop : public sc_core::sc_module, public Board {
+ public:
+  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t servo_ics = 0x3);
+
+  Tick now() const override { return now_; }
+  void set_inputs(const BoardInputs& inputs) override;
+  const BoardOutputs& outputs() const override { return outputs_; }
+  Tick run_until(Tick limit, const BoardOutputs& stop_on = {}) override;
+  Tick quiet_until(const BoardOutputs& watched) const override;
+
+  // Blocks behind the pins, for SystemC users and tests; nullptr when the IC is not built.
+  ServoIc* servo_ic(unsigned index) { return index < kServoIcs ? servo_ic_[index].get() : nullptr; }
+  Dpram& dpram() { return dpram_; }
+  HostPort& host_port() { return host_port_; }
+
+ private:
+  static constexpr unsigned kServoIcs = 18;
+
+  void reset_all(Tick t);
+  void advance_all(Tick t);
+  void execute(Tick t);
+  void connect();  // copies wires: outputs of the blocks to inputs of the others
+  void connect_clocks();
+  void connect_host();
+  BoardOutputs pins() const;
+  bool show_pins();  // updates outputs_ after an edge; true when a pin changed
+  std::uint32_t read_data() const;
+  Tick next_event() const;
+  Tick next_clock_event() const;
+
+  BusSync bus_sync_;
+  AddressDecode address_decode_;
+  ClockSelect clock_select_;
+  Watchdog watchdog_;
+  IsaSlave isa_slave_;
+  HostPort host_port_;
+  InterruptController interrupt_controller_;
+  HostSignals host_signals_;
+  Dpram dpram_;
+  std::array<std::unique_ptr<ServoIc>, kServoIcs> servo_ic_;
+  std::uint32_t built_;
+  std::array<ModelBlock*, kServoIcs + 8> block_{};
+  unsigned blocks_ = 0;
+
+  BoardInputs inputs_;
+  AddressSelect select_;     // of the address in stage 1
+  std::uint32_t rdata_ = 0;  // registered read data
+  bool from_dpram_ = false;  // read data pins show the dual-ported RAM
+  bool in_reset_ = true;
+  Tick now_ = 0;
+  BoardOutputs outputs_, stop_on_;
+};
+
+}  // namespace brick

@@ -1,0 +1,197 @@
+// Clocks, watchdog and register decoding of the whole board through its pins, the same expectations on both engines.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "systemc/board/board_top.h"
+#include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/clocks/rtl_board.h"
+#include "testbench/unit/clocks/servo_ic_rig.h"
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kNoSource = 31, kExternalSource = 30;
+
+class BoardOn : public ::testing::TestWithParam<bool> {
+ protected:
+  static std::unique_ptr<Board> make() {
+    if (GetParam()) return std::make_unique<RtlBoard>();
+    return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestServoIcs);
+  }
+  BoardRig rig{make(), kTestServoIcs};
+};
+INSTANTIATE_TEST_SUITE_P(Engines, BoardOn, ::testing::Values(true, false),
+                         [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); });
+
+TEST_P(BoardOn, ClocksIdleHighWithNoSource) {
+  EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
+  for (int i = 0; i < 20; ++i) {
+    rig.run(5000);
+    EXPECT_EQ(rig.get(pin::kPhase), 1u);
+    EXPECT_EQ(rig.get(pin::kServo), 1u);
+  }
+}
+
+TEST_P(BoardOn, EveryServoIcIsAtItsAddress) {
+  const std::uint32_t bases[] = {0x78000, 0x78100, 0x78200, 0x78220};
+  for (std::uint32_t i = 0; i < 4; ++i) rig.write(true, bases[i] + kAdcStrobe, 0x111111 * (i + 1));
+  for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(rig.read(true, bases[i] + kAdcStrobe), 0x111111 * (i + 1));
+  EXPECT_EQ(rig.read(true, bases[0] + kClockWord), 0x3038D2u);
+  EXPECT_EQ(rig.read(false, bases[0] + kClockWord), 0u) << "the Y word belongs to a channel";
+}
+
+TEST_P(BoardOn, AbsentIcReadsZeroIgnoresWritesAndDoesNotDrive) {
+  for (const std::uint32_t base : {0x78300u, 0x78120u, 0x79200u, 0x7B320u, 0x78400u}) {
+    rig.write(true, base + kAdcStrobe, 0xFFFFFF);
+    EXPECT_EQ(rig.read(true, base + kAdcStrobe), 0u) << std::hex << base;
+  }
+  rig.in.fitted = 0x406;  // IC 0 is built but not fitted
+  rig.apply();
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), 0u);
+  EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
+}
+
+TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
+  BRICK_COVERS("I19-2 CLK-6");
+  const struct {
+    std::uint32_t base, index, max_count;
+  } sources[] = {{0x78000, 0, 6527}, {0x78100, 1, 5000}, {0x78220, 10, 3000}, {0x78200, 2, 1473}};
+  for (const auto& s : sources) {
+    rig.write(true, s.base + kPwmWord, pwm_word(s.max_count));
+    rig.write(true, s.base + kClockWord, clock_word(0, 3, 0));
+    EXPECT_EQ(rig.get(pin::kPhaseSource), s.index);
+    EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+    rig.run(100'000);
+    const Tick period = 2 * Tick{s.max_count} + 3;
+    const Tick rise = rig.edge(pin::kPhase, 1);
+    EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, period);
+    const Tick fall = rig.edge(pin::kServo, 0);
+    EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 4 * period);
+    rig.write(true, s.base + kClockWord, clock_word(0, 3, 3));
+  }
+  EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
+}
+
+// The divider variables of an IC that is not the source are stored and have no effect.
+TEST_P(BoardOn, DividersOfOtherIcsHaveNoEffect) {
+  BRICK_COVERS("I19-2 CLK-6");
+  rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 0));
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(7, 9, 3));
+  rig.run(60'000);
+  const Tick rise = rig.edge(pin::kPhase, 1);
+  EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, 13057);
+  EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), clock_word(7, 9, 3));
+}
+
+TEST_P(BoardOn, LowestNumberedOfTwoDriversWinsAndTheConflictShows) {
+  rig.write(true, kServoIcBase[1] + kPwmWord, pwm_word(1000));
+  rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 0));
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  EXPECT_EQ(rig.get(pin::kPhaseSource), 0u);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
+  rig.run(60'000);
+  const Tick rise = rig.edge(pin::kPhase, 1);
+  EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, 13057);
+  rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 3));
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+}
+
+TEST_P(BoardOn, PhaseAndServoMayComeFromDifferentIcs) {
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 2));  // drives PHASE
+  rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 1, 1));  // drives SERVO from that PHASE
+  EXPECT_EQ(rig.get(pin::kPhaseSource), 0u);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+  rig.run(60'000);
+  const Tick fall = rig.edge(pin::kServo, 0);
+  EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 2 * 13057);
+}
+
+TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {
+  rig.in.ext_clock = true;
+  rig.apply();
+  rig.run(10);
+  EXPECT_EQ(rig.get(pin::kPhaseSource), kExternalSource);
+  rig.in.ext_phase = rig.in.ext_servo = false;
+  rig.apply();
+  EXPECT_EQ(rig.get(pin::kPhase), 1u) << "no edge yet";
+  rig.run(1);
+  EXPECT_EQ(rig.get(pin::kPhase), 0u);
+  EXPECT_EQ(rig.get(pin::kServo), 0u);
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  EXPECT_EQ(rig.get(pin::kPhaseSource), kExternalSource);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
+}
+
+TEST_P(BoardOn, HostSignalLatchReadsBackAndDrivesItsPins) {
+  for (const std::uint32_t value : {0x1u, 0x2u, 0x4u, 0x8u, 0xFu, 0x0u}) {
+    rig.write(true, kHostSignals, value);
+    EXPECT_EQ(rig.get(pin::kIpos) | rig.get(pin::kBreq) << 1 | rig.get(pin::kEror) << 2 | rig.get(pin::kF1er) << 3, value);
+    EXPECT_EQ(rig.read(true, kHostSignals), value);
+  }
+}
+
+// A write takes place at the second clk_ref edge that sees /WR low: edges n (first) and n + 1.
+TEST_P(BoardOn, WriteTakesPlaceAtTheSecondReferenceEdge) {
+  while (rig.now() % 3 != 0) rig.run(1);
+  rig.in.pa_addr = kHostSignals;
+  rig.in.pa_x = true;
+  rig.in.pa_wdata = 2;
+  rig.in.pa_wr_n = false;
+  rig.apply();
+  const Tick start = rig.now();
+  EXPECT_EQ(rig.edge(pin::kBreq, 1, 100) - start, 6);
+}
+
+// The edge after the one that first saw the address loads the read data.
+TEST_P(BoardOn, ReadDataIsThereAtTheSecondReferenceEdge) {
+  while (rig.now() % 3 != 0) rig.run(1);
+  rig.in.pa_addr = 0x7801C;
+  rig.in.pa_x = true;
+  rig.in.pa_aa = 2;
+  rig.apply();
+  const Tick start = rig.now();
+  EXPECT_EQ(rig.edge(pin::kPaData, 0x197F0F, 100) - start, 6);
+}
+
+// 960 periods of 39.3216 MHz / 1024 are 25 ms. Both timers start at reset; the clock of the timers is free-running.
+TEST_P(BoardOn, WatchdogTripsAfter25MsWithoutStrobe) {
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  EXPECT_EQ(rig.edge(pin::kWdTripped, 1), 960 * 1024 * 3 + 6);  // reset ended after tick 7: clk_ref edges count from tick 9
+  EXPECT_EQ(rig.get(pin::kWdo), 1u);
+}
+
+TEST_P(BoardOn, WatchdogIsHeldByStrobesAndServoEdgesAndTripsWithoutEither) {
+  constexpr Tick kMs = kPwmClockHz / 1000;
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  for (int i = 0; i < 3; ++i) {
+    rig.run(24 * kMs);
+    rig.write(true, kWatchdogStrobe, 0);
+    EXPECT_EQ(rig.get(pin::kWdTripped), 0u);
+  }
+  // Servo clock gone, strobes go on.
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 3));
+  const Tick stopped = rig.now();
+  for (int i = 0; i < 4 && rig.get(pin::kWdTripped) == 0; ++i) {
+    rig.board().run_until(rig.now() + 8 * kMs, select_pins(pin::kWdTripped));
+    if (rig.get(pin::kWdTripped) == 0) rig.write(true, kWatchdogStrobe, 0);
+  }
+  EXPECT_EQ(rig.get(pin::kWdTripped), 1u);
+  EXPECT_GE(rig.now() - stopped, 24 * kMs);
+  EXPECT_LE(rig.now() - stopped, 25 * kMs);
+  // Only reset recovers.
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  rig.write(true, kWatchdogStrobe, 0);
+  rig.run(kMs);
+  EXPECT_EQ(rig.get(pin::kWdTripped), 1u);
+  rig.in.rst_n = false;
+  rig.apply();
+  rig.run(1);
+  EXPECT_EQ(rig.get(pin::kWdTripped), 0u);
+}
+
+}  // namespace
+}  // namespace brick
