@@ -8,9 +8,9 @@ static uint32_t variable_index(double number) { /* 0..8191; anything else wraps,
   return (uint32_t)math_to_integer(number) % VARIABLE_COUNT;
 }
 
-double variable_read(uint32_t class, uint32_t cs, double number) {
+double variable_read(uint32_t group, uint32_t cs, double number) {
   uint32_t index = variable_index(number);
-  switch (class) {
+  switch (group) {
     case VARIABLE_M:
       return m_variable_read(index);
     case VARIABLE_P:
@@ -22,9 +22,9 @@ double variable_read(uint32_t class, uint32_t cs, double number) {
   }
 }
 
-void variable_write(uint32_t class, uint32_t cs, double number, double value) {
+void variable_write(uint32_t group, uint32_t cs, double number, double value) {
   uint32_t index = variable_index(number);
-  switch (class) {
+  switch (group) {
     case VARIABLE_M:
       m_variable_write(index, value);
       break;
@@ -120,9 +120,9 @@ bool evaluator_execute(struct evaluator* ev, const struct instruction* in, word4
     case OP_PUSH_DOUBLE:
       return push(ev, word_double_join(head, raw));
     case OP_PUSH_VARIABLE:
-      return push(ev, variable_read(in->class, cs, (double)in->number));
+      return push(ev, variable_read(in->group, cs, (double)in->number));
     case OP_PUSH_INDEXED:
-      return evaluator_pop(ev, &number) && push(ev, variable_read(in->class, cs, number));
+      return evaluator_pop(ev, &number) && push(ev, variable_read(in->group, cs, number));
     case OP_APPLY:
       return apply(ev, in->number, cs);
     default:

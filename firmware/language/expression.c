@@ -10,7 +10,7 @@ enum pending_kind { PENDING_OPERATOR, PENDING_BRACKET, PENDING_FUNCTION, PENDING
 
 struct pending {
   uint8_t kind;
-  uint8_t code; /* operator_code, or the variable class of an index */
+  uint8_t code; /* operator_code, or the variable group of an index */
 };
 
 struct compiler {
@@ -38,8 +38,8 @@ error_t word_list_add(struct word_list* list, word48_t word) {
 
 error_t word_list_add_instruction(struct word_list* list, const struct instruction* in) { return word_list_add(list, word_encode(in)); }
 
-static error_t emit(struct compiler* c, enum operation operation, uint32_t class, uint32_t number) {
-  struct instruction in = {operation, class, number, 0.0};
+static error_t emit(struct compiler* c, enum operation operation, uint32_t group, uint32_t number) {
+  struct instruction in = {operation, group, number, 0.0};
   return word_list_add_instruction(c->out, &in);
 }
 
@@ -100,14 +100,14 @@ static error_t open_function(struct compiler* c, struct lexer* lx, bool* found) 
 }
 
 /* A variable with a number is complete; with `(` its index follows as an expression. */
-static error_t variable(struct compiler* c, struct lexer* lx, uint32_t class, bool* complete) {
+static error_t variable(struct compiler* c, struct lexer* lx, uint32_t group, bool* complete) {
   double number;
   *complete = false;
-  if (lexer_accept(lx, '(')) return hold(c, PENDING_INDEX, class);
+  if (lexer_accept(lx, '(')) return hold(c, PENDING_INDEX, group);
   if (!lexer_number(lx, &number) || number >= (double)VARIABLE_COUNT || (double)(uint32_t)number != number) return ERR_DATA;
   *complete = true;
   error_t error = grow(c);
-  return error != ERR_NONE ? error : emit(c, OP_PUSH_VARIABLE, class, (uint32_t)number);
+  return error != ERR_NONE ? error : emit(c, OP_PUSH_VARIABLE, group, (uint32_t)number);
 }
 
 /* One step where an operand is due. *complete: an operand ended here, an operator may follow. */
@@ -129,8 +129,8 @@ static error_t operand(struct compiler* c, struct lexer* lx, bool* complete) {
   if (*complete) return value > LEXER_CONSTANT_LIMIT || value < -LEXER_CONSTANT_LIMIT ? ERR_DATA : emit_constant(c, value);
   error_t error = open_function(c, lx, &found);
   if (found || error != ERR_NONE) return error;
-  for (uint32_t class = 0; class < VARIABLE_CLASSES; class ++)
-    if (lexer_accept(lx, CLASS_SPELLING[class])) return variable(c, lx, class, complete);
+  for (uint32_t group = 0; group < VARIABLE_CLASSES; group++)
+    if (lexer_accept(lx, CLASS_SPELLING[group])) return variable(c, lx, group, complete);
   return ERR_DATA;
 }
 

@@ -31,7 +31,7 @@ error_t word_list_add_instruction(struct word_list* list, const struct instructi
  * which only a corrupted buffer can bring about. */
 bool evaluator_execute(struct evaluator* ev, const struct instruction* in, word48_t head, word48_t raw, uint32_t cs);
 bool evaluator_pop(struct evaluator* ev, double* value);
-double variable_read(uint32_t class, uint32_t cs, double number);
-void variable_write(uint32_t class, uint32_t cs, double number, double value);
+double variable_read(uint32_t group, uint32_t cs, double number);
+void variable_write(uint32_t group, uint32_t cs, double number, double value);
 
 #endif

@@ -5,7 +5,6 @@
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/language/statement.h"
-#include "firmware/motion/run_control.h"
 
 enum { LINE_WORDS = 300 }; /* a host line has at most 255 characters; a two-word constant takes two of them at least */
 
@@ -55,26 +54,4 @@ error_t program_blank_line(void) {
   error = word_list_add_instruction(&list, &blank);
   if (error == ERR_NONE) line.count = list.count;
   return error;
-}
-
-error_t program_control_open(void) { return open_buffer_open(OPEN_ROTARY); }
-
-void program_control_close(void) {
-  if (open_buffer_kind() == OPEN_ROTARY || open_buffer_kind() == OPEN_BINARY_ROTARY) open_buffer_close();
-}
-
-void program_control_run(bool single_step) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) (void)run_start(cs, single_step);
-}
-
-void program_control_quit(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_quit(cs);
-}
-
-void program_control_abort(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_abort(cs);
-}
-
-void program_control_hold(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_hold(cs);
 }

@@ -13,13 +13,6 @@ error_t program_line_commit(void);              /* at the end of the host line: 
 void program_line_abandon(void);                /* after an error: nothing of the line is stored */
 error_t program_blank_line(void); /* instead of a statement, for an empty host line while a buffer is open: stored as a line */
 
-error_t program_control_open(void);         /* ^U: as OPEN ROTARY */
-void program_control_close(void);           /* ^L: closes rotary buffers */
-void program_control_run(bool single_step); /* ^R, ^S: all coordinate systems that point to a program */
-void program_control_quit(void);            /* ^Q */
-void program_control_abort(void);           /* ^A */
-void program_control_hold(void);            /* ^O */
-
 /* OPEN CLOSE CLEAR DEFINE DELETE B R S Q A PR SIZE ... : looked up by the command interpreter after its own table. */
 extern const struct command_entry program_commands[];
 

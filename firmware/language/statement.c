@@ -64,9 +64,9 @@ static bool skip_brackets(struct lexer* lx) {
 
 /* `P5=`, `P(..)=`: an assignment. A query such as `P5` is an on-line command whatever is open. */
 static bool assignment_starts(struct lexer lx) {
-  uint32_t class;
+  uint32_t group;
   double number;
-  if (!find_letter(&lx, CLASS_LETTERS, &class)) return false;
+  if (!find_letter(&lx, CLASS_LETTERS, &group)) return false;
   bool indexed = lexer_peek(&lx) == '(' ? skip_brackets(&lx) : lexer_number(&lx, &number);
   return indexed && lexer_peek(&lx) == '=';
 }
@@ -115,8 +115,8 @@ static error_t compile_value(struct lexer* lx, enum operation constant, enum ope
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
 }
 
-static error_t compile_assignment(struct lexer* lx, uint32_t class, struct word_list* out) {
-  struct instruction in = {OP_ASSIGN_POP, class, 0, 0.0};
+static error_t compile_assignment(struct lexer* lx, uint32_t group, struct word_list* out) {
+  struct instruction in = {OP_ASSIGN_POP, group, 0, 0.0};
   double number;
   error_t error = ERR_NONE;
   if (lexer_peek(lx) == '(') {

@@ -94,7 +94,7 @@ word48_t word_encode(const struct instruction* in) {
     case OP_RATE:
       return encode_value(CODE_RATE, in->number, in->value, WIDE_RATE + in->number);
     case OP_ASSIGN:
-      return encode_value(CODE_M + in->class, in->number, in->value, WIDE_PUSH);
+      return encode_value(CODE_M + in->group, in->number, in->value, WIDE_PUSH);
     case OP_PUSH:
       return encode_wide(WIDE_PUSH, in->value);
     case OP_MODE:
@@ -111,7 +111,7 @@ word48_t word_encode(const struct instruction* in) {
       break;
   }
   for (unsigned i = 0; i < sizeof STACK_CODES / sizeof STACK_CODES[0]; i++)
-    if (STACK_CODES[i].operation == (uint8_t)in->operation) return fields(CODE_STACK, STACK_CODES[i].code2, in->class, in->number);
+    if (STACK_CODES[i].operation == (uint8_t)in->operation) return fields(CODE_STACK, STACK_CODES[i].code2, in->group, in->number);
   return fields(CODE_BLANK, 0, 0, 0);
 }
 
@@ -153,7 +153,7 @@ struct instruction word_decode(word48_t word) {
   struct instruction in = {OP_ILLEGAL, 0, n, 0.0};
   if (code1 >= CODE_M && code1 <= CODE_I && code2 == 0) {
     in.operation = OP_ASSIGN;
-    in.class = code1 - CODE_M; /* M, P, Q, I: the order of enum variable_class */
+    in.group = code1 - CODE_M; /* M, P, Q, I: the order of enum variable_class */
   }
   switch (code1) {
     case CODE_BLANK:
@@ -170,7 +170,7 @@ struct instruction word_decode(word48_t word) {
       break;
     case CODE_STACK:
       in.operation = (enum operation)STACK_CODES[code2].operation;
-      in.class = n;
+      in.group = n;
       in.number = (uint32_t)word & 0xFFFFFFu;
       break;
     case CODE_PREFIX:

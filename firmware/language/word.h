@@ -36,21 +36,21 @@ enum operation {
   OP_INC,
   OP_FRAX,
   OP_PREFIX,        /* number = bits 10 and up of the next command's variable number */
-  OP_ASSIGN,        /* class, number 0..1023, value that word_holds_short */
+  OP_ASSIGN,        /* group, number 0..1023, value that word_holds_short */
   OP_PUSH,          /* value */
   OP_PUSH_DOUBLE,   /* value's upper 16 bits here, lower 48 in the next word, which is not an operation */
-  OP_PUSH_VARIABLE, /* class, number */
-  OP_PUSH_INDEXED,  /* class; pops the number */
+  OP_PUSH_VARIABLE, /* group, number */
+  OP_PUSH_INDEXED,  /* group; pops the number */
   OP_APPLY,         /* number = enum operator_code; pops its operands, pushes the result */
   OP_AXIS_POP,      /* as OP_AXIS, OP_RATE, OP_ASSIGN, with the value popped */
   OP_RATE_POP,
   OP_ASSIGN_POP,
-  OP_ASSIGN_INDEXED /* class; pops the value, then the number */
+  OP_ASSIGN_INDEXED /* group; pops the value, then the number */
 };
 
 struct instruction {
   enum operation operation;
-  uint32_t class;
+  uint32_t group;
   uint32_t number;
   double value;
 };

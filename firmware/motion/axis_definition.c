@@ -13,6 +13,10 @@ static const uint8_t REPORT_ORDER[] = {AXIS_X, AXIS_Y, AXIS_Z, AXIS_U, AXIS_V, A
 
 struct axis_definition axis_definitions[MOTORS];
 
+void axis_definition_initialize(void) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++) axis_definitions[motor] = (struct axis_definition){0};
+}
+
 uint32_t axis_definition_motors(uint32_t cs) {
   uint32_t count = 0;
   for (uint32_t motor = 0; motor < MOTORS; motor++)

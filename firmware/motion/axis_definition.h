@@ -16,6 +16,7 @@ struct axis_definition {
 
 extern struct axis_definition axis_definitions[MOTORS]; /* background; part of the SAVE image */
 
+void axis_definition_initialize(void);             /* none: SAVEd definitions are put back by the start-up */
 error_t axis_definition_command(struct lexer* lx); /* behind `->`: query or definition of the addressed motor */
 error_t axis_undefine_command(struct lexer* lx);   /* UNDEFINE, UNDEFINE ALL */
 uint32_t axis_definition_motors(uint32_t cs);      /* motors assigned to it */

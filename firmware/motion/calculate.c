@@ -69,14 +69,14 @@ static bool execute(uint32_t cs, struct coordinate_system* s, const struct instr
       return true;
     case OP_ASSIGN_POP:
       if (!evaluator_pop(&s->evaluator, &value)) return false;
-      variable_write(in->class, cs, (double)number, value);
+      variable_write(in->group, cs, (double)number, value);
       return true;
     case OP_ASSIGN:
-      variable_write(in->class, cs, (double)number, value);
+      variable_write(in->group, cs, (double)number, value);
       return true;
     case OP_ASSIGN_INDEXED:
       if (!evaluator_pop(&s->evaluator, &value) || !evaluator_pop(&s->evaluator, &index)) return false;
-      variable_write(in->class, cs, index, value);
+      variable_write(in->group, cs, index, value);
       return true;
     default:
       return evaluator_execute(&s->evaluator, in, head, raw, cs);

@@ -89,8 +89,6 @@ struct coordinate_system {
   int32_t increment_full;            /* B: I10, taken over by %100 */
   int32_t increment_command;         /* B: target without the hold of H */
   bool held;                         /* B: H */
-  /* status, B */
-  bool in_position;
 };
 
 extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];

@@ -2,6 +2,7 @@
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"
@@ -35,21 +36,15 @@ void motion_initialize(void) {
     s->feedrate_axes = AXIS_XYZ;
     s->increment_full = s->increment_command = i_integer(10);
     s->increment = s->increment_target = s->increment_full;
-    s->in_position = true;
   }
+  axis_definition_initialize();
   regions_initialize();
   rotary_initialize();
   open_buffer_initialize();
   buffer_request_initialize();
 }
 
-void motion_background_update(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
-    struct coordinate_system* s = &coordinate_systems[cs];
-    s->in_position = !s->active && !s->next_valid;
-  }
-  buffer_request_poll();
-}
+void motion_background_update(void) { buffer_request_poll(); }
 
 static uint32_t status1(const struct coordinate_system* s) {
   uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) | bit(s->running && s->continuous, S1_CONTINUOUS) |
@@ -70,8 +65,9 @@ uint32_t motion_cs_status(uint32_t cs, unsigned word) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (word == 0) return status1(s);
   if (word != 1) return 0; /* word 3 is about lookahead and motors */
-  return bit(s->run_time_error, S2_RUN_TIME_ERROR) | bit(s->in_position, S2_IN_POSITION) | bit(rotary_buffers[cs].full, S2_ROTARY_FULL) |
-         bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) | bit(s->mode == MODE_RAPID, S2_RAPID);
+  return bit(s->run_time_error, S2_RUN_TIME_ERROR) | bit(!s->active && !s->next_valid, S2_IN_POSITION) |
+         bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
+         bit(s->mode == MODE_RAPID, S2_RAPID);
 }
 
 uint32_t motion_global_status2(void) {

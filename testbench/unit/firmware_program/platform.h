@@ -1,0 +1,56 @@
+// The firmware's surroundings for unit tests: memory arrays for user memory, plain arrays for variables, a simulated cycle counter, a
+// record of every edge of BREQ, and a small command interpreter that follows the contract of firmware/language/program.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#define error_t firmware_error_t  // the C library has a type of this name
+extern "C" {
+#include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/hal/hal.h"
+#include "firmware/host/command.h"
+#include "firmware/host/reply.h"
+#include "firmware/language/expression.h"
+#include "firmware/language/mathematics.h"
+#include "firmware/language/operators.h"
+#include "firmware/language/program.h"
+#include "firmware/language/statement.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/motion.h"
+#include "firmware/motion/run_control.h"
+#include "firmware/variables/variables.h"
+}
+
+namespace platform {
+
+constexpr double kCyclesPerUs = 78.6432;  // 117.9648 MHz * 8/12, I52 = 7
+constexpr std::int32_t kDefaultI10 = 3713991;
+
+struct Edge {
+  bool high;
+  double us;
+};
+
+void power_up();                                 // defaults of I-variables, then motion_initialize
+std::string host(const std::string& line);       // reply lines joined by `|`, or `ERRnnn`
+void pass_us(double us);                         // time passes in the background task
+void servo_ticks(unsigned count);                // servo interrupts, the real-time task after every third (I8 = 2)
+void real_time();                                // one real-time interrupt alone
+bool breq();                                     // level of the pin
+std::vector<Edge>& edges();                      // since the last clear()
+double longest_mask_us();                        // longest time the real-time task was held off
+void set_i(std::uint32_t number, double value);  // without telling anybody
+
+}  // namespace platform
+
+class FirmwareTest : public ::testing::Test {
+ protected:
+  void SetUp() override { platform::power_up(); }
+};

@@ -1,0 +1,125 @@
+// Order rules of the buffers in user memory (firmware.md 4.2), over all pairs of regions.
+#include <vector>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+namespace {
+
+struct Region {
+  const char* name;
+  region_kind kind;
+  std::uint32_t cs;
+  int height;  // place in memory, counted from the bottom as 4.2 draws it; written here independently of the firmware
+};
+
+// CCBUF 16..1 | LOOKAHEAD 16..1 | ROTARY 16..1 | GATHER
+std::vector<Region> all_regions() {
+  std::vector<Region> list;
+  const struct {
+    const char* name;
+    region_kind kind;
+  } kinds[] = {{"CCBUF", REGION_CCBUF}, {"LOOKAHEAD", REGION_LOOKAHEAD}, {"ROTARY", REGION_ROTARY}};
+  int layer = 0;
+  for (const auto& k : kinds) {
+    for (const std::uint32_t cs : {0u, 1u, 7u, 15u}) list.push_back({k.name, k.kind, cs, 100 * layer + 16 - static_cast<int>(cs)});
+    ++layer;
+  }
+  list.push_back({"GATHER", REGION_GATHER, 0, 300});
+  return list;
+}
+
+std::string name_of(const Region& r) { return std::string(r.name) + " &" + std::to_string(r.cs + 1); }
+
+class Regions : public FirmwareTest {};
+
+TEST_F(Regions, DefineIsRefusedWhenSomethingLivesAbove) {
+  BRICK_COVERS("BIN-2");
+  for (const Region& there : all_regions())
+    for (const Region& made : all_regions()) {
+      regions_initialize();
+      ASSERT_EQ(region_define(there.kind, there.cs, 40), ERR_NONE);
+      const error_t expected = made.height > there.height ? ERR_NONE : ERR_DATA;  // the same region again is refused, too
+      EXPECT_EQ(region_define(made.kind, made.cs, 30), expected) << name_of(made) << " while " << name_of(there) << " exists";
+      EXPECT_EQ(region_open_words(), 26624u - 40u - (expected == ERR_NONE ? 30u : 0u));
+    }
+}
+
+TEST_F(Regions, DeleteIsRefusedWhenSomethingLivesAbove) {
+  BRICK_COVERS("BIN-2");
+  for (const Region& lower : all_regions())
+    for (const Region& upper : all_regions()) {
+      if (upper.height <= lower.height) continue;
+      regions_initialize();
+      ASSERT_EQ(region_define(lower.kind, lower.cs, 40), ERR_NONE);
+      ASSERT_EQ(region_define(upper.kind, upper.cs, 30), ERR_NONE);
+      EXPECT_EQ(region_delete(lower.kind, lower.cs), ERR_DATA) << name_of(lower) << " below " << name_of(upper);
+      EXPECT_EQ(region_delete(upper.kind, upper.cs), ERR_NONE);
+      EXPECT_EQ(region_delete(lower.kind, lower.cs), ERR_NONE);
+      EXPECT_EQ(region_open_words(), 26624u);
+    }
+}
+
+TEST_F(Regions, RegionsAreStackedWithoutGaps) {
+  std::uint32_t base = 0;
+  for (const region_kind kind : {REGION_CCBUF, REGION_LOOKAHEAD, REGION_ROTARY})
+    for (const std::uint32_t cs : {15u, 4u, 0u}) {
+      const std::uint32_t words = 10 + cs;
+      ASSERT_EQ(region_define(kind, cs, words), ERR_NONE);
+      EXPECT_EQ(region_base(kind, cs), base);
+      EXPECT_EQ(region_words(kind, cs), words);
+      base += words;
+    }
+  ASSERT_EQ(region_define_rest(), ERR_NONE);
+  EXPECT_EQ(region_base(REGION_GATHER, 0), base);
+  EXPECT_EQ(region_words(REGION_GATHER, 0), 26624u - base);
+  EXPECT_EQ(region_open_words(), 0u);
+}
+
+TEST_F(Regions, NoRoomIsError6AndChangesNothing) {
+  EXPECT_EQ(platform::host("&2DEF ROT 26625"), "ERR006");
+  EXPECT_EQ(platform::host("&2DEF ROT 26624"), "");
+  EXPECT_EQ(platform::host("&1DEF ROT 1"), "ERR006");
+  EXPECT_EQ(platform::host("SIZE"), "0");
+  EXPECT_EQ(platform::host("DEF GAT"), "ERR006");
+  EXPECT_EQ(platform::host("&2DEL ROT"), "");
+  EXPECT_EQ(platform::host("SIZE"), "26624");
+}
+
+TEST_F(Regions, SizesOfLookaheadAndGather) {
+  BRICK_COVERS("I18-3");
+  EXPECT_EQ(platform::host("&2DEFINE LOOKAHEAD 50,10"), "");  // no motors: 6 words a segment, 2 an output
+  EXPECT_EQ(platform::host("SIZE"), std::to_string(26624 - 50 * 6 - 10 * 2));
+  EXPECT_EQ(platform::host("&1#1->1000X #2->1000Y #3->1000Z"), "");
+  EXPECT_EQ(platform::host("&1DEF LOOK 20,5"), "");  // 3 motors: 10 words a segment
+  EXPECT_EQ(platform::host("SIZE"), std::to_string(26624 - 320 - 20 * 10 - 10));
+  EXPECT_EQ(platform::host("DEF GAT 1000"), "");
+  EXPECT_EQ(platform::host("SIZE"), std::to_string(26624 - 320 - 210 - 1000));
+  EXPECT_EQ(platform::host("DEF GAT"), "ERR003");
+}
+
+TEST_F(Regions, DeleteAllTempsRemovesEverything) {
+  for (const char* command : {"DELETE ALL TEMPS", "DEL ALL TEMP", "DELETE ALL"}) {
+    ASSERT_EQ(platform::host("&16DEF CCBUF 3 &1DEF CCBUF 3 &9DEF LOOK 5,5 &4DEF ROT 50 &2DEF ROT 60 DEF GAT"), "");
+    EXPECT_EQ(platform::host("SIZE"), "0");
+    EXPECT_EQ(platform::host(command), "") << command;
+    EXPECT_EQ(platform::host("SIZE"), "26624");
+    EXPECT_EQ(platform::host("&4PR"), "ERR003");
+  }
+}
+
+TEST_F(Regions, ArgumentsAreChecked) {
+  for (const char* text : {"DEF ROT", "DEF ROT 0", "DEF ROT -5", "DEF ROT 1.5", "DEF LOOK 10", "DEF LOOK 0,5", "DEF CCBUF", "DEF UNKNOWN 5",
+                           "DEL UNKNOWN", "DEF GAT 0"})
+    EXPECT_EQ(platform::host(text), "ERR003") << text;
+}
+
+TEST_F(Regions, ResetForgetsAll) {
+  BRICK_COVERS("BIN-2");
+  ASSERT_EQ(platform::host("DEF ROT 20"), "");
+  motion_initialize();
+  EXPECT_EQ(platform::host("PR"), "ERR003");
+  EXPECT_EQ(platform::host("SIZE"), "26624");
+}
+
+}  // namespace

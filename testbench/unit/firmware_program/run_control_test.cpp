@@ -1,0 +1,245 @@
+// B R S Q A H / on a rotary program (firmware.md 4.10, 4.11), status words, execution of statements, axis definitions.
+#include <cmath>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+namespace {
+
+using platform::host;
+
+class RunControl : public FirmwareTest {
+ protected:
+  static void open() {
+    ASSERT_EQ(host("DEF ROT 200 B0 OPEN ROT"), "");
+    ASSERT_EQ(host("TM100 TA40 TS0"), "");
+  }
+  static void settle() {
+    for (int i = 0; i < 20000 && (cs().active || cs().next_valid || rotary_buffers[0].lines != 0); ++i) platform::servo_ticks(1);
+    platform::servo_ticks(3);
+  }
+  static coordinate_system& cs() { return coordinate_systems[0]; }
+};
+
+TEST_F(RunControl, RunNeedsAValidProgram) {
+  EXPECT_EQ(host("R"), "ERR015");
+  EXPECT_EQ(host("B0R"), "ERR015") << "no rotary buffer";
+  ASSERT_EQ(host("DEF ROT 20"), "");
+  EXPECT_EQ(host("B5R"), "ERR015") << "no such program";
+  EXPECT_EQ(host("B0"), "");
+  EXPECT_EQ(host("R"), "") << "an empty rotary buffer is accepted";
+  EXPECT_TRUE(run_is_running(0));
+  EXPECT_EQ(host("Q"), "");
+  platform::real_time();
+  EXPECT_EQ(host("DEL ROT"), "");
+  EXPECT_EQ(host("R"), "ERR015");
+  EXPECT_EQ(host("B32768"), "ERR003");
+  EXPECT_EQ(host("B-1"), "ERR003");
+}
+
+TEST_F(RunControl, NewLineForAWaitingProgramRunsAtOnce) {
+  open();
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(30);
+  ASSERT_EQ(host("X7"), "");
+  platform::servo_ticks(6);
+  EXPECT_TRUE(cs().active);
+  settle();
+  EXPECT_EQ(cs().position[AXIS_X], 7.0);
+}
+
+TEST_F(RunControl, StepTakesOneMove) {
+  open();
+  ASSERT_EQ(host("P1=5"), "");
+  ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("X2"), "");
+  ASSERT_EQ(host("S"), "");
+  platform::servo_ticks(1000);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(p_variable_read(1), 5.0);
+  EXPECT_EQ(cs().position[AXIS_X], 1.0);
+  EXPECT_EQ(host("PR"), "1");
+}
+
+TEST_F(RunControl, QuitFinishesWhatIsCalculated) {
+  open();
+  for (const char* text : {"X1", "X2", "X3", "X4"}) ASSERT_EQ(host(text), "");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(12);
+  ASSERT_EQ(host("PR"), "2");
+  ASSERT_EQ(host("Q"), "");
+  platform::servo_ticks(1000);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(cs().position[AXIS_X], 2.0);
+  EXPECT_EQ(host("PR"), "2");
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(cs().position[AXIS_X], 4.0);
+}
+
+TEST_F(RunControl, AbortStopsOnThePathAndKeepsUnreadLines) {
+  open();
+  for (const char* text : {"X1", "X2", "X3", "X4"}) ASSERT_EQ(host(text), "");
+  ASSERT_EQ(host("R"), "");
+  platform::real_time();
+  platform::servo_ticks(1);
+  platform::servo_ticks(150);
+  ASSERT_EQ(host("A"), "");
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_FALSE(cs().active);
+  EXPECT_EQ(host("PR"), "2");
+  // Constant acceleration for Ta = 40 ms to 1/100 units a ms, then straight: x = (t - Ta/2) / Tm.
+  const double t = 150.0 * platform::kDefaultI10 / 8388608.0;
+  EXPECT_NEAR(cs().position[AXIS_X], (t - 20.0) / 100.0, 1e-6);
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(cs().position[AXIS_X], 4.0);
+}
+
+TEST_F(RunControl, AbortDuringABlendIsOnTheBlendedPath) {
+  open();
+  for (const char* text : {"X1", "X1 Y1"}) ASSERT_EQ(host(text), "");
+  ASSERT_EQ(host("R"), "");
+  platform::real_time();
+  platform::servo_ticks(1);
+  platform::servo_ticks(static_cast<unsigned>(120.0 * 8388608.0 / platform::kDefaultI10) + 1);  // the middle of the corner, 100..140 ms
+  const double t = (std::floor(120.0 * 8388608.0 / platform::kDefaultI10) + 1) * platform::kDefaultI10 / 8388608.0 - 100.0;
+  ASSERT_EQ(host("A"), "");
+  // From the blend's start X slows from 1/100 to 0 and Y rises from 0 to 1/100, both linearly over 40 ms; X is at 0.8 there.
+  EXPECT_NEAR(cs().position[AXIS_X], 0.8 + (t - t * t / 80.0) / 100.0, 1e-6);
+  EXPECT_NEAR(cs().position[AXIS_Y], t * t / 80.0 / 100.0, 1e-6);
+}
+
+TEST_F(RunControl, HoldStopsTimeAndRunResumes) {
+  open();
+  ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("CLOSE I5195=8388607 OPEN ROT R"), "");
+  platform::servo_ticks(100);
+  ASSERT_EQ(host("H"), "");
+  platform::servo_ticks(2);
+  const auto elapsed = cs().elapsed;
+  platform::servo_ticks(500);
+  EXPECT_EQ(cs().elapsed, elapsed);
+  EXPECT_TRUE(run_is_running(0));
+  EXPECT_EQ(host("X2"), "") << "the buffer may still be filled";
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(cs().position[AXIS_X], 2.0);
+}
+
+TEST_F(RunControl, EndBlockStopsAfterTheExecutingMove) {
+  open();
+  for (const char* text : {"X1", "X2", "X3"}) ASSERT_EQ(host(text), "");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(20);
+  ASSERT_EQ(host("/"), "");
+  EXPECT_EQ(motion_cs_status(0, 1) >> 14 & 1u, 1u);
+  platform::servo_ticks(1000);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_FALSE(cs().active);
+  EXPECT_EQ(host("PR"), "1") << "X2 is calculated";
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(cs().position[AXIS_X], 3.0);
+}
+
+TEST_F(RunControl, StatementsActInSequence) {
+  open();
+  for (const char* text :
+       {"P1=3", "X(P1*2) Y(P1)", "INC", "X1 Y-1", "ABS(X)", "X10 Y1", "Q5=P1+0.5", "P(Q5+0.5)=77", "I5111=P1*100", "M3=2"})
+    ASSERT_EQ(host(text), "") << text;
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(cs().position[AXIS_X], 10.0);
+  EXPECT_EQ(cs().position[AXIS_Y], 3.0);
+  EXPECT_EQ(q_variable_read(0, 5), 3.5);
+  EXPECT_EQ(p_variable_read(4), 77.0);
+  EXPECT_EQ(i_variable_read(5111), 300.0);
+  EXPECT_EQ(m_variable_read(3), 2.0);
+}
+
+TEST_F(RunControl, RatesAreReadBackInTheirVariables) {
+  open();
+  for (const char* text : {"TA12 TS3 F250", "X1"}) ASSERT_EQ(host(text), "");
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(host("I5187 I5188 I5189"), "12|3|250");
+}
+
+TEST_F(RunControl, PrefixExtendsTheNumberOfTheNextCommand) {
+  BRICK_COVERS("BIN-3");
+  open();
+  instruction in{OP_PREFIX, 0, 4, 0.0};
+  word48_t words[2];
+  words[0] = word_encode(&in);
+  in = {OP_ASSIGN, VARIABLE_P, 4, 9.0};
+  words[1] = word_encode(&in);
+  ASSERT_EQ(rotary_store(0, words, 2), ERR_NONE);
+  ASSERT_EQ(host("R"), "");
+  settle();
+  EXPECT_EQ(p_variable_read(4 * 1024 + 4), 9.0);
+}
+
+TEST_F(RunControl, IllegalWordStopsTheProgramWithARunTimeError) {
+  open();
+  const word48_t bad = 9ull << 43;
+  ASSERT_EQ(rotary_store(0, &bad, 1), ERR_NONE);
+  ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(12);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(motion_cs_status(0, 1) >> 22 & 1u, 1u);
+  EXPECT_EQ(host("PR"), "1") << "the line after it is kept";
+  ASSERT_EQ(host("R"), "");
+  EXPECT_EQ(motion_cs_status(0, 1) >> 22 & 1u, 0u);
+}
+
+TEST_F(RunControl, StatusWordsOfAnIdleAndARunningSystem) {
+  EXPECT_EQ(host("??"), "A80020020000000000");  // firmware.md 5.4; in position (bit 17)
+  open();
+  ASSERT_EQ(host("INC X1"), "");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(6);
+  EXPECT_EQ(motion_cs_status(0, 0), 0xFD5560u | 0x19u);  // all axes incremental; R, TM mode, running
+  EXPECT_EQ(motion_cs_status(0, 1), 0u);
+  EXPECT_TRUE(motion_any_running());
+  ASSERT_EQ(host("A"), "");
+  EXPECT_EQ(motion_cs_status(0, 1), 0x020000u);
+}
+
+TEST_F(RunControl, OnLineAxisModes) {
+  EXPECT_EQ(host("INC(X,R)"), "");
+  EXPECT_EQ(motion_cs_status(0, 0), 0xA80020u | 1u << 18);
+  EXPECT_EQ(host("ABS(X,R) FRAX(A)"), "");
+  EXPECT_EQ(motion_cs_status(0, 0), 1u << 7);
+  EXPECT_EQ(host("FRAX INC ABS"), "");
+  EXPECT_EQ(motion_cs_status(0, 0), 0xA80000u);
+}
+
+TEST_F(RunControl, ProgramPointers) {
+  EXPECT_EQ(host("PC"), "ERR015");
+  open();
+  for (const char* text : {"X1 Y1", "X2"}) ASSERT_EQ(host(text), "");
+  EXPECT_EQ(host("PC"), "P0:0");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(6);
+  EXPECT_EQ(host("PC PE"), "P0:6|P0:3");  // TM TA TS, X1 Y1, X2
+}
+
+TEST_F(RunControl, AxisDefinitions) {
+  EXPECT_EQ(host("#1->"), "0");
+  EXPECT_EQ(host("#1->1000X"), "");
+  EXPECT_EQ(host("#1->"), "1000X");
+  EXPECT_EQ(host("#2->8660X-5000Y #3->100A+500 #4->2000Z-666.667 #5->X #6->-Y #7->I"), "");
+  EXPECT_EQ(host("#2-> #3-> #4-> #5-> #6-> #7->"), "8660X-5000Y|100A+500|2000Z-666.667|X|-Y|I");
+  EXPECT_EQ(host("&2#1->X"), "ERR003");  // golden exchange 27
+  EXPECT_EQ(host("&2#1->"), "0");
+  EXPECT_EQ(host("&1#1->100X+20A"), "ERR003") << "two groups of axes";
+  EXPECT_EQ(host("#1->0"), "");
+  EXPECT_EQ(host("#1->"), "0");
+  EXPECT_EQ(host("&2#1->X"), "");
+  EXPECT_EQ(host("UNDEFINE &1#2-> #1-> &2#1->"), "8660X-5000Y|0|0");
+  EXPECT_EQ(host("UNDEFINE ALL &1#2->"), "0");
+}
+
+}  // namespace
