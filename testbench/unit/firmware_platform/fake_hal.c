@@ -6,6 +6,7 @@
 
 #include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
+#include "firmware/kernel/internal.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { WORDS = 0x80000, PERIPHERALS = 0x80, LOG_LENGTH = 4096 };
@@ -91,7 +92,15 @@ uint32_t hal_mask_all(void) { return 0; }
 void hal_unmask(uint32_t state) { (void)state; }
 
 /* Time passes by looking at it. */
-uint32_t hal_cycles(void) { return cycles += 100; }
+static bool clocks_stopped;
+void fake_hal_stop_clocks(bool stopped) { clocks_stopped = stopped; }
+void fake_hal_fit(uint32_t ics) { fitted = ics; }
+
+uint32_t hal_cycles(void) {
+  cycles += 100;
+  if (!clocks_stopped) kernel_phase_stamp = cycles;
+  return cycles;
+}
 void hal_delay_us(uint32_t us) { cycles += us * 79u; }
 void hal_set_cpu_clock(uint32_t i52) { (void)i52; }
 uint32_t hal_cycles_per_ms(void) { return 78643; }
@@ -105,8 +114,29 @@ void hal_host_signals(uint32_t set, uint32_t clear) {
 void hal_interrupts_off(void) { real_time = 0; }
 void hal_interrupts_on(void) {}
 void hal_request_real_time(void) { real_time = 1; }
+void fake_hal_real_time_taken(void) { real_time = 0; }
 bool hal_real_time_pending(void) { return real_time != 0; }
-void hal_idle(const volatile uint32_t* work) { (void)work; }
+
+/* The host reads all the time. */
+static char output[1 << 20];
+static uint32_t output_length;
+
+static void host_reads(void) {
+  uint8_t c;
+  while (output_length < sizeof output && host_port_next_output(&c)) output[output_length++] = (char)c;
+}
+
+const char* fake_host_output(uint32_t* length) {
+  host_reads();
+  *length = output_length;
+  output_length = 0;
+  return output;
+}
+
+void hal_idle(const volatile uint32_t* work) {
+  (void)work;
+  host_reads();
+}
 void hal_watchdog_strobe(void) {}
 void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)transmit; }
 bool hal_servo_pending(void) { return false; }

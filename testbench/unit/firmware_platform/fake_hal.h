@@ -15,6 +15,9 @@ void fake_hal_set_strap(unsigned word, uint32_t value);
 uint32_t fake_hal_signals(void);    /* bits HAL_SIGNAL_* now on the latch */
 unsigned fake_hal_breq_falls(void); /* falling edges of BREQ since power-on */
 void fake_hal_set_cycles(uint32_t cycles);
+void fake_hal_real_time_taken(void);
+void fake_hal_fit(uint32_t fitted);             /* changes the ICs without power-on */
+void fake_hal_stop_clocks(bool stopped);        /* no phase interrupt comes */
 const char* fake_host_output(uint32_t* length); /* everything sent to the host since the last call; valid until then */
 
 /* Writes to device words (gate ICs, latches) in order, newest last. */

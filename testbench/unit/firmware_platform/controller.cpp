@@ -1,0 +1,69 @@
+#include "testbench/unit/firmware_platform/controller.h"
+
+extern "C" {
+#include "firmware/hal/hal.h"
+#include "firmware/host/host_port.h"
+#include "firmware/host/line_input.h"
+#include "firmware/kernel/kernel.h"
+}
+
+namespace brick {
+namespace {
+
+std::string output() {
+  std::uint32_t length = 0;
+  const char* text = fake_host_output(&length);
+  return std::string(text, length);
+}
+
+}  // namespace
+
+Controller::Controller(unsigned fitted, bool client_settings) {
+  fake_hal_power_on(fitted);
+  start();
+  if (client_settings) send("I6=1 I3=2\r");
+}
+
+void Controller::start() {
+  host_port_initialize();
+  line_input_initialize();
+  kernel_start(KERNEL_START_SAVED);
+  output();
+}
+
+std::string Controller::restart() {
+  start();
+  return output();
+}
+
+std::string Controller::send(const std::string& characters) {
+  for (const char c : characters) {
+    host_port_character(static_cast<std::uint8_t>(c));
+    if (c == '\r') kernel_background_pass();
+  }
+  do { kernel_background_pass(); } while (host_port_waiting());
+  return output();
+}
+
+std::string Controller::line(const std::string& text) {
+  std::string reply;
+  for (const char c : send(text + "\r")) {
+    if (c == '\r')
+      reply += '|';
+    else if (c >= ' ')
+      reply += c;
+  }
+  if (!reply.empty() && reply.back() == '|') reply.pop_back();
+  return reply;
+}
+
+void Controller::servo(unsigned interrupts) {
+  for (unsigned i = 0; i < interrupts; ++i) {
+    kernel_servo_interrupt();
+    if (!hal_real_time_pending()) continue;
+    fake_hal_real_time_taken();
+    kernel_real_time_interrupt();
+  }
+}
+
+}  // namespace brick

@@ -1,0 +1,213 @@
+// Golden exchanges of firmware.md section 13 and the protocol rules of section 6, byte for byte.
+#include <gtest/gtest.h>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/controller.h"
+
+namespace brick {
+namespace {
+
+using namespace std::string_literals;
+
+TEST(HostExchange, AnswersWithDataThenAcknowledge) {
+  Controller c;
+  EXPECT_EQ(c.send("I3\r"), "2\r\x06");
+  c.send("P1=25 P2=50 P3=75\r");
+  EXPECT_EQ(c.send("P1..3\r"), "25\r50\r75\r\x06");
+}
+
+TEST(HostExchange, ReportsUnknownCommandAndMissingBuffer) {
+  Controller c;
+  EXPECT_EQ(c.send("UUU\r"),
+            "\x07"
+            "ERR003\r");
+  EXPECT_EQ(c.send("X1000\r"),
+            "\x07"
+            "ERR005\r");
+}
+
+TEST(HostExchange, ReducesI3ModuloItsRange) {
+  Controller c;
+  EXPECT_EQ(c.send("I3=5\r"), "\x06");
+  EXPECT_EQ(c.send("I3\r"), "\n1\r\n");
+}
+
+TEST(HostExchange, ClientsFirstLineWorksFromPowerOnSettings) {
+  Controller c(0x3, false);
+  EXPECT_EQ(c.send("i6=1 i3=2 ver\r"), "1.947\r\x06");
+}
+
+TEST(HostExchange, ReportsI16InLongForm) {
+  BRICK_COVERS("I9-1");
+  Controller c;
+  c.send("I9=3\r");
+  EXPECT_EQ(c.send("I16\r"), "I16=5\r\x06");
+}
+
+TEST(HostExchange, FlagModeIsHexadecimalAndTakesExpressions) {
+  BRICK_COVERS("I9-2");
+  Controller c;
+  EXPECT_EQ(c.send("I124\r"), "$1\r\x06");
+  EXPECT_EQ(c.send("I124=I124|$20000\r"), "\x06");
+  EXPECT_EQ(c.send("I124\r"), "$20001\r\x06");
+  c.send("I9=0\r");
+  EXPECT_EQ(c.send("I124\r"), "131073\r\x06");
+}
+
+TEST(HostExchange, MacroBasesOfAbsentIcsAreZero) {
+  Controller c;
+  EXPECT_EQ(c.send("i20 i21 i22 i23\r"), "$0\r$0\r$0\r$0\r\x06");
+}
+
+TEST(HostExchange, IdentifiesItself) {
+  Controller c;
+  EXPECT_EQ(c.send("cid\r"), "603382\r\x06");
+  EXPECT_EQ(c.send("TYPE\r"), "TURBO2, X4\r\x06");
+  EXPECT_EQ(c.send("VERSION\r"), "1.947\r\x06");
+  EXPECT_EQ(c.send("VID\r"), "1\r\x06");
+  EXPECT_EQ(c.send("???\r"), "000000000800\r\x06");
+}
+
+TEST(HostExchange, ClockSourceIsDecimalInEveryReportMode) {
+  BRICK_COVERS("I19-1");
+  Controller c;
+  EXPECT_EQ(c.send("I19\r"), "7007\r\x06");
+  c.send("I9=3\r");
+  EXPECT_EQ(c.send("I19\r"), "I19=7007\r\x06");
+}
+
+TEST(HostExchange, LockBitMakesAssignmentsSilentlyIneffective) {
+  Controller c;
+  EXPECT_EQ(c.line("I100"), "1");
+  EXPECT_EQ(c.send("I41=1\r"), "\x06");
+  EXPECT_EQ(c.send("I100=0\r"), "\x06");
+  EXPECT_EQ(c.line("I100"), "1");
+}
+
+TEST(HostExchange, EachFramingStyle) {
+  Controller c;
+  c.send("P1=7\r");
+  c.send("I3=0\r");
+  EXPECT_EQ(c.send("P1\r"), "7\r");
+  EXPECT_EQ(c.send("P2=1\r"), "");
+  c.send("I3=1\r");
+  EXPECT_EQ(c.send("P1 P1\r"), "\n7\r\n7\r\n");
+  EXPECT_EQ(c.send("UUU\r"), "\x07\nERR003\r");
+  c.send("I3=3\r");
+  EXPECT_EQ(c.send("P1\r"), "\n7\r\x06");
+}
+
+TEST(HostExchange, EachErrorStyle) {
+  Controller c;
+  c.send("I6=0\r");
+  EXPECT_EQ(c.send("UUU\r"), "\x07");
+  c.send("I6=2\r");
+  EXPECT_EQ(c.send("UUU\r"), "\x07");
+  c.send("I6=3\r");
+  EXPECT_EQ(c.send("UUU\r"), "\x07\rERR003\r");
+}
+
+TEST(HostExchange, ErrorDropsTheRestOfTheLineAndKeepsWhatWentBefore) {
+  Controller c;
+  EXPECT_EQ(c.send("P1=5 P1 UUU P1=6\r"),
+            "5\r\x07"
+            "ERR003\r");
+  EXPECT_EQ(c.line("P1"), "5");
+}
+
+TEST(HostExchange, ChecksumsFollowEachReplyLineAndTheAcknowledge) {
+  Controller c;
+  c.send("P1=25\r");
+  c.send("I4=1\r");
+  const char line_sum = '2' + '5' + '\r', command_sum = static_cast<char>('P' + '1');
+  EXPECT_EQ(c.send("P1\r"), "25\r"s + line_sum + "\x06" + command_sum);
+  // `J+` before its CR: 0x4A + 0x2B = 117.
+  EXPECT_EQ(c.send("J+\x0E"), std::string(1, static_cast<char>(117)));
+}
+
+TEST(HostExchange, ControlXEmptiesTheLineAndIsEchoed) {
+  Controller c;
+  EXPECT_EQ(c.send("P1=\x18"), "\x18");
+  EXPECT_EQ(c.send("P2=3\r"), "\x06");
+  c.send("I63=0\r");
+  EXPECT_EQ(c.send("P1=\x18"), "");
+}
+
+TEST(HostExchange, BackspaceTakesTheLastCharacter) {
+  Controller c;
+  c.send(
+      "P1=12\x08"
+      "3\r");
+  EXPECT_EQ(c.line("P1"), "13");
+}
+
+TEST(HostExchange, ControlCharactersActInsideALine) {
+  Controller c;
+  EXPECT_EQ(c.send("P1=\x07"
+                   "4\r"),
+            "000000000800\r\x06\x06");
+  EXPECT_EQ(c.line("P1"), "4");
+}
+
+TEST(HostExchange, LineFeedsAndCommentsAreIgnored) {
+  Controller c;
+  EXPECT_EQ(c.send("P1=8\r\n"), "\x06");
+  EXPECT_EQ(c.line("P1 ; what is P1=9"), "8");
+}
+
+TEST(HostExchange, LinesEndAt255Characters) {
+  Controller c;
+  const std::string fits = "P1=" + std::string(251, '0') + "5";
+  ASSERT_EQ(fits.size(), 255u);
+  EXPECT_EQ(c.send(fits + "\r"), "\x06");
+  EXPECT_EQ(c.line("P1"), "5");
+  EXPECT_EQ(c.send("P1=" + std::string(252, '0') + "6\r"),
+            "\x07"
+            "ERR003\r");
+  EXPECT_EQ(c.line("P1"), "5");
+}
+
+TEST(HostExchange, EightBitCharactersAreIllegal) {
+  Controller c;
+  EXPECT_EQ(c.send("P1=\xC4\r"),
+            "\x07"
+            "ERR004\r");
+}
+
+TEST(HostExchange, BareConstantGoesToP0) {
+  Controller c;
+  EXPECT_EQ(c.send("342\r"), "\x06");
+  EXPECT_EQ(c.line("P0"), "342");
+  c.send("$FF\r");
+  EXPECT_EQ(c.line("P0"), "255");
+  c.send("-2.5\r");
+  EXPECT_EQ(c.line("P0"), "-2.5");
+}
+
+TEST(HostExchange, AddressesAreModalAndReported) {
+  Controller c;
+  EXPECT_EQ(c.line("& #"), "1|1");
+  EXPECT_EQ(c.send("&16#32\r"), "\x06");
+  EXPECT_EQ(c.line("&"), "16");
+  EXPECT_EQ(c.line("#"), "32");
+  EXPECT_EQ(c.line("&17"), "ERR003");
+  EXPECT_EQ(c.line("#33"), "ERR003");
+  c.line("I68=1");  // on one line `1 &3` would be an expression
+  EXPECT_EQ(c.line("&3"), "ERR003");
+}
+
+TEST(HostExchange, SingleLetterCommandsMustStandAlone) {
+  Controller c;
+  EXPECT_EQ(c.line("A10"), "ERR005");    // an axis move, not an abort
+  EXPECT_EQ(c.line("RAPID"), "ERR005");  // not `R`
+  EXPECT_EQ(c.line("#2P"), "0");
+}
+
+TEST(HostExchange, CoordinateSystemStatusAtPowerOn) {
+  Controller c;
+  // Word 1: X, Y, Z feedrate axes, radius vector incremental. Word 2: in position.
+  EXPECT_EQ(c.line("&1??").substr(0, 6), "A80020");
+}
+
+}  // namespace
+}  // namespace brick

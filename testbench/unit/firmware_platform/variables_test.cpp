@@ -1,0 +1,316 @@
+// I-, P-, Q- and M-variables: ranges, defaults, reports, ranges of numbers, and the hardware behind the servo IC globals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/controller.h"
+
+extern "C" {
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/kernel.h"
+#include "firmware/variables/variables.h"
+}
+
+namespace brick {
+namespace {
+
+constexpr unsigned kServoIc0 = 1u << 0, kServoIc1 = 1u << 1, kServoIc2 = 1u << 2, kServoIc3Starred = 1u << 11, kMacroIc0 = 1u << 18,
+                   kMacroIc1 = 1u << 19;
+
+std::uint32_t x(std::uint32_t address) { return *hal_x(address) & 0xFFFFFFu; }
+
+TEST(IVariables, GlobalDefaults) {
+  BRICK_COVERS("I17-1 I18-1");
+  Controller c;
+  EXPECT_EQ(c.line("I0..2"), "0|0|1");
+  EXPECT_EQ(c.line("I4 I5"), "0|0");
+  EXPECT_EQ(c.line("I7..10"), "0|2|2|3713991");
+  EXPECT_EQ(c.line("I16..19"), "5|10|10|7007");
+  EXPECT_EQ(c.line("I24 I37 I52 I68"), "$60000|$0|7|15");
+  EXPECT_EQ(c.line("I90..99"), "$39|$4|$FF|$7F|$A0|$7|$A1|$0|$60|$30");
+}
+
+TEST(IVariables, RotaryPointsTake23Bits) {
+  BRICK_COVERS("I17-1 I18-1");
+  Controller c;
+  EXPECT_EQ(c.line("I17=8388607 I17"), "8388607");
+  EXPECT_EQ(c.line("I17=8388608 I17"), "0");  // reduced modulo 2^23
+  EXPECT_EQ(c.line("I18=8388607 I18"), "8388607");
+  EXPECT_EQ(c.line("I17=* I17"), "10");
+}
+
+TEST(IVariables, MotorAndCoordinateSystemDefaults) {
+  Controller c;
+  EXPECT_EQ(c.line("I100 I200 I102 I202 I125 I525"), "1|0|$78002|$7800A|$78000|$78100");
+  EXPECT_EQ(c.line("I111 I116 I117 I119 I130 I163 I169 I192"), "32000|32|0.015625|0.015625|2000|4194304|20480|10");
+  EXPECT_EQ(c.line("I5188..5190 I5193 I6693 I5199"), "50|1000|1000|$2000|$2F00|0.9998474121");
+  EXPECT_EQ(c.line("I8000 I8004 I8007 I8008"), "$78000|$78100|$78118|$0");
+}
+
+TEST(IVariables, SignedOnesWrap) {
+  Controller c;
+  EXPECT_EQ(c.line("I126=8388607 I126"), "8388607");
+  EXPECT_EQ(c.line("I126=8388608 I126"), "-8388608");
+  EXPECT_EQ(c.line("I126=-5 I126"), "-5");
+  EXPECT_EQ(c.line("I129=-32768 I129"), "-32768");
+}
+
+TEST(IVariables, RunsAndStepsOfNumbers) {
+  Controller c;
+  EXPECT_EQ(c.line("I16,4"), "5|10|10|7007");
+  EXPECT_EQ(c.line("I5213,15,100=10"), "");
+  EXPECT_EQ(c.line("I5113 I5213 I6613"), "0|10|10");
+  EXPECT_EQ(c.line("I(P1*100+120)=7 I20"), "$0");
+  EXPECT_EQ(c.line("P1=3 I(P1*100+120)=7 I420"), "7");
+  EXPECT_EQ(c.line("I420=* I420"), "0");
+  EXPECT_EQ(c.line("I8190..8192"), "ERR003");
+}
+
+TEST(IVariables, ValuesAreReadInHexOrDecimalWhateverI9) {
+  BRICK_COVERS("I9-2 I9-3");
+  Controller c;
+  for (const char* mode : {"I9=0", "I9=1", "I9=2", "I9=3"}) {
+    c.line(mode);
+    c.line("I125=$C020");
+    EXPECT_EQ(i_integer(125), 0xC020) << mode;
+    c.line("I125=49185");
+    EXPECT_EQ(i_integer(125), 49185) << mode;
+  }
+  EXPECT_EQ(c.line("I125"), "I125=$C021");
+  EXPECT_EQ(c.line("I9=0 I125"), "49185");
+  EXPECT_EQ(c.line("I9=1 I125"), "I125=49185");
+  EXPECT_EQ(c.line("I9=2 I125"), "$C021");
+}
+
+TEST(IVariables, TimersCountServoInterruptsDown) {
+  Controller c;
+  c.line("I5111=100");
+  c.servo(30);
+  EXPECT_EQ(c.line("I5111"), "70");
+  c.servo(100);
+  EXPECT_EQ(c.line("I5111"), "-30");
+  EXPECT_EQ(c.line("I6612"), std::to_string(-130));
+}
+
+TEST(IVariables, ConfigurationReportIsReadOnly) {
+  Controller c(kServoIc0 | kServoIc2 | kServoIc3Starred | kMacroIc1);
+  EXPECT_EQ(c.line("I4900"), "$2005");  // IC 0, IC 2, IC 3* = bit 13
+  EXPECT_EQ(c.line("I4902 I4908"), "$2|$10800");
+  EXPECT_EQ(c.send("I4900=0\r"), "\x06");
+  EXPECT_EQ(c.line("I4900"), "$2005");
+  EXPECT_EQ(c.line("I20 I21"), "$79400|$0");
+}
+
+TEST(IVariables, AbsentIcReadsZeroAndIgnoresWrites) {
+  Controller c(kServoIc0);
+  EXPECT_EQ(c.line("I7100=1000 I7100 I7107 I7110"), "0|0|0");
+  EXPECT_EQ(c.line("I7000 I7010 I7011 I7021"), "6527|7|1|0");
+}
+
+// servo-ic data sheet 7.1 rule 3, in the order of its table.
+TEST(ClockSource, FirstIcInTheDocumentedOrderIsChosen) {
+  BRICK_COVERS("I19-3");
+  struct Case {
+    unsigned fitted;
+    const char* source;
+  };
+  const std::vector<Case> cases = {
+      {kServoIc0 | kMacroIc0 | kServoIc1, "7007"},
+      {kMacroIc0 | kServoIc1 | kServoIc2, "6807"},
+      {kServoIc1 | kServoIc2, "7107"},
+      {kServoIc2 | kServoIc3Starred, "7207"},
+      {1u << 9 | 1u << 10, "7907"},
+      {1u << 10 | kMacroIc1, "7257"},
+      {kServoIc3Starred | kMacroIc1, "7357"},
+      {1u << 17 | kMacroIc1, "7957"},
+      {kMacroIc1 | 1u << 20, "6857"},
+      {1u << 20 | 1u << 21, "6907"},
+      {1u << 21, "6957"},
+  };
+  for (const Case& k : cases) {
+    Controller c(k.fitted);
+    EXPECT_EQ(c.line("I19"), k.source) << std::hex << k.fitted;
+    EXPECT_EQ(c.line("I" + std::string(k.source)), "0") << std::hex << k.fitted;
+  }
+}
+
+TEST(ClockSource, TakesDirectionVariablesOnly) {
+  BRICK_COVERS("I19-1");
+  Controller c;
+  for (const char* number : {"6807", "6857", "6907", "6957", "7007", "7107", "7907", "7257", "7957"})
+    EXPECT_EQ(c.line(std::string("I19=") + number + " I19"), number);
+  EXPECT_EQ(c.line("I19=7008 I19"), "7957");
+  EXPECT_EQ(c.line("I19=* I19"), "7007");
+}
+
+// servo-ic data sheet 2.6 and check vectors 16, 17.
+TEST(ServoIcGlobals, StartUpWritesTheDocumentedWords) {
+  BRICK_COVERS("CLK-6 I19-3");
+  Controller c(kServoIc0 | kServoIc1 | kMacroIc0);
+  EXPECT_EQ(x(0x078004), 0x3008D2u);
+  EXPECT_EQ(x(0x078104), 0x3038D2u);
+  EXPECT_EQ(x(0x07801C), 0x197F0Fu);
+  EXPECT_EQ(x(0x07800C), 0x7FFFC0u);
+  EXPECT_EQ(x(0x078014), 0xFFFFFEu);
+  EXPECT_EQ(x(0x07840C), 0x3038D2u);
+  EXPECT_EQ(c.line("I7007 I7107 I6807"), "0|3|3");
+}
+
+TEST(ServoIcGlobals, FieldsGoToTheIcAtOnce) {
+  BRICK_COVERS("CLK-6");
+  Controller c;
+  c.line("I7000=1473 I7001=3 I7002=1 I7003=1746 I7004=30");
+  EXPECT_EQ(x(0x078004), (1u << 20) | (3u << 16) | 1746u);
+  EXPECT_EQ(x(0x07801C), (1473u << 8) | 30u);
+  c.line("I7005=$7FFF00 I7106=$F8CDFE");
+  EXPECT_EQ(x(0x07800C), 0x7FFF00u);
+  EXPECT_EQ(x(0x078114), 0xF8CDFEu);
+  c.line("I7010=3 I7012=2 I7013=3 I7014=1 I7015=2 I7016=3 I7017=1 I7018=1 I7019=1 I7011=0");
+  // decode 3, compare bit stays 1 on channel 1 of the report only, capture 2, flag 3, gated index, gate state 2, mode 3, invert 1, PFM, 1/T
+  EXPECT_EQ(x(0x078005),
+            0x3u | (2u << 4) | (3u << 8) | (1u << 13) | (1u << 15) | (2u << 16) | (1u << 18) | (1u << 19) | (1u << 20) | (3u << 22));
+}
+
+TEST(MacroIcGlobals, DividersGoToItsClockWord) {
+  BRICK_COVERS("CLK-1");
+  Controller c(kServoIc0 | kMacroIc0);
+  c.line("I6800=8845 I6802=1");
+  EXPECT_EQ(x(0x07840C) >> 20, 1u);
+  EXPECT_EQ(x(0x07840D) >> 8, 8845u);
+  EXPECT_EQ(c.line("I6802=17 I6802"), "1");  // 0 to 15
+}
+
+// Two ICs must never drive the clocks together: the new input is written before the new output, whatever the order on the line.
+TEST(ClockDirections, OfOneLineAreAppliedInputsFirst) {
+  BRICK_COVERS("I19-2 CLK-2");
+  for (const char* text : {"I6807=0 I7007=3", "I7007=3 I6807=0"}) {
+    Controller c(kServoIc0 | kServoIc1 | kMacroIc0);
+    fake_hal_clear_writes();
+    EXPECT_EQ(c.line(text), "");
+    const fake_write* log = nullptr;
+    const unsigned count = fake_hal_writes(&log);
+    std::vector<std::uint32_t> addresses;
+    for (unsigned i = 0; i < count; ++i)
+      if (log[i].x && log[i].address >= 0x078000) addresses.push_back(log[i].address);
+    EXPECT_EQ(addresses, (std::vector<std::uint32_t>{0x078004, 0x07840C})) << text;
+    EXPECT_EQ(x(0x078004) >> 12 & 3, 3u);
+    EXPECT_EQ(x(0x07840C) >> 12 & 3, 0u);
+  }
+}
+
+TEST(SavedData, SurvivesResetAndReInitialisationDoesNotUseIt) {
+  Controller c;
+  c.line("I17=33 P100=1.25 Q5=-7 I7002=1 I5189=250.5");
+  c.line("M7->Y:$78002,8,16,S");
+  EXPECT_EQ(c.send("SAVE\r"), "\x06");
+  c.line("I17=44 P100=0 I3=2");
+  EXPECT_EQ(c.send("$$$\r"), "\x06");
+  EXPECT_EQ(c.line("I17 P100 Q5 I7002 I5189"), "33|1.25|-7|1|250.5");
+  EXPECT_EQ(c.line("M7->"), "Y:$78002,8,16,S");
+  EXPECT_EQ(x(0x078004) >> 20, 1u);
+  c.line("$$$***");
+  c.line("I3=2 I6=1");
+  EXPECT_EQ(c.line("I17 P100 I7002"), "10|0|3");
+  c.restart();
+  EXPECT_EQ(c.line("I17"), "33");
+}
+
+TEST(SavedData, JumperE3StartsWithDefaults) {
+  BRICK_COVERS("WDT-2");
+  Controller c;
+  c.line("I7000=100");
+  c.line("SAVE");
+  fake_hal_set_strap(HAL_STRAP_E3, 1);
+  c.restart();
+  EXPECT_EQ(i_integer(7000), 6527);
+  fake_hal_set_strap(HAL_STRAP_E3, 0);
+  c.restart();
+  EXPECT_EQ(i_integer(7000), 100);
+}
+
+TEST(SavedData, DamageIsReportedAndDefaultsAreUsed) {
+  Controller c;
+  c.line("I17=33");
+  c.line("SAVE");
+  hal_flash()[20] ^= 1u;
+  c.restart();
+  EXPECT_EQ(i_integer(17), 10);
+  EXPECT_NE(kernel_status_word() & STATUS_FLASH_ERROR, 0u);
+}
+
+TEST(Float48, IsThePublishedFormat) {
+  // 1 = 0.5 * 2^1: mantissa $400000 000, exponent 2048.
+  EXPECT_EQ(float48_pack(1.0).x, 0x400000u);
+  EXPECT_EQ(float48_pack(1.0).y, 0x000800u);
+  // -1 = -1 * 2^0.
+  EXPECT_EQ(float48_pack(-1.0).x, 0x800000u);
+  EXPECT_EQ(float48_pack(-1.0).y, 0x0007FFu);
+  EXPECT_EQ(float48_pack(0.0).x | float48_pack(0.0).y, 0u);
+  for (const double value : {1.0, -1.0, 0.5, -0.5, 3.25, -1e6, 34359738367.0, -34359738368.0, 1.0 / 1024.0})
+    EXPECT_EQ(float48_unpack(float48_pack(value)), value);
+  for (const double value : {1.0 / 3.0, -std::acos(-1.0), 1e12, 123456.789})
+    EXPECT_NEAR(float48_unpack(float48_pack(value)) / value, 1.0, std::ldexp(1.0, -35));
+}
+
+TEST(PVariables, LieInUserMemoryAndPrintTenDigits) {
+  Controller c;
+  c.line("P1=25.3 P2=1/3 P3=10121217025 P4=-0.1 P5=2/3*100000");
+  EXPECT_EQ(c.line("P1..5"), "25.3|0.3333333333|10121217025|-0.1|66666.66667");
+  EXPECT_EQ(c.line("RL$6001"), "25.3");
+  EXPECT_EQ(c.line("P6=1 RHL$6006"), "400000000800");
+}
+
+TEST(QVariables, ShareThePoolByI68) {
+  Controller c;
+  c.line("&2Q0=7");
+  EXPECT_EQ(c.line("&2Q0 &1Q0"), "7|0");
+  EXPECT_EQ(c.line("RL$8200"), "7");  // 512 each with 16 coordinate systems
+  c.line("I68=1");
+  c.line("&2Q4095=9");
+  EXPECT_EQ(c.line("RL$9FFF"), "9");
+  EXPECT_EQ(c.line("Q4096=1 Q4096"), "0");
+}
+
+TEST(MVariables, PointAtPartsOfWords) {
+  Controller c;
+  EXPECT_EQ(c.line("M1->"), "*");
+  EXPECT_EQ(c.line("M1->Y:$10F0,8,8 M1->"), "Y:$10F0,8,8");
+  c.line("M1=$A5");
+  EXPECT_EQ(c.line("RHY$10F0"), "A500");
+  c.line("M2->Y:$10F0,15 M3->X:$10F1,0,24,S M3=-2");
+  EXPECT_EQ(c.line("M2 M3 M1"), "1|-2|165");
+  EXPECT_EQ(c.line("RX$10F1 RHX$10F1"), "-2|FFFFFE");
+  EXPECT_EQ(c.line("I9=1 M2->"), "M2->Y:$10F0,15,1");
+  c.line("M4->D:$10F2 M4=-1 M5->L:$10F3 M5=0.25");
+  EXPECT_EQ(c.line("M4 M5"), "-1|0.25");
+  EXPECT_EQ(c.line("M5 RHD$10F2"), "0.25|FFFFFFFFFFFF");
+}
+
+TEST(ConfigurationError, IsReportedWhenTheIcSetDiffersFromTheSavedOne) {
+  Controller c(kServoIc0);
+  c.line("SAVE");
+  fake_hal_set_strap(HAL_STRAP_FITTED, kServoIc0 | kServoIc1);
+  fake_hal_fit(kServoIc0 | kServoIc1);
+  c.restart();
+  EXPECT_EQ(kernel_status_word(), static_cast<std::uint32_t>(STATUS_CONFIGURATION));
+  EXPECT_FALSE(kernel_motors_may_enable());
+}
+
+TEST(PhaseClock, MissingOneIsReportedAndTasksGoOn) {
+  BRICK_COVERS("I19-2");
+  Controller c;
+  c.line("I5111=1000");
+  fake_hal_stop_clocks(true);
+  for (int i = 0; i < 20000; ++i) (void)hal_cycles();
+  EXPECT_EQ(c.line("???"), "000008000800");
+  EXPECT_FALSE(kernel_motors_may_enable());
+  fake_hal_stop_clocks(false);
+  (void)hal_cycles();
+  EXPECT_EQ(c.line("???"), "000000000800");
+}
+
+}  // namespace
+}  // namespace brick
