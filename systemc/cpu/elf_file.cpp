@@ -38,8 +38,7 @@ class Image {
   std::size_t size() const { return bytes_.size(); }
   void need(std::uint64_t offset, std::uint64_t count, const char* part) const {
     if (offset + count > bytes_.size()) {
-      fail(std::string("is truncated: ") + part + " ends at byte " + std::to_string(offset + count) + ", the file has " +
-           std::to_string(bytes_.size()));
+      fail("is truncated: " + std::to_string(bytes_.size()) + " bytes; expected " + std::to_string(offset + count) + " for " + part);
     }
   }
   std::uint32_t u8(std::size_t offset) const { return static_cast<std::uint8_t>(bytes_.at(offset)); }

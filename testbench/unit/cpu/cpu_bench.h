@@ -75,20 +75,21 @@ class CpuBench : public ::testing::Test {
     return cpu.cycle() - before;
   }
   std::uint32_t csr(unsigned n) const { return cpu.csr(n); }
-  void set_csr(unsigned n, std::uint32_t v) {  // through the instruction, as a program would
-    const std::uint32_t pc = cpu.pc(), old = cpu.reg(31);
-    cpu.set_reg(31, v);
-    execute(rv::csrrw(0, n, 31));
-    cpu.set_reg(31, old);
-    jump(pc);
-  }
-  void jump(std::uint32_t pc) {
-    const std::uint32_t old = cpu.reg(30);
-    cpu.set_reg(30, pc);
-    execute(rv::jalr(0, 30, 0));
-    cpu.set_reg(30, old);
+  // These two run an instruction of their own and leave memory as it was.
+  void set_csr(unsigned n, std::uint32_t v) { aside(31, v, rv::csrrw(0, n, 31), true); }
+  void jump(std::uint32_t pc) { aside(30, pc, rv::jalr(0, 30, 0), false); }
+
+ private:
+  void aside(unsigned helper, std::uint32_t v, rv::Word instruction, bool come_back) {
+    const std::uint32_t pc = cpu.pc(), code = word(pc), old = cpu.reg(helper);
+    cpu.set_reg(helper, v);
+    execute(instruction);
+    cpu.set_reg(helper, old);
+    put(pc, {code});
+    if (come_back) jump(pc);
   }
 
+ protected:
   RecordingDevice device;
   Cpu cpu;
 };
