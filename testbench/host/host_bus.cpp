@@ -28,12 +28,19 @@ void HostBus::advance_to(Tick tick) {
   }
 }
 
+void HostBus::wait_change(const PinField& pin, Tick limit) {
+  const std::uint32_t value = machine_.outputs().get(pin);
+  while (now() < limit && machine_.outputs().get(pin) == value) {
+    step_to(std::min(limit, now() + kHeartbeat), select_pins(pin));
+    if (heartbeat_) heartbeat_();
+  }
+}
+
 bool HostBus::wait_pin(const PinField& pin, std::uint32_t value, Tick timeout) {
   const Tick limit = now() + timeout;
   while (machine_.outputs().get(pin) != value) {
     if (now() >= limit) return false;
-    step_to(std::min(limit, now() + kHeartbeat), select_pins(pin));
-    if (heartbeat_) heartbeat_();
+    wait_change(pin, limit);
   }
   return true;
 }

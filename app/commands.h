@@ -1,0 +1,15 @@
+// The commands of `brick`. Each returns the exit status 0 or 1 and throws UsageError for bad usage or input.
+#pragma once
+
+#include <string>
+
+#include "app/options.h"
+
+namespace brick {
+
+int list_command(bool json);
+int boards_command(bool json);
+int exec_command(const RunOptions& options, const std::string& script, bool raw);
+int run_command(const RunOptions& options, const std::string& bench, bool negative);
+
+}  // namespace brick

@@ -1,0 +1,62 @@
+// `brick exec`: starts the controller, plays a host script, prints the replies.
+#include <fstream>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/script_player.h"
+#include "app/simulation.h"
+#include "app/usage_error.h"
+
+namespace brick {
+
+namespace {
+
+std::vector<ScriptLine> open_script(const std::string& file, const std::string& name) {
+  if (file == "-") return read_script(std::cin, name);
+  std::ifstream in(file);
+  if (!in) throw UsageError(fmt::format("{}: cannot be read; expected a host script, or - for standard input", file));
+  return read_script(in, name);
+}
+
+nlohmann::json exchanges_json(const ScriptPlayer& player) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& e : player.exchanges()) list.push_back({{"line", e.line}, {"reply", e.reply}, {"error", e.error}});
+  return list;
+}
+
+}  // namespace
+
+int exec_command(const RunOptions& options, const std::string& file, bool raw) {
+  const std::string name = file == "-" ? "stdin" : file;
+  const MachineConfig config = machine_config(options);
+  const auto script = open_script(file, name);
+  Simulation simulation(options, config, "exec");
+  ScriptPlayer player(simulation.link(), std::cout, name, raw);
+  player.check(script);
+  std::string failure;
+  try {
+    simulation.run([&] {
+      if (!simulation.link().connect(HostLink::kBootTime))
+        throw ScriptFailure("the controller does not answer after power-on; expected an acknowledge within 500 ms");
+      player.play(script);
+    });
+  } catch (const ScriptFailure& e) { failure = e.what(); } catch (const LockstepDifference& e) {
+    failure = e.what();
+  } catch (const HostBusError& e) { failure = e.what(); }
+  if (!failure.empty()) std::cerr << "brick exec: " << failure << '\n';
+  if (!options.json.empty()) {
+    nlohmann::json results = simulation.measures();
+    results["engine"] = options.engine;
+    results["board"] = config.board.name;
+    results["seed"] = config.seed;
+    results["passed"] = failure.empty();
+    if (!failure.empty()) results["failure"] = failure;
+    results["exchanges"] = exchanges_json(player);
+    write_json(options.json, results.dump(2));
+  }
+  return failure.empty() ? 0 : 1;
+}
+
+}  // namespace brick

@@ -1,0 +1,91 @@
+// The `brick` command: parses the line and calls the command. Exit status: 0 passed, 1 failed, 2 bad usage or bad input
+// with one line on stderr (docs/command.md).
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <systemc>
+
+#include "app/commands.h"
+#include "app/cpu_command.h"
+#include "app/usage_error.h"
+
+namespace brick {
+namespace {
+
+constexpr const char* kAbout = "brick: a virtual Turbo PMAC2 / Geo Brick LV, as RTL and as SystemC model, with its firmware";
+constexpr const char* kDefaultInstructions = "10000000000";
+
+struct Commands {
+  CLI::App app{kAbout, "brick"};
+  std::function<int()> chosen;
+
+  RunOptions run_options, exec_options;
+  std::string bench, script, elf, max_instructions = kDefaultInstructions;
+  bool negative = false, raw = false, list_json = false, boards_json = false;
+
+  Commands() {
+    app.require_subcommand(1);
+    app.footer("Exit status: 0 passed; 1 failed; 2 bad usage or bad input.");
+    app.set_version_flag("--version", std::string("brick ") + BRICK_VERSION);
+    auto* list = app.add_subcommand("list", "benches with one line each");
+    list->add_flag("--json", list_json, "as JSON");
+    list->callback([this] { chosen = [this] { return list_command(list_json); }; });
+
+    auto* run = app.add_subcommand("run", "runs a testbench: steps, verdict, simulated and wall time");
+    run->add_option("BENCH", bench, "name of the bench, see brick list")->required();
+    add_run_options(*run, run_options, "lockstep");
+    run->add_flag("--negative", negative, "negative control: a deliberate fault, with which the bench must fail");
+    run->callback([this] { chosen = [this] { return run_command(run_options, bench, negative); }; });
+
+    auto* exec = app.add_subcommand("exec", "plays a host script against the started controller, prints the replies");
+    exec->add_option("FILE", script, "host script, - = standard input")->required();
+    add_run_options(*exec, exec_options, "systemc");
+    exec->add_flag("--raw", raw, "print every byte sent by the controller, control bytes as <06>");
+    exec->footer("A script holds the controller's command lines and @wait @until @signal @pic @dpram @jumper @reset @power @expect @time.");
+    exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
+
+    auto* boards = app.add_subcommand("boards", "the boards and what is fitted");
+    boards->add_flag("--json", boards_json, "as JSON");
+    boards->callback([this] { chosen = [this] { return boards_command(boards_json); }; });
+
+    auto* cpu = app.add_subcommand("cpu", "runs a bare program on the CPU model alone, until it writes the symbol tohost");
+    cpu->add_option("FILE", elf, "RV32IMC program, FILE.elf")->required();
+    cpu->add_option("--max-instructions", max_instructions, "gives up after so many instructions")->capture_default_str();
+    cpu->callback([this] { chosen = [this] { return cpu_command(elf, parse_count("--max-instructions", max_instructions)); }; });
+  }
+};
+
+int report_usage(const std::string& where, const std::string& text) {
+  std::cerr << where << ": " << text.substr(0, text.find('\n')) << '\n';
+  return 2;
+}
+
+int main_command(int argc, char** argv) {
+  Commands commands;
+  std::string where = "brick";
+  for (const CLI::App* command : commands.app.get_subcommands(nullptr))
+    if (argc > 1 && command->get_name() == argv[1]) where += " " + command->get_name();
+  try {
+    commands.app.parse(argc, argv);
+  } catch (const CLI::Success& e) {  // --help, --version
+    return commands.app.exit(e);
+  } catch (const CLI::ParseError& e) { return report_usage(where, fmt::format("{}; expected what `{} --help` shows", e.what(), where)); }
+  try {
+    return commands.chosen();
+  } catch (const std::exception& e) {  // what is wrong during a run is caught by the commands
+    return report_usage(where, e.what());
+  }
+}
+
+}  // namespace
+}  // namespace brick
+
+int sc_main(int argc, char** argv) { return brick::main_command(argc, argv); }
+
+int main(int argc, char** argv) {
+  setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);  // stdout and stderr belong to the command
+  return sc_core::sc_elab_and_sim(argc, argv);
+}

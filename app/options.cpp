@@ -1,0 +1,114 @@
+#include "app/options.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "app/paths.h"
+#include "app/time_text.h"
+#include "app/usage_error.h"
+#include "systemc/machine/board_file.h"
+
+namespace brick {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void need_file(const std::string& option, const std::string& file, const std::string& what) {
+  if (!fs::exists(file)) throw UsageError(fmt::format("{} {}: no such file; expected {}", option, file, what));
+  if (fs::is_directory(file) || !std::ifstream(file))
+    throw UsageError(fmt::format("{} {}: cannot be read; expected {}", option, file, what));
+}
+
+void need_folder(const std::string& option, const std::string& file) {
+  const fs::path folder = fs::path(file).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder))
+    throw UsageError(fmt::format("{} {}: no such folder {}; expected an existing one", option, file, folder.string()));
+  if (fs::is_directory(file)) throw UsageError(fmt::format("{} {}: is a folder; expected a file", option, file));
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine) {
+  o.engine = engine;
+  command.add_option("--engine", o.engine, "rtl, systemc or lockstep (both, every pin compared at every tick)")->capture_default_str();
+  command.add_option("--board", o.board, "board NAME (see brick boards) or FILE.toml")->capture_default_str();
+  command.add_option("--firmware", o.firmware, "firmware image FILE.elf (default: the one built with brick)");
+  command.add_option("--wave", o.wave, "write a waveform, FILE.vcd or FILE.fst");
+  command.add_option("--wave-from", o.wave_from, "first time in the waveform, for example 10ms");
+  command.add_option("--wave-to", o.wave_to, "last time in the waveform");
+  command.add_option("--seed", o.seed, "seed of memory content at power-on and of the host's timing")->capture_default_str();
+  command.add_option("--jumper", o.jumpers, "jumper that is on: E3 (factory defaults at start); may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--flash", o.flash, "file that keeps SAVEd data between runs");
+  command.add_option("--json", o.json, "write the results to FILE");
+  command.add_option("--batch", o.batch, "longest advance in ticks, 0 = as the rules allow; changes speed only")
+      ->capture_default_str()
+      ->group("Advanced");
+}
+
+std::uint64_t parse_count(const std::string& option, const std::string& text) {
+  std::size_t used = 0;
+  try {
+    const std::uint64_t value = std::stoull(text, &used);
+    if (used == text.size() && text[0] != '-' && text[0] != '+') return value;
+  } catch (const std::exception&) {}
+  throw UsageError(fmt::format("{} {}: is no number; expected an integer of 0 or more", option, text));
+}
+
+std::string engine_name(Engine engine) { return engine == Engine::kRtl ? "rtl" : engine == Engine::kSystemC ? "systemc" : "lockstep"; }
+
+MachineConfig machine_config(const RunOptions& o) {
+  MachineConfig config;
+  if (o.engine == "rtl")
+    config.engine = Engine::kRtl;
+  else if (o.engine == "systemc")
+    config.engine = Engine::kSystemC;
+  else if (o.engine == "lockstep")
+    config.engine = Engine::kLockstep;
+  else
+    throw UsageError(fmt::format("--engine {}: no such engine; expected rtl, systemc or lockstep", o.engine));
+  config.seed = parse_count("--seed", o.seed);
+  config.batch = static_cast<Tick>(parse_count("--batch", o.batch));
+  if (config.batch < 0 || config.batch >= kNever) throw UsageError(fmt::format("--batch {}: is too large; expected ticks", o.batch));
+  for (const auto& jumper : o.jumpers) {
+    if (jumper != "E3" && jumper != "e3") throw UsageError(fmt::format("--jumper {}: no such jumper; expected E3", jumper));
+    config.jumper_e3 = true;
+  }
+  config.board = read_board_file(board_path(o.board));
+  config.firmware = o.firmware.empty() ? default_firmware() : o.firmware;
+  need_file("--firmware", config.firmware, "an ELF image for RV32");
+  config.flash_file = o.flash;
+  if (!o.flash.empty()) need_folder("--flash", o.flash);
+  if (!o.json.empty()) need_folder("--json", o.json);
+  wave_window(o);
+  return config;
+}
+
+WaveWindow wave_window(const RunOptions& o) {
+  WaveWindow window;
+  const auto read = [](const char* option, const std::string& text, TimeFs& time) {
+    if (text.empty()) return;
+    try {
+      time = parse_time(text);
+    } catch (const UsageError& e) { throw UsageError(fmt::format("{}: {}", option, e.what())); }
+  };
+  read("--wave-from", o.wave_from, window.from);
+  read("--wave-to", o.wave_to, window.to);
+  if (o.wave.empty() && (!o.wave_from.empty() || !o.wave_to.empty()))
+    throw UsageError("--wave-from and --wave-to need a waveform; expected --wave FILE.vcd or FILE.fst");
+  if (window.from > window.to) throw UsageError("--wave-from is later than --wave-to; expected the earlier time first");
+  return window;
+}
+
+void write_json(const std::string& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text << '\n';
+  out.flush();
+  if (!out) throw UsageError(fmt::format("--json {}: cannot be written; expected a writable place", file));
+}
+
+}  // namespace brick

@@ -1,0 +1,46 @@
+// Options shared by the commands that run a controller, and how they become a machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "systemc/core/ticks.h"
+#include "systemc/machine/machine.h"
+
+namespace brick {
+
+struct RunOptions {
+  std::string engine = "systemc";
+  std::string board = "geobrick-lv-8";
+  std::string firmware;  // "" = the one that belongs to this brick
+  std::string wave;
+  std::string wave_from, wave_to;
+  std::string seed = "1";
+  std::vector<std::string> jumpers;
+  std::string flash;
+  std::string json;
+  std::string batch = "0";
+};
+
+// Adds --engine, --board and so on to a command. `engine` is the default.
+void add_run_options(CLI::App& command, RunOptions& options, const std::string& engine);
+
+// Checks everything that can be checked without running; throws UsageError with one line.
+MachineConfig machine_config(const RunOptions& options);
+
+struct WaveWindow {
+  TimeFs from = 0;
+  TimeFs to = INT64_MAX;
+};
+WaveWindow wave_window(const RunOptions& options);
+
+std::uint64_t parse_count(const std::string& option, const std::string& text);  // throws UsageError
+std::string engine_name(Engine engine);
+
+// Writes the results file; throws UsageError when it cannot be written.
+void write_json(const std::string& file, const std::string& text);
+
+}  // namespace brick

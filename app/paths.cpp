@@ -1,0 +1,55 @@
+#include "app/paths.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/usage_error.h"
+
+namespace brick {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path executable_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+fs::path share_folder() { return executable_folder().parent_path() / "share" / "brick"; }
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+std::string default_firmware() {
+  const fs::path built = executable_folder() / "turbo.elf", installed = share_folder() / "turbo.elf";
+  for (const auto& path : {built, installed})
+    if (fs::exists(path)) return path.string();
+  throw UsageError(fmt::format("no firmware image; expected {} or {}, or --firmware FILE.elf", built.string(), installed.string()));
+}
+
+std::string boards_folder() {
+  const fs::path folder = share_folder() / "boards";
+  if (!fs::is_directory(folder)) throw UsageError(fmt::format("no boards folder; expected {}", folder.string()));
+  return folder.string();
+}
+
+std::vector<std::string> board_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(boards_folder()))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string board_path(const std::string& name_or_file) {
+  if (ends_with(name_or_file, ".toml")) return name_or_file;
+  const auto names = board_names();
+  if (std::find(names.begin(), names.end(), name_or_file) == names.end())
+    throw UsageError(fmt::format("--board {}: no such board; expected {} or FILE.toml", name_or_file, fmt::join(names, ", ")));
+  return (fs::path(boards_folder()) / (name_or_file + ".toml")).string();
+}
+
+}  // namespace brick

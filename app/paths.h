@@ -1,0 +1,14 @@
+// Where `brick` finds what belongs to it: beside the executable in a build folder, in share/brick when installed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace brick {
+
+std::string default_firmware();                           // turbo.elf; throws UsageError when there is none
+std::string boards_folder();                              // throws UsageError when there is none
+std::vector<std::string> board_names();                   // of the boards folder, sorted
+std::string board_path(const std::string& name_or_file);  // NAME of the boards folder, or FILE.toml
+
+}  // namespace brick

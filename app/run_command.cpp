@@ -1,0 +1,69 @@
+// `brick run BENCH`: runs a testbench, prints its steps, the verdict and the measures.
+#include <iostream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/commands.h"
+#include "app/simulation.h"
+#include "app/usage_error.h"
+#include "systemc/cosim/engines.h"
+#include "testbench/benches/bench.h"
+
+namespace brick {
+
+namespace {
+
+const Bench& need_bench(const std::string& name) {
+  if (const Bench* bench = find_bench(name)) return *bench;
+  std::vector<std::string> names;
+  for (const Bench& bench : all_benches()) names.push_back(bench.name);
+  throw UsageError(fmt::format("{}: no such bench; expected {}", name, fmt::join(names, " or ")));
+}
+
+nlohmann::json steps_json(const BenchReport& report) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const BenchStep& s : report.steps())
+    list.push_back({{"ns", tick_to_fs(s.at) / kFsPerNs}, {"name", s.name}, {"passed", s.passed}, {"detail", s.detail}});
+  return list;
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options, const std::string& name, bool negative) {
+  const Bench& bench = need_bench(name);
+  MachineConfig config = machine_config(options);
+  if (negative && bench.seed_bug) bench.seed_bug(config);
+  Simulation simulation(options, config, bench.name);
+  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine, config.board.name,
+                           config.seed, negative ? ", NEGATIVE CONTROL: " + bench.negative : "");
+  BenchReport report(std::cout, simulation.machine());
+  try {
+    simulation.run([&] {
+      const bool up = simulation.link().connect(HostLink::kBootTime);
+      report.step("controller answers", up, up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
+      if (!up) return;
+      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report, config.seed, negative};
+      bench.run(context);
+    });
+  } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
+    report.fail("host", e.what());
+  }
+  const bool passed = report.passed();
+  std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
+  if (!options.json.empty()) {
+    nlohmann::json results = simulation.measures();
+    results["bench"] = bench.name;
+    results["engine"] = options.engine;
+    results["board"] = config.board.name;
+    results["seed"] = config.seed;
+    results["negative"] = negative;
+    results["verdict"] = passed ? "PASS" : "FAIL";
+    results["steps"] = steps_json(report);
+    if (!options.wave.empty()) results["wave"] = options.wave;
+    write_json(options.json, results.dump(2));
+  }
+  return passed ? 0 : 1;
+}
+
+}  // namespace brick

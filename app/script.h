@@ -1,0 +1,47 @@
+// Host scripts: the controller's own command lines and lines that begin with `@` (docs/command.md). The whole script is
+// read and checked before anything runs; errors are UsageErrors that begin with file and line.
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <vector>
+
+#include "systemc/core/ticks.h"
+
+namespace brick {
+
+struct ScriptLine {
+  enum class Kind {
+    kCommand,
+    kControl,
+    kWait,
+    kUntil,
+    kSignal,
+    kPicRead,
+    kPicWrite,
+    kPicClear,
+    kDpramRead,
+    kDpramWrite,
+    kJumper,
+    kReset,
+    kPower,
+    kExpect,
+    kTime
+  };
+  Kind kind = Kind::kCommand;
+  unsigned number = 0;
+  std::string text;                     // command line, control characters, expected text, or the whole @ line for messages
+  std::string name;                     // signal
+  std::string value;                    // @until
+  TimeFs time = 0;                      // @wait, limit of @until
+  int mask = -1, edge_level = -1;       // @pic MSK= ELR=, -1: leave
+  std::uint32_t offset = 0, count = 0;  // @dpram
+  std::vector<std::uint16_t> words;     // @dpram, to write
+  bool on = false;                      // @jumper
+};
+
+// `file` is the name in messages.
+std::vector<ScriptLine> read_script(std::istream& in, const std::string& file);
+
+}  // namespace brick

@@ -1,0 +1,159 @@
+#include "app/script_player.h"
+
+#include <ostream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/signal_watch.h"
+#include "app/usage_error.h"
+
+namespace brick {
+
+namespace {
+
+using Kind = ScriptLine::Kind;
+
+std::string visible(const std::string& bytes) {
+  std::string text;
+  for (const unsigned char c : bytes)
+    if (c < ' ' || c >= 0x7F)
+      text += fmt::format("<{:02X}>", c);
+    else
+      text.push_back(static_cast<char>(c));
+  return text;
+}
+
+}  // namespace
+
+void ScriptPlayer::fail(const ScriptLine& line, const std::string& text) const {
+  throw ScriptFailure(fmt::format("{}:{}: {}: {}", file_, line.number, line.text, text));
+}
+
+void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
+  const Signals& signals = link_.bus().machine().signals();
+  for (const ScriptLine& line : script) {
+    if (line.kind != Kind::kSignal && line.kind != Kind::kUntil) continue;
+    try {
+      const auto id = find_signal(signals, line.name);
+      if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
+    } catch (const UsageError& e) {
+      throw UsageError(fmt::format("{}:{}: {}: {}", file_, line.number, line.kind == Kind::kUntil ? "@until" : "@signal", e.what()));
+    }
+  }
+}
+
+void ScriptPlayer::play(const std::vector<ScriptLine>& script) {
+  for (const ScriptLine& line : script) play_line(line);
+}
+
+void ScriptPlayer::answer(const ScriptLine& line, std::vector<std::string> lines, bool error) {
+  for (const auto& text : lines) out_ << text << '\n';
+  out_ << std::flush;
+  exchanges_.push_back({line.text, lines, error});
+  last_ = std::move(lines);
+}
+
+void ScriptPlayer::print_unsolicited() {
+  link_.poll();
+  for (const auto& text : link_.take_unsolicited()) out_ << text << '\n';
+  out_ << std::flush;
+}
+
+void ScriptPlayer::command(const ScriptLine& line) {
+  print_unsolicited();
+  Reply reply;
+  if (line.kind == Kind::kCommand) {
+    reply = link_.command(line.text);
+  } else {
+    for (const char c : line.value) {
+      const Reply one = link_.control(static_cast<std::uint8_t>(c));
+      reply.raw += one.raw;
+      reply.lines.insert(reply.lines.end(), one.lines.begin(), one.lines.end());
+      reply.error = reply.error || one.error;
+      reply.complete = one.complete;
+    }
+  }
+  if (!reply.complete) {
+    fail(line, reply.raw.empty() ? "no reply; expected an acknowledge or an error from the controller"
+                                 : "the reply has no end: `" + visible(reply.raw) + "`; expected an acknowledge or an error");
+  }
+  if (raw_) {
+    if (!reply.raw.empty()) out_ << visible(reply.raw) << '\n' << std::flush;
+    exchanges_.push_back({line.text, reply.lines, reply.error});
+    last_ = reply.lines;
+  } else {
+    answer(line, reply.lines, reply.error);
+  }
+}
+
+void ScriptPlayer::restart(const ScriptLine& line) {
+  Machine& machine = link_.bus().machine();
+  if (line.kind == Kind::kReset)
+    machine.reset();
+  else
+    machine.power_cycle();
+  if (!link_.connect(HostLink::kBootTime)) fail(line, "the controller does not answer after the restart; expected an acknowledge");
+}
+
+void ScriptPlayer::play_line(const ScriptLine& line) {
+  HostBus& bus = link_.bus();
+  Machine& machine = bus.machine();
+  switch (line.kind) {
+    case Kind::kCommand:
+    case Kind::kControl:
+      command(line);
+      break;
+    case Kind::kWait:
+      bus.wait(fs_to_tick(line.time));
+      print_unsolicited();
+      break;
+    case Kind::kUntil: {
+      const auto id = find_signal(machine.signals(), line.name);
+      if (!wait_signal(bus, id, signal_value_text(machine.signals(), id, line.value), fs_to_tick(line.time)))
+        fail(line, fmt::format("still {}={} at the limit; expected {}", line.name, signal_text(machine.signals(), id), line.value));
+      break;
+    }
+    case Kind::kSignal:
+      answer(line, {line.name + "=" + signal_text(machine.signals(), find_signal(machine.signals(), line.name))});
+      break;
+    case Kind::kPicRead: {
+      const HostBus::Pic p = bus.read_pic();
+      answer(line, {fmt::format("IST={:02X} SIG={:02X} MSK={:02X} ELR={:02X}", p.ist, p.sig, p.msk, p.elr)});
+      break;
+    }
+    case Kind::kPicWrite:
+      if (line.edge_level >= 0) bus.write_pic_edge_level(static_cast<std::uint8_t>(line.edge_level));
+      if (line.mask >= 0) bus.write_pic_mask(static_cast<std::uint8_t>(line.mask));
+      break;
+    case Kind::kPicClear:
+      bus.clear_pic();
+      break;
+    case Kind::kDpramRead: {
+      std::vector<std::string> words;
+      for (std::uint32_t i = 0; i < line.count; ++i) words.push_back(fmt::format("{:04X}", bus.dpram_read(line.offset + 2 * i)));
+      answer(line, {fmt::format("{}", fmt::join(words, " "))});
+      break;
+    }
+    case Kind::kDpramWrite:
+      for (std::uint32_t i = 0; i < line.count; ++i) bus.dpram_write(line.offset + 2 * i, line.words[i]);
+      break;
+    case Kind::kJumper:
+      machine.set_jumper_e3(line.on);
+      break;
+    case Kind::kReset:
+    case Kind::kPower:
+      restart(line);
+      break;
+    case Kind::kExpect: {
+      const std::string actual = fmt::format("{}", fmt::join(last_, "|"));
+      if (actual != line.value) fail(line, fmt::format("got `{}`, expected `{}`", actual, line.value));
+      break;
+    }
+    case Kind::kTime:
+      out_ << fmt::format("time={} ns\n", machine.now_fs() / kFsPerNs) << std::flush;
+      break;
+  }
+}
+
+}  // namespace brick

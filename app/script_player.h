@@ -1,0 +1,51 @@
+// Plays a host script against a running controller and prints the replies.
+#pragma once
+
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/script.h"
+#include "testbench/host/host_link.h"
+
+namespace brick {
+
+// The script asked for something that did not come true, or the controller does not answer: `brick exec` ends with status 1.
+class ScriptFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class ScriptPlayer {
+ public:
+  // `file` is the name in messages; `raw` prints every byte received, control bytes as <06>.
+  ScriptPlayer(HostLink& link, std::ostream& out, std::string file, bool raw) : link_(link), out_(out), file_(std::move(file)), raw_(raw) {}
+
+  void check(const std::vector<ScriptLine>& script) const;  // names and values of signals; throws UsageError
+  void play(const std::vector<ScriptLine>& script);
+
+  struct Exchange {
+    std::string line;
+    std::vector<std::string> reply;
+    bool error;
+  };
+  const std::vector<Exchange>& exchanges() const { return exchanges_; }
+
+ private:
+  void play_line(const ScriptLine& line);
+  void command(const ScriptLine& line);
+  void answer(const ScriptLine& line, std::vector<std::string> lines, bool error = false);
+  void restart(const ScriptLine& line);
+  void print_unsolicited();
+  [[noreturn]] void fail(const ScriptLine& line, const std::string& text) const;
+
+  HostLink& link_;
+  std::ostream& out_;
+  std::string file_;
+  bool raw_;
+  std::vector<std::string> last_;  // what @expect compares with
+  std::vector<Exchange> exchanges_;
+};
+
+}  // namespace brick

@@ -1,0 +1,114 @@
+#include "app/simulation.h"
+
+#include <unistd.h>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/usage_error.h"
+
+namespace brick {
+
+namespace {
+
+constexpr std::size_t kHostStack = 4 << 20;
+
+// The host program as a SystemC process. An exception must not cross the kernel: it is kept and thrown again outside.
+class HostThread : public sc_core::sc_module {
+ public:
+  SC_HAS_PROCESS(HostThread);
+  HostThread(sc_core::sc_module_name name, const std::function<void()>& host) : sc_module(name), host_(host) {
+    SC_THREAD(main);
+    set_stack_size(kHostStack);
+  }
+  std::exception_ptr error() const { return error_; }
+
+ private:
+  void main() {
+    try {
+      host_();
+    } catch (...) { error_ = std::current_exception(); }
+    sc_core::sc_stop();
+  }
+
+  const std::function<void()>& host_;
+  std::exception_ptr error_;
+};
+
+std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
+  try {
+    return std::make_unique<Machine>("brick", config);
+  } catch (const std::exception& e) { throw UsageError(e.what()); }
+}
+
+}  // namespace
+
+Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title)
+    : title_(std::move(title)), machine_(make_machine(config)), bus_(*machine_), link_(bus_), terminal_(isatty(STDERR_FILENO) == 1) {
+  bus_.set_heartbeat([this] { progress(); });
+  if (options.wave.empty()) return;
+  wave_ = options.wave;
+  const WaveWindow window = wave_window(options);
+  try {
+    const auto folder = std::filesystem::path(options.wave).parent_path();
+    if (!folder.empty()) std::filesystem::create_directories(folder);
+    trace_ = TraceWriter::open(options.wave, window.from, window.to);
+  } catch (const std::exception& e) { throw UsageError(fmt::format("--wave: {}", e.what())); }
+  machine_->signals().attach(trace_.get());
+}
+
+Simulation::~Simulation() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  if (machine_) machine_->signals().attach(nullptr);
+}
+
+void Simulation::run(const std::function<void()>& host) {
+  HostThread thread("host", host);
+  begin_ = last_progress_ = std::chrono::steady_clock::now();
+  sc_core::sc_set_stop_mode(sc_core::SC_STOP_IMMEDIATE);
+  sc_core::sc_start();
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (trace_) {
+    machine_->signals().attach(nullptr);
+    trace_->close();
+  }
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
+  if (thread.error()) std::rethrow_exception(thread.error());
+}
+
+void Simulation::progress() {
+  if (!terminal_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_progress_ < std::chrono::milliseconds(300)) return;
+  last_progress_ = now;
+  shown_ = true;
+  const double wall = std::chrono::duration<double>(now - begin_).count();
+  std::fputs(fmt::format("\r\033[K{}: {:.1f} ms simulated, {:.1f} M ticks/s", title_, static_cast<double>(machine_->now_fs()) * 1e-12,
+                         static_cast<double>(machine_->now()) / wall * 1e-6)
+                 .c_str(),
+             stderr);
+}
+
+nlohmann::json Simulation::measures() const {
+  const double wall = seconds_ > 0 ? seconds_ : 1e-9;
+  return {{"simulated_ns", machine_->now_fs() / kFsPerNs},
+          {"ticks", machine_->now()},
+          {"wall_seconds", seconds_},
+          {"ticks_per_second", static_cast<double>(machine_->now()) / wall},
+          {"instructions", machine_->instructions()},
+          {"instructions_per_second", static_cast<double>(machine_->instructions()) / wall}};
+}
+
+std::string Simulation::measures_text() const {
+  const double wall = seconds_ > 0 ? seconds_ : 1e-9;
+  std::string text = fmt::format(
+      "simulated {:.3f} ms in {:.2f} s: {:.2f} M ticks/s, {:.2f} M instructions/s", static_cast<double>(machine_->now_fs()) * 1e-12,
+      seconds_, static_cast<double>(machine_->now()) / wall * 1e-6, static_cast<double>(machine_->instructions()) / wall * 1e-6);
+  if (!wave_.empty()) text += fmt::format("\nwaveform {}", wave_);
+  return text;
+}
+
+}  // namespace brick

@@ -1,0 +1,49 @@
+// One run of a controller: builds the machine, opens the waveform, runs the host program as a SystemC thread, and measures.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "app/options.h"
+#include "systemc/core/trace.h"
+#include "systemc/machine/machine.h"
+#include "testbench/host/host_link.h"
+
+namespace brick {
+
+class Simulation {
+ public:
+  // Throws UsageError for everything that is wrong with board, firmware, flash or waveform file.
+  Simulation(const RunOptions& options, const MachineConfig& config, std::string title);
+  ~Simulation();
+
+  // Runs `host` to its end; what it throws comes out here. Afterwards the waveform is complete.
+  void run(const std::function<void()>& host);
+
+  Machine& machine() { return *machine_; }
+  HostBus& bus() { return bus_; }
+  HostLink& link() { return link_; }
+
+  nlohmann::json measures() const;  // simulated and wall time, ticks/s, instructions/s
+  std::string measures_text() const;
+
+ private:
+  void progress();
+  double wall_seconds() const;
+
+  std::string title_;
+  std::unique_ptr<Machine> machine_;
+  HostBus bus_;
+  HostLink link_;
+  std::unique_ptr<TraceWriter> trace_;
+  std::string wave_;
+  std::chrono::steady_clock::time_point begin_, last_progress_;
+  double seconds_ = 0;
+  bool terminal_ = false, shown_ = false;
+};
+
+}  // namespace brick
