@@ -27,10 +27,13 @@ _start:
 2:
   la a1, __bss_start
   la a2, __bss_end
-3:
+3:                              /* the linker script rounds .bss to 16 bytes */
   bgeu a1, a2, 4f
   sw zero, 0(a1)
-  addi a1, a1, 4
+  sw zero, 4(a1)
+  sw zero, 8(a1)
+  sw zero, 12(a1)
+  addi a1, a1, 16
   j 3b
 4:
   call kernel_main

@@ -1,4 +1,5 @@
-/* The few C library functions that the compiler itself may call: the image is linked without a C library. */
+/* The few C library functions that the compiler itself may call: the image is linked without a C library. Words are moved where
+ * both addresses allow it; the compiler calls these for whole structures, which are aligned. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,8 +11,22 @@ int memcmp(const void* a, const void* b, size_t bytes);
 /* The loops must not be turned back into calls of the functions they implement. */
 #define NO_PATTERN __attribute__((optimize("no-tree-loop-distribute-patterns")))
 
+typedef uint32_t __attribute__((may_alias)) word_t;
+
+enum { WORD = 4, BLOCK = 4 * WORD };
+
 NO_PATTERN void* memset(void* destination, int value, size_t bytes) {
   uint8_t* to = destination;
+  if ((uintptr_t)to % WORD == 0u) {
+    const uint32_t pattern = (uint8_t)value * 0x01010101u;
+    for (; bytes >= BLOCK; bytes -= BLOCK, to += BLOCK) {
+      word_t* words = (word_t*)(void*)to;
+      words[0] = pattern;
+      words[1] = pattern;
+      words[2] = pattern;
+      words[3] = pattern;
+    }
+  }
   while (bytes-- != 0u) *to++ = (uint8_t)value;
   return destination;
 }
@@ -19,6 +34,16 @@ NO_PATTERN void* memset(void* destination, int value, size_t bytes) {
 NO_PATTERN void* memcpy(void* destination, const void* source, size_t bytes) {
   uint8_t* to = destination;
   const uint8_t* from = source;
+  if (((uintptr_t)to | (uintptr_t)from) % WORD == 0u) {
+    for (; bytes >= BLOCK; bytes -= BLOCK, to += BLOCK, from += BLOCK) {
+      word_t* words = (word_t*)(void*)to;
+      const word_t* source_words = (const word_t*)(const void*)from;
+      words[0] = source_words[0];
+      words[1] = source_words[1];
+      words[2] = source_words[2];
+      words[3] = source_words[3];
+    }
+  }
   while (bytes-- != 0u) *to++ = *from++;
   return destination;
 }

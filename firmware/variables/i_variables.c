@@ -188,17 +188,30 @@ static void defaults(uint32_t first, uint32_t count, uint32_t source) {
   }
 }
 
+/* `copies` more blocks of 100 after the one at `first`: the same, except where the default depends on the motor or coordinate
+ * system. Looking every row up for each would double the start-up time. */
+static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
+  defaults(first, 100, source);
+  for (uint32_t block = first + 100u; block < first + 100u * (copies + 1u); block += 100u) {
+    __builtin_memcpy(&value_of[block], &value_of[first], 100u * sizeof value_of[0]);
+    __builtin_memcpy(&integer_of[block], &integer_of[first], 100u * sizeof integer_of[0]);
+  }
+  for (uint32_t offset = 0; offset < 100u; ++offset) {
+    if (i_table_entry(i_table_place(first + offset))->field == I_FIELD_NONE) continue;
+    for (uint32_t block = 1; block <= copies; ++block) defaults(first + offset + 100u * block, 1, source);
+  }
+}
+
 void i_variable_initialize(void) {
   i_table_initialize();
   const uint32_t source = i_default_clock_source();
-  for (uint32_t number = 0; number < VARIABLE_COUNT; ++number) {
-    value_of[number] = 0.0;
-    integer_of[number] = 0;
-  }
+  __builtin_memset(value_of, 0, sizeof value_of);
+  __builtin_memset(integer_of, 0, sizeof integer_of);
   directions_pending = 0;
-  defaults(0, 3300, source);
+  defaults(0, 100, source);
+  repeat(100, 31, source);
   defaults(4900, 10, source);
-  defaults(5100, 1600, source);
+  repeat(5100, 15, source);
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
     if (gate_ic_present(ic)) defaults(gate_ic_direction_variable(ic) - 7u, 50, source);
   defaults(8000, 72, source); /* at most 18 servo ICs of four channels */

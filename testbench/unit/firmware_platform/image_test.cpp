@@ -1,0 +1,100 @@
+// The image itself: start-up time, cost of an idle second, tasks, and survival without clocks.
+#include <gtest/gtest.h>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/image_board.h"
+
+namespace brick {
+namespace {
+
+class Image : public ::testing::Test {
+ protected:
+  void SetUp() override { board.fill_memory(0x5A5A5A); }  // memory holds anything at power-on
+  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+};
+
+TEST_F(Image, FirstReplyComesWithin20Milliseconds) {
+  BRICK_COVERS("CARD-3");
+  EXPECT_EQ(board.send("I6=1 I3=2 VER\r"), "1.947\r\x06");
+  EXPECT_LT(board.now_ms(), 20.0);
+  RecordProperty("first_reply_us", static_cast<int>(board.now_ms() * 1000));
+}
+
+TEST_F(Image, IdleSecondCostsLessThanTwoMillionInstructions) {
+  board.send("I6=1 I3=2\r");
+  const std::uint64_t instructions = board.instructions(), accesses = board.device_accesses();
+  board.run_ms(1000.0);
+  EXPECT_LT(board.instructions() - instructions, 2'000'000u);
+  // Nothing but watchdog strobes goes to a device: one a real-time interrupt, 2258.7 / 3 a second.
+  EXPECT_NEAR(static_cast<double>(board.device_accesses() - accesses), 752.9, 3.0);
+  RecordProperty("instructions", static_cast<int>(board.instructions() - instructions));
+}
+
+TEST_F(Image, ServoCounterAndTimersFollowTheServoClock) {
+  board.send("I6=1 I3=2 I5111=2000\r");
+  const std::uint32_t before = board.word(true, 0);
+  board.run_ms(100.0);
+  EXPECT_NEAR(board.word(true, 0) - before, 225.9, 1.0);  // 2.2587 kHz
+  const std::string timer = board.send("I5111\r");
+  EXPECT_NEAR(std::stoi(timer), 2000 - 226, 3);
+}
+
+TEST_F(Image, BackgroundReloadsTheWatchdogCounter) {
+  board.send("I6=1 I3=2 I40=100\r");
+  board.run_ms(100.0);
+  EXPECT_GT(board.word(false, 0x25), 95u);  // Y:$25
+  EXPECT_LE(board.word(false, 0x25), 100u);
+}
+
+TEST_F(Image, LongReportsArriveComplete) {
+  board.send("I6=1 I3=2\r");
+  const std::string reply = board.send("I0..8191\r", 4000.0);
+  EXPECT_EQ(std::count(reply.begin(), reply.end(), '\r'), 8192);
+  EXPECT_EQ(reply.back(), '\x06');
+  EXPECT_EQ(board.send("???\r"), "000000000800\r\x06");
+}
+
+TEST_F(Image, CommandsAreAnsweredWithoutAnyClock) {
+  BRICK_COVERS("I19-2");
+  board.set_clocks(false);
+  EXPECT_EQ(board.send("I6=1 I3=2 VER\r"), "1.947\r\x06");
+  EXPECT_EQ(board.send("???\r"), "000008000800\r\x06");
+  // The servo task runs from the cycle counter, so that timers and the watchdog go on.
+  const std::uint32_t before = board.word(true, 0);
+  const std::uint64_t strobes = board.strobes();
+  board.run_ms(100.0);
+  EXPECT_NEAR(board.word(true, 0) - before, 225.9, 3.0);
+  EXPECT_NEAR(static_cast<double>(board.strobes() - strobes), 75.3, 2.0);
+}
+
+TEST_F(Image, LosingTheClocksAtRunTimeIsNoticed) {
+  BRICK_COVERS("I19-2");
+  board.send("I6=1 I3=2\r");
+  EXPECT_EQ(board.send("???\r"), "000000000800\r\x06");
+  board.send("I7007=3\r");
+  board.set_clocks(false);
+  board.run_ms(3.0);
+  EXPECT_EQ(board.send("???\r"), "000008000800\r\x06");
+  board.send("I7007=0\r");
+  board.set_clocks(true);
+  board.run_ms(3.0);
+  EXPECT_EQ(board.send("???\r"), "000000000800\r\x06");
+}
+
+TEST_F(Image, PointerIntoNothingDoesNotStopTheController) {
+  board.send("I6=1 I3=2 M1->X:$050000,0,24\r");
+  EXPECT_EQ(board.send("M1=5\r"), "\x06");
+  EXPECT_EQ(board.send("M1\r").back(), '\x06');
+  EXPECT_EQ(board.send("VER\r"), "1.947\r\x06");
+}
+
+TEST_F(Image, SavedValuesSurviveTheResetLine) {
+  board.send("I6=1 I3=2 I17=25 P3=4.5\r");
+  EXPECT_EQ(board.send("SAVE\r", 1000.0), "\x06");
+  board.reset();
+  board.fill_memory(0x123456);
+  EXPECT_EQ(board.send("I17 P3\r", 1000.0).substr(0, 9), "25\r4.5\r\x06");
+}
+
+}  // namespace
+}  // namespace brick
