@@ -1,0 +1,177 @@
+// The two sides meet: BUSY, who waits for whom, ties, and torn 32-bit items.
+#include "testbench/unit/host/dpram_bench.h"
+
+namespace brick {
+namespace {
+
+class DpramCollisionTest : public ::testing::Test, protected DpramBench {
+ protected:
+  DpramCollisionTest() : DpramBench(make_rtl_dpram(), 32768) {
+    host_write(8, 0x0101);
+    host_write(9, 0x0909);
+  }
+  void TearDown() override { EXPECT_LOCKSTEP(both); }
+};
+
+TEST_F(DpramCollisionTest, DifferentCellsDoNotDisturbEachOther) {
+  host_start(8, false);
+  both.ref(2);
+  cpu_start_write(9, 0x5555);
+  both.ticks(4);
+  EXPECT_FALSE(cpu_busy());
+  EXPECT_FALSE(host_busy());
+  cpu_end();
+  both.ref(2);
+  host_end_write(0x6666);
+  EXPECT_EQ(cpu_read(8), 0x6666u);
+  EXPECT_EQ(cpu_read(9), 0x5555u);
+}
+
+TEST_F(DpramCollisionTest, TwoReadsOfOneCellDoNotWait) {
+  host_start(8, true);
+  both.ref();
+  cpu_start_read(8);
+  both.ticks(3);
+  EXPECT_FALSE(cpu_busy());
+  EXPECT_FALSE(host_busy());
+  EXPECT_EQ(both.get("cpu_rdata"), 0x0101u);
+  EXPECT_EQ(both.get("mem_rdata"), 0x0101u);
+}
+
+TEST_F(DpramCollisionTest, CpuWaitsForAHostWriteAndThenReadsTheNewValue) {
+  host_start(8, false);
+  both.ref();
+  cpu_start_read(8);
+  both.tick();
+  EXPECT_FALSE(cpu_busy());
+  both.tick();
+  EXPECT_TRUE(cpu_busy()) << "two edges after the strobe was first seen";
+  both.ref(5);
+  EXPECT_TRUE(cpu_busy());
+  host_end_write(0xABCD);
+  EXPECT_TRUE(cpu_busy());
+  both.tick();
+  EXPECT_FALSE(cpu_busy());
+  EXPECT_EQ(both.get("cpu_rdata"), 0xABCDu) << "data together with the end of BUSY";
+}
+
+TEST_F(DpramCollisionTest, CpuWriteWaitsForAHostRead) {
+  host_start(8, true);
+  both.ref();
+  cpu_start_write(8, 0x7777);
+  both.ticks(9);
+  EXPECT_TRUE(cpu_busy());
+  EXPECT_EQ(both.get("mem_rdata"), 0x0101u);
+  host_end_read();
+  both.tick();
+  EXPECT_FALSE(cpu_busy());
+  cpu_end();
+  both.ticks(2);
+  EXPECT_EQ(host_read(8), 0x7777u);
+}
+
+TEST_F(DpramCollisionTest, HostWaitsForACpuWriteAndThenReadsTheNewValue) {
+  cpu_start_write(8, 0x4321);
+  both.ref();
+  host_start(8, true);
+  both.ref();
+  EXPECT_TRUE(host_busy());
+  EXPECT_FALSE(cpu_busy());
+  both.ref(4);
+  EXPECT_TRUE(host_busy()) << "as long as the CPU's strobe is low";
+  cpu_end();
+  both.ref(2);
+  EXPECT_FALSE(host_busy());
+  EXPECT_EQ(both.get("mem_rdata"), 0x4321u);
+}
+
+TEST_F(DpramCollisionTest, HostWriteWaitsForACpuRead) {
+  cpu_start_read(8);
+  both.ref();
+  host_start(8, false);
+  both.ref(3);
+  EXPECT_TRUE(host_busy());
+  EXPECT_EQ(both.get("cpu_rdata"), 0x0101u);
+  cpu_end();
+  both.ref(2);
+  EXPECT_FALSE(host_busy());
+  host_end_write(0x2468);
+  EXPECT_EQ(cpu_read(8), 0x2468u);
+}
+
+TEST_F(DpramCollisionTest, RequestsThatMeetAtOneEdgeGoToTheCpu) {
+  // The host's request meets its first clk_ref edge at tick T. The CPU's strobe, first sampled at tick T - 1, is ready at T too;
+  // sampled at T it is ready one tick later.
+  for (const int lead : {1, 0}) {
+    cpu_end();
+    both.in.mem_sel = false;
+    both.ref(3);
+    if (lead == 1) {
+      both.ticks(1);
+      cpu_start_write(8, 0x1000);
+      both.ticks(1);
+    } else {
+      both.ticks(2);
+      cpu_start_write(8, 0x2000);
+    }
+    host_start(8, false);
+    both.tick();
+    ASSERT_TRUE(is_ref_edge(both.now()));
+    both.tick();
+    EXPECT_EQ(host_busy(), lead == 1);
+    EXPECT_EQ(cpu_busy(), lead == 0);
+  }
+}
+
+TEST_F(DpramCollisionTest, CpuStrobeThatEndsWhileBusyDoesNothing) {
+  host_start(8, false);
+  both.ref();
+  cpu_start_write(8, 0x9999);
+  both.ticks(6);
+  EXPECT_TRUE(cpu_busy());
+  cpu_end();
+  both.ticks(3);
+  EXPECT_FALSE(cpu_busy());
+  host_end_write(0x8888);
+  EXPECT_EQ(host_read(8), 0x8888u) << "the CPU went on without /TA: its write is lost";
+}
+
+TEST_F(DpramCollisionTest, HostCommandThatEndsWhileBusyDoesNothing) {
+  cpu_start_read(8);
+  both.ref();
+  host_start(8, false);
+  both.ref();
+  EXPECT_TRUE(host_busy());
+  host_end_write(0x8888);
+  EXPECT_FALSE(host_busy());
+  cpu_end();
+  both.ref();
+  EXPECT_EQ(host_read(8), 0x0101u);
+}
+
+TEST_F(DpramCollisionTest, A32BitItemTears) {
+  // $00010002 becomes $00030004 while the host reads low half, then high half.
+  cpu_write(8, 0x0002);
+  cpu_write(9, 0x0001);
+  const unsigned low = host_read(8);
+  cpu_write(8, 0x0004);
+  cpu_write(9, 0x0003);
+  const unsigned high = host_read(9);
+  EXPECT_EQ(high << 16 | low, 0x00030002u) << "neither the old nor the new value";
+  EXPECT_EQ(host_read(9) << 16 | host_read(8), 0x00030004u) << "a second reading tells";
+}
+
+TEST_F(DpramCollisionTest, NobodyWaitsForLongerThanTheOthersStrobe) {
+  host_start(8, false);
+  both.ref();
+  const Tick from = both.now();
+  cpu_start_read(8);
+  both.ref(9);  // a host memory command is low for 240 ns, about nine clk_ref
+  host_end_write(1);
+  both.tick();
+  EXPECT_FALSE(cpu_busy());
+  EXPECT_LE(both.now() - from, ns_to_ticks(2100)) << "design limit of 2.1 us (t10)";
+}
+
+}  // namespace
+}  // namespace brick

@@ -1,0 +1,155 @@
+// Registers, flags, interrupts and commands of the host port. The data paths are in host_port_data_test.cpp.
+#include "testbench/unit/host/host_port_bench.h"
+
+namespace brick {
+namespace {
+
+TEST_F(HostPortTest, ResetValuesAreThoseOfTheDataSheet) {
+  const unsigned host[] = {0x00, 0x32, 0x06, 0x0F, 0x00, 0x00, 0x00, 0x00};
+  for (std::uint8_t addr = 0; addr < 8; ++addr) EXPECT_EQ(host_peek(addr), host[addr]) << "+" << int{addr};
+  EXPECT_EQ(cpu_peek(kHcr), 0u);
+  EXPECT_EQ(cpu_peek(kHsr), 0x3202u) << "HTDE, and the command number 0x32 in bits 14..8";
+  EXPECT_EQ(cpu_peek(kHpcr), 0u);
+  EXPECT_EQ(cpu_peek(kHbar), 0x80u);
+  EXPECT_EQ(cpu_peek(kHorx), 0u);
+  EXPECT_EQ(cpu_peek(kHotx), 0u);
+  EXPECT_EQ(both_.get("hreq"), 0u);
+  EXPECT_EQ(both_.get("irq"), 0u);
+}
+
+TEST_F(HostPortTest, HostRegistersHoldTheirBits) {
+  for (unsigned bit = 0; bit < 8; ++bit) {
+    host_write(kIcr, 1u << bit);
+    EXPECT_EQ(host_peek(kIcr), (1u << bit) & 0x3F) << "bit 6 is 0, INIT falls by itself";
+    host_write(kIcr, 0);
+    host_write(kCvr, 1u << bit);
+    EXPECT_EQ(host_peek(kCvr), 1u << bit);
+    host_write(kIvr, 1u << bit);
+    EXPECT_EQ(host_peek(kIvr), 1u << bit);
+    host_write(kIsr, 1u << bit);
+    EXPECT_EQ(isr(), 0x06u) << "read only";
+    host_write(kUnused, 1u << bit);
+    EXPECT_EQ(host_peek(kUnused), 0u);
+  }
+}
+
+TEST_F(HostPortTest, CpuRegistersHoldTheirBits) {
+  for (unsigned bit = 0; bit < 24; ++bit) {
+    const std::uint32_t one = 1u << bit;
+    cpu_write(kHcr, one);
+    EXPECT_EQ(cpu_peek(kHcr), one & 0x1F);
+    cpu_write(kHcr, 0);
+    cpu_write(kHpcr, one);
+    EXPECT_EQ(cpu_peek(kHpcr), one & 0xFF7F);
+    cpu_write(kHbar, one);
+    EXPECT_EQ(cpu_peek(kHbar), one & 0xFF);
+    cpu_write(kHorx, one);
+    EXPECT_EQ(cpu_peek(kHorx), 0u) << "read only";
+    cpu_write(kHsr, one & ~4u);
+    EXPECT_EQ(cpu_peek(kHsr), 0x3202u) << "read only but for bit 2";
+  }
+  for (std::uint8_t addr = 0; addr < 64; ++addr)
+    if (addr < kHcr || addr > kHotx) { EXPECT_EQ(cpu_peek(addr), 0u) << "nothing at X:$FFFFC0 + " << int{addr}; }
+}
+
+TEST_F(HostPortTest, WithoutSelectNothingHappens) {
+  both_.in.hp_wr = both_.in.dsp_we = true;
+  both_.in.hp_wdata = 0xFF;
+  both_.in.dsp_addr = kHcr;
+  both_.in.dsp_wdata = 0x1F;
+  both_.ref(2);
+  EXPECT_EQ(host_peek(kIcr), 0u);
+  EXPECT_EQ(cpu_peek(kHcr), 0u);
+}
+
+TEST_F(HostPortTest, FlagsCrossInBothDirections) {
+  for (unsigned flags = 0; flags < 4; ++flags) {
+    host_write(kIcr, flags << 3);
+    EXPECT_EQ(hsr() & (kHf0 | kHf1), flags << 3) << "HF1, HF0";
+    cpu_write(kHcr, flags << 3);
+    EXPECT_EQ(isr() & (kHf2 | kHf3), flags << 3) << "HF3, HF2";
+  }
+}
+
+TEST_F(HostPortTest, HreqIsRxdfOrTxdeAsEnabled) {
+  for (unsigned enable = 0; enable < 4; ++enable) {
+    for (const bool rxdf : {false, true}) {
+      for (const bool txde : {false, true}) {
+        both_.reset();
+        host_write(kIcr, enable);
+        if (rxdf) {
+          cpu_write(kHotx, 1);
+          both_.ref();
+        }
+        if (!txde) {  // the second word stays in TX
+          host_send(1);
+          both_.ref();
+          host_send(2);
+          both_.ref();
+        }
+        const bool expected = ((enable & kRreq) && rxdf) || ((enable & kTreq) && txde);
+        EXPECT_EQ(both_.get("hreq"), expected ? 1u : 0u) << enable << rxdf << txde;
+        EXPECT_EQ(isr() & kHreq, expected ? kHreq : 0u);
+      }
+    }
+  }
+}
+
+TEST_F(HostPortTest, CpuInterruptFollowsItsThreeSources) {
+  cpu_write(kHcr, 2);
+  EXPECT_EQ(both_.get("irq"), 1u) << "HTIE and HTDE";
+  cpu_write(kHcr, 1);
+  EXPECT_EQ(both_.get("irq"), 0u);
+  host_send('A');
+  both_.ref();
+  EXPECT_EQ(both_.get("irq"), 1u) << "HRIE and HRDF";
+  cpu_read(kHorx);
+  EXPECT_EQ(both_.get("irq"), 0u);
+  cpu_write(kHcr, 4);
+  host_write(kCvr, 0x80 | 0x25);
+  EXPECT_EQ(both_.get("irq"), 1u) << "HCIE and HCP";
+}
+
+TEST_F(HostPortTest, HostCommandPendsUntilTheCpuTakesIt) {
+  host_write(kCvr, 0x80 | 0x25);
+  EXPECT_EQ(cpu_peek(kHsr), 0x2506u) << "HV = 0x25, HCP, HTDE";
+  cpu_write(kHsr, 0xFFFFFB);
+  EXPECT_EQ(host_peek(kCvr), 0xA5u) << "only bit 2 takes it";
+  cpu_write(kHsr, 4);
+  EXPECT_EQ(host_peek(kCvr), 0x25u);
+  EXPECT_EQ(hsr() & kHcp, 0u);
+}
+
+TEST_F(HostPortTest, CommandWrittenAtTheMomentOfTakingIsNotLost) {
+  host_write(kCvr, 0x80 | 0x25);
+  both_.in.dsp_sel = both_.in.dsp_we = true;
+  both_.in.dsp_addr = kHsr;
+  both_.in.dsp_wdata = 4;
+  host_write(kCvr, 0x80 | 0x26);
+  both_.in.dsp_sel = both_.in.dsp_we = false;
+  EXPECT_EQ(host_peek(kCvr), 0xA6u);
+}
+
+TEST_F(HostPortTest, RandomAccessesOfBothSidesAgree) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    random_run(seed, 6000);
+    ASSERT_EQ(both_.difference(), "") << "seed " << seed;
+  }
+}
+
+TEST_F(HostPortTest, ComparisonSeesAnIgnoredInit) {
+  both_.mutate = [](HostPort::Inputs& in) {
+    if (in.hp_addr == kIcr) in.hp_wdata &= 0x7F;
+  };
+  random_run(2, 6000);
+  EXPECT_NE(both_.difference(), "");
+}
+
+TEST_F(HostPortTest, ComparisonSeesRxFreedByTheWrongByte) {
+  both_.mutate = [](HostPort::Inputs& in) { in.hp_rd_done = in.hp_rd_done && in.hp_addr != kData7; };
+  random_run(2, 6000);
+  EXPECT_NE(both_.difference(), "");
+}
+
+}  // namespace
+}  // namespace brick

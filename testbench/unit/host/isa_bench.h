@@ -1,0 +1,111 @@
+// ISA slave under test: both twins, and host cycles with tick resolution. The blocks behind it are played by the test: the
+// host port answers 0xA0 + address, the interrupt controller 0xB0 + address.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "systemc/host/isa_slave.h"
+#include "testbench/unit/covers.h"
+#include "testbench/unit/host/lockstep.h"
+
+namespace brick {
+
+class IsaBench {
+ public:
+  using Inputs = IsaSlave::Inputs;
+
+  IsaBench(std::unique_ptr<RtlBlock<Inputs>> rtl, const IsaSlave::Config& config)
+      : model("isa_slave", config), both(std::move(rtl), model, [](const IsaSlave& m) {
+          return Outputs{{"isa_sd", m.isa_sd()},     {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
+                         {"hp_sel", m.hp_sel()},     {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
+                         {"hp_addr", m.hp_addr()},   {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
+                         {"pic_wr", m.pic_wr()},     {"pic_addr", m.pic_addr()},       {"pic_wdata", m.pic_wdata()},
+                         {"mem_sel", m.mem_sel()},   {"mem_rd", m.mem_rd()},           {"mem_wr", m.mem_wr()},
+                         {"mem_addr", m.mem_addr()}, {"mem_be", m.mem_be()},           {"mem_wdata", m.mem_wdata()}};
+        }) {}
+
+  IsaSlave model;
+  Lockstep<IsaSlave> both;
+
+  // What a block behind the slave saw at a clk_ref edge.
+  struct Strobe {
+    std::string what;
+    unsigned addr, data;
+    friend std::ostream& operator<<(std::ostream& out, const Strobe& s) {
+      return out << s.what << " " << std::hex << s.addr << " " << s.data << std::dec;
+    }
+    bool operator==(const Strobe& o) const { return what == o.what && addr == o.addr && data == o.data; }
+  };
+  std::vector<Strobe> strobes;
+
+  void tick() {
+    both.in.hp_rdata = static_cast<std::uint8_t>(0xA0 + both.get("hp_addr"));
+    both.in.pic_rdata = static_cast<std::uint8_t>(0xB0 + both.get("pic_addr"));
+    if (is_ref_edge(both.now() + 1)) {  // the edge about to come sees them
+      if (both.get("hp_wr")) strobes.push_back({"hp_wr", both.get("hp_addr"), both.get("hp_wdata")});
+      if (both.get("hp_rd_done")) strobes.push_back({"hp_rd", both.get("hp_addr"), 0});
+      if (both.get("pic_wr") && both.get("pic_sel")) strobes.push_back({"pic_wr", both.get("pic_addr"), both.get("pic_wdata")});
+      if (both.get("mem_wr")) strobes.push_back({"mem_wr", both.get("mem_addr"), both.get("mem_wdata") | both.get("mem_be") << 16});
+    }
+    both.tick();
+  }
+  void ticks(int n) {
+    for (int i = 0; i < n; ++i) tick();
+  }
+
+  // Whole cycles: address 90 ns before the command (11 ticks), I/O command 530 ns (63 ticks), memory 240 ns (28 ticks), hold 25 ns
+  // (3 ticks), then the pins hold something else.
+  std::uint16_t io_read(unsigned address) { return cycle(address, &Inputs::isa_ior_n, 63, 0); }
+  void io_write(unsigned address, unsigned value) { cycle(address, &Inputs::isa_iow_n, 63, value); }
+  std::uint16_t mem_read(unsigned address) { return cycle(address, &Inputs::isa_memr_n, 28, 0); }
+  void mem_write(unsigned address, unsigned value) { cycle(address, &Inputs::isa_memw_n, 28, value); }
+
+  std::uint16_t cycle(unsigned address, bool Inputs::*command, int width, unsigned value) {
+    both.in.isa_sa = address;
+    both.in.isa_sd = static_cast<std::uint16_t>(value);
+    ticks(11);
+    both.in.*command = false;
+    ticks(width);
+    const auto data = static_cast<std::uint16_t>(both.get("isa_sd"));
+    both.in.*command = true;
+    ticks(3);
+    both.in.isa_sd = static_cast<std::uint16_t>(~value);
+    both.in.isa_sa = ~address & 0xFFFFF;
+    ticks(12);
+    return data;
+  }
+
+  void random_run(unsigned seed, int ticks) {
+    std::mt19937 random(seed);
+    both.lazy = seed % 2;
+    int left = 5;
+    bool low = false;
+    bool Inputs::*const commands[] = {&Inputs::isa_ior_n, &Inputs::isa_iow_n, &Inputs::isa_memr_n, &Inputs::isa_memw_n};
+    for (int i = 0; i < ticks && both.difference().empty(); ++i) {
+      auto& in = both.in;
+      if (--left <= 0) {
+        for (const auto command : commands) in.*command = true;
+        low = !low;
+        if (low) {
+          in.*commands[random() % 4] = false;
+          if (random() % 50 == 0) in.*commands[random() % 4] = false;  // no host does this; both must still agree
+        } else {
+          in.isa_sa = random() % 4 ? 0x210 + random() % 16 : 0xD0000 + random() % 0x10000;
+          if (random() % 16 == 0) in.isa_sa ^= 1u << random() % 20;
+          in.isa_sd = static_cast<std::uint16_t>(random());
+          in.isa_aen = random() % 8 == 0;
+          in.isa_sbhe_n = random() % 2;
+        }
+        left = 1 + static_cast<int>(random() % 24);
+      }
+      if (both.now() % kTicksPerRef == 0) {
+        in.mem_busy = both.get("mem_sel") && random() % 3 == 0;
+        in.mem_rdata = static_cast<std::uint16_t>(random());
+      }
+      tick();
+    }
+  }
+};
+
+}  // namespace brick

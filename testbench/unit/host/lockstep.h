@@ -1,0 +1,99 @@
+// A model and its Verilated twin, driven with the same inputs and compared at every tick, outputs and combinational reads
+// alike. It also holds the model to its promise: next_event() must not be later than the next change of an output.
+#pragma once
+
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "systemc/core/model_block.h"
+#include "testbench/unit/host/rtl_block.h"
+
+namespace brick {
+
+template <class Model>
+class Lockstep {
+ public:
+  using Inputs = typename Model::Inputs;
+  using Show = Outputs (*)(const Model&);
+
+  Lockstep(std::unique_ptr<RtlBlock<Inputs>> rtl, Model& model, Show show) : rtl_(std::move(rtl)), model_(model), show_(show) {
+    model_.reset(0);
+  }
+
+  Inputs in;
+  std::function<void(Inputs&)> mutate;  // negative controls: distorts what the model sees
+  bool lazy = false;                    // executes the model's edges only when it asks for them, or when its inputs change
+
+  void tick() {
+    apply();
+    const Outputs before = rtl_->outputs();
+    const Tick promised = model_.next_event();
+    ++now_;
+    rtl_->clock(is_ref_edge(now_));
+    if (!lazy || promised <= now_) model_.advance(now_);
+    compare();
+    if (rtl_->outputs() != before && promised > now_) note("outputs changed, but next_event() said tick " + std::to_string(promised));
+  }
+  void ticks(int n) {
+    for (int i = 0; i < n; ++i) tick();
+  }
+  // Through the next edge of clk_ref, n times.
+  void ref(int n = 1) {
+    for (Tick end = next_ref_edge(now_) + (n - 1) * kTicksPerRef; now_ < end;) tick();
+  }
+  void reset() {
+    apply();
+    rtl_->reset();
+    model_.reset(now_);
+    compare();
+  }
+
+  // An output as it stands with the present inputs.
+  std::uint32_t get(std::string_view name) {
+    apply();
+    for (const auto& [key, value] : rtl_->outputs())
+      if (key == name) return value;
+    throw std::logic_error("no output " + std::string(name));
+  }
+
+  Tick now() const { return now_; }
+  // First difference of the two, "" while they agree.
+  const std::string& difference() const { return difference_; }
+
+ private:
+  void apply() {
+    model_.advance(now_);  // edges that were left out belong to the old inputs
+    model_.in = in;
+    if (mutate) mutate(model_.in);
+    rtl_->drive(in);
+    compare();
+  }
+  void compare() {
+    if (!difference_.empty()) return;
+    const Outputs rtl = rtl_->outputs(), model = show_(model_);
+    for (std::size_t i = 0; i < rtl.size(); ++i) {
+      if (rtl[i].second == model[i].second) continue;
+      std::ostringstream text;
+      text << std::hex << rtl[i].first << ": RTL " << rtl[i].second << ", model " << model[i].second;
+      return note(text.str());
+    }
+  }
+  void note(const std::string& text) {
+    if (difference_.empty()) difference_ = "tick " + std::to_string(now_) + ": " + text;
+  }
+
+  std::unique_ptr<RtlBlock<Inputs>> rtl_;
+  Model& model_;
+  Show show_;
+  Tick now_ = 0;
+  std::string difference_;
+};
+
+// The engines agreed up to here.
+#define EXPECT_LOCKSTEP(pair) EXPECT_EQ((pair).difference(), "")
+
+}  // namespace brick

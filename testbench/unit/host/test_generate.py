@@ -1,0 +1,46 @@
+"""The freshness check must fail on a stale or missing header; the generated files in the tree must be fresh."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+GENERATE = ROOT / "rtl/regs/generate.py"
+
+
+def run(*arguments):
+    return subprocess.run([sys.executable, GENERATE, *arguments], stdout=subprocess.PIPE, text=True)
+
+
+NAMES = ("rtl/regs/brick_regs_pkg.sv", "rtl/regs/brick_regs.h", "rtl/regs/brick_regs.hpp", "docs/registers.md")
+
+
+class StaleFiles(unittest.TestCase):
+    def test_each_file_is_watched(self):
+        with tempfile.TemporaryDirectory() as tree:
+            self.assertEqual(run("--output", tree).returncode, 0)
+            self.assertEqual(run("--check", "--output", tree).returncode, 0)
+            for name in NAMES:
+                file = Path(tree) / name
+                self.assertIn("3038D2", file.read_text())
+                file.write_text(file.read_text().replace("3038D2", "3008D2", 1))
+            self.assert_stale(tree)
+            for name in NAMES:
+                (Path(tree) / name).unlink()
+            self.assert_stale(tree)
+
+    def assert_stale(self, tree):
+        done = run("--check", "--output", tree)
+        self.assertEqual(done.returncode, 1)
+        for name in NAMES:
+            self.assertIn(f"{name} is stale", done.stdout)
+
+
+if __name__ == "__main__":
+    try:
+        import systemrdl  # noqa: F401
+    except ImportError:
+        print("skipped: Python package systemrdl-compiler is not installed")
+        sys.exit(77)
+    unittest.main()
