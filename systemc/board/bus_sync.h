@@ -45,7 +45,7 @@ class BusSync : public sc_core::sc_module, public ModelBlock {
   }
 
   void advance(Tick t) override {
-    for (Tick edge = next_ref_edge(now_), n = 0; edge <= t && n < 2; edge += kTicksPerRef, ++n) {  // two edges empty the pipe
+    if (next_ref_edge(now_) <= t) {  // more than one such edge only when the pipe stands still
       where2_ = where1_;
       where1_ = where0_;
       wdata1_ = wdata0_;

@@ -193,5 +193,21 @@ TEST_P(BoardOn, WatchdogIsHeldByStrobesAndServoEdgesAndTripsWithoutEither) {
   EXPECT_EQ(rig.get(pin::kWdTripped), 0u);
 }
 
+// Either edge of SERVO counts: the last one here is a fall, 10 ms after the rise.
+TEST_P(BoardOn, WatchdogCountsFromTheLastServoEdgeOfEitherDirection) {
+  constexpr Tick kMs = kPwmClockHz / 1000;
+  rig.in.ext_clock = true;
+  for (const bool level : {false, true, false}) {
+    rig.in.ext_servo = level;
+    rig.apply();
+    rig.run(10 * kMs);
+    rig.write(true, kWatchdogStrobe, 0);
+  }
+  const Tick last_edge = rig.now() - 10 * kMs;
+  const Tick trip = rig.edge(pin::kWdTripped, 1);
+  EXPECT_GE(trip - last_edge, 24 * kMs);
+  EXPECT_LE(trip - last_edge, 25 * kMs);
+}
+
 }  // namespace
 }  // namespace brick

@@ -120,6 +120,10 @@ class Stimulus {
         break;
       case 3:
         in_.pa_wr_n = in_.pa_rd_n = true;
+        if (in_.pa_int && one_in(2)) {  // the CPU may show something else before the strobe is seen high
+          in_.pa_int = one_in(2);
+          in_.pa_addr = between(0, 9);
+        }
         break;
       default:
         if (!one_in(4)) in_.pa_aa = 0;
@@ -151,7 +155,7 @@ class Stimulus {
       case 3:
         in_.pa_int = true;
         in_.pa_x = true;
-        in_.pa_addr = between(0, 9);
+        in_.pa_addr = one_in(2) ? 6 : between(0, 9);  // HORX: its read has a side effect
         break;
       case 4:
         in_.pa_aa = 4;
