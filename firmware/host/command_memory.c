@@ -2,31 +2,18 @@
 #include "firmware/hal/hal.h"
 #include "firmware/host/command_tables.h"
 #include "firmware/host/reply.h"
-#include "firmware/kernel/kernel.h"
 #include "firmware/language/expression.h"
 #include "firmware/variables/variables.h"
+#include "firmware/variables/words.h"
 
 typedef enum { FORM_X, FORM_Y, FORM_L, FORM_D } form_t;
 
 enum { COUNT_LIMIT = 64 };
-#define PHASE_PERIOD_REGISTER 0xFFFF8Cu
-
-/* Words that answer on this board; anything else reads 0 and swallows what is written. */
-static bool exists(uint32_t address) {
-  return address < 0x040000u || (address >= 0x060000u && address < 0x064000u) || (address >= 0x078000u && address < 0x07C000u);
-}
-
-static uint32_t read_x(uint32_t address) {
-  if (address == PHASE_PERIOD_REGISTER) return kernel_phase_period() / 2u;
-  return exists(address) ? *hal_x(address) & HAL_WORD_MASK : 0u;
-}
-
-static uint32_t read_y(uint32_t address) { return exists(address) ? *hal_y(address) & HAL_WORD_MASK : 0u; }
 
 static void report_word(form_t form, bool hex, uint32_t address) {
   const uint32_t state = hal_mask_servo();
-  const uint32_t x = form == FORM_Y ? 0u : read_x(address);
-  const uint32_t y = form == FORM_X ? 0u : read_y(address);
+  const uint32_t x = form == FORM_Y ? 0u : word_read(true, address);
+  const uint32_t y = form == FORM_X ? 0u : word_read(false, address);
   hal_unmask(state);
   const struct float48 word = {x, y};
   if (form == FORM_X || form == FORM_Y) {
@@ -46,24 +33,23 @@ static void report_word(form_t form, bool hex, uint32_t address) {
 }
 
 static void write_word(form_t form, uint32_t address, double value) {
-  if (!exists(address)) return;
   const int64_t whole = (int64_t)(value < 0.0 ? value - 0.5 : value + 0.5);
   const struct float48 word = float48_pack(value);
   const uint32_t state = hal_mask_servo();
   switch (form) {
     case FORM_X:
-      *hal_x(address) = (uint32_t)whole & HAL_WORD_MASK;
+      word_write(true, address, (uint32_t)whole);
       break;
     case FORM_Y:
-      *hal_y(address) = (uint32_t)whole & HAL_WORD_MASK;
+      word_write(false, address, (uint32_t)whole);
       break;
     case FORM_D:
-      *hal_x(address) = (uint32_t)(whole >> 24) & HAL_WORD_MASK;
-      *hal_y(address) = (uint32_t)whole & HAL_WORD_MASK;
+      word_write(true, address, (uint32_t)(whole >> 24));
+      word_write(false, address, (uint32_t)whole);
       break;
     default:
-      *hal_x(address) = word.x;
-      *hal_y(address) = word.y;
+      word_write(true, address, word.x);
+      word_write(false, address, word.y);
       break;
   }
   hal_unmask(state);

@@ -8,8 +8,10 @@
 #include "firmware/variables/variables.h"
 
 #define SERVO_COUNTER 0x000000u
-#define WATCHDOG_COUNTER 0x000025u /* Y: counter, X: lowest value since reset */
-enum { WATCHDOG_DEFAULT = 4095 };
+#define TASK_DURATIONS 0x000037u      /* Y: servo task, X: phase task, in half CPU cycles */
+#define REAL_TIME_DURATIONS 0x00000Bu /* X: last, Y: longest real-time task */
+#define WATCHDOG_COUNTER 0x000025u    /* Y: counter, X: lowest value since reset */
+enum { WATCHDOG_DEFAULT = 4095, PHASE_CYCLES = 40 /* of the short path in boot/trap.S, with entry and return */ };
 
 volatile uint32_t kernel_phase_stamp, kernel_phase_work;
 
@@ -18,6 +20,7 @@ static volatile int32_t watchdog;      /* S decrements, B reloads with S held of
 static int32_t watchdog_lowest;        /* S */
 static uint32_t real_time_prescaler;   /* S */
 static volatile bool real_time_active; /* R */
+static uint32_t real_time_longest;     /* R, cycles */
 
 void tasks_initialize(void) {
   servo_count = 0;
@@ -28,6 +31,8 @@ void tasks_initialize(void) {
   kernel_watchdog_reload();
   *hal_x(WATCHDOG_COUNTER) = (uint32_t)watchdog;
   watchdog_lowest = watchdog;
+  real_time_longest = 0;
+  *hal_x(TASK_DURATIONS) = PHASE_CYCLES / 2;
 }
 
 uint32_t kernel_servo_count(void) { return servo_count; }
@@ -53,6 +58,7 @@ static void count_watchdog(void) {
 }
 
 void kernel_servo_interrupt(void) {
+  const uint32_t began = hal_cycles();
   const uint32_t count = servo_count + 1u;
   servo_count = count;
   *hal_x(SERVO_COUNTER) = count & HAL_WORD_MASK;
@@ -63,13 +69,21 @@ void kernel_servo_interrupt(void) {
     if (real_time_active) kernel_status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
     hal_request_real_time();
   }
+  *hal_y(TASK_DURATIONS) = ((hal_cycles() - began) / 2u) & HAL_WORD_MASK;
   if (hal_servo_pending()) kernel_status_set(STATUS_SERVO_ERROR);
 }
 
 void kernel_real_time_interrupt(void) {
+  const uint32_t began = hal_cycles();
   real_time_active = true;
   motion_real_time_update();
   if (watchdog >= 0) hal_watchdog_strobe();
   kernel_wake_background();
+  const uint32_t took = hal_cycles() - began; /* with the tasks that interrupted it */
+  *hal_x(REAL_TIME_DURATIONS) = (took / 2u) & HAL_WORD_MASK;
+  if (took > real_time_longest) {
+    real_time_longest = took;
+    *hal_y(REAL_TIME_DURATIONS) = (took / 2u) & HAL_WORD_MASK;
+  }
   real_time_active = false;
 }

@@ -5,6 +5,7 @@
 
 #include "firmware/hal/hal.h"
 #include "firmware/variables/variables.h"
+#include "firmware/variables/words.h"
 
 #define M_MEMORY 0x004000u
 
@@ -32,68 +33,68 @@ static double read_part(uint32_t word, const struct m_definition* definition) {
   return (double)value;
 }
 
-static void write_part(volatile uint32_t* word, const struct m_definition* definition, double value) {
+static void write_part(bool x, const struct m_definition* definition, double value) {
   const uint32_t mask = definition->width < 24u ? (1u << definition->width) - 1u : HAL_WORD_MASK;
   const uint32_t bits = (uint32_t)(int64_t)(value < 0.0 ? value - 0.5 : value + 0.5) & mask;
-  if (mask == HAL_WORD_MASK) {
-    *word = bits;
-    return;
+  const uint32_t kept = mask == HAL_WORD_MASK ? 0u : word_read(x, definition->address) & ~(mask << definition->lsb);
+  word_write(x, definition->address, kept | (bits << definition->lsb));
+}
+
+static double read_value(const struct m_definition* definition) {
+  const uint32_t address = definition->address;
+  if (definition->form == M_FORM_NONE) return (double)hal_signed(address);
+  const uint32_t x = definition->form == M_FORM_Y ? 0u : word_read(true, address);
+  const uint32_t y = definition->form == M_FORM_X ? 0u : word_read(false, address);
+  const struct float48 word = {x, y};
+  switch (definition->form) {
+    case M_FORM_X:
+      return read_part(x, definition);
+    case M_FORM_Y:
+      return read_part(y, definition);
+    case M_FORM_D:
+      return (double)(((int64_t)hal_signed(x) * 16777216) + (int64_t)y);
+    case M_FORM_DP:
+      return (double)(int32_t)(((x & 0xFFFFu) << 16) | (y & 0xFFFFu));
+    default:
+      return float48_unpack(word);
   }
-  const uint32_t state = hal_mask_servo();
-  *word = ((*word & ~(mask << definition->lsb)) | (bits << definition->lsb)) & HAL_WORD_MASK;
-  hal_unmask(state);
 }
 
 double m_variable_read(uint32_t number) {
   if (number >= VARIABLE_COUNT) return 0.0;
+  const uint32_t state = hal_mask_servo(); /* the servo task moves positions of two words */
   const struct m_definition definition = m_variable_definition(number);
-  const uint32_t address = definition.address;
-  switch (definition.form) {
-    case M_FORM_X:
-      return read_part(*hal_x(address) & HAL_WORD_MASK, &definition);
-    case M_FORM_Y:
-      return read_part(*hal_y(address) & HAL_WORD_MASK, &definition);
-    case M_FORM_D:
-      return (double)(((int64_t)hal_signed(*hal_x(address)) * 16777216) + (int64_t)(*hal_y(address) & HAL_WORD_MASK));
-    case M_FORM_L: {
-      const struct float48 word = {*hal_x(address) & HAL_WORD_MASK, *hal_y(address) & HAL_WORD_MASK};
-      return float48_unpack(word);
-    }
-    case M_FORM_DP:
-      return (double)(int32_t)(((*hal_x(address) & 0xFFFFu) << 16) | (*hal_y(address) & 0xFFFFu));
-    default:
-      return (double)hal_signed(address);
-  }
+  const double value = read_value(&definition);
+  hal_unmask(state);
+  return value;
+}
+
+static void write_long(uint32_t address, uint32_t x, uint32_t y) {
+  word_write(true, address, x);
+  word_write(false, address, y);
 }
 
 void m_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT) return;
   if (!(value < 140737488355328.0)) value = 140737488355327.0;
   if (!(value > -140737488355328.0)) value = -140737488355328.0;
-  const struct m_definition definition = m_variable_definition(number);
-  const uint32_t address = definition.address;
   const int64_t whole = (int64_t)(value < 0.0 ? value - 0.5 : value + 0.5);
-  const uint32_t state = hal_mask_real_time();
+  const struct float48 word = float48_pack(value);
+  const uint32_t state = hal_mask_servo();
+  const struct m_definition definition = m_variable_definition(number);
   switch (definition.form) {
     case M_FORM_X:
-      write_part(hal_x(address), &definition, value);
-      break;
     case M_FORM_Y:
-      write_part(hal_y(address), &definition, value);
+      write_part(definition.form == M_FORM_X, &definition, value);
       break;
     case M_FORM_D:
-      *hal_x(address) = (uint32_t)(whole >> 24) & HAL_WORD_MASK;
-      *hal_y(address) = (uint32_t)whole & HAL_WORD_MASK;
+      write_long(definition.address, (uint32_t)(whole >> 24), (uint32_t)whole);
       break;
-    case M_FORM_L: {
-      const struct float48 word = float48_pack(value);
-      *hal_x(address) = word.x;
-      *hal_y(address) = word.y;
+    case M_FORM_L:
+      write_long(definition.address, word.x, word.y);
       break;
-    }
     case M_FORM_DP:
-      *hal_y(address) = (uint32_t)whole & 0xFFFFu;
-      *hal_x(address) = (uint32_t)(whole >> 16) & 0xFFFFu;
+      write_long(definition.address, (uint32_t)(whole >> 16) & 0xFFFFu, (uint32_t)whole & 0xFFFFu);
       break;
     default:
       *hal_y(M_MEMORY + number) = (uint32_t)whole & HAL_WORD_MASK;

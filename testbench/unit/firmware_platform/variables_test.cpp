@@ -289,6 +289,15 @@ TEST(MVariables, PointAtPartsOfWords) {
   EXPECT_EQ(c.line("M5 RHD$10F2"), "0.25|FFFFFFFFFFFF");
 }
 
+TEST(MVariables, WordsThatDoNotExistReadZero) {
+  Controller c;
+  EXPECT_EQ(c.line("M1->X:$050000,0,24 M1=5 M1"), "0");
+  EXPECT_EQ(c.line("RX$050000 RHL$04FFFF"), "0|000000000000");
+  // X:$FFFF8C: half the CPU cycles of a phase period, 13057 / 117.9648 MHz at 78.6432 MHz.
+  EXPECT_EQ(c.line("M2->X:$FFFF8C,0,24 M2"), std::to_string(13057 * 8 / 12 / 2));
+  EXPECT_EQ(c.line("WX$60010,$1234,$5678 RHX$60010,2"), "1234 5678");
+}
+
 TEST(ConfigurationError, IsReportedWhenTheIcSetDiffersFromTheSavedOne) {
   Controller c(kServoIc0);
   c.line("SAVE");
