@@ -42,9 +42,9 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
         throw ScriptFailure("the controller does not answer after power-on; expected an acknowledge within 500 ms");
       player.play(script);
     });
-  } catch (const ScriptFailure& e) { failure = e.what(); } catch (const LockstepDifference& e) {
+  } catch (const std::exception& e) {  // the script, the engines or the bus: bad input was found before
     failure = e.what();
-  } catch (const HostBusError& e) { failure = e.what(); }
+  }
   if (!failure.empty()) std::cerr << "brick exec: " << failure << '\n';
   if (!options.json.empty()) {
     nlohmann::json results = simulation.measures();
