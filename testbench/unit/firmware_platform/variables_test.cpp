@@ -33,6 +33,16 @@ TEST(IVariables, GlobalDefaults) {
   EXPECT_EQ(c.line("I90..99"), "$39|$4|$FF|$7F|$A0|$7|$A1|$0|$60|$30");
 }
 
+// I10 = 640/9 (2 I7000 + 3)(I7001 + 1)(I7002 + 1): for the defaults 3713991.1, the factory dump shows the integer part.
+TEST(IVariables, ServoPeriodAgreesWithTheDefaultDividers) {
+  BRICK_COVERS("CLK-4");
+  Controller c;
+  const int i7000 = i_integer(7000), i7001 = i_integer(7001), i7002 = i_integer(7002);
+  EXPECT_EQ(i_integer(10), 640 * (2 * i7000 + 3) * (i7001 + 1) * (i7002 + 1) / 9);
+  c.line("I7002=7");
+  EXPECT_EQ(i_integer(10), 3713991);  // the firmware does not follow the dividers by itself
+}
+
 TEST(IVariables, RotaryPointsTake23Bits) {
   BRICK_COVERS("I17-1 I18-1");
   Controller c;
