@@ -9,10 +9,18 @@
 
 namespace brick {
 
-struct RtlOptions { std::uint64_t seed = 1; bool seeded_bug = false; };
+struct RtlOptions {
+  // 0: all flip-flops and memories start as zero. Else they start at random, by this seed: reset must bring the flip-flops to
+  // where the model is, while memory differs from the model's until it is written.
+  std::uint64_t seed = 0;
+  bool seeded_bug = false;  // negative control, see rtl/board/board_sim.sv
+};
 
+// Throws std::runtime_error when no Verilated variant has all the ICs of `fitted`.
 std::unique_ptr<Board> make_rtl_board(std::uint32_t fitted, const RtlOptions& options = {});
 std::unique_ptr<Board> make_model_board(std::uint32_t fitted);  // systemc/board/board_top.h, the SystemC model
+
+// Runs both and compares every pin at every tick. run_until() throws LockstepDifference at the first difference.
 std::unique_ptr<Board> make_lockstep_board(std::unique_ptr<Board> rtl, std::unique_ptr<Board> model);
 
 // The two engines disagree: what() names the tick, the simulated time, every differing signal with both values and the

@@ -1,0 +1,123 @@
+// A Verilated board behind the Board face: two clocks, one evaluation a tick, changes of pins found by comparing the packed
+// words. A template over the Verilated class, because each set of built ICs is a class of its own.
+#pragma once
+
+#include <verilated.h>
+#ifdef BRICK_RTL_COVERAGE
+#include <verilated_cov.h>
+#endif
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "systemc/cosim/engines.h"
+
+namespace brick {
+
+// A clock must be seen low before its next rising edge, which costs a second evaluation that does nothing, since no
+// flip-flop works on falling edges. Verilator remembers the level of each clock in a public member of its root object:
+// clearing that member does the same for nothing. Its name differs between versions; where none fits we evaluate.
+template <class Root>
+auto forget_clocks(Root& root, int) -> decltype(root.__Vtrigrprev__TOP__clk_pwm_i = 0, root.__Vtrigrprev__TOP__clk_ref_i = 0, true) {
+  root.__Vtrigrprev__TOP__clk_pwm_i = root.__Vtrigrprev__TOP__clk_ref_i = 0;
+  return true;
+}
+template <class Root>
+auto forget_clocks(Root& root, long)
+    -> decltype(root.__Vtrigprevexpr___TOP__clk_pwm_i__0 = 0, root.__Vtrigprevexpr___TOP__clk_ref_i__0 = 0, true) {
+  root.__Vtrigprevexpr___TOP__clk_pwm_i__0 = root.__Vtrigprevexpr___TOP__clk_ref_i__0 = 0;
+  return true;
+}
+template <class Root>
+bool forget_clocks(Root&, ...) {
+  return false;
+}
+
+template <class Model>
+class RtlBoard : public Board {
+ public:
+  RtlBoard(std::uint32_t fitted, const RtlOptions& options) : fitted_(fitted) {
+    context_.randReset(options.seed == 0 ? 0 : 2);
+    context_.randSeed(static_cast<int>(options.seed % 0x7FFFFFFF));
+    model_ = std::make_unique<Model>(&context_, "");
+    model_->seeded_bug_i = options.seeded_bug;
+    // Asynchronous reset acts on an edge of rst_ni, so it must have been high once. Power-on is tick 0, in reset.
+    BoardInputs start;
+    start.fitted = fitted;
+    start.rst_n = true;
+    set_inputs(start);
+    model_->eval();
+    start.rst_n = false;
+    set_inputs(start);
+    model_->eval();
+    for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = model_->pins_o[i];
+  }
+  ~RtlBoard() override {
+#ifdef BRICK_RTL_COVERAGE
+    if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
+#endif
+    model_->final();
+  }
+
+  Tick now() const override { return now_; }
+  const BoardOutputs& outputs() const override { return outputs_; }
+
+  void set_inputs(const BoardInputs& in) override {
+    Model& m = *model_;
+    m.rst_ni = in.rst_n;
+    m.pa_addr_i = in.pa_addr & 0x7FFFF;
+    m.pa_x_i = in.pa_x;
+    m.pa_aa_i = in.pa_aa & 0xF;
+    m.pa_int_i = in.pa_int;
+    m.pa_rd_ni = in.pa_rd_n;
+    m.pa_wr_ni = in.pa_wr_n;
+    m.pa_wdata_i = in.pa_wdata & 0xFFFFFF;
+    m.isa_sa_i = in.isa_sa & 0xFFFFF;
+    m.isa_sd_i = in.isa_sd;
+    m.isa_ior_ni = in.isa_ior_n;
+    m.isa_iow_ni = in.isa_iow_n;
+    m.isa_memr_ni = in.isa_memr_n;
+    m.isa_memw_ni = in.isa_memw_n;
+    m.isa_aen_i = in.isa_aen;
+    m.isa_sbhe_ni = in.isa_sbhe_n;
+    m.fitted_i = in.fitted & fitted_;
+    m.ext_clock_i = in.ext_clock;
+    m.ext_phase_i = in.ext_phase;
+    m.ext_servo_i = in.ext_servo;
+  }
+
+  Tick run_until(Tick limit, const BoardOutputs& stop_on) override {
+    Model& m = *model_;
+    Tick to_ref = kTicksPerRef - now_ % kTicksPerRef;
+    while (now_ < limit) {
+      ++now_;
+      m.clk_pwm_i = 1;
+      if (--to_ref == 0) {
+        m.clk_ref_i = 1;
+        to_ref = kTicksPerRef;
+      }
+      m.eval();
+      m.clk_pwm_i = 0;
+      m.clk_ref_i = 0;
+      if (!forget_clocks(*m.rootp, 0)) m.eval();
+      const auto& pins = m.pins_o;
+      if (__builtin_expect(((pins[0] ^ outputs_.w[0]) | (pins[1] ^ outputs_.w[1]) | (pins[2] ^ outputs_.w[2])) != 0, 0)) {
+        const BoardOutputs before = outputs_;
+        for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = pins[i];
+        if (on_change) on_change(now_, before, outputs_);
+        if (before.differs(outputs_, stop_on)) break;
+      }
+    }
+    return now_;
+  }
+
+ private:
+  VerilatedContext context_;
+  std::unique_ptr<Model> model_;
+  std::uint32_t fitted_;
+  BoardOutputs outputs_;
+  Tick now_ = 0;
+};
+
+}  // namespace brick

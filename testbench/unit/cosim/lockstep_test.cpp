@@ -1,0 +1,118 @@
+// The two engines are one machine: random traffic on all pins, compared at every tick; and lock-step reports a difference.
+#include <gmock/gmock.h>
+
+#include "systemc/cosim/engines.h"
+#include "testbench/unit/cosim/board_traffic.h"
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kTwoServoIcs = 0x3;
+
+std::unique_ptr<Board> lockstep(const RtlOptions& options = {}) {
+  return make_lockstep_board(make_rtl_board(kTwoServoIcs, options), make_model_board(kTwoServoIcs));
+}
+
+void play(Board& board, BoardTraffic& traffic, Tick end) {
+  while (traffic.next() < end) {
+    board.run_until(traffic.next());
+    traffic.change();
+    board.set_inputs(traffic.inputs());
+  }
+  board.run_until(end);
+}
+
+class WholeBoard : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(WholeBoard, IsEqualAtEveryTickUnderDenseTraffic) {
+  BRICK_COVERS("CARD-1 CARD-2 CARD-6");
+  auto board = lockstep();
+  BoardTraffic traffic(GetParam());
+  ASSERT_NO_THROW(play(*board, traffic, 300'000));
+  EXPECT_EQ(board->now(), 300'000);
+}
+
+TEST_P(WholeBoard, IsEqualAtEveryTickOverLongPauses) {
+  BRICK_COVERS("CARD-1 CARD-2 CARD-6");
+  auto board = lockstep();
+  BoardTraffic traffic(GetParam() + 1000, {200, false});
+  ASSERT_NO_THROW(play(*board, traffic, 1'500'000));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, WholeBoard, ::testing::Range<std::uint64_t>(1, 9));
+
+TEST(Lockstep, StopsAtTheSelectedEdgeAsTheEnginesDo) {
+  auto board = lockstep();
+  BoardInputs in;
+  start_clocks(*board, in);
+  const BoardOutputs select = select_pins(pin::kPhase);
+  Tick falls = 0, last = 0;
+  while (falls < 4) {
+    const bool before = board->outputs().get(pin::kPhase) != 0;
+    const Tick t = board->run_until(10'000'000, select);
+    ASSERT_LT(t, 10'000'000);
+    ASSERT_NE(board->outputs().get(pin::kPhase) != 0, before);
+    if (before) {
+      // Phase period at reset values, servo-ic.md section 3: (2 I7000 + 3) (I7001 + 1) ticks, I7000 = 6527, I7001 = 0.
+      if (++falls > 1) { EXPECT_EQ(t - last, 2 * 6527 + 3); }
+      last = t;
+    }
+  }
+}
+
+TEST(Lockstep, ReportsTheSeededBugWithSignalTickAndAccesses) {
+  BRICK_COVERS("CARD-6");
+  // The true fifth fall of SERVO, from the model alone.
+  auto model = make_model_board(kTwoServoIcs);
+  BoardInputs in;
+  start_clocks(*model, in);
+  Tick fall = 0;
+  for (int falls = 0; falls < 5;) {
+    fall = model->run_until(100'000'000, select_pins(pin::kServo));
+    if (model->outputs().get(pin::kServo) == 0) ++falls;
+  }
+
+  auto board = lockstep({0, true});
+  BoardInputs again;
+  start_clocks(*board, again);
+  try {
+    board->run_until(fall + 1000);
+    FAIL() << "the seeded bug was not seen";
+  } catch (const LockstepDifference& e) {
+    const std::string text = e.what();
+    EXPECT_THAT(text, ::testing::HasSubstr("differ at tick " + std::to_string(fall) + " "));
+    EXPECT_THAT(text, ::testing::HasSubstr("\n  clock.servo: rtl 1, systemc 0"));
+    EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("clock.phase:")));
+    EXPECT_THAT(text, ::testing::HasSubstr("last bus accesses:\n  tick           30  reset released\n"
+                                           "  tick           36  CPU  write X:$078004 = $3008D2 AA=2"));
+  }
+}
+
+TEST(Lockstep, RandomStartValuesOfFlipFlopsAreGoneAfterReset) {
+  BRICK_COVERS("CARD-6");
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    auto board = lockstep({seed, false});
+    BoardInputs in;
+    in.rst_n = true;
+    board->run_until(30);
+    board->set_inputs(in);
+    ASSERT_NO_THROW(board->run_until(200'000)) << "seed " << seed;
+  }
+}
+
+TEST(RtlEngine, SaysThatNoVariantHasTheFittedIcs) {
+  EXPECT_THROW(
+      {
+        try {
+          make_rtl_board(0x7);
+        } catch (const std::runtime_error& e) {
+          EXPECT_THAT(e.what(), ::testing::HasSubstr("$000007"));
+          throw;
+        }
+      },
+      std::runtime_error);
+}
+
+}  // namespace
+}  // namespace brick
