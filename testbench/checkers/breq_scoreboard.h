@@ -66,7 +66,7 @@ class BreqScoreboard {
   void stored(Tick now);
   void decide_pulse(Tick now);
   void violate(Tick now, const std::string& text);
-  bool edge_since(Tick from) const { return last_edge_ >= from; }
+  bool edge_since(Tick from) const { return last_edge_ > from; }
 
   Tick line_time_;
   unsigned i16_ = 5, i17_ = 10;

@@ -1,0 +1,79 @@
+#include "testbench/unit/app/fake_machine.h"
+
+#include <algorithm>
+
+namespace brick {
+
+struct Machine::Impl {
+  FakeMachine fake;
+  Tick now = 0;
+  BoardInputs pins, applied;
+  BoardOutputs outputs;
+  Signals signals;
+  std::vector<BusCycle> cycles;
+};
+
+namespace {
+FakeMachine* newest = nullptr;
+}
+
+FakeMachine& FakeMachine::last() { return *newest; }
+
+Machine::Machine(sc_core::sc_module_name name, const MachineConfig&) : sc_module(name), impl_(std::make_unique<Impl>()) {
+  newest = &impl_->fake;
+  impl_->outputs.set(pin::kIsaIochrdy, 1);
+}
+Machine::~Machine() = default;
+
+Tick Machine::now() const { return impl_->now; }
+BoardInputs& Machine::inputs() { return impl_->pins; }
+const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
+Signals& Machine::signals() { return impl_->signals; }
+const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->cycles; }
+
+Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) {
+  Impl& m = *impl_;
+  while (m.now < limit) {
+    const BoardOutputs before = m.outputs;
+    ++m.now;
+    if (!m.fake.planned.empty() && m.fake.planned.front().first <= m.now) {
+      m.outputs = m.fake.planned.front().second;
+      m.fake.planned.erase(m.fake.planned.begin());
+    }
+    m.outputs.set(pin::kIsaIochrdy, m.now < m.fake.ready_low_from || m.now >= m.fake.ready_low_to);
+    if (before.differs(m.outputs, stop_on)) break;
+  }
+  return m.now;
+}
+
+void Machine::apply() {
+  Impl& m = *impl_;
+  FakeMachine& f = m.fake;
+  f.changes.push_back({m.now + 1, m.applied, m.pins});
+  const std::uint32_t offset = m.pins.isa_sa - 0x210, word = m.pins.isa_sa - 0xD0000;
+  if (m.applied.isa_ior_n && !m.pins.isa_ior_n) {
+    std::uint8_t value = f.io[offset];
+    if (offset == 2) value = static_cast<std::uint8_t>(0x02 | (f.to_host.empty() ? 0 : 1));
+    if (offset == 7) value = f.to_host.empty() ? 0 : f.to_host.front();
+    m.outputs.set(pin::kIsaSd, 0xFF00u | value);
+  }
+  if (!m.applied.isa_ior_n && m.pins.isa_ior_n && offset == 7 && !f.to_host.empty()) f.to_host.pop_front();
+  if (!m.applied.isa_memr_n && m.pins.isa_memr_n) m.outputs.set(pin::kIsaSd, 0xFFFF);
+  if (m.applied.isa_memr_n && !m.pins.isa_memr_n) m.outputs.set(pin::kIsaSd, f.memory[word]);
+  if (!m.applied.isa_memw_n && m.pins.isa_memw_n) f.memory[word] = m.pins.isa_sd;
+  if (!m.applied.isa_iow_n && m.pins.isa_iow_n) {
+    f.io[offset] = static_cast<std::uint8_t>(m.pins.isa_sd);
+    if (offset == 7 && m.pins.isa_sd == '\r') {
+      const std::string answer = f.controller ? f.controller(f.line) : "";
+      f.to_host.insert(f.to_host.end(), answer.begin(), answer.end());
+      f.line.clear();
+    } else if (offset == 7) {
+      f.line.push_back(static_cast<char>(m.pins.isa_sd));
+    }
+  }
+  m.applied = m.pins;
+}
+
+}  // namespace brick
+
+int sc_main(int, char**) { return 0; }  // libsystemc asks for it

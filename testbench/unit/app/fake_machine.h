@@ -1,0 +1,32 @@
+// A machine of pins alone, linked instead of the real one: records when the host changes a pin, and answers I/O reads from a
+// host port with a scripted controller behind it. Outputs appear at once.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "systemc/machine/machine.h"
+
+namespace brick {
+
+struct FakeMachine {
+  struct Change {
+    Tick seen;
+    BoardInputs before, after;
+  };  // `seen`: the first edge that sees it
+  std::vector<Change> changes;
+  std::deque<std::uint8_t> to_host;                           // characters of the controller
+  std::string line;                                           // characters of the host up to CR
+  std::function<std::string(const std::string&)> controller;  // line without CR -> bytes of the answer
+  std::map<std::uint32_t, std::uint8_t> io;                   // other I/O bytes by offset, written and read back
+  std::map<std::uint32_t, std::uint16_t> memory;
+  std::vector<std::pair<Tick, BoardOutputs>> planned;   // outputs from that edge on, in order
+  Tick ready_low_from = kNever, ready_low_to = kNever;  // IOCHRDY
+
+  static FakeMachine& last();  // of the Machine made last
+};
+
+}  // namespace brick

@@ -1,0 +1,76 @@
+// Host scripts: what is read, and that every error says file and line, what, and what was expected.
+#include "app/script.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "app/time_text.h"
+#include "app/usage_error.h"
+
+namespace brick {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Kind = ScriptLine::Kind;
+
+std::vector<ScriptLine> read(const std::string& text) {
+  std::istringstream in(text);
+  return read_script(in, "job.txt");
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    read(text);
+  } catch (const UsageError& e) { return e.what(); }
+  return "no error";
+}
+
+TEST(Script, ReadsEveryKindOfLine) {
+  const auto s = read(
+      "VERSION\n\n  &2DEFINE ROTARY 50  \r\n^A^X\n@wait 2.5us\n@until host.breq=1 50ms\n@signal clock.phase\n@pic\n"
+      "@pic MSK=02 ELR=00\n@pic clear\n@dpram 0x1050 6\n@dpram 4176 = 12 FFFF\n@jumper E3 on\n@reset\n@power\n"
+      "@expect 1|2 3\n@expect\n@time\n");
+  std::vector<Kind> kinds;
+  for (const auto& line : s) kinds.push_back(line.kind);
+  EXPECT_EQ(kinds, (std::vector<Kind>{Kind::kCommand, Kind::kCommand, Kind::kControl, Kind::kWait, Kind::kUntil, Kind::kSignal,
+                                      Kind::kPicRead, Kind::kPicWrite, Kind::kPicClear, Kind::kDpramRead, Kind::kDpramWrite, Kind::kJumper,
+                                      Kind::kReset, Kind::kPower, Kind::kExpect, Kind::kExpect, Kind::kTime}));
+  EXPECT_EQ(s[1].text, "&2DEFINE ROTARY 50");
+  EXPECT_EQ(s[1].number, 3u);
+  EXPECT_EQ(s[2].value, std::string("\x01\x18"));
+  EXPECT_EQ(s[3].time, 2'500'000'000);
+  EXPECT_EQ(s[4].name, "host.breq");
+  EXPECT_EQ(s[4].value, "1");
+  EXPECT_EQ(s[7].mask, 2);
+  EXPECT_EQ(s[7].edge_level, 0);
+  EXPECT_EQ(s[9].offset, 0x1050u);
+  EXPECT_EQ(s[9].count, 6u);
+  EXPECT_EQ(s[10].offset, 0x1050u);
+  EXPECT_EQ(s[10].words, (std::vector<std::uint16_t>{0x12, 0xFFFF}));
+  EXPECT_EQ(s[14].value, "1|2 3");
+  EXPECT_EQ(s[15].value, "");
+}
+
+TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
+  for (const char* bad : {"@wait",    "@wait 10",         "@wait ten ms",   "@until breq 5ms", "@until breq=1",      "@until breq=1 5",
+                          "@signal",  "@pic MSK=100",     "@pic FOO=1",     "@dpram 1 2",      "@dpram 65536 1",     "@dpram 65534 2",
+                          "@dpram 0", "@dpram 0 = 10000", "@dpram 0 =",     "@jumper E4 on",   "@jumper E3 perhaps", "@reset now",
+                          "@frob",    "@input USER1=0",   "@encoder 1 100", "@jpan FPD=1"})
+    EXPECT_THAT(error_of(std::string("VERSION\n") + bad), AllOf(HasSubstr("job.txt:2: @"), HasSubstr("expected"))) << bad;
+}
+
+TEST(Script, PinsThatDoNotExistAreNamedAsSuch) { EXPECT_THAT(error_of("@input USER1=0"), HasSubstr("not available on this board")); }
+
+TEST(TimeText, IsExact) {
+  EXPECT_EQ(parse_time("1ns"), 1'000'000);
+  EXPECT_EQ(parse_time("0.5ns"), 500'000);
+  EXPECT_EQ(parse_time("10ms"), 10'000'000'000'000);
+  EXPECT_EQ(parse_time("1.25s"), 1'250'000'000'000'000);
+  for (const char* bad : {"", "ms", "10", "10 ms", "-1ms", "1.2.3ms", "10m", "1e3s", "99999s"})
+    EXPECT_THROW(parse_time(bad), UsageError) << bad;
+}
+
+}  // namespace
+}  // namespace brick
