@@ -268,6 +268,61 @@ TEST_F(CpuMemory, NarrowStoresIntoCodeReachInstructionsAroundThem) {
   }
 }
 
+// The three below run without a look from outside, so that the look-up tables stay filled: a routine at `place` is
+// called, changed by a store of the program itself, and called again.
+class CpuSelfModifying : public CpuMemory {
+ protected:
+  // The routine sets a2, to 1 before the change and to 0x7FE after it.
+  void call_change_call(std::uint32_t place, const std::vector<rv::Word>& routine, rv::Word store, std::uint32_t where,
+                        std::uint32_t what) {
+    put(kCode, {store, rv::jalr(rv::ra, rv::a0, 0), rv::add(rv::a4, rv::a2, 0), store, rv::jalr(rv::ra, rv::a0, 0), rv::ebreak()});
+    for (std::size_t i = 0; i < routine.size(); ++i) {
+      put_half(place + 4 * static_cast<std::uint32_t>(i), static_cast<std::uint16_t>(routine[i]));
+      put_half(place + 4 * static_cast<std::uint32_t>(i) + 2, static_cast<std::uint16_t>(routine[i] >> 16));
+    }
+    jump(kCode);
+    cpu.set_reg(rv::a0, place);
+    cpu.set_reg(rv::a3, where - 0x40);  // the first store goes beside, the second into the routine
+    cpu.set_reg(rv::s0, what);
+    steps(2 + static_cast<int>(routine.size()));  // store, call, routine
+    EXPECT_EQ(cpu.reg(rv::a2), 1u);
+    EXPECT_EQ(cpu.pc(), kCode + 8);
+    cpu.set_reg(rv::a3, where);
+    steps(3 + static_cast<int>(routine.size()));  // copy, store, call, routine
+    EXPECT_EQ(cpu.reg(rv::a2), 0x7FEu);
+    EXPECT_EQ(cpu.pc(), kCode + 20);
+  }
+};
+
+const rv::Word kOne = rv::addi(rv::a2, 0, 1), kOther = rv::addi(rv::a2, 0, 0x7FE);
+
+TEST_F(CpuSelfModifying, APageThatTurnsFromDataToCodeIsWatched) {
+  call_change_call(kData + 0x100, {kOne, rv::jalr(0, rv::ra, 0)}, rv::sw(rv::s0, rv::a3, 0), kData + 0x100, kOther);
+}
+
+TEST_F(CpuSelfModifying, StoresIntoAKnownCodePageInvalidateEachTime) {
+  call_change_call(kCode + 0x100, {kOne, rv::jalr(0, rv::ra, 0)}, rv::sw(rv::s0, rv::a3, 0), kCode + 0x100, kOther);
+}
+
+TEST_F(CpuSelfModifying, ASecondHalfInANeighbourPageIsWatched) {
+  // The routine is one jump back whose second half, with the distance in it, lies in the next page.
+  const rv::Word back = rv::jalr(0, rv::ra, 0), further = rv::jalr(0, rv::ra, 8);
+  put(kCode, {rv::jalr(rv::ra, rv::a0, 0), rv::sh(rv::s0, rv::a3, 0), rv::sh(rv::s0, rv::s1, 0), rv::jalr(rv::ra, rv::a0, 0), rv::ebreak(),
+              rv::ebreak(), rv::nop()});
+  const std::uint32_t place = kData + 0xFFE;
+  put_half(place, static_cast<std::uint16_t>(back));
+  put_half(place + 2, static_cast<std::uint16_t>(back >> 16));
+  jump(kCode);
+  cpu.set_reg(rv::a0, place);
+  cpu.set_reg(rv::a3, place + 0x42);  // brings the neighbour page into the table of stores
+  cpu.set_reg(rv::s0, further >> 16);
+  cpu.set_reg(rv::s1, place + 2);
+  steps(2);
+  EXPECT_EQ(cpu.pc(), kCode + 4);
+  steps(4);
+  EXPECT_EQ(cpu.pc(), kCode + 16 + 8) << "the changed distance";
+}
+
 TEST_F(CpuMemory, FullInstructionAcrossAPageRunsAndContinues) {
   jump(kCode + 0xFFA);
   const rv::Word w = rv::addi(rv::a2, rv::a2, 3);

@@ -153,6 +153,9 @@ TEST_F(CpuTrap, EntrySavesStateAndMretBringsItBack) {
   execute(rv::mret());
   EXPECT_EQ(cpu.pc(), kCode + 0x40) << "mepc is the ecall itself";
   EXPECT_EQ(csr(rv::mstatus), 0x1888u) << "MPIE moves to MIE and becomes 1";
+  set_csr(rv::mstatus, 0x8);
+  execute(rv::mret());
+  EXPECT_EQ(csr(rv::mstatus), 0x1880u) << "MPIE was 0";
 }
 
 TEST_F(CpuTrap, ExceptionsIgnoreVectoredMode) {
