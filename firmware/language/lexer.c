@@ -56,13 +56,13 @@ bool lexer_number(struct lexer* lx, double* value) {
   const char* text = lx->at;
   uint64_t sum = 0;
   unsigned digits = 0, decimals = 0;
-  double scale = 1.0;
+  unsigned zeros = 0; /* digits before the point that were not kept */
   for (; is_digit(*text); text++) {
     if (digits < NUMBER_DIGITS) {
       sum = sum * 10u + (uint64_t)(*text - '0');
       if (sum != 0) digits++;
     } else {
-      scale *= 10.0;
+      zeros++;
     }
   }
   if (*text == '.' && text[1] != '.') { /* two points are a range such as I0..99 */
@@ -74,7 +74,9 @@ bool lexer_number(struct lexer* lx, double* value) {
     }
   }
   lx->at = text;
-  *value = (double)sum * scale / POWER_OF_TEN[decimals];
+  *value = sum <= UINT32_MAX ? (double)(uint32_t)sum : (double)sum; /* the short conversion is much the faster one */
+  if (decimals != 0) *value /= POWER_OF_TEN[decimals];
+  for (; zeros > 0 && *value <= LEXER_CONSTANT_LIMIT * 1e18; zeros--) *value *= 10.0;
   return true;
 }
 

@@ -15,14 +15,57 @@ union bits {
 
 enum { EXPONENT_BIAS = 1023, FRACTION_BITS = 52 };
 
+#define FRACTION_MASK ((UINT64_C(1) << FRACTION_BITS) - 1u)
+
 double math_absolute(double x) { return x < 0.0 ? -x : x; }
 
 int64_t math_to_integer(double x) {
-  const double limit = 4611686018427387904.0;
-  if (x >= limit) return INT64_C(1) << 62;
-  if (x <= -limit) return -(INT64_C(1) << 62);
-  int64_t whole = (int64_t)x;
-  return (double)whole > x ? whole - 1 : whole;
+  union bits b = {x};
+  bool negative = (b.word >> 63) != 0;
+  int exponent = (int)((b.word >> FRACTION_BITS) & 0x7FFu) - EXPONENT_BIAS;
+  uint64_t significand = (b.word & FRACTION_MASK) | (FRACTION_MASK + 1u);
+  if (exponent >= 62) return negative ? -(INT64_C(1) << 62) : INT64_C(1) << 62;
+  if (exponent < 0) return negative && (b.word << 1) != 0 ? -1 : 0;
+  if (exponent >= FRACTION_BITS) {
+    int64_t whole = (int64_t)(significand << (unsigned)(exponent - FRACTION_BITS));
+    return negative ? -whole : whole;
+  }
+  unsigned below = (unsigned)(FRACTION_BITS - exponent);
+  int64_t whole = (int64_t)(significand >> below);
+  bool fraction = (significand & ((UINT64_C(1) << below) - 1u)) != 0;
+  return negative ? -whole - (fraction ? 1 : 0) : whole;
+}
+
+double math_from_fixed(int64_t mantissa, int exponent) {
+  if (mantissa == 0) return 0.0;
+  union bits b;
+  bool negative = mantissa < 0;
+  uint64_t magnitude = negative ? 0u - (uint64_t)mantissa : (uint64_t)mantissa;
+  int top = 63 - __builtin_clzll(magnitude); /* at most 2^53: nothing is rounded */
+  b.word = (magnitude << (unsigned)(FRACTION_BITS - top)) & FRACTION_MASK;
+  b.word |= (uint64_t)(unsigned)(top + exponent + EXPONENT_BIAS) << FRACTION_BITS;
+  if (negative) b.word |= UINT64_C(1) << 63;
+  return b.value;
+}
+
+bool math_to_fixed(double x, unsigned bits, int64_t* mantissa, int* exponent) {
+  union bits b = {x};
+  int biased = (int)((b.word >> FRACTION_BITS) & 0x7FFu);
+  *mantissa = 0;
+  *exponent = 0;
+  if (biased == 0) return true;
+  unsigned below = (unsigned)FRACTION_BITS + 1u - bits;
+  uint64_t significand = (b.word & FRACTION_MASK) | (FRACTION_MASK + 1u);
+  uint64_t lost = significand & ((UINT64_C(1) << below) - 1u);
+  int64_t m = (int64_t)(significand >> below);
+  *exponent = biased - (EXPONENT_BIAS - 1);
+  if (lost >> (below - 1u)) m++;
+  if (m >> bits) { /* rounded up to the next power of two */
+    m >>= 1;
+    ++*exponent;
+  }
+  *mantissa = (b.word >> 63) ? -m : m;
+  return lost == 0;
 }
 
 double math_floor(double x) {

@@ -62,6 +62,15 @@ static bool skip_brackets(struct lexer* lx) {
   return true;
 }
 
+/* An axis letter with its value. Looked for first: no keyword goes on with a number, and these are most of all statements. */
+static bool axis_starts(struct lexer* lx, uint32_t* axis) {
+  (void)lexer_peek(lx);
+  struct lexer start = *lx;
+  if (find_letter(lx, AXIS_LETTERS, axis) && number_starts(lx)) return true;
+  *lx = start;
+  return false;
+}
+
 /* `P5=`, `P(..)=`: an assignment. A query such as `P5` is an on-line command whatever is open. */
 static bool assignment_starts(struct lexer lx) {
   uint32_t group;
@@ -71,17 +80,35 @@ static bool assignment_starts(struct lexer lx) {
   return indexed && lexer_peek(&lx) == '=';
 }
 
-bool statement_starts(struct lexer lx) {
-  struct lexer start = lx;
-  uint32_t axis;
-  for (uint32_t i = 0; i < KEYWORD_COUNT; i++)
-    if (lexer_keyword(&lx, KEYWORDS[i].name)) return KEYWORDS[i].operation != OP_RATE || number_starts(&lx);
+static bool feed_starts(struct lexer* lx) {
+  struct lexer start = *lx;
+  if (lexer_accept(lx, 'F') && number_starts(lx)) return true;
+  *lx = start;
+  return false;
+}
+
+/* Searches for every statement: the first letter decides before anything is called. KEYWORD_COUNT: none. */
+static uint32_t accept_keyword(struct lexer* lx) {
+  char first = lexer_peek(lx);
+  uint32_t i = 0;
+  while (i < KEYWORD_COUNT && !(KEYWORDS[i].name[0] == first && lexer_keyword(lx, KEYWORDS[i].name))) i++;
+  return i;
+}
+
+static bool accept_other(struct lexer* lx) {
+  char first = lexer_peek(lx);
   for (uint32_t i = 0; i < OTHER_COUNT; i++)
-    if (lexer_keyword(&lx, OTHERS[i])) return true;
-  if (lexer_accept(&lx, 'F') || lexer_accept(&lx, 'N') || lexer_accept(&lx, 'O') || lexer_accept(&lx, 'G') ||
-      find_letter(&lx, AXIS_LETTERS, &axis))
-    return number_starts(&lx);
-  return assignment_starts(start);
+    if (OTHERS[i][0] == first && lexer_keyword(lx, OTHERS[i])) return true;
+  return false;
+}
+
+bool statement_starts(struct lexer lx) {
+  uint32_t axis;
+  if (axis_starts(&lx, &axis) || feed_starts(&lx) || assignment_starts(lx)) return true;
+  uint32_t keyword = accept_keyword(&lx);
+  if (keyword < KEYWORD_COUNT) return KEYWORDS[keyword].operation != OP_RATE || number_starts(&lx);
+  if (accept_other(&lx)) return true;
+  return (lexer_accept(&lx, 'N') || lexer_accept(&lx, 'O') || lexer_accept(&lx, 'G')) && number_starts(&lx);
 }
 
 error_t statement_axis_list(struct lexer* lx, uint32_t bare, uint32_t* mask) {
@@ -164,17 +191,13 @@ static error_t compile_keyword(struct lexer* lx, uint32_t index, struct word_lis
 }
 
 error_t statement_compile(struct lexer* lx, struct word_list* out) {
-  uint32_t index;
-  struct lexer start = *lx;
-  for (index = 0; index < KEYWORD_COUNT; index++)
-    if (lexer_keyword(lx, KEYWORDS[index].name)) return compile_keyword(lx, index, out);
-  for (index = 0; index < OTHER_COUNT; index++)
-    if (lexer_keyword(lx, OTHERS[index])) return ERR_DATA;
-  if (assignment_starts(start)) {
+  uint32_t index = 0;
+  if (axis_starts(lx, &index)) return compile_value(lx, OP_AXIS, OP_AXIS_POP, index, out);
+  if (feed_starts(lx)) return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
+  if (assignment_starts(*lx)) {
     (void)find_letter(lx, CLASS_LETTERS, &index);
     return compile_assignment(lx, index, out);
   }
-  if (lexer_accept(lx, 'F')) return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
-  if (find_letter(lx, AXIS_LETTERS, &index)) return compile_value(lx, OP_AXIS, OP_AXIS_POP, index, out);
-  return ERR_DATA;
+  index = accept_keyword(lx);
+  return index < KEYWORD_COUNT ? compile_keyword(lx, index, out) : ERR_DATA;
 }

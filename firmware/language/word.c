@@ -32,8 +32,7 @@ static const struct {
 
 static double fraction(uint64_t field, unsigned bits, int exponent) { /* signed fraction of `bits` bits and a sign */
   uint64_t sign = UINT64_C(1) << bits;
-  int64_t mantissa = (int64_t)(field ^ sign) - (int64_t)sign;
-  return math_scale((double)mantissa, exponent - (int)bits);
+  return math_from_fixed((int64_t)(field ^ sign) - (int64_t)sign, exponent - (int)bits);
 }
 
 static word48_t fields(uint32_t code1, uint32_t code2, uint32_t n, uint32_t low) {
@@ -42,14 +41,9 @@ static word48_t fields(uint32_t code1, uint32_t code2, uint32_t n, uint32_t low)
 
 /* Mantissa and exponent of value in `bits` fraction bits. False: rounded, or the exponent does not fit. */
 static bool pack(double value, unsigned bits, int exponent_limit, uint64_t* mantissa, uint32_t* exponent) {
+  int64_t m;
   int e;
-  double scaled = math_scale(math_split(value, &e), (int)bits);
-  int64_t m = math_to_integer(scaled + 0.5);
-  bool exact = (double)m == scaled;
-  if (m >= (INT64_C(1) << bits)) { /* rounded up to the next power of two */
-    m >>= 1;
-    e++;
-  }
+  bool exact = math_to_fixed(value, bits, &m, &e);
   if (e < -exponent_limit) {
     exact = false;
     m = 0;

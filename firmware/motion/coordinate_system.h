@@ -11,10 +11,10 @@
 #include "firmware/language/expression.h"
 #include "firmware/language/word.h"
 
-#define TRAJECTORY_UNITS_PER_MS 8388608.0
 #define TRAJECTORY_LONGEST_MS 8388607.0
 
 enum {
+  TRAJECTORY_FRACTION_BITS = 23,
   VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
   MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware.md 7.5) */
   CALCULATED_LINES_LIMIT = 32,  /* lines without a move that one real-time interrupt works off for a coordinate system */

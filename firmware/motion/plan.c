@@ -6,7 +6,8 @@
 
 double cs_variable(uint32_t cs, enum i_cs number) { return i_variable_read((uint32_t)I_CS_BASE + 100u * cs + (uint32_t)number); }
 
-static int64_t units(double milliseconds) { return math_to_integer(milliseconds * TRAJECTORY_UNITS_PER_MS + 0.5); }
+/* Rounded to the nearest 2^-23 ms. */
+static int64_t units(double milliseconds) { return (math_to_integer(math_scale(milliseconds, TRAJECTORY_FRACTION_BITS + 1)) + 1) >> 1; }
 
 static double larger(double a, double b) { return a > b ? a : b; }
 
@@ -16,16 +17,21 @@ static struct move* next_move(struct coordinate_system* s) { return &s->moves[s-
 static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT]) {
   double unit = cs_variable(cs, I_CS_TIME_UNIT), feed = cs_variable(cs, I_CS_FEED);
   double limit = cs_variable(cs, I_CS_FEED_LIMIT), alternate = cs_variable(cs, I_CS_ALTERNATE_FEED);
-  double square = 0.0, other = 0.0;
+  double square = 0.0, other = 0.0, single = 0.0;
+  uint32_t axes = 0;
   if (limit > 0.0 && feed > limit) feed = limit;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    if ((s->feedrate_axes >> axis) & 1u)
-      square += delta[axis] * delta[axis];
-    else
+    if (delta[axis] == 0.0) continue;
+    if (((s->feedrate_axes >> axis) & 1u) == 0) {
       other = larger(other, math_absolute(delta[axis]));
+      continue;
+    }
+    axes++;
+    single = math_absolute(delta[axis]);
+    square += delta[axis] * delta[axis];
   }
-  if (square == 0.0) return other == 0.0 ? 0.0 : math_divide(other, alternate > 0.0 ? alternate : feed) * unit;
-  double time = math_divide(math_square_root(square), feed) * unit;
+  if (axes == 0) return other == 0.0 ? 0.0 : math_divide(other, alternate > 0.0 ? alternate : feed) * unit;
+  double time = math_divide(axes == 1 ? single : math_square_root(square), feed) * unit;
   return alternate > 0.0 ? larger(time, other / alternate * unit) : time;
 }
 
@@ -39,14 +45,18 @@ static void set_times(uint32_t cs, struct move* m, double milliseconds) {
   if (m->time < least) m->time = least;
 }
 
+/* Most axes stand still in most moves: nothing is calculated for them. */
 static void finish(struct coordinate_system* s, struct move* m, bool blends) {
+  double time = (double)m->time;
   m->joins = blends && s->may_join;
   m->line_offset = s->line_offset;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     m->start[axis] = s->position[axis];
     m->velocity_before[axis] = s->velocity[axis];
+    s->velocity[axis] = 0.0;
+    if (m->delta[axis] == 0.0) continue;
     s->position[axis] += m->delta[axis];
-    s->velocity[axis] = m->kind == MOVE_LINEAR ? m->delta[axis] / (double)m->time : 0.0;
+    s->velocity[axis] = m->delta[axis] / time;
   }
   s->may_join = blends;
   s->next_valid = true; /* last: from here on the servo task may start it */

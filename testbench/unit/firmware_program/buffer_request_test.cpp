@@ -217,6 +217,19 @@ TEST_F(BufferRequest, AnotherCoordinateSystemsLinesDoNotMoveThePin) {
   EXPECT_FALSE(full_bit(1));
 }
 
+TEST_F(BufferRequest, AnotherCoordinateSystemThatEmptiesDoesNotRaiseThePin) {
+  BRICK_COVERS("BREQ-7");
+  open("&2DEF ROT 50 &1DEF ROT 50");
+  ASSERT_EQ(host("&2"), "");
+  store(10);
+  ASSERT_EQ(host("&1"), "");
+  store(10);
+  ASSERT_FALSE(breq());
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(rotary_consume(1, 1));
+  EXPECT_FALSE(full_bit(1));
+  EXPECT_FALSE(breq()) << "&1 is addressed and full";
+}
+
 TEST_F(BufferRequest, ClearAndDeleteReset) {
   open();
   store(12);

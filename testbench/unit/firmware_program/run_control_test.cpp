@@ -110,6 +110,27 @@ TEST_F(RunControl, AbortDuringABlendIsOnTheBlendedPath) {
   EXPECT_NEAR(cs().position[AXIS_Y], t * t / 80.0 / 100.0, 1e-6);
 }
 
+TEST_F(RunControl, AbortInTheSCurveIsOnThePath) {
+  for (const unsigned ticks : {10u, 45u, 80u, 88u}) {
+    platform::power_up();
+    open();
+    ASSERT_EQ(host("TS10 X1"), "");  // Ta = 40 ms: acceleration rises 10 ms, is constant 20 ms, falls 10 ms
+    ASSERT_EQ(host("R"), "");
+    platform::real_time();
+    platform::servo_ticks(1);
+    platform::servo_ticks(ticks);
+    ASSERT_EQ(host("A"), "");
+    const double t = ticks * static_cast<double>(platform::kDefaultI10) / 8388608.0, step = 1e-4;
+    double velocity = 0.0, position = 0.0;  // numeric double integration; peak acceleration 1/30 of the final velocity a ms
+    for (double u = 0.0; u < t; u += step) {
+      const double acceleration = u < 10 ? u / 10 : u < 30 ? 1.0 : u < 40 ? (40 - u) / 10 : 0.0;
+      position += velocity * step;
+      velocity += acceleration / 30.0 * step;
+    }
+    EXPECT_NEAR(cs().position[AXIS_X], position / 100.0, 2e-5) << t << " ms";
+  }
+}
+
 TEST_F(RunControl, HoldStopsTimeAndRunResumes) {
   open();
   ASSERT_EQ(host("X1"), "");
