@@ -99,6 +99,22 @@ TEST_F(DpramCollisionTest, HostWriteWaitsForACpuRead) {
   EXPECT_EQ(cpu_read(8), 0x2468u);
 }
 
+TEST_F(DpramCollisionTest, AddressIsTheOneThatCameWithTheStrobe) {
+  host_start(8, false);
+  both.ref();
+  cpu_start_write(8, 0x3333);
+  both.ticks(3);
+  both.in.cpu_addr = 100;  // the pins change while the strobe is still low
+  both.ticks(3);
+  EXPECT_TRUE(cpu_busy()) << "still waits for cell 8";
+  host_end_write(0x4444);
+  both.ticks(2);
+  cpu_end();
+  both.ticks(2);
+  EXPECT_EQ(host_read(8), 0x3333u);
+  EXPECT_EQ(host_read(200), 0u);
+}
+
 TEST_F(DpramCollisionTest, RequestsThatMeetAtOneEdgeGoToTheCpu) {
   // The host's request meets its first clk_ref edge at tick T. The CPU's strobe, first sampled at tick T - 1, is ready at T too;
   // sampled at T it is ready one tick later.

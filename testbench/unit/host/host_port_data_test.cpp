@@ -115,6 +115,10 @@ TEST_F(HostPortTest, InitWinsOverWhatHappensInTheSameClock) {
   both_.in.dsp_sel = both_.in.dsp_we = false;
   EXPECT_EQ(isr() & (kTxde | kRxdf), unsigned{kTxde});
   EXPECT_EQ(hsr() & (kHrdf | kHtde), unsigned{kHtde});
+  host_send(0x79);  // moves to HORX at the next edge
+  host_write(kIcr, kInit | kTreq);
+  EXPECT_EQ(isr() & kTxde, kTxde);
+  EXPECT_EQ(hsr() & kHrdf, 0u);
 }
 
 TEST_F(HostPortTest, ReadingAnEmptyRegisterDoesNotEatTheWordThatArrives) {
