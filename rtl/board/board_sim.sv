@@ -55,25 +55,30 @@ module board_sim #(
   );
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
-  logic       servo_last_q;
+  logic       bug_q, servo_last_q;
   logic [7:0] falls_q;
   logic       fell, late;
   assign fell = servo_last_q & ~servo;
-  assign late = seeded_bug_i & fell & (falls_q == SeededBugEdge - 8'd1);
+  assign late = bug_q & fell & (falls_q == SeededBugEdge - 8'd1);
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      bug_q        <= 1'b0;
       servo_last_q <= 1'b1;
       falls_q      <= 8'd0;
-    end else if (seeded_bug_i) begin
-      servo_last_q <= servo;
-      if (fell && falls_q != 8'hFF) falls_q <= falls_q + 8'd1;
+    end else begin
+      bug_q <= seeded_bug_i;
+      if (bug_q) begin
+        servo_last_q <= servo;
+        if (fell && falls_q != 8'hFF) falls_q <= falls_q + 8'd1;
+      end
     end
   end
 
-  assign pins_o[31:0]  = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
-  assign pins_o[63:32] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n, isa_iochrdy,
-                          isa_sd};
-  assign pins_o[95:64] = {elr, msk, sig, ist};
+  // One process a word: a simulator then packs the words of the slower clock at that clock only.
+  always_comb pins_o[31:0]  = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
+  always_comb pins_o[63:32] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
+                               isa_iochrdy, isa_sd};
+  always_comb pins_o[95:64] = {elr, msk, sig, ist};
 
 endmodule : board_sim
 

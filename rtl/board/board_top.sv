@@ -59,6 +59,19 @@ module board_top #(
   output logic [7:0]       pic_elr_o
 );
 
+  // ------------------------------------------------------------------ straps, taken over on clk_ref
+  logic [21:0] fitted_q;
+  logic        ext_clock_q;
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      fitted_q    <= 22'h0;
+      ext_clock_q <= 1'b0;
+    end else begin
+      fitted_q    <= fitted_i;
+      ext_clock_q <= ext_clock_i;
+    end
+  end
+
   // ------------------------------------------------------------------ Port A: synchroniser and decoding
   logic [18:0] bus_addr, bus_rd_addr;
   logic        bus_x, bus_rd_x, bus_int, bus_rd_int, bus_we, bus_rd_done;
@@ -76,7 +89,7 @@ module board_top #(
   logic        sel_any, sel_int, sel_signals, sel_strobe;
   logic [17:0] sel_ic;
   address_decode u_address_decode (
-    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_i[17:0] & ServoIcMask),
+    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_q[17:0] & ServoIcMask),
     .sel_any_o(sel_any), .sel_int_o(sel_int), .sel_signals_o(sel_signals), .sel_strobe_o(sel_strobe), .sel_ic_o(sel_ic)
   );
 
@@ -112,9 +125,9 @@ module board_top #(
   end
 
   clock_select u_clock_select (
-    .clk_pwm_i, .clk_ref_i, .rst_ni, .fitted_i,
+    .clk_pwm_i, .clk_ref_i, .rst_ni, .fitted_i(fitted_q),
     .phase_i(ic_phase), .servo_i(ic_servo), .phase_oe_i(ic_phase_oe), .servo_oe_i(ic_servo_oe),
-    .ext_clock_i, .ext_phase_i, .ext_servo_i,
+    .ext_clock_i(ext_clock_q), .ext_phase_i, .ext_servo_i,
     .phase_o, .servo_o, .phase_source_o, .conflict_o(source_conflict_o)
   );
 

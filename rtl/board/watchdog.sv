@@ -15,10 +15,10 @@ module watchdog (
 
   logic [9:0]  prescale_q;
   logic [15:0] strobe_left_d, strobe_left_q, servo_left_d, servo_left_q;
-  logic        servo_last_q, trip_d, trip_q;
+  logic        servo1_q, servo2_q, trip_d, trip_q;
   logic        count, servo_edge;
   assign count      = &prescale_q;
-  assign servo_edge = servo_i != servo_last_q;
+  assign servo_edge = servo1_q != servo2_q;
 
   always_comb begin
     strobe_left_d = strobe_left_q;
@@ -38,13 +38,15 @@ module watchdog (
       prescale_q    <= 10'd0;
       strobe_left_q <= Timeout;
       servo_left_q  <= Timeout;
-      servo_last_q  <= 1'b1;
+      servo1_q      <= 1'b1;
+      servo2_q      <= 1'b1;
       trip_q        <= 1'b0;
     end else begin
       prescale_q    <= prescale_q + 10'd1;
       strobe_left_q <= strobe_left_d;
       servo_left_q  <= servo_left_d;
-      servo_last_q  <= servo_i;
+      servo1_q      <= servo_i;
+      servo2_q      <= servo1_q;
       trip_q        <= trip_d;
     end
   end

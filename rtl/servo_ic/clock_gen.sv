@@ -38,10 +38,13 @@ module clock_gen (
   logic        phase_d, phase_q, servo_d, servo_q;
   logic [1:0]  sync1_q, sync2_q;          // {servo, phase} pins, two-flop synchroniser
 
-  logic at_top, at_middle, ext_rise, turn, retard;
+  // Every other tick is just one more step of the ramp.
+  logic at_top, at_middle, ext_phase, ext_servo, special, turn, retard;
   assign at_top    = ramp_q == top_q;
   assign at_middle = &ramp_q;
-  assign ext_rise  = phase_ext_i & sync2_q[0] & ~phase_q;
+  assign ext_phase = phase_ext_i & (sync2_q[0] != phase_q);
+  assign ext_servo = servo_ext_i & (sync2_q[1] != servo_q);
+  assign special   = at_top | at_middle | ext_phase | ext_servo;
 
   // External rising edge: the nearest turnaround is moved to this edge, the coming one forward or the last one back.
   logic signed [17:0] to_next, from_last;
@@ -51,7 +54,7 @@ module clock_gen (
     miss_d    = miss_q;
     to_next   = 18'sd0;
     from_last = 18'sd0;
-    if (ext_rise) begin
+    if (ext_phase && sync2_q[0]) begin
       to_next   = $signed({top_q[16], top_q}) - $signed({ramp_q[16], ramp_q});
       from_last = $signed({top_q[16], top_q}) + $signed({ramp_q[16], ramp_q}) + 18'sd1;
       if (to_next <= Window || from_last <= Window || miss_q == MissLimit) begin
@@ -78,13 +81,15 @@ module clock_gen (
     end
   end
 
-  // Phase clock. While external, the divider stands ready for a full period and PHASE follows the pin.
+  // Phase clock. While external, PHASE follows the pin and the divider is made ready for a full period.
   always_comb begin
     phase_d     = phase_q;
     phase_cnt_d = phase_cnt_q;
     fall_cnt_d  = fall_cnt_q;
     odd_d       = odd_q;
-    if (phase_ext_i) begin
+    if (!special) begin
+      // nothing
+    end else if (phase_ext_i) begin
       phase_d     = sync2_q[0];
       phase_cnt_d = phase_div_i;
       fall_cnt_d  = 4'd0;
@@ -110,7 +115,9 @@ module clock_gen (
   always_comb begin
     servo_d     = servo_q;
     servo_cnt_d = servo_cnt_q;
-    if (servo_ext_i) begin
+    if (!special) begin
+      // nothing
+    end else if (servo_ext_i) begin
       servo_d     = sync2_q[1];
       servo_cnt_d = servo_div_i;
     end else if (phase_q != phase_d) begin
@@ -141,18 +148,20 @@ module clock_gen (
       sync1_q     <= 2'b11;
       sync2_q     <= 2'b11;
     end else begin
-      ramp_q      <= ramp_d;
-      top_q       <= top_d;
-      up_q        <= up_d;
-      phase_cnt_q <= phase_cnt_d;
-      fall_cnt_q  <= fall_cnt_d;
-      odd_q       <= odd_d;
-      servo_cnt_q <= servo_cnt_d;
-      miss_q      <= miss_d;
-      phase_q     <= phase_d;
-      servo_q     <= servo_d;
-      sync1_q     <= {servo_i, phase_i};
-      sync2_q     <= sync1_q;
+      ramp_q  <= ramp_d;
+      sync1_q <= {servo_i, phase_i};
+      sync2_q <= sync1_q;
+      if (special) begin
+        top_q       <= top_d;
+        up_q        <= up_d;
+        phase_cnt_q <= phase_cnt_d;
+        fall_cnt_q  <= fall_cnt_d;
+        odd_q       <= odd_d;
+        servo_cnt_q <= servo_cnt_d;
+        miss_q      <= miss_d;
+        phase_q     <= phase_d;
+        servo_q     <= servo_d;
+      end
     end
   end
 

@@ -42,6 +42,8 @@ void BoardTop::reset_all(Tick t) {
   for (unsigned i = 0; i < blocks_; ++i) block_[i]->reset(t);
   rdata_ = 0;
   from_dpram_ = false;
+  fitted_ = 0;
+  ext_clock_ = false;
   connect();
 }
 
@@ -60,6 +62,10 @@ void BoardTop::execute(Tick t) {
 
   advance_all(t);
   from_dpram_ = dpram_.in.cpu_sel;
+  if (next_ref_edge(now_) <= t) {
+    fitted_ = inputs_.fitted;
+    ext_clock_ = inputs_.ext_clock;
+  }
   if (write_ic) servo_ic_[static_cast<unsigned>(written_ic)]->write(where.x, where.addr & 31, wdata);
   now_ = t;
   connect();
@@ -77,14 +83,14 @@ std::uint32_t BoardTop::read_data() const {
 
 void BoardTop::connect() {
   bus_sync_.set_pins(inputs_);
-  select_ = AddressDecode::decode(bus_sync_.where(), inputs_.fitted & built_);
+  select_ = AddressDecode::decode(bus_sync_.where(), fitted_ & built_);
   connect_clocks();
   connect_host();
 }
 
 void BoardTop::connect_clocks() {
   ClockSelect::Drivers drivers;
-  drivers.ext = inputs_.ext_clock;
+  drivers.ext = ext_clock_;
   std::uint32_t phase = 0, servo = 0;
   for (unsigned i = 0; i < kServoIcs; ++i) {
     if (servo_ic_[i] == nullptr) continue;
@@ -94,8 +100,8 @@ void BoardTop::connect_clocks() {
     phase |= static_cast<std::uint32_t>(ic.phase()) << i;
     servo |= static_cast<std::uint32_t>(ic.servo()) << i;
   }
-  drivers.phase &= inputs_.fitted;
-  drivers.servo &= inputs_.fitted;
+  drivers.phase &= fitted_;
+  drivers.servo &= fitted_;
   clock_select_.in = drivers;
   clock_select_.phase_level = phase;
   clock_select_.servo_level = servo;
@@ -210,6 +216,7 @@ Tick BoardTop::next_event() const {
   Tick next = kNever;
   for (unsigned i = 0; i < blocks_; ++i) next = std::min(next, block_[i]->next_event());
   if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
+  if (straps_move()) next = std::min(next, next_ref_edge(now_));
   if (select_.any && next > next_ref_edge(now_) && read_data() != rdata_) next = next_ref_edge(now_);
   return next;
 }
@@ -238,7 +245,7 @@ Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
 Tick BoardTop::quiet_until(const BoardOutputs& watched) const {
   if (!inputs_.rst_n) return in_reset_ ? kNever : now_;
   const Tick any_pin = next_event() - 1;
-  if (bus_sync_.write_pending()) return any_pin;
+  if (bus_sync_.write_pending() || straps_move()) return any_pin;
 
   // With no write under way each group of pins has its own cause; only those that interrupt the CPU are told apart.
   constexpr BoardOutputs kClocks = select_pins(pin::kPhase, pin::kServo, pin::kPhaseSource, pin::kSourceConflict);

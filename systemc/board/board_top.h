@@ -50,6 +50,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   BoardOutputs pins() const;
   bool show_pins();  // updates outputs_ after an edge; true when a pin changed
   std::uint32_t read_data() const;
+  bool straps_move() const { return inputs_.fitted != fitted_ || inputs_.ext_clock != ext_clock_; }
   Tick next_event() const;
   Tick next_clock_event() const;
 
@@ -68,6 +69,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   unsigned blocks_ = 0;
 
   BoardInputs inputs_;
+  std::uint32_t fitted_ = 0;  // straps as taken over on clk_ref
+  bool ext_clock_ = false;
   AddressSelect select_;     // of the address in stage 1
   std::uint32_t rdata_ = 0;  // registered read data
   bool from_dpram_ = false;  // read data pins show the dual-ported RAM

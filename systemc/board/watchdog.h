@@ -19,18 +19,21 @@ class Watchdog : public sc_core::sc_module, public ModelBlock {
 
   bool trip() const { return trip_; }
 
-  Tick next_event() const override { return trip_ ? kNever : tick_of(std::min(strobe_end_, servo_end())); }
+  Tick next_event() const override { return trip_ ? kNever : tick_of(std::min(strobe_end_, servo_end_)); }
 
   void advance(Tick t) override {
     const std::int64_t last = edge_at(t);
-    if (last > edge_) {
-      // The first of these edges sees the inputs; the later ones see nothing new.
+    // The first of these edges samples the inputs, the second sees the sampled SERVO; the later ones see nothing new.
+    for (int n = 0; n < 2 && edge_ < last; ++n) {
       ++edge_;
-      const bool servo_edge = servo != servo_last_;
-      servo_last_ = servo;
-      trip_ = trip_ || (strobe_end_ == edge_ && !strobe) || (servo_end_ == edge_ && !servo_edge);
-      if (strobe) strobe_end_ = end_after(edge_);
-      if (servo_edge) servo_end_ = end_after(edge_);
+      const bool reload_strobe = strobe && n == 0, reload_servo = servo1_ != servo2_;
+      servo2_ = servo1_;
+      servo1_ = servo;
+      trip_ = trip_ || (strobe_end_ == edge_ && !reload_strobe) || (servo_end_ == edge_ && !reload_servo);
+      if (reload_strobe) strobe_end_ = end_after(edge_);
+      if (reload_servo) servo_end_ = end_after(edge_);
+    }
+    if (edge_ < last) {
       trip_ = trip_ || std::min(strobe_end_, servo_end_) <= last;
       edge_ = last;
     }
@@ -40,7 +43,7 @@ class Watchdog : public sc_core::sc_module, public ModelBlock {
     first_ = t / kTicksPerRef;
     edge_ = 0;
     strobe_end_ = servo_end_ = end_after(0);
-    servo_last_ = true;
+    servo1_ = servo2_ = true;
     trip_ = false;
   }
 
@@ -49,10 +52,9 @@ class Watchdog : public sc_core::sc_module, public ModelBlock {
   static std::int64_t end_after(std::int64_t edge) { return (edge / kPrescale + kTimeout) * kPrescale; }
   std::int64_t edge_at(Tick t) const { return t / kTicksPerRef - first_; }  // clk_ref edges executed since reset
   Tick tick_of(std::int64_t edge) const { return (edge + first_) * kTicksPerRef; }
-  std::int64_t servo_end() const { return servo_end_; }
 
   std::int64_t first_ = 0, edge_ = 0, strobe_end_ = end_after(0), servo_end_ = end_after(0);
-  bool servo_last_ = true, trip_ = false;
+  bool servo1_ = true, servo2_ = true, trip_ = false;  // SERVO, two stages on clk_ref
 };
 
 }  // namespace brick
