@@ -54,4 +54,8 @@ void Signals::attach(TraceWriter* trace) {
   }
 }
 
+void Signals::flush_until(TimeFs time) {
+  if (trace_ != nullptr) trace_->flush_until(time);
+}
+
 }  // namespace brick

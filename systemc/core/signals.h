@@ -42,6 +42,7 @@ class Signals {
   // Attaches the waveform file; not owned. Values set from now on are written, the present ones first.
   void attach(TraceWriter* trace);
   bool traced() const { return trace_ != nullptr; }
+  void flush_until(TimeFs time);  // no value before `time` will be set any more
 
  private:
   std::vector<Info> info_;

@@ -15,6 +15,8 @@
 
 namespace brick {
 
+struct PortACycle;
+
 enum class Engine { kRtl, kSystemC, kLockstep };
 
 // Board description as far as the machine needs it (boards/*.toml, read by app/ through systemc/machine/board_file.h).
@@ -47,7 +49,7 @@ class Machine : public sc_core::sc_module {
   TimeFs now_fs() const { return tick_to_fs(now()); }
 
   // Advances everything to `limit`, or to the first edge at which an output selected by `stop_on` changes.
-  // Throws LockstepDifference (systemc/cosim/lockstep.h) at the first difference of the two engines.
+  // Throws LockstepDifference (systemc/cosim/engines.h) at the first difference of the two engines.
   Tick run_until(Tick limit, const BoardOutputs& stop_on = {});
 
   // The pins that the host owns. The host edits them and calls apply(); edge now()+1 is the first to see them.
@@ -65,7 +67,10 @@ class Machine : public sc_core::sc_module {
 
   // Bus cycles of the CPU, newest last, for reports.
   struct BusCycle { Tick tick; char space; std::uint32_t address; bool write; std::uint32_t data; std::uint32_t pc; };
-  const std::vector<BusCycle>& last_bus_cycles() const;
+  const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
+
+  // Called at the end of each Port A cycle with the exact times of all its edges (systemc/cpu/port_a.h), for checkers.
+  std::function<void(const PortACycle&)> on_bus_cycle;
 
  private:
   struct Impl;

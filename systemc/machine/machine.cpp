@@ -1,0 +1,201 @@
+// The whole controller: its parts, how they are joined, reset and power. The run-ahead rule is in run.cpp.
+#include "systemc/machine/machine.h"
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "systemc/cosim/engines.h"
+#include "systemc/machine/machine_impl.h"
+
+namespace brick {
+
+namespace {
+
+constexpr std::size_t kBusCyclesKept = 16;
+
+std::unique_ptr<Board> make_board(const MachineConfig& c) {
+  const std::uint32_t fitted = c.board.fitted;
+  switch (c.engine) {
+    case Engine::kRtl:
+      return make_rtl_board(fitted, {0, c.seeded_bug});
+    case Engine::kSystemC:
+      return make_model_board(fitted);
+    case Engine::kLockstep:
+      break;
+  }
+  return make_lockstep_board(make_rtl_board(fitted, {0, c.seeded_bug}), make_model_board(fitted));
+}
+
+std::uint32_t trap_handler(const Cpu& cpu, std::uint32_t cause) {
+  constexpr unsigned kMtvec = 0x305;
+  constexpr std::uint32_t kInterrupt = 0x8000'0000;
+  const std::uint32_t vector = cpu.csr(kMtvec);
+  const bool vectored = (vector & 1) != 0 && (cause & kInterrupt) != 0;
+  return (vector & ~3u) + (vectored ? 4 * (cause & ~kInterrupt) : 0);
+}
+
+}  // namespace
+
+PortAInitiator::PortAInitiator(sc_core::sc_module_name name, PortA& port_a) : sc_core::sc_module(name), port_a_(port_a) {
+  socket.bind(port_a.socket);
+  payload_.set_extension(&request_);
+  payload_.set_data_ptr(reinterpret_cast<unsigned char*>(&data_));
+}
+
+PortAInitiator::~PortAInitiator() { payload_.clear_extension(&request_); }
+
+DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) {
+  if (!under_way_) {
+    data_ = write ? data : 0;
+    payload_.set_address(address);
+    payload_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+    payload_.set_data_length(bytes);
+    payload_.set_streaming_width(bytes);
+    payload_.set_byte_enable_ptr(nullptr);
+    payload_.set_dmi_allowed(false);
+    request_.start = now;
+    request_.pc = cpu->pc();
+  }
+  payload_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+  // Through the export: it works before elaboration too, so a machine needs no running kernel.
+  static_cast<sc_core::sc_export<tlm::tlm_fw_transport_if<>>&>(port_a_.socket)->b_transport(payload_, delay);
+  under_way_ = payload_.get_response_status() == tlm::TLM_INCOMPLETE_RESPONSE;
+  return {payload_.get_response_status() < 0, data_, request_.done, under_way_};
+}
+
+Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
+    : config(machine_config), owner(machine), board(make_board(config)), memory(cpu, config.flash_file) {
+  initiator.cpu = &cpu;
+  if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
+  board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) { board_changed(t, before, after); };
+  port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
+  port_a.on_control = [this] { main_memory_wait(); };
+  cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle c) {
+    const TimeFs time = port_a.clock().time(c);
+    named.trap(time, cause);
+    if (tracing_cpu) named.pc(time, trap_handler(cpu, cause), elf.get());
+  };
+  cpu.on_mret = [this](std::uint32_t pc, Cycle c) {
+    const TimeFs time = port_a.clock().time(c);
+    named.trap_return(time);
+    if (tracing_cpu) named.pc(time, pc, elf.get());
+  };
+  host_inputs.fitted = inputs.fitted = config.board.fitted;
+  named.outputs(0, {}, board->outputs());
+  power_on();
+}
+
+Machine::Impl::~Impl() {
+  try {
+    memory.save_flash();
+  } catch (const std::exception& e) { std::fprintf(stderr, "%s\n", e.what()); }
+}
+
+void Machine::Impl::power_on() {
+  memory.randomize(config.seed + power_ons++);
+  memory.set_strap(MachineMemory::Strap::kJumperE3, config.jumper_e3);
+  memory.set_strap(MachineMemory::Strap::kFitted, config.board.fitted);
+  memory.set_strap(MachineMemory::Strap::kCard, config.board.card);
+  memory.set_strap(MachineMemory::Strap::kDpramWords, config.board.dpram_words);
+  memory.set_strap(MachineMemory::Strap::kJpan, config.board.jpan);
+  if (elf) elf->load(cpu);
+  begin_reset(true);
+}
+
+void Machine::Impl::begin_reset(bool power) {
+  memory.set_strap(MachineMemory::Strap::kPowerOn, power);
+  reset_until = board->now() + kResetTicks;
+  cpu_runs = false;
+  events.clear();
+  initiator.forget();
+  port_a.reset(board->now(), cpu.cycle(), inputs);
+  inputs.rst_n = false;
+  board->set_inputs(inputs);
+  named.restart(tick_to_fs(board->now()));
+}
+
+void Machine::Impl::start_cpu() {
+  reset_until = kNever;
+  inputs.rst_n = true;
+  port_a.reset(board->now(), cpu.cycle(), inputs);
+  board->set_inputs(inputs);
+  events.clear();
+  main_memory_wait();
+  cpu.reset(elf ? elf->entry() : 0);
+  cpu_runs = elf != nullptr;
+}
+
+void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const BoardOutputs& after) {
+  static constexpr BoardOutputs kSeenByCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
+  named.outputs(tick_to_fs(tick), before, after);
+  port_a.board_changed(tick, after);
+  if (before.differs(after, stop_on)) stopped = true;
+  if (!cpu_runs || !before.differs(after, kSeenByCpu)) return;
+  const auto fell = [&](const PinField& f) { return before.get(f) != 0 && after.get(f) == 0; };
+  const auto rose = [&](const PinField& f) { return before.get(f) == 0 && after.get(f) != 0; };
+  if (fell(pin::kPhase)) events.push_back({tick, Event::kPhase});
+  if (fell(pin::kServo)) events.push_back({tick, Event::kServo});
+  if (rose(pin::kIrqHost)) events.push_back({tick, Event::kHostPortOn});
+  if (fell(pin::kIrqHost)) events.push_back({tick, Event::kHostPortOff});
+  if (rose(pin::kWdTripped)) events.push_back({tick, Event::kStop});
+}
+
+void Machine::Impl::cycle_done(const PortACycle& c) {
+  if (bus_cycles.size() >= 4 * kBusCyclesKept) bus_cycles.erase(bus_cycles.begin(), bus_cycles.end() - kBusCyclesKept);
+  bus_cycles.push_back({fs_to_tick(c.start), c.x ? 'X' : 'Y', c.address, c.write, c.data, c.pc});
+  if (tracing_cpu) named.pc(c.start, c.pc, elf.get());
+  if (owner.on_bus_cycle) owner.on_bus_cycle(c);
+}
+
+void Machine::Impl::trace_cpu(bool on) {
+  tracing_cpu = on;
+  cpu.on_flow = nullptr;
+  if (!on) return;
+  cpu.on_flow = [this](std::uint32_t pc, Cycle c) { named.pc(port_a.clock().time(c), pc, elf.get()); };
+}
+
+void Machine::Impl::apply_host_inputs() {
+  inputs.isa_sa = host_inputs.isa_sa;
+  inputs.isa_sd = host_inputs.isa_sd;
+  inputs.isa_ior_n = host_inputs.isa_ior_n;
+  inputs.isa_iow_n = host_inputs.isa_iow_n;
+  inputs.isa_memr_n = host_inputs.isa_memr_n;
+  inputs.isa_memw_n = host_inputs.isa_memw_n;
+  inputs.isa_aen = host_inputs.isa_aen;
+  inputs.isa_sbhe_n = host_inputs.isa_sbhe_n;
+  inputs.fitted = host_inputs.fitted;
+  inputs.ext_clock = host_inputs.ext_clock;
+  inputs.ext_phase = host_inputs.ext_phase;
+  inputs.ext_servo = host_inputs.ext_servo;
+  board->set_inputs(inputs);
+  named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
+}
+
+Machine::Machine(sc_core::sc_module_name name, const MachineConfig& config)
+    : sc_core::sc_module(name), impl_(std::make_unique<Impl>(*this, config)) {}
+Machine::~Machine() = default;
+
+Tick Machine::now() const { return impl_->board->now(); }
+Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_->run_until(limit, stop_on); }
+BoardInputs& Machine::inputs() { return impl_->host_inputs; }
+void Machine::apply() { impl_->apply_host_inputs(); }
+const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
+Cpu& Machine::cpu() { return impl_->cpu; }
+std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }
+void Machine::reset() { impl_->begin_reset(false); }
+void Machine::set_jumper_e3(bool on) { impl_->memory.set_strap(MachineMemory::Strap::kJumperE3, on); }
+const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->bus_cycles; }
+
+Signals& Machine::signals() {
+  // Without a waveform nobody follows each call: what is asked for now is what stands now.
+  if (!impl_->signals.traced()) impl_->named.pc(now_fs(), impl_->cpu.pc(), impl_->elf.get());
+  return impl_->signals;
+}
+
+void Machine::power_cycle() {
+  impl_->memory.save_flash();
+  impl_->power_on();
+}
+
+}  // namespace brick

@@ -1,0 +1,84 @@
+// Named signals of the machine, see machine_signals.h.
+#include "systemc/machine/machine_signals.h"
+
+#include "systemc/cpu/cpu.h"
+
+namespace brick {
+
+unsigned clock_source_variable(unsigned source) {
+  if (source < 10) return 7007 + 100 * source;        // servo IC m
+  if (source < 18) return 7057 + 100 * (source - 8);  // servo IC m*, m = 2..9
+  if (source < 22) return 6807 + 50 * (source - 18);  // MACRO IC
+  return 0;
+}
+
+MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
+  for (const PinField& f : pin::kAll) pin_.push_back(signals.add(std::string(f.name), f.width, f.hex ? Radix::kHex : Radix::kBinary));
+  source_ = signals.add("clock.source", 13, Radix::kDecimal);
+  sa_ = signals.add("host.isa.sa", 20, Radix::kHex);
+  sd_ = signals.add("host.isa.sd", 16, Radix::kHex);
+  ior_n_ = signals.add("host.isa.ior_n", 1, Radix::kBinary, 1);
+  iow_n_ = signals.add("host.isa.iow_n", 1, Radix::kBinary, 1);
+  memr_n_ = signals.add("host.isa.memr_n", 1, Radix::kBinary, 1);
+  memw_n_ = signals.add("host.isa.memw_n", 1, Radix::kBinary, 1);
+  aen_ = signals.add("host.isa.aen", 1, Radix::kBinary);
+  pc_ = signals.add("cpu.pc", 32, Radix::kHex);
+  task_ = signals.add("cpu.task", 2, Radix::kDecimal);
+  symbol_ = signals.add("cpu.symbol", 1, Radix::kText);
+}
+
+void MachineSignals::outputs(TimeFs time, const BoardOutputs& before, const BoardOutputs& after) {
+  for (std::size_t i = 0; i < pin::kAll.size(); ++i) {
+    const PinField& f = pin::kAll[i];
+    if (before.w[f.word] == after.w[f.word]) continue;
+    signals_.set(pin_[i], time, after.get(f));
+  }
+  if (before.w[pin::kPhaseSource.word] == after.w[pin::kPhaseSource.word]) return;
+  signals_.set(source_, time, clock_source_variable(after.get(pin::kPhaseSource)));
+  data_bus(time, after);
+}
+
+void MachineSignals::inputs(TimeFs time, const BoardInputs& in, const BoardOutputs& board) {
+  signals_.set(sa_, time, in.isa_sa);
+  signals_.set(ior_n_, time, in.isa_ior_n);
+  signals_.set(iow_n_, time, in.isa_iow_n);
+  signals_.set(memr_n_, time, in.isa_memr_n);
+  signals_.set(memw_n_, time, in.isa_memw_n);
+  signals_.set(aen_, time, in.isa_aen);
+  host_reads_ = !in.isa_ior_n || !in.isa_memr_n;
+  host_data_ = in.isa_sd;
+  data_bus(time, board);
+}
+
+// SD belongs to the board during a read command, else to the host.
+void MachineSignals::data_bus(TimeFs time, const BoardOutputs& board) {
+  signals_.set(sd_, time, host_reads_ ? board.get(pin::kIsaSd) : host_data_);
+}
+
+void MachineSignals::pc(TimeFs time, std::uint32_t pc, const ElfFile* elf) {
+  signals_.set(pc_, time, pc);
+  if (elf != nullptr) signals_.set_text(symbol_, time, elf->symbol_at(pc));
+}
+
+void MachineSignals::trap(TimeFs time, std::uint32_t cause) {
+  unsigned task = static_cast<unsigned>(signals_.value(task_));
+  interrupted_.push_back(task);
+  constexpr std::uint32_t kInterrupt = 0x8000'0000;
+  if (cause == (kInterrupt | kIrqPhase)) task = 3;
+  if (cause == (kInterrupt | kIrqServo)) task = 2;
+  if (cause == (kInterrupt | kIrqRealTime)) task = 1;
+  signals_.set(task_, time, task);
+}
+
+void MachineSignals::trap_return(TimeFs time) {
+  if (interrupted_.empty()) return;
+  signals_.set(task_, time, interrupted_.back());
+  interrupted_.pop_back();
+}
+
+void MachineSignals::restart(TimeFs time) {
+  interrupted_.clear();
+  signals_.set(task_, time, 0);
+}
+
+}  // namespace brick

@@ -1,0 +1,40 @@
+// The machine's named signals (design.md section 7): board pins, host inputs, and what the CPU does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "systemc/core/board_pins.h"
+#include "systemc/core/signals.h"
+#include "systemc/cpu/elf_file.h"
+
+namespace brick {
+
+class MachineSignals {
+ public:
+  explicit MachineSignals(Signals& signals);
+
+  void outputs(TimeFs time, const BoardOutputs& before, const BoardOutputs& after);
+  void inputs(TimeFs time, const BoardInputs& in, const BoardOutputs& board);
+  void pc(TimeFs time, std::uint32_t pc, const ElfFile* elf);
+
+  // cpu.task follows the nesting of traps.
+  void trap(TimeFs time, std::uint32_t cause);
+  void trap_return(TimeFs time);
+  void restart(TimeFs time);
+
+ private:
+  void data_bus(TimeFs time, const BoardOutputs& board);
+
+  Signals& signals_;
+  std::vector<Signals::Id> pin_;  // as pin::kAll
+  Signals::Id source_, sa_, sd_, ior_n_, iow_n_, memr_n_, memw_n_, aen_, pc_, task_, symbol_;
+  bool host_reads_ = false;
+  std::uint16_t host_data_ = 0;
+  std::vector<unsigned> interrupted_;  // tasks that wait for the present one
+};
+
+// Number of the clock-direction I-variable of a source as in BoardInputs::fitted; 0 for external and none.
+unsigned clock_source_variable(unsigned source);
+
+}  // namespace brick

@@ -1,0 +1,36 @@
+// What the CPU sees as memory (docs/architecture.md, memory map): code, private RAM, PMAC main memory, straps page, and the
+// flash store with its file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "systemc/cpu/cpu.h"
+
+namespace brick {
+
+class MachineMemory {
+ public:
+  static constexpr std::uint32_t kCode = 0x1000'0000, kCodeBytes = 1u << 20;
+  static constexpr std::uint32_t kRam = 0x2000'0000, kRamBytes = 2u << 20;
+  static constexpr std::uint32_t kFlash = 0x3000'0000, kFlashBytes = 1u << 20;
+  static constexpr std::uint32_t kStraps = 0x3FFF'F000, kStrapsBytes = 4096;
+  static constexpr std::uint32_t kMain = 0xC000'0000, kMainBytes = 8 * 0x40000;  // X and Y words $000000..$03FFFF
+
+  // Maps everything; reads `flash_file` or makes it. Throws std::runtime_error with one clear line.
+  MachineMemory(Cpu& cpu, std::string flash_file);
+
+  // Words of the straps page.
+  enum class Strap : std::uint32_t { kJumperE3 = 0, kFitted, kCard, kDpramWords, kPowerOn, kJpan };
+  void set_strap(Strap strap, std::uint32_t value);
+
+  void randomize(std::uint64_t seed);  // RAM content after power-on
+  void save_flash() const;             // to the file, if there is one; throws std::runtime_error
+
+ private:
+  void load_flash();
+  Cpu& cpu_;
+  std::string flash_file_;
+};
+
+}  // namespace brick

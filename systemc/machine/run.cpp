@@ -1,0 +1,111 @@
+// Who may run ahead of whom (docs/architecture.md): the CPU runs to where the board's pins are known plus the interrupt
+// latency, the board to where the CPU stands or to the next edge of a bus cycle, until the board has come to the limit.
+// Results do not depend on how far each step goes, only speed does.
+#include <algorithm>
+
+#include "systemc/machine/machine_impl.h"
+
+namespace brick {
+
+namespace {
+constexpr BoardOutputs kWakesCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
+
+BoardOutputs both(BoardOutputs a, const BoardOutputs& b) {
+  for (unsigned i = 0; i < kBoardOutputWords; ++i) a.w[i] |= b.w[i];
+  return a;
+}
+}  // namespace
+
+Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
+  if (tracing_cpu != signals.traced()) trace_cpu(signals.traced());
+  stop_on = stop;
+  stopped = false;
+  const BoardOutputs watched = both(kWakesCpu, stop_on);
+  const Tick begin = board->now();
+  run_cpu(board->now());
+  while (board->now() < limit && !stopped) {
+    const Tick from = board->now();
+    Tick target = std::min(limit, reset_until);
+    if (config.batch > 0) target = std::min(target, from + config.batch);
+    const bool awake = cpu_runs && !port_a.running() && !cpu.asleep();
+    if (awake) run_cpu(std::max(from, std::min(target, board->quiet_until(watched))));
+    target = board_limit(target);
+    if (target > from) board->run_until(target, cpu_runs && cpu.asleep() && !port_a.running() ? watched : stop_on);
+    if (board->now() == reset_until) start_cpu();
+    while (port_a.running() && board->now() == port_a.stands_at()) {
+      port_a.step(inputs, board->outputs());
+      board->set_inputs(inputs);
+    }
+    run_cpu(board->now());
+    if (signals.traced()) signals.flush_until(tick_to_fs(board->now()));
+  }
+  stop_on = {};
+  keep_kernel_time(begin);
+  return board->now();
+}
+
+// Never past a tick at which the CPU could change the board's inputs.
+Tick Machine::Impl::board_limit(Tick limit) const {
+  if (port_a.running()) return std::min(limit, port_a.stands_at());
+  if (!cpu_runs || cpu.asleep()) return limit;
+  return std::min(limit, port_a.clock().tick(cpu.cycle()) - 1);
+}
+
+// Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the edges up
+// to t - latency, so it may start before known + 1 + latency.
+void Machine::Impl::run_cpu(Tick known) {
+  const CpuClock& clock = port_a.clock();
+  while (cpu_runs && !port_a.running()) {
+    if (deliver_due()) continue;
+    if (cpu.asleep()) return;
+    Cycle limit = clock.first_cycle(known + 1 + kInterruptLatency);
+    if (!events.empty()) limit = std::min(limit, clock.first_cycle(events.front().tick + kInterruptLatency));
+    if (cpu.cycle() >= limit) return;
+    cpu.run(limit);
+  }
+}
+
+// Gives the CPU the oldest pin change when its time has come; a sleeping CPU's time jumps there.
+bool Machine::Impl::deliver_due() {
+  if (events.empty()) return false;
+  const Cycle due = port_a.clock().first_cycle(events.front().tick + kInterruptLatency);
+  if (cpu.cycle() < due) {
+    if (!cpu.asleep()) return false;
+    cpu.set_cycle(due);
+  }
+  const Event event = events.front();
+  events.pop_front();
+  switch (event.kind) {
+    case Event::kPhase:
+      cpu.set_interrupt(kIrqPhase, true);
+      break;
+    case Event::kServo:
+      cpu.set_interrupt(kIrqServo, true);
+      break;
+    case Event::kHostPortOn:
+      cpu.set_interrupt(kIrqHostPort, true);
+      break;
+    case Event::kHostPortOff:
+      cpu.set_interrupt(kIrqHostPort, false);
+      break;
+    case Event::kStop:
+      cpu_runs = false;
+      break;
+  }
+  return true;
+}
+
+// Inside a SystemC process the kernel's time follows the board's.
+void Machine::Impl::keep_kernel_time(Tick from) {
+  if (!sc_core::sc_is_running()) return;
+  const auto process = sc_core::sc_get_current_process_handle();
+  if (!process.valid() || process.proc_kind() != sc_core::SC_THREAD_PROC_) return;
+  static const double kUnitsPerFs = 1e-15 / sc_core::sc_get_time_resolution().to_seconds();
+  const auto units = [](TimeFs t) { return static_cast<std::int64_t>(static_cast<double>(t) * kUnitsPerFs + 0.5); };
+  const auto kernel = static_cast<std::int64_t>(sc_core::sc_time_stamp().value());
+  if (!kernel_offset) kernel_offset = kernel - units(tick_to_fs(from));
+  const std::int64_t target = *kernel_offset + units(tick_to_fs(board->now()));
+  if (target > kernel) sc_core::wait(sc_core::sc_time::from_value(static_cast<std::uint64_t>(target - kernel)));
+}
+
+}  // namespace brick
