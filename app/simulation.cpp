@@ -30,7 +30,6 @@ class HostThread : public sc_core::sc_module {
     try {
       host_();
     } catch (...) { error_ = std::current_exception(); }
-    sc_core::sc_stop();
   }
 
   const std::function<void()>& host_;
@@ -67,8 +66,7 @@ Simulation::~Simulation() {
 void Simulation::run(const std::function<void()>& host) {
   HostThread thread("host", host);
   begin_ = last_progress_ = std::chrono::steady_clock::now();
-  sc_core::sc_set_stop_mode(sc_core::SC_STOP_IMMEDIATE);
-  sc_core::sc_start();
+  sc_core::sc_start();  // returns when the thread has ended: nothing else is scheduled
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (trace_) {
     machine_->signals().attach(nullptr);
