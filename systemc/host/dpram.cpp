@@ -51,11 +51,13 @@ void Dpram::cpu_edge(bool blocked) {
   cpu_wr_ = in.cpu_sel && !in.cpu_wr_n;
 }
 
+void Dpram::host_write() {
+  const unsigned lanes = ((in.mem_be & 1) ? 0x00FFu : 0u) | ((in.mem_be & 2) ? 0xFF00u : 0u);
+  poke(in.mem_addr, static_cast<std::uint16_t>((peek(in.mem_addr) & ~lanes) | (in.mem_wdata & lanes)));
+}
+
 void Dpram::host_edge(bool blocked) {
-  if (in.mem_wr && host_own_) {
-    const unsigned lanes = ((in.mem_be & 1) ? 0x00FFu : 0u) | ((in.mem_be & 2) ? 0xFF00u : 0u);
-    poke(in.mem_addr, static_cast<std::uint16_t>((peek(in.mem_addr) & ~lanes) | (in.mem_wdata & lanes)));
-  }
+  if (in.mem_wr && host_own_) host_write();
   if (!in.mem_sel) {
     host_own_ = mem_busy_ = false;
   } else if (!host_own_) {
@@ -65,7 +67,10 @@ void Dpram::host_edge(bool blocked) {
   }
 }
 
+// Memory has no reset: at the edge that begins the reset the flip-flops fall, but a write that they had granted is still made.
 void Dpram::reset(Tick t) {
+  if (in.mem_wr && host_own_) host_write();
+  if (cpu_wr_ && !cpu_done_ && !cpu_blocked()) poke(cpu_cell_, in.cpu_wdata);
   cpu_rd_ = cpu_wr_ = cpu_done_ = cpu_busy_ = host_own_ = mem_busy_ = false;
   cpu_cell_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;

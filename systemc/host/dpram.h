@@ -48,6 +48,7 @@ class Dpram : public sc_core::sc_module, public ModelBlock {
   bool cpu_idle() const;
   bool host_idle() const;
   void cpu_edge(bool blocked);
+  void host_write();
   void host_edge(bool blocked);
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
