@@ -2,8 +2,9 @@
  * when no buffer is open, and refused with ERR003: a ring of words cannot be jumped about in. */
 #include "firmware/language/statement.h"
 
-static const char AXIS_LETTERS[] = "ABCUVWXYZ"; /* in the order of enum axis */
-static const char CLASS_LETTERS[] = "MPQI";     /* in the order of enum variable_class */
+/* What a letter means, A to Z: one more than enum axis or enum variable_class, 0 nothing. Looked up for every value of a line. */
+static const uint8_t AXIS_OF[26] = {1, 2, 3, ['U' - 'A'] = 4, 5, 6, 7, 8, 9};
+static const uint8_t CLASS_OF[26] = {['M' - 'A'] = 1, ['P' - 'A'] = 2, ['Q' - 'A'] = 3, ['I' - 'A'] = 4};
 
 static const struct {
   const char* name;
@@ -39,15 +40,12 @@ static bool number_starts(struct lexer* lx) {
   return (c >= '0' && c <= '9') || c == '.' || c == '$' || c == '-' || c == '+' || c == '(';
 }
 
-static bool find_letter(struct lexer* lx, const char* letters, uint32_t* index) {
-  char c = lexer_peek(lx);
-  for (uint32_t i = 0; letters[i] != '\0'; i++)
-    if (letters[i] == c) {
-      lx->at++;
-      *index = i;
-      return true;
-    }
-  return false;
+static bool find_letter(struct lexer* lx, const uint8_t meaning[26], uint32_t* index) {
+  uint32_t letter = (uint32_t)(uint8_t)lexer_peek(lx) - 'A';
+  if (letter >= 26 || meaning[letter] == 0) return false;
+  lx->at++;
+  *index = meaning[letter] - 1u;
+  return true;
 }
 
 static bool skip_brackets(struct lexer* lx) {
@@ -66,7 +64,7 @@ static bool skip_brackets(struct lexer* lx) {
 static bool axis_starts(struct lexer* lx, uint32_t* axis) {
   (void)lexer_peek(lx);
   struct lexer start = *lx;
-  if (find_letter(lx, AXIS_LETTERS, axis) && number_starts(lx)) return true;
+  if (find_letter(lx, AXIS_OF, axis) && number_starts(lx)) return true;
   *lx = start;
   return false;
 }
@@ -75,7 +73,7 @@ static bool axis_starts(struct lexer* lx, uint32_t* axis) {
 static bool assignment_starts(struct lexer lx) {
   uint32_t group;
   double number;
-  if (!find_letter(&lx, CLASS_LETTERS, &group)) return false;
+  if (!find_letter(&lx, CLASS_OF, &group)) return false;
   bool indexed = lexer_peek(&lx) == '(' ? skip_brackets(&lx) : lexer_number(&lx, &number);
   return indexed && lexer_peek(&lx) == '=';
 }
@@ -119,7 +117,7 @@ error_t statement_axis_list(struct lexer* lx, uint32_t bare, uint32_t* mask) {
   do {
     if (lexer_accept(lx, 'R'))
       *mask |= AXIS_VECTOR;
-    else if (find_letter(lx, AXIS_LETTERS, &axis))
+    else if (find_letter(lx, AXIS_OF, &axis))
       *mask |= 1u << axis;
     else
       return ERR_DATA;
@@ -195,7 +193,7 @@ error_t statement_compile(struct lexer* lx, struct word_list* out) {
   if (axis_starts(lx, &index)) return compile_value(lx, OP_AXIS, OP_AXIS_POP, index, out);
   if (feed_starts(lx)) return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
   if (assignment_starts(*lx)) {
-    (void)find_letter(lx, CLASS_LETTERS, &index);
+    (void)find_letter(lx, CLASS_OF, &index);
     return compile_assignment(lx, index, out);
   }
   index = accept_keyword(lx);

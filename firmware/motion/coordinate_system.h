@@ -93,6 +93,10 @@ struct coordinate_system {
 
 extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 
+/* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off. A clear that is
+ * lost to R costs one more look, nothing else. */
+extern volatile uint32_t cs_busy;
+
 double cs_variable(uint32_t cs, enum i_cs number);
 
 /* calculate.c, real-time task */

@@ -46,7 +46,8 @@ static void set_times(uint32_t cs, struct move* m, double milliseconds) {
 }
 
 /* Most axes stand still in most moves: nothing is calculated for them. */
-static void finish(struct coordinate_system* s, struct move* m, bool blends) {
+static void finish(uint32_t cs, struct move* m, bool blends) {
+  struct coordinate_system* s = &coordinate_systems[cs];
   double time = (double)m->time;
   m->joins = blends && s->may_join;
   m->line_offset = s->line_offset;
@@ -60,6 +61,7 @@ static void finish(struct coordinate_system* s, struct move* m, bool blends) {
   }
   s->may_join = blends;
   s->next_valid = true; /* last: from here on the servo task may start it */
+  cs_busy |= 1u << cs;
 }
 
 void plan_line(uint32_t cs) {
@@ -70,7 +72,7 @@ void plan_line(uint32_t cs) {
     m->delta[axis] = ((s->pending_axes >> axis) & 1u) ? s->pending[axis] - s->position[axis] : 0.0;
   s->pending_axes = 0;
   set_times(cs, m, s->time_mode ? cs_variable(cs, I_CS_FEED) : feed_time(cs, s, m->delta));
-  finish(s, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
+  finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
 }
 
 /* DWELL stops blending and is timed by the servo clock alone; DELAY is a move of no distance. */
@@ -83,9 +85,9 @@ void plan_wait(uint32_t cs, enum rate kind, double milliseconds) {
   if (kind == RATE_DWELL) {
     m->acceleration = m->s_curve = 0;
     m->time = units(length < TRAJECTORY_LONGEST_MS ? length : TRAJECTORY_LONGEST_MS);
-    finish(s, m, false);
+    finish(cs, m, false);
   } else {
     set_times(cs, m, length);
-    finish(s, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
+    finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
   }
 }

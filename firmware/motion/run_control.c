@@ -12,8 +12,6 @@
 
 struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 
-static int32_t slew(uint32_t cs, enum i_cs number) { return (int32_t)cs_variable(cs, number); }
-
 /* The executing and the calculated move are dropped where the axes are now. */
 static void drop_moves(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -30,12 +28,22 @@ static void drop_moves(uint32_t cs) {
   hal_unmask(state);
 }
 
+/* The time base goes to `target` at `rate` a servo cycle. */
+static void slew_to(uint32_t cs, int32_t target, enum i_cs rate) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  int32_t slew = (int32_t)cs_variable(cs, rate);
+  uint32_t state = hal_mask_servo();
+  s->increment_slew = slew;
+  s->increment_target = target;
+  cs_busy |= 1u << cs;
+  hal_unmask(state);
+}
+
 static void release_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!s->held) return;
   s->held = false;
-  s->increment_slew = slew(cs, I_CS_HOLD_SLEW);
-  s->increment_target = s->increment_command;
+  slew_to(cs, s->increment_command, I_CS_HOLD_SLEW);
 }
 
 error_t run_point(uint32_t cs, double program) {
@@ -67,6 +75,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->continuous = !single_step;
   s->run_time_error = false;
   s->running = true;
+  cs_busy |= 1u << cs;
   hal_unmask(state);
   return ERR_NONE;
 }
@@ -89,8 +98,7 @@ void run_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->held || !(s->running || s->active)) return;
   s->held = true;
-  s->increment_slew = slew(cs, I_CS_HOLD_SLEW);
-  s->increment_target = 0;
+  slew_to(cs, 0, I_CS_HOLD_SLEW);
 }
 
 void run_end_block(uint32_t cs) {
@@ -105,14 +113,9 @@ double run_time_base(uint32_t cs) {
 error_t run_set_time_base(uint32_t cs, double percent) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
-  uint32_t state = hal_mask_servo();
   s->increment_full = i_integer(10);
   s->increment_command = (int32_t)((double)s->increment_full * percent / 100.0 + 0.5);
-  if (!s->held) {
-    s->increment_slew = slew(cs, I_CS_SLEW);
-    s->increment_target = s->increment_command;
-  }
-  hal_unmask(state);
+  if (!s->held) slew_to(cs, s->increment_command, I_CS_SLEW);
   return ERR_NONE;
 }
 

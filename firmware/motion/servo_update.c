@@ -8,6 +8,8 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion.h"
 
+volatile uint32_t cs_busy;
+
 static void slew_time_base(struct coordinate_system* s) {
   int32_t present = s->increment, target = s->increment_target, slew = s->increment_slew;
   if (present < target)
@@ -81,5 +83,11 @@ void cs_servo_update(struct coordinate_system* s) {
 }
 
 void motion_servo_update(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) cs_servo_update(&coordinate_systems[cs]);
+  uint32_t left = cs_busy;
+  for (uint32_t cs = 0; left != 0; cs++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    struct coordinate_system* s = &coordinate_systems[cs];
+    cs_servo_update(s);
+    if (!s->active && !s->next_valid && s->increment == s->increment_target) cs_busy &= ~(1u << cs);
+  }
 }

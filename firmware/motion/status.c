@@ -37,6 +37,7 @@ void motion_initialize(void) {
     s->increment_full = s->increment_command = i_integer(10);
     s->increment = s->increment_target = s->increment_full;
   }
+  cs_busy = 0;
   axis_definition_initialize();
   regions_initialize();
   rotary_initialize();
