@@ -38,13 +38,19 @@ std::string BreqHost::ask(const std::string& command) {
   return reply.lines.empty() ? "" : reply.lines.front();
 }
 
-void BreqHost::set_limits(unsigned i16, unsigned i17) {
-  scoreboard_.limits(i16, i17);
-  scoreboard_.select(0, context_.bus.now());
-  for (const char* command : {"&2CLEAR", "&1CLEAR", "CLOSE"}) must(command);  // an assignment would be stored in an open buffer
-  must(fmt::format("I16={} I17={}", i16, context_.negative ? i17 + 1 : i17));
+void BreqHost::open() {
+  scoreboard_.select(selected_, context_.bus.now());
   must("OPEN ROTARY");
   settle();
+}
+
+void BreqHost::set_limits(unsigned i16, unsigned i17) {
+  scoreboard_.limits(i16, i17);
+  selected_ = 0;
+  scoreboard_.select(selected_, context_.bus.now());
+  for (const char* command : {"&2CLEAR", "&1CLEAR", "CLOSE"}) must(command);  // an assignment would be stored in an open buffer
+  must(fmt::format("I16={} I17={}", i16, context_.negative ? i17 + 1 : i17));
+  open();
 }
 
 void BreqHost::select(unsigned cs) {

@@ -15,6 +15,7 @@ class BreqHost {
   BreqHost(BenchContext& context, Tick line_time);
   ~BreqHost();
 
+  void open();  // OPEN ROTARY with the buffers empty
   // Empties the buffers and sets I16 and I17, for both sides. With the negative control the controller is given I17 + 1.
   void set_limits(unsigned i16, unsigned i17);
   void select(unsigned cs);            // &n, cs 0..15; waits until the pin has settled
