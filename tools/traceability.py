@@ -2,10 +2,10 @@
 """Traces requirements to the tests that cover them: docs/requirements.txt -> tests -> docs/traceability.md.
 
 A test names its requirements in one of these ways:
-  GoogleTest   BRICK_COVERS("BREQ-1 BREQ-3");           first line of a TEST, TEST_F or TEST_P
+  GoogleTest   BRICK_COVERS("BREQ-1 BREQ-3");           first line of a TEST, TEST_F, TEST_P or TYPED_TEST
   bench        // covers: BREQ-1                         on the line above Bench breq_rotary_bench() {
   ctest        # covers: BREQ-1                          on the line above add_test(NAME ...)
-  Python       # covers: BREQ-1                          on the line above def test_...
+  Python       # covers: BREQ-1                          on the line above def NAME(
 
   --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, and when
                docs/traceability.md is not what --write would write
@@ -47,7 +47,7 @@ def line_of(text, position):
 
 def tests_in_cpp(text, file):
     text = re.sub(r"^\s*//.*$", "", text, flags=re.M)  # a BRICK_COVERS that is commented out covers nothing
-    heads = [(m.start(), f"{m[1]}.{m[2]}") for m in re.finditer(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text, re.M)]
+    heads = [(m.start(), f"{m[1]}.{m[2]}") for m in re.finditer(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text, re.M)]
     for m in re.finditer(r'BRICK_COVERS\(\s*((?:"[^"]*"\s*)+)\)', text):
         before = [name for start, name in heads if start < m.start()]
         yield Test(before[-1] if before else f"{file}:{line_of(text, m.start())}", file, ids_in(" ".join(re.findall(r'"([^"]*)"', m[1]))))
@@ -82,7 +82,7 @@ def find_tests(root):
             found += [Test("bench " + t.name.replace("_", "-"), t.file, t.ids)
                       for t in tests_in_comments(text, name, r"^Bench (\w+)_bench\(", "//")]
         elif file.suffix == ".py":
-            found += tests_in_comments(text, name, r"def\s+(test_\w+)")
+            found += tests_in_comments(text, name, r"^\s*def\s+(\w+)\(")
         elif file.name == "CMakeLists.txt" or file.suffix == ".cmake":
             found += tests_in_comments(text, name, r"NAME\s+([\w.\-]+)")
     return found
@@ -137,16 +137,23 @@ def page(root, requirements, claimed, tests):
     return "\n".join(lines)
 
 
+def plain_name(name):
+    """Prefix/Suite/Type.Name/Value, as ctest shows a parameterised GoogleTest -> Suite.Name; others as they are, - as _."""
+    found = re.match(r"(?:\w+/)?([A-Z]\w*)(?:/\w+)?\.(\w+)(?:/.+)?$", name)
+    return f"{found[1]}.{found[2]}" if found else name.replace("-", "_")
+
+
 def print_results(requirements, tests, junit):
-    results = {}
+    results = collections.defaultdict(set)
     for case in xml.etree.ElementTree.parse(junit).getroot().iter("testcase"):
-        name = re.sub(r"/\w+$", "", case.get("name"))            # value-parameterised tests: Prefix/Suite.Name/0
-        name = re.sub(r"^\w+/(?=\w+\.)", "", name)
-        results.setdefault(name, []).append(case.get("status"))
+        name = plain_name(case.get("name"))
+        results[name].add(case.get("status"))
+        results[name.split(".")[-1]].add(case.get("status"))
     for name in requirements:
         for test in sorted(t for t in tests if name in t.ids):
-            status = results.get(test.name) or results.get(test.name.replace("bench ", "bench.")) or []
-            verdict = "failed" if "fail" in status else "passed" if status and set(status) == {"run"} else "not run"
+            plain = plain_name(test.name.replace("bench ", ""))
+            status = results.get(plain) or ((not plain[0].isupper()) and results.get(plain.split(".")[-1])) or set()
+            verdict = "failed" if "fail" in status else "passed" if status == {"run"} else "not run"
             print(f"{name:8} {verdict:8} {test.name}")
 
 
