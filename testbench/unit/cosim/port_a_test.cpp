@@ -1,0 +1,251 @@
+// The Port A bus master against the formulas of host-bus.md 2.2: every guaranteed time, at every number of wait states and
+// several CPU clocks; /TA stretching; areas; the registers that shape the cycles.
+#include "systemc/cpu/port_a.h"
+
+#include <gmock/gmock.h>
+
+#include <optional>
+
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+constexpr double kNs = 1e6;  // femtoseconds
+
+// Presents accesses to the bus master and moves the pins along, with a board that shows `board(tick)`.
+class PortARig {
+ public:
+  explicit PortARig(std::function<BoardOutputs(Tick)> board = [](Tick) { return BoardOutputs{}; }) : board_(std::move(board)) {
+    port_a.on_cycle = [this](const PortACycle& c) { last = c; };
+    port_a.reset(0, 0, pins);
+    payload_.set_extension(&request_);
+    payload_.set_data_ptr(reinterpret_cast<unsigned char*>(&data_));
+  }
+  ~PortARig() { payload_.clear_extension(&request_); }
+
+  tlm::tlm_response_status access(char space, std::uint32_t address, bool write, std::uint32_t data = 0, unsigned bytes = 4) {
+    payload_.set_address(kPmacBase + 8ull * address + (space == 'X' ? 4 : 0));
+    payload_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+    payload_.set_data_length(bytes);
+    payload_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+    data_ = data;
+    request_.start = cycle;
+    auto& bus = static_cast<sc_core::sc_export<tlm::tlm_fw_transport_if<>>&>(port_a.socket);
+    for (;;) {
+      sc_core::sc_time delay;
+      bus->b_transport(payload_, delay);
+      if (payload_.get_response_status() != tlm::TLM_INCOMPLETE_RESPONSE) break;
+      while (port_a.running()) {
+        EXPECT_GE(port_a.stands_at(), now) << "the board would have to go back";
+        now = port_a.stands_at();
+        port_a.step(pins, board_(now));
+      }
+    }
+    cycle = request_.done;
+    return payload_.get_response_status();
+  }
+  std::uint32_t read(char space, std::uint32_t address) {
+    EXPECT_EQ(access(space, address, false), tlm::TLM_OK_RESPONSE);
+    return data_;
+  }
+  void write(char space, std::uint32_t address, std::uint32_t data) { EXPECT_EQ(access(space, address, true, data), tlm::TLM_OK_RESPONSE); }
+  void set_clock(unsigned multiplier) { write('X', 0xFFFFFD, multiplier - 1); }
+  void set_wait_states(unsigned ws) {  // all areas
+    const unsigned three_bits = std::min(ws, 7u);
+    write('X', 0xFFFFFB, ws | ws << 5 | three_bits << 10 | three_bits << 13 | ws << 16);
+  }
+
+  Signals signals;
+  PortA port_a{sc_core::sc_gen_unique_name("port_a"), signals};
+  BoardInputs pins;
+  std::optional<PortACycle> last;
+  Tick now = 0;
+  std::int64_t cycle = 12;
+
+ private:
+  std::function<BoardOutputs(Tick)> board_;
+  PortARequest request_;
+  tlm::tlm_generic_payload payload_;
+  std::uint32_t data_ = 0;
+};
+
+double tc_ns(unsigned n) { return 1e9 / (9'830'400.0 * n); }  // CPU clock period
+int form(unsigned ws) { return ws <= 3 ? 0 : ws <= 7 ? 1 : 2; }
+constexpr double kEpsilon = 1e-5;  // ns, rounding to femtoseconds
+
+// The rows as the data sheet prints them, guard bands included.
+void expect_read_rows(const PortACycle& c, unsigned ws, double tc) {
+  const double valid = c.end / kNs - c.start / kNs, low = (c.strobe_high - c.strobe_low) / kNs;
+  EXPECT_GE(valid, (ws + 1 + form(ws)) * tc - 4 - kEpsilon) << "row 100";
+  EXPECT_LE((c.data_time - c.start) / kNs, (ws + 0.75) * tc - 5 + kEpsilon) << "row 104: the CPU may not ask for data earlier";
+  EXPECT_GE((c.data_time - c.start) / kNs, (ws + 0.75) * tc - 5 - kEpsilon) << "row 104";
+  EXPECT_GE((c.data_time - c.strobe_low) / kNs, (ws + 0.25) * tc - 5 - kEpsilon) << "row 105";
+  EXPECT_GE((c.strobe_low - c.start) / kNs, 0.5 * tc - 2 - kEpsilon) << "row 115";
+  EXPECT_GE(low, (ws + 0.25) * tc - 4 - kEpsilon) << "row 116";
+  EXPECT_GE((c.end - c.strobe_high) / kNs, (ws <= 3 ? 0.25 : ws <= 7 ? 1.25 : 2.25) * tc - 2 - kEpsilon) << "row 117";
+  EXPECT_GE((c.strobe_high - c.ta_time) / kNs, 0.25 * tc + 2.0 - kEpsilon) << "row 118";
+}
+
+void expect_write_rows(const PortACycle& c, unsigned ws, double tc) {
+  EXPECT_GE((c.end - c.start) / kNs, (ws + 1 + form(ws)) * tc - 4 - kEpsilon) << "row 100";
+  EXPECT_GE((c.strobe_low - c.start) / kNs, (ws == 1 ? 0.25 : ws <= 3 ? 0.75 : 1.25) * tc - 2 - kEpsilon) << "row 101";
+  EXPECT_GE((c.strobe_high - c.strobe_low) / kNs, (ws == 1 ? 1.5 : ws <= 3 ? ws : ws - 0.5) * tc - 4 - kEpsilon) << "row 102";
+  EXPECT_GE((c.end - c.strobe_high) / kNs, (0.25 + form(ws)) * tc - 2 - kEpsilon) << "row 103 and 109";
+  EXPECT_GE((c.strobe_high - c.start) / kNs, (ws + 0.75) * tc - 4 - kEpsilon) << "row 107";
+  EXPECT_GE((c.strobe_high - c.data_time) / kNs, (ws - 0.25) * tc - 3 - kEpsilon) << "row 108";
+  if (ws == 1) return;
+  EXPECT_GE((c.data_time - c.strobe_low) / kNs, (ws <= 3 ? 0.25 : -0.25) * tc - 3.7 - kEpsilon) << "row 110";
+}
+
+TEST(PortA, KeepsEveryRowAtEveryWaitStateAndClock) {
+  BRICK_COVERS("CARD-5");
+  for (const unsigned n : {1u, 7u, 8u, 10u, 16u, 24u, 32u}) {
+    for (unsigned ws = 1; ws <= 31; ++ws) {
+      SCOPED_TRACE(::testing::Message() << "multiplier " << n << ", " << ws << " wait states");
+      PortARig rig;
+      rig.set_clock(n);
+      rig.set_wait_states(ws);
+      const double tc = tc_ns(n);
+      rig.read('X', 0x078000);
+      const PortACycle read = *rig.last;
+      EXPECT_EQ(read.wait_states, ws);
+      // At 320 MHz and one wait state 5 ns before the end lie before /RD falls: the rows cannot all hold (illegal, 2.3).
+      if ((ws + 0.25) * tc > 5) expect_read_rows(read, ws, tc);
+      rig.write('Y', 0x078001, 0x123456);
+      const PortACycle write = *rig.last;
+      if (ws > 1 || (0.25 * tc > 2 && 1.5 * tc > 4)) expect_write_rows(write, ws, tc);
+      if (ws == 1) continue;  // the rows below begin with two wait states
+      EXPECT_GE((write.data_time - read.strobe_high) / kNs, (1.25 + form(ws)) * tc - 4 - kEpsilon) << "row 112";
+      rig.write('Y', 0x078001, 1);
+      EXPECT_GE((rig.last->strobe_low - write.strobe_high) / kNs, (ws <= 3 ? 2.0 : ws <= 7 ? 2.5 : 3.5) * tc - 4 - kEpsilon) << "row 114";
+      rig.read('X', 0x078000);
+      const PortACycle first = *rig.last;
+      rig.read('X', 0x078000);
+      EXPECT_GE((rig.last->strobe_low - first.strobe_high) / kNs, (ws <= 7 ? 1.75 : 2.75) * tc - 4 - kEpsilon) << "row 113";
+    }
+  }
+}
+
+// A line of the check table 2.3, scaled from 80 MHz to 78.6432 MHz: 7 wait states take 9 clocks.
+TEST(PortA, SevenWaitStatesAtResetClockTakeNineClocks) {
+  BRICK_COVERS("CARD-5");
+  PortARig rig;
+  rig.set_wait_states(7);
+  const auto start = rig.cycle;
+  rig.read('X', 0x078000);
+  EXPECT_EQ(rig.cycle - start, 9);
+  EXPECT_NEAR((rig.last->data_time - rig.last->start) / kNs, 7.75 * tc_ns(8) - 5, 1e-5);
+}
+
+TEST(PortA, ResetValuesAreAllWaitStatesAndEightTimesTheClock) {
+  PortARig rig;
+  EXPECT_EQ(rig.read('X', 0xFFFFFB), 0x1FFFFFu);
+  EXPECT_EQ(rig.read('X', 0xFFFFFD), 7u);
+  rig.read('X', 0x078000);
+  EXPECT_EQ(rig.last->wait_states, 31u);
+  rig.read('X', 0x060000);
+  EXPECT_EQ(rig.last->wait_states, 7u);
+}
+
+TEST(PortA, EachRegionHasItsAreaAndWaitStates) {
+  PortARig rig;
+  rig.write('X', 0xFFFFFB, 1 | 2 << 5 | 3 << 10 | 4 << 13 | 5 << 16);
+  struct Case {
+    char space;
+    std::uint32_t address;
+    unsigned aa, ws;
+  };
+  for (const Case& c : {Case{'Y', 0x060000, 4, 3},
+                        {'X', 0x063FFF, 4, 3},
+                        {'X', 0x070010, 0, 5},
+                        {'X', 0x0700FF, 0, 5},
+                        {'Y', 0x078000, 2, 2},
+                        {'X', 0x07BFFF, 2, 2}}) {
+    rig.read(c.space, c.address);
+    EXPECT_EQ(rig.last->aa, c.aa) << std::hex << c.address;
+    EXPECT_EQ(rig.last->wait_states, c.ws) << std::hex << c.address;
+  }
+  EXPECT_EQ(rig.port_a.wait_states(0), 1u);
+}
+
+TEST(PortA, NothingAnswersOutsideTheRegions) {
+  PortARig rig;
+  for (const std::uint32_t address : {0x040000u, 0x05FFFFu, 0x064000u, 0x06FFFFu, 0x070100u, 0x077FFFu, 0x07C000u, 0x080000u, 0xFFFF7Fu})
+    EXPECT_EQ(rig.access('X', address, false), tlm::TLM_ADDRESS_ERROR_RESPONSE) << std::hex << address;
+  EXPECT_EQ(rig.access('Y', 0xFFFFC6, false), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "the on-chip page is in X space";
+  EXPECT_EQ(rig.access('X', 0x078000, true, 1, 2), tlm::TLM_BURST_ERROR_RESPONSE);
+  EXPECT_FALSE(rig.last) << "and no cycle was made";
+}
+
+TEST(PortA, OnChipAccessesMoveNoBusSignal) {
+  PortARig rig;
+  rig.write('X', 0xFFFFC7, 0x41);
+  EXPECT_TRUE(rig.last->on_chip);
+  EXPECT_EQ(rig.last->wait_states, 7u);
+  for (const char* name : {"bus.addr", "bus.data", "bus.aa"}) EXPECT_EQ(rig.signals.value(*rig.signals.find(name)), 0u) << name;
+  rig.write('X', 0x070010, 0x2);
+  EXPECT_EQ(rig.signals.value(*rig.signals.find("bus.addr")), 0x70010u);
+  EXPECT_EQ(rig.signals.value(*rig.signals.find("bus.data")), 2u);
+}
+
+// /TA says "not yet" up to tick `release`.
+std::function<BoardOutputs(Tick)> busy_until(Tick release) {
+  return [release](Tick t) {
+    BoardOutputs o;
+    o.set(pin::kPaTaN, t < release);
+    o.set(pin::kPaData, t < release ? 0xBAD : 0x600D);
+    return o;
+  };
+}
+
+TEST(PortA, TaAddsClocksUntilItIsLowAtTheSample) {
+  BRICK_COVERS("CARD-5");
+  PortARig rig(busy_until(60));
+  rig.set_wait_states(3);
+  const auto start = rig.cycle;
+  EXPECT_EQ(rig.read('Y', 0x060000), 0x600Du);
+  const PortACycle& c = *rig.last;
+  ASSERT_GT(c.stretched, 0u);
+  EXPECT_EQ(rig.cycle - start, 4 + c.stretched);
+  EXPECT_GE(fs_to_tick_floor(c.ta_time), 60) << "the sample that ended the cycle";
+  const auto clock = static_cast<TimeFs>(tc_ns(8) * kNs);
+  EXPECT_LT(fs_to_tick_floor(c.ta_time - clock), 60) << "the sample before";
+  EXPECT_NEAR((c.strobe_high - c.strobe_low) / kNs, (3.25 + c.stretched) * tc_ns(8), 1e-4);
+}
+
+TEST(PortA, TaCountsOnlyWithWaitStates) {
+  PortARig rig(busy_until(1000));
+  rig.set_wait_states(0);
+  EXPECT_EQ(rig.read('Y', 0x060000), 0xBADu);
+  EXPECT_EQ(rig.last->stretched, 0u);
+}
+
+TEST(PortA, ReadsWhatThePinsShowAtTheSampleAndNotLater) {
+  BRICK_COVERS("CARD-5");
+  // The device is ready at tick 30; with few wait states the CPU asks earlier and gets what was there before.
+  const auto slow = [](Tick t) {
+    BoardOutputs o;
+    o.set(pin::kPaData, t < 30 ? 0x111111 : 0x222222);
+    return o;
+  };
+  PortARig quick(slow), patient(slow);
+  quick.write('X', 0xFFFFFB, 2 << 5);
+  patient.write('X', 0xFFFFFB, 15 << 5);
+  EXPECT_EQ(quick.read('X', 0x078000), 0x111111u);
+  EXPECT_EQ(patient.read('X', 0x078000), 0x222222u);
+}
+
+TEST(PortA, NewClockStartsWithAnEdgeAndCountsExactly) {
+  PortARig rig;
+  rig.set_clock(10);
+  const Tick edge = rig.port_a.clock().tick(rig.cycle);
+  EXPECT_EQ(rig.port_a.clock().time(rig.cycle), tick_to_fs(edge));
+  // 10 x 9.8304 MHz: ten cycles are twelve ticks.
+  EXPECT_EQ(rig.port_a.clock().time(rig.cycle + 1'000'000'000), tick_to_fs(edge + 1'200'000'000));
+  EXPECT_EQ(rig.port_a.clock().tick(rig.cycle + 1), edge + 2);
+  EXPECT_EQ(rig.port_a.clock().first_cycle(edge + 2), rig.cycle + 2);
+}
+
+}  // namespace
+}  // namespace brick
