@@ -65,9 +65,14 @@ int report_usage(const std::string& where, const std::string& text) {
 
 int main_command(int argc, char** argv) {
   Commands commands;
-  std::string where = "brick";
-  for (const CLI::App* command : commands.app.get_subcommands(nullptr))
+  std::string where = "brick", known;
+  for (const CLI::App* command : commands.app.get_subcommands(nullptr)) {
+    known += " " + command->get_name();
     if (argc > 1 && command->get_name() == argv[1]) where += " " + command->get_name();
+  }
+  if (where == "brick" && (argc < 2 || argv[1][0] != '-'))
+    return report_usage(
+        where, fmt::format("{}; expected one of:{}", argc < 2 ? "no command" : std::string("no command `") + argv[1] + "`", known));
   try {
     commands.app.parse(argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version

@@ -100,6 +100,9 @@ WaveWindow wave_window(const RunOptions& o) {
   read("--wave-to", o.wave_to, window.to);
   if (o.wave.empty() && (!o.wave_from.empty() || !o.wave_to.empty()))
     throw UsageError("--wave-from and --wave-to need a waveform; expected --wave FILE.vcd or FILE.fst");
+  const std::string ending = fs::path(o.wave).extension();
+  if (!o.wave.empty() && ending != ".vcd" && ending != ".fst")
+    throw UsageError(fmt::format("--wave {}: unknown kind of waveform; expected FILE.vcd or FILE.fst", o.wave));
   if (window.from > window.to) throw UsageError("--wave-from is later than --wave-to; expected the earlier time first");
   return window;
 }

@@ -54,7 +54,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     const auto folder = std::filesystem::path(options.wave).parent_path();
     if (!folder.empty()) std::filesystem::create_directories(folder);
     trace_ = TraceWriter::open(options.wave, window.from, window.to);
-  } catch (const std::exception& e) { throw UsageError(fmt::format("--wave: {}", e.what())); }
+  } catch (const std::exception& e) { throw UsageError(fmt::format("--wave {}; expected a writable place", e.what())); }
   machine_->signals().attach(trace_.get());
 }
 

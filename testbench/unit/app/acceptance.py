@@ -126,6 +126,7 @@ def bad_input():
             (["exec", "-", "--flash", f"{folder}/bad.flash"], "", "bad.flash"),
             (["exec", "-", "--json", f"{folder}/none/x.json"], "", "none/x.json"),
             (["exec", "-", "--wave", f"{folder}/x.txt"], "", "x.txt"),
+            (["exec", "-", "--wave", "/proc/none/x.vcd"], "", "/proc/none"),
             (["exec", "-", "--wave", f"{folder}/x.vcd", "--wave-from", "10"], "", "--wave-from"),
             (["exec", "-", "--wave-to", "10ms"], "", "--wave-to"),
             (["exec", "-"], "VERSION\n@frob\n", "stdin:2: @frob"),
