@@ -15,7 +15,7 @@ module clock_gen (
   input  wire logic        servo_ext_i,   // I7m07 bit 1: the SERVO pin is an input
   input  wire logic        phase_i,
   input  wire logic        servo_i,
-  output logic             phase_o,       // phase clock of this IC, own or external
+  output logic             phase_o,       // own phase clock; high while external
   output logic             servo_o,
   output logic [16:0]      cnt_o,         // triangle counter, signed
   output logic             turn_o,        // this edge leaves a turnaround
@@ -165,8 +165,8 @@ module clock_gen (
     end
   end
 
-  assign phase_o      = phase_q;
-  assign servo_o      = servo_q;
+  assign phase_o      = phase_q | phase_ext_i;
+  assign servo_o      = servo_q | servo_ext_i;
   assign cnt_o        = up_q ? ramp_q : ~ramp_q;
   assign turn_o       = turn;
   assign phase_rise_o = ~phase_q & phase_d;

@@ -26,8 +26,8 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   };
   Inputs in;
 
-  bool phase() const { return s_.phase; }
-  bool servo() const { return s_.servo; }
+  bool phase() const { return s_.phase || in.phase_ext; }  // high while the pin is an input
+  bool servo() const { return s_.servo || in.servo_ext; }
   int cnt() const { return s_.up ? s_.ramp : ~s_.ramp; }
 
   Tick next_event() const override;  // next change of an output that is driven

@@ -211,7 +211,7 @@ TEST_P(BoardLockstep, AllPinsAgreeAtEveryTickOnRandomStimulus) {
   Stimulus(pair, GetParam()).run(20'000);
   EXPECT_EQ(pair.difference, "") << "seed " << GetParam();
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, BoardLockstep, ::testing::Range(1u, 9u));
+INSTANTIATE_TEST_SUITE_P(Seeds, BoardLockstep, ::testing::Range(1u, 25u));
 
 TEST(BoardLockstepControl, TheSeededBugIsFound) {
   Pair pair(true);
