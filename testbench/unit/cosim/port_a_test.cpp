@@ -223,10 +223,10 @@ TEST(PortA, TaCountsOnlyWithWaitStates) {
 
 TEST(PortA, ReadsWhatThePinsShowAtTheSampleAndNotLater) {
   BRICK_COVERS("CARD-5");
-  // The device is ready at tick 30; with few wait states the CPU asks earlier and gets what was there before.
+  // The device is ready at tick 45; with few wait states the CPU asks earlier and gets what was there before.
   const auto slow = [](Tick t) {
     BoardOutputs o;
-    o.set(pin::kPaData, t < 30 ? 0x111111 : 0x222222);
+    o.set(pin::kPaData, t < 45 ? 0x111111 : 0x222222);
     return o;
   };
   PortARig quick(slow), patient(slow);

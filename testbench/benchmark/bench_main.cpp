@@ -1,0 +1,180 @@
+// How fast the engines are: a table on stdout. Each ratio compares runs that were made in turn, in the same minute, and every
+// number is the median of five, because the machine under us is never quiet.
+//   brick_benchmark FIRMWARE.elf [--quick]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "systemc/core/trace.h"
+#include "systemc/cosim/engines.h"
+#include "systemc/machine/machine.h"
+#include "testbench/benchmark/benchmark.h"
+#include "testbench/host/host_link.h"
+
+namespace brick {
+
+void start_clocks(Board& board) {
+  BoardInputs in;
+  board.run_until(30);
+  in.rst_n = true;
+  in.pa_addr = 0x78004;
+  in.pa_x = true;
+  in.pa_aa = 2;
+  in.pa_wdata = 0x3008D2;
+  in.pa_wr_n = false;
+  board.set_inputs(in);
+  board.run_until(50);
+  in.pa_wr_n = true;
+  board.set_inputs(in);
+}
+
+namespace {
+
+constexpr int kRounds = 5;
+constexpr double kTicksPerSecond = 117'964'800;
+
+double seconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+void row(const std::string& what, const std::string& measured, const std::string& goal, bool met) {
+  fmt::print("{:<58} {:>22}   {:<22} {}\n", what, measured, goal, goal.empty() ? "" : met ? "met" : "MISSED");
+  std::fflush(stdout);
+}
+
+// Waveform of a board alone: its pins.
+class PinTrace {
+ public:
+  PinTrace(Board& board, const std::string& file) : writer_(TraceWriter::open(file)) {
+    for (const PinField& f : pin::kAll) ids_.push_back(signals_.add(std::string(f.name), f.width, Radix::kHex));
+    signals_.attach(writer_.get());
+    board.on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+      for (std::size_t i = 0; i < ids_.size(); ++i)
+        if (before.w[pin::kAll[i].word] != after.w[pin::kAll[i].word]) signals_.set(ids_[i], tick_to_fs(t), after.get(pin::kAll[i]));
+      signals_.flush_until(tick_to_fs(t));
+    };
+  }
+
+ private:
+  Signals signals_;
+  std::unique_ptr<TraceWriter> writer_;
+  std::vector<Signals::Id> ids_;
+};
+
+void boards(Tick ticks, const std::string& vcd) {
+  auto rtl = make_rtl_board(3);
+  auto rtl_vcd = make_rtl_board(3);
+  auto lock = make_lockstep_board(make_rtl_board(3), make_model_board(3));
+  auto lock_vcd = make_lockstep_board(make_rtl_board(3), make_model_board(3));
+  BareLoop bare;
+  for (Board* b : {rtl.get(), rtl_vcd.get(), lock.get(), lock_vcd.get()}) start_clocks(*b);
+  PinTrace trace1(*rtl_vcd, vcd + ".1.vcd"), trace2(*lock_vcd, vcd + ".2.vcd");
+
+  std::vector<double> bare_rate, rate[4], ratio[4];
+  Board* const board[] = {rtl.get(), rtl_vcd.get(), lock.get(), lock_vcd.get()};
+  for (int round = 0; round < kRounds; ++round) {
+    const double yardstick = static_cast<double>(ticks) / seconds([&] { bare.run(ticks); });
+    bare_rate.push_back(yardstick);
+    for (int i = 0; i < 4; ++i) {
+      rate[i].push_back(static_cast<double>(ticks) / seconds([&] { board[i]->run_until(board[i]->now() + ticks); }));
+      ratio[i].push_back(i < 2 ? rate[i].back() / yardstick : rate[i].back() / rate[0].back());
+    }
+  }
+  row("bare Verilated loop, two servo ICs, clocks running", fmt::format("{:.2f} M ticks/s", median(bare_rate) / 1e6), "", true);
+  row("RTL engine", fmt::format("{:.2f} M ticks/s", median(rate[0]) / 1e6), "", true);
+  row("  ratio to the bare loop", fmt::format("{:.2f}", median(ratio[0])), ">= 0.90", median(ratio[0]) >= 0.9);
+  row("RTL engine, VCD of the pins", fmt::format("{:.2f} M ticks/s", median(rate[1]) / 1e6), "", true);
+  row("  ratio to the bare loop", fmt::format("{:.2f}", median(ratio[1])), "", true);
+  row("lock-step", fmt::format("{:.2f} M ticks/s", median(rate[2]) / 1e6), "", true);
+  row("  ratio to the RTL engine", fmt::format("{:.2f}", median(ratio[2])), ">= 0.60", median(ratio[2]) >= 0.6);
+  row("lock-step, VCD of the pins", fmt::format("{:.2f} M ticks/s", median(rate[3]) / 1e6), "", true);
+  row("  ratio to the RTL engine", fmt::format("{:.2f}", median(ratio[3])), "", true);
+}
+
+// The whole controller with its firmware: idle (waits for the host), and busy (the host asks without a pause).
+void machine(Engine engine, const char* name, const std::string& firmware, double simulated, const std::string& vcd, bool goal) {
+  MachineConfig config;
+  config.engine = engine;
+  config.firmware = firmware;
+  for (const bool traced : {false, true}) {
+    Machine machine(sc_core::sc_gen_unique_name("machine"), config);
+    HostBus bus(machine);
+    HostLink link(bus);
+    if (!link.connect(static_cast<Tick>(0.2 * kTicksPerSecond))) {
+      row(fmt::format("{} engine", name), "firmware is silent", "", true);
+      return;
+    }
+    std::unique_ptr<TraceWriter> writer;
+    if (traced) {
+      writer = TraceWriter::open(vcd + ".3.vcd");
+      machine.signals().attach(writer.get());
+    }
+    const auto ticks = static_cast<Tick>((traced ? 0.1 : 1.0) * simulated * kTicksPerSecond);
+    std::vector<double> idle, busy, instructions;
+    for (int round = 0; round < kRounds; ++round) {
+      const double idle_seconds = seconds([&] { machine.run_until(machine.now() + ticks); });
+      idle.push_back(static_cast<double>(ticks) / kTicksPerSecond / idle_seconds);
+      const Tick begin = machine.now();
+      const std::uint64_t before = machine.instructions();
+      const double busy_seconds = seconds([&] {
+        while (machine.now() < begin + ticks / 10) link.command("I10,20 P1=P1+SQRT(2) P1");
+      });
+      busy.push_back(static_cast<double>(machine.now() - begin) / kTicksPerSecond / busy_seconds);
+      instructions.push_back(static_cast<double>(machine.instructions() - before) / busy_seconds);
+    }
+    machine.signals().attach(nullptr);
+    const std::string with = traced ? ", VCD" : "";
+    const bool judged = goal && !traced;
+    row(fmt::format("{} engine, idle firmware{}", name, with), fmt::format("{:.3f} sim s/s", median(idle)), judged ? ">= 10 sim s/s" : "",
+        median(idle) >= 10);
+    row(fmt::format("{} engine, host asks without pause{}", name, with), fmt::format("{:.3f} sim s/s", median(busy)), "", true);
+    row("  instructions", fmt::format("{:.2f} M/s", median(instructions) / 1e6), "", true);
+  }
+}
+
+void cpu(std::uint64_t instructions) {
+  std::vector<double> rate;
+  for (int round = 0; round < kRounds; ++round) {
+    std::uint64_t done = 0;
+    const double s = seconds([&] { done = run_cpu_alone(instructions); });
+    rate.push_back(static_cast<double>(done) / s);
+  }
+  row("CPU model alone", fmt::format("{:.0f} M instructions/s", median(rate) / 1e6), ">= 100 M instr/s", median(rate) >= 100e6);
+}
+
+}  // namespace
+}  // namespace brick
+
+int main(int argc, char** argv) {
+  const bool quick = argc == 3 && std::string(argv[2]) == "--quick";
+  if (argc < 2 || (argc == 3 && !quick) || argc > 3) {
+    fmt::print(stderr, "usage: brick_benchmark FIRMWARE.elf [--quick]\n");
+    return 2;
+  }
+  const std::string vcd = (std::filesystem::temp_directory_path() / "brick_benchmark").string();
+  try {
+    fmt::print("{:<58} {:>22}   {:<22}\n", "what", "median of 5", "goal");
+    brick::boards(quick ? 1'000'000 : 4'000'000, vcd);
+    brick::cpu(quick ? 50'000'000 : 200'000'000);
+    brick::machine(brick::Engine::kSystemC, "SystemC", argv[1], quick ? 1 : 5, vcd, true);
+    brick::machine(brick::Engine::kRtl, "RTL", argv[1], quick ? 0.01 : 0.05, vcd, false);
+    brick::machine(brick::Engine::kLockstep, "lock-step", argv[1], quick ? 0.01 : 0.05, vcd, false);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "brick_benchmark: {}\n", e.what());
+    return 2;
+  }
+  for (const char* n : {".1.vcd", ".2.vcd", ".3.vcd"}) std::filesystem::remove(vcd + n);
+  return 0;
+}

@@ -1,0 +1,30 @@
+// The measured loops, one function each: they return how much was done; the caller takes the time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "systemc/core/board.h"
+
+namespace brick {
+
+// The Verilated board of the RTL engine without anything of ours around it: two evaluations a tick, pins not looked at. The
+// clocks run from servo IC 0 as in the engine that it is compared with.
+class BareLoop {
+ public:
+  BareLoop();
+  ~BareLoop();
+  void run(Tick ticks);
+
+ private:
+  struct Model;
+  std::unique_ptr<Model> model_;
+};
+
+// Instructions retired by a loop of integer arithmetic, loads, stores and branches on the CPU model alone.
+std::uint64_t run_cpu_alone(std::uint64_t instructions);
+
+// Lets servo IC 0 drive PHASE and SERVO at their reset values: reset, then one write to X:$078004.
+void start_clocks(Board& board);
+
+}  // namespace brick
