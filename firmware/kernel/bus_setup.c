@@ -35,12 +35,6 @@ static uint32_t wait_states(uint32_t i52, uint32_t i37) {
   return word;
 }
 
-void bus_setup_first(void) {
-  clock_in_force = RESET_I52;
-  hal_set_cpu_clock(RESET_I52);
-  *hal_x(CPU_BUS_X_BCR) = wait_states(RESET_I52, 0);
-}
-
 /* The slowest bus while the clock changes, so that no cycle is ever too short. */
 void bus_setup(uint32_t i52, uint32_t i37) {
   *hal_x(CPU_BUS_X_BCR) = CPU_BUS_BCR_RESET;
@@ -49,3 +43,5 @@ void bus_setup(uint32_t i52, uint32_t i37) {
   clock_in_force = i52;
   hal_set_cpu_clock(i52);
 }
+
+void bus_setup_first(void) { bus_setup(RESET_I52, 0); }

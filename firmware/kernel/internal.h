@@ -24,8 +24,9 @@ extern volatile uint32_t kernel_phase_work;  /* not zero: kernel_phase_interrupt
 
 /* saved_data.c */
 typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;
-saved_t saved_data_restore(uint32_t* ics); /* I, P, Q, M over the defaults; ICs found at the last re-initialisation */
-void saved_data_write(uint32_t ics);
+saved_t saved_data_restore_variables(uint32_t* initial_ics); /* I; and the ICs found at the last re-initialisation */
+void saved_data_restore_user_memory(void);                   /* P, Q, M of the data just accepted, into cleared memory */
+void saved_data_write(uint32_t initial_ics);
 
 /* kernel.c: status bits of the first global word */
 void kernel_status_set(uint32_t bits); /* any task */

@@ -11,10 +11,12 @@
 #include "firmware/variables/variables.h"
 
 #define MAIN_MEMORY_WORDS 0x010800u
+#define CLEARED_AT_ONCE 0x2100u /* an eighth */
 #define GLOBAL_STATUS 0x000006u /* X: first word, Y: second */
 
 static volatile uint32_t work;   /* set by any task, cleared by the background */
 static volatile uint32_t status; /* sticky bits, set by any task */
+static bool load_user;           /* user memory was saved */
 static uint32_t initial_ics;     /* ICs found at the last re-initialisation */
 
 void kernel_wake_background(void) { work = 1; }
@@ -31,26 +33,44 @@ bool kernel_motors_may_enable(void) { return (kernel_status_word() & (STATUS_NO_
 
 void kernel_save(void) { saved_data_write(initial_ics); }
 
-/* Defaults first, then what was saved over them, unless defaults were asked for. */
+/* What was saved, or the defaults: if they are asked for, by jumper E3 or `$$$***`, or if nothing good was saved. */
 static void load_variables(kernel_start_t mode) {
-  hal_clear_words(0, MAIN_MEMORY_WORDS);
-  i_variable_initialize();
-  initial_ics = gate_ic_found();
-  if (mode == KERNEL_START_DEFAULTS || (hal_strap(HAL_STRAP_E3) & 1u) != 0u) return;
-  if (saved_data_restore(&initial_ics) == SAVED_DAMAGED) status |= STATUS_FLASH_ERROR;
+  const bool use_saved = mode == KERNEL_START_SAVED && (hal_strap(HAL_STRAP_E3) & 1u) == 0u;
+  const saved_t saved = use_saved ? saved_data_restore_variables(&initial_ics) : SAVED_NONE;
+  if (saved == SAVED_DAMAGED) status |= STATUS_FLASH_ERROR;
+  if (saved != SAVED_GOOD) {
+    i_variable_initialize();
+    initial_ics = gate_ic_found();
+  }
   if (initial_ics != gate_ic_found()) status |= STATUS_CONFIGURATION;
+  load_user = saved == SAVED_GOOD;
 }
 
+static void load_user_memory(void) {
+  for (uint32_t first = 0; first < MAIN_MEMORY_WORDS; first += CLEARED_AT_ONCE) {
+    hal_clear_words(first, CLEARED_AT_ONCE);
+    hal_watchdog_strobe();
+  }
+  if (load_user) saved_data_restore_user_memory();
+}
+
+/* The hardware watchdog runs from reset on: 25 ms for the first servo clock edge, and 25 ms from strobe to strobe. So the clocks
+ * come first, at the CPU clock after reset, and the steps that take long are strobed. */
 void kernel_start(kernel_start_t mode) {
   hal_interrupts_off();
+  hal_watchdog_strobe();
+  bus_setup_first();
   hal_host_signals(0, HAL_SIGNAL_IPOS | HAL_SIGNAL_BREQ | HAL_SIGNAL_EROR | HAL_SIGNAL_F1ER);
   status = 0;
   gate_ic_find();
   load_variables(mode);
-  bus_setup((uint32_t)i_integer(52), (uint32_t)i_integer(37));
   i_variable_write_hardware();
+  hal_watchdog_strobe();
+  load_user_memory();
   command_initialize();
   motion_initialize();
+  hal_watchdog_strobe();
+  bus_setup((uint32_t)i_integer(52), (uint32_t)i_integer(37));
   tasks_initialize();
   hal_interrupts_on();
   clock_watch_start();
@@ -72,7 +92,7 @@ void kernel_background_pass(void) {
 _Noreturn void kernel_main(void);
 
 _Noreturn void kernel_main(void) {
-  bus_setup_first();
+  bus_setup_first(); /* before the first device access */
   host_port_initialize();
   line_input_initialize();
   kernel_start(KERNEL_START_SAVED);

@@ -202,37 +202,49 @@ static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
   }
 }
 
-void i_variable_initialize(void) {
+static void clear_all(void) {
   i_table_initialize();
-  const uint32_t source = i_default_clock_source();
   __builtin_memset(value_of, 0, sizeof value_of);
   __builtin_memset(integer_of, 0, sizeof integer_of);
   directions_pending = 0;
+}
+
+static void ic_defaults(uint32_t ics, uint32_t source) {
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
+    if (gate_ic_present(ic) && ((ics >> ic) & 1u) != 0u) defaults(gate_ic_direction_variable(ic) - 7u, 50, source);
+}
+
+void i_variable_initialize(void) {
+  const uint32_t source = i_default_clock_source();
+  clear_all();
   defaults(0, 100, source);
   repeat(100, 31, source);
   defaults(4900, 10, source);
   repeat(5100, 15, source);
-  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
-    if (gate_ic_present(ic)) defaults(gate_ic_direction_variable(ic) - 7u, 50, source);
+  ic_defaults(~0u, source);
   defaults(8000, 72, source); /* at most 18 servo ICs of four channels */
 }
 
-static bool is_saved(uint32_t number) {
+bool i_variable_save(uint32_t number, struct i_saved* saved) {
   const struct i_place place = i_table_place(number);
   const struct i_entry* entry = i_table_entry(place);
-  return entry->kind != I_KIND_R && entry->field != I_FIELD_TIMER && !(of_gate_ic(place) && !gate_ic_present(place.instance));
+  if (entry->kind == I_KIND_R || entry->field == I_FIELD_TIMER) return false;
+  saved->value = value_of[number];
+  saved->integer = integer_of[number];
+  return saved->integer != 0 || saved->value != 0.0;
 }
 
-double i_variable_stored(uint32_t number) { return is_saved(number) ? value_of[number] : 0.0; }
-
-void i_variable_restore(uint32_t number, double value) {
-  if (number < VARIABLE_COUNT && is_saved(number)) store(number, value);
+void i_variable_begin_restore(uint32_t saved_ics) {
+  clear_all();
+  defaults(4900, 10, 0);
+  ic_defaults(~saved_ics, 0);
 }
 
-/* Everything that SAVE keeps becomes 0, because zeros are not written down. */
-void i_variable_clear(void) {
-  for (uint32_t number = 0; number < VARIABLE_COUNT; ++number)
-    if ((integer_of[number] != 0 || value_of[number] != 0.0) && is_saved(number)) store(number, 0.0);
+void i_variable_restore(uint32_t number, const struct i_saved* saved) {
+  if (number >= VARIABLE_COUNT) return;
+  if (number >= 6800u && number < 8000u && !gate_ic_present(i_table_place(number).instance)) return;
+  value_of[number] = saved->value;
+  integer_of[number] = saved->integer;
 }
 
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */

@@ -26,10 +26,14 @@ void i_variable_apply_clock_directions(void);
 void i_variable_initialize(void);
 void i_variable_write_hardware(void); /* every servo and MACRO IC register from its I-variables */
 
-/* SAVE and restore: the raw value; 0 where nothing is saved (read-only variables, timers). */
-double i_variable_stored(uint32_t number);
-void i_variable_restore(uint32_t number, double value);
-void i_variable_clear(void);
+/* SAVE and restore. A restore begins with zeros, read-only values and the defaults of ICs that were not there when it was saved. */
+struct i_saved {
+  double value;
+  int32_t integer;
+};
+bool i_variable_save(uint32_t number, struct i_saved* saved); /* false: nothing to keep, zero or not saved at all */
+void i_variable_begin_restore(uint32_t saved_ics);            /* bit per IC of hal/gate_ic.h */
+void i_variable_restore(uint32_t number, const struct i_saved* saved);
 
 /* How a value is reported under I9 bit 1. */
 typedef enum { I_FORMAT_DECIMAL, I_FORMAT_HEX } i_format_t;

@@ -34,6 +34,8 @@ ImageBoard::ImageBoard(const std::string& elf, std::uint32_t fitted) : cpu_(this
 void ImageBoard::reset() {
   cpu_.reset(entry_);
   next_phase_ = cpu_.cycle() + kPhaseCycles;
+  reset_at_ = last_strobe_ = cpu_.cycle();
+  longest_gap_ = clocks_started_ = 0;
 }
 
 std::uint32_t ImageBoard::word(bool x, std::uint32_t address) {
@@ -73,6 +75,9 @@ DeviceBus::Result ImageBoard::access(std::uint32_t address, unsigned bytes, bool
   } else if (word == HI08_X_HCR && write) {
     hcr_ = data;
   } else if (word >= SERVO_IC_0_BASE && word < 0x07C000) {
+    const bool drives = (data & (SERVO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_MASK | SERVO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_MASK)) == 0;
+    const bool clock_word = x && word == SERVO_IC_0_BASE + SERVO_IC_X_CLOCK_CONTROL;
+    if (write && clock_word && drives && clocks_started_ == 0) clocks_started_ = now - reset_at_;
     static const std::uint32_t bases[] = GATE_IC_BASES;
     result.data = 0xFFFFFF;
     for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
@@ -81,7 +86,11 @@ DeviceBus::Result ImageBoard::access(std::uint32_t address, unsigned bytes, bool
       result.data = registers_[word * 2 + x];
     }
   } else if (write) {
-    if (word == BOARD_LATCHES_X_WATCHDOG_STROBE) ++strobes_;
+    if (word == BOARD_LATCHES_X_WATCHDOG_STROBE) {
+      ++strobes_;
+      longest_gap_ = std::max(longest_gap_, now - last_strobe_);
+      last_strobe_ = now;
+    }
     registers_[word * 2 + x] = data;
   } else {
     result.data = registers_[word * 2 + x];

@@ -30,6 +30,8 @@ class ImageBoard : public DeviceBus {
   void fill_memory(std::uint32_t pattern);
   Cpu& cpu() { return cpu_; }
   std::uint64_t strobes() const { return strobes_; }
+  double longest_strobe_gap_ms() const { return static_cast<double>(longest_gap_) / kCyclesPerMs; }  // since the last reset
+  double clocks_started_ms() const { return static_cast<double>(clocks_started_) / kCyclesPerMs; }   // after reset: servo IC 0 drives
 
   static constexpr double kCyclesPerMs = 78643.2;
 
@@ -48,6 +50,7 @@ class ImageBoard : public DeviceBus {
   Cycle next_phase_ = 0;
   unsigned phases_ = 0;
   std::uint64_t accesses_ = 0, strobes_ = 0;
+  Cycle reset_at_ = 0, last_strobe_ = 0, longest_gap_ = 0, clocks_started_ = 0;
 };
 
 }  // namespace brick

@@ -20,6 +20,23 @@ TEST_F(Image, FirstReplyComesWithin20Milliseconds) {
   RecordProperty("first_reply_us", static_cast<int>(board.now_ms() * 1000));
 }
 
+// The hardware watchdog allows 25 ms from reset to the first servo edge, and 25 ms between strobes (docs/watchdog.md).
+TEST_F(Image, StartUpStaysWithinTheHardwareWatchdog) {
+  BRICK_COVERS("WDT-2");
+  board.send("I6=1 I3=2\r");
+  EXPECT_GT(board.clocks_started_ms(), 0.0);
+  EXPECT_LT(board.clocks_started_ms(), 15.0);
+  EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
+  board.send("I100..3299=1\r", 2000.0);  // as much to restore as there can be
+  board.send("P0..8191=1.5\r", 2000.0);
+  board.send("I19=7007 I5=3 SAVE\r", 2000.0);
+  board.reset();
+  board.send("I6=1 I3=2\r");
+  EXPECT_GT(board.clocks_started_ms(), 0.0);
+  EXPECT_LT(board.clocks_started_ms(), 15.0);
+  EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
+}
+
 TEST_F(Image, IdleSecondCostsLessThanTwoMillionInstructions) {
   board.send("I6=1 I3=2\r");
   const std::uint64_t instructions = board.instructions(), accesses = board.device_accesses();
