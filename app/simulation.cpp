@@ -52,7 +52,8 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
   const WaveWindow window = wave_window(options);
   try {
     const auto folder = std::filesystem::path(options.wave).parent_path();
-    if (!folder.empty()) std::filesystem::create_directories(folder);
+    std::error_code ignored;  // opening the file says what is wrong
+    if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
     trace_ = TraceWriter::open(options.wave, window.from, window.to);
   } catch (const std::exception& e) { throw UsageError(fmt::format("--wave {}; expected a writable place", e.what())); }
   machine_->signals().attach(trace_.get());

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "testbench/unit/covers.h"
-
 namespace brick {
 namespace {
 
@@ -41,7 +39,6 @@ class BreqScoreboardTest : public ::testing::Test {
 };
 
 TEST_F(BreqScoreboardTest, TenthLineOfI17Equal10StaysLow) {
-  BRICK_COVERS("BREQ-1 BREQ-2 BREQ-3");
   start(5, 10);
   for (unsigned n = 1; n <= 12; ++n) {
     line(n >= 10, n > 10);
@@ -75,7 +72,6 @@ TEST_F(BreqScoreboardTest, LineWithoutPulseIsFound) {
 }
 
 TEST_F(BreqScoreboardTest, ExecutionRaisesBelowI16) {
-  BRICK_COVERS("BREQ-4");
   start(5, 10);
   for (unsigned n = 1; n <= 10; ++n) line(n == 10);
   board.run(0, now);
@@ -115,7 +111,6 @@ TEST_F(BreqScoreboardTest, RaisedTooEarlyToBePossibleIsFound) {
 }
 
 TEST_F(BreqScoreboardTest, LineBetweenThePointsLeavesFull) {
-  BRICK_COVERS("BREQ-4");
   start(5, 10);
   for (unsigned n = 1; n <= 10; ++n) line(n == 10);
   board.run(0, now);
@@ -139,7 +134,6 @@ TEST_F(BreqScoreboardTest, PulseBetweenThePointsIsFound) {
 }
 
 TEST_F(BreqScoreboardTest, PinFollowsTheAddressedSystem) {
-  BRICK_COVERS("BREQ-7");
   start(2, 3);
   for (unsigned n = 1; n <= 3; ++n) line(n == 3);
   board.select(1, now);
