@@ -190,6 +190,18 @@ def breq_rotary_negative():
     bench_fails_its_negative_control("breq-rotary", "systemc")
 
 
+def installed():
+    """`cmake --install` gives a command that finds its firmware and boards, wherever it stands."""
+    global BRICK
+    build = pathlib.Path(BRICK).resolve().parent.parent
+    with tempfile.TemporaryDirectory() as folder:
+        r = subprocess.run(["cmake", "--install", str(build), "--prefix", folder], capture_output=True, text=True)
+        check(r.returncode == 0, r.stdout + r.stderr)
+        BRICK = f"{folder}/bin/brick"
+        golden()
+        boards()
+
+
 def wave_window():
     with tempfile.TemporaryDirectory() as folder:
         for ending in ("vcd", "fst"):
