@@ -135,16 +135,20 @@ void HostBus::open_port() {
 
 bool HostBus::put_char(std::uint8_t c, Tick timeout) {
   const Tick limit = now() + timeout;
-  while (!(port_status() & kTxde))
+  while (!(port_status() & kTxde)) {
     if (now() >= limit) return false;
+    pause_polling();
+  }
   io_write(7, c);
   return true;
 }
 
 std::optional<std::uint8_t> HostBus::get_char(Tick timeout) {
   const Tick limit = now() + timeout;
-  while (!(port_status() & kRxdf))
+  while (!(port_status() & kRxdf)) {
     if (now() >= limit) return std::nullopt;
+    pause_polling();
+  }
   return io_read(7);
 }
 

@@ -39,9 +39,10 @@ class HostBus {
 
   // Host port, host-bus.md 3.1 "polling recipe" -------------------------------------------------------------------------
   std::uint8_t port_status() { return io_read(2); }
-  void open_port();                                    // once: high and middle byte zero
-  bool put_char(std::uint8_t c, Tick timeout);         // spins on TXDE; false at the time-out
-  std::optional<std::uint8_t> get_char(Tick timeout);  // spins on RXDF
+  void pause_polling() { free_at_ += isa::kPollPause; }  // after a look at the status that found nothing
+  void open_port();                                      // once: high and middle byte zero
+  bool put_char(std::uint8_t c, Tick timeout);           // spins on TXDE; false at the time-out
+  std::optional<std::uint8_t> get_char(Tick timeout);    // spins on RXDF
 
   // Interrupt controller, host-bus.md 4.1 -------------------------------------------------------------------------------
   struct Pic {

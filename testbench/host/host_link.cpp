@@ -30,6 +30,7 @@ bool HostLink::put(std::uint8_t c, Tick deadline) {
     if (status & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(7)));
     if (status & HostBus::kTxde) break;
     if (bus_.now() >= deadline) return false;
+    bus_.pause_polling();
   }
   bus_.io_write(7, c);
   return true;

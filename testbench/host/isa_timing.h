@@ -23,6 +23,8 @@ constexpr TimeFs kReadSetup = 10 * kFsPerNs;           // the host looks at the 
 constexpr TimeFs kReadyToHigh = kBclk;                 // t9: IOCHRDY high for one BCLK before the command goes high
 constexpr TimeFs kLongestStretch = 15'600 * kFsPerNs;  // t10
 
+constexpr TimeFs kPollPause = 12 * kBclk;  // what a host program does between two looks at a status register
+
 static_assert(kIo.command_low >= 91 * kFsPerNs && kIo.command_high - kIo.command_low >= 530 * kFsPerNs, "t1, t2");
 static_assert(kIo.release - kIo.command_high >= 25 * kFsPerNs, "t3, t7");
 static_assert(kIo.next + kIo.command_low - kIo.command_high >= 170 * kFsPerNs, "t11");
