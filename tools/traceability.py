@@ -138,8 +138,8 @@ def page(root, requirements, claimed, tests):
 
 
 def plain_name(name):
-    """Prefix/Suite/Type.Name/Value, as ctest shows a parameterised GoogleTest -> Suite.Name; others as they are, - as _."""
-    found = re.match(r"(?:\w+/)?([A-Z]\w*)(?:/\w+)?\.(\w+)(?:/.+)?$", name)
+    """Prefix/Suite.Name/Value or Suite.Name<Suite/Type...>, as ctest shows parameterised tests -> Suite.Name; others with - as _."""
+    found = re.match(r"(?:\w+/)?([A-Z]\w*)\.(\w+)(?:[/<].*)?$", name)
     return f"{found[1]}.{found[2]}" if found else name.replace("-", "_")
 
 
