@@ -20,7 +20,12 @@ using Cycle = std::int64_t;
 class DeviceBus {
  public:
   virtual ~DeviceBus() = default;
-  struct Result { bool fault; std::uint32_t data; Cycle done; bool retry = false; };
+  struct Result {
+    bool fault;
+    std::uint32_t data;
+    Cycle done;
+    bool retry = false;
+  };
   virtual Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) = 0;
 };
 
@@ -41,13 +46,19 @@ class Cpu {
   // Memory -----------------------------------------------------------------------------------------------------------
   // Maps `bytes` of DMI memory at `base`. `mask24`: stores keep only the low 24 bits of each 32-bit word (PMAC X/Y memory).
   // `wait`: extra cycles a load or store costs (Port A wait states of the main SRAM). `read_only`: stores raise an access fault.
-  struct RegionOptions { bool read_only = false; bool mask24 = false; Cycle wait = 0; };
+  struct RegionOptions {
+    bool read_only = false;
+    bool mask24 = false;
+    Cycle wait = 0;
+  };
   std::uint8_t* map(std::uint32_t base, std::uint32_t bytes, RegionOptions options);  // zeroed; owned by the Cpu
   void set_wait(std::uint32_t base, Cycle wait);
   std::uint8_t* memory(std::uint32_t address, std::uint32_t bytes);  // nullptr where not mapped
   void invalidate_code();                                            // after memory was changed from outside
-  struct Mapping { std::uint32_t base, bytes; };
-  std::vector<Mapping> mappings() const;                             // in the order of mapping
+  struct Mapping {
+    std::uint32_t base, bytes;
+  };
+  std::vector<Mapping> mappings() const;  // in the order of mapping
 
   // State ------------------------------------------------------------------------------------------------------------
   void reset(std::uint32_t pc);  // registers zero, interrupts off, asleep false; memory is kept
@@ -55,10 +66,10 @@ class Cpu {
   std::uint32_t reg(unsigned i) const;
   void set_reg(unsigned i, std::uint32_t v);
   std::uint32_t csr(unsigned number) const;
-  Cycle cycle() const;           // local time
-  void set_cycle(Cycle c);       // after sleep
+  Cycle cycle() const;      // local time
+  void set_cycle(Cycle c);  // after sleep
   std::uint64_t instructions() const;
-  bool asleep() const;           // WFI with nothing pending
+  bool asleep() const;  // WFI with nothing pending
 
   // Interrupt pins, as the CPU sees them from its present cycle on. Wakes a sleeping CPU when the bit is enabled in mie.
   void set_interrupt(CpuInterrupt line, bool pending);
@@ -69,7 +80,7 @@ class Cpu {
   Stop run(Cycle limit);
 
   // Hooks (empty = off, cost nothing) ---------------------------------------------------------------------------------
-  std::function<void(std::uint32_t pc, Cycle)> on_flow;                    // calls and returns (jal/jalr with ra)
+  std::function<void(std::uint32_t pc, Cycle)> on_flow;                       // calls and returns (jal/jalr with ra)
   std::function<void(std::uint32_t cause, std::uint32_t pc, Cycle)> on_trap;  // trap taken, pc interrupted
   std::function<void(std::uint32_t pc, Cycle)> on_mret;
   std::function<bool(std::uint32_t address, std::uint32_t value)> on_store_watch;  // see watch_store

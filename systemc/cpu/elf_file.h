@@ -15,9 +15,15 @@ class Cpu;
 class ElfFile {
  public:
   explicit ElfFile(const std::string& path);
-  struct Segment { std::uint32_t address; std::uint32_t memory_size; std::vector<std::uint8_t> data; };
+  struct Segment {
+    std::uint32_t address;
+    std::uint32_t memory_size;
+    std::vector<std::uint8_t> data;
+  };
   const std::vector<Segment>& segments() const { return segments_; }
-  struct Range { std::uint32_t address, bytes; };
+  struct Range {
+    std::uint32_t address, bytes;
+  };
   const std::vector<Range>& ranges() const { return ranges_; }  // what the program occupies when stored and when running
   std::uint32_t entry() const { return entry_; }
   std::optional<std::uint32_t> symbol(const std::string& name) const;

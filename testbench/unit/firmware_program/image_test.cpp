@@ -96,7 +96,7 @@ TEST_F(RotaryImage, NineMovesTakeTheirTime) {  // 9 x 20 ms + 10 ms: 429.2 servo
   accepted("P1=1");
   accepted("CLOSE R");
   const double start = board.now_ms();
-  board.run_ms(5.0);  // the first move is under way
+  board.run_ms(5.0);                                                            // the first move is under way
   while ((std::stoi(board.send("??\r").substr(7, 1), nullptr, 16) & 2) == 0) {  // in position: bit 17
     board.run_ms(0.2);
     ASSERT_LT(board.now_ms() - start, 1000.0);

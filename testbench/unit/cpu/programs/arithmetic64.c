@@ -27,7 +27,7 @@ static double root_of(double v) { /* Newton, a fixed number of steps */
 
 int main(void) {
   for (int i = 0; i < COUNT; ++i) {
-    struct Row *row = &results[i];
+    struct Row* row = &results[i];
     row->a = next();
     row->b = (next() >> (next() & 63u)) | 1u;
     row->product = row->a * row->b;

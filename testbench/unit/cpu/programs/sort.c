@@ -4,7 +4,7 @@
 #define COUNT 1000
 int16_t results[COUNT];
 
-static void sort(int16_t *first, int16_t *last) {
+static void sort(int16_t* first, int16_t* last) {
   while (first < last) {
     const int16_t pivot = first[(last - first) / 2];
     int16_t *low = first, *high = last;
