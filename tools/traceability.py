@@ -7,8 +7,9 @@ A test names its requirements in one of these ways:
   ctest        # covers: BREQ-1                          on the line above add_test(NAME ...)
   Python       # covers: BREQ-1                          on the line above def NAME(
 
-  --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, and when
-               docs/traceability.md is not what --write would write
+  --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a test that
+               docs/verification-plan.md names and that does not exist, and when docs/traceability.md is not what --write
+               would write
   --write      writes docs/traceability.md
   --results F  prints the table with the last result of each test, from `ctest --output-junit F`
 """
@@ -71,6 +72,30 @@ def tests_in_comments(text, file, head, comment="#"):
 
 def ids_in(text):
     return re.findall(r"[^\s,]+", text)
+
+
+def plan_problems(root):
+    """The tests that docs/verification-plan.md names in backticks must exist: `Suite.Name`, `Suite.*`, or a ctest name as brick.wave."""
+    plan = root / "docs/verification-plan.md"
+    if not plan.exists():
+        return []
+    known, prose = set(), ""
+    for file in files(root, ["testbench", "rtl", "cmake"], {".cpp", ".h", ".txt", ".cmake"}):
+        text = (root / file).read_text(errors="replace")
+        if file.suffix in {".cpp", ".h"}:
+            found = re.findall(r"TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text)
+            known |= {f"{suite}.{name}" for suite, name in found} | {f"{suite}.*" for suite, _ in found}
+        else:
+            prose += text
+    problems = []
+    for number, line in enumerate(plan.read_text().splitlines(), 1):
+        for name in re.findall(r"`([A-Z]\w+\.(?:\w+|\*))`", line):
+            if name not in known:
+                problems.append(f"docs/verification-plan.md:{number}: there is no test {name}")
+        for area, case in re.findall(r"`(brick|lint|format|docs|trace|regs|tools)\.(\w+)`", line):
+            if f"{area}.{case}" not in prose and not (area == "brick" and re.search(rf"\b{case}\b", prose)):
+                problems.append(f"docs/verification-plan.md:{number}: there is no test {area}.{case}")
+    return problems
 
 
 def find_tests(root):
@@ -169,7 +194,7 @@ def main():
     if options.results:
         print_results(requirements, tests, options.results)
         return
-    problems = problems_in(root, requirements, claimed, tests)
+    problems = problems_in(root, requirements, claimed, tests) + plan_problems(root)
     text = page(root, requirements, claimed, tests)
     if options.write:
         (root / PAGE).write_text(text)

@@ -65,6 +65,13 @@ class Traceability(Tree):
         self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "FallsAgain"))
         self.expect(self.run_tool("traceability.py", "--check"), 1, "stale")
 
+    def test_a_plan_that_names_no_existing_test_fails(self):
+        self.write("docs/verification-plan.md", "| a line | `Breq.FallsOnALine`, `Breq.*` |\n")
+        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
+        self.write("docs/verification-plan.md", "| a line | `Breq.Falls`, `brick.wave` |\n")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "there is no test Breq.Falls")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "there is no test brick.wave")
+
     def test_benches_and_ctest_entries_count(self):
         self.write("testbench/benches/b.cpp", '// covers: BREQ-2\nBench breq_rotary_bench() {\n')
         self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nadd_test(NAME bench.breq COMMAND x)\n")
