@@ -68,10 +68,15 @@ bool HostLink::send(const std::string& line, Tick timeout) {
   return put('\r', deadline);
 }
 
+// A line that assigns I3 or I4 may be acknowledged by the old setting or by the new one: only quiet ends such a reply.
 Reply HostLink::finish(Tick timeout) {
-  ReplyParser parser(framing_);
+  const Framing next = framing_after(sent_);
+  const bool changes = next.i3 != framing_.i3 || next.i4 != framing_.i4;
+  Framing expected = framing_;
+  if (changes) expected = {0, next.i4, framing_.i6};
+  ReplyParser parser(expected);
   const Tick deadline = bus_.now() + timeout;
-  const bool by_quiet = framing_.i3 < 2;
+  const bool by_quiet = expected.i3 < 2;
   std::size_t taken = 0;
   for (;;) {
     while (taken < incoming_.size() && !parser.complete()) parser.take(static_cast<std::uint8_t>(incoming_[taken++]));
@@ -83,7 +88,11 @@ Reply HostLink::finish(Tick timeout) {
   incoming_.erase(0, taken);
   Reply reply = parser.reply();
   unsolicited_.insert(unsolicited_.end(), reply.unsolicited.begin(), reply.unsolicited.end());
-  if (reply.complete && !reply.error) follow_framing(sent_);
+  if (changes) {  // a checksum that came or not
+    while (receive(bus_.now() + kQuietTime)) {}
+    incoming_.clear();
+  }
+  if (reply.complete && !reply.error) framing_ = next;
   return reply;
 }
 
@@ -118,8 +127,9 @@ Reply HostLink::control(std::uint8_t c) {
 
 // -------------------------------------------------------------------------------------------------------------- framing
 
-// An assignment to I3, I4 or I6 changes the form of the next answer.
-void HostLink::follow_framing(const std::string& line) {
+// What I3, I4 and I6 are once `line` has been executed.
+Framing HostLink::framing_after(const std::string& line) const {
+  Framing next = framing_;
   const std::string text = squeezed(line);
   const auto follow = [&](const char* name, unsigned& value) {
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
@@ -131,9 +141,10 @@ void HostLink::follow_framing(const std::string& line) {
         value = static_cast<unsigned>(digit - '0');
     }
   };
-  follow("I3=", framing_.i3);
-  follow("I4=", framing_.i4);
-  follow("I6=", framing_.i6);
+  follow("I3=", next.i3);
+  follow("I4=", next.i4);
+  follow("I6=", next.i6);
+  return next;
 }
 
 // -------------------------------------------------------------------------------------------------------------- connect

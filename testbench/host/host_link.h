@@ -44,7 +44,7 @@ class HostLink {
  private:
   bool put(std::uint8_t c, Tick deadline);
   bool receive(Tick deadline);  // one byte into incoming_
-  void follow_framing(const std::string& line);
+  Framing framing_after(const std::string& line) const;
   bool try_connect(Tick deadline);
 
   HostBus& bus_;

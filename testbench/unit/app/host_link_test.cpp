@@ -118,11 +118,24 @@ TEST_F(HostLinkTest, ConnectGivesUpOnASilentController) { EXPECT_FALSE(link.conn
 TEST_F(HostLinkTest, NoReplyIsNotComplete) { EXPECT_FALSE(link.command("VERSION", ns_to_ticks(100'000)).complete); }
 
 TEST_F(HostLinkTest, FollowsAssignmentsToI3) {
-  fake.controller = [](const std::string& line) -> std::string { return line == "P1" ? "\n25\r\n" : "\n"; };
-  link.command("I3=1", ns_to_ticks(20'000'000));  // still I3 = 1 by default: LF
-  EXPECT_EQ(link.command("P1").lines, (Lines{"25"}));
+  link.command("I3=1 I4=0", ns_to_ticks(20'000'000));
+  for (const std::string acknowledge : {"\n", "\x06", ""}) {  // by the old setting, by ACK, by the new one
+    fake.controller = [&](const std::string& line) -> std::string { return line == "P1" ? "25\r" : line == "I3=0" ? acknowledge : "\n"; };
+    EXPECT_TRUE(link.command("I3=0").complete);
+    EXPECT_EQ(link.framing().i3, 0u);
+    EXPECT_EQ(link.command("P1").lines, (Lines{"25"}));
+    link.command("I3=1");
+  }
   EXPECT_TRUE(link.command("I13=2 P3=0").complete);
   EXPECT_EQ(link.framing().i3, 1u) << "I13 is not I3";
+}
+
+TEST_F(HostLinkTest, ChecksumThatBeginsWithItsLineIsNoText) {
+  link.command("I3=2 I4=0", ns_to_ticks(20'000'000));
+  fake.controller = [](const std::string& line) -> std::string { return line == "I4=1" ? "\x06X" : "7\r\x44\x06\x7F"; };
+  EXPECT_TRUE(link.command("I4=1").complete);
+  EXPECT_EQ(link.command("P1").lines, (Lines{"7"}));
+  EXPECT_TRUE(link.take_unsolicited().empty());
 }
 
 TEST_F(HostLinkTest, TextBetweenRepliesIsUnsolicited) {
