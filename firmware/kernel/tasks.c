@@ -1,6 +1,7 @@
 /* The interrupt tasks (firmware.md 8.1). The phase task has no work of its own as long as no motor is commutated: boot/trap.S then
  * only notes the time. The servo task counts, runs timers, the watchdog counter and the trajectories, and every I8+1 cycles
- * requests the real-time task, which plans moves and strobes the hardware watchdog. */
+ * requests the real-time task, which plans moves and strobes the hardware watchdog. When real-time interrupts are meant to be rare
+ * (I8 up to 255, slow clocks), the servo task strobes between them: the hardware allows 25 ms only. */
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"
 #include "firmware/kernel/kernel.h"
@@ -11,16 +12,19 @@
 #define TASK_DURATIONS 0x000037u      /* Y: servo task, X: phase task, in half CPU cycles */
 #define REAL_TIME_DURATIONS 0x00000Bu /* X: last, Y: longest real-time task */
 #define WATCHDOG_COUNTER 0x000025u    /* Y: counter, X: lowest value since reset */
-enum { WATCHDOG_DEFAULT = 4095, PHASE_CYCLES = 40 /* of the short path in boot/trap.S, with entry and return */ };
+enum { WATCHDOG_DEFAULT = 4095, STROBE_GAP_MS = 10, PHASE_CYCLES = 40 /* of the short path in boot/trap.S, with entry and return */ };
 
 volatile uint32_t kernel_phase_stamp, kernel_phase_work;
 
 static volatile uint32_t servo_count;  /* S */
 static volatile int32_t watchdog;      /* S decrements, B reloads with S held off */
+static int32_t watchdog_reload;        /* B, with S held off */
 static int32_t watchdog_lowest;        /* S */
 static uint32_t real_time_prescaler;   /* S */
 static volatile bool real_time_active; /* R */
 static uint32_t real_time_longest;     /* R, cycles */
+static uint32_t strobe_gap;            /* cycles */
+static volatile uint32_t strobed;      /* cycle count at the last strobe. S and R */
 
 void tasks_initialize(void) {
   servo_count = 0;
@@ -32,6 +36,8 @@ void tasks_initialize(void) {
   *hal_x(WATCHDOG_COUNTER) = (uint32_t)watchdog;
   watchdog_lowest = watchdog;
   real_time_longest = 0;
+  strobe_gap = STROBE_GAP_MS * hal_cycles_per_ms();
+  strobed = hal_cycles();
   *hal_x(TASK_DURATIONS) = PHASE_CYCLES / 2;
 }
 
@@ -40,21 +46,28 @@ uint32_t kernel_servo_count(void) { return servo_count; }
 void kernel_watchdog_reload(void) {
   const int32_t reload = i_integer(40);
   const uint32_t state = hal_mask_servo();
-  watchdog = reload == 0 ? WATCHDOG_DEFAULT : reload;
+  watchdog = watchdog_reload = reload == 0 ? WATCHDOG_DEFAULT : reload;
   *hal_y(WATCHDOG_COUNTER) = (uint32_t)watchdog;
   hal_unmask(state);
 }
 
 void kernel_phase_interrupt(void) {}
 
+/* The background sleeps between real-time interrupts, which may be further apart than I40 cycles: it is woken in time to reload. */
 static void count_watchdog(void) {
   const int32_t left = watchdog - 1;
   if (left < -8388607) return;
   watchdog = left;
+  if (left <= watchdog_reload / 2) kernel_wake_background();
   *hal_y(WATCHDOG_COUNTER) = (uint32_t)left & HAL_WORD_MASK;
   if (left >= watchdog_lowest) return;
   watchdog_lowest = left;
   *hal_x(WATCHDOG_COUNTER) = (uint32_t)left & HAL_WORD_MASK;
+}
+
+static void strobe(uint32_t now) {
+  strobed = now;
+  if (watchdog >= 0) hal_watchdog_strobe();
 }
 
 void kernel_servo_interrupt(void) {
@@ -68,6 +81,8 @@ void kernel_servo_interrupt(void) {
     real_time_prescaler = 0;
     if (real_time_active) kernel_status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
     hal_request_real_time();
+  } else if (began - strobed > strobe_gap && !real_time_active && !hal_real_time_pending()) {
+    strobe(began); /* the real-time task has done its duty, the next is not due yet */
   }
   *hal_y(TASK_DURATIONS) = ((hal_cycles() - began) / 2u) & HAL_WORD_MASK;
   if (hal_servo_pending()) kernel_status_set(STATUS_SERVO_ERROR);
@@ -77,7 +92,7 @@ void kernel_real_time_interrupt(void) {
   const uint32_t began = hal_cycles();
   real_time_active = true;
   motion_real_time_update();
-  if (watchdog >= 0) hal_watchdog_strobe();
+  strobe(began);
   kernel_wake_background();
   const uint32_t took = hal_cycles() - began; /* with the tasks that interrupted it */
   *hal_x(REAL_TIME_DURATIONS) = (took / 2u) & HAL_WORD_MASK;

@@ -63,6 +63,21 @@ TEST_F(Image, BackgroundReloadsTheWatchdogCounter) {
   EXPECT_LE(board.word(false, 0x25), 100u);
 }
 
+TEST_F(Image, RareRealTimeInterruptsDoNotStarveTheHardwareWatchdog) {
+  BRICK_COVERS("WDT-1");
+  board.send("I6=1 I3=2 I8=255\r");  // 256 servo cycles are 113 ms, the hardware allows 25
+  board.run_ms(400.0);
+  EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
+  EXPECT_EQ(board.send("???\r"), "000000000800\r\x06");
+}
+
+TEST_F(Image, WatchdogReloadOfOneServoCycleIsKeptUp) {
+  board.send("I6=1 I3=2 I40=1\r");
+  board.run_ms(100.0);
+  EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
+  EXPECT_LE(board.word(true, 0x25), 1u) << "X:$25, lowest value: not below zero";
+}
+
 TEST_F(Image, LongReportsArriveComplete) {
   board.send("I6=1 I3=2\r");
   const std::string reply = board.send("I0..8191\r", 4000.0);
