@@ -18,8 +18,8 @@ static error_t read_number(struct lexer* lx, uint32_t* number) {
     const error_t error = expression_evaluate(lx, command_cs(), &value);
     if (error != ERR_NONE) return error;
     if (!lexer_accept(lx, ')')) return ERR_DATA;
-  } else if (!lexer_number(lx, &value)) {
-    return ERR_DATA;
+  } else if (!lexer_number(lx, &value) || value > VARIABLE_COUNT || (double)(uint32_t)value != value) {
+    return ERR_DATA; /* `P1.5` is no variable; a computed number loses its fraction */
   }
   if (value < 0.0 || value >= (double)VARIABLE_COUNT) return ERR_DATA;
   *number = (uint32_t)value;

@@ -99,7 +99,7 @@ static bool character(uint8_t c) {
     return true;
   }
   if (c >= ' ') {
-    if (c > 0x7Eu) bad_character = true;
+    if (c > 0x7Fu) bad_character = true;
     if (length < LINE_LIMIT)
       line[length++] = (char)c;
     else

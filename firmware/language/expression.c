@@ -4,7 +4,8 @@
 #include "firmware/language/operators.h"
 #include "firmware/variables/variables.h"
 
-enum { PENDING_LIMIT = 32, ON_LINE_WORDS = 160 };
+/* No expression of a host line (255 characters) reaches these: an operator or bracket takes a character, so does a word. */
+enum { PENDING_LIMIT = 256, ON_LINE_WORDS = 260 };
 
 enum pending_kind { PENDING_OPERATOR, PENDING_BRACKET, PENDING_FUNCTION, PENDING_INDEX };
 
@@ -15,8 +16,8 @@ struct pending {
 
 struct compiler {
   struct word_list* out;
-  struct pending pending[PENDING_LIMIT];
   uint32_t count, brackets, depth;
+  struct pending pending[PENDING_LIMIT];
 };
 
 static const struct {
@@ -146,7 +147,9 @@ static error_t binary_operator(struct compiler* c, struct lexer* lx, bool* found
 }
 
 error_t expression_compile(struct lexer* lx, bool bracketed, struct word_list* out) {
-  struct compiler c = {.out = out};
+  struct compiler c;
+  c.out = out;
+  c.count = c.brackets = c.depth = 0;
   error_t error = ERR_NONE;
   bool complete = false, found = true;
   if (bracketed && lexer_peek(lx) != '(') return ERR_DATA;

@@ -7,7 +7,7 @@
 #include "firmware/language/lexer.h"
 #include "firmware/language/word.h"
 
-enum { EXPRESSION_DEPTH = 24 }; /* values on the stack */
+enum { EXPRESSION_DEPTH = 65 }; /* values on the stack: `1+(1+(...` needs four characters of a line for each */
 
 struct word_list {
   word48_t* words;

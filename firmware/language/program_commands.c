@@ -115,24 +115,25 @@ static error_t cmd_time_base(struct lexer* lx) {
     *lx = start;
     return run_set_time_base(command_cs(), percent);
   }
+  if (*start.at == '-' || *start.at == '+') return ERR_DATA;
   reply_number(run_time_base(command_cs()));
   reply_end_line();
   return ERR_NONE;
 }
 
 /* ABS, INC, FRAX, NOFRAX on-line: at once, for the addressed coordinate system. */
-static error_t axis_mode(struct lexer* lx, enum operation operation, uint32_t bare) {
+static error_t axis_mode(struct lexer* lx, enum operation operation) {
   struct coordinate_system* s = &coordinate_systems[command_cs()];
   uint32_t mask;
-  error_t error = statement_axis_list(lx, bare, &mask);
+  error_t error = operation == OP_FRAX ? statement_frax_list(lx, &mask) : statement_axis_list(lx, AXIS_ALL, &mask);
   if (error != ERR_NONE) return error;
   cs_set_axis_mode(s, operation, mask);
   return ERR_NONE;
 }
 
-static error_t cmd_abs(struct lexer* lx) { return axis_mode(lx, OP_ABS, AXIS_ALL); }
-static error_t cmd_inc(struct lexer* lx) { return axis_mode(lx, OP_INC, AXIS_ALL); }
-static error_t cmd_frax(struct lexer* lx) { return axis_mode(lx, OP_FRAX, AXIS_XYZ); }
+static error_t cmd_abs(struct lexer* lx) { return axis_mode(lx, OP_ABS); }
+static error_t cmd_inc(struct lexer* lx) { return axis_mode(lx, OP_INC); }
+static error_t cmd_frax(struct lexer* lx) { return axis_mode(lx, OP_FRAX); }
 
 static error_t cmd_nofrax(struct lexer* lx) {
   (void)lx;

@@ -28,10 +28,10 @@ static const struct {
                 {"FRAX", OP_FRAX, 0}};
 
 /* Statements of fixed programs. */
-static const char* const OTHERS[] = {"ADIS",  "AROT", "BLOCKST",  "BSTART", "BSTOP",  "CALL", "CC0",     "CC1",  "CC2",
-                                     "CC3",   "CCR",  "CIR",      "ELSE",   "ENDI",   "ENDW", "GOS",     "GOTO", "IDIS",
-                                     "IF(",   "IROT", "MOVETIME", "MVTM",   "NORMAL", "NRM",  "PRELUDE", "PSET", "PVT",
-                                     "READ(", "RET",  "SPLINE",   "STOP",   "TINIT",  "TSEL", "WHILE",   "WAIT"};
+static const char* const OTHERS[] = {"ADIS",    "AROT", "BLOCKST", "BSTART",   "BSTOP", "CALL",   "CC0",  "CC1",     "CC2",  "CMD",
+                                     "COMMAND", "DISP", "CC3",     "CCR",      "CIR",   "ELSE",   "ENDI", "ENDW",    "GOS",  "GOTO",
+                                     "IDIS",    "IF(",  "IROT",    "MOVETIME", "MVTM",  "NORMAL", "NRM",  "PRELUDE", "PSET", "PVT",
+                                     "READ(",   "RET",  "SEND",    "SPLINE",   "STOP",  "TINIT",  "TSEL", "WHILE",   "WAIT"};
 
 enum { KEYWORD_COUNT = sizeof KEYWORDS / sizeof KEYWORDS[0], OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
@@ -125,6 +125,12 @@ error_t statement_axis_list(struct lexer* lx, uint32_t bare, uint32_t* mask) {
   return lexer_accept(lx, ')') ? ERR_NONE : ERR_DATA;
 }
 
+/* No space may stand before the bracket of FRAX(. */
+error_t statement_frax_list(struct lexer* lx, uint32_t* mask) {
+  if (*lx->at == ' ' && lexer_peek(lx) == '(') return ERR_DATA;
+  return statement_axis_list(lx, AXIS_XYZ, mask);
+}
+
 /* A value behind an axis letter or a keyword: a constant in the same word, or an expression in brackets before it. */
 static error_t compile_value(struct lexer* lx, enum operation constant, enum operation popped, uint32_t number, struct word_list* out) {
   struct instruction in = {constant, 0, number, 0.0};
@@ -179,7 +185,7 @@ static error_t compile_keyword(struct lexer* lx, uint32_t index, struct word_lis
       if (in.number == 1)
         in.number = 0; /* NOFRAX */
       else
-        error = statement_axis_list(lx, AXIS_XYZ, &in.number);
+        error = statement_frax_list(lx, &in.number);
       if (in.number & AXIS_VECTOR) error = ERR_DATA;
       break;
     default:

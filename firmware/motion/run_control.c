@@ -64,9 +64,9 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (!VIRTUAL_AXES) return ERR_NO_MOTORS;
   if (!has_program(cs)) return ERR_NO_PROGRAM;
   release_hold(cs);
-  if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
+  if (s->running && single_step) {     /* a step request ends continuous running behind the calculated moves */
+    if (s->continuous) s->quit = true; /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
-    s->quit = true;
     return ERR_NONE;
   }
   uint32_t state = hal_mask_servo();

@@ -172,6 +172,12 @@ TEST(HostExchange, EightBitCharactersAreIllegal) {
   EXPECT_EQ(c.send("P1=\xC4\r"),
             "\x07"
             "ERR004\r");
+  EXPECT_EQ(c.send("P1=\x80\r"),
+            "\x07"
+            "ERR004\r");
+  EXPECT_EQ(c.send("\x7F\r"),  // seven bits, and no command
+            "\x07"
+            "ERR003\r");
 }
 
 TEST(HostExchange, BareConstantGoesToP0) {

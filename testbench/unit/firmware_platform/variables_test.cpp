@@ -68,6 +68,14 @@ TEST(IVariables, SignedOnesWrap) {
   EXPECT_EQ(c.line("I129=-32768 I129"), "-32768");
 }
 
+TEST(IVariables, NumbersHaveNoFractionUnlessComputed) {
+  Controller c;
+  c.line("P1=4 P2=6");
+  for (const char* text : {"P1.5", "I19.5", "P1.5=3", "P1..2.5", "M1.5->"}) EXPECT_EQ(c.line(text), "ERR003") << text;
+  EXPECT_EQ(c.line("P(P1/2-0.5)"), "4");  // 1.5 is 1
+  EXPECT_EQ(c.line("P1..2"), "4|6");
+}
+
 TEST(IVariables, RunsAndStepsOfNumbers) {
   Controller c;
   EXPECT_EQ(c.line("I16,4"), "5|10|10|7007");

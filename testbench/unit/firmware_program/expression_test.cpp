@@ -123,8 +123,22 @@ TEST_F(Expression, DomainErrorsSaturateOrGiveZero) {
 TEST_F(Expression, RejectsBadText) {
   for (const char* text : {"", "1+", "(1+2", "*3", "SIN 30", "SIN(", "P", "P9000", "34359738369", "P1.5", "()"})
     EXPECT_EQ(error(text), ERR_DATA) << '"' << text << '"';
-  std::string deep(200, '(');
-  EXPECT_EQ(error(deep + "1" + std::string(200, ')')), ERR_DATA) << "nesting is limited";
+  std::string deep(300, '(');
+  EXPECT_EQ(error(deep + "1" + std::string(300, ')')), ERR_DATA) << "nesting is limited";
+}
+
+TEST_F(Expression, NothingInALineOf255CharactersIsTooDeep) {
+  const auto repeated = [](const std::string& text, int count) {
+    std::string all;
+    while (count-- > 0) all += text;
+    return all;
+  };
+  EXPECT_EQ(value(repeated("(", 126) + "7" + repeated(")", 126)), 7.0);
+  EXPECT_EQ(value(repeated("1+(", 63) + "1" + repeated(")", 63)), 64.0);
+  EXPECT_EQ(value(repeated("-", 250) + "P1"), 0.0);
+  EXPECT_EQ(value(repeated("1+", 127) + "1"), 128.0);
+  EXPECT_NEAR(value(repeated(".1+", 84) + ".1"), 8.5, 1e-12);
+  EXPECT_EQ(value(repeated("ABS(", 50) + "-3" + repeated(")", 50)), 3.0);
 }
 
 TEST_F(Expression, StopsBehindACompleteValue) {

@@ -61,6 +61,18 @@ TEST_F(RunControl, StepTakesOneMove) {
   EXPECT_EQ(host("PR"), "1");
 }
 
+TEST_F(RunControl, SecondStepRequestBeforeTheMoveDoesNotSwallowTheFirst) {
+  open();
+  ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("X2"), "");
+  ASSERT_EQ(host("S"), "");
+  ASSERT_EQ(host("S"), "");
+  platform::servo_ticks(1000);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(cs().position[AXIS_X], 1.0);
+  EXPECT_EQ(host("PR"), "1");
+}
+
 TEST_F(RunControl, QuitFinishesWhatIsCalculated) {
   open();
   for (const char* text : {"X1", "X2", "X3", "X4"}) ASSERT_EQ(host(text), "");
@@ -234,6 +246,8 @@ TEST_F(RunControl, OnLineAxisModes) {
   EXPECT_EQ(host("ABS(X,R) FRAX(A)"), "");
   EXPECT_EQ(motion_cs_status(0, 0), 1u << 7);
   EXPECT_EQ(host("FRAX INC ABS"), "");
+  EXPECT_EQ(motion_cs_status(0, 0), 0xA80000u);
+  EXPECT_EQ(host("FRAX (A)"), "ERR003");  // no space before the bracket
   EXPECT_EQ(motion_cs_status(0, 0), 0xA80000u);
 }
 

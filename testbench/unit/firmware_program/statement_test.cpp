@@ -90,7 +90,8 @@ TEST_F(Statement, OnLineCommandsStillActWhileABufferIsOpen) {
 
 TEST_F(Statement, ProgramOnlyTextNeedsAnOpenBuffer) {
   ASSERT_EQ(platform::host("CLOSE"), "");
-  for (const char* text : {"X1000", "DWELL100", "DELAY100", "A10", "LINEAR", "F100", "IF(P1=1)", "RAPID", "SPLINE1"})
+  for (const char* text :
+       {"X1000", "DWELL100", "DELAY100", "A10", "LINEAR", "F100", "IF(P1=1)", "RAPID", "SPLINE1", "SEND\"A\"", "CMD\"A\""})
     EXPECT_EQ(platform::host(text), "ERR005") << text;
   for (const char* text : {"UUU", "AZ", "RX", "DELETE AY"}) EXPECT_EQ(platform::host(text), "ERR003") << text;
 }
