@@ -151,7 +151,7 @@ TimeFs PortA::time_of(Step step) const {
     case Step::kStrobeHigh:
       return clock_.time(start_, shape_.strobe_high + stretch);
     case Step::kEnd:
-      return clock_.time(start_, 4 * shape_.clocks + stretch);
+      return clock_.time(start_, 4 * (shape_.clocks + shape_.held_clocks) + stretch);
   }
   return 0;
 }

@@ -13,7 +13,8 @@ struct PortAShape {
   unsigned strobe_low;   // quarters from address valid to /RD or /WR low, rows 115 and 101
   unsigned strobe_high;  // to /RD or /WR high, rows 116 and 107
   unsigned data_driven;  // of a write: data on the bus, rows 108 and 110
-  unsigned idle_clocks;  // after the cycle before the next may begin, rows 113, 114 and 117
+  unsigned idle_clocks;  // after the cycle before the next may begin, rows 113 and 114
+  unsigned held_clocks;  // of the idle clocks: address and AA stay, row 117
 };
 
 constexpr PortAShape port_a_shape(unsigned wait_states, bool write) {
@@ -26,6 +27,7 @@ constexpr PortAShape port_a_shape(unsigned wait_states, bool write) {
     s.strobe_low = wait_states <= 1 ? 1 : wait_states <= 3 ? 3 : 5;
   s.data_driven = wait_states == 0 ? 2 : 4;
   s.idle_clocks = wait_states <= 3 ? 1 : 0;
+  s.held_clocks = !write && (wait_states == 2 || wait_states == 3) ? 1 : 0;
   return s;
 }
 

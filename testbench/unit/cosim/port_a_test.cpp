@@ -83,7 +83,7 @@ void expect_read_rows(const PortACycle& c, unsigned ws, double tc) {
   EXPECT_GE((c.data_time - c.strobe_low) / kNs, (ws + 0.25) * tc - 5 - kEpsilon) << "row 105";
   EXPECT_GE((c.strobe_low - c.start) / kNs, 0.5 * tc - 2 - kEpsilon) << "row 115";
   EXPECT_GE(low, (ws + 0.25) * tc - 4 - kEpsilon) << "row 116";
-  EXPECT_GE((c.end - c.strobe_high) / kNs, (ws <= 3 ? 0.25 : ws <= 7 ? 1.25 : 2.25) * tc - 2 - kEpsilon) << "row 117";
+  EXPECT_GE((c.end - c.strobe_high) / kNs, (ws == 1 ? 0.25 : ws <= 7 ? 1.25 : 2.25) * tc - 2 - kEpsilon) << "row 117";
   EXPECT_GE((c.strobe_high - c.ta_time) / kNs, 0.25 * tc + 2.0 - kEpsilon) << "row 118";
 }
 
