@@ -12,8 +12,8 @@ namespace brick {
 
 namespace {
 
-constexpr Tick kStretch = 65536;  // bounds the length of the lists
-constexpr std::size_t kAccessesShown = 8;
+constexpr Tick kStretch = 65536;           // bounds the length of the lists
+constexpr std::size_t kAccessesShown = 8;  // of each side
 
 struct Change {
   Tick tick;
@@ -21,39 +21,58 @@ struct Change {
   bool operator==(const Change& o) const { return tick == o.tick && after == o.after; }
 };
 
-// What was seen on Port A and on the host bus, for the report.
+// What was seen on Port A and on the host bus, for the report. Each side has its own list, and equal accesses in a row are
+// one line of it: a host that polls a status register must not push the interesting lines out.
 class AccessLog {
  public:
   void inputs_changed(Tick now, const BoardInputs& from, const BoardInputs& to) {
-    strobe(now, from.pa_wr_n, to.pa_wr_n,
+    strobe(cpu_, now, from.pa_wr_n, to.pa_wr_n,
            [&] { return fmt::format("CPU  write {} = ${:06X} AA={:X}", cpu_address(to), to.pa_wdata, to.pa_aa); });
-    strobe(now, from.pa_rd_n, to.pa_rd_n, [&] { return fmt::format("CPU  read  {} AA={:X}", cpu_address(to), to.pa_aa); });
-    strobe(now, from.isa_iow_n, to.isa_iow_n, [&] { return fmt::format("host I/O write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
-    strobe(now, from.isa_ior_n, to.isa_ior_n, [&] { return fmt::format("host I/O read  {:05X}", to.isa_sa); });
-    strobe(now, from.isa_memw_n, to.isa_memw_n, [&] { return fmt::format("host mem write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
-    strobe(now, from.isa_memr_n, to.isa_memr_n, [&] { return fmt::format("host mem read  {:05X}", to.isa_sa); });
-    if (from.rst_n != to.rst_n) add(now, to.rst_n ? "reset released" : "reset");
+    strobe(cpu_, now, from.pa_rd_n, to.pa_rd_n, [&] { return fmt::format("CPU  read  {} AA={:X}", cpu_address(to), to.pa_aa); });
+    strobe(host_, now, from.isa_iow_n, to.isa_iow_n, [&] { return fmt::format("host I/O write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
+    strobe(host_, now, from.isa_ior_n, to.isa_ior_n, [&] { return fmt::format("host I/O read  {:05X}", to.isa_sa); });
+    strobe(host_, now, from.isa_memw_n, to.isa_memw_n, [&] { return fmt::format("host mem write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
+    strobe(host_, now, from.isa_memr_n, to.isa_memr_n, [&] { return fmt::format("host mem read  {:05X}", to.isa_sa); });
+    if (from.rst_n != to.rst_n) add(cpu_, now, to.rst_n ? "reset released" : "reset");
   }
   std::string text() const {
+    std::vector<Line> all(cpu_.begin(), cpu_.end());
+    all.insert(all.end(), host_.begin(), host_.end());
+    std::stable_sort(all.begin(), all.end(), [](const Line& a, const Line& b) { return a.last < b.last; });
     std::string out;
-    for (const auto& [tick, what] : lines_) out += fmt::format("\n  tick {:>12}  {}", tick, what);
+    for (const Line& line : all) {
+      out += fmt::format("\n  tick {:>12}  {}", line.last, line.what);
+      if (line.times > 1) out += fmt::format(", {} times since tick {}", line.times, line.first);
+    }
     return out.empty() ? " none" : out;
   }
 
  private:
+  struct Line {
+    Tick first, last;
+    unsigned times;
+    std::string what;
+  };
+  using Lines = std::deque<Line>;
+
   static std::string cpu_address(const BoardInputs& in) {
     if (in.pa_int) return fmt::format("on-chip peripheral {:02X}", in.pa_addr);
     return fmt::format("{}:${:06X}", in.pa_x ? 'X' : 'Y', in.pa_addr);
   }
   template <class Text>
-  void strobe(Tick now, bool from, bool to, Text text) {
-    if (from && !to) add(now, text());
+  static void strobe(Lines& lines, Tick now, bool from, bool to, Text text) {
+    if (from && !to) add(lines, now, text());
   }
-  void add(Tick tick, std::string what) {
-    lines_.emplace_back(tick, std::move(what));
-    if (lines_.size() > kAccessesShown) lines_.pop_front();
+  static void add(Lines& lines, Tick tick, std::string what) {
+    if (!lines.empty() && lines.back().what == what) {
+      lines.back().last = tick;
+      ++lines.back().times;
+      return;
+    }
+    lines.push_back({tick, tick, 1, std::move(what)});
+    if (lines.size() > kAccessesShown) lines.pop_front();
   }
-  std::deque<std::pair<Tick, std::string>> lines_;
+  Lines cpu_, host_;
 };
 
 class LockstepBoard : public Board {

@@ -1,4 +1,5 @@
 // The two engines are one machine: random traffic on all pins, compared at every tick; and lock-step reports a difference.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "systemc/cosim/engines.h"
@@ -87,6 +88,33 @@ TEST(Lockstep, ReportsTheSeededBugWithSignalTickAndAccesses) {
     EXPECT_THAT(text, ::testing::HasSubstr("last bus accesses:\n  tick           30  reset released\n"
                                            "  tick           36  CPU  write X:$078004 = $3008D2 AA=2"));
   }
+}
+
+// A host that polls must not push everything else out of the report.
+TEST(Lockstep, ReportsEqualAccessesInARowAsOneLineAndEachSideForItself) {
+  BRICK_COVERS("CARD-6");
+  auto board = lockstep({0, true});
+  BoardInputs in;
+  start_clocks(*board, in);
+  in.isa_sa = 0x212;
+  constexpr unsigned kPolls = 6000;  // 100 ticks each: past the fifth fall of SERVO, 5 x 52228 ticks at reset values
+  const Tick first = board->now();
+  unsigned polls = 0;
+  std::string text;
+  try {
+    while (polls < kPolls) {
+      in.isa_ior_n = false;
+      board->set_inputs(in);
+      ++polls;
+      board->run_until(board->now() + 60);
+      in.isa_ior_n = true;
+      board->set_inputs(in);
+      board->run_until(board->now() + 40);
+    }
+  } catch (const LockstepDifference& e) { text = e.what(); }
+  EXPECT_THAT(text, ::testing::HasSubstr("CPU  write X:$078004 = $3008D2 AA=2\n"));
+  EXPECT_THAT(text, ::testing::HasSubstr("tick " + fmt::format("{:>12}", first + 100 * (polls - 1)) + "  host I/O read  00212, " +
+                                         fmt::format("{} times since tick {}", polls, first)));
 }
 
 TEST(Lockstep, RandomStartValuesOfFlipFlopsAreGoneAfterReset) {
