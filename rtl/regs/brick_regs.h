@@ -233,6 +233,12 @@
 #define SERVO_CHANNEL_COMPARE_B_WRITTEN 0xFFFFFFu
 
 /* MACRO IC, clock part. Offsets from the IC's base address. */
+#define MACRO_IC_Y_JIO_DATA 0x00u /* JIO data */
+#define MACRO_IC_JIO_DATA_RESET 0x000000u
+#define MACRO_IC_JIO_DATA_WRITTEN 0xFFFFFFu
+#define MACRO_IC_Y_MULTIPLEXER_DATA 0x02u /* Multiplexer port data */
+#define MACRO_IC_MULTIPLEXER_DATA_RESET 0x000000u
+#define MACRO_IC_MULTIPLEXER_DATA_WRITTEN 0xFFFFFFu
 #define MACRO_IC_X_CLOCK_CONTROL 0x0Cu /* Clock control word */
 #define MACRO_IC_CLOCK_CONTROL_RESET 0x3038D2u
 #define MACRO_IC_CLOCK_CONTROL_WRITTEN 0xFF3FFFu
@@ -247,7 +253,7 @@
 #define MACRO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_SHIFT 12u
 #define MACRO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_MASK 0x001000u /* 1 = phase clock is an input, 0 = this IC drives it (I6807 bit 0) */
 #define MACRO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_SHIFT 13u
-#define MACRO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_MASK 0x002000u /* 1 = servo clock is an input, 0 = this IC drives it (I6807 bit 1) */
+#define MACRO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_MASK 0x002000u /* 1 = servo clock is an input, 0 = this IC drives it (I6807 bit 1); reads 0 on a MACROGATE, which has no servo clock */
 #define MACRO_IC_CLOCK_CONTROL_PHASE_DIVIDER_SHIFT 16u
 #define MACRO_IC_CLOCK_CONTROL_PHASE_DIVIDER_MASK 0x0F0000u /* Phase = MaxPhase / (n+1) (I6801) */
 #define MACRO_IC_CLOCK_CONTROL_SERVO_DIVIDER_SHIFT 20u
@@ -268,6 +274,20 @@
 #define MACRO_IC_X_RING_CONTROL 0x0Fu /* Ring status and control */
 #define MACRO_IC_RING_CONTROL_RESET 0x000000u
 #define MACRO_IC_RING_CONTROL_WRITTEN 0xFFFFFFu
+#define MACRO_IC_X_SUPPLEMENTARY_1 0x15u /* Channel control, supplementary channel 1* */
+#define MACRO_IC_SUPPLEMENTARY_1_RESET 0x000000u
+#define MACRO_IC_SUPPLEMENTARY_1_WRITTEN 0x39FFFFu
+#define MACRO_IC_SUPPLEMENTARY_1_CAPTURE_SHIFT 0u
+#define MACRO_IC_SUPPLEMENTARY_1_CAPTURE_MASK 0x01FFFFu /* Bits 16..0 as in a servo IC's channel control */
+#define MACRO_IC_SUPPLEMENTARY_1_OUTPUTS_SHIFT 19u
+#define MACRO_IC_SUPPLEMENTARY_1_OUTPUTS_MASK 0x380000u /* PFM direction invert, output inverts */
+#define MACRO_IC_X_SUPPLEMENTARY_2 0x1Du /* Channel control, supplementary channel 2* */
+#define MACRO_IC_SUPPLEMENTARY_2_RESET 0x000000u
+#define MACRO_IC_SUPPLEMENTARY_2_WRITTEN 0x39FFFFu
+#define MACRO_IC_SUPPLEMENTARY_2_CAPTURE_SHIFT 0u
+#define MACRO_IC_SUPPLEMENTARY_2_CAPTURE_MASK 0x01FFFFu /* Bits 16..0 as in a servo IC's channel control */
+#define MACRO_IC_SUPPLEMENTARY_2_OUTPUTS_SHIFT 19u
+#define MACRO_IC_SUPPLEMENTARY_2_OUTPUTS_MASK 0x380000u /* PFM direction invert, output inverts */
 
 /* Host port HI08, CPU side */
 #define HI08_BASE 0xFFFFC2u

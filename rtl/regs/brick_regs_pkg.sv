@@ -179,6 +179,12 @@ package brick_regs_pkg;
   localparam logic [23:0] ServoChannelCompareBWritten = 24'hFFFFFF;
 
   // MACRO IC, clock part
+  localparam logic [23:0] MacroIcJioDataAddr = 24'h000000;  // Y
+  localparam logic [23:0] MacroIcJioDataReset = 24'h000000;
+  localparam logic [23:0] MacroIcJioDataWritten = 24'hFFFFFF;
+  localparam logic [23:0] MacroIcMultiplexerDataAddr = 24'h000002;  // Y
+  localparam logic [23:0] MacroIcMultiplexerDataReset = 24'h000000;
+  localparam logic [23:0] MacroIcMultiplexerDataWritten = 24'hFFFFFF;
   localparam logic [23:0] MacroIcClockControlAddr = 24'h00000C;  // X
   localparam logic [23:0] MacroIcClockControlReset = 24'h3038D2;
   localparam logic [23:0] MacroIcClockControlWritten = 24'hFF3FFF;
@@ -212,6 +218,20 @@ package brick_regs_pkg;
   localparam logic [23:0] MacroIcRingControlAddr = 24'h00000F;  // X
   localparam logic [23:0] MacroIcRingControlReset = 24'h000000;
   localparam logic [23:0] MacroIcRingControlWritten = 24'hFFFFFF;
+  localparam logic [23:0] MacroIcSupplementary1Addr = 24'h000015;  // X
+  localparam logic [23:0] MacroIcSupplementary1Reset = 24'h000000;
+  localparam logic [23:0] MacroIcSupplementary1Written = 24'h39FFFF;
+  localparam int MacroIcSupplementary1CaptureLsb = 0;
+  localparam int MacroIcSupplementary1CaptureWidth = 17;
+  localparam int MacroIcSupplementary1OutputsLsb = 19;
+  localparam int MacroIcSupplementary1OutputsWidth = 3;
+  localparam logic [23:0] MacroIcSupplementary2Addr = 24'h00001D;  // X
+  localparam logic [23:0] MacroIcSupplementary2Reset = 24'h000000;
+  localparam logic [23:0] MacroIcSupplementary2Written = 24'h39FFFF;
+  localparam int MacroIcSupplementary2CaptureLsb = 0;
+  localparam int MacroIcSupplementary2CaptureWidth = 17;
+  localparam int MacroIcSupplementary2OutputsLsb = 19;
+  localparam int MacroIcSupplementary2OutputsWidth = 3;
 
   // Host port HI08, CPU side
   localparam logic [23:0] Hi08Base = 24'hFFFFC2;

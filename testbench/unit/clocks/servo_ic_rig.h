@@ -1,5 +1,6 @@
-// A servo IC on one engine, driven as the board drives it: register accesses at a clk_ref edge, pins at any tick. The RTL and
-// the model rig take the same calls, so one test body runs on both, and the lock-step rig compares them at every tick.
+// A servo IC (or another IC with the same faces) on one engine, driven as the board drives it: register accesses at a clk_ref
+// edge, pins at any tick. The RTL and the model rig take the same calls, so one test body runs on both, and the lock-step rig
+// compares them at every tick.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +44,8 @@ class ServoIcRig {
   }
 };
 
-class RtlRig : public ServoIcRig {
+template <class RtlIc>
+class RtlRigOf : public ServoIcRig {
  public:
   Tick now() const override { return ic_.now(); }
   void tick() override { ic_.tick(); }
@@ -78,15 +80,17 @@ class RtlRig : public ServoIcRig {
     ic_.in.wdata = value;
   }
   void end_write() { ic_.in.sel = ic_.in.we = false; }
+  RtlIc& ic() { return ic_; }
 
  private:
-  RtlServoIc ic_;
+  RtlIc ic_;
 };
 
 // Lets the model sleep until its own next event: a wrong prediction shows up as a difference to the RTL.
-class ModelRig : public ServoIcRig {
+template <class Ic>
+class ModelRigOf : public ServoIcRig {
  public:
-  ModelRig() : ic_(sc_core::sc_gen_unique_name("servo_ic")) { ic_.reset(0); }
+  ModelRigOf() : ic_(sc_core::sc_gen_unique_name("ic")) { ic_.reset(0); }
 
   Tick now() const override { return now_; }
   void tick() override {
@@ -122,20 +126,28 @@ class ModelRig : public ServoIcRig {
     ic_.write(x, offset, value);
     shown_ = {ic_.phase(), ic_.servo()};
   }
-  ServoIc& ic() { return ic_; }
+  // Changes something that acts at once, such as a strap.
+  template <class Action>
+  void change(const Action& action) {
+    if (!in_reset_) ic_.advance(now_);
+    action(ic_);
+    shown_ = {ic_.phase(), ic_.servo()};
+  }
+  Ic& ic() { return ic_; }
 
  private:
   struct Levels {
     bool phase, servo;
   };
-  ServoIc ic_;
+  Ic ic_;
   Levels shown_{true, true};
   bool in_reset_ = false;
   Tick now_ = 0;
 };
 
 // Both, tick by tick. `difference` is empty as long as they agree.
-class LockstepRig : public ServoIcRig {
+template <class RtlIc, class Ic>
+class LockstepRigOf : public ServoIcRig {
  public:
   Tick now() const override { return rtl_.now(); }
   void tick() override {
@@ -180,6 +192,9 @@ class LockstepRig : public ServoIcRig {
   bool phase_oe() override { return rtl_.phase_oe(); }
   bool servo_oe() override { return rtl_.servo_oe(); }
 
+  RtlRigOf<RtlIc>& rtl() { return rtl_; }
+  ModelRigOf<Ic>& model() { return model_; }
+
   std::string difference;
   Tick seeded_bug_at = kNever;  // negative control: the level of SERVO that the comparison sees is wrong at this tick
 
@@ -194,11 +209,15 @@ class LockstepRig : public ServoIcRig {
     if (difference.empty()) difference = std::string(what) + " differs at tick " + std::to_string(now());
   }
 
-  RtlRig rtl_;
-  ModelRig model_;
+  RtlRigOf<RtlIc> rtl_;
+  ModelRigOf<Ic> model_;
   bool pending_ = false, write_x_ = false;
   unsigned write_offset_ = 0;
   std::uint32_t write_value_ = 0;
 };
+
+using RtlRig = RtlRigOf<RtlServoIc>;
+using ModelRig = ModelRigOf<ServoIc>;
+using LockstepRig = LockstepRigOf<RtlServoIc, ServoIc>;
 
 }  // namespace brick

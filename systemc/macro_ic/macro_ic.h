@@ -1,0 +1,52 @@
+// Model of rtl/macro_ic/macro_ic.sv: MACRO IC (DSPGATE2 or MACROGATE), clock part. The clock chain is that of the servo IC
+// (ClockGen). The register face is a TLM-2.0 target socket (address 8 * offset + 4 for X, + 0 for Y, 4 bytes, value in the
+// low 24 bits); the board, which keeps time in ticks, uses read() and write() behind it.
+#pragma once
+
+#include <cstdint>
+
+#include <tlm_utils/simple_target_socket.h>
+#include <systemc>
+#include <tlm>
+
+#include "systemc/core/model_block.h"
+#include "systemc/macro_ic/macro_ic_regs.h"
+#include "systemc/servo_ic/clock_gen.h"
+
+namespace brick {
+
+class MacroIc : public sc_core::sc_module, public ModelBlock {
+ public:
+  explicit MacroIc(const sc_core::sc_module_name& name);
+
+  tlm_utils::simple_target_socket_optional<MacroIc> socket;
+
+  // Registers as they stand after the last executed edge; a write is executed by that edge, so call advance() first.
+  std::uint32_t read(bool x, unsigned offset) const { return regs_.read(x, offset); }
+  void write(bool x, unsigned offset, std::uint32_t value);
+
+  // Kind and clock pins; seen by the edges to come.
+  void set_gate(bool gate);
+  void set_pins(bool phase, bool servo) {
+    clock_gen_.in.phase = phase;
+    clock_gen_.in.servo = servo;
+  }
+  bool phase() const { return clock_gen_.phase(); }
+  bool servo() const { return clock_gen_.servo(); }
+  bool phase_oe() const { return !clock_gen_.in.phase_ext; }
+  bool servo_oe() const { return !clock_gen_.in.servo_ext; }
+  const ClockGen& clock_gen() const { return clock_gen_; }
+
+  Tick next_event() const override { return clock_gen_.next_event(); }
+  void advance(Tick t) override { clock_gen_.advance(t); }
+  void reset(Tick t) override;
+
+ private:
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  void apply_registers();
+
+  MacroIcRegs regs_;
+  ClockGen clock_gen_;
+};
+
+}  // namespace brick
