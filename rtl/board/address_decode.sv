@@ -8,12 +8,12 @@ module address_decode (
   input  wire logic        x_i,
   input  wire logic [3:0]  aa_i,
   input  wire logic        int_i,
-  input  wire logic [17:0] fitted_i,      // servo IC 0..9, 2*..9*
+  input  wire logic [21:0] fitted_i,      // servo IC 0..9, 2*..9*, MACRO IC 0..3
   output logic             sel_any_o,     // a register region: its read data goes to the bus
   output logic             sel_int_o,     // host port
   output logic             sel_signals_o, // X:$070010 host signals
   output logic             sel_strobe_o,  // X:$070011 watchdog strobe
-  output logic [17:0]      sel_ic_o
+  output logic [21:0]      sel_ic_o
 );
 
   logic gate, latch;
@@ -21,18 +21,23 @@ module address_decode (
   assign latch = ~int_i & (aa_i == 4'h0) & (addr_i[18:8] == 11'h700);
 
   // Servo ICs 0, 1: $000, $100 of the first 4 KiB word page; 2..9: $200, $300 of pages 0..3; the starred ones $20 above.
+  // MACRO ICs: $400 of pages 0..3, 64 words each.
   logic [3:0] ic;
-  logic       servo_page, star;
+  logic       servo_page, macro_page, star;
   assign star       = addr_i[5];
   assign servo_page = (addr_i[11:6] == 6'b001000 || addr_i[11:6] == 6'b001100) ||
                       (addr_i[13:5] == 9'b000000000 || addr_i[13:5] == 9'b000001000);
+  assign macro_page = addr_i[11:6] == 6'b010000;
   assign ic         = addr_i[9] ? {1'b0, addr_i[13:12], addr_i[8]} + 4'd2 : {3'b000, addr_i[8]};
 
   always_comb begin
-    sel_ic_o = 18'h0;
+    sel_ic_o = 22'h0;
     if (gate && servo_page) begin
       // IC m is bit m, IC m* bit m + 8.
-      sel_ic_o = (18'h1 << (star ? {1'b0, ic} + 5'd8 : {1'b0, ic})) & fitted_i;
+      sel_ic_o = (22'h1 << (star ? {1'b0, ic} + 5'd8 : {1'b0, ic})) & fitted_i;
+    end
+    if (gate && macro_page) begin
+      sel_ic_o = (22'h1 << (5'd18 + {3'b000, addr_i[13:12]})) & fitted_i;
     end
   end
 

@@ -5,6 +5,7 @@
 
 module board_sim #(
   parameter logic [17:0] ServoIcMask   = 18'h00003,
+  parameter logic [3:0]  MacroIcMask   = 4'h0,
   parameter logic [7:0]  SeededBugEdge = 8'd5
 ) (
   input  wire logic        clk_pwm_i,
@@ -26,6 +27,7 @@ module board_sim #(
   input  wire logic        isa_aen_i,
   input  wire logic        isa_sbhe_ni,
   input  wire logic [21:0] fitted_i,
+  input  wire logic [3:0]  macro_gate_i,
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
@@ -41,13 +43,13 @@ module board_sim #(
   logic [4:0]  source;
   logic [7:0]  ist, sig, msk, elr;
 
-  board_top #(.ServoIcMask(ServoIcMask)) u_board (
+  board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
     .pa_data_o(pa_data), .pa_ta_n_o(pa_ta_n), .irq_host_o(irq_host),
     .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
     .isa_sd_o(isa_sd), .isa_iochrdy_o(isa_iochrdy), .isa_memcs16_n_o(isa_memcs16_n), .isa_irq_o(isa_irq),
-    .fitted_i, .ext_clock_i, .ext_phase_i, .ext_servo_i,
+    .fitted_i, .macro_gate_i, .ext_clock_i, .ext_phase_i, .ext_servo_i,
     .phase_o(phase), .servo_o(servo), .breq_o(breq), .ipos_o(ipos), .eror_o(eror), .f1er_o(f1er), .hreq_o(hreq),
     .wdo_o(wdo), .wd_tripped_o(wd_tripped), .busy_host_o(busy_host), .busy_cpu_o(busy_cpu),
     .phase_source_o(source), .source_conflict_o(conflict),

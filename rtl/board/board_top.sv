@@ -1,11 +1,13 @@
-// The controller board: servo ICs, clock selection, bus decoding, watchdog and the host side, from Port A pins to ISA pins.
+// The controller board: servo and MACRO ICs, clock selection, bus decoding, watchdog and the host side, from Port A pins to ISA pins.
 // clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing between them is synchronous.
-// ServoIcMask says which servo ICs are built (bit i as in fitted_i), fitted_i which of those are present at run time.
+// ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in fitted_i), fitted_i which of those are
+// present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
 // All outputs are registers or gates behind registers: they change at clock edges only. docs/architecture.md has the map.
 `default_nettype none
 
 module board_top #(
-  parameter logic [17:0] ServoIcMask = 18'h00003
+  parameter logic [17:0] ServoIcMask = 18'h00003,
+  parameter logic [3:0]  MacroIcMask = 4'h0
 ) (
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
@@ -36,6 +38,7 @@ module board_top #(
   output logic             isa_irq_o,
   // straps and external clocks
   input  wire logic [21:0] fitted_i,
+  input  wire logic [3:0]  macro_gate_i,
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
@@ -60,15 +63,19 @@ module board_top #(
 );
 
   // ------------------------------------------------------------------ straps, taken over on clk_ref
+  localparam logic [21:0] IcMask = {MacroIcMask, ServoIcMask};
   logic [21:0] fitted_q;
+  logic [3:0]  macro_gate_q;
   logic        ext_clock_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      fitted_q    <= 22'h0;
-      ext_clock_q <= 1'b0;
+      fitted_q     <= 22'h0;
+      macro_gate_q <= 4'h0;
+      ext_clock_q  <= 1'b0;
     end else begin
-      fitted_q    <= fitted_i;
-      ext_clock_q <= ext_clock_i;
+      fitted_q     <= fitted_i;
+      macro_gate_q <= macro_gate_i & MacroIcMask;
+      ext_clock_q  <= ext_clock_i;
     end
   end
 
@@ -87,9 +94,9 @@ module board_top #(
   );
 
   logic        sel_any, sel_int, sel_signals, sel_strobe;
-  logic [17:0] sel_ic;
+  logic [21:0] sel_ic;
   address_decode u_address_decode (
-    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_q[17:0] & ServoIcMask),
+    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_q & IcMask),
     .sel_any_o(sel_any), .sel_int_o(sel_int), .sel_signals_o(sel_signals), .sel_strobe_o(sel_strobe), .sel_ic_o(sel_ic)
   );
 
@@ -101,10 +108,9 @@ module board_top #(
   logic unused_rd;
   assign unused_rd = &{1'b0, bus_rd_addr[18:6], bus_rd_x, bus_rd_aa};
 
-  // ------------------------------------------------------------------ servo ICs and the board's clock nets
+  // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
-  logic [18*24-1:0] ic_rdata;
-  assign {ic_phase[21:18], ic_servo[21:18], ic_phase_oe[21:18], ic_servo_oe[21:18]} = {4'hF, 4'hF, 4'h0, 4'h0};  // MACRO ICs: none yet
+  logic [22*24-1:0] ic_rdata;
 
   for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
     if (ServoIcMask[i]) begin : gen_built
@@ -123,6 +129,28 @@ module board_top #(
       assign ic_servo_oe[i]     = 1'b0;
     end
   end
+
+  for (genvar i = 18; i < 22; i++) begin : gen_macro_ic
+    if (IcMask[i]) begin : gen_built
+      macro_ic u_macro_ic (
+        .clk_pwm_i, .clk_ref_i, .rst_ni, .gate_i(macro_gate_q[i-18]),
+        .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[5:0]), .we_i(bus_we), .wdata_i(bus_wdata),
+        .rdata_o(ic_rdata[24*i+:24]),
+        .phase_i(phase_o), .servo_i(servo_o),
+        .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i])
+      );
+    end else begin : gen_absent
+      assign ic_rdata[24*i+:24] = 24'h0;
+      assign ic_phase[i]        = 1'b1;
+      assign ic_servo[i]        = 1'b1;
+      assign ic_phase_oe[i]     = 1'b0;
+      assign ic_servo_oe[i]     = 1'b0;
+    end
+  end
+
+  // Kinds of MACRO ICs that are not built mean nothing.
+  logic unused_gate;
+  assign unused_gate = &{1'b0, macro_gate_q};
 
   clock_select u_clock_select (
     .clk_pwm_i, .clk_ref_i, .rst_ni, .fitted_i(fitted_q),
@@ -202,7 +230,7 @@ module board_top #(
     rdata_d = rdata_q;
     if (sel_any) begin
       rdata_d = sel_int ? int_rdata : (sel_signals ? {20'h0, signals_rdata} : 24'h0);
-      for (int unsigned k = 0; k < 18; k++) begin
+      for (int unsigned k = 0; k < 22; k++) begin
         rdata_d = rdata_d | (ic_rdata[24*k+:24] & {24{sel_ic[k]}});
       end
     end

@@ -12,7 +12,7 @@ struct AddressSelect {
   bool internal = false;  // host port
   bool signals = false;   // X:$070010 host signals
   bool strobe = false;    // X:$070011 watchdog strobe
-  int ic = -1;            // servo IC, index as in BoardInputs::fitted
+  int ic = -1;            // servo or MACRO IC, index as in BoardInputs::fitted
 };
 
 class AddressDecode : public sc_core::sc_module {
@@ -32,7 +32,7 @@ class AddressDecode : public sc_core::sc_module {
       s.strobe = w.x && (a & 0xFF) == 0x11;
     } else if ((w.aa & 2) != 0 && (a >> 14) == 0x1E) {
       s.any = true;
-      const int ic = servo_ic(a & 0x3FFF);
+      const int ic = gate_ic(a & 0x3FFF);
       if (ic >= 0 && (fitted >> ic & 1) != 0) s.ic = ic;
     }
     return s;
@@ -40,10 +40,12 @@ class AddressDecode : public sc_core::sc_module {
 
  private:
   // Servo IC 0 and 1 at $0000 and $0100; 2..9 at $200 and $300 of the pages $0000..$3000; IC m* is $20 above IC m.
-  static int servo_ic(std::uint32_t offset) {
+  // MACRO ICs at $400 of the pages, 64 words each.
+  static int gate_ic(std::uint32_t offset) {
     const std::uint32_t block = offset & 0xFC0, page = offset >> 12, odd = offset >> 8 & 1;
     const bool star = (offset & 0x20) != 0;
     if (block == 0x200 || block == 0x300) return static_cast<int>(2 + 2 * page + odd + (star ? 8 : 0));
+    if (block == 0x400) return static_cast<int>(18 + page);
     if (page == 0 && !star && (block == 0x000 || block == 0x100)) return static_cast<int>(odd);
     return -1;
   }

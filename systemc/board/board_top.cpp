@@ -7,7 +7,7 @@
 
 namespace brick {
 
-BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t servo_ics)
+BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
     : sc_module(name),
       bus_sync_("bus_sync"),
       address_decode_("address_decode"),
@@ -18,7 +18,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t servo_ics)
       interrupt_controller_("interrupt_controller"),
       host_signals_("host_signals"),
       dpram_("dpram"),
-      built_(servo_ics & ((1u << kServoIcs) - 1)) {
+      built_(ics & ((1u << (kServoIcs + kMacroIcs)) - 1)) {
   for (ModelBlock* block : std::initializer_list<ModelBlock*>{&bus_sync_, &clock_select_, &watchdog_, &isa_slave_, &host_port_,
                                                               &interrupt_controller_, &host_signals_, &dpram_})
     block_[blocks_++] = block;
@@ -27,7 +27,12 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t servo_ics)
     servo_ic_[i] = std::make_unique<ServoIc>(("servo_ic" + std::to_string(i)).c_str());
     block_[blocks_++] = servo_ic_[i].get();
   }
-  inputs_.fitted = servo_ics;
+  for (unsigned i = 0; i < kMacroIcs; ++i) {
+    if ((built_ >> (kServoIcs + i) & 1) == 0) continue;
+    macro_ic_[i] = std::make_unique<MacroIc>(("macro_ic" + std::to_string(i)).c_str());
+    block_[blocks_++] = macro_ic_[i].get();
+  }
+  inputs_.fitted = ics;
   reset_all(0);
   outputs_ = pins();
 }
@@ -43,6 +48,7 @@ void BoardTop::reset_all(Tick t) {
   rdata_ = 0;
   from_dpram_ = false;
   fitted_ = 0;
+  macro_gate_ = 0;
   ext_clock_ = false;
   connect();
 }
@@ -64,9 +70,10 @@ void BoardTop::execute(Tick t) {
   from_dpram_ = dpram_.in.cpu_sel;
   if (next_ref_edge(now_) <= t) {
     fitted_ = inputs_.fitted;
+    macro_gate_ = macro_gates();
     ext_clock_ = inputs_.ext_clock;
   }
-  if (write_ic) servo_ic_[static_cast<unsigned>(written_ic)]->write(where.x, where.addr & 31, wdata);
+  if (write_ic) write_gate_ic(static_cast<unsigned>(written_ic), where, wdata);
   now_ = t;
   connect();
 }
@@ -74,11 +81,17 @@ void BoardTop::execute(Tick t) {
 std::uint32_t BoardTop::read_data() const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
-  if (select_.ic >= 0) {
-    const BusSync::Where& where = bus_sync_.where();
-    return servo_ic_[static_cast<unsigned>(select_.ic)]->read(where.x, where.addr & 31);
-  }
-  return 0;
+  if (select_.ic < 0) return 0;
+  const BusSync::Where& where = bus_sync_.where();
+  const auto ic = static_cast<unsigned>(select_.ic);
+  return ic < kServoIcs ? servo_ic_[ic]->read(where.x, where.addr & 31) : macro_ic_[ic - kServoIcs]->read(where.x, where.addr & 63);
+}
+
+void BoardTop::write_gate_ic(unsigned ic, const BusSync::Where& where, std::uint32_t value) {
+  if (ic < kServoIcs)
+    servo_ic_[ic]->write(where.x, where.addr & 31, value);
+  else
+    macro_ic_[ic - kServoIcs]->write(where.x, where.addr & 63, value);
 }
 
 void BoardTop::connect() {
@@ -92,13 +105,18 @@ void BoardTop::connect_clocks() {
   ClockSelect::Drivers drivers;
   drivers.ext = ext_clock_;
   std::uint32_t phase = 0, servo = 0;
-  for (unsigned i = 0; i < kServoIcs; ++i) {
-    if (servo_ic_[i] == nullptr) continue;
-    const ServoIc& ic = *servo_ic_[i];
+  const auto join = [&](const auto& ic, unsigned i) {
     drivers.phase |= static_cast<std::uint32_t>(ic.phase_oe()) << i;
     drivers.servo |= static_cast<std::uint32_t>(ic.servo_oe()) << i;
     phase |= static_cast<std::uint32_t>(ic.phase()) << i;
     servo |= static_cast<std::uint32_t>(ic.servo()) << i;
+  };
+  for (unsigned i = 0; i < kServoIcs; ++i)
+    if (servo_ic_[i] != nullptr) join(*servo_ic_[i], i);
+  for (unsigned i = 0; i < kMacroIcs; ++i) {
+    if (macro_ic_[i] == nullptr) continue;
+    macro_ic_[i]->set_gate((macro_gate_ >> i & 1) != 0);
+    join(*macro_ic_[i], kServoIcs + i);
   }
   drivers.phase &= fitted_;
   drivers.servo &= fitted_;
@@ -109,6 +127,8 @@ void BoardTop::connect_clocks() {
   clock_select_.ext_servo = inputs_.ext_servo;
 
   for (auto& ic : servo_ic_)
+    if (ic != nullptr) ic->set_pins(clock_select_.phase(), clock_select_.servo());
+  for (const auto& ic : macro_ic_)
     if (ic != nullptr) ic->set_pins(clock_select_.phase(), clock_select_.servo());
   watchdog_.servo = clock_select_.servo();
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
@@ -208,6 +228,8 @@ bool BoardTop::show_pins() {
 Tick BoardTop::next_clock_event() const {
   Tick next = clock_select_.next_event();
   for (const auto& ic : servo_ic_)
+    if (ic != nullptr) next = std::min(next, ic->next_event());
+  for (const auto& ic : macro_ic_)
     if (ic != nullptr) next = std::min(next, ic->next_event());
   return next;
 }

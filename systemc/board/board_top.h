@@ -1,6 +1,7 @@
 // Model of rtl/board/board_top.sv: the controller board behind the Board face, event-driven. Time jumps from one event to
 // the next; at an event every block executes its edges, then the wires between them are copied (systemc/core/model_block.h).
-// Servo ICs are built for the bits of `servo_ics`, as the RTL's parameter ServoIcMask; BoardInputs::fitted selects at run time.
+// ICs are built for the bits of `ics`, as the RTL's parameters ServoIcMask and MacroIcMask; BoardInputs::fitted selects at run
+// time.
 #pragma once
 
 #include <array>
@@ -19,13 +20,14 @@
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
 #include "systemc/host/isa_slave.h"
+#include "systemc/macro_ic/macro_ic.h"
 #include "systemc/servo_ic/servo_ic.h"
 
 namespace brick {
 
 class BoardTop : public sc_core::sc_module, public Board {
  public:
-  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t servo_ics = 0x3);
+  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics = 0x3);
 
   Tick now() const override { return now_; }
   void set_inputs(const BoardInputs& inputs) override;
@@ -35,11 +37,12 @@ class BoardTop : public sc_core::sc_module, public Board {
 
   // Blocks behind the pins, for SystemC users and tests; nullptr when the IC is not built.
   ServoIc* servo_ic(unsigned index) { return index < kServoIcs ? servo_ic_[index].get() : nullptr; }
+  MacroIc* macro_ic(unsigned index) { return index < kMacroIcs ? macro_ic_[index].get() : nullptr; }
   Dpram& dpram() { return dpram_; }
   HostPort& host_port() { return host_port_; }
 
  private:
-  static constexpr unsigned kServoIcs = 18;
+  static constexpr unsigned kServoIcs = 18, kMacroIcs = 4;
 
   void reset_all(Tick t);
   void advance_all(Tick t);
@@ -50,7 +53,9 @@ class BoardTop : public sc_core::sc_module, public Board {
   BoardOutputs pins() const;
   bool show_pins();  // updates outputs_ after an edge; true when a pin changed
   std::uint32_t read_data() const;
-  bool straps_move() const { return inputs_.fitted != fitted_ || inputs_.ext_clock != ext_clock_; }
+  void write_gate_ic(unsigned ic, const BusSync::Where& where, std::uint32_t value);
+  std::uint32_t macro_gates() const { return inputs_.macro_gate & built_ >> kServoIcs; }
+  bool straps_move() const { return inputs_.fitted != fitted_ || macro_gates() != macro_gate_ || inputs_.ext_clock != ext_clock_; }
   Tick next_event() const;
   Tick next_clock_event() const;
 
@@ -64,12 +69,14 @@ class BoardTop : public sc_core::sc_module, public Board {
   HostSignals host_signals_;
   Dpram dpram_;
   std::array<std::unique_ptr<ServoIc>, kServoIcs> servo_ic_;
+  std::array<std::unique_ptr<MacroIc>, kMacroIcs> macro_ic_;
   std::uint32_t built_;
-  std::array<ModelBlock*, kServoIcs + 8> block_{};
+  std::array<ModelBlock*, kServoIcs + kMacroIcs + 8> block_{};
   unsigned blocks_ = 0;
 
   BoardInputs inputs_;
   std::uint32_t fitted_ = 0;  // straps as taken over on clk_ref
+  std::uint32_t macro_gate_ = 0;
   bool ext_clock_ = false;
   AddressSelect select_;     // of the address in stage 1
   std::uint32_t rdata_ = 0;  // registered read data

@@ -82,6 +82,7 @@ class RtlBoard : public Board {
     m.isa_aen_i = in.isa_aen;
     m.isa_sbhe_ni = in.isa_sbhe_n;
     m.fitted_i = in.fitted & fitted_;
+    m.macro_gate_i = in.macro_gate & 0xF;
     m.ext_clock_i = in.ext_clock;
     m.ext_phase_i = in.ext_phase;
     m.ext_servo_i = in.ext_servo;

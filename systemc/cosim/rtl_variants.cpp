@@ -1,7 +1,11 @@
-// The Verilated boards by the servo ICs that they are built with, smallest first. The fitted ICs choose the first that has
+// The Verilated boards by the ICs that they are built with, smallest first. The fitted ICs choose the first that has
 // them all. A bigger variant is one line here and one in CMakeLists.txt.
+#include <Vboard_all.h>
+#include <Vboard_all___024root.h>
 #include <Vboard_s2.h>
 #include <Vboard_s2___024root.h>
+#include <Vboard_s4m1.h>
+#include <Vboard_s4m1___024root.h>
 #include <fmt/format.h>
 
 #include "systemc/cosim/rtl_board.h"
@@ -21,7 +25,9 @@ std::unique_ptr<Board> make(std::uint32_t fitted, const RtlOptions& options) {
 }
 
 constexpr Variant kVariants[] = {
-    {0x00003, make<Vboard_s2>},
+    {0x000003, make<Vboard_s2>},    // servo ICs 0, 1
+    {0x04000F, make<Vboard_s4m1>},  // servo ICs 0..3, MACRO IC 0
+    {0x3FFFFF, make<Vboard_all>},
 };
 
 }  // namespace

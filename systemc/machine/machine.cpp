@@ -82,6 +82,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     if (tracing_cpu) named.pc(time, pc, elf.get());
   };
   host_inputs.fitted = inputs.fitted = config.board.fitted;
+  host_inputs.macro_gate = inputs.macro_gate = config.board.macro_gate;
   named.outputs(0, {}, board->outputs());
   power_on();
 }
@@ -165,6 +166,7 @@ void Machine::Impl::apply_host_inputs() {
   inputs.isa_aen = host_inputs.isa_aen;
   inputs.isa_sbhe_n = host_inputs.isa_sbhe_n;
   inputs.fitted = host_inputs.fitted;
+  inputs.macro_gate = host_inputs.macro_gate;
   inputs.ext_clock = host_inputs.ext_clock;
   inputs.ext_phase = host_inputs.ext_phase;
   inputs.ext_servo = host_inputs.ext_servo;

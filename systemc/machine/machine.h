@@ -24,6 +24,7 @@ struct BoardConfig {
   std::string name = "geobrick-lv-8";
   std::string title;
   std::uint32_t fitted = 0x3;            // as BoardInputs::fitted
+  std::uint32_t macro_gate = 0;          // as BoardInputs::macro_gate
   std::uint32_t dpram_words = 32768;     // 16-bit words: 8192 or 32768
   bool jpan = false;                     // Turbo PMAC control panel port fitted
   std::uint32_t card = 603382;           // CID reply

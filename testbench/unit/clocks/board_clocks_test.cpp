@@ -18,9 +18,9 @@ class BoardOn : public ::testing::TestWithParam<bool> {
  protected:
   static std::unique_ptr<Board> make() {
     if (GetParam()) return std::make_unique<RtlBoard>();
-    return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestServoIcs);
+    return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestIcs);
   }
-  BoardRig rig{make(), kTestServoIcs};
+  BoardRig rig{make(), kTestIcs};
 };
 INSTANTIATE_TEST_SUITE_P(Engines, BoardOn, ::testing::Values(true, false),
                          [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); });
@@ -43,11 +43,11 @@ TEST_P(BoardOn, EveryServoIcIsAtItsAddress) {
 }
 
 TEST_P(BoardOn, AbsentIcReadsZeroIgnoresWritesAndDoesNotDrive) {
-  for (const std::uint32_t base : {0x78300u, 0x78120u, 0x79200u, 0x7B320u, 0x78400u}) {
+  for (const std::uint32_t base : {0x78300u, 0x78120u, 0x79200u, 0x7B320u, 0x7A400u}) {
     rig.write(true, base + kAdcStrobe, 0xFFFFFF);
     EXPECT_EQ(rig.read(true, base + kAdcStrobe), 0u) << std::hex << base;
   }
-  rig.in.fitted = 0x406;  // IC 0 is built but not fitted
+  rig.in.fitted = kTestIcs & ~1u;  // IC 0 is built but not fitted
   rig.apply();
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), 0u);

@@ -22,7 +22,7 @@ constexpr BoardOutputs kInterruptPins = select_pins(pin::kPhase, pin::kServo, pi
 class Pair {
  public:
   explicit Pair(bool seeded_bug = false)
-      : rtl_(seeded_bug), model_(std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestServoIcs)) {
+      : rtl_(seeded_bug), model_(std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestIcs)) {
     for (unsigned i = 0; i < 32768; ++i) model_->dpram().poke(i, 0);
     model_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) { changes_.push_back({t, after}); };
   }
@@ -77,7 +77,7 @@ class Pair {
 class Stimulus {
  public:
   Stimulus(Pair& pair, std::uint32_t seed) : pair_(pair), random_(seed) {
-    in_.fitted = kTestServoIcs;
+    in_.fitted = kTestIcs;
     set();
     pair_.run(between(1, 9));
     in_.rst_n = true;
@@ -91,7 +91,8 @@ class Stimulus {
       if (one_in(400)) in_.ext_phase = !in_.ext_phase;
       if (one_in(500)) in_.ext_servo = !in_.ext_servo;
       if (one_in(5000)) in_.ext_clock = !in_.ext_clock;
-      if (one_in(5000)) in_.fitted = one_in(2) ? kTestServoIcs : between(0, 0x3FFFFF);
+      if (one_in(5000)) in_.fitted = one_in(2) ? kTestIcs : between(0, 0x3FFFFF);
+      if (one_in(2000)) in_.macro_gate = between(0, 15);
       in_.rst_n = in_.rst_n ? !one_in(20'000) : one_in(3);
       set();
       pair_.run(one_in(30) ? between(1, 3000) : between(1, 6));
@@ -138,7 +139,7 @@ class Stimulus {
     in_.pa_int = false;
     in_.pa_aa = 0;
     in_.pa_wdata = between(0, 0xFFFFFF);
-    switch (between(0, 5)) {
+    switch (between(0, 6)) {
       case 0:
       case 1: {  // servo ICs, mostly the global registers
         constexpr std::uint32_t kBases[] = {0x78000, 0x78100, 0x78200, 0x78220, 0x78300, 0x79200, 0x78120};
@@ -147,6 +148,14 @@ class Stimulus {
         in_.pa_addr = kBases[one_in(3) ? between(0, 6) : between(0, 3)] + offset;
         if (offset == kPwmWord) in_.pa_wdata = pwm_word(one_in(3) ? between(0, 9) : between(10, 500));
         if (offset == kClockWord) in_.pa_wdata = clock_word(between(0, 3), between(0, 3), one_in(2) ? 3 : between(0, 3));
+        break;
+      }
+      case 6: {  // MACRO ICs
+        in_.pa_aa = 2;
+        const std::uint32_t offset = one_in(3) ? between(0, 63) : between(0xC, 0xF);
+        in_.pa_addr = (one_in(5) ? 0x7A400 : 0x78400 + between(0, 1) * 0x1000) + offset;
+        if (offset == 0x0D) in_.pa_wdata = pwm_word(one_in(3) ? between(0, 9) : between(10, 500));
+        if (offset == 0x0C) in_.pa_wdata = clock_word(between(0, 3), between(0, 3), one_in(2) ? 3 : between(0, 3));
         break;
       }
       case 2:
@@ -216,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, BoardLockstep, ::testing::Range(1u, 25u));
 TEST(BoardLockstepControl, TheSeededBugIsFound) {
   Pair pair(true);
   BoardInputs in;
-  in.fitted = kTestServoIcs;
+  in.fitted = kTestIcs;
   pair.set_inputs(in);
   pair.run(3);
   in.rst_n = true;

@@ -15,7 +15,7 @@ RtlBoard::RtlBoard(bool seeded_bug) : impl_(std::make_unique<Impl>()) {
   impl_->top.seeded_bug_i = seeded_bug;
   impl_->top.rst_ni = 1;
   impl_->top.eval();
-  inputs_.fitted = kTestServoIcs;
+  inputs_.fitted = kTestIcs;
   drive();
   impl_->top.eval();
   sample();
@@ -43,6 +43,7 @@ void RtlBoard::drive() {
   t.isa_aen_i = i.isa_aen;
   t.isa_sbhe_ni = i.isa_sbhe_n;
   t.fitted_i = i.fitted & 0x3FFFFF;
+  t.macro_gate_i = i.macro_gate & 0xF;
   t.ext_clock_i = i.ext_clock;
   t.ext_phase_i = i.ext_phase;
   t.ext_servo_i = i.ext_servo;

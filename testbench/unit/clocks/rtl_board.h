@@ -1,4 +1,5 @@
-// The Verilated board of these tests: servo ICs 0, 1, 2 and 2* are built, so that clocks can come from any of four.
+// The Verilated board of these tests: servo ICs 0, 1, 2, 2* and MACRO ICs 0, 1 are built, so that clocks can come from any of
+// six.
 #pragma once
 
 #include <memory>
@@ -7,7 +8,7 @@
 
 namespace brick {
 
-constexpr std::uint32_t kTestServoIcs = 0x407;  // as in the verilate() call of the CMakeLists.txt here
+constexpr std::uint32_t kTestIcs = 0xC0407;  // as in the verilate() call of the CMakeLists.txt here
 
 class RtlBoard : public Board {
  public:
