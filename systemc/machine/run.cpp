@@ -2,6 +2,7 @@
 // latency, the board to where the CPU stands or to the next edge of a bus cycle, until the board has come to the limit.
 // Results do not depend on how far each step goes, only speed does.
 #include <algorithm>
+#include <stdexcept>
 
 #include "systemc/machine/machine_impl.h"
 
@@ -46,7 +47,10 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
 
 // Never past a tick at which the CPU could change the board's inputs.
 Tick Machine::Impl::board_limit(Tick limit) const {
-  if (port_a.running()) return std::min(limit, port_a.stands_at());
+  if (port_a.running()) {
+    if (port_a.stands_at() < board->now()) throw std::logic_error("the board has run past an edge of the bus cycle under way");
+    return std::min(limit, port_a.stands_at());
+  }
   if (!cpu_runs || cpu.asleep()) return limit;
   return std::min(limit, port_a.clock().tick(cpu.cycle()) - 1);
 }
