@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +13,8 @@ namespace brick {
 
 namespace {
 
-constexpr std::uint32_t kBuiltIcs = 0x3;  // what rtl/board and systemc/board hold so far, as BoardInputs::fitted
+constexpr unsigned kServoIcs = 10, kFirstMacroIc = 18, kMacroIcs = 4;  // bits of BoardInputs::fitted: 10..17 are servo IC 2*..9*
+constexpr const char* kServoIcNames = "servo IC numbers 0 to 9, or \"2*\" to \"9*\" in quotes";
 
 class Reader {
  public:
@@ -27,12 +29,20 @@ class Reader {
   }
 
   BoardConfig read() {
-    keys(table_, {"title", "card", "servo_ics", "dpram_words"}, "");
+    keys(table_, {"title", "card", "servo_ics", "macro_ics", "macro_gates", "dpram_words"}, "");
     BoardConfig board;
     board.name = std::filesystem::path(path_).stem().string();
     board.title = text("title");
     board.card = static_cast<std::uint32_t>(integer("card", 100'000, 999'999, "a card number of six digits, for example 603382"));
-    board.fitted = servo_ics();
+    board.fitted = ics("servo_ics", kServoIcNames);
+    board.macro_gate = 0;
+    if (table_.get("macro_ics") != nullptr) board.fitted |= ics("macro_ics", "MACRO IC numbers 0 to 3");
+    if (table_.get("macro_gates") != nullptr) {
+      const std::uint32_t gates = ics("macro_gates", "MACRO IC numbers 0 to 3");
+      if ((gates & ~board.fitted) != 0) fail(need("macro_gates"), "macro_gates", "MACRO ICs that macro_ics lists too");
+      board.macro_gate = gates >> kFirstMacroIc;
+    }
+    if (board.fitted == 0) fail(need("servo_ics"), "servo_ics", "a list of one IC or more, for example [0, 1], or macro_ics");
     board.dpram_words = static_cast<std::uint32_t>(integer("dpram_words", 0, 65'536, "8192 or 32768"));
     if (board.dpram_words != 8192 && board.dpram_words != 32768) fail(need("dpram_words"), "dpram_words", "8192 or 32768");
     return board;
@@ -70,22 +80,35 @@ class Reader {
     return *value;
   }
 
-  std::uint32_t servo_ics() const {
-    const toml::node& node = need("servo_ics");
+  // A list of ICs as bits of BoardInputs::fitted.
+  std::uint32_t ics(const std::string& key, const std::string& expected) const {
+    const toml::node& node = need(key);
     const toml::array* array = node.as_array();
-    if (array == nullptr || array->empty()) fail(node, "servo_ics", "a list of one IC or more, for example [0, 1]");
+    if (array == nullptr) fail(node, key, "a list, for example [0, 1]");
     std::uint32_t fitted = 0;
     for (const toml::node& item : *array) {
-      const auto number = item.value_exact<std::int64_t>();
-      if (!number || *number < 0 || *number > 9) fail(item, "servo_ics", "servo IC numbers 0 to 9");
-      const std::uint32_t bit = 1u << *number;
-      if (!(bit & kBuiltIcs))
-        throw BoardFileError(fmt::format("{}:{}: servo IC {} is not modelled; expected {}", path_, item.source().begin.line, *number,
-                                         fmt::join(fitted_ic_names(kBuiltIcs), ", ")));
-      if (fitted & bit) fail(item, "servo_ics", fmt::format("each IC once (servo IC {} is there twice)", *number));
+      const std::optional<unsigned> place = key == "servo_ics" ? servo_ic(item) : macro_ic(item);
+      if (!place) fail(item, key, expected);
+      const std::uint32_t bit = 1u << *place;
+      if (fitted & bit) fail(item, key, fmt::format("each IC once ({} is there twice)", fitted_ic_names(bit).front()));
       fitted |= bit;
     }
     return fitted;
+  }
+
+  static std::optional<unsigned> servo_ic(const toml::node& item) {
+    if (const auto number = item.value_exact<std::int64_t>(); number && *number >= 0 && *number < kServoIcs)
+      return static_cast<unsigned>(*number);
+    const auto name = item.value_exact<std::string>();
+    if (name && name->size() == 2 && (*name)[0] >= '2' && (*name)[0] <= '9' && (*name)[1] == '*')
+      return kServoIcs + static_cast<unsigned>((*name)[0] - '2');
+    return std::nullopt;
+  }
+
+  static std::optional<unsigned> macro_ic(const toml::node& item) {
+    const auto number = item.value_exact<std::int64_t>();
+    if (!number || *number < 0 || *number >= kMacroIcs) return std::nullopt;
+    return kFirstMacroIc + static_cast<unsigned>(*number);
   }
 
   std::string path_;
