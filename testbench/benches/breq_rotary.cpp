@@ -50,7 +50,8 @@ void hysteresis(BenchContext& b, BreqHost& host, Limits limits) {
   unsigned extra = 0;
   for (unsigned look = 0; look < 40 * limits.i17 && host.scoreboard().expect_full(); ++look) {
     const unsigned lines = host.lines_ahead();
-    if (extra < 2 && lines >= limits.i16 && lines < limits.i17 && host.scoreboard().expect_full()) {
+    const bool between = lines >= limits.i16 && lines + 1 < limits.i17;  // and still below I17 with the new line
+    if (extra < 2 && between && host.scoreboard().expect_full()) {
       host.line("DWELL2");
       host.settle();
       host.check();
@@ -156,23 +157,23 @@ void two_systems(BenchContext& b, BreqHost& host) {
   host.set_limits(2, 4);
   for (unsigned i = 0; i < 4; ++i) host.line("DWELL0");
   host.settle();
-  for (unsigned i = 0; i < 3; ++i) {
+  for (unsigned i = 1; i <= 4; ++i) {
     host.select(1);
     host.check();
     host.line("DWELL0");
     host.settle();
     host.check();
+    b.report.step(fmt::format("&1 full, &2 with {} lines", i), host.scoreboard().level() == (i < 4), i < 4 ? "BREQ=1" : "BREQ=0");
     host.select(0);
     host.check();
   }
-  host.verdict("two coordinate systems, &1 full, &2 filled");
+  host.verdict("two coordinate systems, filled in turn");
   host.run();
   host.select(1);
   b.bus.wait(8 * kServo);  // &1 runs empty and leaves Full while the pin shows &2
-  host.line("DWELL0");
   host.settle();
   host.check();
-  b.report.step("&2 full", host.scoreboard().expect_full() && !host.scoreboard().level(), "BREQ=0");
+  b.report.step("&2 still full", host.scoreboard().expect_full() && !host.scoreboard().level(), "BREQ=0");
   host.select(0);
   host.check();
   b.report.step("&1 ran empty unseen", !host.scoreboard().expect_full() && host.scoreboard().level(), "BREQ=1");
@@ -186,7 +187,7 @@ void run(BenchContext& b) {
   BreqHost host(b, kServo);
   prepare(host);
   for (const Limits limits : kSettings) fill(host, limits);
-  for (const Limits limits : {Limits{5, 10}, Limits{1, 2}}) hysteresis(b, host, limits);
+  for (const Limits limits : {Limits{5, 10}, Limits{2, 6}}) hysteresis(b, host, limits);
   never_raised(b, host);
   two_systems(b, host);
   by_polling(b, host, "??", [&] { return !host.full(); });
