@@ -12,7 +12,7 @@ struct gate_ic {
 };
 
 static struct gate_ic shadow[GATE_IC_COUNT];
-static uint32_t found;
+static uint32_t found, macrogates;
 
 uint32_t gate_ic_base(unsigned ic) { return bases[ic]; }
 uint32_t gate_ic_direction_variable(unsigned ic) { return direction_variables[ic]; }
@@ -27,27 +27,34 @@ static uint32_t strobe_address(unsigned ic) {
   return gate_ic_base(ic) + (ic >= GATE_IC_MACRO ? MACRO_IC_X_ADC_STROBE : SERVO_IC_X_ADC_STROBE);
 }
 
-/* Two patterns, so that neither a floating bus nor a stuck word can pass. */
-static bool answers(uint32_t address) {
+/* Two patterns, so that neither a floating bus nor a stuck word can pass. `bits` exist in the word. */
+static bool answers(uint32_t address, uint32_t bits) {
   const uint32_t before = *hal_x(address) & HAL_WORD_MASK;
-  *hal_x(address) = 0x5A3C96u;
-  bool good = (*hal_x(address) & HAL_WORD_MASK) == 0x5A3C96u;
-  *hal_x(address) = 0xA5C368u;
-  good = good && (*hal_x(address) & HAL_WORD_MASK) == 0xA5C368u;
+  *hal_x(address) = 0x5A3C96u & bits;
+  bool good = (*hal_x(address) & HAL_WORD_MASK) == (0x5A3C96u & bits);
+  *hal_x(address) = 0xA5C368u & bits;
+  good = good && (*hal_x(address) & HAL_WORD_MASK) == (0xA5C368u & bits);
   *hal_x(address) = before;
   return good;
 }
 
 void gate_ic_find(void) {
-  found = 0;
+  found = macrogates = 0;
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     const struct gate_ic reset = {SERVO_IC_CLOCK_CONTROL_RESET, SERVO_IC_PWM_CONTROL_RESET, {0, 0, 0, 0}};
     shadow[ic] = reset;
-    if (answers(strobe_address(ic))) found |= 1u << ic;
+    if (!answers(strobe_address(ic), HAL_WORD_MASK)) continue;
+    found |= 1u << ic;
+    /* Only a DSPGATE2 has supplementary channels. */
+    if (ic >= GATE_IC_MACRO && !answers(gate_ic_base(ic) + MACRO_IC_X_SUPPLEMENTARY_1, MACRO_IC_SUPPLEMENTARY_1_WRITTEN))
+      macrogates |= 1u << ic;
   }
 }
 
 uint32_t gate_ic_found(void) { return found; }
+uint32_t gate_ic_macrogates(void) { return macrogates; }
+bool gate_ic_is_macrogate(unsigned ic) { return ((macrogates >> ic) & 1u) != 0u; }
+uint32_t gate_ic_direction_inputs(unsigned ic) { return gate_ic_is_macrogate(ic) ? 1u : 3u; }
 bool gate_ic_present(unsigned ic) { return ic < GATE_IC_COUNT && ((found >> ic) & 1u) != 0u; }
 
 static uint32_t* shadow_of(unsigned ic, gate_word_t word, unsigned channel) {

@@ -12,10 +12,15 @@ enum { GATE_IC_STARRED = 10, GATE_IC_MACRO = 18, GATE_IC_CHANNELS = 4 };
 
 void gate_ic_find(void); /* probes every possible place by write and read-back of a strobe word */
 bool gate_ic_present(unsigned ic);
-uint32_t gate_ic_found(void); /* bit per IC */
+uint32_t gate_ic_found(void);           /* bit per IC */
+bool gate_ic_is_macrogate(unsigned ic); /* a MACRO IC of the kind that makes no servo clock */
+uint32_t gate_ic_macrogates(void);      /* bit per IC */
 uint32_t gate_ic_base(unsigned ic);
 uint32_t gate_ic_direction_variable(unsigned ic); /* 7007 ... 7957, 6807 ... 6957 */
 unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT when it is none */
+
+/* Clock direction that makes both clocks inputs: 3, on a MACROGATE 1, because it has the bit for PHASE only. */
+uint32_t gate_ic_direction_inputs(unsigned ic);
 
 /* Words of an IC. The firmware keeps what it wrote: read-modify-write never reads the bus. */
 typedef enum { GATE_WORD_CLOCK, GATE_WORD_PWM, GATE_WORD_DAC_STROBE, GATE_WORD_ADC_STROBE, GATE_WORD_CHANNEL } gate_word_t;

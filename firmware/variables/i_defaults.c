@@ -8,13 +8,19 @@
 #define OPEN_MEMORY_END 0x010800u
 #define CS_REGISTERS 0x2000u
 
+static bool can_be_source(unsigned ic) { return gate_ic_present(ic) && !gate_ic_is_macrogate(ic); }
+
 /* servo-ic data sheet 7.1: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
 uint32_t i_default_clock_source(void) {
-  if (gate_ic_present(0)) return gate_ic_direction_variable(0);
-  if (gate_ic_present(GATE_IC_MACRO)) return gate_ic_direction_variable(GATE_IC_MACRO);
+  if (can_be_source(0)) return gate_ic_direction_variable(0);
+  if (can_be_source(GATE_IC_MACRO)) return gate_ic_direction_variable(GATE_IC_MACRO);
   for (unsigned ic = 1; ic < GATE_IC_COUNT; ++ic)
-    if (gate_ic_present(ic)) return gate_ic_direction_variable(ic);
+    if (can_be_source(ic)) return gate_ic_direction_variable(ic);
   return 0;
+}
+
+uint32_t i_clock_direction(unsigned ic, uint32_t clock_source) {
+  return gate_ic_direction_variable(ic) == clock_source && can_be_source(ic) ? 0u : gate_ic_direction_inputs(ic);
 }
 
 /* Channels are counted through the servo ICs that are present, four each. Returns the first address, 0 when there is none. */
@@ -56,8 +62,9 @@ static double configuration(uint32_t offset) {
     case 1:
       return servo_ics(); /* every one is PMAC2-style, type 1 */
     case 2:
-    case 3:
       return macro_ics;
+    case 3:
+      return macro_ics & ~(gate_ic_macrogates() >> GATE_IC_MACRO); /* 1 = DSPGATE2, 0 = MACROGATE */
     case 4:
       return hal_strap(HAL_STRAP_DPRAM_WORDS) != 0u ? 1.0 : 0.0;
     case 8:
@@ -97,7 +104,7 @@ double i_default_value(struct i_place place, const struct i_entry* entry, uint32
     case I_FIELD_CONVERSION:
       return channel_base(place.offset);
     case I_FIELD_IC_CLOCK_DIRECTION:
-      return gate_ic_direction_variable(place.instance) == clock_source ? 0.0 : 3.0;
+      return i_clock_direction(place.instance, clock_source);
     case I_FIELD_IC_CHANNEL:
       return place.channel == 0u && place.offset == 1u ? 1.0 : entry->value;
     default:

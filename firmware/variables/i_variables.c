@@ -91,7 +91,8 @@ void i_variable_apply_clock_directions(void) {
   for (unsigned output = 0; output < 2u; ++output) {
     for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
       const uint32_t direction = (uint32_t)integer_of[gate_ic_direction_variable(ic)];
-      if (((pending >> ic) & 1u) != 0u && (direction != 3u) == (output != 0u)) gate_ic_set_field(ic, GATE_WORD_CLOCK, 12, 2, direction);
+      if (((pending >> ic) & 1u) != 0u && (direction != gate_ic_direction_inputs(ic)) == (output != 0u))
+        gate_ic_set_field(ic, GATE_WORD_CLOCK, 12, 2, direction);
     }
   }
   kernel_clock_changed();
@@ -153,7 +154,7 @@ void i_variable_write(uint32_t number, double value) {
       timer_start[place.instance][place.offset - 11u] = kernel_servo_count();
       break;
     case I_FIELD_IC_CLOCK_DIRECTION:
-      store(number, whole);
+      store(number, whole & (int32_t)gate_ic_direction_inputs(place.instance));
       directions_pending |= 1u << place.instance;
       break;
     case I_FIELD_IC_CHANNEL:
@@ -252,7 +253,7 @@ void i_variable_write_hardware(void) {
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     if (!gate_ic_present(ic)) continue;
     const uint32_t direction = gate_ic_direction_variable(ic);
-    store(direction, direction == (uint32_t)integer_of[19] ? 0.0 : 3.0);
+    store(direction, i_clock_direction(ic, (uint32_t)integer_of[19]));
     directions_pending |= 1u << ic;
     for (uint32_t number = direction - 7u; number < direction + 43u; ++number) {
       const struct i_place place = i_table_place(number);
