@@ -34,6 +34,7 @@ inline std::string engine_name(const ::testing::TestParamInfo<Engine>& info) {
 class Controller : public ::testing::TestWithParam<Engine> {
  protected:
   void start(const MachineConfig& changes = {}) {
+    finish();
     MachineConfig config = changes;
     config.engine = GetParam();
     config.firmware = BRICK_FIRMWARE;
@@ -41,6 +42,13 @@ class Controller : public ::testing::TestWithParam<Engine> {
     bus_ = std::make_unique<HostBus>(*machine_);
     link_ = std::make_unique<HostLink>(*bus_);
     ASSERT_TRUE(link_->connect(ms_to_ticks(50))) << "no reply from the firmware";
+  }
+
+  // Ends the run; the flash file is written.
+  void finish() {
+    link_.reset();
+    bus_.reset();
+    machine_.reset();
   }
 
   Machine& machine() { return *machine_; }
