@@ -43,7 +43,7 @@ int run_command(const RunOptions& options, const std::string& name, bool negativ
       const bool up = simulation.link().connect(HostLink::kBootTime);
       report.step("controller answers", up, up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
       if (!up) return;
-      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report, config.seed, negative};
+      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report, config.board, config.seed, negative};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

@@ -45,6 +45,7 @@ struct BenchContext {
   HostBus& bus;
   HostLink& link;
   BenchReport& report;
+  const BoardConfig& board;
   std::uint64_t seed;
   bool negative;
 };
