@@ -28,7 +28,11 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
 
   bool phase() const { return s_.phase || in.phase_ext; }  // high while the pin is an input
   bool servo() const { return s_.servo || in.servo_ext; }
+  bool phase_clock() const { return s_.phase; }  // own or external
+  bool servo_clock() const { return s_.servo; }
   int cnt() const { return s_.up ? s_.ramp : ~s_.ramp; }
+  bool up() const { return s_.up; }  // changes with each turnaround
+  Tick next_special_edge() const;    // first edge that is not just one more step of the triangle
 
   Tick next_event() const override;  // next change of an output that is driven
   void advance(Tick t) override;
@@ -46,7 +50,6 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   };
 
   Tick next_turn() const { return now_ + 1 + (s_.top - s_.ramp); }
-  Tick next_special_edge() const;  // first edge that is not just one more step of the ramp
   Tick turn_after(unsigned turns) const;
   void skip(Tick edges);
   void step();

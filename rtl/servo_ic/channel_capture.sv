@@ -1,0 +1,87 @@
+// Position capture: one shot, triggered by the rising edge of the condition that I7mn2, I7mn3 and I7mn4 select; reading X:+3
+// arms it again. A capture at the edge of that read wins. Clock clk_ref_i, asynchronous reset.
+`default_nettype none
+
+module channel_capture (
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic        ce_i,            // SCLK
+  input  wire logic        ready_i,
+  input  wire logic        index_i,
+  input  wire logic [3:0]  flags_i,         // HMFL, PLIM, MLIM, USER from bit 0 up
+  input  wire logic [2:0]  hall_i,          // W, V, U from bit 0 up
+  input  wire logic [1:0]  source_i,        // I7mn2 bits 1..0
+  input  wire logic        index_inv_i,     // I7mn2 bit 2, software trigger
+  input  wire logic        flag_inv_i,      // I7mn2 bit 3
+  input  wire logic [1:0]  flag_select_i,   // I7mn3
+  input  wire logic        gated_i,         // I7mn4
+  input  wire logic [23:0] counter_d_i,     // position after this edge
+  input  wire logic [11:0] fraction_d_i,
+  input  wire logic        read_i,          // this edge ends a read of X:+3
+  output logic [23:0]      position_o,
+  output logic [11:0]      fraction_o,
+  output logic             captured_o,
+  output logic             captured_gi_o,
+  output logic [2:0]       hall_o
+);
+
+  logic index, flag, hall_mode, term, term_q, trigger;
+  logic [2:0] hall_last_q;
+  assign index     = index_i ^ index_inv_i;
+  assign flag      = flags_i[flag_select_i] ^ flag_inv_i;
+  assign hall_mode = gated_i & ~source_i[0];
+
+  always_comb begin
+    case (source_i)
+      2'd0:    term = index_inv_i;
+      2'd1:    term = index;
+      2'd2:    term = flag;
+      default: term = index & flag;
+    endcase
+  end
+
+  logic armed_q, captured_q, captured_gi_q;
+  logic [23:0] position_q;
+  logic [11:0] fraction_q;
+  logic [2:0]  hall_q;
+  assign trigger = ce_i & ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      term_q        <= 1'b0;
+      hall_last_q   <= 3'd0;
+      armed_q       <= 1'b1;
+      captured_q    <= 1'b0;
+      captured_gi_q <= 1'b0;
+      position_q    <= 24'd0;
+      fraction_q    <= 12'd0;
+      hall_q        <= 3'd0;
+    end else begin
+      if (ce_i) begin
+        term_q      <= term;
+        hall_last_q <= hall_i;
+      end
+      if (trigger) begin
+        armed_q       <= 1'b0;
+        captured_q    <= 1'b1;
+        captured_gi_q <= gated_i & source_i[0];
+        position_q    <= counter_d_i;
+        fraction_q    <= fraction_d_i;
+        if (hall_mode) hall_q <= hall_i;
+      end else if (read_i) begin
+        armed_q       <= 1'b1;
+        captured_q    <= 1'b0;
+        captured_gi_q <= 1'b0;
+      end
+    end
+  end
+
+  assign position_o    = position_q;
+  assign fraction_o    = fraction_q;
+  assign captured_o    = captured_q;
+  assign captured_gi_o = captured_gi_q;
+  assign hall_o        = hall_q;
+
+endmodule : channel_capture
+
+`default_nettype wire

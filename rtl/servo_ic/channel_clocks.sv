@@ -1,0 +1,85 @@
+// What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref sees
+// them, and the strobe words with their serial clocks. Clock clk_ref_i; on clk_pwm_i run the edges' way to clk_ref_i and the shape
+// of a 39.3216 MHz serial clock.
+`default_nettype none
+
+module channel_clocks (
+  input  wire logic        clk_pwm_i,
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic [11:0] dividers_i,    // I7m03
+  input  wire logic [23:0] dac_strobe_i,  // I7m05
+  input  wire logic [23:0] adc_strobe_i,  // I7m06
+  input  wire logic        phase_rise_i,  // this clk_pwm edge raises, lowers PHASE, lowers SERVO
+  input  wire logic        phase_fall_i,
+  input  wire logic        servo_fall_i,
+  output logic             sclk_ce_o,
+  output logic             pfm_ce_o,
+  output logic             phase_fall_o,
+  output logic             servo_fall_o,
+  output logic             dac_load_o,
+  output logic             dac_shift_o,
+  output logic             adc_sample_o,
+  output logic [4:0]       adc_bit_o,
+  output logic             dac_clk_o,
+  output logic             dac_strobe_o,
+  output logic             adc_clk_o,
+  output logic             adc_strobe_o
+);
+
+  // An edge of PHASE or SERVO turns a flip-flop over; the next edge of clk_ref sees the difference.
+  logic [2:0] edge_pwm_q, edge_ref_q;
+  logic       phase_rise;
+  assign {servo_fall_o, phase_fall_o, phase_rise} = edge_pwm_q ^ edge_ref_q;
+
+  // Low for the first of the three clk_pwm periods in a clk_ref period: the two flip-flops differ for that long.
+  logic toggle_q, toggle_pwm_q, low;
+  assign low = toggle_q ^ toggle_pwm_q;
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      edge_ref_q <= 3'd0;
+      toggle_q   <= 1'b0;
+    end else begin
+      edge_ref_q <= edge_pwm_q;
+      toggle_q   <= ~toggle_q;
+    end
+  end
+
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      edge_pwm_q   <= 3'd0;
+      toggle_pwm_q <= 1'b0;
+    end else begin
+      edge_pwm_q   <= edge_pwm_q ^ {servo_fall_i, phase_fall_i, phase_rise_i};
+      toggle_pwm_q <= toggle_q;
+    end
+  end
+
+  logic sclk_mid, sclk_fast, pfm_mid, pfm_fast, unused;
+  logic dac_ce, dac_mid, dac_fast, adc_ce, adc_mid, adc_fast;
+  assign unused = &{1'b0, sclk_mid, sclk_fast, pfm_mid, pfm_fast};
+
+  channel_divider u_sclk (.clk_ref_i, .rst_ni, .n_i(dividers_i[2:0]), .ce_o(sclk_ce_o), .mid_o(sclk_mid), .fast_o(sclk_fast));
+  channel_divider u_pfm (.clk_ref_i, .rst_ni, .n_i(dividers_i[5:3]), .ce_o(pfm_ce_o), .mid_o(pfm_mid), .fast_o(pfm_fast));
+  channel_divider u_dac (.clk_ref_i, .rst_ni, .n_i(dividers_i[8:6]), .ce_o(dac_ce), .mid_o(dac_mid), .fast_o(dac_fast));
+  channel_divider u_adc (.clk_ref_i, .rst_ni, .n_i(dividers_i[11:9]), .ce_o(adc_ce), .mid_o(adc_mid), .fast_o(adc_fast));
+
+  logic       dac_sample, adc_load, adc_shift, unused_stream;
+  logic [4:0] dac_bit;
+  assign unused_stream = &{1'b0, dac_sample, dac_bit, adc_load, adc_shift};
+
+  channel_strobe u_dac_stream (
+    .clk_ref_i, .rst_ni, .start_i(phase_rise), .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .low_i(low),
+    .word_i(dac_strobe_i), .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
+    .clk_o(dac_clk_o), .strobe_o(dac_strobe_o)
+  );
+  channel_strobe u_adc_stream (
+    .clk_ref_i, .rst_ni, .start_i(phase_rise), .ce_i(adc_ce), .mid_i(adc_mid), .fast_i(adc_fast), .low_i(low),
+    .word_i(adc_strobe_i), .load_o(adc_load), .shift_o(adc_shift), .sample_o(adc_sample_o), .bit_o(adc_bit_o),
+    .clk_o(adc_clk_o), .strobe_o(adc_strobe_o)
+  );
+
+endmodule : channel_clocks
+
+`default_nettype wire

@@ -1,0 +1,108 @@
+// Encoder decoder: compares A, B, C with their levels one SCLK before and says whether the counter moves. All modes of I7mn0.
+// Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Decode.
+`default_nettype none
+
+module channel_decode #(
+  parameter bit ALeadsUp = 1'b1  // A before B counts up in the clockwise modes
+) (
+  input  wire logic       clk_ref_i,
+  input  wire logic       rst_ni,
+  input  wire logic       ce_i,          // SCLK
+  input  wire logic       ready_i,
+  input  wire logic [3:0] mode_i,        // I7mn0
+  input  wire logic       hold_i,        // counter reset: nothing counts
+  input  wire logic [2:0] abc_i,         // bit 0 A, 1 B, 2 C, filtered
+  input  wire logic       pulse_i,       // PFM pulse since the last SCLK, and its sign
+  input  wire logic       pulse_down_i,
+  output logic            count_o,       // this edge counts
+  output logic            down_o,
+  output logic            error_o,       // this edge sees an illegal transition
+  output logic            mark_o,        // MLDT: excitation, echo
+  output logic            echo_o
+);
+
+  logic [2:0] last_q;
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni)   last_q <= 3'd0;
+    else if (ce_i) last_q <= abc_i;
+  end
+
+  // Position in the quadrature cycle 00, 10, 11, 01 of {A, B}.
+  logic [1:0] step;
+  logic       a_rises;
+  assign step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
+  assign a_rises = abc_i[0] & ~last_q[0];
+
+  // Position in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}; 7 is no position.
+  logic [2:0] hall, last_hall;
+  logic       hall_up, hall_down, hall_jump;
+  always_comb begin
+    case (abc_i)  // {C, B, A}
+      3'b100:  hall = 3'd0;
+      3'b110:  hall = 3'd1;
+      3'b010:  hall = 3'd2;
+      3'b011:  hall = 3'd3;
+      3'b001:  hall = 3'd4;
+      3'b101:  hall = 3'd5;
+      default: hall = 3'd7;
+    endcase
+    case (last_q)
+      3'b100:  last_hall = 3'd0;
+      3'b110:  last_hall = 3'd1;
+      3'b010:  last_hall = 3'd2;
+      3'b011:  last_hall = 3'd3;
+      3'b001:  last_hall = 3'd4;
+      3'b101:  last_hall = 3'd5;
+      default: last_hall = 3'd7;
+    endcase
+  end
+  assign hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
+  assign hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
+  assign hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;
+
+  logic count, down, error;
+  always_comb begin
+    count = 1'b0;
+    down  = (step == 2'd3) ^ mode_i[2] ^ ~ALeadsUp;
+    error = 1'b0;
+    case (mode_i)
+      4'd0, 4'd4: begin
+        count = a_rises;
+        down  = ~abc_i[1] ^ mode_i[2];
+      end
+      4'd1, 4'd5: begin
+        count = step[0] & ~abc_i[1] & ~last_q[1];
+        error = step == 2'd2;
+      end
+      4'd2, 4'd6: begin
+        count = step[0] & (abc_i[0] ^ last_q[0]);
+        error = step == 2'd2;
+      end
+      4'd3, 4'd7: begin
+        count = step[0];
+        error = step == 2'd2;
+      end
+      4'd8: begin
+        count = pulse_i;
+        down  = pulse_down_i;
+      end
+      4'd11, 4'd15: begin
+        count = hall_up | hall_down;
+        down  = hall_down ^ mode_i[2];
+        error = hall == 3'd7 || hall_jump;
+      end
+      default: count = 1'b0;
+    endcase
+  end
+
+  logic act;
+  assign act     = ce_i & ready_i;
+  assign count_o = act & count & ~hold_i;
+  assign down_o  = down;
+  assign error_o = act & error;
+  assign mark_o  = act & (mode_i == 4'd12) & pulse_i;
+  assign echo_o  = act & (mode_i == 4'd12) & a_rises;
+
+endmodule : channel_decode
+
+`default_nettype wire

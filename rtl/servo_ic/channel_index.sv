@@ -1,0 +1,49 @@
+// Index conditioning: gating by A and B, and de-multiplexing of a C line that carries C, U, V, W by AB state (11, 10, 00, 01).
+// Also the encoder-loss detector: T and U, V and W are complements. Clock clk_ref_i, asynchronous reset.
+`default_nettype none
+
+module channel_index (
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic        ce_i,         // SCLK
+  input  wire logic        ready_i,
+  input  wire logic [11:0] level_i,      // filtered inputs, order of status bits 23..12
+  input  wire logic        gated_i,      // I7mn4
+  input  wire logic        gate_low_i,   // I7mn5 bit 0
+  input  wire logic        demux_i,      // I7mn5 bit 1
+  output logic [11:0]      level_o,      // with C, U, V, W replaced while de-multiplexing
+  output logic             index_o,
+  output logic             incomplete_o, // not all four AB states seen since reset
+  output logic             loss_o        // this edge sees an encoder loss
+);
+
+  logic       a, b, c;
+  logic [3:0] seen_q, part_q, state;  // per AB state, and C in that state: bit 0 W (01), 1 V (00), 2 U (10), 3 C (11)
+  assign a     = level_i[0];
+  assign b     = level_i[1];
+  assign c     = demux_i ? part_q[3] : level_i[2];
+  assign state = {a & b, a & ~b, ~a & ~b, ~a & b};
+
+  logic equal, equal_q;
+  assign equal  = (level_i[11] == level_i[10]) | (level_i[9] == level_i[8]);
+  assign loss_o = ce_i & ready_i & equal & equal_q;
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      seen_q  <= 4'd0;
+      part_q  <= 4'd0;
+      equal_q <= 1'b0;
+    end else if (ce_i && ready_i) begin
+      seen_q  <= seen_q | state;
+      part_q  <= (part_q & ~state) | (state & {4{level_i[2]}});
+      equal_q <= equal;
+    end
+  end
+
+  assign level_o      = {level_i[11], demux_i ? part_q[2:0] : level_i[10:8], level_i[7:3], c, level_i[1:0]};
+  assign index_o      = gated_i ? c & (gate_low_i ? ~a & ~b : a & b) : c;
+  assign incomplete_o = seen_q != 4'hF;
+
+endmodule : channel_index
+
+`default_nettype wire

@@ -1,0 +1,58 @@
+// Common part of a serial DAC or ADC stream: 24 bits of a strobe word, bit 23 first, from the first bit clock not before the
+// rising edge of PHASE. Bits change with the falling edge of the serial clock; after bit 0 the clock stops low and the strobe
+// keeps its last level. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Serial DAC and ADC.
+`default_nettype none
+
+module channel_strobe (
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic        start_i,   // PHASE rises
+  input  wire logic        ce_i,      // bit clock: start and middle of a bit
+  input  wire logic        mid_i,
+  input  wire logic        fast_i,    // a bit is one clk_ref long
+  input  wire logic        low_i,     // low part of a clock of that speed
+  input  wire logic [23:0] word_i,
+  output logic             load_o,    // this edge starts bit 23, the next bit
+  output logic             shift_o,
+  output logic             sample_o,  // this edge takes the received bit number bit_o (0 is the first)
+  output logic [4:0]       bit_o,
+  output logic             clk_o,
+  output logic             strobe_o
+);
+
+  logic        pending_q, clk_q;
+  logic [4:0]  left_q;  // bits to go, the present one included
+  logic [23:0] word_q;
+  logic        busy;
+
+  assign busy     = left_q != 5'd0;
+  assign load_o   = ce_i & (pending_q | start_i);
+  assign shift_o  = ce_i & busy & ~load_o;
+  assign sample_o = busy & (fast_i ? ce_i : mid_i);
+  assign bit_o    = 5'd24 - left_q;
+  assign clk_o    = busy & (fast_i ? ~low_i : clk_q);
+  assign strobe_o = word_q[23];
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      pending_q <= 1'b0;
+      clk_q     <= 1'b0;
+      left_q    <= 5'd0;
+      word_q    <= 24'd0;
+    end else begin
+      pending_q <= (pending_q | start_i) & ~ce_i;
+      if (ce_i)       clk_q <= 1'b0;
+      else if (mid_i) clk_q <= 1'b1;
+      if (load_o) begin
+        left_q <= 5'd24;
+        word_q <= word_i;
+      end else if (shift_o) begin
+        left_q <= left_q - 5'd1;
+        word_q <= {word_q[22:0], word_q[0]};
+      end
+    end
+  end
+
+endmodule : channel_strobe
+
+`default_nettype wire

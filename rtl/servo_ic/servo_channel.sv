@@ -1,0 +1,167 @@
+// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only the pin
+// synchronisers and the PWM run on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
+`default_nettype none
+
+module servo_channel (
+  input  wire logic        clk_pwm_i,
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  // bus
+  input  wire logic        x_i,
+  input  wire logic [2:0]  addr_i,
+  input  wire logic        we_i,
+  input  wire logic [23:0] wdata_i,
+  input  wire logic        read_capture_i,  // this edge ends a read of X:+3
+  output logic [23:0]      rdata_o,
+  // from the IC
+  input  wire logic        trip_i,          // the watchdog has tripped
+  input  wire logic [16:0] cnt_i,
+  input  wire logic        turn_i,
+  input  wire logic [7:0]  deadtime_i,      // I7m04
+  input  wire logic        sclk_ce_i,
+  input  wire logic        pfm_ce_i,
+  input  wire logic        phase_fall_i,
+  input  wire logic        servo_fall_i,
+  input  wire logic        dac_load_i,
+  input  wire logic        dac_shift_i,
+  input  wire logic        adc_sample_i,
+  input  wire logic [4:0]  adc_bit_i,
+  // position of this channel, and of channel 1, for the compare; {fraction, counter, hold, down, count}
+  output logic [38:0]      position_o,
+  input  wire logic [38:0] position1_i,
+  // pins
+  input  wire logic [11:0] pins_i,          // T, U, V, W, USER, MLIM, PLIM, HMFL, FAULT, C, B, A from bit 11 down
+  input  wire logic        adc_a_i,
+  input  wire logic        adc_b_i,
+  output logic [5:0]       pwm_o,           // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
+  output logic             pulse_o,
+  output logic             dir_o,
+  output logic             dac_a_o,
+  output logic             dac_b_o,
+  output logic             aena_o,
+  output logic             equ_o
+);
+
+  logic [23:0] control, out_a, out_b, out_c;
+  logic        hold, fine, demux, gated, ab_dac, c_pfm;
+  assign hold   = control[10];
+  assign gated  = control[15];
+  assign demux  = control[17];
+  assign fine   = control[18];
+  assign ab_dac = control[22];
+  assign c_pfm  = control[23];
+
+  // Inputs
+  logic [11:0] pin_level, level;
+  logic        ready, index, incomplete, loss;
+  channel_input u_input (.clk_pwm_i, .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
+  channel_index u_index (
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .level_i(pin_level), .gated_i(gated), .gate_low_i(control[16]),
+    .demux_i(demux), .level_o(level), .index_o(index), .incomplete_o(incomplete), .loss_o(loss)
+  );
+
+  // Position
+  logic        count, down, error, mark, echo, last_down, pfm_event, pfm_down;
+  logic [23:0] counter, counter_d, phase_pos, servo_pos, servo_t1;
+  logic [22:0] t1, servo_t2;
+  logic [11:0] fraction, fraction_d, servo_fraction_q;
+  channel_decode u_decode (
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .mode_i(control[3:0]), .hold_i(hold), .abc_i(pin_level[2:0]),
+    .pulse_i(pfm_event), .pulse_down_i(pfm_down), .count_o(count), .down_o(down), .error_o(error), .mark_o(mark), .echo_o(echo)
+  );
+  channel_counter u_counter (
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .hold_i(hold), .count_i(count), .down_i(down), .mark_i(mark), .echo_i(echo),
+    .phase_fall_i, .servo_fall_i, .counter_o(counter), .counter_d_o(counter_d), .down_o(last_down), .t1_o(t1),
+    .phase_pos_o(phase_pos), .servo_pos_o(servo_pos), .servo_t1_o(servo_t1), .servo_t2_o(servo_t2)
+  );
+  channel_subcount u_subcount (
+    .clk_ref_i, .rst_ni, .enable_i(fine), .ce_i(sclk_ce_i), .count_i(count), .echo_i(echo), .reversed_i(down ^ last_down),
+    .down_i(last_down), .down_new_i(down), .t1_i(t1), .fraction_o(fraction), .fraction_d_o(fraction_d)
+  );
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni)           servo_fraction_q <= 12'd0;
+    else if (servo_fall_i) servo_fraction_q <= fraction;
+  end
+  assign position_o = {fine ? fraction : 12'd0, counter, hold, down, count};
+
+  // Capture
+  logic        captured, captured_gi;
+  logic [2:0]  hall;
+  logic [23:0] capture_pos;
+  logic [11:0] capture_fraction;
+  channel_capture u_capture (
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .index_i(index), .flags_i(level[7:4]), .hall_i(level[10:8]),
+    .source_i(control[5:4]), .index_inv_i(control[6]), .flag_inv_i(control[7]), .flag_select_i(control[9:8]), .gated_i(gated),
+    .counter_d_i(counter_d), .fraction_d_i(fraction_d), .read_i(read_capture_i), .position_o(capture_pos),
+    .fraction_o(capture_fraction), .captured_o(captured), .captured_gi_o(captured_gi), .hall_o(hall)
+  );
+
+  // Compare
+  logic [38:0] source;
+  logic [23:0] compare_a, compare_b, compare_inc;
+  logic [11:0] a_fraction, b_fraction;
+  logic [4:0]  compare_we;
+  logic        equ, equ_we;
+  assign source = control[13] ? position1_i : position_o;
+  channel_compare u_compare (
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .fine_i(fine), .other_i(control[13]), .count_i(source[0]), .down_i(source[1]),
+    .hold_i(source[2]), .counter_i(source[26:3]), .fraction_i(source[38:27]), .we_i(compare_we), .wdata_i, .equ_we_i(equ_we),
+    .equ_i(wdata_i[12]), .a_o(compare_a), .b_o(compare_b), .inc_o(compare_inc), .a_fraction_o(a_fraction),
+    .b_fraction_o(b_fraction), .equ_o(equ)
+  );
+  assign equ_o = equ & ~trip_i;
+
+  // Outputs
+  logic [5:0] pwm, pwm_on, pwm_inv;
+  channel_pwm u_pwm_a (.clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_i(out_a[23:8]), .top_o(pwm[0]), .bot_o(pwm[1]));
+  channel_pwm u_pwm_b (.clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_i(out_b[23:8]), .top_o(pwm[2]), .bot_o(pwm[3]));
+  channel_pwm u_pwm_c (.clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_i(out_c[23:8]), .top_o(pwm[4]), .bot_o(pwm[5]));
+  // A pair that is not a PWM output rests low; a trip turns both switches off, whatever their polarity.
+  assign pwm_on  = {{2{~c_pfm}}, {4{~ab_dac}}};
+  assign pwm_inv = {{2{control[21]}}, {4{control[20]}}};
+  assign pwm_o   = ((pwm & {6{~trip_i}}) ^ pwm_inv) & pwm_on;
+
+  logic pulse;
+  channel_pfm u_pfm (
+    .clk_ref_i, .rst_ni, .run_i(c_pfm & ~trip_i), .pfm_ce_i, .sclk_ce_i, .command_i(out_c), .width_i(deadtime_i), .pulse_o(pulse),
+    .down_o(pfm_down), .event_o(pfm_event)
+  );
+  assign pulse_o = c_pfm & (pulse ^ control[21]);
+  assign dir_o   = c_pfm & (pfm_down ^ control[19]);
+
+  logic dac_a, dac_b;
+  channel_dac u_dac_a (
+    .clk_ref_i, .rst_ni, .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_a[23:6] & {18{~trip_i}}), .data_o(dac_a)
+  );
+  channel_dac u_dac_b (
+    .clk_ref_i, .rst_ni, .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_b[23:6] & {18{~trip_i}}), .data_o(dac_b)
+  );
+  assign dac_a_o = ab_dac & (dac_a ^ control[20]);
+  assign dac_b_o = ab_dac & (dac_b ^ control[20]);
+  assign aena_o  = control[14] & ~trip_i;
+
+  // ADC
+  logic [17:0] adc_a, adc_b;
+  channel_adc u_adc_a (
+    .clk_ref_i, .rst_ni, .sample_i(adc_sample_i), .bit_i(adc_bit_i), .phase_fall_i, .data_i(adc_a_i), .value_o(adc_a)
+  );
+  channel_adc u_adc_b (
+    .clk_ref_i, .rst_ni, .sample_i(adc_sample_i), .bit_i(adc_bit_i), .phase_fall_i, .data_i(adc_b_i), .value_o(adc_b)
+  );
+
+  channel_regs u_regs (
+    .clk_ref_i, .rst_ni, .x_i, .addr_i, .we_i, .wdata_i, .rdata_o, .trip_i,
+    .control_o(control), .out_a_o(out_a), .out_b_o(out_b), .out_c_o(out_c), .compare_we_o(compare_we), .equ_we_o(equ_we),
+    .level_i(level), .error_i(error), .loss_i(loss), .equ_i(equ_o), .incomplete_i(incomplete), .captured_i(captured),
+    .captured_gi_i(captured_gi), .hall_i(hall), .phase_pos_i(phase_pos), .servo_pos_i(servo_pos), .servo_t1_i(servo_t1),
+    .servo_t2_i(servo_t2), .servo_fraction_i(servo_fraction_q), .capture_pos_i(capture_pos),
+    .capture_fraction_i(capture_fraction), .adc_a_i(adc_a), .adc_b_i(adc_b), .compare_a_i(compare_a), .compare_b_i(compare_b),
+    .compare_inc_i(compare_inc), .a_fraction_i(a_fraction), .b_fraction_i(b_fraction)
+  );
+
+  logic unused;
+  assign unused = &{1'b0, control[12:11], out_a[5:0], out_b[5:0]};
+
+endmodule : servo_channel
+
+`default_nettype wire

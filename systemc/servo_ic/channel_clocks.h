@@ -1,0 +1,101 @@
+// Model of rtl/servo_ic/channel_divider.sv, channel_strobe.sv and channel_clocks.sv: what the four channels share. Dividers are
+// closed form; a serial stream is executed bit by bit while it runs and costs nothing afterwards. docs/servo_channel.md.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "systemc/core/model_block.h"
+
+namespace brick {
+
+// clk_ref / 2^n, free running; a new n is taken at the terminal count.
+class ChannelDivider {
+ public:
+  void reset(Tick t) { *this = {next_ref_edge(t), t, 0}; }
+
+  Tick next() const { return next_; }  // edge that starts the next period
+  Tick mid() const { return start_ + (kTicksPerRef << n_) / 2; }
+  bool fast() const { return n_ == 0; }  // the present period is one clk_ref long, without a middle
+
+  // The edge of the k-th start from here.
+  Tick after(std::int64_t k, unsigned n) const { return next_ + (k - 1) * (kTicksPerRef << n); }
+
+  // Executes the edges up to t and returns how many of them started a period.
+  std::int64_t take(Tick t, unsigned n) {
+    if (t < next_) return 0;
+    const Tick period = kTicksPerRef << n;
+    const std::int64_t k = (t - next_) / period + 1;
+    start_ = after(k, n);
+    next_ = start_ + period;
+    n_ = n;
+    return k;
+  }
+
+  ChannelDivider() = default;
+
+ private:
+  ChannelDivider(Tick next, Tick start, unsigned n) : next_(next), start_(start), n_(n) {}
+  Tick next_ = kTicksPerRef, start_ = 0;
+  unsigned n_ = 0;
+};
+
+// Common part of a serial stream: 24 bits of a strobe word from the first bit clock not before the rising edge of PHASE.
+class ChannelStrobe {
+ public:
+  void reset(Tick t) {
+    divider_.reset(t);
+    now_ = t;
+    pending_ = false;
+    left_ = 0;
+    word_ = 0;
+  }
+
+  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of the bit)
+  // are called in the order of their edges.
+  template <class Load, class Sample>
+  void advance(Tick t, bool rise, unsigned n, std::uint32_t word, Load load, Sample sample) {
+    for (;;) {
+      const Tick ce = divider_.next();
+      if (left_ != 0 && !divider_.fast() && now_ < divider_.mid() && divider_.mid() <= t) sample(24 - left_);
+      if (ce > t) break;
+      if (left_ == 0 && !pending_ && !(rise && ce == t)) {
+        divider_.take(rise ? t - 1 : t, n);  // nothing to send
+        now_ = std::max(now_, ce);
+        continue;
+      }
+      if (divider_.fast() && left_ != 0) sample(24 - left_);
+      if (pending_ || (rise && ce == t)) {
+        pending_ = rise = false;
+        left_ = 24;
+        word_ = word;
+        load();
+      } else {
+        --left_;
+      }
+      divider_.take(ce, n);
+      now_ = ce;
+    }
+    pending_ |= rise;
+    now_ = t;
+  }
+
+  unsigned left() const { return left_; }  // bits to go, the present one included
+  bool strobe() const { return word_ >> (left_ != 0 ? left_ - 1 : 0) & 1; }
+  bool clk(Tick now) const { return left_ != 0 && (divider_.fast() ? now % kTicksPerRef != 0 : now >= divider_.mid()); }
+
+  Tick next_event(Tick now) const {
+    if (left_ == 0) return pending_ ? divider_.next() : kNever;
+    if (divider_.fast()) return now + (now % kTicksPerRef == 1 ? 2 : 1);
+    return now < divider_.mid() ? divider_.mid() : divider_.next();
+  }
+
+ private:
+  ChannelDivider divider_;
+  Tick now_ = 0;
+  bool pending_ = false;
+  unsigned left_ = 0;
+  std::uint32_t word_ = 0;
+};
+
+}  // namespace brick

@@ -1,0 +1,65 @@
+// Model of rtl/servo_ic/channel_compare.sv: position compare with auto-increment, in counts or, with hardware 1/T, in 1/4096 count.
+#pragma once
+
+#include <cstdint>
+
+namespace brick {
+
+// Position of a channel as a compare sees it before an SCLK edge, and what that edge does to it.
+struct ChannelPosition {
+  std::uint32_t counter = 0;
+  unsigned fraction = 0;
+  bool hold = false;  // counter reset
+  bool count = false, down = false;
+};
+
+class ChannelCompare {
+ public:
+  std::uint32_t a() const { return a_; }
+  std::uint32_t b() const { return b_; }
+  std::uint32_t inc() const { return inc_; }
+  unsigned a_fraction() const { return af_; }
+  unsigned b_fraction() const { return bf_; }
+  bool equ() const { return equ_; }
+  void set_a(std::uint32_t v) { a_ = v; }
+  void set_b(std::uint32_t v) { b_ = v; }
+  void set_inc(std::uint32_t v) { inc_ = v; }
+  void set_a_fraction(std::uint32_t v) { af_ = v & 0xFFF; }
+  void set_b_fraction(std::uint32_t v) { bf_ = v & 0xFFF; }
+  void set_equ(bool v) { equ_ = v; }
+
+  // `other`: the position is that of channel 1.
+  void sclk(const ChannelPosition& p, bool fine, bool other) {
+    bool hit_a = false, hit_b = false, down = p.down;
+    const std::uint64_t pos = std::uint64_t{p.counter} << 12 | p.fraction;
+    if (!fine) {
+      hit_a = p.count && p.counter == a_;
+      hit_b = p.count && p.counter == b_;
+    } else if (known_ && !p.hold && other == other_) {
+      down = ((pos - last_) >> 35 & 1) != 0;
+      hit_a = passed(pos, std::uint64_t{a_} << 12 | af_, down);
+      hit_b = passed(pos, std::uint64_t{b_} << 12 | bf_, down);
+    }
+    const std::uint32_t step = down ? 0 - inc_ : inc_;
+    if (hit_b) a_ = (a_ + step) & 0xFFFFFF;
+    if (hit_a) b_ = (b_ + step) & 0xFFFFFF;
+    equ_ ^= hit_a != hit_b;
+    last_ = pos;
+    known_ = fine && !p.hold;
+    other_ = other;
+  }
+
+ private:
+  // Not beyond `at` at the last edge, and beyond it now.
+  bool passed(std::uint64_t pos, std::uint64_t at, bool down) const {
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << 36) - 1;
+    return down ? ((last_ - at) & kMask) < ((last_ - pos) & kMask) : ((at - last_) & kMask) < ((pos - last_) & kMask);
+  }
+
+  std::uint32_t a_ = 0, b_ = 0, inc_ = 0;
+  unsigned af_ = 0, bf_ = 0;
+  std::uint64_t last_ = 0;
+  bool equ_ = false, known_ = false, other_ = false;
+};
+
+}  // namespace brick

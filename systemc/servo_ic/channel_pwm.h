@@ -1,0 +1,70 @@
+// Model of rtl/servo_ic/channel_pwm.sv. Between two special edges of the clock chain the triangle is a straight line, so the edge
+// at which the comparison changes is computed, not searched for.
+#pragma once
+
+#include "systemc/core/model_block.h"
+
+namespace brick {
+
+// The triangle as the next edges see it: cnt, cnt + slope, ...
+struct TriangleLine {
+  int cnt = 0;
+  int slope = 1;
+};
+
+class ChannelPwm {
+ public:
+  void reset(Tick t) {
+    *this = ChannelPwm{};
+    on_at_ = t + 240;
+  }
+  void load(int command) { command_ = command; }
+
+  // Executes the edges now + 1 .. t along the line.
+  void run(Tick now, Tick t, TriangleLine line, unsigned deadtime) {
+    const Tick crossing = next_change(now, line);
+    if (crossing <= t) {
+      change(crossing, deadtime);
+      line.cnt += line.slope * static_cast<int>(crossing - now - 1);
+      const Tick second = crossing + distance(line);
+      if (second <= t) change(second, deadtime);
+    }
+    settle(t);
+  }
+
+  Tick next_event(Tick now, TriangleLine line) const {
+    const Tick crossing = next_change(now, line);
+    return on_at_ < crossing ? on_at_ : crossing;
+  }
+
+  bool top() const { return on_ && raw_; }
+  bool bot() const { return on_ && !raw_; }
+
+ private:
+  // Edges from that of line.cnt to the one that compares differently.
+  int distance(TriangleLine line) const {
+    const bool raw = command_ > line.cnt;
+    if (line.slope > 0) return raw ? command_ - line.cnt : kFar;
+    return raw ? kFar : line.cnt - command_ + 1;
+  }
+  Tick next_change(Tick now, TriangleLine line) const { return now + 1 + ((command_ > line.cnt) != raw_ ? 0 : distance(line)); }
+  void change(Tick edge, unsigned deadtime) {
+    settle(edge - 1);
+    raw_ = !raw_;
+    on_ = deadtime == 0;
+    on_at_ = on_ ? kNever : edge + 16 * static_cast<Tick>(deadtime);
+  }
+  void settle(Tick t) {
+    if (on_at_ > t) return;
+    on_ = true;
+    on_at_ = kNever;
+  }
+
+  static constexpr int kFar = 1 << 24;  // beyond the end of any line
+  int command_ = 0;
+  bool raw_ = false;
+  bool on_ = false;  // one of the two switches is on
+  Tick on_at_ = 240;
+};
+
+}  // namespace brick

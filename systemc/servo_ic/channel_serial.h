@@ -1,0 +1,31 @@
+// Model of rtl/servo_ic/channel_dac.sv and channel_adc.sv: serial data of one DAC, one ADC.
+#pragma once
+
+#include <cstdint>
+
+namespace brick {
+
+class ChannelDac {
+ public:
+  void load(std::uint32_t command) { word_ = command >> 6 & 0x3FFFF; }
+  // `left`: bits of the 24 to go, the present one included; six 0s follow the command.
+  bool data(unsigned left) const { return left >= 7 && (word_ >> (left - 7) & 1) != 0; }
+
+ private:
+  std::uint32_t word_ = 0;
+};
+
+class ChannelAdc {
+ public:
+  static constexpr unsigned kLatency = 4;  // bits before the value
+  void sample(unsigned bit, bool data) {
+    if (bit >= kLatency && bit < kLatency + 18) word_ = (word_ << 1 | (data ? 1u : 0u)) & 0x3FFFF;
+  }
+  void transfer() { value_ = word_; }
+  std::uint32_t value() const { return value_ << 6; }
+
+ private:
+  std::uint32_t word_ = 0, value_ = 0;
+};
+
+}  // namespace brick

@@ -1,0 +1,59 @@
+// Model of rtl/servo_ic/channel_subcount.sv: hardware 1/T. With a SCLK periods added, e is floor(4096 a / T1) exactly; only how
+// many periods have been added so far is followed edge by edge, until e is full.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "systemc/core/model_block.h"
+
+namespace brick {
+
+class ChannelSubcount {
+ public:
+  void reset(Tick t) {
+    *this = ChannelSubcount{};
+    now_ = t / kTicksPerRef * kTicksPerRef;
+  }
+
+  bool active() const { return valid_ && e() < 4095; }
+  unsigned e() const { return valid_ ? static_cast<unsigned>(std::min<std::int64_t>(4095, t1_ != 0 ? added_ * 4096 / t1_ : 0)) : 0; }
+
+  // Edges of clk_ref up to t at which SCLK does not act.
+  void advance(Tick t, bool enable) {
+    if (t <= now_) return;
+    if (!enable) valid_ = false;
+    for (; now_ < t && active() && (steps_ != 0 || lag_ != 0); now_ += kTicksPerRef) step(false);
+    now_ = std::max(now_, t);
+  }
+  // The SCLK edge t; a count or an MLDT echo leaves T1 as given.
+  void sclk(Tick t, bool enable, bool count, bool echo, bool reversed, std::uint32_t t1) {
+    if (count || echo || !enable) {
+      valid_ = count && enable && !reversed;
+      steps_ = 13;
+      lag_ = added_ = 0;
+      t1_ = t1;
+    } else if (active()) {
+      step(true);
+    }
+    now_ = t;
+  }
+
+ private:
+  void step(bool ce) {
+    std::int64_t add = 0;
+    if (steps_ != 0)
+      --steps_;
+    else
+      add = std::min<std::int64_t>(lag_, 2);
+    added_ += add;
+    lag_ += (ce ? 1 : 0) - add;
+  }
+
+  Tick now_ = 0;
+  bool valid_ = false;
+  unsigned steps_ = 0;
+  std::int64_t lag_ = 0, added_ = 0, t1_ = 0;
+};
+
+}  // namespace brick

@@ -1,0 +1,103 @@
+// Model of rtl/servo_ic/servo_channel.sv and channel_regs.sv: one channel of a servo IC. The owner (servo_channels.h) finds the
+// edges at which something happens and executes only those. docs/servo_channel.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "systemc/core/model_block.h"
+#include "systemc/servo_ic/channel_capture.h"
+#include "systemc/servo_ic/channel_compare.h"
+#include "systemc/servo_ic/channel_counter.h"
+#include "systemc/servo_ic/channel_decode.h"
+#include "systemc/servo_ic/channel_index.h"
+#include "systemc/servo_ic/channel_input.h"
+#include "systemc/servo_ic/channel_pfm.h"
+#include "systemc/servo_ic/channel_pwm.h"
+#include "systemc/servo_ic/channel_serial.h"
+#include "systemc/servo_ic/channel_subcount.h"
+
+namespace brick {
+
+class ServoChannel {
+ public:
+  void reset(Tick t);
+
+  // Registers, offset 0..7, after all edges up to `now` have been executed.
+  std::uint32_t read(Tick now, bool x, unsigned offset, bool trip) const;
+  void write(Tick now, bool x, unsigned offset, std::uint32_t value, bool trip);
+  void read_done(Tick now) { capture_.read(now); }  // of X:+3
+
+  void set_pins(Tick now, unsigned pins);  // bits as status bits 23..12
+
+  // Edges. `edge` is one of clk_ref throughout.
+  void latch_phase();
+  void latch_servo(Tick edge);
+  void sample_adc(unsigned bit, bool a, bool b);
+  void load_dac(bool trip);
+  void load_pwm();
+  void run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime);
+  bool advance_pfm(std::int64_t periods, bool trip, unsigned width) {  // true when a pulse begins with the last of them
+    if (!pfm_.advance(periods, pfm_inputs(trip, width))) return false;
+    settle_ = 0;
+    return true;
+  }
+  void stop_pfm() { pfm_.stop(); }
+  void hold_counter() {
+    counter_.clear();
+    error_ = false;
+  }
+
+  // SCLK. A settled channel changes nothing but T2.
+  bool settled() const { return settle_ >= kSettled; }
+  bool uses_channel1() const { return bit(13); }
+  void skip_sclk(std::int64_t periods) { counter_.skip(periods); }
+  ChannelPosition position() const { return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false}; }  // settled
+  ChannelPosition sclk(Tick edge, const ChannelPosition* channel1);  // returns its own position before the edge
+
+  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const { return {bit(23) && !trip, out_[2], width}; }
+  const ChannelPfm& pfm() const { return pfm_; }
+  bool hold() const { return bit(10); }
+  bool shows_pwm(unsigned output) const { return !bit(output == 2 ? 23 : 22); }
+  Tick next_pwm_event(Tick now, TriangleLine line) const;
+
+  // Pins
+  unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
+  bool pulse() const { return bit(23) && pfm_.pulse() != bit(21); }
+  bool dir() const { return bit(23) && pfm_.down() != bit(19); }
+  bool dac_a(unsigned left) const { return bit(22) && dac_[0].data(left) != bit(20); }
+  bool dac_b(unsigned left) const { return bit(22) && dac_[1].data(left) != bit(20); }
+  bool aena(bool trip) const { return bit(14) && !trip; }
+  bool equ(bool trip) const { return compare_.equ() && !trip; }
+
+ private:
+  // SCLK edges after the last outside influence until nothing moves any more: three of the filter, the memories behind it,
+  // and the latest user of those.
+  static constexpr unsigned kSettled = 12;
+
+  bool bit(unsigned n) const { return (control_ >> n & 1) != 0; }
+  bool fine() const { return bit(18); }
+  unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
+  std::uint32_t status(bool trip) const;
+
+  std::uint32_t control_ = 0;
+  Tick equ_write_until_ = 0;  // edge at which control bit 11 falls back
+  std::array<std::uint32_t, 3> out_{};
+  bool error_ = false, loss_ = false;
+  unsigned settle_ = 0;
+  unsigned servo_fraction_ = 0;
+
+  ChannelInput input_;
+  ChannelIndex index_;
+  ChannelDecode decode_;
+  ChannelCounter counter_;
+  ChannelSubcount subcount_;
+  ChannelCapture capture_;
+  ChannelCompare compare_;
+  std::array<ChannelPwm, 3> pwm_;
+  ChannelPfm pfm_;
+  std::array<ChannelDac, 2> dac_;
+  std::array<ChannelAdc, 2> adc_;
+};
+
+}  // namespace brick

@@ -1,0 +1,118 @@
+#include "systemc/servo_ic/servo_channels.h"
+
+#include <algorithm>
+
+namespace brick {
+
+void ServoChannels::reset(Tick t) {
+  now_ = t;
+  for (ServoChannel& channel : channel_) channel.reset(t);
+  sclk_.reset(t);
+  pfm_.reset(t);
+  dac_.reset(t);
+  adc_.reset(t);
+  phase_rises_ = phase_falls_ = servo_falls_ = in.phase_rises = in.phase_falls = in.servo_falls = false;
+}
+
+void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
+  channel_[offset >> 3].write(now_, x, offset & 7, value, in.trip);
+}
+
+void ServoChannels::advance(Tick t) {
+  if (t <= now_) return;
+  for (ServoChannel& channel : channel_) channel.run_pwm(now_, t, in.line, in.deadtime);
+  in.line.cnt += in.line.slope * static_cast<int>(t - now_);
+
+  // An edge of PHASE or SERVO acts at the next edge of clk_ref; all latches take what was there before it.
+  const Tick edge = next_ref_edge(now_);
+  if (edge <= t) {
+    const bool phase_rise = in.phase_rises != phase_rises_;
+    if (in.phase_falls != phase_falls_)
+      for (ServoChannel& channel : channel_) channel.latch_phase();
+    if (in.servo_falls != servo_falls_)
+      for (ServoChannel& channel : channel_) channel.latch_servo(edge);
+    phase_rises_ = in.phase_rises;
+    phase_falls_ = in.phase_falls;
+    servo_falls_ = in.servo_falls;
+    run_ref(edge, phase_rise);
+    if (edge != t) run_ref(t, false);
+  }
+  now_ = t;
+}
+
+// Edges of clk_ref up to t. PHASE rises at t or not at all.
+void ServoChannels::run_ref(Tick t, bool phase_rise) {
+  dac_.advance(
+      t, phase_rise, divider(kDac), in.dac_strobe,
+      [this] {
+        for (ServoChannel& channel : channel_) channel.load_dac(in.trip);
+      },
+      [](unsigned) {});
+  adc_.advance(
+      t, phase_rise, divider(kAdc), in.adc_strobe, [] {},
+      [this](unsigned bit) {
+        for (unsigned i = 0; i < kChannels; ++i) channel_[i].sample_adc(bit, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
+      });
+
+  for (ServoChannel& channel : channel_) {
+    if (channel.hold()) channel.hold_counter();
+    if (!channel.pfm_inputs(in.trip, in.deadtime).run) channel.stop_pfm();
+  }
+  for (;;) {
+    Tick stop = t;  // where a PFM pulse begins: the next SCLK may count it
+    for (const ServoChannel& channel : channel_) {
+      const std::int64_t periods = channel.pfm().periods_to_pulse(channel.pfm_inputs(in.trip, in.deadtime));
+      if (periods != kNever) stop = std::min(stop, pfm_.after(periods, divider(kPfm)));
+    }
+    run_sclk(stop);
+    const std::int64_t periods = pfm_.take(stop, divider(kPfm));
+    for (ServoChannel& channel : channel_) channel.advance_pfm(periods, in.trip, in.deadtime);
+    if (stop == t) break;
+  }
+}
+
+void ServoChannels::run_sclk(Tick t) {
+  while (sclk_.next() <= t) {
+    const bool source_moves = !channel_[0].settled();
+    const auto settled = [&](const ServoChannel& c) { return c.settled() && !(source_moves && c.uses_channel1()); };
+    const Tick edge = sclk_.next();
+    if (std::all_of(channel_.begin(), channel_.end(), settled)) {
+      const std::int64_t periods = sclk_.take(t, divider(kSclk));
+      for (ServoChannel& channel : channel_) channel.skip_sclk(periods);
+      return;
+    }
+    ChannelPosition channel1 = channel_[0].position();
+    for (unsigned i = 0; i < kChannels; ++i) {
+      if (settled(channel_[i]))
+        channel_[i].skip_sclk(1);
+      else if (i == 0)
+        channel1 = channel_[0].sclk(edge, nullptr);
+      else
+        channel_[i].sclk(edge, &channel1);
+    }
+    sclk_.take(edge, divider(kSclk));
+  }
+}
+
+Tick ServoChannels::next_event() const {
+  const Tick ref = next_ref_edge(now_);
+  Tick next = std::min(dac_.next_event(now_), adc_.next_event(now_));
+  if (phase_rises_ != in.phase_rises) next = std::min(next, ref);
+  for (const ServoChannel& channel : channel_) {
+    if (!channel.settled()) next = std::min(next, sclk_.next());
+    const ChannelPfm::Inputs pfm = channel.pfm_inputs(in.trip, in.deadtime);
+    const std::int64_t periods = channel.pfm().periods_to_change(pfm);
+    if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
+    if (!pfm.run && channel.pfm().pulse()) next = std::min(next, ref);
+    if (!in.trip) next = std::min(next, channel.next_pwm_event(now_, in.line));
+  }
+  return next;
+}
+
+std::uint32_t ServoChannels::pwm() const {
+  std::uint32_t pins = 0;
+  for (unsigned i = 0; i < kChannels; ++i) pins |= channel_[i].pwm(in.trip) << (6 * i);
+  return pins;
+}
+
+}  // namespace brick

@@ -1,0 +1,94 @@
+// Model of rtl/servo_ic/servo_channels.sv: the four channels of a servo IC with the clocks they share. Its owner advances it along
+// straight pieces of the triangle and calls turn() after the edge that leaves a turnaround. docs/servo_channel.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <systemc>
+
+#include "systemc/core/model_block.h"
+#include "systemc/servo_ic/channel_clocks.h"
+#include "systemc/servo_ic/servo_channel.h"
+
+namespace brick {
+
+class ServoChannels : public sc_core::sc_module, public ModelBlock {
+ public:
+  explicit ServoChannels(const sc_core::sc_module_name& name) : sc_module(name) {}
+  static constexpr unsigned kChannels = 4;
+
+  // Seen by the edges to come.
+  struct Inputs {
+    bool trip = false;
+    unsigned dividers = 2258;                                            // I7m03
+    std::uint32_t dac_strobe = 0x7FFFC0;                                 // I7m05
+    std::uint32_t adc_strobe = 0xFFFFFE;                                 // I7m06
+    unsigned deadtime = 15;                                              // I7m04
+    TriangleLine line;                                                   // the triangle from the next edge on
+    bool phase_rises = false, phase_falls = false, servo_falls = false;  // turned over by each such edge of the clock chain
+    std::uint8_t adc_a = 0, adc_b = 0;                                   // bit n-1: channel n
+  };
+  Inputs in;
+  void set_pins(unsigned channel, unsigned pins) { channel_[channel].set_pins(now_, pins); }  // channel 0..3
+
+  // Registers, offset 0..31, as they stand after the last executed edge, which also executes a write or ends a read.
+  std::uint32_t read(bool x, unsigned offset) const { return channel_[offset >> 3].read(now_, x, offset & 7, in.trip); }
+  void write(bool x, unsigned offset, std::uint32_t value);
+  void read_done(bool x, unsigned offset) {
+    if (x && (offset & 7) == 3) channel_[offset >> 3].read_done(now_);
+  }
+  void turn() {
+    for (ServoChannel& channel : channel_) channel.load_pwm();
+  }
+
+  // Pins: bit n-1, or six bits from 6(n-1), belong to channel n.
+  std::uint32_t pwm() const;
+  unsigned pulse() const {
+    return each([](const ServoChannel& c) { return c.pulse(); });
+  }
+  unsigned dir() const {
+    return each([](const ServoChannel& c) { return c.dir(); });
+  }
+  unsigned dac_a() const {
+    return each([this](const ServoChannel& c) { return c.dac_a(dac_.left()); });
+  }
+  unsigned dac_b() const {
+    return each([this](const ServoChannel& c) { return c.dac_b(dac_.left()); });
+  }
+  unsigned aena() const {
+    return each([this](const ServoChannel& c) { return c.aena(in.trip); });
+  }
+  unsigned equ() const {
+    return each([this](const ServoChannel& c) { return c.equ(in.trip); });
+  }
+  bool dac_clk() const { return dac_.clk(now_); }
+  bool dac_strobe() const { return dac_.strobe(); }
+  bool adc_clk() const { return adc_.clk(now_); }
+  bool adc_strobe() const { return adc_.strobe(); }
+
+  // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
+  Tick next_event() const override;
+  void advance(Tick t) override;  // not beyond the end of the line
+  void reset(Tick t) override;
+
+ private:
+  template <class Pin>
+  unsigned each(Pin pin) const {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < kChannels; ++i) bits |= static_cast<unsigned>(pin(channel_[i])) << i;
+    return bits;
+  }
+  unsigned divider(unsigned clock) const { return in.dividers >> (3 * clock) & 7; }
+  void run_ref(Tick t, bool phase_rise);
+  void run_sclk(Tick t);
+
+  enum { kSclk, kPfm, kDac, kAdc };
+  std::array<ServoChannel, kChannels> channel_;
+  ChannelDivider sclk_, pfm_;
+  ChannelStrobe dac_, adc_;
+  bool phase_rises_ = false, phase_falls_ = false, servo_falls_ = false;  // at the last edge of clk_ref
+  Tick now_ = 0;
+};
+
+}  // namespace brick

@@ -1,0 +1,303 @@
+// Output side of a channel: PWM, PFM, serial DAC and ADC with their strobes, amplifier enable, watchdog trip, registers.
+#include <map>
+
+#include "testbench/unit/servo_channel/channel_fixture.h"
+
+namespace brick {
+namespace {
+
+TEST_F(ChannelTest, PwmOnTimeFollowsTheCommand) {
+  rig_.write(true, 0x1C, 6527 << 8);  // no dead time: TOP is the raw comparison
+  const std::map<int, Tick> expected{{0, 13057}, {100, 13257}, {-100, 12857}, {6528, 26113}, {6529, 26114}, {-6529, 0}, {-6528, 1}};
+  std::vector<int> commands;
+  for (const auto& [command, high] : expected) commands.push_back(command);
+  for (unsigned i = 0; i < commands.size(); ++i)
+    rig_.write(false, base(i / 3 + 1) + 2 + i % 3, static_cast<std::uint32_t>(commands[i]) << 8 & 0xFFFFFF);
+  rig_.ticks(2 * 26114);
+  std::vector<Tick> high(commands.size()), low(commands.size());
+  for (Tick t = 0; t < 26114; ++t) {
+    rig_.tick();
+    for (unsigned i = 0; i < commands.size(); ++i) {
+      high[i] += rig_.pwm(i / 3 + 1, 2 * (i % 3));
+      low[i] += rig_.pwm(i / 3 + 1, 2 * (i % 3) + 1);
+    }
+  }
+  for (unsigned i = 0; i < commands.size(); ++i) {
+    EXPECT_EQ(high[i], expected.at(commands[i])) << "command " << commands[i];
+    EXPECT_EQ(low[i], 26114 - high[i]) << "command " << commands[i];
+  }
+}
+
+TEST_F(ChannelTest, DeadTimeHoldsBothSwitchesOff) {
+  rig_.write(true, 0x1C, 6527 << 8 | 15);
+  rig_.ticks(3 * 26114);
+  int gaps = 0;
+  Tick off = 0;
+  for (Tick t = 0; t < 2 * 26114; ++t) {
+    rig_.tick();
+    EXPECT_FALSE(rig_.pwm(1, 0) && rig_.pwm(1, 1));
+    if (!rig_.pwm(1, 0) && !rig_.pwm(1, 1)) {
+      ++off;
+    } else if (off != 0) {
+      if (gaps > 0 || off >= 240) { EXPECT_EQ(off, 240); }
+      ++gaps;
+      off = 0;
+    }
+  }
+  EXPECT_EQ(gaps, 4) << "two a period";
+}
+
+TEST_F(ChannelTest, PulseShorterThanTheDeadTimeIsSwallowed) {
+  rig_.write(true, 0x1C, 6527 << 8 | 15);
+  rig_.write(false, base(1) + 2, static_cast<std::uint32_t>(6527 - 100) << 8);  // low for 2 (6528 - 6427) - 1 = 201 < 240
+  rig_.ticks(3 * 26114);
+  for (Tick t = 0; t < 26114; ++t) {
+    rig_.tick();
+    ASSERT_FALSE(rig_.pwm(1, 1));
+  }
+}
+
+TEST_F(ChannelTest, InversionTurnsBothSwitchesRound) {
+  const ChannelPins before = rig_.pins();
+  control(1, 1 << 20);
+  EXPECT_EQ((rig_.pins().pwm ^ before.pwm) & 0xF, 0xFu);
+  control(1, 1 << 21);
+  EXPECT_EQ((rig_.pins().pwm ^ before.pwm) & 0x30, 0x30u);
+}
+
+TEST_F(ChannelTest, PwmCommandIsUsedFromTheTurnaroundOn) {
+  rig_.write(true, 0x1C, 6527 << 8);
+  rig_.ticks(3 * 13057);
+  while (rig_.pins().phase) rig_.tick();
+  while (!rig_.pins().phase) rig_.tick();  // a turnaround; the level of command 0 changes half way to the next, 6528 ticks on
+  const Tick turn = rig_.now();
+  const bool level = rig_.pwm(1, 0);
+  rig_.ticks(2000);
+  rig_.write(false, base(1) + 2, level ? 0x800000 : 0x7FFF00);  // used at once, it would turn the level round
+  while (rig_.now() < turn + 6500) {
+    rig_.tick();
+    ASSERT_EQ(rig_.pwm(1, 0), level);
+  }
+  while (rig_.now() < turn + 13057) rig_.tick();
+  for (Tick t = 0; t < 26114; ++t) {
+    rig_.tick();
+    ASSERT_EQ(rig_.pwm(1, 0), !level) << "from the turnaround on";
+  }
+}
+
+TEST_F(ChannelTest, PfmRateAndWidth) {
+  control(2, 2 << 22);
+  rig_.write(false, base(2) + 4, 0x010000);
+  auto rise = [&] {
+    while (rig_.other(kPulse, 2)) rig_.tick();
+    while (!rig_.other(kPulse, 2)) rig_.tick();
+    return rig_.now();
+  };
+  const Tick first = rise();
+  while (rig_.other(kPulse, 2)) rig_.tick();
+  EXPECT_EQ(rig_.now() - first, 15 * 12) << "I7m04 PFM_CLK wide";
+  EXPECT_EQ(rise() - first, 256 * 12) << "38.4 kHz";
+  EXPECT_FALSE(rig_.other(kDir, 2));
+  rig_.write(false, base(2) + 4, 0xFE0000);
+  rise();
+  const Tick down = rise();
+  EXPECT_TRUE(rig_.other(kDir, 2));
+  EXPECT_EQ(rise() - down, 128 * 12);
+  control(2, 2 << 22 | 1 << 19 | 1 << 21);
+  EXPECT_FALSE(rig_.other(kDir, 2)) << "direction inverted";
+  EXPECT_FALSE(rig_.other(kPulse, 2)) << "pulse inverted";
+}
+
+TEST_F(ChannelTest, PfmRateIsLimitedToAQuarterOfItsClock) {
+  rig_.write(true, 0x1C, kMaxCount << 8 | 1);
+  control(1, 2 << 22);
+  rig_.write(false, base(1) + 4, 0x7FFFFF);
+  rig_.ticks(100);
+  int pulses = 0;
+  bool last = rig_.other(kPulse, 1);
+  for (Tick t = 0; t < 100 * 4 * 12; ++t) {
+    rig_.tick();
+    pulses += rig_.other(kPulse, 1) && !last;
+    last = rig_.other(kPulse, 1);
+  }
+  EXPECT_EQ(pulses, 100);
+}
+
+class ChannelSerialTest : public ChannelTest {
+ protected:
+  static constexpr unsigned kDacClk = 1, kDacStrobe = 2, kAdcClk = 4, kAdcStrobe = 8;
+  void SetUp() override {
+    ChannelTest::SetUp();
+    rig_.write(true, 0x1C, 6527 << 8 | 15);
+    rig_.ticks(2 * 13057);
+  }
+  void wait_for_phase(bool level) {
+    while (rig_.pins().phase == level) rig_.tick();
+    while (rig_.pins().phase != level) rig_.tick();
+  }
+  // Levels of a pin at the 24 rising edges of a serial clock after PHASE rises.
+  template <class Level>
+  std::uint32_t receive(unsigned clock, Level level) {
+    wait_for_phase(true);
+    std::uint32_t word = 0;
+    edges_ = 0;
+    period_ = 0;
+    Tick last_edge = 0;
+    bool last = false;
+    for (Tick t = 0; t < 6000; ++t) {
+      rig_.tick();
+      const bool now = (rig_.pins().serial & clock) != 0;
+      if (now && !last) {
+        if (edges_ > 0) period_ = rig_.now() - last_edge;
+        last_edge = rig_.now();
+        word = word << 1 | (level() ? 1u : 0u);
+        ++edges_;
+      }
+      last = now;
+    }
+    return word;
+  }
+  int edges_ = 0;
+  Tick period_ = 0;
+};
+
+TEST_F(ChannelSerialTest, StrobeWordsAppearBitByBitAndKeepTheLast) {
+  rig_.write(true, 0x14, 0xF84DFE);
+  EXPECT_EQ(receive(kAdcClk, [&] { return (rig_.pins().serial & kAdcStrobe) != 0; }), 0xF84DFEu);
+  EXPECT_EQ(edges_, 24);
+  EXPECT_EQ(period_, 48);
+  EXPECT_EQ(rig_.pins().serial & kAdcStrobe, 0u);
+  EXPECT_EQ(receive(kDacClk, [&] { return (rig_.pins().serial & kDacStrobe) != 0; }), 0x7FFFC0u);
+  EXPECT_EQ(edges_, 24);
+  EXPECT_EQ(period_, 24);
+  rig_.write(true, 0x0C, 0x000001);
+  receive(kDacClk, [] { return false; });
+  EXPECT_NE(rig_.pins().serial & kDacStrobe, 0u) << "the last bit is held";
+}
+
+TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
+  for (unsigned n = 0; n < 6; ++n) {
+    rig_.write(true, 0x04, 0x300012 | n << 6 | (5 - n) << 9);
+    wait_for_phase(true);
+    wait_for_phase(true);
+    EXPECT_EQ(receive(kDacClk, [&] { return (rig_.pins().serial & kDacStrobe) != 0; }), 0x7FFFC0u) << "n " << n;
+    EXPECT_EQ(period_, 3 << n);
+    EXPECT_EQ(receive(kAdcClk, [&] { return (rig_.pins().serial & kAdcStrobe) != 0; }), 0xFFFFFEu) << "n " << n;
+    EXPECT_EQ(period_, 3 << (5 - n));
+  }
+}
+
+TEST_F(ChannelSerialTest, DacSendsEighteenBitsOfTheCommand) {
+  control(3, 1 << 22);
+  rig_.write(false, base(3) + 2, 0xA5C37F);
+  rig_.write(false, base(3) + 3, 0x5A3CBF);
+  EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), 0xA5C37Fu & 0xFFFFC0);
+  EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacB, 3); }), 0x5A3CBFu & 0xFFFFC0);
+  control(3, 1 << 22 | 1 << 20);
+  EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), ~(0xA5C37Fu & 0xFFFFC0) & 0xFFFFFF) << "inverted";
+  EXPECT_EQ(rig_.pins().pwm >> 12 & 0xF, 0u) << "no PWM on a DAC channel";
+  rig_.in.trip = true;
+  control(3, 1 << 22);
+  EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), 0u) << "0 after a watchdog trip";
+}
+
+TEST_F(ChannelSerialTest, AdcKeepsEighteenBitsAfterTheHeader) {
+  const std::uint32_t a = 0x2B5D3, b = 0x1A2C6;  // 18 bits each
+  for (unsigned ch = 1; ch <= 4; ++ch) {
+    wait_for_phase(true);
+    unsigned bit = 0;
+    bool last = false;
+    // The converter shifts on the falling edge, so the next bit stands ready when the clock rises.
+    while (rig_.pins().phase) {
+      const auto level = [&](std::uint32_t word) { return bit < 4 || bit > 21 ? bit % 2 : word >> (21 - bit) & 1; };
+      rig_.in.adc_a = level(a) << (ch - 1);
+      rig_.in.adc_b = level(b) << (ch - 1);
+      rig_.tick();
+      const bool now = (rig_.pins().serial & kAdcClk) != 0;
+      if (last && !now) ++bit;
+      last = now;
+    }
+    EXPECT_EQ(bit, 24u);
+    rig_.ref(2);
+    EXPECT_EQ(rig_.peek(false, base(ch) + 5), a << 6) << "channel " << ch;
+    EXPECT_EQ(rig_.peek(false, base(ch) + 6), b << 6) << "channel " << ch;
+  }
+}
+
+TEST_F(ChannelTest, TripTurnsEverythingOffAndOutputsIgnoreWrites) {
+  control(1, 1 << 14 | 1 << 12 | 1 << 11);
+  control(2, 2 << 22);
+  rig_.write(false, base(2) + 4, 0x400000);
+  rig_.write(false, base(1) + 2, 0x7FFF00);
+  rig_.ticks(1000);
+  EXPECT_TRUE(rig_.other(kAena, 1));
+  EXPECT_TRUE(equ(1));
+  EXPECT_TRUE(rig_.pwm(1, 0));
+  EXPECT_TRUE(rig_.other(kPulse, 2)) << "pulses wider than their distance";
+  rig_.in.trip = true;
+  rig_.ref(2);
+  EXPECT_EQ(rig_.pins().pwm, 0u);
+  EXPECT_EQ(rig_.pins().others & ~0xF0u, 0u) << "all but DIR, which rests";
+  rig_.write(false, base(1) + 2, 0x123456);
+  EXPECT_EQ(rig_.peek(false, base(1) + 2), 0x7FFF00u);
+  rig_.ticks(500);
+  EXPECT_EQ(rig_.pins().pwm, 0u);
+}
+
+TEST_F(ChannelTest, EveryBitOfEveryWordReadsAsTheMapSays) {
+  struct Word {
+    bool x;
+    unsigned offset;
+    std::uint32_t written;  // bits that keep what is written
+  };
+  const Word words[] = {{true, 5, 0xFFFFFF & ~0x40C00u},
+                        {true, 6, 0xFFFFFF},
+                        {true, 7, 0xFFFFFF},
+                        {false, 7, 0xFFFFFF},
+                        {false, 2, 0xFFFFFF},
+                        {false, 3, 0xFFFFFF},
+                        {false, 4, 0xFFFFFF},
+                        {true, 1, 0},
+                        {true, 2, 0},
+                        {true, 3, 0},
+                        {false, 0, 0},
+                        {false, 1, 0},
+                        {false, 5, 0},
+                        {false, 6, 0}};
+  for (unsigned ch = 1; ch <= 4; ++ch) {
+    for (const Word& w : words) {
+      for (unsigned bit = 0; bit < 24; ++bit) {
+        if (w.written != 0 && (w.written >> bit & 1) == 0) continue;  // bits with an action have tests of their own
+        const std::uint32_t before = rig_.peek(w.x, base(ch) + w.offset);
+        rig_.write(w.x, base(ch) + w.offset, 1u << bit);
+        rig_.ref(2);
+        const std::uint32_t after = rig_.peek(w.x, base(ch) + w.offset);
+        if (w.written != 0) {
+          EXPECT_EQ(after, 1u << bit) << (w.x ? "X" : "Y") << w.offset;
+        } else if (w.offset < 5 && !(w.offset == 1 && !w.x) && !(w.x && w.offset == 2)) {
+          EXPECT_EQ(after, before) << (w.x ? "X" : "Y") << w.offset;
+        } else {
+          EXPECT_FALSE(bit == 23 && (after >> 23 & 1) != 0) << (w.x ? "X" : "Y") << w.offset;
+        }
+      }
+      if (w.written != 0) rig_.write(w.x, base(ch) + w.offset, 0);
+    }
+  }
+}
+
+TEST(ChannelReset, WordsHaveTheValuesOfTheMap) {
+  ChannelsRig rig;
+  rig.reset();
+  for (unsigned ch = 1; ch <= 4; ++ch) {
+    for (unsigned offset = 0; offset < 8; ++offset) {
+      EXPECT_EQ(rig.peek(false, base(ch) + offset), 0u) << "Y" << offset;
+      if (offset == 4) continue;
+      EXPECT_EQ(rig.peek(true, base(ch) + offset), offset == 0 ? 8u : 0u) << "X" << offset;
+    }
+  }
+  EXPECT_EQ(rig.pins().pwm, 0u) << "all switches off";
+  EXPECT_EQ(rig.difference, "");
+}
+
+}  // namespace
+}  // namespace brick
