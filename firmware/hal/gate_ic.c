@@ -53,6 +53,7 @@ void gate_ic_find(void) {
 
 uint32_t gate_ic_found(void) { return found; }
 uint32_t gate_ic_macrogates(void) { return macrogates; }
+uint32_t gate_ic_configuration(void) { return found | (macrogates >> GATE_IC_MACRO) << 24; }
 bool gate_ic_is_macrogate(unsigned ic) { return ((macrogates >> ic) & 1u) != 0u; }
 uint32_t gate_ic_direction_inputs(unsigned ic) { return gate_ic_is_macrogate(ic) ? 1u : 3u; }
 bool gate_ic_present(unsigned ic) { return ic < GATE_IC_COUNT && ((found >> ic) & 1u) != 0u; }
@@ -80,8 +81,12 @@ static uint32_t address_of(unsigned ic, gate_word_t word, unsigned channel) {
       return base + SERVO_IC_X_DAC_STROBE;
     case GATE_WORD_ADC_STROBE:
       return strobe_address(ic);
+    case GATE_WORD_RING_CONTROL:
+      return base + MACRO_IC_X_RING_CONTROL;
+    case GATE_WORD_NODE_ACTIVATION:
+      return base + MACRO_IC_Y_NODE_ACTIVATION;
     default:
-      return base + SERVO_CHANNEL_X_CONTROL + SERVO_CHANNEL_STRIDE * channel;
+      return base + (macro ? MACRO_IC_X_SUPPLEMENTARY_1 : SERVO_CHANNEL_X_CONTROL) + SERVO_CHANNEL_STRIDE * channel;
   }
 }
 
@@ -104,5 +109,10 @@ void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsi
 }
 
 void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value) {
-  if (gate_ic_present(ic)) *hal_x(address_of(ic, word, 0)) = value & HAL_WORD_MASK;
+  if (!gate_ic_present(ic)) return;
+  const uint32_t address = address_of(ic, word, 0);
+  if (word == GATE_WORD_NODE_ACTIVATION)
+    *hal_y(address) = value & HAL_WORD_MASK;
+  else
+    *hal_x(address) = value & HAL_WORD_MASK;
 }

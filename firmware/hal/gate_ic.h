@@ -15,6 +15,7 @@ bool gate_ic_present(unsigned ic);
 uint32_t gate_ic_found(void);           /* bit per IC */
 bool gate_ic_is_macrogate(unsigned ic); /* a MACRO IC of the kind that makes no servo clock */
 uint32_t gate_ic_macrogates(void);      /* bit per IC */
+uint32_t gate_ic_configuration(void);   /* bit per IC, bits 24..27 MACRO IC 0..3 is a MACROGATE */
 uint32_t gate_ic_base(unsigned ic);
 uint32_t gate_ic_direction_variable(unsigned ic); /* 7007 ... 7957, 6807 ... 6957 */
 unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT when it is none */
@@ -23,9 +24,18 @@ unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT 
 uint32_t gate_ic_direction_inputs(unsigned ic);
 
 /* Words of an IC. The firmware keeps what it wrote: read-modify-write never reads the bus. */
-typedef enum { GATE_WORD_CLOCK, GATE_WORD_PWM, GATE_WORD_DAC_STROBE, GATE_WORD_ADC_STROBE, GATE_WORD_CHANNEL } gate_word_t;
+typedef enum {
+  GATE_WORD_CLOCK,
+  GATE_WORD_PWM,
+  GATE_WORD_DAC_STROBE, /* servo IC only */
+  GATE_WORD_ADC_STROBE,
+  GATE_WORD_RING_CONTROL, /* MACRO IC only */
+  GATE_WORD_NODE_ACTIVATION,
+  GATE_WORD_CHANNEL
+} gate_word_t;
 void gate_ic_set_field(unsigned ic, gate_word_t word, unsigned lsb, unsigned width, uint32_t value);
-void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width, uint32_t value); /* channel 0..3 */
+void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width,
+                               uint32_t value); /* channel 0..3; 0..1 of a MACRO IC */
 void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value);
 
 #endif

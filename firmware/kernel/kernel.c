@@ -40,9 +40,9 @@ static void load_variables(kernel_start_t mode) {
   if (saved == SAVED_DAMAGED) status |= STATUS_FLASH_ERROR;
   if (saved != SAVED_GOOD) {
     i_variable_initialize();
-    initial_ics = gate_ic_found();
+    initial_ics = gate_ic_configuration();
   }
-  if (initial_ics != gate_ic_found()) status |= STATUS_CONFIGURATION;
+  if (initial_ics != gate_ic_configuration()) status |= STATUS_CONFIGURATION;
   load_user = saved == SAVED_GOOD;
 }
 
@@ -101,7 +101,10 @@ _Noreturn void kernel_main(void) {
       clock_watch_poll();
     else
       hal_idle(&work);
-    if (work == 0u) continue;
+    if (work == 0u) {
+      line_input_text();
+      continue;
+    }
     work = 0;
     kernel_background_pass();
   }

@@ -8,6 +8,13 @@
 #define OPEN_MEMORY_END 0x010800u
 #define CS_REGISTERS 0x2000u
 
+bool i_of_gate_ic(struct i_place place) { return place.group >= I_GROUP_MACRO && place.group <= I_GROUP_CHANNEL; }
+
+bool i_of_absent_ic(struct i_place place) {
+  if (!i_of_gate_ic(place)) return false;
+  return !gate_ic_present(place.instance) || (place.group == I_GROUP_SUPPLEMENTARY && gate_ic_is_macrogate(place.instance));
+}
+
 static bool can_be_source(unsigned ic) { return gate_ic_present(ic) && !gate_ic_is_macrogate(ic); }
 
 /* servo-ic data sheet 7.1: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
@@ -78,8 +85,7 @@ static double configuration(uint32_t offset) {
 }
 
 double i_default_value(struct i_place place, const struct i_entry* entry, uint32_t clock_source) {
-  const bool of_ic = place.group == I_GROUP_SERVO || place.group == I_GROUP_CHANNEL || place.group == I_GROUP_MACRO;
-  if (of_ic && !gate_ic_present(place.instance)) return 0.0;
+  if (i_of_absent_ic(place)) return 0.0;
   switch (entry->field) {
     case I_FIELD_CLOCK_SOURCE:
       return clock_source;

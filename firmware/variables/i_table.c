@@ -15,7 +15,7 @@ static const struct i_entry entries[] = {
 
 enum { ENTRY_COUNT = sizeof entries / sizeof entries[0], WIDEST_GROUP = 192 };
 
-static const uint8_t group_numbers[I_GROUP_COUNT] = {100, 100, 50, 100, 100, 100, 50, 10, 10, 192};
+static const uint8_t group_numbers[I_GROUP_COUNT] = {100, 100, 50, 100, 100, 100, 50, 10, 10, 10, 192};
 static uint8_t row_of[I_GROUP_COUNT][WIDEST_GROUP];
 
 _Static_assert(ENTRY_COUNT <= 256, "rows are indexed by a byte");
@@ -43,6 +43,16 @@ static struct i_place in_servo_ic(uint32_t number) {
   return place;
 }
 
+static struct i_place in_macro_ic(uint32_t number) {
+  struct i_place place = {I_GROUP_MACRO, number % 50u, GATE_IC_MACRO + (number - 6800u) / 50u, 0};
+  if (place.offset >= 10u && place.offset < 30u) {
+    place.group = I_GROUP_SUPPLEMENTARY;
+    place.channel = place.offset / 10u - 1u;
+    place.offset %= 10u;
+  }
+  return place;
+}
+
 struct i_place i_table_place(uint32_t number) {
   struct i_place place = {I_GROUP_GLOBAL, number, 0, 0};
   if (number < 100u) return place;
@@ -59,7 +69,7 @@ struct i_place i_table_place(uint32_t number) {
   } else if (number < 6800u) {
     place = (struct i_place){I_GROUP_GATHER, 99, 0, 0}; /* reserved */
   } else if (number < 7000u) {
-    place = (struct i_place){I_GROUP_MACRO, number % 50u, GATE_IC_MACRO + (number - 6800u) / 50u, 0};
+    place = in_macro_ic(number);
   } else if (number < 8000u) {
     place = in_servo_ic(number);
   } else {

@@ -12,6 +12,7 @@ typedef enum {
   I_GROUP_GATHER,
   I_GROUP_CS,
   I_GROUP_MACRO,
+  I_GROUP_SUPPLEMENTARY,
   I_GROUP_SERVO,
   I_GROUP_CHANNEL,
   I_GROUP_TABLE,
@@ -44,6 +45,8 @@ typedef enum {
   I_FIELD_IC_ADC_STROBE,
   I_FIELD_IC_CLOCK_DIRECTION,
   I_FIELD_IC_CHANNEL,
+  I_FIELD_IC_RING_CONTROL,
+  I_FIELD_IC_NODE_ACTIVATION,
   I_FIELD_IC_SHADOW
 } i_field_t;
 
@@ -53,7 +56,7 @@ struct i_entry {
 };
 
 /* Where a number stands: group, number inside the group, and which motor (1..32), coordinate system (0..15) or IC (index of
- * hal/gate_ic.h) it belongs to. `channel` 0..3 for the CHANNEL group. */
+ * hal/gate_ic.h) it belongs to. `channel` 0..3 for the CHANNEL group, 0..1 for SUPPLEMENTARY. */
 struct i_place {
   i_group_t group;
   uint32_t offset, instance, channel;

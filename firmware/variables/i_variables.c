@@ -23,13 +23,16 @@ static bool is_timer(uint32_t number) {
 }
 
 /* A timer is its written value less the servo interrupts since; it stops at the lowest 24-bit number. */
-static int32_t timer_read(uint32_t number) {
+static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
   const uint32_t elapsed = kernel_servo_count() - timer_start[(number - 5100u) / 100u][number % 100u - 11u];
   const int64_t left = (int64_t)integer_of[number] - (int64_t)elapsed;
   return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
 }
 
-int32_t i_integer(uint32_t number) { return is_timer(number) ? timer_read(number) : integer_of[number]; }
+int32_t i_integer(uint32_t number) {
+  if (number - 5100u >= 1600u || !is_timer(number)) return integer_of[number]; /* asked for by every task: mostly no division */
+  return timer_read(number);
+}
 
 double i_variable_read(uint32_t number) {
   if (number >= VARIABLE_COUNT) return 0.0;
@@ -72,6 +75,12 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
       break;
     case I_FIELD_IC_ADC_STROBE:
       gate_ic_set_word(ic, GATE_WORD_ADC_STROBE, value);
+      break;
+    case I_FIELD_IC_RING_CONTROL:
+      gate_ic_set_word(ic, GATE_WORD_RING_CONTROL, value);
+      break;
+    case I_FIELD_IC_NODE_ACTIVATION:
+      gate_ic_set_word(ic, GATE_WORD_NODE_ACTIVATION, value);
       break;
     case I_FIELD_IC_CHANNEL:
       gate_ic_set_channel_field(ic, place.channel, channel_fields[place.offset].lsb, channel_fields[place.offset].width, value);
@@ -128,16 +137,12 @@ static bool locked(uint32_t number) {
   return number >= 8000u && (locks & 8u) != 0u;
 }
 
-static bool of_gate_ic(struct i_place place) {
-  return place.group == I_GROUP_SERVO || place.group == I_GROUP_CHANNEL || place.group == I_GROUP_MACRO;
-}
-
 void i_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT || locked(number)) return;
   const struct i_place place = i_table_place(number);
   const struct i_entry* entry = i_table_entry(place);
   if (entry->kind == I_KIND_R) return;
-  if (of_gate_ic(place) && !gate_ic_present(place.instance)) return;
+  if (i_of_absent_ic(place)) return;
   if (entry->kind == I_KIND_F) {
     store(number, value);
     return;
@@ -164,7 +169,7 @@ void i_variable_write(uint32_t number, double value) {
       break;
     default:
       store(number, whole);
-      if (of_gate_ic(place)) write_ic(place, entry, (uint32_t)whole);
+      if (i_of_gate_ic(place)) write_ic(place, entry, (uint32_t)whole);
       break;
   }
   hal_unmask(state);
@@ -243,7 +248,7 @@ void i_variable_begin_restore(uint32_t saved_ics) {
 
 void i_variable_restore(uint32_t number, const struct i_saved* saved) {
   if (number >= VARIABLE_COUNT) return;
-  if (number >= 6800u && number < 8000u && !gate_ic_present(i_table_place(number).instance)) return;
+  if (i_of_absent_ic(i_table_place(number))) return;
   value_of[number] = saved->value;
   integer_of[number] = saved->integer;
 }
@@ -257,7 +262,7 @@ void i_variable_write_hardware(void) {
     directions_pending |= 1u << ic;
     for (uint32_t number = direction - 7u; number < direction + 43u; ++number) {
       const struct i_place place = i_table_place(number);
-      write_ic(place, i_table_entry(place), (uint32_t)integer_of[number]);
+      if (!i_of_absent_ic(place)) write_ic(place, i_table_entry(place), (uint32_t)integer_of[number]);
     }
   }
   i_variable_apply_clock_directions();

@@ -21,6 +21,7 @@ constexpr unsigned kServoIc0 = 1u << 0, kServoIc1 = 1u << 1, kServoIc2 = 1u << 2
                    kMacroIc1 = 1u << 19;
 
 std::uint32_t x(std::uint32_t address) { return *hal_x(address) & 0xFFFFFFu; }
+std::uint32_t y(std::uint32_t address) { return *hal_y(address) & 0xFFFFFFu; }
 
 TEST(IVariables, GlobalDefaults) {
   BRICK_COVERS("I17-1 I18-1");
@@ -199,6 +200,20 @@ TEST(MacroIcGlobals, DividersGoToItsClockWord) {
   EXPECT_EQ(x(0x07840C) >> 20, 1u);
   EXPECT_EQ(x(0x07840D) >> 8, 8845u);
   EXPECT_EQ(c.line("I6802=17 I6802"), "1");  // 0 to 15
+}
+
+// Supplementary channels 1*, 2*: the fields of servo-ic.md 2.5 without bits 18..17 and 23..22.
+TEST(MacroIcGlobals, SupplementaryChannelsAndRingWordsGoToTheIc) {
+  Controller c(kServoIc0 | kMacroIc1);
+  EXPECT_EQ(x(0x079415), 0x7u | (1u << 4) | (1u << 13)) << "defaults: x4 decode, capture on index, own compare";
+  EXPECT_EQ(x(0x07941D), 0x7u | (1u << 4));
+  c.line("I6870=3 I6872=10 I6873=2 I6874=1 I6875=3 I6876=3 I6877=3 I6878=1 I6879=1");
+  EXPECT_EQ(x(0x07941D), 3u | (10u << 4) | (2u << 8) | (1u << 15) | (1u << 16) | (3u << 20) | (1u << 19));
+  EXPECT_EQ(x(0x079415), 0x7u | (1u << 4) | (1u << 13)) << "the other channel is left alone";
+  c.line("I6890=$4030 I6891=$FC003F");
+  EXPECT_EQ(x(0x07940F), 0x4030u);
+  EXPECT_EQ(y(0x07940F), 0xFC003Fu);
+  EXPECT_EQ(c.line("I6820 I6820=5 I6820"), "0|0") << "MACRO IC 0 is absent";
 }
 
 // Two ICs must never drive the clocks together: the new input is written before the new output, whatever the order on the line.

@@ -199,6 +199,7 @@ TEST_P(ClockSourceFaults, AMacroGateTakesItsClocksFromOutsideWithDirectionOne) {
   EXPECT_EQ(ask("I19 I7007 I7107 I6807 I6857"), "7007|0|3|3|1");
   EXPECT_EQ(ask("I4902 I4903"), "$3|$1");
   EXPECT_EQ(ask("I6857=3 I6857"), "1") << "one bit";
+  EXPECT_EQ(ask("I6810 I6860 I6860=3 I6860"), "7|0|0") << "it has no supplementary channels";
   EXPECT_FALSE(conflict());
 }
 
@@ -268,6 +269,19 @@ TEST_P(ClockSourceFaults, ADifferentSetOfIcsIsAConfigurationError) {
   reset_command("$$$***");
   EXPECT_EQ(problems(), 0u);
   EXPECT_EQ(ask("I20"), "$0");
+}
+
+TEST_P(ClockSourceFaults, AMacroIcOfTheOtherKindIsAConfigurationError) {
+  BRICK_COVERS("I19-2");
+  start_with(1u << kMacroIc0);
+  EXPECT_EQ(ask("SAVE"), "");
+  machine().inputs().macro_gate = 1;
+  machine().apply();
+  machine().reset();
+  ASSERT_TRUE(link().connect(machine().now() + ms_to_ticks(50)));
+  EXPECT_EQ(ask("I19 I6807"), "6807|1") << "it cannot make a servo clock";
+  EXPECT_EQ(source(), 0u);
+  EXPECT_EQ(problems(), kConfigurationError | kNoPhaseClock);
 }
 
 // The source is an accessory IC that is pulled out: I19 names it still.
