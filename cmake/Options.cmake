@@ -26,6 +26,8 @@ if(BRICK_COVERAGE)
 endif()
 
 if(BRICK_SANITIZE)
+  set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")  # a short build, line numbers in reports, assertions on
+  list(APPEND BRICK_WARNINGS -Wno-maybe-uninitialized)  # instrumented code makes g++ 12 warn inside <regex>
   add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
   add_link_options(-fsanitize=address,undefined)
 endif()
