@@ -21,13 +21,16 @@ class ChannelDivider {
   // The edge of the k-th start from here.
   Tick after(std::int64_t k, unsigned n) const { return next_ + (k - 1) * (kTicksPerRef << n); }
 
+  // How many periods start up to t; n has not changed since the present one started.
+  std::int64_t count(Tick t, unsigned n) const { return t < next_ ? 0 : (t - next_) / (kTicksPerRef << n) + 1; }
+  bool steady(unsigned n) const { return n_ == n; }
+
   // Executes the edges up to t and returns how many of them started a period.
   std::int64_t take(Tick t, unsigned n) {
     if (t < next_) return 0;
-    const Tick period = kTicksPerRef << n;
-    const std::int64_t k = (t - next_) / period + 1;
+    const std::int64_t k = count(t, n);
     start_ = after(k, n);
-    next_ = start_ + period;
+    next_ = start_ + (kTicksPerRef << n);
     n_ = n;
     return k;
   }
@@ -51,20 +54,31 @@ class ChannelStrobe {
     word_ = 0;
   }
 
-  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of the bit)
-  // are called in the order of their edges.
+  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of the first
+  // bit and how many bits) are called in the order of their edges.
   template <class Load, class Sample>
   void advance(Tick t, bool rise, unsigned n, std::uint32_t word, Load load, Sample sample) {
     for (;;) {
       const Tick ce = divider_.next();
-      if (left_ != 0 && !divider_.fast() && now_ < divider_.mid() && divider_.mid() <= t) sample(24 - left_);
+      if (left_ != 0 && !divider_.fast() && now_ < divider_.mid() && divider_.mid() <= t) sample(24 - left_, 1u);
       if (ce > t) break;
       if (left_ == 0 && !pending_ && !(rise && ce == t)) {
         divider_.take(rise ? t - 1 : t, n);  // nothing to send
         now_ = std::max(now_, ce);
         continue;
       }
-      if (divider_.fast() && left_ != 0) sample(24 - left_);
+      if (!pending_ && !rise && divider_.steady(n)) {  // whole bits at once
+        const auto bits = static_cast<unsigned>(std::min<std::int64_t>(left_, divider_.count(t, n)));
+        if (divider_.fast())
+          sample(24 - left_, bits);
+        else
+          sample(25 - left_, bits - 1);
+        left_ -= bits;
+        now_ = divider_.after(bits, n);
+        divider_.take(now_, n);
+        continue;
+      }
+      if (divider_.fast() && left_ != 0) sample(24 - left_, 1u);
       if (pending_ || (rise && ce == t)) {
         pending_ = rise = false;
         left_ = 24;

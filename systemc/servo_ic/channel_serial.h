@@ -1,6 +1,7 @@
 // Model of rtl/servo_ic/channel_dac.sv and channel_adc.sv: serial data of one DAC, one ADC.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace brick {
@@ -18,8 +19,12 @@ class ChannelDac {
 class ChannelAdc {
  public:
   static constexpr unsigned kLatency = 4;  // bits before the value
-  void sample(unsigned bit, bool data) {
-    if (bit >= kLatency && bit < kLatency + 18) word_ = (word_ << 1 | (data ? 1u : 0u)) & 0x3FFFF;
+  // `count` bits of one level, the first of them number `bit` of the stream.
+  void sample(unsigned bit, unsigned count, bool data) {
+    const unsigned first = std::max(bit, kLatency), end = std::min(bit + count, kLatency + 18);
+    if (first >= end) return;
+    const unsigned n = end - first;
+    word_ = (word_ << n | (data ? (1u << n) - 1 : 0)) & 0x3FFFF;
   }
   void transfer() { value_ = word_; }
   std::uint32_t value() const { return value_ << 6; }

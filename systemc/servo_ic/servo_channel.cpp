@@ -110,9 +110,9 @@ void ServoChannel::latch_servo(Tick edge) {
   servo_fraction_ = fraction();
 }
 
-void ServoChannel::sample_adc(unsigned bit, bool a, bool b) {
-  adc_[0].sample(bit, a);
-  adc_[1].sample(bit, b);
+void ServoChannel::sample_adc(unsigned bit, unsigned count, bool a, bool b) {
+  adc_[0].sample(bit, count, a);
+  adc_[1].sample(bit, count, b);
 }
 
 void ServoChannel::load_dac(bool trip) {

@@ -33,7 +33,7 @@ class ServoChannel {
   // Edges. `edge` is one of clk_ref throughout.
   void latch_phase();
   void latch_servo(Tick edge);
-  void sample_adc(unsigned bit, bool a, bool b);
+  void sample_adc(unsigned bit, unsigned count, bool a, bool b);
   void load_dac(bool trip);
   void load_pwm();
   void run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime);

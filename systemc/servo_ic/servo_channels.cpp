@@ -47,11 +47,11 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
       [this] {
         for (ServoChannel& channel : channel_) channel.load_dac(in.trip);
       },
-      [](unsigned) {});
+      [](unsigned, unsigned) {});
   adc_.advance(
       t, phase_rise, divider(kAdc), in.adc_strobe, [] {},
-      [this](unsigned bit) {
-        for (unsigned i = 0; i < kChannels; ++i) channel_[i].sample_adc(bit, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
+      [this](unsigned bit, unsigned count) {
+        for (unsigned i = 0; i < kChannels; ++i) channel_[i].sample_adc(bit, count, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
       });
 
   for (ServoChannel& channel : channel_) {

@@ -179,5 +179,44 @@ INSTANTIATE_TEST_SUITE_P(Words, ServoChannelNegativeControl,
                                            Distortion{"DeadTime", true, 0x1C, 1 << 0}, Distortion{"MaxCount", true, 0x1C, 1 << 8}),
                          [](const auto& word) { return std::string(word.param.name); });
 
+// Large jumps of the model alone end where single ticks end.
+TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto value = [&](std::uint32_t limit) { return std::uniform_int_distribution<std::uint32_t>(0, limit)(random); };
+    ChannelsModel slow, fast;
+    slow.reset(0);
+    fast.reset(0);
+    Tick now = 0;
+    ChannelInputs in;
+    const auto write = [&](bool x, unsigned addr, std::uint32_t word) {
+      now += 3;
+      for (ChannelsModel* m : {&slow, &fast}) {
+        m->advance(now);
+        m->write(x, addr, word);
+      }
+    };
+    write(true, 0x04, (kOwnClocks & ~0xFFFu) | value(4095));
+    write(true, 0x1C, value(300) << 8 | value(20));
+    for (unsigned ch = 1; ch <= 4; ++ch) {
+      write(true, base(ch) + 5, value(0xFFFFFF) & ~0x400u);
+      write(false, base(ch) + 2, value(0xFFFFFF));
+      write(false, base(ch) + 4, value(0xFFFFFF));
+    }
+    for (int jump = 0; jump < 40; ++jump) {
+      for (unsigned& pins : in.pins) pins = value(0xFFF);
+      in.adc_a = value(15);
+      in.adc_b = value(15);
+      for (ChannelsModel* m : {&slow, &fast}) m->set_inputs(in);
+      const Tick end = now + 3 * (1 + value(20'000));
+      fast.advance(end);
+      while (now < end) slow.advance(++now);
+      ASSERT_TRUE(slow.pins() == fast.pins()) << "seed " << seed;
+      for (unsigned addr = 0; addr < 64; ++addr)
+        ASSERT_EQ(slow.read(addr >= 32, addr & 31), fast.read(addr >= 32, addr & 31)) << "seed " << seed << " word " << addr;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace brick
