@@ -1,6 +1,6 @@
 # brick_add_firmware(NAME turbo SOURCES ... LINKER_SCRIPT firmware.ld): cross-compiles an ELF image for rv32imc.
 find_program(RISCV_GCC riscv64-unknown-elf-gcc REQUIRED)
-set(BRICK_FIRMWARE_FLAGS -march=rv32imc -mabi=ilp32 -std=c11 -Os -ffreestanding -fno-common -ffunction-sections -fdata-sections
+set(BRICK_FIRMWARE_FLAGS -march=rv32imc -mabi=ilp32 -std=c11 -O2 -ffreestanding -fno-common -ffunction-sections -fdata-sections
     -Wall -Wextra -Werror -Wconversion -g)
 function(brick_add_firmware)
   cmake_parse_arguments(F "" "NAME;LINKER_SCRIPT" "SOURCES" ${ARGN})

@@ -119,7 +119,11 @@ static error_t constant(struct lexer* lx) {
 }
 
 static error_t one_command(struct lexer* lx) {
-  if (program_buffer_open() && program_starts_statement(*lx)) return program_statement(lx);
+  if (program_buffer_open()) {
+    error_t error;
+    if (program_axis_statement(lx, &error)) return error;
+    if (program_starts_statement(*lx)) return program_statement(lx);
+  }
   const char first = lexer_peek(lx);
   if (first == '#' || first == '&') {
     ++lx->at;

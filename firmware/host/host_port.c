@@ -16,6 +16,7 @@ enum { RECEIVE_SIZE = 2048, TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT
 static uint8_t receive[RECEIVE_SIZE], transmit[TRANSMIT_SIZE];
 static volatile uint32_t receive_head, receive_tail, transmit_head, transmit_tail;
 static volatile uint32_t urgent, flushed, discard;
+static volatile uint32_t flushed_to;          /* receive_head at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
 
 static void enable(bool receive_on, bool transmit_on) {
@@ -26,13 +27,13 @@ static void enable(bool receive_on, bool transmit_on) {
 
 void host_port_initialize(void) {
   receive_head = receive_tail = transmit_head = transmit_tail = 0;
-  urgent = flushed = discard = 0;
+  urgent = flushed = flushed_to = discard = 0;
   enable(true, false);
 }
 
 void host_port_character(uint8_t c) {
   if (c == CONTROL_X) {
-    receive_tail = receive_head;
+    flushed_to = receive_head;
     transmit_head = transmit_tail;
     flushed = discard = 1;
     if (i_integer(63) != 0) {
@@ -75,18 +76,27 @@ void host_port_interrupt(void) {
 
 bool host_port_waiting(void) { return receive_tail != receive_head; }
 
-bool host_port_take(uint8_t* c, bool* void_before) {
-  const uint32_t state = hal_mask_all(); /* a ^X may move the tail */
-  *void_before = flushed != 0u;
+bool host_port_text_waiting(void) { return receive_tail != receive_head && receive[receive_tail % RECEIVE_SIZE] >= ' '; }
+
+/* A ^X came, or the queue was full. True: what was taken before is void. */
+static __attribute__((noinline)) bool take_up(void) {
+  const uint32_t state = hal_mask_all();
+  const bool flush = flushed != 0u;
+  if (flush) receive_tail = flushed_to;
   flushed = 0;
-  const bool some = receive_tail != receive_head;
-  if (some) {
-    *c = receive[receive_tail % RECEIVE_SIZE];
-    ++receive_tail;
-  }
   if (!receiving && receive_head - receive_tail < RECEIVE_SIZE / 2u) enable(true, transmitting);
   hal_unmask(state);
-  return some;
+  return flush;
+}
+
+/* Runs for every character of a line, between its carriage return and BREQ: nothing is masked in the usual case. */
+bool host_port_take(uint8_t* c, bool* void_before) {
+  *void_before = flushed != 0u || !receiving ? take_up() : false;
+  const uint32_t tail = receive_tail;
+  if (tail == receive_head) return false;
+  *c = receive[tail % RECEIVE_SIZE];
+  receive_tail = tail + 1u;
+  return true;
 }
 
 /* False when the host has not read for ROOM_TIMEOUT_MS. */

@@ -15,13 +15,20 @@
 enum { LINE_LIMIT = 255, ACKNOWLEDGE = 0x06, BELL = 0x07, BACKSPACE = 0x08, REPEAT = 0x09, LINE_FEED = 0x0A, RETURN = 0x0D };
 enum { CHECKSUM_SO_FAR = 0x0E, LAST_LINE = 0x19 };
 
-static char line[LINE_LIMIT + 1], last_line[LINE_LIMIT + 1];
+/* The line is kept as it came and in upper case, converted as it comes: little is left to do at its end. */
+static char texts[2][LINE_LIMIT + 1], upper[LINE_LIMIT + 1];
+static uint32_t current; /* which of `texts` is being received; the other is the last line executed */
 static uint32_t length, last_length;
-static bool too_long, bad_character;
+static bool too_long, bad_character, quoted;
+
+static void start_line(void) {
+  length = 0;
+  too_long = bad_character = quoted = false;
+}
 
 void line_input_initialize(void) {
-  length = last_length = 0;
-  too_long = bad_character = false;
+  current = last_length = 0;
+  start_line();
 }
 
 static uint8_t checksum(const char* text, uint32_t count) {
@@ -60,7 +67,8 @@ static void acknowledge(int32_t style_before, uint8_t sum) {
 
 static void execute(void) {
   const int32_t style_before = i_integer(3);
-  const uint8_t sum = checksum(line, length);
+  const char* text = texts[current];
+  const uint32_t count = length;
   error_t error = ERR_NONE;
   host_port_open_output();
   if (bad_character)
@@ -68,28 +76,38 @@ static void execute(void) {
   else if (too_long)
     error = ERR_DATA;
   else {
-    line[length] = '\0';
-    for (uint32_t i = 0; i <= length; ++i) last_line[i] = line[i];
-    last_length = length;
-    bool quoted = false; /* text in quotes keeps its case */
-    for (uint32_t i = 0; i < length; ++i) {
-      if (line[i] == '"') quoted = !quoted;
-      if (!quoted && line[i] >= 'a' && line[i] <= 'z') line[i] = (char)(line[i] - 'a' + 'A');
-    }
-    error = command_line(line);
+    texts[current][count] = '\0';
+    upper[count] = '\0';
+    current ^= 1u;
+    last_length = count;
+    error = command_line(upper);
   }
-  length = 0;
-  too_long = bad_character = false;
+  start_line();
   if (reply_line_is_open()) reply_end_line();
   if (error != ERR_NONE)
     report_error(error);
   else
-    acknowledge(style_before, sum);
+    acknowledge(style_before, (i_integer(4) & 1) != 0 ? checksum(text, count) : 0u);
+}
+
+/* Text in quotes keeps its case. */
+static void add(char c) {
+  if (c == '"') quoted = !quoted;
+  texts[current][length] = c;
+  upper[length++] = !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+
+static void backspace(void) {
+  if (too_long)
+    too_long = false;
+  else if (length != 0u && texts[current][--length] == '"')
+    quoted = !quoted;
 }
 
 static void repeat_last(void) {
-  for (uint32_t i = 0; i < last_length; ++i) line[i] = last_line[i];
-  length = last_length;
+  const char* last = texts[current ^ 1u];
+  start_line();
+  for (uint32_t i = 0; i < last_length; ++i) add(last[i]);
 }
 
 /* True when a line was executed. */
@@ -101,7 +119,7 @@ static bool character(uint8_t c) {
   if (c >= ' ') {
     if (c > 0x7Fu) bad_character = true;
     if (length < LINE_LIMIT)
-      line[length++] = (char)c;
+      add((char)c);
     else
       too_long = true;
     return false;
@@ -110,21 +128,19 @@ static bool character(uint8_t c) {
     case LINE_FEED:
       break;
     case BACKSPACE:
-      if (too_long)
-        too_long = false;
-      else if (length != 0u)
-        --length;
+      backspace();
       break;
     case REPEAT:
       repeat_last();
       execute();
       return true;
     case CHECKSUM_SO_FAR:
-      host_port_send(checksum(line, length));
+      host_port_send(checksum(texts[current], length));
       break;
     case LAST_LINE:
       host_port_open_output();
-      reply_text(last_line);
+      texts[current ^ 1u][last_length] = '\0';
+      reply_text(texts[current ^ 1u]);
       reply_end_line();
       acknowledge(0, 0);
       break;
@@ -136,6 +152,15 @@ static bool character(uint8_t c) {
   return false;
 }
 
+void line_input_text(void) {
+  uint8_t c;
+  bool flushed;
+  while (host_port_text_waiting() && host_port_take(&c, &flushed)) {
+    if (flushed) start_line();
+    (void)character(c);
+  }
+}
+
 void line_input_pass(void) {
   uint32_t urgent = host_port_urgent();
   for (uint8_t c = 0; urgent != 0u; ++c, urgent >>= 1)
@@ -143,14 +168,8 @@ void line_input_pass(void) {
   uint8_t c;
   bool flushed;
   while (host_port_take(&c, &flushed)) {
-    if (flushed) {
-      length = 0;
-      too_long = bad_character = false;
-    }
+    if (flushed) start_line();
     if (character(c)) return;
   }
-  if (flushed) {
-    length = 0;
-    too_long = bad_character = false;
-  }
+  if (flushed) start_line();
 }

@@ -3,7 +3,7 @@
  * parsing of a program line well inside the time that the buffer request allows (host-bus.md 5.7, T_FALL). */
 #include "firmware/language/lexer.h"
 
-enum { NUMBER_DIGITS = 18 }; /* decimal digits kept; 10^18 fits 63 bits */
+enum { SHORT_DIGITS = 9, NUMBER_DIGITS = 18 }; /* decimal digits kept; 10^18 fits 63 bits */
 
 static const double POWER_OF_TEN[NUMBER_DIGITS + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
                                                        1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
@@ -14,17 +14,6 @@ static int hex_digit(char c) {
   if (is_digit(c)) return c - '0';
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
-}
-
-char lexer_peek(struct lexer* lx) {
-  while (*lx->at == ' ' || *lx->at == '\t') lx->at++;
-  return *lx->at == ';' ? '\0' : *lx->at;
-}
-
-bool lexer_accept(struct lexer* lx, char c) {
-  if (c == '\0' || lexer_peek(lx) != c) return false;
-  lx->at++;
-  return true;
 }
 
 bool lexer_keyword(struct lexer* lx, const char* word) {
@@ -54,8 +43,19 @@ bool lexer_number(struct lexer* lx, double* value) {
   if (first == '$') return hex_number(lx, value);
   if (!is_digit(first) && !(first == '.' && is_digit(lx->at[1]))) return false;
   const char* text = lx->at;
-  uint64_t sum = 0;
-  unsigned digits = 0, decimals = 0;
+  uint32_t low = 0; /* nine digits fit: the usual number needs no 64-bit arithmetic */
+  unsigned digits = 0;
+  while (is_digit(*text) && digits < SHORT_DIGITS) {
+    low = low * 10u + (uint32_t)(*text++ - '0');
+    if (low != 0) digits++;
+  }
+  if (!is_digit(*text) && *text != '.') {
+    lx->at = text;
+    *value = (double)low;
+    return true;
+  }
+  uint64_t sum = low;
+  unsigned decimals = 0;
   unsigned zeros = 0; /* digits before the point that were not kept */
   for (; is_digit(*text); text++) {
     if (digits < NUMBER_DIGITS) {
@@ -80,10 +80,19 @@ bool lexer_number(struct lexer* lx, double* value) {
   return true;
 }
 
+/* The exponent tells below 2^35 without a floating-point comparison. */
+static bool is_too_large(double value) {
+  const union {
+    double value;
+    uint64_t bits;
+  } u = {value};
+  return (uint32_t)(u.bits >> 52) >= 1023u + 35u && value > LEXER_CONSTANT_LIMIT;
+}
+
 error_t lexer_constant(struct lexer* lx, double* value) {
   bool negative = lexer_accept(lx, '-');
   if (!negative) (void)lexer_accept(lx, '+');
-  if (!lexer_number(lx, value) || *value > LEXER_CONSTANT_LIMIT) return ERR_DATA;
+  if (!lexer_number(lx, value) || is_too_large(*value)) return ERR_DATA;
   if (negative) *value = -*value;
   return ERR_NONE;
 }

@@ -37,6 +37,17 @@ static error_t address(void) {
   return error;
 }
 
+bool program_axis_statement(struct lexer* lx, error_t* error) {
+  uint32_t axis;
+  struct word_list list = {line.words, 0, LINE_WORDS};
+  if (!statement_axis_starts(lx, &axis)) return false;
+  *error = address();
+  list.count = line.count; /* a change of address has stored and emptied the line */
+  if (*error == ERR_NONE) *error = statement_axis_compile(lx, axis, &list);
+  if (*error == ERR_NONE) line.count = list.count;
+  return true;
+}
+
 error_t program_statement(struct lexer* lx) {
   error_t error = address();
   struct word_list list = {line.words, line.count, LINE_WORDS};

@@ -61,7 +61,7 @@ static bool skip_brackets(struct lexer* lx) {
 }
 
 /* An axis letter with its value. Looked for first: no keyword goes on with a number, and these are most of all statements. */
-static bool axis_starts(struct lexer* lx, uint32_t* axis) {
+bool statement_axis_starts(struct lexer* lx, uint32_t* axis) {
   (void)lexer_peek(lx);
   struct lexer start = *lx;
   if (find_letter(lx, AXIS_OF, axis) && number_starts(lx)) return true;
@@ -102,7 +102,7 @@ static bool accept_other(struct lexer* lx) {
 
 bool statement_starts(struct lexer lx) {
   uint32_t axis;
-  if (axis_starts(&lx, &axis) || feed_starts(&lx) || assignment_starts(lx)) return true;
+  if (statement_axis_starts(&lx, &axis) || feed_starts(&lx) || assignment_starts(lx)) return true;
   uint32_t keyword = accept_keyword(&lx);
   if (keyword < KEYWORD_COUNT) return KEYWORDS[keyword].operation != OP_RATE || number_starts(&lx);
   if (accept_other(&lx)) return true;
@@ -144,6 +144,10 @@ static error_t compile_value(struct lexer* lx, enum operation constant, enum ope
     if (error == ERR_NONE && number == RATE_TM && constant == OP_RATE && in.value > 8388607.0) error = ERR_DATA;
   }
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
+}
+
+error_t statement_axis_compile(struct lexer* lx, uint32_t axis, struct word_list* out) {
+  return compile_value(lx, OP_AXIS, OP_AXIS_POP, axis, out);
 }
 
 static error_t compile_assignment(struct lexer* lx, uint32_t group, struct word_list* out) {
@@ -196,7 +200,7 @@ static error_t compile_keyword(struct lexer* lx, uint32_t index, struct word_lis
 
 error_t statement_compile(struct lexer* lx, struct word_list* out) {
   uint32_t index = 0;
-  if (axis_starts(lx, &index)) return compile_value(lx, OP_AXIS, OP_AXIS_POP, index, out);
+  if (statement_axis_starts(lx, &index)) return statement_axis_compile(lx, index, out);
   if (feed_starts(lx)) return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
   if (assignment_starts(*lx)) {
     (void)find_letter(lx, CLASS_OF, &index);

@@ -22,6 +22,11 @@ enum modal { MODAL_MODE, MODAL_ABS, MODAL_INC, MODAL_FRAX };
 enum wide { WIDE_AXIS = 0, WIDE_RATE = 9, WIDE_PUSH = 31 };
 enum { SHORT_FRACTION = 23, WIDE_FRACTION = 32 };
 
+union double_bits {
+  double value;
+  uint64_t bits;
+};
+
 #define FIELD(word, low, width) ((uint32_t)((word) >> (low)) & ((1u << (width)) - 1u))
 
 static const struct {
@@ -37,6 +42,18 @@ static double fraction(uint64_t field, unsigned bits, int exponent) { /* signed 
 
 static word48_t fields(uint32_t code1, uint32_t code2, uint32_t n, uint32_t low) {
   return ((word48_t)code1 << 43) | ((word48_t)code2 << 40) | ((word48_t)(n & 0x3FFu) << 30) | (low & 0xFFFFFFu);
+}
+
+/* The usual constant: its fraction has 20 bits, the upper half of the double. False: pack has to find out. */
+static bool pack_short(double value, uint32_t* mantissa, uint32_t* exponent) {
+  const union double_bits d = {value};
+  const uint32_t high = (uint32_t)(d.bits >> 32);
+  const int e = (int)((high >> 20) & 0x7FFu) - 1022;
+  if ((uint32_t)d.bits != 0 || e < -31 || e > 31) return false;
+  const uint32_t magnitude = (0x100000u | (high & 0xFFFFFu)) << 2;
+  *mantissa = ((high >> 31) != 0 ? 0u - magnitude : magnitude) & 0xFFFFFFu;
+  *exponent = (uint32_t)e;
+  return true;
 }
 
 /* Mantissa and exponent of value in `bits` fraction bits. False: rounded, or the exponent does not fit. */
@@ -64,9 +81,12 @@ static word48_t encode_wide(uint32_t kind, double value) {
 
 static word48_t encode_value(uint32_t code1, uint32_t n, double value, uint32_t wide_kind) {
   uint64_t mantissa;
-  uint32_t exponent;
-  if (!pack(value, SHORT_FRACTION, 32, &mantissa, &exponent)) return encode_wide(wide_kind, value);
-  return fields(code1, 0, n, (uint32_t)mantissa) | ((word48_t)(exponent & 0x3Fu) << 24);
+  uint32_t exponent, short_mantissa;
+  if (!pack_short(value, &short_mantissa, &exponent)) {
+    if (!pack(value, SHORT_FRACTION, 32, &mantissa, &exponent)) return encode_wide(wide_kind, value);
+    short_mantissa = (uint32_t)mantissa;
+  }
+  return fields(code1, 0, n, short_mantissa) | ((word48_t)(exponent & 0x3Fu) << 24);
 }
 
 bool word_holds_exactly(double value) {
@@ -177,11 +197,6 @@ struct instruction word_decode(word48_t word) {
     in.value = fraction(word & 0xFFFFFFu, SHORT_FRACTION, (int)(exponent ^ 0x20u) - 0x20);
   return in;
 }
-
-union double_bits {
-  double value;
-  uint64_t bits;
-};
 
 word48_t word_double_head(double value) {
   union double_bits d = {value};

@@ -67,7 +67,7 @@ TEST_F(RotaryImage, FillsToI17AndDrainsBelowI16) {
     EXPECT_FALSE(board.edges[0].high);
     const double fall = board.edges[0].us - board.return_us;
     EXPECT_GE(fall, 0.0);
-    EXPECT_LE(fall, 150.0) << "parsing included";
+    EXPECT_LE(fall, 50.0) << "T_FALL";
     if (line < 10) {
       EXPECT_GE(board.edges[1].us - board.edges[0].us, 1.0);
       EXPECT_LE(board.edges[1].us - board.edges[0].us, 50.0);
