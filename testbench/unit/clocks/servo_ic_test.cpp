@@ -103,11 +103,12 @@ TYPED_TEST(ServoIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
       {1473, 3, 1},                                                // 10.0004 kHz, 5.0002 kHz
       {2948, 0, 0},                                                // servo as fast as phase
       {100, 2, 2},  {7, 4, 15}, {6, 15, 1}, {1, 0, 7}, {0, 1, 3},  // the shortest triangle
+      {32767, 0, 0},                                               // the longest
   };
   for (const auto& [max_count, phase_div, servo_div] : settings) {
     SCOPED_TRACE(::testing::Message() << "I7m00=" << max_count << " I7m01=" << phase_div << " I7m02=" << servo_div);
     this->drive(max_count, phase_div, servo_div);
-    this->rig.run(3 * (2 * 6527 + 3) * 16);  // past everything that still ran with the setting before
+    this->rig.run(3 * (2 * 6527 + 3) * 16 + 4 * max_count);  // past everything that still ran with the setting before
     const Tick phase = Tick{2 * max_count + 3} * (phase_div + 1);
     const Tick rise = this->edge_of(&ServoIcRig::phase, true);
     const Tick fall = this->edge_of(&ServoIcRig::phase, false);

@@ -134,6 +134,18 @@ TEST_F(InterruptControllerTest, EdgeWhileMaskedIsNotRemembered) {
   EXPECT_EQ(read(kStatus), 0u);
 }
 
+// The latch belongs to edge mode: an edge seen while the line is level-sensed leaves nothing behind.
+TEST_F(InterruptControllerTest, EdgeWhileLevelSensedIsNotRemembered) {
+  write(kEdgeLevel, 0x10);
+  write(kMask, 0x10);
+  line(0x10);
+  both_.ref(4);
+  EXPECT_EQ(read(kStatus), 0x10u);
+  write(kEdgeLevel, 0x00);
+  both_.ref(2);
+  EXPECT_EQ(read(kStatus), 0u);
+}
+
 TEST_F(InterruptControllerTest, MaskingClearsTheLatch) {
   write(kMask, 0xFF);
   line(0x81);

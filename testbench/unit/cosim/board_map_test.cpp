@@ -1,0 +1,222 @@
+// How the blocks are wired to each other and to the address map, through the pins of the whole board, the same expectations on
+// both engines. A mistake made in RTL and model alike is invisible to lock-step: these are the places where that could happen.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "systemc/cosim/engines.h"
+#include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kTwoServoIcs = 0x3;
+constexpr std::uint32_t kIoBase = 0x210, kMemBase = 0xD0000;
+
+class BoardMap : public ::testing::TestWithParam<bool> {
+ protected:
+  BoardMap() : BoardMap(kTwoServoIcs) {}
+  explicit BoardMap(std::uint32_t fitted) : rig(GetParam() ? make_rtl_board(fitted) : make_model_board(fitted), fitted) {}
+
+  void strobe(bool BoardInputs::*command, Tick width) {
+    rig.apply();
+    rig.run(10);
+    rig.in.*command = false;
+    rig.apply();
+    rig.run(width);
+  }
+  void end(bool BoardInputs::*command) {
+    rig.in.*command = true;
+    rig.apply();
+    rig.run(12);
+  }
+  void io_write(unsigned offset, std::uint16_t value) {
+    rig.in.isa_sa = kIoBase + offset;
+    rig.in.isa_sd = value;
+    strobe(&BoardInputs::isa_iow_n, 60);
+    end(&BoardInputs::isa_iow_n);
+  }
+  std::uint32_t io_read(unsigned offset) {
+    rig.in.isa_sa = kIoBase + offset;
+    strobe(&BoardInputs::isa_ior_n, 60);
+    const std::uint32_t value = rig.get(pin::kIsaSd) & 0xFF;
+    end(&BoardInputs::isa_ior_n);
+    return value;
+  }
+  void memory_address(unsigned offset) {
+    rig.in.isa_sa = kMemBase + offset;
+    rig.in.isa_sbhe_n = false;
+  }
+  std::uint32_t memory_read(unsigned offset) {
+    memory_address(offset);
+    strobe(&BoardInputs::isa_memr_n, 28);
+    const std::uint32_t value = rig.get(pin::kIsaSd);
+    end(&BoardInputs::isa_memr_n);
+    return value;
+  }
+  void memory_write(unsigned offset, std::uint16_t value) {
+    memory_address(offset);
+    rig.in.isa_sd = value;
+    strobe(&BoardInputs::isa_memw_n, 28);
+    end(&BoardInputs::isa_memw_n);
+  }
+  // On-chip page X:$FFFFxx. A read is left under way, so that a test can look before its end.
+  void on_chip_write(unsigned address, std::uint32_t value) {
+    rig.in.pa_addr = address & 0x3F;
+    rig.in.pa_x = rig.in.pa_int = true;
+    rig.in.pa_wdata = value;
+    rig.in.pa_wr_n = false;
+    rig.apply();
+    rig.run(9);
+    rig.in.pa_wr_n = true;
+    rig.apply();
+    rig.run(6);
+    rig.in.pa_int = false;
+    rig.apply();
+    rig.run(6);
+  }
+  void on_chip_read_begins(unsigned address) {
+    rig.in.pa_addr = address & 0x3F;
+    rig.in.pa_x = rig.in.pa_int = true;
+    rig.in.pa_rd_n = false;
+    rig.apply();
+    rig.run(12);
+  }
+
+  BoardRig rig;
+};
+const auto kEngineNames = [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); };
+INSTANTIATE_TEST_SUITE_P(Engines, BoardMap, ::testing::Values(true, false), kEngineNames);
+
+// host-bus.md 4.2, Turbo PMAC2-PC: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO are IR0 to IR7; 5.7: bits of X:$070010.
+TEST_P(BoardMap, EachSignalIsItsLineOfTheInterruptController) {
+  for (unsigned bit = 0; bit < 4; ++bit) {
+    rig.write(true, kHostSignals, 1u << bit);
+    EXPECT_EQ(rig.get(pin::kPicSig), 1u << bit);
+    EXPECT_EQ(io_read(9), 1u << bit);
+  }
+  rig.write(true, kHostSignals, 0);
+  io_write(0, 2);  // ICR.TREQ while the host port can take a word
+  EXPECT_EQ(rig.get(pin::kHreq), 1u);
+  EXPECT_EQ(io_read(9), 0x10u);
+  io_write(0, 0);
+  EXPECT_EQ(io_read(9), 0u);
+  rig.edge(pin::kWdTripped, 1);
+  rig.run(9);
+  EXPECT_EQ(rig.get(pin::kWdo), 1u);
+  EXPECT_EQ(io_read(9), 0x80u);
+}
+
+// host-bus.md 1.1: the latches are X words.
+TEST_P(BoardMap, YWordsOfTheLatchesDoNothing) {
+  rig.write(true, kHostSignals, 0x5);
+  rig.write(false, kHostSignals, 0xA);
+  EXPECT_EQ(rig.get(pin::kIpos), 1u);
+  EXPECT_EQ(rig.get(pin::kBreq), 0u);
+  EXPECT_EQ(rig.read(false, kHostSignals), 0u);
+  rig.run(10 * kPwmClockHz / 1000);
+  rig.write(false, kWatchdogStrobe, 1);
+  // 25 ms after reset, not after that write.
+  EXPECT_LE(rig.edge(pin::kWdTripped, 1), 25 * kPwmClockHz / 1000 + 20);
+}
+
+// host-bus.md 6.1: Y word at host offset 4 (a - $060000), X word at offset + 2, 16 bits of each exist.
+TEST_P(BoardMap, WordsOfTheDualPortedRamLieWhereTheHostExpectsThem) {
+  for (const std::uint32_t a : {0x60000u, 0x60414u, 0x63FFFu}) {
+    const unsigned offset = 4 * (a - 0x60000);
+    rig.write(false, a, 0xAB1234);
+    rig.write(true, a, 0xCD5678);
+    EXPECT_EQ(rig.read(false, a), 0x001234u);
+    EXPECT_EQ(rig.read(true, a), 0x005678u);
+    EXPECT_EQ(memory_read(offset), 0x1234u) << std::hex << offset;
+    EXPECT_EQ(memory_read(offset + 2), 0x5678u);
+    memory_write(offset + 2, 0x9ABC);
+    EXPECT_EQ(rig.read(true, a), 0x9ABCu);
+    EXPECT_EQ(rig.read(false, a), 0x1234u);
+  }
+}
+
+// host-bus.md 6.9: BUSY becomes /TA on the CPU's side, IOCHRDY on the host's.
+TEST_P(BoardMap, BusyStretchesTheCycleOfTheLaterSide) {
+  rig.write(false, 0x60010, 0x1111);
+  memory_address(0x40);
+  rig.in.isa_sd = 0x2222;
+  strobe(&BoardInputs::isa_memw_n, 12);  // the host owns the cell
+  EXPECT_EQ(rig.get(pin::kPaTaN), 0u);
+  rig.in.pa_addr = 0x60010;
+  rig.in.pa_x = false;
+  rig.in.pa_aa = 4;
+  rig.in.pa_rd_n = false;
+  rig.apply();
+  rig.run(4);
+  EXPECT_EQ(rig.get(pin::kPaTaN), 1u);
+  EXPECT_EQ(rig.get(pin::kBusyCpu), 1u);
+  EXPECT_EQ(rig.get(pin::kIsaIochrdy), 1u);
+  end(&BoardInputs::isa_memw_n);
+  EXPECT_EQ(rig.get(pin::kPaTaN), 0u);
+  EXPECT_EQ(rig.get(pin::kPaData), 0x2222u) << "the new word";
+  strobe(&BoardInputs::isa_memw_n, 12);  // now the CPU holds it
+  EXPECT_EQ(rig.get(pin::kIsaIochrdy), 0u);
+  EXPECT_EQ(rig.get(pin::kBusyHost), 1u);
+  EXPECT_EQ(rig.get(pin::kPaTaN), 0u);
+  rig.in.pa_rd_n = true;
+  rig.apply();
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kIsaIochrdy), 1u);
+  end(&BoardInputs::isa_memw_n);
+}
+
+// docs/architecture.md, Port A: the side effect of a read belongs to its end. HRDF falls when HORX has been read.
+TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsEnd) {
+  on_chip_write(0xFFFFC2, 1);  // HRIE
+  io_write(7, 0x41);
+  ASSERT_EQ(rig.get(pin::kIrqHost), 1u);
+  on_chip_read_begins(0xFFFFC6);
+  EXPECT_EQ(rig.get(pin::kPaData), 0x41u);
+  EXPECT_EQ(rig.get(pin::kIrqHost), 1u) << "still being read";
+  rig.in.pa_rd_n = true;
+  rig.apply();
+  rig.run(9);
+  EXPECT_EQ(rig.get(pin::kIrqHost), 0u);
+}
+
+// servo-ic.md 7.2: the lowest-numbered driver wins each net; here only SERVO has two.
+TEST_P(BoardMap, TwoDriversOfServoAloneAreAConflictToo) {
+  rig.write(true, kServoIcBase[1] + 4, 0x3008D2);             // IC 1 drives both
+  rig.write(true, kServoIcBase[0] + 4, 0x3008D2 | 1u << 12);  // IC 0 drives SERVO from that PHASE
+  EXPECT_EQ(rig.get(pin::kPhaseSource), 1u);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
+  rig.write(true, kServoIcBase[1] + 4, 0x3008D2 | 1u << 13);  // IC 1 gives SERVO up
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+}
+
+// servo-ic.md 1.2, the whole table. Engines without a variant for all the ICs are not tested, the model always is.
+TEST(AddressMap, EveryServoIcIsAtItsBase) {
+  constexpr std::uint32_t kAll = 0x3FFFF;
+  const std::uint32_t bases[] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200,
+                                 0x7B300, 0x78220, 0x78320, 0x79220, 0x79320, 0x7A220, 0x7A320, 0x7B220, 0x7B320};
+  for (const bool rtl : {false, true}) {
+    std::unique_ptr<Board> board;
+    try {
+      board = rtl ? make_rtl_board(kAll) : make_model_board(kAll);
+    } catch (const std::runtime_error&) {
+      ASSERT_TRUE(rtl);
+      continue;
+    }
+    SCOPED_TRACE(rtl ? "RTL" : "model");
+    BoardRig rig(std::move(board), kAll);
+    for (std::uint32_t i = 0; i < 18; ++i) rig.write(true, bases[i] + 0x14, 0x101 * (i + 1));
+    for (std::uint32_t i = 0; i < 18; ++i) {
+      EXPECT_EQ(rig.read(true, bases[i] + 0x14), 0x101 * (i + 1)) << std::hex << bases[i];
+      rig.write(true, bases[i] + 4, 0x3008D2);  // becomes the one source
+      EXPECT_EQ(rig.get(pin::kPhaseSource), i);
+      EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+      rig.write(true, bases[i] + 4, 0x3038D2);
+    }
+    for (const std::uint32_t hole : {0x78020u, 0x78120u, 0x79000u, 0x7A100u, 0x78600u}) EXPECT_EQ(rig.read(true, hole + 0x14), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace brick
