@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <utility>
 
 namespace brick {
@@ -131,19 +132,20 @@ Reply HostLink::control(std::uint8_t c) {
 Framing HostLink::framing_after(const std::string& line) const {
   Framing next = framing_;
   const std::string text = squeezed(line);
-  const auto follow = [&](const char* name, unsigned& value) {
+  const auto follow = [&](const char* name, unsigned& value, unsigned by_default) {
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
-      const char before = at == 0 ? ' ' : text[at - 1];
-      const char digit = at + 3 < text.size() ? text[at + 3] : ' ';
-      const char after = at + 4 < text.size() ? text[at + 4] : ' ';
-      if (!std::isalpha(static_cast<unsigned char>(before)) && digit >= '0' && digit <= '3' &&
-          !std::isdigit(static_cast<unsigned char>(after)))
-        value = static_cast<unsigned>(digit - '0');
+      if (at != 0 && std::isalpha(static_cast<unsigned char>(text[at - 1]))) continue;
+      const bool hex = text.compare(at + 3, 1, "$") == 0;
+      const char* digits = text.c_str() + at + 3 + (hex ? 1 : 0);
+      if (*digits == '*') value = by_default;
+      // Two bits are kept of whatever is assigned: `I3=5` is `I3=1`.
+      const auto first = static_cast<unsigned char>(*digits);
+      if (hex ? std::isxdigit(first) : std::isdigit(first)) value = std::strtoul(digits, nullptr, hex ? 16 : 10) & 3u;
     }
   };
-  follow("I3=", next.i3);
-  follow("I4=", next.i4);
-  follow("I6=", next.i6);
+  follow("I3=", next.i3, 1);
+  follow("I4=", next.i4, 0);
+  follow("I6=", next.i6, 3);
   return next;
 }
 

@@ -129,6 +129,18 @@ TEST_F(HostLinkTest, FollowsAssignmentsToI3) {
   EXPECT_TRUE(link.command("I13=2 P3=0").complete);
   EXPECT_EQ(link.framing().i3, 1u) << "I13 is not I3";
 }
+TEST_F(HostLinkTest, ReducesWhatIsAssignedToI3AsTheControllerDoes) {
+  const auto i3_after = [&](const std::string& assignment) {
+    link.command("I3=2", ns_to_ticks(20'000'000));
+    fake.controller = [](const std::string&) -> std::string { return "\x06"; };
+    EXPECT_TRUE(link.command(assignment).complete) << assignment;
+    return link.framing().i3;
+  };
+  EXPECT_EQ(i3_after("I3=5"), 1u);
+  EXPECT_EQ(i3_after("I3=$13"), 3u);
+  EXPECT_EQ(i3_after("I3=*"), 1u) << "factory default";
+  EXPECT_EQ(i3_after("I3=16"), 0u);
+}
 
 TEST_F(HostLinkTest, ChecksumThatBeginsWithItsLineIsNoText) {
   link.command("I3=2 I4=0", ns_to_ticks(20'000'000));
