@@ -1,6 +1,7 @@
 /* Control characters: run control of all coordinate systems at once, and the reports of eight motors. Background task. */
 #include "firmware/host/control.h"
 
+#include "firmware/buffers/regions.h"
 #include "firmware/host/command.h"
 #include "firmware/host/motor_report.h"
 #include "firmware/host/reply.h"
@@ -49,8 +50,9 @@ static void run_all(bool single_step) {
   for (uint32_t cs = 0; cs <= (uint32_t)i_integer(68); ++cs) (void)run_start(cs, single_step);
 }
 
+/* What stops things also stops the coordinate systems that I68 has put out of reach. */
 static void all(void (*action)(uint32_t cs)) {
-  for (uint32_t cs = 0; cs <= (uint32_t)i_integer(68); ++cs) action(cs);
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; ++cs) action(cs);
 }
 
 bool control_character(uint8_t c) {

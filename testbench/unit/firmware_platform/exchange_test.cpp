@@ -149,6 +149,16 @@ TEST(HostExchange, ControlCharactersActInsideALine) {
   EXPECT_EQ(c.line("P1"), "4");
 }
 
+TEST(HostExchange, ControlAStopsCoordinateSystemsBeyondI68Too) {
+  Controller c;
+  EXPECT_EQ(c.line("&9 DEF ROT 20"), "");
+  EXPECT_EQ(c.line("B0 R"), "");
+  EXPECT_EQ(c.line("??").substr(5, 1), "1");  // program running
+  c.line("I68=3");
+  EXPECT_EQ(c.send("\x01"), "");
+  EXPECT_EQ(c.line("??").substr(5, 1), "0");
+}
+
 TEST(HostExchange, LineFeedsAndCommentsAreIgnored) {
   Controller c;
   EXPECT_EQ(c.send("P1=8\r\n"), "\x06");
