@@ -31,9 +31,9 @@ struct BoardInputs {
   bool isa_aen = false;
   bool isa_sbhe_n = true;  // 0 = upper byte lane used
   // straps
-  std::uint32_t fitted = 0x3;  // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
+  std::uint32_t fitted = 0x3;    // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
   std::uint32_t macro_gate = 0;  // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
-  bool ext_clock = false;      // jumper E1: phase and servo come from outside
+  bool ext_clock = false;        // jumper E1: phase and servo come from outside
   bool ext_phase = true;
   bool ext_servo = true;
 };
