@@ -12,10 +12,11 @@ namespace brick::cpu {
   ONE(PageEnd)                                                                                                                             \
   ONE(Illegal)                                                                                                                             \
   TWO(Add)                                                                                                                                 \
-  TWO(Sub) TWO(Xor) TWO(Or) TWO(And) ONE(Sll) ONE(Slt) ONE(Sltu) ONE(Srl) ONE(Sra) TWO(Addi) TWO(Andi) TWO(Slli) TWO(Srli) TWO(Srai)       \
-      ONE(Slti) ONE(Sltiu) ONE(Xori) ONE(Ori) TWO(Li) TWO(Lw) TWO(Sw) ONE(Lb) ONE(Lh) ONE(Lbu) ONE(Lhu) ONE(Sb) ONE(Sh) TWO(Jump) TWO(Jal) \
-          TWO(Jalr) TWO(Beq) TWO(Bne) ONE(Blt) ONE(Bge) ONE(Bltu) ONE(Bgeu) ONE(Mul) ONE(Mulh) ONE(Mulhsu) ONE(Mulhu) ONE(Div) ONE(Divu)   \
-              ONE(Rem) ONE(Remu) ONE(Fence) ONE(FenceI) ONE(Ecall) ONE(Ebreak) ONE(Mret) ONE(Wfi) ONE(Csr)
+  TWO(Sub)                                                                                                                                 \
+  TWO(Xor) TWO(Or) TWO(And) ONE(Sll) ONE(Slt) ONE(Sltu) ONE(Srl) ONE(Sra) TWO(Addi) TWO(Andi) TWO(Slli) TWO(Srli) TWO(Srai) ONE(Slti)      \
+      ONE(Sltiu) ONE(Xori) ONE(Ori) TWO(Li) TWO(Lw) TWO(Sw) ONE(Lb) ONE(Lh) ONE(Lbu) ONE(Lhu) ONE(Sb) ONE(Sh) TWO(Jump) TWO(Jal) TWO(Jalr) \
+          TWO(Beq) TWO(Bne) ONE(Blt) ONE(Bge) ONE(Bltu) ONE(Bgeu) ONE(Mul) ONE(Mulh) ONE(Mulhsu) ONE(Mulhu) ONE(Div) ONE(Divu) ONE(Rem)    \
+              ONE(Remu) ONE(Fence) ONE(FenceI) ONE(Ecall) ONE(Ebreak) ONE(Mret) ONE(Wfi) ONE(Csr)
 
 enum class Op : std::uint8_t {
 #define BRICK_CPU_ONE(name) k##name,
