@@ -4,6 +4,10 @@
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
 
+extern "C" {
+#include "firmware/host/host_port.h"
+}
+
 namespace brick {
 namespace {
 
@@ -131,6 +135,33 @@ TEST(HostExchange, ControlXEmptiesTheLineAndIsEchoed) {
   EXPECT_EQ(c.send("P2=3\r"), "\x06");
   c.send("I63=0\r");
   EXPECT_EQ(c.send("P1=\x18"), "");
+}
+
+unsigned waits;
+
+TEST(HostExchange, HostThatDoesNotReadIsGivenUpAfterHalfASecond) {
+  Controller c;
+  waits = 0;
+  fake_hal_on_wait([] { ++waits; });
+  const std::string reply = c.send("P0..8191\r");
+  fake_hal_on_wait(nullptr);
+  EXPECT_GE(waits, 500u);
+  EXPECT_LE(waits, 502u) << "once, not for every character";
+  EXPECT_EQ(reply.substr(0, 4), "0\r0\r") << "what was queued stays";
+  EXPECT_LT(reply.size(), 8192u * 2u);
+  EXPECT_EQ(c.send("VER\r"), "1.947\r\x06");
+}
+
+TEST(HostExchange, ControlXEndsALongReply) {
+  Controller c;
+  waits = 0;
+  fake_hal_on_wait([] {
+    if (++waits == 3) host_port_character(0x18);
+  });
+  EXPECT_EQ(c.send("P0..8191\r"), "\x18") << "queue emptied, rest dropped, no acknowledge";
+  fake_hal_on_wait(nullptr);
+  EXPECT_EQ(waits, 3u);
+  EXPECT_EQ(c.send("VER\r"), "1.947\r\x06");
 }
 
 TEST(HostExchange, BackspaceTakesTheLastCharacter) {

@@ -133,9 +133,18 @@ const char* fake_host_output(uint32_t* length) {
   return output;
 }
 
+static void (*on_wait)(void);
+
+void fake_hal_on_wait(void (*action)(void)) { on_wait = action; }
+
 void hal_idle(const volatile uint32_t* work) {
   (void)work;
-  host_reads();
+  if (on_wait == 0) {
+    host_reads();
+    return;
+  }
+  cycles += hal_cycles_per_ms();
+  on_wait();
 }
 void hal_watchdog_strobe(void) {}
 void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)transmit; }

@@ -20,6 +20,9 @@ void fake_hal_fit(uint32_t fitted);             /* changes the ICs without power
 void fake_hal_stop_clocks(bool stopped);        /* no phase interrupt comes */
 const char* fake_host_output(uint32_t* length); /* everything sent to the host since the last call; valid until then */
 
+/* While the firmware waits: a millisecond passes and `action` is called, in place of the host that reads. Null: it reads again. */
+void fake_hal_on_wait(void (*action)(void));
+
 /* Writes to device words (gate ICs, latches) in order, newest last. */
 struct fake_write {
   bool x;
