@@ -76,8 +76,6 @@ void host_port_interrupt(void) {
 
 bool host_port_waiting(void) { return receive_tail != receive_head; }
 
-bool host_port_text_waiting(void) { return receive_tail != receive_head && receive[receive_tail % RECEIVE_SIZE] >= ' '; }
-
 /* A ^X came, or the queue was full. True: what was taken before is void. */
 static __attribute__((noinline)) bool take_up(void) {
   const uint32_t state = hal_mask_all();
@@ -89,7 +87,7 @@ static __attribute__((noinline)) bool take_up(void) {
   return flush;
 }
 
-/* Runs for every character of a line, between its carriage return and BREQ: nothing is masked in the usual case. */
+/* Runs between the carriage return of a line and BREQ, like the next: nothing is masked in the usual case. */
 bool host_port_take(uint8_t* c, bool* void_before) {
   *void_before = flushed != 0u || !receiving ? take_up() : false;
   const uint32_t tail = receive_tail;
@@ -97,6 +95,19 @@ bool host_port_take(uint8_t* c, bool* void_before) {
   *c = receive[tail % RECEIVE_SIZE];
   receive_tail = tail + 1u;
   return true;
+}
+
+uint32_t host_port_take_text(uint8_t* text, uint32_t most, bool* void_before) {
+  *void_before = flushed != 0u || !receiving ? take_up() : false;
+  const uint32_t head = receive_head;
+  uint32_t tail = receive_tail, count = 0;
+  for (; count < most && tail != head; ++tail) {
+    const uint8_t c = receive[tail % RECEIVE_SIZE];
+    if (c < ' ') break;
+    text[count++] = c;
+  }
+  receive_tail = tail;
+  return count;
 }
 
 /* False when the host has not read for ROOM_TIMEOUT_MS. */

@@ -12,10 +12,11 @@ bool host_port_next_output(uint8_t* c); /* the next character for the host: inte
 
 /* Background: next character received. *flushed: ^X came since the last call, what was taken before is void. */
 bool host_port_take(uint8_t* c, bool* flushed);
-bool host_port_text_waiting(void); /* the next of them is no control character */
-bool host_port_waiting(void);      /* characters received and not taken */
-void host_port_send(uint8_t c);    /* background: waits for room; gives up after half a second without a reader */
-void host_port_open_output(void);  /* a new reply: output is sent again after a flush or a host that did not read */
-uint32_t host_port_urgent(void);   /* control characters that may not wait, bit = code; cleared by the call */
+/* The same for a run of characters that are no control characters; returns their number, which ends at one of those. */
+uint32_t host_port_take_text(uint8_t* text, uint32_t most, bool* flushed);
+bool host_port_waiting(void);     /* characters received and not taken */
+void host_port_send(uint8_t c);   /* background: waits for room; gives up after half a second without a reader */
+void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
+uint32_t host_port_urgent(void);  /* control characters that may not wait, bit = code; cleared by the call */
 
 #endif

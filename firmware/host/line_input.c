@@ -12,7 +12,7 @@
 #include "firmware/host/reply_frame.h"
 #include "firmware/variables/variables.h"
 
-enum { LINE_LIMIT = 255, ACKNOWLEDGE = 0x06, BELL = 0x07, BACKSPACE = 0x08, REPEAT = 0x09, LINE_FEED = 0x0A, RETURN = 0x0D };
+enum { LINE_LIMIT = 255, CHUNK = 32, ACKNOWLEDGE = 0x06, BELL = 0x07, BACKSPACE = 0x08, REPEAT = 0x09, LINE_FEED = 0x0A, RETURN = 0x0D };
 enum { CHECKSUM_SO_FAR = 0x0E, LAST_LINE = 0x19 };
 
 /* The line is kept as it came and in upper case, converted as it comes: little is left to do at its end. */
@@ -91,10 +91,21 @@ static void execute(void) {
 }
 
 /* Text in quotes keeps its case. */
-static void add(char c) {
-  if (c == '"') quoted = !quoted;
-  texts[current][length] = c;
-  upper[length++] = !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+static void add(const uint8_t* from, uint32_t count) {
+  char* text = texts[current];
+  uint32_t at = length;
+  for (uint32_t i = 0; i < count; ++i) {
+    const char c = (char)from[i];
+    if (from[i] > 0x7Fu) bad_character = true;
+    if (at >= LINE_LIMIT) {
+      too_long = true;
+      continue;
+    }
+    if (c == '"') quoted = !quoted;
+    text[at] = c;
+    upper[at++] = !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+  }
+  length = at;
 }
 
 static void backspace(void) {
@@ -105,9 +116,8 @@ static void backspace(void) {
 }
 
 static void repeat_last(void) {
-  const char* last = texts[current ^ 1u];
   start_line();
-  for (uint32_t i = 0; i < last_length; ++i) add(last[i]);
+  add((const uint8_t*)texts[current ^ 1u], last_length);
 }
 
 /* True when a line was executed. */
@@ -117,11 +127,7 @@ static bool character(uint8_t c) {
     return true;
   }
   if (c >= ' ') {
-    if (c > 0x7Fu) bad_character = true;
-    if (length < LINE_LIMIT)
-      add((char)c);
-    else
-      too_long = true;
+    add(&c, 1);
     return false;
   }
   switch (c) {
@@ -153,12 +159,14 @@ static bool character(uint8_t c) {
 }
 
 void line_input_text(void) {
-  uint8_t c;
-  bool flushed;
-  while (host_port_text_waiting() && host_port_take(&c, &flushed)) {
+  uint8_t text[CHUNK];
+  uint32_t count;
+  do {
+    bool flushed;
+    count = host_port_take_text(text, CHUNK, &flushed);
     if (flushed) start_line();
-    (void)character(c);
-  }
+    add(text, count);
+  } while (count == CHUNK);
 }
 
 void line_input_pass(void) {
@@ -166,10 +174,10 @@ void line_input_pass(void) {
   for (uint8_t c = 0; urgent != 0u; ++c, urgent >>= 1)
     if ((urgent & 1u) != 0u) (void)control_character(c);
   uint8_t c;
-  bool flushed;
-  while (host_port_take(&c, &flushed)) {
+  bool flushed, some;
+  do {
+    line_input_text();
+    some = host_port_take(&c, &flushed);
     if (flushed) start_line();
-    if (character(c)) return;
-  }
-  if (flushed) start_line();
+  } while (some && !character(c));
 }
