@@ -193,6 +193,20 @@ TEST_P(BoardOn, WatchdogIsHeldByStrobesAndServoEdgesAndTripsWithoutEither) {
   EXPECT_EQ(rig.get(pin::kWdTripped), 0u);
 }
 
+// The timer counts a free-running clock, so it runs 959 to 960 periods of 1024 clk_ref after the strobe.
+TEST_P(BoardOn, WatchdogRunsTwentyFiveMillisecondsFromTheLastStrobe) {
+  constexpr Tick kPeriod = 1024 * 3;
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  for (const Tick pause : {Tick{1'000'000}, 300 * kPeriod + 17}) {
+    rig.run(pause);
+    rig.write(true, kWatchdogStrobe, 0);
+  }
+  const Tick strobe = rig.now();
+  const Tick trip = rig.edge(pin::kWdTripped, 1);
+  EXPECT_GT(trip - strobe, 959 * kPeriod - 30) << "30: the strobe's own bus cycle";
+  EXPECT_LE(trip - strobe, 960 * kPeriod);
+}
+
 // Either edge of SERVO counts: the last one here is a fall, 10 ms after the rise.
 TEST_P(BoardOn, WatchdogCountsFromTheLastServoEdgeOfEitherDirection) {
   constexpr Tick kMs = kPwmClockHz / 1000;

@@ -178,6 +178,16 @@ TEST(PortA, NothingAnswersOutsideTheRegions) {
   EXPECT_FALSE(rig.last) << "and no cycle was made";
 }
 
+// They keep their own pace when the core gets faster than 8 x 9.83 MHz (docs/port-a.md).
+TEST(PortA, OnChipAccessesHaveAtLeastSevenWaitStatesOrOneForEachMultipleOfTheClock) {
+  PortARig rig;
+  for (const unsigned i52 : {0u, 7u, 8u, 15u, 31u}) {
+    rig.write('X', 0xFFFFFD, i52);
+    rig.write('X', 0xFFFFC7, 0x41);
+    EXPECT_EQ(rig.last->wait_states, std::max(7u, i52));
+  }
+}
+
 TEST(PortA, OnChipAccessesMoveNoBusSignal) {
   PortARig rig;
   rig.write('X', 0xFFFFC7, 0x41);
