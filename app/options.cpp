@@ -45,6 +45,7 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--flash", o.flash, "file that keeps SAVEd data between runs");
   command.add_option("--json", o.json, "write the results to FILE");
+  command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")->type_name("PORT");
   command.add_option("--batch", o.batch, "longest advance in ticks, 0 = as the rules allow; changes speed only")
       ->capture_default_str()
       ->group("Advanced");
@@ -57,6 +58,12 @@ std::uint64_t parse_count(const std::string& option, const std::string& text) {
     if (used == text.size() && text[0] != '-' && text[0] != '+') return value;
   } catch (const std::exception&) {}
   throw UsageError(fmt::format("{} {}: is no number; expected an integer of 0 or more", option, text));
+}
+
+std::uint16_t gdb_port(const RunOptions& o) {
+  const std::uint64_t port = parse_count("--gdb", o.gdb);
+  if (port > UINT16_MAX) throw UsageError(fmt::format("--gdb {}: is no port; expected 0 to 65535", o.gdb));
+  return static_cast<std::uint16_t>(port);
 }
 
 std::string engine_name(Engine engine) { return engine == Engine::kRtl ? "rtl" : engine == Engine::kSystemC ? "systemc" : "lockstep"; }
@@ -84,6 +91,7 @@ MachineConfig machine_config(const RunOptions& o) {
   config.flash_file = o.flash;
   if (!o.flash.empty()) need_folder("--flash", o.flash);
   if (!o.json.empty()) need_folder("--json", o.json);
+  if (!o.gdb.empty()) gdb_port(o);
   wave_window(o);
   return config;
 }

@@ -22,6 +22,7 @@ struct RunOptions {
   std::vector<std::string> jumpers;
   std::string flash;
   std::string json;
+  std::string gdb;  // port, "" = no debugger
   std::string batch = "0";
 };
 
@@ -37,6 +38,7 @@ struct WaveWindow {
 };
 WaveWindow wave_window(const RunOptions& options);
 
+std::uint16_t gdb_port(const RunOptions& options);                              // throws UsageError
 std::uint64_t parse_count(const std::string& option, const std::string& text);  // throws UsageError
 std::string engine_name(Engine engine);
 

@@ -48,7 +48,7 @@ int run_command(const RunOptions& options, const std::string& name, bool negativ
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
     report.fail("host", e.what());
-  }
+  } catch (const GdbKilled& e) { report.fail("debugger", e.what()); }
   const bool passed = report.passed();
   std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
   if (!options.json.empty()) {

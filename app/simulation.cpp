@@ -47,6 +47,7 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
 Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title)
     : title_(std::move(title)), machine_(make_machine(config)), bus_(*machine_), link_(bus_), terminal_(isatty(STDERR_FILENO) == 1) {
   bus_.set_heartbeat([this] { progress(); });
+  if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
   if (options.wave.empty()) return;
   wave_ = options.wave;
   const WaveWindow window = wave_window(options);
@@ -59,12 +60,20 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
   machine_->signals().attach(trace_.get());
 }
 
+void Simulation::wait_for_debugger(std::uint16_t port) {
+  try {
+    debugger_ = std::make_unique<GdbServer>(machine_->cpu(), port);
+  } catch (const std::runtime_error& e) { throw UsageError(fmt::format("--gdb {}: {}; expected a free port", port, e.what())); }
+  machine_->attach_debugger(debugger_.get());
+}
+
 Simulation::~Simulation() {
   if (shown_) std::fputs("\r\033[K", stderr);
   if (machine_) machine_->signals().attach(nullptr);
 }
 
 void Simulation::run(const std::function<void()>& host) {
+  if (debugger_) fmt::print(stderr, "gdb: waiting on 127.0.0.1:{}\n", debugger_->port());
   HostThread thread("host", host);
   begin_ = last_progress_ = std::chrono::steady_clock::now();
   sc_core::sc_start();  // returns when the thread has ended: nothing else is scheduled

@@ -10,6 +10,7 @@
 
 #include "app/options.h"
 #include "systemc/core/trace.h"
+#include "systemc/cpu/gdb_server.h"
 #include "systemc/machine/machine.h"
 #include "testbench/host/host_link.h"
 
@@ -32,11 +33,13 @@ class Simulation {
   std::string measures_text() const;
 
  private:
+  void wait_for_debugger(std::uint16_t port);
   void progress();
   double wall_seconds() const;
 
   std::string title_;
   std::unique_ptr<Machine> machine_;
+  std::unique_ptr<GdbServer> debugger_;
   HostBus bus_;
   HostLink link_;
   std::unique_ptr<TraceWriter> trace_;

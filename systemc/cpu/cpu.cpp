@@ -43,7 +43,7 @@ void Cpu::invalidate_code() { s_->invalidate_code(); }
 
 std::vector<Cpu::Mapping> Cpu::mappings() const {
   std::vector<Mapping> list;
-  for (const Region& r : s_->regions) list.push_back({r.base, r.bytes});
+  for (const Region& r : s_->regions) list.push_back({r.base, r.bytes, r.options.mask24});
   return list;
 }
 
@@ -59,6 +59,7 @@ void Cpu::reset(std::uint32_t pc) {
 }
 
 std::uint32_t Cpu::pc() const { return s_->pc; }
+void Cpu::set_pc(std::uint32_t pc) { s_->pc = pc & ~1u; }
 std::uint32_t Cpu::reg(unsigned i) const { return s_->x.at(i); }
 
 void Cpu::set_reg(unsigned i, std::uint32_t v) {
@@ -75,6 +76,7 @@ Cycle Cpu::cycle() const { return s_->cycle; }
 void Cpu::set_cycle(Cycle c) { s_->cycle = c; }
 std::uint64_t Cpu::instructions() const { return s_->retired; }
 bool Cpu::asleep() const { return s_->sleeping; }
+bool Cpu::access_waits() const { return s_->access_waits; }
 
 void Cpu::set_interrupt(CpuInterrupt line, bool pending) {
   State& s = *s_;

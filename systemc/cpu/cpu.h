@@ -57,19 +57,22 @@ class Cpu {
   void invalidate_code();                                            // after memory was changed from outside
   struct Mapping {
     std::uint32_t base, bytes;
+    bool mask24;
   };
   std::vector<Mapping> mappings() const;  // in the order of mapping
 
   // State ------------------------------------------------------------------------------------------------------------
   void reset(std::uint32_t pc);  // registers zero, interrupts off, asleep false; memory is kept
   std::uint32_t pc() const;
+  void set_pc(std::uint32_t pc);  // for a debugger, between two instructions; a sleeping CPU goes on sleeping
   std::uint32_t reg(unsigned i) const;
   void set_reg(unsigned i, std::uint32_t v);
   std::uint32_t csr(unsigned number) const;
   Cycle cycle() const;      // local time
   void set_cycle(Cycle c);  // after sleep
   std::uint64_t instructions() const;
-  bool asleep() const;  // WFI with nothing pending
+  bool asleep() const;        // WFI with nothing pending
+  bool access_waits() const;  // the instruction at pc has begun its device access (DeviceBus::Result::retry)
 
   // Interrupt pins, as the CPU sees them from its present cycle on. Wakes a sleeping CPU when the bit is enabled in mie.
   void set_interrupt(CpuInterrupt line, bool pending);

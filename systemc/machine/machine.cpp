@@ -185,6 +185,13 @@ void Machine::apply() { impl_->apply_host_inputs(); }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
 Cpu& Machine::cpu() { return impl_->cpu; }
 std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }
+
+void Machine::attach_debugger(GdbServer* debugger) {
+  impl_->debugger = debugger;
+  if (debugger == nullptr) return;
+  debugger->on_time = [this] { return std::to_string(impl_->cpu_time() / kFsPerNs) + " ns"; };
+}
+
 void Machine::reset() { impl_->begin_reset(false); }
 void Machine::set_jumper_e3(bool on) { impl_->memory.set_strap(MachineMemory::Strap::kJumperE3, on); }
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->bus_cycles; }

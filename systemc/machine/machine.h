@@ -15,6 +15,7 @@
 
 namespace brick {
 
+class GdbServer;
 struct PortACycle;
 
 enum class Engine { kRtl, kSystemC, kLockstep };
@@ -23,22 +24,22 @@ enum class Engine { kRtl, kSystemC, kLockstep };
 struct BoardConfig {
   std::string name = "geobrick-lv-8";
   std::string title;
-  std::uint32_t fitted = 0x3;            // as BoardInputs::fitted
-  std::uint32_t macro_gate = 0;          // as BoardInputs::macro_gate
-  std::uint32_t dpram_words = 32768;     // 16-bit words: 8192 or 32768
-  bool jpan = false;                     // Turbo PMAC control panel port fitted
-  std::uint32_t card = 603382;           // CID reply
+  std::uint32_t fitted = 0x3;         // as BoardInputs::fitted
+  std::uint32_t macro_gate = 0;       // as BoardInputs::macro_gate
+  std::uint32_t dpram_words = 32768;  // 16-bit words: 8192 or 32768
+  bool jpan = false;                  // Turbo PMAC control panel port fitted
+  std::uint32_t card = 603382;        // CID reply
 };
 
 struct MachineConfig {
   Engine engine = Engine::kSystemC;
   BoardConfig board;
-  std::string firmware;                  // ELF path
-  std::string flash_file;                // "" = flash content is lost at the end
+  std::string firmware;    // ELF path
+  std::string flash_file;  // "" = flash content is lost at the end
   bool jumper_e3 = false;
-  std::uint64_t seed = 1;                // initial content of RAM and DPRAM
-  Tick batch = 0;                        // 0 = as long as the rule allows; else no advance longer than this many ticks
-  bool seeded_bug = false;               // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
+  std::uint64_t seed = 1;   // initial content of RAM and DPRAM
+  Tick batch = 0;           // 0 = as long as the rule allows; else no advance longer than this many ticks
+  bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
 };
 
 class Machine : public sc_core::sc_module {
@@ -58,16 +59,24 @@ class Machine : public sc_core::sc_module {
   void apply();
   const BoardOutputs& outputs() const;
 
-  Signals& signals();                    // every named signal of design.md section 7
+  Signals& signals();  // every named signal of design.md section 7
   Cpu& cpu();
   std::uint64_t instructions() const;
+  void attach_debugger(GdbServer* debugger);  // not owned; nullptr = none
 
-  void reset();                          // pulls the reset line: board and CPU start again, RAM and flash keep their content
-  void power_cycle();                    // RAM content is lost, flash stays
-  void set_jumper_e3(bool on);           // read by the firmware at start
+  void reset();                 // pulls the reset line: board and CPU start again, RAM and flash keep their content
+  void power_cycle();           // RAM content is lost, flash stays
+  void set_jumper_e3(bool on);  // read by the firmware at start
 
   // Bus cycles of the CPU, newest last, for reports.
-  struct BusCycle { Tick tick; char space; std::uint32_t address; bool write; std::uint32_t data; std::uint32_t pc; };
+  struct BusCycle {
+    Tick tick;
+    char space;
+    std::uint32_t address;
+    bool write;
+    std::uint32_t data;
+    std::uint32_t pc;
+  };
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
 
   // Called at the end of each Port A cycle with the exact times of all its edges (systemc/cpu/port_a.h), for checkers.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "systemc/cpu/gdb_server.h"
 #include "systemc/cpu/port_a.h"
 #include "systemc/machine/machine.h"
 #include "systemc/machine/machine_signals.h"
@@ -60,6 +61,7 @@ struct Machine::Impl {
   bool deliver_due();
   Tick board_limit(Tick limit) const;
   void keep_kernel_time(Tick from);
+  TimeFs cpu_time() const;
 
   const MachineConfig config;
   Machine& owner;
@@ -69,6 +71,7 @@ struct Machine::Impl {
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};
+  GdbServer* debugger = nullptr;  // runs the CPU when there is one
   MachineMemory memory;
   std::unique_ptr<ElfFile> elf;
   std::uint64_t power_ons = 0;

@@ -11,6 +11,8 @@ namespace brick {
 namespace {
 constexpr BoardOutputs kWakesCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
 
+constexpr Tick kDebuggerLatency = 20'000;  // no advance is longer when a debugger may want to break in
+
 BoardOutputs both(BoardOutputs a, const BoardOutputs& b) {
   for (unsigned i = 0; i < kBoardOutputWords; ++i) a.w[i] |= b.w[i];
   return a;
@@ -28,6 +30,10 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     const Tick from = board->now();
     Tick target = std::min(limit, reset_until);
     if (config.batch > 0) target = std::min(target, from + config.batch);
+    if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
+      debugger->poll(!cpu_runs || (cpu.asleep() && !port_a.running()));
+      target = std::min(target, from + kDebuggerLatency);
+    }
     const bool awake = cpu_runs && !port_a.running() && !cpu.asleep();
     if (awake) run_cpu(std::max(from, std::min(target, board->quiet_until(watched))));
     target = board_limit(target);
@@ -65,8 +71,17 @@ void Machine::Impl::run_cpu(Tick known) {
     Cycle limit = clock.first_cycle(known + 1 + kInterruptLatency);
     if (!events.empty()) limit = std::min(limit, clock.first_cycle(events.front().tick + kInterruptLatency));
     if (cpu.cycle() >= limit) return;
-    cpu.run(limit);
+    if (debugger != nullptr)
+      debugger->run(limit);
+    else
+      cpu.run(limit);
   }
+}
+
+// What the clock on the CPU's wall would show: the CPU may be ahead of the board, or asleep since long ago.
+TimeFs Machine::Impl::cpu_time() const {
+  const TimeFs board_time = tick_to_fs(board->now());
+  return !cpu_runs || cpu.asleep() ? board_time : std::max(board_time, port_a.clock().time(cpu.cycle()));
 }
 
 // Gives the CPU the oldest pin change when its time has come; a sleeping CPU's time jumps there.
