@@ -33,7 +33,7 @@ int boards_command(bool json) {
       list.push_back(
           {{"name", board.name}, {"title", board.title}, {"ics", ics}, {"dpram_words", board.dpram_words}, {"card", board.card}});
     else
-      std::cout << fmt::format("{:<14} {}\n{:<14} {}; dual-ported RAM {} k x 16; card {}\n", board.name, board.title, "",
+      std::cout << fmt::format("{:<21} {}\n{:<21} {}; dual-ported RAM {} k x 16; card {}\n", board.name, board.title, "",
                                fmt::join(ics, ", "), board.dpram_words / 1024, board.card);
   }
   if (json) std::cout << list.dump(2) << '\n';
