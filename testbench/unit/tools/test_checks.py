@@ -138,6 +138,12 @@ class Lint(Tree):
         self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i;", "= a_i ^ c;\n  wire c;"))
         self.expect(self.run_tool("lint_rtl.py", "yosys"), 1, "has no driver")
 
+    @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
+    def test_yosys_fails_on_a_latch_that_always_star_makes(self):
+        latch = self.GOOD.replace("  assign b_o = a_i;", "  always @* if (a_i) b_o = 1'b1;").replace("output wire", "output reg")
+        self.write("rtl/board/board_top.sv", latch)
+        self.expect(self.run_tool("lint_rtl.py", "yosys"), 1, "dlatch")
+
     @unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
     def test_icarus_fails_on_an_unknown_module(self):
         self.write("rtl/board/board_top.sv", self.GOOD.replace("  assign", "  nothing u_nothing ();\n  assign"))
