@@ -90,6 +90,45 @@ TEST(Lockstep, ReportsTheSeededBugWithSignalTickAndAccesses) {
   }
 }
 
+// A board that does nothing but change one pin at tick 5.
+class OnePinBoard : public Board {
+ public:
+  explicit OnePinBoard(const PinField* pin) : pin_(pin) {}
+  Tick now() const override { return now_; }
+  void set_inputs(const BoardInputs&) override {}
+  const BoardOutputs& outputs() const override { return outputs_; }
+  Tick run_until(Tick limit, const BoardOutputs&) override {
+    if (pin_ != nullptr && now_ < 5 && limit >= 5) {
+      const BoardOutputs before = outputs_;
+      outputs_.set(*pin_, 1);
+      on_change(5, before, outputs_);
+    }
+    return now_ = limit;
+  }
+
+ private:
+  const PinField* pin_;
+  BoardOutputs outputs_;
+  Tick now_ = 0;
+};
+
+TEST(Lockstep, ComparesEveryPinInBothDirections) {
+  BRICK_COVERS("CARD-6");
+  for (const PinField& f : pin::kAll) {
+    for (const bool rtl_moves : {true, false}) {
+      auto board = make_lockstep_board(std::make_unique<OnePinBoard>(rtl_moves ? &f : nullptr),
+                                       std::make_unique<OnePinBoard>(rtl_moves ? nullptr : &f));
+      try {
+        board->run_until(100);
+        ADD_FAILURE() << f.name << " was not compared";
+      } catch (const LockstepDifference& e) {
+        EXPECT_THAT(e.what(), ::testing::HasSubstr("differ at tick 5 "));
+        EXPECT_THAT(e.what(), ::testing::HasSubstr("\n  " + std::string(f.name) + ": rtl "));
+      }
+    }
+  }
+}
+
 // A host that polls must not push everything else out of the report.
 TEST(Lockstep, ReportsEqualAccessesInARowAsOneLineAndEachSideForItself) {
   BRICK_COVERS("CARD-6");
