@@ -1,0 +1,139 @@
+// Breakpoints, steps, watchpoints, the break byte, and how a session ends.
+#include "testbench/unit/gdb/gdb_bench.h"
+
+namespace brick {
+
+using GdbRunControl = GdbBench;
+
+TEST_F(GdbRunControl, StepsOneInstruction) {
+  EXPECT_EQ(ask("s"), "T05thread:1;");
+  EXPECT_EQ(ask("p20"), shown(kCode + 4));
+  EXPECT_EQ(ask("vCont;s:1;c"), "T05thread:1;");
+  EXPECT_EQ(ask("p20"), shown(kCode + 8));
+  EXPECT_EQ(cpu.instructions(), 2u);
+  EXPECT_EQ(ask("s1000000c"), "T05thread:1;") << "from another address: the load at +12";
+  EXPECT_EQ(ask("p20"), shown(kCode + 16));
+}
+
+TEST_F(GdbRunControl, StopsAtABreakpointEachTimeRound) {
+  ASSERT_EQ(ask("Z0,10000008,4"), "OK");
+  for (std::uint32_t round = 1; round <= 3; ++round) {
+    EXPECT_EQ(ask("c"), "T05swbreak:;thread:1;");
+    EXPECT_EQ(ask("p20"), shown(kCode + 8));
+    EXPECT_EQ(ask("pa"), shown(round));
+  }
+  EXPECT_EQ(ask("z0,10000008,4"), "OK");
+  EXPECT_EQ(ask("Z1,10000010,4"), "OK");
+  EXPECT_EQ(ask("c"), "T05hwbreak:;thread:1;");
+  EXPECT_EQ(ask("p20"), shown(kCode + 16));
+  EXPECT_EQ(ask("m10000008,4").substr(0, 2), "23") << "breakpoints are not written into the code";
+}
+
+TEST_F(GdbRunControl, BreakpointsCostNoTime) {
+  // Three rounds: lui 1, then addi 1 + sw 1 + lw 2 + jal 2 each; stopped before the fourth addi.
+  ASSERT_EQ(ask("Z0,10000004,4"), "OK");
+  for (int i = 0; i < 4; ++i) ASSERT_EQ(ask("c"), "T05swbreak:;thread:1;");
+  EXPECT_EQ(cpu.cycle(), 1 + 3 * 6);
+}
+
+TEST_F(GdbRunControl, StopsAfterAWatchedStore) {
+  ASSERT_EQ(ask("Z2,2000000a,1"), "OK") << "one byte within the stored word";
+  EXPECT_EQ(ask("c"), "T05watch:2000000a;thread:1;");
+  EXPECT_EQ(ask("p20"), shown(kCode + 12));
+  EXPECT_EQ(ask("m20000008,4"), shown(1));
+  ASSERT_EQ(ask("z2,2000000a,1"), "OK");
+  ASSERT_EQ(ask("Z2,20000004,4"), "OK") << "only loaded, never stored";
+  ASSERT_EQ(ask("Z0,10000010,4"), "OK");
+  EXPECT_EQ(ask("c"), "T05swbreak:;thread:1;");
+}
+
+TEST_F(GdbRunControl, StopsAfterAWatchedLoad) {
+  ASSERT_EQ(ask("Z3,20000004,4"), "OK");
+  ASSERT_EQ(ask("Z3,20000008,4"), "OK") << "only stored, never loaded";
+  EXPECT_EQ(ask("c"), "T05rwatch:20000004;thread:1;");
+  EXPECT_EQ(ask("p20"), shown(kCode + 16));
+  ASSERT_EQ(ask("Z4,20000008,4"), "OK");
+  EXPECT_EQ(ask("c"), "T05awatch:20000008;thread:1;");
+}
+
+TEST_F(GdbRunControl, BreakByteStopsTheProgram) {
+  write(framed("c"));
+  EXPECT_EQ(get(), '+');
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  write("\x03");
+  EXPECT_EQ(reply(), "T02thread:1;");
+  const auto count = cpu.instructions();
+  EXPECT_GT(count, 1000u);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(ask("?"), "T02thread:1;");
+  EXPECT_EQ(cpu.instructions(), count) << "a stopped program stands";
+}
+
+TEST_F(GdbRunControl, BreakByteStopsSteppedRunningToo) {
+  ASSERT_EQ(ask("Z0,10000800,4"), "OK") << "never reached, but checked before each instruction";
+  write(framed("c") + "\x03");
+  EXPECT_EQ(reply(), "T02thread:1;");
+}
+
+TEST_F(GdbRunControl, StepGoesThroughAnInterruptHandler) {
+  // Handler at +0x100: counts in t1, masks the interrupt, returns.
+  using namespace rv;
+  const std::vector<Word> handler = {addi(t1, t1, 1), rv::i(0x73, 1, zero, zero, 0x304), 0x30200073u};
+  std::memcpy(cpu.memory(kCode + 0x100, 12), handler.data(), 12);
+  const std::vector<Word> enable = {rv::i(0x73, 1, zero, a3, 0x305), rv::i(0x73, 1, zero, a4, 0x304), rv::i(0x73, 6, zero, 8, 0x300),
+                                    addi(a5, a5, 5), addi(a5, a5, 5)};
+  std::memcpy(cpu.memory(kCode + 0x40, 20), enable.data(), 20);
+  cpu.invalidate_code();
+  ASSERT_EQ(ask("Pd=" + shown(kCode + 0x100)), "OK");
+  ASSERT_EQ(ask("Pe=" + shown(1u << kIrqRealTime)), "OK");
+  ASSERT_EQ(ask("P20=" + shown(kCode + 0x40)), "OK");
+  cpu.set_interrupt(kIrqRealTime, true);  // the runner stands while the debugger is served
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(ask("s"), "T05thread:1;");
+  ASSERT_EQ(ask("p20"), shown(kCode + 0x4C)) << "interrupts are on, and one is pending";
+  EXPECT_EQ(ask("p6"), shown(0));
+  EXPECT_EQ(ask("s"), "T05thread:1;");
+  EXPECT_EQ(ask("p20"), shown(kCode + 0x50));
+  EXPECT_EQ(ask("p6"), shown(1)) << "the handler has run";
+  EXPECT_EQ(ask("pf"), shown(5)) << "and so has the instruction";
+}
+
+TEST_F(GdbRunControl, DetachLetsTheProgramRunOn) {
+  ASSERT_EQ(ask("Z0,10000008,4"), "OK");
+  EXPECT_EQ(ask("D"), "OK");
+  EXPECT_EQ(get(), '\0') << "the connection is closed";
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  finish();
+  EXPECT_GT(cpu.instructions(), 1000u);
+}
+
+TEST_F(GdbRunControl, LostConnectionIsADetach) {
+  ASSERT_EQ(ask("Z0,10000008,4"), "OK");
+  socket.close();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  finish();
+  EXPECT_GT(cpu.instructions(), 1000u);
+}
+
+TEST_F(GdbRunControl, AnotherDebuggerStopsTheProgramAgain) {
+  ASSERT_EQ(ask("D"), "OK");
+  socket.close();
+  socket.connect({asio::ip::address_v4::loopback(), server->port()});
+  EXPECT_EQ(ask("?"), "T05thread:1;");
+}
+
+TEST_F(GdbRunControl, KillEndsTheRun) {
+  write(framed("k"));
+  runner.join();
+  EXPECT_TRUE(killed);
+}
+
+TEST_F(GdbRunControl, EndOfTheRunIsTold) {
+  write(framed("c"));
+  ASSERT_EQ(get(), '+');
+  done = true;
+  runner.join();
+  server.reset();
+  EXPECT_EQ(reply(), "W00");
+}
+
+}  // namespace brick
