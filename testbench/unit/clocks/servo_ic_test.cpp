@@ -158,6 +158,27 @@ TYPED_TEST(ServoIcOn, NewMaximumCountIsTakenAtTheBottomTurnaround) {
   EXPECT_LE(longest, 43);
 }
 
+// Written on the way down it is taken at the very next turnaround, written on the way up only at the one after.
+TYPED_TEST(ServoIcOn, NewMaximumCountIsNotTakenAtTheTopTurnaround) {
+  int old_halves = 0;
+  for (const int later : {0, 1}) {  // in two successive halves, one of them is the way up
+    this->rig.power_up();
+    this->drive(20, 0, 0);
+    this->rig.run(2 * 13057 + 1000);
+    for (int i = 0; i <= later; ++i) this->edge_of(&ServoIcRig::phase, true);
+    this->rig.write(true, kPwmWord, pwm_word(10));
+    Tick last = this->edge_of(&ServoIcRig::phase, true);
+    for (Tick period = 0; period != 33; ++old_halves) {
+      const Tick next = this->edge_of(&ServoIcRig::phase, true);
+      period = next - last;
+      last = next;
+      ASSERT_TRUE(period == 43 || period == 33) << period;
+    }
+    --old_halves;  // the last one was the one from the old bottom to the new top
+  }
+  EXPECT_EQ(old_halves, 1);
+}
+
 // A new divider waits for the end of the running period.
 TYPED_TEST(ServoIcOn, NewPhaseDividerIsTakenAtTheTerminalCount) {
   this->drive(20, 3, 0);

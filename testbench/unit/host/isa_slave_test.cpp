@@ -100,10 +100,12 @@ TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
 
 TEST_F(IsaSlaveTest, Memcs16FollowsTheAddressAlone) {
   for (unsigned page = 0; page < 16; ++page) {
-    both.in.isa_sa = page << 16 | 0x1234;
-    both.in.isa_aen = page % 2;
-    ticks(static_cast<int>(ns_to_ticks(66)) - 1);  // complete periods within 66 ns
-    EXPECT_EQ(both.get("isa_memcs16_n"), page == 0xD ? 0u : 1u);
+    for (const unsigned offset : {0x1234u, 0xFFFEu}) {
+      both.in.isa_sa = page << 16 | offset;
+      both.in.isa_aen = page % 2;
+      ticks(static_cast<int>(ns_to_ticks(66)) - 1);  // complete periods within 66 ns
+      EXPECT_EQ(both.get("isa_memcs16_n"), page == 0xD ? 0u : 1u);
+    }
   }
 }
 
