@@ -64,7 +64,6 @@ TEST_F(Image, BackgroundReloadsTheWatchdogCounter) {
 }
 
 TEST_F(Image, RareRealTimeInterruptsDoNotStarveTheHardwareWatchdog) {
-  BRICK_COVERS("WDT-1");
   board.send("I6=1 I3=2 I8=255\r");  // 256 servo cycles are 113 ms, the hardware allows 25
   board.run_ms(400.0);
   EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
