@@ -5,6 +5,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import time
 
 BRICK, CASE = sys.argv[1], sys.argv[2]
 FIRMWARE = pathlib.Path(BRICK).parent / "turbo.elf"
@@ -19,10 +20,10 @@ def check(condition, what):
 class Run:
     """`brick exec --gdb 0` that waits for its debugger."""
 
-    def __init__(self, *options):
+    def __init__(self, *options, script=SCRIPT):
         self.process = subprocess.Popen([BRICK, "exec", "--gdb", "0", *options, "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
-        self.process.stdin.write(SCRIPT)
+        self.process.stdin.write(script)
         self.process.stdin.close()
         self.process.stdin = None
         line = self.process.stderr.readline()
@@ -106,6 +107,23 @@ def kill():
     check(status == 1 and "killed by the debugger" in err and out == "", f"{status} {out!r} {err!r}")
 
 
+def break_byte():
+    """Breaks in while the whole controller runs, mostly asleep; time stands until it goes on."""
+    run = Run(script="@wait 1000s\n")
+    debugger = Debugger(run.port)
+    for _ in range(3):
+        debugger.send("c")
+        time.sleep(0.2)
+        debugger.socket.sendall(b"\x03")
+        check(debugger.reply() == "T02thread:1;", "stop by the break byte")
+        first = debugger.ask("qRcmd,74696d65")
+        time.sleep(0.1)
+        check(debugger.ask("qRcmd,74696d65") == first, "time goes on while stopped")
+        check(re.fullmatch(r"\d+ ns\n", bytes.fromhex(first).decode()), first)
+    debugger.send("k")
+    check(run.end()[0] == 1, "kill")
+
+
 def gdb_session():
     gdb = shutil.which("gdb-multiarch")
     if gdb is None:
@@ -113,14 +131,15 @@ def gdb_session():
         sys.exit(77)
     run = Run()
     commands = [f"target remote 127.0.0.1:{run.port}", "print/x $pc", "break acknowledge", "continue", "bt", "info locals", "print style_before", "stepi",
-                "next", "monitor time", "print *(int*)0xC03C0000", "delete", "detach"]
+                "next", "monitor time", "print *(int*)0xC03C0000", "delete", "watch current", "continue", "delete", "detach"]
     session = subprocess.run([gdb, "-nx", "-batch", *[x for c in commands for x in ("-ex", c)], str(FIRMWARE)], capture_output=True, text=True, timeout=60)
     text = session.stdout + session.stderr
     for expected in (r"\$1 = 0x10000000\n", r"\nBreakpoint 1, acknowledge \(", r"\n#0 +acknowledge \(.*\n#1 .*\n(.*\n)*#\d .*kernel_main", r"\$2 = \d",
-                     r"\n\d+ ns\n", r"Cannot access memory at address 0xc03c0000", r"detached"):
+                     r"\n\d+ ns\n", r"Cannot access memory at address 0xc03c0000",
+                     r"Hardware watchpoint 2: current\n\nOld value = \d+\nNew value = \d+\n", r"detached"):
         check(re.search(expected, text), f"no {expected!r} in:\n{text}")
     status, out, err = run.end()
     check(status == 0 and out.startswith("1.947\n"), f"after the session: status {status}: {out} {err}")
 
 
-{"same_results": same_results, "bad_port": bad_port, "kill": kill, "gdb_session": gdb_session}[CASE]()
+{"same_results": same_results, "bad_port": bad_port, "kill": kill, "break_byte": break_byte, "gdb_session": gdb_session}[CASE]()
