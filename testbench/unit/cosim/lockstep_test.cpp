@@ -90,7 +90,7 @@ TEST(Lockstep, ReportsTheSeededBugWithSignalTickAndAccesses) {
   }
 }
 
-// A board that does nothing but change one pin at tick 5.
+// A board that does nothing but report one pin at tick 5, or no pin, which is a change on the other board only.
 class OnePinBoard : public Board {
  public:
   explicit OnePinBoard(const PinField* pin) : pin_(pin) {}
@@ -98,9 +98,9 @@ class OnePinBoard : public Board {
   void set_inputs(const BoardInputs&) override {}
   const BoardOutputs& outputs() const override { return outputs_; }
   Tick run_until(Tick limit, const BoardOutputs&) override {
-    if (pin_ != nullptr && now_ < 5 && limit >= 5) {
+    if (now_ < 5 && limit >= 5) {
       const BoardOutputs before = outputs_;
-      outputs_.set(*pin_, 1);
+      if (pin_ != nullptr) outputs_.set(*pin_, 1);
       on_change(5, before, outputs_);
     }
     return now_ = limit;
