@@ -75,6 +75,7 @@ void ScriptPlayer::command(const ScriptLine& line) {
     }
   }
   if (!reply.complete) {
+    if (link_.bus().tripped()) fail(line, "no reply: the watchdog has tripped (WDO); expected an answer, see @reset and @power");
     fail(line, reply.raw.empty() ? "no reply; expected an acknowledge or an error from the controller"
                                  : "the reply has no end: `" + visible(reply.raw) + "`; expected an acknowledge or an error");
   }

@@ -57,12 +57,3 @@ error_t program_statement(struct lexer* lx) {
   return error;
 }
 
-error_t program_blank_line(void) {
-  error_t error = address();
-  struct instruction blank = {OP_BLANK, 0, 0, 0.0};
-  struct word_list list = {line.words, line.count, LINE_WORDS};
-  if (error != ERR_NONE) return error;
-  error = word_list_add_instruction(&list, &blank);
-  if (error == ERR_NONE) line.count = list.count;
-  return error;
-}

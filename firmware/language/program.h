@@ -12,7 +12,6 @@ bool program_axis_statement(struct lexer* lx, error_t* error); /* the usual stat
 error_t program_statement(struct lexer* lx);                   /* compiles one statement into the pending line of the addressed C.S. */
 error_t program_line_commit(void); /* at the end of the host line: stores the pending statements as one program line */
 void program_line_abandon(void);   /* after an error: nothing of the line is stored */
-error_t program_blank_line(void);  /* instead of a statement, for an empty host line while a buffer is open: stored as a line */
 
 /* OPEN CLOSE CLEAR DEFINE DELETE B R S Q A PR SIZE ... : looked up by the command interpreter after its own table. */
 extern const struct command_entry program_commands[];

@@ -136,7 +136,7 @@ void HostBus::open_port() {
 bool HostBus::put_char(std::uint8_t c, Tick timeout) {
   const Tick limit = now() + timeout;
   while (!(port_status() & kTxde)) {
-    if (now() >= limit) return false;
+    if (now() >= limit || tripped()) return false;
     pause_polling();
   }
   io_write(7, c);
@@ -146,7 +146,7 @@ bool HostBus::put_char(std::uint8_t c, Tick timeout) {
 std::optional<std::uint8_t> HostBus::get_char(Tick timeout) {
   const Tick limit = now() + timeout;
   while (!(port_status() & kRxdf)) {
-    if (now() >= limit) return std::nullopt;
+    if (now() >= limit || tripped()) return std::nullopt;
     pause_polling();
   }
   return io_read(7);

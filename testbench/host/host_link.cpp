@@ -30,7 +30,7 @@ bool HostLink::put(std::uint8_t c, Tick deadline) {
     const std::uint8_t status = bus_.port_status();
     if (status & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(7)));
     if (status & HostBus::kTxde) break;
-    if (bus_.now() >= deadline) return false;
+    if (bus_.now() >= deadline || bus_.tripped()) return false;
     bus_.pause_polling();
   }
   bus_.io_write(7, c);
@@ -84,7 +84,7 @@ Reply HostLink::finish(Tick timeout) {
     if (parser.complete()) break;
     const Tick limit = by_quiet ? std::min(deadline, bus_.now() + kQuietTime) : deadline;
     if (receive(limit)) continue;
-    if (parser.quiet() || bus_.now() >= deadline) break;
+    if (parser.quiet() || bus_.now() >= deadline || bus_.tripped()) break;
   }
   incoming_.erase(0, taken);
   Reply reply = parser.reply();
@@ -175,7 +175,7 @@ bool HostLink::connect(Tick timeout) {
       unsolicited_.clear();
       return true;
     }
-  } while (bus_.now() < deadline);
+  } while (bus_.now() < deadline && !bus_.tripped());
   return false;
 }
 

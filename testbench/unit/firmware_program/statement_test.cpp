@@ -96,14 +96,6 @@ TEST_F(Statement, ProgramOnlyTextNeedsAnOpenBuffer) {
   for (const char* text : {"UUU", "AZ", "RX", "DELETE AY"}) EXPECT_EQ(platform::host(text), "ERR003") << text;
 }
 
-TEST_F(Statement, BlankLineIsALine) {
-  program_line_begin();
-  EXPECT_EQ(program_blank_line(), ERR_NONE);
-  EXPECT_EQ(program_line_commit(), ERR_NONE);
-  EXPECT_EQ(platform::host("PR"), "1");
-  EXPECT_EQ(rotary_buffers[0].used, 1u);
-}
-
 TEST_F(Statement, ChangingTheAddressInsideALineEndsIt) {
   ASSERT_EQ(platform::host("CLOSE"), "");
   ASSERT_EQ(platform::host("DELETE ROT"), "");

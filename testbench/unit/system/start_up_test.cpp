@@ -56,6 +56,18 @@ TEST_P(StartUp, ResetLineStartsTheFirmwareAgain) {
   EXPECT_EQ(ask("I19"), "7007");
 }
 
+TEST_P(StartUp, HostDoesNotWaitForATrippedController) {
+  start();
+  link().command("I7007=3");  // no servo clock any more: the circuit trips after 25 ms
+  wait(ms_to_ticks(30));
+  ASSERT_EQ(machine().outputs().get(pin::kWdo), 1u);
+  const Tick begin = machine().now();
+  EXPECT_FALSE(link().command("VERSION").complete);
+  EXPECT_LT(machine().now() - begin, ms_to_ticks(1));
+  machine().reset();
+  EXPECT_TRUE(link().connect(ms_to_ticks(50))) << "the reset line brings it back";
+}
+
 BRICK_ON_ENGINES(StartUp, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
