@@ -56,4 +56,3 @@ error_t program_statement(struct lexer* lx) {
   if (error == ERR_NONE) line.count = list.count;
   return error;
 }
-

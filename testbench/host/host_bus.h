@@ -39,11 +39,11 @@ class HostBus {
 
   // Host port, host-bus.md 3.1 "polling recipe" -------------------------------------------------------------------------
   std::uint8_t port_status() { return io_read(2); }
-  void pause_polling() { free_at_ += isa::kPollPause; }  // after a look at the status that found nothing
+  void pause_polling() { free_at_ += isa::kPollPause; }                    // after a look at the status that found nothing
   bool tripped() const { return machine_.outputs().get(pin::kWdo) != 0; }  // line WDO: nobody will answer until a reset
-  void open_port();                                      // once: high and middle byte zero
-  bool put_char(std::uint8_t c, Tick timeout);           // spins on TXDE; false at the time-out
-  std::optional<std::uint8_t> get_char(Tick timeout);    // spins on RXDF
+  void open_port();                                                        // once: high and middle byte zero
+  bool put_char(std::uint8_t c, Tick timeout);                             // spins on TXDE; false at the time-out
+  std::optional<std::uint8_t> get_char(Tick timeout);                      // spins on RXDF
 
   // Interrupt controller, host-bus.md 4.1 -------------------------------------------------------------------------------
   struct Pic {
