@@ -6,8 +6,9 @@
 
 namespace brick::cpu {
 
-// Every operation; TWO marks those that have compressed forms and so exist with a length of four and of two bytes.
-// clang-format off: its layout of this list changes each time
+// Every operation; TWO marks those that have compressed forms and so exist with a length of four and of two bytes. Laid out by hand:
+// clang-format changes its mind about this list each time.
+// clang-format off
 #define BRICK_CPU_OPERATIONS(ONE, TWO) \
   ONE(Decode) ONE(PageEnd) ONE(Illegal) TWO(Add) TWO(Sub) TWO(Xor) TWO(Or) TWO(And) \
   ONE(Sll) ONE(Slt) ONE(Sltu) ONE(Srl) ONE(Sra) TWO(Addi) TWO(Andi) TWO(Slli) \
