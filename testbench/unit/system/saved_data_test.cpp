@@ -15,7 +15,10 @@ class SavedDataFile : public Controller {
   SavedDataFile() : file_(std::filesystem::path(::testing::TempDir()) / ("flash_" + std::to_string(::getpid()) + ".bin")) {
     std::filesystem::remove(file_);
   }
-  ~SavedDataFile() override { std::filesystem::remove(file_); }
+  ~SavedDataFile() override {
+    finish();  // the machine writes the file when it goes
+    std::filesystem::remove(file_);
+  }
 
   void start_with_file() {
     MachineConfig config;
