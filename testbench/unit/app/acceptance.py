@@ -7,6 +7,7 @@ import sys
 import tempfile
 
 BRICK, CASE = sys.argv[1], sys.argv[2]
+BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
 GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
 ANSWERS = ["1.947", "603382", "7007", "5", "10", "ERR003"]  # the three DEFINEs: nothing, nothing, lower-numbered buffer exists
 
@@ -78,9 +79,17 @@ def raw():
 
 def boards():
     r = brick("boards")
-    check(r.returncode == 0 and "geobrick-lv-4" in r.stdout and "servo IC 1" in r.stdout, r.stdout + r.stderr)
+    rows = {line.split()[0]: line.split() for line in r.stdout.splitlines()}
+    check(r.returncode == 0 and rows["geobrick-lv-4"][1:5] == ["4", "0", "-", "7007"], r.stdout + r.stderr)
+    check(rows["umac-turbo"][1:6] == ["8", "2", "3", "0", "6807"] and "yes" in rows["turbo-pmac-pci"], r.stdout)
     found = {b["name"]: b["ics"] for b in json.loads(brick("boards", "--json").stdout)}
     check(found["geobrick-lv-4"] == ["servo IC 0"] and found["geobrick-lv-8"] == ["servo IC 0", "servo IC 1"], str(found))
+    one = brick("boards", "turbo-pmac2-pci-lite").stdout
+    check("IR5 EQU1, IR6 EQU2, IR7 WDO" in one and "I19=7007" in one and "control panel    none" in one, one)
+    small = brick("boards", "turbo-pmac-pci").stdout
+    check("JPAN, Y:$078800" in small and "$060000..$060FFF" in small and "0x3FFF" in small and "TYPE TURBO1" in small, small)
+    file = json.loads(brick("boards", str(BOARDS / "geo-pmac.toml"), "--json").stdout)
+    check((file["axes"], file["jpan"], file["feedback_option_2"], file["interrupts"][7]) == (2, False, True, "WDO"), str(file))
     check(play(["VERSION"], "--board", "geobrick-lv-4").stdout.split() == ["1.947"], "four axes")
 
 
@@ -122,6 +131,8 @@ def bad_input():
             (["exec", "-", "--board", "nothing"], "", "nothing"),
             (["exec", "-", "--board", f"{folder}/none.toml"], "", "none.toml"),
             (["exec", "-", "--board", f"{folder}/bad.toml"], "", "bad.toml:1"),
+            (["boards", "nothing"], "", "board nothing"),
+            (["boards", f"{folder}/bad.toml"], "", "bad.toml:1"),
             (["exec", "-", "--firmware", f"{folder}/none.elf"], "", "none.elf"),
             (["exec", "-", "--firmware", f"{folder}/bad.elf"], "", "bad.elf"),
             (["exec", "-", "--flash", f"{folder}/none/flash"], "", "none/flash"),
