@@ -65,7 +65,7 @@ DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, 
 }
 
 Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
-    : config(machine_config), owner(machine), board(make_board(config)), memory(cpu, config.flash_file) {
+    : config(machine_config), jumper_e3(config.jumper_e3), owner(machine), board(make_board(config)), memory(cpu, config.flash_file) {
   initiator.cpu = &cpu;
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
   board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) { board_changed(t, before, after); };
@@ -95,7 +95,7 @@ Machine::Impl::~Impl() {
 
 void Machine::Impl::power_on() {
   memory.randomize(config.seed + power_ons++);
-  memory.set_strap(MachineMemory::Strap::kJumperE3, config.jumper_e3);
+  memory.set_strap(MachineMemory::Strap::kJumperE3, jumper_e3);
   memory.set_strap(MachineMemory::Strap::kFitted, config.board.fitted);
   memory.set_strap(MachineMemory::Strap::kCard, config.board.card);
   memory.set_strap(MachineMemory::Strap::kDpramWords, config.board.dpram_words);
@@ -193,7 +193,10 @@ void Machine::attach_debugger(GdbServer* debugger) {
 }
 
 void Machine::reset() { impl_->begin_reset(false); }
-void Machine::set_jumper_e3(bool on) { impl_->memory.set_strap(MachineMemory::Strap::kJumperE3, on); }
+void Machine::set_jumper_e3(bool on) {
+  impl_->jumper_e3 = on;
+  impl_->memory.set_strap(MachineMemory::Strap::kJumperE3, on);
+}
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->bus_cycles; }
 
 Signals& Machine::signals() {

@@ -64,6 +64,7 @@ struct Machine::Impl {
   TimeFs cpu_time() const;
 
   const MachineConfig config;
+  bool jumper_e3;  // stays put over a power cycle
   Machine& owner;
   Signals signals;
   MachineSignals named{signals};
