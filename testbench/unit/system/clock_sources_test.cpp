@@ -213,6 +213,7 @@ TEST_P(ClockSourceFaults, VariablesOfAnAbsentMacroIcReadZero) {
 TEST_P(ClockSourceFaults, TwoSourcesShowAConflictAndTheLowestNumberedWins) {
   start_with(kWithMacroIc0);
   ask("I6800=3000 I6807=0");
+  wait(ms_to_ticks(1));
   EXPECT_TRUE(conflict());
   EXPECT_EQ(source(), 7007u);
   expect_periods(6527, 0, 3);
