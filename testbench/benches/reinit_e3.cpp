@@ -26,7 +26,7 @@ struct Fault {
   const char* settings;
 };
 constexpr Fault kFaults[] = {
-    {"no IC supplies the clocks", "I19=6807"},
+    {"the clocks should come from an IC that is not there", "I19=7957"},
     {"servo clock so fast that the background starves", "I8=0 I7100=300 I7101=0 I7102=0 I19=7107"},
     {"phase clock so fast that all tasks starve", "I7100=20 I7101=0 I7102=3 I19=7107"},
 };

@@ -2,8 +2,6 @@
 // background does not: its counter (I40) falls below zero, the strobe ends, and the circuit trips 25 ms later. Nothing tells the
 // board that it is overloaded: the cost of the tasks in CPU cycles, wait states included, is more than the servo period leaves.
 // The settings are SAVEd, so the reset line does not help. Judged by testbench/checkers/watchdog_scoreboard.h.
-#include <algorithm>
-#include <climits>
 #include <cstdlib>
 #include <random>
 
@@ -42,17 +40,11 @@ void idle(BenchContext& b, WatchdogScoreboard& scoreboard) {
                 fmt::format("Y:$25={} X:$25={}, expected 4095 at reload", now, lowest));
 }
 
-// The task costs as a host reads them, in half CPU cycles: the servo period at which servo and phase tasks leave the real-time
-// task half of the time it needs in each period. docs/watchdog.md has the budget.
 unsigned starving_i7000(BenchContext& b, std::mt19937_64& random) {
-  constexpr unsigned kEntries = 110;  // entry and return of a task, cycles
-  const long servo = 2 * (number(b, "RY$37") + number(b, "RX$37")) + kEntries;
-  long real_time = LONG_MAX;
-  for (int i = 0; i < 4; ++i) real_time = std::min(real_time, 2 * number(b, "RX$B") + long{kEntries});
-  const long period = (servo + real_time / 2) * 12 / 8;  // ticks, I52=7
-  const unsigned i7000 = static_cast<unsigned>((period - 3) / 2) + static_cast<unsigned>(random() % 16);
-  b.report.step("load in CPU cycles", servo > 100 && servo < 5000 && real_time > 100 && real_time < 5000,
-                fmt::format("phase and servo {}, real-time {}: I7000={} leaves the background nothing", servo, real_time, i7000));
+  const WatchdogLoad load = watchdog_load(b.link);
+  const unsigned i7000 = load.starving_i7000(0) + static_cast<unsigned>(random() % 16);
+  b.report.step("load in CPU cycles", load.sensible(),
+                fmt::format("phase and servo {}, real-time {}: I7000={} leaves the background nothing", load.servo, load.real_time, i7000));
   return i7000;
 }
 

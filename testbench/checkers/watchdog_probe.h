@@ -1,9 +1,12 @@
 // Connects the watchdog scoreboard to a machine: SERVO and the trip at the board's pins, strobes at the end of bus cycles on Port A.
 #pragma once
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "systemc/cpu/port_a.h"
 #include "testbench/checkers/watchdog_scoreboard.h"
-#include "testbench/host/host_bus.h"
+#include "testbench/host/host_link.h"
 
 namespace brick {
 
@@ -55,5 +58,30 @@ class WatchdogProbe {
   Tick period_ = 0, last_fall_ = -1;
   unsigned counter_ = 0;
 };
+
+// The servo period, as I7000 with dividers of one, that leaves the real-time task half of the CPU time it needs and the background
+// none, from the task costs that a host reads in half CPU cycles (firmware.md 8.1). CPU clock I52=7. docs/watchdog.md, "Budget".
+struct WatchdogLoad {
+  long servo = 0, real_time = 0;  // CPU cycles: phase and servo task, real-time task
+  bool sensible() const { return servo > 100 && servo < 5000 && real_time > 100 && real_time < 5000; }
+  unsigned starving_i7000(unsigned i8) const {
+    const long period = (servo + real_time / (2 * (static_cast<long>(i8) + 1))) * 12 / 8;  // ticks
+    return static_cast<unsigned>((period - 3) / 2);
+  }
+};
+
+inline WatchdogLoad watchdog_load(HostLink& link) {
+  constexpr long kEntry = 110;  // interrupt entry and return, which a task does not see
+  const auto cycles = [&link](const char* word) {
+    const Reply reply = link.command(word);
+    return reply.lines.empty() ? 0 : 2 * std::strtol(reply.lines[0].c_str(), nullptr, 10);
+  };
+  WatchdogLoad load{cycles("RY$37") + cycles("RX$37") + kEntry, 0};
+  for (int i = 0; i < 4; ++i) {  // the shortest: not one that was interrupted
+    const long took = cycles("RX$B") + kEntry;
+    load.real_time = i == 0 ? took : std::min(load.real_time, took);
+  }
+  return load;
+}
 
 }  // namespace brick
