@@ -68,6 +68,8 @@ TEST_P(RegisterBits, EachStuckBitIsFound) {
       EXPECT_FALSE(unnoticed) << where(row) << ", channel " << ch << ", stuck at " << level;
       found += !unnoticed;
     }
+    rig.stuck.reset();
+    EXPECT_TRUE(row.check(rig, ch)) << where(row) << ", channel " << ch << ", sound again";
   }
   EXPECT_GT(found, 1500);
 }
