@@ -6,6 +6,7 @@
 #include "firmware/host/command.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
+#include "firmware/host/panel.h"
 #include "firmware/kernel/internal.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"
@@ -68,6 +69,7 @@ void kernel_start(kernel_start_t mode) {
   hal_watchdog_strobe();
   load_user_memory();
   command_initialize();
+  panel_initialize();
   motion_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(52), (uint32_t)i_integer(37));
@@ -79,6 +81,7 @@ void kernel_start(kernel_start_t mode) {
 
 void kernel_background_pass(void) {
   clock_watch_pass();
+  panel_pass();
   motion_background_update();
   *hal_x(GLOBAL_STATUS) = kernel_status_word();
   *hal_y(GLOBAL_STATUS) = motion_global_status2();

@@ -99,7 +99,7 @@ void Machine::Impl::power_on() {
   memory.set_strap(MachineMemory::Strap::kFitted, config.board.fitted);
   memory.set_strap(MachineMemory::Strap::kCard, config.board.card);
   memory.set_strap(MachineMemory::Strap::kDpramWords, config.board.dpram_words);
-  memory.set_strap(MachineMemory::Strap::kJpan, config.board.jpan);
+  memory.set_strap(MachineMemory::Strap::kProduct, config.board.product | (config.board.jpan ? 1u : 0u));
   if (elf) elf->load(cpu);
   begin_reset(true);
 }
