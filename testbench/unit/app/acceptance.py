@@ -201,6 +201,50 @@ def breq_rotary_negative():
     bench_fails_its_negative_control("breq-rotary", "systemc")
 
 
+# covers: WDT-1
+def watchdog():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("watchdog", engine, seed)
+
+
+def watchdog_negative():
+    results = bench_fails_its_negative_control("watchdog", "systemc")
+    check([s["name"] for s in results["steps"] if not s["passed"]][0].startswith("trip, servo"), str(results["steps"]))
+
+
+# covers: WDT-2
+def reinit_e3():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("reinit-e3", engine, seed)
+    r, results = run_json("reinit-e3", "--engine", "lockstep", "--board", "turbo-pmac2-pc")  # with a MACRO IC
+    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
+
+
+def reinit_e3_negative():
+    bench_fails_its_negative_control("reinit-e3", "systemc")
+
+
+# covers: WDT-1 WDT-2
+def dead_flash():
+    """A flash file with settings that stop the controller, from one process to the next; jumper E3 and SAVE repair it."""
+    ask = ["VERSION", "I17", "I19"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = f"{folder}/flash.bin"
+        r = play(["I17=33 I8=0 I7100=20 I7101=0 I7102=0 I19=7107", "SAVE", "VERSION"], "--flash", file)
+        check(r.returncode == 0 and r.stdout.split() == ["1.947"], r.stdout + r.stderr)
+        for engine in ("systemc", "rtl"):
+            r = play(ask, "--flash", file, "--engine", engine)
+            check(r.returncode == 1 and r.stdout == "" and "does not answer" in r.stderr, r.stdout + r.stderr)
+        r = play(ask, "--flash", file, "--jumper", "E3")
+        check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
+        check(play(ask, "--flash", file).returncode == 1, "the jumper does not change what is SAVEd")
+        check(play(["SAVE"], "--flash", file, "--jumper", "E3").returncode == 0, "SAVE")
+        r = play(ask, "--flash", file)
+        check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
+        r = play(["I19=7957", "SAVE", "@reset", "@wait 40ms", "@signal watchdog.tripped", "@jumper E3 on", "@power", "I19", "@jumper E3 off"])
+        check(r.stdout.split() == ["watchdog.tripped=1", "7007"], r.stdout + r.stderr)
+
+
 def installed():
     """`cmake --install` gives a command that finds its firmware and boards, wherever it stands."""
     global BRICK
