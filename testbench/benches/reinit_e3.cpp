@@ -43,9 +43,9 @@ void check_defaults(BenchContext& b) {
   expect(b, "I19 I7007 I7107", "7007|0|3");
   expect(b, "I6807", (b.board.fitted & kMacroIc0) != 0 ? "3" : "0");  // an absent IC's variables read 0
   // Clock words: direction in bits 21..20 and 17..16, dividers, hardware clocks 2258 = $8D2; PWM word: I7000 = 6527 = $197F, I7004 = 15.
-  expect(b, "RX$78004", std::to_string(0x3008D2));
-  expect(b, "RX$78104", std::to_string(0x3038D2));
-  expect(b, "RX$7801C", std::to_string(0x197F0F));
+  expect(b, "RHX$78004", "3008D2");
+  expect(b, "RHX$78104", "3038D2");
+  expect(b, "RHX$7801C", "197F0F");
   expect(b, "I7000..7004", "6527|0|3|2258|15");
   expect(b, "I7100..7104", "6527|0|3|2258|15");
   expect(b, "I8 I16 I17 I40 I52", "2|5|10|0|7");
