@@ -86,6 +86,11 @@ class Machine : public sc_core::sc_module {
   };
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
 
+  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md). A caller that provokes it
+  // on purpose takes the list; `brick run` and `brick exec` fail when something is left in it.
+  const std::vector<std::string>& run_errors() const;
+  std::vector<std::string> take_run_errors();
+
   // Called at the end of each Port A cycle with the exact times of all its edges (systemc/cpu/port_a.h), for checkers.
   std::function<void(const PortACycle&)> on_bus_cycle;
 

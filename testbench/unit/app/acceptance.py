@@ -109,6 +109,18 @@ def statuses():
     check("stdin:2" in r.stderr and "`5`" in r.stderr and "`6`" in r.stderr and r.stdout.split() == ["5"], r.stderr + r.stdout)
 
 
+def contention():
+    """Two sources of the clocks: the controller goes on, the run fails with one line that names them."""
+    for engine in ("systemc", "lockstep"):
+        r = play(["I7107=0", "@wait 1ms", "VERSION"], "--engine", engine)
+        check(r.returncode == 1, f"exit {r.returncode}, expected 1: {r.stderr}")
+        check(r.stdout.split() == ["1.947"], r.stdout)
+        check(re.fullmatch(r"brick exec: clock contention from tick \d+ \(.*\): servo IC 0 \(I7007\) and servo IC 1 \(I7107\) drive .*; expected one source\n",
+                           r.stderr), r.stderr)
+    r = play(["I7107=0 I7007=3", "@wait 1ms", "I7007=0 I7107=3", "@wait 1ms"])
+    check(r.returncode == 0 and r.stderr == "", f"moved there and back: exit {r.returncode}: {r.stderr}")
+
+
 def bad_input():
     """One line on stderr that says what, where, and what was expected; exit status 2."""
     with tempfile.TemporaryDirectory() as folder:

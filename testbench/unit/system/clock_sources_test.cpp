@@ -217,6 +217,9 @@ TEST_P(ClockSourceFaults, TwoSourcesShowAConflictAndTheLowestNumberedWins) {
   EXPECT_TRUE(conflict());
   EXPECT_EQ(source(), 7007u);
   expect_periods(6527, 0, 3);
+  const auto errors = machine().take_run_errors();
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_THAT(errors[0], ::testing::HasSubstr("servo IC 0 (I7007) and MACRO IC 0 (I6807) drive"));
   ask("I6807=3");
   EXPECT_FALSE(conflict());
 }
