@@ -10,8 +10,10 @@
 #include "firmware/kernel/internal.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"
+#include "rtl/regs/brick_regs.h"
 
 #define MAIN_MEMORY_WORDS 0x010800u
+#define DPRAM_END 0x00003Fu /* Y: address after the dual-ported RAM, tells its size */
 #define CLEARED_AT_ONCE 0x2100u /* an eighth */
 #define GLOBAL_STATUS 0x000006u /* X: first word, Y: second */
 
@@ -52,6 +54,7 @@ static void load_user_memory(void) {
     hal_clear_words(first, CLEARED_AT_ONCE);
     hal_watchdog_strobe();
   }
+  *hal_y(DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   if (load_user) saved_data_restore_user_memory();
 }
 
