@@ -13,7 +13,7 @@
 #include "rtl/regs/brick_regs.h"
 
 #define MAIN_MEMORY_WORDS 0x010800u
-#define DPRAM_END 0x00003Fu /* Y: address after the dual-ported RAM, tells its size */
+#define DPRAM_END 0x00003Fu     /* Y: address after the dual-ported RAM, tells its size */
 #define CLEARED_AT_ONCE 0x2100u /* an eighth */
 #define GLOBAL_STATUS 0x000006u /* X: first word, Y: second */
 
