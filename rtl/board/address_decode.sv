@@ -1,6 +1,6 @@
 // Decodes the synchronised Port A address into one select per register block (docs/architecture.md, memory map):
-// gate ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010 and X:$070011, on-chip page by int_i.
-// Combinational. A gate IC that is not fitted is not selected: its words read 0.
+// gate ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010 and X:$070011, on-chip page by int_i,
+// the control panel port at Y:$078800. Combinational. What is not fitted is not selected: its words read 0.
 `default_nettype none
 
 module address_decode (
@@ -9,10 +9,12 @@ module address_decode (
   input  wire logic [3:0]  aa_i,
   input  wire logic        int_i,
   input  wire logic [21:0] fitted_i,      // servo IC 0..9, 2*..9*, MACRO IC 0..3
+  input  wire logic        jpan_i,        // control panel port fitted
   output logic             sel_any_o,     // a register region: its read data goes to the bus
   output logic             sel_int_o,     // host port
   output logic             sel_signals_o, // X:$070010 host signals
   output logic             sel_strobe_o,  // X:$070011 watchdog strobe
+  output logic             sel_panel_o,   // Y:$078800 control panel port
   output logic [21:0]      sel_ic_o
 );
 
@@ -44,6 +46,7 @@ module address_decode (
   assign sel_int_o     = int_i;
   assign sel_signals_o = latch & x_i & (addr_i[7:0] == 8'h10);
   assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == 8'h11);
+  assign sel_panel_o   = gate & ~x_i & jpan_i & (addr_i[13:0] == 14'h0800);
   assign sel_any_o     = int_i | gate | latch;
 
 endmodule : address_decode

@@ -3,15 +3,14 @@
 // Word index: CPU {address, X} (Y word even, X word odd), host byte offset / 2.
 // A side owns its cell from the edge that granted it to the end of its strobe. Same cell and at least one write: the later
 // side sees BUSY and waits; requests that meet at one edge go to the CPU. A CPU strobe that ends while BUSY does nothing.
-// Words beyond the fitted size read 0. Asynchronous reset, the content is kept. docs/dpram.md.
+// Words beyond the fitted size read 0 and take no writes. Asynchronous reset, the content is kept. docs/dpram.md.
 `default_nettype none
 
-module dpram #(
-  parameter int Words = 32768  // 8192 or 32768
-) (
+module dpram (
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
+  input  wire logic        small_i,      // strap: only the first 8192 words are fitted
   // CPU side: Port A pins, not yet synchronised
   input  wire logic        cpu_sel_i,
   input  wire logic        cpu_x_i,
@@ -33,9 +32,7 @@ module dpram #(
   output logic             host_busy_o   // BUSY pin of the host side
 );
 
-  localparam int AddrBits = $clog2(Words);
-
-  logic [15:0] mem [0:Words-1];
+  logic [15:0] mem [0:32767];
 
   // ---------------------------------------------------------------- CPU side
   logic        cpu_rd_q, cpu_wr_q, cpu_done_q, cpu_busy_q, host_own_q;
@@ -48,8 +45,8 @@ module dpram #(
   assign any_write   = cpu_wr_q | ~mem_rd_i;
   assign cpu_blocked = host_own_q & same_cell & any_write;
   assign cpu_grant   = cpu_active & ~cpu_done_q & ~cpu_blocked;
-  assign cpu_here    = (cpu_cell_q >> AddrBits) == 15'h0;
-  assign host_here   = (mem_addr_i >> AddrBits) == 15'h0;
+  assign cpu_here    = ~small_i | (cpu_cell_q[14:13] == 2'b00);
+  assign host_here   = ~small_i | (mem_addr_i[14:13] == 2'b00);
 
   // mem_wr_i lasts three ticks, so the same word is written three times; nobody can see that, the host owns the cell.
   assign host_we = mem_wr_i & host_own_q & host_here;
@@ -68,7 +65,7 @@ module dpram #(
       if (cpu_active) begin
         if (!cpu_done_q) cpu_busy_q <= cpu_blocked;
         if (cpu_grant)   cpu_done_q <= 1'b1;
-        if (cpu_grant && cpu_rd_q) cpu_rdata_q <= cpu_here ? mem[cpu_cell_q[AddrBits-1:0]] : 16'h0;
+        if (cpu_grant && cpu_rd_q) cpu_rdata_q <= cpu_here ? mem[cpu_cell_q] : 16'h0;
       end else begin
         cpu_done_q <= 1'b0;
         cpu_busy_q <= 1'b0;
@@ -79,9 +76,9 @@ module dpram #(
 
   // Two write ports. The CPU's data is taken from the pins at the granting edge, when it has been valid for a tick.
   always_ff @(posedge clk_pwm_i) begin
-    if (cpu_grant && cpu_wr_q && cpu_here) mem[cpu_cell_q[AddrBits-1:0]] <= cpu_wdata_i;
-    if (host_we && mem_be_i[0]) mem[mem_addr_i[AddrBits-1:0]][7:0]  <= mem_wdata_i[7:0];
-    if (host_we && mem_be_i[1]) mem[mem_addr_i[AddrBits-1:0]][15:8] <= mem_wdata_i[15:8];
+    if (cpu_grant && cpu_wr_q && cpu_here) mem[cpu_cell_q] <= cpu_wdata_i;
+    if (host_we && mem_be_i[0]) mem[mem_addr_i][7:0]  <= mem_wdata_i[7:0];
+    if (host_we && mem_be_i[1]) mem[mem_addr_i][15:8] <= mem_wdata_i[15:8];
   end
 
   assign cpu_rdata_o = cpu_rdata_q;
@@ -103,7 +100,7 @@ module dpram #(
     end else if (!host_own_q) begin
       host_own_q <= ~host_blocked;
       mem_busy_q <= host_blocked;
-      if (!host_blocked && mem_rd_i) mem_rdata_q <= host_here ? mem[mem_addr_i[AddrBits-1:0]] : 16'h0;
+      if (!host_blocked && mem_rd_i) mem_rdata_q <= host_here ? mem[mem_addr_i] : 16'h0;
     end
   end
 

@@ -12,6 +12,7 @@ struct AddressSelect {
   bool internal = false;  // host port
   bool signals = false;   // X:$070010 host signals
   bool strobe = false;    // X:$070011 watchdog strobe
+  bool panel = false;     // Y:$078800 control panel port
   int ic = -1;            // servo or MACRO IC, index as in BoardInputs::fitted
 };
 
@@ -19,7 +20,7 @@ class AddressDecode : public sc_core::sc_module {
  public:
   explicit AddressDecode(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  static AddressSelect decode(const BusSync::Where& w, std::uint32_t fitted) {
+  static AddressSelect decode(const BusSync::Where& w, std::uint32_t fitted, bool jpan) {
     AddressSelect s;
     if (w.internal) {
       s.any = s.internal = true;
@@ -32,6 +33,7 @@ class AddressDecode : public sc_core::sc_module {
       s.strobe = w.x && (a & 0xFF) == 0x11;
     } else if ((w.aa & 2) != 0 && (a >> 14) == 0x1E) {
       s.any = true;
+      s.panel = jpan && !w.x && (a & 0x3FFF) == 0x0800;
       const int ic = gate_ic(a & 0x3FFF);
       if (ic >= 0 && (fitted >> ic & 1) != 0) s.ic = ic;
     }

@@ -4,7 +4,7 @@
 
 namespace brick {
 
-Dpram::Dpram(const sc_core::sc_module_name& name, unsigned words) : sc_module(name), socket("socket"), mem_(words) {
+Dpram::Dpram(const sc_core::sc_module_name& name) : sc_module(name), socket("socket") {
   socket.register_b_transport(this, &Dpram::b_transport);
 }
 
@@ -77,7 +77,7 @@ void Dpram::reset(Tick t) {
 }
 
 void Dpram::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  if (!check_payload(payload, 2, 2 * mem_.size())) return;
+  if (!check_payload(payload, 2, 2 * fitted())) return;
   const Tick edge = catch_up(*this, now_, delay);
   const auto index = static_cast<unsigned>(payload.get_address() / 2);
   if (payload.is_read())

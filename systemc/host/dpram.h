@@ -16,7 +16,7 @@ namespace brick {
 
 class Dpram : public sc_core::sc_module, public ModelBlock {
  public:
-  explicit Dpram(const sc_core::sc_module_name& name, unsigned words = 32768);  // 8192 or 32768
+  explicit Dpram(const sc_core::sc_module_name& name);
 
   // Memory without arbitration, for software that has no pins: 16-bit accesses at the host's byte offset.
   tlm_utils::simple_target_socket_optional<Dpram> socket;
@@ -35,12 +35,14 @@ class Dpram : public sc_core::sc_module, public ModelBlock {
   void reset(Tick t) override;
 
   // Content, for initial values and reports. Index = host byte offset / 2; beyond the fitted size 0.
-  std::uint16_t peek(unsigned index) const { return index < mem_.size() ? mem_[index] : 0; }
+  std::uint16_t peek(unsigned index) const { return index < fitted() ? mem_[index] : 0; }
   void poke(unsigned index, std::uint16_t value) {
-    if (index < mem_.size()) mem_[index] = value;
+    if (index < fitted()) mem_[index] = value;
   }
 
  private:
+  static constexpr unsigned kWords = 32768, kSmallWords = 8192;
+  unsigned fitted() const { return in.small ? kSmallWords : kWords; }
   bool cpu_active() const { return cpu_rd_ || cpu_wr_; }
   bool conflict() const { return cpu_cell_ == in.mem_addr && (cpu_wr_ || !in.mem_rd); }  // of the two requests as they stand
   bool cpu_blocked() const { return host_own_ && conflict(); }
@@ -52,7 +54,7 @@ class Dpram : public sc_core::sc_module, public ModelBlock {
   void host_edge(bool blocked);
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
-  std::vector<std::uint16_t> mem_;
+  std::vector<std::uint16_t> mem_ = std::vector<std::uint16_t>(kWords);
   bool cpu_rd_ = false, cpu_wr_ = false, cpu_done_ = false, cpu_busy_ = false;
   std::uint16_t cpu_cell_ = 0, cpu_rdata_ = 0;
   bool host_own_ = false, mem_busy_ = false;

@@ -28,6 +28,7 @@ struct HostPortInputs {
 };
 
 struct DpramInputs {
+  bool small = false;  // strap: only the first 8192 words are fitted
   // Port A pins
   bool cpu_sel = false, cpu_x = false;
   std::uint16_t cpu_addr = 0;  // 14 bits

@@ -11,14 +11,16 @@ namespace brick {
 
 class DpramBench {
  public:
-  DpramBench(std::unique_ptr<RtlBlock<DpramInputs>> rtl, unsigned words)
-      : model("dpram", words), both(std::move(rtl), model, [](const Dpram& m) {
+  explicit DpramBench(bool small = false)
+      : model("dpram"), both(make_rtl_dpram(), model, [](const Dpram& m) {
           return Outputs{{"cpu_rdata", m.cpu_rdata()},
                          {"cpu_busy", m.cpu_busy()},
                          {"mem_rdata", m.mem_rdata()},
                          {"mem_busy", m.mem_busy()},
                          {"host_busy", m.host_busy()}};
-        }) {}
+        }) {
+    both.in.small = small;
+  }
 
   Dpram model;
   Lockstep<Dpram> both;

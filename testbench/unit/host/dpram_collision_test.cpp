@@ -6,7 +6,7 @@ namespace {
 
 class DpramCollisionTest : public ::testing::Test, protected DpramBench {
  protected:
-  DpramCollisionTest() : DpramBench(make_rtl_dpram(), 32768) {
+  DpramCollisionTest() {
     host_write(8, 0x0101);
     host_write(9, 0x0909);
   }

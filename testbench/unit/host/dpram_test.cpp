@@ -5,7 +5,6 @@ namespace {
 
 class DpramTest : public ::testing::Test, protected DpramBench {
  protected:
-  DpramTest() : DpramBench(make_rtl_dpram(), 32768) {}
   void TearDown() override {
     if (!both.mutate) { EXPECT_LOCKSTEP(both); }
   }
@@ -13,7 +12,7 @@ class DpramTest : public ::testing::Test, protected DpramBench {
 
 class DpramSmallTest : public ::testing::Test, protected DpramBench {
  protected:
-  DpramSmallTest() : DpramBench(make_rtl_dpram_8k(), 8192) {}
+  DpramSmallTest() : DpramBench(true) {}
   void TearDown() override { EXPECT_LOCKSTEP(both); }
 };
 

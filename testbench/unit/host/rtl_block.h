@@ -27,8 +27,7 @@ class RtlBlock {
 std::unique_ptr<RtlBlock<InterruptControllerInputs>> make_rtl_interrupt_controller();
 std::unique_ptr<RtlBlock<HostSignalsInputs>> make_rtl_host_signals();
 std::unique_ptr<RtlBlock<HostPortInputs>> make_rtl_host_port();
-std::unique_ptr<RtlBlock<DpramInputs>> make_rtl_dpram();     // 32768 words
-std::unique_ptr<RtlBlock<DpramInputs>> make_rtl_dpram_8k();  // 8192 words
+std::unique_ptr<RtlBlock<DpramInputs>> make_rtl_dpram();
 std::unique_ptr<RtlBlock<IsaSlaveInputs>> make_rtl_isa_slave();
 std::unique_ptr<RtlBlock<IsaSlaveInputs>> make_rtl_isa_slave_variant();  // IoBase 0x310, window 0xE0000, ten-bit decode
 

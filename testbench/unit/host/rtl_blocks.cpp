@@ -1,7 +1,6 @@
 #include <functional>
 
 #include "Vdpram.h"
-#include "Vdpram_8k.h"
 #include "Vhost_port.h"
 #include "Vhost_signals.h"
 #include "Vinterrupt_controller.h"
@@ -60,6 +59,7 @@ template <class V>
 std::unique_ptr<RtlBlock<DpramInputs>> make_dpram() {
   return std::make_unique<Verilated<V, DpramInputs>>(
       [](V& v, const DpramInputs& in) {
+        v.small_i = in.small;
         v.cpu_sel_i = in.cpu_sel;
         v.cpu_x_i = in.cpu_x;
         v.cpu_addr_i = in.cpu_addr;
@@ -158,7 +158,6 @@ std::unique_ptr<RtlBlock<HostPortInputs>> make_rtl_host_port() {
 }
 
 std::unique_ptr<RtlBlock<DpramInputs>> make_rtl_dpram() { return make_dpram<Vdpram>(); }
-std::unique_ptr<RtlBlock<DpramInputs>> make_rtl_dpram_8k() { return make_dpram<Vdpram_8k>(); }
 std::unique_ptr<RtlBlock<IsaSlaveInputs>> make_rtl_isa_slave() { return make_isa_slave<Visa_slave>(); }
 std::unique_ptr<RtlBlock<IsaSlaveInputs>> make_rtl_isa_slave_variant() { return make_isa_slave<Visa_slave_variant>(); }
 

@@ -75,7 +75,8 @@ TEST(TlmSockets, HostSignalsAndMemoryHoldWhatIsWritten) {
   EXPECT_TRUE(signals.breq());
   EXPECT_FALSE(signals.ipos());
   EXPECT_EQ(read<std::uint32_t>(signals.socket, 0), 2u);
-  Dpram dpram("dpram", 8192);
+  Dpram dpram("dpram");
+  dpram.in.small = true;
   dpram.reset(0);
   write<std::uint16_t>(dpram.socket, 16382, 0xBEEF);
   EXPECT_EQ(read<std::uint16_t>(dpram.socket, 16382), 0xBEEF);
@@ -84,7 +85,8 @@ TEST(TlmSockets, HostSignalsAndMemoryHoldWhatIsWritten) {
 TEST(TlmSockets, BadPayloadsGetErrorResponses) {
   HostPort port("host_port");
   InterruptController pic("pic");
-  Dpram dpram("dpram", 8192);
+  Dpram dpram("dpram");
+  dpram.in.small = true;
   sc_core::sc_time delay;
   std::uint8_t byte = 0;
   std::uint16_t half = 0;

@@ -1,0 +1,27 @@
+// Control panel port JPAN of Turbo PMAC boards: sixteen asynchronous low-true inputs through two flip-flops on clk_ref_i, so that
+// the firmware never reads a level that is just changing. Reset: nothing pulled low. docs/boards.md.
+`default_nettype none
+
+module panel_port (
+  input  wire logic        clk_ref_i,
+  input  wire logic        rst_ni,
+  input  wire logic [15:0] jpan_i,  // JOG-, JOG+, PREJ, STRT, STEP, STOP, HOME, HOLD, FPD0..FPD3 from bit 0 up; 15..12 spare
+  output logic [15:0]      rdata_o
+);
+
+  logic [15:0] jpan1_q, jpan2_q;
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      jpan1_q <= 16'hFFFF;
+      jpan2_q <= 16'hFFFF;
+    end else begin
+      jpan1_q <= jpan_i;
+      jpan2_q <= jpan1_q;
+    end
+  end
+
+  assign rdata_o = jpan2_q;
+
+endmodule : panel_port
+
+`default_nettype wire

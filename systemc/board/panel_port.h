@@ -1,0 +1,33 @@
+// Model of rtl/board/panel_port.sv: the control panel inputs through two stages on clk_ref.
+#pragma once
+
+#include <cstdint>
+
+#include <systemc>
+
+#include "systemc/host/ref_clocked_block.h"
+
+namespace brick {
+
+class PanelPort : public sc_core::sc_module, public RefClockedBlock {
+ public:
+  explicit PanelPort(const sc_core::sc_module_name& name) : sc_module(name) {}
+
+  std::uint16_t jpan = kIdle;  // input pins
+
+  std::uint16_t rdata() const { return jpan2_; }
+
+ private:
+  static constexpr std::uint16_t kIdle = 0xFFFF;
+
+  bool idle() const override { return jpan == jpan1_ && jpan1_ == jpan2_; }
+  void step() override {
+    jpan2_ = jpan1_;
+    jpan1_ = jpan;
+  }
+  void reset_registers() override { jpan1_ = jpan2_ = kIdle; }
+
+  std::uint16_t jpan1_ = kIdle, jpan2_ = kIdle;
+};
+
+}  // namespace brick
