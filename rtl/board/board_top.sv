@@ -105,21 +105,32 @@ module board_top #(
   logic [5:0] int_addr;
   assign rd_done_int = bus_rd_done & bus_rd_int;
   assign int_addr    = rd_done_int ? bus_rd_addr[5:0] : bus_addr[5:0];
-  logic unused_rd;
-  assign unused_rd = &{1'b0, bus_rd_addr[18:6], bus_rd_x, bus_rd_aa};
+  logic        rd_any, rd_int, rd_signals, rd_strobe, unused_rd;
+  logic [21:0] rd_ic;
+  address_decode u_read_decode (
+    .addr_i(bus_rd_addr), .x_i(bus_rd_x), .aa_i(bus_rd_aa), .int_i(bus_rd_int), .fitted_i(fitted_q & IcMask),
+    .sel_any_o(rd_any), .sel_int_o(rd_int), .sel_signals_o(rd_signals), .sel_strobe_o(rd_strobe), .sel_ic_o(rd_ic)
+  );
+  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_ic};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
   logic [22*24-1:0] ic_rdata;
 
+  // Motor-side pins are not on the board's edge yet: inputs show what pull-ups show (T, U, V, W, USER, B), outputs end here.
   for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
     if (ServoIcMask[i]) begin : gen_built
+      logic [51:0] unused_pins;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
         .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
+        .read_done_i(bus_rd_done & rd_ic[i]), .read_x_i(bus_rd_x), .read_addr_i(bus_rd_addr[4:0]),
         .rdata_o(ic_rdata[24*i+:24]),
         .phase_i(phase_o), .servo_i(servo_o),
-        .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i])
+        .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i]),
+        .trip_i(wd_tripped_o), .pins_i({4{12'hF82}}), .adc_a_i(4'h0), .adc_b_i(4'h0),
+        .pwm_o(unused_pins[23:0]), .pulse_o(unused_pins[27:24]), .dir_o(unused_pins[31:28]), .dac_a_o(unused_pins[35:32]),
+        .dac_b_o(unused_pins[39:36]), .aena_o(unused_pins[43:40]), .equ_o(unused_pins[47:44]), .serial_o(unused_pins[51:48])
       );
     end else begin : gen_absent
       assign ic_rdata[24*i+:24] = 24'h0;

@@ -25,6 +25,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
   for (unsigned i = 0; i < kServoIcs; ++i) {
     if ((built_ >> i & 1) == 0) continue;
     servo_ic_[i] = std::make_unique<ServoIc>(("servo_ic" + std::to_string(i)).c_str());
+    for (unsigned channel = 0; channel < ServoChannels::kChannels; ++channel) servo_ic_[i]->set_channel_pins(channel, kIdlePins);
     block_[blocks_++] = servo_ic_[i].get();
   }
   for (unsigned i = 0; i < kMacroIcs; ++i) {
@@ -65,6 +66,8 @@ void BoardTop::execute(Tick t) {
   const std::uint32_t wdata = bus_sync_.wdata();
   if (ref && select_.any) rdata_ = read_data();
   const int written_ic = select_.ic;
+  const BusSync::Where read = bus_sync_.rd_where();
+  const int read_ic = ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & built_).ic : -1;
 
   advance_all(t);
   from_dpram_ = dpram_.in.cpu_sel;
@@ -73,6 +76,7 @@ void BoardTop::execute(Tick t) {
     macro_gate_ = macro_gates();
     ext_clock_ = inputs_.ext_clock;
   }
+  if (read_ic >= 0 && read_ic < static_cast<int>(kServoIcs)) servo_ic_[static_cast<unsigned>(read_ic)]->read_done(read.x, read.addr & 31);
   if (write_ic) write_gate_ic(static_cast<unsigned>(written_ic), where, wdata);
   now_ = t;
   connect();
@@ -126,8 +130,11 @@ void BoardTop::connect_clocks() {
   clock_select_.ext_phase = inputs_.ext_phase;
   clock_select_.ext_servo = inputs_.ext_servo;
 
-  for (auto& ic : servo_ic_)
-    if (ic != nullptr) ic->set_pins(clock_select_.phase(), clock_select_.servo());
+  for (auto& ic : servo_ic_) {
+    if (ic == nullptr) continue;
+    ic->set_pins(clock_select_.phase(), clock_select_.servo());
+    ic->set_trip(watchdog_.trip());
+  }
   for (const auto& ic : macro_ic_)
     if (ic != nullptr) ic->set_pins(clock_select_.phase(), clock_select_.servo());
   watchdog_.servo = clock_select_.servo();
@@ -238,6 +245,8 @@ Tick BoardTop::next_event() const {
   Tick next = kNever;
   for (unsigned i = 0; i < blocks_; ++i) next = std::min(next, block_[i]->next_event());
   if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
+  if (select_.ic >= 0 && select_.ic < static_cast<int>(kServoIcs))
+    next = std::min(next, servo_ic_[static_cast<unsigned>(select_.ic)]->next_word_event());
   if (straps_move()) next = std::min(next, next_ref_edge(now_));
   if (select_.any && next > next_ref_edge(now_) && read_data() != rdata_) next = next_ref_edge(now_);
   return next;

@@ -43,6 +43,7 @@ class BoardTop : public sc_core::sc_module, public Board {
 
  private:
   static constexpr unsigned kServoIcs = 18, kMacroIcs = 4;
+  static constexpr unsigned kIdlePins = 0xF82;  // T, U, V, W, USER and B pulled up; motor-side pins are not on the board's edge yet
 
   void reset_all(Tick t);
   void advance_all(Tick t);

@@ -50,6 +50,8 @@ class ServoChannel {
 
   // SCLK. A settled channel changes nothing but T2.
   bool settled() const { return settle_ >= kSettled; }
+  // The next edge of clk_ref does nothing by itself: no bit of the control word falls back, the held counter is 0.
+  bool quiet(Tick now) const { return now >= equ_write_until_ && !(hold() && (counter_.counter() != 0 || error_)); }
   bool uses_channel1() const { return bit(13); }
   void skip_sclk(std::int64_t periods) { counter_.skip(periods); }
   ChannelPosition position() const { return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false}; }  // settled

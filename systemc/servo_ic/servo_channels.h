@@ -69,6 +69,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
 
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
   Tick next_event() const override;
+  Tick next_word_event() const;   // first edge after which a word of a channel may read differently
   void advance(Tick t) override;  // not beyond the end of the line
   void reset(Tick t) override;
 
