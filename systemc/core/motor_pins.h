@@ -11,7 +11,7 @@
 namespace brick {
 
 constexpr unsigned kMaxServoIcs = 18;  // that can be addressed: 0..9, then 2*..9*; index as in BoardInputs::fitted
-constexpr unsigned kChannels = 4;   // of a servo IC
+constexpr unsigned kChannels = 4;      // of a servo IC
 
 // Input pins of a channel, bits as in status word bits 23..12.
 enum ChannelPin : unsigned { kEncA, kEncB, kEncC, kFault, kHmfl, kPlim, kMlim, kUser, kW, kV, kU, kT, kChannelPins };
