@@ -12,7 +12,7 @@ module channel_input (
   output logic             ready_o   // the filter holds pin levels only, and so does whoever remembers level_o for one SCLK
 );
 
-  logic [11:0] sync1_q, sync2_q, s0_q, s1_q, s2_q;
+  logic [11:0] sync1_q, sync2_q, s0_q, s1_q, level_q;
   logic [3:0]  filled_q;
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
@@ -29,12 +29,12 @@ module channel_input (
     if (!rst_ni) begin
       s0_q     <= 12'd0;
       s1_q     <= 12'd0;
-      s2_q     <= 12'd0;
+      level_q  <= 12'd0;
       filled_q <= 4'd0;
     end else if (ce_i) begin
       s0_q     <= sync2_q;
       s1_q     <= s0_q;
-      s2_q     <= s1_q;
+      level_q  <= (sync2_q & s0_q) | (sync2_q & s1_q) | (s0_q & s1_q);  // of the last three samples, this one included
       filled_q <= {filled_q[2:0], 1'b1};
     end
   end
@@ -46,7 +46,7 @@ module channel_input (
     else if (ce_i && filled_q[3])  ready_q <= 1'b1;
   end
 
-  assign level_o = (s0_q & s1_q) | (s0_q & s2_q) | (s1_q & s2_q);
+  assign level_o = level_q;
   assign ready_o = ready_q;
 
 endmodule : channel_input
