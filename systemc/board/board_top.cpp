@@ -157,8 +157,9 @@ void BoardTop::connect_host() {
   isa.pic_rdata = interrupt_controller_.rdata();
 
   // IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up.
-  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | gate_ics_.equ(0) << 5 |
-                                       gate_ics_.equ(1) << 6 | watchdog_.trip() << 7);
+  const unsigned equ = gate_ics_.equ() & fitted_;
+  pic.line =
+      static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | equ << 5 | watchdog_.trip() << 7);
 }
 
 BoardOutputs BoardTop::pins() const {

@@ -55,7 +55,7 @@ class GateIcs {
   const ClockSelect::Drivers& drivers() const { return drivers_; }
   std::uint32_t phase_levels() const { return phase_levels_; }
   std::uint32_t servo_levels() const { return servo_levels_; }
-  bool equ(unsigned ic) const { return (equ_ >> ic & 1) != 0; }  // EQU of channel 1 of servo IC 0 or 1
+  std::uint32_t equ() const { return equ_; }  // EQU of channel 1, bit 0 and 1 for servo IC 0 and 1
   MotorOutputs motor_outputs(unsigned ic, Tick now) const;
   void watch(std::uint32_t servo_ics, Tick now);
   // Watched ICs whose outputs may have changed since the last call.
