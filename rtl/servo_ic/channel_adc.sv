@@ -15,15 +15,14 @@ module channel_adc #(
 );
 
   logic [17:0] word_q, value_q;
-  logic [4:0]  number;
-  assign number = bit_i - Latency;  // wraps to large numbers before the first bit
+  localparam logic [4:0] Last = Latency + 5'd17;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       word_q  <= 18'd0;
       value_q <= 18'd0;
     end else begin
-      if (sample_i && number < 5'd18) word_q <= {word_q[16:0], data_i};
+      if (sample_i && bit_i >= Latency && bit_i <= Last) word_q <= {word_q[16:0], data_i};
       if (phase_fall_i) value_q <= word_q;
     end
   end

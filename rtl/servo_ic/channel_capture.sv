@@ -25,26 +25,31 @@ module channel_capture (
   output logic [2:0]       hall_o
 );
 
-  logic index, flag, hall_mode, term, term_q, trigger;
-  logic [2:0] hall_last_q;
-  assign index     = index_i ^ index_inv_i;
-  assign flag      = flags_i[flag_select_i] ^ flag_inv_i;
+  logic        armed_q, captured_q, captured_gi_q, term_q;
+  logic [2:0]  hall_last_q, hall_q;
+  logic [23:0] position_q;
+  logic [11:0] fraction_q;
+
+  logic index, flag, hall_mode, term, trigger;
   assign hall_mode = gated_i & ~source_i[0];
 
   always_comb begin
-    case (source_i)
-      2'd0:    term = index_inv_i;
-      2'd1:    term = index;
-      2'd2:    term = flag;
-      default: term = index & flag;
-    endcase
+    index   = 1'b0;
+    flag    = 1'b0;
+    term    = 1'b0;
+    trigger = 1'b0;
+    if (ce_i) begin
+      index = index_i ^ index_inv_i;
+      flag  = flags_i[flag_select_i] ^ flag_inv_i;
+      case (source_i)
+        2'd0:    term = index_inv_i;
+        2'd1:    term = index;
+        2'd2:    term = flag;
+        default: term = index & flag;
+      endcase
+      trigger = ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
+    end
   end
-
-  logic armed_q, captured_q, captured_gi_q;
-  logic [23:0] position_q;
-  logic [11:0] fraction_q;
-  logic [2:0]  hall_q;
-  assign trigger = ce_i & ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -14,10 +14,8 @@ module channel_compare (
   input  wire logic        hold_i,       // the source is held at 0
   input  wire logic [23:0] counter_i,    // position of the source before this edge
   input  wire logic [11:0] fraction_i,
-  input  wire logic [4:0]  we_i,         // bit 0 A, 1 B, 2 increment, 3 fraction of A, 4 fraction of B
+  input  wire logic [5:0]  we_i,         // bit 0 A, 1 B, 2 increment, 3 fraction of A, 4 fraction of B, 5 EQU
   input  wire logic [23:0] wdata_i,
-  input  wire logic        equ_we_i,
-  input  wire logic        equ_i,
   output logic [23:0]      a_o,
   output logic [23:0]      b_o,
   output logic [23:0]      inc_o,
@@ -31,22 +29,33 @@ module channel_compare (
   logic        equ_q;
 
   // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is now.
-  logic [35:0] pos, last_q, delta, back, a_ahead, b_ahead;
-  logic        known_q, other_q, moved, backwards, pass_a, pass_b;
-  assign pos       = {counter_i, fraction_i};
-  assign delta     = pos - last_q;
-  assign back      = last_q - pos;
-  assign backwards = delta[35];
-  assign a_ahead   = backwards ? last_q - {a_q, af_q} : {a_q, af_q} - last_q;
-  assign b_ahead   = backwards ? last_q - {b_q, bf_q} : {b_q, bf_q} - last_q;
-  assign moved     = ce_i & known_q & ~hold_i & (other_i == other_q);
-  assign pass_a    = moved & (a_ahead < (backwards ? back : delta));
-  assign pass_b    = moved & (b_ahead < (backwards ? back : delta));
-
-  logic hit_a, hit_b, down;
-  assign hit_a = fine_i ? pass_a : count_i & (counter_i == a_q);
-  assign hit_b = fine_i ? pass_b : count_i & (counter_i == b_q);
-  assign down  = fine_i ? backwards : down_i;
+  logic [35:0] last_q, pos, way, a_ahead, b_ahead;
+  logic        known_q, other_q, hit_a, hit_b, down;
+  always_comb begin
+    pos     = 36'd0;
+    way     = 36'd0;
+    a_ahead = 36'd0;
+    b_ahead = 36'd0;
+    hit_a   = 1'b0;
+    hit_b   = 1'b0;
+    down    = 1'b0;
+    if (fine_i) begin
+      pos = {counter_i, fraction_i};
+      if (ce_i && known_q && !hold_i && other_i == other_q) begin
+        way     = pos - last_q;
+        down    = way[35];
+        way     = down ? last_q - pos : way;
+        a_ahead = down ? last_q - {a_q, af_q} : {a_q, af_q} - last_q;
+        b_ahead = down ? last_q - {b_q, bf_q} : {b_q, bf_q} - last_q;
+        hit_a   = a_ahead < way;
+        hit_b   = b_ahead < way;
+      end
+    end else if (count_i) begin
+      hit_a = counter_i == a_q;
+      hit_b = counter_i == b_q;
+      down  = down_i;
+    end
+  end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -60,17 +69,19 @@ module channel_compare (
       known_q <= 1'b0;
       other_q <= 1'b0;
     end else begin
-      if (we_i[0])    a_q <= wdata_i;
-      else if (hit_b) a_q <= down ? a_q - inc_q : a_q + inc_q;
-      if (we_i[1])    b_q <= wdata_i;
-      else if (hit_a) b_q <= down ? b_q - inc_q : b_q + inc_q;
-      if (we_i[2])    inc_q <= wdata_i;
-      if (we_i[3])    af_q <= wdata_i[11:0];
-      if (we_i[4])    bf_q <= wdata_i[11:0];
-      if (equ_we_i)   equ_q <= equ_i;
-      else            equ_q <= equ_q ^ hit_a ^ hit_b;
+      if (hit_b) a_q <= down ? a_q - inc_q : a_q + inc_q;
+      if (hit_a) b_q <= down ? b_q - inc_q : b_q + inc_q;
+      if (hit_a != hit_b) equ_q <= ~equ_q;
+      if (we_i != 6'd0) begin
+        if (we_i[0]) a_q   <= wdata_i;
+        if (we_i[1]) b_q   <= wdata_i;
+        if (we_i[2]) inc_q <= wdata_i;
+        if (we_i[3]) af_q  <= wdata_i[11:0];
+        if (we_i[4]) bf_q  <= wdata_i[11:0];
+        if (we_i[5]) equ_q <= wdata_i[12];
+      end
       if (ce_i) begin
-        last_q  <= fine_i ? pos : 36'd0;
+        if (fine_i) last_q <= pos;
         known_q <= fine_i & ~hold_i;
         other_q <= other_i;
       end

@@ -7,14 +7,14 @@ module channel_counter (
   input  wire logic        rst_ni,
   input  wire logic        ce_i,          // SCLK
   input  wire logic        hold_i,        // counter reset
-  input  wire logic        count_i,
+  input  wire logic        count_i,       // at SCLK only
   input  wire logic        down_i,
   input  wire logic        mark_i,        // MLDT: clears T2; copies T2 to T1
   input  wire logic        echo_i,
   input  wire logic        phase_fall_i,
   input  wire logic        servo_fall_i,
   output logic [23:0]      counter_o,
-  output logic [23:0]      counter_d_o,   // after this edge
+  output logic [23:0]      counter_d_o,   // after this edge, at SCLK only
   output logic             down_o,        // direction of the last count
   output logic [22:0]      t1_o,
   output logic [23:0]      phase_pos_o,   // X:+1
@@ -25,24 +25,17 @@ module channel_counter (
 
   localparam logic [22:0] TimerMax = 23'h7FFFFF;
 
-  logic [23:0] counter_d, counter_q, t1_d, t1_q, phase_pos_q, servo_pos_q, servo_t1_q;
-  logic [22:0] t2_d, t2_q, t2_next, servo_t2_q;
+  logic [23:0] counter_d, counter_q, t1_q, phase_pos_q, servo_pos_q, servo_t1_q;
+  logic [22:0] t2_next, t2_q, servo_t2_q;
   logic        down_q;
 
-  assign t2_next = t2_q == TimerMax ? TimerMax : t2_q + 23'd1;
-
   always_comb begin
-    counter_d = counter_q;
-    t1_d      = t1_q;
-    t2_d      = t2_next;
-    if (hold_i)       counter_d = 24'd0;
-    else if (count_i) counter_d = down_i ? counter_q - 24'd1 : counter_q + 24'd1;
-    if (count_i) begin
-      t1_d = {down_i ^ down_q, t2_next};
-      t2_d = 23'd0;
+    counter_d = 24'd0;
+    t2_next   = 23'd0;
+    if (ce_i) begin
+      counter_d = hold_i ? 24'd0 : (!count_i ? counter_q : (down_i ? counter_q - 24'd1 : counter_q + 24'd1));
+      t2_next   = t2_q == TimerMax ? TimerMax : t2_q + 23'd1;
     end
-    if (echo_i) t1_d = {1'b0, t2_q};
-    if (mark_i) t2_d = 23'd0;
   end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
@@ -51,13 +44,14 @@ module channel_counter (
       t1_q      <= 24'd0;
       t2_q      <= 23'd0;
       down_q    <= 1'b0;
-    end else begin
+    end else if (ce_i) begin
       counter_q <= counter_d;
-      if (ce_i) begin
-        t1_q <= t1_d;
-        t2_q <= t2_d;
-      end
+      t2_q      <= mark_i || count_i ? 23'd0 : t2_next;
+      if (echo_i)       t1_q <= {1'b0, t2_q};
+      else if (count_i) t1_q <= {down_i ^ down_q, t2_next};
       if (count_i) down_q <= down_i;
+    end else if (hold_i) begin
+      counter_q <= 24'd0;
     end
   end
 

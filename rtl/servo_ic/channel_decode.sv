@@ -15,7 +15,7 @@ module channel_decode #(
   input  wire logic       pulse_i,       // PFM pulse since the last SCLK, and its sign
   input  wire logic       pulse_down_i,
   output logic            count_o,       // this edge counts
-  output logic            down_o,
+  output logic            down_o,        // only together with count_o
   output logic            error_o,       // this edge sees an illegal transition
   output logic            mark_o,        // MLDT: excitation, echo
   output logic            echo_o
@@ -27,81 +27,81 @@ module channel_decode #(
     else if (ce_i) last_q <= abc_i;
   end
 
-  // Position in the quadrature cycle 00, 10, 11, 01 of {A, B}.
-  logic [1:0] step;
-  logic       a_rises;
-  assign step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
-  assign a_rises = abc_i[0] & ~last_q[0];
-
   // Position in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}; 7 is no position.
+  function automatic logic [2:0] hall_position(input logic [2:0] cba);
+    case (cba)
+      3'b100:  hall_position = 3'd0;
+      3'b110:  hall_position = 3'd1;
+      3'b010:  hall_position = 3'd2;
+      3'b011:  hall_position = 3'd3;
+      3'b001:  hall_position = 3'd4;
+      3'b101:  hall_position = 3'd5;
+      default: hall_position = 3'd7;
+    endcase
+  endfunction
+
+  // Where neither a line changed nor the mode needs more than a change, there is nothing to decode.
+  logic look;
+  assign look = ce_i & ready_i & (abc_i != last_q | mode_i[3]);
+
+  logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
   logic [2:0] hall, last_hall;
-  logic       hall_up, hall_down, hall_jump;
+  logic       a_rises, hall_up, hall_down, hall_jump, count, down;
   always_comb begin
-    case (abc_i)  // {C, B, A}
-      3'b100:  hall = 3'd0;
-      3'b110:  hall = 3'd1;
-      3'b010:  hall = 3'd2;
-      3'b011:  hall = 3'd3;
-      3'b001:  hall = 3'd4;
-      3'b101:  hall = 3'd5;
-      default: hall = 3'd7;
-    endcase
-    case (last_q)
-      3'b100:  last_hall = 3'd0;
-      3'b110:  last_hall = 3'd1;
-      3'b010:  last_hall = 3'd2;
-      3'b011:  last_hall = 3'd3;
-      3'b001:  last_hall = 3'd4;
-      3'b101:  last_hall = 3'd5;
-      default: last_hall = 3'd7;
-    endcase
-  end
-  assign hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
-  assign hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
-  assign hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;
-
-  logic count, down, error;
-  always_comb begin
-    count = 1'b0;
-    down  = (step == 2'd3) ^ mode_i[2] ^ ~ALeadsUp;
-    error = 1'b0;
-    case (mode_i)
-      4'd0, 4'd4: begin
-        count = a_rises;
-        down  = ~abc_i[1] ^ mode_i[2];
-      end
-      4'd1, 4'd5: begin
-        count = step[0] & ~abc_i[1] & ~last_q[1];
-        error = step == 2'd2;
-      end
-      4'd2, 4'd6: begin
-        count = step[0] & (abc_i[0] ^ last_q[0]);
-        error = step == 2'd2;
-      end
-      4'd3, 4'd7: begin
-        count = step[0];
-        error = step == 2'd2;
-      end
-      4'd8: begin
-        count = pulse_i;
-        down  = pulse_down_i;
-      end
-      4'd11, 4'd15: begin
-        count = hall_up | hall_down;
-        down  = hall_down ^ mode_i[2];
-        error = hall == 3'd7 || hall_jump;
-      end
-      default: count = 1'b0;
-    endcase
+    step      = 2'd0;
+    a_rises   = 1'b0;
+    hall      = 3'd7;
+    last_hall = 3'd7;
+    hall_up   = 1'b0;
+    hall_down = 1'b0;
+    hall_jump = 1'b0;
+    count     = 1'b0;
+    down      = 1'b0;
+    error_o   = 1'b0;
+    if (look) begin
+      step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
+      a_rises = abc_i[0] & ~last_q[0];
+      down    = (step == 2'd3) ^ mode_i[2] ^ ~ALeadsUp;
+      case (mode_i)
+        4'd0, 4'd4: begin
+          count = a_rises;
+          down  = ~abc_i[1] ^ mode_i[2];
+        end
+        4'd1, 4'd5: begin
+          count   = step[0] & ~abc_i[1] & ~last_q[1];
+          error_o = step == 2'd2;
+        end
+        4'd2, 4'd6: begin
+          count   = step[0] & (abc_i[0] ^ last_q[0]);
+          error_o = step == 2'd2;
+        end
+        4'd3, 4'd7: begin
+          count   = step[0];
+          error_o = step == 2'd2;
+        end
+        4'd8: begin
+          count = pulse_i;
+          down  = pulse_down_i;
+        end
+        4'd11, 4'd15: begin
+          hall      = hall_position(abc_i);
+          last_hall = hall_position(last_q);
+          hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
+          hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
+          hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;
+          count     = hall_up | hall_down;
+          down      = hall_down ^ mode_i[2];
+          error_o   = hall == 3'd7 || hall_jump;
+        end
+        default: count = 1'b0;
+      endcase
+    end
   end
 
-  logic act;
-  assign act     = ce_i & ready_i;
-  assign count_o = act & count & ~hold_i;
+  assign count_o = count & ~hold_i;
   assign down_o  = down;
-  assign error_o = act & error;
-  assign mark_o  = act & (mode_i == 4'd12) & pulse_i;
-  assign echo_o  = act & (mode_i == 4'd12) & a_rises;
+  assign mark_o  = look & (mode_i == 4'd12) & pulse_i;
+  assign echo_o  = (mode_i == 4'd12) & a_rises;
 
 endmodule : channel_decode
 

@@ -12,7 +12,7 @@ module channel_index (
   input  wire logic        gate_low_i,   // I7mn5 bit 0
   input  wire logic        demux_i,      // I7mn5 bit 1
   output logic [11:0]      level_o,      // with C, U, V, W replaced while de-multiplexing
-  output logic             index_o,
+  output logic             index_o,      // at SCLK only
   output logic             incomplete_o, // not all four AB states seen since reset
   output logic             loss_o        // this edge sees an encoder loss
 );
@@ -22,11 +22,20 @@ module channel_index (
   assign a     = level_i[0];
   assign b     = level_i[1];
   assign c     = demux_i ? part_q[3] : level_i[2];
-  assign state = {a & b, a & ~b, ~a & ~b, ~a & b};
 
   logic equal, equal_q;
-  assign equal  = (level_i[11] == level_i[10]) | (level_i[9] == level_i[8]);
-  assign loss_o = ce_i & ready_i & equal & equal_q;
+  // Nobody looks at these between two SCLK edges.
+  always_comb begin
+    state   = 4'd0;
+    equal   = 1'b0;
+    index_o = 1'b0;
+    if (ce_i) begin
+      state   = {a & b, a & ~b, ~a & ~b, ~a & b};
+      equal   = (level_i[11] == level_i[10]) | (level_i[9] == level_i[8]);
+      index_o = gated_i ? c & (gate_low_i ? ~a & ~b : a & b) : c;
+    end
+  end
+  assign loss_o = ready_i & equal & equal_q;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -41,7 +50,6 @@ module channel_index (
   end
 
   assign level_o      = {level_i[11], demux_i ? part_q[2:0] : level_i[10:8], level_i[7:3], c, level_i[1:0]};
-  assign index_o      = gated_i ? c & (gate_low_i ? ~a & ~b : a & b) : c;
   assign incomplete_o = seen_q != 4'hF;
 
 endmodule : channel_index

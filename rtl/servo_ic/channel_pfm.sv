@@ -17,16 +17,20 @@ module channel_pfm (
 
   // At most a quarter of PFM_CLK.
   localparam logic [23:0] Limit = 24'h400000;
-  logic [23:0] size, step;
-  assign size = command_i[23] ? -command_i : command_i;
-  assign step = size > Limit ? Limit : size;
-
-  logic [23:0] acc_q;
+  logic [23:0] acc_q, size, step;
   logic [24:0] sum;
   logic [7:0]  left_q;
-  logic        pulse_q, down_q, event_q, begins;
-  assign sum    = command_i[23] ? {1'b0, acc_q} - {1'b0, step} : {1'b0, acc_q} + {1'b0, step};
-  assign begins = run_i & pfm_ce_i & sum[24];
+  logic        pulse_q, down_q, event_q;
+  always_comb begin
+    size = 24'd0;
+    step = 24'd0;
+    sum  = 25'd0;
+    if (run_i && pfm_ce_i) begin
+      size = command_i[23] ? -command_i : command_i;
+      step = size > Limit ? Limit : size;
+      sum  = command_i[23] ? {1'b0, acc_q} - {1'b0, step} : {1'b0, acc_q} + {1'b0, step};
+    end
+  end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -36,17 +40,17 @@ module channel_pfm (
       down_q  <= 1'b0;
       event_q <= 1'b0;
     end else begin
-      if (begins)         event_q <= 1'b1;
-      else if (sclk_ce_i) event_q <= 1'b0;
+      if (sclk_ce_i) event_q <= 1'b0;
       if (!run_i) begin
         left_q  <= 8'd0;
         pulse_q <= 1'b0;
       end else if (pfm_ce_i) begin
         acc_q <= sum[23:0];
-        if (begins) begin
+        if (sum[24]) begin
           left_q  <= width_i == 8'd0 ? 8'd0 : width_i - 8'd1;
           pulse_q <= 1'b1;
           down_q  <= command_i[23];
+          event_q <= 1'b1;
         end else if (left_q != 8'd0) begin
           left_q <= left_q - 8'd1;
         end else begin

@@ -1,5 +1,5 @@
-// One PWM output: command against the triangle counter, dead time between the top and the bottom switch. A new command is used
-// from the turnaround on. Clock clk_pwm_i, asynchronous reset. docs/servo_channel.md, PWM.
+// The PWM outputs of a channel, phases A, B, C: command against the triangle counter, dead time between the top and the bottom
+// switch. A new command is used from the turnaround on. Clock clk_pwm_i, asynchronous reset. docs/servo_channel.md, PWM.
 `default_nettype none
 
 module channel_pwm (
@@ -8,44 +8,52 @@ module channel_pwm (
   input  wire logic [16:0] cnt_i,       // triangle counter, signed
   input  wire logic        turn_i,      // this edge leaves a turnaround
   input  wire logic [7:0]  deadtime_i,  // in units of 16 clk
-  input  wire logic [15:0] command_i,
-  output logic             top_o,
-  output logic             bot_o
+  input  wire logic [15:0] command_a_i,
+  input  wire logic [15:0] command_b_i,
+  input  wire logic [15:0] command_c_i,
+  output logic [5:0]       switch_o     // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
 );
 
   localparam logic [11:0] WaitReset = 12'd240;
 
-  logic [15:0] command_q;
-  logic [11:0] wait_q;
-  logic        raw, raw_q, top_q, bot_q;
-  assign raw = $signed({command_q[15], command_q}) > $signed(cnt_i);
+  // Counter and commands are compared with their sign bit turned over, as numbers without a sign.
+  logic [16:0] cnt, command_a_q, command_b_q, command_c_q;
+  logic [35:0] wait_q;
+  logic [5:0]  switch_q;
+  logic [2:0]  raw, raw_q;
+  assign cnt    = {~cnt_i[16], cnt_i[15:0]};
+  assign raw    = {command_c_q > cnt, command_b_q > cnt, command_a_q > cnt};
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      command_q <= 16'd0;
-      raw_q     <= 1'b0;
-      wait_q    <= WaitReset;
-      top_q     <= 1'b0;
-      bot_q     <= 1'b0;
+      command_a_q <= 17'h10000;
+      command_b_q <= 17'h10000;
+      command_c_q <= 17'h10000;
+      raw_q       <= 3'd0;
+      wait_q      <= {3{WaitReset}};
+      switch_q    <= 6'd0;
     end else begin
-      if (turn_i) command_q <= command_i;
-      if (raw != raw_q) begin
-        raw_q  <= raw;
-        wait_q <= {deadtime_i, 4'd0};
-        top_q  <= raw & (deadtime_i == 8'd0);
-        bot_q  <= ~raw & (deadtime_i == 8'd0);
-      end else if (wait_q != 12'd0) begin
-        wait_q <= wait_q - 12'd1;
-        if (wait_q == 12'd1) begin
-          top_q <= raw;
-          bot_q <= ~raw;
+      if (turn_i) begin
+        command_a_q <= {~command_a_i[15], command_a_i};
+        command_b_q <= {~command_b_i[15], command_b_i};
+        command_c_q <= {~command_c_i[15], command_c_i};
+      end
+      if (raw != raw_q || wait_q != 36'd0) begin  // rarely: a simulator passes over the rest
+        raw_q <= raw;
+        for (int unsigned k = 0; k < 3; k++) begin
+          if (raw[k] != raw_q[k]) begin
+            wait_q[12*k+:12]  <= {deadtime_i, 4'd0};
+            switch_q[2*k+:2]  <= {~raw[k], raw[k]} & {2{deadtime_i == 8'd0}};
+          end else if (wait_q[12*k+:12] != 12'd0) begin
+            wait_q[12*k+:12] <= wait_q[12*k+:12] - 12'd1;
+            if (wait_q[12*k+:12] == 12'd1) switch_q[2*k+:2] <= {~raw[k], raw[k]};
+          end
         end
       end
     end
   end
 
-  assign top_o = top_q;
-  assign bot_o = bot_q;
+  assign switch_o = switch_q;
 
 endmodule : channel_pwm
 

@@ -8,17 +8,17 @@ module channel_regs (
   // bus: we_i is high for the one clk_ref edge that writes
   input  wire logic        x_i,
   input  wire logic [2:0]  addr_i,
+  input  wire logic        sel_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
-  output logic [23:0]      rdata_o,
+  output logic [23:0]      rdata_o,       // 0 when not selected
   input  wire logic        trip_i,        // outputs ignore writes
   // written words
   output logic [23:0]      control_o,
   output logic [23:0]      out_a_o,
   output logic [23:0]      out_b_o,
   output logic [23:0]      out_c_o,
-  output logic [4:0]       compare_we_o,  // A, B, increment, fraction of A, fraction of B
-  output logic             equ_we_o,
+  output logic [5:0]       compare_we_o,  // A, B, increment, fraction of A, fraction of B, EQU
   // read words
   input  wire logic [11:0] level_i,
   input  wire logic        error_i,       // this edge sees an illegal transition, an encoder loss
@@ -46,16 +46,28 @@ module channel_regs (
 
   logic [23:0] control_q, out_a_q, out_b_q, out_c_q;
   logic        error_q, loss_q, fine, we_status, we_control;
-  assign fine       = control_q[18];
-  assign we_status  = we_i & x_i & (addr_i == 3'd0);
-  assign we_control = we_i & x_i & (addr_i == 3'd5);
+  assign fine = control_q[18];
 
-  assign equ_we_o        = we_control & wdata_i[11];
-  assign compare_we_o[0] = we_i & ~x_i & (addr_i == 3'd7);
-  assign compare_we_o[1] = we_i & x_i & (addr_i == 3'd7);
-  assign compare_we_o[2] = we_i & x_i & (addr_i == 3'd6);
-  assign compare_we_o[3] = we_i & ~x_i & (addr_i == 3'd1) & fine;
-  assign compare_we_o[4] = we_i & ~x_i & (addr_i == 3'd0) & fine;
+  always_comb begin
+    we_status    = 1'b0;
+    we_control   = 1'b0;
+    compare_we_o = 6'd0;
+    if (we_i) begin
+      case ({x_i, addr_i})
+        4'd0:    compare_we_o[4] = fine;
+        4'd1:    compare_we_o[3] = fine;
+        4'd7:    compare_we_o[0] = 1'b1;
+        4'd8:    we_status       = 1'b1;
+        4'd13: begin
+          we_control      = 1'b1;
+          compare_we_o[5] = wdata_i[11];
+        end
+        4'd14:   compare_we_o[2] = 1'b1;
+        4'd15:   compare_we_o[1] = 1'b1;
+        default: we_status = 1'b0;
+      endcase
+    end
+  end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -66,41 +78,43 @@ module channel_regs (
       error_q   <= 1'b0;
       loss_q    <= 1'b0;
     end else begin
-      if (we_control) control_q     <= wdata_i;
-      else            control_q[11] <= 1'b0;  // falls back by itself
+      if (we_control)         control_q     <= wdata_i;
+      else if (control_q[11]) control_q[11] <= 1'b0;  // falls back by itself
       if (we_i && !x_i && !trip_i) begin
         if (addr_i == 3'd2) out_a_q <= wdata_i;
         if (addr_i == 3'd3) out_b_q <= wdata_i;
         if (addr_i == 3'd4) out_c_q <= wdata_i;
       end
       // Any write clears the error, a 0 clears the loss; both come back with the next SCLK if the cause lasts.
-      error_q <= (error_q | error_i) & ~we_status & ~control_q[10];
-      loss_q  <= (loss_q | loss_i) & ~(we_status & ~wdata_i[7]);
+      if (we_status || control_q[10])   error_q <= 1'b0;
+      else if (error_i)                 error_q <= 1'b1;
+      if (we_status && !wdata_i[7])     loss_q  <= 1'b0;
+      else if (loss_i)                  loss_q  <= 1'b1;
     end
   end
 
-  logic [23:0] status;
-  assign status = {level_i, captured_i, captured_gi_i, equ_i, error_q, loss_q, 3'b000, incomplete_i, hall_i};
-
   always_comb begin
-    case ({x_i, addr_i})
-      4'd0:    rdata_o = fine ? {capture_fraction_i, b_fraction_i} : servo_t1_i;
-      4'd1:    rdata_o = fine ? {servo_fraction_i, a_fraction_i} : {1'b0, servo_t2_i};
-      4'd2:    rdata_o = out_a_q;
-      4'd3:    rdata_o = out_b_q;
-      4'd4:    rdata_o = out_c_q;
-      4'd5:    rdata_o = {adc_a_i, 6'd0};
-      4'd6:    rdata_o = {adc_b_i, 6'd0};
-      4'd7:    rdata_o = compare_a_i;
-      4'd8:    rdata_o = status;
-      4'd9:    rdata_o = phase_pos_i;
-      4'd10:   rdata_o = servo_pos_i;
-      4'd11:   rdata_o = capture_pos_i;
-      4'd13:   rdata_o = control_q;
-      4'd14:   rdata_o = compare_inc_i;
-      4'd15:   rdata_o = compare_b_i;
-      default: rdata_o = 24'd0;
-    endcase
+    rdata_o = 24'd0;
+    if (sel_i) begin
+      case ({x_i, addr_i})
+        4'd0:    rdata_o = fine ? {capture_fraction_i, b_fraction_i} : servo_t1_i;
+        4'd1:    rdata_o = fine ? {servo_fraction_i, a_fraction_i} : {1'b0, servo_t2_i};
+        4'd2:    rdata_o = out_a_q;
+        4'd3:    rdata_o = out_b_q;
+        4'd4:    rdata_o = out_c_q;
+        4'd5:    rdata_o = {adc_a_i, 6'd0};
+        4'd6:    rdata_o = {adc_b_i, 6'd0};
+        4'd7:    rdata_o = compare_a_i;
+        4'd8:    rdata_o = {level_i, captured_i, captured_gi_i, equ_i, error_q, loss_q, 3'b000, incomplete_i, hall_i};
+        4'd9:    rdata_o = phase_pos_i;
+        4'd10:   rdata_o = servo_pos_i;
+        4'd11:   rdata_o = capture_pos_i;
+        4'd13:   rdata_o = control_q;
+        4'd14:   rdata_o = compare_inc_i;
+        4'd15:   rdata_o = compare_b_i;
+        default: rdata_o = 24'd0;
+      endcase
+    end
   end
 
   assign control_o = control_q;

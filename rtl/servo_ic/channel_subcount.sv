@@ -20,35 +20,47 @@ module channel_subcount (
 
   logic        valid_q, full_q;
   logic [3:0]  steps_q;             // division steps to go
-  logic [12:0] quotient_q, sum_e;
+  logic [12:0] quotient_q;
   logic [22:0] remainder_q, rest_q; // 4096 mod T1; 4096 * added periods mod T1
   logic [11:0] e_q;
   logic [4:0]  lag_q;               // SCLK periods not yet added
 
-  // One division step: the dividend is a 1 followed by twelve 0s.
-  logic [23:0] shifted, t1;
-  logic        fits;
-  assign t1      = {1'b0, t1_i};
-  assign shifted = {remainder_q, steps_q == 4'd13};
-  assign fits    = shifted >= t1;
-
-  // One or two SCLK periods more.
-  logic        add, two;
-  logic [24:0] sum, rest;
+  logic        busy, fits, add, two;
+  logic [23:0] shifted;
+  logic [24:0] t1, sum, rest;
   logic [13:0] e_next;
+  assign busy = valid_q & ~full_q;
+
   always_comb begin
-    add    = valid_q & (steps_q == 4'd0) & (lag_q != 5'd0);
-    two    = lag_q > 5'd1;
-    sum    = {2'b00, rest_q} + (two ? {1'b0, remainder_q, 1'b0} : {2'b00, remainder_q});
-    sum_e  = {1'b0, e_q};
-    rest   = sum;
-    e_next = {1'b0, sum_e} + (two ? {quotient_q, 1'b0} : {1'b0, quotient_q});
-    if (sum >= {1'b0, t1_i, 1'b0}) begin
-      rest   = sum - {1'b0, t1_i, 1'b0};
-      e_next = e_next + 14'd2;
-    end else if (sum >= {1'b0, t1}) begin
-      rest   = sum - {1'b0, t1};
-      e_next = e_next + 14'd1;
+    shifted = 24'd0;
+    fits    = 1'b0;
+    add     = 1'b0;
+    two     = 1'b0;
+    t1      = 25'd0;
+    sum     = 25'd0;
+    rest    = 25'd0;
+    e_next  = 14'd0;
+    if (busy) begin
+      t1 = {2'b00, t1_i};
+      if (steps_q != 4'd0) begin
+        // One division step: the dividend is a 1 followed by twelve 0s.
+        shifted = {remainder_q, steps_q == 4'd13};
+        fits    = {1'b0, shifted} >= t1;
+      end else if (lag_q != 5'd0) begin
+        // One or two SCLK periods more.
+        add    = 1'b1;
+        two    = lag_q > 5'd1;
+        sum    = {2'b00, rest_q} + (two ? {1'b0, remainder_q, 1'b0} : {2'b00, remainder_q});
+        rest   = sum;
+        e_next = {2'b00, e_q} + (two ? {quotient_q, 1'b0} : {1'b0, quotient_q});
+        if (sum >= {t1[23:0], 1'b0}) begin
+          rest   = sum - {t1[23:0], 1'b0};
+          e_next = e_next + 14'd2;
+        end else if (sum >= t1) begin
+          rest   = sum - t1;
+          e_next = e_next + 14'd1;
+        end
+      end
     end
   end
 
@@ -56,13 +68,13 @@ module channel_subcount (
     if (!rst_ni) begin
       valid_q     <= 1'b0;
       full_q      <= 1'b0;
-      steps_q     <= 4'd0;
+      steps_q     <= 4'd13;
       quotient_q  <= 13'd0;
       remainder_q <= 23'd0;
       rest_q      <= 23'd0;
       e_q         <= 12'd0;
       lag_q       <= 5'd0;
-    end else if (count_i || echo_i || !enable_i) begin
+    end else if (count_i || echo_i || (!enable_i && valid_q)) begin  // what is not valid is clear already
       valid_q     <= enable_i & count_i & ~reversed_i;
       full_q      <= 1'b0;
       steps_q     <= 4'd13;
@@ -71,7 +83,7 @@ module channel_subcount (
       rest_q      <= 23'd0;
       e_q         <= 12'd0;
       lag_q       <= 5'd0;
-    end else if (valid_q && !full_q) begin
+    end else if (busy) begin
       if (steps_q != 4'd0) begin
         steps_q     <= steps_q - 4'd1;
         quotient_q  <= {quotient_q[11:0], fits};

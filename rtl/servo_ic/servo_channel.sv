@@ -1,5 +1,5 @@
-// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only the pin
-// synchronisers and the PWM run on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
+// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only the PWM
+// runs on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
 `default_nettype none
 
 module servo_channel (
@@ -9,10 +9,11 @@ module servo_channel (
   // bus
   input  wire logic        x_i,
   input  wire logic [2:0]  addr_i,
+  input  wire logic        sel_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
   input  wire logic        read_capture_i,  // this edge ends a read of X:+3
-  output logic [23:0]      rdata_o,
+  output logic [23:0]      rdata_o,         // 0 when not selected
   // from the IC
   input  wire logic        trip_i,          // the watchdog has tripped
   input  wire logic [16:0] cnt_i,
@@ -26,10 +27,18 @@ module servo_channel (
   input  wire logic        dac_shift_i,
   input  wire logic        adc_sample_i,
   input  wire logic [4:0]  adc_bit_i,
-  // position of this channel, and of channel 1, for the compare; {fraction, counter, hold, down, count}
-  output logic [38:0]      position_o,
-  input  wire logic [38:0] position1_i,
-  // pins
+  // position of this channel for the compare of others, and of channel 1
+  output logic             count_o,         // this edge counts
+  output logic             down_o,
+  output logic             hold_o,          // held at 0
+  output logic [23:0]      counter_o,
+  output logic [11:0]      fraction_o,
+  input  wire logic        count1_i,
+  input  wire logic        down1_i,
+  input  wire logic        hold1_i,
+  input  wire logic [23:0] counter1_i,
+  input  wire logic [11:0] fraction1_i,
+  // pins; inputs behind the synchroniser
   input  wire logic [11:0] pins_i,          // T, U, V, W, USER, MLIM, PLIM, HMFL, FAULT, C, B, A from bit 11 down
   input  wire logic        adc_a_i,
   input  wire logic        adc_b_i,
@@ -54,7 +63,7 @@ module servo_channel (
   // Inputs
   logic [11:0] pin_level, level;
   logic        ready, index, incomplete, loss;
-  channel_input u_input (.clk_pwm_i, .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
+  channel_input u_input (.clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
   channel_index u_index (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .level_i(pin_level), .gated_i(gated), .gate_low_i(control[16]),
     .demux_i(demux), .level_o(level), .index_o(index), .incomplete_o(incomplete), .loss_o(loss)
@@ -82,7 +91,11 @@ module servo_channel (
     if (!rst_ni)           servo_fraction_q <= 12'd0;
     else if (servo_fall_i) servo_fraction_q <= fraction;
   end
-  assign position_o = {fine ? fraction : 12'd0, counter, hold, down, count};
+  assign count_o    = count;
+  assign down_o     = down;
+  assign hold_o     = hold;
+  assign counter_o  = counter;
+  assign fraction_o = fine ? fraction : 12'd0;
 
   // Capture
   logic        captured, captured_gi;
@@ -97,29 +110,34 @@ module servo_channel (
   );
 
   // Compare
-  logic [38:0] source;
   logic [23:0] compare_a, compare_b, compare_inc;
   logic [11:0] a_fraction, b_fraction;
-  logic [4:0]  compare_we;
-  logic        equ, equ_we;
-  assign source = control[13] ? position1_i : position_o;
+  logic [5:0]  compare_we;
+  logic        equ, other;
+  assign other = control[13];
   channel_compare u_compare (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .fine_i(fine), .other_i(control[13]), .count_i(source[0]), .down_i(source[1]),
-    .hold_i(source[2]), .counter_i(source[26:3]), .fraction_i(source[38:27]), .we_i(compare_we), .wdata_i, .equ_we_i(equ_we),
-    .equ_i(wdata_i[12]), .a_o(compare_a), .b_o(compare_b), .inc_o(compare_inc), .a_fraction_o(a_fraction),
-    .b_fraction_o(b_fraction), .equ_o(equ)
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .fine_i(fine), .other_i(other), .count_i(other ? count1_i : count),
+    .down_i(other ? down1_i : down), .hold_i(other ? hold1_i : hold), .counter_i(other ? counter1_i : counter),
+    .fraction_i(other ? fraction1_i : fraction), .we_i(compare_we), .wdata_i, .a_o(compare_a), .b_o(compare_b),
+    .inc_o(compare_inc), .a_fraction_o(a_fraction), .b_fraction_o(b_fraction), .equ_o(equ)
   );
   assign equ_o = equ & ~trip_i;
 
   // Outputs
   logic [5:0] pwm, pwm_on, pwm_inv;
-  channel_pwm u_pwm_a (.clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_i(out_a[23:8]), .top_o(pwm[0]), .bot_o(pwm[1]));
-  channel_pwm u_pwm_b (.clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_i(out_b[23:8]), .top_o(pwm[2]), .bot_o(pwm[3]));
-  channel_pwm u_pwm_c (.clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_i(out_c[23:8]), .top_o(pwm[4]), .bot_o(pwm[5]));
+  channel_pwm u_pwm (
+    .clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_a_i(out_a[23:8]), .command_b_i(out_b[23:8]),
+    .command_c_i(out_c[23:8]), .switch_o(pwm)
+  );
   // A pair that is not a PWM output rests low; a trip turns both switches off, whatever their polarity.
-  assign pwm_on  = {{2{~c_pfm}}, {4{~ab_dac}}};
-  assign pwm_inv = {{2{control[21]}}, {4{control[20]}}};
-  assign pwm_o   = ((pwm & {6{~trip_i}}) ^ pwm_inv) & pwm_on;
+  always_comb begin
+    pwm_on  = 6'd0;
+    pwm_inv = 6'd0;
+    if (!trip_i) pwm_on = {{2{~c_pfm}}, {4{~ab_dac}}};
+    if (!c_pfm)  pwm_inv[5:4] = {2{control[21]}};
+    if (!ab_dac) pwm_inv[3:0] = {4{control[20]}};
+  end
+  assign pwm_o = (pwm & pwm_on) ^ pwm_inv;
 
   logic pulse;
   channel_pfm u_pfm (
@@ -150,8 +168,8 @@ module servo_channel (
   );
 
   channel_regs u_regs (
-    .clk_ref_i, .rst_ni, .x_i, .addr_i, .we_i, .wdata_i, .rdata_o, .trip_i,
-    .control_o(control), .out_a_o(out_a), .out_b_o(out_b), .out_c_o(out_c), .compare_we_o(compare_we), .equ_we_o(equ_we),
+    .clk_ref_i, .rst_ni, .x_i, .addr_i, .sel_i, .we_i, .wdata_i, .rdata_o, .trip_i,
+    .control_o(control), .out_a_o(out_a), .out_b_o(out_b), .out_c_o(out_c), .compare_we_o(compare_we),
     .level_i(level), .error_i(error), .loss_i(loss), .equ_i(equ_o), .incomplete_i(incomplete), .captured_i(captured),
     .captured_gi_i(captured_gi), .hall_i(hall), .phase_pos_i(phase_pos), .servo_pos_i(servo_pos), .servo_t1_i(servo_t1),
     .servo_t2_i(servo_t2), .servo_fraction_i(servo_fraction_q), .capture_pos_i(capture_pos),

@@ -54,36 +54,39 @@ module servo_channels (
     .dac_clk_o, .dac_strobe_o, .adc_clk_o, .adc_strobe_o
   );
 
-  logic [95:0]  rdata;
-  logic [155:0] position;
+  logic [47:0] pins;
+  channel_sync u_sync (.clk_pwm_i, .rst_ni, .pins_i, .pins_o(pins));
+
+  logic [3:0] sel, read_capture;
+  always_comb begin
+    sel          = 4'd0;
+    read_capture = 4'd0;
+    if (sel_i) sel[addr_i[4:3]] = 1'b1;
+    if (read_done_i && read_x_i && read_addr_i[2:0] == 3'd3) read_capture[read_addr_i[4:3]] = 1'b1;
+  end
+
+  logic [95:0] rdata, counter;
+  logic [47:0] fraction;
+  logic [3:0]  count, down, hold;
   for (genvar n = 0; n < 4; n++) begin : gen_channel
     servo_channel u_channel (
       .clk_pwm_i, .clk_ref_i, .rst_ni,
-      .x_i, .addr_i(addr_i[2:0]), .we_i(we_i && sel_i && addr_i[4:3] == n), .wdata_i,
-      .read_capture_i(read_done_i && read_x_i && read_addr_i == 8 * n + 3), .rdata_o(rdata[24*n +: 24]),
+      .x_i, .addr_i(addr_i[2:0]), .sel_i(sel[n]), .we_i(we_i & sel[n]), .wdata_i, .read_capture_i(read_capture[n]),
+      .rdata_o(rdata[24*n +: 24]),
       .trip_i, .cnt_i, .turn_i, .deadtime_i, .sclk_ce_i(sclk_ce), .pfm_ce_i(pfm_ce), .phase_fall_i(phase_fall),
       .servo_fall_i(servo_fall), .dac_load_i(dac_load), .dac_shift_i(dac_shift), .adc_sample_i(adc_sample), .adc_bit_i(adc_bit),
-      .position_o(position[39*n +: 39]), .position1_i(position[38:0]),
-      .pins_i(pins_i[12*n +: 12]), .adc_a_i(adc_a_i[n]), .adc_b_i(adc_b_i[n]),
+      .count_o(count[n]), .down_o(down[n]), .hold_o(hold[n]), .counter_o(counter[24*n +: 24]), .fraction_o(fraction[12*n +: 12]),
+      .count1_i(count[0]), .down1_i(down[0]), .hold1_i(hold[0]), .counter1_i(counter[23:0]), .fraction1_i(fraction[11:0]),
+      .pins_i(pins[12*n +: 12]), .adc_a_i(adc_a_i[n]), .adc_b_i(adc_b_i[n]),
       .pwm_o(pwm_o[6*n +: 6]), .pulse_o(pulse_o[n]), .dir_o(dir_o[n]), .dac_a_o(dac_a_o[n]), .dac_b_o(dac_b_o[n]),
       .aena_o(aena_o[n]), .equ_o(equ_o[n])
     );
   end
 
   logic unused;  // only channel 1 serves as a source for the others
-  assign unused = &{1'b0, position[155:39]};
+  assign unused = &{1'b0, count[3:1], down[3:1], hold[3:1], counter[95:24], fraction[47:12]};
 
-  always_comb begin
-    rdata_o = 24'd0;
-    if (sel_i) begin
-      case (addr_i[4:3])
-        2'd0:    rdata_o = rdata[23:0];
-        2'd1:    rdata_o = rdata[47:24];
-        2'd2:    rdata_o = rdata[71:48];
-        default: rdata_o = rdata[95:72];
-      endcase
-    end
-  end
+  assign rdata_o = rdata[23:0] | rdata[47:24] | rdata[71:48] | rdata[95:72];
 
 endmodule : servo_channels
 

@@ -1,6 +1,5 @@
-// Servo IC (DSPGATE1): 32 addresses of X and Y words on the bus side, PHASE and SERVO pins on the clock side. Built so far:
-// the global registers and the clock chain; words of the four channels read 0 and ignore writes. Bus on clk_ref_i, clock
-// chain on clk_pwm_i, asynchronous reset. docs/servo_ic.md.
+// Servo IC (DSPGATE1): 32 addresses of X and Y words on the bus side, PHASE and SERVO pins on the clock side. The
+// global registers, the clock chain and four channels. Bus on clk_ref_i, clock chain on clk_pwm_i, asynchronous reset. docs/servo_ic.md.
 `default_nettype none
 
 module servo_ic (
@@ -13,6 +12,9 @@ module servo_ic (
   input  wire logic [4:0]  addr_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
+  input  wire logic        read_done_i,  // this clk_ref edge ends a read of the word below
+  input  wire logic        read_x_i,
+  input  wire logic [4:0]  read_addr_i,
   output logic [23:0]      rdata_o,
   // clock pins
   input  wire logic        phase_i,
@@ -20,7 +22,20 @@ module servo_ic (
   output logic             phase_o,
   output logic             servo_o,
   output logic             phase_oe_o,
-  output logic             servo_oe_o
+  output logic             servo_oe_o,
+  // channels: fields as in servo_channels
+  input  wire logic        trip_i,
+  input  wire logic [47:0] pins_i,
+  input  wire logic [3:0]  adc_a_i,
+  input  wire logic [3:0]  adc_b_i,
+  output logic [23:0]      pwm_o,
+  output logic [3:0]       pulse_o,
+  output logic [3:0]       dir_o,
+  output logic [3:0]       dac_a_o,
+  output logic [3:0]       dac_b_o,
+  output logic [3:0]       aena_o,
+  output logic [3:0]       equ_o,
+  output logic [3:0]       serial_o  // ADC strobe, ADC clock, DAC strobe, DAC clock
 );
 
   logic [11:0] clock_dividers;
@@ -29,10 +44,11 @@ module servo_ic (
   logic [23:0] dac_strobe, adc_strobe;
   logic [7:0]  deadtime;
   logic [14:0] max_count;
+  logic [23:0] ic_rdata, channel_rdata;
 
   servo_ic_regs u_regs (
     .clk_ref_i, .rst_ni,
-    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .rdata_o,
+    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .rdata_o(ic_rdata),
     .clock_dividers_o(clock_dividers), .phase_ext_o(phase_ext), .servo_ext_o(servo_ext),
     .phase_div_o(phase_div), .servo_div_o(servo_div), .dac_strobe_o(dac_strobe), .adc_strobe_o(adc_strobe),
     .deadtime_o(deadtime), .max_count_o(max_count)
@@ -52,9 +68,14 @@ module servo_ic (
   assign phase_oe_o = ~phase_ext;
   assign servo_oe_o = ~servo_ext;
 
-  // For the channels.
-  logic unused_channel;
-  assign unused_channel = &{1'b0, clock_dividers, dac_strobe, adc_strobe, deadtime, cnt, turn, phase_rise, phase_fall, servo_fall};
+  servo_channels u_channels (
+    .clk_pwm_i, .clk_ref_i, .rst_ni, .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .read_done_i, .read_x_i, .read_addr_i,
+    .rdata_o(channel_rdata), .trip_i, .dividers_i(clock_dividers), .dac_strobe_i(dac_strobe), .adc_strobe_i(adc_strobe),
+    .deadtime_i(deadtime), .cnt_i(cnt), .turn_i(turn), .phase_rise_i(phase_rise), .phase_fall_i(phase_fall),
+    .servo_fall_i(servo_fall), .pins_i, .adc_a_i, .adc_b_i, .pwm_o, .pulse_o, .dir_o, .dac_a_o, .dac_b_o, .aena_o, .equ_o,
+    .dac_clk_o(serial_o[0]), .dac_strobe_o(serial_o[1]), .adc_clk_o(serial_o[2]), .adc_strobe_o(serial_o[3])
+  );
+  assign rdata_o = ic_rdata | channel_rdata;
 
 endmodule : servo_ic
 

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "systemc/core/board_pins.h"
+#include "systemc/core/motor_pins.h"
 #include "systemc/core/ticks.h"
 
 namespace brick {
@@ -35,6 +36,21 @@ class Board {
 
   // Called after each edge at which an output changed, in order of ticks, with the values before and after.
   std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)> on_change;
+
+  // Motor side of servo IC `ic` (0..17); an IC that is not built ignores its inputs and shows zeros. Inputs as
+  // set_inputs(); outputs as they stand after the edge now(). A board made of clocks alone may leave all this out.
+  virtual void set_motor_inputs(unsigned ic, const MotorInputs& inputs) { (void)ic, (void)inputs; }
+  virtual MotorOutputs motor_outputs(unsigned ic) const {
+    (void)ic;
+    return {};
+  }
+
+  // Bit i: changes of servo IC i's motor outputs are reported to on_motor_change, edge by edge, after on_change of the same
+  // edge, rising index first. An IC that nobody watches costs an event-driven engine nothing.
+  virtual void watch_motors(std::uint32_t ics) { (void)ics; }
+  // run_until() also ends after an edge at which an output selected here changes; the IC must be watched.
+  virtual void stop_on_motor(unsigned ic, const MotorOutputs& select) { (void)ic, (void)select; }
+  std::function<void(Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after)> on_motor_change;
 };
 
 }  // namespace brick

@@ -17,6 +17,7 @@ Signals::Id Signals::add(const std::string& name, unsigned width, Radix radix, s
   if (!by_name_.emplace(name, id).second) throw std::logic_error("signal " + name + " is declared twice");
   info_.push_back({name, width, radix});
   value_.push_back(initial);
+  source_.emplace_back();
   if (radix == Radix::kText) text_[id] = "";
   if (trace_ != nullptr) trace_->declare(id, info_[id]);
   return id;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,7 +17,7 @@ namespace brick {
 
 class TraceWriter;  // systemc/core/trace.h
 
-enum class Radix { kBinary, kHex, kDecimal, kText };
+enum class Radix { kBinary, kHex, kDecimal, kSigned, kText };
 
 class Signals {
  public:
@@ -28,6 +29,9 @@ class Signals {
   void set(Id id, TimeFs time, std::uint64_t value);
   void set_text(Id id, TimeFs time, const std::string& text);
 
+  // The value is not followed while there is no waveform: whoever wants it asks `source`.
+  void ask(Id id, std::function<std::uint64_t()> source) { source_[id] = std::move(source); }
+
   struct Info {
     std::string name;
     unsigned width;
@@ -35,7 +39,7 @@ class Signals {
   };
   const Info& info(Id id) const { return info_[id]; }
   std::size_t size() const { return info_.size(); }
-  std::uint64_t value(Id id) const { return value_[id]; }
+  std::uint64_t value(Id id) const { return trace_ == nullptr && source_[id] ? source_[id]() : value_[id]; }
   const std::string& text(Id id) const { return text_.at(id); }
   std::optional<Id> find(std::string_view name) const;  // accepts a leading "brick."
 
@@ -47,6 +51,7 @@ class Signals {
  private:
   std::vector<Info> info_;
   std::vector<std::uint64_t> value_;
+  std::vector<std::function<std::uint64_t()>> source_;
   std::map<Id, std::string> text_;
   std::map<std::string, Id, std::less<>> by_name_;
   TraceWriter* trace_ = nullptr;

@@ -66,7 +66,12 @@ DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, 
 }
 
 Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
-    : config(machine_config), jumper_e3(config.jumper_e3), owner(machine), board(make_board(config)), memory(cpu, config.flash_file) {
+    : config(machine_config),
+      jumper_e3(config.jumper_e3),
+      owner(machine),
+      board(make_board(config)),
+      motors(*board, signals, config.board.fitted),
+      memory(cpu, config.flash_file) {
   initiator.cpu = &cpu;
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
   board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) { board_changed(t, before, after); };
@@ -190,6 +195,13 @@ Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_-
 BoardInputs& Machine::inputs() { return impl_->host_inputs; }
 void Machine::apply() { impl_->apply_host_inputs(); }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
+std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
+MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
+void Machine::apply_motor_inputs() { impl_->motors.apply(); }
+MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->motor_outputs(ic); }
+void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }
+void Machine::attach(MotorPeer& peer) { impl_->motors.attach(peer); }
+void Machine::detach(MotorPeer& peer) { impl_->motors.detach(peer); }
 Cpu& Machine::cpu() { return impl_->cpu; }
 std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }
 

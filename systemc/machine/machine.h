@@ -13,6 +13,7 @@
 #include "systemc/core/board.h"
 #include "systemc/core/signals.h"
 #include "systemc/cpu/cpu.h"
+#include "systemc/machine/motor_peer.h"
 
 namespace brick {
 
@@ -65,6 +66,16 @@ class Machine : public sc_core::sc_module {
   BoardInputs& inputs();
   void apply();
   const BoardOutputs& outputs() const;
+
+  std::uint32_t fitted() const;  // ICs of the board, as BoardInputs::fitted
+
+  // The motor side (systemc/machine/motor_peer.h). Pins are edited and applied as inputs(); a stop edge ends run_until().
+  MotorInputPins& motor_inputs();
+  void apply_motor_inputs();
+  MotorOutputs motor_outputs(unsigned ic) const;
+  void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
+  void attach(MotorPeer& peer);                                 // not owned; detach() it before it goes
+  void detach(MotorPeer& peer);
 
   Signals& signals();  // every named signal of design.md section 7
   Cpu& cpu();

@@ -13,6 +13,7 @@
 #include "systemc/machine/machine.h"
 #include "systemc/machine/machine_signals.h"
 #include "systemc/machine/memory.h"
+#include "systemc/machine/motor_side.h"
 
 namespace brick {
 
@@ -70,6 +71,7 @@ struct Machine::Impl {
   Signals signals;
   MachineSignals named{signals};
   std::unique_ptr<Board> board;
+  MotorSide motors;
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};

@@ -21,6 +21,7 @@ BoardOutputs both(BoardOutputs a, const BoardOutputs& b) {
 
 Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
   if (tracing_cpu != signals.traced()) trace_cpu(signals.traced());
+  motors.begin_run();
   stop_on = stop;
   stopped = false;
   const BoardOutputs watched = both(kWakesCpu, stop_on);
@@ -28,7 +29,8 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
   run_cpu(board->now());
   while (board->now() < limit && !stopped) {
     const Tick from = board->now();
-    Tick target = std::min(limit, reset_until);
+    motors.step();
+    Tick target = std::min({limit, reset_until, motors.next_event()});
     if (config.batch > 0) target = std::min(target, from + config.batch);
     if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
       debugger->poll(!cpu_runs || (cpu.asleep() && !port_a.running()));
@@ -38,6 +40,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     if (awake) run_cpu(std::max(from, std::min(target, board->quiet_until(watched))));
     target = board_limit(target);
     if (target > from) board->run_until(target, cpu_runs && cpu.asleep() && !port_a.running() ? watched : stop_on);
+    stopped = motors.take_stop() || stopped;
     if (board->now() == reset_until) start_cpu();
     while (port_a.running() && board->now() == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());

@@ -2,6 +2,7 @@
 // edges at which something happens and executes only those. docs/servo_channel.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -50,6 +51,8 @@ class ServoChannel {
 
   // SCLK. A settled channel changes nothing but T2.
   bool settled() const { return settle_ >= kSettled; }
+  // The next edge of clk_ref does nothing by itself: no bit of the control word falls back, the held counter is 0.
+  bool quiet(Tick now) const { return now >= equ_write_until_ && !(hold() && (counter_.counter() != 0 || error_)); }
   bool uses_channel1() const { return bit(13); }
   void skip_sclk(std::int64_t periods) { counter_.skip(periods); }
   ChannelPosition position() const { return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false}; }  // settled
@@ -60,6 +63,22 @@ class ServoChannel {
   bool hold() const { return bit(10); }
   bool shows_pwm(unsigned output) const { return !bit(output == 2 ? 23 : 22); }
   Tick next_pwm_event(Tick now, TriangleLine line) const;
+  std::uint32_t counter() const { return counter_.counter(); }
+
+  // Whether EQU can change without a write, and for how many SCLK edges it does not at least.
+  bool compares(bool trip) const { return !hold() && (!settled() || counts_pulses(trip)); }
+  bool counts_pulses(bool trip) const { return (control_ & 0xF) == 8 && bit(23) && !trip; }
+  std::uint32_t edges_to_equ() const { return compare_.edges_to_hit(counter_.counter(), fine()); }
+
+  // The PWM, as it was at mark(), `by` ticks later.
+  void mark() { marked_ = pwm_; }
+  bool repeats(Tick by) const {
+    return std::equal(pwm_.begin(), pwm_.end(), marked_.begin(),
+                      [by](const ChannelPwm& a, const ChannelPwm& b) { return a.repeats(b, by); });
+  }
+  void jump(Tick by) {
+    for (ChannelPwm& pwm : pwm_) pwm.jump(by);
+  }
 
   // Pins
   unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
@@ -94,7 +113,7 @@ class ServoChannel {
   ChannelSubcount subcount_;
   ChannelCapture capture_;
   ChannelCompare compare_;
-  std::array<ChannelPwm, 3> pwm_;
+  std::array<ChannelPwm, 3> pwm_, marked_;
   ChannelPfm pfm_;
   std::array<ChannelDac, 2> dac_;
   std::array<ChannelAdc, 2> adc_;

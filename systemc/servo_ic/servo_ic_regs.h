@@ -27,6 +27,10 @@ class ServoIcRegs : public sc_core::sc_module {
   bool servo_ext() const { return word_[kClock] >> 13 & 1; }
   unsigned phase_div() const { return word_[kClock] >> 16 & 0xF; }
   unsigned servo_div() const { return word_[kClock] >> 20 & 0xF; }
+  unsigned clock_dividers() const { return word_[kClock] & 0xFFF; }
+  std::uint32_t dac_strobe() const { return word_[kDacStrobe]; }
+  std::uint32_t adc_strobe() const { return word_[kAdcStrobe]; }
+  unsigned deadtime() const { return word_[kPwm] & 0xFF; }
   unsigned max_count() const { return word_[kPwm] >> 8 & 0x7FFF; }
 
  private:

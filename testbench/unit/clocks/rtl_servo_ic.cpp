@@ -30,6 +30,7 @@ void RtlServoIc::drive() {
   t.wdata_i = in.wdata & 0xFFFFFF;
   t.phase_i = in.phase;
   t.servo_i = in.servo;
+  t.pins_i = 0;
 }
 
 void RtlServoIc::tick() {

@@ -1,0 +1,40 @@
+// What is wired to the motor side of the running controller: a motor with its encoder, a converter, a hand at the encoder. The
+// machine tells it each change of the outputs it asked for, and calls step() when its time has come.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "systemc/core/motor_pins.h"
+#include "systemc/core/ticks.h"
+
+namespace brick {
+
+using MotorInputPins = std::array<MotorInputs, kMaxServoIcs>;  // index as in BoardInputs::fitted
+
+class MotorPeer {
+ public:
+  virtual ~MotorPeer() = default;
+
+  virtual std::uint32_t ics() const = 0;  // servo ICs whose outputs it wants to see, bit i; constant
+
+  // Outputs after whose change step() is called at once; constant.
+  virtual MotorOutputs stops(unsigned ic) const {
+    (void)ic;
+    return {};
+  }
+
+  // Tick at which step() is to be called next, after now(); kNever: only after a stop.
+  virtual Tick next_event() const = 0;
+
+  // Each change of the outputs of its ICs, in order.
+  virtual void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+    (void)tick, (void)ic, (void)before, (void)after;
+  }
+
+  // The time is `now`. It may edit input pins, which the edge now + 1 is the first to see; true when it has. next_event() is
+  // later than `now` afterwards.
+  virtual bool step(Tick now, MotorInputPins& inputs) = 0;
+};
+
+}  // namespace brick

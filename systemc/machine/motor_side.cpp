@@ -1,0 +1,142 @@
+#include "systemc/machine/motor_side.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace brick {
+
+MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
+    : board_(board), signals_(signals), fitted_(fitted & ((1u << kMaxServoIcs) - 1)) {
+  place_.fill(-1);
+  const MotorInputs idle;
+  for (unsigned i = 0; i < kMaxServoIcs; ++i) {
+    if ((fitted_ >> i & 1) == 0) continue;
+    place_[i] = static_cast<int>(ics_.size());
+    Ic ic{};
+    ic.index = i;
+    for (unsigned n = 0; n < kChannels; ++n) {
+      const std::string scope = servo_ic_scope(i) + ".ch" + std::to_string(n + 1) + ".";
+      for (unsigned p = 0; p < kChannelPins; ++p)
+        ic.pin[n][p] = signals.add(scope + std::string(kChannelPinNames[p]), 1, Radix::kBinary, idle.pins[n] >> p & 1);
+      ic.adc[n] = {signals.add(scope + "adc_a", 1, Radix::kBinary), signals.add(scope + "adc_b", 1, Radix::kBinary)};
+      for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
+        const MotorField& field = motor_pin::kAll[f];
+        ic.output[n][f] = signals.add(scope + std::string(field.name), field.width, field.width > 1 ? Radix::kSigned : Radix::kBinary);
+        signals.ask(ic.output[n][f], [this, i, n, &field] { return board_.motor_outputs(i).get(field, n); });
+      }
+    }
+    ics_.push_back(ic);
+    board.set_motor_inputs(i, idle);
+  }
+  board.on_motor_change = [this](Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+    changed(tick, ic, before, after);
+  };
+}
+
+void MotorSide::apply() {
+  const TimeFs time = tick_to_fs(board_.now());
+  for (const Ic& ic : ics_) {
+    const MotorInputs& in = inputs_[ic.index];
+    if (in == applied_[ic.index]) continue;
+    applied_[ic.index] = in;
+    board_.set_motor_inputs(ic.index, in);
+    for (unsigned n = 0; n < kChannels; ++n) {
+      for (unsigned p = 0; p < kChannelPins; ++p) signals_.set(ic.pin[n][p], time, in.pins[n] >> p & 1);
+      signals_.set(ic.adc[n][0], time, in.adc_a >> n & 1);
+      signals_.set(ic.adc[n][1], time, in.adc_b >> n & 1);
+    }
+  }
+}
+
+void MotorSide::attach(MotorPeer& peer) {
+  peers_.push_back({&peer, false});
+  watch();
+}
+
+void MotorSide::detach(MotorPeer& peer) {
+  peers_.erase(std::remove_if(peers_.begin(), peers_.end(), [&](const Peer& p) { return p.peer == &peer; }), peers_.end());
+  watch();
+}
+
+void MotorSide::stop_on(unsigned ic, const MotorOutputs& select) {
+  select_.at(ic) = select;
+  watch();
+}
+
+// Who is watched, and which edges end a run: what the user, the peers and the waveform want.
+void MotorSide::watch() {
+  std::uint32_t ics = traced_ ? fitted_ : 0;
+  for (const Peer& p : peers_) ics |= p.peer->ics() & fitted_;
+  for (const Ic& ic : ics_)
+    if (select_[ic.index] != MotorOutputs{}) ics |= 1u << ic.index;
+  board_.watch_motors(ics);
+  for (const Ic& ic : ics_) {
+    MotorOutputs select = select_[ic.index];
+    for (const Peer& p : peers_) {
+      const MotorOutputs more = p.peer->stops(ic.index);
+      for (unsigned i = 0; i < kMotorOutputWords; ++i) select.w[i] |= more.w[i];
+    }
+    board_.stop_on_motor(ic.index, select);
+  }
+}
+
+void MotorSide::begin_run() {
+  stopped_ = false;
+  if (traced_ == signals_.traced()) return;
+  traced_ = signals_.traced();
+  watch();
+  if (!traced_) return;
+  for (const Ic& ic : ics_) {
+    MotorOutputs inverse = board_.motor_outputs(ic.index);
+    for (std::uint32_t& word : inverse.w) word = ~word;
+    show(tick_to_fs(board_.now()), ic.index, inverse, board_.motor_outputs(ic.index));
+  }
+}
+
+void MotorSide::step() {
+  const Tick now = board_.now();
+  bool edited = false;
+  for (Peer& p : peers_) {
+    if (!p.stopped && p.peer->next_event() > now) continue;
+    p.stopped = false;
+    edited = p.peer->step(now, inputs_) || edited;
+    if (p.peer->next_event() <= now) throw std::logic_error("a motor peer asks for a time that has passed");
+  }
+  if (edited) apply();
+}
+
+Tick MotorSide::next_event() const {
+  Tick next = kNever;
+  for (const Peer& p : peers_) next = std::min(next, p.peer->next_event());
+  return next;
+}
+
+bool MotorSide::take_stop() {
+  const bool stopped = stopped_;
+  stopped_ = false;
+  return stopped;
+}
+
+void MotorSide::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+  if (traced_) show(tick_to_fs(tick), ic, before, after);
+  for (Peer& p : peers_) {
+    if ((p.peer->ics() >> ic & 1) == 0) continue;
+    p.peer->changed(tick, ic, before, after);
+    p.stopped = p.stopped || before.differs(after, p.peer->stops(ic));
+  }
+  stopped_ = stopped_ || before.differs(after, select_[ic]);
+}
+
+void MotorSide::show(TimeFs time, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+  if (place_[ic] < 0) return;
+  const Ic& names = ics_[static_cast<std::size_t>(place_[ic])];
+  for (unsigned n = 0; n < kChannels; ++n) {
+    for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
+      const std::uint32_t value = after.get(motor_pin::kAll[f], n);
+      if (value != before.get(motor_pin::kAll[f], n)) signals_.set(names.output[n][f], time, value);
+    }
+  }
+}
+
+}  // namespace brick
