@@ -1,8 +1,11 @@
 #include "app/script.h"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -16,7 +19,7 @@ namespace {
 using Kind = ScriptLine::Kind;
 constexpr std::uint32_t kDpramBytes = 0x10000;
 constexpr std::int64_t kHandRate = 10'000, kHighestRate = 9'830'400;  // @encoder, counts per second: one count per SCLK at most
-constexpr const char* kKnown = "@wait @until @signal @pic @dpram @jumper @input @encoder @reset @power @expect @time";
+constexpr const char* kKnown = "@wait @until @signal @pic @dpram @jumper @input @encoder @jpan @reset @power @expect @time";
 
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
@@ -135,6 +138,37 @@ void read_encoder(ScriptLine& line, const std::vector<std::string>& words) {
   line.rate = *rate;
 }
 
+// FPD=n sets the four inputs FPDn/ to the number n: low means 1. The others are levels of one pin.
+void read_jpan(ScriptLine& line, const std::vector<std::string>& words) {
+  constexpr std::array<std::string_view, 12> kInputs{"JOG-", "JOG+", "PREJOG", "START", "STEP", "STOP",
+                                                     "HOME", "HOLD", "FPD0",   "FPD1",  "FPD2", "FPD3"};
+  constexpr unsigned kFpd = 8;
+  constexpr std::uint32_t kNumbers = 0xF;
+  const char* form =
+      "expected @jpan NAME=0 or NAME=1 (JOG-, JOG+, PREJOG, START, STEP, STOP, HOME, HOLD, FPD0 to FPD3; 0 is active), or FPD=0 to 15";
+  if (words.size() < 2) throw UsageError(form);
+  line.kind = Kind::kJpan;
+  const auto set = [&](std::uint32_t inputs, std::uint32_t levels) {
+    line.inputs = static_cast<std::uint16_t>(line.inputs | inputs);
+    line.levels = static_cast<std::uint16_t>((line.levels & ~inputs) | levels);
+  };
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::size_t equals = words[i].find('=');
+    const std::string name = upper(words[i].substr(0, equals));
+    const auto value = equals == std::string::npos ? std::nullopt : number(words[i].substr(equals + 1), 10);
+    const auto input = std::find(kInputs.begin(), kInputs.end(), name);
+    const std::uint32_t most = name == "FPD" ? kNumbers : 1;
+    if (!value || *value > most || (name != "FPD" && input == kInputs.end()))
+      throw UsageError(fmt::format("`{}` is not known; {}", words[i], form));
+    if (name == "FPD") {
+      set(kNumbers << kFpd, (~*value & kNumbers) << kFpd);
+    } else {
+      const auto bit = static_cast<unsigned>(input - kInputs.begin());
+      set(1u << bit, *value << bit);
+    }
+  }
+}
+
 void read_at_line(ScriptLine& line) {
   const std::vector<std::string> words = words_of(line.text);
   const std::string& what = words[0];
@@ -172,7 +206,7 @@ void read_at_line(ScriptLine& line) {
     line.kind = Kind::kExpect;
     line.value = line.text.size() > 8 ? line.text.substr(8) : "";
   } else if (what == "@jpan") {
-    throw UsageError(fmt::format("not available on this board: it has no such pins; expected one of {}", kKnown));
+    read_jpan(line, words);
   } else {
     throw UsageError(fmt::format("is not known; expected one of {}", kKnown));
   }

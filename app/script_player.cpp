@@ -41,6 +41,8 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
       } else if (line.kind == Kind::kInput) {
         find_channel_pin(signals, line.name);
+      } else if (line.kind == Kind::kJpan && !link_.bus().machine().inputs().jpan_fitted) {
+        throw UsageError("this board has no control panel port; expected a board with JPAN, for example --board turbo-pmac-pci");
       } else if (line.kind == Kind::kEncoder && !motor_place(machine.fitted(), line.motor)) {
         unsigned motors = 0;
         while (motor_place(machine.fitted(), motors + 1)) ++motors;
@@ -173,6 +175,12 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       std::uint16_t& pins = machine.motor_inputs()[pin.ic].pins[pin.channel];
       pins = static_cast<std::uint16_t>(line.on ? pins | bit : pins & ~bit);
       machine.apply_motor_inputs();
+      break;
+    }
+    case Kind::kJpan: {
+      std::uint16_t& jpan = machine.inputs().jpan;
+      jpan = static_cast<std::uint16_t>((jpan & ~line.inputs) | line.levels);
+      machine.apply();
       break;
     }
     case Kind::kEncoder:

@@ -39,9 +39,13 @@ module board_top #(
   // straps and external clocks
   input  wire logic [21:0] fitted_i,
   input  wire logic [3:0]  macro_gate_i,
+  input  wire logic        dpram_small_i,  // 8192 words, not 32768
+  input  wire logic        jpan_fitted_i,
+  input  wire logic [11:0] line_select_i,  // sources of IR5 (3..0), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
+  input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
   // Motor side, 64 bits for each servo IC, also for those not built. In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
   // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks and strobes.
   input  wire logic [18*64-1:0] motor_i,
@@ -70,16 +74,23 @@ module board_top #(
   localparam logic [21:0] IcMask = {MacroIcMask, ServoIcMask};
   logic [21:0] fitted_q;
   logic [3:0]  macro_gate_q;
-  logic        ext_clock_q;
+  logic        ext_clock_q, dpram_small_q, jpan_fitted_q;
+  logic [11:0] line_select_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      fitted_q     <= 22'h0;
-      macro_gate_q <= 4'h0;
-      ext_clock_q  <= 1'b0;
+      fitted_q      <= 22'h0;
+      macro_gate_q  <= 4'h0;
+      ext_clock_q   <= 1'b0;
+      dpram_small_q <= 1'b0;
+      jpan_fitted_q <= 1'b0;
+      line_select_q <= 12'h0;
     end else begin
-      fitted_q     <= fitted_i;
-      macro_gate_q <= macro_gate_i & MacroIcMask;
-      ext_clock_q  <= ext_clock_i;
+      fitted_q      <= fitted_i;
+      macro_gate_q  <= macro_gate_i & MacroIcMask;
+      ext_clock_q   <= ext_clock_i;
+      dpram_small_q <= dpram_small_i;
+      jpan_fitted_q <= jpan_fitted_i;
+      line_select_q <= line_select_i;
     end
   end
 
@@ -97,11 +108,12 @@ module board_top #(
     .rd_addr_o(bus_rd_addr), .rd_x_o(bus_rd_x), .rd_aa_o(bus_rd_aa), .rd_int_o(bus_rd_int)
   );
 
-  logic        sel_any, sel_int, sel_signals, sel_strobe;
+  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_panel;
   logic [21:0] sel_ic;
   address_decode u_address_decode (
-    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_q & IcMask),
-    .sel_any_o(sel_any), .sel_int_o(sel_int), .sel_signals_o(sel_signals), .sel_strobe_o(sel_strobe), .sel_ic_o(sel_ic)
+    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_q & IcMask), .jpan_i(jpan_fitted_q),
+    .sel_any_o(sel_any), .sel_int_o(sel_int), .sel_signals_o(sel_signals), .sel_strobe_o(sel_strobe),
+    .sel_panel_o(sel_panel), .sel_ic_o(sel_ic)
   );
 
   // Side effects of a read belong to the address one stage later: the CPU may have moved on by then.
@@ -109,18 +121,19 @@ module board_top #(
   logic [5:0] int_addr;
   assign rd_done_int = bus_rd_done & bus_rd_int;
   assign int_addr    = rd_done_int ? bus_rd_addr[5:0] : bus_addr[5:0];
-  logic        rd_any, rd_int, rd_signals, rd_strobe, unused_rd;
+  logic        rd_any, rd_int, rd_signals, rd_strobe, rd_panel, unused_rd;
   logic [21:0] rd_ic;
   address_decode u_read_decode (
-    .addr_i(bus_rd_addr), .x_i(bus_rd_x), .aa_i(bus_rd_aa), .int_i(bus_rd_int), .fitted_i(fitted_q & IcMask),
-    .sel_any_o(rd_any), .sel_int_o(rd_int), .sel_signals_o(rd_signals), .sel_strobe_o(rd_strobe), .sel_ic_o(rd_ic)
+    .addr_i(bus_rd_addr), .x_i(bus_rd_x), .aa_i(bus_rd_aa), .int_i(bus_rd_int), .fitted_i(fitted_q & IcMask), .jpan_i(jpan_fitted_q),
+    .sel_any_o(rd_any), .sel_int_o(rd_int), .sel_signals_o(rd_signals), .sel_strobe_o(rd_strobe),
+    .sel_panel_o(rd_panel), .sel_ic_o(rd_ic)
   );
-  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_ic, sel_ic};
+  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
 
-  logic [17:0] equ1;  // EQU of channel 1
+  logic [71:0] equ;  // EQU of channels 1..4 of each servo IC
 
   for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
     logic [23:0] rdata, rdata_chain;  // read data of this IC, and of this one or any before it
@@ -131,7 +144,7 @@ module board_top #(
     end
     if (ServoIcMask[i]) begin : gen_built
       logic [23:0] pwm;
-      logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ, serial;
+      logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ_ic, serial;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
         .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
@@ -140,17 +153,17 @@ module board_top #(
         .phase_i(phase_o), .servo_i(servo_o),
         .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i]),
         .trip_i(wd_tripped_o), .pins_i(motor_i[64*i+:48]), .adc_a_i(motor_i[64*i+48+:4]), .adc_b_i(motor_i[64*i+52+:4]),
-        .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ), .serial_o(serial)
+        .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ_ic), .serial_o(serial)
       );
       // What moves with clk_ref only stands apart, so that a simulator packs it only then.
       logic [23:0] slow;
       always_comb begin
         slow = 24'h0;
-        if (fitted_q[i]) slow = {equ, aena, dac_b, dac_a, dir, pulse};
+        if (fitted_q[i]) slow = {equ_ic, aena, dac_b, dac_a, dir, pulse};
       end
       assign motor_o[64*i+:32]    = {slow[7:0], pwm & {24{fitted_q[i]}}};
       assign motor_o[64*i+32+:32] = {12'h0, serial & {4{fitted_q[i]}}, slow[23:8]};
-      assign equ1[i]              = slow[20];
+      assign equ[4*i+:4]          = slow[23:20];
       logic unused_in;
       assign unused_in = &{1'b0, motor_i[64*i+56+:8]};
     end else begin : gen_absent
@@ -160,7 +173,7 @@ module board_top #(
       assign ic_phase_oe[i]     = 1'b0;
       assign ic_servo_oe[i]     = 1'b0;
       assign motor_o[64*i+:64]  = 64'h0;
-      assign equ1[i]            = 1'b0;
+      assign equ[4*i+:4]        = 4'h0;
       logic unused_in;
       assign unused_in = &{1'b0, motor_i[64*i+:64]};
     end
@@ -244,11 +257,15 @@ module board_top #(
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 
-  // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up. EQU5 is channel 1 of IC 1.
-  logic [7:0] pic_line;
-  logic       unused_equ;
-  assign unused_equ = &{1'b0, equ1[17:2]};
-  assign pic_line = {wdo_o, equ1[1:0], hreq_o, f1er_o, eror_o, breq_o, ipos_o};
+  // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
+  // EQU1..EQU4 are the channels of servo IC 0, EQU5..EQU8 those of IC 1.
+  logic [7:0]  pic_line;
+  logic [15:0] line_source;
+  logic        unused_equ;
+  assign unused_equ  = &{1'b0, equ[71:8]};
+  assign line_source = {6'h0, wdo_o, equ[7:0], 1'b0};
+  assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
+                     hreq_o, f1er_o, eror_o, breq_o, ipos_o};
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni, .line_i(pic_line),
     .wr_i(pic_sel & pic_wr), .addr_i(pic_addr), .wdata_i(pic_wdata), .rdata_o(pic_rdata),
@@ -258,8 +275,11 @@ module board_top #(
   logic        dpram_sel;
   logic [15:0] dpram_rdata;
   assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
-  dpram #(.Words(32768)) u_dpram (
-    .clk_pwm_i, .clk_ref_i, .rst_ni,
+  logic [15:0] panel_rdata;
+  panel_port u_panel_port (.clk_ref_i, .rst_ni, .jpan_i, .rdata_o(panel_rdata));
+
+  dpram u_dpram (
+    .clk_pwm_i, .clk_ref_i, .rst_ni, .small_i(dpram_small_q),
     .cpu_sel_i(dpram_sel), .cpu_x_i(pa_x_i), .cpu_addr_i(pa_addr_i[13:0]), .cpu_rd_ni(pa_rd_ni), .cpu_wr_ni(pa_wr_ni),
     .cpu_wdata_i(pa_wdata_i[15:0]), .cpu_rdata_o(dpram_rdata), .cpu_busy_o(busy_cpu_o),
     .mem_sel_i(mem_sel), .mem_rd_i(mem_rd), .mem_wr_i(mem_wr), .mem_addr_i(mem_addr), .mem_be_i(mem_be),
@@ -275,6 +295,7 @@ module board_top #(
     if (sel_any) begin
       if (sel_int)          rdata_d = int_rdata;
       else if (sel_signals) rdata_d = {20'h0, signals_rdata};
+      else if (sel_panel)   rdata_d = {8'h0, panel_rdata};
       else                  rdata_d = gen_macro_ic[21].rdata_chain;
     end
   end

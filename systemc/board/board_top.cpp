@@ -17,8 +17,10 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
       interrupt_controller_("interrupt_controller"),
       host_signals_("host_signals"),
       dpram_("dpram"),
+      panel_port_("panel_port"),
       gate_ics_(ics),
-      block_{&bus_sync_, &clock_select_, &watchdog_, &isa_slave_, &host_port_, &interrupt_controller_, &host_signals_, &dpram_} {
+      block_{&bus_sync_,     &clock_select_, &watchdog_,  &isa_slave_, &host_port_, &interrupt_controller_,
+             &host_signals_, &dpram_,        &panel_port_} {
   inputs_.fitted = ics;
   reset_all(0);
   outputs_ = pins();
@@ -45,7 +47,8 @@ void BoardTop::reset_all(Tick t) {
   from_dpram_ = false;
   fitted_ = 0;
   macro_gate_ = 0;
-  ext_clock_ = false;
+  ext_clock_ = dpram_small_ = jpan_fitted_ = false;
+  line_select_ = 0;
   connect();
 }
 
@@ -62,7 +65,7 @@ void BoardTop::execute(Tick t) {
   if (ref && select_.any) rdata_ = read_data(t - 1);
   const int written_ic = select_.ic;
   const BusSync::Where read = bus_sync_.rd_where();
-  const int read_ic = ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & gate_ics_.built()).ic : -1;
+  const int read_ic = ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & gate_ics_.built(), jpan_fitted_).ic : -1;
 
   advance_all(t);
   gate_ics_.advance(t);
@@ -71,6 +74,9 @@ void BoardTop::execute(Tick t) {
     fitted_ = inputs_.fitted;
     macro_gate_ = macro_gates();
     ext_clock_ = inputs_.ext_clock;
+    dpram_small_ = inputs_.dpram_small;
+    jpan_fitted_ = inputs_.jpan_fitted;
+    line_select_ = inputs_.line_select;
   }
   if (read_ic >= 0) gate_ics_.read_done(static_cast<unsigned>(read_ic), read.x, read.addr, t);
   if (write_ic) gate_ics_.write(static_cast<unsigned>(written_ic), where.x, where.addr, wdata, t);
@@ -82,13 +88,14 @@ void BoardTop::execute(Tick t) {
 std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
+  if (select_.panel) return panel_port_.rdata();
   if (select_.ic < 0) return 0;
   return gate_ics_.read(static_cast<unsigned>(select_.ic), bus_sync_.where().x, bus_sync_.where().addr, t);
 }
 
 void BoardTop::connect() {
   bus_sync_.set_pins(inputs_);
-  select_ = AddressDecode::decode(bus_sync_.where(), fitted_ & gate_ics_.built());
+  select_ = AddressDecode::decode(bus_sync_.where(), fitted_ & gate_ics_.built(), jpan_fitted_);
   connect_clocks();
   connect_host();
 }
@@ -103,6 +110,9 @@ void BoardTop::connect_clocks() {
 
   gate_ics_.set_clocks(clock_select_.phase(), clock_select_.servo(), now_);
   gate_ics_.set_trip(watchdog_.trip(), now_);
+  std::uint32_t interrupting = 0;
+  for (unsigned line = 0; line < 3; ++line) interrupting |= 1u << (line_select_ >> 4 * line & 0xF);
+  gate_ics_.set_interrupting(interrupting >> 1 & 0xFF, now_);
   watchdog_.servo = clock_select_.servo();
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
 }
@@ -116,9 +126,11 @@ void BoardTop::connect_host() {
   hp.dsp_rd_done = read_done;
   hp.dsp_addr = (read_done ? bus_sync_.rd_where() : bus_sync_.where()).addr & 0x3F;
   hp.dsp_wdata = bus_sync_.wdata();
+  panel_port_.jpan = inputs_.jpan;
   host_signals_.in.wr = bus_sync_.we() && select_.signals;
   host_signals_.in.wdata = bus_sync_.wdata() & 0xF;
   Dpram::Inputs& ram = dpram_.in;
+  ram.small = dpram_small_;
   ram.cpu_sel = (inputs_.pa_aa & 4) != 0 && !inputs_.pa_int;
   ram.cpu_x = inputs_.pa_x;
   ram.cpu_addr = inputs_.pa_addr & 0x3FFF;
@@ -156,10 +168,16 @@ void BoardTop::connect_host() {
   isa.hp_rdata = host_port_.hp_rdata();
   isa.pic_rdata = interrupt_controller_.rdata();
 
-  // IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up.
-  const unsigned equ = gate_ics_.equ() & fitted_;
-  pic.line =
-      static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | equ << 5 | watchdog_.trip() << 7);
+  // IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
+  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
+}
+
+std::uint32_t BoardTop::selected_lines() const {
+  const std::uint32_t fitted_equ = ((fitted_ & 1) != 0 ? 0x0Fu : 0u) | ((fitted_ & 2) != 0 ? 0xF0u : 0u);
+  const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u) << 9;  // by the digits of line_select
+  std::uint32_t lines = 0;
+  for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (line_select_ >> 4 * line & 0xF) & 1) << line;
+  return lines;
 }
 
 BoardOutputs BoardTop::pins() const {

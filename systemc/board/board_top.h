@@ -16,6 +16,7 @@
 #include "systemc/board/bus_sync.h"
 #include "systemc/board/clock_select.h"
 #include "systemc/board/gate_ics.h"
+#include "systemc/board/panel_port.h"
 #include "systemc/board/watchdog.h"
 #include "systemc/core/board.h"
 #include "systemc/host/dpram.h"
@@ -50,7 +51,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   HostPort& host_port() { return host_port_; }
 
  private:
-  static constexpr unsigned kBlocks = 8;
+  static constexpr unsigned kBlocks = 9;
 
   void reset_all(Tick t);
   void advance_all(Tick t);
@@ -62,8 +63,12 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool show_pins();    // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();  // the same for the watched ICs
   std::uint32_t read_data(Tick t) const;
+  std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
   std::uint32_t macro_gates() const { return inputs_.macro_gate & gate_ics_.built() >> kMaxServoIcs; }
-  bool straps_move() const { return inputs_.fitted != fitted_ || macro_gates() != macro_gate_ || inputs_.ext_clock != ext_clock_; }
+  bool straps_move() const {
+    return inputs_.fitted != fitted_ || macro_gates() != macro_gate_ || inputs_.ext_clock != ext_clock_ ||
+           inputs_.dpram_small != dpram_small_ || inputs_.jpan_fitted != jpan_fitted_ || inputs_.line_select != line_select_;
+  }
   Tick next_event() const;
   Tick next_clock_event() const { return std::min(clock_select_.next_event(), gate_ics_.next_clock_event()); }
 
@@ -76,13 +81,15 @@ class BoardTop : public sc_core::sc_module, public Board {
   InterruptController interrupt_controller_;
   HostSignals host_signals_;
   Dpram dpram_;
+  PanelPort panel_port_;
   GateIcs gate_ics_;
   std::array<ModelBlock*, kBlocks> block_;
 
   BoardInputs inputs_;
   std::uint32_t fitted_ = 0;  // straps as taken over on clk_ref
   std::uint32_t macro_gate_ = 0;
-  bool ext_clock_ = false;
+  bool ext_clock_ = false, dpram_small_ = false, jpan_fitted_ = false;
+  std::uint32_t line_select_ = 0;
   AddressSelect select_;     // of the address in stage 1
   std::uint32_t rdata_ = 0;  // registered read data
   bool from_dpram_ = false;  // read data pins show the dual-ported RAM

@@ -52,7 +52,7 @@ void GateIcs::reset(Tick t) {
 
 bool GateIcs::advance(Tick t) {
   if (next_look_ <= t) {
-    for_each_bit(watched_ | kInterrupting, [&](unsigned ic) {
+    for_each_bit((watched_ | interrupting_ics()) & built_, [&](unsigned ic) {
       if (look_[ic] > t) return;
       catch_up(ic, t);
       look(ic, t);
@@ -123,6 +123,16 @@ void GateIcs::set_trip(bool trip, Tick now) {
   });
 }
 
+void GateIcs::set_interrupting(std::uint32_t equ, Tick now) {
+  if (equ == interrupting_) return;
+  interrupting_ = equ;
+  equ_ = 0;
+  for_each_bit(3 & built_, [&](unsigned ic) {
+    catch_up(ic, now);
+    look(ic, now);
+  });
+}
+
 void GateIcs::set_macro_gates(std::uint32_t gates, Tick now) {
   if (gates == macro_gates_) return;
   for_each_bit((gates ^ macro_gates_) & built_ >> kServoIcs, [&](unsigned i) {
@@ -168,9 +178,9 @@ void GateIcs::look(unsigned ic, Tick now) {
   const ServoIc& servo_ic = *servo_ic_[ic];
   const std::uint32_t bit = 1u << ic;
   Tick next = kNever;
-  if ((kInterrupting & bit) != 0) {
-    equ_ = (equ_ & ~bit) | (servo_ic.equ1() ? bit : 0);
-    next = servo_ic.next_equ_event();
+  if (const unsigned channels = interrupting(ic); channels != 0) {
+    equ_ = (equ_ & ~(0xFu << 4 * ic)) | (servo_ic.equ() & channels) << 4 * ic;
+    next = servo_ic.next_equ_event(channels);
   }
   if ((watched_ & bit) != 0) next = std::min(next, servo_ic.next_motor_event());
   looked_ |= bit;

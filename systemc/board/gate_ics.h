@@ -55,7 +55,9 @@ class GateIcs {
   const ClockSelect::Drivers& drivers() const { return drivers_; }
   std::uint32_t phase_levels() const { return phase_levels_; }
   std::uint32_t servo_levels() const { return servo_levels_; }
-  std::uint32_t equ() const { return equ_; }  // EQU of channel 1, bit 0 and 1 for servo IC 0 and 1
+  // Of the eight EQU outputs that can interrupt, bits 3..0 servo IC 0, 7..4 servo IC 1, those that do.
+  std::uint32_t equ() const { return equ_; }
+  void set_interrupting(std::uint32_t equ, Tick now);
   MotorOutputs motor_outputs(unsigned ic, Tick now) const;
   void watch(std::uint32_t servo_ics, Tick now);
   // Watched ICs whose outputs may have changed since the last call.
@@ -66,7 +68,9 @@ class GateIcs {
   }
 
  private:
-  static constexpr std::uint32_t kInterrupting = 3;  // servo ICs whose EQU interrupts
+  // Channels of servo IC 0 and 1 whose EQU interrupts.
+  unsigned interrupting(unsigned ic) const { return ic < 2 ? interrupting_ >> 4 * ic & 0xF : 0; }
+  std::uint32_t interrupting_ics() const { return ((interrupting_ & 0xF) != 0 ? 1u : 0u) | ((interrupting_ & 0xF0) != 0 ? 2u : 0u); }
 
   bool has(unsigned ic) const { return (built_ >> ic & 1) != 0; }
   void catch_up(unsigned ic, Tick t) const { follower_[ic]->catch_up(history_, t); }
@@ -87,7 +91,7 @@ class GateIcs {
   ClockSelect::Drivers drivers_;
   std::uint32_t drives_ = 0;  // ICs that drive PHASE or SERVO
   std::uint32_t phase_levels_ = ~0u, servo_levels_ = ~0u;
-  std::uint32_t watched_ = 0, looked_ = 0, equ_ = 0;
+  std::uint32_t watched_ = 0, looked_ = 0, equ_ = 0, interrupting_ = 0;
   std::array<Tick, kServoIcs> look_{};
   Tick next_clock_ = kNever, next_look_ = kNever;
 };

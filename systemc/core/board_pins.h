@@ -31,9 +31,13 @@ struct BoardInputs {
   bool isa_aen = false;
   bool isa_sbhe_n = true;  // 0 = upper byte lane used
   // straps
-  std::uint32_t fitted = 0x3;    // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
-  std::uint32_t macro_gate = 0;  // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
-  bool ext_clock = false;        // jumper E1: phase and servo come from outside
+  std::uint32_t fitted = 0x3;         // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
+  std::uint32_t macro_gate = 0;       // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
+  bool dpram_small = false;           // dual-ported RAM of 8192 words, not 32768
+  bool jpan_fitted = false;           // control panel port of Turbo PMAC boards
+  std::uint16_t jpan = 0xFFFF;        // its inputs, low-true, bits as Y:$078800 (rtl/regs/board.rdl)
+  std::uint16_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
+  bool ext_clock = false;             // jumper E1: phase and servo come from outside
   bool ext_phase = true;
   bool ext_servo = true;
 };

@@ -83,6 +83,10 @@ class RtlBoard : public Board {
     m.isa_sbhe_ni = in.isa_sbhe_n;
     m.fitted_i = in.fitted & fitted_;
     m.macro_gate_i = in.macro_gate & 0xF;
+    m.dpram_small_i = in.dpram_small;
+    m.jpan_fitted_i = in.jpan_fitted;
+    m.line_select_i = in.line_select & 0xFFF;
+    m.jpan_i = in.jpan;
     m.ext_clock_i = in.ext_clock;
     m.ext_phase_i = in.ext_phase;
     m.ext_servo_i = in.ext_servo;

@@ -89,6 +89,9 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
   };
   host_inputs.fitted = inputs.fitted = config.board.fitted;
   host_inputs.macro_gate = inputs.macro_gate = config.board.macro_gate;
+  host_inputs.dpram_small = inputs.dpram_small = config.board.dpram_words < 32768;
+  host_inputs.line_select = inputs.line_select = static_cast<std::uint16_t>(config.board.line_select);
+  host_inputs.jpan_fitted = inputs.jpan_fitted = config.board.jpan;
   named.outputs(0, {}, board->outputs());
   power_on();
 }
@@ -179,6 +182,10 @@ void Machine::Impl::apply_host_inputs() {
   inputs.isa_sbhe_n = host_inputs.isa_sbhe_n;
   inputs.fitted = host_inputs.fitted;
   inputs.macro_gate = host_inputs.macro_gate;
+  inputs.dpram_small = host_inputs.dpram_small;
+  inputs.jpan_fitted = host_inputs.jpan_fitted;
+  inputs.line_select = host_inputs.line_select;
+  inputs.jpan = host_inputs.jpan;
   inputs.ext_clock = host_inputs.ext_clock;
   inputs.ext_phase = host_inputs.ext_phase;
   inputs.ext_servo = host_inputs.ext_servo;

@@ -124,8 +124,15 @@ Tick ServoChannels::next_word_event() const {
   return next;
 }
 
-Tick ServoChannels::next_equ_event() const {
-  const ServoChannel& channel = channel_[0];
+Tick ServoChannels::next_equ_event(unsigned channels) const {
+  Tick next = kNever;
+  for (unsigned i = 0; i < kChannels; ++i)
+    if ((channels >> i & 1) != 0) next = std::min(next, next_equ_of(channel_[i]));
+  return next;
+}
+
+Tick ServoChannels::next_equ_of(const ServoChannel& channel) const {
+  if (&channel != &channel_[0] && channel.uses_channel1()) return channel_[0].compares(in.trip) ? sclk_.next() : kNever;
   if (!channel.compares(in.trip)) return kNever;
   Tick next = sclk_.after(channel.edges_to_equ() + 1, divider(kSclk));
   if (channel.settled()) {  // until the next pulse

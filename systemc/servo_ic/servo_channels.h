@@ -71,9 +71,9 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
 
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
   Tick next_event() const override;
-  Tick next_word_event() const;   // first edge after which a word of a channel may read differently
-  Tick next_equ_event() const;    // no edge before it changes EQU of channel 1
-  void advance(Tick t) override;  // not beyond the end of the line
+  Tick next_word_event() const;                  // first edge after which a word of a channel may read differently
+  Tick next_equ_event(unsigned channels) const;  // no edge before it changes EQU of one of them, bit n-1 for channel n
+  void advance(Tick t) override;                 // not beyond the end of the line
   void reset(Tick t) override;
 
   // For ClockFollower.
@@ -82,6 +82,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   void jump(Tick by);
 
  private:
+  Tick next_equ_of(const ServoChannel& channel) const;
   template <class Pin>
   unsigned each(Pin pin) const {
     unsigned bits = 0;

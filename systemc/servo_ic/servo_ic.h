@@ -37,7 +37,7 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
     channels_.in.adc_b = inputs.adc_b;
   }
   MotorOutputs motor_outputs() const { return channels_.motor_outputs(); }
-  bool equ1() const { return (channels_.equ() & 1) != 0; }
+  unsigned equ() const { return channels_.equ(); }  // bit n-1 for channel n
   void set_trip(bool trip) { channels_.in.trip = trip; }
   const ServoChannels& channels() const { return channels_; }
 
@@ -50,11 +50,11 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
   bool servo() const { return clock_gen_.servo(); }
   const ClockGen& clock_gen() const override { return clock_gen_; }
 
-  // Clock pins only; the words that a read may show, the motor outputs and EQU of channel 1 can change from the others on.
+  // Clock pins only; the words that a read may show, the motor outputs and EQU can change from the others on.
   Tick next_event() const override { return clock_gen_.next_event(); }
   Tick next_word_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_word_event()); }
   Tick next_motor_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_event()); }
-  Tick next_equ_event() const { return channels_.next_equ_event(); }
+  Tick next_equ_event(unsigned channels) const { return channels_.next_equ_event(channels); }
   void advance(Tick t) override;
   void reset(Tick t) override;
 

@@ -44,6 +44,10 @@ void RtlBoard::drive() {
   t.isa_sbhe_ni = i.isa_sbhe_n;
   t.fitted_i = i.fitted & 0x3FFFFF;
   t.macro_gate_i = i.macro_gate & 0xF;
+  t.dpram_small_i = i.dpram_small;
+  t.jpan_fitted_i = i.jpan_fitted;
+  t.line_select_i = i.line_select & 0xFFF;
+  t.jpan_i = i.jpan;
   t.ext_clock_i = i.ext_clock;
   t.ext_phase_i = i.ext_phase;
   t.ext_servo_i = i.ext_servo;

@@ -87,6 +87,70 @@ class BoardMap : public ::testing::TestWithParam<bool> {
   BoardRig rig;
 };
 const auto kEngineNames = [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); };
+// docs/boards.md: the port at Y:$078800 shows the pins, two edges of clk_ref after a change; nothing is there without the strap.
+TEST_P(BoardMap, ControlPanelPortShowsItsInputs) {
+  BRICK_COVERS("BREQ-6");
+  constexpr std::uint32_t kPort = 0x078800;
+  rig.run(6);
+  EXPECT_EQ(rig.read(false, kPort), 0u) << "not fitted";
+  rig.in.jpan_fitted = true;
+  rig.apply();
+  rig.run(6);
+  EXPECT_EQ(rig.read(false, kPort), 0xFFFFu);
+  for (unsigned input = 0; input < 16; ++input) {
+    rig.in.jpan = static_cast<std::uint16_t>(0xFFFF ^ 1u << input);
+    EXPECT_EQ(rig.read(false, kPort), 0xFFFFu ^ 1u << input);
+  }
+  rig.write(false, kPort, 0x5555);
+  EXPECT_EQ(rig.read(false, kPort), 0x7FFFu) << "inputs only";
+  EXPECT_EQ(rig.read(true, kPort), 0u);
+  for (const std::uint32_t other : {0x078801u, 0x078810u, 0x078C00u, 0x079800u, 0x07A800u, 0x078808u})
+    EXPECT_EQ(rig.read(false, other), 0u);
+}
+
+// The word follows the pins while the CPU looks at it: two edges of clk_ref through the port, one into the read data register.
+TEST_P(BoardMap, ControlPanelInputsPassTwoStages) {
+  rig.in.jpan_fitted = true;
+  rig.in.pa_addr = 0x078800;
+  rig.in.pa_x = false;
+  rig.in.pa_aa = 2;
+  rig.in.pa_rd_n = false;
+  rig.apply();
+  rig.run(31 - rig.now() % 3);
+  const Tick start = rig.now() + (3 - rig.now() % 3) - 1;  // the next edge is one of clk_ref
+  rig.board().run_until(start);
+  ASSERT_EQ(rig.get(pin::kPaData), 0xFFFFu);
+  rig.in.jpan = 0xFDFF;
+  rig.apply();
+  rig.run(1 + 3 + 2);
+  EXPECT_EQ(rig.get(pin::kPaData), 0xFFFFu);
+  rig.run(1);
+  EXPECT_EQ(rig.get(pin::kPaData), 0xFDFFu);
+}
+
+// host-bus.md 6.1: 8192 words are $060000..$060FFF, host 0x0000..0x3FFF.
+TEST_P(BoardMap, SmallDualPortedRamEndsAt060FFF) {
+  rig.in.dpram_small = true;
+  rig.apply();
+  rig.run(6);
+  memory_write(0x3FFC, 0x1234);
+  memory_write(0x3FFE, 0x5678);
+  EXPECT_EQ(rig.read(false, 0x060FFF), 0x1234u);
+  EXPECT_EQ(rig.read(true, 0x060FFF), 0x5678u);
+  memory_write(0x4000, 0x9999);
+  rig.write(false, 0x063FFF, 0x7777);
+  EXPECT_EQ(memory_read(0x4000), 0u);
+  EXPECT_EQ(rig.read(false, 0x061000), 0u);
+  EXPECT_EQ(memory_read(0xFFFC), 0u);
+  EXPECT_EQ(memory_read(0x0000), 0u) << "no alias";
+  rig.in.dpram_small = false;
+  rig.apply();
+  rig.run(6);
+  rig.write(false, 0x063FFF, 0x7777);
+  EXPECT_EQ(memory_read(0xFFFC), 0x7777u);
+  EXPECT_EQ(rig.read(true, 0x060FFF), 0x5678u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Engines, BoardMap, ::testing::Values(true, false), kEngineNames);
 
 // host-bus.md 4.2, Turbo PMAC2-PC: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO are IR0 to IR7; 5.7: bits of X:$070010.

@@ -32,6 +32,9 @@ void start_clocks(Board& board, BoardInputs& inputs) {
 }
 
 BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed), options_(options) {
+  for (unsigned line = 0; line < 3; ++line) inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | pick(16));
+  inputs_.jpan_fitted = pick(2) != 0;
+  inputs_.dpram_small = pick(2) != 0;
   reset_at_ = 12 + pick(30);  // released there
   cpu_.at = host_.at = reset_at_ + 10;
 }
@@ -67,12 +70,12 @@ void BoardTraffic::choose_cpu_address() {
       inputs_.pa_aa = 2;
       break;
     case 2:
-      inputs_.pa_addr = 0x078000 + pick(0x4000);
+      inputs_.pa_addr = 0x078000 + (pick(4) == 0 ? 0x0800 : pick(0x4000));
       inputs_.pa_aa = 2;
       break;
     case 3:
     case 4:
-      inputs_.pa_addr = 0x060000 + (pick(4) == 0 ? 0x3FFC : 0) + pick(4);
+      inputs_.pa_addr = 0x060000 + (pick(4) == 0 ? (pick(2) == 0 ? 0x3FFC : 0x0FFE) : 0) + pick(4);
       inputs_.pa_aa = 4;
       break;
     case 5:
@@ -123,6 +126,7 @@ void BoardTraffic::cpu_step() {
   switch (cpu_.step++) {
     case 0:
       choose_cpu_address();
+      if (pick(4) == 0) inputs_.jpan = static_cast<std::uint16_t>(pick(0x10000));
       cpu_.write = pick(2) != 0;
       if (cpu_.write) {
         const bool clocks = inputs_.pa_x && (is_one_of(inputs_.pa_addr, kClockWords) || is_one_of(inputs_.pa_addr, kMaxPhase));
@@ -150,7 +154,7 @@ void BoardTraffic::cpu_step() {
 void BoardTraffic::choose_host_address() {
   host_.memory = pick(3) == 0;
   if (host_.memory) {
-    const std::uint32_t offset = pick(4) == 0 ? pick(0x10000) : (pick(4) == 0 ? 0xFFF0 : 0) + pick(16);
+    const std::uint32_t offset = pick(4) == 0 ? pick(0x10000) : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + pick(16);
     inputs_.isa_sa = (pick(16) == 0 ? 0xC0000 : 0xD0000) + offset;
   } else {
     inputs_.isa_sa = (pick(16) == 0 ? pick(0x400) : regs::host_io::kBase + pick(16));
