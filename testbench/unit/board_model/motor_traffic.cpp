@@ -12,6 +12,7 @@ MotorTraffic::MotorTraffic(std::uint64_t seed, MotorTrafficOptions options) : ra
   for (Ic& ic : ic_) ic.at = 100 + pick(300);
   inputs_.fitted = 0;
   for (const unsigned ic : options_.ics) inputs_.fitted |= 1u << ic;
+  for (unsigned line = 0; line < 3; ++line) inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (1 + pick(8)));
 }
 
 Tick MotorTraffic::next() const {

@@ -172,6 +172,41 @@ TEST_P(BoardMap, EachSignalIsItsLineOfTheInterruptController) {
   EXPECT_EQ(io_read(9), 0x80u);
 }
 
+// host-bus.md 4.2: each board has its own sources of IR5, IR6 and IR7. EQU is written by bits 11 and 12 of a channel's control word.
+TEST_P(BoardMap, ThreeLinesOfTheInterruptControllerAreChosenByTheBoard) {
+  const auto set_equ = [this](unsigned n, bool level) {
+    rig.write(true, kServoIcBase[n / 4] + 8 * (n % 4) + 5, 1u << 11 | (level ? 1u << 12 : 0u));
+    rig.run(9);
+  };
+  const auto select = [this](unsigned ir5, unsigned ir6, unsigned ir7) {
+    rig.in.line_select = static_cast<std::uint16_t>(ir5 | ir6 << 4 | ir7 << 8);
+    rig.apply();
+    rig.run(9);
+  };
+  for (unsigned n = 0; n < 8; ++n) {
+    SCOPED_TRACE(n + 1);
+    set_equ(n, true);
+    for (unsigned code = 0; code < 16; ++code) {
+      const bool high = code == n + 1;
+      select(code, 0, 0);
+      EXPECT_EQ(rig.get(pin::kPicSig), high ? 0x20u : 0u);
+      select(0, code, 0);
+      EXPECT_EQ(rig.get(pin::kPicSig), high ? 0x40u : 0u);
+      select(0, 0, code);
+      EXPECT_EQ(rig.get(pin::kPicSig), high ? 0x80u : 0u);
+    }
+    select(n + 1, n + 1, n + 1);
+    EXPECT_EQ(rig.get(pin::kPicSig), 0xE0u);
+    set_equ(n, false);
+    EXPECT_EQ(rig.get(pin::kPicSig), 0u) << "falls while it is selected";
+  }
+  select(9, 0, 9);
+  EXPECT_EQ(rig.get(pin::kPicSig), 0u);
+  rig.edge(pin::kWdTripped, 1);
+  rig.run(9);
+  EXPECT_EQ(rig.get(pin::kPicSig), 0xA0u) << "WDO";
+}
+
 // host-bus.md 1.1: the latches are X words.
 TEST_P(BoardMap, YWordsOfTheLatchesDoNothing) {
   rig.write(true, kHostSignals, 0x5);
