@@ -93,6 +93,23 @@ def boards():
     check(play(["VERSION"], "--board", "geobrick-lv-4").stdout.split() == ["1.947"], "four axes")
 
 
+# covers: BREQ-6
+def jpan():
+    """The panel selects whose BREQ the host sees; the same times on all engines."""
+    lines = ["&2DEFINE ROTARY 40", "OPEN ROTARY", "CLOSE", "&1", "I2=0", "@signal breq", "@expect breq=0", "@jpan FPD=2", "@until breq=1 3ms", "@time",
+             "@jpan FPD3=0", "@until breq=0 3ms", "@jpan FPD=0 START=0", "@wait 3ms", "I59", "@expect 2", "@jpan START=1 FPD=2", "@until breq=1 3ms",
+             "I2=1", "@signal breq", "@expect breq=0", "@signal host.jpan", "@expect host.jpan=$FDFF", "@time"]
+    first = None
+    for engine in ("systemc", "rtl", "lockstep"):
+        r = play(lines, "--board", "turbo-pmac-pci", "--engine", engine)
+        check(r.returncode == 0, f"{engine}: exit {r.returncode}: {r.stderr}")
+        first = first or r.stdout
+        check(r.stdout == first, f"{engine}: {r.stdout}, expected {first}")
+    r = play(["VERSION", "@jpan FPD=1"])
+    check(r.returncode == 2 and r.stdout == "", f"exit {r.returncode}: {r.stdout}")
+    check("stdin:2: @jpan: this board has no control panel port; expected" in r.stderr and r.stderr.count("\n") == 1, r.stderr)
+
+
 def lists():
     benches = json.loads(brick("list", "--json").stdout)
     check({"smoke", "breq-rotary"} <= {b["name"] for b in benches}, str(benches))
@@ -157,6 +174,8 @@ def bad_input():
             (["exec", "-"], "VERSION\n@frob\n", "stdin:2: @frob"),
             (["exec", "-"], "VERSION\n@signal nothing.here\n", "stdin:2: @signal"),
             (["exec", "-"], "@until host.breq=2 1ms\n", "stdin:1: @until"),
+            (["exec", "-", "--board", "turbo-pmac-pci"], "@jpan GO=0\n", "stdin:1: @jpan"),
+            (["exec", "-", "--board", "turbo-pmac-pci"], "@jpan FPD=16\n", "`FPD=16`"),
             (["exec", "-"], "@input USER1=0\n", "not available on this board"),
             (["cpu", f"{folder}/none.elf"], "", "none.elf"),
             (["cpu", f"{folder}/bad.elf"], "", "bad.elf"),
