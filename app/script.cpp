@@ -155,16 +155,16 @@ void read_jpan(ScriptLine& line, const std::vector<std::string>& words) {
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::size_t equals = words[i].find('=');
     const std::string name = upper(words[i].substr(0, equals));
-    const auto value = equals == std::string::npos ? std::nullopt : number(words[i].substr(equals + 1), 10);
     const auto input = std::find(kInputs.begin(), kInputs.end(), name);
-    const std::uint32_t most = name == "FPD" ? kNumbers : 1;
-    if (!value || *value > most || (name != "FPD" && input == kInputs.end()))
-      throw UsageError(fmt::format("`{}` is not known; {}", words[i], form));
-    if (name == "FPD") {
-      set(kNumbers << kFpd, (~*value & kNumbers) << kFpd);
+    const bool fpd = name == "FPD";
+    const std::uint32_t most = fpd ? kNumbers : 1;
+    const std::uint32_t value = equals == std::string::npos ? most + 1 : number(words[i].substr(equals + 1), 10).value_or(most + 1);
+    if (value > most || (!fpd && input == kInputs.end())) throw UsageError(fmt::format("`{}` is not known; {}", words[i], form));
+    if (fpd) {
+      set(kNumbers << kFpd, (~value & kNumbers) << kFpd);
     } else {
       const auto bit = static_cast<unsigned>(input - kInputs.begin());
-      set(1u << bit, *value << bit);
+      set(1u << bit, value << bit);
     }
   }
 }
