@@ -48,7 +48,7 @@ void BoardTop::reset_all(Tick t) {
   fitted_ = 0;
   macro_gate_ = 0;
   ext_clock_ = dpram_small_ = jpan_fitted_ = false;
-  line_select_ = 0;
+  select_lines(0, t);
   connect();
 }
 
@@ -76,7 +76,7 @@ void BoardTop::execute(Tick t) {
     ext_clock_ = inputs_.ext_clock;
     dpram_small_ = inputs_.dpram_small;
     jpan_fitted_ = inputs_.jpan_fitted;
-    line_select_ = inputs_.line_select;
+    if (line_select_ != inputs_.line_select) select_lines(inputs_.line_select, t);
   }
   if (read_ic >= 0) gate_ics_.read_done(static_cast<unsigned>(read_ic), read.x, read.addr, t);
   if (write_ic) gate_ics_.write(static_cast<unsigned>(written_ic), where.x, where.addr, wdata, t);
@@ -110,9 +110,6 @@ void BoardTop::connect_clocks() {
 
   gate_ics_.set_clocks(clock_select_.phase(), clock_select_.servo(), now_);
   gate_ics_.set_trip(watchdog_.trip(), now_);
-  std::uint32_t interrupting = 0;
-  for (unsigned line = 0; line < 3; ++line) interrupting |= 1u << (line_select_ >> 4 * line & 0xF);
-  gate_ics_.set_interrupting(interrupting >> 1 & 0xFF, now_);
   watchdog_.servo = clock_select_.servo();
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
 }
@@ -172,6 +169,13 @@ void BoardTop::connect_host() {
   pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
 }
 
+void BoardTop::select_lines(std::uint32_t sources, Tick t) {
+  line_select_ = sources;
+  std::uint32_t interrupting = 0;
+  for (unsigned line = 0; line < 3; ++line) interrupting |= 1u << (sources >> 4 * line & 0xF);
+  gate_ics_.set_interrupting(interrupting >> 1 & 0xFF, t);
+}
+
 std::uint32_t BoardTop::selected_lines() const {
   const std::uint32_t fitted_equ = ((fitted_ & 1) != 0 ? 0x0Fu : 0u) | ((fitted_ & 2) != 0 ? 0xF0u : 0u);
   const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u) << 9;  // by the digits of line_select
@@ -180,32 +184,21 @@ std::uint32_t BoardTop::selected_lines() const {
   return lines;
 }
 
+// The packed words of systemc/core/board_pins.h.
 BoardOutputs BoardTop::pins() const {
+  const auto at = [](const PinField& f, std::uint32_t value) { return value << f.lsb; };
   BoardOutputs o;
-  o.set(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_);
-  o.set(pin::kPaTaN, dpram_.cpu_busy());
-  o.set(pin::kIrqHost, host_port_.irq());
-  o.set(pin::kPhase, clock_select_.phase());
-  o.set(pin::kServo, clock_select_.servo());
-  o.set(pin::kBreq, host_signals_.breq());
-  o.set(pin::kIpos, host_signals_.ipos());
-  o.set(pin::kEror, host_signals_.eror());
-  o.set(pin::kF1er, host_signals_.f1er());
-  o.set(pin::kIsaSd, isa_slave_.isa_sd());
-  o.set(pin::kIsaIochrdy, isa_slave_.isa_iochrdy());
-  o.set(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n());
-  o.set(pin::kIsaIrq, interrupt_controller_.irq());
-  o.set(pin::kHreq, host_port_.hreq());
-  o.set(pin::kWdo, watchdog_.trip());
-  o.set(pin::kWdTripped, watchdog_.trip());
-  o.set(pin::kBusyHost, dpram_.host_busy());
-  o.set(pin::kBusyCpu, dpram_.cpu_busy());
-  o.set(pin::kPhaseSource, clock_select_.phase_source());
-  o.set(pin::kSourceConflict, clock_select_.conflict());
-  o.set(pin::kPicIst, interrupt_controller_.ist());
-  o.set(pin::kPicSig, interrupt_controller_.sig());
-  o.set(pin::kPicMsk, interrupt_controller_.msk());
-  o.set(pin::kPicElr, interrupt_controller_.elr());
+  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_) | at(pin::kPaTaN, dpram_.cpu_busy()) |
+           at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) | at(pin::kServo, clock_select_.servo()) |
+           at(pin::kBreq, host_signals_.breq()) | at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
+           at(pin::kF1er, host_signals_.f1er());
+  o.w[1] = at(pin::kIsaSd, isa_slave_.isa_sd()) | at(pin::kIsaIochrdy, isa_slave_.isa_iochrdy()) |
+           at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) | at(pin::kIsaIrq, interrupt_controller_.irq()) |
+           at(pin::kHreq, host_port_.hreq()) | at(pin::kWdo, watchdog_.trip()) | at(pin::kWdTripped, watchdog_.trip()) |
+           at(pin::kBusyHost, dpram_.host_busy()) | at(pin::kBusyCpu, dpram_.cpu_busy()) |
+           at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
+  o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
+           at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
   return o;
 }
 

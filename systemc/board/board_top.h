@@ -63,6 +63,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool show_pins();    // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();  // the same for the watched ICs
   std::uint32_t read_data(Tick t) const;
+  void select_lines(std::uint32_t sources, Tick t);
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
   std::uint32_t macro_gates() const { return inputs_.macro_gate & gate_ics_.built() >> kMaxServoIcs; }
   bool straps_move() const {
