@@ -53,9 +53,9 @@ void passes(const std::string& file, const std::string& engine) {
 void fails_when_corrupted(const std::string& file) {
   const Vector vector = read_vector(file);
   for (const Corruption& corruption : vector.negatives) {
-    const RunResult result = run(vector, "systemc", &corruption);
-    EXPECT_FALSE(result.failures.empty()) << file << " passes although: " << corruption.name;
-    if (!result.failures.empty()) std::printf("%s: %s\n", corruption.name.c_str(), result.failures.front().c_str());
+    for (const char* engine : {"rtl", "systemc"})
+      EXPECT_FALSE(run(vector, engine, &corruption).failures.empty())
+          << file << " passes on " << engine << " although: " << corruption.name;
   }
 }
 
