@@ -92,7 +92,7 @@ TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
                           "@encoder 1 x",
                           "@encoder 1 5 9830401",
                           "@encoder 1 5 6 7",
-                          "@jpan FPD=1"})
+                          "@jpan FPD=x"})
     EXPECT_THAT(error_of(std::string("VERSION\n") + bad), AllOf(HasSubstr("job.txt:2: @"), HasSubstr("expected"))) << bad;
 }
 

@@ -70,7 +70,7 @@ TEST_P(PanelBoard, BreqFollowsThePanelOrTheHostByI2) {
   ask("I59=1");
   panel(1);
   EXPECT_FALSE(breq()) << "C.S. 9 is full";
-  ask("&9CLEAR");
+  for (const char* line : {"&9OPEN ROTARY", "CLEAR", "CLOSE &1"}) EXPECT_EQ(ask(line), "");
   EXPECT_TRUE(breq()) << "C.S. 9 has room now";
   EXPECT_EQ((bus().read_pic_signals() & kBreqLine) != 0, true);
   ask("I59=0");
