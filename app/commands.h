@@ -8,7 +8,7 @@
 namespace brick {
 
 int list_command(bool json);
-int boards_command(bool json);
+int boards_command(const std::string& name_or_file, bool json);  // "": all boards of the boards folder
 int exec_command(const RunOptions& options, const std::string& script, bool raw);
 int run_command(const RunOptions& options, const std::string& bench, bool negative);
 

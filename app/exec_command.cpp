@@ -46,6 +46,10 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
     failure = e.what();
   }
   if (!failure.empty()) std::cerr << "brick exec: " << failure << '\n';
+  for (const std::string& error : simulation.machine().take_run_errors()) {
+    std::cerr << "brick exec: " << error << '\n';
+    if (failure.empty()) failure = error;
+  }
   if (!options.json.empty()) {
     nlohmann::json results = simulation.measures();
     results["engine"] = options.engine;

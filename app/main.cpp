@@ -23,7 +23,7 @@ struct Commands {
   std::function<int()> chosen;
 
   RunOptions run_options, exec_options;
-  std::string bench, script, elf, max_instructions = kDefaultInstructions;
+  std::string bench, script, elf, board, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
   Commands() {
@@ -48,8 +48,9 @@ struct Commands {
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");
+    boards->add_option("BOARD", board, "NAME or FILE.toml: all about this one (default: a table of all)");
     boards->add_flag("--json", boards_json, "as JSON");
-    boards->callback([this] { chosen = [this] { return boards_command(boards_json); }; });
+    boards->callback([this] { chosen = [this] { return boards_command(board, boards_json); }; });
 
     auto* cpu = app.add_subcommand("cpu", "runs a bare program on the CPU model alone, until it writes the symbol tohost");
     cpu->add_option("FILE", elf, "RV32IMC program, FILE.elf")->required();

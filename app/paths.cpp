@@ -44,11 +44,11 @@ std::vector<std::string> board_names() {
   return names;
 }
 
-std::string board_path(const std::string& name_or_file) {
+std::string board_path(const std::string& name_or_file, const std::string& option) {
   if (ends_with(name_or_file, ".toml")) return name_or_file;
   const auto names = board_names();
   if (std::find(names.begin(), names.end(), name_or_file) == names.end())
-    throw UsageError(fmt::format("--board {}: no such board; expected {} or FILE.toml", name_or_file, fmt::join(names, ", ")));
+    throw UsageError(fmt::format("{} {}: no such board; expected {} or FILE.toml", option, name_or_file, fmt::join(names, ", ")));
   return (fs::path(boards_folder()) / (name_or_file + ".toml")).string();
 }
 

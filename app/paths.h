@@ -6,9 +6,10 @@
 
 namespace brick {
 
-std::string default_firmware();                           // turbo.elf; throws UsageError when there is none
-std::string boards_folder();                              // throws UsageError when there is none
-std::vector<std::string> board_names();                   // of the boards folder, sorted
-std::string board_path(const std::string& name_or_file);  // NAME of the boards folder, or FILE.toml
+std::string default_firmware();          // turbo.elf; throws UsageError when there is none
+std::string boards_folder();             // throws UsageError when there is none
+std::vector<std::string> board_names();  // of the boards folder, sorted
+// NAME of the boards folder, or FILE.toml; `option` begins the message when there is none.
+std::string board_path(const std::string& name_or_file, const std::string& option = "--board");
 
 }  // namespace brick

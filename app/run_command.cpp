@@ -49,6 +49,10 @@ int run_command(const RunOptions& options, const std::string& name, bool negativ
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
     report.fail("host", e.what());
   } catch (const GdbKilled& e) { report.fail("debugger", e.what()); }
+  for (const std::string& error : simulation.machine().take_run_errors()) {
+    report.fail("no error of the machine", error);
+    std::cerr << "brick run: " << error << '\n';
+  }
   const bool passed = report.passed();
   std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
   if (!options.json.empty()) {

@@ -6,6 +6,7 @@ A test names its requirements in one of these ways:
   bench        // covers: BREQ-1                         on the line above Bench breq_rotary_bench() {
   ctest        # covers: BREQ-1                          on the line above add_test(NAME ...)
   Python       # covers: BREQ-1                          on the line above def NAME(
+  vector       # covers: BREQ-1                          on the line above title = in testbench/vectors/NAME.vec
 
   --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a test that
                docs/verification-plan.md names and that does not exist, and when docs/traceability.md is not what --write
@@ -100,7 +101,7 @@ def plan_problems(root):
 
 def find_tests(root):
     found = []
-    for file in files(root, ["app", "firmware", "systemc", "testbench", "cmake"], {".cpp", ".py", ".txt", ".cmake"}):
+    for file in files(root, ["app", "firmware", "systemc", "testbench", "cmake"], {".cpp", ".py", ".txt", ".cmake", ".vec"}):
         text, name = (root / file).read_text(errors="replace"), str(file)
         if file.suffix == ".cpp":
             found += tests_in_cpp(text, name)
@@ -108,6 +109,8 @@ def find_tests(root):
                       for t in tests_in_comments(text, name, r"^Bench (\w+)_bench\(", "//")]
         elif file.suffix == ".py":
             found += tests_in_comments(text, name, r"^\s*def\s+(\w+)\(")
+        elif file.suffix == ".vec":
+            found += [Test("vectors." + file.stem, t.file, t.ids) for t in tests_in_comments(text, name, r"^(title) =")]
         elif file.name == "CMakeLists.txt" or file.suffix == ".cmake":
             found += tests_in_comments(text, name, r"NAME\s+([\w.\-]+)")
     return found
@@ -174,6 +177,7 @@ def print_results(requirements, tests, junit):
         name = plain_name(case.get("name"))
         results[name].add(case.get("status"))
         results[name.split(".")[-1]].add(case.get("status"))
+        results[re.sub(r"^(vectors\.\w+)_(?:rtl|systemc|both)$", r"\1", name)].add(case.get("status"))
     for name in requirements:
         for test in sorted(t for t in tests if name in t.ids):
             plain = plain_name(test.name.replace("bench ", ""))

@@ -9,6 +9,7 @@
 #include "firmware/buffers/rotary.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/command.h"
+#include "firmware/host/panel.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"
 
@@ -32,12 +33,13 @@ static void drive(bool high) {
 }
 
 static bool is_ready(uint32_t cs) {
+  if (cs >= COORDINATE_SYSTEMS) return false;
   const struct rotary* ring = &rotary_buffers[cs];
   return ring->size != 0 && ring->requested && !ring->full;
 }
 
-/* Turbo PMAC2: always the host-addressed coordinate system (BREQ-7). A board with JPAN and I2 = 0 would select here by FPDn/. */
-uint32_t buffer_request_selected(void) { return command_cs(); }
+/* The host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may be none. */
+uint32_t buffer_request_selected(void) { return panel_active() ? panel_cs() : command_cs(); }
 
 void buffer_request_initialize(void) {
   request.high = false;

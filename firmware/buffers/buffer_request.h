@@ -18,7 +18,7 @@ void buffer_request_line_stored(uint32_t cs);     /* same section, line counted:
 void buffer_request_line_calculated(uint32_t cs); /* real-time task, line no longer counted */
 void buffer_request_opened(uint32_t cs);          /* OPEN ROTARY, OPEN BINARY ROTARY */
 void buffer_request_emptied(uint32_t cs);         /* CLEAR, DELETE, DEFINE: Full = 0 */
-uint32_t buffer_request_selected(void);           /* coordinate system that drives the pin */
+uint32_t buffer_request_selected(void);           /* coordinate system that drives the pin; COORDINATE_SYSTEMS: none */
 void buffer_request_poll(void);                   /* background pass: notices changes of I16, I17 and of the selection */
 
 #endif

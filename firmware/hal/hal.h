@@ -45,7 +45,8 @@ void hal_clear_words(uint32_t first, uint32_t count);  /* X and Y words of main 
 bool hal_servo_pending(void);                          /* the next servo interrupt waits already */
 
 /* Straps, read-only words of the board description. */
-enum { HAL_STRAP_E3 = 0, HAL_STRAP_FITTED, HAL_STRAP_CARD, HAL_STRAP_DPRAM_WORDS, HAL_STRAP_POWER_ON, HAL_STRAP_JPAN };
+enum { HAL_STRAP_E3 = 0, HAL_STRAP_FITTED, HAL_STRAP_CARD, HAL_STRAP_DPRAM_WORDS, HAL_STRAP_POWER_ON, HAL_STRAP_PRODUCT };
+enum { HAL_PRODUCT_JPAN = 1, HAL_PRODUCT_UMAC = 2, HAL_PRODUCT_ULTRALITE = 4, HAL_PRODUCT_TURBO_PMAC_1 = 8 };
 uint32_t hal_strap(unsigned word);
 
 /* Flash store: plain memory, erased to all ones. */

@@ -69,6 +69,9 @@ static error_t version(struct lexer* lx) {
 
 static error_t type(struct lexer* lx) {
   (void)lx;
+  const uint32_t product = hal_strap(HAL_STRAP_PRODUCT);
+  if ((product & HAL_PRODUCT_TURBO_PMAC_1) != 0u) return text("TURBO1, X4");
+  if ((product & HAL_PRODUCT_ULTRALITE) != 0u) return text("TURBOU, X4");
   return text("TURBO2, X4");
 }
 

@@ -6,11 +6,14 @@
 #include "firmware/host/command.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
+#include "firmware/host/panel.h"
 #include "firmware/kernel/internal.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"
+#include "rtl/regs/brick_regs.h"
 
 #define MAIN_MEMORY_WORDS 0x010800u
+#define DPRAM_END 0x00003Fu     /* Y: address after the dual-ported RAM, tells its size */
 #define CLEARED_AT_ONCE 0x2100u /* an eighth */
 #define GLOBAL_STATUS 0x000006u /* X: first word, Y: second */
 
@@ -51,6 +54,7 @@ static void load_user_memory(void) {
     hal_clear_words(first, CLEARED_AT_ONCE);
     hal_watchdog_strobe();
   }
+  *hal_y(DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   if (load_user) saved_data_restore_user_memory();
 }
 
@@ -68,6 +72,7 @@ void kernel_start(kernel_start_t mode) {
   hal_watchdog_strobe();
   load_user_memory();
   command_initialize();
+  panel_initialize();
   motion_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(52), (uint32_t)i_integer(37));
@@ -79,6 +84,7 @@ void kernel_start(kernel_start_t mode) {
 
 void kernel_background_pass(void) {
   clock_watch_pass();
+  panel_pass();
   motion_background_update();
   *hal_x(GLOBAL_STATUS) = kernel_status_word();
   *hal_y(GLOBAL_STATUS) = motion_global_status2();

@@ -4,6 +4,7 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"
+#include "firmware/kernel/kernel.h"
 #include "firmware/variables/variables.h"
 
 #define MARK 0x42524B32u
@@ -26,12 +27,18 @@ static uint32_t checksum(const uint32_t* data, uint32_t count) {
 
 static uint32_t checked_words(uint32_t count) { return count + WORD_DATA - WORD_COUNT; }
 
+/* SAVE is one background pass, longer than a small I40 allows. */
+static void keep_alive(uint32_t step) {
+  if (step % 64u == 0u) kernel_watchdog_reload();
+}
+
 void saved_data_write(uint32_t initial_ics) {
   uint32_t* flash = hal_flash();
   uint32_t* data = flash + WORD_DATA;
   uint32_t count = 0;
   for (uint32_t number = 0; number < VARIABLE_COUNT; ++number) {
     struct i_saved saved;
+    keep_alive(number);
     if (!i_variable_save(number, &saved)) continue;
     const union double_words value = {.value = saved.value};
     data[count++] = number;
@@ -41,6 +48,7 @@ void saved_data_write(uint32_t initial_ics) {
   }
   data[count++] = SEPARATOR;
   for (uint32_t address = USER_FIRST; address < USER_END; ++address) {
+    keep_alive(address);
     const uint32_t x = *hal_x(address) & HAL_WORD_MASK;
     const uint32_t y = *hal_y(address) & HAL_WORD_MASK;
     if ((x | y) == 0u) continue;

@@ -2,6 +2,7 @@
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion.h"
@@ -21,9 +22,11 @@ enum {
   S2_END_BLOCK = 14,
   S2_DWELL = 12,
   S2_RAPID = 1,
+  G2_ULTRALITE = 23,
   G2_BINARY_ROTARY_OPEN = 20,
   G2_MOTION_OPEN = 19,
   G2_ROTARY_OPEN = 18,
+  G2_UMAC = 16,
   G2_FIXED_FULL = 11
 };
 
@@ -74,7 +77,9 @@ uint32_t motion_cs_status(uint32_t cs, unsigned word) {
 uint32_t motion_global_status2(void) {
   enum open_buffer open = open_buffer_kind();
   bool rotary = open == OPEN_ROTARY;
-  return bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) | bit(rotary, G2_ROTARY_OPEN) |
+  const uint32_t product = hal_strap(HAL_STRAP_PRODUCT);
+  return bit((product & HAL_PRODUCT_ULTRALITE) != 0u, G2_ULTRALITE) | bit((product & HAL_PRODUCT_UMAC) != 0u, G2_UMAC) |
+         bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) | bit(rotary, G2_ROTARY_OPEN) |
          bit(true, G2_FIXED_FULL); /* no fixed buffer is open (firmware.md 10 row 5) */
 }
 

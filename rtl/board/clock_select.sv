@@ -1,5 +1,6 @@
-// The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins, the conflict flag tells when
-// there is more than one driver; with no driver the net idles high; with jumper E1 (ext_clock_i) both come from outside.
+// The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins; with no driver the net idles high;
+// with jumper E1 (ext_clock_i) both come from outside. The conflict flag rises when drivers of one net have disagreed for more
+// than 2 clk, and stays until there is one driver again.
 // The choice is registered on clk_ref_i, external clocks are sampled on clk_pwm_i. Asynchronous reset. docs/clock.md.
 `default_nettype none
 
@@ -21,14 +22,15 @@ module clock_select (
   output logic             conflict_o
 );
 
-  localparam logic [4:0] External = 5'd30;
-  localparam logic [4:0] None     = 5'd31;
+  localparam logic [4:0] External  = 5'd30;
+  localparam logic [4:0] None      = 5'd31;
+  localparam logic [1:0] Tolerated = 2'd2;  // clk for which two drivers may disagree
 
   logic [44:0] drivers_d, drivers_q;  // {ext, servo, phase}
   logic [21:0] phase_grant_d, phase_grant_q, servo_grant_d, servo_grant_q;
   logic        phase_idle_d, phase_idle_q, servo_idle_d, servo_idle_q;
   logic [4:0]  source_d, source_q;
-  logic        conflict_d, conflict_q;
+  logic        several_d, several_q;  // a net has more than one driver
   assign drivers_d = {ext_clock_i, servo_oe_i & fitted_i, phase_oe_i & fitted_i};
 
   // Recomputed only when the set of drivers changes.
@@ -41,13 +43,13 @@ module clock_select (
     phase_idle_d  = phase_idle_q;
     servo_idle_d  = servo_idle_q;
     source_d      = source_q;
-    conflict_d    = conflict_q;
+    several_d     = several_q;
     if (drivers_d != drivers_q) begin
       phase_grant_d = ext ? 22'h0 : p & -p;
       servo_grant_d = ext ? 22'h0 : s & -s;
       phase_idle_d  = ~ext & (p == 22'h0);
       servo_idle_d  = ~ext & (s == 22'h0);
-      conflict_d    = ext ? (|p | |s) : (p != (p & -p)) | (s != (s & -s));
+      several_d     = ext ? (|p | |s) : (p != (p & -p)) | (s != (s & -s));
       source_d      = ext ? External : None;
       for (int unsigned i = 0; i < 22; i++) begin
         if (phase_grant_d[i]) source_d = 5'(i);
@@ -63,7 +65,7 @@ module clock_select (
       phase_idle_q  <= 1'b1;
       servo_idle_q  <= 1'b1;
       source_q      <= None;
-      conflict_q    <= 1'b0;
+      several_q     <= 1'b0;
     end else begin
       drivers_q     <= drivers_d;
       phase_grant_q <= phase_grant_d;
@@ -71,7 +73,7 @@ module clock_select (
       phase_idle_q  <= phase_idle_d;
       servo_idle_q  <= servo_idle_d;
       source_q      <= source_d;
-      conflict_q    <= conflict_d;
+      several_q     <= several_d;
     end
   end
 
@@ -86,10 +88,35 @@ module clock_select (
     end
   end
 
+  // Drivers at different levels.
+  logic disagree, conflict_d, conflict_q;
+  logic [1:0] disagree_d, disagree_q;  // clk since they do
+  logic [21:0] phase_low, phase_high, servo_low, servo_high;
+  always_comb begin
+    phase_low  = drivers_q[21:0] & ~phase_i;
+    phase_high = drivers_q[21:0] & phase_i;
+    servo_low  = drivers_q[43:22] & ~servo_i;
+    servo_high = drivers_q[43:22] & servo_i;
+    if (drivers_q[44]) disagree = (ext_phase_q ? |phase_low : |phase_high) | (ext_servo_q ? |servo_low : |servo_high);
+    else               disagree = (|phase_low & |phase_high) | (|servo_low & |servo_high);
+    disagree_d = !disagree ? 2'd0 : (disagree_q == Tolerated) ? Tolerated : disagree_q + 2'd1;
+    conflict_d = several_q & (conflict_q | (disagree & (disagree_q == Tolerated)));
+  end
+
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      disagree_q <= 2'd0;
+      conflict_q <= 1'b0;
+    end else begin
+      disagree_q <= disagree_d;
+      conflict_q <= conflict_d;
+    end
+  end
+
   assign phase_o        = phase_idle_q | (drivers_q[44] & ext_phase_q) | (|(phase_grant_q & phase_i));
   assign servo_o        = servo_idle_q | (drivers_q[44] & ext_servo_q) | (|(servo_grant_q & servo_i));
   assign phase_source_o = source_q;
-  assign conflict_o     = conflict_q;
+  assign conflict_o     = conflict_q & several_q;
 
 endmodule : clock_select
 

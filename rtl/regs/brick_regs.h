@@ -289,6 +289,31 @@
 #define MACRO_IC_SUPPLEMENTARY_2_OUTPUTS_SHIFT 19u
 #define MACRO_IC_SUPPLEMENTARY_2_OUTPUTS_MASK 0x380000u /* PFM direction invert, output inverts */
 
+/* Control panel port */
+#define JPAN_BASE 0x078800u
+#define JPAN_Y_INPUTS 0x078800u /* Control panel inputs */
+#define JPAN_INPUTS_RESET 0x00FFFFu
+#define JPAN_INPUTS_JOG_MINUS_SHIFT 0u
+#define JPAN_INPUTS_JOG_MINUS_MASK 0x000001u /* JOG-/ */
+#define JPAN_INPUTS_JOG_PLUS_SHIFT 1u
+#define JPAN_INPUTS_JOG_PLUS_MASK 0x000002u /* JOG+/ */
+#define JPAN_INPUTS_PREJOG_SHIFT 2u
+#define JPAN_INPUTS_PREJOG_MASK 0x000004u /* PREJ/, pre-jog position */
+#define JPAN_INPUTS_START_SHIFT 3u
+#define JPAN_INPUTS_START_MASK 0x000008u /* STRT/, start */
+#define JPAN_INPUTS_STEP_SHIFT 4u
+#define JPAN_INPUTS_STEP_MASK 0x000010u /* STEP/, step or quit */
+#define JPAN_INPUTS_STOP_SHIFT 5u
+#define JPAN_INPUTS_STOP_MASK 0x000020u /* STOP/, abort */
+#define JPAN_INPUTS_HOME_SHIFT 6u
+#define JPAN_INPUTS_HOME_MASK 0x000040u /* HOME/ */
+#define JPAN_INPUTS_HOLD_SHIFT 7u
+#define JPAN_INPUTS_HOLD_MASK 0x000080u /* HOLD/, feed hold */
+#define JPAN_INPUTS_FPD_SHIFT 8u
+#define JPAN_INPUTS_FPD_MASK 0x000F00u /* FPD0/ to FPD3/: motor and coordinate system, inverted */
+#define JPAN_INPUTS_SPARE_SHIFT 12u
+#define JPAN_INPUTS_SPARE_MASK 0x00F000u /* Not brought out: 1 */
+
 /* Host port HI08, CPU side */
 #define HI08_BASE 0xFFFFC2u
 #define HI08_X_HCR 0xFFFFC2u /* Host control register */

@@ -119,6 +119,12 @@ namespace supplementary_1 { constexpr Field kCapture{0, 17}; constexpr Field kOu
 namespace supplementary_2 { constexpr Field kCapture{0, 17}; constexpr Field kOutputs{19, 3}; }
 }  // namespace macro_ic
 
+namespace jpan {  // Control panel port
+constexpr std::uint32_t kBase = 0x78800;
+constexpr Register kInputs{'Y', 0x78800, 0xFFFF, 0x0};
+namespace inputs { constexpr Field kJogMinus{0, 1}; constexpr Field kJogPlus{1, 1}; constexpr Field kPrejog{2, 1}; constexpr Field kStart{3, 1}; constexpr Field kStep{4, 1}; constexpr Field kStop{5, 1}; constexpr Field kHome{6, 1}; constexpr Field kHold{7, 1}; constexpr Field kFpd{8, 4}; constexpr Field kSpare{12, 4}; }
+}  // namespace jpan
+
 namespace hi08 {  // Host port HI08, CPU side
 constexpr std::uint32_t kBase = 0xFFFFC2;
 constexpr Register kHcr{'X', 0xFFFFC2, 0x0, 0x1F};

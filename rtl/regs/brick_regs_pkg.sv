@@ -233,6 +233,23 @@ package brick_regs_pkg;
   localparam int MacroIcSupplementary2OutputsLsb = 19;
   localparam int MacroIcSupplementary2OutputsWidth = 3;
 
+  // Control panel port
+  localparam logic [23:0] JpanBase = 24'h078800;
+  localparam logic [23:0] JpanInputsAddr = 24'h078800;  // Y
+  localparam logic [23:0] JpanInputsReset = 24'h00FFFF;
+  localparam int JpanInputsJogMinusLsb = 0;
+  localparam int JpanInputsJogPlusLsb = 1;
+  localparam int JpanInputsPrejogLsb = 2;
+  localparam int JpanInputsStartLsb = 3;
+  localparam int JpanInputsStepLsb = 4;
+  localparam int JpanInputsStopLsb = 5;
+  localparam int JpanInputsHomeLsb = 6;
+  localparam int JpanInputsHoldLsb = 7;
+  localparam int JpanInputsFpdLsb = 8;
+  localparam int JpanInputsFpdWidth = 4;
+  localparam int JpanInputsSpareLsb = 12;
+  localparam int JpanInputsSpareWidth = 4;
+
   // Host port HI08, CPU side
   localparam logic [23:0] Hi08Base = 24'hFFFFC2;
   localparam logic [23:0] Hi08HcrAddr = 24'hFFFFC2;  // X

@@ -1,6 +1,7 @@
 // Model of rtl/board/clock_select.sv: the board's PHASE and SERVO nets from the ICs that drive them or from jumper E1.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include <systemc>
@@ -29,20 +30,23 @@ class ClockSelect : public sc_core::sc_module, public ModelBlock {
     if (q_.ext) return 30;
     return q_.phase == 0 ? 31 : static_cast<std::uint32_t>(__builtin_ctz(q_.phase));
   }
-  bool conflict() const {
-    if (q_.ext) return q_.phase != 0 || q_.servo != 0;
-    return (q_.phase & (q_.phase - 1)) != 0 || (q_.servo & (q_.servo - 1)) != 0;
-  }
+  // Drivers of one net have disagreed for more than kTolerated ticks; stays until there is one driver again.
+  bool conflict() const { return conflict_ && several(); }
   // True when the nets cannot change but by the IC outputs and nothing is about to switch.
   bool settled() const { return !(in != q_); }
 
   Tick next_event() const override {
     const bool ext_moves = q_.ext && (ext_phase != ext_phase_q_ || ext_servo != ext_servo_q_);
     if (ext_moves) return now_ + 1;
-    return in != q_ ? next_ref_edge(now_) : kNever;
+    const Tick conflict_rises = !conflict_ && disagree() ? now_ + kTolerated + 1 - disagree_ : kNever;
+    return std::min(conflict_rises, in != q_ ? next_ref_edge(now_) : kNever);
   }
   void advance(Tick t) override {
     if (t <= now_) return;
+    // Nothing that disagree() looks at has changed since now_, so all edges up to t see the same.
+    if (disagree() && disagree_ + (t - now_) > kTolerated) conflict_ = true;
+    disagree_ = disagree() ? std::min(kTolerated, disagree_ + (t - now_)) : 0;
+    conflict_ = conflict_ && several();
     ext_phase_q_ = ext_phase;
     ext_servo_q_ = ext_servo;
     if (next_ref_edge(now_) <= t) q_ = in;
@@ -50,11 +54,24 @@ class ClockSelect : public sc_core::sc_module, public ModelBlock {
   }
   void reset(Tick t) override {
     q_ = Drivers{};
+    conflict_ = false;
+    disagree_ = 0;
     ext_phase_q_ = ext_servo_q_ = true;
     now_ = t;
   }
 
  private:
+  static constexpr Tick kTolerated = 2;
+
+  bool several() const {
+    if (q_.ext) return q_.phase != 0 || q_.servo != 0;
+    return (q_.phase & (q_.phase - 1)) != 0 || (q_.servo & (q_.servo - 1)) != 0;
+  }
+  bool disagree() const { return several() && (fight(q_.phase, phase_level, ext_phase_q_) || fight(q_.servo, servo_level, ext_servo_q_)); }
+  bool fight(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
+    const bool low = (drivers & ~level) != 0, high = (drivers & level) != 0;
+    return q_.ext ? (ext_level ? low : high) : low && high;
+  }
   bool net(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
     if (q_.ext) return ext_level;
     return drivers == 0 || (level & drivers & (0u - drivers)) != 0;  // lowest-numbered driver wins, idle is high
@@ -62,6 +79,8 @@ class ClockSelect : public sc_core::sc_module, public ModelBlock {
 
   Drivers q_;
   bool ext_phase_q_ = true, ext_servo_q_ = true;
+  bool conflict_ = false;
+  Tick disagree_ = 0;  // ticks for which they have, kTolerated at most
   Tick now_ = 0;
 };
 

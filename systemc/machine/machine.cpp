@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "systemc/cosim/engines.h"
 #include "systemc/machine/machine_impl.h"
@@ -66,6 +67,7 @@ DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, 
 
 Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     : config(machine_config),
+      jumper_e3(config.jumper_e3),
       owner(machine),
       board(make_board(config)),
       motors(*board, signals, config.board.fitted),
@@ -99,11 +101,11 @@ Machine::Impl::~Impl() {
 
 void Machine::Impl::power_on() {
   memory.randomize(config.seed + power_ons++);
-  memory.set_strap(MachineMemory::Strap::kJumperE3, config.jumper_e3);
+  memory.set_strap(MachineMemory::Strap::kJumperE3, jumper_e3);
   memory.set_strap(MachineMemory::Strap::kFitted, config.board.fitted);
   memory.set_strap(MachineMemory::Strap::kCard, config.board.card);
   memory.set_strap(MachineMemory::Strap::kDpramWords, config.board.dpram_words);
-  memory.set_strap(MachineMemory::Strap::kJpan, config.board.jpan);
+  memory.set_strap(MachineMemory::Strap::kProduct, config.board.product | (config.board.jpan ? 1u : 0u));
   if (elf) elf->load(cpu);
   begin_reset(true);
 }
@@ -114,6 +116,7 @@ void Machine::Impl::begin_reset(bool power) {
   cpu_runs = false;
   events.clear();
   initiator.forget();
+  clock_drivers.reset();
   port_a.reset(board->now(), cpu.cycle(), inputs);
   inputs.rst_n = false;
   board->set_inputs(inputs);
@@ -136,6 +139,10 @@ void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const B
   named.outputs(tick_to_fs(tick), before, after);
   port_a.board_changed(tick, after);
   if (before.differs(after, stop_on)) stopped = true;
+  if (before.get(pin::kSourceConflict) == 0 && after.get(pin::kSourceConflict) != 0) {
+    if (!inputs.pa_wr_n) clock_drivers.write(inputs.pa_x, inputs.pa_addr, inputs.pa_wdata);  // the cycle under way may be the cause
+    run_errors.push_back(clock_drivers.contention(tick, inputs.fitted, inputs.ext_clock));
+  }
   if (!cpu_runs || !before.differs(after, kSeenByCpu)) return;
   const auto fell = [&](const PinField& f) { return before.get(f) != 0 && after.get(f) == 0; };
   const auto rose = [&](const PinField& f) { return before.get(f) == 0 && after.get(f) != 0; };
@@ -149,6 +156,7 @@ void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const B
 void Machine::Impl::cycle_done(const PortACycle& c) {
   if (bus_cycles.size() >= 4 * kBusCyclesKept) bus_cycles.erase(bus_cycles.begin(), bus_cycles.end() - kBusCyclesKept);
   bus_cycles.push_back({fs_to_tick(c.start), c.x ? 'X' : 'Y', c.address, c.write, c.data, c.pc});
+  if (c.write) clock_drivers.write(c.x, c.address, c.data);
   if (tracing_cpu) named.pc(c.start, c.pc, elf.get());
   if (owner.on_bus_cycle) owner.on_bus_cycle(c);
 }
@@ -204,8 +212,14 @@ void Machine::attach_debugger(GdbServer* debugger) {
 }
 
 void Machine::reset() { impl_->begin_reset(false); }
-void Machine::set_jumper_e3(bool on) { impl_->memory.set_strap(MachineMemory::Strap::kJumperE3, on); }
+void Machine::set_jumper_e3(bool on) {
+  impl_->jumper_e3 = on;
+  impl_->memory.set_strap(MachineMemory::Strap::kJumperE3, on);
+}
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->bus_cycles; }
+
+const std::vector<std::string>& Machine::run_errors() const { return impl_->run_errors; }
+std::vector<std::string> Machine::take_run_errors() { return std::exchange(impl_->run_errors, {}); }
 
 Signals& Machine::signals() {
   // Without a waveform nobody follows each call: what is asked for now is what stands now.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <systemc>
 
@@ -30,6 +31,12 @@ struct BoardConfig {
   std::uint32_t dpram_words = 32768;  // 16-bit words: 8192 or 32768
   bool jpan = false;                  // Turbo PMAC control panel port fitted
   std::uint32_t card = 603382;        // CID reply
+  std::uint32_t product = 0;          // other bits of word 5 of the straps page, systemc/machine/board_family.h
+  std::uint32_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: kInterruptSources of board_family.h
+  std::string family = "geo-brick-lv", bus = "internal";
+  unsigned axes = 8;
+  bool feedback_option_2 = false;
+  std::vector<std::string> notes;  // what differs from the product, for the user
 };
 
 struct MachineConfig {
@@ -89,6 +96,11 @@ class Machine : public sc_core::sc_module {
     std::uint32_t pc;
   };
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
+
+  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md). A caller that provokes it
+  // on purpose takes the list; `brick run` and `brick exec` fail when something is left in it.
+  const std::vector<std::string>& run_errors() const;
+  std::vector<std::string> take_run_errors();
 
   // Called at the end of each Port A cycle with the exact times of all its edges (systemc/cpu/port_a.h), for checkers.
   std::function<void(const PortACycle&)> on_bus_cycle;

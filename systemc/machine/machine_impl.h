@@ -9,6 +9,7 @@
 
 #include "systemc/cpu/gdb_server.h"
 #include "systemc/cpu/port_a.h"
+#include "systemc/machine/clock_drivers.h"
 #include "systemc/machine/machine.h"
 #include "systemc/machine/machine_signals.h"
 #include "systemc/machine/memory.h"
@@ -65,6 +66,7 @@ struct Machine::Impl {
   TimeFs cpu_time() const;
 
   const MachineConfig config;
+  bool jumper_e3;  // stays put over a power cycle
   Machine& owner;
   Signals signals;
   MachineSignals named{signals};
@@ -92,6 +94,8 @@ struct Machine::Impl {
   BoardOutputs stop_on;
   bool tracing_cpu = false;
   std::vector<BusCycle> bus_cycles;
+  ClockDrivers clock_drivers;
+  std::vector<std::string> run_errors;
   std::optional<std::int64_t> kernel_offset;  // kernel time at the machine's tick 0, in units of its resolution
 };
 

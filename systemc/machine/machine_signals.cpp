@@ -5,13 +5,6 @@
 
 namespace brick {
 
-unsigned clock_source_variable(unsigned source) {
-  if (source < 10) return 7007 + 100 * source;        // servo IC m
-  if (source < 18) return 7057 + 100 * (source - 8);  // servo IC m*, m = 2..9
-  if (source < 22) return 6807 + 50 * (source - 18);  // MACRO IC
-  return 0;
-}
-
 MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
   for (const PinField& f : pin::kAll) pin_.push_back(signals.add(std::string(f.name), f.width, f.hex ? Radix::kHex : Radix::kBinary));
   source_ = signals.add("clock.source", 13, Radix::kDecimal);

@@ -35,6 +35,11 @@ class MachineSignals {
 };
 
 // Number of the clock-direction I-variable of a source as in BoardInputs::fitted; 0 for external and none.
-unsigned clock_source_variable(unsigned source);
+constexpr unsigned clock_source_variable(unsigned source) {
+  if (source < 10) return 7007 + 100 * source;        // servo IC m
+  if (source < 18) return 7057 + 100 * (source - 8);  // servo IC m*, m = 2..9
+  if (source < 22) return 6807 + 50 * (source - 18);  // MACRO IC
+  return 0;
+}
 
 }  // namespace brick

@@ -21,7 +21,7 @@ class MachineMemory {
   MachineMemory(Cpu& cpu, std::string flash_file);
 
   // Words of the straps page.
-  enum class Strap : std::uint32_t { kJumperE3 = 0, kFitted, kCard, kDpramWords, kPowerOn, kJpan };
+  enum class Strap : std::uint32_t { kJumperE3 = 0, kFitted, kCard, kDpramWords, kPowerOn, kProduct };
   void set_strap(Strap strap, std::uint32_t value);
 
   void randomize(std::uint64_t seed);  // RAM content after power-on

@@ -23,7 +23,7 @@ bool BenchReport::passed() const {
 }
 
 const std::vector<Bench>& all_benches() {
-  static const std::vector<Bench> benches{smoke_bench(), breq_rotary_bench()};
+  static const std::vector<Bench> benches{smoke_bench(), breq_rotary_bench(), watchdog_bench(), reinit_e3_bench()};
   return benches;
 }
 

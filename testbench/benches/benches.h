@@ -7,5 +7,7 @@ namespace brick {
 
 Bench smoke_bench();
 Bench breq_rotary_bench();
+Bench watchdog_bench();
+Bench reinit_e3_bench();
 
 }  // namespace brick

@@ -7,6 +7,7 @@ import sys
 import tempfile
 
 BRICK, CASE = sys.argv[1], sys.argv[2]
+BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
 GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
 ANSWERS = ["1.947", "603382", "7007", "5", "10", "ERR003"]  # the three DEFINEs: nothing, nothing, lower-numbered buffer exists
 
@@ -91,9 +92,17 @@ def raw():
 
 def boards():
     r = brick("boards")
-    check(r.returncode == 0 and "geobrick-lv-4" in r.stdout and "servo IC 1" in r.stdout, r.stdout + r.stderr)
+    rows = {line.split()[0]: line.split() for line in r.stdout.splitlines()}
+    check(r.returncode == 0 and rows["geobrick-lv-4"][1:5] == ["4", "0", "-", "7007"], r.stdout + r.stderr)
+    check(rows["umac-turbo"][1:6] == ["8", "2", "3", "0", "6807"] and "yes" in rows["turbo-pmac-pci"], r.stdout)
     found = {b["name"]: b["ics"] for b in json.loads(brick("boards", "--json").stdout)}
     check(found["geobrick-lv-4"] == ["servo IC 0"] and found["geobrick-lv-8"] == ["servo IC 0", "servo IC 1"], str(found))
+    one = brick("boards", "turbo-pmac2-pci-lite").stdout
+    check("IR5 EQU1, IR6 EQU2, IR7 WDO" in one and "I19=7007" in one and "control panel    none" in one, one)
+    small = brick("boards", "turbo-pmac-pci").stdout
+    check("JPAN, Y:$078800" in small and "$060000..$060FFF" in small and "0x3FFF" in small and "TYPE TURBO1" in small, small)
+    file = json.loads(brick("boards", str(BOARDS / "geo-pmac.toml"), "--json").stdout)
+    check((file["axes"], file["jpan"], file["feedback_option_2"], file["interrupts"][7]) == (2, False, True, "WDO"), str(file))
     check(play(["VERSION"], "--board", "geobrick-lv-4").stdout.split() == ["1.947"], "four axes")
 
 
@@ -111,6 +120,18 @@ def statuses():
     check(play(["UUU"]).returncode == 0, "an ERR reply is an answer")
     r = play(["I16", "@expect 6", "I17"])
     check("stdin:2" in r.stderr and "`5`" in r.stderr and "`6`" in r.stderr and r.stdout.split() == ["5"], r.stderr + r.stdout)
+
+
+def contention():
+    """Two sources of the clocks: the controller goes on, the run fails with one line that names them."""
+    for engine in ("systemc", "lockstep"):
+        r = play(["I7107=0", "@wait 1ms", "VERSION"], "--engine", engine)
+        check(r.returncode == 1, f"exit {r.returncode}, expected 1: {r.stderr}")
+        check(r.stdout.split() == ["1.947"], r.stdout)
+        check(re.fullmatch(r"brick exec: clock contention from tick \d+ \(.*\): servo IC 0 \(I7007\) and servo IC 1 \(I7107\) drive .*; expected one source\n",
+                           r.stderr), r.stderr)
+    r = play(["I7107=0 I7007=3", "@wait 1ms", "I7007=0 I7107=3", "@wait 1ms"])
+    check(r.returncode == 0 and r.stderr == "", f"moved there and back: exit {r.returncode}: {r.stderr}")
 
 
 def bad_input():
@@ -135,6 +156,8 @@ def bad_input():
             (["exec", "-", "--board", "nothing"], "", "nothing"),
             (["exec", "-", "--board", f"{folder}/none.toml"], "", "none.toml"),
             (["exec", "-", "--board", f"{folder}/bad.toml"], "", "bad.toml:1"),
+            (["boards", "nothing"], "", "board nothing"),
+            (["boards", f"{folder}/bad.toml"], "", "bad.toml:1"),
             (["exec", "-", "--firmware", f"{folder}/none.elf"], "", "none.elf"),
             (["exec", "-", "--firmware", f"{folder}/bad.elf"], "", "bad.elf"),
             (["exec", "-", "--flash", f"{folder}/none/flash"], "", "none/flash"),
@@ -201,6 +224,50 @@ def breq_rotary_lockstep():
 
 def breq_rotary_negative():
     bench_fails_its_negative_control("breq-rotary", "systemc")
+
+
+# covers: WDT-1
+def watchdog():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("watchdog", engine, seed)
+
+
+def watchdog_negative():
+    results = bench_fails_its_negative_control("watchdog", "systemc")
+    check([s["name"] for s in results["steps"] if not s["passed"]][0].startswith("trip, servo"), str(results["steps"]))
+
+
+# covers: WDT-2
+def reinit_e3():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("reinit-e3", engine, seed)
+    r, results = run_json("reinit-e3", "--engine", "lockstep", "--board", "turbo-pmac2-pc")  # with a MACRO IC
+    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
+
+
+def reinit_e3_negative():
+    bench_fails_its_negative_control("reinit-e3", "systemc")
+
+
+# covers: WDT-1 WDT-2
+def dead_flash():
+    """A flash file with settings that stop the controller, from one process to the next; jumper E3 and SAVE repair it."""
+    ask = ["VERSION", "I17", "I19"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = f"{folder}/flash.bin"
+        r = play(["I17=33 I8=0 I7100=20 I7101=0 I7102=0 I19=7107", "SAVE", "VERSION"], "--flash", file)
+        check(r.returncode == 0 and r.stdout.split() == ["1.947"], r.stdout + r.stderr)
+        for engine in ("systemc", "rtl"):
+            r = play(ask, "--flash", file, "--engine", engine)
+            check(r.returncode == 1 and r.stdout == "" and "does not answer" in r.stderr, r.stdout + r.stderr)
+        r = play(ask, "--flash", file, "--jumper", "E3")
+        check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
+        check(play(ask, "--flash", file).returncode == 1, "the jumper does not change what is SAVEd")
+        check(play(["SAVE"], "--flash", file, "--jumper", "E3").returncode == 0, "SAVE")
+        r = play(ask, "--flash", file)
+        check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
+        r = play(["I19=7957", "SAVE", "@reset", "@wait 40ms", "@signal watchdog.tripped", "@jumper E3 on", "@power", "I19", "@jumper E3 off"])
+        check(r.stdout.split() == ["watchdog.tripped=1", "7007"], r.stdout + r.stderr)
 
 
 def installed():

@@ -11,66 +11,195 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
+
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text)
+      : path_(std::filesystem::path(::testing::TempDir()) / ("board_" + std::to_string(::getpid()) + ".toml")) {
+    std::ofstream(path_) << text;
+  }
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
 
 std::string error_of(const std::string& text) {
-  const auto file = std::filesystem::path(::testing::TempDir()) / ("board_" + std::to_string(::getpid()) + ".toml");
-  std::ofstream(file) << text;
-  std::string error = "no error";
+  const TemporaryFile file(text);
   try {
-    read_board_file(file.string());
-  } catch (const BoardFileError& e) { error = e.what(); }
-  std::filesystem::remove(file);
-  return error;
+    read_board_file(file.path());
+  } catch (const BoardFileError& e) { return e.what(); }
+  return "no error";
 }
 
-constexpr const char* kGood = "title = \"T\"\ncard = 603382\nservo_ics = [0]\ndpram_words = 8192\n";
+// A good file with one line taken out (`key`) and another put in at its place.
+std::string with(const std::string& key, const std::string& line, const std::string& family = "any") {
+  std::string text;
+  for (const std::string& good : {std::string("title = \"T\""), "family = \"" + family + "\"", std::string("bus = \"isa\""),
+                                  std::string("card = 603382"), std::string("servo_ics = [0]"), std::string("dpram_words = 8192")})
+    text += (good.substr(0, good.find(' ')) == key ? line : good) + "\n";
+  return text;
+}
+
+std::string tree(const std::string& name) { return BRICK_SOURCE_DIR "/boards/" + name + ".toml"; }
 
 TEST(BoardFile, BoardsOfTheTree) {
-  const BoardConfig four = read_board_file(BRICK_SOURCE_DIR "/boards/geobrick-lv-4.toml");
+  const BoardConfig four = read_board_file(tree("geobrick-lv-4"));
   EXPECT_EQ(four.fitted, 0x1u);
   EXPECT_EQ(four.name, "geobrick-lv-4");
   EXPECT_EQ(four.card, 603382u);
-  const BoardConfig eight = read_board_file(BRICK_SOURCE_DIR "/boards/geobrick-lv-8.toml");
+  EXPECT_EQ(four.axes, 4u);
+  EXPECT_EQ(four.product, 0u);
+  const BoardConfig eight = read_board_file(tree("geobrick-lv-8"));
   EXPECT_EQ(eight.fitted, 0x3u);
   EXPECT_EQ(eight.dpram_words, 32768u);
-  EXPECT_EQ(read_board_file(BRICK_SOURCE_DIR "/boards/turbo-pmac2-ultralite.toml").fitted, 1u << 18);
-  EXPECT_EQ(read_board_file(BRICK_SOURCE_DIR "/boards/umac-turbo.toml").fitted, 0x4000Cu);
-  EXPECT_EQ(read_board_file(BRICK_SOURCE_DIR "/boards/all-ics.toml").fitted, 0x3FFFFFu);
-  EXPECT_EQ(fitted_ic_names(0x40403), (std::vector<std::string>{"servo IC 0", "servo IC 1", "servo IC 2*", "MACRO IC 0"}));
+  EXPECT_EQ(eight.line_select, 0x951u) << "EQU1, EQU5, WDO";
+  EXPECT_EQ(read_board_file(tree("turbo-pmac2-pci-lite")).line_select, 0x921u) << "EQU1, EQU2, WDO";
+  const BoardConfig ultralite = read_board_file(tree("turbo-pmac2-ultralite"));
+  EXPECT_EQ(ultralite.fitted, 1u << 18);
+  EXPECT_EQ(ultralite.product, kProductUltralite);
+  EXPECT_EQ(ultralite.line_select, 0x9BAu) << "CTRL0, CTRL1, WDO";
+  const BoardConfig umac = read_board_file(tree("umac-turbo"));
+  EXPECT_EQ(umac.fitted, 0x4000Cu);
+  EXPECT_EQ(umac.product, kProductUmac);
+  EXPECT_EQ(read_board_file(tree("all-ics")).fitted, 0x3FFFFFu);
 }
 
-TEST(BoardFile, GoodFileHasNoError) { EXPECT_EQ(error_of(kGood), "no error"); }
+TEST(BoardFile, TurboPmacHasTheControlPanelAndTheSmallDualPortedRam) {
+  const BoardConfig board = read_board_file(tree("turbo-pmac-pci"));
+  EXPECT_TRUE(board.jpan);
+  EXPECT_EQ(board.dpram_words, 8192u);
+  EXPECT_EQ(board.product, kProductTurboPmac1);
+  EXPECT_FALSE(board.notes.empty()) << "its DSPGATEs are not modelled";
+}
 
-TEST(BoardFile, ErrorsSayWhereWhatAndWhatWasExpected) {
-  const std::string good = kGood;
-  EXPECT_THAT(error_of(good + "colour = 1\n"), AllOf(HasSubstr(":5: unknown key colour"), HasSubstr("expected title, card")));
-  EXPECT_THAT(error_of("card = 603382\nservo_ics = [0]\ndpram_words = 8192\n"), HasSubstr("key title is missing"));
-  EXPECT_THAT(error_of("title = 1\ncard = 603382\nservo_ics = [0]\ndpram_words = 8192\n"),
-              AllOf(HasSubstr(":1: title"), HasSubstr("expected")));
-  EXPECT_THAT(error_of("title = \"T\"\ncard = \"603382\"\nservo_ics = [0]\ndpram_words = 8192\n"),
-              AllOf(HasSubstr(":2: card"), HasSubstr("expected")));
-  EXPECT_THAT(error_of("title = \"T\"\ncard = 603382\nservo_ics = [10]\ndpram_words = 8192\n"),
-              AllOf(HasSubstr(":3:"), HasSubstr("expected servo IC numbers 0 to 9")));
-  for (const char* item : {"\"1*\"", "\"2\"", "\"2**\"", "-1", "1.0"})
-    EXPECT_THAT(error_of(std::string("title = \"T\"\ncard = 603382\nservo_ics = [") + item + "]\ndpram_words = 8192\n"),
-                AllOf(HasSubstr(":3:"), HasSubstr("or \"2*\" to \"9*\"")))
-        << item;
-  EXPECT_THAT(error_of(good + "macro_ics = [4]\n"), AllOf(HasSubstr(":5:"), HasSubstr("expected MACRO IC numbers 0 to 3")));
-  EXPECT_THAT(error_of(good + "macro_ics = [0]\nmacro_gates = [1]\n"), AllOf(HasSubstr(":6:"), HasSubstr("that macro_ics lists")));
-  EXPECT_THAT(error_of("title = \"T\"\ncard = 603382\nservo_ics = [0, 0]\ndpram_words = 8192\n"), HasSubstr("twice"));
-  EXPECT_THAT(error_of("title = \"T\"\ncard = 603382\nservo_ics = []\ndpram_words = 8192\n"), HasSubstr("expected a list"));
-  EXPECT_THAT(error_of("title = \"T\"\ncard = 603382\nservo_ics = [0]\ndpram_words = 100\n"), HasSubstr("expected 8192 or 32768"));
-  EXPECT_THAT(error_of("title = \n"), AllOf(HasSubstr(":1:"), HasSubstr("expected TOML")));
+TEST(BoardFile, GeoPmacHasTwoAxesOnOneServoIc) {
+  const BoardConfig board = read_board_file(tree("geo-pmac"));
+  EXPECT_EQ(board.fitted, 1u);
+  EXPECT_EQ(board.axes, 2u);
+  EXPECT_TRUE(board.feedback_option_2);
+  EXPECT_EQ(board.product, kProductFeedback2);
+  EXPECT_FALSE(board.jpan);
+}
+
+// Every file of the folder can be read and its ICs can make the clocks.
+TEST(BoardFile, EveryFileOfTheTreeIsGood) {
+  unsigned files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(BRICK_SOURCE_DIR "/boards")) {
+    SCOPED_TRACE(entry.path());
+    const BoardConfig board = read_board_file(entry.path().string());
+    EXPECT_NE(default_clock_source(board.fitted, board.macro_gate), 0u);
+    ++files;
+  }
+  EXPECT_GE(files, 10u);
+}
+
+TEST(BoardFile, GoodFileHasNoError) {
+  EXPECT_EQ(error_of(with("", "")), "no error");
+  for (const std::string& family : board_family_names()) {
+    const std::string ics = family == "umac-turbo"              ? "servo_ics = [2]"
+                            : family == "turbo-pmac2-ultralite" ? "servo_ics = []\nmacro_ics = [0]"
+                                                                : "servo_ics = [0]";
+    EXPECT_EQ(error_of(with("servo_ics", ics, family)), "no error") << family;
+  }
+}
+
+TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
+  const struct {
+    const char *key, *line, *place, *found, *expected;
+  } cases[] = {
+      {"title", "title = 1", ":1: title:", "found 1;", "expected a text in quotes"},
+      {"family", "family = \"vme\"", ":2: family:", "\"vme\"", "expected one of geo-brick-lv, turbo-pmac2"},
+      {"bus", "bus = \"usb\"", ":3: bus:", "\"usb\"", "expected one of isa, pci, pc104, internal"},
+      {"card", "card = \"603382\"", ":4: card:", "\"603382\"", "expected a card number of six digits"},
+      {"card", "card = 99999", ":4: card:", "found 99999;", "expected a card number of six digits"},
+      {"servo_ics", "servo_ics = 0", ":5: servo_ics:", "found 0;", "expected a list"},
+      {"servo_ics", "servo_ics = [10]", ":5: servo_ics:", "found 10;", "expected servo IC numbers 0 to 9"},
+      {"servo_ics", "servo_ics = [\"1*\"]", ":5: servo_ics:", "\"1*\"", "\"2*\" to \"9*\""},
+      {"servo_ics", "servo_ics = [\"2\"]", ":5: servo_ics:", "\"2\"", "\"2*\" to \"9*\""},
+      {"servo_ics", "servo_ics = [\"2**\"]", ":5: servo_ics:", "\"2**\"", "\"2*\" to \"9*\""},
+      {"servo_ics", "servo_ics = [-1]", ":5: servo_ics:", "found -1;", "\"2*\" to \"9*\""},
+      {"servo_ics", "servo_ics = [1.0]", ":5: servo_ics:", "found 1.0;", "\"2*\" to \"9*\""},
+      {"servo_ics", "servo_ics = [0, 0]", ":5: servo_ics:", "found 0;", "servo IC 0 is there twice"},
+      {"servo_ics", "servo_ics = [\"3*\", \"3*\"]", ":5: servo_ics:", "\"3*\"", "servo IC 3* is there twice"},
+      {"servo_ics", "servo_ics = []", ":5: servo_ics:", "found []", "expected a list of one IC or more"},
+      {"servo_ics", "servo_ics = [0]\nmacro_ics = [4]", ":6: macro_ics:", "found 4;", "expected MACRO IC numbers 0 to 3"},
+      {"servo_ics", "servo_ics = [0]\nmacro_ics = [1, 1]", ":6: macro_ics:", "found 1;", "MACRO IC 1 is there twice"},
+      {"servo_ics", "servo_ics = [0]\nmacro_ics = [0]\nmacro_gates = [1]", ":7: macro_gates:", "[", "that macro_ics lists too"},
+      {"servo_ics", "servo_ics = [0]\nmacro_ics = [1]\nmacro_gates = [1, 1]", ":7: macro_gates:", "found 1;", "twice"},
+      {"servo_ics", "servo_ics = []\nmacro_ics = [1]\nmacro_gates = [1]", ":7: macro_gates:", "[", "cannot make the servo clock"},
+      {"dpram_words", "dpram_words = 100", ":6: dpram_words:", "found 100;", "expected 8192 or 32768"},
+      {"dpram_words", "dpram_words = 65536", ":6: dpram_words:", "found 65536;", "expected 8192 or 32768"},
+      {"dpram_words", "dpram_words = 8192.0", ":6: dpram_words:", "found 8192.0;", "expected 8192 or 32768"},
+      {"bus", "bus = \"isa\"\naxes = 5", ":4: axes:", "found 5;", "expected 1 to 4"},
+      {"bus", "bus = \"isa\"\naxes = 0", ":4: axes:", "found 0;", "expected 1 to 4"},
+      {"bus", "bus = \"isa\"\njpan = 1", ":4: jpan:", "found 1;", "expected true or false"},
+      {"bus", "bus = \"isa\"\nnotes = \"x\"", ":4: notes:", "\"x\"", "expected a list"},
+      {"bus", "bus = \"isa\"\nnotes = [1]", ":4: notes:", "found 1;", "expected texts in quotes"},
+      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\"]", ":4: interrupts:", "EQU1", "expected three sources"},
+      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU9\", \"none\", \"WDO\"]", ":4: interrupts:", "\"EQU9\"", "expected none, EQU1,"},
+      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\", \"EQU5\", \"WDO\"]", ":4: interrupts:", "\"EQU5\"", "servo IC 1 is not fitted"},
+      {"title", "title = ", ":1:", "", "expected TOML"},
+  };
+  for (const auto& k : cases)
+    EXPECT_THAT(error_of(with(k.key, k.line)), AllOf(HasSubstr(k.place), HasSubstr(k.found), HasSubstr(k.expected), Not(HasSubstr("\n"))))
+        << k.line;
+  EXPECT_THAT(error_of(with("title", "title = \"T\"\ncolour = 1")),
+              AllOf(HasSubstr(":2: unknown key colour"), HasSubstr("expected title, family")));
+  for (const char* key : {"title", "family", "bus", "card", "servo_ics", "dpram_words"})
+    EXPECT_THAT(error_of(with(key, "")), AllOf(HasSubstr(std::string("key ") + key + " is missing"), HasSubstr("expected")));
+}
+
+// Boards that no product is: each breaks one rule of its family.
+TEST(BoardFile, ImpossibleBoardsAreRefused) {
+  const struct {
+    const char *family, *key, *line, *expected;
+  } cases[] = {
+      {"geo-brick-lv", "servo_ics", "servo_ics = [0, 2]", "found 2; expected what a geo-brick-lv can have: servo ICs 0, 1 and MACRO IC 0"},
+      {"geo-brick-lv", "servo_ics", "servo_ics = [0, \"2*\"]", "expected what a geo-brick-lv can have"},
+      {"geo-brick-lv", "servo_ics", "servo_ics = [0]\nmacro_ics = [1]", "macro_ics: found 1; expected what a geo-brick-lv can have"},
+      {"geo-brick-lv", "bus", "bus = \"internal\"\njpan = true",
+       "jpan: found true; expected false: a geo-brick-lv has no control panel port"},
+      {"turbo-pmac2", "bus", "bus = \"isa\"\njpan = true", "a turbo-pmac2 has no control panel port"},
+      {"turbo-pmac2", "servo_ics", "servo_ics = [0, \"2*\"]", "servo ICs 0 to 9 and MACRO IC 0"},
+      {"turbo-pmac2", "bus", "bus = \"isa\"\nfeedback_option_2 = true", "an option of a geo-pmac only"},
+      {"turbo-pmac2", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"none\", \"WDO\"]", "has no CTRL outputs"},
+      {"turbo-pmac2-ultralite", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]",
+       "expected what a turbo-pmac2-ultralite can have: MACRO ICs"},
+      {"umac-turbo", "servo_ics", "servo_ics = [0, 2]", "found 0; expected what a umac-turbo can have: servo ICs 2 to 9"},
+      {"turbo-pmac", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]", "expected what a turbo-pmac can have: servo ICs 0 to 9"},
+      {"geo-pmac", "servo_ics", "servo_ics = [0, 1]", "found 1; expected what a geo-pmac can have: servo IC 0"},
+  };
+  for (const auto& k : cases) EXPECT_THAT(error_of(with(k.key, k.line, k.family)), HasSubstr(k.expected)) << k.family << " " << k.line;
 }
 
 TEST(BoardFile, StarredIcsMacroIcsAndTheirKind) {
-  const auto file = std::filesystem::path(::testing::TempDir()) / ("board_ics_" + std::to_string(::getpid()) + ".toml");
-  std::ofstream(file) << "title = \"T\"\ncard = 603382\nservo_ics = [9, \"2*\", \"9*\"]\nmacro_ics = [0, 3]\nmacro_gates = [3]\n"
-                         "dpram_words = 8192\n";
-  const BoardConfig board = read_board_file(file.string());
-  std::filesystem::remove(file);
+  const TemporaryFile file(with("servo_ics", "servo_ics = [9, \"2*\", \"9*\"]\nmacro_ics = [0, 3]\nmacro_gates = [3]", "umac-turbo"));
+  const BoardConfig board = read_board_file(file.path());
   EXPECT_EQ(board.fitted, 1u << 9 | 1u << 10 | 1u << 17 | 1u << 18 | 1u << 21);
   EXPECT_EQ(board.macro_gate, 8u);
+}
+
+TEST(BoardFile, NamesOfIcs) {
+  EXPECT_EQ(fitted_ic_names(0x40403), (std::vector<std::string>{"servo IC 0", "servo IC 1", "servo IC 2*", "MACRO IC 0"}));
+  EXPECT_EQ(servo_ic_numbers(0x40403), "0 1 2*");
+  EXPECT_EQ(servo_ic_numbers(0x3FFFFF), "0-9 2*-9*");
+  EXPECT_EQ(servo_ic_numbers(0x40000), "-");
+  EXPECT_EQ(macro_ic_numbers(0x3FFFFF), "0-3");
+  EXPECT_EQ(macro_ic_numbers(0x3), "-");
+}
+
+// servo-ic data sheet 7.1 rule 3: servo IC 0, MACRO IC 0, servo ICs 1 to 9, 2* to 9*, MACRO ICs 1 to 3; no MACROGATE.
+TEST(BoardFile, ClockSourceAfterReInitialisation) {
+  constexpr std::uint32_t kMacro0 = 1u << 18, kMacro1 = 1u << 19, kStar2 = 1u << 10;
+  EXPECT_EQ(default_clock_source(0x3 | kMacro0, 0), 7007u);
+  EXPECT_EQ(default_clock_source(0x2 | kMacro0, 0), 6807u);
+  EXPECT_EQ(default_clock_source(0x2 | kMacro0, 1), 7107u);
+  EXPECT_EQ(default_clock_source(kStar2 | kMacro1, 0), 7257u);
+  EXPECT_EQ(default_clock_source(kMacro1, 0), 6857u);
+  EXPECT_EQ(default_clock_source(kMacro1, 2), 0u);
 }
 
 TEST(BoardFile, MissingFile) {

@@ -86,14 +86,32 @@ TEST_P(BoardOn, DividersOfOtherIcsHaveNoEffect) {
   EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), clock_word(7, 9, 3));
 }
 
+// servo-ic.md 7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 three ticks behind, then makes the clocks of
+// the same grid itself: the first tick at which the two differ is the next edge of IC 0, the third such tick shows the conflict.
+TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  for (int edges = 0; edges < 6; ++edges) rig.edge(pin::kPhase, 1);  // IC 1 is in step
+  rig.run(100);
+  rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 0));
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "both high: two drivers, no fight";
+  const Tick first = rig.edge(pin::kPhase, 0);
+  rig.run(2);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+  EXPECT_EQ(rig.edge(pin::kSourceConflict, 1) - first, 3);
+  rig.run(100'000);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 1u) << "until there is one driver again";
+  rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 3));
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+}
+
 TEST_P(BoardOn, LowestNumberedOfTwoDriversWinsAndTheConflictShows) {
   rig.write(true, kServoIcBase[1] + kPwmWord, pwm_word(1000));
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.get(pin::kPhaseSource), 0u);
-  EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
   rig.run(60'000);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
   const Tick rise = rig.edge(pin::kPhase, 1);
   EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, 13057);
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 3));
@@ -123,6 +141,8 @@ TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {
   EXPECT_EQ(rig.get(pin::kServo), 0u);
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.get(pin::kPhaseSource), kExternalSource);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "it keeps the level that it saw until its own next edge";
+  rig.run(60'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
 }
 

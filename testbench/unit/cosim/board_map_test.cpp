@@ -187,6 +187,7 @@ TEST_P(BoardMap, TwoDriversOfServoAloneAreAConflictToo) {
   rig.write(true, kServoIcBase[1] + 4, 0x3008D2);             // IC 1 drives both
   rig.write(true, kServoIcBase[0] + 4, 0x3008D2 | 1u << 12);  // IC 0 drives SERVO from that PHASE
   EXPECT_EQ(rig.get(pin::kPhaseSource), 1u);
+  rig.run(60'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
   rig.write(true, kServoIcBase[1] + 4, 0x3008D2 | 1u << 13);  // IC 1 gives SERVO up
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);

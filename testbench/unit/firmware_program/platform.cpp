@@ -20,6 +20,9 @@ double masked_since = 0.0, longest_mask = 0.0;
 std::uint32_t cs_number = 0, motor_number = 0, generation = 0;
 std::string reply;
 std::uint32_t servo_count = 0;
+std::uint32_t product = 0;  // strap word
+
+constexpr std::uint32_t kPanelPort = 0x078800, kPanelIdle = 0x00FFFF;
 
 double now_us() { return cycles / platform::kCyclesPerUs; }
 
@@ -106,6 +109,8 @@ void hal_unmask(std::uint32_t state) {
   if (state == 0) longest_mask = std::max(longest_mask, now_us() - masked_since);
 }
 
+std::uint32_t hal_strap(unsigned word) { return word == HAL_STRAP_PRODUCT ? product : 0; }
+
 std::uint32_t hal_cycles(void) { return static_cast<std::uint32_t>(static_cast<std::uint64_t>(cycles)); }
 void hal_delay_us(std::uint32_t us) { cycles += us * platform::kCyclesPerUs; }
 void hal_host_signals(std::uint32_t set, std::uint32_t clear) {
@@ -170,6 +175,8 @@ void power_up() {
   mask_level = 0;
   longest_mask = 0.0;
   cs_number = motor_number = generation = servo_count = 0;
+  product = 0;
+  panel_initialize();
   motion_initialize();
   edge_list.clear();
 }
@@ -213,6 +220,19 @@ void servo_ticks(unsigned count) {
 bool breq() { return (signals & HAL_SIGNAL_BREQ) != 0; }
 std::vector<Edge>& edges() { return edge_list; }
 double longest_mask_us() { return longest_mask; }
+void fit_panel() {
+  product = HAL_PRODUCT_JPAN;
+  y_memory[kPanelPort] = kPanelIdle;
+  panel_initialize();
+  buffer_request_evaluate();
+}
+
+void panel(std::uint32_t low) {
+  y_memory[kPanelPort] = kPanelIdle & ~low;
+  panel_pass();
+  buffer_request_poll();
+}
+
 void set_i(std::uint32_t number, double value) { i_values.at(number) = value; }
 
 }  // namespace platform

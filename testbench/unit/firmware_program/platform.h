@@ -16,6 +16,7 @@ extern "C" {
 #include "firmware/buffers/rotary.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/command.h"
+#include "firmware/host/panel.h"
 #include "firmware/host/reply.h"
 #include "firmware/language/expression.h"
 #include "firmware/language/mathematics.h"
@@ -46,6 +47,8 @@ void real_time();                                // one real-time interrupt alon
 bool breq();                                     // level of the pin
 std::vector<Edge>& edges();                      // since the last clear()
 double longest_mask_us();                        // longest time the real-time task was held off
+void fit_panel();                                // a Turbo PMAC with JPAN; I2 = 0
+void panel(std::uint32_t low);                   // inputs pulled low, as 1, and a background pass
 void set_i(std::uint32_t number, double value);  // without telling anybody
 
 }  // namespace platform

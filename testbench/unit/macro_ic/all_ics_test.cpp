@@ -74,6 +74,7 @@ TEST_P(AllIcs, LowestIndexOfSeveralSourcesWins) {
   for (unsigned ic = 22; ic-- > 0;) {
     rig.write(true, clock_address(ic), clock_word(0));
     EXPECT_EQ(rig.get(pin::kPhaseSource), ic);
+    rig.run(60'000);
     EXPECT_EQ(rig.get(pin::kSourceConflict), ic == 21 ? 0u : 1u);
   }
 }

@@ -213,9 +213,13 @@ TEST_P(ClockSourceFaults, VariablesOfAnAbsentMacroIcReadZero) {
 TEST_P(ClockSourceFaults, TwoSourcesShowAConflictAndTheLowestNumberedWins) {
   start_with(kWithMacroIc0);
   ask("I6800=3000 I6807=0");
+  wait(ms_to_ticks(1));
   EXPECT_TRUE(conflict());
   EXPECT_EQ(source(), 7007u);
   expect_periods(6527, 0, 3);
+  const auto errors = machine().take_run_errors();
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_THAT(errors[0], ::testing::HasSubstr("servo IC 0 (I7007) and MACRO IC 0 (I6807) drive"));
   ask("I6807=3");
   EXPECT_FALSE(conflict());
 }

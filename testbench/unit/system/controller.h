@@ -1,6 +1,7 @@
 // Test fixture: a controller with the project's firmware, and a host that has logged on.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -44,8 +45,12 @@ class Controller : public ::testing::TestWithParam<Engine> {
     ASSERT_TRUE(link_->connect(ms_to_ticks(50))) << "no reply from the firmware";
   }
 
+  // A test that provokes an error of the machine takes it (Machine::take_run_errors).
+  void TearDown() override { finish(); }
+
   // Ends the run; the flash file is written.
   void finish() {
+    if (machine_ != nullptr) { EXPECT_THAT(machine_->run_errors(), ::testing::IsEmpty()); }
     link_.reset();
     bus_.reset();
     machine_.reset();

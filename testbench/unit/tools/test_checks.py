@@ -1,5 +1,6 @@
 """Negative controls of the scripts in tools/: each rule is broken in a small tree of its own, and the check must fail."""
 
+import hashlib
 import pathlib
 import shutil
 import subprocess
@@ -148,6 +149,30 @@ class Lint(Tree):
     def test_icarus_fails_on_an_unknown_module(self):
         self.write("rtl/board/board_top.sv", self.GOOD.replace("  assign", "  nothing u_nothing ();\n  assign"))
         self.expect(self.run_tool("lint_rtl.py", "icarus"), 1, "nothing")
+
+
+class Figures(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("testbench/vectors/a.vec", "[wave]\n")
+        self.write("docs/images/vectors/a.json", "{}\n")
+        digest = hashlib.sha256(b"{}\n").hexdigest()
+        self.write("docs/images/vectors/a.svg", f"<!-- drawn from sha256 {digest} by wavedrom 1 -->\n<svg/>\n")
+
+    def test_a_figure_that_was_drawn_from_its_source_passes(self):
+        self.expect(self.run_tool("draw_vectors.py", "--check"), 0, "clean")
+
+    def test_a_figure_of_another_source_fails(self):
+        self.write("docs/images/vectors/a.json", "{ }\n")
+        self.expect(self.run_tool("draw_vectors.py", "--check"), 1, "a.svg: drawn from another a.json")
+
+    def test_a_missing_figure_fails(self):
+        self.write("testbench/vectors/b.vec", "[wave]\n")
+        self.expect(self.run_tool("draw_vectors.py", "--check"), 1, "docs/images/vectors/b.json: missing")
+
+    def test_a_figure_without_its_vector_fails(self):
+        self.write("docs/images/vectors/c.svg", "")
+        self.expect(self.run_tool("draw_vectors.py", "--check"), 1, "c.*: no vector with a [wave] has this name")
 
 
 if __name__ == "__main__":

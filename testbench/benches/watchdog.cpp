@@ -1,0 +1,141 @@
+// watchdog: a servo frequency that is too high takes the CPU time of the tasks below it. The real-time task still runs, the
+// background does not: its counter (I40) falls below zero, the strobe ends, and the circuit trips 25 ms later. Nothing tells the
+// board that it is overloaded: the cost of the tasks in CPU cycles, wait states included, is more than the servo period leaves.
+// The settings are SAVEd, so the reset line does not help. Judged by testbench/checkers/watchdog_scoreboard.h.
+#include <cstdlib>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "testbench/benches/benches.h"
+#include "testbench/checkers/watchdog_probe.h"
+
+namespace brick {
+namespace {
+
+constexpr Tick kMillisecond = kPwmClockHz / 1000;
+constexpr Tick kPatience = 80 * kMillisecond;
+constexpr unsigned kWdoLine = 0x80;  // line 7 of the interrupt controller
+
+Tick servo_period(unsigned i7000) { return 2 * static_cast<Tick>(i7000) + 3; }  // dividers of one
+
+std::string ask(BenchContext& b, const std::string& line) {
+  const Reply reply = b.link.command(line);
+  return reply.complete && reply.lines.size() == 1 ? reply.lines[0] : reply.complete ? "" : "no reply";
+}
+long number(BenchContext& b, const std::string& line) { return std::strtol(ask(b, line).c_str(), nullptr, 10); }
+
+void expect(BenchContext& b, const std::string& line, const std::string& answer) { b.report.equal(line, ask(b, line), answer); }
+
+// The factory's rates: every third servo interrupt a strobe, the counter never far below I40.
+void idle(BenchContext& b, WatchdogScoreboard& scoreboard) {
+  constexpr Tick kServo = 4 * (2 * 6527 + 3);
+  b.bus.wait(3 * kServo);  // tasks that the log-on delayed
+  const unsigned before = scoreboard.strobes();
+  b.bus.wait(15 * kServo);
+  const long strobes = scoreboard.strobes() - before;
+  b.report.step("strobes in 15 servo periods, I8=2", strobes == 5, fmt::format("{}, expected 5", strobes));
+  const long lowest = number(b, "RX$25"), now = number(b, "RY$25");
+  b.report.step("counter and its lowest value, I40=0", now <= 4095 && now >= 4095 - 6 && lowest <= now && lowest > 4095 - 60,
+                fmt::format("Y:$25={} X:$25={}, expected 4095 at reload", now, lowest));
+}
+
+unsigned starving_i7000(BenchContext& b, std::mt19937_64& random) {
+  const WatchdogLoad load = watchdog_load(b.link);
+  const unsigned i7000 = load.starving_i7000(0) + static_cast<unsigned>(random() % 16);
+  b.report.step("load in CPU cycles", load.sensible(),
+                fmt::format("phase and servo {}, real-time {}: I7000={} leaves the background nothing", load.servo, load.real_time, i7000));
+  return i7000;
+}
+
+// A quarter of that rate leaves all tasks their time: commands are answered as ever.
+void bearable(BenchContext& b, unsigned i7000) {
+  const unsigned slower = 4 * i7000;
+  expect(b, fmt::format("I7000={}", slower), "");
+  b.bus.wait(kMillisecond);
+  b.report.equal<std::string>(fmt::format("VERSION at {:.1f} kHz servo", 117'964.8 / static_cast<double>(servo_period(slower))),
+                              ask(b, "VERSION"), "1.947");
+}
+
+void outputs_safe(BenchContext& b) {
+  // TODO(channels): AENA off, PWM TOP = BOT = off, no PFM pulse, DAC and EQU zero on every channel.
+  b.report.equal<std::int64_t>("IPOS, EROR, F1ER", b.machine.outputs().get(pin::kIpos), 0);
+}
+
+void dead(BenchContext& b) {
+  const BoardOutputs& out = b.machine.outputs();
+  b.report.equal<std::int64_t>("watchdog.tripped and line WDO", out.get(pin::kWdTripped) + out.get(pin::kWdo), 2);
+  const HostBus::Pic pic = b.bus.read_pic();
+  b.report.equal<std::string>("interrupt controller",
+                              fmt::format("IST={:02X} SIG.7={} IRQ={}", pic.ist, pic.sig >> 7, out.get(pin::kIsaIrq)),
+                              "IST=80 SIG.7=1 IRQ=1");
+  b.link.poll();  // the acknowledge of the last line may wait
+  const std::uint64_t instructions = b.machine.instructions();
+  unsigned taken = 0;
+  while (taken < 4 && b.bus.put_char('V', kMillisecond / 10)) ++taken;
+  b.report.step("host port takes no more characters", taken <= 2, fmt::format("{} in its registers", taken));
+  unsigned answers = 0;
+  for (int look = 0; look < 20; ++look) {
+    answers += b.bus.port_status() & HostBus::kRxdf;
+    b.bus.wait(kMillisecond / 10);
+  }
+  b.report.equal<std::int64_t>("characters that the host gets in 2 ms", answers, 0);
+  b.report.equal<std::int64_t>("instructions since", static_cast<std::int64_t>(b.machine.instructions() - instructions), 0);
+  b.report.equal<std::int64_t>("latched while SERVO goes on", b.machine.outputs().get(pin::kWdTripped), 1);
+  outputs_safe(b);
+}
+
+void verdict(BenchContext& b, WatchdogScoreboard& scoreboard, const std::string& name) {
+  scoreboard.judge(true);
+  b.report.step(name, scoreboard.violations().empty(),
+                scoreboard.violations().empty() ? scoreboard.summary() : scoreboard.violations().front());
+}
+
+// Start-up itself has CPU time as long as interrupts are off; then the same happens as before.
+void restart(BenchContext& b, WatchdogProbe& probe, WatchdogScoreboard& scoreboard, unsigned i40) {
+  b.machine.reset();
+  b.bus.wait(kMillisecond / 100);
+  probe.reset();
+  b.report.equal<std::int64_t>("reset line ends the trip", b.machine.outputs().get(pin::kWdTripped), 0);
+  b.report.step("no answer after the reset", !b.link.connect(kPatience), "the SAVEd settings starve it again");
+  scoreboard.judge(true);
+  b.report.step("strobes until I40 ran out", scoreboard.strobes() > i40 / WatchdogScoreboard::kRealTimeTask,
+                fmt::format("{}", scoreboard.strobes()));
+  b.report.step("trips again", scoreboard.violations().empty(),
+                scoreboard.violations().empty() ? scoreboard.summary() : scoreboard.violations().front());
+}
+
+void run(BenchContext& b) {
+  std::mt19937_64 random(b.seed * 7919);
+  WatchdogScoreboard scoreboard;
+  WatchdogProbe probe(b.bus, scoreboard);
+  idle(b, scoreboard);
+
+  const unsigned i7000 = starving_i7000(b, random), i40 = 300 + static_cast<unsigned>(random() % 200);
+  // The same set-up on servo IC 1, SAVEd as the source of the next start.
+  expect(b, fmt::format("I8=0 I7002=0 I40={} I19=7107 I7100={} I7101=0 I7102=0 SAVE", i40, i7000), "");
+  bearable(b, i7000);
+
+  b.bus.write_pic_edge_level(0);
+  b.bus.clear_pic();
+  b.bus.write_pic_mask(kWdoLine);
+  if (b.negative) ask(b, fmt::format("I40={}", 3 * i40));
+  probe.expect_starvation(servo_period(i7000), WatchdogScoreboard::counter_of(i40));
+  b.link.send(fmt::format("I7000={}", i7000));
+  b.bus.wait_pin(pin::kWdTripped, 1, kPatience);
+  verdict(b, scoreboard, fmt::format("trip, servo {:.1f} kHz, I40={}", 117'964.8 / static_cast<double>(servo_period(i7000)), i40));
+  if (scoreboard.tripped_at() < 0) return;
+  dead(b);
+
+  restart(b, probe, scoreboard, i40);
+}
+
+}  // namespace
+
+// covers: WDT-1
+Bench watchdog_bench() {
+  return {"watchdog", "servo frequency too high: the background starves, I40 runs out, the circuit trips 25 ms later; again after a reset",
+          "the controller's I40 is three times what the scoreboard is told", nullptr, run};
+}
+
+}  // namespace brick

@@ -1,0 +1,107 @@
+// Checker of the PHASE and SERVO nets (servo-ic.md 5.1, 7.2; docs/clock.md). It is told what the host programs and sees every edge
+// of the two nets and of clock.conflict; it knows nothing of the engines. In steady state each edge must come at its very tick.
+// While the host writes dividers or moves the source the rules of taking over allow a little more, see `change` and `move`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "systemc/core/ticks.h"
+
+namespace brick {
+
+// Three variables of the source: I7m00, I7m01, I7m02 (or I6800, I6801, I6802), and what they mean in ticks.
+struct ClockSetting {
+  unsigned max_count = 6527, phase_divider = 0, servo_divider = 3;
+
+  Tick half() const { return 2 * Tick{max_count} + 3; }  // from turnaround to turnaround, one period of MaxPhase
+  Tick phase() const { return half() * (phase_divider + 1); }
+  Tick high() const { return phase() / 2; }
+  Tick low() const { return phase() - high(); }
+  Tick servo() const { return phase() * (servo_divider + 1); }
+  bool operator==(const ClockSetting& o) const {
+    return max_count == o.max_count && phase_divider == o.phase_divider && servo_divider == o.servo_divider;
+  }
+};
+
+class ClockChecker {
+ public:
+  // Between the last input and the new output firmware needs this long at most; meanwhile the nets idle high.
+  static constexpr Tick kHandOver = ns_to_ticks(50'000);
+
+  // From the acknowledge of the line that writes the variables or moves the source until every edge is exact again.
+  static Tick settling(const ClockSetting& from, const ClockSetting& to);
+
+  enum class Kind { kRunt, kDoubled, kMissing, kEarly, kLate, kRelation, kConflict, kUnsettled };
+  struct Violation {
+    Tick tick;
+    Kind kind;
+    std::string text;
+  };
+
+  // What the host does --------------------------------------------------------------------------------------------------
+  void ignore() { mode_ = Mode::kIgnore; }  // reset, watchdog: no rule until told otherwise
+  // Every edge from now on is exact. Ends a transition, which must be over: no odd pulse is pending, the new setting is seen.
+  void run(Tick now, const ClockSetting& s);
+  // The variables of the source are about to be written. Every pulse is made of whole and half triangles of the old or the new
+  // length, so it lies between the shorter and the longer of both settings; a servo period has the old or the new divider.
+  void change(Tick now, const ClockSetting& to);
+  // Another IC, with these variables, is about to become the source. Until the old one lets go all is exact; then one low level
+  // of each net may end early (nobody drives: idle high) and one high level is odd: at least a full high level of the new source,
+  // at most what is left of the old one, the hand-over, and one and a half periods of the new one.
+  void move(Tick now, const ClockSetting& to);
+  void start(Tick now, const ClockSetting& to);  // the same from no source
+  void stop(Tick now);                           // ... to no source: after one early rise nothing moves any more
+  void allow_conflict(bool allowed) { conflict_allowed_ = allowed; }
+
+  // What it sees --------------------------------------------------------------------------------------------------------
+  void pins(Tick now, bool phase, bool servo, bool conflict);  // after each edge that changes one of them
+  void finish(Tick now);                                       // nothing changed since the last call: an edge may be overdue
+
+  // Results -------------------------------------------------------------------------------------------------------------
+  const std::vector<Violation>& violations() const { return violations_; }
+  struct Counts {
+    unsigned phase_falls = 0, servo_falls = 0, cut_lows = 0, odd_highs = 0;
+  };
+  const Counts& counts() const { return counts_; }
+  Tick shortest_cut() const { return shortest_cut_; }  // of PHASE
+  Tick last_phase_fall() const { return last_fall_; }
+
+ private:
+  enum class Mode { kIgnore, kRun, kChange, kMove, kStop };
+  enum class Stage { kOld, kIdle, kNew };  // of a transition: old source exact, nobody or first high level, new source exact
+
+  void begin(Mode mode, std::optional<ClockSetting> to, Stage stage);
+  void phase_edge(Tick now, bool level);
+  void exact(Tick now, const ClockSetting& s, bool level, Tick length);
+  void changing(Tick now, bool level, Tick length);
+  void moving(Tick now, bool level, Tick length);
+  void cut(Tick length);
+  void servo_pin(Tick now, bool phase_changed, bool phase, bool servo);
+  void with_rise(Tick now, bool changed, bool servo);
+  void with_fall(Tick now, bool changed, bool servo);
+  bool divider_may_be(unsigned divider) const;
+  unsigned largest_divider() const;
+  Tick longest(bool level) const;
+  void violate(Tick now, Kind kind, const std::string& text);
+
+  Mode mode_ = Mode::kIgnore;
+  Stage stage_ = Stage::kOld;
+  ClockSetting now_is_;               // old setting in a transition
+  std::optional<ClockSetting> next_;  // new one
+  bool phase_ = true, servo_ = true;
+  std::optional<Tick> phase_since_;  // last edge; unknown at first
+  Tick last_fall_ = -1;
+  std::optional<unsigned> falls_;  // PHASE falls since the last SERVO fall
+  bool servo_cut_ = false;         // the one early rise of SERVO has been
+  bool conflict_ = false, conflict_allowed_ = false;
+  Tick shortest_cut_ = kNever;
+  Counts counts_;
+  std::vector<Violation> violations_;
+};
+
+const char* kind_name(ClockChecker::Kind kind);
+
+}  // namespace brick

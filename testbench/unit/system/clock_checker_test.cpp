@@ -1,0 +1,316 @@
+// The clock checker on edge lists made by hand: sound ones pass, each kind of fault is found and named.
+#include "testbench/checkers/clock_checker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+using Kind = ClockChecker::Kind;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr ClockSetting kDefault{6527, 0, 3}, kEqual{5000, 1, 0}, kSlow{2948, 2, 1};
+
+// Levels of the two nets over time.
+struct Wave {
+  std::map<Tick, bool> phase, servo;  // edges
+
+  // `periods` of PHASE from a rise at `start`; SERVO falls with fall number `first`, counted from 1, and every divider + 1 after it.
+  Tick run(Tick start, const ClockSetting& s, unsigned periods, unsigned first = 1) {
+    for (unsigned i = 0; i < periods; ++i) {
+      const Tick rise = start + i * s.phase(), fall = rise + s.high();
+      phase[rise] = true;
+      phase[fall] = false;
+      const unsigned number = i + 1;
+      if (number < first || (number - first) % (s.servo_divider + 1) != 0) continue;
+      servo[fall] = false;
+      servo[fall + (s.servo_divider == 0 ? s.low() : s.phase())] = true;
+    }
+    return start + periods * s.phase();
+  }
+};
+
+std::vector<Kind> kinds(const ClockChecker& checker) {
+  std::vector<Kind> list;
+  for (const auto& v : checker.violations()) list.push_back(v.kind);
+  return list;
+}
+
+// Gives the edges from `from` up to and including `to` to the checker.
+void play(ClockChecker& checker, const Wave& wave, Tick from, Tick to) {
+  std::map<Tick, int> ticks;
+  for (const auto& [t, level] : wave.phase) ticks[t];
+  for (const auto& [t, level] : wave.servo) ticks[t];
+  const auto level_at = [](const std::map<Tick, bool>& edges, Tick t) {
+    const auto next = edges.upper_bound(t);
+    return next == edges.begin() ? true : std::prev(next)->second;
+  };
+  for (const auto& [t, unused] : ticks)
+    if (t >= from && t <= to) checker.pins(t, level_at(wave.phase, t), level_at(wave.servo, t), false);
+  checker.finish(to);
+}
+
+ClockChecker judged(const Wave& wave, const ClockSetting& s) {
+  ClockChecker checker;
+  checker.run(0, s);
+  play(checker, wave, 0, wave.phase.rbegin()->first);
+  return checker;
+}
+
+TEST(ClockChecker, PassesWhatTheFormulasSay) {
+  BRICK_COVERS("CLK-3 CLK-6");
+  for (const ClockSetting s : {kDefault, kEqual, kSlow, ClockSetting{0, 0, 0}, ClockSetting{100, 15, 15}}) {
+    Wave wave;
+    wave.run(1000, s, 70);
+    const ClockChecker checker = judged(wave, s);
+    EXPECT_THAT(kinds(checker), IsEmpty()) << checker.violations()[0].text;
+    EXPECT_EQ(checker.counts().phase_falls, 70u);
+    EXPECT_EQ(checker.counts().servo_falls, (70 - 1) / (s.servo_divider + 1) + 1);
+  }
+}
+
+TEST(ClockChecker, FindsAnEdgeThatIsOneTickOff) {
+  for (const int error : {-1, 1}) {
+    Wave wave;
+    wave.run(0, kDefault, 10);
+    const Tick fall = 3 * 13057 + 6528;
+    wave.phase.erase(fall);
+    wave.phase[fall + error] = false;
+    // A high level too short or too long, and a low one of the other kind.
+    EXPECT_THAT(kinds(judged(wave, kDefault)), ElementsAre(error < 0 ? Kind::kEarly : Kind::kLate, error < 0 ? Kind::kLate : Kind::kEarly));
+  }
+}
+
+TEST(ClockChecker, FindsARuntPulse) {
+  Wave wave;
+  wave.run(0, kDefault, 10, 4);
+  wave.phase[2 * 13057 + 1000] = false;  // a notch of five ticks in the high level
+  wave.phase[2 * 13057 + 1005] = true;
+  const auto found = kinds(judged(wave, kDefault));
+  ASSERT_GE(found.size(), 2u);
+  EXPECT_EQ(found[0], Kind::kRunt) << "high for 1000";
+  EXPECT_EQ(found[1], Kind::kRunt) << "low for 5";
+}
+
+TEST(ClockChecker, FindsADoubledPulse) {
+  Wave wave;
+  wave.run(0, kDefault, 10, 4);
+  const Tick fall = 2 * 13057 + 6528;
+  wave.phase[fall + 2500] = true;  // the low level of 6529 holds another pulse
+  wave.phase[fall + 4500] = false;
+  EXPECT_THAT(kinds(judged(wave, kDefault)), ::testing::Contains(Kind::kDoubled));
+}
+
+TEST(ClockChecker, FindsAMissingPulse) {
+  Wave wave;
+  wave.run(0, kDefault, 10, 9);
+  wave.phase.erase(3 * 13057);
+  wave.phase.erase(3 * 13057 + 6528);
+  EXPECT_THAT(kinds(judged(wave, kDefault)), ElementsAre(Kind::kMissing));
+}
+
+TEST(ClockChecker, FindsAClockThatStops) {
+  Wave wave;
+  const Tick end = wave.run(0, kDefault, 10);
+  ClockChecker checker;
+  checker.run(0, kDefault);
+  play(checker, wave, 0, end - 1);
+  EXPECT_THAT(kinds(checker), IsEmpty());
+  checker.finish(end);
+  EXPECT_THAT(kinds(checker), IsEmpty()) << "the rise may come at this very tick";
+  checker.finish(end + 1);
+  EXPECT_THAT(kinds(checker), ElementsAre(Kind::kMissing));
+}
+
+TEST(ClockChecker, FindsServoFallsThatAreDoubledOrMissing) {
+  const Tick fall = 6528, phase = 13057;
+  Wave doubled;
+  doubled.run(0, kDefault, 12);
+  doubled.servo[fall + 2 * phase] = false;
+  doubled.servo[fall + 3 * phase] = true;
+  EXPECT_EQ(kinds(judged(doubled, kDefault)).at(0), Kind::kDoubled);
+  Wave missing;
+  missing.run(0, kDefault, 12);
+  missing.servo.erase(fall + 4 * phase);
+  missing.servo.erase(fall + 5 * phase);
+  EXPECT_EQ(kinds(judged(missing, kDefault)).at(0), Kind::kMissing);
+}
+
+TEST(ClockChecker, FindsServoEdgesThatDoNotBelongToTheirPhaseEdge) {
+  const Tick fall = 6528 + 4 * 13057, rise = fall + 13057;
+  const auto moved = [&](Tick from, Tick to, bool level) {
+    Wave wave;
+    wave.run(0, kDefault, 12);
+    wave.servo.erase(from);
+    wave.servo[to] = level;
+    return kinds(judged(wave, kDefault));
+  };
+  EXPECT_THAT(moved(fall, fall + 1, false), ::testing::Contains(Kind::kRelation));
+  EXPECT_THAT(moved(rise, rise - 3, true), ElementsAre(Kind::kRelation));
+  EXPECT_THAT(moved(rise, 6 * 13057, true), ::testing::Contains(Kind::kRelation)) << "with a rise of PHASE";
+  EXPECT_THAT(moved(rise, rise + 13057, true), ::testing::Contains(Kind::kRelation)) << "low for two periods";
+}
+
+TEST(ClockChecker, FindsServoThatIsNotPhaseWhenItShouldBe) {
+  Wave wave;
+  wave.run(0, kEqual, 12);
+  wave.servo.erase(5 * kEqual.phase());
+  EXPECT_EQ(kinds(judged(wave, kEqual)).at(0), Kind::kRelation);
+}
+
+TEST(ClockChecker, FindsAConflict) {
+  ClockChecker checker;
+  checker.run(0, kDefault);
+  checker.pins(100, true, true, true);
+  EXPECT_THAT(kinds(checker), ElementsAre(Kind::kConflict));
+  checker.pins(200, true, true, false);
+  checker.allow_conflict(true);
+  checker.pins(300, true, true, true);
+  EXPECT_EQ(checker.violations().size(), 1u);
+}
+
+// Change of variables -----------------------------------------------------------------------------------------------------
+
+// I7m00 6527 -> 2948 at a bottom turnaround: one period may hold a triangle of each length.
+TEST(ClockChecker, AllowsOnePulseOfMixedTriangles) {
+  constexpr ClockSetting kTo{2948, 0, 3};
+  Wave wave;
+  const Tick old_end = wave.run(0, kDefault, 8);
+  wave.run(old_end, kTo, 40);
+  ClockChecker checker;
+  checker.run(0, kDefault);
+  play(checker, wave, 0, old_end - 7000);
+  checker.change(old_end - 7000, kTo);
+  const Tick done = old_end + ClockChecker::settling(kDefault, kTo);
+  play(checker, wave, old_end - 6999, done);
+  checker.run(done, kTo);
+  play(checker, wave, done + 1, wave.phase.rbegin()->first);
+  EXPECT_THAT(kinds(checker), IsEmpty()) << checker.violations()[0].text;
+}
+
+TEST(ClockChecker, FindsARuntAndANeverEndingPulseWhileVariablesChange) {
+  constexpr ClockSetting kTo{2948, 0, 3};
+  for (const Tick length : {Tick{2949}, Tick{2948}, Tick{1000}, Tick{6529}, Tick{6530}}) {
+    ClockChecker checker;
+    checker.run(0, kDefault);
+    checker.pins(6000, true, true, false);
+    checker.pins(10'000, false, true, false);
+    checker.ignore();
+    checker.run(10'000, kDefault);
+    checker.change(10'000, kTo);
+    checker.pins(10'000 + length, true, true, false);
+    if (length >= 2949 && length <= 6529)
+      EXPECT_THAT(kinds(checker), IsEmpty()) << length;
+    else
+      EXPECT_THAT(kinds(checker), ElementsAre(length < 2949 / 2 ? Kind::kRunt : length < 2949 ? Kind::kEarly : Kind::kLate)) << length;
+  }
+}
+
+// Another source ------------------------------------------------------------------------------------------------------------
+
+struct HandOver {
+  Tick release, tick;       // the old source lets go; first phase tick of the new one
+  Tick odd = kSlow.high();  // its first high level
+  bool second_cut = false;
+};
+
+// Default clocks, then kSlow from another IC. The old source has a low level from 7 x 13057 + 6528 on.
+std::vector<Kind> handed_over(const HandOver& h, ClockChecker& checker) {
+  Wave wave;
+  const Tick end = wave.run(0, kDefault, 8, 4);
+  std::map<Tick, bool> before;
+  for (const auto& [t, level] : wave.phase)
+    if (t < h.release) before[t] = level;
+  wave.phase = before;
+  if (!wave.phase.rbegin()->second) wave.phase[h.release] = true;
+  before.clear();
+  for (const auto& [t, level] : wave.servo)
+    if (t < h.release) before[t] = level;
+  wave.servo = before;
+  if (!wave.servo.rbegin()->second) wave.servo[h.release] = true;
+  if (h.second_cut) {
+    wave.phase[h.release + 100] = false;
+    wave.phase[h.release + 200] = true;
+  }
+  Wave next;
+  const Tick last = next.run(h.tick + h.odd - kSlow.high(), kSlow, 20, kSlow.servo_divider + 1);
+  next.phase.erase(next.phase.begin());  // high already
+  wave.phase.insert(next.phase.begin(), next.phase.end());
+  wave.servo.insert(next.servo.begin(), next.servo.end());
+  checker.run(0, kDefault);
+  play(checker, wave, 0, end - 13057);
+  checker.move(end - 13057, kSlow);
+  play(checker, wave, end - 13056, last - 5 * kSlow.phase());
+  checker.run(last - 5 * kSlow.phase(), kSlow);
+  play(checker, wave, last - 5 * kSlow.phase() + 1, wave.phase.rbegin()->first);
+  return kinds(checker);
+}
+
+TEST(ClockChecker, AllowsOneOddHighLevelWhenTheSourceMoves) {
+  BRICK_COVERS("I19-2");
+  const Tick rise = 7 * 13057, fall = rise + 6528;
+  for (const Tick release : {rise + 1, rise + 3000, fall}) {
+    for (const Tick wait : {Tick{1}, kSlow.phase() + ClockChecker::kHandOver}) {
+      ClockChecker checker;
+      EXPECT_THAT(handed_over({release, release + wait}, checker), IsEmpty()) << checker.violations()[0].text;
+      EXPECT_EQ(checker.counts().odd_highs, 1u);
+      EXPECT_EQ(checker.counts().cut_lows, 0u);
+    }
+  }
+}
+
+TEST(ClockChecker, AllowsALowLevelToEndEarlyOnce) {
+  const Tick fall = 7 * 13057 + 6528;
+  for (const Tick release : {fall + 1, fall + 3000}) {
+    ClockChecker checker;
+    EXPECT_THAT(handed_over({release, release + 400}, checker), IsEmpty()) << checker.violations()[0].text;
+    EXPECT_EQ(checker.counts().cut_lows, 1u);
+    EXPECT_EQ(checker.shortest_cut(), release - fall);
+  }
+  ClockChecker checker;
+  EXPECT_THAT(handed_over({fall + 3000, fall + 10'000, kSlow.high(), true}, checker), ::testing::Not(IsEmpty()));
+}
+
+TEST(ClockChecker, FindsAFirstHighLevelOfTheNewSourceThatIsTooShortOrTooLong) {
+  const Tick fall = 7 * 13057 + 6528, release = fall + 3000;
+  ClockChecker early, late;
+  EXPECT_EQ(handed_over({release, release, kSlow.high() - 1}, early).at(0), Kind::kEarly);
+  const Tick most = kDefault.high() + ClockChecker::kHandOver + kSlow.phase();
+  EXPECT_FALSE(handed_over({release, release + most + 1}, late).empty());
+}
+
+TEST(ClockChecker, FindsThatTheSourceDidNotMove) {
+  Wave wave;
+  const Tick end = wave.run(0, kDefault, 20);
+  ClockChecker checker;
+  checker.run(0, kDefault);
+  play(checker, wave, 0, 40'000);
+  checker.move(40'000, kSlow);
+  play(checker, wave, 40'001, end - 1);
+  checker.run(end - 1, kSlow);
+  EXPECT_THAT(kinds(checker), ElementsAre(Kind::kUnsettled));
+}
+
+TEST(ClockChecker, FindsEdgesWithoutASource) {
+  Wave wave;
+  wave.run(0, kDefault, 4);
+  ClockChecker checker;
+  checker.run(0, kDefault);
+  play(checker, wave, 0, 3 * 13057 + 6528);
+  checker.stop(3 * 13057 + 6528);
+  checker.pins(3 * 13057 + 7000, true, true, false);  // idle high
+  EXPECT_THAT(kinds(checker), IsEmpty());
+  checker.finish(100'000'000);
+  EXPECT_THAT(kinds(checker), IsEmpty());
+  checker.pins(100'000'001, false, true, false);
+  EXPECT_THAT(kinds(checker), ElementsAre(Kind::kRelation));
+}
+
+}  // namespace
+}  // namespace brick

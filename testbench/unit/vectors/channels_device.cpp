@@ -1,0 +1,188 @@
+// The four channels of a servo IC with its registers and clock chain: Verilated RTL or model, one tick at a time.
+#include "testbench/unit/servo_channel/channels_rig.h"
+#include "testbench/unit/vectors/device.h"
+
+namespace brick {
+namespace {
+
+constexpr unsigned kPins = 12;
+constexpr const char* kPinNames[kPins] = {"enc_a", "enc_b", "enc_c", "fault", "hmfl", "plim", "mlim", "user", "w", "v", "u", "t"};
+constexpr const char* kPwmNames[6] = {"pwm_a_top", "pwm_a_bot", "pwm_b_top", "pwm_b_bot", "pwm_c_top", "pwm_c_bot"};
+constexpr const char* kOtherNames[6] = {"pfm_pulse", "pfm_dir", "dac", "dac_b", "aena", "equ"};
+constexpr const char* kSerialNames[4] = {"dac_clk", "dac_strobe", "adc_clk", "adc_strobe"};
+
+// Where the groups begin among the signals: inputs first.
+enum : unsigned {
+  kInPins = 0,
+  kInAdcA = 4 * kPins,
+  kInAdcB = kInAdcA + 4,
+  kInPhase = kInAdcB + 4,
+  kInServo,
+  kInTrip,
+  kOutPwm,
+  kOutOthers = kOutPwm + 24,
+  kOutSerial = kOutOthers + 24,
+  kOutPhase = kOutSerial + 4,
+  kOutServo,
+  kAllSignals
+};
+
+class ChannelsEngine {
+ public:
+  virtual ~ChannelsEngine() = default;
+  virtual void tick(const ChannelInputs& in, Tick now) = 0;  // `now` counts this edge
+  virtual std::uint32_t word(const ChannelInputs& in) = 0;
+  virtual ChannelPins pins() const = 0;
+};
+
+class RtlEngine : public ChannelsEngine {
+ public:
+  void tick(const ChannelInputs& in, Tick now) override {
+    rtl_.drive(in);
+    rtl_.tick(now % kTicksPerRef == 0);
+  }
+  std::uint32_t word(const ChannelInputs& in) override {
+    rtl_.drive(in);
+    return rtl_.rdata();
+  }
+  ChannelPins pins() const override { return rtl_.pins(); }
+
+ private:
+  RtlChannels rtl_;
+};
+
+class ModelEngine : public ChannelsEngine {
+ public:
+  void tick(const ChannelInputs& in, Tick now) override {
+    model_.set_inputs(in);
+    if (!in.rst_n) {
+      model_.reset(now);
+      model_.set_inputs(in);
+      return;
+    }
+    model_.advance(now);
+    if (now % kTicksPerRef != 0) return;
+    if (in.read_done) model_.read_done(in.x, in.addr);
+    if (in.we) model_.write(in.x, in.addr, in.wdata);
+  }
+  std::uint32_t word(const ChannelInputs& in) override { return model_.read(in.x, in.addr); }
+  ChannelPins pins() const override { return model_.pins(); }
+
+ private:
+  ChannelsModel model_;
+};
+
+class ChannelsDevice : public Device {
+ public:
+  explicit ChannelsDevice(std::unique_ptr<ChannelsEngine> engine) : engine_(std::move(engine)), values_(kAllSignals) {
+    values_[kInPhase] = values_[kInServo] = 1;
+    read_pins();
+  }
+  const std::vector<DeviceSignal>& signals() const override { return signals_; }
+  Tick now() const override { return now_; }
+  std::uint32_t value(unsigned signal) const override { return values_[signal]; }
+
+  void reset() override {
+    in_.rst_n = false;
+    run(4);
+    in_.rst_n = true;
+  }
+  void run(Tick ticks) override {
+    for (; ticks > 0; --ticks) {
+      engine_->tick(in_, ++now_);
+      read_pins();
+    }
+  }
+  void run_towards_change(unsigned, Tick limit) override {
+    if (now_ < limit) run(1);
+  }
+  void drive(unsigned signal, std::uint32_t value) override {
+    const auto set = [value](auto& word, unsigned bit) {
+      using Word = std::remove_reference_t<decltype(word)>;
+      word = static_cast<Word>((word & ~(1u << bit)) | (value & 1u) << bit);
+    };
+    if (signal < kInAdcA) {
+      set(in_.pins[signal / kPins], signal % kPins);
+    } else if (signal < kInAdcB) {
+      set(in_.adc_a, signal - kInAdcA);
+    } else if (signal < kInPhase) {
+      set(in_.adc_b, signal - kInAdcB);
+    } else {
+      (signal == kInPhase ? in_.phase : signal == kInServo ? in_.servo : in_.trip) = value != 0;
+    }
+    change(signal, value & 1);
+  }
+  void write(bool x, unsigned addr, std::uint32_t value) override {
+    address(x, addr);
+    in_.wdata = value;
+    in_.we = true;
+    run_to_ref();
+    in_.we = false;
+  }
+  std::uint32_t read(bool x, unsigned addr) override {
+    address(x, addr);
+    run_to_ref();  // the first edge that sees the address; the next one takes the data
+    const std::uint32_t value = engine_->word(in_);
+    in_.read_done = true;
+    run_to_ref();
+    in_.read_done = false;
+    return value;
+  }
+  std::string command(const std::string&) override { throw DeviceError("the channels take no commands"); }
+
+ private:
+  void address(bool x, unsigned addr) {
+    in_.x = x;
+    in_.addr = addr;
+  }
+  void run_to_ref() {
+    do run(1);
+    while (now_ % kTicksPerRef != 0);
+  }
+  void read_pins() {
+    const ChannelPins p = engine_->pins();
+    for (unsigned i = 0; i < 24; ++i) change(kOutPwm + i, p.pwm >> i & 1);
+    for (unsigned i = 0; i < 24; ++i) change(kOutOthers + i, p.others >> i & 1);
+    for (unsigned i = 0; i < 4; ++i) change(kOutSerial + i, p.serial >> i & 1);
+    change(kOutPhase, p.phase ? 1 : 0);
+    change(kOutServo, p.servo ? 1 : 0);
+  }
+  void change(unsigned signal, std::uint32_t value) {
+    if (values_[signal] == value) return;
+    values_[signal] = value;
+    if (on_change) on_change(now_, signal, value);
+  }
+
+  std::unique_ptr<ChannelsEngine> engine_;
+  std::vector<DeviceSignal> signals_ = channels_signals();
+  std::vector<std::uint32_t> values_;
+  ChannelInputs in_;
+  Tick now_ = 0;
+};
+
+}  // namespace
+
+// Names as in the waveform, the scope of the IC left out; what the four channels share has no channel.
+std::vector<DeviceSignal> channels_signals() {
+  std::vector<DeviceSignal> all;
+  const auto channel = [](unsigned n) { return "ch" + std::to_string(n + 1) + "."; };
+  for (unsigned n = 0; n < 4; ++n)
+    for (const char* name : kPinNames) all.push_back({channel(n) + name, true});
+  for (const char* name : {"adc_a", "adc_b"})
+    for (unsigned n = 0; n < 4; ++n) all.push_back({channel(n) + name, true});
+  for (const char* name : {"clock.phase_in", "clock.servo_in", "watchdog.tripped"}) all.push_back({name, true});
+  for (unsigned n = 0; n < 4; ++n)
+    for (const char* name : kPwmNames) all.push_back({channel(n) + name, false});
+  for (const char* name : kOtherNames)
+    for (unsigned n = 0; n < 4; ++n) all.push_back({channel(n) + name, false});
+  for (const char* name : kSerialNames) all.push_back({name, false});
+  for (const char* name : {"clock.phase", "clock.servo"}) all.push_back({name, false});
+  return all;
+}
+
+std::unique_ptr<Device> make_channels(bool rtl) {
+  if (rtl) return std::make_unique<ChannelsDevice>(std::make_unique<RtlEngine>());
+  return std::make_unique<ChannelsDevice>(std::make_unique<ModelEngine>());
+}
+
+}  // namespace brick

@@ -1,0 +1,61 @@
+// brick_vectors [--engine rtl|systemc|both] [--draw | --negative] FILE: runs a timing vector, prints what failed, the WaveDrom source
+// of its figure, or for each of its faults the expectation that finds it.
+// Exit status as the `brick` command's: 0 passed, 1 failed, 2 bad usage or a mistake in the file.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "testbench/unit/vectors/wave.h"
+
+namespace {
+
+int run(const std::string& path, const std::string& engine, bool draw) {
+  const brick::Vector vector = brick::read_vector(path);
+  if (draw && !vector.wave) throw brick::VectorError(path + ": found no [wave], expected one to draw");
+  const auto device = brick::make_device(vector.device, engine, vector.board);
+  const brick::RunResult result = brick::run_vector(vector, *device);
+  if (!result.passed()) {
+    fmt::print(stderr, "{}", result.text());
+    return 1;
+  }
+  if (draw) {
+    fmt::print("{}", brick::wavedrom(vector, result));
+  } else {
+    fmt::print("{}: passed on {}, {} checks, {} ticks\n", path, engine, result.checks, device->now());
+  }
+  return 0;
+}
+
+int run_negatives(const std::string& path, const std::string& engine) {
+  const brick::Vector vector = brick::read_vector(path);
+  int status = 0;
+  for (const brick::Corruption& corruption : vector.negatives) {
+    const auto device = brick::make_device(vector.device, engine, vector.board);
+    const brick::RunResult result = brick::run_vector(vector, *device, &corruption);
+    if (result.failures.empty()) status = 1;
+    fmt::print("{}\n    {}\n", corruption.name, result.failures.empty() ? "NOT FOUND" : result.failures.front());
+  }
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string path, engine = "systemc";
+  bool draw = false, negative = false;
+  CLI::App app{"Runs a timing vector"};
+  app.add_option("--engine", engine)->check(CLI::IsMember({"rtl", "systemc", "both"}));
+  app.add_flag("--draw", draw, "print the figure as WaveDrom source");
+  app.add_flag("--negative", negative, "run it with each of its planted faults");
+  app.add_option("FILE", path)->required();
+  try {
+    app.parse(argc, argv);
+    return negative ? run_negatives(path, engine) : run(path, engine, draw);
+  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; } catch (const brick::VectorError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", path, error.what());
+    return 2;
+  }
+}

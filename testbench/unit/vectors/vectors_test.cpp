@@ -1,0 +1,116 @@
+// One test for each vector file and engine, one in which it must fail, one for its figure. Registered by name, so that
+// `ctest -R vectors.pwm` runs what it says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+
+#include "testbench/unit/vectors/wave.h"
+
+namespace brick {
+namespace {
+
+constexpr const char* kVectors = "testbench/vectors";
+constexpr const char* kFigures = "docs/images/vectors/";
+
+std::vector<std::string> vector_files() {
+  std::vector<std::string> found;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(kVectors, none))
+    if (entry.path().extension() == ".vec") found.push_back(entry.path().string());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+class VectorTest : public ::testing::Test {
+ public:
+  explicit VectorTest(std::function<void()> body) : body_(std::move(body)) {}
+  void TestBody() override { body_(); }
+
+ private:
+  std::function<void()> body_;
+};
+
+void add(const std::string& name, std::function<void()> body) {
+  ::testing::RegisterTest("vectors", name.c_str(), nullptr, nullptr, __FILE__, __LINE__,
+                          [body = std::move(body)]() -> ::testing::Test* { return new VectorTest(body); });
+}
+
+RunResult run(const Vector& vector, const std::string& engine, const Corruption* corruption = nullptr) {
+  const auto device = make_device(vector.device, engine, vector.board);
+  return run_vector(vector, *device, corruption);
+}
+
+void passes(const std::string& file, const std::string& engine) {
+  const RunResult result = run(read_vector(file), engine);
+  EXPECT_TRUE(result.passed()) << result.text();
+}
+
+void fails_when_corrupted(const std::string& file) {
+  const Vector vector = read_vector(file);
+  for (const Corruption& corruption : vector.negatives) {
+    for (const char* engine : {"rtl", "systemc"})
+      EXPECT_FALSE(run(vector, engine, &corruption).failures.empty())
+          << file << " passes on " << engine << " although: " << corruption.name;
+  }
+}
+
+// The committed figure is the one that either engine draws.
+void figure_is_fresh(const std::string& file) {
+  const Vector vector = read_vector(file);
+  const std::string path = kFigures + vector.name + ".json";
+  std::ifstream in(path);
+  std::ostringstream committed;
+  committed << in.rdbuf();
+  for (const char* engine : {"systemc", "rtl"}) {
+    const RunResult result = run(vector, engine);
+    ASSERT_TRUE(result.passed()) << result.text();
+    EXPECT_EQ(wavedrom(vector, result), committed.str()) << path << " is stale on " << engine << ": run tools/draw_vectors.py";
+  }
+}
+
+// Before main(), where the TEST macros register theirs. A file that cannot be read fails its tests, not this.
+const bool kRegistered = [] {
+  for (const std::string& file : vector_files()) {
+    const std::string name = std::filesystem::path(file).stem().string();
+    for (const char* engine : {"rtl", "systemc", "both"})
+      add(name + "_" + engine, [file, engine = std::string(engine)] { passes(file, engine); });
+    add("negative_" + name, [file] { fails_when_corrupted(file); });
+    std::ifstream in(file);
+    std::string line;
+    while (std::getline(in, line) && line != "[wave]") {}
+    if (in) add("figure_" + name, [file] { figure_is_fresh(file); });
+  }
+  return true;
+}();
+
+// All check vectors of the servo IC's data sheet (section 14) are there.
+TEST(CheckVectors, EveryNumberHasAFile) {
+  constexpr int kCheckVectors = 17;
+  ASSERT_TRUE(kRegistered);
+  std::set<int> numbers;
+  for (const std::string& file : vector_files()) {
+    const Vector vector = read_vector(file);
+    if (vector.number) numbers.insert(*vector.number);
+  }
+  for (int n = 1; n <= kCheckVectors; ++n) EXPECT_EQ(numbers.count(n), 1u) << "check vector " << n;
+}
+
+// The comparison of the engines fails when one of them does something else.
+TEST(BothEngines, ADifferenceIsFound) {
+  auto rtl = make_channels(true), model = make_channels(false);
+  Device& one = *model;
+  const auto both = compared(std::move(rtl), std::move(model));
+  both->reset();
+  both->write(true, 0x04, 0x3008D2);
+  both->run(1000);
+  one.write(true, 0x1C, 0x197F0E);
+  EXPECT_THROW(both->run(100'000), DeviceError);
+}
+
+}  // namespace
+}  // namespace brick
