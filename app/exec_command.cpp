@@ -39,7 +39,10 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   try {
     simulation.run([&] {
       if (!simulation.link().connect(HostLink::kBootTime))
-        throw ScriptFailure("the controller does not answer after power-on; expected an acknowledge within 500 ms");
+        throw ScriptFailure(
+            simulation.bus().tripped()
+                ? "the controller does not answer after power-on: the watchdog has tripped; expected an acknowledge, see --jumper E3"
+                : "the controller does not answer after power-on; expected an acknowledge within 500 ms");
       player.play(script);
     });
   } catch (const std::exception& e) {  // the script, the engines or the bus: bad input was found before

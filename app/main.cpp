@@ -38,7 +38,10 @@ struct Commands {
     run->add_option("BENCH", bench, "name of the bench, see brick list")->required();
     add_run_options(*run, run_options, "lockstep");
     run->add_flag("--negative", negative, "negative control: a deliberate fault, with which the bench must fail");
-    run->callback([this] { chosen = [this] { return run_command(run_options, bench, negative); }; });
+    run->callback([this, run] {
+      if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
+      chosen = [this] { return run_command(run_options, bench, negative); };
+    });
 
     auto* exec = app.add_subcommand("exec", "plays a host script against the started controller, prints the replies");
     exec->add_option("FILE", script, "host script, - = standard input")->required();

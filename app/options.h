@@ -14,8 +14,8 @@ namespace brick {
 
 struct RunOptions {
   std::string engine = "systemc";
-  std::string board = "geobrick-lv-8";
-  std::string firmware;  // "" = the one that belongs to this brick
+  std::string board = "geobrick-lv-8";  // "" = the bench's own
+  std::string firmware;                 // "" = the one that belongs to this brick
   std::string wave;
   std::string wave_from, wave_to;
   std::string seed = "1";

@@ -30,8 +30,10 @@ nlohmann::json steps_json(const BenchReport& report) {
 
 }  // namespace
 
-int run_command(const RunOptions& options, const std::string& name, bool negative) {
+int run_command(const RunOptions& given, const std::string& name, bool negative) {
   const Bench& bench = need_bench(name);
+  RunOptions options = given;
+  if (options.board.empty()) options.board = bench.board;
   MachineConfig config = machine_config(options);
   if (negative && bench.seed_bug) bench.seed_bug(config);
   Simulation simulation(options, config, bench.name);

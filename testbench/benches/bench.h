@@ -56,6 +56,7 @@ struct Bench {
   std::string negative;                          // what --negative does, one line
   std::function<void(MachineConfig&)> seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
   std::function<void(BenchContext&)> run;
+  std::string board = "geobrick-lv-8";  // without --board
 };
 
 // Every bench there is, in the order of `brick list`.

@@ -9,5 +9,7 @@ Bench smoke_bench();
 Bench breq_rotary_bench();
 Bench watchdog_bench();
 Bench reinit_e3_bench();
+Bench clock_select_bench();
+Bench clock_macro_bench();
 
 }  // namespace brick

@@ -47,12 +47,14 @@ void ClockChecker::change(Tick now, const ClockSetting& to) {
   begin(Mode::kChange, to, Stage::kOld);
 }
 
-void ClockChecker::move(Tick now, const ClockSetting& to) {
+void ClockChecker::move(Tick now, const ClockSetting& to, Tick hand_over) {
   finish(now);
+  hand_over_ = hand_over;
   begin(Mode::kMove, to, Stage::kOld);
 }
 
-void ClockChecker::start(Tick now, const ClockSetting& to) {
+void ClockChecker::start(Tick now, const ClockSetting& to, Tick within) {
+  hand_over_ = within;
   begin(Mode::kMove, to, Stage::kIdle);
   if (phase_) phase_since_ = now;
   falls_ = 0;
@@ -97,7 +99,7 @@ Tick ClockChecker::longest(bool level) const {
       return (std::max(now_is_.half(), to.half()) * (std::max(now_is_.phase_divider, to.phase_divider) + 1) + 1) / 2;
     case Mode::kMove:
       if (stage_ == Stage::kNew) return exact_length;
-      return level ? now_is_.high() + kHandOver + to.phase() + to.high() : std::max(now_is_.low(), to.low());
+      return level ? now_is_.high() + hand_over_ + to.phase() + to.high() : std::max(now_is_.low(), to.low());
     case Mode::kStop:
       return level ? kNever : exact_length;
   }

@@ -51,9 +51,10 @@ class ClockChecker {
   // Another IC, with these variables, is about to become the source. Until the old one lets go all is exact; then one low level
   // of each net may end early (nobody drives: idle high) and one high level is odd: at least a full high level of the new source,
   // at most what is left of the old one, the hand-over, and one and a half periods of the new one.
-  void move(Tick now, const ClockSetting& to);
-  void start(Tick now, const ClockSetting& to);  // the same from no source
-  void stop(Tick now);                           // ... to no source: after one early rise nothing moves any more
+  void move(Tick now, const ClockSetting& to, Tick hand_over = kHandOver);
+  // The same from no source; `within` is the longest time until the new one drives.
+  void start(Tick now, const ClockSetting& to, Tick within);
+  void stop(Tick now);  // ... to no source: after one early rise nothing moves any more
   void allow_conflict(bool allowed) { conflict_allowed_ = allowed; }
 
   // What it sees --------------------------------------------------------------------------------------------------------
@@ -89,6 +90,7 @@ class ClockChecker {
 
   Mode mode_ = Mode::kIgnore;
   Stage stage_ = Stage::kOld;
+  Tick hand_over_ = kHandOver;
   ClockSetting now_is_;               // old setting in a transition
   std::optional<ClockSetting> next_;  // new one
   bool phase_ = true, servo_ = true;

@@ -259,7 +259,7 @@ def dead_flash():
         check(r.returncode == 0 and r.stdout.split() == ["1.947"], r.stdout + r.stderr)
         for engine in ("systemc", "rtl"):
             r = play(ask, "--flash", file, "--engine", engine)
-            check(r.returncode == 1 and r.stdout == "" and "does not answer" in r.stderr, r.stdout + r.stderr)
+            check(r.returncode == 1 and r.stdout == "" and "does not answer" in r.stderr and "--jumper E3" in r.stderr, r.stdout + r.stderr)
         r = play(ask, "--flash", file, "--jumper", "E3")
         check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
         check(play(ask, "--flash", file).returncode == 1, "the jumper does not change what is SAVEd")
@@ -268,6 +268,28 @@ def dead_flash():
         check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
         r = play(["I19=7957", "SAVE", "@reset", "@wait 40ms", "@signal watchdog.tripped", "@jumper E3 on", "@power", "I19", "@jumper E3 off"])
         check(r.stdout.split() == ["watchdog.tripped=1", "7007"], r.stdout + r.stderr)
+
+
+def clock_select():
+    bench_passes("clock-select", "systemc", "1")
+    bench_passes("clock-select", "systemc", "2")
+
+
+def clock_select_lockstep():
+    bench_passes("clock-select", "lockstep", "3")
+
+
+def clock_select_negative():
+    bench_fails_its_negative_control("clock-select", "systemc")
+
+
+def clock_macro():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
+        bench_passes("clock-macro", engine, seed)
+
+
+def clock_macro_negative():
+    bench_fails_its_negative_control("clock-macro", "systemc")
 
 
 def installed():

@@ -297,6 +297,20 @@ TEST(ClockChecker, FindsThatTheSourceDidNotMove) {
   EXPECT_THAT(kinds(checker), ElementsAre(Kind::kUnsettled));
 }
 
+TEST(ClockChecker, AllowsAnyFirstTickAfterNoSourceButNoShortHighLevel) {
+  for (const Tick high : {kSlow.high() - 1, kSlow.high(), 20'000 + kSlow.phase() + kSlow.high() + 20'000}) {
+    ClockChecker checker;
+    checker.start(1000, kSlow, 20'000);
+    checker.pins(1000 + high, false, true, false);
+    checker.pins(1000 + high + kSlow.low(), true, true, false);
+    checker.pins(1000 + high + kSlow.phase(), false, false, false);  // the (I7m02 + 1)th fall
+    if (high == kSlow.high())
+      EXPECT_THAT(kinds(checker), IsEmpty()) << checker.violations()[0].text;
+    else
+      EXPECT_THAT(kinds(checker), ElementsAre(high < kSlow.high() ? Kind::kEarly : Kind::kLate));
+  }
+}
+
 TEST(ClockChecker, FindsEdgesWithoutASource) {
   Wave wave;
   wave.run(0, kDefault, 4);

@@ -1,16 +1,25 @@
-// brick_vectors [--engine rtl|systemc|both] [--draw | --negative] FILE: runs a timing vector, prints what failed, the WaveDrom source
+// brick_vectors [--engine NAME] [--draw | --negative] FILE: runs a timing vector, prints what failed, the WaveDrom source
 // of its figure, or for each of its faults the expectation that finds it.
 // Exit status as the `brick` command's: 0 passed, 1 failed, 2 bad usage or a mistake in the file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "testbench/unit/vectors/wave.h"
 
 namespace {
 
+brick::Vector read(const std::string& path, const std::string& engine) {
+  brick::Vector vector = brick::read_vector(path);
+  const auto& known = vector.kind().engines;
+  if (std::find(known.begin(), known.end(), engine) == known.end())
+    throw brick::VectorError(fmt::format("--engine: found '{}', expected {}", engine, fmt::join(known, ", ")));
+  return vector;
+}
+
 int run(const std::string& path, const std::string& engine, bool draw) {
-  const brick::Vector vector = brick::read_vector(path);
+  const brick::Vector vector = read(path, engine);
   if (draw && !vector.wave) throw brick::VectorError(path + ": found no [wave], expected one to draw");
   const auto device = brick::make_device(vector.device, engine, vector.board);
   const brick::RunResult result = brick::run_vector(vector, *device);
@@ -27,7 +36,7 @@ int run(const std::string& path, const std::string& engine, bool draw) {
 }
 
 int run_negatives(const std::string& path, const std::string& engine) {
-  const brick::Vector vector = brick::read_vector(path);
+  const brick::Vector vector = read(path, engine);
   int status = 0;
   for (const brick::Corruption& corruption : vector.negatives) {
     const auto device = brick::make_device(vector.device, engine, vector.board);
@@ -44,7 +53,7 @@ int main(int argc, char** argv) {
   std::string path, engine = "systemc";
   bool draw = false, negative = false;
   CLI::App app{"Runs a timing vector"};
-  app.add_option("--engine", engine)->check(CLI::IsMember({"rtl", "systemc", "both"}));
+  app.add_option("--engine", engine, "what it runs on: rtl, systemc (default), both");
   app.add_flag("--draw", draw, "print the figure as WaveDrom source");
   app.add_flag("--negative", negative, "run it with each of its planted faults");
   app.add_option("FILE", path)->required();

@@ -73,18 +73,20 @@ void figure_is_fresh(const std::string& file) {
   }
 }
 
-// Before main(), where the TEST macros register theirs. A file that cannot be read fails its tests, not this.
-const bool kRegistered = [] {
-  for (const std::string& file : vector_files()) {
-    const std::string name = std::filesystem::path(file).stem().string();
-    for (const char* engine : {"rtl", "systemc", "both"})
-      add(name + "_" + engine, [file, engine = std::string(engine)] { passes(file, engine); });
+// Before main(), where the TEST macros register theirs. A file that cannot be read is a test that fails.
+void add_tests_of(const std::string& file) {
+  const std::string name = std::filesystem::path(file).stem().string();
+  try {
+    const Vector vector = read_vector(file);
+    for (const std::string& engine : vector.kind().engines) add(name + "_" + engine, [file, engine] { passes(file, engine); });
     add("negative_" + name, [file] { fails_when_corrupted(file); });
-    std::ifstream in(file);
-    std::string line;
-    while (std::getline(in, line) && line != "[wave]") {}
-    if (in) add("figure_" + name, [file] { figure_is_fresh(file); });
+    if (vector.wave) add("figure_" + name, [file] { figure_is_fresh(file); });
+  } catch (const VectorError& error) {
+    add(name, [what = std::string(error.what())] { FAIL() << what; });
   }
+}
+const bool kRegistered = [] {
+  for (const std::string& file : vector_files()) add_tests_of(file);
   return true;
 }();
 

@@ -72,9 +72,9 @@ class Drawing {
     return lane;
   }
 
-  // A bus cycle is short: it is shown for five columns from the one in which it ends, or until the next.
+  // A bus cycle is short: it is shown for six columns from the one in which it ends, or until the next.
   Json bus_lane(unsigned signal) const {
-    constexpr int kColumns = 5;
+    constexpr int kColumns = 6;
     std::string wave;
     std::vector<std::string> data;
     for (const Stretch& s : stretches_) {
