@@ -1,8 +1,9 @@
-// clock-select: every IC of the board as the source of PHASE and SERVO, moved there by one command line in either order and by I19,
-// SAVE and $$$; then what goes wrong: two sources, none, a missing IC, a MACROGATE, and the clocks from outside (jumper E1).
-// Each IC has its own I7m00, I7m01, I7m02, so its clocks tell it apart. Every edge is judged by testbench/checkers/clock_checker.h.
+// clock-select: a seed-chosen half of the board's ICs as the source of PHASE and SERVO, moved there by one command line in either order,
+// one by I19, SAVE and $$$ (testbench/unit/system/clock_moves_test.cpp has all of them); then what goes wrong: two sources, none, a missing
+// IC, a MACROGATE, and the clocks from outside (jumper E1). Each IC has its own I7m00, I7m01, I7m02, so its clocks tell it apart. Every
+// edge is judged by testbench/checkers/clock_checker.h.
 #include <algorithm>
-#include <numeric>
+#include <cstdlib>
 #include <random>
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@ namespace brick {
 namespace {
 
 constexpr unsigned kConfigurationError = 1u << 7, kNoPhaseClock = 1u << 3;  // 5th and 6th character of ???
-constexpr unsigned kByReset = 2;                                            // ICs made the source by I19 and reset
 constexpr Tick kMillisecond = kPwmClockHz / 1000;
 constexpr Tick kRestart = 5 * kMillisecond;  // $$$ writes every register of every IC between the last input and the output
 constexpr Tick kSync = 3;                    // two flip-flops: a follower sees an edge of the net at the third tick
@@ -49,14 +49,17 @@ class SelectBench {
   // Clocks that the CPU can serve, different for each IC.
   ClockSetting any_setting() {
     for (;;) {
-      const ClockSetting s{2500 + pick(3500), pick(3), pick(4)};
-      if (s.servo() > 14'000 && s.servo() < 60'000) return s;
+      const ClockSetting s{2500 + pick(2500), pick(3), pick(4)};
+      if (s.servo() > 14'000 && s.servo() < 40'000) return s;
     }
   }
 
-  std::vector<unsigned> shuffled() {
+  // `count` ICs that are not the source, in any order.
+  std::vector<unsigned> some(std::size_t count) {
     std::vector<unsigned> order = fitted_;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[pick(static_cast<unsigned>(i))]);
+    order.erase(std::remove(order.begin(), order.end(), host_.source()), order.end());
+    order.resize(std::min(order.size(), count));
     return order;
   }
 
@@ -92,8 +95,7 @@ class SelectBench {
   // I19-2: live, by one line as the manual demands, in both orders of writing.
   void by_one_line() {
     bool new_first = (b_.seed & 1) != 0;
-    for (const unsigned ic : shuffled()) {
-      if (ic == host_.source()) continue;
+    for (const unsigned ic : some(fitted_.size() / 2)) {
       const std::string line = both(ic, host_.source(), new_first);
       new_first = !new_first;
       host_.move(ic, line);
@@ -114,28 +116,28 @@ class SelectBench {
       if (ic != host_.source()) host_.program(ic, same);
     host_.program(host_.source(), same);
     b_.bus.wait(16 * same.phase());  // outside the window only each fourth edge moves a turnaround
-    std::string wrong;
-    std::vector<unsigned> order = shuffled();
-    order.resize((order.size() + 1) / 2);
-    for (const unsigned ic : order) {
-      if (ic == host_.source()) continue;
+    std::string behind;
+    bool good = true;
+    for (const unsigned ic : some(1 + fitted_.size() / 4)) {
       b_.bus.wait(6 * same.phase() + pick(static_cast<unsigned>(same.phase())));
       const Tick before = host_.checker().last_phase_fall();
+      const unsigned cuts = host_.checker().counts().cut_lows;
       host_.move(ic, both(ic, host_.source(), pick(2) != 0));
       const Tick offset = (host_.checker().last_phase_fall() - before) % same.half();
       const Tick late = offset > same.half() / 2 ? offset - same.half() : offset;
-      if (late < kSync - kWindow || late > kSync + kWindow) wrong += fmt::format(" I{}: {} ticks", direction_variable(ic), late);
+      // The early rise of a low level that is cut may be near a turnaround and move it.
+      const Tick tolerance = host_.checker().counts().cut_lows > cuts ? kWindow : 0;
+      good = good && std::abs(late - kSync) <= tolerance;
+      behind += fmt::format(" {}", late);
     }
-    b_.report.step("followers in step when they take over", wrong.empty(), wrong.empty() ? "each within 3 +- 8 ticks" : wrong);
+    b_.report.step("followers in step when they take over", good,
+                   fmt::format("ticks behind the old source:{}; expected {}", behind, kSync));
     host_.verdict("same I7m00..02 in every IC");
   }
 
   // I19-1, I19-2: a number until SAVE and reset.
   void by_i19() {
-    std::vector<unsigned> order = shuffled();
-    order.erase(std::remove(order.begin(), order.end(), host_.source()), order.end());
-    order.resize(std::min<std::size_t>(order.size(), kByReset));
-    for (const unsigned ic : order) {
+    for (const unsigned ic : some(1)) {
       host_.program(ic, any_setting());
       const std::string i19 = fmt::format("I19={}", direction_variable(ic));
       host_.expect(i19 + " I19", std::to_string(direction_variable(ic)));
@@ -284,7 +286,7 @@ class SelectBench {
 // covers: I19-1 I19-2 I19-3 CLK-2 CLK-6
 Bench clock_select_bench() {
   return {"clock-select",
-          "every IC as the source of phase and servo clock, by one line and by I19; two sources, none, missing IC, MACROGATE, E1",
+          "half of the ICs as the source of phase and servo clock, by one line and by I19; two sources, none, missing IC, MACROGATE, E1",
           "servo dividers one higher than the checker is told",
           nullptr,
           [](BenchContext& b) { SelectBench(b).run(); },
