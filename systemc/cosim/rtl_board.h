@@ -61,6 +61,10 @@ class RtlBoard : public Board {
     if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
 #endif
     model_->final();
+    Verilated::threadContextp(&context_);  // its scopes leave the context last used, which may be another board's, long gone
+    // Scopes leave the context of the thread, which is that of the board made last, gone perhaps.
+    Verilated::threadContextp(&context_);
+    model_.reset();
   }
 
   Tick now() const override { return now_; }
