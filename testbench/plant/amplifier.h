@@ -13,6 +13,7 @@ struct AmplifierParameters {
   double trip_amps = 20;        // over-current
   bool fault_level = true;      // level of the FAULT pin that means a fault
   std::int64_t adc_noise = 0;   // peak, in bits of the 14-bit current
+  bool adc = true;              // wired to the serial ADC lines, which also bring commands; costs a stop at each clock edge
   bool always_on = false;       // AENA is not wired
 };
 

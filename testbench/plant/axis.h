@@ -38,7 +38,7 @@ class Axis {
   unsigned ic() const { return par_.ic; }
   unsigned channel() const { return par_.channel; }
   bool has_amplifier() const { return par_.drive != Drive::kHand; }
-  bool has_adc() const { return has_amplifier() && par_.drive != Drive::kStepper; }
+  bool has_adc() const { return has_motor() && par_.amplifier.adc; }
 
   // The plant's side, as MotorPeer.
   MotorOutputs stops() const;

@@ -46,6 +46,7 @@ void Plant::changed(Tick tick, unsigned ic, const MotorOutputs& before, const Mo
   for (const auto& axis : axes_) {
     if (axis->ic() != ic || !axis->has_amplifier()) continue;
     axis->changed(tick, before, after);
+    if (!axis->has_adc()) continue;
     if (event.command) axis->command(converters.adc.command());
     if (!event.start) continue;
     for (const bool b : {false, true}) converters.adc.set_word(axis->channel(), b, axis->adc_word(b));

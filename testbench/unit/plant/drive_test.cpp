@@ -100,6 +100,43 @@ TEST(PlantAtIc, PwmRunsABrushMotor) {
   EXPECT_FALSE(rig.status(0, kErrorBit));
 }
 
+// Commands -300, 600, -300 are a vector along B: 48/2 V x 4 x 600 / 6006 = 9.59 V, on 1 ohm 9.59 A. The rotor comes to rest a third of
+// an electrical turn from A, 4000/12 = 333.3 counts, with -4.795 A in A and 9.59 A in B. Their ripple at most: 24 V for half a PWM period,
+// 25 us, on 1 mH, 0.3 A either way.
+TEST(PlantAtIc, PwmHoldsAThreePhaseRotor) {
+  PlantParameters parameters = one_axis(Drive::kThreePhase);
+  parameters.axes[0].motor.inertia = 1e-6;
+  parameters.axes[0].motor.viscous = 1e-3;
+  parameters.axes[0].motor.torque_constant = 0.05;
+  Plant plant(parameters);
+  IcRig rig(plant);
+  rig.write(false, 2, (0x10000u - 300) << 8);
+  rig.write(false, 3, 600u << 8);
+  rig.write(false, 4, (0x10000u - 300) << 8);
+  rig.write(true, 5, kX4 | kAena);
+  rig.run(1800000);
+  EXPECT_NEAR(rig.counter(0), 4000.0 / 12, 1.5);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(false, 5) << 8) / 256 / 8388608.0 * 10, -4.795, 0.3);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(false, 6) << 8) / 256 / 8388608.0 * 10, 9.59, 0.3);
+}
+
+// 24 bits at 39.3216 MHz / 2^n fit into half a phase period of 3003 ticks up to n = 4.
+TEST(PlantAtIc, ConvertersWorkAtEveryBitRate) {
+  for (unsigned n = 0; n <= 4; ++n) {
+    PlantParameters parameters = one_axis(Drive::kTorque, n % 4);
+    parameters.axes[0].motor.inertia = 1000;
+    Plant plant(parameters);
+    IcRig rig(plant);
+    rig.write(true, 0x04, n << 9 | n << 6 | 0x12);
+    rig.write(true, 8 * (n % 4) + 5, kDacMode | kAena);
+    rig.write(false, 8 * (n % 4) + 2, 0x345000);
+    rig.run(8 * IcRig::kPhase);
+    EXPECT_EQ(plant.dac(0).value(n % 4), 0x345000 >> 6) << n;
+    EXPECT_EQ(rig.read(false, 8 * (n % 4) + 5), 0x345000u) << n;  // full scale of both is the same; the low ten bits are 0
+    EXPECT_EQ(plant.adc(0).command(), 0xFFFFFEu) << n;
+  }
+}
+
 TEST(PlantAtIc, WrongPolarityShortsTheBus) {
   PlantParameters parameters = one_axis(Drive::kThreePhase);
   Plant plant(parameters);
