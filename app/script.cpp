@@ -15,7 +15,8 @@ namespace {
 
 using Kind = ScriptLine::Kind;
 constexpr std::uint32_t kDpramBytes = 0x10000;
-constexpr const char* kKnown = "@wait @until @signal @pic @dpram @jumper @reset @power @expect @time";
+constexpr std::int64_t kHandRate = 10'000, kHighestRate = 9'830'400;  // @encoder, counts per second: one count per SCLK at most
+constexpr const char* kKnown = "@wait @until @signal @pic @dpram @jumper @input @encoder @reset @power @expect @time";
 
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
@@ -103,6 +104,37 @@ void read_until(ScriptLine& line, const std::vector<std::string>& words) {
   line.time = parse_time(words[2]);
 }
 
+void read_input(ScriptLine& line, const std::vector<std::string>& words) {
+  const std::size_t equals = words.size() == 2 ? words[1].find('=') : std::string::npos;
+  if (equals == std::string::npos || equals == 0)
+    throw UsageError("expected @input NAME=0 or @input NAME=1, for example @input servo_ic0.ch1.hmfl=1");
+  line.kind = Kind::kInput;
+  line.name = words[1].substr(0, equals);
+  const std::string level = words[1].substr(equals + 1);
+  if (level != "0" && level != "1") throw UsageError(fmt::format("`{}` is no level; expected 0 or 1", level));
+  line.on = level == "1";
+}
+
+void read_encoder(ScriptLine& line, const std::vector<std::string>& words) {
+  if (words.size() < 3 || words.size() > 4)
+    throw UsageError("expected @encoder MOTOR COUNTS or @encoder MOTOR COUNTS RATE (counts per second)");
+  line.kind = Kind::kEncoder;
+  const auto motor = number(words[1], 10);
+  if (!motor || *motor == 0) throw UsageError(fmt::format("`{}` is no motor; expected 1, 2, ...", words[1]));
+  line.motor = *motor;
+  const bool down = words[2].size() > 1 && words[2][0] == '-';
+  const auto counts = number(words[2].substr(down ? 1 : 0), 10);
+  if (!counts || *counts == 0)
+    throw UsageError(fmt::format("`{}` is no number of counts; expected one other than 0, for example -2000", words[2]));
+  line.counts = down ? -static_cast<std::int64_t>(*counts) : static_cast<std::int64_t>(*counts);
+  line.rate = kHandRate;
+  if (words.size() == 3) return;
+  const auto rate = number(words[3], 10);
+  if (!rate || *rate == 0 || *rate > kHighestRate)
+    throw UsageError(fmt::format("`{}` is no rate; expected 1 to {} counts per second", words[3], kHighestRate));
+  line.rate = *rate;
+}
+
 void read_at_line(ScriptLine& line) {
   const std::vector<std::string> words = words_of(line.text);
   const std::string& what = words[0];
@@ -129,13 +161,17 @@ void read_at_line(ScriptLine& line) {
     if (upper(words[1]) != "E3" || (words[2] != "on" && words[2] != "off"))
       throw UsageError(fmt::format("`{} {}` is not known; expected E3 on or E3 off", words[1], words[2]));
     line.on = words[2] == "on";
+  } else if (what == "@input") {
+    read_input(line, words);
+  } else if (what == "@encoder") {
+    read_encoder(line, words);
   } else if (what == "@reset" || what == "@power" || what == "@time") {
     need(1, "nothing behind it");
     line.kind = what == "@reset" ? Kind::kReset : what == "@power" ? Kind::kPower : Kind::kTime;
   } else if (what == "@expect") {
     line.kind = Kind::kExpect;
     line.value = line.text.size() > 8 ? line.text.substr(8) : "";
-  } else if (what == "@jpan" || what == "@input" || what == "@encoder") {
+  } else if (what == "@jpan") {
     throw UsageError(fmt::format("not available on this board: it has no such pins; expected one of {}", kKnown));
   } else {
     throw UsageError(fmt::format("is not known; expected one of {}", kKnown));

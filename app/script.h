@@ -24,6 +24,8 @@ struct ScriptLine {
     kDpramRead,
     kDpramWrite,
     kJumper,
+    kInput,
+    kEncoder,
     kReset,
     kPower,
     kExpect,
@@ -32,13 +34,15 @@ struct ScriptLine {
   Kind kind = Kind::kCommand;
   unsigned number = 0;
   std::string text;                     // command line, control characters, expected text, or the whole @ line for messages
-  std::string name;                     // signal
+  std::string name;                     // signal, input pin
   std::string value;                    // @until
   TimeFs time = 0;                      // @wait, limit of @until
   int mask = -1, edge_level = -1;       // @pic MSK= ELR=, -1: leave
   std::uint32_t offset = 0, count = 0;  // @dpram
   std::vector<std::uint16_t> words;     // @dpram, to write
-  bool on = false;                      // @jumper
+  bool on = false;                      // @jumper, @input
+  unsigned motor = 0;                   // @encoder
+  std::int64_t counts = 0, rate = 0;    // @encoder, rate in counts per second
 };
 
 // `file` is the name in messages.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/hand_encoder.h"
 #include "app/signal_watch.h"
 #include "app/usage_error.h"
 
@@ -31,14 +32,22 @@ void ScriptPlayer::fail(const ScriptLine& line, const std::string& text) const {
 }
 
 void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
+  const Machine& machine = link_.bus().machine();
   const Signals& signals = link_.bus().machine().signals();
   for (const ScriptLine& line : script) {
-    if (line.kind != Kind::kSignal && line.kind != Kind::kUntil) continue;
     try {
-      const auto id = find_signal(signals, line.name);
-      if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
+      if (line.kind == Kind::kSignal || line.kind == Kind::kUntil) {
+        const auto id = find_signal(signals, line.name);
+        if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
+      } else if (line.kind == Kind::kInput) {
+        find_channel_pin(signals, line.name);
+      } else if (line.kind == Kind::kEncoder && !motor_place(machine.fitted(), line.motor)) {
+        unsigned motors = 0;
+        while (motor_place(machine.fitted(), motors + 1)) ++motors;
+        throw UsageError(fmt::format("no encoder of motor {} on this board; expected 1 to {}", line.motor, motors));
+      }
     } catch (const UsageError& e) {
-      throw UsageError(fmt::format("{}:{}: {}: {}", file_, line.number, line.kind == Kind::kUntil ? "@until" : "@signal", e.what()));
+      throw UsageError(fmt::format("{}:{}: {}: {}", file_, line.number, line.text.substr(0, line.text.find_first_of(" \t")), e.what()));
     }
   }
 }
@@ -97,6 +106,22 @@ void ScriptPlayer::restart(const ScriptLine& line) {
   if (!link_.connect(HostLink::kBootTime)) fail(line, "the controller does not answer after the restart; expected an acknowledge");
 }
 
+// The time goes on until the last count.
+void ScriptPlayer::turn_encoder(const ScriptLine& line) {
+  HostBus& bus = link_.bus();
+  const MotorPlace place = motor_place(bus.machine().fitted(), line.motor).value();
+  HandEncoder hand(place.ic, place.channel, line.counts, line.rate, bus.now());
+  bus.machine().attach(hand);
+  try {
+    bus.advance_to(hand.end() + 1);
+  } catch (...) {
+    bus.machine().detach(hand);
+    throw;
+  }
+  bus.machine().detach(hand);
+  print_unsolicited();
+}
+
 void ScriptPlayer::play_line(const ScriptLine& line) {
   HostBus& bus = link_.bus();
   Machine& machine = bus.machine();
@@ -141,6 +166,17 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       break;
     case Kind::kJumper:
       machine.set_jumper_e3(line.on);
+      break;
+    case Kind::kInput: {
+      const ChannelPinPlace pin = find_channel_pin(machine.signals(), line.name);
+      const auto bit = static_cast<std::uint16_t>(1u << pin.pin);
+      std::uint16_t& pins = machine.motor_inputs()[pin.ic].pins[pin.channel];
+      pins = static_cast<std::uint16_t>(line.on ? pins | bit : pins & ~bit);
+      machine.apply_motor_inputs();
+      break;
+    }
+    case Kind::kEncoder:
+      turn_encoder(line);
       break;
     case Kind::kReset:
     case Kind::kPower:

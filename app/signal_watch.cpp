@@ -1,6 +1,7 @@
 #include "app/signal_watch.h"
 
 #include <algorithm>
+#include <cctype>
 #include <vector>
 
 #include <fmt/format.h>
@@ -20,6 +21,10 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 std::string shown(const Signals::Info& info, std::uint64_t value) {
   if (info.radix == Radix::kHex) return fmt::format("${:0{}X}", value, (info.width + 3) / 4);
+  if (info.radix == Radix::kSigned) {
+    const std::uint64_t sign = std::uint64_t{1} << (info.width - 1);
+    return std::to_string(static_cast<std::int64_t>(value ^ sign) - static_cast<std::int64_t>(sign));
+  }
   return std::to_string(value);
 }
 
@@ -37,11 +42,24 @@ Signals::Id find_signal(const Signals& signals, const std::string& name) {
   if (found.size() == 1) return found.front();
   if (found.size() > 1) {
     like.clear();
-    for (const auto id : found) like.push_back(signals.info(id).name);
-    throw UsageError(fmt::format("`{}` is not one signal; expected one of {}", name, fmt::join(like, ", ")));
+    for (const auto id : found) {
+      if (like.size() == 8) break;
+      like.push_back(signals.info(id).name);
+    }
+    throw UsageError(fmt::format("`{}` is not one signal; expected one of {}{}", name, fmt::join(like, ", "),
+                                 like.size() < found.size() ? fmt::format(" and {} more", found.size() - like.size()) : ""));
   }
   if (like.empty()) like = {"host.breq", "host.irq", "clock.phase", "clock.source", "cpu.task"};
   throw UsageError(fmt::format("no signal `{}`; expected one like {}", name, fmt::join(like, ", ")));
+}
+
+ChannelPinPlace find_channel_pin(const Signals& signals, const std::string& name) {
+  const std::string& found = signals.info(find_signal(signals, name)).name;
+  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+    for (unsigned channel = 0; channel < kChannels; ++channel)
+      for (unsigned pin = 0; pin < kChannelPins; ++pin)
+        if (found == fmt::format("{}.ch{}.{}", servo_ic_scope(ic), channel + 1, kChannelPinNames[pin])) return {ic, channel, pin};
+  throw UsageError(fmt::format("`{}` is no input pin; expected one like servo_ic0.ch1.{}", found, fmt::join(kChannelPinNames, ", ")));
 }
 
 std::string signal_text(const Signals& signals, Signals::Id id) {
@@ -52,6 +70,16 @@ std::string signal_text(const Signals& signals, Signals::Id id) {
 std::string signal_value_text(const Signals& signals, Signals::Id id, const std::string& value) {
   const Signals::Info& info = signals.info(id);
   if (info.radix == Radix::kText) return value;
+  if (info.radix == Radix::kSigned && value.size() > 1 && value[0] == '-') {
+    const std::uint64_t lowest = std::uint64_t{1} << (info.width - 1);
+    try {
+      std::size_t used = 0;
+      const std::uint64_t number = std::stoull(value.substr(1), &used);
+      if (used + 1 == value.size() && std::isdigit(static_cast<unsigned char>(value[1])) && number <= lowest)
+        return shown(info, (2 * lowest - number) & (2 * lowest - 1));
+    } catch (const std::exception&) {}
+    throw UsageError(fmt::format("`{}` is no value of {}; expected -{} to {}", value, info.name, lowest, lowest - 1));
+  }
   const bool dollar = value.size() > 1 && value[0] == '$';
   const bool prefixed = value.size() > 2 && value[0] == '0' && (value[1] == 'x' || value[1] == 'X');
   const std::string digits = value.substr(dollar ? 1 : prefixed ? 2 : 0);
@@ -65,14 +93,47 @@ std::string signal_value_text(const Signals& signals, Signals::Id id, const std:
   throw UsageError(fmt::format("`{}` is no value of {}; expected 0 to {} (decimal, or hex with $)", value, info.name, largest));
 }
 
+namespace {
+
+// Ends the machine's runs at each change of the motor output of this name, for as long as it lives.
+class MotorStop {
+ public:
+  MotorStop(Machine& machine, const std::string& name) : machine_(machine) {
+    for (ic_ = 0; ic_ < kMaxServoIcs; ++ic_)
+      for (unsigned channel = 0; channel < kChannels; ++channel)
+        for (const MotorField& field : motor_pin::kAll)
+          if (name == fmt::format("{}.ch{}.{}", servo_ic_scope(ic_), channel + 1, field.name)) {
+            MotorOutputs select;
+            select.set(field, channel, ~0u);
+            machine_.stop_on_motor(ic_, select);
+            return;
+          }
+  }
+  ~MotorStop() {
+    if (found()) machine_.stop_on_motor(ic_, {});
+  }
+  MotorStop(const MotorStop&) = delete;
+  MotorStop& operator=(const MotorStop&) = delete;
+  bool found() const { return ic_ < kMaxServoIcs; }
+
+ private:
+  Machine& machine_;
+  unsigned ic_ = 0;
+};
+
+}  // namespace
+
 bool wait_signal(HostBus& bus, Signals::Id id, const std::string& value, Tick timeout) {
   Machine& machine = bus.machine();
   const Tick limit = bus.now() + timeout;
+  const MotorStop motor(machine, machine.signals().info(id).name);
   const auto* pin =
       std::find_if(pin::kAll.begin(), pin::kAll.end(), [&](const PinField& f) { return f.name == machine.signals().info(id).name; });
   while (signal_text(machine.signals(), id) != value) {
     if (bus.now() >= limit) return false;
-    if (pin == pin::kAll.end())
+    if (motor.found())
+      bus.advance_to_stop(limit);
+    else if (pin == pin::kAll.end())
       bus.advance_to(std::min(limit, bus.now() + kLook));
     else
       bus.wait_change(*pin, limit);

@@ -1,5 +1,5 @@
 // Simulation wrapper of the board: the same inputs, the outputs packed into three 32-bit words (pins_o[31:0] is w[0]) in the
-// layout of systemc/core/board_pins.h. seeded_bug_i is the negative control of every comparison: the SERVO pin's
+// layout of systemc/core/board_pins.h, the motor side in that of motor_pins.h. seeded_bug_i is the negative control of every comparison: the SERVO pin's
 // SeededBugEdge-th falling edge since reset comes one tick late.
 `default_nettype none
 
@@ -32,7 +32,10 @@ module board_sim #(
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
   input  wire logic        seeded_bug_i,
-  output logic [95:0]      pins_o
+  output logic [95:0]      pins_o,
+  input  wire logic [18*64-1:0]   motor_i,  // as in board_top
+  output logic [18*64-1:0]        motor_o,
+  output logic [31:0]             count_o[72]  // no pins: position counters, channel n of IC i in word 4 * i + n - 1
 );
 
   logic [23:0] pa_data;
@@ -49,12 +52,23 @@ module board_sim #(
     .pa_data_o(pa_data), .pa_ta_n_o(pa_ta_n), .irq_host_o(irq_host),
     .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
     .isa_sd_o(isa_sd), .isa_iochrdy_o(isa_iochrdy), .isa_memcs16_n_o(isa_memcs16_n), .isa_irq_o(isa_irq),
-    .fitted_i, .macro_gate_i, .ext_clock_i, .ext_phase_i, .ext_servo_i,
+    .fitted_i, .macro_gate_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .motor_i, .motor_o,
     .phase_o(phase), .servo_o(servo), .breq_o(breq), .ipos_o(ipos), .eror_o(eror), .f1er_o(f1er), .hreq_o(hreq),
     .wdo_o(wdo), .wd_tripped_o(wd_tripped), .busy_host_o(busy_host), .busy_cpu_o(busy_cpu),
     .phase_source_o(source), .source_conflict_o(conflict),
     .pic_ist_o(ist), .pic_sig_o(sig), .pic_msk_o(msk), .pic_elr_o(elr)
   );
+
+  for (genvar i = 0; i < 18; i++) begin : gen_count
+    for (genvar n = 0; n < 4; n++) begin : gen_channel
+      if (ServoIcMask[i]) begin : gen_built
+        assign count_o[4*i+n] =
+            {8'h0, u_board.gen_servo_ic[i].gen_built.u_servo_ic.u_channels.gen_channel[n].u_channel.counter_o};
+      end else begin : gen_absent
+        assign count_o[4*i+n] = 32'h0;
+      end
+    end
+  end
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
   logic       bug_q, servo_last_q;

@@ -42,6 +42,10 @@ module board_top #(
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
+  // Motor side, 64 bits for each servo IC, also for those not built. In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
+  // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks and strobes.
+  input  wire logic [18*64-1:0] motor_i,
+  output logic [18*64-1:0]      motor_o,
   // clocks, host signals, watchdog, interrupt controller as seen from outside
   output logic             phase_o,
   output logic             servo_o,
@@ -111,47 +115,74 @@ module board_top #(
     .addr_i(bus_rd_addr), .x_i(bus_rd_x), .aa_i(bus_rd_aa), .int_i(bus_rd_int), .fitted_i(fitted_q & IcMask),
     .sel_any_o(rd_any), .sel_int_o(rd_int), .sel_signals_o(rd_signals), .sel_strobe_o(rd_strobe), .sel_ic_o(rd_ic)
   );
-  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_ic};
+  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_ic, sel_ic};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
-  logic [22*24-1:0] ic_rdata;
 
-  // Motor-side pins are not on the board's edge yet: inputs show what pull-ups show (T, U, V, W, USER, B), outputs end here.
+  logic [17:0] equ1;  // EQU of channel 1
+
   for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
+    logic [23:0] rdata, rdata_chain;  // read data of this IC, and of this one or any before it
+    if (i == 0) begin : gen_first
+      assign rdata_chain = rdata;
+    end else begin : gen_next
+      assign rdata_chain = gen_servo_ic[i-1].rdata_chain | rdata;
+    end
     if (ServoIcMask[i]) begin : gen_built
-      logic [51:0] unused_pins;
+      logic [23:0] pwm;
+      logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ, serial;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
         .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
         .read_done_i(bus_rd_done & rd_ic[i]), .read_x_i(bus_rd_x), .read_addr_i(bus_rd_addr[4:0]),
-        .rdata_o(ic_rdata[24*i+:24]),
+        .rdata_o(rdata),
         .phase_i(phase_o), .servo_i(servo_o),
         .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i]),
-        .trip_i(wd_tripped_o), .pins_i({4{12'hF82}}), .adc_a_i(4'h0), .adc_b_i(4'h0),
-        .pwm_o(unused_pins[23:0]), .pulse_o(unused_pins[27:24]), .dir_o(unused_pins[31:28]), .dac_a_o(unused_pins[35:32]),
-        .dac_b_o(unused_pins[39:36]), .aena_o(unused_pins[43:40]), .equ_o(unused_pins[47:44]), .serial_o(unused_pins[51:48])
+        .trip_i(wd_tripped_o), .pins_i(motor_i[64*i+:48]), .adc_a_i(motor_i[64*i+48+:4]), .adc_b_i(motor_i[64*i+52+:4]),
+        .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ), .serial_o(serial)
       );
+      // What moves with clk_ref only stands apart, so that a simulator packs it only then.
+      logic [23:0] slow;
+      always_comb begin
+        slow = 24'h0;
+        if (fitted_q[i]) slow = {equ, aena, dac_b, dac_a, dir, pulse};
+      end
+      assign motor_o[64*i+:32]    = {slow[7:0], pwm & {24{fitted_q[i]}}};
+      assign motor_o[64*i+32+:32] = {12'h0, serial & {4{fitted_q[i]}}, slow[23:8]};
+      assign equ1[i]              = slow[20];
+      logic unused_in;
+      assign unused_in = &{1'b0, motor_i[64*i+56+:8]};
     end else begin : gen_absent
-      assign ic_rdata[24*i+:24] = 24'h0;
+      assign rdata              = 24'h0;
       assign ic_phase[i]        = 1'b1;
       assign ic_servo[i]        = 1'b1;
       assign ic_phase_oe[i]     = 1'b0;
       assign ic_servo_oe[i]     = 1'b0;
+      assign motor_o[64*i+:64]  = 64'h0;
+      assign equ1[i]            = 1'b0;
+      logic unused_in;
+      assign unused_in = &{1'b0, motor_i[64*i+:64]};
     end
   end
 
   for (genvar i = 18; i < 22; i++) begin : gen_macro_ic
+    logic [23:0] rdata, rdata_chain;
+    if (i == 18) begin : gen_first
+      assign rdata_chain = gen_servo_ic[17].rdata_chain | rdata;
+    end else begin : gen_next
+      assign rdata_chain = gen_macro_ic[i-1].rdata_chain | rdata;
+    end
     if (IcMask[i]) begin : gen_built
       macro_ic u_macro_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni, .gate_i(macro_gate_q[i-18]),
         .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[5:0]), .we_i(bus_we), .wdata_i(bus_wdata),
-        .rdata_o(ic_rdata[24*i+:24]),
+        .rdata_o(rdata),
         .phase_i(phase_o), .servo_i(servo_o),
         .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i])
       );
     end else begin : gen_absent
-      assign ic_rdata[24*i+:24] = 24'h0;
+      assign rdata              = 24'h0;
       assign ic_phase[i]        = 1'b1;
       assign ic_servo[i]        = 1'b1;
       assign ic_phase_oe[i]     = 1'b0;
@@ -213,9 +244,11 @@ module board_top #(
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 
-  // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up.
+  // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up. EQU5 is channel 1 of IC 1.
   logic [7:0] pic_line;
-  assign pic_line = {wdo_o, 2'b00, hreq_o, f1er_o, eror_o, breq_o, ipos_o};
+  logic       unused_equ;
+  assign unused_equ = &{1'b0, equ1[17:2]};
+  assign pic_line = {wdo_o, equ1[1:0], hreq_o, f1er_o, eror_o, breq_o, ipos_o};
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni, .line_i(pic_line),
     .wr_i(pic_sel & pic_wr), .addr_i(pic_addr), .wdata_i(pic_wdata), .rdata_o(pic_rdata),
@@ -240,10 +273,9 @@ module board_top #(
   always_comb begin
     rdata_d = rdata_q;
     if (sel_any) begin
-      rdata_d = sel_int ? int_rdata : (sel_signals ? {20'h0, signals_rdata} : 24'h0);
-      for (int unsigned k = 0; k < 22; k++) begin
-        rdata_d = rdata_d | (ic_rdata[24*k+:24] & {24{sel_ic[k]}});
-      end
+      if (sel_int)          rdata_d = int_rdata;
+      else if (sel_signals) rdata_d = {20'h0, signals_rdata};
+      else                  rdata_d = gen_macro_ic[21].rdata_chain;
     end
   end
 

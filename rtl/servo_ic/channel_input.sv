@@ -1,29 +1,18 @@
-// Inputs of a channel: two-flop synchroniser on clk_pwm_i, then three samples at SCLK and their majority. A pulse shorter than
-// one SCLK period never passes, a level seen by two samples in a row always does. Bit order is that of status bits 23..12.
+// Input filter of a channel: three samples at SCLK and their majority. A pulse shorter than one SCLK period never passes, a level
+// seen by two samples in a row always does. Clock clk_ref_i, asynchronous reset. Bit order is that of status bits 23..12.
 `default_nettype none
 
 module channel_input (
-  input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
   input  wire logic        ce_i,     // SCLK
-  input  wire logic [11:0] pins_i,
+  input  wire logic [11:0] pins_i,   // behind the synchroniser
   output logic [11:0]      level_o,  // filtered
   output logic             ready_o   // the filter holds pin levels only, and so does whoever remembers level_o for one SCLK
 );
 
-  logic [11:0] sync1_q, sync2_q, s0_q, s1_q, level_q;
+  logic [11:0] s0_q, s1_q, level_q;
   logic [3:0]  filled_q;
-
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      sync1_q <= 12'd0;
-      sync2_q <= 12'd0;
-    end else begin
-      sync1_q <= pins_i;
-      sync2_q <= sync1_q;
-    end
-  end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -32,9 +21,9 @@ module channel_input (
       level_q  <= 12'd0;
       filled_q <= 4'd0;
     end else if (ce_i) begin
-      s0_q     <= sync2_q;
+      s0_q     <= pins_i;
       s1_q     <= s0_q;
-      level_q  <= (sync2_q & s0_q) | (sync2_q & s1_q) | (s0_q & s1_q);  // of the last three samples, this one included
+      level_q  <= (pins_i & s0_q) | (pins_i & s1_q) | (s0_q & s1_q);  // of the last three samples, this one included
       filled_q <= {filled_q[2:0], 1'b1};
     end
   end

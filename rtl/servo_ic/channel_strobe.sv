@@ -26,12 +26,27 @@ module channel_strobe (
   logic        busy;
 
   assign busy     = left_q != 5'd0;
-  assign load_o   = ce_i & (pending_q | start_i);
-  assign shift_o  = ce_i & busy & ~load_o;
-  assign sample_o = busy & (fast_i ? ce_i : mid_i);
   assign bit_o    = 5'd24 - left_q;
-  assign clk_o    = busy & (fast_i ? ~low_i : clk_q);
   assign strobe_o = word_q[23];
+
+  logic level, fast;
+  always_comb begin
+    load_o   = 1'b0;
+    shift_o  = 1'b0;
+    sample_o = 1'b0;
+    level    = 1'b0;
+    fast     = 1'b0;
+    if (ce_i) begin
+      if (pending_q || start_i) load_o = 1'b1;
+      else                      shift_o = busy;
+    end
+    if (busy) begin
+      sample_o = fast_i ? ce_i : mid_i;
+      level    = fast_i | clk_q;
+      fast     = fast_i;
+    end
+  end
+  assign clk_o = level & ~(fast & low_i);
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin

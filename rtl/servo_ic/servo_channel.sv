@@ -1,5 +1,5 @@
-// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only the pin
-// synchronisers and the PWM run on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
+// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only the PWM
+// runs on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
 `default_nettype none
 
 module servo_channel (
@@ -38,7 +38,7 @@ module servo_channel (
   input  wire logic        hold1_i,
   input  wire logic [23:0] counter1_i,
   input  wire logic [11:0] fraction1_i,
-  // pins
+  // pins; inputs behind the synchroniser
   input  wire logic [11:0] pins_i,          // T, U, V, W, USER, MLIM, PLIM, HMFL, FAULT, C, B, A from bit 11 down
   input  wire logic        adc_a_i,
   input  wire logic        adc_b_i,
@@ -63,7 +63,7 @@ module servo_channel (
   // Inputs
   logic [11:0] pin_level, level;
   logic        ready, index, incomplete, loss;
-  channel_input u_input (.clk_pwm_i, .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
+  channel_input u_input (.clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
   channel_index u_index (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .level_i(pin_level), .gated_i(gated), .gate_low_i(control[16]),
     .demux_i(demux), .level_o(level), .index_o(index), .incomplete_o(incomplete), .loss_o(loss)
@@ -130,9 +130,14 @@ module servo_channel (
     .command_c_i(out_c[23:8]), .switch_o(pwm)
   );
   // A pair that is not a PWM output rests low; a trip turns both switches off, whatever their polarity.
-  assign pwm_on  = {{2{~c_pfm}}, {4{~ab_dac}}};
-  assign pwm_inv = {{2{control[21]}}, {4{control[20]}}};
-  assign pwm_o   = ((pwm & {6{~trip_i}}) ^ pwm_inv) & pwm_on;
+  always_comb begin
+    pwm_on  = 6'd0;
+    pwm_inv = 6'd0;
+    if (!trip_i) pwm_on = {{2{~c_pfm}}, {4{~ab_dac}}};
+    if (!c_pfm)  pwm_inv[5:4] = {2{control[21]}};
+    if (!ab_dac) pwm_inv[3:0] = {4{control[20]}};
+  end
+  assign pwm_o = (pwm & pwm_on) ^ pwm_inv;
 
   logic pulse;
   channel_pfm u_pfm (

@@ -54,6 +54,9 @@ module servo_channels (
     .dac_clk_o, .dac_strobe_o, .adc_clk_o, .adc_strobe_o
   );
 
+  logic [47:0] pins;
+  channel_sync u_sync (.clk_pwm_i, .rst_ni, .pins_i, .pins_o(pins));
+
   logic [3:0] sel, read_capture;
   always_comb begin
     sel          = 4'd0;
@@ -74,7 +77,7 @@ module servo_channels (
       .servo_fall_i(servo_fall), .dac_load_i(dac_load), .dac_shift_i(dac_shift), .adc_sample_i(adc_sample), .adc_bit_i(adc_bit),
       .count_o(count[n]), .down_o(down[n]), .hold_o(hold[n]), .counter_o(counter[24*n +: 24]), .fraction_o(fraction[12*n +: 12]),
       .count1_i(count[0]), .down1_i(down[0]), .hold1_i(hold[0]), .counter1_i(counter[23:0]), .fraction1_i(fraction[11:0]),
-      .pins_i(pins_i[12*n +: 12]), .adc_a_i(adc_a_i[n]), .adc_b_i(adc_b_i[n]),
+      .pins_i(pins[12*n +: 12]), .adc_a_i(adc_a_i[n]), .adc_b_i(adc_b_i[n]),
       .pwm_o(pwm_o[6*n +: 6]), .pulse_o(pulse_o[n]), .dir_o(dir_o[n]), .dac_a_o(dac_a_o[n]), .dac_b_o(dac_b_o[n]),
       .aena_o(aena_o[n]), .equ_o(equ_o[n])
     );

@@ -1,7 +1,6 @@
 #include "systemc/board/board_top.h"
 
 #include <algorithm>
-#include <string>
 
 #include "systemc/cosim/engines.h"
 
@@ -18,21 +17,8 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
       interrupt_controller_("interrupt_controller"),
       host_signals_("host_signals"),
       dpram_("dpram"),
-      built_(ics & ((1u << (kServoIcs + kMacroIcs)) - 1)) {
-  for (ModelBlock* block : std::initializer_list<ModelBlock*>{&bus_sync_, &clock_select_, &watchdog_, &isa_slave_, &host_port_,
-                                                              &interrupt_controller_, &host_signals_, &dpram_})
-    block_[blocks_++] = block;
-  for (unsigned i = 0; i < kServoIcs; ++i) {
-    if ((built_ >> i & 1) == 0) continue;
-    servo_ic_[i] = std::make_unique<ServoIc>(("servo_ic" + std::to_string(i)).c_str());
-    for (unsigned channel = 0; channel < ServoChannels::kChannels; ++channel) servo_ic_[i]->set_channel_pins(channel, kIdlePins);
-    block_[blocks_++] = servo_ic_[i].get();
-  }
-  for (unsigned i = 0; i < kMacroIcs; ++i) {
-    if ((built_ >> (kServoIcs + i) & 1) == 0) continue;
-    macro_ic_[i] = std::make_unique<MacroIc>(("macro_ic" + std::to_string(i)).c_str());
-    block_[blocks_++] = macro_ic_[i].get();
-  }
+      gate_ics_(ics),
+      block_{&bus_sync_, &clock_select_, &watchdog_, &isa_slave_, &host_port_, &interrupt_controller_, &host_signals_, &dpram_} {
   inputs_.fitted = ics;
   reset_all(0);
   outputs_ = pins();
@@ -44,8 +30,17 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   connect();
 }
 
+void BoardTop::set_motor_inputs(unsigned ic, const MotorInputs& inputs) { gate_ics_.set_motor_inputs(ic, inputs, now_); }
+
+void BoardTop::watch_motors(std::uint32_t ics) {
+  gate_ics_.watch(ics, now_);
+  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+    if ((ics >> ic & 1) != 0) motor_outputs_[ic] = motor_outputs(ic);
+}
+
 void BoardTop::reset_all(Tick t) {
-  for (unsigned i = 0; i < blocks_; ++i) block_[i]->reset(t);
+  for (ModelBlock* block : block_) block->reset(t);
+  gate_ics_.reset(t);
   rdata_ = 0;
   from_dpram_ = false;
   fitted_ = 0;
@@ -55,7 +50,7 @@ void BoardTop::reset_all(Tick t) {
 }
 
 void BoardTop::advance_all(Tick t) {
-  for (unsigned i = 0; i < blocks_; ++i) block_[i]->advance(t);
+  for (ModelBlock* block : block_) block->advance(t);
 }
 
 // The edge t. Everything that looks at a register of another block does so before any block executes the edge.
@@ -64,79 +59,50 @@ void BoardTop::execute(Tick t) {
   const bool write_ic = ref && bus_sync_.we() && select_.ic >= 0;
   const BusSync::Where where = bus_sync_.where();
   const std::uint32_t wdata = bus_sync_.wdata();
-  if (ref && select_.any) rdata_ = read_data();
+  if (ref && select_.any) rdata_ = read_data(t - 1);
   const int written_ic = select_.ic;
   const BusSync::Where read = bus_sync_.rd_where();
-  const int read_ic = ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & built_).ic : -1;
+  const int read_ic = ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & gate_ics_.built()).ic : -1;
 
   advance_all(t);
+  gate_ics_.advance(t);
   from_dpram_ = dpram_.in.cpu_sel;
   if (next_ref_edge(now_) <= t) {
     fitted_ = inputs_.fitted;
     macro_gate_ = macro_gates();
     ext_clock_ = inputs_.ext_clock;
   }
-  if (read_ic >= 0 && read_ic < static_cast<int>(kServoIcs)) servo_ic_[static_cast<unsigned>(read_ic)]->read_done(read.x, read.addr & 31);
-  if (write_ic) write_gate_ic(static_cast<unsigned>(written_ic), where, wdata);
+  if (read_ic >= 0) gate_ics_.read_done(static_cast<unsigned>(read_ic), read.x, read.addr, t);
+  if (write_ic) gate_ics_.write(static_cast<unsigned>(written_ic), where.x, where.addr, wdata, t);
   now_ = t;
   connect();
 }
 
-std::uint32_t BoardTop::read_data() const {
+// After the edge t.
+std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
   if (select_.ic < 0) return 0;
-  const BusSync::Where& where = bus_sync_.where();
-  const auto ic = static_cast<unsigned>(select_.ic);
-  return ic < kServoIcs ? servo_ic_[ic]->read(where.x, where.addr & 31) : macro_ic_[ic - kServoIcs]->read(where.x, where.addr & 63);
-}
-
-void BoardTop::write_gate_ic(unsigned ic, const BusSync::Where& where, std::uint32_t value) {
-  if (ic < kServoIcs)
-    servo_ic_[ic]->write(where.x, where.addr & 31, value);
-  else
-    macro_ic_[ic - kServoIcs]->write(where.x, where.addr & 63, value);
+  return gate_ics_.read(static_cast<unsigned>(select_.ic), bus_sync_.where().x, bus_sync_.where().addr, t);
 }
 
 void BoardTop::connect() {
   bus_sync_.set_pins(inputs_);
-  select_ = AddressDecode::decode(bus_sync_.where(), fitted_ & built_);
+  select_ = AddressDecode::decode(bus_sync_.where(), fitted_ & gate_ics_.built());
   connect_clocks();
   connect_host();
 }
 
 void BoardTop::connect_clocks() {
-  ClockSelect::Drivers drivers;
-  drivers.ext = ext_clock_;
-  std::uint32_t phase = 0, servo = 0;
-  const auto join = [&](const auto& ic, unsigned i) {
-    drivers.phase |= static_cast<std::uint32_t>(ic.phase_oe()) << i;
-    drivers.servo |= static_cast<std::uint32_t>(ic.servo_oe()) << i;
-    phase |= static_cast<std::uint32_t>(ic.phase()) << i;
-    servo |= static_cast<std::uint32_t>(ic.servo()) << i;
-  };
-  for (unsigned i = 0; i < kServoIcs; ++i)
-    if (servo_ic_[i] != nullptr) join(*servo_ic_[i], i);
-  for (unsigned i = 0; i < kMacroIcs; ++i) {
-    if (macro_ic_[i] == nullptr) continue;
-    macro_ic_[i]->set_gate((macro_gate_ >> i & 1) != 0);
-    join(*macro_ic_[i], kServoIcs + i);
-  }
-  drivers.phase &= fitted_;
-  drivers.servo &= fitted_;
-  clock_select_.in = drivers;
-  clock_select_.phase_level = phase;
-  clock_select_.servo_level = servo;
+  gate_ics_.set_macro_gates(macro_gate_, now_);
+  clock_select_.in = {gate_ics_.drivers().phase & fitted_, gate_ics_.drivers().servo & fitted_, ext_clock_};
+  clock_select_.phase_level = gate_ics_.phase_levels();
+  clock_select_.servo_level = gate_ics_.servo_levels();
   clock_select_.ext_phase = inputs_.ext_phase;
   clock_select_.ext_servo = inputs_.ext_servo;
 
-  for (auto& ic : servo_ic_) {
-    if (ic == nullptr) continue;
-    ic->set_pins(clock_select_.phase(), clock_select_.servo());
-    ic->set_trip(watchdog_.trip());
-  }
-  for (const auto& ic : macro_ic_)
-    if (ic != nullptr) ic->set_pins(clock_select_.phase(), clock_select_.servo());
+  gate_ics_.set_clocks(clock_select_.phase(), clock_select_.servo(), now_);
+  gate_ics_.set_trip(watchdog_.trip(), now_);
   watchdog_.servo = clock_select_.servo();
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
 }
@@ -190,8 +156,10 @@ void BoardTop::connect_host() {
   isa.hp_rdata = host_port_.hp_rdata();
   isa.pic_rdata = interrupt_controller_.rdata();
 
-  // IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up; the compare outputs come with the channels.
-  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | watchdog_.trip() << 7);
+  // IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up.
+  const unsigned equ = gate_ics_.equ() & fitted_;
+  pic.line =
+      static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | equ << 5 | watchdog_.trip() << 7);
 }
 
 BoardOutputs BoardTop::pins() const {
@@ -232,23 +200,26 @@ bool BoardTop::show_pins() {
   return before.differs(after, stop_on_);
 }
 
-Tick BoardTop::next_clock_event() const {
-  Tick next = clock_select_.next_event();
-  for (const auto& ic : servo_ic_)
-    if (ic != nullptr) next = std::min(next, ic->next_event());
-  for (const auto& ic : macro_ic_)
-    if (ic != nullptr) next = std::min(next, ic->next_event());
-  return next;
+bool BoardTop::show_motors() {
+  bool stop = false;
+  for (std::uint32_t ics = gate_ics_.take_changes(); ics != 0; ics &= ics - 1) {
+    const auto ic = static_cast<unsigned>(__builtin_ctz(ics));
+    const MotorOutputs before = motor_outputs_[ic], after = motor_outputs(ic);
+    if (after == before) continue;
+    motor_outputs_[ic] = after;
+    if (on_motor_change) on_motor_change(now_, ic, before, after);
+    stop = stop || before.differs(after, stop_on_motor_[ic]);
+  }
+  return stop;
 }
 
 Tick BoardTop::next_event() const {
-  Tick next = kNever;
-  for (unsigned i = 0; i < blocks_; ++i) next = std::min(next, block_[i]->next_event());
+  Tick next = gate_ics_.next_event();
+  for (const ModelBlock* block : block_) next = std::min(next, block->next_event());
   if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
-  if (select_.ic >= 0 && select_.ic < static_cast<int>(kServoIcs))
-    next = std::min(next, servo_ic_[static_cast<unsigned>(select_.ic)]->next_word_event());
+  if (select_.ic >= 0) next = std::min(next, gate_ics_.next_word_event(static_cast<unsigned>(select_.ic), now_));
   if (straps_move()) next = std::min(next, next_ref_edge(now_));
-  if (select_.any && next > next_ref_edge(now_) && read_data() != rdata_) next = next_ref_edge(now_);
+  if (select_.any && next > next_ref_edge(now_) && read_data(now_) != rdata_) next = next_ref_edge(now_);
   return next;
 }
 
@@ -268,7 +239,8 @@ Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
       }
       execute(event);
     }
-    if (show_pins()) break;
+    const bool pin = show_pins(), motor = show_motors();
+    if (pin || motor) break;
   }
   return now_;
 }

@@ -1,9 +1,11 @@
 // Model of rtl/board/board_top.sv: the controller board behind the Board face, event-driven. Time jumps from one event to
-// the next; at an event every block executes its edges, then the wires between them are copied (systemc/core/model_block.h).
+// the next; at an event the blocks of the buses execute their edges, then the wires between them are copied
+// (systemc/core/model_block.h). The ICs keep a time of their own and catch up when somebody looks (docs/architecture.md).
 // ICs are built for the bits of `ics`, as the RTL's parameters ServoIcMask and MacroIcMask; BoardInputs::fitted selects at run
 // time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -13,6 +15,7 @@
 #include "systemc/board/address_decode.h"
 #include "systemc/board/bus_sync.h"
 #include "systemc/board/clock_select.h"
+#include "systemc/board/gate_ics.h"
 #include "systemc/board/watchdog.h"
 #include "systemc/core/board.h"
 #include "systemc/host/dpram.h"
@@ -20,8 +23,6 @@
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
 #include "systemc/host/isa_slave.h"
-#include "systemc/macro_ic/macro_ic.h"
-#include "systemc/servo_ic/servo_ic.h"
 
 namespace brick {
 
@@ -35,15 +36,21 @@ class BoardTop : public sc_core::sc_module, public Board {
   Tick run_until(Tick limit, const BoardOutputs& stop_on = {}) override;
   Tick quiet_until(const BoardOutputs& watched) const override;
 
-  // Blocks behind the pins, for SystemC users and tests; nullptr when the IC is not built.
-  ServoIc* servo_ic(unsigned index) { return index < kServoIcs ? servo_ic_[index].get() : nullptr; }
-  MacroIc* macro_ic(unsigned index) { return index < kMacroIcs ? macro_ic_[index].get() : nullptr; }
+  void set_motor_inputs(unsigned ic, const MotorInputs& inputs) override;
+  MotorOutputs motor_outputs(unsigned ic) const override { return gate_ics_.motor_outputs(ic, now_); }
+  void watch_motors(std::uint32_t ics) override;
+  void stop_on_motor(unsigned ic, const MotorOutputs& select) override {
+    if (ic < kMaxServoIcs) stop_on_motor_[ic] = select;
+  }
+
+  // Blocks behind the pins, for SystemC users and tests; the ICs stand at now().
+  ServoIc* servo_ic(unsigned index) { return gate_ics_.servo_ic(index, now_); }
+  MacroIc* macro_ic(unsigned index) { return gate_ics_.macro_ic(index, now_); }
   Dpram& dpram() { return dpram_; }
   HostPort& host_port() { return host_port_; }
 
  private:
-  static constexpr unsigned kServoIcs = 18, kMacroIcs = 4;
-  static constexpr unsigned kIdlePins = 0xF82;  // T, U, V, W, USER and B pulled up; motor-side pins are not on the board's edge yet
+  static constexpr unsigned kBlocks = 8;
 
   void reset_all(Tick t);
   void advance_all(Tick t);
@@ -52,13 +59,13 @@ class BoardTop : public sc_core::sc_module, public Board {
   void connect_clocks();
   void connect_host();
   BoardOutputs pins() const;
-  bool show_pins();  // updates outputs_ after an edge; true when a pin changed
-  std::uint32_t read_data() const;
-  void write_gate_ic(unsigned ic, const BusSync::Where& where, std::uint32_t value);
-  std::uint32_t macro_gates() const { return inputs_.macro_gate & built_ >> kServoIcs; }
+  bool show_pins();    // updates outputs_ after an edge; true when a selected pin changed
+  bool show_motors();  // the same for the watched ICs
+  std::uint32_t read_data(Tick t) const;
+  std::uint32_t macro_gates() const { return inputs_.macro_gate & gate_ics_.built() >> kMaxServoIcs; }
   bool straps_move() const { return inputs_.fitted != fitted_ || macro_gates() != macro_gate_ || inputs_.ext_clock != ext_clock_; }
   Tick next_event() const;
-  Tick next_clock_event() const;
+  Tick next_clock_event() const { return std::min(clock_select_.next_event(), gate_ics_.next_clock_event()); }
 
   BusSync bus_sync_;
   AddressDecode address_decode_;
@@ -69,11 +76,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   InterruptController interrupt_controller_;
   HostSignals host_signals_;
   Dpram dpram_;
-  std::array<std::unique_ptr<ServoIc>, kServoIcs> servo_ic_;
-  std::array<std::unique_ptr<MacroIc>, kMacroIcs> macro_ic_;
-  std::uint32_t built_;
-  std::array<ModelBlock*, kServoIcs + kMacroIcs + 8> block_{};
-  unsigned blocks_ = 0;
+  GateIcs gate_ics_;
+  std::array<ModelBlock*, kBlocks> block_;
 
   BoardInputs inputs_;
   std::uint32_t fitted_ = 0;  // straps as taken over on clk_ref
@@ -85,6 +89,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool in_reset_ = true;
   Tick now_ = 0;
   BoardOutputs outputs_, stop_on_;
+  std::array<MotorOutputs, kMaxServoIcs> motor_outputs_, stop_on_motor_;
 };
 
 }  // namespace brick

@@ -187,6 +187,7 @@ Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_-
 BoardInputs& Machine::inputs() { return impl_->host_inputs; }
 void Machine::apply() { impl_->apply_host_inputs(); }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
+std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
 void Machine::apply_motor_inputs() { impl_->motors.apply(); }
 MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->motor_outputs(ic); }

@@ -60,6 +60,8 @@ class Machine : public sc_core::sc_module {
   void apply();
   const BoardOutputs& outputs() const;
 
+  std::uint32_t fitted() const;  // ICs of the board, as BoardInputs::fitted
+
   // The motor side (systemc/machine/motor_peer.h). Pins are edited and applied as inputs(); a stop edge ends run_until().
   MotorInputPins& motor_inputs();
   void apply_motor_inputs();

@@ -11,11 +11,12 @@
 
 #include "systemc/core/model_block.h"
 #include "systemc/macro_ic/macro_ic_regs.h"
+#include "systemc/servo_ic/clock_follower.h"
 #include "systemc/servo_ic/clock_gen.h"
 
 namespace brick {
 
-class MacroIc : public sc_core::sc_module, public ModelBlock {
+class MacroIc : public sc_core::sc_module, public ClockFollower {
  public:
   explicit MacroIc(const sc_core::sc_module_name& name);
 
@@ -27,21 +28,22 @@ class MacroIc : public sc_core::sc_module, public ModelBlock {
 
   // Kind and clock pins; seen by the edges to come.
   void set_gate(bool gate);
-  void set_pins(bool phase, bool servo) {
+  void set_pins(bool phase, bool servo) override {
     clock_gen_.in.phase = phase;
     clock_gen_.in.servo = servo;
   }
   bool phase() const { return clock_gen_.phase(); }
   bool servo() const { return clock_gen_.servo(); }
-  bool phase_oe() const { return !clock_gen_.in.phase_ext; }
-  bool servo_oe() const { return !clock_gen_.in.servo_ext; }
-  const ClockGen& clock_gen() const { return clock_gen_; }
+  const ClockGen& clock_gen() const override { return clock_gen_; }
 
   Tick next_event() const override { return clock_gen_.next_event(); }
   void advance(Tick t) override { clock_gen_.advance(t); }
   void reset(Tick t) override;
 
  private:
+  void mark() override { clock_gen_.mark(); }
+  bool repeats() const override { return clock_gen_.repeats(); }
+  void jump(Tick by) override { clock_gen_.jump(by); }
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
   void apply_registers();
 

@@ -94,6 +94,7 @@ class ChannelStrobe {
     now_ = t;
   }
 
+  bool idle() const { return left_ == 0 && !pending_; }
   unsigned left() const { return left_; }  // bits to go, the present one included
   bool strobe() const { return word_ >> (left_ != 0 ? left_ - 1 : 0) & 1; }
   bool clk(Tick now) const { return left_ != 0 && (divider_.fast() ? now % kTicksPerRef != 0 : now >= divider_.mid()); }

@@ -1,6 +1,7 @@
 // Model of rtl/servo_ic/channel_compare.sv: position compare with auto-increment, in counts or, with hardware 1/T, in 1/4096 count.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace brick {
@@ -47,6 +48,13 @@ class ChannelCompare {
     last_ = pos;
     known_ = fine && !p.hold;
     other_ = other;
+  }
+
+  // The counter moves one count an SCLK edge at most, so EQU stays for so many of them after one that showed `counter`.
+  std::uint32_t edges_to_hit(std::uint32_t counter, bool fine) const {
+    const auto distance = [counter](std::uint32_t at) { return std::min((at - counter) & 0xFFFFFF, (counter - at) & 0xFFFFFF); };
+    const std::uint32_t counts = std::min(distance(a_), distance(b_));
+    return fine ? counts - std::min(counts, 3u) : counts;
   }
 
  private:

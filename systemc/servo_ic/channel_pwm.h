@@ -37,6 +37,14 @@ class ChannelPwm {
     return on_at_ < crossing ? on_at_ : crossing;
   }
 
+  // The same state as that of `o`, `by` ticks later.
+  bool repeats(const ChannelPwm& o, Tick by) const {
+    return command_ == o.command_ && raw_ == o.raw_ && on_ == o.on_ && on_at_ == (o.on_at_ == kNever ? kNever : o.on_at_ + by);
+  }
+  void jump(Tick by) {
+    if (on_at_ != kNever) on_at_ += by;
+  }
+
   bool top() const { return on_ && raw_; }
   bool bot() const { return on_ && !raw_; }
 

@@ -23,6 +23,10 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
     bool servo_ext = true;      // I7m07 bit 1
     bool phase = true;          // pins
     bool servo = true;
+    bool operator==(const Inputs& o) const {
+      return max_count == o.max_count && phase_div == o.phase_div && servo_div == o.servo_div && phase_ext == o.phase_ext &&
+             servo_ext == o.servo_ext && phase == o.phase && servo == o.servo;
+    }
   };
   Inputs in;
 
@@ -33,6 +37,20 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   int cnt() const { return s_.up ? s_.ramp : ~s_.ramp; }
   bool up() const { return s_.up; }  // changes with each turnaround
   Tick next_special_edge() const;    // first edge that is not just one more step of the triangle
+
+  // Inputs and registers of another one, at its time.
+  void take(const ClockGen& o) {
+    in = o.in;
+    s_ = o.s_;
+    now_ = o.now_;
+  }
+  // Remembers inputs and registers; whether they are the same now, the time apart.
+  void mark() {
+    marked_in_ = in;
+    marked_ = s_;
+  }
+  bool repeats() const { return in == marked_in_ && s_ == marked_; }
+  void jump(Tick by) { now_ += by; }
 
   Tick next_event() const override;  // next change of an output that is driven
   void advance(Tick t) override;
@@ -47,6 +65,11 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
     bool odd = false;
     bool phase = true, servo = true;
     bool phase1 = true, phase2 = true, servo1 = true, servo2 = true;  // synchroniser
+    bool operator==(const State& o) const {
+      return ramp == o.ramp && top == o.top && up == o.up && phase_cnt == o.phase_cnt && fall_cnt == o.fall_cnt &&
+             servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase && servo == o.servo && phase1 == o.phase1 &&
+             phase2 == o.phase2 && servo1 == o.servo1 && servo2 == o.servo2;
+    }
   };
 
   Tick next_turn() const { return now_ + 1 + (s_.top - s_.ramp); }
@@ -55,7 +78,8 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   void step();
   bool align(bool& retard);
 
-  State s_;
+  State s_, marked_;
+  Inputs marked_in_;
   Tick now_ = 0;
 };
 

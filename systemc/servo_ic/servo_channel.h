@@ -2,6 +2,7 @@
 // edges at which something happens and executes only those. docs/servo_channel.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -62,6 +63,22 @@ class ServoChannel {
   bool hold() const { return bit(10); }
   bool shows_pwm(unsigned output) const { return !bit(output == 2 ? 23 : 22); }
   Tick next_pwm_event(Tick now, TriangleLine line) const;
+  std::uint32_t counter() const { return counter_.counter(); }
+
+  // Whether EQU can change without a write, and for how many SCLK edges it does not at least.
+  bool compares(bool trip) const { return !hold() && (!settled() || counts_pulses(trip)); }
+  bool counts_pulses(bool trip) const { return (control_ & 0xF) == 8 && bit(23) && !trip; }
+  std::uint32_t edges_to_equ() const { return compare_.edges_to_hit(counter_.counter(), fine()); }
+
+  // The PWM, as it was at mark(), `by` ticks later.
+  void mark() { marked_ = pwm_; }
+  bool repeats(Tick by) const {
+    return std::equal(pwm_.begin(), pwm_.end(), marked_.begin(),
+                      [by](const ChannelPwm& a, const ChannelPwm& b) { return a.repeats(b, by); });
+  }
+  void jump(Tick by) {
+    for (ChannelPwm& pwm : pwm_) pwm.jump(by);
+  }
 
   // Pins
   unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
@@ -96,7 +113,7 @@ class ServoChannel {
   ChannelSubcount subcount_;
   ChannelCapture capture_;
   ChannelCompare compare_;
-  std::array<ChannelPwm, 3> pwm_;
+  std::array<ChannelPwm, 3> pwm_, marked_;
   ChannelPfm pfm_;
   std::array<ChannelDac, 2> dac_;
   std::array<ChannelAdc, 2> adc_;

@@ -5,7 +5,7 @@
 namespace brick {
 
 void ServoChannels::reset(Tick t) {
-  now_ = t;
+  now_ = phase_rise_ = t;
   for (ServoChannel& channel : channel_) channel.reset(t);
   sclk_.reset(t);
   pfm_.reset(t);
@@ -34,6 +34,7 @@ void ServoChannels::advance(Tick t) {
     phase_rises_ = in.phase_rises;
     phase_falls_ = in.phase_falls;
     servo_falls_ = in.servo_falls;
+    if (phase_rise) phase_rise_ = edge;
     run_ref(edge, phase_rise);
     if (edge != t) run_ref(t, false);
   }
@@ -99,6 +100,7 @@ Tick ServoChannels::next_event() const {
   Tick next = std::min(dac_.next_event(now_), adc_.next_event(now_));
   if (phase_rises_ != in.phase_rises) next = std::min(next, ref);
   for (const ServoChannel& channel : channel_) {
+    if (!channel.quiet(now_)) next = std::min(next, ref);
     if (!channel.settled()) next = std::min(next, sclk_.next());
     const ChannelPfm::Inputs pfm = channel.pfm_inputs(in.trip, in.deadtime);
     const std::int64_t periods = channel.pfm().periods_to_change(pfm);
@@ -120,6 +122,45 @@ Tick ServoChannels::next_word_event() const {
     if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
   }
   return next;
+}
+
+Tick ServoChannels::next_equ_event() const {
+  const ServoChannel& channel = channel_[0];
+  if (!channel.compares(in.trip)) return kNever;
+  Tick next = sclk_.after(channel.edges_to_equ() + 1, divider(kSclk));
+  if (channel.settled()) {  // until the next pulse
+    const std::int64_t periods = channel.pfm().periods_to_pulse(channel.pfm_inputs(in.trip, in.deadtime));
+    next = periods == kNever ? kNever : std::max(next, pfm_.after(periods, divider(kPfm)));
+  }
+  return next;
+}
+
+void ServoChannels::mark() {
+  marked_ = now_;
+  for (ServoChannel& channel : channel_) channel.mark();
+}
+
+// Dividers, timers, encoders and PFM take no notice of the clocks: a jump executes them. The clocks latch and start streams, which
+// the period after the jump does again, provided that none is under way at either end, however PHASE falls into the bit clock.
+bool ServoChannels::repeats() const {
+  const unsigned slow = std::max(divider(kDac), divider(kAdc));
+  const bool calm = dac_.idle() && adc_.idle() && (phase_rise_ < marked_ || now_ - phase_rise_ > 26 * (kTicksPerRef << slow));
+  return calm && std::all_of(channel_.begin(), channel_.end(), [this](const ServoChannel& c) { return c.repeats(now_ - marked_); });
+}
+
+void ServoChannels::jump(Tick by) {
+  for (ServoChannel& channel : channel_) channel.jump(by);
+  run_ref(now_ + by, false);
+  now_ += by;
+}
+
+MotorOutputs ServoChannels::motor_outputs() const {
+  MotorOutputs o;
+  o.w[0] = dir() << 28 | pulse() << 24 | pwm();
+  o.w[1] = dac_a() | dac_b() << 4 | aena() << 8 | equ() << 12 | (dac_clk() ? 1u : 0u) << 16 | (dac_strobe() ? 1u : 0u) << 17 |
+           (adc_clk() ? 1u : 0u) << 18 | (adc_strobe() ? 1u : 0u) << 19;
+  for (unsigned i = 0; i < kChannels; ++i) o.w[2 + i] = channel_[i].counter();
+  return o;
 }
 
 std::uint32_t ServoChannels::pwm() const {

@@ -8,6 +8,7 @@
 #include <systemc>
 
 #include "systemc/core/model_block.h"
+#include "systemc/core/motor_pins.h"
 #include "systemc/servo_ic/channel_clocks.h"
 #include "systemc/servo_ic/servo_channel.h"
 
@@ -16,7 +17,6 @@ namespace brick {
 class ServoChannels : public sc_core::sc_module, public ModelBlock {
  public:
   explicit ServoChannels(const sc_core::sc_module_name& name) : sc_module(name) {}
-  static constexpr unsigned kChannels = 4;
 
   // Seen by the edges to come.
   struct Inputs {
@@ -67,11 +67,19 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   bool adc_clk() const { return adc_.clk(now_); }
   bool adc_strobe() const { return adc_.strobe(); }
 
+  MotorOutputs motor_outputs() const;
+
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
   Tick next_event() const override;
   Tick next_word_event() const;   // first edge after which a word of a channel may read differently
+  Tick next_equ_event() const;    // no edge before it changes EQU of channel 1
   void advance(Tick t) override;  // not beyond the end of the line
   void reset(Tick t) override;
+
+  // For ClockFollower.
+  void mark();
+  bool repeats() const;
+  void jump(Tick by);
 
  private:
   template <class Pin>
@@ -89,6 +97,8 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   ChannelDivider sclk_, pfm_;
   ChannelStrobe dac_, adc_;
   bool phase_rises_ = false, phase_falls_ = false, servo_falls_ = false;  // at the last edge of clk_ref
+  Tick phase_rise_ = 0;                                                   // edge that took the last one
+  Tick marked_ = 0;
   Tick now_ = 0;
 };
 

@@ -12,7 +12,7 @@ void ServoIc::reset(Tick t) {
   regs_.reset();
   clock_gen_.reset(t);
   channels_.reset(t);
-  now_ = t;
+  now_ = chain_edge_ = t;
   apply_registers();
 }
 
@@ -48,10 +48,29 @@ void ServoIc::advance(Tick t) {
     if (clock_gen_.phase_clock() != phase) {
       bool& edges = phase ? channels_.in.phase_falls : channels_.in.phase_rises;
       edges = !edges;
+      chain_edge_ = now_;
     }
-    if (servo && !clock_gen_.servo_clock()) channels_.in.servo_falls = !channels_.in.servo_falls;
+    if (servo && !clock_gen_.servo_clock()) {
+      channels_.in.servo_falls = !channels_.in.servo_falls;
+      chain_edge_ = now_;
+    }
     follow_clock();
   }
+}
+
+void ServoIc::mark() {
+  clock_gen_.mark();
+  channels_.mark();
+}
+
+// clk_ref has taken the last edge of the chain, wherever it fell.
+bool ServoIc::repeats() const { return now_ - chain_edge_ > kTicksPerRef && clock_gen_.repeats() && channels_.repeats(); }
+
+void ServoIc::jump(Tick by) {
+  clock_gen_.jump(by);
+  channels_.jump(by);
+  now_ += by;
+  chain_edge_ += by;
 }
 
 void ServoIc::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) {

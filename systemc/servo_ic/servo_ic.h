@@ -11,13 +11,14 @@
 #include <tlm>
 
 #include "systemc/core/model_block.h"
+#include "systemc/servo_ic/clock_follower.h"
 #include "systemc/servo_ic/clock_gen.h"
 #include "systemc/servo_ic/servo_channels.h"
 #include "systemc/servo_ic/servo_ic_regs.h"
 
 namespace brick {
 
-class ServoIc : public sc_core::sc_module, public ModelBlock {
+class ServoIc : public sc_core::sc_module, public ClockFollower {
  public:
   explicit ServoIc(const sc_core::sc_module_name& name);
 
@@ -30,27 +31,37 @@ class ServoIc : public sc_core::sc_module, public ModelBlock {
 
   // Motor side: pins of a channel (0..3) as status bits 23..12 show them, and whether the watchdog has tripped.
   void set_channel_pins(unsigned channel, unsigned pins) { channels_.set_pins(channel, pins); }
+  void set_motor_inputs(const MotorInputs& inputs) {
+    for (unsigned i = 0; i < kChannels; ++i) channels_.set_pins(i, inputs.pins[i]);
+    channels_.in.adc_a = inputs.adc_a;
+    channels_.in.adc_b = inputs.adc_b;
+  }
+  MotorOutputs motor_outputs() const { return channels_.motor_outputs(); }
+  bool equ1() const { return (channels_.equ() & 1) != 0; }
   void set_trip(bool trip) { channels_.in.trip = trip; }
   const ServoChannels& channels() const { return channels_; }
 
   // Clock pins; the inputs are seen by the edges to come.
-  void set_pins(bool phase, bool servo) {
+  void set_pins(bool phase, bool servo) override {
     clock_gen_.in.phase = phase;
     clock_gen_.in.servo = servo;
   }
   bool phase() const { return clock_gen_.phase(); }
   bool servo() const { return clock_gen_.servo(); }
-  bool phase_oe() const { return !clock_gen_.in.phase_ext; }
-  bool servo_oe() const { return !clock_gen_.in.servo_ext; }
-  const ClockGen& clock_gen() const { return clock_gen_; }
+  const ClockGen& clock_gen() const override { return clock_gen_; }
 
-  // Clock pins only; the words that a read may show can change from next_word_event() on.
+  // Clock pins only; the words that a read may show, the motor outputs and EQU of channel 1 can change from the others on.
   Tick next_event() const override { return clock_gen_.next_event(); }
   Tick next_word_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_word_event()); }
+  Tick next_motor_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_event()); }
+  Tick next_equ_event() const { return channels_.next_equ_event(); }
   void advance(Tick t) override;
   void reset(Tick t) override;
 
  private:
+  void mark() override;
+  bool repeats() const override;
+  void jump(Tick by) override;
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
   void apply_registers();
 
@@ -59,7 +70,7 @@ class ServoIc : public sc_core::sc_module, public ModelBlock {
 
   ClockGen clock_gen_;
   ServoChannels channels_;
-  Tick now_ = 0;
+  Tick now_ = 0, chain_edge_ = 0;  // the last edge of PHASE or SERVO inside
 };
 
 }  // namespace brick

@@ -28,6 +28,11 @@ void HostBus::advance_to(Tick tick) {
   }
 }
 
+void HostBus::advance_to_stop(Tick limit) {
+  step_to(std::min(limit, now() + kHeartbeat), {});
+  if (heartbeat_) heartbeat_();
+}
+
 void HostBus::wait_change(const PinField& pin, Tick limit) {
   const std::uint32_t value = machine_.outputs().get(pin);
   while (now() < limit && machine_.outputs().get(pin) == value) {

@@ -59,6 +59,7 @@ class HostBus {
   // Time --------------------------------------------------------------------------------------------------------------
   Tick now() const { return machine_.now(); }
   void advance_to(Tick tick);
+  void advance_to_stop(Tick limit);  // or to the end of the run that an edge ends (Machine::stop_on_motor)
   void wait(Tick ticks) { advance_to(now() + ticks); }
   void wait_change(const PinField& pin, Tick limit);                      // to the pin's next change, or to tick `limit`
   bool wait_pin(const PinField& pin, std::uint32_t value, Tick timeout);  // stops at the edge; false at the time-out

@@ -1,0 +1,95 @@
+// The servo and MACRO ICs of the board and how far each of them has been executed. An IC that nobody looks at stays behind; it is
+// brought up to date when a register of it is accessed, its inputs change or its outputs are asked for. What the board cannot
+// wait for has a time of its own: the clock chain of an IC that drives PHASE or SERVO runs ahead as a second one (`driver`), and
+// an IC with an output that is waited for says when to look again (`look_`).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "systemc/board/clock_select.h"
+#include "systemc/core/motor_pins.h"
+#include "systemc/macro_ic/macro_ic.h"
+#include "systemc/servo_ic/clock_history.h"
+#include "systemc/servo_ic/servo_ic.h"
+
+namespace brick {
+
+class GateIcs {
+ public:
+  static constexpr unsigned kServoIcs = kMaxServoIcs, kMacroIcs = 4, kIcs = kServoIcs + kMacroIcs;
+
+  explicit GateIcs(std::uint32_t built);
+
+  std::uint32_t built() const { return built_; }
+  ServoIc* servo_ic(unsigned index, Tick now) const {
+    return index < kServoIcs && has(index) ? (catch_up(index, now), servo_ic_[index].get()) : nullptr;
+  }
+  MacroIc* macro_ic(unsigned index, Tick now) const {
+    return index < kMacroIcs && has(kServoIcs + index) ? (catch_up(kServoIcs + index, now), macro_ic_[index].get()) : nullptr;
+  }
+
+  void reset(Tick t);
+
+  // What the board's pins or an interrupt line show can change at this tick at the earliest.
+  Tick next_event() const { return next_clock_ < next_look_ ? next_clock_ : next_look_; }
+  Tick next_clock_event() const { return next_clock_; }  // PHASE and SERVO pins only
+  // Executes the edges of what may have such a change by t. Returns true when a clock pin may have changed.
+  bool advance(Tick t);
+
+  // Registers; `ic` as in BoardInputs::fitted. The edges up to t have been executed with the inputs as they were set.
+  std::uint32_t read(unsigned ic, bool x, std::uint32_t addr, Tick t) const;
+  void read_done(unsigned ic, bool x, std::uint32_t addr, Tick t);
+  void write(unsigned ic, bool x, std::uint32_t addr, std::uint32_t value, Tick t);
+  // Of an IC that is being read; the word may read differently from that edge on.
+  Tick next_word_event(unsigned ic, Tick now) const;
+
+  // Inputs, for the edges after `now`.
+  void set_clocks(bool phase, bool servo, Tick now);
+  void set_trip(bool trip, Tick now);
+  void set_macro_gates(std::uint32_t gates, Tick now);
+  void set_motor_inputs(unsigned ic, const MotorInputs& inputs, Tick now);
+
+  // Outputs after the edge `now`.
+  const ClockSelect::Drivers& drivers() const { return drivers_; }
+  std::uint32_t phase_levels() const { return phase_levels_; }
+  std::uint32_t servo_levels() const { return servo_levels_; }
+  std::uint32_t equ() const { return equ_; }  // EQU of channel 1, bit 0 and 1 for servo IC 0 and 1
+  MotorOutputs motor_outputs(unsigned ic, Tick now) const;
+  void watch(std::uint32_t servo_ics, Tick now);
+  // Watched ICs whose outputs may have changed since the last call.
+  std::uint32_t take_changes() {
+    const std::uint32_t ics = looked_ & watched_;
+    looked_ = 0;
+    return ics;
+  }
+
+ private:
+  static constexpr std::uint32_t kInterrupting = 3;  // servo ICs whose EQU interrupts
+
+  bool has(unsigned ic) const { return (built_ >> ic & 1) != 0; }
+  void catch_up(unsigned ic, Tick t) const { follower_[ic]->catch_up(history_, t); }
+  void catch_up_all(Tick t);
+  void look(unsigned ic, Tick now);  // after it has caught up: what it shows, and when to look again
+  void drive(unsigned ic);           // after it has caught up: whether it drives the clocks
+  void show_drivers();
+
+  std::uint32_t built_;
+  std::array<std::unique_ptr<ServoIc>, kServoIcs> servo_ic_;
+  std::array<std::unique_ptr<MacroIc>, kMacroIcs> macro_ic_;
+  std::array<ClockFollower*, kIcs> follower_{};
+  std::array<std::unique_ptr<ClockGen>, kIcs> driver_;
+  ClockHistory history_;
+  bool phase_ = true, servo_ = true, trip_ = false;
+  std::uint32_t macro_gates_ = 0;
+
+  ClockSelect::Drivers drivers_;
+  std::uint32_t drives_ = 0;  // ICs that drive PHASE or SERVO
+  std::uint32_t phase_levels_ = ~0u, servo_levels_ = ~0u;
+  std::uint32_t watched_ = 0, looked_ = 0, equ_ = 0;
+  std::array<Tick, kServoIcs> look_{};
+  Tick next_clock_ = kNever, next_look_ = kNever;
+};
+
+}  // namespace brick
