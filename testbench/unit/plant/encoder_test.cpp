@@ -68,6 +68,24 @@ TEST(Encoder, EdgesAreExactInTicks) {
   for (Tick k = 1; k <= 70; ++k) EXPECT_EQ(edges[static_cast<std::size_t>(k - 1)], 12000 + 9973 * (k - 1) / 70 + 1) << k;
 }
 
+// A tenth of a unit per tick: down, count 2 is left at the first tick (any way below it counts), and reached again after all of them.
+TEST(Encoder, EdgesOfASlowMotionAreExact) {
+  Plant plant(hand(lines(10)));
+  PlantRig rig(plant);
+  plant.axis(0).turn(2, 100);
+  rig.run(1000);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b11u);
+  plant.axis(0).turn(-1, 10 * kU1);
+  rig.run(1);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b10u);
+  rig.run(10 * kU1);
+  plant.axis(0).turn(1, 10 * kU1);
+  rig.run(10 * kU1 - 1);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b10u);
+  rig.run(1);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b11u);
+}
+
 TEST(Encoder, AnIndependentCounterFollowsBothWays) {
   Plant plant(hand(lines(250)));
   PlantRig rig(plant);
