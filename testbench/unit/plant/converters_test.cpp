@@ -84,6 +84,7 @@ struct AdcStream {
       sampled = sampled << 1 | (adc.lines(b) >> channel & 1);  // stands before the edge that samples it
       next.set(motor_pin::kAdcClk, 0, 1);
       apply(next);
+      EXPECT_EQ(adc.lines(b) >> channel & 1, sampled & 1) << "stands until the clock falls";
     }
     next.set(motor_pin::kAdcClk, 0, 0);
     apply(next);
