@@ -130,8 +130,7 @@ module board_top #(
       assign rdata_chain = gen_servo_ic[i-1].rdata_chain | rdata;
     end
     if (ServoIcMask[i]) begin : gen_built
-      logic [23:0] pwm;
-      logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ, serial;
+      logic [63:0] motor;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
         .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
@@ -139,18 +138,11 @@ module board_top #(
         .rdata_o(rdata),
         .phase_i(phase_o), .servo_i(servo_o),
         .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i]),
-        .trip_i(wd_tripped_o), .pins_i(motor_i[64*i+:48]), .adc_a_i(motor_i[64*i+48+:4]), .adc_b_i(motor_i[64*i+52+:4]),
-        .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ), .serial_o(serial)
+        .trip_i(wd_tripped_o), .pins_i(motor_i[64*i+:48]), .adc_a_i(motor_i[64*i+48+:4]),
+        .adc_b_i(motor_i[64*i+52+:4]), .motor_o(motor)
       );
-      // What moves with clk_ref only stands apart, so that a simulator packs it only then.
-      logic [23:0] slow;
-      always_comb begin
-        slow = 24'h0;
-        if (fitted_q[i]) slow = {equ, aena, dac_b, dac_a, dir, pulse};
-      end
-      assign motor_o[64*i+:32]    = {slow[7:0], pwm & {24{fitted_q[i]}}};
-      assign motor_o[64*i+32+:32] = {12'h0, serial & {4{fitted_q[i]}}, slow[23:8]};
-      assign equ1[i]              = slow[20];
+      assign motor_o[64*i+:64] = motor;
+      assign equ1[i]           = motor[44] & fitted_q[i];
       logic unused_in;
       assign unused_in = &{1'b0, motor_i[64*i+56+:8]};
     end else begin : gen_absent

@@ -158,36 +158,24 @@ void BoardTop::connect_host() {
 
   // IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO from bit 0 up.
   const unsigned equ = gate_ics_.equ() & fitted_;
-  pic.line =
-      static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | equ << 5 | watchdog_.trip() << 7);
+  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | equ << 5 | watchdog_.trip() << 7);
 }
 
+// The packed words of systemc/core/board_pins.h.
 BoardOutputs BoardTop::pins() const {
+  const auto at = [](const PinField& f, std::uint32_t value) { return value << f.lsb; };
   BoardOutputs o;
-  o.set(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_);
-  o.set(pin::kPaTaN, dpram_.cpu_busy());
-  o.set(pin::kIrqHost, host_port_.irq());
-  o.set(pin::kPhase, clock_select_.phase());
-  o.set(pin::kServo, clock_select_.servo());
-  o.set(pin::kBreq, host_signals_.breq());
-  o.set(pin::kIpos, host_signals_.ipos());
-  o.set(pin::kEror, host_signals_.eror());
-  o.set(pin::kF1er, host_signals_.f1er());
-  o.set(pin::kIsaSd, isa_slave_.isa_sd());
-  o.set(pin::kIsaIochrdy, isa_slave_.isa_iochrdy());
-  o.set(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n());
-  o.set(pin::kIsaIrq, interrupt_controller_.irq());
-  o.set(pin::kHreq, host_port_.hreq());
-  o.set(pin::kWdo, watchdog_.trip());
-  o.set(pin::kWdTripped, watchdog_.trip());
-  o.set(pin::kBusyHost, dpram_.host_busy());
-  o.set(pin::kBusyCpu, dpram_.cpu_busy());
-  o.set(pin::kPhaseSource, clock_select_.phase_source());
-  o.set(pin::kSourceConflict, clock_select_.conflict());
-  o.set(pin::kPicIst, interrupt_controller_.ist());
-  o.set(pin::kPicSig, interrupt_controller_.sig());
-  o.set(pin::kPicMsk, interrupt_controller_.msk());
-  o.set(pin::kPicElr, interrupt_controller_.elr());
+  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_) | at(pin::kPaTaN, dpram_.cpu_busy()) |
+           at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) | at(pin::kServo, clock_select_.servo()) |
+           at(pin::kBreq, host_signals_.breq()) | at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
+           at(pin::kF1er, host_signals_.f1er());
+  o.w[1] = at(pin::kIsaSd, isa_slave_.isa_sd()) | at(pin::kIsaIochrdy, isa_slave_.isa_iochrdy()) |
+           at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) | at(pin::kIsaIrq, interrupt_controller_.irq()) |
+           at(pin::kHreq, host_port_.hreq()) | at(pin::kWdo, watchdog_.trip()) | at(pin::kWdTripped, watchdog_.trip()) |
+           at(pin::kBusyHost, dpram_.host_busy()) | at(pin::kBusyCpu, dpram_.cpu_busy()) |
+           at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
+  o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
+           at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
   return o;
 }
 

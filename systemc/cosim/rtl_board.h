@@ -7,9 +7,11 @@
 #include <verilated_cov.h>
 #endif
 
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "systemc/cosim/engines.h"
 
@@ -47,6 +49,7 @@ class RtlBoard : public Board {
     start.fitted = fitted;
     start.rst_n = true;
     set_inputs(start);
+    for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) set_motor_inputs(ic, {});
     model_->eval();
     start.rst_n = false;
     set_inputs(start);
@@ -58,6 +61,9 @@ class RtlBoard : public Board {
     if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
 #endif
     model_->final();
+    // Scopes leave the context of the thread, which is that of the board made last, gone perhaps.
+    Verilated::threadContextp(&context_);
+    model_.reset();
   }
 
   Tick now() const override { return now_; }
@@ -102,22 +108,72 @@ class RtlBoard : public Board {
       m.clk_pwm_i = 0;
       m.clk_ref_i = 0;
       if (!forget_clocks(*m.rootp, 0)) m.eval();
+      bool stop = false;
       const auto& pins = m.pins_o;
       if (__builtin_expect(((pins[0] ^ outputs_.w[0]) | (pins[1] ^ outputs_.w[1]) | (pins[2] ^ outputs_.w[2])) != 0, 0)) {
         const BoardOutputs before = outputs_;
         for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = pins[i];
         if (on_change) on_change(now_, before, outputs_);
-        if (before.differs(outputs_, stop_on)) break;
+        stop = before.differs(outputs_, stop_on);
       }
+      for (Watched& w : watched_)
+        if (__builtin_expect(motor_differs(w, to_ref == kTicksPerRef), 0)) stop |= motor_changed(w);
+      if (stop) break;
     }
     return now_;
   }
 
+  void set_motor_inputs(unsigned ic, const MotorInputs& in) override {
+    if (!has(ic)) return;
+    std::uint64_t pins = static_cast<std::uint64_t>((in.adc_a & 0xFu) | (in.adc_b & 0xFu) << 4) << 48;
+    for (unsigned n = 0; n < kChannels; ++n) pins |= static_cast<std::uint64_t>(in.pins[n] & 0xFFFu) << 12 * n;
+    model_->motor_i[2 * ic] = static_cast<std::uint32_t>(pins);
+    model_->motor_i[2 * ic + 1] = static_cast<std::uint32_t>(pins >> 32);
+  }
+  MotorOutputs motor_outputs(unsigned ic) const override {
+    MotorOutputs out;
+    if (!has(ic)) return out;
+    out.w[0] = model_->motor_o[2 * ic];
+    out.w[1] = model_->motor_o[2 * ic + 1];
+    for (unsigned n = 0; n < kChannels; ++n) out.w[2 + n] = model_->count_o[4 * ic + n];
+    return out;
+  }
+  void watch_motors(std::uint32_t ics) override {
+    watched_.clear();
+    for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+      if (has(ic) && (ics >> ic & 1) != 0) watched_.push_back({ic, motor_outputs(ic)});
+  }
+  void stop_on_motor(unsigned ic, const MotorOutputs& select) override {
+    if (ic < kMaxServoIcs) stop_[ic] = select;
+  }
+
  private:
+  struct Watched {
+    unsigned ic;
+    MotorOutputs last;
+  };
+  bool has(unsigned ic) const { return ic < kMaxServoIcs && (fitted_ >> ic & 1) != 0; }
+  // Counters move with clk_ref only; a serial clock of 39.3216 MHz is lowered and raised by clk_pwm.
+  bool motor_differs(const Watched& w, bool ref) const {
+    const Model& m = *model_;
+    std::uint32_t d = (m.motor_o[2 * w.ic] ^ w.last.w[0]) | (m.motor_o[2 * w.ic + 1] ^ w.last.w[1]);
+    if (ref)
+      for (unsigned n = 0; n < kChannels; ++n) d |= m.count_o[4 * w.ic + n] ^ w.last.w[2 + n];
+    return d != 0;
+  }
+  bool motor_changed(Watched& w) {
+    const MotorOutputs before = w.last;
+    w.last = motor_outputs(w.ic);
+    if (on_motor_change) on_motor_change(now_, w.ic, before, w.last);
+    return before.differs(w.last, stop_[w.ic]);
+  }
+
   VerilatedContext context_;
   std::unique_ptr<Model> model_;
   std::uint32_t fitted_;
   BoardOutputs outputs_;
+  std::vector<Watched> watched_;
+  std::array<MotorOutputs, kMaxServoIcs> stop_{};
   Tick now_ = 0;
 };
 

@@ -56,6 +56,19 @@ def at_lines():
     check(re.fullmatch(r"time=\d+ ns", out[-2]), out[-2])
 
 
+def motor_pins():
+    """The hand at the encoder of motor 6 (servo IC 1, channel 2) counts, with x4 both ways; an input pin is a signal at once."""
+    r = play(["@encoder 6 37 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=37", "@encoder 6 -40 100000",
+              "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=-3", "@signal servo_ic0.ch1.count", "@expect servo_ic0.ch1.count=0",
+              "@input servo_ic0.ch1.hmfl=1", "@signal servo_ic0.ch1.hmfl", "@expect servo_ic0.ch1.hmfl=1",
+              "@until servo_ic0.ch1.adc_strobe=1 200us", "@until servo_ic0.ch1.adc_strobe=0 200us"])
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    r = play(["@input servo_ic0.ch1.pwm_a_top=1"])
+    check(r.returncode == 2 and "is no input pin" in r.stderr, r.stderr)
+    r = play(["@encoder 9 1"])
+    check(r.returncode == 2 and "expected 1 to 8" in r.stderr, r.stderr)
+
+
 def restarts():
     r = play(["I16=7", "P1=3", "@reset", "I16", "@expect 5", "I16=8", "@power", "I16", "@expect 5", "I16=9", "$$$", "I16", "@expect 5", "VERSION"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
@@ -134,7 +147,7 @@ def bad_input():
             (["exec", "-"], "VERSION\n@frob\n", "stdin:2: @frob"),
             (["exec", "-"], "VERSION\n@signal nothing.here\n", "stdin:2: @signal"),
             (["exec", "-"], "@until host.breq=2 1ms\n", "stdin:1: @until"),
-            (["exec", "-"], "@input USER1=0\n", "not available on this board"),
+            (["exec", "-"], "@input USER1=0\n", "no signal `USER1`"),
             (["cpu", f"{folder}/none.elf"], "", "none.elf"),
             (["cpu", f"{folder}/bad.elf"], "", "bad.elf"),
             (["cpu", f"{folder}/bad.elf", "--max-instructions", "x"], "", "--max-instructions"),

@@ -1,5 +1,6 @@
 // Host scripts: what is read, and that every error says file and line, what, and what was expected.
 #include "app/script.h"
+#include "app/hand_encoder.h"
 
 #include <gmock/gmock.h>
 
@@ -30,13 +31,15 @@ std::string error_of(const std::string& text) {
 TEST(Script, ReadsEveryKindOfLine) {
   const auto s = read(
       "VERSION\n\n  &2DEFINE ROTARY 50  \r\n^A^X\n@wait 2.5us\n@until host.breq=1 50ms\n@signal clock.phase\n@pic\n"
-      "@pic MSK=02 ELR=00\n@pic clear\n@dpram 0x1050 6\n@dpram 4176 = 12 FFFF\n@jumper E3 on\n@reset\n@power\n"
+      "@pic MSK=02 ELR=00\n@pic clear\n@dpram 0x1050 6\n@dpram 4176 = 12 FFFF\n@jumper E3 on\n@input servo_ic0.ch1.hmfl=1\n@encoder 2 "
+      "-50\n@encoder 1 7 100\n@reset\n@power\n"
       "@expect 1|2 3\n@expect\n@time\n");
   std::vector<Kind> kinds;
   for (const auto& line : s) kinds.push_back(line.kind);
-  EXPECT_EQ(kinds, (std::vector<Kind>{Kind::kCommand, Kind::kCommand, Kind::kControl, Kind::kWait, Kind::kUntil, Kind::kSignal,
-                                      Kind::kPicRead, Kind::kPicWrite, Kind::kPicClear, Kind::kDpramRead, Kind::kDpramWrite, Kind::kJumper,
-                                      Kind::kReset, Kind::kPower, Kind::kExpect, Kind::kExpect, Kind::kTime}));
+  EXPECT_EQ(kinds, (std::vector<Kind>{Kind::kCommand,    Kind::kCommand, Kind::kControl,  Kind::kWait,     Kind::kUntil,
+                                      Kind::kSignal,     Kind::kPicRead, Kind::kPicWrite, Kind::kPicClear, Kind::kDpramRead,
+                                      Kind::kDpramWrite, Kind::kJumper,  Kind::kInput,    Kind::kEncoder,  Kind::kEncoder,
+                                      Kind::kReset,      Kind::kPower,   Kind::kExpect,   Kind::kExpect,   Kind::kTime}));
   EXPECT_EQ(s[1].text, "&2DEFINE ROTARY 50");
   EXPECT_EQ(s[1].number, 3u);
   EXPECT_EQ(s[2].value, std::string("\x01\x18"));
@@ -49,19 +52,79 @@ TEST(Script, ReadsEveryKindOfLine) {
   EXPECT_EQ(s[9].count, 6u);
   EXPECT_EQ(s[10].offset, 0x1050u);
   EXPECT_EQ(s[10].words, (std::vector<std::uint16_t>{0x12, 0xFFFF}));
-  EXPECT_EQ(s[14].value, "1|2 3");
-  EXPECT_EQ(s[15].value, "");
+  EXPECT_EQ(s[12].name, "servo_ic0.ch1.hmfl");
+  EXPECT_TRUE(s[12].on);
+  EXPECT_EQ(s[13].motor, 2u);
+  EXPECT_EQ(s[13].counts, -50);
+  EXPECT_EQ(s[14].counts, 7);
+  EXPECT_EQ(s[14].rate, 100);
+  EXPECT_EQ(s[17].value, "1|2 3");
+  EXPECT_EQ(s[18].value, "");
 }
 
 TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
-  for (const char* bad : {"@wait",    "@wait 10",         "@wait ten ms",   "@until breq 5ms", "@until breq=1",      "@until breq=1 5",
-                          "@signal",  "@pic MSK=100",     "@pic FOO=1",     "@dpram 1 2",      "@dpram 65536 1",     "@dpram 65534 2",
-                          "@dpram 0", "@dpram 0 = 10000", "@dpram 0 =",     "@jumper E4 on",   "@jumper E3 perhaps", "@reset now",
-                          "@frob",    "@input USER1=0",   "@encoder 1 100", "@jpan FPD=1"})
+  for (const char* bad : {"@wait",
+                          "@wait 10",
+                          "@wait ten ms",
+                          "@until breq 5ms",
+                          "@until breq=1",
+                          "@until breq=1 5",
+                          "@signal",
+                          "@pic MSK=100",
+                          "@pic FOO=1",
+                          "@dpram 1 2",
+                          "@dpram 65536 1",
+                          "@dpram 65534 2",
+                          "@dpram 0",
+                          "@dpram 0 = 10000",
+                          "@dpram 0 =",
+                          "@jumper E4 on",
+                          "@jumper E3 perhaps",
+                          "@reset now",
+                          "@frob",
+                          "@input USER1",
+                          "@input USER1=2",
+                          "@input =1",
+                          "@encoder 1",
+                          "@encoder 0 100",
+                          "@encoder 1 0",
+                          "@encoder 1 5 0",
+                          "@encoder 1 x",
+                          "@encoder 1 5 9830401",
+                          "@encoder 1 5 6 7",
+                          "@jpan FPD=1"})
     EXPECT_THAT(error_of(std::string("VERSION\n") + bad), AllOf(HasSubstr("job.txt:2: @"), HasSubstr("expected"))) << bad;
 }
 
-TEST(Script, PinsThatDoNotExistAreNamedAsSuch) { EXPECT_THAT(error_of("@input USER1=0"), HasSubstr("not available on this board")); }
+// Quadrature by hand: the levels of A and B after each edge, and the tick of each, by the rule of the data sheet.
+TEST(HandEncoder, TurnsAAndBAtTheRateThatWasAskedFor) {
+  MotorInputPins pins;
+  pins[3].pins[1] = 0;
+  HandEncoder up(3, 1, 5, 1'000'000, 1000);
+  const std::vector<unsigned> expected{2, 3, 1, 0, 2};  // {B, A} with B in bit 1: B leads
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const Tick due = 1000 + static_cast<Tick>(i + 1) * 1179648 / 10000;  // 117.9648 ticks each
+    ASSERT_EQ(up.next_event(), due);
+    EXPECT_FALSE(up.step(due - 1, pins));
+    EXPECT_TRUE(up.step(due, pins));
+    EXPECT_EQ(pins[3].pins[1], expected[i]) << "edge " << i + 1;
+  }
+  EXPECT_EQ(up.next_event(), kNever);
+  HandEncoder down(3, 1, -3, 1'000'000, 0);
+  for (const unsigned level : {0u, 1u, 3u}) {
+    down.step(down.next_event(), pins);
+    EXPECT_EQ(pins[3].pins[1], level);
+  }
+}
+
+TEST(HandEncoder, MotorsAreTheChannelsOfTheFittedIcsInOrder) {
+  constexpr std::uint32_t kIcs2And3 = 0xC;
+  EXPECT_EQ(motor_place(kIcs2And3, 1)->ic, 2u);
+  EXPECT_EQ(motor_place(kIcs2And3, 8)->ic, 3u);
+  EXPECT_EQ(motor_place(kIcs2And3, 8)->channel, 3u);
+  EXPECT_FALSE(motor_place(kIcs2And3, 9));
+  EXPECT_FALSE(motor_place(1u << 18, 1)) << "a MACRO IC alone";
+}
 
 TEST(TimeText, IsExact) {
   EXPECT_EQ(parse_time("1ns"), 1'000'000);

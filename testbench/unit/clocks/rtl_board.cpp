@@ -13,6 +13,13 @@ struct RtlBoard::Impl {
 RtlBoard::RtlBoard(bool seeded_bug) : impl_(std::make_unique<Impl>()) {
   // The asynchronous reset acts on its falling edge, so it must have been high once.
   impl_->top.seeded_bug_i = seeded_bug;
+  // Nothing connected on the motor side.
+  std::uint64_t idle = 0;
+  for (unsigned n = 0; n < kChannels; ++n) idle |= std::uint64_t{kIdleChannelPins} << 12 * n;
+  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
+    impl_->top.motor_i[2 * ic] = static_cast<std::uint32_t>(idle);
+    impl_->top.motor_i[2 * ic + 1] = static_cast<std::uint32_t>(idle >> 32);
+  }
   impl_->top.rst_ni = 1;
   impl_->top.eval();
   inputs_.fitted = kTestIcs;

@@ -206,7 +206,7 @@ class ChannelsRig {
 };
 
 // Register offsets of channel 1 and bits of its pins; control word fields as the I-variables.
-enum : unsigned { kA, kB, kC, kFault, kHmfl, kPlim, kMlim, kUser, kW, kV, kU, kT };
+constexpr unsigned kA = kEncA, kB = kEncB, kC = kEncC;  // the other pins have their names in motor_pins.h
 enum : unsigned { kPulse, kDir, kDacA, kDacB, kAena, kEqu };
 constexpr unsigned base(unsigned channel) { return 8 * (channel - 1); }
 constexpr std::uint32_t kOwnClocks = 0x3008D2;  // default dividers, PHASE and SERVO driven

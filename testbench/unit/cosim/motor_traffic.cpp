@@ -1,0 +1,168 @@
+// Random life on the motor side, see motor_traffic.h.
+#include "testbench/unit/cosim/motor_traffic.h"
+
+#include <algorithm>
+
+namespace brick {
+
+namespace {
+// X and Y words of a channel, and the words of a whole IC (docs/registers.md).
+constexpr unsigned kOutA = 2, kCapture = 3, kGlobal = 4, kControl = 5, kIncrement = 6, kCompare = 7;
+constexpr unsigned kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
+
+// docs/servo_ic.md, Where the ICs are.
+std::uint32_t address_of(unsigned ic) {
+  if (ic >= 10) return address_of(ic - 8) + 0x20;
+  return ic < 2 ? 0x078000 + 0x100 * ic : 0x078200 + 0x1000 * ((ic - 2) / 2) + 0x100 * (ic % 2);
+}
+}  // namespace
+
+MotorTraffic::MotorTraffic(std::uint64_t seed, std::uint32_t ics) : random_(seed) {
+  for (unsigned i = 0; i < kMaxServoIcs; ++i) {
+    if ((ics >> i & 1) == 0) continue;
+    ics_.push_back({});
+    ics_.back().index = i;
+    ics_.back().address = address_of(i);
+    ics_.back().at = 40 + below(300);
+    for (Channel& c : ics_.back().channels) c.speed = 20 + below(400);
+  }
+  inputs_.fitted = ics;
+  reset_at_ = 12 + below(30);  // released there
+  bus_at_ = reset_at_ + 10;
+}
+
+void MotorTraffic::run(Board& board, Tick end, Tick batch) {
+  board.set_inputs(inputs_);
+  while (board.now() < end) {
+    const Tick target = std::min(next(), end);
+    while (board.now() < target) board.run_until(board.now() + std::min(batch, target - board.now()));
+    if (target == end) break;
+    if (reset_at_ == target) {
+      inputs_.rst_n = !inputs_.rst_n;
+      started_ = 0;
+      reset_at_ = inputs_.rst_n ? kNever : target + 1 + below(60);
+    }
+    if (bus_at_ == target) bus_step();
+    board.set_inputs(inputs_);
+    for (Ic& ic : ics_)
+      if (ic.at == target) pins_step(ic, board);
+  }
+}
+
+Tick MotorTraffic::next() const {
+  Tick t = std::min(bus_at_, reset_at_);
+  for (const Ic& ic : ics_) t = std::min(t, ic.at);
+  return t;
+}
+
+void MotorTraffic::pins_step(Ic& ic, Board& board) {
+  const unsigned n = below(kChannels);
+  Channel& c = ic.channels[n];
+  std::uint16_t& pins = ic.pins.pins[n];
+  if (one_in(30)) c.up = !c.up;
+  if (one_in(40)) c.speed = one_in(3) ? 1 + below(20) : 20 + below(3000);
+  constexpr unsigned kHall[6] = {4, 6, 2, 3, 1, 5}, kQuadrature[4] = {0, 1, 3, 2};  // {C, B, A}
+  c.place = (c.place + (c.up ? 1u : 11u)) % 12;
+  const unsigned abc = c.hall ? kHall[c.place % 6] : kQuadrature[c.place % 4] | (one_in(4) ? 4u : 0u);
+  pins = static_cast<std::uint16_t>((pins & ~7u) | abc);
+  if (one_in(6)) pins = static_cast<std::uint16_t>(pins ^ 1u << below(kChannelPins));
+  if (one_in(3)) ic.pins.adc_a = static_cast<std::uint8_t>(below(16));
+  if (one_in(3)) ic.pins.adc_b = static_cast<std::uint8_t>(below(16));
+  board.set_motor_inputs(ic.index, ic.pins);
+  ic.at += 1 + (c.speed + below(10)) / kChannels;
+}
+
+void MotorTraffic::bus_step() {
+  switch (bus_step_++) {
+    case 0:
+      choose_access();
+      bus_at_ += 6;
+      break;
+    case 1:
+      (writing_ ? inputs_.pa_wr_n : inputs_.pa_rd_n) = false;
+      bus_at_ += 9 + below(6);
+      break;
+    case 2:
+      inputs_.pa_wr_n = inputs_.pa_rd_n = true;
+      bus_at_ += 4 + below(4);
+      break;
+    default:
+      bus_step_ = 0;
+      bus_at_ += started_ < 4 * ics_.size() ? 1 : 1 + below(one_in(10) ? 20'000 : 300);
+      if (one_in(2000) && reset_at_ == kNever) reset_at_ = bus_at_ + below(20);
+      break;
+  }
+}
+
+// Short periods; one IC mostly drives PHASE and SERVO, the others mostly follow.
+std::uint32_t MotorTraffic::clock_word(const Ic& ic) {
+  const std::uint32_t dividers = one_in(3) ? below(4096) : below(4) | below(4) << 3 | below(3) << 6 | below(3) << 9;
+  const std::uint32_t external = one_in(20) ? below(4) : (&ic == &ics_.front() ? 0 : 3);
+  return dividers | external << 12 | below(3) << 16 | below(3) << 20;
+}
+
+void MotorTraffic::choose_access() {
+  // After a reset the clocks come first, so that there is something to see.
+  if (started_ < 2 * ics_.size()) {
+    const Ic& ic = ics_[started_ / 2];
+    if (started_++ % 2 == 0) return write(ic, true, kGlobal, clock_word(ic));
+    return write(ic, true, kPwm, (40 + below(700)) << 8 | below(4));
+  }
+  Ic& ic = ics_[below(static_cast<std::uint32_t>(ics_.size()))];
+  const unsigned n = below(kChannels), at = 8 * n;
+  switch (below(16)) {
+    case 0:
+      if (one_in(4)) return write(ic, true, kGlobal, clock_word(ic));
+      return write(ic, true, kPwm, (one_in(4) ? below(40) : below(700)) << 8 | (one_in(2) ? below(3) : below(20)));
+    case 1:
+      return write(ic, true, one_in(2) ? kDacStrobe : kAdcStrobe, below(1u << 24));
+    case 2:
+    case 3: {
+      std::uint32_t word = below(1u << 24);
+      if (one_in(2)) word = (word & ~0xFu) | 3 | below(2) << 2;
+      ic.channels[n].hall = (word & 0xB) == 0xB;
+      if (!one_in(6)) word &= ~0x400u;   // counter reset
+      if (one_in(2)) word &= ~0x40000u;  // hardware 1/T
+      return write(ic, true, at + kControl, word);
+    }
+    case 4:
+    case 5:
+    case 6: {
+      const std::uint32_t size = below(one_in(2) ? 0x800000 : 60'000);
+      return write(ic, false, at + kOutA + below(3), (one_in(2) ? size : 0u - size) & 0xFFFFFF);
+    }
+    case 7:
+    case 8:  // positions stay near 0 between resets
+      return write(ic, one_in(2), at + kCompare, (below(200) - 100) & 0xFFFFFF);
+    case 9:
+      return write(ic, true, at + kIncrement, below(10));
+    case 10:
+      return write(ic, false, at + below(2), below(0x1000));
+    case 11:
+      return write(ic, true, at, below(0x1000));
+    case 12:
+      return read(ic, true, at + kCapture);
+    case 13:  // the watchdog strobe, X:$070011
+      write(ic, true, 0, below(1u << 24));
+      inputs_.pa_addr = 0x070011;
+      inputs_.pa_aa = 0;
+      return;
+    default:
+      return read(ic, one_in(2), below(32));
+  }
+}
+
+void MotorTraffic::write(const Ic& ic, bool x, unsigned offset, std::uint32_t word) {
+  read(ic, x, offset);
+  writing_ = true;
+  inputs_.pa_wdata = word;
+}
+
+void MotorTraffic::read(const Ic& ic, bool x, unsigned offset) {
+  writing_ = false;
+  inputs_.pa_addr = ic.address + offset;
+  inputs_.pa_x = x;
+  inputs_.pa_aa = 2;
+}
+
+}  // namespace brick
