@@ -68,22 +68,26 @@ TEST(Encoder, EdgesAreExactInTicks) {
   for (Tick k = 1; k <= 70; ++k) EXPECT_EQ(edges[static_cast<std::size_t>(k - 1)], 12000 + 9973 * (k - 1) / 70 + 1) << k;
 }
 
-// A tenth of a unit per tick: down, count 2 is left at the first tick (any way below it counts), and reached again after all of them.
+// A tenth of a unit per tick: going up, count 1 is reached after 10 x 65536 ticks; going down it is left one tick after the position
+// was there again.
 TEST(Encoder, EdgesOfASlowMotionAreExact) {
   Plant plant(hand(lines(10)));
   PlantRig rig(plant);
-  plant.axis(0).turn(2, 100);
-  rig.run(1000);
-  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b11u);
-  plant.axis(0).turn(-1, 10 * kU1);
+  plant.axis(0).turn(1, 10 * kU1);
+  rig.run(10 * kU1 - 1);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b00u);
   rig.run(1);
   EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b10u);
-  rig.run(10 * kU1);
-  plant.axis(0).turn(1, 10 * kU1);
+  plant.axis(0).turn(1, 100);
+  rig.run(100);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b11u);
+  plant.axis(0).turn(-2, 20 * kU1);
+  rig.run(1);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b10u);
   rig.run(10 * kU1 - 1);
   EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b10u);
   rig.run(1);
-  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b11u);
+  EXPECT_EQ(ab(rig.inputs[0].pins[0]), 0b00u);
 }
 
 TEST(Encoder, AnIndependentCounterFollowsBothWays) {
