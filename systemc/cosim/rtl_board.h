@@ -62,8 +62,6 @@ class RtlBoard : public Board {
 #endif
     model_->final();
     Verilated::threadContextp(&context_);  // its scopes leave the context last used, which may be another board's, long gone
-    // Scopes leave the context of the thread, which is that of the board made last, gone perhaps.
-    Verilated::threadContextp(&context_);
     model_.reset();
   }
 
