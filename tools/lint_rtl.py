@@ -3,8 +3,9 @@
 
 verilator  --lint-only -Wall with every module as a top in turn; warnings are errors. Waivers stand in rtl/lint.vlt only,
            each with its reason in a comment on the line above it.
-yosys      reads all of it, elaborates board_top and checks for latches, undriven and multiply driven nets.
-icarus     reads and elaborates board_top.
+yosys      elaborates every module and checks for latches, undriven and multiply driven nets.
+icarus     elaborates every module.
+Every Verilog file below rtl/ is read by all three: one of another kind than .sv is a problem.
 Packages are read first. Exit status 0 clean, 1 problems, 77 the tool is not installed.
 """
 
@@ -18,7 +19,8 @@ import sys
 from common import ROOT, files, finish, skip
 
 TOP = "board_top"
-SIMULATION_ONLY = {"board_sim"}  # tops for simulation, never synthesized
+SIMULATION_ONLY = {"board_sim"}  # tops for simulation, never synthesized: read by Verilator only
+VERILOG = {".v", ".vh", ".sv", ".svh", ".vl", ".verilog"}
 
 
 def rtl_files(root):
@@ -32,6 +34,11 @@ def rtl_files(root):
 def run(command, root):
     done = subprocess.run(command, cwd=root, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return done.returncode, done.stdout
+
+
+def unread_problems(root):
+    """Verilog that rtl_files() does not hand to the tools."""
+    return [f"{file}: no tool reads it; RTL stands in .sv files" for file in files(root, ["rtl"], VERILOG - {".sv"})]
 
 
 def waiver_problems(root):
@@ -72,7 +79,7 @@ def module_problems(root, modules):
 
 
 def lint_verilator(root, packages, modules):
-    problems = waiver_problems(root) + module_problems(root, modules)
+    problems = unread_problems(root) + waiver_problems(root) + module_problems(root, modules)
     folders = sorted({str(f.parent) for f in modules})
     waivers = ["rtl/lint.vlt"] if (root / "rtl/lint.vlt").exists() else []
     for module in modules:
@@ -88,14 +95,16 @@ def lint_yosys(root, packages, modules):
     sources = [str(f) for f in packages + modules if f.stem not in SIMULATION_ONLY]
     # A latch that "always @*" makes is only a remark in the log, so look for the cells.
     no_latch = "select -assert-none t:$dlatch t:$adlatch t:$sr"
-    script = f"read_verilog -sv {' '.join(sources)}; hierarchy -check -top {TOP}; proc; {no_latch}; check -assert"
+    # Without a top every module is elaborated, also those that board_top's default parameters leave out.
+    script = f"read_verilog -sv {' '.join(sources)}; hierarchy -check; proc; {no_latch}; check -assert"
     status, output = run(["yosys", "-q", "-p", script], root)
     return [output.strip()[-3000:] or "yosys failed"] if status != 0 else []
 
 
 def lint_icarus(root, packages, modules):
     sources = [str(f) for f in packages + modules if f.stem not in SIMULATION_ONLY]
-    status, output = run(["iverilog", "-g2012", "-t", "null", "-s", TOP, *sources], root)
+    tops = [argument for f in modules if f.stem not in SIMULATION_ONLY for argument in ("-s", f.stem)]
+    status, output = run(["iverilog", "-g2012", "-t", "null", *tops, *sources], root)
     # Icarus 11 says "sorry" where it only simulates more slowly; what it cannot read is an error and a non-zero status.
     return [output.strip()[-3000:] or "iverilog failed"] if status != 0 else []
 

@@ -177,7 +177,7 @@ def print_results(requirements, tests, junit):
         name = plain_name(case.get("name"))
         results[name].add(case.get("status"))
         results[name.split(".")[-1]].add(case.get("status"))
-        results[re.sub(r"^(vectors\.\w+)_(?:rtl|systemc|both)$", r"\1", name)].add(case.get("status"))
+        results[re.sub(r"^(vectors\.\w+?)_(?:board_)?(?:rtl|systemc|both)$", r"\1", name)].add(case.get("status"))
     for name in requirements:
         for test in sorted(t for t in tests if name in t.ids):
             plain = plain_name(test.name.replace("bench ", ""))

@@ -1,4 +1,4 @@
-/* Servo ICs and MACRO ICs on the expansion bus. Shadows make a field write one bus cycle; they are owned by the background and
+/* Servo ICs and MACRO ICs on the expansion bus. Shadows hold the fields of I-variables; they are owned by the background and
  * real-time tasks, and the servo task is held off because it switches amplifier enables in the same words. */
 #include "firmware/hal/gate_ic.h"
 
@@ -23,6 +23,10 @@ unsigned gate_ic_of_direction(uint32_t variable) {
   return ic;
 }
 
+/* Bits of a channel's control word that others switch while the machine runs, M-variables among them: counter reset, EQU state,
+ * amplifier enable. No I-variable has them, so no shadow does: a field write takes them from the IC. Bit 11 falls back by itself. */
+enum { CHANNEL_LIVE_BITS = 1 << 10 | 1 << 12 | 1 << 14 };
+
 static uint32_t strobe_address(unsigned ic) {
   return gate_ic_base(ic) + (ic >= GATE_IC_MACRO ? MACRO_IC_X_ADC_STROBE : SERVO_IC_X_ADC_STROBE);
 }
@@ -36,19 +40,6 @@ static bool answers(uint32_t address, uint32_t bits) {
   good = good && (*hal_x(address) & HAL_WORD_MASK) == (0xA5C368u & bits);
   *hal_x(address) = before;
   return good;
-}
-
-void gate_ic_find(void) {
-  found = macrogates = 0;
-  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
-    const struct gate_ic reset = {SERVO_IC_CLOCK_CONTROL_RESET, SERVO_IC_PWM_CONTROL_RESET, {0, 0, 0, 0}};
-    shadow[ic] = reset;
-    if (!answers(strobe_address(ic), HAL_WORD_MASK)) continue;
-    found |= 1u << ic;
-    /* Only a DSPGATE2 has supplementary channels. */
-    if (ic >= GATE_IC_MACRO && !answers(gate_ic_base(ic) + MACRO_IC_X_SUPPLEMENTARY_1, MACRO_IC_SUPPLEMENTARY_1_WRITTEN))
-      macrogates |= 1u << ic;
-  }
 }
 
 uint32_t gate_ic_found(void) { return found; }
@@ -90,13 +81,37 @@ static uint32_t address_of(unsigned ic, gate_word_t word, unsigned channel) {
   }
 }
 
+/* The control words as their shadows: a start finds every amplifier off, also without a reset of the ICs. */
+static void reset_channels(unsigned ic) {
+  if (gate_ic_is_macrogate(ic)) return;
+  const unsigned channels = ic >= GATE_IC_MACRO ? 2u : GATE_IC_CHANNELS;
+  for (unsigned channel = 0; channel < channels; ++channel)
+    *hal_x(address_of(ic, GATE_WORD_CHANNEL, channel)) = shadow[ic].channel[channel];
+}
+
+void gate_ic_find(void) {
+  found = macrogates = 0;
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
+    const struct gate_ic reset = {SERVO_IC_CLOCK_CONTROL_RESET, SERVO_IC_PWM_CONTROL_RESET, {0, 0, 0, 0}};
+    shadow[ic] = reset;
+    if (!answers(strobe_address(ic), HAL_WORD_MASK)) continue;
+    found |= 1u << ic;
+    /* Only a DSPGATE2 has supplementary channels. */
+    if (ic >= GATE_IC_MACRO && !answers(gate_ic_base(ic) + MACRO_IC_X_SUPPLEMENTARY_1, MACRO_IC_SUPPLEMENTARY_1_WRITTEN))
+      macrogates |= 1u << ic;
+    reset_channels(ic);
+  }
+}
+
 static void set_field(unsigned ic, gate_word_t word, unsigned channel, unsigned lsb, unsigned width, uint32_t value) {
   if (!gate_ic_present(ic)) return;
   const uint32_t mask = ((1u << width) - 1u) << lsb;
   const uint32_t state = hal_mask_servo();
   uint32_t* kept = shadow_of(ic, word, channel);
   *kept = (*kept & ~mask) | ((value << lsb) & mask);
-  *hal_x(address_of(ic, word, channel)) = *kept;
+  const uint32_t address = address_of(ic, word, channel);
+  const uint32_t live = word == GATE_WORD_CHANNEL ? *hal_x(address) & CHANNEL_LIVE_BITS : 0u;
+  *hal_x(address) = *kept | live;
   hal_unmask(state);
 }
 

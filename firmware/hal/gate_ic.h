@@ -23,7 +23,8 @@ unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT 
 /* Clock direction that makes both clocks inputs: 3, on a MACROGATE 1, because it has the bit for PHASE only. */
 uint32_t gate_ic_direction_inputs(unsigned ic);
 
-/* Words of an IC. The firmware keeps what it wrote: read-modify-write never reads the bus. */
+/* Words of an IC. The firmware keeps what it wrote: read-modify-write reads from the IC only the bits of a channel's control
+ * word that others switch at run time. */
 typedef enum {
   GATE_WORD_CLOCK,
   GATE_WORD_PWM,

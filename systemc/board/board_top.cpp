@@ -18,9 +18,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
       host_signals_("host_signals"),
       dpram_("dpram"),
       panel_port_("panel_port"),
-      gate_ics_(ics),
-      block_{&bus_sync_,     &clock_select_, &watchdog_,  &isa_slave_, &host_port_, &interrupt_controller_,
-             &host_signals_, &dpram_,        &panel_port_} {
+      gate_ics_(ics) {
   inputs_.fitted = ics;
   reset_all(0);
   outputs_ = pins();
@@ -41,7 +39,7 @@ void BoardTop::watch_motors(std::uint32_t ics) {
 }
 
 void BoardTop::reset_all(Tick t) {
-  for (ModelBlock* block : block_) block->reset(t);
+  each_block([t](ModelBlock& block) { block.reset(t); });
   gate_ics_.reset(t);
   rdata_ = 0;
   from_dpram_ = false;
@@ -53,7 +51,7 @@ void BoardTop::reset_all(Tick t) {
 }
 
 void BoardTop::advance_all(Tick t) {
-  for (ModelBlock* block : block_) block->advance(t);
+  each_block([t](auto& block) { block.advance(t); });
 }
 
 // The edge t. Everything that looks at a register of another block does so before any block executes the edge.
@@ -226,7 +224,7 @@ bool BoardTop::show_motors() {
 
 Tick BoardTop::next_event() const {
   Tick next = gate_ics_.next_event();
-  for (const ModelBlock* block : block_) next = std::min(next, block->next_event());
+  each_block([&next](const auto& block) { next = std::min(next, block.next_event()); });
   if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
   if (select_.ic >= 0) next = std::min(next, gate_ics_.next_word_event(static_cast<unsigned>(select_.ic), now_));
   if (straps_move()) next = std::min(next, next_ref_edge(now_));

@@ -10,7 +10,7 @@
 
 namespace brick {
 
-class BusSync : public sc_core::sc_module, public ModelBlock {
+class BusSync final : public sc_core::sc_module, public ModelBlock {
  public:
   explicit BusSync(const sc_core::sc_module_name& name) : sc_module(name) {}
 

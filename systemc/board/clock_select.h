@@ -10,7 +10,7 @@
 
 namespace brick {
 
-class ClockSelect : public sc_core::sc_module, public ModelBlock {
+class ClockSelect final : public sc_core::sc_module, public ModelBlock {
  public:
   explicit ClockSelect(const sc_core::sc_module_name& name) : sc_module(name) {}
 

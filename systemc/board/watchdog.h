@@ -10,7 +10,7 @@
 
 namespace brick {
 
-class Watchdog : public sc_core::sc_module, public ModelBlock {
+class Watchdog final : public sc_core::sc_module, public ModelBlock {
  public:
   explicit Watchdog(const sc_core::sc_module_name& name) : sc_module(name) {}
 

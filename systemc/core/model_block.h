@@ -7,6 +7,8 @@
 //    output, such as a read multiplexer, follows the inputs as they stand).
 //  - At an event the board calls advance(t) of every block, then copies the wires, then asks next_event() anew. So edge t
 //    sees what the others showed before t, whatever the order of the calls.
+//  - An IC (systemc/servo_ic/clock_follower.h) may stay behind: before an input of it changes or anything about it is asked,
+//    its owner executes the edges that it has missed, with the inputs as they were.
 #pragma once
 
 #include "systemc/core/ticks.h"

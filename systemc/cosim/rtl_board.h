@@ -61,6 +61,8 @@ class RtlBoard : public Board {
     if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
 #endif
     model_->final();
+    Verilated::threadContextp(&context_);  // its scopes leave the context last used, which may be another board's, long gone
+    model_.reset();
   }
 
   Tick now() const override { return now_; }

@@ -14,7 +14,7 @@
 
 namespace brick {
 
-class Dpram : public sc_core::sc_module, public ModelBlock {
+class Dpram final : public sc_core::sc_module, public ModelBlock {
  public:
   explicit Dpram(const sc_core::sc_module_name& name);
 

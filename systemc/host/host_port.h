@@ -13,7 +13,7 @@
 
 namespace brick {
 
-class HostPort : public sc_core::sc_module, public RefClockedBlock {
+class HostPort final : public sc_core::sc_module, public RefClockedBlock {
  public:
   explicit HostPort(const sc_core::sc_module_name& name);
 

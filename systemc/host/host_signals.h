@@ -12,7 +12,7 @@
 
 namespace brick {
 
-class HostSignals : public sc_core::sc_module, public RefClockedBlock {
+class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
  public:
   explicit HostSignals(const sc_core::sc_module_name& name);
 

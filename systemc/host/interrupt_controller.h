@@ -12,7 +12,7 @@
 
 namespace brick {
 
-class InterruptController : public sc_core::sc_module, public RefClockedBlock {
+class InterruptController final : public sc_core::sc_module, public RefClockedBlock {
  public:
   explicit InterruptController(const sc_core::sc_module_name& name);
 

@@ -11,7 +11,7 @@
 
 namespace brick {
 
-class IsaSlave : public sc_core::sc_module, public RefClockedBlock {
+class IsaSlave final : public sc_core::sc_module, public RefClockedBlock {
  public:
   struct Config {
     std::uint16_t io_base = 0x210;

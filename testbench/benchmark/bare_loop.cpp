@@ -42,7 +42,7 @@ BareLoop::BareLoop() : model_(std::make_unique<Model>()) {
   t.pa_wr_ni = 1;
 }
 
-BareLoop::~BareLoop() = default;
+BareLoop::~BareLoop() { Verilated::threadContextp(&model_->context); }  // as in systemc/cosim/rtl_board.h
 
 void BareLoop::run(Tick ticks) {
   for (Tick i = 0; i < ticks; ++i) model_->tick();

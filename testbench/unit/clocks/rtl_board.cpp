@@ -28,7 +28,10 @@ RtlBoard::RtlBoard(bool seeded_bug) : impl_(std::make_unique<Impl>()) {
   sample();
 }
 
-RtlBoard::~RtlBoard() { impl_->top.final(); }
+RtlBoard::~RtlBoard() {
+  impl_->top.final();
+  Verilated::threadContextp(&impl_->context);  // as in systemc/cosim/rtl_board.h
+}
 
 void RtlBoard::drive() {
   Vclocks_board& t = impl_->top;

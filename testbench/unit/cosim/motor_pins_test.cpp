@@ -120,6 +120,55 @@ TEST(MotorPinsOfAnEngine, OfAnIcThatIsNotFittedShowZero) {
   }
 }
 
+void write(Board& board, BoardInputs& in, std::uint32_t address, bool x, std::uint32_t word) {
+  in.pa_addr = address;
+  in.pa_x = x;
+  in.pa_aa = 2;
+  in.pa_wdata = word;
+  board.set_inputs(in);
+  board.run_until(board.now() + 6);
+  in.pa_wr_n = false;
+  board.set_inputs(in);
+  board.run_until(board.now() + 12);
+  in.pa_wr_n = true;
+  board.set_inputs(in);
+  board.run_until(board.now() + 12);
+}
+
+// 25 ms without a strobe: servo-ic.md section 10. 960 periods of 1024 clk_ref are 2949120 ticks.
+TEST(MotorPinsOfTheBoard, AreOffAfterTheWatchdogTripped) {
+  auto board = make_lockstep_board(make_rtl_board(0x3), make_model_board(0x3));
+  BoardInputs in;
+  start_clocks(*board, in);
+  write(*board, in, 0x078005, true, 1u << 14 | 1u << 11 | 1u << 12);  // channel 1: AENA; EQU set by hand
+  write(*board, in, 0x07800D, true, 1u << 23);                        // channel 2: PFM
+  write(*board, in, 0x07800C, false, 0x100000);
+  write(*board, in, 0x078015, true, 1u << 22);  // channel 3: DAC
+  write(*board, in, 0x078012, false, 0x7FFFFF);
+  board->watch_motors(1);
+  MotorOutputs moved;
+  board->on_motor_change = [&](Tick, unsigned, const MotorOutputs& before, const MotorOutputs& after) {
+    for (unsigned i = 0; i < kMotorOutputWords; ++i) moved.w[i] |= before.w[i] ^ after.w[i];
+  };
+  const Tick trip = board->run_until(4'000'000, select_pins(pin::kWdTripped));
+  ASSERT_LT(trip, 2'949'120 + 200'000);
+  EXPECT_EQ(moved.get(motor_pin::kPwmATop, 0), 1u);
+  EXPECT_EQ(moved.get(motor_pin::kPfmPulse, 1), 1u);
+  EXPECT_EQ(moved.get(motor_pin::kDac, 2), 1u);
+  EXPECT_EQ(moved.get(motor_pin::kAena, 0), 1u) << "falls with the trip";
+  EXPECT_EQ(moved.get(motor_pin::kEqu, 0), 1u) << "falls with the trip";
+  board->run_until(trip + 2 * 26114);  // the next DAC word starts at PHASE
+  moved = {};
+  board->run_until(trip + 6 * 26114);
+  const MotorOutputs off = board->motor_outputs(0);
+  for (unsigned n = 0; n < kChannels; ++n)
+    for (const MotorField& f : motor_pin::kAll) {
+      if (f.shared || f.name == "count") continue;
+      EXPECT_EQ(off.get(f, n), 0u) << f.name << " of channel " << n + 1;
+      EXPECT_EQ(moved.get(f, n), 0u) << f.name << " of channel " << n + 1;
+    }
+}
+
 // A board that does nothing but move one motor pin at tick 5, or none.
 class OneMotorPinBoard : public Board {
  public:

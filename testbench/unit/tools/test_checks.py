@@ -2,6 +2,7 @@
 
 import hashlib
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,9 @@ import tempfile
 import unittest
 
 TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
+
+sys.path.insert(0, str(TOOLS))
+import area  # noqa: E402  (found beside the other tools)
 
 TEST_FILE = 'TEST(Breq, FallsOnALine) {\n  BRICK_COVERS("BREQ-1");\n}\n'
 
@@ -145,10 +149,61 @@ class Lint(Tree):
         self.write("rtl/board/board_top.sv", latch)
         self.expect(self.run_tool("lint_rtl.py", "yosys"), 1, "dlatch")
 
+    def test_a_file_that_no_tool_reads_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.write("rtl/servo_ic/channel_extra.v", "module channel_extra;\nendmodule\n")
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "channel_extra.v: no tool reads it")
+
+    def test_every_tool_finds_the_fault_of_a_module_that_the_board_does_not_use(self):
+        spare = self.GOOD.replace("board_top", "spare")
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.write("rtl/servo_ic/spare.sv", spare.replace("  assign", "  nothing u_nothing ();\n  assign"))
+        for tool, program in (("verilator", "verilator"), ("yosys", "yosys"), ("icarus", "iverilog")):
+            if shutil.which(program) is not None:
+                self.expect(self.run_tool("lint_rtl.py", tool), 1, "nothing")
+        self.write("rtl/servo_ic/spare.sv", spare.replace("= a_i", "= a_i ^ c;\n  wire c"))
+        for tool, text in (("verilator", "UNDRIVEN"), ("yosys", "has no driver")):
+            if shutil.which(tool) is not None:
+                self.expect(self.run_tool("lint_rtl.py", tool), 1, text)
+
     @unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
     def test_icarus_fails_on_an_unknown_module(self):
         self.write("rtl/board/board_top.sv", self.GOOD.replace("  assign", "  nothing u_nothing ();\n  assign"))
         self.expect(self.run_tool("lint_rtl.py", "icarus"), 1, "nothing")
+
+
+class Area(unittest.TestCase):
+    """The reading of Yosys' statistics; the page itself is made by ./dev area, which takes minutes."""
+
+    @staticmethod
+    def stat(**modules):
+        text = "8. Printing statistics.\n"
+        for name, (bits, cells) in modules.items():
+            text += f"\n=== {name.replace('__', chr(92))} ===\n\n   Number of wires:                 80\n   Number of memory bits:       {bits}\n"
+            text += "   Number of cells:                 61\n" + "".join(f"     {cell:<30} {number}\n" for cell, number in cells.items())
+        return text + "\n=== design hierarchy ===\n\n   top                 1\n     part              2\n\n9. Next pass.\n"
+
+    def test_a_chip_holds_each_instance_of_its_parts(self):
+        before = self.stat(top=(0, {}), part=(4096, {}))
+        log = before + self.stat(top=(0, {"$_AND_": 5, "part": 2}), part=(0, {"$_MUX_": 2, "$_DFFE_PN0P_": 7, "memory_kept": 1}))
+        self.assertEqual(area.gates(log), {"top": area.Figures(9, 14, 8192), "part": area.Figures(2, 7, 4096)})
+
+    def test_a_module_with_parameters_is_found_by_its_name(self):
+        self.assertEqual(area.plain("$paramod\\dpram\\Words=s32'0"), "dpram")
+        self.assertEqual(area.plain("$paramod$ab12\\board_top"), "board_top")
+
+    def test_an_unmapped_cell_is_an_error(self):
+        with self.assertRaisesRegex(ValueError, "add"):
+            area.gates(self.stat(top=(0, {})) + self.stat(top=(0, {"$_AND_": 5, "$add": 1})))
+
+    def test_a_carry_cell_counts_as_two_luts(self):
+        log = self.stat(top=(0, {})) + self.stat(top=(0, {"LUT4": 10, "CCU2C": 3, "PFUMX": 9, "TRELLIS_FF": 4}))
+        self.assertEqual(area.ecp5(log)["top"], area.Figures(16, 4, 0))
+
+    def test_the_page_has_every_row(self):
+        page = (TOOLS.parent / "docs/area.md").read_text()
+        for name, text in area.ROWS.items():
+            self.assertRegex(page, rf"\| `{name}` \| {re.escape(text)} \| \d+ \| \d+ \| \d+ \| \d+ \|")
 
 
 class Figures(Tree):

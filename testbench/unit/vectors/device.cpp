@@ -83,13 +83,16 @@ std::unique_ptr<Device> compared(std::unique_ptr<Device> first, std::unique_ptr<
 }
 
 const std::vector<DeviceKind>& device_kinds() {
-  static const std::vector<DeviceKind> kinds{{"channels", channels_signals(), true, false, {"rtl", "systemc", "both"}},
-                                             {"controller", controller_signals(), false, true, {"rtl", "systemc", "both"}}};
+  static const std::vector<DeviceKind> kinds{
+      {"channels", channels_signals(), true, false, {"rtl", "systemc", "both", "board_rtl", "board_systemc", "board_both"}},
+      {"controller", controller_signals(), false, true, {"rtl", "systemc", "both"}}};
   return kinds;
 }
 
 std::unique_ptr<Device> make_device(const std::string& kind, const std::string& engine, const std::string& board) {
   if (kind == "controller") return make_controller(engine, board);
+  const std::string on_board = "board_";
+  if (engine.rfind(on_board, 0) == 0) return make_board_device(engine.substr(on_board.size()));
   if (engine == "both") return compared(make_channels(true), make_channels(false));
   return make_channels(engine == "rtl");
 }

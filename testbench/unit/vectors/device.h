@@ -56,15 +56,17 @@ struct DeviceKind {
 };
 const std::vector<DeviceKind>& device_kinds();
 
-// `engine`: rtl, systemc, both. `board`: of a controller.
+// `engine`: rtl, systemc, both; for the channels also board_rtl, board_systemc, board_both: those of servo IC 0 on the whole board.
+// `board`: of a controller.
 std::unique_ptr<Device> make_device(const std::string& kind, const std::string& engine, const std::string& board);
 
 // Two devices of one kind, one step at a time; DeviceError at the first difference.
 std::unique_ptr<Device> compared(std::unique_ptr<Device> first, std::unique_ptr<Device> second);
 
-// The kinds (channels_device.cpp, controller_device.cpp).
+// The kinds (channels_device.cpp, board_device.cpp, controller_device.cpp).
 std::vector<DeviceSignal> channels_signals();
 std::unique_ptr<Device> make_channels(bool rtl);
+std::unique_ptr<Device> make_board_device(const std::string& engine);  // rtl, systemc, both
 std::vector<DeviceSignal> controller_signals();
 std::unique_ptr<Device> make_controller(const std::string& engine, const std::string& board);
 

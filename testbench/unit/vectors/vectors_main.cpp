@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   std::string path, engine = "systemc";
   bool draw = false, negative = false;
   CLI::App app{"Runs a timing vector"};
-  app.add_option("--engine", engine, "what it runs on: rtl, systemc (default), both");
+  app.add_option("--engine", engine, "what it runs on: rtl, systemc (default), both, board_rtl, board_systemc, board_both");
   app.add_flag("--draw", draw, "print the figure as WaveDrom source");
   app.add_flag("--negative", negative, "run it with each of its planted faults");
   app.add_option("FILE", path)->required();

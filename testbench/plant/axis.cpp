@@ -1,0 +1,133 @@
+#include "testbench/plant/axis.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace brick::plant {
+
+Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
+    : par_(parameters),
+      step_(step),
+      owned_(Encoder::kPins),
+      encoder_(parameters.encoder),
+      switches_(parameters.switches),
+      grids_(encoder_.grids()),
+      noise_(parameters.noise, Random(seed, 2 * (kChannels * parameters.ic + parameters.channel))),
+      adc_random_(seed, 2 * (kChannels * parameters.ic + parameters.channel) + 1),
+      motor_(parameters.motor, encoder_.units_per_revolution()),
+      amplifier_(parameters.amplifier),
+      stepper_(parameters.stepper) {
+  if (par_.ic >= kMaxServoIcs || par_.channel >= kChannels) throw std::invalid_argument("axis: no such channel");
+  if (step_ < 1 || par_.stepper.move_time < 1) throw std::invalid_argument("axis: a time below one tick");
+  if ((switches_.mask() & owned_) != 0) throw std::invalid_argument("axis: a switch on a pin of the encoder");
+  owned_ = static_cast<std::uint16_t>(owned_ | switches_.mask() | (has_amplifier() ? 1u << kFault : 0));
+  if (par_.noise.every != 0 && (par_.noise.pins & ~unsigned{owned_}) != 0) throw std::invalid_argument("axis: noise on a pin of others");
+  grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
+}
+
+MotorOutputs Axis::stops() const {
+  MotorOutputs stops;
+  if (par_.drive == Drive::kStepper) stops.set(motor_pin::kPfmPulse, par_.channel, 1);
+  if (has_adc()) {
+    stops.set(motor_pin::kAdcClk, par_.channel, 1);
+    stops.set(motor_pin::kAdcStrobe, par_.channel, 1);
+  }
+  return stops;
+}
+
+void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
+  amplifier_.enable(after.get(motor_pin::kAena, par_.channel) != 0);
+  const auto pwm = [this](const MotorOutputs& o) { return o.w[0] >> (motor_pin::kPwmATop.stride * par_.channel) & 0x3F; };
+  if (pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
+  if (par_.drive == Drive::kStepper) {
+    const unsigned n = par_.channel;
+    stepper_.changed(tick, after.get(motor_pin::kPfmPulse, n) != 0, after.get(motor_pin::kPfmDir, n) != 0, amplifier_.on());
+  }
+}
+
+bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {
+  move(now, dac_volts);
+
+  const Tick seen = now + 1;
+  unsigned pins = this->pins(motion_.at(seen));
+  if (has_amplifier()) pins |= static_cast<unsigned>(amplifier_.fault_pin()) << kFault;
+  pins ^= noise_.mask(seen);
+  std::uint16_t& shown = inputs.pins[par_.channel];
+  const auto edited = static_cast<std::uint16_t>((shown & ~unsigned{owned_}) | (pins & owned_));
+  const bool differs = edited != shown;
+  shown = edited;
+
+  next_ = std::min(next_pin_change(seen), noise_.next_change(seen)) - 1;
+  if (has_motor()) next_ = std::min(next_, motion_.t1);
+  return differs;
+}
+
+void Axis::move(Tick now, double dac_volts) {
+  switch (par_.drive) {
+    case Drive::kHand:
+      if (duration_ == 0) return;
+      motion_ = {now, now + duration_, motion_.at(now), goal_};
+      duration_ = 0;
+      return;
+    case Drive::kStepper:
+      motion_ = stepper_.motion(now, motion_);
+      return;
+    default:
+      break;
+  }
+  if (!started_) {
+    started_ = true;
+    motion_ = {now - step_, now, 0, 0};
+  }
+  if (now < motion_.t1) return;
+  const auto phases = meter_.take(now);
+  if (meter_.take_short() && par_.drive != Drive::kTorque) amplifier_.trip(Amplifier::Fault::kShortedBus);
+  while (now >= motion_.t1) integrate(dac_volts, phases);
+}
+
+void Axis::integrate(double dac_volts, const std::array<double, PwmMeter::kPhases>& phases) {
+  const double dt = static_cast<double>(step_) / static_cast<double>(kPwmClockHz);
+  const AmplifierParameters& amplifier = par_.amplifier;
+  const double half_bus = amplifier.bus_volts / 2;
+  if (!amplifier_.on())
+    motor_.coast(dt);
+  else if (par_.drive == Drive::kTorque)
+    motor_.drive_current(dt, dac_volts / 10 * amplifier.full_scale_amps);
+  else if (par_.drive == Drive::kBrush)
+    motor_.drive_brush(dt, (phases[0] - phases[1]) * half_bus);
+  else
+    motor_.drive_three_phase(dt, phases[0] * half_bus, phases[1] * half_bus, phases[2] * half_bus);
+  amplifier_.watch(motor_.current_a());
+  amplifier_.watch(motor_.current_b());
+  motion_ = {motion_.t1, motion_.t1 + step_, motion_.p1, motor_.position()};
+}
+
+std::uint16_t Axis::pins(std::int64_t position) const {
+  return static_cast<std::uint16_t>(encoder_.pins(position) | switches_.pins(position));
+}
+
+// The first edge after t that sees other pins, as far as the motion is known.
+Tick Axis::next_pin_change(Tick t) const {
+  const std::uint16_t present = pins(motion_.at(t));
+  for (;;) {
+    const Tick change = motion_.crosses(next_line(grids_, motion_.at(t), motion_.up()));
+    if (change == kNever || pins(motion_.at(change)) != present) return change;
+    t = change;
+  }
+}
+
+std::uint32_t Axis::adc_word(bool b) {
+  const double amps = b ? motor_.current_b() : motor_.current_a();
+  const std::int64_t noise = adc_random_.noise(par_.amplifier.adc_noise);
+  return amplifier_.adc_word(amps, noise, b ? 0 : static_cast<unsigned>(amplifier_.fault()));
+}
+
+void Axis::turn(std::int64_t counts, Tick duration) {
+  if (par_.drive != Drive::kHand) throw std::logic_error("axis: only a free axis can be turned by hand");
+  if (duration < 1) throw std::invalid_argument("axis: a time below one tick");
+  goal_ += counts * kUnitsPerCount;
+  duration_ = duration;
+  wake();
+}
+
+}  // namespace brick::plant

@@ -1,0 +1,89 @@
+// One axis at one channel of a servo IC: what drives it (DAC, PWM, PFM or a hand), the motor, the encoder, switches along the travel
+// and noise on the wires. Between two calls of step() everything it shows is known in advance, so it is asked for at edges only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "systemc/core/motor_pins.h"
+#include "testbench/plant/amplifier.h"
+#include "testbench/plant/encoder.h"
+#include "testbench/plant/line_noise.h"
+#include "testbench/plant/motor.h"
+#include "testbench/plant/pwm_meter.h"
+#include "testbench/plant/stepper.h"
+#include "testbench/plant/switches.h"
+
+namespace brick::plant {
+
+// kHand: turned by turn() only. kTorque: 10 V of DAC A are the full-scale current. kBrush: winding between PWM outputs A and B.
+// kThreePhase: PWM A, B, C. kStepper: PFM.
+enum class Drive { kHand, kTorque, kBrush, kThreePhase, kStepper };
+
+struct AxisParameters {
+  unsigned ic = 0, channel = 0;  // channel 0..3
+  Drive drive = Drive::kHand;
+  EncoderParameters encoder;
+  MotorParameters motor;
+  AmplifierParameters amplifier;
+  StepperParameters stepper;
+  std::vector<Switch> switches;
+  NoiseParameters noise;
+};
+
+class Axis {
+ public:
+  Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step);
+
+  unsigned ic() const { return par_.ic; }
+  unsigned channel() const { return par_.channel; }
+  bool has_amplifier() const { return par_.drive != Drive::kHand; }
+  bool has_adc() const { return has_motor() && par_.amplifier.adc; }
+
+  // The plant's side, as MotorPeer.
+  MotorOutputs stops() const;
+  void changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after);
+  bool step(Tick now, double dac_volts, MotorInputs& inputs);
+  Tick next_event() const { return next_; }
+  std::uint32_t adc_word(bool b);  // at the start of a conversion
+  void command(std::uint32_t word) { amplifier_.command(par_.channel, word), wake(); }
+
+  // For tests and benches, while the machine stands.
+  void turn(std::int64_t counts, Tick duration);  // kHand: evenly, from the next edge on
+  void cut(std::uint16_t wires) { encoder_.cut(wires), wake(); }
+  void trip(Amplifier::Fault cause) { amplifier_.trip(cause), wake(); }
+  void set_load(double torque) { motor_.set_load(torque); }
+  std::int64_t position(Tick now) const { return motion_.at(now); }  // units, kUnitsPerCount
+  std::int64_t counts(Tick now) const { return detail::floor_div(position(now), kUnitsPerCount); }
+  const Amplifier& amplifier() const { return amplifier_; }
+  const Motor& motor() const { return motor_; }
+  const Stepper& stepper() const { return stepper_; }
+
+ private:
+  bool has_motor() const { return par_.drive != Drive::kHand && par_.drive != Drive::kStepper; }
+  void wake() { next_ = 0; }
+  void move(Tick now, double dac_volts);
+  void integrate(double dac_volts, const std::array<double, PwmMeter::kPhases>& phases);
+  std::uint16_t pins(std::int64_t position) const;
+  Tick next_pin_change(Tick t) const;
+
+  AxisParameters par_;
+  Tick step_;
+  std::uint16_t owned_;  // pins that it drives; the others of the channel belong to somebody else
+  Encoder encoder_;
+  Switches switches_;
+  std::vector<PositionGrid> grids_;
+  LineNoise noise_;
+  Random adc_random_;
+  Motor motor_;
+  Amplifier amplifier_;
+  Stepper stepper_;
+  PwmMeter meter_;
+  Motion motion_;
+  std::int64_t goal_ = 0;  // of turn()
+  Tick duration_ = 0;      // of a turn that has not begun yet
+  bool started_ = false;
+  Tick next_ = 0;
+};
+
+}  // namespace brick::plant

@@ -1,0 +1,48 @@
+// Everything that is wired to the motor side of a controller: axes and, for each servo IC, the serial converters that they share.
+// Attached to a machine as its peer (systemc/machine/motor_peer.h). Equal seeds and equal outputs give equal inputs. docs/plant.md
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "systemc/machine/motor_peer.h"
+#include "testbench/plant/adc_peer.h"
+#include "testbench/plant/axis.h"
+#include "testbench/plant/dac_peer.h"
+
+namespace brick::plant {
+
+struct PlantParameters {
+  std::uint64_t seed = 1;
+  Tick step = 1152;  // of the motors' equations: 1/102400 s
+  unsigned dac_bits = 18;
+  unsigned adc_header = 4;
+  std::vector<AxisParameters> axes;
+};
+
+class Plant : public MotorPeer {
+ public:
+  explicit Plant(const PlantParameters& parameters);
+
+  Axis& axis(std::size_t index) { return *axes_.at(index); }
+  const DacPeer& dac(unsigned ic) const { return converters_.at(ic).dac; }
+  const AdcPeer& adc(unsigned ic) const { return converters_.at(ic).adc; }
+
+  std::uint32_t ics() const override;
+  MotorOutputs stops(unsigned ic) const override;
+  Tick next_event() const override;
+  void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) override;
+  bool step(Tick now, MotorInputPins& inputs) override;
+
+ private:
+  struct Converters {
+    DacPeer dac;
+    AdcPeer adc;
+  };
+  std::vector<std::unique_ptr<Axis>> axes_;
+  std::map<unsigned, Converters> converters_;  // by IC
+};
+
+}  // namespace brick::plant
