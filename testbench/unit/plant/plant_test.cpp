@@ -65,6 +65,24 @@ TEST(Plant, RepeatsARunWithTheSameSeed) {
   EXPECT_NE(first.adc, other.adc);
 }
 
+TEST(Plant, GivesEachAxisNoiseOfItsOwn) {
+  PlantParameters parameters;
+  parameters.axes.resize(2);
+  for (unsigned n = 0; n < 2; ++n) {
+    parameters.axes[n].channel = n;
+    parameters.axes[n].drive = Drive::kTorque;
+    parameters.axes[n].amplifier.adc_noise = 20;
+  }
+  Plant plant(parameters), same(parameters);
+  int equal = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::uint32_t word = plant.axis(0).adc_word(false);
+    EXPECT_EQ(word, same.axis(0).adc_word(false));
+    equal += word == plant.axis(1).adc_word(false);
+  }
+  EXPECT_LT(equal, 30);  // about one in 31: two triangles of +- 20 meet with the likelihood 2/3 / 21 = 0.032
+}
+
 TEST(Plant, ShowsTheSameWhenAskedAtEveryTick) {
   const Outcome asked_rarely = run(1, false), asked_always = run(1, true);
   EXPECT_EQ(asked_rarely.hash, asked_always.hash);
