@@ -12,7 +12,7 @@ struct RtlServoChannel::Impl {
 
 RtlServoChannel::RtlServoChannel() : impl_(std::make_unique<Impl>()) {
   Vservo_channel& t = impl_->top;
-  t.sclk_ce_i = t.pfm_ce_i = 1;
+  t.sclk_ce_i = t.pfm_ce_i = t.sel_i = 1;
   for (bool level : {true, false, true}) {  // the asynchronous reset acts on its falling edge
     t.rst_ni = level;
     t.eval();
@@ -23,9 +23,9 @@ RtlServoChannel::~RtlServoChannel() { impl_->top.final(); }
 void RtlServoChannel::step(std::int64_t periods) {
   Vservo_channel& t = impl_->top;
   while (periods-- > 0) {
-    t.clk_pwm_i = t.clk_ref_i = 1;
+    t.clk_ref_i = 1;
     t.eval();
-    t.clk_pwm_i = t.clk_ref_i = 0;
+    t.clk_ref_i = 0;
     t.eval();
   }
 }
