@@ -47,7 +47,9 @@ struct Commands {
     exec->add_option("FILE", script, "host script, - = standard input")->required();
     add_run_options(*exec, exec_options, "systemc");
     exec->add_flag("--raw", raw, "print every byte sent by the controller, control bytes as <06>");
-    exec->footer("A script holds the controller's command lines and @wait @until @signal @pic @dpram @jumper @reset @power @expect @time.");
+    exec->footer(
+        "A script holds the controller's command lines and @wait @until @signal @pic @dpram @jumper @input @encoder @jpan @reset @power "
+        "@expect @time.");
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");
