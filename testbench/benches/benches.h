@@ -10,6 +10,7 @@ Bench breq_rotary_bench();
 Bench watchdog_bench();
 Bench reinit_e3_bench();
 Bench clock_select_bench();
+Bench clock_faults_bench();
 Bench clock_macro_bench();
 
 }  // namespace brick

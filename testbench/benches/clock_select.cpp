@@ -1,7 +1,7 @@
 // clock-select: a seed-chosen half of the board's ICs as the source of PHASE and SERVO, moved there by one command line in either order,
-// one by I19, SAVE and $$$ (testbench/unit/system/clock_moves_test.cpp has all of them); then what goes wrong: two sources, none, a missing
-// IC, a MACROGATE, and the clocks from outside (jumper E1). Each IC has its own I7m00, I7m01, I7m02, so its clocks tell it apart. Every
-// edge is judged by testbench/checkers/clock_checker.h.
+// one by I19, SAVE and $$$ (testbench/unit/system/clock_moves_test.cpp has all of them). clock-faults: two sources, none, a missing IC, a
+// MACROGATE, and the clocks from outside (jumper E1). Each IC has its own I7m00, I7m01, I7m02, so its clocks tell it apart.
+// Every edge is judged by testbench/checkers/clock_checker.h.
 #include <algorithm>
 #include <cstdlib>
 #include <random>
@@ -27,14 +27,18 @@ class SelectBench {
       if ((b.board.fitted >> ic & 1) != 0) fitted_.push_back(ic);
   }
 
-  void run() {
-    b_.report.equal<std::int64_t>("ICs fitted", static_cast<std::int64_t>(fitted_.size()), __builtin_popcount(b_.board.fitted));
-    if (fitted_.size() < 2) return b_.report.fail("another IC for the clocks", "none; expected a board with two ICs");
-    host_.verdict("factory setting");
+  void sources() {
+    if (!begin()) return;
     directions("directions, factory", 3);
     own_settings();
     by_one_line();
     in_step();
+    by_i19();
+  }
+
+  void faults() {
+    if (!begin()) return;
+    own_settings();
     by_i19();
     two_sources();
     no_source();
@@ -44,6 +48,13 @@ class SelectBench {
   }
 
  private:
+  bool begin() {
+    b_.report.equal<std::int64_t>("ICs fitted", static_cast<std::int64_t>(fitted_.size()), __builtin_popcount(b_.board.fitted));
+    if (fitted_.size() < 2) b_.report.fail("another IC for the clocks", "none; expected a board with two ICs");
+    if (fitted_.size() >= 2) host_.verdict("factory setting");
+    return fitted_.size() >= 2;
+  }
+
   unsigned pick(unsigned count) { return static_cast<unsigned>(random_() % count); }
 
   // Clocks that the CPU can serve, different for each IC.
@@ -283,14 +294,24 @@ class SelectBench {
 
 }  // namespace
 
-// covers: I19-1 I19-2 I19-3 CLK-2 CLK-6
+// covers: I19-1 I19-2 CLK-2 CLK-6
 Bench clock_select_bench() {
   return {"clock-select",
-          "half of the ICs as the source of phase and servo clock, by one line and by I19; two sources, none, missing IC, MACROGATE, E1",
+          "half of the ICs as the source of phase and servo clock, by one line and by I19, SAVE, $$$",
           "servo dividers one higher than the checker is told",
           nullptr,
-          [](BenchContext& b) { SelectBench(b).run(); },
+          [](BenchContext& b) { SelectBench(b).sources(); },
           "all-ics"};
+}
+
+// covers: I19-1 I19-2 I19-3 CLK-2 CLK-6
+Bench clock_faults_bench() {
+  return {"clock-faults",
+          "two sources of the clocks, none, a missing IC, a MACROGATE, clocks from outside (E1)",
+          "servo dividers one higher than the checker is told",
+          nullptr,
+          [](BenchContext& b) { SelectBench(b).faults(); },
+          "turbo-pmac2-pc"};
 }
 
 }  // namespace brick

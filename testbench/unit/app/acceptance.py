@@ -302,6 +302,15 @@ def clock_select_negative():
     bench_fails_its_negative_control("clock-select", "systemc")
 
 
+def clock_faults():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
+        bench_passes("clock-faults", engine, seed)
+
+
+def clock_faults_negative():
+    bench_fails_its_negative_control("clock-faults", "systemc")
+
+
 def clock_macro():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
         bench_passes("clock-macro", engine, seed)
