@@ -154,21 +154,6 @@ BRICK_ON_ENGINES(ClockSourceBoards, Engine::kRtl, Engine::kSystemC, Engine::kLoc
 
 class ClockSourceFaults : public ClockSources {};
 
-TEST_P(ClockSourceFaults, BoardsOfTheTreeChooseTheirSource) {
-  BRICK_COVERS("I19-1 I19-3");
-  for (const auto& [name, i19, i4900, i4902] :
-       {std::array{"geobrick-lv-4", "7007", "$1", "$0"}, std::array{"turbo-pmac2-pc", "7007", "$3", "$1"},
-        std::array{"turbo-pmac2-pci", "7007", "$3", "$1"}, std::array{"turbo-pmac2-pci-lite", "7007", "$1", "$1"},
-        std::array{"turbo-pmac2-ultralite", "6807", "$0", "$1"}, std::array{"umac-turbo", "6807", "$C", "$1"}}) {
-    SCOPED_TRACE(name);
-    start_board(name);
-    EXPECT_EQ(ask("I19"), i19);
-    EXPECT_EQ(ask("I4900 I4902"), std::string(i4900) + "|" + i4902);
-    EXPECT_EQ(std::to_string(source()), i19);
-    EXPECT_EQ(problems(), 0u);
-  }
-}
-
 // servo-ic.md 7.1 rule 3 on the hardware: the order, and a MACROGATE passed over.
 TEST_P(ClockSourceFaults, ReInitialisationTakesTheFirstIcThatCanMakeBothClocks) {
   BRICK_COVERS("I19-3");
