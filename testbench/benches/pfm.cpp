@@ -1,0 +1,254 @@
+// pfm: OUT C of all channels as pulse trains, commands through M-variables, pulse and direction pins watched edge by edge, counters on
+// their own pulses (I7mn0 = 8). The scoreboard (testbench/checkers/pfm_scoreboard.h) has the accumulator from power-up on, so every
+// pulse has its tick whatever was commanded before.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "testbench/benches/benches.h"
+#include "testbench/benches/output_host.h"
+#include "testbench/checkers/pfm_scoreboard.h"
+
+namespace brick {
+namespace {
+
+constexpr unsigned kCommand = 7, kPosition = 1;  // M107: OUT C; M101: position at PHASE
+constexpr unsigned kSclk = 2, kOthers = 2258 & ~077;
+constexpr Tick kSclkPeriod = kTicksPerRef << kSclk;
+
+class Pfm {
+ public:
+  explicit Pfm(BenchContext& b) : host_(b), boards_(host_.channels()), inverted_(host_.channels()) {
+    if (b.negative) rule_[0].largest = rule_[1].largest = 1 << 23;
+    host_.define(kCommand, 'Y', 4, "0,24,S");
+    host_.define(kPosition, 'X', 1, "0,24,S");
+    std::vector<std::string> words;
+    for (unsigned i = 0; i < host_.channels(); ++i) {
+      words.push_back(fmt::format("M{}=0", 100 * (i + 1) + kCommand));
+      words.push_back(fmt::format("I{}=8", host_.i_channel(i, 0)));
+      words.push_back(fmt::format("I{}=2", host_.i_channel(i, 6)));
+    }
+    host_.say(words);
+  }
+
+  void vector6();
+  void ceiling();
+  void round(unsigned number, unsigned width);
+
+ private:
+  struct Inversion {
+    unsigned pulse = 0, direction = 0;  // I7mn7 bit 1, I7mn8
+  };
+  BenchReport& report() { return host_.report(); }
+  const PfmRule& rule(unsigned channel) const { return rule_[channel / kChannels]; }
+
+  void configure(std::array<unsigned, 2> divider, std::array<unsigned, 2> width);
+  void invert(const std::vector<Inversion>& values);
+  std::vector<PfmLevel> levels(unsigned channel) const;
+  std::vector<Tick> rises(unsigned channel) const;
+  void begin();
+  void command(const std::vector<int>& values);  // of all channels
+  void end(const std::string& what);
+  std::string count_difference(unsigned channel) const;
+  int random_command();
+
+  OutputHost host_;
+  std::vector<PfmScoreboard> boards_;
+  std::array<PfmRule, 2> rule_;
+  std::vector<Inversion> inverted_;
+  std::vector<std::vector<PfmCommand>> commands_;
+  std::vector<long> position_;
+};
+
+void Pfm::configure(std::array<unsigned, 2> divider, std::array<unsigned, 2> width) {
+  std::vector<std::string> words;
+  for (unsigned i = 0; i < host_.places(); ++i) {
+    words.push_back(fmt::format("I{}={}", host_.i_global(i, 3), kOthers | divider[i] << 3 | kSclk));
+    words.push_back(fmt::format("I{}={}", host_.i_global(i, 4), width[i]));
+    rule_[i].clock = kTicksPerRef << divider[i];
+    rule_[i].width = width[i];
+  }
+  host_.say(words);
+}
+
+void Pfm::invert(const std::vector<Inversion>& values) {
+  std::vector<std::string> words;
+  for (unsigned i = 0; i < host_.channels(); ++i) {
+    words.push_back(fmt::format("I{}={}", host_.i_channel(i, 7), 2 * values[i].pulse));
+    words.push_back(fmt::format("I{}={}", host_.i_channel(i, 8), values[i].direction));
+  }
+  host_.say(words);
+  inverted_ = values;
+}
+
+std::vector<PfmLevel> Pfm::levels(unsigned channel) const {
+  std::vector<PfmLevel> list;
+  const unsigned n = channel % kChannels, turn = inverted_[channel].pulse | inverted_[channel].direction << 1;
+  for (const auto& c : host_.changes(channel / kChannels)) {
+    const unsigned pins = (c.pins.get(motor_pin::kPfmPulse, n) | c.pins.get(motor_pin::kPfmDir, n) << 1) ^ turn;
+    if (list.empty() || list.back().pins != pins) list.push_back({c.tick, pins});
+  }
+  return list;
+}
+
+std::vector<Tick> Pfm::rises(unsigned channel) const {
+  std::vector<Tick> list;
+  const auto seen = levels(channel);
+  for (std::size_t i = 1; i < seen.size(); ++i)
+    if ((seen[i].pins & 1) != 0 && (seen[i - 1].pins & 1) == 0) list.push_back(seen[i].tick);
+  return list;
+}
+
+void Pfm::begin() {
+  host_.wait(2 * 13'057);  // the position is latched with PHASE
+  position_ = host_.numbers(fmt::format("M{},{},100", 100 + kPosition, host_.channels()));
+  host_.forget();
+  commands_.assign(host_.channels(), {});
+}
+
+void Pfm::command(const std::vector<int>& values) {
+  std::vector<std::string> words;
+  for (unsigned i = 0; i < host_.channels(); ++i) words.push_back(fmt::format("M{}={}", 100 * (i + 1) + kCommand, values[i]));
+  host_.say(words);
+  for (unsigned i = 0; i < host_.channels(); ++i) {
+    const Tick at = host_.written(false, host_.address(i, 4));
+    if (at < 0) report().fail(host_.name(i), "the command never came to its word");
+    commands_[i].push_back({at, values[i]});
+  }
+}
+
+// Every count is one pulse, within two SCLK periods of its leading edge.
+std::string Pfm::count_difference(unsigned channel) const {
+  const unsigned n = channel % kChannels;
+  const auto& changes = host_.changes(channel / kChannels);
+  const auto pulses = rises(channel);
+  const auto seen = levels(channel);
+  std::size_t i = 0, level = 0;
+  for (std::size_t k = 1; k < changes.size(); ++k) {
+    const auto before = changes[k - 1].pins.get(motor_pin::kCount, n), after = changes[k].pins.get(motor_pin::kCount, n);
+    if (before == after) continue;
+    if (i == pulses.size()) return fmt::format("count {} at tick {}, expected none", after, changes[k].tick);
+    while (level + 1 < seen.size() && seen[level + 1].tick <= pulses[i]) ++level;
+    const std::uint32_t expected = (before + ((seen[level].pins & 2) != 0 ? 0xFFFFFF : 1)) & 0xFFFFFF;
+    if (after != expected || changes[k].tick < pulses[i] || changes[k].tick > pulses[i] + 2 * kSclkPeriod)
+      return fmt::format("count {} at tick {}, expected {} after tick {}", after, changes[k].tick, expected, pulses[i]);
+    ++i;
+  }
+  return i == pulses.size() ? "" : fmt::format("{} counts, expected {}", i, pulses.size());
+}
+
+// No command any more; the last pulses end. Then the verdict on every edge, and the counters.
+void Pfm::end(const std::string& what) {
+  command(std::vector<int>(host_.channels(), 0));
+  host_.wait(2 * 13'057 + 256 * std::max(rule_[0].clock, rule_[1].clock));
+  const Tick to = host_.now();
+  std::array<Tick, 2> grid{-1, -1};
+  for (unsigned i = 0; i < host_.channels(); ++i)
+    if (const auto pulses = rises(i); !pulses.empty() && grid[i / kChannels] < 0) grid[i / kChannels] = pulses.front();
+  std::string text, counts;
+  std::int64_t edges = 0, counted = 0;
+  const auto position = host_.numbers(fmt::format("M{},{},100", 100 + kPosition, host_.channels()));
+  for (unsigned i = 0; i < host_.channels(); ++i) {
+    const auto seen = levels(i);
+    const std::string difference = boards_[i].judge(rule(i), commands_[i], seen, grid[i / kChannels], to);
+    edges += static_cast<std::int64_t>(seen.size()) - 1;
+    if (!difference.empty() && text.empty()) text = fmt::format("{}: {}", host_.name(i), difference);
+    const PfmScoreboard::Pulses& p = boards_[i].pulses();
+    if (p.overlap) continue;  // pulses that run together cannot be told apart at the pin
+    counted += p.up + p.down;
+    std::string off = count_difference(i);
+    if (off.empty() && position.at(i) - position_.at(i) != p.up - p.down)
+      off =
+          fmt::format("M{} went from {} to {}, {} pulses up, {} down", 100 * (i + 1) + kPosition, position_[i], position[i], p.up, p.down);
+    if (!off.empty() && counts.empty()) counts = fmt::format("{}: {}", host_.name(i), off);
+  }
+  report().step(what, text.empty() && edges > 0, text.empty() ? fmt::format("{} edges, each at its tick", edges) : text);
+  if (counted > 0 || !counts.empty())
+    report().step(what + ", one count a pulse", counts.empty(), counts.empty() ? fmt::format("{} pulses", counted) : counts);
+}
+
+// servo-ic.md 14, vector 6; the same downwards on every second channel.
+void Pfm::vector6() {
+  configure({2, 2}, {15, 15});
+  begin();
+  std::vector<int> values;
+  for (unsigned i = 0; i < host_.channels(); ++i) values.push_back(i % 2 == 0 ? 65'536 : -65'536);
+  command(values);
+  host_.wait(10 * 256 * 12);
+  for (unsigned i = 0; i < 2; ++i) {
+    const auto pulses = rises(i);
+    const auto seen = levels(i);
+    Tick period = 0, width = 0;
+    for (std::size_t k = 0; k + 1 < seen.size(); ++k)
+      if ((seen[k].pins & 1) != 0) width = std::max(width, seen[k + 1].tick - seen[k].tick);
+    for (std::size_t k = 0; k + 1 < pulses.size(); ++k) period = std::max(period, pulses[k + 1] - pulses[k]);
+    report().equal<std::int64_t>(fmt::format("{} at ${:06X}: period in ticks, 38.4 kHz", host_.name(i), values[i] & 0xFFFFFF), period,
+                                 256 * 12);
+    report().equal<std::int64_t>("width in ticks, I7004=15", width, 15 * 12);
+    report().equal<std::int64_t>("direction pin", seen.back().pins >> 1, i);
+  }
+  end("$010000 and -$010000");
+}
+
+// PFM_CLK / 4 is the most, whatever is commanded.
+void Pfm::ceiling() {
+  configure({3, 3}, {2, 2});
+  begin();
+  std::vector<int> values;
+  for (unsigned i = 0; i < host_.channels(); ++i)
+    values.push_back(std::array{8'388'607, -8'388'608, 4'194'305, -4'194'304}[i % 4] - (i > 4 && i % 2 == 0 ? 1 : 0));
+  command(values);
+  host_.wait(4'000);
+  const auto pulses = rises(0);
+  const Tick from = host_.now() - 2'400;
+  const auto count = std::count_if(pulses.begin(), pulses.end(), [from](Tick t) { return t > from; });
+  report().equal<std::int64_t>("pulses in 100 PFM_CLK at the highest command", count, 25);
+  end("commands about 2^22 and far beyond");
+}
+
+int Pfm::random_command() {
+  const int sign = host_.pick(2) == 0 ? 1 : -1;
+  switch (host_.pick(5)) {
+    case 0:
+      return sign * static_cast<int>(host_.pick(3'000));
+    case 1:
+      return sign * static_cast<int>(1'000'000 + host_.pick(7'000'000));
+    default:
+      return sign * static_cast<int>(host_.pick(300'000));
+  }
+}
+
+void Pfm::round(unsigned number, unsigned width) {
+  std::vector<Inversion> inversions;
+  for (unsigned i = 0; i < host_.channels(); ++i) inversions.push_back({host_.pick(2), host_.pick(2)});
+  invert(inversions);
+  configure({2 + host_.pick(3), 2 + host_.pick(5)}, {width, width + host_.pick(5)});
+  begin();
+  for (unsigned set = 0; set < 3; ++set) {
+    std::vector<int> values;
+    for (unsigned i = 0; i < host_.channels(); ++i) values.push_back(random_command());
+    command(values);
+    host_.wait(host_.pick(60'000));
+  }
+  end(fmt::format("round {}: PFM_CLK every {} and {} ticks, I7004={} I7104={}", number, rule_[0].clock, rule_[1].clock, rule_[0].width,
+                  rule_[1].width));
+}
+
+void run(BenchContext& b) {
+  Pfm pfm(b);
+  pfm.vector6();
+  pfm.ceiling();
+  pfm.round(1, 0);
+  pfm.round(2, 1 + static_cast<unsigned>(b.seed % 7));
+  pfm.round(3, 40 + static_cast<unsigned>(b.seed * 37 % 200));  // long pulses that run together
+}
+
+}  // namespace
+
+Bench pfm_bench() {
+  return {"pfm", "pulse trains on eight channels, every edge at its tick from power-up on; each pulse counted",
+          "the scoreboard knows no ceiling of PFM_CLK / 4", nullptr, run};
+}
+
+}  // namespace brick
