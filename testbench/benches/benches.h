@@ -12,6 +12,7 @@ Bench reinit_e3_bench();
 Bench clock_select_bench();
 Bench clock_faults_bench();
 Bench clock_macro_bench();
+Bench encoder_bench();
 Bench pwm_bench();
 Bench pfm_bench();
 

@@ -320,6 +320,19 @@ def clock_macro_negative():
     bench_fails_its_negative_control("clock-macro", "systemc")
 
 
+def encoder():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("encoder", engine, seed)
+
+
+def encoder_lockstep():
+    bench_passes("encoder", "lockstep", "3")
+
+
+def encoder_negative():
+    bench_fails_its_negative_control("encoder", "systemc")
+
+
 def installed():
     """`cmake --install` gives a command that finds its firmware and boards, wherever it stands."""
     global BRICK

@@ -1,0 +1,228 @@
+#include "testbench/benches/channel_host.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "systemc/cpu/port_a.h"
+
+namespace brick {
+
+namespace {
+constexpr Tick kQuiet = 12;  // SCLK periods after the last level
+
+// servo-ic.md 1.2, with $20 and 50 more for IC m*.
+std::uint32_t ic_base(unsigned ic) {
+  static constexpr std::uint32_t kBase[10] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300};
+  return ic < 10 ? kBase[ic] : kBase[ic - 8] + 0x20;
+}
+
+std::vector<unsigned> servo_ics(const BoardConfig& board) {
+  std::vector<unsigned> ics;
+  for (unsigned ic = 0; ic < kMaxServoIcs && ics.size() < 2; ++ic)
+    if ((board.fitted >> ic & 1) != 0) ics.push_back(ic);
+  return ics;
+}
+}  // namespace
+
+std::uint32_t PinPlayer::ics() const {
+  std::uint32_t mask = 0;
+  for (const unsigned ic : ics_) mask |= 1u << ic;
+  return mask;
+}
+
+MotorOutputs PinPlayer::stops(unsigned) const {
+  MotorOutputs pins;
+  for (unsigned n = 0; n < kChannels; ++n) pins.set(motor_pin::kPfmPulse, n, 1);
+  return pins;
+}
+
+void PinPlayer::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+  const auto place = static_cast<unsigned>(std::find(ics_.begin(), ics_.end(), ic) - ics_.begin());
+  for (unsigned n = 0; n < kChannels; ++n) {
+    const unsigned channel = place * kChannels + n;
+    Seen& s = seen[channel];
+    const auto count = static_cast<std::int32_t>(after.get(motor_pin::kCount, n));
+    if (static_cast<std::int32_t>(before.get(motor_pin::kCount, n)) != count) s.counts.push_back({tick, (count ^ 0x800000) - 0x800000});
+    if (before.get(motor_pin::kEqu, n) != after.get(motor_pin::kEqu, n)) s.equs.push_back({tick, after.get(motor_pin::kEqu, n)});
+    if (before.get(motor_pin::kPfmPulse, n) == 0 && after.get(motor_pin::kPfmPulse, n) != 0) {
+      s.pulses.push_back({tick, after.get(motor_pin::kPfmDir, n) != 0 ? -1 : 1});
+      if (on_pulse) on_pulse(tick, channel);
+    }
+  }
+}
+
+bool PinPlayer::step(Tick now, MotorInputPins& inputs) {
+  bool edited = false;
+  for (; !events_.empty() && events_.begin()->first <= now; events_.erase(events_.begin())) {
+    const PinEvent& e = events_.begin()->second;
+    inputs[ics_[e.channel / kChannels]].pins[e.channel % kChannels] = e.pins;
+    edited = true;
+  }
+  return edited;
+}
+
+ChannelHost::ChannelHost(BenchContext& bench)
+    : bench_(bench),
+      random_(bench.seed * 65'537),
+      ics_(servo_ics(bench.board)),
+      player_(ics_),
+      pins_(ics_.size() * kChannels, kIdleChannelPins) {
+  for (unsigned i = 0; i < pins_.size(); ++i) boards_.push_back(std::make_unique<ChannelScoreboard>());
+  bench.machine.attach(player_);
+  bench.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
+  bench.bus.watch(select_pins(pin::kServo), [this](Tick t, const BoardOutputs&, const BoardOutputs& o) {
+    if (o.get(pin::kServo) == 0) servo_falls_.push_back(t);
+  });
+}
+
+ChannelHost::~ChannelHost() {
+  bench_.bus.watch({}, nullptr);
+  bench_.machine.on_bus_cycle = nullptr;
+  bench_.machine.detach(player_);
+}
+
+unsigned ChannelHost::i_variable(unsigned channel, unsigned k) const {
+  const unsigned m = ic(channel);
+  return 7000 + 100 * (m < 10 ? m : m - 8) + (m < 10 ? 0 : 50) + 10 * (channel % kChannels + 1) + k;
+}
+
+std::uint32_t ChannelHost::address(unsigned channel, unsigned offset) const {
+  return ic_base(ic(channel)) + 8 * (channel % kChannels) + offset;
+}
+
+std::string ChannelHost::name(unsigned channel) const {
+  return fmt::format("{}.ch{}", servo_ic_scope(ic(channel)), channel % kChannels + 1);
+}
+
+void ChannelHost::cycle(const PortACycle& c) {
+  if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
+  const Tick sampled = fs_to_tick_floor(c.start);
+  const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), sampled);
+  reads_[2 * c.address + (c.x ? 1 : 0)] = {sampled, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next)};
+}
+
+ChannelHost::BusRead ChannelHost::last_read(bool x, std::uint32_t address) const {
+  const auto at = reads_.find(2 * address + (x ? 1 : 0));
+  return at == reads_.end() ? BusRead{} : at->second;
+}
+
+void ChannelHost::follow() {
+  for (auto& board : boards_) board->advance(now());
+}
+
+std::string ChannelHost::ask(const std::string& line) {
+  follow();
+  const Reply reply = bench_.link.command(line);
+  std::string text = reply.complete ? "" : "no reply";
+  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
+  return text;
+}
+
+void ChannelHost::expect(const std::string& line, const std::string& answer) { bench_.report.equal(line, ask(line), answer); }
+
+std::vector<long> ChannelHost::numbers(const std::string& line) {
+  follow();
+  std::vector<long> values;
+  for (const auto& l : bench_.link.command(line).lines) values.push_back(std::strtol(l.c_str(), nullptr, 10));
+  return values;
+}
+
+void ChannelHost::assign(unsigned k, const std::vector<unsigned>& values) {
+  std::string line;
+  for (unsigned i = 0; i < values.size(); ++i) line += fmt::format("{}I{}={}", i == 0 ? "" : " ", i_variable(i, k), values[i]);
+  ask(line);
+}
+
+void ChannelHost::define(unsigned number, char space, unsigned offset, const std::string& part) {
+  std::string line;
+  for (unsigned i = 0; i < channels(); ++i)
+    line += fmt::format("{}M{}->{}:${:X},{}", i == 0 ? "" : " ", number + 100 * i, space, address(i, offset), part);
+  ask(line);
+}
+
+std::vector<long> ChannelHost::read(unsigned number) { return numbers(fmt::format("M{},{},100", number, channels())); }
+
+void ChannelHost::sclk(unsigned n) {
+  std::string line;
+  for (unsigned place = 0; place < ics_.size(); ++place) {
+    const unsigned variable = i_variable(place * kChannels, 0) - 7;                              // I7m03
+    line += fmt::format("{}I{}={}", line.empty() ? "" : " ", variable, 2258 / 64 * 64 + n * 9);  // PFM_CLK the same
+  }
+  ask(line);
+  period_ = kTicksPerRef << n;
+  const Tick start = now() + 10 * period_ + pick(50);
+  for (auto& s : player_.seen) s.clear();
+  for (unsigned place = 0; place < ics_.size(); ++place) {
+    const unsigned channel = place * kChannels;
+    const auto other = static_cast<std::uint16_t>(pins_[channel] ^ 1u << kEncA);
+    player_.add({start, channel, other});
+    player_.add({start + 20 * period_, channel, pins_[channel]});
+  }
+  bench_.bus.advance_to(start + 40 * period_);
+  for (unsigned place = 0; place < ics_.size(); ++place) {
+    const unsigned channel = place * kChannels;
+    const auto& seen = player_.seen[channel].counts;
+    const Tick from = ChannelScoreboard::earliest(start, period_), to = ChannelScoreboard::latest(start, period_);
+    const bool found = seen.size() == 2 && seen[0].tick >= from && seen[0].tick <= to;
+    const Tick edge = seen.empty() ? start : seen[0].tick;
+    for (unsigned i = 0; i < kChannels; ++i) boards_[channel + i]->synchronise(edge, period_, start - 5 * period_);
+    boards_[channel]->drive(start, static_cast<std::uint16_t>(pins_[channel] ^ 1u << kEncA));
+    boards_[channel]->drive(start + 20 * period_, pins_[channel]);
+    boards_[channel]->advance(now());
+    const std::string difference = counts(channel).text;
+    bench_.report.step(
+        fmt::format("{} counts an edge of A and back, SCLK every {} ticks", name(channel), period_), found && difference.empty(),
+        found && difference.empty() ? fmt::format("after {} ticks, expected {} to {}", edge - start, from - start, to - start)
+                                    : fmt::format("expected after {} to {} ticks; {}", from - start, to - start, difference));
+  }
+  follow();
+}
+
+void ChannelHost::drive(unsigned channel, Tick start, const std::vector<Hold>& holds) {
+  Tick tick = start;
+  for (const Hold& h : holds) {
+    if (h.pins != pins_[channel]) {
+      player_.add({tick, channel, h.pins});
+      boards_[channel]->drive(tick, h.pins);
+      pins_[channel] = h.pins;
+    }
+    tick += h.ticks;
+  }
+  played_ = std::max(played_, tick);
+}
+
+void ChannelHost::play() {
+  bench_.bus.advance_to(std::max(played_, now()) + kQuiet * period_);
+  for (unsigned i = 0; i < channels(); ++i) {
+    for (const auto& p : player_.seen[i].pulses) boards_[i]->pulse(p.tick, static_cast<int>(p.value));
+    player_.seen[i].pulses.clear();
+  }
+  follow();
+}
+
+namespace {
+// The first difference in words; `slack` is how much later than the rule an edge may be.
+ChannelHost::Difference differ(std::vector<ChannelScoreboard::Change>& expected, std::vector<ChannelScoreboard::Change>& seen, Tick slack) {
+  ChannelHost::Difference d{"", expected.size()};
+  const auto text = [](const std::vector<ChannelScoreboard::Change>& list, std::size_t i) {
+    return i < list.size() ? fmt::format("{} at tick {}", list[i].value, list[i].tick) : std::string("nothing");
+  };
+  for (std::size_t i = 0; i < std::max(expected.size(), seen.size()) && d.text.empty(); ++i) {
+    const bool same = i < expected.size() && i < seen.size() && expected[i].value == seen[i].value && seen[i].tick >= expected[i].tick &&
+                      seen[i].tick <= expected[i].tick + slack;
+    if (!same) d.text = fmt::format("change {}: {}, expected {}", i + 1, text(seen, i), text(expected, i));
+  }
+  expected.clear();
+  seen.clear();
+  return d;
+}
+}  // namespace
+
+ChannelHost::Difference ChannelHost::counts(unsigned channel) { return differ(boards_[channel]->counts, player_.seen[channel].counts, 0); }
+ChannelHost::Difference ChannelHost::equs(unsigned channel) {
+  return differ(boards_[channel]->equs, player_.seen[channel].equs, kTicksPerRef);
+}
+
+}  // namespace brick
