@@ -43,12 +43,9 @@ module macro_ic (
     .clk_pwm_i, .rst_ni,
     .max_count_i(max_count), .phase_div_i(phase_div), .servo_div_i(servo_div),
     .phase_ext_i(phase_ext), .servo_ext_i(servo_ext), .phase_i, .servo_i,
-    .phase_o, .servo_o, .cnt_o(cnt), .turn_o(turn),
+    .phase_o, .servo_o, .phase_oe_o, .servo_oe_o, .cnt_o(cnt), .turn_o(turn),
     .phase_rise_o(phase_rise), .phase_fall_o(phase_fall), .servo_fall_o(servo_fall)
   );
-
-  assign phase_oe_o = ~phase_ext;
-  assign servo_oe_o = ~servo_ext;
 
   // For the supplementary channels.
   logic unused_channel;

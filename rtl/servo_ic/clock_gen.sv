@@ -1,5 +1,6 @@
 // Clock chain of a servo IC: triangle counter (MaxPhase), phase divider, servo divider, PHASE and SERVO outputs, and the
-// re-alignment to an external phase clock. Clock clk_pwm_i (117.9648 MHz), asynchronous reset. docs/clock.md, servo-ic.md 5.1.
+// re-alignment to an external phase clock. A pin changes its direction without a short pulse: it is released while both clocks
+// are high, and taken with a rising edge of the own clock while the net is high. Clock clk_pwm_i (117.9648 MHz), asynchronous reset. docs/clock.md, servo-ic.md 5.1.
 //
 // The triangle is kept as a ramp: ramp = up ? cnt : ~cnt, which counts up in both directions from -(I+1) to I+1 (I = I7m00).
 // So a turnaround is ramp == top, half way is ramp == -1, and nearly every tick is one increment and two comparisons.
@@ -17,6 +18,8 @@ module clock_gen (
   input  wire logic        servo_i,
   output logic             phase_o,       // own phase clock; high while external
   output logic             servo_o,
+  output logic             phase_oe_o,    // the pin is driven
+  output logic             servo_oe_o,
   output logic [16:0]      cnt_o,         // triangle counter, signed
   output logic             turn_o,        // this edge leaves a turnaround
   output logic             phase_rise_o,  // this edge raises, lowers the phase clock, lowers the servo clock
@@ -36,15 +39,22 @@ module clock_gen (
   logic [3:0]  servo_cnt_d, servo_cnt_q;  // phase periods to the next servo tick
   logic [1:0]  miss_d, miss_q;
   logic        phase_d, phase_q, servo_d, servo_q;
+  logic        phase_oe_q, servo_oe_q;
+  logic        phase_ext, servo_ext;       // the pin is followed: a pin still driven is not
   logic [1:0]  sync1_q, sync2_q;          // {servo, phase} pins, two-flop synchroniser
 
   // Every other tick is just one more step of the ramp.
-  logic at_top, at_middle, ext_phase, ext_servo, special, turn, retard;
+  logic at_top, at_middle, ext_phase, ext_servo, phase_release, servo_release, special, turn, retard;
   assign at_top    = ramp_q == top_q;
   assign at_middle = &ramp_q;
-  assign ext_phase = phase_ext_i & (sync2_q[0] != phase_q);
-  assign ext_servo = servo_ext_i & (sync2_q[1] != servo_q);
-  assign special   = at_top | at_middle | ext_phase | ext_servo;
+  assign phase_ext = phase_ext_i & ~phase_oe_q;
+  assign servo_ext = servo_ext_i & ~servo_oe_q;
+  assign ext_phase = phase_ext & (sync2_q[0] != phase_q);
+  assign ext_servo = servo_ext & (sync2_q[1] != servo_q);
+  // A pin that is to become an input goes while it is high. SERVO rises with an edge of PHASE, so PHASE waits for SERVO.
+  assign servo_release = servo_oe_q & servo_ext_i & servo_q;
+  assign phase_release = phase_oe_q & phase_ext_i & phase_q & (servo_q | ~(servo_oe_q & servo_ext_i));
+  assign special   = at_top | at_middle | ext_phase | ext_servo | phase_release | servo_release;
 
   // External rising edge: the nearest turnaround is moved to this edge, the coming one forward or the last one back.
   logic signed [17:0] to_next, from_last;
@@ -89,7 +99,7 @@ module clock_gen (
     odd_d       = odd_q;
     if (!special) begin
       // nothing
-    end else if (phase_ext_i) begin
+    end else if (phase_ext) begin
       phase_d     = sync2_q[0];
       phase_cnt_d = phase_div_i;
       fall_cnt_d  = 4'd0;
@@ -117,7 +127,7 @@ module clock_gen (
     servo_cnt_d = servo_cnt_q;
     if (!special) begin
       // nothing
-    end else if (servo_ext_i) begin
+    end else if (servo_ext) begin
       servo_d     = sync2_q[1];
       servo_cnt_d = servo_div_i;
     end else if (phase_q != phase_d) begin
@@ -145,6 +155,8 @@ module clock_gen (
       miss_q      <= 2'd0;
       phase_q     <= 1'b1;
       servo_q     <= 1'b1;
+      phase_oe_q  <= 1'b0;
+      servo_oe_q  <= 1'b0;
       sync1_q     <= 2'b11;
       sync2_q     <= 2'b11;
     end else begin
@@ -161,12 +173,18 @@ module clock_gen (
         miss_q      <= miss_d;
         phase_q     <= phase_d;
         servo_q     <= servo_d;
+        if (phase_release)                                           phase_oe_q <= 1'b0;
+        else if (!phase_ext_i && !phase_q && phase_d && sync2_q[0])  phase_oe_q <= 1'b1;
+        if (servo_release)                                           servo_oe_q <= 1'b0;
+        else if (!servo_ext_i && !servo_q && servo_d && sync2_q[1])  servo_oe_q <= 1'b1;
       end
     end
   end
 
-  assign phase_o      = phase_q | phase_ext_i;
-  assign servo_o      = servo_q | servo_ext_i;
+  assign phase_o      = phase_q | phase_ext;
+  assign servo_o      = servo_q | servo_ext;
+  assign phase_oe_o   = phase_oe_q;
+  assign servo_oe_o   = servo_oe_q;
   assign cnt_o        = up_q ? ramp_q : ~ramp_q;
   assign turn_o       = turn;
   assign phase_rise_o = ~phase_q & phase_d;

@@ -191,18 +191,20 @@ void GateIcs::look(unsigned ic, Tick now) {
 void GateIcs::drive(unsigned ic) {
   const ClockFollower& follower = *follower_[ic];
   const std::uint32_t bit = 1u << ic;
-  drivers_.phase = (drivers_.phase & ~bit) | (follower.phase_oe() ? bit : 0);
-  drivers_.servo = (drivers_.servo & ~bit) | (follower.servo_oe() ? bit : 0);
-  drives_ = drivers_.phase | drivers_.servo;
+  drives_ = (drives_ & ~bit) | (follower.clock_gen().active() ? bit : 0);
   if ((drives_ & bit) != 0) driver_[ic]->take(follower.clock_gen());
 }
 
 void GateIcs::show_drivers() {
   next_clock_ = kNever;
   phase_levels_ = servo_levels_ = ~0u;
+  drivers_.phase = drivers_.servo = 0;
   for_each_bit(drives_, [&](unsigned ic) {
     const ClockGen& driver = *driver_[ic];
     next_clock_ = std::min(next_clock_, driver.next_event());
+    if (driver.phase_oe()) drivers_.phase |= 1u << ic;
+    if (driver.servo_oe()) drivers_.servo |= 1u << ic;
+    if (!driver.active()) drives_ &= ~(1u << ic);
     if (!driver.phase()) phase_levels_ &= ~(1u << ic);
     if (!driver.servo()) servo_levels_ &= ~(1u << ic);
   });

@@ -16,8 +16,8 @@ class ClockFollower : public ModelBlock {
   // Clock pins; seen by the edges to come.
   virtual void set_pins(bool phase, bool servo) = 0;
   virtual const ClockGen& clock_gen() const = 0;
-  bool phase_oe() const { return !clock_gen().in.phase_ext; }
-  bool servo_oe() const { return !clock_gen().in.servo_ext; }
+  bool phase_oe() const { return clock_gen().phase_oe(); }
+  bool servo_oe() const { return clock_gen().servo_oe(); }
 
   // Executes the edges up to t with the pins as `history` has them; it holds all edges up to t.
   void catch_up(const ClockHistory& history, Tick t) {

@@ -25,8 +25,9 @@ void ClockGen::reset(Tick t) {
 Tick ClockGen::next_special_edge() const {
   Tick next = next_turn();
   if (s_.ramp < 0) next = std::min(next, now_ - s_.ramp);  // half way: ramp == -1 before the edge
-  if (in.phase_ext) next = std::min(next, now_ + edges_until_change(s_.phase, s_.phase2, s_.phase1, in.phase));
-  if (in.servo_ext) next = std::min(next, now_ + edges_until_change(s_.servo, s_.servo2, s_.servo1, in.servo));
+  if (phase_release() || servo_release()) return now_ + 1;
+  if (phase_ext()) next = std::min(next, now_ + edges_until_change(s_.phase, s_.phase2, s_.phase1, in.phase));
+  if (servo_ext()) next = std::min(next, now_ + edges_until_change(s_.servo, s_.servo2, s_.servo1, in.servo));
   return next;
 }
 
@@ -57,12 +58,14 @@ bool ClockGen::align(bool& retard) {
 // One clock edge, as the RTL describes it.
 void ClockGen::step() {
   const bool middle = s_.ramp == -1;
-  const bool last_phase = s_.phase;
+  const bool last_phase = s_.phase, last_servo = s_.servo;
+  const bool phase_follows = phase_ext(), servo_follows = servo_ext();
+  const bool phase_goes = phase_release(), servo_goes = servo_release();
   bool turn = s_.ramp == s_.top;
   bool retard = false;
-  if (in.phase_ext && s_.phase2 && !s_.phase) turn |= align(retard);
+  if (phase_follows && s_.phase2 && !s_.phase) turn |= align(retard);
 
-  if (in.phase_ext) {
+  if (phase_follows) {
     s_.phase = s_.phase2;
     s_.phase_cnt = in.phase_div;
     s_.fall_cnt = 0;
@@ -82,7 +85,7 @@ void ClockGen::step() {
     s_.phase = false;
   }
 
-  if (in.servo_ext) {
+  if (servo_follows) {
     s_.servo = s_.servo2;
     s_.servo_cnt = in.servo_div;
   } else if (s_.phase && !last_phase) {
@@ -96,6 +99,11 @@ void ClockGen::step() {
       --s_.servo_cnt;
     }
   }
+
+  if (phase_goes) s_.phase_oe = false;
+  if (servo_goes) s_.servo_oe = false;
+  if (!in.phase_ext && !last_phase && s_.phase && s_.phase2) s_.phase_oe = true;
+  if (!in.servo_ext && !last_servo && s_.servo && s_.servo2) s_.servo_oe = true;
 
   s_.ramp = turn || retard ? -s_.top : s_.ramp + 1;
   if (turn) {
@@ -136,9 +144,10 @@ Tick ClockGen::turn_after(unsigned turns) const {
 }
 
 Tick ClockGen::next_event() const {
-  if (in.phase_ext && in.servo_ext) return kNever;  // nothing is driven
+  if (!active()) return kNever;
+  if (phase_release() || servo_release()) return now_ + 1;
   Tick next = kNever;
-  if (in.phase_ext) {
+  if (phase_ext()) {
     next = now_ + edges_until_change(s_.phase, s_.phase2, s_.phase1, in.phase);
   } else if (s_.phase && s_.odd) {
     // Falls half way to the turnaround after the fall_cnt-th one; `top` before that turnaround is the length of the way up.

@@ -30,8 +30,12 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   };
   Inputs in;
 
-  bool phase() const { return s_.phase || in.phase_ext; }  // high while the pin is an input
-  bool servo() const { return s_.servo || in.servo_ext; }
+  bool phase() const { return s_.phase || phase_ext(); }  // high while the pin is an input
+  bool servo() const { return s_.servo || servo_ext(); }
+  bool phase_oe() const { return s_.phase_oe; }  // the pin is driven
+  bool servo_oe() const { return s_.servo_oe; }
+  // Drives a pin, or will.
+  bool active() const { return s_.phase_oe || s_.servo_oe || !in.phase_ext || !in.servo_ext; }
   bool phase_clock() const { return s_.phase; }  // own or external
   bool servo_clock() const { return s_.servo; }
   int cnt() const { return s_.up ? s_.ramp : ~s_.ramp; }
@@ -52,11 +56,17 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   bool repeats() const { return in == marked_in_ && s_ == marked_; }
   void jump(Tick by) { now_ += by; }
 
-  Tick next_event() const override;  // next change of an output that is driven
+  Tick next_event() const override;  // next change of an output that is driven, or of its direction
   void advance(Tick t) override;
   void reset(Tick t) override;
 
  private:
+  // The pin is followed: a pin still driven is not.
+  bool phase_ext() const { return in.phase_ext && !s_.phase_oe; }
+  bool servo_ext() const { return in.servo_ext && !s_.servo_oe; }
+  bool servo_release() const { return s_.servo_oe && in.servo_ext && s_.servo; }
+  bool phase_release() const { return s_.phase_oe && in.phase_ext && s_.phase && (s_.servo || !(s_.servo_oe && in.servo_ext)); }
+
   struct State {
     int ramp = 0;  // up ? cnt : ~cnt, counts up from -top to top
     int top = 6528;
@@ -64,11 +74,12 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
     unsigned phase_cnt = 0, fall_cnt = 0, servo_cnt = 3, miss = 0;
     bool odd = false;
     bool phase = true, servo = true;
+    bool phase_oe = false, servo_oe = false;
     bool phase1 = true, phase2 = true, servo1 = true, servo2 = true;  // synchroniser
     bool operator==(const State& o) const {
       return ramp == o.ramp && top == o.top && up == o.up && phase_cnt == o.phase_cnt && fall_cnt == o.fall_cnt &&
-             servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase && servo == o.servo && phase1 == o.phase1 &&
-             phase2 == o.phase2 && servo1 == o.servo1 && servo2 == o.servo2;
+             servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase && servo == o.servo && phase_oe == o.phase_oe &&
+             servo_oe == o.servo_oe && phase1 == o.phase1 && phase2 == o.phase2 && servo1 == o.servo1 && servo2 == o.servo2;
     }
   };
 

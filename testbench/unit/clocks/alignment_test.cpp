@@ -110,7 +110,6 @@ TYPED_TEST(ExternalPhaseOn, OwnServoDividesTheExternalPhase) {
   BRICK_COVERS("CLK-6");
   this->rig.write(true, kClockWord, clock_word(0, 2, 1));
   EXPECT_FALSE(this->rig.phase_oe());
-  EXPECT_TRUE(this->rig.servo_oe());
   std::vector<Tick> falls, rises;
   bool last = this->rig.servo();
   const Tick start = this->rig.now() + 10;
@@ -123,6 +122,8 @@ TYPED_TEST(ExternalPhaseOn, OwnServoDividesTheExternalPhase) {
       last = this->rig.servo();
     }
   }
+  EXPECT_FALSE(this->rig.phase_oe());
+  EXPECT_TRUE(this->rig.servo_oe());
   ASSERT_GE(falls.size(), 3u);
   EXPECT_EQ(falls[1] - falls[0], 3 * 500);
   EXPECT_EQ(falls[2] - falls[1], 3 * 500);

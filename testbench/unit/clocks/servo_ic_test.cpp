@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <tuple>
+#include <vector>
 
 #include "testbench/unit/clocks/servo_ic_rig.h"
 #include "testbench/unit/covers.h"
@@ -61,6 +62,7 @@ TYPED_TEST(ServoIcOn, FactorySettingsReadBackAsDocumented) {
   this->drive(6527, 0, 3);
   EXPECT_EQ(this->rig.read(true, kClockWord), 0x3008D2u);
   EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
+  this->rig.run(2 * 4 * 13057);  // the pins are taken with rising edges
   EXPECT_TRUE(this->rig.phase_oe());
   EXPECT_TRUE(this->rig.servo_oe());
 }
@@ -199,6 +201,65 @@ TYPED_TEST(ServoIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
   this->rig.tick();
   EXPECT_EQ(this->rig.read(true, kClockWord), 0x3038D2u);
   EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
+}
+
+// A pin with a pull-up, whatever the direction: taken with a full high time and left after a full low time, whichever tick the
+// direction bits are written at.
+TYPED_TEST(ServoIcOn, DirectionChangesWithoutAShortPulse) {
+  BRICK_COVERS("CLK-6");
+  constexpr Tick kPeriod = 2 * 20 + 3, kHigh = kPeriod / 2, kLow = kPeriod - kHigh;
+  for (const unsigned servo_div : {0u, 2u}) {
+    for (Tick at = 0; at < 3 * kPeriod; at += 5) {
+      SCOPED_TRACE(::testing::Message() << "I7m02=" << servo_div << ", written " << at << " ticks into a period of SERVO");
+      this->rig.power_up();
+      this->drive(20, 0, servo_div);
+      this->rig.run(2 * 13057 + 1000);
+      this->edge_of(&ServoIcRig::servo, false);
+      this->rig.run(at);
+      this->rig.write(true, kClockWord, clock_word(0, servo_div, 3));
+      std::vector<Tick> phase_edges{this->rig.now()}, servo_edges;  // each fall and rise of the net from here on
+      bool phase = this->rig.phase() || !this->rig.phase_oe(), servo = this->rig.servo() || !this->rig.servo_oe();
+      const auto watch = [&](Tick ticks) {
+        for (Tick t = 0; t < ticks; ++t) {
+          this->rig.tick();
+          const bool p = this->rig.phase() || !this->rig.phase_oe(), s = this->rig.servo() || !this->rig.servo_oe();
+          if (p != phase) phase_edges.push_back(this->rig.now());
+          if (s != servo) servo_edges.push_back(this->rig.now());
+          phase = p, servo = s;
+        }
+      };
+      watch(6 * kPeriod);
+      EXPECT_FALSE(this->rig.phase_oe());
+      EXPECT_FALSE(this->rig.servo_oe());
+      EXPECT_TRUE(phase && servo) << "idle";
+      for (std::size_t i = phase_edges.size() - 1; i >= 2; i -= 2) EXPECT_EQ(phase_edges[i] - phase_edges[i - 1], kLow);
+      phase_edges.clear(), servo_edges.clear();
+
+      this->rig.write(true, kClockWord, clock_word(0, servo_div, 0));
+      while (!this->rig.phase_oe()) watch(1);
+      ASSERT_TRUE(phase_edges.empty());
+      const Tick taken = this->rig.now();
+      watch(8 * kPeriod);
+      ASSERT_GE(phase_edges.size(), 4u);
+      EXPECT_EQ(phase_edges[0] - taken, kHigh);
+      EXPECT_EQ(phase_edges[1] - phase_edges[0], kLow);
+      ASSERT_GE(servo_edges.size(), 2u);
+      EXPECT_EQ(servo_edges[1] - servo_edges[0], servo_div == 0 ? kLow : kPeriod);
+    }
+  }
+}
+
+// A pin whose net is low belongs to somebody else.
+TYPED_TEST(ServoIcOn, PinIsNotTakenWhileItsNetIsLow) {
+  this->drive(20, 0, 0);
+  this->rig.pins(false, false);
+  this->rig.run(2 * 13057 + 1000);
+  EXPECT_FALSE(this->rig.phase_oe());
+  EXPECT_FALSE(this->rig.servo_oe());
+  this->rig.pins(true, true);
+  this->rig.run(3 * 43);
+  EXPECT_TRUE(this->rig.phase_oe());
+  EXPECT_TRUE(this->rig.servo_oe());
 }
 
 // The model's register face for SystemC users.

@@ -95,9 +95,9 @@ TYPED_TEST(MacroIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
   for (const auto& [max_count, phase_div, servo_div] : settings) {
     SCOPED_TRACE(::testing::Message() << "I6800=" << max_count << " I6801=" << phase_div << " I6802=" << servo_div);
     this->drive(max_count, phase_div, servo_div);
+    this->rig.run(3 * (2 * 6527 + 3) * 16);  // past everything that still ran with the setting before
     EXPECT_TRUE(this->rig.phase_oe());
     EXPECT_TRUE(this->rig.servo_oe());
-    this->rig.run(3 * (2 * 6527 + 3) * 16);  // past everything that still ran with the setting before
     const Tick phase = Tick{2 * max_count + 3} * (phase_div + 1);
     const Tick fall = this->edge_of(&ServoIcRig::phase, false);
     EXPECT_EQ(this->edge_of(&ServoIcRig::phase, false) - fall, phase);
@@ -125,6 +125,7 @@ TYPED_TEST(MacroIcOn, DirectionBitsStopDrivingEachClockAlone) {
   BRICK_COVERS("CLK-2");
   for (unsigned direction = 0; direction < 4; ++direction) {
     this->drive(6527, 0, 3, direction);
+    this->rig.run(2 * 4 * 13057);  // two SERVO periods: pins are released while high, taken with rising edges
     EXPECT_EQ(this->rig.phase_oe(), (direction & 1) == 0);
     EXPECT_EQ(this->rig.servo_oe(), (direction & 2) == 0);
   }
@@ -136,6 +137,7 @@ TYPED_TEST(MacroIcOn, AMacroGateHasOneDirectionBitAndNoServoClock) {
   for (unsigned direction = 0; direction < 4; ++direction) {
     this->drive(20, 0, 0, direction);
     EXPECT_EQ(this->rig.read(true, macro::kClock), clock_word(0, 0, direction & 1));
+    this->rig.run(3 * 13057);
     EXPECT_EQ(this->rig.phase_oe(), (direction & 1) == 0);
     EXPECT_FALSE(this->rig.servo_oe());
   }

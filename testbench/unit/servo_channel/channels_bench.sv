@@ -39,9 +39,12 @@ module channels_bench (
 
   logic [16:0] cnt;
   logic        turn, phase_rise, phase_fall, servo_fall;
+  logic phase_oe, servo_oe, unused_oe;
+  assign unused_oe = &{1'b0, phase_oe, servo_oe};
+
   clock_gen u_clock_gen (
     .clk_pwm_i, .rst_ni, .max_count_i(max_count), .phase_div_i(phase_div), .servo_div_i(servo_div), .phase_ext_i(phase_ext),
-    .servo_ext_i(servo_ext), .phase_i, .servo_i, .phase_o, .servo_o, .cnt_o(cnt), .turn_o(turn),
+    .servo_ext_i(servo_ext), .phase_i, .servo_i, .phase_o, .servo_o, .phase_oe_o(phase_oe), .servo_oe_o(servo_oe), .cnt_o(cnt), .turn_o(turn),
     .phase_rise_o(phase_rise), .phase_fall_o(phase_fall), .servo_fall_o(servo_fall)
   );
 
