@@ -15,5 +15,6 @@ Bench clock_macro_bench();
 Bench encoder_bench();
 Bench pwm_bench();
 Bench pfm_bench();
+Bench serial_dac_adc_bench();
 
 }  // namespace brick
