@@ -340,6 +340,7 @@ void run(BenchContext& b) {
 
 }  // namespace
 
+// covers: CARD-1 CARD-2
 Bench serial_dac_adc_bench() {
   return {"serial-dac-adc",
           "words of 16 serial DACs and 16 serial ADCs with other clocks and strobe words, every stream of every PHASE period",
