@@ -14,6 +14,7 @@ Bench clock_faults_bench();
 Bench clock_macro_bench();
 Bench encoder_bench();
 Bench capture_compare_bench();
+Bench flags_bench();
 Bench pwm_bench();
 Bench pfm_bench();
 Bench serial_dac_adc_bench();

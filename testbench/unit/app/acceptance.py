@@ -382,6 +382,19 @@ def capture_compare_negative():
     check([s["name"] for s in results["steps"] if not s["passed"]][0].startswith("compare 1"), str(results["steps"]))
 
 
+def flags():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("flags", engine, seed)
+
+
+def flags_lockstep():
+    bench_passes("flags", "lockstep", "3")
+
+
+def flags_negative():
+    bench_fails_its_negative_control("flags", "systemc")
+
+
 def installed():
     """`cmake --install` gives a command that finds its firmware and boards, wherever it stands."""
     global BRICK
