@@ -24,7 +24,7 @@ std::string decode(SerialStream& s, const std::vector<SerialLevel>& levels, Tick
     const bool up = l->clock && !before.clock, down = !l->clock && before.clock;
     if (l->strobe != before.strobe || l->data != before.data) {
       if (rises == 0 && start < 0) start = l->tick;
-      if (rises == 0 ? l->tick != start : !down) return at(*l, "a line changes without a fall of the clock");
+      if (rises == 0 ? l->tick != start || l->clock : !down) return at(*l, "a line changes without a fall of the clock");
       if (rises == kBits && l->strobe != before.strobe) return at(*l, "the strobe does not keep its last bit");
     }
     if (l->strobe && !before.strobe && strobe_up < 0) strobe_up = l->tick;
@@ -41,6 +41,7 @@ std::string decode(SerialStream& s, const std::vector<SerialLevel>& levels, Tick
     s.strobe = s.strobe << 1 | (l->strobe ? 1u : 0u);
     for (unsigned i = 0; i < lines; ++i) shift[i] = shift[i] << 1 | (l->data >> i & 1);
   }
+  if (std::prev(l)->clock) return at(*std::prev(l), "the clock does not go low at the end, last edge");
   s.data = shift;
   return rises == kBits ? "" : fmt::format("{} clocks, expected {}, PHASE rose at {}", rises, kBits, s.phase);
 }
