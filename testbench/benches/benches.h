@@ -13,7 +13,10 @@ Bench clock_select_bench();
 Bench clock_faults_bench();
 Bench clock_macro_bench();
 Bench encoder_bench();
+Bench capture_compare_bench();
+Bench flags_bench();
 Bench pwm_bench();
 Bench pfm_bench();
+Bench serial_dac_adc_bench();
 
 }  // namespace brick

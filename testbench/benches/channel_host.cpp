@@ -100,7 +100,7 @@ void ChannelHost::cycle(const PortACycle& c) {
   if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
   const Tick sampled = fs_to_tick_floor(c.start);
   const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), sampled);
-  reads_[2 * c.address + (c.x ? 1 : 0)] = {sampled, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next)};
+  reads_[2 * c.address + (c.x ? 1 : 0)] = {sampled, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next), fs_to_tick(c.data_time)};
 }
 
 ChannelHost::BusRead ChannelHost::last_read(bool x, std::uint32_t address) const {

@@ -106,7 +106,7 @@ class ChannelHost {
   struct BusRead {
     Tick tick = -1;
     std::uint32_t data = 0;
-    Tick servo = -1;
+    Tick servo = -1, end = -1;  // `end`: the data was taken
   };
   BusRead last_read(bool x, std::uint32_t address) const;
 

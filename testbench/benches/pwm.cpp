@@ -302,6 +302,7 @@ void run(BenchContext& b) {
 
 }  // namespace
 
+// covers: CLK-6 CARD-1 CARD-2
 Bench pwm_bench() {
   return {"pwm", "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at its tick",
           "the scoreboard compares with >= instead of >", nullptr, run};

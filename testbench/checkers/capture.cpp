@@ -32,10 +32,10 @@ bool Capture::condition(std::uint16_t level) const {
 }
 
 bool Capture::step(std::uint16_t level, std::uint32_t position) {
+  const std::uint16_t now = shown(level);  // what was latched up to here
   const unsigned state = bit(level, kEncA) << 1 | bit(level, kEncB);
   seen_ |= 1u << state;
   part_ = (part_ & ~(1u << state)) | bit(level, kEncC) << state;
-  const std::uint16_t now = shown(level);
   const bool term = condition(now), by_hall = gated && (code & 1) == 0;
   constexpr unsigned kHalls = 1u << kU | 1u << kV | 1u << kW;
   const bool event = by_hall ? ((now ^ last_) & kHalls) != 0 : term && (level_rule || !term_);

@@ -44,7 +44,9 @@ void ChannelScoreboard::edge(std::int64_t k) {
     driven_.pop_front();
     busy_ = kSettle;
   }
+  const std::uint16_t level = filter_.level();
   filter_.sample(pins_, samples);
+  if (keep_levels && filter_.level() != level) levels.push_back({tick, filter_.level()});
 }
 
 void ChannelScoreboard::advance(Tick tick) {

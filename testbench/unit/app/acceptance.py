@@ -333,6 +333,68 @@ def encoder_negative():
     bench_fails_its_negative_control("encoder", "systemc")
 
 
+# covers: CLK-6
+def pwm():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("pwm", engine, seed)
+
+
+def first_failed(results):
+    return [s["name"] for s in results["steps"] if not s["passed"]][0]
+
+
+def pwm_negative():
+    results = bench_fails_its_negative_control("pwm", "systemc")
+    check(first_failed(results) == "I7004=0", str(results["steps"]))
+
+
+def pfm():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("pfm", engine, seed)
+
+
+def pfm_negative():
+    results = bench_fails_its_negative_control("pfm", "systemc")
+    check(first_failed(results).startswith("commands about 2^22"), str(results["steps"]))
+
+
+def serial_dac_adc():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("serial-dac-adc", engine, seed)
+
+
+def serial_dac_adc_negative():
+    results = bench_fails_its_negative_control("serial-dac-adc", "systemc")
+    check(first_failed(results).endswith("servo_ic0 ADC words read"), str(results["steps"]))
+
+
+def capture_compare():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("capture-compare", engine, seed)
+
+
+def capture_compare_lockstep():
+    bench_passes("capture-compare", "lockstep", "3")
+
+
+def capture_compare_negative():
+    results = bench_fails_its_negative_control("capture-compare", "systemc")
+    check([s["name"] for s in results["steps"] if not s["passed"]][0].startswith("compare 1"), str(results["steps"]))
+
+
+def flags():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("flags", engine, seed)
+
+
+def flags_lockstep():
+    bench_passes("flags", "lockstep", "3")
+
+
+def flags_negative():
+    bench_fails_its_negative_control("flags", "systemc")
+
+
 def installed():
     """`cmake --install` gives a command that finds its firmware and boards, wherever it stands."""
     global BRICK
