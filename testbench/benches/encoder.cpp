@@ -36,6 +36,7 @@ class EncoderBench {
       const auto from = modes.begin() + first;
       random_movement({from, from + static_cast<long>(std::min<std::size_t>(host_.channels(), modes.size() - first))});
     }
+    illegal_moves();
     set_modes(std::vector<unsigned>(host_.channels(), 3 + 4 * host_.pick(2)));
     timers();
     counter_reset();
@@ -129,6 +130,37 @@ class EncoderBench {
       wrong += (static_cast<unsigned>(status[i]) >> 8 & 1) != (host_.board(i).decoder.error() ? 1u : 0u);
     }
     b_.report.equal<std::int64_t>("count error after a write of 0, wrong channels", wrong, 0);
+  }
+
+  // One illegal move at a time: three lines at once, then hall lines that are no state. Pulse and direction knows no error.
+  void illegal_moves() {
+    const std::vector<unsigned> modes{1, 2, 3, 11, 15, 5, 0, 4};
+    set_modes({modes.begin(), modes.begin() + static_cast<long>(std::min<std::size_t>(host_.channels(), modes.size()))});
+    const auto put = [&](unsigned lines) {
+      for (unsigned i = 0; i < host_.channels(); ++i)
+        host_.drive(i, host_.now() + 50, {{static_cast<std::uint16_t>((host_.pins(i) & ~(kA | kB | kC)) | lines), 1}});
+      host_.play();
+    };
+    const auto errors = [&](const char* name, const std::string& expected) {
+      std::string set;
+      for (const long e : host_.read(kError)) set += e != 0 ? '1' : '0';
+      b_.report.equal<std::string>(name, set, expected.substr(0, host_.channels()));
+    };
+    const auto clear = [&] {
+      all(kError, 0);
+      for (unsigned i = 0; i < host_.channels(); ++i) host_.board(i).decoder.clear_error();
+    };
+    put(kC);
+    clear();
+    errors("count error of modes 1 2 3 11 15 5 0 4, cleared", "00000000");
+    put(kA | kB);
+    errors("A, B, C from 001 to 110", "11111100");
+    put(kA);
+    clear();
+    errors("100", "00000000");
+    put(0);
+    errors("000", "00011000");
+    judge_counts("positions meanwhile");
   }
 
   // What is read while nothing moves.

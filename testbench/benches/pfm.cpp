@@ -34,7 +34,7 @@ class Pfm {
 
   void vector6();
   void ceiling();
-  void round(unsigned number, unsigned width);
+  void round(unsigned number, unsigned width, unsigned other);
 
  private:
   struct Inversion {
@@ -219,11 +219,11 @@ int Pfm::random_command() {
   }
 }
 
-void Pfm::round(unsigned number, unsigned width) {
+void Pfm::round(unsigned number, unsigned width, unsigned other) {
   std::vector<Inversion> inversions;
   for (unsigned i = 0; i < host_.channels(); ++i) inversions.push_back({host_.pick(2), host_.pick(2)});
   invert(inversions);
-  configure({2 + host_.pick(3), 2 + host_.pick(5)}, {width, width + host_.pick(5)});
+  configure({2 + host_.pick(3), 2 + host_.pick(5)}, {width, other});
   begin();
   for (unsigned set = 0; set < 3; ++set) {
     std::vector<int> values;
@@ -239,9 +239,10 @@ void run(BenchContext& b) {
   Pfm pfm(b);
   pfm.vector6();
   pfm.ceiling();
-  pfm.round(1, 0);
-  pfm.round(2, 1 + static_cast<unsigned>(b.seed % 7));
-  pfm.round(3, 40 + static_cast<unsigned>(b.seed * 37 % 200));  // long pulses that run together
+  const auto seed = static_cast<unsigned>(b.seed % 1'000);
+  pfm.round(1, 0, 1);
+  pfm.round(2, 2 + seed % 7, 3 + seed % 5);
+  pfm.round(3, 40 + seed * 37 % 200, 255 - seed % 40);  // long pulses that run together
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 // board that it is overloaded: the cost of the tasks in CPU cycles, wait states included, is more than the servo period leaves.
 // The settings are SAVEd, so the reset line does not help. Judged by testbench/checkers/watchdog_scoreboard.h.
 #include <cstdlib>
+#include <memory>
 #include <random>
 
 #include <fmt/format.h>
 
 #include "testbench/benches/benches.h"
+#include "testbench/benches/output_watch.h"
 #include "testbench/checkers/watchdog_probe.h"
 
 namespace brick {
@@ -57,12 +59,60 @@ void bearable(BenchContext& b, unsigned i7000) {
                               ask(b, "VERSION"), "1.947");
 }
 
-void outputs_safe(BenchContext& b) {
-  // TODO(channels): AENA off, PWM TOP = BOT = off, no PFM pulse, DAC and EQU zero on every channel.
-  b.report.equal<std::int64_t>("IPOS, EROR, F1ER", b.machine.outputs().get(pin::kIpos), 0);
+constexpr Tick kOutputs = kMillisecond / 2;  // several PWM and phase periods at all the rates here
+
+// Every output of the servo ICs in use: each channel enabled, EQU set, and A, B, C as PWM, DAC with PWM, or PWM with PFM in turn.
+void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) {
+  constexpr unsigned kBase[2] = {0x78000, 0x78100};
+  unsigned mode = static_cast<unsigned>(random() % 4), modes[2][kChannels] = {};
+  for (unsigned ic = 0; ic < 2; ++ic)
+    for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n) {
+      const unsigned word = kBase[ic] + 8 * n;
+      modes[ic][n] = mode = (mode + 1) % 4;                               // I7mn6
+      const unsigned command = 1 + static_cast<unsigned>(random() % 60);  // of A, and negative of B: all four switches have their time
+      ask(b, fmt::format("I{}={} M1->X:${:X},14 M2->X:${:X},12 M3->X:${:X},11 M1=1 M2=1 M3=1 WY${:X},${:X},${:X},$100000",
+                         7000 + 100 * ic + 10 * (n + 1) + 6, mode, word + 5, word + 5, word + 5, word + 2, command << 8,
+                         (0x10000 - command) << 8));
+    }
+  b.bus.wait(kOutputs);
+  outputs.begin();
+  b.bus.wait(kOutputs);
+  std::string missing;
+  using namespace motor_pin;
+  for (unsigned ic = 0; ic < 2; ++ic)
+    for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n) {
+      const bool dac = (modes[ic][n] & 1) != 0, pfm = (modes[ic][n] & 2) != 0;
+      const auto expect_high = [&](const MotorField& pin) {
+        if (!outputs.was_high(ic, pin, n)) missing += fmt::format(" {}.ch{}.{}", servo_ic_scope(ic), n + 1, pin.name);
+      };
+      for (const MotorField* pin : {&kAena, &kEqu, dac ? &kDac : &kPwmATop, dac ? &kDacB : &kPwmBBot, pfm ? &kPfmPulse : &kPwmCTop})
+        expect_high(*pin);
+    }
+  b.report.step("outputs of all channels in use", missing.empty(), missing.empty() ? "AENA, EQU, PWM, DAC, PFM" : "dead:" + missing);
 }
 
-void dead(BenchContext& b) {
+// Amplifiers, switches and pulses are off a few ticks after the trip and stay so; a DAC word under way ends, the next is 0.
+void outputs_safe(BenchContext& b, OutputWatch& outputs) {
+  b.report.equal<std::int64_t>("IPOS, EROR, F1ER", b.machine.outputs().get(pin::kIpos), 0);
+  outputs.begin();
+  b.bus.wait(kOutputs);
+  b.report.equal<std::string>("AENA, EQU, PWM, DAC, PFM that are on", outputs.alive(), "");
+}
+
+// `ticks` after the trip, DAC lines left out.
+void outputs_at_once(BenchContext& b) {
+  constexpr Tick kAtOnce = 3 * kTicksPerRef;
+  b.bus.wait(kAtOnce);
+  unsigned on = 0;
+  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+    for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n)
+      for (const MotorField* pin : {&motor_pin::kAena, &motor_pin::kEqu, &motor_pin::kPfmPulse, &motor_pin::kPwmATop, &motor_pin::kPwmABot,
+                                    &motor_pin::kPwmBTop, &motor_pin::kPwmBBot, &motor_pin::kPwmCTop, &motor_pin::kPwmCBot})
+        on += b.machine.motor_outputs(ic).get(*pin, n);
+  b.report.equal<std::int64_t>(fmt::format("AENA, EQU, PFM, PWM that are on {} ticks after the trip", kAtOnce), on, 0);
+}
+
+void dead(BenchContext& b, OutputWatch& outputs) {
   const BoardOutputs& out = b.machine.outputs();
   b.report.equal<std::int64_t>("watchdog.tripped and line WDO", out.get(pin::kWdTripped) + out.get(pin::kWdo), 2);
   const HostBus::Pic pic = b.bus.read_pic();
@@ -82,7 +132,7 @@ void dead(BenchContext& b) {
   b.report.equal<std::int64_t>("characters that the host gets in 2 ms", answers, 0);
   b.report.equal<std::int64_t>("instructions since", static_cast<std::int64_t>(b.machine.instructions() - instructions), 0);
   b.report.equal<std::int64_t>("latched while SERVO goes on", b.machine.outputs().get(pin::kWdTripped), 1);
-  outputs_safe(b);
+  outputs_safe(b, outputs);
 }
 
 void verdict(BenchContext& b, WatchdogScoreboard& scoreboard, const std::string& name) {
@@ -116,16 +166,20 @@ void run(BenchContext& b) {
   expect(b, fmt::format("I8=0 I7002=0 I40={} I19=7107 I7100={} I7101=0 I7102=0 SAVE", i40, i7000), "");
   bearable(b, i7000);
 
+  auto outputs = std::make_unique<OutputWatch>(b.machine, b.board.fitted);
+  outputs_on(b, random, *outputs);
+
   b.bus.write_pic_edge_level(0);
   b.bus.clear_pic();
   b.bus.write_pic_mask(kWdoLine);
   if (b.negative) ask(b, fmt::format("I40={}", 3 * i40));
   probe.expect_starvation(servo_period(i7000), WatchdogScoreboard::counter_of(i40));
   b.link.send(fmt::format("I7000={}", i7000));
-  b.bus.wait_pin(pin::kWdTripped, 1, kPatience);
+  if (b.bus.wait_pin(pin::kWdTripped, 1, kPatience)) outputs_at_once(b);
   verdict(b, scoreboard, fmt::format("trip, servo {:.1f} kHz, I40={}", 117'964.8 / static_cast<double>(servo_period(i7000)), i40));
   if (scoreboard.tripped_at() < 0) return;
-  dead(b);
+  dead(b, *outputs);
+  outputs.reset();  // the restart has none
 
   restart(b, probe, scoreboard, i40);
 }

@@ -53,8 +53,8 @@ class ChannelScoreboard {
   std::vector<Change> counts, equs;  // every change, until taken
   std::uint16_t level() const { return filter_.level(); }
   bool keep_levels = false;
-  std::vector<Change> levels;  // filtered inputs, if kept
-  std::uint32_t status(std::uint32_t mask) const;  // X:+0 as far as it follows from the rules: not ENC_LOSS
+  std::vector<Change> levels;                                                      // filtered inputs, if kept
+  std::uint32_t status(std::uint32_t mask) const;                                  // X:+0 as far as it follows from the rules: not ENC_LOSS
   std::int64_t t2(Tick tick) const { return index(tick) - decoder.last_count(); }  // SCLK periods from the last count to `tick`
   Tick period() const { return period_; }
 
