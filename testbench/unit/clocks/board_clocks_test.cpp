@@ -13,6 +13,8 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kNoSource = 31, kExternalSource = 30;
+// A clock pin is released within one SERVO period and taken within one more; of PHASE and SERVO periods at reset values.
+constexpr Tick kHandOver = 3 * 4 * 13057;
 
 class BoardOn : public ::testing::TestWithParam<bool> {
  protected:
@@ -62,9 +64,9 @@ TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
   for (const auto& s : sources) {
     rig.write(true, s.base + kPwmWord, pwm_word(s.max_count));
     rig.write(true, s.base + kClockWord, clock_word(0, 3, 0));
+    rig.run(kHandOver);
     EXPECT_EQ(rig.get(pin::kPhaseSource), s.index);
     EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
-    rig.run(100'000);
     const Tick period = 2 * Tick{s.max_count} + 3;
     const Tick rise = rig.edge(pin::kPhase, 1);
     EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, period);
@@ -72,6 +74,7 @@ TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
     EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 4 * period);
     rig.write(true, s.base + kClockWord, clock_word(0, 3, 3));
   }
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
 }
 
@@ -87,12 +90,15 @@ TEST_P(BoardOn, DividersOfOtherIcsHaveNoEffect) {
 }
 
 // servo-ic.md 7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 three ticks behind, then makes the clocks of
-// the same grid itself: the first tick at which the two differ is the next edge of IC 0, the third such tick shows the conflict.
+// the same grid itself; the next turnaround finds PHASE high, so it takes the pin with the rise after that: the first tick at which the two
+// differ is the fall of IC 0 after that, the third such tick shows the conflict.
 TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   for (int edges = 0; edges < 6; ++edges) rig.edge(pin::kPhase, 1);  // IC 1 is in step
   rig.run(100);
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 0));
+  for (int rises = 0; rises < 2; ++rises) rig.edge(pin::kPhase, 1);
+  rig.run(12);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "both high: two drivers, no fight";
   const Tick first = rig.edge(pin::kPhase, 0);
   rig.run(2);
@@ -101,29 +107,32 @@ TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   rig.run(100'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u) << "until there is one driver again";
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 3));
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
 }
 
 TEST_P(BoardOn, LowestNumberedOfTwoDriversWinsAndTheConflictShows) {
   rig.write(true, kServoIcBase[1] + kPwmWord, pwm_word(1000));
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 0));
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kPhaseSource), 0u);
-  rig.run(60'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
   const Tick rise = rig.edge(pin::kPhase, 1);
   EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, 13057);
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 3, 3));
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
 }
 
 TEST_P(BoardOn, PhaseAndServoMayComeFromDifferentIcs) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 2));  // drives PHASE
   rig.write(true, kServoIcBase[1] + kClockWord, clock_word(0, 1, 1));  // drives SERVO from that PHASE
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kPhaseSource), 0u);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
-  rig.run(60'000);
   const Tick fall = rig.edge(pin::kServo, 0);
   EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 2 * 13057);
 }
@@ -141,8 +150,11 @@ TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {
   EXPECT_EQ(rig.get(pin::kServo), 0u);
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.get(pin::kPhaseSource), kExternalSource);
-  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "it keeps the level that it saw until its own next edge";
-  rig.run(60'000);
+  rig.run(kHandOver);
+  EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "it does not take nets that are low";
+  rig.in.ext_phase = rig.in.ext_servo = true;
+  rig.apply();
+  rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
 }
 
