@@ -19,7 +19,8 @@ const char* kind_name(ClockChecker::Kind kind) {
 
 Tick ClockChecker::settling(const ClockSetting& from, const ClockSetting& to) {
   const Tick period = std::max(from.half(), to.half()) * (std::max(from.phase_divider, to.phase_divider) + 1);
-  return kHandOver + period * (from.servo_divider + to.servo_divider + 6);
+  // Release and its wait, the turnaround of the new source, two SERVO periods to its first fall of SERVO.
+  return kHandOver + period * (from.servo_divider + 2 * to.servo_divider + 8);
 }
 
 void ClockChecker::violate(Tick now, Kind kind, const std::string& text) {
@@ -32,7 +33,7 @@ void ClockChecker::begin(Mode mode, std::optional<ClockSetting> to, Stage stage)
   mode_ = mode;
   next_ = to;
   stage_ = stage;
-  servo_cut_ = false;
+  first_servo_ = false;
 }
 
 void ClockChecker::run(Tick now, const ClockSetting& s) {
@@ -99,7 +100,8 @@ Tick ClockChecker::longest(bool level) const {
       return (std::max(now_is_.half(), to.half()) * (std::max(now_is_.phase_divider, to.phase_divider) + 1) + 1) / 2;
     case Mode::kMove:
       if (stage_ == Stage::kNew) return exact_length;
-      return level ? now_is_.high() + hand_over_ + to.phase() + to.high() : std::max(now_is_.low(), to.low());
+      if (!level) return now_is_.low();
+      return (stage_ == Stage::kOld ? now_is_.high() + release(now_is_) : 0) + hand_over_ + 2 * to.phase() + to.high();
     case Mode::kStop:
       return level ? kNever : exact_length;
   }
@@ -132,12 +134,11 @@ void ClockChecker::phase_edge(Tick now, bool level) {
       moving(now, level, length);
       break;
     case Mode::kStop:
-      if (stage_ != Stage::kOld) {
-        violate(now, Kind::kRelation, "PHASE moves without a source");
-      } else if (level && length < now_is_.low()) {
-        cut(length);
-      } else {
+      if (level || length <= now_is_.high()) {
         exact(now, now_is_, level, length);
+      } else {
+        violate(now, Kind::kRelation, "PHASE moves without a source");
+        falls_.reset();
       }
       break;
   }
@@ -169,19 +170,22 @@ void ClockChecker::changing(Tick now, bool level, Tick length) {
             fmt::format("PHASE {} for {} ticks while its variables change, at most {}", level_name(!level), length, longest(!level)));
 }
 
-void ClockChecker::cut(Tick length) {
-  ++counts_.cut_lows;
-  shortest_cut_ = std::min(shortest_cut_, length);
-  stage_ = Stage::kIdle;
+// A fall of PHASE is the new source's first.
+void ClockChecker::first_fall() {
+  ++counts_.odd_highs;
+  stage_ = Stage::kNew;
   falls_ = 0;
+  first_servo_ = true;
 }
 
 void ClockChecker::moving(Tick now, bool level, Tick length) {
   if (stage_ == Stage::kNew) return exact(now, *next_, level, length);
   if (level) {  // a low level ended
-    if (stage_ == Stage::kOld && length == now_is_.low()) return;
-    if (length == next_->low() && last_fall_ >= 0) return;  // the new source took over without an odd pulse
-    if (stage_ == Stage::kOld && length < now_is_.low()) return cut(length);
+    if (length != now_is_.low() && length == next_->low() && now_is_.high() >= next_->high()) {
+      first_fall();  // its first high level was as long as one of the old source
+      falls_ = 1;
+      return;
+    }
     return exact(now, now_is_, level, length);
   }
   if (stage_ == Stage::kOld && length == now_is_.high()) return;
@@ -190,24 +194,12 @@ void ClockChecker::moving(Tick now, bool level, Tick length) {
             fmt::format("PHASE high for {} ticks, the new source's first is {} at least", length, next_->high()));
   else if (length > longest(true))
     violate(now, Kind::kLate, fmt::format("PHASE high for {} ticks, {} at most while the source moves", length, longest(true)));
-  ++counts_.odd_highs;
-  if (stage_ == Stage::kOld) falls_ = 0;  // this fall is the new source's first
-  stage_ = Stage::kNew;
+  first_fall();
 }
 
 // SERVO. Called after phase_edge() of the same tick.
 void ClockChecker::servo_pin(Tick now, bool phase_changed, bool phase, bool servo) {
   const bool changed = servo != servo_;
-  const bool taking_over = mode_ == Mode::kMove || mode_ == Mode::kStop;
-  if (changed && servo && taking_over && !servo_cut_ && !(phase_changed && !phase)) {  // nobody drives: idle high
-    const bool equal_to_phase = phase_changed && stage_ == Stage::kOld && now_is_.servo_divider == 0;
-    const bool equal_to_new = phase_changed && stage_ == Stage::kNew && next_->servo_divider == 0;
-    if (!equal_to_phase && !equal_to_new) {
-      servo_cut_ = true;
-      falls_ = 0;
-      return;
-    }
-  }
   if (!phase_changed) {
     if (changed) violate(now, Kind::kRelation, fmt::format("SERVO {} without an edge of PHASE", servo ? "rises" : "falls"));
     return;
@@ -221,15 +213,18 @@ void ClockChecker::servo_pin(Tick now, bool phase_changed, bool phase, bool serv
 // Dividers that may be in force: one, or the old and the new one while they change.
 bool ClockChecker::divider_may_be(unsigned divider) const {
   if (mode_ == Mode::kChange) return divider == now_is_.servo_divider || divider == next_->servo_divider;
-  if (mode_ == Mode::kMove && (stage_ != Stage::kOld || servo_cut_)) return divider == next_->servo_divider;
+  if (mode_ == Mode::kMove && stage_ != Stage::kOld) return divider == next_->servo_divider;
   return divider == now_is_.servo_divider;
 }
 
 unsigned ClockChecker::largest_divider() const {
   if (mode_ == Mode::kChange) return std::max(now_is_.servo_divider, next_->servo_divider);
-  if (mode_ == Mode::kMove && (stage_ != Stage::kOld || servo_cut_)) return next_->servo_divider;
+  if (mode_ == Mode::kMove && stage_ != Stage::kOld) return next_->servo_divider;
   return now_is_.servo_divider;
 }
+
+// Falls of PHASE after which SERVO must have fallen.
+unsigned ClockChecker::latest_servo_fall() const { return first_servo_ ? 2 * largest_divider() + 1 : largest_divider() + 1; }
 
 // PHASE rises: SERVO rises with it when it is as fast, else it stays.
 void ClockChecker::with_rise(Tick now, bool changed, bool servo) {
@@ -245,13 +240,17 @@ void ClockChecker::with_fall(Tick now, bool changed, bool servo) {
   if (changed && servo && falls_ && *falls_ != 1) violate(now, Kind::kRelation, "SERVO rises at the wrong fall of PHASE");
   if (falls) {
     ++counts_.servo_falls;
-    if (falls_ && !divider_may_be(*falls_ - 1))
+    const unsigned number = falls_.value_or(0);
+    const bool due = first_servo_ ? number > largest_divider() && number <= latest_servo_fall() : divider_may_be(number - 1);
+    if (falls_ && !due)
       violate(now, *falls_ <= largest_divider() ? Kind::kDoubled : Kind::kMissing,
               fmt::format("SERVO falls after {} phase periods instead of {}", *falls_, largest_divider() + 1));
     falls_ = 0;
-  } else if (falls_ && *falls_ > largest_divider() && mode_ != Mode::kStop && !(mode_ == Mode::kMove && stage_ == Stage::kOld)) {
-    violate(now, Kind::kMissing, fmt::format("SERVO does not fall after {} phase periods", largest_divider() + 1));
+    first_servo_ = false;
+  } else if (falls_ && *falls_ >= latest_servo_fall()) {
+    violate(now, Kind::kMissing, fmt::format("SERVO does not fall after {} phase periods", latest_servo_fall()));
     falls_.reset();
+    first_servo_ = false;
   }
 }
 

@@ -28,8 +28,11 @@ struct ClockSetting {
 
 class ClockChecker {
  public:
-  // Between the last input and the new output firmware needs this long at most; meanwhile the nets idle high.
+  // Between the last input and the new output firmware needs this long at most, besides its wait for the release.
   static constexpr Tick kHandOver = ns_to_ticks(50'000);
+  // An IC that is to let go drives on until both its clocks are high, at most this long: SERVO just fell, so it is low for a phase
+  // period, and PHASE, which fell again with its rise, for its low time.
+  static Tick release(const ClockSetting& s) { return s.phase() + s.low(); }
 
   // From the acknowledge of the line that writes the variables or moves the source until every edge is exact again.
   static Tick settling(const ClockSetting& from, const ClockSetting& to);
@@ -48,13 +51,15 @@ class ClockChecker {
   // The variables of the source are about to be written. Every pulse is made of whole and half triangles of the old or the new
   // length, so it lies between the shorter and the longer of both settings; a servo period has the old or the new divider.
   void change(Tick now, const ClockSetting& to);
-  // Another IC, with these variables, is about to become the source. Until the old one lets go all is exact; then one low level
-  // of each net may end early (nobody drives: idle high) and one high level is odd: at least a full high level of the new source,
-  // at most what is left of the old one, the hand-over, and one and a half periods of the new one.
+  // Another IC, with these variables, is about to become the source. The old one lets go while both nets are high and the new one
+  // begins with a full high time, so every low level is exact, of the old or of the new source, and one high level of PHASE is
+  // odd: at least a full one of the new source; at most one of the old, the release, the hand-over, two periods of the new source
+  // (its running one, and the one that ends with the rise at which it takes the pin) and its high time. SERVO first falls with
+  // fall number divider + 1 at the earliest and, because its pin is taken a SERVO period after PHASE, 2 x divider + 1 at the latest.
   void move(Tick now, const ClockSetting& to, Tick hand_over = kHandOver);
   // The same from no source; `within` is the longest time until the new one drives.
   void start(Tick now, const ClockSetting& to, Tick within);
-  void stop(Tick now);  // ... to no source: after one early rise nothing moves any more
+  void stop(Tick now);  // ... to no source: all is exact until a high level that does not end any more
   void allow_conflict(bool allowed) { conflict_allowed_ = allowed; }
 
   // What it sees --------------------------------------------------------------------------------------------------------
@@ -64,27 +69,27 @@ class ClockChecker {
   // Results -------------------------------------------------------------------------------------------------------------
   const std::vector<Violation>& violations() const { return violations_; }
   struct Counts {
-    unsigned phase_falls = 0, servo_falls = 0, cut_lows = 0, odd_highs = 0;
+    unsigned phase_falls = 0, servo_falls = 0, odd_highs = 0;
   };
   const Counts& counts() const { return counts_; }
-  Tick shortest_cut() const { return shortest_cut_; }  // of PHASE
   Tick last_phase_fall() const { return last_fall_; }
 
  private:
   enum class Mode { kIgnore, kRun, kChange, kMove, kStop };
-  enum class Stage { kOld, kIdle, kNew };  // of a transition: old source exact, nobody or first high level, new source exact
+  enum class Stage { kOld, kIdle, kNew };  // of a transition: old source exact, none before the new one, new source exact
 
   void begin(Mode mode, std::optional<ClockSetting> to, Stage stage);
   void phase_edge(Tick now, bool level);
   void exact(Tick now, const ClockSetting& s, bool level, Tick length);
   void changing(Tick now, bool level, Tick length);
   void moving(Tick now, bool level, Tick length);
-  void cut(Tick length);
+  void first_fall();
   void servo_pin(Tick now, bool phase_changed, bool phase, bool servo);
   void with_rise(Tick now, bool changed, bool servo);
   void with_fall(Tick now, bool changed, bool servo);
   bool divider_may_be(unsigned divider) const;
   unsigned largest_divider() const;
+  unsigned latest_servo_fall() const;
   Tick longest(bool level) const;
   void violate(Tick now, Kind kind, const std::string& text);
 
@@ -97,9 +102,8 @@ class ClockChecker {
   std::optional<Tick> phase_since_;  // last edge; unknown at first
   Tick last_fall_ = -1;
   std::optional<unsigned> falls_;  // PHASE falls since the last SERVO fall
-  bool servo_cut_ = false;         // the one early rise of SERVO has been
+  bool first_servo_ = false;       // the new source's first fall of SERVO is still to come
   bool conflict_ = false, conflict_allowed_ = false;
-  Tick shortest_cut_ = kNever;
   Counts counts_;
   std::vector<Violation> violations_;
 };

@@ -214,32 +214,30 @@ TEST(ClockChecker, FindsARuntAndANeverEndingPulseWhileVariablesChange) {
 
 // Another source ------------------------------------------------------------------------------------------------------------
 
+constexpr Tick kRise = 7 * 13057, kFall = kRise + 6528;  // of PHASE and, with this fall, of SERVO
+constexpr Tick kLongestWait = 13057 + 6529 + ClockChecker::kHandOver + 2 * 3 * 5899;
+
 struct HandOver {
-  Tick release, tick;       // the old source lets go; first phase tick of the new one
-  Tick odd = kSlow.high();  // its first high level
-  bool second_cut = false;
+  Tick release, tick;            // both nets go high; rise with which the new source takes PHASE
+  Tick odd = kSlow.high();       // from then to its first fall
+  unsigned first_servo = 1 + 1;  // its fall with which SERVO falls first
+  bool notch = false;            // a low pulse while nobody drives
 };
 
-// Default clocks, then kSlow from another IC. The old source has a low level from 7 x 13057 + 6528 on.
+// Default clocks, then kSlow from another IC.
 std::vector<Kind> handed_over(const HandOver& h, ClockChecker& checker) {
   Wave wave;
   const Tick end = wave.run(0, kDefault, 8, 4);
-  std::map<Tick, bool> before;
-  for (const auto& [t, level] : wave.phase)
-    if (t < h.release) before[t] = level;
-  wave.phase = before;
-  if (!wave.phase.rbegin()->second) wave.phase[h.release] = true;
-  before.clear();
-  for (const auto& [t, level] : wave.servo)
-    if (t < h.release) before[t] = level;
-  wave.servo = before;
-  if (!wave.servo.rbegin()->second) wave.servo[h.release] = true;
-  if (h.second_cut) {
+  for (auto* edges : {&wave.phase, &wave.servo}) {
+    edges->erase(edges->lower_bound(h.release), edges->end());
+    if (!edges->rbegin()->second) (*edges)[h.release] = true;
+  }
+  if (h.notch) {
     wave.phase[h.release + 100] = false;
     wave.phase[h.release + 200] = true;
   }
   Wave next;
-  const Tick last = next.run(h.tick + h.odd - kSlow.high(), kSlow, 20, kSlow.servo_divider + 1);
+  const Tick last = next.run(h.tick + h.odd - kSlow.high(), kSlow, 20, h.first_servo);
   next.phase.erase(next.phase.begin());  // high already
   wave.phase.insert(next.phase.begin(), next.phase.end());
   wave.servo.insert(next.servo.begin(), next.servo.end());
@@ -254,35 +252,58 @@ std::vector<Kind> handed_over(const HandOver& h, ClockChecker& checker) {
 
 TEST(ClockChecker, AllowsOneOddHighLevelWhenTheSourceMoves) {
   BRICK_COVERS("I19-2");
-  const Tick rise = 7 * 13057, fall = rise + 6528;
-  for (const Tick release : {rise + 1, rise + 3000, fall}) {
-    for (const Tick wait : {Tick{1}, kSlow.phase() + ClockChecker::kHandOver}) {
-      ClockChecker checker;
-      EXPECT_THAT(handed_over({release, release + wait}, checker), IsEmpty()) << checker.violations()[0].text;
-      EXPECT_EQ(checker.counts().odd_highs, 1u);
-      EXPECT_EQ(checker.counts().cut_lows, 0u);
+  EXPECT_EQ(ClockChecker::release(kDefault), 13057 + 6529);
+  for (const Tick release : {kRise + 1, kRise + 3000, kFall}) {
+    for (const Tick wait : {kSlow.high() - kDefault.high(), kLongestWait}) {
+      for (const unsigned first_servo : {2u, 3u}) {  // I7m02 + 1 to 2 x I7m02 + 1
+        ClockChecker checker;
+        EXPECT_THAT(handed_over({release, release + wait, kSlow.high(), first_servo}, checker), IsEmpty()) << checker.violations()[0].text;
+        EXPECT_EQ(checker.counts().odd_highs, 1u);
+      }
     }
   }
 }
 
-TEST(ClockChecker, AllowsALowLevelToEndEarlyOnce) {
-  const Tick fall = 7 * 13057 + 6528;
-  for (const Tick release : {fall + 1, fall + 3000}) {
+TEST(ClockChecker, FindsALowLevelThatEndsEarlyWhenTheSourceMoves) {
+  for (const Tick cut : {Tick{1}, Tick{3000}, Tick{3264}, Tick{3265}, Tick{6528}}) {
     ClockChecker checker;
-    EXPECT_THAT(handed_over({release, release + 400}, checker), IsEmpty()) << checker.violations()[0].text;
-    EXPECT_EQ(checker.counts().cut_lows, 1u);
-    EXPECT_EQ(checker.shortest_cut(), release - fall);
+    EXPECT_EQ(handed_over({kFall + cut, kFall + 30'000}, checker).at(0), cut <= 3264 ? Kind::kRunt : Kind::kEarly) << cut;
   }
+  // A whole low level of PHASE, but SERVO is cut.
   ClockChecker checker;
-  EXPECT_THAT(handed_over({fall + 3000, fall + 10'000, kSlow.high(), true}, checker), ::testing::Not(IsEmpty()));
+  EXPECT_THAT(handed_over({kFall + 6529, kFall + 30'000}, checker), ElementsAre(Kind::kRelation));
+}
+
+TEST(ClockChecker, FindsServoThatIsCutWhenTheSourceMoves) {
+  for (const Tick rise : {kFall + 1, kFall + 6528, kFall + 13056}) {
+    Wave wave;
+    wave.run(0, kDefault, 12, 4);
+    wave.servo.erase(kFall + 13057);
+    wave.servo[rise] = true;
+    ClockChecker checker;
+    checker.run(0, kDefault);
+    play(checker, wave, 0, kRise);
+    checker.move(kRise, kSlow);
+    play(checker, wave, kRise + 1, kFall + 13057);
+    EXPECT_EQ(kinds(checker).at(0), Kind::kRelation);
+  }
+}
+
+TEST(ClockChecker, FindsAPulseWhileNobodyDrives) {
+  ClockChecker checker;
+  EXPECT_THAT(handed_over({kRise + 3000, kFall + 30'000, kSlow.high(), 2, true}, checker), ::testing::Contains(Kind::kRunt));
 }
 
 TEST(ClockChecker, FindsAFirstHighLevelOfTheNewSourceThatIsTooShortOrTooLong) {
-  const Tick fall = 7 * 13057 + 6528, release = fall + 3000;
   ClockChecker early, late;
-  EXPECT_EQ(handed_over({release, release, kSlow.high() - 1}, early).at(0), Kind::kEarly);
-  const Tick most = kDefault.high() + ClockChecker::kHandOver + kSlow.phase();
-  EXPECT_FALSE(handed_over({release, release + most + 1}, late).empty());
+  EXPECT_EQ(handed_over({kRise + 1, kRise, kSlow.high() - 1}, early).at(0), Kind::kEarly);
+  EXPECT_EQ(handed_over({kFall, kFall + kLongestWait + 1}, late).at(0), Kind::kLate);
+}
+
+TEST(ClockChecker, FindsAFirstFallOfServoThatIsTooEarlyOrTooLate) {
+  ClockChecker early, late;
+  EXPECT_EQ(handed_over({kRise + 1, kFall + 30'000, kSlow.high(), 1}, early).at(0), Kind::kDoubled);
+  EXPECT_EQ(handed_over({kRise + 1, kFall + 30'000, kSlow.high(), 4}, late).at(0), Kind::kMissing);
 }
 
 TEST(ClockChecker, FindsThatTheSourceDidNotMove) {
@@ -312,18 +333,24 @@ TEST(ClockChecker, AllowsAnyFirstTickAfterNoSourceButNoShortHighLevel) {
 }
 
 TEST(ClockChecker, FindsEdgesWithoutASource) {
-  Wave wave;
-  wave.run(0, kDefault, 4);
-  ClockChecker checker;
-  checker.run(0, kDefault);
-  play(checker, wave, 0, 3 * 13057 + 6528);
-  checker.stop(3 * 13057 + 6528);
-  checker.pins(3 * 13057 + 7000, true, true, false);  // idle high
-  EXPECT_THAT(kinds(checker), IsEmpty());
-  checker.finish(100'000'000);
-  EXPECT_THAT(kinds(checker), IsEmpty());
-  checker.pins(100'000'001, false, true, false);
-  EXPECT_THAT(kinds(checker), ElementsAre(Kind::kRelation));
+  for (const bool cut : {false, true}) {
+    Wave wave;
+    wave.run(0, kDefault, 4);
+    ClockChecker checker;
+    checker.run(0, kDefault);
+    const Tick fall = 3 * 13057 + 6528, rise = cut ? fall + 6528 : fall + 6529;
+    play(checker, wave, 0, fall);
+    checker.stop(fall);
+    checker.pins(rise, true, true, false);  // idle high
+    if (cut)
+      EXPECT_THAT(kinds(checker), ElementsAre(Kind::kEarly));
+    else
+      EXPECT_THAT(kinds(checker), IsEmpty());
+    checker.finish(100'000'000);
+    EXPECT_EQ(checker.violations().size(), cut ? 1u : 0u);
+    checker.pins(100'000'001, false, true, false);
+    EXPECT_EQ(checker.violations().back().kind, Kind::kRelation);
+  }
 }
 
 }  // namespace
