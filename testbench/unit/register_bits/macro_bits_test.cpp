@@ -125,10 +125,14 @@ class MacroTable {
     }
   }
 
+  // A pin is released while both clocks are high and taken with a rising edge: the factory setting's running period of PHASE at
+  // most, then a period of SERVO (here as fast as PHASE).
   static bool drives(StuckIc<Rig>& ic, bool gate, unsigned bit, bool (ServoIcRig::*driven)()) {
+    constexpr Tick kPhase = 2 * 6527 + 3;
     ic.start(gate);
-    for (bool input : {true, false}) {
+    for (bool input : {true, false, true}) {
       ic.write(true, macro::kClock, input ? 1u << bit : 0);
+      ic.pins().run(3 * kPhase);
       if ((ic.pins().*driven)() == input) return false;
     }
     return true;
