@@ -149,6 +149,18 @@ TEST_P(ClockFollowerDeadTime, StartsWithACommandWrittenInThePeriodBeforeAJump) {
     ASSERT_EQ(pair.compare(), "") << std::hex << to;
   }
 }
+// Commands that the triangle, from -102 to 101, just does not reach, or just reaches: one tick beside its place and a switch is off
+// for ten periods.
+TEST_P(ClockFollowerDeadTime, IsNotStartedByAJumpBesideATurnaround) {
+  for (int command = 99; command <= 106; ++command)
+    for (const int signed_command : {command, -command}) {
+      start(static_cast<std::uint32_t>(signed_command) << 8 & 0xFFFFFF);
+      for (int i = 0; i < 8; ++i) {
+        pair.run(5 * 406 + GetParam());
+        ASSERT_EQ(pair.compare(), "") << signed_command;
+      }
+    }
+}
 INSTANTIATE_TEST_SUITE_P(Places, ClockFollowerDeadTime, ::testing::Values(0, 10, 40, 100, 137, 150, 190, 230, 300, 350, 380));
 
 std::uint64_t seeds() {
