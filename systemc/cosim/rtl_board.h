@@ -120,7 +120,7 @@ class RtlBoard : public Board {
         stop = before.differs(outputs_, stop_on);
       }
       for (Watched& w : watched_)
-        if (__builtin_expect(motor_differs(w, to_ref == kTicksPerRef), 0)) stop |= motor_changed(w);
+        if (__builtin_expect(motor_differs(w, to_ref == kTicksPerRef || m.rst_ni == 0), 0)) stop |= motor_changed(w);
       if (stop) break;
     }
     return now_;
@@ -156,11 +156,11 @@ class RtlBoard : public Board {
     MotorOutputs last;
   };
   bool has(unsigned ic) const { return ic < kMaxServoIcs && (fitted_ >> ic & 1) != 0; }
-  // Counters move with clk_ref only; a serial clock of 39.3216 MHz is lowered and raised by clk_pwm.
-  bool motor_differs(const Watched& w, bool ref) const {
+  // Counters move with clk_ref and with the asynchronous reset only; a serial clock of 39.3216 MHz is lowered and raised by clk_pwm.
+  bool motor_differs(const Watched& w, bool counters) const {
     const Model& m = *model_;
     std::uint32_t d = (m.motor_o[2 * w.ic] ^ w.last.w[0]) | (m.motor_o[2 * w.ic + 1] ^ w.last.w[1]);
-    if (ref)
+    if (counters)
       for (unsigned n = 0; n < kChannels; ++n) d |= m.count_o[4 * w.ic + n] ^ w.last.w[2 + n];
     return d != 0;
   }

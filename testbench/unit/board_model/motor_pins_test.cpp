@@ -81,6 +81,30 @@ TEST_P(MotorPins, DoNotDependOnRunLength) {
   }
 }
 
+// Interrupts by EQU and words being read come at their edge, whether anybody watches the motor pins or not.
+TEST_P(MotorPins, LeaveTheBoardPinsAloneWhenWatched) {
+  const auto seen = [](std::uint64_t seed, const MotorTrafficOptions& options, std::uint32_t watched, Tick end) {
+    auto board = make_model_board(kThree);
+    board->watch_motors(watched);
+    std::vector<std::pair<Tick, BoardOutputs>> list;
+    board->on_change = [&](Tick t, const BoardOutputs&, const BoardOutputs& after) { list.emplace_back(t, after); };
+    MotorTraffic traffic(seed, options);
+    play(*board, traffic, end, [] { return 1'000'000; });
+    return list;
+  };
+  const MotorTrafficOptions busy, rare{{0, 1, 2}, 100'000, 30'000, false}, turning{{0, 1, 2}, 40'000, 150, false};
+  for (const MotorTrafficOptions* options : {&busy, &rare, &turning}) {
+    const Tick end = options == &busy ? 250'000 : 1'200'000;
+    for (std::uint64_t seed = 10 * GetParam(); seed < 10 * GetParam() + 2; ++seed) {
+      const auto watched = seen(seed, *options, kThree, end), alone = seen(seed, *options, 0, end);
+      ASSERT_GT(watched.size(), 100u);
+      for (std::size_t i = 0; i < std::min(watched.size(), alone.size()); ++i)
+        ASSERT_TRUE(watched[i] == alone[i]) << "seed " << seed << " tick " << std::min(watched[i].first, alone[i].first);
+      ASSERT_EQ(watched.size(), alone.size()) << "seed " << seed;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, MotorPins, ::testing::Range<std::uint64_t>(1, 4));
 
 // Words of channel 1; the next channels are 8 words further.

@@ -61,7 +61,7 @@ void MotorTraffic::bus_step(Board& board) {
       break;
     case 1:
       (write_ ? inputs_.pa_wr_n : inputs_.pa_rd_n) = false;
-      bus_at_ += 9 + pick(6);
+      bus_at_ += 9 + pick(pick(6) == 0 ? 3000 : 6);  // now and then a long read that sees its word change
       break;
     case 2:
       inputs_.pa_wr_n = inputs_.pa_rd_n = true;

@@ -135,6 +135,38 @@ void write(Board& board, BoardInputs& in, std::uint32_t address, bool x, std::ui
   board.run_until(board.now() + 12);
 }
 
+// The reset is asynchronous: what it clears is seen at the first tick in reset, wherever that lies between two edges of clk_ref.
+// So soon after the last reset no other pin has left its level.
+TEST(MotorPinsOfAnEngine, LoseTheirCountAtTheFirstTickOfAReset) {
+  for (const bool rtl : {true, false})
+    for (const Tick at : {240, 241, 242}) {
+      auto board = rtl ? make_rtl_board(0x1) : make_model_board(0x1);
+      BoardInputs in;
+      in.fitted = 1;
+      in.rst_n = false;
+      board->set_inputs(in);
+      board->run_until(30);
+      in.rst_n = true;
+      board->set_inputs(in);
+      write(*board, in, 0x07801D, true, 3);  // channel 4: quadrature x 4
+      board->run_until(130);
+      MotorInputs turned;
+      turned.pins[3] ^= 1;
+      board->set_motor_inputs(0, turned);
+      board->run_until(at);
+      ASSERT_NE(board->motor_outputs(0).get(motor_pin::kCount, 3), 0u);
+      std::vector<Tick> cleared;
+      board->watch_motors(1);
+      board->on_motor_change = [&](Tick t, unsigned, const MotorOutputs& before, const MotorOutputs& after) {
+        if (before.get(motor_pin::kCount, 3) != 0 && after.get(motor_pin::kCount, 3) == 0) cleared.push_back(t);
+      };
+      in.rst_n = false;
+      board->set_inputs(in);
+      board->run_until(at + 30);
+      EXPECT_THAT(cleared, ::testing::ElementsAre(at + 1)) << "rtl " << rtl;
+    }
+}
+
 // 25 ms without a strobe: servo-ic.md section 10. 960 periods of 1024 clk_ref are 2949120 ticks.
 TEST(MotorPinsOfTheBoard, AreOffAfterTheWatchdogTripped) {
   auto board = make_lockstep_board(make_rtl_board(0x3), make_model_board(0x3));
