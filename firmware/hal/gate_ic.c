@@ -89,7 +89,44 @@ static void reset_channels(unsigned ic) {
     *hal_x(address_of(ic, GATE_WORD_CHANNEL, channel)) = shadow[ic].channel[channel];
 }
 
+/* A released clock pin is driven on until both clocks are high: one and a half phase periods at most (docs/clock.md). */
+static uint32_t release_began, release_us;
+
+static uint32_t release_left(void) {
+  const uint32_t passed = (hal_cycles() - release_began) / (hal_cycles_per_ms() / 1000u + 1u);
+  return passed < release_us ? release_us - passed : 0u;
+}
+
+/* The clock word of `ic` is about to become `word`. */
+static void note_release(unsigned ic, uint32_t word) {
+  const uint32_t before = *hal_x(address_of(ic, GATE_WORD_CLOCK, 0));
+  const uint32_t pwm = *hal_x(address_of(ic, GATE_WORD_PWM, 0));
+  if ((word & ~before & gate_ic_direction_inputs(ic) << 12) == 0u) return;
+  const uint32_t phase = (2u * (pwm >> 8 & 0x7FFFu) + 3u) * ((before >> 16 & 15u) + 1u);
+  const uint32_t left = release_left(), needed = (phase + phase / 2u) / 117u + 1u; /* 117.9648 ticks a microsecond */
+  release_us = needed > left ? needed : left;
+  release_began = hal_cycles();
+}
+
+void gate_ic_await_release(void) {
+  const uint32_t left = release_left();
+  if (left != 0u) hal_delay_us(left);
+  release_us = 0;
+}
+
+void gate_ic_release_clocks(void) {
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
+    if (!gate_ic_present(ic)) continue;
+    volatile uint32_t* const clock = hal_x(address_of(ic, GATE_WORD_CLOCK, 0));
+    const uint32_t word = *clock & HAL_WORD_MASK, inputs = gate_ic_direction_inputs(ic) << 12;
+    if ((word & inputs) == inputs) continue;
+    note_release(ic, word | inputs);
+    *clock = word | inputs;
+  }
+}
+
 void gate_ic_find(void) {
+  release_us = 0;
   found = macrogates = 0;
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     const struct gate_ic reset = {SERVO_IC_CLOCK_CONTROL_RESET, SERVO_IC_PWM_CONTROL_RESET, {0, 0, 0, 0}};
@@ -110,6 +147,7 @@ static void set_field(unsigned ic, gate_word_t word, unsigned channel, unsigned 
   uint32_t* kept = shadow_of(ic, word, channel);
   *kept = (*kept & ~mask) | ((value << lsb) & mask);
   const uint32_t address = address_of(ic, word, channel);
+  if (word == GATE_WORD_CLOCK) note_release(ic, *kept);
   const uint32_t live = word == GATE_WORD_CHANNEL ? *hal_x(address) & CHANNEL_LIVE_BITS : 0u;
   *hal_x(address) = *kept | live;
   hal_unmask(state);

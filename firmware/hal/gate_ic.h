@@ -37,6 +37,11 @@ typedef enum {
 void gate_ic_set_field(unsigned ic, gate_word_t word, unsigned lsb, unsigned width, uint32_t value);
 void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width,
                                uint32_t value); /* channel 0..3; 0..1 of a MACRO IC */
+/* A start without a reset of the ICs finds the clocks running: their source lets go before its variables are written. */
+void gate_ic_release_clocks(void);
+
+/* Waits until no IC drives a clock pin any more whose direction has been made an input. */
+void gate_ic_await_release(void);
 void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value);
 
 #endif

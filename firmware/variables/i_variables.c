@@ -90,7 +90,7 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
   }
 }
 
-/* Two ICs must never drive PHASE and SERVO together: every input first, the output last. */
+/* Two ICs must never drive PHASE and SERVO together: every input first, the output when none drives any more. */
 void i_variable_apply_clock_directions(void) {
   if (directions_pending == 0u) return;
   const uint32_t state = hal_mask_real_time();
@@ -98,6 +98,7 @@ void i_variable_apply_clock_directions(void) {
   directions_pending = 0;
   hal_unmask(state);
   for (unsigned output = 0; output < 2u; ++output) {
+    if (output != 0u) gate_ic_await_release();
     for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
       const uint32_t direction = (uint32_t)integer_of[gate_ic_direction_variable(ic)];
       if (((pending >> ic) & 1u) != 0u && (direction != gate_ic_direction_inputs(ic)) == (output != 0u))
@@ -255,6 +256,7 @@ void i_variable_restore(uint32_t number, const struct i_saved* saved) {
 
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */
 void i_variable_write_hardware(void) {
+  gate_ic_release_clocks();
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     if (!gate_ic_present(ic)) continue;
     const uint32_t direction = gate_ic_direction_variable(ic);
