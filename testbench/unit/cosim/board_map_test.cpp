@@ -285,10 +285,12 @@ TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsEnd) {
 TEST_P(BoardMap, TwoDriversOfServoAloneAreAConflictToo) {
   rig.write(true, kServoIcBase[1] + 4, 0x3008D2);             // IC 1 drives both
   rig.write(true, kServoIcBase[0] + 4, 0x3008D2 | 1u << 12);  // IC 0 drives SERVO from that PHASE
+  constexpr Tick kServoPeriod = 4 * 13057;                    // pins are released while high and taken with a rise, each within a period
+  rig.run(3 * kServoPeriod);
   EXPECT_EQ(rig.get(pin::kPhaseSource), 1u);
-  rig.run(60'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
   rig.write(true, kServoIcBase[1] + 4, 0x3008D2 | 1u << 13);  // IC 1 gives SERVO up
+  rig.run(kServoPeriod);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
 }
 
@@ -311,9 +313,11 @@ TEST(AddressMap, EveryServoIcIsAtItsBase) {
     for (std::uint32_t i = 0; i < 18; ++i) {
       EXPECT_EQ(rig.read(true, bases[i] + 0x14), 0x101 * (i + 1)) << std::hex << bases[i];
       rig.write(true, bases[i] + 4, 0x3008D2);  // becomes the one source
+      rig.run(3 * 13057);                       // with a rise of PHASE
       EXPECT_EQ(rig.get(pin::kPhaseSource), i);
       EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
       rig.write(true, bases[i] + 4, 0x3038D2);
+      rig.run(4 * 13057);  // released while PHASE and SERVO are high
     }
     for (const std::uint32_t hole : {0x78020u, 0x78120u, 0x79000u, 0x7A100u, 0x78600u}) EXPECT_EQ(rig.read(true, hole + 0x14), 0u);
   }
