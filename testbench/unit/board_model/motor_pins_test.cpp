@@ -1,4 +1,5 @@
-// Motor side of the model of the board: pins on demand against pins watched, run lengths, stops, EQU interrupts, watchdog trip.
+// Motor side of the model of the board: pins on demand against pins watched, words and EQU interrupts of ICs that nobody watches, run
+// lengths, stops, watchdog trip.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -106,6 +107,55 @@ TEST_P(MotorPins, LeaveTheBoardPinsAloneWhenWatched) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MotorPins, ::testing::Range<std::uint64_t>(1, 4));
+
+// A word that PHASE or SERVO latches, on the bus all the time: it shows the new position at the same edges as when the IC is watched.
+TEST(LatchedWord, MovesOnTheBusAtItsEdgeWithoutAnyoneWatching) {
+  const auto seen = [](std::uint32_t watched, bool x, std::uint32_t offset) {
+    BoardRig rig(make_model_board(kThree), kThree);
+    rig.board().watch_motors(watched);
+    rig.write(true, kServoIcBase[0] + 4, 0x0008D2);
+    rig.write(true, kServoIcBase[0] + 5, 0x800008);  // PFM pulses, counted
+    rig.write(false, kServoIcBase[0] + 4, 0x012345);
+    std::vector<std::pair<Tick, std::uint32_t>> list;
+    rig.board().on_change = [&](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+      if (before.get(pin::kPaData) != after.get(pin::kPaData)) list.emplace_back(t, after.get(pin::kPaData));
+    };
+    rig.in.pa_addr = kServoIcBase[0] + offset;
+    rig.in.pa_x = x;
+    rig.in.pa_aa = 2;
+    rig.in.pa_rd_n = false;
+    rig.apply();
+    rig.run(400'000);
+    EXPECT_GT(list.size(), 10u);
+    return list;
+  };
+  for (const auto& [x, offset] : std::vector<std::pair<bool, std::uint32_t>>{{true, 1}, {true, 2}, {false, 1}})
+    EXPECT_TRUE(seen(0, x, offset) == seen(1, x, offset)) << offset;
+}
+
+// The same of EQU that counted PFM pulses switch, in a channel where nothing else moves: it interrupts at its edge.
+TEST(EquOfPulses, InterruptsAtItsEdgeWithoutAnyoneWatching) {
+  const auto seen = [](std::uint32_t watched) {
+    BoardRig rig(make_model_board(kThree), kThree);
+    rig.in.line_select = 0x111;
+    rig.apply();
+    rig.board().watch_motors(watched);
+    rig.write(true, kServoIcBase[0] + 5, 0x800008);
+    rig.write(false, kServoIcBase[0] + 7, 3);  // A at 3, 11, 19 ..; B at 7, 15 ..
+    rig.write(true, kServoIcBase[0] + 7, 0xFFFFFF);
+    rig.write(true, kServoIcBase[0] + 6, 8);
+    std::vector<Tick> list;
+    rig.board().on_change = [&](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+      if (before.get(pin::kPicSig) != after.get(pin::kPicSig)) list.push_back(t);
+    };
+    rig.write(false, kServoIcBase[0] + 4, 0x001234);  // a pulse every 3600 PFM_CLK
+    rig.run(4'000'000);
+    return list;
+  };
+  const std::vector<Tick> watched = seen(1);
+  EXPECT_GT(watched.size(), 10u);
+  EXPECT_TRUE(seen(0) == watched);
+}
 
 // Words of channel 1; the next channels are 8 words further.
 constexpr std::uint32_t kControl = 5, kOutA = 2, kOutC = 4, kCompareA = 7, kCompareB = 7;  // Y and X

@@ -78,7 +78,7 @@ void MotorTraffic::bus_step(Board& board) {
 
 std::uint32_t MotorTraffic::control_word() {
   std::uint32_t word = pick(1u << 24);
-  word = (word & ~0xFu) | (pick(3) == 0 ? 8 : 3 + 4 * pick(2));
+  word = (word & ~0xFu) | (pick(3) == 0 ? 0x800008 : 3 + 4 * pick(2));
   if (pick(8) != 0) word &= ~0x400u;
   if (pick(3) != 0) word &= ~0x40000u;
   return word | 0x4000;
