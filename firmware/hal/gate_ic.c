@@ -117,11 +117,11 @@ void gate_ic_await_release(void) {
 void gate_ic_release_clocks(void) {
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     if (!gate_ic_present(ic)) continue;
-    volatile uint32_t* const clock = hal_x(address_of(ic, GATE_WORD_CLOCK, 0));
-    const uint32_t word = *clock & HAL_WORD_MASK, inputs = gate_ic_direction_inputs(ic) << 12;
+    const uint32_t address = address_of(ic, GATE_WORD_CLOCK, 0);
+    const uint32_t word = *hal_x(address) & HAL_WORD_MASK, inputs = gate_ic_direction_inputs(ic) << 12;
     if ((word & inputs) == inputs) continue;
     note_release(ic, word | inputs);
-    *clock = word | inputs;
+    *hal_x(address) = word | inputs;
   }
 }
 

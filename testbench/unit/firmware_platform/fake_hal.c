@@ -35,6 +35,7 @@ static void settle(void) {
   if (before.address >= DPRAM_BASE && writes < LOG_LENGTH) {
     write_log[writes].x = before.x;
     write_log[writes].address = before.address;
+    write_log[writes].cycles = before.cycles;
     write_log[writes++].value = *last;
   }
   nothing = HAL_WORD_MASK; /* nobody drives the bus */
@@ -48,6 +49,7 @@ static volatile uint32_t* word(bool x, uint32_t address) {
     last = &peripheral[x][address & (PERIPHERALS - 1u)];
   before.x = x;
   before.address = address;
+  before.cycles = cycles;
   before.value = *last;
   return last;
 }

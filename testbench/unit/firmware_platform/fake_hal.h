@@ -27,6 +27,7 @@ void fake_hal_on_wait(void (*action)(void));
 struct fake_write {
   bool x;
   uint32_t address, value;
+  uint32_t cycles; /* hal_cycles() then */
 };
 unsigned fake_hal_writes(const struct fake_write** log); /* count; only words whose value changed are listed */
 void fake_hal_clear_writes(void);

@@ -234,6 +234,27 @@ TEST(ClockDirections, OfOneLineAreAppliedInputsFirst) {
   }
 }
 
+// The old source drives its pins on for up to one and a half of its phase periods, (2 I7m00 + 3)(I7m01 + 1) ticks each, whatever the
+// new source's are. A CPU cycle is 12/8 ticks.
+TEST(ClockDirections, OutputWaitsUntilTheOldSourceHasLetGo) {
+  BRICK_COVERS("I19-2");
+  for (const auto& [setup, ticks] : {std::pair{"", 13057u}, std::pair{"I7001=3", 4 * 13057u}, std::pair{"I7000=1000", 2003u}}) {
+    Controller c(kServoIc0 | kServoIc1 | kMacroIc0);
+    c.line(setup);
+    c.line("I6800=30000 I6801=5");
+    fake_hal_clear_writes();
+    c.line("I6807=0 I7007=3");
+    const fake_write* log = nullptr;
+    const unsigned count = fake_hal_writes(&log);
+    std::vector<std::uint32_t> at;
+    for (unsigned i = 0; i < count; ++i)
+      if (log[i].x && log[i].address >= 0x078000) at.push_back(log[i].cycles);
+    ASSERT_EQ(at.size(), 2u);
+    EXPECT_GE(at[1] - at[0], ticks * 3 / 2 * 2 / 3) << setup;
+    EXPECT_LE(at[1] - at[0], ticks * 3 / 2 * 2 / 3 + ticks / 10 + 300) << setup;
+  }
+}
+
 TEST(SavedData, SurvivesResetAndReInitialisationDoesNotUseIt) {
   Controller c;
   c.line("I17=33 P100=1.25 Q5=-7 I7002=1 I5189=250.5");
