@@ -105,7 +105,7 @@ void ImageBoard::step(Cycle limit) {
   if (cpu_.asleep() && cpu_.cycle() < end) cpu_.set_cycle(end);
   if (cpu_.cycle() < next_phase_) return;
   next_phase_ += kPhaseCycles;
-  if (!clocks_) return;
+  if (!clocks_ || clocks_started_ == 0) return;  // no IC drives them yet
   cpu_.set_interrupt(kIrqPhase, true);
   if (++phases_ % 4 == 0) cpu_.set_interrupt(kIrqServo, true);
 }
