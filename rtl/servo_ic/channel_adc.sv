@@ -15,14 +15,15 @@ module channel_adc #(
 );
 
   logic [17:0] word_q, value_q;
-  localparam logic [4:0] Last = Latency + 5'd17;
+  logic [4:0]  place;  // in the value, 0..17
+  assign place = bit_i - Latency;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       word_q  <= 18'd0;
       value_q <= 18'd0;
     end else begin
-      if (sample_i && bit_i >= Latency && bit_i <= Last) word_q <= {word_q[16:0], data_i};
+      if (sample_i && place < 5'd18) word_q <= {word_q[16:0], data_i};
       if (phase_fall_i) value_q <= word_q;
     end
   end

@@ -1,9 +1,12 @@
-// Position compare: EQU toggles when the counter leaves compare A or B, and the other of the two moves by the increment in the
-// direction of travel. With hardware 1/T, position and compares have 12 fraction bits and EQU toggles when the position passes.
+// Position compare: EQU toggles when the counter leaves compare A or B (or, by EquOnLeave, arrives there), and the other of the two
+// moves by the increment in the direction of travel. With hardware 1/T, position and compares have 12 fraction bits and EQU toggles
+// when the position passes.
 // A register write beats a step at the same edge. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Compare.
 `default_nettype none
 
-module channel_compare (
+module channel_compare #(
+  parameter bit EquOnLeave = 1'b1  // 0: EQU toggles when the counter arrives at equality
+) (
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
   input  wire logic        ce_i,         // SCLK
@@ -28,14 +31,18 @@ module channel_compare (
   logic [11:0] af_q, bf_q;
   logic        equ_q;
 
-  // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is now.
+  // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is now. Arriving:
+  // if it was before it and is not now, the same one unit later.
+  localparam logic [35:0] ArrivesLater = EquOnLeave ? 36'd0 : 36'd1;
   logic [35:0] last_q, pos, way, a_ahead, b_ahead;
+  logic [23:0] at;  // where a count has to find a compare
   logic        known_q, other_q, hit_a, hit_b, down;
   always_comb begin
     pos     = 36'd0;
     way     = 36'd0;
     a_ahead = 36'd0;
     b_ahead = 36'd0;
+    at      = 24'd0;
     hit_a   = 1'b0;
     hit_b   = 1'b0;
     down    = 1'b0;
@@ -47,12 +54,13 @@ module channel_compare (
         way     = down ? last_q - pos : way;
         a_ahead = down ? last_q - {a_q, af_q} : {a_q, af_q} - last_q;
         b_ahead = down ? last_q - {b_q, bf_q} : {b_q, bf_q} - last_q;
-        hit_a   = a_ahead < way;
-        hit_b   = b_ahead < way;
+        hit_a   = a_ahead - ArrivesLater < way;
+        hit_b   = b_ahead - ArrivesLater < way;
       end
     end else if (count_i) begin
-      hit_a = counter_i == a_q;
-      hit_b = counter_i == b_q;
+      at    = EquOnLeave ? counter_i : (down_i ? counter_i - 24'd1 : counter_i + 24'd1);
+      hit_a = at == a_q;
+      hit_b = at == b_q;
       down  = down_i;
     end
   end

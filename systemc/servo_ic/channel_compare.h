@@ -14,7 +14,11 @@ struct ChannelPosition {
   bool count = false, down = false;
 };
 
-class ChannelCompare {
+// EQU toggles when the counter leaves equality, or when it arrives there.
+constexpr bool kEquOnLeave = true;
+
+template <bool EquOnLeave>
+class BasicChannelCompare {
  public:
   std::uint32_t a() const { return a_; }
   std::uint32_t b() const { return b_; }
@@ -34,8 +38,9 @@ class ChannelCompare {
     bool hit_a = false, hit_b = false, down = p.down;
     const std::uint64_t pos = std::uint64_t{p.counter} << 12 | p.fraction;
     if (!fine) {
-      hit_a = p.count && p.counter == a_;
-      hit_b = p.count && p.counter == b_;
+      const std::uint32_t at = EquOnLeave ? p.counter : (p.counter + (p.down ? 0xFFFFFF : 1)) & 0xFFFFFF;
+      hit_a = p.count && at == a_;
+      hit_b = p.count && at == b_;
     } else if (known_ && !p.hold && other == other_) {
       down = ((pos - last_) >> 35 & 1) != 0;
       hit_a = passed(pos, std::uint64_t{a_} << 12 | af_, down);
@@ -50,18 +55,21 @@ class ChannelCompare {
     other_ = other;
   }
 
-  // The counter moves one count an SCLK edge at most, so EQU stays for so many of them after one that showed `counter`.
+  // The counter moves one count an SCLK edge at most, so EQU stays for so many of them after one that showed `counter`: to leave a
+  // compare takes one count more than to arrive there.
   std::uint32_t edges_to_hit(std::uint32_t counter, bool fine) const {
     const auto distance = [counter](std::uint32_t at) { return std::min((at - counter) & 0xFFFFFF, (counter - at) & 0xFFFFFF); };
     const std::uint32_t counts = std::min(distance(a_), distance(b_));
-    return fine ? counts - std::min(counts, 3u) : counts;
+    const std::uint32_t early = (fine ? 3u : 0u) + (EquOnLeave ? 0u : 1u);
+    return counts - std::min(counts, early);
   }
 
  private:
-  // Not beyond `at` at the last edge, and beyond it now.
+  // Not beyond `at` at the last edge, and beyond it now; arriving, before it at the last edge, and not any more.
   bool passed(std::uint64_t pos, std::uint64_t at, bool down) const {
     constexpr std::uint64_t kMask = (std::uint64_t{1} << 36) - 1;
-    return down ? ((last_ - at) & kMask) < ((last_ - pos) & kMask) : ((at - last_) & kMask) < ((pos - last_) & kMask);
+    const std::uint64_t ahead = (down ? last_ - at : at - last_) & kMask, way = (down ? last_ - pos : pos - last_) & kMask;
+    return EquOnLeave ? ahead < way : ahead != 0 && ahead <= way;
   }
 
   std::uint32_t a_ = 0, b_ = 0, inc_ = 0;
@@ -69,5 +77,6 @@ class ChannelCompare {
   std::uint64_t last_ = 0;
   bool equ_ = false, known_ = false, other_ = false;
 };
+using ChannelCompare = BasicChannelCompare<kEquOnLeave>;
 
 }  // namespace brick

@@ -6,7 +6,11 @@
 
 namespace brick {
 
-class ChannelDecode {
+// A before B counts up in the clockwise modes.
+constexpr bool kALeadsUp = true;
+
+template <bool ALeadsUp>
+class BasicChannelDecode {
  public:
   struct Result {
     bool count = false, down = false;  // the counter moves
@@ -22,7 +26,7 @@ class ChannelDecode {
     const bool a_rises = (abc & 1) != 0 && (last & 1) == 0;
     const unsigned moved = (position(abc) - position(last)) & 3;
     const bool ccw = (mode & 4) != 0;
-    r.down = (moved == 3) != ccw;
+    r.down = (moved == (ALeadsUp ? 3u : 1u)) != ccw;
     switch (mode) {
       case 0:
       case 4:
@@ -83,5 +87,6 @@ class ChannelDecode {
 
   unsigned last_ = 0;
 };
+using ChannelDecode = BasicChannelDecode<kALeadsUp>;
 
 }  // namespace brick

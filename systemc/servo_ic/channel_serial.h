@@ -16,12 +16,14 @@ class ChannelDac {
   std::uint32_t word_ = 0;
 };
 
-class ChannelAdc {
+constexpr unsigned kAdcLatency = 4;  // bits before the value: 0..6
+
+template <unsigned Latency>
+class BasicChannelAdc {
  public:
-  static constexpr unsigned kLatency = 4;  // bits before the value
   // `count` bits of one level, the first of them number `bit` of the stream.
   void sample(unsigned bit, unsigned count, bool data) {
-    const unsigned first = std::max(bit, kLatency), end = std::min(bit + count, kLatency + 18);
+    const unsigned first = std::max(bit, Latency), end = std::min(bit + count, Latency + 18);
     if (first >= end) return;
     const unsigned n = end - first;
     word_ = (word_ << n | (data ? (1u << n) - 1 : 0)) & 0x3FFFF;
@@ -32,5 +34,6 @@ class ChannelAdc {
  private:
   std::uint32_t word_ = 0, value_ = 0;
 };
+using ChannelAdc = BasicChannelAdc<kAdcLatency>;
 
 }  // namespace brick
