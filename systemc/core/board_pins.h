@@ -73,7 +73,7 @@ constexpr PinField kWdTripped{"watchdog.tripped", 1, 21, 1, false};
 constexpr PinField kBusyHost{"dpram.busy_host", 1, 22, 1, false};
 constexpr PinField kBusyCpu{"dpram.busy_cpu", 1, 23, 1, false};
 constexpr PinField kPhaseSource{"clock.source_ic", 1, 24, 5, false};    // index as in BoardInputs::fitted; 30 external, 31 none
-constexpr PinField kSourceConflict{"clock.conflict", 1, 29, 1, false};  // two ICs drive the clocks
+constexpr PinField kSourceConflict{"clock.conflict", 1, 29, 1, false};  // drivers of a net disagreed for more than 2 clk
 constexpr PinField kPicIst{"host.pic.ist", 2, 0, 8, true};
 constexpr PinField kPicSig{"host.pic.sig", 2, 8, 8, true};
 constexpr PinField kPicMsk{"host.pic.msk", 2, 16, 8, true};

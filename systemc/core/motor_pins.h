@@ -29,8 +29,8 @@ struct MotorInputs {
   bool operator!=(const MotorInputs& o) const { return !(*this == o); }
 };
 
-// Output pins, packed. Word 0 changes on clk_pwm, the others on clk_ref only. Words 2..5 are no pins: the counters of channels
-// 1..4, shown so that a difference is found where it arises.
+// Output pins, packed. Word 0 changes on clk_pwm, word 1 on clk_ref and, by a serial clock of divider 0, on clk_pwm too; words 2..5 on
+// clk_ref only. These are no pins: the counters of channels 1..4, shown so that a difference is found where it arises.
 constexpr unsigned kMotorOutputWords = 6;
 
 // A field that every channel has: channel n (0..3) has it at lsb + n * stride, or in word + n when the stride is 0.
