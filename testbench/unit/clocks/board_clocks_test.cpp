@@ -56,6 +56,56 @@ TEST_P(BoardOn, AbsentIcReadsZeroIgnoresWritesAndDoesNotDrive) {
   EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
 }
 
+// The same for an IC that is taken out while it works: it keeps its registers, and none of its outputs reaches the board.
+TEST_P(BoardOn, IcTakenOutWhileItWorksNoLongerDrivesClocksDataAndInterrupts) {
+  constexpr std::uint32_t kControl = 5, kEquHigh = 0x1800;  // EQU initial state 1, write enable
+  for (const std::uint32_t ic : {0u, 1u}) {
+    const std::uint32_t other = 1 - ic;
+    rig.in.fitted = kTestIcs;
+    rig.in.line_select = 0x951;  // IR5: EQU1, IR6: EQU5
+    rig.apply();
+    rig.write(true, kServoIcBase[other] + kClockWord, clock_word(0, 3, 3));
+    rig.write(true, kServoIcBase[ic] + kClockWord, clock_word(0, 3, 0));
+    for (const std::uint32_t base : {kServoIcBase[0], kServoIcBase[1]}) rig.write(true, base + kControl, kEquHigh);
+    rig.run(kHandOver);
+    ASSERT_EQ(rig.get(pin::kPhaseSource), ic);
+    ASSERT_EQ(rig.get(pin::kPicSig) >> 5 & 3, 3u);
+    rig.edge(pin::kServo, 0);  // PHASE and SERVO are low
+
+    rig.in.fitted = kTestIcs & ~(1u << ic);
+    rig.apply();
+    rig.run(12);
+    EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
+    EXPECT_EQ(rig.get(pin::kPicSig) >> 5 & 3, 1u << other) << "EQU of the IC that is left";
+    EXPECT_EQ(rig.read(true, kServoIcBase[ic] + kAdcStrobe), 0u);
+    EXPECT_EQ(rig.read(true, kServoIcBase[ic] + kControl), 0u);
+    rig.write(true, kServoIcBase[ic] + kAdcStrobe, 0x123456);  // nobody listens
+    BoardOutputs clocks = select_pins(pin::kPhase, pin::kServo);
+    const BoardOutputs before = rig.board().outputs();
+    EXPECT_TRUE(before.get(pin::kPhase) == 1 && before.get(pin::kServo) == 1);
+    const Tick end = rig.now() + 5 * 13057;
+    EXPECT_EQ(rig.board().run_until(end, clocks), end) << "the clocks idle high";
+
+    // It ran on all the time, so with a second source of another frequency a conflict would show.
+    rig.write(true, kServoIcBase[other] + kPwmWord, pwm_word(5000));
+    rig.write(true, kServoIcBase[other] + kClockWord, clock_word(0, 3, 0));
+    rig.run(kHandOver);
+    EXPECT_EQ(rig.get(pin::kPhaseSource), other);
+    EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+    const Tick rise = rig.edge(pin::kPhase, 1);
+    EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, 10003);
+
+    rig.write(true, kServoIcBase[other] + kClockWord, clock_word(0, 3, 3));
+    rig.run(kHandOver);
+    rig.in.fitted = kTestIcs;
+    rig.apply();
+    rig.run(kHandOver);
+    EXPECT_EQ(rig.read(true, kServoIcBase[ic] + kAdcStrobe), 0xFFFFFEu);
+    EXPECT_EQ(rig.get(pin::kPhaseSource), ic);
+    EXPECT_EQ(rig.get(pin::kPicSig) >> 5 & 3, 3u);
+  }
+}
+
 TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
   BRICK_COVERS("I19-2 CLK-6");
   const struct {
