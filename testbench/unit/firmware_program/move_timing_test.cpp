@@ -164,6 +164,23 @@ TEST_F(MoveTiming, TimeBaseSlewsAtIsx94) {
   EXPECT_EQ(cs().increment, platform::kDefaultI10 - 100 * 1644);
 }
 
+// `%` followed by a sign is no report with something behind it, and a refused value leaves the time base alone.
+TEST_F(MoveTiming, TimeBaseTakesNoSignAndNothingAbove225) {
+  ASSERT_EQ(host("CLOSE I5194=8388607"), "");
+  ASSERT_EQ(host("%225"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(cs().increment, (platform::kDefaultI10 * 9 + 2) / 4);
+  ASSERT_EQ(host("%100"), "");
+  platform::servo_ticks(1);
+  for (const char* refused : {"%-1", "%+1", "%-0", "% -1", "%-", "%-.5", "%225.1", "%1000"}) {
+    EXPECT_EQ(host(refused), "ERR003") << refused;
+    platform::servo_ticks(1);
+    EXPECT_EQ(cs().increment, platform::kDefaultI10) << refused;
+  }
+  EXPECT_EQ(host("%"), "100");
+  EXPECT_EQ(host("&2%"), "100");
+}
+
 TEST_F(MoveTiming, NewI10CountsWithPercent100) {
   ASSERT_EQ(host("CLOSE I10=4000000"), "");
   platform::servo_ticks(3);
