@@ -3,6 +3,7 @@
 // sound engine has to notice the stuck bit.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -31,14 +32,9 @@ struct StuckBit {
 
 class BitsRig {
  public:
-  explicit BitsRig(BitsEngine engine) {
-    if (engine == BitsEngine::kRtl)
-      rtl_ = std::make_unique<RtlChannels>();
-    else
-      model_ = std::make_unique<ChannelsModel>();
-  }
+  explicit BitsRig(BitsEngine engine) : engine_(make_channels_engine(engine == BitsEngine::kRtl)) {}
 
-  ChannelInputs in;
+  ServoIcInputs in;
   std::optional<StuckBit> stuck;
 
   // All dividers 0: SCLK, PFM_CLK, DAC_CLK and ADC_CLK every 3 ticks. PHASE and SERVO are inputs.
@@ -47,7 +43,7 @@ class BitsRig {
 
   // From reset to a filter that holds the pins; well before the switches' first dead time is over (240 ticks).
   void start(std::uint32_t clock_word = kFast) {
-    in = ChannelInputs{};
+    in = ServoIcInputs{};
     in.rst_n = false;
     run(4);
     in.rst_n = true;
@@ -55,32 +51,8 @@ class BitsRig {
     run(48);
   }
 
-  void tick() {
-    ++now_;
-    const bool ref = now_ % kTicksPerRef == 0, strobe = ref && (in.we || in.read_done) && in.rst_n;
-    if (rtl_) {
-      rtl_->drive(in);
-      rtl_->tick(ref);
-    } else {
-      if (!in.rst_n) {
-        model_->reset(now_);
-        model_->set_inputs(in);
-        return;
-      }
-      model_->set_inputs(in);
-      model_->advance(now_);
-      if (strobe && in.read_done) model_->read_done(in.x, in.addr);
-      if (strobe && in.we) model_->write(in.x, in.addr, in.wdata);
-    }
-  }
-  void run(Tick n) {
-    if (model_ && in.rst_n && !in.we && !in.read_done && n > 1) {
-      model_->set_inputs(in);
-      model_->advance(now_ += n);
-    } else {
-      while (n-- > 0) tick();
-    }
-  }
+  void tick() { run(1); }
+  void run(Tick n) { engine_->run(in, now_ += std::max<Tick>(n, 0)); }
   void write(bool x, unsigned addr, std::uint32_t word) {
     in.wdata = stuck ? stuck->apply(Side::kWritten, x, addr, word) : word;
     in.we = true;
@@ -90,8 +62,7 @@ class BitsRig {
   std::uint32_t peek(bool x, unsigned addr) {
     in.x = x;
     in.addr = addr;
-    if (rtl_) rtl_->drive(in);
-    const std::uint32_t word = rtl_ ? rtl_->rdata() : model_->read(x, addr);
+    const std::uint32_t word = engine_->word(in);
     return stuck ? stuck->apply(Side::kRead, x, addr, word) : word;
   }
   // With the side effect of a bus read.
@@ -127,7 +98,7 @@ class BitsRig {
     run(12);
   }
 
-  ChannelPins pins() const { return rtl_ ? rtl_->pins() : model_->pins(); }
+  ChannelPins pins() const { return engine_->pins(); }
   unsigned pwm(unsigned channel) const { return pins().pwm >> (6 * (channel - 1)) & 0x3F; }
   bool other(unsigned group, unsigned channel) const { return (pins().others >> (4 * group + channel - 1) & 1) != 0; }
   Tick now() const { return now_; }
@@ -147,8 +118,7 @@ class BitsRig {
     while (now_ % kTicksPerRef != 0);
   }
 
-  std::unique_ptr<RtlChannels> rtl_;
-  std::unique_ptr<ChannelsModel> model_;
+  std::unique_ptr<ChannelsEngine> engine_;
   Tick now_ = 0;
 };
 

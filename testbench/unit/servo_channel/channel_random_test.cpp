@@ -184,14 +184,14 @@ TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
     const auto value = [&](std::uint32_t limit) { return std::uniform_int_distribution<std::uint32_t>(0, limit)(random); };
-    ChannelsModel slow, fast;
+    ServoIc slow{sc_core::sc_gen_unique_name("ic")}, fast{sc_core::sc_gen_unique_name("ic")};
     slow.reset(0);
     fast.reset(0);
     Tick now = 0;
-    ChannelInputs in;
+    ServoIcInputs in;
     const auto write = [&](bool x, unsigned addr, std::uint32_t word) {
       now += 3;
-      for (ChannelsModel* m : {&slow, &fast}) {
+      for (ServoIc* m : {&slow, &fast}) {
         m->advance(now);
         m->write(x, addr, word);
       }
@@ -207,11 +207,11 @@ TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
       for (unsigned& pins : in.pins) pins = value(0xFFF);
       in.adc_a = value(15);
       in.adc_b = value(15);
-      for (ChannelsModel* m : {&slow, &fast}) m->set_inputs(in);
+      for (ServoIc* m : {&slow, &fast}) set_inputs(*m, in);
       const Tick end = now + 3 * (1 + value(20'000));
       fast.advance(end);
       while (now < end) slow.advance(++now);
-      ASSERT_TRUE(slow.pins() == fast.pins()) << "seed " << seed;
+      ASSERT_TRUE(channel_pins(slow) == channel_pins(fast)) << "seed " << seed;
       for (unsigned addr = 0; addr < 64; ++addr)
         ASSERT_EQ(slow.read(addr >= 32, addr & 31), fast.read(addr >= 32, addr & 31)) << "seed " << seed << " word " << addr;
     }

@@ -1,5 +1,5 @@
 // The four channels of a servo IC with its registers and clock chain: Verilated RTL or model, one tick at a time.
-#include "testbench/unit/servo_channel/channels_rig.h"
+#include "testbench/unit/servo_channel/channels_engine.h"
 #include "testbench/unit/vectors/device.h"
 
 namespace brick {
@@ -27,51 +27,6 @@ enum : unsigned {
   kAllSignals
 };
 
-class ChannelsEngine {
- public:
-  virtual ~ChannelsEngine() = default;
-  virtual void tick(const ChannelInputs& in, Tick now) = 0;  // `now` counts this edge
-  virtual std::uint32_t word(const ChannelInputs& in) = 0;
-  virtual ChannelPins pins() const = 0;
-};
-
-class RtlEngine : public ChannelsEngine {
- public:
-  void tick(const ChannelInputs& in, Tick now) override {
-    rtl_.drive(in);
-    rtl_.tick(now % kTicksPerRef == 0);
-  }
-  std::uint32_t word(const ChannelInputs& in) override {
-    rtl_.drive(in);
-    return rtl_.rdata();
-  }
-  ChannelPins pins() const override { return rtl_.pins(); }
-
- private:
-  RtlChannels rtl_;
-};
-
-class ModelEngine : public ChannelsEngine {
- public:
-  void tick(const ChannelInputs& in, Tick now) override {
-    model_.set_inputs(in);
-    if (!in.rst_n) {
-      model_.reset(now);
-      model_.set_inputs(in);
-      return;
-    }
-    model_.advance(now);
-    if (now % kTicksPerRef != 0) return;
-    if (in.read_done) model_.read_done(in.x, in.addr);
-    if (in.we) model_.write(in.x, in.addr, in.wdata);
-  }
-  std::uint32_t word(const ChannelInputs& in) override { return model_.read(in.x, in.addr); }
-  ChannelPins pins() const override { return model_.pins(); }
-
- private:
-  ChannelsModel model_;
-};
-
 class ChannelsDevice : public Device {
  public:
   explicit ChannelsDevice(std::unique_ptr<ChannelsEngine> engine) : engine_(std::move(engine)), values_(kAllSignals) {
@@ -89,7 +44,7 @@ class ChannelsDevice : public Device {
   }
   void run(Tick ticks) override {
     for (; ticks > 0; --ticks) {
-      engine_->tick(in_, ++now_);
+      engine_->run(in_, ++now_);
       read_pins();
     }
   }
@@ -156,7 +111,7 @@ class ChannelsDevice : public Device {
   std::unique_ptr<ChannelsEngine> engine_;
   std::vector<DeviceSignal> signals_ = channels_signals();
   std::vector<std::uint32_t> values_;
-  ChannelInputs in_;
+  ServoIcInputs in_;
   Tick now_ = 0;
 };
 
@@ -180,9 +135,6 @@ std::vector<DeviceSignal> channels_signals() {
   return all;
 }
 
-std::unique_ptr<Device> make_channels(bool rtl) {
-  if (rtl) return std::make_unique<ChannelsDevice>(std::make_unique<RtlEngine>());
-  return std::make_unique<ChannelsDevice>(std::make_unique<ModelEngine>());
-}
+std::unique_ptr<Device> make_channels(bool rtl) { return std::make_unique<ChannelsDevice>(make_channels_engine(rtl)); }
 
 }  // namespace brick
