@@ -118,6 +118,7 @@ module clock_gen (
     end else if (at_middle && odd_q && fall_cnt_q == 4'd0) begin
       phase_d = 1'b0;
     end
+    if (phase_release) phase_d = 1'b1;  // a fall at this edge stays away from the net, so no latch may see it
   end
 
   // Servo clock: falls with every (I7m02+1)-th fall of the phase clock and rises with the next one, or, when it is as fast
@@ -141,6 +142,7 @@ module clock_gen (
         servo_cnt_d = servo_cnt_q - 4'd1;
       end
     end
+    if (servo_release) servo_d = 1'b1;
   end
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin

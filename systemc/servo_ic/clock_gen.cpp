@@ -84,6 +84,7 @@ void ClockGen::step() {
   } else if (middle && s_.odd && s_.fall_cnt == 0) {
     s_.phase = false;
   }
+  if (phase_goes) s_.phase = true;  // a fall at this edge stays away from the net, so no latch may see it
 
   if (servo_follows) {
     s_.servo = s_.servo2;
@@ -99,6 +100,8 @@ void ClockGen::step() {
       --s_.servo_cnt;
     }
   }
+
+  if (servo_goes) s_.servo = true;
 
   if (phase_goes) s_.phase_oe = false;
   if (servo_goes) s_.servo_oe = false;
