@@ -1,6 +1,7 @@
-// Simulation wrapper of the board: the same inputs, the outputs packed into three 32-bit words (pins_o[31:0] is w[0]) in the
-// layout of systemc/core/board_pins.h, the motor side in that of motor_pins.h. seeded_bug_i is the negative control of every comparison: the SERVO pin's
-// SeededBugEdge-th falling edge since reset comes one tick late.
+// Simulation wrapper of the board: the same inputs, the outputs packed into three words in the layout of systemc/core/board_pins.h,
+// the motor side in that of motor_pins.h. Arrays of words, because a simulator then writes only the words that may have moved.
+// seeded_bug_i is the negative control of every comparison: the SERVO pin's SeededBugEdge-th falling edge since reset comes one
+// tick late.
 `default_nettype none
 
 module board_sim #(
@@ -36,11 +37,17 @@ module board_sim #(
   input  wire logic        ext_servo_i,
   input  wire logic [15:0] jpan_i,
   input  wire logic        seeded_bug_i,
-  output logic [95:0]      pins_o,
-  input  wire logic [18*64-1:0]   motor_i,  // as in board_top
-  output logic [18*64-1:0]        motor_o,
-  output logic [31:0]             count_o[72]  // no pins: position counters, channel n of IC i in word 4 * i + n - 1
+  output logic [31:0]      pins_o[3],
+  input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top
+  output logic [63:0]      motor_o[18],
+  output logic [31:0]      count_o[72]   // no pins: position counters, channel n of IC i in word 4 * i + n - 1
 );
+
+  logic [18*64-1:0] motor_in, motor_out;
+  for (genvar i = 0; i < 18; i++) begin : gen_motor
+    assign motor_in[64*i+:64] = motor_i[i];
+    assign motor_o[i]         = motor_out[64*i+:64];
+  end
 
   logic [23:0] pa_data;
   logic        pa_ta_n, irq_host;
@@ -56,7 +63,8 @@ module board_sim #(
     .pa_data_o(pa_data), .pa_ta_n_o(pa_ta_n), .irq_host_o(irq_host),
     .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
     .isa_sd_o(isa_sd), .isa_iochrdy_o(isa_iochrdy), .isa_memcs16_n_o(isa_memcs16_n), .isa_irq_o(isa_irq),
-    .fitted_i, .macro_gate_i, .dpram_small_i, .jpan_fitted_i, .line_select_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .jpan_i, .motor_i, .motor_o,
+    .fitted_i, .macro_gate_i, .dpram_small_i, .jpan_fitted_i, .line_select_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .jpan_i,
+    .motor_i(motor_in), .motor_o(motor_out),
     .phase_o(phase), .servo_o(servo), .breq_o(breq), .ipos_o(ipos), .eror_o(eror), .f1er_o(f1er), .hreq_o(hreq),
     .wdo_o(wdo), .wd_tripped_o(wd_tripped), .busy_host_o(busy_host), .busy_cpu_o(busy_cpu),
     .phase_source_o(source), .source_conflict_o(conflict),
@@ -94,11 +102,10 @@ module board_sim #(
     end
   end
 
-  // One process a word: a simulator then packs the words of the slower clock at that clock only.
-  always_comb pins_o[31:0]  = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
-  always_comb pins_o[63:32] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
-                               isa_iochrdy, isa_sd};
-  always_comb pins_o[95:64] = {elr, msk, sig, ist};
+  assign pins_o[0] = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
+  assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n, isa_iochrdy,
+                      isa_sd};
+  assign pins_o[2] = {elr, msk, sig, ist};
 
 endmodule : board_sim
 

@@ -143,7 +143,7 @@ module board_top #(
       assign rdata_chain = gen_servo_ic[i-1].rdata_chain | rdata;
     end
     if (ServoIcMask[i]) begin : gen_built
-      logic [63:0] motor;
+      logic [3:0] ic_equ;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
         .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
@@ -152,10 +152,9 @@ module board_top #(
         .phase_i(phase_o), .servo_i(servo_o),
         .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i]),
         .trip_i(wd_tripped_o), .pins_i(motor_i[64*i+:48]), .adc_a_i(motor_i[64*i+48+:4]),
-        .adc_b_i(motor_i[64*i+52+:4]), .motor_o(motor)
+        .adc_b_i(motor_i[64*i+52+:4]), .equ_o(ic_equ), .motor_o(motor_o[64*i+:64])
       );
-      assign motor_o[64*i+:64] = motor;
-      assign equ[4*i+:4]       = motor[47:44] & {4{fitted_q[i]}};
+      assign equ[4*i+:4] = ic_equ & {4{fitted_q[i]}};
       logic unused_in;
       assign unused_in = &{1'b0, motor_i[64*i+56+:8]};
     end else begin : gen_absent

@@ -88,19 +88,24 @@ module clock_select (
     end
   end
 
-  // Drivers at different levels.
+  // Drivers at different levels, which takes several.
   logic disagree, conflict_d, conflict_q;
   logic [1:0] disagree_d, disagree_q;  // clk since they do
   logic [21:0] phase_low, phase_high, servo_low, servo_high;
   always_comb begin
-    phase_low  = drivers_q[21:0] & ~phase_i;
-    phase_high = drivers_q[21:0] & phase_i;
-    servo_low  = drivers_q[43:22] & ~servo_i;
-    servo_high = drivers_q[43:22] & servo_i;
-    if (drivers_q[44]) disagree = (ext_phase_q ? |phase_low : |phase_high) | (ext_servo_q ? |servo_low : |servo_high);
-    else               disagree = (|phase_low & |phase_high) | (|servo_low & |servo_high);
-    disagree_d = !disagree ? 2'd0 : (disagree_q == Tolerated) ? Tolerated : disagree_q + 2'd1;
-    conflict_d = several_q & (conflict_q | (disagree & (disagree_q == Tolerated)));
+    {servo_low, phase_low}   = 44'h0;
+    {servo_high, phase_high} = 44'h0;
+    disagree   = 1'b0;
+    disagree_d = 2'd0;
+    conflict_d = 1'b0;
+    if (several_q) begin
+      {servo_low, phase_low}   = drivers_q[43:0] & ~{servo_i, phase_i};
+      {servo_high, phase_high} = drivers_q[43:0] & {servo_i, phase_i};
+      if (drivers_q[44]) disagree = (ext_phase_q ? |phase_low : |phase_high) | (ext_servo_q ? |servo_low : |servo_high);
+      else               disagree = (|phase_low & |phase_high) | (|servo_low & |servo_high);
+      if (disagree) disagree_d = (disagree_q == Tolerated) ? Tolerated : disagree_q + 2'd1;
+      conflict_d = conflict_q | (disagree & (disagree_q == Tolerated));
+    end
   end
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin

@@ -28,6 +28,7 @@ module servo_ic (
   input  wire logic [47:0] pins_i,
   input  wire logic [3:0]  adc_a_i,
   input  wire logic [3:0]  adc_b_i,
+  output logic [3:0]       equ_o,
   output logic [63:0]      motor_o       // serial clocks and strobes, EQU, AENA, DAC B, DAC A, DIR, PULSE, PWM: as in board_top
 );
 
@@ -69,6 +70,7 @@ module servo_ic (
     .adc_strobe_o(serial[3])
   );
   assign rdata_o = ic_rdata | channel_rdata;
+  assign equ_o   = equ;
 
   // What moves with clk_ref only stands apart, so that a simulator packs it only then.
   logic [23:0] slow;

@@ -130,14 +130,13 @@ class RtlBoard : public Board {
     if (!has(ic)) return;
     std::uint64_t pins = static_cast<std::uint64_t>((in.adc_a & 0xFu) | (in.adc_b & 0xFu) << 4) << 48;
     for (unsigned n = 0; n < kChannels; ++n) pins |= static_cast<std::uint64_t>(in.pins[n] & 0xFFFu) << 12 * n;
-    model_->motor_i[2 * ic] = static_cast<std::uint32_t>(pins);
-    model_->motor_i[2 * ic + 1] = static_cast<std::uint32_t>(pins >> 32);
+    model_->motor_i[ic] = pins;
   }
   MotorOutputs motor_outputs(unsigned ic) const override {
     MotorOutputs out;
     if (!has(ic)) return out;
-    out.w[0] = model_->motor_o[2 * ic];
-    out.w[1] = model_->motor_o[2 * ic + 1];
+    out.w[0] = static_cast<std::uint32_t>(model_->motor_o[ic]);
+    out.w[1] = static_cast<std::uint32_t>(model_->motor_o[ic] >> 32);
     for (unsigned n = 0; n < kChannels; ++n) out.w[2 + n] = model_->count_o[4 * ic + n];
     return out;
   }
@@ -159,7 +158,7 @@ class RtlBoard : public Board {
   // Counters move with clk_ref and with the asynchronous reset only; a serial clock of 39.3216 MHz is lowered and raised by clk_pwm.
   bool motor_differs(const Watched& w, bool counters) const {
     const Model& m = *model_;
-    std::uint32_t d = (m.motor_o[2 * w.ic] ^ w.last.w[0]) | (m.motor_o[2 * w.ic + 1] ^ w.last.w[1]);
+    std::uint64_t d = m.motor_o[w.ic] ^ (static_cast<std::uint64_t>(w.last.w[1]) << 32 | w.last.w[0]);
     if (counters)
       for (unsigned n = 0; n < kChannels; ++n) d |= m.count_o[4 * w.ic + n] ^ w.last.w[2 + n];
     return d != 0;

@@ -17,8 +17,7 @@ RtlBoard::RtlBoard(bool seeded_bug) : impl_(std::make_unique<Impl>()) {
   std::uint64_t idle = 0;
   for (unsigned n = 0; n < kChannels; ++n) idle |= std::uint64_t{kIdleChannelPins} << 12 * n;
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
-    impl_->top.motor_i[2 * ic] = static_cast<std::uint32_t>(idle);
-    impl_->top.motor_i[2 * ic + 1] = static_cast<std::uint32_t>(idle >> 32);
+    impl_->top.motor_i[ic] = idle;
   }
   impl_->top.rst_ni = 1;
   impl_->top.eval();
