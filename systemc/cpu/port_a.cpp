@@ -11,7 +11,8 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kWordMask = 0xFFFFFF;
-constexpr unsigned kDefaultArea = 4;
+// Areas by their select lines. AA3 would select flash and battery RAM, which are not on this bus: BA3W is storage.
+constexpr unsigned kDefaultArea = 3;
 constexpr unsigned kOnChipWaitStates = 7;
 
 // Regions of docs/architecture.md that lie on Port A; the first three of each area select.
@@ -58,7 +59,7 @@ void PortA::reset(Tick edge, std::int64_t cycle, BoardInputs& pins) {
 
 unsigned PortA::wait_states(unsigned area) const {
   using namespace regs::cpu_bus::bcr;
-  constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBa3w, kBdfw};
+  constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
   return kFields[area].get(bcr_);
 }
 

@@ -58,7 +58,7 @@ class PortA : public sc_core::sc_module {
   // Registers to their reset values, no cycle under way; CPU cycle `cycle` begins with edge `edge`. Pins go idle.
   void reset(Tick edge, std::int64_t cycle, BoardInputs& pins);
   const CpuClock& clock() const { return clock_; }
-  unsigned wait_states(unsigned area) const;  // 0..3, 4 = default area
+  unsigned wait_states(unsigned area) const;  // AA0..AA2, 3 = default area
 
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
   bool running() const { return state_ == State::kRunning; }

@@ -169,6 +169,26 @@ TEST(PortA, EachRegionHasItsAreaAndWaitStates) {
   EXPECT_EQ(rig.port_a.wait_states(0), 1u);
 }
 
+// Also the bits that move nothing here: BA3W, because flash is not on this bus, and the three of bus arbitration.
+TEST(PortA, EveryBitOfItsTwoRegistersReadsBack) {
+  PortARig rig;
+  for (unsigned bit = 0; bit < 24; ++bit) {
+    rig.write('X', 0xFFFFFB, 1u << bit);
+    EXPECT_EQ(rig.read('X', 0xFFFFFB), 1u << bit) << "BCR bit " << bit;
+    for (const std::uint32_t address : {0x060000u, 0x070010u, 0x078000u}) {
+      rig.read('X', address);
+      const unsigned lsb = address == 0x060000 ? 10 : address == 0x070010 ? 16 : 5, width = address == 0x060000 ? 3 : 5;
+      EXPECT_EQ(rig.last->wait_states, bit >= lsb && bit < lsb + width ? 1u << (bit - lsb) : 0u) << std::hex << address << " bit " << bit;
+    }
+    EXPECT_EQ(rig.port_a.wait_states(0), bit < 5 ? 1u << bit : 0u);
+  }
+  rig.write('X', 0xFFFFFB, 0x1FFFFF);
+  for (unsigned bit = 0; bit < 24; ++bit) {
+    rig.write('X', 0xFFFFFD, 1u << bit);
+    EXPECT_EQ(rig.read('X', 0xFFFFFD), bit < 5 ? 1u << bit : 0u) << "PCTL bit " << bit;
+  }
+}
+
 TEST(PortA, NothingAnswersOutsideTheRegions) {
   PortARig rig;
   for (const std::uint32_t address : {0x040000u, 0x05FFFFu, 0x064000u, 0x06FFFFu, 0x070100u, 0x077FFFu, 0x07C000u, 0x080000u, 0xFFFF7Fu})

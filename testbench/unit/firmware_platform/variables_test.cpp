@@ -285,6 +285,24 @@ TEST(SavedData, JumperE3StartsWithDefaults) {
   EXPECT_EQ(i_integer(7000), 100);
 }
 
+// Factory wait states of main memory, gate ICs, DPRAM, flash and the default area for the CPU clock, and those of I37 on top of them. The
+// three bits of flash are full already.
+TEST(SavedData, WaitStatesAreThoseOfTheCpuClockPlusI37) {
+  const auto bcr = [](unsigned main, unsigned gate, unsigned dpram, unsigned flash, unsigned other) {
+    return main | gate << 5 | dpram << 10 | flash << 13 | other << 16;
+  };
+  Controller c;
+  EXPECT_EQ(x(0xFFFFFB), bcr(1, 7, 3, 7, 15));
+  c.line("I37=$032403 SAVE");
+  EXPECT_EQ(x(0xFFFFFB), bcr(1, 7, 3, 7, 15)) << "not before the next start";
+  c.restart();
+  EXPECT_EQ(x(0xFFFFFB), bcr(4, 7, 4, 7, 18));
+  c.line("I37=0 I52=9 SAVE");
+  c.restart();
+  EXPECT_EQ(x(0xFFFFFB), bcr(1, 10, 4, 7, 15));
+  EXPECT_EQ(x(0xFFFFFD), 9u) << "multiplier of the CPU clock - 1";
+}
+
 TEST(SavedData, DamageIsReportedAndDefaultsAreUsed) {
   Controller c;
   c.line("I17=33");
