@@ -56,7 +56,11 @@ void hal_interrupts_off(void) {
   __asm__ volatile(CSR("csrc mip, %0") : : "r"(TASK_ALL) : "memory");
 }
 
-void hal_interrupts_on(void) { __asm__ volatile(CSR("csrs mie, %0\n csrsi mstatus, 8") : : "r"(TASK_ALL) : "memory"); }
+/* A clock edge of the time before counts no more: taken late, its task could run into the next one (servo error). */
+void hal_interrupts_on(void) {
+  __asm__ volatile(CSR("csrc mip, %0") : : "r"(TASK_PHASE | TASK_SERVO | TASK_REAL_TIME) : "memory");
+  __asm__ volatile(CSR("csrs mie, %0\n csrsi mstatus, 8") : : "r"(TASK_ALL) : "memory");
+}
 
 void hal_request_real_time(void) { __asm__ volatile(CSR("csrs mip, %0") : : "r"(TASK_REAL_TIME) : "memory"); }
 

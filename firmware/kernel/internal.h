@@ -19,8 +19,12 @@ void clock_watch_poll(void);  /* background without clocks: servo and real-time 
 
 /* tasks.c */
 void tasks_initialize(void);
+#define TASK_DURATIONS 0x000037u /* Y: servo task, X: phase task, in half CPU cycles */
+
+/* phase_task.c */
+void phase_task_initialize(void);            /* from the motor variables, with interrupts off */
 extern volatile uint32_t kernel_phase_stamp; /* cycle counter at the last phase interrupt, written by boot/trap.S */
-extern volatile uint32_t kernel_phase_work;  /* not zero: kernel_phase_interrupt is called every phase interrupt */
+extern volatile uint32_t kernel_phase_work;  /* bit n-1: motor n is commutated. Not zero: boot/trap.S calls kernel_phase_interrupt */
 
 /* saved_data.c */
 typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;

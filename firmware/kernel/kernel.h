@@ -24,6 +24,9 @@ uint32_t kernel_phase_period(void); /* nominal, CPU cycles */
 void kernel_clock_changed(void);    /* a divider or direction was written: the clocks are watched closely for a while */
 void kernel_watchdog_reload(void);  /* Y:$25 from I40 */
 
+/* Phase task: Ixx00, Ixx01 or Ixx83 of motor 1..32 was written. Background and real-time tasks. */
+void kernel_phase_motor_changed(uint32_t motor);
+
 /* Interrupt handlers, called by boot/trap.S. */
 void kernel_phase_interrupt(void);
 void kernel_servo_interrupt(void);

@@ -1,7 +1,7 @@
-/* The interrupt tasks (firmware.md 8.1). The phase task has no work of its own as long as no motor is commutated: boot/trap.S then
- * only notes the time. The servo task counts, runs timers, the watchdog counter and the trajectories, and every I8+1 cycles
- * requests the real-time task, which plans moves and strobes the hardware watchdog. When real-time interrupts are meant to be rare
- * (I8 up to 255, slow clocks), the servo task strobes between them: the hardware allows 25 ms only. */
+/* The interrupt tasks below the phase task (firmware.md 8.1). The servo task counts, runs timers, the watchdog counter and the
+ * trajectories, and every I8+1 cycles requests the real-time task, which plans moves and strobes the hardware watchdog. When
+ * real-time interrupts are meant to be rare (I8 up to 255, slow clocks), the servo task strobes between them: the hardware
+ * allows 25 ms only. */
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"
 #include "firmware/kernel/kernel.h"
@@ -9,12 +9,9 @@
 #include "firmware/variables/variables.h"
 
 #define SERVO_COUNTER 0x000000u
-#define TASK_DURATIONS 0x000037u      /* Y: servo task, X: phase task, in half CPU cycles */
 #define REAL_TIME_DURATIONS 0x00000Bu /* X: last, Y: longest real-time task */
 #define WATCHDOG_COUNTER 0x000025u    /* Y: counter, X: lowest value since reset */
-enum { WATCHDOG_DEFAULT = 4095, STROBE_GAP_MS = 10, PHASE_CYCLES = 40 /* of the short path in boot/trap.S, with entry and return */ };
-
-volatile uint32_t kernel_phase_stamp, kernel_phase_work;
+enum { WATCHDOG_DEFAULT = 4095, STROBE_GAP_MS = 10 };
 
 static volatile uint32_t servo_count;  /* S */
 static volatile int32_t watchdog;      /* S decrements, B reloads with S held off */
@@ -30,7 +27,6 @@ void tasks_initialize(void) {
   servo_count = 0;
   real_time_prescaler = 0;
   real_time_active = false;
-  kernel_phase_work = 0;
   watchdog_lowest = WATCHDOG_DEFAULT;
   kernel_watchdog_reload();
   *hal_x(WATCHDOG_COUNTER) = (uint32_t)watchdog;
@@ -38,7 +34,7 @@ void tasks_initialize(void) {
   real_time_longest = 0;
   strobe_gap = STROBE_GAP_MS * hal_cycles_per_ms();
   strobed = hal_cycles();
-  *hal_x(TASK_DURATIONS) = PHASE_CYCLES / 2;
+  phase_task_initialize();
 }
 
 uint32_t kernel_servo_count(void) { return servo_count; }
@@ -50,8 +46,6 @@ void kernel_watchdog_reload(void) {
   *hal_y(WATCHDOG_COUNTER) = (uint32_t)watchdog;
   hal_unmask(state);
 }
-
-void kernel_phase_interrupt(void) {}
 
 /* The background sleeps between real-time interrupts, which may be further apart than I40 cycles: it is woken in time to reload. */
 static void count_watchdog(void) {

@@ -138,6 +138,10 @@ static bool locked(uint32_t number) {
   return number >= 8000u && (locks & 8u) != 0u;
 }
 
+static bool decides_phase_task(uint32_t field) {
+  return field == I_FIELD_MOTOR_ACTIVE || field == I_FIELD_MOTOR_COMMUTATION || field == I_FIELD_MOTOR_PHASE;
+}
+
 void i_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT || locked(number)) return;
   const struct i_place place = i_table_place(number);
@@ -175,6 +179,7 @@ void i_variable_write(uint32_t number, double value) {
   }
   hal_unmask(state);
   if (entry->field == I_FIELD_BUFFER_REQUEST) buffer_request_evaluate();
+  if (decides_phase_task(entry->field)) kernel_phase_motor_changed(place.instance);
   if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) kernel_clock_changed();
 }
 

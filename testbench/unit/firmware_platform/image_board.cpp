@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::uint32_t kPmac = 0xC0000000u, kMainWords = 0x40000;
 constexpr Cycle kDeviceCycles = 9;
-constexpr Cycle kPhaseCycles = 8705;  // 13057 periods of 117.9648 MHz at 78.6432 MHz
 
 }  // namespace
 
@@ -31,9 +30,10 @@ ImageBoard::ImageBoard(const std::string& elf, std::uint32_t fitted) : cpu_(this
   reset();
 }
 
-void ImageBoard::reset() {
+void ImageBoard::reset(Cycle clock_phase) {
   cpu_.reset(entry_);
-  next_phase_ = cpu_.cycle() + kPhaseCycles;
+  next_phase_ = cpu_.cycle() + kPhaseCycles - clock_phase % kPhaseCycles;
+  phases_ = static_cast<unsigned>(clock_phase / kPhaseCycles);
   reset_at_ = last_strobe_ = cpu_.cycle();
   longest_gap_ = clocks_started_ = 0;
 }

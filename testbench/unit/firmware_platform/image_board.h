@@ -19,7 +19,7 @@ class ImageBoard : public DeviceBus {
 
   Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override;
 
-  void reset();
+  void reset(Cycle clock_phase = 0);  // `clock_phase`: CPU cycles that the clocks are ahead, up to a servo period
   void set_clocks(bool running) { clocks_ = running; }
   void run_ms(double ms);
   std::string send(const std::string& characters, double limit_ms = 100.0);  // until ACK, an error's CR, or the limit
@@ -34,6 +34,7 @@ class ImageBoard : public DeviceBus {
   double clocks_started_ms() const { return static_cast<double>(clocks_started_) / kCyclesPerMs; }   // after reset: servo IC 0 drives
 
   static constexpr double kCyclesPerMs = 78643.2;
+  static constexpr Cycle kPhaseCycles = 8705;  // 13057 periods of 117.9648 MHz
 
  private:
   void step(Cycle limit);

@@ -77,6 +77,33 @@ TEST_F(Image, WatchdogReloadOfOneServoCycleIsKeptUp) {
   EXPECT_LE(board.word(true, 0x25), 1u) << "X:$25, lowest value: not below zero";
 }
 
+// An edge latched during start-up must not be served so late that the next one finds its task still at work.
+TEST_F(Image, NoAlignmentOfTheClocksToTheStartUpIsAServoError) {
+  for (Cycle ahead = 0; ahead < 4 * ImageBoard::kPhaseCycles; ahead += 120) {
+    board.reset(ahead);
+    board.run_ms(14.0);
+    ASSERT_EQ(board.word(true, 6) & 1u << 20, 0u) << ahead;  // X:$6, first global status word
+  }
+}
+
+// Phase tasks of all motors at 9 kHz: dearer, but every other task keeps its rate.
+TEST_F(Image, AllMotorsCommutatedLeaveTimeForTheOtherTasks) {
+  board.send("I6=1 I3=2\r");
+  for (int motor = 1; motor <= 32; ++motor) {
+    const std::string first = "I" + std::to_string(motor) + "0";
+    board.send(first + "0=1 " + first + "1=1 " + first.substr(0, first.size() - 1) + "71=3\r");
+  }
+  const std::uint32_t before = board.word(true, 0);
+  board.run_ms(100.0);
+  EXPECT_NEAR(board.word(true, 0) - before, 225.9, 1.0);
+  EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
+  const std::uint32_t duration = board.word(true, 0x37);  // X:$37, half cycles
+  EXPECT_GT(duration, 32u * 10u);
+  EXPECT_LT(duration, 8705u / 2u / 2u) << "half of the phase period";
+  RecordProperty("half_cycles", static_cast<int>(duration));
+  EXPECT_EQ(board.send("I101..3201=0 ???\r"), "000000000800\r\x06");
+}
+
 TEST_F(Image, LongReportsArriveComplete) {
   board.send("I6=1 I3=2\r");
   const std::string reply = board.send("I0..8191\r", 4000.0);
