@@ -18,8 +18,10 @@
 
 namespace brick {
 
-void start_clocks(Board& board) {
+void start_clocks(Board& board, std::uint32_t fitted) {
   BoardInputs in;
+  in.fitted = fitted;
+  board.set_inputs(in);
   board.run_until(30);
   in.rst_n = true;
   in.pa_addr = 0x78004;
@@ -103,6 +105,37 @@ void boards(Tick ticks, const std::string& vcd) {
   row("  ratio to the RTL engine", fmt::format("{:.2f}", median(ratio[3])), "", true);
 }
 
+// What an IC more costs the RTL engine. The board itself has a cost of its own, so that the ticks of a board with more ICs are
+// cheaper by IC; what must not grow is the cost of one more.
+void scaling(Tick ticks) {
+  struct Size {
+    std::uint32_t fitted;
+    int ics;
+    std::unique_ptr<Board> board;
+    std::vector<double> cost;  // ns a tick
+  };
+  Size sizes[] = {{0x000003, 2, nullptr, {}}, {0x04000F, 5, nullptr, {}}, {0x3FFFFF, 22, nullptr, {}}};
+  for (Size& s : sizes) {
+    s.board = make_rtl_board(s.fitted);
+    start_clocks(*s.board, s.fitted);
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    for (Size& s : sizes) {
+      const Tick run = ticks / s.ics;
+      s.cost.push_back(seconds([&] { s.board->run_until(s.board->now() + run); }) / static_cast<double>(run) * 1e9);
+    }
+  }
+  for (const Size& s : sizes) {
+    const double rate = 1e3 / median(s.cost);
+    row(fmt::format("RTL engine, {} ICs", s.ics), fmt::format("{:.2f} M ticks/s", rate), "", true);
+    row("  ticks/s x ICs", fmt::format("{:.1f} M/s", rate * s.ics), "", true);
+  }
+  const auto one_more = [&](const Size& a, const Size& b) { return (median(b.cost) - median(a.cost)) / (b.ics - a.ics); };
+  const double few = one_more(sizes[0], sizes[1]), many = one_more(sizes[1], sizes[2]);
+  row("  one IC more, 2 to 5 ICs", fmt::format("{:.0f} ns a tick", few), "", true);
+  row("  one IC more, 5 to 22 ICs", fmt::format("{:.0f} ns a tick", many), "<= 1.2 x 2 to 5", many <= 1.2 * few);
+}
+
 // The whole controller with its firmware: idle (waits for the host), and busy (the host asks without a pause).
 void machine(Engine engine, const char* name, const std::string& firmware, double simulated, const std::string& vcd, bool goal) {
   MachineConfig config;
@@ -167,6 +200,7 @@ int main(int argc, char** argv) {
   try {
     fmt::print("{:<58} {:>22}   {:<22}\n", "what", "median of 5", "goal");
     brick::boards(quick ? 1'000'000 : 4'000'000, vcd);
+    brick::scaling(quick ? 2'000'000 : 8'000'000);
     brick::cpu(quick ? 50'000'000 : 200'000'000);
     brick::machine(brick::Engine::kSystemC, "SystemC", argv[1], quick ? 1 : 5, vcd, true);
     brick::machine(brick::Engine::kRtl, "RTL", argv[1], quick ? 0.01 : 0.05, vcd, false);

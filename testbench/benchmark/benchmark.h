@@ -25,6 +25,6 @@ class BareLoop {
 std::uint64_t run_cpu_alone(std::uint64_t instructions);
 
 // Lets servo IC 0 drive PHASE and SERVO at their reset values: reset, then one write to X:$078004.
-void start_clocks(Board& board);
+void start_clocks(Board& board, std::uint32_t fitted = 0x3);
 
 }  // namespace brick
