@@ -30,6 +30,19 @@ TEST(HostExchange, ReportsUnknownCommandAndMissingBuffer) {
             "ERR005\r");
 }
 
+// A sign behind `%` makes the whole command wrong: no report goes before the error.
+TEST(HostExchange, TimeBaseWithASignIsAnErrorAndNoReport) {
+  Controller c;
+  EXPECT_EQ(c.send("%\r"), "100\r\x06");
+  for (const char* line : {"%-1\r", "%+1\r", "% -1\r", "%-\r", "%-0\r"}) {
+    EXPECT_EQ(c.send(line),
+              "\x07"
+              "ERR003\r")
+        << line;
+  }
+  EXPECT_EQ(c.send("%\r"), "100\r\x06");
+}
+
 TEST(HostExchange, ReducesI3ModuloItsRange) {
   Controller c;
   EXPECT_EQ(c.send("I3=5\r"), "\x06");
