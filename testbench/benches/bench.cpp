@@ -22,6 +22,13 @@ bool BenchReport::passed() const {
   return !steps_.empty() && std::all_of(steps_.begin(), steps_.end(), [](const BenchStep& s) { return s.passed; });
 }
 
+std::string BenchContext::ask(const std::string& line) const {
+  const Reply reply = link.command(line);
+  std::string text = reply.complete ? "" : "no reply";
+  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
+  return text;
+}
+
 const std::vector<Bench>& all_benches() {
   static const std::vector<Bench> benches{smoke_bench(),           breq_rotary_bench(),  watchdog_bench(),    reinit_e3_bench(),
                                           clock_select_bench(),    clock_faults_bench(), clock_macro_bench(), encoder_bench(),

@@ -48,6 +48,9 @@ struct BenchContext {
   const BoardConfig& board;
   std::uint64_t seed;
   bool negative;
+
+  std::string ask(const std::string& line) const;  // data lines joined by '|'
+  void expect(const std::string& line, const std::string& answer) const { report.equal(line, ask(line), answer); }
 };
 
 struct Bench {

@@ -183,7 +183,7 @@ class CaptureCompareBench {
   unsigned source(unsigned i) { return host_.board(i).own_compare ? i : i / kChannels * kChannels; }
 
   void compare() {
-    const std::string first = fmt::format("I{}", host_.i_variable(0, 1));
+    const std::string first = fmt::format("I{}", host_.i_channel(0, 1));
     host_.ask(first + "=0");
     host_.expect(first, "1");
     for (unsigned round = 0; round < 3; ++round) {
@@ -242,9 +242,7 @@ class CaptureCompareBench {
   void equ_by_host() {
     const unsigned n = host_.channels();
     std::vector<long> state(n);
-    const auto pin_is = [&](unsigned i) {
-      return static_cast<long>(b_.machine.motor_outputs(host_.ic(i)).get(motor_pin::kEqu, i % kChannels));
-    };
+    const auto pin_is = [&](unsigned i) { return static_cast<long>(host_.pin(motor_pin::kEqu, i)); };
     for (unsigned round = 0; round < 2; ++round) {
       for (unsigned i = 0; i < n; ++i) state[i] = round == 0 ? static_cast<long>(host_.pick(2)) : 1 - state[i];
       write(kEquState, state);

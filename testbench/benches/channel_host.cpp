@@ -1,7 +1,6 @@
 #include "testbench/benches/channel_host.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -11,19 +10,6 @@ namespace brick {
 
 namespace {
 constexpr Tick kQuiet = 12;  // SCLK periods after the last level
-
-// servo-ic.md 1.2, with $20 and 50 more for IC m*.
-std::uint32_t ic_base(unsigned ic) {
-  static constexpr std::uint32_t kBase[10] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300};
-  return ic < 10 ? kBase[ic] : kBase[ic - 8] + 0x20;
-}
-
-std::vector<unsigned> servo_ics(const BoardConfig& board) {
-  std::vector<unsigned> ics;
-  for (unsigned ic = 0; ic < kMaxServoIcs && ics.size() < 2; ++ic)
-    if ((board.fitted >> ic & 1) != 0) ics.push_back(ic);
-  return ics;
-}
 }  // namespace
 
 std::uint32_t PinPlayer::ics() const {
@@ -63,37 +49,19 @@ bool PinPlayer::step(Tick now, MotorInputPins& inputs) {
   return edited;
 }
 
-ChannelHost::ChannelHost(BenchContext& bench)
-    : bench_(bench),
-      random_(bench.seed * 65'537),
-      ics_(servo_ics(bench.board)),
-      player_(ics_),
-      pins_(ics_.size() * kChannels, kIdleChannelPins) {
+ChannelHost::ChannelHost(BenchContext& b) : ServoHost(b, b.seed * 65'537), player_(fitted()), pins_(channels(), kIdleChannelPins) {
   for (unsigned i = 0; i < pins_.size(); ++i) boards_.push_back(std::make_unique<ChannelScoreboard>());
-  bench.machine.attach(player_);
-  bench.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
-  bench.bus.watch(select_pins(pin::kServo), [this](Tick t, const BoardOutputs&, const BoardOutputs& o) {
+  b.machine.attach(player_);
+  b.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
+  b.bus.watch(select_pins(pin::kServo), [this](Tick t, const BoardOutputs&, const BoardOutputs& o) {
     if (o.get(pin::kServo) == 0) servo_falls_.push_back(t);
   });
 }
 
 ChannelHost::~ChannelHost() {
-  bench_.bus.watch({}, nullptr);
-  bench_.machine.on_bus_cycle = nullptr;
-  bench_.machine.detach(player_);
-}
-
-unsigned ChannelHost::i_variable(unsigned channel, unsigned k) const {
-  const unsigned m = ic(channel);
-  return 7000 + 100 * (m < 10 ? m : m - 8) + (m < 10 ? 0 : 50) + 10 * (channel % kChannels + 1) + k;
-}
-
-std::uint32_t ChannelHost::address(unsigned channel, unsigned offset) const {
-  return ic_base(ic(channel)) + 8 * (channel % kChannels) + offset;
-}
-
-std::string ChannelHost::name(unsigned channel) const {
-  return fmt::format("{}.ch{}", servo_ic_scope(ic(channel)), channel % kChannels + 1);
+  bench().bus.watch({}, nullptr);
+  bench().machine.on_bus_cycle = nullptr;
+  bench().machine.detach(player_);
 }
 
 void ChannelHost::cycle(const PortACycle& c) {
@@ -112,56 +80,30 @@ void ChannelHost::follow() {
   for (auto& board : boards_) board->advance(now());
 }
 
-std::string ChannelHost::ask(const std::string& line) {
-  follow();
-  const Reply reply = bench_.link.command(line);
-  std::string text = reply.complete ? "" : "no reply";
-  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
-  return text;
-}
-
-void ChannelHost::expect(const std::string& line, const std::string& answer) { bench_.report.equal(line, ask(line), answer); }
-
-std::vector<long> ChannelHost::numbers(const std::string& line) {
-  follow();
-  std::vector<long> values;
-  for (const auto& l : bench_.link.command(line).lines) values.push_back(std::strtol(l.c_str(), nullptr, 10));
-  return values;
-}
-
 void ChannelHost::assign(unsigned k, const std::vector<unsigned>& values) {
-  std::string line;
-  for (unsigned i = 0; i < values.size(); ++i) line += fmt::format("{}I{}={}", i == 0 ? "" : " ", i_variable(i, k), values[i]);
-  ask(line);
-}
-
-void ChannelHost::define(unsigned number, char space, unsigned offset, const std::string& part) {
-  std::string line;
-  for (unsigned i = 0; i < channels(); ++i)
-    line += fmt::format("{}M{}->{}:${:X},{}", i == 0 ? "" : " ", number + 100 * i, space, address(i, offset), part);
-  ask(line);
+  std::vector<std::string> words;
+  for (unsigned i = 0; i < values.size(); ++i) words.push_back(fmt::format("I{}={}", i_channel(i, k), values[i]));
+  say(words);
 }
 
 std::vector<long> ChannelHost::read(unsigned number) { return numbers(fmt::format("M{},{},100", number, channels())); }
 
 void ChannelHost::sclk(unsigned n) {
-  std::string line;
-  for (unsigned place = 0; place < ics_.size(); ++place) {
-    const unsigned variable = i_variable(place * kChannels, 0) - 7;                              // I7m03
-    line += fmt::format("{}I{}={}", line.empty() ? "" : " ", variable, 2258 / 64 * 64 + n * 9);  // PFM_CLK the same
-  }
-  ask(line);
+  std::vector<std::string> words;
+  for (unsigned place = 0; place < places(); ++place)
+    words.push_back(fmt::format("I{}={}", i_global(place, 3), 2258 / 64 * 64 + n * 9));  // PFM_CLK the same
+  say(words);
   period_ = kTicksPerRef << n;
   const Tick start = now() + 10 * period_ + pick(50);
   for (auto& s : player_.seen) s.clear();
-  for (unsigned place = 0; place < ics_.size(); ++place) {
+  for (unsigned place = 0; place < places(); ++place) {
     const unsigned channel = place * kChannels;
     const auto other = static_cast<std::uint16_t>(pins_[channel] ^ 1u << kEncA);
     player_.add({start, channel, other});
     player_.add({start + 20 * period_, channel, pins_[channel]});
   }
-  bench_.bus.advance_to(start + 40 * period_);
-  for (unsigned place = 0; place < ics_.size(); ++place) {
+  bench().bus.advance_to(start + 40 * period_);
+  for (unsigned place = 0; place < places(); ++place) {
     const unsigned channel = place * kChannels;
     const auto& seen = player_.seen[channel].counts;
     const Tick from = ChannelScoreboard::earliest(start, period_), to = ChannelScoreboard::latest(start, period_);
@@ -172,7 +114,7 @@ void ChannelHost::sclk(unsigned n) {
     boards_[channel]->drive(start + 20 * period_, pins_[channel]);
     boards_[channel]->advance(now());
     const std::string difference = counts(channel).text;
-    bench_.report.step(
+    bench().report.step(
         fmt::format("{} counts an edge of A and back, SCLK every {} ticks", name(channel), period_), found && difference.empty(),
         found && difference.empty() ? fmt::format("after {} ticks, expected {} to {}", edge - start, from - start, to - start)
                                     : fmt::format("expected after {} to {} ticks; {}", from - start, to - start, difference));
@@ -194,7 +136,7 @@ void ChannelHost::drive(unsigned channel, Tick start, const std::vector<Hold>& h
 }
 
 void ChannelHost::play() {
-  bench_.bus.advance_to(std::max(played_, now()) + kQuiet * period_);
+  bench().bus.advance_to(std::max(played_, now()) + kQuiet * period_);
   for (unsigned i = 0; i < channels(); ++i) {
     for (const auto& p : player_.seen[i].pulses) boards_[i]->pulse(p.tick, static_cast<int>(p.value));
     player_.seen[i].pulses.clear();

@@ -4,19 +4,16 @@
 
 #include <map>
 #include <memory>
-#include <random>
-#include <string>
 #include <vector>
 
 #include "systemc/machine/motor_peer.h"
-#include "testbench/benches/bench.h"
+#include "testbench/benches/servo_host.h"
 #include "testbench/checkers/channel_scoreboard.h"
 
 namespace brick {
 
 struct PortACycle;
 
-// Channels are numbered 0, 1, ... over the fitted servo ICs in rising order.
 struct PinEvent {
   Tick tick;
   unsigned channel;
@@ -52,35 +49,18 @@ class PinPlayer : public MotorPeer {
   std::function<void(Tick, unsigned channel)> on_pulse;  // the rise of a PFM pulse; may add() later events
 };
 
-class ChannelHost {
+class ChannelHost : public ServoHost {
  public:
   explicit ChannelHost(BenchContext& bench);
-  ~ChannelHost();
-  ChannelHost(const ChannelHost&) = delete;
-  ChannelHost& operator=(const ChannelHost&) = delete;
+  ~ChannelHost() override;
 
-  unsigned channels() const { return static_cast<unsigned>(boards_.size()); }
   ChannelScoreboard& board(unsigned channel) { return *boards_.at(channel); }
   PinPlayer& player() { return player_; }
-  unsigned pick(unsigned count) { return static_cast<unsigned>(random_() % count); }
-  std::mt19937_64& random() { return random_; }
-  BenchContext& bench() { return bench_; }
-  Tick now() const { return bench_.bus.now(); }
   Tick period() const { return period_; }
 
-  // Names: servo-ic.md 1.2, 1.4, 2.1.
-  unsigned ic(unsigned channel) const { return ics_.at(channel / kChannels); }
-  unsigned i_variable(unsigned channel, unsigned k) const;         // I7mnk
-  std::uint32_t address(unsigned channel, unsigned offset) const;  // of a word of the channel
-  std::string name(unsigned channel) const;                        // servo_ic0.ch1
-
-  // Commands, with no pin moving. ------------------------------------------------------------------------------------------
-  std::string ask(const std::string& line);  // data lines joined by '|'
-  void expect(const std::string& line, const std::string& answer);
-  std::vector<long> numbers(const std::string& line);            // data lines as numbers
+  // Commands go with no pin moving.
   void assign(unsigned k, const std::vector<unsigned>& values);  // I7mnk of every channel; shorter lists leave the rest
-  void define(unsigned number, char space, unsigned offset, const std::string& part);  // M(number + 100 n) of channel n = 0, 1, ...
-  std::vector<long> read(unsigned number);                                             // these M-variables of all channels
+  std::vector<long> read(unsigned number);                       // the M-variables `number`, number + 100, ... of all channels
 
   // SCLK divider 2^n of all ICs; finds where its edges are with one edge of A of each IC's first channel and back.
   void sclk(unsigned n);
@@ -112,11 +92,9 @@ class ChannelHost {
 
  private:
   void cycle(const PortACycle& c);
+  void before_command() override { follow(); }
   void follow();  // scoreboards up to now
 
-  BenchContext& bench_;
-  std::mt19937_64 random_;
-  std::vector<unsigned> ics_;
   PinPlayer player_;
   std::vector<std::unique_ptr<ChannelScoreboard>> boards_;
   std::vector<std::uint16_t> pins_;

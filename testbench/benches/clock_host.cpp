@@ -23,22 +23,13 @@ ClockHost::ClockHost(BenchContext& bench) : bench_(bench) {
 
 ClockHost::~ClockHost() { bench_.bus.watch({}, nullptr); }
 
-std::string ClockHost::ask(const std::string& line) {
-  const Reply reply = bench_.link.command(line);
-  std::string text = reply.complete ? "" : "no reply";
-  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
-  return text;
-}
-
-void ClockHost::expect(const std::string& line, const std::string& answer) { bench_.report.equal(line, ask(line), answer); }
-
 std::int64_t ClockHost::source_signal() {
   const Signals& signals = bench_.machine.signals();
   const auto id = signals.find("clock.source");
   return id ? static_cast<std::int64_t>(signals.value(*id)) : -1;
 }
 
-std::int64_t ClockHost::status(unsigned bits) { return std::strtol(ask("???").substr(0, 6).c_str(), nullptr, 16) & bits; }
+std::int64_t ClockHost::status(unsigned bits) { return std::strtol(bench_.ask("???").substr(0, 6).c_str(), nullptr, 16) & bits; }
 
 void ClockHost::settle(const ClockSetting& from, const ClockSetting& to) {
   bench_.bus.wait(ClockChecker::settling(from, to));
@@ -49,7 +40,7 @@ void ClockHost::program(unsigned ic, const ClockSetting& s) {
   const unsigned first = direction_variable(ic) - 7;
   const ClockSetting from = settings_[ic];
   if (ic == source_) checker_.change(now(), s);
-  ask(fmt::format("I{}={} I{}={} I{}={}", first, s.max_count, first + 1, s.phase_divider, first + 2, s.servo_divider));
+  bench_.ask(fmt::format("I{}={} I{}={} I{}={}", first, s.max_count, first + 1, s.phase_divider, first + 2, s.servo_divider));
   settings_[ic] = s;
   if (ic == source_) settle(from, s);
 }
@@ -57,19 +48,19 @@ void ClockHost::program(unsigned ic, const ClockSetting& s) {
 void ClockHost::move(unsigned ic, const std::string& line, Tick hand_over) {
   const ClockSetting from = settings_[source_];
   checker_.move(now(), settings_[ic], hand_over);
-  ask(line);
+  bench_.ask(line);
   source_ = ic;
   settle(from, settings_[ic]);
 }
 
 void ClockHost::stop(const std::string& line) {
   checker_.stop(now());
-  ask(line);
+  bench_.ask(line);
 }
 
 void ClockHost::start(unsigned ic, const std::string& line) {
   checker_.start(now(), settings_[ic], kAnswer);
-  ask(line);
+  bench_.ask(line);
   source_ = ic;
   settle(settings_[ic], settings_[ic]);
 }

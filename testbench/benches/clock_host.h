@@ -30,8 +30,8 @@ class ClockHost {
   unsigned source() const { return source_; }
   const ClockSetting& setting(unsigned ic) const { return settings_.at(ic); }
 
-  std::string ask(const std::string& line);  // data lines joined by '|'
-  void expect(const std::string& line, const std::string& answer);
+  std::string ask(const std::string& line) { return bench_.ask(line); }
+  void expect(const std::string& line, const std::string& answer) { bench_.expect(line, answer); }
   std::int64_t source_signal();        // clock.source
   std::int64_t status(unsigned bits);  // bits of the first word of ???
   Tick now() const { return bench_.bus.now(); }

@@ -183,7 +183,7 @@ class FlagsBench {
     }
   }
 
-  bool enabled(unsigned i) { return b_.machine.motor_outputs(host_.ic(i)).get(motor_pin::kAena, i % kChannels) != 0; }
+  bool enabled(unsigned i) { return host_.pin(motor_pin::kAena, i) != 0; }
   std::string enables(const std::vector<long>* expected = nullptr) {
     std::string text;
     for (unsigned i = 0; i < host_.channels(); ++i) text += expected != nullptr ? std::to_string((*expected)[i]) : enabled(i) ? "1" : "0";

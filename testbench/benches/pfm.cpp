@@ -21,8 +21,8 @@ class Pfm {
  public:
   explicit Pfm(BenchContext& b) : host_(b), boards_(host_.channels()), inverted_(host_.channels()) {
     if (b.negative) rule_[0].largest = rule_[1].largest = 1 << 23;
-    host_.define(kCommand, 'Y', 4, "0,24,S");
-    host_.define(kPosition, 'X', 1, "0,24,S");
+    host_.define(100 + kCommand, 'Y', 4, "0,24,S");
+    host_.define(100 + kPosition, 'X', 1, "0,24,S");
     std::vector<std::string> words;
     for (unsigned i = 0; i < host_.channels(); ++i) {
       words.push_back(fmt::format("M{}=0", 100 * (i + 1) + kCommand));

@@ -23,7 +23,7 @@ class Pwm {
  public:
   explicit Pwm(BenchContext& b) : host_(b), commands_(kPhases * host_.channels()), inverted_(host_.channels()) {
     rule_.greater = !b.negative;
-    for (unsigned i = 0; i < kPhases; ++i) host_.define(kVariable[i], 'Y', 2 + i, "8,16,S");
+    for (unsigned i = 0; i < kPhases; ++i) host_.define(100 + kVariable[i], 'Y', 2 + i, "8,16,S");
   }
 
   void vectors();

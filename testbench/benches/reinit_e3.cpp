@@ -12,14 +12,6 @@ constexpr Tick kMillisecond = kPwmClockHz / 1000;
 constexpr Tick kPatience = 80 * kMillisecond;
 constexpr std::uint32_t kServoIcs = 0x3, kMacroIc0 = 1u << 18;
 
-std::string ask(BenchContext& b, const std::string& line) {
-  const Reply reply = b.link.command(line);
-  std::string text = reply.complete ? "" : "no reply";
-  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
-  return text;
-}
-void expect(BenchContext& b, const std::string& line, const std::string& answer) { b.report.equal(line, ask(b, line), answer); }
-
 // Three ways to SAVE oneself out of the controller, by seed.
 struct Fault {
   const char* name;
@@ -33,28 +25,28 @@ constexpr Fault kFaults[] = {
 
 // Things that a user leaves behind in variables and memory.
 void leave_traces(BenchContext& b) {
-  expect(b, "I16=3 I17=21 I8=7 I40=500 I100=1 I5187=77", "");
-  expect(b, "P7=11 Q5=22 M9->X:$10000,0,24", "");
-  expect(b, "&1DEFINE ROTARY 200", "");
-  expect(b, "WX$10000,$123456", "");
+  b.expect("I16=3 I17=21 I8=7 I40=500 I100=1 I5187=77", "");
+  b.expect("P7=11 Q5=22 M9->X:$10000,0,24", "");
+  b.expect("&1DEFINE ROTARY 200", "");
+  b.expect("WX$10000,$123456", "");
 }
 
 void check_defaults(BenchContext& b) {
-  expect(b, "I19 I7007 I7107", "7007|0|3");
-  expect(b, "I6807", (b.board.fitted & kMacroIc0) != 0 ? "3" : "0");  // an absent IC's variables read 0
+  b.expect("I19 I7007 I7107", "7007|0|3");
+  b.expect("I6807", (b.board.fitted & kMacroIc0) != 0 ? "3" : "0");  // an absent IC's variables read 0
   // Clock words: direction in bits 21..20 and 17..16, dividers, hardware clocks 2258 = $8D2; PWM word: I7000 = 6527 = $197F, I7004 = 15.
-  expect(b, "RHX$78004", "3008D2");
-  expect(b, "RHX$78104", "3038D2");
-  expect(b, "RHX$7801C", "197F0F");
-  expect(b, "I7000..7004", "6527|0|3|2258|15");
-  expect(b, "I7100..7104", "6527|0|3|2258|15");
-  expect(b, "I8 I16 I17 I40 I52", "2|5|10|0|7");
-  expect(b, "I100 I5187", "1|0");
-  expect(b, "P7 Q5 M9->", "0|0|*");
-  expect(b, "RX$10000", "0");
-  const std::string open = ask(b, "OPEN ROTARY");
+  b.expect("RHX$78004", "3008D2");
+  b.expect("RHX$78104", "3038D2");
+  b.expect("RHX$7801C", "197F0F");
+  b.expect("I7000..7004", "6527|0|3|2258|15");
+  b.expect("I7100..7104", "6527|0|3|2258|15");
+  b.expect("I8 I16 I17 I40 I52", "2|5|10|0|7");
+  b.expect("I100 I5187", "1|0");
+  b.expect("P7 Q5 M9->", "0|0|*");
+  b.expect("RX$10000", "0");
+  const std::string open = b.ask("OPEN ROTARY");
   b.report.step("no rotary buffer is left", open.rfind("ERR", 0) == 0, open);
-  const std::string status = ask(b, "???");
+  const std::string status = b.ask("???");
   // bits 10, 7, 3 of the first word: flash error, configuration error, phase clock missing
   b.report.equal<std::int64_t>("problems in " + status, std::strtol(status.substr(0, 6).c_str(), nullptr, 16) & 0x488, 0);
 }
@@ -79,7 +71,7 @@ void run(BenchContext& b) {
   }
   const Fault& fault = kFaults[b.seed % 3];
   leave_traces(b);
-  expect(b, fmt::format("{} SAVE", fault.settings), "");
+  b.expect(fmt::format("{} SAVE", fault.settings), "");
   b.machine.power_cycle();
   b.bus.wait_pin(pin::kWdTripped, 1, kPatience);
   b.report.equal<std::int64_t>(std::string("the SAVEd settings trip the watchdog: ") + fault.name, b.machine.outputs().get(pin::kWdTripped),
@@ -98,7 +90,7 @@ void run(BenchContext& b) {
 
   b.machine.set_jumper_e3(false);
   leave_traces(b);
-  expect(b, "I6802=1 I7102=1 I6807=0 I7007=3", "");
+  b.expect("I6802=1 I7102=1 I6807=0 I7007=3", "");
   b.report.step("$$$***", b.link.command("$$$***").complete, "answers");
   check_defaults(b);
   check_clocks(b);

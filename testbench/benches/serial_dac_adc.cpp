@@ -119,10 +119,10 @@ Serial::Serial(BenchContext& b) : host_(b), inverted_(host_.channels()), command
     converters_.push_back(std::make_unique<Converters>(host_.ic(i), b.seed, b.negative ? 1 : 0));
     b.machine.attach(*converters_.back());
   }
-  host_.define(2, 'Y', 2, "0,24,U");  // M102, M104: OUT A, B; M105, M106: ADC A, B
-  host_.define(4, 'Y', 3, "0,24,U");
-  host_.define(5, 'Y', 5, "0,24,U");
-  host_.define(6, 'Y', 6, "0,24,U");
+  host_.define(102, 'Y', 2, "0,24,U");  // M102, M104: OUT A, B; M105, M106: ADC A, B
+  host_.define(104, 'Y', 3, "0,24,U");
+  host_.define(105, 'Y', 5, "0,24,U");
+  host_.define(106, 'Y', 6, "0,24,U");
   std::vector<std::string> words;
   for (unsigned i = 0; i < host_.channels(); ++i) words.push_back(fmt::format("I{}=1", host_.i_channel(i, 6)));
   host_.say(words);

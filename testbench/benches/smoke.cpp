@@ -13,13 +13,6 @@ Tick next_fall(HostBus& bus, const PinField& pin, Tick limit) {
   return bus.now();
 }
 
-void ask(BenchContext& b, const std::string& line, const std::string& expected) {
-  const Reply reply = b.link.command(line);
-  std::string text = reply.complete ? "" : "no reply";
-  for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
-  b.report.equal(line, text, expected);
-}
-
 // I19 at the factory: servo IC 0 where there is one, else MACRO IC 0.
 unsigned clock_variable(const BenchContext& b) { return (b.board.fitted & 1) ? 7007 : 6807; }
 
@@ -68,9 +61,9 @@ void dual_ported_ram(BenchContext& b) {
   b.report.equal<std::int64_t>("dual-ported RAM, wrong words of 16", wrong, 0);
   b.bus.dpram_write(0xC000, 0x1234);
   b.bus.dpram_write(0xC002, 0x0567);
-  ask(b, "RY$063000", "4660");
-  ask(b, "RX$063000", "1383");
-  ask(b, "WY$063001,$5AA5", "");
+  b.expect("RY$063000", "4660");
+  b.expect("RX$063000", "1383");
+  b.expect("WY$063001,$5AA5", "");
   b.report.equal<std::int64_t>("word written by the controller", b.bus.dpram_read(0xC004), 0x5AA5);
 }
 
@@ -84,15 +77,15 @@ void characters(BenchContext& b) {
   for (int i = 10; i < 45; ++i) many += fmt::format("P{}={} ", i, 55 - i);
   const Reply taken = b.link.command(many);
   b.report.step("line of 245 characters", taken.complete && !taken.error, taken.lines.empty() ? "acknowledged" : taken.lines[0]);
-  ask(b, "P44", "11");
-  ask(b, "UUU", "ERR003");
+  b.expect("P44", "11");
+  b.expect("UUU", "ERR003");
 }
 
 void run(BenchContext& b) {
   if (b.negative) b.link.command("I7002=2 I6802=2");
-  ask(b, "VERSION", "1.947");
-  ask(b, "CID", std::to_string(b.board.card));
-  ask(b, "I19", std::to_string(clock_variable(b)));
+  b.expect("VERSION", "1.947");
+  b.expect("CID", std::to_string(b.board.card));
+  b.expect("I19", std::to_string(clock_variable(b)));
   clocks(b);
   interrupt_controller(b);
   dual_ported_ram(b);

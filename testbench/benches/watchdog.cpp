@@ -21,13 +21,7 @@ constexpr unsigned kWdoLine = 0x80;  // line 7 of the interrupt controller
 
 Tick servo_period(unsigned i7000) { return 2 * static_cast<Tick>(i7000) + 3; }  // dividers of one
 
-std::string ask(BenchContext& b, const std::string& line) {
-  const Reply reply = b.link.command(line);
-  return reply.complete && reply.lines.size() == 1 ? reply.lines[0] : reply.complete ? "" : "no reply";
-}
-long number(BenchContext& b, const std::string& line) { return std::strtol(ask(b, line).c_str(), nullptr, 10); }
-
-void expect(BenchContext& b, const std::string& line, const std::string& answer) { b.report.equal(line, ask(b, line), answer); }
+long number(BenchContext& b, const std::string& line) { return std::strtol(b.ask(line).c_str(), nullptr, 10); }
 
 // The factory's rates: every third servo interrupt a strobe, the counter never far below I40.
 void idle(BenchContext& b, WatchdogScoreboard& scoreboard) {
@@ -53,10 +47,10 @@ unsigned starving_i7000(BenchContext& b, std::mt19937_64& random) {
 // A quarter of that rate leaves all tasks their time: commands are answered as ever.
 void bearable(BenchContext& b, unsigned i7000) {
   const unsigned slower = 4 * i7000;
-  expect(b, fmt::format("I7000={}", slower), "");
+  b.expect(fmt::format("I7000={}", slower), "");
   b.bus.wait(kMillisecond);
   b.report.equal<std::string>(fmt::format("VERSION at {:.1f} kHz servo", 117'964.8 / static_cast<double>(servo_period(slower))),
-                              ask(b, "VERSION"), "1.947");
+                              b.ask("VERSION"), "1.947");
 }
 
 constexpr Tick kOutputs = kMillisecond / 2;  // several PWM and phase periods at all the rates here
@@ -70,9 +64,9 @@ void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) 
       const unsigned word = kBase[ic] + 8 * n;
       modes[ic][n] = mode = (mode + 1) % 4;                               // I7mn6
       const unsigned command = 1 + static_cast<unsigned>(random() % 60);  // of A, and negative of B: all four switches have their time
-      ask(b, fmt::format("I{}={} M1->X:${:X},14 M2->X:${:X},12 M3->X:${:X},11 M1=1 M2=1 M3=1 WY${:X},${:X},${:X},$100000",
-                         7000 + 100 * ic + 10 * (n + 1) + 6, mode, word + 5, word + 5, word + 5, word + 2, command << 8,
-                         (0x10000 - command) << 8));
+      b.ask(fmt::format("I{}={} M1->X:${:X},14 M2->X:${:X},12 M3->X:${:X},11 M1=1 M2=1 M3=1 WY${:X},${:X},${:X},$100000",
+                        7000 + 100 * ic + 10 * (n + 1) + 6, mode, word + 5, word + 5, word + 5, word + 2, command << 8,
+                        (0x10000 - command) << 8));
     }
   b.bus.wait(kOutputs);
   outputs.begin();
@@ -163,7 +157,7 @@ void run(BenchContext& b) {
 
   const unsigned i7000 = starving_i7000(b, random), i40 = 300 + static_cast<unsigned>(random() % 200);
   // The same set-up on servo IC 1, SAVEd as the source of the next start.
-  expect(b, fmt::format("I8=0 I7002=0 I40={} I19=7107 I7100={} I7101=0 I7102=0 SAVE", i40, i7000), "");
+  b.expect(fmt::format("I8=0 I7002=0 I40={} I19=7107 I7100={} I7101=0 I7102=0 SAVE", i40, i7000), "");
   bearable(b, i7000);
 
   auto outputs = std::make_unique<OutputWatch>(b.machine, b.board.fitted);
@@ -172,7 +166,7 @@ void run(BenchContext& b) {
   b.bus.write_pic_edge_level(0);
   b.bus.clear_pic();
   b.bus.write_pic_mask(kWdoLine);
-  if (b.negative) ask(b, fmt::format("I40={}", 3 * i40));
+  if (b.negative) b.ask(fmt::format("I40={}", 3 * i40));
   probe.expect_starvation(servo_period(i7000), WatchdogScoreboard::counter_of(i40));
   b.link.send(fmt::format("I7000={}", i7000));
   if (b.bus.wait_pin(pin::kWdTripped, 1, kPatience)) outputs_at_once(b);

@@ -1,0 +1,76 @@
+#include "testbench/benches/servo_host.h"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+namespace brick {
+
+namespace {
+constexpr std::size_t kLineLength = 190;
+}
+
+ServoHost::ServoHost(BenchContext& bench, std::uint64_t seed) : bench_(bench), random_(seed) {
+  for (unsigned ic = 0; ic < kMaxServoIcs && ics_.size() < 2; ++ic)
+    if ((bench.board.fitted >> ic & 1) != 0) ics_.push_back(ic);
+}
+
+// IC m* (index 10 and up) has 50 and $20 more than IC m.
+unsigned ServoHost::i_global(unsigned place, unsigned k) const {
+  const unsigned m = ic(place);
+  return 7000 + 100 * (m < 10 ? m : m - 8) + (m < 10 ? 0 : 50) + k;
+}
+unsigned ServoHost::i_channel(unsigned channel, unsigned k) const {
+  return i_global(channel / kChannels, 0) + 10 * (channel % kChannels + 1) + k;
+}
+std::uint32_t ServoHost::base(unsigned place) const {
+  static constexpr std::uint32_t kBase[10] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300};
+  const unsigned m = ic(place);
+  return m < 10 ? kBase[m] : kBase[m - 8] + 0x20;
+}
+std::uint32_t ServoHost::address(unsigned channel, unsigned offset) const {
+  return base(channel / kChannels) + 8 * (channel % kChannels) + offset;
+}
+std::string ServoHost::name(unsigned channel) const {
+  return fmt::format("{}.ch{}", servo_ic_scope(ic(channel / kChannels)), channel % kChannels + 1);
+}
+
+std::string ServoHost::ask(const std::string& line) {
+  before_command();
+  return bench_.ask(line);
+}
+
+void ServoHost::expect(const std::string& line, const std::string& answer) {
+  before_command();
+  bench_.expect(line, answer);
+}
+
+void ServoHost::say(const std::vector<std::string>& words) {
+  std::string line;
+  const auto send = [&] {
+    const std::string answer = ask(line);
+    if (!answer.empty()) bench_.report.fail(line, answer);
+    line.clear();
+  };
+  for (const std::string& word : words) {
+    if (line.size() + 1 + word.size() > kLineLength) send();
+    line += (line.empty() ? "" : " ") + word;
+  }
+  if (!line.empty()) send();
+}
+
+std::vector<long> ServoHost::numbers(const std::string& line) {
+  before_command();
+  std::vector<long> values;
+  for (const auto& l : bench_.link.command(line).lines) values.push_back(std::strtol(l.c_str(), nullptr, 10));
+  return values;
+}
+
+void ServoHost::define(unsigned number, char space, unsigned offset, const std::string& part) {
+  std::vector<std::string> words;
+  for (unsigned i = 0; i < channels(); ++i)
+    words.push_back(fmt::format("M{}->{}:${:X},{}", 100 * i + number, space, address(i, offset), part));
+  say(words);
+}
+
+}  // namespace brick

@@ -1,0 +1,57 @@
+// A host that commands the channels of servo ICs: their numbers, addresses and variables, and lines sent to all of them. What the
+// benches of inputs (channel_host.h) and of outputs (output_host.h) share.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "testbench/benches/bench.h"
+
+namespace brick {
+
+// Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names: servo-ic.md 1.2,
+// 1.4, 2.1.
+class ServoHost {
+ public:
+  ServoHost(BenchContext& bench, std::uint64_t seed);
+  virtual ~ServoHost() = default;
+  ServoHost(const ServoHost&) = delete;
+  ServoHost& operator=(const ServoHost&) = delete;
+
+  const std::vector<unsigned>& fitted() const { return ics_; }
+  unsigned places() const { return static_cast<unsigned>(ics_.size()); }
+  unsigned channels() const { return places() * kChannels; }
+  unsigned ic(unsigned place) const { return ics_.at(place); }
+  unsigned i_global(unsigned place, unsigned k) const;             // I7m0k
+  unsigned i_channel(unsigned channel, unsigned k) const;          // I7mnk
+  std::uint32_t base(unsigned place) const;                        // address of the IC
+  std::uint32_t address(unsigned channel, unsigned offset) const;  // of a word of the channel
+  std::string name(unsigned channel) const;                        // servo_ic0.ch1
+  std::uint32_t pin(const MotorField& pin, unsigned channel) const {
+    return bench_.machine.motor_outputs(ic(channel / kChannels)).get(pin, channel % kChannels);
+  }
+
+  std::string ask(const std::string& line);  // data lines joined by '|'
+  void expect(const std::string& line, const std::string& answer);
+  void say(const std::vector<std::string>& words);     // several to a line; no answer expected
+  std::vector<long> numbers(const std::string& line);  // data lines as numbers
+  // M(number + 100 n) of channel n = 0, 1, ... -> a part of its word.
+  void define(unsigned number, char space, unsigned offset, const std::string& part);
+
+  unsigned pick(unsigned count) { return static_cast<unsigned>(random_() % count); }
+  std::mt19937_64& random() { return random_; }
+  Tick now() const { return bench_.bus.now(); }
+  void wait(Tick ticks) { bench_.bus.wait(ticks); }
+  BenchReport& report() { return bench_.report; }
+  BenchContext& bench() { return bench_; }
+
+ private:
+  virtual void before_command() {}
+
+  BenchContext& bench_;
+  std::mt19937_64 random_;
+  std::vector<unsigned> ics_;
+};
+
+}  // namespace brick
