@@ -5,7 +5,6 @@
 #include <random>
 
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/board_model/motor_traffic.h"
 #include "testbench/unit/clocks/board_rig.h"
 #include "testbench/unit/covers.h"
 

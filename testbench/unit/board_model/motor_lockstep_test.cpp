@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/board_model/motor_traffic.h"
+#include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
@@ -10,20 +10,22 @@ namespace {
 
 class MotorLockstep : public ::testing::TestWithParam<std::uint64_t> {};
 
-void play_both(MotorTraffic traffic, std::uint32_t ics, Tick end) {
-  auto board = make_lockstep_board(make_rtl_board(ics), make_model_board(ics));
-  ASSERT_NO_THROW(play(*board, traffic, end, [] { return 65'536; }));
+constexpr std::uint32_t kTwo = 0x3;
+
+void play_both(MotorTraffic traffic, Tick end) {
+  auto board = make_lockstep_board(make_rtl_board(kTwo), make_model_board(kTwo));
+  ASSERT_NO_THROW(traffic.run(*board, end, 65'536));
   EXPECT_EQ(board->now(), end);
 }
 
 TEST_P(MotorLockstep, TwoIcsAreEqualAtEveryTick) {
   BRICK_COVERS("CARD-6");
-  play_both(MotorTraffic(GetParam(), {{0, 1}}), 0x3, 600'000);
+  play_both(MotorTraffic(GetParam(), {kTwo, 3'000, 400}), 600'000);
 }
 
 TEST_P(MotorLockstep, IsEqualWithClocksThatAreLeftAlone) {
   BRICK_COVERS("CARD-6");
-  play_both(MotorTraffic(GetParam(), {{0, 1}, 20'000, 2'000, false}), 0x3, 1'500'000);
+  play_both(MotorTraffic(GetParam(), {kTwo, 20'000, 2'000, false, 0}), 1'500'000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MotorLockstep, ::testing::Range<std::uint64_t>(1, 5));

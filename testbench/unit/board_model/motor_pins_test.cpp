@@ -6,14 +6,15 @@
 #include <random>
 
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/board_model/motor_traffic.h"
 #include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
 
 constexpr std::uint32_t kThree = 0x7;
+constexpr MotorTrafficOptions kBusy{kThree, 3'000, 400, true, 50};
 
 struct Change {
   Tick tick;
@@ -34,15 +35,14 @@ TEST_P(MotorPins, OnDemandAreTheWatchedOnesTickByTick) {
     ASSERT_TRUE(before == shown[ic].rbegin()->second) << "tick " << t;
     ASSERT_TRUE(shown[ic].emplace(t, after).second) << "tick " << t;
   };
-  MotorTraffic traffic(GetParam());
-  play(*watched, traffic, kEnd, [] { return 100'000; });
+  MotorTraffic(GetParam(), kBusy).run(*watched, kEnd, 100'000);
 
   auto asked = make_model_board(kThree);
   asked->on_motor_change = [](Tick, unsigned, const MotorOutputs&, const MotorOutputs&) { FAIL() << "nobody watches"; };
-  MotorTraffic again(GetParam());
+  MotorTraffic again(GetParam(), kBusy);
   std::array<unsigned, 6> words{};  // that changed
   for (Tick t = 1; t <= kEnd; ++t) {
-    play(*asked, again, t, [] { return 1; });
+    again.run(*asked, t);
     for (unsigned ic = 0; ic < 3; ++ic) {
       const MotorOutputs& expected = std::prev(shown[ic].upper_bound(t))->second;
       const MotorOutputs now = asked->motor_outputs(ic);
@@ -63,8 +63,7 @@ std::vector<Change> changes(std::uint64_t seed, Tick end, Tick stretch, std::vec
     list.push_back({t, ic, before, after});
   };
   board->on_change = [&](Tick, const BoardOutputs&, const BoardOutputs& after) { pins->push_back(after); };
-  MotorTraffic traffic(seed);
-  play(*board, traffic, end, [&] { return stretch; });
+  MotorTraffic(seed, kBusy).run(*board, end, stretch);
   return list;
 }
 
@@ -89,13 +88,12 @@ TEST_P(MotorPins, LeaveTheBoardPinsAloneWhenWatched) {
     board->watch_motors(watched);
     std::vector<std::pair<Tick, BoardOutputs>> list;
     board->on_change = [&](Tick t, const BoardOutputs&, const BoardOutputs& after) { list.emplace_back(t, after); };
-    MotorTraffic traffic(seed, options);
-    play(*board, traffic, end, [] { return 1'000'000; });
+    MotorTraffic(seed, options).run(*board, end);
     return list;
   };
-  const MotorTrafficOptions busy, rare{{0, 1, 2}, 100'000, 30'000, false}, turning{{0, 1, 2}, 40'000, 150, false};
-  for (const MotorTrafficOptions* options : {&busy, &rare, &turning}) {
-    const Tick end = options == &busy ? 250'000 : 1'200'000;
+  const MotorTrafficOptions rare{kThree, 100'000, 30'000, false, 0}, turning{kThree, 40'000, 150, false, 0};
+  for (const MotorTrafficOptions* options : {&kBusy, &rare, &turning}) {
+    const Tick end = options == &kBusy ? 250'000 : 1'200'000;
     for (std::uint64_t seed = 10 * GetParam(); seed < 10 * GetParam() + 2; ++seed) {
       const auto watched = seen(seed, *options, kThree, end), alone = seen(seed, *options, 0, end);
       ASSERT_GT(watched.size(), 100u);

@@ -34,7 +34,7 @@ TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
   BRICK_COVERS("CARD-6");
   const auto [name, fitted, ticks] = GetParam();
   auto board = make_lockstep_board(make_rtl_board(fitted), make_model_board(fitted));
-  MotorTraffic traffic(from_environment("BRICK_MOTOR_SEED", 1), fitted);
+  MotorTraffic traffic(from_environment("BRICK_MOTOR_SEED", 1), {fitted});
   const Tick end = from_environment("BRICK_MOTOR_TICKS", ticks);
   std::array<MotorOutputs, kMaxServoIcs> moved;
   board->watch_motors(~0u);
@@ -66,7 +66,7 @@ TEST(MotorPinsOfAnEngine, DoNotDependOnHowARunIsCut) {
     board->on_motor_change = [&](Tick t, unsigned ic, const MotorOutputs&, const MotorOutputs& after) {
       for (const std::uint32_t w : after.w) seen.emplace_back(t, ic, w);
     };
-    MotorTraffic(7, 0x3).run(*board, 60'000, batch);
+    MotorTraffic(7, {0x3}).run(*board, 60'000, batch);
     return seen;
   };
   const Seen once = changes(make_rtl_board(0x3), kNever);

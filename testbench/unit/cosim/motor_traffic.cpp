@@ -9,6 +9,7 @@ namespace {
 // X and Y words of a channel, and the words of a whole IC (docs/registers.md).
 constexpr unsigned kOutA = 2, kCapture = 3, kGlobal = 4, kControl = 5, kIncrement = 6, kCompare = 7;
 constexpr unsigned kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
+constexpr std::uint32_t kOwnClocks = 0x3008D2;  // as after a reset, PHASE and SERVO driven
 
 // docs/servo_ic.md, Where the ICs are.
 std::uint32_t address_of(unsigned ic) {
@@ -17,16 +18,17 @@ std::uint32_t address_of(unsigned ic) {
 }
 }  // namespace
 
-MotorTraffic::MotorTraffic(std::uint64_t seed, std::uint32_t ics) : random_(seed) {
+MotorTraffic::MotorTraffic(std::uint64_t seed, MotorTrafficOptions options) : random_(seed), options_(options) {
   for (unsigned i = 0; i < kMaxServoIcs; ++i) {
-    if ((ics >> i & 1) == 0) continue;
+    if ((options.ics >> i & 1) == 0) continue;
     ics_.push_back({});
     ics_.back().index = i;
     ics_.back().address = address_of(i);
     ics_.back().at = 40 + below(300);
-    for (Channel& c : ics_.back().channels) c.speed = 20 + below(400);
+    for (Channel& c : ics_.back().channels) c.speed = 20 + up_to(4 * options_.pins_pause);
   }
-  inputs_.fitted = ics;
+  inputs_.fitted = options.ics;
+  for (unsigned line = 0; line < 3; ++line) inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (1 + below(8)));
   reset_at_ = 12 + below(30);  // released there
   bus_at_ = reset_at_ + 10;
 }
@@ -55,87 +57,121 @@ Tick MotorTraffic::next() const {
   return t;
 }
 
+// One channel moves, or several at one edge.
 void MotorTraffic::pins_step(Ic& ic, Board& board) {
   const unsigned n = below(kChannels);
-  Channel& c = ic.channels[n];
-  std::uint16_t& pins = ic.pins.pins[n];
+  const bool several = one_in(4);
+  for (unsigned i = 0; i < kChannels; ++i)
+    if (i == n || (several && !one_in(3))) move(ic.channels[i], ic.pins.pins[i]);
+  if (one_in(3)) ic.pins.adc_a = static_cast<std::uint8_t>(below(16));
+  if (one_in(3)) ic.pins.adc_b = static_cast<std::uint8_t>(below(16));
+  board.set_motor_inputs(ic.index, ic.pins);
+  ic.at += 1 + (ic.channels[n].speed + below(10)) / kChannels;
+}
+
+void MotorTraffic::move(Channel& c, std::uint16_t& pins) {
   if (one_in(30)) c.up = !c.up;
-  if (one_in(40)) c.speed = one_in(3) ? 1 + below(20) : 20 + below(3000);
+  if (one_in(40)) c.speed = one_in(3) ? 1 + below(20) : 20 + up_to(4 * options_.pins_pause);
   constexpr unsigned kHall[6] = {4, 6, 2, 3, 1, 5}, kQuadrature[4] = {0, 1, 3, 2};  // {C, B, A}
   c.place = (c.place + (c.up ? 1u : 11u)) % 12;
   const unsigned abc = c.hall ? kHall[c.place % 6] : kQuadrature[c.place % 4] | (one_in(4) ? 4u : 0u);
   pins = static_cast<std::uint16_t>((pins & ~7u) | abc);
   if (one_in(6)) pins = static_cast<std::uint16_t>(pins ^ 1u << below(kChannelPins));
-  if (one_in(3)) ic.pins.adc_a = static_cast<std::uint8_t>(below(16));
-  if (one_in(3)) ic.pins.adc_b = static_cast<std::uint8_t>(below(16));
-  board.set_motor_inputs(ic.index, ic.pins);
-  ic.at += 1 + (c.speed + below(10)) / kChannels;
 }
 
 void MotorTraffic::bus_step() {
   switch (bus_step_++) {
     case 0:
-      choose_access();
-      bus_at_ += 6;
+      if (!start_access()) choose_access();
+      bus_at_ += 3 + below(4);
       break;
     case 1:
       (writing_ ? inputs_.pa_wr_n : inputs_.pa_rd_n) = false;
-      bus_at_ += 9 + below(6);
+      bus_at_ += 9 + below(one_in(12) ? 3000 : 6);  // now and then so long that the word changes under a read
       break;
     case 2:
       inputs_.pa_wr_n = inputs_.pa_rd_n = true;
-      bus_at_ += 4 + below(4);
+      bus_at_ += 3 + below(5);
       break;
     default:
+      if (one_in(2)) inputs_.pa_aa = 0;
       bus_step_ = 0;
-      bus_at_ += started_ < 4 * ics_.size() ? 1 : 1 + below(one_in(10) ? 20'000 : 300);
-      if (one_in(2000) && reset_at_ == kNever) reset_at_ = bus_at_ + below(20);
+      bus_at_ += started_ < 6 * ics_.size() ? 1 : 1 + up_to(one_in(10) ? 20'000 : options_.bus_pause);
+      if (options_.reset_one_in != 0 && one_in(options_.reset_one_in) && reset_at_ == kNever) reset_at_ = bus_at_ + below(20);
       break;
   }
+}
+
+// After a reset the clocks come first and every channel is put to use, so that there is something to see.
+bool MotorTraffic::start_access() {
+  const unsigned count = static_cast<unsigned>(ics_.size()), step = started_;
+  if (step >= 6 * count) return false;
+  ++started_;
+  Ic& ic = ics_[step < 2 * count ? step / 2 : (step - 2 * count) / kChannels];
+  if (step >= 2 * count)
+    control(ic, step % kChannels, true);
+  else if (!options_.moving_clocks)
+    write(ic, true, kGlobal, &ic == &ics_.front() ? kOwnClocks : kOwnClocks | 3u << 12);
+  else if (step % 2 == 0)
+    write(ic, true, kGlobal, clock_word(ic));
+  else
+    write(ic, true, kPwm, (40 + below(700)) << 8 | below(4));
+  return true;
 }
 
 // Short periods; one IC mostly drives PHASE and SERVO, the others mostly follow.
 std::uint32_t MotorTraffic::clock_word(const Ic& ic) {
   const std::uint32_t dividers = one_in(3) ? below(4096) : below(4) | below(4) << 3 | below(3) << 6 | below(3) << 9;
   const std::uint32_t external = one_in(20) ? below(4) : (&ic == &ics_.front() ? 0 : 3);
-  return dividers | external << 12 | below(3) << 16 | below(3) << 20;
+  return dividers | external << 12 | below(3) << 16 | below(4) << 20;
+}
+
+std::uint32_t MotorTraffic::pwm_word() {
+  const std::uint32_t max_count = one_in(4) ? below(40) : one_in(6) ? 200 + below(3000) : below(700);
+  return max_count << 8 | (one_in(2) ? below(3) : below(30));
+}
+
+// `in_use`: counts its encoder or its own PFM pulses, with the amplifier enabled.
+void MotorTraffic::control(Ic& ic, unsigned channel, bool in_use) {
+  std::uint32_t word = below(1u << 24);
+  if (in_use)
+    word = (word & ~0xFu) | 0x4000 | (one_in(3) ? 0x800008 : 3 | below(2) << 2);
+  else if (one_in(2))
+    word = (word & ~0xFu) | 3 | below(2) << 2;
+  ic.channels[channel].hall = (word & 0xB) == 0xB;
+  if (!one_in(6)) word &= ~0x400u;   // counter reset
+  if (one_in(2)) word &= ~0x40000u;  // hardware 1/T
+  write(ic, true, 8 * channel + kControl, word);
+}
+
+// DAC and PFM words of any size, PWM commands about 0; both signs.
+std::uint32_t MotorTraffic::output_word() {
+  const std::uint32_t size = one_in(3) ? below(2000) << 8 : below(one_in(2) ? 0x800000 : 60'000);
+  return (one_in(2) ? size : 0u - size) & 0xFFFFFF;
 }
 
 void MotorTraffic::choose_access() {
-  // After a reset the clocks come first, so that there is something to see.
-  if (started_ < 2 * ics_.size()) {
-    const Ic& ic = ics_[started_ / 2];
-    if (started_++ % 2 == 0) return write(ic, true, kGlobal, clock_word(ic));
-    return write(ic, true, kPwm, (40 + below(700)) << 8 | below(4));
-  }
   Ic& ic = ics_[below(static_cast<std::uint32_t>(ics_.size()))];
   const unsigned n = below(kChannels), at = 8 * n;
-  switch (below(16)) {
+  switch (below(17)) {
     case 0:
+      if (!options_.moving_clocks) return write(ic, true, kDacStrobe, below(1u << 24));
       if (one_in(4)) return write(ic, true, kGlobal, clock_word(ic));
-      return write(ic, true, kPwm, (one_in(4) ? below(40) : below(700)) << 8 | (one_in(2) ? below(3) : below(20)));
+      return write(ic, true, kPwm, pwm_word());
     case 1:
       return write(ic, true, one_in(2) ? kDacStrobe : kAdcStrobe, below(1u << 24));
     case 2:
-    case 3: {
-      std::uint32_t word = below(1u << 24);
-      if (one_in(2)) word = (word & ~0xFu) | 3 | below(2) << 2;
-      ic.channels[n].hall = (word & 0xB) == 0xB;
-      if (!one_in(6)) word &= ~0x400u;   // counter reset
-      if (one_in(2)) word &= ~0x40000u;  // hardware 1/T
-      return write(ic, true, at + kControl, word);
-    }
+    case 3:
+      return control(ic, n, one_in(2));
     case 4:
     case 5:
-    case 6: {
-      const std::uint32_t size = below(one_in(2) ? 0x800000 : 60'000);
-      return write(ic, false, at + kOutA + below(3), (one_in(2) ? size : 0u - size) & 0xFFFFFF);
-    }
+    case 6:
+      return write(ic, false, at + kOutA + below(3), output_word());
     case 7:
     case 8:  // positions stay near 0 between resets
-      return write(ic, one_in(2), at + kCompare, (below(200) - 100) & 0xFFFFFF);
+      return write(ic, one_in(2), at + kCompare, (one_in(2) ? below(200) - 100 : below(40)) & 0xFFFFFF);
     case 9:
-      return write(ic, true, at + kIncrement, below(10));
+      return write(ic, true, at + kIncrement, below(one_in(2) ? 10 : 40));
     case 10:
       return write(ic, false, at + below(2), below(0x1000));
     case 11:

@@ -12,10 +12,17 @@
 
 namespace brick {
 
+struct MotorTrafficOptions {
+  std::uint32_t ics = 1;         // bit i: servo IC i takes part, as in BoardInputs::fitted; the lowest drives the clocks
+  Tick bus_pause = 300;          // between two accesses at most; one in ten times 20000
+  Tick pins_pause = 750;         // between two changes of the pins of an IC, about at most
+  bool moving_clocks = true;     // short periods, changed now and then; else as after a reset, and left alone
+  unsigned reset_one_in = 2000;  // accesses between two resets, on average; 0 = none but the first
+};
+
 class MotorTraffic {
  public:
-  // Bit i of `ics`: servo IC i takes part, as in BoardInputs::fitted.
-  MotorTraffic(std::uint64_t seed, std::uint32_t ics);
+  MotorTraffic(std::uint64_t seed, MotorTrafficOptions options);
 
   // Lives on the board until its tick `end`, in calls of at most `batch` ticks.
   void run(Board& board, Tick end, Tick batch = kNever);
@@ -36,15 +43,22 @@ class MotorTraffic {
 
   Tick next() const;
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(random_() % n); }
+  Tick up_to(Tick n) { return static_cast<Tick>(below(static_cast<std::uint32_t>(n))); }
   bool one_in(std::uint32_t n) { return below(n) == 0; }
   void pins_step(Ic& ic, Board& board);
+  void move(Channel& c, std::uint16_t& pins);
   void bus_step();
+  bool start_access();  // false when everything has been started
   void choose_access();
   void write(const Ic& ic, bool x, unsigned offset, std::uint32_t word);
   void read(const Ic& ic, bool x, unsigned offset);
   std::uint32_t clock_word(const Ic& ic);
+  std::uint32_t pwm_word();
+  void control(Ic& ic, unsigned channel, bool in_use);
+  std::uint32_t output_word();
 
   std::mt19937_64 random_;
+  MotorTrafficOptions options_;
   std::vector<Ic> ics_;
   BoardInputs inputs_;
   Tick bus_at_, reset_at_;
