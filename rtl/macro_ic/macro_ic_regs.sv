@@ -21,7 +21,21 @@ module macro_ic_regs (
   output logic [14:0]      max_count_o
 );
 
+  localparam int PhaseExternal = brick_regs_pkg::MacroIcClockControlPhaseExternalLsb;
   localparam int ServoExternal = brick_regs_pkg::MacroIcClockControlServoExternalLsb;
+  localparam int PhaseDivider  = brick_regs_pkg::MacroIcClockControlPhaseDividerLsb;
+  localparam int ServoDivider  = brick_regs_pkg::MacroIcClockControlServoDividerLsb;
+  localparam int MaxCount      = brick_regs_pkg::MacroIcPwmControlMaxCountLsb;
+  // Places of the words, X and Y.
+  localparam logic [5:0] ClockControl    = 6'(brick_regs_pkg::MacroIcClockControlAddr);
+  localparam logic [5:0] PwmControl      = 6'(brick_regs_pkg::MacroIcPwmControlAddr);
+  localparam logic [5:0] AdcStrobe       = 6'(brick_regs_pkg::MacroIcAdcStrobeAddr);
+  localparam logic [5:0] RingControl     = 6'(brick_regs_pkg::MacroIcRingControlAddr);
+  localparam logic [5:0] Supplementary1  = 6'(brick_regs_pkg::MacroIcSupplementary1Addr);
+  localparam logic [5:0] Supplementary2  = 6'(brick_regs_pkg::MacroIcSupplementary2Addr);
+  localparam logic [5:0] JioData         = 6'(brick_regs_pkg::MacroIcJioDataAddr);
+  localparam logic [5:0] MultiplexerData = 6'(brick_regs_pkg::MacroIcMultiplexerDataAddr);
+  localparam logic [5:0] NodeActivation  = 6'(brick_regs_pkg::MacroIcNodeActivationAddr);
 
   logic [23:0] clock_q, pwm_q, adc_strobe_q, ring_q, nodes_q, jio_q, multiplexer_q, channel_1_q, channel_2_q;
 
@@ -42,19 +56,19 @@ module macro_ic_regs (
       channel_2_q   <= brick_regs_pkg::MacroIcSupplementary2Reset;
     end else if (write_x) begin
       case (addr_i)
-        6'h0C:   clock_q      <= wdata_i & brick_regs_pkg::MacroIcClockControlWritten;
-        6'h0D:   pwm_q        <= wdata_i;
-        6'h0E:   adc_strobe_q <= wdata_i;
-        6'h0F:   ring_q       <= wdata_i;
-        6'h15:   channel_1_q  <= wdata_i & brick_regs_pkg::MacroIcSupplementary1Written;
-        6'h1D:   channel_2_q  <= wdata_i & brick_regs_pkg::MacroIcSupplementary2Written;
+        ClockControl:   clock_q      <= wdata_i & brick_regs_pkg::MacroIcClockControlWritten;
+        PwmControl:     pwm_q        <= wdata_i;
+        AdcStrobe:      adc_strobe_q <= wdata_i;
+        RingControl:    ring_q       <= wdata_i;
+        Supplementary1: channel_1_q  <= wdata_i & brick_regs_pkg::MacroIcSupplementary1Written;
+        Supplementary2: channel_2_q  <= wdata_i & brick_regs_pkg::MacroIcSupplementary2Written;
         default: ;
       endcase
     end else if (write_y) begin
       case (addr_i)
-        6'h00:   jio_q         <= wdata_i;
-        6'h02:   multiplexer_q <= wdata_i;
-        6'h0F:   nodes_q       <= wdata_i;
+        JioData:         jio_q         <= wdata_i;
+        MultiplexerData: multiplexer_q <= wdata_i;
+        NodeActivation:  nodes_q       <= wdata_i;
         default: ;
       endcase
     end
@@ -64,29 +78,29 @@ module macro_ic_regs (
     rdata_o = 24'h0;
     if (sel_i && x_i) begin
       case (addr_i)
-        6'h0C:   rdata_o = clock_q & ~({23'h0, gate_i} << ServoExternal);
-        6'h0D:   rdata_o = pwm_q;
-        6'h0E:   rdata_o = adc_strobe_q;
-        6'h0F:   rdata_o = ring_q;
-        6'h15:   rdata_o = gate_i ? 24'h0 : channel_1_q;
-        6'h1D:   rdata_o = gate_i ? 24'h0 : channel_2_q;
-        default: rdata_o = 24'h0;
+        ClockControl:   rdata_o = clock_q & ~({23'h0, gate_i} << ServoExternal);
+        PwmControl:     rdata_o = pwm_q;
+        AdcStrobe:      rdata_o = adc_strobe_q;
+        RingControl:    rdata_o = ring_q;
+        Supplementary1: rdata_o = gate_i ? 24'h0 : channel_1_q;
+        Supplementary2: rdata_o = gate_i ? 24'h0 : channel_2_q;
+        default:        rdata_o = 24'h0;
       endcase
     end else if (sel_i) begin
       case (addr_i)
-        6'h00:   rdata_o = jio_q;
-        6'h02:   rdata_o = multiplexer_q;
-        6'h0F:   rdata_o = nodes_q;
-        default: rdata_o = 24'h0;
+        JioData:         rdata_o = jio_q;
+        MultiplexerData: rdata_o = multiplexer_q;
+        NodeActivation:  rdata_o = nodes_q;
+        default:         rdata_o = 24'h0;
       endcase
     end
   end
 
-  assign phase_ext_o = clock_q[12];
-  assign servo_ext_o = clock_q[13] | gate_i;
-  assign phase_div_o = clock_q[19:16];
-  assign servo_div_o = clock_q[23:20];
-  assign max_count_o = pwm_q[22:8];  // 0..32767; bit 23 is stored only
+  assign phase_ext_o = clock_q[PhaseExternal];
+  assign servo_ext_o = clock_q[ServoExternal] | gate_i;
+  assign phase_div_o = clock_q[PhaseDivider+:4];
+  assign servo_div_o = clock_q[ServoDivider+:4];
+  assign max_count_o = pwm_q[MaxCount+:15];  // 0..32767; bit 23 is stored only
 
 endmodule : macro_ic_regs
 

@@ -31,8 +31,21 @@ module channel_decode #(
   logic look;
   assign look = ce_i & ready_i & (abc_i != last_q | mode_i[3]);
 
+  // Place in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}.
+  function automatic logic [2:0] hall_place(input logic [2:0] cba);
+    case (cba)
+      3'b100:  hall_place = 3'd0;
+      3'b110:  hall_place = 3'd1;
+      3'b010:  hall_place = 3'd2;
+      3'b011:  hall_place = 3'd3;
+      3'b001:  hall_place = 3'd4;
+      3'b101:  hall_place = 3'd5;
+      default: hall_place = 3'd7;
+    endcase
+  endfunction
+
   logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
-  logic [2:0] hall, last_hall;  // position in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}; 7 is no position
+  logic [2:0] hall, last_hall;  // position in the hall cycle; 7 is no position
   logic       a_rises, hall_up, hall_down, hall_jump, count, down;
   always_comb begin
     step      = 2'd0;
@@ -71,24 +84,8 @@ module channel_decode #(
           down  = pulse_down_i;
         end
         4'd11, 4'd15: begin
-          case (abc_i)  // {C, B, A}
-            3'b100:  hall = 3'd0;
-            3'b110:  hall = 3'd1;
-            3'b010:  hall = 3'd2;
-            3'b011:  hall = 3'd3;
-            3'b001:  hall = 3'd4;
-            3'b101:  hall = 3'd5;
-            default: hall = 3'd7;
-          endcase
-          case (last_q)
-            3'b100:  last_hall = 3'd0;
-            3'b110:  last_hall = 3'd1;
-            3'b010:  last_hall = 3'd2;
-            3'b011:  last_hall = 3'd3;
-            3'b001:  last_hall = 3'd4;
-            3'b101:  last_hall = 3'd5;
-            default: last_hall = 3'd7;
-          endcase
+          hall      = hall_place(abc_i);
+          last_hall = hall_place(last_q);
           hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
           hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
           hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;

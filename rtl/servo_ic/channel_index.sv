@@ -1,4 +1,4 @@
-// Index conditioning: gating by A and B, and de-multiplexing of a C line that carries C, U, V, W by AB state (11, 10, 00, 01).
+// Index conditioning: gating by A and B, and de-multiplexing of a C line that carries C, U, V, W by AB state.
 // Also the encoder-loss detector: T and U, V and W are complements. Clock clk_ref_i, asynchronous reset.
 `default_nettype none
 
@@ -17,8 +17,14 @@ module channel_index (
   output logic             loss_o        // this edge sees an encoder loss
 );
 
+  // States of {A, B} in which the line carries each.
+  localparam logic [1:0] StateC = 2'b11;
+  localparam logic [1:0] StateU = 2'b10;
+  localparam logic [1:0] StateV = 2'b00;
+  localparam logic [1:0] StateW = 2'b01;
+
   logic       a, b, c;
-  logic [3:0] seen_q, part_q, state;  // per AB state, and C in that state: bit 0 W (01), 1 V (00), 2 U (10), 3 C (11)
+  logic [3:0] seen_q, part_q, state;  // per AB state, and C in that state: bit 0 W, 1 V, 2 U, 3 C
   assign a     = level_i[0];
   assign b     = level_i[1];
   assign c     = demux_i ? part_q[3] : level_i[2];
@@ -30,7 +36,7 @@ module channel_index (
     equal   = 1'b0;
     index_o = 1'b0;
     if (ce_i) begin
-      state   = {a & b, a & ~b, ~a & ~b, ~a & b};
+      state   = {{a, b} == StateC, {a, b} == StateU, {a, b} == StateV, {a, b} == StateW};
       equal   = (level_i[11] == level_i[10]) | (level_i[9] == level_i[8]);
       index_o = gated_i ? c & (gate_low_i ? ~a & ~b : a & b) : c;
     end

@@ -18,6 +18,9 @@ module channel_subcount (
   output logic [11:0]      fraction_d_o     // after a count at this edge: start of the new cell
 );
 
+  localparam logic [3:0]  Steps = 4'd13;      // of the division: a 1 followed by twelve 0s
+  localparam logic [13:0] Full  = 14'd4095;   // the largest e
+
   logic        valid_q, full_q;
   logic [3:0]  steps_q;             // division steps to go
   logic [12:0] quotient_q;
@@ -43,8 +46,8 @@ module channel_subcount (
     if (busy) begin
       t1 = {2'b00, t1_i};
       if (steps_q != 4'd0) begin
-        // One division step: the dividend is a 1 followed by twelve 0s.
-        shifted = {remainder_q, steps_q == 4'd13};
+        // One division step.
+        shifted = {remainder_q, steps_q == Steps};
         fits    = {1'b0, shifted} >= t1;
       end else if (lag_q != 5'd0) begin
         // One or two SCLK periods more.
@@ -68,7 +71,7 @@ module channel_subcount (
     if (!rst_ni) begin
       valid_q     <= 1'b0;
       full_q      <= 1'b0;
-      steps_q     <= 4'd13;
+      steps_q     <= Steps;
       quotient_q  <= 13'd0;
       remainder_q <= 23'd0;
       rest_q      <= 23'd0;
@@ -77,7 +80,7 @@ module channel_subcount (
     end else if (count_i || echo_i || (!enable_i && valid_q)) begin  // what is not valid is clear already
       valid_q     <= enable_i & count_i & ~reversed_i;
       full_q      <= 1'b0;
-      steps_q     <= 4'd13;
+      steps_q     <= Steps;
       quotient_q  <= 13'd0;
       remainder_q <= 23'd0;
       rest_q      <= 23'd0;
@@ -91,8 +94,8 @@ module channel_subcount (
       end
       if (add) begin
         rest_q <= rest[22:0];
-        e_q    <= e_next > 14'd4095 ? 12'd4095 : e_next[11:0];
-        full_q <= e_next > 14'd4095;
+        e_q    <= e_next > Full ? Full[11:0] : e_next[11:0];
+        full_q <= e_next > Full;
       end
       lag_q <= lag_q - (add ? (two ? 5'd2 : 5'd1) : 5'd0) + {4'd0, ce_i};
     end

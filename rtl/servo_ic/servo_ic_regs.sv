@@ -25,6 +25,14 @@ module servo_ic_regs (
 
   logic [23:0] clock_q, dac_strobe_q, adc_strobe_q, pwm_q;
 
+  localparam int PhaseExternal = brick_regs_pkg::ServoIcClockControlPhaseExternalLsb;
+  localparam int ServoExternal = brick_regs_pkg::ServoIcClockControlServoExternalLsb;
+  localparam int PhaseDivider  = brick_regs_pkg::ServoIcClockControlPhaseDividerLsb;
+  localparam int ServoDivider  = brick_regs_pkg::ServoIcClockControlServoDividerLsb;
+  localparam int SclkDivider   = brick_regs_pkg::ServoIcClockControlSclkDividerLsb;  // the first of four fields of three bits
+  localparam int Deadtime      = brick_regs_pkg::ServoIcPwmControlDeadtimeLsb;
+  localparam int MaxCount      = brick_regs_pkg::ServoIcPwmControlMaxCountLsb;
+
   logic global_reg;
   assign global_reg = sel_i & x_i & (addr_i[2:0] == 3'd4);
 
@@ -56,15 +64,15 @@ module servo_ic_regs (
     end
   end
 
-  assign clock_dividers_o = clock_q[11:0];
-  assign phase_ext_o      = clock_q[12];
-  assign servo_ext_o      = clock_q[13];
-  assign phase_div_o      = clock_q[19:16];
-  assign servo_div_o      = clock_q[23:20];
+  assign clock_dividers_o = clock_q[SclkDivider+:12];
+  assign phase_ext_o      = clock_q[PhaseExternal];
+  assign servo_ext_o      = clock_q[ServoExternal];
+  assign phase_div_o      = clock_q[PhaseDivider+:4];
+  assign servo_div_o      = clock_q[ServoDivider+:4];
   assign dac_strobe_o     = dac_strobe_q;
   assign adc_strobe_o     = adc_strobe_q;
-  assign deadtime_o       = pwm_q[7:0];
-  assign max_count_o      = pwm_q[22:8];  // 0..32767; bit 23 is stored only
+  assign deadtime_o       = pwm_q[Deadtime+:8];
+  assign max_count_o      = pwm_q[MaxCount+:15];  // 0..32767; bit 23 is stored only
   logic unused_bits;
   assign unused_bits = &{1'b0, clock_q[15:14], pwm_q[23]};
 

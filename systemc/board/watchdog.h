@@ -48,7 +48,7 @@ class Watchdog final : public sc_core::sc_module, public ModelBlock {
   }
 
  private:
-  static constexpr std::int64_t kPrescale = 1024, kTimeout = 960;
+  static constexpr std::int64_t kPrescale = 1024, kTimeout = 960;  // 25 ms
   static std::int64_t end_after(std::int64_t edge) { return (edge / kPrescale + kTimeout) * kPrescale; }
   std::int64_t edge_at(Tick t) const { return t / kTicksPerRef - first_; }  // clk_ref edges executed since reset
   Tick tick_of(std::int64_t edge) const { return (edge + first_) * kTicksPerRef; }

@@ -33,14 +33,14 @@ class MacroIcRegs : public sc_core::sc_module {
     if (i != kRegister.size()) word_[i] = value & kRegister[i].written;
   }
 
-  bool phase_ext() const { return word_[kClock] >> 12 & 1; }
+  bool phase_ext() const { return regs::macro_ic::clock_control::kPhaseExternal.get(word_[kClock]) != 0; }
   bool servo_ext() const { return gate || (word_[kClock] & kServoExternal) != 0; }  // a MACROGATE has no servo clock to drive
-  unsigned phase_div() const { return word_[kClock] >> 16 & 0xF; }
-  unsigned servo_div() const { return word_[kClock] >> 20 & 0xF; }
-  unsigned max_count() const { return word_[kPwm] >> 8 & 0x7FFF; }
+  unsigned phase_div() const { return regs::macro_ic::clock_control::kPhaseDivider.get(word_[kClock]); }
+  unsigned servo_div() const { return regs::macro_ic::clock_control::kServoDivider.get(word_[kClock]); }
+  unsigned max_count() const { return regs::macro_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
 
  private:
-  static constexpr std::uint32_t kServoExternal = 1u << 13;
+  static constexpr std::uint32_t kServoExternal = regs::macro_ic::clock_control::kServoExternal.mask();
   static constexpr unsigned kClock = 0, kPwm = 1, kSupplementary = 7;  // places in the list; from the last on: DSPGATE2 only
   static constexpr std::array kRegister{regs::macro_ic::kClockControl,    regs::macro_ic::kPwmControl,     regs::macro_ic::kAdcStrobe,
                                         regs::macro_ic::kRingControl,     regs::macro_ic::kNodeActivation, regs::macro_ic::kJioData,

@@ -56,10 +56,11 @@ class ChannelPfm {
 
  private:
   static constexpr std::int64_t kRange = 1 << 24;
+  static constexpr std::int64_t kLimit = kRange / 4;  // at most a quarter of PFM_CLK
   static bool negative(const Inputs& in) { return in.command >> 23 & 1; }
   static std::int64_t size(const Inputs& in) {
     const std::int64_t command = in.command;
-    return std::min<std::int64_t>(negative(in) ? kRange - command : command, 1 << 22);
+    return std::min<std::int64_t>(negative(in) ? kRange - command : command, kLimit);
   }
 
   std::int64_t acc_ = 0, left_ = 0;

@@ -2,6 +2,7 @@
 // at which the comparison changes is computed, not searched for.
 #pragma once
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
 
 namespace brick {
@@ -16,7 +17,7 @@ class ChannelPwm {
  public:
   void reset(Tick t) {
     *this = ChannelPwm{};
-    on_at_ = t + 240;
+    on_at_ = t + kWaitReset;
   }
   void load(int command) { command_ = command; }
 
@@ -60,7 +61,7 @@ class ChannelPwm {
     settle(edge - 1);
     raw_ = !raw_;
     on_ = deadtime == 0;
-    on_at_ = on_ ? kNever : edge + 16 * static_cast<Tick>(deadtime);
+    on_at_ = on_ ? kNever : edge + kDeadtimeUnit * static_cast<Tick>(deadtime);
   }
   void settle(Tick t) {
     if (on_at_ > t) return;
@@ -68,11 +69,13 @@ class ChannelPwm {
     on_at_ = kNever;
   }
 
+  static constexpr Tick kDeadtimeUnit = 16;  // ticks
+  static constexpr Tick kWaitReset = kDeadtimeUnit * Tick{regs::servo_ic::pwm_control::kDeadtime.get(regs::servo_ic::kPwmControl.reset)};
   static constexpr int kFar = 1 << 24;  // beyond the end of any line
   int command_ = 0;
   bool raw_ = false;
   bool on_ = false;  // one of the two switches is on
-  Tick on_at_ = 240;
+  Tick on_at_ = kWaitReset;
 };
 
 }  // namespace brick

@@ -16,8 +16,10 @@ class ChannelSubcount {
     now_ = t / kTicksPerRef * kTicksPerRef;
   }
 
-  bool active() const { return valid_ && e() < 4095; }
-  unsigned e() const { return valid_ ? static_cast<unsigned>(std::min<std::int64_t>(4095, t1_ != 0 ? added_ * 4096 / t1_ : 0)) : 0; }
+  bool active() const { return valid_ && e() < kFull; }
+  unsigned e() const {
+    return valid_ ? static_cast<unsigned>(std::min<std::int64_t>(kFull, t1_ != 0 ? added_ * (kFull + 1) / t1_ : 0)) : 0;
+  }
 
   // Edges of clk_ref up to t at which SCLK does not act.
   void advance(Tick t, bool enable) {
@@ -30,7 +32,7 @@ class ChannelSubcount {
   void sclk(Tick t, bool enable, bool count, bool echo, bool reversed, std::uint32_t t1) {
     if (count || echo || !enable) {
       valid_ = count && enable && !reversed;
-      steps_ = 13;
+      steps_ = kSteps;
       lag_ = added_ = 0;
       t1_ = t1;
     } else if (active()) {
@@ -40,6 +42,9 @@ class ChannelSubcount {
   }
 
  private:
+  static constexpr std::int64_t kFull = 4095;  // the largest e, in 1/4096 count
+  static constexpr unsigned kSteps = 13;       // clk_ref cycles of the division
+
   void step(bool ce) {
     std::int64_t add = 0;
     if (steps_ != 0)

@@ -7,21 +7,27 @@
 
 #include <systemc>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
 
 namespace brick {
+
+// What the clock chain starts with, the reset values of the registers.
+constexpr unsigned kMaxCountReset = regs::servo_ic::pwm_control::kMaxCount.get(regs::servo_ic::kPwmControl.reset);
+constexpr unsigned kPhaseDivReset = regs::servo_ic::clock_control::kPhaseDivider.get(regs::servo_ic::kClockControl.reset);
+constexpr unsigned kServoDivReset = regs::servo_ic::clock_control::kServoDivider.get(regs::servo_ic::kClockControl.reset);
 
 class ClockGen : public sc_core::sc_module, public ModelBlock {
  public:
   explicit ClockGen(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   struct Inputs {
-    unsigned max_count = 6527;  // I7m00
-    unsigned phase_div = 0;     // I7m01
-    unsigned servo_div = 3;     // I7m02
-    bool phase_ext = true;      // I7m07 bit 0
-    bool servo_ext = true;      // I7m07 bit 1
-    bool phase = true;          // pins
+    unsigned max_count = kMaxCountReset;  // I7m00
+    unsigned phase_div = kPhaseDivReset;  // I7m01
+    unsigned servo_div = kServoDivReset;  // I7m02
+    bool phase_ext = true;                // I7m07 bit 0
+    bool servo_ext = true;                // I7m07 bit 1
+    bool phase = true;                    // pins
     bool servo = true;
     bool operator==(const Inputs& o) const {
       return max_count == o.max_count && phase_div == o.phase_div && servo_div == o.servo_div && phase_ext == o.phase_ext &&
@@ -69,9 +75,9 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
 
   struct State {
     int ramp = 0;  // up ? cnt : ~cnt, counts up from -top to top
-    int top = 6528;
+    int top = static_cast<int>(kMaxCountReset) + 1;
     bool up = true;
-    unsigned phase_cnt = 0, fall_cnt = 0, servo_cnt = 3, miss = 0;
+    unsigned phase_cnt = 0, fall_cnt = 0, servo_cnt = kServoDivReset, miss = 0;
     bool odd = false;
     bool phase = true, servo = true;
     bool phase_oe = false, servo_oe = false;

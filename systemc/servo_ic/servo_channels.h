@@ -21,10 +21,10 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   // Seen by the edges to come.
   struct Inputs {
     bool trip = false;
-    unsigned dividers = 2258;                                            // I7m03
-    std::uint32_t dac_strobe = 0x7FFFC0;                                 // I7m05
-    std::uint32_t adc_strobe = 0xFFFFFE;                                 // I7m06
-    unsigned deadtime = 15;                                              // I7m04
+    unsigned dividers = 0;                                               // I7m03
+    std::uint32_t dac_strobe = 0;                                        // I7m05
+    std::uint32_t adc_strobe = 0;                                        // I7m06
+    unsigned deadtime = 0;                                               // I7m04
     TriangleLine line;                                                   // the triangle from the next edge on
     bool phase_rises = false, phase_falls = false, servo_falls = false;  // turned over by each such edge of the clock chain
     std::uint8_t adc_a = 0, adc_b = 0;                                   // bit n-1: channel n

@@ -23,15 +23,15 @@ class ServoIcRegs : public sc_core::sc_module {
     if (is_global(x, offset)) word_[offset >> 3] = value & kWritable[offset >> 3];
   }
 
-  bool phase_ext() const { return word_[kClock] >> 12 & 1; }
-  bool servo_ext() const { return word_[kClock] >> 13 & 1; }
-  unsigned phase_div() const { return word_[kClock] >> 16 & 0xF; }
-  unsigned servo_div() const { return word_[kClock] >> 20 & 0xF; }
-  unsigned clock_dividers() const { return word_[kClock] & 0xFFF; }
+  bool phase_ext() const { return regs::servo_ic::clock_control::kPhaseExternal.get(word_[kClock]) != 0; }
+  bool servo_ext() const { return regs::servo_ic::clock_control::kServoExternal.get(word_[kClock]) != 0; }
+  unsigned phase_div() const { return regs::servo_ic::clock_control::kPhaseDivider.get(word_[kClock]); }
+  unsigned servo_div() const { return regs::servo_ic::clock_control::kServoDivider.get(word_[kClock]); }
+  unsigned clock_dividers() const { return word_[kClock] >> regs::servo_ic::clock_control::kSclkDivider.lsb & 0xFFF; }  // all four
   std::uint32_t dac_strobe() const { return word_[kDacStrobe]; }
   std::uint32_t adc_strobe() const { return word_[kAdcStrobe]; }
-  unsigned deadtime() const { return word_[kPwm] & 0xFF; }
-  unsigned max_count() const { return word_[kPwm] >> 8 & 0x7FFF; }
+  unsigned deadtime() const { return regs::servo_ic::pwm_control::kDeadtime.get(word_[kPwm]); }
+  unsigned max_count() const { return regs::servo_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
 
  private:
   enum { kClock, kDacStrobe, kAdcStrobe, kPwm };
