@@ -74,7 +74,7 @@ class Machine : public sc_core::sc_module {
   void apply_motor_inputs();
   MotorOutputs motor_outputs(unsigned ic) const;
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
-  void attach(MotorPeer& peer);                                 // not owned; detach() it before it goes
+  void attach(MotorPeer& peer);                                 // not owned; detach() it before it goes; told the outputs at once
   void detach(MotorPeer& peer);
 
   Signals& signals();  // every named signal of design.md section 7

@@ -52,6 +52,11 @@ void MotorSide::apply() {
 void MotorSide::attach(MotorPeer& peer) {
   peers_.push_back({&peer, false});
   watch();
+  for (const Ic& ic : ics_) {
+    if ((peer.ics() >> ic.index & 1) == 0) continue;
+    const MotorOutputs present = board_.motor_outputs(ic.index);
+    peer.changed(board_.now(), ic.index, present, present);
+  }
 }
 
 void MotorSide::detach(MotorPeer& peer) {

@@ -38,11 +38,15 @@ MotorOutputs Axis::stops() const {
 void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
   amplifier_.enable(after.get(motor_pin::kAena, par_.channel) != 0);
   const auto pwm = [this](const MotorOutputs& o) { return o.w[0] >> (motor_pin::kPwmATop.stride * par_.channel) & 0x3F; };
-  if (pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
-  if (par_.drive == Drive::kStepper) {
-    const unsigned n = par_.channel;
-    stepper_.changed(tick, after.get(motor_pin::kPfmPulse, n) != 0, after.get(motor_pin::kPfmDir, n) != 0, amplifier_.on());
+  const unsigned n = par_.channel;
+  const bool pulse = after.get(motor_pin::kPfmPulse, n) != 0, down = after.get(motor_pin::kPfmDir, n) != 0;
+  if (before == after) {  // just attached
+    meter_.begin(tick, pwm(after));
+    stepper_.begin(pulse, down);
+    return;
   }
+  if (pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
+  if (par_.drive == Drive::kStepper) stepper_.changed(tick, pulse, down, amplifier_.on());
 }
 
 bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {

@@ -1,6 +1,6 @@
 // An incremental encoder with index and hall tracks: its pins as a function of the position. What is wrong with the disc or with
 // the wires (phase error, dark lines, A and B together, cut wires) belongs to the position too; noise comes from line_noise.h.
-// Going up, A leads B: {A,B} = 00 10 11 01. docs/plant.md
+// Going up, A leads B: {A,B} = 00 10 11 01, which counts up with I7mn0 = 3 (x4 CW) and down with the default of 7. docs/plant.md
 #pragma once
 
 #include <cstdint>

@@ -13,6 +13,11 @@ class PwmMeter {
  public:
   static constexpr unsigned kPhases = 3;
 
+  // The pins from which it starts; without it all low at tick 0.
+  void begin(Tick tick, unsigned pins) {
+    changed(tick, pins);
+    from_ = tick;
+  }
   // Every change of the pins, bits A top, A bottom, B top, ... from bit 0.
   void changed(Tick tick, unsigned pins) {
     settle(tick);

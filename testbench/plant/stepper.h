@@ -20,6 +20,11 @@ class Stepper {
  public:
   explicit Stepper(const StepperParameters& parameters) : par_(parameters) {}
 
+  // Levels from which it starts; without it both low.
+  void begin(bool pulse, bool down) {
+    pulse_ = pulse;
+    down_ = down;
+  }
   // Levels of the pins after an edge.
   void changed(Tick tick, bool pulse, bool down, bool enabled) {
     if (down != down_) dir_edge_ = tick;

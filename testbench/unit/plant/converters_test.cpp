@@ -143,6 +143,28 @@ TEST(PwmMeter, AveragesSinceTheLastCall) {
   EXPECT_FALSE(meter.take_short());
 }
 
+// On from the start at tick 1000 to the one change at 1250: half of the 500 ticks on top, half at the bottom.
+TEST(PwmMeter, StartsFromPinsThatStand) {
+  PwmMeter meter;
+  meter.begin(1000, 0b000001);
+  meter.changed(1250, 0b000010);
+  EXPECT_DOUBLE_EQ(meter.take(1500)[0], 0);
+  PwmMeter still;
+  still.begin(1000, 0b000001);
+  EXPECT_DOUBLE_EQ(still.take(1500)[0], 1);
+}
+
+TEST(Stepper, TakesNoStepForAPulseThatStandsAtTheStart) {
+  Stepper stepper({});
+  stepper.begin(true, true);
+  stepper.changed(1000, true, true, true);
+  EXPECT_EQ(stepper.steps(), 0);
+  stepper.changed(1010, false, true, true);
+  stepper.changed(1020, true, true, true);
+  EXPECT_EQ(stepper.steps(), -1);
+  EXPECT_EQ(stepper.violations(), 0u);
+}
+
 TEST(Stepper, MovesOneStepAPulse) {
   StepperParameters p;
   p.units_per_step = 2 * kUnitsPerCount;

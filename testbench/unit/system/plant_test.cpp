@@ -51,6 +51,48 @@ TEST_P(PlantOnController, PulsesBecomeStepsAndCounts) {
   EXPECT_EQ(plant().axis(0).counts(machine().now()), steps);
 }
 
+// What a peer is told of two servo ICs that it watches and of one that is not fitted.
+class Listener : public MotorPeer {
+ public:
+  struct Call {
+    Tick tick;
+    unsigned ic;
+    MotorOutputs before, after;
+  };
+  std::uint32_t ics() const override { return 1u << 0 | 1u << 1 | 1u << 5; }
+  Tick next_event() const override { return kNever; }
+  void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) override {
+    calls.push_back({tick, ic, before, after});
+  }
+  bool step(Tick, MotorInputPins&) override { return false; }
+  std::vector<Call> calls;
+};
+
+// Channel 2 is enabled, and AENA does not move again.
+TEST_P(PlantOnController, AttachedLateKnowsTheOutputsAsTheyStand) {
+  start();
+  ask("M202->X:$07800D,14");
+  ask("M202=1");
+  wait(ms_to_ticks(1));
+  Listener listener;
+  machine().attach(listener);
+  ASSERT_EQ(listener.calls.size(), 2u);
+  for (unsigned ic = 0; ic < 2; ++ic) {
+    const Listener::Call& call = listener.calls[ic];
+    EXPECT_EQ(call.tick, machine().now());
+    EXPECT_EQ(call.ic, ic);
+    EXPECT_TRUE(call.before == call.after && call.after == machine().motor_outputs(ic));
+    EXPECT_EQ(call.after.get(motor_pin::kAena, 1), ic == 0 ? 1u : 0u);
+  }
+  machine().detach(listener);
+
+  plant::Plant late(one_axis(plant::Drive::kTorque));
+  EXPECT_FALSE(late.axis(0).amplifier().on());
+  machine().attach(late);
+  EXPECT_TRUE(late.axis(0).amplifier().on());
+  machine().detach(late);
+}
+
 // A current of 5 A by DAC A: ADC A must read $400000, the motor gain 5000 rad/s2.
 TEST_P(PlantOnController, DacMovesTheMotorAndTheAdcReadsItsCurrent) {
   start_with(one_axis(plant::Drive::kTorque));
