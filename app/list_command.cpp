@@ -13,7 +13,11 @@ int list_command(bool json) {
   nlohmann::json list = nlohmann::json::array();
   for (const Bench& bench : all_benches()) {
     if (json)
-      list.push_back({{"name", bench.name}, {"description", bench.description}, {"negative", bench.negative}});
+      list.push_back({{"name", bench.name},
+                      {"description", bench.description},
+                      {"negative", bench.negative},
+                      {"needs", bench.need.what},
+                      {"board", bench.board}});
     else
       std::cout << fmt::format("{:<14} {}\n", bench.name, bench.description);
   }

@@ -35,6 +35,9 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
   RunOptions options = given;
   if (options.board.empty()) options.board = bench.board;
   MachineConfig config = machine_config(options);
+  if (!bench.need.met(config.board))
+    throw UsageError(fmt::format("{} needs {}, which board {} has not; expected a board such as {}", bench.name, bench.need.what,
+                                 config.board.name, bench.board));
   if (negative && bench.seed_bug) bench.seed_bug(config);
   Simulation simulation(options, config, bench.name);
   std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine, config.board.name,

@@ -29,6 +29,20 @@ std::string BenchContext::ask(const std::string& line) const {
   return text;
 }
 
+namespace {
+
+constexpr std::uint32_t kServoIcMask = (1u << kMaxServoIcs) - 1;
+int count(std::uint32_t ics) { return __builtin_popcount(ics); }
+
+}  // namespace
+
+const BenchNeed kAnyBoard{};
+const BenchNeed kAServoIc{"a servo IC", [](const BoardConfig& b) { return (b.fitted & kServoIcMask) != 0; }};
+const BenchNeed kServoIc0{"servo IC 0", [](const BoardConfig& b) { return (b.fitted & 1) != 0; }};
+const BenchNeed kServoIcs01{"servo ICs 0 and 1", [](const BoardConfig& b) { return (b.fitted & 3) == 3; }};
+const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { return count(b.fitted) >= 2; }};
+const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
+
 const std::vector<Bench>& all_benches() {
   static const std::vector<Bench> benches{smoke_bench(),           breq_rotary_bench(),  watchdog_bench(),    reinit_e3_bench(),
                                           clock_select_bench(),    clock_faults_bench(), clock_macro_bench(), encoder_bench(),

@@ -53,12 +53,20 @@ struct BenchContext {
   void expect(const std::string& line, const std::string& answer) const { report.equal(line, ask(line), answer); }
 };
 
+// What a bench cannot do without.
+struct BenchNeed {
+  std::string what;  // "" if any board will do
+  std::function<bool(const BoardConfig&)> met = [](const BoardConfig&) { return true; };
+};
+extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc;
+
 struct Bench {
   std::string name;
   std::string description;                       // one line
   std::string negative;                          // what --negative does, one line
   std::function<void(MachineConfig&)> seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
   std::function<void(BenchContext&)> run;
+  BenchNeed need = kAnyBoard;
   std::string board = "geobrick-lv-8";  // without --board
 };
 

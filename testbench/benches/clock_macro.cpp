@@ -132,6 +132,7 @@ Bench clock_macro_bench() {
           "servo divider of the last MACRO IC behind the checker's back",
           nullptr,
           [](BenchContext& b) { MacroBench(b).run(); },
+          kAMacroIc,
           "all-ics"};
 }
 

@@ -305,6 +305,7 @@ Bench clock_select_bench() {
           "servo dividers one higher than the checker is told",
           nullptr,
           [](BenchContext& b) { SelectBench(b).sources(); },
+          kTwoIcs,
           "all-ics"};
 }
 
@@ -315,6 +316,7 @@ Bench clock_faults_bench() {
           "servo dividers one higher than the checker is told",
           nullptr,
           [](BenchContext& b) { SelectBench(b).faults(); },
+          kTwoIcs,
           "turbo-pmac2-pc"};
 }
 

@@ -430,8 +430,12 @@ void run(BenchContext& b) { EncoderBench(b).run(); }
 
 // covers: CARD-1 CARD-2
 Bench encoder_bench() {
-  return {"encoder", "all decode modes under random movement with glitches and jumps, counters to the tick, timers, hardware 1/T, MLDT",
-          "the scoreboard's filter lets one sample pass", nullptr, run};
+  return {"encoder",
+          "all decode modes under random movement with glitches and jumps, counters to the tick, timers, hardware 1/T, MLDT",
+          "the scoreboard's filter lets one sample pass",
+          nullptr,
+          run,
+          kAServoIc};
 }
 
 }  // namespace brick

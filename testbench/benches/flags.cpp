@@ -259,8 +259,12 @@ void run(BenchContext& b) { FlagsBench(b).run(); }
 
 // covers: CARD-1 CARD-2
 Bench flags_bench() {
-  return {"flags", "every input pin at its status bit and M-variable, the filter, AENA and the control word",
-          "the scoreboard's filter lets one sample pass", nullptr, run};
+  return {"flags",
+          "every input pin at its status bit and M-variable, the filter, AENA and the control word",
+          "the scoreboard's filter lets one sample pass",
+          nullptr,
+          run,
+          kAServoIc};
 }
 
 }  // namespace brick

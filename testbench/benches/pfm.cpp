@@ -249,8 +249,12 @@ void run(BenchContext& b) {
 
 // covers: CARD-1 CARD-2
 Bench pfm_bench() {
-  return {"pfm", "pulse trains on eight channels, every edge at its tick from power-up on; each pulse counted",
-          "the scoreboard knows no ceiling of PFM_CLK / 4", nullptr, run};
+  return {"pfm",
+          "pulse trains on eight channels, every edge at its tick from power-up on; each pulse counted",
+          "the scoreboard knows no ceiling of PFM_CLK / 4",
+          nullptr,
+          run,
+          kAServoIc};
 }
 
 }  // namespace brick

@@ -50,7 +50,7 @@ class Pwm {
   bool find_triangle();
   std::string differences(unsigned places, unsigned& edges);
   void on_times(const std::string& what, unsigned places);
-  void judge(const std::string& what, unsigned places = 2);
+  void judge(const std::string& what, unsigned places = 2);  // of as many ICs as there are
   int random_command(unsigned place);
 
   OutputHost host_;
@@ -107,8 +107,9 @@ void Pwm::zero() {
 // I7m00 of both ICs, dividers of the source, dead time of both; then until the second triangle has followed (5.1 item 6).
 void Pwm::configure(unsigned limit, unsigned other, unsigned phase_divider, unsigned servo_divider, unsigned dead) {
   zero();
-  host_.say({fmt::format("I7000={}", limit), fmt::format("I7001={}", phase_divider), fmt::format("I7002={}", servo_divider),
-             fmt::format("I7100={}", other), fmt::format("I7004={}", dead), fmt::format("I7104={}", dead)});
+  host_.say({fmt::format("I7000={} I7001={} I7002={}", limit, phase_divider, servo_divider)});
+  for (unsigned i = 0; i < host_.places(); ++i)
+    host_.say({fmt::format("I{}={}", host_.i_global(i, 0), i == 0 ? limit : other), fmt::format("I{}={}", host_.i_global(i, 4), dead)});
   limit_ = {limit, other};
   dead_ = dead;
   rule_.dead = 16 * static_cast<Tick>(dead);
@@ -188,6 +189,7 @@ void Pwm::on_times(const std::string& what, unsigned places) {
 }
 
 void Pwm::judge(const std::string& what, unsigned places) {
+  places = std::min(places, host_.places());
   host_.wait(2 * std::max(period(0), period(1)));
   unsigned edges = 0;
   const std::string text = differences(places, edges);
@@ -304,8 +306,12 @@ void run(BenchContext& b) {
 
 // covers: CLK-6 CARD-1 CARD-2
 Bench pwm_bench() {
-  return {"pwm", "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at its tick",
-          "the scoreboard compares with >= instead of >", nullptr, run};
+  return {"pwm",
+          "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at its tick",
+          "the scoreboard compares with >= instead of >",
+          nullptr,
+          run,
+          kServoIc0};
 }
 
 }  // namespace brick

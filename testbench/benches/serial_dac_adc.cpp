@@ -344,7 +344,10 @@ void run(BenchContext& b) {
 Bench serial_dac_adc_bench() {
   return {"serial-dac-adc",
           "words of 16 serial DACs and 16 serial ADCs with other clocks and strobe words, every stream of every PHASE period",
-          "the converters send one header bit more", nullptr, run};
+          "the converters send one header bit more",
+          nullptr,
+          run,
+          kAServoIc};
 }
 
 }  // namespace brick
