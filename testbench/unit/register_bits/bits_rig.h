@@ -139,6 +139,7 @@ struct BitRow {
 using BitTable = std::vector<BitRow>;
 
 void add_channel_rows(BitTable& table);  // words of a channel but its timers, which need millions of SCLK periods
+void add_control_rows(BitTable& table);  // the control word, of those
 void add_output_rows(BitTable& table);   // OUT A, B, C and the ADC words
 void add_global_rows(BitTable& table);   // X:+4 of each channel
 
