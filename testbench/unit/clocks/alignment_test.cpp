@@ -60,13 +60,6 @@ class ExternalPhaseOn : public ::testing::Test {
 };
 
 using Engines = ::testing::Types<RtlRig, ModelRig>;
-class EngineNames {
- public:
-  template <class T>
-  static std::string GetName(int i) {
-    return i == 0 ? "Rtl" : "Model";
-  }
-};
 TYPED_TEST_SUITE(ExternalPhaseOn, Engines, EngineNames);
 
 // A turnaround is the edge that raises PHASE; an external rise at tick t acts at edge t + 3.

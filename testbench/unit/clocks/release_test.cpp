@@ -64,13 +64,6 @@ class ReleaseOn : public ::testing::Test {
 };
 
 using Engines = ::testing::Types<RtlRig, ModelRig>;
-class EngineNames {
- public:
-  template <class T>
-  static std::string GetName(int i) {
-    return i == 0 ? "Rtl" : "Model";
-  }
-};
 TYPED_TEST_SUITE(ReleaseOn, Engines, EngineNames);
 
 TYPED_TEST(ReleaseOn, NothingIsLatchedByAFallThatStaysAwayFromTheNet) {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "systemc/servo_ic/servo_ic.h"
 #include "testbench/unit/clocks/rtl_servo_ic.h"
 
@@ -41,6 +43,28 @@ class ServoIcRig {
     reset(true);
     run(4);
     reset(false);
+  }
+  // Runs until the level has the given edge; returns its tick.
+  Tick edge_of(bool (ServoIcRig::*level)(), bool rising, Tick limit = 100'000'000) {
+    const Tick end = now() + limit;
+    bool last = (this->*level)();
+    while (now() < end) {
+      tick();
+      const bool seen = (this->*level)();
+      if (seen != last && seen == rising) return now();
+      last = seen;
+    }
+    ADD_FAILURE() << "no edge within " << limit << " ticks";
+    return kNever;
+  }
+};
+
+// For TYPED_TEST_SUITE with the engines in this order.
+class EngineNames {
+ public:
+  template <class T>
+  static std::string GetName(int i) {
+    return i == 0 ? "Rtl" : "Model";
   }
 };
 

@@ -21,31 +21,10 @@ class ServoIcOn : public ::testing::Test {
     rig.write(true, kClockWord, clock_word(phase_div, servo_div, 0));
   }
 
-  // Runs until the level has the given edge; returns its tick.
-  Tick edge_of(bool (ServoIcRig::*level)(), bool rising, Tick limit = 100'000'000) {
-    const Tick end = rig.now() + limit;
-    bool last = (rig.*level)();
-    while (rig.now() < end) {
-      rig.tick();
-      const bool now = (rig.*level)();
-      if (now != last && now == rising) return rig.now();
-      last = now;
-    }
-    ADD_FAILURE() << "no edge within " << limit << " ticks";
-    return kNever;
-  }
-
   Rig rig;
 };
 
 using Engines = ::testing::Types<RtlRig, ModelRig>;
-class EngineNames {
- public:
-  template <class T>
-  static std::string GetName(int i) {
-    return i == 0 ? "Rtl" : "Model";
-  }
-};
 TYPED_TEST_SUITE(ServoIcOn, Engines, EngineNames);
 
 TYPED_TEST(ServoIcOn, GlobalRegistersHaveTheirResetValuesWithBothClocksAsInputs) {
@@ -110,16 +89,16 @@ TYPED_TEST(ServoIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
     this->drive(max_count, phase_div, servo_div);
     this->rig.run(3 * (2 * 6527 + 3) * 16 + 4 * max_count);  // past everything that still ran with the setting before
     const Tick phase = Tick{2 * max_count + 3} * (phase_div + 1);
-    const Tick rise = this->edge_of(&ServoIcRig::phase, true);
-    const Tick fall = this->edge_of(&ServoIcRig::phase, false);
-    const Tick rise2 = this->edge_of(&ServoIcRig::phase, true);
+    const Tick rise = this->rig.edge_of(&ServoIcRig::phase, true);
+    const Tick fall = this->rig.edge_of(&ServoIcRig::phase, false);
+    const Tick rise2 = this->rig.edge_of(&ServoIcRig::phase, true);
     EXPECT_EQ(rise2 - rise, phase);
     EXPECT_EQ(fall - rise, phase / 2);
 
-    const Tick servo_fall = this->edge_of(&ServoIcRig::servo, false);
+    const Tick servo_fall = this->rig.edge_of(&ServoIcRig::servo, false);
     EXPECT_FALSE(this->rig.phase());
-    const Tick servo_rise = this->edge_of(&ServoIcRig::servo, true);
-    const Tick servo_fall2 = this->edge_of(&ServoIcRig::servo, false);
+    const Tick servo_rise = this->rig.edge_of(&ServoIcRig::servo, true);
+    const Tick servo_fall2 = this->rig.edge_of(&ServoIcRig::servo, false);
     EXPECT_EQ(servo_fall2 - servo_fall, phase * (servo_div + 1));
     EXPECT_EQ(servo_rise - servo_fall, servo_div > 0 ? phase : phase - phase / 2);
     EXPECT_EQ((servo_fall - fall) % phase, 0) << "SERVO falls with a fall of PHASE";
@@ -131,11 +110,11 @@ TYPED_TEST(ServoIcOn, ServoIsHalfOfPhaseWithADividerOfOne) {
   BRICK_COVERS("CLK-6");
   this->drive(8846, 0, 1);
   this->rig.run(200'000);
-  const Tick rise = this->edge_of(&ServoIcRig::phase, true);
-  const Tick phase = this->edge_of(&ServoIcRig::phase, true) - rise;
+  const Tick rise = this->rig.edge_of(&ServoIcRig::phase, true);
+  const Tick phase = this->rig.edge_of(&ServoIcRig::phase, true) - rise;
   EXPECT_NEAR(static_cast<double>(kPwmClockHz) / static_cast<double>(phase), 6670, 4);
-  const Tick fall = this->edge_of(&ServoIcRig::servo, false);
-  EXPECT_EQ(this->edge_of(&ServoIcRig::servo, false) - fall, 2 * phase);
+  const Tick fall = this->rig.edge_of(&ServoIcRig::servo, false);
+  EXPECT_EQ(this->rig.edge_of(&ServoIcRig::servo, false) - fall, 2 * phase);
 }
 
 // A new I7m00 counts from the next bottom turnaround on, so no period is longer or shorter than both settings explain:
@@ -143,11 +122,11 @@ TYPED_TEST(ServoIcOn, ServoIsHalfOfPhaseWithADividerOfOne) {
 TYPED_TEST(ServoIcOn, NewMaximumCountIsTakenAtTheBottomTurnaround) {
   this->drive(20, 0, 0);
   this->rig.run(2 * 13057 + 1000);
-  this->edge_of(&ServoIcRig::phase, true);
+  this->rig.edge_of(&ServoIcRig::phase, true);
   this->rig.write(true, kPwmWord, pwm_word(10));
-  Tick last = this->edge_of(&ServoIcRig::phase, true), longest = 0, between = 0;
+  Tick last = this->rig.edge_of(&ServoIcRig::phase, true), longest = 0, between = 0;
   for (int i = 0; i < 6; ++i) {
-    const Tick next = this->edge_of(&ServoIcRig::phase, true);
+    const Tick next = this->rig.edge_of(&ServoIcRig::phase, true);
     const Tick period = next - last;
     last = next;
     if (period != 43 && period != 23) between += period;
@@ -165,11 +144,11 @@ TYPED_TEST(ServoIcOn, NewMaximumCountIsNotTakenAtTheTopTurnaround) {
     this->rig.power_up();
     this->drive(20, 0, 0);
     this->rig.run(2 * 13057 + 1000);
-    for (int i = 0; i <= later; ++i) this->edge_of(&ServoIcRig::phase, true);
+    for (int i = 0; i <= later; ++i) this->rig.edge_of(&ServoIcRig::phase, true);
     this->rig.write(true, kPwmWord, pwm_word(10));
-    Tick last = this->edge_of(&ServoIcRig::phase, true);
+    Tick last = this->rig.edge_of(&ServoIcRig::phase, true);
     for (Tick period = 0; period != 33; ++old_halves) {
-      const Tick next = this->edge_of(&ServoIcRig::phase, true);
+      const Tick next = this->rig.edge_of(&ServoIcRig::phase, true);
       period = next - last;
       last = next;
       ASSERT_TRUE(period == 43 || period == 33) << period;
@@ -183,11 +162,11 @@ TYPED_TEST(ServoIcOn, NewMaximumCountIsNotTakenAtTheTopTurnaround) {
 TYPED_TEST(ServoIcOn, NewPhaseDividerIsTakenAtTheTerminalCount) {
   this->drive(20, 3, 0);
   this->rig.run(2 * 13057 + 1000);
-  const Tick rise = this->edge_of(&ServoIcRig::phase, true);
+  const Tick rise = this->rig.edge_of(&ServoIcRig::phase, true);
   this->rig.write(true, kClockWord, clock_word(0, 0, 0));
-  EXPECT_EQ(this->edge_of(&ServoIcRig::phase, true) - rise, 4 * 43);
+  EXPECT_EQ(this->rig.edge_of(&ServoIcRig::phase, true) - rise, 4 * 43);
   const Tick next = this->rig.now();
-  EXPECT_EQ(this->edge_of(&ServoIcRig::phase, true) - next, 43);
+  EXPECT_EQ(this->rig.edge_of(&ServoIcRig::phase, true) - next, 43);
 }
 
 TYPED_TEST(ServoIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
@@ -214,7 +193,7 @@ TYPED_TEST(ServoIcOn, DirectionChangesWithoutAShortPulse) {
       this->rig.power_up();
       this->drive(20, 0, servo_div);
       this->rig.run(2 * 13057 + 1000);
-      this->edge_of(&ServoIcRig::servo, false);
+      this->rig.edge_of(&ServoIcRig::servo, false);
       this->rig.run(at);
       this->rig.write(true, kClockWord, clock_word(0, servo_div, 3));
       std::vector<Tick> phase_edges{this->rig.now()}, servo_edges;  // each fall and rise of the net from here on

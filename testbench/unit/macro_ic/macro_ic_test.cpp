@@ -22,30 +22,10 @@ class MacroIcOn : public ::testing::Test {
     rig.write(true, macro::kClock, clock_word(phase_div, servo_div, direction));
   }
 
-  Tick edge_of(bool (ServoIcRig::*level)(), bool rising, Tick limit = 100'000'000) {
-    const Tick end = rig.now() + limit;
-    bool last = (rig.*level)();
-    while (rig.now() < end) {
-      rig.tick();
-      const bool now = (rig.*level)();
-      if (now != last && now == rising) return rig.now();
-      last = now;
-    }
-    ADD_FAILURE() << "no edge within " << limit << " ticks";
-    return kNever;
-  }
-
   Rig rig;
 };
 
 using Engines = ::testing::Types<RtlMacroRig, ModelMacroRig>;
-class EngineNames {
- public:
-  template <class T>
-  static std::string GetName(int i) {
-    return i == 0 ? "Rtl" : "Model";
-  }
-};
 TYPED_TEST_SUITE(MacroIcOn, Engines, EngineNames);
 
 TYPED_TEST(MacroIcOn, RegistersHaveTheirResetValuesWithBothClocksAsInputs) {
@@ -99,10 +79,10 @@ TYPED_TEST(MacroIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
     EXPECT_TRUE(this->rig.phase_oe());
     EXPECT_TRUE(this->rig.servo_oe());
     const Tick phase = Tick{2 * max_count + 3} * (phase_div + 1);
-    const Tick fall = this->edge_of(&ServoIcRig::phase, false);
-    EXPECT_EQ(this->edge_of(&ServoIcRig::phase, false) - fall, phase);
-    const Tick servo_fall = this->edge_of(&ServoIcRig::servo, false);
-    EXPECT_EQ(this->edge_of(&ServoIcRig::servo, false) - servo_fall, phase * (servo_div + 1));
+    const Tick fall = this->rig.edge_of(&ServoIcRig::phase, false);
+    EXPECT_EQ(this->rig.edge_of(&ServoIcRig::phase, false) - fall, phase);
+    const Tick servo_fall = this->rig.edge_of(&ServoIcRig::servo, false);
+    EXPECT_EQ(this->rig.edge_of(&ServoIcRig::servo, false) - servo_fall, phase * (servo_div + 1));
     EXPECT_EQ((servo_fall - fall) % phase, 0) << "SERVO falls with a fall of PHASE";
   }
 }
@@ -113,12 +93,12 @@ TYPED_TEST(MacroIcOn, ServoIsHalfOfPhaseWithADividerOfOne) {
   BRICK_COVERS("CLK-5 CLK-1");
   this->drive(8846, 0, 1);
   this->rig.run(200'000);
-  const Tick rise = this->edge_of(&ServoIcRig::phase, true);
-  const Tick phase = this->edge_of(&ServoIcRig::phase, true) - rise;
+  const Tick rise = this->rig.edge_of(&ServoIcRig::phase, true);
+  const Tick phase = this->rig.edge_of(&ServoIcRig::phase, true) - rise;
   EXPECT_EQ(phase, 17695);
   EXPECT_NEAR(static_cast<double>(kPwmClockHz) / static_cast<double>(phase), 6670, 4);
-  const Tick fall = this->edge_of(&ServoIcRig::servo, false);
-  EXPECT_EQ(this->edge_of(&ServoIcRig::servo, false) - fall, 2 * phase);
+  const Tick fall = this->rig.edge_of(&ServoIcRig::servo, false);
+  EXPECT_EQ(this->rig.edge_of(&ServoIcRig::servo, false) - fall, 2 * phase);
 }
 
 TYPED_TEST(MacroIcOn, DirectionBitsStopDrivingEachClockAlone) {

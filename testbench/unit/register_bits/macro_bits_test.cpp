@@ -164,13 +164,6 @@ class MacroTable {
 template <class Rig>
 class MacroBits : public ::testing::Test {};
 using Engines = ::testing::Types<RtlMacroRig, ModelMacroRig>;
-class EngineNames {
- public:
-  template <class T>
-  static std::string GetName(int i) {
-    return i == 0 ? "Rtl" : "Model";
-  }
-};
 TYPED_TEST_SUITE(MacroBits, Engines, EngineNames);
 
 TYPED_TEST(MacroBits, EachBitDoesWhatTheMapSaysAndEachStuckBitIsFound) {
