@@ -2,7 +2,6 @@
 // change of every counter is judged to the tick by testbench/checkers/channel_scoreboard.h, which sees the same pins; then the words that
 // a host reads: positions, status, timers, and the fraction of hardware 1/T.
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <numeric>
 
@@ -10,11 +9,12 @@
 
 #include "testbench/benches/benches.h"
 #include "testbench/benches/channel_host.h"
+#include "testbench/benches/encoder_moves.h"
 
 namespace brick {
 namespace {
 
-constexpr unsigned kA = 1u << kEncA, kB = 1u << kEncB, kC = 1u << kEncC;
+constexpr unsigned kA = EncoderMoves::kA, kB = EncoderMoves::kB, kC = EncoderMoves::kC;
 constexpr Tick kServo = 4 * (2 * 6527 + 3);  // factory setting
 // M-variables, + 100 for each further channel.
 constexpr unsigned kStatus = 100, kPhase = 101, kServoWord = 102, kT1 = 103, kT2 = 104, kError = 105, kReset = 106, kLoss = 107,
@@ -71,46 +71,12 @@ class EncoderBench {
     }
   }
 
-  // One step of a wheel: mostly on, sometimes back, sometimes a jump.
-  std::uint16_t next_pins(unsigned mode, std::uint16_t pins, bool& up) {
-    static constexpr std::array<unsigned, 4> kWheel{0, kA, kA | kB, kB};
-    static constexpr std::array<unsigned, 6> kHalls{kC, kB | kC, kB, kA | kB, kA, kA | kC};
-    const unsigned chance = host_.pick(100);
-    if (chance < 10) up = !up;
-    if (mode == 11 || mode == 15) {
-      constexpr unsigned kAll = kA | kB | kC;
-      if (chance >= 97) return static_cast<std::uint16_t>((pins & ~kAll) | (host_.pick(2) != 0 ? kAll : 0));
-      const auto at = std::find(kHalls.begin(), kHalls.end(), pins & kAll);
-      const auto place = at == kHalls.end() ? host_.pick(6) : static_cast<unsigned>(at - kHalls.begin());
-      return static_cast<std::uint16_t>((pins & ~kAll) | kHalls[(place + (chance >= 94 ? 2 + host_.pick(3) : up ? 1 : 5)) % 6]);
-    }
-    const auto place = static_cast<unsigned>(std::find(kWheel.begin(), kWheel.end(), pins & (kA | kB)) - kWheel.begin());
-    return static_cast<std::uint16_t>((pins & ~(kA | kB)) | kWheel[(place + (chance >= 95 ? 2 : up ? 1 : 3)) % 4]);
-  }
-
-  std::vector<ChannelHost::Hold> movement(unsigned mode, std::uint16_t pins, unsigned steps) {
-    std::vector<ChannelHost::Hold> holds;
-    bool up = host_.pick(2) != 0;
-    const Tick sclk = host_.period();
-    for (unsigned i = 0; i < steps; ++i) {
-      if (host_.pick(6) == 0) {  // a pulse on one line, shorter than two samples or not
-        const unsigned line = 1u << host_.pick(3);
-        holds.push_back({static_cast<std::uint16_t>(pins ^ line), 1 + host_.pick(static_cast<unsigned>(2 * sclk))});
-        holds.push_back({pins, 1 + host_.pick(static_cast<unsigned>(4 * sclk))});
-      }
-      pins = next_pins(mode, pins, up);
-      holds.push_back({pins, sclk + host_.pick(static_cast<unsigned>(4 * sclk))});
-    }
-    holds.push_back({pins, 4 * sclk});
-    return holds;
-  }
-
   void random_movement(const std::vector<unsigned>& modes) {
     set_modes(modes);
     all(kError, 0);
     for (unsigned i = 0; i < modes.size(); ++i) host_.board(i).decoder.clear_error();
     const Tick start = host_.now() + 100;
-    for (unsigned i = 0; i < modes.size(); ++i) host_.drive(i, start + host_.pick(200), movement(modes[i], host_.pins(i), 400));
+    for (unsigned i = 0; i < modes.size(); ++i) host_.drive(i, start + host_.pick(200), moves_.random(modes[i], host_.pins(i), 400));
     host_.play();
     for (unsigned i = 0; i < modes.size(); ++i) {
       const std::int32_t position = host_.board(i).decoder.counter();
@@ -185,22 +151,11 @@ class EncoderBench {
     b_.report.step(name, wrong.empty(), wrong.empty() ? fmt::format("as the scoreboard, {} with count error", errors) : wrong);
   }
 
-  // `steps` of a wheel, one every `sclk` SCLK periods.
-  std::vector<ChannelHost::Hold> even(std::uint16_t pins, unsigned steps, bool a_leads, Tick sclk) const {
-    std::vector<ChannelHost::Hold> holds{{pins, host_.period()}};
-    for (unsigned i = 0; i < steps; ++i) {
-      const bool equal = ((pins & kA) != 0) == ((pins & kB) != 0);
-      pins = static_cast<std::uint16_t>(pins ^ (equal == a_leads ? kA : kB));
-      holds.push_back({pins, sclk * host_.period()});
-    }
-    return holds;
-  }
-
   void timers() {
     std::vector<long> spacing;
     for (unsigned i = 0; i < host_.channels(); ++i) {
       spacing.push_back(20 + host_.pick(1000));
-      host_.drive(i, host_.now() + 50, even(host_.pins(i), 3, i % 2 == 0, spacing[i]));
+      host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 3, i % 2 == 0, spacing[i]));
     }
     host_.play();
     b_.bus.wait(kServo);
@@ -215,7 +170,7 @@ class EncoderBench {
     }
     b_.report.step("T1 = spacing, T2 = SCLK periods from the count to SERVO", bad.empty(),
                    bad.empty() ? fmt::format("{}: {} and {}", host_.name(0), t1[0], t2[0]) : bad);
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, even(host_.pins(i), 1, i % 2 != 0, 4));
+    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 1, i % 2 != 0, 4));
     host_.play();
     b_.bus.wait(2 * kServo);
     const auto turned = host_.read(kT1);
@@ -243,7 +198,7 @@ class EncoderBench {
     for (unsigned i = 0; i < host_.channels(); ++i) {
       host_.board(i).decoder.hold = true;
       host_.board(i).touch();
-      std::vector<ChannelHost::Hold> holds = even(host_.pins(i), 5, true, 4);
+      std::vector<ChannelHost::Hold> holds = moves_.even(host_.pins(i), 5, true, 4);
       holds.push_back({static_cast<std::uint16_t>(holds.back().pins ^ (kA | kB)), 5 * host_.period()});
       host_.drive(i, host_.now() + 50, holds);
     }
@@ -257,7 +212,7 @@ class EncoderBench {
     all(kReset, 0);
     for (unsigned i = 0; i < host_.channels(); ++i) {
       host_.board(i).decoder.hold = false;
-      host_.drive(i, host_.now() + 50, even(host_.pins(i), 9, host_.pick(2) != 0, 3));
+      host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 9, host_.pick(2) != 0, 3));
     }
     host_.play();
     judge_counts("counts again");
@@ -370,7 +325,7 @@ class EncoderBench {
     constexpr unsigned kSteps = 40;
     const long spacing = (6000 + host_.pick(6000)) / static_cast<long>(host_.period());
     const Tick start = host_.now() + 100;
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, start, even(host_.pins(i), kSteps, i % 2 == 0, spacing));
+    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, start, moves_.even(host_.pins(i), kSteps, i % 2 == 0, spacing));
     unsigned wrong = 0, seen = 0;
     std::string text;
     while (host_.now() < start + (kSteps - 2) * spacing * host_.period()) {
@@ -396,7 +351,7 @@ class EncoderBench {
     host_.play();
     b_.bus.wait(std::max<Tick>(spacing * host_.period(), kServo) + kServo);
     rest("at rest: full cell", 4095, 0);
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, even(host_.pins(i), 1, i % 2 != 0, 5));
+    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 1, i % 2 != 0, 5));
     host_.play();
     b_.bus.wait(2 * kServo);
     rest("after a turn: start of the new cell", 4095, 0);
@@ -422,6 +377,7 @@ class EncoderBench {
 
   BenchContext& b_;
   ChannelHost host_;
+  EncoderMoves moves_{host_};
 };
 
 void run(BenchContext& b) { EncoderBench(b).run(); }
