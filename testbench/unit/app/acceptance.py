@@ -3,26 +3,13 @@ import json
 import pathlib
 import re
 import subprocess
-import sys
 import tempfile
 
-BRICK, CASE = sys.argv[1], sys.argv[2]
-BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
+import command
+from command import BOARDS, brick, check, play
+
 GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
 ANSWERS = ["1.947", "603382", "7007", "5", "10", "ERR003"]  # the three DEFINEs: nothing, nothing, lower-numbered buffer exists
-
-
-def brick(*arguments, script=None, timeout=240):
-    return subprocess.run([BRICK, *arguments], input=script, capture_output=True, text=True, timeout=timeout)
-
-
-def check(condition, what):
-    if not condition:
-        sys.exit(f"FAILED: {what}")
-
-
-def play(lines, *options):
-    return brick("exec", *options, "-", script="\n".join(lines) + "\n")
 
 
 # covers: CARD-3
@@ -202,90 +189,6 @@ def bad_input():
             check(what in r.stderr and "expected" in r.stderr, f"{name}: {r.stderr}")
 
 
-def run_json(bench, *options):
-    with tempfile.TemporaryDirectory() as folder:
-        r = brick("run", bench, "--json", f"{folder}/r.json", *options, timeout=500)
-        return r, json.loads(pathlib.Path(f"{folder}/r.json").read_text())
-
-
-def bench_passes(name, engine, seed="1"):
-    r, results = run_json(name, "--engine", engine, "--seed", seed)
-    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
-    check(f"PASS {name}" in r.stdout and "ticks/s" in r.stdout and "instructions/s" in r.stdout, r.stdout)
-    check(len(results["steps"]) > 5 and results["ticks"] > 0 and results["instructions"] > 0, str(results))
-
-
-def bench_fails_its_negative_control(name, engine):
-    r, results = run_json(name, "--engine", engine, "--negative")
-    check(r.returncode == 1 and results["verdict"] == "FAIL", r.stdout + r.stderr)
-    return results
-
-
-def every_board():
-    """Every bench on every board: it passes, or says in one line what the board has not; nothing in between."""
-    one_servo_ic = {"watchdog", "reinit-e3", "clock-select", "clock-faults", "clock-macro"}  # and nothing else
-    refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic, "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3"},
-               "geobrick-lv-8": {"clock-macro"}, "turbo-pmac-pci": {"clock-macro"}, "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
-               "turbo-pmac2-ultralite": {b["name"] for b in json.loads(brick("list", "--json").stdout)} - {"smoke", "breq-rotary", "clock-macro"}}
-    for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
-        for bench in json.loads(brick("list", "--json").stdout):
-            if bench["board"] == board and bench["name"] not in refused.get(board, set()):
-                continue  # a case of its own
-            r = brick("run", bench["name"], "--engine", "systemc", "--board", board)
-            if bench["name"] in refused.get(board, set()):
-                said = f"brick run: {bench['name']} needs {bench['needs']}, which board {board} has not; expected a board such as {bench['board']}\n"
-                check(r.returncode == 2 and r.stderr == said and bench["needs"], f"{board} {bench['name']}: exit {r.returncode}: {r.stderr}")
-            else:
-                check(r.returncode == 0, f"{board} {bench['name']}: exit {r.returncode}: {r.stdout}{r.stderr}")
-
-
-def smoke():
-    for engine in ("systemc", "rtl", "lockstep"):
-        bench_passes("smoke", engine)
-
-
-def smoke_negative():
-    bench_fails_its_negative_control("smoke", "systemc")
-    results = bench_fails_its_negative_control("smoke", "lockstep")
-    check("clock.servo" in results["steps"][-1]["detail"], str(results["steps"][-1]))
-
-
-def breq_rotary():
-    bench_passes("breq-rotary", "systemc", "1")
-    bench_passes("breq-rotary", "systemc", "2")
-
-
-def breq_rotary_lockstep():
-    bench_passes("breq-rotary", "lockstep", "3")
-
-
-def breq_rotary_negative():
-    bench_fails_its_negative_control("breq-rotary", "systemc")
-
-
-# covers: WDT-1
-def watchdog():
-    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
-        bench_passes("watchdog", engine, seed)
-
-
-def watchdog_negative():
-    results = bench_fails_its_negative_control("watchdog", "systemc")
-    check([s["name"] for s in results["steps"] if not s["passed"]][0].startswith("trip, servo"), str(results["steps"]))
-
-
-# covers: WDT-2
-def reinit_e3():
-    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
-        bench_passes("reinit-e3", engine, seed)
-    r, results = run_json("reinit-e3", "--engine", "lockstep", "--board", "turbo-pmac2-pc")  # with a MACRO IC
-    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
-
-
-def reinit_e3_negative():
-    bench_fails_its_negative_control("reinit-e3", "systemc")
-
-
 # covers: WDT-1 WDT-2
 def dead_flash():
     """A flash file with settings that stop the controller, from one process to the next; jumper E3 and SAVE repair it."""
@@ -307,120 +210,13 @@ def dead_flash():
         check(r.stdout.split() == ["watchdog.tripped=1", "7007"], r.stdout + r.stderr)
 
 
-def clock_select():
-    bench_passes("clock-select", "systemc", "1")
-    bench_passes("clock-select", "systemc", "2")
-
-
-def clock_select_lockstep():
-    bench_passes("clock-select", "lockstep", "3")
-
-
-def clock_select_negative():
-    bench_fails_its_negative_control("clock-select", "systemc")
-
-
-def clock_faults():
-    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
-        bench_passes("clock-faults", engine, seed)
-
-
-def clock_faults_negative():
-    bench_fails_its_negative_control("clock-faults", "systemc")
-
-
-def clock_macro():
-    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
-        bench_passes("clock-macro", engine, seed)
-
-
-def clock_macro_negative():
-    bench_fails_its_negative_control("clock-macro", "systemc")
-
-
-def encoder():
-    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
-        bench_passes("encoder", engine, seed)
-
-
-def encoder_lockstep():
-    bench_passes("encoder", "lockstep", "3")
-
-
-def encoder_negative():
-    bench_fails_its_negative_control("encoder", "systemc")
-
-
-# covers: CLK-6
-def pwm():
-    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
-        bench_passes("pwm", engine, seed)
-
-
-def first_failed(results):
-    return [s["name"] for s in results["steps"] if not s["passed"]][0]
-
-
-def pwm_negative():
-    results = bench_fails_its_negative_control("pwm", "systemc")
-    check(first_failed(results) == "I7004=0", str(results["steps"]))
-
-
-def pfm():
-    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
-        bench_passes("pfm", engine, seed)
-
-
-def pfm_negative():
-    results = bench_fails_its_negative_control("pfm", "systemc")
-    check(first_failed(results).startswith("commands about 2^22"), str(results["steps"]))
-
-
-def serial_dac_adc():
-    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
-        bench_passes("serial-dac-adc", engine, seed)
-
-
-def serial_dac_adc_negative():
-    results = bench_fails_its_negative_control("serial-dac-adc", "systemc")
-    check(first_failed(results).endswith("servo_ic0 ADC words read"), str(results["steps"]))
-
-
-def capture_compare():
-    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
-        bench_passes("capture-compare", engine, seed)
-
-
-def capture_compare_lockstep():
-    bench_passes("capture-compare", "lockstep", "3")
-
-
-def capture_compare_negative():
-    results = bench_fails_its_negative_control("capture-compare", "systemc")
-    check([s["name"] for s in results["steps"] if not s["passed"]][0].startswith("compare 1"), str(results["steps"]))
-
-
-def flags():
-    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
-        bench_passes("flags", engine, seed)
-
-
-def flags_lockstep():
-    bench_passes("flags", "lockstep", "3")
-
-
-def flags_negative():
-    bench_fails_its_negative_control("flags", "systemc")
-
-
 def installed():
     """`cmake --install` gives a command that finds its firmware and boards, wherever it stands."""
-    global BRICK
-    build = pathlib.Path(BRICK).resolve().parent.parent
+    build = pathlib.Path(command.BRICK).resolve().parent.parent
     with tempfile.TemporaryDirectory() as folder:
         r = subprocess.run(["cmake", "--install", str(build), "--prefix", folder], capture_output=True, text=True)
         check(r.returncode == 0, r.stdout + r.stderr)
-        BRICK = f"{folder}/bin/brick"
+        command.BRICK = f"{folder}/bin/brick"
         golden()
         boards()
 
@@ -467,4 +263,4 @@ def wave():
         check(changes(name) >= least, f"{name} changes {changes(name)} times, expected {least} or more")
 
 
-globals()[CASE]()
+globals()[command.CASE]()

@@ -1,0 +1,20 @@
+"""The built command, called from outside: what acceptance.py and bench_acceptance.py share."""
+import pathlib
+import subprocess
+import sys
+
+BRICK, CASE = sys.argv[1], sys.argv[2]
+BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
+
+
+def brick(*arguments, script=None, timeout=240):
+    return subprocess.run([BRICK, *arguments], input=script, capture_output=True, text=True, timeout=timeout)
+
+
+def check(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def play(lines, *options):
+    return brick("exec", *options, "-", script="\n".join(lines) + "\n")
