@@ -31,21 +31,12 @@ module channel_decode #(
   logic look;
   assign look = ce_i & ready_i & (abc_i != last_q | mode_i[3]);
 
-  // Place in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}.
-  function automatic logic [2:0] hall_place(input logic [2:0] cba);
-    case (cba)
-      3'b100:  hall_place = 3'd0;
-      3'b110:  hall_place = 3'd1;
-      3'b010:  hall_place = 3'd2;
-      3'b011:  hall_place = 3'd3;
-      3'b001:  hall_place = 3'd4;
-      3'b101:  hall_place = 3'd5;
-      default: hall_place = 3'd7;
-    endcase
-  endfunction
+  // Place in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}, for {C, B, A} from 7 down to 0; 7 is no place. A table and
+  // not a function, which Verilator would make once for each servo IC.
+  localparam logic [23:0] HallPlace = {3'd7, 3'd1, 3'd5, 3'd0, 3'd3, 3'd2, 3'd4, 3'd7};
 
   logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
-  logic [2:0] hall, last_hall;  // position in the hall cycle; 7 is no position
+  logic [2:0] hall, last_hall;
   logic       a_rises, hall_up, hall_down, hall_jump, count, down;
   always_comb begin
     step      = 2'd0;
@@ -84,8 +75,8 @@ module channel_decode #(
           down  = pulse_down_i;
         end
         4'd11, 4'd15: begin
-          hall      = hall_place(abc_i);
-          last_hall = hall_place(last_q);
+          hall      = HallPlace[5'd3 * {2'b00, abc_i} +: 3];
+          last_hall = HallPlace[5'd3 * {2'b00, last_q} +: 3];
           hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
           hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
           hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;

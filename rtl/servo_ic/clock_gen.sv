@@ -27,7 +27,10 @@ module clock_gen (
   output logic             servo_fall_o
 );
 
-  localparam logic [16:0] MaxCountReset = 17'd6527;
+  localparam logic [14:0] MaxCountReset =
+      brick_regs_pkg::ServoIcPwmControlReset[brick_regs_pkg::ServoIcPwmControlMaxCountLsb +: 15];
+  localparam logic [3:0] ServoDivReset =
+      brick_regs_pkg::ServoIcClockControlReset[brick_regs_pkg::ServoIcClockControlServoDividerLsb +: 4];
   localparam logic signed [17:0] Window = 18'sd8;  // clk in which a turnaround follows the external edge at once
   localparam logic [1:0] MissLimit = 2'd3;         // the fourth edge in a row outside the window forces it
 
@@ -148,12 +151,12 @@ module clock_gen (
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
       ramp_q      <= 17'd0;
-      top_q       <= MaxCountReset + 17'd1;
+      top_q       <= {2'b00, MaxCountReset} + 17'd1;
       up_q        <= 1'b1;
       phase_cnt_q <= 4'd0;
       fall_cnt_q  <= 4'd0;
       odd_q       <= 1'b0;
-      servo_cnt_q <= 4'd3;
+      servo_cnt_q <= ServoDivReset;
       miss_q      <= 2'd0;
       phase_q     <= 1'b1;
       servo_q     <= 1'b1;

@@ -52,20 +52,20 @@ module servo_channel (
 );
 
   logic [23:0] control, out_a, out_b, out_c;
-  logic        hold, fine, demux, gated, ab_dac, c_pfm;
-  assign hold   = control[10];
-  assign gated  = control[15];
-  assign demux  = control[17];
-  assign fine   = control[18];
-  assign ab_dac = control[22];
-  assign c_pfm  = control[23];
+  // Control word, docs/servo_channel.md: fields from bit 23 down.
+  logic       c_pfm, ab_dac, c_inv, ab_inv, dir_inv, fine, demux, gate_low, gated, aena, other, equ_state, equ_write, hold;
+  logic       flag_inv, index_inv;
+  logic [1:0] flag_select, capture_source;
+  logic [3:0] mode;
+  assign {c_pfm, ab_dac, c_inv, ab_inv, dir_inv, fine, demux, gate_low, gated, aena, other, equ_state, equ_write, hold,
+          flag_select, flag_inv, index_inv, capture_source, mode} = control;
 
   // Inputs
   logic [11:0] pin_level, level;
   logic        ready, index, incomplete, loss;
   channel_input u_input (.clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
   channel_index u_index (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .level_i(pin_level), .gated_i(gated), .gate_low_i(control[16]),
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .level_i(pin_level), .gated_i(gated), .gate_low_i(gate_low),
     .demux_i(demux), .level_o(level), .index_o(index), .incomplete_o(incomplete), .loss_o(loss)
   );
 
@@ -75,7 +75,7 @@ module servo_channel (
   logic [22:0] t1, servo_t2;
   logic [11:0] fraction, fraction_d, servo_fraction_q;
   channel_decode u_decode (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .mode_i(control[3:0]), .hold_i(hold), .abc_i(pin_level[2:0]),
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .mode_i(mode), .hold_i(hold), .abc_i(pin_level[2:0]),
     .pulse_i(pfm_event), .pulse_down_i(pfm_down), .count_o(count), .down_o(down), .error_o(error), .mark_o(mark), .echo_o(echo)
   );
   channel_counter u_counter (
@@ -104,7 +104,7 @@ module servo_channel (
   logic [11:0] capture_fraction;
   channel_capture u_capture (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .index_i(index), .flags_i(level[7:4]), .hall_i(level[10:8]),
-    .source_i(control[5:4]), .index_inv_i(control[6]), .flag_inv_i(control[7]), .flag_select_i(control[9:8]), .gated_i(gated),
+    .source_i(capture_source), .index_inv_i(index_inv), .flag_inv_i(flag_inv), .flag_select_i(flag_select), .gated_i(gated),
     .counter_d_i(counter_d), .fraction_d_i(fraction_d), .read_i(read_capture_i), .position_o(capture_pos),
     .fraction_o(capture_fraction), .captured_o(captured), .captured_gi_o(captured_gi), .hall_o(hall)
   );
@@ -113,8 +113,7 @@ module servo_channel (
   logic [23:0] compare_a, compare_b, compare_inc;
   logic [11:0] a_fraction, b_fraction;
   logic [5:0]  compare_we;
-  logic        equ, other;
-  assign other = control[13];
+  logic        equ;
   channel_compare u_compare (
     .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .fine_i(fine), .other_i(other), .count_i(other ? count1_i : count),
     .down_i(other ? down1_i : down), .hold_i(other ? hold1_i : hold), .counter_i(other ? counter1_i : counter),
@@ -134,8 +133,8 @@ module servo_channel (
     pwm_on  = 6'd0;
     pwm_inv = 6'd0;
     if (!trip_i) pwm_on = {{2{~c_pfm}}, {4{~ab_dac}}};
-    if (!c_pfm)  pwm_inv[5:4] = {2{control[21]}};
-    if (!ab_dac) pwm_inv[3:0] = {4{control[20]}};
+    if (!c_pfm)  pwm_inv[5:4] = {2{c_inv}};
+    if (!ab_dac) pwm_inv[3:0] = {4{ab_inv}};
   end
   assign pwm_o = (pwm & pwm_on) ^ pwm_inv;
 
@@ -144,8 +143,8 @@ module servo_channel (
     .clk_ref_i, .rst_ni, .run_i(c_pfm & ~trip_i), .pfm_ce_i, .sclk_ce_i, .command_i(out_c), .width_i(deadtime_i), .pulse_o(pulse),
     .down_o(pfm_down), .event_o(pfm_event)
   );
-  assign pulse_o = c_pfm & (pulse ^ control[21]);
-  assign dir_o   = c_pfm & (pfm_down ^ control[19]);
+  assign pulse_o = c_pfm & (pulse ^ c_inv);
+  assign dir_o   = c_pfm & (pfm_down ^ dir_inv);
 
   logic dac_a, dac_b;
   channel_dac u_dac_a (
@@ -154,9 +153,9 @@ module servo_channel (
   channel_dac u_dac_b (
     .clk_ref_i, .rst_ni, .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_b[23:6] & {18{~trip_i}}), .data_o(dac_b)
   );
-  assign dac_a_o = ab_dac & (dac_a ^ control[20]);
-  assign dac_b_o = ab_dac & (dac_b ^ control[20]);
-  assign aena_o  = control[14] & ~trip_i;
+  assign dac_a_o = ab_dac & (dac_a ^ ab_inv);
+  assign dac_b_o = ab_dac & (dac_b ^ ab_inv);
+  assign aena_o  = aena & ~trip_i;
 
   // ADC
   logic [17:0] adc_a, adc_b;
@@ -178,7 +177,7 @@ module servo_channel (
   );
 
   logic unused;
-  assign unused = &{1'b0, control[12:11], out_a[5:0], out_b[5:0]};
+  assign unused = &{1'b0, equ_state, equ_write, out_a[5:0], out_b[5:0]};
 
 endmodule : servo_channel
 

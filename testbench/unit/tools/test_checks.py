@@ -230,5 +230,27 @@ class Figures(Tree):
         self.expect(self.run_tool("draw_vectors.py", "--check"), 1, "c.*: no vector with a [wave] has this name")
 
 
+class SharedFunctions(Tree):
+    """Generated code as Verilator writes it; only what the .cmake file lists is built."""
+
+    def generated(self, *ics, listed=True):
+        name = "Vboard_x_servo_ic__DepSet_h1__0.cpp"
+        self.write("Vboard_x.dir/Vboard_x.cmake", f'set(Vboard_x_CLASSES_FAST "/build/{name}")\n' if listed else "")
+        self.write(f"Vboard_x.dir/{name}",
+                   "".join(f"VL_INLINE_OPT void Vboard_x_servo_ic___nba_sequent__TOP__gen_servo_ic__BRA__{ic}__KET____0(Vboard_x_servo_ic* vlSelf) {{\n}}\n"
+                           for ic in ics))
+        return subprocess.run([sys.executable, TOOLS / "check_shared.py", self.root / "Vboard_x.dir"], text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT)
+
+    def test_one_set_passes(self):
+        self.expect(self.generated(0), 0, "clean")
+
+    def test_a_second_set_fails(self):
+        self.expect(self.generated(0, 7), 1, "servo IC 7 has 1 functions of its own")
+
+    def test_nothing_to_check_fails(self):
+        self.expect(self.generated(0, listed=False), 1, "no functions of servo_ic found")
+
+
 if __name__ == "__main__":
     unittest.main()
