@@ -27,7 +27,8 @@ class MotorPeer {
   // Tick at which step() is to be called next, after now(); kNever: only after a stop.
   virtual Tick next_event() const = 0;
 
-  // Each change of the outputs of its ICs, in order; first, when it is attached, the outputs as they stand, as `before` and `after`.
+  // Each change of the outputs of its ICs, in order; first, when it is attached, the outputs as they stand, as `before` and `after`,
+  // which are equal then and only then.
   virtual void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
     (void)tick, (void)ic, (void)before, (void)after;
   }

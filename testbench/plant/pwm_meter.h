@@ -13,10 +13,12 @@ class PwmMeter {
  public:
   static constexpr unsigned kPhases = 3;
 
-  // The pins from which it starts; without it all low at tick 0.
+  // The pins from which it starts, also once more; without it all low at tick 0.
   void begin(Tick tick, unsigned pins) {
+    at_ = from_ = tick;
+    sum_ = {};
+    both_on_ = false;
     changed(tick, pins);
-    from_ = tick;
   }
   // Every change of the pins, bits A top, A bottom, B top, ... from bit 0.
   void changed(Tick tick, unsigned pins) {

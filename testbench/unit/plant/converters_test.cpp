@@ -152,6 +152,10 @@ TEST(PwmMeter, StartsFromPinsThatStand) {
   PwmMeter still;
   still.begin(1000, 0b000001);
   EXPECT_DOUBLE_EQ(still.take(1500)[0], 1);
+  still.changed(1500, 0b000011);  // shorted, and then nobody looks for 8000 ticks
+  still.begin(10'000, 0b000010);
+  EXPECT_DOUBLE_EQ(still.take(10'100)[0], -1) << "what was before the second start";
+  EXPECT_FALSE(still.take_short());
 }
 
 TEST(Stepper, TakesNoStepForAPulseThatStandsAtTheStart) {
