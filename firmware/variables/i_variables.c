@@ -47,28 +47,45 @@ i_format_t i_variable_format(uint32_t number) { return i_table_entry(i_table_pla
 
 /* Hardware ----------------------------------------------------------------------------------------------------------- */
 
+#define FIELD(mask) __builtin_ctz(mask), __builtin_popcount(mask) /* lsb and width of a field, or of several that are one variable */
+#define CHANNEL_FIELD(name) SERVO_CHANNEL_CONTROL_##name##_MASK
+#define CLOCK_FIELD(name) SERVO_IC_CLOCK_CONTROL_##name##_MASK /* the same in MACRO ICs */
+
 /* Control-word fields of I7mn0..I7mn9, servo-ic data sheet 2.5. */
 static const struct {
   uint8_t lsb, width;
-} channel_fields[10] = {{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 2}, {22, 2}, {20, 2}, {19, 1}, {18, 1}};
+} channel_fields[10] = {
+    {FIELD(CHANNEL_FIELD(DECODE) | CHANNEL_FIELD(DIRECTION))},
+    {FIELD(CHANNEL_FIELD(COMPARE_CHANNEL))},
+    {FIELD(CHANNEL_FIELD(CAPTURE_SOURCE) | CHANNEL_FIELD(INDEX_INVERT) | CHANNEL_FIELD(FLAG_INVERT))},
+    {FIELD(CHANNEL_FIELD(FLAG_SELECT))},
+    {FIELD(CHANNEL_FIELD(GATED_INDEX))},
+    {FIELD(CHANNEL_FIELD(GATE_STATE) | CHANNEL_FIELD(INDEX_DEMUX))},
+    {FIELD(CHANNEL_FIELD(AB_DAC) | CHANNEL_FIELD(C_PFM))},
+    {FIELD(CHANNEL_FIELD(AB_INVERT) | CHANNEL_FIELD(C_INVERT))},
+    {FIELD(CHANNEL_FIELD(PFM_DIR_INVERT))},
+    {FIELD(CHANNEL_FIELD(HARDWARE_1T))},
+};
 
 static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t value) {
   const unsigned ic = place.instance;
   switch (entry->field) {
     case I_FIELD_IC_MAX_PHASE:
-      gate_ic_set_field(ic, GATE_WORD_PWM, 8, 16, value);
+      gate_ic_set_field(ic, GATE_WORD_PWM, FIELD(SERVO_IC_PWM_CONTROL_MAX_COUNT_MASK), value);
       break;
     case I_FIELD_IC_PHASE_DIVIDER:
-      gate_ic_set_field(ic, GATE_WORD_CLOCK, 16, 4, value);
+      gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_DIVIDER)), value);
       break;
     case I_FIELD_IC_SERVO_DIVIDER:
-      gate_ic_set_field(ic, GATE_WORD_CLOCK, 20, 4, value);
+      gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(SERVO_DIVIDER)), value);
       break;
     case I_FIELD_IC_HARDWARE_CLOCKS:
-      gate_ic_set_field(ic, GATE_WORD_CLOCK, 0, 12, value);
+      gate_ic_set_field(ic, GATE_WORD_CLOCK,
+                        FIELD(CLOCK_FIELD(SCLK_DIVIDER) | CLOCK_FIELD(PFM_DIVIDER) | CLOCK_FIELD(DAC_DIVIDER) | CLOCK_FIELD(ADC_DIVIDER)),
+                        value);
       break;
     case I_FIELD_IC_DEAD_TIME:
-      gate_ic_set_field(ic, GATE_WORD_PWM, 0, 8, value);
+      gate_ic_set_field(ic, GATE_WORD_PWM, FIELD(SERVO_IC_PWM_CONTROL_DEADTIME_MASK), value);
       break;
     case I_FIELD_IC_DAC_STROBE:
       gate_ic_set_word(ic, GATE_WORD_DAC_STROBE, value);
@@ -102,7 +119,7 @@ void i_variable_apply_clock_directions(void) {
     for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
       const uint32_t direction = (uint32_t)integer_of[gate_ic_direction_variable(ic)];
       if (((pending >> ic) & 1u) != 0u && (direction != gate_ic_direction_inputs(ic)) == (output != 0u))
-        gate_ic_set_field(ic, GATE_WORD_CLOCK, 12, 2, direction);
+        gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_EXTERNAL) | CLOCK_FIELD(SERVO_EXTERNAL)), direction);
     }
   }
   kernel_clock_changed();

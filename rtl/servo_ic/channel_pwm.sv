@@ -14,8 +14,10 @@ module channel_pwm (
   output logic [5:0]       switch_o     // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
 );
 
-  localparam int DeadtimeUnit = 4;  // power of two, of clk
-  localparam logic [11:0] WaitReset = 12'd15 << DeadtimeUnit;  // that of I7m04 after reset
+  localparam int DeadtimeShift = 4;  // the unit is 2^4 clk
+  localparam logic [7:0] DeadtimeReset =
+      brick_regs_pkg::ServoIcPwmControlReset[brick_regs_pkg::ServoIcPwmControlDeadtimeLsb +: 8];
+  localparam logic [11:0] WaitReset = {4'd0, DeadtimeReset} << DeadtimeShift;
 
   // Counter and commands are compared with their sign bit turned over, as numbers without a sign.
   logic [16:0] cnt, command_a_q, command_b_q, command_c_q;
@@ -43,7 +45,7 @@ module channel_pwm (
         raw_q <= raw;
         for (int unsigned k = 0; k < 3; k++) begin
           if (raw[k] != raw_q[k]) begin
-            wait_q[12*k+:12]  <= {4'd0, deadtime_i} << DeadtimeUnit;
+            wait_q[12*k+:12]  <= {4'd0, deadtime_i} << DeadtimeShift;
             switch_q[2*k+:2]  <= {~raw[k], raw[k]} & {2{deadtime_i == 8'd0}};
           end else if (wait_q[12*k+:12] != 12'd0) begin
             wait_q[12*k+:12] <= wait_q[12*k+:12] - 12'd1;

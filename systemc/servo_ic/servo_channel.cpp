@@ -14,7 +14,7 @@ void ServoChannel::reset(Tick t) {
 }
 
 std::uint32_t ServoChannel::status(bool trip) const {
-  const unsigned level = index_.level(input_.level(), bit(17));
+  const unsigned level = index_.level(input_.level(), is(channel_control::kIndexDemux));
   return level << 12 | capture_.captured() << 11 | capture_.captured_gi() << 10 | equ(trip) << 9 | error_ << 8 | loss_ << 7 |
          index_.incomplete() << 3 | capture_.hall();
 }
@@ -43,7 +43,7 @@ std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) c
     case 11:
       return capture_.position();
     case 13:
-      return control_ | (now < equ_write_until_ ? 0x800u : 0u);
+      return control_ | (now < equ_write_until_ ? channel_control::kEquWrite.mask() : 0u);
     case 14:
       return compare_.inc();
     case 15:
@@ -76,10 +76,10 @@ void ServoChannel::write(Tick now, bool x, unsigned offset, std::uint32_t value,
       break;
     case 13:
       subcount_.advance(now, fine());
-      control_ = value & ~0x800u;
-      if ((value >> 11 & 1) != 0) {
+      control_ = value & ~channel_control::kEquWrite.mask();
+      if (channel_control::kEquWrite.get(value) != 0) {
         equ_write_until_ = next_ref_edge(now);
-        compare_.set_equ((value >> 12 & 1) != 0);
+        compare_.set_equ(channel_control::kEquState.get(value) != 0);
       }
       break;
     case 14:
@@ -140,7 +140,7 @@ unsigned ServoChannel::pwm(bool trip) const {
   for (unsigned i = 0; i < 3; ++i) {
     if (!shows_pwm(i)) continue;
     const unsigned pair = trip ? 0 : pwm_[i].top() | pwm_[i].bot() << 1;
-    pins |= (bit(i == 2 ? 21 : 20) ? pair ^ 3 : pair) << (2 * i);
+    pins |= (is(i == 2 ? channel_control::kCInvert : channel_control::kAbInvert) ? pair ^ 3 : pair) << (2 * i);
   }
   return pins;
 }
@@ -148,14 +148,15 @@ unsigned ServoChannel::pwm(bool trip) const {
 ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   const bool ready = input_.ready();
   const unsigned pins = input_.level();
-  const unsigned level = index_.level(pins, bit(17));
-  const bool index = ChannelIndex::index(level, bit(15), bit(16));
+  const unsigned level = index_.level(pins, is(channel_control::kIndexDemux));
+  const bool index = ChannelIndex::index(level, is(channel_control::kGatedIndex), is(channel_control::kGateState));
   subcount_.advance(edge - kTicksPerRef, fine());
 
   const ChannelDecode::Result d = decode_.step(ready, control_ & 0xF, hold(), pins & 7, pfm_.event(), pfm_.down());
   pfm_.take_event();
   const ChannelPosition own{counter_.counter(), fine() ? fraction() : 0, hold(), d.count, d.down};
-  compare_.sclk(bit(13) && channel1 != nullptr ? *channel1 : own, fine(), bit(13));
+  compare_.sclk(is(channel_control::kCompareChannel) && channel1 != nullptr ? *channel1 : own, fine(),
+                is(channel_control::kCompareChannel));
 
   const unsigned old_fraction = fraction();
   const bool reversed = d.down != counter_.down();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
 #include "systemc/servo_ic/channel_capture.h"
 #include "systemc/servo_ic/channel_compare.h"
@@ -19,6 +20,8 @@
 #include "systemc/servo_ic/channel_subcount.h"
 
 namespace brick {
+
+namespace channel_control = regs::servo_channel::control;
 
 class ServoChannel {
  public:
@@ -53,21 +56,21 @@ class ServoChannel {
   bool settled() const { return settle_ >= kSettled; }
   // The next edge of clk_ref does nothing by itself: no bit of the control word falls back, the held counter is 0.
   bool quiet(Tick now) const { return now >= equ_write_until_ && !(hold() && (counter_.counter() != 0 || error_)); }
-  bool uses_channel1() const { return bit(13); }
+  bool uses_channel1() const { return is(channel_control::kCompareChannel); }
   void skip_sclk(std::int64_t periods) { counter_.skip(periods); }
   ChannelPosition position() const { return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false}; }  // settled
   ChannelPosition sclk(Tick edge, const ChannelPosition* channel1);  // returns its own position before the edge
 
-  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const { return {bit(23) && !trip, out_[2], width}; }
+  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const { return {is(channel_control::kCPfm) && !trip, out_[2], width}; }
   const ChannelPfm& pfm() const { return pfm_; }
-  bool hold() const { return bit(10); }
-  bool shows_pwm(unsigned output) const { return !bit(output == 2 ? 23 : 22); }
+  bool hold() const { return is(channel_control::kCounterReset); }
+  bool shows_pwm(unsigned output) const { return !is(output == 2 ? channel_control::kCPfm : channel_control::kAbDac); }
   Tick next_pwm_event(Tick now, TriangleLine line) const;
   std::uint32_t counter() const { return counter_.counter(); }
 
   // Whether EQU can change without a write, and for how many SCLK edges it does not at least.
   bool compares(bool trip) const { return !hold() && (!settled() || counts_pulses(trip)); }
-  bool counts_pulses(bool trip) const { return (control_ & 0xF) == 8 && bit(23) && !trip; }
+  bool counts_pulses(bool trip) const { return (control_ & 0xF) == 8 && is(channel_control::kCPfm) && !trip; }
   std::uint32_t edges_to_equ() const { return compare_.edges_to_hit(counter_.counter(), fine()); }
 
   // The PWM, as it was at mark(), `by` ticks later.
@@ -82,11 +85,11 @@ class ServoChannel {
 
   // Pins
   unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
-  bool pulse() const { return bit(23) && pfm_.pulse() != bit(21); }
-  bool dir() const { return bit(23) && pfm_.down() != bit(19); }
-  bool dac_a(unsigned left) const { return bit(22) && dac_[0].data(left) != bit(20); }
-  bool dac_b(unsigned left) const { return bit(22) && dac_[1].data(left) != bit(20); }
-  bool aena(bool trip) const { return bit(14) && !trip; }
+  bool pulse() const { return is(channel_control::kCPfm) && pfm_.pulse() != is(channel_control::kCInvert); }
+  bool dir() const { return is(channel_control::kCPfm) && pfm_.down() != is(channel_control::kPfmDirInvert); }
+  bool dac_a(unsigned left) const { return is(channel_control::kAbDac) && dac_[0].data(left) != is(channel_control::kAbInvert); }
+  bool dac_b(unsigned left) const { return is(channel_control::kAbDac) && dac_[1].data(left) != is(channel_control::kAbInvert); }
+  bool aena(bool trip) const { return is(channel_control::kAena) && !trip; }
   bool equ(bool trip) const { return compare_.equ() && !trip; }
 
  private:
@@ -94,13 +97,13 @@ class ServoChannel {
   // and the latest user of those.
   static constexpr unsigned kSettled = 12;
 
-  bool bit(unsigned n) const { return (control_ >> n & 1) != 0; }
-  bool fine() const { return bit(18); }
+  bool is(const regs::Field& field) const { return field.get(control_) != 0; }
+  bool fine() const { return is(channel_control::kHardware1t); }
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;
 
   std::uint32_t control_ = 0;
-  Tick equ_write_until_ = 0;  // edge at which control bit 11 falls back
+  Tick equ_write_until_ = 0;  // edge at which EQU write falls back
   std::array<std::uint32_t, 3> out_{};
   bool error_ = false, loss_ = false;
   unsigned settle_ = 0;

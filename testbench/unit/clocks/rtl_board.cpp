@@ -16,7 +16,7 @@ RtlBoard::RtlBoard(bool seeded_bug) : impl_(std::make_unique<Impl>()) {
   // Nothing connected on the motor side.
   std::uint64_t idle = 0;
   for (unsigned n = 0; n < kChannels; ++n) idle |= std::uint64_t{kIdleChannelPins} << 12 * n;
-  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) { impl_->top.motor_i[ic] = idle; }
+  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) impl_->top.motor_i[ic] = idle;
   impl_->top.rst_ni = 1;
   impl_->top.eval();
   inputs_.fitted = kTestIcs;
