@@ -8,7 +8,7 @@ endfunction()
 brick_add_check(lint.verilator tools/lint_rtl.py verilator)  # -Wall over every module as a top, waivers in rtl/lint.vlt
 brick_add_check(lint.yosys tools/lint_rtl.py yosys)          # reads, elaborates and checks board_top
 brick_add_check(lint.icarus tools/lint_rtl.py icarus)        # parses and elaborates board_top
-if(NOT BRICK_COVERAGE)  # its counters are those of an instance
+if(NOT BRICK_COVERAGE)  # coverage counters belong to an instance: nothing is shared then
   brick_add_check(lint.shared tools/check_shared.py ${CMAKE_BINARY_DIR}/systemc/cosim/CMakeFiles/brick_rtl.dir/Vboard_all.dir)
 endif()
 brick_add_check(format.clang tools/check_format.py)

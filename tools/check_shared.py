@@ -17,6 +17,8 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     folder = parser.parse_args().folder
     prefix = folder.name[: -len(".dir")]
+    if not (folder / f"{prefix}.cmake").is_file():
+        finish("shared functions", [f"{folder}/{prefix}.cmake: no such file; expected a folder that the build has generated"])
     listed = (folder / f"{prefix}.cmake").read_text()  # older files may lie beside the ones that are built
     instances = {}
     for file in sorted(folder.glob(f"{prefix}_servo_ic__DepSet_*.cpp")):

@@ -239,6 +239,9 @@ class SharedFunctions(Tree):
         self.write(f"Vboard_x.dir/{name}",
                    "".join(f"VL_INLINE_OPT void Vboard_x_servo_ic___nba_sequent__TOP__gen_servo_ic__BRA__{ic}__KET____0(Vboard_x_servo_ic* vlSelf) {{\n}}\n"
                            for ic in ics))
+        return self.check()
+
+    def check(self):
         return subprocess.run([sys.executable, TOOLS / "check_shared.py", self.root / "Vboard_x.dir"], text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT)
 
@@ -250,6 +253,8 @@ class SharedFunctions(Tree):
 
     def test_nothing_to_check_fails(self):
         self.expect(self.generated(0, listed=False), 1, "no functions of servo_ic found")
+        (self.root / "Vboard_x.dir/Vboard_x.cmake").unlink()
+        self.expect(self.check(), 1, "no such file; expected a folder that the build has generated")
 
 
 if __name__ == "__main__":
