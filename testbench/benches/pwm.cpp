@@ -273,7 +273,8 @@ void Pwm::round(unsigned number) {
     command(values);
     host_.wait(host_.pick(static_cast<unsigned>(period(0))));
   }
-  judge(fmt::format("round {}: I7000={} I7100={} I7004={}", number, limit_[0], limit_[1], dead_));
+  const std::string second = host_.places() < 2 ? "" : fmt::format(" I{}={}", host_.i_global(1, 0), limit_[1]);
+  judge(fmt::format("round {}: I7000={}{} I7004={}", number, limit_[0], second, dead_));
 }
 
 // The source's I7000 changes while its PWM runs: from the next bottom turn on.

@@ -1,5 +1,6 @@
 // What the data sheet leaves open stands behind one parameter of a block and one constant of the model each: EquOnLeave, ALeadsUp,
-// Latency. Here each value is built, does what it says, and RTL and model agree at every edge.
+// Latency. Here they are built with other values too (Latency 0, 4, 6): each does what it says, RTL and model agree, compare and
+// decode at every edge, the ADC in every word.
 #include <gtest/gtest.h>
 
 #include <random>
