@@ -22,21 +22,28 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   return text == nullptr ? otherwise : std::strtoull(text, nullptr, 0);
 }
 
+constexpr std::uint32_t kServoIcMask = (1u << kMaxServoIcs) - 1;
+
 struct Size {
   const char* name;
   std::uint32_t fitted;
   Tick ticks;
+  bool macro_drives = false;
 };
 
 class MotorPins : public ::testing::TestWithParam<Size> {};
 
 TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
   BRICK_COVERS("CARD-6");
-  const auto [name, fitted, ticks] = GetParam();
+  const auto [name, fitted, ticks, macro_drives] = GetParam();
   auto board = make_lockstep_board(make_rtl_board(fitted), make_model_board(fitted));
-  MotorTraffic traffic(from_environment("BRICK_MOTOR_SEED", 1), {fitted});
   const Tick end = from_environment("BRICK_MOTOR_TICKS", ticks);
+  MotorTrafficOptions options{fitted};
+  options.macro_drives = macro_drives;
+  MotorTraffic traffic(from_environment("BRICK_MOTOR_SEED", 1), options);
   std::array<MotorOutputs, kMaxServoIcs> moved;
+  std::uint32_t sources = 0;  // ICs whose PHASE the board took
+  board->on_change = [&](Tick, const BoardOutputs&, const BoardOutputs& after) { sources |= 1u << after.get(pin::kPhaseSource); };
   board->watch_motors(~0u);
   board->on_motor_change = [&](Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
     for (unsigned i = 0; i < kMotorOutputWords; ++i) moved[ic].w[i] |= before.w[i] ^ after.w[i];
@@ -52,10 +59,12 @@ TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
       for (const MotorField& f : motor_pin::kAll) all.set(f, 0, all.get(f, 0) | moved[ic].get(f, n));
   }
   for (const MotorField& f : motor_pin::kAll) { EXPECT_NE(all.get(f, 0), 0u) << f.name << " never moved"; }
+  EXPECT_NE(sources & fitted & (macro_drives ? ~kServoIcMask : kServoIcMask), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, MotorPins,
-                         ::testing::Values(Size{"OneIc", 0x1, 400'000}, Size{"TwoIcs", 0x3, 400'000}, Size{"AllIcs", 0x3FFFFF, 120'000}),
+                         ::testing::Values(Size{"OneIc", 0x1, 400'000}, Size{"TwoIcs", 0x3, 400'000}, Size{"AllIcs", 0x3FFFFF, 120'000},
+                                           Size{"AllIcsByMacro", 0x3FFFFF, 120'000, true}),
                          [](const auto& size) { return std::string(size.param.name); });
 
 TEST(MotorPinsOfAnEngine, DoNotDependOnHowARunIsCut) {

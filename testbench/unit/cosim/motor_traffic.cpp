@@ -2,6 +2,9 @@
 #include "testbench/unit/cosim/motor_traffic.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "rtl/regs/brick_regs.hpp"
 
 namespace brick {
 
@@ -11,11 +14,6 @@ constexpr unsigned kOutA = 2, kCapture = 3, kGlobal = 4, kControl = 5, kIncremen
 constexpr unsigned kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
 constexpr std::uint32_t kOwnClocks = 0x3008D2;  // as after a reset, PHASE and SERVO driven
 
-// docs/servo_ic.md, Where the ICs are.
-std::uint32_t address_of(unsigned ic) {
-  if (ic >= 10) return address_of(ic - 8) + 0x20;
-  return ic < 2 ? 0x078000 + 0x100 * ic : 0x078200 + 0x1000 * ((ic - 2) / 2) + 0x100 * (ic % 2);
-}
 }  // namespace
 
 MotorTraffic::MotorTraffic(std::uint64_t seed, MotorTrafficOptions options) : random_(seed), options_(options) {
@@ -23,11 +21,14 @@ MotorTraffic::MotorTraffic(std::uint64_t seed, MotorTrafficOptions options) : ra
     if ((options.ics >> i & 1) == 0) continue;
     ics_.push_back({});
     ics_.back().index = i;
-    ics_.back().address = address_of(i);
+    ics_.back().address = regs::kGateIcs[i].base;
     ics_.back().at = 40 + below(300);
     for (Channel& c : ics_.back().channels) c.speed = 20 + up_to(4 * options_.pins_pause);
   }
+  for (unsigned i = kMaxServoIcs; i < regs::kGateIcs.size(); ++i)
+    if ((options.ics >> i & 1) != 0) macro_ics_.push_back(regs::kGateIcs[i].base);
   inputs_.fitted = options.ics;
+  if (!macro_ics_.empty()) inputs_.macro_gate = below(16);
   for (unsigned line = 0; line < 3; ++line) inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (1 + below(8)));
   reset_at_ = 12 + below(30);  // released there
   bus_at_ = reset_at_ + 10;
@@ -113,16 +114,19 @@ bool MotorTraffic::start_access() {
   else if (!options_.moving_clocks)
     write(ic, true, kGlobal, &ic == &ics_.front() ? kOwnClocks : kOwnClocks | 3u << 12);
   else if (step % 2 == 0)
-    write(ic, true, kGlobal, clock_word(ic));
+    write(ic, true, kGlobal, clock_word(&ic == &ics_.front() && !options_.macro_drives));
+  else if (step == 1 && options_.macro_drives)
+    write_at(macro_ics_[below(static_cast<std::uint32_t>(macro_ics_.size()))] + regs::macro_ic::kClockControl.address, true,
+             clock_word(true));
   else
     write(ic, true, kPwm, (40 + below(700)) << 8 | below(4));
   return true;
 }
 
 // Short periods; one IC mostly drives PHASE and SERVO, the others mostly follow.
-std::uint32_t MotorTraffic::clock_word(const Ic& ic) {
+std::uint32_t MotorTraffic::clock_word(bool drives) {
   const std::uint32_t dividers = one_in(3) ? below(4096) : below(4) | below(4) << 3 | below(3) << 6 | below(3) << 9;
-  const std::uint32_t external = one_in(20) ? below(4) : (&ic == &ics_.front() ? 0 : 3);
+  const std::uint32_t external = one_in(20) ? below(4) : (drives ? 0 : 3);
   return dividers | external << 12 | below(3) << 16 | below(4) << 20;
 }
 
@@ -151,12 +155,13 @@ std::uint32_t MotorTraffic::output_word() {
 }
 
 void MotorTraffic::choose_access() {
+  if (!macro_ics_.empty() && one_in(8)) return choose_macro_access();
   Ic& ic = ics_[below(static_cast<std::uint32_t>(ics_.size()))];
   const unsigned n = below(kChannels), at = 8 * n;
   switch (below(17)) {
     case 0:
       if (!options_.moving_clocks) return write(ic, true, kDacStrobe, below(1u << 24));
-      if (one_in(4)) return write(ic, true, kGlobal, clock_word(ic));
+      if (one_in(4)) return write(ic, true, kGlobal, clock_word(&ic == &ics_.front() && !options_.macro_drives));
       return write(ic, true, kPwm, pwm_word());
     case 1:
       return write(ic, true, one_in(2) ? kDacStrobe : kAdcStrobe, below(1u << 24));
@@ -188,15 +193,26 @@ void MotorTraffic::choose_access() {
   }
 }
 
-void MotorTraffic::write(const Ic& ic, bool x, unsigned offset, std::uint32_t word) {
-  read(ic, x, offset);
+// Any word of a MACRO IC, those that are built more often. Now and then it drives the clocks.
+void MotorTraffic::choose_macro_access() {
+  namespace map = regs::macro_ic;
+  constexpr std::uint32_t kBuilt[] = {0x00, 0x02, map::kClockControl.address, map::kPwmControl.address, 0x0E, 0x0F, 0x15, 0x1D};
+  const std::uint32_t offset = one_in(3) ? below(64) : kBuilt[below(std::size(kBuilt))];
+  const std::uint32_t address = macro_ics_[below(static_cast<std::uint32_t>(macro_ics_.size()))] + offset;
+  const bool x = one_in(2), clock = x && offset == map::kClockControl.address, pwm = x && offset == map::kPwmControl.address;
+  if (one_in(3) || ((clock || pwm) && !options_.moving_clocks)) return read_at(address, x);
+  write_at(address, x, clock ? clock_word(one_in(8)) : pwm ? pwm_word() : below(1u << 24));
+}
+
+void MotorTraffic::write_at(std::uint32_t address, bool x, std::uint32_t word) {
+  read_at(address, x);
   writing_ = true;
   inputs_.pa_wdata = word;
 }
 
-void MotorTraffic::read(const Ic& ic, bool x, unsigned offset) {
+void MotorTraffic::read_at(std::uint32_t address, bool x) {
   writing_ = false;
-  inputs_.pa_addr = ic.address + offset;
+  inputs_.pa_addr = address;
   inputs_.pa_x = x;
   inputs_.pa_aa = 2;
 }

@@ -1,6 +1,6 @@
 // Random but repeatable life on the motor side: encoders that turn, reverse and stop, flags and other lines that toggle, ADC
-// data, and Port A cycles that write and read every register of the channels; resets in between. What happens at which tick
-// follows from the seed alone, however a run is cut into calls.
+// data, and Port A cycles that write and read every register of the channels and of MACRO ICs; resets in between. What happens
+// at which tick follows from the seed alone, however a run is cut into calls.
 #pragma once
 
 #include <array>
@@ -13,11 +13,12 @@
 namespace brick {
 
 struct MotorTrafficOptions {
-  std::uint32_t ics = 1;         // bit i: servo IC i takes part, as in BoardInputs::fitted; the lowest drives the clocks
+  std::uint32_t ics = 1;         // that take part, as in BoardInputs::fitted; the lowest drives the clocks
   Tick bus_pause = 300;          // between two accesses at most; one in ten times 20000
   Tick pins_pause = 750;         // between two changes of the pins of an IC, about at most
   bool moving_clocks = true;     // short periods, changed now and then; else as after a reset, and left alone
   unsigned reset_one_in = 2000;  // accesses between two resets, on average; 0 = none but the first
+  bool macro_drives = false;     // a MACRO IC drives the clocks
 };
 
 class MotorTraffic {
@@ -50,9 +51,12 @@ class MotorTraffic {
   void bus_step();
   bool start_access();  // false when everything has been started
   void choose_access();
-  void write(const Ic& ic, bool x, unsigned offset, std::uint32_t word);
-  void read(const Ic& ic, bool x, unsigned offset);
-  std::uint32_t clock_word(const Ic& ic);
+  void choose_macro_access();
+  void write(const Ic& ic, bool x, unsigned offset, std::uint32_t word) { write_at(ic.address + offset, x, word); }
+  void read(const Ic& ic, bool x, unsigned offset) { read_at(ic.address + offset, x); }
+  void write_at(std::uint32_t address, bool x, std::uint32_t word);
+  void read_at(std::uint32_t address, bool x);
+  std::uint32_t clock_word(bool drives);
   std::uint32_t pwm_word();
   void control(Ic& ic, unsigned channel, bool in_use);
   std::uint32_t output_word();
@@ -60,6 +64,7 @@ class MotorTraffic {
   std::mt19937_64 random_;
   MotorTrafficOptions options_;
   std::vector<Ic> ics_;
+  std::vector<std::uint32_t> macro_ics_;  // addresses
   BoardInputs inputs_;
   Tick bus_at_, reset_at_;
   unsigned bus_step_ = 0, started_ = 0;
