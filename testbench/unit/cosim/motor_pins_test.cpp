@@ -40,15 +40,21 @@ TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
   const Tick end = from_environment("BRICK_MOTOR_TICKS", ticks);
   MotorTrafficOptions options{fitted};
   options.macro_drives = macro_drives;
-  MotorTraffic traffic(from_environment("BRICK_MOTOR_SEED", 1), options);
+  const std::uint64_t seed = from_environment("BRICK_MOTOR_SEED", 1);
+  MotorTraffic traffic(seed, options);
   std::array<MotorOutputs, kMaxServoIcs> moved;
-  std::uint32_t sources = 0;  // ICs whose PHASE the board took
-  board->on_change = [&](Tick, const BoardOutputs&, const BoardOutputs& after) { sources |= 1u << after.get(pin::kPhaseSource); };
+  std::uint32_t sources = 0, trips = 0;  // ICs whose PHASE the board took; of the watchdog
+  board->on_change = [&](Tick, const BoardOutputs& before, const BoardOutputs& after) {
+    sources |= 1u << after.get(pin::kPhaseSource);
+    trips += after.get(pin::kWdTripped) & ~before.get(pin::kWdTripped);
+  };
   board->watch_motors(~0u);
   board->on_motor_change = [&](Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
     for (unsigned i = 0; i < kMotorOutputWords; ++i) moved[ic].w[i] |= before.w[i] ^ after.w[i];
   };
-  ASSERT_NO_THROW(traffic.run(*board, end)) << "seed " << from_environment("BRICK_MOTOR_SEED", 1);
+  ASSERT_NO_THROW(traffic.run(*board, end)) << "seed " << seed;
+  RecordProperty("watchdog_trips", static_cast<int>(trips));
+  if (seed != 1 && end < 10'000'000) return;  // a short run may miss something of what follows
   // Life there was: of every fitted servo IC a switch and a counter moved, and of the whole board every kind of pin.
   MotorOutputs all;
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
@@ -59,6 +65,7 @@ TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
       for (const MotorField& f : motor_pin::kAll) all.set(f, 0, all.get(f, 0) | moved[ic].get(f, n));
   }
   for (const MotorField& f : motor_pin::kAll) { EXPECT_NE(all.get(f, 0), 0u) << f.name << " never moved"; }
+  if (end >= 200'000'000) { EXPECT_NE(trips, 0u); }
   EXPECT_NE(sources & fitted & (macro_drives ? ~kServoIcMask : kServoIcMask), 0u);
 }
 

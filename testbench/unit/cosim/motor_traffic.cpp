@@ -12,7 +12,9 @@ namespace {
 // X and Y words of a channel, and the words of a whole IC (docs/registers.md).
 constexpr unsigned kOutA = 2, kCapture = 3, kGlobal = 4, kControl = 5, kIncrement = 6, kCompare = 7;
 constexpr unsigned kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
+constexpr Tick kTripTime = 3'000'000;           // without a strobe the watchdog trips after 25 ms = 2949120 ticks
 constexpr std::uint32_t kOwnClocks = 0x3008D2;  // as after a reset, PHASE and SERVO driven
+constexpr std::uint32_t kInputs = 0x3000;       // in the clock word: PHASE and SERVO are inputs
 
 }  // namespace
 
@@ -98,7 +100,13 @@ void MotorTraffic::bus_step() {
       if (one_in(2)) inputs_.pa_aa = 0;
       bus_step_ = 0;
       bus_at_ += started_ < 6 * ics_.size() ? 1 : 1 + up_to(one_in(10) ? 20'000 : options_.bus_pause);
-      if (options_.reset_one_in != 0 && one_in(options_.reset_one_in) && reset_at_ == kNever) reset_at_ = bus_at_ + below(20);
+      if (options_.reset_one_in == 0 || reset_at_ != kNever) break;
+      if (one_in(options_.reset_one_in)) {
+        reset_at_ = bus_at_ + below(20);
+      } else if (one_in(10 * options_.reset_one_in)) {
+        bus_at_ += kTripTime;
+        reset_at_ = bus_at_ + below(200'000);
+      }
       break;
   }
 }
@@ -112,12 +120,13 @@ bool MotorTraffic::start_access() {
   if (step >= 2 * count)
     control(ic, step % kChannels, true);
   else if (!options_.moving_clocks)
-    write(ic, true, kGlobal, &ic == &ics_.front() ? kOwnClocks : kOwnClocks | 3u << 12);
+    write(ic, true, kGlobal, &ic == &ics_.front() ? kOwnClocks : kOwnClocks | kInputs);
   else if (step % 2 == 0)
     write(ic, true, kGlobal, clock_word(&ic == &ics_.front() && !options_.macro_drives));
   else if (step == 1 && options_.macro_drives)
-    write_at(macro_ics_[below(static_cast<std::uint32_t>(macro_ics_.size()))] + regs::macro_ic::kClockControl.address, true,
-             clock_word(true));
+    write_at(macro_ics_.front() + regs::macro_ic::kClockControl.address, true, clock_word(true) & ~kInputs);
+  else if (step == 3 && options_.macro_drives)
+    write_at(macro_ics_.front() + regs::macro_ic::kPwmControl.address, true, pwm_word());
   else
     write(ic, true, kPwm, (40 + below(700)) << 8 | below(4));
   return true;

@@ -17,8 +17,8 @@ struct MotorTrafficOptions {
   Tick bus_pause = 300;          // between two accesses at most; one in ten times 20000
   Tick pins_pause = 750;         // between two changes of the pins of an IC, about at most
   bool moving_clocks = true;     // short periods, changed now and then; else as after a reset, and left alone
-  unsigned reset_one_in = 2000;  // accesses between two resets, on average; 0 = none but the first
-  bool macro_drives = false;     // a MACRO IC drives the clocks
+  unsigned reset_one_in = 2000;  // accesses between two resets, on average, ten times that between two trips of the watchdog; 0 = neither
+  bool macro_drives = false;     // the first MACRO IC drives the clocks
 };
 
 class MotorTraffic {
