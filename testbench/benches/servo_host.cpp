@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "rtl/regs/brick_regs.hpp"
+
 namespace brick {
 
 namespace {
@@ -15,19 +17,11 @@ ServoHost::ServoHost(BenchContext& bench, std::uint64_t seed) : bench_(bench), r
     if ((bench.board.fitted >> ic & 1) != 0) ics_.push_back(ic);
 }
 
-// IC m* (index 10 and up) has 50 and $20 more than IC m.
-unsigned ServoHost::i_global(unsigned place, unsigned k) const {
-  const unsigned m = ic(place);
-  return 7000 + 100 * (m < 10 ? m : m - 8) + (m < 10 ? 0 : 50) + k;
-}
+unsigned ServoHost::i_global(unsigned place, unsigned k) const { return regs::kGateIcs[ic(place)].direction_variable - 7 + k; }
 unsigned ServoHost::i_channel(unsigned channel, unsigned k) const {
   return i_global(channel / kChannels, 0) + 10 * (channel % kChannels + 1) + k;
 }
-std::uint32_t ServoHost::base(unsigned place) const {
-  static constexpr std::uint32_t kBase[10] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300};
-  const unsigned m = ic(place);
-  return m < 10 ? kBase[m] : kBase[m - 8] + 0x20;
-}
+std::uint32_t ServoHost::base(unsigned place) const { return regs::kGateIcs[ic(place)].base; }
 std::uint32_t ServoHost::address(unsigned channel, unsigned offset) const {
   return base(channel / kChannels) + 8 * (channel % kChannels) + offset;
 }
