@@ -41,7 +41,8 @@ nlohmann::json as_json(const BoardConfig& b) {
           {"bus", b.bus},
           {"axes", b.axes},
           {"ics", fitted_ic_names(b.fitted)},
-          {"macro_gates", b.macro_gate == 0 ? nlohmann::json::array() : nlohmann::json(fitted_ic_names(b.macro_gate << 18))},
+          {"macro_gates",
+           b.macro_gate == 0 ? nlohmann::json::array() : nlohmann::json(fitted_ic_names(b.macro_gate << 18))},
           {"clock_source", clock_source(b)},
           {"dpram_words", b.dpram_words},
           {"interrupts", interrupt_lines(b)},
@@ -59,7 +60,8 @@ void print_table(const std::vector<BoardConfig>& boards) {
     servo = std::max(servo, servo_ic_numbers(b.fitted).size());
   }
   const auto row = [&](const auto&... cells) {
-    std::string text = fmt::format("{:<{}}  {:>4}  {:<{}}  {:<9}  {:>5}  {:<8}  {:<4}  {:>6}  {:<6}  {:<8}  {}", cells...);
+    std::string text =
+        fmt::format("{:<{}}  {:>4}  {:<{}}  {:<9}  {:>5}  {:<8}  {:<4}  {:>6}  {:<6}  {:<8}  {}", cells...);
     std::cout << text << '\n';
   };
   row("BOARD", name, "AXES", "SERVO ICS", servo, "MACRO ICS", "I19", "DPRAM", "JPAN", "CARD", "TYPE", "BUS", "TITLE");
@@ -69,7 +71,9 @@ void print_table(const std::vector<BoardConfig>& boards) {
 }
 
 void print_all(const BoardConfig& b) {
-  const auto line = [](const char* what, const std::string& text) { std::cout << fmt::format("{:<16} {}\n", what, text); };
+  const auto line = [](const char* what, const std::string& text) {
+    std::cout << fmt::format("{:<16} {}\n", what, text);
+  };
   std::vector<std::string> lines = interrupt_lines(b);
   for (unsigned i = 0; i < kLines; ++i) lines[i] = fmt::format("IR{} {}", i, lines[i]);
   std::cout << fmt::format("{}: {}\n", b.name, b.title);

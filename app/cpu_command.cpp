@@ -18,7 +18,7 @@ constexpr std::uint64_t kRamBase = 0x8000'0000, kRamBytes = 128ull << 20;
 constexpr std::uint64_t kGranule = 16ull << 20;        // room for a stack behind what the ELF file names
 constexpr double kClockMHz = 117.9648 * (7 + 1) / 12;  // I52 at its default of 7
 constexpr Cycle kSlice = 10'000'000;                   // cycles between looks at the progress
-constexpr Cycle kStuck = 10'000;                       // cycles without a retired instruction: a trap whose handler traps
+constexpr Cycle kStuck = 10'000;  // cycles without a retired instruction: a trap whose handler traps
 
 struct Area {
   std::uint64_t first, last;
@@ -29,7 +29,8 @@ std::vector<Area> areas_for(const ElfFile& elf) {
   std::vector<Area> areas{{kRamBase, kRamBase + kRamBytes - 1}};
   for (const ElfFile::Range& range : elf.ranges()) {
     const std::uint64_t last = std::uint64_t{range.address} + range.bytes - 1;
-    areas.push_back({range.address / kGranule * kGranule, std::min<std::uint64_t>(last / kGranule * kGranule + kGranule - 1, UINT32_MAX)});
+    areas.push_back({range.address / kGranule * kGranule,
+                     std::min<std::uint64_t>(last / kGranule * kGranule + kGranule - 1, UINT32_MAX)});
   }
   std::sort(areas.begin(), areas.end(), [](const Area& a, const Area& b) { return a.first < b.first; });
   std::vector<Area> merged;
@@ -83,11 +84,12 @@ std::string run_program(Cpu& cpu, const ElfFile& elf, std::uint64_t max_instruct
     if (stop == Cpu::Stop::kSleep) return "failed: sleeps at " + place(elf, cpu.pc()) + " and nothing can wake it";
     stuck = cpu.instructions() == before ? stuck + slice : 0;
     if (stuck > kStuck) {
-      return "failed: trap " + std::to_string(cause) + " at " + place(elf, trap_pc) + " and its handler at " + hex(cpu.csr(0x305) & ~3u) +
-             " traps again";
+      return "failed: trap " + std::to_string(cause) + " at " + place(elf, trap_pc) + " and its handler at " +
+             hex(cpu.csr(0x305) & ~3u) + " traps again";
     }
   }
-  return "failed: " + std::to_string(max_instructions) + " instructions without a write to tohost, at " + place(elf, cpu.pc());
+  return "failed: " + std::to_string(max_instructions) + " instructions without a write to tohost, at " +
+         place(elf, cpu.pc());
 }
 
 }  // namespace
@@ -95,7 +97,8 @@ std::string run_program(Cpu& cpu, const ElfFile& elf, std::uint64_t max_instruct
 int cpu_command(const std::string& file, std::uint64_t max_instructions) {
   const ElfFile elf(file);
   const auto tohost = elf.symbol("tohost");
-  if (!tohost) throw std::runtime_error(file + ": has no symbol `tohost`; expected a program that stores its result there");
+  if (!tohost)
+    throw std::runtime_error(file + ": has no symbol `tohost`; expected a program that stores its result there");
 
   Cpu cpu;
   for (const Area& area : areas_for(elf)) {
@@ -107,7 +110,8 @@ int cpu_command(const std::string& file, std::uint64_t max_instructions) {
   }
   elf.load(cpu);
   if (cpu.memory(elf.entry(), 2) == nullptr) {
-    throw std::runtime_error(file + ": entry point " + hex(elf.entry()) + " lies outside memory; expected it in a loaded segment");
+    throw std::runtime_error(file + ": entry point " + hex(elf.entry()) +
+                             " lies outside memory; expected it in a loaded segment");
   }
   cpu.reset(elf.entry());
   cpu.watch_store(*tohost);

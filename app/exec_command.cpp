@@ -41,7 +41,8 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
       if (!simulation.link().connect(HostLink::kBootTime))
         throw ScriptFailure(
             simulation.bus().tripped()
-                ? "the controller does not answer after power-on: the watchdog has tripped; expected an acknowledge, see --jumper E3"
+                ? "the controller does not answer after power-on: the watchdog has tripped; expected an acknowledge, "
+                  "see --jumper E3"
                 : "the controller does not answer after power-on; expected an acknowledge within 500 ms");
       player.play(script);
     });

@@ -8,7 +8,9 @@ HandEncoder::HandEncoder(unsigned ic, unsigned channel, std::int64_t counts, std
     : ic_(ic), channel_(channel), left_(std::abs(counts)), total_(left_), rate_(rate), up_(counts > 0), start_(now) {}
 
 // start + edge / rate in whole ticks, without a product that could overflow.
-Tick HandEncoder::time_of(std::int64_t edge) const { return start_ + edge / rate_ * kPwmClockHz + edge % rate_ * kPwmClockHz / rate_; }
+Tick HandEncoder::time_of(std::int64_t edge) const {
+  return start_ + edge / rate_ * kPwmClockHz + edge % rate_ * kPwmClockHz / rate_;
+}
 
 Tick HandEncoder::end() const { return time_of(total_); }
 Tick HandEncoder::next_event() const { return left_ == 0 ? kNever : time_of(total_ - left_ + 1); }

@@ -1,5 +1,5 @@
-// A hand at a motor's encoder (`@encoder`): A and B step by step at an even rate. A positive count turns the way that counts up
-// with the factory default I7mn0 = 7, x4 CCW: B leads A. docs/command.md.
+// A hand at a motor's encoder (`@encoder`): A and B step by step at an even rate. A positive count turns the way that
+// counts up with the factory default I7mn0 = 7, x4 CCW: B leads A. docs/command.md.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@ namespace brick {
 
 class HandEncoder : public MotorPeer {
  public:
-  // Turns channel `channel` (0..3) of servo IC `ic` by `counts` edges, `rate` edges a second (1 or more), from tick `now` on.
+  // Turns channel `channel` (0..3) of servo IC `ic` by `counts` edges, `rate` edges a second (1 or more), from tick
+  // `now` on.
   HandEncoder(unsigned ic, unsigned channel, std::int64_t counts, std::int64_t rate, Tick now);
 
   std::uint32_t ics() const override { return 0; }

@@ -15,7 +15,8 @@
 namespace brick {
 namespace {
 
-constexpr const char* kAbout = "brick: a virtual Turbo PMAC2 / Geo Brick LV, as RTL and as SystemC model, with its firmware";
+constexpr const char* kAbout =
+    "brick: a virtual Turbo PMAC2 / Geo Brick LV, as RTL and as SystemC model, with its firmware";
 constexpr const char* kDefaultInstructions = "10000000000";
 
 struct Commands {
@@ -48,7 +49,8 @@ struct Commands {
     add_run_options(*exec, exec_options, "systemc");
     exec->add_flag("--raw", raw, "print every byte sent by the controller, control bytes as <06>");
     exec->footer(
-        "A script holds the controller's command lines and @wait @until @signal @pic @dpram @jumper @input @encoder @jpan @reset @power "
+        "A script holds the controller's command lines and @wait @until @signal @pic @dpram @jumper @input @encoder "
+        "@jpan @reset @power "
         "@expect @time.");
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
 
@@ -57,10 +59,13 @@ struct Commands {
     boards->add_flag("--json", boards_json, "as JSON");
     boards->callback([this] { chosen = [this] { return boards_command(board, boards_json); }; });
 
-    auto* cpu = app.add_subcommand("cpu", "runs a bare program on the CPU model alone, until it writes the symbol tohost");
+    auto* cpu =
+        app.add_subcommand("cpu", "runs a bare program on the CPU model alone, until it writes the symbol tohost");
     cpu->add_option("FILE", elf, "RV32IMC program, FILE.elf")->required();
-    cpu->add_option("--max-instructions", max_instructions, "gives up after so many instructions")->capture_default_str();
-    cpu->callback([this] { chosen = [this] { return cpu_command(elf, parse_count("--max-instructions", max_instructions)); }; });
+    cpu->add_option("--max-instructions", max_instructions, "gives up after so many instructions")
+        ->capture_default_str();
+    cpu->callback(
+        [this] { chosen = [this] { return cpu_command(elf, parse_count("--max-instructions", max_instructions)); }; });
   }
 };
 
@@ -77,13 +82,16 @@ int main_command(int argc, char** argv) {
     if (argc > 1 && command->get_name() == argv[1]) where += " " + command->get_name();
   }
   if (where == "brick" && (argc < 2 || argv[1][0] != '-'))
-    return report_usage(
-        where, fmt::format("{}; expected one of:{}", argc < 2 ? "no command" : std::string("no command `") + argv[1] + "`", known));
+    return report_usage(where,
+                        fmt::format("{}; expected one of:{}",
+                                    argc < 2 ? "no command" : std::string("no command `") + argv[1] + "`", known));
   try {
     commands.app.parse(argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
     return commands.app.exit(e);
-  } catch (const CLI::ParseError& e) { return report_usage(where, fmt::format("{}; expected what `{} --help` shows", e.what(), where)); }
+  } catch (const CLI::ParseError& e) {
+    return report_usage(where, fmt::format("{}; expected what `{} --help` shows", e.what(), where));
+  }
   try {
     return commands.chosen();
   } catch (const std::exception& e) {  // what is wrong during a run is caught by the commands

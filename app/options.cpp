@@ -33,19 +33,22 @@ void need_folder(const std::string& option, const std::string& file) {
 
 void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine) {
   o.engine = engine;
-  command.add_option("--engine", o.engine, "rtl, systemc or lockstep (both, every pin compared at every tick)")->capture_default_str();
+  command.add_option("--engine", o.engine, "rtl, systemc or lockstep (both, every pin compared at every tick)")
+      ->capture_default_str();
   command.add_option("--board", o.board, "board NAME (see brick boards) or FILE.toml")->capture_default_str();
   command.add_option("--firmware", o.firmware, "firmware image FILE.elf (default: the one built with brick)");
   command.add_option("--wave", o.wave, "write a waveform, FILE.vcd or FILE.fst");
   command.add_option("--wave-from", o.wave_from, "first time in the waveform, for example 10ms");
   command.add_option("--wave-to", o.wave_to, "last time in the waveform");
-  command.add_option("--seed", o.seed, "seed of memory content at power-on and of the host's timing")->capture_default_str();
+  command.add_option("--seed", o.seed, "seed of memory content at power-on and of the host's timing")
+      ->capture_default_str();
   command.add_option("--jumper", o.jumpers, "jumper that is on: E3 (factory defaults at start); may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--flash", o.flash, "file that keeps SAVEd data between runs");
   command.add_option("--json", o.json, "write the results to FILE");
-  command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")->type_name("PORT");
+  command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")
+      ->type_name("PORT");
   command.add_option("--batch", o.batch, "longest advance in ticks, 0 = as the rules allow; changes speed only")
       ->capture_default_str()
       ->group("Advanced");
@@ -66,7 +69,9 @@ std::uint16_t gdb_port(const RunOptions& o) {
   return static_cast<std::uint16_t>(port);
 }
 
-std::string engine_name(Engine engine) { return engine == Engine::kRtl ? "rtl" : engine == Engine::kSystemC ? "systemc" : "lockstep"; }
+std::string engine_name(Engine engine) {
+  return engine == Engine::kRtl ? "rtl" : engine == Engine::kSystemC ? "systemc" : "lockstep";
+}
 
 MachineConfig machine_config(const RunOptions& o) {
   MachineConfig config;
@@ -80,9 +85,11 @@ MachineConfig machine_config(const RunOptions& o) {
     throw UsageError(fmt::format("--engine {}: no such engine; expected rtl, systemc or lockstep", o.engine));
   config.seed = parse_count("--seed", o.seed);
   config.batch = static_cast<Tick>(parse_count("--batch", o.batch));
-  if (config.batch < 0 || config.batch >= kNever) throw UsageError(fmt::format("--batch {}: is too large; expected ticks", o.batch));
+  if (config.batch < 0 || config.batch >= kNever)
+    throw UsageError(fmt::format("--batch {}: is too large; expected ticks", o.batch));
   for (const auto& jumper : o.jumpers) {
-    if (jumper != "E3" && jumper != "e3") throw UsageError(fmt::format("--jumper {}: no such jumper; expected E3", jumper));
+    if (jumper != "E3" && jumper != "e3")
+      throw UsageError(fmt::format("--jumper {}: no such jumper; expected E3", jumper));
     config.jumper_e3 = true;
   }
   config.board = read_board_file(board_path(o.board));

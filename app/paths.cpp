@@ -27,7 +27,8 @@ std::string default_firmware() {
   const fs::path built = executable_folder() / "turbo.elf", installed = share_folder() / "turbo.elf";
   for (const auto& path : {built, installed})
     if (fs::exists(path)) return path.string();
-  throw UsageError(fmt::format("no firmware image; expected {} or {}, or --firmware FILE.elf", built.string(), installed.string()));
+  throw UsageError(
+      fmt::format("no firmware image; expected {} or {}, or --firmware FILE.elf", built.string(), installed.string()));
 }
 
 std::string boards_folder() {
@@ -48,7 +49,8 @@ std::string board_path(const std::string& name_or_file, const std::string& optio
   if (ends_with(name_or_file, ".toml")) return name_or_file;
   const auto names = board_names();
   if (std::find(names.begin(), names.end(), name_or_file) == names.end())
-    throw UsageError(fmt::format("{} {}: no such board; expected {} or FILE.toml", option, name_or_file, fmt::join(names, ", ")));
+    throw UsageError(
+        fmt::format("{} {}: no such board; expected {} or FILE.toml", option, name_or_file, fmt::join(names, ", ")));
   return (fs::path(boards_folder()) / (name_or_file + ".toml")).string();
 }
 

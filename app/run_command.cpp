@@ -36,19 +36,21 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
   if (options.board.empty()) options.board = bench.board;
   MachineConfig config = machine_config(options);
   if (!bench.need.met(config.board))
-    throw UsageError(fmt::format("{} needs {}, which board {} has not; expected a board such as {}", bench.name, bench.need.what,
-                                 config.board.name, bench.board));
+    throw UsageError(fmt::format("{} needs {}, which board {} has not; expected a board such as {}", bench.name,
+                                 bench.need.what, config.board.name, bench.board));
   if (negative && bench.seed_bug) bench.seed_bug(config);
   Simulation simulation(options, config, bench.name);
-  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine, config.board.name,
-                           config.seed, negative ? ", NEGATIVE CONTROL: " + bench.negative : "");
+  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine,
+                           config.board.name, config.seed, negative ? ", NEGATIVE CONTROL: " + bench.negative : "");
   BenchReport report(std::cout, simulation.machine());
   try {
     simulation.run([&] {
       const bool up = simulation.link().connect(HostLink::kBootTime);
-      report.step("controller answers", up, up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
+      report.step("controller answers", up,
+                  up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
       if (!up) return;
-      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report, config.board, config.seed, negative};
+      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report,
+                           config.board,         config.seed,      negative};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

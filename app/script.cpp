@@ -18,8 +18,10 @@ namespace {
 
 using Kind = ScriptLine::Kind;
 constexpr std::uint32_t kDpramBytes = 0x10000;
-constexpr std::int64_t kHandRate = 10'000, kHighestRate = 9'830'400;  // @encoder, counts per second: one count per SCLK at most
-constexpr const char* kKnown = "@wait @until @signal @pic @dpram @jumper @input @encoder @jpan @reset @power @expect @time";
+constexpr std::int64_t kHandRate = 10'000,
+                       kHighestRate = 9'830'400;  // @encoder, counts per second: one count per SCLK at most
+constexpr const char* kKnown =
+    "@wait @until @signal @pic @dpram @jumper @input @encoder @jpan @reset @power @expect @time";
 
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
@@ -64,7 +66,8 @@ void read_pic(ScriptLine& line, const std::vector<std::string>& words) {
     const std::string name = upper(words[i].substr(0, 4));
     const auto value = words[i].size() > 4 ? number(words[i].substr(4), 16) : std::nullopt;
     if (!value || *value > 0xFF || (name != "MSK=" && name != "ELR="))
-      throw UsageError(fmt::format("`{}` is not known; expected @pic, @pic clear, or @pic MSK=xx ELR=xx in hex", words[i]));
+      throw UsageError(
+          fmt::format("`{}` is not known; expected @pic, @pic clear, or @pic MSK=xx ELR=xx in hex", words[i]));
     (name == "MSK=" ? line.mask : line.edge_level) = static_cast<int>(*value);
   }
 }
@@ -75,13 +78,15 @@ void read_dpram(ScriptLine& line, const std::vector<std::string>& words) {
   const auto offset = place(words[1]);
   if (!offset || *offset % 2 != 0 || *offset >= kDpramBytes)
     throw UsageError(
-        fmt::format("`{}` is no offset; expected an even number of bytes below {} (decimal, or hex with 0x)", words[1], kDpramBytes));
+        fmt::format("`{}` is no offset; expected an even number of bytes below {} (decimal, or hex with 0x)", words[1],
+                    kDpramBytes));
   line.offset = *offset;
   if (words[2] == "=") {
     line.kind = Kind::kDpramWrite;
     for (std::size_t i = 3; i < words.size(); ++i) {
       const auto word = number(words[i], 16);
-      if (!word || *word > 0xFFFF) throw UsageError(fmt::format("`{}` is no word; expected 0 to FFFF in hex", words[i]));
+      if (!word || *word > 0xFFFF)
+        throw UsageError(fmt::format("`{}` is no word; expected 0 to FFFF in hex", words[i]));
       line.words.push_back(static_cast<std::uint16_t>(*word));
     }
     if (line.words.empty()) throw UsageError(form);
@@ -93,8 +98,8 @@ void read_dpram(ScriptLine& line, const std::vector<std::string>& words) {
     line.count = *count;
   }
   if (line.count > (kDpramBytes - line.offset) / 2)
-    throw UsageError(fmt::format("{} words from offset {} go beyond the window; expected at most {}", line.count, line.offset,
-                                 (kDpramBytes - line.offset) / 2));
+    throw UsageError(fmt::format("{} words from offset {} go beyond the window; expected at most {}", line.count,
+                                 line.offset, (kDpramBytes - line.offset) / 2));
 }
 
 void read_until(ScriptLine& line, const std::vector<std::string>& words) {
@@ -128,7 +133,8 @@ void read_encoder(ScriptLine& line, const std::vector<std::string>& words) {
   const bool down = words[2].size() > 1 && words[2][0] == '-';
   const auto counts = number(words[2].substr(down ? 1 : 0), 10);
   if (!counts || *counts == 0)
-    throw UsageError(fmt::format("`{}` is no number of counts; expected one other than 0, for example -2000", words[2]));
+    throw UsageError(
+        fmt::format("`{}` is no number of counts; expected one other than 0, for example -2000", words[2]));
   line.counts = down ? -static_cast<std::int64_t>(*counts) : static_cast<std::int64_t>(*counts);
   line.rate = kHandRate;
   if (words.size() == 3) return;
@@ -145,7 +151,8 @@ void read_jpan(ScriptLine& line, const std::vector<std::string>& words) {
   constexpr unsigned kFpd = 8;
   constexpr std::uint32_t kNumbers = 0xF;
   const char* form =
-      "expected @jpan NAME=0 or NAME=1 (JOG-, JOG+, PREJOG, START, STEP, STOP, HOME, HOLD, FPD0 to FPD3; 0 is active), or FPD=0 to 15";
+      "expected @jpan NAME=0 or NAME=1 (JOG-, JOG+, PREJOG, START, STEP, STOP, HOME, HOLD, FPD0 to FPD3; 0 is active), "
+      "or FPD=0 to 15";
   if (words.size() < 2) throw UsageError(form);
   line.kind = Kind::kJpan;
   const auto set = [&](std::uint32_t inputs, std::uint32_t levels) {
@@ -158,8 +165,10 @@ void read_jpan(ScriptLine& line, const std::vector<std::string>& words) {
     const auto input = std::find(kInputs.begin(), kInputs.end(), name);
     const bool fpd = name == "FPD";
     const std::uint32_t most = fpd ? kNumbers : 1;
-    const std::uint32_t value = equals == std::string::npos ? most + 1 : number(words[i].substr(equals + 1), 10).value_or(most + 1);
-    if (value > most || (!fpd && input == kInputs.end())) throw UsageError(fmt::format("`{}` is not known; {}", words[i], form));
+    const std::uint32_t value =
+        equals == std::string::npos ? most + 1 : number(words[i].substr(equals + 1), 10).value_or(most + 1);
+    if (value > most || (!fpd && input == kInputs.end()))
+      throw UsageError(fmt::format("`{}` is not known; {}", words[i], form));
     if (fpd) {
       set(kNumbers << kFpd, (~value & kNumbers) << kFpd);
     } else {
@@ -243,7 +252,8 @@ std::vector<ScriptLine> read_script(std::istream& in, const std::string& file) {
       }
     } else if (is_control(line.text)) {
       line.kind = Kind::kControl;
-      for (std::size_t i = 1; i < line.text.size(); i += 2) line.value.push_back(static_cast<char>(line.text[i] & 0x1F));
+      for (std::size_t i = 1; i < line.text.size(); i += 2)
+        line.value.push_back(static_cast<char>(line.text[i] & 0x1F));
     }
     script.push_back(std::move(line));
   }

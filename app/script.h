@@ -34,11 +34,11 @@ struct ScriptLine {
   };
   Kind kind = Kind::kCommand;
   unsigned number = 0;
-  std::string text;                      // command line, control characters, expected text, or the whole @ line for messages
-  std::string name;                      // signal, input pin
-  std::string value;                     // @until
-  TimeFs time = 0;                       // @wait, limit of @until
-  int mask = -1, edge_level = -1;        // @pic MSK= ELR=, -1: leave
+  std::string text;                // command line, control characters, expected text, or the whole @ line for messages
+  std::string name;                // signal, input pin
+  std::string value;               // @until
+  TimeFs time = 0;                 // @wait, limit of @until
+  int mask = -1, edge_level = -1;  // @pic MSK= ELR=, -1: leave
   std::uint32_t offset = 0, count = 0;   // @dpram
   std::vector<std::uint16_t> words;      // @dpram, to write
   bool on = false;                       // @jumper, @input

@@ -42,14 +42,16 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
       } else if (line.kind == Kind::kInput) {
         find_channel_pin(signals, line.name);
       } else if (line.kind == Kind::kJpan && !link_.bus().machine().inputs().jpan_fitted) {
-        throw UsageError("this board has no control panel port; expected a board with JPAN, for example --board turbo-pmac-pci");
+        throw UsageError(
+            "this board has no control panel port; expected a board with JPAN, for example --board turbo-pmac-pci");
       } else if (line.kind == Kind::kEncoder && !motor_place(machine.fitted(), line.motor)) {
         unsigned motors = 0;
         while (motor_place(machine.fitted(), motors + 1)) ++motors;
         throw UsageError(fmt::format("no encoder of motor {} on this board; expected 1 to {}", line.motor, motors));
       }
     } catch (const UsageError& e) {
-      throw UsageError(fmt::format("{}:{}: {}: {}", file_, line.number, line.text.substr(0, line.text.find_first_of(" \t")), e.what()));
+      throw UsageError(fmt::format("{}:{}: {}: {}", file_, line.number,
+                                   line.text.substr(0, line.text.find_first_of(" \t")), e.what()));
     }
   }
 }
@@ -86,9 +88,11 @@ void ScriptPlayer::command(const ScriptLine& line) {
     }
   }
   if (!reply.complete) {
-    if (link_.bus().tripped()) fail(line, "no reply: the watchdog has tripped (WDO); expected an answer, see @reset and @power");
-    fail(line, reply.raw.empty() ? "no reply; expected an acknowledge or an error from the controller"
-                                 : "the reply has no end: `" + visible(reply.raw) + "`; expected an acknowledge or an error");
+    if (link_.bus().tripped())
+      fail(line, "no reply: the watchdog has tripped (WDO); expected an answer, see @reset and @power");
+    fail(line, reply.raw.empty()
+                   ? "no reply; expected an acknowledge or an error from the controller"
+                   : "the reply has no end: `" + visible(reply.raw) + "`; expected an acknowledge or an error");
   }
   if (raw_) {
     if (!reply.raw.empty()) out_ << visible(reply.raw) << '\n' << std::flush;
@@ -105,7 +109,8 @@ void ScriptPlayer::restart(const ScriptLine& line) {
     machine.reset();
   else
     machine.power_cycle();
-  if (!link_.connect(HostLink::kBootTime)) fail(line, "the controller does not answer after the restart; expected an acknowledge");
+  if (!link_.connect(HostLink::kBootTime))
+    fail(line, "the controller does not answer after the restart; expected an acknowledge");
 }
 
 // The time goes on until the last count.
@@ -139,7 +144,8 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
     case Kind::kUntil: {
       const auto id = find_signal(machine.signals(), line.name);
       if (!wait_signal(bus, id, signal_value_text(machine.signals(), id, line.value), fs_to_tick(line.time)))
-        fail(line, fmt::format("still {}={} at the limit; expected {}", line.name, signal_text(machine.signals(), id), line.value));
+        fail(line, fmt::format("still {}={} at the limit; expected {}", line.name, signal_text(machine.signals(), id),
+                               line.value));
       break;
     }
     case Kind::kSignal:
@@ -159,7 +165,8 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       break;
     case Kind::kDpramRead: {
       std::vector<std::string> words;
-      for (std::uint32_t i = 0; i < line.count; ++i) words.push_back(fmt::format("{:04X}", bus.dpram_read(line.offset + 2 * i)));
+      for (std::uint32_t i = 0; i < line.count; ++i)
+        words.push_back(fmt::format("{:04X}", bus.dpram_read(line.offset + 2 * i)));
       answer(line, {fmt::format("{}", fmt::join(words, " "))});
       break;
     }

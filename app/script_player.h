@@ -11,7 +11,8 @@
 
 namespace brick {
 
-// The script asked for something that did not come true, or the controller does not answer: `brick exec` ends with status 1.
+// The script asked for something that did not come true, or the controller does not answer: `brick exec` ends with
+// status 1.
 class ScriptFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -20,7 +21,8 @@ class ScriptFailure : public std::runtime_error {
 class ScriptPlayer {
  public:
   // `file` is the name in messages; `raw` prints every byte received, control bytes as <06>.
-  ScriptPlayer(HostLink& link, std::ostream& out, std::string file, bool raw) : link_(link), out_(out), file_(std::move(file)), raw_(raw) {}
+  ScriptPlayer(HostLink& link, std::ostream& out, std::string file, bool raw)
+      : link_(link), out_(out), file_(std::move(file)), raw_(raw) {}
 
   void check(const std::vector<ScriptLine>& script) const;  // names and values of signals; throws UsageError
   void play(const std::vector<ScriptLine>& script);

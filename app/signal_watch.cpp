@@ -46,8 +46,9 @@ Signals::Id find_signal(const Signals& signals, const std::string& name) {
       if (like.size() == 8) break;
       like.push_back(signals.info(id).name);
     }
-    throw UsageError(fmt::format("`{}` is not one signal; expected one of {}{}", name, fmt::join(like, ", "),
-                                 like.size() < found.size() ? fmt::format(" and {} more", found.size() - like.size()) : ""));
+    throw UsageError(
+        fmt::format("`{}` is not one signal; expected one of {}{}", name, fmt::join(like, ", "),
+                    like.size() < found.size() ? fmt::format(" and {} more", found.size() - like.size()) : ""));
   }
   if (like.empty()) like = {"host.breq", "host.irq", "clock.phase", "clock.source", "cpu.task"};
   throw UsageError(fmt::format("no signal `{}`; expected one like {}", name, fmt::join(like, ", ")));
@@ -58,8 +59,10 @@ ChannelPinPlace find_channel_pin(const Signals& signals, const std::string& name
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
     for (unsigned channel = 0; channel < kChannels; ++channel)
       for (unsigned pin = 0; pin < kChannelPins; ++pin)
-        if (found == fmt::format("{}.ch{}.{}", servo_ic_scope(ic), channel + 1, kChannelPinNames[pin])) return {ic, channel, pin};
-  throw UsageError(fmt::format("`{}` is no input pin; expected one like servo_ic0.ch1.{}", found, fmt::join(kChannelPinNames, ", ")));
+        if (found == fmt::format("{}.ch{}.{}", servo_ic_scope(ic), channel + 1, kChannelPinNames[pin]))
+          return {ic, channel, pin};
+  throw UsageError(fmt::format("`{}` is no input pin; expected one like servo_ic0.ch1.{}", found,
+                               fmt::join(kChannelPinNames, ", ")));
 }
 
 std::string signal_text(const Signals& signals, Signals::Id id) {
@@ -90,7 +93,8 @@ std::string signal_value_text(const Signals& signals, Signals::Id id, const std:
     const std::uint64_t number = std::stoull(digits, &used, base);
     if (used == digits.size() && digits[0] != '-' && number <= largest) return shown(info, number);
   } catch (const std::exception&) {}
-  throw UsageError(fmt::format("`{}` is no value of {}; expected 0 to {} (decimal, or hex with $)", value, info.name, largest));
+  throw UsageError(
+      fmt::format("`{}` is no value of {}; expected 0 to {} (decimal, or hex with $)", value, info.name, largest));
 }
 
 namespace {
@@ -127,8 +131,8 @@ bool wait_signal(HostBus& bus, Signals::Id id, const std::string& value, Tick ti
   Machine& machine = bus.machine();
   const Tick limit = bus.now() + timeout;
   const MotorStop motor(machine, machine.signals().info(id).name);
-  const auto* pin =
-      std::find_if(pin::kAll.begin(), pin::kAll.end(), [&](const PinField& f) { return f.name == machine.signals().info(id).name; });
+  const auto* pin = std::find_if(pin::kAll.begin(), pin::kAll.end(),
+                                 [&](const PinField& f) { return f.name == machine.signals().info(id).name; });
   while (signal_text(machine.signals(), id) != value) {
     if (bus.now() >= limit) return false;
     if (motor.found())

@@ -45,7 +45,11 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
 }  // namespace
 
 Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title)
-    : title_(std::move(title)), machine_(make_machine(config)), bus_(*machine_), link_(bus_), terminal_(isatty(STDERR_FILENO) == 1) {
+    : title_(std::move(title)),
+      machine_(make_machine(config)),
+      bus_(*machine_),
+      link_(bus_),
+      terminal_(isatty(STDERR_FILENO) == 1) {
   bus_.set_heartbeat([this] { progress(); });
   if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
   if (options.wave.empty()) return;
@@ -63,7 +67,9 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
 void Simulation::wait_for_debugger(std::uint16_t port) {
   try {
     debugger_ = std::make_unique<GdbServer>(machine_->cpu(), port);
-  } catch (const std::runtime_error& e) { throw UsageError(fmt::format("--gdb {}: {}; expected a free port", port, e.what())); }
+  } catch (const std::runtime_error& e) {
+    throw UsageError(fmt::format("--gdb {}: {}; expected a free port", port, e.what()));
+  }
   machine_->attach_debugger(debugger_.get());
 }
 
@@ -94,10 +100,11 @@ void Simulation::progress() {
   last_progress_ = now;
   shown_ = true;
   const double wall = std::chrono::duration<double>(now - begin_).count();
-  std::fputs(fmt::format("\r\033[K{}: {:.1f} ms simulated, {:.1f} M ticks/s", title_, static_cast<double>(machine_->now_fs()) * 1e-12,
-                         static_cast<double>(machine_->now()) / wall * 1e-6)
-                 .c_str(),
-             stderr);
+  std::fputs(
+      fmt::format("\r\033[K{}: {:.1f} ms simulated, {:.1f} M ticks/s", title_,
+                  static_cast<double>(machine_->now_fs()) * 1e-12, static_cast<double>(machine_->now()) / wall * 1e-6)
+          .c_str(),
+      stderr);
 }
 
 nlohmann::json Simulation::measures() const {
@@ -112,9 +119,10 @@ nlohmann::json Simulation::measures() const {
 
 std::string Simulation::measures_text() const {
   const double wall = seconds_ > 0 ? seconds_ : 1e-9;
-  std::string text = fmt::format(
-      "simulated {:.3f} ms in {:.2f} s: {:.2f} M ticks/s, {:.2f} M instructions/s", static_cast<double>(machine_->now_fs()) * 1e-12,
-      seconds_, static_cast<double>(machine_->now()) / wall * 1e-6, static_cast<double>(machine_->instructions()) / wall * 1e-6);
+  std::string text = fmt::format("simulated {:.3f} ms in {:.2f} s: {:.2f} M ticks/s, {:.2f} M instructions/s",
+                                 static_cast<double>(machine_->now_fs()) * 1e-12, seconds_,
+                                 static_cast<double>(machine_->now()) / wall * 1e-6,
+                                 static_cast<double>(machine_->instructions()) / wall * 1e-6);
   if (!wave_.empty()) text += fmt::format("\nwaveform {}", wave_);
   return text;
 }

@@ -1,4 +1,5 @@
-// One run of a controller: builds the machine, opens the waveform, runs the host program as a SystemC thread, and measures.
+// One run of a controller: builds the machine, opens the waveform, runs the host program as a SystemC thread, and
+// measures.
 #pragma once
 
 #include <chrono>

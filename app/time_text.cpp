@@ -7,13 +7,16 @@
 namespace brick {
 
 TimeFs parse_time(const std::string& text) {
-  const auto bad = [&] { return UsageError("`" + text + "` is no time; expected a number with ns, us, ms or s, for example 10ms"); };
+  const auto bad = [&] {
+    return UsageError("`" + text + "` is no time; expected a number with ns, us, ms or s, for example 10ms");
+  };
   constexpr TimeFs kLongest = 9'000'000'000'000'000'000;  // 2.5 hours
   std::size_t at = 0;
   __int128 digits = 0;
   unsigned decimals = 0, count = 0;
   bool fraction = false;
-  for (; at < text.size() && (std::isdigit(static_cast<unsigned char>(text[at])) || (text[at] == '.' && !fraction)); ++at) {
+  for (; at < text.size() && (std::isdigit(static_cast<unsigned char>(text[at])) || (text[at] == '.' && !fraction));
+       ++at) {
     if (text[at] == '.') {
       fraction = true;
       continue;
@@ -23,7 +26,10 @@ TimeFs parse_time(const std::string& text) {
     if (++count > 18) throw bad();
   }
   const std::string unit = text.substr(at);
-  __int128 femtoseconds = unit == "ns" ? 1'000'000 : unit == "us" ? 1'000'000'000 : unit == "ms" ? 1'000'000'000'000 : 0;
+  __int128 femtoseconds = unit == "ns"   ? 1'000'000
+                          : unit == "us" ? 1'000'000'000
+                          : unit == "ms" ? 1'000'000'000'000
+                                         : 0;
   if (unit == "s") femtoseconds = 1'000'000'000'000'000;
   if (count == 0 || femtoseconds == 0) throw bad();
   __int128 value = digits * femtoseconds;

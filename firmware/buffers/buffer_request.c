@@ -38,7 +38,8 @@ static bool is_ready(uint32_t cs) {
   return ring->size != 0 && ring->requested && !ring->full;
 }
 
-/* The host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may be none. */
+/* The host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may be
+ * none. */
 uint32_t buffer_request_selected(void) { return panel_active() ? panel_cs() : command_cs(); }
 
 void buffer_request_initialize(void) {
@@ -109,6 +110,7 @@ void buffer_request_evaluate(void) {
 }
 
 void buffer_request_poll(void) {
-  if (request.selected != buffer_request_selected() || request.on != i_integer(I_BUFFER_ON) || request.off != i_integer(I_BUFFER_OFF))
+  if (request.selected != buffer_request_selected() || request.on != i_integer(I_BUFFER_ON) ||
+      request.off != i_integer(I_BUFFER_OFF))
     buffer_request_evaluate();
 }

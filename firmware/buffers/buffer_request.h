@@ -1,4 +1,4 @@
-/* BREQ, the buffer request pin, and the Rotary Buffer Full bits (firmware.md 4.5, host-bus.md 5.7). State is kept for all 16
+/* BREQ, the buffer request pin, and the Rotary Buffer Full bits (firmware:4.5, host-bus:5.7). State is kept for all 16
  * coordinate systems; the pin shows the selected one. This file is the only writer of the pin. */
 #ifndef FIRMWARE_BUFFERS_BUFFER_REQUEST_H
 #define FIRMWARE_BUFFERS_BUFFER_REQUEST_H
@@ -7,18 +7,18 @@
 #include <stdint.h>
 
 enum {
-  BREQ_PULSE_US = 2,                 /* T_PULSE: low time of a line that does not fill the buffer; at least 1 us */
-  BREQ_HIGH_US = 1,                  /* least high time between two pulses, so that the interrupt controller sees each edge */
+  BREQ_PULSE_US = 2, /* T_PULSE: low time of a line that does not fill the buffer; at least 1 us */
+  BREQ_HIGH_US = 1,  /* least high time between two pulses, so that the interrupt controller sees each edge */
   BREQ_HIGH_CYCLES_FASTEST_CPU = 315 /* 1 us at I52 = 31; below this the last rise may be too recent at any CPU clock */
 };
 
 void buffer_request_initialize(void);
-void buffer_request_begin_line(uint32_t cs);      /* background, real-time task masked: pin low before the line is counted */
+void buffer_request_begin_line(uint32_t cs); /* background, real-time task masked: pin low before the line is counted */
 void buffer_request_line_stored(uint32_t cs);     /* same section, line counted: Full decided, pulse timed, pin final */
 void buffer_request_line_calculated(uint32_t cs); /* real-time task, line no longer counted */
 void buffer_request_opened(uint32_t cs);          /* OPEN ROTARY, OPEN BINARY ROTARY */
 void buffer_request_emptied(uint32_t cs);         /* CLEAR, DELETE, DEFINE: Full = 0 */
 uint32_t buffer_request_selected(void);           /* coordinate system that drives the pin; COORDINATE_SYSTEMS: none */
-void buffer_request_poll(void);                   /* background pass: notices changes of I16, I17 and of the selection */
+void buffer_request_poll(void); /* background pass: notices changes of I16, I17 and of the selection */
 
 #endif

@@ -1,4 +1,5 @@
-/* DEFINE and DELETE (firmware.md 4.2, 4.3). A running coordinate system keeps its buffers; the order rules are those of regions.c. */
+/* DEFINE and DELETE (firmware:4.2, firmware:4.3). A running coordinate system keeps its buffers; the order rules are
+ * those of regions.c. */
 #include "firmware/buffers/define_commands.h"
 
 #include "firmware/buffers/open_buffer.h"
@@ -20,7 +21,8 @@ static error_t size_argument(struct lexer* lx, uint32_t* size) {
 static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
   uint32_t segments, outputs;
   uint32_t segment_words = 2 * axis_definition_motors(cs) + 4;
-  if (size_argument(lx, &segments) != ERR_NONE || !lexer_accept(lx, ',') || size_argument(lx, &outputs) != ERR_NONE) return ERR_DATA;
+  if (size_argument(lx, &segments) != ERR_NONE || !lexer_accept(lx, ',') || size_argument(lx, &outputs) != ERR_NONE)
+    return ERR_DATA;
   if (segment_words < LOOKAHEAD_WORDS_MINIMUM) segment_words = LOOKAHEAD_WORDS_MINIMUM;
   uint64_t words = (uint64_t)segments * segment_words + (uint64_t)outputs * LOOKAHEAD_WORDS_PER_OUTPUT;
   if (segments == 0) return ERR_DATA;
@@ -38,7 +40,8 @@ static error_t define_rotary(struct lexer* lx, uint32_t cs) {
   uint32_t words;
   error_t error = size_argument(lx, &words);
   if (error != ERR_NONE) return error;
-  if (open_buffer_kind() != OPEN_NONE) return ERR_BUFFER_OPEN; /* choice: OPEN ROTARY opens what is defined when it is given */
+  if (open_buffer_kind() != OPEN_NONE)
+    return ERR_BUFFER_OPEN; /* choice: OPEN ROTARY opens what is defined when it is given */
   return rotary_define(cs, words);
 }
 
@@ -52,8 +55,10 @@ static error_t define_gather(struct lexer* lx) {
 error_t define_command(struct lexer* lx) {
   uint32_t cs = command_cs();
   bool running = run_is_running(cs);
-  if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return running ? ERR_PROGRAM_RUNNING : define_rotary(lx, cs);
-  if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK")) return running ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
+  if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
+    return running ? ERR_PROGRAM_RUNNING : define_rotary(lx, cs);
+  if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
+    return running ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : define_ccbuf(lx, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return define_gather(lx);
   return ERR_DATA;
@@ -78,7 +83,8 @@ error_t delete_command(struct lexer* lx) {
   uint32_t cs = command_cs();
   bool running = run_is_running(cs);
   if (lexer_keyword(lx, "ALL")) {
-    if (!lexer_keyword(lx, "TEMPS")) (void)lexer_keyword(lx, "TEMP"); /* DELETE ALL: there are no tables beyond these yet */
+    if (!lexer_keyword(lx, "TEMPS"))
+      (void)lexer_keyword(lx, "TEMP"); /* DELETE ALL: there are no tables beyond these yet */
     return delete_temporaries();
   }
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return delete_rotary(cs);

@@ -1,4 +1,5 @@
-/* Opening and closing of buffers. OPEN ROTARY opens all rotary buffers at once: from then on each takes part in BREQ. */
+/* Opening and closing of buffers. OPEN ROTARY opens all rotary buffers at once: from then on each takes part in BREQ.
+ */
 #include "firmware/buffers/open_buffer.h"
 
 #include "firmware/buffers/buffer_request.h"

@@ -1,17 +1,19 @@
-/* Memory manager of the user buffers. Because regions can only be stacked on top, the manager is a list of sizes: the base of a
- * region is the sum of all sizes below it. */
+/* Memory manager of the user buffers. Because regions can only be stacked on top, the manager is a list of sizes: the
+ * base of a region is the sum of all sizes below it. */
 #include "firmware/buffers/regions.h"
 
 #include "firmware/buffers/user_memory.h"
 
 static struct {
-  uint32_t words[REGION_KINDS][COORDINATE_SYSTEMS]; /* 0: does not exist. GATHER uses index 0 only. Owner: background task */
-  uint32_t fixed;                                   /* words of fixed programs, below all others */
+  uint32_t words[REGION_KINDS]
+                [COORDINATE_SYSTEMS]; /* 0: does not exist. GATHER uses index 0 only. Owner: background task */
+  uint32_t fixed;                     /* words of fixed programs, below all others */
 } regions;
 
 static uint32_t owner_index(enum region_kind kind, uint32_t cs) { return kind == REGION_GATHER ? 0 : cs; }
 
-/* Something lies above (kind, cs): the same kind in a lower-numbered coordinate system, or any kind that comes later. */
+/* Something lies above (kind, cs): the same kind in a lower-numbered coordinate system, or any kind that comes later.
+ */
 static bool is_covered(enum region_kind kind, uint32_t cs) {
   for (uint32_t lower = 0; lower < cs; lower++)
     if (regions.words[kind][lower] != 0) return true;
@@ -42,7 +44,8 @@ uint32_t region_base(enum region_kind kind, uint32_t cs) {
   uint32_t base = regions.fixed;
   for (uint32_t below = 0; below < (uint32_t)kind; below++)
     for (uint32_t any = 0; any < COORDINATE_SYSTEMS; any++) base += regions.words[below][any];
-  for (uint32_t higher = owner_index(kind, cs) + 1; higher < COORDINATE_SYSTEMS; higher++) base += regions.words[kind][higher];
+  for (uint32_t higher = owner_index(kind, cs) + 1; higher < COORDINATE_SYSTEMS; higher++)
+    base += regions.words[kind][higher];
   return base;
 }
 

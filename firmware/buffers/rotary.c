@@ -1,5 +1,5 @@
-/* Rotary buffers. The words of a line are written into free space first and published in one short section with the real-time task
- * held off, so the reader never sees half a line. */
+/* Rotary buffers. The words of a line are written into free space first and published in one short section with the
+ * real-time task held off, so the reader never sees half a line. */
 #include "firmware/buffers/rotary.h"
 
 #include "firmware/buffers/buffer_request.h"

@@ -1,5 +1,6 @@
-/* Rotary buffers: one ring of program words per coordinate system in user memory (firmware.md 4.5). The background task stores whole
- * lines, the real-time task reads words; a line's words are free again as soon as they have been calculated. */
+/* Rotary buffers: one ring of program words per coordinate system in user memory (firmware:4.5). The background task
+ * stores whole lines, the real-time task reads words; a line's words are free again as soon as they have been
+ * calculated. */
 #ifndef FIRMWARE_BUFFERS_ROTARY_H
 #define FIRMWARE_BUFFERS_ROTARY_H
 
@@ -12,7 +13,7 @@ struct rotary {
   uint32_t read;           /* next word to calculate. Real-time task, background while it is masked */
   volatile uint32_t used;  /* words stored and not calculated. Both, under the mask */
   volatile uint32_t lines; /* lines stored and not calculated: PR. Both, under the mask */
-  bool requested;          /* opened since it was defined: BREQ takes part (host-bus.md 5.7, state other than IDLE) */
+  bool requested;          /* opened since it was defined: BREQ takes part (host-bus:5.7, state other than IDLE) */
   volatile bool full;      /* Rotary Buffer Full. Both, under the mask */
 };
 
@@ -24,11 +25,12 @@ error_t rotary_delete(uint32_t cs);
 void rotary_delete_all(void);
 bool rotary_any(void);
 void rotary_clear(uint32_t cs);
-error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count); /* one line; the first word gets its mark here */
+error_t rotary_store(uint32_t cs, const word48_t* words,
+                     uint32_t count); /* one line; the first word gets its mark here */
 
 /* Real-time task. */
 bool rotary_peek(uint32_t cs, uint32_t ahead, word48_t* word); /* word `ahead` of the read pointer, if stored */
-bool rotary_consume(uint32_t cs, uint32_t count);              /* true: that was the end of a line, PR and BREQ are updated */
-void rotary_skip_line_rest(uint32_t cs);                       /* to the next line start: the line's begun calculation is lost */
+bool rotary_consume(uint32_t cs, uint32_t count); /* true: that was the end of a line, PR and BREQ are updated */
+void rotary_skip_line_rest(uint32_t cs);          /* to the next line start: the line's begun calculation is lost */
 
 #endif

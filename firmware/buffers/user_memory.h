@@ -1,4 +1,4 @@
-/* The standard user memory: 26,624 long words of 48 bits at $00A000 (firmware.md 1.10). Buffers count in these words. */
+/* The standard user memory: 26,624 long words of 48 bits at $00A000 (firmware:1.10). Buffers count in these words. */
 #ifndef FIRMWARE_BUFFERS_USER_MEMORY_H
 #define FIRMWARE_BUFFERS_USER_MEMORY_H
 

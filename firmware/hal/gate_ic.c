@@ -1,5 +1,6 @@
-/* Servo ICs and MACRO ICs on the expansion bus. Shadows hold the fields of I-variables; they are owned by the background and
- * real-time tasks, and the servo task is held off because it switches amplifier enables in the same words. */
+/* Servo ICs and MACRO ICs on the expansion bus. Shadows hold the fields of I-variables; they are owned by the
+ * background and real-time tasks, and the servo task is held off because it switches amplifier enables in the same
+ * words. */
 #include "firmware/hal/gate_ic.h"
 
 #include "firmware/hal/hal.h"
@@ -23,8 +24,9 @@ unsigned gate_ic_of_direction(uint32_t variable) {
   return ic;
 }
 
-/* Bits of a channel's control word that others switch while the machine runs, M-variables among them: counter reset, EQU state,
- * amplifier enable. No I-variable has them, so no shadow does: a field write takes them from the IC. Bit 11 falls back by itself. */
+/* Bits of a channel's control word that others switch while the machine runs, M-variables among them: counter reset,
+ * EQU state, amplifier enable. No I-variable has them, so no shadow does: a field write takes them from the IC. Bit 11
+ * falls back by itself. */
 enum { CHANNEL_LIVE_BITS = 1 << 10 | 1 << 12 | 1 << 14 };
 
 static uint32_t strobe_address(unsigned ic) {
@@ -89,7 +91,8 @@ static void reset_channels(unsigned ic) {
     *hal_x(address_of(ic, GATE_WORD_CHANNEL, channel)) = shadow[ic].channel[channel];
 }
 
-/* A released clock pin is driven on until both clocks are high: one and a half phase periods at most (docs/clock.md). */
+/* A released clock pin is driven on until both clocks are high: one and a half phase periods at most (docs/clock.md).
+ */
 static uint32_t release_began, release_us;
 
 static uint32_t release_left(void) {
@@ -134,7 +137,8 @@ void gate_ic_find(void) {
     if (!answers(strobe_address(ic), HAL_WORD_MASK)) continue;
     found |= 1u << ic;
     /* Only a DSPGATE2 has supplementary channels. */
-    if (ic >= GATE_IC_MACRO && !answers(gate_ic_base(ic) + MACRO_IC_X_SUPPLEMENTARY_1, MACRO_IC_SUPPLEMENTARY_1_WRITTEN))
+    if (ic >= GATE_IC_MACRO &&
+        !answers(gate_ic_base(ic) + MACRO_IC_X_SUPPLEMENTARY_1, MACRO_IC_SUPPLEMENTARY_1_WRITTEN))
       macrogates |= 1u << ic;
     reset_channels(ic);
   }

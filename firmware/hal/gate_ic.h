@@ -23,8 +23,8 @@ unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT 
 /* Clock direction that makes both clocks inputs: 3, on a MACROGATE 1, because it has the bit for PHASE only. */
 uint32_t gate_ic_direction_inputs(unsigned ic);
 
-/* Words of an IC. The firmware keeps what it wrote: read-modify-write reads from the IC only the bits of a channel's control
- * word that others switch at run time. */
+/* Words of an IC. The firmware keeps what it wrote: read-modify-write reads from the IC only the bits of a channel's
+ * control word that others switch at run time. */
 typedef enum {
   GATE_WORD_CLOCK,
   GATE_WORD_PWM,
@@ -37,7 +37,8 @@ typedef enum {
 void gate_ic_set_field(unsigned ic, gate_word_t word, unsigned lsb, unsigned width, uint32_t value);
 void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width,
                                uint32_t value); /* channel 0..3; 0..1 of a MACRO IC */
-/* A start without a reset of the ICs finds the clocks running: their source lets go before its variables are written. */
+/* A start without a reset of the ICs finds the clocks running: their source lets go before its variables are written.
+ */
 void gate_ic_release_clocks(void);
 
 /* Waits until no IC drives a clock pin any more whose direction has been made an input. */

@@ -1,6 +1,6 @@
 /* Hardware access. Device addresses come from the generated rtl/regs/brick_regs.h; memory map in docs/architecture.md.
- * The firmware reaches hardware through this header only, so that testbench/unit/firmware_platform can compile it for the
- * build machine with BRICK_NATIVE and put memory arrays behind it. */
+ * The firmware reaches hardware through this header only, so that testbench/unit/firmware_platform can compile it for
+ * the build machine with BRICK_NATIVE and put memory arrays behind it. */
 #ifndef FIRMWARE_HAL_HAL_H
 #define FIRMWARE_HAL_HAL_H
 
@@ -31,7 +31,8 @@ void hal_delay_us(uint32_t us);                      /* busy wait */
 void hal_host_signals(uint32_t set, uint32_t clear); /* bits HAL_SIGNAL_*: latch X:$070010 */
 enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL_F1ER = 8 };
 
-/* Kernel only. ------------------------------------------------------------------------------------------------------ */
+/* Kernel only. ------------------------------------------------------------------------------------------------------
+ */
 void hal_set_cpu_clock(uint32_t i52); /* cycles a microsecond for hal_delay_us and hal_cycles_per_ms */
 uint32_t hal_cycles_per_ms(void);
 void hal_interrupts_off(void);    /* no task enabled, nothing latched */
@@ -45,7 +46,14 @@ void hal_clear_words(uint32_t first, uint32_t count);  /* X and Y words of main 
 bool hal_servo_pending(void);                          /* the next servo interrupt waits already */
 
 /* Straps, read-only words of the board description. */
-enum { HAL_STRAP_E3 = 0, HAL_STRAP_FITTED, HAL_STRAP_CARD, HAL_STRAP_DPRAM_WORDS, HAL_STRAP_POWER_ON, HAL_STRAP_PRODUCT };
+enum {
+  HAL_STRAP_E3 = 0,
+  HAL_STRAP_FITTED,
+  HAL_STRAP_CARD,
+  HAL_STRAP_DPRAM_WORDS,
+  HAL_STRAP_POWER_ON,
+  HAL_STRAP_PRODUCT
+};
 enum { HAL_PRODUCT_JPAN = 1, HAL_PRODUCT_UMAC = 2, HAL_PRODUCT_ULTRALITE = 4, HAL_PRODUCT_TURBO_PMAC_1 = 8 };
 uint32_t hal_strap(unsigned word);
 

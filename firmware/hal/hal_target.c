@@ -73,7 +73,8 @@ static uint32_t pending(void) {
 bool hal_real_time_pending(void) { return (pending() & TASK_REAL_TIME) != 0u; }
 bool hal_servo_pending(void) { return (pending() & TASK_SERVO) != 0u; }
 
-/* With mstatus.MIE clear an interrupt that arrives between the test and WFI still ends the sleep, and is taken afterwards. */
+/* With mstatus.MIE clear an interrupt that arrives between the test and WFI still ends the sleep, and is taken
+ * afterwards. */
 void hal_idle(const volatile uint32_t* work) {
   __asm__ volatile(CSR("csrci mstatus, 8") : : : "memory");
   if (*work == 0u) __asm__ volatile("wfi" : : : "memory");

@@ -1,5 +1,5 @@
-/* The few C library functions that the compiler itself may call: the image is linked without a C library. Words are moved where
- * both addresses allow it; the compiler calls these for whole structures, which are aligned. */
+/* The few C library functions that the compiler itself may call: the image is linked without a C library. Words are
+ * moved where both addresses allow it; the compiler calls these for whole structures, which are aligned. */
 #include <stddef.h>
 #include <stdint.h>
 

@@ -1,5 +1,6 @@
-/* The command interpreter: takes commands from a host line, left to right, until one fails. A command is, in this order:
- * a program statement while a buffer is open, a constant, an address, a variable, the longest keyword of the tables. */
+/* The command interpreter: takes commands from a host line, left to right, until one fails. A command is, in this
+ * order: a program statement while a buffer is open, a constant, an address, a variable, the longest keyword of the
+ * tables. */
 #include "firmware/host/command.h"
 
 #include "firmware/host/command_tables.h"
@@ -26,7 +27,8 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return c >= 'A' && c <= 'Z'; }
 static bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
 
-/* Addresses --------------------------------------------------------------------------------------------------------- */
+/* Addresses ---------------------------------------------------------------------------------------------------------
+ */
 
 /* `&n`, `#n`, `##n`: modal. Without a number the present one is reported. */
 static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_t* selected) {
@@ -60,7 +62,8 @@ static error_t address_motor(struct lexer* lx) {
   return address(lx, 0, MOTOR_GROUPS, &motor_group);
 }
 
-/* Keywords ---------------------------------------------------------------------------------------------------------- */
+/* Keywords ----------------------------------------------------------------------------------------------------------
+ */
 
 /* Commands of one letter stop, start and abort: they must stand alone. `RAPID`, `A10` or `UUU` are something else. */
 static bool stands_alone(const char* at, const char* keyword) {
@@ -80,7 +83,8 @@ static uint32_t text_length(const char* text) {
   return length;
 }
 
-static void longest(const struct command_entry* table, struct lexer lx, const struct command_entry** best, uint32_t* best_length) {
+static void longest(const struct command_entry* table, struct lexer lx, const struct command_entry** best,
+                    uint32_t* best_length) {
   for (; table->keyword != 0; ++table) {
     struct lexer probe = lx;
     if (!lexer_keyword(&probe, table->keyword) || !stands_alone(lx.at, table->keyword)) continue;
@@ -103,7 +107,8 @@ static error_t keyword(struct lexer* lx) {
   return best->run(lx);
 }
 
-/* One command ------------------------------------------------------------------------------------------------------- */
+/* One command -------------------------------------------------------------------------------------------------------
+ */
 
 static bool starts_constant(const char* at) {
   if (*at == '$') return is_hex_digit(at[1]);

@@ -4,7 +4,8 @@
 
 #include "firmware/language/lexer.h"
 
-/* `keyword` upper case, longest first inside a table; `run` is entered with the keyword consumed. The table ends with a null keyword. */
+/* `keyword` upper case, longest first inside a table; `run` is entered with the keyword consumed. The table ends with a
+ * null keyword. */
 struct command_entry {
   const char* keyword;
   error_t (*run)(struct lexer* lx);

@@ -1,4 +1,4 @@
-/* Direct access to PMAC words (firmware.md 1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. */
+/* Direct access to PMAC words (firmware:1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. */
 #include "firmware/hal/hal.h"
 #include "firmware/host/command_tables.h"
 #include "firmware/host/reply.h"

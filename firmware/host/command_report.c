@@ -1,4 +1,4 @@
-/* Status and identification queries (firmware.md section 5). */
+/* Status and identification queries (firmware:5). */
 #include "firmware/hal/hal.h"
 #include "firmware/host/command_tables.h"
 #include "firmware/host/motor_report.h"

@@ -1,4 +1,4 @@
-/* Resets and storage (firmware.md 5.10), and commands of equipment that is not there. */
+/* Resets and storage (firmware:5.10), and commands of equipment that is not there. */
 #include "firmware/host/command_tables.h"
 #include "firmware/kernel/kernel.h"
 #include "firmware/motion/motion.h"

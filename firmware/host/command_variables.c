@@ -1,4 +1,4 @@
-/* I-, P-, Q- and M-variables on line (firmware.md 1.4, 1.5):
+/* I-, P-, Q- and M-variables on line (firmware:1.4, firmware:1.5):
  *   I19   I0..99   I16,4   I5213,15,100=10   I(P1*100+20)=10   I100..199=*   M1->Y:$78C02,8,1   M0..99->
  * The right side is evaluated once; without `=` every variable is reported on a line of its own. */
 #include "firmware/host/command_tables.h"
@@ -112,7 +112,8 @@ static error_t assign_range(struct lexer* lx, char letter, const struct range* r
   return ERR_NONE;
 }
 
-/* M-variable definitions -------------------------------------------------------------------------------------------- */
+/* M-variable definitions --------------------------------------------------------------------------------------------
+ */
 
 static error_t read_part(struct lexer* lx, struct m_definition* definition) {
   int32_t number;

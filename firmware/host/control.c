@@ -1,4 +1,5 @@
-/* Control characters: run control of all coordinate systems at once, and the reports of eight motors. Background task. */
+/* Control characters: run control of all coordinate systems at once, and the reports of eight motors. Background task.
+ */
 #include "firmware/host/control.h"
 
 #include "firmware/buffers/regions.h"

@@ -1,4 +1,4 @@
-/* Control characters that report or act on motion (firmware.md 5.9). */
+/* Control characters that report or act on motion (firmware:5.9). */
 #ifndef FIRMWARE_HOST_CONTROL_H
 #define FIRMWARE_HOST_CONTROL_H
 

@@ -1,4 +1,5 @@
-/* Error numbers of the command interpreter (firmware.md 6.4). A function that can fail returns one of these; 0 is success. */
+/* Error numbers of the command interpreter (firmware:6.4). A function that can fail returns one of these; 0 is success.
+ */
 #ifndef FIRMWARE_HOST_ERROR_H
 #define FIRMWARE_HOST_ERROR_H
 

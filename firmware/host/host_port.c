@@ -1,6 +1,6 @@
-/* Host port queues. The interrupt owns the head of the receive queue and the tail of the transmit queue, the background the other
- * two; both indices of a queue run freely and are reduced when used. A full receive queue leaves the character in the port, so
- * that the host sees its transmit register occupied and waits. */
+/* Host port queues. The interrupt owns the head of the receive queue and the tail of the transmit queue, the background
+ * the other two; both indices of a queue run freely and are reduced when used. A full receive queue leaves the
+ * character in the port, so that the host sees its transmit register occupied and waits. */
 #include "firmware/host/host_port.h"
 
 #include "firmware/hal/hal.h"

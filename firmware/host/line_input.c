@@ -1,5 +1,5 @@
-/* Host lines of up to 255 characters. Control characters act where they stand, also inside a line; a carriage return hands the
- * line to the command interpreter and frames its reply by I3, I4 and I6. One line a background pass. */
+/* Host lines of up to 255 characters. Control characters act where they stand, also inside a line; a carriage return
+ * hands the line to the command interpreter and frames its reply by I3, I4 and I6. One line a background pass. */
 #include "firmware/host/line_input.h"
 
 #include <stdbool.h>
@@ -12,7 +12,16 @@
 #include "firmware/host/reply_frame.h"
 #include "firmware/variables/variables.h"
 
-enum { LINE_LIMIT = 255, CHUNK = 32, ACKNOWLEDGE = 0x06, BELL = 0x07, BACKSPACE = 0x08, REPEAT = 0x09, LINE_FEED = 0x0A, RETURN = 0x0D };
+enum {
+  LINE_LIMIT = 255,
+  CHUNK = 32,
+  ACKNOWLEDGE = 0x06,
+  BELL = 0x07,
+  BACKSPACE = 0x08,
+  REPEAT = 0x09,
+  LINE_FEED = 0x0A,
+  RETURN = 0x0D
+};
 enum { CHECKSUM_SO_FAR = 0x0E, LAST_LINE = 0x19 };
 
 /* The line is kept as it came and in upper case, converted as it comes: little is left to do at its end. */
@@ -52,8 +61,8 @@ static void report_error(error_t error) {
   host_port_send(RETURN);
 }
 
-/* A line that turns acknowledging by ACK on or off is acknowledged by ACK itself: both what a client that goes by the old
- * setting and what one that goes by the new setting waits for. */
+/* A line that turns acknowledging by ACK on or off is acknowledged by ACK itself: both what a client that goes by the
+ * old setting and what one that goes by the new setting waits for. */
 static void acknowledge(int32_t style_before, uint8_t sum) {
   const int32_t style = i_integer(3);
   if (style >= 2 || style_before >= 2)

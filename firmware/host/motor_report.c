@@ -1,12 +1,21 @@
-/* Motor n's registers stand at $80 * n (firmware.md 1.10): D:+$08 commanded and D:+$0B actual position in 1/(32 Ixx08) count,
- * D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle, X:+$30 and Y:+$40 status words. */
+/* Motor n's registers stand at $80 * n (firmware:1.10): D:+$08 commanded and D:+$0B actual position in 1/(32 Ixx08)
+ * count, D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle, X:+$30 and Y:+$40
+ * status words. */
 #include "firmware/host/motor_report.h"
 
 #include "firmware/hal/hal.h"
 #include "firmware/host/reply.h"
 #include "firmware/variables/variables.h"
 
-enum { COMMANDED = 0x08, ACTUAL = 0x0B, COMPENSATION = 0x10, VELOCITY = 0x1D, STATUS_1 = 0x30, STATUS_2 = 0x40, BIAS = 0x4C };
+enum {
+  COMMANDED = 0x08,
+  ACTUAL = 0x0B,
+  COMPENSATION = 0x10,
+  VELOCITY = 0x1D,
+  STATUS_1 = 0x30,
+  STATUS_2 = 0x40,
+  BIAS = 0x4C
+};
 #define MOTOR_ACTIVATED 0x800000u
 
 static uint32_t base(uint32_t motor) { return 0x80u * (motor + 1u); }
@@ -38,10 +47,13 @@ void motor_report_status(uint32_t motor) {
 
 void motor_report_position(uint32_t motor) {
   const uint32_t at = base(motor);
-  report_scaled(long_word(at + ACTUAL) + long_word(at + COMPENSATION) + long_word(at + BIAS), i_integer(variable(motor, 8)));
+  report_scaled(long_word(at + ACTUAL) + long_word(at + COMPENSATION) + long_word(at + BIAS),
+                i_integer(variable(motor, 8)));
 }
 
-void motor_report_velocity(uint32_t motor) { report_scaled(hal_signed(*hal_x(base(motor) + VELOCITY)), i_integer(variable(motor, 9))); }
+void motor_report_velocity(uint32_t motor) {
+  report_scaled(hal_signed(*hal_x(base(motor) + VELOCITY)), i_integer(variable(motor, 9)));
+}
 
 void motor_report_following_error(uint32_t motor) {
   const uint32_t at = base(motor);

@@ -1,6 +1,6 @@
-/* Control panel: FPDn/ select one of eight coordinate systems in the group of I59, the other inputs act on it when they go low.
- * With nothing selected four of them set I59 instead. JOG, PREJ and HOME of a selected motor ask for nothing: motors are not
- * moved by commands yet. */
+/* Control panel: FPDn/ select one of eight coordinate systems in the group of I59, the other inputs act on it when they
+ * go low. With nothing selected four of them set I59 instead. JOG, PREJ and HOME of a selected motor ask for nothing:
+ * motors are not moved by commands yet. */
 #include "firmware/host/panel.h"
 
 #include "firmware/hal/hal.h"
@@ -14,7 +14,9 @@ enum { I_PANEL_OFF = 2, I_GROUP = 59, SELECTABLE = 8 };
 static bool fitted;
 static volatile uint32_t low; /* inputs that are pulled low, as 1. B writes */
 
-static uint32_t read_low(void) { return ~*hal_y(JPAN_Y_INPUTS) & JPAN_INPUTS_RESET & ~(uint32_t)JPAN_INPUTS_SPARE_MASK; }
+static uint32_t read_low(void) {
+  return ~*hal_y(JPAN_Y_INPUTS) & JPAN_INPUTS_RESET & ~(uint32_t)JPAN_INPUTS_SPARE_MASK;
+}
 
 void panel_initialize(void) {
   fitted = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;
@@ -28,11 +30,13 @@ static uint32_t number(uint32_t inputs) { return (inputs & JPAN_INPUTS_FPD_MASK)
 uint32_t panel_cs(void) {
   const uint32_t n = number(low);
   if (n == 0u || n > SELECTABLE) return COORDINATE_SYSTEMS;
-  return n - 1u + SELECTABLE * ((uint32_t)i_integer(I_GROUP) & 1u); /* groups 2 and 3 are further motors, not further systems */
+  return n - 1u +
+         SELECTABLE * ((uint32_t)i_integer(I_GROUP) & 1u); /* groups 2 and 3 are further motors, not further systems */
 }
 
 static void choose_group(uint32_t pulled) {
-  static const uint32_t inputs[] = {JPAN_INPUTS_HOME_MASK, JPAN_INPUTS_PREJOG_MASK, JPAN_INPUTS_START_MASK, JPAN_INPUTS_STEP_MASK};
+  static const uint32_t inputs[] = {JPAN_INPUTS_HOME_MASK, JPAN_INPUTS_PREJOG_MASK, JPAN_INPUTS_START_MASK,
+                                    JPAN_INPUTS_STEP_MASK};
   for (unsigned group = 0; group < sizeof inputs / sizeof inputs[0]; ++group)
     if ((pulled & inputs[group]) != 0u) i_variable_write(I_GROUP, group);
 }

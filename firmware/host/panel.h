@@ -1,4 +1,5 @@
-/* The control panel port JPAN of Turbo PMAC boards (docs/boards.md). Other boards have none: nothing is ever active there. */
+/* The control panel port JPAN of Turbo PMAC boards (docs/boards.md). Other boards have none: nothing is ever active
+ * there. */
 #ifndef FIRMWARE_HOST_PANEL_H
 #define FIRMWARE_HOST_PANEL_H
 

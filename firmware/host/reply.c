@@ -1,4 +1,5 @@
-/* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Everything goes straight to the transmit queue. */
+/* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Everything goes straight to the transmit
+ * queue. */
 #include "firmware/host/reply.h"
 
 #include "firmware/host/host_port.h"

@@ -1,17 +1,18 @@
-/* CPU clock and Port A wait states: I52 sets the clock, the bus control register gets the factory wait states for it plus those of
- * I37 (host-bus.md 2.4, 2.5). Both take effect at power-up and reset only. */
+/* CPU clock and Port A wait states: I52 sets the clock, the bus control register gets the factory wait states for it
+ * plus those of I37 (host-bus:2.4, host-bus:2.5). Both take effect at power-up and reset only. */
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { RESET_I52 = 7, AREAS = 5 };
 
-/* Areas AA0 main memory, AA1 gate ICs, AA2 DPRAM, AA3 flash, default. The rows above I52 = 15 are the same device budgets at
- * the higher clock: access time (W + 0.75) Tc - 5 ns. */
+/* Areas AA0 main memory, AA1 gate ICs, AA2 DPRAM, AA3 flash, default. The rows above I52 = 15 are the same device
+ * budgets at the higher clock: access time (W + 0.75) Tc - 5 ns. */
 static const struct {
   uint8_t i52, wait[AREAS];
 } rows[] = {
-    {7, {1, 7, 3, 7, 15}}, {9, {1, 10, 4, 7, 15}}, {15, {2, 15, 7, 7, 31}}, {23, {4, 22, 7, 7, 31}}, {31, {5, 31, 7, 7, 31}},
+    {7, {1, 7, 3, 7, 15}},   {9, {1, 10, 4, 7, 15}},  {15, {2, 15, 7, 7, 31}},
+    {23, {4, 22, 7, 7, 31}}, {31, {5, 31, 7, 7, 31}},
 };
 
 static const struct {

@@ -1,6 +1,6 @@
-/* Watches for phase interrupts. Ten phase periods without one mean that no IC drives the clocks (global status bit 3): then no
- * motor may be enabled, and the background runs the servo and real-time tasks from the CPU's cycle counter, so that the host can
- * still repair the set-up. */
+/* Watches for phase interrupts. Ten phase periods without one mean that no IC drives the clocks (global status bit 3):
+ * then no motor may be enabled, and the background runs the servo and real-time tasks from the CPU's cycle counter, so
+ * that the host can still repair the set-up. */
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"

@@ -24,12 +24,13 @@ void tasks_initialize(void);
 /* phase_task.c */
 void phase_task_initialize(void);            /* from the motor variables, with interrupts off */
 extern volatile uint32_t kernel_phase_stamp; /* cycle counter at the last phase interrupt, written by boot/trap.S */
-extern volatile uint32_t kernel_phase_work;  /* bit n-1: motor n is commutated. Not zero: boot/trap.S calls kernel_phase_interrupt */
+extern volatile uint32_t
+    kernel_phase_work; /* bit n-1: motor n is commutated. Not zero: boot/trap.S calls kernel_phase_interrupt */
 
 /* saved_data.c */
 typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;
 saved_t saved_data_restore_variables(uint32_t* initial_ics); /* I; and the ICs found at the last re-initialisation */
-void saved_data_restore_user_memory(void);                   /* P, Q, M of the data just accepted, into cleared memory */
+void saved_data_restore_user_memory(void); /* P, Q, M of the data just accepted, into cleared memory */
 void saved_data_write(uint32_t initial_ics);
 
 /* kernel.c: status bits of the first global word */

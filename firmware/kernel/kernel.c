@@ -1,4 +1,4 @@
-/* Start-up, the background loop and the global status word (firmware.md 8.1, 8.4). */
+/* Start-up, the background loop and the global status word (firmware:8.1, firmware:8.4). */
 #include "firmware/kernel/kernel.h"
 
 #include "firmware/hal/gate_ic.h"
@@ -32,7 +32,9 @@ void kernel_status_set(uint32_t bits) {
 
 uint32_t kernel_status_word(void) { return status | (clock_watch_missing() ? (uint32_t)STATUS_NO_PHASE_CLOCK : 0u); }
 
-bool kernel_motors_may_enable(void) { return (kernel_status_word() & (STATUS_NO_PHASE_CLOCK | STATUS_CONFIGURATION)) == 0u; }
+bool kernel_motors_may_enable(void) {
+  return (kernel_status_word() & (STATUS_NO_PHASE_CLOCK | STATUS_CONFIGURATION)) == 0u;
+}
 
 void kernel_save(void) { saved_data_write(initial_ics); }
 
@@ -58,8 +60,8 @@ static void load_user_memory(void) {
   if (load_user) saved_data_restore_user_memory();
 }
 
-/* The hardware watchdog runs from reset on: 25 ms for the first servo clock edge, and 25 ms from strobe to strobe. So the clocks
- * come first, at the CPU clock after reset, and the steps that take long are strobed. */
+/* The hardware watchdog runs from reset on: 25 ms for the first servo clock edge, and 25 ms from strobe to strobe. So
+ * the clocks come first, at the CPU clock after reset, and the steps that take long are strobed. */
 void kernel_start(kernel_start_t mode) {
   hal_interrupts_off();
   hal_watchdog_strobe();

@@ -15,7 +15,7 @@ void kernel_background_pass(void); /* housekeeping and one command line */
 void kernel_wake_background(void); /* there is something to do: any task */
 
 /* Status */
-uint32_t kernel_status_word(void);   /* first global status word: bits of firmware.md 5.7 */
+uint32_t kernel_status_word(void);   /* first global status word: bits of firmware:5.7 */
 bool kernel_motors_may_enable(void); /* false while the phase clock is missing or the IC set differs */
 
 /* Clocks and time */

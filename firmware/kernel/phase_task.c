@@ -1,11 +1,12 @@
-/* The phase task (firmware.md 8.1), every I7+1 phase interrupts: follows the phase position of each commutated motor. No current
- * is read and nothing is put out yet. Without a commutated motor boot/trap.S only notes the time and does not come here.
+/* The phase task (firmware:8.1), every I7+1 phase interrupts: follows the phase position of each commutated motor. No
+ * current is read and nothing is put out yet. Without a commutated motor boot/trap.S only notes the time and does not
+ * come here.
  *
- * Motor n's present phase position is X:$80n+$34, counts times Ixx70 modulo Ixx71, in -Ixx71/2 .. Ixx71/2-1. It lives in that
- * word alone, so that a user may write it: that is how a phase reference is set.
+ * Motor n's present phase position is X:$80n+$34, counts times Ixx70 modulo Ixx71, in -Ixx71/2 .. Ixx71/2-1. It lives
+ * in that word alone, so that a user may write it: that is how a phase reference is set.
  *
- * The phase task cannot be interrupted by those that write here, so they clear a motor's bit in kernel_phase_work before they
- * touch its entry and set it afterwards. */
+ * The phase task cannot be interrupted by those that write here, so they clear a motor's bit in kernel_phase_work
+ * before they touch its entry and set it afterwards. */
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"
 #include "firmware/kernel/kernel.h"
@@ -26,7 +27,8 @@ static volatile struct phase_motor {
 static uint32_t prescaler;           /* phase task: interrupts since it last worked */
 static const volatile uint32_t none; /* Ixx83 points to nothing */
 
-/* The largest sum, 2^23 counts times 255 and a position of 2^23, just fits. A cycle of 0 counts leaves the 24 bits of the word. */
+/* The largest sum, 2^23 counts times 255 and a position of 2^23, just fits. A cycle of 0 counts leaves the 24 bits of
+ * the word. */
 static uint32_t into_cycle(int32_t position, int32_t cycle) {
   const int32_t half = cycle / 2;
   if (cycle > 0 && (position < -half || position >= cycle - half)) {

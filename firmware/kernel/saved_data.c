@@ -1,6 +1,6 @@
-/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros. Layout in 32-bit words: mark, checksum,
- * count, ICs at the last re-initialisation, ICs at SAVE, then `count` words: (number, value low, value high, integer) of I-variables,
- * a separator, (address, X, Y) of user memory, a separator. */
+/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros. Layout in 32-bit words:
+ * mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words: (number, value low, value
+ * high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator. */
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"

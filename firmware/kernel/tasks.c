@@ -1,7 +1,7 @@
-/* The interrupt tasks below the phase task (firmware.md 8.1). The servo task counts, runs timers, the watchdog counter and the
- * trajectories, and every I8+1 cycles requests the real-time task, which plans moves and strobes the hardware watchdog. When
- * real-time interrupts are meant to be rare (I8 up to 255, slow clocks), the servo task strobes between them: the hardware
- * allows 25 ms only. */
+/* The interrupt tasks below the phase task (firmware:8.1). The servo task counts, runs timers, the watchdog counter and
+ * the trajectories, and every I8+1 cycles requests the real-time task, which plans moves and strobes the hardware
+ * watchdog. When real-time interrupts are meant to be rare (I8 up to 255, slow clocks), the servo task strobes between
+ * them: the hardware allows 25 ms only. */
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/internal.h"
 #include "firmware/kernel/kernel.h"
@@ -47,7 +47,8 @@ void kernel_watchdog_reload(void) {
   hal_unmask(state);
 }
 
-/* The background sleeps between real-time interrupts, which may be further apart than I40 cycles: it is woken in time to reload. */
+/* The background sleeps between real-time interrupts, which may be further apart than I40 cycles: it is woken in time
+ * to reload. */
 static void count_watchdog(void) {
   const int32_t left = watchdog - 1;
   if (left < -8388607) return;

@@ -1,4 +1,5 @@
-/* The stack machine that executes compiled expressions, on-line in the background task and for programs in the real-time task. */
+/* The stack machine that executes compiled expressions, on-line in the background task and for programs in the
+ * real-time task. */
 #include "firmware/language/expression.h"
 #include "firmware/language/mathematics.h"
 #include "firmware/language/operators.h"

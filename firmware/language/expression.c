@@ -1,10 +1,12 @@
-/* Compiler of expressions: operator precedence with an explicit stack instead of recursion, so that the stack need is known. */
+/* Compiler of expressions: operator precedence with an explicit stack instead of recursion, so that the stack need is
+ * known. */
 #include "firmware/language/expression.h"
 
 #include "firmware/language/operators.h"
 #include "firmware/variables/variables.h"
 
-/* No expression of a host line (255 characters) reaches these: an operator or bracket takes a character, so does a word. */
+/* No expression of a host line (255 characters) reaches these: an operator or bracket takes a character, so does a
+ * word. */
 enum { PENDING_LIMIT = 256, ON_LINE_WORDS = 260 };
 
 enum pending_kind { PENDING_OPERATOR, PENDING_BRACKET, PENDING_FUNCTION, PENDING_INDEX };
@@ -37,7 +39,9 @@ error_t word_list_add(struct word_list* list, word48_t word) {
   return ERR_NONE;
 }
 
-error_t word_list_add_instruction(struct word_list* list, const struct instruction* in) { return word_list_add(list, word_encode(in)); }
+error_t word_list_add_instruction(struct word_list* list, const struct instruction* in) {
+  return word_list_add(list, word_encode(in));
+}
 
 static error_t emit(struct compiler* c, enum operation operation, uint32_t group, uint32_t number) {
   struct instruction in = {operation, group, number, 0.0};
@@ -95,7 +99,8 @@ static error_t close_bracket(struct compiler* c) {
 static error_t open_function(struct compiler* c, struct lexer* lx, bool* found) {
   *found = true;
   for (unsigned i = 0; i < sizeof FUNCTIONS / sizeof FUNCTIONS[0]; i++)
-    if (lexer_keyword(lx, FUNCTIONS[i].name)) return lexer_accept(lx, '(') ? hold(c, PENDING_FUNCTION, FUNCTIONS[i].code) : ERR_DATA;
+    if (lexer_keyword(lx, FUNCTIONS[i].name))
+      return lexer_accept(lx, '(') ? hold(c, PENDING_FUNCTION, FUNCTIONS[i].code) : ERR_DATA;
   *found = false;
   return ERR_NONE;
 }
@@ -105,7 +110,8 @@ static error_t variable(struct compiler* c, struct lexer* lx, uint32_t group, bo
   double number;
   *complete = false;
   if (lexer_accept(lx, '(')) return hold(c, PENDING_INDEX, group);
-  if (!lexer_number(lx, &number) || number >= (double)VARIABLE_COUNT || (double)(uint32_t)number != number) return ERR_DATA;
+  if (!lexer_number(lx, &number) || number >= (double)VARIABLE_COUNT || (double)(uint32_t)number != number)
+    return ERR_DATA;
   *complete = true;
   error_t error = grow(c);
   return error != ERR_NONE ? error : emit(c, OP_PUSH_VARIABLE, group, (uint32_t)number);
@@ -127,7 +133,8 @@ static error_t operand(struct compiler* c, struct lexer* lx, bool* complete) {
   } else if (lexer_number(lx, &value)) {
     *complete = true;
   }
-  if (*complete) return value > LEXER_CONSTANT_LIMIT || value < -LEXER_CONSTANT_LIMIT ? ERR_DATA : emit_constant(c, value);
+  if (*complete)
+    return value > LEXER_CONSTANT_LIMIT || value < -LEXER_CONSTANT_LIMIT ? ERR_DATA : emit_constant(c, value);
   error_t error = open_function(c, lx, &found);
   if (found || error != ERR_NONE) return error;
   for (uint32_t group = 0; group < VARIABLE_CLASSES; group++)

@@ -1,6 +1,6 @@
-/* Expressions (firmware.md 1.7): compiled to 48-bit words, the same for on-line use and inside program lines.
- * The words are a stack program in postfix order, one word a token; parentheses cost nothing, a constant that 33 bits do not hold
- * exactly costs two words. */
+/* Expressions (firmware:1.7): compiled to 48-bit words, the same for on-line use and inside program lines.
+ * The words are a stack program in postfix order, one word a token; parentheses cost nothing, a constant that 33 bits
+ * do not hold exactly costs two words. */
 #ifndef FIRMWARE_LANGUAGE_EXPRESSION_H
 #define FIRMWARE_LANGUAGE_EXPRESSION_H
 
@@ -22,13 +22,14 @@ struct evaluator {
 /* Parses and evaluates at once. `cs` (0..15) gives the Q-variables. */
 error_t expression_evaluate(struct lexer* lx, uint32_t cs, double* value);
 
-/* Appends a stack program that leaves one value. `bracketed`: the text starts with `(` and ends with the matching `)`. */
+/* Appends a stack program that leaves one value. `bracketed`: the text starts with `(` and ends with the matching `)`.
+ */
 error_t expression_compile(struct lexer* lx, bool bracketed, struct word_list* out);
 error_t word_list_add(struct word_list* list, word48_t word); /* ERR_DATA when the list is full: line too long */
 error_t word_list_add_instruction(struct word_list* list, const struct instruction* in);
 
-/* Executes one stack instruction; `raw` is the word after OP_PUSH_DOUBLE. False: not a stack instruction, or the stack is misused,
- * which only a corrupted buffer can bring about. */
+/* Executes one stack instruction; `raw` is the word after OP_PUSH_DOUBLE. False: not a stack instruction, or the stack
+ * is misused, which only a corrupted buffer can bring about. */
 bool evaluator_execute(struct evaluator* ev, const struct instruction* in, word48_t head, word48_t raw, uint32_t cs);
 bool evaluator_pop(struct evaluator* ev, double* value);
 double variable_read(uint32_t group, uint32_t cs, double number);

@@ -1,6 +1,7 @@
-/* Text scanner of the command interpreter. Works on the upper-case, NUL-terminated line in place; nothing is copied. Numbers are
- * gathered as integers and divided once by a power of ten, which is exact to the last bit for up to 15 digits and keeps the
- * parsing of a program line well inside the time that the buffer request allows (host-bus.md 5.7, T_FALL). */
+/* Text scanner of the command interpreter. Works on the upper-case, NUL-terminated line in place; nothing is copied.
+ * Numbers are gathered as integers and divided once by a power of ten, which is exact to the last bit for up to 15
+ * digits and keeps the parsing of a program line well inside the time that the buffer request allows (host-bus:5.7,
+ * T_FALL). */
 #include "firmware/language/lexer.h"
 
 enum { SHORT_DIGITS = 9, NUMBER_DIGITS = 18 }; /* decimal digits kept; 10^18 fits 63 bits */

@@ -1,4 +1,5 @@
-/* Text scanner shared by on-line commands and program lines (firmware.md 1.1): case-insensitive, spaces skipped, `;` ends the line. */
+/* Text scanner shared by on-line commands and program lines (firmware:1.1): case-insensitive, spaces skipped, `;` ends
+ * the line. */
 #ifndef FIRMWARE_LANGUAGE_LEXER_H
 #define FIRMWARE_LANGUAGE_LEXER_H
 
@@ -7,13 +8,14 @@
 
 #include "firmware/host/error.h"
 
-#define LEXER_CONSTANT_LIMIT 34359738368.0 /* 2^35, firmware.md 1.1 */
+#define LEXER_CONSTANT_LIMIT 34359738368.0 /* 2^35, firmware:1.1 */
 
 struct lexer {
   const char* at; /* next character not consumed; text is upper case already, NUL-terminated */
 };
 
-/* Next character after spaces, 0 at the end of the line. Inline like lexer_accept: most of the time to BREQ goes into these. */
+/* Next character after spaces, 0 at the end of the line. Inline like lexer_accept: most of the time to BREQ goes into
+ * these. */
 static inline char lexer_peek(struct lexer* lx) {
   while (*lx->at == ' ' || *lx->at == '\t') lx->at++;
   return *lx->at == ';' ? '\0' : *lx->at;

@@ -1,5 +1,5 @@
-/* Elementary functions: exact argument reduction, then a short series. Integer work on the bits of the double replaces what a C
- * library would do with frexp, ldexp and floor. */
+/* Elementary functions: exact argument reduction, then a short series. Integer work on the bits of the double replaces
+ * what a C library would do with frexp, ldexp and floor. */
 #include "firmware/language/mathematics.h"
 
 #define PI 3.14159265358979323846
@@ -139,7 +139,8 @@ static double cosine_series(double x) {
   return 1.0 - 0.5 * s + s * s * p;
 }
 
-/* Reduces to [-pi/4, pi/4] radians and returns the quadrant. Degrees are reduced before the conversion, so SIN(180) is exactly 0. */
+/* Reduces to [-pi/4, pi/4] radians and returns the quadrant. Degrees are reduced before the conversion, so SIN(180) is
+ * exactly 0. */
 static unsigned quadrant(double x, int degrees, double* reduced) {
   double turns = math_floor(degrees ? x / 90.0 + 0.5 : x / (PI / 2.0) + 0.5);
   *reduced = degrees ? (x - turns * 90.0) * (PI / 180.0) : (x - turns * HALF_PI_HIGH) - turns * HALF_PI_LOW;

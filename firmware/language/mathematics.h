@@ -1,12 +1,13 @@
-/* Elementary functions in double precision, good to about 1e-15 relative for moderate arguments; there is no C library in the image.
- * Domain errors follow firmware.md section 10 row 9: 0 or the largest magnitude, never an error. */
+/* Elementary functions in double precision, good to about 1e-15 relative for moderate arguments; there is no C library
+ * in the image. Domain errors follow firmware:10/9: 0 or the largest magnitude, never an error. */
 #ifndef FIRMWARE_LANGUAGE_MATHEMATICS_H
 #define FIRMWARE_LANGUAGE_MATHEMATICS_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MATH_LARGEST 140737488355328.0 /* 2^47: what a division by zero saturates to, the report limit of firmware.md 1.6 */
+#define MATH_LARGEST \
+  140737488355328.0 /* 2^47: what a division by zero saturates to, the report limit of firmware:1.6 */
 
 double math_floor(double x);
 double math_absolute(double x);
@@ -28,8 +29,8 @@ int64_t math_to_integer(double x);      /* floor, saturating at +-2^62 */
 double math_split(double x, int* exponent);
 double math_scale(double m, int exponent); /* m * 2^exponent, 0 on underflow */
 
-/* Without floating-point arithmetic: x as mantissa * 2^(exponent - bits), 2^(bits-1) <= |mantissa| < 2^bits, rounded to nearest; true
- * when exact. And back, mantissa * 2^exponent for |mantissa| up to 2^53. */
+/* Without floating-point arithmetic: x as mantissa * 2^(exponent - bits), 2^(bits-1) <= |mantissa| < 2^bits, rounded to
+ * nearest; true when exact. And back, mantissa * 2^exponent for |mantissa| up to 2^53. */
 bool math_to_fixed(double x, unsigned bits, int64_t* mantissa, int* exponent);
 double math_from_fixed(int64_t mantissa, int exponent);
 

@@ -1,4 +1,4 @@
-/* On-line commands that own buffers and programs (firmware.md 4.3, 4.9, 4.10). */
+/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
 #include "firmware/buffers/define_commands.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"

@@ -1,8 +1,9 @@
-/* Compiler of program statements. Branches, loops, calls and arcs are recognised as statements, so that they are answered with ERR005
- * when no buffer is open, and refused with ERR003: a ring of words cannot be jumped about in. */
+/* Compiler of program statements. Branches, loops, calls and arcs are recognised as statements, so that they are
+ * answered with ERR005 when no buffer is open, and refused with ERR003: a ring of words cannot be jumped about in. */
 #include "firmware/language/statement.h"
 
-/* What a letter means, A to Z: one more than enum axis or enum variable_class, 0 nothing. Looked up for every value of a line. */
+/* What a letter means, A to Z: one more than enum axis or enum variable_class, 0 nothing. Looked up for every value of
+ * a line. */
 static const uint8_t AXIS_OF[26] = {1, 2, 3, ['U' - 'A'] = 4, 5, 6, 7, 8, 9};
 static const uint8_t CLASS_OF[26] = {['M' - 'A'] = 1, ['P' - 'A'] = 2, ['Q' - 'A'] = 3, ['I' - 'A'] = 4};
 
@@ -28,10 +29,11 @@ static const struct {
                 {"FRAX", OP_FRAX, 0}};
 
 /* Statements of fixed programs. */
-static const char* const OTHERS[] = {"ADIS",    "AROT", "BLOCKST", "BSTART",   "BSTOP", "CALL",   "CC0",  "CC1",     "CC2",  "CMD",
-                                     "COMMAND", "DISP", "CC3",     "CCR",      "CIR",   "ELSE",   "ENDI", "ENDW",    "GOS",  "GOTO",
-                                     "IDIS",    "IF(",  "IROT",    "MOVETIME", "MVTM",  "NORMAL", "NRM",  "PRELUDE", "PSET", "PVT",
-                                     "READ(",   "RET",  "SEND",    "SPLINE",   "STOP",  "TINIT",  "TSEL", "WHILE",   "WAIT"};
+static const char* const OTHERS[] = {"ADIS", "AROT",   "BLOCKST", "BSTART",  "BSTOP", "CALL",  "CC0",   "CC1",
+                                     "CC2",  "CMD",    "COMMAND", "DISP",    "CC3",   "CCR",   "CIR",   "ELSE",
+                                     "ENDI", "ENDW",   "GOS",     "GOTO",    "IDIS",  "IF(",   "IROT",  "MOVETIME",
+                                     "MVTM", "NORMAL", "NRM",     "PRELUDE", "PSET",  "PVT",   "READ(", "RET",
+                                     "SEND", "SPLINE", "STOP",    "TINIT",   "TSEL",  "WHILE", "WAIT"};
 
 enum { KEYWORD_COUNT = sizeof KEYWORDS / sizeof KEYWORDS[0], OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
@@ -60,7 +62,8 @@ static bool skip_brackets(struct lexer* lx) {
   return true;
 }
 
-/* An axis letter with its value. Looked for first: no keyword goes on with a number, and these are most of all statements. */
+/* An axis letter with its value. Looked for first: no keyword goes on with a number, and these are most of all
+ * statements. */
 bool statement_axis_starts(struct lexer* lx, uint32_t* axis) {
   (void)lexer_peek(lx);
   struct lexer start = *lx;
@@ -132,7 +135,8 @@ error_t statement_frax_list(struct lexer* lx, uint32_t* mask) {
 }
 
 /* A value behind an axis letter or a keyword: a constant in the same word, or an expression in brackets before it. */
-static error_t compile_value(struct lexer* lx, enum operation constant, enum operation popped, uint32_t number, struct word_list* out) {
+static error_t compile_value(struct lexer* lx, enum operation constant, enum operation popped, uint32_t number,
+                             struct word_list* out) {
   struct instruction in = {constant, 0, number, 0.0};
   error_t error;
   if (lexer_peek(lx) == '(') {
@@ -140,7 +144,8 @@ static error_t compile_value(struct lexer* lx, enum operation constant, enum ope
     error = expression_compile(lx, true, out);
   } else {
     error = lexer_constant(lx, &in.value);
-    if (error == ERR_NONE && constant == OP_RATE && (in.value < 0.0 || (number == RATE_F && in.value == 0.0))) error = ERR_DATA;
+    if (error == ERR_NONE && constant == OP_RATE && (in.value < 0.0 || (number == RATE_F && in.value == 0.0)))
+      error = ERR_DATA;
     if (error == ERR_NONE && number == RATE_TM && constant == OP_RATE && in.value > 8388607.0) error = ERR_DATA;
   }
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
@@ -167,7 +172,8 @@ static error_t compile_assignment(struct lexer* lx, uint32_t group, struct word_
   if (error != ERR_NONE) return error;
   struct instruction constant = word_decode(out->words[before.count]);
   bool single = out->count == before.count + 1 && constant.operation == OP_PUSH;
-  if (single && in.operation == OP_ASSIGN_POP && in.number < 1024 && word_holds_short(constant.value)) { /* one word holds it all */
+  if (single && in.operation == OP_ASSIGN_POP && in.number < 1024 &&
+      word_holds_short(constant.value)) { /* one word holds it all */
     *out = before;
     in.operation = OP_ASSIGN;
     in.value = constant.value;

@@ -1,7 +1,8 @@
 /* Coding of program words.
  *   bits    47   46..43  42..40  39..30  29..24       23..0
  *   field   SOL  CODE1   CODE2   N       EXP (s6)     mantissa (s24, fraction of 23 bits) or an integer
- * Wide constants (CODE1 10 to 13) use the 45 bits below SOL, counted from CODE1 = 10, as kind(5) exponent(s7) mantissa(s33). */
+ * Wide constants (CODE1 10 to 13) use the 45 bits below SOL, counted from CODE1 = 10, as kind(5) exponent(s7)
+ * mantissa(s33). */
 #include "firmware/language/word.h"
 
 #include "firmware/language/mathematics.h"
@@ -125,7 +126,8 @@ word48_t word_encode(const struct instruction* in) {
       break;
   }
   for (unsigned i = 0; i < sizeof STACK_CODES / sizeof STACK_CODES[0]; i++)
-    if (STACK_CODES[i].operation == (uint8_t)in->operation) return fields(CODE_STACK, STACK_CODES[i].code2, in->group, in->number);
+    if (STACK_CODES[i].operation == (uint8_t)in->operation)
+      return fields(CODE_STACK, STACK_CODES[i].code2, in->group, in->number);
   return fields(CODE_BLANK, 0, 0, 0);
 }
 
@@ -162,7 +164,8 @@ static enum operation modal_operation(uint32_t code2, uint32_t n) {
 }
 
 struct instruction word_decode(word48_t word) {
-  uint32_t code1 = FIELD(word, 43, 4), code2 = FIELD(word, 40, 3), n = FIELD(word, 30, 10), exponent = FIELD(word, 24, 6);
+  uint32_t code1 = FIELD(word, 43, 4), code2 = FIELD(word, 40, 3), n = FIELD(word, 30, 10),
+           exponent = FIELD(word, 24, 6);
   if (code1 >= CODE_WIDE && code1 <= CODE_WIDE_LAST) return decode_wide(word);
   struct instruction in = {OP_ILLEGAL, 0, n, 0.0};
   if (code1 >= CODE_M && code1 <= CODE_I && code2 == 0) {

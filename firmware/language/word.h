@@ -1,6 +1,7 @@
-/* The 48-bit words in which program lines are stored: X half in bits 47..24, Y half in bits 23..0. The layout of codes 0 to 9 and 15
- * is that of the binary rotary buffer (host-bus.md 7.7), so that lines copied from DPRAM need no translation; codes 10 to 14 are
- * for what that format cannot hold: constants of 33 bits, and expressions as a stack program (docs/language.md). */
+/* The 48-bit words in which program lines are stored: X half in bits 47..24, Y half in bits 23..0. The layout of codes
+ * 0 to 9 and 15 is that of the binary rotary buffer (host-bus:7.7), so that lines copied from DPRAM need no
+ * translation; codes 10 to 14 are for what that format cannot hold: constants of 33 bits, and expressions as a stack
+ * program (docs/language.md). */
 #ifndef FIRMWARE_LANGUAGE_WORD_H
 #define FIRMWARE_LANGUAGE_WORD_H
 

@@ -1,5 +1,5 @@
-/* Axis definitions: stored, reported and guarded against double use. A definition has up to three axes of one triplet (XYZ or UVW), or
- * one of A, B, C, and an offset. */
+/* Axis definitions: stored, reported and guarded against double use. A definition has up to three axes of one triplet
+ * (XYZ or UVW), or one of A, B, C, and an offset. */
 #include "firmware/motion/axis_definition.h"
 
 #include "firmware/host/command.h"

@@ -1,4 +1,4 @@
-/* Axis definitions `#n->...` (firmware.md 7.4): which axes of which coordinate system a motor carries, and its scale. */
+/* Axis definitions `#n->...` (firmware:7.4): which axes of which coordinate system a motor carries, and its scale. */
 #ifndef FIRMWARE_MOTION_AXIS_DEFINITION_H
 #define FIRMWARE_MOTION_AXIS_DEFINITION_H
 

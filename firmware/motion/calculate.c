@@ -1,6 +1,6 @@
-/* Execution of program words, real-time task: statements in sequence until a move is calculated. LINEAR moves are calculated one
- * ahead, a DWELL lets nothing be calculated until it is over (firmware.md 7.9). Running out of lines is no error in a rotary
- * program: the coordinate system keeps running and waits. */
+/* Execution of program words, real-time task: statements in sequence until a move is calculated. LINEAR moves are
+ * calculated one ahead, a DWELL lets nothing be calculated until it is over (firmware:7.9). Running out of lines is no
+ * error in a rotary program: the coordinate system keeps running and waits. */
 #include "firmware/buffers/rotary.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/variables/variables.h"
@@ -31,11 +31,13 @@ void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uin
 }
 
 static bool is_wait(const struct instruction* in) {
-  return (in->operation == OP_RATE || in->operation == OP_RATE_POP) && (in->number == RATE_DWELL || in->number == RATE_DELAY);
+  return (in->operation == OP_RATE || in->operation == OP_RATE_POP) &&
+         (in->number == RATE_DWELL || in->number == RATE_DELAY);
 }
 
 /* One instruction without effect on moves. False: illegal. */
-static bool execute(uint32_t cs, struct coordinate_system* s, const struct instruction* in, word48_t head, word48_t raw) {
+static bool execute(uint32_t cs, struct coordinate_system* s, const struct instruction* in, word48_t head,
+                    word48_t raw) {
   double value = in->value, index;
   uint32_t number = in->number + (s->prefix << 10);
   s->prefix = 0;
@@ -127,7 +129,7 @@ void calculate_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->quit || s->end_block) {
     if (s->active || (s->next_valid && !s->end_block)) return; /* what is calculated is still to be executed */
-    s->running = s->quit = s->stepping = false;                /* end_block keeps a calculated move from starting until R */
+    s->running = s->quit = s->stepping = false; /* end_block keeps a calculated move from starting until R */
     return;
   }
   if (s->next_valid || (s->active && s->moves[s->executing].kind == MOVE_DWELL)) return;

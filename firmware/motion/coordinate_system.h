@@ -1,6 +1,7 @@
-/* State of the 16 coordinate systems. Axes are virtual: a coordinate system runs without motors, its positions are kept here.
- * Times of the trajectory are in trajectory units, 2^-23 ms, the unit of I10, so that the servo task adds and compares integers only.
- * Owners: B background, R real-time task, S servo task. B changes what R or S own only while they are held off. */
+/* State of the 16 coordinate systems. Axes are virtual: a coordinate system runs without motors, its positions are kept
+ * here. Times of the trajectory are in trajectory units, 2^-23 ms, the unit of I10, so that the servo task adds and
+ * compares integers only. Owners: B background, R real-time task, S servo task. B changes what R or S own only while
+ * they are held off. */
 #ifndef FIRMWARE_MOTION_COORDINATE_SYSTEM_H
 #define FIRMWARE_MOTION_COORDINATE_SYSTEM_H
 
@@ -16,9 +17,9 @@
 enum {
   TRAJECTORY_FRACTION_BITS = 23,
   VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
-  MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware.md 7.5) */
-  CALCULATED_LINES_LIMIT = 32,  /* lines without a move that one real-time interrupt works off for a coordinate system */
-  I_CS_BASE = 5100              /* I5100 + 100 * cs + nn is Isxnn */
+  MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware:7.5) */
+  CALCULATED_LINES_LIMIT = 32, /* lines without a move that one real-time interrupt works off for a coordinate system */
+  I_CS_BASE = 5100             /* I5100 + 100 * cs + nn is Isxnn */
 };
 
 enum i_cs {
@@ -93,15 +94,16 @@ struct coordinate_system {
 
 extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 
-/* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off. A clear that is
- * lost to R costs one more look, nothing else. */
+/* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off.
+ * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
 
 double cs_variable(uint32_t cs, enum i_cs number);
 
 /* calculate.c, real-time task */
 void calculate_ahead(uint32_t cs);
-void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
+void cs_set_axis_mode(struct coordinate_system* s, enum operation operation,
+                      uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
 /* plan.c, real-time task: fills the move that is not executing */
 void plan_line(uint32_t cs);
 void plan_wait(uint32_t cs, enum rate kind, double milliseconds);

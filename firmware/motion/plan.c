@@ -1,13 +1,17 @@
-/* Planning of moves (firmware.md 7.5), real-time task. RAPID moves are planned as unblended LINEAR moves at the feedrate: their own
- * speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
+/* Planning of moves (firmware:7.5), real-time task. RAPID moves are planned as unblended LINEAR moves at the feedrate:
+ * their own speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
 #include "firmware/language/mathematics.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/variables/variables.h"
 
-double cs_variable(uint32_t cs, enum i_cs number) { return i_variable_read((uint32_t)I_CS_BASE + 100u * cs + (uint32_t)number); }
+double cs_variable(uint32_t cs, enum i_cs number) {
+  return i_variable_read((uint32_t)I_CS_BASE + 100u * cs + (uint32_t)number);
+}
 
 /* Rounded to the nearest 2^-23 ms. */
-static int64_t units(double milliseconds) { return (math_to_integer(math_scale(milliseconds, TRAJECTORY_FRACTION_BITS + 1)) + 1) >> 1; }
+static int64_t units(double milliseconds) {
+  return (math_to_integer(math_scale(milliseconds, TRAJECTORY_FRACTION_BITS + 1)) + 1) >> 1;
+}
 
 static double larger(double a, double b) { return a > b ? a : b; }
 

@@ -1,5 +1,5 @@
-/* Where the virtual axes of a coordinate system are: the executing move's profile evaluated at the present trajectory time. Used when
- * a program is aborted; the servo task is held off meanwhile. */
+/* Where the virtual axes of a coordinate system are: the executing move's profile evaluated at the present trajectory
+ * time. Used when a program is aborted; the servo task is held off meanwhile. */
 #include "firmware/motion/coordinate_system.h"
 
 /* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`. */
@@ -23,7 +23,8 @@ void cs_present_position(const struct coordinate_system* s, double position[AXIS
   const struct move* m = &s->moves[s->executing];
   if (!s->active) {
     const struct move* next = &s->moves[s->executing ^ 1u];
-    for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = s->next_valid ? next->start[axis] : s->position[axis];
+    for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+      position[axis] = s->next_valid ? next->start[axis] : s->position[axis];
     return;
   }
   double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->acceleration, half = in / 2.0;

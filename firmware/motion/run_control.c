@@ -1,5 +1,5 @@
-/* Run control. Requests are flags that the real-time and servo tasks act on; only an abort reaches into the moves, with both tasks
- * held off. */
+/* Run control. Requests are flags that the real-time and servo tasks act on; only an abort reaches into the moves, with
+ * both tasks held off. */
 #include "firmware/motion/run_control.h"
 
 #include "firmware/buffers/rotary.h"
@@ -57,7 +57,9 @@ error_t run_point(uint32_t cs, double program) {
   return ERR_NONE;
 }
 
-static bool has_program(uint32_t cs) { return coordinate_systems[cs].pointer == POINTER_ROTARY && rotary_buffers[cs].size != 0; }
+static bool has_program(uint32_t cs) {
+  return coordinate_systems[cs].pointer == POINTER_ROTARY && rotary_buffers[cs].size != 0;
+}
 
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];

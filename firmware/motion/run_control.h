@@ -1,4 +1,5 @@
-/* Run control of the coordinate systems (firmware.md 4.10, 4.11), called by the command interpreter in the background task. */
+/* Run control of the coordinate systems (firmware:4.10, firmware:4.11), called by the command interpreter in the
+ * background task. */
 #ifndef FIRMWARE_MOTION_RUN_CONTROL_H
 #define FIRMWARE_MOTION_RUN_CONTROL_H
 

@@ -1,10 +1,13 @@
 /* Servo task of the coordinate systems: advances trajectory time and goes from move to move. Integer arithmetic only.
  *
- *   velocity   _____________                       A move changes velocity during its first `blend_in` units, its corner lies in the
- *            /:             \:                     middle of that; the next corner is Tm later. The next move, if it is there in time,
- *           / :              :\______              begins half its own acceleration time before that corner, else the velocity falls to
- *    ______/  :              :                     zero during Ta around the corner. From rest to rest a move so takes Tm + Ta.
- *          |<>|blend_in/2    corner + Tm                                                                                            */
+ *   velocity   _____________                       A move changes velocity during its first `blend_in` units, its
+ * corner lies in the
+ *            /:             \:                     middle of that; the next corner is Tm later. The next move, if it is
+ * there in time, / :              :\______              begins half its own acceleration time before that corner, else
+ * the velocity falls to
+ *    ______/  :              :                     zero during Ta around the corner. From rest to rest a move so takes
+ * Tm + Ta.
+ *          |<>|blend_in/2    corner + Tm */
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion.h"
 
@@ -33,7 +36,8 @@ static void begin_from_rest(struct coordinate_system* s) {
   if (s->next_valid && !s->end_block) begin(s, 0, s->moves[s->executing ^ 1u].acceleration, false);
 }
 
-/* The next move joins if it was there before this one began to stop; a blend that should have begun earlier is shortened. */
+/* The next move joins if it was there before this one began to stop; a blend that should have begun earlier is
+ * shortened. */
 static bool try_blend(struct coordinate_system* s, int64_t corner, int64_t stop_begins) {
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
   bool possible = s->next_valid && !s->end_block && next->joins;

@@ -1,4 +1,4 @@
-/* Start-up and status words of the coordinate systems (firmware.md 5.4 to 5.6, 5.8). */
+/* Start-up and status words of the coordinate systems (firmware:5.4 to firmware:5.6, firmware:5.8). */
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
@@ -54,7 +54,8 @@ static uint32_t status1(const struct coordinate_system* s) {
   uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) | bit(s->running && s->continuous, S1_CONTINUOUS) |
                   bit(s->time_mode, S1_TIME_MODE) | bit(s->active && s->moves[s->executing].blended, S1_BLENDING) |
                   bit(s->stepping, S1_STEP) | bit(s->running, S1_RUNNING);
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) { /* A lowest, Z highest: incremental, then feedrate axis above it */
+  for (uint32_t axis = 0; axis < AXIS_COUNT;
+       axis++) { /* A lowest, Z highest: incremental, then feedrate axis above it */
     word |= bit((s->incremental >> axis) & 1u, S1_AXIS_A + 2 * axis);
     word |= bit((s->feedrate_axes >> axis) & 1u, S1_AXIS_A + 1 + 2 * axis);
   }
@@ -62,7 +63,8 @@ static uint32_t status1(const struct coordinate_system* s) {
 }
 
 static bool has_dwell(const struct coordinate_system* s) {
-  return (s->active && s->moves[s->executing].kind == MOVE_DWELL) || (s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_DWELL);
+  return (s->active && s->moves[s->executing].kind == MOVE_DWELL) ||
+         (s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_DWELL);
 }
 
 uint32_t motion_cs_status(uint32_t cs, unsigned word) {
@@ -79,8 +81,8 @@ uint32_t motion_global_status2(void) {
   bool rotary = open == OPEN_ROTARY;
   const uint32_t product = hal_strap(HAL_STRAP_PRODUCT);
   return bit((product & HAL_PRODUCT_ULTRALITE) != 0u, G2_ULTRALITE) | bit((product & HAL_PRODUCT_UMAC) != 0u, G2_UMAC) |
-         bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) | bit(rotary, G2_ROTARY_OPEN) |
-         bit(true, G2_FIXED_FULL); /* no fixed buffer is open (firmware.md 10 row 5) */
+         bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) |
+         bit(rotary, G2_ROTARY_OPEN) | bit(true, G2_FIXED_FULL); /* no fixed buffer is open (firmware:10/5) */
 }
 
 bool motion_any_running(void) {

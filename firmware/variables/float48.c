@@ -1,6 +1,7 @@
-/* The controller's 48-bit floating-point word: 36-bit two's-complement mantissa m / 2^35 in [0.5, 1) or [-1, -0.5), and a
- * 12-bit exponent E; value = m * 2^(E - 2047). X holds mantissa bits 35..12, Y bits 23..12 the rest of it and 11..0 E.
- * Converted bit by bit to and from IEEE double: no floating-point arithmetic, because every P and Q access comes here. */
+/* The controller's 48-bit floating-point word: 36-bit two's-complement mantissa m / 2^35 in [0.5, 1) or [-1, -0.5), and
+ * a 12-bit exponent E; value = m * 2^(E - 2047). X holds mantissa bits 35..12, Y bits 23..12 the rest of it and 11..0
+ * E. Converted bit by bit to and from IEEE double: no floating-point arithmetic, because every P and Q access comes
+ * here. */
 #include "firmware/hal/hal.h"
 #include "firmware/variables/variables.h"
 

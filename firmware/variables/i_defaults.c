@@ -1,4 +1,5 @@
-/* Factory defaults. Most are numbers in i_variables.def; these depend on the ICs found, the card or the motor's number. */
+/* Factory defaults. Most are numbers in i_variables.def; these depend on the ICs found, the card or the motor's number.
+ */
 #include "firmware/variables/i_defaults.h"
 
 #include "firmware/hal/gate_ic.h"
@@ -12,7 +13,8 @@ bool i_of_gate_ic(struct i_place place) { return place.group >= I_GROUP_MACRO &&
 
 bool i_of_absent_ic(struct i_place place) {
   if (!i_of_gate_ic(place)) return false;
-  return !gate_ic_present(place.instance) || (place.group == I_GROUP_SUPPLEMENTARY && gate_ic_is_macrogate(place.instance));
+  return !gate_ic_present(place.instance) ||
+         (place.group == I_GROUP_SUPPLEMENTARY && gate_ic_is_macrogate(place.instance));
 }
 
 static bool can_be_source(unsigned ic) { return gate_ic_present(ic) && !gate_ic_is_macrogate(ic); }
@@ -30,7 +32,8 @@ uint32_t i_clock_direction(unsigned ic, uint32_t clock_source) {
   return gate_ic_direction_variable(ic) == clock_source && can_be_source(ic) ? 0u : gate_ic_direction_inputs(ic);
 }
 
-/* Channels are counted through the servo ICs that are present, four each. Returns the first address, 0 when there is none. */
+/* Channels are counted through the servo ICs that are present, four each. Returns the first address, 0 when there is
+ * none. */
 static uint32_t channel_base(uint32_t channel) {
   uint32_t skip = channel / GATE_IC_CHANNELS;
   for (unsigned ic = 0; ic < GATE_IC_MACRO; ++ic) {

@@ -56,8 +56,8 @@ struct i_entry {
   double value; /* default */
 };
 
-/* Where a number stands: group, number inside the group, and which motor (1..32), coordinate system (0..15) or IC (index of
- * hal/gate_ic.h) it belongs to. `channel` 0..3 for the CHANNEL group, 0..1 for SUPPLEMENTARY. */
+/* Where a number stands: group, number inside the group, and which motor (1..32), coordinate system (0..15) or IC
+ * (index of hal/gate_ic.h) it belongs to. `channel` 0..3 for the CHANNEL group, 0..1 for SUPPLEMENTARY. */
 struct i_place {
   i_group_t group;
   uint32_t offset, instance, channel;

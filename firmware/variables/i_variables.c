@@ -1,5 +1,6 @@
 /* I-variables: values, range reduction, the lock of I41 and the hardware fields behind them.
- * Written by the background and real-time tasks; a double is two stores, so the real-time task is held off meanwhile. */
+ * Written by the background and real-time tasks; a double is two stores, so the real-time task is held off meanwhile.
+ */
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/kernel.h"
@@ -15,7 +16,8 @@ static int32_t integer_of[VARIABLE_COUNT]; /* the same, for tasks that must not 
 static uint32_t timer_start[16][2];        /* servo count when Isx11, Isx12 were written */
 static uint32_t directions_pending;        /* bit per IC: direction written, not yet in the IC */
 
-/* Reading ------------------------------------------------------------------------------------------------------------ */
+/* Reading ------------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_timer(uint32_t number) {
   const uint32_t inside = number % 100u;
@@ -30,7 +32,8 @@ static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
 }
 
 int32_t i_integer(uint32_t number) {
-  if (number - 5100u >= 1600u || !is_timer(number)) return integer_of[number]; /* asked for by every task: mostly no division */
+  if (number - 5100u >= 1600u || !is_timer(number))
+    return integer_of[number]; /* asked for by every task: mostly no division */
   return timer_read(number);
 }
 
@@ -43,11 +46,15 @@ double i_variable_read(uint32_t number) {
   return value;
 }
 
-i_format_t i_variable_format(uint32_t number) { return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL; }
+i_format_t i_variable_format(uint32_t number) {
+  return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
+}
 
-/* Hardware ----------------------------------------------------------------------------------------------------------- */
+/* Hardware -----------------------------------------------------------------------------------------------------------
+ */
 
-#define FIELD(mask) __builtin_ctz(mask), __builtin_popcount(mask) /* lsb and width of a field, or of several that are one variable */
+#define FIELD(mask) \
+  __builtin_ctz(mask), __builtin_popcount(mask) /* lsb and width of a field, or of several that are one variable */
 #define CHANNEL_FIELD(name) SERVO_CHANNEL_CONTROL_##name##_MASK
 #define CLOCK_FIELD(name) SERVO_IC_CLOCK_CONTROL_##name##_MASK /* the same in MACRO ICs */
 
@@ -81,7 +88,8 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
       break;
     case I_FIELD_IC_HARDWARE_CLOCKS:
       gate_ic_set_field(ic, GATE_WORD_CLOCK,
-                        FIELD(CLOCK_FIELD(SCLK_DIVIDER) | CLOCK_FIELD(PFM_DIVIDER) | CLOCK_FIELD(DAC_DIVIDER) | CLOCK_FIELD(ADC_DIVIDER)),
+                        FIELD(CLOCK_FIELD(SCLK_DIVIDER) | CLOCK_FIELD(PFM_DIVIDER) | CLOCK_FIELD(DAC_DIVIDER) |
+                              CLOCK_FIELD(ADC_DIVIDER)),
                         value);
       break;
     case I_FIELD_IC_DEAD_TIME:
@@ -100,7 +108,8 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
       gate_ic_set_word(ic, GATE_WORD_NODE_ACTIVATION, value);
       break;
     case I_FIELD_IC_CHANNEL:
-      gate_ic_set_channel_field(ic, place.channel, channel_fields[place.offset].lsb, channel_fields[place.offset].width, value);
+      gate_ic_set_channel_field(ic, place.channel, channel_fields[place.offset].lsb, channel_fields[place.offset].width,
+                                value);
       break;
     default:
       break;
@@ -119,13 +128,15 @@ void i_variable_apply_clock_directions(void) {
     for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
       const uint32_t direction = (uint32_t)integer_of[gate_ic_direction_variable(ic)];
       if (((pending >> ic) & 1u) != 0u && (direction != gate_ic_direction_inputs(ic)) == (output != 0u))
-        gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_EXTERNAL) | CLOCK_FIELD(SERVO_EXTERNAL)), direction);
+        gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_EXTERNAL) | CLOCK_FIELD(SERVO_EXTERNAL)),
+                          direction);
     }
   }
   kernel_clock_changed();
 }
 
-/* Writing ------------------------------------------------------------------------------------------------------------ */
+/* Writing ------------------------------------------------------------------------------------------------------------
+ */
 
 static void store(uint32_t number, double value) {
   int32_t whole = INT32_MAX;
@@ -142,7 +153,8 @@ static int32_t reduce(const struct i_entry* entry, double value) {
   if (!(value > -140737488355328.0)) value = -140737488355328.0;
   const int64_t whole = value < 0.0 ? -(int64_t)(0.5 - value) : (int64_t)(value + 0.5);
   const uint32_t bits = (uint32_t)whole & ((1u << entry->bits) - 1u);
-  if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u) return (int32_t)(bits | ~((1u << entry->bits) - 1u));
+  if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u)
+    return (int32_t)(bits | ~((1u << entry->bits) - 1u));
   return (int32_t)bits;
 }
 
@@ -173,7 +185,8 @@ void i_variable_write(uint32_t number, double value) {
   const uint32_t state = hal_mask_real_time();
   switch (entry->field) {
     case I_FIELD_CLOCK_SOURCE:
-      if (gate_ic_of_direction((uint32_t)whole) == GATE_IC_COUNT) break; /* I19 takes numbers of direction variables only */
+      if (gate_ic_of_direction((uint32_t)whole) == GATE_IC_COUNT)
+        break; /* I19 takes numbers of direction variables only */
       store(number, whole);
       break;
     case I_FIELD_TIMER:
@@ -200,7 +213,8 @@ void i_variable_write(uint32_t number, double value) {
   if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) kernel_clock_changed();
 }
 
-/* Start-up ----------------------------------------------------------------------------------------------------------- */
+/* Start-up -----------------------------------------------------------------------------------------------------------
+ */
 
 double i_variable_default(uint32_t number) {
   const struct i_place place = i_table_place(number);
@@ -217,8 +231,8 @@ static void defaults(uint32_t first, uint32_t count, uint32_t source) {
   }
 }
 
-/* `copies` more blocks of 100 after the one at `first`: the same, except where the default depends on the motor or coordinate
- * system. Looking every row up for each would double the start-up time. */
+/* `copies` more blocks of 100 after the one at `first`: the same, except where the default depends on the motor or
+ * coordinate system. Looking every row up for each would double the start-up time. */
 static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
   defaults(first, 100, source);
   for (uint32_t block = first + 100u; block < first + 100u * (copies + 1u); block += 100u) {

@@ -1,5 +1,5 @@
-/* M-variables: pointers to a register, part of one, or a word of their own. The definition of Mn is the 48-bit word at $004000+n:
- * Y = register address, X = form in bits 23..20, first bit in 12..8, width in 4..0, signed in bit 5.
+/* M-variables: pointers to a register, part of one, or a word of their own. The definition of Mn is the 48-bit word at
+ * $004000+n: Y = register address, X = form in bits 23..20, first bit in 12..8, width in 4..0, signed in bit 5.
  * `*` (form 0) keeps its value in the Y half of the definition itself. */
 #include "firmware/variables/m_variables.h"
 
@@ -11,15 +11,15 @@
 
 struct m_definition m_variable_definition(uint32_t number) {
   const uint32_t x = *hal_x(M_MEMORY + number) & HAL_WORD_MASK;
-  const struct m_definition definition = {(m_form_t)(x >> 20), *hal_y(M_MEMORY + number) & HAL_WORD_MASK, (uint8_t)((x >> 8) & 0x1Fu),
-                                          (uint8_t)(x & 0x1Fu), ((x >> 5) & 1u) != 0u};
+  const struct m_definition definition = {(m_form_t)(x >> 20), *hal_y(M_MEMORY + number) & HAL_WORD_MASK,
+                                          (uint8_t)((x >> 8) & 0x1Fu), (uint8_t)(x & 0x1Fu), ((x >> 5) & 1u) != 0u};
   return definition;
 }
 
 void m_variable_define(uint32_t number, const struct m_definition* definition) {
   const uint32_t state = hal_mask_real_time();
-  *hal_x(M_MEMORY + number) =
-      ((uint32_t)definition->form << 20) | ((uint32_t)definition->lsb << 8) | (definition->is_signed ? 0x20u : 0u) | definition->width;
+  *hal_x(M_MEMORY + number) = ((uint32_t)definition->form << 20) | ((uint32_t)definition->lsb << 8) |
+                              (definition->is_signed ? 0x20u : 0u) | definition->width;
   *hal_y(M_MEMORY + number) = definition->address;
   hal_unmask(state);
 }

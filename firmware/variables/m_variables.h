@@ -1,4 +1,4 @@
-/* Definitions of M-variables (firmware.md 1.8). */
+/* Definitions of M-variables (firmware:1.8). */
 #ifndef FIRMWARE_VARIABLES_M_VARIABLES_H
 #define FIRMWARE_VARIABLES_M_VARIABLES_H
 

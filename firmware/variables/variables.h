@@ -7,9 +7,10 @@
 
 #define VARIABLE_COUNT 8192u
 
-double i_variable_read(uint32_t number);              /* 0..8191 */
-void i_variable_write(uint32_t number, double value); /* reduces to the range, honours I41, writes the hardware field behind it */
-double i_variable_default(uint32_t number);           /* what `I{number}=*` assigns */
+double i_variable_read(uint32_t number); /* 0..8191 */
+void i_variable_write(uint32_t number,
+                      double value);        /* reduces to the range, honours I41, writes the hardware field behind it */
+double i_variable_default(uint32_t number); /* what `I{number}=*` assigns */
 double p_variable_read(uint32_t number);
 void p_variable_write(uint32_t number, double value);
 double q_variable_read(uint32_t cs, uint32_t number); /* split of the pool by I68 */
@@ -19,14 +20,17 @@ double m_variable_read(uint32_t number);
 void m_variable_write(uint32_t number, double value);
 int32_t i_integer(uint32_t number); /* fast read of an integer I-variable, any task */
 
-/* Clock directions (I7m07, I7m57, I6807...) written since the last call go to the ICs: inputs first, then the output. */
+/* Clock directions (I7m07, I7m57, I6807...) written since the last call go to the ICs: inputs first, then the output.
+ */
 void i_variable_apply_clock_directions(void);
 
-/* Start-up: all I-variables to their defaults; I19, I20..I23 and I4900.. from the ICs found. Hardware is not written. */
+/* Start-up: all I-variables to their defaults; I19, I20..I23 and I4900.. from the ICs found. Hardware is not written.
+ */
 void i_variable_initialize(void);
 void i_variable_write_hardware(void); /* every servo and MACRO IC register from its I-variables */
 
-/* SAVE and restore. A restore begins with zeros, read-only values and the defaults of ICs that were not there when it was saved. */
+/* SAVE and restore. A restore begins with zeros, read-only values and the defaults of ICs that were not there when it
+ * was saved. */
 struct i_saved {
   double value;
   int32_t integer;

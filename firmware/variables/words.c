@@ -1,5 +1,5 @@
-/* One register of the on-chip page is answered here: X:$FFFF8C, half the CPU cycles between two phase interrupts, which clients
- * divide task durations by. The real CPU counts it in a timer. */
+/* One register of the on-chip page is answered here: X:$FFFF8C, half the CPU cycles between two phase interrupts, which
+ * clients divide task durations by. The real CPU counts it in a timer. */
 #include "firmware/variables/words.h"
 
 #include "firmware/hal/hal.h"

@@ -1,4 +1,5 @@
-/* PMAC words as users reach them, with R, W and M-variables. What does not exist on this board reads 0 and swallows what is written. */
+/* PMAC words as users reach them, with R, W and M-variables. What does not exist on this board reads 0 and swallows
+ * what is written. */
 #ifndef FIRMWARE_VARIABLES_WORDS_H
 #define FIRMWARE_VARIABLES_WORDS_H
 

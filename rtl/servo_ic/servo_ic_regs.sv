@@ -1,6 +1,6 @@
 // The four registers that serve a whole servo IC, in the X word at offset 4 of each channel: clock control ($04), DAC strobe
 // ($0C), ADC strobe ($14), PWM control ($1C). Clock clk_ref_i, asynchronous reset. Reset values: both clock directions are
-// inputs, so no two ICs can drive the clocks before firmware has chosen a source. servo-ic.md 2.6.
+// inputs, so no two ICs can drive the clocks before firmware has chosen a source. servo-ic:2.6.
 `default_nettype none
 
 module servo_ic_regs (

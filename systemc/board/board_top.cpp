@@ -30,7 +30,9 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   connect();
 }
 
-void BoardTop::set_motor_inputs(unsigned ic, const MotorInputs& inputs) { gate_ics_.set_motor_inputs(ic, inputs, now_); }
+void BoardTop::set_motor_inputs(unsigned ic, const MotorInputs& inputs) {
+  gate_ics_.set_motor_inputs(ic, inputs, now_);
+}
 
 void BoardTop::watch_motors(std::uint32_t ics) {
   gate_ics_.watch(ics, now_);
@@ -63,7 +65,8 @@ void BoardTop::execute(Tick t) {
   if (ref && select_.any) rdata_ = read_data(t - 1);
   const int written_ic = select_.ic;
   const BusSync::Where read = bus_sync_.rd_where();
-  const int read_ic = ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & gate_ics_.built(), jpan_fitted_).ic : -1;
+  const int read_ic =
+      ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & gate_ics_.built(), jpan_fitted_).ic : -1;
 
   advance_all(t);
   gate_ics_.advance(t);
@@ -176,7 +179,8 @@ void BoardTop::select_lines(std::uint32_t sources, Tick t) {
 
 std::uint32_t BoardTop::selected_lines() const {
   const std::uint32_t fitted_equ = ((fitted_ & 1) != 0 ? 0x0Fu : 0u) | ((fitted_ & 2) != 0 ? 0xF0u : 0u);
-  const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u) << 9;  // by the digits of line_select
+  const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u)
+                                                                          << 9;  // by the digits of line_select
   std::uint32_t lines = 0;
   for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (line_select_ >> 4 * line & 0xF) & 1) << line;
   return lines;
@@ -187,8 +191,9 @@ BoardOutputs BoardTop::pins() const {
   const auto at = [](const PinField& f, std::uint32_t value) { return value << f.lsb; };
   BoardOutputs o;
   o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_) | at(pin::kPaTaN, dpram_.cpu_busy()) |
-           at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) | at(pin::kServo, clock_select_.servo()) |
-           at(pin::kBreq, host_signals_.breq()) | at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
+           at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) |
+           at(pin::kServo, clock_select_.servo()) | at(pin::kBreq, host_signals_.breq()) |
+           at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
            at(pin::kF1er, host_signals_.f1er());
   o.w[1] = at(pin::kIsaSd, isa_slave_.isa_sd()) | at(pin::kIsaIochrdy, isa_slave_.isa_iochrdy()) |
            at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) | at(pin::kIsaIrq, interrupt_controller_.irq()) |

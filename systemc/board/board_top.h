@@ -1,8 +1,8 @@
-// Model of rtl/board/board_top.sv: the controller board behind the Board face, event-driven. Time jumps from one event to
-// the next; at an event the blocks of the buses execute their edges, then the wires between them are copied
-// (systemc/core/model_block.h). The ICs keep a time of their own and catch up when somebody looks (docs/architecture.md).
-// ICs are built for the bits of `ics`, as the RTL's parameters ServoIcMask and MacroIcMask; BoardInputs::fitted selects at run
-// time.
+// Model of rtl/board/board_top.sv: the controller board behind the Board face, event-driven. Time jumps from one event
+// to the next; at an event the blocks of the buses execute their edges, then the wires between them are copied
+// (systemc/core/model_block.h). The ICs keep a time of their own and catch up when somebody looks
+// (docs/architecture.md). ICs are built for the bits of `ics`, as the RTL's parameters ServoIcMask and MacroIcMask;
+// BoardInputs::fitted selects at run time.
 #pragma once
 
 #include <algorithm>
@@ -54,13 +54,13 @@ class BoardTop : public sc_core::sc_module, public Board {
   // The blocks of the buses, by their own types: this is the innermost loop of the model.
   template <class F>
   void each_block(F f) {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(host_signals_), f(dpram_),
-        f(panel_port_);
+    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_),
+        f(host_signals_), f(dpram_), f(panel_port_);
   }
   template <class F>
   void each_block(F f) const {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(host_signals_), f(dpram_),
-        f(panel_port_);
+    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_),
+        f(host_signals_), f(dpram_), f(panel_port_);
   }
   void reset_all(Tick t);
   void advance_all(Tick t);
@@ -77,7 +77,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   std::uint32_t macro_gates() const { return inputs_.macro_gate & gate_ics_.built() >> kMaxServoIcs; }
   bool straps_move() const {
     return inputs_.fitted != fitted_ || macro_gates() != macro_gate_ || inputs_.ext_clock != ext_clock_ ||
-           inputs_.dpram_small != dpram_small_ || inputs_.jpan_fitted != jpan_fitted_ || inputs_.line_select != line_select_;
+           inputs_.dpram_small != dpram_small_ || inputs_.jpan_fitted != jpan_fitted_ ||
+           inputs_.line_select != line_select_;
   }
   Tick next_event() const;
   Tick next_clock_event() const { return std::min(clock_select_.next_event(), gate_ics_.next_clock_event()); }

@@ -1,4 +1,5 @@
-// Model of rtl/board/bus_sync.sv: Port A pins through two stages on clk_ref, one strobe a write and one a finished read.
+// Model of rtl/board/bus_sync.sv: Port A pins through two stages on clk_ref, one strobe a write and one a finished
+// read.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +40,8 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
   bool internal_pending() const { return where0_.internal || where1_.internal || where2_.internal; }
 
   Tick next_event() const override {
-    const bool still = where0_ == where1_ && where1_ == where2_ && wdata0_ == wdata1_ && rd0_n_ == rd1_n_ && rd1_n_ == rd2_n_ &&
-                       wr0_n_ == wr1_n_ && wr1_n_ == wr2_n_;
+    const bool still = where0_ == where1_ && where1_ == where2_ && wdata0_ == wdata1_ && rd0_n_ == rd1_n_ &&
+                       rd1_n_ == rd2_n_ && wr0_n_ == wr1_n_ && wr1_n_ == wr2_n_;
     return still ? kNever : next_ref_edge(now_);
   }
 

@@ -68,7 +68,9 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
     if (q_.ext) return q_.phase != 0 || q_.servo != 0;
     return (q_.phase & (q_.phase - 1)) != 0 || (q_.servo & (q_.servo - 1)) != 0;
   }
-  bool disagree() const { return several() && (fight(q_.phase, phase_level, ext_phase_q_) || fight(q_.servo, servo_level, ext_servo_q_)); }
+  bool disagree() const {
+    return several() && (fight(q_.phase, phase_level, ext_phase_q_) || fight(q_.servo, servo_level, ext_servo_q_));
+  }
   bool fight(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
     const bool low = (drivers & ~level) != 0, high = (drivers & level) != 0;
     return q_.ext ? (ext_level ? low : high) : low && high;

@@ -1,7 +1,7 @@
-// The servo and MACRO ICs of the board and how far each of them has been executed. An IC that nobody looks at stays behind; it is
-// brought up to date when a register of it is accessed, its inputs change or its outputs are asked for. What the board cannot
-// wait for has a time of its own: the clock chain of an IC that drives PHASE or SERVO runs ahead as a second one (`driver`), and
-// an IC with an output that is waited for says when to look again (`look_`).
+// The servo and MACRO ICs of the board and how far each of them has been executed. An IC that nobody looks at stays
+// behind; it is brought up to date when a register of it is accessed, its inputs change or its outputs are asked for.
+// What the board cannot wait for has a time of its own: the clock chain of an IC that drives PHASE or SERVO runs ahead
+// as a second one (`driver`), and an IC with an output that is waited for says when to look again (`look_`).
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@ class GateIcs {
     return index < kServoIcs && has(index) ? (catch_up(index, now), servo_ic_[index].get()) : nullptr;
   }
   MacroIc* macro_ic(unsigned index, Tick now) const {
-    return index < kMacroIcs && has(kServoIcs + index) ? (catch_up(kServoIcs + index, now), macro_ic_[index].get()) : nullptr;
+    return index < kMacroIcs && has(kServoIcs + index) ? (catch_up(kServoIcs + index, now), macro_ic_[index].get())
+                                                       : nullptr;
   }
 
   void reset(Tick t);
@@ -70,7 +71,9 @@ class GateIcs {
  private:
   // Channels of servo IC 0 and 1 whose EQU interrupts.
   unsigned interrupting(unsigned ic) const { return ic < 2 ? interrupting_ >> 4 * ic & 0xF : 0; }
-  std::uint32_t interrupting_ics() const { return ((interrupting_ & 0xF) != 0 ? 1u : 0u) | ((interrupting_ & 0xF0) != 0 ? 2u : 0u); }
+  std::uint32_t interrupting_ics() const {
+    return ((interrupting_ & 0xF) != 0 ? 1u : 0u) | ((interrupting_ & 0xF0) != 0 ? 2u : 0u);
+  }
 
   bool has(unsigned ic) const { return (built_ >> ic & 1) != 0; }
   void catch_up(unsigned ic, Tick t) const { follower_[ic]->catch_up(history_, t); }

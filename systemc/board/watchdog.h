@@ -1,5 +1,5 @@
-// Model of rtl/board/watchdog.sv: trips when 25 ms pass without a firmware strobe or without an edge of SERVO. Closed form:
-// a timer that was reloaded at clk_ref edge number n runs out at the 960th multiple of 1024 after n.
+// Model of rtl/board/watchdog.sv: trips when 25 ms pass without a firmware strobe or without an edge of SERVO. Closed
+// form: a timer that was reloaded at clk_ref edge number n runs out at the 960th multiple of 1024 after n.
 #pragma once
 
 #include <algorithm>

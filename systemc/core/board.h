@@ -45,8 +45,8 @@ class Board {
     return {};
   }
 
-  // Bit i: changes of servo IC i's motor outputs are reported to on_motor_change, edge by edge, after on_change of the same
-  // edge, rising index first. An IC that nobody watches costs an event-driven engine nothing.
+  // Bit i: changes of servo IC i's motor outputs are reported to on_motor_change, edge by edge, after on_change of the
+  // same edge, rising index first. An IC that nobody watches costs an event-driven engine nothing.
   virtual void watch_motors(std::uint32_t ics) { (void)ics; }
   // run_until() also ends after an edge at which an output selected here changes; the IC must be watched.
   virtual void stop_on_motor(unsigned ic, const MotorOutputs& select) { (void)ic, (void)select; }

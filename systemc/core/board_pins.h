@@ -1,7 +1,7 @@
-// The pins of the controller board, as every engine shows them: the Verilated RTL (rtl/board/board_sim.sv packs the same
-// words), the SystemC model, and lock-step, which compares the packed words tick by tick.
-// All outputs are registered: they change only at a clock edge. All inputs are sampled by the first clock edge after they
-// were applied. Active-low pins end in _n.
+// The pins of the controller board, as every engine shows them: the Verilated RTL (rtl/board/board_sim.sv packs the
+// same words), the SystemC model, and lock-step, which compares the packed words tick by tick. All outputs are
+// registered: they change only at a clock edge. All inputs are sampled by the first clock edge after they were applied.
+// Active-low pins end in _n.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace brick {
 
 struct BoardInputs {
   bool rst_n = false;
-  // Port A, the CPU's external bus (host-bus.md section 2)
+  // Port A, the CPU's external bus (host-bus:2)
   std::uint32_t pa_addr = 0;  // A[18:0]; A[5:0] of the on-chip peripheral when pa_int is 1
   bool pa_x = false;          // 1 = X space, 0 = Y space
   std::uint8_t pa_aa = 0;     // AA3..AA0, 1 = region selected
@@ -21,7 +21,7 @@ struct BoardInputs {
   bool pa_rd_n = true;
   bool pa_wr_n = true;
   std::uint32_t pa_wdata = 0;  // D[23:0] as the CPU drives it
-  // ISA / PC104 host bus (host-bus.md 3.4)
+  // ISA / PC104 host bus (host-bus:3.4)
   std::uint32_t isa_sa = 0;  // SA[19:0]
   std::uint16_t isa_sd = 0;  // SD[15:0] as the host drives it
   bool isa_ior_n = true;
@@ -31,7 +31,7 @@ struct BoardInputs {
   bool isa_aen = false;
   bool isa_sbhe_n = true;  // 0 = upper byte lane used
   // straps
-  std::uint32_t fitted = 0x3;         // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
+  std::uint32_t fitted = 0x3;  // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
   std::uint32_t macro_gate = 0;       // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
   bool dpram_small = false;           // dual-ported RAM of 8192 words, not 32768
   bool jpan_fitted = false;           // control panel port of Turbo PMAC boards
@@ -42,7 +42,7 @@ struct BoardInputs {
   bool ext_servo = true;
 };
 
-// One field of the packed output words. `name` is the trace and script name (design.md section 7), scope `brick` left out.
+// One field of the packed output words. `name` is the trace and script name (docs/signals.md), scope `brick` left out.
 struct PinField {
   std::string_view name;
   unsigned word;
@@ -54,9 +54,10 @@ struct PinField {
 constexpr unsigned kBoardOutputWords = 3;
 
 namespace pin {
-constexpr PinField kPaData{"bus.rdata", 0, 0, 24, true};       // D[23:0] as the board drives it
-constexpr PinField kPaTaN{"bus.ta_n", 0, 24, 1, false};        // 0 = transfer acknowledged; 1 stretches the cycle
-constexpr PinField kIrqHost{"cpu.irq_host", 0, 25, 1, false};  // HI08 to CPU: (HRIE & HRDF) | (HTIE & HTDE) | (HCIE & HCP)
+constexpr PinField kPaData{"bus.rdata", 0, 0, 24, true};  // D[23:0] as the board drives it
+constexpr PinField kPaTaN{"bus.ta_n", 0, 24, 1, false};   // 0 = transfer acknowledged; 1 stretches the cycle
+constexpr PinField kIrqHost{"cpu.irq_host", 0, 25, 1,
+                            false};  // HI08 to CPU: (HRIE & HRDF) | (HTIE & HTDE) | (HCIE & HCP)
 constexpr PinField kPhase{"clock.phase", 0, 26, 1, false};
 constexpr PinField kServo{"clock.servo", 0, 27, 1, false};
 constexpr PinField kBreq{"host.breq", 0, 28, 1, false};
@@ -72,15 +73,18 @@ constexpr PinField kWdo{"host.wdo", 1, 20, 1, false};  // 1 = tripped, to the in
 constexpr PinField kWdTripped{"watchdog.tripped", 1, 21, 1, false};
 constexpr PinField kBusyHost{"dpram.busy_host", 1, 22, 1, false};
 constexpr PinField kBusyCpu{"dpram.busy_cpu", 1, 23, 1, false};
-constexpr PinField kPhaseSource{"clock.source_ic", 1, 24, 5, false};    // index as in BoardInputs::fitted; 30 external, 31 none
-constexpr PinField kSourceConflict{"clock.conflict", 1, 29, 1, false};  // drivers of a net disagreed for more than 2 clk
+constexpr PinField kPhaseSource{"clock.source_ic", 1, 24, 5,
+                                false};  // index as in BoardInputs::fitted; 30 external, 31 none
+constexpr PinField kSourceConflict{"clock.conflict", 1, 29, 1,
+                                   false};  // drivers of a net disagreed for more than 2 clk
 constexpr PinField kPicIst{"host.pic.ist", 2, 0, 8, true};
 constexpr PinField kPicSig{"host.pic.sig", 2, 8, 8, true};
 constexpr PinField kPicMsk{"host.pic.msk", 2, 16, 8, true};
 constexpr PinField kPicElr{"host.pic.elr", 2, 24, 8, true};
-inline constexpr std::array kAll{kPaData,   kPaTaN,   kIrqHost,     kPhase,          kServo,  kBreq,   kIpos,   kEror,
-                                 kF1er,     kIsaSd,   kIsaIochrdy,  kIsaMemcs16N,    kIsaIrq, kHreq,   kWdo,    kWdTripped,
-                                 kBusyHost, kBusyCpu, kPhaseSource, kSourceConflict, kPicIst, kPicSig, kPicMsk, kPicElr};
+inline constexpr std::array kAll{kPaData,      kPaTaN,          kIrqHost, kPhase,     kServo,      kBreq,
+                                 kIpos,        kEror,           kF1er,    kIsaSd,     kIsaIochrdy, kIsaMemcs16N,
+                                 kIsaIrq,      kHreq,           kWdo,     kWdTripped, kBusyHost,   kBusyCpu,
+                                 kPhaseSource, kSourceConflict, kPicIst,  kPicSig,    kPicMsk,     kPicElr};
 }  // namespace pin
 
 struct BoardOutputs {

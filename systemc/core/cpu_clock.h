@@ -30,7 +30,9 @@ class CpuClock {
   // First clock edge that is not before the start of `cycle`.
   Tick tick(Cycle cycle) const { return edge_ + (kTicksPerMultiplier * (cycle - cycle_) + n_ - 1) / n_; }
   // First cycle that starts at or after clock edge `t`.
-  Cycle first_cycle(Tick t) const { return cycle_ + ((t - edge_) * n_ + kTicksPerMultiplier - 1) / kTicksPerMultiplier; }
+  Cycle first_cycle(Tick t) const {
+    return cycle_ + ((t - edge_) * n_ + kTicksPerMultiplier - 1) / kTicksPerMultiplier;
+  }
 
  private:
   Tick edge_ = 0;

@@ -1,13 +1,15 @@
-// One clocked block of the SystemC model, as the board drives it (systemc/board/board_top.cpp). The rules make every block
-// behave as its RTL twin does with nonblocking assignments:
+// One clocked block of the SystemC model, as the board drives it (systemc/board/board_top.cpp). The rules make every
+// block behave as its RTL twin does with nonblocking assignments:
 //  - Inputs are plain fields or setters named as the RTL ports without _i. They are levels: every edge after the last
 //    executed one sees them, until the board changes them. A strobe (`we`, `hp_wr`, `rd_done`, ...) is a level too: the
 //    board sets it after edge n and takes it away after edge n+1, so exactly the edge n+1 (clk_ref) sees it.
 //  - Outputs are functions named as the RTL ports without _o: the state after the last executed edge (a combinational
 //    output, such as a read multiplexer, follows the inputs as they stand).
-//  - At an event the board calls advance(t) of every block, then copies the wires, then asks next_event() anew. So edge t
+//  - At an event the board calls advance(t) of every block, then copies the wires, then asks next_event() anew. So edge
+//  t
 //    sees what the others showed before t, whatever the order of the calls.
-//  - An IC (systemc/servo_ic/clock_follower.h) may stay behind: before an input of it changes or anything about it is asked,
+//  - An IC (systemc/servo_ic/clock_follower.h) may stay behind: before an input of it changes or anything about it is
+//  asked,
 //    its owner executes the edges that it has missed, with the inputs as they were.
 #pragma once
 
@@ -30,8 +32,9 @@ class ModelBlock {
   // Executes the edges up to and including t. The board never passes next_event(): t <= next_event().
   virtual void advance(Tick t) = 0;
 
-  // Asynchronous reset: all registers at their reset values, all edges up to and including t spent in reset. Called again
-  // with later t for as long as rst_n is low; the first edge executed normally is t + 1. Memory keeps its content.
+  // Asynchronous reset: all registers at their reset values, all edges up to and including t spent in reset. Called
+  // again with later t for as long as rst_n is low; the first edge executed normally is t + 1. Memory keeps its
+  // content.
   virtual void reset(Tick t) = 0;
 };
 

@@ -1,5 +1,5 @@
-// Named signals of the running machine: the one place that knows every value a user can see, for `@signal`, `@until` and
-// the waveform. Sources set values with their own time stamp and may run ahead of each other; the trace sorts.
+// Named signals of the running machine: the one place that knows every value a user can see, for `@signal`, `@until`
+// and the waveform. Sources set values with their own time stamp and may run ahead of each other; the trace sorts.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class Signals {
  public:
   using Id = std::uint32_t;
 
-  // Declares a signal. `name` is dotted, without the top scope `brick` (design.md section 7), e.g. "host.isa.sa".
+  // Declares a signal. `name` is dotted, without the top scope `brick` (docs/signals.md), e.g. "host.isa.sa".
   Id add(const std::string& name, unsigned width, Radix radix, std::uint64_t initial = 0);
 
   void set(Id id, TimeFs time, std::uint64_t value);

@@ -11,7 +11,7 @@ namespace brick {
 using Tick = std::int64_t;    // periods of clk_pwm since power-on
 using TimeFs = std::int64_t;  // femtoseconds since power-on (2.5 hours at most)
 
-constexpr std::int64_t kPwmClockHz = 117'964'800;  // servo-ic.md section 3
+constexpr std::int64_t kPwmClockHz = 117'964'800;  // servo-ic:3
 constexpr Tick kTicksPerRef = 3;                   // clk_ref (39.3216 MHz) rises on every third tick
 constexpr Tick kNever = INT64_MAX / 4;
 
@@ -29,7 +29,8 @@ constexpr TimeFs tick_to_fs(Tick t) {
 // First tick whose clock edge is not before `time`: an input that changes at `time` is seen by this edge.
 constexpr Tick fs_to_tick(TimeFs time) {
   const TimeFs rest = time % detail::kBlockFs;
-  return time / detail::kBlockFs * detail::kBlockTicks + (rest * detail::kBlockTicks + detail::kBlockFs - 1) / detail::kBlockFs;
+  return time / detail::kBlockFs * detail::kBlockTicks +
+         (rest * detail::kBlockTicks + detail::kBlockFs - 1) / detail::kBlockFs;
 }
 
 // Last tick whose clock edge is not after `time`: an output sampled at `time` shows the state after this edge.

@@ -1,5 +1,5 @@
-// Waveform files, VCD and FST, from sources that run ahead of each other: records carry their own time, the writer holds
-// them back until every source has passed that time (`flush_until`) and writes them in order.
+// Waveform files, VCD and FST, from sources that run ahead of each other: records carry their own time, the writer
+// holds them back until every source has passed that time (`flush_until`) and writes them in order.
 #pragma once
 
 #include <memory>

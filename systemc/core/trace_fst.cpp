@@ -14,7 +14,8 @@ constexpr int kPicoseconds = -12;
 
 class FstWriter : public TraceQueue {
  public:
-  FstWriter(const std::string& file, TimeFs from, TimeFs to) : TraceQueue(from, to), context_(fstWriterCreate(file.c_str(), 1)) {
+  FstWriter(const std::string& file, TimeFs from, TimeFs to)
+      : TraceQueue(from, to), context_(fstWriterCreate(file.c_str(), 1)) {
     if (!context_) throw std::runtime_error(file + ": cannot write the waveform");
     fstWriterSetTimescale(context_.get(), kPicoseconds);
     fstWriterSetVersion(context_.get(), "brick");
@@ -33,13 +34,15 @@ class FstWriter : public TraceQueue {
       const Signals::Info& info = declared()[id].info;
       const bool text = info.radix == Radix::kText;
       const std::string range = !text && info.width > 1 ? " [" + std::to_string(info.width - 1) + ":0]" : "";
-      handles_[id] = fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : FST_VT_VCD_WIRE, FST_VD_IMPLICIT, text ? 0 : info.width,
-                                        (signal + range).c_str(), 0);
+      handles_[id] = fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : FST_VT_VCD_WIRE, FST_VD_IMPLICIT,
+                                        text ? 0 : info.width, (signal + range).c_str(), 0);
     }
     for (const auto& [child, sub] : scope.scopes) write_scope(child, sub);
     fstWriterSetUpscope(context_.get());
   }
-  void write_time(std::int64_t ps, bool) override { fstWriterEmitTimeChange(context_.get(), static_cast<std::uint64_t>(ps)); }
+  void write_time(std::int64_t ps, bool) override {
+    fstWriterEmitTimeChange(context_.get(), static_cast<std::uint64_t>(ps));
+  }
   void write_value(Signals::Id id, std::uint64_t value) override {
     const unsigned width = declared()[id].info.width;
     char bits[64];
@@ -47,7 +50,8 @@ class FstWriter : public TraceQueue {
     fstWriterEmitValueChange(context_.get(), handles_[id], bits);
   }
   void write_text(Signals::Id id, const std::string& text) override {
-    fstWriterEmitVariableLengthValueChange(context_.get(), handles_[id], text.data(), static_cast<std::uint32_t>(text.size()));
+    fstWriterEmitVariableLengthValueChange(context_.get(), handles_[id], text.data(),
+                                           static_cast<std::uint32_t>(text.size()));
   }
   void finish() override { context_.reset(); }
 

@@ -36,7 +36,8 @@ std::string escaped(const std::string& text) {
 
 class VcdWriter : public TraceQueue {
  public:
-  VcdWriter(const std::string& file, TimeFs from, TimeFs to) : TraceQueue(from, to), name_(file), file_(std::fopen(file.c_str(), "w")) {
+  VcdWriter(const std::string& file, TimeFs from, TimeFs to)
+      : TraceQueue(from, to), name_(file), file_(std::fopen(file.c_str(), "w")) {
     if (!file_) throw std::runtime_error(file + ": cannot write the waveform: " + std::strerror(errno));
   }
   ~VcdWriter() override {
@@ -86,7 +87,9 @@ class VcdWriter : public TraceQueue {
     out_ += codes_[id];
     out_ += '\n';
   }
-  void write_text(Signals::Id id, const std::string& text) override { out_ += fmt::format("s{} {}\n", escaped(text), codes_[id]); }
+  void write_text(Signals::Id id, const std::string& text) override {
+    out_ += fmt::format("s{} {}\n", escaped(text), codes_[id]);
+  }
   void write_out() {
     if (std::fwrite(out_.data(), 1, out_.size(), file_.get()) != out_.size()) fail();
     out_.clear();
@@ -96,7 +99,9 @@ class VcdWriter : public TraceQueue {
     write_out();
     if (std::fclose(file_.release()) != 0) fail();
   }
-  [[noreturn]] void fail() const { throw std::runtime_error(name_ + ": cannot write the waveform: " + std::strerror(errno)); }
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(name_ + ": cannot write the waveform: " + std::strerror(errno));
+  }
 
   struct Closer {
     void operator()(std::FILE* f) const { std::fclose(f); }

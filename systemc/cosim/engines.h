@@ -10,8 +10,8 @@
 namespace brick {
 
 struct RtlOptions {
-  // 0: all flip-flops and memories start as zero. Else they start at random, by this seed: reset must bring the flip-flops to
-  // where the model is, while memory differs from the model's until it is written.
+  // 0: all flip-flops and memories start as zero. Else they start at random, by this seed: reset must bring the
+  // flip-flops to where the model is, while memory differs from the model's until it is written.
   std::uint64_t seed = 0;
   bool seeded_bug = false;  // negative control, see rtl/board/board_sim.sv
 };

@@ -1,5 +1,5 @@
-// Lock-step: both engines run the same stretch and leave a list of their pin changes; equal lists mean equal pins at every
-// tick. The model goes first because it knows the stopping edge cheaply.
+// Lock-step: both engines run the same stretch and leave a list of their pin changes; equal lists mean equal pins at
+// every tick. The model goes first because it knows the stopping edge cheaply.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,24 +33,28 @@ using Motors = std::array<MotorOutputs, kMaxServoIcs>;
 template <class T>
 std::size_t first_difference(const std::vector<T>& a, const std::vector<T>& b) {
   return static_cast<std::size_t>(
-      std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.size(), b.size())), b.begin()).first - a.begin());
+      std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.size(), b.size())), b.begin()).first -
+      a.begin());
 }
 template <class T>
 Tick tick_at(const std::vector<T>& list, std::size_t i) {
   return i < list.size() ? list[i].tick : kNever;
 }
 
-// What was seen on Port A and on the host bus, for the report. Each side has its own list, and equal accesses in a row are
-// one line of it: a host that polls a status register must not push the interesting lines out.
+// What was seen on Port A and on the host bus, for the report. Each side has its own list, and equal accesses in a row
+// are one line of it: a host that polls a status register must not push the interesting lines out.
 class AccessLog {
  public:
   void inputs_changed(Tick now, const BoardInputs& from, const BoardInputs& to) {
     strobe(cpu_, now, from.pa_wr_n, to.pa_wr_n,
            [&] { return fmt::format("CPU  write {} = ${:06X} AA={:X}", cpu_address(to), to.pa_wdata, to.pa_aa); });
-    strobe(cpu_, now, from.pa_rd_n, to.pa_rd_n, [&] { return fmt::format("CPU  read  {} AA={:X}", cpu_address(to), to.pa_aa); });
-    strobe(host_, now, from.isa_iow_n, to.isa_iow_n, [&] { return fmt::format("host I/O write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
+    strobe(cpu_, now, from.pa_rd_n, to.pa_rd_n,
+           [&] { return fmt::format("CPU  read  {} AA={:X}", cpu_address(to), to.pa_aa); });
+    strobe(host_, now, from.isa_iow_n, to.isa_iow_n,
+           [&] { return fmt::format("host I/O write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
     strobe(host_, now, from.isa_ior_n, to.isa_ior_n, [&] { return fmt::format("host I/O read  {:05X}", to.isa_sa); });
-    strobe(host_, now, from.isa_memw_n, to.isa_memw_n, [&] { return fmt::format("host mem write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
+    strobe(host_, now, from.isa_memw_n, to.isa_memw_n,
+           [&] { return fmt::format("host mem write {:05X} = {:04X}", to.isa_sa, to.isa_sd); });
     strobe(host_, now, from.isa_memr_n, to.isa_memr_n, [&] { return fmt::format("host mem read  {:05X}", to.isa_sa); });
     if (from.rst_n != to.rst_n) add(cpu_, now, to.rst_n ? "reset released" : "reset");
   }
@@ -64,8 +68,8 @@ class AccessLog {
     all.insert(all.end(), host_.begin(), host_.end());
     for (const auto& [tick, ic, in] : motors_)
       all.push_back({tick, tick, 1,
-                     fmt::format("motor pins {} = {:03X} {:03X} {:03X} {:03X}, ADC {:X} {:X}", servo_ic_scope(ic), in.pins[0], in.pins[1],
-                                 in.pins[2], in.pins[3], in.adc_a, in.adc_b)});
+                     fmt::format("motor pins {} = {:03X} {:03X} {:03X} {:03X}, ADC {:X} {:X}", servo_ic_scope(ic),
+                                 in.pins[0], in.pins[1], in.pins[2], in.pins[3], in.adc_a, in.adc_b)});
     std::stable_sort(all.begin(), all.end(), [](const Line& a, const Line& b) { return a.last < b.last; });
     std::string out;
     for (const Line& line : all) {
@@ -111,9 +115,14 @@ class AccessLog {
 
 class LockstepBoard : public Board {
  public:
-  LockstepBoard(std::unique_ptr<Board> rtl, std::unique_ptr<Board> model) : rtl_(std::move(rtl)), model_(std::move(model)) {
-    rtl_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) { rtl_changes_.push_back({t, after}); };
-    model_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) { model_changes_.push_back({t, after}); };
+  LockstepBoard(std::unique_ptr<Board> rtl, std::unique_ptr<Board> model)
+      : rtl_(std::move(rtl)), model_(std::move(model)) {
+    rtl_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) {
+      rtl_changes_.push_back({t, after});
+    };
+    model_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) {
+      model_changes_.push_back({t, after});
+    };
     rtl_->on_motor_change = [this](Tick t, unsigned ic, const MotorOutputs&, const MotorOutputs& after) {
       rtl_motors_.push_back({t, ic, after});
     };
@@ -172,7 +181,8 @@ class LockstepBoard : public Board {
  private:
   static constexpr std::uint32_t kEveryIc = (1u << kMaxServoIcs) - 1;
 
-  // Hands the changes of the stretch on, edge by edge: the board's pins first. Says whether the run was to end with the last one.
+  // Hands the changes of the stretch on, edge by edge: the board's pins first. Says whether the run was to end with the
+  // last one.
   bool deliver(const BoardOutputs& stop_on) {
     bool stopped = false;
     std::size_t i = 0, k = 0;
@@ -197,10 +207,12 @@ class LockstepBoard : public Board {
 
   // outputs_ and motors_ still stand before the stretch.
   [[noreturn]] void report() const {
-    const std::size_t i = first_difference(rtl_changes_, model_changes_), k = first_difference(rtl_motors_, model_motors_);
+    const std::size_t i = first_difference(rtl_changes_, model_changes_),
+                      k = first_difference(rtl_motors_, model_motors_);
     const Tick tick = std::min(std::min(tick_at(rtl_changes_, i), tick_at(model_changes_, i)),
                                std::min(tick_at(rtl_motors_, k), tick_at(model_motors_, k)));
-    fail(tick, differences(at(tick, rtl_changes_), at(tick, model_changes_)) + differences(at(tick, rtl_motors_), at(tick, model_motors_)));
+    fail(tick, differences(at(tick, rtl_changes_), at(tick, model_changes_)) +
+                   differences(at(tick, rtl_motors_), at(tick, model_motors_)));
   }
   // What one engine showed after the edge `tick`.
   BoardOutputs at(Tick tick, const std::vector<Change>& changes) const {
@@ -210,7 +222,8 @@ class LockstepBoard : public Board {
   }
   Motors at(Tick tick, const std::vector<MotorChange>& changes) const {
     Motors out = motors_;
-    for (std::size_t i = 0; tick_at(changes, i) <= tick && i < changes.size(); ++i) out[changes[i].ic] = changes[i].after;
+    for (std::size_t i = 0; tick_at(changes, i) <= tick && i < changes.size(); ++i)
+      out[changes[i].ic] = changes[i].after;
     return out;
   }
   static std::string differences(const BoardOutputs& rtl, const BoardOutputs& model) {
@@ -236,8 +249,9 @@ class LockstepBoard : public Board {
   }
   [[noreturn]] void fail(Tick tick, const std::string& differences) const {
     const TimeFs time = tick_to_fs(tick);
-    throw LockstepDifference(fmt::format("lock-step: RTL and SystemC model differ at tick {} ({}.{:06} ns){}\nlast bus accesses:{}", tick,
-                                         time / kFsPerNs, time % kFsPerNs, differences, log_.text()));
+    throw LockstepDifference(
+        fmt::format("lock-step: RTL and SystemC model differ at tick {} ({}.{:06} ns){}\nlast bus accesses:{}", tick,
+                    time / kFsPerNs, time % kFsPerNs, differences, log_.text()));
   }
 
   std::unique_ptr<Board> rtl_, model_;

@@ -1,5 +1,5 @@
-// A Verilated board behind the Board face: two clocks, one evaluation a tick, changes of pins found by comparing the packed
-// words. A template over the Verilated class, because each set of built ICs is a class of its own.
+// A Verilated board behind the Board face: two clocks, one evaluation a tick, changes of pins found by comparing the
+// packed words. A template over the Verilated class, because each set of built ICs is a class of its own.
 #pragma once
 
 #include <verilated.h>
@@ -21,7 +21,8 @@ namespace brick {
 // flip-flop works on falling edges. Verilator remembers the level of each clock in a public member of its root object:
 // clearing that member does the same for nothing. Its name differs between versions; where none fits we evaluate.
 template <class Root>
-auto forget_clocks(Root& root, int) -> decltype(root.__Vtrigrprev__TOP__clk_pwm_i = 0, root.__Vtrigrprev__TOP__clk_ref_i = 0, true) {
+auto forget_clocks(Root& root, int)
+    -> decltype(root.__Vtrigrprev__TOP__clk_pwm_i = 0, root.__Vtrigrprev__TOP__clk_ref_i = 0, true) {
   root.__Vtrigrprev__TOP__clk_pwm_i = root.__Vtrigrprev__TOP__clk_ref_i = 0;
   return true;
 }
@@ -61,7 +62,8 @@ class RtlBoard : public Board {
     if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
 #endif
     model_->final();
-    Verilated::threadContextp(&context_);  // its scopes leave the context last used, which may be another board's, long gone
+    Verilated::threadContextp(
+        &context_);  // its scopes leave the context last used, which may be another board's, long gone
     model_.reset();
   }
 
@@ -113,7 +115,8 @@ class RtlBoard : public Board {
       if (!forget_clocks(*m.rootp, 0)) m.eval();
       bool stop = false;
       const auto& pins = m.pins_o;
-      if (__builtin_expect(((pins[0] ^ outputs_.w[0]) | (pins[1] ^ outputs_.w[1]) | (pins[2] ^ outputs_.w[2])) != 0, 0)) {
+      if (__builtin_expect(((pins[0] ^ outputs_.w[0]) | (pins[1] ^ outputs_.w[1]) | (pins[2] ^ outputs_.w[2])) != 0,
+                           0)) {
         const BoardOutputs before = outputs_;
         for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = pins[i];
         if (on_change) on_change(now_, before, outputs_);
@@ -155,7 +158,8 @@ class RtlBoard : public Board {
     MotorOutputs last;
   };
   bool has(unsigned ic) const { return ic < kMaxServoIcs && (fitted_ >> ic & 1) != 0; }
-  // Counters move with clk_ref and with the asynchronous reset only; a serial clock of 39.3216 MHz is lowered and raised by clk_pwm.
+  // Counters move with clk_ref and with the asynchronous reset only; a serial clock of 39.3216 MHz is lowered and
+  // raised by clk_pwm.
   bool motor_differs(const Watched& w, bool counters) const {
     const Model& m = *model_;
     std::uint64_t d = m.motor_o[w.ic] ^ (static_cast<std::uint64_t>(w.last.w[1]) << 32 | w.last.w[0]);

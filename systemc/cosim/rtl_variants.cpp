@@ -36,7 +36,8 @@ std::unique_ptr<Board> make_rtl_board(std::uint32_t fitted, const RtlOptions& op
   for (const Variant& v : kVariants)
     if ((fitted & ~v.built) == 0) return v.make(fitted, options);
   throw std::runtime_error(
-      fmt::format("no Verilated board has all fitted ICs (mask ${:06X}); the largest one is built with ${:06X}: use --engine systemc",
+      fmt::format("no Verilated board has all fitted ICs (mask ${:06X}); the largest one is built with ${:06X}: use "
+                  "--engine systemc",
                   fitted, kVariants[std::size(kVariants) - 1].built));
 }
 

@@ -14,10 +14,13 @@ Cpu::Cpu(DeviceBus* devices) : s_(std::make_unique<State>(*this, devices)) {}
 Cpu::~Cpu() = default;
 
 std::uint8_t* Cpu::map(std::uint32_t base, std::uint32_t bytes, RegionOptions options) {
-  if (bytes == 0 || base % 4 != 0 || bytes % 4 != 0) throw std::invalid_argument("Cpu::map: a region consists of whole words");
-  if (bytes - 1 > UINT32_MAX - base) throw std::invalid_argument("Cpu::map: region passes the end of the address space");
+  if (bytes == 0 || base % 4 != 0 || bytes % 4 != 0)
+    throw std::invalid_argument("Cpu::map: a region consists of whole words");
+  if (bytes - 1 > UINT32_MAX - base)
+    throw std::invalid_argument("Cpu::map: region passes the end of the address space");
   for (const Region& r : s_->regions) {
-    if (r.holds(base, 1) || (base <= r.base && r.base - base < bytes)) throw std::invalid_argument("Cpu::map: regions overlap");
+    if (r.holds(base, 1) || (base <= r.base && r.base - base < bytes))
+      throw std::invalid_argument("Cpu::map: regions overlap");
   }
   Region region{base, bytes, options, {}};
   region.data.reset(static_cast<std::uint8_t*>(std::calloc(bytes, 1)));

@@ -1,6 +1,6 @@
-// RV32IMC instruction-set model with machine mode, cycle costs and predecoded instructions. It stands in for the DSP563xx:
-// its instructions differ, its bus must not (docs/architecture.md). Memory is reached directly (DMI), devices through
-// DeviceBus. Time is counted in CPU clock cycles.
+// RV32IMC instruction-set model with machine mode, cycle costs and predecoded instructions. It stands in for the
+// DSP563xx: its instructions differ, its bus must not (docs/architecture.md). Memory is reached directly (DMI), devices
+// through DeviceBus. Time is counted in CPU clock cycles.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@ namespace brick {
 
 using Cycle = std::int64_t;
 
-// Where loads and stores outside DMI memory go. Called at cycle `now`; returns the cycle at which the instruction goes on.
-// `retry`: the access is still under way. run() returns kDevice before the instruction, which has not retired; the next
-// run() makes the same access again, and the instruction ends when the answer says so.
+// Where loads and stores outside DMI memory go. Called at cycle `now`; returns the cycle at which the instruction goes
+// on. `retry`: the access is still under way. run() returns kDevice before the instruction, which has not retired; the
+// next run() makes the same access again, and the instruction ends when the answer says so.
 class DeviceBus {
  public:
   virtual ~DeviceBus() = default;
@@ -44,8 +44,9 @@ class Cpu {
   Cpu(const Cpu&) = delete;
 
   // Memory -----------------------------------------------------------------------------------------------------------
-  // Maps `bytes` of DMI memory at `base`. `mask24`: stores keep only the low 24 bits of each 32-bit word (PMAC X/Y memory).
-  // `wait`: extra cycles a load or store costs (Port A wait states of the main SRAM). `read_only`: stores raise an access fault.
+  // Maps `bytes` of DMI memory at `base`. `mask24`: stores keep only the low 24 bits of each 32-bit word (PMAC X/Y
+  // memory). `wait`: extra cycles a load or store costs (Port A wait states of the main SRAM). `read_only`: stores
+  // raise an access fault.
   struct RegionOptions {
     bool read_only = false;
     bool mask24 = false;
@@ -74,7 +75,8 @@ class Cpu {
   bool asleep() const;        // WFI with nothing pending
   bool access_waits() const;  // the instruction at pc has begun its device access (DeviceBus::Result::retry)
 
-  // Interrupt pins, as the CPU sees them from its present cycle on. Wakes a sleeping CPU when the bit is enabled in mie.
+  // Interrupt pins, as the CPU sees them from its present cycle on. Wakes a sleeping CPU when the bit is enabled in
+  // mie.
   void set_interrupt(CpuInterrupt line, bool pending);
 
   // Runs until cycle() >= limit, a device access has been made, WFI sleeps, or a watched store asks to halt;

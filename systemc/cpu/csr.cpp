@@ -8,24 +8,31 @@ using namespace cpu;
 
 namespace {
 
-constexpr std::uint32_t kMstatus = 0x300, kMisa = 0x301, kMie = 0x304, kMtvec = 0x305, kMstatush = 0x310, kMcountinhibit = 0x320,
-                        kMscratch = 0x340, kMepc = 0x341, kMcause = 0x342, kMtval = 0x343, kMip = 0x344, kMcycle = 0xB00, kMinstret = 0xB02,
-                        kMcycleh = 0xB80, kMinstreth = 0xB82, kCycle = 0xC00, kInstret = 0xC02, kCycleh = 0xC80, kInstreth = 0xC82,
-                        kMvendorid = 0xF11, kMconfigptr = 0xF15;
+constexpr std::uint32_t kMstatus = 0x300, kMisa = 0x301, kMie = 0x304, kMtvec = 0x305, kMstatush = 0x310,
+                        kMcountinhibit = 0x320, kMscratch = 0x340, kMepc = 0x341, kMcause = 0x342, kMtval = 0x343,
+                        kMip = 0x344, kMcycle = 0xB00, kMinstret = 0xB02, kMcycleh = 0xB80, kMinstreth = 0xB82,
+                        kCycle = 0xC00, kInstret = 0xC02, kCycleh = 0xC80, kInstreth = 0xC82, kMvendorid = 0xF11,
+                        kMconfigptr = 0xF15;
 constexpr std::uint32_t kMisaValue = 0x40001104;  // 32 bits; I, M, C
 constexpr std::uint32_t kStatusMie = 1u << 3, kStatusMpie = 1u << 7, kStatusMpp = 3u << 11;
 constexpr std::uint32_t kLines = 1u << kIrqPhase | 1u << kIrqServo | 1u << kIrqHostPort | 1u << kIrqRealTime;
 constexpr std::uint32_t kWritableLines = kLines & ~(1u << kIrqHostPort);  // the host port is a level
 
-constexpr bool in(std::uint32_t number, std::uint32_t first, std::uint32_t last) { return number >= first && number <= last; }
+constexpr bool in(std::uint32_t number, std::uint32_t first, std::uint32_t last) {
+  return number >= first && number <= last;
+}
 
 // Event counters and their selectors exist and are zero.
-constexpr bool is_zero_counter(std::uint32_t n) { return in(n, 0xB03, 0xB1F) || in(n, 0xB83, 0xB9F) || in(n, 0x323, 0x33F); }
+constexpr bool is_zero_counter(std::uint32_t n) {
+  return in(n, 0xB03, 0xB1F) || in(n, 0xB83, 0xB9F) || in(n, 0x323, 0x33F);
+}
 
 constexpr std::uint32_t high(std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32); }
 constexpr std::uint32_t low(std::uint64_t v) { return static_cast<std::uint32_t>(v); }
 constexpr std::uint64_t with_low(std::uint64_t v, std::uint32_t w) { return (v >> 32 << 32) | w; }
-constexpr std::uint64_t with_high(std::uint64_t v, std::uint32_t w) { return static_cast<std::uint64_t>(w) << 32 | low(v); }
+constexpr std::uint64_t with_high(std::uint64_t v, std::uint32_t w) {
+  return static_cast<std::uint64_t>(w) << 32 | low(v);
+}
 
 }  // namespace
 
@@ -78,7 +85,8 @@ bool Cpu::State::read_csr(std::uint32_t number, std::uint32_t& v) const {
       return true;
     default:
       v = 0;
-      return number == kMstatush || number == kMcountinhibit || is_zero_counter(number) || in(number, kMvendorid, kMconfigptr);
+      return number == kMstatush || number == kMcountinhibit || is_zero_counter(number) ||
+             in(number, kMvendorid, kMconfigptr);
   }
 }
 

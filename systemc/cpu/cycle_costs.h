@@ -1,5 +1,6 @@
-// What each instruction costs in CPU clock cycles: the one table of the timing model. It is a choice, made after a small
-// in-order core with a single-issue pipeline. docs/cpu.md prints it, testbench/unit/cpu/timing_test.cpp checks it.
+// What each instruction costs in CPU clock cycles: the one table of the timing model. It is a choice, made after a
+// small in-order core with a single-issue pipeline. docs/cpu.md prints it, testbench/unit/cpu/timing_test.cpp checks
+// it.
 #pragma once
 
 #include "systemc/cpu/cpu.h"

@@ -3,7 +3,9 @@
 namespace brick::cpu {
 namespace {
 
-constexpr std::uint32_t bits(std::uint32_t word, unsigned high, unsigned low) { return (word >> low) & ((1u << (high - low + 1)) - 1u); }
+constexpr std::uint32_t bits(std::uint32_t word, unsigned high, unsigned low) {
+  return (word >> low) & ((1u << (high - low + 1)) - 1u);
+}
 
 constexpr std::int32_t sign_extend(std::uint32_t value, unsigned width) {
   return static_cast<std::int32_t>(value << (32 - width)) >> (32 - width);
@@ -24,7 +26,8 @@ constexpr bool is_link(unsigned reg) { return reg == 1 || reg == 5; }  // ra and
 Op op_register(std::uint32_t w) {
   const unsigned f3 = bits(w, 14, 12);
   static constexpr Op kBase[8] = {Op::kAdd, Op::kSll, Op::kSlt, Op::kSltu, Op::kXor, Op::kSrl, Op::kOr, Op::kAnd};
-  static constexpr Op kMultiply[8] = {Op::kMul, Op::kMulh, Op::kMulhsu, Op::kMulhu, Op::kDiv, Op::kDivu, Op::kRem, Op::kRemu};
+  static constexpr Op kMultiply[8] = {Op::kMul, Op::kMulh, Op::kMulhsu, Op::kMulhu,
+                                      Op::kDiv, Op::kDivu, Op::kRem,    Op::kRemu};
   switch (bits(w, 31, 25)) {
     case 0x00:
       return kBase[f3];
@@ -78,8 +81,10 @@ Op op_system(std::uint32_t w) {
 }
 
 Decoded decode_full(std::uint32_t w, std::uint32_t pc) {
-  static constexpr Op kLoads[8] = {Op::kLb, Op::kLh, Op::kLw, Op::kIllegal, Op::kLbu, Op::kLhu, Op::kIllegal, Op::kIllegal};
-  static constexpr Op kBranches[8] = {Op::kBeq, Op::kBne, Op::kIllegal, Op::kIllegal, Op::kBlt, Op::kBge, Op::kBltu, Op::kBgeu};
+  static constexpr Op kLoads[8] = {Op::kLb,  Op::kLh,  Op::kLw,      Op::kIllegal,
+                                   Op::kLbu, Op::kLhu, Op::kIllegal, Op::kIllegal};
+  static constexpr Op kBranches[8] = {Op::kBeq, Op::kBne, Op::kIllegal, Op::kIllegal,
+                                      Op::kBlt, Op::kBge, Op::kBltu,    Op::kBgeu};
   const unsigned f3 = bits(w, 14, 12);
   Decoded d;
   d.rd = static_cast<std::uint8_t>(bits(w, 11, 7));

@@ -1,13 +1,13 @@
-// Turns instruction words into the eight-byte form that the execution loop runs. Compressed instructions are expanded to
-// the full instruction they stand for, so there is one decoder; the length lives on in the operation (kAdd / kCAdd).
+// Turns instruction words into the eight-byte form that the execution loop runs. Compressed instructions are expanded
+// to the full instruction they stand for, so there is one decoder; the length lives on in the operation (kAdd / kCAdd).
 #pragma once
 
 #include <cstdint>
 
 namespace brick::cpu {
 
-// Every operation; TWO marks those that have compressed forms and so exist with a length of four and of two bytes. Laid out by hand:
-// clang-format changes its mind about this list each time.
+// Every operation; TWO marks those that have compressed forms and so exist with a length of four and of two bytes. Laid
+// out by hand: clang-format changes its mind about this list each time.
 // clang-format off
 #define BRICK_CPU_OPERATIONS(ONE, TWO) \
   ONE(Decode) ONE(PageEnd) ONE(Illegal) TWO(Add) TWO(Sub) TWO(Xor) TWO(Or) TWO(And) \
@@ -35,13 +35,15 @@ struct Decoded {
   std::uint8_t rd = 0;  // kDiscard for x0
   std::uint8_t rs1 = 0;
   std::uint8_t rs2 = 0;  // kJalr: 1 if it is a call or a return
-  std::int32_t imm = 0;  // kLi: the value; branches and jumps: distance in halfwords; kCsr, kIllegal: the instruction word
+  std::int32_t imm =
+      0;  // kLi: the value; branches and jumps: distance in halfwords; kCsr, kIllegal: the instruction word
 };
 static_assert(sizeof(Decoded) == 8, "one entry of the cache is eight bytes");
 
 constexpr bool is_compressed(std::uint32_t word) { return (word & 3u) != 3u; }
 
-// The full instruction that a compressed one stands for; 0 (an illegal instruction) for reserved and floating-point forms.
+// The full instruction that a compressed one stands for; 0 (an illegal instruction) for reserved and floating-point
+// forms.
 std::uint32_t expand(std::uint16_t halfword);
 
 // Decodes the instruction at `pc`; `word` holds the halfword alone in its low bits when it is compressed.

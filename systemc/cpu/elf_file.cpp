@@ -38,14 +38,16 @@ class Image {
   std::size_t size() const { return bytes_.size(); }
   void need(std::uint64_t offset, std::uint64_t count, const char* part) const {
     if (offset + count > bytes_.size()) {
-      fail("is truncated: " + std::to_string(bytes_.size()) + " bytes; expected " + std::to_string(offset + count) + " for " + part);
+      fail("is truncated: " + std::to_string(bytes_.size()) + " bytes; expected " + std::to_string(offset + count) +
+           " for " + part);
     }
   }
   std::uint32_t u8(std::size_t offset) const { return static_cast<std::uint8_t>(bytes_.at(offset)); }
   std::uint32_t u16(std::size_t offset) const { return u8(offset) | u8(offset + 1) << 8; }
   std::uint32_t u32(std::size_t offset) const { return u16(offset) | u16(offset + 2) << 16; }
   std::vector<std::uint8_t> slice(std::size_t offset, std::size_t count) const {
-    return {bytes_.begin() + static_cast<std::ptrdiff_t>(offset), bytes_.begin() + static_cast<std::ptrdiff_t>(offset + count)};
+    return {bytes_.begin() + static_cast<std::ptrdiff_t>(offset),
+            bytes_.begin() + static_cast<std::ptrdiff_t>(offset + count)};
   }
   std::string text(std::size_t offset, std::size_t end) const {
     std::string s;
@@ -61,16 +63,19 @@ class Image {
 void check_header(const Image& f) {
   static constexpr char kMagic[4] = {0x7F, 'E', 'L', 'F'};
   for (std::size_t i = 0; i < 4; ++i) {
-    if (f.size() < 4 || static_cast<char>(f.u8(i)) != kMagic[i]) f.fail("is not an ELF file; expected a 32-bit RISC-V ELF executable");
+    if (f.size() < 4 || static_cast<char>(f.u8(i)) != kMagic[i])
+      f.fail("is not an ELF file; expected a 32-bit RISC-V ELF executable");
   }
   f.need(0, kHeaderBytes, "the ELF header");
   if (f.u8(4) != 1) f.fail("is an ELF file of class " + std::to_string(f.u8(4)) + "; expected class 1 (32-bit)");
-  if (f.u8(5) != 1) f.fail("is an ELF file with data encoding " + std::to_string(f.u8(5)) + "; expected 1 (little-endian)");
+  if (f.u8(5) != 1)
+    f.fail("is an ELF file with data encoding " + std::to_string(f.u8(5)) + "; expected 1 (little-endian)");
   if (f.u16(18) != kMachineRiscV) f.fail("is for machine " + std::to_string(f.u16(18)) + "; expected 243 (RISC-V)");
   if (f.u16(16) != kTypeExecutable)
     f.fail("is an ELF file of type " + std::to_string(f.u16(16)) + "; expected 2 (executable, fully linked)");
   if (f.u16(44) != 0 && f.u16(42) != kProgramHeaderBytes) {
-    f.fail("has program headers of " + std::to_string(f.u16(42)) + " bytes; expected " + std::to_string(kProgramHeaderBytes));
+    f.fail("has program headers of " + std::to_string(f.u16(42)) + " bytes; expected " +
+           std::to_string(kProgramHeaderBytes));
   }
 }
 
@@ -89,9 +94,11 @@ ElfFile::ElfFile(const std::string& path) : path_(path) {
     const std::uint32_t offset = f.u32(at + 4), run = f.u32(at + 8), stored = f.u32(at + 12), in_file = f.u32(at + 16),
                         in_memory = f.u32(at + 20);
     if (in_memory == 0) continue;
-    if (in_file > in_memory) f.fail("has a segment at " + hex(stored) + " with more bytes in the file than in memory; expected no more");
+    if (in_file > in_memory)
+      f.fail("has a segment at " + hex(stored) + " with more bytes in the file than in memory; expected no more");
     f.need(offset, in_file, "a segment");
-    // Initialised data that the start-up code copies lies at its stored address; what it clears itself, at its run address.
+    // Initialised data that the start-up code copies lies at its stored address; what it clears itself, at its run
+    // address.
     if (in_file == 0) {
       segments_.push_back({run, in_memory, {}});
     } else {
@@ -105,13 +112,15 @@ ElfFile::ElfFile(const std::string& path) : path_(path) {
   const std::size_t sections = f.u32(32), section_count = f.u16(48);
   if (sections == 0 || section_count == 0) return;  // stripped of everything but the program
   if (f.u16(46) != kSectionHeaderBytes) {
-    f.fail("has section headers of " + std::to_string(f.u16(46)) + " bytes; expected " + std::to_string(kSectionHeaderBytes));
+    f.fail("has section headers of " + std::to_string(f.u16(46)) + " bytes; expected " +
+           std::to_string(kSectionHeaderBytes));
   }
   f.need(sections, section_count * kSectionHeaderBytes, "the table of section headers");
   const auto section = [&](std::size_t index) { return sections + index * kSectionHeaderBytes; };
   for (std::size_t i = 0; i < section_count; ++i) {
     if (f.u32(section(i) + 4) != kSectionSymbols) continue;
-    const std::size_t table = f.u32(section(i) + 16), table_bytes = f.u32(section(i) + 20), link = f.u32(section(i) + 24);
+    const std::size_t table = f.u32(section(i) + 16), table_bytes = f.u32(section(i) + 20),
+                      link = f.u32(section(i) + 24);
     f.need(table, table_bytes, "the symbol table");
     if (link >= section_count) f.fail("has a symbol table without names; expected a string table");
     const std::size_t names = f.u32(section(link) + 16), names_end = names + f.u32(section(link) + 20);
@@ -152,7 +161,8 @@ void ElfFile::load(Cpu& cpu) const {
       for (const Cpu::Mapping& m : cpu.mappings())
         expected += (expected.empty() ? "" : ", ") + hex(m.base) + ".." + hex(m.base + m.bytes - 1);
       throw std::runtime_error(path_ + ": segment " + hex(s.address) + ".." + hex(s.address + s.memory_size - 1) +
-                               " lies outside memory; expected it within " + (expected.empty() ? "mapped memory" : expected));
+                               " lies outside memory; expected it within " +
+                               (expected.empty() ? "mapped memory" : expected));
     }
     std::copy(s.data.begin(), s.data.end(), place);
     std::fill(place + s.data.size(), place + s.memory_size, std::uint8_t{0});

@@ -24,7 +24,9 @@ class ElfFile {
   struct Range {
     std::uint32_t address, bytes;
   };
-  const std::vector<Range>& ranges() const { return ranges_; }  // what the program occupies when stored and when running
+  const std::vector<Range>& ranges() const {
+    return ranges_;
+  }  // what the program occupies when stored and when running
   std::uint32_t entry() const { return entry_; }
   std::optional<std::uint32_t> symbol(const std::string& name) const;
   std::string symbol_at(std::uint32_t address) const;  // name of the function that holds the address, "" if none

@@ -1,6 +1,6 @@
 // The execution loop: threaded code over predecoded instructions. Each operation ends by adding its cost and jumping
-// straight to the next one, so the host's branch predictor sees one indirect jump an operation. The loop's variables stay
-// in host registers; they are written back to State before anything else may look at it.
+// straight to the next one, so the host's branch predictor sees one indirect jump an operation. The loop's variables
+// stay in host registers; they are written back to State before anything else may look at it.
 #include <climits>
 #include <cstring>
 
@@ -77,17 +77,18 @@ std::uint32_t remainder(std::uint32_t a, std::uint32_t b) {
     STEP(cycles);             \
   }
 // Goes `d->imm` halfwords on; a target outside the page is looked up.
-#define GO(cycles)                                                                                                       \
-  {                                                                                                                      \
-    const std::uint32_t index = static_cast<std::uint32_t>(d - page->entry.data()) + static_cast<std::uint32_t>(d->imm); \
-    if (__builtin_expect(index < kPageEntries, 1)) {                                                                     \
-      d = &page->entry[index];                                                                                           \
-      NEXT(cycles);                                                                                                      \
-    }                                                                                                                    \
-    target = page->base + 2 * index;                                                                                     \
-    cycle += (cycles);                                                                                                   \
-    ++retired;                                                                                                           \
-    goto boundary;                                                                                                       \
+#define GO(cycles)                                                                               \
+  {                                                                                              \
+    const std::uint32_t index =                                                                  \
+        static_cast<std::uint32_t>(d - page->entry.data()) + static_cast<std::uint32_t>(d->imm); \
+    if (__builtin_expect(index < kPageEntries, 1)) {                                             \
+      d = &page->entry[index];                                                                   \
+      NEXT(cycles);                                                                              \
+    }                                                                                            \
+    target = page->base + 2 * index;                                                             \
+    cycle += (cycles);                                                                           \
+    ++retired;                                                                                   \
+    goto boundary;                                                                               \
   }
 #define BRANCH(condition)                 \
   {                                       \

@@ -6,7 +6,9 @@ namespace {
 
 constexpr std::uint32_t kIllegalWord = 0;
 
-constexpr std::uint32_t bits(std::uint32_t word, unsigned high, unsigned low) { return (word >> low) & ((1u << (high - low + 1)) - 1u); }
+constexpr std::uint32_t bits(std::uint32_t word, unsigned high, unsigned low) {
+  return (word >> low) & ((1u << (high - low + 1)) - 1u);
+}
 
 // Builders of full instructions, by format.
 constexpr std::uint32_t r_type(unsigned f7, unsigned rs2, unsigned rs1, unsigned f3, unsigned rd) {
@@ -19,18 +21,20 @@ constexpr std::uint32_t store_word(std::uint32_t imm, unsigned rs2, unsigned rs1
   return bits(imm, 11, 5) << 25 | rs2 << 20 | rs1 << 15 | 2u << 12 | bits(imm, 4, 0) << 7 | 0x23u;
 }
 constexpr std::uint32_t branch(std::uint32_t imm, unsigned rs1, unsigned f3) {
-  return bits(imm, 12, 12) << 31 | bits(imm, 10, 5) << 25 | rs1 << 15 | f3 << 12 | bits(imm, 4, 1) << 8 | bits(imm, 11, 11) << 7 | 0x63u;
+  return bits(imm, 12, 12) << 31 | bits(imm, 10, 5) << 25 | rs1 << 15 | f3 << 12 | bits(imm, 4, 1) << 8 |
+         bits(imm, 11, 11) << 7 | 0x63u;
 }
 constexpr std::uint32_t jump(std::uint32_t imm, unsigned rd) {
-  return bits(imm, 20, 20) << 31 | bits(imm, 10, 1) << 21 | bits(imm, 11, 11) << 20 | bits(imm, 19, 12) << 12 | rd << 7 | 0x6Fu;
+  return bits(imm, 20, 20) << 31 | bits(imm, 10, 1) << 21 | bits(imm, 11, 11) << 20 | bits(imm, 19, 12) << 12 |
+         rd << 7 | 0x6Fu;
 }
 
 // Sign-extended six-bit immediate of the CI format.
 constexpr std::uint32_t imm6(std::uint32_t h) { return bits(h, 6, 2) | (bits(h, 12, 12) ? 0xFFFFFFE0u : 0u); }
 
 constexpr std::uint32_t jump_distance(std::uint32_t h) {
-  const std::uint32_t low = bits(h, 8, 8) << 10 | bits(h, 10, 9) << 8 | bits(h, 6, 6) << 7 | bits(h, 7, 7) << 6 | bits(h, 2, 2) << 5 |
-                            bits(h, 11, 11) << 4 | bits(h, 5, 3) << 1;
+  const std::uint32_t low = bits(h, 8, 8) << 10 | bits(h, 10, 9) << 8 | bits(h, 6, 6) << 7 | bits(h, 7, 7) << 6 |
+                            bits(h, 2, 2) << 5 | bits(h, 11, 11) << 4 | bits(h, 5, 3) << 1;
   return low | (bits(h, 12, 12) ? 0xFFFFF800u : 0u);
 }
 
@@ -88,8 +92,8 @@ std::uint32_t quadrant1(std::uint32_t h) {
       return i_type(imm6(h), 0, 0, rd, 0x13);  // c.li
     case 3:
       if (rd == 2) {  // c.addi16sp
-        const std::uint32_t imm =
-            bits(h, 4, 3) << 7 | bits(h, 5, 5) << 6 | bits(h, 2, 2) << 5 | bits(h, 6, 6) << 4 | (bits(h, 12, 12) ? 0xFFFFFE00u : 0u);
+        const std::uint32_t imm = bits(h, 4, 3) << 7 | bits(h, 5, 5) << 6 | bits(h, 2, 2) << 5 | bits(h, 6, 6) << 4 |
+                                  (bits(h, 12, 12) ? 0xFFFFFE00u : 0u);
         return imm == 0 ? kIllegalWord : i_type(imm, 2, 0, 2, 0x13);
       }
       return imm6(h) == 0 ? kIllegalWord : imm6(h) << 12 | rd << 7 | 0x37u;  // c.lui

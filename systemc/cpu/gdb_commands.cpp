@@ -1,5 +1,5 @@
-// The packets of the GDB remote serial protocol: registers, memory, breakpoints, queries. A packet that is not known gets the
-// empty answer, one that is known and wrong E01, as the protocol asks.
+// The packets of the GDB remote serial protocol: registers, memory, breakpoints, queries. A packet that is not known
+// gets the empty answer, one that is known and wrong E01, as the protocol asks.
 #include <algorithm>
 #include <cstring>
 
@@ -31,11 +31,16 @@ std::string target_description() {
       "<?xml version=\"1.0\"?><!DOCTYPE target SYSTEM \"gdb-target.dtd\"><target version=\"1.0\">"
       "<architecture>riscv:rv32</architecture><feature name=\"org.gnu.gdb.riscv.cpu\">";
   const auto add = [&](const std::string& name, const std::string& type, unsigned number) {
-    xml += "<reg name=\"" + name + "\" bitsize=\"32\" type=\"" + type + "\" regnum=\"" + std::to_string(number) + "\"/>";
+    xml +=
+        "<reg name=\"" + name + "\" bitsize=\"32\" type=\"" + type + "\" regnum=\"" + std::to_string(number) + "\"/>";
   };
   for (unsigned i = 0; i < kGeneral; ++i) {
     const std::string name = kNames[i];
-    add(name, name == "ra" ? "code_ptr" : name == "sp" || name == "fp" || name == "gp" || name == "tp" ? "data_ptr" : "int", i);
+    add(name,
+        name == "ra"                                                   ? "code_ptr"
+        : name == "sp" || name == "fp" || name == "gp" || name == "tp" ? "data_ptr"
+                                                                       : "int",
+        i);
   }
   add("pc", "code_ptr", kGeneral);
   xml += "</feature><feature name=\"org.gnu.gdb.riscv.csr\">";
@@ -125,7 +130,8 @@ std::optional<std::string> GdbServer::Impl::resume(char action, std::string_view
 std::string GdbServer::Impl::query(std::string_view packet) {
   if (take(packet, "qSupported")) {
     std::string size;
-    for (unsigned shift = 16; shift > 0; shift -= 8) put_byte(size, static_cast<std::uint8_t>(GdbLink::kMaxPacket >> (shift - 8)));
+    for (unsigned shift = 16; shift > 0; shift -= 8)
+      put_byte(size, static_cast<std::uint8_t>(GdbLink::kMaxPacket >> (shift - 8)));
     return "PacketSize=" + size + ";qXfer:features:read+;swbreak+;hwbreak+;vContSupported+;QStartNoAckMode+";
   }
   if (packet == "qAttached") return "1";  // so that a debugger which leaves lets the program run on
@@ -139,7 +145,8 @@ std::string GdbServer::Impl::query(std::string_view packet) {
   if (take(packet, "qXfer:features:read:")) {
     std::uint32_t from = 0, count = 0;
     if (!take(packet, "target.xml:")) return "E00";
-    if (!take_number(packet, from) || !take(packet, ",") || !take_number(packet, count) || !packet.empty()) return kError;
+    if (!take_number(packet, from) || !take(packet, ",") || !take_number(packet, count) || !packet.empty())
+      return kError;
     const std::string xml = target_description();
     if (from >= xml.size()) return "l";
     const std::string piece = xml.substr(from, std::min<std::size_t>(count, GdbLink::kMaxPacket / 2));
@@ -178,7 +185,8 @@ std::string GdbServer::Impl::read_register(std::string_view text) {
   } else if (number == kGeneral) {
     put_word(value, cpu.pc());
   } else {
-    const bool known = std::any_of(std::begin(kCsrs), std::end(kCsrs), [&](const NamedCsr& c) { return kFirstCsr + c.number == number; });
+    const bool known = std::any_of(std::begin(kCsrs), std::end(kCsrs),
+                                   [&](const NamedCsr& c) { return kFirstCsr + c.number == number; });
     if (!known) return kError;
     put_word(value, cpu.csr(number - kFirstCsr));
   }
@@ -224,7 +232,8 @@ std::string GdbServer::Impl::write_memory(std::string_view text, bool binary) {
   std::uint8_t* memory = cpu.memory(address, count);
   if (memory == nullptr) return kError;
   bool mask24 = false;
-  for (const Cpu::Mapping& m : cpu.mappings()) mask24 = mask24 || (m.mask24 && address >= m.base && address - m.base < m.bytes);
+  for (const Cpu::Mapping& m : cpu.mappings())
+    mask24 = mask24 || (m.mask24 && address >= m.base && address - m.base < m.bytes);
   for (std::uint32_t i = 0; i < count; ++i) {
     const bool missing = mask24 && (address + i) % 4 == 3;  // PMAC words have 24 bits
     memory[i] = missing ? 0 : static_cast<std::uint8_t>((*bytes)[i]);

@@ -24,8 +24,8 @@ class GdbLink {
   bool try_accept();  // does not wait
   void close();
 
-  // Waits for the next sound packet; damaged ones are asked for again. Empty: the connection has gone. A packet longer than
-  // kMaxPacket comes as its first kMaxPacket bytes and `too_long`.
+  // Waits for the next sound packet; damaged ones are asked for again. Empty: the connection has gone. A packet longer
+  // than kMaxPacket comes as its first kMaxPacket bytes and `too_long`.
   struct Packet {
     std::string data;  // escapes resolved
     bool too_long;

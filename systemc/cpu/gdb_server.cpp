@@ -88,7 +88,8 @@ Cpu::Stop GdbServer::Impl::one_instruction() {
     if (access.address - w.address >= w.bytes && w.address - access.address >= access.bytes) continue;
     watch_hit = w.kind == Kind::kWrite ? "watch:" : w.kind == Kind::kRead ? "rwatch:" : "awatch:";
     const std::uint32_t at = access.address - w.address < w.bytes ? access.address : w.address;
-    for (unsigned shift = 32; shift > 0; shift -= 8) gdb::put_byte(watch_hit, static_cast<std::uint8_t>(at >> (shift - 8)));
+    for (unsigned shift = 32; shift > 0; shift -= 8)
+      gdb::put_byte(watch_hit, static_cast<std::uint8_t>(at >> (shift - 8)));
     watch_hit += ';';
     break;
   }

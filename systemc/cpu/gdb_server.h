@@ -1,6 +1,7 @@
-// Debugger on the modelled CPU: a GDB remote serial protocol server (docs/debugging.md). The machine asks it to run the CPU
-// in the CPU's place; it stops between two instructions, and while it serves the debugger nothing else goes on, so simulated
-// time stands still. It patches no code and adds no cycles: a program that is only continued runs as without it.
+// Debugger on the modelled CPU: a GDB remote serial protocol server (docs/debugging.md). The machine asks it to run the
+// CPU in the CPU's place; it stops between two instructions, and while it serves the debugger nothing else goes on, so
+// simulated time stands still. It patches no code and adds no cycles: a program that is only continued runs as without
+// it.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +30,8 @@ class GdbServer {
   // Cpu::run with stops for the debugger. The first call waits for a debugger to connect.
   Cpu::Stop run(Cycle limit);
 
-  // To be called now and then. Without a debugger it looks for a new one; with one, for a break. `idle`: the CPU sleeps or is
-  // held, so there is no next instruction to stop before, and the debugger is served here.
+  // To be called now and then. Without a debugger it looks for a new one; with one, for a break. `idle`: the CPU sleeps
+  // or is held, so there is no next instruction to stop before, and the debugger is served here.
   void poll(bool idle);
 
   std::function<std::string()> on_time;  // answer to `monitor time`

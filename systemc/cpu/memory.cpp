@@ -33,7 +33,9 @@ Access Cpu::State::load(std::uint32_t address, unsigned bytes) {
     std::memcpy(&value, r->data.get() + (address - r->base), bytes);
     cycle += r->options.wait;
     const std::uint32_t page = address & kPageMask;
-    if (r->holds(page, kPageBytes)) { load_tlb[tlb_index(address)] = {page, r->data.get() + (page - r->base), r->options.wait}; }
+    if (r->holds(page, kPageBytes)) {
+      load_tlb[tlb_index(address)] = {page, r->data.get() + (page - r->base), r->options.wait};
+    }
     return Access::kDone;
   }
   if (devices == nullptr) {
@@ -69,7 +71,8 @@ Access Cpu::State::store(std::uint32_t address, unsigned bytes, std::uint32_t da
     cycle += r->options.wait;
     code_changed(address, bytes);
     const std::uint32_t page = address & kPageMask;
-    const bool page_watched = std::any_of(watched.begin(), watched.end(), [&](std::uint32_t w) { return (w & kPageMask) == page; });
+    const bool page_watched =
+        std::any_of(watched.begin(), watched.end(), [&](std::uint32_t w) { return (w & kPageMask) == page; });
     if (!page_watched && r->holds(page, kPageBytes)) {
       StoreEntry& e = store_tlb[tlb_index(address)];
       e.word_tag = page;

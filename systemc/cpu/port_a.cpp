@@ -87,8 +87,8 @@ bool PortA::begin(tlm::tlm_generic_payload& payload, PortARequest& request) {
   cycle_.on_chip = x && address >= kOnChipFirst && address <= kOnChipLast;
   unsigned area = kDefaultArea;
   if (!cycle_.on_chip) {
-    const auto region =
-        std::find_if(std::begin(kRegions), std::end(kRegions), [&](const Region& r) { return address >= r.first && address <= r.last; });
+    const auto region = std::find_if(std::begin(kRegions), std::end(kRegions),
+                                     [&](const Region& r) { return address >= r.first && address <= r.last; });
     if (region == std::end(kRegions)) {
       payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
       return false;
@@ -128,7 +128,8 @@ void PortA::control_register(tlm::tlm_generic_payload& payload, PortARequest& re
   next_start_ = request.done;
   if (cycle_.write) {
     reg = cycle_.data & (is_bcr ? regs::cpu_bus::kBcr : regs::cpu_bus::kPctl).written;
-    if (!is_bcr) clock_.restart(clock_.tick(request.done), request.done, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
+    if (!is_bcr)
+      clock_.restart(clock_.tick(request.done), request.done, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
     if (on_control) on_control();
   } else {
     std::memcpy(payload.get_data_ptr(), &reg, sizeof reg);
@@ -165,8 +166,8 @@ void PortA::next(Step step) {
   stand_ = sample ? fs_to_tick_floor(time_) : fs_to_tick(time_) - 1;
 }
 
-// After the strobe has fallen: what is sampled next, or the end of the strobe. Each sample of /TA that says "not yet" adds a
-// clock, and data sampled before it does not count.
+// After the strobe has fallen: what is sampled next, or the end of the strobe. Each sample of /TA that says "not yet"
+// adds a clock, and data sampled before it does not count.
 void PortA::after_low() {
   const bool data_first = time_of(Step::kSampleData) <= time_of(Step::kSampleTa);
   if (!data_sampled_ && (ta_sampled_ || data_first))

@@ -1,7 +1,7 @@
-// Port A bus master: turns one device access of the CPU into one bus cycle with the edges of the DSP563xx, in femtoseconds
-// (docs/port-a.md). It also holds the two on-chip registers that shape the cycles: BCR (wait states) and PCTL (CPU clock).
-// A cycle spans many clock edges at which others act, so b_transport() does not block: the response status stays
-// TLM_INCOMPLETE_RESPONSE while the cycle runs, and the same payload is presented again for the answer.
+// Port A bus master: turns one device access of the CPU into one bus cycle with the edges of the DSP563xx, in
+// femtoseconds (docs/port-a.md). It also holds the two on-chip registers that shape the cycles: BCR (wait states) and
+// PCTL (CPU clock). A cycle spans many clock edges at which others act, so b_transport() does not block: the response
+// status stays TLM_INCOMPLETE_RESPONSE while the cycle runs, and the same payload is presented again for the answer.
 #pragma once
 
 #include <tlm_utils/simple_target_socket.h>

@@ -1,4 +1,4 @@
-// The shape of a Port A cycle in quarters of a CPU clock, from the formulas of the DSP563xx (host-bus.md 2.2) without
+// The shape of a Port A cycle in quarters of a CPU clock, from the formulas of the DSP563xx (host-bus:2.2) without
 // their guard bands: what the pins do at the latest or earliest is the guard band away. docs/port-a.md draws it.
 #pragma once
 
@@ -34,7 +34,8 @@ constexpr PortAShape port_a_shape(unsigned wait_states, bool write) {
 constexpr TimeFs kReadDataSetup = 5 * kFsPerNs;  // rows 104 and 105: data must stand this long before /RD rises
 constexpr TimeFs kTaSetup = 2 * kFsPerNs;        // row 118: before the clock edge a quarter before the strobe rises
 
-// Extra cycles of an access to DMI memory in an area with these wait states: one clock is in the instruction's own cost.
+// Extra cycles of an access to DMI memory in an area with these wait states: one clock is in the instruction's own
+// cost.
 constexpr std::int64_t memory_wait(unsigned wait_states) { return port_a_shape(wait_states, false).clocks - 1; }
 
 }  // namespace brick

@@ -67,7 +67,8 @@ void Dpram::host_edge(bool blocked) {
   }
 }
 
-// Memory has no reset: at the edge that begins the reset the flip-flops fall, but a write that they had granted is still made.
+// Memory has no reset: at the edge that begins the reset the flip-flops fall, but a write that they had granted is
+// still made.
 void Dpram::reset(Tick t) {
   if (in.mem_wr && host_own_) host_write();
   if (cpu_wr_ && !cpu_done_ && !cpu_blocked()) poke(cpu_cell_, in.cpu_wdata);

@@ -44,7 +44,9 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   static constexpr unsigned kWords = 32768, kSmallWords = 8192;
   unsigned fitted() const { return in.small ? kSmallWords : kWords; }
   bool cpu_active() const { return cpu_rd_ || cpu_wr_; }
-  bool conflict() const { return cpu_cell_ == in.mem_addr && (cpu_wr_ || !in.mem_rd); }  // of the two requests as they stand
+  bool conflict() const {
+    return cpu_cell_ == in.mem_addr && (cpu_wr_ || !in.mem_rd);
+  }  // of the two requests as they stand
   bool cpu_blocked() const { return host_own_ && conflict(); }
   bool host_blocked() const { return cpu_active() && conflict(); }
   bool cpu_idle() const;

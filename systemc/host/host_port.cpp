@@ -21,7 +21,8 @@ void set_byte(std::uint32_t& word, unsigned lsb, std::uint8_t value) {
 
 }  // namespace
 
-HostPort::HostPort(const sc_core::sc_module_name& name) : sc_module(name), host_socket("host_socket"), cpu_socket("cpu_socket") {
+HostPort::HostPort(const sc_core::sc_module_name& name)
+    : sc_module(name), host_socket("host_socket"), cpu_socket("cpu_socket") {
   host_socket.register_b_transport(this, &HostPort::host_transport);
   cpu_socket.register_b_transport(this, &HostPort::cpu_transport);
 }
@@ -34,7 +35,8 @@ std::uint8_t HostPort::host_read(unsigned addr) const {
     case kCvr:
       return cvr_;
     case kIsr:
-      return static_cast<std::uint8_t>(hreq() << 7 | (hcr_ >> 3 & 3) << 3 | (txde_ && !hrdf_) << 2 | txde_ << 1 | (rxdf_ ? 1 : 0));
+      return static_cast<std::uint8_t>(hreq() << 7 | (hcr_ >> 3 & 3) << 3 | (txde_ && !hrdf_) << 2 | txde_ << 1 |
+                                       (rxdf_ ? 1 : 0));
     case kIvr:
       return ivr_;
     case kData5:
@@ -53,7 +55,8 @@ std::uint32_t HostPort::cpu_read(unsigned addr) const {
     case kHcr:
       return hcr_;
     case kHsr:
-      return static_cast<std::uint32_t>((cvr_ & 0x7F) << 8 | (icr_ >> 3 & 3) << 3 | (cvr_ >> 7) << 2 | htde_ << 1 | (hrdf_ ? 1 : 0));
+      return static_cast<std::uint32_t>((cvr_ & 0x7F) << 8 | (icr_ >> 3 & 3) << 3 | (cvr_ >> 7) << 2 | htde_ << 1 |
+                                        (hrdf_ ? 1 : 0));
     case kHpcr:
       return hpcr_;
     case kHbar:
@@ -71,8 +74,8 @@ bool HostPort::idle() const {
   return !host && !cpu && !tx_move() && !rx_move();
 }
 
-// Registers first move by themselves, then the strobes of this edge act on top; INIT is part of the host's write and comes
-// last. Everything that a strobe tests is the state before the edge, as with the RTL's flip-flops.
+// Registers first move by themselves, then the strobes of this edge act on top; INIT is part of the host's write and
+// comes last. Everything that a strobe tests is the state before the edge, as with the RTL's flip-flops.
 void HostPort::step() {
   const bool hrdf_before = hrdf_, rxdf_before = rxdf_;
   if (tx_move()) {

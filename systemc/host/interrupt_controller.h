@@ -1,4 +1,5 @@
-// Model of rtl/host/interrupt_controller.sv: eight lines, edge latches, mask, one interrupt. docs/interrupt_controller.md.
+// Model of rtl/host/interrupt_controller.sv: eight lines, edge latches, mask, one interrupt.
+// docs/interrupt_controller.md.
 #pragma once
 
 #include <cstdint>

@@ -12,8 +12,9 @@ std::uint8_t IsaSlave::decode() const {
 }
 
 bool IsaSlave::idle() const {
-  return command_pins() == cmd1_ && cmd1_ == cmd2_ && in.isa_sd == sd1_ && sd1_ == sd2_ && (in.isa_sa & 0xFFFFF) == sa1_ &&
-         in.isa_aen == aen1_ && in.isa_sbhe_n == sbhe1_n_ && memcs16_n_ == memcs16_n_next() && !(load_ && !in.mem_busy);
+  return command_pins() == cmd1_ && cmd1_ == cmd2_ && in.isa_sd == sd1_ && sd1_ == sd2_ &&
+         (in.isa_sa & 0xFFFFF) == sa1_ && in.isa_aen == aen1_ && in.isa_sbhe_n == sbhe1_n_ &&
+         memcs16_n_ == memcs16_n_next() && !(load_ && !in.mem_busy);
 }
 
 void IsaSlave::step() {

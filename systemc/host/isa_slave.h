@@ -56,7 +56,8 @@ class IsaSlave final : public sc_core::sc_module, public RefClockedBlock {
   void reset_registers() override;
 
   std::uint8_t command_pins() const {
-    return (in.isa_ior_n ? 0 : kIor) | (in.isa_iow_n ? 0 : kIow) | (in.isa_memr_n ? 0 : kMemr) | (in.isa_memw_n ? 0 : kMemw);
+    return (in.isa_ior_n ? 0 : kIor) | (in.isa_iow_n ? 0 : kIow) | (in.isa_memr_n ? 0 : kMemr) |
+           (in.isa_memw_n ? 0 : kMemw);
   }
   bool start() const { return cmd1_ != 0 && cmd2_ == 0; }
   bool finish() const { return cmd1_ == 0 && cmd2_ != 0; }

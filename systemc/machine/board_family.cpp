@@ -19,7 +19,8 @@ constexpr BoardFamily kFamilies[] = {
     {"geo-brick-lv", kServo01 | kMacro0, "servo ICs 0, 1 and MACRO IC 0", false, false, 0, "TURBO2", false},
     {"turbo-pmac2", kServo0To9 | kMacro0, "servo ICs 0 to 9 and MACRO IC 0", false, false, 0, "TURBO2", false},
     {"turbo-pmac2-ultralite", kMacros, "MACRO ICs 0 to 3", false, false, kProductUltralite, "TURBOU", true},
-    {"umac-turbo", kRack | kMacros, "servo ICs 2 to 9, 2* to 9* and MACRO ICs 0 to 3", false, false, kProductUmac, "TURBO2", false},
+    {"umac-turbo", kRack | kMacros, "servo ICs 2 to 9, 2* to 9* and MACRO ICs 0 to 3", false, false, kProductUmac,
+     "TURBO2", false},
     {"turbo-pmac", kServo0To9, "servo ICs 0 to 9", true, false, kProductTurboPmac1, "TURBO1", false},
     {"geo-pmac", 0x1, "servo IC 0", false, true, 0, "TURBO2", false},
     {"any", kServo0To9 | kRack | kMacros, "every IC", true, true, 0, "TURBO2", true},
@@ -49,7 +50,8 @@ std::string numbers(std::uint32_t fitted, std::initializer_list<unsigned> ends) 
 }  // namespace
 
 const BoardFamily* find_board_family(std::string_view name) {
-  const auto* found = std::find_if(std::begin(kFamilies), std::end(kFamilies), [&](const BoardFamily& f) { return f.name == name; });
+  const auto* found =
+      std::find_if(std::begin(kFamilies), std::end(kFamilies), [&](const BoardFamily& f) { return f.name == name; });
   return found == std::end(kFamilies) ? nullptr : found;
 }
 
@@ -66,7 +68,9 @@ std::vector<std::string> fitted_ic_names(std::uint32_t fitted) {
   return names;
 }
 
-std::string servo_ic_numbers(std::uint32_t fitted) { return numbers(fitted & ((1u << kServoIcs) - 1), {kFirstStarred, kServoIcs}); }
+std::string servo_ic_numbers(std::uint32_t fitted) {
+  return numbers(fitted & ((1u << kServoIcs) - 1), {kFirstStarred, kServoIcs});
+}
 std::string macro_ic_numbers(std::uint32_t fitted) { return numbers(fitted & kMacros, {kIcs}); }
 
 unsigned default_clock_source(std::uint32_t fitted, std::uint32_t macro_gate) {

@@ -1,5 +1,5 @@
-// Families of products: what can be fitted on a board of each, and what follows from the family. The rules behind the checks
-// of board_file.h; docs/boards.md has them as a table.
+// Families of products: what can be fitted on a board of each, and what follows from the family. The rules behind the
+// checks of board_file.h; docs/boards.md has them as a table.
 #pragma once
 
 #include <array>
@@ -22,7 +22,13 @@ struct BoardFamily {
 };
 
 // Word 5 of the straps page (docs/architecture.md).
-enum Product : std::uint32_t { kProductJpan = 1, kProductUmac = 2, kProductUltralite = 4, kProductTurboPmac1 = 8, kProductFeedback2 = 16 };
+enum Product : std::uint32_t {
+  kProductJpan = 1,
+  kProductUmac = 2,
+  kProductUltralite = 4,
+  kProductTurboPmac1 = 8,
+  kProductFeedback2 = 16
+};
 
 const BoardFamily* find_board_family(std::string_view name);  // nullptr: no such family
 std::vector<std::string> board_family_names();

@@ -14,12 +14,14 @@ namespace brick {
 
 namespace {
 
-constexpr unsigned kServoIcs = 10, kFirstMacroIc = 18, kMacroIcs = 4;  // bits of BoardInputs::fitted: 10..17 are servo IC 2*..9*
+constexpr unsigned kServoIcs = 10, kFirstMacroIc = 18,
+                   kMacroIcs = 4;  // bits of BoardInputs::fitted: 10..17 are servo IC 2*..9*
 constexpr const char* kServoIcNames = "servo IC numbers 0 to 9, or \"2*\" to \"9*\" in quotes";
 constexpr const char* kMacroIcNames = "MACRO IC numbers 0 to 3";
 constexpr std::size_t kInterruptLines = 3, kShownCharacters = 40;
-const std::vector<std::string> kKeys{"title",     "family",      "bus",         "axes",       "card", "servo_ics",
-                                     "macro_ics", "macro_gates", "dpram_words", "interrupts", "jpan", "feedback_option_2",
+const std::vector<std::string> kKeys{"title",       "family",     "bus",       "axes",
+                                     "card",        "servo_ics",  "macro_ics", "macro_gates",
+                                     "dpram_words", "interrupts", "jpan",      "feedback_option_2",
                                      "notes"};
 const std::vector<std::string> kBuses{"isa", "pci", "pc104", "internal"};
 
@@ -54,14 +56,17 @@ class Reader {
     board.name = std::filesystem::path(path_).stem().string();
     board.title = text("title");
     family_ = find_board_family(text("family"));
-    if (family_ == nullptr) fail(need("family"), "family", fmt::format("one of {}", fmt::join(board_family_names(), ", ")));
+    if (family_ == nullptr)
+      fail(need("family"), "family", fmt::format("one of {}", fmt::join(board_family_names(), ", ")));
     board.family = family_->name;
-    board.card = static_cast<std::uint32_t>(integer("card", 100'000, 999'999, "a card number of six digits, for example 603382"));
+    board.card = static_cast<std::uint32_t>(
+        integer("card", 100'000, 999'999, "a card number of six digits, for example 603382"));
     read_ics(board);
     board.axes = default_axes(board.fitted);
     if (has("axes")) board.axes = static_cast<unsigned>(integer("axes", 1, board.axes, axes_text(board)));
     board.dpram_words = static_cast<std::uint32_t>(integer("dpram_words", 0, 65'536, "8192 or 32768"));
-    if (board.dpram_words != 8192 && board.dpram_words != 32768) fail(need("dpram_words"), "dpram_words", "8192 or 32768");
+    if (board.dpram_words != 8192 && board.dpram_words != 32768)
+      fail(need("dpram_words"), "dpram_words", "8192 or 32768");
     read_options(board);
     if (has("interrupts")) board.line_select = interrupts(board.fitted);
     if (has("notes")) board.notes = texts("notes");
@@ -70,15 +75,16 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const toml::node& at, const std::string& key, const std::string& expected) const {
-    throw BoardFileError(fmt::format("{}:{}: {}: found {}; expected {}", path_, at.source().begin.line, key, found_text(at), expected));
+    throw BoardFileError(
+        fmt::format("{}:{}: {}: found {}; expected {}", path_, at.source().begin.line, key, found_text(at), expected));
   }
 
   void only_known_keys() const {
     for (const auto& [key, value] : table_) {
       const std::string name(key.str());
       if (std::find(kKeys.begin(), kKeys.end(), name) == kKeys.end())
-        throw BoardFileError(
-            fmt::format("{}:{}: unknown key {}; expected {}", path_, key.source().begin.line, name, fmt::join(kKeys, ", ")));
+        throw BoardFileError(fmt::format("{}:{}: unknown key {}; expected {}", path_, key.source().begin.line, name,
+                                         fmt::join(kKeys, ", ")));
     }
   }
 
@@ -135,9 +141,11 @@ class Reader {
       if ((gates & ~board.fitted) != 0) fail(need("macro_gates"), "macro_gates", "MACRO ICs that macro_ics lists too");
       board.macro_gate = gates >> kFirstMacroIc;
     }
-    if (board.fitted == 0) fail(need("servo_ics"), "servo_ics", "a list of one IC or more, for example [0, 1], or macro_ics");
+    if (board.fitted == 0)
+      fail(need("servo_ics"), "servo_ics", "a list of one IC or more, for example [0, 1], or macro_ics");
     if (default_clock_source(board.fitted, board.macro_gate) == 0)
-      fail(need("macro_gates"), "macro_gates", "one servo IC or DSPGATE2 at least, because a MACROGATE cannot make the servo clock");
+      fail(need("macro_gates"), "macro_gates",
+           "one servo IC or DSPGATE2 at least, because a MACROGATE cannot make the servo clock");
   }
 
   // Four axes a servo IC; on boards without one, the eight servo nodes of each MACRO IC.
@@ -153,7 +161,8 @@ class Reader {
   void read_options(BoardConfig& board) const {
     board.product = family_->product;
     board.jpan = flag("jpan");
-    if (board.jpan && !family_->jpan) fail(need("jpan"), "jpan", fmt::format("false: a {} has no control panel port", family_->name));
+    if (board.jpan && !family_->jpan)
+      fail(need("jpan"), "jpan", fmt::format("false: a {} has no control panel port", family_->name));
     board.feedback_option_2 = flag("feedback_option_2");
     if (board.feedback_option_2 && !family_->feedback_option_2)
       fail(need("feedback_option_2"), "feedback_option_2", "false: that is an option of a geo-pmac only");
@@ -171,12 +180,15 @@ class Reader {
     for (std::size_t line = 0; line < kInterruptLines; ++line) {
       const std::string name = list[line].value_exact<std::string>().value_or("");
       const auto* source = std::find(kInterruptSources.begin(), kInterruptSources.end(), name);
-      if (source == kInterruptSources.end()) fail(list[line], "interrupts", fmt::format("{}", fmt::join(kInterruptSources, ", ")));
+      if (source == kInterruptSources.end())
+        fail(list[line], "interrupts", fmt::format("{}", fmt::join(kInterruptSources, ", ")));
       const auto code = static_cast<std::uint32_t>(source - kInterruptSources.begin());
       if (code != 0 && code <= kSourceEqu8 && (fitted >> ((code - 1) / 4) & 1) == 0)
-        fail(list[line], "interrupts", fmt::format("a compare output that is there: servo IC {} is not fitted", (code - 1) / 4));
+        fail(list[line], "interrupts",
+             fmt::format("a compare output that is there: servo IC {} is not fitted", (code - 1) / 4));
       if (code >= kSourceCtrl0 && !family_->control_outputs)
-        fail(list[line], "interrupts", fmt::format("a compare output, WDO or none: a {} has no CTRL outputs", family_->name));
+        fail(list[line], "interrupts",
+             fmt::format("a compare output, WDO or none: a {} has no CTRL outputs", family_->name));
       select |= code << 4 * line;
     }
     return select;
@@ -189,8 +201,10 @@ class Reader {
       const std::optional<unsigned> place = key == "servo_ics" ? servo_ic(item) : macro_ic(item);
       if (!place) fail(item, key, expected);
       const std::uint32_t bit = 1u << *place;
-      if ((fitted & bit) != 0) fail(item, key, fmt::format("each IC once; {} is there twice", fitted_ic_names(bit).front()));
-      if ((family_->allowed & bit) == 0) fail(item, key, fmt::format("what a {} can have: {}", family_->name, family_->ics));
+      if ((fitted & bit) != 0)
+        fail(item, key, fmt::format("each IC once; {} is there twice", fitted_ic_names(bit).front()));
+      if ((family_->allowed & bit) == 0)
+        fail(item, key, fmt::format("what a {} can have: {}", family_->name, family_->ics));
       fitted |= bit;
     }
     return fitted;

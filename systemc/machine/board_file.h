@@ -1,5 +1,5 @@
-// Reads boards/*.toml: what is fitted on a product. Every problem is a BoardFileError with one line: file, line, key, what was
-// found, what was expected (docs/boards.md).
+// Reads boards/*.toml: what is fitted on a product. Every problem is a BoardFileError with one line: file, line, key,
+// what was found, what was expected (docs/boards.md).
 #pragma once
 
 #include <stdexcept>

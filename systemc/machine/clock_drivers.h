@@ -1,5 +1,5 @@
-// Who drives PHASE and SERVO: follows the direction bits that the CPU writes into the gate ICs, so that a contention on the nets
-// (pin clock.conflict, docs/clock.md) can be told with the names of the ICs and of their variables.
+// Who drives PHASE and SERVO: follows the direction bits that the CPU writes into the gate ICs, so that a contention on
+// the nets (pin clock.conflict, docs/clock.md) can be told with the names of the ICs and of their variables.
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@ class ClockDrivers {
   std::string names(std::uint32_t fitted, bool external) const {
     std::string text;
     for (unsigned ic = 0; ic < kIcs; ++ic)
-      if ((fitted >> ic & 1) != 0 && inputs_[ic] != 3) text += fmt::format("{}{} (I{})", joint(text), name(ic), clock_source_variable(ic));
+      if ((fitted >> ic & 1) != 0 && inputs_[ic] != 3)
+        text += fmt::format("{}{} (I{})", joint(text), name(ic), clock_source_variable(ic));
     return external ? text + joint(text) + "the external clocks (E1)" : text;
   }
 
@@ -35,8 +36,9 @@ class ClockDrivers {
   std::string contention(Tick tick, std::uint32_t fitted, bool external) const {
     const Tick first = tick - kDelay;
     return fmt::format(
-        "clock contention from tick {} ({:.3f} us): {} drive PHASE or SERVO and disagree for more than 2 ticks; expected one source", first,
-        static_cast<double>(tick_to_fs(first)) * 1e-9, names(fitted, external));
+        "clock contention from tick {} ({:.3f} us): {} drive PHASE or SERVO and disagree for more than 2 ticks; "
+        "expected one source",
+        first, static_cast<double>(tick_to_fs(first)) * 1e-9, names(fitted, external));
   }
 
  private:
@@ -48,7 +50,7 @@ class ClockDrivers {
     if (ic >= kFirstMacro) return fmt::format("MACRO IC {}", ic - kFirstMacro);
     return ic < kFirstStarred ? fmt::format("servo IC {}", ic) : fmt::format("servo IC {}*", ic - 8);
   }
-  // X address of the word with the direction bits, servo-ic.md 1.2, 1.3, 2.6, 6.2.
+  // X address of the word with the direction bits, servo-ic:1.2, servo-ic:1.3, servo-ic:2.6, servo-ic:6.2.
   static std::uint32_t clock_word(unsigned ic) {
     if (ic >= kFirstMacro) return 0x7840C + 0x1000 * (ic - kFirstMacro);
     if (ic < 2) return 0x78004 + 0x100 * ic;

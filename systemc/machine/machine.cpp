@@ -37,7 +37,8 @@ std::uint32_t trap_handler(const Cpu& cpu, std::uint32_t cause) {
 
 }  // namespace
 
-PortAInitiator::PortAInitiator(sc_core::sc_module_name name, PortA& port_a) : sc_core::sc_module(name), port_a_(port_a) {
+PortAInitiator::PortAInitiator(sc_core::sc_module_name name, PortA& port_a)
+    : sc_core::sc_module(name), port_a_(port_a) {
   socket.bind(port_a.socket);
   payload_.set_extension(&request_);
   payload_.set_data_ptr(reinterpret_cast<unsigned char*>(&data_));
@@ -45,7 +46,8 @@ PortAInitiator::PortAInitiator(sc_core::sc_module_name name, PortA& port_a) : sc
 
 PortAInitiator::~PortAInitiator() { payload_.clear_extension(&request_); }
 
-DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) {
+DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data,
+                                         Cycle now) {
   if (!under_way_) {
     data_ = write ? data : 0;
     payload_.set_address(address);
@@ -74,7 +76,9 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
       memory(cpu, config.flash_file) {
   initiator.cpu = &cpu;
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
-  board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) { board_changed(t, before, after); };
+  board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+    board_changed(t, before, after);
+  };
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
   port_a.on_control = [this] { main_memory_wait(); };
   cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle c) {
@@ -143,7 +147,8 @@ void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const B
   port_a.board_changed(tick, after);
   if (before.differs(after, stop_on)) stopped = true;
   if (before.get(pin::kSourceConflict) == 0 && after.get(pin::kSourceConflict) != 0) {
-    if (!inputs.pa_wr_n) clock_drivers.write(inputs.pa_x, inputs.pa_addr, inputs.pa_wdata);  // the cycle under way may be the cause
+    if (!inputs.pa_wr_n)
+      clock_drivers.write(inputs.pa_x, inputs.pa_addr, inputs.pa_wdata);  // the cycle under way may be the cause
     run_errors.push_back(clock_drivers.contention(tick, inputs.fitted, inputs.ext_clock));
   }
   if (!cpu_runs || !before.differs(after, kSeenByCpu)) return;

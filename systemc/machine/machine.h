@@ -69,15 +69,16 @@ class Machine : public sc_core::sc_module {
 
   std::uint32_t fitted() const;  // ICs of the board, as BoardInputs::fitted
 
-  // The motor side (systemc/machine/motor_peer.h). Pins are edited and applied as inputs(); a stop edge ends run_until().
+  // The motor side (systemc/machine/motor_peer.h). Pins are edited and applied as inputs(); a stop edge ends
+  // run_until().
   MotorInputPins& motor_inputs();
   void apply_motor_inputs();
   MotorOutputs motor_outputs(unsigned ic) const;
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
-  void attach(MotorPeer& peer);                                 // not owned; detach() it before it goes; told the outputs at once
+  void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once
   void detach(MotorPeer& peer);
 
-  Signals& signals();  // every named signal of design.md section 7
+  Signals& signals();  // every named signal of docs/signals.md
   Cpu& cpu();
   std::uint64_t instructions() const;
   void attach_debugger(GdbServer* debugger);  // not owned; nullptr = none
@@ -97,8 +98,8 @@ class Machine : public sc_core::sc_module {
   };
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
 
-  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md). A caller that provokes it
-  // on purpose takes the list; `brick run` and `brick exec` fail when something is left in it.
+  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md). A caller that
+  // provokes it on purpose takes the list; `brick run` and `brick exec` fail when something is left in it.
   const std::vector<std::string>& run_errors() const;
   std::vector<std::string> take_run_errors();
 

@@ -6,7 +6,8 @@
 namespace brick {
 
 MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
-  for (const PinField& f : pin::kAll) pin_.push_back(signals.add(std::string(f.name), f.width, f.hex ? Radix::kHex : Radix::kBinary));
+  for (const PinField& f : pin::kAll)
+    pin_.push_back(signals.add(std::string(f.name), f.width, f.hex ? Radix::kHex : Radix::kBinary));
   source_ = signals.add("clock.source", 13, Radix::kDecimal);
   sa_ = signals.add("host.isa.sa", 20, Radix::kHex);
   sd_ = signals.add("host.isa.sd", 16, Radix::kHex);

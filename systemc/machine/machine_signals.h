@@ -1,4 +1,4 @@
-// The machine's named signals (design.md section 7): board pins, host inputs, and what the CPU does.
+// The machine's named signals (docs/signals.md): board pins, host inputs, and what the CPU does.
 #pragma once
 
 #include <string>

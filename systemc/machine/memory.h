@@ -1,5 +1,5 @@
-// What the CPU sees as memory (docs/architecture.md, memory map): code, private RAM, PMAC main memory, straps page, and the
-// flash store with its file.
+// What the CPU sees as memory (docs/architecture.md, memory map): code, private RAM, PMAC main memory, straps page, and
+// the flash store with its file.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What is wired to the motor side of the running controller: a motor with its encoder, a converter, a hand at the encoder. The
-// machine tells it each change of the outputs it asked for, and calls step() when its time has come.
+// What is wired to the motor side of the running controller: a motor with its encoder, a converter, a hand at the
+// encoder. The machine tells it each change of the outputs it asked for, and calls step() when its time has come.
 #pragma once
 
 #include <array>
@@ -27,14 +27,14 @@ class MotorPeer {
   // Tick at which step() is to be called next, after now(); kNever: only after a stop.
   virtual Tick next_event() const = 0;
 
-  // Each change of the outputs of its ICs, in order; first, when it is attached, the outputs as they stand, as `before` and `after`,
-  // which are equal then and only then.
+  // Each change of the outputs of its ICs, in order; first, when it is attached, the outputs as they stand, as `before`
+  // and `after`, which are equal then and only then.
   virtual void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
     (void)tick, (void)ic, (void)before, (void)after;
   }
 
-  // The time is `now`. It may edit input pins, which the edge now + 1 is the first to see; true when it has. next_event() is
-  // later than `now` afterwards.
+  // The time is `now`. It may edit input pins, which the edge now + 1 is the first to see; true when it has.
+  // next_event() is later than `now` afterwards.
   virtual bool step(Tick now, MotorInputPins& inputs) = 0;
 };
 

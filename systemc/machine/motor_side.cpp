@@ -22,7 +22,8 @@ MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
       ic.adc[n] = {signals.add(scope + "adc_a", 1, Radix::kBinary), signals.add(scope + "adc_b", 1, Radix::kBinary)};
       for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
         const MotorField& field = motor_pin::kAll[f];
-        ic.output[n][f] = signals.add(scope + std::string(field.name), field.width, field.width > 1 ? Radix::kSigned : Radix::kBinary);
+        ic.output[n][f] = signals.add(scope + std::string(field.name), field.width,
+                                      field.width > 1 ? Radix::kSigned : Radix::kBinary);
         signals.ask(ic.output[n][f], [this, i, n, &field] { return board_.motor_outputs(i).get(field, n); });
       }
     }
@@ -60,7 +61,8 @@ void MotorSide::attach(MotorPeer& peer) {
 }
 
 void MotorSide::detach(MotorPeer& peer) {
-  peers_.erase(std::remove_if(peers_.begin(), peers_.end(), [&](const Peer& p) { return p.peer == &peer; }), peers_.end());
+  peers_.erase(std::remove_if(peers_.begin(), peers_.end(), [&](const Peer& p) { return p.peer == &peer; }),
+               peers_.end());
   watch();
 }
 

@@ -1,5 +1,5 @@
-// The motor side of the machine: input pins, the peers that are wired to them, and the signals `servo_ic0.ch1.enc_a` ...
-// (design.md section 7). Outputs are followed edge by edge only while somebody needs them: a waveform, a peer, a wait.
+// The motor side of the machine: input pins, the peers that are wired to them, and the signals `servo_ic0.ch1.enc_a`
+// ... (docs/signals.md). Outputs are followed edge by edge only while somebody needs them: a waveform, a peer, a wait.
 #pragma once
 
 #include <array>
@@ -20,7 +20,8 @@ class MotorSide {
 
   void attach(MotorPeer& peer);
   void detach(MotorPeer& peer);
-  void stop_on(unsigned ic, const MotorOutputs& select);  // take_stop() tells of such an edge; an empty selection ends it
+  void stop_on(unsigned ic,
+               const MotorOutputs& select);  // take_stop() tells of such an edge; an empty selection ends it
 
   void begin_run();         // once a run, before the others
   void step();              // peers whose time has come

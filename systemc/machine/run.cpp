@@ -57,15 +57,16 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
 // Never past a tick at which the CPU could change the board's inputs.
 Tick Machine::Impl::board_limit(Tick limit) const {
   if (port_a.running()) {
-    if (port_a.stands_at() < board->now()) throw std::logic_error("the board has run past an edge of the bus cycle under way");
+    if (port_a.stands_at() < board->now())
+      throw std::logic_error("the board has run past an edge of the bus cycle under way");
     return std::min(limit, port_a.stands_at());
   }
   if (!cpu_runs || cpu.asleep()) return limit;
   return std::min(limit, port_a.clock().tick(cpu.cycle()) - 1);
 }
 
-// Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the edges up
-// to t - latency, so it may start before known + 1 + latency.
+// Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the
+// edges up to t - latency, so it may start before known + 1 + latency.
 void Machine::Impl::run_cpu(Tick known) {
   const CpuClock& clock = port_a.clock();
   while (cpu_runs && !port_a.running()) {

@@ -4,7 +4,8 @@
 
 namespace brick {
 
-MacroIc::MacroIc(const sc_core::sc_module_name& name) : sc_module(name), socket("socket"), regs_("regs"), clock_gen_("clock_gen") {
+MacroIc::MacroIc(const sc_core::sc_module_name& name)
+    : sc_module(name), socket("socket"), regs_("regs"), clock_gen_("clock_gen") {
   socket.register_b_transport(this, &MacroIc::b_transport);
   apply_registers();
 }

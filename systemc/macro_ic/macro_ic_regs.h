@@ -1,6 +1,7 @@
-// Model of rtl/macro_ic/macro_ic_regs.sv: the registers of a MACRO IC as far as they are built. All but clock and PWM control
-// are storage. A MACROGATE has a direction bit for PHASE only and no supplementary channels; the kind is a strap that may
-// change while the registers keep their content. A write belongs to a clk_ref edge that the owner chooses.
+// Model of rtl/macro_ic/macro_ic_regs.sv: the registers of a MACRO IC as far as they are built. All but clock and PWM
+// control are storage. A MACROGATE has a direction bit for PHASE only and no supplementary channels; the kind is a
+// strap that may change while the registers keep their content. A write belongs to a clk_ref edge that the owner
+// chooses.
 #pragma once
 
 #include <array>
@@ -34,17 +35,21 @@ class MacroIcRegs : public sc_core::sc_module {
   }
 
   bool phase_ext() const { return regs::macro_ic::clock_control::kPhaseExternal.get(word_[kClock]) != 0; }
-  bool servo_ext() const { return gate || (word_[kClock] & kServoExternal) != 0; }  // a MACROGATE has no servo clock to drive
+  bool servo_ext() const {
+    return gate || (word_[kClock] & kServoExternal) != 0;
+  }  // a MACROGATE has no servo clock to drive
   unsigned phase_div() const { return regs::macro_ic::clock_control::kPhaseDivider.get(word_[kClock]); }
   unsigned servo_div() const { return regs::macro_ic::clock_control::kServoDivider.get(word_[kClock]); }
   unsigned max_count() const { return regs::macro_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
 
  private:
   static constexpr std::uint32_t kServoExternal = regs::macro_ic::clock_control::kServoExternal.mask();
-  static constexpr unsigned kClock = 0, kPwm = 1, kSupplementary = 7;  // places in the list; from the last on: DSPGATE2 only
-  static constexpr std::array kRegister{regs::macro_ic::kClockControl,    regs::macro_ic::kPwmControl,     regs::macro_ic::kAdcStrobe,
-                                        regs::macro_ic::kRingControl,     regs::macro_ic::kNodeActivation, regs::macro_ic::kJioData,
-                                        regs::macro_ic::kMultiplexerData, regs::macro_ic::kSupplementary1, regs::macro_ic::kSupplementary2};
+  static constexpr unsigned kClock = 0, kPwm = 1,
+                            kSupplementary = 7;  // places in the list; from the last on: DSPGATE2 only
+  static constexpr std::array kRegister{
+      regs::macro_ic::kClockControl,    regs::macro_ic::kPwmControl,     regs::macro_ic::kAdcStrobe,
+      regs::macro_ic::kRingControl,     regs::macro_ic::kNodeActivation, regs::macro_ic::kJioData,
+      regs::macro_ic::kMultiplexerData, regs::macro_ic::kSupplementary1, regs::macro_ic::kSupplementary2};
 
   static unsigned index(bool x, unsigned offset) {
     unsigned i = 0;

@@ -16,7 +16,8 @@ class ChannelCapture {
   unsigned hall() const { return hall_; }
 
   // The SCLK edge t; `level` as status bits 23..12, `control` the control word, position after the edge.
-  void sclk(Tick t, bool ready, bool index, unsigned level, std::uint32_t control, std::uint32_t position, unsigned fraction) {
+  void sclk(Tick t, bool ready, bool index, unsigned level, std::uint32_t control, std::uint32_t position,
+            unsigned fraction) {
     const bool inverted = (control >> 6 & 1) != 0;
     const bool i = index != inverted;
     const bool f = ((level >> (4 + (control >> 8 & 3)) & 1) != 0) != ((control >> 7 & 1) != 0);

@@ -1,5 +1,6 @@
-// Model of rtl/servo_ic/channel_divider.sv, channel_strobe.sv and channel_clocks.sv: what the four channels share. Dividers are
-// closed form; a serial stream is executed bit by bit while it runs and costs nothing afterwards. docs/servo_channel.md.
+// Model of rtl/servo_ic/channel_divider.sv, channel_strobe.sv and channel_clocks.sv: what the four channels share.
+// Dividers are closed form; a serial stream is executed bit by bit while it runs and costs nothing afterwards.
+// docs/servo_channel.md.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +44,8 @@ class ChannelDivider {
   unsigned n_ = 0;
 };
 
-// Common part of a serial stream: 24 bits of a strobe word from the first bit clock not before the rising edge of PHASE.
+// Common part of a serial stream: 24 bits of a strobe word from the first bit clock not before the rising edge of
+// PHASE.
 class ChannelStrobe {
  public:
   void reset(Tick t) {
@@ -54,8 +56,8 @@ class ChannelStrobe {
     word_ = 0;
   }
 
-  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of the first
-  // bit and how many bits) are called in the order of their edges.
+  // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of
+  // the first bit and how many bits) are called in the order of their edges.
   template <class Load, class Sample>
   void advance(Tick t, bool rise, unsigned n, std::uint32_t word, Load load, Sample sample) {
     for (;;) {

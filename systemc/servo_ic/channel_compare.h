@@ -1,4 +1,5 @@
-// Model of rtl/servo_ic/channel_compare.sv: position compare with auto-increment, in counts or, with hardware 1/T, in 1/4096 count.
+// Model of rtl/servo_ic/channel_compare.sv: position compare with auto-increment, in counts or, with hardware 1/T, in
+// 1/4096 count.
 #pragma once
 
 #include <algorithm>
@@ -55,10 +56,12 @@ class BasicChannelCompare {
     other_ = other;
   }
 
-  // The counter moves one count an SCLK edge at most, so EQU stays for so many of them after one that showed `counter`: to leave a
-  // compare takes one count more than to arrive there.
+  // The counter moves one count an SCLK edge at most, so EQU stays for so many of them after one that showed `counter`:
+  // to leave a compare takes one count more than to arrive there.
   std::uint32_t edges_to_hit(std::uint32_t counter, bool fine) const {
-    const auto distance = [counter](std::uint32_t at) { return std::min((at - counter) & 0xFFFFFF, (counter - at) & 0xFFFFFF); };
+    const auto distance = [counter](std::uint32_t at) {
+      return std::min((at - counter) & 0xFFFFFF, (counter - at) & 0xFFFFFF);
+    };
     const std::uint32_t counts = std::min(distance(a_), distance(b_));
     const std::uint32_t early = (fine ? 3u : 0u) + (EquOnLeave ? 0u : 1u);
     return counts - std::min(counts, early);
@@ -68,7 +71,8 @@ class BasicChannelCompare {
   // Not beyond `at` at the last edge, and beyond it now; arriving, before it at the last edge, and not any more.
   bool passed(std::uint64_t pos, std::uint64_t at, bool down) const {
     constexpr std::uint64_t kMask = (std::uint64_t{1} << 36) - 1;
-    const std::uint64_t ahead = (down ? last_ - at : at - last_) & kMask, way = (down ? last_ - pos : pos - last_) & kMask;
+    const std::uint64_t ahead = (down ? last_ - at : at - last_) & kMask,
+                        way = (down ? last_ - pos : pos - last_) & kMask;
     return EquOnLeave ? ahead < way : ahead != 0 && ahead <= way;
   }
 

@@ -19,7 +19,9 @@ class ChannelCounter {
   std::uint32_t servo_t2() const { return servo_t2_; }
 
   void clear() { counter_ = 0; }  // an edge of clk_ref with the counter held
-  void skip(std::int64_t periods) { t2_ = static_cast<std::uint32_t>(std::min<std::int64_t>(kTimerMax, t2_ + periods)); }
+  void skip(std::int64_t periods) {
+    t2_ = static_cast<std::uint32_t>(std::min<std::int64_t>(kTimerMax, t2_ + periods));
+  }
   void sclk(const ChannelDecode::Result& d, bool hold) {
     const std::uint32_t t2 = t2_;
     skip(1);

@@ -1,4 +1,5 @@
-// Model of rtl/servo_ic/channel_decode.sv: what one SCLK edge makes of the filtered inputs A, B, C and of the PFM pulse.
+// Model of rtl/servo_ic/channel_decode.sv: what one SCLK edge makes of the filtered inputs A, B, C and of the PFM
+// pulse.
 #pragma once
 
 #include <array>

@@ -6,7 +6,9 @@ namespace brick {
 class ChannelIndex {
  public:
   // Inputs as status bits 23..12 show them, from the filtered pins.
-  unsigned level(unsigned pins, bool demux) const { return demux ? (pins & 0x8FB) | (part_ & 7) << 8 | (part_ >> 3) << 2 : pins; }
+  unsigned level(unsigned pins, bool demux) const {
+    return demux ? (pins & 0x8FB) | (part_ & 7) << 8 | (part_ >> 3) << 2 : pins;
+  }
   static bool index(unsigned level, bool gated, bool gate_low) {
     const bool c = (level & 4) != 0;
     return gated ? c && (level & 3) == (gate_low ? 0u : 3u) : c;

@@ -1,4 +1,5 @@
-// Model of rtl/servo_ic/channel_pfm.sv: the PFM_CLK periods to the next overflow are computed, those before it are added at once.
+// Model of rtl/servo_ic/channel_pfm.sv: the PFM_CLK periods to the next overflow are computed, those before it are
+// added at once.
 #pragma once
 
 #include <algorithm>

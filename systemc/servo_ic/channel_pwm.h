@@ -1,5 +1,5 @@
-// Model of rtl/servo_ic/channel_pwm.sv. Between two special edges of the clock chain the triangle is a straight line, so the edge
-// at which the comparison changes is computed, not searched for.
+// Model of rtl/servo_ic/channel_pwm.sv. Between two special edges of the clock chain the triangle is a straight line,
+// so the edge at which the comparison changes is computed, not searched for.
 #pragma once
 
 #include "rtl/regs/brick_regs.hpp"
@@ -40,7 +40,8 @@ class ChannelPwm {
 
   // The same state as that of `o`, `by` ticks later.
   bool repeats(const ChannelPwm& o, Tick by) const {
-    return command_ == o.command_ && raw_ == o.raw_ && on_ == o.on_ && on_at_ == (o.on_at_ == kNever ? kNever : o.on_at_ + by);
+    return command_ == o.command_ && raw_ == o.raw_ && on_ == o.on_ &&
+           on_at_ == (o.on_at_ == kNever ? kNever : o.on_at_ + by);
   }
   void jump(Tick by) {
     if (on_at_ != kNever) on_at_ += by;
@@ -56,7 +57,9 @@ class ChannelPwm {
     if (line.slope > 0) return raw ? command_ - line.cnt : kFar;
     return raw ? kFar : line.cnt - command_ + 1;
   }
-  Tick next_change(Tick now, TriangleLine line) const { return now + 1 + ((command_ > line.cnt) != raw_ ? 0 : distance(line)); }
+  Tick next_change(Tick now, TriangleLine line) const {
+    return now + 1 + ((command_ > line.cnt) != raw_ ? 0 : distance(line));
+  }
   void change(Tick edge, unsigned deadtime) {
     settle(edge - 1);
     raw_ = !raw_;
@@ -70,7 +73,8 @@ class ChannelPwm {
   }
 
   static constexpr Tick kDeadtimeUnit = 16;  // ticks
-  static constexpr Tick kWaitReset = kDeadtimeUnit * Tick{regs::servo_ic::pwm_control::kDeadtime.get(regs::servo_ic::kPwmControl.reset)};
+  static constexpr Tick kWaitReset =
+      kDeadtimeUnit * Tick{regs::servo_ic::pwm_control::kDeadtime.get(regs::servo_ic::kPwmControl.reset)};
   static constexpr int kFar = 1 << 24;  // beyond the end of any line
   int command_ = 0;
   bool raw_ = false;

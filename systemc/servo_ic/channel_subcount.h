@@ -1,5 +1,5 @@
-// Model of rtl/servo_ic/channel_subcount.sv: hardware 1/T. With a SCLK periods added, e is floor(4096 a / T1) exactly; only how
-// many periods have been added so far is followed edge by edge, until e is full.
+// Model of rtl/servo_ic/channel_subcount.sv: hardware 1/T. With a SCLK periods added, e is floor(4096 a / T1) exactly;
+// only how many periods have been added so far is followed edge by edge, until e is full.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Base of the ICs: what follows the clocks of the board at its own pace. Left alone an IC stays behind; asked, it runs through
-// the edges of PHASE and SERVO that it has missed, and while those repeat and it repeats with them it jumps.
+// Base of the ICs: what follows the clocks of the board at its own pace. Left alone an IC stays behind; asked, it runs
+// through the edges of PHASE and SERVO that it has missed, and while those repeat and it repeats with them it jumps.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,8 @@ class ClockFollower : public ModelBlock {
   virtual void mark() = 0;
   // Whether that state is the same now and will be, as often as the clock pins repeat what they did since mark().
   virtual bool repeats() const = 0;
-  // Takes the time `by` forward in such a state. What the clocks latch or start need not be right until one period later.
+  // Takes the time `by` forward in such a state. What the clocks latch or start need not be right until one period
+  // later.
   virtual void jump(Tick by) = 0;
 
  private:

@@ -41,8 +41,8 @@ void ClockGen::skip(Tick edges) {
   s_.servo1 = in.servo;
 }
 
-// At a rising edge of the external phase clock. Returns true when the coming turnaround is moved here; `retard` is set when
-// the last one is moved back to here.
+// At a rising edge of the external phase clock. Returns true when the coming turnaround is moved here; `retard` is set
+// when the last one is moved back to here.
 bool ClockGen::align(bool& retard) {
   const int to_next = s_.top - s_.ramp;
   const int from_last = s_.top + s_.ramp + 1;
@@ -153,7 +153,8 @@ Tick ClockGen::next_event() const {
   if (phase_ext()) {
     next = now_ + edges_until_change(s_.phase, s_.phase2, s_.phase1, in.phase);
   } else if (s_.phase && s_.odd) {
-    // Falls half way to the turnaround after the fall_cnt-th one; `top` before that turnaround is the length of the way up.
+    // Falls half way to the turnaround after the fall_cnt-th one; `top` before that turnaround is the length of the way
+    // up.
     if (s_.fall_cnt == 0) {
       next = s_.ramp < 0 ? now_ - s_.ramp : next_turn();
     } else {

@@ -1,6 +1,7 @@
-// Model of rtl/servo_ic/clock_gen.sv: triangle counter, phase and servo dividers, re-alignment to an external phase clock.
-// Closed form between events: the ramp of the triangle is linear in ticks, the synchroniser is a delay. Only edges that do
-// more (turnaround, half way, edge of an external clock) are executed one by one, with the same rules as the RTL.
+// Model of rtl/servo_ic/clock_gen.sv: triangle counter, phase and servo dividers, re-alignment to an external phase
+// clock. Closed form between events: the ramp of the triangle is linear in ticks, the synchroniser is a delay. Only
+// edges that do more (turnaround, half way, edge of an external clock) are executed one by one, with the same rules as
+// the RTL.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,10 @@ namespace brick {
 
 // What the clock chain starts with, the reset values of the registers.
 constexpr unsigned kMaxCountReset = regs::servo_ic::pwm_control::kMaxCount.get(regs::servo_ic::kPwmControl.reset);
-constexpr unsigned kPhaseDivReset = regs::servo_ic::clock_control::kPhaseDivider.get(regs::servo_ic::kClockControl.reset);
-constexpr unsigned kServoDivReset = regs::servo_ic::clock_control::kServoDivider.get(regs::servo_ic::kClockControl.reset);
+constexpr unsigned kPhaseDivReset =
+    regs::servo_ic::clock_control::kPhaseDivider.get(regs::servo_ic::kClockControl.reset);
+constexpr unsigned kServoDivReset =
+    regs::servo_ic::clock_control::kServoDivider.get(regs::servo_ic::kClockControl.reset);
 
 class ClockGen : public sc_core::sc_module, public ModelBlock {
  public:
@@ -30,8 +33,8 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
     bool phase = true;                    // pins
     bool servo = true;
     bool operator==(const Inputs& o) const {
-      return max_count == o.max_count && phase_div == o.phase_div && servo_div == o.servo_div && phase_ext == o.phase_ext &&
-             servo_ext == o.servo_ext && phase == o.phase && servo == o.servo;
+      return max_count == o.max_count && phase_div == o.phase_div && servo_div == o.servo_div &&
+             phase_ext == o.phase_ext && servo_ext == o.servo_ext && phase == o.phase && servo == o.servo;
     }
   };
   Inputs in;
@@ -71,7 +74,9 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   bool phase_ext() const { return in.phase_ext && !s_.phase_oe; }
   bool servo_ext() const { return in.servo_ext && !s_.servo_oe; }
   bool servo_release() const { return s_.servo_oe && in.servo_ext && s_.servo; }
-  bool phase_release() const { return s_.phase_oe && in.phase_ext && s_.phase && (s_.servo || !(s_.servo_oe && in.servo_ext)); }
+  bool phase_release() const {
+    return s_.phase_oe && in.phase_ext && s_.phase && (s_.servo || !(s_.servo_oe && in.servo_ext));
+  }
 
   struct State {
     int ramp = 0;  // up ? cnt : ~cnt, counts up from -top to top
@@ -84,8 +89,9 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
     bool phase1 = true, phase2 = true, servo1 = true, servo2 = true;  // synchroniser
     bool operator==(const State& o) const {
       return ramp == o.ramp && top == o.top && up == o.up && phase_cnt == o.phase_cnt && fall_cnt == o.fall_cnt &&
-             servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase && servo == o.servo && phase_oe == o.phase_oe &&
-             servo_oe == o.servo_oe && phase1 == o.phase1 && phase2 == o.phase2 && servo1 == o.servo1 && servo2 == o.servo2;
+             servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase && servo == o.servo &&
+             phase_oe == o.phase_oe && servo_oe == o.servo_oe && phase1 == o.phase1 && phase2 == o.phase2 &&
+             servo1 == o.servo1 && servo2 == o.servo2;
     }
   };
 

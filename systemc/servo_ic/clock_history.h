@@ -1,5 +1,6 @@
-// The levels of the board's PHASE and SERVO nets over time, so that an IC which follows them need not run along with them: it
-// catches up when somebody wants to know something about it. The list also finds out on its own whether the clocks repeat.
+// The levels of the board's PHASE and SERVO nets over time, so that an IC which follows them need not run along with
+// them: it catches up when somebody wants to know something about it. The list also finds out on its own whether the
+// clocks repeat.
 #pragma once
 
 #include <cstddef>

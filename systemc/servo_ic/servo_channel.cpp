@@ -15,8 +15,8 @@ void ServoChannel::reset(Tick t) {
 
 std::uint32_t ServoChannel::status(bool trip) const {
   const unsigned level = index_.level(input_.level(), is(channel_control::kIndexDemux));
-  return level << 12 | capture_.captured() << 11 | capture_.captured_gi() << 10 | equ(trip) << 9 | error_ << 8 | loss_ << 7 |
-         index_.incomplete() << 3 | capture_.hall();
+  return level << 12 | capture_.captured() << 11 | capture_.captured_gi() << 10 | equ(trip) << 9 | error_ << 8 |
+         loss_ << 7 | index_.incomplete() << 3 | capture_.hall();
 }
 
 std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) const {
@@ -162,7 +162,8 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   const bool reversed = d.down != counter_.down();
   counter_.sclk(d, hold());
   subcount_.sclk(edge, fine(), d.count, d.echo, reversed, counter_.t1() & 0x7FFFFF);
-  capture_.sclk(edge, ready, index, level, control_, hold() ? 0 : counter_.counter(), d.count ? (d.down ? 4095 : 0) : old_fraction);
+  capture_.sclk(edge, ready, index, level, control_, hold() ? 0 : counter_.counter(),
+                d.count ? (d.down ? 4095 : 0) : old_fraction);
   error_ = (error_ || d.error) && !hold();
   if (ready && index_.sclk(pins)) loss_ = true;
   input_.sclk(edge);

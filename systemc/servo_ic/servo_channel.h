@@ -1,5 +1,5 @@
-// Model of rtl/servo_ic/servo_channel.sv and channel_regs.sv: one channel of a servo IC. The owner (servo_channels.h) finds the
-// edges at which something happens and executes only those. docs/servo_channel.md.
+// Model of rtl/servo_ic/servo_channel.sv and channel_regs.sv: one channel of a servo IC. The owner (servo_channels.h)
+// finds the edges at which something happens and executes only those. docs/servo_channel.md.
 #pragma once
 
 #include <algorithm>
@@ -58,10 +58,14 @@ class ServoChannel {
   bool quiet(Tick now) const { return now >= equ_write_until_ && !(hold() && (counter_.counter() != 0 || error_)); }
   bool uses_channel1() const { return is(channel_control::kCompareChannel); }
   void skip_sclk(std::int64_t periods) { counter_.skip(periods); }
-  ChannelPosition position() const { return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false}; }  // settled
+  ChannelPosition position() const {
+    return {counter_.counter(), fine() ? fraction() : 0, hold(), false, false};
+  }                                                                  // settled
   ChannelPosition sclk(Tick edge, const ChannelPosition* channel1);  // returns its own position before the edge
 
-  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const { return {is(channel_control::kCPfm) && !trip, out_[2], width}; }
+  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const {
+    return {is(channel_control::kCPfm) && !trip, out_[2], width};
+  }
   const ChannelPfm& pfm() const { return pfm_; }
   bool hold() const { return is(channel_control::kCounterReset); }
   bool shows_pwm(unsigned output) const { return !is(output == 2 ? channel_control::kCPfm : channel_control::kAbDac); }
@@ -87,14 +91,18 @@ class ServoChannel {
   unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
   bool pulse() const { return is(channel_control::kCPfm) && pfm_.pulse() != is(channel_control::kCInvert); }
   bool dir() const { return is(channel_control::kCPfm) && pfm_.down() != is(channel_control::kPfmDirInvert); }
-  bool dac_a(unsigned left) const { return is(channel_control::kAbDac) && dac_[0].data(left) != is(channel_control::kAbInvert); }
-  bool dac_b(unsigned left) const { return is(channel_control::kAbDac) && dac_[1].data(left) != is(channel_control::kAbInvert); }
+  bool dac_a(unsigned left) const {
+    return is(channel_control::kAbDac) && dac_[0].data(left) != is(channel_control::kAbInvert);
+  }
+  bool dac_b(unsigned left) const {
+    return is(channel_control::kAbDac) && dac_[1].data(left) != is(channel_control::kAbInvert);
+  }
   bool aena(bool trip) const { return is(channel_control::kAena) && !trip; }
   bool equ(bool trip) const { return compare_.equ() && !trip; }
 
  private:
-  // SCLK edges after the last outside influence until nothing moves any more: three of the filter, the memories behind it,
-  // and the latest user of those.
+  // SCLK edges after the last outside influence until nothing moves any more: three of the filter, the memories behind
+  // it, and the latest user of those.
   static constexpr unsigned kSettled = 12;
 
   bool is(const regs::Field& field) const { return field.get(control_) != 0; }

@@ -52,7 +52,8 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
   adc_.advance(
       t, phase_rise, divider(kAdc), in.adc_strobe, [] {},
       [this](unsigned bit, unsigned count) {
-        for (unsigned i = 0; i < kChannels; ++i) channel_[i].sample_adc(bit, count, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
+        for (unsigned i = 0; i < kChannels; ++i)
+          channel_[i].sample_adc(bit, count, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
       });
 
   for (ServoChannel& channel : channel_) {
@@ -147,12 +148,15 @@ void ServoChannels::mark() {
   for (ServoChannel& channel : channel_) channel.mark();
 }
 
-// Dividers, timers, encoders and PFM take no notice of the clocks: a jump executes them. The clocks latch and start streams, which
-// the period after the jump does again, provided that none is under way at either end, however PHASE falls into the bit clock.
+// Dividers, timers, encoders and PFM take no notice of the clocks: a jump executes them. The clocks latch and start
+// streams, which the period after the jump does again, provided that none is under way at either end, however PHASE
+// falls into the bit clock.
 bool ServoChannels::repeats() const {
   const unsigned slow = std::max(divider(kDac), divider(kAdc));
-  const bool calm = dac_.idle() && adc_.idle() && (phase_rise_ < marked_ || now_ - phase_rise_ > 26 * (kTicksPerRef << slow));
-  return calm && std::all_of(channel_.begin(), channel_.end(), [this](const ServoChannel& c) { return c.repeats(now_ - marked_); });
+  const bool calm =
+      dac_.idle() && adc_.idle() && (phase_rise_ < marked_ || now_ - phase_rise_ > 26 * (kTicksPerRef << slow));
+  return calm && std::all_of(channel_.begin(), channel_.end(),
+                             [this](const ServoChannel& c) { return c.repeats(now_ - marked_); });
 }
 
 void ServoChannels::jump(Tick by) {
@@ -164,8 +168,8 @@ void ServoChannels::jump(Tick by) {
 MotorOutputs ServoChannels::motor_outputs() const {
   MotorOutputs o;
   o.w[0] = dir() << 28 | pulse() << 24 | pwm();
-  o.w[1] = dac_a() | dac_b() << 4 | aena() << 8 | equ() << 12 | (dac_clk() ? 1u : 0u) << 16 | (dac_strobe() ? 1u : 0u) << 17 |
-           (adc_clk() ? 1u : 0u) << 18 | (adc_strobe() ? 1u : 0u) << 19;
+  o.w[1] = dac_a() | dac_b() << 4 | aena() << 8 | equ() << 12 | (dac_clk() ? 1u : 0u) << 16 |
+           (dac_strobe() ? 1u : 0u) << 17 | (adc_clk() ? 1u : 0u) << 18 | (adc_strobe() ? 1u : 0u) << 19;
   for (unsigned i = 0; i < kChannels; ++i) o.w[2 + i] = channel_[i].counter();
   return o;
 }

@@ -1,5 +1,6 @@
-// Model of rtl/servo_ic/servo_channels.sv: the four channels of a servo IC with the clocks they share. Its owner advances it along
-// straight pieces of the triangle and calls turn() after the edge that leaves a turnaround. docs/servo_channel.md.
+// Model of rtl/servo_ic/servo_channels.sv: the four channels of a servo IC with the clocks they share. Its owner
+// advances it along straight pieces of the triangle and calls turn() after the edge that leaves a turnaround.
+// docs/servo_channel.md.
 #pragma once
 
 #include <array>
@@ -21,13 +22,14 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   // Seen by the edges to come.
   struct Inputs {
     bool trip = false;
-    unsigned dividers = 0;                                               // I7m03
-    std::uint32_t dac_strobe = 0;                                        // I7m05
-    std::uint32_t adc_strobe = 0;                                        // I7m06
-    unsigned deadtime = 0;                                               // I7m04
-    TriangleLine line;                                                   // the triangle from the next edge on
-    bool phase_rises = false, phase_falls = false, servo_falls = false;  // turned over by each such edge of the clock chain
-    std::uint8_t adc_a = 0, adc_b = 0;                                   // bit n-1: channel n
+    unsigned dividers = 0;         // I7m03
+    std::uint32_t dac_strobe = 0;  // I7m05
+    std::uint32_t adc_strobe = 0;  // I7m06
+    unsigned deadtime = 0;         // I7m04
+    TriangleLine line;             // the triangle from the next edge on
+    bool phase_rises = false, phase_falls = false,
+         servo_falls = false;           // turned over by each such edge of the clock chain
+    std::uint8_t adc_a = 0, adc_b = 0;  // bit n-1: channel n
   };
   Inputs in;
   void set_pins(unsigned channel, unsigned pins) { channel_[channel].set_pins(now_, pins); }  // channel 0..3

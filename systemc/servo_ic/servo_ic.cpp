@@ -64,7 +64,9 @@ void ServoIc::mark() {
 }
 
 // clk_ref has taken the last edge of the chain, wherever it fell.
-bool ServoIc::repeats() const { return now_ - chain_edge_ > kTicksPerRef && clock_gen_.repeats() && channels_.repeats(); }
+bool ServoIc::repeats() const {
+  return now_ - chain_edge_ > kTicksPerRef && clock_gen_.repeats() && channels_.repeats();
+}
 
 void ServoIc::jump(Tick by) {
   clock_gen_.jump(by);

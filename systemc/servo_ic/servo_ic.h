@@ -1,6 +1,6 @@
-// Model of rtl/servo_ic/servo_ic.sv: servo IC (DSPGATE1) with its register face and its clock pins. The register face is a
-// TLM-2.0 target socket (address 8 * offset + 4 for X, + 0 for Y, 4 bytes, value in the low 24 bits); the board, which keeps
-// time in ticks, uses read() and write() behind it.
+// Model of rtl/servo_ic/servo_ic.sv: servo IC (DSPGATE1) with its register face and its clock pins. The register face
+// is a TLM-2.0 target socket (address 8 * offset + 4 for X, + 0 for Y, 4 bytes, value in the low 24 bits); the board,
+// which keeps time in ticks, uses read() and write() behind it.
 #pragma once
 
 #include <algorithm>

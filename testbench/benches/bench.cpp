@@ -12,8 +12,8 @@ namespace brick {
 bool BenchReport::step(const std::string& name, bool passed, const std::string& detail) {
   steps_.push_back({machine_.now(), name, passed, detail});
   const TimeFs time = machine_.now_fs();
-  out_ << fmt::format("{:>6}.{:03} ms  {}  {}{}{}\n", time / 1'000'000'000'000, time / 1'000'000'000 % 1000, passed ? "ok  " : "FAIL", name,
-                      detail.empty() ? "" : ": ", detail)
+  out_ << fmt::format("{:>6}.{:03} ms  {}  {}{}{}\n", time / 1'000'000'000'000, time / 1'000'000'000 % 1000,
+                      passed ? "ok  " : "FAIL", name, detail.empty() ? "" : ": ", detail)
        << std::flush;
   return passed;
 }
@@ -44,10 +44,10 @@ const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { ret
 const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
 
 const std::vector<Bench>& all_benches() {
-  static const std::vector<Bench> benches{smoke_bench(),           breq_rotary_bench(),  watchdog_bench(),    reinit_e3_bench(),
-                                          clock_select_bench(),    clock_faults_bench(), clock_macro_bench(), encoder_bench(),
-                                          capture_compare_bench(), flags_bench(),        pwm_bench(),         pfm_bench(),
-                                          serial_dac_adc_bench()};
+  static const std::vector<Bench> benches{
+      smoke_bench(),        breq_rotary_bench(), watchdog_bench(),      reinit_e3_bench(),       clock_select_bench(),
+      clock_faults_bench(), clock_macro_bench(), encoder_bench(),       capture_compare_bench(), flags_bench(),
+      pwm_bench(),          pfm_bench(),         serial_dac_adc_bench()};
   return benches;
 }
 

@@ -1,5 +1,5 @@
-// A testbench: a named host program with steps and a verdict. Each has a negative control, a deliberately wrong rule or a
-// seeded bug with which it must fail, so that its verdict means something.
+// A testbench: a named host program with steps and a verdict. Each has a negative control, a deliberately wrong rule or
+// a seeded bug with which it must fail, so that its verdict means something.
 #pragma once
 
 #include <cstdint>
@@ -62,9 +62,10 @@ extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kA
 
 struct Bench {
   std::string name;
-  std::string description;                       // one line
-  std::string negative;                          // what --negative does, one line
-  std::function<void(MachineConfig&)> seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
+  std::string description;  // one line
+  std::string negative;     // what --negative does, one line
+  std::function<void(MachineConfig&)>
+      seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
   std::function<void(BenchContext&)> run;
   BenchNeed need = kAnyBoard;
   std::string board = "geobrick-lv-8";  // without --board

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint8_t kBreqBit = 0x02;  // IR1
 
-// &n?? answers three words of six digits; Rotary Buffer Full is bit 16 of the second (host-bus.md 5.4): the value-1 bit of
+// &n?? answers three words of six digits; Rotary Buffer Full is bit 16 of the second (host-bus:5.4): the value-1 bit of
 // the eighth character.
 bool full_bit(const std::string& status) {
   const char c = status.at(7);
@@ -17,7 +17,8 @@ bool full_bit(const std::string& status) {
 
 }  // namespace
 
-BreqHost::BreqHost(BenchContext& context, Tick line_time) : context_(context), scoreboard_(line_time), random_(context.seed) {
+BreqHost::BreqHost(BenchContext& context, Tick line_time)
+    : context_(context), scoreboard_(line_time), random_(context.seed) {
   context_.bus.watch(select_pins(pin::kBreq), [this](Tick now, const BoardOutputs&, const BoardOutputs& after) {
     scoreboard_.edge(now, after.get(pin::kBreq) != 0);
   });
@@ -29,7 +30,8 @@ BreqHost::~BreqHost() { context_.bus.watch({}, nullptr); }
 Reply BreqHost::must(const std::string& command) {
   const Reply reply = context_.link.command(command);
   if (!reply.complete) throw HostBusError("no reply to `" + command + "`; expected: acknowledge or error");
-  if (reply.error) context_.report.fail(command, (reply.lines.empty() ? "error" : reply.lines.back()) + ", expected no error");
+  if (reply.error)
+    context_.report.fail(command, (reply.lines.empty() ? "error" : reply.lines.back()) + ", expected no error");
   return reply;
 }
 
@@ -48,7 +50,8 @@ void BreqHost::set_limits(unsigned i16, unsigned i17) {
   scoreboard_.limits(i16, i17);
   selected_ = 0;
   scoreboard_.select(selected_, context_.bus.now());
-  for (const char* command : {"&2CLEAR", "&1CLEAR", "CLOSE"}) must(command);  // an assignment would be stored in an open buffer
+  for (const char* command : {"&2CLEAR", "&1CLEAR", "CLOSE"})
+    must(command);  // an assignment would be stored in an open buffer
   must(fmt::format("I16={} I17={}", i16, context_.negative ? i17 + 1 : i17));
   open();
 }
@@ -129,7 +132,7 @@ void BreqHost::check() {
   signal();
 }
 
-void BreqHost::enable_interrupt() {  // host-bus.md 4.4: edge mode, BREQ alone
+void BreqHost::enable_interrupt() {  // host-bus:4.4: edge mode, BREQ alone
   context_.bus.write_pic_edge_level(0x00);
   context_.bus.clear_pic();
   context_.bus.write_pic_mask(kBreqBit);
@@ -161,9 +164,10 @@ std::string BreqHost::motion_line() {
 bool BreqHost::verdict(const std::string& step) {
   const auto& violations = scoreboard_.violations();
   const auto& c = scoreboard_.counts();
-  std::string detail = fmt::format("{} lines, BREQ pulsed {} times, stayed low {} times, raised by execution {} times, {} queries",
-                                   c.lines - counted_.lines, c.pulses - counted_.pulses, c.stays_low - counted_.stays_low,
-                                   c.raised_by_execution - counted_.raised_by_execution, c.queries - counted_.queries);
+  std::string detail =
+      fmt::format("{} lines, BREQ pulsed {} times, stayed low {} times, raised by execution {} times, {} queries",
+                  c.lines - counted_.lines, c.pulses - counted_.pulses, c.stays_low - counted_.stays_low,
+                  c.raised_by_execution - counted_.raised_by_execution, c.queries - counted_.queries);
   counted_ = c;
   const bool good = violations.size() == reported_;
   if (!good) {

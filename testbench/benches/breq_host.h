@@ -16,7 +16,8 @@ class BreqHost {
   ~BreqHost();
 
   void open();  // OPEN ROTARY with the buffers empty
-  // Empties the buffers and sets I16 and I17, for both sides. With the negative control the controller is given I17 + 1.
+  // Empties the buffers and sets I16 and I17, for both sides. With the negative control the controller is given I17
+  // + 1.
   void set_limits(unsigned i16, unsigned i17);
   void select(unsigned cs);            // &n, cs 0..15; waits until the pin has settled
   void clear();                        // CLEAR of the addressed buffer
@@ -29,7 +30,8 @@ class BreqHost {
   bool signal();                       // SIG bit 1
   void check();                        // PR, ?? and SIG
 
-  // A host program's loop: waits for the interrupt line, reads and clears the interrupt controller; false at the time-out.
+  // A host program's loop: waits for the interrupt line, reads and clears the interrupt controller; false at the
+  // time-out.
   bool wait_interrupt(Tick timeout);
   void enable_interrupt();
 

@@ -1,6 +1,7 @@
 // breq-rotary: a host feeds rotary motion programs and sees the buffer request in every way there is: the BREQ pin, the
 // interrupt line, the interrupt controller's registers, `??` and `PR`, at several settings of I16 and I17 and with two
-// coordinate systems. Every edge of BREQ is judged by the scoreboard of the rules (testbench/checkers/breq_scoreboard.h).
+// coordinate systems. Every edge of BREQ is judged by the scoreboard of the rules
+// (testbench/checkers/breq_scoreboard.h).
 #include <fmt/format.h>
 
 #include "testbench/benches/benches.h"
@@ -20,11 +21,12 @@ constexpr Limits kSettings[] = {{5, 10}, {1, 2}, {3, 3}, {0, 5}, {10, 20}};
 
 std::string name(Limits l) { return fmt::format("I16={} I17={}", l.i16, l.i17); }
 
-// Two buffers, the highest coordinate system first; a real-time interrupt at every servo interrupt (I8=0) and moves of the
-// least time (no acceleration, high feedrate), so that a line takes about half a millisecond.
+// Two buffers, the highest coordinate system first; a real-time interrupt at every servo interrupt (I8=0) and moves of
+// the least time (no acceleration, high feedrate), so that a line takes about half a millisecond.
 void prepare(BreqHost& host) {
-  for (const char* command : {"DELETE GATHER", "I8=0 P1=0 P2=0", "I5187=0 I5188=0 I5189=1000000", "I5287=0 I5288=0 I5289=1000000",
-                              "&2DEFINE ROTARY 400", "&1DEFINE ROTARY 1600", "&2INC B0", "&1INC B0"})
+  for (const char* command :
+       {"DELETE GATHER", "I8=0 P1=0 P2=0", "I5187=0 I5188=0 I5189=1000000", "I5287=0 I5288=0 I5289=1000000",
+        "&2DEFINE ROTARY 400", "&1DEFINE ROTARY 1600", "&2INC B0", "&1INC B0"})
     host.must(command);
   host.open();
 }
@@ -66,7 +68,7 @@ void hysteresis(BenchContext& b, BreqHost& host, Limits limits) {
   host.verdict("hysteresis, " + name(limits));
 }
 
-// I16=0: L < 0 never comes true, so only CLEAR ends Full (host-bus.md 5.7).
+// I16=0: L < 0 never comes true, so only CLEAR ends Full (host-bus:5.7).
 void never_raised(BenchContext& b, BreqHost& host) {
   host.set_limits(0, 2);
   for (unsigned i = 0; i < 3; ++i) host.line("DWELL0");
@@ -74,14 +76,15 @@ void never_raised(BenchContext& b, BreqHost& host) {
   for (unsigned look = 0; look < 40 && host.lines_ahead() > 0; ++look) b.bus.wait(kServo / 2);
   b.bus.wait(2 * kServo);
   host.check();
-  b.report.step("I16=0, buffer run empty", host.scoreboard().expect_full() && !host.scoreboard().level(), "Full=1 and BREQ=0 until CLEAR");
+  b.report.step("I16=0, buffer run empty", host.scoreboard().expect_full() && !host.scoreboard().level(),
+                "Full=1 and BREQ=0 until CLEAR");
   host.stop();
   host.clear();
   host.check();
   host.verdict("I16=0");
 }
 
-// BREQ-5 by interrupt: edge mode, one line for each interrupt, as host-bus.md 5.8 tells a host to do.
+// BREQ-5 by interrupt: edge mode, one line for each interrupt, as host-bus:5.8 tells a host to do.
 void by_interrupt(BenchContext& b, BreqHost& host, Limits limits) {
   host.set_limits(limits.i16, limits.i17);
   const std::string before = host.ask("P1");
@@ -100,7 +103,8 @@ void by_interrupt(BenchContext& b, BreqHost& host, Limits limits) {
       continue;
     }
     const unsigned now_raised = host.scoreboard().counts().raised_by_execution;
-    if (now_raised != raised || host.random(8) == 0) host.lines_ahead();  // at once: exactly I16-1 when execution raised it
+    if (now_raised != raised || host.random(8) == 0)
+      host.lines_ahead();  // at once: exactly I16-1 when execution raised it
     if (host.random(8) == 0) host.full();
     raised = now_raised;
     b.bus.wait(host.random(4000));
@@ -163,7 +167,8 @@ void two_systems(BenchContext& b, BreqHost& host) {
     host.line("DWELL0");
     host.settle();
     host.check();
-    b.report.step(fmt::format("&1 full, &2 with {} lines", i), host.scoreboard().level() == (i < 4), i < 4 ? "BREQ=1" : "BREQ=0");
+    b.report.step(fmt::format("&1 full, &2 with {} lines", i), host.scoreboard().level() == (i < 4),
+                  i < 4 ? "BREQ=1" : "BREQ=0");
     host.select(0);
     host.check();
   }
@@ -196,8 +201,8 @@ void run(BenchContext& b) {
   by_interrupt(b, host, {5, 10});
   const BreqScoreboard& s = host.scoreboard();
   b.report.step("BREQ pulse", s.counts().pulses > 0,
-                fmt::format("{} to {} ticks; a line takes it low {} ticks after its CR at most", s.shortest_pulse(), s.longest_pulse(),
-                            s.longest_fall()));
+                fmt::format("{} to {} ticks; a line takes it low {} ticks after its CR at most", s.shortest_pulse(),
+                            s.longest_pulse(), s.longest_fall()));
   b.bus.set_pace(nullptr);
 }
 

@@ -1,6 +1,7 @@
-// capture-compare: positions captured and compared while all channels move. Every trigger code with every flag (64 pairs, shuffled over
-// the channels by the seed), gated and de-multiplexed index, U, V, W edges, software; compare with auto-increment both ways, on the own
-// counter or that of channel 1, EQU written by the host, and EQU as an interrupt. Judged by testbench/checkers/channel_scoreboard.h.
+// capture-compare: positions captured and compared while all channels move. Every trigger code with every flag (64
+// pairs, shuffled over the channels by the seed), gated and de-multiplexed index, U, V, W edges, software; compare with
+// auto-increment both ways, on the own counter or that of channel 1, EQU written by the host, and EQU as an interrupt.
+// Judged by testbench/checkers/channel_scoreboard.h.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -15,8 +16,8 @@ namespace {
 
 constexpr unsigned kA = 1u << kEncA, kB = 1u << kEncB;
 // M-variables, + 100 for each further channel; 108 to 117 as usual for Turbo PMAC.
-constexpr unsigned kStatus = 100, kCaptured = 103, kCompareA = 108, kCompareB = 109, kIncrement = 110, kEquWrite = 111, kEquState = 112,
-                   kEquBit = 116, kCaptBit = 117;
+constexpr unsigned kStatus = 100, kCaptured = 103, kCompareA = 108, kCompareB = 109, kIncrement = 110, kEquWrite = 111,
+                   kEquState = 112, kEquBit = 116, kCaptBit = 117;
 constexpr std::uint32_t kJudged = 0xFFFF0F;  // of the status: all but encoder loss and the bits that read 0
 
 class CaptureCompareBench {
@@ -57,7 +58,8 @@ class CaptureCompareBench {
   }
   void write(unsigned number, const std::vector<long>& values) {
     std::string line;
-    for (unsigned i = 0; i < values.size(); ++i) line += fmt::format("{}M{}={}", i == 0 ? "" : " ", number + 100 * i, values[i]);
+    for (unsigned i = 0; i < values.size(); ++i)
+      line += fmt::format("{}M{}={}", i == 0 ? "" : " ", number + 100 * i, values[i]);
     host_.ask(line);
   }
   std::vector<unsigned> random_values(unsigned count) {
@@ -94,9 +96,9 @@ class CaptureCompareBench {
       ChannelScoreboard& board = host_.board(i);
       const auto check = [&](const char* what, long measured, long expected) {
         if (measured != expected && wrong.empty())
-          wrong = fmt::format("{} I7mn2={} I7mn3={} I7mn4={} I7mn5={} {}: ${:06X}, expected ${:06X}", host_.name(i), board.capture.code,
-                              board.capture.flag, board.capture.gated ? 1 : 0, board.capture.gate, what, measured & 0xFFFFFF,
-                              expected & 0xFFFFFF);
+          wrong = fmt::format("{} I7mn2={} I7mn3={} I7mn4={} I7mn5={} {}: ${:06X}, expected ${:06X}", host_.name(i),
+                              board.capture.code, board.capture.flag, board.capture.gated ? 1 : 0, board.capture.gate,
+                              what, measured & 0xFFFFFF, expected & 0xFFFFFF);
       };
       check("status", status[i] & kJudged, board.status(kJudged));
       taken += board.capture.captured() ? 1 : 0;
@@ -112,7 +114,8 @@ class CaptureCompareBench {
     std::vector<unsigned> pairs(64);
     for (unsigned i = 0; i < pairs.size(); ++i) pairs[i] = i;
     std::shuffle(pairs.begin(), pairs.end(), host_.random());
-    constexpr unsigned kNoise = 1u << kEncC | 1u << kHmfl | 1u << kPlim | 1u << kMlim | 1u << kUser | 1u << kU | 1u << kV | 1u << kW;
+    constexpr unsigned kNoise =
+        1u << kEncC | 1u << kHmfl | 1u << kPlim | 1u << kMlim | 1u << kUser | 1u << kU | 1u << kV | 1u << kW;
     unsigned taken = 0;
     for (unsigned first = 0; first < pairs.size(); first += host_.channels()) {
       const unsigned round = first / host_.channels() + 1;
@@ -130,7 +133,8 @@ class CaptureCompareBench {
           [](ChannelScoreboard& s, unsigned v) { s.capture.gated = v != 0; });
       set(5, gate ? random_values(4) : std::vector<unsigned>(host_.channels(), 0),
           [](ChannelScoreboard& s, unsigned v) { s.capture.gate = v; });
-      judge(fmt::format("round {}, set up", round), fmt::format(", codes/flags{}{}", shown, gate ? ", I7mn4 and I7mn5 by chance" : ""));
+      judge(fmt::format("round {}, set up", round),
+            fmt::format(", codes/flags{}{}", shown, gate ? ", I7mn4 and I7mn5 by chance" : ""));
       const Tick start = host_.now() + 100;
       for (unsigned i = 0; i < host_.channels(); ++i)
         host_.drive(i, start + host_.pick(100), walk(host_.pins(i), 60 + host_.pick(60), kNoise, 8));
@@ -151,7 +155,8 @@ class CaptureCompareBench {
       if (!d.text.empty() && bad.empty()) bad = host_.name(i) + " counter, " + d.text;
       if (!e.text.empty() && bad.empty()) bad = host_.name(i) + " EQU, " + e.text;
     }
-    b_.report.step(name, bad.empty(), bad.empty() ? fmt::format("{} counts and {} edges of EQU, each at its tick", events, equs) : bad);
+    b_.report.step(name, bad.empty(),
+                   bad.empty() ? fmt::format("{} counts and {} edges of EQU, each at its tick", events, equs) : bad);
   }
 
   // 0 -> 4 or 8 -> 12 captures where the counter stands; armed again by the read, 4 alone does nothing.
@@ -222,7 +227,8 @@ class CaptureCompareBench {
       write(kCompareB, b);
       write(kIncrement, increment);
       const Tick start = host_.now() + 100;
-      for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, start + host_.pick(100), walk(host_.pins(i), 300, 0, 60));
+      for (unsigned i = 0; i < host_.channels(); ++i)
+        host_.drive(i, start + host_.pick(100), walk(host_.pins(i), 300, 0, 60));
       host_.play();
       judge_counts(fmt::format("compare {}, increments{} (* channel 1's counter)", round + 1, shown));
       const auto a_now = host_.read(kCompareA), b_now = host_.read(kCompareB), equ = host_.read(kEquBit);
@@ -230,15 +236,16 @@ class CaptureCompareBench {
       for (unsigned i = 0; i < host_.channels(); ++i) {
         const Compare& c = host_.board(i).compare;
         if ((a_now[i] & 0xFFFFFF) != c.a || (b_now[i] & 0xFFFFFF) != c.b || equ[i] != (c.equ ? 1 : 0))
-          wrong += fmt::format(" {}: A=${:06X} B=${:06X} EQU={}, expected ${:06X} ${:06X} {}", host_.name(i), a_now[i] & 0xFFFFFF,
-                               b_now[i] & 0xFFFFFF, equ[i], c.a, c.b, c.equ ? 1 : 0);
+          wrong += fmt::format(" {}: A=${:06X} B=${:06X} EQU={}, expected ${:06X} ${:06X} {}", host_.name(i),
+                               a_now[i] & 0xFFFFFF, b_now[i] & 0xFFFFFF, equ[i], c.a, c.b, c.equ ? 1 : 0);
       }
       b_.report.step("A, B and EQU afterwards", wrong.empty(),
                      wrong.empty() ? fmt::format("{}: A={} B={}", host_.name(0), a_now[0], b_now[0]) : wrong);
     }
   }
 
-  // Control bits 12 and 11: EQU takes bit 12 at once, bit 11 falls back by itself; later writes of the word leave EQU alone.
+  // Control bits 12 and 11: EQU takes bit 12 at once, bit 11 falls back by itself; later writes of the word leave EQU
+  // alone.
   void equ_by_host() {
     const unsigned n = host_.channels();
     std::vector<long> state(n);
@@ -255,7 +262,8 @@ class CaptureCompareBench {
       for (unsigned i = 0; i < n; ++i) state[i] = 1 - state[i];
       unsigned wrong = 0;
       for (unsigned i = 0; i < n; ++i)
-        wrong += bit[i] != state[i] || fallen[i] != 0 || pin_is(i) != state[i] || before[i] != (host_.board(i).compare.equ ? 1 : 0);
+        wrong += bit[i] != state[i] || fallen[i] != 0 || pin_is(i) != state[i] ||
+                 before[i] != (host_.board(i).compare.equ ? 1 : 0);
       for (unsigned i = 0; i < n; ++i) host_.board(i).compare.equ = state[i] != 0;
       b_.report.equal<std::int64_t>("M111, M112: EQU written, wrong channels", wrong, 0);
     }
@@ -277,8 +285,8 @@ class CaptureCompareBench {
       const unsigned i = code - 1;
       ChannelScoreboard& board = host_.board(i);
       const long at = board.decoder.counter(), passed = at + 3;
-      host_.ask(fmt::format("M{}=0 M{}={} M{}={} M{}=0 M{}=1", kIncrement + 100 * i, kCompareA + 100 * i, passed, kCompareB + 100 * i,
-                            at - 100, kEquState + 100 * i, kEquWrite + 100 * i));
+      host_.ask(fmt::format("M{}=0 M{}={} M{}={} M{}=0 M{}=1", kIncrement + 100 * i, kCompareA + 100 * i, passed,
+                            kCompareB + 100 * i, at - 100, kEquState + 100 * i, kEquWrite + 100 * i));
       board.compare.a = static_cast<std::uint32_t>(passed) & 0xFFFFFF;
       board.compare.b = static_cast<std::uint32_t>(at - 100) & 0xFFFFFF;
       board.compare.increment = 0;
@@ -304,7 +312,8 @@ class CaptureCompareBench {
       const Tick rise = edges.size() == 1 ? edges[0].tick : -1;
       b_.report.step(fmt::format("EQU{} leaves {} upwards: IR{} and the interrupt", code, passed, line),
                      before == 0 && came && rise >= 0 && irq >= rise && irq <= rise + 5 * kTicksPerRef,
-                     fmt::format("IRQ {} ticks after EQU, expected 0 to {}; IST before ${:02X}", irq - rise, 5 * kTicksPerRef, before));
+                     fmt::format("IRQ {} ticks after EQU, expected 0 to {}; IST before ${:02X}", irq - rise,
+                                 5 * kTicksPerRef, before));
       const HostBus::Pic pic = b_.bus.read_pic();
       b_.report.equal<std::int64_t>("IST", pic.ist, 1 << line);
       b_.bus.clear_pic();

@@ -30,8 +30,10 @@ void PinPlayer::changed(Tick tick, unsigned ic, const MotorOutputs& before, cons
     const unsigned channel = place * kChannels + n;
     Seen& s = seen[channel];
     const auto count = static_cast<std::int32_t>(after.get(motor_pin::kCount, n));
-    if (static_cast<std::int32_t>(before.get(motor_pin::kCount, n)) != count) s.counts.push_back({tick, (count ^ 0x800000) - 0x800000});
-    if (before.get(motor_pin::kEqu, n) != after.get(motor_pin::kEqu, n)) s.equs.push_back({tick, after.get(motor_pin::kEqu, n)});
+    if (static_cast<std::int32_t>(before.get(motor_pin::kCount, n)) != count)
+      s.counts.push_back({tick, (count ^ 0x800000) - 0x800000});
+    if (before.get(motor_pin::kEqu, n) != after.get(motor_pin::kEqu, n))
+      s.equs.push_back({tick, after.get(motor_pin::kEqu, n)});
     if (before.get(motor_pin::kPfmPulse, n) == 0 && after.get(motor_pin::kPfmPulse, n) != 0) {
       s.pulses.push_back({tick, after.get(motor_pin::kPfmDir, n) != 0 ? -1 : 1});
       if (on_pulse) on_pulse(tick, channel);
@@ -49,7 +51,8 @@ bool PinPlayer::step(Tick now, MotorInputPins& inputs) {
   return edited;
 }
 
-ChannelHost::ChannelHost(BenchContext& b) : ServoHost(b, b.seed * 65'537), player_(fitted()), pins_(channels(), kIdleChannelPins) {
+ChannelHost::ChannelHost(BenchContext& b)
+    : ServoHost(b, b.seed * 65'537), player_(fitted()), pins_(channels(), kIdleChannelPins) {
   for (unsigned i = 0; i < pins_.size(); ++i) boards_.push_back(std::make_unique<ChannelScoreboard>());
   b.machine.attach(player_);
   b.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
@@ -68,7 +71,8 @@ void ChannelHost::cycle(const PortACycle& c) {
   if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
   const Tick sampled = fs_to_tick_floor(c.start);
   const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), sampled);
-  reads_[2 * c.address + (c.x ? 1 : 0)] = {sampled, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next), fs_to_tick(c.data_time)};
+  reads_[2 * c.address + (c.x ? 1 : 0)] = {sampled, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next),
+                                           fs_to_tick(c.data_time)};
 }
 
 ChannelHost::BusRead ChannelHost::last_read(bool x, std::uint32_t address) const {
@@ -114,10 +118,11 @@ void ChannelHost::sclk(unsigned n) {
     boards_[channel]->drive(start + 20 * period_, pins_[channel]);
     boards_[channel]->advance(now());
     const std::string difference = counts(channel).text;
-    bench().report.step(
-        fmt::format("{} counts an edge of A and back, SCLK every {} ticks", name(channel), period_), found && difference.empty(),
-        found && difference.empty() ? fmt::format("after {} ticks, expected {} to {}", edge - start, from - start, to - start)
-                                    : fmt::format("expected after {} to {} ticks; {}", from - start, to - start, difference));
+    bench().report.step(fmt::format("{} counts an edge of A and back, SCLK every {} ticks", name(channel), period_),
+                        found && difference.empty(),
+                        found && difference.empty()
+                            ? fmt::format("after {} ticks, expected {} to {}", edge - start, from - start, to - start)
+                            : fmt::format("expected after {} to {} ticks; {}", from - start, to - start, difference));
   }
   follow();
 }
@@ -146,14 +151,15 @@ void ChannelHost::play() {
 
 namespace {
 // The first difference in words; `slack` is how much later than the rule an edge may be.
-ChannelHost::Difference differ(std::vector<ChannelScoreboard::Change>& expected, std::vector<ChannelScoreboard::Change>& seen, Tick slack) {
+ChannelHost::Difference differ(std::vector<ChannelScoreboard::Change>& expected,
+                               std::vector<ChannelScoreboard::Change>& seen, Tick slack) {
   ChannelHost::Difference d{"", expected.size()};
   const auto text = [](const std::vector<ChannelScoreboard::Change>& list, std::size_t i) {
     return i < list.size() ? fmt::format("{} at tick {}", list[i].value, list[i].tick) : std::string("nothing");
   };
   for (std::size_t i = 0; i < std::max(expected.size(), seen.size()) && d.text.empty(); ++i) {
-    const bool same = i < expected.size() && i < seen.size() && expected[i].value == seen[i].value && seen[i].tick >= expected[i].tick &&
-                      seen[i].tick <= expected[i].tick + slack;
+    const bool same = i < expected.size() && i < seen.size() && expected[i].value == seen[i].value &&
+                      seen[i].tick >= expected[i].tick && seen[i].tick <= expected[i].tick + slack;
     if (!same) d.text = fmt::format("change {}: {}, expected {}", i + 1, text(seen, i), text(expected, i));
   }
   expected.clear();
@@ -162,7 +168,9 @@ ChannelHost::Difference differ(std::vector<ChannelScoreboard::Change>& expected,
 }
 }  // namespace
 
-ChannelHost::Difference ChannelHost::counts(unsigned channel) { return differ(boards_[channel]->counts, player_.seen[channel].counts, 0); }
+ChannelHost::Difference ChannelHost::counts(unsigned channel) {
+  return differ(boards_[channel]->counts, player_.seen[channel].counts, 0);
+}
 ChannelHost::Difference ChannelHost::equs(unsigned channel) {
   return differ(boards_[channel]->equs, player_.seen[channel].equs, kTicksPerRef);
 }

@@ -1,5 +1,6 @@
-// A host with its hands on the motor side: plays levels on the input pins of all channels at once, and keeps a scoreboard for each of
-// them (testbench/checkers/channel_scoreboard.h) that sees the same levels. What the channel benches share.
+// A host with its hands on the motor side: plays levels on the input pins of all channels at once, and keeps a
+// scoreboard for each of them (testbench/checkers/channel_scoreboard.h) that sees the same levels. What the channel
+// benches share.
 #pragma once
 
 #include <map>
@@ -60,7 +61,7 @@ class ChannelHost : public ServoHost {
 
   // Commands go with no pin moving.
   void assign(unsigned k, const std::vector<unsigned>& values);  // I7mnk of every channel; shorter lists leave the rest
-  std::vector<long> read(unsigned number);                       // the M-variables `number`, number + 100, ... of all channels
+  std::vector<long> read(unsigned number);  // the M-variables `number`, number + 100, ... of all channels
 
   // SCLK divider 2^n of all ICs; finds where its edges are with one edge of A of each IC's first channel and back.
   void sclk(unsigned n);

@@ -12,7 +12,8 @@ constexpr Tick kAnswer = ns_to_ticks(1'000'000);  // a line sent and acknowledge
 
 ClockHost::ClockHost(BenchContext& bench) : bench_(bench) {
   source_ = (bench.board.fitted & 1) != 0 ? 0 : kFirstMacroIc;
-  bench.bus.watch(select_pins(pin::kPhase, pin::kServo, pin::kSourceConflict), [this](Tick t, const BoardOutputs&, const BoardOutputs& o) {
+  bench.bus.watch(select_pins(pin::kPhase, pin::kServo, pin::kSourceConflict), [this](Tick t, const BoardOutputs&,
+                                                                                      const BoardOutputs& o) {
     checker_.pins(t, o.get(pin::kPhase) != 0, o.get(pin::kServo) != 0, o.get(pin::kSourceConflict) != 0);
   });
   const BoardOutputs& o = bench.machine.outputs();
@@ -29,7 +30,9 @@ std::int64_t ClockHost::source_signal() {
   return id ? static_cast<std::int64_t>(signals.value(*id)) : -1;
 }
 
-std::int64_t ClockHost::status(unsigned bits) { return std::strtol(bench_.ask("???").substr(0, 6).c_str(), nullptr, 16) & bits; }
+std::int64_t ClockHost::status(unsigned bits) {
+  return std::strtol(bench_.ask("???").substr(0, 6).c_str(), nullptr, 16) & bits;
+}
 
 void ClockHost::settle(const ClockSetting& from, const ClockSetting& to) {
   bench_.bus.wait(ClockChecker::settling(from, to));
@@ -40,7 +43,8 @@ void ClockHost::program(unsigned ic, const ClockSetting& s) {
   const unsigned first = direction_variable(ic) - 7;
   const ClockSetting from = settings_[ic];
   if (ic == source_) checker_.change(now(), s);
-  bench_.ask(fmt::format("I{}={} I{}={} I{}={}", first, s.max_count, first + 1, s.phase_divider, first + 2, s.servo_divider));
+  bench_.ask(
+      fmt::format("I{}={} I{}={} I{}={}", first, s.max_count, first + 1, s.phase_divider, first + 2, s.servo_divider));
   settings_[ic] = s;
   if (ic == source_) settle(from, s);
 }
@@ -82,10 +86,10 @@ void ClockHost::check(const std::string& name) {
   checker_.finish(now());
   const auto& found = checker_.violations();
   const std::size_t fresh = found.size() - judged_;
-  bench_.report.step(
-      name, fresh == 0,
-      fresh == 0 ? fmt::format("{} falls of PHASE, {} of SERVO so far", checker_.counts().phase_falls, checker_.counts().servo_falls)
-                 : fmt::format("{} violations, the first: {}", fresh, found[judged_].text));
+  bench_.report.step(name, fresh == 0,
+                     fresh == 0 ? fmt::format("{} falls of PHASE, {} of SERVO so far", checker_.counts().phase_falls,
+                                              checker_.counts().servo_falls)
+                                : fmt::format("{} violations, the first: {}", fresh, found[judged_].text));
   judged_ = found.size();
 }
 
@@ -97,11 +101,14 @@ void ClockHost::verdict(const std::string& name, unsigned periods) {
   checker_.finish(now());
   const std::size_t fresh = checker_.violations().size() - judged_;
   const auto source = source_signal();
-  const bool good = fresh == 0 && phase_period == s.phase() && servo_period == s.servo() && source == direction_variable(source_);
-  std::string text =
-      fmt::format("source {}, PHASE {} ticks ({:.4f} kHz), SERVO {} ({:.4f} kHz)", source, phase_period,
-                  117'964.8 / static_cast<double>(phase_period), servo_period, 117'964.8 / static_cast<double>(servo_period));
-  if (!good) text += fmt::format("; expected {}, {}, {}, 0 violations but {}", direction_variable(source_), s.phase(), s.servo(), fresh);
+  const bool good =
+      fresh == 0 && phase_period == s.phase() && servo_period == s.servo() && source == direction_variable(source_);
+  std::string text = fmt::format("source {}, PHASE {} ticks ({:.4f} kHz), SERVO {} ({:.4f} kHz)", source, phase_period,
+                                 117'964.8 / static_cast<double>(phase_period), servo_period,
+                                 117'964.8 / static_cast<double>(servo_period));
+  if (!good)
+    text += fmt::format("; expected {}, {}, {}, 0 violations but {}", direction_variable(source_), s.phase(), s.servo(),
+                        fresh);
   if (fresh > 0) text += ", the first: " + checker_.violations()[judged_].text;
   bench_.report.step(name, good, text);
   judged_ = checker_.violations().size();

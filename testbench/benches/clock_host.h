@@ -1,5 +1,6 @@
-// A host that programs the clocks, moves their source and keeps the clock checker informed: what the two clock benches share.
-// The expected numbers are those of the formulas (ClockSetting); the checker sees every edge whatever the host does meanwhile.
+// A host that programs the clocks, moves their source and keeps the clock checker informed: what the two clock benches
+// share. The expected numbers are those of the formulas (ClockSetting); the checker sees every edge whatever the host
+// does meanwhile.
 #pragma once
 
 #include <array>
@@ -13,10 +14,12 @@ namespace brick {
 
 constexpr unsigned kClockIcs = 22, kFirstMacroIc = 18;
 
-// Number of the clock-direction variable of IC `index` (as in BoardInputs::fitted), servo-ic.md 7.1: 7007, ... 7907, 7257, ...
-// 7957, 6807, ... 6957. I7m00, I7m01, I7m02 are 7, 6 and 5 below.
+// Number of the clock-direction variable of IC `index` (as in BoardInputs::fitted), servo-ic:7.1: 7007, ... 7907, 7257,
+// ... 7957, 6807, ... 6957. I7m00, I7m01, I7m02 are 7, 6 and 5 below.
 constexpr unsigned direction_variable(unsigned index) {
-  return index < 10 ? 7007 + 100 * index : index < kFirstMacroIc ? 7257 + 100 * (index - 10) : 6807 + 50 * (index - kFirstMacroIc);
+  return index < 10              ? 7007 + 100 * index
+         : index < kFirstMacroIc ? 7257 + 100 * (index - 10)
+                                 : 6807 + 50 * (index - kFirstMacroIc);
 }
 
 class ClockHost {
@@ -45,7 +48,8 @@ class ClockHost {
   void restarted(unsigned ic);                    // after a reset line: `ic` drives with its factory setting
   void forget_settings() { settings_.fill({}); }  // factory defaults in all ICs
 
-  // Runs `periods` servo periods and reports source, both periods as measured, and what the checker found since the last verdict.
+  // Runs `periods` servo periods and reports source, both periods as measured, and what the checker found since the
+  // last verdict.
   void verdict(const std::string& name, unsigned periods = 2);
   void check(const std::string& name);  // the checker's part alone
 

@@ -1,6 +1,7 @@
-// clock-macro: a MACRO IC makes the clocks of the whole board (I6807, 6857, 6907, 6957 = 0), with the manual's example of 6.67 kHz
-// phase and 3.33 kHz servo, every kind of divider, I10, and the rates of the software behind the clocks: a phase and a servo interrupt
-// at each fall, a real-time interrupt every I8+1 servo interrupts. Every edge is judged by testbench/checkers/clock_checker.h.
+// clock-macro: a MACRO IC makes the clocks of the whole board (I6807, 6857, 6907, 6957 = 0), with the manual's example
+// of 6.67 kHz phase and 3.33 kHz servo, every kind of divider, I10, and the rates of the software behind the clocks: a
+// phase and a servo interrupt at each fall, a real-time interrupt every I8+1 servo interrupts. Every edge is judged by
+// testbench/checkers/clock_checker.h.
 #include <random>
 
 #include <fmt/format.h>
@@ -52,7 +53,9 @@ class MacroBench {
 
  private:
   unsigned pick(unsigned count) { return static_cast<unsigned>(random_() % count); }
-  std::string variable(unsigned ic, unsigned offset) const { return fmt::format("I{}", direction_variable(ic) - 7 + offset); }
+  std::string variable(unsigned ic, unsigned offset) const {
+    return fmt::format("I{}", direction_variable(ic) - 7 + offset);
+  }
 
   // CLK-1, CLK-2, CLK-5: no effect before, the example's clocks after the move.
   void source(unsigned ic) {
@@ -72,14 +75,15 @@ class MacroBench {
   // CLK-4: I10 = 640/9 (2 I6800 + 3)(I6801 + 1)(I6802 + 1), which is the servo period in units of 2^-23 ms.
   void servo_time(unsigned ic) {
     const Tick period = host_.setting(ic).servo();
-    const std::string formula = fmt::format("640*(2*{}+3)*({}+1)*({}+1)/9", variable(ic, 0), variable(ic, 1), variable(ic, 2));
+    const std::string formula =
+        fmt::format("640*(2*{}+3)*({}+1)*({}+1)/9", variable(ic, 0), variable(ic, 1), variable(ic, 2));
     host_.expect("I10=" + formula + " I10", std::to_string((640 * period + 4) / 9));
     const double khz = static_cast<double>(kPwmClockHz) / 1000 / static_cast<double>(period);
     const double by_frequency = 8'388'608 / khz;
-    b_.report.step(
-        "I10 = 8388608 / servo kHz",
-        by_frequency >= static_cast<double>(640 * period) / 9 - 0.01 && by_frequency <= static_cast<double>(640 * period) / 9 + 0.01,
-        fmt::format("{:.4f} kHz gives {:.2f}", khz, by_frequency));
+    b_.report.step("I10 = 8388608 / servo kHz",
+                   by_frequency >= static_cast<double>(640 * period) / 9 - 0.01 &&
+                       by_frequency <= static_cast<double>(640 * period) / 9 + 0.01,
+                   fmt::format("{:.4f} kHz gives {:.2f}", khz, by_frequency));
   }
 
   // CLK-3: integer ratios, changed while the clocks run.
@@ -97,7 +101,8 @@ class MacroBench {
     host_.verdict("back to the example");
   }
 
-  // servo-ic.md 7.4. The window begins and ends half a phase period after a fall, when all interrupts of the fall have been taken.
+  // servo-ic:7.4. The window begins and ends half a phase period after a fall, when all interrupts of the fall have
+  // been taken.
   void rates(unsigned i8) {
     constexpr unsigned kRealTime = 3;
     const ClockSetting& s = host_.setting(host_.source());

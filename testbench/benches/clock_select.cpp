@@ -1,7 +1,7 @@
-// clock-select: a seed-chosen half of the board's ICs as the source of PHASE and SERVO, moved there by one command line in either order,
-// one by I19, SAVE and $$$ (testbench/unit/system/clock_moves_test.cpp has all of them). clock-faults: two sources, none, a missing IC, a
-// MACROGATE, and the clocks from outside (jumper E1). Each IC has its own I7m00, I7m01, I7m02, so its clocks tell it apart.
-// Every edge is judged by testbench/checkers/clock_checker.h.
+// clock-select: a seed-chosen half of the board's ICs as the source of PHASE and SERVO, moved there by one command line
+// in either order, one by I19, SAVE and $$$ (testbench/unit/system/clock_moves_test.cpp has all of them). clock-faults:
+// two sources, none, a missing IC, a MACROGATE, and the clocks from outside (jumper E1). Each IC has its own I7m00,
+// I7m01, I7m02, so its clocks tell it apart. Every edge is judged by testbench/checkers/clock_checker.h.
 #include <algorithm>
 #include <cstdlib>
 #include <random>
@@ -16,8 +16,9 @@ namespace {
 
 constexpr unsigned kConfigurationError = 1u << 7, kNoPhaseClock = 1u << 3;  // 5th and 6th character of ???
 constexpr Tick kMillisecond = kPwmClockHz / 1000;
-constexpr Tick kRestart = 7 * kMillisecond;  // $$$ writes every register of every IC (22) between the inputs and the output
-constexpr Tick kSync = 3;                    // two flip-flops: a follower sees an edge of the net at the third tick
+constexpr Tick kRestart =
+    7 * kMillisecond;      // $$$ writes every register of every IC (22) between the inputs and the output
+constexpr Tick kSync = 3;  // two flip-flops: a follower sees an edge of the net at the third tick
 
 class SelectBench {
  public:
@@ -48,7 +49,8 @@ class SelectBench {
 
  private:
   void begin() {
-    b_.report.equal<std::int64_t>("ICs fitted", static_cast<std::int64_t>(fitted_.size()), __builtin_popcount(b_.board.fitted));
+    b_.report.equal<std::int64_t>("ICs fitted", static_cast<std::int64_t>(fitted_.size()),
+                                  __builtin_popcount(b_.board.fitted));
     host_.verdict("factory setting");
   }
 
@@ -72,7 +74,8 @@ class SelectBench {
   }
 
   std::string both(unsigned to, unsigned from, bool new_first) const {
-    const std::string on = fmt::format("I{}=0", direction_variable(to)), off = fmt::format("I{}=3", direction_variable(from));
+    const std::string on = fmt::format("I{}=0", direction_variable(to)),
+                      off = fmt::format("I{}=3", direction_variable(from));
     return new_first ? on + " " + off : off + " " + on;
   }
 
@@ -86,16 +89,18 @@ class SelectBench {
       const std::string answer = host_.ask(variable);
       if (answer != std::to_string(expected)) wrong += fmt::format(" {}={} (expected {})", variable, answer, expected);
     }
-    b_.report.step(
-        name, wrong.empty(),
-        wrong.empty() ? fmt::format("I{}=0, {} others are inputs", direction_variable(host_.source()), fitted_.size() - 1) : wrong);
+    b_.report.step(name, wrong.empty(),
+                   wrong.empty() ? fmt::format("I{}=0, {} others are inputs", direction_variable(host_.source()),
+                                               fitted_.size() - 1)
+                                 : wrong);
   }
 
   // CLK-2, CLK-6: variables of ICs that are not the source have no effect.
   void own_settings() {
     for (const unsigned ic : fitted_) host_.program(ic, any_setting());
     if (b_.negative) {  // the divider of the IC that becomes the source next, behind the checker's back
-      for (const unsigned ic : fitted_) host_.ask(fmt::format("I{}={}", direction_variable(ic) - 5, host_.setting(ic).servo_divider + 1));
+      for (const unsigned ic : fitted_)
+        host_.ask(fmt::format("I{}={}", direction_variable(ic) - 5, host_.setting(ic).servo_divider + 1));
     }
     host_.verdict("own I7m00..02 in every IC");
   }
@@ -115,8 +120,8 @@ class SelectBench {
                    fmt::format("one odd high level each ({}), every low level whole", counts.odd_highs));
   }
 
-  // A follower with the same I7m00 has its turnarounds where the phase clock has them, three ticks later. It shows when it becomes the
-  // source: the clocks go on in step.
+  // A follower with the same I7m00 has its turnarounds where the phase clock has them, three ticks later. It shows when
+  // it becomes the source: the clocks go on in step.
   void in_step() {
     const ClockSetting same{4000, 0, 1};
     for (const unsigned ic : fitted_)
@@ -152,44 +157,49 @@ class SelectBench {
       host_.move(ic, "$$$", kRestart);
       host_.verdict(i19 + ", SAVE, $$$");
       directions("directions, " + i19, 3);
-      b_.report.equal<std::int64_t>("no configuration error, no missing phase clock", host_.status(kConfigurationError | kNoPhaseClock), 0);
+      b_.report.equal<std::int64_t>("no configuration error, no missing phase clock",
+                                    host_.status(kConfigurationError | kNoPhaseClock), 0);
     }
   }
 
-  // A pin is taken with an own rise while the net is high: at least one of the rises of as many periods as it takes the two clocks to
-  // slip past each other is. A period before the first, one until they disagree.
+  // A pin is taken with an own rise while the net is high: at least one of the rises of as many periods as it takes the
+  // two clocks to slip past each other is. A period before the first, one until they disagree.
   static Tick until_both_drive(Tick net, Tick own) {
     const Tick slip = std::max<Tick>(1, std::min(own % net, net - own % net));
     return (net / slip + 4) * (own + net);
   }
 
-  // servo-ic.md 7.2: the lowest-numbered IC wins, and the run has an error to show.
+  // servo-ic:7.2: the lowest-numbered IC wins, and the run has an error to show.
   void two_sources() {
     const unsigned lowest = fitted_[0], other = fitted_[1 + pick(static_cast<unsigned>(fitted_.size()) - 1)];
     if (host_.source() != lowest) host_.move(lowest, both(lowest, host_.source(), true));
     host_.verdict("source is the lowest-numbered IC");
     host_.checker().allow_conflict(true);
     host_.ask(fmt::format("I{}=0", direction_variable(other)));
-    b_.bus.wait_pin(pin::kSourceConflict, 1, until_both_drive(host_.setting(lowest).phase(), host_.setting(other).phase()));
-    b_.report.equal<std::int64_t>(fmt::format("clock.conflict, I{} and I{} are 0", direction_variable(lowest), direction_variable(other)),
-                                  b_.machine.outputs().get(pin::kSourceConflict), 1);
+    b_.bus.wait_pin(pin::kSourceConflict, 1,
+                    until_both_drive(host_.setting(lowest).phase(), host_.setting(other).phase()));
+    b_.report.equal<std::int64_t>(
+        fmt::format("clock.conflict, I{} and I{} are 0", direction_variable(lowest), direction_variable(other)),
+        b_.machine.outputs().get(pin::kSourceConflict), 1);
     host_.verdict("lowest-numbered of two sources wins");
     const auto errors = b_.machine.take_run_errors();
-    const bool named = errors.size() == 1 && errors[0].find(fmt::format("(I{})", direction_variable(lowest))) != std::string::npos &&
+    const bool named = errors.size() == 1 &&
+                       errors[0].find(fmt::format("(I{})", direction_variable(lowest))) != std::string::npos &&
                        errors[0].find(fmt::format("(I{})", direction_variable(other))) != std::string::npos;
     b_.report.step("error of the run", named, errors.empty() ? "none, expected one that names both" : errors[0]);
     host_.ask(fmt::format("I{}=3", direction_variable(other)));
     b_.bus.wait(ClockChecker::release(host_.setting(other)));
     host_.checker().allow_conflict(false);
-    b_.report.equal<std::int64_t>("clock.conflict, one source again", b_.machine.outputs().get(pin::kSourceConflict), 0);
+    b_.report.equal<std::int64_t>("clock.conflict, one source again", b_.machine.outputs().get(pin::kSourceConflict),
+                                  0);
     host_.verdict("one source again");
   }
 
   void idle(const std::string& name) {
     const BoardOutputs& out = b_.machine.outputs();
     b_.report.equal<std::string>(name,
-                                 fmt::format("PHASE={} SERVO={} clock.source={} source_ic={}", out.get(pin::kPhase), out.get(pin::kServo),
-                                             host_.source_signal(), out.get(pin::kPhaseSource)),
+                                 fmt::format("PHASE={} SERVO={} clock.source={} source_ic={}", out.get(pin::kPhase),
+                                             out.get(pin::kServo), host_.source_signal(), out.get(pin::kPhaseSource)),
                                  "PHASE=1 SERVO=1 clock.source=0 source_ic=31");
   }
 
@@ -198,7 +208,8 @@ class SelectBench {
     host_.stop(variable + "=3");
     b_.bus.wait(2 * kMillisecond + 10 * host_.setting(host_.source()).phase());
     idle("no source");
-    b_.report.equal<std::int64_t>("status bits 7 and 3", host_.status(kConfigurationError | kNoPhaseClock), kNoPhaseClock);
+    b_.report.equal<std::int64_t>("status bits 7 and 3", host_.status(kConfigurationError | kNoPhaseClock),
+                                  kNoPhaseClock);
     host_.check("nothing moves without a source");
     host_.start(host_.source(), variable + "=0");
     host_.verdict("source again");
@@ -225,14 +236,18 @@ class SelectBench {
                                   kConfigurationError | kNoPhaseClock);
   }
 
-  // Jumper E3 repairs it. Re-initialisation passes a MACROGATE over: with servo IC 0 missing too the next in the order is servo IC 1.
+  // Jumper E3 repairs it. Re-initialisation passes a MACROGATE over: with servo IC 0 missing too the next in the order
+  // is servo IC 1.
   void macrogate() {
     constexpr unsigned kServoIc1 = 1;
     constexpr std::uint32_t kNeeded = 1u << kServoIc1 | 1u << kFirstMacroIc;
     const std::uint32_t all = b_.board.fitted;
     const bool gate = (all & kNeeded) == kNeeded;
     const std::uint32_t present = gate ? all & ~1u : all;
-    const unsigned first = gate ? kServoIc1 : (all & 1) != 0 ? 0 : (all >> kFirstMacroIc & 1) != 0 ? kFirstMacroIc : fitted_[0];
+    const unsigned first = gate                              ? kServoIc1
+                           : (all & 1) != 0                  ? 0
+                           : (all >> kFirstMacroIc & 1) != 0 ? kFirstMacroIc
+                                                             : fitted_[0];
     b_.machine.inputs().fitted = present;
     b_.machine.inputs().macro_gate = gate ? 1 : b_.board.macro_gate;
     b_.machine.apply();

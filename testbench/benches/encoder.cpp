@@ -1,6 +1,7 @@
-// encoder: all channels at once, each with its own decode mode, under random movement with glitches, jumps of both lines and turns. Every
-// change of every counter is judged to the tick by testbench/checkers/channel_scoreboard.h, which sees the same pins; then the words that
-// a host reads: positions, status, timers, and the fraction of hardware 1/T.
+// encoder: all channels at once, each with its own decode mode, under random movement with glitches, jumps of both
+// lines and turns. Every change of every counter is judged to the tick by testbench/checkers/channel_scoreboard.h,
+// which sees the same pins; then the words that a host reads: positions, status, timers, and the fraction of hardware
+// 1/T.
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
@@ -17,8 +18,8 @@ namespace {
 constexpr unsigned kA = EncoderMoves::kA, kB = EncoderMoves::kB, kC = EncoderMoves::kC;
 constexpr Tick kServo = 4 * (2 * 6527 + 3);  // factory setting
 // M-variables, + 100 for each further channel.
-constexpr unsigned kStatus = 100, kPhase = 101, kServoWord = 102, kT1 = 103, kT2 = 104, kError = 105, kReset = 106, kLoss = 107,
-                   kOutC = 108;
+constexpr unsigned kStatus = 100, kPhase = 101, kServoWord = 102, kT1 = 103, kT2 = 104, kError = 105, kReset = 106,
+                   kLoss = 107, kOutC = 108;
 
 class EncoderBench {
  public:
@@ -76,15 +77,18 @@ class EncoderBench {
     all(kError, 0);
     for (unsigned i = 0; i < modes.size(); ++i) host_.board(i).decoder.clear_error();
     const Tick start = host_.now() + 100;
-    for (unsigned i = 0; i < modes.size(); ++i) host_.drive(i, start + host_.pick(200), moves_.random(modes[i], host_.pins(i), 400));
+    for (unsigned i = 0; i < modes.size(); ++i)
+      host_.drive(i, start + host_.pick(200), moves_.random(modes[i], host_.pins(i), 400));
     host_.play();
     for (unsigned i = 0; i < modes.size(); ++i) {
       const std::int32_t position = host_.board(i).decoder.counter();
       const auto d = host_.counts(i);
-      const bool still = modes[i] == 8 || modes[i] == 12 || modes[i] == 9 || modes[i] == 10 || modes[i] == 13 || modes[i] == 14;
+      const bool still =
+          modes[i] == 8 || modes[i] == 12 || modes[i] == 9 || modes[i] == 10 || modes[i] == 13 || modes[i] == 14;
       const bool enough = still ? d.events == 0 : d.events > 20;
-      b_.report.step(fmt::format("{} I7mn0={}", host_.name(i), modes[i]), d.text.empty() && enough,
-                     d.text.empty() ? fmt::format("{} counts, each at its tick, position {}", d.events, position) : d.text);
+      b_.report.step(
+          fmt::format("{} I7mn0={}", host_.name(i), modes[i]), d.text.empty() && enough,
+          d.text.empty() ? fmt::format("{} counts, each at its tick, position {}", d.events, position) : d.text);
     }
     b_.bus.wait(2 * kServo);
     words("positions, status and T1 of all channels", static_cast<unsigned>(modes.size()));
@@ -98,10 +102,12 @@ class EncoderBench {
     b_.report.equal<std::int64_t>("count error after a write of 0, wrong channels", wrong, 0);
   }
 
-  // One illegal move at a time: three lines at once, then hall lines that are no state. Pulse and direction knows no error.
+  // One illegal move at a time: three lines at once, then hall lines that are no state. Pulse and direction knows no
+  // error.
   void illegal_moves() {
     const std::vector<unsigned> modes{1, 2, 3, 11, 15, 5, 0, 4};
-    set_modes({modes.begin(), modes.begin() + static_cast<long>(std::min<std::size_t>(host_.channels(), modes.size()))});
+    set_modes(
+        {modes.begin(), modes.begin() + static_cast<long>(std::min<std::size_t>(host_.channels(), modes.size()))});
     const auto put = [&](unsigned lines) {
       for (unsigned i = 0; i < host_.channels(); ++i)
         host_.drive(i, host_.now() + 50, {{static_cast<std::uint16_t>((host_.pins(i) & ~(kA | kB | kC)) | lines), 1}});
@@ -131,7 +137,8 @@ class EncoderBench {
 
   // What is read while nothing moves.
   void words(const std::string& name, unsigned channels) {
-    const auto status = host_.read(kStatus), phase = host_.read(kPhase), servo = host_.read(kServoWord), t1 = host_.read(kT1);
+    const auto status = host_.read(kStatus), phase = host_.read(kPhase), servo = host_.read(kServoWord),
+               t1 = host_.read(kT1);
     constexpr std::uint32_t kJudged = 0x007100 | 0x000008;  // C, B, A, count error, DMX_INV
     std::string wrong;
     unsigned errors = 0;
@@ -139,16 +146,19 @@ class EncoderBench {
       const ChannelScoreboard& board = host_.board(i);
       const auto check = [&](const char* what, long measured, long expected) {
         if (measured != expected && wrong.empty())
-          wrong = fmt::format("{} {}: ${:06X}, expected ${:06X}", host_.name(i), what, measured & 0xFFFFFF, expected & 0xFFFFFF);
+          wrong = fmt::format("{} {}: ${:06X}, expected ${:06X}", host_.name(i), what, measured & 0xFFFFFF,
+                              expected & 0xFFFFFF);
       };
       errors += board.decoder.error() ? 1 : 0;
       check("status", status[i] & kJudged, board.status(kJudged));
       check("X:+1", phase[i], board.decoder.counter());
-      check("X:+2", servo[i], static_cast<long>((board.decoder.raw() << 1 & 0xFFFFFF) | (board.decoder.down() ? 1 : 0)));
+      check("X:+2", servo[i],
+            static_cast<long>((board.decoder.raw() << 1 & 0xFFFFFF) | (board.decoder.down() ? 1 : 0)));
       if (board.decoder.counts() >= 2 && board.decoder.mode != 12)
         check("T1", t1[i], static_cast<long>(board.decoder.t1() | (board.decoder.reversed() ? 0x800000u : 0u)));
     }
-    b_.report.step(name, wrong.empty(), wrong.empty() ? fmt::format("as the scoreboard, {} with count error", errors) : wrong);
+    b_.report.step(name, wrong.empty(),
+                   wrong.empty() ? fmt::format("as the scoreboard, {} with count error", errors) : wrong);
   }
 
   void timers() {
@@ -170,7 +180,8 @@ class EncoderBench {
     }
     b_.report.step("T1 = spacing, T2 = SCLK periods from the count to SERVO", bad.empty(),
                    bad.empty() ? fmt::format("{}: {} and {}", host_.name(0), t1[0], t2[0]) : bad);
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 1, i % 2 != 0, 4));
+    for (unsigned i = 0; i < host_.channels(); ++i)
+      host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 1, i % 2 != 0, 4));
     host_.play();
     b_.bus.wait(2 * kServo);
     const auto turned = host_.read(kT1);
@@ -221,23 +232,28 @@ class EncoderBench {
   // ENC_LOSS: T = U or V = W, by two samples; it stays until 0 is written.
   void encoder_loss() {
     constexpr unsigned kLines = 1u << kT | 1u << kU | 1u << kV | 1u << kW;
-    const auto with = [](std::uint16_t pins, unsigned lines) { return static_cast<std::uint16_t>((pins & ~kLines) | lines); };
+    const auto with = [](std::uint16_t pins, unsigned lines) {
+      return static_cast<std::uint16_t>((pins & ~kLines) | lines);
+    };
     const auto losses = [&](const char* name, long expected) {
       long set = 0;
       for (const long v : host_.read(kLoss)) set += v;
       b_.report.equal<std::int64_t>(name, set, expected);
     };
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, {{with(host_.pins(i), 1u << kT | 1u << kW), 1}});
+    for (unsigned i = 0; i < host_.channels(); ++i)
+      host_.drive(i, host_.now() + 50, {{with(host_.pins(i), 1u << kT | 1u << kW), 1}});
     host_.play();
     all(kLoss, 0);
     losses("encoder loss, complement pairs, channels", 0);
     for (unsigned i = 0; i < host_.channels(); ++i)  // one sample: no loss
-      host_.drive(i, host_.now() + 50, {{with(host_.pins(i), 1u << kT | 1u << kU | 1u << kW), host_.period()}, {host_.pins(i), 1}});
+      host_.drive(i, host_.now() + 50,
+                  {{with(host_.pins(i), 1u << kT | 1u << kU | 1u << kW), host_.period()}, {host_.pins(i), 1}});
     host_.play();
     losses("one SCLK period with T = U", 0);
     for (unsigned i = 0; i < host_.channels(); ++i)
       host_.drive(i, host_.now() + 50,
-                  {{with(host_.pins(i), i % 2 == 0 ? 1u << kT : kLines & ~(1u << kU)), 6 * host_.period()}, {host_.pins(i), 1}});
+                  {{with(host_.pins(i), i % 2 == 0 ? 1u << kT : kLines & ~(1u << kU)), 6 * host_.period()},
+                   {host_.pins(i), 1}});
     host_.play();
     losses("six SCLK periods with V = W, latched", host_.channels());
     all(kLoss, 0);
@@ -272,15 +288,18 @@ class EncoderBench {
                (k == 0 || seen.pulses[k].tick - seen.pulses[k - 1].tick == every[i] * host_.period());
       }
       total += seen.counts.size();
-      if (!good && bad.empty()) bad = fmt::format("{}: {} pulses, {} counts", host_.name(i), seen.pulses.size(), seen.counts.size());
+      if (!good && bad.empty())
+        bad = fmt::format("{}: {} pulses, {} counts", host_.name(i), seen.pulses.size(), seen.counts.size());
     }
-    b_.report.step("I7mn0=8: each own pulse counts, with its sign", bad.empty(), bad.empty() ? fmt::format("{} pulses", total) : bad);
+    b_.report.step("I7mn0=8: each own pulse counts, with its sign", bad.empty(),
+                   bad.empty() ? fmt::format("{} pulses", total) : bad);
     host_.play();
     for (unsigned i = 0; i < host_.channels(); ++i) host_.counts(i);
   }
 
   // I7mn0 = 12: T1 is the time from the own pulse to the echo on A. The pulse is on an SCLK edge,
-  // the echo is decoded at the third one after its pin; the clearing may take one and the copy is of the value before the edge.
+  // the echo is decoded at the third one after its pin; the clearing may take one and the copy is of the value before
+  // the edge.
   void mldt() {
     set_modes(std::vector<unsigned>(host_.channels(), 12));
     for (unsigned i = 0; i < host_.channels(); ++i)
@@ -306,7 +325,8 @@ class EncoderBench {
     for (unsigned i = 0; i < host_.channels(); ++i) {
       const long late = first[i] - (delay[i] - 37);
       if (late < 1 || late > 3 || second[i] - first[i] != 37)
-        bad += fmt::format(" {}: {} then {}, expected {} + 1..3 and 37 more", host_.name(i), first[i], second[i], delay[i] - 37);
+        bad += fmt::format(" {}: {} then {}, expected {} + 1..3 and 37 more", host_.name(i), first[i], second[i],
+                           delay[i] - 37);
     }
     b_.report.step("I7mn0=12: T1 is the delay of the echo", bad.empty(),
                    bad.empty() ? fmt::format("{}: {} and {}", host_.name(0), first[0], second[0]) : bad);
@@ -317,7 +337,8 @@ class EncoderBench {
     for (unsigned i = 0; i < host_.channels(); ++i) host_.board(i).decoder.clear_timing();
   }
 
-  // Hardware 1/T: bits 23..12 of Y:+1 are e = floor(4096 T2 / T1) at SERVO, 4095 - e going down, at most 4095; 0 after a turn.
+  // Hardware 1/T: bits 23..12 of Y:+1 are e = floor(4096 T2 / T1) at SERVO, 4095 - e going down, at most 4095; 0 after
+  // a turn.
   void fraction() {
     host_.assign(6, std::vector<unsigned>(host_.channels(), 0));
     set_modes(std::vector<unsigned>(host_.channels(), 3));
@@ -325,7 +346,8 @@ class EncoderBench {
     constexpr unsigned kSteps = 40;
     const long spacing = (6000 + host_.pick(6000)) / static_cast<long>(host_.period());
     const Tick start = host_.now() + 100;
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, start, moves_.even(host_.pins(i), kSteps, i % 2 == 0, spacing));
+    for (unsigned i = 0; i < host_.channels(); ++i)
+      host_.drive(i, start, moves_.even(host_.pins(i), kSteps, i % 2 == 0, spacing));
     unsigned wrong = 0, seen = 0;
     std::string text;
     while (host_.now() < start + (kSteps - 2) * spacing * host_.period()) {
@@ -335,7 +357,8 @@ class EncoderBench {
       const auto read = host_.last_read(false, host_.address(i, 1));
       host_.board(i).advance(host_.now());
       const long t2 = since_count(i, read.servo), up = i % 2 == 0 ? 1 : 0;
-      if (read.servo < start + 4 * spacing * host_.period() || t2 < 5 || t2 > spacing - 5) continue;  // near a count: the next SCLK period
+      if (read.servo < start + 4 * spacing * host_.period() || t2 < 5 || t2 > spacing - 5)
+        continue;  // near a count: the next SCLK period
       const auto e = [&](long t) { return std::min(4095L, 4096 * t / spacing); };
       const long lowest = up != 0 ? e(t2 - 1) : 4095 - e(t2 + 1), highest = up != 0 ? e(t2 + 1) : 4095 - e(t2 - 1);
       const long measured = read.data >> 12;
@@ -351,7 +374,8 @@ class EncoderBench {
     host_.play();
     b_.bus.wait(std::max<Tick>(spacing * host_.period(), kServo) + kServo);
     rest("at rest: full cell", 4095, 0);
-    for (unsigned i = 0; i < host_.channels(); ++i) host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 1, i % 2 != 0, 5));
+    for (unsigned i = 0; i < host_.channels(); ++i)
+      host_.drive(i, host_.now() + 50, moves_.even(host_.pins(i), 1, i % 2 != 0, 5));
     host_.play();
     b_.bus.wait(2 * kServo);
     rest("after a turn: start of the new cell", 4095, 0);
@@ -363,10 +387,11 @@ class EncoderBench {
   void rest(const char* name, long even_channels, long odd_channels) {
     const auto words = host_.read(kT2);
     unsigned wrong = 0;
-    for (unsigned i = 0; i < host_.channels(); ++i) wrong += words[i] >> 12 != (i % 2 == 0 ? even_channels : odd_channels);
+    for (unsigned i = 0; i < host_.channels(); ++i)
+      wrong += words[i] >> 12 != (i % 2 == 0 ? even_channels : odd_channels);
     b_.report.step(name, wrong == 0,
-                   fmt::format("{} = {}, {} = {}, expected {} and {}", host_.name(0), words[0] >> 12, host_.name(1), words[1] >> 12,
-                               even_channels, odd_channels));
+                   fmt::format("{} = {}, {} = {}, expected {} and {}", host_.name(0), words[0] >> 12, host_.name(1),
+                               words[1] >> 12, even_channels, odd_channels));
   }
 
   long since_count(unsigned i, Tick tick) {
@@ -387,7 +412,8 @@ void run(BenchContext& b) { EncoderBench(b).run(); }
 // covers: CARD-1 CARD-2
 Bench encoder_bench() {
   return {"encoder",
-          "all decode modes under random movement with glitches and jumps, counters to the tick, timers, hardware 1/T, MLDT",
+          "all decode modes under random movement with glitches and jumps, counters to the tick, timers, hardware 1/T, "
+          "MLDT",
           "the scoreboard's filter lets one sample pass",
           nullptr,
           run,

@@ -1,4 +1,5 @@
-// What the encoder bench plays on A, B and C: wheels and hall tracks that turn at random with glitches and jumps, or evenly.
+// What the encoder bench plays on A, B and C: wheels and hall tracks that turn at random with glitches and jumps, or
+// evenly.
 #pragma once
 
 #include <algorithm>
@@ -56,9 +57,13 @@ class EncoderMoves {
       if (chance >= 97) return static_cast<std::uint16_t>((pins & ~kAll) | (host_.pick(2) != 0 ? kAll : 0));
       const auto at = std::find(kHalls.begin(), kHalls.end(), pins & kAll);
       const auto place = at == kHalls.end() ? host_.pick(6) : static_cast<unsigned>(at - kHalls.begin());
-      return static_cast<std::uint16_t>((pins & ~kAll) | kHalls[(place + (chance >= 94 ? 2 + host_.pick(3) : up ? 1 : 5)) % 6]);
+      return static_cast<std::uint16_t>((pins & ~kAll) | kHalls[(place + (chance >= 94 ? 2 + host_.pick(3)
+                                                                          : up         ? 1
+                                                                                       : 5)) %
+                                                                6]);
     }
-    const auto place = static_cast<unsigned>(std::find(kWheel.begin(), kWheel.end(), pins & (kA | kB)) - kWheel.begin());
+    const auto place =
+        static_cast<unsigned>(std::find(kWheel.begin(), kWheel.end(), pins & (kA | kB)) - kWheel.begin());
     return static_cast<std::uint16_t>((pins & ~(kA | kB)) | kWheel[(place + (chance >= 95 ? 2 : up ? 1 : 3)) % 4]);
   }
 

@@ -1,5 +1,6 @@
-// flags: every input pin of every channel at its bit of the status word and its M-variable, the filter before it, AENA, and the control
-// word that the I-variables and M-variables share. The levels that a read must show are those of the scoreboard's filter at that time.
+// flags: every input pin of every channel at its bit of the status word and its M-variable, the filter before it, AENA,
+// and the control word that the I-variables and M-variables share. The levels that a read must show are those of the
+// scoreboard's filter at that time.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -15,7 +16,7 @@ namespace {
 constexpr std::uint16_t kAllPins = (1u << kChannelPins) - 1;
 constexpr unsigned kAena = 114, kPins = 130, kControl = 131, kCaptured = 117, kPosition = 103;
 
-// The usual M-variables of the flags and their status bits, servo-ic.md 2.2.
+// The usual M-variables of the flags and their status bits, servo-ic:2.2.
 struct Flag {
   unsigned number, bit;
   ChannelPin pin;
@@ -67,14 +68,16 @@ class FlagsBench {
     const auto read = host_.read(kPins);
     std::string bad;
     for (unsigned i = 0; i < host_.channels(); ++i)
-      if (read[i] != host_.pins(i) && bad.empty()) bad = fmt::format("{} ${:03X}, expected ${:03X}", host_.name(i), read[i], host_.pins(i));
+      if (read[i] != host_.pins(i) && bad.empty())
+        bad = fmt::format("{} ${:03X}, expected ${:03X}", host_.name(i), read[i], host_.pins(i));
     if (!name.empty() || !bad.empty())
       b_.report.step(name.empty() ? "status bits 23..12" : name, bad.empty(),
                      bad.empty() ? fmt::format("${:03X} on all channels", read[0]) : bad);
     return bad.empty();
   }
 
-  // One pin a channel differs from the others, each in turn; and one channel's M-variables, which are not only bits of one field.
+  // One pin a channel differs from the others, each in turn; and one channel's M-variables, which are not only bits of
+  // one field.
   void walking(bool low) {
     unsigned good = 0, flags = 0;
     std::string bad;
@@ -93,7 +96,8 @@ class FlagsBench {
         const long expected = pins[i] >> kFlags[k].pin & 1;
         const bool same = k < read.size() && read[k] == expected;
         flags += same ? 1 : 0;
-        if (!same && bad.empty()) bad = fmt::format(", M{} of {}, expected {}", kFlags[k].number + 100 * i, host_.name(i), expected);
+        if (!same && bad.empty())
+          bad = fmt::format(", M{} of {}, expected {}", kFlags[k].number + 100 * i, host_.name(i), expected);
       }
     }
     b_.report.step(fmt::format("one pin {}, each in turn", low ? "low" : "high"),
@@ -101,8 +105,8 @@ class FlagsBench {
                    fmt::format("{} of 12 words of all channels, {} of 120 M-variables{}", good, flags, bad));
   }
 
-  // A pulse on every pin, again and again, while the host reads. Of one SCLK period: never seen. Of two: each read shows the level that
-  // the filter has at that moment; one that may fall on an edge is not judged.
+  // A pulse on every pin, again and again, while the host reads. Of one SCLK period: never seen. Of two: each read
+  // shows the level that the filter has at that moment; one that may fall on an edge is not judged.
   void spikes() {
     for (const unsigned length : {1u, 2u, 3u}) {
       const Tick start = host_.now() + 50, p = host_.period();
@@ -137,7 +141,8 @@ class FlagsBench {
       }
       host_.play();
       const bool enough = judged >= 10 && (length == 1 ? pulses == 0 : pulses > 0);
-      b_.report.step(fmt::format("pulses of {} SCLK period{} on all pins", length, length == 1 ? "" : "s"), bad.empty() && enough,
+      b_.report.step(fmt::format("pulses of {} SCLK period{} on all pins", length, length == 1 ? "" : "s"),
+                     bad.empty() && enough,
                      bad.empty() ? fmt::format("{} reads, {} of them during a pulse", judged, pulses) : bad);
     }
   }
@@ -172,25 +177,27 @@ class FlagsBench {
     for (const unsigned length : {1u, 2u}) {
       for (unsigned i = 0; i < n; ++i) {
         const auto other = static_cast<std::uint16_t>(host_.pins(i) ^ 1u << kSelected[flags[i]]);
-        host_.drive(i, host_.now() + 100, {{host_.pins(i), 1 + host_.pick(90)}, {other, length * host_.period()}, {host_.pins(i), 1}});
+        host_.drive(i, host_.now() + 100,
+                    {{host_.pins(i), 1 + host_.pick(90)}, {other, length * host_.period()}, {host_.pins(i), 1}});
       }
       host_.play();
       long captured = 0;
       for (const long c : host_.read(kCaptured)) captured += c;
-      b_.report.equal<std::int64_t>(
-          fmt::format("HMFL, PLIM, MLIM, USER for {} SCLK period{}, channels that captured", length, length == 1 ? "" : "s"), captured,
-          length == 1 ? 0 : n);
+      b_.report.equal<std::int64_t>(fmt::format("HMFL, PLIM, MLIM, USER for {} SCLK period{}, channels that captured",
+                                                length, length == 1 ? "" : "s"),
+                                    captured, length == 1 ? 0 : n);
     }
   }
 
   bool enabled(unsigned i) { return host_.pin(motor_pin::kAena, i) != 0; }
   std::string enables(const std::vector<long>* expected = nullptr) {
     std::string text;
-    for (unsigned i = 0; i < host_.channels(); ++i) text += expected != nullptr ? std::to_string((*expected)[i]) : enabled(i) ? "1" : "0";
+    for (unsigned i = 0; i < host_.channels(); ++i)
+      text += expected != nullptr ? std::to_string((*expected)[i]) : enabled(i) ? "1" : "0";
     return text;
   }
 
-  // Bits of the control word that belong to I7mnk, servo-ic.md 2.5: lowest bit and width.
+  // Bits of the control word that belong to I7mnk, servo-ic:2.5: lowest bit and width.
   static constexpr std::array<std::array<unsigned, 2>, 10> kFields{
       {{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 2}, {22, 2}, {20, 2}, {19, 1}, {18, 1}}};
 

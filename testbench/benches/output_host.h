@@ -1,5 +1,5 @@
-// A host that listens on the motor side: every change of the output pins of two servo ICs, every edge of PHASE and every write of the
-// CPU to their words, each with its tick. What the benches of the outputs share.
+// A host that listens on the motor side: every change of the output pins of two servo ICs, every edge of PHASE and
+// every write of the CPU to their words, each with its tick. What the benches of the outputs share.
 #pragma once
 
 #include <vector>

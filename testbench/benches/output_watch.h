@@ -1,4 +1,5 @@
-// Collects which output pins of the servo ICs were high in a stretch of time, for benches that expect outputs to be alive or dead.
+// Collects which output pins of the servo ICs were high in a stretch of time, for benches that expect outputs to be
+// alive or dead.
 #pragma once
 
 #include <array>
@@ -38,9 +39,10 @@ class OutputWatch : public MotorPeer {
     std::string text;
     for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
       for (unsigned n = 0; n < kChannels && (ics_ >> ic & 1) != 0; ++n)
-        for (const MotorField* pin :
-             {&kAena, &kPwmATop, &kPwmABot, &kPwmBTop, &kPwmBBot, &kPwmCTop, &kPwmCBot, &kPfmPulse, &kDac, &kDacB, &kEqu})
-          if (was_high(ic, *pin, n)) text += fmt::format("{}{}.ch{}.{}", text.empty() ? "" : " ", servo_ic_scope(ic), n + 1, pin->name);
+        for (const MotorField* pin : {&kAena, &kPwmATop, &kPwmABot, &kPwmBTop, &kPwmBBot, &kPwmCTop, &kPwmCBot,
+                                      &kPfmPulse, &kDac, &kDacB, &kEqu})
+          if (was_high(ic, *pin, n))
+            text += fmt::format("{}{}.ch{}.{}", text.empty() ? "" : " ", servo_ic_scope(ic), n + 1, pin->name);
     return text;
   }
 

@@ -1,6 +1,6 @@
-// pfm: OUT C of all channels as pulse trains, commands through M-variables, pulse and direction pins watched edge by edge, counters on
-// their own pulses (I7mn0 = 8). The scoreboard (testbench/checkers/pfm_scoreboard.h) has the accumulator from power-up on, so every
-// pulse has its tick whatever was commanded before.
+// pfm: OUT C of all channels as pulse trains, commands through M-variables, pulse and direction pins watched edge by
+// edge, counters on their own pulses (I7mn0 = 8). The scoreboard (testbench/checkers/pfm_scoreboard.h) has the
+// accumulator from power-up on, so every pulse has its tick whatever was commanded before.
 #include <algorithm>
 #include <array>
 
@@ -109,7 +109,8 @@ void Pfm::begin() {
 
 void Pfm::command(const std::vector<int>& values) {
   std::vector<std::string> words;
-  for (unsigned i = 0; i < host_.channels(); ++i) words.push_back(fmt::format("M{}={}", 100 * (i + 1) + kCommand, values[i]));
+  for (unsigned i = 0; i < host_.channels(); ++i)
+    words.push_back(fmt::format("M{}={}", 100 * (i + 1) + kCommand, values[i]));
   host_.say(words);
   for (unsigned i = 0; i < host_.channels(); ++i) {
     const Tick at = host_.written(false, host_.address(i, 4));
@@ -126,7 +127,8 @@ std::string Pfm::count_difference(unsigned channel) const {
   const auto seen = levels(channel);
   std::size_t i = 0, level = 0;
   for (std::size_t k = 1; k < changes.size(); ++k) {
-    const auto before = changes[k - 1].pins.get(motor_pin::kCount, n), after = changes[k].pins.get(motor_pin::kCount, n);
+    const auto before = changes[k - 1].pins.get(motor_pin::kCount, n),
+               after = changes[k].pins.get(motor_pin::kCount, n);
     if (before == after) continue;
     if (i == pulses.size()) return fmt::format("count {} at tick {}, expected none", after, changes[k].tick);
     while (level + 1 < seen.size() && seen[level + 1].tick <= pulses[i]) ++level;
@@ -159,16 +161,18 @@ void Pfm::end(const std::string& what) {
     counted += p.up + p.down;
     std::string off = count_difference(i);
     if (off.empty() && position.at(i) - position_.at(i) != p.up - p.down)
-      off =
-          fmt::format("M{} went from {} to {}, {} pulses up, {} down", 100 * (i + 1) + kPosition, position_[i], position[i], p.up, p.down);
+      off = fmt::format("M{} went from {} to {}, {} pulses up, {} down", 100 * (i + 1) + kPosition, position_[i],
+                        position[i], p.up, p.down);
     if (!off.empty() && counts.empty()) counts = fmt::format("{}: {}", host_.name(i), off);
   }
-  report().step(what, text.empty() && edges > 0, text.empty() ? fmt::format("{} edges, each at its tick", edges) : text);
+  report().step(what, text.empty() && edges > 0,
+                text.empty() ? fmt::format("{} edges, each at its tick", edges) : text);
   if (counted > 0 || !counts.empty())
-    report().step(what + ", one count a pulse", counts.empty(), counts.empty() ? fmt::format("{} pulses", counted) : counts);
+    report().step(what + ", one count a pulse", counts.empty(),
+                  counts.empty() ? fmt::format("{} pulses", counted) : counts);
 }
 
-// servo-ic.md 14, vector 6; the same downwards on every second channel.
+// servo-ic:14/6; the same downwards on every second channel.
 void Pfm::vector6() {
   configure({2, 2}, {15, 15});
   begin();
@@ -183,8 +187,8 @@ void Pfm::vector6() {
     for (std::size_t k = 0; k + 1 < seen.size(); ++k)
       if ((seen[k].pins & 1) != 0) width = std::max(width, seen[k + 1].tick - seen[k].tick);
     for (std::size_t k = 0; k + 1 < pulses.size(); ++k) period = std::max(period, pulses[k + 1] - pulses[k]);
-    report().equal<std::int64_t>(fmt::format("{} at ${:06X}: period in ticks, 38.4 kHz", host_.name(i), values[i] & 0xFFFFFF), period,
-                                 256 * 12);
+    report().equal<std::int64_t>(
+        fmt::format("{} at ${:06X}: period in ticks, 38.4 kHz", host_.name(i), values[i] & 0xFFFFFF), period, 256 * 12);
     report().equal<std::int64_t>("width in ticks, I7004=15", width, 15 * 12);
     report().equal<std::int64_t>("direction pin", seen.back().pins >> 1, i);
   }
@@ -231,8 +235,8 @@ void Pfm::round(unsigned number, unsigned width, unsigned other) {
     command(values);
     host_.wait(host_.pick(60'000));
   }
-  end(fmt::format("round {}: PFM_CLK every {} and {} ticks, I7004={} I7104={}", number, rule_[0].clock, rule_[1].clock, rule_[0].width,
-                  rule_[1].width));
+  end(fmt::format("round {}: PFM_CLK every {} and {} ticks, I7004={} I7104={}", number, rule_[0].clock, rule_[1].clock,
+                  rule_[0].width, rule_[1].width));
 }
 
 void run(BenchContext& b) {

@@ -1,6 +1,6 @@
-// pwm: commands through M-variables on all phases of two servo ICs, switch pins watched edge by edge. Where the triangle of an IC stands
-// is learnt once a round from one falling edge at command 0; from there on every edge of its 12 phases has its tick
-// (testbench/checkers/pwm_scoreboard.h), through new commands at any time and new I7000.
+// pwm: commands through M-variables on all phases of two servo ICs, switch pins watched edge by edge. Where the
+// triangle of an IC stands is learnt once a round from one falling edge at command 0; from there on every edge of its
+// 12 phases has its tick (testbench/checkers/pwm_scoreboard.h), through new commands at any time and new I7000.
 #include <algorithm>
 #include <array>
 
@@ -15,9 +15,10 @@ namespace {
 
 constexpr unsigned kPhases = 3;  // A, B, C of a channel
 constexpr std::array<const MotorField*, kPhases> kTop{&motor_pin::kPwmATop, &motor_pin::kPwmBTop, &motor_pin::kPwmCTop};
-constexpr std::array<const MotorField*, kPhases> kBottom{&motor_pin::kPwmABot, &motor_pin::kPwmBBot, &motor_pin::kPwmCBot};
+constexpr std::array<const MotorField*, kPhases> kBottom{&motor_pin::kPwmABot, &motor_pin::kPwmBBot,
+                                                         &motor_pin::kPwmCBot};
 constexpr std::array<unsigned, kPhases> kVariable{2, 4, 7};  // M102, M104, M107: OUT A, B, C
-constexpr Tick kNear = 8;                                    // of a turn to the edge of PHASE, servo-ic.md 5.1 item 6
+constexpr Tick kNear = 8;                                    // of a turn to the edge of PHASE, servo-ic:5.1/6
 
 class Pwm {
  public:
@@ -30,14 +31,19 @@ class Pwm {
   void round(unsigned number);
   void new_limits();
   void total() const {
-    host_report().step("upper and lower switch both on, ever", shorts_ == 0, fmt::format("{} times in {} edges", shorts_, edges_));
+    host_report().step("upper and lower switch both on, ever", shorts_ == 0,
+                       fmt::format("{} times in {} edges", shorts_, edges_));
   }
 
  private:
   unsigned phases() const { return static_cast<unsigned>(commands_.size()); }
   unsigned place(unsigned phase) const { return phase / kPhases / kChannels; }
-  bool inverted(unsigned phase) const { return (inverted_[phase / kPhases] >> (phase % kPhases == 2 ? 1 : 0) & 1) != 0; }
-  std::string name(unsigned phase) const { return fmt::format("{} {}", host_.name(phase / kPhases), "ABC"[phase % kPhases]); }
+  bool inverted(unsigned phase) const {
+    return (inverted_[phase / kPhases] >> (phase % kPhases == 2 ? 1 : 0) & 1) != 0;
+  }
+  std::string name(unsigned phase) const {
+    return fmt::format("{} {}", host_.name(phase / kPhases), "ABC"[phase % kPhases]);
+  }
   Tick period(unsigned place) const { return 4 * static_cast<Tick>(limit_[place]) + 6; }
   BenchReport& host_report() const { return report_; }
 
@@ -70,7 +76,8 @@ std::vector<PwmLevel> Pwm::levels(unsigned phase) const {
   std::vector<PwmLevel> list;
   const unsigned channel = phase / kPhases % kChannels, turn = inverted(phase) ? 3 : 0;
   for (const auto& c : host_.changes(place(phase))) {
-    const unsigned pins = (c.pins.get(*kTop[phase % kPhases], channel) | c.pins.get(*kBottom[phase % kPhases], channel) << 1) ^ turn;
+    const unsigned pins =
+        (c.pins.get(*kTop[phase % kPhases], channel) | c.pins.get(*kBottom[phase % kPhases], channel) << 1) ^ turn;
     if (list.empty() || list.back().pins != pins) list.push_back({c.tick, pins});
   }
   return list;
@@ -81,7 +88,8 @@ void Pwm::drop() {
   for (unsigned p = 0; p < phases(); ++p) {
     const auto seen = levels(p);
     edges_ += seen.size() - 1;
-    shorts_ += static_cast<unsigned>(std::count_if(seen.begin(), seen.end(), [](const PwmLevel& l) { return l.pins == 3; }));
+    shorts_ +=
+        static_cast<unsigned>(std::count_if(seen.begin(), seen.end(), [](const PwmLevel& l) { return l.pins == 3; }));
   }
   host_.forget();
 }
@@ -104,12 +112,14 @@ void Pwm::zero() {
   command(values);
 }
 
-// I7m00 of both ICs, dividers of the source, dead time of both; then until the second triangle has followed (5.1 item 6).
+// I7m00 of both ICs, dividers of the source, dead time of both; then until the second triangle has followed (5.1 item
+// 6).
 void Pwm::configure(unsigned limit, unsigned other, unsigned phase_divider, unsigned servo_divider, unsigned dead) {
   zero();
   host_.say({fmt::format("I7000={} I7001={} I7002={}", limit, phase_divider, servo_divider)});
   for (unsigned i = 0; i < host_.places(); ++i)
-    host_.say({fmt::format("I{}={}", host_.i_global(i, 0), i == 0 ? limit : other), fmt::format("I{}={}", host_.i_global(i, 4), dead)});
+    host_.say({fmt::format("I{}={}", host_.i_global(i, 0), i == 0 ? limit : other),
+               fmt::format("I{}={}", host_.i_global(i, 4), dead)});
   limit_ = {limit, other};
   dead_ = dead;
   rule_.dead = 16 * static_cast<Tick>(dead);
@@ -118,7 +128,8 @@ void Pwm::configure(unsigned limit, unsigned other, unsigned phase_divider, unsi
 
 void Pwm::invert(const std::vector<unsigned>& values) {
   std::vector<std::string> words;
-  for (unsigned i = 0; i < host_.channels(); ++i) words.push_back(fmt::format("I{}={}", host_.i_channel(i, 7), values[i]));
+  for (unsigned i = 0; i < host_.channels(); ++i)
+    words.push_back(fmt::format("I{}={}", host_.i_channel(i, 7), values[i]));
   drop();
   host_.say(words);
   host_.forget();
@@ -165,7 +176,8 @@ std::string Pwm::differences(unsigned places, unsigned& edges) {
       same = same || difference.empty();
     }
     if (!same) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name(p), first);
-    edges += static_cast<unsigned>(std::count_if(seen.begin(), seen.end(), [from](const PwmLevel& l) { return l.tick > from; }));
+    edges += static_cast<unsigned>(
+        std::count_if(seen.begin(), seen.end(), [from](const PwmLevel& l) { return l.tick > from; }));
   }
   return text;
 }
@@ -179,13 +191,16 @@ void Pwm::on_times(const std::string& what, unsigned places) {
     const Tick upper = raw == whole ? whole : std::max<Tick>(0, raw - rule_.dead);
     const Tick lower = raw == 0 ? whole : std::max<Tick>(0, whole - raw - rule_.dead);
     const auto seen = levels(p);
-    const Tick from = host_.now() - whole, on = pwm_time(seen, 1, from, host_.now()), off = pwm_time(seen, 2, from, host_.now());
+    const Tick from = host_.now() - whole, on = pwm_time(seen, 1, from, host_.now()),
+               off = pwm_time(seen, 2, from, host_.now());
     least = std::min(least, on);
     most = std::max(most, on);
     if (bad.empty() && (on != upper || off != lower))
-      bad = fmt::format("{}: upper {}, lower {}, expected {}, {} at command {}", name(p), on, off, upper, lower, commands_[p].back().value);
+      bad = fmt::format("{}: upper {}, lower {}, expected {}, {} at command {}", name(p), on, off, upper, lower,
+                        commands_[p].back().value);
   }
-  report_.step(what + ", on times in a period", bad.empty(), bad.empty() ? fmt::format("upper switches {} to {} ticks", least, most) : bad);
+  report_.step(what + ", on times in a period", bad.empty(),
+               bad.empty() ? fmt::format("upper switches {} to {} ticks", least, most) : bad);
 }
 
 void Pwm::judge(const std::string& what, unsigned places) {
@@ -193,7 +208,8 @@ void Pwm::judge(const std::string& what, unsigned places) {
   host_.wait(2 * std::max(period(0), period(1)));
   unsigned edges = 0;
   const std::string text = differences(places, edges);
-  report_.step(what, text.empty() && edges > 0, text.empty() ? fmt::format("{} edges, each at its tick", edges) : text.substr(0, 300));
+  report_.step(what, text.empty() && edges > 0,
+               text.empty() ? fmt::format("{} edges, each at its tick", edges) : text.substr(0, 300));
   on_times(what, places);
 
   Tick off = 0;
@@ -202,14 +218,17 @@ void Pwm::judge(const std::string& what, unsigned places) {
     for (const auto& edge : host_.phase()) {
       if (!edge.high || edge.tick < bottom_[i] || edge.tick > host_.now() - kNear) continue;
       Tick best = kNever;
-      for (const PwmTurn& t : turns) best = std::min(best, edge.tick < t.tick ? t.tick - edge.tick : edge.tick - t.tick);
+      for (const PwmTurn& t : turns)
+        best = std::min(best, edge.tick < t.tick ? t.tick - edge.tick : edge.tick - t.tick);
       off = std::max(off, best);
     }
   }
-  report_.step("PHASE rises at a turn", off <= kNear, fmt::format("at most {} ticks apart, expected {} or less", off, kNear));
+  report_.step("PHASE rises at a turn", off <= kNear,
+               fmt::format("at most {} ticks apart, expected {} or less", off, kNear));
 }
 
-// Commands that matter: anywhere, about 0, at and beyond the ends of the triangle, and pulses about as long as the dead time.
+// Commands that matter: anywhere, about 0, at and beyond the ends of the triangle, and pulses about as long as the dead
+// time.
 int Pwm::random_command(unsigned place) {
   const int limit = static_cast<int>(limit_[place]);
   const int sign = host_.pick(2) == 0 ? 1 : -1;
@@ -227,7 +246,7 @@ int Pwm::random_command(unsigned place) {
   }
 }
 
-// servo-ic.md 14, vectors 1 to 3.
+// servo-ic:14/1 to servo-ic:14/3.
 void Pwm::vectors() {
   constexpr std::array<int, 6> kCommands{0, 100, -100, 6528, 6529, -6529};
   constexpr std::array<Tick, 6> kHigh{13057, 13257, 12857, 26113, 26114, 0};
@@ -239,7 +258,8 @@ void Pwm::vectors() {
   host_.wait(3 * period(0));
   for (unsigned v = 0; v < 6; ++v) {
     const Tick high = pwm_time(levels(v), 1, host_.now() - 26114, host_.now());
-    report_.equal<std::int64_t>(fmt::format("I7000=6527, command {}: high ticks of 26114, {}", kCommands[v], name(v)), high, kHigh[v]);
+    report_.equal<std::int64_t>(fmt::format("I7000=6527, command {}: high ticks of 26114, {}", kCommands[v], name(v)),
+                                high, kHigh[v]);
   }
   judge("I7004=0");
 
@@ -308,7 +328,8 @@ void run(BenchContext& b) {
 // covers: CLK-6 CARD-1 CARD-2
 Bench pwm_bench() {
   return {"pwm",
-          "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at its tick",
+          "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at "
+          "its tick",
           "the scoreboard compares with >= instead of >",
           nullptr,
           run,

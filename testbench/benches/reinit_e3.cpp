@@ -1,6 +1,6 @@
-// reinit-e3: settings are SAVEd with which the controller cannot live, so that neither power nor reset line helps. Powered up with
-// jumper E3 it starts with the factory's settings and answers; `$$$***` gives the same. Expected values are the data sheet's
-// (servo-ic.md 3, 7 and check vectors 16, 17; firmware.md section 2), periods are arithmetic.
+// reinit-e3: settings are SAVEd with which the controller cannot live, so that neither power nor reset line helps.
+// Powered up with jumper E3 it starts with the factory's settings and answers; `$$$***` gives the same. Expected values
+// are the data sheet's (servo-ic:3, servo-ic:7 and check vectors 16, 17; firmware:2), periods are arithmetic.
 #include <fmt/format.h>
 
 #include "testbench/benches/benches.h"
@@ -34,7 +34,8 @@ void leave_traces(BenchContext& b) {
 void check_defaults(BenchContext& b) {
   b.expect("I19 I7007 I7107", "7007|0|3");
   b.expect("I6807", (b.board.fitted & kMacroIc0) != 0 ? "3" : "0");  // an absent IC's variables read 0
-  // Clock words: direction in bits 21..20 and 17..16, dividers, hardware clocks 2258 = $8D2; PWM word: I7000 = 6527 = $197F, I7004 = 15.
+  // Clock words: direction in bits 21..20 and 17..16, dividers, hardware clocks 2258 = $8D2; PWM word: I7000 = 6527 =
+  // $197F, I7004 = 15.
   b.expect("RHX$78004", "3008D2");
   b.expect("RHX$78104", "3038D2");
   b.expect("RHX$7801C", "197F0F");
@@ -48,7 +49,8 @@ void check_defaults(BenchContext& b) {
   b.report.step("no rotary buffer is left", open.rfind("ERR", 0) == 0, open);
   const std::string status = b.ask("???");
   // bits 10, 7, 3 of the first word: flash error, configuration error, phase clock missing
-  b.report.equal<std::int64_t>("problems in " + status, std::strtol(status.substr(0, 6).c_str(), nullptr, 16) & 0x488, 0);
+  b.report.equal<std::int64_t>("problems in " + status, std::strtol(status.substr(0, 6).c_str(), nullptr, 16) & 0x488,
+                               0);
 }
 
 void check_clocks(BenchContext& b) {
@@ -70,8 +72,8 @@ void run(BenchContext& b) {
   b.expect(fmt::format("{} SAVE", fault.settings), "");
   b.machine.power_cycle();
   b.bus.wait_pin(pin::kWdTripped, 1, kPatience);
-  b.report.equal<std::int64_t>(std::string("the SAVEd settings trip the watchdog: ") + fault.name, b.machine.outputs().get(pin::kWdTripped),
-                               1);
+  b.report.equal<std::int64_t>(std::string("the SAVEd settings trip the watchdog: ") + fault.name,
+                               b.machine.outputs().get(pin::kWdTripped), 1);
   b.report.step("no answer", !b.link.command("VERSION").complete, "none expected");
 
   b.machine.set_jumper_e3(!b.negative);

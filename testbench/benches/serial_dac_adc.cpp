@@ -1,6 +1,7 @@
-// serial-dac-adc: OUT A and B of all channels through serial DACs, and converters that send random words into ADC A and B. Lines, clocks
-// and strobes are watched edge by edge; every stream of every PHASE period is judged (testbench/checkers/serial_scoreboard.h), and every
-// read of an ADC word by the CPU, wherever it falls between two conversions.
+// serial-dac-adc: OUT A and B of all channels through serial DACs, and converters that send random words into ADC A and
+// B. Lines, clocks and strobes are watched edge by edge; every stream of every PHASE period is judged
+// (testbench/checkers/serial_scoreboard.h), and every read of an ADC word by the CPU, wherever it falls between two
+// conversions.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -136,7 +137,8 @@ void Serial::configure(const std::array<Setting, 2>& settings, unsigned phase_di
     words.push_back(fmt::format("I{}=${:06X}", host_.i_global(i, 5), s.dac_strobe));
     words.push_back(fmt::format("I{}=${:06X}", host_.i_global(i, 6), s.adc_strobe));
   }
-  for (unsigned i = 0; i < host_.channels(); ++i) words.push_back(fmt::format("I{}={}", host_.i_channel(i, 7), inverted_[i]));
+  for (unsigned i = 0; i < host_.channels(); ++i)
+    words.push_back(fmt::format("I{}={}", host_.i_channel(i, 7), inverted_[i]));
   host_.say(words);
   settings_ = settings;
   host_.wait(2 * (phase_divider + 1) * 13'057 + 13'057);
@@ -169,7 +171,8 @@ void Serial::command() {
 
 void Serial::read() {
   for (const unsigned number : {105u, 106u})
-    for (const long value : host_.numbers(fmt::format("M{},{},100", number, host_.channels()))) answers_.push_back(value);
+    for (const long value : host_.numbers(fmt::format("M{},{},100", number, host_.channels())))
+      answers_.push_back(value);
 }
 
 void Serial::judge_dac(const std::string& what, unsigned place, const std::vector<Tick>& rises) {
@@ -177,7 +180,8 @@ void Serial::judge_dac(const std::string& what, unsigned place, const std::vecto
   std::vector<SerialLevel> levels;
   for (const auto& c : host_.changes(place)) {
     unsigned data = 0;
-    for (unsigned n = 0; n < kDacs; ++n) data |= c.pins.get(n < kChannels ? motor_pin::kDac : motor_pin::kDacB, n % kChannels) << n;
+    for (unsigned n = 0; n < kDacs; ++n)
+      data |= c.pins.get(n < kChannels ? motor_pin::kDac : motor_pin::kDacB, n % kChannels) << n;
     levels.push_back({c.tick, c.pins.get(motor_pin::kDacClk, 0) != 0, c.pins.get(motor_pin::kDacStrobe, 0) != 0, data});
   }
   const SerialRecord record = serial_streams(levels, rises, kTicksPerRef << setting.dac, kDacs);
@@ -186,7 +190,8 @@ void Serial::judge_dac(const std::string& what, unsigned place, const std::vecto
   const std::uint32_t latched = bits == 0 ? 0 : (1u << bits) - 1;
   for (const SerialStream& s : record.streams) {
     if (!error.empty()) break;
-    if (s.strobe != setting.dac_strobe) error = fmt::format("strobe ${:06X}, expected ${:06X}", s.strobe, setting.dac_strobe);
+    if (s.strobe != setting.dac_strobe)
+      error = fmt::format("strobe ${:06X}, expected ${:06X}", s.strobe, setting.dac_strobe);
     for (unsigned n = 0; n < kDacs && error.empty(); ++n) {
       // A command that comes while the stream begins may be in it or not.
       const bool invert = (inverted_[kChannels * place + n % kChannels] & 1) != 0;
@@ -197,22 +202,25 @@ void Serial::judge_dac(const std::string& what, unsigned place, const std::vecto
         if (list[i].tick > s.first + kNear || (i + 1 < list.size() && list[i + 1].tick < s.phase - kNear)) continue;
         expected = dac_stream(list[i].value, invert);
         const bool rest = invert || (s.data[n] & ~kDacBits) == 0;
-        const bool latch = bits == 0 || (s.received.size() == kDacs && (s.received[n] & latched) == expected >> (24 - bits));
+        const bool latch =
+            bits == 0 || (s.received.size() == kDacs && (s.received[n] & latched) == expected >> (24 - bits));
         same = same || ((s.data[n] & kDacBits) == expected && rest && latch);
       }
       if (!same)
-        error = fmt::format("{}: bits ${:06X}, a DAC of {} bits has ${:X}, expected ${:06X} (PHASE at {})", name(place, n), s.data[n], bits,
-                            s.received.empty() ? 0 : s.received[n] & latched, expected, s.phase);
+        error =
+            fmt::format("{}: bits ${:06X}, a DAC of {} bits has ${:X}, expected ${:06X} (PHASE at {})", name(place, n),
+                        s.data[n], bits, s.received.empty() ? 0 : s.received[n] & latched, expected, s.phase);
     }
   }
   const Tick high = record.streams.empty() ? 0 : record.streams.front().strobe_high;
   if (error.empty() && bits != 0 && high != (bits - 1) * (kTicksPerRef << setting.dac))
     error = fmt::format("strobe high for {} ticks, expected {}", high, (bits - 1) * (kTicksPerRef << setting.dac));
   if (error.empty() && record.streams.empty()) error = "no stream";
-  report().step(
-      fmt::format("{}: DAC, I{}=${:06X}, a bit {} ticks", what, host_.i_global(place, 5), setting.dac_strobe, kTicksPerRef << setting.dac),
-      error.empty(),
-      error.empty() ? fmt::format("{} streams of {} DACs; {}", record.streams.size(), kDacs,
+  report().step(fmt::format("{}: DAC, I{}=${:06X}, a bit {} ticks", what, host_.i_global(place, 5), setting.dac_strobe,
+                            kTicksPerRef << setting.dac),
+                error.empty(),
+                error.empty()
+                    ? fmt::format("{} streams of {} DACs; {}", record.streams.size(), kDacs,
                                   bits == 0 ? "no latch edge"
                                             : fmt::format("{} bits latched, the last ${:X} in {}", bits,
                                                           record.streams.back().received[0] & latched, name(place, 0)))
@@ -230,10 +238,12 @@ void Serial::judge_adc(const std::string& what, unsigned place, const std::vecto
     if (error.empty() && s.strobe != setting.adc_strobe)
       error = fmt::format("strobe ${:06X}, expected ${:06X}", s.strobe, setting.adc_strobe);
   if (error.empty() && record.streams.empty()) error = "no stream";
-  report().step(fmt::format("{}: ADC strobe, I{}=${:06X}, a bit {} ticks", what, host_.i_global(place, 6), setting.adc_strobe,
-                            kTicksPerRef << setting.adc),
+  report().step(fmt::format("{}: ADC strobe, I{}=${:06X}, a bit {} ticks", what, host_.i_global(place, 6),
+                            setting.adc_strobe, kTicksPerRef << setting.adc),
                 error.empty(),
-                error.empty() ? fmt::format("{} streams, the last ${:06X}", record.streams.size(), record.streams.back().strobe) : error);
+                error.empty()
+                    ? fmt::format("{} streams, the last ${:06X}", record.streams.size(), record.streams.back().strobe)
+                    : error);
 }
 
 // Every read of Y:+5 and Y:+6: the stream that had ended when PHASE fell last.
@@ -253,7 +263,8 @@ void Serial::judge_reads(const std::string& what, unsigned place) {
       for (const auto& e : host_.phase())
         if (!e.high && e.tick <= at) fall = e.tick;
       const auto& sent = converters_[place]->sent;
-      const auto next = std::find_if(sent.begin(), sent.end(), [fall](const Converters::Sent& s) { return s.tick > fall; });
+      const auto next =
+          std::find_if(sent.begin(), sent.end(), [fall](const Converters::Sent& s) { return s.tick > fall; });
       if (fall < 0 || next == sent.begin()) continue;
       expected = adc_word(std::prev(next)->words[n]);
       same = same || a.data == expected;
@@ -285,10 +296,11 @@ void Serial::judge(const std::string& what) {
         if (!a.write && !a.x && a.address == host_.address(i, offset)) read.push_back(static_cast<long>(a.data));
   std::sort(read.begin(), read.end());
   std::sort(answers_.begin(), answers_.end());
-  report().step(what + ": answers to the host", answers_ == read && !read.empty(), fmt::format("{} numbers", answers_.size()));
+  report().step(what + ": answers to the host", answers_ == read && !read.empty(),
+                fmt::format("{} numbers", answers_.size()));
 }
 
-// servo-ic.md 14, vectors 15 and 5; the Geo Brick LV's amplifier command (vector 14) on one IC.
+// servo-ic:14/15 and servo-ic:14/5; the Geo Brick LV's amplifier command (servo-ic:14/14) on one IC.
 void Serial::factory() {
   configure({Setting{}, Setting{3, 4, 0x7FFFC0, 0xF84DFE}}, 0, 3);
   begin();
@@ -343,7 +355,8 @@ void run(BenchContext& b) {
 // covers: CARD-1 CARD-2
 Bench serial_dac_adc_bench() {
   return {"serial-dac-adc",
-          "words of 16 serial DACs and 16 serial ADCs with other clocks and strobe words, every stream of every PHASE period",
+          "words of 16 serial DACs and 16 serial ADCs with other clocks and strobe words, every stream of every PHASE "
+          "period",
           "the converters send one header bit more",
           nullptr,
           run,

@@ -17,7 +17,9 @@ ServoHost::ServoHost(BenchContext& bench, std::uint64_t seed) : bench_(bench), r
     if ((bench.board.fitted >> ic & 1) != 0) ics_.push_back(ic);
 }
 
-unsigned ServoHost::i_global(unsigned place, unsigned k) const { return regs::kGateIcs[ic(place)].direction_variable - 7 + k; }
+unsigned ServoHost::i_global(unsigned place, unsigned k) const {
+  return regs::kGateIcs[ic(place)].direction_variable - 7 + k;
+}
 unsigned ServoHost::i_channel(unsigned channel, unsigned k) const {
   return i_global(channel / kChannels, 0) + 10 * (channel % kChannels + 1) + k;
 }

@@ -1,5 +1,5 @@
-// A host that commands the channels of servo ICs: their numbers, addresses and variables, and lines sent to all of them. What the
-// benches of inputs (channel_host.h) and of outputs (output_host.h) share.
+// A host that commands the channels of servo ICs: their numbers, addresses and variables, and lines sent to all of
+// them. What the benches of inputs (channel_host.h) and of outputs (output_host.h) share.
 #pragma once
 
 #include <random>
@@ -10,8 +10,8 @@
 
 namespace brick {
 
-// Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names: servo-ic.md 1.2,
-// 1.4, 2.1.
+// Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names:
+// servo-ic:1.2, 1.4, 2.1.
 class ServoHost {
  public:
   ServoHost(BenchContext& bench, std::uint64_t seed);

@@ -1,5 +1,5 @@
-// smoke: the controller starts and every road between host and controller is open: identification, phase and servo clock
-// to the tick, interrupt controller, dual-ported RAM, and all printable characters both ways.
+// smoke: the controller starts and every road between host and controller is open: identification, phase and servo
+// clock to the tick, interrupt controller, dual-ported RAM, and all printable characters both ways.
 #include <fmt/format.h>
 
 #include "testbench/benches/benches.h"
@@ -16,12 +16,13 @@ Tick next_fall(HostBus& bus, const PinField& pin, Tick limit) {
 // I19 at the factory: servo IC 0 where there is one, else MACRO IC 0.
 unsigned clock_variable(const BenchContext& b) { return (b.board.fitted & 1) ? 7007 : 6807; }
 
-// Default clocks (servo-ic.md 3.1, 3.2): MaxPhase is 2 x 6527 + 3 = 13057 ticks, I7001 = 0, servo = 4 phases.
+// Default clocks (servo-ic:3.1, servo-ic:3.2): MaxPhase is 2 x 6527 + 3 = 13057 ticks, I7001 = 0, servo = 4 phases.
 void clocks(BenchContext& b) {
   constexpr Tick kPhase = 2 * 6527 + 3, kServo = 4 * kPhase, kLimit = 4 * kServo;
   const Tick phase = next_fall(b.bus, pin::kPhase, kLimit);
   for (int i = 1; i <= 3; ++i)
-    b.report.equal<std::int64_t>(fmt::format("phase period {}, ticks", i), next_fall(b.bus, pin::kPhase, kLimit) - phase, i * kPhase);
+    b.report.equal<std::int64_t>(fmt::format("phase period {}, ticks", i),
+                                 next_fall(b.bus, pin::kPhase, kLimit) - phase, i * kPhase);
   Tick last = next_fall(b.bus, pin::kServo, kLimit);
   for (int i = 1; i <= 2; ++i) {
     const Tick servo = next_fall(b.bus, pin::kServo, kLimit);
@@ -30,17 +31,21 @@ void clocks(BenchContext& b) {
   }
   const auto source = b.machine.signals().find("clock.source");
   if (source)
-    b.report.equal<std::int64_t>("clock.source", static_cast<std::int64_t>(b.machine.signals().value(*source)), clock_variable(b));
+    b.report.equal<std::int64_t>("clock.source", static_cast<std::int64_t>(b.machine.signals().value(*source)),
+                                 clock_variable(b));
   else
     b.report.fail("clock.source", "no such signal");
 }
 
 void interrupt_controller(BenchContext& b) {
-  const auto text = [](const HostBus::Pic& p) { return fmt::format("IST={:02X} MSK={:02X} ELR={:02X}", p.ist, p.msk, p.elr); };
+  const auto text = [](const HostBus::Pic& p) {
+    return fmt::format("IST={:02X} MSK={:02X} ELR={:02X}", p.ist, p.msk, p.elr);
+  };
   b.bus.write_pic_edge_level(0xA5);
   b.bus.write_pic_mask(0x00);
   b.bus.clear_pic();
-  b.report.equal<std::string>("interrupt controller, edge/level register", text(b.bus.read_pic()), "IST=00 MSK=00 ELR=A5");
+  b.report.equal<std::string>("interrupt controller, edge/level register", text(b.bus.read_pic()),
+                              "IST=00 MSK=00 ELR=A5");
   b.bus.write_pic_edge_level(0x10);  // HREQ level sensed
   b.bus.write_pic_mask(0x10);
   b.bus.io_write(0, 0x02);  // ICR: TREQ, the port can take a character: HREQ = 1
@@ -52,8 +57,8 @@ void interrupt_controller(BenchContext& b) {
   b.bus.write_pic_edge_level(0x00);
 }
 
-// Walking ones by the host alone, then words across: the firmware sees Y:$060000 + n and X:$060000 + n at host offsets 4n and
-// 4n + 2 (host-bus.md 6.1). At three quarters of the memory nothing is used by an automatic function.
+// Walking ones by the host alone, then words across: the firmware sees Y:$060000 + n and X:$060000 + n at host offsets
+// 4n and 4n + 2 (host-bus:6.1). At three quarters of the memory nothing is used by an automatic function.
 void dual_ported_ram(BenchContext& b) {
   const std::uint32_t place = b.board.dpram_words / 2 * 3 / 4, host = 4 * place, address = 0x60000 + place;
   unsigned wrong = 0;
@@ -73,11 +78,13 @@ void characters(BenchContext& b) {
   std::string comment = "VERSION;";
   for (char c = ' '; c < 0x7F; ++c) comment.push_back(c);
   const Reply reply = b.link.command(comment);
-  b.report.equal<std::string>("all printable characters in a comment", reply.lines.empty() ? "no reply" : reply.lines[0], "1.947");
+  b.report.equal<std::string>("all printable characters in a comment",
+                              reply.lines.empty() ? "no reply" : reply.lines[0], "1.947");
   std::string many;  // 35 commands, 245 characters: nearly as long as a line may be (255)
   for (int i = 10; i < 45; ++i) many += fmt::format("P{}={} ", i, 55 - i);
   const Reply taken = b.link.command(many);
-  b.report.step("line of 245 characters", taken.complete && !taken.error, taken.lines.empty() ? "acknowledged" : taken.lines[0]);
+  b.report.step("line of 245 characters", taken.complete && !taken.error,
+                taken.lines.empty() ? "acknowledged" : taken.lines[0]);
   b.expect("P44", "11");
   b.expect("UUU", "ERR003");
 }

@@ -1,7 +1,8 @@
-// watchdog: a servo frequency that is too high takes the CPU time of the tasks below it. The real-time task still runs, the
-// background does not: its counter (I40) falls below zero, the strobe ends, and the circuit trips 25 ms later. Nothing tells the
-// board that it is overloaded: the cost of the tasks in CPU cycles, wait states included, is more than the servo period leaves.
-// The settings are SAVEd, so the reset line does not help. Judged by testbench/checkers/watchdog_scoreboard.h.
+// watchdog: a servo frequency that is too high takes the CPU time of the tasks below it. The real-time task still runs,
+// the background does not: its counter (I40) falls below zero, the strobe ends, and the circuit trips 25 ms later.
+// Nothing tells the board that it is overloaded: the cost of the tasks in CPU cycles, wait states included, is more
+// than the servo period leaves. The settings are SAVEd, so the reset line does not help. Judged by
+// testbench/checkers/watchdog_scoreboard.h.
 #include <cstdlib>
 #include <memory>
 #include <random>
@@ -40,7 +41,8 @@ void idle(BenchContext& b, WatchdogScoreboard& scoreboard) {
   const long strobes = scoreboard.strobes() - before;
   b.report.step("strobes in 15 servo periods, I8=2", strobes == 5, fmt::format("{}, expected 5", strobes));
   const long lowest = number(b, "RX$25"), now = number(b, "RY$25");
-  b.report.step("counter and its lowest value, I40=0", now <= 4095 && now >= 4095 - 6 && lowest <= now && lowest > 4095 - 60,
+  b.report.step("counter and its lowest value, I40=0",
+                now <= 4095 && now >= 4095 - 6 && lowest <= now && lowest > 4095 - 60,
                 fmt::format("Y:$25={} X:$25={}, expected 4095 at reload", now, lowest));
 }
 
@@ -48,7 +50,8 @@ unsigned starving_i7000(BenchContext& b, std::mt19937_64& random) {
   const WatchdogLoad load = watchdog_load(b.link);
   const unsigned i7000 = load.starving_i7000(0) + static_cast<unsigned>(random() % 16);
   b.report.step("load in CPU cycles", load.sensible(),
-                fmt::format("phase and servo {}, real-time {}: I7000={} leaves the background nothing", load.servo, load.real_time, i7000));
+                fmt::format("phase and servo {}, real-time {}: I7000={} leaves the background nothing", load.servo,
+                            load.real_time, i7000));
   return i7000;
 }
 
@@ -57,24 +60,28 @@ void bearable(BenchContext& b, unsigned i7000) {
   const unsigned slower = 4 * i7000;
   b.expect(fmt::format("I7000={}", slower), "");
   b.bus.wait(kMillisecond);
-  b.report.equal<std::string>(fmt::format("VERSION at {:.1f} kHz servo", 117'964.8 / static_cast<double>(servo_period(slower))),
-                              b.ask("VERSION"), "1.947");
+  b.report.equal<std::string>(
+      fmt::format("VERSION at {:.1f} kHz servo", 117'964.8 / static_cast<double>(servo_period(slower))),
+      b.ask("VERSION"), "1.947");
 }
 
 constexpr Tick kOutputs = kMillisecond / 2;  // several PWM and phase periods at all the rates here
 
-// Every output of the servo ICs in use: each channel enabled, EQU set, and A, B, C as PWM, DAC with PWM, or PWM with PFM in turn.
+// Every output of the servo ICs in use: each channel enabled, EQU set, and A, B, C as PWM, DAC with PWM, or PWM with
+// PFM in turn.
 void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) {
   constexpr unsigned kBase[2] = {0x78000, 0x78100};
   unsigned mode = static_cast<unsigned>(random() % 4), modes[2][kChannels] = {};
   for (unsigned ic = 0; ic < 2; ++ic)
     for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n) {
       const unsigned word = kBase[ic] + 8 * n;
-      modes[ic][n] = mode = (mode + 1) % 4;                               // I7mn6
-      const unsigned command = 1 + static_cast<unsigned>(random() % 60);  // of A, and negative of B: all four switches have their time
-      b.ask(fmt::format("I{}={} M1->X:${:X},14 M2->X:${:X},12 M3->X:${:X},11 M1=1 M2=1 M3=1 WY${:X},${:X},${:X},$100000",
-                        7000 + 100 * ic + 10 * (n + 1) + 6, mode, word + 5, word + 5, word + 5, word + 2, command << 8,
-                        (0x10000 - command) << 8));
+      modes[ic][n] = mode = (mode + 1) % 4;  // I7mn6
+      const unsigned command =
+          1 + static_cast<unsigned>(random() % 60);  // of A, and negative of B: all four switches have their time
+      b.ask(
+          fmt::format("I{}={} M1->X:${:X},14 M2->X:${:X},12 M3->X:${:X},11 M1=1 M2=1 M3=1 WY${:X},${:X},${:X},$100000",
+                      7000 + 100 * ic + 10 * (n + 1) + 6, mode, word + 5, word + 5, word + 5, word + 2, command << 8,
+                      (0x10000 - command) << 8));
     }
   b.bus.wait(kOutputs);
   outputs.begin();
@@ -87,13 +94,16 @@ void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) 
       const auto expect_high = [&](const MotorField& pin) {
         if (!outputs.was_high(ic, pin, n)) missing += fmt::format(" {}.ch{}.{}", servo_ic_scope(ic), n + 1, pin.name);
       };
-      for (const MotorField* pin : {&kAena, &kEqu, dac ? &kDac : &kPwmATop, dac ? &kDacB : &kPwmBBot, pfm ? &kPfmPulse : &kPwmCTop})
+      for (const MotorField* pin :
+           {&kAena, &kEqu, dac ? &kDac : &kPwmATop, dac ? &kDacB : &kPwmBBot, pfm ? &kPfmPulse : &kPwmCTop})
         expect_high(*pin);
     }
-  b.report.step("outputs of all channels in use", missing.empty(), missing.empty() ? "AENA, EQU, PWM, DAC, PFM" : "dead:" + missing);
+  b.report.step("outputs of all channels in use", missing.empty(),
+                missing.empty() ? "AENA, EQU, PWM, DAC, PFM" : "dead:" + missing);
 }
 
-// Amplifiers, switches and pulses are off a few ticks after the trip and stay so; a DAC word under way ends, the next is 0.
+// Amplifiers, switches and pulses are off a few ticks after the trip and stay so; a DAC word under way ends, the next
+// is 0.
 void outputs_safe(BenchContext& b, OutputWatch& outputs) {
   b.report.equal<std::int64_t>("IPOS, EROR, F1ER", b.machine.outputs().get(pin::kIpos), 0);
   outputs.begin();
@@ -108,8 +118,9 @@ void outputs_at_once(BenchContext& b) {
   unsigned on = 0;
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
     for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n)
-      for (const MotorField* pin : {&motor_pin::kAena, &motor_pin::kEqu, &motor_pin::kPfmPulse, &motor_pin::kPwmATop, &motor_pin::kPwmABot,
-                                    &motor_pin::kPwmBTop, &motor_pin::kPwmBBot, &motor_pin::kPwmCTop, &motor_pin::kPwmCBot})
+      for (const MotorField* pin :
+           {&motor_pin::kAena, &motor_pin::kEqu, &motor_pin::kPfmPulse, &motor_pin::kPwmATop, &motor_pin::kPwmABot,
+            &motor_pin::kPwmBTop, &motor_pin::kPwmBBot, &motor_pin::kPwmCTop, &motor_pin::kPwmCBot})
         on += b.machine.motor_outputs(ic).get(*pin, n);
   b.report.equal<std::int64_t>(fmt::format("AENA, EQU, PFM, PWM that are on {} ticks after the trip", kAtOnce), on, 0);
 }
@@ -119,9 +130,10 @@ void dead(BenchContext& b, OutputWatch& outputs) {
   b.report.equal<std::int64_t>("watchdog.tripped and line WDO", out.get(pin::kWdTripped) + out.get(pin::kWdo), 2);
   const HostBus::Pic pic = b.bus.read_pic();
   const unsigned lines = wdo_lines(b.board);
-  b.report.equal<std::string>("interrupt controller, lines of WDO",
-                              fmt::format("IST={:02X} SIG={:02X} IRQ={}", pic.ist, pic.sig & lines, out.get(pin::kIsaIrq)),
-                              fmt::format("IST={0:02X} SIG={0:02X} IRQ={1}", lines, lines != 0 ? 1 : 0));
+  b.report.equal<std::string>(
+      "interrupt controller, lines of WDO",
+      fmt::format("IST={:02X} SIG={:02X} IRQ={}", pic.ist, pic.sig & lines, out.get(pin::kIsaIrq)),
+      fmt::format("IST={0:02X} SIG={0:02X} IRQ={1}", lines, lines != 0 ? 1 : 0));
   b.link.poll();  // the acknowledge of the last line may wait
   const std::uint64_t instructions = b.machine.instructions();
   unsigned taken = 0;
@@ -133,7 +145,8 @@ void dead(BenchContext& b, OutputWatch& outputs) {
     b.bus.wait(kMillisecond / 10);
   }
   b.report.equal<std::int64_t>("characters that the host gets in 2 ms", answers, 0);
-  b.report.equal<std::int64_t>("instructions since", static_cast<std::int64_t>(b.machine.instructions() - instructions), 0);
+  b.report.equal<std::int64_t>("instructions since", static_cast<std::int64_t>(b.machine.instructions() - instructions),
+                               0);
   b.report.equal<std::int64_t>("latched while SERVO goes on", b.machine.outputs().get(pin::kWdTripped), 1);
   outputs_safe(b, outputs);
 }
@@ -179,7 +192,8 @@ void run(BenchContext& b) {
   probe.expect_starvation(servo_period(i7000), WatchdogScoreboard::counter_of(i40));
   b.link.send(fmt::format("I7000={}", i7000));
   if (b.bus.wait_pin(pin::kWdTripped, 1, kPatience)) outputs_at_once(b);
-  verdict(b, scoreboard, fmt::format("trip, servo {:.1f} kHz, I40={}", 117'964.8 / static_cast<double>(servo_period(i7000)), i40));
+  verdict(b, scoreboard,
+          fmt::format("trip, servo {:.1f} kHz, I40={}", 117'964.8 / static_cast<double>(servo_period(i7000)), i40));
   if (scoreboard.tripped_at() < 0) return;
   dead(b, *outputs);
   outputs.reset();  // the restart has none
@@ -192,7 +206,8 @@ void run(BenchContext& b) {
 // covers: WDT-1
 Bench watchdog_bench() {
   return {"watchdog",
-          "servo frequency too high: the background starves, I40 runs out, the circuit trips 25 ms later; again after a reset",
+          "servo frequency too high: the background starves, I40 runs out, the circuit trips 25 ms later; again after "
+          "a reset",
           "the controller's I40 is three times what the scoreboard is told",
           nullptr,
           run,

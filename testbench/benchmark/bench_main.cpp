@@ -1,5 +1,5 @@
-// How fast the engines are: a table on stdout. Each ratio compares runs that were made in turn, in the same minute, and every
-// number is the median of five, because the machine under us is never quiet.
+// How fast the engines are: a table on stdout. Each ratio compares runs that were made in turn, in the same minute, and
+// every number is the median of five, because the machine under us is never quiet.
 //   brick_benchmark FIRMWARE.elf [--quick]
 #include <fmt/format.h>
 
@@ -64,7 +64,8 @@ class PinTrace {
     signals_.attach(writer_.get());
     board.on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
       for (std::size_t i = 0; i < ids_.size(); ++i)
-        if (before.w[pin::kAll[i].word] != after.w[pin::kAll[i].word]) signals_.set(ids_[i], tick_to_fs(t), after.get(pin::kAll[i]));
+        if (before.w[pin::kAll[i].word] != after.w[pin::kAll[i].word])
+          signals_.set(ids_[i], tick_to_fs(t), after.get(pin::kAll[i]));
       signals_.flush_until(tick_to_fs(t));
     };
   }
@@ -94,7 +95,8 @@ void boards(Tick ticks, const std::string& vcd) {
       ratio[i].push_back(i < 2 ? rate[i].back() / yardstick : rate[i].back() / rate[0].back());
     }
   }
-  row("bare Verilated loop, two servo ICs, clocks running", fmt::format("{:.2f} M ticks/s", median(bare_rate) / 1e6), "", true);
+  row("bare Verilated loop, two servo ICs, clocks running", fmt::format("{:.2f} M ticks/s", median(bare_rate) / 1e6),
+      "", true);
   row("RTL engine", fmt::format("{:.2f} M ticks/s", median(rate[0]) / 1e6), "", true);
   row("  ratio to the bare loop", fmt::format("{:.2f}", median(ratio[0])), ">= 0.90", median(ratio[0]) >= 0.9);
   row("RTL engine, VCD of the pins", fmt::format("{:.2f} M ticks/s", median(rate[1]) / 1e6), "", true);
@@ -105,8 +107,9 @@ void boards(Tick ticks, const std::string& vcd) {
   row("  ratio to the RTL engine", fmt::format("{:.2f}", median(ratio[3])), "", true);
 }
 
-// Cost grows with the number of ICs: ticks/s times ICs should stay within 20 %. It rises by more, because the board has a cost of its
-// own, which more ICs share, and because a MACRO IC, of which the larger boards have some, costs less than a servo IC.
+// Cost grows with the number of ICs: ticks/s times ICs should stay within 20 %. It rises by more, because the board has
+// a cost of its own, which more ICs share, and because a MACRO IC, of which the larger boards have some, costs less
+// than a servo IC.
 void scaling(Tick ticks) {
   struct Size {
     std::uint32_t fitted;
@@ -135,7 +138,8 @@ void scaling(Tick ticks) {
 }
 
 // The whole controller with its firmware: idle (waits for the host), and busy (the host asks without a pause).
-void machine(Engine engine, const char* name, const std::string& firmware, double simulated, const std::string& vcd, bool goal) {
+void machine(Engine engine, const char* name, const std::string& firmware, double simulated, const std::string& vcd,
+             bool goal) {
   MachineConfig config;
   config.engine = engine;
   config.firmware = firmware;
@@ -168,9 +172,10 @@ void machine(Engine engine, const char* name, const std::string& firmware, doubl
     machine.signals().attach(nullptr);
     const std::string with = traced ? ", VCD" : "";
     const bool judged = goal && !traced;
-    row(fmt::format("{} engine, idle firmware{}", name, with), fmt::format("{:.3f} sim s/s", median(idle)), judged ? ">= 10 sim s/s" : "",
-        median(idle) >= 10);
-    row(fmt::format("{} engine, host asks without pause{}", name, with), fmt::format("{:.3f} sim s/s", median(busy)), "", true);
+    row(fmt::format("{} engine, idle firmware{}", name, with), fmt::format("{:.3f} sim s/s", median(idle)),
+        judged ? ">= 10 sim s/s" : "", median(idle) >= 10);
+    row(fmt::format("{} engine, host asks without pause{}", name, with), fmt::format("{:.3f} sim s/s", median(busy)),
+        "", true);
     row("  instructions", fmt::format("{:.2f} M/s", median(instructions) / 1e6), "", true);
   }
 }
@@ -182,7 +187,8 @@ void cpu(std::uint64_t instructions) {
     const double s = seconds([&] { done = run_cpu_alone(instructions); });
     rate.push_back(static_cast<double>(done) / s);
   }
-  row("CPU model alone", fmt::format("{:.0f} M instructions/s", median(rate) / 1e6), ">= 100 M instr/s", median(rate) >= 100e6);
+  row("CPU model alone", fmt::format("{:.0f} M instructions/s", median(rate) / 1e6), ">= 100 M instr/s",
+      median(rate) >= 100e6);
 }
 
 }  // namespace

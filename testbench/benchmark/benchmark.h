@@ -8,8 +8,8 @@
 
 namespace brick {
 
-// The Verilated board of the RTL engine without anything of ours around it: two evaluations a tick, pins not looked at. The
-// clocks run from servo IC 0 as in the engine that it is compared with.
+// The Verilated board of the RTL engine without anything of ours around it: two evaluations a tick, pins not looked at.
+// The clocks run from servo IC 0 as in the engine that it is compared with.
 class BareLoop {
  public:
   BareLoop();

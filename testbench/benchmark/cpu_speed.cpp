@@ -29,7 +29,8 @@ std::uint64_t run_cpu_alone(std::uint64_t instructions) {
   std::memcpy(cpu.map(kCode, 4096, {true, false, 0}), kProgram, sizeof kProgram);
   cpu.map(kRam, 4096, {});
   cpu.reset(kCode);
-  while (cpu.instructions() < instructions) cpu.run(cpu.cycle() + static_cast<Cycle>(instructions - cpu.instructions()));
+  while (cpu.instructions() < instructions)
+    cpu.run(cpu.cycle() + static_cast<Cycle>(instructions - cpu.instructions()));
   return cpu.instructions();
 }
 

@@ -113,10 +113,11 @@ void BreqScoreboard::edge(Tick now, bool level) {
     longest_ = std::max(longest_, now - fell_at_);
     ++counts_.pulses;
     if (now - fell_at_ < kShortestPulse)
-      violate(now, fmt::format("BREQ was low for {:.3f} us; expected: 1 us or more (T_PULSE)", microseconds(now - fell_at_)));
+      violate(now, fmt::format("BREQ was low for {:.3f} us; expected: 1 us or more (T_PULSE)",
+                               microseconds(now - fell_at_)));
     if (lowest(s, now) >= i17_)
-      violate(now,
-              fmt::format("BREQ rises with {} or more lines ahead; expected: stays low from I17={} on (rule 3)", lowest(s, now), i17_));
+      violate(now, fmt::format("BREQ rises with {} or more lines ahead; expected: stays low from I17={} on (rule 3)",
+                               lowest(s, now), i17_));
     s.full = false;
     s.high = std::min(s.high, i17_ == 0 ? 0 : i17_ - 1);
     s.low = std::min(s.low, s.high);
@@ -129,7 +130,8 @@ void BreqScoreboard::edge(Tick now, bool level) {
   ++counts_.raised_by_execution;  // rule 4
   if (!s.running) violate(now, "BREQ rises although no line is being executed; expected: low while Full is 1");
   if (i16_ == 0 || lowest(s, now) > i16_ - 1)
-    violate(now, fmt::format("BREQ rises with {} or more lines ahead; expected: fewer than I16={} (rule 4)", lowest(s, now), i16_));
+    violate(now, fmt::format("BREQ rises with {} or more lines ahead; expected: fewer than I16={} (rule 4)",
+                             lowest(s, now), i16_));
   s.full = false;
   if (i16_ > 0) {  // a line has just been taken: exactly I16-1 are left; one more if a line is on its way in
     s.low = std::min(s.high, i16_ - 1);
@@ -145,7 +147,8 @@ void BreqScoreboard::lines_ahead(Tick from, Tick now, unsigned pr) {
   decide_pulse(now);
   System& s = now_selected();
   ++counts_.queries;
-  const bool moved = edge_since(from);  // a line was taken while the question was being answered: counted with it or without
+  const bool moved =
+      edge_since(from);  // a line was taken while the question was being answered: counted with it or without
   const unsigned low = lowest(s, now), high = s.high + (moved ? 1 : 0);
   if (pr < low || pr > high)
     violate(now, low == high ? fmt::format("PR answers {}; expected: {}", pr, low)
@@ -164,15 +167,16 @@ void BreqScoreboard::full_bit(Tick from, Tick now, bool full) {
   ++counts_.queries;
   if (edge_since(from)) return;  // it changed while the question was being answered
   if (s.full && *s.full != full)
-    violate(now, fmt::format("Rotary Buffer Full is {}; expected: {} ({} to {} lines ahead)", full ? 1 : 0, *s.full ? 1 : 0, lowest(s, now),
-                             s.high));
+    violate(now, fmt::format("Rotary Buffer Full is {}; expected: {} ({} to {} lines ahead)", full ? 1 : 0,
+                             *s.full ? 1 : 0, lowest(s, now), s.high));
   s.full = full;
 }
 
 void BreqScoreboard::signal(Tick from, Tick now, bool level, const char* source) {
   ++counts_.queries;
   if (edge_since(from) || edge_since(now - ns_to_ticks(500))) return;
-  if (level != level_) violate(now, fmt::format("{} shows BREQ {}; expected: {} as the pin", source, level ? 1 : 0, level_ ? 1 : 0));
+  if (level != level_)
+    violate(now, fmt::format("{} shows BREQ {}; expected: {} as the pin", source, level ? 1 : 0, level_ ? 1 : 0));
 }
 
 // Low for longer than T_PULSE allows: the line has made the buffer full, or a rule is broken.
@@ -182,19 +186,21 @@ void BreqScoreboard::decide_pulse(Tick now) {
   pulse_ = false;
   ++counts_.stays_low;
   if (s.high < i17_)
-    violate(now, fmt::format("BREQ stays low with at most {} lines ahead; expected: high again below I17={} (rule 2)", s.high, i17_));
+    violate(now, fmt::format("BREQ stays low with at most {} lines ahead; expected: high again below I17={} (rule 2)",
+                             s.high, i17_));
   s.full = true;
 }
 
 void BreqScoreboard::settled(Tick now) {
   decide_pulse(now);
   System& s = now_selected();
-  if (must_fall_) violate(now, "the line was stored and BREQ did not go low; expected: low at least momentarily (rule 1)");
+  if (must_fall_)
+    violate(now, "the line was stored and BREQ did not go low; expected: low at least momentarily (rule 1)");
   may_fall_ = must_fall_ = reselect_ = false;
   if (!s.full) s.full = !level_;
   if (level_ == *s.full)
-    violate(now, fmt::format("BREQ is {} and Rotary Buffer Full should be {}; expected: BREQ {}", level_ ? 1 : 0, *s.full ? 1 : 0,
-                             *s.full ? 0 : 1));
+    violate(now, fmt::format("BREQ is {} and Rotary Buffer Full should be {}; expected: BREQ {}", level_ ? 1 : 0,
+                             *s.full ? 1 : 0, *s.full ? 0 : 1));
 }
 
 }  // namespace brick

@@ -1,7 +1,7 @@
-// Scoreboard of the buffer-request rules (host-bus.md 5.2, 5.3, 5.7; firmware.md 4.5). It is told what the host does and
-// sees (lines, selections, PR, ??, edges of BREQ) and knows nothing of the firmware. For each coordinate system it keeps L,
-// the lines ahead of the executing one, as a range: exact while the program stands still, growing downwards while it runs,
-// exact again after PR or after the edge that says "L has just fallen below I16".
+// Scoreboard of the buffer-request rules (host-bus:5.2, host-bus:5.3, host-bus:5.7; firmware:4.5). It is told what the
+// host does and sees (lines, selections, PR, ??, edges of BREQ) and knows nothing of the firmware. For each coordinate
+// system it keeps L, the lines ahead of the executing one, as a range: exact while the program stands still, growing
+// downwards while it runs, exact again after PR or after the edge that says "L has just fallen below I16".
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ class BreqScoreboard {
   // `line_time`: the shortest time between two lines being taken for execution (one real-time interrupt).
   explicit BreqScoreboard(Tick line_time) : line_time_(line_time) {}
 
-  // What the host does --------------------------------------------------------------------------------------------------
+  // What the host does
+  // --------------------------------------------------------------------------------------------------
   void limits(unsigned i16, unsigned i17);  // from now on; every buffer is empty
   void select(unsigned cs, Tick now);       // &n sent (cs 0..15); also for OPEN ROT, CLEAR: the pin is shown anew
   void empty(unsigned cs);                  // CLEAR, or DEFINE ROT: L = 0, Full = 0
@@ -33,14 +34,16 @@ class BreqScoreboard {
   void line_sent(Tick now);                 // CR of a program line written, for the selected coordinate system
   void line_stored(Tick now);               // acknowledged
 
-  // What it sees --------------------------------------------------------------------------------------------------------
+  // What it sees
+  // --------------------------------------------------------------------------------------------------------
   void edge(Tick now, bool level);                                   // BREQ
   void lines_ahead(Tick from, Tick now, unsigned pr);                // PR asked at `from`, answered by `now`
   void full_bit(Tick from, Tick now, bool full);                     // bit 16 of the second word of ??
   void signal(Tick from, Tick now, bool level, const char* source);  // BREQ as read elsewhere: SIG bit 1
-  void settled(Tick now);                                            // nothing was sent for kSettled: pin and state must agree
+  void settled(Tick now);  // nothing was sent for kSettled: pin and state must agree
 
-  // Results -------------------------------------------------------------------------------------------------------------
+  // Results
+  // -------------------------------------------------------------------------------------------------------------
   const std::vector<std::string>& violations() const { return violations_; }
   struct Counts {
     unsigned lines = 0, pulses = 0, stays_low = 0, raised_by_execution = 0, queries = 0;

@@ -6,8 +6,8 @@ std::uint16_t Capture::shown(std::uint16_t level) const {
   if ((gate & 2) == 0) return level;
   constexpr unsigned kReplaced = 1u << kEncC | 1u << kU | 1u << kV | 1u << kW;
   // {A,B}: 11 -> C, 10 -> U, 00 -> V, 01 -> W
-  return static_cast<std::uint16_t>((level & ~kReplaced) | bit(part_, 3) << kEncC | bit(part_, 2) << kU | bit(part_, 0) << kV |
-                                    bit(part_, 1) << kW);
+  return static_cast<std::uint16_t>((level & ~kReplaced) | bit(part_, 3) << kEncC | bit(part_, 2) << kU |
+                                    bit(part_, 0) << kV | bit(part_, 1) << kW);
 }
 
 bool Capture::condition(std::uint16_t level) const {

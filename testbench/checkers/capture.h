@@ -1,4 +1,5 @@
-// Index conditioning and position capture as rules (servo-ic.md 5.8, 5.9), one call an SCLK period with the filtered levels.
+// Index conditioning and position capture as rules (servo-ic:5.8, servo-ic:5.9), one call an SCLK period with the
+// filtered levels.
 #pragma once
 
 #include <cstdint>

@@ -64,7 +64,8 @@ void ChannelScoreboard::advance(Tick tick) {
 
 std::uint32_t ChannelScoreboard::status(std::uint32_t mask) const {
   const std::uint32_t bits = capture.hall() | (capture.incomplete() ? 1u : 0u) << 3 | (decoder.error() ? 1u : 0u) << 8 |
-                             (compare.equ ? 1u : 0u) << 9 | (capture.gated_index() ? 1u : 0u) << 10 | (capture.captured() ? 1u : 0u) << 11 |
+                             (compare.equ ? 1u : 0u) << 9 | (capture.gated_index() ? 1u : 0u) << 10 |
+                             (capture.captured() ? 1u : 0u) << 11 |
                              static_cast<std::uint32_t>(capture.shown(filter_.level())) << 12;
   return bits & mask;
 }

@@ -1,6 +1,7 @@
-// Scoreboard of one channel's input side: it is given the levels on its pins with their ticks, and says at which tick the counter and
-// EQU change, and what the registers hold. Rules of servo-ic.md 5.3 to 5.10 (sclk_filter.h, quadrature.h, capture.h, compare.h); the
-// only thing learnt from the hardware is at which ticks SCLK falls (synchronise()).
+// Scoreboard of one channel's input side: it is given the levels on its pins with their ticks, and says at which tick
+// the counter and EQU change, and what the registers hold. Rules of servo-ic:5.3 to servo-ic:5.10 (sclk_filter.h,
+// quadrature.h, capture.h, compare.h); the only thing learnt from the hardware is at which ticks SCLK falls
+// (synchronise()).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,9 @@ namespace brick {
 
 class ChannelScoreboard {
  public:
-  static constexpr Tick kSync = 3;        // a pin that is driven at tick t is seen by SCLK at t + 3 and later: two flip-flops
-  static constexpr unsigned kDecode = 2;  // SCLK periods from the first sample to the count: two samples, then the decoder
+  static constexpr Tick kSync = 3;  // a pin that is driven at tick t is seen by SCLK at t + 3 and later: two flip-flops
+  static constexpr unsigned kDecode =
+      2;  // SCLK periods from the first sample to the count: two samples, then the decoder
 
   struct Change {
     Tick tick;
@@ -34,13 +36,16 @@ class ChannelScoreboard {
   static Tick earliest(Tick tick, Tick period) { return tick + kSync + kDecode * period; }
   static Tick latest(Tick tick, Tick period) { return earliest(tick, period) + period - 1; }
 
-  // SCLK has an edge at tick `edge` and every `period` ticks. From tick `now` on, when everything is quiet, it is followed.
+  // SCLK has an edge at tick `edge` and every `period` ticks. From tick `now` on, when everything is quiet, it is
+  // followed.
   void synchronise(Tick edge, Tick period, Tick now);
   void touch() { busy_ = 8; }  // after a change of the public settings below
 
   void drive(Tick tick, std::uint16_t pins) { driven_.push_back({tick, pins}); }
-  void pulse(Tick tick, int direction) { pulses_.push_back({tick, direction}); }  // leading edge of the channel's own PFM pulse
-  void advance(Tick tick);                                                        // all SCLK edges up to `tick`
+  void pulse(Tick tick, int direction) {
+    pulses_.push_back({tick, direction});
+  }                         // leading edge of the channel's own PFM pulse
+  void advance(Tick tick);  // all SCLK edges up to `tick`
 
   Quadrature decoder{kIdleChannelPins};
   Capture capture{kIdleChannelPins};
@@ -53,9 +58,11 @@ class ChannelScoreboard {
   std::vector<Change> counts, equs;  // every change, until taken
   std::uint16_t level() const { return filter_.level(); }
   bool keep_levels = false;
-  std::vector<Change> levels;                                                      // filtered inputs, if kept
-  std::uint32_t status(std::uint32_t mask) const;                                  // X:+0 as far as it follows from the rules: not ENC_LOSS
-  std::int64_t t2(Tick tick) const { return index(tick) - decoder.last_count(); }  // SCLK periods from the last count to `tick`
+  std::vector<Change> levels;                      // filtered inputs, if kept
+  std::uint32_t status(std::uint32_t mask) const;  // X:+0 as far as it follows from the rules: not ENC_LOSS
+  std::int64_t t2(Tick tick) const {
+    return index(tick) - decoder.last_count();
+  }  // SCLK periods from the last count to `tick`
   Tick period() const { return period_; }
 
  private:

@@ -13,7 +13,8 @@ const char* level_name(bool level) { return level ? "high" : "low"; }
 }  // namespace
 
 const char* kind_name(ClockChecker::Kind kind) {
-  static constexpr const char* kNames[] = {"runt", "doubled", "missing", "early", "late", "relation", "conflict", "unsettled"};
+  static constexpr const char* kNames[] = {"runt", "doubled",  "missing",  "early",
+                                           "late", "relation", "conflict", "unsettled"};
   return kNames[static_cast<unsigned>(kind)];
 }
 
@@ -27,7 +28,8 @@ void ClockChecker::violate(Tick now, Kind kind, const std::string& text) {
   violations_.push_back({now, kind, fmt::format("tick {}: {}: {}", now, kind_name(kind), text)});
 }
 
-// What the host does ----------------------------------------------------------------------------------------------------
+// What the host does
+// ----------------------------------------------------------------------------------------------------
 
 void ClockChecker::begin(Mode mode, std::optional<ClockSetting> to, Stage stage) {
   mode_ = mode;
@@ -38,7 +40,8 @@ void ClockChecker::begin(Mode mode, std::optional<ClockSetting> to, Stage stage)
 
 void ClockChecker::run(Tick now, const ClockSetting& s) {
   finish(now);
-  if (mode_ == Mode::kMove && stage_ != Stage::kNew && !(now_is_ == s)) violate(now, Kind::kUnsettled, "the new source is not seen");
+  if (mode_ == Mode::kMove && stage_ != Stage::kNew && !(now_is_ == s))
+    violate(now, Kind::kUnsettled, "the new source is not seen");
   now_is_ = s;
   begin(Mode::kRun, std::nullopt, Stage::kOld);
 }
@@ -66,10 +69,12 @@ void ClockChecker::stop(Tick now) {
   begin(Mode::kStop, std::nullopt, Stage::kOld);
 }
 
-// What it sees ----------------------------------------------------------------------------------------------------------
+// What it sees
+// ----------------------------------------------------------------------------------------------------------
 
 void ClockChecker::pins(Tick now, bool phase, bool servo, bool conflict) {
-  if (conflict && !conflict_ && !conflict_allowed_) violate(now, Kind::kConflict, "two sources disagree for more than 2 ticks");
+  if (conflict && !conflict_ && !conflict_allowed_)
+    violate(now, Kind::kConflict, "two sources disagree for more than 2 ticks");
   conflict_ = conflict;
   const bool phase_changed = phase != phase_;
   if (mode_ == Mode::kIgnore) {
@@ -110,8 +115,9 @@ Tick ClockChecker::longest(bool level) const {
 
 void ClockChecker::finish(Tick now) {
   if (!phase_since_ || longest(phase_) == kNever || now - *phase_since_ <= longest(phase_)) return;
-  violate(now, Kind::kMissing,
-          fmt::format("PHASE {} since tick {}, {} ticks are the most", level_name(phase_), *phase_since_, longest(phase_)));
+  violate(
+      now, Kind::kMissing,
+      fmt::format("PHASE {} since tick {}, {} ticks are the most", level_name(phase_), *phase_since_, longest(phase_)));
   phase_since_.reset();
   falls_.reset();
 }
@@ -164,10 +170,12 @@ void ClockChecker::changing(Tick now, bool level, Tick length) {
   const Tick shortest = half * (std::min(now_is_.phase_divider, next_->phase_divider) + 1) / 2;
   if (length < shortest)
     violate(now, 2 * length < shortest ? Kind::kRunt : Kind::kEarly,
-            fmt::format("PHASE {} for {} ticks while its variables change, at least {}", level_name(!level), length, shortest));
+            fmt::format("PHASE {} for {} ticks while its variables change, at least {}", level_name(!level), length,
+                        shortest));
   else if (length > longest(!level))
     violate(now, Kind::kLate,
-            fmt::format("PHASE {} for {} ticks while its variables change, at most {}", level_name(!level), length, longest(!level)));
+            fmt::format("PHASE {} for {} ticks while its variables change, at most {}", level_name(!level), length,
+                        longest(!level)));
 }
 
 // A fall of PHASE is the new source's first.
@@ -193,7 +201,8 @@ void ClockChecker::moving(Tick now, bool level, Tick length) {
     violate(now, 2 * length < next_->high() ? Kind::kRunt : Kind::kEarly,
             fmt::format("PHASE high for {} ticks, the new source's first is {} at least", length, next_->high()));
   else if (length > longest(true))
-    violate(now, Kind::kLate, fmt::format("PHASE high for {} ticks, {} at most while the source moves", length, longest(true)));
+    violate(now, Kind::kLate,
+            fmt::format("PHASE high for {} ticks, {} at most while the source moves", length, longest(true)));
   first_fall();
 }
 
@@ -201,7 +210,8 @@ void ClockChecker::moving(Tick now, bool level, Tick length) {
 void ClockChecker::servo_pin(Tick now, bool phase_changed, bool phase, bool servo) {
   const bool changed = servo != servo_;
   if (!phase_changed) {
-    if (changed) violate(now, Kind::kRelation, fmt::format("SERVO {} without an edge of PHASE", servo ? "rises" : "falls"));
+    if (changed)
+      violate(now, Kind::kRelation, fmt::format("SERVO {} without an edge of PHASE", servo ? "rises" : "falls"));
     return;
   }
   if (phase)
@@ -224,11 +234,14 @@ unsigned ClockChecker::largest_divider() const {
 }
 
 // Falls of PHASE after which SERVO must have fallen.
-unsigned ClockChecker::latest_servo_fall() const { return first_servo_ ? 2 * largest_divider() + 1 : largest_divider() + 1; }
+unsigned ClockChecker::latest_servo_fall() const {
+  return first_servo_ ? 2 * largest_divider() + 1 : largest_divider() + 1;
+}
 
 // PHASE rises: SERVO rises with it when it is as fast, else it stays.
 void ClockChecker::with_rise(Tick now, bool changed, bool servo) {
-  if (changed && (!servo || !divider_may_be(0))) return violate(now, Kind::kRelation, "SERVO moves with a rise of PHASE");
+  if (changed && (!servo || !divider_may_be(0)))
+    return violate(now, Kind::kRelation, "SERVO moves with a rise of PHASE");
   if (!changed && !servo && largest_divider() == 0 && mode_ != Mode::kChange)
     violate(now, Kind::kRelation, "SERVO stays low at a rise of PHASE");
 }
@@ -237,11 +250,13 @@ void ClockChecker::with_fall(Tick now, bool changed, bool servo) {
   if (falls_) ++*falls_;
   const bool falls = changed && !servo;
   if (!servo_ && !changed) violate(now, Kind::kRelation, "SERVO low for longer than one phase period");
-  if (changed && servo && falls_ && *falls_ != 1) violate(now, Kind::kRelation, "SERVO rises at the wrong fall of PHASE");
+  if (changed && servo && falls_ && *falls_ != 1)
+    violate(now, Kind::kRelation, "SERVO rises at the wrong fall of PHASE");
   if (falls) {
     ++counts_.servo_falls;
     const unsigned number = falls_.value_or(0);
-    const bool due = first_servo_ ? number > largest_divider() && number <= latest_servo_fall() : divider_may_be(number - 1);
+    const bool due =
+        first_servo_ ? number > largest_divider() && number <= latest_servo_fall() : divider_may_be(number - 1);
     if (falls_ && !due)
       violate(now, *falls_ <= largest_divider() ? Kind::kDoubled : Kind::kMissing,
               fmt::format("SERVO falls after {} phase periods instead of {}", *falls_, largest_divider() + 1));

@@ -1,6 +1,7 @@
-// Checker of the PHASE and SERVO nets (servo-ic.md 5.1, 7.2; docs/clock.md). It is told what the host programs and sees every edge
-// of the two nets and of clock.conflict; it knows nothing of the engines. In steady state each edge must come at its very tick.
-// While the host writes dividers or moves the source the rules of taking over allow a little more, see `change` and `move`.
+// Checker of the PHASE and SERVO nets (servo-ic:5.1, servo-ic:7.2; docs/clock.md). It is told what the host programs
+// and sees every edge of the two nets and of clock.conflict; it knows nothing of the engines. In steady state each edge
+// must come at its very tick. While the host writes dividers or moves the source the rules of taking over allow a
+// little more, see `change` and `move`.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,8 @@ class ClockChecker {
  public:
   // Between the last input and the new output firmware needs this long at most, besides its wait for the release.
   static constexpr Tick kHandOver = ns_to_ticks(50'000);
-  // An IC that is to let go drives on until both its clocks are high, at most this long: SERVO just fell, so it is low for a phase
-  // period, and PHASE, which fell again with its rise, for its low time.
+  // An IC that is to let go drives on until both its clocks are high, at most this long: SERVO just fell, so it is low
+  // for a phase period, and PHASE, which fell again with its rise, for its low time.
   static Tick release(const ClockSetting& s) { return s.phase() + s.low(); }
 
   // From the acknowledge of the line that writes the variables or moves the source until every edge is exact again.
@@ -44,29 +45,35 @@ class ClockChecker {
     std::string text;
   };
 
-  // What the host does --------------------------------------------------------------------------------------------------
+  // What the host does
+  // --------------------------------------------------------------------------------------------------
   void ignore() { mode_ = Mode::kIgnore; }  // reset, watchdog: no rule until told otherwise
-  // Every edge from now on is exact. Ends a transition, which must be over: no odd pulse is pending, the new setting is seen.
+  // Every edge from now on is exact. Ends a transition, which must be over: no odd pulse is pending, the new setting is
+  // seen.
   void run(Tick now, const ClockSetting& s);
-  // The variables of the source are about to be written. Every pulse is made of whole and half triangles of the old or the new
-  // length, so it lies between the shorter and the longer of both settings; a servo period has the old or the new divider.
+  // The variables of the source are about to be written. Every pulse is made of whole and half triangles of the old or
+  // the new length, so it lies between the shorter and the longer of both settings; a servo period has the old or the
+  // new divider.
   void change(Tick now, const ClockSetting& to);
-  // Another IC, with these variables, is about to become the source. The old one lets go while both nets are high and the new one
-  // begins with a full high time, so every low level is exact, of the old or of the new source, and one high level of PHASE is
-  // odd: at least a full one of the new source; at most one of the old, the release, the hand-over, two periods of the new source
-  // (its running one, and the one that ends with the rise at which it takes the pin) and its high time. SERVO first falls with
-  // fall number divider + 1 at the earliest and, because its pin is taken a SERVO period after PHASE, 2 x divider + 1 at the latest.
+  // Another IC, with these variables, is about to become the source. The old one lets go while both nets are high and
+  // the new one begins with a full high time, so every low level is exact, of the old or of the new source, and one
+  // high level of PHASE is odd: at least a full one of the new source; at most one of the old, the release, the
+  // hand-over, two periods of the new source (its running one, and the one that ends with the rise at which it takes
+  // the pin) and its high time. SERVO first falls with fall number divider + 1 at the earliest and, because its pin is
+  // taken a SERVO period after PHASE, 2 x divider + 1 at the latest.
   void move(Tick now, const ClockSetting& to, Tick hand_over = kHandOver);
   // The same from no source; `within` is the longest time until the new one drives.
   void start(Tick now, const ClockSetting& to, Tick within);
   void stop(Tick now);  // ... to no source: all is exact until a high level that does not end any more
   void allow_conflict(bool allowed) { conflict_allowed_ = allowed; }
 
-  // What it sees --------------------------------------------------------------------------------------------------------
+  // What it sees
+  // --------------------------------------------------------------------------------------------------------
   void pins(Tick now, bool phase, bool servo, bool conflict);  // after each edge that changes one of them
-  void finish(Tick now);                                       // nothing changed since the last call: an edge may be overdue
+  void finish(Tick now);  // nothing changed since the last call: an edge may be overdue
 
-  // Results -------------------------------------------------------------------------------------------------------------
+  // Results
+  // -------------------------------------------------------------------------------------------------------------
   const std::vector<Violation>& violations() const { return violations_; }
   struct Counts {
     unsigned phase_falls = 0, servo_falls = 0, odd_highs = 0;
@@ -76,7 +83,11 @@ class ClockChecker {
 
  private:
   enum class Mode { kIgnore, kRun, kChange, kMove, kStop };
-  enum class Stage { kOld, kIdle, kNew };  // of a transition: old source exact, none before the new one, new source exact
+  enum class Stage {
+    kOld,
+    kIdle,
+    kNew
+  };  // of a transition: old source exact, none before the new one, new source exact
 
   void begin(Mode mode, std::optional<ClockSetting> to, Stage stage);
   void phase_edge(Tick now, bool level);

@@ -6,7 +6,8 @@
 
 namespace brick {
 
-void PfmScoreboard::step(Variant& v, const PfmRule& rule, const std::vector<PfmCommand>& commands, unsigned pins, Tick grid, Tick to) {
+void PfmScoreboard::step(Variant& v, const PfmRule& rule, const std::vector<PfmCommand>& commands, unsigned pins,
+                         Tick grid, Tick to) {
   constexpr std::int64_t kRange = 1 << 24;
   v.levels = {{commands.front().tick, pins}};
   v.pulses = {};
@@ -34,8 +35,8 @@ void PfmScoreboard::step(Variant& v, const PfmRule& rule, const std::vector<PfmC
   }
 }
 
-std::string PfmScoreboard::judge(const PfmRule& rule, const std::vector<PfmCommand>& commands, const std::vector<PfmLevel>& seen, Tick grid,
-                                 Tick to) {
+std::string PfmScoreboard::judge(const PfmRule& rule, const std::vector<PfmCommand>& commands,
+                                 const std::vector<PfmLevel>& seen, Tick grid, Tick to) {
   std::string text;
   std::vector<Variant> agree;
   for (Variant& v : variants_) {
@@ -46,7 +47,8 @@ std::string PfmScoreboard::judge(const PfmRule& rule, const std::vector<PfmComma
       agree.push_back(v);
     } else if (text.empty()) {
       const auto words = [](bool any, const PfmLevel& l) {
-        return any ? fmt::format("pulse {} direction {} at tick {}", l.pins & 1, l.pins >> 1, l.tick) : std::string("no change");
+        return any ? fmt::format("pulse {} direction {} at tick {}", l.pins & 1, l.pins >> 1, l.tick)
+                   : std::string("no change");
       };
       text = fmt::format("{}, expected {}", words(s != seen.end(), s != seen.end() ? *s : PfmLevel{}),
                          words(e != v.levels.end(), e != v.levels.end() ? *e : PfmLevel{}));

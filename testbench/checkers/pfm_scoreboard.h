@@ -1,6 +1,7 @@
-// The PFM rule of the data sheet (servo-ic.md 5.12): one accumulator of 24 bits, stepped at every edge of PFM_CLK, exact from power-up
-// on. The scoreboard is told when commands were written and sees the pins. It cannot see how many edges of clk_ref lie between a
-// word and its pin; it starts with all small numbers and keeps those that agree with every pulse so far.
+// The PFM rule of the data sheet (servo-ic:5.12): one accumulator of 24 bits, stepped at every edge of PFM_CLK, exact
+// from power-up on. The scoreboard is told when commands were written and sees the pins. It cannot see how many edges
+// of clk_ref lie between a word and its pin; it starts with all small numbers and keeps those that agree with every
+// pulse so far.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +31,10 @@ struct PfmRule {
 
 class PfmScoreboard {
  public:
-  // Judges a stretch that begins with no pulse and no command (`seen` starts with the pins as they stand) and ends likewise at `to`.
-  // `grid` is a tick at which PFM_CLK has an edge, seen at any pin of the IC. "" when the pins agree.
-  std::string judge(const PfmRule& rule, const std::vector<PfmCommand>& commands, const std::vector<PfmLevel>& seen, Tick grid, Tick to);
+  // Judges a stretch that begins with no pulse and no command (`seen` starts with the pins as they stand) and ends
+  // likewise at `to`. `grid` is a tick at which PFM_CLK has an edge, seen at any pin of the IC. "" when the pins agree.
+  std::string judge(const PfmRule& rule, const std::vector<PfmCommand>& commands, const std::vector<PfmLevel>& seen,
+                    Tick grid, Tick to);
 
   // Of the last stretch: pulses up and down, and whether one began when the last one ended or earlier.
   struct Pulses {
@@ -48,7 +50,8 @@ class PfmScoreboard {
     std::vector<PfmLevel> levels{};
     Pulses pulses{};
   };
-  static void step(Variant& v, const PfmRule& rule, const std::vector<PfmCommand>& commands, unsigned pins, Tick grid, Tick to);
+  static void step(Variant& v, const PfmRule& rule, const std::vector<PfmCommand>& commands, unsigned pins, Tick grid,
+                   Tick to);
 
   std::vector<Variant> variants_{{3}, {6}, {9}};
   Pulses pulses_;

@@ -9,7 +9,8 @@ namespace brick {
 namespace {
 // Pins as they stand after tick `at`; nothing is known before the first level.
 unsigned pins_at(const std::vector<PwmLevel>& levels, Tick at) {
-  const auto next = std::upper_bound(levels.begin(), levels.end(), at, [](Tick t, const PwmLevel& l) { return t < l.tick; });
+  const auto next =
+      std::upper_bound(levels.begin(), levels.end(), at, [](Tick t, const PwmLevel& l) { return t < l.tick; });
   return next == levels.begin() ? 4 : std::prev(next)->pins;
 }
 
@@ -38,7 +39,8 @@ std::vector<PwmTurn> pwm_turns(Tick bottom, unsigned limit, Tick to, const std::
   return turns;
 }
 
-std::vector<PwmLevel> pwm_switches(const std::vector<PwmTurn>& turns, const std::vector<PwmCommand>& commands, const PwmRule& rule) {
+std::vector<PwmLevel> pwm_switches(const std::vector<PwmTurn>& turns, const std::vector<PwmCommand>& commands,
+                                   const PwmRule& rule) {
   // Changes of the comparison: from `tick` on it is `up`.
   struct Raw {
     Tick tick;
@@ -65,8 +67,11 @@ std::vector<PwmLevel> pwm_switches(const std::vector<PwmTurn>& turns, const std:
   return levels;
 }
 
-std::string pwm_difference(const std::vector<PwmLevel>& seen, const std::vector<PwmLevel>& expected, Tick from, Tick to) {
-  const auto text = [](unsigned pins) { return pins == 0 ? "both off" : pins == 1 ? "upper on" : pins == 2 ? "lower on" : "both on"; };
+std::string pwm_difference(const std::vector<PwmLevel>& seen, const std::vector<PwmLevel>& expected, Tick from,
+                           Tick to) {
+  const auto text = [](unsigned pins) {
+    return pins == 0 ? "both off" : pins == 1 ? "upper on" : pins == 2 ? "lower on" : "both on";
+  };
   if (pins_at(seen, from) != pins_at(expected, from))
     return fmt::format("tick {}: {}, expected {}", from, text(pins_at(seen, from)), text(pins_at(expected, from)));
   const auto later = [from](const PwmLevel& l) { return l.tick > from; };
@@ -83,7 +88,8 @@ std::string pwm_difference(const std::vector<PwmLevel>& seen, const std::vector<
 Tick pwm_time(const std::vector<PwmLevel>& levels, unsigned pins, Tick from, Tick to) {
   Tick sum = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const Tick begin = std::max(from, levels[i].tick), end = i + 1 < levels.size() ? std::min(to, levels[i + 1].tick) : to;
+    const Tick begin = std::max(from, levels[i].tick),
+               end = i + 1 < levels.size() ? std::min(to, levels[i + 1].tick) : to;
     if (levels[i].pins == pins && end > begin) sum += end - begin;
   }
   return sum;

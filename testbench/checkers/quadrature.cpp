@@ -12,7 +12,8 @@ int place(std::string_view cycle, unsigned lines) {
   return at == std::string_view::npos ? -1 : static_cast<int>(at);
 }
 
-// Along {A,B} = 00, 10, 11, 01 with A in bit 0: lines 0, 1, 3, 2. Hall {A,B,C} = 001, 011, 010, 110, 100, 101 with A in bit 0.
+// Along {A,B} = 00, 10, 11, 01 with A in bit 0: lines 0, 1, 3, 2. Hall {A,B,C} = 001, 011, 010, 110, 100, 101 with A in
+// bit 0.
 constexpr std::string_view kQuadrature = "0132", kHall = "462315";
 
 // 1 next, -1 previous, 0 the same, 2 anything else.

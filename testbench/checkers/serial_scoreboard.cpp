@@ -15,7 +15,8 @@ std::string decode(SerialStream& s, const std::vector<SerialLevel>& levels, Tick
   const auto at = [&](const SerialLevel& l, const char* what) {
     return fmt::format("{} at tick {}, PHASE rose at {}", what, l.tick, s.phase);
   };
-  auto l = std::upper_bound(levels.begin(), levels.end(), s.phase, [](Tick t, const SerialLevel& level) { return t < level.tick; });
+  auto l = std::upper_bound(levels.begin(), levels.end(), s.phase,
+                            [](Tick t, const SerialLevel& level) { return t < level.tick; });
   if (l == levels.begin()) return "pins before PHASE are not known";
   unsigned rises = 0;
   Tick start = -1, rise = -1, strobe_up = -1;
@@ -24,7 +25,8 @@ std::string decode(SerialStream& s, const std::vector<SerialLevel>& levels, Tick
     const bool up = l->clock && !before.clock, down = !l->clock && before.clock;
     if (l->strobe != before.strobe || l->data != before.data) {
       if (rises == 0 && start < 0) start = l->tick;
-      if (rises == 0 ? l->tick != start || l->clock : !down) return at(*l, "a line changes without a fall of the clock");
+      if (rises == 0 ? l->tick != start || l->clock : !down)
+        return at(*l, "a line changes without a fall of the clock");
       if (rises == kBits && l->strobe != before.strobe) return at(*l, "the strobe does not keep its last bit");
     }
     if (l->strobe && !before.strobe && strobe_up < 0) strobe_up = l->tick;
@@ -35,7 +37,8 @@ std::string decode(SerialStream& s, const std::vector<SerialLevel>& levels, Tick
     if (!up) continue;
     if (rises == kBits) return at(*l, "a clock too many");
     if (rises == 0 && l->tick - s.phase > kLatency + 3 * bit / 2) return at(*l, "the first clock comes late");
-    if (rises > 0 && l->tick - rise != bit) return at(*l, fmt::format("clock period {}, expected {}", l->tick - rise, bit).c_str());
+    if (rises > 0 && l->tick - rise != bit)
+      return at(*l, fmt::format("clock period {}, expected {}", l->tick - rise, bit).c_str());
     if (rises++ == 0) s.first = l->tick;
     s.last = rise = l->tick;
     s.strobe = s.strobe << 1 | (l->strobe ? 1u : 0u);
@@ -47,7 +50,8 @@ std::string decode(SerialStream& s, const std::vector<SerialLevel>& levels, Tick
 }
 }  // namespace
 
-SerialRecord serial_streams(const std::vector<SerialLevel>& levels, const std::vector<Tick>& phase_rises, Tick bit, unsigned lines) {
+SerialRecord serial_streams(const std::vector<SerialLevel>& levels, const std::vector<Tick>& phase_rises, Tick bit,
+                            unsigned lines) {
   SerialRecord record;
   for (std::size_t i = 0; i + 1 < phase_rises.size(); ++i) {
     SerialStream s;

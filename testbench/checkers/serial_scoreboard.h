@@ -1,6 +1,7 @@
-// The serial rules of the data sheet (servo-ic.md 3.5, 3.6, 5.13, 5.14): 24 bits from each rise of PHASE on, first the highest, one a
-// clock, changed with the falling edge and taken with the rising one; then the clock stops and the strobe keeps its last bit. Finds the
-// streams in what the pins did, and says what the words on both ends must be.
+// The serial rules of the data sheet (servo-ic:3.5, servo-ic:3.6, servo-ic:5.13, servo-ic:5.14): 24 bits from each rise
+// of PHASE on, first the highest, one a clock, changed with the falling edge and taken with the rising one; then the
+// clock stops and the strobe keeps its last bit. Finds the streams in what the pins did, and says what the words on
+// both ends must be.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +32,10 @@ struct SerialRecord {
   std::string error{};  // first break of the rules, or ""
 };
 
-// Streams of all PHASE periods that lie wholly between the first and the last tick of `phase_rises`. `bit`: ticks of a clock period.
-SerialRecord serial_streams(const std::vector<SerialLevel>& levels, const std::vector<Tick>& phase_rises, Tick bit, unsigned lines);
+// Streams of all PHASE periods that lie wholly between the first and the last tick of `phase_rises`. `bit`: ticks of a
+// clock period.
+SerialRecord serial_streams(const std::vector<SerialLevel>& levels, const std::vector<Tick>& phase_rises, Tick bit,
+                            unsigned lines);
 
 // What a DAC line carries for a command: 18 bits in 23..6. The inversion (I7mn7 bit 0) turns those 18.
 std::uint32_t dac_stream(std::uint32_t command, bool invert);

@@ -1,4 +1,5 @@
-// Connects the watchdog scoreboard to a machine: SERVO and the trip at the board's pins, strobes at the end of bus cycles on Port A.
+// Connects the watchdog scoreboard to a machine: SERVO and the trip at the board's pins, strobes at the end of bus
+// cycles on Port A.
 #pragma once
 
 #include <algorithm>
@@ -59,8 +60,9 @@ class WatchdogProbe {
   unsigned counter_ = 0;
 };
 
-// The servo period, as I7000 with dividers of one, that leaves the real-time task half of the CPU time it needs and the background
-// none, from the task costs that a host reads in half CPU cycles (firmware.md 8.1). CPU clock I52=7. docs/watchdog.md, "Budget".
+// The servo period, as I7000 with dividers of one, that leaves the real-time task half of the CPU time it needs and the
+// background none, from the task costs that a host reads in half CPU cycles (firmware:8.1). CPU clock I52=7.
+// docs/watchdog.md, "Budget".
 struct WatchdogLoad {
   long servo = 0, real_time = 0;  // CPU cycles: phase and servo task, real-time task
   bool sensible() const { return servo > 100 && servo < 5000 && real_time > 100 && real_time < 5000; }

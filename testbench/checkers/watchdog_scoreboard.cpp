@@ -34,8 +34,9 @@ void WatchdogScoreboard::trip(Tick now) {
   trip_ = now;
 }
 
-// Counter at `starved_`: I40 less what passes between two passes of an idle background. The real-time task that finds it below
-// zero began not later than one such task after that, and the one before it, which strobed last, not earlier than one before.
+// Counter at `starved_`: I40 less what passes between two passes of an idle background. The real-time task that finds
+// it below zero began not later than one such task after that, and the one before it, which strobed last, not earlier
+// than one before.
 WatchdogScoreboard::Window WatchdogScoreboard::chain() const {
   const Tick least = static_cast<Tick>(counter_) - kIdlePasses - kRealTimeTask;
   const Tick from = starved_ + (least > 0 ? least : 0) * period_;
@@ -50,8 +51,8 @@ void WatchdogScoreboard::judge(bool real_time) {
   }
   const auto inside = [this](const char* rule, Window w) {
     if (!w.holds(trip_))
-      violate(fmt::format("{}: tripped at {:.4f} ms after reset, expected {:.4f} to {:.4f} ms", rule, ms(trip_ - reset_),
-                          ms(w.from - reset_), ms(w.to - reset_)));
+      violate(fmt::format("{}: tripped at {:.4f} ms after reset, expected {:.4f} to {:.4f} ms", rule,
+                          ms(trip_ - reset_), ms(w.from - reset_), ms(w.to - reset_)));
   };
   inside("25 ms from the last strobe", circuit());
   if (starved_ < 0) return;
@@ -59,8 +60,10 @@ void WatchdogScoreboard::judge(bool real_time) {
     inside("I40 and 25 ms", chain());
     const unsigned least = counter_ > kIdlePasses + kRealTimeTask ? counter_ - kIdlePasses - kRealTimeTask : 0;
     if (servo_at_strobe_ < least || servo_at_strobe_ > counter_ + 1)
-      violate(fmt::format("last strobe after {} servo interrupts, expected {} to {}", servo_at_strobe_, least, counter_ + 1));
-    if (strobes_ < least / kRealTimeTask) violate(fmt::format("{} strobes, expected {} or more", strobes_, least / kRealTimeTask));
+      violate(fmt::format("last strobe after {} servo interrupts, expected {} to {}", servo_at_strobe_, least,
+                          counter_ + 1));
+    if (strobes_ < least / kRealTimeTask)
+      violate(fmt::format("{} strobes, expected {} or more", strobes_, least / kRealTimeTask));
   } else if (servo_at_strobe_ > kIdlePasses) {
     violate(fmt::format("a strobe {} servo periods after the real-time task lost its CPU time", servo_at_strobe_));
   }
@@ -68,8 +71,10 @@ void WatchdogScoreboard::judge(bool real_time) {
 
 std::string WatchdogScoreboard::summary() const {
   if (starved_ < 0)
-    return fmt::format("{:.3f} ms after reset, {:.3f} ms after the last strobe", ms(trip_ - reset_), ms(trip_ - last_strobe_));
-  return fmt::format("{} strobes in {} servo interrupts, then {:.3f} ms", strobes_, servo_at_strobe_, ms(trip_ - last_strobe_));
+    return fmt::format("{:.3f} ms after reset, {:.3f} ms after the last strobe", ms(trip_ - reset_),
+                       ms(trip_ - last_strobe_));
+  return fmt::format("{} strobes in {} servo interrupts, then {:.3f} ms", strobes_, servo_at_strobe_,
+                     ms(trip_ - last_strobe_));
 }
 
 }  // namespace brick

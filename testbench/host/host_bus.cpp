@@ -107,8 +107,9 @@ std::uint16_t HostBus::cycle(Command command, std::uint32_t address, std::uint16
     if (machine_.outputs().get(pin::kIsaIochrdy)) break;
     end += isa::kBclk;
     if (end - start > isa::kLongestStretch)
-      throw HostBusError(fmt::format("host bus: IOCHRDY stays low in the {} cycle at {}{:X}; expected: high within 15.6 us (t10)",
-                                     write ? "write" : "read", memory ? "memory address 0x" : "I/O address 0x", address));
+      throw HostBusError(
+          fmt::format("host bus: IOCHRDY stays low in the {} cycle at {}{:X}; expected: high within 15.6 us (t10)",
+                      write ? "write" : "read", memory ? "memory address 0x" : "I/O address 0x", address));
   }
   advance_to(fs_to_tick_floor(end - isa::kReadSetup));
   const auto read = static_cast<std::uint16_t>(machine_.outputs().get(pin::kIsaSd));
@@ -121,11 +122,15 @@ std::uint16_t HostBus::cycle(Command command, std::uint32_t address, std::uint16
   return memory ? read : read & 0xFF;
 }
 
-std::uint8_t HostBus::io_read(std::uint32_t offset) { return static_cast<std::uint8_t>(cycle(Command::kIoRead, kIoBase + offset, 0)); }
+std::uint8_t HostBus::io_read(std::uint32_t offset) {
+  return static_cast<std::uint8_t>(cycle(Command::kIoRead, kIoBase + offset, 0));
+}
 
 void HostBus::io_write(std::uint32_t offset, std::uint8_t value) { cycle(Command::kIoWrite, kIoBase + offset, value); }
 
-std::uint16_t HostBus::dpram_read(std::uint32_t byte_offset) { return cycle(Command::kMemoryRead, kDpramWindow + byte_offset, 0); }
+std::uint16_t HostBus::dpram_read(std::uint32_t byte_offset) {
+  return cycle(Command::kMemoryRead, kDpramWindow + byte_offset, 0);
+}
 
 void HostBus::dpram_write(std::uint32_t byte_offset, std::uint16_t value) {
   cycle(Command::kMemoryWrite, kDpramWindow + byte_offset, value);

@@ -1,4 +1,4 @@
-// The host's side of the bus: ISA / PC104 cycles with real edges (host-bus.md 3.4), the host port by polling or by
+// The host's side of the bus: ISA / PC104 cycles with real edges (host-bus:3.4), the host port by polling or by
 // interrupt, the interrupt controller and the dual-ported RAM window. Every call advances the machine; a host reads and
 // drives pins only while the board stands at that time, so the result is the same on every engine.
 #pragma once
@@ -23,7 +23,7 @@ class HostBusError : public std::runtime_error {
 
 class HostBus {
  public:
-  static constexpr std::uint32_t kIoBase = 0x210;         // host-bus.md 3.1
+  static constexpr std::uint32_t kIoBase = 0x210;         // host-bus:3.1
   static constexpr std::uint32_t kDpramWindow = 0xD0000;  // 64 KiB, docs/architecture.md "Host bus"
   static constexpr std::uint32_t kDpramBytes = 0x10000;
   static constexpr std::uint8_t kRxdf = 0x01;  // ISR: a character waits to be read
@@ -37,15 +37,15 @@ class HostBus {
   std::uint16_t dpram_read(std::uint32_t byte_offset);  // even offsets
   void dpram_write(std::uint32_t byte_offset, std::uint16_t value);
 
-  // Host port, host-bus.md 3.1 "polling recipe" -------------------------------------------------------------------------
+  // Host port, host-bus:3.1 "polling recipe" -------------------------------------------------------------------------
   std::uint8_t port_status() { return io_read(2); }
-  void pause_polling() { free_at_ += isa::kPollPause; }                    // after a look at the status that found nothing
+  void pause_polling() { free_at_ += isa::kPollPause; }  // after a look at the status that found nothing
   bool tripped() const { return machine_.outputs().get(pin::kWdo) != 0; }  // line WDO: nobody will answer until a reset
   void open_port();                                                        // once: high and middle byte zero
   bool put_char(std::uint8_t c, Tick timeout);                             // spins on TXDE; false at the time-out
   std::optional<std::uint8_t> get_char(Tick timeout);                      // spins on RXDF
 
-  // Interrupt controller, host-bus.md 4.1 -------------------------------------------------------------------------------
+  // Interrupt controller, host-bus:4.1 -------------------------------------------------------------------------------
   struct Pic {
     std::uint8_t ist, sig, msk, elr;
   };
@@ -61,15 +61,17 @@ class HostBus {
   void advance_to(Tick tick);
   void advance_to_stop(Tick limit);  // or to the end of the run that an edge ends (Machine::stop_on_motor)
   void wait(Tick ticks) { advance_to(now() + ticks); }
-  void wait_change(const PinField& pin, Tick limit);                      // to the pin's next change, or to tick `limit`
+  void wait_change(const PinField& pin, Tick limit);  // to the pin's next change, or to tick `limit`
   bool wait_pin(const PinField& pin, std::uint32_t value, Tick timeout);  // stops at the edge; false at the time-out
 
   // Hooks -------------------------------------------------------------------------------------------------------------
   // `on_edge` is called at each change of a pin selected by `pins`, whatever the host does meanwhile.
   using EdgeHook = std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)>;
   void watch(const BoardOutputs& pins, EdgeHook on_edge);
-  void set_pace(std::function<unsigned()> idle_bclk) { pace_ = std::move(idle_bclk); }        // idle BCLKs before each cycle
-  void set_heartbeat(std::function<void()> heartbeat) { heartbeat_ = std::move(heartbeat); }  // called often, for progress
+  void set_pace(std::function<unsigned()> idle_bclk) { pace_ = std::move(idle_bclk); }  // idle BCLKs before each cycle
+  void set_heartbeat(std::function<void()> heartbeat) {
+    heartbeat_ = std::move(heartbeat);
+  }  // called often, for progress
 
   Machine& machine() { return machine_; }
 

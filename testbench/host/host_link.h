@@ -1,5 +1,5 @@
-// Talks to the controller as host software does: sends command lines through the host port, collects replies, understands
-// the framing of I3, I4 and I6 (firmware.md section 6) and follows changes of them that pass through it.
+// Talks to the controller as host software does: sends command lines through the host port, collects replies,
+// understands the framing of I3, I4 and I6 (firmware:6) and follows changes of them that pass through it.
 #pragma once
 
 #include <string>
@@ -12,14 +12,15 @@ namespace brick {
 
 class HostLink {
  public:
-  static constexpr Tick kBootTime = ns_to_ticks(500'000'000);     // longest wait for the firmware after power-on or reset
+  static constexpr Tick kBootTime = ns_to_ticks(500'000'000);  // longest wait for the firmware after power-on or reset
   static constexpr Tick kReplyTime = ns_to_ticks(1'000'000'000);  // longest wait for an answer
   static constexpr Tick kSaveTime = ns_to_ticks(10'000'000'000);  // SAVE takes seconds
   static constexpr Tick kQuietTime = ns_to_ticks(5'000'000);      // I3 = 0 and 1: nothing for so long means the end
 
   explicit HostLink(HostBus& bus) : bus_(bus) {}
 
-  // Waits for the firmware and selects I3=2, I6=1, I4=0 as host programs do. False when nothing answers within `timeout`.
+  // Waits for the firmware and selects I3=2, I6=1, I4=0 as host programs do. False when nothing answers within
+  // `timeout`.
   bool connect(Tick timeout);
 
   // Sends `line` and CR, returns the reply. Control characters may be inside. A line that restarts the controller
@@ -30,7 +31,8 @@ class HostLink {
   // Sends one control character without CR; the reply ends at ACK or when nothing comes for kQuietTime.
   Reply control(std::uint8_t c);
 
-  // Sends `line` and CR and returns at once; finish() collects the reply. `send` is false when the port takes no character.
+  // Sends `line` and CR and returns at once; finish() collects the reply. `send` is false when the port takes no
+  // character.
   bool send(const std::string& line, Tick timeout = kReplyTime);
   Reply finish(Tick timeout = kReplyTime);
 

@@ -1,5 +1,6 @@
 // Takes the controller's answer to one line apart, byte by byte: data lines, acknowledge, error, checksum bytes
-// (host-bus.md 8.1 to 8.4, firmware.md 6.2, 6.3, 6.5, 6.7). Knows no time: whoever owns it says when the line has gone quiet.
+// (host-bus:8.1 to host-bus:8.4, firmware:6.2, firmware:6.3, firmware:6.5, firmware:6.7). Knows no time: whoever owns
+// it says when the line has gone quiet.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@ struct Framing {
 };
 
 struct Reply {
-  std::vector<std::string> lines;        // data lines without framing, error as "ERRnnn" in the last one ("ERR" when I6 sends no number)
+  std::vector<std::string>
+      lines;  // data lines without framing, error as "ERRnnn" in the last one ("ERR" when I6 sends no number)
   std::vector<std::string> unsolicited;  // lines that a program sent, tagged by <CTRL-B> (I64)
   std::string raw;                       // every byte received
   bool error = false;                    // BELL was received

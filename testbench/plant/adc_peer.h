@@ -1,6 +1,7 @@
-// Serial ADCs at a servo IC: eight of them (A and B of four channels) on one clock and one strobe. The rising edge of the strobe
-// starts a conversion; after a header of four bits 18 bits follow, first the highest. A bit stands on the line from the falling edge
-// of the clock on, and the IC takes it at the rising edge (servo-ic.md 5.14). The strobe carries a command word (11.1) meanwhile.
+// Serial ADCs at a servo IC: eight of them (A and B of four channels) on one clock and one strobe. The rising edge of
+// the strobe starts a conversion; after a header of four bits 18 bits follow, first the highest. A bit stands on the
+// line from the falling edge of the clock on, and the IC takes it at the rising edge (servo-ic:5.14). The strobe
+// carries a command word (11.1) meanwhile.
 #pragma once
 
 #include <array>
@@ -23,15 +24,16 @@ class AdcPeer {
   };
   Event changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
     const bool clk = after.get(motor_pin::kAdcClk, 0) != 0, strobe = after.get(motor_pin::kAdcStrobe, 0) != 0;
-    const bool clk_before = before.get(motor_pin::kAdcClk, 0) != 0, strobe_before = before.get(motor_pin::kAdcStrobe, 0) != 0;
+    const bool clk_before = before.get(motor_pin::kAdcClk, 0) != 0,
+               strobe_before = before.get(motor_pin::kAdcStrobe, 0) != 0;
     Event event;
     if (clk && !clk_before && bit_ < kStreamBits) shift_ = shift_ << 1 | static_cast<std::uint32_t>(strobe);
     if (!clk && clk_before && bit_ < kStreamBits && ++bit_ == kStreamBits) {
       command_ = shift_ & 0xFFFFFF;
       event.command = true;
     }
-    // The command word makes the strobe rise within a stream, too. A stream that was broken off (reset) is over when the clock has
-    // stood for longer than its longest period.
+    // The command word makes the strobe rise within a stream, too. A stream that was broken off (reset) is over when
+    // the clock has stood for longer than its longest period.
     const bool over = bit_ >= kStreamBits || tick - clk_edge_ > kLongestPeriod;
     if (strobe && !strobe_before && over) {
       bit_ = 0;
@@ -51,7 +53,8 @@ class AdcPeer {
     unsigned lines = 0;
     const unsigned number = bit_ - header_;  // wraps to a large number within the header
     if (number < kValueBits)
-      for (unsigned n = 0; n < kChannels; ++n) lines |= (word_[b ? kChannels + n : n] >> (kValueBits - 1 - number) & 1) << n;
+      for (unsigned n = 0; n < kChannels; ++n)
+        lines |= (word_[b ? kChannels + n : n] >> (kValueBits - 1 - number) & 1) << n;
     return lines;
   }
   std::uint32_t command() const { return command_; }

@@ -1,5 +1,6 @@
-// The power stage of one axis: is it on, has it tripped and why, what does it tell the controller. FAULT and the status nibble of ADC A
-// show the cause; a command on the ADC strobe clears it (servo-ic.md 11.1). The codes are ours: the real ones are not published.
+// The power stage of one axis: is it on, has it tripped and why, what does it tell the controller. FAULT and the status
+// nibble of ADC A show the cause; a command on the ADC strobe clears it (servo-ic:11.1). The codes are ours: the real
+// ones are not published.
 #pragma once
 
 #include <cmath>
@@ -13,13 +14,21 @@ struct AmplifierParameters {
   double trip_amps = 20;        // over-current
   bool fault_level = true;      // level of the FAULT pin that means a fault
   std::int64_t adc_noise = 0;   // peak, in bits of the 14-bit current
-  bool adc = true;              // wired to the serial ADC lines, which also bring commands; costs a stop at each clock edge
-  bool always_on = false;       // AENA is not wired
+  bool adc = true;         // wired to the serial ADC lines, which also bring commands; costs a stop at each clock edge
+  bool always_on = false;  // AENA is not wired
 };
 
 class Amplifier {
  public:
-  enum class Fault : std::uint8_t { kNone, kOverCurrent, kShortedBus, kUnderVoltage, kOverVoltage, kOverTemperature, kI2t };
+  enum class Fault : std::uint8_t {
+    kNone,
+    kOverCurrent,
+    kShortedBus,
+    kUnderVoltage,
+    kOverVoltage,
+    kOverTemperature,
+    kI2t
+  };
 
   explicit Amplifier(const AmplifierParameters& parameters) : par_(parameters) {}
   const AmplifierParameters& parameters() const { return par_; }

@@ -21,7 +21,8 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
   if (step_ < 1 || par_.stepper.move_time < 1) throw std::invalid_argument("axis: a time below one tick");
   if ((switches_.mask() & owned_) != 0) throw std::invalid_argument("axis: a switch on a pin of the encoder");
   owned_ = static_cast<std::uint16_t>(owned_ | switches_.mask() | (has_amplifier() ? 1u << kFault : 0));
-  if (par_.noise.every != 0 && (par_.noise.pins & ~unsigned{owned_}) != 0) throw std::invalid_argument("axis: noise on a pin of others");
+  if (par_.noise.every != 0 && (par_.noise.pins & ~unsigned{owned_}) != 0)
+    throw std::invalid_argument("axis: noise on a pin of others");
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
 }
 
@@ -37,7 +38,9 @@ MotorOutputs Axis::stops() const {
 
 void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
   amplifier_.enable(after.get(motor_pin::kAena, par_.channel) != 0);
-  const auto pwm = [this](const MotorOutputs& o) { return o.w[0] >> (motor_pin::kPwmATop.stride * par_.channel) & 0x3F; };
+  const auto pwm = [this](const MotorOutputs& o) {
+    return o.w[0] >> (motor_pin::kPwmATop.stride * par_.channel) & 0x3F;
+  };
   const unsigned n = par_.channel;
   const bool pulse = after.get(motor_pin::kPfmPulse, n) != 0, down = after.get(motor_pin::kPfmDir, n) != 0;
   if (before == after) {  // just attached

@@ -1,5 +1,6 @@
-// One axis at one channel of a servo IC: what drives it (DAC, PWM, PFM or a hand), the motor, the encoder, switches along the travel
-// and noise on the wires. Between two calls of step() everything it shows is known in advance, so it is asked for at edges only.
+// One axis at one channel of a servo IC: what drives it (DAC, PWM, PFM or a hand), the motor, the encoder, switches
+// along the travel and noise on the wires. Between two calls of step() everything it shows is known in advance, so it
+// is asked for at edges only.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@
 
 namespace brick::plant {
 
-// kHand: turned by turn() only. kTorque: 10 V of DAC A are the full-scale current. kBrush: winding between PWM outputs A and B.
-// kThreePhase: PWM A, B, C. kStepper: PFM.
+// kHand: turned by turn() only. kTorque: 10 V of DAC A are the full-scale current. kBrush: winding between PWM outputs
+// A and B. kThreePhase: PWM A, B, C. kStepper: PFM.
 enum class Drive { kHand, kTorque, kBrush, kThreePhase, kStepper };
 
 struct AxisParameters {

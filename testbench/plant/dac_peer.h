@@ -1,5 +1,6 @@
-// Serial DACs at a servo IC: eight of them (A and B of four channels) on one clock and one strobe. Data is taken with the rising edge
-// of the clock; the falling edge of the strobe latches the last 16 or 18 bits (servo-ic.md 5.13). Full scale is 10 V.
+// Serial DACs at a servo IC: eight of them (A and B of four channels) on one clock and one strobe. Data is taken with
+// the rising edge of the clock; the falling edge of the strobe latches the last 16 or 18 bits (servo-ic:5.13). Full
+// scale is 10 V.
 #pragma once
 
 #include <array>

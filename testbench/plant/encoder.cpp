@@ -25,15 +25,18 @@ Encoder::Encoder(const EncoderParameters& parameters)
       joint_(set_of(parameters.joint_lines, parameters.lines)) {
   const auto small = [](std::int64_t x) { return x > -kU1 && x < kU1; };
   if (par_.lines == 0) throw std::invalid_argument("encoder: no lines");
-  if (par_.index_width < 1 || par_.index_width > 4) throw std::invalid_argument("encoder: the index is 1 to 4 counts wide");
-  if (!small(par_.b_late) || !small(par_.a_long)) throw std::invalid_argument("encoder: an edge is off by a count or more");
+  if (par_.index_width < 1 || par_.index_width > 4)
+    throw std::invalid_argument("encoder: the index is 1 to 4 counts wide");
+  if (!small(par_.b_late) || !small(par_.a_long))
+    throw std::invalid_argument("encoder: an edge is off by a count or more");
   using Wiring = EncoderParameters::Wiring;
   const bool halls = par_.wiring == Wiring::kHalls || par_.wiring == Wiring::kHallsOnAbc;
   if (halls && par_.pole_pairs == 0) throw std::invalid_argument("encoder: halls need pole pairs");
 
   if (halls) grids_.push_back({par_.hall_offset, revolution_, 6 * std::int64_t{par_.pole_pairs}});
   if (par_.wiring == Wiring::kHallsOnAbc) return;
-  for (std::int64_t edge : {kU1, 3 * kU1 + par_.a_long, 2 * kU1 + par_.b_late, 4 * kU1 + par_.b_late}) grids_.push_back({edge, kCycle, 1});
+  for (std::int64_t edge : {kU1, 3 * kU1 + par_.a_long, 2 * kU1 + par_.b_late, 4 * kU1 + par_.b_late})
+    grids_.push_back({edge, kCycle, 1});
   const std::int64_t index = kU1 * par_.index_at;
   grids_.push_back({index, revolution_, 1});
   grids_.push_back({index + kU1 * par_.index_width, revolution_, 1});
@@ -53,7 +56,9 @@ unsigned Encoder::halls(std::int64_t position) const {
 std::uint16_t Encoder::pins(std::int64_t position) const {
   using Wiring = EncoderParameters::Wiring;
   unsigned pins = kIdleChannelPins & kPins;
-  const auto put = [&pins](unsigned pin, bool level) { pins = (pins & ~(1u << pin)) | static_cast<unsigned>(level) << pin; };
+  const auto put = [&pins](unsigned pin, bool level) {
+    pins = (pins & ~(1u << pin)) | static_cast<unsigned>(level) << pin;
+  };
 
   if (par_.wiring == Wiring::kHallsOnAbc) {
     const unsigned h = halls(position);

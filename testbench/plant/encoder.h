@@ -1,6 +1,7 @@
-// An incremental encoder with index and hall tracks: its pins as a function of the position. What is wrong with the disc or with
-// the wires (phase error, dark lines, A and B together, cut wires) belongs to the position too; noise comes from line_noise.h.
-// Going up, A leads B: {A,B} = 00 10 11 01, which counts up with I7mn0 = 3 (x4 CW) and down with the default of 7. docs/plant.md
+// An incremental encoder with index and hall tracks: its pins as a function of the position. What is wrong with the
+// disc or with the wires (phase error, dark lines, A and B together, cut wires) belongs to the position too; noise
+// comes from line_noise.h. Going up, A leads B: {A,B} = 00 10 11 01, which counts up with I7mn0 = 3 (x4 CW) and down
+// with the default of 7. docs/plant.md
 #pragma once
 
 #include <cstdint>
@@ -21,14 +22,16 @@ struct EncoderParameters {
   std::vector<unsigned> joint_lines;  // lines at which A and B rise together: an illegal transition
   unsigned pole_pairs = 0;            // hall periods per revolution
   std::int64_t hall_offset = 0;       // units
-  // What U, V, W, T carry: nothing (pulled up); halls on U, V, W; the complements of A and B as the encoder-loss circuit wants them
-  // (U = A, T = /A, V = B, W = /B). kHallsOnAbc: no quadrature, the halls are on A, B, C (I7mn0 = 11).
+  // What U, V, W, T carry: nothing (pulled up); halls on U, V, W; the complements of A and B as the encoder-loss
+  // circuit wants them (U = A, T = /A, V = B, W = /B). kHallsOnAbc: no quadrature, the halls are on A, B, C (I7mn0 =
+  // 11).
   enum class Wiring { kNone, kHalls, kComplements, kHallsOnAbc } wiring = Wiring::kNone;
 };
 
 class Encoder {
  public:
-  static constexpr std::uint16_t kPins = 1u << kEncA | 1u << kEncB | 1u << kEncC | 1u << kU | 1u << kV | 1u << kW | 1u << kT;
+  static constexpr std::uint16_t kPins =
+      1u << kEncA | 1u << kEncB | 1u << kEncC | 1u << kU | 1u << kV | 1u << kW | 1u << kT;
 
   explicit Encoder(const EncoderParameters& parameters);
 

@@ -1,5 +1,6 @@
-// Disturbances on input wires: now and then one pin shows the opposite level for a while. Shorter than an SCLK period they must not
-// pass the IC's filter, from two SCLK periods on they must. They depend on time and seed only, not on what the pins do.
+// Disturbances on input wires: now and then one pin shows the opposite level for a while. Shorter than an SCLK period
+// they must not pass the IC's filter, from two SCLK periods on they must. They depend on time and seed only, not on
+// what the pins do.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@
 namespace brick::plant {
 
 struct NoiseParameters {
-  Tick every = 0;                    // mean time between two disturbances, 0 = none; a single one is 0.5 .. 1.5 of it after the last
+  Tick every = 0;  // mean time between two disturbances, 0 = none; a single one is 0.5 .. 1.5 of it after the last
   Tick shortest = 1, longest = 1;    // ticks
   std::uint16_t pins = 1u << kEncA;  // that can be hit
 };

@@ -1,5 +1,5 @@
-// Position as a function of time: a straight line between two ticks, at rest before and after. All integer, so that the tick at
-// which an encoder edge falls is exact. Positions are in 1/65536 of a quadrature count (a quarter of a line).
+// Position as a function of time: a straight line between two ticks, at rest before and after. All integer, so that the
+// tick at which an encoder edge falls is exact. Positions are in 1/65536 of a quadrature count (a quarter of a line).
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,8 @@ struct Motion {
   }
   bool up() const { return p1 >= p0; }
 
-  // First tick at which the position has reached `boundary` going up, or is below it going down; kNever when it does not.
+  // First tick at which the position has reached `boundary` going up, or is below it going down; kNever when it does
+  // not.
   Tick crosses(std::int64_t boundary) const {
     if (p1 > p0) {
       if (boundary > p1) return kNever;

@@ -10,15 +10,16 @@ constexpr double kTwoPi = 6.283185307179586, kSqrt3 = 1.7320508075688772;
 
 }  // namespace
 
-Motor::Motor(const MotorParameters& parameters, std::int64_t units_per_revolution) : par_(parameters), revolution_(units_per_revolution) {
+Motor::Motor(const MotorParameters& parameters, std::int64_t units_per_revolution)
+    : par_(parameters), revolution_(units_per_revolution) {
   if (!(par_.inertia > 0) || !(par_.inductance > 0) || par_.viscous < 0 || par_.coulomb < 0)
     throw std::invalid_argument("motor: inertia and inductance must be positive, friction not negative");
 }
 
 double Motor::current_b() const { return three_phase_ ? -alpha_ / 2 + beta_ * kSqrt3 / 2 : -alpha_; }
 
-// Coulomb friction opposes motion and at most stops it: what it could take away in this step is taken from the speed that the other
-// torques give. A rotor at rest so stays until they exceed it.
+// Coulomb friction opposes motion and at most stops it: what it could take away in this step is taken from the speed
+// that the other torques give. A rotor at rest so stays until they exceed it.
 void Motor::turn(double dt, double torque) {
   double speed = speed_ + dt / par_.inertia * (torque - load_ - par_.viscous * speed_);
   const double brake = dt / par_.inertia * par_.coulomb;
@@ -50,11 +51,12 @@ void Motor::drive_brush(double dt, double volts) {
   turn(dt, par_.torque_constant * alpha_);
 }
 
-// Windings in stator coordinates. The rotor's field has the back electromotive force 2/3 of the torque constant, because three phases
-// share the power: T w = 3/2 (e_alpha i_alpha + e_beta i_beta).
+// Windings in stator coordinates. The rotor's field has the back electromotive force 2/3 of the torque constant,
+// because three phases share the power: T w = 3/2 (e_alpha i_alpha + e_beta i_beta).
 void Motor::drive_three_phase(double dt, double a, double b, double c) {
   const std::int64_t turned = position_ - detail::floor_div(position_, revolution_) * revolution_;
-  const double angle = kTwoPi * static_cast<double>(turned * par_.pole_pairs % revolution_) / static_cast<double>(revolution_);
+  const double angle =
+      kTwoPi * static_cast<double>(turned * par_.pole_pairs % revolution_) / static_cast<double>(revolution_);
   const double sine = std::sin(angle), cosine = std::cos(angle);
   const double emf = par_.torque_constant * 2 / 3 * speed_;
   const double k = dt / par_.inductance;

@@ -1,5 +1,6 @@
-// A rotary motor: windings, rotor, friction. Integrated in fixed steps of the plant with a fixed order of operations, so that equal
-// runs give equal positions. SI units; the position is an integer in encoder units and keeps its resolution for ever.
+// A rotary motor: windings, rotor, friction. Integrated in fixed steps of the plant with a fixed order of operations,
+// so that equal runs give equal positions. SI units; the position is an integer in encoder units and keeps its
+// resolution for ever.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +23,16 @@ class Motor {
  public:
   Motor(const MotorParameters& parameters, std::int64_t units_per_revolution);
 
-  // One step of `dt` seconds with the current given, or with voltages at the terminals (three-phase: against the star point of
-  // the supply; the motor's own star point is not connected).
+  // One step of `dt` seconds with the current given, or with voltages at the terminals (three-phase: against the star
+  // point of the supply; the motor's own star point is not connected).
   void drive_current(double dt, double amps);
   void drive_brush(double dt, double volts);
   void drive_three_phase(double dt, double volts_a, double volts_b, double volts_c);
   void coast(double dt) { drive_current(dt, 0); }  // amplifier off
 
-  void set_load(double torque) { load_ = torque; }  // N m, against positive motion; acts in both directions as gravity does
+  void set_load(double torque) {
+    load_ = torque;
+  }  // N m, against positive motion; acts in both directions as gravity does
 
   double speed() const { return speed_; }              // rad/s
   std::int64_t position() const { return position_; }  // encoder units

@@ -8,7 +8,8 @@ namespace brick::plant {
 Plant::Plant(const PlantParameters& parameters) {
   for (const AxisParameters& p : parameters.axes) {
     for (const auto& other : axes_)
-      if (other->ic() == p.ic && other->channel() == p.channel) throw std::invalid_argument("plant: two axes at one channel");
+      if (other->ic() == p.ic && other->channel() == p.channel)
+        throw std::invalid_argument("plant: two axes at one channel");
     axes_.push_back(std::make_unique<Axis>(p, parameters.seed, parameters.step));
     converters_.try_emplace(p.ic, Converters{DacPeer(parameters.dac_bits), AdcPeer(parameters.adc_header)});
   }

@@ -1,5 +1,6 @@
-// Everything that is wired to the motor side of a controller: axes and, for each servo IC, the serial converters that they share.
-// Attached to a machine as its peer (systemc/machine/motor_peer.h). Equal seeds and equal outputs give equal inputs. docs/plant.md
+// Everything that is wired to the motor side of a controller: axes and, for each servo IC, the serial converters that
+// they share. Attached to a machine as its peer (systemc/machine/motor_peer.h). Equal seeds and equal outputs give
+// equal inputs. docs/plant.md
 #pragma once
 
 #include <cstdint>

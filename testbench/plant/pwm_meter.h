@@ -1,5 +1,5 @@
-// Measures the six PWM pins of a channel: how long each phase's upper and lower switch were on. A phase is at +1/2 of the bus while
-// the upper one is on, at -1/2 while the lower one is, and counts as 0 in the dead time.
+// Measures the six PWM pins of a channel: how long each phase's upper and lower switch were on. A phase is at +1/2 of
+// the bus while the upper one is on, at -1/2 while the lower one is, and counts as 0 in the dead time.
 #pragma once
 
 #include <array>
@@ -32,7 +32,8 @@ class PwmMeter {
     settle(now);
     std::array<double, kPhases> average{};
     if (now > from_)
-      for (unsigned i = 0; i < kPhases; ++i) average[i] = static_cast<double>(sum_[i]) / static_cast<double>(now - from_);
+      for (unsigned i = 0; i < kPhases; ++i)
+        average[i] = static_cast<double>(sum_[i]) / static_cast<double>(now - from_);
     sum_ = {};
     from_ = now;
     return average;

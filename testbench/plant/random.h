@@ -1,6 +1,6 @@
-// Random numbers of the plant. Only the generator is taken from the library, because the standard fixes its sequence; the
-// distributions of the library differ from one implementation to the next. Each use has a stream of its own, so that one does
-// not move the other.
+// Random numbers of the plant. Only the generator is taken from the library, because the standard fixes its sequence;
+// the distributions of the library differ from one implementation to the next. Each use has a stream of its own, so
+// that one does not move the other.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// A stepper drive with its motor at the PFM outputs: each rising edge of PULSE moves the rotor by one step, in the direction that DIR
-// shows (0 up). The rotor follows evenly within `move_time`, so that its encoder makes proper edges. Too short pulses and too late
-// changes of DIR are counted.
+// A stepper drive with its motor at the PFM outputs: each rising edge of PULSE moves the rotor by one step, in the
+// direction that DIR shows (0 up). The rotor follows evenly within `move_time`, so that its encoder makes proper edges.
+// Too short pulses and too late changes of DIR are counted.
 #pragma once
 
 #include <cstdint>

@@ -37,8 +37,9 @@ std::string error_of(const std::string& text) {
 // A good file with one line taken out (`key`) and another put in at its place.
 std::string with(const std::string& key, const std::string& line, const std::string& family = "any") {
   std::string text;
-  for (const std::string& good : {std::string("title = \"T\""), "family = \"" + family + "\"", std::string("bus = \"isa\""),
-                                  std::string("card = 603382"), std::string("servo_ics = [0]"), std::string("dpram_words = 8192")})
+  for (const std::string& good :
+       {std::string("title = \"T\""), "family = \"" + family + "\"", std::string("bus = \"isa\""),
+        std::string("card = 603382"), std::string("servo_ics = [0]"), std::string("dpram_words = 8192")})
     text += (good.substr(0, good.find(' ')) == key ? line : good) + "\n";
   return text;
 }
@@ -125,11 +126,14 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
       {"servo_ics", "servo_ics = [0, 0]", ":5: servo_ics:", "found 0;", "servo IC 0 is there twice"},
       {"servo_ics", "servo_ics = [\"3*\", \"3*\"]", ":5: servo_ics:", "\"3*\"", "servo IC 3* is there twice"},
       {"servo_ics", "servo_ics = []", ":5: servo_ics:", "found []", "expected a list of one IC or more"},
-      {"servo_ics", "servo_ics = [0]\nmacro_ics = [4]", ":6: macro_ics:", "found 4;", "expected MACRO IC numbers 0 to 3"},
+      {"servo_ics", "servo_ics = [0]\nmacro_ics = [4]", ":6: macro_ics:", "found 4;",
+       "expected MACRO IC numbers 0 to 3"},
       {"servo_ics", "servo_ics = [0]\nmacro_ics = [1, 1]", ":6: macro_ics:", "found 1;", "MACRO IC 1 is there twice"},
-      {"servo_ics", "servo_ics = [0]\nmacro_ics = [0]\nmacro_gates = [1]", ":7: macro_gates:", "[", "that macro_ics lists too"},
+      {"servo_ics", "servo_ics = [0]\nmacro_ics = [0]\nmacro_gates = [1]", ":7: macro_gates:", "[",
+       "that macro_ics lists too"},
       {"servo_ics", "servo_ics = [0]\nmacro_ics = [1]\nmacro_gates = [1, 1]", ":7: macro_gates:", "found 1;", "twice"},
-      {"servo_ics", "servo_ics = []\nmacro_ics = [1]\nmacro_gates = [1]", ":7: macro_gates:", "[", "cannot make the servo clock"},
+      {"servo_ics", "servo_ics = []\nmacro_ics = [1]\nmacro_gates = [1]", ":7: macro_gates:", "[",
+       "cannot make the servo clock"},
       {"dpram_words", "dpram_words = 100", ":6: dpram_words:", "found 100;", "expected 8192 or 32768"},
       {"dpram_words", "dpram_words = 65536", ":6: dpram_words:", "found 65536;", "expected 8192 or 32768"},
       {"dpram_words", "dpram_words = 8192.0", ":6: dpram_words:", "found 8192.0;", "expected 8192 or 32768"},
@@ -139,17 +143,21 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
       {"bus", "bus = \"isa\"\nnotes = \"x\"", ":4: notes:", "\"x\"", "expected a list"},
       {"bus", "bus = \"isa\"\nnotes = [1]", ":4: notes:", "found 1;", "expected texts in quotes"},
       {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\"]", ":4: interrupts:", "EQU1", "expected three sources"},
-      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU9\", \"none\", \"WDO\"]", ":4: interrupts:", "\"EQU9\"", "expected none, EQU1,"},
-      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\", \"EQU5\", \"WDO\"]", ":4: interrupts:", "\"EQU5\"", "servo IC 1 is not fitted"},
+      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU9\", \"none\", \"WDO\"]", ":4: interrupts:", "\"EQU9\"",
+       "expected none, EQU1,"},
+      {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\", \"EQU5\", \"WDO\"]", ":4: interrupts:", "\"EQU5\"",
+       "servo IC 1 is not fitted"},
       {"title", "title = ", ":1:", "", "expected TOML"},
   };
   for (const auto& k : cases)
-    EXPECT_THAT(error_of(with(k.key, k.line)), AllOf(HasSubstr(k.place), HasSubstr(k.found), HasSubstr(k.expected), Not(HasSubstr("\n"))))
+    EXPECT_THAT(error_of(with(k.key, k.line)),
+                AllOf(HasSubstr(k.place), HasSubstr(k.found), HasSubstr(k.expected), Not(HasSubstr("\n"))))
         << k.line;
   EXPECT_THAT(error_of(with("title", "title = \"T\"\ncolour = 1")),
               AllOf(HasSubstr(":2: unknown key colour"), HasSubstr("expected title, family")));
   for (const char* key : {"title", "family", "bus", "card", "servo_ics", "dpram_words"})
-    EXPECT_THAT(error_of(with(key, "")), AllOf(HasSubstr(std::string("key ") + key + " is missing"), HasSubstr("expected")));
+    EXPECT_THAT(error_of(with(key, "")),
+                AllOf(HasSubstr(std::string("key ") + key + " is missing"), HasSubstr("expected")));
 }
 
 // Boards that no product is: each breaks one rule of its family.
@@ -157,9 +165,11 @@ TEST(BoardFile, ImpossibleBoardsAreRefused) {
   const struct {
     const char *family, *key, *line, *expected;
   } cases[] = {
-      {"geo-brick-lv", "servo_ics", "servo_ics = [0, 2]", "found 2; expected what a geo-brick-lv can have: servo ICs 0, 1 and MACRO IC 0"},
+      {"geo-brick-lv", "servo_ics", "servo_ics = [0, 2]",
+       "found 2; expected what a geo-brick-lv can have: servo ICs 0, 1 and MACRO IC 0"},
       {"geo-brick-lv", "servo_ics", "servo_ics = [0, \"2*\"]", "expected what a geo-brick-lv can have"},
-      {"geo-brick-lv", "servo_ics", "servo_ics = [0]\nmacro_ics = [1]", "macro_ics: found 1; expected what a geo-brick-lv can have"},
+      {"geo-brick-lv", "servo_ics", "servo_ics = [0]\nmacro_ics = [1]",
+       "macro_ics: found 1; expected what a geo-brick-lv can have"},
       {"geo-brick-lv", "bus", "bus = \"internal\"\njpan = true",
        "jpan: found true; expected false: a geo-brick-lv has no control panel port"},
       {"turbo-pmac2", "bus", "bus = \"isa\"\njpan = true", "a turbo-pmac2 has no control panel port"},
@@ -168,22 +178,27 @@ TEST(BoardFile, ImpossibleBoardsAreRefused) {
       {"turbo-pmac2", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"none\", \"WDO\"]", "has no CTRL outputs"},
       {"turbo-pmac2-ultralite", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]",
        "expected what a turbo-pmac2-ultralite can have: MACRO ICs"},
-      {"umac-turbo", "servo_ics", "servo_ics = [0, 2]", "found 0; expected what a umac-turbo can have: servo ICs 2 to 9"},
-      {"turbo-pmac", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]", "expected what a turbo-pmac can have: servo ICs 0 to 9"},
+      {"umac-turbo", "servo_ics", "servo_ics = [0, 2]",
+       "found 0; expected what a umac-turbo can have: servo ICs 2 to 9"},
+      {"turbo-pmac", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]",
+       "expected what a turbo-pmac can have: servo ICs 0 to 9"},
       {"geo-pmac", "servo_ics", "servo_ics = [0, 1]", "found 1; expected what a geo-pmac can have: servo IC 0"},
   };
-  for (const auto& k : cases) EXPECT_THAT(error_of(with(k.key, k.line, k.family)), HasSubstr(k.expected)) << k.family << " " << k.line;
+  for (const auto& k : cases)
+    EXPECT_THAT(error_of(with(k.key, k.line, k.family)), HasSubstr(k.expected)) << k.family << " " << k.line;
 }
 
 TEST(BoardFile, StarredIcsMacroIcsAndTheirKind) {
-  const TemporaryFile file(with("servo_ics", "servo_ics = [9, \"2*\", \"9*\"]\nmacro_ics = [0, 3]\nmacro_gates = [3]", "umac-turbo"));
+  const TemporaryFile file(
+      with("servo_ics", "servo_ics = [9, \"2*\", \"9*\"]\nmacro_ics = [0, 3]\nmacro_gates = [3]", "umac-turbo"));
   const BoardConfig board = read_board_file(file.path());
   EXPECT_EQ(board.fitted, 1u << 9 | 1u << 10 | 1u << 17 | 1u << 18 | 1u << 21);
   EXPECT_EQ(board.macro_gate, 8u);
 }
 
 TEST(BoardFile, NamesOfIcs) {
-  EXPECT_EQ(fitted_ic_names(0x40403), (std::vector<std::string>{"servo IC 0", "servo IC 1", "servo IC 2*", "MACRO IC 0"}));
+  EXPECT_EQ(fitted_ic_names(0x40403),
+            (std::vector<std::string>{"servo IC 0", "servo IC 1", "servo IC 2*", "MACRO IC 0"}));
   EXPECT_EQ(servo_ic_numbers(0x40403), "0 1 2*");
   EXPECT_EQ(servo_ic_numbers(0x3FFFFF), "0-9 2*-9*");
   EXPECT_EQ(servo_ic_numbers(0x40000), "-");

@@ -1,4 +1,4 @@
-// The scoreboard itself: sequences from host-bus.md 5.2 that obey the rules pass, and each broken rule is found.
+// The scoreboard itself: sequences from host-bus:5.2 that obey the rules pass, and each broken rule is found.
 #include "testbench/checkers/breq_scoreboard.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The scoreboard of the encoder and capture benches against hand-made sequences: the check vectors of servo-ic.md section 14, numbers 7
+// The scoreboard of the encoder and capture benches against hand-made sequences: the check vectors of servo-ic:14/7
 // to 12, and the tick of a count from the filter's rule.
 #include "testbench/checkers/channel_scoreboard.h"
 
@@ -83,7 +83,8 @@ TEST_F(ChannelScoreboardRules, PassesTwoSamplesAndNotOne) {
 TEST_F(ChannelScoreboardRules, CountsTwoPeriodsAfterTheFirstSample) {
   board_.decoder.mode = 3;
   board_.counts.clear();
-  // Driven at 120: seen from 123 on, sampled at 132 and 144, counted at 156. Driven at 249 = 252 - 3: sampled at 252, counted at 276.
+  // Driven at 120: seen from 123 on, sampled at 132 and 144, counted at 156. Driven at 249 = 252 - 3: sampled at 252,
+  // counted at 276.
   EXPECT_EQ(now_, 120);
   put(kA, 129);
   put(kA | kB);

@@ -19,7 +19,8 @@ FakeMachine* newest = nullptr;
 
 FakeMachine& FakeMachine::last() { return *newest; }
 
-Machine::Machine(sc_core::sc_module_name name, const MachineConfig&) : sc_module(name), impl_(std::make_unique<Impl>()) {
+Machine::Machine(sc_core::sc_module_name name, const MachineConfig&)
+    : sc_module(name), impl_(std::make_unique<Impl>()) {
   newest = &impl_->fake;
   impl_->outputs.set(pin::kIsaIochrdy, 1);
 }

@@ -1,5 +1,5 @@
-// A machine of pins alone, linked instead of the real one: records when the host changes a pin, and answers I/O reads from a
-// host port with a scripted controller behind it. Outputs appear at once.
+// A machine of pins alone, linked instead of the real one: records when the host changes a pin, and answers I/O reads
+// from a host port with a scripted controller behind it. Outputs appear at once.
 #pragma once
 
 #include <deque>

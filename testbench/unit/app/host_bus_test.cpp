@@ -1,4 +1,4 @@
-// The host's bus cycles against the table of host-bus.md 3.4. Times are taken from the edges that first see a change, so
+// The host's bus cycles against the table of host-bus:3.4. Times are taken from the edges that first see a change, so
 // they are known to one tick (8.5 ns).
 #include <gtest/gtest.h>
 

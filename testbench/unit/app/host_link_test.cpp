@@ -1,4 +1,5 @@
-// Framing of replies by I3, I4 and I6, and the host link on a scripted controller. Exchanges from firmware.md 6.2, 6.3, 13.
+// Framing of replies by I3, I4 and I6, and the host link on a scripted controller. Exchanges from firmware:6.2,
+// firmware:6.3, firmware:13.
 #include <gtest/gtest.h>
 
 #include "testbench/host/host_link.h"
@@ -120,7 +121,9 @@ TEST_F(HostLinkTest, NoReplyIsNotComplete) { EXPECT_FALSE(link.command("VERSION"
 TEST_F(HostLinkTest, FollowsAssignmentsToI3) {
   link.command("I3=1 I4=0", ns_to_ticks(20'000'000));
   for (const std::string acknowledge : {"\n", "\x06", ""}) {  // by the old setting, by ACK, by the new one
-    fake.controller = [&](const std::string& line) -> std::string { return line == "P1" ? "25\r" : line == "I3=0" ? acknowledge : "\n"; };
+    fake.controller = [&](const std::string& line) -> std::string {
+      return line == "P1" ? "25\r" : line == "I3=0" ? acknowledge : "\n";
+    };
     EXPECT_TRUE(link.command("I3=0").complete);
     EXPECT_EQ(link.framing().i3, 0u);
     EXPECT_EQ(link.command("P1").lines, (Lines{"25"}));

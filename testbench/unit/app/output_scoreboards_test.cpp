@@ -8,15 +8,15 @@
 namespace brick {
 namespace {
 
-TEST(PwmScoreboard, OnTimesAreThoseOfTheDataSheet) {  // servo-ic.md 14, vector 2
+TEST(PwmScoreboard, OnTimesAreThoseOfTheDataSheet) {  // servo-ic:14/2
   struct Row {
     int command;
     Tick high;
   };
   constexpr Tick kPeriod = 26114;
   const auto turns = pwm_turns(0, 6527, 5 * kPeriod);
-  for (const Row row :
-       {Row{0, 13057}, Row{100, 13257}, Row{-100, 12857}, Row{6528, 26113}, Row{6529, 26114}, Row{-6529, 0}, Row{-32768, 0}}) {
+  for (const Row row : {Row{0, 13057}, Row{100, 13257}, Row{-100, 12857}, Row{6528, 26113}, Row{6529, 26114},
+                        Row{-6529, 0}, Row{-32768, 0}}) {
     const auto levels = pwm_switches(turns, {{-1, row.command}}, {});
     EXPECT_EQ(pwm_time(levels, 1, kPeriod, 2 * kPeriod), row.high) << row.command;
     EXPECT_EQ(pwm_time(levels, 2, kPeriod, 2 * kPeriod), kPeriod - row.high) << row.command;
@@ -27,7 +27,9 @@ TEST(PwmScoreboard, OnTimesAreThoseOfTheDataSheet) {  // servo-ic.md 14, vector 
 TEST(PwmScoreboard, PulseNoLongerThanTheDeadTimeIsSwallowed) {
   constexpr Tick kPeriod = 4 * 100 + 6;
   const auto turns = pwm_turns(0, 100, 5 * kPeriod);
-  const auto upper = [&](int command) { return pwm_time(pwm_switches(turns, {{-1, command}}, {16}), 1, kPeriod, 2 * kPeriod); };
+  const auto upper = [&](int command) {
+    return pwm_time(pwm_switches(turns, {{-1, command}}, {16}), 1, kPeriod, 2 * kPeriod);
+  };
   EXPECT_EQ(upper(-94), 0);  // 15 ticks
   EXPECT_EQ(upper(-93), 1);  // 17 ticks
   EXPECT_EQ(pwm_time(pwm_switches(turns, {{-1, -94}}, {16}), 2, kPeriod, 2 * kPeriod), kPeriod - 15 - 16);
@@ -63,7 +65,7 @@ TEST(PwmScoreboard, OneTickIsADifference) {
   }
 }
 
-// servo-ic.md 14, vector 6: $010000 is a pulse every 256 PFM_CLK, 15 wide.
+// servo-ic:14/6: $010000 is a pulse every 256 PFM_CLK, 15 wide.
 std::vector<PfmLevel> pulses(Tick first, Tick clock, unsigned width, int count, Tick period) {
   std::vector<PfmLevel> levels{{0, 0}};
   for (int i = 0; i < count; ++i) {

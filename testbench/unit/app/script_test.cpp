@@ -31,15 +31,17 @@ std::string error_of(const std::string& text) {
 TEST(Script, ReadsEveryKindOfLine) {
   const auto s = read(
       "VERSION\n\n  &2DEFINE ROTARY 50  \r\n^A^X\n@wait 2.5us\n@until host.breq=1 50ms\n@signal clock.phase\n@pic\n"
-      "@pic MSK=02 ELR=00\n@pic clear\n@dpram 0x1050 6\n@dpram 4176 = 12 FFFF\n@jumper E3 on\n@input servo_ic0.ch1.hmfl=1\n@encoder 2 "
+      "@pic MSK=02 ELR=00\n@pic clear\n@dpram 0x1050 6\n@dpram 4176 = 12 FFFF\n@jumper E3 on\n@input "
+      "servo_ic0.ch1.hmfl=1\n@encoder 2 "
       "-50\n@encoder 1 7 100\n@reset\n@power\n"
       "@expect 1|2 3\n@expect\n@time\n");
   std::vector<Kind> kinds;
   for (const auto& line : s) kinds.push_back(line.kind);
-  EXPECT_EQ(kinds, (std::vector<Kind>{Kind::kCommand,    Kind::kCommand, Kind::kControl,  Kind::kWait,     Kind::kUntil,
-                                      Kind::kSignal,     Kind::kPicRead, Kind::kPicWrite, Kind::kPicClear, Kind::kDpramRead,
-                                      Kind::kDpramWrite, Kind::kJumper,  Kind::kInput,    Kind::kEncoder,  Kind::kEncoder,
-                                      Kind::kReset,      Kind::kPower,   Kind::kExpect,   Kind::kExpect,   Kind::kTime}));
+  EXPECT_EQ(kinds,
+            (std::vector<Kind>{Kind::kCommand,    Kind::kCommand, Kind::kControl,  Kind::kWait,     Kind::kUntil,
+                               Kind::kSignal,     Kind::kPicRead, Kind::kPicWrite, Kind::kPicClear, Kind::kDpramRead,
+                               Kind::kDpramWrite, Kind::kJumper,  Kind::kInput,    Kind::kEncoder,  Kind::kEncoder,
+                               Kind::kReset,      Kind::kPower,   Kind::kExpect,   Kind::kExpect,   Kind::kTime}));
   EXPECT_EQ(s[1].text, "&2DEFINE ROTARY 50");
   EXPECT_EQ(s[1].number, 3u);
   EXPECT_EQ(s[2].value, std::string("\x01\x18"));
@@ -93,7 +95,8 @@ TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
                           "@encoder 1 5 9830401",
                           "@encoder 1 5 6 7",
                           "@jpan FPD=x"})
-    EXPECT_THAT(error_of(std::string("VERSION\n") + bad), AllOf(HasSubstr("job.txt:2: @"), HasSubstr("expected"))) << bad;
+    EXPECT_THAT(error_of(std::string("VERSION\n") + bad), AllOf(HasSubstr("job.txt:2: @"), HasSubstr("expected")))
+        << bad;
 }
 
 // Quadrature by hand: the levels of A and B after each edge, and the tick of each, by the rule of the data sheet.

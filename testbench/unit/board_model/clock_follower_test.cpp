@@ -1,7 +1,7 @@
-// A servo IC that catches up with a history of the clocks, jumping where it can, is where one is that executed every edge of them:
-// all words and all outputs, at any tick. The clocks are quick and the dead time may be longer than their period, so that much of
-// what an IC remembers reaches over several periods; writes and pins come at any place in the period.
-// A long search: BRICK_FOLLOWER_SEEDS=5000 bin/unit_board_model --gtest_filter='ClockFollower*'.
+// A servo IC that catches up with a history of the clocks, jumping where it can, is where one is that executed every
+// edge of them: all words and all outputs, at any tick. The clocks are quick and the dead time may be longer than their
+// period, so that much of what an IC remembers reaches over several periods; writes and pins come at any place in the
+// period. A long search: BRICK_FOLLOWER_SEEDS=5000 bin/unit_board_model --gtest_filter='ClockFollower*'.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -149,8 +149,8 @@ TEST_P(ClockFollowerDeadTime, StartsWithACommandWrittenInThePeriodBeforeAJump) {
     ASSERT_EQ(pair.compare(), "") << std::hex << to;
   }
 }
-// Commands that the triangle, from -102 to 101, just does not reach, or just reaches: one tick beside its place and a switch is off
-// for ten periods.
+// Commands that the triangle, from -102 to 101, just does not reach, or just reaches: one tick beside its place and a
+// switch is off for ten periods.
 TEST_P(ClockFollowerDeadTime, IsNotStartedByAJumpBesideATurnaround) {
   for (int command = 99; command <= 106; ++command)
     for (const int signed_command : {command, -command}) {
@@ -161,7 +161,8 @@ TEST_P(ClockFollowerDeadTime, IsNotStartedByAJumpBesideATurnaround) {
       }
     }
 }
-INSTANTIATE_TEST_SUITE_P(Places, ClockFollowerDeadTime, ::testing::Values(0, 10, 40, 100, 137, 150, 190, 230, 300, 350, 380));
+INSTANTIATE_TEST_SUITE_P(Places, ClockFollowerDeadTime,
+                         ::testing::Values(0, 10, 40, 100, 137, 150, 190, 230, 300, 350, 380));
 
 std::uint64_t seeds() {
   const char* text = std::getenv("BRICK_FOLLOWER_SEEDS");
@@ -175,7 +176,8 @@ class Life {
   std::string run() {
     follows_ = one_in(2);
     half_ = 101 + 2 * pick(one_in(2) ? 200 : 1000);
-    if (follows_ || one_in(3)) pair_.clocks(half_, !one_in(4));  // an IC with its own clocks beside them: it drives, but is not chosen
+    if (follows_ || one_in(3))
+      pair_.clocks(half_, !one_in(4));  // an IC with its own clocks beside them: it drives, but is not chosen
     clock_word();
     pwm_word();
     for (unsigned channel = 0; channel < kChannels; ++channel) {
@@ -202,7 +204,9 @@ class Life {
  private:
   std::uint32_t pick(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
   bool one_in(std::uint32_t n) { return pick(n) == 0; }
-  std::uint32_t command() { return one_in(3) ? (pick(2) != 0 ? 0x7FFF00 : 0x800000) : ((pick(4000) - 2000) << 8) & 0xFFFFFF; }
+  std::uint32_t command() {
+    return one_in(3) ? (pick(2) != 0 ? 0x7FFF00 : 0x800000) : ((pick(4000) - 2000) << 8) & 0xFFFFFF;
+  }
   // Mostly with a state that repeats together with SERVO: an even number of half triangles, as long as PHASE.
   void clock_word() {
     const std::uint32_t even = one_in(6) ? pick(3) | pick(3) << 4 : one_in(2) ? 1 | pick(3) << 4 : pick(3) | 1 << 4;

@@ -1,5 +1,5 @@
-// An IC that nobody looked at for long is where one is that was looked at all the time: pins and every register, with clocks that
-// repeat (the IC jumps), change, come from outside or stop.
+// An IC that nobody looked at for long is where one is that was looked at all the time: pins and every register, with
+// clocks that repeat (the IC jumps), change, come from outside or stop.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -33,7 +33,8 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
       if (i < 18)
         ASSERT_EQ(a[i], b[i]) << "IC " << i / 6 << " word " << i % 6 << " of the pins before tick " << lazy.now();
       else
-        ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18) / 64 << " register " << (i - 18) % 64 << " before tick " << lazy.now();
+        ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18) / 64 << " register " << (i - 18) % 64 << " before tick "
+                              << lazy.now();
     }
   }
   template <class Do>
@@ -76,7 +77,8 @@ TEST_P(LazyIcs, AreWhereEagerOnesAre) {
       control |= pick(3) == 0 ? 8 : 3;
       if (pick(2) != 0) control &= ~0x800000u;  // no PFM
       write(true, kServoIcBase[ic] + 8 * channel + 5, control);
-      for (std::uint32_t out = 2; out < 5; ++out) write(false, kServoIcBase[ic] + 8 * channel + out, pick(1u << 24) >> pick(12));
+      for (std::uint32_t out = 2; out < 5; ++out)
+        write(false, kServoIcBase[ic] + 8 * channel + out, pick(1u << 24) >> pick(12));
     }
   }
   for (int round = 0; round < 6; ++round) {

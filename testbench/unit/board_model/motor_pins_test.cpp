@@ -1,5 +1,5 @@
-// Motor side of the model of the board: pins on demand against pins watched, words and EQU interrupts of ICs that nobody watches, run
-// lengths, stops, watchdog trip.
+// Motor side of the model of the board: pins on demand against pins watched, words and EQU interrupts of ICs that
+// nobody watches, run lengths, stops, watchdog trip.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -20,7 +20,9 @@ struct Change {
   Tick tick;
   unsigned ic;
   MotorOutputs before, after;
-  bool operator==(const Change& o) const { return tick == o.tick && ic == o.ic && before == o.before && after == o.after; }
+  bool operator==(const Change& o) const {
+    return tick == o.tick && ic == o.ic && before == o.before && after == o.after;
+  }
 };
 
 class MotorPins : public ::testing::TestWithParam<std::uint64_t> {};
@@ -46,13 +48,15 @@ TEST_P(MotorPins, OnDemandAreTheWatchedOnesTickByTick) {
     for (unsigned ic = 0; ic < 3; ++ic) {
       const MotorOutputs& expected = std::prev(shown[ic].upper_bound(t))->second;
       const MotorOutputs now = asked->motor_outputs(ic);
-      for (unsigned i = 0; i < kMotorOutputWords; ++i) ASSERT_EQ(now.w[i], expected.w[i]) << "tick " << t << " IC " << ic << " word " << i;
+      for (unsigned i = 0; i < kMotorOutputWords; ++i)
+        ASSERT_EQ(now.w[i], expected.w[i]) << "tick " << t << " IC " << ic << " word " << i;
       const auto at = shown[ic].find(t);
       if (at != shown[ic].end() && at != shown[ic].begin())
         for (unsigned i = 0; i < kMotorOutputWords; ++i) words[i] += std::prev(at)->second.w[i] != now.w[i] ? 1 : 0;
     }
   }
-  for (unsigned i = 0; i < kMotorOutputWords; ++i) EXPECT_GT(words[i], 20u) << "word " << i << " hardly moves: the test shows nothing";
+  for (unsigned i = 0; i < kMotorOutputWords; ++i)
+    EXPECT_GT(words[i], 20u) << "word " << i << " hardly moves: the test shows nothing";
 }
 
 std::vector<Change> changes(std::uint64_t seed, Tick end, Tick stretch, std::vector<BoardOutputs>* pins) {
@@ -73,7 +77,8 @@ TEST_P(MotorPins, DoNotDependOnRunLength) {
   const std::vector<Change> whole = changes(GetParam(), 300'000, 100'000, &pins);
   EXPECT_GT(whole.size(), 1000u);
   for (std::size_t i = 1; i < whole.size(); ++i)
-    ASSERT_TRUE(whole[i - 1].tick < whole[i].tick || (whole[i - 1].tick == whole[i].tick && whole[i - 1].ic < whole[i].ic));
+    ASSERT_TRUE(whole[i - 1].tick < whole[i].tick ||
+                (whole[i - 1].tick == whole[i].tick && whole[i - 1].ic < whole[i].ic));
   for (const Tick stretch : {1, 7, 1000}) {
     std::vector<BoardOutputs> same;
     EXPECT_TRUE(changes(GetParam(), 300'000, stretch, &same) == whole) << stretch;
@@ -98,7 +103,8 @@ TEST_P(MotorPins, LeaveTheBoardPinsAloneWhenWatched) {
       const auto watched = seen(seed, *options, kThree, end), alone = seen(seed, *options, 0, end);
       ASSERT_GT(watched.size(), 100u);
       for (std::size_t i = 0; i < std::min(watched.size(), alone.size()); ++i)
-        ASSERT_TRUE(watched[i] == alone[i]) << "seed " << seed << " tick " << std::min(watched[i].first, alone[i].first);
+        ASSERT_TRUE(watched[i] == alone[i])
+            << "seed " << seed << " tick " << std::min(watched[i].first, alone[i].first);
       ASSERT_EQ(watched.size(), alone.size()) << "seed " << seed;
     }
   }
@@ -106,7 +112,8 @@ TEST_P(MotorPins, LeaveTheBoardPinsAloneWhenWatched) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MotorPins, ::testing::Range<std::uint64_t>(1, 4));
 
-// A word that PHASE or SERVO latches, on the bus all the time: it shows the new position at the same edges as when the IC is watched.
+// A word that PHASE or SERVO latches, on the bus all the time: it shows the new position at the same edges as when the
+// IC is watched.
 TEST(LatchedWord, MovesOnTheBusAtItsEdgeWithoutAnyoneWatching) {
   const auto seen = [](std::uint32_t watched, bool x, std::uint32_t offset) {
     BoardRig rig(make_model_board(kThree), kThree);
@@ -211,8 +218,9 @@ TEST_F(MotorBoard, CompareOfTheFirstChannelInterruptsTheHost) {
 }
 
 TEST_F(MotorBoard, CompareInterruptComesAtItsEdgeWithoutAnyoneWatching) {
-  // EQU changes at the SCLK edge at which the counter leaves A; the controller shows it three clk_ref edges later: two stages of
-  // its synchroniser, then the latch. Found here by asking each tick, against one long run that stops at the pin.
+  // EQU changes at the SCLK edge at which the counter leaves A; the controller shows it three clk_ref edges later: two
+  // stages of its synchroniser, then the latch. Found here by asking each tick, against one long run that stops at the
+  // pin.
   isa_write(0x21A, 0x20);
   rig.write(true, 0x78000 + kControl, 3);
   rig.write(false, 0x78000 + kCompareA, 0);
@@ -281,7 +289,9 @@ TEST_F(MotorBoard, TripSwitchesTheOutputsOff) {
   }
   rig.board().watch_motors(0x1);
   unsigned reported = 0;
-  rig.board().on_motor_change = [&](Tick, unsigned ic, const MotorOutputs&, const MotorOutputs&) { reported += ic == 0 ? 1 : 1000; };
+  rig.board().on_motor_change = [&](Tick, unsigned ic, const MotorOutputs&, const MotorOutputs&) {
+    reported += ic == 0 ? 1 : 1000;
+  };
   rig.run(100'000);
   EXPECT_GT(reported, 100u);
   EXPECT_LT(reported, 100'000u) << "changes of an IC that is not watched";

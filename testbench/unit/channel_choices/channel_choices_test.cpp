@@ -1,6 +1,6 @@
-// What the data sheet leaves open stands behind one parameter of a block and one constant of the model each: EquOnLeave, ALeadsUp,
-// Latency. Here they are built with other values too (Latency 0, 4, 6): each does what it says, RTL and model agree, compare and
-// decode at every edge, the ADC in every word.
+// What the data sheet leaves open stands behind one parameter of a block and one constant of the model each:
+// EquOnLeave, ALeadsUp, Latency. Here they are built with other values too (Latency 0, 4, 6): each does what it says,
+// RTL and model agree, compare and decode at every edge, the ADC in every word.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -152,7 +152,9 @@ TEST_P(CompareRule, WithFractionsEquTogglesBeyondTheCompareOrOnIt) {
 // A counter walks near its compares, which are written now and then; the model says in advance for how long EQU stays.
 TEST_P(CompareRule, EnginesAgreeOnRandomWalksAndThePromiseHolds) {
   std::mt19937 random(leave_ ? 1 : 2);
-  const auto value = [&](std::uint32_t limit) { return std::uniform_int_distribution<std::uint32_t>(0, limit)(random); };
+  const auto value = [&](std::uint32_t limit) {
+    return std::uniform_int_distribution<std::uint32_t>(0, limit)(random);
+  };
   std::uint32_t counter = 0, quiet = 0;
   unsigned fraction = 0;
   bool fine = false, other = false, down = false;
@@ -178,7 +180,9 @@ TEST_P(CompareRule, EnginesAgreeOnRandomWalksAndThePromiseHolds) {
       if (quiet > 0) ++broken;
     }
     if (count) counter = (counter + (down ? 0xFFFFFF : 1)) & 0xFFFFFF;
-    fraction = count ? (down ? 4095 : 0) : down ? fraction - std::min(fraction, value(900)) : std::min(4095u, fraction + value(900));
+    fraction = count  ? (down ? 4095 : 0)
+               : down ? fraction - std::min(fraction, value(900))
+                      : std::min(4095u, fraction + value(900));
     if (hold) counter = 0;
     quiet = hold ? 0 : std::max(quiet, rig_.edges_to_hit(counter, fine) + 1) - 1;
   }
@@ -248,7 +252,8 @@ void random_decode(std::uint32_t seed) {
     in.pulse_down = random() % 2 == 0;
     rtl.edge();
     const auto m = model.step(in.ready, in.mode, in.position.hold, in.abc, in.pulse, in.pulse_down);
-    ASSERT_TRUE((rtl.decode(ALeadsUp) == RtlChoices::Decode{m.count, m.count && m.down, m.error})) << "edge " << i << " mode " << in.mode;
+    ASSERT_TRUE((rtl.decode(ALeadsUp) == RtlChoices::Decode{m.count, m.count && m.down, m.error}))
+        << "edge " << i << " mode " << in.mode;
   }
 }
 

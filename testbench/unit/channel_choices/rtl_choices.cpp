@@ -54,6 +54,8 @@ RtlChoices::Compare RtlChoices::compare(unsigned value) const {
   const Vchoices_bench& t = impl_->top;
   return {(t.equ_o >> value & 1) != 0, t.a_o[value], t.b_o[value]};
 }
-std::uint32_t RtlChoices::adc(unsigned latency) const { return impl_->top.value_o[latency == 0 ? 0 : latency == 4 ? 1 : 2] << 6; }
+std::uint32_t RtlChoices::adc(unsigned latency) const {
+  return impl_->top.value_o[latency == 0 ? 0 : latency == 4 ? 1 : 2] << 6;
+}
 
 }  // namespace brick

@@ -1,5 +1,6 @@
-// A servo IC that takes PHASE, SERVO or both from its pins: divider on an external phase clock, and how the local triangle
-// follows the external edge (servo-ic.md 5.1 item 6). A pin change passes two flip-flops, so it acts at the third edge.
+// A servo IC that takes PHASE, SERVO or both from its pins: divider on an external phase clock, and how the local
+// triangle follows the external edge (servo-ic:5.1/6). A pin change passes two flip-flops, so it acts at the third
+// edge.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -33,7 +34,8 @@ class ExternalPhaseOn : public ::testing::Test {
     phase_pin(tick, true);
   }
 
-  // The tick of a turnaround, seen by letting the IC drive PHASE with a divider of one, and taken back to input after that.
+  // The tick of a turnaround, seen by letting the IC drive PHASE with a divider of one, and taken back to input after
+  // that.
   Tick turnaround() {
     rig.write(true, kClockWord, clock_word(0, 3, 0));
     bool last = rig.phase();

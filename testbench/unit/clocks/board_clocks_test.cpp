@@ -13,7 +13,8 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kNoSource = 31, kExternalSource = 30;
-// A clock pin is released within one SERVO period and taken within one more; of PHASE and SERVO periods at reset values.
+// A clock pin is released within one SERVO period and taken within one more; of PHASE and SERVO periods at reset
+// values.
 constexpr Tick kHandOver = 3 * 4 * 13057;
 
 class BoardOn : public ::testing::TestWithParam<bool> {
@@ -56,7 +57,8 @@ TEST_P(BoardOn, AbsentIcReadsZeroIgnoresWritesAndDoesNotDrive) {
   EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
 }
 
-// The same for an IC that is taken out while it works: it keeps its registers, and none of its outputs reaches the board.
+// The same for an IC that is taken out while it works: it keeps its registers, and none of its outputs reaches the
+// board.
 TEST_P(BoardOn, IcTakenOutWhileItWorksNoLongerDrivesClocksDataAndInterrupts) {
   constexpr std::uint32_t kControl = 5, kEquHigh = 0x1800;  // EQU initial state 1, write enable
   for (const std::uint32_t ic : {0u, 1u}) {
@@ -139,9 +141,9 @@ TEST_P(BoardOn, DividersOfOtherIcsHaveNoEffect) {
   EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), clock_word(7, 9, 3));
 }
 
-// servo-ic.md 7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 three ticks behind, then makes the clocks of
-// the same grid itself; the next turnaround finds PHASE high, so it takes the pin with the rise after that: the first tick at which the two
-// differ is the fall of IC 0 after that, the third such tick shows the conflict.
+// servo-ic:7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 three ticks behind, then makes the
+// clocks of the same grid itself; the next turnaround finds PHASE high, so it takes the pin with the rise after that:
+// the first tick at which the two differ is the fall of IC 0 after that, the third such tick shows the conflict.
 TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   for (int edges = 0; edges < 6; ++edges) rig.edge(pin::kPhase, 1);  // IC 1 is in step
@@ -211,7 +213,8 @@ TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {
 TEST_P(BoardOn, HostSignalLatchReadsBackAndDrivesItsPins) {
   for (const std::uint32_t value : {0x1u, 0x2u, 0x4u, 0x8u, 0xFu, 0x0u}) {
     rig.write(true, kHostSignals, value);
-    EXPECT_EQ(rig.get(pin::kIpos) | rig.get(pin::kBreq) << 1 | rig.get(pin::kEror) << 2 | rig.get(pin::kF1er) << 3, value);
+    EXPECT_EQ(rig.get(pin::kIpos) | rig.get(pin::kBreq) << 1 | rig.get(pin::kEror) << 2 | rig.get(pin::kF1er) << 3,
+              value);
     EXPECT_EQ(rig.read(true, kHostSignals), value);
   }
 }
@@ -242,7 +245,8 @@ TEST_P(BoardOn, ReadDataIsThereAtTheSecondReferenceEdge) {
 // 960 periods of 39.3216 MHz / 1024 are 25 ms. Both timers start at reset; the clock of the timers is free-running.
 TEST_P(BoardOn, WatchdogTripsAfter25MsWithoutStrobe) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
-  EXPECT_EQ(rig.edge(pin::kWdTripped, 1), 960 * 1024 * 3 + 6);  // reset ended after tick 7: clk_ref edges count from tick 9
+  EXPECT_EQ(rig.edge(pin::kWdTripped, 1),
+            960 * 1024 * 3 + 6);  // reset ended after tick 7: clk_ref edges count from tick 9
   EXPECT_EQ(rig.get(pin::kWdo), 1u);
 }
 

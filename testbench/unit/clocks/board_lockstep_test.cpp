@@ -1,6 +1,6 @@
-// Verilated board and model board side by side on random stimulus at their pins: Port A and ISA cycles of any length, clock
-// directions, straps, external clocks and resets. All pins are compared at every tick. The model may sleep between events,
-// and its promise of quiet pins is checked against what happens.
+// Verilated board and model board side by side on random stimulus at their pins: Port A and ISA cycles of any length,
+// clock directions, straps, external clocks and resets. All pins are compared at every tick. The model may sleep
+// between events, and its promise of quiet pins is checked against what happens.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,9 @@ class Pair {
   explicit Pair(bool seeded_bug = false)
       : rtl_(seeded_bug), model_(std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestIcs)) {
     for (unsigned i = 0; i < 32768; ++i) model_->dpram().poke(i, 0);
-    model_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) { changes_.push_back({t, after}); };
+    model_->on_change = [this](Tick t, const BoardOutputs&, const BoardOutputs& after) {
+      changes_.push_back({t, after});
+    };
   }
 
   void set_inputs(const BoardInputs& inputs) {
@@ -101,7 +103,9 @@ class Stimulus {
 
  private:
   void set() { pair_.set_inputs(in_); }
-  std::uint32_t between(std::uint32_t low, std::uint32_t high) { return std::uniform_int_distribution<std::uint32_t>(low, high)(random_); }
+  std::uint32_t between(std::uint32_t low, std::uint32_t high) {
+    return std::uniform_int_distribution<std::uint32_t>(low, high)(random_);
+  }
   bool one_in(std::uint32_t n) { return between(1, n) == 1; }
 
   void port_a_step() {
@@ -147,7 +151,8 @@ class Stimulus {
         const std::uint32_t offset = one_in(5) ? between(0, 31) : 4 + 8 * between(0, 3);
         in_.pa_addr = kBases[one_in(3) ? between(0, 6) : between(0, 3)] + offset;
         if (offset == kPwmWord) in_.pa_wdata = pwm_word(one_in(3) ? between(0, 9) : between(10, 500));
-        if (offset == kClockWord) in_.pa_wdata = clock_word(between(0, 3), between(0, 3), one_in(2) ? 3 : between(0, 3));
+        if (offset == kClockWord)
+          in_.pa_wdata = clock_word(between(0, 3), between(0, 3), one_in(2) ? 3 : between(0, 3));
         break;
       }
       case 6: {  // MACRO ICs

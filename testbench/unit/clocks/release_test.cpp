@@ -1,5 +1,6 @@
-// A clock pin that is released may take its own next fall with it, but then nothing inside may have happened at that fall: the
-// position words change with falls of the nets only. The pin is released at every tick around its own fall, on both engines.
+// A clock pin that is released may take its own next fall with it, but then nothing inside may have happened at that
+// fall: the position words change with falls of the nets only. The pin is released at every tick around its own fall,
+// on both engines.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -76,7 +77,8 @@ TYPED_TEST(ReleaseOn, NothingIsLatchedByAFallThatStaysAwayFromTheNet) {
         for (int i = 0; i < 5; ++i) this->run_to_fall();
         const Tick own_fall = this->rig->now() + period;
         while (this->rig->now() < own_fall - period / 4) this->tick();
-        const std::uint32_t phase_before = this->rig->read(true, kPhasePosition), servo_before = this->rig->read(true, kServoPosition);
+        const std::uint32_t phase_before = this->rig->read(true, kPhasePosition),
+                            servo_before = this->rig->read(true, kServoPosition);
         this->falls = {};
         while (this->rig->now() < own_fall - lead) this->tick();
         this->write_direction(direction);
@@ -85,9 +87,10 @@ TYPED_TEST(ReleaseOn, NothingIsLatchedByAFallThatStaysAwayFromTheNet) {
         ASSERT_LT(released, own_fall + period) << "never released";
         (released < own_fall ? before_it : released == own_fall ? at_the_fall : after_it) += 1;
         const auto fell = this->falls;
-        while (direction == 3 && this->rig->now() < released + 2 * period) this->tick();  // SERVO stays with direction 1
-        SCOPED_TRACE("released " + std::to_string(released - own_fall) + " ticks after its own fall, I7m00 " + std::to_string(max_count) +
-                     ", direction " + std::to_string(direction));
+        while (direction == 3 && this->rig->now() < released + 2 * period)
+          this->tick();  // SERVO stays with direction 1
+        SCOPED_TRACE("released " + std::to_string(released - own_fall) + " ticks after its own fall, I7m00 " +
+                     std::to_string(max_count) + ", direction " + std::to_string(direction));
         EXPECT_EQ(this->rig->read(true, kPhasePosition) != phase_before, fell.phase != 0);
         EXPECT_EQ(this->rig->read(true, kServoPosition) != servo_before, fell.servo != 0);
       }

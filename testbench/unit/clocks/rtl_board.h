@@ -1,5 +1,5 @@
-// The Verilated board of these tests: servo ICs 0, 1, 2, 2* and MACRO ICs 0, 1 are built, so that clocks can come from any of
-// six.
+// The Verilated board of these tests: servo ICs 0, 1, 2, 2* and MACRO ICs 0, 1 are built, so that clocks can come from
+// any of six.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// The Verilated servo IC with the same calls as the model, one clk_pwm edge at a time. The Verilated header stays in the .cpp.
+// The Verilated servo IC with the same calls as the model, one clk_pwm edge at a time. The Verilated header stays in
+// the .cpp.
 #pragma once
 
 #include <array>

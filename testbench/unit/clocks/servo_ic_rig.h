@@ -1,6 +1,6 @@
-// A servo IC (or another IC with the same faces) on one engine, driven as the board drives it: register accesses at a clk_ref
-// edge, pins at any tick. The RTL and the model rig take the same calls, so one test body runs on both, and the lock-step rig
-// compares them at every tick.
+// A servo IC (or another IC with the same faces) on one engine, driven as the board drives it: register accesses at a
+// clk_ref edge, pins at any tick. The RTL and the model rig take the same calls, so one test body runs on both, and the
+// lock-step rig compares them at every tick.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ namespace brick {
 // X offsets of the IC-global registers.
 constexpr unsigned kClockWord = 0x04, kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwmWord = 0x1C;
 
-// Words as firmware makes them from I7m00..I7m04 and I7m07 (servo-ic.md 2.6).
-constexpr std::uint32_t clock_word(unsigned phase_div, unsigned servo_div, unsigned direction, unsigned dividers = 2258) {
+// Words as firmware makes them from I7m00..I7m04 and I7m07 (servo-ic:2.6).
+constexpr std::uint32_t clock_word(unsigned phase_div, unsigned servo_div, unsigned direction,
+                                   unsigned dividers = 2258) {
   return servo_div << 20 | phase_div << 16 | direction << 12 | dividers;
 }
 constexpr std::uint32_t pwm_word(unsigned max_count, unsigned deadtime = 15) { return max_count << 8 | deadtime; }
@@ -29,7 +30,8 @@ class ServoIcRig {
   virtual void tick() = 0;
   virtual void reset(bool asserted) = 0;
   virtual void pins(bool phase, bool servo) = 0;
-  virtual void write(bool x, unsigned offset, std::uint32_t value) = 0;  // takes place at the next clk_ref edge, which is executed
+  virtual void write(bool x, unsigned offset,
+                     std::uint32_t value) = 0;  // takes place at the next clk_ref edge, which is executed
   virtual std::uint32_t read(bool x, unsigned offset) = 0;
   virtual bool phase() = 0;
   virtual bool servo() = 0;

@@ -1,5 +1,5 @@
-// Registers and clock outputs of a servo IC as the source of the clocks, the same expectations on both engines. Expected
-// periods are arithmetic on servo-ic.md 3.1, 3.2 and 5.1.
+// Registers and clock outputs of a servo IC as the source of the clocks, the same expectations on both engines.
+// Expected periods are arithmetic on servo-ic:3.1, servo-ic:3.2 and servo-ic:5.1.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -105,7 +105,8 @@ TYPED_TEST(ServoIcOn, PhaseAndServoPeriodsAreExactToTheTick) {
   }
 }
 
-// CLK-5: 6.67 kHz phase, 3.33 kHz servo with I7m02 = 1. I7m00 = floor(117964.8 / 13.333 - 1) = 8846, one MaxPhase a phase.
+// CLK-5: 6.67 kHz phase, 3.33 kHz servo with I7m02 = 1. I7m00 = floor(117964.8 / 13.333 - 1) = 8846, one MaxPhase a
+// phase.
 TYPED_TEST(ServoIcOn, ServoIsHalfOfPhaseWithADividerOfOne) {
   BRICK_COVERS("CLK-6");
   this->drive(8846, 0, 1);
@@ -118,7 +119,8 @@ TYPED_TEST(ServoIcOn, ServoIsHalfOfPhaseWithADividerOfOne) {
 }
 
 // A new I7m00 counts from the next bottom turnaround on, so no period is longer or shorter than both settings explain:
-// half triangles of 2*20+3 = 43 ticks, then one from the old bottom (-22) to the new top (11), 33 ticks, then 2*10+3 = 23.
+// half triangles of 2*20+3 = 43 ticks, then one from the old bottom (-22) to the new top (11), 33 ticks, then 2*10+3
+// = 23.
 TYPED_TEST(ServoIcOn, NewMaximumCountIsTakenAtTheBottomTurnaround) {
   this->drive(20, 0, 0);
   this->rig.run(2 * 13057 + 1000);
@@ -182,14 +184,15 @@ TYPED_TEST(ServoIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
   EXPECT_EQ(this->rig.read(true, kPwmWord), 0x197F0Fu);
 }
 
-// A pin with a pull-up, whatever the direction: taken with a full high time and left after a full low time, whichever tick the
-// direction bits are written at.
+// A pin with a pull-up, whatever the direction: taken with a full high time and left after a full low time, whichever
+// tick the direction bits are written at.
 TYPED_TEST(ServoIcOn, DirectionChangesWithoutAShortPulse) {
   BRICK_COVERS("CLK-6");
   constexpr Tick kPeriod = 2 * 20 + 3, kHigh = kPeriod / 2, kLow = kPeriod - kHigh;
   for (const unsigned servo_div : {0u, 2u}) {
     for (Tick at = 0; at < 3 * kPeriod; at += 5) {
-      SCOPED_TRACE(::testing::Message() << "I7m02=" << servo_div << ", written " << at << " ticks into a period of SERVO");
+      SCOPED_TRACE(::testing::Message() << "I7m02=" << servo_div << ", written " << at
+                                        << " ticks into a period of SERVO");
       this->rig.power_up();
       this->drive(20, 0, servo_div);
       this->rig.run(2 * 13057 + 1000);

@@ -34,7 +34,8 @@ class Trace : public ::testing::Test {
  protected:
   // One file a process: ctest runs the tests side by side.
   std::string path(const std::string& ending) const {
-    return ::testing::TempDir() + "brick_trace_" + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ending;
+    return ::testing::TempDir() + "brick_trace_" + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+           ending;
   }
   // Two signals and a text, as every test below uses them.
   Signals signals;
@@ -84,7 +85,9 @@ TEST_F(Trace, RecordsOfSourcesThatRunAheadComeOutInOrder) {
     signals.set_text(symbol, 35 * kPs, "a b\\");
     w.flush_until(50 * kPs);
   });
-  EXPECT_EQ(body(text), "#0\n$dumpvars\n1!\nb0000 \"\ns #\n$end\n#20\n0!\n#30\nb1010 \"\n1!\n#35\nsa\\040b\\134 #\n#40\nb1011 \"\n#50\n");
+  EXPECT_EQ(
+      body(text),
+      "#0\n$dumpvars\n1!\nb0000 \"\ns #\n$end\n#20\n0!\n#30\nb1010 \"\n1!\n#35\nsa\\040b\\134 #\n#40\nb1011 \"\n#50\n");
 }
 
 TEST_F(Trace, ManyLotsStayInOrder) {

@@ -1,5 +1,6 @@
-// How the blocks are wired to each other and to the address map, through the pins of the whole board, the same expectations on
-// both engines. A mistake made in RTL and model alike is invisible to lock-step: these are the places where that could happen.
+// How the blocks are wired to each other and to the address map, through the pins of the whole board, the same
+// expectations on both engines. A mistake made in RTL and model alike is invisible to lock-step: these are the places
+// where that could happen.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +18,8 @@ constexpr std::uint32_t kIoBase = 0x210, kMemBase = 0xD0000;
 class BoardMap : public ::testing::TestWithParam<bool> {
  protected:
   BoardMap() : BoardMap(kTwoServoIcs) {}
-  explicit BoardMap(std::uint32_t fitted) : rig(GetParam() ? make_rtl_board(fitted) : make_model_board(fitted), fitted) {}
+  explicit BoardMap(std::uint32_t fitted)
+      : rig(GetParam() ? make_rtl_board(fitted) : make_model_board(fitted), fitted) {}
 
   void strobe(bool BoardInputs::*command, Tick width) {
     rig.apply();
@@ -87,7 +89,8 @@ class BoardMap : public ::testing::TestWithParam<bool> {
   BoardRig rig;
 };
 const auto kEngineNames = [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); };
-// docs/boards.md: the port at Y:$078800 shows the pins, two edges of clk_ref after a change; nothing is there without the strap.
+// docs/boards.md: the port at Y:$078800 shows the pins, two edges of clk_ref after a change; nothing is there without
+// the strap.
 TEST_P(BoardMap, ControlPanelPortShowsItsInputs) {
   BRICK_COVERS("BREQ-6");
   constexpr std::uint32_t kPort = 0x078800;
@@ -108,7 +111,8 @@ TEST_P(BoardMap, ControlPanelPortShowsItsInputs) {
     EXPECT_EQ(rig.read(false, other), 0u);
 }
 
-// The word follows the pins while the CPU looks at it: two edges of clk_ref through the port, one into the read data register.
+// The word follows the pins while the CPU looks at it: two edges of clk_ref through the port, one into the read data
+// register.
 TEST_P(BoardMap, ControlPanelInputsPassTwoStages) {
   rig.in.jpan_fitted = true;
   rig.in.pa_addr = 0x078800;
@@ -128,7 +132,7 @@ TEST_P(BoardMap, ControlPanelInputsPassTwoStages) {
   EXPECT_EQ(rig.get(pin::kPaData), 0xFDFFu);
 }
 
-// host-bus.md 6.1: 8192 words are $060000..$060FFF, host 0x0000..0x3FFF.
+// host-bus:6.1: 8192 words are $060000..$060FFF, host 0x0000..0x3FFF.
 TEST_P(BoardMap, SmallDualPortedRamEndsAt060FFF) {
   rig.in.dpram_small = true;
   rig.apply();
@@ -153,7 +157,7 @@ TEST_P(BoardMap, SmallDualPortedRamEndsAt060FFF) {
 
 INSTANTIATE_TEST_SUITE_P(Engines, BoardMap, ::testing::Values(true, false), kEngineNames);
 
-// host-bus.md 4.2, Turbo PMAC2-PC: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO are IR0 to IR7; 5.7: bits of X:$070010.
+// host-bus:4.2, Turbo PMAC2-PC: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO are IR0 to IR7; 5.7: bits of X:$070010.
 TEST_P(BoardMap, EachSignalIsItsLineOfTheInterruptController) {
   for (unsigned bit = 0; bit < 4; ++bit) {
     rig.write(true, kHostSignals, 1u << bit);
@@ -172,7 +176,8 @@ TEST_P(BoardMap, EachSignalIsItsLineOfTheInterruptController) {
   EXPECT_EQ(io_read(9), 0x80u);
 }
 
-// host-bus.md 4.2: each board has its own sources of IR5, IR6 and IR7. EQU is written by bits 11 and 12 of a channel's control word.
+// host-bus:4.2: each board has its own sources of IR5, IR6 and IR7. EQU is written by bits 11 and 12 of a channel's
+// control word.
 TEST_P(BoardMap, ThreeLinesOfTheInterruptControllerAreChosenByTheBoard) {
   const auto set_equ = [this](unsigned n, bool level) {
     rig.write(true, kServoIcBase[n / 4] + 8 * (n % 4) + 5, 1u << 11 | (level ? 1u << 12 : 0u));
@@ -207,7 +212,7 @@ TEST_P(BoardMap, ThreeLinesOfTheInterruptControllerAreChosenByTheBoard) {
   EXPECT_EQ(rig.get(pin::kPicSig), 0xA0u) << "WDO";
 }
 
-// host-bus.md 1.1: the latches are X words.
+// host-bus:1.1: the latches are X words.
 TEST_P(BoardMap, YWordsOfTheLatchesDoNothing) {
   rig.write(true, kHostSignals, 0x5);
   rig.write(false, kHostSignals, 0xA);
@@ -221,7 +226,7 @@ TEST_P(BoardMap, YWordsOfTheLatchesDoNothing) {
   EXPECT_LE(rig.edge(pin::kWdTripped, 1), 25 * kPwmClockHz / 1000 + 20);
 }
 
-// host-bus.md 6.1: Y word at host offset 4 (a - $060000), X word at offset + 2, 16 bits of each exist.
+// host-bus:6.1: Y word at host offset 4 (a - $060000), X word at offset + 2, 16 bits of each exist.
 TEST_P(BoardMap, WordsOfTheDualPortedRamLieWhereTheHostExpectsThem) {
   for (const std::uint32_t a : {0x60000u, 0x60414u, 0x63FFFu}) {
     const unsigned offset = 4 * (a - 0x60000);
@@ -237,7 +242,7 @@ TEST_P(BoardMap, WordsOfTheDualPortedRamLieWhereTheHostExpectsThem) {
   }
 }
 
-// host-bus.md 6.9: BUSY becomes /TA on the CPU's side, IOCHRDY on the host's.
+// host-bus:6.9: BUSY becomes /TA on the CPU's side, IOCHRDY on the host's.
 TEST_P(BoardMap, BusyStretchesTheCycleOfTheLaterSide) {
   rig.write(false, 0x60010, 0x1111);
   memory_address(0x40);
@@ -281,11 +286,11 @@ TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsEnd) {
   EXPECT_EQ(rig.get(pin::kIrqHost), 0u);
 }
 
-// servo-ic.md 7.2: the lowest-numbered driver wins each net; here only SERVO has two.
+// servo-ic:7.2: the lowest-numbered driver wins each net; here only SERVO has two.
 TEST_P(BoardMap, TwoDriversOfServoAloneAreAConflictToo) {
   rig.write(true, kServoIcBase[1] + 4, 0x3008D2);             // IC 1 drives both
   rig.write(true, kServoIcBase[0] + 4, 0x3008D2 | 1u << 12);  // IC 0 drives SERVO from that PHASE
-  constexpr Tick kServoPeriod = 4 * 13057;                    // pins are released while high and taken with a rise, each within a period
+  constexpr Tick kServoPeriod = 4 * 13057;  // pins are released while high and taken with a rise, each within a period
   rig.run(3 * kServoPeriod);
   EXPECT_EQ(rig.get(pin::kPhaseSource), 1u);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
@@ -294,7 +299,7 @@ TEST_P(BoardMap, TwoDriversOfServoAloneAreAConflictToo) {
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
 }
 
-// servo-ic.md 1.2, the whole table. Engines without a variant for all the ICs are not tested, the model always is.
+// servo-ic:1.2, the whole table. Engines without a variant for all the ICs are not tested, the model always is.
 TEST(AddressMap, EveryServoIcIsAtItsBase) {
   constexpr std::uint32_t kAll = 0x3FFFF;
   const std::uint32_t bases[] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200,
@@ -319,7 +324,8 @@ TEST(AddressMap, EveryServoIcIsAtItsBase) {
       rig.write(true, bases[i] + 4, 0x3038D2);
       rig.run(4 * 13057);  // released while PHASE and SERVO are high
     }
-    for (const std::uint32_t hole : {0x78020u, 0x78120u, 0x79000u, 0x7A100u, 0x78600u}) EXPECT_EQ(rig.read(true, hole + 0x14), 0u);
+    for (const std::uint32_t hole : {0x78020u, 0x78120u, 0x79000u, 0x7A100u, 0x78600u})
+      EXPECT_EQ(rig.read(true, hole + 0x14), 0u);
   }
 }
 

@@ -10,7 +10,9 @@ namespace brick {
 namespace {
 constexpr std::uint32_t kClockWords[] = {0x078004, 0x078104};  // directions and dividers
 constexpr std::uint32_t kMaxPhase[] = {0x07801C, 0x07811C};    // PWM count
-bool is_one_of(std::uint32_t address, const std::uint32_t (&list)[2]) { return address == list[0] || address == list[1]; }
+bool is_one_of(std::uint32_t address, const std::uint32_t (&list)[2]) {
+  return address == list[0] || address == list[1];
+}
 }  // namespace
 
 void start_clocks(Board& board, BoardInputs& inputs) {
@@ -32,7 +34,8 @@ void start_clocks(Board& board, BoardInputs& inputs) {
 }
 
 BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed), options_(options) {
-  for (unsigned line = 0; line < 3; ++line) inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | pick(16));
+  for (unsigned line = 0; line < 3; ++line)
+    inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | pick(16));
   inputs_.jpan_fitted = pick(2) != 0;
   inputs_.dpram_small = pick(2) != 0;
   reset_at_ = 12 + pick(30);  // released there
@@ -55,8 +58,8 @@ void BoardTraffic::change() {
 }
 
 void BoardTraffic::choose_cpu_address() {
-  // Registers of a servo IC's clocks, its other words, all gate ICs, DPRAM (few words, so that the sides meet), latches,
-  // the host port, and addresses in no region with any area select.
+  // Registers of a servo IC's clocks, its other words, all gate ICs, DPRAM (few words, so that the sides meet),
+  // latches, the host port, and addresses in no region with any area select.
   inputs_.pa_int = false;
   inputs_.pa_x = pick(2) != 0;
   switch (pick(8)) {
@@ -111,7 +114,8 @@ std::uint32_t BoardTraffic::choose_cpu_data() {
 // Short clocks, so that PHASE and SERVO move often; mostly one IC as source, sometimes none or both.
 std::uint32_t BoardTraffic::choose_clock_data() {
   using namespace regs::servo_ic;
-  if (is_one_of(inputs_.pa_addr, kMaxPhase)) return pwm_control::kMaxCount.set(pick(256), pick(4) == 0 ? pick(7000) : pick(100));
+  if (is_one_of(inputs_.pa_addr, kMaxPhase))
+    return pwm_control::kMaxCount.set(pick(256), pick(4) == 0 ? pick(7000) : pick(100));
   std::uint32_t word = choose_cpu_data() & 0xFFF;
   const std::uint32_t external = pick(3) == 0 ? pick(4) : (inputs_.pa_addr == kClockWords[0] ? 0 : 3);
   word = clock_control::kPhaseExternal.set(word, external & 1);
@@ -129,7 +133,8 @@ void BoardTraffic::cpu_step() {
       if (pick(4) == 0) inputs_.jpan = static_cast<std::uint16_t>(pick(0x10000));
       cpu_.write = pick(2) != 0;
       if (cpu_.write) {
-        const bool clocks = inputs_.pa_x && (is_one_of(inputs_.pa_addr, kClockWords) || is_one_of(inputs_.pa_addr, kMaxPhase));
+        const bool clocks =
+            inputs_.pa_x && (is_one_of(inputs_.pa_addr, kClockWords) || is_one_of(inputs_.pa_addr, kMaxPhase));
         inputs_.pa_wdata = clocks && pick(8) != 0 ? choose_clock_data() : choose_cpu_data();
       }
       cpu_.at += step;
@@ -146,7 +151,8 @@ void BoardTraffic::cpu_step() {
       if (pick(2) != 0) inputs_.pa_aa = 0, inputs_.pa_int = false;
       cpu_.step = 0;
       cpu_.at += options_.dense ? 1 + pick(12) : 500 + pick(20'000);
-      if (options_.reset_one_in != 0 && pick(options_.reset_one_in) == 0 && reset_at_ == kNever) reset_at_ = cpu_.at + pick(20);
+      if (options_.reset_one_in != 0 && pick(options_.reset_one_in) == 0 && reset_at_ == kNever)
+        reset_at_ = cpu_.at + pick(20);
       break;
   }
 }
@@ -154,7 +160,8 @@ void BoardTraffic::cpu_step() {
 void BoardTraffic::choose_host_address() {
   host_.memory = pick(3) == 0;
   if (host_.memory) {
-    const std::uint32_t offset = pick(4) == 0 ? pick(0x10000) : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + pick(16);
+    const std::uint32_t offset =
+        pick(4) == 0 ? pick(0x10000) : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + pick(16);
     inputs_.isa_sa = (pick(16) == 0 ? 0xC0000 : 0xD0000) + offset;
   } else {
     inputs_.isa_sa = (pick(16) == 0 ? pick(0x400) : regs::host_io::kBase + pick(16));
@@ -165,8 +172,8 @@ void BoardTraffic::choose_host_address() {
 }
 
 void BoardTraffic::host_step() {
-  bool& strobe =
-      host_.memory ? (host_.write ? inputs_.isa_memw_n : inputs_.isa_memr_n) : (host_.write ? inputs_.isa_iow_n : inputs_.isa_ior_n);
+  bool& strobe = host_.memory ? (host_.write ? inputs_.isa_memw_n : inputs_.isa_memr_n)
+                              : (host_.write ? inputs_.isa_iow_n : inputs_.isa_ior_n);
   switch (host_.step++) {
     case 0:
       choose_host_address();

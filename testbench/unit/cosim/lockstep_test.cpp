@@ -1,4 +1,5 @@
-// The two engines are one machine: random traffic on all pins, compared at every tick; and lock-step reports a difference.
+// The two engines are one machine: random traffic on all pins, compared at every tick; and lock-step reports a
+// difference.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -55,7 +56,7 @@ TEST(Lockstep, StopsAtTheSelectedEdgeAsTheEnginesDo) {
     ASSERT_LT(t, 10'000'000);
     ASSERT_NE(board->outputs().get(pin::kPhase) != 0, before);
     if (before) {
-      // Phase period at reset values, servo-ic.md section 3: (2 I7000 + 3) (I7001 + 1) ticks, I7000 = 6527, I7001 = 0.
+      // Phase period at reset values, servo-ic:3: (2 I7000 + 3) (I7001 + 1) ticks, I7000 = 6527, I7001 = 0.
       if (++falls > 1) { EXPECT_EQ(t - last, 2 * 6527 + 3); }
       last = t;
     }
@@ -152,8 +153,9 @@ TEST(Lockstep, ReportsEqualAccessesInARowAsOneLineAndEachSideForItself) {
     }
   } catch (const LockstepDifference& e) { text = e.what(); }
   EXPECT_THAT(text, ::testing::HasSubstr("CPU  write X:$078004 = $3008D2 AA=2\n"));
-  EXPECT_THAT(text, ::testing::HasSubstr("tick " + fmt::format("{:>12}", first + 100 * (polls - 1)) + "  host I/O read  00212, " +
-                                         fmt::format("{} times since tick {}", polls, first)));
+  EXPECT_THAT(text,
+              ::testing::HasSubstr("tick " + fmt::format("{:>12}", first + 100 * (polls - 1)) +
+                                   "  host I/O read  00212, " + fmt::format("{} times since tick {}", polls, first)));
 }
 
 TEST(Lockstep, RandomStartValuesOfFlipFlopsAreGoneAfterReset) {

@@ -24,7 +24,9 @@ struct MachineRig {
     std::memcpy(&v, machine.cpu().memory(kPmacBase + 8 * address, 4), 4);
     return v;
   }
-  void set_y(std::uint32_t address, std::uint32_t v) { std::memcpy(machine.cpu().memory(kPmacBase + 8 * address, 4), &v, 4); }
+  void set_y(std::uint32_t address, std::uint32_t v) {
+    std::memcpy(machine.cpu().memory(kPmacBase + 8 * address, 4), &v, 4);
+  }
   std::uint64_t signal(const char* name) { return machine.signals().value(machine.signals().find(name).value()); }
 
   Machine machine;

@@ -1,4 +1,4 @@
-// The named signals that users and waveforms rely on (design.md section 7): they exist, with the right width and radix, and
+// The named signals that users and waveforms rely on (docs/signals.md): they exist, with the right width and radix, and
 // follow pins, host cycles and the nesting of tasks.
 #include "systemc/machine/machine_signals.h"
 
@@ -80,12 +80,13 @@ TEST_F(NamedSignals, EveryPinOfTheBoardHasItsOwn) {
     machine.outputs(0, high, low);
     machine.outputs(1, low, high);
     for (const PinField& other : pin::kAll)
-      EXPECT_EQ(value(std::string(other.name).c_str()), &other == &f ? high.get(f) : 0u) << f.name << " sets " << other.name;
+      EXPECT_EQ(value(std::string(other.name).c_str()), &other == &f ? high.get(f) : 0u)
+          << f.name << " sets " << other.name;
     machine.outputs(2, high, low);
   }
 }
 
-// servo-ic.md 7.1: I7m07 of servo IC m, I7m57 of IC m*, I6807 and on in steps of 50 for MACRO ICs.
+// servo-ic:7.1: I7m07 of servo IC m, I7m57 of IC m*, I6807 and on in steps of 50 for MACRO ICs.
 TEST_F(NamedSignals, ClockSourceIsTheNumberOfTheDirectionVariable) {
   const struct {
     unsigned source, variable;
@@ -117,7 +118,8 @@ TEST_F(NamedSignals, HostBusShowsTheCommandsAndWhoeverDrivesTheData) {
   for (const auto& c : commands) {
     in.*c.pin = false;
     machine.inputs(0, in, board);
-    for (const auto& other : commands) EXPECT_EQ(value(other.name), &other == &c ? 0u : 1u) << c.name << " moves " << other.name;
+    for (const auto& other : commands)
+      EXPECT_EQ(value(other.name), &other == &c ? 0u : 1u) << c.name << " moves " << other.name;
     EXPECT_EQ(value("host.isa.sd"), c.data) << c.name;
     in.*c.pin = true;
   }

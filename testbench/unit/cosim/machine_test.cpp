@@ -30,8 +30,8 @@ TEST(Machine, PhaseInterruptIsSeenSixteenTicksAfterTheFall) {
     if (rig.machine.outputs().get(pin::kPhase) == 0) falls.push_back(rig.machine.now());
   }
   ASSERT_GT(falls.size(), 100u);
-  // The CPU sleeps: it wakes with the first cycle at or after fall + 16, takes the trap, jumps, and starts the write. Only when
-  // another handler is still running does it come later.
+  // The CPU sleeps: it wakes with the first cycle at or after fall + 16, takes the trap, jumps, and starts the write.
+  // Only when another handler is still running does it come later.
   CpuClock clock;
   clock.restart(kResetTicks, 0, 8);
   unsigned exact = 0;
@@ -91,7 +91,8 @@ TEST(Machine, TrippedWatchdogStopsTheCpuUntilReset) {
   rig.machine.run_until(40 * kMs, select_pins(pin::kWdTripped));
   ASSERT_EQ(rig.machine.outputs().get(pin::kWdTripped), 1u);
   const Tick trip = rig.machine.now();
-  EXPECT_NEAR(static_cast<double>(trip), static_cast<double>(26 * kMs), static_cast<double>(kMs)) << "25 ms after the last strobe";
+  EXPECT_NEAR(static_cast<double>(trip), static_cast<double>(26 * kMs), static_cast<double>(kMs))
+      << "25 ms after the last strobe";
   rig.machine.run_until(trip + 100);  // a bus cycle may end
   const std::uint64_t instructions = rig.machine.instructions();
   rig.machine.run_until(trip + 10 * kMs);
@@ -159,11 +160,13 @@ TEST(Machine, SignalsNameTheClockSourceAndTheTask) {
   rig.machine.run_until(fall + 20);
   EXPECT_EQ(rig.signal("cpu.task"), 3u);
   for (const char* name :
-       {"bus.addr",     "bus.data",         "bus.aa",         "bus.rd_n",        "bus.wr_n",        "bus.ta_n",         "host.isa.sa",
-        "host.isa.sd",  "host.isa.ior_n",   "host.isa.iow_n", "host.isa.memr_n", "host.isa.memw_n", "host.isa.iochrdy", "host.isa.aen",
-        "host.pic.ist", "host.pic.sig",     "host.pic.msk",   "host.pic.elr",    "host.breq",       "host.irq",         "host.ipos",
-        "host.eror",    "host.f1er",        "host.hreq",      "host.wdo",        "dpram.busy_host", "dpram.busy_cpu",   "cpu.pc",
-        "cpu.symbol",   "watchdog.tripped", "clock.phase",    "clock.servo"})
+       {"bus.addr",        "bus.data",        "bus.aa",           "bus.rd_n",       "bus.wr_n",
+        "bus.ta_n",        "host.isa.sa",     "host.isa.sd",      "host.isa.ior_n", "host.isa.iow_n",
+        "host.isa.memr_n", "host.isa.memw_n", "host.isa.iochrdy", "host.isa.aen",   "host.pic.ist",
+        "host.pic.sig",    "host.pic.msk",    "host.pic.elr",     "host.breq",      "host.irq",
+        "host.ipos",       "host.eror",       "host.f1er",        "host.hreq",      "host.wdo",
+        "dpram.busy_host", "dpram.busy_cpu",  "cpu.pc",           "cpu.symbol",     "watchdog.tripped",
+        "clock.phase",     "clock.servo"})
     EXPECT_TRUE(rig.machine.signals().find(name)) << name;
 }
 

@@ -1,6 +1,6 @@
-// The motor side of the board on all engines: equal at every tick under random life; the report of a difference names the pin;
-// who watches is told edge by edge, and a run stops at a selected pin.
-// A long run: BRICK_MOTOR_TICKS=1000000000 bin/unit_cosim --gtest_filter='*MotorPinsAre*OneIc' (seed: BRICK_MOTOR_SEED).
+// The motor side of the board on all engines: equal at every tick under random life; the report of a difference names
+// the pin; who watches is told edge by edge, and a run stops at a selected pin. A long run:
+// BRICK_MOTOR_TICKS=1000000000 bin/unit_cosim --gtest_filter='*MotorPinsAre*OneIc' (seed: BRICK_MOTOR_SEED).
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -70,7 +70,8 @@ TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, MotorPins,
-                         ::testing::Values(Size{"OneIc", 0x1, 400'000}, Size{"TwoIcs", 0x3, 400'000}, Size{"AllIcs", 0x3FFFFF, 120'000},
+                         ::testing::Values(Size{"OneIc", 0x1, 400'000}, Size{"TwoIcs", 0x3, 400'000},
+                                           Size{"AllIcs", 0x3FFFFF, 120'000},
                                            Size{"AllIcsByMacro", 0x3FFFFF, 120'000, true}),
                          [](const auto& size) { return std::string(size.param.name); });
 
@@ -93,8 +94,8 @@ TEST(MotorPinsOfAnEngine, DoNotDependOnHowARunIsCut) {
   }
 }
 
-// At reset values the command is 0, so TOP is wanted for half of the period of 2 (2 I7m00 + 3) ticks, I7m00 = 6527, and comes
-// late by the dead time of 16 x 15 ticks (servo_channel.md, PWM).
+// At reset values the command is 0, so TOP is wanted for half of the period of 2 (2 I7m00 + 3) ticks, I7m00 = 6527, and
+// comes late by the dead time of 16 x 15 ticks (servo_channel.md, PWM).
 TEST(MotorPinsOfAnEngine, StopAtTheSelectedPin) {
   for (const bool rtl : {true, false}) {
     auto board = rtl ? make_rtl_board(0x3) : make_model_board(0x3);
@@ -151,8 +152,8 @@ void write(Board& board, BoardInputs& in, std::uint32_t address, bool x, std::ui
   board.run_until(board.now() + 12);
 }
 
-// The reset is asynchronous: what it clears is seen at the first tick in reset, wherever that lies between two edges of clk_ref.
-// So soon after the last reset no other pin has left its level.
+// The reset is asynchronous: what it clears is seen at the first tick in reset, wherever that lies between two edges of
+// clk_ref. So soon after the last reset no other pin has left its level.
 TEST(MotorPinsOfAnEngine, LoseTheirCountAtTheFirstTickOfAReset) {
   for (const bool rtl : {true, false})
     for (const Tick at : {240, 241, 242}) {
@@ -183,7 +184,7 @@ TEST(MotorPinsOfAnEngine, LoseTheirCountAtTheFirstTickOfAReset) {
     }
 }
 
-// 25 ms without a strobe: servo-ic.md section 10. 960 periods of 1024 clk_ref are 2949120 ticks.
+// 25 ms without a strobe: servo-ic:10. 960 periods of 1024 clk_ref are 2949120 ticks.
 TEST(MotorPinsOfTheBoard, AreOffAfterTheWatchdogTripped) {
   auto board = make_lockstep_board(make_rtl_board(0x3), make_model_board(0x3));
   BoardInputs in;
@@ -246,14 +247,19 @@ TEST(Lockstep, ComparesEveryMotorPinInBothDirectionsAndNamesIt) {
           after.set(f, n, 1);
           auto board = make_lockstep_board(std::make_unique<OneMotorPinBoard>(ic, rtl_moves ? after : MotorOutputs{}),
                                            std::make_unique<OneMotorPinBoard>(ic, rtl_moves ? MotorOutputs{} : after));
-          const std::string name = fmt::format("{}.ch{}.{}", ic == 10 ? "servo_ic2s" : ic == 1 ? "servo_ic1" : "servo_ic0", n + 1, f.name);
+          const std::string name = fmt::format("{}.ch{}.{}",
+                                               ic == 10  ? "servo_ic2s"
+                                               : ic == 1 ? "servo_ic1"
+                                                         : "servo_ic0",
+                                               n + 1, f.name);
           try {
             board->run_until(100);
             ADD_FAILURE() << name << " was not compared";
           } catch (const LockstepDifference& e) {
             EXPECT_THAT(e.what(), ::testing::HasSubstr("differ at tick 5 "));
-            const char* values = f.width > 1 ? (rtl_moves ? "rtl $000001, systemc $000000" : "rtl $000000, systemc $000001")
-                                             : (rtl_moves ? "rtl 1, systemc 0" : "rtl 0, systemc 1");
+            const char* values = f.width > 1
+                                     ? (rtl_moves ? "rtl $000001, systemc $000000" : "rtl $000000, systemc $000001")
+                                     : (rtl_moves ? "rtl 1, systemc 0" : "rtl 0, systemc 1");
             EXPECT_THAT(e.what(), ::testing::HasSubstr(fmt::format("\n  {}: {}\n", name, values)));
           }
         }

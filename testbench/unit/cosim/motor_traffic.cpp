@@ -31,7 +31,8 @@ MotorTraffic::MotorTraffic(std::uint64_t seed, MotorTrafficOptions options) : ra
     if ((options.ics >> i & 1) != 0) macro_ics_.push_back(regs::kGateIcs[i].base);
   inputs_.fitted = options.ics;
   if (!macro_ics_.empty()) inputs_.macro_gate = below(16);
-  for (unsigned line = 0; line < 3; ++line) inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (1 + below(8)));
+  for (unsigned line = 0; line < 3; ++line)
+    inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (1 + below(8)));
   reset_at_ = 12 + below(30);  // released there
   bus_at_ = reset_at_ + 10;
 }
@@ -205,10 +206,12 @@ void MotorTraffic::choose_access() {
 // Any word of a MACRO IC, those that are built more often. Now and then it drives the clocks.
 void MotorTraffic::choose_macro_access() {
   namespace map = regs::macro_ic;
-  constexpr std::uint32_t kBuilt[] = {0x00, 0x02, map::kClockControl.address, map::kPwmControl.address, 0x0E, 0x0F, 0x15, 0x1D};
+  constexpr std::uint32_t kBuilt[] = {0x00, 0x02, map::kClockControl.address, map::kPwmControl.address, 0x0E, 0x0F,
+                                      0x15, 0x1D};
   const std::uint32_t offset = one_in(3) ? below(64) : kBuilt[below(std::size(kBuilt))];
   const std::uint32_t address = macro_ics_[below(static_cast<std::uint32_t>(macro_ics_.size()))] + offset;
-  const bool x = one_in(2), clock = x && offset == map::kClockControl.address, pwm = x && offset == map::kPwmControl.address;
+  const bool x = one_in(2), clock = x && offset == map::kClockControl.address,
+             pwm = x && offset == map::kPwmControl.address;
   if (one_in(3) || ((clock || pwm) && !options_.moving_clocks)) return read_at(address, x);
   write_at(address, x, clock ? clock_word(one_in(8)) : pwm ? pwm_word() : below(1u << 24));
 }

@@ -1,6 +1,6 @@
-// Random but repeatable life on the motor side: encoders that turn, reverse and stop, flags and other lines that toggle, ADC
-// data, and Port A cycles that write and read every register of the channels and of MACRO ICs; resets in between. What happens
-// at which tick follows from the seed alone, however a run is cut into calls.
+// Random but repeatable life on the motor side: encoders that turn, reverse and stop, flags and other lines that
+// toggle, ADC data, and Port A cycles that write and read every register of the channels and of MACRO ICs; resets in
+// between. What happens at which tick follows from the seed alone, however a run is cut into calls.
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@
 namespace brick {
 
 struct MotorTrafficOptions {
-  std::uint32_t ics = 1;         // that take part, as in BoardInputs::fitted; the lowest drives the clocks
-  Tick bus_pause = 300;          // between two accesses at most; one in ten times 20000
-  Tick pins_pause = 750;         // between two changes of the pins of an IC, about at most
-  bool moving_clocks = true;     // short periods, changed now and then; else as after a reset, and left alone
-  unsigned reset_one_in = 2000;  // accesses between two resets, on average, ten times that between two trips of the watchdog; 0 = neither
-  bool macro_drives = false;     // the first MACRO IC drives the clocks
+  std::uint32_t ics = 1;      // that take part, as in BoardInputs::fitted; the lowest drives the clocks
+  Tick bus_pause = 300;       // between two accesses at most; one in ten times 20000
+  Tick pins_pause = 750;      // between two changes of the pins of an IC, about at most
+  bool moving_clocks = true;  // short periods, changed now and then; else as after a reset, and left alone
+  unsigned reset_one_in =
+      2000;  // accesses between two resets, on average, ten times that between two trips of the watchdog; 0 = neither
+  bool macro_drives = false;  // the first MACRO IC drives the clocks
 };
 
 class MotorTraffic {

@@ -1,4 +1,4 @@
-// The Port A bus master against the formulas of host-bus.md 2.2: every guaranteed time, at every number of wait states and
+// The Port A bus master against the formulas of host-bus:2.2: every guaranteed time, at every number of wait states and
 // several CPU clocks; /TA stretching; areas; the registers that shape the cycles.
 #include "systemc/cpu/port_a.h"
 
@@ -16,7 +16,8 @@ constexpr double kNs = 1e6;  // femtoseconds
 // Presents accesses to the bus master and moves the pins along, with a board that shows `board(tick)`.
 class PortARig {
  public:
-  explicit PortARig(std::function<BoardOutputs(Tick)> board = [](Tick) { return BoardOutputs{}; }) : board_(std::move(board)) {
+  explicit PortARig(std::function<BoardOutputs(Tick)> board = [](Tick) { return BoardOutputs{}; })
+      : board_(std::move(board)) {
     port_a.on_cycle = [this](const PortACycle& c) { last = c; };
     port_a.reset(0, 0, pins);
     payload_.set_extension(&request_);
@@ -24,7 +25,8 @@ class PortARig {
   }
   ~PortARig() { payload_.clear_extension(&request_); }
 
-  tlm::tlm_response_status access(char space, std::uint32_t address, bool write, std::uint32_t data = 0, unsigned bytes = 4) {
+  tlm::tlm_response_status access(char space, std::uint32_t address, bool write, std::uint32_t data = 0,
+                                  unsigned bytes = 4) {
     payload_.set_address(kPmacBase + 8ull * address + (space == 'X' ? 4 : 0));
     payload_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
     payload_.set_data_length(bytes);
@@ -49,7 +51,9 @@ class PortARig {
     EXPECT_EQ(access(space, address, false), tlm::TLM_OK_RESPONSE);
     return data_;
   }
-  void write(char space, std::uint32_t address, std::uint32_t data) { EXPECT_EQ(access(space, address, true, data), tlm::TLM_OK_RESPONSE); }
+  void write(char space, std::uint32_t address, std::uint32_t data) {
+    EXPECT_EQ(access(space, address, true, data), tlm::TLM_OK_RESPONSE);
+  }
   void set_clock(unsigned multiplier) { write('X', 0xFFFFFD, multiplier - 1); }
   void set_wait_states(unsigned ws) {  // all areas
     const unsigned three_bits = std::min(ws, 7u);
@@ -78,7 +82,8 @@ constexpr double kEpsilon = 1e-5;  // ns, rounding to femtoseconds
 void expect_read_rows(const PortACycle& c, unsigned ws, double tc) {
   const double valid = c.end / kNs - c.start / kNs, low = (c.strobe_high - c.strobe_low) / kNs;
   EXPECT_GE(valid, (ws + 1 + form(ws)) * tc - 4 - kEpsilon) << "row 100";
-  EXPECT_LE((c.data_time - c.start) / kNs, (ws + 0.75) * tc - 5 + kEpsilon) << "row 104: the CPU may not ask for data earlier";
+  EXPECT_LE((c.data_time - c.start) / kNs, (ws + 0.75) * tc - 5 + kEpsilon)
+      << "row 104: the CPU may not ask for data earlier";
   EXPECT_GE((c.data_time - c.start) / kNs, (ws + 0.75) * tc - 5 - kEpsilon) << "row 104";
   EXPECT_GE((c.data_time - c.strobe_low) / kNs, (ws + 0.25) * tc - 5 - kEpsilon) << "row 105";
   EXPECT_GE((c.strobe_low - c.start) / kNs, 0.5 * tc - 2 - kEpsilon) << "row 115";
@@ -90,7 +95,12 @@ void expect_read_rows(const PortACycle& c, unsigned ws, double tc) {
 void expect_write_rows(const PortACycle& c, unsigned ws, double tc) {
   EXPECT_GE((c.end - c.start) / kNs, (ws + 1 + form(ws)) * tc - 4 - kEpsilon) << "row 100";
   EXPECT_GE((c.strobe_low - c.start) / kNs, (ws == 1 ? 0.25 : ws <= 3 ? 0.75 : 1.25) * tc - 2 - kEpsilon) << "row 101";
-  EXPECT_GE((c.strobe_high - c.strobe_low) / kNs, (ws == 1 ? 1.5 : ws <= 3 ? ws : ws - 0.5) * tc - 4 - kEpsilon) << "row 102";
+  EXPECT_GE((c.strobe_high - c.strobe_low) / kNs, (ws == 1   ? 1.5
+                                                   : ws <= 3 ? ws
+                                                             : ws - 0.5) *
+                                                          tc -
+                                                      4 - kEpsilon)
+      << "row 102";
   EXPECT_GE((c.end - c.strobe_high) / kNs, (0.25 + form(ws)) * tc - 2 - kEpsilon) << "row 103 and 109";
   EXPECT_GE((c.strobe_high - c.start) / kNs, (ws + 0.75) * tc - 4 - kEpsilon) << "row 107";
   EXPECT_GE((c.strobe_high - c.data_time) / kNs, (ws - 0.25) * tc - 3 - kEpsilon) << "row 108";
@@ -110,7 +120,8 @@ TEST(PortA, KeepsEveryRowAtEveryWaitStateAndClock) {
       rig.read('X', 0x078000);
       const PortACycle read = *rig.last;
       EXPECT_EQ(read.wait_states, ws);
-      // At 320 MHz and one wait state 5 ns before the end lie before /RD falls: the rows cannot all hold (illegal, 2.3).
+      // At 320 MHz and one wait state 5 ns before the end lie before /RD falls: the rows cannot all hold
+      // (illegal, 2.3).
       if ((ws + 0.25) * tc > 5) expect_read_rows(read, ws, tc);
       rig.write('Y', 0x078001, 0x123456);
       const PortACycle write = *rig.last;
@@ -118,11 +129,17 @@ TEST(PortA, KeepsEveryRowAtEveryWaitStateAndClock) {
       if (ws == 1) continue;  // the rows below begin with two wait states
       EXPECT_GE((write.data_time - read.strobe_high) / kNs, (1.25 + form(ws)) * tc - 4 - kEpsilon) << "row 112";
       rig.write('Y', 0x078001, 1);
-      EXPECT_GE((rig.last->strobe_low - write.strobe_high) / kNs, (ws <= 3 ? 2.0 : ws <= 7 ? 2.5 : 3.5) * tc - 4 - kEpsilon) << "row 114";
+      EXPECT_GE((rig.last->strobe_low - write.strobe_high) / kNs, (ws <= 3   ? 2.0
+                                                                   : ws <= 7 ? 2.5
+                                                                             : 3.5) *
+                                                                          tc -
+                                                                      4 - kEpsilon)
+          << "row 114";
       rig.read('X', 0x078000);
       const PortACycle first = *rig.last;
       rig.read('X', 0x078000);
-      EXPECT_GE((rig.last->strobe_low - first.strobe_high) / kNs, (ws <= 7 ? 1.75 : 2.75) * tc - 4 - kEpsilon) << "row 113";
+      EXPECT_GE((rig.last->strobe_low - first.strobe_high) / kNs, (ws <= 7 ? 1.75 : 2.75) * tc - 4 - kEpsilon)
+          << "row 113";
     }
   }
 }
@@ -178,7 +195,8 @@ TEST(PortA, EveryBitOfItsTwoRegistersReadsBack) {
     for (const std::uint32_t address : {0x060000u, 0x070010u, 0x078000u}) {
       rig.read('X', address);
       const unsigned lsb = address == 0x060000 ? 10 : address == 0x070010 ? 16 : 5, width = address == 0x060000 ? 3 : 5;
-      EXPECT_EQ(rig.last->wait_states, bit >= lsb && bit < lsb + width ? 1u << (bit - lsb) : 0u) << std::hex << address << " bit " << bit;
+      EXPECT_EQ(rig.last->wait_states, bit >= lsb && bit < lsb + width ? 1u << (bit - lsb) : 0u)
+          << std::hex << address << " bit " << bit;
     }
     EXPECT_EQ(rig.port_a.wait_states(0), bit < 5 ? 1u << bit : 0u);
   }
@@ -191,7 +209,8 @@ TEST(PortA, EveryBitOfItsTwoRegistersReadsBack) {
 
 TEST(PortA, NothingAnswersOutsideTheRegions) {
   PortARig rig;
-  for (const std::uint32_t address : {0x040000u, 0x05FFFFu, 0x064000u, 0x06FFFFu, 0x070100u, 0x077FFFu, 0x07C000u, 0x080000u, 0xFFFF7Fu})
+  for (const std::uint32_t address :
+       {0x040000u, 0x05FFFFu, 0x064000u, 0x06FFFFu, 0x070100u, 0x077FFFu, 0x07C000u, 0x080000u, 0xFFFF7Fu})
     EXPECT_EQ(rig.access('X', address, false), tlm::TLM_ADDRESS_ERROR_RESPONSE) << std::hex << address;
   EXPECT_EQ(rig.access('Y', 0xFFFFC6, false), tlm::TLM_ADDRESS_ERROR_RESPONSE) << "the on-chip page is in X space";
   EXPECT_EQ(rig.access('X', 0x078000, true, 1, 2), tlm::TLM_BURST_ERROR_RESPONSE);
@@ -213,7 +232,8 @@ TEST(PortA, OnChipAccessesMoveNoBusSignal) {
   rig.write('X', 0xFFFFC7, 0x41);
   EXPECT_TRUE(rig.last->on_chip);
   EXPECT_EQ(rig.last->wait_states, 7u);
-  for (const char* name : {"bus.addr", "bus.data", "bus.aa"}) EXPECT_EQ(rig.signals.value(*rig.signals.find(name)), 0u) << name;
+  for (const char* name : {"bus.addr", "bus.data", "bus.aa"})
+    EXPECT_EQ(rig.signals.value(*rig.signals.find(name)), 0u) << name;
   rig.write('X', 0x070010, 0x2);
   EXPECT_EQ(rig.signals.value(*rig.signals.find("bus.addr")), 0x70010u);
   EXPECT_EQ(rig.signals.value(*rig.signals.find("bus.data")), 2u);

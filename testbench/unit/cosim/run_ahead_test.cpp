@@ -1,5 +1,5 @@
-// Nothing depends on who runs ahead how far: the same host traffic gives the same bus cycles, at the same femtosecond, on every
-// engine, at every batch size, and however the host cuts its waits.
+// Nothing depends on who runs ahead how far: the same host traffic gives the same bus cycles, at the same femtosecond,
+// on every engine, at every batch size, and however the host cuts its waits.
 #include <fmt/format.h>
 
 #include <random>
@@ -65,10 +65,12 @@ class Host {
     strobe = false;
     rig_.machine.apply();
     wait(40);
-    while (rig_.machine.outputs().get(pin::kIsaIochrdy) == 0) rig_.machine.run_until(kEnd, select_pins(pin::kIsaIochrdy));
+    while (rig_.machine.outputs().get(pin::kIsaIochrdy) == 0)
+      rig_.machine.run_until(kEnd, select_pins(pin::kIsaIochrdy));
     wait(8);
     if (!write)
-      lines_.push_back(fmt::format("{} host reads {:05X} = {:04X}", rig_.machine.now(), address, rig_.machine.outputs().get(pin::kIsaSd)));
+      lines_.push_back(fmt::format("{} host reads {:05X} = {:04X}", rig_.machine.now(), address,
+                                   rig_.machine.outputs().get(pin::kIsaSd)));
     strobe = true;
     rig_.machine.apply();
     wait(12);
@@ -85,18 +87,20 @@ std::vector<std::string> story(Engine engine, Tick batch, Tick cut) {
   MachineRig rig("probe", config);
   std::vector<std::string> lines;
   rig.machine.on_bus_cycle = [&](const PortACycle& c) {
-    lines.push_back(fmt::format("{} {}{:06X} {} {:06X} end {} stretched {} pc {:X}", c.start, c.x ? 'X' : 'Y', c.address,
-                                c.write ? 'W' : 'R', c.data, c.end, c.stretched, c.pc));
+    lines.push_back(fmt::format("{} {}{:06X} {} {:06X} end {} stretched {} pc {:X}", c.start, c.x ? 'X' : 'Y',
+                                c.address, c.write ? 'W' : 'R', c.data, c.end, c.stretched, c.pc));
   };
   Host(rig, lines, cut).play();
   rig.machine.run_until(kEnd + 10'000);
-  lines.push_back(fmt::format("loops {} instructions {} pc {:X}", rig.y(0x102), rig.machine.instructions(), rig.machine.cpu().pc()));
+  lines.push_back(fmt::format("loops {} instructions {} pc {:X}", rig.y(0x102), rig.machine.instructions(),
+                              rig.machine.cpu().pc()));
   return lines;
 }
 
 // The lines of host and CPU interleave by when they are reported, which may differ; each side's own order may not.
 std::vector<std::string> sorted(std::vector<std::string> lines) {
-  std::stable_partition(lines.begin(), lines.end(), [](const std::string& s) { return s.find("host") != std::string::npos; });
+  std::stable_partition(lines.begin(), lines.end(),
+                        [](const std::string& s) { return s.find("host") != std::string::npos; });
   return lines;
 }
 
@@ -108,7 +112,8 @@ const std::vector<std::string>& reference() {
 void expect_same(const std::vector<std::string>& lines) {
   const auto& expected = reference();
   ASSERT_GT(expected.size(), 1000u);
-  for (std::size_t i = 0; i < std::min(expected.size(), lines.size()); ++i) ASSERT_EQ(lines[i], expected[i]) << "line " << i;
+  for (std::size_t i = 0; i < std::min(expected.size(), lines.size()); ++i)
+    ASSERT_EQ(lines[i], expected[i]) << "line " << i;
   EXPECT_EQ(lines.size(), expected.size());
 }
 
@@ -138,7 +143,8 @@ TEST(RunAhead, EnginesAgreeInEveryBusCycleAndHostRead) {
 TEST(RunAhead, ProbeUsesEverything) {
   const auto& lines = reference();
   const auto count = [&](const char* part) {
-    return std::count_if(lines.begin(), lines.end(), [&](const std::string& s) { return s.find(part) != std::string::npos; });
+    return std::count_if(lines.begin(), lines.end(),
+                         [&](const std::string& s) { return s.find(part) != std::string::npos; });
   };
   EXPECT_GT(count("X070010 W"), 200) << "phase interrupts";
   EXPECT_GT(count("X070011 W"), 50) << "servo interrupts";

@@ -19,15 +19,19 @@ constexpr Tick kEnd = 120'000;
 // `longest` = 0: as far as the inputs allow; else pieces of random length up to `longest`, some stopped by pins.
 std::vector<Change> changes(Board& board, Tick longest) {
   std::vector<Change> list;
-  board.on_change = [&](Tick t, const BoardOutputs& before, const BoardOutputs& after) { list.push_back({t, before, after}); };
+  board.on_change = [&](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+    list.push_back({t, before, after});
+  };
   BoardTraffic traffic(77);
   std::mt19937_64 random(static_cast<std::uint64_t>(longest));
   while (board.now() < kEnd) {
     const Tick end = std::min(traffic.next(), kEnd);
     while (board.now() < end) {
-      const Tick limit = longest == 0 ? end : std::min<Tick>(end, board.now() + 1 + static_cast<Tick>(random()) % longest);
+      const Tick limit =
+          longest == 0 ? end : std::min<Tick>(end, board.now() + 1 + static_cast<Tick>(random()) % longest);
       const bool stop = longest != 0 && random() % 2 == 0;
-      board.run_until(std::max(limit, board.now() + 1), stop ? select_pins(pin::kPhase, pin::kIsaSd, pin::kPaData) : BoardOutputs{});
+      board.run_until(std::max(limit, board.now() + 1),
+                      stop ? select_pins(pin::kPhase, pin::kIsaSd, pin::kPaData) : BoardOutputs{});
     }
     if (board.now() == traffic.next()) {
       traffic.change();

@@ -1,5 +1,5 @@
-// Integer and M-extension instructions: corner cases with values from the RISC-V manual, then random operands against the
-// same arithmetic in C++ on wider types.
+// Integer and M-extension instructions: corner cases with values from the RISC-V manual, then random operands against
+// the same arithmetic in C++ on wider types.
 #include <cstdint>
 #include <functional>
 #include <random>
@@ -10,9 +10,12 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kMin = 0x8000'0000, kMax = 0x7FFF'FFFF, kOnes = 0xFFFF'FFFF;
-const std::uint32_t kCorners[] = {0, 1, 2, 31, 32, 33, kMax, kMin, kMin + 1, kOnes, kOnes - 1, 0x0000'FFFF, 0xFFFF'0000, 0x5555'5555};
+const std::uint32_t kCorners[] = {0,    1,        2,     31,        32,          33,          kMax,
+                                  kMin, kMin + 1, kOnes, kOnes - 1, 0x0000'FFFF, 0xFFFF'0000, 0x5555'5555};
 
-std::int64_t sx(std::uint32_t v) { return v < kMin ? std::int64_t{v} : std::int64_t{v} - (std::int64_t{1} << 32); }  // value as signed
+std::int64_t sx(std::uint32_t v) {
+  return v < kMin ? std::int64_t{v} : std::int64_t{v} - (std::int64_t{1} << 32);
+}  // value as signed
 
 // Floor division by a power of two is what an arithmetic shift means.
 std::uint32_t shift_right_arithmetic(std::uint32_t a, unsigned n) {
@@ -73,7 +76,8 @@ TEST_F(CpuArithmetic, RegisterOperationsAgreeWithWideArithmetic) {
       }
     }
     for (int n = 0; n < 1000; ++n) {
-      const std::uint32_t a = static_cast<std::uint32_t>(random()), b = static_cast<std::uint32_t>(random()) >> (random() % 32);
+      const std::uint32_t a = static_cast<std::uint32_t>(random()),
+                          b = static_cast<std::uint32_t>(random()) >> (random() % 32);
       ASSERT_EQ(result(instruction, a, b), op.expected(a, b)) << op.name << ' ' << std::hex << a << ' ' << b;
     }
   }
@@ -107,7 +111,8 @@ TEST_F(CpuArithmetic, ShiftsByConstant) {
   }
 }
 
-TEST_F(CpuArithmetic, DivisionEdgeValues) {  // RISC-V unprivileged manual, table "semantics for division by zero and overflow"
+TEST_F(CpuArithmetic,
+       DivisionEdgeValues) {  // RISC-V unprivileged manual, table "semantics for division by zero and overflow"
   const auto m = [](unsigned f3) { return rv::r(1, f3, rv::a2, rv::a0, rv::a1); };
   EXPECT_EQ(result(m(4), 7, 0), kOnes);
   EXPECT_EQ(result(m(5), 7, 0), kOnes);
@@ -132,8 +137,8 @@ TEST_F(CpuArithmetic, RegisterZeroStaysZero) {
   cpu.set_reg(rv::a0, 5);
   set_word(kData, 77);
   cpu.set_reg(rv::a1, kData);
-  for (const rv::Word w : {rv::addi(0, rv::a0, 1), rv::add(0, rv::a0, rv::a0), rv::lui(0, 1), rv::lw(0, rv::a1, 0), rv::jal(0, 4),
-                           rv::csrrw(0, rv::mscratch, rv::a0), rv::r(1, 0, 0, rv::a0, rv::a0)}) {
+  for (const rv::Word w : {rv::addi(0, rv::a0, 1), rv::add(0, rv::a0, rv::a0), rv::lui(0, 1), rv::lw(0, rv::a1, 0),
+                           rv::jal(0, 4), rv::csrrw(0, rv::mscratch, rv::a0), rv::r(1, 0, 0, rv::a0, rv::a0)}) {
     execute(w);
     EXPECT_EQ(cpu.reg(0), 0u) << std::hex << w;
   }
@@ -153,9 +158,10 @@ TEST_F(CpuArithmetic, BranchesFollowTheirCondition) {
   struct {
     unsigned f3;
     std::function<bool(std::uint32_t, std::uint32_t)> taken;
-  } const list[] = {{0, [](auto a, auto b) { return a == b; }},        {1, [](auto a, auto b) { return a != b; }},
-                    {4, [](auto a, auto b) { return sx(a) < sx(b); }}, {5, [](auto a, auto b) { return sx(a) >= sx(b); }},
-                    {6, [](auto a, auto b) { return a < b; }},         {7, [](auto a, auto b) { return a >= b; }}};
+  } const list[] = {
+      {0, [](auto a, auto b) { return a == b; }},        {1, [](auto a, auto b) { return a != b; }},
+      {4, [](auto a, auto b) { return sx(a) < sx(b); }}, {5, [](auto a, auto b) { return sx(a) >= sx(b); }},
+      {6, [](auto a, auto b) { return a < b; }},         {7, [](auto a, auto b) { return a >= b; }}};
   for (const auto& entry : list) {
     for (const std::uint32_t a : kCorners) {
       for (const std::uint32_t b : kCorners) {
@@ -165,7 +171,8 @@ TEST_F(CpuArithmetic, BranchesFollowTheirCondition) {
           cpu.set_reg(rv::a1, b);
           execute(rv::b(entry.f3, rv::a0, rv::a1, distance));
           const std::uint32_t offset = entry.taken(a, b) ? static_cast<std::uint32_t>(distance) : 4;
-          ASSERT_EQ(cpu.pc(), kCode + 0x2000 + offset) << entry.f3 << std::hex << ' ' << a << ' ' << b << ' ' << distance;
+          ASSERT_EQ(cpu.pc(), kCode + 0x2000 + offset)
+              << entry.f3 << std::hex << ' ' << a << ' ' << b << ' ' << distance;
         }
       }
     }

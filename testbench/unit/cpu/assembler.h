@@ -1,5 +1,5 @@
-// A tiny assembler for the tests of the CPU: one function an instruction, written from the RISC-V formats and on purpose
-// apart from the decoder of the model. Registers are plain numbers.
+// A tiny assembler for the tests of the CPU: one function an instruction, written from the RISC-V formats and on
+// purpose apart from the decoder of the model. Registers are plain numbers.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ constexpr Word s(unsigned f3, unsigned rs2, unsigned rs1, int imm) {
 }
 constexpr Word b(unsigned f3, unsigned rs1, unsigned rs2, int imm) {
   const Word v = static_cast<Word>(imm);
-  return field(v, 12, 12) << 31 | field(v, 10, 5) << 25 | rs2 << 20 | rs1 << 15 | f3 << 12 | field(v, 4, 1) << 8 | field(v, 11, 11) << 7 |
-         0x63;
+  return field(v, 12, 12) << 31 | field(v, 10, 5) << 25 | rs2 << 20 | rs1 << 15 | f3 << 12 | field(v, 4, 1) << 8 |
+         field(v, 11, 11) << 7 | 0x63;
 }
 
 // RV32I.
@@ -51,7 +51,8 @@ constexpr Word lui(unsigned rd, Word top20) { return top20 << 12 | rd << 7 | 0x3
 constexpr Word auipc(unsigned rd, Word top20) { return top20 << 12 | rd << 7 | 0x17; }
 constexpr Word jal(unsigned rd, int imm) {
   const Word v = static_cast<Word>(imm);
-  return field(v, 20, 20) << 31 | field(v, 10, 1) << 21 | field(v, 11, 11) << 20 | field(v, 19, 12) << 12 | rd << 7 | 0x6F;
+  return field(v, 20, 20) << 31 | field(v, 10, 1) << 21 | field(v, 11, 11) << 20 | field(v, 19, 12) << 12 | rd << 7 |
+         0x6F;
 }
 constexpr Word jalr(unsigned rd, unsigned rs1, int imm) { return i(0x67, 0, rd, rs1, imm); }
 constexpr Word beq(unsigned x, unsigned y, int imm) { return b(0, x, y, imm); }
@@ -87,9 +88,15 @@ constexpr Word mret() { return 0x30200073; }
 constexpr Word wfi() { return 0x10500073; }
 
 // Zicsr.
-constexpr Word csrrw(unsigned rd, unsigned csr, unsigned rs1) { return csr << 20 | rs1 << 15 | 1u << 12 | rd << 7 | 0x73; }
-constexpr Word csrrs(unsigned rd, unsigned csr, unsigned rs1) { return csr << 20 | rs1 << 15 | 2u << 12 | rd << 7 | 0x73; }
-constexpr Word csrrc(unsigned rd, unsigned csr, unsigned rs1) { return csr << 20 | rs1 << 15 | 3u << 12 | rd << 7 | 0x73; }
+constexpr Word csrrw(unsigned rd, unsigned csr, unsigned rs1) {
+  return csr << 20 | rs1 << 15 | 1u << 12 | rd << 7 | 0x73;
+}
+constexpr Word csrrs(unsigned rd, unsigned csr, unsigned rs1) {
+  return csr << 20 | rs1 << 15 | 2u << 12 | rd << 7 | 0x73;
+}
+constexpr Word csrrc(unsigned rd, unsigned csr, unsigned rs1) {
+  return csr << 20 | rs1 << 15 | 3u << 12 | rd << 7 | 0x73;
+}
 constexpr Word csrrwi(unsigned rd, unsigned csr, unsigned imm) { return csrrw(rd, csr, imm) | 4u << 12; }
 constexpr Word csrrsi(unsigned rd, unsigned csr, unsigned imm) { return csrrs(rd, csr, imm) | 4u << 12; }
 constexpr Word csrrci(unsigned rd, unsigned csr, unsigned imm) { return csrrc(rd, csr, imm) | 4u << 12; }
@@ -118,6 +125,8 @@ enum Csr : unsigned {
 };
 
 // A full constant in two instructions.
-inline std::vector<Word> li(unsigned rd, Word v) { return {lui(rd, (v + 0x800) >> 12), addi(rd, rd, static_cast<int>(v & 0xFFF))}; }
+inline std::vector<Word> li(unsigned rd, Word v) {
+  return {lui(rd, (v + 0x800) >> 12), addi(rd, rd, static_cast<int>(v & 0xFFF))};
+}
 
 }  // namespace rv

@@ -92,7 +92,9 @@ class Made {
 };
 
 // auipc t0, 1; addi a0, zero, value; sw a0, 0(t0); j .
-std::vector<std::uint32_t> writes(std::uint32_t value) { return {0x00001297, value << 20 | 0x513, 0x00A2A023, 0x0000006F}; }
+std::vector<std::uint32_t> writes(std::uint32_t value) {
+  return {0x00001297, value << 20 | 0x513, 0x00A2A023, 0x0000006F};
+}
 
 TEST(CpuCommand, VerdictIsWhatTheProgramWrote) {
   EXPECT_EQ(Made(0x8000'0000, writes(1)).run().status, 0);
@@ -102,7 +104,8 @@ TEST(CpuCommand, VerdictIsWhatTheProgramWrote) {
   const Result service = Made(0x8000'0000, writes(64)).run();
   EXPECT_EQ(service.status, 1);
   EXPECT_THAT(service.output, HasSubstr("wrote 0x40 to tohost"));
-  EXPECT_THAT(Made(0x8000'0000, writes(0)).run().output, HasSubstr("1000 instructions without a write")) << "zero says nothing";
+  EXPECT_THAT(Made(0x8000'0000, writes(0)).run().output, HasSubstr("1000 instructions without a write"))
+      << "zero says nothing";
 }
 
 TEST(CpuCommand, CountsInstructionsAndCycles) {
@@ -120,8 +123,8 @@ TEST(CpuCommand, TrapWithoutAHandlerIsNamed) {
   for (const std::uint64_t limit : {2u, 1000u, 100'000'000u}) {
     const Result r = Made(0x8000'0000, {0x00000013, 0x00100073}).run(limit);
     EXPECT_EQ(r.status, 1);
-    EXPECT_THAT(r.output,
-                AllOf(HasSubstr("failed: trap 3 at 0x80000004 and its handler at 0x0 traps again"), HasSubstr("instructions    1\n")));
+    EXPECT_THAT(r.output, AllOf(HasSubstr("failed: trap 3 at 0x80000004 and its handler at 0x0 traps again"),
+                                HasSubstr("instructions    1\n")));
   }
 }
 

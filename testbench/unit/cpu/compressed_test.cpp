@@ -30,29 +30,40 @@ Half c_addi16sp(int imm) {
                            scatter(static_cast<unsigned>(imm), {{9, 12}, {4, 6}, {6, 5}, {8, 4}, {7, 3}, {5, 2}}));
 }
 Half c_addi4spn(unsigned rd, unsigned imm) {
-  return static_cast<Half>(c(rd) << 2 | scatter(imm, {{5, 12}, {4, 11}, {9, 10}, {8, 9}, {7, 8}, {6, 7}, {2, 6}, {3, 5}}));
+  return static_cast<Half>(c(rd) << 2 |
+                           scatter(imm, {{5, 12}, {4, 11}, {9, 10}, {8, 9}, {7, 8}, {6, 7}, {2, 6}, {3, 5}}));
 }
 Half c_mem(unsigned f3, unsigned reg, unsigned base, unsigned imm) {
-  return static_cast<Half>(f3 << 13 | c(base) << 7 | c(reg) << 2 | scatter(imm, {{5, 12}, {4, 11}, {3, 10}, {2, 6}, {6, 5}}));
+  return static_cast<Half>(f3 << 13 | c(base) << 7 | c(reg) << 2 |
+                           scatter(imm, {{5, 12}, {4, 11}, {3, 10}, {2, 6}, {6, 5}}));
 }
 Half c_lwsp(unsigned rd, unsigned imm) {
   return static_cast<Half>(2u << 13 | rd << 7 | 2u | scatter(imm, {{5, 12}, {4, 6}, {3, 5}, {2, 4}, {7, 3}, {6, 2}}));
 }
 Half c_swsp(unsigned rs2, unsigned imm) {
-  return static_cast<Half>(6u << 13 | rs2 << 2 | 2u | scatter(imm, {{5, 12}, {4, 11}, {3, 10}, {2, 9}, {7, 8}, {6, 7}}));
+  return static_cast<Half>(6u << 13 | rs2 << 2 | 2u |
+                           scatter(imm, {{5, 12}, {4, 11}, {3, 10}, {2, 9}, {7, 8}, {6, 7}}));
 }
-Half c_shift(unsigned kind, unsigned rd, int n) { return static_cast<Half>(ci(4, 1, 0, n) | kind << 10 | c(rd) << 7); }  // srli srai andi
-Half c_alu(unsigned kind, unsigned rd, unsigned rs2) { return static_cast<Half>(0x8C01 | c(rd) << 7 | kind << 5 | c(rs2) << 2); }
+Half c_shift(unsigned kind, unsigned rd, int n) {
+  return static_cast<Half>(ci(4, 1, 0, n) | kind << 10 | c(rd) << 7);
+}  // srli srai andi
+Half c_alu(unsigned kind, unsigned rd, unsigned rs2) {
+  return static_cast<Half>(0x8C01 | c(rd) << 7 | kind << 5 | c(rs2) << 2);
+}
 Half c_jump(unsigned f3, int d) {
   return static_cast<Half>(
       f3 << 13 | 1u |
-      scatter(static_cast<unsigned>(d), {{11, 12}, {4, 11}, {9, 10}, {8, 9}, {10, 8}, {6, 7}, {7, 6}, {3, 5}, {2, 4}, {1, 3}, {5, 2}}));
+      scatter(static_cast<unsigned>(d),
+              {{11, 12}, {4, 11}, {9, 10}, {8, 9}, {10, 8}, {6, 7}, {7, 6}, {3, 5}, {2, 4}, {1, 3}, {5, 2}}));
 }
 Half c_branch(unsigned f3, unsigned rs1, int d) {
-  return static_cast<Half>(f3 << 13 | c(rs1) << 7 | 1u |
-                           scatter(static_cast<unsigned>(d), {{8, 12}, {4, 11}, {3, 10}, {7, 6}, {6, 5}, {2, 4}, {1, 3}, {5, 2}}));
+  return static_cast<Half>(
+      f3 << 13 | c(rs1) << 7 | 1u |
+      scatter(static_cast<unsigned>(d), {{8, 12}, {4, 11}, {3, 10}, {7, 6}, {6, 5}, {2, 4}, {1, 3}, {5, 2}}));
 }
-Half c_register(unsigned bit12, unsigned rd, unsigned rs2) { return static_cast<Half>(4u << 13 | bit12 << 12 | rd << 7 | rs2 << 2 | 2u); }
+Half c_register(unsigned bit12, unsigned rd, unsigned rs2) {
+  return static_cast<Half>(4u << 13 | bit12 << 12 | rd << 7 | rs2 << 2 | 2u);
+}
 
 class CpuCompressed : public CpuBench {
  protected:
@@ -186,8 +197,8 @@ TEST_F(CpuCompressed, JumpsAndBranches) {
 }
 
 TEST_F(CpuCompressed, HintsDoNothing) {
-  for (const Half h : {c_addi(0, 0), c_addi(0, 5), c_addi(9, 0), c_li(0, 3), c_lui(0, 3), c_slli(0, 4), c_slli(9, 0), c_register(0, 0, 9),
-                       c_register(1, 0, 9)}) {
+  for (const Half h : {c_addi(0, 0), c_addi(0, 5), c_addi(9, 0), c_li(0, 3), c_lui(0, 3), c_slli(0, 4), c_slli(9, 0),
+                       c_register(0, 0, 9), c_register(1, 0, 9)}) {
     cpu.set_reg(9, 123);
     run_half(h);
     EXPECT_EQ(cpu.reg(0), 0u);
@@ -216,8 +227,10 @@ TEST_F(CpuCompressed, ReservedFormsAreIllegal) {
   for (unsigned kind = 0; kind < 4; ++kind) {
     expect_illegal(static_cast<Half>(c_alu(kind, 9, 10) | 1u << 12), "64-bit register arithmetic");
   }
-  for (const unsigned f3 : {1u, 3u, 4u, 5u, 7u}) expect_illegal(static_cast<Half>(f3 << 13), "quadrant 0, floating point or reserved");
-  for (const unsigned f3 : {1u, 3u, 5u, 7u}) expect_illegal(static_cast<Half>(f3 << 13 | 2u), "quadrant 2, floating point");
+  for (const unsigned f3 : {1u, 3u, 4u, 5u, 7u})
+    expect_illegal(static_cast<Half>(f3 << 13), "quadrant 0, floating point or reserved");
+  for (const unsigned f3 : {1u, 3u, 5u, 7u})
+    expect_illegal(static_cast<Half>(f3 << 13 | 2u), "quadrant 2, floating point");
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ class CpuBench : public ::testing::Test {
   }
 
   void put(std::uint32_t address, const std::vector<rv::Word>& program) {
-    std::memcpy(cpu.memory(address, static_cast<std::uint32_t>(4 * program.size())), program.data(), 4 * program.size());
+    std::memcpy(cpu.memory(address, static_cast<std::uint32_t>(4 * program.size())), program.data(),
+                4 * program.size());
     cpu.invalidate_code();
   }
   void put_half(std::uint32_t address, std::uint16_t h) {

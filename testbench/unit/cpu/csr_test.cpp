@@ -76,8 +76,8 @@ TEST_F(CpuCsr, ReadOnlyRegistersRefuseWrites) {
 }
 
 TEST_F(CpuCsr, UnknownRegistersAreIllegal) {
-  for (const unsigned n :
-       {0x000u, 0x001u, 0x100u, 0x180u, 0x302u, 0x303u, 0x306u, 0x345u, 0x3A0u, 0x7A0u, 0x7B0u, 0xB01u, 0xC01u, 0xFFFu}) {
+  for (const unsigned n : {0x000u, 0x001u, 0x100u, 0x180u, 0x302u, 0x303u, 0x306u, 0x345u, 0x3A0u, 0x7A0u, 0x7B0u,
+                           0xB01u, 0xC01u, 0xFFFu}) {
     cpu.set_reg(rv::a0, 0x1111);
     EXPECT_FALSE(legal(rv::csrrs(rv::a0, n, 0))) << std::hex << n;
     EXPECT_FALSE(legal(rv::csrrw(0, n, rv::a1))) << std::hex << n;
@@ -88,8 +88,9 @@ TEST_F(CpuCsr, UnknownRegistersAreIllegal) {
 TEST_F(CpuCsr, CycleAndInstructionCountersCount) {
   jump(kCode);
   // nop 1, mcycle read 2, div 20, cycle read 2, instret reads
-  put(kCode, {rv::nop(), rv::csrrs(rv::a0, rv::mcycle, 0), rv::r(1, 4, rv::t0, rv::t1, rv::t1), rv::csrrs(rv::a1, rv::cycle, 0),
-              rv::csrrs(rv::a2, rv::minstret, 0), rv::ecall(), rv::csrrs(rv::a3, rv::instret, 0)});
+  put(kCode, {rv::nop(), rv::csrrs(rv::a0, rv::mcycle, 0), rv::r(1, 4, rv::t0, rv::t1, rv::t1),
+              rv::csrrs(rv::a1, rv::cycle, 0), rv::csrrs(rv::a2, rv::minstret, 0), rv::ecall(),
+              rv::csrrs(rv::a3, rv::instret, 0)});
   steps(5);
   EXPECT_EQ(cpu.reg(rv::a1) - cpu.reg(rv::a0), 22u);
   steps(1);  // the ecall does not count
@@ -101,9 +102,10 @@ TEST_F(CpuCsr, CycleAndInstructionCountersCount) {
 TEST_F(CpuCsr, CountersCanBeWrittenAndCarry) {
   jump(kCode);
   cpu.set_reg(rv::a0, 0xFFFF'FFFF);
-  put(kCode, {rv::csrrwi(0, rv::mcycleh, 3), rv::csrrw(0, rv::mcycle, rv::a0), rv::csrrs(rv::a1, rv::mcycle, 0),
-              rv::csrrs(rv::a2, rv::cycleh, 0), rv::csrrwi(0, rv::minstreth, 9), rv::csrrw(0, rv::minstret, rv::a0),
-              rv::csrrs(rv::a3, rv::minstret, 0), rv::csrrs(rv::a4, rv::minstret, 0), rv::csrrs(rv::a5, rv::instreth, 0)});
+  put(kCode,
+      {rv::csrrwi(0, rv::mcycleh, 3), rv::csrrw(0, rv::mcycle, rv::a0), rv::csrrs(rv::a1, rv::mcycle, 0),
+       rv::csrrs(rv::a2, rv::cycleh, 0), rv::csrrwi(0, rv::minstreth, 9), rv::csrrw(0, rv::minstret, rv::a0),
+       rv::csrrs(rv::a3, rv::minstret, 0), rv::csrrs(rv::a4, rv::minstret, 0), rv::csrrs(rv::a5, rv::instreth, 0)});
   steps(9);
   EXPECT_EQ(cpu.reg(rv::a1), 1u) << "0xFFFFFFFF plus the two cycles of the write";
   EXPECT_EQ(cpu.reg(rv::a2), 4u);

@@ -32,8 +32,8 @@ void put(Bytes& bytes, std::size_t at, std::uint32_t v, unsigned count) {
   for (unsigned i = 0; i < count; ++i) bytes.at(at + i) = static_cast<char>(v >> (8 * i));
 }
 
-// Place of the first program header that is loaded: 32 bytes with type 0, file offset 4, run address 8, stored address 12,
-// bytes in the file 16 and in memory 20.
+// Place of the first program header that is loaded: 32 bytes with type 0, file offset 4, run address 8, stored address
+// 12, bytes in the file 16 and in memory 20.
 std::size_t load_header(const Bytes& bytes) {
   std::size_t at = 52;
   while (bytes.at(at) != 1) at += 32;
@@ -128,8 +128,8 @@ TEST(ElfFile, SegmentOutsideMemory) {
     elf.load(cpu);
     FAIL() << "loaded";
   } catch (const std::runtime_error& e) {
-    EXPECT_THAT(e.what(),
-                AllOf(HasSubstr(kProgram), HasSubstr("lies outside memory"), HasSubstr("expected it within 0x80000000..0x80001fff")));
+    EXPECT_THAT(e.what(), AllOf(HasSubstr(kProgram), HasSubstr("lies outside memory"),
+                                HasSubstr("expected it within 0x80000000..0x80001fff")));
   }
 }
 
@@ -161,7 +161,8 @@ TEST(ElfFile, NonsenseOffsetsAreErrors) {
   EXPECT_THAT(error_after([](Bytes& b) { put(b, 28, 0xFFFF'FFF0, 4); }), HasSubstr("for the table of program headers"));
   EXPECT_THAT(error_after([](Bytes& b) { put(b, 32, 0xFFFF'FFF0, 4); }), HasSubstr("for the table of section headers"));
   EXPECT_THAT(error_after([](Bytes& b) { put(b, load_header(b) + 4, 0xFFFF'FFF0, 4); }), HasSubstr("for a segment"));
-  EXPECT_THAT(error_after([](Bytes& b) { put(b, load_header(b) + 20, 4, 4); }), HasSubstr("more bytes in the file than in memory"));
+  EXPECT_THAT(error_after([](Bytes& b) { put(b, load_header(b) + 20, 4, 4); }),
+              HasSubstr("more bytes in the file than in memory"));
 }
 
 // Bytes overwritten at random: an error or a program, never a crash (the sanitizer build looks closer).

@@ -108,9 +108,9 @@ TEST_F(CpuInterrupts, NestByMask) {
   cpu.set_reg(rv::s0, bit(kIrqPhase));
   cpu.set_reg(rv::s1, bit(kIrqServo));
   const std::uint32_t body = kHandler + 4 * kIrqServo + 0x200;
-  put(body, {rv::csrrs(rv::a0, rv::mepc, 0), rv::csrrc(0, rv::mip, rv::s1), rv::csrrc(0, rv::mie, rv::s1), rv::csrrsi(0, rv::mstatus, 8),
-             rv::nop(), rv::nop(), rv::addi(rv::a3, rv::a3, 1), rv::csrrci(0, rv::mstatus, 8), rv::csrrs(0, rv::mie, rv::s1),
-             rv::csrrw(0, rv::mepc, rv::a0), rv::mret()});
+  put(body, {rv::csrrs(rv::a0, rv::mepc, 0), rv::csrrc(0, rv::mip, rv::s1), rv::csrrc(0, rv::mie, rv::s1),
+             rv::csrrsi(0, rv::mstatus, 8), rv::nop(), rv::nop(), rv::addi(rv::a3, rv::a3, 1),
+             rv::csrrci(0, rv::mstatus, 8), rv::csrrs(0, rv::mie, rv::s1), rv::csrrw(0, rv::mepc, rv::a0), rv::mret()});
   put(phase_handler, {rv::csrrc(0, rv::mip, rv::s0), rv::addi(rv::a4, rv::a4, 1), rv::mret()});
   enable(bit(kIrqPhase) | bit(kIrqServo));
 

@@ -32,7 +32,8 @@ TEST_F(CpuMemory, LoadsExtendBySignOrZero) {
     EXPECT_EQ(load(rv::lhu, kData), 0x0000'FF80u);
     EXPECT_EQ(load(rv::lh, kData + 2), 0xFFFF'807Fu);
     EXPECT_EQ(load(rv::lhu, kData + 2), 0x0000'807Fu);
-    const std::uint32_t as_signed[] = {0xFFFF'FF80, 0xFFFF'FFFF, 0x7F, 0xFFFF'FF80}, as_unsigned[] = {0x80, 0xFF, 0x7F, 0x80};
+    const std::uint32_t as_signed[] = {0xFFFF'FF80, 0xFFFF'FFFF, 0x7F, 0xFFFF'FF80},
+                        as_unsigned[] = {0x80, 0xFF, 0x7F, 0x80};
     for (std::uint32_t n = 0; n < 4; ++n) {
       EXPECT_EQ(load(rv::lb, kData + n), as_signed[n]);
       EXPECT_EQ(load(rv::lbu, kData + n), as_unsigned[n]);
@@ -275,7 +276,8 @@ class CpuSelfModifying : public CpuMemory {
   // The routine sets a2, to 1 before the change and to 0x7FE after it.
   void call_change_call(std::uint32_t place, const std::vector<rv::Word>& routine, rv::Word store, std::uint32_t where,
                         std::uint32_t what) {
-    put(kCode, {store, rv::jalr(rv::ra, rv::a0, 0), rv::add(rv::a4, rv::a2, 0), store, rv::jalr(rv::ra, rv::a0, 0), rv::ebreak()});
+    put(kCode, {store, rv::jalr(rv::ra, rv::a0, 0), rv::add(rv::a4, rv::a2, 0), store, rv::jalr(rv::ra, rv::a0, 0),
+                rv::ebreak()});
     for (std::size_t i = 0; i < routine.size(); ++i) {
       put_half(place + 4 * static_cast<std::uint32_t>(i), static_cast<std::uint16_t>(routine[i]));
       put_half(place + 4 * static_cast<std::uint32_t>(i) + 2, static_cast<std::uint16_t>(routine[i] >> 16));
@@ -307,8 +309,8 @@ TEST_F(CpuSelfModifying, StoresIntoAKnownCodePageInvalidateEachTime) {
 TEST_F(CpuSelfModifying, ASecondHalfInANeighbourPageIsWatched) {
   // The routine is one jump back whose second half, with the distance in it, lies in the next page.
   const rv::Word back = rv::jalr(0, rv::ra, 0), further = rv::jalr(0, rv::ra, 8);
-  put(kCode, {rv::jalr(rv::ra, rv::a0, 0), rv::sh(rv::s0, rv::a3, 0), rv::sh(rv::s0, rv::s1, 0), rv::jalr(rv::ra, rv::a0, 0), rv::ebreak(),
-              rv::ebreak(), rv::nop()});
+  put(kCode, {rv::jalr(rv::ra, rv::a0, 0), rv::sh(rv::s0, rv::a3, 0), rv::sh(rv::s0, rv::s1, 0),
+              rv::jalr(rv::ra, rv::a0, 0), rv::ebreak(), rv::ebreak(), rv::nop()});
   const std::uint32_t place = kData + 0xFFE;
   put_half(place, static_cast<std::uint16_t>(back));
   put_half(place + 2, static_cast<std::uint16_t>(back >> 16));

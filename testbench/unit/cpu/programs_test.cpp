@@ -27,7 +27,8 @@ class Program {
   template <typename T>
   T result(std::size_t index) {
     T value;
-    std::memcpy(&value, cpu.memory(*elf_.symbol("results") + static_cast<std::uint32_t>(index * sizeof(T)), sizeof(T)), sizeof(T));
+    std::memcpy(&value, cpu.memory(*elf_.symbol("results") + static_cast<std::uint32_t>(index * sizeof(T)), sizeof(T)),
+                sizeof(T));
     return value;
   }
   Cpu cpu;

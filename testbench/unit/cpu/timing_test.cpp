@@ -26,7 +26,8 @@ TEST_F(CpuTiming, InstructionsCostWhatTheTableSays) {
   EXPECT_EQ(cost(rv::lui(rv::a2, 1)), 1);
   EXPECT_EQ(cost(rv::auipc(rv::a2, 1)), 1);
   EXPECT_EQ(cost(rv::fence()), 1);
-  for (const auto op : {rv::lb, rv::lh, rv::lw, rv::lbu, rv::lhu}) EXPECT_EQ(cost(op(rv::a2, rv::a0, 0), kData), 2) << "load";
+  for (const auto op : {rv::lb, rv::lh, rv::lw, rv::lbu, rv::lhu})
+    EXPECT_EQ(cost(op(rv::a2, rv::a0, 0), kData), 2) << "load";
   for (const auto op : {rv::sb, rv::sh, rv::sw}) EXPECT_EQ(cost(op(rv::a2, rv::a0, 0), kData), 1) << "store";
   EXPECT_EQ(cost(rv::beq(rv::a0, rv::a1, 8), 1, 2), 1) << "branch not taken";
   EXPECT_EQ(cost(rv::beq(rv::a0, rv::a1, 8), 2, 2), 2) << "branch taken";
@@ -91,7 +92,8 @@ TEST_F(CpuTiming, InterruptAtTheLimitWaitsForTheNextRun) {
   EXPECT_EQ(cpu.pc(), kCode + 0x1000);
 }
 
-// The interrupted program under phase interrupts every 997 cycles and servo interrupts 60 cycles before each fourth of them.
+// The interrupted program under phase interrupts every 997 cycles and servo interrupts 60 cycles before each fourth of
+// them.
 struct Recorder : DeviceBus {
   Result access(std::uint32_t address, unsigned, bool write, std::uint32_t data, Cycle now) override {
     checksum = checksum * 31 + address + data + static_cast<std::uint64_t>(now) + (write ? 1 : 0);

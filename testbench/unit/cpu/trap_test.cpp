@@ -43,10 +43,12 @@ TEST_F(CpuTrap, ReservedEncodingsAreIllegalWithTheInstructionInMtval) {
   for (const unsigned f3 : {3u, 6u, 7u}) expect_illegal(rv::i(0x03, f3, 1, 2, 0), "load");
   for (const unsigned f3 : {3u, 4u, 5u, 6u, 7u}) expect_illegal(rv::s(f3, 1, 2, 0), "store");
   for (const unsigned f3 : {2u, 3u, 7u}) expect_illegal(rv::i(0x0F, f3, 0, 0, 0), "misc-mem");
-  for (const unsigned opcode : {0x07u, 0x27u, 0x43u, 0x53u}) expect_illegal(rv::i(opcode, 2, 1, 2, 0), "floating point");
+  for (const unsigned opcode : {0x07u, 0x27u, 0x43u, 0x53u})
+    expect_illegal(rv::i(opcode, 2, 1, 2, 0), "floating point");
   expect_illegal(rv::i(0x2F, 2, 1, 2, 0), "atomic");
   for (const unsigned opcode : {0x1Bu, 0x3Bu}) expect_illegal(rv::i(opcode, 0, 1, 2, 0), "64-bit arithmetic");
-  for (const unsigned opcode : {0x1Fu, 0x3Fu, 0x5Fu, 0x7Fu}) expect_illegal(rv::i(opcode, 0, 1, 2, 0), "longer than 32 bits");
+  for (const unsigned opcode : {0x1Fu, 0x3Fu, 0x5Fu, 0x7Fu})
+    expect_illegal(rv::i(opcode, 0, 1, 2, 0), "longer than 32 bits");
   expect_illegal(0x1020'0073, "sret");
   expect_illegal(0x0020'0073, "uret");
   expect_illegal(0x1200'0073, "sfence.vma");
@@ -167,7 +169,8 @@ TEST_F(CpuTrap, ExceptionsIgnoreVectoredMode) {
 TEST_F(CpuTrap, HooksSeeTrapsReturnsCallsAndReturns) {
   std::vector<std::string> log;
   const auto note = [&](const char* what, std::uint32_t a, std::uint32_t b, Cycle at) {
-    log.push_back(std::string(what) + ' ' + std::to_string(a) + ' ' + std::to_string(b - kCode) + ' ' + std::to_string(at - 1000));
+    log.push_back(std::string(what) + ' ' + std::to_string(a) + ' ' + std::to_string(b - kCode) + ' ' +
+                  std::to_string(at - 1000));
   };
   jump(kCode);
   put(kCode, {rv::jal(rv::ra, 0x100), rv::ecall()});               // 0: call, 4: ecall

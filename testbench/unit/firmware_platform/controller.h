@@ -1,5 +1,5 @@
-// The firmware on fake hardware, as a host sees it: characters in, characters out. Every line is given to the receive queue as the
-// host port interrupt would, then background passes run until the queue is empty.
+// The firmware on fake hardware, as a host sees it: characters in, characters out. Every line is given to the receive
+// queue as the host port interrupt would, then background passes run until the queue is empty.
 #pragma once
 
 #include <string>
@@ -14,9 +14,10 @@ class Controller {
   explicit Controller(unsigned fitted = 0x3, bool client_settings = true);
 
   std::string send(const std::string& characters);  // as they are; returns every byte answered
-  std::string line(const std::string& text);        // with CR; framing replaced: ACK dropped, CR between lines -> '|', BELL dropped
-  std::string restart();                            // reset line: start-up from flash
-  void servo(unsigned interrupts);                  // runs the servo task, and the real-time task when it is due
+  std::string line(
+      const std::string& text);     // with CR; framing replaced: ACK dropped, CR between lines -> '|', BELL dropped
+  std::string restart();            // reset line: start-up from flash
+  void servo(unsigned interrupts);  // runs the servo task, and the real-time task when it is due
 
  private:
   void start();

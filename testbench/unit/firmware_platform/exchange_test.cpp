@@ -1,4 +1,4 @@
-// Golden exchanges of firmware.md section 13 and the protocol rules of section 6, byte for byte.
+// Golden exchanges of firmware:13 and the protocol rules of firmware:6, byte for byte.
 #include <gtest/gtest.h>
 
 #include "testbench/unit/covers.h"

@@ -1,5 +1,5 @@
-/* Fake hardware for firmware compiled natively. A store through hal_x or hal_y is noticed at the next call: it is masked to
- * 24 bits, and dropped when no IC stands at the address. */
+/* Fake hardware for firmware compiled natively. A store through hal_x or hal_y is noticed at the next call: it is
+ * masked to 24 bits, and dropped when no IC stands at the address. */
 #include "testbench/unit/firmware_platform/fake_hal.h"
 
 #include <string.h>

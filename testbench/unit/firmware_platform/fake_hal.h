@@ -1,5 +1,5 @@
-/* Controls of the fake hardware behind firmware/hal/hal.h: two arrays of PMAC words, strap words, and the host's side of the
- * character queues. Plain C, so that the firmware is compiled exactly as for the target. */
+/* Controls of the fake hardware behind firmware/hal/hal.h: two arrays of PMAC words, strap words, and the host's side
+ * of the character queues. Plain C, so that the firmware is compiled exactly as for the target. */
 #ifndef TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
 #define TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
 
@@ -20,7 +20,8 @@ void fake_hal_fit(uint32_t fitted);             /* changes the ICs without power
 void fake_hal_stop_clocks(bool stopped);        /* no phase interrupt comes */
 const char* fake_host_output(uint32_t* length); /* everything sent to the host since the last call; valid until then */
 
-/* While the firmware waits: a millisecond passes and `action` is called, in place of the host that reads. Null: it reads again. */
+/* While the firmware waits: a millisecond passes and `action` is called, in place of the host that reads. Null: it
+ * reads again. */
 void fake_hal_on_wait(void (*action)(void));
 
 /* Writes to device words (gate ICs, latches) in order, newest last. */

@@ -75,7 +75,8 @@ DeviceBus::Result ImageBoard::access(std::uint32_t address, unsigned bytes, bool
   } else if (word == HI08_X_HCR && write) {
     hcr_ = data;
   } else if (word >= SERVO_IC_0_BASE && word < 0x07C000) {
-    const bool drives = (data & (SERVO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_MASK | SERVO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_MASK)) == 0;
+    const bool drives =
+        (data & (SERVO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_MASK | SERVO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_MASK)) == 0;
     const bool clock_word = x && word == SERVO_IC_0_BASE + SERVO_IC_X_CLOCK_CONTROL;
     if (write && clock_word && drives && clocks_started_ == 0) clocks_started_ = now - reset_at_;
     static const std::uint32_t bases[] = GATE_IC_BASES;

@@ -1,6 +1,6 @@
-// The firmware image on the CPU model with the simplest devices that let it live: gate IC registers that hold what is written, an HI08
-// that a host reads and writes at once, and phase and servo interrupts at the rate of servo IC 0. No Port A, no edges: for tests of the
-// firmware's tasks and speed. The whole machine is tested in testbench/unit/system.
+// The firmware image on the CPU model with the simplest devices that let it live: gate IC registers that hold what is
+// written, an HI08 that a host reads and writes at once, and phase and servo interrupts at the rate of servo IC 0. No
+// Port A, no edges: for tests of the firmware's tasks and speed. The whole machine is tested in testbench/unit/system.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,12 @@ class ImageBoard : public DeviceBus {
   void fill_memory(std::uint32_t pattern);
   Cpu& cpu() { return cpu_; }
   std::uint64_t strobes() const { return strobes_; }
-  double longest_strobe_gap_ms() const { return static_cast<double>(longest_gap_) / kCyclesPerMs; }  // since the last reset
-  double clocks_started_ms() const { return static_cast<double>(clocks_started_) / kCyclesPerMs; }   // after reset: servo IC 0 drives
+  double longest_strobe_gap_ms() const {
+    return static_cast<double>(longest_gap_) / kCyclesPerMs;
+  }  // since the last reset
+  double clocks_started_ms() const {
+    return static_cast<double>(clocks_started_) / kCyclesPerMs;
+  }  // after reset: servo IC 0 drives
 
   static constexpr double kCyclesPerMs = 78643.2;
   static constexpr Cycle kPhaseCycles = 8705;  // 13057 periods of 117.9648 MHz

@@ -1,4 +1,5 @@
-// The phase task natively: when it works, and its arithmetic against the definition worked out in 64 bits (firmware.md 8.1, 9.6).
+// The phase task natively: when it works, and its arithmetic against the definition worked out in 64 bits
+// (firmware:8.1, firmware:9.6).
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -20,7 +21,8 @@ constexpr std::uint32_t kSource = 0x10F0, kPosition1 = 0xB4, kDuration = 0x37;
 
 std::int64_t wrap24(std::int64_t value) { return ((value % 16777216) + 16777216 + 8388608) % 16777216 - 8388608; }
 
-// -cycle/2 .. cycle/2-1, for an odd number of counts one more on the positive side; without a cycle the register's own 24 bits.
+// -cycle/2 .. cycle/2-1, for an odd number of counts one more on the positive side; without a cycle the register's own
+// 24 bits.
 std::int64_t into_cycle(std::int64_t value, std::int64_t cycle) {
   if (cycle == 0) return wrap24(value);
   const std::int64_t rest = ((value % cycle) + cycle) % cycle;
@@ -32,7 +34,9 @@ class PhaseTaskArithmetic : public ::testing::Test {
   void SetUp() override { c_.line("I183=$10F0 I101=1"); }
 
   std::int32_t position(unsigned motor = 1) { return hal_signed(*hal_x(0x80 * motor + 0x34)); }
-  void set(std::uint32_t address, std::int64_t value) { *hal_x(address) = static_cast<std::uint32_t>(value) & HAL_WORD_MASK; }
+  void set(std::uint32_t address, std::int64_t value) {
+    *hal_x(address) = static_cast<std::uint32_t>(value) & HAL_WORD_MASK;
+  }
   void reads(std::int64_t value) {
     set(kSource, value);
     kernel_phase_interrupt();

@@ -43,7 +43,8 @@ TEST(VariablesPage, AgreesWithTheTable) {
       EXPECT_EQ(part[5] == "hex", entry.hex != 0) << line;
       const std::string value = part[4];
       if (value == "found") continue;
-      EXPECT_EQ(value[0] == '$' ? std::stod("0x" + value.substr(1)) : std::stod(value), i_variable_default(number)) << line;
+      EXPECT_EQ(value[0] == '$' ? std::stod("0x" + value.substr(1)) : std::stod(value), i_variable_default(number))
+          << line;
     }
   }
   for (unsigned number = 0; number < listed.size(); ++number) {

@@ -1,4 +1,5 @@
-// I-, P-, Q- and M-variables: ranges, defaults, reports, ranges of numbers, and the hardware behind the servo IC globals.
+// I-, P-, Q- and M-variables: ranges, defaults, reports, ranges of numbers, and the hardware behind the servo IC
+// globals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +18,8 @@ extern "C" {
 namespace brick {
 namespace {
 
-constexpr unsigned kServoIc0 = 1u << 0, kServoIc1 = 1u << 1, kServoIc2 = 1u << 2, kServoIc3Starred = 1u << 11, kMacroIc0 = 1u << 18,
-                   kMacroIc1 = 1u << 19;
+constexpr unsigned kServoIc0 = 1u << 0, kServoIc1 = 1u << 1, kServoIc2 = 1u << 2, kServoIc3Starred = 1u << 11,
+                   kMacroIc0 = 1u << 18, kMacroIc1 = 1u << 19;
 
 std::uint32_t x(std::uint32_t address) { return *hal_x(address) & 0xFFFFFFu; }
 std::uint32_t y(std::uint32_t address) { return *hal_y(address) & 0xFFFFFFu; }
@@ -188,9 +189,10 @@ TEST(ServoIcGlobals, FieldsGoToTheIcAtOnce) {
   EXPECT_EQ(x(0x07800C), 0x7FFF00u);
   EXPECT_EQ(x(0x078114), 0xF8CDFEu);
   c.line("I7010=3 I7012=2 I7013=3 I7014=1 I7015=2 I7016=3 I7017=1 I7018=1 I7019=1 I7011=0");
-  // decode 3, compare bit stays 1 on channel 1 of the report only, capture 2, flag 3, gated index, gate state 2, mode 3, invert 1, PFM, 1/T
-  EXPECT_EQ(x(0x078005),
-            0x3u | (2u << 4) | (3u << 8) | (1u << 13) | (1u << 15) | (2u << 16) | (1u << 18) | (1u << 19) | (1u << 20) | (3u << 22));
+  // decode 3, compare bit stays 1 on channel 1 of the report only, capture 2, flag 3, gated index, gate state 2, mode
+  // 3, invert 1, PFM, 1/T
+  EXPECT_EQ(x(0x078005), 0x3u | (2u << 4) | (3u << 8) | (1u << 13) | (1u << 15) | (2u << 16) | (1u << 18) | (1u << 19) |
+                             (1u << 20) | (3u << 22));
 }
 
 TEST(MacroIcGlobals, DividersGoToItsClockWord) {
@@ -202,7 +204,7 @@ TEST(MacroIcGlobals, DividersGoToItsClockWord) {
   EXPECT_EQ(c.line("I6802=17 I6802"), "1");  // 0 to 15
 }
 
-// Supplementary channels 1*, 2*: the fields of servo-ic.md 2.5 without bits 18..17 and 23..22.
+// Supplementary channels 1*, 2*: the fields of servo-ic:2.5 without bits 18..17 and 23..22.
 TEST(MacroIcGlobals, SupplementaryChannelsAndRingWordsGoToTheIc) {
   Controller c(kServoIc0 | kMacroIc1);
   EXPECT_EQ(x(0x079415), 0x7u | (1u << 4) | (1u << 13)) << "defaults: x4 decode, capture on index, own compare";
@@ -216,7 +218,8 @@ TEST(MacroIcGlobals, SupplementaryChannelsAndRingWordsGoToTheIc) {
   EXPECT_EQ(c.line("I6820 I6820=5 I6820"), "0|0") << "MACRO IC 0 is absent";
 }
 
-// Two ICs must never drive the clocks together: the new input is written before the new output, whatever the order on the line.
+// Two ICs must never drive the clocks together: the new input is written before the new output, whatever the order on
+// the line.
 TEST(ClockDirections, OfOneLineAreAppliedInputsFirst) {
   BRICK_COVERS("I19-2 CLK-2");
   for (const char* text : {"I6807=0 I7007=3", "I7007=3 I6807=0"}) {
@@ -234,11 +237,12 @@ TEST(ClockDirections, OfOneLineAreAppliedInputsFirst) {
   }
 }
 
-// The old source drives its pins on for up to one and a half of its phase periods, (2 I7m00 + 3)(I7m01 + 1) ticks each, whatever the
-// new source's are. A CPU cycle is 12/8 ticks.
+// The old source drives its pins on for up to one and a half of its phase periods, (2 I7m00 + 3)(I7m01 + 1) ticks each,
+// whatever the new source's are. A CPU cycle is 12/8 ticks.
 TEST(ClockDirections, OutputWaitsUntilTheOldSourceHasLetGo) {
   BRICK_COVERS("I19-2");
-  for (const auto& [setup, ticks] : {std::pair{"", 13057u}, std::pair{"I7001=3", 4 * 13057u}, std::pair{"I7000=1000", 2003u}}) {
+  for (const auto& [setup, ticks] :
+       {std::pair{"", 13057u}, std::pair{"I7001=3", 4 * 13057u}, std::pair{"I7000=1000", 2003u}}) {
     Controller c(kServoIc0 | kServoIc1 | kMacroIc0);
     c.line(setup);
     c.line("I6800=30000 I6801=5");
@@ -285,8 +289,8 @@ TEST(SavedData, JumperE3StartsWithDefaults) {
   EXPECT_EQ(i_integer(7000), 100);
 }
 
-// Factory wait states of main memory, gate ICs, DPRAM, flash and the default area for the CPU clock, and those of I37 on top of them. The
-// three bits of flash are full already.
+// Factory wait states of main memory, gate ICs, DPRAM, flash and the default area for the CPU clock, and those of I37
+// on top of them. The three bits of flash are full already.
 TEST(SavedData, WaitStatesAreThoseOfTheCpuClockPlusI37) {
   const auto bcr = [](unsigned main, unsigned gate, unsigned dpram, unsigned flash, unsigned other) {
     return main | gate << 5 | dpram << 10 | flash << 13 | other << 16;

@@ -1,4 +1,5 @@
-// BREQ and the Rotary Buffer Full bits against a scoreboard that is written from the rules of firmware.md 4.5 and host-bus.md 5.7 alone.
+// BREQ and the Rotary Buffer Full bits against a scoreboard that is written from the rules of firmware:4.5 and
+// host-bus:5.7 alone.
 #include <random>
 
 #include "testbench/unit/covers.h"
@@ -31,7 +32,9 @@ bool full_bit(unsigned cs) { return (motion_cs_status(cs, 1) >> 16) & 1u; }
 
 class BufferRequest : public FirmwareTest {
  protected:
-  static void limits(int on, int off) { ASSERT_EQ(host("I16=" + std::to_string(on) + " I17=" + std::to_string(off)), ""); }
+  static void limits(int on, int off) {
+    ASSERT_EQ(host("I16=" + std::to_string(on) + " I17=" + std::to_string(off)), "");
+  }
   static void open(const std::string& set_up = "&1DEF ROT 500") {
     ASSERT_EQ(host(set_up), "");
     ASSERT_EQ(host("&1B0 OPEN ROT"), "");
@@ -142,7 +145,8 @@ TEST_F(BufferRequest, AgreesWithTheScoreboardOverRandomTraffic) {
         store(1);
         expected.stored();
         // A line always takes the pin low; it comes back unless the buffer is full.
-        ASSERT_EQ(edges().size(), (was ? 1u : 0u) + (expected.pin() ? 1u : 0u)) << "I16=" << setting[0] << " I17=" << setting[1];
+        ASSERT_EQ(edges().size(), (was ? 1u : 0u) + (expected.pin() ? 1u : 0u))
+            << "I16=" << setting[0] << " I17=" << setting[1];
         if (!edges().empty()) { ASSERT_EQ(edges().front().high, !was); }
       } else if (expected.lines > 0) {
         calculate_one();

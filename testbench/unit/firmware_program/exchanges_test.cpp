@@ -1,4 +1,4 @@
-// Golden exchanges of firmware.md section 13 that concern buffers and programs.
+// Golden exchanges of firmware:13 that concern buffers and programs.
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
 
@@ -61,7 +61,7 @@ TEST_F(Exchange, SizeIsNegativeWhileABufferIsOpen) {  // 21
   ASSERT_EQ(host("DEF ROT 24"), "");
   EXPECT_EQ(host("SIZE"), "26600");
   ASSERT_EQ(host("OPEN ROT"), "");
-  EXPECT_EQ(host("SIZE"), "-26601");  // as 41301 and -41302 in firmware.md 4.3
+  EXPECT_EQ(host("SIZE"), "-26601");  // as 41301 and -41302 in firmware:4.3
   ASSERT_EQ(host("CLOSE"), "");
   EXPECT_EQ(host("SIZE"), "26600");
 }

@@ -1,4 +1,4 @@
-// Expressions against the C++ standard library, precedence and domain errors (firmware.md 1.7, 10 row 9).
+// Expressions against the C++ standard library, precedence and domain errors (firmware:1.7, firmware:10/9).
 #include <cmath>
 #include <random>
 
@@ -56,14 +56,16 @@ TEST_F(Expression, VariablesAndComputedIndex) {
 }
 
 TEST_F(Expression, ConstantsAreKeptExactly) {
-  for (const char* text : {"0.1", "3.7", "1250.1", "34359738367.5", "0.9998474121", "123456789.123456", ".5", "007", "1.0000000001"})
+  for (const char* text :
+       {"0.1", "3.7", "1250.1", "34359738367.5", "0.9998474121", "123456789.123456", ".5", "007", "1.0000000001"})
     EXPECT_EQ(value(text), std::strtod(text, nullptr)) << text;
   EXPECT_EQ(value("$FFFFFF"), 16777215.0);
 }
 
 TEST_F(Expression, FunctionsInDegreesAndRadians) {
   std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> angle(-1000.0, 1000.0), unit(-1.0, 1.0), positive(1e-6, 1e6), small(-20.0, 20.0);
+  std::uniform_real_distribution<double> angle(-1000.0, 1000.0), unit(-1.0, 1.0), positive(1e-6, 1e6),
+      small(-20.0, 20.0);
   for (int i = 0; i < 500; ++i) {
     const double a = angle(random), u = unit(random), x = positive(random), e = small(random);
     p_variable_write(1, a);
@@ -155,8 +157,9 @@ TEST_F(Expression, LexerTakesTheNumbersOfTheLanguage) {
     bool ok;
     double value;
     char next;
-  } const cases[] = {{"12.50X", true, 12.5, 'X'}, {"0..99", true, 0.0, '.'}, {"$aG", false, 0.0, '$'}, {"$FG", true, 15.0, 'G'},
-                     {".", false, 0.0, '.'},      {"  7 ;9", true, 7.0, 0},  {"5.", true, 5.0, 0},     {"000.250", true, 0.25, 0}};
+  } const cases[] = {{"12.50X", true, 12.5, 'X'}, {"0..99", true, 0.0, '.'}, {"$aG", false, 0.0, '$'},
+                     {"$FG", true, 15.0, 'G'},    {".", false, 0.0, '.'},    {"  7 ;9", true, 7.0, 0},
+                     {"5.", true, 5.0, 0},        {"000.250", true, 0.25, 0}};
   for (const auto& c : cases) {
     lexer lx{c.text};
     double v = 0.0;

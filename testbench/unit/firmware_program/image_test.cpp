@@ -1,4 +1,5 @@
-// Rotary program on the cross-compiled image and the CPU model: BREQ edges in CPU time, execution in servo time, cost of the tasks.
+// Rotary program on the cross-compiled image and the CPU model: BREQ edges in CPU time, execution in servo time, cost
+// of the tasks.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Time of moves, counted in servo interrupts (firmware.md 7.5). Expected counts are arithmetic on I10: one servo interrupt advances the
-// trajectory by I10 * 2^-23 ms.
+// Time of moves, counted in servo interrupts (firmware:7.5). Expected counts are arithmetic on I10: one servo interrupt
+// advances the trajectory by I10 * 2^-23 ms.
 #include <cmath>
 
 #include "testbench/unit/covers.h"
@@ -104,7 +104,8 @@ TEST_F(MoveTiming, ConsecutiveMovesBlendAndLoseNoTime) {
   EXPECT_EQ(cs().position[AXIS_Y], 5.0);
 }
 
-TEST_F(MoveTiming, BlendUsesTheLaterMovesAcceleration) {  // corners stay Tm apart; only first and last Ta count from and to rest
+TEST_F(MoveTiming,
+       BlendUsesTheLaterMovesAcceleration) {  // corners stay Tm apart; only first and last Ta count from and to rest
   lines({"TM100 TA40 TS0 X10", "TA80 X20", "TA20 X30"});
   EXPECT_EQ(run(), ticks_of(40.0 / 2 + 3 * 100.0 + 20.0 / 2));
 }

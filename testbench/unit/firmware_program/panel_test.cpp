@@ -1,5 +1,5 @@
-// The control panel port of a Turbo PMAC: whose BREQ the host sees, groups of I59, run control by panel (host-bus.md 5.3, 5.6;
-// servo-ic.md 11.8). Inputs are given as 1 = pulled low.
+// The control panel port of a Turbo PMAC: whose BREQ the host sees, groups of I59, run control by panel (host-bus:5.3,
+// host-bus:5.6; servo-ic:11.8). Inputs are given as 1 = pulled low.
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
 
@@ -9,7 +9,8 @@ using platform::breq;
 using platform::host;
 using platform::panel;
 
-constexpr std::uint32_t kPrejog = 1u << 2, kStart = 1u << 3, kStep = 1u << 4, kStop = 1u << 5, kHome = 1u << 6, kHold = 1u << 7;
+constexpr std::uint32_t kPrejog = 1u << 2, kStart = 1u << 3, kStep = 1u << 4, kStop = 1u << 5, kHome = 1u << 6,
+                        kHold = 1u << 7;
 constexpr std::uint32_t fpd(std::uint32_t n) { return n << 8; }
 
 class Panel : public FirmwareTest {

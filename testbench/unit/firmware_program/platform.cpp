@@ -165,7 +165,7 @@ void power_up() {
   i_values[10] = kDefaultI10;
   i_values[16] = 5;
   i_values[17] = 10;
-  for (std::uint32_t cs = 0; cs < 16; ++cs) {  // firmware.md 3.4
+  for (std::uint32_t cs = 0; cs < 16; ++cs) {  // firmware:3.4
     double* isx = &i_values[5100 + 100 * cs];
     isx[88] = 50;
     isx[89] = isx[90] = 1000;
@@ -183,7 +183,8 @@ void power_up() {
 
 std::string host(const std::string& line) {
   std::string text = line;
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   reply.clear();
   lexer lx{text.c_str()};
   error_t error = ERR_NONE;

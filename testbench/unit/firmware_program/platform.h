@@ -1,5 +1,6 @@
-// The firmware's surroundings for unit tests: memory arrays for user memory, plain arrays for variables, a simulated cycle counter, a
-// record of every edge of BREQ, and a small command interpreter that follows the contract of firmware/language/program.h.
+// The firmware's surroundings for unit tests: memory arrays for user memory, plain arrays for variables, a simulated
+// cycle counter, a record of every edge of BREQ, and a small command interpreter that follows the contract of
+// firmware/language/program.h.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Order rules of the buffers in user memory (firmware.md 4.2), over all pairs of regions.
+// Order rules of the buffers in user memory (firmware:4.2), over all pairs of regions.
 #include <vector>
 
 #include "testbench/unit/covers.h"
@@ -22,7 +22,8 @@ std::vector<Region> all_regions() {
   } kinds[] = {{"CCBUF", REGION_CCBUF}, {"LOOKAHEAD", REGION_LOOKAHEAD}, {"ROTARY", REGION_ROTARY}};
   int layer = 0;
   for (const auto& k : kinds) {
-    for (const std::uint32_t cs : {0u, 1u, 7u, 15u}) list.push_back({k.name, k.kind, cs, 100 * layer + 16 - static_cast<int>(cs)});
+    for (const std::uint32_t cs : {0u, 1u, 7u, 15u})
+      list.push_back({k.name, k.kind, cs, 100 * layer + 16 - static_cast<int>(cs)});
     ++layer;
   }
   list.push_back({"GATHER", REGION_GATHER, 0, 300});
@@ -39,8 +40,10 @@ TEST_F(Regions, DefineIsRefusedWhenSomethingLivesAbove) {
     for (const Region& made : all_regions()) {
       regions_initialize();
       ASSERT_EQ(region_define(there.kind, there.cs, 40), ERR_NONE);
-      const error_t expected = made.height > there.height ? ERR_NONE : ERR_DATA;  // the same region again is refused, too
-      EXPECT_EQ(region_define(made.kind, made.cs, 30), expected) << name_of(made) << " while " << name_of(there) << " exists";
+      const error_t expected =
+          made.height > there.height ? ERR_NONE : ERR_DATA;  // the same region again is refused, too
+      EXPECT_EQ(region_define(made.kind, made.cs, 30), expected)
+          << name_of(made) << " while " << name_of(there) << " exists";
       EXPECT_EQ(region_open_words(), 26624u - 40u - (expected == ERR_NONE ? 30u : 0u));
     }
 }
@@ -109,8 +112,8 @@ TEST_F(Regions, DeleteAllTempsRemovesEverything) {
 }
 
 TEST_F(Regions, ArgumentsAreChecked) {
-  for (const char* text : {"DEF ROT", "DEF ROT 0", "DEF ROT -5", "DEF ROT 1.5", "DEF LOOK 10", "DEF LOOK 0,5", "DEF CCBUF", "DEF UNKNOWN 5",
-                           "DEL UNKNOWN", "DEF GAT 0"})
+  for (const char* text : {"DEF ROT", "DEF ROT 0", "DEF ROT -5", "DEF ROT 1.5", "DEF LOOK 10", "DEF LOOK 0,5",
+                           "DEF CCBUF", "DEF UNKNOWN 5", "DEL UNKNOWN", "DEF GAT 0"})
     EXPECT_EQ(platform::host(text), "ERR003") << text;
 }
 

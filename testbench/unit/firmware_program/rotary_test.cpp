@@ -37,7 +37,8 @@ TEST_F(Rotary, RandomTrafficComesOutInOrderAndComplete) {
   for (int step = 0; step < 20000; ++step) {
     if (random() % 2 == 0) {
       std::vector<word48_t> line(1 + random() % 6);
-      for (auto& word : line) word = (random() & 0x7FFFFFu) | (static_cast<word48_t>(random() & 0x3FFFFFu) << 24);  // no line mark
+      for (auto& word : line)
+        word = (random() & 0x7FFFFFu) | (static_cast<word48_t>(random() & 0x3FFFFFu) << 24);  // no line mark
       const error_t error = rotary_store(0, line.data(), static_cast<std::uint32_t>(line.size()));
       if (used + line.size() > 17) {
         ASSERT_EQ(error, ERR_NO_ROOM);
@@ -147,7 +148,7 @@ TEST_F(Rotary, BinaryOpenTakesNoText) {
 TEST_F(Rotary, MemoryHoldsTheLine) {
   ASSERT_EQ(host("&2DEF ROT 10 &1DEF ROT 10 OPEN ROT"), "");
   ASSERT_EQ(host("&1X1000"), "");
-  // &1 lies above &2: first word at $00A000 + 10. X1000 as in host-bus.md 7.7 with the start-of-line bit.
+  // &1 lies above &2: first word at $00A000 + 10. X1000 as in host-bus:7.7 with the start-of-line bit.
   EXPECT_EQ(*hal_x(0xA00A), 0x800000u | (1u << 19) | (6u << 6) | 10u);
   EXPECT_EQ(*hal_y(0xA00A), 0x7D0000u);
 }

@@ -1,4 +1,5 @@
-// B R S Q A H / on a rotary program (firmware.md 4.10, 4.11), status words, execution of statements, axis definitions.
+// B R S Q A H / on a rotary program (firmware:4.10, firmware:4.11), status words, execution of statements, axis
+// definitions.
 #include <cmath>
 
 #include "testbench/unit/covers.h"
@@ -15,7 +16,8 @@ class RunControl : public FirmwareTest {
     ASSERT_EQ(host("TM100 TA40 TS0"), "");
   }
   static void settle() {
-    for (int i = 0; i < 20000 && (cs().active || cs().next_valid || rotary_buffers[0].lines != 0); ++i) platform::servo_ticks(1);
+    for (int i = 0; i < 20000 && (cs().active || cs().next_valid || rotary_buffers[0].lines != 0); ++i)
+      platform::servo_ticks(1);
     platform::servo_ticks(3);
   }
   static coordinate_system& cs() { return coordinate_systems[0]; }
@@ -114,10 +116,13 @@ TEST_F(RunControl, AbortDuringABlendIsOnTheBlendedPath) {
   ASSERT_EQ(host("R"), "");
   platform::real_time();
   platform::servo_ticks(1);
-  platform::servo_ticks(static_cast<unsigned>(120.0 * 8388608.0 / platform::kDefaultI10) + 1);  // the middle of the corner, 100..140 ms
-  const double t = (std::floor(120.0 * 8388608.0 / platform::kDefaultI10) + 1) * platform::kDefaultI10 / 8388608.0 - 100.0;
+  platform::servo_ticks(static_cast<unsigned>(120.0 * 8388608.0 / platform::kDefaultI10) +
+                        1);  // the middle of the corner, 100..140 ms
+  const double t =
+      (std::floor(120.0 * 8388608.0 / platform::kDefaultI10) + 1) * platform::kDefaultI10 / 8388608.0 - 100.0;
   ASSERT_EQ(host("A"), "");
-  // From the blend's start X slows from 1/100 to 0 and Y rises from 0 to 1/100, both linearly over 40 ms; X is at 0.8 there.
+  // From the blend's start X slows from 1/100 to 0 and Y rises from 0 to 1/100, both linearly over 40 ms; X is at 0.8
+  // there.
   EXPECT_NEAR(cs().position[AXIS_X], 0.8 + (t - t * t / 80.0) / 100.0, 1e-6);
   EXPECT_NEAR(cs().position[AXIS_Y], t * t / 80.0 / 100.0, 1e-6);
 }
@@ -133,7 +138,8 @@ TEST_F(RunControl, AbortInTheSCurveIsOnThePath) {
     platform::servo_ticks(ticks);
     ASSERT_EQ(host("A"), "");
     const double t = ticks * static_cast<double>(platform::kDefaultI10) / 8388608.0, step = 1e-4;
-    double velocity = 0.0, position = 0.0;  // numeric double integration; peak acceleration 1/30 of the final velocity a ms
+    double velocity = 0.0,
+           position = 0.0;  // numeric double integration; peak acceleration 1/30 of the final velocity a ms
     for (double u = 0.0; u < t; u += step) {
       const double acceleration = u < 10 ? u / 10 : u < 30 ? 1.0 : u < 40 ? (40 - u) / 10 : 0.0;
       position += velocity * step;
@@ -178,8 +184,8 @@ TEST_F(RunControl, EndBlockStopsAfterTheExecutingMove) {
 
 TEST_F(RunControl, StatementsActInSequence) {
   open();
-  for (const char* text :
-       {"P1=3", "X(P1*2) Y(P1)", "INC", "X1 Y-1", "ABS(X)", "X10 Y1", "Q5=P1+0.5", "P(Q5+0.5)=77", "I5111=P1*100", "M3=2"})
+  for (const char* text : {"P1=3", "X(P1*2) Y(P1)", "INC", "X1 Y-1", "ABS(X)", "X10 Y1", "Q5=P1+0.5", "P(Q5+0.5)=77",
+                           "I5111=P1*100", "M3=2"})
     ASSERT_EQ(host(text), "") << text;
   ASSERT_EQ(host("R"), "");
   settle();
@@ -228,7 +234,7 @@ TEST_F(RunControl, IllegalWordStopsTheProgramWithARunTimeError) {
 }
 
 TEST_F(RunControl, StatusWordsOfAnIdleAndARunningSystem) {
-  EXPECT_EQ(host("??"), "A80020020000000000");  // firmware.md 5.4; in position (bit 17)
+  EXPECT_EQ(host("??"), "A80020020000000000");  // firmware:5.4; in position (bit 17)
   open();
   ASSERT_EQ(host("INC X1"), "");
   ASSERT_EQ(host("R"), "");

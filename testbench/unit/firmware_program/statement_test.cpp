@@ -22,7 +22,7 @@ class Statement : public FirmwareTest {
 
 TEST_F(Statement, EachValueCostsOneWord) {
   BRICK_COVERS("BIN-2");
-  EXPECT_EQ(words("X1000 Y1200 Z1400 A1600"), 4u);  // firmware.md 4.4
+  EXPECT_EQ(words("X1000 Y1200 Z1400 A1600"), 4u);  // firmware:4.4
   EXPECT_EQ(words("X1250.1"), 1u);
   EXPECT_EQ(words("F100"), 1u);
   EXPECT_EQ(words("LINEAR ABS TM100 TA50 TS10 DWELL100 DELAY5"), 7u);
@@ -50,12 +50,13 @@ TEST_F(Statement, LongAndShortKeywordsGiveTheSameWords) {
 }
 
 TEST_F(Statement, RecognisesWhatBeginsAStatement) {
-  for (const char* text : {"X1",      "A10",      "B0",          "C-5",    "Y.5",     "Z(P1)",     "F100",   "TM10",    "TA(P1)",
-                           "DWELL10", "LINEAR",   "RAPID",       "ABS",    "INC(X)",  "FRAX(X,Y)", "P1=5",   "Q(P1)=2", "I5111=100",
-                           "M70=1",   "IF(P1=1)", "WHILE(P1<2)", "GOTO10", "CIRCLE1", "N100",      "CALL 5", "PVT200"})
-    EXPECT_TRUE(starts(text)) << text;
   for (const char* text :
-       {"A", "H", "R", "Q", "S", "F", "P5", "Q7", "I17", "M1", "PR", "?", "TYPE", "UUU", "CLOSE", "", "J+", "SIZE", "/", "\\"})
+       {"X1",      "A10",      "B0",          "C-5",    "Y.5",     "Z(P1)",     "F100",   "TM10",    "TA(P1)",
+        "DWELL10", "LINEAR",   "RAPID",       "ABS",    "INC(X)",  "FRAX(X,Y)", "P1=5",   "Q(P1)=2", "I5111=100",
+        "M70=1",   "IF(P1=1)", "WHILE(P1<2)", "GOTO10", "CIRCLE1", "N100",      "CALL 5", "PVT200"})
+    EXPECT_TRUE(starts(text)) << text;
+  for (const char* text : {"A",  "H", "R",    "Q",   "S",     "F", "P5", "Q7",   "I17", "M1",
+                           "PR", "?", "TYPE", "UUU", "CLOSE", "",  "J+", "SIZE", "/",   "\\"})
     EXPECT_FALSE(starts(text)) << text;
 }
 
@@ -90,8 +91,8 @@ TEST_F(Statement, OnLineCommandsStillActWhileABufferIsOpen) {
 
 TEST_F(Statement, ProgramOnlyTextNeedsAnOpenBuffer) {
   ASSERT_EQ(platform::host("CLOSE"), "");
-  for (const char* text :
-       {"X1000", "DWELL100", "DELAY100", "A10", "LINEAR", "F100", "IF(P1=1)", "RAPID", "SPLINE1", "SEND\"A\"", "CMD\"A\""})
+  for (const char* text : {"X1000", "DWELL100", "DELAY100", "A10", "LINEAR", "F100", "IF(P1=1)", "RAPID", "SPLINE1",
+                           "SEND\"A\"", "CMD\"A\""})
     EXPECT_EQ(platform::host(text), "ERR005") << text;
   for (const char* text : {"UUU", "AZ", "RX", "DELETE AY"}) EXPECT_EQ(platform::host(text), "ERR003") << text;
 }

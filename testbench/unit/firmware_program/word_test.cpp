@@ -1,4 +1,4 @@
-// Program words: the layout of host-bus.md 7.7, rounding of wide constants, round trips.
+// Program words: the layout of host-bus:7.7, rounding of wide constants, round trips.
 #include <cmath>
 #include <random>
 
@@ -57,7 +57,8 @@ TEST(ProgramWord, ValuesRoundToThirtyThreeBits) {
 }
 
 TEST(ProgramWord, ExactValuesStayExact) {
-  for (const double value : {0.0, 1.0, -1.0, 8388607.0, 8388608.0, -8388609.0, 4294967295.0, -4294967296.0, 34359738368.0, 0.015625}) {
+  for (const double value :
+       {0.0, 1.0, -1.0, 8388607.0, 8388608.0, -8388609.0, 4294967295.0, -4294967296.0, 34359738368.0, 0.015625}) {
     EXPECT_TRUE(word_holds_exactly(value)) << value;
     EXPECT_EQ(word_decode(encode(OP_PUSH, 0, 0, value)).value, value);
     EXPECT_EQ(word_decode(encode(OP_AXIS, 0, AXIS_X, value)).value, value);
@@ -69,7 +70,8 @@ TEST(ProgramWord, ExactValuesStayExact) {
 }
 
 TEST(ProgramWord, StackInstructionsRoundTrip) {
-  for (const operation op : {OP_PUSH_VARIABLE, OP_ASSIGN_POP, OP_PUSH_INDEXED, OP_ASSIGN_INDEXED, OP_APPLY, OP_AXIS_POP, OP_RATE_POP}) {
+  for (const operation op :
+       {OP_PUSH_VARIABLE, OP_ASSIGN_POP, OP_PUSH_INDEXED, OP_ASSIGN_INDEXED, OP_APPLY, OP_AXIS_POP, OP_RATE_POP}) {
     const instruction in = word_decode(encode(op, VARIABLE_Q, 8191, 0.0));
     EXPECT_EQ(in.operation, op);
     EXPECT_EQ(in.group, static_cast<std::uint32_t>(VARIABLE_Q));

@@ -1,4 +1,5 @@
-// A CPU with a small program and the debugger's server, run by a thread of its own; the test is the debugger, over a socket.
+// A CPU with a small program and the debugger's server, run by a thread of its own; the test is the debugger, over a
+// socket.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -80,8 +80,8 @@ TEST_F(GdbRunControl, StepGoesThroughAnInterruptHandler) {
   using namespace rv;
   const std::vector<Word> handler = {addi(t1, t1, 1), rv::i(0x73, 1, zero, zero, 0x304), 0x30200073u};
   std::memcpy(cpu.memory(kCode + 0x100, 12), handler.data(), 12);
-  const std::vector<Word> enable = {rv::i(0x73, 1, zero, a3, 0x305), rv::i(0x73, 1, zero, a4, 0x304), rv::i(0x73, 6, zero, 8, 0x300),
-                                    addi(a5, a5, 5), addi(a5, a5, 5)};
+  const std::vector<Word> enable = {rv::i(0x73, 1, zero, a3, 0x305), rv::i(0x73, 1, zero, a4, 0x304),
+                                    rv::i(0x73, 6, zero, 8, 0x300), addi(a5, a5, 5), addi(a5, a5, 5)};
   std::memcpy(cpu.memory(kCode + 0x40, 20), enable.data(), 20);
   cpu.invalidate_code();
   ASSERT_EQ(ask("Pd=" + shown(kCode + 0x100)), "OK");

@@ -96,7 +96,8 @@ class DpramBench {
         }
         cpu_left = 1 + static_cast<int>(random() % 8);
       }
-      if (random() % 40 == 0) both.in.cpu_addr = random() % 2;  // no CPU does this during a strobe; both must still agree
+      if (random() % 40 == 0)
+        both.in.cpu_addr = random() % 2;  // no CPU does this during a strobe; both must still agree
       if (both.now() % kTicksPerRef == 0) {
         both.in.mem_wr = false;
         if (--host_left <= 0) {

@@ -116,8 +116,8 @@ TEST_F(DpramCollisionTest, AddressIsTheOneThatCameWithTheStrobe) {
 }
 
 TEST_F(DpramCollisionTest, RequestsThatMeetAtOneEdgeGoToTheCpu) {
-  // The host's request meets its first clk_ref edge at tick T. The CPU's strobe, first sampled at tick T - 1, is ready at T too;
-  // sampled at T it is ready one tick later.
+  // The host's request meets its first clk_ref edge at tick T. The CPU's strobe, first sampled at tick T - 1, is ready
+  // at T too; sampled at T it is ready one tick later.
   for (const int lead : {1, 0}) {
     cpu_end();
     both.in.mem_sel = false;

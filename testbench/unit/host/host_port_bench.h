@@ -18,9 +18,10 @@ class HostPortTest : public ::testing::Test {
   enum IcrBit : std::uint8_t { kRreq = 1, kTreq = 2, kHlend = 0x20, kInit = 0x80 };
 
   HostPort model_{"host_port"};
-  Lockstep<HostPort> both_{make_rtl_host_port(), model_, [](const HostPort& m) {
-                             return Outputs{{"hp_rdata", m.hp_rdata()}, {"dsp_rdata", m.dsp_rdata()}, {"hreq", m.hreq()}, {"irq", m.irq()}};
-                           }};
+  Lockstep<HostPort> both_{
+      make_rtl_host_port(), model_, [](const HostPort& m) {
+        return Outputs{{"hp_rdata", m.hp_rdata()}, {"dsp_rdata", m.dsp_rdata()}, {"hreq", m.hreq()}, {"irq", m.irq()}};
+      }};
 
   void TearDown() override {
     if (!both_.mutate) { EXPECT_LOCKSTEP(both_); }

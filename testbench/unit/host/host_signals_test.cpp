@@ -13,7 +13,8 @@ class HostSignalsTest : public ::testing::Test {
   HostSignals model_{"signals"};
   Lockstep<HostSignals> both_{
       make_rtl_host_signals(), model_, [](const HostSignals& m) {
-        return Outputs{{"rdata", m.rdata()}, {"ipos", m.ipos()}, {"breq", m.breq()}, {"eror", m.eror()}, {"f1er", m.f1er()}};
+        return Outputs{
+            {"rdata", m.rdata()}, {"ipos", m.ipos()}, {"breq", m.breq()}, {"eror", m.eror()}, {"f1er", m.f1er()}};
       }};
   void write(unsigned value) {
     both_.in = {true, static_cast<std::uint8_t>(value)};

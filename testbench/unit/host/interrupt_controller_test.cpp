@@ -14,10 +14,10 @@ constexpr std::uint8_t kBreq = 0x02;
 class InterruptControllerTest : public ::testing::Test {
  protected:
   InterruptController model_{"pic"};
-  Lockstep<InterruptController> both_{
-      make_rtl_interrupt_controller(), model_, [](const InterruptController& m) {
-        return Outputs{{"rdata", m.rdata()}, {"ist", m.ist()}, {"sig", m.sig()}, {"msk", m.msk()}, {"elr", m.elr()}, {"irq", m.irq()}};
-      }};
+  Lockstep<InterruptController> both_{make_rtl_interrupt_controller(), model_, [](const InterruptController& m) {
+                                        return Outputs{{"rdata", m.rdata()}, {"ist", m.ist()}, {"sig", m.sig()},
+                                                       {"msk", m.msk()},     {"elr", m.elr()}, {"irq", m.irq()}};
+                                      }};
 
   void write(unsigned addr, std::uint8_t value) {
     both_.in.wr = true;
@@ -160,7 +160,8 @@ TEST_F(InterruptControllerTest, MaskingClearsTheLatch) {
 }
 
 TEST_F(InterruptControllerTest, EdgeThatMeetsTheClearIsKept) {
-  for (int lead : {0, 1, 2, 3}) {  // clocks from the line's first edge to the clear; the latch is set at clock 2 after it
+  for (int lead :
+       {0, 1, 2, 3}) {  // clocks from the line's first edge to the clear; the latch is set at clock 2 after it
     both_.reset();
     line(0);
     both_.ref(4);

@@ -1,5 +1,5 @@
-// ISA slave under test: both twins, and host cycles with tick resolution. The blocks behind it are played by the test: the
-// host port answers 0xA0 + address, the interrupt controller 0xB0 + address.
+// ISA slave under test: both twins, and host cycles with tick resolution. The blocks behind it are played by the test:
+// the host port answers 0xA0 + address, the interrupt controller 0xB0 + address.
 #pragma once
 
 #include <random>
@@ -17,12 +17,13 @@ class IsaBench {
 
   IsaBench(std::unique_ptr<RtlBlock<Inputs>> rtl, const IsaSlave::Config& config)
       : model("isa_slave", config), both(std::move(rtl), model, [](const IsaSlave& m) {
-          return Outputs{{"isa_sd", m.isa_sd()},     {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
-                         {"hp_sel", m.hp_sel()},     {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
-                         {"hp_addr", m.hp_addr()},   {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
-                         {"pic_wr", m.pic_wr()},     {"pic_addr", m.pic_addr()},       {"pic_wdata", m.pic_wdata()},
-                         {"mem_sel", m.mem_sel()},   {"mem_rd", m.mem_rd()},           {"mem_wr", m.mem_wr()},
-                         {"mem_addr", m.mem_addr()}, {"mem_be", m.mem_be()},           {"mem_wdata", m.mem_wdata()}};
+          return Outputs{
+              {"isa_sd", m.isa_sd()},     {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
+              {"hp_sel", m.hp_sel()},     {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
+              {"hp_addr", m.hp_addr()},   {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
+              {"pic_wr", m.pic_wr()},     {"pic_addr", m.pic_addr()},       {"pic_wdata", m.pic_wdata()},
+              {"mem_sel", m.mem_sel()},   {"mem_rd", m.mem_rd()},           {"mem_wr", m.mem_wr()},
+              {"mem_addr", m.mem_addr()}, {"mem_be", m.mem_be()},           {"mem_wdata", m.mem_wdata()}};
         }) {}
 
   IsaSlave model;
@@ -45,8 +46,10 @@ class IsaBench {
     if (is_ref_edge(both.now() + 1)) {  // the edge about to come sees them
       if (both.get("hp_wr")) strobes.push_back({"hp_wr", both.get("hp_addr"), both.get("hp_wdata")});
       if (both.get("hp_rd_done")) strobes.push_back({"hp_rd", both.get("hp_addr"), 0});
-      if (both.get("pic_wr") && both.get("pic_sel")) strobes.push_back({"pic_wr", both.get("pic_addr"), both.get("pic_wdata")});
-      if (both.get("mem_wr")) strobes.push_back({"mem_wr", both.get("mem_addr"), both.get("mem_wdata") | both.get("mem_be") << 16});
+      if (both.get("pic_wr") && both.get("pic_sel"))
+        strobes.push_back({"pic_wr", both.get("pic_addr"), both.get("pic_wdata")});
+      if (both.get("mem_wr"))
+        strobes.push_back({"mem_wr", both.get("mem_addr"), both.get("mem_wdata") | both.get("mem_be") << 16});
     }
     both.tick();
   }
@@ -54,8 +57,8 @@ class IsaBench {
     for (int i = 0; i < n; ++i) tick();
   }
 
-  // Whole cycles: address 90 ns before the command (11 ticks), I/O command 530 ns (63 ticks), memory 240 ns (28 ticks), hold 25 ns
-  // (3 ticks), then the pins hold something else.
+  // Whole cycles: address 90 ns before the command (11 ticks), I/O command 530 ns (63 ticks), memory 240 ns (28 ticks),
+  // hold 25 ns (3 ticks), then the pins hold something else.
   std::uint16_t io_read(unsigned address) { return cycle(address, &Inputs::isa_ior_n, 63, 0); }
   void io_write(unsigned address, unsigned value) { cycle(address, &Inputs::isa_iow_n, 63, value); }
   std::uint16_t mem_read(unsigned address) { return cycle(address, &Inputs::isa_memr_n, 28, 0); }

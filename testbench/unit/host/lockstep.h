@@ -1,5 +1,6 @@
-// A model and its Verilated twin, driven with the same inputs and compared at every tick, outputs and combinational reads
-// alike. It also holds the model to its promise: next_event() must not be later than the next change of an output.
+// A model and its Verilated twin, driven with the same inputs and compared at every tick, outputs and combinational
+// reads alike. It also holds the model to its promise: next_event() must not be later than the next change of an
+// output.
 #pragma once
 
 #include <functional>
@@ -20,13 +21,14 @@ class Lockstep {
   using Inputs = typename Model::Inputs;
   using Show = Outputs (*)(const Model&);
 
-  Lockstep(std::unique_ptr<RtlBlock<Inputs>> rtl, Model& model, Show show) : rtl_(std::move(rtl)), model_(model), show_(show) {
+  Lockstep(std::unique_ptr<RtlBlock<Inputs>> rtl, Model& model, Show show)
+      : rtl_(std::move(rtl)), model_(model), show_(show) {
     model_.reset(0);
   }
 
   Inputs in;
   std::function<void(Inputs&)> mutate;  // negative controls: distorts what the model sees
-  bool lazy = false;                    // executes the model's edges only when it asks for them, or when its inputs change
+  bool lazy = false;  // executes the model's edges only when it asks for them, or when its inputs change
 
   void tick() {
     apply();
@@ -36,7 +38,8 @@ class Lockstep {
     rtl_->clock(is_ref_edge(now_));
     if (!lazy || promised <= now_) model_.advance(now_);
     compare();
-    if (rtl_->outputs() != before && promised > now_) note("outputs changed, but next_event() said tick " + std::to_string(promised));
+    if (rtl_->outputs() != before && promised > now_)
+      note("outputs changed, but next_event() said tick " + std::to_string(promised));
   }
   void ticks(int n) {
     for (int i = 0; i < n; ++i) tick();

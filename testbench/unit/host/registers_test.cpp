@@ -9,7 +9,8 @@ namespace brick {
 namespace {
 
 TEST(Registers, GateIcBasesAreThoseOfTheSoftwareReference) {
-  const std::uint32_t base[10] = {0x078000, 0x078100, 0x078200, 0x078300, 0x079200, 0x079300, 0x07A200, 0x07A300, 0x07B200, 0x07B300};
+  const std::uint32_t base[10] = {0x078000, 0x078100, 0x078200, 0x078300, 0x079200,
+                                  0x079300, 0x07A200, 0x07A300, 0x07B200, 0x07B300};
   const std::uint32_t c_bases[] = GATE_IC_BASES, c_directions[] = GATE_IC_DIRECTION_VARIABLES;
   ASSERT_EQ(GATE_IC_COUNT, 22u);
   for (unsigned i = 0; i < 22; ++i) {

@@ -1,5 +1,5 @@
-// The Verilated modules of rtl/host behind one small interface: inputs as the models have them, outputs by name. Verilated
-// headers stay in rtl_blocks.cpp, because they and SystemC cannot be included in one file.
+// The Verilated modules of rtl/host behind one small interface: inputs as the models have them, outputs by name.
+// Verilated headers stay in rtl_blocks.cpp, because they and SystemC cannot be included in one file.
 #pragma once
 
 #include <cstdint>

@@ -100,12 +100,13 @@ std::unique_ptr<RtlBlock<IsaSlaveInputs>> make_isa_slave() {
         v.mem_busy_i = in.mem_busy;
       },
       [](const V& v) {
-        return Outputs{{"isa_sd", v.isa_sd_o},     {"isa_iochrdy", v.isa_iochrdy_o}, {"isa_memcs16_n", v.isa_memcs16_no},
-                       {"hp_sel", v.hp_sel_o},     {"hp_rd_done", v.hp_rd_done_o},   {"hp_wr", v.hp_wr_o},
-                       {"hp_addr", v.hp_addr_o},   {"hp_wdata", v.hp_wdata_o},       {"pic_sel", v.pic_sel_o},
-                       {"pic_wr", v.pic_wr_o},     {"pic_addr", v.pic_addr_o},       {"pic_wdata", v.pic_wdata_o},
-                       {"mem_sel", v.mem_sel_o},   {"mem_rd", v.mem_rd_o},           {"mem_wr", v.mem_wr_o},
-                       {"mem_addr", v.mem_addr_o}, {"mem_be", v.mem_be_o},           {"mem_wdata", v.mem_wdata_o}};
+        return Outputs{
+            {"isa_sd", v.isa_sd_o},     {"isa_iochrdy", v.isa_iochrdy_o}, {"isa_memcs16_n", v.isa_memcs16_no},
+            {"hp_sel", v.hp_sel_o},     {"hp_rd_done", v.hp_rd_done_o},   {"hp_wr", v.hp_wr_o},
+            {"hp_addr", v.hp_addr_o},   {"hp_wdata", v.hp_wdata_o},       {"pic_sel", v.pic_sel_o},
+            {"pic_wr", v.pic_wr_o},     {"pic_addr", v.pic_addr_o},       {"pic_wdata", v.pic_wdata_o},
+            {"mem_sel", v.mem_sel_o},   {"mem_rd", v.mem_rd_o},           {"mem_wr", v.mem_wr_o},
+            {"mem_addr", v.mem_addr_o}, {"mem_be", v.mem_be_o},           {"mem_wdata", v.mem_wdata_o}};
       });
 }
 
@@ -121,7 +122,8 @@ std::unique_ptr<RtlBlock<InterruptControllerInputs>> make_rtl_interrupt_controll
         v.wdata_i = in.wdata;
       },
       [](const V& v) {
-        return Outputs{{"rdata", v.rdata_o}, {"ist", v.ist_o}, {"sig", v.sig_o}, {"msk", v.msk_o}, {"elr", v.elr_o}, {"irq", v.irq_o}};
+        return Outputs{{"rdata", v.rdata_o}, {"ist", v.ist_o}, {"sig", v.sig_o},
+                       {"msk", v.msk_o},     {"elr", v.elr_o}, {"irq", v.irq_o}};
       });
 }
 
@@ -133,7 +135,8 @@ std::unique_ptr<RtlBlock<HostSignalsInputs>> make_rtl_host_signals() {
         v.wdata_i = in.wdata & 0xF;
       },
       [](const V& v) {
-        return Outputs{{"rdata", v.rdata_o}, {"ipos", v.ipos_o}, {"breq", v.breq_o}, {"eror", v.eror_o}, {"f1er", v.f1er_o}};
+        return Outputs{
+            {"rdata", v.rdata_o}, {"ipos", v.ipos_o}, {"breq", v.breq_o}, {"eror", v.eror_o}, {"f1er", v.f1er_o}};
       });
 }
 

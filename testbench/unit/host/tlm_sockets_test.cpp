@@ -1,4 +1,5 @@
-// The TLM-2.0 face of the host-side blocks: a talk from host to CPU and back through sockets, exact delays, error responses.
+// The TLM-2.0 face of the host-side blocks: a talk from host to CPU and back through sockets, exact delays, error
+// responses.
 #include <gtest/gtest.h>
 
 #include "rtl/regs/brick_regs.hpp"
@@ -14,7 +15,8 @@ namespace {
 
 // Calls the target as a bound initiator would; without elaboration, so that many tests fit into one process.
 template <class Value, class Socket>
-tlm::tlm_response_status transport(Socket& socket, tlm::tlm_command command, std::uint64_t address, Value& value, sc_core::sc_time& delay) {
+tlm::tlm_response_status transport(Socket& socket, tlm::tlm_command command, std::uint64_t address, Value& value,
+                                   sc_core::sc_time& delay) {
   tlm::tlm_generic_payload payload;
   payload.set_command(command);
   payload.set_address(address);

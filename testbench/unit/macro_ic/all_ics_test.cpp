@@ -1,5 +1,6 @@
-// The board with all 22 ICs through its pins: every IC at its address, each as the source of the clocks in turn, two at once,
-// the kinds. On the RTL, on the model and on both in lock-step. Addresses are those of servo-ic.md 1.2 and 1.3.
+// The board with all 22 ICs through its pins: every IC at its address, each as the source of the clocks in turn, two at
+// once, the kinds. On the RTL, on the model and on both in lock-step. Addresses are those of servo-ic:1.2 and
+// servo-ic:1.3.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,8 +14,9 @@ namespace {
 
 constexpr std::uint32_t kAll = 0x3FFFFF, kNoSource = 31;
 constexpr unsigned kFirstMacro = 18;
-constexpr std::uint32_t kBases[22] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300, 0x78220,
-                                      0x78320, 0x79220, 0x79320, 0x7A220, 0x7A320, 0x7B220, 0x7B320, 0x78400, 0x79400, 0x7A400, 0x7B400};
+constexpr std::uint32_t kBases[22] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300,
+                                      0x7B200, 0x7B300, 0x78220, 0x78320, 0x79220, 0x79320, 0x7A220, 0x7A320,
+                                      0x7B220, 0x7B320, 0x78400, 0x79400, 0x7A400, 0x7B400};
 
 std::uint32_t clock_address(unsigned ic) { return kBases[ic] + (ic < kFirstMacro ? 0x04 : 0x0C); }
 std::uint32_t pwm_address(unsigned ic) { return kBases[ic] + (ic < kFirstMacro ? 0x1C : 0x0D); }
@@ -34,7 +36,8 @@ class AllIcs : public ::testing::TestWithParam<std::string> {
 
 TEST_P(AllIcs, EveryIcHasAPlaceOfItsOwn) {
   for (unsigned ic = 0; ic < 22; ++ic) rig.write(true, strobe_address(ic), 0x010101 * (ic + 1));
-  for (unsigned ic = 0; ic < 22; ++ic) EXPECT_EQ(rig.read(true, strobe_address(ic)), 0x010101 * (ic + 1)) << "IC " << ic;
+  for (unsigned ic = 0; ic < 22; ++ic)
+    EXPECT_EQ(rig.read(true, strobe_address(ic)), 0x010101 * (ic + 1)) << "IC " << ic;
   for (unsigned ic = 0; ic < 22; ++ic) EXPECT_EQ(rig.read(true, clock_address(ic)), 0x3038D2u) << "IC " << ic;
 }
 
@@ -108,14 +111,16 @@ TEST_P(AllIcs, AMacroGateDrivesPhaseAtMostAndHasNoSupplementaryChannels) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, AllIcs, ::testing::Values("Rtl", "Model", "Lockstep"), [](const auto& p) { return p.param; });
+INSTANTIATE_TEST_SUITE_P(Engines, AllIcs, ::testing::Values("Rtl", "Model", "Lockstep"),
+                         [](const auto& p) { return p.param; });
 
 // Whatever is fitted, there is a Verilated board that has it, and nothing else answers.
 TEST(Variants, EveryCombinationOfIcsHasOne) {
   for (const std::uint32_t fitted : {0x1u, 0x3u, 0x4000Cu, 0x40000u, 0x3FFFFFu, 0x200000u}) {
     BoardRig rig(make_rtl_board(fitted), fitted);
     for (unsigned ic = 0; ic < 22; ++ic)
-      EXPECT_EQ(rig.read(true, strobe_address(ic)), (fitted >> ic & 1) != 0 ? 0xFFFFFEu : 0u) << std::hex << fitted << " IC " << ic;
+      EXPECT_EQ(rig.read(true, strobe_address(ic)), (fitted >> ic & 1) != 0 ? 0xFFFFFEu : 0u)
+          << std::hex << fitted << " IC " << ic;
   }
 }
 

@@ -57,7 +57,8 @@ class Stimulus {
         rig_.start_write(true, macro::kPwm, pwm_word(static_cast<unsigned>(max_count_)));
         break;
       case 1:
-        rig_.start_write(true, macro::kClock, clock_word(value(one_in(2) ? 2 : 15), value(3), one_in(2) ? 0 : value(3)));
+        rig_.start_write(true, macro::kClock,
+                         clock_word(value(one_in(2) ? 2 : 15), value(3), one_in(2) ? 0 : value(3)));
         break;
       default:
         rig_.start_write(one_in(2), value(one_in(2) ? 15 : 63), value(0xFFFFFF));

@@ -7,9 +7,10 @@
 
 namespace brick {
 
-// Offsets of the words that are built (servo-ic.md 6.2).
+// Offsets of the words that are built (servo-ic:6.2).
 namespace macro {
-constexpr unsigned kClock = 0x0C, kPwm = 0x0D, kAdcStrobe = 0x0E, kRing = 0x0F, kNodes = 0x0F, kJio = 0x00, kMultiplexer = 0x02;
+constexpr unsigned kClock = 0x0C, kPwm = 0x0D, kAdcStrobe = 0x0E, kRing = 0x0F, kNodes = 0x0F, kJio = 0x00,
+                   kMultiplexer = 0x02;
 constexpr unsigned kSupplementary[] = {0x15, 0x1D};
 }  // namespace macro
 

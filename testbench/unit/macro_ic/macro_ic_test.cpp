@@ -1,5 +1,5 @@
-// Registers and clock outputs of both kinds of MACRO IC, the same expectations on both engines. Expected periods are arithmetic
-// on servo-ic.md 6.1: phase (2 v + 3)(I6801 + 1) ticks, servo (I6802 + 1) phase periods.
+// Registers and clock outputs of both kinds of MACRO IC, the same expectations on both engines. Expected periods are
+// arithmetic on servo-ic:6.1: phase (2 v + 3)(I6801 + 1) ticks, servo (I6802 + 1) phase periods.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -32,7 +32,8 @@ TYPED_TEST(MacroIcOn, RegistersHaveTheirResetValuesWithBothClocksAsInputs) {
   EXPECT_EQ(this->rig.read(true, macro::kClock), 0x3038D2u);
   EXPECT_EQ(this->rig.read(true, macro::kPwm), 0x197F0Fu);
   EXPECT_EQ(this->rig.read(true, macro::kAdcStrobe), 0xFFFFFEu);
-  for (const unsigned offset : {macro::kJio, macro::kMultiplexer, macro::kNodes}) EXPECT_EQ(this->rig.read(false, offset), 0u);
+  for (const unsigned offset : {macro::kJio, macro::kMultiplexer, macro::kNodes})
+    EXPECT_EQ(this->rig.read(false, offset), 0u);
   for (const unsigned offset : {macro::kRing, macro::kSupplementary[0], macro::kSupplementary[1]})
     EXPECT_EQ(this->rig.read(true, offset), 0u);
   EXPECT_FALSE(this->rig.phase_oe());
@@ -52,7 +53,8 @@ TYPED_TEST(MacroIcOn, WordsHoldTheBitsThatExistAndNoOthers) {
       for (const bool x : {false, true}) this->rig.write(x, offset, value);
     for (unsigned offset = 0; offset < 64; ++offset)
       for (const bool x : {false, true})
-        EXPECT_EQ(this->rig.read(x, offset), value & bits(x, offset)) << (x ? "X:+" : "Y:+") << offset << " written " << value;
+        EXPECT_EQ(this->rig.read(x, offset), value & bits(x, offset))
+            << (x ? "X:+" : "Y:+") << offset << " written " << value;
   }
 }
 

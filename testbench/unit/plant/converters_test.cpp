@@ -233,7 +233,8 @@ TEST(Amplifier, KeepsTheFirstFaultUntilItsAxisIsCleared) {
   EXPECT_TRUE(amplifier.fault_pin());
   amplifier.trip(Amplifier::Fault::kI2t);
   EXPECT_EQ(amplifier.fault(), Amplifier::Fault::kOverCurrent);
-  for (std::uint32_t word : {0xF9CDFEu, 0xF84DFEu, 0xE8CDFEu, 0xFFFFFEu}) {  // other axis, no reset, no address, default
+  for (std::uint32_t word :
+       {0xF9CDFEu, 0xF84DFEu, 0xE8CDFEu, 0xFFFFFEu}) {  // other axis, no reset, no address, default
     amplifier.command(0, word);
     EXPECT_FALSE(amplifier.on()) << std::hex << word;
   }

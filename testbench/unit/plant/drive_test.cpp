@@ -1,4 +1,5 @@
-// Plant and servo IC together: what is written to the IC's registers moves the motor, and its counters and words show it.
+// Plant and servo IC together: what is written to the IC's registers moves the motor, and its counters and words show
+// it.
 #include "testbench/unit/plant/ic_rig.h"
 
 namespace brick::plant {
@@ -51,8 +52,8 @@ TEST(PlantAtIc, StepperTurnsPfmPulsesIntoCounts) {
   EXPECT_FALSE(rig.status(1, kErrorBit));
 }
 
-// OUT A = $400000 is 5 V, half of full scale: 5 A x 0.1 N m/A on 1e-4 kg m2 = 5000 rad/s2. 10 ms: 50 rad/s, 0.25 rad = 159 counts
-// of 4000 a turn.
+// OUT A = $400000 is 5 V, half of full scale: 5 A x 0.1 N m/A on 1e-4 kg m2 = 5000 rad/s2. 10 ms: 50 rad/s, 0.25 rad =
+// 159 counts of 4000 a turn.
 TEST(PlantAtIc, DacTorqueAcceleratesTheMotor) {
   Plant plant(one_axis(Drive::kTorque));
   IcRig rig(plant);
@@ -75,11 +76,12 @@ TEST(PlantAtIc, DacTorqueAcceleratesTheMotor) {
   EXPECT_GT(speed, 49.9);
   rig.run(1024 * 1152);
   EXPECT_EQ(plant.axis(0).motor().speed(), speed) << "it coasts without friction";
-  EXPECT_NEAR(rig.counter(0), static_cast<double>(plant.axis(0).counts(rig.now())), 2);  // latched up to a phase ago: 0.8 counts
+  EXPECT_NEAR(rig.counter(0), static_cast<double>(plant.axis(0).counts(rig.now())),
+              2);  // latched up to a phase ago: 0.8 counts
 }
 
-// Commands +300 and -300: 4 x 300 / (4 x 1500 + 6) of half the bus each, so 48 V x 1200/6006 = 9.59 V between A and B, and without
-// load 95.9 rad/s. Both time constants (L/R and J R/k2) are 0.1 ms, 40 of them pass before the measurement.
+// Commands +300 and -300: 4 x 300 / (4 x 1500 + 6) of half the bus each, so 48 V x 1200/6006 = 9.59 V between A and B,
+// and without load 95.9 rad/s. Both time constants (L/R and J R/k2) are 0.1 ms, 40 of them pass before the measurement.
 TEST(PlantAtIc, PwmRunsABrushMotor) {
   PlantParameters parameters = one_axis(Drive::kBrush);
   parameters.axes[0].motor.inertia = 1e-6;
@@ -100,9 +102,9 @@ TEST(PlantAtIc, PwmRunsABrushMotor) {
   EXPECT_FALSE(rig.status(0, kErrorBit));
 }
 
-// Commands -300, 600, -300 are a vector along B: 48/2 V x 4 x 600 / 6006 = 9.59 V, on 1 ohm 9.59 A. The rotor comes to rest a third of
-// an electrical turn from A, 4000/12 = 333.3 counts, with -4.795 A in A and 9.59 A in B. Their ripple at most: 24 V for half a PWM period,
-// 25 us, on 1 mH, 0.3 A either way.
+// Commands -300, 600, -300 are a vector along B: 48/2 V x 4 x 600 / 6006 = 9.59 V, on 1 ohm 9.59 A. The rotor comes to
+// rest a third of an electrical turn from A, 4000/12 = 333.3 counts, with -4.795 A in A and 9.59 A in B. Their ripple
+// at most: 24 V for half a PWM period, 25 us, on 1 mH, 0.3 A either way.
 TEST(PlantAtIc, PwmHoldsAThreePhaseRotor) {
   PlantParameters parameters = one_axis(Drive::kThreePhase);
   parameters.axes[0].motor.inertia = 1e-6;
@@ -132,7 +134,8 @@ TEST(PlantAtIc, ConvertersWorkAtEveryBitRate) {
     rig.write(false, 8 * (n % 4) + 2, 0x345000);
     rig.run(8 * IcRig::kPhase);
     EXPECT_EQ(plant.dac(0).value(n % 4), 0x345000 >> 6) << n;
-    EXPECT_EQ(rig.read(false, 8 * (n % 4) + 5), 0x345000u) << n;  // full scale of both is the same; the low ten bits are 0
+    EXPECT_EQ(rig.read(false, 8 * (n % 4) + 5), 0x345000u)
+        << n;  // full scale of both is the same; the low ten bits are 0
     EXPECT_EQ(plant.adc(0).command(), 0xFFFFFEu) << n;
   }
 }
@@ -152,7 +155,8 @@ TEST(PlantAtIc, WrongPolarityShortsTheBus) {
   EXPECT_TRUE(rig.status(0, kFaultBit));
 }
 
-// 48 V and no load on 1 ohm: beyond 20 A the stage trips, says so on FAULT and in ADC A, and is cleared through the strobe word.
+// 48 V and no load on 1 ohm: beyond 20 A the stage trips, says so on FAULT and in ADC A, and is cleared through the
+// strobe word.
 TEST(PlantAtIc, OverCurrentTripsAndIsCleared) {
   PlantParameters parameters = one_axis(Drive::kBrush, 2);
   parameters.axes[0].motor.coulomb = 10;
@@ -219,8 +223,9 @@ TEST(PlantAtIc, FaultyDiscAndCutWiresAreFound) {
   EXPECT_TRUE(rig.status(3, kLossBit));
 }
 
-// Pulse and direction: each disturbance of A that passes the filter counts, down because B is low. Shorter than SCLK (12 ticks):
-// none; from two SCLK periods on: all. Looked at whenever PHASE has latched another count; one disturbance may be under way then.
+// Pulse and direction: each disturbance of A that passes the filter counts, down because B is low. Shorter than SCLK
+// (12 ticks): none; from two SCLK periods on: all. Looked at whenever PHASE has latched another count; one disturbance
+// may be under way then.
 TEST(PlantAtIc, FilterPassesNoiseByItsLength) {
   for (const bool passes : {false, true}) {
     PlantParameters parameters = one_axis(Drive::kHand);

@@ -1,4 +1,5 @@
-// Encoder, switches and line noise: levels, exact edge ticks, and what is wrong with them, counted by the test's own counter.
+// Encoder, switches and line noise: levels, exact edge ticks, and what is wrong with them, counted by the test's own
+// counter.
 #include <array>
 #include <cstdlib>
 #include <set>
@@ -35,7 +36,9 @@ TEST(Encoder, ALeadsBGoingUp) {
   for (std::int64_t cycle : {-2, 0, 7})
     for (unsigned count = 0; count < 4; ++count)
       for (std::int64_t rest : {std::int64_t{0}, kU1 - 1})
-        EXPECT_EQ(ab(encoder.pins((4 * cycle + count) * kU1 + rest)), (std::vector<unsigned>{0b00, 0b10, 0b11, 0b01})[count]) << count;
+        EXPECT_EQ(ab(encoder.pins((4 * cycle + count) * kU1 + rest)),
+                  (std::vector<unsigned>{0b00, 0b10, 0b11, 0b01})[count])
+            << count;
 }
 
 TEST(Encoder, ShowsIdleLevelsOnWhatItDoesNotDrive) {
@@ -60,16 +63,18 @@ TEST(Encoder, EdgesAreExactInTicks) {
   ASSERT_EQ(edges.size(), 70u);
   for (Tick k = 1; k <= 70; ++k) EXPECT_EQ(edges[static_cast<std::size_t>(k - 1)], 1000 + (9973 * k + 69) / 70) << k;
 
-  // Down: count 70 - k is left at the first tick at which the position is below 71 - k counts: position 70 - 70 x / 9973 < 71 - k.
+  // Down: count 70 - k is left at the first tick at which the position is below 71 - k counts: position 70 - 70 x /
+  // 9973 < 71 - k.
   edges.clear();
   plant.axis(0).turn(-70, 9973);
   rig.run(11000);
   ASSERT_EQ(edges.size(), 70u);
-  for (Tick k = 1; k <= 70; ++k) EXPECT_EQ(edges[static_cast<std::size_t>(k - 1)], 12000 + 9973 * (k - 1) / 70 + 1) << k;
+  for (Tick k = 1; k <= 70; ++k)
+    EXPECT_EQ(edges[static_cast<std::size_t>(k - 1)], 12000 + 9973 * (k - 1) / 70 + 1) << k;
 }
 
-// A tenth of a unit per tick: going up, count 1 is reached after 10 x 65536 ticks; going down it is left one tick after the position
-// was there again.
+// A tenth of a unit per tick: going up, count 1 is reached after 10 x 65536 ticks; going down it is left one tick after
+// the position was there again.
 TEST(Encoder, EdgesOfASlowMotionAreExact) {
   Plant plant(hand(lines(10)));
   PlantRig rig(plant);
@@ -146,8 +151,8 @@ TEST(Encoder, IndexComesOnceARevolution) {
   }
 }
 
-// A period of four counts of 1000 ticks. B late by a quarter of a count: its edges come 250 ticks later, A's stay; A too long by
-// half a count: it falls 500 ticks later.
+// A period of four counts of 1000 ticks. B late by a quarter of a count: its edges come 250 ticks later, A's stay; A
+// too long by half a count: it falls 500 ticks later.
 TEST(Encoder, PhaseErrorMovesEdges) {
   EncoderParameters encoder = lines(10);
   encoder.b_late = kU1 / 4;
@@ -201,7 +206,8 @@ TEST(Encoder, JointEdgesAreIllegal) {
   EXPECT_EQ(counter.count, 0);
 }
 
-// Mode 11 counts 001 011 010 110 100 101 of {A,B,C} up. Three pole pairs: 18 steps a revolution, 40 counts = 18 steps do not divide.
+// Mode 11 counts 001 011 010 110 100 101 of {A,B,C} up. Three pole pairs: 18 steps a revolution, 40 counts = 18 steps
+// do not divide.
 TEST(Encoder, HallsStepThroughTheirOrder) {
   for (const auto wiring : {EncoderParameters::Wiring::kHalls, EncoderParameters::Wiring::kHallsOnAbc}) {
     EncoderParameters encoder = lines(10);
@@ -226,7 +232,8 @@ TEST(Encoder, HallsStepThroughTheirOrder) {
     ASSERT_EQ(seen.size(), 18u);
     for (std::size_t i = 0; i < 18; ++i) {
       EXPECT_EQ(seen[i], order[i % 6]) << i;
-      // Sector i begins at i/18 of the revolution, rounded up to the position's resolution (1/65536 count = 0.007 tick).
+      // Sector i begins at i/18 of the revolution, rounded up to the position's resolution (1/65536 count = 0.007
+      // tick).
       if (i == 0) continue;
       EXPECT_NEAR(static_cast<double>(when[i]), 1000.0 * static_cast<double>(i), 1) << i;
     }

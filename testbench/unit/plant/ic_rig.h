@@ -1,5 +1,5 @@
-// The plant at the model of a servo IC. Default dividers (SCLK and PFM_CLK 12 ticks, DAC_CLK 24, ADC_CLK 48) and a phase period of
-// 2 x 1500 + 3 ticks.
+// The plant at the model of a servo IC. Default dividers (SCLK and PFM_CLK 12 ticks, DAC_CLK 24, ADC_CLK 48) and a
+// phase period of 2 x 1500 + 3 ticks.
 #pragma once
 
 #include "systemc/servo_ic/servo_ic.h"

@@ -13,7 +13,8 @@ constexpr std::int64_t kRevolution = 4000 * kUnitsPerCount;
 
 double turns(const Motor& motor) { return static_cast<double>(motor.position()) / static_cast<double>(kRevolution); }
 
-// 2 A x 0.1 N m/A on 1e-4 kg m2: 2000 rad/s2, after 0.1 s 200 rad/s and 10 rad (and half a step's way more: n (n + 1) / 2 steps).
+// 2 A x 0.1 N m/A on 1e-4 kg m2: 2000 rad/s2, after 0.1 s 200 rad/s and 10 rad (and half a step's way more: n (n + 1) /
+// 2 steps).
 TEST(Motor, AcceleratesEvenlyUnderConstantTorque) {
   Motor motor(MotorParameters{}, kRevolution);
   for (int i = 0; i < 10240; ++i) motor.drive_current(kDt, 2);
@@ -63,7 +64,8 @@ TEST(Motor, LoadPullsBackwards) {
   EXPECT_LT(motor.position(), 0);
 }
 
-// No load: 24 V / 0.1 V s = 240 rad/s. With 0.2 N m: 2 A take 2 V of it, 220 rad/s. Mechanical time constant J R / k2 = 10 ms.
+// No load: 24 V / 0.1 V s = 240 rad/s. With 0.2 N m: 2 A take 2 V of it, 220 rad/s. Mechanical time constant J R / k2 =
+// 10 ms.
 TEST(Motor, BrushMotorRunsUpToItsBackVoltage) {
   Motor motor(MotorParameters{}, kRevolution);
   for (int i = 0; i < 51200; ++i) motor.drive_brush(kDt, 24);
@@ -87,8 +89,8 @@ TEST(Motor, CurrentRisesWithTheWindingsTimeConstant) {
   EXPECT_NEAR(motor.current_a(), 10, 1e-6);
 }
 
-// A constant vector pulls the rotor to its angle: A alone to 0, B alone to a third of the electrical turn. 6 V on A and -3 V on the
-// others are an amplitude of 6 V, 6 A.
+// A constant vector pulls the rotor to its angle: A alone to 0, B alone to a third of the electrical turn. 6 V on A and
+// -3 V on the others are an amplitude of 6 V, 6 A.
 TEST(Motor, ThreePhaseRotorLinesUpWithTheVector) {
   MotorParameters p;
   p.viscous = 5e-3;
@@ -117,7 +119,8 @@ TEST(Motor, ThreePhaseRotorFollowsATurningVector) {
   Motor motor(p, kRevolution);
   for (int i = 0; i < 204800; ++i) {
     const double angle = kTwoPi * 10 * i * kDt;
-    motor.drive_three_phase(kDt, 6 * std::cos(angle), 6 * std::cos(angle - kTwoPi / 3), 6 * std::cos(angle + kTwoPi / 3));
+    motor.drive_three_phase(kDt, 6 * std::cos(angle), 6 * std::cos(angle - kTwoPi / 3),
+                            6 * std::cos(angle + kTwoPi / 3));
   }
   EXPECT_NEAR(motor.speed(), kTwoPi * 10 / 4, 1e-3);
   EXPECT_NEAR(turns(motor), 20.0 / 4, 0.02);  // the load angle: 5e-3 x 15.7 / (0.1 x 6) = 0.13 electrical, 0.005 turns

@@ -49,7 +49,8 @@ class QuadratureCounter {
   void look(unsigned pins) {
     const unsigned state = (pins >> kEncA & 1) << 1 | (pins >> kEncB & 1);
     if (known_ && state != state_) {
-      static constexpr int kStep[4][4] = {{0, -1, 1, 9}, {1, 0, 9, -1}, {-1, 9, 0, 1}, {9, 1, -1, 0}};  // [from][to] by {A, B}
+      static constexpr int kStep[4][4] = {
+          {0, -1, 1, 9}, {1, 0, 9, -1}, {-1, 9, 0, 1}, {9, 1, -1, 0}};  // [from][to] by {A, B}
       const int step = kStep[state_][state];
       if (step == 9)
         ++illegal;

@@ -37,8 +37,9 @@ Outcome run(std::uint64_t seed, bool eager) {
   Outcome outcome;
   rig.eager = eager;
   rig.on_edge = [&](Tick) {
-    for (const std::uint64_t word : {rig.inputs[0].pins[0], rig.inputs[0].pins[1], rig.inputs[0].pins[2], rig.inputs[0].pins[3],
-                                     static_cast<std::uint16_t>(rig.inputs[0].adc_a), static_cast<std::uint16_t>(rig.inputs[0].adc_b)})
+    for (const std::uint64_t word :
+         {rig.inputs[0].pins[0], rig.inputs[0].pins[1], rig.inputs[0].pins[2], rig.inputs[0].pins[3],
+          static_cast<std::uint16_t>(rig.inputs[0].adc_a), static_cast<std::uint16_t>(rig.inputs[0].adc_b)})
       outcome.hash = (outcome.hash ^ word) * 0x100000001B3;
   };
   rig.write(true, 5, 3u | 1u << 14);
@@ -121,7 +122,8 @@ TEST(Plant, LeavesPinsOfOthersAlone) {
   const unsigned others = 1u << kHmfl | 1u << kPlim | 1u << kMlim | 1u << kUser;
   EXPECT_EQ(inputs[0].pins[0], idle | others);
   EXPECT_EQ(inputs[0].pins[2], 0xFFF);
-  EXPECT_EQ(inputs[0].pins[3], 1u << kT | 1u << kW | (others & ~(1u << kHmfl)) | 1u << kFault) << "a hand has no amplifier";
+  EXPECT_EQ(inputs[0].pins[3], 1u << kT | 1u << kW | (others & ~(1u << kHmfl)) | 1u << kFault)
+      << "a hand has no amplifier";
 }
 
 TEST(Plant, RejectsTwoAxesAtOneChannel) {

@@ -1,6 +1,6 @@
-// One engine of the four channels with their registers, and a stuck bit between it and the bus: in the words it is written, or
-// in the words read from it. A check drives the rig through write(), read() and the pins, so the same check that passes on the
-// sound engine has to notice the stuck bit.
+// One engine of the four channels with their registers, and a stuck bit between it and the bus: in the words it is
+// written, or in the words read from it. A check drives the rig through write(), read() and the pins, so the same check
+// that passes on the sound engine has to notice the stuck bit.
 #pragma once
 
 #include <algorithm>
@@ -122,8 +122,8 @@ class BitsRig {
   Tick now_ = 0;
 };
 
-// One bit of one word, on the side on which it could be stuck, and what shows that it is not. `check` starts from reset and
-// returns whether the bit could be seen as 0 and as 1 where it had to be.
+// One bit of one word, on the side on which it could be stuck, and what shows that it is not. `check` starts from reset
+// and returns whether the bit could be seen as 0 and as 1 where it had to be.
 struct BitRow {
   std::string name;
   Side side;

@@ -7,8 +7,8 @@ namespace brick {
 
 constexpr unsigned kDacClkPin = 1, kDacStrobePin = 2, kAdcClkPin = 4, kAdcStrobePin = 8;  // of ChannelPins::serial
 
-// Puts a new PWM word to use without waiting for two half periods of the reset value 6527: the fourth rising edge of PHASE in a
-// row that comes at a wrong time forces a turnaround, and a new maximum count is taken at the bottom one.
+// Puts a new PWM word to use without waiting for two half periods of the reset value 6527: the fourth rising edge of
+// PHASE in a row that comes at a wrong time forces a turnaround, and a new maximum count is taken at the bottom one.
 inline void start_triangle(BitsRig& rig, std::uint32_t pwm_word) {
   rig.start();
   rig.write(true, 0x1C, pwm_word);
@@ -32,7 +32,8 @@ inline Tick pfm_pulse(BitsRig& rig, unsigned channel, Tick limit) {
   return rig.now() - rise;
 }
 
-// Levels of a pin at the rising edges of a serial clock after PHASE rises, first one in bit 23; 0xFFFFFFFF if there are not 24.
+// Levels of a pin at the rising edges of a serial clock after PHASE rises, first one in bit 23; 0xFFFFFFFF if there are
+// not 24.
 template <class Level>
 std::uint32_t receive(BitsRig& rig, unsigned clock, Level level) {
   rig.in.phase = false;

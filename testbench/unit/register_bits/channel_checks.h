@@ -1,4 +1,5 @@
-// What the checks of a channel's words share: a control word with its settling, the status bits, the position, a capture.
+// What the checks of a channel's words share: a control word with its settling, the status bits, the position, a
+// capture.
 #pragma once
 
 #include "testbench/unit/register_bits/bits_rig.h"
@@ -7,8 +8,8 @@ namespace brick {
 
 using Check = std::function<bool(BitsRig&, unsigned)>;
 
-constexpr std::uint32_t kX4 = 3, kIndex = 1 << 4, kFlag = 2 << 4, kEquWrite = 1 << 11, kEquState = 1 << 12, kGated = 1 << 15,
-                        kFine = 1 << 18, kInvertAb = 1 << 20, kInvertC = 1 << 21, kPfm = 1 << 23;
+constexpr std::uint32_t kX4 = 3, kIndex = 1 << 4, kFlag = 2 << 4, kEquWrite = 1 << 11, kEquState = 1 << 12,
+                        kGated = 1 << 15, kFine = 1 << 18, kInvertAb = 1 << 20, kInvertC = 1 << 21, kPfm = 1 << 23;
 constexpr std::uint32_t kFar = 0x400000;  // a compare that is never reached
 
 inline void control(BitsRig& rig, unsigned ch, std::uint32_t word) {

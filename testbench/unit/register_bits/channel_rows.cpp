@@ -229,7 +229,8 @@ Check increment(unsigned bit) {
 void add_read_back(BitTable& table, const char* name, bool x, unsigned offset, bool global, std::uint32_t kept) {
   for (unsigned bit = 0; bit < 24; ++bit) {
     const bool always_0 = (kept >> bit & 1) == 0;
-    table.push_back({std::string(name) + " reads back", Side::kRead, x, offset, bit, global, always_0, [=](BitsRig& rig, unsigned ch) {
+    table.push_back({std::string(name) + " reads back", Side::kRead, x, offset, bit, global, always_0,
+                     [=](BitsRig& rig, unsigned ch) {
                        const unsigned addr = global ? offset : base(ch) + offset;
                        rig.start();
                        for (bool level : {true, false}) {
@@ -249,8 +250,8 @@ void add_channel_rows(BitTable& table) {
   for (unsigned bit = 0; bit < 3; ++bit) read_row("HALLCAP", true, 0, bit, hall_capture(bit));
   read_row("DMX_INV", true, 0, 3, demultiplexing_incomplete);
   for (unsigned bit = 4; bit < 7; ++bit)
-    table.push_back(
-        {"status 0", Side::kRead, true, 0, bit, false, true, [bit](BitsRig& rig, unsigned ch) { return reads_0(rig, ch, true, 0, bit); }});
+    table.push_back({"status 0", Side::kRead, true, 0, bit, false, true,
+                     [bit](BitsRig& rig, unsigned ch) { return reads_0(rig, ch, true, 0, bit); }});
   read_row("ENC_LOSS", true, 0, 7, encoder_loss);
   table.push_back({"ENC_LOSS clear", Side::kWritten, true, 0, 7, false, false, encoder_loss_clears_with_a_0});
   read_row("ENC_ERR", true, 0, 8, encoder_error);  // any write clears it: no written bit matters
@@ -279,7 +280,8 @@ void add_channel_rows(BitTable& table) {
     for (bool of_a : {true, false}) {
       const std::string name = of_a ? "fraction of compare A" : "fraction of compare B";
       table.push_back({name, Side::kWritten, false, of_a ? 1u : 0u, bit, false, false, compare_fraction(of_a, bit)});
-      table.push_back({name + " reads back", Side::kRead, false, of_a ? 1u : 0u, bit, false, false, fraction_reads_back(of_a, bit)});
+      table.push_back({name + " reads back", Side::kRead, false, of_a ? 1u : 0u, bit, false, false,
+                       fraction_reads_back(of_a, bit)});
     }
   }
 }

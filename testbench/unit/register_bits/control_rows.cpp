@@ -4,7 +4,8 @@
 namespace brick {
 namespace {
 
-using Deed = bool (*)(BitsRig&, unsigned ch, std::uint32_t word);  // starts from reset with `word` in X:+5; true for level 1
+using Deed = bool (*)(BitsRig&, unsigned ch,
+                      std::uint32_t word);  // starts from reset with `word` in X:+5; true for level 1
 Check does(unsigned bit, std::uint32_t rest, Deed deed) {
   return [bit, rest, deed](BitsRig& rig, unsigned ch) {
     for (bool level : {false, true}) {

@@ -60,7 +60,8 @@ Check serial_divider(unsigned bit, unsigned position, unsigned clock) {
   };
 }
 
-// A falling edge on the pin latches the position, unless the IC makes the clock itself; its own does not fall that soon.
+// A falling edge on the pin latches the position, unless the IC makes the clock itself; its own does not fall that
+// soon.
 Check direction(bool servo) {
   return [servo](BitsRig& rig, unsigned ch) {
     for (bool external : {false, true}) {
@@ -152,8 +153,9 @@ Check strobe(unsigned addr, unsigned bit) {
     for (bool level : {false, true}) {
       rig.write(true, addr, level ? 1u << bit : 0xFFFFFF & ~(1u << bit));
       const bool dac = addr == kDacStrobe;
-      const std::uint32_t sent =
-          receive(rig, dac ? kDacClkPin : kAdcClkPin, [&] { return (rig.pins().serial & (dac ? kDacStrobePin : kAdcStrobePin)) != 0; });
+      const std::uint32_t sent = receive(rig, dac ? kDacClkPin : kAdcClkPin, [&] {
+        return (rig.pins().serial & (dac ? kDacStrobePin : kAdcStrobePin)) != 0;
+      });
       if (sent == 0xFFFFFFFF || (sent >> bit & 1) != (level ? 1u : 0u)) return false;
     }
     return true;

@@ -1,5 +1,5 @@
-// The registers of a MACRO IC (servo-ic.md 6.2) bit by bit: what each does, or that it is kept, and that a check notices it stuck
-// at 0 or at 1. Both kinds of IC, both engines. The words of its clock part act as those of a servo IC.
+// The registers of a MACRO IC (servo-ic:6.2) bit by bit: what each does, or that it is kept, and that a check notices
+// it stuck at 0 or at 1. Both kinds of IC, both engines. The words of its clock part act as those of a servo IC.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -93,11 +93,15 @@ class MacroTable {
     keeps("supplementary channel 1*", true, macro::kSupplementary[0], channel);
     keeps("supplementary channel 2*", true, macro::kSupplementary[1], channel);
 
-    acts("phase direction", macro::kClock, 12, [gate](StuckIc<Rig>& ic) { return drives(ic, gate, 12, &ServoIcRig::phase_oe); });
-    if (!gate) acts("servo direction", macro::kClock, 13, [](StuckIc<Rig>& ic) { return drives(ic, false, 13, &ServoIcRig::servo_oe); });
+    acts("phase direction", macro::kClock, 12,
+         [gate](StuckIc<Rig>& ic) { return drives(ic, gate, 12, &ServoIcRig::phase_oe); });
+    if (!gate)
+      acts("servo direction", macro::kClock, 13,
+           [](StuckIc<Rig>& ic) { return drives(ic, false, 13, &ServoIcRig::servo_oe); });
     for (unsigned bit = 0; bit < 4; ++bit) {
       acts("phase divider", macro::kClock, 16 + bit, [=](StuckIc<Rig>& ic) { return divides(ic, gate, bit, false); });
-      if (!gate) acts("servo divider", macro::kClock, 20 + bit, [=](StuckIc<Rig>& ic) { return divides(ic, false, bit, true); });
+      if (!gate)
+        acts("servo divider", macro::kClock, 20 + bit, [=](StuckIc<Rig>& ic) { return divides(ic, false, bit, true); });
     }
     for (unsigned bit = 0; bit < 15; ++bit)
       acts("maximum count", macro::kPwm, 8 + bit, [=](StuckIc<Rig>& ic) { return counts(ic, gate, bit); });
@@ -125,8 +129,8 @@ class MacroTable {
     }
   }
 
-  // A pin is released while both clocks are high and taken with a rising edge: the factory setting's running period of PHASE at
-  // most, then a period of SERVO (here as fast as PHASE).
+  // A pin is released while both clocks are high and taken with a rising edge: the factory setting's running period of
+  // PHASE at most, then a period of SERVO (here as fast as PHASE).
   static bool drives(StuckIc<Rig>& ic, bool gate, unsigned bit, bool (ServoIcRig::*driven)()) {
     constexpr Tick kPhase = 2 * 6527 + 3;
     ic.start(gate);
@@ -172,8 +176,8 @@ TYPED_TEST(MacroBits, EachBitDoesWhatTheMapSaysAndEachStuckBitIsFound) {
     const MacroTable<TypeParam> table(gate);
     StuckIc<TypeParam> ic;
     for (const Row<TypeParam>& row : table.rows()) {
-      SCOPED_TRACE(::testing::Message() << row.name << ", " << (row.x ? "X:+" : "Y:+") << row.offset << " bit " << row.bit
-                                        << (gate ? ", MACROGATE" : ", DSPGATE2"));
+      SCOPED_TRACE(::testing::Message() << row.name << ", " << (row.x ? "X:+" : "Y:+") << row.offset << " bit "
+                                        << row.bit << (gate ? ", MACROGATE" : ", DSPGATE2"));
       for (bool level : {false, true}) {
         if (row.always_0 && !level) continue;  // what is always 0 may be stuck there
         ic.stuck = StuckBit{row.side, row.x, row.offset, row.bit, level};

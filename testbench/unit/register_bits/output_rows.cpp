@@ -9,7 +9,7 @@ namespace {
 constexpr unsigned kMaxCount = 20;
 constexpr Tick kPeriod = 4 * kMaxCount + 6;
 
-// Ticks a period for which the top switch is on without dead time (servo-ic.md 5.11).
+// Ticks a period for which the top switch is on without dead time (servo-ic:5.11).
 Tick on_time(int command) {
   const int top = static_cast<int>(kMaxCount) + 1;
   if (command < -top) return 0;
@@ -44,8 +44,8 @@ bool dac_command(BitsRig& rig, unsigned ch, unsigned output, unsigned bit) {
   return true;
 }
 
-// A pulse of command -1 leaves the accumulator one or two short of an overflow, so any bit above 0 makes a pulse soon, bit 23 by
-// going down, and none does not.
+// A pulse of command -1 leaves the accumulator one or two short of an overflow, so any bit above 0 makes a pulse soon,
+// bit 23 by going down, and none does not.
 bool pfm_command(BitsRig& rig, unsigned ch, unsigned bit) {
   constexpr Tick kSoon = 40;
   for (bool level : {false, true}) {
@@ -90,9 +90,11 @@ void add_output_rows(BitTable& table) {
   const char* const names[] = {"OUT A", "OUT B", "OUT C"};
   for (unsigned output = 0; output < 3; ++output) {
     const auto add = [&](const char* use, unsigned bit, std::function<bool(BitsRig&, unsigned)> check) {
-      table.push_back({std::string(names[output]) + use, Side::kWritten, false, 2 + output, bit, false, false, std::move(check)});
+      table.push_back(
+          {std::string(names[output]) + use, Side::kWritten, false, 2 + output, bit, false, false, std::move(check)});
     };
-    for (unsigned bit = 8; bit < 24; ++bit) add(" PWM", bit, [=](BitsRig& rig, unsigned ch) { return pwm_command(rig, ch, output, bit); });
+    for (unsigned bit = 8; bit < 24; ++bit)
+      add(" PWM", bit, [=](BitsRig& rig, unsigned ch) { return pwm_command(rig, ch, output, bit); });
     for (unsigned bit = 6; bit < 24 && output < 2; ++bit)
       add(" DAC", bit, [=](BitsRig& rig, unsigned ch) { return dac_command(rig, ch, output, bit); });
     for (unsigned bit = 0; bit < 24 && output == 2; ++bit)

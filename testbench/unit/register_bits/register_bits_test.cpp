@@ -1,4 +1,4 @@
-// Every bit of the registers of servo-ic.md section 2 shows what it does, and its check notices when it is stuck at 0 or at 1:
+// Every bit of the registers of servo-ic:2 shows what it does, and its check notices when it is stuck at 0 or at 1:
 // the proof that no bit is checked in name only. Both engines, each alone. The timers are in timer_bits_test.cpp.
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ std::string where(const BitRow& row) {
   return row.name + ", " + (row.x ? "X:+" : "Y:+") + std::to_string(row.offset) + " bit " + std::to_string(row.bit);
 }
 
-// Word by word: bits that can be read, bits whose written value matters. Bits 5..0 of OUT A and B and bit 23 of the PWM word are
-// stored and nothing else; the read-back rows have them.
+// Word by word: bits that can be read, bits whose written value matters. Bits 5..0 of OUT A and B and bit 23 of the PWM
+// word are stored and nothing else; the read-back rows have them.
 TEST(RegisterBitTable, HoldsEveryBitOfEveryWord) {
   struct Word {
     bool x;
@@ -32,14 +32,16 @@ TEST(RegisterBitTable, HoldsEveryBitOfEveryWord) {
     bool global;
     std::uint32_t read, written;
   };
-  const Word words[] = {
-      {false, 0, false, 0xFFFFFF, 0x000FFF},  {false, 1, false, 0xFFFFFF, 0x000FFF},  {false, 2, false, 0xFFFFFF, 0xFFFFC0},
-      {false, 3, false, 0xFFFFFF, 0xFFFFC0},  {false, 4, false, 0xFFFFFF, 0xFFFFFF},  {false, 5, false, 0xFFFFFF, 0},
-      {false, 6, false, 0xFFFFFF, 0},         {false, 7, false, 0xFFFFFF, 0xFFFFFF},  {true, 0, false, 0xFFFFFF, 0x000080},
-      {true, 1, false, 0xFFFFFF, 0},          {true, 2, false, 0xFFFFFF, 0},          {true, 3, false, 0xFFFFFF, 0},
-      {true, 5, false, 0xFFFFFF, 0xFFFFFF},   {true, 6, false, 0xFFFFFF, 0xFFFFFF},   {true, 7, false, 0xFFFFFF, 0xFFFFFF},
-      {true, 0x04, true, 0xFFFFFF, 0xFF3FFF}, {true, 0x0C, true, 0xFFFFFF, 0xFFFFFF}, {true, 0x14, true, 0xFFFFFF, 0xFFFFFF},
-      {true, 0x1C, true, 0xFFFFFF, 0x7FFFFF}};
+  const Word words[] = {{false, 0, false, 0xFFFFFF, 0x000FFF},  {false, 1, false, 0xFFFFFF, 0x000FFF},
+                        {false, 2, false, 0xFFFFFF, 0xFFFFC0},  {false, 3, false, 0xFFFFFF, 0xFFFFC0},
+                        {false, 4, false, 0xFFFFFF, 0xFFFFFF},  {false, 5, false, 0xFFFFFF, 0},
+                        {false, 6, false, 0xFFFFFF, 0},         {false, 7, false, 0xFFFFFF, 0xFFFFFF},
+                        {true, 0, false, 0xFFFFFF, 0x000080},   {true, 1, false, 0xFFFFFF, 0},
+                        {true, 2, false, 0xFFFFFF, 0},          {true, 3, false, 0xFFFFFF, 0},
+                        {true, 5, false, 0xFFFFFF, 0xFFFFFF},   {true, 6, false, 0xFFFFFF, 0xFFFFFF},
+                        {true, 7, false, 0xFFFFFF, 0xFFFFFF},   {true, 0x04, true, 0xFFFFFF, 0xFF3FFF},
+                        {true, 0x0C, true, 0xFFFFFF, 0xFFFFFF}, {true, 0x14, true, 0xFFFFFF, 0xFFFFFF},
+                        {true, 0x1C, true, 0xFFFFFF, 0x7FFFFF}};
   std::map<std::tuple<bool, unsigned, bool, Side>, std::uint32_t> bits;
   for (const BitRow& row : full_table()) bits[{row.x, row.offset, row.global, row.side}] |= 1u << row.bit;
   for (const Word& w : words) {
@@ -54,7 +56,8 @@ TEST_P(RegisterBits, EachBitDoesWhatTheMapSays) {
   BRICK_COVERS("CARD-1 CARD-2");
   BitsRig rig(GetParam());
   for (const BitRow& row : full_table())
-    for (unsigned ch = 1; ch <= (row.global ? 1u : 4u); ++ch) EXPECT_TRUE(row.check(rig, ch)) << where(row) << ", channel " << ch;
+    for (unsigned ch = 1; ch <= (row.global ? 1u : 4u); ++ch)
+      EXPECT_TRUE(row.check(rig, ch)) << where(row) << ", channel " << ch;
 }
 
 TEST_P(RegisterBits, EachStuckBitIsFound) {

@@ -1,5 +1,6 @@
-// One Verilated servo_channel, behind the pin synchroniser, with SCLK at every edge of clk_ref: the fastest way through millions
-// of SCLK periods. A step is one period; clk_pwm, which only the PWM uses, rests. The Verilated header stays in the .cpp.
+// One Verilated servo_channel, behind the pin synchroniser, with SCLK at every edge of clk_ref: the fastest way through
+// millions of SCLK periods. A step is one period; clk_pwm, which only the PWM uses, rests. The Verilated header stays
+// in the .cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Words whose upper bits take millions of SCLK periods: T1 and T2, and the carry of the position counter into each of its 24
-// bits. One long run an engine; every word that it reads is kept with the value it should have, and the stuck bits are then put
-// into the words read. (The other words and bits are in register_bits_test.cpp.)
+// Words whose upper bits take millions of SCLK periods: T1 and T2, and the carry of the position counter into each of
+// its 24 bits. One long run an engine; every word that it reads is kept with the value it should have, and the stuck
+// bits are then put into the words read. (The other words and bits are in register_bits_test.cpp.)
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -80,7 +80,9 @@ class LongWords : public ::testing::TestWithParam<BitsEngine> {
     place_ = (place_ + (up ? 1u : 3u)) & 3;
     channel_->pins(kAb[place_]);
   }
-  void expect(bool x, unsigned offset, std::uint32_t value) { readings_.push_back({x, offset, value, channel_->read(x, offset)}); }
+  void expect(bool x, unsigned offset, std::uint32_t value) {
+    readings_.push_back({x, offset, value, channel_->read(x, offset)});
+  }
   bool sound(std::function<std::uint32_t(const Reading&)> stuck) const {
     for (const Reading& r : readings_)
       if (stuck(r) != r.expected) return false;
@@ -99,7 +101,8 @@ class LongWords : public ::testing::TestWithParam<BitsEngine> {
   }
   void check_readings() const {
     for (const Reading& r : readings_)
-      EXPECT_EQ(r.got, r.expected) << (r.x ? "X:+" : "Y:+") << r.offset << ", expected " << std::hex << r.expected << ", read " << r.got;
+      EXPECT_EQ(r.got, r.expected) << (r.x ? "X:+" : "Y:+") << r.offset << ", expected " << std::hex << r.expected
+                                   << ", read " << r.got;
   }
 
   std::unique_ptr<Channel> channel_;
@@ -145,8 +148,8 @@ TEST_P(LongWords, TimersShowEveryBitAndStayAtTheirLimit) {
   check(false, 1, 0x7FFFFF, 1 << 23);
 }
 
-// Up from 0 to 2^23: the carry reaches every bit. X:+1, X:+2, and X:+3 by the home flag at each power of two; then down by one,
-// which borrows through all of them.
+// Up from 0 to 2^23: the carry reaches every bit. X:+1, X:+2, and X:+3 by the home flag at each power of two; then down
+// by one, which borrows through all of them.
 TEST_P(LongWords, PositionCountsThroughAllItsBits) {
   Channel& c = *channel_;
   const auto count = [&](std::uint32_t n, bool up) {

@@ -108,7 +108,8 @@ TEST_F(ChannelTest, DemultiplexedLineSetsCuvwByAbState) {
         step(1, true);
       }
       const std::uint32_t word = rig_.peek(true, base(1));
-      EXPECT_EQ(word & all, high ? carried[place] : all & ~carried[place]) << "place " << place << (high ? ", high" : ", low");
+      EXPECT_EQ(word & all, high ? carried[place] : all & ~carried[place])
+          << "place " << place << (high ? ", high" : ", low");
     }
   }
   EXPECT_FALSE(status(1, 3));

@@ -209,7 +209,8 @@ TEST_F(ChannelTest, Hardware1TFractionIsT2OverT1) {
       EXPECT_EQ(t1, 1000u);
       const std::uint32_t e = std::min(4095u, 4096 * t2 / t1), before = std::min(4095u, 4096 * (t2 - 1) / t1);
       const std::uint32_t expected = up ? e : 4095 - e, earlier = up ? before : 4095 - before;
-      EXPECT_TRUE(fraction == expected || fraction == earlier) << fraction << ", expected " << expected << ", T2 " << t2;
+      EXPECT_TRUE(fraction == expected || fraction == earlier)
+          << fraction << ", expected " << expected << ", T2 " << t2;
       rig_.ticks(1000 * kSclk);
     }
   }
@@ -245,7 +246,8 @@ TEST_F(ChannelTest, ResetDoesNotCountTheLevelsItFinds) {
   rig_.write(true, 0x04, kOwnClocks & 0x0FFFFF);
   rig_.ticks(2 * 13057);
   EXPECT_EQ(counter(1), 0);
-  EXPECT_EQ(rig_.peek(true, base(1)), 0xFFF000u | 0x80u | 0x08u) << "T = U is an encoder loss, de-multiplexing incomplete";
+  EXPECT_EQ(rig_.peek(true, base(1)), 0xFFF000u | 0x80u | 0x08u)
+      << "T = U is an encoder loss, de-multiplexing incomplete";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Base of the channel tests: the rig after reset with default dividers (SCLK 12 ticks), own clocks and a short phase period.
+// Base of the channel tests: the rig after reset with default dividers (SCLK 12 ticks), own clocks and a short phase
+// period.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Output side of a channel: PWM, PFM, serial DAC and ADC with their strobes, amplifier enable, watchdog trip, registers.
+// Output side of a channel: PWM, PFM, serial DAC and ADC with their strobes, amplifier enable, watchdog trip,
+// registers.
 #include <map>
 
 #include "testbench/unit/servo_channel/channel_fixture.h"
@@ -8,7 +9,8 @@ namespace {
 
 TEST_F(ChannelTest, PwmOnTimeFollowsTheCommand) {
   rig_.write(true, 0x1C, 6527 << 8);  // no dead time: TOP is the raw comparison
-  const std::map<int, Tick> expected{{0, 13057}, {100, 13257}, {-100, 12857}, {6528, 26113}, {6529, 26114}, {-6529, 0}, {-6528, 1}};
+  const std::map<int, Tick> expected{{0, 13057},    {100, 13257}, {-100, 12857}, {6528, 26113},
+                                     {6529, 26114}, {-6529, 0},   {-6528, 1}};
   std::vector<int> commands;
   for (const auto& [command, high] : expected) commands.push_back(command);
   for (unsigned i = 0; i < commands.size(); ++i)
@@ -49,7 +51,8 @@ TEST_F(ChannelTest, DeadTimeHoldsBothSwitchesOff) {
 
 TEST_F(ChannelTest, PulseShorterThanTheDeadTimeIsSwallowed) {
   rig_.write(true, 0x1C, 6527 << 8 | 15);
-  rig_.write(false, base(1) + 2, static_cast<std::uint32_t>(6527 - 100) << 8);  // low for 2 (6528 - 6427) - 1 = 201 < 240
+  rig_.write(false, base(1) + 2,
+             static_cast<std::uint32_t>(6527 - 100) << 8);  // low for 2 (6528 - 6427) - 1 = 201 < 240
   rig_.ticks(3 * 26114);
   for (Tick t = 0; t < 26114; ++t) {
     rig_.tick();
@@ -69,7 +72,8 @@ TEST_F(ChannelTest, PwmCommandIsUsedFromTheTurnaroundOn) {
   rig_.write(true, 0x1C, 6527 << 8);
   rig_.ticks(3 * 13057);
   while (rig_.pins().phase) rig_.tick();
-  while (!rig_.pins().phase) rig_.tick();  // a turnaround; the level of command 0 changes half way to the next, 6528 ticks on
+  while (!rig_.pins().phase)
+    rig_.tick();  // a turnaround; the level of command 0 changes half way to the next, 6528 ticks on
   const Tick turn = rig_.now();
   const bool level = rig_.pwm(1, 0);
   rig_.ticks(2000);

@@ -1,5 +1,6 @@
-// Random traffic on all four channels: writes of every register, pins that move as encoders do and at random, PHASE and SERVO of
-// every ratio, trips and resets. RTL and model are compared at every tick. The negative controls distort one written word each.
+// Random traffic on all four channels: writes of every register, pins that move as encoders do and at random, PHASE and
+// SERVO of every ratio, trips and resets. RTL and model are compared at every tick. The negative controls distort one
+// written word each.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -34,7 +35,9 @@ class Stimulus {
   }
 
  private:
-  std::uint32_t between(std::uint32_t low, std::uint32_t high) { return std::uniform_int_distribution<std::uint32_t>(low, high)(random_); }
+  std::uint32_t between(std::uint32_t low, std::uint32_t high) {
+    return std::uniform_int_distribution<std::uint32_t>(low, high)(random_);
+  }
   std::uint32_t value(std::uint32_t limit) { return between(0, limit); }
   bool chance(std::uint32_t one_in) { return between(1, one_in) == 1; }
 
@@ -75,7 +78,8 @@ class Stimulus {
         rig_.write(true, 0x04, value(4095) | (chance(3) ? value(3) << 12 : 0) | value(2) << 16 | value(2) << 20);
         break;
       case 1:
-        rig_.write(true, 0x04, value(3) | value(3) << 3 | value(2) << 6 | value(2) << 9 | value(1) << 16 | value(2) << 20);
+        rig_.write(true, 0x04,
+                   value(3) | value(3) << 3 | value(2) << 6 | value(2) << 9 | value(1) << 16 | value(2) << 20);
         break;
       case 2:
         rig_.write(true, 0x1C, (chance(2) ? value(40) : value(700)) << 8 | (chance(2) ? value(2) : value(20)));
@@ -159,31 +163,34 @@ TEST_P(ServoChannelNegativeControl, ComparisonFindsTheDistortedWord) {
   }
   EXPECT_NE(difference, "");
 }
-INSTANTIATE_TEST_SUITE_P(Words, ServoChannelNegativeControl,
-                         ::testing::Values(Distortion{"DecodeDirection", true, 5, 1 << 2}, Distortion{"DecodeFactor", true, 5, 1 << 0},
-                                           Distortion{"CaptureSource", true, 5, 1 << 4}, Distortion{"IndexInvert", true, 5, 1 << 6},
-                                           Distortion{"FlagInvert", true, 5, 1 << 7}, Distortion{"FlagSelect", true, 5, 1 << 8},
-                                           Distortion{"CounterReset", true, 5, 1 << 10}, Distortion{"EquState", true, 5, 1 << 12},
-                                           Distortion{"CompareChannel", true, 5, 1 << 13}, Distortion{"AmplifierEnable", true, 5, 1 << 14},
-                                           Distortion{"GatedIndex", true, 5, 1 << 15}, Distortion{"GateState", true, 5, 1 << 16},
-                                           Distortion{"Demultiplex", true, 5, 1 << 17}, Distortion{"Hardware1T", true, 5, 1 << 18},
-                                           Distortion{"PfmDirection", true, 5, 1 << 19}, Distortion{"InvertAb", true, 5, 1 << 20},
-                                           Distortion{"InvertC", true, 5, 1 << 21}, Distortion{"DacMode", true, 5, 1 << 22},
-                                           Distortion{"PfmMode", true, 5, 1 << 23}, Distortion{"CompareA", false, 7, 1},
-                                           Distortion{"CompareB", true, 7, 1}, Distortion{"Increment", true, 6, 1},
-                                           Distortion{"ErrorClear", true, 0, 1 << 7}, Distortion{"OutAPwm", false, 2, 1 << 8},
-                                           Distortion{"OutBDac", false, 3, 1 << 6}, Distortion{"OutCPfm", false, 4, 1 << 0},
-                                           Distortion{"SclkDivider", true, 4, 1 << 0}, Distortion{"PfmDivider", true, 4, 1 << 3},
-                                           Distortion{"DacDivider", true, 4, 1 << 6}, Distortion{"AdcDivider", true, 4, 1 << 9},
-                                           Distortion{"DacStrobe", true, 0x0C, 1 << 0}, Distortion{"AdcStrobe", true, 0x14, 1 << 23},
-                                           Distortion{"DeadTime", true, 0x1C, 1 << 0}, Distortion{"MaxCount", true, 0x1C, 1 << 8}),
-                         [](const auto& word) { return std::string(word.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Words, ServoChannelNegativeControl,
+    ::testing::Values(Distortion{"DecodeDirection", true, 5, 1 << 2}, Distortion{"DecodeFactor", true, 5, 1 << 0},
+                      Distortion{"CaptureSource", true, 5, 1 << 4}, Distortion{"IndexInvert", true, 5, 1 << 6},
+                      Distortion{"FlagInvert", true, 5, 1 << 7}, Distortion{"FlagSelect", true, 5, 1 << 8},
+                      Distortion{"CounterReset", true, 5, 1 << 10}, Distortion{"EquState", true, 5, 1 << 12},
+                      Distortion{"CompareChannel", true, 5, 1 << 13}, Distortion{"AmplifierEnable", true, 5, 1 << 14},
+                      Distortion{"GatedIndex", true, 5, 1 << 15}, Distortion{"GateState", true, 5, 1 << 16},
+                      Distortion{"Demultiplex", true, 5, 1 << 17}, Distortion{"Hardware1T", true, 5, 1 << 18},
+                      Distortion{"PfmDirection", true, 5, 1 << 19}, Distortion{"InvertAb", true, 5, 1 << 20},
+                      Distortion{"InvertC", true, 5, 1 << 21}, Distortion{"DacMode", true, 5, 1 << 22},
+                      Distortion{"PfmMode", true, 5, 1 << 23}, Distortion{"CompareA", false, 7, 1},
+                      Distortion{"CompareB", true, 7, 1}, Distortion{"Increment", true, 6, 1},
+                      Distortion{"ErrorClear", true, 0, 1 << 7}, Distortion{"OutAPwm", false, 2, 1 << 8},
+                      Distortion{"OutBDac", false, 3, 1 << 6}, Distortion{"OutCPfm", false, 4, 1 << 0},
+                      Distortion{"SclkDivider", true, 4, 1 << 0}, Distortion{"PfmDivider", true, 4, 1 << 3},
+                      Distortion{"DacDivider", true, 4, 1 << 6}, Distortion{"AdcDivider", true, 4, 1 << 9},
+                      Distortion{"DacStrobe", true, 0x0C, 1 << 0}, Distortion{"AdcStrobe", true, 0x14, 1 << 23},
+                      Distortion{"DeadTime", true, 0x1C, 1 << 0}, Distortion{"MaxCount", true, 0x1C, 1 << 8}),
+    [](const auto& word) { return std::string(word.param.name); });
 
 // Large jumps of the model alone end where single ticks end.
 TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
-    const auto value = [&](std::uint32_t limit) { return std::uniform_int_distribution<std::uint32_t>(0, limit)(random); };
+    const auto value = [&](std::uint32_t limit) {
+      return std::uniform_int_distribution<std::uint32_t>(0, limit)(random);
+    };
     ServoIc slow{sc_core::sc_gen_unique_name("ic")}, fast{sc_core::sc_gen_unique_name("ic")};
     slow.reset(0);
     fast.reset(0);
@@ -213,7 +220,8 @@ TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
       while (now < end) slow.advance(++now);
       ASSERT_TRUE(channel_pins(slow) == channel_pins(fast)) << "seed " << seed;
       for (unsigned addr = 0; addr < 64; ++addr)
-        ASSERT_EQ(slow.read(addr >= 32, addr & 31), fast.read(addr >= 32, addr & 31)) << "seed " << seed << " word " << addr;
+        ASSERT_EQ(slow.read(addr >= 32, addr & 31), fast.read(addr >= 32, addr & 31))
+            << "seed " << seed << " word " << addr;
     }
   }
 }

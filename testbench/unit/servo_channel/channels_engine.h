@@ -1,4 +1,5 @@
-// A servo IC seen from its channels, Verilated or model: levels of all input pins in, output pins and the word at the present address out.
+// A servo IC seen from its channels, Verilated or model: levels of all input pins in, output pins and the word at the
+// present address out.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,11 @@ struct ChannelPins {
   ChannelPins() = default;
   // `motor`: the first two words of MotorOutputs
   ChannelPins(std::uint64_t motor, bool phase_level, bool servo_level)
-      : pwm(motor & 0xFFFFFF), others(motor >> 24 & 0xFFFFFF), serial(motor >> 48 & 0xF), phase(phase_level), servo(servo_level) {}
+      : pwm(motor & 0xFFFFFF),
+        others(motor >> 24 & 0xFFFFFF),
+        serial(motor >> 48 & 0xF),
+        phase(phase_level),
+        servo(servo_level) {}
   bool operator==(const ChannelPins& o) const {
     return pwm == o.pwm && others == o.others && serial == o.serial && phase == o.phase && servo == o.servo;
   }

@@ -1,5 +1,5 @@
-// RTL and model of a servo IC side by side, for what its channels do. Every tick compares all pins and the word at the present
-// address, and holds the model to its promise: next_motor_event() is not later than the next change of a pin.
+// RTL and model of a servo IC side by side, for what its channels do. Every tick compares all pins and the word at the
+// present address, and holds the model to its promise: next_motor_event() is not later than the next change of a pin.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace brick {
 class ChannelsRig {
  public:
   ServoIcInputs in;
-  bool lazy = false;                                                  // the model's edges are executed only when it asks
+  bool lazy = false;  // the model's edges are executed only when it asks
   std::function<void(bool x, unsigned addr, std::uint32_t&)> mutate;  // negative controls: what the model is written
 
   void tick() {
@@ -86,8 +86,12 @@ class ChannelsRig {
   }
 
   ChannelPins pins() const { return channel_pins(rtl_); }
-  bool pwm(unsigned channel, unsigned bit) const { return (channel_pins(rtl_).pwm >> (6 * (channel - 1) + bit) & 1) != 0; }
-  bool other(unsigned group, unsigned channel) const { return (channel_pins(rtl_).others >> (4 * group + channel - 1) & 1) != 0; }
+  bool pwm(unsigned channel, unsigned bit) const {
+    return (channel_pins(rtl_).pwm >> (6 * (channel - 1) + bit) & 1) != 0;
+  }
+  bool other(unsigned group, unsigned channel) const {
+    return (channel_pins(rtl_).others >> (4 * group + channel - 1) & 1) != 0;
+  }
   Tick now() const { return now_; }
   std::string difference;
 
@@ -123,8 +127,8 @@ class ChannelsRig {
   void note(const std::string& what, std::int64_t rtl, std::int64_t model) {
     if (!difference.empty()) return;
     std::ostringstream text;
-    text << "tick " << now_ << " word " << (in.x ? "X" : "Y") << in.addr << ": " << what << std::hex << ": RTL " << rtl << ", model "
-         << model;
+    text << "tick " << now_ << " word " << (in.x ? "X" : "Y") << in.addr << ": " << what << std::hex << ": RTL " << rtl
+         << ", model " << model;
     difference = text.str();
   }
 

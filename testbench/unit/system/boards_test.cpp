@@ -10,7 +10,8 @@ namespace {
 
 constexpr Tick kServo = 4 * (2 * 6527 + 3);  // default servo period in ticks
 
-// What a host of that board should see, from docs/boards.md and the data sheets. `kind` is `???` word 2, bits 23 and 16.
+// What a host of that board should see, from docs/boards.md and the data sheets. `kind` is `???` word 2, bits 23
+// and 16.
 struct Expected {
   const char *board, *i19, *type, *i4900, *i4902, *dpram_end, *kind;
 };

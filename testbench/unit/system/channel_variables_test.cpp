@@ -1,6 +1,7 @@
-// I-variables with hardware behind them: each of the channel and IC variables writes its own field of its own word and nothing
-// else, takes its range modulo, and is what the data sheet says after a re-initialisation (servo-ic.md 1.4, 2.5, 2.6, 3, 4).
-// Words are read back over the bus with RHX, so firmware's shadows cannot hide a wrong write.
+// I-variables with hardware behind them: each of the channel and IC variables writes its own field of its own word and
+// nothing else, takes its range modulo, and is what the data sheet says after a re-initialisation (servo-ic:1.4,
+// servo-ic:2.5, servo-ic:2.6, servo-ic:3, servo-ic:4). Words are read back over the bus with RHX, so firmware's shadows
+// cannot hide a wrong write.
 #include <array>
 #include <sstream>
 
@@ -18,11 +19,15 @@ using Fields = std::array<Field, 10>;
 
 // I7mn0..I7mn9 in X:+5. A supplementary channel of a MACRO IC has no de-multiplexing, output modes and hardware 1/T.
 constexpr Fields kServoFields{{{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 2}, {22, 2}, {20, 2}, {19, 1}, {18, 1}}};
-constexpr Fields kSupplementaryFields{{{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 1}, {22, 0}, {20, 2}, {19, 1}, {18, 0}}};
-constexpr std::uint32_t kLive = 1 << 10 | 1 << 12 | 1 << 14;  // counter reset, EQU state, amplifier enable; bit 11 falls back
+constexpr Fields kSupplementaryFields{
+    {{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 1}, {22, 0}, {20, 2}, {19, 1}, {18, 0}}};
+constexpr std::uint32_t kLive =
+    1 << 10 | 1 << 12 | 1 << 14;  // counter reset, EQU state, amplifier enable; bit 11 falls back
 
 constexpr std::uint32_t mask(Field f) { return ((1u << f.width) - 1) << f.lsb; }
-std::uint32_t with(std::uint32_t word, Field f, std::uint32_t value) { return (word & ~mask(f)) | (value << f.lsb & mask(f)); }
+std::uint32_t with(std::uint32_t word, Field f, std::uint32_t value) {
+  return (word & ~mask(f)) | (value << f.lsb & mask(f));
+}
 
 std::string hex(std::uint32_t value) {
   std::ostringstream text;
@@ -30,18 +35,20 @@ std::string hex(std::uint32_t value) {
   return text.str();
 }
 
-// A channel: number of its first variable, address of its control word. `first`: channel 1 of its IC, which has no other
-// counter to compare with.
+// A channel: number of its first variable, address of its control word. `first`: channel 1 of its IC, which has no
+// other counter to compare with.
 struct ChannelPlace {
   unsigned variable, address;
   bool first;
   const Fields& fields;
 };
 
-// Servo IC m, or m*, channel n = 1..4 (servo-ic.md 1.2, 1.4).
+// Servo IC m, or m*, channel n = 1..4 (servo-ic:1.2, servo-ic:1.4).
 ChannelPlace servo_channel(unsigned m, bool star, unsigned n) {
-  constexpr unsigned kBases[10] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300};
-  return {7000 + 100 * m + (star ? 50 : 0) + 10 * n, kBases[m] + (star ? 0x20 : 0) + 8 * (n - 1) + 5, n == 1, kServoFields};
+  constexpr unsigned kBases[10] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200,
+                                   0x79300, 0x7A200, 0x7A300, 0x7B200, 0x7B300};
+  return {7000 + 100 * m + (star ? 50 : 0) + 10 * n, kBases[m] + (star ? 0x20 : 0) + 8 * (n - 1) + 5, n == 1,
+          kServoFields};
 }
 // Supplementary channel 1*, 2* of MACRO IC m.
 ChannelPlace supplementary_channel(unsigned m, unsigned n) {
@@ -67,7 +74,9 @@ class ChannelVariables : public Controller {
     EXPECT_FALSE(reply.error) << line << ": " << reply.raw;
     return reply.lines;
   }
-  std::uint32_t word(unsigned address) { return static_cast<std::uint32_t>(std::stoul(ask("RHX" + hex(address)), nullptr, 16)); }
+  std::uint32_t word(unsigned address) {
+    return static_cast<std::uint32_t>(std::stoul(ask("RHX" + hex(address)), nullptr, 16));
+  }
 
   // Writes the variable, reads it and the word. Returns false after reporting a difference.
   bool expect(unsigned variable, std::uint32_t value, std::uint32_t reads, unsigned address, std::uint32_t word) {
@@ -81,13 +90,13 @@ class ChannelVariables : public Controller {
     const auto read = std::stoul(shown[0] == '$' ? shown.substr(1) : shown, nullptr, shown[0] == '$' ? 16 : 10);
     EXPECT_EQ(read, reads) << name << "=" << value;
     const auto found = std::stoul(lines[1], nullptr, 16);
-    EXPECT_EQ(found, word) << name << "=" << value << ": " << hex(address) << " is " << hex(static_cast<std::uint32_t>(found))
-                           << ", expected " << hex(word);
+    EXPECT_EQ(found, word) << name << "=" << value << ": " << hex(address) << " is "
+                           << hex(static_cast<std::uint32_t>(found)) << ", expected " << hex(word);
     return read == reads && found == word;
   }
 
-  // All fields at 0 and at their limit, the live bits at 0 and 1: each variable changes its own field only. A value beyond the
-  // range is taken modulo, without an error.
+  // All fields at 0 and at their limit, the live bits at 0 and 1: each variable changes its own field only. A value
+  // beyond the range is taken modulo, without an error.
   void check_channel(const ChannelPlace& c) {
     SCOPED_TRACE("I" + std::to_string(c.variable) + ".., " + hex(c.address));
     for (const bool ones : {false, true}) {
@@ -124,7 +133,8 @@ class ChannelVariables : public Controller {
     const Field f = c.fields[k];
     const unsigned variable = c.variable + k;
     const std::uint32_t limit = (1u << f.width) - 1;
-    if (c.first && k == 1) return expect(variable, 0, 1, c.address, before) && expect(variable, 1, 1, c.address, before);
+    if (c.first && k == 1)
+      return expect(variable, 0, 1, c.address, before) && expect(variable, 1, 1, c.address, before);
     std::vector<std::uint32_t> values{ones ? 0 : limit};
     for (std::uint32_t bit = 1; bit <= limit; bit *= 2) values.push_back(ones ? limit & ~bit : bit);
     values.push_back(ones ? limit : 0);
@@ -182,8 +192,9 @@ TEST_P(ChannelVariables, IcVariablesWriteTheirOwnFields) {
     unsigned number, address;
     Field field;
   };
-  const Variable variables[] = {{7100, kPwm, {8, 15}}, {7101, kClock, {16, 4}},  {7102, kClock, {20, 4}}, {7103, kClock, {0, 12}},
-                                {7104, kPwm, {0, 8}},  {7105, 0x7810C, {0, 24}}, {7106, 0x78114, {0, 24}}};
+  const Variable variables[] = {{7100, kPwm, {8, 15}},   {7101, kClock, {16, 4}}, {7102, kClock, {20, 4}},
+                                {7103, kClock, {0, 12}}, {7104, kPwm, {0, 8}},    {7105, 0x7810C, {0, 24}},
+                                {7106, 0x78114, {0, 24}}};
   for (const bool ones : {false, true}) {
     for (const Variable& v : variables)
       ask_all("I" + std::to_string(v.number) + "=" + (ones ? std::to_string((1u << v.field.width) - 1) : "0"));
@@ -213,8 +224,11 @@ TEST_P(ChannelVariables, VariablesOfAbsentIcsRead0AndIgnoreWrites) {
   machine().on_bus_cycle = [&](const PortACycle& c) {
     if (c.write && c.x && c.address >= 0x78100 && c.address < 0x7C000) ++writes;
   };
-  for (const unsigned number : {7100u, 7103u, 7105u, 7110u, 7116u, 7143u, 7250u, 7260u, 7999u, 6800u, 6807u, 6810u, 6823u, 6990u})
-    EXPECT_EQ(ask("I" + std::to_string(number) + "=1 I" + std::to_string(number)).find_first_not_of("$0"), std::string::npos) << number;
+  for (const unsigned number :
+       {7100u, 7103u, 7105u, 7110u, 7116u, 7143u, 7250u, 7260u, 7999u, 6800u, 6807u, 6810u, 6823u, 6990u})
+    EXPECT_EQ(ask("I" + std::to_string(number) + "=1 I" + std::to_string(number)).find_first_not_of("$0"),
+              std::string::npos)
+        << number;
   EXPECT_EQ(writes, 0u);
   machine().on_bus_cycle = nullptr;
 }

@@ -21,7 +21,8 @@ constexpr ClockSetting kDefault{6527, 0, 3}, kEqual{5000, 1, 0}, kSlow{2948, 2, 
 struct Wave {
   std::map<Tick, bool> phase, servo;  // edges
 
-  // `periods` of PHASE from a rise at `start`; SERVO falls with fall number `first`, counted from 1, and every divider + 1 after it.
+  // `periods` of PHASE from a rise at `start`; SERVO falls with fall number `first`, counted from 1, and every divider
+  // + 1 after it.
   Tick run(Tick start, const ClockSetting& s, unsigned periods, unsigned first = 1) {
     for (unsigned i = 0; i < periods; ++i) {
       const Tick rise = start + i * s.phase(), fall = rise + s.high();
@@ -83,7 +84,8 @@ TEST(ClockChecker, FindsAnEdgeThatIsOneTickOff) {
     wave.phase.erase(fall);
     wave.phase[fall + error] = false;
     // A high level too short or too long, and a low one of the other kind.
-    EXPECT_THAT(kinds(judged(wave, kDefault)), ElementsAre(error < 0 ? Kind::kEarly : Kind::kLate, error < 0 ? Kind::kLate : Kind::kEarly));
+    EXPECT_THAT(kinds(judged(wave, kDefault)),
+                ElementsAre(error < 0 ? Kind::kEarly : Kind::kLate, error < 0 ? Kind::kLate : Kind::kEarly));
   }
 }
 
@@ -175,7 +177,8 @@ TEST(ClockChecker, FindsAConflict) {
   EXPECT_EQ(checker.violations().size(), 1u);
 }
 
-// Change of variables -----------------------------------------------------------------------------------------------------
+// Change of variables
+// -----------------------------------------------------------------------------------------------------
 
 // I7m00 6527 -> 2948 at a bottom turnaround: one period may hold a triangle of each length.
 TEST(ClockChecker, AllowsOnePulseOfMixedTriangles) {
@@ -208,11 +211,15 @@ TEST(ClockChecker, FindsARuntAndANeverEndingPulseWhileVariablesChange) {
     if (length >= 2949 && length <= 6529)
       EXPECT_THAT(kinds(checker), IsEmpty()) << length;
     else
-      EXPECT_THAT(kinds(checker), ElementsAre(length < 2949 / 2 ? Kind::kRunt : length < 2949 ? Kind::kEarly : Kind::kLate)) << length;
+      EXPECT_THAT(kinds(checker), ElementsAre(length < 2949 / 2 ? Kind::kRunt
+                                              : length < 2949   ? Kind::kEarly
+                                                                : Kind::kLate))
+          << length;
   }
 }
 
-// Another source ------------------------------------------------------------------------------------------------------------
+// Another source
+// ------------------------------------------------------------------------------------------------------------
 
 constexpr Tick kRise = 7 * 13057, kFall = kRise + 6528;  // of PHASE and, with this fall, of SERVO
 constexpr Tick kLongestWait = 13057 + 6529 + ClockChecker::kHandOver + 2 * 3 * 5899;
@@ -257,7 +264,8 @@ TEST(ClockChecker, AllowsOneOddHighLevelWhenTheSourceMoves) {
     for (const Tick wait : {kSlow.high() - kDefault.high(), kLongestWait}) {
       for (const unsigned first_servo : {2u, 3u}) {  // I7m02 + 1 to 2 x I7m02 + 1
         ClockChecker checker;
-        EXPECT_THAT(handed_over({release, release + wait, kSlow.high(), first_servo}, checker), IsEmpty()) << checker.violations()[0].text;
+        EXPECT_THAT(handed_over({release, release + wait, kSlow.high(), first_servo}, checker), IsEmpty())
+            << checker.violations()[0].text;
         EXPECT_EQ(checker.counts().odd_highs, 1u);
       }
     }
@@ -267,7 +275,8 @@ TEST(ClockChecker, AllowsOneOddHighLevelWhenTheSourceMoves) {
 TEST(ClockChecker, FindsALowLevelThatEndsEarlyWhenTheSourceMoves) {
   for (const Tick cut : {Tick{1}, Tick{3000}, Tick{3264}, Tick{3265}, Tick{6528}}) {
     ClockChecker checker;
-    EXPECT_EQ(handed_over({kFall + cut, kFall + 30'000}, checker).at(0), cut <= 3264 ? Kind::kRunt : Kind::kEarly) << cut;
+    EXPECT_EQ(handed_over({kFall + cut, kFall + 30'000}, checker).at(0), cut <= 3264 ? Kind::kRunt : Kind::kEarly)
+        << cut;
   }
   // A whole low level of PHASE, but SERVO is cut.
   ClockChecker checker;
@@ -291,7 +300,8 @@ TEST(ClockChecker, FindsServoThatIsCutWhenTheSourceMoves) {
 
 TEST(ClockChecker, FindsAPulseWhileNobodyDrives) {
   ClockChecker checker;
-  EXPECT_THAT(handed_over({kRise + 3000, kFall + 30'000, kSlow.high(), 2, true}, checker), ::testing::Contains(Kind::kRunt));
+  EXPECT_THAT(handed_over({kRise + 3000, kFall + 30'000, kSlow.high(), 2, true}, checker),
+              ::testing::Contains(Kind::kRunt));
 }
 
 TEST(ClockChecker, FindsAFirstHighLevelOfTheNewSourceThatIsTooShortOrTooLong) {

@@ -1,5 +1,5 @@
 // The clocks that I7000, I7001 and I7002 select, measured on the pins to the tick: phase period (2*I7000+3)*(I7001+1)
-// ticks, servo period (I7002+1) phase periods (servo-ic.md 3.1, 3.2).
+// ticks, servo period (I7002+1) phase periods (servo-ic:3.1, servo-ic:3.2).
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -12,7 +12,8 @@ struct Setting {
 class ClockFrequencies : public Controller {
  protected:
   void check(const Setting& s) {
-    SCOPED_TRACE("I7000=" + std::to_string(s.i7000) + " I7001=" + std::to_string(s.i7001) + " I7002=" + std::to_string(s.i7002));
+    SCOPED_TRACE("I7000=" + std::to_string(s.i7000) + " I7001=" + std::to_string(s.i7001) +
+                 " I7002=" + std::to_string(s.i7002));
     ask("I7000=" + std::to_string(s.i7000) + " I7001=" + std::to_string(s.i7001) + " I7002=" + std::to_string(s.i7002));
     wait(ms_to_ticks(2));  // the new values act at the next turnaround and terminal counts
     const Tick phase_period = static_cast<Tick>(2 * s.i7000 + 3) * (s.i7001 + 1);

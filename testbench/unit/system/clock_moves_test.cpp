@@ -1,5 +1,5 @@
-// All 22 ICs of a board as the source of the clocks in turn, by one line in both orders of writing, with the clock checker at every
-// edge. The bench clock-select does a half of them in lock-step.
+// All 22 ICs of a board as the source of the clocks in turn, by one line in both orders of writing, with the clock
+// checker at every edge. The bench clock-select does a half of them in lock-step.
 #include <sstream>
 
 #include "testbench/benches/clock_host.h"

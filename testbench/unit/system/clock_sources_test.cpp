@@ -1,5 +1,6 @@
-// Where the clocks come from, on whole boards with the real image: any IC as the source, the search at re-initialisation, I19
-// through SAVE and reset, two sources, none. Periods are arithmetic on servo-ic.md 3.1, 3.2 and 6.1.
+// Where the clocks come from, on whole boards with the real image: any IC as the source, the search at
+// re-initialisation, I19 through SAVE and reset, two sources, none. Periods are arithmetic on servo-ic:3.1,
+// servo-ic:3.2 and servo-ic:6.1.
 #include "systemc/cpu/port_a.h"
 #include "systemc/machine/board_file.h"
 #include "testbench/unit/system/controller.h"
@@ -28,12 +29,14 @@ class ClockSources : public Controller {
     link().command(command);
     ASSERT_TRUE(link().connect(machine().now() + ms_to_ticks(100))) << "no reply after " << command;
   }
-  unsigned long problems() { return std::stoul(ask("???").substr(0, 6), nullptr, 16) & (kConfigurationError | kNoPhaseClock | 1ul << 10); }
+  unsigned long problems() {
+    return std::stoul(ask("???").substr(0, 6), nullptr, 16) & (kConfigurationError | kNoPhaseClock | 1ul << 10);
+  }
   std::uint64_t source() { return machine().signals().value(*machine().signals().find("clock.source")); }
   bool conflict() { return machine().outputs().get(pin::kSourceConflict) != 0; }
 
-  // Hand-over of the clock pins (docs/clock.md), bounds in phase periods of the IC: one to be an input drives on until both clocks are
-  // high; a new source takes PHASE with a rise, the end of its second period at the latest.
+  // Hand-over of the clock pins (docs/clock.md), bounds in phase periods of the IC: one to be an input drives on until
+  // both clocks are high; a new source takes PHASE with a rise, the end of its second period at the latest.
   void await_release(Tick phase) { wait(phase + (phase + 1) / 2); }
   void await_take(Tick phase) { wait(2 * phase); }
 
@@ -162,7 +165,7 @@ BRICK_ON_ENGINES(ClockSourceBoards, Engine::kRtl, Engine::kSystemC, Engine::kLoc
 
 class ClockSourceFaults : public ClockSources {};
 
-// servo-ic.md 7.1 rule 3 on the hardware: the order, and a MACROGATE passed over.
+// servo-ic:7.1/3 on the hardware: the order, and a MACROGATE passed over.
 TEST_P(ClockSourceFaults, ReInitialisationTakesTheFirstIcThatCanMakeBothClocks) {
   BRICK_COVERS("I19-3");
   const struct {
@@ -218,8 +221,8 @@ TEST_P(ClockSourceFaults, TwoSourcesShowAConflictAndTheLowestNumberedWins) {
   EXPECT_FALSE(conflict());
 }
 
-// All ICs external and nothing arriving: PHASE and SERVO stand high, the status bit shows while the watchdog lets the CPU live,
-// 25 ms from the last servo edge.
+// All ICs external and nothing arriving: PHASE and SERVO stand high, the status bit shows while the watchdog lets the
+// CPU live, 25 ms from the last servo edge.
 TEST_P(ClockSourceFaults, NoSourceIsReportedAndTripsTheWatchdog) {
   BRICK_COVERS("I19-2");
   start_with(kWithMacroIc0);

@@ -1,4 +1,4 @@
-// Command lines and their replies, as the manual's examples give them (firmware.md section 13), on the real image.
+// Command lines and their replies, as the manual's examples give them (firmware:13), on the real image.
 #include "testbench/unit/system/controller.h"
 
 namespace brick {

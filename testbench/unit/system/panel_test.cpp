@@ -1,5 +1,5 @@
-// The control panel of a Turbo PMAC on the whole machine: whose BREQ the host sees (I2, FPDn/, I59), on pin and interrupt line,
-// and on boards without a panel; the size of the dual-ported RAM as host and program see it.
+// The control panel of a Turbo PMAC on the whole machine: whose BREQ the host sees (I2, FPDn/, I59), on pin and
+// interrupt line, and on boards without a panel; the size of the dual-ported RAM as host and program see it.
 #include "systemc/machine/board_file.h"
 #include "testbench/unit/system/controller.h"
 

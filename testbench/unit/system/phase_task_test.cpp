@@ -1,6 +1,6 @@
-// I7 and the phase task on the whole controller, seen from outside: a commutated motor's task shows at Port A as one read of its
-// channel's X:+1, and must come every I7+1 falls of the PHASE pin (firmware.md 2, 8.1; servo-ic.md 7.4). What it makes of the
-// encoder is read back by the host.
+// I7 and the phase task on the whole controller, seen from outside: a commutated motor's task shows at Port A as one
+// read of its channel's X:+1, and must come every I7+1 falls of the PHASE pin (firmware:2, firmware:8.1; servo-ic:7.4).
+// What it makes of the encoder is read back by the host.
 #include <algorithm>
 
 #include "systemc/cpu/port_a.h"
@@ -44,7 +44,8 @@ class PhaseTask : public Controller {
     std::vector<std::size_t> numbers;
     for (const Tick read : reads_) {
       const auto after = std::upper_bound(falls.begin(), falls.end(), read);
-      if (after != falls.begin() && after != falls.end()) numbers.push_back(static_cast<std::size_t>(after - falls.begin()));
+      if (after != falls.begin() && after != falls.end())
+        numbers.push_back(static_cast<std::size_t>(after - falls.begin()));
     }
     return numbers;
   }
@@ -57,7 +58,7 @@ class PhaseTask : public Controller {
     EXPECT_GE(numbers.back() + step, falls);  // the next would have been outside
   }
 
-  // Turns the encoder of channel 1 by counts at decode x4; A leads B forward: 00, 10, 11, 01 (servo-ic.md 5.4).
+  // Turns the encoder of channel 1 by counts at decode x4; A leads B forward: 00, 10, 11, 01 (servo-ic:5.4).
   void turn(int counts) {
     constexpr std::uint16_t kPins[4] = {0, 1u << kEncA, 1u << kEncA | 1u << kEncB, 1u << kEncB};
     for (int i = 0; i < std::abs(counts); ++i) {
@@ -142,7 +143,8 @@ TEST_P(PhaseTask, PhasePositionFollowsTheEncoder) {
   ask("M171=0");
   int counts = 0;
   const int counter = number("M101");
-  for (const int move : {16, 1, 50, -3, -80, -40, 57}) {  // through both ends of the cycle, and the counter through zero
+  for (const int move :
+       {16, 1, 50, -3, -80, -40, 57}) {  // through both ends of the cycle, and the counter through zero
     turn(move);
     counts += move;
     EXPECT_EQ(number("M101") - counter, counts);

@@ -1,5 +1,5 @@
-// The controller with motors at its pins: host, firmware, bus, servo IC, plant, and back through the encoder. What the firmware
-// reads in its registers must be what the plant did.
+// The controller with motors at its pins: host, firmware, bus, servo IC, plant, and back through the encoder. What the
+// firmware reads in its registers must be what the plant did.
 #include "testbench/plant/plant.h"
 #include "testbench/unit/system/controller.h"
 
@@ -108,11 +108,13 @@ TEST_P(PlantOnController, DacMovesTheMotorAndTheAdcReadsItsCurrent) {
   wait(ms_to_ticks(4));
   EXPECT_EQ(plant().dac(0).volts(1), 5);
   EXPECT_EQ(number("M204"), 0x400000);
-  EXPECT_NEAR(plant().axis(0).motor().speed(), 5000.0 * static_cast<double>(machine().now() - on) / kPwmClockHz, 5000 * 0.0005);
+  EXPECT_NEAR(plant().axis(0).motor().speed(), 5000.0 * static_cast<double>(machine().now() - on) / kPwmClockHz,
+              5000 * 0.0005);
   ask("M202=0 M201=0");
   wait(ms_to_ticks(1));
   const int counts = number("M203") - before;
-  EXPECT_NEAR(counts, static_cast<double>(plant().axis(0).counts(machine().now())), 4);  // it coasts on while the reply is made
+  EXPECT_NEAR(counts, static_cast<double>(plant().axis(0).counts(machine().now())),
+              4);  // it coasts on while the reply is made
   EXPECT_GT(counts, 20);
 }
 

@@ -12,7 +12,8 @@ constexpr unsigned long kFlashError = 1ul << 10;
 
 class SavedDataFile : public Controller {
  protected:
-  SavedDataFile() : file_(std::filesystem::path(::testing::TempDir()) / ("flash_" + std::to_string(::getpid()) + ".bin")) {
+  SavedDataFile()
+      : file_(std::filesystem::path(::testing::TempDir()) / ("flash_" + std::to_string(::getpid()) + ".bin")) {
     std::filesystem::remove(file_);
   }
   ~SavedDataFile() override {

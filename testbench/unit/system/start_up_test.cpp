@@ -32,7 +32,9 @@ TEST_P(StartUp, GlobalStatusShowsNoHardwareProblem) {
   ASSERT_EQ(status.size(), 12u);
   const unsigned long word1 = std::stoul(status.substr(0, 6), nullptr, 16);
   // Bits 20, 15, 13, 11, 10, 9 are problems for hosts; 7 is a configuration error, 3 a missing phase clock.
-  EXPECT_EQ(word1 & ((1ul << 20) | (1ul << 15) | (1ul << 13) | (1ul << 11) | (1ul << 10) | (1ul << 9) | (1ul << 7) | (1ul << 3)), 0u)
+  EXPECT_EQ(word1 & ((1ul << 20) | (1ul << 15) | (1ul << 13) | (1ul << 11) | (1ul << 10) | (1ul << 9) | (1ul << 7) |
+                     (1ul << 3)),
+            0u)
       << status;
 }
 

@@ -12,7 +12,8 @@ class WatchdogScoreboardTest : public ::testing::Test {
  protected:
   WatchdogScoreboard board;
 
-  // A controller with counter `held` whose real-time task strobes every fourth servo interrupt, then trips `after` the last strobe.
+  // A controller with counter `held` whose real-time task strobes every fourth servo interrupt, then trips `after` the
+  // last strobe.
   void play(unsigned told, unsigned held, Tick after, bool real_time = true) {
     board.reset(0);
     Tick now = 100'000, last = now;

@@ -1,5 +1,6 @@
-// The watchdog with the real image: tasks that take more CPU time than the servo period gives them, and what does not trip it.
-// Trip times are arithmetic of testbench/checkers/watchdog_scoreboard.h; the load is that of the tasks themselves.
+// The watchdog with the real image: tasks that take more CPU time than the servo period gives them, and what does not
+// trip it. Trip times are arithmetic of testbench/checkers/watchdog_scoreboard.h; the load is that of the tasks
+// themselves.
 #include "testbench/checkers/watchdog_probe.h"
 #include "testbench/unit/system/controller.h"
 
@@ -104,8 +105,8 @@ TEST_P(WatchdogLoadOf, ServoClockIsBearableForAFasterCpu) {
   EXPECT_GT(number("RX$25"), 0);
 }
 
-// I37 adds wait states to main memory and the default area, where the servo task keeps its words: about one access each to X:$0,
-// Y:$25, X:$25, Y:$37, three clocks each.
+// I37 adds wait states to main memory and the default area, where the servo task keeps its words: about one access each
+// to X:$0, Y:$25, X:$25, Y:$37, three clocks each.
 TEST_P(WatchdogLoadOf, WaitStatesAreCpuTimeToo) {
   BRICK_COVERS("WDT-1");
   start();

@@ -1,4 +1,5 @@
-// The channels of servo IC 0 where they are used: on the whole board, reached over Port A, with the board's PHASE and SERVO.
+// The channels of servo IC 0 where they are used: on the whole board, reached over Port A, with the board's PHASE and
+// SERVO.
 #include <fmt/format.h>
 
 #include "systemc/cosim/engines.h"

@@ -6,7 +6,8 @@ namespace brick {
 namespace {
 
 constexpr unsigned kPins = 12;
-constexpr const char* kPinNames[kPins] = {"enc_a", "enc_b", "enc_c", "fault", "hmfl", "plim", "mlim", "user", "w", "v", "u", "t"};
+constexpr const char* kPinNames[kPins] = {"enc_a", "enc_b", "enc_c", "fault", "hmfl", "plim",
+                                          "mlim",  "user",  "w",     "v",     "u",    "t"};
 constexpr const char* kPwmNames[6] = {"pwm_a_top", "pwm_a_bot", "pwm_b_top", "pwm_b_bot", "pwm_c_top", "pwm_c_bot"};
 constexpr const char* kOtherNames[6] = {"pfm_pulse", "pfm_dir", "dac", "dac_b", "aena", "equ"};
 constexpr const char* kSerialNames[4] = {"dac_clk", "dac_strobe", "adc_clk", "adc_strobe"};

@@ -1,5 +1,5 @@
-// The whole controller with its firmware, addressed by command lines over the host bus. Changes of its pins are reported while
-// a vector waits, not while a command is under way.
+// The whole controller with its firmware, addressed by command lines over the host bus. Changes of its pins are
+// reported while a vector waits, not while a command is under way.
 #include "systemc/cosim/engines.h"
 #include "systemc/machine/board_file.h"
 #include "testbench/host/host_link.h"
@@ -8,7 +8,8 @@
 namespace brick {
 namespace {
 
-constexpr PinField kReported[] = {pin::kPhase, pin::kServo, pin::kBreq, pin::kWdTripped, pin::kPhaseSource, pin::kSourceConflict};
+constexpr PinField kReported[] = {pin::kPhase,     pin::kServo,       pin::kBreq,
+                                  pin::kWdTripped, pin::kPhaseSource, pin::kSourceConflict};
 constexpr Tick kBootTime = ns_to_ticks(100'000'000);
 
 class ControllerDevice : public Device {

@@ -9,9 +9,14 @@ namespace {
 
 class Compared : public Device {
  public:
-  Compared(std::unique_ptr<Device> first, std::unique_ptr<Device> second) : first_(std::move(first)), second_(std::move(second)) {
-    first_->on_change = [this](Tick t, unsigned signal, std::uint32_t value) { seen_[0].emplace_back(t, signal, value); };
-    second_->on_change = [this](Tick t, unsigned signal, std::uint32_t value) { seen_[1].emplace_back(t, signal, value); };
+  Compared(std::unique_ptr<Device> first, std::unique_ptr<Device> second)
+      : first_(std::move(first)), second_(std::move(second)) {
+    first_->on_change = [this](Tick t, unsigned signal, std::uint32_t value) {
+      seen_[0].emplace_back(t, signal, value);
+    };
+    second_->on_change = [this](Tick t, unsigned signal, std::uint32_t value) {
+      seen_[1].emplace_back(t, signal, value);
+    };
   }
   const std::vector<DeviceSignal>& signals() const override { return first_->signals(); }
   Tick now() const override { return first_->now(); }
@@ -45,7 +50,8 @@ class Compared : public Device {
     const std::uint32_t a = first_->read(x, addr), b = second_->read(x, addr);
     compare();
     if (a != b)
-      throw DeviceError(fmt::format("tick {}: {}:${:02X} reads ${:06X} on RTL, ${:06X} on the model", now(), x ? "X" : "Y", addr, a, b));
+      throw DeviceError(fmt::format("tick {}: {}:${:02X} reads ${:06X} on RTL, ${:06X} on the model", now(),
+                                    x ? "X" : "Y", addr, a, b));
     return a;
   }
   std::string command(const std::string&) override { throw DeviceError("this device takes no commands"); }
@@ -84,7 +90,11 @@ std::unique_ptr<Device> compared(std::unique_ptr<Device> first, std::unique_ptr<
 
 const std::vector<DeviceKind>& device_kinds() {
   static const std::vector<DeviceKind> kinds{
-      {"channels", channels_signals(), true, false, {"rtl", "systemc", "both", "board_rtl", "board_systemc", "board_both"}},
+      {"channels",
+       channels_signals(),
+       true,
+       false,
+       {"rtl", "systemc", "both", "board_rtl", "board_systemc", "board_both"}},
       {"controller", controller_signals(), false, true, {"rtl", "systemc", "both"}}};
   return kinds;
 }

@@ -1,5 +1,6 @@
-// What a timing vector is run on: something with pins and registers that is advanced in ticks. The servo IC's channels stand
-// behind it as RTL, as model, or as both compared; so does the whole controller. Signal numbers are places in signals().
+// What a timing vector is run on: something with pins and registers that is advanced in ticks. The servo IC's channels
+// stand behind it as RTL, as model, or as both compared; so does the whole controller. Signal numbers are places in
+// signals().
 #pragma once
 
 #include <cstdint>
@@ -56,8 +57,8 @@ struct DeviceKind {
 };
 const std::vector<DeviceKind>& device_kinds();
 
-// `engine`: rtl, systemc, both; for the channels also board_rtl, board_systemc, board_both: those of servo IC 0 on the whole board.
-// `board`: of a controller.
+// `engine`: rtl, systemc, both; for the channels also board_rtl, board_systemc, board_both: those of servo IC 0 on the
+// whole board. `board`: of a controller.
 std::unique_ptr<Device> make_device(const std::string& kind, const std::string& engine, const std::string& board);
 
 // Two devices of one kind, one step at a time; DeviceError at the first difference.

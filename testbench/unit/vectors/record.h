@@ -1,5 +1,5 @@
-// What the signals of a run did: every change with its tick. A value holds from the tick of its change on; a window from a to b
-// is the ticks a .. b-1.
+// What the signals of a run did: every change with its tick. A value holds from the tick of its change on; a window
+// from a to b is the ticks a .. b-1.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,8 @@ class Record {
   }
   Tick next_change(unsigned signal, Tick after) const {
     const auto& all = changes_[signal];
-    const auto next = std::upper_bound(all.begin(), all.end(), after, [](Tick a, const Change& c) { return a < c.first; });
+    const auto next =
+        std::upper_bound(all.begin(), all.end(), after, [](Tick a, const Change& c) { return a < c.first; });
     return next == all.end() ? kNever : next->first;
   }
 

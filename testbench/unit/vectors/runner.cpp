@@ -13,7 +13,8 @@ const char* verb(Edge edge) { return edge == Edge::kRises ? "rise" : edge == Edg
 
 class Runner {
  public:
-  Runner(const Vector& vector, Device& device, const Corruption* corruption) : vector_(vector), device_(device), corruption_(corruption) {}
+  Runner(const Vector& vector, Device& device, const Corruption* corruption)
+      : vector_(vector), device_(device), corruption_(corruption) {}
 
   RunResult run() {
     const auto signals = static_cast<unsigned>(device_.signals().size());
@@ -35,7 +36,9 @@ class Runner {
 
  private:
   bool corrupted(Corruption::Kind kind) const { return corruption_ != nullptr && corruption_->kind == kind; }
-  bool corrupted(Corruption::Kind kind, unsigned signal) const { return corrupted(kind) && corruption_->signal == signal; }
+  bool corrupted(Corruption::Kind kind, unsigned signal) const {
+    return corrupted(kind) && corruption_->signal == signal;
+  }
   bool corrupted(Corruption::Kind kind, Word word) const {
     return corrupted(kind) && corruption_->word.x == word.x && corruption_->word.addr == word.addr;
   }
@@ -52,10 +55,13 @@ class Runner {
     bit_ = bit_ < 23 ? bit_ + 1 : 23;
     drive(sender_->signal, sender_->word >> (23 - bit_) & 1);
   }
-  void drive(unsigned signal, std::uint32_t value) { device_.drive(signal, corrupted(Corruption::kInvert, signal) ? value ^ 1 : value); }
+  void drive(unsigned signal, std::uint32_t value) {
+    device_.drive(signal, corrupted(Corruption::kInvert, signal) ? value ^ 1 : value);
+  }
 
   void fail(const std::string& found) {
-    const std::string where = now_ == nullptr ? vector_.path : fmt::format("{}:{}: {}", vector_.path, now_->line, now_->text);
+    const std::string where =
+        now_ == nullptr ? vector_.path : fmt::format("{}:{}: {}", vector_.path, now_->line, now_->text);
     result_.failures.push_back(where + ": " + found);
   }
   void check(bool good, const std::string& found) {
@@ -66,8 +72,8 @@ class Runner {
   Tick to(const Window& w) {
     const Tick end = result_.at(w.to);
     if (end <= from(w) || end > device_.now()) {
-      fail(fmt::format("found a window from tick {} to {} at tick {}, expected one of at least a tick that has passed", from(w), end,
-                       device_.now()));
+      fail(fmt::format("found a window from tick {} to {} at tick {}, expected one of at least a tick that has passed",
+                       from(w), end, device_.now()));
       throw Stop{};
     }
     return end;
@@ -158,7 +164,8 @@ class Runner {
   void distances(const std::vector<Tick>& rises, Tick ticks) {
     check(rises.size() >= 2, fmt::format("found {} rises, expected at least two", rises.size()));
     for (std::size_t i = 1; i < rises.size(); ++i)
-      check(rises[i] - rises[i - 1] == ticks, fmt::format("found {} ticks at tick {}", rises[i] - rises[i - 1], rises[i - 1]));
+      check(rises[i] - rises[i - 1] == ticks,
+            fmt::format("found {} ticks at tick {}", rises[i] - rises[i - 1], rises[i - 1]));
   }
   void act(const step::Pulses& p) {
     const auto rises = edges({p.signal, Edge::kRises}, p.window);
@@ -177,7 +184,9 @@ class Runner {
     const std::uint32_t value = result_.record.value(s.signal, from(s.window));
     check(value == s.value, fmt::format("found {}", value));
     const bool later = !changes.empty() && changes.back() > from(s.window);
-    check(!later, later ? fmt::format("found a change {} ticks after the begin of the window", changes.back() - from(s.window)) : "");
+    check(!later,
+          later ? fmt::format("found a change {} ticks after the begin of the window", changes.back() - from(s.window))
+                : "");
   }
   void act(const step::Gap& g) {
     const auto firsts = edges(g.first, g.window);
@@ -194,7 +203,8 @@ class Runner {
   }
   void act(const step::Bits& b) {
     std::string bits;
-    for (const Tick t : edges({b.clock, Edge::kRises}, b.window)) bits += result_.record.value(b.signal, t) != 0 ? '1' : '0';
+    for (const Tick t : edges({b.clock, Edge::kRises}, b.window))
+      bits += result_.record.value(b.signal, t) != 0 ? '1' : '0';
     check(bits == b.bits, "found " + bits);
   }
 

@@ -8,7 +8,9 @@
 namespace brick {
 namespace {
 
-bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '$' || c == ':'; }
+bool in_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '$' || c == ':';
+}
 
 std::vector<std::string> cut(std::string_view text, const std::string& where) {
   std::vector<std::string> words;
@@ -37,7 +39,8 @@ std::vector<std::string> cut(std::string_view text, const std::string& where) {
 
 }  // namespace
 
-Statement::Statement(std::string where, std::string_view text, const Vector& vector, const std::vector<std::string>& marks)
+Statement::Statement(std::string where, std::string_view text, const Vector& vector,
+                     const std::vector<std::string>& marks)
     : where_(std::move(where)), vector_(vector), marks_(marks), words_(cut(text, where_)) {}
 
 void Statement::fail(const std::string& expected) const {
@@ -69,8 +72,10 @@ std::string Statement::quoted(const char* what) {
 }
 
 unsigned Statement::signal() {
-  const auto found = std::find_if(vector_.signals.begin(), vector_.signals.end(), [&](const auto& s) { return s.name == peek(); });
-  if (found == vector_.signals.end()) fail(fmt::format("a signal of the device '{}', as {}", vector_.device, vector_.signals.front().name));
+  const auto found =
+      std::find_if(vector_.signals.begin(), vector_.signals.end(), [&](const auto& s) { return s.name == peek(); });
+  if (found == vector_.signals.end())
+    fail(fmt::format("a signal of the device '{}', as {}", vector_.device, vector_.signals.front().name));
   ++next_;
   return static_cast<unsigned>(found - vector_.signals.begin());
 }
@@ -96,7 +101,8 @@ Word Statement::word() {
   constexpr unsigned kWords = 32;
   if (text.size() > 3 && (text[0] == 'X' || text[0] == 'Y') && text[1] == ':' && text[2] == '$') {
     std::size_t used = 0;
-    const unsigned long addr = std::isxdigit(static_cast<unsigned char>(text[3])) != 0 ? std::stoul(text.substr(3), &used, 16) : kWords;
+    const unsigned long addr =
+        std::isxdigit(static_cast<unsigned char>(text[3])) != 0 ? std::stoul(text.substr(3), &used, 16) : kWords;
     if (used + 3 == text.size() && addr < kWords) {
       ++next_;
       return {text[0] == 'X', static_cast<unsigned>(addr)};
@@ -111,9 +117,9 @@ std::int64_t Statement::term() {
   text.erase(std::remove(text.begin(), text.end(), '_'), text.end());
   const bool hex = !text.empty() && text[0] == '$';
   const std::string digits = hex ? text.substr(1) : text;
-  const bool good = !digits.empty() && digits.size() < 12 && std::all_of(digits.begin(), digits.end(), [hex](unsigned char c) {
-    return hex ? std::isxdigit(c) != 0 : std::isdigit(c) != 0;
-  });
+  const bool good = !digits.empty() && digits.size() < 12 &&
+                    std::all_of(digits.begin(), digits.end(),
+                                [hex](unsigned char c) { return hex ? std::isxdigit(c) != 0 : std::isdigit(c) != 0; });
   if (!good) fail("a number, decimal or $hex");
   ++next_;
   std::int64_t value = std::stoll(digits, nullptr, hex ? 16 : 10);

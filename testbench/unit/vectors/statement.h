@@ -1,5 +1,5 @@
-// One line of a vector file, cut into words and taken apart from left to right. Every mistake becomes a VectorError that says
-// what was found and what was expected.
+// One line of a vector file, cut into words and taken apart from left to right. Every mistake becomes a VectorError
+// that says what was found and what was expected.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A timing vector as read from testbench/vectors/NAME.vec: what is done to the device, what it must do, with what corruption the
-// vector must fail, and what of it is drawn. docs/vectors.md describes the format.
+// A timing vector as read from testbench/vectors/NAME.vec: what is done to the device, what it must do, with what
+// corruption the vector must fail, and what of it is drawn. docs/vectors.md describes the format.
 #pragma once
 
 #include <cstdint>
@@ -122,9 +122,9 @@ struct Bits {
 struct Step {
   int line;
   std::string text;
-  std::variant<step::Reset, step::Write, step::Read, step::Drive, step::Wait, step::Until, step::Mark, step::Turn, step::Send,
-               step::Command, step::Level, step::High, step::Count, step::At, step::Period, step::Pulses, step::Stays, step::Gap,
-               step::Bits>
+  std::variant<step::Reset, step::Write, step::Read, step::Drive, step::Wait, step::Until, step::Mark, step::Turn,
+               step::Send, step::Command, step::Level, step::High, step::Count, step::At, step::Period, step::Pulses,
+               step::Stays, step::Gap, step::Bits>
       action;
 };
 
@@ -159,7 +159,7 @@ struct Wave {
 
 struct Vector {
   std::string path, name, title, section, device, board;
-  std::optional<int> number;          // check vector of section 14
+  std::optional<int> number;          // check vector of servo-ic:14
   std::vector<DeviceSignal> signals;  // of the device; for drawings chN.position, where `turn` has turned it, and bus
   std::map<std::string, Tick> units;
   std::vector<Step> steps;

@@ -25,17 +25,21 @@ std::string step_error(const std::string& step) { return error(with_steps("expec
 TEST(VectorErrors, NameLineFoundAndExpected) {
   EXPECT_EQ(step_error("expect ch1.equ hihg 3"),
             "a.vec:7: found 'hihg', expected is, high, rises, falls, changes, period, pulses, stays or reads");
-  EXPECT_EQ(step_error("wiat 3"),
-            "a.vec:7: found 'wiat', expected reset, write, read, pin, wait, until, mark, turn, send, command or expect");
-  EXPECT_EQ(step_error("pin ch5.enc_a = 1"), "a.vec:7: found 'ch5.enc_a', expected a signal of the device 'channels', as ch1.enc_a");
+  EXPECT_EQ(
+      step_error("wiat 3"),
+      "a.vec:7: found 'wiat', expected reset, write, read, pin, wait, until, mark, turn, send, command or expect");
+  EXPECT_EQ(step_error("pin ch5.enc_a = 1"),
+            "a.vec:7: found 'ch5.enc_a', expected a signal of the device 'channels', as ch1.enc_a");
   EXPECT_EQ(step_error("pin ch1.equ = 1"), "a.vec:7: found 'ch1.equ', expected an input pin");
-  EXPECT_EQ(step_error("write X:$20 = 1"), "a.vec:7: found 'X:$20', expected a word of the IC, X:$00 to X:$1F or Y:$00 to Y:$1F");
+  EXPECT_EQ(step_error("write X:$20 = 1"),
+            "a.vec:7: found 'X:$20', expected a word of the IC, X:$00 to X:$1F or Y:$00 to Y:$1F");
   EXPECT_EQ(step_error("write X:$04 1"), "a.vec:7: found '1', expected '='");
   EXPECT_EQ(step_error("write X:$04 = 1 << 24"), "a.vec:7: found '1', expected a value of 24 bits");
   EXPECT_EQ(step_error("write X:$04 = $"), "a.vec:7: found '$', expected a number, decimal or $hex");
   EXPECT_EQ(step_error("wait 3 sclk now"), "a.vec:7: found 'now', expected the end of the line");
   EXPECT_EQ(step_error("wait"), "a.vec:7: found the end of the line, expected a number, decimal or $hex");
-  EXPECT_EQ(step_error("expect ch1.equ stays 0 from a to b"), "a.vec:7: found 'a', expected a mark that was set before");
+  EXPECT_EQ(step_error("expect ch1.equ stays 0 from a to b"),
+            "a.vec:7: found 'a', expected a mark that was set before");
   EXPECT_EQ(step_error("expect dac_strobe reads 012 on dac_clk"), "a.vec:7: found '012', expected bits, as 0111_1110");
   EXPECT_EQ(step_error("until clock.phase high"), "a.vec:7: found 'high', expected rises, falls or changes");
   EXPECT_EQ(step_error("turn ch5 +3 every 4"), "a.vec:7: found '+', expected ch1 to ch4 before it");
@@ -52,10 +56,12 @@ TEST(VectorErrors, WholeFile) {
   EXPECT_EQ(error("title = 3"), "a.vec:1: found another type, expected a text in quotation marks");
   EXPECT_EQ(error("title = \"t\"\nsection = \"s\"\ndevice = \"toaster\""),
             "a.vec:3: found the device 'toaster', expected channels or controller");
-  EXPECT_EQ(error(with_steps("wait 3")), "a.vec:5: found steps that expect nothing, expected a line with 'expect', 'read' or a reply");
+  EXPECT_EQ(error(with_steps("wait 3")),
+            "a.vec:5: found steps that expect nothing, expected a line with 'expect', 'read' or a reply");
   const std::string good = with_steps("expect ch1.equ is 0");
   EXPECT_EQ(error(good), "no error");
-  EXPECT_THAT(error(good.substr(0, good.find("[[negative]]"))), HasSubstr("found no 'negative', expected an array of tables"));
+  EXPECT_THAT(error(good.substr(0, good.find("[[negative]]"))),
+              HasSubstr("found no 'negative', expected an array of tables"));
   EXPECT_EQ(error(good + "late = \"ch1.equ by 3\"\n"),
             "a.vec:8: found 2 faults, expected one: write, read, late, stuck, invert or command");
   EXPECT_EQ(error(good + "[wave]\nsignals = [\"ch9.equ\"]\n"),
@@ -64,10 +70,11 @@ TEST(VectorErrors, WholeFile) {
 
 // A run of a few lines after PHASE has begun to run with a period of 203 ticks.
 std::string failure(const std::string& steps) {
-  const Vector vector = parse_vector(with_steps("write X:$1C = 100 << 8\nwrite X:$04 = $0008D2\nwait 30000\nuntil clock.phase rises\n"
-                                                "mark a\nwait 1015\nmark b\n" +
-                                                steps),
-                                     "a.vec");
+  const Vector vector =
+      parse_vector(with_steps("write X:$1C = 100 << 8\nwrite X:$04 = $0008D2\nwait 30000\nuntil clock.phase rises\n"
+                              "mark a\nwait 1015\nmark b\n" +
+                              steps),
+                   "a.vec");
   const auto device = make_channels(false);
   const RunResult result = run_vector(vector, *device);
   return result.failures.empty() ? "" : result.failures.front().substr(result.failures.front().rfind(": ") + 2);
@@ -87,9 +94,11 @@ TEST(VectorExpectations, HoldOrSayWhatWasFound) {
   EXPECT_THAT(failure("expect clock.phase pulses 100 from a to b"), HasSubstr("found 101 ticks"));
   EXPECT_EQ(failure("expect clock.phase pulses 101 from a to b"), "");
   EXPECT_EQ(failure("expect clock.phase falls then clock.phase rises after 102 from a to b"), "");
-  EXPECT_THAT(failure("expect clock.phase falls then clock.phase rises after 101 from a to b"), HasSubstr("found 102 ticks"));
+  EXPECT_THAT(failure("expect clock.phase falls then clock.phase rises after 101 from a to b"),
+              HasSubstr("found 102 ticks"));
   EXPECT_EQ(failure("expect clock.phase stays 1 from a to a + 101"), "");
-  EXPECT_EQ(failure("expect clock.phase stays 1 from a to a + 102"), "found a change 101 ticks after the begin of the window");
+  EXPECT_EQ(failure("expect clock.phase stays 1 from a to a + 102"),
+            "found a change 101 ticks after the begin of the window");
   EXPECT_EQ(failure("expect ch1.equ stays 1 from a to b"), "found 0");
   EXPECT_EQ(failure("expect ch1.equ is 1"), "found 0");
   EXPECT_EQ(failure("expect ch1.equ reads 00000 on clock.phase from a to b"), "");

@@ -42,13 +42,15 @@ class Reader {
 
   std::string at(const toml::node& node) const { return fmt::format("{}:{}", vector_.path, node.source().begin.line); }
   [[noreturn]] void missing(const toml::table& in, const std::string& what) const {
-    throw VectorError(fmt::format("{}: found no {}, expected {}", at(in), what.substr(0, what.find(',')), what.substr(what.find(',') + 2)));
+    throw VectorError(fmt::format("{}: found no {}, expected {}", at(in), what.substr(0, what.find(',')),
+                                  what.substr(what.find(',') + 2)));
   }
   void known_keys(const toml::table& in, Keys keys) const {
     for (const auto& [key, node] : in) {
       const std::string_view name = key.str();
       if (std::find(keys.begin(), keys.end(), name) == keys.end())
-        throw VectorError(fmt::format("{}: found the key '{}', expected one of {}", at(node), name, fmt::join(keys, ", ")));
+        throw VectorError(
+            fmt::format("{}: found the key '{}', expected one of {}", at(node), name, fmt::join(keys, ", ")));
     }
   }
   std::string text(const toml::table& in, const std::string& key) const {
@@ -62,7 +64,8 @@ class Reader {
   }
   int integer(const toml::table& in, const std::string& key) const {
     const toml::node& node = *in.get(key);
-    if (!node.is_integer()) throw VectorError(fmt::format("{}: found another type, expected an integer for '{}'", at(node), key));
+    if (!node.is_integer())
+      throw VectorError(fmt::format("{}: found another type, expected an integer for '{}'", at(node), key));
     return static_cast<int>(**node.as_integer());
   }
   const toml::table* table(const toml::table& in, const std::string& key) const {
@@ -74,7 +77,8 @@ class Reader {
   const toml::array& array(const toml::table& in, const std::string& key, const char* of) const {
     const toml::node* node = in.get(key);
     if (node == nullptr) missing(in, fmt::format("'{}', an array of {}", key, of));
-    if (!node->is_array()) throw VectorError(fmt::format("{}: found another type, expected an array of {} for '{}'", at(*node), of, key));
+    if (!node->is_array())
+      throw VectorError(fmt::format("{}: found another type, expected an array of {} for '{}'", at(*node), of, key));
     return *node->as_array();
   }
   // A text of one line, to be taken apart.
@@ -85,8 +89,8 @@ class Reader {
     std::vector<std::string> names;
     for (const auto& kind : device_kinds()) names.push_back(kind.name);
     if (std::find(names.begin(), names.end(), vector_.device) == names.end()) {
-      throw VectorError(
-          fmt::format("{}: found the device '{}', expected {}", at(*root_.get("device")), vector_.device, fmt::join(names, " or ")));
+      throw VectorError(fmt::format("{}: found the device '{}', expected {}", at(*root_.get("device")), vector_.device,
+                                    fmt::join(names, " or ")));
     }
     vector_.signals = vector_.kind().signals;
     if (vector_.kind().words) {
@@ -101,7 +105,8 @@ class Reader {
     if (units == nullptr) return;
     for (const auto& [key, node] : *units) {
       if (!node.is_integer() || **node.as_integer() <= 0)
-        throw VectorError(fmt::format("{}: found no number of ticks, expected one for the unit '{}'", at(node), key.str()));
+        throw VectorError(
+            fmt::format("{}: found no number of ticks, expected one for the unit '{}'", at(node), key.str()));
       vector_.units[std::string(key.str())] = **node.as_integer();
     }
   }
@@ -109,7 +114,8 @@ class Reader {
   void read_steps() {
     std::istringstream lines(text(root_, "steps"));
     const toml::node& node = *root_.get("steps");
-    int number = static_cast<int>(node.source().begin.line) + (node.source().end.line > node.source().begin.line ? 1 : 0);
+    int number =
+        static_cast<int>(node.source().begin.line) + (node.source().end.line > node.source().begin.line ? 1 : 0);
     bool checked = false;
     for (std::string line; std::getline(lines, line); ++number) {
       auto step = parse_step(fmt::format("{}:{}", vector_.path, number), number, line, vector_, marks_);
@@ -117,7 +123,9 @@ class Reader {
       checked = checked || step->text.rfind("expect", 0) == 0 || step->text.find('=') != std::string::npos;
       vector_.steps.push_back(std::move(*step));
     }
-    if (!checked) throw VectorError(at(node) + ": found steps that expect nothing, expected a line with 'expect', 'read' or a reply");
+    if (!checked)
+      throw VectorError(at(node) +
+                        ": found steps that expect nothing, expected a line with 'expect', 'read' or a reply");
   }
 
   void read_negatives() {
@@ -159,9 +167,9 @@ class Reader {
     return c;
   }
   std::pair<Corruption::Kind, const toml::node*> only_fault(const toml::table& in) const {
-    constexpr std::pair<const char*, Corruption::Kind> kinds[] = {{"write", Corruption::kWrite},   {"read", Corruption::kRead},
-                                                                  {"late", Corruption::kLate},     {"stuck", Corruption::kStuck},
-                                                                  {"invert", Corruption::kInvert}, {"command", Corruption::kCommand}};
+    constexpr std::pair<const char*, Corruption::Kind> kinds[] = {
+        {"write", Corruption::kWrite}, {"read", Corruption::kRead},     {"late", Corruption::kLate},
+        {"stuck", Corruption::kStuck}, {"invert", Corruption::kInvert}, {"command", Corruption::kCommand}};
     std::pair<Corruption::Kind, const toml::node*> found{Corruption::kWrite, nullptr};
     unsigned faults = 0;
     for (const auto& [key, kind] : kinds) {
@@ -171,7 +179,8 @@ class Reader {
       }
     }
     if (faults != 1)
-      throw VectorError(fmt::format("{}: found {} faults, expected one: write, read, late, stuck, invert or command", at(in), faults));
+      throw VectorError(fmt::format("{}: found {} faults, expected one: write, read, late, stuck, invert or command",
+                                    at(in), faults));
     return found;
   }
 
@@ -219,7 +228,8 @@ class Reader {
 }  // namespace
 
 const DeviceKind& Vector::kind() const {
-  return *std::find_if(device_kinds().begin(), device_kinds().end(), [this](const auto& k) { return k.name == device; });
+  return *std::find_if(device_kinds().begin(), device_kinds().end(),
+                       [this](const auto& k) { return k.name == device; });
 }
 
 Vector parse_vector(const std::string& text, const std::string& path) { return Reader(text, path).read(); }

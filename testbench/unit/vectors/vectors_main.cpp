@@ -1,6 +1,6 @@
-// brick_vectors [--engine NAME] [--draw | --negative] FILE: runs a timing vector, prints what failed, the WaveDrom source
-// of its figure, or for each of its faults the expectation that finds it.
-// Exit status as the `brick` command's: 0 passed, 1 failed, 2 bad usage or a mistake in the file.
+// brick_vectors [--engine NAME] [--draw | --negative] FILE: runs a timing vector, prints what failed, the WaveDrom
+// source of its figure, or for each of its faults the expectation that finds it. Exit status as the `brick` command's:
+// 0 passed, 1 failed, 2 bad usage or a mistake in the file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -53,14 +53,17 @@ int main(int argc, char** argv) {
   std::string path, engine = "systemc";
   bool draw = false, negative = false;
   CLI::App app{"Runs a timing vector"};
-  app.add_option("--engine", engine, "what it runs on: rtl, systemc (default), both, board_rtl, board_systemc, board_both");
+  app.add_option("--engine", engine,
+                 "what it runs on: rtl, systemc (default), both, board_rtl, board_systemc, board_both");
   app.add_flag("--draw", draw, "print the figure as WaveDrom source");
   app.add_flag("--negative", negative, "run it with each of its planted faults");
   app.add_option("FILE", path)->required();
   try {
     app.parse(argc, argv);
     return negative ? run_negatives(path, engine) : run(path, engine, draw);
-  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; } catch (const brick::VectorError& error) {
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const brick::VectorError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
   } catch (const std::exception& error) {

@@ -69,7 +69,8 @@ void figure_is_fresh(const std::string& file) {
   for (const char* engine : {"systemc", "rtl"}) {
     const RunResult result = run(vector, engine);
     ASSERT_TRUE(result.passed()) << result.text();
-    EXPECT_EQ(wavedrom(vector, result), committed.str()) << path << " is stale on " << engine << ": run tools/draw_vectors.py";
+    EXPECT_EQ(wavedrom(vector, result), committed.str())
+        << path << " is stale on " << engine << ": run tools/draw_vectors.py";
   }
 }
 
@@ -78,7 +79,8 @@ void add_tests_of(const std::string& file) {
   const std::string name = std::filesystem::path(file).stem().string();
   try {
     const Vector vector = read_vector(file);
-    for (const std::string& engine : vector.kind().engines) add(name + "_" + engine, [file, engine] { passes(file, engine); });
+    for (const std::string& engine : vector.kind().engines)
+      add(name + "_" + engine, [file, engine] { passes(file, engine); });
     add("negative_" + name, [file] { fails_when_corrupted(file); });
     if (vector.wave) add("figure_" + name, [file] { figure_is_fresh(file); });
   } catch (const VectorError& error) {
@@ -90,7 +92,7 @@ const bool kRegistered = [] {
   return true;
 }();
 
-// All check vectors of the servo IC's data sheet (section 14) are there.
+// All check vectors of the servo IC's data sheet (servo-ic:14) are there.
 TEST(CheckVectors, EveryNumberHasAFile) {
   constexpr int kCheckVectors = 17;
   ASSERT_TRUE(kRegistered);

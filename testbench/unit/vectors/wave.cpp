@@ -21,7 +21,8 @@ class Drawing {
     for (const WaveArrow& arrow : wave_.arrows) edges.push_back(draw(arrow));
 
     std::string all = "{\n  \"signal\": [";
-    for (std::size_t i = 0; i < wave_.signals.size(); ++i) all += fmt::format("{}\n    {}", i == 0 ? "" : ",", lane(i).dump());
+    for (std::size_t i = 0; i < wave_.signals.size(); ++i)
+      all += fmt::format("{}\n    {}", i == 0 ? "" : ",", lane(i).dump());
     all += "\n  ],\n  \"edge\": " + Json(edges).dump() + ",\n";
     all += "  \"head\": " + Json{{"text", vector_.title}}.dump() + ",\n";
     all += "  \"foot\": " + Json{{"text", columns()}}.dump() + ",\n  \"config\": {\"skin\": \"narrow\"}\n}\n";
@@ -35,13 +36,17 @@ class Drawing {
     std::size_t column;  // of `from`
   };
 
-  [[noreturn]] void fail(int line, const std::string& what) const { throw VectorError(fmt::format("{}:{}: {}", vector_.path, line, what)); }
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw VectorError(fmt::format("{}:{}: {}", vector_.path, line, what));
+  }
 
   void place(const WaveWindow& w) {
-    const Stretch s{w.line, run_.at(w.window.from), run_.at(w.window.to), w.step, width_ + (stretches_.empty() ? 0 : 1)};
+    const Stretch s{w.line, run_.at(w.window.from), run_.at(w.window.to), w.step,
+                    width_ + (stretches_.empty() ? 0 : 1)};
     const auto bricks = (s.to - s.from + s.step - 1) / s.step;
     constexpr Tick kMost = 80;
-    if (bricks < 1 || bricks > kMost) fail(w.line, fmt::format("found a window of {} columns, expected 1 to {}", bricks, kMost));
+    if (bricks < 1 || bricks > kMost)
+      fail(w.line, fmt::format("found a window of {} columns, expected 1 to {}", bricks, kMost));
     stretches_.push_back(s);
     width_ = s.column + static_cast<std::size_t>(bricks);
   }
@@ -61,7 +66,8 @@ class Drawing {
         const bool same = last && *last == value && !(number && t == s.from);
         last = value;
         if (run_.record.edges({signal, Edge::kChanges}, t + 1, t + s.step + 1).size() > 1)
-          fail(s.line, fmt::format("found several changes of {} within {} ticks from tick {}, expected a smaller step", name, s.step, t));
+          fail(s.line, fmt::format("found several changes of {} within {} ticks from tick {}, expected a smaller step",
+                                   name, s.step, t));
         wave += same ? '.' : number ? '=' : value != 0 ? '1' : '0';
         if (number && !same) data.push_back(std::to_string(static_cast<std::int32_t>(value)));
       }
@@ -82,8 +88,9 @@ class Drawing {
       int left = 0;
       for (Tick t = s.from; t < s.to; t += s.step) {
         auto begins = run_.record.edges({signal, Edge::kChanges}, t - s.step + 1, t + 1);
-        begins.erase(std::remove_if(begins.begin(), begins.end(), [&](Tick at) { return run_.record.value(signal, at) == 0; }),
-                     begins.end());
+        begins.erase(
+            std::remove_if(begins.begin(), begins.end(), [&](Tick at) { return run_.record.value(signal, at) == 0; }),
+            begins.end());
         if (!begins.empty()) {
           data.push_back(run_.bus[run_.record.value(signal, begins.back()) - 1]);
           left = kColumns;
@@ -106,7 +113,8 @@ class Drawing {
   }
   Tick edge(const WaveArrow& arrow, SignalEdge e, Tick t) const {
     const auto found = run_.record.edges(e, t, stretches_.back().to);
-    if (found.empty()) fail(arrow.line, fmt::format("found no such edge of {} after tick {}", vector_.signals[e.signal].name, t));
+    if (found.empty())
+      fail(arrow.line, fmt::format("found no such edge of {} after tick {}", vector_.signals[e.signal].name, t));
     return found.front();
   }
   char node(const WaveArrow& arrow, SignalEdge e, Tick t) {
@@ -120,7 +128,8 @@ class Drawing {
       if (at == '.') at = next_node_++;
       return at;
     }
-    fail(arrow.line, fmt::format("found the edge of {} at tick {}, expected one inside a window", vector_.signals[e.signal].name, t));
+    fail(arrow.line, fmt::format("found the edge of {} at tick {}, expected one inside a window",
+                                 vector_.signals[e.signal].name, t));
   }
 
   std::string columns() const {

@@ -1,5 +1,6 @@
-/* Everything that could notice how a run is cut into pieces: phase and servo interrupts that nest, a real-time interrupt
-   raised by software, sleep, device accesses, counters and long instructions. The state is one running checksum. */
+/* Everything that could notice how a run is cut into pieces: phase and servo interrupts that nest, a real-time
+   interrupt raised by software, sleep, device accesses, counters and long instructions. The state is one running
+   checksum. */
 #include <stdint.h>
 
 #define CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
@@ -49,7 +50,8 @@ __attribute__((interrupt, aligned(4))) static void handler(void) {
 }
 
 int main(void) {
-  __asm__ volatile(CSR("csrw mtvec, %0\ncsrs mie, %1\ncsrsi mstatus, 8")::"r"(handler), "r"(PHASE | SERVO | REAL_TIME) : "memory");
+  __asm__ volatile(CSR("csrw mtvec, %0\ncsrs mie, %1\ncsrsi mstatus, 8")::"r"(handler), "r"(PHASE | SERVO | REAL_TIME)
+                   : "memory");
   uint64_t wide = 1;
   while (results[1] < 40u) {
     for (uint32_t i = 1; i < 50u; ++i) {
