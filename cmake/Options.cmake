@@ -25,11 +25,13 @@ if(BRICK_COVERAGE)
   set(BRICK_RTL_ARGS --coverage-line)
 endif()
 
+# Flags of the sanitizers, for the whole tree (preset asan) and for the few native libraries that every build tests with them.
+set(BRICK_SANITIZER_FLAGS -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
 if(BRICK_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")  # a short build, line numbers in reports, assertions on
   list(APPEND BRICK_WARNINGS -Wno-maybe-uninitialized)  # instrumented code makes g++ 12 warn inside <regex>
-  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
-  add_link_options(-fsanitize=address,undefined)
+  add_compile_options(${BRICK_SANITIZER_FLAGS})
+  add_link_options(${BRICK_SANITIZER_FLAGS})
 endif()
 if(BRICK_COVERAGE)
   add_compile_options(--coverage -O0)
