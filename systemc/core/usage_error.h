@@ -1,5 +1,5 @@
-// Bad usage or bad input (command line, host script, board file, timing vector): one line that says what, where and what
-// was expected. `brick` prints it and ends with status 2.
+// Bad usage or bad input (command line, host script, board file, timing vector): one line that says what, where and
+// what was expected. `brick` prints it and ends with status 2.
 #pragma once
 
 #include <stdexcept>
