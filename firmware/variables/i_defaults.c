@@ -19,7 +19,7 @@ bool i_of_absent_ic(struct i_place place) {
 
 static bool can_be_source(unsigned ic) { return gate_ic_present(ic) && !gate_ic_is_macrogate(ic); }
 
-/* servo-ic data sheet 7.1: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
+/* servo-ic:7.1/3: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
 uint32_t i_default_clock_source(void) {
   if (can_be_source(0)) return gate_ic_direction_variable(0);
   if (can_be_source(GATE_IC_MACRO)) return gate_ic_direction_variable(GATE_IC_MACRO);

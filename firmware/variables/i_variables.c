@@ -58,7 +58,7 @@ i_format_t i_variable_format(uint32_t number) {
 #define CHANNEL_FIELD(name) SERVO_CHANNEL_CONTROL_##name##_MASK
 #define CLOCK_FIELD(name) SERVO_IC_CLOCK_CONTROL_##name##_MASK /* the same in MACRO ICs */
 
-/* Control-word fields of I7mn0..I7mn9, servo-ic data sheet 2.5. */
+/* Control-word fields of I7mn0..I7mn9, servo-ic:2.5. */
 static const struct {
   uint8_t lsb, width;
 } channel_fields[10] = {

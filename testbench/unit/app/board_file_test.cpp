@@ -208,7 +208,7 @@ TEST(BoardFile, NamesOfIcs) {
   EXPECT_EQ(macro_ic_numbers(0x3), "-");
 }
 
-// servo-ic data sheet 7.1 rule 3: servo IC 0, MACRO IC 0, servo ICs 1 to 9, 2* to 9*, MACRO ICs 1 to 3; no MACROGATE.
+// servo-ic:7.1/3: servo IC 0, MACRO IC 0, servo ICs 1 to 9, 2* to 9*, MACRO ICs 1 to 3; no MACROGATE.
 TEST(BoardFile, ClockSourceAfterReInitialisation) {
   constexpr std::uint32_t kMacro0 = 1u << 18, kMacro1 = 1u << 19, kStar2 = 1u << 10;
   EXPECT_EQ(default_clock_source(0x3 | kMacro0, 0), 7007u);

@@ -130,7 +130,7 @@ TEST(IVariables, AbsentIcReadsZeroAndIgnoresWrites) {
   EXPECT_EQ(c.line("I7000 I7010 I7011 I7021"), "6527|7|1|0");
 }
 
-// servo-ic data sheet 7.1 rule 3, in the order of its table.
+// servo-ic:7.1/3, in its order.
 TEST(ClockSource, FirstIcInTheDocumentedOrderIsChosen) {
   BRICK_COVERS("I19-3");
   struct Case {
@@ -166,7 +166,7 @@ TEST(ClockSource, TakesDirectionVariablesOnly) {
   EXPECT_EQ(c.line("I19=* I19"), "7007");
 }
 
-// servo-ic data sheet 2.6 and check vectors 16, 17.
+// servo-ic:2.6/4 and the check vectors servo-ic:14/16, servo-ic:14/17.
 TEST(ServoIcGlobals, StartUpWritesTheDocumentedWords) {
   BRICK_COVERS("CLK-6 I19-3");
   Controller c(kServoIc0 | kServoIc1 | kMacroIc0);

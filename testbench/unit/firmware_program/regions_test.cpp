@@ -10,7 +10,7 @@ struct Region {
   const char* name;
   region_kind kind;
   std::uint32_t cs;
-  int height;  // place in memory, counted from the bottom as 4.2 draws it; written here independently of the firmware
+  int height;  // place in memory, counted from the bottom (firmware:4.2); written here independently of the firmware
 };
 
 // CCBUF 16..1 | LOOKAHEAD 16..1 | ROTARY 16..1 | GATHER
