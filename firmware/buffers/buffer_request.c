@@ -7,8 +7,8 @@
 #include "firmware/buffers/buffer_request.h"
 
 #include "firmware/buffers/rotary.h"
+#include "firmware/command/command.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command.h"
 #include "firmware/host/panel.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/host/error.h"
+#include "firmware/base/error.h"
 
 enum { COORDINATE_SYSTEMS = 16 };
 

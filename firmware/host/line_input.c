@@ -5,11 +5,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/host/command.h"
-#include "firmware/host/control.h"
+#include "firmware/command/command.h"
+#include "firmware/command/control_characters.h"
+#include "firmware/command/reply.h"
+#include "firmware/command/reply_frame.h"
 #include "firmware/host/host_port.h"
-#include "firmware/host/reply.h"
-#include "firmware/host/reply_frame.h"
 #include "firmware/variables/variables.h"
 
 enum {

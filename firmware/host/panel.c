@@ -5,7 +5,7 @@
 
 #include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/run_control.h"
+#include "firmware/run/run_control.h"
 #include "firmware/variables/variables.h"
 #include "rtl/regs/brick_regs.h"
 

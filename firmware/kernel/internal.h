@@ -23,9 +23,9 @@ void tasks_initialize(void);
 
 /* phase_task.c */
 void phase_task_initialize(void);            /* from the motor variables, with interrupts off */
-extern volatile uint32_t kernel_phase_stamp; /* cycle counter at the last phase interrupt, written by boot/trap.S */
+extern volatile uint32_t kernel_phase_stamp; /* cycle counter at the last phase interrupt, written by image/trap.S */
 extern volatile uint32_t
-    kernel_phase_work; /* bit n-1: motor n is commutated. Not zero: boot/trap.S calls kernel_phase_interrupt */
+    kernel_phase_work; /* bit n-1: motor n is commutated. Not zero: image/trap.S calls kernel_phase_interrupt */
 
 /* saved_data.c */
 typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;

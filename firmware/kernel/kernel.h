@@ -27,7 +27,7 @@ void kernel_watchdog_reload(void);  /* Y:$25 from I40 */
 /* Phase task: Ixx00, Ixx01 or Ixx83 of motor 1..32 was written. Background and real-time tasks. */
 void kernel_phase_motor_changed(uint32_t motor);
 
-/* Interrupt handlers, called by boot/trap.S. */
+/* Interrupt handlers, called by image/trap.S. */
 void kernel_phase_interrupt(void);
 void kernel_servo_interrupt(void);
 void kernel_real_time_interrupt(void);

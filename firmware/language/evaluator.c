@@ -1,7 +1,7 @@
 /* The stack machine that executes compiled expressions, on-line in the background task and for programs in the
  * real-time task. */
+#include "firmware/base/mathematics.h"
 #include "firmware/language/expression.h"
-#include "firmware/language/mathematics.h"
 #include "firmware/language/operators.h"
 #include "firmware/variables/variables.h"
 

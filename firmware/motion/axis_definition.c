@@ -2,9 +2,9 @@
  * (XYZ or UVW), or one of A, B, C, and an offset. */
 #include "firmware/motion/axis_definition.h"
 
-#include "firmware/host/command.h"
-#include "firmware/host/reply.h"
-#include "firmware/motion/run_control.h"
+#include "firmware/command/command.h"
+#include "firmware/command/reply.h"
+#include "firmware/run/run_control.h"
 
 enum { TRIPLET_XYZ = 0x1C0, TRIPLET_UVW = 0x38 };
 

@@ -1,6 +1,6 @@
 /* Planning of moves (firmware:7.5), real-time task. RAPID moves are planned as unblended LINEAR moves at the feedrate:
  * their own speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
-#include "firmware/language/mathematics.h"
+#include "firmware/base/mathematics.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/variables/variables.h"
 

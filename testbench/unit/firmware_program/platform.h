@@ -1,6 +1,6 @@
 // The firmware's surroundings for unit tests: memory arrays for user memory, plain arrays for variables, a simulated
 // cycle counter, a record of every edge of BREQ, and a small command interpreter that follows the contract of
-// firmware/language/program.h.
+// firmware/command/program_line.h.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 #define error_t firmware_error_t  // the C library has a type of this name
 extern "C" {
+#include "firmware/base/mathematics.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/command/command.h"
+#include "firmware/command/program_line.h"
+#include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command.h"
 #include "firmware/host/panel.h"
-#include "firmware/host/reply.h"
 #include "firmware/language/expression.h"
-#include "firmware/language/mathematics.h"
 #include "firmware/language/operators.h"
-#include "firmware/language/program.h"
 #include "firmware/language/statement.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion.h"
-#include "firmware/motion/run_control.h"
+#include "firmware/run/run_control.h"
 #include "firmware/variables/variables.h"
 }
 

@@ -1,7 +1,7 @@
 /* Error numbers of the command interpreter (firmware:6.4). A function that can fail returns one of these; 0 is success.
  */
-#ifndef FIRMWARE_HOST_ERROR_H
-#define FIRMWARE_HOST_ERROR_H
+#ifndef FIRMWARE_BASE_ERROR_H
+#define FIRMWARE_BASE_ERROR_H
 
 typedef enum {
   ERR_NONE = 0,

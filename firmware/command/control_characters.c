@@ -1,14 +1,14 @@
 /* Control characters: run control of all coordinate systems at once, and the reports of eight motors. Background task.
  */
-#include "firmware/host/control.h"
+#include "firmware/command/control_characters.h"
 
 #include "firmware/buffers/regions.h"
-#include "firmware/host/command.h"
-#include "firmware/host/motor_report.h"
-#include "firmware/host/reply.h"
+#include "firmware/command/command.h"
+#include "firmware/command/motor_report.h"
+#include "firmware/command/reply.h"
 #include "firmware/kernel/kernel.h"
 #include "firmware/motion/motion.h"
-#include "firmware/motion/run_control.h"
+#include "firmware/run/run_control.h"
 #include "firmware/variables/variables.h"
 
 enum {

@@ -1,11 +1,11 @@
 /* The command interpreter: takes commands from a host line, left to right, until one fails. A command is, in this
  * order: a program statement while a buffer is open, a constant, an address, a variable, the longest keyword of the
  * tables. */
-#include "firmware/host/command.h"
+#include "firmware/command/command.h"
 
-#include "firmware/host/command_tables.h"
-#include "firmware/host/reply.h"
-#include "firmware/language/program.h"
+#include "firmware/command/command_tables.h"
+#include "firmware/command/program_line.h"
+#include "firmware/command/reply.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"
 

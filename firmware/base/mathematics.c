@@ -1,6 +1,6 @@
 /* Elementary functions: exact argument reduction, then a short series. Integer work on the bits of the double replaces
  * what a C library would do with frexp, ldexp and floor. */
-#include "firmware/language/mathematics.h"
+#include "firmware/base/mathematics.h"
 
 #define PI 3.14159265358979323846
 #define HALF_PI_HIGH 1.57079632673412561417 /* the upper 33 bits of pi/2: a multiple of it stays exact */

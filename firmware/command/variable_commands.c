@@ -1,8 +1,8 @@
 /* I-, P-, Q- and M-variables on line (firmware:1.4, firmware:1.5):
  *   I19   I0..99   I16,4   I5213,15,100=10   I(P1*100+20)=10   I100..199=*   M1->Y:$78C02,8,1   M0..99->
  * The right side is evaluated once; without `=` every variable is reported on a line of its own. */
-#include "firmware/host/command_tables.h"
-#include "firmware/host/reply.h"
+#include "firmware/command/command_tables.h"
+#include "firmware/command/reply.h"
 #include "firmware/language/expression.h"
 #include "firmware/variables/m_variables.h"
 #include "firmware/variables/variables.h"

@@ -1,6 +1,6 @@
 /* The command interpreter: splits a host line into commands and runs them left to right. */
-#ifndef FIRMWARE_HOST_COMMAND_H
-#define FIRMWARE_HOST_COMMAND_H
+#ifndef FIRMWARE_COMMAND_COMMAND_H
+#define FIRMWARE_COMMAND_COMMAND_H
 
 #include "firmware/language/lexer.h"
 

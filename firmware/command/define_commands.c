@@ -1,13 +1,13 @@
 /* DEFINE and DELETE (firmware:4.2, firmware:4.3). A running coordinate system keeps its buffers; the order rules are
  * those of regions.c. */
-#include "firmware/buffers/define_commands.h"
+#include "firmware/command/define_commands.h"
 
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
-#include "firmware/host/command.h"
+#include "firmware/command/command.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/motion.h"
-#include "firmware/motion/run_control.h"
+#include "firmware/run/run_control.h"
 
 static error_t size_argument(struct lexer* lx, uint32_t* size) {
   int32_t value;

@@ -1,5 +1,5 @@
 /* The phase task (firmware:8.1), every I7+1 phase interrupts: follows the phase position of each commutated motor. No
- * current is read and nothing is put out yet. Without a commutated motor boot/trap.S only notes the time and does not
+ * current is read and nothing is put out yet. Without a commutated motor image/trap.S only notes the time and does not
  * come here.
  *
  * Motor n's present phase position is X:$80n+$34, counts times Ixx70 modulo Ixx71, in -Ixx71/2 .. Ixx71/2-1. It lives
@@ -15,7 +15,7 @@
 
 enum { MOTORS = 32, MOTOR_WORDS = 0x80, PHASE_POSITION = 0x34 };
 enum { COMMUTATED = 1, SOURCE_IS_Y = 2 }; /* Ixx01 */
-enum { SHORT_PATH_CYCLES = 40 };          /* of boot/trap.S without work, with entry and return */
+enum { SHORT_PATH_CYCLES = 40 };          /* of image/trap.S without work, with entry and return */
 
 volatile uint32_t kernel_phase_stamp, kernel_phase_work;
 

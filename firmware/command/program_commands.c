@@ -1,13 +1,13 @@
 /* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
-#include "firmware/buffers/define_commands.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
-#include "firmware/host/reply.h"
-#include "firmware/language/program.h"
+#include "firmware/command/define_commands.h"
+#include "firmware/command/program_line.h"
+#include "firmware/command/reply.h"
 #include "firmware/language/statement.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/run_control.h"
+#include "firmware/run/run_control.h"
 
 static error_t cmd_open(struct lexer* lx) {
   enum open_buffer kind = OPEN_ROTARY;

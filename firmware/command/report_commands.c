@@ -1,8 +1,8 @@
 /* Status and identification queries (firmware:5). */
+#include "firmware/command/command_tables.h"
+#include "firmware/command/motor_report.h"
+#include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command_tables.h"
-#include "firmware/host/motor_report.h"
-#include "firmware/host/reply.h"
 #include "firmware/kernel/kernel.h"
 #include "firmware/motion/motion.h"
 #include "firmware/variables/variables.h"

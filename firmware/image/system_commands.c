@@ -1,5 +1,5 @@
 /* Resets and storage (firmware:5.10), and commands of equipment that is not there. */
-#include "firmware/host/command_tables.h"
+#include "firmware/command/command_tables.h"
 #include "firmware/kernel/kernel.h"
 #include "firmware/motion/motion.h"
 

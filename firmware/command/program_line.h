@@ -1,9 +1,9 @@
 /* Program lines: what the command interpreter calls while a buffer is open, and the commands that own buffers and
  * programs. */
-#ifndef FIRMWARE_LANGUAGE_PROGRAM_H
-#define FIRMWARE_LANGUAGE_PROGRAM_H
+#ifndef FIRMWARE_COMMAND_PROGRAM_LINE_H
+#define FIRMWARE_COMMAND_PROGRAM_LINE_H
 
-#include "firmware/host/command.h"
+#include "firmware/command/command.h"
 #include "firmware/language/lexer.h"
 
 bool program_buffer_open(void); /* some buffer is open for ASCII entry */

@@ -1,6 +1,6 @@
 /* What the line input needs of the reply writer beyond reply.h. */
-#ifndef FIRMWARE_HOST_REPLY_FRAME_H
-#define FIRMWARE_HOST_REPLY_FRAME_H
+#ifndef FIRMWARE_COMMAND_REPLY_FRAME_H
+#define FIRMWARE_COMMAND_REPLY_FRAME_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Replies to the host line being executed: data lines are collected, framing by I3 is added when they are sent. */
-#ifndef FIRMWARE_HOST_REPLY_H
-#define FIRMWARE_HOST_REPLY_H
+#ifndef FIRMWARE_COMMAND_REPLY_H
+#define FIRMWARE_COMMAND_REPLY_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* DEFINE and DELETE of buffers, as on-line commands. */
-#ifndef FIRMWARE_BUFFERS_DEFINE_COMMANDS_H
-#define FIRMWARE_BUFFERS_DEFINE_COMMANDS_H
+#ifndef FIRMWARE_COMMAND_DEFINE_COMMANDS_H
+#define FIRMWARE_COMMAND_DEFINE_COMMANDS_H
 
 #include "firmware/language/lexer.h"
 

@@ -1,7 +1,7 @@
 /* Direct access to PMAC words (firmware:1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. */
+#include "firmware/command/command_tables.h"
+#include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command_tables.h"
-#include "firmware/host/reply.h"
 #include "firmware/language/expression.h"
 #include "firmware/variables/variables.h"
 #include "firmware/variables/words.h"

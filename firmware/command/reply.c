@@ -1,9 +1,9 @@
 /* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Everything goes straight to the transmit
  * queue. */
-#include "firmware/host/reply.h"
+#include "firmware/command/reply.h"
 
+#include "firmware/command/reply_frame.h"
 #include "firmware/host/host_port.h"
-#include "firmware/host/reply_frame.h"
 #include "firmware/variables/variables.h"
 
 enum { LINE_FEED = 0x0A, CARRIAGE_RETURN = 0x0D, DECIMALS = 10 };

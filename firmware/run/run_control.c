@@ -1,6 +1,6 @@
 /* Run control. Requests are flags that the real-time and servo tasks act on; only an abort reaches into the moves, with
  * both tasks held off. */
-#include "firmware/motion/run_control.h"
+#include "firmware/run/run_control.h"
 
 #include "firmware/buffers/rotary.h"
 #include "firmware/hal/hal.h"

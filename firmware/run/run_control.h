@@ -1,12 +1,12 @@
 /* Run control of the coordinate systems (firmware:4.10, firmware:4.11), called by the command interpreter in the
  * background task. */
-#ifndef FIRMWARE_MOTION_RUN_CONTROL_H
-#define FIRMWARE_MOTION_RUN_CONTROL_H
+#ifndef FIRMWARE_RUN_RUN_CONTROL_H
+#define FIRMWARE_RUN_RUN_CONTROL_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/host/error.h"
+#include "firmware/base/error.h"
 
 error_t run_point(uint32_t cs, double program);   /* B{n}: ERR001 while running; 0 is the rotary buffer */
 error_t run_start(uint32_t cs, bool single_step); /* R, S: ERR015 without a valid program */

@@ -1,6 +1,6 @@
 /* Control characters that report or act on motion (firmware:5.9). */
-#ifndef FIRMWARE_HOST_CONTROL_H
-#define FIRMWARE_HOST_CONTROL_H
+#ifndef FIRMWARE_COMMAND_CONTROL_CHARACTERS_H
+#define FIRMWARE_COMMAND_CONTROL_CHARACTERS_H
 
 #include <stdbool.h>
 #include <stdint.h>

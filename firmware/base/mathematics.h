@@ -1,7 +1,7 @@
 /* Elementary functions in double precision, good to about 1e-15 relative for moderate arguments; there is no C library
  * in the image. Domain errors follow firmware:10/9: 0 or the largest magnitude, never an error. */
-#ifndef FIRMWARE_LANGUAGE_MATHEMATICS_H
-#define FIRMWARE_LANGUAGE_MATHEMATICS_H
+#ifndef FIRMWARE_BASE_MATHEMATICS_H
+#define FIRMWARE_BASE_MATHEMATICS_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* The program line being entered. Its statements are compiled as they are met and stored together when the host line
  * has ended without an error; a change of the addressed coordinate system inside the line ends the program line of the
  * one before. */
-#include "firmware/language/program.h"
+#include "firmware/command/program_line.h"
 
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"

@@ -1,6 +1,6 @@
 /* Status, position, velocity and following error of a motor (0..31) as text, from its registers in user memory. */
-#ifndef FIRMWARE_HOST_MOTOR_REPORT_H
-#define FIRMWARE_HOST_MOTOR_REPORT_H
+#ifndef FIRMWARE_COMMAND_MOTOR_REPORT_H
+#define FIRMWARE_COMMAND_MOTOR_REPORT_H
 
 #include <stdint.h>
 

@@ -1,8 +1,8 @@
-/* Tables and parts of the command interpreter (host/command.c). */
-#ifndef FIRMWARE_HOST_COMMAND_TABLES_H
-#define FIRMWARE_HOST_COMMAND_TABLES_H
+/* Tables and parts of the command interpreter (command/command.c). */
+#ifndef FIRMWARE_COMMAND_COMMAND_TABLES_H
+#define FIRMWARE_COMMAND_COMMAND_TABLES_H
 
-#include "firmware/host/command.h"
+#include "firmware/command/command.h"
 
 extern const struct command_entry report_commands[]; /* ? ?? ??? P V F VER TYPE CID CPU ... */
 extern const struct command_entry system_commands[]; /* $$$ $$$*** SAVE ... */

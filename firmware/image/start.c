@@ -1,9 +1,9 @@
 /* Start-up, the background loop and the global status word (firmware:8.1, firmware:8.4). */
 #include "firmware/kernel/kernel.h"
 
+#include "firmware/command/command.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"

@@ -1,10 +1,10 @@
 /* Motor n's registers stand at $80 * n (firmware:1.10): D:+$08 commanded and D:+$0B actual position in 1/(32 Ixx08)
  * count, D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle, X:+$30 and Y:+$40
  * status words. */
-#include "firmware/host/motor_report.h"
+#include "firmware/command/motor_report.h"
 
+#include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/reply.h"
 #include "firmware/variables/variables.h"
 
 enum {
