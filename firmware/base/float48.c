@@ -2,8 +2,9 @@
  * a 12-bit exponent E; value = m * 2^(E - 2047). X holds mantissa bits 35..12, Y bits 23..12 the rest of it and 11..0
  * E. Converted bit by bit to and from IEEE double: no floating-point arithmetic, because every P and Q access comes
  * here. */
+#include "firmware/base/float48.h"
+
 #include "firmware/hal/hal.h"
-#include "firmware/variables/variables.h"
 
 enum { DOUBLE_BIAS = 1022, WORD_BIAS = 2047 };
 

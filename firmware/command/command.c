@@ -1,33 +1,26 @@
-/* The command interpreter: takes commands from a host line, left to right, until one fails. A command is, in this
- * order: a program statement while a buffer is open, a constant, an address, a variable, the longest keyword of the
- * tables. */
+/* The command interpreter: takes commands from a host line, left to right,
+ * until one fails. A command is, in this order: a program statement while a
+ * buffer is open, a constant, an address, a variable, the longest keyword of
+ * the tables. */
 #include "firmware/command/command.h"
 
-#include "firmware/command/command_tables.h"
+#include "firmware/base/dimensions.h"
+#include "firmware/buffers/buffer_request.h"
 #include "firmware/command/program_line.h"
 #include "firmware/command/reply.h"
-#include "firmware/motion/motion.h"
-#include "firmware/variables/variables.h"
+#include "firmware/command/session.h"
+#include "firmware/command/variable_commands.h"
+#include "firmware/variables/i_variables.h"
+#include "firmware/variables/pq_variables.h"
 
-enum { MOTORS = 32, MOTOR_GROUPS = 4 };
-
-static uint32_t addressed_cs, addressed_motor, motor_group, generation;
-
-uint32_t command_cs(void) { return addressed_cs; }
-uint32_t command_motor(void) { return addressed_motor; }
-uint32_t command_motor_group(void) { return motor_group; }
-uint32_t command_generation(void) { return generation; }
-
-void command_initialize(void) {
-  addressed_cs = addressed_motor = motor_group = 0;
-  ++generation;
-}
+enum { MOTOR_GROUPS = 4 };
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return c >= 'A' && c <= 'Z'; }
 static bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
 
-/* Addresses ---------------------------------------------------------------------------------------------------------
+/* Addresses
+ * ---------------------------------------------------------------------------------------------------------
  */
 
 /* `&n`, `#n`, `##n`: modal. Without a number the present one is reported. */
@@ -47,25 +40,24 @@ static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_
 }
 
 static error_t address_cs(struct lexer* lx) {
-  const uint32_t before = addressed_cs;
-  const error_t error = address(lx, 1, (uint32_t)i_integer(68) + 1u, &addressed_cs);
-  if (addressed_cs != before) {
-    ++generation;
-    buffer_request_evaluate();
-  }
+  const uint32_t before = session.cs;
+  const error_t error = address(lx, 1, (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u, &session.cs);
+  if (session.cs != before) buffer_request_evaluate();
   return error;
 }
 
 static error_t address_motor(struct lexer* lx) {
-  if (*lx->at != '#') return address(lx, 1, MOTORS, &addressed_motor);
+  if (*lx->at != '#') return address(lx, 1, MOTORS, &session.motor);
   ++lx->at;
-  return address(lx, 0, MOTOR_GROUPS, &motor_group);
+  return address(lx, 0, MOTOR_GROUPS, &session.motor_group);
 }
 
-/* Keywords ----------------------------------------------------------------------------------------------------------
+/* Keywords
+ * ----------------------------------------------------------------------------------------------------------
  */
 
-/* Commands of one letter stop, start and abort: they must stand alone. `RAPID`, `A10` or `UUU` are something else. */
+/* Commands of one letter stop, start and abort: they must stand alone. `RAPID`,
+ * `A10` or `UUU` are something else. */
 static bool stands_alone(const char* at, const char* keyword) {
   static const char lonely[] = "AEFHKPQRSV";
   if (keyword[1] != '\0') return true;
@@ -98,16 +90,15 @@ static void longest(const struct command_entry* table, struct lexer lx, const st
 static error_t keyword(struct lexer* lx) {
   const struct command_entry* best = 0;
   uint32_t length = 0;
-  longest(report_commands, *lx, &best, &length);
-  longest(system_commands, *lx, &best, &length);
-  longest(memory_commands, *lx, &best, &length);
-  longest(program_commands, *lx, &best, &length);
+  for (const struct command_entry* const* table = command_tables; *table != 0; ++table)
+    longest(*table, *lx, &best, &length);
   if (best == 0) return program_starts_statement(*lx) ? ERR_NEEDS_BUFFER : ERR_DATA;
   (void)lexer_keyword(lx, best->keyword);
   return best->run(lx);
 }
 
-/* One command -------------------------------------------------------------------------------------------------------
+/* One command
+ * -------------------------------------------------------------------------------------------------------
  */
 
 static bool starts_constant(const char* at) {

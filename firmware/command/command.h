@@ -11,11 +11,8 @@ struct command_entry {
   error_t (*run)(struct lexer* lx);
 };
 
+extern const struct command_entry* const command_tables[]; /* null at the end; image/tables.c */
+
 error_t command_line(const char* line); /* upper-cased, without CR */
-uint32_t command_cs(void);              /* addressed coordinate system, 0..15 */
-uint32_t command_motor(void);           /* addressed motor, 0..31 */
-uint32_t command_motor_group(void);     /* ##n: 0..3, the eight motors of ^B ^F ^P ^V */
-void command_initialize(void);          /* addresses &1 #1 ##0 */
-uint32_t command_generation(void);      /* counts changes of the addressed C.S., for BREQ */
 
 #endif

@@ -2,14 +2,15 @@
  */
 #include "firmware/command/control_characters.h"
 
-#include "firmware/buffers/regions.h"
+#include "firmware/base/dimensions.h"
+#include "firmware/base/status.h"
 #include "firmware/command/command.h"
 #include "firmware/command/motor_report.h"
 #include "firmware/command/reply.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/motion/motion.h"
+#include "firmware/command/session.h"
+#include "firmware/motion/motion_status.h"
 #include "firmware/run/run_control.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
 
 enum {
   ABORT_ALL = 0x01,
@@ -30,7 +31,7 @@ enum {
 };
 
 static void report_motors(void (*report)(uint32_t motor)) {
-  const uint32_t first = command_motor_group() * GROUP;
+  const uint32_t first = session.motor_group * GROUP;
   for (uint32_t motor = first; motor < first + GROUP; ++motor) {
     if (motor != first) reply_char(' ');
     report(motor);
@@ -39,7 +40,7 @@ static void report_motors(void (*report)(uint32_t motor)) {
 }
 
 static void report_cs_status(void) {
-  const uint32_t active = (uint32_t)i_integer(68) + 1u;
+  const uint32_t active = (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u;
   for (uint32_t cs = 0; cs < active; ++cs) {
     if (cs != 0u) reply_char(' ');
     for (unsigned word = 0; word < 3u; ++word) reply_hex(motion_cs_status(cs, word), 6);
@@ -48,7 +49,8 @@ static void report_cs_status(void) {
 }
 
 static void run_all(bool single_step) {
-  for (uint32_t cs = 0; cs <= (uint32_t)i_integer(68); ++cs) (void)run_start(cs, single_step);
+  for (uint32_t cs = 0; cs <= (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS); ++cs)
+    (void)run_start(cs, single_step);
 }
 
 /* What stops things also stops the coordinate systems that I68 has put out of reach. */
@@ -96,7 +98,7 @@ bool control_character(uint8_t c) {
       report_cs_status();
       return true;
     case GLOBAL_STATUS:
-      reply_hex(kernel_status_word(), 6);
+      reply_hex(status_word(), 6);
       reply_hex(motion_global_status2(), 6);
       reply_end_line();
       return true;

@@ -2,11 +2,12 @@
  * those of regions.c. */
 #include "firmware/command/define_commands.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
-#include "firmware/command/command.h"
+#include "firmware/command/session.h"
 #include "firmware/motion/axis_definition.h"
-#include "firmware/motion/motion.h"
 #include "firmware/run/run_control.h"
 
 static error_t size_argument(struct lexer* lx, uint32_t* size) {
@@ -53,7 +54,7 @@ static error_t define_gather(struct lexer* lx) {
 }
 
 error_t define_command(struct lexer* lx) {
-  uint32_t cs = command_cs();
+  uint32_t cs = session.cs;
   bool running = run_is_running(cs);
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
     return running ? ERR_PROGRAM_RUNNING : define_rotary(lx, cs);
@@ -73,14 +74,14 @@ static error_t delete_rotary(uint32_t cs) {
 
 static error_t delete_temporaries(void) {
   if (open_buffer_kind() != OPEN_NONE) return ERR_DATA;
-  if (motion_any_running()) return ERR_PROGRAM_RUNNING;
+  if (run_any_running()) return ERR_PROGRAM_RUNNING;
   rotary_delete_all();
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_forget_rotary(cs);
   return ERR_NONE;
 }
 
 error_t delete_command(struct lexer* lx) {
-  uint32_t cs = command_cs();
+  uint32_t cs = session.cs;
   bool running = run_is_running(cs);
   if (lexer_keyword(lx, "ALL")) {
     if (!lexer_keyword(lx, "TEMPS"))

@@ -1,9 +1,11 @@
 /* Direct access to PMAC words (firmware:1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. */
-#include "firmware/command/command_tables.h"
+#include "firmware/command/memory_commands.h"
+
+#include "firmware/base/float48.h"
 #include "firmware/command/reply.h"
+#include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
 #include "firmware/language/expression.h"
-#include "firmware/variables/variables.h"
 #include "firmware/variables/words.h"
 
 typedef enum { FORM_X, FORM_Y, FORM_L, FORM_D } form_t;
@@ -87,7 +89,7 @@ static error_t write_words(struct lexer* lx, form_t form) {
   if (lexer_peek(lx) != ',') return ERR_DATA;
   while (lexer_accept(lx, ',')) {
     double value;
-    error = expression_evaluate(lx, command_cs(), &value);
+    error = expression_evaluate(lx, session.cs, &value);
     if (error != ERR_NONE) return error;
     write_word(form, address++, value);
   }

@@ -3,9 +3,10 @@
  * status words. */
 #include "firmware/command/motor_report.h"
 
+#include "firmware/base/memory_map.h"
 #include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
 
 enum {
   COMMANDED = 0x08,
@@ -18,8 +19,8 @@ enum {
 };
 #define MOTOR_ACTIVATED 0x800000u
 
-static uint32_t base(uint32_t motor) { return 0x80u * (motor + 1u); }
-static uint32_t variable(uint32_t motor, uint32_t number) { return 100u * (motor + 1u) + number; }
+static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
+static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
 
 static int64_t long_word(uint32_t address) {
   const uint32_t state = hal_mask_servo();
@@ -40,7 +41,7 @@ static void report_scaled(int64_t value, int32_t scale) {
 
 void motor_report_status(uint32_t motor) {
   uint32_t first = *hal_x(base(motor) + STATUS_1) & HAL_WORD_MASK & ~MOTOR_ACTIVATED;
-  if (i_integer(variable(motor, 0)) != 0) first |= MOTOR_ACTIVATED;
+  if (variable(motor, IXX00_ACTIVATED) != 0) first |= MOTOR_ACTIVATED;
   reply_hex(first, 6);
   reply_hex(*hal_y(base(motor) + STATUS_2) & HAL_WORD_MASK, 6);
 }
@@ -48,14 +49,14 @@ void motor_report_status(uint32_t motor) {
 void motor_report_position(uint32_t motor) {
   const uint32_t at = base(motor);
   report_scaled(long_word(at + ACTUAL) + long_word(at + COMPENSATION) + long_word(at + BIAS),
-                i_integer(variable(motor, 8)));
+                variable(motor, IXX08_POSITION_SCALE));
 }
 
 void motor_report_velocity(uint32_t motor) {
-  report_scaled(hal_signed(*hal_x(base(motor) + VELOCITY)), i_integer(variable(motor, 9)));
+  report_scaled(hal_signed(*hal_x(base(motor) + VELOCITY)), variable(motor, IXX09_VELOCITY_SCALE));
 }
 
 void motor_report_following_error(uint32_t motor) {
   const uint32_t at = base(motor);
-  report_scaled(long_word(at + COMMANDED) - long_word(at + ACTUAL), i_integer(variable(motor, 8)));
+  report_scaled(long_word(at + COMMANDED) - long_word(at + ACTUAL), variable(motor, IXX08_POSITION_SCALE));
 }

@@ -1,11 +1,16 @@
-/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
+/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9,
+ * firmware:4.10). */
+#include "firmware/command/program_commands.h"
+
 #include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/command/axis_commands.h"
 #include "firmware/command/define_commands.h"
 #include "firmware/command/program_line.h"
 #include "firmware/command/reply.h"
+#include "firmware/command/session.h"
 #include "firmware/language/statement.h"
-#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/run/run_control.h"
 
@@ -26,7 +31,7 @@ static error_t cmd_close(struct lexer* lx) {
 
 static error_t cmd_clear(struct lexer* lx) {
   (void)lx;
-  uint32_t cs = command_cs();
+  uint32_t cs = session.cs;
   if (!program_buffer_open()) return ERR_NEEDS_BUFFER;
   if (rotary_buffers[cs].size == 0) return ERR_NO_ROOM;
   if (run_is_running(cs)) return ERR_PROGRAM_RUNNING;
@@ -45,7 +50,7 @@ static error_t cmd_size(struct lexer* lx) {
 
 static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
   (void)lx;
-  const struct rotary* ring = &rotary_buffers[command_cs()];
+  const struct rotary* ring = &rotary_buffers[session.cs];
   if (ring->size == 0) return ERR_DATA;
   reply_integer((int64_t)ring->lines);
   reply_end_line();
@@ -53,7 +58,7 @@ static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
 }
 
 static error_t report_pointer(uint32_t offset) {
-  if (coordinate_systems[command_cs()].pointer != POINTER_ROTARY) return ERR_NO_PROGRAM;
+  if (coordinate_systems[session.cs].pointer != POINTER_ROTARY) return ERR_NO_PROGRAM;
   reply_text("P0:");
   reply_integer((int64_t)offset);
   reply_end_line();
@@ -62,16 +67,17 @@ static error_t report_pointer(uint32_t offset) {
 
 static error_t cmd_calculating(struct lexer* lx) { /* PC */
   (void)lx;
-  return report_pointer(rotary_buffers[command_cs()].read);
+  return report_pointer(rotary_buffers[session.cs].read);
 }
 
 static error_t cmd_executing(struct lexer* lx) { /* PE */
   (void)lx;
-  const struct coordinate_system* s = &coordinate_systems[command_cs()];
-  return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_buffers[command_cs()].read);
+  const struct coordinate_system* s = &coordinate_systems[session.cs];
+  return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_buffers[session.cs].read);
 }
 
-/* After a one-letter command a letter or digit means a word that is not known, or a program statement. */
+/* After a one-letter command a letter or digit means a word that is not known,
+ * or a program statement. */
 static bool stands_alone(const struct lexer* lx) {
   char c = *lx->at;
   return !((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '(');
@@ -85,16 +91,16 @@ static error_t not_alone(const struct lexer* lx) {
 static error_t cmd_point(struct lexer* lx) { /* B{n} */
   double program;
   if (lexer_constant(lx, &program) != ERR_NONE) return not_alone(lx);
-  return run_point(command_cs(), program);
+  return run_point(session.cs, program);
 }
 
-static error_t cmd_run(struct lexer* lx) { return stands_alone(lx) ? run_start(command_cs(), false) : not_alone(lx); }
+static error_t cmd_run(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, false) : not_alone(lx); }
 
-static error_t cmd_step(struct lexer* lx) { return stands_alone(lx) ? run_start(command_cs(), true) : not_alone(lx); }
+static error_t cmd_step(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, true) : not_alone(lx); }
 
 static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
   if (!stands_alone(lx)) return not_alone(lx);
-  action(command_cs());
+  action(session.cs);
   return ERR_NONE;
 }
 
@@ -104,7 +110,7 @@ static error_t cmd_hold(struct lexer* lx) { return control(lx, run_hold); }
 
 static error_t cmd_end_block(struct lexer* lx) {
   (void)lx;
-  run_end_block(command_cs());
+  run_end_block(session.cs);
   return ERR_NONE;
 }
 
@@ -113,17 +119,18 @@ static error_t cmd_time_base(struct lexer* lx) {
   struct lexer start = *lx;
   if (lexer_number(&start, &percent)) {
     *lx = start;
-    return run_set_time_base(command_cs(), percent);
+    return run_set_time_base(session.cs, percent);
   }
   if (*start.at == '-' || *start.at == '+') return ERR_DATA;
-  reply_number(run_time_base(command_cs()));
+  reply_number(run_time_base(session.cs));
   reply_end_line();
   return ERR_NONE;
 }
 
-/* ABS, INC, FRAX, NOFRAX on-line: at once, for the addressed coordinate system. */
+/* ABS, INC, FRAX, NOFRAX on-line: at once, for the addressed coordinate system.
+ */
 static error_t axis_mode(struct lexer* lx, enum operation operation) {
-  struct coordinate_system* s = &coordinate_systems[command_cs()];
+  struct coordinate_system* s = &coordinate_systems[session.cs];
   uint32_t mask;
   error_t error = operation == OP_FRAX ? statement_frax_list(lx, &mask) : statement_axis_list(lx, AXIS_ALL, &mask);
   if (error != ERR_NONE) return error;
@@ -137,7 +144,7 @@ static error_t cmd_frax(struct lexer* lx) { return axis_mode(lx, OP_FRAX); }
 
 static error_t cmd_nofrax(struct lexer* lx) {
   (void)lx;
-  cs_set_axis_mode(&coordinate_systems[command_cs()], OP_FRAX, 0);
+  cs_set_axis_mode(&coordinate_systems[session.cs], OP_FRAX, 0);
   return ERR_NONE;
 }
 

@@ -1,10 +1,8 @@
-/* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Everything goes straight to the transmit
- * queue. */
+/* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Every character goes straight to
+ * the port. */
 #include "firmware/command/reply.h"
 
-#include "firmware/command/reply_frame.h"
-#include "firmware/host/host_port.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
 
 enum { LINE_FEED = 0x0A, CARRIAGE_RETURN = 0x0D, DECIMALS = 10 };
 
@@ -13,14 +11,14 @@ static uint8_t line_sum;
 
 static void send(uint8_t c) {
   line_sum = (uint8_t)(line_sum + c);
-  host_port_send(c);
+  reply_sink(c);
 }
 
 void reply_char(char c) {
   if (!line_open) {
     line_open = true;
     line_sum = 0;
-    if ((i_integer(3) & 1) != 0) send(LINE_FEED);
+    if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) send(LINE_FEED);
   }
   send((uint8_t)c);
 }
@@ -32,10 +30,10 @@ void reply_text(const char* text) {
 void reply_end_line(void) {
   if (!line_open) {
     line_sum = 0;
-    if ((i_integer(3) & 1) != 0) send(LINE_FEED);
+    if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) send(LINE_FEED);
   }
   send(CARRIAGE_RETURN);
-  if ((i_integer(4) & 1) != 0) host_port_send(line_sum);
+  if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) reply_sink(line_sum);
   line_open = false;
 }
 

@@ -1,11 +1,12 @@
 /* Status and identification queries (firmware:5). */
-#include "firmware/command/command_tables.h"
+#include "firmware/command/report_commands.h"
+
+#include "firmware/base/status.h"
 #include "firmware/command/motor_report.h"
 #include "firmware/command/reply.h"
+#include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/motion/motion.h"
-#include "firmware/variables/variables.h"
+#include "firmware/motion/motion_status.h"
 
 enum { WORD_DIGITS = 6 };
 
@@ -22,7 +23,7 @@ static error_t number(int64_t value) {
 }
 
 static error_t motor(void (*report)(uint32_t motor)) {
-  report(command_motor());
+  report(session.motor);
   reply_end_line();
   return ERR_NONE;
 }
@@ -34,14 +35,14 @@ static error_t motor_status(struct lexer* lx) {
 
 static error_t cs_status(struct lexer* lx) {
   (void)lx;
-  for (unsigned word = 0; word < 3u; ++word) reply_hex(motion_cs_status(command_cs(), word), WORD_DIGITS);
+  for (unsigned word = 0; word < 3u; ++word) reply_hex(motion_cs_status(session.cs, word), WORD_DIGITS);
   reply_end_line();
   return ERR_NONE;
 }
 
 static error_t global_status(struct lexer* lx) {
   (void)lx;
-  reply_hex(kernel_status_word(), WORD_DIGITS);
+  reply_hex(status_word(), WORD_DIGITS);
   reply_hex(motion_global_status2(), WORD_DIGITS);
   reply_end_line();
   return ERR_NONE;

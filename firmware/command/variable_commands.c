@@ -1,11 +1,15 @@
 /* I-, P-, Q- and M-variables on line (firmware:1.4, firmware:1.5):
  *   I19   I0..99   I16,4   I5213,15,100=10   I(P1*100+20)=10   I100..199=*   M1->Y:$78C02,8,1   M0..99->
  * The right side is evaluated once; without `=` every variable is reported on a line of its own. */
-#include "firmware/command/command_tables.h"
+#include "firmware/command/variable_commands.h"
+
+#include "firmware/base/dimensions.h"
 #include "firmware/command/reply.h"
+#include "firmware/command/session.h"
 #include "firmware/language/expression.h"
+#include "firmware/variables/i_variables.h"
 #include "firmware/variables/m_variables.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/pq_variables.h"
 
 struct range {
   uint32_t first, count, step;
@@ -15,7 +19,7 @@ static error_t read_number(struct lexer* lx, uint32_t* number) {
   double value;
   if (lexer_peek(lx) == '(') {
     (void)lexer_accept(lx, '(');
-    const error_t error = expression_evaluate(lx, command_cs(), &value);
+    const error_t error = expression_evaluate(lx, session.cs, &value);
     if (error != ERR_NONE) return error;
     if (!lexer_accept(lx, ')')) return ERR_DATA;
   } else if (!lexer_number(lx, &value) || value > VARIABLE_COUNT || (double)(uint32_t)value != value) {
@@ -47,7 +51,7 @@ static error_t read_range(struct lexer* lx, struct range* range) {
 }
 
 static void report_i(uint32_t number) {
-  const int32_t style = i_integer(9);
+  const int32_t style = i_integer(I9_LISTING_FORM);
   if ((style & 1) != 0) {
     reply_char('I');
     reply_integer((int64_t)number);
@@ -71,7 +75,7 @@ static void report(char letter, uint32_t number) {
       reply_number(p_variable_read(number));
       break;
     case 'Q':
-      reply_number(q_variable_read(command_cs(), number));
+      reply_number(q_variable_read(session.cs, number));
       break;
     default:
       reply_number(m_variable_read(number));
@@ -89,7 +93,7 @@ static void assign(char letter, uint32_t number, double value) {
       p_variable_write(number, value);
       break;
     case 'Q':
-      q_variable_write(command_cs(), number, value);
+      q_variable_write(session.cs, number, value);
       break;
     default:
       m_variable_write(number, value);
@@ -102,7 +106,7 @@ static error_t assign_range(struct lexer* lx, char letter, const struct range* r
   double value = 0.0;
   const bool defaults = letter == 'I' && lexer_accept(lx, '*');
   if (!defaults) {
-    const error_t error = expression_evaluate(lx, command_cs(), &value);
+    const error_t error = expression_evaluate(lx, session.cs, &value);
     if (error != ERR_NONE) return error;
   }
   for (uint32_t i = 0; i < range->count; ++i) {
@@ -160,7 +164,7 @@ static error_t read_definition(struct lexer* lx, struct m_definition* definition
 static void report_definition(uint32_t number) {
   static const char* const names[] = {"*", "X:$", "Y:$", "D:$", "L:$", "DP:$"};
   const struct m_definition definition = m_variable_definition(number);
-  if ((i_integer(9) & 1) != 0) {
+  if ((i_integer(I9_LISTING_FORM) & 1) != 0) {
     reply_char('M');
     reply_integer((int64_t)number);
     reply_text("->");

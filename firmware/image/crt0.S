@@ -1,4 +1,4 @@
-/* Reset entry of the image: stack, global pointer, trap vector, initialised data from the code region, zeroed data, kernel_main. */
+/* Reset entry of the image: stack, global pointer, trap vector, initialised data from the code region, zeroed data, image_main. */
   .option push
   .option arch, +zicsr
   .section .init, "ax"
@@ -36,7 +36,7 @@ _start:
   addi a1, a1, 16
   j 3b
 4:
-  call kernel_main
+  call image_main
 5:
   j 5b
   .option pop

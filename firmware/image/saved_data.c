@@ -1,16 +1,21 @@
 /* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros. Layout in 32-bit words:
  * mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words: (number, value low, value
  * high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator. */
+#include "firmware/image/saved_data.h"
+
+#include <stdbool.h>
+
+#include "firmware/base/dimensions.h"
+#include "firmware/base/memory_map.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/internal.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/variables/variables.h"
+#include "firmware/kernel/watchdog.h"
+#include "firmware/variables/i_variables.h"
 
 #define MARK 0x42524B32u
 #define SEPARATOR 0xFFFFFFFFu
 enum { WORD_MARK, WORD_CHECKSUM, WORD_COUNT, WORD_INITIAL_ICS, WORD_SAVED_ICS, WORD_DATA };
-enum { USER_FIRST = 0x4000, USER_END = 0xA000 }; /* M definitions, P, Q */
+enum { USER_FIRST = MEMORY_M_DEFINITIONS, USER_END = MEMORY_BUFFERS }; /* M definitions, P, Q */
 
 union double_words {
   double value;
@@ -29,7 +34,7 @@ static uint32_t checked_words(uint32_t count) { return count + WORD_DATA - WORD_
 
 /* SAVE is one background pass, longer than a small I40 allows. */
 static void keep_alive(uint32_t step) {
-  if (step % 64u == 0u) kernel_watchdog_reload();
+  if (step % 64u == 0u) watchdog_reload();
 }
 
 void saved_data_write(uint32_t initial_ics) {

@@ -1,7 +1,8 @@
 /* Resets and storage (firmware:5.10), and commands of equipment that is not there. */
-#include "firmware/command/command_tables.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/motion/motion.h"
+#include "firmware/image/system_commands.h"
+
+#include "firmware/image/start.h"
+#include "firmware/run/run_control.h"
 
 static void drop_rest_of_line(struct lexer* lx) {
   while (*lx->at != '\0') ++lx->at;
@@ -10,20 +11,20 @@ static void drop_rest_of_line(struct lexer* lx) {
 /* What the line holds after a reset is not executed: its addresses are gone. */
 static error_t reset(struct lexer* lx) {
   drop_rest_of_line(lx);
-  kernel_start(KERNEL_START_SAVED);
+  start(START_SAVED);
   return ERR_NONE;
 }
 
 static error_t reset_to_defaults(struct lexer* lx) {
   drop_rest_of_line(lx);
-  kernel_start(KERNEL_START_DEFAULTS);
+  start(START_DEFAULTS);
   return ERR_NONE;
 }
 
 static error_t save(struct lexer* lx) {
   (void)lx;
-  if (motion_any_running()) return ERR_PROGRAM_RUNNING;
-  kernel_save();
+  if (run_any_running()) return ERR_PROGRAM_RUNNING;
+  start_save();
   return ERR_NONE;
 }
 

@@ -101,8 +101,8 @@ trap_phase:
   li t0, PHASE
   csrc mip, t0
   csrr t0, mcycle
-  sw t0, kernel_phase_stamp, t1
-  lw t1, kernel_phase_work
+  sw t0, tasks_phase_stamp, t1
+  lw t1, phase_task_work
   bnez t1, 1f
   lw t0, 0(sp)
   lw t1, 4(sp)
@@ -114,9 +114,9 @@ trap_phase:
   addi sp, sp, 16
   j trap_phase_work
 
-  task trap_phase_work, 0, HOST, kernel_phase_interrupt
-  task trap_servo, SERVO, HOST | PHASE, kernel_servo_interrupt
-  task trap_real_time, REAL_TIME, HOST | PHASE | SERVO, kernel_real_time_interrupt
+  task trap_phase_work, 0, HOST, phase_task_interrupt
+  task trap_servo, SERVO, HOST | PHASE, tasks_servo_interrupt
+  task trap_real_time, REAL_TIME, HOST | PHASE | SERVO, tasks_real_time_interrupt
 
   /* The host port is the highest task: it runs with interrupts off. */
   .global trap_host

@@ -1,9 +1,11 @@
-/* Compiler of program statements. Branches, loops, calls and arcs are recognised as statements, so that they are
- * answered with ERR005 when no buffer is open, and refused with ERR003: a ring of words cannot be jumped about in. */
+/* Compiler of program statements. Branches, loops, calls and arcs are
+ * recognised as statements, so that they are answered with ERR005 when no
+ * buffer is open, and refused with ERR003: a ring of words cannot be jumped
+ * about in. */
 #include "firmware/language/statement.h"
 
-/* What a letter means, A to Z: one more than enum axis or enum variable_class, 0 nothing. Looked up for every value of
- * a line. */
+/* What a letter means, A to Z: one more than enum axis or enum variable_class,
+ * 0 nothing. Looked up for every value of a line. */
 static const uint8_t AXIS_OF[26] = {1, 2, 3, ['U' - 'A'] = 4, 5, 6, 7, 8, 9};
 static const uint8_t CLASS_OF[26] = {['M' - 'A'] = 1, ['P' - 'A'] = 2, ['Q' - 'A'] = 3, ['I' - 'A'] = 4};
 
@@ -62,8 +64,8 @@ static bool skip_brackets(struct lexer* lx) {
   return true;
 }
 
-/* An axis letter with its value. Looked for first: no keyword goes on with a number, and these are most of all
- * statements. */
+/* An axis letter with its value. Looked for first: no keyword goes on with a
+ * number, and these are most of all statements. */
 bool statement_axis_starts(struct lexer* lx, uint32_t* axis) {
   (void)lexer_peek(lx);
   struct lexer start = *lx;
@@ -72,7 +74,8 @@ bool statement_axis_starts(struct lexer* lx, uint32_t* axis) {
   return false;
 }
 
-/* `P5=`, `P(..)=`: an assignment. A query such as `P5` is an on-line command whatever is open. */
+/* `P5=`, `P(..)=`: an assignment. A query such as `P5` is an on-line command
+ * whatever is open. */
 static bool assignment_starts(struct lexer lx) {
   uint32_t group;
   double number;
@@ -88,7 +91,8 @@ static bool feed_starts(struct lexer* lx) {
   return false;
 }
 
-/* Searches for every statement: the first letter decides before anything is called. KEYWORD_COUNT: none. */
+/* Searches for every statement: the first letter decides before anything is
+ * called. KEYWORD_COUNT: none. */
 static uint32_t accept_keyword(struct lexer* lx) {
   char first = lexer_peek(lx);
   uint32_t i = 0;
@@ -134,7 +138,8 @@ error_t statement_frax_list(struct lexer* lx, uint32_t* mask) {
   return statement_axis_list(lx, AXIS_XYZ, mask);
 }
 
-/* A value behind an axis letter or a keyword: a constant in the same word, or an expression in brackets before it. */
+/* A value behind an axis letter or a keyword: a constant in the same word, or
+ * an expression in brackets before it. */
 static error_t compile_value(struct lexer* lx, enum operation constant, enum operation popped, uint32_t number,
                              struct word_list* out) {
   struct instruction in = {constant, 0, number, 0.0};

@@ -1,15 +1,21 @@
 /* Execution of program words, real-time task: statements in sequence until a move is calculated. LINEAR moves are
  * calculated one ahead, a DWELL lets nothing be calculated until it is over (firmware:7.9). Running out of lines is no
  * error in a rotary program: the coordinate system keeps running and waits. */
+#include "firmware/run/calculate.h"
+
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/language/evaluator.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/variables/variables.h"
+#include "firmware/motion/plan.h"
+#include "firmware/variables/i_variables.h"
 
 enum outcome { OUTCOME_NO_WORD, OUTCOME_WORD, OUTCOME_LINE, OUTCOME_MOVE, OUTCOME_ERROR };
 
 static void set_rate(uint32_t cs, struct coordinate_system* s, uint32_t rate, double value) {
-  static const uint8_t VARIABLE[] = {I_CS_FEED, I_CS_FEED, I_CS_TA, I_CS_TS}; /* F, TM, TA, TS */
-  i_variable_write((uint32_t)I_CS_BASE + 100u * cs + VARIABLE[rate], value);
+  static const enum i_name VARIABLE[] = {ISX89_FEEDRATE, ISX89_FEEDRATE, ISX87_ACCELERATION_TIME,
+                                         ISX88_S_CURVE_TIME}; /* F, TM, TA, TS */
+  i_variable_write(i_cs(cs, VARIABLE[rate]), value);
   if (rate == RATE_F) s->time_mode = false;
   if (rate == RATE_TM) s->time_mode = true;
 }
@@ -18,16 +24,6 @@ static void set_axis(struct coordinate_system* s, uint32_t axis, double value) {
   bool incremental = (s->incremental >> axis) & 1u;
   s->pending[axis] = incremental ? s->position[axis] + value : value;
   s->pending_axes |= 1u << axis;
-}
-
-void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask) {
-  if (operation == OP_FRAX) {
-    s->feedrate_axes = mask & AXIS_ALL;
-    return;
-  }
-  bool incremental = operation == OP_INC;
-  s->incremental = incremental ? s->incremental | (mask & AXIS_ALL) : s->incremental & ~mask;
-  if (mask & AXIS_VECTOR) s->vector_absolute = !incremental;
 }
 
 static bool is_wait(const struct instruction* in) {
@@ -125,7 +121,7 @@ static void stop_with_error(uint32_t cs, struct coordinate_system* s) {
   s->quit = true;
 }
 
-void calculate_ahead(uint32_t cs) {
+static __attribute__((noinline)) void calculate_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->quit || s->end_block) {
     if (s->active || (s->next_valid && !s->end_block)) return; /* what is calculated is still to be executed */
@@ -142,7 +138,7 @@ void calculate_ahead(uint32_t cs) {
   }
 }
 
-void motion_real_time_update(void) {
+void calculate_programs(void) {
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
     if (coordinate_systems[cs].running) calculate_ahead(cs);
 }

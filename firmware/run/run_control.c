@@ -2,15 +2,15 @@
  * both tasks held off. */
 #include "firmware/run/run_control.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/variables/variables.h"
+#include "firmware/motion/position.h"
+#include "firmware/variables/i_variables.h"
 
 #define LARGEST_PERCENT 225.0
 #define LARGEST_PROGRAM 32767.99999
-
-struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 
 /* The executing and the calculated move are dropped where the axes are now. */
 static void drop_moves(uint32_t cs) {
@@ -29,7 +29,7 @@ static void drop_moves(uint32_t cs) {
 }
 
 /* The time base goes to `target` at `rate` a servo cycle. */
-static void slew_to(uint32_t cs, int32_t target, enum i_cs rate) {
+static void slew_to(uint32_t cs, int32_t target, enum i_name rate) {
   struct coordinate_system* s = &coordinate_systems[cs];
   int32_t slew = (int32_t)cs_variable(cs, rate);
   uint32_t state = hal_mask_servo();
@@ -43,7 +43,7 @@ static void release_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!s->held) return;
   s->held = false;
-  slew_to(cs, s->increment_command, I_CS_HOLD_SLEW);
+  slew_to(cs, s->increment_command, ISX95_FEED_HOLD_SLEW);
 }
 
 error_t run_point(uint32_t cs, double program) {
@@ -100,7 +100,7 @@ void run_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->held || !(s->running || s->active)) return;
   s->held = true;
-  slew_to(cs, 0, I_CS_HOLD_SLEW);
+  slew_to(cs, 0, ISX95_FEED_HOLD_SLEW);
 }
 
 void run_end_block(uint32_t cs) {
@@ -115,13 +115,19 @@ double run_time_base(uint32_t cs) {
 error_t run_set_time_base(uint32_t cs, double percent) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
-  s->increment_full = i_integer(10);
+  s->increment_full = i_integer(I10_SERVO_PERIOD);
   s->increment_command = (int32_t)((double)s->increment_full * percent / 100.0 + 0.5);
-  if (!s->held) slew_to(cs, s->increment_command, I_CS_SLEW);
+  if (!s->held) slew_to(cs, s->increment_command, ISX94_TIME_BASE_SLEW);
   return ERR_NONE;
 }
 
 bool run_is_running(uint32_t cs) { return coordinate_systems[cs].running; }
+
+bool run_any_running(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (coordinate_systems[cs].running) return true;
+  return false;
+}
 
 void run_forget_rotary(uint32_t cs) {
   if (coordinate_systems[cs].pointer == POINTER_ROTARY) coordinate_systems[cs].pointer = POINTER_NONE;

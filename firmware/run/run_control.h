@@ -17,6 +17,7 @@ void run_end_block(uint32_t cs);                  /* `/`: stop at the end of the
 double run_time_base(uint32_t cs);                /* %: present value */
 error_t run_set_time_base(uint32_t cs, double percent);
 bool run_is_running(uint32_t cs);
+bool run_any_running(void);
 void run_forget_rotary(uint32_t cs); /* the rotary buffer has gone: the pointer is no longer valid */
 
 #endif

@@ -1,12 +1,10 @@
-/* Start-up and status words of the coordinate systems (firmware:5.4 to firmware:5.6, firmware:5.8). */
-#include "firmware/buffers/buffer_request.h"
+/* Status words of the coordinate systems (firmware:5.4 to firmware:5.6, firmware:5.8). */
+#include "firmware/motion/motion_status.h"
+
 #include "firmware/buffers/open_buffer.h"
-#include "firmware/buffers/rotary.h"
+#include "firmware/buffers/rotary_ring.h"
 #include "firmware/hal/hal.h"
-#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/motion.h"
-#include "firmware/variables/variables.h"
 
 enum {
   S1_VECTOR_INCREMENTAL = 5,
@@ -31,24 +29,6 @@ enum {
 };
 
 static uint32_t bit(bool value, unsigned position) { return value ? 1u << position : 0u; }
-
-void motion_initialize(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
-    struct coordinate_system* s = &coordinate_systems[cs];
-    *s = (struct coordinate_system){0};
-    s->feedrate_axes = AXIS_XYZ;
-    s->increment_full = s->increment_command = i_integer(10);
-    s->increment = s->increment_target = s->increment_full;
-  }
-  cs_busy = 0;
-  axis_definition_initialize();
-  regions_initialize();
-  rotary_initialize();
-  open_buffer_initialize();
-  buffer_request_initialize();
-}
-
-void motion_background_update(void) { buffer_request_poll(); }
 
 static uint32_t status1(const struct coordinate_system* s) {
   uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) | bit(s->running && s->continuous, S1_CONTINUOUS) |
@@ -83,10 +63,4 @@ uint32_t motion_global_status2(void) {
   return bit((product & HAL_PRODUCT_ULTRALITE) != 0u, G2_ULTRALITE) | bit((product & HAL_PRODUCT_UMAC) != 0u, G2_UMAC) |
          bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) |
          bit(rotary, G2_ROTARY_OPEN) | bit(true, G2_FIXED_FULL); /* no fixed buffer is open (firmware:10/5) */
-}
-
-bool motion_any_running(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
-    if (coordinate_systems[cs].running) return true;
-  return false;
 }
