@@ -1,7 +1,6 @@
-/* The command interpreter: takes commands from a host line, left to right,
- * until one fails. A command is, in this order: a program statement while a
- * buffer is open, a constant, an address, a variable, the longest keyword of
- * the tables. */
+/* The command interpreter: takes commands from a host line, left to right, until one fails. A command is, in this
+ * order: a program statement while a buffer is open, a constant, an address, a variable, the longest keyword of the
+ * tables. */
 #include "firmware/command/command.h"
 
 #include "firmware/base/dimensions.h"
@@ -10,6 +9,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/command/variable_commands.h"
+#include "firmware/language/statement.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/pq_variables.h"
 
@@ -19,8 +19,7 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return c >= 'A' && c <= 'Z'; }
 static bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
 
-/* Addresses
- * ---------------------------------------------------------------------------------------------------------
+/* Addresses ---------------------------------------------------------------------------------------------------------
  */
 
 /* `&n`, `#n`, `##n`: modal. Without a number the present one is reported. */
@@ -52,12 +51,10 @@ static error_t address_motor(struct lexer* lx) {
   return address(lx, 0, MOTOR_GROUPS, &session.motor_group);
 }
 
-/* Keywords
- * ----------------------------------------------------------------------------------------------------------
+/* Keywords ----------------------------------------------------------------------------------------------------------
  */
 
-/* Commands of one letter stop, start and abort: they must stand alone. `RAPID`,
- * `A10` or `UUU` are something else. */
+/* Commands of one letter stop, start and abort: they must stand alone. `RAPID`, `A10` or `UUU` are something else. */
 static bool stands_alone(const char* at, const char* keyword) {
   static const char lonely[] = "AEFHKPQRSV";
   if (keyword[1] != '\0') return true;
@@ -92,13 +89,12 @@ static error_t keyword(struct lexer* lx) {
   uint32_t length = 0;
   for (const struct command_entry* const* table = command_tables; *table != 0; ++table)
     longest(*table, *lx, &best, &length);
-  if (best == 0) return program_starts_statement(*lx) ? ERR_NEEDS_BUFFER : ERR_DATA;
+  if (best == 0) return statement_starts(*lx) ? ERR_NEEDS_BUFFER : ERR_DATA;
   (void)lexer_keyword(lx, best->keyword);
   return best->run(lx);
 }
 
-/* One command
- * -------------------------------------------------------------------------------------------------------
+/* One command -------------------------------------------------------------------------------------------------------
  */
 
 static bool starts_constant(const char* at) {
@@ -117,8 +113,7 @@ static error_t constant(struct lexer* lx) {
 static error_t one_command(struct lexer* lx) {
   if (program_buffer_open()) {
     error_t error;
-    if (program_axis_statement(lx, &error)) return error;
-    if (program_starts_statement(*lx)) return program_statement(lx);
+    if (program_statement(lx, &error)) return error;
   }
   const char first = lexer_peek(lx);
   if (first == '#' || first == '&') {

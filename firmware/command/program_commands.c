@@ -1,5 +1,4 @@
-/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9,
- * firmware:4.10). */
+/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
 #include "firmware/command/program_commands.h"
 
 #include "firmware/buffers/open_buffer.h"
@@ -76,8 +75,7 @@ static error_t cmd_executing(struct lexer* lx) { /* PE */
   return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_buffers[session.cs].read);
 }
 
-/* After a one-letter command a letter or digit means a word that is not known,
- * or a program statement. */
+/* After a one-letter command a letter or digit means a word that is not known, or a program statement. */
 static bool stands_alone(const struct lexer* lx) {
   char c = *lx->at;
   return !((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '(');
@@ -85,7 +83,7 @@ static bool stands_alone(const struct lexer* lx) {
 
 static error_t not_alone(const struct lexer* lx) {
   struct lexer word = {lx->at - 1};
-  return program_starts_statement(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
+  return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
 }
 
 static error_t cmd_point(struct lexer* lx) { /* B{n} */
@@ -127,8 +125,7 @@ static error_t cmd_time_base(struct lexer* lx) {
   return ERR_NONE;
 }
 
-/* ABS, INC, FRAX, NOFRAX on-line: at once, for the addressed coordinate system.
- */
+/* ABS, INC, FRAX, NOFRAX on-line: at once, for the addressed coordinate system. */
 static error_t axis_mode(struct lexer* lx, enum operation operation) {
   struct coordinate_system* s = &coordinate_systems[session.cs];
   uint32_t mask;

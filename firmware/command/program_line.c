@@ -1,7 +1,6 @@
-/* The program line being entered. Its statements are compiled as they are met
- * and stored together when the host line has ended without an error; a change
- * of the addressed coordinate system inside the line ends the program line of
- * the one before. */
+/* The program line being entered. Its statements are compiled as they are met and stored together when the host line
+ * has ended without an error; a change of the addressed coordinate system inside the line ends the program line of the
+ * one before. */
 #include "firmware/command/program_line.h"
 
 #include "firmware/buffers/open_buffer.h"
@@ -9,10 +8,7 @@
 #include "firmware/command/session.h"
 #include "firmware/language/statement.h"
 
-enum {
-  LINE_WORDS = 300
-}; /* a host line has at most 255 characters; a two-word constant takes two of
-      them at least */
+enum { LINE_WORDS = 300 }; /* a host line has at most 255 characters; a two-word constant takes two of them at least */
 
 static struct {
   word48_t words[LINE_WORDS];
@@ -21,8 +17,6 @@ static struct {
 } line;
 
 bool program_buffer_open(void) { return open_buffer_kind() == OPEN_ROTARY; }
-
-bool program_starts_statement(struct lexer lx) { return statement_starts(lx); }
 
 void program_line_begin(void) { line.count = 0; }
 
@@ -34,8 +28,7 @@ error_t program_line_commit(void) {
   return count == 0 ? ERR_NONE : rotary_store(line.cs, line.words, count);
 }
 
-/* The pending line belongs to the addressed coordinate system, which needs a
- * rotary buffer. */
+/* The pending line belongs to the addressed coordinate system, which needs a rotary buffer. */
 static error_t address(void) {
   error_t error = ERR_NONE;
   if (line.count != 0 && line.cs != session.cs) error = program_line_commit();
@@ -44,22 +37,13 @@ static error_t address(void) {
   return error;
 }
 
-bool program_axis_statement(struct lexer* lx, error_t* error) {
-  uint32_t axis;
-  struct word_list list = {line.words, 0, LINE_WORDS};
-  if (!statement_axis_starts(lx, &axis)) return false;
+bool program_statement(struct lexer* lx, error_t* error) {
+  const struct statement head = statement_find(lx);
+  if (head.kind == STATEMENT_NONE) return false;
   *error = address();
-  list.count = line.count; /* a change of address has stored and emptied the line */
-  if (*error == ERR_NONE) *error = statement_axis_compile(lx, axis, &list);
+  struct word_list list = {line.words, line.count,
+                           LINE_WORDS}; /* a change of address has stored and emptied the line */
+  if (*error == ERR_NONE) *error = statement_compile(lx, head, &list);
   if (*error == ERR_NONE) line.count = list.count;
   return true;
-}
-
-error_t program_statement(struct lexer* lx) {
-  error_t error = address();
-  struct word_list list = {line.words, line.count, LINE_WORDS};
-  if (error != ERR_NONE) return error;
-  error = statement_compile(lx, &list);
-  if (error == ERR_NONE) line.count = list.count;
-  return error;
 }

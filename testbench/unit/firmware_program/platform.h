@@ -17,7 +17,6 @@ extern "C" {
 #include "firmware/buffers/rotary.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/command/command.h"
-#include "firmware/command/program_line.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/panel.h"
