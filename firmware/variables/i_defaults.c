@@ -2,11 +2,11 @@
  */
 #include "firmware/variables/i_defaults.h"
 
+#include "firmware/base/memory_map.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 
 #define CONVERSION_RESULTS 0x3501u /* result of line 0 of the encoder conversion table */
-#define OPEN_MEMORY_END 0x010800u
 #define CS_REGISTERS 0x2000u
 
 bool i_of_gate_ic(struct i_place place) { return place.group >= I_GROUP_MACRO && place.group <= I_GROUP_CHANNEL; }
@@ -78,7 +78,7 @@ static double configuration(uint32_t offset) {
     case 4:
       return hal_strap(HAL_STRAP_DPRAM_WORDS) != 0u ? 1.0 : 0.0;
     case 8:
-      return OPEN_MEMORY_END;
+      return MEMORY_BUFFERS_END;
     /* Vendor 1 in bits 0..7, no options, revision 1 in bits 18..21, card number less 600000 in bits 22..35. */
     case 9:
       return 1.0 + 262144.0 + 4194304.0 * (card >= 600000u ? card - 600000u : card);

@@ -120,7 +120,7 @@ TEST_F(Regions, ArgumentsAreChecked) {
 TEST_F(Regions, ResetForgetsAll) {
   BRICK_COVERS("BIN-2");
   ASSERT_EQ(platform::host("DEF ROT 20"), "");
-  motion_initialize();
+  platform::power_up();
   EXPECT_EQ(platform::host("PR"), "ERR003");
   EXPECT_EQ(platform::host("SIZE"), "26624");
 }

@@ -328,6 +328,70 @@ class Citations(Tree):
         self.write("docs/datasheet/servo-ic.md", self.SHEET.replace("2. rises", "```\n2. rises\n```"))
         self.expect(self.run_tool("check_citations.py"), 1,
                     "docs/clock.md:1: 'servo-ic:5.1/2': rule 2 is not in section 5.1")
+class Layers(Tree):
+    """Both trees, small: an include upward, a circle, a declaration away from its definition."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("firmware/hal/hal.h", "uint32_t hal_cycles(void);\n")
+        self.write("firmware/hal/hal.c", '#include "firmware/hal/hal.h"\n\nuint32_t hal_cycles(void) { return 0; }\n')
+        self.write("firmware/kernel/tasks.h", "extern const struct task_hooks task_hooks;\n")
+        self.write("firmware/kernel/tasks.c", '#include "firmware/hal/hal.h"\n#include "firmware/kernel/tasks.h"\n')
+        self.write("firmware/image/tables.c", '#include "firmware/kernel/tasks.h"\n\nconst struct task_hooks task_hooks = {0};\n')
+        self.write("systemc/core/ticks.h", '#include "rtl/regs/brick_regs.h"\n')
+        self.write("systemc/board/board_top.cpp", '#include "systemc/core/ticks.h"\n')
+        self.write("testbench/unit/core/ticks_test.cpp", '#include "app/script.h"\n')
+
+    def check(self, status, text):
+        self.expect(self.run_tool("check_layers.py"), status, text)
+
+    def test_includes_downward_pass(self):
+        self.check(0, "layers: clean")
+
+    def test_an_upward_include_in_the_firmware_fails(self):
+        self.write("firmware/hal/hal.h", '#include "firmware/kernel/tasks.h"\nuint32_t hal_cycles(void);\n')
+        self.check(1, "firmware/hal/hal.h: includes firmware/kernel/tasks.h, which is not below firmware/hal")
+
+    def test_an_upward_include_in_the_model_fails(self):
+        self.write("systemc/board/board_top.cpp", '#include "systemc/cosim/engines.h"\n')
+        self.check(1, "systemc/board/board_top.cpp: includes systemc/cosim/engines.h, which is not below systemc/board")
+
+    def test_blocks_of_one_layer_do_not_include_each_other(self):
+        self.write("systemc/host/dpram.h", '#include "systemc/cpu/cpu.h"\n')
+        self.check(1, "systemc/host/dpram.h: includes systemc/cpu/cpu.h")
+
+    def test_a_folder_without_a_layer_fails(self):
+        self.write("firmware/drivers/led.h", "")
+        self.check(1, "folder firmware/drivers has no layer")
+
+    def test_a_circle_of_units_in_the_firmware_fails(self):
+        self.write("firmware/kernel/watchdog.c", '#include "firmware/kernel/tasks.h"\n')
+        self.write("firmware/kernel/tasks.c", '#include "firmware/kernel/watchdog.h"\n')
+        self.check(1, "circle: firmware/kernel/tasks -> firmware/kernel/watchdog -> firmware/kernel/tasks")
+
+    def test_a_circle_of_headers_in_the_model_fails(self):
+        self.write("systemc/core/ticks.h", '#include "systemc/core/trace.h"\n')
+        self.write("systemc/core/trace.h", '#include "systemc/core/ticks.h"\n')
+        self.check(1, "circle: systemc/core/ticks.h -> systemc/core/trace.h -> systemc/core/ticks.h")
+
+    def test_a_function_declared_elsewhere_fails(self):
+        self.write("firmware/kernel/tasks.h", "uint32_t hal_cycles(void);\n")
+        self.check(1, "firmware/kernel/tasks.h: declares hal_cycles(), which firmware/kernel/tasks.c does not define")
+
+    def test_a_foreign_function_in_a_source_fails(self):
+        self.write("firmware/kernel/tasks.c", "uint32_t hal_cycles(void);\n")
+        self.check(1, "firmware/kernel/tasks.c: declares hal_cycles()")
+
+    def test_a_foreign_variable_fails(self):
+        self.write("firmware/kernel/tasks.c", "extern volatile uint32_t work;\n")
+        self.check(1, "firmware/kernel/tasks.c: extern work")
+        self.write("firmware/kernel/tasks.c", "")
+        self.write("firmware/kernel/tasks.h", "extern volatile uint32_t work;\n")
+        self.check(1, "firmware/kernel/tasks.h: declares work, which firmware/kernel/tasks.c does not define")
+
+    def test_a_table_that_the_image_lacks_fails(self):
+        self.write("firmware/image/tables.c", "")
+        self.check(1, "firmware/kernel/tasks.h: declares task_hooks")
 
 
 if __name__ == "__main__":
