@@ -57,7 +57,7 @@ module macro_ic_regs (
     end else if (write_x) begin
       case (addr_i)
         ClockControl:   clock_q      <= wdata_i & brick_regs_pkg::MacroIcClockControlWritten;
-        PwmControl:     pwm_q        <= wdata_i;
+        PwmControl:     pwm_q        <= wdata_i & brick_regs_pkg::MacroIcPwmControlWritten;
         AdcStrobe:      adc_strobe_q <= wdata_i;
         RingControl:    ring_q       <= wdata_i;
         Supplementary1: channel_1_q  <= wdata_i & brick_regs_pkg::MacroIcSupplementary1Written;
@@ -100,7 +100,7 @@ module macro_ic_regs (
   assign servo_ext_o = clock_q[ServoExternal] | gate_i;
   assign phase_div_o = clock_q[PhaseDivider+:4];
   assign servo_div_o = clock_q[ServoDivider+:4];
-  assign max_count_o = pwm_q[MaxCount+:15];  // 0..32767; bit 23 is stored only
+  assign max_count_o = pwm_q[MaxCount+:15];
 
 endmodule : macro_ic_regs
 

@@ -94,11 +94,11 @@
 #define SERVO_IC_ADC_STROBE_WRITTEN 0xFFFFFFu
 #define SERVO_IC_X_PWM_CONTROL 0x1Cu /* PWM, PFM and MaxPhase control word */
 #define SERVO_IC_PWM_CONTROL_RESET 0x197F0Fu
-#define SERVO_IC_PWM_CONTROL_WRITTEN 0xFFFFFFu
+#define SERVO_IC_PWM_CONTROL_WRITTEN 0x7FFFFFu
 #define SERVO_IC_PWM_CONTROL_DEADTIME_SHIFT 0u
 #define SERVO_IC_PWM_CONTROL_DEADTIME_MASK 0x0000FFu /* Dead time in 16 PWM_CLK; PFM pulse width in PFM_CLK (I7m04) */
 #define SERVO_IC_PWM_CONTROL_MAX_COUNT_SHIFT 8u
-#define SERVO_IC_PWM_CONTROL_MAX_COUNT_MASK 0xFFFF00u /* PWM maximum count, 0..32767 (I7m00) */
+#define SERVO_IC_PWM_CONTROL_MAX_COUNT_MASK 0x7FFF00u /* PWM maximum count, 0..32767 (I7m00) */
 
 /* Servo IC, registers of one channel. Offsets from the channel's first address, IC base + 8(n-1), n = 1..4. X:+4 belongs to the IC. */
 #define SERVO_CHANNEL_Y_TIMER1 0x00u /* Timer 1 */
@@ -260,11 +260,11 @@
 #define MACRO_IC_CLOCK_CONTROL_SERVO_DIVIDER_MASK 0xF00000u /* Servo = Phase / (n+1) (I6802) */
 #define MACRO_IC_X_PWM_CONTROL 0x0Du /* PWM, PFM and MaxPhase control word */
 #define MACRO_IC_PWM_CONTROL_RESET 0x197F0Fu
-#define MACRO_IC_PWM_CONTROL_WRITTEN 0xFFFFFFu
+#define MACRO_IC_PWM_CONTROL_WRITTEN 0x7FFFFFu
 #define MACRO_IC_PWM_CONTROL_DEADTIME_SHIFT 0u
 #define MACRO_IC_PWM_CONTROL_DEADTIME_MASK 0x0000FFu /* Dead time in 16 PWM_CLK; PFM pulse width in PFM_CLK (I6804) */
 #define MACRO_IC_PWM_CONTROL_MAX_COUNT_SHIFT 8u
-#define MACRO_IC_PWM_CONTROL_MAX_COUNT_MASK 0xFFFF00u /* PWM maximum count, 0..32767 (I6800) */
+#define MACRO_IC_PWM_CONTROL_MAX_COUNT_MASK 0x7FFF00u /* PWM maximum count, 0..32767 (I6800) */
 #define MACRO_IC_X_ADC_STROBE 0x0Eu /* ADC strobe word */
 #define MACRO_IC_ADC_STROBE_RESET 0xFFFFFEu
 #define MACRO_IC_ADC_STROBE_WRITTEN 0xFFFFFFu

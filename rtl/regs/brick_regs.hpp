@@ -73,9 +73,9 @@ namespace servo_ic {  // Servo IC, registers of the whole IC
 constexpr Register kClockControl{'X', 0x4, 0x3038D2, 0xFF3FFF};
 constexpr Register kDacStrobe{'X', 0xC, 0x7FFFC0, 0xFFFFFF};
 constexpr Register kAdcStrobe{'X', 0x14, 0xFFFFFE, 0xFFFFFF};
-constexpr Register kPwmControl{'X', 0x1C, 0x197F0F, 0xFFFFFF};
+constexpr Register kPwmControl{'X', 0x1C, 0x197F0F, 0x7FFFFF};
 namespace clock_control { constexpr Field kSclkDivider{0, 3}; constexpr Field kPfmDivider{3, 3}; constexpr Field kDacDivider{6, 3}; constexpr Field kAdcDivider{9, 3}; constexpr Field kPhaseExternal{12, 1}; constexpr Field kServoExternal{13, 1}; constexpr Field kPhaseDivider{16, 4}; constexpr Field kServoDivider{20, 4}; }
-namespace pwm_control { constexpr Field kDeadtime{0, 8}; constexpr Field kMaxCount{8, 16}; }
+namespace pwm_control { constexpr Field kDeadtime{0, 8}; constexpr Field kMaxCount{8, 15}; }
 }  // namespace servo_ic
 
 namespace servo_channel {  // Servo IC, registers of one channel
@@ -107,14 +107,14 @@ namespace macro_ic {  // MACRO IC, clock part
 constexpr Register kJioData{'Y', 0x0, 0x0, 0xFFFFFF};
 constexpr Register kMultiplexerData{'Y', 0x2, 0x0, 0xFFFFFF};
 constexpr Register kClockControl{'X', 0xC, 0x3038D2, 0xFF3FFF};
-constexpr Register kPwmControl{'X', 0xD, 0x197F0F, 0xFFFFFF};
+constexpr Register kPwmControl{'X', 0xD, 0x197F0F, 0x7FFFFF};
 constexpr Register kAdcStrobe{'X', 0xE, 0xFFFFFE, 0xFFFFFF};
 constexpr Register kNodeActivation{'Y', 0xF, 0x0, 0xFFFFFF};
 constexpr Register kRingControl{'X', 0xF, 0x0, 0xFFFFFF};
 constexpr Register kSupplementary1{'X', 0x15, 0x0, 0x39FFFF};
 constexpr Register kSupplementary2{'X', 0x1D, 0x0, 0x39FFFF};
 namespace clock_control { constexpr Field kSclkDivider{0, 3}; constexpr Field kPfmDivider{3, 3}; constexpr Field kDacDivider{6, 3}; constexpr Field kAdcDivider{9, 3}; constexpr Field kPhaseExternal{12, 1}; constexpr Field kServoExternal{13, 1}; constexpr Field kPhaseDivider{16, 4}; constexpr Field kServoDivider{20, 4}; }
-namespace pwm_control { constexpr Field kDeadtime{0, 8}; constexpr Field kMaxCount{8, 16}; }
+namespace pwm_control { constexpr Field kDeadtime{0, 8}; constexpr Field kMaxCount{8, 15}; }
 namespace supplementary_1 { constexpr Field kCapture{0, 17}; constexpr Field kOutputs{19, 3}; }
 namespace supplementary_2 { constexpr Field kCapture{0, 17}; constexpr Field kOutputs{19, 3}; }
 }  // namespace macro_ic

@@ -76,11 +76,11 @@ package brick_regs_pkg;
   localparam logic [23:0] ServoIcAdcStrobeWritten = 24'hFFFFFF;
   localparam logic [23:0] ServoIcPwmControlAddr = 24'h00001C;  // X
   localparam logic [23:0] ServoIcPwmControlReset = 24'h197F0F;
-  localparam logic [23:0] ServoIcPwmControlWritten = 24'hFFFFFF;
+  localparam logic [23:0] ServoIcPwmControlWritten = 24'h7FFFFF;
   localparam int ServoIcPwmControlDeadtimeLsb = 0;
   localparam int ServoIcPwmControlDeadtimeWidth = 8;
   localparam int ServoIcPwmControlMaxCountLsb = 8;
-  localparam int ServoIcPwmControlMaxCountWidth = 16;
+  localparam int ServoIcPwmControlMaxCountWidth = 15;
 
   // Servo IC, registers of one channel
   localparam logic [23:0] ServoChannelTimer1Addr = 24'h000000;  // Y
@@ -204,11 +204,11 @@ package brick_regs_pkg;
   localparam int MacroIcClockControlServoDividerWidth = 4;
   localparam logic [23:0] MacroIcPwmControlAddr = 24'h00000D;  // X
   localparam logic [23:0] MacroIcPwmControlReset = 24'h197F0F;
-  localparam logic [23:0] MacroIcPwmControlWritten = 24'hFFFFFF;
+  localparam logic [23:0] MacroIcPwmControlWritten = 24'h7FFFFF;
   localparam int MacroIcPwmControlDeadtimeLsb = 0;
   localparam int MacroIcPwmControlDeadtimeWidth = 8;
   localparam int MacroIcPwmControlMaxCountLsb = 8;
-  localparam int MacroIcPwmControlMaxCountWidth = 16;
+  localparam int MacroIcPwmControlMaxCountWidth = 15;
   localparam logic [23:0] MacroIcAdcStrobeAddr = 24'h00000E;  // X
   localparam logic [23:0] MacroIcAdcStrobeReset = 24'hFFFFFE;
   localparam logic [23:0] MacroIcAdcStrobeWritten = 24'hFFFFFF;

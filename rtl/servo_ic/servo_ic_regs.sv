@@ -72,7 +72,7 @@ module servo_ic_regs (
   assign dac_strobe_o     = dac_strobe_q;
   assign adc_strobe_o     = adc_strobe_q;
   assign deadtime_o       = pwm_q[Deadtime+:8];
-  assign max_count_o      = pwm_q[MaxCount+:15];  // 0..32767; bit 23 is stored only
+  assign max_count_o      = pwm_q[MaxCount+:15];
   logic unused_bits;
   assign unused_bits = &{1'b0, clock_q[15:14], pwm_q[23]};
 

@@ -40,7 +40,7 @@ class MacroIcRegs : public sc_core::sc_module {
   }  // a MACROGATE has no servo clock to drive
   unsigned phase_div() const { return regs::macro_ic::clock_control::kPhaseDivider.get(word_[kClock]); }
   unsigned servo_div() const { return regs::macro_ic::clock_control::kServoDivider.get(word_[kClock]); }
-  unsigned max_count() const { return regs::macro_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
+  unsigned max_count() const { return regs::macro_ic::pwm_control::kMaxCount.get(word_[kPwm]); }
 
  private:
   static constexpr std::uint32_t kServoExternal = regs::macro_ic::clock_control::kServoExternal.mask();

@@ -33,7 +33,7 @@ class ServoIcRegs : public sc_core::sc_module {
   std::uint32_t dac_strobe() const { return word_[kDacStrobe]; }
   std::uint32_t adc_strobe() const { return word_[kAdcStrobe]; }
   unsigned deadtime() const { return regs::servo_ic::pwm_control::kDeadtime.get(word_[kPwm]); }
-  unsigned max_count() const { return regs::servo_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
+  unsigned max_count() const { return regs::servo_ic::pwm_control::kMaxCount.get(word_[kPwm]); }
 
  private:
   enum { kClock, kDacStrobe, kAdcStrobe, kPwm };

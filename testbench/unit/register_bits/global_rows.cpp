@@ -184,7 +184,7 @@ void add_global_rows(BitTable& table) {
     add("dead time", kPwm, bit, dead_time(bit));
     add("PFM pulse width", kPwm, bit, pulse_width(bit));
   }
-  for (unsigned bit = 0; bit < 15; ++bit) add("maximum count", kPwm, 8 + bit, max_count(bit));  // bit 23 is stored only
+  for (unsigned bit = 0; bit < 15; ++bit) add("maximum count", kPwm, 8 + bit, max_count(bit));
   for (unsigned bit = 0; bit < 24; ++bit) {
     add("DAC strobe", kDacStrobe, bit, strobe(kDacStrobe, bit));
     add("ADC strobe", kAdcStrobe, bit, strobe(kAdcStrobe, bit));
@@ -192,7 +192,7 @@ void add_global_rows(BitTable& table) {
   add_read_back(table, "clock control", true, kClock, true, 0xFF3FFF);  // 15..14 do not exist
   add_read_back(table, "DAC strobe", true, kDacStrobe, true, 0xFFFFFF);
   add_read_back(table, "ADC strobe", true, kAdcStrobe, true, 0xFFFFFF);
-  add_read_back(table, "PWM control", true, kPwm, true, 0xFFFFFF);
+  add_read_back(table, "PWM control", true, kPwm, true, 0x7FFFFF);  // 23 does not exist
 }
 
 }  // namespace brick
