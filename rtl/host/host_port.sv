@@ -45,8 +45,7 @@ module host_port (
   localparam logic [7:0] IcrKept = brick_regs_pkg::HostIoIcrWritten & ~(8'd1 << brick_regs_pkg::HostIoIcrInitLsb);
 
   // ---------------------------------------------------------------- accesses
-  logic host_wr, host_rd_done, cpu_wr, horx_read, hotx_write, data7_read, data7_write, command_taken;
-  logic init, init_tx, init_rx;
+  logic host_wr, host_rd_done, cpu_wr, horx_read, hotx_write, data7_read, data7_write, init, command_taken;
   assign host_wr       = hp_sel_i & hp_wr_i;
   assign host_rd_done  = hp_sel_i & hp_rd_done_i;
   assign cpu_wr        = dsp_sel_i & dsp_we_i;
@@ -56,8 +55,6 @@ module host_port (
   assign data7_write   = host_wr & (hp_addr_i == Data7);
   assign command_taken = cpu_wr & (dsp_addr_i == Hsr) & dsp_wdata_i[brick_regs_pkg::Hi08HsrHcpLsb];
   assign init          = host_wr & (hp_addr_i == Icr) & hp_wdata_i[brick_regs_pkg::HostIoIcrInitLsb];
-  assign init_tx       = init & hp_wdata_i[brick_regs_pkg::HostIoIcrTreqLsb];
-  assign init_rx       = init & hp_wdata_i[brick_regs_pkg::HostIoIcrRreqLsb];
 
   // ---------------------------------------------------------------- registers
   logic [7:0]  icr_q, cvr_q, ivr_q;
@@ -79,11 +76,11 @@ module host_port (
     hrdf_d = tx_move | (hrdf_q & ~horx_read);
     htde_d = (htde_q | rx_move) & ~hotx_write;
     rxdf_d = rx_move | (rxdf_q & ~data7_read);
-    if (init_tx) begin
+    if (init && hp_wdata_i[brick_regs_pkg::HostIoIcrTreqLsb]) begin
       txde_d = 1'b1;
       hrdf_d = 1'b0;
     end
-    if (init_rx) begin
+    if (init && hp_wdata_i[brick_regs_pkg::HostIoIcrRreqLsb]) begin
       rxdf_d = 1'b0;
       htde_d = 1'b1;
     end

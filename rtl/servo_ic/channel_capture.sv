@@ -35,15 +35,13 @@ module channel_capture (
 
   // Gating without the index in the condition means an edge of U, V or W instead.
   logic index, flag, uses_index, hall_mode, term, trigger;
-  assign uses_index = source_i == brick_regs_pkg::CaptureSourceIndex |
-                      source_i == brick_regs_pkg::CaptureSourceIndexAndFlag;
-  assign hall_mode  = gated_i & ~uses_index;
-
   always_comb begin
-    index   = 1'b0;
-    flag    = 1'b0;
-    term    = 1'b0;
-    trigger = 1'b0;
+    index      = 1'b0;
+    flag       = 1'b0;
+    uses_index = 1'b0;
+    hall_mode  = 1'b0;
+    term       = 1'b0;
+    trigger    = 1'b0;
     if (ce_i) begin
       index = index_i ^ index_inv_i;
       case (flag_select_i)
@@ -53,12 +51,19 @@ module channel_capture (
         brick_regs_pkg::FlagSelectUser: flag = user_i ^ flag_inv_i;
       endcase
       case (source_i)
-        brick_regs_pkg::CaptureSourceSoftware:     term = index_inv_i;
-        brick_regs_pkg::CaptureSourceIndex:        term = index;
-        brick_regs_pkg::CaptureSourceFlag:         term = flag;
-        brick_regs_pkg::CaptureSourceIndexAndFlag: term = index & flag;
+        brick_regs_pkg::CaptureSourceSoftware: term = index_inv_i;
+        brick_regs_pkg::CaptureSourceFlag:     term = flag;
+        brick_regs_pkg::CaptureSourceIndex: begin
+          term       = index;
+          uses_index = 1'b1;
+        end
+        brick_regs_pkg::CaptureSourceIndexAndFlag: begin
+          term       = index & flag;
+          uses_index = 1'b1;
+        end
       endcase
-      trigger = ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
+      hall_mode = gated_i & ~uses_index;
+      trigger   = ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
     end
   end
 

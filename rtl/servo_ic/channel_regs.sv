@@ -63,10 +63,8 @@ module channel_regs (
   localparam logic [3:0] CompareB         = {1'b1, brick_regs_pkg::ServoChannelCompareBAddr[2:0]};
   localparam int         EquWrite         = brick_regs_pkg::ServoChannelControlEquWriteLsb;
 
-  logic [3:0]  word;
   logic [23:0] control_q, out_a_q, out_b_q, out_c_q;
   logic        error_q, loss_q, fine, we_status, we_control;
-  assign word = {x_i, addr_i};
   assign fine = control_q[brick_regs_pkg::ServoChannelControlHardware1tLsb];
 
   always_comb begin
@@ -74,7 +72,7 @@ module channel_regs (
     we_control   = 1'b0;
     compare_we_o = 6'd0;
     if (we_i) begin
-      case (word)
+      case ({x_i, addr_i})
         Timer1:           compare_we_o[4] = fine;
         Timer2:           compare_we_o[3] = fine;
         CompareA:         compare_we_o[0] = 1'b1;
@@ -102,9 +100,9 @@ module channel_regs (
       if (we_control)               control_q           <= wdata_i;
       else if (control_q[EquWrite]) control_q[EquWrite] <= 1'b0;  // falls back by itself
       if (we_i && !trip_i) begin
-        if (word == OutA) out_a_q <= wdata_i;
-        if (word == OutB) out_b_q <= wdata_i;
-        if (word == OutC) out_c_q <= wdata_i;
+        if ({x_i, addr_i} == OutA) out_a_q <= wdata_i;
+        if ({x_i, addr_i} == OutB) out_b_q <= wdata_i;
+        if ({x_i, addr_i} == OutC) out_c_q <= wdata_i;
       end
       // Any write clears the error, a 0 clears the loss; both come back with the next SCLK if the cause lasts.
       if (we_status || control_q[brick_regs_pkg::ServoChannelControlCounterResetLsb])     error_q <= 1'b0;
@@ -117,7 +115,7 @@ module channel_regs (
   always_comb begin
     rdata_o = 24'd0;
     if (sel_i) begin
-      case (word)
+      case ({x_i, addr_i})
         OutA:             rdata_o = out_a_q;
         OutB:             rdata_o = out_b_q;
         OutC:             rdata_o = out_c_q;
