@@ -24,10 +24,15 @@ unsigned gate_ic_of_direction(uint32_t variable) {
   return ic;
 }
 
-/* Bits of a channel's control word that others switch while the machine runs, M-variables among them: counter reset,
- * EQU state, amplifier enable. No I-variable has them, so no shadow does: a field write takes them from the IC. Bit 11
- * falls back by itself. */
-enum { CHANNEL_LIVE_BITS = 1 << 10 | 1 << 12 | 1 << 14 };
+/* Bits of a channel's control word that others switch while the machine runs, M-variables among them. No I-variable has
+ * them, so no shadow does: a field write takes them from the IC. EQU write falls back by itself. */
+#define CHANNEL_LIVE_BITS \
+  (SERVO_CHANNEL_CONTROL_COUNTER_RESET_MASK | SERVO_CHANNEL_CONTROL_EQU_STATE_MASK | SERVO_CHANNEL_CONTROL_AENA_MASK)
+
+/* Clock word and PWM word: the same layout in both kinds of IC. */
+#define PHASE_INPUT ((uint32_t)CLOCK_DIRECTION_INPUT << SERVO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_SHIFT)
+#define SERVO_INPUT ((uint32_t)CLOCK_DIRECTION_INPUT << SERVO_IC_CLOCK_CONTROL_SERVO_EXTERNAL_SHIFT)
+#define FIELD_OF(word, name) (((word)&name##_MASK) >> name##_SHIFT)
 
 static uint32_t strobe_address(unsigned ic) {
   return gate_ic_base(ic) + (ic >= GATE_IC_MACRO ? MACRO_IC_X_ADC_STROBE : SERVO_IC_X_ADC_STROBE);
@@ -48,7 +53,9 @@ uint32_t gate_ic_found(void) { return found; }
 uint32_t gate_ic_macrogates(void) { return macrogates; }
 uint32_t gate_ic_configuration(void) { return found | (macrogates >> GATE_IC_MACRO) << 24; }
 bool gate_ic_is_macrogate(unsigned ic) { return ((macrogates >> ic) & 1u) != 0u; }
-uint32_t gate_ic_direction_inputs(unsigned ic) { return gate_ic_is_macrogate(ic) ? 1u : 3u; }
+/* The direction bits of the clock word that make both clocks inputs. */
+static uint32_t inputs_of(unsigned ic) { return gate_ic_is_macrogate(ic) ? PHASE_INPUT : PHASE_INPUT | SERVO_INPUT; }
+uint32_t gate_ic_direction_inputs(unsigned ic) { return inputs_of(ic) >> SERVO_IC_CLOCK_CONTROL_PHASE_EXTERNAL_SHIFT; }
 bool gate_ic_present(unsigned ic) { return ic < GATE_IC_COUNT && ((found >> ic) & 1u) != 0u; }
 
 static uint32_t* shadow_of(unsigned ic, gate_word_t word, unsigned channel) {
@@ -104,8 +111,9 @@ static uint32_t release_left(void) {
 static void note_release(unsigned ic, uint32_t word) {
   const uint32_t before = *hal_x(address_of(ic, GATE_WORD_CLOCK, 0));
   const uint32_t pwm = *hal_x(address_of(ic, GATE_WORD_PWM, 0));
-  if ((word & ~before & gate_ic_direction_inputs(ic) << 12) == 0u) return;
-  const uint32_t phase = (2u * (pwm >> 8 & 0x7FFFu) + 3u) * ((before >> 16 & 15u) + 1u);
+  if ((word & ~before & inputs_of(ic)) == 0u) return;
+  const uint32_t phase = (2u * FIELD_OF(pwm, SERVO_IC_PWM_CONTROL_MAX_COUNT) + 3u) *
+                         (FIELD_OF(before, SERVO_IC_CLOCK_CONTROL_PHASE_DIVIDER) + 1u);
   const uint32_t left = release_left(), needed = (phase + phase / 2u) / 117u + 1u; /* 117.9648 ticks a microsecond */
   release_us = needed > left ? needed : left;
   release_began = hal_cycles();
@@ -121,7 +129,7 @@ void gate_ic_release_clocks(void) {
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     if (!gate_ic_present(ic)) continue;
     const uint32_t address = address_of(ic, GATE_WORD_CLOCK, 0);
-    const uint32_t word = *hal_x(address) & HAL_WORD_MASK, inputs = gate_ic_direction_inputs(ic) << 12;
+    const uint32_t word = *hal_x(address) & HAL_WORD_MASK, inputs = inputs_of(ic);
     if ((word & inputs) == inputs) continue;
     note_release(ic, word | inputs);
     *hal_x(address) = word | inputs;

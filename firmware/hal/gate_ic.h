@@ -20,7 +20,8 @@ uint32_t gate_ic_base(unsigned ic);
 uint32_t gate_ic_direction_variable(unsigned ic); /* 7007 ... 7957, 6807 ... 6957 */
 unsigned gate_ic_of_direction(uint32_t variable); /* the reverse; GATE_IC_COUNT when it is none */
 
-/* Clock direction that makes both clocks inputs: 3, on a MACROGATE 1, because it has the bit for PHASE only. */
+/* Clock direction that makes both clocks inputs, as I7m07 has it: 3, on a MACROGATE 1, because it has the bit for PHASE
+ * only. */
 uint32_t gate_ic_direction_inputs(unsigned ic);
 
 /* Words of an IC. The firmware keeps what it wrote: read-modify-write reads from the IC only the bits of a channel's

@@ -67,7 +67,7 @@ i_format_t i_variable_format(uint32_t number) {
 static const struct {
   uint8_t lsb, width;
 } channel_fields[10] = {
-    {FIELD(CHANNEL_FIELD(DECODE) | CHANNEL_FIELD(DIRECTION))},
+    {FIELD(CHANNEL_FIELD(DECODE))},
     {FIELD(CHANNEL_FIELD(COMPARE_CHANNEL))},
     {FIELD(CHANNEL_FIELD(CAPTURE_SOURCE) | CHANNEL_FIELD(INDEX_INVERT) | CHANNEL_FIELD(FLAG_INVERT))},
     {FIELD(CHANNEL_FIELD(FLAG_SELECT))},

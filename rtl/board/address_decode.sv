@@ -44,9 +44,9 @@ module address_decode (
   end
 
   assign sel_int_o     = int_i;
-  assign sel_signals_o = latch & x_i & (addr_i[7:0] == 8'h10);
-  assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == 8'h11);
-  assign sel_panel_o   = gate & ~x_i & jpan_i & (addr_i[13:0] == 14'h0800);
+  assign sel_signals_o = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesHostSignalsAddr[7:0]);
+  assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesWatchdogStrobeAddr[7:0]);
+  assign sel_panel_o   = gate & ~x_i & jpan_i & (addr_i[13:0] == brick_regs_pkg::JpanInputsAddr[13:0]);
   assign sel_any_o     = int_i | gate | latch;
 
 endmodule : address_decode

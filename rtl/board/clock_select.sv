@@ -18,12 +18,10 @@ module clock_select (
   input  wire logic        ext_servo_i,
   output logic             phase_o,
   output logic             servo_o,
-  output logic [4:0]       phase_source_o,  // index as in fitted_i; 30 external, 31 none
+  output logic [4:0]       phase_source_o,  // brick_regs_pkg::clock_source_e: index as in fitted_i, outside, none
   output logic             conflict_o
 );
 
-  localparam logic [4:0] External  = 5'd30;
-  localparam logic [4:0] None      = 5'd31;
   localparam logic [1:0] Tolerated = 2'd2;  // clk for which two drivers may disagree
 
   logic [44:0] drivers_d, drivers_q;  // {ext, servo, phase}
@@ -50,7 +48,7 @@ module clock_select (
       phase_idle_d  = ~ext & (p == 22'h0);
       servo_idle_d  = ~ext & (s == 22'h0);
       several_d     = ext ? (|p | |s) : (p != (p & -p)) | (s != (s & -s));
-      source_d      = ext ? External : None;
+      source_d      = ext ? brick_regs_pkg::ClockSourceOutside : brick_regs_pkg::ClockSourceNone;
       for (int unsigned i = 0; i < 22; i++) begin
         if (phase_grant_d[i]) source_d = 5'(i);
       end
@@ -64,7 +62,7 @@ module clock_select (
       servo_grant_q <= 22'h0;
       phase_idle_q  <= 1'b1;
       servo_idle_q  <= 1'b1;
-      source_q      <= None;
+      source_q      <= brick_regs_pkg::ClockSourceNone;
       several_q     <= 1'b0;
     end else begin
       drivers_q     <= drivers_d;

@@ -1,9 +1,9 @@
 // Dual-ported RAM, 16 bits wide, with BUSY arbitration. The CPU side works on clk_pwm_i (data two edges after the edge
-// that first saw the strobe), the host side on clk_ref_i; the clocks are of one phase, so no synchroniser stands between.
-// Word index: CPU {address, X} (Y word even, X word odd), host byte offset / 2.
-// A side owns its cell from the edge that granted it to the end of its strobe. Same cell and at least one write: the later
-// side sees BUSY and waits; requests that meet at one edge go to the CPU. A CPU strobe that ends while BUSY does nothing.
-// Words beyond the fitted size read 0 and take no writes. Asynchronous reset, the content is kept. docs/dpram.md.
+// that first saw the strobe), the host side on clk_ref_i; the clocks are of one phase, so no synchroniser stands
+// between. Word index: CPU {address, X} (Y word even, X word odd), host byte offset / 2. A side owns its cell from the
+// edge that granted it to the end of its strobe. Same cell and at least one write: the later side sees BUSY and waits;
+// requests that meet at one edge go to the CPU. A CPU strobe that ends while BUSY does nothing. Words beyond the fitted
+// size read 0 and take no writes. Asynchronous reset, the content is kept. docs/dpram.md.
 `default_nettype none
 
 module dpram (

@@ -1,10 +1,10 @@
 // Host port (HI08): eight bytes for the host, six words for the CPU, one word of buffering on either side of each way.
 //   host +5,+6,+7 -> TX -> HORX -> CPU     a word moves when TXDE = 0 and HRDF = 0
 //   CPU -> HOTX -> RX -> host +5,+6,+7     a word moves when HTDE = 0 and RXDF = 0
-// Byte +7 is the one that launches TX and frees RX. A move takes one clock and sets full and empty flags together.
-// HPCR and HBAR are stored and read back: the board wires the port for good. HSR shows the host's command number in bits
-// 14..8 and takes the command when bit 2 is written 1, because the CPU has no vector fetch of its own.
-// Clock clk_ref_i, asynchronous reset. docs/host-bus.md.
+// Byte +7 is the one that launches TX and frees RX. A move takes one clock and sets full and empty flags together. HPCR
+// and HBAR are stored and read back: the board wires the port for good. HSR shows the host's command number in bits
+// 14..8 and takes the command when bit 2 is written 1, because the CPU has no vector fetch of its own. Clock clk_ref_i,
+// asynchronous reset. docs/host-bus.md.
 `default_nettype none
 
 module host_port (
@@ -28,19 +28,21 @@ module host_port (
   output logic             irq_o
 );
 
-  localparam logic [2:0] Icr   = 3'd0;
-  localparam logic [2:0] Cvr   = 3'd1;
-  localparam logic [2:0] Isr   = 3'd2;
-  localparam logic [2:0] Ivr   = 3'd3;
-  localparam logic [2:0] Data5 = 3'd5;
-  localparam logic [2:0] Data6 = 3'd6;
-  localparam logic [2:0] Data7 = 3'd7;
+  localparam logic [2:0] Icr   = brick_regs_pkg::HostIoIcrAddr[2:0];
+  localparam logic [2:0] Cvr   = brick_regs_pkg::HostIoCvrAddr[2:0];
+  localparam logic [2:0] Isr   = brick_regs_pkg::HostIoIsrAddr[2:0];
+  localparam logic [2:0] Ivr   = brick_regs_pkg::HostIoIvrAddr[2:0];
+  localparam logic [2:0] Data5 = brick_regs_pkg::HostIoData5Addr[2:0];
+  localparam logic [2:0] Data6 = brick_regs_pkg::HostIoData6Addr[2:0];
+  localparam logic [2:0] Data7 = brick_regs_pkg::HostIoData7Addr[2:0];
   localparam logic [5:0] Hcr   = brick_regs_pkg::Hi08HcrAddr[5:0];
   localparam logic [5:0] Hsr   = brick_regs_pkg::Hi08HsrAddr[5:0];
   localparam logic [5:0] Hpcr  = brick_regs_pkg::Hi08HpcrAddr[5:0];
   localparam logic [5:0] Hbar  = brick_regs_pkg::Hi08HbarAddr[5:0];
   localparam logic [5:0] Horx  = brick_regs_pkg::Hi08HorxAddr[5:0];
   localparam logic [5:0] Hotx  = brick_regs_pkg::Hi08HotxAddr[5:0];
+  // INIT acts and is not kept.
+  localparam logic [7:0] IcrKept = brick_regs_pkg::HostIoIcrWritten & ~(8'd1 << brick_regs_pkg::HostIoIcrInitLsb);
 
   // ---------------------------------------------------------------- accesses
   logic host_wr, host_rd_done, cpu_wr, horx_read, hotx_write, data7_read, data7_write, init, command_taken;
@@ -51,19 +53,19 @@ module host_port (
   assign hotx_write    = cpu_wr & (dsp_addr_i == Hotx);
   assign data7_read    = host_rd_done & (hp_addr_i == Data7);
   assign data7_write   = host_wr & (hp_addr_i == Data7);
-  assign init          = host_wr & (hp_addr_i == Icr) & hp_wdata_i[7];
-  assign command_taken = cpu_wr & (dsp_addr_i == Hsr) & dsp_wdata_i[2];
+  assign command_taken = cpu_wr & (dsp_addr_i == Hsr) & dsp_wdata_i[brick_regs_pkg::Hi08HsrHcpLsb];
+  assign init          = host_wr & (hp_addr_i == Icr) & hp_wdata_i[brick_regs_pkg::HostIoIcrInitLsb];
 
   // ---------------------------------------------------------------- registers
-  logic [5:0]  icr_q;  // HLEND HF1 HF0 HDRQ TREQ RREQ
-  logic [7:0]  cvr_q, ivr_q;
-  logic [4:0]  hcr_q;  // HF3 HF2 HCIE HTIE HRIE
-  logic [15:0] hpcr_q;
-  logic [7:0]  hbar_q;
+  logic [7:0]  icr_q, cvr_q, ivr_q;
+  logic [23:0] hcr_q, hpcr_q, hbar_q;
   logic [23:0] tx_q, horx_q, hotx_q, rx_q;
   logic        txde_d, txde_q, hrdf_d, hrdf_q, htde_d, htde_q, rxdf_d, rxdf_q;
-  logic        rreq, treq, hlend, tx_move, rx_move;
-  assign {rreq, treq, hlend} = {icr_q[0], icr_q[1], icr_q[5]};
+  logic        rreq, treq, hlend, hc, tx_move, rx_move;
+  assign rreq  = icr_q[brick_regs_pkg::HostIoIcrRreqLsb];
+  assign treq  = icr_q[brick_regs_pkg::HostIoIcrTreqLsb];
+  assign hlend = icr_q[brick_regs_pkg::HostIoIcrHlendLsb];
+  assign hc    = cvr_q[brick_regs_pkg::HostIoCvrHcLsb];
 
   // ---------------------------------------------------------------- flags
   // A read frees only what was full; INIT comes last, it wins over everything that happens in the same clock.
@@ -74,11 +76,11 @@ module host_port (
     hrdf_d = tx_move | (hrdf_q & ~horx_read);
     htde_d = (htde_q | rx_move) & ~hotx_write;
     rxdf_d = rx_move | (rxdf_q & ~data7_read);
-    if (init && hp_wdata_i[1]) begin
+    if (init && hp_wdata_i[brick_regs_pkg::HostIoIcrTreqLsb]) begin
       txde_d = 1'b1;
       hrdf_d = 1'b0;
     end
-    if (init && hp_wdata_i[0]) begin
+    if (init && hp_wdata_i[brick_regs_pkg::HostIoIcrRreqLsb]) begin
       rxdf_d = 1'b0;
       htde_d = 1'b1;
     end
@@ -86,20 +88,20 @@ module host_port (
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      icr_q  <= 6'h00;
+      icr_q  <= brick_regs_pkg::HostIoIcrReset;
       cvr_q  <= brick_regs_pkg::HostIoCvrReset;
       ivr_q  <= brick_regs_pkg::HostIoIvrReset;
-      hcr_q  <= 5'h00;
-      hpcr_q <= 16'h0000;
-      hbar_q <= 8'h80;
+      hcr_q  <= brick_regs_pkg::Hi08HcrReset;
+      hpcr_q <= brick_regs_pkg::Hi08HpcrReset;
+      hbar_q <= brick_regs_pkg::Hi08HbarReset;
       tx_q   <= 24'h0;
       horx_q <= 24'h0;
       hotx_q <= 24'h0;
       rx_q   <= 24'h0;
-      txde_q <= 1'b1;
-      hrdf_q <= 1'b0;
-      htde_q <= 1'b1;
-      rxdf_q <= 1'b0;
+      txde_q <= brick_regs_pkg::HostIoIsrReset[brick_regs_pkg::HostIoIsrTxdeLsb];
+      rxdf_q <= brick_regs_pkg::HostIoIsrReset[brick_regs_pkg::HostIoIsrRxdfLsb];
+      hrdf_q <= brick_regs_pkg::Hi08HsrReset[brick_regs_pkg::Hi08HsrHrdfLsb];
+      htde_q <= brick_regs_pkg::Hi08HsrReset[brick_regs_pkg::Hi08HsrHtdeLsb];
     end else begin
       txde_q <= txde_d;
       hrdf_q <= hrdf_d;
@@ -108,23 +110,23 @@ module host_port (
       if (tx_move) horx_q <= tx_q;
       if (rx_move) rx_q <= hotx_q;
       if (hotx_write) hotx_q <= dsp_wdata_i;
-      if (command_taken) cvr_q[7] <= 1'b0;
+      if (command_taken) cvr_q[brick_regs_pkg::HostIoCvrHcLsb] <= 1'b0;
       if (host_wr) begin
         case (hp_addr_i)
-          Icr:     icr_q <= hp_wdata_i[5:0];
+          Icr:     icr_q <= hp_wdata_i & IcrKept;
           Cvr:     cvr_q <= hp_wdata_i;
           Ivr:     ivr_q <= hp_wdata_i;
           Data6:   tx_q[15:8] <= hp_wdata_i;
-          Data5:   if (hlend) tx_q[7:0] <= hp_wdata_i; else tx_q[23:16] <= hp_wdata_i;
-          Data7:   if (hlend) tx_q[23:16] <= hp_wdata_i; else tx_q[7:0] <= hp_wdata_i;
+          Data5:   if (hlend) tx_q[7:0]   <= hp_wdata_i; else tx_q[23:16] <= hp_wdata_i;
+          Data7:   if (hlend) tx_q[23:16] <= hp_wdata_i; else tx_q[7:0]   <= hp_wdata_i;
           default: ;
         endcase
       end
       if (cpu_wr) begin
         case (dsp_addr_i)
-          Hcr:     hcr_q <= dsp_wdata_i[4:0];
-          Hpcr:    hpcr_q <= dsp_wdata_i[15:0] & brick_regs_pkg::Hi08HpcrWritten[15:0];
-          Hbar:    hbar_q <= dsp_wdata_i[7:0];
+          Hcr:     hcr_q  <= dsp_wdata_i & brick_regs_pkg::Hi08HcrWritten;
+          Hpcr:    hpcr_q <= dsp_wdata_i & brick_regs_pkg::Hi08HpcrWritten;
+          Hbar:    hbar_q <= dsp_wdata_i & brick_regs_pkg::Hi08HbarWritten;
           default: ;
         endcase
       end
@@ -133,26 +135,44 @@ module host_port (
 
   // ---------------------------------------------------------------- what the two sides read
   assign hreq_o = (rreq & rxdf_q) | (treq & txde_q);
-  assign irq_o  = (hcr_q[0] & hrdf_q) | (hcr_q[1] & htde_q) | (hcr_q[2] & cvr_q[7]);
+  assign irq_o  = (hcr_q[brick_regs_pkg::Hi08HcrHrieLsb] & hrdf_q) | (hcr_q[brick_regs_pkg::Hi08HcrHtieLsb] & htde_q) |
+                  (hcr_q[brick_regs_pkg::Hi08HcrHcieLsb] & hc);
 
   always_comb begin
+    hp_rdata_o = 8'h00;
     case (hp_addr_i)
-      Icr:     hp_rdata_o = {2'b00, icr_q};
-      Cvr:     hp_rdata_o = cvr_q;
-      Isr:     hp_rdata_o = {hreq_o, 2'b00, hcr_q[4], hcr_q[3], txde_q & ~hrdf_q, txde_q, rxdf_q};
-      Ivr:     hp_rdata_o = ivr_q;
-      Data5:   hp_rdata_o = hlend ? rx_q[7:0] : rx_q[23:16];
-      Data6:   hp_rdata_o = rx_q[15:8];
-      Data7:   hp_rdata_o = hlend ? rx_q[23:16] : rx_q[7:0];
-      default: hp_rdata_o = 8'h00;
+      Icr:   hp_rdata_o = icr_q;
+      Cvr:   hp_rdata_o = cvr_q;
+      Ivr:   hp_rdata_o = ivr_q;
+      Data5: hp_rdata_o = hlend ? rx_q[7:0] : rx_q[23:16];
+      Data6: hp_rdata_o = rx_q[15:8];
+      Data7: hp_rdata_o = hlend ? rx_q[23:16] : rx_q[7:0];
+      Isr: begin
+        hp_rdata_o[brick_regs_pkg::HostIoIsrRxdfLsb] = rxdf_q;
+        hp_rdata_o[brick_regs_pkg::HostIoIsrTxdeLsb] = txde_q;
+        hp_rdata_o[brick_regs_pkg::HostIoIsrTrdyLsb] = txde_q & ~hrdf_q;
+        hp_rdata_o[brick_regs_pkg::HostIoIsrHf2Lsb]  = hcr_q[brick_regs_pkg::Hi08HcrHf2Lsb];
+        hp_rdata_o[brick_regs_pkg::HostIoIsrHf3Lsb]  = hcr_q[brick_regs_pkg::Hi08HcrHf3Lsb];
+        hp_rdata_o[brick_regs_pkg::HostIoIsrHreqLsb] = hreq_o;
+      end
+      default: ;
     endcase
+    dsp_rdata_o = 24'h0;
     case (dsp_addr_i)
-      Hcr:     dsp_rdata_o = {19'h0, hcr_q};
-      Hsr:     dsp_rdata_o = {9'h0, cvr_q[6:0], 3'b000, icr_q[4], icr_q[3], cvr_q[7], htde_q, hrdf_q};
-      Hpcr:    dsp_rdata_o = {8'h0, hpcr_q};
-      Hbar:    dsp_rdata_o = {16'h0, hbar_q};
-      Horx:    dsp_rdata_o = horx_q;
-      default: dsp_rdata_o = 24'h0;
+      Hcr:  dsp_rdata_o = hcr_q;
+      Hpcr: dsp_rdata_o = hpcr_q;
+      Hbar: dsp_rdata_o = hbar_q;
+      Horx: dsp_rdata_o = horx_q;
+      Hsr: begin
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHrdfLsb] = hrdf_q;
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHtdeLsb] = htde_q;
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHcpLsb]  = hc;
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHf0Lsb]  = icr_q[brick_regs_pkg::HostIoIcrHf0Lsb];
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHf1Lsb]  = icr_q[brick_regs_pkg::HostIoIcrHf1Lsb];
+        dsp_rdata_o[brick_regs_pkg::Hi08HsrHvLsb +: brick_regs_pkg::Hi08HsrHvWidth] =
+            cvr_q[brick_regs_pkg::HostIoCvrHvLsb +: brick_regs_pkg::HostIoCvrHvWidth];
+      end
+      default: ;
     endcase
   end
 

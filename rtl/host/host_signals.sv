@@ -17,12 +17,15 @@ module host_signals (
   logic [3:0] latch_q;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni)   latch_q <= 4'h0;
+    if (!rst_ni)   latch_q <= brick_regs_pkg::BoardLatchesHostSignalsReset[3:0];
     else if (wr_i) latch_q <= wdata_i;
   end
 
-  assign rdata_o                          = latch_q;
-  assign {f1er_o, eror_o, breq_o, ipos_o} = latch_q;
+  assign rdata_o = latch_q;
+  assign ipos_o  = latch_q[brick_regs_pkg::BoardLatchesHostSignalsIposLsb];
+  assign breq_o  = latch_q[brick_regs_pkg::BoardLatchesHostSignalsBreqLsb];
+  assign eror_o  = latch_q[brick_regs_pkg::BoardLatchesHostSignalsErorLsb];
+  assign f1er_o  = latch_q[brick_regs_pkg::BoardLatchesHostSignalsF1erLsb];
 
 endmodule : host_signals
 

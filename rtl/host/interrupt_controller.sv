@@ -1,9 +1,9 @@
-// Interrupt controller between the board's eight signal lines and the one interrupt of the host bus.
-// Registers (addr_i): 0 read IST, write clears the latches; 1 SIG; 2 MSK, 1 = enabled; 3 ELR, 0 = rising edge, 1 = level.
-// IST = MSK & (ELR ? line : latch), IRQ = any IST. A latch is set by a rising edge while enabled and edge-sensed, and
-// cleared by a write to 0 or while masked; a coincident edge wins over the clear. Lines pass two flip-flops, so a line
-// must stay for three clocks to be seen for sure, and raises IRQ at the third edge.
-// Clock clk_ref_i, asynchronous reset. docs/interrupt_controller.md.
+// Interrupt controller between the board's eight signal lines and the one interrupt of the host bus. Registers
+// (addr_i): 0 read IST, write clears the latches; 1 SIG; 2 MSK, 1 = enabled; 3 ELR, 0 = rising edge, 1 = level. IST =
+// MSK & (ELR ? line : latch), IRQ = any IST. A latch is set by a rising edge while enabled and edge-sensed, and cleared
+// by a write to 0 or while masked; a coincident edge wins over the clear. Lines pass two flip-flops, so a line must
+// stay for three clocks to be seen for sure, and raises IRQ at the third edge. Clock clk_ref_i, asynchronous reset.
+// docs/interrupt_controller.md.
 `default_nettype none
 
 module interrupt_controller (
@@ -21,10 +21,10 @@ module interrupt_controller (
   output logic            irq_o
 );
 
-  localparam logic [1:0] AddrStatus    = 2'd0;
-  localparam logic [1:0] AddrSignal    = 2'd1;
-  localparam logic [1:0] AddrMask      = 2'd2;
-  localparam logic [1:0] AddrEdgeLevel = 2'd3;
+  localparam logic [1:0] AddrStatus    = brick_regs_pkg::HostIoPicStatusAddr[1:0];
+  localparam logic [1:0] AddrSignal    = brick_regs_pkg::HostIoPicSignalAddr[1:0];
+  localparam logic [1:0] AddrMask      = brick_regs_pkg::HostIoPicMaskAddr[1:0];
+  localparam logic [1:0] AddrEdgeLevel = brick_regs_pkg::HostIoPicEdgeLevelAddr[1:0];
 
   logic [7:0] line1_q, line2_q, line3_q;  // line3_q is line2_q one clock ago, for the edge
   logic [7:0] msk_q, elr_q, latch_d, latch_q, rise;
@@ -40,8 +40,8 @@ module interrupt_controller (
       line2_q <= 8'h00;
       line3_q <= 8'h00;
       latch_q <= 8'h00;
-      msk_q   <= 8'h00;
-      elr_q   <= 8'h00;
+      msk_q   <= brick_regs_pkg::HostIoPicMaskReset;
+      elr_q   <= brick_regs_pkg::HostIoPicEdgeLevelReset;
     end else begin
       line1_q <= line_i;
       line2_q <= line1_q;

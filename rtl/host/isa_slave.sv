@@ -1,16 +1,16 @@
 // ISA / PC104 slave: sixteen I/O bytes at IoBase (AEN must be 0) and a 64 KiB memory window of 16 bits at MemPage.
-// Commands pass two flip-flops on clk_ref_i. With s1 the first and s2 the second stage, the start of a command is the edge
-// at which s1 is low and s2 still high: the address is taken and I/O read data loaded. Its end is the edge at which s1 is
-// high and s2 still low: a write takes place with the data sampled while the command was last seen low, and a read's side
-// effect too. I/O: +0..7 host port, +8..11 interrupt controller, +12..15 read 0xFF. IOCHRDY falls while the dual-ported
-// RAM is busy. Byte lanes: SBHE# and SA0; an odd byte with SBHE# high is moved to the low lane (8-bit host).
-// Clock clk_ref_i, asynchronous reset. docs/host-bus.md.
+// Commands pass two flip-flops on clk_ref_i. With s1 the first and s2 the second stage, the start of a command is the
+// edge at which s1 is low and s2 still high: the address is taken and I/O read data loaded. Its end is the edge at
+// which s1 is high and s2 still low: a write takes place with the data sampled while the command was last seen low, and
+// a read's side effect too. I/O: +0..7 host port, +8..11 interrupt controller, +12..15 read 0xFF. IOCHRDY falls while
+// the dual-ported RAM is busy. Byte lanes: SBHE# and SA0; an odd byte with SBHE# high is moved to the low lane (8-bit
+// host). Clock clk_ref_i, asynchronous reset. docs/host-bus.md.
 `default_nettype none
 
 module isa_slave #(
-  parameter logic [15:0] IoBase    = 16'h0210,
-  parameter logic [3:0]  MemPage   = 4'hD,   // SA[19:16]
-  parameter logic        DecodeAll = 1'b1    // 0: classic ten-bit I/O decode
+  parameter logic [15:0] IoBase    = brick_regs_pkg::HostIoBase[15:0],
+  parameter logic [3:0]  MemPage   = brick_regs_pkg::DpramWindowBase[19:16],
+  parameter logic        DecodeAll = 1'b1  // 0: classic ten-bit I/O decode
 ) (
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
@@ -81,17 +81,21 @@ module isa_slave #(
   assign finish = (cmd1_q == 4'h0) & ~idle2;
 
   // ---------------------------------------------------------------- decoding, at the start
-  logic       io_hit, mem_hit, byte8;
+  logic       io_hit, mem_hit, port_hit, pic_hit, byte8;
   logic [3:0] target, target_q;  // {memory, reserved, interrupt controller, host port}
-  assign io_hit  = (cmd1_q[1] | cmd1_q[0]) & ~aen1_q & (sa1_q[9:4] == IoBase[9:4]) & (~DecodeAll | (sa1_q[15:10] == IoBase[15:10]));
-  assign mem_hit = (cmd1_q[3] | cmd1_q[2]) & (sa1_q[19:16] == MemPage);
-  assign byte8   = sbhe1_nq & sa1_q[0];
-  assign target  = start ? {mem_hit, io_hit & sa1_q[3] & sa1_q[2], io_hit & sa1_q[3] & ~sa1_q[2], io_hit & ~sa1_q[3]} : target_q;
+  assign io_hit   = (cmd1_q[1] | cmd1_q[0]) & ~aen1_q & (sa1_q[9:4] == IoBase[9:4]) &
+                    (~DecodeAll | (sa1_q[15:10] == IoBase[15:10]));
+  assign port_hit = sa1_q[3] == brick_regs_pkg::HostIoIcrAddr[3];             // +0..7
+  assign pic_hit  = sa1_q[3:2] == brick_regs_pkg::HostIoPicStatusAddr[3:2];  // +8..11
+  assign mem_hit  = (cmd1_q[3] | cmd1_q[2]) & (sa1_q[19:16] == MemPage);
+  assign byte8    = sbhe1_nq & sa1_q[0];
+  assign target   = start ? {mem_hit, io_hit & ~port_hit & ~pic_hit, io_hit & pic_hit, io_hit & port_hit} : target_q;
 
   logic [15:0] addr_q;
   logic [1:0]  be_q;
   logic        byte8_q, load_q, load_d;
-  assign load_d = start ? mem_hit & cmd1_q[2] : load_q & mem_busy_i & ~finish;  // memory data comes at the next edge that is not busy
+  // Memory data comes at the next edge that is not busy.
+  assign load_d = start ? mem_hit & cmd1_q[2] : load_q & mem_busy_i & ~finish;
 
   logic [15:0] sd_d, sd_q;
   always_comb begin

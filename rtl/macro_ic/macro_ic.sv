@@ -1,7 +1,7 @@
-// MACRO IC, clock part: 64 addresses of X and Y words on the bus side, PHASE and SERVO pins on the clock side. The same clock
-// chain as in a servo IC (clock_gen), other registers. gate_i tells the kind: 0 DSPGATE2, 1 MACROGATE, which drives PHASE at
-// most and never SERVO, so it cannot supply a system. Ring and supplementary channels are not built: their words are storage
-// or read 0. Bus on clk_ref_i, clock chain on clk_pwm_i, asynchronous reset. docs/macro_ic.md.
+// MACRO IC, clock part: 64 addresses of X and Y words on the bus side, PHASE and SERVO pins on the clock side. The same
+// clock chain as in a servo IC (clock_gen), other registers. gate_i tells the kind: 0 DSPGATE2, 1 MACROGATE, which
+// drives PHASE at most and never SERVO, so it cannot supply a system. Ring and supplementary channels are not built:
+// their words are storage or read 0. Bus on clk_ref_i, clock chain on clk_pwm_i, asynchronous reset. docs/macro_ic.md.
 `default_nettype none
 
 module macro_ic (
@@ -43,7 +43,8 @@ module macro_ic (
     .clk_pwm_i, .rst_ni,
     .max_count_i(max_count), .phase_div_i(phase_div), .servo_div_i(servo_div),
     .phase_ext_i(phase_ext), .servo_ext_i(servo_ext), .phase_i, .servo_i,
-    .phase_o, .servo_o, .phase_oe_o, .servo_oe_o, .cnt_o(cnt), .turn_o(turn),
+    .phase_o, .servo_o, .phase_oe_o, .servo_oe_o,
+    .cnt_o(cnt), .turn_o(turn),
     .phase_rise_o(phase_rise), .phase_fall_o(phase_fall), .servo_fall_o(servo_fall)
   );
 

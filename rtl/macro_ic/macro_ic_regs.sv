@@ -1,7 +1,8 @@
-// Registers of a MACRO IC as far as they are built: clock control (X:+$0C), PWM control (X:+$0D), ADC strobe (X:+$0E), ring
-// control (X:+$0F) and node activation (Y:+$0F), JIO and multiplexer port data (Y:+$00, Y:+$02), and the control words of the
-// supplementary channels (X:+$15, X:+$1D). All but the first two are storage. A MACROGATE (gate_i) has a direction bit for
-// PHASE only and no supplementary channels. Clock clk_ref_i, asynchronous reset: both clocks are inputs. docs/macro_ic.md.
+// Registers of a MACRO IC as far as they are built: clock control (X:+$0C), PWM control (X:+$0D), ADC strobe (X:+$0E),
+// ring control (X:+$0F) and node activation (Y:+$0F), JIO and multiplexer port data (Y:+$00, Y:+$02), and the control
+// words of the supplementary channels (X:+$15, X:+$1D). All but the first two are storage. A MACROGATE (gate_i) has a
+// direction bit for PHASE only and no supplementary channels. Clock clk_ref_i, asynchronous reset: both clocks are
+// inputs. docs/macro_ic.md.
 `default_nettype none
 
 module macro_ic_regs (
@@ -21,11 +22,7 @@ module macro_ic_regs (
   output logic [14:0]      max_count_o
 );
 
-  localparam int PhaseExternal = brick_regs_pkg::MacroIcClockControlPhaseExternalLsb;
   localparam int ServoExternal = brick_regs_pkg::MacroIcClockControlServoExternalLsb;
-  localparam int PhaseDivider  = brick_regs_pkg::MacroIcClockControlPhaseDividerLsb;
-  localparam int ServoDivider  = brick_regs_pkg::MacroIcClockControlServoDividerLsb;
-  localparam int MaxCount      = brick_regs_pkg::MacroIcPwmControlMaxCountLsb;
   // Places of the words, X and Y.
   localparam logic [5:0] ClockControl    = 6'(brick_regs_pkg::MacroIcClockControlAddr);
   localparam logic [5:0] PwmControl      = 6'(brick_regs_pkg::MacroIcPwmControlAddr);
@@ -57,7 +54,7 @@ module macro_ic_regs (
     end else if (write_x) begin
       case (addr_i)
         ClockControl:   clock_q      <= wdata_i & brick_regs_pkg::MacroIcClockControlWritten;
-        PwmControl:     pwm_q        <= wdata_i;
+        PwmControl:     pwm_q        <= wdata_i & brick_regs_pkg::MacroIcPwmControlWritten;
         AdcStrobe:      adc_strobe_q <= wdata_i;
         RingControl:    ring_q       <= wdata_i;
         Supplementary1: channel_1_q  <= wdata_i & brick_regs_pkg::MacroIcSupplementary1Written;
@@ -96,11 +93,14 @@ module macro_ic_regs (
     end
   end
 
-  assign phase_ext_o = clock_q[PhaseExternal];
-  assign servo_ext_o = clock_q[ServoExternal] | gate_i;
-  assign phase_div_o = clock_q[PhaseDivider+:4];
-  assign servo_div_o = clock_q[ServoDivider+:4];
-  assign max_count_o = pwm_q[MaxCount+:15];  // 0..32767; bit 23 is stored only
+  logic phase_direction, servo_direction;
+  assign phase_direction = clock_q[brick_regs_pkg::MacroIcClockControlPhaseExternalLsb];
+  assign servo_direction = clock_q[ServoExternal];
+  assign phase_ext_o     = phase_direction == brick_regs_pkg::ClockDirectionInput;
+  assign servo_ext_o     = servo_direction == brick_regs_pkg::ClockDirectionInput | gate_i;
+  assign phase_div_o     = clock_q[brick_regs_pkg::MacroIcClockControlPhaseDividerLsb +: 4];
+  assign servo_div_o     = clock_q[brick_regs_pkg::MacroIcClockControlServoDividerLsb +: 4];
+  assign max_count_o     = pwm_q[brick_regs_pkg::MacroIcPwmControlMaxCountLsb +: 15];
 
 endmodule : macro_ic_regs
 

@@ -1,5 +1,6 @@
-// Serial data of one ADC: of the 24 bits of a stream the first Latency are dropped, the next 18 are the value. It is handed over
-// at the falling edge of PHASE. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Serial DAC and ADC.
+// Serial data of one ADC: of the 24 bits of a stream the first Latency are dropped, the next 18 are the value. It is
+// handed over at the falling edge of PHASE. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Serial DAC and
+// ADC.
 `default_nettype none
 
 module channel_adc #(

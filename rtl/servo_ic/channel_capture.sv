@@ -1,5 +1,5 @@
-// Position capture: one shot, triggered by the rising edge of the condition that I7mn2, I7mn3 and I7mn4 select; reading X:+3
-// arms it again. A capture at the edge of that read wins. Clock clk_ref_i, asynchronous reset.
+// Position capture: one shot, triggered by the rising edge of the condition that I7mn2, I7mn3 and I7mn4 select; reading
+// X:+3 arms it again. A capture at the edge of that read wins. Clock clk_ref_i, asynchronous reset.
 `default_nettype none
 
 module channel_capture (
@@ -8,7 +8,10 @@ module channel_capture (
   input  wire logic        ce_i,            // SCLK
   input  wire logic        ready_i,
   input  wire logic        index_i,
-  input  wire logic [3:0]  flags_i,         // HMFL, PLIM, MLIM, USER from bit 0 up
+  input  wire logic        hmfl_i,
+  input  wire logic        plim_i,
+  input  wire logic        mlim_i,
+  input  wire logic        user_i,
   input  wire logic [2:0]  hall_i,          // W, V, U from bit 0 up
   input  wire logic [1:0]  source_i,        // I7mn2 bits 1..0
   input  wire logic        index_inv_i,     // I7mn2 bit 2, software trigger
@@ -30,24 +33,37 @@ module channel_capture (
   logic [23:0] position_q;
   logic [11:0] fraction_q;
 
-  logic index, flag, hall_mode, term, trigger;
-  assign hall_mode = gated_i & ~source_i[0];
-
+  // Gating without the index in the condition means an edge of U, V or W instead.
+  logic index, flag, uses_index, hall_mode, term, trigger;
   always_comb begin
-    index   = 1'b0;
-    flag    = 1'b0;
-    term    = 1'b0;
-    trigger = 1'b0;
+    index      = 1'b0;
+    flag       = 1'b0;
+    uses_index = 1'b0;
+    hall_mode  = 1'b0;
+    term       = 1'b0;
+    trigger    = 1'b0;
     if (ce_i) begin
       index = index_i ^ index_inv_i;
-      flag  = flags_i[flag_select_i] ^ flag_inv_i;
-      case (source_i)
-        2'd0:    term = index_inv_i;
-        2'd1:    term = index;
-        2'd2:    term = flag;
-        default: term = index & flag;
+      case (flag_select_i)
+        brick_regs_pkg::FlagSelectHmfl: flag = hmfl_i ^ flag_inv_i;
+        brick_regs_pkg::FlagSelectPlim: flag = plim_i ^ flag_inv_i;
+        brick_regs_pkg::FlagSelectMlim: flag = mlim_i ^ flag_inv_i;
+        brick_regs_pkg::FlagSelectUser: flag = user_i ^ flag_inv_i;
       endcase
-      trigger = ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
+      case (source_i)
+        brick_regs_pkg::CaptureSourceSoftware: term = index_inv_i;
+        brick_regs_pkg::CaptureSourceFlag:     term = flag;
+        brick_regs_pkg::CaptureSourceIndex: begin
+          term       = index;
+          uses_index = 1'b1;
+        end
+        brick_regs_pkg::CaptureSourceIndexAndFlag: begin
+          term       = index & flag;
+          uses_index = 1'b1;
+        end
+      endcase
+      hall_mode = gated_i & ~uses_index;
+      trigger   = ready_i & armed_q & (hall_mode ? hall_i != hall_last_q : term & ~term_q);
     end
   end
 
@@ -69,7 +85,7 @@ module channel_capture (
       if (trigger) begin
         armed_q       <= 1'b0;
         captured_q    <= 1'b1;
-        captured_gi_q <= gated_i & source_i[0];
+        captured_gi_q <= gated_i & uses_index;
         position_q    <= counter_d_i;
         fraction_q    <= fraction_d_i;
         if (hall_mode) hall_q <= hall_i;

@@ -1,13 +1,13 @@
-// What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref sees
-// them, and the strobe words with their serial clocks. Clock clk_ref_i; on clk_pwm_i run the edges' way to clk_ref_i and the shape
-// of a 39.3216 MHz serial clock.
+// What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref
+// sees them, and the strobe words with their serial clocks. Clock clk_ref_i; on clk_pwm_i run the edges' way to
+// clk_ref_i and the shape of a 39.3216 MHz serial clock.
 `default_nettype none
 
 module channel_clocks (
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  input  wire logic [11:0] dividers_i,    // I7m03
+  input  wire logic [11:0] dividers_i,    // I7m03, as in the clock control word
   input  wire logic [23:0] dac_strobe_i,  // I7m05
   input  wire logic [23:0] adc_strobe_i,  // I7m06
   input  wire logic        phase_rise_i,  // this clk_pwm edge raises, lowers PHASE, lowers SERVO
@@ -63,23 +63,41 @@ module channel_clocks (
   logic dac_ce, dac_mid, dac_fast, adc_ce, adc_mid, adc_fast;
   assign unused = &{1'b0, sclk_mid, sclk_fast, pfm_mid, pfm_fast};
 
-  channel_divider u_sclk (.clk_ref_i, .rst_ni, .n_i(dividers_i[2:0]), .ce_o(sclk_ce_o), .mid_o(sclk_mid), .fast_o(sclk_fast));
-  channel_divider u_pfm (.clk_ref_i, .rst_ni, .n_i(dividers_i[5:3]), .ce_o(pfm_ce_o), .mid_o(pfm_mid), .fast_o(pfm_fast));
-  channel_divider u_dac (.clk_ref_i, .rst_ni, .n_i(dividers_i[8:6]), .ce_o(dac_ce), .mid_o(dac_mid), .fast_o(dac_fast));
-  channel_divider u_adc (.clk_ref_i, .rst_ni, .n_i(dividers_i[11:9]), .ce_o(adc_ce), .mid_o(adc_mid), .fast_o(adc_fast));
+  channel_divider u_sclk (
+    .clk_ref_i, .rst_ni,
+    .n_i(dividers_i[brick_regs_pkg::ServoIcClockControlSclkDividerLsb +: 3]),
+    .ce_o(sclk_ce_o), .mid_o(sclk_mid), .fast_o(sclk_fast)
+  );
+  channel_divider u_pfm (
+    .clk_ref_i, .rst_ni,
+    .n_i(dividers_i[brick_regs_pkg::ServoIcClockControlPfmDividerLsb +: 3]),
+    .ce_o(pfm_ce_o), .mid_o(pfm_mid), .fast_o(pfm_fast)
+  );
+  channel_divider u_dac (
+    .clk_ref_i, .rst_ni,
+    .n_i(dividers_i[brick_regs_pkg::ServoIcClockControlDacDividerLsb +: 3]),
+    .ce_o(dac_ce), .mid_o(dac_mid), .fast_o(dac_fast)
+  );
+  channel_divider u_adc (
+    .clk_ref_i, .rst_ni,
+    .n_i(dividers_i[brick_regs_pkg::ServoIcClockControlAdcDividerLsb +: 3]),
+    .ce_o(adc_ce), .mid_o(adc_mid), .fast_o(adc_fast)
+  );
 
   logic       dac_sample, adc_load, adc_shift, unused_stream;
   logic [4:0] dac_bit;
   assign unused_stream = &{1'b0, dac_sample, dac_bit, adc_load, adc_shift};
 
   channel_strobe u_dac_stream (
-    .clk_ref_i, .rst_ni, .start_i(phase_rise), .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .low_i(low),
-    .word_i(dac_strobe_i), .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
+    .clk_ref_i, .rst_ni,
+    .start_i(phase_rise), .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .low_i(low), .word_i(dac_strobe_i),
+    .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
     .clk_o(dac_clk_o), .strobe_o(dac_strobe_o)
   );
   channel_strobe u_adc_stream (
-    .clk_ref_i, .rst_ni, .start_i(phase_rise), .ce_i(adc_ce), .mid_i(adc_mid), .fast_i(adc_fast), .low_i(low),
-    .word_i(adc_strobe_i), .load_o(adc_load), .shift_o(adc_shift), .sample_o(adc_sample_o), .bit_o(adc_bit_o),
+    .clk_ref_i, .rst_ni,
+    .start_i(phase_rise), .ce_i(adc_ce), .mid_i(adc_mid), .fast_i(adc_fast), .low_i(low), .word_i(adc_strobe_i),
+    .load_o(adc_load), .shift_o(adc_shift), .sample_o(adc_sample_o), .bit_o(adc_bit_o),
     .clk_o(adc_clk_o), .strobe_o(adc_strobe_o)
   );
 

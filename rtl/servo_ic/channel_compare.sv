@@ -1,7 +1,7 @@
-// Position compare: EQU toggles when the counter leaves compare A or B (or, by EquOnLeave, arrives there), and the other of the two
-// moves by the increment in the direction of travel. With hardware 1/T, position and compares have 12 fraction bits and EQU toggles
-// when the position passes.
-// A register write beats a step at the same edge. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Compare.
+// Position compare: EQU toggles when the counter leaves compare A or B (or, by EquOnLeave, arrives there), and the
+// other of the two moves by the increment in the direction of travel. With hardware 1/T, position and compares have 12
+// fraction bits and EQU toggles when the position passes. A register write beats a step at the same edge. Clock
+// clk_ref_i, asynchronous reset. docs/servo_channel.md, Compare.
 `default_nettype none
 
 module channel_compare #(
@@ -31,8 +31,8 @@ module channel_compare #(
   logic [11:0] af_q, bf_q;
   logic        equ_q;
 
-  // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is now. Arriving:
-  // if it was before it and is not now, the same one unit later.
+  // Passing, with fractions: from `last` to `pos` the position crossed a compare if it was not beyond it before and is
+  // now. Arriving: if it was before it and is not now, the same one unit later.
   localparam logic [35:0] ArrivesLater = EquOnLeave ? 36'd0 : 36'd1;
   logic [35:0] last_q, pos, way, a_ahead, b_ahead;
   logic [23:0] at;  // where a count has to find a compare
@@ -84,9 +84,9 @@ module channel_compare #(
         if (we_i[0]) a_q   <= wdata_i;
         if (we_i[1]) b_q   <= wdata_i;
         if (we_i[2]) inc_q <= wdata_i;
-        if (we_i[3]) af_q  <= wdata_i[11:0];
-        if (we_i[4]) bf_q  <= wdata_i[11:0];
-        if (we_i[5]) equ_q <= wdata_i[12];
+        if (we_i[3]) af_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12];
+        if (we_i[4]) bf_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12];
+        if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
       end
       if (ce_i) begin
         if (fine_i) last_q <= pos;

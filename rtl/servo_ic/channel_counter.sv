@@ -1,5 +1,6 @@
-// Position counter of a channel, 24 bits, with the latches of the phase and servo clocks, and the 1/T timers: T1 is the time
-// between the last two counts, T2 the time since the last one, in SCLK periods. Clock clk_ref_i, asynchronous reset.
+// Position counter of a channel, 24 bits, with the latches of the phase and servo clocks, and the 1/T timers: T1 is the
+// time between the last two counts, T2 the time since the last one, in SCLK periods. Clock clk_ref_i, asynchronous
+// reset.
 `default_nettype none
 
 module channel_counter (
@@ -47,8 +48,10 @@ module channel_counter (
     end else if (ce_i) begin
       counter_q <= counter_d;
       t2_q      <= mark_i || count_i ? 23'd0 : t2_next;
-      if (echo_i)       t1_q <= {1'b0, t2_q};
-      else if (count_i) t1_q <= {down_i ^ down_q, t2_next};
+      if (echo_i || count_i) begin
+        t1_q[brick_regs_pkg::ServoChannelTimer1T1Lsb +: 23]   <= echo_i ? t2_q : t2_next;
+        t1_q[brick_regs_pkg::ServoChannelTimer1ReversedLsb]   <= ~echo_i & (down_i ^ down_q);
+      end
       if (count_i) down_q <= down_i;
     end else if (hold_i) begin
       counter_q <= 24'd0;
@@ -64,7 +67,8 @@ module channel_counter (
     end else begin
       if (phase_fall_i) phase_pos_q <= counter_q;
       if (servo_fall_i) begin
-        servo_pos_q <= {counter_q[22:0], down_q};
+        servo_pos_q[brick_regs_pkg::ServoChannelServoPositionPositionLsb +: 23] <= counter_q[22:0];
+        servo_pos_q[brick_regs_pkg::ServoChannelServoPositionDownLsb]           <= down_q;
         servo_t1_q  <= t1_q;
         servo_t2_q  <= t2_q;
       end
@@ -74,7 +78,7 @@ module channel_counter (
   assign counter_o   = counter_q;
   assign counter_d_o = counter_d;
   assign down_o      = down_q;
-  assign t1_o        = t1_q[22:0];
+  assign t1_o        = t1_q[brick_regs_pkg::ServoChannelTimer1T1Lsb +: 23];
   assign phase_pos_o = phase_pos_q;
   assign servo_pos_o = servo_pos_q;
   assign servo_t1_o  = servo_t1_q;

@@ -1,5 +1,5 @@
-// Serial data of one DAC: 18 bits of the command, bit 23 first, in step with the common strobe. Clock clk_ref_i, asynchronous
-// reset. docs/servo_channel.md, Serial DAC and ADC.
+// Serial data of one DAC: 18 bits of the command, bit 23 first, in step with the common strobe. Clock clk_ref_i,
+// asynchronous reset. docs/servo_channel.md, Serial DAC and ADC.
 `default_nettype none
 
 module channel_dac (

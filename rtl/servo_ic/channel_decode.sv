@@ -1,5 +1,5 @@
-// Encoder decoder: compares A, B, C with their levels one SCLK before and says whether the counter moves. All modes of I7mn0.
-// Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Decode.
+// Encoder decoder: compares A, B, C with their levels one SCLK before and says whether the counter moves. All modes of
+// I7mn0. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Decode.
 `default_nettype none
 
 module channel_decode #(
@@ -31,9 +31,12 @@ module channel_decode #(
   logic look;
   assign look = ce_i & ready_i & (abc_i != last_q | mode_i[3]);
 
-  // Place in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}, for {C, B, A} from 7 down to 0; 7 is no place. A table and
-  // not a function, which Verilator would make once for each servo IC.
+  // Place in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}, for {C, B, A} from 7 down to 0; 7 is no place. A
+  // table and not a function, which Verilator would make once for each servo IC.
   localparam logic [23:0] HallPlace = {3'd7, 3'd1, 3'd5, 3'd0, 3'd3, 3'd2, 3'd4, 3'd7};
+
+  logic ccw;  // the two codes of a mode differ in this bit
+  assign ccw = mode_i[2];
 
   logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
   logic [2:0] hall, last_hall;
@@ -52,36 +55,36 @@ module channel_decode #(
     if (look) begin
       step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
       a_rises = abc_i[0] & ~last_q[0];
-      down    = (step == 2'd3) ^ mode_i[2] ^ ~ALeadsUp;
+      down    = (step == 2'd3) ^ ccw ^ ~ALeadsUp;
       case (mode_i)
-        4'd0, 4'd4: begin
+        brick_regs_pkg::DecodePulseCw, brick_regs_pkg::DecodePulseCcw: begin
           count = a_rises;
-          down  = ~abc_i[1] ^ mode_i[2];
+          down  = ~abc_i[1] ^ ccw;
         end
-        4'd1, 4'd5: begin
+        brick_regs_pkg::DecodeX1Cw, brick_regs_pkg::DecodeX1Ccw: begin
           count   = step[0] & ~abc_i[1] & ~last_q[1];
           error_o = step == 2'd2;
         end
-        4'd2, 4'd6: begin
+        brick_regs_pkg::DecodeX2Cw, brick_regs_pkg::DecodeX2Ccw: begin
           count   = step[0] & (abc_i[0] ^ last_q[0]);
           error_o = step == 2'd2;
         end
-        4'd3, 4'd7: begin
+        brick_regs_pkg::DecodeX4Cw, brick_regs_pkg::DecodeX4Ccw: begin
           count   = step[0];
           error_o = step == 2'd2;
         end
-        4'd8: begin
+        brick_regs_pkg::DecodeInternalPulse: begin
           count = pulse_i;
           down  = pulse_down_i;
         end
-        4'd11, 4'd15: begin
+        brick_regs_pkg::DecodeHallCw, brick_regs_pkg::DecodeHallCcw: begin
           hall      = HallPlace[5'd3 * {2'b00, abc_i} +: 3];
           last_hall = HallPlace[5'd3 * {2'b00, last_q} +: 3];
           hall_up   = hall != 3'd7 && last_hall != 3'd7 && hall == (last_hall == 3'd5 ? 3'd0 : last_hall + 3'd1);
           hall_down = hall != 3'd7 && last_hall != 3'd7 && last_hall == (hall == 3'd5 ? 3'd0 : hall + 3'd1);
           hall_jump = last_hall != 3'd7 && hall != last_hall && !hall_up && !hall_down;
           count     = hall_up | hall_down;
-          down      = hall_down ^ mode_i[2];
+          down      = hall_down ^ ccw;
           error_o   = hall == 3'd7 || hall_jump;
         end
         default: count = 1'b0;
@@ -91,8 +94,8 @@ module channel_decode #(
 
   assign count_o = count & ~hold_i;
   assign down_o  = down;
-  assign mark_o  = look & (mode_i == 4'd12) & pulse_i;
-  assign echo_o  = (mode_i == 4'd12) & a_rises;
+  assign mark_o  = look & (mode_i == brick_regs_pkg::DecodeMldt) & pulse_i;
+  assign echo_o  = (mode_i == brick_regs_pkg::DecodeMldt) & a_rises;
 
 endmodule : channel_decode
 

@@ -1,5 +1,5 @@
-// Hardware clock of a servo IC: clk_ref / 2^n as a one-cycle enable. Free running; a new n is taken at the terminal count, so
-// no period is ever cut. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Clocks.
+// Hardware clock of a servo IC: clk_ref / 2^n as a one-cycle enable. Free running; a new n is taken at the terminal
+// count, so no period is ever cut. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Clocks.
 `default_nettype none
 
 module channel_divider (

@@ -3,19 +3,27 @@
 `default_nettype none
 
 module channel_index (
-  input  wire logic        clk_ref_i,
-  input  wire logic        rst_ni,
-  input  wire logic        ce_i,         // SCLK
-  input  wire logic        ready_i,
-  input  wire logic [11:0] level_i,      // filtered inputs, order of status bits 23..12
-  input  wire logic        gated_i,      // I7mn4
-  input  wire logic        gate_low_i,   // I7mn5 bit 0
-  input  wire logic        demux_i,      // I7mn5 bit 1
-  output logic [11:0]      level_o,      // with C, U, V, W replaced while de-multiplexing
-  output logic             index_o,      // at SCLK only
-  output logic             incomplete_o, // not all four AB states seen since reset
-  output logic             loss_o        // this edge sees an encoder loss
+  input  wire logic         clk_ref_i,
+  input  wire logic         rst_ni,
+  input  wire logic         ce_i,         // SCLK
+  input  wire logic         ready_i,
+  input  wire logic [23:12] level_i,      // filtered inputs, as in the status word
+  input  wire logic         gated_i,      // I7mn4
+  input  wire logic         gate_low_i,   // I7mn5 bit 0
+  input  wire logic         demux_i,      // I7mn5 bit 1
+  output logic [23:12]      level_o,      // with C, U, V, W replaced while de-multiplexing
+  output logic              index_o,      // at SCLK only
+  output logic              incomplete_o, // not all four AB states seen since reset
+  output logic              loss_o        // this edge sees an encoder loss
 );
+
+  localparam int A = brick_regs_pkg::ServoChannelStatusChaLsb;
+  localparam int B = brick_regs_pkg::ServoChannelStatusChbLsb;
+  localparam int C = brick_regs_pkg::ServoChannelStatusChcLsb;
+  localparam int T = brick_regs_pkg::ServoChannelStatusFlagTLsb;
+  localparam int U = brick_regs_pkg::ServoChannelStatusFlagULsb;
+  localparam int V = brick_regs_pkg::ServoChannelStatusFlagVLsb;
+  localparam int W = brick_regs_pkg::ServoChannelStatusFlagWLsb;
 
   // States of {A, B} in which the line carries each.
   localparam logic [1:0] StateC = 2'b11;
@@ -25,9 +33,9 @@ module channel_index (
 
   logic       a, b, c;
   logic [3:0] seen_q, part_q, state;  // per AB state, and C in that state: bit 0 W, 1 V, 2 U, 3 C
-  assign a     = level_i[0];
-  assign b     = level_i[1];
-  assign c     = demux_i ? part_q[3] : level_i[2];
+  assign a = level_i[A];
+  assign b = level_i[B];
+  assign c = demux_i ? part_q[3] : level_i[C];
 
   logic equal, equal_q;
   // Nobody looks at these between two SCLK edges.
@@ -37,7 +45,7 @@ module channel_index (
     index_o = 1'b0;
     if (ce_i) begin
       state   = {{a, b} == StateC, {a, b} == StateU, {a, b} == StateV, {a, b} == StateW};
-      equal   = (level_i[11] == level_i[10]) | (level_i[9] == level_i[8]);
+      equal   = (level_i[T] == level_i[U]) | (level_i[V] == level_i[W]);
       index_o = gated_i ? c & (gate_low_i ? ~a & ~b : a & b) : c;
     end
   end
@@ -50,12 +58,16 @@ module channel_index (
       equal_q <= 1'b0;
     end else if (ce_i && ready_i) begin
       seen_q  <= seen_q | state;
-      part_q  <= (part_q & ~state) | (state & {4{level_i[2]}});
+      part_q  <= (part_q & ~state) | (state & {4{level_i[C]}});
       equal_q <= equal;
     end
   end
 
-  assign level_o      = {level_i[11], demux_i ? part_q[2:0] : level_i[10:8], level_i[7:3], c, level_i[1:0]};
+  always_comb begin
+    level_o    = level_i;
+    level_o[C] = c;
+    if (demux_i) {level_o[U], level_o[V], level_o[W]} = part_q[2:0];
+  end
   assign incomplete_o = seen_q != 4'hF;
 
 endmodule : channel_index

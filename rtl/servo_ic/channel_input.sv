@@ -1,5 +1,6 @@
-// Input filter of a channel: three samples at SCLK and their majority. A pulse shorter than one SCLK period never passes, a level
-// seen by two samples in a row always does. Clock clk_ref_i, asynchronous reset. Bit order is that of status bits 23..12.
+// Input filter of a channel: three samples at SCLK and their majority. A pulse shorter than one SCLK period never
+// passes, a level seen by two samples in a row always does. Clock clk_ref_i, asynchronous reset. Bit order is that of
+// status bits 23..12.
 `default_nettype none
 
 module channel_input (
@@ -8,7 +9,7 @@ module channel_input (
   input  wire logic        ce_i,     // SCLK
   input  wire logic [11:0] pins_i,   // behind the synchroniser
   output logic [11:0]      level_o,  // filtered
-  output logic             ready_o   // the filter holds pin levels only, and so does whoever remembers level_o for one SCLK
+  output logic             ready_o   // all levels, also those of one SCLK ago, have come from pins
 );
 
   logic [11:0] s0_q, s1_q, level_q;

@@ -1,5 +1,5 @@
-// Pulse frequency modulation: each PFM_CLK adds the signed command to a 24-bit accumulator; an overflow makes a positive pulse,
-// an underflow a negative one. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, PFM.
+// Pulse frequency modulation: each PFM_CLK adds the signed command to a 24-bit accumulator; an overflow makes a
+// positive pulse, an underflow a negative one. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, PFM.
 `default_nettype none
 
 module channel_pfm (

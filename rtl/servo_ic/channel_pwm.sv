@@ -1,5 +1,6 @@
-// The PWM outputs of a channel, phases A, B, C: command against the triangle counter, dead time between the top and the bottom
-// switch. A new command is used from the turnaround on. Clock clk_pwm_i, asynchronous reset. docs/servo_channel.md, PWM.
+// The PWM outputs of a channel, phases A, B, C: command against the triangle counter, dead time between the top and the
+// bottom switch. A new command is used from the turnaround on. Clock clk_pwm_i, asynchronous reset.
+// docs/servo_channel.md, PWM.
 `default_nettype none
 
 module channel_pwm (

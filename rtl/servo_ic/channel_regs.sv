@@ -1,5 +1,6 @@
-// Registers of one channel: control word, output commands, latched error bits, and the read multiplexer of its eight addresses.
-// X:+4 belongs to the IC and reads 0 here. Clock clk_ref_i, asynchronous reset. docs/registers.md, servo_channel.
+// Registers of one channel: control word, output commands, latched error bits, and the read multiplexer of its eight
+// addresses. X:+4 belongs to the IC and reads 0 here. Clock clk_ref_i, asynchronous reset. docs/registers.md,
+// servo_channel.
 `default_nettype none
 
 module channel_regs (
@@ -20,7 +21,7 @@ module channel_regs (
   output logic [23:0]      out_c_o,
   output logic [5:0]       compare_we_o,  // A, B, increment, fraction of A, fraction of B, EQU
   // read words
-  input  wire logic [11:0] level_i,
+  input  wire logic [23:12] level_i,      // inputs, as in the status word
   input  wire logic        error_i,       // this edge sees an illegal transition, an encoder loss
   input  wire logic        loss_i,
   input  wire logic        equ_i,
@@ -44,9 +45,27 @@ module channel_regs (
   input  wire logic [11:0] b_fraction_i
 );
 
+  // Words, {X, place}.
+  localparam logic [3:0] Timer1           = {1'b0, brick_regs_pkg::ServoChannelTimer1Addr[2:0]};
+  localparam logic [3:0] Timer2           = {1'b0, brick_regs_pkg::ServoChannelTimer2Addr[2:0]};
+  localparam logic [3:0] OutA             = {1'b0, brick_regs_pkg::ServoChannelOutAAddr[2:0]};
+  localparam logic [3:0] OutB             = {1'b0, brick_regs_pkg::ServoChannelOutBAddr[2:0]};
+  localparam logic [3:0] OutC             = {1'b0, brick_regs_pkg::ServoChannelOutCAddr[2:0]};
+  localparam logic [3:0] AdcA             = {1'b0, brick_regs_pkg::ServoChannelAdcAAddr[2:0]};
+  localparam logic [3:0] AdcB             = {1'b0, brick_regs_pkg::ServoChannelAdcBAddr[2:0]};
+  localparam logic [3:0] CompareA         = {1'b0, brick_regs_pkg::ServoChannelCompareAAddr[2:0]};
+  localparam logic [3:0] Status           = {1'b1, brick_regs_pkg::ServoChannelStatusAddr[2:0]};
+  localparam logic [3:0] PhasePosition    = {1'b1, brick_regs_pkg::ServoChannelPhasePositionAddr[2:0]};
+  localparam logic [3:0] ServoPosition    = {1'b1, brick_regs_pkg::ServoChannelServoPositionAddr[2:0]};
+  localparam logic [3:0] FlagPosition     = {1'b1, brick_regs_pkg::ServoChannelFlagPositionAddr[2:0]};
+  localparam logic [3:0] Control          = {1'b1, brick_regs_pkg::ServoChannelControlAddr[2:0]};
+  localparam logic [3:0] CompareIncrement = {1'b1, brick_regs_pkg::ServoChannelCompareIncrementAddr[2:0]};
+  localparam logic [3:0] CompareB         = {1'b1, brick_regs_pkg::ServoChannelCompareBAddr[2:0]};
+  localparam int         EquWrite         = brick_regs_pkg::ServoChannelControlEquWriteLsb;
+
   logic [23:0] control_q, out_a_q, out_b_q, out_c_q;
   logic        error_q, loss_q, fine, we_status, we_control;
-  assign fine = control_q[18];
+  assign fine = control_q[brick_regs_pkg::ServoChannelControlHardware1tLsb];
 
   always_comb begin
     we_status    = 1'b0;
@@ -54,42 +73,42 @@ module channel_regs (
     compare_we_o = 6'd0;
     if (we_i) begin
       case ({x_i, addr_i})
-        4'd0:    compare_we_o[4] = fine;
-        4'd1:    compare_we_o[3] = fine;
-        4'd7:    compare_we_o[0] = 1'b1;
-        4'd8:    we_status       = 1'b1;
-        4'd13: begin
+        Timer1:           compare_we_o[4] = fine;
+        Timer2:           compare_we_o[3] = fine;
+        CompareA:         compare_we_o[0] = 1'b1;
+        CompareB:         compare_we_o[1] = 1'b1;
+        CompareIncrement: compare_we_o[2] = 1'b1;
+        Status:           we_status       = 1'b1;
+        Control: begin
           we_control      = 1'b1;
-          compare_we_o[5] = wdata_i[11];
+          compare_we_o[5] = wdata_i[EquWrite];
         end
-        4'd14:   compare_we_o[2] = 1'b1;
-        4'd15:   compare_we_o[1] = 1'b1;
-        default: we_status = 1'b0;
+        default: ;
       endcase
     end
   end
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      control_q <= 24'd0;
-      out_a_q   <= 24'd0;
-      out_b_q   <= 24'd0;
-      out_c_q   <= 24'd0;
+      control_q <= brick_regs_pkg::ServoChannelControlReset;
+      out_a_q   <= brick_regs_pkg::ServoChannelOutAReset;
+      out_b_q   <= brick_regs_pkg::ServoChannelOutBReset;
+      out_c_q   <= brick_regs_pkg::ServoChannelOutCReset;
       error_q   <= 1'b0;
       loss_q    <= 1'b0;
     end else begin
-      if (we_control)         control_q     <= wdata_i;
-      else if (control_q[11]) control_q[11] <= 1'b0;  // falls back by itself
-      if (we_i && !x_i && !trip_i) begin
-        if (addr_i == 3'd2) out_a_q <= wdata_i;
-        if (addr_i == 3'd3) out_b_q <= wdata_i;
-        if (addr_i == 3'd4) out_c_q <= wdata_i;
+      if (we_control)               control_q           <= wdata_i;
+      else if (control_q[EquWrite]) control_q[EquWrite] <= 1'b0;  // falls back by itself
+      if (we_i && !trip_i) begin
+        if ({x_i, addr_i} == OutA) out_a_q <= wdata_i;
+        if ({x_i, addr_i} == OutB) out_b_q <= wdata_i;
+        if ({x_i, addr_i} == OutC) out_c_q <= wdata_i;
       end
       // Any write clears the error, a 0 clears the loss; both come back with the next SCLK if the cause lasts.
-      if (we_status || control_q[10])   error_q <= 1'b0;
-      else if (error_i)                 error_q <= 1'b1;
-      if (we_status && !wdata_i[7])     loss_q  <= 1'b0;
-      else if (loss_i)                  loss_q  <= 1'b1;
+      if (we_status || control_q[brick_regs_pkg::ServoChannelControlCounterResetLsb])     error_q <= 1'b0;
+      else if (error_i)                                                                   error_q <= 1'b1;
+      if (we_status && !wdata_i[brick_regs_pkg::ServoChannelStatusEncoderLossLsb])        loss_q  <= 1'b0;
+      else if (loss_i)                                                                    loss_q  <= 1'b1;
     end
   end
 
@@ -97,22 +116,43 @@ module channel_regs (
     rdata_o = 24'd0;
     if (sel_i) begin
       case ({x_i, addr_i})
-        4'd0:    rdata_o = fine ? {capture_fraction_i, b_fraction_i} : servo_t1_i;
-        4'd1:    rdata_o = fine ? {servo_fraction_i, a_fraction_i} : {1'b0, servo_t2_i};
-        4'd2:    rdata_o = out_a_q;
-        4'd3:    rdata_o = out_b_q;
-        4'd4:    rdata_o = out_c_q;
-        4'd5:    rdata_o = {adc_a_i, 6'd0};
-        4'd6:    rdata_o = {adc_b_i, 6'd0};
-        4'd7:    rdata_o = compare_a_i;
-        4'd8:    rdata_o = {level_i, captured_i, captured_gi_i, equ_i, error_q, loss_q, 3'b000, incomplete_i, hall_i};
-        4'd9:    rdata_o = phase_pos_i;
-        4'd10:   rdata_o = servo_pos_i;
-        4'd11:   rdata_o = capture_pos_i;
-        4'd13:   rdata_o = control_q;
-        4'd14:   rdata_o = compare_inc_i;
-        4'd15:   rdata_o = compare_b_i;
-        default: rdata_o = 24'd0;
+        OutA:             rdata_o = out_a_q;
+        OutB:             rdata_o = out_b_q;
+        OutC:             rdata_o = out_c_q;
+        CompareA:         rdata_o = compare_a_i;
+        PhasePosition:    rdata_o = phase_pos_i;
+        ServoPosition:    rdata_o = servo_pos_i;
+        FlagPosition:     rdata_o = capture_pos_i;
+        Control:          rdata_o = control_q;
+        CompareIncrement: rdata_o = compare_inc_i;
+        CompareB:         rdata_o = compare_b_i;
+        AdcA: rdata_o[brick_regs_pkg::ServoChannelAdcAValueLsb +: brick_regs_pkg::ServoChannelAdcAValueWidth] = adc_a_i;
+        AdcB: rdata_o[brick_regs_pkg::ServoChannelAdcBValueLsb +: brick_regs_pkg::ServoChannelAdcBValueWidth] = adc_b_i;
+        Timer1: begin
+          rdata_o = servo_t1_i;
+          if (fine) begin
+            rdata_o[brick_regs_pkg::ServoChannelFineTimer1CapturedLsb +: 12] = capture_fraction_i;
+            rdata_o[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12] = b_fraction_i;
+          end
+        end
+        Timer2: begin
+          rdata_o[brick_regs_pkg::ServoChannelTimer2T2Lsb +: brick_regs_pkg::ServoChannelTimer2T2Width] = servo_t2_i;
+          if (fine) begin
+            rdata_o[brick_regs_pkg::ServoChannelFineTimer2ServoLsb +: 12]    = servo_fraction_i;
+            rdata_o[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12] = a_fraction_i;
+          end
+        end
+        Status: begin
+          rdata_o[23:12] = level_i;
+          rdata_o[brick_regs_pkg::ServoChannelStatusCapturedLsb]           = captured_i;
+          rdata_o[brick_regs_pkg::ServoChannelStatusCapturedGatedIndexLsb] = captured_gi_i;
+          rdata_o[brick_regs_pkg::ServoChannelStatusEquLsb]                = equ_i;
+          rdata_o[brick_regs_pkg::ServoChannelStatusEncoderErrorLsb]       = error_q;
+          rdata_o[brick_regs_pkg::ServoChannelStatusEncoderLossLsb]        = loss_q;
+          rdata_o[brick_regs_pkg::ServoChannelStatusDemuxInvalidLsb]       = incomplete_i;
+          rdata_o[brick_regs_pkg::ServoChannelStatusHallCaptureLsb +: 3]   = hall_i;
+        end
+        default: ;
       endcase
     end
   end

@@ -1,6 +1,7 @@
-// Common part of a serial DAC or ADC stream: 24 bits of a strobe word, bit 23 first, from the first bit clock not before the
-// rising edge of PHASE. Bits change with the falling edge of the serial clock; after bit 0 the clock stops low and the strobe
-// keeps its last level. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Serial DAC and ADC.
+// Common part of a serial DAC or ADC stream: 24 bits of a strobe word, bit 23 first, from the first bit clock not
+// before the rising edge of PHASE. Bits change with the falling edge of the serial clock; after bit 0 the clock stops
+// low and the strobe keeps its last level. Clock clk_ref_i, asynchronous reset. docs/servo_channel.md, Serial DAC and
+// ADC.
 `default_nettype none
 
 module channel_strobe (

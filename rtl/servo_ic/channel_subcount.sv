@@ -1,6 +1,6 @@
-// Hardware 1/T: 12 fraction bits between two counts, e = floor(4096 * T2 / T1), at most 4095. After each count a restoring
-// divider makes 4096 / T1 in 13 clk_ref cycles; from then on every SCLK period adds quotient and remainder to e, two periods
-// at a time until the ones missed during the division are made up. Clock clk_ref_i, asynchronous reset.
+// Hardware 1/T: 12 fraction bits between two counts, e = floor(4096 * T2 / T1), at most 4095. After each count a
+// restoring divider makes 4096 / T1 in 13 clk_ref cycles; from then on every SCLK period adds quotient and remainder to
+// e, two periods at a time until the ones missed during the division are made up. Clock clk_ref_i, asynchronous reset.
 `default_nettype none
 
 module channel_subcount (

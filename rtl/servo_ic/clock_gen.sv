@@ -1,9 +1,11 @@
-// Clock chain of a servo IC: triangle counter (MaxPhase), phase divider, servo divider, PHASE and SERVO outputs, and the
-// re-alignment to an external phase clock. A pin changes its direction without a short pulse: it is released while both clocks
-// are high, and taken with a rising edge of the own clock while the net is high. Clock clk_pwm_i (117.9648 MHz), asynchronous reset. docs/clock.md, servo-ic:5.1.
+// Clock chain of a servo IC: triangle counter (MaxPhase), phase divider, servo divider, PHASE and SERVO outputs, and
+// the re-alignment to an external phase clock. A pin changes its direction without a short pulse: it is released while
+// both clocks are high, and taken with a rising edge of the own clock while the net is high. Clock clk_pwm_i (117.9648
+// MHz), asynchronous reset. docs/clock.md, servo-ic:5.1.
 //
-// The triangle is kept as a ramp: ramp = up ? cnt : ~cnt, which counts up in both directions from -(I+1) to I+1 (I = I7m00).
-// So a turnaround is ramp == top, half way is ramp == -1, and nearly every tick is one increment and two comparisons.
+// The triangle is kept as a ramp: ramp = up ? cnt : ~cnt, which counts up in both directions from -(I+1) to I+1 (I =
+// I7m00). So a turnaround is ramp == top, half way is ramp == -1, and nearly every tick is one increment and two
+// comparisons.
 `default_nettype none
 
 module clock_gen (
@@ -54,7 +56,8 @@ module clock_gen (
   assign servo_ext = servo_ext_i & ~servo_oe_q;
   assign ext_phase = phase_ext & (sync2_q[0] != phase_q);
   assign ext_servo = servo_ext & (sync2_q[1] != servo_q);
-  // A pin that is to become an input goes while it is high. SERVO rises with an edge of PHASE, so PHASE waits for SERVO.
+  // A pin that is to become an input goes while it is high. SERVO rises with an edge of PHASE, so PHASE waits for
+  // SERVO.
   assign servo_release = servo_oe_q & servo_ext_i & servo_q;
   assign phase_release = phase_oe_q & phase_ext_i & phase_q & (servo_q | ~(servo_oe_q & servo_ext_i));
   assign special   = at_top | at_middle | ext_phase | ext_servo | phase_release | servo_release;
@@ -124,8 +127,8 @@ module clock_gen (
     if (phase_release) phase_d = 1'b1;  // a fall at this edge stays away from the net, so no latch may see it
   end
 
-  // Servo clock: falls with every (I7m02+1)-th fall of the phase clock and rises with the next one, or, when it is as fast
-  // as the phase clock, with the next rise.
+  // Servo clock: falls with every (I7m02+1)-th fall of the phase clock and rises with the next one, or, when it is as
+  // fast as the phase clock, with the next rise.
   always_comb begin
     servo_d     = servo_q;
     servo_cnt_d = servo_cnt_q;

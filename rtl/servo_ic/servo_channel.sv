@@ -1,5 +1,5 @@
-// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only the PWM
-// runs on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
+// One channel of a servo IC: encoder, flags, capture, compare, three outputs as PWM, DAC or PFM, two ADC inputs. Only
+// the PWM runs on clk_pwm_i, everything else on clk_ref_i. Asynchronous reset. docs/servo_channel.md.
 `default_nettype none
 
 module servo_channel (
@@ -52,21 +52,41 @@ module servo_channel (
 );
 
   logic [23:0] control, out_a, out_b, out_c;
-  // Control word, docs/servo_channel.md: fields from bit 23 down.
-  logic       c_pfm, ab_dac, c_inv, ab_inv, dir_inv, fine, demux, gate_low, gated, aena, other, equ_state, equ_write, hold;
-  logic       flag_inv, index_inv;
+  // Control word
+  logic       index_inv, flag_inv, hold, other, aena, gated, gate_low, demux, fine;
+  logic       dir_inv, ab_inv, c_inv, ab_dac, c_pfm;
   logic [1:0] flag_select, capture_source;
   logic [3:0] mode;
-  assign {c_pfm, ab_dac, c_inv, ab_inv, dir_inv, fine, demux, gate_low, gated, aena, other, equ_state, equ_write, hold,
-          flag_select, flag_inv, index_inv, capture_source, mode} = control;
+  assign mode           = control[brick_regs_pkg::ServoChannelControlDecodeLsb +: 4];
+  assign capture_source = control[brick_regs_pkg::ServoChannelControlCaptureSourceLsb +: 2];
+  assign index_inv      = control[brick_regs_pkg::ServoChannelControlIndexInvertLsb];
+  assign flag_inv       = control[brick_regs_pkg::ServoChannelControlFlagInvertLsb];
+  assign flag_select    = control[brick_regs_pkg::ServoChannelControlFlagSelectLsb +: 2];
+  assign hold           = control[brick_regs_pkg::ServoChannelControlCounterResetLsb];
+  assign other          = control[brick_regs_pkg::ServoChannelControlCompareChannelLsb];
+  assign aena           = control[brick_regs_pkg::ServoChannelControlAenaLsb];
+  assign gated          = control[brick_regs_pkg::ServoChannelControlGatedIndexLsb];
+  assign gate_low       = control[brick_regs_pkg::ServoChannelControlGateStateLsb];
+  assign demux          = control[brick_regs_pkg::ServoChannelControlIndexDemuxLsb];
+  assign fine           = control[brick_regs_pkg::ServoChannelControlHardware1tLsb];
+  assign dir_inv        = control[brick_regs_pkg::ServoChannelControlPfmDirInvertLsb];
+  assign ab_inv         = control[brick_regs_pkg::ServoChannelControlAbInvertLsb];
+  assign c_inv          = control[brick_regs_pkg::ServoChannelControlCInvertLsb];
+  assign ab_dac         = control[brick_regs_pkg::ServoChannelControlAbDacLsb];
+  assign c_pfm          = control[brick_regs_pkg::ServoChannelControlCPfmLsb];
 
   // Inputs
-  logic [11:0] pin_level, level;
-  logic        ready, index, incomplete, loss;
-  channel_input u_input (.clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .pins_i, .level_o(pin_level), .ready_o(ready));
+  logic [23:12] pin_level, level;  // as in the status word
+  logic         ready, index, incomplete, loss;
+  channel_input u_input (
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .pins_i, .level_o(pin_level), .ready_o(ready)
+  );
   channel_index u_index (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .level_i(pin_level), .gated_i(gated), .gate_low_i(gate_low),
-    .demux_i(demux), .level_o(level), .index_o(index), .incomplete_o(incomplete), .loss_o(loss)
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .ready_i(ready), .level_i(pin_level),
+    .gated_i(gated), .gate_low_i(gate_low), .demux_i(demux),
+    .level_o(level), .index_o(index), .incomplete_o(incomplete), .loss_o(loss)
   );
 
   // Position
@@ -75,17 +95,24 @@ module servo_channel (
   logic [22:0] t1, servo_t2;
   logic [11:0] fraction, fraction_d, servo_fraction_q;
   channel_decode u_decode (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .mode_i(mode), .hold_i(hold), .abc_i(pin_level[2:0]),
-    .pulse_i(pfm_event), .pulse_down_i(pfm_down), .count_o(count), .down_o(down), .error_o(error), .mark_o(mark), .echo_o(echo)
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .ready_i(ready), .mode_i(mode), .hold_i(hold),
+    .abc_i(pin_level[brick_regs_pkg::ServoChannelStatusChaLsb +: 3]),
+    .pulse_i(pfm_event), .pulse_down_i(pfm_down),
+    .count_o(count), .down_o(down), .error_o(error), .mark_o(mark), .echo_o(echo)
   );
   channel_counter u_counter (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .hold_i(hold), .count_i(count), .down_i(down), .mark_i(mark), .echo_i(echo),
-    .phase_fall_i, .servo_fall_i, .counter_o(counter), .counter_d_o(counter_d), .down_o(last_down), .t1_o(t1),
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .hold_i(hold), .count_i(count), .down_i(down), .mark_i(mark), .echo_i(echo),
+    .phase_fall_i, .servo_fall_i,
+    .counter_o(counter), .counter_d_o(counter_d), .down_o(last_down), .t1_o(t1),
     .phase_pos_o(phase_pos), .servo_pos_o(servo_pos), .servo_t1_o(servo_t1), .servo_t2_o(servo_t2)
   );
   channel_subcount u_subcount (
-    .clk_ref_i, .rst_ni, .enable_i(fine), .ce_i(sclk_ce_i), .count_i(count), .echo_i(echo), .reversed_i(down ^ last_down),
-    .down_i(last_down), .down_new_i(down), .t1_i(t1), .fraction_o(fraction), .fraction_d_o(fraction_d)
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .enable_i(fine), .count_i(count), .echo_i(echo),
+    .reversed_i(down ^ last_down), .down_i(last_down), .down_new_i(down), .t1_i(t1),
+    .fraction_o(fraction), .fraction_d_o(fraction_d)
   );
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni)           servo_fraction_q <= 12'd0;
@@ -103,10 +130,18 @@ module servo_channel (
   logic [23:0] capture_pos;
   logic [11:0] capture_fraction;
   channel_capture u_capture (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .ready_i(ready), .index_i(index), .flags_i(level[7:4]), .hall_i(level[10:8]),
-    .source_i(capture_source), .index_inv_i(index_inv), .flag_inv_i(flag_inv), .flag_select_i(flag_select), .gated_i(gated),
-    .counter_d_i(counter_d), .fraction_d_i(fraction_d), .read_i(read_capture_i), .position_o(capture_pos),
-    .fraction_o(capture_fraction), .captured_o(captured), .captured_gi_o(captured_gi), .hall_o(hall)
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .ready_i(ready), .index_i(index),
+    .hmfl_i(level[brick_regs_pkg::ServoChannelStatusHmflLsb]),
+    .plim_i(level[brick_regs_pkg::ServoChannelStatusPlimLsb]),
+    .mlim_i(level[brick_regs_pkg::ServoChannelStatusMlimLsb]),
+    .user_i(level[brick_regs_pkg::ServoChannelStatusUserLsb]),
+    .hall_i(level[brick_regs_pkg::ServoChannelStatusFlagWLsb +: 3]),
+    .source_i(capture_source), .index_inv_i(index_inv), .flag_inv_i(flag_inv),
+    .flag_select_i(flag_select), .gated_i(gated),
+    .counter_d_i(counter_d), .fraction_d_i(fraction_d), .read_i(read_capture_i),
+    .position_o(capture_pos), .fraction_o(capture_fraction),
+    .captured_o(captured), .captured_gi_o(captured_gi), .hall_o(hall)
   );
 
   // Compare
@@ -115,18 +150,22 @@ module servo_channel (
   logic [5:0]  compare_we;
   logic        equ;
   channel_compare u_compare (
-    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i), .fine_i(fine), .other_i(other), .count_i(other ? count1_i : count),
-    .down_i(other ? down1_i : down), .hold_i(other ? hold1_i : hold), .counter_i(other ? counter1_i : counter),
-    .fraction_i(other ? fraction1_i : fraction), .we_i(compare_we), .wdata_i, .a_o(compare_a), .b_o(compare_b),
-    .inc_o(compare_inc), .a_fraction_o(a_fraction), .b_fraction_o(b_fraction), .equ_o(equ)
+    .clk_ref_i, .rst_ni, .ce_i(sclk_ce_i),
+    .fine_i(fine), .other_i(other),
+    .count_i(other ? count1_i : count), .down_i(other ? down1_i : down), .hold_i(other ? hold1_i : hold),
+    .counter_i(other ? counter1_i : counter), .fraction_i(other ? fraction1_i : fraction),
+    .we_i(compare_we), .wdata_i,
+    .a_o(compare_a), .b_o(compare_b), .inc_o(compare_inc),
+    .a_fraction_o(a_fraction), .b_fraction_o(b_fraction), .equ_o(equ)
   );
   assign equ_o = equ & ~trip_i;
 
   // Outputs
   logic [5:0] pwm, pwm_on, pwm_inv;
   channel_pwm u_pwm (
-    .clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_a_i(out_a[23:8]), .command_b_i(out_b[23:8]),
-    .command_c_i(out_c[23:8]), .switch_o(pwm)
+    .clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i,
+    .command_a_i(out_a[23:8]), .command_b_i(out_b[23:8]), .command_c_i(out_c[23:8]),
+    .switch_o(pwm)
   );
   // A pair that is not a PWM output rests low; a trip turns both switches off, whatever their polarity.
   always_comb begin
@@ -140,18 +179,21 @@ module servo_channel (
 
   logic pulse;
   channel_pfm u_pfm (
-    .clk_ref_i, .rst_ni, .run_i(c_pfm & ~trip_i), .pfm_ce_i, .sclk_ce_i, .command_i(out_c), .width_i(deadtime_i), .pulse_o(pulse),
-    .down_o(pfm_down), .event_o(pfm_event)
+    .clk_ref_i, .rst_ni, .pfm_ce_i, .sclk_ce_i,
+    .run_i(c_pfm & ~trip_i), .command_i(out_c), .width_i(deadtime_i),
+    .pulse_o(pulse), .down_o(pfm_down), .event_o(pfm_event)
   );
   assign pulse_o = c_pfm & (pulse ^ c_inv);
   assign dir_o   = c_pfm & (pfm_down ^ dir_inv);
 
   logic dac_a, dac_b;
   channel_dac u_dac_a (
-    .clk_ref_i, .rst_ni, .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_a[23:6] & {18{~trip_i}}), .data_o(dac_a)
+    .clk_ref_i, .rst_ni,
+    .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_a[23:6] & {18{~trip_i}}), .data_o(dac_a)
   );
   channel_dac u_dac_b (
-    .clk_ref_i, .rst_ni, .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_b[23:6] & {18{~trip_i}}), .data_o(dac_b)
+    .clk_ref_i, .rst_ni,
+    .load_i(dac_load_i), .shift_i(dac_shift_i), .command_i(out_b[23:6] & {18{~trip_i}}), .data_o(dac_b)
   );
   assign dac_a_o = ab_dac & (dac_a ^ ab_inv);
   assign dac_b_o = ab_dac & (dac_b ^ ab_inv);
@@ -160,24 +202,29 @@ module servo_channel (
   // ADC
   logic [17:0] adc_a, adc_b;
   channel_adc u_adc_a (
-    .clk_ref_i, .rst_ni, .sample_i(adc_sample_i), .bit_i(adc_bit_i), .phase_fall_i, .data_i(adc_a_i), .value_o(adc_a)
+    .clk_ref_i, .rst_ni,
+    .sample_i(adc_sample_i), .bit_i(adc_bit_i), .phase_fall_i, .data_i(adc_a_i), .value_o(adc_a)
   );
   channel_adc u_adc_b (
-    .clk_ref_i, .rst_ni, .sample_i(adc_sample_i), .bit_i(adc_bit_i), .phase_fall_i, .data_i(adc_b_i), .value_o(adc_b)
+    .clk_ref_i, .rst_ni,
+    .sample_i(adc_sample_i), .bit_i(adc_bit_i), .phase_fall_i, .data_i(adc_b_i), .value_o(adc_b)
   );
 
   channel_regs u_regs (
-    .clk_ref_i, .rst_ni, .x_i, .addr_i, .sel_i, .we_i, .wdata_i, .rdata_o, .trip_i,
+    .clk_ref_i, .rst_ni,
+    .x_i, .addr_i, .sel_i, .we_i, .wdata_i, .rdata_o, .trip_i,
     .control_o(control), .out_a_o(out_a), .out_b_o(out_b), .out_c_o(out_c), .compare_we_o(compare_we),
-    .level_i(level), .error_i(error), .loss_i(loss), .equ_i(equ_o), .incomplete_i(incomplete), .captured_i(captured),
-    .captured_gi_i(captured_gi), .hall_i(hall), .phase_pos_i(phase_pos), .servo_pos_i(servo_pos), .servo_t1_i(servo_t1),
-    .servo_t2_i(servo_t2), .servo_fraction_i(servo_fraction_q), .capture_pos_i(capture_pos),
-    .capture_fraction_i(capture_fraction), .adc_a_i(adc_a), .adc_b_i(adc_b), .compare_a_i(compare_a), .compare_b_i(compare_b),
-    .compare_inc_i(compare_inc), .a_fraction_i(a_fraction), .b_fraction_i(b_fraction)
+    .level_i(level), .error_i(error), .loss_i(loss), .equ_i(equ_o), .incomplete_i(incomplete),
+    .captured_i(captured), .captured_gi_i(captured_gi), .hall_i(hall),
+    .phase_pos_i(phase_pos), .servo_pos_i(servo_pos), .servo_t1_i(servo_t1), .servo_t2_i(servo_t2),
+    .servo_fraction_i(servo_fraction_q), .capture_pos_i(capture_pos), .capture_fraction_i(capture_fraction),
+    .adc_a_i(adc_a), .adc_b_i(adc_b),
+    .compare_a_i(compare_a), .compare_b_i(compare_b), .compare_inc_i(compare_inc),
+    .a_fraction_i(a_fraction), .b_fraction_i(b_fraction)
   );
 
-  logic unused;
-  assign unused = &{1'b0, equ_state, equ_write, out_a[5:0], out_b[5:0]};
+  logic unused;  // bits of EQU write and state: channel_regs has acted on them
+  assign unused = &{1'b0, control[12:11], out_a[5:0], out_b[5:0]};
 
 endmodule : servo_channel
 

@@ -1,5 +1,6 @@
-// The four channels of a servo IC with the clocks they share. Bit n-1 of a vector, or field n-1 of a packed one, belongs to
-// channel n. The bus words are those of all 32 addresses; X:+4 of each channel is left to servo_ic_regs. docs/servo_channel.md.
+// The four channels of a servo IC with the clocks they share. Bit n-1 of a vector, or field n-1 of a packed one,
+// belongs to channel n. The bus words are those of all 32 addresses; X:+4 of each channel is left to servo_ic_regs.
+// docs/servo_channel.md.
 `default_nettype none
 
 module servo_channels (
@@ -48,21 +49,28 @@ module servo_channels (
   logic [4:0] adc_bit;
 
   channel_clocks u_clocks (
-    .clk_pwm_i, .clk_ref_i, .rst_ni, .dividers_i, .dac_strobe_i, .adc_strobe_i, .phase_rise_i, .phase_fall_i, .servo_fall_i,
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .dividers_i, .dac_strobe_i, .adc_strobe_i,
+    .phase_rise_i, .phase_fall_i, .servo_fall_i,
     .sclk_ce_o(sclk_ce), .pfm_ce_o(pfm_ce), .phase_fall_o(phase_fall), .servo_fall_o(servo_fall),
     .dac_load_o(dac_load), .dac_shift_o(dac_shift), .adc_sample_o(adc_sample), .adc_bit_o(adc_bit),
     .dac_clk_o, .dac_strobe_o, .adc_clk_o, .adc_strobe_o
   );
 
   logic [47:0] pins;
-  channel_sync u_sync (.clk_pwm_i, .rst_ni, .pins_i, .pins_o(pins));
+  channel_sync u_sync (
+    .clk_pwm_i, .rst_ni,
+    .pins_i, .pins_o(pins)
+  );
 
   logic [3:0] sel, read_capture;
   always_comb begin
     sel          = 4'd0;
     read_capture = 4'd0;
     if (sel_i) sel[addr_i[4:3]] = 1'b1;
-    if (read_done_i && read_x_i && read_addr_i[2:0] == 3'd3) read_capture[read_addr_i[4:3]] = 1'b1;
+    if (read_done_i && read_x_i && read_addr_i[2:0] == brick_regs_pkg::ServoChannelFlagPositionAddr[2:0]) begin
+      read_capture[read_addr_i[4:3]] = 1'b1;
+    end
   end
 
   logic [95:0] rdata, counter;
@@ -71,12 +79,15 @@ module servo_channels (
   for (genvar n = 0; n < 4; n++) begin : gen_channel
     servo_channel u_channel (
       .clk_pwm_i, .clk_ref_i, .rst_ni,
-      .x_i, .addr_i(addr_i[2:0]), .sel_i(sel[n]), .we_i(we_i & sel[n]), .wdata_i, .read_capture_i(read_capture[n]),
-      .rdata_o(rdata[24*n +: 24]),
-      .trip_i, .cnt_i, .turn_i, .deadtime_i, .sclk_ce_i(sclk_ce), .pfm_ce_i(pfm_ce), .phase_fall_i(phase_fall),
-      .servo_fall_i(servo_fall), .dac_load_i(dac_load), .dac_shift_i(dac_shift), .adc_sample_i(adc_sample), .adc_bit_i(adc_bit),
-      .count_o(count[n]), .down_o(down[n]), .hold_o(hold[n]), .counter_o(counter[24*n +: 24]), .fraction_o(fraction[12*n +: 12]),
-      .count1_i(count[0]), .down1_i(down[0]), .hold1_i(hold[0]), .counter1_i(counter[23:0]), .fraction1_i(fraction[11:0]),
+      .x_i, .addr_i(addr_i[2:0]), .sel_i(sel[n]), .we_i(we_i & sel[n]), .wdata_i,
+      .read_capture_i(read_capture[n]), .rdata_o(rdata[24*n +: 24]),
+      .trip_i, .cnt_i, .turn_i, .deadtime_i,
+      .sclk_ce_i(sclk_ce), .pfm_ce_i(pfm_ce), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
+      .dac_load_i(dac_load), .dac_shift_i(dac_shift), .adc_sample_i(adc_sample), .adc_bit_i(adc_bit),
+      .count_o(count[n]), .down_o(down[n]), .hold_o(hold[n]),
+      .counter_o(counter[24*n +: 24]), .fraction_o(fraction[12*n +: 12]),
+      .count1_i(count[0]), .down1_i(down[0]), .hold1_i(hold[0]),
+      .counter1_i(counter[23:0]), .fraction1_i(fraction[11:0]),
       .pins_i(pins[12*n +: 12]), .adc_a_i(adc_a_i[n]), .adc_b_i(adc_b_i[n]),
       .pwm_o(pwm_o[6*n +: 6]), .pulse_o(pulse_o[n]), .dir_o(dir_o[n]), .dac_a_o(dac_a_o[n]), .dac_b_o(dac_b_o[n]),
       .aena_o(aena_o[n]), .equ_o(equ_o[n])

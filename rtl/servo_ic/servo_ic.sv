@@ -1,5 +1,6 @@
 // Servo IC (DSPGATE1): 32 addresses of X and Y words on the bus side, PHASE and SERVO pins on the clock side. The
-// global registers, the clock chain and four channels. Bus on clk_ref_i, clock chain on clk_pwm_i, asynchronous reset. docs/servo_ic.md.
+// global registers, the clock chain and four channels. Bus on clk_ref_i, clock chain on clk_pwm_i, asynchronous reset.
+// docs/servo_ic.md.
 `default_nettype none
 
 module servo_ic (
@@ -29,7 +30,7 @@ module servo_ic (
   input  wire logic [3:0]  adc_a_i,
   input  wire logic [3:0]  adc_b_i,
   output logic [3:0]       equ_o,        // as in motor_o; apart, so that all instances have the same users of motor_o
-  output logic [63:0]      motor_o       // serial clocks and strobes, EQU, AENA, DAC B, DAC A, DIR, PULSE, PWM: as in board_top
+  output logic [63:0]      motor_o       // serial clocks and strobes, EQU, AENA, DAC B, DAC A, DIR, PULSE, PWM
 );
 
   logic [11:0] clock_dividers;
@@ -55,19 +56,21 @@ module servo_ic (
     .clk_pwm_i, .rst_ni,
     .max_count_i(max_count), .phase_div_i(phase_div), .servo_div_i(servo_div),
     .phase_ext_i(phase_ext), .servo_ext_i(servo_ext), .phase_i, .servo_i,
-    .phase_o, .servo_o, .phase_oe_o, .servo_oe_o, .cnt_o(cnt), .turn_o(turn),
+    .phase_o, .servo_o, .phase_oe_o, .servo_oe_o,
+    .cnt_o(cnt), .turn_o(turn),
     .phase_rise_o(phase_rise), .phase_fall_o(phase_fall), .servo_fall_o(servo_fall)
   );
 
   logic [23:0] pwm;
   logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ, serial;
   servo_channels u_channels (
-    .clk_pwm_i, .clk_ref_i, .rst_ni, .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .read_done_i, .read_x_i, .read_addr_i,
-    .rdata_o(channel_rdata), .trip_i, .dividers_i(clock_dividers), .dac_strobe_i(dac_strobe), .adc_strobe_i(adc_strobe),
-    .deadtime_i(deadtime), .cnt_i(cnt), .turn_i(turn), .phase_rise_i(phase_rise), .phase_fall_i(phase_fall),
-    .servo_fall_i(servo_fall), .pins_i, .adc_a_i, .adc_b_i, .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a),
-    .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ), .dac_clk_o(serial[0]), .dac_strobe_o(serial[1]), .adc_clk_o(serial[2]),
-    .adc_strobe_o(serial[3])
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .read_done_i, .read_x_i, .read_addr_i, .rdata_o(channel_rdata),
+    .trip_i, .dividers_i(clock_dividers), .dac_strobe_i(dac_strobe), .adc_strobe_i(adc_strobe), .deadtime_i(deadtime),
+    .cnt_i(cnt), .turn_i(turn), .phase_rise_i(phase_rise), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
+    .pins_i, .adc_a_i, .adc_b_i,
+    .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ),
+    .dac_clk_o(serial[0]), .dac_strobe_o(serial[1]), .adc_clk_o(serial[2]), .adc_strobe_o(serial[3])
   );
   assign rdata_o = ic_rdata | channel_rdata;
   assign equ_o   = equ;

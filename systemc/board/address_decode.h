@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/board/bus_sync.h"
 
 namespace brick {
@@ -29,11 +30,11 @@ class AddressDecode : public sc_core::sc_module {
     const std::uint32_t a = w.addr;
     if (w.aa == 0 && (a >> 8) == 0x700) {
       s.any = true;
-      s.signals = w.x && (a & 0xFF) == 0x10;
-      s.strobe = w.x && (a & 0xFF) == 0x11;
+      s.signals = w.x && a == regs::board_latches::kHostSignals.address;
+      s.strobe = w.x && a == regs::board_latches::kWatchdogStrobe.address;
     } else if ((w.aa & 2) != 0 && (a >> 14) == 0x1E) {
       s.any = true;
-      s.panel = jpan && !w.x && (a & 0x3FFF) == 0x0800;
+      s.panel = jpan && !w.x && a == regs::jpan::kInputs.address;
       const int ic = gate_ic(a & 0x3FFF);
       if (ic >= 0 && (fitted >> ic & 1) != 0) s.ic = ic;
     }

@@ -6,6 +6,7 @@
 
 #include <systemc>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
 
 namespace brick {
@@ -27,8 +28,8 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   bool phase() const { return net(q_.phase, phase_level, ext_phase_q_); }
   bool servo() const { return net(q_.servo, servo_level, ext_servo_q_); }
   std::uint32_t phase_source() const {
-    if (q_.ext) return kExternal;
-    return q_.phase == 0 ? kNone : static_cast<std::uint32_t>(__builtin_ctz(q_.phase));
+    if (q_.ext) return regs::clock_source::kOutside;
+    return q_.phase == 0 ? regs::clock_source::kNone : static_cast<std::uint32_t>(__builtin_ctz(q_.phase));
   }
   // Drivers of one net have disagreed for more than kTolerated ticks; stays until there is one driver again.
   bool conflict() const { return conflict_ && several(); }
@@ -61,7 +62,6 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   }
 
  private:
-  static constexpr std::uint32_t kExternal = 30, kNone = 31;
   static constexpr Tick kTolerated = 2;  // ticks for which two drivers may disagree
 
   bool several() const {

@@ -5,6 +5,7 @@
 
 #include <systemc>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/ref_clocked_block.h"
 
 namespace brick {
@@ -18,7 +19,7 @@ class PanelPort : public sc_core::sc_module, public RefClockedBlock {
   std::uint16_t rdata() const { return jpan2_; }
 
  private:
-  static constexpr std::uint16_t kIdle = 0xFFFF;
+  static constexpr std::uint16_t kIdle = regs::jpan::kInputs.reset;
 
   bool idle() const override { return jpan == jpan1_ && jpan1_ == jpan2_; }
   void step() override {

@@ -6,13 +6,20 @@
 namespace brick {
 namespace {
 
-enum HostByte : unsigned { kIcr = 0, kCvr = 1, kIsr = 2, kIvr = 3, kData5 = 5, kData6 = 6, kData7 = 7 };
+namespace icr = regs::host_io::icr;
+namespace cvr = regs::host_io::cvr;
+namespace isr = regs::host_io::isr;
+namespace hcr = regs::hi08::hcr;
+namespace hsr = regs::hi08::hsr;
+
+constexpr unsigned low3(const regs::Register& reg) { return reg.address & 7; }
+constexpr unsigned kIcr = low3(regs::host_io::kIcr), kCvr = low3(regs::host_io::kCvr), kIsr = low3(regs::host_io::kIsr),
+                   kIvr = low3(regs::host_io::kIvr), kData5 = low3(regs::host_io::kData5),
+                   kData6 = low3(regs::host_io::kData6), kData7 = low3(regs::host_io::kData7);
 
 constexpr unsigned low6(const regs::Register& reg) { return reg.address & 0x3F; }
 constexpr unsigned kHcr = low6(regs::hi08::kHcr), kHsr = low6(regs::hi08::kHsr), kHpcr = low6(regs::hi08::kHpcr),
                    kHbar = low6(regs::hi08::kHbar), kHorx = low6(regs::hi08::kHorx), kHotx = low6(regs::hi08::kHotx);
-
-constexpr std::uint8_t kHlend = 0x20, kInit = 0x80;
 
 constexpr unsigned byte_of(std::uint32_t word, unsigned lsb) { return (word >> lsb) & 0xFF; }
 void set_byte(std::uint32_t& word, unsigned lsb, std::uint8_t value) {
@@ -23,20 +30,29 @@ void set_byte(std::uint32_t& word, unsigned lsb, std::uint8_t value) {
 
 HostPort::HostPort(const sc_core::sc_module_name& name)
     : sc_module(name), host_socket("host_socket"), cpu_socket("cpu_socket") {
+  reset_registers();
   host_socket.register_b_transport(this, &HostPort::host_transport);
   cpu_socket.register_b_transport(this, &HostPort::cpu_transport);
 }
 
+bool HostPort::hreq() const { return (icr::kRreq.is_set(icr_) && rxdf_) || (icr::kTreq.is_set(icr_) && txde_); }
+
+bool HostPort::irq() const {
+  return (hcr::kHrie.is_set(hcr_) && hrdf_) || (hcr::kHtie.is_set(hcr_) && htde_) ||
+         (hcr::kHcie.is_set(hcr_) && cvr::kHc.is_set(cvr_));
+}
+
 std::uint8_t HostPort::host_read(unsigned addr) const {
-  const bool hlend = icr_ & kHlend;
+  const bool hlend = icr::kHlend.is_set(icr_);
   switch (addr & 7) {
     case kIcr:
       return icr_;
     case kCvr:
       return cvr_;
     case kIsr:
-      return static_cast<std::uint8_t>(hreq() << 7 | (hcr_ >> 3 & 3) << 3 | (txde_ && !hrdf_) << 2 | txde_ << 1 |
-                                       (rxdf_ ? 1 : 0));
+      return static_cast<std::uint8_t>(isr::kHreq.at(hreq()) | isr::kHf3.at(hcr::kHf3.get(hcr_)) |
+                                       isr::kHf2.at(hcr::kHf2.get(hcr_)) | isr::kTrdy.at(txde_ && !hrdf_) |
+                                       isr::kTxde.at(txde_) | isr::kRxdf.at(rxdf_));
     case kIvr:
       return ivr_;
     case kData5:
@@ -55,8 +71,8 @@ std::uint32_t HostPort::cpu_read(unsigned addr) const {
     case kHcr:
       return hcr_;
     case kHsr:
-      return static_cast<std::uint32_t>((cvr_ & 0x7F) << 8 | (icr_ >> 3 & 3) << 3 | (cvr_ >> 7) << 2 | htde_ << 1 |
-                                        (hrdf_ ? 1 : 0));
+      return hsr::kHv.at(cvr::kHv.get(cvr_)) | hsr::kHf1.at(icr::kHf1.get(icr_)) | hsr::kHf0.at(icr::kHf0.get(icr_)) |
+             hsr::kHcp.at(cvr::kHc.get(cvr_)) | hsr::kHtde.at(htde_) | hsr::kHrdf.at(hrdf_);
     case kHpcr:
       return hpcr_;
     case kHbar:
@@ -96,16 +112,16 @@ void HostPort::cpu_write() {
   const std::uint32_t value = in.dsp_wdata & 0xFFFFFF;
   switch (in.dsp_addr) {
     case kHcr:
-      hcr_ = value & 0x1F;
+      hcr_ = static_cast<std::uint8_t>(value & regs::hi08::kHcr.written);
       break;
     case kHsr:
-      if (value & regs::hi08::hsr::kHcp.mask()) cvr_ &= 0x7F;
+      if (hsr::kHcp.is_set(value)) cvr_ = static_cast<std::uint8_t>(cvr::kHc.set(cvr_, 0));
       break;
     case kHpcr:
       hpcr_ = static_cast<std::uint16_t>(value & regs::hi08::kHpcr.written);
       break;
     case kHbar:
-      hbar_ = static_cast<std::uint8_t>(value);
+      hbar_ = static_cast<std::uint8_t>(value & regs::hi08::kHbar.written);
       break;
     case kHotx:
       hotx_ = value;
@@ -117,15 +133,15 @@ void HostPort::cpu_write() {
 }
 
 void HostPort::host_write() {
-  const bool hlend = icr_ & kHlend;
+  const bool hlend = icr::kHlend.is_set(icr_);
   switch (in.hp_addr) {
     case kIcr:
-      icr_ = in.hp_wdata & 0x3F;
-      if ((in.hp_wdata & kInit) && (in.hp_wdata & 2)) {
+      icr_ = static_cast<std::uint8_t>(icr::kInit.set(in.hp_wdata & regs::host_io::kIcr.written, 0));
+      if (icr::kInit.is_set(in.hp_wdata) && icr::kTreq.is_set(in.hp_wdata)) {
         txde_ = true;
         hrdf_ = false;
       }
-      if ((in.hp_wdata & kInit) && (in.hp_wdata & 1)) {
+      if (icr::kInit.is_set(in.hp_wdata) && icr::kRreq.is_set(in.hp_wdata)) {
         rxdf_ = false;
         htde_ = true;
       }
@@ -152,11 +168,12 @@ void HostPort::host_write() {
 }
 
 void HostPort::reset_registers() {
-  icr_ = hcr_ = 0;
-  cvr_ = 0x32;
-  ivr_ = 0x0F;
-  hbar_ = 0x80;
-  hpcr_ = 0;
+  icr_ = regs::host_io::kIcr.reset;
+  cvr_ = regs::host_io::kCvr.reset;
+  ivr_ = regs::host_io::kIvr.reset;
+  hcr_ = regs::hi08::kHcr.reset;
+  hbar_ = regs::hi08::kHbar.reset;
+  hpcr_ = regs::hi08::kHpcr.reset;
   tx_ = horx_ = hotx_ = rx_ = 0;
   txde_ = htde_ = true;
   hrdf_ = rxdf_ = false;

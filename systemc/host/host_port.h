@@ -27,8 +27,8 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
 
   std::uint8_t hp_rdata() const { return host_read(in.hp_addr); }
   std::uint32_t dsp_rdata() const { return cpu_read(in.dsp_addr); }
-  bool hreq() const { return ((icr_ & 1) && rxdf_) || ((icr_ & 2) && txde_); }
-  bool irq() const { return ((hcr_ & 1) && hrdf_) || ((hcr_ & 2) && htde_) || ((hcr_ & 4) && (cvr_ & 0x80)); }
+  bool hreq() const;
+  bool irq() const;
 
   // Without side effects.
   std::uint8_t host_read(unsigned addr) const;
@@ -46,8 +46,8 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
   bool tx_move() const { return !txde_ && !hrdf_; }
   bool rx_move() const { return !htde_ && !rxdf_; }
 
-  std::uint8_t icr_ = 0, cvr_ = 0x32, ivr_ = 0x0F, hcr_ = 0, hbar_ = 0x80;
-  std::uint16_t hpcr_ = 0;
+  std::uint8_t icr_, cvr_, ivr_, hcr_, hbar_;
+  std::uint16_t hpcr_;
   std::uint32_t tx_ = 0, horx_ = 0, hotx_ = 0, rx_ = 0;
   bool txde_ = true, hrdf_ = false, htde_ = true, rxdf_ = false;
 };

@@ -7,6 +7,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
@@ -22,15 +23,17 @@ class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
   Inputs in;
 
   std::uint8_t rdata() const { return latch_; }
-  bool ipos() const { return latch_ & 1; }
-  bool breq() const { return latch_ & 2; }
-  bool eror() const { return latch_ & 4; }
-  bool f1er() const { return latch_ & 8; }
+  bool ipos() const { return regs::board_latches::host_signals::kIpos.is_set(latch_); }
+  bool breq() const { return regs::board_latches::host_signals::kBreq.is_set(latch_); }
+  bool eror() const { return regs::board_latches::host_signals::kEror.is_set(latch_); }
+  bool f1er() const { return regs::board_latches::host_signals::kF1er.is_set(latch_); }
 
  private:
-  bool idle() const override { return !in.wr || (in.wdata & 0xF) == latch_; }
+  static constexpr std::uint8_t kWritten = regs::board_latches::kHostSignals.written;
+
+  bool idle() const override { return !in.wr || (in.wdata & kWritten) == latch_; }
   void step() override {
-    if (in.wr) latch_ = in.wdata & 0xF;
+    if (in.wr) latch_ = in.wdata & kWritten;
   }
   void reset_registers() override { latch_ = 0; }
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);

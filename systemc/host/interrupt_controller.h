@@ -8,6 +8,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
@@ -33,7 +34,12 @@ class InterruptController final : public sc_core::sc_module, public RefClockedBl
   std::uint8_t read(unsigned addr) const;
 
  private:
-  enum Address : unsigned { kStatus, kSignal, kMask, kEdgeLevel };
+  enum Address : unsigned {
+    kStatus = regs::host_io::kPicStatus.address & 3,
+    kSignal = regs::host_io::kPicSignal.address & 3,
+    kMask = regs::host_io::kPicMask.address & 3,
+    kEdgeLevel = regs::host_io::kPicEdgeLevel.address & 3
+  };
 
   bool idle() const override;
   void step() override;

@@ -7,7 +7,11 @@ std::uint8_t IsaSlave::decode() const {
   const bool io = (cmd1_ & (kIor | kIow)) && !aen1_ && ((sa1_ ^ config_.io_base) & compared) == 0;
   const bool memory = (cmd1_ & (kMemr | kMemw)) && (sa1_ >> 16) == config_.mem_page;
   std::uint8_t target = memory ? kMemory : 0;
-  if (io) target |= (sa1_ & 8) == 0 ? kHostPort : (sa1_ & 4) == 0 ? kPic : kReserved;
+  if (io) {
+    const std::uint32_t group = sa1_ & 0xC;  // +0..7, +8..11, the rest
+    constexpr std::uint32_t kPicGroup = regs::host_io::kPicStatus.address & 0xC;
+    target |= group < kPicGroup ? kHostPort : group == kPicGroup ? kPic : kReserved;
+  }
   return target;
 }
 

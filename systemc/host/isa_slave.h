@@ -6,6 +6,7 @@
 
 #include <systemc>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
@@ -14,9 +15,9 @@ namespace brick {
 class IsaSlave final : public sc_core::sc_module, public RefClockedBlock {
  public:
   struct Config {
-    std::uint16_t io_base = 0x210;
-    std::uint8_t mem_page = 0xD;  // SA[19:16]
-    bool decode_all = true;       // false: classic ten-bit I/O decode
+    std::uint16_t io_base = regs::host_io::kBase;
+    std::uint8_t mem_page = regs::kDpramWindowBase >> 16;  // SA[19:16]
+    bool decode_all = true;                                // false: classic ten-bit I/O decode
   };
   explicit IsaSlave(const sc_core::sc_module_name& name) : IsaSlave(name, Config()) {}
   IsaSlave(const sc_core::sc_module_name& name, const Config& config) : sc_module(name), config_(config) {}

@@ -27,23 +27,25 @@ class MacroIcRegs : public sc_core::sc_module {
   std::uint32_t read(bool x, unsigned offset) const {
     const unsigned i = index(x, offset);
     if (i == kRegister.size() || (gate && i >= kSupplementary)) return 0;
-    return gate && i == kClock ? word_[i] & ~kServoExternal : word_[i];
+    return gate && i == kClock ? kServoExternal.set(word_[i], 0) : word_[i];
   }
   void write(bool x, unsigned offset, std::uint32_t value) {
     const unsigned i = index(x, offset);
     if (i != kRegister.size()) word_[i] = value & kRegister[i].written;
   }
 
-  bool phase_ext() const { return regs::macro_ic::clock_control::kPhaseExternal.get(word_[kClock]) != 0; }
-  bool servo_ext() const {
-    return gate || (word_[kClock] & kServoExternal) != 0;
-  }  // a MACROGATE has no servo clock to drive
+  bool phase_ext() const {
+    return regs::macro_ic::clock_control::kPhaseExternal.get(word_[kClock]) != regs::clock_direction::kOutput;
+  }
+  bool servo_ext() const {  // a MACROGATE has no servo clock to drive
+    return gate || kServoExternal.get(word_[kClock]) != regs::clock_direction::kOutput;
+  }
   unsigned phase_div() const { return regs::macro_ic::clock_control::kPhaseDivider.get(word_[kClock]); }
   unsigned servo_div() const { return regs::macro_ic::clock_control::kServoDivider.get(word_[kClock]); }
-  unsigned max_count() const { return regs::macro_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
+  unsigned max_count() const { return regs::macro_ic::pwm_control::kMaxCount.get(word_[kPwm]); }
 
  private:
-  static constexpr std::uint32_t kServoExternal = regs::macro_ic::clock_control::kServoExternal.mask();
+  static constexpr regs::Field kServoExternal = regs::macro_ic::clock_control::kServoExternal;
   static constexpr unsigned kClock = 0, kPwm = 1,
                             kSupplementary = 7;  // places in the list; from the last on: DSPGATE2 only
   static constexpr std::array kRegister{

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
+#include "systemc/core/motor_pins.h"
 
 namespace brick {
 
@@ -15,24 +17,39 @@ class ChannelCapture {
   bool captured_gi() const { return captured_gi_; }
   unsigned hall() const { return hall_; }
 
-  // The SCLK edge t; `level` as status bits 23..12, `control` the control word, position after the edge.
+  // The SCLK edge t; `level` by ChannelPin, `control` the control word, position after the edge.
   void sclk(Tick t, bool ready, bool index, unsigned level, std::uint32_t control, std::uint32_t position,
             unsigned fraction) {
-    const bool inverted = (control >> 6 & 1) != 0;
+    namespace field = regs::servo_channel::control;
+    const bool inverted = field::kIndexInvert.is_set(control);
     const bool i = index != inverted;
-    const bool f = ((level >> (4 + (control >> 8 & 3)) & 1) != 0) != ((control >> 7 & 1) != 0);
-    const unsigned source = control >> 4 & 3;
-    const bool term = source == 0 ? inverted : source == 1 ? i : source == 2 ? f : i && f;
-    const unsigned halls = level >> 8 & 7;
-    const bool gated = (control >> 15 & 1) != 0;
-    const bool hall_mode = gated && (source & 1) == 0;
+    const bool f = (level >> flag_pin(field::kFlagSelect.get(control)) & 1) != field::kFlagInvert.get(control);
+    bool term = inverted, uses_index = false;
+    switch (field::kCaptureSource.get(control)) {
+      case regs::capture_source::kIndex:
+        term = i;
+        uses_index = true;
+        break;
+      case regs::capture_source::kFlag:
+        term = f;
+        break;
+      case regs::capture_source::kIndexAndFlag:
+        term = i && f;
+        uses_index = true;
+        break;
+      case regs::capture_source::kSoftware:
+        break;
+    }
+    const unsigned halls = level >> kW & 7;
+    const bool gated = field::kGatedIndex.is_set(control);
+    const bool hall_mode = gated && !uses_index;
     const bool edge = hall_mode ? halls != last_halls_ : term && !last_term_;
     last_term_ = term;
     last_halls_ = halls;
     if (!ready || !armed_ || !edge) return;
     armed_ = false;
     captured_ = true;
-    captured_gi_ = gated && (source & 1) != 0;
+    captured_gi_ = gated && uses_index;
     position_ = position;
     fraction_ = fraction;
     if (hall_mode) hall_ = halls;
@@ -46,6 +63,19 @@ class ChannelCapture {
   }
 
  private:
+  static unsigned flag_pin(std::uint32_t code) {
+    switch (code) {
+      case regs::flag_select::kHmfl:
+        return kHmfl;
+      case regs::flag_select::kPlim:
+        return kPlim;
+      case regs::flag_select::kMlim:
+        return kMlim;
+      default:
+        return kUser;
+    }
+  }
+
   bool last_term_ = false, armed_ = true, captured_ = false, captured_gi_ = false;
   unsigned last_halls_ = 0, hall_ = 0, fraction_ = 0;
   std::uint32_t position_ = 0;

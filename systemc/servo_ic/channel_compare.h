@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
+
 namespace brick {
 
 // Position of a channel as a compare sees it before an SCLK edge, and what that edge does to it.
@@ -30,8 +32,8 @@ class BasicChannelCompare {
   void set_a(std::uint32_t v) { a_ = v; }
   void set_b(std::uint32_t v) { b_ = v; }
   void set_inc(std::uint32_t v) { inc_ = v; }
-  void set_a_fraction(std::uint32_t v) { af_ = v & 0xFFF; }
-  void set_b_fraction(std::uint32_t v) { bf_ = v & 0xFFF; }
+  void set_a_fraction(std::uint32_t v) { af_ = regs::servo_channel_fine::timer2::kCompareA.get(v); }
+  void set_b_fraction(std::uint32_t v) { bf_ = regs::servo_channel_fine::timer1::kCompareB.get(v); }
   void set_equ(bool v) { equ_ = v; }
 
   // `other`: the position is that of channel 1.

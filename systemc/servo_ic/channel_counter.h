@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/servo_ic/channel_decode.h"
 
 namespace brick {
@@ -12,7 +13,7 @@ class ChannelCounter {
  public:
   std::uint32_t counter() const { return counter_; }
   bool down() const { return down_; }  // direction of the last count
-  std::uint32_t t1() const { return t1_; }
+  std::uint32_t t1() const { return regs::servo_channel::timer1::kT1.get(t1_); }
   std::uint32_t phase_pos() const { return phase_pos_; }
   std::uint32_t servo_pos() const { return servo_pos_; }
   std::uint32_t servo_t1() const { return servo_t1_; }
@@ -26,7 +27,7 @@ class ChannelCounter {
     const std::uint32_t t2 = t2_;
     skip(1);
     if (d.count) {
-      t1_ = t2_ | (d.down != down_ ? 0x800000u : 0u);
+      t1_ = regs::servo_channel::timer1::kReversed.set(t2_, d.down != down_);
       t2_ = 0;
       down_ = d.down;
       if (!hold) counter_ = (counter_ + (d.down ? 0xFFFFFFu : 1u)) & 0xFFFFFF;
@@ -36,13 +37,14 @@ class ChannelCounter {
   }
   void latch_phase() { phase_pos_ = counter_; }
   void latch_servo() {
-    servo_pos_ = (counter_ << 1 & 0xFFFFFF) | (down_ ? 1u : 0u);
+    namespace field = regs::servo_channel::servo_position;
+    servo_pos_ = field::kPosition.at(counter_) | field::kDown.at(down_);
     servo_t1_ = t1_;
     servo_t2_ = t2_;
   }
 
  private:
-  static constexpr std::int64_t kTimerMax = 0x7FFFFF;
+  static constexpr std::int64_t kTimerMax = regs::servo_channel::timer2::kT2.mask();
   std::uint32_t counter_ = 0, t1_ = 0, t2_ = 0;
   std::uint32_t phase_pos_ = 0, servo_pos_ = 0, servo_t1_ = 0, servo_t2_ = 0;
   bool down_ = false;

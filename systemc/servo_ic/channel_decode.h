@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
+
 namespace brick {
 
 // A before B counts up in the clockwise modes.
@@ -20,44 +22,44 @@ class BasicChannelDecode {
   };
 
   // `abc`: bit 0 A, 1 B, 2 C. Also remembers them for the next edge.
-  Result step(bool ready, unsigned mode, bool hold, unsigned abc, bool pulse, bool pulse_down) {
+  Result step(bool ready, std::uint32_t mode, bool hold, unsigned abc, bool pulse, bool pulse_down) {
     const unsigned last = last_;
     last_ = abc;
     Result r;
     const bool a_rises = (abc & 1) != 0 && (last & 1) == 0;
     const unsigned moved = (position(abc) - position(last)) & 3;
-    const bool ccw = (mode & 4) != 0;
+    const bool ccw = (mode & kCounterClockwise) != 0;
     r.down = (moved == (ALeadsUp ? 3u : 1u)) != ccw;
     switch (mode) {
-      case 0:
-      case 4:
+      case regs::decode::kPulseCw:
+      case regs::decode::kPulseCcw:
         r.count = a_rises;
         r.down = ((abc & 2) == 0) != ccw;
         break;
-      case 1:
-      case 5:
+      case regs::decode::kX1Cw:
+      case regs::decode::kX1Ccw:
         r.count = (moved & 1) != 0 && ((abc | last) & 2) == 0;
         r.error = moved == 2;
         break;
-      case 2:
-      case 6:
+      case regs::decode::kX2Cw:
+      case regs::decode::kX2Ccw:
         r.count = (moved & 1) != 0 && ((abc ^ last) & 1) != 0;
         r.error = moved == 2;
         break;
-      case 3:
-      case 7:
+      case regs::decode::kX4Cw:
+      case regs::decode::kX4Ccw:
         r.count = (moved & 1) != 0;
         r.error = moved == 2;
         break;
-      case 8:
+      case regs::decode::kInternalPulse:
         r.count = pulse;
         r.down = pulse_down;
         break;
-      case 11:
-      case 15:
+      case regs::decode::kHallCw:
+      case regs::decode::kHallCcw:
         hall(abc, last, ccw, r);
         break;
-      case 12:
+      case regs::decode::kMldt:
         r.mark = ready && pulse;
         r.echo = ready && a_rises;
         break;
@@ -70,6 +72,8 @@ class BasicChannelDecode {
   }
 
  private:
+  static constexpr std::uint32_t kCounterClockwise = 4;  // the two codes of a mode differ in this bit
+
   // Place in the cycle 00, 10, 11, 01 of {A, B}.
   static unsigned position(unsigned abc) { return (abc & 2) | ((abc ^ abc >> 1) & 1); }
 

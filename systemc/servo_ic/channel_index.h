@@ -1,17 +1,20 @@
 // Model of rtl/servo_ic/channel_index.sv: gated and de-multiplexed index, encoder loss.
 #pragma once
 
+#include "systemc/core/motor_pins.h"
+
 namespace brick {
 
 class ChannelIndex {
  public:
-  // Inputs as status bits 23..12 show them, from the filtered pins.
+  // Inputs as the status word shows them, from the filtered pins.
   unsigned level(unsigned pins, bool demux) const {
-    return demux ? (pins & 0x8FB) | (part_ & 7) << 8 | (part_ >> 3) << 2 : pins;
+    constexpr unsigned kReplaced = 1u << kEncC | 7u << kW;
+    return demux ? (pins & ~kReplaced) | (part_ & 7) << kW | (part_ >> 3) << kEncC : pins;
   }
   static bool index(unsigned level, bool gated, bool gate_low) {
-    const bool c = (level & 4) != 0;
-    return gated ? c && (level & 3) == (gate_low ? 0u : 3u) : c;
+    const bool c = is(level, kEncC);
+    return gated ? c && is(level, kEncA) != gate_low && is(level, kEncB) != gate_low : c;
   }
   bool incomplete() const { return seen_ != 0xF; }
 
@@ -21,14 +24,16 @@ class ChannelIndex {
     constexpr unsigned kState[4] = {2, 4, 1, 8};
     const unsigned state = kState[pins & 3];
     seen_ |= state;
-    part_ = (part_ & ~state) | ((pins & 4) != 0 ? state : 0);
-    const bool equal = ((pins >> 11 ^ pins >> 10) & 1) == 0 || ((pins >> 9 ^ pins >> 8) & 1) == 0;
+    part_ = (part_ & ~state) | (is(pins, kEncC) ? state : 0);
+    const bool equal = is(pins, kT) == is(pins, kU) || is(pins, kV) == is(pins, kW);
     const bool loss = equal && equal_;
     equal_ = equal;
     return loss;
   }
 
  private:
+  static bool is(unsigned pins, ChannelPin pin) { return (pins >> pin & 1) != 0; }
+
   unsigned seen_ = 0, part_ = 0;
   bool equal_ = false;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "rtl/regs/brick_regs.hpp"
+
 namespace brick {
 
 class ChannelDac {
@@ -29,9 +31,12 @@ class BasicChannelAdc {
     word_ = (word_ << n | (data ? (1u << n) - 1 : 0)) & 0x3FFFF;
   }
   void transfer() { value_ = word_; }
-  std::uint32_t value() const { return value_ << 6; }
+  std::uint32_t value() const { return kValue.at(value_); }  // the word; those of ADC A and ADC B are alike
 
  private:
+  static constexpr regs::Field kValue = regs::servo_channel::adc_a::kValue;
+  static_assert(kValue.mask() == regs::servo_channel::adc_b::kValue.mask());
+
   std::uint32_t word_ = 0, value_ = 0;
 };
 using ChannelAdc = BasicChannelAdc<kAdcLatency>;

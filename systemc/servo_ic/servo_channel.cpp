@@ -1,8 +1,33 @@
 #include "systemc/servo_ic/servo_channel.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace brick {
+namespace {
+
+namespace words = regs::servo_channel;
+namespace status_bits = words::status;
+namespace fine_words = regs::servo_channel_fine;
+
+constexpr unsigned word(bool x, unsigned offset) { return (x ? 8 : 0) + offset; }
+constexpr unsigned word(const regs::Register& r) { return word(r.space == 'X', r.address); }
+
+// With hardware 1/T the timer words hold fractions.
+static_assert(word(words::kTimer1) == word(fine_words::kTimer1) && word(words::kTimer2) == word(fine_words::kTimer2));
+
+// The input pins stand in the status word in the order of ChannelPin.
+constexpr regs::Field kInputs[] = {status_bits::kCha,   status_bits::kChb,   status_bits::kChc,   status_bits::kFault,
+                                   status_bits::kHmfl,  status_bits::kPlim,  status_bits::kMlim,  status_bits::kUser,
+                                   status_bits::kFlagW, status_bits::kFlagV, status_bits::kFlagU, status_bits::kFlagT};
+constexpr bool in_order() {
+  for (unsigned pin = 0; pin < kChannelPins; ++pin)
+    if (kInputs[pin].lsb != kInputs[0].lsb + pin) return false;
+  return true;
+}
+static_assert(std::size(kInputs) == kChannelPins && in_order());
+
+}  // namespace
 
 void ServoChannel::reset(Tick t) {
   ChannelInput input = input_;
@@ -14,39 +39,47 @@ void ServoChannel::reset(Tick t) {
 }
 
 std::uint32_t ServoChannel::status(bool trip) const {
-  const unsigned level = index_.level(input_.level(), is(channel_control::kIndexDemux));
-  return level << 12 | capture_.captured() << 11 | capture_.captured_gi() << 10 | equ(trip) << 9 | error_ << 8 |
-         loss_ << 7 | index_.incomplete() << 3 | capture_.hall();
+  using namespace status_bits;
+  return index_.level(input_.level(), is(channel_control::kIndexDemux)) << kInputs[0].lsb |
+         kCaptured.at(capture_.captured()) | kCapturedGatedIndex.at(capture_.captured_gi()) | kEqu.at(equ(trip)) |
+         kEncoderError.at(error_) | kEncoderLoss.at(loss_) | kDemuxInvalid.at(index_.incomplete()) |
+         kHallCapture.at(capture_.hall());
 }
 
 std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) const {
-  switch ((x ? 8 : 0) + offset) {
-    case 0:
-      return fine() ? capture_.fraction() << 12 | compare_.b_fraction() : counter_.servo_t1();
-    case 1:
-      return fine() ? servo_fraction_ << 12 | compare_.a_fraction() : counter_.servo_t2();
-    case 2:
-    case 3:
-    case 4:
-      return out_[offset - 2];
-    case 5:
-    case 6:
-      return adc_[offset - 5].value();
-    case 7:
+  switch (word(x, offset)) {
+    case word(words::kTimer1):
+      if (!fine()) return counter_.servo_t1();
+      return fine_words::timer1::kCaptured.at(capture_.fraction()) |
+             fine_words::timer1::kCompareB.at(compare_.b_fraction());
+    case word(words::kTimer2):
+      if (!fine()) return counter_.servo_t2();
+      return fine_words::timer2::kServo.at(servo_fraction_) | fine_words::timer2::kCompareA.at(compare_.a_fraction());
+    case word(words::kOutA):
+      return out_[0];
+    case word(words::kOutB):
+      return out_[1];
+    case word(words::kOutC):
+      return out_[2];
+    case word(words::kAdcA):
+      return adc_[0].value();
+    case word(words::kAdcB):
+      return adc_[1].value();
+    case word(words::kCompareA):
       return compare_.a();
-    case 8:
+    case word(words::kStatus):
       return status(trip);
-    case 9:
+    case word(words::kPhasePosition):
       return counter_.phase_pos();
-    case 10:
+    case word(words::kServoPosition):
       return counter_.servo_pos();
-    case 11:
+    case word(words::kFlagPosition):
       return capture_.position();
-    case 13:
-      return control_ | (now < equ_write_until_ ? channel_control::kEquWrite.mask() : 0u);
-    case 14:
+    case word(words::kControl):
+      return control_ | channel_control::kEquWrite.at(now < equ_write_until_);
+    case word(words::kCompareIncrement):
       return compare_.inc();
-    case 15:
+    case word(words::kCompareB):
       return compare_.b();
     default:
       return 0;
@@ -55,37 +88,41 @@ std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) c
 
 void ServoChannel::write(Tick now, bool x, unsigned offset, std::uint32_t value, bool trip) {
   settle_ = 0;
-  switch ((x ? 8 : 0) + offset) {
-    case 0:
+  switch (word(x, offset)) {
+    case word(words::kTimer1):
       if (fine()) compare_.set_b_fraction(value);
       break;
-    case 1:
+    case word(words::kTimer2):
       if (fine()) compare_.set_a_fraction(value);
       break;
-    case 2:
-    case 3:
-    case 4:
-      if (!trip) out_[offset - 2] = value;
+    case word(words::kOutA):
+      if (!trip) out_[0] = value;
       break;
-    case 7:
+    case word(words::kOutB):
+      if (!trip) out_[1] = value;
+      break;
+    case word(words::kOutC):
+      if (!trip) out_[2] = value;
+      break;
+    case word(words::kCompareA):
       compare_.set_a(value);
       break;
-    case 8:
+    case word(words::kStatus):
       error_ = false;
-      loss_ = loss_ && (value >> 7 & 1) != 0;
+      loss_ = loss_ && status_bits::kEncoderLoss.is_set(value);
       break;
-    case 13:
+    case word(words::kControl):
       subcount_.advance(now, fine());
       control_ = value & ~channel_control::kEquWrite.mask();
-      if (channel_control::kEquWrite.get(value) != 0) {
+      if (channel_control::kEquWrite.is_set(value)) {
         equ_write_until_ = next_ref_edge(now);
-        compare_.set_equ(channel_control::kEquState.get(value) != 0);
+        compare_.set_equ(channel_control::kEquState.is_set(value));
       }
       break;
-    case 14:
+    case word(words::kCompareIncrement):
       compare_.set_inc(value);
       break;
-    case 15:
+    case word(words::kCompareB):
       compare_.set_b(value);
       break;
     default:
@@ -152,7 +189,7 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   const bool index = ChannelIndex::index(level, is(channel_control::kGatedIndex), is(channel_control::kGateState));
   subcount_.advance(edge - kTicksPerRef, fine());
 
-  const ChannelDecode::Result d = decode_.step(ready, control_ & 0xF, hold(), pins & 7, pfm_.event(), pfm_.down());
+  const ChannelDecode::Result d = decode_.step(ready, decode(), hold(), pins & 7, pfm_.event(), pfm_.down());
   pfm_.take_event();
   const ChannelPosition own{counter_.counter(), fine() ? fraction() : 0, hold(), d.count, d.down};
   compare_.sclk(is(channel_control::kCompareChannel) && channel1 != nullptr ? *channel1 : own, fine(),
@@ -161,7 +198,7 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   const unsigned old_fraction = fraction();
   const bool reversed = d.down != counter_.down();
   counter_.sclk(d, hold());
-  subcount_.sclk(edge, fine(), d.count, d.echo, reversed, counter_.t1() & 0x7FFFFF);
+  subcount_.sclk(edge, fine(), d.count, d.echo, reversed, counter_.t1());
   capture_.sclk(edge, ready, index, level, control_, hold() ? 0 : counter_.counter(),
                 d.count ? (d.down ? 4095 : 0) : old_fraction);
   error_ = (error_ || d.error) && !hold();

@@ -32,7 +32,7 @@ class ServoChannel {
   void write(Tick now, bool x, unsigned offset, std::uint32_t value, bool trip);
   void read_done(Tick now) { capture_.read(now); }  // of X:+3
 
-  void set_pins(Tick now, unsigned pins);  // bits as status bits 23..12
+  void set_pins(Tick now, unsigned pins);  // bits by ChannelPin
 
   // Edges. `edge` is one of clk_ref throughout.
   void latch_phase();
@@ -74,7 +74,9 @@ class ServoChannel {
 
   // Whether EQU can change without a write, and for how many SCLK edges it does not at least.
   bool compares(bool trip) const { return !hold() && (!settled() || counts_pulses(trip)); }
-  bool counts_pulses(bool trip) const { return (control_ & 0xF) == 8 && is(channel_control::kCPfm) && !trip; }
+  bool counts_pulses(bool trip) const {
+    return decode() == regs::decode::kInternalPulse && is(channel_control::kCPfm) && !trip;
+  }
   std::uint32_t edges_to_equ() const { return compare_.edges_to_hit(counter_.counter(), fine()); }
 
   // The PWM, as it was at mark(), `by` ticks later.
@@ -105,7 +107,8 @@ class ServoChannel {
   // it, and the latest user of those.
   static constexpr unsigned kSettled = 12;
 
-  bool is(const regs::Field& field) const { return field.get(control_) != 0; }
+  bool is(const regs::Field& field) const { return field.is_set(control_); }
+  std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool fine() const { return is(channel_control::kHardware1t); }
   unsigned fraction() const { return counter_.down() ? 4095 - subcount_.e() : subcount_.e(); }
   std::uint32_t status(bool trip) const;

@@ -8,6 +8,7 @@
 
 #include <systemc>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
 #include "systemc/core/motor_pins.h"
 #include "systemc/servo_ic/channel_clocks.h"
@@ -22,11 +23,11 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   // Seen by the edges to come.
   struct Inputs {
     bool trip = false;
-    unsigned dividers = 0;         // I7m03
-    std::uint32_t dac_strobe = 0;  // I7m05
-    std::uint32_t adc_strobe = 0;  // I7m06
-    unsigned deadtime = 0;         // I7m04
-    TriangleLine line;             // the triangle from the next edge on
+    std::uint32_t clock_control = 0;  // the word, for its dividers (I7m03)
+    std::uint32_t dac_strobe = 0;     // I7m05
+    std::uint32_t adc_strobe = 0;     // I7m06
+    unsigned deadtime = 0;            // I7m04
+    TriangleLine line;                // the triangle from the next edge on
     bool phase_rises = false, phase_falls = false,
          servo_falls = false;           // turned over by each such edge of the clock chain
     std::uint8_t adc_a = 0, adc_b = 0;  // bit n-1: channel n
@@ -38,7 +39,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   std::uint32_t read(bool x, unsigned offset) const { return channel_[offset >> 3].read(now_, x, offset & 7, in.trip); }
   void write(bool x, unsigned offset, std::uint32_t value);
   void read_done(bool x, unsigned offset) {
-    if (x && (offset & 7) == 3) channel_[offset >> 3].read_done(now_);
+    if (x && (offset & 7) == regs::servo_channel::kFlagPosition.address) channel_[offset >> 3].read_done(now_);
   }
   void turn() {
     for (ServoChannel& channel : channel_) channel.load_pwm();
@@ -91,11 +92,14 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     for (unsigned i = 0; i < kChannels; ++i) bits |= static_cast<unsigned>(pin(channel_[i])) << i;
     return bits;
   }
-  unsigned divider(unsigned clock) const { return in.dividers >> (3 * clock) & 7; }
+  unsigned divider(const regs::Field& clock) const { return clock.get(in.clock_control); }
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
 
-  enum { kSclk, kPfm, kDac, kAdc };
+  static constexpr regs::Field kSclk = regs::servo_ic::clock_control::kSclkDivider,
+                               kPfm = regs::servo_ic::clock_control::kPfmDivider,
+                               kDac = regs::servo_ic::clock_control::kDacDivider,
+                               kAdc = regs::servo_ic::clock_control::kAdcDivider;
   std::array<ServoChannel, kChannels> channel_;
   ChannelDivider sclk_, pfm_;
   ChannelStrobe dac_, adc_;

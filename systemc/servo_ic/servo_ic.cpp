@@ -28,7 +28,7 @@ void ServoIc::apply_registers() {
   clock_gen_.in.servo_div = regs_.servo_div();
   clock_gen_.in.phase_ext = regs_.phase_ext();
   clock_gen_.in.servo_ext = regs_.servo_ext();
-  channels_.in.dividers = regs_.clock_dividers();
+  channels_.in.clock_control = regs_.clock_word();
   channels_.in.dac_strobe = regs_.dac_strobe();
   channels_.in.adc_strobe = regs_.adc_strobe();
   channels_.in.deadtime = regs_.deadtime();

@@ -13,39 +13,47 @@ namespace brick {
 
 class ServoIcRegs : public sc_core::sc_module {
  public:
-  explicit ServoIcRegs(const sc_core::sc_module_name& name) : sc_module(name) {}
+  explicit ServoIcRegs(const sc_core::sc_module_name& name) : sc_module(name) { reset(); }
 
-  void reset() { word_ = kReset; }
-
-  // `offset` is 0..31; words that are not built read 0 and ignore writes.
-  std::uint32_t read(bool x, unsigned offset) const { return is_global(x, offset) ? word_[offset >> 3] : 0; }
-  void write(bool x, unsigned offset, std::uint32_t value) {
-    if (is_global(x, offset)) word_[offset >> 3] = value & kWritable[offset >> 3];
+  void reset() {
+    for (unsigned i = 0; i < kRegister.size(); ++i) word_[i] = kRegister[i].reset;
   }
 
-  bool phase_ext() const { return regs::servo_ic::clock_control::kPhaseExternal.get(word_[kClock]) != 0; }
-  bool servo_ext() const { return regs::servo_ic::clock_control::kServoExternal.get(word_[kClock]) != 0; }
+  // `offset` is 0..31; words that are not built read 0 and ignore writes.
+  std::uint32_t read(bool x, unsigned offset) const {
+    const unsigned i = place(x, offset);
+    return i == kRegister.size() ? 0 : word_[i];
+  }
+  void write(bool x, unsigned offset, std::uint32_t value) {
+    const unsigned i = place(x, offset);
+    if (i != kRegister.size()) word_[i] = value & kRegister[i].written;
+  }
+
+  bool phase_ext() const {
+    return regs::servo_ic::clock_control::kPhaseExternal.get(word_[kClock]) != regs::clock_direction::kOutput;
+  }
+  bool servo_ext() const {
+    return regs::servo_ic::clock_control::kServoExternal.get(word_[kClock]) != regs::clock_direction::kOutput;
+  }
   unsigned phase_div() const { return regs::servo_ic::clock_control::kPhaseDivider.get(word_[kClock]); }
   unsigned servo_div() const { return regs::servo_ic::clock_control::kServoDivider.get(word_[kClock]); }
-  unsigned clock_dividers() const {
-    return word_[kClock] >> regs::servo_ic::clock_control::kSclkDivider.lsb & 0xFFF;
-  }  // all four
+  std::uint32_t clock_word() const { return word_[kClock]; }  // with the four dividers of the channels
   std::uint32_t dac_strobe() const { return word_[kDacStrobe]; }
   std::uint32_t adc_strobe() const { return word_[kAdcStrobe]; }
   unsigned deadtime() const { return regs::servo_ic::pwm_control::kDeadtime.get(word_[kPwm]); }
-  unsigned max_count() const { return regs::servo_ic::pwm_control::kMaxCount.get(word_[kPwm]) & 0x7FFF; }
+  unsigned max_count() const { return regs::servo_ic::pwm_control::kMaxCount.get(word_[kPwm]); }
 
  private:
   enum { kClock, kDacStrobe, kAdcStrobe, kPwm };
-  static constexpr std::array<std::uint32_t, 4> kReset{
-      regs::servo_ic::kClockControl.reset, regs::servo_ic::kDacStrobe.reset, regs::servo_ic::kAdcStrobe.reset,
-      regs::servo_ic::kPwmControl.reset};
-  static constexpr std::array<std::uint32_t, 4> kWritable{
-      regs::servo_ic::kClockControl.written, regs::servo_ic::kDacStrobe.written, regs::servo_ic::kAdcStrobe.written,
-      regs::servo_ic::kPwmControl.written};
-  static bool is_global(bool x, unsigned offset) { return x && (offset & 7) == 4; }
+  static constexpr std::array kRegister{regs::servo_ic::kClockControl, regs::servo_ic::kDacStrobe,
+                                        regs::servo_ic::kAdcStrobe, regs::servo_ic::kPwmControl};
+  static unsigned place(bool x, unsigned offset) {
+    unsigned i = 0;
+    while (i < kRegister.size() && !(x && kRegister[i].address == offset)) ++i;
+    return i;
+  }
 
-  std::array<std::uint32_t, 4> word_ = kReset;
+  std::array<std::uint32_t, kRegister.size()> word_;
 };
 
 }  // namespace brick

@@ -139,8 +139,8 @@ void HostBus::dpram_write(std::uint32_t byte_offset, std::uint16_t value) {
 // ----------------------------------------------------------------------------------------------------------- host port
 
 void HostBus::open_port() {
-  io_write(5, 0);
-  io_write(6, 0);
+  io_write(regs::host_io::kData5, 0);
+  io_write(regs::host_io::kData6, 0);
 }
 
 bool HostBus::put_char(std::uint8_t c, Tick timeout) {
@@ -149,7 +149,7 @@ bool HostBus::put_char(std::uint8_t c, Tick timeout) {
     if (now() >= limit || tripped()) return false;
     pause_polling();
   }
-  io_write(7, c);
+  io_write(regs::host_io::kData7, c);
   return true;
 }
 
@@ -159,22 +159,22 @@ std::optional<std::uint8_t> HostBus::get_char(Tick timeout) {
     if (now() >= limit || tripped()) return std::nullopt;
     pause_polling();
   }
-  return io_read(7);
+  return io_read(regs::host_io::kData7);
 }
 
 // ------------------------------------------------------------------------------------------------ interrupt controller
 
 HostBus::Pic HostBus::read_pic() {
   Pic pic{};
-  pic.ist = io_read(8);
-  pic.sig = io_read(9);
-  pic.msk = io_read(10);
-  pic.elr = io_read(11);
+  pic.ist = read_pic_status();
+  pic.sig = read_pic_signals();
+  pic.msk = io_read(regs::host_io::kPicMask);
+  pic.elr = io_read(regs::host_io::kPicEdgeLevel);
   return pic;
 }
 
-void HostBus::write_pic_mask(std::uint8_t v) { io_write(10, v); }
-void HostBus::write_pic_edge_level(std::uint8_t v) { io_write(11, v); }
-void HostBus::clear_pic() { io_write(8, 0); }
+void HostBus::write_pic_mask(std::uint8_t v) { io_write(regs::host_io::kPicMask, v); }
+void HostBus::write_pic_edge_level(std::uint8_t v) { io_write(regs::host_io::kPicEdgeLevel, v); }
+void HostBus::clear_pic() { io_write(regs::host_io::kPicStatus, 0); }
 
 }  // namespace brick

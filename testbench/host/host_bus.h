@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/machine/machine.h"
 #include "testbench/host/isa_timing.h"
 
@@ -23,22 +24,24 @@ class HostBusError : public std::runtime_error {
 
 class HostBus {
  public:
-  static constexpr std::uint32_t kIoBase = 0x210;         // host-bus:3.1
-  static constexpr std::uint32_t kDpramWindow = 0xD0000;  // 64 KiB, docs/architecture.md "Host bus"
-  static constexpr std::uint32_t kDpramBytes = 0x10000;
-  static constexpr std::uint8_t kRxdf = 0x01;  // ISR: a character waits to be read
-  static constexpr std::uint8_t kTxde = 0x02;  // ISR: the next character may be written
+  static constexpr std::uint32_t kIoBase = regs::host_io::kBase;
+  static constexpr std::uint32_t kDpramWindow = regs::kDpramWindowBase;
+  static constexpr std::uint32_t kDpramBytes = regs::kDpramWindowSize;
+  static constexpr std::uint8_t kRxdf = regs::host_io::isr::kRxdf.mask();  // a character waits to be read
+  static constexpr std::uint8_t kTxde = regs::host_io::isr::kTxde.mask();  // the next character may be written
 
   explicit HostBus(Machine& machine) : machine_(machine) {}
 
   // Bus cycles --------------------------------------------------------------------------------------------------------
   std::uint8_t io_read(std::uint32_t offset);  // offset 0..15 from kIoBase
   void io_write(std::uint32_t offset, std::uint8_t value);
+  std::uint8_t io_read(const regs::Register& byte) { return io_read(byte.address - kIoBase); }
+  void io_write(const regs::Register& byte, std::uint8_t value) { io_write(byte.address - kIoBase, value); }
   std::uint16_t dpram_read(std::uint32_t byte_offset);  // even offsets
   void dpram_write(std::uint32_t byte_offset, std::uint16_t value);
 
   // Host port, host-bus:3.1 "polling recipe" -------------------------------------------------------------------------
-  std::uint8_t port_status() { return io_read(2); }
+  std::uint8_t port_status() { return io_read(regs::host_io::kIsr); }
   void pause_polling() { free_at_ += isa::kPollPause; }  // after a look at the status that found nothing
   bool tripped() const { return machine_.outputs().get(pin::kWdo) != 0; }  // line WDO: nobody will answer until a reset
   void open_port();                                                        // once: high and middle byte zero
@@ -50,8 +53,8 @@ class HostBus {
     std::uint8_t ist, sig, msk, elr;
   };
   Pic read_pic();
-  std::uint8_t read_pic_status() { return io_read(8); }
-  std::uint8_t read_pic_signals() { return io_read(9); }
+  std::uint8_t read_pic_status() { return io_read(regs::host_io::kPicStatus); }
+  std::uint8_t read_pic_signals() { return io_read(regs::host_io::kPicSignal); }
   void write_pic_mask(std::uint8_t v);
   void write_pic_edge_level(std::uint8_t v);
   void clear_pic();

@@ -28,12 +28,12 @@ bool restarts(const std::string& line) { return squeezed(line).rfind("$$$", 0) =
 bool HostLink::put(std::uint8_t c, Tick deadline) {
   for (;;) {
     const std::uint8_t status = bus_.port_status();
-    if (status & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(7)));
+    if (status & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(regs::host_io::kData7)));
     if (status & HostBus::kTxde) break;
     if (bus_.now() >= deadline || bus_.tripped()) return false;
     bus_.pause_polling();
   }
-  bus_.io_write(7, c);
+  bus_.io_write(regs::host_io::kData7, c);
   return true;
 }
 
@@ -44,7 +44,8 @@ bool HostLink::receive(Tick deadline) {
 }
 
 void HostLink::poll() {
-  while (bus_.port_status() & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(7)));
+  while (bus_.port_status() & HostBus::kRxdf)
+    incoming_.push_back(static_cast<char>(bus_.io_read(regs::host_io::kData7)));
   for (const char c : incoming_) {
     if (c == '\r') {
       unsolicited_.push_back(stray_);

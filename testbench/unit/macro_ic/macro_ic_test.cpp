@@ -45,7 +45,8 @@ TYPED_TEST(MacroIcOn, WordsHoldTheBitsThatExistAndNoOthers) {
   const auto bits = [](bool x, unsigned offset) -> std::uint32_t {
     if (x && offset == macro::kClock) return 0xFF3FFF;  // 15..14 do not exist
     if (x && (offset == 0x15 || offset == 0x1D)) return 0xFFFFFF & ~(3u << 17) & ~(3u << 22);
-    if (x) return offset >= 0x0D && offset <= 0x0F ? 0xFFFFFF : 0;
+    if (x && offset == macro::kPwm) return 0x7FFFFF;  // nor does 23
+    if (x) return offset == macro::kAdcStrobe || offset == macro::kRing ? 0xFFFFFF : 0;
     return offset == 0x00 || offset == 0x02 || offset == 0x0F ? 0xFFFFFF : 0;
   };
   for (const std::uint32_t value : {0xFFFFFFu, 0x5A3CA5u, 0xA5C35Au, 0x000000u}) {

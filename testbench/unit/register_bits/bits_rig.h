@@ -38,7 +38,7 @@ class BitsRig {
   std::optional<StuckBit> stuck;
 
   // All dividers 0: SCLK, PFM_CLK, DAC_CLK and ADC_CLK every 3 ticks. PHASE and SERVO are inputs.
-  static constexpr std::uint32_t kFast = 0x303000;
+  static constexpr std::uint32_t kFast = regs::servo_ic::kClockControl.reset & 0xFFF000;
   static constexpr Tick kHold = 18;  // long enough for synchroniser and filter at that SCLK
 
   // From reset to a filter that holds the pins; well before the switches' first dead time is over (240 ticks).
@@ -73,6 +73,18 @@ class BitsRig {
     in.read_done = false;
     return word;
   }
+  // The same by name: a word of the IC, a word of a channel (1..4).
+  void write(const regs::Register& word, std::uint32_t value) { write(word.space == 'X', word.address, value); }
+  void write(unsigned channel, const regs::Register& word, std::uint32_t value) {
+    write(word.space == 'X', base(channel) + word.address, value);
+  }
+  std::uint32_t peek(unsigned channel, const regs::Register& word) {
+    return peek(word.space == 'X', base(channel) + word.address);
+  }
+  std::uint32_t read(unsigned channel, const regs::Register& word) {
+    return read(word.space == 'X', base(channel) + word.address);
+  }
+  bool bit(unsigned channel, const regs::Register& word, unsigned n) { return (peek(channel, word) >> n & 1) != 0; }
   bool bit(bool x, unsigned addr, unsigned n) { return (peek(x, addr) >> n & 1) != 0; }
 
   void pin(unsigned channel, unsigned n, bool level, Tick hold = kHold) {

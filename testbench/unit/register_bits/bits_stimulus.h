@@ -11,7 +11,7 @@ constexpr unsigned kDacClkPin = 1, kDacStrobePin = 2, kAdcClkPin = 4, kAdcStrobe
 // PHASE in a row that comes at a wrong time forces a turnaround, and a new maximum count is taken at the bottom one.
 inline void start_triangle(BitsRig& rig, std::uint32_t pwm_word) {
   rig.start();
-  rig.write(true, 0x1C, pwm_word);
+  rig.write(ic_words::kPwmControl, pwm_word);
   const auto edges = [&](int n) {
     while (n-- > 0) rig.latch();
   };
@@ -23,11 +23,11 @@ inline void start_triangle(BitsRig& rig, std::uint32_t pwm_word) {
 
 // The accumulator starts at 0, so -1 underflows at once. Returns the width of the pulse, or `limit`.
 inline Tick pfm_pulse(BitsRig& rig, unsigned channel, Tick limit) {
-  rig.write(true, base(channel) + 5, 1 << 23);
-  rig.write(false, base(channel) + 4, 0xFFFFFF);
+  rig.write(channel, words::kControl, kPfm);
+  rig.write(channel, words::kOutC, 0xFFFFFF);
   if (rig.until(limit, [&] { return rig.other(kPulse, channel); }) == limit) return limit;
   const Tick rise = rig.now();
-  rig.write(false, base(channel) + 4, 0);
+  rig.write(channel, words::kOutC, 0);
   rig.until(limit, [&] { return !rig.other(kPulse, channel); });
   return rig.now() - rise;
 }

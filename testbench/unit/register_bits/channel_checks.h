@@ -8,28 +8,28 @@ namespace brick {
 
 using Check = std::function<bool(BitsRig&, unsigned)>;
 
-constexpr std::uint32_t kX4 = 3, kIndex = 1 << 4, kFlag = 2 << 4, kEquWrite = 1 << 11, kEquState = 1 << 12,
-                        kGated = 1 << 15, kFine = 1 << 18, kInvertAb = 1 << 20, kInvertC = 1 << 21, kPfm = 1 << 23;
 constexpr std::uint32_t kFar = 0x400000;  // a compare that is never reached
 
 inline void control(BitsRig& rig, unsigned ch, std::uint32_t word) {
-  rig.write(true, base(ch) + 5, word);
+  rig.write(ch, words::kControl, word);
   rig.run(BitsRig::kHold);
 }
-inline bool status(BitsRig& rig, unsigned ch, unsigned bit) { return rig.bit(true, base(ch), bit); }
+inline bool status(BitsRig& rig, unsigned ch, const regs::Field& bit) {
+  return bit.is_set(rig.peek(ch, words::kStatus));
+}
 inline std::uint32_t counter(BitsRig& rig, unsigned ch) {
   rig.latch();
-  return rig.peek(true, base(ch) + 1);
+  return rig.peek(ch, words::kPhasePosition);
 }
 inline bool equ(BitsRig& rig, unsigned ch) { return rig.other(kEqu, ch); }
 
 // Arms the trigger, raises a pin and says whether that captured.
 inline bool captures(BitsRig& rig, unsigned ch, std::uint32_t word, unsigned pin) {
   control(rig, ch, word);
-  rig.read(true, base(ch) + 3);
+  rig.read(ch, words::kFlagPosition);
   rig.run(BitsRig::kHold);
   rig.pin(ch, pin, true);
-  return status(rig, ch, 11);
+  return status(rig, ch, status_bit::kCaptured);
 }
 
 // Three counts with hardware 1/T, and the time to see that they were the last.

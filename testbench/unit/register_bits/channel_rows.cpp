@@ -11,7 +11,7 @@ Check pin_shows(unsigned pin) {
     rig.start();
     for (bool level : {true, false}) {
       rig.pin(ch, pin, level);
-      if (status(rig, ch, 12 + pin) != level) return false;
+      if (rig.bit(ch, words::kStatus, 12 + pin) != level) return false;
     }
     return true;
   };
@@ -22,9 +22,9 @@ Check hall_capture(unsigned bit) {
     rig.start();
     control(rig, ch, kX4 | kGated);  // source 0: the first edge of U, V or W
     for (bool level : {true, false}) {
-      rig.read(true, base(ch) + 3);
+      rig.read(ch, words::kFlagPosition);
       rig.pin(ch, kW + bit, level);
-      if (!status(rig, ch, 11) || status(rig, ch, bit) != level) return false;
+      if (!status(rig, ch, status_bit::kCaptured) || rig.bit(ch, words::kStatus, bit) != level) return false;
     }
     return true;
   };
@@ -32,48 +32,48 @@ Check hall_capture(unsigned bit) {
 
 bool demultiplexing_incomplete(BitsRig& rig, unsigned ch) {
   rig.start();
-  if (!status(rig, ch, 3)) return false;
+  if (!status(rig, ch, status_bit::kDemuxInvalid)) return false;
   rig.steps(ch, 3, true);  // the fourth AB state since reset
-  return !status(rig, ch, 3);
+  return !status(rig, ch, status_bit::kDemuxInvalid);
 }
 
 void lose_encoder(BitsRig& rig, unsigned ch) {
   rig.start();
   rig.in.pins[ch - 1] = 1u << kT | 1u << kV;  // pairs differ
   rig.run(BitsRig::kHold);
-  rig.write(true, base(ch), 0);
+  rig.write(ch, words::kStatus, 0);
 }
 bool encoder_loss(BitsRig& rig, unsigned ch) {
   lose_encoder(rig, ch);
   rig.run(BitsRig::kHold);
-  if (status(rig, ch, 7)) return false;
+  if (status(rig, ch, status_bit::kEncoderLoss)) return false;
   rig.pin(ch, kU, true);
-  return status(rig, ch, 7);
+  return status(rig, ch, status_bit::kEncoderLoss);
 }
 bool encoder_loss_clears_with_a_0(BitsRig& rig, unsigned ch) {
   lose_encoder(rig, ch);
   rig.pin(ch, kU, true);
   rig.pin(ch, kU, false);  // latched, the cause is gone
-  rig.write(true, base(ch), 0x80);
-  if (!status(rig, ch, 7)) return false;
-  rig.write(true, base(ch), 0);
-  return !status(rig, ch, 7);
+  rig.write(ch, words::kStatus, status_bit::kEncoderLoss.mask());
+  if (!status(rig, ch, status_bit::kEncoderLoss)) return false;
+  rig.write(ch, words::kStatus, 0);
+  return !status(rig, ch, status_bit::kEncoderLoss);
 }
 
 bool encoder_error(BitsRig& rig, unsigned ch) {
   rig.start();
   control(rig, ch, kX4);
-  if (status(rig, ch, 8)) return false;
+  if (status(rig, ch, status_bit::kEncoderError)) return false;
   rig.in.pins[ch - 1] = 3;
   rig.run(BitsRig::kHold);
-  return status(rig, ch, 8);
+  return status(rig, ch, status_bit::kEncoderError);
 }
 
 bool equ_in_status(BitsRig& rig, unsigned ch) {
   rig.start();
-  if (status(rig, ch, 9)) return false;
+  if (status(rig, ch, status_bit::kEqu)) return false;
   control(rig, ch, kEquWrite | kEquState);
-  return status(rig, ch, 9);
+  return status(rig, ch, status_bit::kEqu);
 }
 
 Check captured(unsigned bit) {
@@ -81,11 +81,11 @@ Check captured(unsigned bit) {
     rig.start();
     rig.steps(ch, 2, true);  // A and B high: the gate is open
     control(rig, ch, kX4 | kIndex | kGated);
-    if (status(rig, ch, bit)) return false;
+    if (rig.bit(ch, words::kStatus, bit)) return false;
     rig.pin(ch, kC, true);
-    if (!status(rig, ch, bit)) return false;
-    rig.read(true, base(ch) + 3);
-    return !status(rig, ch, bit);
+    if (!rig.bit(ch, words::kStatus, bit)) return false;
+    rig.read(ch, words::kFlagPosition);
+    return !rig.bit(ch, words::kStatus, bit);
   };
 }
 
@@ -116,7 +116,7 @@ Check servo_position(unsigned bit) {  // -1 going down, then 0 going up; bit 0 i
     for (bool up : {false, true}) {
       rig.step(ch, up);
       rig.latch();
-      if (rig.bit(true, base(ch) + 2, bit) == up) return false;
+      if (rig.bit(ch, words::kServoPosition, bit) == up) return false;
     }
     return true;
   };
@@ -125,11 +125,11 @@ Check capture_position(unsigned bit) {
   return [bit](BitsRig& rig, unsigned ch) {
     rig.start();
     if (!captures(rig, ch, kX4 | kFlag, kHmfl)) return false;
-    if ((rig.read(true, base(ch) + 3) >> bit & 1) != 0) return false;
+    if ((rig.read(ch, words::kFlagPosition) >> bit & 1) != 0) return false;
     rig.step(ch, false);
     rig.pin(ch, kHmfl, false);
     rig.pin(ch, kHmfl, true);
-    return rig.bit(true, base(ch) + 3, bit);
+    return rig.bit(ch, words::kFlagPosition, bit);
   };
 }
 
@@ -141,9 +141,9 @@ Check capture_fraction(unsigned bit) {
     for (bool up : {true, false}) {
       control(rig, ch, kX4 | kFine | kFlag);
       creep(rig, ch, up);
-      rig.read(true, base(ch) + 3);
+      rig.read(ch, words::kFlagPosition);
       rig.pin(ch, kHmfl, true);
-      if (rig.bit(false, base(ch), bit) != up) return false;
+      if (rig.bit(ch, words::kTimer1, bit) != up) return false;
       rig.pin(ch, kHmfl, false);
     }
     return true;
@@ -156,7 +156,7 @@ Check servo_fraction(unsigned bit) {
     for (bool up : {true, false}) {
       creep(rig, ch, up);
       rig.latch();
-      if (rig.bit(false, base(ch) + 1, bit) != up) return false;
+      if (rig.bit(ch, words::kTimer2, bit) != up) return false;
     }
     return true;
   };
@@ -214,11 +214,11 @@ Check increment(unsigned bit) {
       rig.start();
       control(rig, ch, kX4);
       const std::uint32_t inc = level ? 1u << bit : 0xFFFFFF & ~(1u << bit);
-      rig.write(true, base(ch) + 7, 0x200000);
-      rig.write(false, base(ch) + 7, 0);
-      rig.write(true, base(ch) + 6, inc);
+      rig.write(ch, words::kCompareB, 0x200000);
+      rig.write(ch, words::kCompareA, 0);
+      rig.write(ch, words::kCompareIncrement, inc);
       rig.step(ch, true);
-      if (rig.peek(true, base(ch) + 7) != ((0x200000 + inc) & 0xFFFFFF)) return false;
+      if (rig.peek(ch, words::kCompareB) != ((0x200000 + inc) & 0xFFFFFF)) return false;
     }
     return true;
   };

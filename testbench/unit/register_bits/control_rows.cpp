@@ -46,7 +46,7 @@ bool equ_rises(BitsRig& rig, unsigned ch, std::uint32_t word) {
 bool compares_channel_1(BitsRig& rig, unsigned ch, std::uint32_t word) {
   control(rig, 1, kX4);
   control(rig, ch, word);
-  rig.write(true, base(ch) + 7, kFar);
+  rig.write(ch, words::kCompareB, kFar);
   rig.step(1, true);
   return equ(rig, ch);
 }
@@ -57,13 +57,13 @@ bool aena(BitsRig& rig, unsigned ch, std::uint32_t word) {
 bool c_does_not_reach_its_bit(BitsRig& rig, unsigned ch, std::uint32_t word) {  // AB = 00: the line carries V
   control(rig, ch, word);
   rig.pin(ch, kC, true);
-  return !status(rig, ch, 14) && status(rig, ch, 21);
+  return !status(rig, ch, status_bit::kChc) && status(rig, ch, status_bit::kFlagV);
 }
 bool fractions(BitsRig& rig, unsigned ch, std::uint32_t word) {
   control(rig, ch, word);
   creep(rig, ch, true);
   rig.latch();
-  return rig.peek(false, base(ch) + 1) >> 12 == 0xFFF;
+  return fine2::kServo.get(rig.peek(ch, words::kTimer2)) == 0xFFF;
 }
 bool direction_high(BitsRig& rig, unsigned ch, std::uint32_t word) {
   control(rig, ch, word);

@@ -8,7 +8,7 @@ namespace brick {
 namespace {
 
 using Check = std::function<bool(BitsRig&, unsigned)>;
-constexpr unsigned kClock = 0x04, kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
+constexpr unsigned kClock = 0x04, kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;  // by the data sheet
 
 // --- Clock control: dividers n with a 0 and a 1 in the bit under test.
 
@@ -18,7 +18,7 @@ Check sclk_divider(unsigned bit) {
     const auto t2 = [&] {
       rig.in.servo = false;
       rig.run(12);
-      const std::uint32_t word = rig.peek(false, base(ch) + 1);
+      const std::uint32_t word = rig.peek(ch, words::kTimer2);
       rig.in.servo = true;
       return static_cast<int>(word);
     };
@@ -67,7 +67,7 @@ Check direction(bool servo) {
     for (bool external : {false, true}) {
       const std::uint32_t bit = servo ? 1u << 13 : 1u << 12;
       rig.start(external ? BitsRig::kFast : BitsRig::kFast & ~bit);
-      rig.write(true, base(ch) + 5, 3);
+      rig.write(ch, words::kControl, kX4);
       rig.step(ch, false);
       rig.latch();
       if (rig.peek(true, base(ch) + (servo ? 2 : 1)) != (external ? 0xFFFFFFu : 0u)) return false;
@@ -91,7 +91,7 @@ Tick period(BitsRig& rig, bool servo, Tick limit) {
 
 Check clock_divider(unsigned bit, bool servo) {
   return [=](BitsRig& rig, unsigned) {
-    start_triangle(rig, 1 << 8);
+    start_triangle(rig, pwm_control(1, 0));
     for (unsigned n : {0u, 1u << bit}) {
       rig.write(true, kClock, n << (servo ? 20 : 16));
       rig.run(100);
@@ -120,11 +120,11 @@ Check dead_time(unsigned bit) {
   return [bit](BitsRig& rig, unsigned ch) {
     for (bool level : {false, true}) {
       const std::uint32_t units = level ? 1u << bit : 0;
-      start_triangle(rig, 4 << 8 | units);
-      rig.write(false, base(ch) + 2, 0x7FFF00);
+      start_triangle(rig, pwm_control(4, units));
+      rig.write(ch, words::kOutA, 0x7FFF00);
       rig.run(2100);  // the longest dead time is over, the top switch on
       if ((rig.pwm(ch) & 3) != 1) return false;
-      rig.write(false, base(ch) + 2, 0x800000);
+      rig.write(ch, words::kOutA, 0x800000);
       rig.until(100, [&] { return (rig.pwm(ch) & 1) == 0; });
       const Tick off = rig.until(2100, [&] { return (rig.pwm(ch) & 2) != 0; });
       if (off != 16 * static_cast<Tick>(units)) return false;
@@ -138,7 +138,7 @@ Check pulse_width(unsigned bit) {
     for (bool level : {false, true}) {
       const std::uint32_t width = (level ? 1u << bit : 0) | (bit == 0 ? 2 : 0);  // 0 is as wide as 1
       rig.start();
-      rig.write(true, kPwm, 6527 << 8 | width);
+      rig.write(true, kPwm, pwm_control(6527, width));
       if (pfm_pulse(rig, ch, 400) != 3 * std::max<Tick>(width, 1)) return false;
     }
     return true;
@@ -184,7 +184,7 @@ void add_global_rows(BitTable& table) {
     add("dead time", kPwm, bit, dead_time(bit));
     add("PFM pulse width", kPwm, bit, pulse_width(bit));
   }
-  for (unsigned bit = 0; bit < 15; ++bit) add("maximum count", kPwm, 8 + bit, max_count(bit));  // bit 23 is stored only
+  for (unsigned bit = 0; bit < 15; ++bit) add("maximum count", kPwm, 8 + bit, max_count(bit));
   for (unsigned bit = 0; bit < 24; ++bit) {
     add("DAC strobe", kDacStrobe, bit, strobe(kDacStrobe, bit));
     add("ADC strobe", kAdcStrobe, bit, strobe(kAdcStrobe, bit));
@@ -192,7 +192,7 @@ void add_global_rows(BitTable& table) {
   add_read_back(table, "clock control", true, kClock, true, 0xFF3FFF);  // 15..14 do not exist
   add_read_back(table, "DAC strobe", true, kDacStrobe, true, 0xFFFFFF);
   add_read_back(table, "ADC strobe", true, kAdcStrobe, true, 0xFFFFFF);
-  add_read_back(table, "PWM control", true, kPwm, true, 0xFFFFFF);
+  add_read_back(table, "PWM control", true, kPwm, true, 0x7FFFFF);  // 23 does not exist
 }
 
 }  // namespace brick

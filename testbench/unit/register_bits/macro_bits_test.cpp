@@ -86,7 +86,7 @@ class MacroTable {
     keeps("JIO data", false, macro::kJio, 0xFFFFFF);
     keeps("multiplexer data", false, macro::kMultiplexer, 0xFFFFFF);
     keeps("clock control", true, macro::kClock, gate ? 0xFF1FFF : 0xFF3FFF);
-    keeps("PWM control", true, macro::kPwm, 0xFFFFFF);
+    keeps("PWM control", true, macro::kPwm, 0x7FFFFF);
     keeps("ADC strobe", true, macro::kAdcStrobe, 0xFFFFFF);
     keeps("ring control", true, macro::kRing, 0xFFFFFF);
     keeps("node activation", false, macro::kNodes, 0xFFFFFF);

@@ -17,7 +17,7 @@ Tick on_time(int command) {
 }
 
 bool pwm_command(BitsRig& rig, unsigned ch, unsigned output, unsigned bit) {
-  start_triangle(rig, kMaxCount << 8);
+  start_triangle(rig, pwm_control(kMaxCount, 0));
   for (bool level : {false, true}) {
     const std::uint32_t word = level ? 1u << bit : 0;
     rig.write(false, base(ch) + 2 + output, word);
@@ -34,7 +34,7 @@ bool pwm_command(BitsRig& rig, unsigned ch, unsigned output, unsigned bit) {
 
 bool dac_command(BitsRig& rig, unsigned ch, unsigned output, unsigned bit) {
   rig.start();
-  rig.write(true, base(ch) + 5, 1 << 22);
+  rig.write(ch, words::kControl, kDac);
   for (bool level : {false, true}) {
     const std::uint32_t word = level ? 1u << bit : 0xFFFFC0 & ~(1u << bit);
     rig.write(false, base(ch) + 2 + output, word);
@@ -51,7 +51,7 @@ bool pfm_command(BitsRig& rig, unsigned ch, unsigned bit) {
   for (bool level : {false, true}) {
     rig.start();
     pfm_pulse(rig, ch, 100);
-    rig.write(false, base(ch) + 4, level ? 1u << bit : 0);
+    rig.write(ch, words::kOutC, level ? 1u << bit : 0);
     const bool pulse = rig.until(kSoon, [&] { return rig.other(kPulse, ch); }) < kSoon;
     if (pulse != level || (level && rig.other(kDir, ch) != (bit == 23))) return false;
   }

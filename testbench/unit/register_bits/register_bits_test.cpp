@@ -23,8 +23,8 @@ std::string where(const BitRow& row) {
   return row.name + ", " + (row.x ? "X:+" : "Y:+") + std::to_string(row.offset) + " bit " + std::to_string(row.bit);
 }
 
-// Word by word: bits that can be read, bits whose written value matters. Bits 5..0 of OUT A and B and bit 23 of the PWM
-// word are stored and nothing else; the read-back rows have them.
+// Word by word: bits that can be read, bits whose written value matters. Bits 5..0 of OUT A and B are stored and
+// nothing else, bit 23 of the PWM word does not exist; the read-back rows have them.
 TEST(RegisterBitTable, HoldsEveryBitOfEveryWord) {
   struct Word {
     bool x;

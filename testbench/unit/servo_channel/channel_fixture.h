@@ -14,16 +14,17 @@ class ChannelTest : public ::testing::Test {
   static constexpr Tick kHold = 6 * kSclk;  // long enough for the filter
   static constexpr unsigned kMaxCount = 100;
   static constexpr Tick kPhase = 2 * kMaxCount + 3;
+  static constexpr std::uint32_t kServoEachPhase = ic_words::clock_control::kServoDivider.set(kOwnClocks, 0);
 
   void SetUp() override {
     rig_.reset();
-    rig_.write(true, 0x1C, kMaxCount << 8 | 15);
-    rig_.write(true, 0x04, kOwnClocks & 0x0FFFFF);  // servo as fast as phase
+    rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 15));
+    rig_.write(ic_words::kClockControl, kServoEachPhase);
     rig_.ticks(2 * 13057);
   }
   void TearDown() override { EXPECT_EQ(rig_.difference, "") << "RTL and model"; }
 
-  void control(unsigned channel, std::uint32_t word) { rig_.write(true, base(channel) + 5, word); }
+  void control(unsigned channel, std::uint32_t word) { rig_.write(channel, words::kControl, word); }
   void pin(unsigned channel, unsigned bit, bool level, Tick hold = kHold) {
     rig_.pin(channel, bit, level);
     rig_.ticks(hold);
@@ -42,11 +43,18 @@ class ChannelTest : public ::testing::Test {
   // Signed counter, through the phase latch.
   int counter(unsigned channel) {
     rig_.ticks(kHold + 2 * kPhase);
-    const std::uint32_t word = rig_.peek(true, base(channel) + 1);
+    const std::uint32_t word = rig_.peek(channel, words::kPhasePosition);
     return static_cast<int>(word << 8) >> 8;
   }
-  bool status(unsigned channel, unsigned bit) { return (rig_.peek(true, base(channel)) >> bit & 1) != 0; }
-  bool equ(unsigned channel) { return rig_.other(kEqu, channel); }
+  // What they saw is in the message of the expectation that fails.
+  ::testing::AssertionResult status(unsigned channel, const regs::Field& bit) {
+    return saw(channel, bit.name, bit.is_set(rig_.peek(channel, words::kStatus)));
+  }
+  ::testing::AssertionResult equ(unsigned channel) { return saw(channel, "EQU", rig_.other(kEqu, channel)); }
+
+  static ::testing::AssertionResult saw(unsigned channel, const char* what, bool level) {
+    return ::testing::AssertionResult(level) << "channel " << channel << ": " << what << " is " << level;
+  }
 
   ChannelsRig rig_;
   std::array<unsigned, 4> place_{};

@@ -8,7 +8,7 @@ namespace brick {
 namespace {
 
 TEST_F(ChannelTest, PwmOnTimeFollowsTheCommand) {
-  rig_.write(true, 0x1C, 6527 << 8);  // no dead time: TOP is the raw comparison
+  rig_.write(ic_words::kPwmControl, pwm_control(6527, 0));  // no dead time: TOP is the raw comparison
   const std::map<int, Tick> expected{{0, 13057},    {100, 13257}, {-100, 12857}, {6528, 26113},
                                      {6529, 26114}, {-6529, 0},   {-6528, 1}};
   std::vector<int> commands;
@@ -31,14 +31,14 @@ TEST_F(ChannelTest, PwmOnTimeFollowsTheCommand) {
 }
 
 TEST_F(ChannelTest, DeadTimeHoldsBothSwitchesOff) {
-  rig_.write(true, 0x1C, 6527 << 8 | 15);
+  rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
   rig_.ticks(3 * 26114);
   int gaps = 0;
   Tick off = 0;
   for (Tick t = 0; t < 2 * 26114; ++t) {
     rig_.tick();
-    EXPECT_FALSE(rig_.pwm(1, 0) && rig_.pwm(1, 1));
-    if (!rig_.pwm(1, 0) && !rig_.pwm(1, 1)) {
+    EXPECT_FALSE(rig_.pwm(1, kTopA) && rig_.pwm(1, kBottomA));
+    if (!rig_.pwm(1, kTopA) && !rig_.pwm(1, kBottomA)) {
       ++off;
     } else if (off != 0) {
       if (gaps > 0 || off >= 240) { EXPECT_EQ(off, 240); }
@@ -50,48 +50,48 @@ TEST_F(ChannelTest, DeadTimeHoldsBothSwitchesOff) {
 }
 
 TEST_F(ChannelTest, PulseShorterThanTheDeadTimeIsSwallowed) {
-  rig_.write(true, 0x1C, 6527 << 8 | 15);
-  rig_.write(false, base(1) + 2,
+  rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
+  rig_.write(1, words::kOutA,
              static_cast<std::uint32_t>(6527 - 100) << 8);  // low for 2 (6528 - 6427) - 1 = 201 < 240
   rig_.ticks(3 * 26114);
   for (Tick t = 0; t < 26114; ++t) {
     rig_.tick();
-    ASSERT_FALSE(rig_.pwm(1, 1));
+    ASSERT_FALSE(rig_.pwm(1, kBottomA));
   }
 }
 
 TEST_F(ChannelTest, InversionTurnsBothSwitchesRound) {
   const ChannelPins before = rig_.pins();
-  control(1, 1 << 20);
+  control(1, kInvertAb);
   EXPECT_EQ((rig_.pins().pwm ^ before.pwm) & 0xF, 0xFu);
-  control(1, 1 << 21);
+  control(1, kInvertC);
   EXPECT_EQ((rig_.pins().pwm ^ before.pwm) & 0x30, 0x30u);
 }
 
 TEST_F(ChannelTest, PwmCommandIsUsedFromTheTurnaroundOn) {
-  rig_.write(true, 0x1C, 6527 << 8);
+  rig_.write(ic_words::kPwmControl, pwm_control(6527, 0));
   rig_.ticks(3 * 13057);
   while (rig_.pins().phase) rig_.tick();
   while (!rig_.pins().phase)
     rig_.tick();  // a turnaround; the level of command 0 changes half way to the next, 6528 ticks on
   const Tick turn = rig_.now();
-  const bool level = rig_.pwm(1, 0);
+  const bool level = rig_.pwm(1, kTopA);
   rig_.ticks(2000);
-  rig_.write(false, base(1) + 2, level ? 0x800000 : 0x7FFF00);  // used at once, it would turn the level round
+  rig_.write(1, words::kOutA, level ? 0x800000 : 0x7FFF00);  // used at once, it would turn the level round
   while (rig_.now() < turn + 6500) {
     rig_.tick();
-    ASSERT_EQ(rig_.pwm(1, 0), level);
+    ASSERT_EQ(rig_.pwm(1, kTopA), level);
   }
   while (rig_.now() < turn + 13057) rig_.tick();
   for (Tick t = 0; t < 26114; ++t) {
     rig_.tick();
-    ASSERT_EQ(rig_.pwm(1, 0), !level) << "from the turnaround on";
+    ASSERT_EQ(rig_.pwm(1, kTopA), !level) << "from the turnaround on";
   }
 }
 
 TEST_F(ChannelTest, PfmRateAndWidth) {
-  control(2, 2 << 22);
-  rig_.write(false, base(2) + 4, 0x010000);
+  control(2, kPfm);
+  rig_.write(2, words::kOutC, 0x010000);
   auto rise = [&] {
     while (rig_.other(kPulse, 2)) rig_.tick();
     while (!rig_.other(kPulse, 2)) rig_.tick();
@@ -102,20 +102,20 @@ TEST_F(ChannelTest, PfmRateAndWidth) {
   EXPECT_EQ(rig_.now() - first, 15 * 12) << "I7m04 PFM_CLK wide";
   EXPECT_EQ(rise() - first, 256 * 12) << "38.4 kHz";
   EXPECT_FALSE(rig_.other(kDir, 2));
-  rig_.write(false, base(2) + 4, 0xFE0000);
+  rig_.write(2, words::kOutC, 0xFE0000);
   rise();
   const Tick down = rise();
   EXPECT_TRUE(rig_.other(kDir, 2));
   EXPECT_EQ(rise() - down, 128 * 12);
-  control(2, 2 << 22 | 1 << 19 | 1 << 21);
+  control(2, kPfm | kInvertDir | kInvertC);
   EXPECT_FALSE(rig_.other(kDir, 2)) << "direction inverted";
   EXPECT_FALSE(rig_.other(kPulse, 2)) << "pulse inverted";
 }
 
 TEST_F(ChannelTest, PfmRateIsLimitedToAQuarterOfItsClock) {
-  rig_.write(true, 0x1C, kMaxCount << 8 | 1);
-  control(1, 2 << 22);
-  rig_.write(false, base(1) + 4, 0x7FFFFF);
+  rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 1));
+  control(1, kPfm);
+  rig_.write(1, words::kOutC, 0x7FFFFF);
   rig_.ticks(100);
   int pulses = 0;
   bool last = rig_.other(kPulse, 1);
@@ -132,7 +132,7 @@ class ChannelSerialTest : public ChannelTest {
   static constexpr unsigned kDacClk = 1, kDacStrobe = 2, kAdcClk = 4, kAdcStrobe = 8;
   void SetUp() override {
     ChannelTest::SetUp();
-    rig_.write(true, 0x1C, 6527 << 8 | 15);
+    rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
     rig_.ticks(2 * 13057);
   }
   void wait_for_phase(bool level) {
@@ -166,7 +166,7 @@ class ChannelSerialTest : public ChannelTest {
 };
 
 TEST_F(ChannelSerialTest, StrobeWordsAppearBitByBitAndKeepTheLast) {
-  rig_.write(true, 0x14, 0xF84DFE);
+  rig_.write(ic_words::kAdcStrobe, 0xF84DFE);
   EXPECT_EQ(receive(kAdcClk, [&] { return (rig_.pins().serial & kAdcStrobe) != 0; }), 0xF84DFEu);
   EXPECT_EQ(edges_, 24);
   EXPECT_EQ(period_, 48);
@@ -174,14 +174,15 @@ TEST_F(ChannelSerialTest, StrobeWordsAppearBitByBitAndKeepTheLast) {
   EXPECT_EQ(receive(kDacClk, [&] { return (rig_.pins().serial & kDacStrobe) != 0; }), 0x7FFFC0u);
   EXPECT_EQ(edges_, 24);
   EXPECT_EQ(period_, 24);
-  rig_.write(true, 0x0C, 0x000001);
+  rig_.write(ic_words::kDacStrobe, 0x000001);
   receive(kDacClk, [] { return false; });
   EXPECT_NE(rig_.pins().serial & kDacStrobe, 0u) << "the last bit is held";
 }
 
 TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
   for (unsigned n = 0; n < 6; ++n) {
-    rig_.write(true, 0x04, 0x300012 | n << 6 | (5 - n) << 9);
+    rig_.write(ic_words::kClockControl, ic_words::clock_control::kAdcDivider.set(
+                                            ic_words::clock_control::kDacDivider.set(kOwnClocks, n), 5 - n));
     wait_for_phase(true);
     wait_for_phase(true);
     EXPECT_EQ(receive(kDacClk, [&] { return (rig_.pins().serial & kDacStrobe) != 0; }), 0x7FFFC0u) << "n " << n;
@@ -192,16 +193,16 @@ TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
 }
 
 TEST_F(ChannelSerialTest, DacSendsEighteenBitsOfTheCommand) {
-  control(3, 1 << 22);
-  rig_.write(false, base(3) + 2, 0xA5C37F);
-  rig_.write(false, base(3) + 3, 0x5A3CBF);
+  control(3, kDac);
+  rig_.write(3, words::kOutA, 0xA5C37F);
+  rig_.write(3, words::kOutB, 0x5A3CBF);
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), 0xA5C37Fu & 0xFFFFC0);
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacB, 3); }), 0x5A3CBFu & 0xFFFFC0);
-  control(3, 1 << 22 | 1 << 20);
+  control(3, kDac | kInvertAb);
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), ~(0xA5C37Fu & 0xFFFFC0) & 0xFFFFFF) << "inverted";
   EXPECT_EQ(rig_.pins().pwm >> 12 & 0xF, 0u) << "no PWM on a DAC channel";
   rig_.in.trip = true;
-  control(3, 1 << 22);
+  control(3, kDac);
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), 0u) << "0 after a watchdog trip";
 }
 
@@ -223,27 +224,27 @@ TEST_F(ChannelSerialTest, AdcKeepsEighteenBitsAfterTheHeader) {
     }
     EXPECT_EQ(bit, 24u);
     rig_.ref(2);
-    EXPECT_EQ(rig_.peek(false, base(ch) + 5), a << 6) << "channel " << ch;
-    EXPECT_EQ(rig_.peek(false, base(ch) + 6), b << 6) << "channel " << ch;
+    EXPECT_EQ(rig_.peek(ch, words::kAdcA), a << 6) << "channel " << ch;
+    EXPECT_EQ(rig_.peek(ch, words::kAdcB), b << 6) << "channel " << ch;
   }
 }
 
 TEST_F(ChannelTest, TripTurnsEverythingOffAndOutputsIgnoreWrites) {
-  control(1, 1 << 14 | 1 << 12 | 1 << 11);
-  control(2, 2 << 22);
-  rig_.write(false, base(2) + 4, 0x400000);
-  rig_.write(false, base(1) + 2, 0x7FFF00);
+  control(1, kEnable | kEquState | kEquWrite);
+  control(2, kPfm);
+  rig_.write(2, words::kOutC, 0x400000);
+  rig_.write(1, words::kOutA, 0x7FFF00);
   rig_.ticks(1000);
   EXPECT_TRUE(rig_.other(kAena, 1));
   EXPECT_TRUE(equ(1));
-  EXPECT_TRUE(rig_.pwm(1, 0));
+  EXPECT_TRUE(rig_.pwm(1, kTopA));
   EXPECT_TRUE(rig_.other(kPulse, 2)) << "pulses wider than their distance";
   rig_.in.trip = true;
   rig_.ref(2);
   EXPECT_EQ(rig_.pins().pwm, 0u);
   EXPECT_EQ(rig_.pins().others & ~0xF0u, 0u) << "all but DIR, which rests";
-  rig_.write(false, base(1) + 2, 0x123456);
-  EXPECT_EQ(rig_.peek(false, base(1) + 2), 0x7FFF00u);
+  rig_.write(1, words::kOutA, 0x123456);
+  EXPECT_EQ(rig_.peek(1, words::kOutA), 0x7FFF00u);
   rig_.ticks(500);
   EXPECT_EQ(rig_.pins().pwm, 0u);
 }

@@ -20,7 +20,7 @@ class Stimulus {
       speed_[ch - 1] = static_cast<Tick>(between(20, 400));
       control(ch);
     }
-    rig_.write(true, 0x04, kOwnClocks);
+    rig_.write(ic_words::kClockControl, kOwnClocks);
     const Tick end = rig_.now() + ticks;
     while (rig_.now() < end && rig_.difference.empty()) {
       for (unsigned ch = 1; ch <= 4; ++ch) move(ch);
@@ -64,28 +64,31 @@ class Stimulus {
 
   void control(unsigned ch) {
     std::uint32_t word = value(0xFFFFFF);
-    if (chance(2)) word = (word & ~0xFu) | 3 | value(1) << 2;
-    hall_[ch - 1] = (word & 0xB) == 0xB;
-    if (!chance(6)) word &= ~0x400u;
-    if (chance(2)) word &= ~0x40000u;
-    rig_.write(true, base(ch) + 5, word);
+    if (chance(2)) word = field::kDecode.set(word, value(1) != 0 ? regs::decode::kX4Ccw : regs::decode::kX4Cw);
+    const std::uint32_t mode = field::kDecode.get(word);
+    hall_[ch - 1] = mode == regs::decode::kHallCw || mode == regs::decode::kHallCcw;
+    if (!chance(6)) word &= ~kCounterReset;
+    if (chance(2)) word &= ~kFine;
+    rig_.write(ch, words::kControl, word);
   }
 
   void bus() {
     const unsigned ch = between(1, 4), at = base(ch);
     switch (value(15)) {
       case 0:
-        rig_.write(true, 0x04, value(4095) | (chance(3) ? value(3) << 12 : 0) | value(2) << 16 | value(2) << 20);
+        rig_.write(ic_words::kClockControl,
+                   value(4095) | (chance(3) ? value(3) << 12 : 0) | value(2) << 16 | value(2) << 20);
         break;
       case 1:
-        rig_.write(true, 0x04,
+        rig_.write(ic_words::kClockControl,
                    value(3) | value(3) << 3 | value(2) << 6 | value(2) << 9 | value(1) << 16 | value(2) << 20);
         break;
       case 2:
-        rig_.write(true, 0x1C, (chance(2) ? value(40) : value(700)) << 8 | (chance(2) ? value(2) : value(20)));
+        rig_.write(ic_words::kPwmControl,
+                   pwm_control(chance(2) ? value(40) : value(700), chance(2) ? value(2) : value(20)));
         break;
       case 3:
-        rig_.write(true, chance(2) ? 0x0C : 0x14, value(0xFFFFFF));
+        rig_.write(chance(2) ? ic_words::kDacStrobe : ic_words::kAdcStrobe, value(0xFFFFFF));
         break;
       case 4:
         if (chance(4)) control(ch);
@@ -93,25 +96,25 @@ class Stimulus {
       case 5:
       case 6: {
         const std::uint32_t size = chance(2) ? 0x7FFFFF : 60000;
-        rig_.write(false, at + 2 + value(2), value(size) * (chance(2) ? 1 : 0xFFFFFF) & 0xFFFFFF);
+        rig_.write(false, at + words::kOutA.address + value(2), value(size) * (chance(2) ? 1 : 0xFFFFFF) & 0xFFFFFF);
         break;
       }
       case 7: {  // compares near the position
-        const std::uint32_t near = rig_.peek(true, at + 1) + value(20) - 10;
-        rig_.write(chance(2), at + 7, near & 0xFFFFFF);
+        const std::uint32_t near = rig_.peek(ch, words::kPhasePosition) + value(20) - 10;
+        rig_.write(ch, chance(2) ? words::kCompareB : words::kCompareA, near & 0xFFFFFF);
         break;
       }
       case 8:
-        rig_.write(true, at + 6, value(10));
+        rig_.write(ch, words::kCompareIncrement, value(10));
         break;
       case 9:
-        rig_.write(false, at + value(1), value(0xFFF));
+        rig_.write(ch, value(1) != 0 ? words::kTimer2 : words::kTimer1, value(0xFFF));
         break;
       case 10:
-        rig_.write(true, at, value(0xFFF));
+        rig_.write(ch, words::kStatus, value(0xFFF));
         break;
       case 11:
-        rig_.read(true, at + 3);
+        rig_.read(ch, words::kFlagPosition);
         break;
       case 12:
         rig_.write(chance(2), chance(2) ? value(31) & ~4u : at + 6, value(0xFFFFFF));
@@ -142,8 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ServoChannelLockstep, ::testing::Range(1u, 17u))
 // What one written word does differently must show on a pin or in a word that the hardware makes.
 struct Distortion {
   const char* name;
-  bool x;
-  unsigned offset;  // all four channels, or an IC register
+  regs::Register word;  // of all four channels, or of the IC
   std::uint32_t bits;
 };
 
@@ -155,8 +157,8 @@ TEST_P(ServoChannelNegativeControl, ComparisonFindsTheDistortedWord) {
   for (std::uint32_t seed = 100; seed < 108 && difference.empty(); ++seed) {
     ChannelsRig rig;
     rig.mutate = [d](bool x, unsigned addr, std::uint32_t& value) {
-      const bool global = d.offset > 7 || (d.x && d.offset == 4);
-      if (x == d.x && (global ? addr : addr & 7) == d.offset) value ^= d.bits;
+      const bool of_ic = x && (addr & 7) == 4;
+      if (x == (d.word.space == 'X') && (of_ic ? addr : addr & 7) == d.word.address) value ^= d.bits;
     };
     Stimulus(rig, seed).run(300'000);
     difference = rig.difference;
@@ -165,23 +167,38 @@ TEST_P(ServoChannelNegativeControl, ComparisonFindsTheDistortedWord) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Words, ServoChannelNegativeControl,
-    ::testing::Values(Distortion{"DecodeDirection", true, 5, 1 << 2}, Distortion{"DecodeFactor", true, 5, 1 << 0},
-                      Distortion{"CaptureSource", true, 5, 1 << 4}, Distortion{"IndexInvert", true, 5, 1 << 6},
-                      Distortion{"FlagInvert", true, 5, 1 << 7}, Distortion{"FlagSelect", true, 5, 1 << 8},
-                      Distortion{"CounterReset", true, 5, 1 << 10}, Distortion{"EquState", true, 5, 1 << 12},
-                      Distortion{"CompareChannel", true, 5, 1 << 13}, Distortion{"AmplifierEnable", true, 5, 1 << 14},
-                      Distortion{"GatedIndex", true, 5, 1 << 15}, Distortion{"GateState", true, 5, 1 << 16},
-                      Distortion{"Demultiplex", true, 5, 1 << 17}, Distortion{"Hardware1T", true, 5, 1 << 18},
-                      Distortion{"PfmDirection", true, 5, 1 << 19}, Distortion{"InvertAb", true, 5, 1 << 20},
-                      Distortion{"InvertC", true, 5, 1 << 21}, Distortion{"DacMode", true, 5, 1 << 22},
-                      Distortion{"PfmMode", true, 5, 1 << 23}, Distortion{"CompareA", false, 7, 1},
-                      Distortion{"CompareB", true, 7, 1}, Distortion{"Increment", true, 6, 1},
-                      Distortion{"ErrorClear", true, 0, 1 << 7}, Distortion{"OutAPwm", false, 2, 1 << 8},
-                      Distortion{"OutBDac", false, 3, 1 << 6}, Distortion{"OutCPfm", false, 4, 1 << 0},
-                      Distortion{"SclkDivider", true, 4, 1 << 0}, Distortion{"PfmDivider", true, 4, 1 << 3},
-                      Distortion{"DacDivider", true, 4, 1 << 6}, Distortion{"AdcDivider", true, 4, 1 << 9},
-                      Distortion{"DacStrobe", true, 0x0C, 1 << 0}, Distortion{"AdcStrobe", true, 0x14, 1 << 23},
-                      Distortion{"DeadTime", true, 0x1C, 1 << 0}, Distortion{"MaxCount", true, 0x1C, 1 << 8}),
+    ::testing::Values(Distortion{"DecodeDirection", words::kControl, field::kDecode.at(4)},
+                      Distortion{"DecodeFactor", words::kControl, field::kDecode.at(1)},
+                      Distortion{"CaptureSource", words::kControl, field::kCaptureSource.at(1)},
+                      Distortion{"IndexInvert", words::kControl, field::kIndexInvert.at(1)},
+                      Distortion{"FlagInvert", words::kControl, field::kFlagInvert.at(1)},
+                      Distortion{"FlagSelect", words::kControl, field::kFlagSelect.at(1)},
+                      Distortion{"CounterReset", words::kControl, field::kCounterReset.at(1)},
+                      Distortion{"EquState", words::kControl, field::kEquState.at(1)},
+                      Distortion{"CompareChannel", words::kControl, field::kCompareChannel.at(1)},
+                      Distortion{"AmplifierEnable", words::kControl, field::kAena.at(1)},
+                      Distortion{"GatedIndex", words::kControl, field::kGatedIndex.at(1)},
+                      Distortion{"GateState", words::kControl, field::kGateState.at(1)},
+                      Distortion{"Demultiplex", words::kControl, field::kIndexDemux.at(1)},
+                      Distortion{"Hardware1T", words::kControl, field::kHardware1t.at(1)},
+                      Distortion{"PfmDirection", words::kControl, field::kPfmDirInvert.at(1)},
+                      Distortion{"InvertAb", words::kControl, field::kAbInvert.at(1)},
+                      Distortion{"InvertC", words::kControl, field::kCInvert.at(1)},
+                      Distortion{"DacMode", words::kControl, field::kAbDac.at(1)},
+                      Distortion{"PfmMode", words::kControl, field::kCPfm.at(1)},
+                      Distortion{"CompareA", words::kCompareA, 1}, Distortion{"CompareB", words::kCompareB, 1},
+                      Distortion{"Increment", words::kCompareIncrement, 1},
+                      Distortion{"ErrorClear", words::kStatus, status_bit::kEncoderLoss.at(1)},
+                      Distortion{"OutAPwm", words::kOutA, 1 << 8}, Distortion{"OutBDac", words::kOutB, 1 << 6},
+                      Distortion{"OutCPfm", words::kOutC, 1 << 0},
+                      Distortion{"SclkDivider", ic_words::kClockControl, ic_words::clock_control::kSclkDivider.at(1)},
+                      Distortion{"PfmDivider", ic_words::kClockControl, ic_words::clock_control::kPfmDivider.at(1)},
+                      Distortion{"DacDivider", ic_words::kClockControl, ic_words::clock_control::kDacDivider.at(1)},
+                      Distortion{"AdcDivider", ic_words::kClockControl, ic_words::clock_control::kAdcDivider.at(1)},
+                      Distortion{"DacStrobe", ic_words::kDacStrobe, 1 << 0},
+                      Distortion{"AdcStrobe", ic_words::kAdcStrobe, 1 << 23},
+                      Distortion{"DeadTime", ic_words::kPwmControl, pwm_control(0, 1)},
+                      Distortion{"MaxCount", ic_words::kPwmControl, pwm_control(1, 0)}),
     [](const auto& word) { return std::string(word.param.name); });
 
 // Large jumps of the model alone end where single ticks end.
@@ -203,12 +220,12 @@ TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
         m->write(x, addr, word);
       }
     };
-    write(true, 0x04, (kOwnClocks & ~0xFFFu) | value(4095));
-    write(true, 0x1C, value(300) << 8 | value(20));
+    write(true, ic_words::kClockControl.address, (kOwnClocks & ~0xFFFu) | value(4095));
+    write(true, ic_words::kPwmControl.address, pwm_control(value(300), value(20)));
     for (unsigned ch = 1; ch <= 4; ++ch) {
-      write(true, base(ch) + 5, value(0xFFFFFF) & ~0x400u);
-      write(false, base(ch) + 2, value(0xFFFFFF));
-      write(false, base(ch) + 4, value(0xFFFFFF));
+      write(true, base(ch) + words::kControl.address, value(0xFFFFFF) & ~kCounterReset);
+      write(false, base(ch) + words::kOutA.address, value(0xFFFFFF));
+      write(false, base(ch) + words::kOutC.address, value(0xFFFFFF));
     }
     for (int jump = 0; jump < 40; ++jump) {
       for (unsigned& pins : in.pins) pins = value(0xFFF);

@@ -9,9 +9,18 @@
 
 #include <gtest/gtest.h>
 
+#include "testbench/unit/servo_channel/channel_words.h"
 #include "testbench/unit/servo_channel/channels_engine.h"
 
 namespace brick {
+
+constexpr unsigned kA = kEncA, kB = kEncB, kC = kEncC;  // the other pins have their names in motor_pins.h
+enum : unsigned { kPulse, kDir, kDacA, kDacB, kAena, kEqu };
+enum Switch : unsigned { kTopA, kBottomA, kTopB, kBottomB, kTopC, kBottomC };
+constexpr unsigned base(unsigned channel) { return 8 * (channel - 1); }
+constexpr std::uint32_t kOwnClocks =
+    regs::servo_ic::kClockControl.reset &  // default dividers, PHASE and SERVO driven
+    ~(regs::servo_ic::clock_control::kPhaseExternal.mask() | regs::servo_ic::clock_control::kServoExternal.mask());
 
 class ChannelsRig {
  public:
@@ -73,6 +82,17 @@ class ChannelsRig {
     ref();
     in.read_done = false;
     return value;
+  }
+  // The same by name: a word of the IC, a word of a channel (1..4).
+  void write(const regs::Register& word, std::uint32_t value) { write(word.space == 'X', word.address, value); }
+  void write(unsigned channel, const regs::Register& word, std::uint32_t value) {
+    write(word.space == 'X', base(channel) + word.address, value);
+  }
+  std::uint32_t peek(unsigned channel, const regs::Register& word) {
+    return peek(word.space == 'X', base(channel) + word.address);
+  }
+  std::uint32_t read(unsigned channel, const regs::Register& word) {
+    return read(word.space == 'X', base(channel) + word.address);
   }
   void reset() {
     in.rst_n = false;
@@ -136,11 +156,5 @@ class ChannelsRig {
   ServoIc model_{sc_core::sc_gen_unique_name("ic")};
   Tick now_ = 0, seen_ = 0;
 };
-
-// Register offsets of channel 1 and bits of its pins; control word fields as the I-variables.
-constexpr unsigned kA = kEncA, kB = kEncB, kC = kEncC;  // the other pins have their names in motor_pins.h
-enum : unsigned { kPulse, kDir, kDacA, kDacB, kAena, kEqu };
-constexpr unsigned base(unsigned channel) { return 8 * (channel - 1); }
-constexpr std::uint32_t kOwnClocks = 0x3008D2;  // default dividers, PHASE and SERVO driven
 
 }  // namespace brick
