@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "systemc/cosim/engines.h"
+#include "systemc/board/model_board.h"
 
 namespace brick {
 

@@ -1,10 +1,12 @@
-// Makes a board for an engine. The Verilated headers stay behind this line.
+// Makes a board for an engine; the model alone is made by systemc/board/model_board.h. The Verilated headers stay
+// behind this line.
 #pragma once
 
 #include <memory>
 #include <stdexcept>
 #include <string>
 
+#include "systemc/board/model_board.h"
 #include "systemc/core/board.h"
 
 namespace brick {
@@ -18,7 +20,6 @@ struct RtlOptions {
 
 // Throws std::runtime_error when no Verilated variant has all the ICs of `fitted`.
 std::unique_ptr<Board> make_rtl_board(std::uint32_t fitted, const RtlOptions& options = {});
-std::unique_ptr<Board> make_model_board(std::uint32_t fitted);  // systemc/board/board_top.h, the SystemC model
 
 // Runs both and compares every pin at every tick. run_until() throws LockstepDifference at the first difference.
 std::unique_ptr<Board> make_lockstep_board(std::unique_ptr<Board> rtl, std::unique_ptr<Board> model);
