@@ -38,15 +38,28 @@ module board_sim #(
   input  wire logic [15:0] jpan_i,
   input  wire logic        seeded_bug_i,
   output logic [31:0]      pins_o[3],
-  input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top
+  input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top, also those not built
   output logic [63:0]      motor_o[18],
   output logic [31:0]      count_o[72]   // no pins: position counters, channel n of IC i in word 4 * i + n - 1
 );
 
-  logic [18*64-1:0] motor_in, motor_out;
+  localparam integer Ics = $countones(ServoIcMask);
+  logic [64*Ics-1:0] motor_in, motor_out;
   for (genvar i = 0; i < 18; i++) begin : gen_motor
-    assign motor_in[64*i+:64] = motor_i[i];
-    assign motor_o[i]         = motor_out[64*i+:64];
+    if (ServoIcMask[i]) begin : gen_built
+      localparam integer Motor = 64 * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));
+      assign motor_in[Motor+:64] = motor_i[i];
+      assign motor_o[i]          = motor_out[Motor+:64];
+      for (genvar n = 0; n < 4; n++) begin : gen_count
+        assign count_o[4*i+n] =
+            {8'h0, u_board.gen_servo_ic[i].gen_built.u_servo_ic.u_channels.gen_channel[n].u_channel.counter_o};
+      end
+    end else begin : gen_absent
+      assign motor_o[i] = 64'h0;
+      for (genvar n = 0; n < 4; n++) begin : gen_count
+        assign count_o[4*i+n] = 32'h0;
+      end
+    end
   end
 
   logic [23:0] pa_data;
@@ -70,17 +83,6 @@ module board_sim #(
     .phase_source_o(source), .source_conflict_o(conflict),
     .pic_ist_o(ist), .pic_sig_o(sig), .pic_msk_o(msk), .pic_elr_o(elr)
   );
-
-  for (genvar i = 0; i < 18; i++) begin : gen_count
-    for (genvar n = 0; n < 4; n++) begin : gen_channel
-      if (ServoIcMask[i]) begin : gen_built
-        assign count_o[4*i+n] =
-            {8'h0, u_board.gen_servo_ic[i].gen_built.u_servo_ic.u_channels.gen_channel[n].u_channel.counter_o};
-      end else begin : gen_absent
-        assign count_o[4*i+n] = 32'h0;
-      end
-    end
-  end
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
   logic       bug_q, servo_last_q;
