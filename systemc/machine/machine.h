@@ -63,7 +63,7 @@ class Machine : public sc_core::sc_module {
   Tick run_until(Tick limit, const BoardOutputs& stop_on = {});
 
   // The pins that the host owns. The host edits them and calls apply(); edge now()+1 is the first to see them.
-  BoardInputs& inputs();
+  HostInputs& inputs();
   void apply();
   const BoardOutputs& outputs() const;
 
