@@ -1,7 +1,8 @@
 // Simulation wrapper of the board: its pins packed into words, inputs in the layout of systemc/cosim/drive.h, outputs
 // in that of systemc/core/board_pins.h, the motor side in that of motor_pins.h. Arrays of words, because a simulator
-// then writes only the words that may have moved. seeded_bug_i is the negative control of every comparison: the SERVO
-// pin's SeededBugEdge-th falling edge since reset comes one tick late.
+// then writes only the words that may have moved. start_seed_i, read once when the simulation begins, gives the
+// dual-ported RAM its content (systemc/core/start_value.h). seeded_bug_i is the negative control of every comparison:
+// the SERVO pin's SeededBugEdge-th falling edge since reset comes one tick late.
 `default_nettype none
 
 module board_sim #(
@@ -13,6 +14,7 @@ module board_sim #(
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
   input  wire logic [31:0] inputs_i[6],
+  input  wire logic [31:0] start_seed_i,
   input  wire logic        seeded_bug_i,
   output logic [31:0]      pins_o[3],
   input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top, also those not built
@@ -100,6 +102,18 @@ module board_sim #(
     .pic_msk_o         (msk),
     .pic_elr_o         (elr)
   );
+
+  function automatic logic [15:0] start_word(input logic [31:0] seed, input logic [31:0] index);
+    logic [31:0] x;
+    x = seed ^ (index * 32'h9E3779B9);
+    x = (x ^ (x >> 16)) * 32'h7FEB352D;
+    x = (x ^ (x >> 15)) * 32'h846CA68B;
+    return (seed == 32'h0) ? 16'h0 : x[31:16];
+  endfunction
+
+  initial begin
+    for (int i = 0; i < 32768; i++) u_board.u_dpram.mem[i] = start_word(start_seed_i, i);
+  end
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
   logic       bug_q, servo_last_q;

@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "systemc/board/model_board.h"
+#include "systemc/core/start_value.h"
 
 namespace brick {
 
-BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
+BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::uint64_t seed)
     : sc_module(name),
       bus_sync_("bus_sync"),
       address_decode_("address_decode"),
@@ -20,6 +21,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
       panel_port_("panel_port"),
       gate_ics_(ics) {
   inputs_.fitted = ics;
+  for (unsigned i = 0; i < Dpram::kWords; ++i) dpram_.poke(i, start_word(start_seed(seed), i));
   reset_all(0);
   outputs_ = pins();
 }
@@ -267,8 +269,8 @@ Tick BoardTop::quiet_until(const BoardOutputs& watched) const {
   return quiet;
 }
 
-std::unique_ptr<Board> make_model_board(std::uint32_t fitted) {
-  return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), fitted);
+std::unique_ptr<Board> make_model_board(std::uint32_t fitted, std::uint64_t seed) {
+  return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), fitted, seed);
 }
 
 }  // namespace brick

@@ -29,7 +29,7 @@ namespace brick {
 
 class BoardTop : public sc_core::sc_module, public Board {
  public:
-  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics = 0x3);
+  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics = 0x3, std::uint64_t seed = 0);
 
   Tick now() const override { return now_; }
   void set_inputs(const BoardInputs& inputs) override;

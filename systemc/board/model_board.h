@@ -8,6 +8,7 @@
 
 namespace brick {
 
-std::unique_ptr<Board> make_model_board(std::uint32_t fitted);  // BoardTop
+// BoardTop; `seed` gives the dual-ported RAM its content (systemc/core/start_value.h).
+std::unique_ptr<Board> make_model_board(std::uint32_t fitted, std::uint64_t seed = 0);
 
 }  // namespace brick

@@ -12,8 +12,8 @@
 namespace brick {
 
 struct RtlOptions {
-  // 0: all flip-flops and memories start as zero. Else they start at random, by this seed: reset must bring the
-  // flip-flops to where the model is, while memory differs from the model's until it is written.
+  // 0: all flip-flops start as zero. Else they start at random, by this seed, and reset must bring them to where the
+  // model is. The content of the dual-ported RAM follows from it as the model's from its own (core/start_value.h).
   std::uint64_t seed = 0;
   bool seeded_bug = false;  // negative control, see rtl/board/board_sim.sv
 };

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "systemc/core/start_value.h"
 #include "systemc/cosim/drive.h"
 #include "systemc/cosim/engines.h"
 
@@ -43,8 +44,9 @@ class RtlBoard : public Board {
  public:
   RtlBoard(std::uint32_t fitted, const RtlOptions& options) : fitted_(fitted) {
     context_.randReset(options.seed == 0 ? 0 : 2);
-    context_.randSeed(static_cast<int>(options.seed % 0x7FFFFFFF));
+    context_.randSeed(static_cast<int>(1 + options.seed % 0x7FFFFFFE));  // 0 would be the time of day
     model_ = std::make_unique<Model>(&context_, "");
+    model_->start_seed_i = start_seed(options.seed);
     model_->seeded_bug_i = options.seeded_bug;
     // Asynchronous reset acts on an edge of rst_ni, so it must have been high once. Power-on is tick 0, in reset.
     BoardInputs start;

@@ -16,15 +16,16 @@ constexpr std::size_t kBusCyclesKept = 16;
 
 std::unique_ptr<Board> make_board(const MachineConfig& c) {
   const std::uint32_t fitted = c.board.fitted;
+  const RtlOptions rtl{c.seed, c.seeded_bug};
   switch (c.engine) {
     case Engine::kRtl:
-      return make_rtl_board(fitted, {0, c.seeded_bug});
+      return make_rtl_board(fitted, rtl);
     case Engine::kSystemC:
-      return make_model_board(fitted);
+      return make_model_board(fitted, c.seed);
     case Engine::kLockstep:
       break;
   }
-  return make_lockstep_board(make_rtl_board(fitted, {0, c.seeded_bug}), make_model_board(fitted));
+  return make_lockstep_board(make_rtl_board(fitted, rtl), make_model_board(fitted, c.seed));
 }
 
 Straps straps(const BoardConfig& board) {
