@@ -267,7 +267,7 @@ class SelectBench {
     const std::string variable = fmt::format("I{}", direction_variable(host_.source()));
     host_.stop(variable + "=3");
     b_.bus.wait(ClockChecker::release(host_.setting(host_.source())));
-    BoardInputs& in = b_.machine.inputs();
+    HostInputs& in = b_.machine.inputs();
     in.ext_clock = true;
     b_.machine.apply();
     b_.bus.wait(2 * kSync);

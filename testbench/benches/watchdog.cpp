@@ -11,7 +11,7 @@
 
 #include "testbench/benches/benches.h"
 #include "testbench/benches/output_watch.h"
-#include "testbench/checkers/watchdog_probe.h"
+#include "testbench/benches/watchdog_probe.h"
 
 namespace brick {
 namespace {
