@@ -1,5 +1,5 @@
 // A testbench: a named host program with steps and a verdict. Each has a negative control, a deliberately wrong rule or
-// a seeded bug with which it must fail, so that its verdict means something.
+// a seeded bug with which a named step must fail, so that its verdict means something.
 #pragma once
 
 #include <cstdint>
@@ -66,12 +66,18 @@ struct BenchNeed {
 };
 extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc;
 
+// What `brick run --negative` does, and the proof that the bench sees it: the first step that fails.
+struct NegativeControl {
+  std::string does;                                   // one line
+  std::string step;                                   // its name, '*' for what depends on the seed
+  std::string says;                                   // part of its detail
+  std::function<void(MachineConfig&)> seed_bug = {};  // changes the machine; empty if the bench does it itself
+};
+
 struct Bench {
   std::string name;
   std::string description;  // one line
-  std::string negative;     // what --negative does, one line
-  std::function<void(MachineConfig&)>
-      seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
+  NegativeControl negative;
   std::function<void(BenchContext&)> run;
   BenchNeed need = kAnyBoard;
   std::string board = "geobrick-lv-8";  // without --board

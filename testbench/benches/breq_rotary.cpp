@@ -208,8 +208,11 @@ void run(BenchContext& b) {
 
 // covers: BREQ-1 BREQ-2 BREQ-3 BREQ-4 BREQ-5 BREQ-7
 Bench breq_rotary_bench() {
-  return {"breq-rotary", "200 lines by interrupt and by polling; every edge of BREQ against the rules of I16 and I17",
-          "the controller's I17 is one higher than the scoreboard is told", nullptr, run};
+  return {"breq-rotary",
+          "200 lines by interrupt and by polling; every edge of BREQ against the rules of I16 and I17",
+          {"the controller's I17 is one higher than the scoreboard is told", "filling, I16=5 I17=10",
+           "expected: stays low from I17=10 on (rule 3)"},
+          run};
 }
 
 }  // namespace brick

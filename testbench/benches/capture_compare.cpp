@@ -328,12 +328,12 @@ void run(BenchContext& b) { CaptureCompareBench(b).run(); }
 
 // covers: CARD-1 CARD-2
 Bench capture_compare_bench() {
-  return {"capture-compare",
-          "every trigger code with every flag, gated and de-multiplexed index, compare both ways, EQU as an interrupt",
-          "the scoreboard's EQU toggles when a position is reached instead of left",
-          nullptr,
-          run,
-          kAServoIc};
+  return {
+      "capture-compare",
+      "every trigger code with every flag, gated and de-multiplexed index, compare both ways, EQU as an interrupt",
+      {"the scoreboard's EQU toggles when a position is reached instead of left", "compare 1, *, EQU", "EQU: change"},
+      run,
+      kAServoIc};
 }
 
 }  // namespace brick

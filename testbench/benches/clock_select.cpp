@@ -310,8 +310,8 @@ class SelectBench {
 Bench clock_select_bench() {
   return {"clock-select",
           "half of the ICs as the source of phase and servo clock, by one line and by I19, SAVE, $$$",
-          "servo dividers one higher than the checker is told",
-          nullptr,
+          {"servo dividers one higher than the checker is told", "own I7m00..02 in every IC",
+           "violations but *SERVO does not fall"},
           [](BenchContext& b) { SelectBench(b).sources(); },
           kTwoIcs,
           "all-ics"};
@@ -321,8 +321,8 @@ Bench clock_select_bench() {
 Bench clock_faults_bench() {
   return {"clock-faults",
           "two sources of the clocks, none, a missing IC, a MACROGATE, clocks from outside (E1)",
-          "servo dividers one higher than the checker is told",
-          nullptr,
+          {"servo dividers one higher than the checker is told", "own I7m00..02 in every IC",
+           "violations but *SERVO does not fall"},
           [](BenchContext& b) { SelectBench(b).faults(); },
           kTwoIcs,
           "turbo-pmac2-pc"};

@@ -267,8 +267,7 @@ void run(BenchContext& b) { FlagsBench(b).run(); }
 Bench flags_bench() {
   return {"flags",
           "every input pin at its status bit and M-variable, the filter, AENA and the control word",
-          "the scoreboard's filter lets one sample pass",
-          nullptr,
+          {"the scoreboard's filter lets one sample pass", "pulses of 1 SCLK period on all pins", "bits 23..12"},
           run,
           kAServoIc};
 }

@@ -251,8 +251,8 @@ void run(BenchContext& b) {
 Bench pfm_bench() {
   return {"pfm",
           "pulse trains on eight channels, every edge at its tick from power-up on; each pulse counted",
-          "the scoreboard knows no ceiling of PFM_CLK / 4",
-          nullptr,
+          {"the scoreboard knows no ceiling of PFM_CLK / 4", "commands about 2^22 and far beyond",
+           "servo_ic*expected pulse"},
           run,
           kAServoIc};
 }

@@ -330,8 +330,7 @@ Bench pwm_bench() {
   return {"pwm",
           "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at "
           "its tick",
-          "the scoreboard compares with >= instead of >",
-          nullptr,
+          {"the scoreboard compares with >= instead of >", "I7004=0", "expected tick"},
           run,
           kServoIc0};
 }

@@ -94,8 +94,7 @@ void run(BenchContext& b) {
 Bench reinit_e3_bench() {
   return {"reinit-e3",
           "SAVEd settings that stop the controller; power-up with jumper E3, and $$$***, restore the defaults",
-          "the jumper is not put in",
-          nullptr,
+          {"the jumper is not put in", "watchdog.tripped with jumper E3", "1, expected 0"},
           run,
           kServoIcs01};
 }

@@ -364,8 +364,7 @@ Bench serial_dac_adc_bench() {
   return {"serial-dac-adc",
           "words of 16 serial DACs and 16 serial ADCs with other clocks and strobe words, every stream of every PHASE "
           "period",
-          "the converters send one header bit more",
-          nullptr,
+          {"the converters send one header bit more", "factory clocks: servo_ic* ADC words read", "reads $"},
           run,
           kAServoIc};
 }

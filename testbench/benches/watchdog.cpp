@@ -214,8 +214,8 @@ Bench watchdog_bench() {
   return {"watchdog",
           "servo frequency too high: the background starves, I40 runs out, the circuit trips 25 ms later; again after "
           "a reset",
-          "the controller's I40 is three times what the scoreboard is told",
-          nullptr,
+          {"the controller's I40 is three times what the scoreboard is told", "trip, servo * kHz, I40=*",
+           "I40 and 25 ms: tripped at"},
           run,
           kServoIcs01};
 }
