@@ -93,6 +93,25 @@ class Traceability(Tree):
         self.expect(self.run_tool("traceability.py", "--results", str(self.root / "r.xml")), 0, "BREQ-1   failed   Breq.FallsOnALine")
 
 
+class SkippedTests(Tree):
+    RUN = '<testcase name="A.Runs" status="run"/><testcase name="A.Fails" status="fail"/>'
+
+    def check(self, cases):
+        self.write("tests.xml", f"<testsuite>{cases}</testsuite>")
+        return subprocess.run([sys.executable, TOOLS / "check_skipped.py", self.root / "tests.xml"], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def test_a_run_without_a_skipped_test_passes(self):
+        self.expect(self.check(self.RUN), 0, "clean")
+
+    def test_a_skipped_test_fails(self):
+        self.expect(self.check(self.RUN + '<testcase name="regs.fresh" status="notrun"/>'), 1, "regs.fresh was skipped")
+        self.expect(self.check(self.RUN + '<testcase name="A.DISABLED_B" status="disabled"/>'), 1, "A.DISABLED_B was skipped")
+
+    def test_a_run_of_nothing_fails(self):
+        self.expect(self.check(""), 1, "no test was run")
+
+
 class Links(Tree):
     def setUp(self):
         super().setUp()
@@ -331,4 +350,6 @@ class Citations(Tree):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run = unittest.main(exit=False).result
+    # A case that lacks its program is skipped, and then so is this test in ctest's eyes (exit status 77).
+    sys.exit(1 if not run.wasSuccessful() else 77 if run.skipped else 0)
