@@ -49,10 +49,12 @@ def line_of(text, position):
 
 def tests_in_cpp(text, file):
     text = re.sub(r"^\s*//.*$", "", text, flags=re.M)  # a BRICK_COVERS that is commented out covers nothing
-    heads = [(m.start(), f"{m[1]}.{m[2]}") for m in re.finditer(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text, re.M)]
+    heads = [(m.start(), f"{m[1]}.{m[2]}") for m in re.finditer(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)",
+                                                                text, re.M)]
     for m in re.finditer(r'BRICK_COVERS\(\s*((?:"[^"]*"\s*)+)\)', text):
         before = [name for start, name in heads if start < m.start()]
-        yield Test(before[-1] if before else f"{file}:{line_of(text, m.start())}", file, ids_in(" ".join(re.findall(r'"([^"]*)"', m[1]))))
+        yield Test(before[-1] if before else f"{file}:{line_of(text, m.start())}", file,
+                   ids_in(" ".join(re.findall(r'"([^"]*)"', m[1]))))
 
 
 def tests_in_comments(text, file, head, comment="#"):
@@ -101,7 +103,8 @@ def plan_problems(root):
 
 def find_tests(root):
     found = []
-    for file in files(root, ["app", "firmware", "systemc", "testbench", "cmake"], {".cpp", ".py", ".txt", ".cmake", ".vec"}):
+    for file in files(root, ["app", "firmware", "systemc", "testbench", "cmake"],
+                      {".cpp", ".py", ".txt", ".cmake", ".vec"}):
         text, name = (root / file).read_text(errors="replace"), str(file)
         if file.suffix == ".cpp":
             found += tests_in_cpp(text, name)
@@ -153,11 +156,13 @@ def page(root, requirements, claimed, tests):
              "Engines: R Verilated RTL, S SystemC model, L lock-step, F firmware on the CPU model. *Claimed* means: the project says that it",
              "meets the requirement, and the test suite fails if no test names it. *Partly* means: tests name it, but it is not met in full yet.", "",
              f"{len(claimed)} of {len(requirements)} claimed, {len(by_id)} named by at least one test.", "",
-             "| ID | Requirement | On | Status | Tests | Test files | Design files that name it |", "|---|---|---|---|---|---|---|"]
+             "| ID | Requirement | On | Status | Tests | Test files | Design files that name it |",
+             "|---|---|---|---|---|---|---|"]
     for name, (engines, text) in requirements.items():
         found = sorted(by_id[name])
         status = "claimed" if name in claimed else "partly" if found else "not claimed"
-        cells = [name, text, engines, status, "<br>".join(dict.fromkeys(t.name for t in found)), "<br>".join(sorted({f"`{t.file}`" for t in found})),
+        cells = [name, text, engines, status, "<br>".join(dict.fromkeys(t.name for t in found)),
+                 "<br>".join(sorted({f"`{t.file}`" for t in found})),
                  "<br>".join(f"`{f}`" for f in mentions[name])]
         lines.append("| " + " | ".join(cells) + " |")
     open_ids = [name for name in requirements if name not in claimed]
