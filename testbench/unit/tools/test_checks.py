@@ -45,6 +45,9 @@ class Traceability(Tree):
         self.write("docs/requirements.txt",
                    "# comment\nBREQ-1 | R S | a line takes BREQ low\nBREQ-2 | R S | BREQ returns high\n")
         self.write("docs/claimed.txt", "BREQ-1\n")
+        self.write("docs/design-files.txt", "breq = rtl/*/breq.sv systemc/breq.h\nBREQ-1 BREQ-2: breq\n")
+        self.write("rtl/host/breq.sv", "")
+        self.write("systemc/breq.h", "")
         self.write("testbench/unit/a_test.cpp", TEST_FILE)
         self.run_tool("traceability.py", "--write")
 
@@ -84,16 +87,41 @@ class Traceability(Tree):
         self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nadd_test(NAME bench.breq COMMAND x)\n")
         self.run_tool("traceability.py", "--write")
         page = (self.root / "docs/traceability.md").read_text()
-        self.assertIn("bench breq-rotary<br>bench.breq", page)
+        self.assertIn("bench breq-rotary (no result)<br>bench.breq (no result)", page)
 
     def test_covers_above_no_test_fails(self):
         self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nset(x 1)\n")
         self.expect(self.run_tool("traceability.py", "--check"), 1, "no test below it")
 
-    def test_results_show_a_failed_test(self):
-        self.write("r.xml", '<testsuite><testcase name="Breq.FallsOnALine" status="fail"/></testsuite>')
-        self.expect(self.run_tool("traceability.py", "--results", str(self.root / "r.xml")), 0,
-                    "BREQ-1   failed   Breq.FallsOnALine")
+    def results(self, *runs):
+        cases = "".join(f'<testcase name="{name}" status="{status}"/>' for name, status in runs)
+        self.write("r.xml", f"<testsuite>{cases}</testsuite>")
+        done = self.run_tool("traceability.py", "--results", str(self.root / "r.xml"))
+        return done, (self.root / "docs/traceability.md").read_text()
+
+    def test_the_page_names_design_files_and_the_result_on_each_engine(self):
+        done, page = self.results(("Breq.FallsOnALine/Rtl  # GetParam() = rtl", "run"),
+                                  ("Breq.FallsOnALine/SystemC", "run"))
+        self.expect(done, 0, "clean")
+        self.assertIn("| claimed | R passed<br>S passed | `rtl/host/breq.sv`<br>`systemc/breq.h` | "
+                      "Breq.FallsOnALine (R S) |", page)
+        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
+
+    def test_a_claim_that_failed_or_was_not_tried_on_one_engine_fails(self):
+        done, page = self.results(("Breq.FallsOnALine/Rtl", "run"))
+        self.expect(done, 1, "BREQ-1 is claimed on S: no result")
+        done, page = self.results(("Breq.FallsOnALine/Rtl", "run"), ("A/Breq.FallsOnALine/Model", "fail"))
+        self.expect(done, 1, "BREQ-1 is claimed on S: failed")
+        self.assertIn("R passed<br>S failed", page)
+        self.assertIn("Breq.FallsOnALine (failed: S)", page)
+
+    def test_a_requirement_without_a_design_file_of_its_engine_fails(self):
+        self.write("docs/design-files.txt", "breq = rtl/*/breq.sv\nBREQ-1: breq\n")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-1 applies to engine S, but has no file of it")
+
+    def test_a_design_file_that_is_gone_fails(self):
+        (self.root / "rtl/host/breq.sv").unlink()
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "no file rtl/*/breq.sv")
 
 
 class SkippedTests(Tree):
