@@ -39,6 +39,15 @@ def same_everywhere():
         check(r.stdout == first, f"{engine} batch {batch} differs:\n{r.stdout}\nexpected as systemc:\n{first}")
 
 
+def version():
+    """What the command says is what the build has and what the newest entry of the change log is about."""
+    tree = pathlib.Path(__file__).resolve().parents[3]
+    said = brick("--version").stdout
+    built = re.search(r"^project\(brick VERSION (\S+)", (tree / "CMakeLists.txt").read_text(), re.M)[1]
+    newest = re.search(r"^## (\S+)", (tree / "CHANGELOG.md").read_text(), re.M)[1]
+    check(said == f"brick {built}\n" and newest == built, f"{said!r}, CMakeLists.txt {built}, CHANGELOG.md {newest}")
+
+
 def at_lines():
     r = play(["@pic", "@pic MSK=12 ELR=10", "@pic", "@dpram 0xC000 = 1234 ABCD", "@dpram 0xC000 2",
               "@signal clock.source", "@until clock.servo=0 1ms", "@until clock.servo=1 1ms", "@signal clock.servo",

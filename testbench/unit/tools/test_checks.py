@@ -179,6 +179,34 @@ class Lines(Tree):
         self.expect(self.check(), 1, "a.md:1: ends in a blank")
 
 
+@unittest.skipUnless(shutil.which("git"), "git is not installed")
+class Commits(Tree):
+    def commit(self, file, *message):
+        self.write(file, str(message))
+        self.git("add", "-A")
+        self.git("commit", "-q", *(word for text in message for word in ("-m", text)))
+        return self.run_tool("check_commits.py")
+
+    def git(self, *arguments):
+        identity = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
+        subprocess.run(["git", *identity, *arguments], cwd=self.root, check=True, stdout=subprocess.DEVNULL)
+
+    def test_a_commit_of_code_without_a_reason_fails_from_the_check_on(self):
+        self.expect(self.run_tool("check_commits.py"), 0, "nothing to judge")
+        self.git("init", "-q")
+        self.expect(self.commit("a.cpp", "old commits are not judged"), 0, "nothing to judge")
+        self.expect(self.commit("tools/check_commits.py", "tools: check of commits"), 0, "0 commits: clean")
+        self.expect(self.commit("a.md", "docs: a page"), 0, "1 commits: clean")
+        self.expect(self.commit("a.cpp", "core: a change", "Because."), 0, "2 commits: clean")
+        self.expect(self.commit("b.cpp", "core: another"), 1, "core: another: changes code and does not say why")
+
+    def test_a_summary_of_another_form_fails(self):
+        self.git("init", "-q")
+        self.commit("tools/check_commits.py", "tools: check of commits")
+        self.expect(self.commit("a.md", "A page"), 1, "expected 'area: what it does'")
+        self.expect(self.commit("b.md", "docs: " + "a" * 55), 1, "in 60 characters or fewer")
+
+
 @unittest.skipUnless(importlib.util.find_spec("ruff"), "ruff is not installed")
 class PythonLint(Tree):
     def test_an_unused_import_and_a_long_line_fail(self):
