@@ -9,7 +9,7 @@
 namespace brick {
 
 namespace {
-constexpr regs::Field kFraction = bits(12, 12);  // of Y:+1 with hardware 1/T, servo-ic:2.3
+constexpr regs::Field kFraction = regs::servo_channel_fine::timer2::kServo;  // of Y:+1 with hardware 1/T
 constexpr Tick kDivision = 20 * kTicksPerRef;
 }  // namespace
 

@@ -195,11 +195,11 @@ class FlagsBench {
 
   // Bits of the control word that belong to I7mnk, servo-ic:2.5.
   static constexpr std::array<regs::Field, 10> kFields{
-      {bits(0, 4), word::control::kCompareChannel, span(word::control::kCaptureSource, word::control::kFlagInvert),
-       word::control::kFlagSelect, word::control::kGatedIndex,
-       span(word::control::kGateState, word::control::kIndexDemux), span(word::control::kAbDac, word::control::kCPfm),
-       span(word::control::kAbInvert, word::control::kCInvert), word::control::kPfmDirInvert,
-       word::control::kHardware1t}};
+      {word::control::kDecode, word::control::kCompareChannel,
+       span(word::control::kCaptureSource, word::control::kFlagInvert), word::control::kFlagSelect,
+       word::control::kGatedIndex, span(word::control::kGateState, word::control::kIndexDemux),
+       span(word::control::kAbDac, word::control::kCPfm), span(word::control::kAbInvert, word::control::kCInvert),
+       word::control::kPfmDirInvert, word::control::kHardware1t}};
 
   void aena() {
     const unsigned n = host_.channels();
