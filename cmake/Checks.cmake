@@ -17,5 +17,5 @@ brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml say
 brick_add_check(format.clang tools/check_format.py clang)
 brick_add_check(lint.commits tools/check_commits.py)  # a commit that changes code says why
 brick_add_check(docs.links tools/check_links.py)
-brick_add_check(docs.citations tools/check_citations.py)
+brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
 brick_add_check(trace.requirements tools/traceability.py --check)
