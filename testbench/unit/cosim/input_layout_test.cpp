@@ -11,6 +11,7 @@
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/clocks/board_rig.h"
 #include "testbench/unit/cosim/board_traffic.h"
+#include "testbench/unit/cosim/distorted_board.h"
 
 namespace brick {
 namespace {
@@ -18,42 +19,29 @@ namespace {
 using Edit = std::function<void(BoardInputs&)>;
 using Changes = std::vector<std::pair<Tick, BoardOutputs>>;
 
-// The inputs of somebody else, distorted on their way to a board.
-class Distorted : public Board {
- public:
-  Distorted(std::uint32_t fitted, Edit edit, Changes& changes)
-      : board_(make_lockstep_board(make_rtl_board(fitted), make_model_board(fitted))), edit_(std::move(edit)) {
-    board_->on_change = [&changes](Tick t, const BoardOutputs&, const BoardOutputs& after) {
-      changes.emplace_back(t, after);
-    };
-  }
-  Tick now() const override { return board_->now(); }
-  const BoardOutputs& outputs() const override { return board_->outputs(); }
-  Tick run_until(Tick limit, const BoardOutputs& stop_on) override { return board_->run_until(limit, stop_on); }
-  void set_inputs(const BoardInputs& inputs) override {
-    BoardInputs distorted = inputs;
-    edit_(distorted);
-    board_->set_inputs(distorted);
-  }
-
- private:
-  std::unique_ptr<Board> board_;
-  Edit edit_;
-};
+// Both engines, with what somebody else drives distorted on its way.
+std::unique_ptr<DistortedBoard> distorted(std::uint32_t fitted, Edit edit, Changes& changes) {
+  auto board = std::make_unique<DistortedBoard>(make_lockstep_board(make_rtl_board(fitted), make_model_board(fitted)));
+  board->distort = std::move(edit);
+  board->on_change = [&changes](Tick t, const BoardOutputs&, const BoardOutputs& after) {
+    changes.emplace_back(t, after);
+  };
+  return board;
+}
 
 // Random accesses from both sides, with a control panel and clocks from outside.
 Changes traffic(const Edit& edit) {
   constexpr Tick kEnd = 20'000;
   Changes changes;
-  Distorted board(0x3, edit, changes);
+  const auto board = distorted(0x3, edit, changes);
   BoardTraffic traffic(2, {0, true});
   while (traffic.next() < kEnd) {
-    board.run_until(traffic.next(), {});
+    board->run_until(traffic.next(), {});
     traffic.change();
     BoardInputs in = traffic.inputs();
     in.ext_clock = in.jpan_fitted = true;
     in.dpram_small = false;
-    board.set_inputs(in);
+    board->set_inputs(in);
   }
   return changes;
 }
@@ -66,7 +54,7 @@ Changes census(const Edit& edit) {
   constexpr std::uint32_t kMacro[] = {0x78400, 0x79400, 0x7A400, 0x7B400};
   constexpr std::uint32_t kEquHigh = 3u << 11;  // set by hand, servo-ic:2.5
   Changes changes;
-  BoardRig rig(std::make_unique<Distorted>(kAll, edit, changes), kAll);
+  BoardRig rig(distorted(kAll, edit, changes), kAll);
   rig.in.line_select = 0;
   for (unsigned channel = 0; channel < 8; ++channel)
     rig.write(true, kServo[channel / 4] + 8 * (channel % 4) + 5, kEquHigh);
