@@ -8,7 +8,7 @@ function(brick_verilate library)
   verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX}
     SOURCES ${V_CONFIG} ${BRICK_RTL}/regs/brick_regs_pkg.sv ${V_SOURCES}
     VERILATOR_ARGS -O3 --x-assign fast --x-initial unique ${V_ARGS} ${BRICK_RTL_ARGS}
-    OPT_FAST ${BRICK_RTL_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
+    OPT_FAST ${BRICK_RTL_OPT} OPT_SLOW ${BRICK_RTL_SLOW_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
 endfunction()
 
 # brick_add_rtl_shell(macro_ic_rtl SOURCES rtl_macro_ic.cpp LIBRARIES brick_core): a library of shells

@@ -1,5 +1,5 @@
-# Checks of the tree itself, as tests: lint of the RTL by three tools and of the Python, formatting, links, traces. A tool
-# that is not installed makes its test "Skipped" (exit status 77), with the reason in the log; nothing else does.
+# Checks of the tree itself, as tests: lint of the RTL by three tools and of the Python, formatting, links, traces. A
+# tool that is not installed makes its test "Skipped" (exit status 77), with the reason in the log; nothing else does.
 function(brick_add_check name)
   add_test(NAME ${name} COMMAND Python3::Interpreter ${ARGN} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS check)

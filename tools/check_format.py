@@ -20,7 +20,7 @@ LONGEST = 120
 FORMATTED = {".cpp", ".h", ".c"}
 TEXTS = FORMATTED | {".sv", ".vlt", ".rdl", ".vec", ".py", ".cmake", ".md", ".txt", ".S", ".ld", ".def", ".hpp"}
 GENERATED = re.compile(r"(?:Generated|Made) by")  # in one of the first lines
-TABLES = {".def", "docs/requirements.txt", "docs/claimed.txt"}  # one row a line
+TABLES = {".def", "docs/requirements.txt", "docs/design-files.txt"}  # one row a line
 
 
 def sources(root):

@@ -11,8 +11,8 @@ docs/design-files.txt says of which files a requirement is made; docs/test-resul
 of the test suite showed of each of these tests, on each engine.
 
   --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a traced ID
-               without design files for each of its engines, on a test that docs/verification-plan.md names and that does
-               not exist, and when docs/traceability.md is not what --write would write
+               without design files for each of its engines, on a test that docs/verification-plan.md names and that
+               does not exist, and when docs/traceability.md is not what --write would write
   --write      writes docs/traceability.md
   --results F  takes the results of a run from `ctest --output-junit F` into docs/test-results.json and writes the page;
                fails when a claimed ID has no passed test on one of its engines, or a failed one
@@ -48,7 +48,7 @@ FILES_RUN_ON = (
     (r"unit/board_model/", "S"),
 )
 NO_ENGINE = "passed"  # what the page shows of such a test
-WITH_FIRMWARE = re.compile(r"unit/system/|unit/app/|benches/")  # the image runs there on each engine
+WITH_FIRMWARE = re.compile(r"unit/system/(?!clock_checker|watchdog_scoreboard)|unit/app/|benches/")  # the image runs there on each engine
 
 
 def read_requirements(root):
@@ -227,8 +227,8 @@ def page(requirements, claimed, tests, design, results):
         "# Traceability", "",
         "From requirement to design files, tests and last result. Engines: R Verilated RTL, S SystemC model,",
         "L lock-step, F firmware on the CPU model.",
-        "*Claimed* means: the project says that it meets the requirement on all its engines, and the test suite fails if",
-        "no test names it. *Partly* means: tests name it, but it is not met in full yet.",
+        "*Claimed* means: the project says that it meets the requirement on all its engines, and the test suite fails",
+        "if no test names it. *Partly* means: tests name it, but it is not met in full yet.",
         "Behind a test stand the engines that it passed on; a checker that works on lists made by hand has none.",
         "`docs/design-files.txt` says which files a requirement is made of.", "",
         f"Results: {results['run']}.",

@@ -3,12 +3,8 @@
 #pragma once
 
 #include <verilated.h>
-#ifdef BRICK_RTL_COVERAGE
-#include <verilated_cov.h>
-#endif
 
 #include <array>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +12,7 @@
 #include "systemc/core/start_value.h"
 #include "systemc/cosim/drive.h"
 #include "systemc/cosim/engines.h"
+#include "systemc/cosim/rtl_coverage.h"
 
 namespace brick {
 
@@ -61,9 +58,7 @@ class RtlBoard : public Board {
     for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = model_->pins_o[i];
   }
   ~RtlBoard() override {
-#ifdef BRICK_RTL_COVERAGE
-    if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
-#endif
+    write_coverage(context_);
     model_->final();
     Verilated::threadContextp(
         &context_);  // its scopes leave the context last used, which may be another board's, long gone

@@ -466,7 +466,8 @@ class Layers(Tree):
         self.write("firmware/hal/hal.c", '#include "firmware/hal/hal.h"\n\nuint32_t hal_cycles(void) { return 0; }\n')
         self.write("firmware/kernel/tasks.h", "extern const struct task_hooks task_hooks;\n")
         self.write("firmware/kernel/tasks.c", '#include "firmware/hal/hal.h"\n#include "firmware/kernel/tasks.h"\n')
-        self.write("firmware/image/tables.c", '#include "firmware/kernel/tasks.h"\n\nconst struct task_hooks task_hooks = {0};\n')
+        self.write("firmware/image/tables.c",
+                   '#include "firmware/kernel/tasks.h"\n\nconst struct task_hooks task_hooks = {0};\n')
         self.write("systemc/core/ticks.h", '#include "rtl/regs/brick_regs.h"\n')
         self.write("systemc/board/board_top.cpp", '#include "systemc/core/ticks.h"\n')
         self.write("testbench/unit/core/ticks_test.cpp", '#include "app/script.h"\n')
