@@ -6,12 +6,8 @@
 #pragma once
 
 #include <verilated.h>
-#ifdef BRICK_RTL_COVERAGE
-#include <verilated_cov.h>
-#endif
 
-#include <cstdlib>
-
+#include "systemc/cosim/rtl_coverage.h"
 #include "testbench/unit/rtl/rtl_block.h"
 
 namespace brick {
@@ -40,9 +36,7 @@ class VerilatedShell : public VerilatedTop<Inputs, Outputs> {
     reset();
   }
   ~VerilatedShell() override {
-#ifdef BRICK_RTL_COVERAGE
-    if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
-#endif
+    write_coverage(context_);
     top_->final();
     Verilated::threadContextp(&context_);  // its scopes leave the context last used, which may be long gone
     top_.reset();
