@@ -7,7 +7,7 @@
 #include "app/commands.h"
 #include "app/script_player.h"
 #include "app/simulation.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 

@@ -10,7 +10,7 @@
 
 #include "app/commands.h"
 #include "app/cpu_command.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 namespace {

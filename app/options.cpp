@@ -7,7 +7,7 @@
 
 #include "app/paths.h"
 #include "app/time_text.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 #include "systemc/machine/board_file.h"
 
 namespace brick {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 

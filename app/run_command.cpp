@@ -6,7 +6,7 @@
 
 #include "app/commands.h"
 #include "app/simulation.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 #include "systemc/cosim/engines.h"
 #include "testbench/benches/bench.h"
 

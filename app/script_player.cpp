@@ -7,7 +7,7 @@
 
 #include "app/hand_encoder.h"
 #include "app/signal_watch.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 

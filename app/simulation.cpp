@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 

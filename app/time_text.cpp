@@ -2,7 +2,7 @@
 
 #include <cctype>
 
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 

@@ -11,6 +11,7 @@ brick_add_check(lint.icarus tools/lint_rtl.py icarus)        # parses and elabor
 if(NOT BRICK_COVERAGE)  # coverage counters belong to an instance: nothing is shared then
   brick_add_check(lint.shared tools/check_shared.py ${CMAKE_BINARY_DIR}/systemc/cosim/CMakeFiles/brick_rtl.dir/Vboard_all.dir)
 endif()
+brick_add_check(lint.layers tools/check_layers.py)           # who may include whom, firmware and C++
 brick_add_check(format.clang tools/check_format.py)
 brick_add_check(docs.links tools/check_links.py)
 brick_add_check(trace.requirements tools/traceability.py --check)

@@ -6,14 +6,10 @@
  * The whole pulse runs with the real-time task held off: it lasts 2 us, and no calculation can stretch or cut it. */
 #include "firmware/buffers/buffer_request.h"
 
-#include "firmware/buffers/rotary.h"
+#include "firmware/base/dimensions.h"
+#include "firmware/buffers/rotary_ring.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command.h"
-#include "firmware/host/panel.h"
-#include "firmware/motion/motion.h"
-#include "firmware/variables/variables.h"
-
-enum { I_BUFFER_ON = 16, I_BUFFER_OFF = 17 };
+#include "firmware/variables/i_variables.h"
 
 static struct {
   bool high;         /* level of the pin. All tasks, under the mask */
@@ -38,16 +34,12 @@ static bool is_ready(uint32_t cs) {
   return ring->size != 0 && ring->requested && !ring->full;
 }
 
-/* The host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may be
- * none. */
-uint32_t buffer_request_selected(void) { return panel_active() ? panel_cs() : command_cs(); }
-
 void buffer_request_initialize(void) {
   request.high = false;
   hal_host_signals(0, HAL_SIGNAL_BREQ);
   request.rise = hal_cycles();
-  request.on = i_integer(I_BUFFER_ON);
-  request.off = i_integer(I_BUFFER_OFF);
+  request.on = i_integer(I16_ROTARY_REQUEST_ON);
+  request.off = i_integer(I17_ROTARY_REQUEST_OFF);
   request.selected = buffer_request_selected();
 }
 
@@ -59,7 +51,7 @@ void buffer_request_begin_line(uint32_t cs) {
 
 void buffer_request_line_stored(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
-  if ((int32_t)ring->lines >= i_integer(I_BUFFER_OFF)) ring->full = true;
+  if ((int32_t)ring->lines >= i_integer(I17_ROTARY_REQUEST_OFF)) ring->full = true;
   if (cs != buffer_request_selected() || !is_ready(cs)) return;
   hal_delay_us(BREQ_PULSE_US);
   drive(true);
@@ -67,7 +59,7 @@ void buffer_request_line_stored(uint32_t cs) {
 
 void buffer_request_line_calculated(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
-  if (!ring->full || (int32_t)ring->lines >= i_integer(I_BUFFER_ON)) return;
+  if (!ring->full || (int32_t)ring->lines >= i_integer(I16_ROTARY_REQUEST_ON)) return;
   ring->full = false;
   if (cs == buffer_request_selected()) drive(is_ready(cs));
 }
@@ -78,7 +70,7 @@ void buffer_request_opened(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
   uint32_t state = hal_mask_real_time();
   ring->requested = true;
-  if ((int32_t)ring->lines >= i_integer(I_BUFFER_OFF)) ring->full = true;
+  if ((int32_t)ring->lines >= i_integer(I17_ROTARY_REQUEST_OFF)) ring->full = true;
   show();
   hal_unmask(state);
 }
@@ -98,7 +90,7 @@ static void limits_changed(struct rotary* ring) {
 
 void buffer_request_evaluate(void) {
   uint32_t state = hal_mask_real_time();
-  int32_t on = i_integer(I_BUFFER_ON), off = i_integer(I_BUFFER_OFF);
+  int32_t on = i_integer(I16_ROTARY_REQUEST_ON), off = i_integer(I17_ROTARY_REQUEST_OFF);
   bool changed = on != request.on || off != request.off;
   request.on = on;
   request.off = off;
@@ -110,7 +102,7 @@ void buffer_request_evaluate(void) {
 }
 
 void buffer_request_poll(void) {
-  if (request.selected != buffer_request_selected() || request.on != i_integer(I_BUFFER_ON) ||
-      request.off != i_integer(I_BUFFER_OFF))
+  if (request.selected != buffer_request_selected() || request.on != i_integer(I16_ROTARY_REQUEST_ON) ||
+      request.off != i_integer(I17_ROTARY_REQUEST_OFF))
     buffer_request_evaluate();
 }

@@ -12,13 +12,16 @@ enum {
   BREQ_HIGH_CYCLES_FASTEST_CPU = 315 /* 1 us at I52 = 31; below this the last rise may be too recent at any CPU clock */
 };
 
+/* The coordinate system that drives the pin; COORDINATE_SYSTEMS: none. Hosts and panels select it: image/tables.c. */
+extern uint32_t (*const buffer_request_selected)(void);
+
 void buffer_request_initialize(void);
 void buffer_request_begin_line(uint32_t cs); /* background, real-time task masked: pin low before the line is counted */
 void buffer_request_line_stored(uint32_t cs);     /* same section, line counted: Full decided, pulse timed, pin final */
 void buffer_request_line_calculated(uint32_t cs); /* real-time task, line no longer counted */
 void buffer_request_opened(uint32_t cs);          /* OPEN ROTARY, OPEN BINARY ROTARY */
 void buffer_request_emptied(uint32_t cs);         /* CLEAR, DELETE, DEFINE: Full = 0 */
-uint32_t buffer_request_selected(void);           /* coordinate system that drives the pin; COORDINATE_SYSTEMS: none */
+void buffer_request_evaluate(void);               /* addressed C.S., I16 or I17 changed: pin shows the selected C.S. */
 void buffer_request_poll(void); /* background pass: notices changes of I16, I17 and of the selection */
 
 #endif

@@ -2,6 +2,7 @@
  */
 #include "firmware/buffers/open_buffer.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/rotary.h"
 

@@ -2,7 +2,7 @@
 #ifndef FIRMWARE_BUFFERS_OPEN_BUFFER_H
 #define FIRMWARE_BUFFERS_OPEN_BUFFER_H
 
-#include "firmware/host/error.h"
+#include "firmware/base/error.h"
 
 enum open_buffer { OPEN_NONE, OPEN_ROTARY, OPEN_BINARY_ROTARY };
 

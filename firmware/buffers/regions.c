@@ -2,6 +2,7 @@
  * base of a region is the sum of all sizes below it. */
 #include "firmware/buffers/regions.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/user_memory.h"
 
 static struct {

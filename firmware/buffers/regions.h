@@ -7,9 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/host/error.h"
-
-enum { COORDINATE_SYSTEMS = 16 };
+#include "firmware/base/dimensions.h"
+#include "firmware/base/error.h"
 
 enum region_kind { REGION_CCBUF, REGION_LOOKAHEAD, REGION_ROTARY, REGION_GATHER, REGION_KINDS }; /* in memory order */
 

@@ -2,10 +2,11 @@
  * real-time task held off, so the reader never sees half a line. */
 #include "firmware/buffers/rotary.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
-
-struct rotary rotary_buffers[COORDINATE_SYSTEMS];
+#include "firmware/hal/hal.h"
 
 static void reset(struct rotary* ring) {
   ring->write = ring->read = 0;

@@ -4,20 +4,9 @@
 #ifndef FIRMWARE_BUFFERS_ROTARY_H
 #define FIRMWARE_BUFFERS_ROTARY_H
 
-#include "firmware/buffers/regions.h"
+#include "firmware/base/error.h"
+#include "firmware/buffers/rotary_ring.h"
 #include "firmware/language/word.h"
-
-struct rotary {
-  uint32_t base, size;     /* words; size 0: not defined. Background */
-  uint32_t write;          /* next word to store. Background */
-  uint32_t read;           /* next word to calculate. Real-time task, background while it is masked */
-  volatile uint32_t used;  /* words stored and not calculated. Both, under the mask */
-  volatile uint32_t lines; /* lines stored and not calculated: PR. Both, under the mask */
-  bool requested;          /* opened since it was defined: BREQ takes part (host-bus:5.7, state other than IDLE) */
-  volatile bool full;      /* Rotary Buffer Full. Both, under the mask */
-};
-
-extern struct rotary rotary_buffers[COORDINATE_SYSTEMS];
 
 void rotary_initialize(void);
 error_t rotary_define(uint32_t cs, uint32_t words);

@@ -4,8 +4,9 @@
 #include "firmware/host/host_port.h"
 
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/variables/variables.h"
+#include "firmware/kernel/background.h"
+#include "firmware/kernel/watchdog.h"
+#include "firmware/variables/i_variables.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { RECEIVE_SIZE = 2048, TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500 };
@@ -36,19 +37,19 @@ void host_port_character(uint8_t c) {
     flushed_to = receive_head;
     transmit_head = transmit_tail;
     flushed = discard = 1;
-    if (i_integer(63) != 0) {
+    if (i_integer(I63_CONTROL_X_ECHO) != 0) {
       transmit[transmit_head % TRANSMIT_SIZE] = c;
       ++transmit_head;
       if (!transmitting) enable(receiving, true);
     }
-    kernel_wake_background();
+    background_wake();
     return;
   }
   receive[receive_head % RECEIVE_SIZE] = c;
   ++receive_head;
   if (c >= ' ') return;
   if (((URGENT >> c) & 1u) != 0u) urgent |= 1u << c;
-  kernel_wake_background();
+  background_wake();
 }
 
 bool host_port_next_output(uint8_t* c) {
@@ -118,7 +119,7 @@ static bool wait_for_room(void) {
   const uint32_t tail = transmit_tail;
   while (transmit_head - transmit_tail >= TRANSMIT_SIZE) {
     if (transmit_tail == tail && hal_cycles() - start > limit) return false;
-    kernel_watchdog_reload();
+    watchdog_reload();
     hal_idle(&never);
   }
   return true;

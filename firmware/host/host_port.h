@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 void host_port_initialize(void);
-void host_port_interrupt(void);         /* boot/trap.S: one character each way */
+void host_port_interrupt(void);         /* image/trap.S: one character each way */
 void host_port_character(uint8_t c);    /* a character from the host: interrupt, or a test */
 bool host_port_next_output(uint8_t* c); /* the next character for the host: interrupt, or a test */
 

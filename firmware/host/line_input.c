@@ -5,12 +5,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/host/command.h"
-#include "firmware/host/control.h"
+#include "firmware/command/command.h"
+#include "firmware/command/control_characters.h"
+#include "firmware/command/reply.h"
 #include "firmware/host/host_port.h"
-#include "firmware/host/reply.h"
-#include "firmware/host/reply_frame.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
 
 enum {
   LINE_LIMIT = 255,
@@ -47,11 +46,11 @@ static uint8_t checksum(const char* text, uint32_t count) {
 }
 
 static void report_error(error_t error) {
-  const int32_t style = i_integer(6);
+  const int32_t style = i_integer(I6_ERROR_REPORTING);
   host_port_send(BELL);
   if ((style & 1) == 0) return;
   if (style == 3) host_port_send(RETURN);
-  if ((i_integer(3) & 1) != 0) host_port_send(LINE_FEED);
+  if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) host_port_send(LINE_FEED);
   host_port_send('E');
   host_port_send('R');
   host_port_send('R');
@@ -64,18 +63,18 @@ static void report_error(error_t error) {
 /* A line that turns acknowledging by ACK on or off is acknowledged by ACK itself: both what a client that goes by the
  * old setting and what one that goes by the new setting waits for. */
 static void acknowledge(int32_t style_before, uint8_t sum) {
-  const int32_t style = i_integer(3);
+  const int32_t style = i_integer(I3_IO_HANDSHAKE);
   if (style >= 2 || style_before >= 2)
     host_port_send(ACKNOWLEDGE);
   else if (style == 1)
     host_port_send(LINE_FEED);
   else
     return;
-  if ((i_integer(4) & 1) != 0) host_port_send(sum);
+  if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) host_port_send(sum);
 }
 
 static void execute(void) {
-  const int32_t style_before = i_integer(3);
+  const int32_t style_before = i_integer(I3_IO_HANDSHAKE);
   const char* text = texts[current];
   const uint32_t count = length;
   error_t error = ERR_NONE;
@@ -96,7 +95,7 @@ static void execute(void) {
   if (error != ERR_NONE)
     report_error(error);
   else
-    acknowledge(style_before, (i_integer(4) & 1) != 0 ? checksum(text, count) : 0u);
+    acknowledge(style_before, (i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0 ? checksum(text, count) : 0u);
 }
 
 /* Text in quotes keeps its case. */

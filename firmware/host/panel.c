@@ -3,13 +3,13 @@
  * motors are not moved by commands yet. */
 #include "firmware/host/panel.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/hal/hal.h"
-#include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/run_control.h"
-#include "firmware/variables/variables.h"
+#include "firmware/run/run_control.h"
+#include "firmware/variables/i_variables.h"
 #include "rtl/regs/brick_regs.h"
 
-enum { I_PANEL_OFF = 2, I_GROUP = 59, SELECTABLE = 8 };
+enum { SELECTABLE = 8 };
 
 static bool fitted;
 static volatile uint32_t low; /* inputs that are pulled low, as 1. B writes */
@@ -23,7 +23,7 @@ void panel_initialize(void) {
   low = fitted ? read_low() : 0u;
 }
 
-bool panel_active(void) { return fitted && ((uint32_t)i_integer(I_PANEL_OFF) & 1u) == 0u; }
+bool panel_active(void) { return fitted && ((uint32_t)i_integer(I2_CONTROL_PANEL_DISABLE) & 1u) == 0u; }
 
 static uint32_t number(uint32_t inputs) { return (inputs & JPAN_INPUTS_FPD_MASK) >> JPAN_INPUTS_FPD_SHIFT; }
 
@@ -31,14 +31,15 @@ uint32_t panel_cs(void) {
   const uint32_t n = number(low);
   if (n == 0u || n > SELECTABLE) return COORDINATE_SYSTEMS;
   return n - 1u +
-         SELECTABLE * ((uint32_t)i_integer(I_GROUP) & 1u); /* groups 2 and 3 are further motors, not further systems */
+         SELECTABLE * ((uint32_t)i_integer(I59_CONTROL_PANEL_GROUP) &
+                       1u); /* groups 2 and 3 are further motors, not further systems */
 }
 
 static void choose_group(uint32_t pulled) {
   static const uint32_t inputs[] = {JPAN_INPUTS_HOME_MASK, JPAN_INPUTS_PREJOG_MASK, JPAN_INPUTS_START_MASK,
                                     JPAN_INPUTS_STEP_MASK};
   for (unsigned group = 0; group < sizeof inputs / sizeof inputs[0]; ++group)
-    if ((pulled & inputs[group]) != 0u) i_variable_write(I_GROUP, group);
+    if ((pulled & inputs[group]) != 0u) i_variable_write(I59_CONTROL_PANEL_GROUP, group);
 }
 
 static void act(uint32_t cs, uint32_t pulled) {

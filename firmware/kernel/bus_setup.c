@@ -1,7 +1,8 @@
 /* CPU clock and Port A wait states: I52 sets the clock, the bus control register gets the factory wait states for it
  * plus those of I37 (host-bus:2.4, host-bus:2.5). Both take effect at power-up and reset only. */
+#include "firmware/kernel/bus_setup.h"
+
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/internal.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { RESET_I52 = 7, AREAS = 5 };

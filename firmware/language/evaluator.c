@@ -1,9 +1,13 @@
 /* The stack machine that executes compiled expressions, on-line in the background task and for programs in the
  * real-time task. */
-#include "firmware/language/expression.h"
-#include "firmware/language/mathematics.h"
+#include "firmware/language/evaluator.h"
+
+#include "firmware/base/dimensions.h"
+#include "firmware/base/mathematics.h"
 #include "firmware/language/operators.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
+#include "firmware/variables/m_variables.h"
+#include "firmware/variables/pq_variables.h"
 
 static uint32_t variable_index(double number) { /* 0..8191; anything else wraps, as the address calculation would */
   return (uint32_t)math_to_integer(number) % VARIABLE_COUNT;
@@ -63,7 +67,7 @@ double operator_binary(uint32_t code, double a, double b) {
 }
 
 double operator_unary(uint32_t code, double a, uint32_t cs) {
-  int degrees = i_integer(15) == 0;
+  int degrees = i_integer(I15_RADIANS) == 0;
   switch (code) {
     case OPERATOR_NEGATE:
       return -a;

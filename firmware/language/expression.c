@@ -2,8 +2,9 @@
  * known. */
 #include "firmware/language/expression.h"
 
+#include "firmware/base/dimensions.h"
+#include "firmware/language/evaluator.h"
 #include "firmware/language/operators.h"
-#include "firmware/variables/variables.h"
 
 /* No expression of a host line (255 characters) reaches these: an operator or bracket takes a character, so does a
  * word. */

@@ -7,16 +7,9 @@
 #include "firmware/language/lexer.h"
 #include "firmware/language/word.h"
 
-enum { EXPRESSION_DEPTH = 65 }; /* values on the stack: `1+(1+(...` needs four characters of a line for each */
-
 struct word_list {
   word48_t* words;
   uint32_t count, capacity;
-};
-
-struct evaluator {
-  double stack[EXPRESSION_DEPTH];
-  uint32_t depth;
 };
 
 /* Parses and evaluates at once. `cs` (0..15) gives the Q-variables. */
@@ -27,12 +20,5 @@ error_t expression_evaluate(struct lexer* lx, uint32_t cs, double* value);
 error_t expression_compile(struct lexer* lx, bool bracketed, struct word_list* out);
 error_t word_list_add(struct word_list* list, word48_t word); /* ERR_DATA when the list is full: line too long */
 error_t word_list_add_instruction(struct word_list* list, const struct instruction* in);
-
-/* Executes one stack instruction; `raw` is the word after OP_PUSH_DOUBLE. False: not a stack instruction, or the stack
- * is misused, which only a corrupted buffer can bring about. */
-bool evaluator_execute(struct evaluator* ev, const struct instruction* in, word48_t head, word48_t raw, uint32_t cs);
-bool evaluator_pop(struct evaluator* ev, double* value);
-double variable_read(uint32_t group, uint32_t cs, double number);
-void variable_write(uint32_t group, uint32_t cs, double number, double value);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/host/error.h"
+#include "firmware/base/error.h"
 
 #define LEXER_CONSTANT_LIMIT 34359738368.0 /* 2^35, firmware:1.1 */
 

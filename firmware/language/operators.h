@@ -2,8 +2,6 @@
 #ifndef FIRMWARE_LANGUAGE_OPERATORS_H
 #define FIRMWARE_LANGUAGE_OPERATORS_H
 
-#include <stdint.h>
-
 enum operator_code {
   OPERATOR_ADD,
   OPERATOR_SUBTRACT,
@@ -29,8 +27,5 @@ enum operator_code {
   OPERATOR_INT,
   OPERATOR_COUNT
 };
-
-double operator_binary(uint32_t code, double a, double b);
-double operator_unary(uint32_t code, double a, uint32_t cs); /* I15 selects degrees; ATAN2 takes Q0 of `cs` as its x */
 
 #endif

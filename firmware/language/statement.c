@@ -64,7 +64,7 @@ static bool skip_brackets(struct lexer* lx) {
 
 /* An axis letter with its value. Looked for first: no keyword goes on with a number, and these are most of all
  * statements. */
-bool statement_axis_starts(struct lexer* lx, uint32_t* axis) {
+static bool axis_starts(struct lexer* lx, uint32_t* axis) {
   (void)lexer_peek(lx);
   struct lexer start = *lx;
   if (find_letter(lx, AXIS_OF, axis) && number_starts(lx)) return true;
@@ -103,14 +103,28 @@ static bool accept_other(struct lexer* lx) {
   return false;
 }
 
-bool statement_starts(struct lexer lx) {
-  uint32_t axis;
-  if (statement_axis_starts(&lx, &axis) || feed_starts(&lx) || assignment_starts(lx)) return true;
-  uint32_t keyword = accept_keyword(&lx);
-  if (keyword < KEYWORD_COUNT) return KEYWORDS[keyword].operation != OP_RATE || number_starts(&lx);
-  if (accept_other(&lx)) return true;
-  return (lexer_accept(&lx, 'N') || lexer_accept(&lx, 'O') || lexer_accept(&lx, 'G')) && number_starts(&lx);
+/* The head of a statement is looked for once: `lx` is left behind its letter or keyword. */
+struct statement statement_find(struct lexer* lx) {
+  const struct lexer start = *lx;
+  struct statement found = {STATEMENT_NONE, 0};
+  if (axis_starts(lx, &found.index)) {
+    found.kind = STATEMENT_AXIS;
+  } else if (feed_starts(lx)) {
+    found.kind = STATEMENT_FEED;
+  } else if (assignment_starts(*lx)) {
+    found.kind = STATEMENT_ASSIGNMENT;
+    (void)find_letter(lx, CLASS_OF, &found.index);
+  } else if ((found.index = accept_keyword(lx)) < KEYWORD_COUNT) {
+    if (KEYWORDS[found.index].operation != OP_RATE || number_starts(lx)) found.kind = STATEMENT_KEYWORD;
+  } else if (accept_other(lx) ||
+             ((lexer_accept(lx, 'N') || lexer_accept(lx, 'O') || lexer_accept(lx, 'G')) && number_starts(lx))) {
+    found.kind = STATEMENT_OTHER;
+  }
+  if (found.kind == STATEMENT_NONE) *lx = start;
+  return found;
 }
+
+bool statement_starts(struct lexer lx) { return statement_find(&lx).kind != STATEMENT_NONE; }
 
 error_t statement_axis_list(struct lexer* lx, uint32_t bare, uint32_t* mask) {
   uint32_t axis;
@@ -149,10 +163,6 @@ static error_t compile_value(struct lexer* lx, enum operation constant, enum ope
     if (error == ERR_NONE && number == RATE_TM && constant == OP_RATE && in.value > 8388607.0) error = ERR_DATA;
   }
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
-}
-
-error_t statement_axis_compile(struct lexer* lx, uint32_t axis, struct word_list* out) {
-  return compile_value(lx, OP_AXIS, OP_AXIS_POP, axis, out);
 }
 
 static error_t compile_assignment(struct lexer* lx, uint32_t group, struct word_list* out) {
@@ -204,14 +214,17 @@ static error_t compile_keyword(struct lexer* lx, uint32_t index, struct word_lis
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
 }
 
-error_t statement_compile(struct lexer* lx, struct word_list* out) {
-  uint32_t index = 0;
-  if (statement_axis_starts(lx, &index)) return statement_axis_compile(lx, index, out);
-  if (feed_starts(lx)) return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
-  if (assignment_starts(*lx)) {
-    (void)find_letter(lx, CLASS_OF, &index);
-    return compile_assignment(lx, index, out);
+error_t statement_compile(struct lexer* lx, struct statement head, struct word_list* out) {
+  switch (head.kind) {
+    case STATEMENT_AXIS:
+      return compile_value(lx, OP_AXIS, OP_AXIS_POP, head.index, out);
+    case STATEMENT_FEED:
+      return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
+    case STATEMENT_ASSIGNMENT:
+      return compile_assignment(lx, head.index, out);
+    case STATEMENT_KEYWORD:
+      return compile_keyword(lx, head.index, out);
+    default:
+      return ERR_DATA;
   }
-  index = accept_keyword(lx);
-  return index < KEYWORD_COUNT ? compile_keyword(lx, index, out) : ERR_DATA;
 }

@@ -5,7 +5,7 @@
  * mantissa(s33). */
 #include "firmware/language/word.h"
 
-#include "firmware/language/mathematics.h"
+#include "firmware/base/mathematics.h"
 
 enum code1 {
   CODE_BLANK = 0,

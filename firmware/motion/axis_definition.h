@@ -2,10 +2,11 @@
 #ifndef FIRMWARE_MOTION_AXIS_DEFINITION_H
 #define FIRMWARE_MOTION_AXIS_DEFINITION_H
 
-#include "firmware/language/lexer.h"
-#include "firmware/language/word.h"
+#include <stdbool.h>
+#include <stdint.h>
 
-enum { MOTORS = 32 };
+#include "firmware/base/dimensions.h"
+#include "firmware/language/word.h"
 
 struct axis_definition {
   bool assigned, kinematic; /* `I`: inverse kinematics */
@@ -16,9 +17,7 @@ struct axis_definition {
 
 extern struct axis_definition axis_definitions[MOTORS]; /* background; part of the SAVE image */
 
-void axis_definition_initialize(void);             /* none: SAVEd definitions are put back by the start-up */
-error_t axis_definition_command(struct lexer* lx); /* behind `->`: query or definition of the addressed motor */
-error_t axis_undefine_command(struct lexer* lx);   /* UNDEFINE, UNDEFINE ALL */
-uint32_t axis_definition_motors(uint32_t cs);      /* motors assigned to it */
+void axis_definition_initialize(void);        /* none: SAVEd definitions are put back by the start-up */
+uint32_t axis_definition_motors(uint32_t cs); /* motors assigned to it */
 
 #endif

@@ -8,9 +8,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "firmware/buffers/regions.h"
-#include "firmware/language/expression.h"
+#include "firmware/base/dimensions.h"
+#include "firmware/language/evaluator.h"
 #include "firmware/language/word.h"
+#include "firmware/variables/i_variables.h"
 
 #define TRAJECTORY_LONGEST_MS 8388607.0
 
@@ -18,20 +19,7 @@ enum {
   TRAJECTORY_FRACTION_BITS = 23,
   VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
   MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware:7.5) */
-  CALCULATED_LINES_LIMIT = 32, /* lines without a move that one real-time interrupt works off for a coordinate system */
-  I_CS_BASE = 5100             /* I5100 + 100 * cs + nn is Isxnn */
-};
-
-enum i_cs {
-  I_CS_TA = 87,
-  I_CS_TS = 88,
-  I_CS_FEED = 89,
-  I_CS_TIME_UNIT = 90,
-  I_CS_ALTERNATE_FEED = 86,
-  I_CS_NO_BLEND = 92,
-  I_CS_SLEW = 94,
-  I_CS_HOLD_SLEW = 95,
-  I_CS_FEED_LIMIT = 98
+  CALCULATED_LINES_LIMIT = 32 /* lines without a move that one real-time interrupt works off for a coordinate system */
 };
 
 enum program_pointer { POINTER_NONE, POINTER_ROTARY, POINTER_FIXED };
@@ -98,18 +86,10 @@ extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
  * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
 
-double cs_variable(uint32_t cs, enum i_cs number);
-
-/* calculate.c, real-time task */
-void calculate_ahead(uint32_t cs);
+void coordinate_systems_initialize(void); /* power-up, $$$ and $$$***: idle, at 0, without axes */
 void cs_set_axis_mode(struct coordinate_system* s, enum operation operation,
                       uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
-/* plan.c, real-time task: fills the move that is not executing */
-void plan_line(uint32_t cs);
-void plan_wait(uint32_t cs, enum rate kind, double milliseconds);
-/* servo_update.c, servo task */
-void cs_servo_update(struct coordinate_system* s);
-/* position.c, with the servo task held off */
-void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]);
+
+static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }
 
 #endif

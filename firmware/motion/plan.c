@@ -1,12 +1,10 @@
 /* Planning of moves (firmware:7.5), real-time task. RAPID moves are planned as unblended LINEAR moves at the feedrate:
  * their own speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
-#include "firmware/language/mathematics.h"
-#include "firmware/motion/coordinate_system.h"
-#include "firmware/variables/variables.h"
+#include "firmware/motion/plan.h"
 
-double cs_variable(uint32_t cs, enum i_cs number) {
-  return i_variable_read((uint32_t)I_CS_BASE + 100u * cs + (uint32_t)number);
-}
+#include "firmware/base/mathematics.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/variables/i_variables.h"
 
 /* Rounded to the nearest 2^-23 ms. */
 static int64_t units(double milliseconds) {
@@ -19,8 +17,8 @@ static struct move* next_move(struct coordinate_system* s) { return &s->moves[s-
 
 /* Tm of a feed-specified move in ms. */
 static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT]) {
-  double unit = cs_variable(cs, I_CS_TIME_UNIT), feed = cs_variable(cs, I_CS_FEED);
-  double limit = cs_variable(cs, I_CS_FEED_LIMIT), alternate = cs_variable(cs, I_CS_ALTERNATE_FEED);
+  double unit = cs_variable(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_variable(cs, ISX89_FEEDRATE);
+  double limit = cs_variable(cs, ISX98_FEEDRATE_LIMIT), alternate = cs_variable(cs, ISX86_ALTERNATE_FEEDRATE);
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
   if (limit > 0.0 && feed > limit) feed = limit;
@@ -41,8 +39,8 @@ static double feed_time(uint32_t cs, const struct coordinate_system* s, const do
 
 /* Acceleration and the least move time that it allows; both 0: 0.5 ms. */
 static void set_times(uint32_t cs, struct move* m, double milliseconds) {
-  double ts = cs_variable(cs, I_CS_TS);
-  m->acceleration = units(larger(cs_variable(cs, I_CS_TA), 2.0 * ts)) & ~INT64_C(1);
+  double ts = cs_variable(cs, ISX88_S_CURVE_TIME);
+  m->acceleration = units(larger(cs_variable(cs, ISX87_ACCELERATION_TIME), 2.0 * ts)) & ~INT64_C(1);
   m->s_curve = units(ts);
   m->time = units(milliseconds < TRAJECTORY_LONGEST_MS ? milliseconds : TRAJECTORY_LONGEST_MS);
   int64_t least = m->acceleration > 0 ? m->acceleration : MOVE_MINIMUM_UNITS;
@@ -75,8 +73,8 @@ void plan_line(uint32_t cs) {
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
     m->delta[axis] = ((s->pending_axes >> axis) & 1u) ? s->pending[axis] - s->position[axis] : 0.0;
   s->pending_axes = 0;
-  set_times(cs, m, s->time_mode ? cs_variable(cs, I_CS_FEED) : feed_time(cs, s, m->delta));
-  finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
+  set_times(cs, m, s->time_mode ? cs_variable(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta));
+  finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0);
 }
 
 /* DWELL stops blending and is timed by the servo clock alone; DELAY is a move of no distance. */
@@ -92,6 +90,6 @@ void plan_wait(uint32_t cs, enum rate kind, double milliseconds) {
     finish(cs, m, false);
   } else {
     set_times(cs, m, length);
-    finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, I_CS_NO_BLEND) == 0.0);
+    finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0);
   }
 }

@@ -1,6 +1,6 @@
 /* Where the virtual axes of a coordinate system are: the executing move's profile evaluated at the present trajectory
  * time. Used when a program is aborted; the servo task is held off meanwhile. */
-#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/position.h"
 
 /* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`. */
 static double rise(double t, double length, double s) {

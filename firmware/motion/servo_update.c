@@ -1,17 +1,15 @@
+/* clang-format off */
 /* Servo task of the coordinate systems: advances trajectory time and goes from move to move. Integer arithmetic only.
  *
- *   velocity   _____________                       A move changes velocity during its first `blend_in` units, its
- * corner lies in the
- *            /:             \:                     middle of that; the next corner is Tm later. The next move, if it is
- * there in time, / :              :\______              begins half its own acceleration time before that corner, else
- * the velocity falls to
- *    ______/  :              :                     zero during Ta around the corner. From rest to rest a move so takes
- * Tm + Ta.
- *          |<>|blend_in/2    corner + Tm */
-#include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/motion.h"
+ *   velocity   _____________              A move changes velocity during its first `blend_in` units, its corner lies in
+ *            /:             \:            the middle of that; the next corner is Tm later. The next move, if it is
+ *           / :              :\______     there in time, begins half its own acceleration time before that corner,
+ *    ______/  :              :            else the velocity falls to zero during Ta around the corner. From rest to
+ *          |<>|blend_in/2    corner + Tm  rest a move so takes Tm + Ta. */
+/* clang-format on */
+#include "firmware/motion/servo_update.h"
 
-volatile uint32_t cs_busy;
+#include "firmware/motion/coordinate_system.h"
 
 static void slew_time_base(struct coordinate_system* s) {
   int32_t present = s->increment, target = s->increment_target, slew = s->increment_slew;
@@ -71,7 +69,7 @@ static void update_dwell(struct coordinate_system* s) {
   begin_from_rest(s);
 }
 
-void cs_servo_update(struct coordinate_system* s) {
+static __attribute__((noinline)) void update(struct coordinate_system* s) {
   slew_time_base(s);
   if (!s->active) {
     begin_from_rest(s);
@@ -86,12 +84,12 @@ void cs_servo_update(struct coordinate_system* s) {
   }
 }
 
-void motion_servo_update(void) {
+void servo_update(void) {
   uint32_t left = cs_busy;
   for (uint32_t cs = 0; left != 0; cs++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     struct coordinate_system* s = &coordinate_systems[cs];
-    cs_servo_update(s);
+    update(s);
     if (!s->active && !s->next_valid && s->increment == s->increment_target) cs_busy &= ~(1u << cs);
   }
 }

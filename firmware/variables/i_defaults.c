@@ -2,11 +2,11 @@
  */
 #include "firmware/variables/i_defaults.h"
 
+#include "firmware/base/memory_map.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 
 #define CONVERSION_RESULTS 0x3501u /* result of line 0 of the encoder conversion table */
-#define OPEN_MEMORY_END 0x010800u
 #define CS_REGISTERS 0x2000u
 
 bool i_of_gate_ic(struct i_place place) { return place.group >= I_GROUP_MACRO && place.group <= I_GROUP_CHANNEL; }
@@ -19,7 +19,7 @@ bool i_of_absent_ic(struct i_place place) {
 
 static bool can_be_source(unsigned ic) { return gate_ic_present(ic) && !gate_ic_is_macrogate(ic); }
 
-/* servo-ic data sheet 7.1: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
+/* servo-ic:7.1/3: servo IC 0, MACRO IC 0, servo IC 1..9, 2*..9*, MACRO IC 1..3. */
 uint32_t i_default_clock_source(void) {
   if (can_be_source(0)) return gate_ic_direction_variable(0);
   if (can_be_source(GATE_IC_MACRO)) return gate_ic_direction_variable(GATE_IC_MACRO);
@@ -78,7 +78,7 @@ static double configuration(uint32_t offset) {
     case 4:
       return hal_strap(HAL_STRAP_DPRAM_WORDS) != 0u ? 1.0 : 0.0;
     case 8:
-      return OPEN_MEMORY_END;
+      return MEMORY_BUFFERS_END;
     /* Vendor 1 in bits 0..7, no options, revision 1 in bits 18..21, card number less 600000 in bits 22..35. */
     case 9:
       return 1.0 + 262144.0 + 4194304.0 * (card >= 600000u ? card - 600000u : card);

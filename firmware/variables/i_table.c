@@ -7,7 +7,7 @@ enum { FORMAT_D = 0, FORMAT_H = 1 };
 
 static const struct i_entry entries[] = {
     {0, 0, 0, I_KIND_S, 24, 0, I_FIELD_NONE, 0.0}, /* reserved numbers */
-#define I_ENTRY(group, first, count, kind, bits, format, value, field) \
+#define I_ENTRY(name, group, first, count, kind, bits, format, value, field) \
   {I_GROUP_##group, first, count, I_KIND_##kind, bits, FORMAT_##format, I_FIELD_##field, value},
 #include "firmware/variables/i_variables.def"
 #undef I_ENTRY

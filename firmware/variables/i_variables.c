@@ -1,13 +1,16 @@
 /* I-variables: values, range reduction, the lock of I41 and the hardware fields behind them.
  * Written by the background and real-time tasks; a double is two stores, so the real-time task is held off meanwhile.
  */
+#include "firmware/variables/i_variables.h"
+
+#include "firmware/base/dimensions.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/motion/motion.h"
+#include "firmware/kernel/clock_watch.h"
+#include "firmware/kernel/tasks.h"
+#include "firmware/kernel/watchdog.h"
 #include "firmware/variables/i_defaults.h"
 #include "firmware/variables/i_table.h"
-#include "firmware/variables/variables.h"
 
 #define TIMER_LOWEST (-8388608)
 
@@ -26,13 +29,14 @@ static bool is_timer(uint32_t number) {
 
 /* A timer is its written value less the servo interrupts since; it stops at the lowest 24-bit number. */
 static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
-  const uint32_t elapsed = kernel_servo_count() - timer_start[(number - 5100u) / 100u][number % 100u - 11u];
+  const uint32_t elapsed =
+      tasks_servo_count() - timer_start[(number - I_CS_FIRST) / I_CS_BLOCK][number % I_CS_BLOCK - ISX11_TIMERS];
   const int64_t left = (int64_t)integer_of[number] - (int64_t)elapsed;
   return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
 }
 
 int32_t i_integer(uint32_t number) {
-  if (number - 5100u >= 1600u || !is_timer(number))
+  if (number - I_CS_FIRST >= 1600u || !is_timer(number))
     return integer_of[number]; /* asked for by every task: mostly no division */
   return timer_read(number);
 }
@@ -50,7 +54,8 @@ i_format_t i_variable_format(uint32_t number) {
   return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
 }
 
-/* Hardware -----------------------------------------------------------------------------------------------------------
+/* Hardware and kernel
+ * -----------------------------------------------------------------------------------------------------------
  */
 
 #define FIELD(mask) \
@@ -58,7 +63,7 @@ i_format_t i_variable_format(uint32_t number) {
 #define CHANNEL_FIELD(name) SERVO_CHANNEL_CONTROL_##name##_MASK
 #define CLOCK_FIELD(name) SERVO_IC_CLOCK_CONTROL_##name##_MASK /* the same in MACRO ICs */
 
-/* Control-word fields of I7mn0..I7mn9, servo-ic data sheet 2.5. */
+/* Control-word fields of I7mn0..I7mn9, servo-ic:2.5. */
 static const struct {
   uint8_t lsb, width;
 } channel_fields[10] = {
@@ -116,6 +121,11 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
   }
 }
 
+static void write_kernel(const struct i_entry* entry, uint32_t value) {
+  if (entry->field == I_FIELD_REAL_TIME_PERIOD) tasks_set_real_time_period(value);
+  if (entry->field == I_FIELD_WATCHDOG_RELOAD) watchdog_set_reload(value);
+}
+
 /* Two ICs must never drive PHASE and SERVO together: every input first, the output when none drives any more. */
 void i_variable_apply_clock_directions(void) {
   if (directions_pending == 0u) return;
@@ -132,7 +142,7 @@ void i_variable_apply_clock_directions(void) {
                           direction);
     }
   }
-  kernel_clock_changed();
+  clock_watch_changed();
 }
 
 /* Writing ------------------------------------------------------------------------------------------------------------
@@ -159,16 +169,12 @@ static int32_t reduce(const struct i_entry* entry, double value) {
 }
 
 static bool locked(uint32_t number) {
-  const uint32_t locks = (uint32_t)integer_of[41];
+  const uint32_t locks = (uint32_t)integer_of[I41_VARIABLE_LOCK];
   if (locks == 0u) return false;
   if (number >= 100u && number < 4900u) return (locks & 1u) != 0u;
   if (number >= 5100u && number < 6700u) return (locks & 2u) != 0u;
   if (number >= 6800u && number < 8000u) return (locks & 4u) != 0u;
   return number >= 8000u && (locks & 8u) != 0u;
-}
-
-static bool decides_phase_task(uint32_t field) {
-  return field == I_FIELD_MOTOR_ACTIVE || field == I_FIELD_MOTOR_COMMUTATION || field == I_FIELD_MOTOR_PHASE;
 }
 
 void i_variable_write(uint32_t number, double value) {
@@ -191,7 +197,7 @@ void i_variable_write(uint32_t number, double value) {
       break;
     case I_FIELD_TIMER:
       store(number, whole);
-      timer_start[place.instance][place.offset - 11u] = kernel_servo_count();
+      timer_start[place.instance][place.offset - ISX11_TIMERS] = tasks_servo_count();
       break;
     case I_FIELD_IC_CLOCK_DIRECTION:
       store(number, whole & (int32_t)gate_ic_direction_inputs(place.instance));
@@ -205,12 +211,12 @@ void i_variable_write(uint32_t number, double value) {
     default:
       store(number, whole);
       if (i_of_gate_ic(place)) write_ic(place, entry, (uint32_t)whole);
+      write_kernel(entry, (uint32_t)whole);
       break;
   }
   hal_unmask(state);
-  if (entry->field == I_FIELD_BUFFER_REQUEST) buffer_request_evaluate();
-  if (decides_phase_task(entry->field)) kernel_phase_motor_changed(place.instance);
-  if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) kernel_clock_changed();
+  if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
+  if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) clock_watch_changed();
 }
 
 /* Start-up -----------------------------------------------------------------------------------------------------------
@@ -218,7 +224,8 @@ void i_variable_write(uint32_t number, double value) {
 
 double i_variable_default(uint32_t number) {
   const struct i_place place = i_table_place(number);
-  const uint32_t source = number == 19u ? i_default_clock_source() : (uint32_t)integer_of[19];
+  const uint32_t source =
+      number == I19_CLOCK_SOURCE ? i_default_clock_source() : (uint32_t)integer_of[I19_CLOCK_SOURCE];
   return i_default_value(place, i_table_entry(place), source);
 }
 
@@ -254,7 +261,8 @@ static void clear_all(void) {
 
 static void ic_defaults(uint32_t ics, uint32_t source) {
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
-    if (gate_ic_present(ic) && ((ics >> ic) & 1u) != 0u) defaults(gate_ic_direction_variable(ic) - 7u, 50, source);
+    if (gate_ic_present(ic) && ((ics >> ic) & 1u) != 0u)
+      defaults(gate_ic_direction_variable(ic) - I7M07_CLOCK_DIRECTION, 50, source);
 }
 
 void i_variable_initialize(void) {
@@ -292,13 +300,15 @@ void i_variable_restore(uint32_t number, const struct i_saved* saved) {
 
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */
 void i_variable_write_hardware(void) {
+  tasks_set_real_time_period((uint32_t)i_integer(I8_REAL_TIME_PERIOD));
+  watchdog_set_reload((uint32_t)i_integer(I40_WATCHDOG_RELOAD));
   gate_ic_release_clocks();
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
     if (!gate_ic_present(ic)) continue;
     const uint32_t direction = gate_ic_direction_variable(ic);
-    store(direction, i_clock_direction(ic, (uint32_t)integer_of[19]));
+    store(direction, i_clock_direction(ic, (uint32_t)integer_of[I19_CLOCK_SOURCE]));
     directions_pending |= 1u << ic;
-    for (uint32_t number = direction - 7u; number < direction + 43u; ++number) {
+    for (uint32_t number = direction - I7M07_CLOCK_DIRECTION; number < direction + 43u; ++number) {
       const struct i_place place = i_table_place(number);
       if (!i_of_absent_ic(place)) write_ic(place, i_table_entry(place), (uint32_t)integer_of[number]);
     }

@@ -3,24 +3,24 @@
  * `*` (form 0) keeps its value in the Y half of the definition itself. */
 #include "firmware/variables/m_variables.h"
 
+#include "firmware/base/dimensions.h"
+#include "firmware/base/float48.h"
+#include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
-#include "firmware/variables/variables.h"
 #include "firmware/variables/words.h"
 
-#define M_MEMORY 0x004000u
-
 struct m_definition m_variable_definition(uint32_t number) {
-  const uint32_t x = *hal_x(M_MEMORY + number) & HAL_WORD_MASK;
-  const struct m_definition definition = {(m_form_t)(x >> 20), *hal_y(M_MEMORY + number) & HAL_WORD_MASK,
+  const uint32_t x = *hal_x(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK;
+  const struct m_definition definition = {(m_form_t)(x >> 20), *hal_y(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK,
                                           (uint8_t)((x >> 8) & 0x1Fu), (uint8_t)(x & 0x1Fu), ((x >> 5) & 1u) != 0u};
   return definition;
 }
 
 void m_variable_define(uint32_t number, const struct m_definition* definition) {
   const uint32_t state = hal_mask_real_time();
-  *hal_x(M_MEMORY + number) = ((uint32_t)definition->form << 20) | ((uint32_t)definition->lsb << 8) |
-                              (definition->is_signed ? 0x20u : 0u) | definition->width;
-  *hal_y(M_MEMORY + number) = definition->address;
+  *hal_x(MEMORY_M_DEFINITIONS + number) = ((uint32_t)definition->form << 20) | ((uint32_t)definition->lsb << 8) |
+                                          (definition->is_signed ? 0x20u : 0u) | definition->width;
+  *hal_y(MEMORY_M_DEFINITIONS + number) = definition->address;
   hal_unmask(state);
 }
 
@@ -97,7 +97,7 @@ void m_variable_write(uint32_t number, double value) {
       write_long(definition.address, (uint32_t)(whole >> 16) & 0xFFFFu, (uint32_t)whole & 0xFFFFu);
       break;
     default:
-      *hal_y(M_MEMORY + number) = (uint32_t)whole & HAL_WORD_MASK;
+      *hal_y(MEMORY_M_DEFINITIONS + number) = (uint32_t)whole & HAL_WORD_MASK;
       break;
   }
   hal_unmask(state);

@@ -1,9 +1,11 @@
 /* P- and Q-variables: 48-bit words in user memory, L:$006000 and L:$008000, where RL and M-variables see them too. */
-#include "firmware/hal/hal.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/pq_variables.h"
 
-#define P_MEMORY 0x006000u
-#define Q_MEMORY 0x008000u
+#include "firmware/base/dimensions.h"
+#include "firmware/base/float48.h"
+#include "firmware/base/memory_map.h"
+#include "firmware/hal/hal.h"
+#include "firmware/variables/i_variables.h"
 
 static double read_long(uint32_t address) {
   const uint32_t state = hal_mask_real_time();
@@ -20,15 +22,17 @@ static void write_long(uint32_t address, double value) {
   hal_unmask(state);
 }
 
-double p_variable_read(uint32_t number) { return number < VARIABLE_COUNT ? read_long(P_MEMORY + number) : 0.0; }
+double p_variable_read(uint32_t number) {
+  return number < VARIABLE_COUNT ? read_long(MEMORY_P_VARIABLES + number) : 0.0;
+}
 
 void p_variable_write(uint32_t number, double value) {
-  if (number < VARIABLE_COUNT) write_long(P_MEMORY + number, value);
+  if (number < VARIABLE_COUNT) write_long(MEMORY_P_VARIABLES + number, value);
 }
 
 /* I68+1 active coordinate systems share the pool: 8192, 4096, 2048, 1024 or 512 each. */
 uint32_t q_variable_count(void) {
-  uint32_t systems = (uint32_t)i_integer(68) + 1u;
+  uint32_t systems = (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u;
   uint32_t count = VARIABLE_COUNT;
   for (; systems > 1u; systems = (systems + 1u) / 2u) count /= 2u;
   return count;
@@ -36,10 +40,10 @@ uint32_t q_variable_count(void) {
 
 double q_variable_read(uint32_t cs, uint32_t number) {
   const uint32_t count = q_variable_count();
-  return number < count && cs * count < VARIABLE_COUNT ? read_long(Q_MEMORY + cs * count + number) : 0.0;
+  return number < count && cs * count < VARIABLE_COUNT ? read_long(MEMORY_Q_VARIABLES + cs * count + number) : 0.0;
 }
 
 void q_variable_write(uint32_t cs, uint32_t number, double value) {
   const uint32_t count = q_variable_count();
-  if (number < count && cs * count < VARIABLE_COUNT) write_long(Q_MEMORY + cs * count + number, value);
+  if (number < count && cs * count < VARIABLE_COUNT) write_long(MEMORY_Q_VARIABLES + cs * count + number, value);
 }

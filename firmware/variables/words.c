@@ -3,7 +3,7 @@
 #include "firmware/variables/words.h"
 
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/kernel.h"
+#include "firmware/variables/phase_period.h"
 #include "rtl/regs/brick_regs.h"
 
 #define MAIN_MEMORY_END 0x040000u
@@ -19,7 +19,7 @@ bool word_exists(bool x, uint32_t address) {
 }
 
 uint32_t word_read(bool x, uint32_t address) {
-  if (x && address == PHASE_PERIOD) return kernel_phase_period() / 2u;
+  if (x && address == PHASE_PERIOD) return phase_period() / 2u;
   if (!word_exists(x, address)) return 0;
   return (x ? *hal_x(address) : *hal_y(address)) & HAL_WORD_MASK;
 }

@@ -18,8 +18,7 @@ constexpr unsigned kChannels = 4;      // of a servo IC
 enum ChannelPin : unsigned { kEncA, kEncB, kEncC, kFault, kHmfl, kPlim, kMlim, kUser, kW, kV, kU, kT, kChannelPins };
 constexpr std::array<std::string_view, kChannelPins> kChannelPinNames{
     "enc_a", "enc_b", "enc_c", "fault", "hmfl", "plim", "mlim", "user", "w", "v", "u", "t"};
-// Nothing connected: T, U, V, W, USER and B are pulled up (servo-ic:4.4, servo-ic:4.7), the differential receivers show
-// 0.
+// Nothing connected: T, U, V, W, USER and B are pulled up, the others show 0 (servo-ic:5.15/6).
 constexpr std::uint16_t kIdleChannelPins = 1u << kT | 1u << kU | 1u << kV | 1u << kW | 1u << kUser | 1u << kEncB;
 
 struct MotorInputs {

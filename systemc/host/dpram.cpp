@@ -1,6 +1,6 @@
 #include "systemc/host/dpram.h"
 
-#include "systemc/host/register_access.h"
+#include "systemc/core/register_access.h"
 
 namespace brick {
 

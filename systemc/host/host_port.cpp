@@ -1,7 +1,7 @@
 #include "systemc/host/host_port.h"
 
 #include "rtl/regs/brick_regs.hpp"
-#include "systemc/host/register_access.h"
+#include "systemc/core/register_access.h"
 
 namespace brick {
 namespace {

@@ -1,19 +1,13 @@
-// Reads boards/*.toml: what is fitted on a product. Every problem is a BoardFileError with one line: file, line, key,
+// Reads boards/*.toml: what is fitted on a product. Every problem is a UsageError with one line: file, line, key,
 // what was found, what was expected (docs/boards.md).
 #pragma once
 
-#include <stdexcept>
 #include <string>
 
 #include "systemc/machine/board_family.h"
 #include "systemc/machine/machine.h"
 
 namespace brick {
-
-class BoardFileError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 BoardConfig read_board_file(const std::string& path);
 

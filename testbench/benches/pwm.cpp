@@ -112,8 +112,8 @@ void Pwm::zero() {
   command(values);
 }
 
-// I7m00 of both ICs, dividers of the source, dead time of both; then until the second triangle has followed (5.1 item
-// 6).
+// I7m00 of both ICs, dividers of the source, dead time of both; then until the second triangle has followed
+// (servo-ic:5.1/6).
 void Pwm::configure(unsigned limit, unsigned other, unsigned phase_divider, unsigned servo_divider, unsigned dead) {
   zero();
   host_.say({fmt::format("I7000={} I7001={} I7002={}", limit, phase_divider, servo_divider)});
@@ -281,7 +281,8 @@ void Pwm::round(unsigned number) {
   std::vector<unsigned> inversions;
   for (unsigned i = 0; i < host_.channels(); ++i) inversions.push_back(host_.pick(4));
   invert(inversions);
-  // The second IC may have any PWM frequency with a whole number of half periods in a PHASE period (3.1): one or three.
+  // The second IC may have any PWM frequency with a whole number of half periods in a PHASE period (servo-ic:3.1): one
+  // or three.
   const unsigned limit = 3200 + host_.pick(3000), slow = (number + static_cast<unsigned>(host_.bench().seed)) % 2,
                  divider = slow != 0 ? 2 : 0;
   configure(limit, slow != 0 ? 3 * limit + 3 : limit, divider, slow != 0 ? 1 : 5, host_.pick(200) + 1);

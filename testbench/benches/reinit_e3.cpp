@@ -1,6 +1,6 @@
 // reinit-e3: settings are SAVEd with which the controller cannot live, so that neither power nor reset line helps.
 // Powered up with jumper E3 it starts with the factory's settings and answers; `$$$***` gives the same. Expected values
-// are the data sheet's (servo-ic:3, servo-ic:7 and check vectors 16, 17; firmware:2), periods are arithmetic.
+// are the data sheet's (servo-ic:3, servo-ic:7, servo-ic:14/16, servo-ic:14/17; firmware:2), periods are arithmetic.
 #include <fmt/format.h>
 
 #include "testbench/benches/benches.h"

@@ -11,7 +11,7 @@
 namespace brick {
 
 // Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names:
-// servo-ic:1.2, 1.4, 2.1.
+// servo-ic:1.2, servo-ic:1.4, servo-ic:2.1.
 class ServoHost {
  public:
   ServoHost(BenchContext& bench, std::uint64_t seed);

@@ -1,5 +1,5 @@
-// Index conditioning and position capture as rules (servo-ic:5.8, servo-ic:5.9), one call an SCLK period with the
-// filtered levels.
+// Index conditioning and position capture as rules (servo-ic:5.8/1, servo-ic:5.8/3, servo-ic:5.9/1 to servo-ic:5.9/7),
+// one call an SCLK period with the filtered levels.
 #pragma once
 
 #include <cstdint>

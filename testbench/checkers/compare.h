@@ -1,5 +1,5 @@
-// Position compare as a rule (servo-ic:5.10): EQU toggles when the counter leaves compare A or B, and the other one
-// then moves by the increment in the direction of travel. Modulo 2^24.
+// Position compare as rules (servo-ic:5.10/1 to servo-ic:5.10/3, servo-ic:5.10/8): EQU toggles when the counter leaves
+// compare A or B, and the other one then moves by the increment in the direction of travel. Modulo 2^24.
 #pragma once
 
 #include <cstdint>

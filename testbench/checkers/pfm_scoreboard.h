@@ -1,7 +1,7 @@
-// The PFM rule of the data sheet (servo-ic:5.12): one accumulator of 24 bits, stepped at every edge of PFM_CLK, exact
-// from power-up on. The scoreboard is told when commands were written and sees the pins. It cannot see how many edges
-// of clk_ref lie between a word and its pin; it starts with all small numbers and keeps those that agree with every
-// pulse so far.
+// The PFM rules (servo-ic:5.12/1 to servo-ic:5.12/7): one accumulator of 24 bits, stepped at every edge of PFM_CLK,
+// exact from power-up on. The scoreboard is told when commands were written and sees the pins. It cannot see how many
+// edges of clk_ref lie between a word and its pin; it starts with all small numbers and keeps those that agree with
+// every pulse so far.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The PWM rule of the data sheet (servo-ic:5.1, servo-ic:5.11), for whole stretches of time: the triangle as a list of
-// its turns, a phase's commands as a list of when they were written, and from both the switch pins as a list of
+// The PWM rules (servo-ic:5.1/1, servo-ic:5.11/1 to servo-ic:5.11/5), for whole stretches of time: the triangle as a
+// list of its turns, a phase's commands as a list of when they were written, and from both the switch pins as a list of
 // changes. Nothing is stepped; every edge comes from where a straight line crosses the command.
 #pragma once
 

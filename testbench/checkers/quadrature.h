@@ -1,6 +1,6 @@
-// The encoder decoder and its counter as rules (servo-ic:5.4, servo-ic:5.5), one call an SCLK period with the filtered
-// levels. Written from tables of legal neighbours, without knowledge of how the engines decode. Modes 8 and 12 are fed
-// by pulse().
+// The encoder decoder and its counter as rules (servo-ic:5.4, servo-ic:5.5/1, servo-ic:5.5/2, servo-ic:5.6), one call
+// an SCLK period with the filtered levels. Written from tables of legal neighbours, without knowledge of how the
+// engines decode. Modes 8 and 12 are fed by pulse().
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Input filter of a servo IC's channel as a rule (servo-ic:5.3): a pin's level is the majority of its last three SCLK
+// Input filter of a servo IC's channel as a rule (servo-ic:5.3/1): a pin's level is the majority of its last three SCLK
 // samples, so one sample never passes and two in a row always do.
 #pragma once
 

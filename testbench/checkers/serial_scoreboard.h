@@ -1,7 +1,7 @@
-// The serial rules of the data sheet (servo-ic:3.5, servo-ic:3.6, servo-ic:5.13, servo-ic:5.14): 24 bits from each rise
-// of PHASE on, first the highest, one a clock, changed with the falling edge and taken with the rising one; then the
-// clock stops and the strobe keeps its last bit. Finds the streams in what the pins did, and says what the words on
-// both ends must be.
+// The serial rules (servo-ic:5.13/1 to servo-ic:5.13/6, servo-ic:5.14/1 to servo-ic:5.14/3): 24 bits from each rise of
+// PHASE on, first the highest, one a clock, changed with the falling edge and taken with the rising one; then the clock
+// stops and the strobe keeps its last bit. Finds the streams in what the pins did, and says what the words on both ends
+// must be.
 #pragma once
 
 #include <cstdint>

@@ -62,7 +62,7 @@ class WatchdogProbe {
 
 // The servo period, as I7000 with dividers of one, that leaves the real-time task half of the CPU time it needs and the
 // background none, from the task costs that a host reads in half CPU cycles (firmware:8.1). CPU clock I52=7.
-// docs/watchdog.md, "Budget".
+// docs/watchdog.md, "Servo frequency too high".
 struct WatchdogLoad {
   long servo = 0, real_time = 0;  // CPU cycles: phase and servo task, real-time task
   bool sensible() const { return servo > 100 && servo < 5000 && real_time > 100 && real_time < 5000; }

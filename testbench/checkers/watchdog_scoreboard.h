@@ -1,8 +1,8 @@
-// Scoreboard of the watchdog rules (servo-ic:10, firmware:8.3). It is told what a logic analyser sees: falling edges
-// of SERVO, strobes (writes to X:$070011 on Port A) and the trip; and from when on the background has no CPU time. It
-// knows neither the circuit nor the firmware: the counter is I40 at its last reload and falls by one a servo interrupt,
-// real-time tasks strobe while it is not below zero, and the circuit trips 960 periods of 38.4 kHz after the last
-// strobe.
+// Scoreboard of the watchdog rules (servo-ic:10/2, servo-ic:10/4, servo-ic:10/5; firmware:8.3). It is told what a logic
+// analyser sees: falling edges of SERVO, strobes (writes to X:$070011 on Port A) and the trip; and from when on the
+// background has no CPU time. It knows neither the circuit nor the firmware: the counter is I40 at its last reload and
+// falls by one a servo interrupt, real-time tasks strobe while it is not below zero, and the circuit trips 960 periods
+// of 38.4 kHz after the last strobe.
 #pragma once
 
 #include <string>

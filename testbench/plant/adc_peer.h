@@ -1,7 +1,7 @@
 // Serial ADCs at a servo IC: eight of them (A and B of four channels) on one clock and one strobe. The rising edge of
 // the strobe starts a conversion; after a header of four bits 18 bits follow, first the highest. A bit stands on the
 // line from the falling edge of the clock on, and the IC takes it at the rising edge (servo-ic:5.14). The strobe
-// carries a command word (11.1) meanwhile.
+// carries a command word (servo-ic:11.1) meanwhile.
 #pragma once
 
 #include <array>

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "systemc/core/usage_error.h"
+
 namespace brick {
 namespace {
 
@@ -30,7 +32,7 @@ std::string error_of(const std::string& text) {
   const TemporaryFile file(text);
   try {
     read_board_file(file.path());
-  } catch (const BoardFileError& e) { return e.what(); }
+  } catch (const UsageError& e) { return e.what(); }
   return "no error";
 }
 
@@ -141,7 +143,7 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
       {"bus", "bus = \"isa\"\naxes = 0", ":4: axes:", "found 0;", "expected 1 to 4"},
       {"bus", "bus = \"isa\"\njpan = 1", ":4: jpan:", "found 1;", "expected true or false"},
       {"bus", "bus = \"isa\"\nnotes = \"x\"", ":4: notes:", "\"x\"", "expected a list"},
-      {"bus", "bus = \"isa\"\nnotes = [1]", ":4: notes:", "found 1;", "expected texts in quotes"},
+      {"bus", "bus = \"isa\"\nnotes = [1]", ":4: notes:", "found 1;", "expected a text in quotes"},
       {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\"]", ":4: interrupts:", "EQU1", "expected three sources"},
       {"bus", "bus = \"isa\"\ninterrupts = [\"EQU9\", \"none\", \"WDO\"]", ":4: interrupts:", "\"EQU9\"",
        "expected none, EQU1,"},
@@ -206,7 +208,7 @@ TEST(BoardFile, NamesOfIcs) {
   EXPECT_EQ(macro_ic_numbers(0x3), "-");
 }
 
-// servo-ic data sheet 7.1 rule 3: servo IC 0, MACRO IC 0, servo ICs 1 to 9, 2* to 9*, MACRO ICs 1 to 3; no MACROGATE.
+// servo-ic:7.1/3: servo IC 0, MACRO IC 0, servo ICs 1 to 9, 2* to 9*, MACRO ICs 1 to 3; no MACROGATE.
 TEST(BoardFile, ClockSourceAfterReInitialisation) {
   constexpr std::uint32_t kMacro0 = 1u << 18, kMacro1 = 1u << 19, kStar2 = 1u << 10;
   EXPECT_EQ(default_clock_source(0x3 | kMacro0, 0), 7007u);
@@ -218,8 +220,8 @@ TEST(BoardFile, ClockSourceAfterReInitialisation) {
 }
 
 TEST(BoardFile, MissingFile) {
-  EXPECT_THROW(read_board_file("/nonexistent/board.toml"), BoardFileError);
-  EXPECT_THROW(read_board_file("/tmp"), BoardFileError);
+  EXPECT_THROW(read_board_file("/nonexistent/board.toml"), UsageError);
+  EXPECT_THROW(read_board_file("/tmp"), UsageError);
 }
 
 }  // namespace

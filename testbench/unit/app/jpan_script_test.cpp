@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "app/script.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 namespace {

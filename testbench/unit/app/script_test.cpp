@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "app/time_text.h"
-#include "app/usage_error.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 namespace {

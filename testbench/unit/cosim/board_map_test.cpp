@@ -157,7 +157,8 @@ TEST_P(BoardMap, SmallDualPortedRamEndsAt060FFF) {
 
 INSTANTIATE_TEST_SUITE_P(Engines, BoardMap, ::testing::Values(true, false), kEngineNames);
 
-// host-bus:4.2, Turbo PMAC2-PC: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO are IR0 to IR7; 5.7: bits of X:$070010.
+// host-bus:4.2, Turbo PMAC2-PC: IPOS, BREQ, EROR, F1ER, HREQ, EQU1, EQU5, WDO are IR0 to IR7; host-bus:5.7: bits of
+// X:$070010.
 TEST_P(BoardMap, EachSignalIsItsLineOfTheInterruptController) {
   for (unsigned bit = 0; bit < 4; ++bit) {
     rig.write(true, kHostSignals, 1u << bit);

@@ -95,7 +95,7 @@ TEST(MotorPinsOfAnEngine, DoNotDependOnHowARunIsCut) {
 }
 
 // At reset values the command is 0, so TOP is wanted for half of the period of 2 (2 I7m00 + 3) ticks, I7m00 = 6527, and
-// comes late by the dead time of 16 x 15 ticks (servo_channel.md, PWM).
+// comes late by the dead time of 16 x 15 ticks (servo-ic:5.11/3).
 TEST(MotorPinsOfAnEngine, StopAtTheSelectedPin) {
   for (const bool rtl : {true, false}) {
     auto board = rtl ? make_rtl_board(0x3) : make_model_board(0x3);

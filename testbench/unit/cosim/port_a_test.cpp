@@ -121,7 +121,7 @@ TEST(PortA, KeepsEveryRowAtEveryWaitStateAndClock) {
       const PortACycle read = *rig.last;
       EXPECT_EQ(read.wait_states, ws);
       // At 320 MHz and one wait state 5 ns before the end lie before /RD falls: the rows cannot all hold
-      // (illegal, 2.3).
+      // (illegal, host-bus:2.3).
       if ((ws + 0.25) * tc > 5) expect_read_rows(read, ws, tc);
       rig.write('Y', 0x078001, 0x123456);
       const PortACycle write = *rig.last;

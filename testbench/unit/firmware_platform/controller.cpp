@@ -4,7 +4,9 @@ extern "C" {
 #include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
-#include "firmware/kernel/kernel.h"
+#include "firmware/image/background_pass.h"
+#include "firmware/image/start.h"
+#include "firmware/kernel/tasks.h"
 }
 
 namespace brick {
@@ -27,7 +29,7 @@ Controller::Controller(unsigned fitted, bool client_settings) {
 void Controller::start() {
   host_port_initialize();
   line_input_initialize();
-  kernel_start(KERNEL_START_SAVED);
+  ::start(START_SAVED);
   output();
 }
 
@@ -39,9 +41,9 @@ std::string Controller::restart() {
 std::string Controller::send(const std::string& characters) {
   for (const char c : characters) {
     host_port_character(static_cast<std::uint8_t>(c));
-    if (c == '\r') kernel_background_pass();
+    if (c == '\r') background_pass();
   }
-  do { kernel_background_pass(); } while (host_port_waiting());
+  do { background_pass(); } while (host_port_waiting());
   return output();
 }
 
@@ -59,10 +61,10 @@ std::string Controller::line(const std::string& text) {
 
 void Controller::servo(unsigned interrupts) {
   for (unsigned i = 0; i < interrupts; ++i) {
-    kernel_servo_interrupt();
+    tasks_servo_interrupt();
     if (!hal_real_time_pending()) continue;
     fake_hal_real_time_taken();
-    kernel_real_time_interrupt();
+    tasks_real_time_interrupt();
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/firmware_platform/framing.h"
 
 extern "C" {
 #include "firmware/host/host_port.h"
@@ -132,14 +133,18 @@ TEST(HostExchange, ErrorDropsTheRestOfTheLineAndKeepsWhatWentBefore) {
   EXPECT_EQ(c.line("P1"), "5");
 }
 
-TEST(HostExchange, ChecksumsFollowEachReplyLineAndTheAcknowledge) {
+TEST(HostExchange, ChecksumsCountEveryByteOfALineInEachFraming) {
   Controller c;
-  c.send("P1=25\r");
-  c.send("I4=1\r");
-  const char line_sum = '2' + '5' + '\r', command_sum = static_cast<char>('P' + '1');
-  EXPECT_EQ(c.send("P1\r"), "25\r"s + line_sum + "\x06" + command_sum);
-  // `J+` before its CR: 0x4A + 0x2B = 117.
-  EXPECT_EQ(c.send("J+\x0E"), std::string(1, static_cast<char>(117)));
+  for_each_framing([&c](Framing framing, const std::string& set_up, const std::string& command,
+                        const std::vector<std::string>& data) {
+    c.send(set_up);
+    EXPECT_EQ(c.send(command + "\r"), framed(framing, command, data)) << set_up << command;
+  });
+}
+
+TEST(HostExchange, ControlNAnswersTheChecksumSoFar) {
+  Controller c;
+  EXPECT_EQ(c.send("J+\x0E"), "\x75");  // before its CR: 0x4A + 0x2B = 117
 }
 
 TEST(HostExchange, ControlXEmptiesTheLineAndIsEchoed) {

@@ -6,16 +6,19 @@
 
 #include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
-#include "firmware/kernel/internal.h"
+#include "firmware/kernel/tasks.h"
 #include "rtl/regs/brick_regs.h"
 
-enum { WORDS = 0x80000, PERIPHERALS = 0x80, LOG_LENGTH = 4096 };
+enum { WORDS = 0x80000, PERIPHERALS = 0x80, LOG_LENGTH = 4096, EDGES = 4096, LOOK_CYCLES = 100, CYCLES_PER_US = 79 };
+enum { MASK_NONE, MASK_REAL_TIME, MASK_SERVO, MASK_ALL };
 
 static uint32_t memory[2][WORDS], peripheral[2][PERIPHERALS], nothing;
 static uint32_t flash[HAL_FLASH_BYTES / 4];
 static uint32_t straps[6];
-static uint32_t fitted, signals, cycles, real_time;
-static unsigned breq_falls, writes;
+static uint32_t fitted, signals, cycles, look, real_time;
+static uint32_t mask, masked_since, longest_mask; /* enum: who is held off */
+static unsigned breq_edges, writes;
+static struct fake_edge edges[EDGES];
 static struct fake_write write_log[LOG_LENGTH];
 
 static uint32_t* last;           /* word handed out by the latest call */
@@ -24,6 +27,7 @@ static struct fake_write before; /* and what it held then */
 static bool fitted_at(uint32_t address) {
   static const uint32_t bases[GATE_IC_COUNT] = GATE_IC_BASES;
   if (address < SERVO_IC_0_BASE) return true;
+  if (address == JPAN_Y_INPUTS) return (straps[HAL_STRAP_PRODUCT] & HAL_PRODUCT_JPAN) != 0u;
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
     if (address - bases[ic] < 0x20u) return ((fitted >> ic) & 1u) != 0u;
   return false;
@@ -65,15 +69,39 @@ void fake_hal_power_on(uint32_t ics) {
   memcpy(straps, geo_brick, sizeof straps);
   straps[HAL_STRAP_FITTED] = fitted = ics;
   signals = cycles = real_time = 0;
-  breq_falls = writes = 0;
+  mask = MASK_NONE;
+  breq_edges = writes = 0;
+  look = LOOK_CYCLES;
+  longest_mask = 0;
   nothing = HAL_WORD_MASK;
   last = NULL;
 }
 
 void fake_hal_set_strap(unsigned index, uint32_t value) { straps[index] = value; }
 uint32_t fake_hal_signals(void) { return signals; }
-unsigned fake_hal_breq_falls(void) { return breq_falls; }
+
+unsigned fake_hal_breq_falls(void) {
+  unsigned falls = 0;
+  for (unsigned i = 0; i < breq_edges; ++i) falls += edges[i].high ? 0u : 1u;
+  return falls;
+}
+
+unsigned fake_hal_breq_edges(const struct fake_edge** list) {
+  *list = edges;
+  return breq_edges;
+}
+
+void fake_hal_clear_breq_edges(void) { breq_edges = 0; }
 void fake_hal_set_cycles(uint32_t value) { cycles = value; }
+void fake_hal_pass(uint32_t passed) { cycles += passed; }
+void fake_hal_set_look(uint32_t passed) { look = passed; }
+bool fake_hal_masked(void) { return mask != MASK_NONE; }
+
+uint32_t fake_hal_longest_mask(void) {
+  const uint32_t longest = longest_mask;
+  longest_mask = 0;
+  return longest;
+}
 
 unsigned fake_hal_writes(const struct fake_write** log) {
   settle();
@@ -88,10 +116,21 @@ void fake_hal_clear_writes(void) {
   writes = 0;
 }
 
-uint32_t hal_mask_real_time(void) { return 0; }
-uint32_t hal_mask_servo(void) { return 0; }
-uint32_t hal_mask_all(void) { return 0; }
-void hal_unmask(uint32_t state) { (void)state; }
+static uint32_t hold_off(uint32_t who) {
+  const uint32_t held = mask;
+  if (held == MASK_NONE) masked_since = cycles;
+  if (who > mask) mask = who;
+  return held;
+}
+
+uint32_t hal_mask_real_time(void) { return hold_off(MASK_REAL_TIME); }
+uint32_t hal_mask_servo(void) { return hold_off(MASK_SERVO); }
+uint32_t hal_mask_all(void) { return hold_off(MASK_ALL); }
+
+void hal_unmask(uint32_t state) {
+  mask = state;
+  if (state == MASK_NONE && cycles - masked_since > longest_mask) longest_mask = cycles - masked_since;
+}
 
 /* Time passes by looking at it. */
 static bool clocks_stopped;
@@ -99,17 +138,20 @@ void fake_hal_stop_clocks(bool stopped) { clocks_stopped = stopped; }
 void fake_hal_fit(uint32_t ics) { fitted = ics; }
 
 uint32_t hal_cycles(void) {
-  cycles += 100;
-  if (!clocks_stopped) kernel_phase_stamp = cycles;
+  cycles += look;
+  if (!clocks_stopped) tasks_phase_stamp = cycles;
   return cycles;
 }
-void hal_delay_us(uint32_t us) { cycles += us * 79u; }
+void hal_delay_us(uint32_t us) { cycles += us * CYCLES_PER_US; }
 void hal_set_cpu_clock(uint32_t i52) { (void)i52; }
 uint32_t hal_cycles_per_ms(void) { return 78643; }
 
 void hal_host_signals(uint32_t set, uint32_t clear) {
   const uint32_t next = (signals & ~clear) | set;
-  if ((signals & ~next & HAL_SIGNAL_BREQ) != 0) ++breq_falls;
+  if (((signals ^ next) & HAL_SIGNAL_BREQ) != 0 && breq_edges < EDGES) {
+    const struct fake_edge edge = {(next & HAL_SIGNAL_BREQ) != 0, cycles};
+    edges[breq_edges++] = edge;
+  }
   signals = next;
 }
 

@@ -15,6 +15,10 @@ void fake_hal_set_strap(unsigned word, uint32_t value);
 uint32_t fake_hal_signals(void);    /* bits HAL_SIGNAL_* now on the latch */
 unsigned fake_hal_breq_falls(void); /* falling edges of BREQ since power-on */
 void fake_hal_set_cycles(uint32_t cycles);
+void fake_hal_pass(uint32_t cycles);     /* time passes */
+void fake_hal_set_look(uint32_t cycles); /* time that a look at the cycle counter takes; 100 after power-on */
+bool fake_hal_masked(void);              /* some task is held off */
+uint32_t fake_hal_longest_mask(void);    /* longest time that one was, in cycles, since the last call */
 void fake_hal_real_time_taken(void);
 void fake_hal_fit(uint32_t fitted);             /* changes the ICs without power-on */
 void fake_hal_stop_clocks(bool stopped);        /* no phase interrupt comes */
@@ -23,6 +27,14 @@ const char* fake_host_output(uint32_t* length); /* everything sent to the host s
 /* While the firmware waits: a millisecond passes and `action` is called, in place of the host that reads. Null: it
  * reads again. */
 void fake_hal_on_wait(void (*action)(void));
+
+/* Edges of BREQ in order, newest last. */
+struct fake_edge {
+  bool high;
+  uint32_t cycles;
+};
+unsigned fake_hal_breq_edges(const struct fake_edge** list); /* count */
+void fake_hal_clear_breq_edges(void);
 
 /* Writes to device words (gate ICs, latches) in order, newest last. */
 struct fake_write {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/framing.h"
 #include "testbench/unit/firmware_platform/image_board.h"
 
 namespace brick {
@@ -35,6 +36,19 @@ TEST_F(Image, StartUpStaysWithinTheHardwareWatchdog) {
   EXPECT_GT(board.clocks_started_ms(), 0.0);
   EXPECT_LT(board.clocks_started_ms(), 15.0);
   EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
+}
+
+TEST_F(Image, ChecksumsCountEveryByteOfALineInEachFraming) {
+  const auto exchange = [this](const std::string& characters) {
+    std::string reply = board.send(characters, 5.0), more;
+    while (!(more = board.send("", 2.0)).empty()) reply += more;  // send() ends at an ACK, which a checksum follows
+    return reply;
+  };
+  for_each_framing([&exchange](Framing framing, const std::string& set_up, const std::string& command,
+                               const std::vector<std::string>& data) {
+    exchange(set_up);
+    EXPECT_EQ(exchange(command + "\r"), framed(framing, command, data)) << set_up << command;
+  });
 }
 
 TEST_F(Image, IdleSecondCostsLessThanTwoMillionInstructions) {

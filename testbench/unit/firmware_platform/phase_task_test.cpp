@@ -10,8 +10,7 @@
 
 extern "C" {
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/internal.h"
-#include "firmware/kernel/kernel.h"
+#include "firmware/motion/phase_task.h"
 }
 
 namespace brick {
@@ -39,7 +38,7 @@ class PhaseTaskArithmetic : public ::testing::Test {
   }
   void reads(std::int64_t value) {
     set(kSource, value);
-    kernel_phase_interrupt();
+    phase_task_interrupt();
   }
   void cycle(unsigned n, unsigned counts) { c_.line("I170=" + std::to_string(n) + " I171=" + std::to_string(counts)); }
 
@@ -83,33 +82,33 @@ TEST_F(PhaseTaskArithmetic, TheFirstReadingIsNoMovement) {
   c_.line("I101=0");
   set(kPosition1, 5);
   set(kSource, 777);
-  kernel_phase_interrupt();
+  phase_task_interrupt();
   EXPECT_EQ(position(), 5);
   c_.line("I101=1");
-  kernel_phase_interrupt();
+  phase_task_interrupt();
   EXPECT_EQ(position(), 5);
   set(kSource + 1, 999);
   c_.line("I183=$10F1");
-  kernel_phase_interrupt();
+  phase_task_interrupt();
   EXPECT_EQ(position(), 5);
   set(kSource + 1, 1000);
   c_.line("I101=1 I100=1 I183=$10F1");  // nothing new: the count that came meanwhile stays
-  kernel_phase_interrupt();
+  phase_task_interrupt();
   EXPECT_EQ(position(), 6);
 }
 
 TEST_F(PhaseTaskArithmetic, WorksForActivatedCommutatedMotorsOnly) {
-  EXPECT_EQ(kernel_phase_work, 1u);
+  EXPECT_EQ(phase_task_work, 1u);
   c_.line("I100=0");
-  EXPECT_EQ(kernel_phase_work, 0u);
+  EXPECT_EQ(phase_task_work, 0u);
   c_.line("I100=1 I3200=1 I3201=1");
-  EXPECT_EQ(kernel_phase_work, 0x80000001u);
+  EXPECT_EQ(phase_task_work, 0x80000001u);
   c_.line("I101=2 I3201=3");
-  EXPECT_EQ(kernel_phase_work, 0x80000000u);
+  EXPECT_EQ(phase_task_work, 0x80000000u);
   c_.line("I200=1 I201=1");
-  EXPECT_EQ(kernel_phase_work, 0x80000002u);
+  EXPECT_EQ(phase_task_work, 0x80000002u);
   c_.line("I200..3200=0");
-  EXPECT_EQ(kernel_phase_work, 0u);
+  EXPECT_EQ(phase_task_work, 0u);
 }
 
 TEST_F(PhaseTaskArithmetic, EachMotorHasItsOwnBlock) {
@@ -123,7 +122,7 @@ TEST_F(PhaseTaskArithmetic, EachMotorHasItsOwnBlock) {
 TEST_F(PhaseTaskArithmetic, APointerToNothingReads0) {
   c_.line("I183=$50000");
   set(kPosition1, 5);
-  kernel_phase_interrupt();
+  phase_task_interrupt();
   EXPECT_EQ(position(), 5);
 }
 
@@ -164,7 +163,7 @@ TEST_F(PhaseTaskArithmetic, DurationIsThatOfTheShortPathWithoutWork) {
 TEST_F(PhaseTaskArithmetic, IsThereAgainAfterSaveAndReset) {
   c_.line("I7=2 SAVE");
   c_.restart();
-  EXPECT_EQ(kernel_phase_work, 1u);
+  EXPECT_EQ(phase_task_work, 1u);
   for (int i = 1; i <= 3; ++i) reads(i);
   EXPECT_EQ(position(), 3);
 }

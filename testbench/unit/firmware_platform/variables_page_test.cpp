@@ -8,7 +8,7 @@
 
 extern "C" {
 #include "firmware/variables/i_table.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
 }
 
 namespace brick {

@@ -10,9 +10,10 @@
 #include "testbench/unit/firmware_platform/controller.h"
 
 extern "C" {
+#include "firmware/base/float48.h"
+#include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/kernel.h"
-#include "firmware/variables/variables.h"
+#include "firmware/variables/i_variables.h"
 }
 
 namespace brick {
@@ -130,7 +131,7 @@ TEST(IVariables, AbsentIcReadsZeroAndIgnoresWrites) {
   EXPECT_EQ(c.line("I7000 I7010 I7011 I7021"), "6527|7|1|0");
 }
 
-// servo-ic data sheet 7.1 rule 3, in the order of its table.
+// servo-ic:7.1/3, in its order.
 TEST(ClockSource, FirstIcInTheDocumentedOrderIsChosen) {
   BRICK_COVERS("I19-3");
   struct Case {
@@ -166,7 +167,7 @@ TEST(ClockSource, TakesDirectionVariablesOnly) {
   EXPECT_EQ(c.line("I19=* I19"), "7007");
 }
 
-// servo-ic data sheet 2.6 and check vectors 16, 17.
+// servo-ic:2.6/4 and the check vectors servo-ic:14/16, servo-ic:14/17.
 TEST(ServoIcGlobals, StartUpWritesTheDocumentedWords) {
   BRICK_COVERS("CLK-6 I19-3");
   Controller c(kServoIc0 | kServoIc1 | kMacroIc0);
@@ -314,7 +315,7 @@ TEST(SavedData, DamageIsReportedAndDefaultsAreUsed) {
   hal_flash()[20] ^= 1u;
   c.restart();
   EXPECT_EQ(i_integer(17), 10);
-  EXPECT_NE(kernel_status_word() & STATUS_FLASH_ERROR, 0u);
+  EXPECT_NE(status_word() & STATUS_FLASH_ERROR, 0u);
 }
 
 TEST(Float48, IsThePublishedFormat) {
@@ -380,8 +381,8 @@ TEST(ConfigurationError, IsReportedWhenTheIcSetDiffersFromTheSavedOne) {
   fake_hal_set_strap(HAL_STRAP_FITTED, kServoIc0 | kServoIc1);
   fake_hal_fit(kServoIc0 | kServoIc1);
   c.restart();
-  EXPECT_EQ(kernel_status_word(), static_cast<std::uint32_t>(STATUS_CONFIGURATION));
-  EXPECT_FALSE(kernel_motors_may_enable());
+  EXPECT_EQ(status_word(), static_cast<std::uint32_t>(STATUS_CONFIGURATION));
+  EXPECT_FALSE(status_motors_may_enable());
 }
 
 TEST(PhaseClock, MissingOneIsReportedAndTasksGoOn) {
@@ -391,7 +392,7 @@ TEST(PhaseClock, MissingOneIsReportedAndTasksGoOn) {
   fake_hal_stop_clocks(true);
   for (int i = 0; i < 20000; ++i) (void)hal_cycles();
   EXPECT_EQ(c.line("???"), "000008000800");
-  EXPECT_FALSE(kernel_motors_may_enable());
+  EXPECT_FALSE(status_motors_may_enable());
   fake_hal_stop_clocks(false);
   (void)hal_cycles();
   EXPECT_EQ(c.line("???"), "000000000800");

@@ -38,7 +38,7 @@ class BufferRequest : public FirmwareTest {
   static void open(const std::string& set_up = "&1DEF ROT 500") {
     ASSERT_EQ(host(set_up), "");
     ASSERT_EQ(host("&1B0 OPEN ROT"), "");
-    edges().clear();
+    platform::clear_edges();
   }
   static void store(unsigned count) {
     for (unsigned i = 0; i < count; ++i) {
@@ -48,8 +48,8 @@ class BufferRequest : public FirmwareTest {
   }
   static void calculate_one() {  // as the real-time task does at the end of a line
     word48_t word = 0;
-    ASSERT_TRUE(rotary_peek(command_cs(), 0, &word));
-    ASSERT_TRUE(rotary_consume(command_cs(), 1));
+    ASSERT_TRUE(rotary_peek(session.cs, 0, &word));
+    ASSERT_TRUE(rotary_consume(session.cs, 1));
   }
 };
 
@@ -69,7 +69,7 @@ TEST_F(BufferRequest, EachLinePulsesLowAtLeastOneMicrosecond) {
   BRICK_COVERS("BREQ-1 BREQ-2");
   open();
   for (int line = 1; line < 10; ++line) {
-    edges().clear();
+    platform::clear_edges();
     store(1);
     ASSERT_EQ(edges().size(), 2u) << "line " << line;
     EXPECT_FALSE(edges()[0].high);
@@ -87,7 +87,7 @@ TEST_F(BufferRequest, StaysLowAtI17Lines) {
   store(9);
   EXPECT_TRUE(breq());
   EXPECT_FALSE(full_bit(0));
-  edges().clear();
+  platform::clear_edges();
   store(1);  // the tenth: PR = I17
   EXPECT_FALSE(breq());
   EXPECT_TRUE(full_bit(0));
@@ -107,7 +107,7 @@ TEST_F(BufferRequest, RisesWhenFewerThanI16LinesAreLeft) {
     EXPECT_FALSE(breq()) << left;
     EXPECT_TRUE(full_bit(0)) << left;
   }
-  edges().clear();
+  platform::clear_edges();
   calculate_one();  // 4 < I16
   EXPECT_TRUE(breq());
   EXPECT_FALSE(full_bit(0));
@@ -121,7 +121,7 @@ TEST_F(BufferRequest, HysteresisBetweenThePoints) {
   calculate_one();
   calculate_one();
   calculate_one();  // 7 lines, Full = 1
-  edges().clear();
+  platform::clear_edges();
   store(1);  // 8 < I17, yet it stays low
   EXPECT_FALSE(breq());
   EXPECT_TRUE(full_bit(0));
@@ -140,7 +140,7 @@ TEST_F(BufferRequest, AgreesWithTheScoreboardOverRandomTraffic) {
     if (setting[1] == 0) expected.full = true;  // 0 lines are not fewer than 0
     for (int step = 0; step < 1500; ++step) {
       const bool was = expected.pin();
-      edges().clear();
+      platform::clear_edges();
       if (random() % 100 < (expected.lines < 15 ? 55u : 40u)) {
         store(1);
         expected.stored();
@@ -181,11 +181,11 @@ TEST_F(BufferRequest, AChangedPointThatNobodyReportedIsNoticedInTheNextPass) {
   open();
   store(8);
   platform::set_i(17, 6);
-  motion_background_update();
+  buffer_request_poll();
   EXPECT_FALSE(breq());
   EXPECT_TRUE(full_bit(0));
   platform::set_i(16, 9);
-  motion_background_update();
+  buffer_request_poll();
   EXPECT_TRUE(breq());
 }
 
@@ -194,7 +194,7 @@ TEST_F(BufferRequest, PinFollowsTheAddressedCoordinateSystem) {
   open("&16DEF ROT 50 &3DEF ROT 50 &1DEF ROT 50");
   store(10);
   EXPECT_FALSE(breq());
-  edges().clear();
+  platform::clear_edges();
   ASSERT_EQ(host("&3"), "");
   EXPECT_TRUE(breq()) << "empty";
   ASSERT_EQ(host("&2"), "");
@@ -250,7 +250,7 @@ TEST_F(BufferRequest, ClearAndDeleteReset) {
 TEST_F(BufferRequest, RefusedLineLeavesThePinAlone) {
   open("&1DEF ROT 3");
   store(3);
-  edges().clear();
+  platform::clear_edges();
   EXPECT_EQ(host("P1=1"), "ERR006");
   EXPECT_EQ(host("P1=1 GOTO5"), "ERR003");
   EXPECT_TRUE(edges().empty());

@@ -67,11 +67,12 @@ TEST_F(Expression, FunctionsInDegreesAndRadians) {
   std::uniform_real_distribution<double> angle(-1000.0, 1000.0), unit(-1.0, 1.0), positive(1e-6, 1e6),
       small(-20.0, 20.0);
   for (int i = 0; i < 500; ++i) {
-    const double a = angle(random), u = unit(random), x = positive(random), e = small(random);
-    p_variable_write(1, a);
-    p_variable_write(2, u);
-    p_variable_write(3, x);
-    p_variable_write(4, e);
+    const auto stored = [](std::uint32_t number, double exact) {  // 36 bits of it
+      p_variable_write(number, exact);
+      return p_variable_read(number);
+    };
+    const double a = stored(1, angle(random)), u = stored(2, unit(random)), x = stored(3, positive(random)),
+                 e = stored(4, small(random));
     q_variable_write(0, 0, e);
     platform::set_i(15, 0);
     near(value("SIN(P1)"), std::sin(a / kRadian), "sin degrees");

@@ -154,7 +154,7 @@ TEST_F(MoveTiming, TimeBaseStretchesMovesButNotDwell) {
   ASSERT_EQ(host("CLOSE I5194=8388607"), "");
   ASSERT_EQ(host("%50"), "");
   platform::servo_ticks(1);  // the slew reaches 50 % at once
-  EXPECT_EQ(host("%"), "50.0000134626") << "1856996 of 3713991 units: I10 is odd";
+  EXPECT_EQ(host("%"), "50.00001346") << "1856996 of 3713991 units: I10 is odd; ten digits";
   const double slow = 140.0 * 8388608.0 / 1856996.0;
   EXPECT_EQ(run(), static_cast<unsigned>(std::ceil(slow)) + ticks_of(25.0));
 }

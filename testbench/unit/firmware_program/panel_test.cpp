@@ -85,12 +85,12 @@ TEST_F(Panel, OnlyLinesOfTheSelectedSystemPulseBreq) {
   ASSERT_EQ(host("OPEN ROT"), "");
   panel(fpd(1));
   platform::pass_us(20);
-  platform::edges().clear();
+  platform::clear_edges();
   ASSERT_EQ(host("P1=1"), "");
   EXPECT_TRUE(platform::edges().empty());
   panel(fpd(2));
   platform::pass_us(20);
-  platform::edges().clear();
+  platform::clear_edges();
   ASSERT_EQ(host("P1=1"), "");
   ASSERT_EQ(platform::edges().size(), 2u);
   EXPECT_FALSE(platform::edges()[0].high);

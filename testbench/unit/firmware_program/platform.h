@@ -1,6 +1,5 @@
-// The firmware's surroundings for unit tests: memory arrays for user memory, plain arrays for variables, a simulated
-// cycle counter, a record of every edge of BREQ, and a small command interpreter that follows the contract of
-// firmware/language/program.h.
+// The firmware natively, function by function: one host line, one servo interrupt, one background pass at a time, on
+// the fake hardware of testbench/unit/firmware_platform. Time stands still but where a test or a busy wait passes it.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +10,26 @@
 
 #define error_t firmware_error_t  // the C library has a type of this name
 extern "C" {
+#include "firmware/base/mathematics.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/buffers/user_memory.h"
+#include "firmware/command/command.h"
+#include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
-#include "firmware/host/command.h"
 #include "firmware/host/panel.h"
-#include "firmware/host/reply.h"
+#include "firmware/language/evaluator.h"
 #include "firmware/language/expression.h"
-#include "firmware/language/mathematics.h"
 #include "firmware/language/operators.h"
-#include "firmware/language/program.h"
 #include "firmware/language/statement.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/motion.h"
-#include "firmware/motion/run_control.h"
-#include "firmware/variables/variables.h"
+#include "firmware/motion/motion_status.h"
+#include "firmware/run/run_control.h"
+#include "firmware/variables/i_variables.h"
+#include "firmware/variables/m_variables.h"
+#include "firmware/variables/pq_variables.h"
 }
 
 namespace platform {
@@ -40,14 +42,15 @@ struct Edge {
   double us;
 };
 
-void power_up();                                 // defaults of I-variables, then motion_initialize
-std::string host(const std::string& line);       // reply lines joined by `|`, or `ERRnnn`
-void pass_us(double us);                         // time passes in the background task
-void servo_ticks(unsigned count);                // servo interrupts, the real-time task after every third (I8 = 2)
-void real_time();                                // one real-time interrupt alone
-bool breq();                                     // level of the pin
-std::vector<Edge>& edges();                      // since the last clear()
-double longest_mask_us();                        // longest time the real-time task was held off
+void power_up();                            // a Geo Brick, as after power-on
+std::string host(const std::string& line);  // reply lines joined by `|`, or `ERRnnn`
+void pass_us(double us);                    // time passes in the background task
+void servo_ticks(unsigned count);           // servo interrupts, the real-time task after every third (I8 = 2)
+void real_time();                           // one real-time interrupt alone
+bool breq();                                // level of the pin
+std::vector<Edge> edges();                  // since the last clear_edges()
+void clear_edges();
+double longest_mask_us();                        // longest time that a task was held off
 void fit_panel();                                // a Turbo PMAC with JPAN; I2 = 0
 void panel(std::uint32_t low);                   // inputs pulled low, as 1, and a background pass
 void set_i(std::uint32_t number, double value);  // without telling anybody

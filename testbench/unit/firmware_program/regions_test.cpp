@@ -10,7 +10,7 @@ struct Region {
   const char* name;
   region_kind kind;
   std::uint32_t cs;
-  int height;  // place in memory, counted from the bottom as 4.2 draws it; written here independently of the firmware
+  int height;  // place in memory, counted from the bottom (firmware:4.2); written here independently of the firmware
 };
 
 // CCBUF 16..1 | LOOKAHEAD 16..1 | ROTARY 16..1 | GATHER
@@ -120,7 +120,7 @@ TEST_F(Regions, ArgumentsAreChecked) {
 TEST_F(Regions, ResetForgetsAll) {
   BRICK_COVERS("BIN-2");
   ASSERT_EQ(platform::host("DEF ROT 20"), "");
-  motion_initialize();
+  platform::power_up();
   EXPECT_EQ(platform::host("PR"), "ERR003");
   EXPECT_EQ(platform::host("SIZE"), "26624");
 }

@@ -138,11 +138,12 @@ TEST_F(Rotary, BinaryOpenTakesNoText) {
   ASSERT_EQ(host("DEF ROT 20"), "");
   ASSERT_EQ(host("OPEN BINARY ROTARY"), "");
   EXPECT_EQ(host("X10"), "ERR005");
-  EXPECT_EQ(host("???"), "100800");  // binary rotary open (bit 20), fixed buffer full (bit 11); bits 18, 19 stay 0
+  EXPECT_EQ(host("???"),
+            "000000100800");  // binary rotary open (bit 20), fixed buffer full (bit 11); bits 18, 19 stay 0
   EXPECT_EQ(host("CLOSE"), "");
-  EXPECT_EQ(host("???"), "000800");
+  EXPECT_EQ(host("???"), "000000000800");
   ASSERT_EQ(host("OPEN ROT"), "");
-  EXPECT_EQ(host("???"), "0C0800");  // motion buffer (19), ASCII rotary (18)
+  EXPECT_EQ(host("???"), "0000000C0800");  // motion buffer (19), ASCII rotary (18)
 }
 
 TEST_F(Rotary, MemoryHoldsTheLine) {

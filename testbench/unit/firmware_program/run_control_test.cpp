@@ -185,7 +185,7 @@ TEST_F(RunControl, EndBlockStopsAfterTheExecutingMove) {
 TEST_F(RunControl, StatementsActInSequence) {
   open();
   for (const char* text : {"P1=3", "X(P1*2) Y(P1)", "INC", "X1 Y-1", "ABS(X)", "X10 Y1", "Q5=P1+0.5", "P(Q5+0.5)=77",
-                           "I5111=P1*100", "M3=2"})
+                           "I5114=P1*100", "M3=2"})
     ASSERT_EQ(host(text), "") << text;
   ASSERT_EQ(host("R"), "");
   settle();
@@ -193,7 +193,7 @@ TEST_F(RunControl, StatementsActInSequence) {
   EXPECT_EQ(cs().position[AXIS_Y], 3.0);
   EXPECT_EQ(q_variable_read(0, 5), 3.5);
   EXPECT_EQ(p_variable_read(4), 77.0);
-  EXPECT_EQ(i_variable_read(5111), 300.0);
+  EXPECT_EQ(i_variable_read(5114), 300.0);
   EXPECT_EQ(m_variable_read(3), 2.0);
 }
 
@@ -241,7 +241,7 @@ TEST_F(RunControl, StatusWordsOfAnIdleAndARunningSystem) {
   platform::servo_ticks(6);
   EXPECT_EQ(motion_cs_status(0, 0), 0xFD5560u | 0x19u);  // all axes incremental; R, TM mode, running
   EXPECT_EQ(motion_cs_status(0, 1), 0u);
-  EXPECT_TRUE(motion_any_running());
+  EXPECT_TRUE(run_any_running());
   ASSERT_EQ(host("A"), "");
   EXPECT_EQ(motion_cs_status(0, 1), 0x020000u);
 }

@@ -17,7 +17,7 @@ class Statement : public FirmwareTest {
     EXPECT_EQ(platform::host(line), "") << line;
     return rotary_buffers[0].used - before;
   }
-  static bool starts(const char* text) { return program_starts_statement(lexer{text}); }
+  static bool starts(const char* text) { return statement_starts(lexer{text}); }
 };
 
 TEST_F(Statement, EachValueCostsOneWord) {

@@ -134,7 +134,7 @@ def gdb_session():
                 "next", "monitor time", "print *(int*)0xC03C0000", "delete", "watch current", "continue", "delete", "detach"]
     session = subprocess.run([gdb, "-nx", "-batch", *[x for c in commands for x in ("-ex", c)], str(FIRMWARE)], capture_output=True, text=True, timeout=60)
     text = session.stdout + session.stderr
-    for expected in (r"\$1 = 0x10000000\n", r"\nBreakpoint 1, acknowledge \(", r"\n#0 +acknowledge \(.*\n#1 .*\n(.*\n)*#\d .*kernel_main", r"\$2 = \d",
+    for expected in (r"\$1 = 0x10000000\n", r"\nBreakpoint 1, acknowledge \(", r"\n#0 +acknowledge \(.*\n#1 .*\n(.*\n)*#\d .*image_main", r"\$2 = \d",
                      r"\n\d+ ns\n", r"Cannot access memory at address 0xc03c0000",
                      r"Hardware watchpoint 2: current\n\nOld value = \d+\nNew value = \d+\n", r"detached"):
         check(re.search(expected, text), f"no {expected!r} in:\n{text}")

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "rtl/regs/brick_regs.hpp"
+#include "systemc/core/register_access.h"
 #include "systemc/host/dpram.h"
 #include "systemc/host/host_port.h"
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
-#include "systemc/host/register_access.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {

@@ -257,5 +257,142 @@ class SharedFunctions(Tree):
         self.expect(self.check(), 1, "no such file; expected a folder that the build has generated")
 
 
+class Citations(Tree):
+    """Each citation that leads nowhere, and each other way of pointing at a document, is found with file and line."""
+
+    SHEET = ("# Servo IC\n## 5. Behaviour\n### 5.1 Clocks\n1. turns\n2. rises\n\n"
+             "### 5.11 PWM\n| # | rule |\n|---|---|\n| 3 | off |\n")
+
+    def setUp(self):
+        super().setUp()
+        self.write("docs/datasheet/servo-ic.md", self.SHEET)
+        self.write("docs/clock.md", "[rules](datasheet/servo-ic.md), servo-ic:5.1/2, a wait of 1.5 periods (2.5 us)\n")
+        self.write("testbench/vectors/a.vec", 'title = "a"\nsection = "servo-ic:5.1, servo-ic:5.11"\n')
+
+    def code(self, text, status, message):
+        self.write("rtl/a.sv", f"module a;\n// {text}\nendmodule\n")
+        self.expect(self.run_tool("check_citations.py"), status, message)
+
+    def fails(self, text, message):
+        self.code(text, 1, f"rtl/a.sv:2: {message}")
+
+    def test_citations_that_lead_somewhere_pass(self):
+        self.code("docs/clock.md; servo-ic:5, servo-ic:5.11/3, servo-ic:5.1/1 to servo-ic:5.1/2.", 0, "7 citations")
+
+    def test_a_section_that_is_not_there_fails(self):
+        self.fails("servo-ic:5.2", "'servo-ic:5.2': docs/datasheet/servo-ic.md has no section 5.2")
+        self.fails("(servo-ic:5.1; servo-ic:51)", "'servo-ic:51': docs/datasheet/servo-ic.md has no section 51")
+
+    def test_a_rule_that_is_not_there_fails(self):
+        self.fails("servo-ic:5.1/3", "'servo-ic:5.1/3': rule 3 is not in section 5.1")
+        self.fails("servo-ic:5.11/2", "'servo-ic:5.11/2': rule 2 is not in section 5.11")
+
+    def test_a_rule_that_is_there_twice_fails(self):
+        self.write("docs/datasheet/servo-ic.md", self.SHEET.replace("2. rises", "1. rises"))
+        self.fails("servo-ic:5.1/1", "'servo-ic:5.1/1': rule 1 is twice in section 5.1")
+
+    def test_a_sheet_that_is_not_there_fails(self):
+        self.fails("host-bus:5.1", "'host-bus:5.1': there is no docs/datasheet/host-bus.md")
+
+    def test_a_range_that_runs_backwards_fails(self):
+        self.fails("servo-ic:5.11 to servo-ic:5.1", "'servo-ic:5.11 to servo-ic:5.1' is no range of one sheet")
+
+    def test_a_page_that_is_not_there_fails(self):
+        self.fails("docs/gone.md", "'docs/gone.md' does not exist")
+        self.fails("docs/gone.txt", "'docs/gone.txt' does not exist")
+        self.fails("servo-ic.md", "'servo-ic.md' does not exist")
+
+    def test_other_ways_of_pointing_fail(self):
+        self.fails("servo-ic:5.1-5.11", "'servo-ic:' is no citation")
+        self.fails("servo-ic:5.1, 5.11", "'5.11' names no sheet")
+        self.fails("docs/datasheet/servo-ic.md 5.1", "'docs/datasheet/servo-ic.md 5.1' points into a page by number")
+        self.fails("design.md section 7", "'design.md section 7' points into a page by number")
+        self.fails("see section 7", "'section 7' names no sheet")
+        self.fails("as the data sheet 5.1 says", "'data sheet 5.1' names no sheet")
+        self.fails("bits as in 5.11", "'as in 5.11' names no sheet")
+        self.fails("§ 5", "'§ 5' names no sheet")
+        self.fails("off (5.11)", "'(5.11)' names no sheet")
+        self.fails("5.1 item 2", "'5.1 item' names no sheet")
+        self.fails("../shared/spec", "'../shared/spec' lies outside the tree")
+
+    def test_a_vector_without_citations_fails(self):
+        self.write("testbench/vectors/a.vec", 'section = "5.1"\n')
+        self.expect(self.run_tool("check_citations.py"), 1, "testbench/vectors/a.vec:1: '5.1' is no list of citations")
+
+    def test_a_number_that_two_sections_have_fails(self):
+        self.write("docs/datasheet/servo-ic.md", self.SHEET + "### 5.1 Again\n")
+        self.expect(self.run_tool("check_citations.py"), 1,
+                    "docs/datasheet/servo-ic.md:11: section 5.1 is there already, in line 3")
+
+    def test_text_in_fences_is_no_rule(self):
+        self.write("docs/datasheet/servo-ic.md", self.SHEET.replace("2. rises", "```\n2. rises\n```"))
+        self.expect(self.run_tool("check_citations.py"), 1,
+                    "docs/clock.md:1: 'servo-ic:5.1/2': rule 2 is not in section 5.1")
+class Layers(Tree):
+    """Both trees, small: an include upward, a circle, a declaration away from its definition."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("firmware/hal/hal.h", "uint32_t hal_cycles(void);\n")
+        self.write("firmware/hal/hal.c", '#include "firmware/hal/hal.h"\n\nuint32_t hal_cycles(void) { return 0; }\n')
+        self.write("firmware/kernel/tasks.h", "extern const struct task_hooks task_hooks;\n")
+        self.write("firmware/kernel/tasks.c", '#include "firmware/hal/hal.h"\n#include "firmware/kernel/tasks.h"\n')
+        self.write("firmware/image/tables.c", '#include "firmware/kernel/tasks.h"\n\nconst struct task_hooks task_hooks = {0};\n')
+        self.write("systemc/core/ticks.h", '#include "rtl/regs/brick_regs.h"\n')
+        self.write("systemc/board/board_top.cpp", '#include "systemc/core/ticks.h"\n')
+        self.write("testbench/unit/core/ticks_test.cpp", '#include "app/script.h"\n')
+
+    def check(self, status, text):
+        self.expect(self.run_tool("check_layers.py"), status, text)
+
+    def test_includes_downward_pass(self):
+        self.check(0, "layers: clean")
+
+    def test_an_upward_include_in_the_firmware_fails(self):
+        self.write("firmware/hal/hal.h", '#include "firmware/kernel/tasks.h"\nuint32_t hal_cycles(void);\n')
+        self.check(1, "firmware/hal/hal.h: includes firmware/kernel/tasks.h, which is not below firmware/hal")
+
+    def test_an_upward_include_in_the_model_fails(self):
+        self.write("systemc/board/board_top.cpp", '#include "systemc/cosim/engines.h"\n')
+        self.check(1, "systemc/board/board_top.cpp: includes systemc/cosim/engines.h, which is not below systemc/board")
+
+    def test_blocks_of_one_layer_do_not_include_each_other(self):
+        self.write("systemc/host/dpram.h", '#include "systemc/cpu/cpu.h"\n')
+        self.check(1, "systemc/host/dpram.h: includes systemc/cpu/cpu.h")
+
+    def test_a_folder_without_a_layer_fails(self):
+        self.write("firmware/drivers/led.h", "")
+        self.check(1, "folder firmware/drivers has no layer")
+
+    def test_a_circle_of_units_in_the_firmware_fails(self):
+        self.write("firmware/kernel/watchdog.c", '#include "firmware/kernel/tasks.h"\n')
+        self.write("firmware/kernel/tasks.c", '#include "firmware/kernel/watchdog.h"\n')
+        self.check(1, "circle: firmware/kernel/tasks -> firmware/kernel/watchdog -> firmware/kernel/tasks")
+
+    def test_a_circle_of_headers_in_the_model_fails(self):
+        self.write("systemc/core/ticks.h", '#include "systemc/core/trace.h"\n')
+        self.write("systemc/core/trace.h", '#include "systemc/core/ticks.h"\n')
+        self.check(1, "circle: systemc/core/ticks.h -> systemc/core/trace.h -> systemc/core/ticks.h")
+
+    def test_a_function_declared_elsewhere_fails(self):
+        self.write("firmware/kernel/tasks.h", "uint32_t hal_cycles(void);\n")
+        self.check(1, "firmware/kernel/tasks.h: declares hal_cycles(), which firmware/kernel/tasks.c does not define")
+
+    def test_a_foreign_function_in_a_source_fails(self):
+        self.write("firmware/kernel/tasks.c", "uint32_t hal_cycles(void);\n")
+        self.check(1, "firmware/kernel/tasks.c: declares hal_cycles()")
+
+    def test_a_foreign_variable_fails(self):
+        self.write("firmware/kernel/tasks.c", "extern volatile uint32_t work;\n")
+        self.check(1, "firmware/kernel/tasks.c: extern work")
+        self.write("firmware/kernel/tasks.c", "")
+        self.write("firmware/kernel/tasks.h", "extern volatile uint32_t work;\n")
+        self.check(1, "firmware/kernel/tasks.h: declares work, which firmware/kernel/tasks.c does not define")
+
+    def test_a_table_that_the_image_lacks_fails(self):
+        self.write("firmware/image/tables.c", "")
+        self.check(1, "firmware/kernel/tasks.h: declares task_hooks")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -13,9 +13,9 @@ constexpr const char* kExpectations = "is, high, rises, falls, changes, period, 
 
 Action expectation(Statement& s) {
   const unsigned signal = s.signal();
-  if (s.take("is")) return step::Level{signal, static_cast<std::uint32_t>(s.number())};
+  if (s.take("is")) return step::Level{signal, static_cast<std::uint32_t>(s.expression())};
   if (s.take("stays")) {
-    const auto value = static_cast<std::uint32_t>(s.number());
+    const auto value = static_cast<std::uint32_t>(s.expression());
     return step::Stays{signal, value, s.window()};
   }
   if (s.take("high")) {
@@ -36,19 +36,17 @@ Action expectation(Statement& s) {
     const unsigned clock = s.signal();
     return step::Bits{signal, clock, bits, s.window()};
   }
-  if (s.at_end()) s.fail(kExpectations);
-  for (const Edge edge : {Edge::kRises, Edge::kFalls, Edge::kChanges}) {
-    if (!s.take(edge == Edge::kRises ? "rises" : edge == Edge::kFalls ? "falls" : "changes")) continue;
-    if (s.take("at")) return step::At{{signal, edge}, s.time()};
+  if (const auto edge = s.edge()) {
+    if (s.take("at")) return step::At{{signal, *edge}, s.time_point()};
     if (s.take("then")) {
       const SignalEdge second = s.signal_edge();
       s.expect("after");
       const Tick ticks = s.duration();
-      return step::Gap{{signal, edge}, second, ticks, s.window()};
+      return step::Gap{{signal, *edge}, second, ticks, s.window()};
     }
-    const std::int64_t times = s.number();
+    const std::int64_t times = s.expression();
     s.expect("times");
-    return step::Count{{signal, edge}, times, s.window()};
+    return step::Count{{signal, *edge}, times, s.window()};
   }
   s.fail(kExpectations);
 }
@@ -63,13 +61,13 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
   if (s.take("expect")) return expectation(s);
   if (s.take("write")) {
     only(kind.words, "registers");
-    const Word word = s.word();
+    const Word word = s.register_word();
     s.expect("=");
     return step::Write{word, s.bits24()};
   }
   if (s.take("read")) {
     only(kind.words, "registers");
-    step::Read read{s.word(), 0xFFFFFF, 0};
+    step::Read read{s.register_word(), 0xFFFFFF, 0};
     if (s.at_end()) {
       read.mask = 0;
       return read;
@@ -82,7 +80,7 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
   if (s.take("pin")) {
     const unsigned signal = s.input();
     s.expect("=");
-    return step::Drive{signal, static_cast<std::uint32_t>(s.number())};
+    return step::Drive{signal, static_cast<std::uint32_t>(s.expression())};
   }
   if (s.take("until")) {
     constexpr Tick kLimit = 1'000'000;
@@ -96,12 +94,13 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
   }
   if (s.take("turn")) {
     only(kind.words, "encoders");
-    const std::string name = s.name("ch1 to ch4");
-    if (name.size() != 3 || name.substr(0, 2) != "ch" || name[2] < '1' || name[2] > '4') s.fail("ch1 to ch4 before it");
+    unsigned channel = 0;
+    while (channel < 4 && !s.take(fmt::format("ch{}", channel + 1))) ++channel;
+    if (channel == 4) s.fail("ch1 to ch4");
     s.take("+");
-    const std::int64_t counts = s.number();
+    const std::int64_t counts = s.expression();
     s.expect("every");
-    return step::Turn{static_cast<unsigned>(name[2] - '1'), counts, s.duration()};
+    return step::Turn{channel, counts, s.duration()};
   }
   if (s.take("send")) {
     const std::uint32_t word = s.bits24();
@@ -121,10 +120,9 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
 
 }  // namespace
 
-std::optional<Step> parse_step(const std::string& where, int line, std::string_view text, const Vector& vector,
-                               std::vector<std::string>& marks) {
-  Statement s(where, text, vector, marks);
-  if (s.empty()) return std::nullopt;
+std::optional<Step> parse_step(int line, std::string_view text, const Vector& vector, std::vector<std::string>& marks) {
+  Statement s(text, vector, marks);
+  if (s.at_end()) return std::nullopt;
   const auto first = text.find_first_not_of(' ');
   std::string shown(text.substr(first, text.find('#') - first));
   shown.erase(shown.find_last_not_of(' ') + 1);

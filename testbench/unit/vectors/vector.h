@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,12 +12,6 @@
 #include "testbench/unit/vectors/device.h"
 
 namespace brick {
-
-// A mistake in a vector file; what() is one line: file:line: found, expected.
-class VectorError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 enum class Edge { kRises, kFalls, kChanges };
 struct TimePoint {
@@ -169,7 +162,7 @@ struct Vector {
   const DeviceKind& kind() const;
 };
 
-// Throws VectorError.
+// Throws UsageError, file and line in front.
 Vector read_vector(const std::string& path);
 Vector parse_vector(const std::string& text, const std::string& path);
 

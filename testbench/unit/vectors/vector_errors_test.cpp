@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "systemc/core/usage_error.h"
 #include "testbench/unit/vectors/runner.h"
 
 namespace brick {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::string with_steps(const std::string& steps) {
@@ -16,56 +18,77 @@ std::string with_steps(const std::string& steps) {
 std::string error(const std::string& text) {
   try {
     parse_vector(text, "a.vec");
-  } catch (const VectorError& e) { return e.what(); }
+  } catch (const UsageError& e) { return e.what(); }
   return "no error";
 }
 // The line of the first step is 6.
 std::string step_error(const std::string& step) { return error(with_steps("expect ch1.equ is 0\n" + step)); }
 
 TEST(VectorErrors, NameLineFoundAndExpected) {
-  EXPECT_EQ(step_error("expect ch1.equ hihg 3"),
-            "a.vec:7: found 'hihg', expected is, high, rises, falls, changes, period, pulses, stays or reads");
-  EXPECT_EQ(
-      step_error("wiat 3"),
-      "a.vec:7: found 'wiat', expected reset, write, read, pin, wait, until, mark, turn, send, command or expect");
+  constexpr const char* kExpected =
+      " is not known; expected is, high, rises, falls, changes, period, pulses, stays or reads";
+  EXPECT_EQ(step_error("expect ch1.equ hihg 3"), std::string("a.vec:7: `hihg`") + kExpected);
+  EXPECT_EQ(step_error("wiat 3"),
+            "a.vec:7: `wiat` is not known; expected reset, write, read, pin, wait, until, mark, turn, send, command or "
+            "expect");
   EXPECT_EQ(step_error("pin ch5.enc_a = 1"),
-            "a.vec:7: found 'ch5.enc_a', expected a signal of the device 'channels', as ch1.enc_a");
-  EXPECT_EQ(step_error("pin ch1.equ = 1"), "a.vec:7: found 'ch1.equ', expected an input pin");
+            "a.vec:7: `ch5.enc_a` is not known; expected a signal of the device 'channels', as ch1.enc_a");
+  EXPECT_EQ(step_error("pin ch1.equ = 1"), "a.vec:7: `ch1.equ` is not known; expected an input pin");
   EXPECT_EQ(step_error("write X:$20 = 1"),
-            "a.vec:7: found 'X:$20', expected a word of the IC, X:$00 to X:$1F or Y:$00 to Y:$1F");
-  EXPECT_EQ(step_error("write X:$04 1"), "a.vec:7: found '1', expected '='");
-  EXPECT_EQ(step_error("write X:$04 = 1 << 24"), "a.vec:7: found '1', expected a value of 24 bits");
-  EXPECT_EQ(step_error("write X:$04 = $"), "a.vec:7: found '$', expected a number, decimal or $hex");
-  EXPECT_EQ(step_error("wait 3 sclk now"), "a.vec:7: found 'now', expected the end of the line");
-  EXPECT_EQ(step_error("wait"), "a.vec:7: found the end of the line, expected a number, decimal or $hex");
+            "a.vec:7: `X:$20` is not known; expected a word of the IC, X:$00 to X:$1F or Y:$00 to Y:$1F");
+  EXPECT_EQ(step_error("write X:$04 1"), "a.vec:7: `1` is not known; expected =");
+  EXPECT_EQ(step_error("write X:$04 = 1 << 24"), "a.vec:7: `1` is not known; expected a value of 24 bits");
+  EXPECT_EQ(step_error("write X:$04 = $"), "a.vec:7: `$` is not known; expected a number, decimal or $hex");
+  EXPECT_EQ(step_error("wait 3 sclk now"), "a.vec:7: `now` is not known; expected nothing behind it");
+  EXPECT_EQ(step_error("wait"), "a.vec:7: the line ends; expected a number, decimal or $hex");
+  EXPECT_EQ(step_error("wait 3.5 sclk"), "a.vec:7: `3.5` is not known; expected a number, decimal or $hex");
   EXPECT_EQ(step_error("expect ch1.equ stays 0 from a to b"),
-            "a.vec:7: found 'a', expected a mark that was set before");
-  EXPECT_EQ(step_error("expect dac_strobe reads 012 on dac_clk"), "a.vec:7: found '012', expected bits, as 0111_1110");
-  EXPECT_EQ(step_error("until clock.phase high"), "a.vec:7: found 'high', expected rises, falls or changes");
-  EXPECT_EQ(step_error("turn ch5 +3 every 4"), "a.vec:7: found '+', expected ch1 to ch4 before it");
+            "a.vec:7: `a` is not known; expected a mark that was set before");
+  EXPECT_EQ(step_error("expect dac_strobe reads 012 on dac_clk"),
+            "a.vec:7: `012` is not known; expected bits, as 0111_1110");
+  EXPECT_EQ(step_error("until clock.phase high"), "a.vec:7: `high` is not known; expected rises, falls or changes");
+  EXPECT_EQ(step_error("turn ch5 +3 every 4"), "a.vec:7: `ch5` is not known; expected ch1 to ch4");
   EXPECT_EQ(step_error("command \"I19\""),
-            "a.vec:7: found '\"I19\"', expected another statement: the device 'channels' has no command lines");
-  EXPECT_EQ(step_error("command \"I19"), "a.vec:7: found a text without its closing \"");
+            "a.vec:7: `\"I19\"` is not known; expected another statement: the device 'channels' has no command lines");
+  EXPECT_EQ(step_error("command \"I19"), "a.vec:7: `\"I19` is a text without its end; expected a closing \"");
 }
 
 TEST(VectorErrors, WholeFile) {
   EXPECT_THAT(error("title = 3 4"), HasSubstr("a.vec:1: "));
   EXPECT_EQ(error("title = \"t\"\nfoo = 1"),
-            "a.vec:2: found the key 'foo', expected one of title, section, number, device, board, units, steps, "
-            "negative, wave");
-  EXPECT_EQ(error("title = 3"), "a.vec:1: found another type, expected a text in quotation marks");
+            "a.vec:2: unknown key foo; expected title, section, number, device, board, units, steps, negative, wave");
+  EXPECT_EQ(error("title = 3"), "a.vec:1: title: found 3; expected a text in quotes");
   EXPECT_EQ(error("title = \"t\"\nsection = \"s\"\ndevice = \"toaster\""),
-            "a.vec:3: found the device 'toaster', expected channels or controller");
+            "a.vec:3: device: found \"toaster\"; expected channels or controller");
   EXPECT_EQ(error(with_steps("wait 3")),
-            "a.vec:5: found steps that expect nothing, expected a line with 'expect', 'read' or a reply");
+            "a.vec:5: steps: found \"wait 3 \"; expected a line with 'expect', 'read' or a reply");
   const std::string good = with_steps("expect ch1.equ is 0");
   EXPECT_EQ(error(good), "no error");
-  EXPECT_THAT(error(good.substr(0, good.find("[[negative]]"))),
-              HasSubstr("found no 'negative', expected an array of tables"));
-  EXPECT_EQ(error(good + "late = \"ch1.equ by 3\"\n"),
-            "a.vec:8: found 2 faults, expected one: write, read, late, stuck, invert or command");
+  EXPECT_EQ(error(good.substr(0, good.find("[[negative]]"))),
+            "a.vec: key negative is missing; expected negative = ...");
+  EXPECT_EQ(error(good.substr(0, good.find("[[negative]]")) + "negative = []"),
+            "a.vec:8: negative: found []; expected a fault with which it must fail");
+  EXPECT_THAT(error(good + "late = \"ch1.equ by 3\"\n"),
+              AllOf(HasSubstr("a.vec:8: negative: found "),
+                    HasSubstr("; expected one fault: write, read, late, stuck, invert or command")));
   EXPECT_EQ(error(good + "[wave]\nsignals = [\"ch9.equ\"]\n"),
-            "a.vec:12: found 'ch9.equ', expected a signal of the device 'channels', as ch1.enc_a");
+            "a.vec:12: signals: `ch9.equ` is not known; expected a signal of the device 'channels', as ch1.enc_a");
+}
+
+// The same 3 ms as host scripts write them, with a space or without.
+TEST(VectorTimes, AreThoseOfHostScripts) {
+  const auto ticks_of = [](const std::string& duration) {
+    const Vector vector = parse_vector(with_steps("expect ch1.equ is 0\nwait " + duration), "a.vec");
+    return std::get<step::Wait>(vector.steps.at(1).action).ticks;
+  };
+  constexpr Tick kThreeMs = (117'964'800 * 3 + 999) / 1000;  // rounded up
+  EXPECT_EQ(ticks_of("3 ms"), kThreeMs);
+  EXPECT_EQ(ticks_of("3ms"), kThreeMs);
+  EXPECT_EQ(ticks_of("3000us"), kThreeMs);
+  EXPECT_EQ(ticks_of("5 sclk"), 60);
+  EXPECT_EQ(ticks_of("sclk"), 12);
+  EXPECT_EQ(ticks_of("4 << 14"), 65536);
+  EXPECT_EQ(ticks_of("7 ticks"), 7);
 }
 
 // A run of a few lines after PHASE has begun to run with a period of 203 ticks.

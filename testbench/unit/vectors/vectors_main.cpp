@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "systemc/core/usage_error.h"
 #include "testbench/unit/vectors/wave.h"
 
 namespace {
@@ -14,13 +15,13 @@ brick::Vector read(const std::string& path, const std::string& engine) {
   brick::Vector vector = brick::read_vector(path);
   const auto& known = vector.kind().engines;
   if (std::find(known.begin(), known.end(), engine) == known.end())
-    throw brick::VectorError(fmt::format("--engine: found '{}', expected {}", engine, fmt::join(known, ", ")));
+    throw brick::UsageError(fmt::format("--engine {}: no such engine; expected {}", engine, fmt::join(known, ", ")));
   return vector;
 }
 
 int run(const std::string& path, const std::string& engine, bool draw) {
   const brick::Vector vector = read(path, engine);
-  if (draw && !vector.wave) throw brick::VectorError(path + ": found no [wave], expected one to draw");
+  if (draw && !vector.wave) throw brick::UsageError(path + ": key wave is missing; expected [wave] to draw");
   const auto device = brick::make_device(vector.device, engine, vector.board);
   const brick::RunResult result = brick::run_vector(vector, *device);
   if (!result.passed()) {
@@ -63,7 +64,7 @@ int main(int argc, char** argv) {
     return negative ? run_negatives(path, engine) : run(path, engine, draw);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const brick::VectorError& error) {
+  } catch (const brick::UsageError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
   } catch (const std::exception& error) {

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "systemc/core/usage_error.h"
 #include "testbench/unit/vectors/wave.h"
 
 namespace brick {
@@ -83,7 +84,7 @@ void add_tests_of(const std::string& file) {
       add(name + "_" + engine, [file, engine] { passes(file, engine); });
     add("negative_" + name, [file] { fails_when_corrupted(file); });
     if (vector.wave) add("figure_" + name, [file] { figure_is_fresh(file); });
-  } catch (const VectorError& error) {
+  } catch (const UsageError& error) {
     add(name, [what = std::string(error.what())] { FAIL() << what; });
   }
 }

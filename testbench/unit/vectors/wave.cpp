@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "systemc/core/usage_error.h"
+
 namespace brick {
 namespace {
 
@@ -37,7 +39,7 @@ class Drawing {
   };
 
   [[noreturn]] void fail(int line, const std::string& what) const {
-    throw VectorError(fmt::format("{}:{}: {}", vector_.path, line, what));
+    throw UsageError(fmt::format("{}:{}: {}", vector_.path, line, what));
   }
 
   void place(const WaveWindow& w) {
@@ -46,7 +48,7 @@ class Drawing {
     const auto bricks = (s.to - s.from + s.step - 1) / s.step;
     constexpr Tick kMost = 80;
     if (bricks < 1 || bricks > kMost)
-      fail(w.line, fmt::format("found a window of {} columns, expected 1 to {}", bricks, kMost));
+      fail(w.line, fmt::format("the window has {} columns; expected 1 to {}", bricks, kMost));
     stretches_.push_back(s);
     width_ = s.column + static_cast<std::size_t>(bricks);
   }
@@ -66,8 +68,8 @@ class Drawing {
         const bool same = last && *last == value && !(number && t == s.from);
         last = value;
         if (run_.record.edges({signal, Edge::kChanges}, t + 1, t + s.step + 1).size() > 1)
-          fail(s.line, fmt::format("found several changes of {} within {} ticks from tick {}, expected a smaller step",
-                                   name, s.step, t));
+          fail(s.line, fmt::format("several changes of {} within {} ticks from tick {}; expected a smaller step", name,
+                                   s.step, t));
         wave += same ? '.' : number ? '=' : value != 0 ? '1' : '0';
         if (number && !same) data.push_back(std::to_string(static_cast<std::int32_t>(value)));
       }
@@ -114,13 +116,15 @@ class Drawing {
   Tick edge(const WaveArrow& arrow, SignalEdge e, Tick t) const {
     const auto found = run_.record.edges(e, t, stretches_.back().to);
     if (found.empty())
-      fail(arrow.line, fmt::format("found no such edge of {} after tick {}", vector_.signals[e.signal].name, t));
+      fail(arrow.line,
+           fmt::format("no such edge of {} after tick {}; expected one", vector_.signals[e.signal].name, t));
     return found.front();
   }
   char node(const WaveArrow& arrow, SignalEdge e, Tick t) {
     const auto row = std::find(wave_.signals.begin(), wave_.signals.end(), e.signal);
     if (row == wave_.signals.end())
-      fail(arrow.line, fmt::format("found {}, expected a signal that is drawn", vector_.signals[e.signal].name));
+      fail(arrow.line,
+           fmt::format("`{}` is not drawn; expected a signal of the figure", vector_.signals[e.signal].name));
     for (const Stretch& s : stretches_) {
       if (t < s.from || t >= s.to) continue;
       char& at = nodes_[static_cast<std::size_t>(row - wave_.signals.begin())]
@@ -128,7 +132,7 @@ class Drawing {
       if (at == '.') at = next_node_++;
       return at;
     }
-    fail(arrow.line, fmt::format("found the edge of {} at tick {}, expected one inside a window",
+    fail(arrow.line, fmt::format("the edge of {} at tick {} lies in no window; expected one inside",
                                  vector_.signals[e.signal].name, t));
   }
 

@@ -7,7 +7,7 @@
 
 namespace brick {
 
-// Throws VectorError when the drawing would hide something: a step that swallows an edge, an arrow without its edges.
+// Throws UsageError when the drawing would hide something: a step that swallows an edge, an arrow without its edges.
 std::string wavedrom(const Vector& vector, const RunResult& run);
 
 }  // namespace brick

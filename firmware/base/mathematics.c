@@ -1,0 +1,226 @@
+/* Elementary functions: exact argument reduction, then a short series. Integer work on the bits of the double replaces
+ * what a C library would do with frexp, ldexp and floor. */
+#include "firmware/base/mathematics.h"
+
+#define PI 3.14159265358979323846
+#define HALF_PI_HIGH 1.57079632673412561417 /* the upper 33 bits of pi/2: a multiple of it stays exact */
+#define HALF_PI_LOW 6.07710050650619224932e-11
+#define LN2_HIGH 0.693147180369123816490
+#define LN2_LOW 1.90821492927058770002e-10
+
+union bits {
+  double value;
+  uint64_t word;
+};
+
+enum { EXPONENT_BIAS = 1023, FRACTION_BITS = 52 };
+
+#define FRACTION_MASK ((UINT64_C(1) << FRACTION_BITS) - 1u)
+
+double math_absolute(double x) { return x < 0.0 ? -x : x; }
+
+int64_t math_to_integer(double x) {
+  union bits b = {x};
+  bool negative = (b.word >> 63) != 0;
+  int exponent = (int)((b.word >> FRACTION_BITS) & 0x7FFu) - EXPONENT_BIAS;
+  uint64_t significand = (b.word & FRACTION_MASK) | (FRACTION_MASK + 1u);
+  if (exponent >= 62) return negative ? -(INT64_C(1) << 62) : INT64_C(1) << 62;
+  if (exponent < 0) return negative && (b.word << 1) != 0 ? -1 : 0;
+  if (exponent >= FRACTION_BITS) {
+    int64_t whole = (int64_t)(significand << (unsigned)(exponent - FRACTION_BITS));
+    return negative ? -whole : whole;
+  }
+  unsigned below = (unsigned)(FRACTION_BITS - exponent);
+  int64_t whole = (int64_t)(significand >> below);
+  bool fraction = (significand & ((UINT64_C(1) << below) - 1u)) != 0;
+  return negative ? -whole - (fraction ? 1 : 0) : whole;
+}
+
+double math_from_fixed(int64_t mantissa, int exponent) {
+  if (mantissa == 0) return 0.0;
+  union bits b;
+  bool negative = mantissa < 0;
+  uint64_t magnitude = negative ? 0u - (uint64_t)mantissa : (uint64_t)mantissa;
+  int top = 63 - __builtin_clzll(magnitude); /* at most 2^53: nothing is rounded */
+  b.word = (magnitude << (unsigned)(FRACTION_BITS - top)) & FRACTION_MASK;
+  b.word |= (uint64_t)(unsigned)(top + exponent + EXPONENT_BIAS) << FRACTION_BITS;
+  if (negative) b.word |= UINT64_C(1) << 63;
+  return b.value;
+}
+
+bool math_to_fixed(double x, unsigned bits, int64_t* mantissa, int* exponent) {
+  union bits b = {x};
+  int biased = (int)((b.word >> FRACTION_BITS) & 0x7FFu);
+  *mantissa = 0;
+  *exponent = 0;
+  if (biased == 0) return true;
+  unsigned below = (unsigned)FRACTION_BITS + 1u - bits;
+  uint64_t significand = (b.word & FRACTION_MASK) | (FRACTION_MASK + 1u);
+  uint64_t lost = significand & ((UINT64_C(1) << below) - 1u);
+  int64_t m = (int64_t)(significand >> below);
+  *exponent = biased - (EXPONENT_BIAS - 1);
+  if (lost >> (below - 1u)) m++;
+  if (m >> bits) { /* rounded up to the next power of two */
+    m >>= 1;
+    ++*exponent;
+  }
+  *mantissa = (b.word >> 63) ? -m : m;
+  return lost == 0;
+}
+
+double math_floor(double x) {
+  if (math_absolute(x) >= 4503599627370496.0) return x; /* 2^52: no fraction left */
+  return (double)math_to_integer(x);
+}
+
+double math_split(double x, int* exponent) {
+  union bits b = {x};
+  int biased = (int)((b.word >> FRACTION_BITS) & 0x7FFu);
+  *exponent = 0;
+  if (biased == 0) return 0.0; /* zero, and numbers too small to matter */
+  *exponent = biased - (EXPONENT_BIAS - 1);
+  b.word = (b.word & ~(UINT64_C(0x7FF) << FRACTION_BITS)) | ((uint64_t)(EXPONENT_BIAS - 1) << FRACTION_BITS);
+  return b.value;
+}
+
+double math_scale(double m, int exponent) {
+  int own;
+  union bits b = {math_split(m, &own)};
+  int biased = own + exponent + EXPONENT_BIAS - 1;
+  if (b.value == 0.0 || biased <= 0) return 0.0;
+  if (biased >= 0x7FF) biased = 0x7FE;
+  b.word = (b.word & ~(UINT64_C(0x7FF) << FRACTION_BITS)) | ((uint64_t)(unsigned)biased << FRACTION_BITS);
+  return b.value;
+}
+
+double math_divide(double a, double b) {
+  if (b == 0.0) return a < 0.0 ? -MATH_LARGEST : MATH_LARGEST;
+  return a / b;
+}
+
+double math_modulo(double a, double b) {
+  if (b == 0.0) return 0.0;
+  if (b > 0.0) return a - b * math_floor(a / b);
+  double n = -b, shifted = a + n;
+  return shifted - 2.0 * n * math_floor(shifted / (2.0 * n)) - n;
+}
+
+double math_square_root(double x) {
+  if (x <= 0.0) return 0.0;
+  union bits b = {x};
+  b.word = (b.word >> 1) + (UINT64_C(0x1FF8) << 48); /* halves the exponent: within 6 % of the root */
+  double root = b.value;
+  for (int i = 0; i < 4; i++) root = 0.5 * (root + x / root);
+  return root;
+}
+
+/* sin and cos on [-pi/4, pi/4]; the first term left out is below 1e-17. */
+static double sine_series(double x) {
+  double s = x * x;
+  double p = -1.0 / 1307674368000.0;
+  p = p * s + 1.0 / 6227020800.0;
+  p = p * s - 1.0 / 39916800.0;
+  p = p * s + 1.0 / 362880.0;
+  p = p * s - 1.0 / 5040.0;
+  p = p * s + 1.0 / 120.0;
+  p = p * s - 1.0 / 6.0;
+  return x + x * s * p;
+}
+
+static double cosine_series(double x) {
+  double s = x * x;
+  double p = 1.0 / 20922789888000.0;
+  p = p * s - 1.0 / 87178291200.0;
+  p = p * s + 1.0 / 479001600.0;
+  p = p * s - 1.0 / 3628800.0;
+  p = p * s + 1.0 / 40320.0;
+  p = p * s - 1.0 / 720.0;
+  p = p * s + 1.0 / 24.0;
+  return 1.0 - 0.5 * s + s * s * p;
+}
+
+/* Reduces to [-pi/4, pi/4] radians and returns the quadrant. Degrees are reduced before the conversion, so SIN(180) is
+ * exactly 0. */
+static unsigned quadrant(double x, int degrees, double* reduced) {
+  double turns = math_floor(degrees ? x / 90.0 + 0.5 : x / (PI / 2.0) + 0.5);
+  *reduced = degrees ? (x - turns * 90.0) * (PI / 180.0) : (x - turns * HALF_PI_HIGH) - turns * HALF_PI_LOW;
+  return (unsigned)(math_to_integer(turns) & 3);
+}
+
+static double circular(unsigned q, double r) {
+  double v = (q & 1u) ? cosine_series(r) : sine_series(r);
+  return (q & 2u) ? -v : v;
+}
+
+double math_sine(double x, int degrees) {
+  double r;
+  unsigned q = quadrant(x, degrees, &r);
+  return circular(q, r);
+}
+
+double math_cosine(double x, int degrees) {
+  double r;
+  unsigned q = quadrant(x, degrees, &r);
+  return circular(q + 1u, r);
+}
+
+double math_tangent(double x, int degrees) { return math_divide(math_sine(x, degrees), math_cosine(x, degrees)); }
+
+/* atan on [0, 1]: two half-angle steps bring the argument below 0.2, then the series. */
+static double arc_series(double x) {
+  double factor = 1.0;
+  for (int i = 0; i < 2; i++) {
+    x = x / (1.0 + math_square_root(1.0 + x * x));
+    factor *= 2.0;
+  }
+  double s = x * x, sum = 0.0;
+  for (int k = 23; k >= 1; k -= 2) sum = 1.0 / (double)k - s * sum;
+  return factor * x * sum;
+}
+
+double math_arc_tangent(double x, int degrees) {
+  double a = math_absolute(x);
+  double angle = a > 1.0 ? PI / 2.0 - arc_series(1.0 / a) : arc_series(a);
+  if (degrees) angle *= 180.0 / PI;
+  return x < 0.0 ? -angle : angle;
+}
+
+double math_arc_tangent2(double y, double x, int degrees) {
+  double half = degrees ? 180.0 : PI;
+  if (x == 0.0) return y > 0.0 ? half / 2.0 : y < 0.0 ? -half / 2.0 : 0.0;
+  double angle = math_arc_tangent(y / x, degrees);
+  if (x > 0.0) return angle;
+  return y < 0.0 ? angle - half : angle + half;
+}
+
+double math_arc_sine(double x, int degrees) {
+  if (math_absolute(x) > 1.0) return 0.0;
+  return math_arc_tangent2(x, math_square_root((1.0 - x) * (1.0 + x)), degrees);
+}
+
+double math_arc_cosine(double x, int degrees) {
+  if (math_absolute(x) > 1.0) return 0.0;
+  return math_arc_tangent2(math_square_root((1.0 - x) * (1.0 + x)), x, degrees);
+}
+
+double math_logarithm(double x) {
+  if (x <= 0.0) return 0.0;
+  int exponent;
+  double m = math_split(x, &exponent);
+  if (m < 0.70710678118654752) {
+    m *= 2.0;
+    exponent--;
+  }
+  double t = (m - 1.0) / (m + 1.0), s = t * t, sum = 0.0;
+  for (int k = 21; k >= 1; k -= 2) sum = 1.0 / (double)k + s * sum;
+  return (double)exponent * LN2_HIGH + (2.0 * t * sum + (double)exponent * LN2_LOW);
+}
+
+double math_exponential(double x) {
+  if (x > 88.0) x = 88.0; /* far above the report limit of 2^47, far below overflow */
+  if (x < -700.0) return 0.0;
+  double k = math_floor(x / (LN2_HIGH + LN2_LOW) + 0.5);
+  double r = (x - k * LN2_HIGH) - k * LN2_LOW, sum = 1.0;
+  for (int i = 14; i >= 1; i--) sum = 1.0 + sum * r / (double)i;
+  return math_scale(sum, (int)k);
+}

@@ -1,0 +1,21 @@
+/* PMAC words of main memory that the firmware keeps or reads, as users find them (firmware:1.10). Words of devices come
+ * from rtl/regs/brick_regs.h. */
+#ifndef FIRMWARE_BASE_MEMORY_MAP_H
+#define FIRMWARE_BASE_MEMORY_MAP_H
+
+enum {
+  MEMORY_SERVO_COUNT = 0x000000,         /* X: servo interrupts */
+  MEMORY_GLOBAL_STATUS = 0x000006,       /* X: first word, Y: second */
+  MEMORY_REAL_TIME_DURATIONS = 0x00000B, /* X: last, Y: longest real-time task, in half CPU cycles */
+  MEMORY_WATCHDOG_COUNT = 0x000025,      /* Y: counter, X: lowest value since reset */
+  MEMORY_TASK_DURATIONS = 0x000037,      /* Y: servo task, X: phase task, in half CPU cycles */
+  MEMORY_DPRAM_END = 0x00003F,           /* Y: address after the dual-ported RAM, tells its size */
+  MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
+  MEMORY_M_DEFINITIONS = 0x004000,
+  MEMORY_P_VARIABLES = 0x006000,
+  MEMORY_Q_VARIABLES = 0x008000,
+  MEMORY_BUFFERS = 0x00A000,
+  MEMORY_BUFFERS_END = 0x010800
+};
+
+#endif

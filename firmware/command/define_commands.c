@@ -1,0 +1,97 @@
+/* DEFINE and DELETE (firmware:4.2, firmware:4.3). A running coordinate system keeps its buffers; the order rules are
+ * those of regions.c. */
+#include "firmware/command/define_commands.h"
+
+#include "firmware/base/dimensions.h"
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/command/session.h"
+#include "firmware/motion/axis_definition.h"
+#include "firmware/run/run_control.h"
+
+static error_t size_argument(struct lexer* lx, uint32_t* size) {
+  int32_t value;
+  error_t error = lexer_integer(lx, &value);
+  if (error != ERR_NONE) return error;
+  if (value < 0) return ERR_DATA;
+  *size = (uint32_t)value;
+  return ERR_NONE;
+}
+
+static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
+  uint32_t segments, outputs;
+  uint32_t segment_words = 2 * axis_definition_motors(cs) + 4;
+  if (size_argument(lx, &segments) != ERR_NONE || !lexer_accept(lx, ',') || size_argument(lx, &outputs) != ERR_NONE)
+    return ERR_DATA;
+  if (segment_words < LOOKAHEAD_WORDS_MINIMUM) segment_words = LOOKAHEAD_WORDS_MINIMUM;
+  uint64_t words = (uint64_t)segments * segment_words + (uint64_t)outputs * LOOKAHEAD_WORDS_PER_OUTPUT;
+  if (segments == 0) return ERR_DATA;
+  return region_define(REGION_LOOKAHEAD, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
+}
+
+static error_t define_ccbuf(struct lexer* lx, uint32_t cs) {
+  uint32_t moves;
+  if (size_argument(lx, &moves) != ERR_NONE) return ERR_DATA;
+  uint64_t words = (uint64_t)moves * CCBUF_WORDS_PER_MOVE;
+  return region_define(REGION_CCBUF, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
+}
+
+static error_t define_rotary(struct lexer* lx, uint32_t cs) {
+  uint32_t words;
+  error_t error = size_argument(lx, &words);
+  if (error != ERR_NONE) return error;
+  if (open_buffer_kind() != OPEN_NONE)
+    return ERR_BUFFER_OPEN; /* choice: OPEN ROTARY opens what is defined when it is given */
+  return rotary_define(cs, words);
+}
+
+static error_t define_gather(struct lexer* lx) {
+  uint32_t words;
+  char c = lexer_peek(lx);
+  if (c < '$' || c > '9') return region_define_rest();
+  return size_argument(lx, &words) != ERR_NONE ? ERR_DATA : region_define(REGION_GATHER, 0, words);
+}
+
+error_t define_command(struct lexer* lx) {
+  uint32_t cs = session.cs;
+  bool running = run_is_running(cs);
+  if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
+    return running ? ERR_PROGRAM_RUNNING : define_rotary(lx, cs);
+  if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
+    return running ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
+  if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : define_ccbuf(lx, cs);
+  if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return define_gather(lx);
+  return ERR_DATA;
+}
+
+static error_t delete_rotary(uint32_t cs) {
+  if (open_buffer_kind() != OPEN_NONE || run_is_running(cs)) return ERR_DATA;
+  error_t error = rotary_delete(cs);
+  if (error == ERR_NONE) run_forget_rotary(cs);
+  return error;
+}
+
+static error_t delete_temporaries(void) {
+  if (open_buffer_kind() != OPEN_NONE) return ERR_DATA;
+  if (run_any_running()) return ERR_PROGRAM_RUNNING;
+  rotary_delete_all();
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_forget_rotary(cs);
+  return ERR_NONE;
+}
+
+error_t delete_command(struct lexer* lx) {
+  uint32_t cs = session.cs;
+  bool running = run_is_running(cs);
+  if (lexer_keyword(lx, "ALL")) {
+    if (!lexer_keyword(lx, "TEMPS"))
+      (void)lexer_keyword(lx, "TEMP"); /* DELETE ALL: there are no tables beyond these yet */
+    return delete_temporaries();
+  }
+  if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return delete_rotary(cs);
+  if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
+    return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
+  if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_CCBUF, cs);
+  if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return region_delete(REGION_GATHER, cs);
+  return ERR_DATA;
+}

@@ -1,0 +1,115 @@
+/* Direct access to PMAC words (firmware:1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. */
+#include "firmware/command/memory_commands.h"
+
+#include "firmware/base/float48.h"
+#include "firmware/command/reply.h"
+#include "firmware/command/session.h"
+#include "firmware/hal/hal.h"
+#include "firmware/language/expression.h"
+#include "firmware/variables/words.h"
+
+typedef enum { FORM_X, FORM_Y, FORM_L, FORM_D } form_t;
+
+enum { COUNT_LIMIT = 64 };
+
+static void report_word(form_t form, bool hex, uint32_t address) {
+  const uint32_t state = hal_mask_servo();
+  const uint32_t x = form == FORM_Y ? 0u : word_read(true, address);
+  const uint32_t y = form == FORM_X ? 0u : word_read(false, address);
+  hal_unmask(state);
+  const struct float48 word = {x, y};
+  if (form == FORM_X || form == FORM_Y) {
+    const uint32_t value = form == FORM_X ? x : y;
+    if (hex)
+      reply_hex(value, 0);
+    else
+      reply_integer(hal_signed(value));
+  } else if (hex) {
+    reply_hex(x, 6);
+    reply_hex(y, 6);
+  } else if (form == FORM_D) {
+    reply_integer(((int64_t)hal_signed(x) * 16777216) + (int64_t)y);
+  } else {
+    reply_number(float48_unpack(word));
+  }
+}
+
+static void write_word(form_t form, uint32_t address, double value) {
+  const int64_t whole = (int64_t)(value < 0.0 ? value - 0.5 : value + 0.5);
+  const struct float48 word = float48_pack(value);
+  const uint32_t state = hal_mask_servo();
+  switch (form) {
+    case FORM_X:
+      word_write(true, address, (uint32_t)whole);
+      break;
+    case FORM_Y:
+      word_write(false, address, (uint32_t)whole);
+      break;
+    case FORM_D:
+      word_write(true, address, (uint32_t)(whole >> 24));
+      word_write(false, address, (uint32_t)whole);
+      break;
+    default:
+      word_write(true, address, word.x);
+      word_write(false, address, word.y);
+      break;
+  }
+  hal_unmask(state);
+}
+
+static error_t read_address(struct lexer* lx, uint32_t* address) {
+  int32_t number;
+  (void)lexer_accept(lx, ':');
+  const error_t error = lexer_integer(lx, &number);
+  if (error != ERR_NONE) return error;
+  if (number < 0 || number > (int32_t)HAL_WORD_MASK) return ERR_DATA;
+  *address = (uint32_t)number;
+  return ERR_NONE;
+}
+
+static error_t read_words(struct lexer* lx, form_t form, bool hex) {
+  uint32_t address;
+  int32_t count = 1;
+  error_t error = read_address(lx, &address);
+  if (error == ERR_NONE && lexer_accept(lx, ',')) error = lexer_integer(lx, &count);
+  if (error != ERR_NONE) return error;
+  if (count < 1 || count > COUNT_LIMIT) return ERR_DATA;
+  for (uint32_t i = 0; i < (uint32_t)count; ++i) {
+    if (i != 0u) reply_char(' ');
+    report_word(form, hex, address + i);
+  }
+  reply_end_line();
+  return ERR_NONE;
+}
+
+static error_t write_words(struct lexer* lx, form_t form) {
+  uint32_t address;
+  error_t error = read_address(lx, &address);
+  if (error != ERR_NONE) return error;
+  if (lexer_peek(lx) != ',') return ERR_DATA;
+  while (lexer_accept(lx, ',')) {
+    double value;
+    error = expression_evaluate(lx, session.cs, &value);
+    if (error != ERR_NONE) return error;
+    write_word(form, address++, value);
+  }
+  return ERR_NONE;
+}
+
+static error_t rx(struct lexer* lx) { return read_words(lx, FORM_X, false); }
+static error_t ry(struct lexer* lx) { return read_words(lx, FORM_Y, false); }
+static error_t rl(struct lexer* lx) { return read_words(lx, FORM_L, false); }
+static error_t rd(struct lexer* lx) { return read_words(lx, FORM_D, false); }
+static error_t rhx(struct lexer* lx) { return read_words(lx, FORM_X, true); }
+static error_t rhy(struct lexer* lx) { return read_words(lx, FORM_Y, true); }
+static error_t rhl(struct lexer* lx) { return read_words(lx, FORM_L, true); }
+static error_t rhd(struct lexer* lx) { return read_words(lx, FORM_D, true); }
+static error_t wx(struct lexer* lx) { return write_words(lx, FORM_X); }
+static error_t wy(struct lexer* lx) { return write_words(lx, FORM_Y); }
+static error_t wl(struct lexer* lx) { return write_words(lx, FORM_L); }
+static error_t wd(struct lexer* lx) { return write_words(lx, FORM_D); }
+
+const struct command_entry memory_commands[] = {
+    {"RHX", rhx}, {"RHY", rhy}, {"RHL", rhl}, {"RHD", rhd}, {"RX", rx}, {"RY", ry}, {"RL", rl},
+    {"RD", rd},   {"WX", wx},   {"WY", wy},   {"WL", wl},   {"WD", wd}, {0, 0},
+};

@@ -1,0 +1,62 @@
+/* Motor n's registers stand at $80 * n (firmware:1.10): D:+$08 commanded and D:+$0B actual position in 1/(32 Ixx08)
+ * count, D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle, X:+$30 and Y:+$40
+ * status words. */
+#include "firmware/command/motor_report.h"
+
+#include "firmware/base/memory_map.h"
+#include "firmware/command/reply.h"
+#include "firmware/hal/hal.h"
+#include "firmware/variables/i_variables.h"
+
+enum {
+  COMMANDED = 0x08,
+  ACTUAL = 0x0B,
+  COMPENSATION = 0x10,
+  VELOCITY = 0x1D,
+  STATUS_1 = 0x30,
+  STATUS_2 = 0x40,
+  BIAS = 0x4C
+};
+#define MOTOR_ACTIVATED 0x800000u
+
+static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
+static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
+
+static int64_t long_word(uint32_t address) {
+  const uint32_t state = hal_mask_servo();
+  const int64_t value = ((int64_t)hal_signed(*hal_x(address)) * 16777216) + (int64_t)(*hal_y(address) & HAL_WORD_MASK);
+  hal_unmask(state);
+  return value;
+}
+
+/* Text of `value` / (32 * scale), in steps of 1/32 count. */
+static void report_scaled(int64_t value, int32_t scale) {
+  if (value == 0 || scale == 0) {
+    reply_integer(0);
+    return;
+  }
+  const double steps = (double)value / (double)scale;
+  reply_number((double)(int64_t)(steps < 0.0 ? steps - 0.5 : steps + 0.5) / 32.0);
+}
+
+void motor_report_status(uint32_t motor) {
+  uint32_t first = *hal_x(base(motor) + STATUS_1) & HAL_WORD_MASK & ~MOTOR_ACTIVATED;
+  if (variable(motor, IXX00_ACTIVATED) != 0) first |= MOTOR_ACTIVATED;
+  reply_hex(first, 6);
+  reply_hex(*hal_y(base(motor) + STATUS_2) & HAL_WORD_MASK, 6);
+}
+
+void motor_report_position(uint32_t motor) {
+  const uint32_t at = base(motor);
+  report_scaled(long_word(at + ACTUAL) + long_word(at + COMPENSATION) + long_word(at + BIAS),
+                variable(motor, IXX08_POSITION_SCALE));
+}
+
+void motor_report_velocity(uint32_t motor) {
+  report_scaled(hal_signed(*hal_x(base(motor) + VELOCITY)), variable(motor, IXX09_VELOCITY_SCALE));
+}
+
+void motor_report_following_error(uint32_t motor) {
+  const uint32_t at = base(motor);
+  report_scaled(long_word(at + COMMANDED) - long_word(at + ACTUAL), variable(motor, IXX08_POSITION_SCALE));
+}

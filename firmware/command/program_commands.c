@@ -1,0 +1,182 @@
+/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
+#include "firmware/command/program_commands.h"
+
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/command/axis_commands.h"
+#include "firmware/command/define_commands.h"
+#include "firmware/command/program_line.h"
+#include "firmware/command/reply.h"
+#include "firmware/command/session.h"
+#include "firmware/language/statement.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/run/run_control.h"
+
+static error_t cmd_open(struct lexer* lx) {
+  enum open_buffer kind = OPEN_ROTARY;
+  if (lexer_keyword(lx, "BINARY") || lexer_keyword(lx, "BIN")) kind = OPEN_BINARY_ROTARY;
+  if (!lexer_keyword(lx, "ROTARY") && !lexer_keyword(lx, "ROT")) return ERR_DATA;
+  return open_buffer_open(kind);
+}
+
+/* A line entered so far is stored first: CLOSE at its end belongs to it. */
+static error_t cmd_close(struct lexer* lx) {
+  (void)lexer_keyword(lx, "ALL");
+  error_t error = program_line_commit();
+  open_buffer_close();
+  return error;
+}
+
+static error_t cmd_clear(struct lexer* lx) {
+  (void)lx;
+  uint32_t cs = session.cs;
+  if (!program_buffer_open()) return ERR_NEEDS_BUFFER;
+  if (rotary_buffers[cs].size == 0) return ERR_NO_ROOM;
+  if (run_is_running(cs)) return ERR_PROGRAM_RUNNING;
+  program_line_abandon();
+  rotary_clear(cs);
+  return ERR_NONE;
+}
+
+static error_t cmd_size(struct lexer* lx) {
+  (void)lx;
+  int64_t words = region_open_words();
+  reply_integer(open_buffer_kind() == OPEN_NONE ? words : -words - 1); /* one's complement while a buffer is open */
+  reply_end_line();
+  return ERR_NONE;
+}
+
+static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
+  (void)lx;
+  const struct rotary* ring = &rotary_buffers[session.cs];
+  if (ring->size == 0) return ERR_DATA;
+  reply_integer((int64_t)ring->lines);
+  reply_end_line();
+  return ERR_NONE;
+}
+
+static error_t report_pointer(uint32_t offset) {
+  if (coordinate_systems[session.cs].pointer != POINTER_ROTARY) return ERR_NO_PROGRAM;
+  reply_text("P0:");
+  reply_integer((int64_t)offset);
+  reply_end_line();
+  return ERR_NONE;
+}
+
+static error_t cmd_calculating(struct lexer* lx) { /* PC */
+  (void)lx;
+  return report_pointer(rotary_buffers[session.cs].read);
+}
+
+static error_t cmd_executing(struct lexer* lx) { /* PE */
+  (void)lx;
+  const struct coordinate_system* s = &coordinate_systems[session.cs];
+  return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_buffers[session.cs].read);
+}
+
+/* After a one-letter command a letter or digit means a word that is not known, or a program statement. */
+static bool stands_alone(const struct lexer* lx) {
+  char c = *lx->at;
+  return !((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '(');
+}
+
+static error_t not_alone(const struct lexer* lx) {
+  struct lexer word = {lx->at - 1};
+  return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
+}
+
+static error_t cmd_point(struct lexer* lx) { /* B{n} */
+  double program;
+  if (lexer_constant(lx, &program) != ERR_NONE) return not_alone(lx);
+  return run_point(session.cs, program);
+}
+
+static error_t cmd_run(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, false) : not_alone(lx); }
+
+static error_t cmd_step(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, true) : not_alone(lx); }
+
+static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
+  if (!stands_alone(lx)) return not_alone(lx);
+  action(session.cs);
+  return ERR_NONE;
+}
+
+static error_t cmd_quit(struct lexer* lx) { return control(lx, run_quit); }
+static error_t cmd_abort(struct lexer* lx) { return control(lx, run_abort); }
+static error_t cmd_hold(struct lexer* lx) { return control(lx, run_hold); }
+
+static error_t cmd_end_block(struct lexer* lx) {
+  (void)lx;
+  run_end_block(session.cs);
+  return ERR_NONE;
+}
+
+static error_t cmd_time_base(struct lexer* lx) {
+  double percent;
+  struct lexer start = *lx;
+  if (lexer_number(&start, &percent)) {
+    *lx = start;
+    return run_set_time_base(session.cs, percent);
+  }
+  if (*start.at == '-' || *start.at == '+') return ERR_DATA;
+  reply_number(run_time_base(session.cs));
+  reply_end_line();
+  return ERR_NONE;
+}
+
+/* ABS, INC, FRAX, NOFRAX on-line: at once, for the addressed coordinate system. */
+static error_t axis_mode(struct lexer* lx, enum operation operation) {
+  struct coordinate_system* s = &coordinate_systems[session.cs];
+  uint32_t mask;
+  error_t error = operation == OP_FRAX ? statement_frax_list(lx, &mask) : statement_axis_list(lx, AXIS_ALL, &mask);
+  if (error != ERR_NONE) return error;
+  cs_set_axis_mode(s, operation, mask);
+  return ERR_NONE;
+}
+
+static error_t cmd_abs(struct lexer* lx) { return axis_mode(lx, OP_ABS); }
+static error_t cmd_inc(struct lexer* lx) { return axis_mode(lx, OP_INC); }
+static error_t cmd_frax(struct lexer* lx) { return axis_mode(lx, OP_FRAX); }
+
+static error_t cmd_nofrax(struct lexer* lx) {
+  (void)lx;
+  cs_set_axis_mode(&coordinate_systems[session.cs], OP_FRAX, 0);
+  return ERR_NONE;
+}
+
+static error_t cmd_needs_buffer(struct lexer* lx) {
+  (void)lx;
+  return ERR_NEEDS_BUFFER;
+}
+
+const struct command_entry program_commands[] = {{"->", axis_definition_command},
+                                                 {"UNDEFINE", axis_undefine_command},
+                                                 {"UNDEF", axis_undefine_command},
+                                                 {"NOFRAX", cmd_nofrax},
+                                                 {"DEFINE", define_command},
+                                                 {"DELETE", delete_command},
+                                                 {"DELAY", cmd_needs_buffer}, /* not DEL AY */
+                                                 {"CLOSE", cmd_close},
+                                                 {"CLEAR", cmd_clear},
+                                                 {"OPEN", cmd_open},
+                                                 {"SIZE", cmd_size},
+                                                 {"FRAX", cmd_frax},
+                                                 {"ABS", cmd_abs},
+                                                 {"INC", cmd_inc},
+                                                 {"CLS", cmd_close},
+                                                 {"CLR", cmd_clear},
+                                                 {"DEF", define_command},
+                                                 {"DEL", delete_command},
+                                                 {"PR", cmd_rotary_lines},
+                                                 {"PC", cmd_calculating},
+                                                 {"PE", cmd_executing},
+                                                 {"A", cmd_abort},
+                                                 {"B", cmd_point},
+                                                 {"H", cmd_hold},
+                                                 {"Q", cmd_quit},
+                                                 {"R", cmd_run},
+                                                 {"S", cmd_step},
+                                                 {"/", cmd_end_block},
+                                                 {"%", cmd_time_base},
+                                                 {0, 0}};

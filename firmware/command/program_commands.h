@@ -1,0 +1,9 @@
+/* Commands that own buffers and programs: OPEN CLOSE CLEAR DEFINE DELETE B R S Q A PR SIZE ... */
+#ifndef FIRMWARE_COMMAND_PROGRAM_COMMANDS_H
+#define FIRMWARE_COMMAND_PROGRAM_COMMANDS_H
+
+#include "firmware/command/command.h"
+
+extern const struct command_entry program_commands[];
+
+#endif

@@ -1,0 +1,91 @@
+/* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Every character goes straight to
+ * the port. */
+#include "firmware/command/reply.h"
+
+#include "firmware/variables/i_variables.h"
+
+enum { LINE_FEED = 0x0A, CARRIAGE_RETURN = 0x0D, DECIMALS = 10 };
+
+static bool line_open;
+static uint8_t line_sum;
+
+static void send(uint8_t c) {
+  line_sum = (uint8_t)(line_sum + c);
+  reply_sink(c);
+}
+
+void reply_char(char c) {
+  if (!line_open) {
+    line_open = true;
+    line_sum = 0;
+    if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) send(LINE_FEED);
+  }
+  send((uint8_t)c);
+}
+
+void reply_text(const char* text) {
+  while (*text != '\0') reply_char(*text++);
+}
+
+void reply_end_line(void) {
+  if (!line_open) {
+    line_sum = 0;
+    if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) send(LINE_FEED);
+  }
+  send(CARRIAGE_RETURN);
+  if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) reply_sink(line_sum);
+  line_open = false;
+}
+
+bool reply_line_is_open(void) { return line_open; }
+
+void reply_integer(int64_t value) {
+  char digits[20];
+  unsigned count = 0;
+  uint64_t rest = value < 0 ? 0u - (uint64_t)value : (uint64_t)value;
+  if (value < 0) reply_char('-');
+  while (rest > 0xFFFFFFFFu) { /* 64-bit division is slow on this CPU: leave it as soon as 32 bits are enough */
+    digits[count++] = (char)('0' + rest % 10u);
+    rest /= 10u;
+  }
+  uint32_t low = (uint32_t)rest;
+  do {
+    digits[count++] = (char)('0' + low % 10u);
+    low /= 10u;
+  } while (low != 0u);
+  while (count != 0u) reply_char(digits[--count]);
+}
+
+void reply_hex(uint32_t value, unsigned digits) {
+  unsigned count = 1;
+  while (count < 8u && (value >> (4u * count)) != 0u) ++count;
+  if (digits != 0u) count = digits;
+  while (count-- != 0u) reply_char("0123456789ABCDEF"[(value >> (4u * count)) & 0xFu]);
+}
+
+/* A 36-bit mantissa is good for ten digits: decimals are given up one by one as the integer part grows. */
+void reply_number(double value) {
+  const double limit = 140737488355328.0; /* 2^47 */
+  const bool negative = value < 0.0;
+  if (negative) value = -value;
+  if (!(value < limit)) value = limit;
+  int64_t whole = (int64_t)value;
+  int64_t scale = 10;
+  unsigned decimals = DECIMALS;
+  for (; decimals != 0u && scale <= whole * 10; scale *= 10) --decimals;
+  scale = 1;
+  for (unsigned i = 0; i < decimals; ++i) scale *= 10;
+  int64_t fraction = (int64_t)((value - (double)whole) * (double)scale + 0.5);
+  if (fraction >= scale) {
+    ++whole;
+    fraction -= scale;
+  }
+  if (negative && (whole != 0 || fraction != 0)) reply_char('-');
+  reply_integer(whole);
+  if (fraction == 0) return;
+  char digits[DECIMALS];
+  for (unsigned i = decimals; i-- != 0u; fraction /= 10) digits[i] = (char)('0' + fraction % 10);
+  while (digits[decimals - 1u] == '0') --decimals;
+  reply_char('.');
+  for (unsigned i = 0; i < decimals; ++i) reply_char(digits[i]);
+}

@@ -1,0 +1,42 @@
+/* Reset entry of the image: stack, global pointer, trap vector, initialised data from the code region, zeroed data, image_main. */
+  .option push
+  .option arch, +zicsr
+  .section .init, "ax"
+  .global _start
+_start:
+  .option push
+  .option norelax
+  la gp, __global_pointer$
+  .option pop
+  la sp, __stack_top
+  la t0, trap_vector
+  ori t0, t0, 1                 /* vectored: each interrupt has an entry of its own */
+  csrw mie, zero
+  csrw mtvec, t0
+
+  la a0, __data_load
+  la a1, __data_start
+  la a2, __data_end
+1:
+  bgeu a1, a2, 2f
+  lw t0, 0(a0)
+  sw t0, 0(a1)
+  addi a0, a0, 4
+  addi a1, a1, 4
+  j 1b
+2:
+  la a1, __bss_start
+  la a2, __bss_end
+3:                              /* the linker script rounds .bss to 16 bytes */
+  bgeu a1, a2, 4f
+  sw zero, 0(a1)
+  sw zero, 4(a1)
+  sw zero, 8(a1)
+  sw zero, 12(a1)
+  addi a1, a1, 16
+  j 3b
+4:
+  call image_main
+5:
+  j 5b
+  .option pop

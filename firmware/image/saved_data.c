@@ -1,0 +1,99 @@
+/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros. Layout in 32-bit words:
+ * mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words: (number, value low, value
+ * high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator. */
+#include "firmware/image/saved_data.h"
+
+#include <stdbool.h>
+
+#include "firmware/base/dimensions.h"
+#include "firmware/base/memory_map.h"
+#include "firmware/hal/gate_ic.h"
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/watchdog.h"
+#include "firmware/variables/i_variables.h"
+
+#define MARK 0x42524B32u
+#define SEPARATOR 0xFFFFFFFFu
+enum { WORD_MARK, WORD_CHECKSUM, WORD_COUNT, WORD_INITIAL_ICS, WORD_SAVED_ICS, WORD_DATA };
+enum { USER_FIRST = MEMORY_M_DEFINITIONS, USER_END = MEMORY_BUFFERS }; /* M definitions, P, Q */
+
+union double_words {
+  double value;
+  uint32_t word[2];
+};
+
+static const uint32_t* user_words; /* where the user memory part begins, after saved_data_restore_variables */
+
+static uint32_t checksum(const uint32_t* data, uint32_t count) {
+  uint32_t sum = MARK;
+  for (uint32_t i = 0; i < count; ++i) sum = ((sum << 1) | (sum >> 31)) + data[i];
+  return sum;
+}
+
+static uint32_t checked_words(uint32_t count) { return count + WORD_DATA - WORD_COUNT; }
+
+/* SAVE is one background pass, longer than a small I40 allows. */
+static void keep_alive(uint32_t step) {
+  if (step % 64u == 0u) watchdog_reload();
+}
+
+void saved_data_write(uint32_t initial_ics) {
+  uint32_t* flash = hal_flash();
+  uint32_t* data = flash + WORD_DATA;
+  uint32_t count = 0;
+  for (uint32_t number = 0; number < VARIABLE_COUNT; ++number) {
+    struct i_saved saved;
+    keep_alive(number);
+    if (!i_variable_save(number, &saved)) continue;
+    const union double_words value = {.value = saved.value};
+    data[count++] = number;
+    data[count++] = value.word[0];
+    data[count++] = value.word[1];
+    data[count++] = (uint32_t)saved.integer;
+  }
+  data[count++] = SEPARATOR;
+  for (uint32_t address = USER_FIRST; address < USER_END; ++address) {
+    keep_alive(address);
+    const uint32_t x = *hal_x(address) & HAL_WORD_MASK;
+    const uint32_t y = *hal_y(address) & HAL_WORD_MASK;
+    if ((x | y) == 0u) continue;
+    data[count++] = address;
+    data[count++] = x;
+    data[count++] = y;
+  }
+  data[count++] = SEPARATOR;
+  flash[WORD_MARK] = MARK;
+  flash[WORD_COUNT] = count;
+  flash[WORD_INITIAL_ICS] = initial_ics;
+  flash[WORD_SAVED_ICS] = gate_ic_found();
+  flash[WORD_CHECKSUM] = checksum(flash + WORD_COUNT, checked_words(count));
+}
+
+saved_t saved_data_restore_variables(uint32_t* initial_ics) {
+  const uint32_t* flash = hal_flash();
+  const uint32_t* data = flash + WORD_DATA;
+  user_words = 0;
+  if (flash[WORD_MARK] == 0xFFFFFFFFu) return SAVED_NONE;
+  const uint32_t count = flash[WORD_COUNT];
+  if (flash[WORD_MARK] != MARK || count > HAL_FLASH_BYTES / 4u - WORD_DATA) return SAVED_DAMAGED;
+  if (flash[WORD_CHECKSUM] != checksum(flash + WORD_COUNT, checked_words(count))) return SAVED_DAMAGED;
+  *initial_ics = flash[WORD_INITIAL_ICS];
+  i_variable_begin_restore(flash[WORD_SAVED_ICS]);
+  for (; *data != SEPARATOR; data += 4) {
+    union double_words value;
+    value.word[0] = data[1];
+    value.word[1] = data[2];
+    const struct i_saved saved = {value.value, (int32_t)data[3]};
+    i_variable_restore(data[0], &saved);
+  }
+  user_words = data + 1;
+  return SAVED_GOOD;
+}
+
+void saved_data_restore_user_memory(void) {
+  if (user_words == 0) return;
+  for (const uint32_t* data = user_words; *data != SEPARATOR; data += 3) {
+    *hal_x(data[0]) = data[1];
+    *hal_y(data[0]) = data[2];
+  }
+}

@@ -1,0 +1,9 @@
+/* Start-up and SAVE of the controller. Background task. */
+#ifndef FIRMWARE_IMAGE_START_H
+#define FIRMWARE_IMAGE_START_H
+
+enum start_mode { START_SAVED, START_DEFAULTS };
+void start(enum start_mode mode); /* power-up, $$$ and $$$*** */
+void start_save(void);            /* SAVE: I, P, Q and M definitions to flash */
+
+#endif

@@ -1,0 +1,44 @@
+/* The const tables that join the layers: what lower layers call in higher ones. Nothing is registered at run time. */
+#include "firmware/buffers/buffer_request.h"
+#include "firmware/command/command.h"
+#include "firmware/command/memory_commands.h"
+#include "firmware/command/program_commands.h"
+#include "firmware/command/reply.h"
+#include "firmware/command/report_commands.h"
+#include "firmware/command/session.h"
+#include "firmware/host/host_port.h"
+#include "firmware/host/panel.h"
+#include "firmware/image/system_commands.h"
+#include "firmware/kernel/tasks.h"
+#include "firmware/motion/phase_task.h"
+#include "firmware/motion/servo_update.h"
+#include "firmware/run/calculate.h"
+#include "firmware/variables/i_table.h"
+#include "firmware/variables/i_variables.h"
+#include "firmware/variables/phase_period.h"
+
+const struct task_hooks task_hooks = {
+    .servo = servo_update, .real_time = calculate_programs, .phase_period = phase_period};
+
+static void buffer_request_changed(uint32_t instance) {
+  (void)instance;
+  buffer_request_evaluate();
+}
+
+const i_effect_t i_effects[I_FIELD_COUNT] = {
+    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
+    [I_FIELD_MOTOR_ACTIVE] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_COMMUTATION] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+};
+
+/* BREQ: the host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may
+ * be none. */
+static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session.cs; }
+
+uint32_t (*const buffer_request_selected)(void) = selected_cs;
+
+const struct command_entry* const command_tables[] = {report_commands, system_commands, memory_commands,
+                                                      program_commands, 0};
+
+void (*const reply_sink)(uint8_t c) = host_port_send;

@@ -1,0 +1,161 @@
+/* Trap entries. A task may be interrupted by higher ones only: host port (18) > phase (16) > servo (17) > real-time (19). Each
+ * entry saves the caller-saved registers, mepc and mie, leaves in mie only what stands above it, enables interrupts, calls the C
+ * handler and restores. mstatus need not be saved: a trap is only ever taken with MIE set, so MPIE is always 1 on return.
+ * Latched interrupts are cleared before the handler runs, so that an edge during the handler counts. */
+  .option push
+  .option arch, +zicsr
+
+  .equ PHASE, 1 << 16
+  .equ SERVO, 1 << 17
+  .equ HOST, 1 << 18
+  .equ REAL_TIME, 1 << 19
+  .equ FRAME, 80
+
+  .macro save_registers
+  addi sp, sp, -FRAME
+  sw ra, 0(sp)
+  sw t0, 4(sp)
+  sw t1, 8(sp)
+  sw t2, 12(sp)
+  sw a0, 16(sp)
+  sw a1, 20(sp)
+  sw a2, 24(sp)
+  sw a3, 28(sp)
+  sw a4, 32(sp)
+  sw a5, 36(sp)
+  sw a6, 40(sp)
+  sw a7, 44(sp)
+  sw t3, 48(sp)
+  sw t4, 52(sp)
+  sw t5, 56(sp)
+  sw t6, 60(sp)
+  .endm
+
+  .macro restore_registers
+  lw ra, 0(sp)
+  lw t0, 4(sp)
+  lw t1, 8(sp)
+  lw t2, 12(sp)
+  lw a0, 16(sp)
+  lw a1, 20(sp)
+  lw a2, 24(sp)
+  lw a3, 28(sp)
+  lw a4, 32(sp)
+  lw a5, 36(sp)
+  lw a6, 40(sp)
+  lw a7, 44(sp)
+  lw t3, 48(sp)
+  lw t4, 52(sp)
+  lw t5, 56(sp)
+  lw t6, 60(sp)
+  addi sp, sp, FRAME
+  .endm
+
+  /* mie keeps only what it had and what `above` allows: a critical section of the interrupted task stays in force. */
+  .macro task name, line, above, handler
+  .global \name
+\name:
+  save_registers
+  csrr t0, mepc
+  csrr t1, mie
+  sw t0, 64(sp)
+  sw t1, 68(sp)
+  li t2, \line
+  csrc mip, t2
+  li t2, \above
+  and t2, t2, t1
+  csrw mie, t2
+  csrsi mstatus, 8
+  call \handler
+  csrci mstatus, 8
+  lw t0, 64(sp)
+  lw t1, 68(sp)
+  csrw mepc, t0
+  csrw mie, t1
+  restore_registers
+  mret
+  .endm
+
+  .section .text.trap, "ax"
+  .balign 256
+  .global trap_vector
+trap_vector:
+  .option push
+  .option norvc
+  j trap_exception
+  .rept 15
+  j trap_unexpected
+  .endr
+  j trap_phase                  /* 16 */
+  j trap_servo                  /* 17 */
+  j trap_host                   /* 18 */
+  j trap_real_time              /* 19 */
+  .option pop
+
+  /* Nine thousand times a second: as short as it can be. */
+  .global trap_phase
+trap_phase:
+  addi sp, sp, -16
+  sw t0, 0(sp)
+  sw t1, 4(sp)
+  li t0, PHASE
+  csrc mip, t0
+  csrr t0, mcycle
+  sw t0, tasks_phase_stamp, t1
+  lw t1, phase_task_work
+  bnez t1, 1f
+  lw t0, 0(sp)
+  lw t1, 4(sp)
+  addi sp, sp, 16
+  mret
+1:
+  lw t0, 0(sp)
+  lw t1, 4(sp)
+  addi sp, sp, 16
+  j trap_phase_work
+
+  task trap_phase_work, 0, HOST, phase_task_interrupt
+  task trap_servo, SERVO, HOST | PHASE, tasks_servo_interrupt
+  task trap_real_time, REAL_TIME, HOST | PHASE | SERVO, tasks_real_time_interrupt
+
+  /* The host port is the highest task: it runs with interrupts off. */
+  .global trap_host
+trap_host:
+  save_registers
+  call host_port_interrupt
+  restore_registers
+  mret
+
+  /* Load (5) or store (7) where nothing answers, through an M-variable or a pointer that a user set: the access is skipped, as on a
+   * bus with pull-ups. Anything else is a fault of the firmware: stop, so that the hardware watchdog reports it. */
+  .global trap_exception
+trap_exception:
+  addi sp, sp, -16
+  sw t0, 0(sp)
+  sw t1, 4(sp)
+  csrr t0, mcause
+  addi t1, t0, -5
+  beqz t1, 1f
+  addi t1, t0, -7
+  bnez t1, trap_unexpected
+1:
+  csrr t0, mepc
+  lhu t1, 0(t0)
+  andi t1, t1, 3
+  addi t1, t1, -3
+  addi t0, t0, 2
+  bnez t1, 2f                   /* a compressed instruction has two bytes */
+  addi t0, t0, 2
+2:
+  csrw mepc, t0
+  lw t0, 0(sp)
+  lw t1, 4(sp)
+  addi sp, sp, 16
+  mret
+
+  .global trap_unexpected
+trap_unexpected:
+  csrw mie, zero
+1:
+  j 1b
+  .option pop

@@ -1,0 +1,28 @@
+/* State of the coordinate systems at start-up, and the modes that programs and hosts set alike. */
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/base/dimensions.h"
+#include "firmware/variables/i_variables.h"
+
+struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
+volatile uint32_t cs_busy;
+
+void coordinate_systems_initialize(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
+    struct coordinate_system* s = &coordinate_systems[cs];
+    *s = (struct coordinate_system){0};
+    s->feedrate_axes = AXIS_XYZ;
+    s->increment_full = s->increment_command = i_integer(I10_SERVO_PERIOD);
+    s->increment = s->increment_target = s->increment_full;
+  }
+  cs_busy = 0;
+}
+
+void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask) {
+  if (operation == OP_FRAX) {
+    s->feedrate_axes = mask & AXIS_ALL;
+    return;
+  }
+  bool incremental = operation == OP_INC;
+  s->incremental = incremental ? s->incremental | (mask & AXIS_ALL) : s->incremental & ~mask;
+  if (mask & AXIS_VECTOR) s->vector_absolute = !incremental;
+}

@@ -1,0 +1,66 @@
+/* Status words of the coordinate systems (firmware:5.4 to firmware:5.6, firmware:5.8). */
+#include "firmware/motion/motion_status.h"
+
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/rotary_ring.h"
+#include "firmware/hal/hal.h"
+#include "firmware/motion/coordinate_system.h"
+
+enum {
+  S1_VECTOR_INCREMENTAL = 5,
+  S1_CONTINUOUS = 4,
+  S1_TIME_MODE = 3,
+  S1_BLENDING = 2,
+  S1_STEP = 1,
+  S1_RUNNING = 0,
+  S1_AXIS_A = 6,
+  S2_RUN_TIME_ERROR = 22,
+  S2_IN_POSITION = 17,
+  S2_ROTARY_FULL = 16,
+  S2_END_BLOCK = 14,
+  S2_DWELL = 12,
+  S2_RAPID = 1,
+  G2_ULTRALITE = 23,
+  G2_BINARY_ROTARY_OPEN = 20,
+  G2_MOTION_OPEN = 19,
+  G2_ROTARY_OPEN = 18,
+  G2_UMAC = 16,
+  G2_FIXED_FULL = 11
+};
+
+static uint32_t bit(bool value, unsigned position) { return value ? 1u << position : 0u; }
+
+static uint32_t status1(const struct coordinate_system* s) {
+  uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) | bit(s->running && s->continuous, S1_CONTINUOUS) |
+                  bit(s->time_mode, S1_TIME_MODE) | bit(s->active && s->moves[s->executing].blended, S1_BLENDING) |
+                  bit(s->stepping, S1_STEP) | bit(s->running, S1_RUNNING);
+  for (uint32_t axis = 0; axis < AXIS_COUNT;
+       axis++) { /* A lowest, Z highest: incremental, then feedrate axis above it */
+    word |= bit((s->incremental >> axis) & 1u, S1_AXIS_A + 2 * axis);
+    word |= bit((s->feedrate_axes >> axis) & 1u, S1_AXIS_A + 1 + 2 * axis);
+  }
+  return word;
+}
+
+static bool has_dwell(const struct coordinate_system* s) {
+  return (s->active && s->moves[s->executing].kind == MOVE_DWELL) ||
+         (s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_DWELL);
+}
+
+uint32_t motion_cs_status(uint32_t cs, unsigned word) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  if (word == 0) return status1(s);
+  if (word != 1) return 0; /* word 3 is about lookahead and motors */
+  return bit(s->run_time_error, S2_RUN_TIME_ERROR) | bit(!s->active && !s->next_valid, S2_IN_POSITION) |
+         bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
+         bit(s->mode == MODE_RAPID, S2_RAPID);
+}
+
+uint32_t motion_global_status2(void) {
+  enum open_buffer open = open_buffer_kind();
+  bool rotary = open == OPEN_ROTARY;
+  const uint32_t product = hal_strap(HAL_STRAP_PRODUCT);
+  return bit((product & HAL_PRODUCT_ULTRALITE) != 0u, G2_ULTRALITE) | bit((product & HAL_PRODUCT_UMAC) != 0u, G2_UMAC) |
+         bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) |
+         bit(rotary, G2_ROTARY_OPEN) | bit(true, G2_FIXED_FULL); /* no fixed buffer is open (firmware:10/5) */
+}

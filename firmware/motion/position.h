@@ -1,0 +1,9 @@
+/* Where the axes of a coordinate system are at the present trajectory time. */
+#ifndef FIRMWARE_MOTION_POSITION_H
+#define FIRMWARE_MOTION_POSITION_H
+
+#include "firmware/motion/coordinate_system.h"
+
+void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]); /* servo task held off */
+
+#endif

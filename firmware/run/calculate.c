@@ -1,0 +1,144 @@
+/* Execution of program words, real-time task: statements in sequence until a move is calculated. LINEAR moves are
+ * calculated one ahead, a DWELL lets nothing be calculated until it is over (firmware:7.9). Running out of lines is no
+ * error in a rotary program: the coordinate system keeps running and waits. */
+#include "firmware/run/calculate.h"
+
+#include "firmware/base/dimensions.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/language/evaluator.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/plan.h"
+#include "firmware/variables/i_variables.h"
+
+enum outcome { OUTCOME_NO_WORD, OUTCOME_WORD, OUTCOME_LINE, OUTCOME_MOVE, OUTCOME_ERROR };
+
+static void set_rate(uint32_t cs, struct coordinate_system* s, uint32_t rate, double value) {
+  static const enum i_name VARIABLE[] = {ISX89_FEEDRATE, ISX89_FEEDRATE, ISX87_ACCELERATION_TIME,
+                                         ISX88_S_CURVE_TIME}; /* F, TM, TA, TS */
+  i_variable_write(i_cs(cs, VARIABLE[rate]), value);
+  if (rate == RATE_F) s->time_mode = false;
+  if (rate == RATE_TM) s->time_mode = true;
+}
+
+static void set_axis(struct coordinate_system* s, uint32_t axis, double value) {
+  bool incremental = (s->incremental >> axis) & 1u;
+  s->pending[axis] = incremental ? s->position[axis] + value : value;
+  s->pending_axes |= 1u << axis;
+}
+
+static bool is_wait(const struct instruction* in) {
+  return (in->operation == OP_RATE || in->operation == OP_RATE_POP) &&
+         (in->number == RATE_DWELL || in->number == RATE_DELAY);
+}
+
+/* One instruction without effect on moves. False: illegal. */
+static bool execute(uint32_t cs, struct coordinate_system* s, const struct instruction* in, word48_t head,
+                    word48_t raw) {
+  double value = in->value, index;
+  uint32_t number = in->number + (s->prefix << 10);
+  s->prefix = 0;
+  switch (in->operation) {
+    case OP_BLANK:
+      return true;
+    case OP_PREFIX:
+      s->prefix = in->number;
+      return true;
+    case OP_MODE:
+      s->mode = (enum mode)in->number;
+      return true;
+    case OP_ABS:
+    case OP_INC:
+    case OP_FRAX:
+      cs_set_axis_mode(s, in->operation, in->number);
+      return true;
+    case OP_AXIS_POP:
+      if (in->number >= AXIS_COUNT || !evaluator_pop(&s->evaluator, &value)) return false;
+      set_axis(s, in->number, value);
+      return true;
+    case OP_AXIS:
+      set_axis(s, in->number, value);
+      return true;
+    case OP_RATE_POP:
+      if (in->number >= RATE_DWELL || !evaluator_pop(&s->evaluator, &value)) return false;
+      set_rate(cs, s, in->number, value);
+      return true;
+    case OP_RATE:
+      set_rate(cs, s, in->number, value);
+      return true;
+    case OP_ASSIGN_POP:
+      if (!evaluator_pop(&s->evaluator, &value)) return false;
+      variable_write(in->group, cs, (double)number, value);
+      return true;
+    case OP_ASSIGN:
+      variable_write(in->group, cs, (double)number, value);
+      return true;
+    case OP_ASSIGN_INDEXED:
+      if (!evaluator_pop(&s->evaluator, &value) || !evaluator_pop(&s->evaluator, &index)) return false;
+      variable_write(in->group, cs, index, value);
+      return true;
+    default:
+      return evaluator_execute(&s->evaluator, in, head, raw, cs);
+  }
+}
+
+static enum outcome end_of_line(uint32_t cs, struct coordinate_system* s) {
+  s->evaluator.depth = 0;
+  s->prefix = 0;
+  if (s->pending_axes == 0) return OUTCOME_LINE;
+  plan_line(cs);
+  return OUTCOME_MOVE;
+}
+
+static enum outcome calculate_word(uint32_t cs, struct coordinate_system* s) {
+  word48_t head, raw = 0;
+  if (!rotary_peek(cs, 0, &head)) return OUTCOME_NO_WORD;
+  if (head & WORD_START_OF_LINE) s->line_offset = rotary_buffers[cs].read;
+  struct instruction in = word_decode(head);
+  bool wide = in.operation == OP_PUSH_DOUBLE;
+  if (wide && !rotary_peek(cs, 1, &raw)) return OUTCOME_ERROR;
+  if (is_wait(&in)) {
+    if (s->pending_axes != 0) { /* the axes before it on the line move first; the word is met again */
+      plan_line(cs);
+      return OUTCOME_MOVE;
+    }
+    double length = in.value;
+    if (in.operation == OP_RATE_POP && !evaluator_pop(&s->evaluator, &length)) return OUTCOME_ERROR;
+    plan_wait(cs, (enum rate)in.number, length);
+    if (rotary_consume(cs, 1)) (void)end_of_line(cs, s);
+    return OUTCOME_MOVE;
+  }
+  if (!execute(cs, s, &in, head, raw)) return OUTCOME_ERROR;
+  return rotary_consume(cs, wide ? 2 : 1) ? end_of_line(cs, s) : OUTCOME_WORD;
+}
+
+static void stop_with_error(uint32_t cs, struct coordinate_system* s) {
+  s->run_time_error = true;
+  s->pending_axes = 0;
+  s->evaluator.depth = 0;
+  s->prefix = 0;
+  (void)rotary_consume(cs, 1);
+  rotary_skip_line_rest(cs);
+  s->quit = true;
+}
+
+static __attribute__((noinline)) void calculate_ahead(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (s->quit || s->end_block) {
+    if (s->active || (s->next_valid && !s->end_block)) return; /* what is calculated is still to be executed */
+    s->running = s->quit = s->stepping = false; /* end_block keeps a calculated move from starting until R */
+    return;
+  }
+  if (s->next_valid || (s->active && s->moves[s->executing].kind == MOVE_DWELL)) return;
+  for (uint32_t lines = 0; lines < CALCULATED_LINES_LIMIT;) {
+    enum outcome outcome = calculate_word(cs, s);
+    if (outcome == OUTCOME_ERROR) stop_with_error(cs, s);
+    if (outcome == OUTCOME_MOVE && s->stepping) s->quit = true;
+    if (outcome == OUTCOME_MOVE || outcome == OUTCOME_NO_WORD || outcome == OUTCOME_ERROR) return;
+    if (outcome == OUTCOME_LINE) lines++;
+  }
+}
+
+void calculate_programs(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (coordinate_systems[cs].running) calculate_ahead(cs);
+}

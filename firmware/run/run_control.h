@@ -1,0 +1,23 @@
+/* Run control of the coordinate systems (firmware:4.10, firmware:4.11), called by the command interpreter in the
+ * background task. */
+#ifndef FIRMWARE_RUN_RUN_CONTROL_H
+#define FIRMWARE_RUN_RUN_CONTROL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/base/error.h"
+
+error_t run_point(uint32_t cs, double program);   /* B{n}: ERR001 while running; 0 is the rotary buffer */
+error_t run_start(uint32_t cs, bool single_step); /* R, S: ERR015 without a valid program */
+void run_quit(uint32_t cs);                       /* Q: what is calculated is finished, then the program stops */
+void run_abort(uint32_t cs);                      /* A: calculated moves are lost, unread lines are kept */
+void run_hold(uint32_t cs);                       /* H: the time base goes to 0 at Isx95 */
+void run_end_block(uint32_t cs);                  /* `/`: stop at the end of the executing move */
+double run_time_base(uint32_t cs);                /* %: present value */
+error_t run_set_time_base(uint32_t cs, double percent);
+bool run_is_running(uint32_t cs);
+bool run_any_running(void);
+void run_forget_rotary(uint32_t cs); /* the rotary buffer has gone: the pointer is no longer valid */
+
+#endif

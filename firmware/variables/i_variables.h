@@ -1,0 +1,46 @@
+/* I-variables: values, saving, effects. Safe from every task except phase and servo, which may use i_integer. Table:
+ * variables/i_variables.def. */
+#ifndef FIRMWARE_VARIABLES_I_VARIABLES_H
+#define FIRMWARE_VARIABLES_I_VARIABLES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/base/dimensions.h"
+#include "firmware/variables/i_names.h"
+
+double i_variable_read(uint32_t number); /* 0..8191 */
+void i_variable_write(uint32_t number,
+                      double value);        /* reduces to the range, honours I41, writes the hardware field behind it */
+double i_variable_default(uint32_t number); /* what `I{number}=*` assigns */
+int32_t i_integer(uint32_t number);         /* fast read of an integer I-variable, any task */
+
+/* What a write of an I-variable does in higher layers, by enum i_field of the table; image/tables.c fills it in. Called
+ * after the value is stored, without it where the entry is null. `instance`: motor, coordinate system or IC. */
+typedef void (*i_effect_t)(uint32_t instance);
+extern const i_effect_t i_effects[];
+
+/* Clock directions (I7m07, I7m57, I6807...) written since the last call go to the ICs: inputs first, then the output.
+ */
+void i_variable_apply_clock_directions(void);
+
+/* Start-up: all I-variables to their defaults; I19, I20..I23 and I4900.. from the ICs found. Hardware is not written.
+ */
+void i_variable_initialize(void);
+void i_variable_write_hardware(void); /* ICs and kernel from their I-variables */
+
+/* SAVE and restore. A restore begins with zeros, read-only values and the defaults of ICs that were not there when it
+ * was saved. */
+struct i_saved {
+  double value;
+  int32_t integer;
+};
+bool i_variable_save(uint32_t number, struct i_saved* saved); /* false: nothing to keep, zero or not saved at all */
+void i_variable_begin_restore(uint32_t saved_ics);            /* bit per IC of hal/gate_ic.h */
+void i_variable_restore(uint32_t number, const struct i_saved* saved);
+
+/* How a value is reported under I9 bit 1. */
+typedef enum { I_FORMAT_DECIMAL, I_FORMAT_HEX } i_format_t;
+i_format_t i_variable_format(uint32_t number);
+
+#endif

@@ -1,0 +1,98 @@
+#include "systemc/machine/toml_table.h"
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "systemc/core/usage_error.h"
+
+namespace brick {
+
+namespace {
+
+// As the file has it, on one line and not too long.
+std::string found_text(const toml::node& node) {
+  constexpr std::size_t kShownCharacters = 40;
+  std::ostringstream out;
+  if (const auto quoted = node.value_exact<std::string>())
+    out << '"' << *quoted << '"';
+  else
+    node.visit([&](const auto& n) { out << n; });
+  std::string text = out.str();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.size() > kShownCharacters ? text.substr(0, kShownCharacters) + "..." : text;
+}
+
+}  // namespace
+
+toml::table parse_toml(const std::string& text, const std::string& path) {
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& e) {
+    throw UsageError(fmt::format("{}:{}: {}; expected TOML", path, e.source().begin.line, e.description()));
+  }
+}
+
+TomlTable::TomlTable(std::string path, const toml::table& table, const std::vector<std::string>& known)
+    : path_(std::move(path)), table_(&table) {
+  for (const auto& [key, value] : table) {
+    if (std::find(known.begin(), known.end(), key.str()) == known.end())
+      throw UsageError(fmt::format("{}:{}: unknown key {}; expected {}", path_, key.source().begin.line, key.str(),
+                                   fmt::join(known, ", ")));
+  }
+}
+
+void TomlTable::fail(const toml::node& at, const std::string& key, const std::string& expected) const {
+  throw UsageError(fmt::format("{}:{}: {}: found {}; expected {}", path_, line(at), key, found_text(at), expected));
+}
+
+const toml::node& TomlTable::need(const std::string& key) const {
+  if (const toml::node* node = table_->get(key)) return *node;
+  const auto at = line(*table_) > 1 ? fmt::format("{}:{}", path_, line(*table_)) : path_;
+  throw UsageError(fmt::format("{}: key {} is missing; expected {} = ...", at, key, key));
+}
+
+std::string TomlTable::text(const std::string& key) const { return text_in(key, need(key)); }
+
+std::string TomlTable::text_in(const std::string& key, const toml::node& item) const {
+  const auto value = item.value_exact<std::string>();
+  if (!value) fail(item, key, "a text in quotes");
+  return *value;
+}
+
+std::vector<std::string> TomlTable::texts(const std::string& key) const {
+  std::vector<std::string> list;
+  for (const toml::node& item : array(key)) list.push_back(text_in(key, item));
+  return list;
+}
+
+bool TomlTable::flag(const std::string& key) const {
+  if (!has(key)) return false;
+  const auto value = need(key).value_exact<bool>();
+  if (!value) fail(need(key), key, "true or false");
+  return *value;
+}
+
+std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::int64_t high,
+                                const std::string& expected) const {
+  const auto value = need(key).value_exact<std::int64_t>();
+  if (!value || *value < low || *value > high) fail(need(key), key, expected);
+  return *value;
+}
+
+const toml::array& TomlTable::array(const std::string& key) const {
+  const toml::array* list = need(key).as_array();
+  if (list == nullptr) fail(need(key), key, "a list in brackets");
+  return *list;
+}
+
+TomlTable TomlTable::table(const std::string& key, const toml::node& item,
+                           const std::vector<std::string>& known) const {
+  if (!item.is_table()) fail(item, key, "a table");
+  return {path_, *item.as_table(), known};
+}
+
+}  // namespace brick
