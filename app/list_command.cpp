@@ -15,7 +15,9 @@ int list_command(bool json) {
     if (json)
       list.push_back({{"name", bench.name},
                       {"description", bench.description},
-                      {"negative", bench.negative},
+                      {"negative", bench.negative.does},
+                      {"negative_step", bench.negative.step},
+                      {"negative_says", bench.negative.says},
                       {"needs", bench.need.what},
                       {"board", bench.board}});
     else

@@ -40,7 +40,7 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
   command.add_option("--wave", o.wave, "write a waveform, FILE.vcd or FILE.fst");
   command.add_option("--wave-from", o.wave_from, "first time in the waveform, for example 10ms");
   command.add_option("--wave-to", o.wave_to, "last time in the waveform");
-  command.add_option("--seed", o.seed, "seed of memory content at power-on and of the host's timing")
+  command.add_option("--seed", o.seed, "seed of what memories and flip-flops start with and of the host's timing")
       ->capture_default_str();
   command.add_option("--jumper", o.jumpers, "jumper that is on: E3 (factory defaults at start); may be repeated")
       ->expected(1)

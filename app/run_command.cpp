@@ -38,10 +38,11 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
   if (!bench.need.met(config.board))
     throw UsageError(fmt::format("{} needs {}, which board {} has not; expected a board such as {}", bench.name,
                                  bench.need.what, config.board.name, bench.board));
-  if (negative && bench.seed_bug) bench.seed_bug(config);
+  if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
   Simulation simulation(options, config, bench.name);
   std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine,
-                           config.board.name, config.seed, negative ? ", NEGATIVE CONTROL: " + bench.negative : "");
+                           config.board.name, config.seed,
+                           negative ? ", NEGATIVE CONTROL: " + bench.negative.does : "");
   BenchReport report(std::cout, simulation.machine());
   try {
     simulation.run([&] {

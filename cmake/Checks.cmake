@@ -1,5 +1,5 @@
-# Checks of the tree itself, as tests: lint of the RTL by three tools, formatting, links, traceability. A tool that is not
-# installed makes its test "Skipped" (exit status 77), with the reason in the log; nothing else does.
+# Checks of the tree itself, as tests: lint of the RTL by three tools and of the Python, formatting, links, traces. A
+# tool that is not installed makes its test "Skipped" (exit status 77), with the reason in the log; nothing else does.
 function(brick_add_check name)
   add_test(NAME ${name} COMMAND Python3::Interpreter ${ARGN} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS check)
@@ -9,9 +9,13 @@ brick_add_check(lint.verilator tools/lint_rtl.py verilator)  # -Wall over every 
 brick_add_check(lint.yosys tools/lint_rtl.py yosys)          # reads, elaborates and checks board_top
 brick_add_check(lint.icarus tools/lint_rtl.py icarus)        # parses and elaborates board_top
 if(NOT BRICK_COVERAGE)  # coverage counters belong to an instance: nothing is shared then
-  brick_add_check(lint.shared tools/check_shared.py ${CMAKE_BINARY_DIR}/systemc/cosim/CMakeFiles/brick_rtl.dir/Vboard_all.dir)
+  set(generated ${CMAKE_BINARY_DIR}/systemc/cosim/CMakeFiles/brick_rtl.dir)
+  brick_add_check(lint.shared tools/check_shared.py ${generated}/Vboard_all.dir)
 endif()
 brick_add_check(lint.layers tools/check_layers.py)           # who may include whom, firmware and C++
-brick_add_check(format.clang tools/check_format.py)
+brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml says
+brick_add_check(format.clang tools/check_format.py clang)
+brick_add_check(lint.commits tools/check_commits.py)  # a commit that changes code says why
 brick_add_check(docs.links tools/check_links.py)
+brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
 brick_add_check(trace.requirements tools/traceability.py --check)

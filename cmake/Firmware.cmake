@@ -1,7 +1,7 @@
 # brick_add_firmware(NAME turbo SOURCES ... LINKER_SCRIPT firmware.ld): cross-compiles an ELF image for rv32imc.
 find_program(RISCV_GCC riscv64-unknown-elf-gcc REQUIRED)
-set(BRICK_FIRMWARE_FLAGS -march=rv32imc -mabi=ilp32 -std=c11 -O2 -ffreestanding -fno-common -ffunction-sections -fdata-sections
-    -Wall -Wextra -Werror -Wconversion -g)
+set(BRICK_FIRMWARE_FLAGS -march=rv32imc -mabi=ilp32 -std=c11 -O2 -ffreestanding -fno-common -ffunction-sections
+    -fdata-sections -Wall -Wextra -Werror -Wconversion -g)
 function(brick_add_firmware)
   cmake_parse_arguments(F "" "NAME;LINKER_SCRIPT" "SOURCES" ${ARGN})
   set(objects "")
@@ -10,7 +10,8 @@ function(brick_add_firmware)
     string(REPLACE "/" "_" object ${source})
     set(object ${CMAKE_CURRENT_BINARY_DIR}/${F_NAME}/${object}.o)
     add_custom_command(OUTPUT ${object}
-      COMMAND ${RISCV_GCC} ${BRICK_FIRMWARE_FLAGS} -I${CMAKE_SOURCE_DIR} -MMD -MF ${object}.d -c ${absolute} -o ${object}
+      COMMAND ${RISCV_GCC} ${BRICK_FIRMWARE_FLAGS} -I${CMAKE_SOURCE_DIR} -MMD -MF ${object}.d -c ${absolute}
+              -o ${object}
       DEPENDS ${absolute} DEPFILE ${object}.d COMMENT "RV32 ${source}" VERBATIM)
     list(APPEND objects ${object})
   endforeach()

@@ -7,16 +7,20 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # Sources that include a precompiled header are kept only with these two liberties (ccache's manual).
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
 endif()
 set(BRICK_WARNINGS -Wall -Wextra -Werror -Wshadow -Wno-unused-parameter)
-# How Verilated code is compiled. Its speed decides the speed of a release; elsewhere a short build counts more. Under the sanitizers it stays
-# uninstrumented: it is generated, and what is hunted are errors in our own code.
+# How Verilated code is compiled. Its speed decides the speed of a release; elsewhere a short build counts more. Under
+# the sanitizers it stays uninstrumented: it is generated, and what is hunted are errors in our own code.
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT BRICK_SANITIZE AND NOT BRICK_COVERAGE)
   set(BRICK_RTL_OPT -O3)  # verilate(... OPT_FAST ${BRICK_RTL_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
 elseif(BRICK_SANITIZE)
   set(BRICK_RTL_OPT -O1 -fno-sanitize=all)
+elseif(BRICK_COVERAGE)
+  set(BRICK_RTL_OPT -O1 -fno-profile-arcs -fno-test-coverage)  # it counts by itself, in lines of the RTL
+  set(BRICK_RTL_SLOW_OPT -O0 -fno-profile-arcs -fno-test-coverage)  # what runs once; most of the code here
 else()
   set(BRICK_RTL_OPT -O1)
 endif()
@@ -25,7 +29,8 @@ if(BRICK_COVERAGE)
   set(BRICK_RTL_ARGS --coverage-line)
 endif()
 
-# Flags of the sanitizers, for the whole tree (preset asan) and for the few native libraries that every build tests with them.
+# Flags of the sanitizers, for the whole tree (preset asan) and for the few native libraries that every build tests with
+# them.
 set(BRICK_SANITIZER_FLAGS -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
 if(BRICK_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")  # a short build, line numbers in reports, assertions on
@@ -34,6 +39,6 @@ if(BRICK_SANITIZE)
   add_link_options(${BRICK_SANITIZER_FLAGS})
 endif()
 if(BRICK_COVERAGE)
-  add_compile_options(--coverage -O0)
+  add_compile_options(--coverage -O1)
   add_link_options(--coverage)
 endif()

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Area of the RTL as Yosys maps it: area.py [--write].
 
-The board and a MACRO IC are mapped twice, module by module: to generic gates (two-input cells, inverters, multiplexers and
-flip-flops, after abc) and to a Lattice ECP5 (LUT4, carry cells, flip-flops). A chip's figure is the sum over its instances. The
-memory of the DPRAM is kept as a memory and its bits are counted by themselves. No placing and routing, so there is no frequency.
-docs/area.md is the table that --write makes; without it the table goes to the standard output.
+The board and a MACRO IC are mapped twice, module by module: to generic gates (two-input cells, inverters, multiplexers
+and flip-flops, after abc) and to a Lattice ECP5 (LUT4, carry cells, flip-flops). A chip's figure is the sum over its
+instances. The memory of the DPRAM is kept as a memory and its bits are counted by themselves. No placing and routing,
+so there is no frequency. docs/area.md is the table that --write makes; without it it goes to the standard output.
 Exit status 77: Yosys is not installed.
 """
 
@@ -74,7 +74,7 @@ def statistics(log):
 
 
 def figures(log, weight):
-    """{module in the sources: Figures of it with all that it holds}; `weight` counts a cell, None where it knows none."""
+    """{module in the sources: Figures of it with all that it holds}; `weight` counts a cell, None: it knows none."""
     before, after = statistics(log)
     known = {}
 
@@ -84,7 +84,8 @@ def figures(log, weight):
             for kind, number in after[module][0].items():
                 if kind in after:
                     inner = total(kind)
-                    cells, flip_flops, bits = (a + number * b for a, b in zip((cells, flip_flops, bits), inner))
+                    so_far = (cells, flip_flops, bits)
+                    cells, flip_flops, bits = (a + number * b for a, b in zip(so_far, inner, strict=True))
                 elif FLIP_FLOP.fullmatch(kind):
                     flip_flops += number
                 elif weight(kind) is not None:
@@ -123,16 +124,18 @@ def page(generic, fpga, version):
         "<!-- Made by ./dev area (tools/area.py). Do not edit. -->",
         "# Area",
         "",
-        f"What the RTL takes, by {version}, module by module and added up; a row holds all that is inside it. Gates: two-input",
-        "gates, inverters and multiplexers. LUT: LUT4 of a Lattice ECP5, a carry cell counted as two. The same sources give the same",
-        "figures; a change anywhere can move the LUTs of other modules by some percent. Synthesis only, no placing and routing.",
+        f"What the RTL takes, by {version}, module by module and added up; a row holds all that is inside it.",
+        "Gates: two-input gates, inverters and multiplexers. LUT: LUT4 of a Lattice ECP5, a carry cell counts as two.",
+        "The same sources give the same figures; a change anywhere can move the LUTs of other modules by some percent.",
+        "Synthesis only, no placing and routing.",
         "",
         "| module | | gates | flip-flops | ECP5 LUT | ECP5 flip-flops | memory bits |",
         "|---|---|---|---|---|---|---|",
     ]
     for name, text in ROWS.items():
         g, f = generic[name], fpga[name]
-        lines.append(f"| `{name}` | {text} | {g.cells} | {g.flip_flops} | {f.cells} | {f.flip_flops} | {g.memory_bits or ''} |")
+        numbers = (g.cells, g.flip_flops, f.cells, f.flip_flops, g.memory_bits or "")
+        lines.append(f"| `{name}` | {text} | " + " | ".join(map(str, numbers)) + " |")
     return "\n".join(lines) + "\n"
 
 

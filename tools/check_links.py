@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Checks that what README, CONTRIBUTING and docs/ name exists: links, images, and `paths/in/backticks` of the tree.
 
-Every page in docs/ must be linked from docs/README.md. A path in backticks counts when its first folder is one of the tree's. * and
-{a,b} may stand in it, NAME is any name, and the ending may be left out. Build products (build/, waves/out/) are not looked for.
+Every page in docs/ must be linked from docs/README.md. A path in backticks counts when its first folder is one of the
+tree's. * and {a,b} may stand in it, NAME is any name, and the ending may be left out. Build products (build/,
+waves/out/) are not looked for.
 """
 
 import argparse

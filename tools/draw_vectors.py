@@ -3,11 +3,11 @@
 
   draw_vectors.py [--program build/release/bin/brick_vectors]
                runs each vector that has a [wave] on the model, writes NAME.json (WaveDrom source) and NAME.svg
-  --check      every NAME.json has the NAME.svg that was drawn from it, and every vector with a [wave] has both; whether the
-               .json is what the vector says is shown by the tests vectors.figure_NAME
+  --check      every NAME.json has the NAME.svg that was drawn from it, and every vector with a [wave] has both; whether
+               the .json is what the vector says is shown by the tests vectors.figure_NAME
   --check-svg  draws each NAME.json anew and compares
-  Drawing needs the Python package wavedrom (pip install wavedrom). Without it, or with another version than that which drew,
-  --check-svg ends with exit status 77.
+  Drawing needs the Python package wavedrom (`./dev setup` puts it into build/venv). Without it, or with another version
+  than that which drew, --check-svg ends with exit status 77.
 """
 
 import argparse
@@ -45,14 +45,15 @@ def draw(source):
 
 
 def drawn_vectors(root):
-    return [path for path in sorted((root / "testbench/vectors").glob("*.vec")) if re.search(r"^\[wave\]", path.read_text(), re.M)]
+    return [path for path in sorted((root / "testbench/vectors").glob("*.vec"))
+            if re.search(r"^\[wave\]", path.read_text(), re.M)]
 
 
 def write(root, program):
     if wavedrom is None:
-        skip("the Python package wavedrom is not installed (pip install wavedrom)")
+        skip("the Python package wavedrom is not installed (./dev setup puts it into build/venv)")
     if not program.exists():
-        sys.exit(f"draw_vectors.py: {program} does not exist; build the target brick_vectors, or name it with --program")
+        sys.exit(f"draw_vectors.py: {program} does not exist; build the target brick_vectors or name it: --program")
     folder = root / "docs/images/vectors"
     folder.mkdir(parents=True, exist_ok=True)
     for vector in drawn_vectors(root):
@@ -80,7 +81,7 @@ def problems_in(root):
 
 def stale_drawings(root):
     if wavedrom is None:
-        skip("the Python package wavedrom is not installed (pip install wavedrom)")
+        skip("the Python package wavedrom is not installed (./dev setup puts it into build/venv)")
     for drawing in sorted((root / "docs/images/vectors").glob("*.svg")):
         source = drawing.with_suffix(".json").read_text()
         by = origin(source).match(drawing.read_text())

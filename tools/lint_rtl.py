@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Lints the RTL: lint_rtl.py verilator|yosys|icarus.
 
-verilator  --lint-only -Wall with every module as a top in turn; warnings are errors. Waivers stand in rtl/lint.vlt only,
-           each with its reason in a comment on the line above it.
+verilator  --lint-only -Wall with every module as a top in turn; warnings are errors. Waivers stand in rtl/lint.vlt
+           only, each with its reason in a comment on the line above it.
 yosys      elaborates every module and checks for latches, undriven and multiply driven nets.
 icarus     elaborates every module.
 Every Verilog file below rtl/ is read by all three: one of another kind than .sv is a problem.
@@ -32,7 +32,8 @@ def rtl_files(root):
 
 
 def run(command, root):
-    done = subprocess.run(command, cwd=root, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    done = subprocess.run(command, cwd=root, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True)
     return done.returncode, done.stdout
 
 
@@ -83,7 +84,8 @@ def lint_verilator(root, packages, modules):
     folders = sorted({str(f.parent) for f in modules})
     waivers = ["rtl/lint.vlt"] if (root / "rtl/lint.vlt").exists() else []
     for module in modules:
-        command = ["verilator", "--lint-only", "-Wall", *(a for folder in folders for a in ("-y", folder)), *waivers, *map(str, packages),
+        command = ["verilator", "--lint-only", "-Wall", *(a for folder in folders for a in ("-y", folder)), *waivers,
+                   *map(str, packages),
                    str(module), "--top-module", module.stem]
         status, output = run(command, root)
         if status != 0 or "%Warning" in output or "%Error" in output:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Traces requirements to the tests that cover them: docs/requirements.txt -> tests -> docs/traceability.md.
+"""Traces requirements to their design files, tests and last results: docs/traceability.md.
 
 A test names its requirements in one of these ways:
   GoogleTest   BRICK_COVERS("BREQ-1 BREQ-3");           first line of a TEST, TEST_F, TEST_P or TYPED_TEST
@@ -7,25 +7,48 @@ A test names its requirements in one of these ways:
   ctest        # covers: BREQ-1                          on the line above add_test(NAME ...)
   Python       # covers: BREQ-1                          on the line above def NAME(
   vector       # covers: BREQ-1                          on the line above title = in testbench/vectors/NAME.vec
+docs/design-files.txt says of which files a requirement is made; docs/test-results.json holds what the last whole run
+of the test suite showed of each of these tests, on each engine.
 
-  --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a test that
-               docs/verification-plan.md names and that does not exist, and when docs/traceability.md is not what --write
-               would write
+  --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a traced ID
+               without design files for each of its engines, on a test that docs/verification-plan.md names and that
+               does not exist, and when docs/traceability.md is not what --write would write
   --write      writes docs/traceability.md
-  --results F  prints the table with the last result of each test, from `ctest --output-junit F`
+  --results F  takes the results of a run from `ctest --output-junit F` into docs/test-results.json and writes the page;
+               fails when a claimed ID has no passed test on one of its engines, or a failed one
 """
 
 import argparse
 import collections
+import datetime
+import json
 import pathlib
 import re
+import subprocess
 import sys
 import xml.etree.ElementTree
 
 from common import ROOT, files, finish
 
 PAGE = "docs/traceability.md"
-Test = collections.namedtuple("Test", "name file ids")
+RESULTS = "docs/test-results.json"
+Test = collections.namedtuple("Test", "name file ids engines")
+
+# The engine that the name of a run ends in. Else: what tests of these files run on, the first that matches; "" is none,
+# such as a checker on lists made by hand.
+RUN_ON = {"rtl": "R", "systemc": "S", "model": "S", "lockstep": "L", "both": "L"}
+FILES_RUN_ON = (
+    (r"unit/(firmware_\w+|cpu)/", "F"),
+    (r"unit/app/|benches/", "S F"),
+    (r"unit/host/tlm_", "S"),
+    (r"unit/host/", "R S L"),
+    (r"lockstep_test|unit/cosim/motor_pins|unit/cosim/board", "L"),
+    (r"unit/cosim/(quiet|run_length|run_ahead)", "R S L"),
+    (r"unit/cosim/(machine|port_a)", "S F"),
+    (r"unit/board_model/", "S"),
+)
+NO_ENGINE = "passed"  # what the page shows of such a test
+WITH_FIRMWARE = re.compile(r"unit/system/(?!clock_checker|watchdog_scoreboard)|unit/app/|benches/")  # the image runs there on each engine
 
 
 def read_requirements(root):
@@ -38,21 +61,49 @@ def read_requirements(root):
     return found
 
 
-def read_claimed(root):
-    lines = (line.split("#")[0].strip() for line in (root / "docs/claimed.txt").read_text().splitlines())
+def lines_of(path):
+    lines = (line.split("#")[0].strip() for line in path.read_text().splitlines()) if path.exists() else []
     return [line for line in lines if line]
+
+
+def read_design_files(root, problems):
+    """{ID: [file]}, from docs/design-files.txt."""
+    blocks, found = {}, {}
+    for line in lines_of(root / "docs/design-files.txt"):
+        name, _, patterns = line.partition(" = ")
+        if patterns:
+            blocks[name] = []
+            for pattern in patterns.split():
+                matches = sorted(str(path.relative_to(root)) for path in root.glob(pattern))
+                blocks[name] += matches
+                if not matches:
+                    problems.append(f"docs/design-files.txt: {name}: no file {pattern}")
+            continue
+        ids, _, parts = line.partition(":")
+        for part in parts.split():
+            if part not in blocks:
+                problems.append(f"docs/design-files.txt: no block {part}")
+        for identifier in ids.split():
+            found[identifier] = sorted({file for part in parts.split() for file in blocks.get(part, [])})
+    return found
 
 
 def line_of(text, position):
     return text.count("\n", 0, position) + 1
 
 
+def engines_of_file(file):
+    return next((engines.split() for pattern, engines in FILES_RUN_ON if re.search(pattern, file)), [])
+
+
 def tests_in_cpp(text, file):
     text = re.sub(r"^\s*//.*$", "", text, flags=re.M)  # a BRICK_COVERS that is commented out covers nothing
-    heads = [(m.start(), f"{m[1]}.{m[2]}") for m in re.finditer(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text, re.M)]
+    heads = [(m.start(), f"{m[1]}.{m[2]}")
+             for m in re.finditer(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)", text, re.M)]
     for m in re.finditer(r'BRICK_COVERS\(\s*((?:"[^"]*"\s*)+)\)', text):
         before = [name for start, name in heads if start < m.start()]
-        yield Test(before[-1] if before else f"{file}:{line_of(text, m.start())}", file, ids_in(" ".join(re.findall(r'"([^"]*)"', m[1]))))
+        ids = ids_in(" ".join(re.findall(r'"([^"]*)"', m[1])))
+        yield Test(before[-1] if before else f"{file}:{line_of(text, m.start())}", file, ids, engines_of_file(file))
 
 
 def tests_in_comments(text, file, head, comment="#"):
@@ -64,11 +115,18 @@ def tests_in_comments(text, file, head, comment="#"):
         if covers:
             pending += ids_in(covers[1])
         elif name and pending:
-            yield Test(name[1], file, pending)
+            yield Test(name[1], file, pending, engines_of_file(file))
             pending = []
         elif line.strip() and not line.strip().startswith(comment) and pending:
-            yield Test(f"{file}: '# covers:' with no test below it", file, ["nothing"])
+            yield Test(f"{file}: '# covers:' with no test below it", file, ["nothing"], [])
             pending = []
+
+
+def python_engines(text, name):
+    """The engines that a case of acceptance.py or bench_acceptance.py names; the command's own choice is SystemC."""
+    body = re.search(rf"^def {name}\(.*?(?=^\S|\Z)", text, re.M | re.S)
+    words = re.findall(r'"(systemc|rtl|lockstep)"', body[0] if body else "")
+    return [*sorted({RUN_ON[word] for word in words} or {"S"}), "F"]
 
 
 def ids_in(text):
@@ -76,7 +134,7 @@ def ids_in(text):
 
 
 def plan_problems(root):
-    """The tests that docs/verification-plan.md names in backticks must exist: `Suite.Name`, `Suite.*`, or a ctest name as brick.wave."""
+    """The tests that docs/verification-plan.md names in backticks exist: `Suite.Name`, `Suite.*` or `brick.wave`."""
     plan = root / "docs/verification-plan.md"
     if not plan.exists():
         return []
@@ -101,32 +159,24 @@ def plan_problems(root):
 
 def find_tests(root):
     found = []
-    for file in files(root, ["app", "firmware", "systemc", "testbench", "cmake"], {".cpp", ".py", ".txt", ".cmake", ".vec"}):
+    folders = ["app", "firmware", "systemc", "testbench", "cmake"]
+    for file in files(root, folders, {".cpp", ".py", ".txt", ".cmake", ".vec"}):
         text, name = (root / file).read_text(errors="replace"), str(file)
         if file.suffix == ".cpp":
             found += tests_in_cpp(text, name)
-            found += [Test("bench " + t.name.replace("_", "-"), t.file, t.ids)
+            found += [t._replace(name="bench " + t.name.replace("_", "-"))
                       for t in tests_in_comments(text, name, r"^Bench (\w+)_bench\(", "//")]
         elif file.suffix == ".py":
-            found += tests_in_comments(text, name, r"^\s*def\s+(\w+)\(")
+            found += [t._replace(engines=python_engines(text, t.name))
+                      for t in tests_in_comments(text, name, r"^\s*def\s+(\w+)\(")]
         elif file.suffix == ".vec":
-            found += [Test("vectors." + file.stem, t.file, t.ids) for t in tests_in_comments(text, name, r"^(title) =")]
+            found += [t._replace(name="vectors." + file.stem) for t in tests_in_comments(text, name, r"^(title) =")]
         elif file.name == "CMakeLists.txt" or file.suffix == ".cmake":
             found += tests_in_comments(text, name, r"NAME\s+([\w.\-]+)")
     return found
 
 
-def find_mentions(root, requirements):
-    """{ID: [file]} of design sources whose comments name the requirement."""
-    found = collections.defaultdict(list)
-    for file in files(root, ["rtl", "systemc", "firmware", "app"], {".sv", ".cpp", ".h", ".c", ".S"}):
-        for name in sorted(set(re.findall(r"\b[A-Z0-9]+-\d+\b", (root / file).read_text(errors="replace")))):
-            if name in requirements:
-                found[name].append(str(file))
-    return found
-
-
-def problems_in(root, requirements, claimed, tests):
+def problems_in(requirements, claimed, tests, design):
     problems = []
     for test in tests:
         problems += [f"{test.file}: {test.name} names '{name}', which docs/requirements.txt does not know"
@@ -139,26 +189,59 @@ def problems_in(root, requirements, claimed, tests):
             problems.append(f"docs/claimed.txt: '{name}' is no requirement")
         elif name not in covered:
             problems.append(f"docs/claimed.txt: {name} is claimed, but no test names it")
+    problems += [f"docs/design-files.txt: '{name}' is no requirement" for name in design if name not in requirements]
+    folder_of = {"R": "rtl", "S": "systemc", "L": "systemc", "F": ("firmware", "systemc/cpu")}
+    for name in requirements:
+        for engine in requirements[name][0].split() if name in covered else []:
+            if not any(file.startswith(folder_of[engine]) for file in design.get(name, [])):
+                problems.append(f"docs/design-files.txt: {name} applies to engine {engine}, but has no file of it")
     return problems
 
 
-def page(root, requirements, claimed, tests):
-    mentions = find_mentions(root, requirements)
+def read_results(root):
+    path = root / RESULTS
+    return json.loads(path.read_text()) if path.exists() else {"run": "none yet", "tests": {}}
+
+
+def row_results(engines, tests, results):
+    """What the tests of a row showed on each of its engines."""
+    for engine in engines.split():
+        shown = {results.get(test.name, {}).get(engine) for test in tests}
+        yield engine, "failed" if "failed" in shown else "passed" if "passed" in shown else "no result"
+
+
+def test_cell(test, results):
+    shown = results.get(test.name, {})
+    failed = [engine for engine in shown if shown[engine] == "failed"]
+    on = f"failed: {' '.join(failed)}" if failed else " ".join(shown) if shown else "no result"
+    return f"{test.name} ({on})"
+
+
+def page(requirements, claimed, tests, design, results):
     by_id = collections.defaultdict(list)
     for test in tests:
         for name in test.ids:
             by_id[name].append(test)
-    lines = ["# Traceability", "",
-             "Generated by `tools/traceability.py --write` from the IDs found in the tests; the test `trace.requirements` fails when it is stale.",
-             "Engines: R Verilated RTL, S SystemC model, L lock-step, F firmware on the CPU model. *Claimed* means: the project says that it",
-             "meets the requirement, and the test suite fails if no test names it. *Partly* means: tests name it, but it is not met in full yet.", "",
-             f"{len(claimed)} of {len(requirements)} claimed, {len(by_id)} named by at least one test.", "",
-             "| ID | Requirement | On | Status | Tests | Test files | Design files that name it |", "|---|---|---|---|---|---|---|"]
+    lines = [
+        "<!-- Generated by tools/traceability.py (./dev trace); the test trace.requirements fails when stale. -->",
+        "# Traceability", "",
+        "From requirement to design files, tests and last result. Engines: R Verilated RTL, S SystemC model,",
+        "L lock-step, F firmware on the CPU model.",
+        "*Claimed* means: the project says that it meets the requirement on all its engines, and the test suite fails",
+        "if no test names it. *Partly* means: tests name it, but it is not met in full yet.",
+        "Behind a test stand the engines that it passed on; a checker that works on lists made by hand has none.",
+        "`docs/design-files.txt` says which files a requirement is made of.", "",
+        f"Results: {results['run']}.",
+        f"{len(claimed)} of {len(requirements)} claimed, {len(by_id)} named by at least one test.", "",
+        "| ID | Requirement | On | Status | Last result | Design files | Tests | Test files |",
+        "|---|---|---|---|---|---|---|---|"]
     for name, (engines, text) in requirements.items():
         found = sorted(by_id[name])
         status = "claimed" if name in claimed else "partly" if found else "not claimed"
-        cells = [name, text, engines, status, "<br>".join(dict.fromkeys(t.name for t in found)), "<br>".join(sorted({f"`{t.file}`" for t in found})),
-                 "<br>".join(f"`{f}`" for f in mentions[name])]
+        last = [" ".join(shown) for shown in row_results(engines, found, results["tests"])] if found else []
+        cells = [name, text, engines, status, "<br>".join(last), "<br>".join(f"`{f}`" for f in design.get(name, [])),
+                 "<br>".join(dict.fromkeys(test_cell(t, results["tests"]) for t in found)),
+                 "<br>".join(sorted({f"`{t.file}`" for t in found}))]
         lines.append("| " + " | ".join(cells) + " |")
     open_ids = [name for name in requirements if name not in claimed]
     lines += ["", "## Not claimed yet", "", ", ".join(open_ids) + "." if open_ids else "None.", ""]
@@ -166,24 +249,48 @@ def page(root, requirements, claimed, tests):
 
 
 def plain_name(name):
-    """Prefix/Suite.Name/Value or Suite.Name<Suite/Type...>, as ctest shows parameterised tests -> Suite.Name; others with - as _."""
-    found = re.match(r"(?:\w+/)?([A-Z]\w*)\.(\w+)(?:[/<].*)?$", name)
-    return f"{found[1]}.{found[2]}" if found else name.replace("-", "_")
+    """(name in the sources, engine or None) of a run: Prefix/Suite.Name/Rtl, Suite.Name<Suite/Model.>, brick.a_rtl."""
+    name = name.split("  #")[0]
+    found = re.match(r"(?:\w+/)?([A-Z]\w*)\.(\w+)(?:[/<](.*))?$", name)
+    if found:
+        value = re.search(r"(\w+)\W*$", found[3] or "")
+        return f"{found[1]}.{found[2]}", RUN_ON.get(value[1].lower()) if value else None
+    name = name.replace("-", "_")
+    found = re.match(r"(.*?)(?:_board)?_(rtl|systemc|both|lockstep)$", name)
+    return (found[1], RUN_ON[found[2]]) if found else (name, None)
 
 
-def print_results(requirements, tests, junit):
-    results = collections.defaultdict(set)
+def results_of(root, tests, junit):
+    """{test: {engine: passed or failed}}, an engine counts as passed when every run of the test on it passed."""
+    runs = collections.defaultdict(list)
     for case in xml.etree.ElementTree.parse(junit).getroot().iter("testcase"):
-        name = plain_name(case.get("name"))
-        results[name].add(case.get("status"))
-        results[name.split(".")[-1]].add(case.get("status"))
-        results[re.sub(r"^(vectors\.\w+?)_(?:board_)?(?:rtl|systemc|both)$", r"\1", name)].add(case.get("status"))
-    for name in requirements:
-        for test in sorted(t for t in tests if name in t.ids):
-            plain = plain_name(test.name.replace("bench ", ""))
-            status = results.get(plain) or ((not plain[0].isupper()) and results.get(plain.split(".")[-1])) or set()
-            verdict = "failed" if "fail" in status else "passed" if status == {"run"} else "not run"
-            print(f"{name:8} {verdict:8} {test.name}")
+        name, engine = plain_name(case.get("name"))
+        runs[name].append((engine, case.get("status")))
+    acceptance = root / "testbench/unit/app/bench_acceptance.py"
+    cases = acceptance.read_text() if acceptance.exists() else ""
+    found = {}
+    for test in tests:
+        bench = test.name.startswith("bench ")
+        name = test.name.removeprefix("bench ").replace("-", "_")
+        name = f"brick.{name}" if bench or test.file.endswith(".py") else name
+        default = python_engines(cases, name.removeprefix("brick.")) if bench else test.engines
+        shown = collections.defaultdict(set)
+        for engine, status in runs[name]:
+            engines = {engine} if engine else set(default)
+            if WITH_FIRMWARE.search(test.file):
+                engines.add("F")
+            for each in engines or {NO_ENGINE}:
+                shown[each].add(status)
+        if shown:
+            found[test.name] = {engine: "passed" if shown[engine] == {"run"} else "failed"
+                                for engine in ("R", "S", "L", "F", NO_ENGINE) if engine in shown}
+    return dict(sorted(found.items()))
+
+
+def named_run(root):
+    done = subprocess.run(["git", "rev-parse", "--short=10", "HEAD"], cwd=root, text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL)
+    return f"the test suite at commit {done.stdout.strip() or 'unknown'}, {datetime.date.today().isoformat()}"
 
 
 def main():
@@ -193,14 +300,20 @@ def main():
     parser.add_argument("--results", type=pathlib.Path)
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     options = parser.parse_args()
-    root = options.root
-    requirements, claimed, tests = read_requirements(root), read_claimed(root), find_tests(root)
+    root, problems = options.root, []
+    requirements, claimed, tests = read_requirements(root), lines_of(root / "docs/claimed.txt"), find_tests(root)
+    design = read_design_files(root, problems)
     if options.results:
-        print_results(requirements, tests, options.results)
-        return
-    problems = problems_in(root, requirements, claimed, tests) + plan_problems(root)
-    text = page(root, requirements, claimed, tests)
-    if options.write:
+        taken = {"run": named_run(root), "tests": results_of(root, tests, options.results)}
+        (root / RESULTS).write_text(json.dumps(taken, indent=1) + "\n")
+        for name in claimed:
+            found = [test for test in tests if name in test.ids]
+            shown = row_results(requirements[name][0], found, taken["tests"])
+            problems += [f"{name} is claimed on {engine}: {result}" for engine, result in shown if result != "passed"]
+    else:
+        problems += problems_in(requirements, claimed, tests, design) + plan_problems(root)
+    text = page(requirements, claimed, tests, design, read_results(root))
+    if options.write or options.results:
         (root / PAGE).write_text(text)
     elif not (root / PAGE).exists() or (root / PAGE).read_text() != text:
         problems.append(f"{PAGE} is stale: run ./dev trace")

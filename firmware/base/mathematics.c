@@ -73,7 +73,8 @@ double math_floor(double x) {
   return (double)math_to_integer(x);
 }
 
-double math_split(double x, int* exponent) {
+/* x = m * 2^*exponent with 0.5 <= |m| < 1; zero gives 0 and exponent 0. */
+static double split(double x, int* exponent) {
   union bits b = {x};
   int biased = (int)((b.word >> FRACTION_BITS) & 0x7FFu);
   *exponent = 0;
@@ -85,7 +86,7 @@ double math_split(double x, int* exponent) {
 
 double math_scale(double m, int exponent) {
   int own;
-  union bits b = {math_split(m, &own)};
+  union bits b = {split(m, &own)};
   int biased = own + exponent + EXPONENT_BIAS - 1;
   if (b.value == 0.0 || biased <= 0) return 0.0;
   if (biased >= 0x7FF) biased = 0x7FE;
@@ -206,7 +207,7 @@ double math_arc_cosine(double x, int degrees) {
 double math_logarithm(double x) {
   if (x <= 0.0) return 0.0;
   int exponent;
-  double m = math_split(x, &exponent);
+  double m = split(x, &exponent);
   if (m < 0.70710678118654752) {
     m *= 2.0;
     exponent--;

@@ -25,8 +25,6 @@ double math_divide(double a, double b);
 double math_modulo(double a, double b); /* [0, b), or [-n, n) for b = -n */
 int64_t math_to_integer(double x);      /* floor, saturating at +-2^62 */
 
-/* x = m * 2^*exponent with 0.5 <= |m| < 1; zero gives 0 and exponent 0. */
-double math_split(double x, int* exponent);
 double math_scale(double m, int exponent); /* m * 2^exponent, 0 on underflow */
 
 /* Without floating-point arithmetic: x as mantissa * 2^(exponent - bits), 2^(bits-1) <= |mantissa| < 2^bits, rounded to

@@ -37,8 +37,6 @@ uint32_t region_open_words(void) {
   return USER_MEMORY_WORDS - used;
 }
 
-bool region_exists(enum region_kind kind, uint32_t cs) { return regions.words[kind][owner_index(kind, cs)] != 0; }
-
 uint32_t region_words(enum region_kind kind, uint32_t cs) { return regions.words[kind][owner_index(kind, cs)]; }
 
 uint32_t region_base(enum region_kind kind, uint32_t cs) {

@@ -23,8 +23,7 @@ error_t region_define(enum region_kind kind, uint32_t cs, uint32_t words); /* ER
 error_t region_delete(enum region_kind kind, uint32_t cs); /* ERR003 order; a missing region is no error */
 error_t region_define_rest(void);                          /* GATHER over all open memory */
 void region_delete_temporaries(void);                      /* GATHER, ROTARY, LOOKAHEAD, CCBUF of all C.S. */
-bool region_exists(enum region_kind kind, uint32_t cs);
-uint32_t region_base(enum region_kind kind, uint32_t cs); /* word offset in user memory */
+uint32_t region_base(enum region_kind kind, uint32_t cs);  /* word offset in user memory */
 uint32_t region_words(enum region_kind kind, uint32_t cs);
 uint32_t region_open_words(void); /* unused long words */
 

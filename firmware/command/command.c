@@ -25,7 +25,7 @@ static bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F');
 /* `&n`, `#n`, `##n`: modal. Without a number the present one is reported. */
 static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_t* selected) {
   if (!is_digit(lexer_peek(lx))) {
-    reply_integer((int64_t)(*selected + first));
+    reply_integer((int64_t)*selected + first);
     reply_end_line();
     return ERR_NONE;
   }

@@ -1,4 +1,5 @@
-/* Reset entry of the image: stack, global pointer, trap vector, initialised data from the code region, zeroed data, image_main. */
+/* Reset entry of the image: stack, global pointer, trap vector, initialised data from the code region, zeroed data,
+ * image_main. */
   .option push
   .option arch, +zicsr
   .section .init, "ax"

@@ -1,7 +1,8 @@
-/* Trap entries. A task may be interrupted by higher ones only: host port (18) > phase (16) > servo (17) > real-time (19). Each
- * entry saves the caller-saved registers, mepc and mie, leaves in mie only what stands above it, enables interrupts, calls the C
- * handler and restores. mstatus need not be saved: a trap is only ever taken with MIE set, so MPIE is always 1 on return.
- * Latched interrupts are cleared before the handler runs, so that an edge during the handler counts. */
+/* Trap entries. A task may be interrupted by higher ones only: host port (18) > phase (16) > servo (17) > real-time
+ * (19). Each entry saves the caller-saved registers, mepc and mie, leaves in mie only what stands above it, enables
+ * interrupts, calls the C handler and restores. mstatus need not be saved: a trap is only ever taken with MIE set, so
+ * MPIE is always 1 on return. Latched interrupts are cleared before the handler runs, so that an edge during the
+ * handler counts. */
   .option push
   .option arch, +zicsr
 
@@ -126,8 +127,9 @@ trap_host:
   restore_registers
   mret
 
-  /* Load (5) or store (7) where nothing answers, through an M-variable or a pointer that a user set: the access is skipped, as on a
-   * bus with pull-ups. Anything else is a fault of the firmware: stop, so that the hardware watchdog reports it. */
+  /* Load (5) or store (7) where nothing answers, through an M-variable or a pointer that a user set: the access is
+   * skipped, as on a bus with pull-ups. Anything else is a fault of the firmware: stop, so that the hardware watchdog
+   * reports it. */
   .global trap_exception
 trap_exception:
   addi sp, sp, -16

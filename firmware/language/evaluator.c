@@ -13,7 +13,7 @@ static uint32_t variable_index(double number) { /* 0..8191; anything else wraps,
   return (uint32_t)math_to_integer(number) % VARIABLE_COUNT;
 }
 
-double variable_read(uint32_t group, uint32_t cs, double number) {
+static double variable_read(uint32_t group, uint32_t cs, double number) {
   uint32_t index = variable_index(number);
   switch (group) {
     case VARIABLE_M:
@@ -45,7 +45,7 @@ void variable_write(uint32_t group, uint32_t cs, double number, double value) {
   }
 }
 
-double operator_binary(uint32_t code, double a, double b) {
+static double operator_binary(uint32_t code, double a, double b) {
   switch (code) {
     case OPERATOR_ADD:
       return a + b;
@@ -66,7 +66,8 @@ double operator_binary(uint32_t code, double a, double b) {
   }
 }
 
-double operator_unary(uint32_t code, double a, uint32_t cs) {
+/* I15 selects degrees; ATAN2 takes Q0 of `cs` as its x. */
+static double operator_unary(uint32_t code, double a, uint32_t cs) {
   int degrees = i_integer(I15_RADIANS) == 0;
   switch (code) {
     case OPERATOR_NEGATE:

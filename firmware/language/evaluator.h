@@ -15,9 +15,6 @@ struct evaluator {
  * is misused, which only a corrupted buffer can bring about. */
 bool evaluator_execute(struct evaluator* ev, const struct instruction* in, word48_t head, word48_t raw, uint32_t cs);
 bool evaluator_pop(struct evaluator* ev, double* value);
-double variable_read(uint32_t group, uint32_t cs, double number);
 void variable_write(uint32_t group, uint32_t cs, double number, double value);
-double operator_binary(uint32_t code, double a, double b);
-double operator_unary(uint32_t code, double a, uint32_t cs); /* I15 selects degrees; ATAN2 takes Q0 of `cs` as its x */
 
 #endif

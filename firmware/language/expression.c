@@ -34,7 +34,7 @@ static const struct {
 static const char BINARY_SPELLING[] = "+-|^*/%&"; /* in the order of operator_code */
 static const char CLASS_SPELLING[] = "MPQI";      /* in the order of variable_class */
 
-error_t word_list_add(struct word_list* list, word48_t word) {
+static error_t word_list_add(struct word_list* list, word48_t word) {
   if (list->count >= list->capacity) return ERR_DATA;
   list->words[list->count++] = word;
   return ERR_NONE;

@@ -18,7 +18,7 @@ error_t expression_evaluate(struct lexer* lx, uint32_t cs, double* value);
 /* Appends a stack program that leaves one value. `bracketed`: the text starts with `(` and ends with the matching `)`.
  */
 error_t expression_compile(struct lexer* lx, bool bracketed, struct word_list* out);
-error_t word_list_add(struct word_list* list, word48_t word); /* ERR_DATA when the list is full: line too long */
+/* ERR_DATA when the list is full: line too long. */
 error_t word_list_add_instruction(struct word_list* list, const struct instruction* in);
 
 #endif

@@ -15,7 +15,6 @@ static const struct i_entry entries[] = {
 
 enum { ENTRY_COUNT = sizeof entries / sizeof entries[0], WIDEST_GROUP = 192 };
 
-static const uint8_t group_numbers[I_GROUP_COUNT] = {100, 100, 50, 100, 100, 100, 50, 10, 10, 10, 192};
 static uint8_t row_of[I_GROUP_COUNT][WIDEST_GROUP];
 
 _Static_assert(ENTRY_COUNT <= 256, "rows are indexed by a byte");
@@ -24,8 +23,6 @@ void i_table_initialize(void) {
   for (unsigned row = 1; row < ENTRY_COUNT; ++row)
     for (unsigned i = 0; i < entries[row].count; ++i) row_of[entries[row].group][entries[row].first + i] = (uint8_t)row;
 }
-
-uint32_t i_table_group_numbers(i_group_t group) { return group_numbers[group]; }
 
 static struct i_place in_servo_ic(uint32_t number) {
   struct i_place place = {I_GROUP_SERVO, 0, 0, 0};

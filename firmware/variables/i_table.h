@@ -69,6 +69,5 @@ struct i_place {
 void i_table_initialize(void);
 struct i_place i_table_place(uint32_t number);
 const struct i_entry* i_table_entry(struct i_place place);
-uint32_t i_table_group_numbers(i_group_t group); /* numbers inside the group: 100, 50, ... */
 
 #endif

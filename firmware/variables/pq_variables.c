@@ -31,7 +31,7 @@ void p_variable_write(uint32_t number, double value) {
 }
 
 /* I68+1 active coordinate systems share the pool: 8192, 4096, 2048, 1024 or 512 each. */
-uint32_t q_variable_count(void) {
+static uint32_t q_count(void) {
   uint32_t systems = (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u;
   uint32_t count = VARIABLE_COUNT;
   for (; systems > 1u; systems = (systems + 1u) / 2u) count /= 2u;
@@ -39,11 +39,11 @@ uint32_t q_variable_count(void) {
 }
 
 double q_variable_read(uint32_t cs, uint32_t number) {
-  const uint32_t count = q_variable_count();
+  const uint32_t count = q_count();
   return number < count && cs * count < VARIABLE_COUNT ? read_long(MEMORY_Q_VARIABLES + cs * count + number) : 0.0;
 }
 
 void q_variable_write(uint32_t cs, uint32_t number, double value) {
-  const uint32_t count = q_variable_count();
+  const uint32_t count = q_count();
   if (number < count && cs * count < VARIABLE_COUNT) write_long(MEMORY_Q_VARIABLES + cs * count + number, value);
 }

@@ -10,6 +10,5 @@ double p_variable_read(uint32_t number);
 void p_variable_write(uint32_t number, double value);
 double q_variable_read(uint32_t cs, uint32_t number); /* split of the pool by I68 */
 void q_variable_write(uint32_t cs, uint32_t number, double value);
-uint32_t q_variable_count(void); /* Q-variables of each coordinate system */
 
 #endif

@@ -1,5 +1,5 @@
-// Decodes the synchronised Port A address into one select per register block (docs/architecture.md, memory map):
-// gate ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010 and X:$070011, on-chip page by int_i,
+// Decodes the synchronised Port A address into one select per register block (docs/architecture.md, memory map): gate
+// ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010 and X:$070011, on-chip page by int_i,
 // the control panel port at Y:$078800. Combinational. What is not fitted is not selected: its words read 0.
 `default_nettype none
 
@@ -22,8 +22,8 @@ module address_decode (
   assign gate  = ~int_i & aa_i[1] & (addr_i[18:14] == 5'b11110);
   assign latch = ~int_i & (aa_i == 4'h0) & (addr_i[18:8] == 11'h700);
 
-  // Servo ICs 0, 1: $000, $100 of the first 4 KiB word page; 2..9: $200, $300 of pages 0..3; the starred ones $20 above.
-  // MACRO ICs: $400 of pages 0..3, 64 words each.
+  // Servo ICs 0, 1: $000, $100 of the first 4 KiB word page; 2..9: $200, $300 of pages 0..3; the starred ones $20
+  // above. MACRO ICs: $400 of pages 0..3, 64 words each.
   logic [3:0] ic;
   logic       servo_page, macro_page, star;
   assign star       = addr_i[5];

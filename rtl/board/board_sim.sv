@@ -1,7 +1,8 @@
-// Simulation wrapper of the board: the same inputs, the outputs packed into three words in the layout of systemc/core/board_pins.h,
-// the motor side in that of motor_pins.h. Arrays of words, because a simulator then writes only the words that may have moved.
-// seeded_bug_i is the negative control of every comparison: the SERVO pin's SeededBugEdge-th falling edge since reset comes one
-// tick late.
+// Simulation wrapper of the board: its pins packed into words, inputs in the layout of systemc/cosim/drive.h, outputs
+// in that of systemc/core/board_pins.h, the motor side in that of motor_pins.h. Arrays of words, because a simulator
+// then writes only the words that may have moved. start_seed_i, read once when the simulation begins, gives the
+// dual-ported RAM its content (systemc/core/start_value.h). seeded_bug_i is the negative control of every comparison:
+// the SERVO pin's SeededBugEdge-th falling edge since reset comes one tick late.
 `default_nettype none
 
 module board_sim #(
@@ -12,41 +13,32 @@ module board_sim #(
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  input  wire logic [18:0] pa_addr_i,
-  input  wire logic        pa_x_i,
-  input  wire logic [3:0]  pa_aa_i,
-  input  wire logic        pa_int_i,
-  input  wire logic        pa_rd_ni,
-  input  wire logic        pa_wr_ni,
-  input  wire logic [23:0] pa_wdata_i,
-  input  wire logic [19:0] isa_sa_i,
-  input  wire logic [15:0] isa_sd_i,
-  input  wire logic        isa_ior_ni,
-  input  wire logic        isa_iow_ni,
-  input  wire logic        isa_memr_ni,
-  input  wire logic        isa_memw_ni,
-  input  wire logic        isa_aen_i,
-  input  wire logic        isa_sbhe_ni,
-  input  wire logic [21:0] fitted_i,
-  input  wire logic [3:0]  macro_gate_i,
-  input  wire logic        dpram_small_i,
-  input  wire logic        jpan_fitted_i,
-  input  wire logic [11:0] line_select_i,
-  input  wire logic        ext_clock_i,
-  input  wire logic        ext_phase_i,
-  input  wire logic        ext_servo_i,
-  input  wire logic [15:0] jpan_i,
+  input  wire logic [31:0] inputs_i[6],
+  input  wire logic [31:0] start_seed_i,
   input  wire logic        seeded_bug_i,
   output logic [31:0]      pins_o[3],
-  input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top
+  input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top, also those not built
   output logic [63:0]      motor_o[18],
   output logic [31:0]      count_o[72]   // no pins: position counters, channel n of IC i in word 4 * i + n - 1
 );
 
-  logic [18*64-1:0] motor_in, motor_out;
+  localparam integer Ics = $countones(ServoIcMask);
+  logic [64*Ics-1:0] motor_in, motor_out;
   for (genvar i = 0; i < 18; i++) begin : gen_motor
-    assign motor_in[64*i+:64] = motor_i[i];
-    assign motor_o[i]         = motor_out[64*i+:64];
+    if (ServoIcMask[i]) begin : gen_built
+      localparam integer Motor = 64 * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));
+      assign motor_in[Motor+:64] = motor_i[i];
+      assign motor_o[i]          = motor_out[Motor+:64];
+      for (genvar n = 0; n < 4; n++) begin : gen_count
+        assign count_o[4*i+n] =
+            {8'h0, u_board.gen_servo_ic[i].gen_built.u_servo_ic.u_channels.gen_channel[n].u_channel.counter_o};
+      end
+    end else begin : gen_absent
+      assign motor_o[i] = 64'h0;
+      for (genvar n = 0; n < 4; n++) begin : gen_count
+        assign count_o[4*i+n] = 32'h0;
+      end
+    end
   end
 
   logic [23:0] pa_data;
@@ -59,27 +51,68 @@ module board_sim #(
 
   board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
-    .pa_data_o(pa_data), .pa_ta_n_o(pa_ta_n), .irq_host_o(irq_host),
-    .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
-    .isa_sd_o(isa_sd), .isa_iochrdy_o(isa_iochrdy), .isa_memcs16_n_o(isa_memcs16_n), .isa_irq_o(isa_irq),
-    .fitted_i, .macro_gate_i, .dpram_small_i, .jpan_fitted_i, .line_select_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .jpan_i,
-    .motor_i(motor_in), .motor_o(motor_out),
-    .phase_o(phase), .servo_o(servo), .breq_o(breq), .ipos_o(ipos), .eror_o(eror), .f1er_o(f1er), .hreq_o(hreq),
-    .wdo_o(wdo), .wd_tripped_o(wd_tripped), .busy_host_o(busy_host), .busy_cpu_o(busy_cpu),
-    .phase_source_o(source), .source_conflict_o(conflict),
-    .pic_ist_o(ist), .pic_sig_o(sig), .pic_msk_o(msk), .pic_elr_o(elr)
+    .pa_addr_i         (inputs_i[0][18:0]),
+    .pa_aa_i           (inputs_i[0][22:19]),
+    .pa_x_i            (inputs_i[0][23]),
+    .pa_int_i          (inputs_i[0][24]),
+    .pa_rd_ni          (inputs_i[0][25]),
+    .pa_wr_ni          (inputs_i[0][26]),
+    .pa_wdata_i        (inputs_i[1][23:0]),
+    .pa_data_o         (pa_data),
+    .pa_ta_n_o         (pa_ta_n),
+    .irq_host_o        (irq_host),
+    .isa_sa_i          (inputs_i[2][19:0]),
+    .isa_ior_ni        (inputs_i[2][20]),
+    .isa_iow_ni        (inputs_i[2][21]),
+    .isa_memr_ni       (inputs_i[2][22]),
+    .isa_memw_ni       (inputs_i[2][23]),
+    .isa_aen_i         (inputs_i[2][24]),
+    .isa_sbhe_ni       (inputs_i[2][25]),
+    .isa_sd_i          (inputs_i[3][15:0]),
+    .isa_sd_o          (isa_sd),
+    .isa_iochrdy_o     (isa_iochrdy),
+    .isa_memcs16_n_o   (isa_memcs16_n),
+    .isa_irq_o         (isa_irq),
+    .jpan_i            (inputs_i[3][31:16]),
+    .fitted_i          (inputs_i[4][21:0]),
+    .macro_gate_i      (inputs_i[4][25:22]),
+    .dpram_small_i     (inputs_i[4][26]),
+    .jpan_fitted_i     (inputs_i[4][27]),
+    .ext_clock_i       (inputs_i[4][28]),
+    .ext_phase_i       (inputs_i[4][29]),
+    .ext_servo_i       (inputs_i[4][30]),
+    .line_select_i     (inputs_i[5][11:0]),
+    .motor_i           (motor_in),
+    .motor_o           (motor_out),
+    .phase_o           (phase),
+    .servo_o           (servo),
+    .breq_o            (breq),
+    .ipos_o            (ipos),
+    .eror_o            (eror),
+    .f1er_o            (f1er),
+    .hreq_o            (hreq),
+    .wdo_o             (wdo),
+    .wd_tripped_o      (wd_tripped),
+    .busy_host_o       (busy_host),
+    .busy_cpu_o        (busy_cpu),
+    .phase_source_o    (source),
+    .source_conflict_o (conflict),
+    .pic_ist_o         (ist),
+    .pic_sig_o         (sig),
+    .pic_msk_o         (msk),
+    .pic_elr_o         (elr)
   );
 
-  for (genvar i = 0; i < 18; i++) begin : gen_count
-    for (genvar n = 0; n < 4; n++) begin : gen_channel
-      if (ServoIcMask[i]) begin : gen_built
-        assign count_o[4*i+n] =
-            {8'h0, u_board.gen_servo_ic[i].gen_built.u_servo_ic.u_channels.gen_channel[n].u_channel.counter_o};
-      end else begin : gen_absent
-        assign count_o[4*i+n] = 32'h0;
-      end
-    end
+  function automatic logic [15:0] start_word(input logic [31:0] seed, input logic [31:0] index);
+    logic [31:0] x;
+    x = seed ^ (index * 32'h9E3779B9);
+    x = (x ^ (x >> 16)) * 32'h7FEB352D;
+    x = (x ^ (x >> 15)) * 32'h846CA68B;
+    return (seed == 32'h0) ? 16'h0 : x[31:16];
+  endfunction
+
+  initial begin
+    for (int i = 0; i < 32768; i++) u_board.u_dpram.mem[i] = start_word(start_seed_i, i);
   end
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
@@ -103,8 +136,8 @@ module board_sim #(
   end
 
   assign pins_o[0] = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
-  assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n, isa_iochrdy,
-                      isa_sd};
+  assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
+                      isa_iochrdy, isa_sd};
   assign pins_o[2] = {elr, msk, sig, ist};
 
 endmodule : board_sim

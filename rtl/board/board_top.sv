@@ -1,8 +1,9 @@
-// The controller board: servo and MACRO ICs, clock selection, bus decoding, watchdog and the host side, from Port A pins to ISA pins.
-// clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing between them is synchronous.
-// ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in fitted_i), fitted_i which of those are
-// present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
-// All outputs are registers or gates behind registers: they change at clock edges only. docs/architecture.md has the map.
+// The controller board: servo and MACRO ICs, clock selection, bus decoding, watchdog and the host side, from Port A
+// pins to ISA pins. clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing
+// between them is synchronous. ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in
+// fitted_i; one servo IC at least), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are
+// of the kind MACROGATE. All outputs are registers or gates behind registers: they change at clock edges only.
+// docs/architecture.md has the map.
 `default_nettype none
 
 module board_top #(
@@ -46,10 +47,12 @@ module board_top #(
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
   input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
-  // Motor side, 64 bits for each servo IC, also for those not built. In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
-  // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks and strobes.
-  input  wire logic [18*64-1:0] motor_i,
-  output logic [18*64-1:0]      motor_o,
+  // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first.
+  // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
+  // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks
+  // and strobes.
+  input  wire logic [64*$countones(ServoIcMask)-1:0] motor_i,
+  output logic [64*$countones(ServoIcMask)-1:0]      motor_o,
   // clocks, host signals, watchdog, interrupt controller as seen from outside
   output logic             phase_o,
   output logic             servo_o,
@@ -103,17 +106,34 @@ module board_top #(
   bus_sync u_bus_sync (
     .clk_ref_i, .rst_ni,
     .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
-    .addr_o(bus_addr), .x_o(bus_x), .aa_o(bus_aa), .int_o(bus_int), .wdata_o(bus_wdata),
-    .we_o(bus_we), .rd_done_o(bus_rd_done),
-    .rd_addr_o(bus_rd_addr), .rd_x_o(bus_rd_x), .rd_aa_o(bus_rd_aa), .rd_int_o(bus_rd_int)
+    .addr_o    (bus_addr),
+    .x_o       (bus_x),
+    .aa_o      (bus_aa),
+    .int_o     (bus_int),
+    .wdata_o   (bus_wdata),
+    .we_o      (bus_we),
+    .rd_done_o (bus_rd_done),
+    .rd_addr_o (bus_rd_addr),
+    .rd_x_o    (bus_rd_x),
+    .rd_aa_o   (bus_rd_aa),
+    .rd_int_o  (bus_rd_int)
   );
 
   logic        sel_any, sel_int, sel_signals, sel_strobe, sel_panel;
   logic [21:0] sel_ic;
   address_decode u_address_decode (
-    .addr_i(bus_addr), .x_i(bus_x), .aa_i(bus_aa), .int_i(bus_int), .fitted_i(fitted_q & IcMask), .jpan_i(jpan_fitted_q),
-    .sel_any_o(sel_any), .sel_int_o(sel_int), .sel_signals_o(sel_signals), .sel_strobe_o(sel_strobe),
-    .sel_panel_o(sel_panel), .sel_ic_o(sel_ic)
+    .addr_i        (bus_addr),
+    .x_i           (bus_x),
+    .aa_i          (bus_aa),
+    .int_i         (bus_int),
+    .fitted_i      (fitted_q & IcMask),
+    .jpan_i        (jpan_fitted_q),
+    .sel_any_o     (sel_any),
+    .sel_int_o     (sel_int),
+    .sel_signals_o (sel_signals),
+    .sel_strobe_o  (sel_strobe),
+    .sel_panel_o   (sel_panel),
+    .sel_ic_o      (sel_ic)
   );
 
   // Side effects of a read belong to the address one stage later: the CPU may have moved on by then.
@@ -124,9 +144,18 @@ module board_top #(
   logic        rd_any, rd_int, rd_signals, rd_strobe, rd_panel, unused_rd;
   logic [21:0] rd_ic;
   address_decode u_read_decode (
-    .addr_i(bus_rd_addr), .x_i(bus_rd_x), .aa_i(bus_rd_aa), .int_i(bus_rd_int), .fitted_i(fitted_q & IcMask), .jpan_i(jpan_fitted_q),
-    .sel_any_o(rd_any), .sel_int_o(rd_int), .sel_signals_o(rd_signals), .sel_strobe_o(rd_strobe),
-    .sel_panel_o(rd_panel), .sel_ic_o(rd_ic)
+    .addr_i        (bus_rd_addr),
+    .x_i           (bus_rd_x),
+    .aa_i          (bus_rd_aa),
+    .int_i         (bus_rd_int),
+    .fitted_i      (fitted_q & IcMask),
+    .jpan_i        (jpan_fitted_q),
+    .sel_any_o     (rd_any),
+    .sel_int_o     (rd_int),
+    .sel_signals_o (rd_signals),
+    .sel_strobe_o  (rd_strobe),
+    .sel_panel_o   (rd_panel),
+    .sel_ic_o      (rd_ic)
   );
   assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic};
 
@@ -143,30 +172,42 @@ module board_top #(
       assign rdata_chain = gen_servo_ic[i-1].rdata_chain | rdata;
     end
     if (ServoIcMask[i]) begin : gen_built
+      localparam integer Motor = 64 * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));  // its first bit there
       logic [3:0] ic_equ;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
-        .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[4:0]), .we_i(bus_we), .wdata_i(bus_wdata),
-        .read_done_i(bus_rd_done & rd_ic[i]), .read_x_i(bus_rd_x), .read_addr_i(bus_rd_addr[4:0]),
-        .rdata_o(rdata),
-        .phase_i(phase_o), .servo_i(servo_o),
-        .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i]),
-        .trip_i(wd_tripped_o), .pins_i(motor_i[64*i+:48]), .adc_a_i(motor_i[64*i+48+:4]),
-        .adc_b_i(motor_i[64*i+52+:4]), .equ_o(ic_equ), .motor_o(motor_o[64*i+:64])
+        .sel_i       (sel_ic[i]),
+        .x_i         (bus_x),
+        .addr_i      (bus_addr[4:0]),
+        .we_i        (bus_we),
+        .wdata_i     (bus_wdata),
+        .read_done_i (bus_rd_done & rd_ic[i]),
+        .read_x_i    (bus_rd_x),
+        .read_addr_i (bus_rd_addr[4:0]),
+        .rdata_o     (rdata),
+        .phase_i     (phase_o),
+        .servo_i     (servo_o),
+        .phase_o     (ic_phase[i]),
+        .servo_o     (ic_servo[i]),
+        .phase_oe_o  (ic_phase_oe[i]),
+        .servo_oe_o  (ic_servo_oe[i]),
+        .trip_i      (wd_tripped_o),
+        .pins_i      (motor_i[Motor+:48]),
+        .adc_a_i     (motor_i[Motor+48+:4]),
+        .adc_b_i     (motor_i[Motor+52+:4]),
+        .equ_o       (ic_equ),
+        .motor_o     (motor_o[Motor+:64])
       );
       assign equ[4*i+:4] = ic_equ & {4{fitted_q[i]}};
       logic unused_in;
-      assign unused_in = &{1'b0, motor_i[64*i+56+:8]};
+      assign unused_in = &{1'b0, motor_i[Motor+56+:8]};
     end else begin : gen_absent
       assign rdata              = 24'h0;
       assign ic_phase[i]        = 1'b1;
       assign ic_servo[i]        = 1'b1;
       assign ic_phase_oe[i]     = 1'b0;
       assign ic_servo_oe[i]     = 1'b0;
-      assign motor_o[64*i+:64]  = 64'h0;
       assign equ[4*i+:4]        = 4'h0;
-      logic unused_in;
-      assign unused_in = &{1'b0, motor_i[64*i+:64]};
     end
   end
 
@@ -179,11 +220,20 @@ module board_top #(
     end
     if (IcMask[i]) begin : gen_built
       macro_ic u_macro_ic (
-        .clk_pwm_i, .clk_ref_i, .rst_ni, .gate_i(macro_gate_q[i-18]),
-        .sel_i(sel_ic[i]), .x_i(bus_x), .addr_i(bus_addr[5:0]), .we_i(bus_we), .wdata_i(bus_wdata),
-        .rdata_o(rdata),
-        .phase_i(phase_o), .servo_i(servo_o),
-        .phase_o(ic_phase[i]), .servo_o(ic_servo[i]), .phase_oe_o(ic_phase_oe[i]), .servo_oe_o(ic_servo_oe[i])
+        .clk_pwm_i, .clk_ref_i, .rst_ni,
+        .gate_i     (macro_gate_q[i-18]),
+        .sel_i      (sel_ic[i]),
+        .x_i        (bus_x),
+        .addr_i     (bus_addr[5:0]),
+        .we_i       (bus_we),
+        .wdata_i    (bus_wdata),
+        .rdata_o    (rdata),
+        .phase_i    (phase_o),
+        .servo_i    (servo_o),
+        .phase_o    (ic_phase[i]),
+        .servo_o    (ic_servo[i]),
+        .phase_oe_o (ic_phase_oe[i]),
+        .servo_oe_o (ic_servo_oe[i])
       );
     end else begin : gen_absent
       assign rdata              = 24'h0;
@@ -199,14 +249,23 @@ module board_top #(
   assign unused_gate = &{1'b0, macro_gate_q};
 
   clock_select u_clock_select (
-    .clk_pwm_i, .clk_ref_i, .rst_ni, .fitted_i(fitted_q),
-    .phase_i(ic_phase), .servo_i(ic_servo), .phase_oe_i(ic_phase_oe), .servo_oe_i(ic_servo_oe),
-    .ext_clock_i(ext_clock_q), .ext_phase_i, .ext_servo_i,
-    .phase_o, .servo_o, .phase_source_o, .conflict_o(source_conflict_o)
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .fitted_i    (fitted_q),
+    .phase_i     (ic_phase),
+    .servo_i     (ic_servo),
+    .phase_oe_i  (ic_phase_oe),
+    .servo_oe_i  (ic_servo_oe),
+    .ext_clock_i (ext_clock_q),
+    .ext_phase_i, .ext_servo_i,
+    .phase_o, .servo_o, .phase_source_o,
+    .conflict_o  (source_conflict_o)
   );
 
   watchdog u_watchdog (
-    .clk_ref_i, .rst_ni, .strobe_i(bus_we & sel_strobe), .servo_i(servo_o), .trip_o(wd_tripped_o)
+    .clk_ref_i, .rst_ni,
+    .strobe_i (bus_we & sel_strobe),
+    .servo_i  (servo_o),
+    .trip_o   (wd_tripped_o)
   );
   assign wdo_o = wd_tripped_o;
 
@@ -225,26 +284,54 @@ module board_top #(
   isa_slave u_isa_slave (
     .clk_ref_i, .rst_ni,
     .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
-    .isa_sd_o, .isa_iochrdy_o, .isa_memcs16_no(isa_memcs16_n_o),
-    .hp_sel_o(hp_sel), .hp_rd_done_o(hp_rd_done), .hp_wr_o(hp_wr), .hp_addr_o(hp_addr), .hp_wdata_o(hp_wdata),
-    .hp_rdata_i(hp_rdata),
-    .pic_sel_o(pic_sel), .pic_wr_o(pic_wr), .pic_addr_o(pic_addr), .pic_wdata_o(pic_wdata), .pic_rdata_i(pic_rdata),
-    .mem_sel_o(mem_sel), .mem_rd_o(mem_rd), .mem_wr_o(mem_wr), .mem_addr_o(mem_addr), .mem_be_o(mem_be),
-    .mem_wdata_o(mem_wdata), .mem_rdata_i(mem_rdata), .mem_busy_i(mem_busy)
+    .isa_sd_o, .isa_iochrdy_o,
+    .isa_memcs16_no (isa_memcs16_n_o),
+    .hp_sel_o       (hp_sel),
+    .hp_rd_done_o   (hp_rd_done),
+    .hp_wr_o        (hp_wr),
+    .hp_addr_o      (hp_addr),
+    .hp_wdata_o     (hp_wdata),
+    .hp_rdata_i     (hp_rdata),
+    .pic_sel_o      (pic_sel),
+    .pic_wr_o       (pic_wr),
+    .pic_addr_o     (pic_addr),
+    .pic_wdata_o    (pic_wdata),
+    .pic_rdata_i    (pic_rdata),
+    .mem_sel_o      (mem_sel),
+    .mem_rd_o       (mem_rd),
+    .mem_wr_o       (mem_wr),
+    .mem_addr_o     (mem_addr),
+    .mem_be_o       (mem_be),
+    .mem_wdata_o    (mem_wdata),
+    .mem_rdata_i    (mem_rdata),
+    .mem_busy_i     (mem_busy)
   );
 
   logic [23:0] int_rdata;
   host_port u_host_port (
     .clk_ref_i, .rst_ni,
-    .hp_sel_i(hp_sel), .hp_rd_done_i(hp_rd_done), .hp_wr_i(hp_wr), .hp_addr_i(hp_addr), .hp_wdata_i(hp_wdata),
-    .hp_rdata_o(hp_rdata),
-    .dsp_sel_i(sel_int | rd_done_int), .dsp_we_i(bus_we & sel_int), .dsp_rd_done_i(rd_done_int), .dsp_addr_i(int_addr),
-    .dsp_wdata_i(bus_wdata), .dsp_rdata_o(int_rdata), .hreq_o, .irq_o(irq_host_o)
+    .hp_sel_i      (hp_sel),
+    .hp_rd_done_i  (hp_rd_done),
+    .hp_wr_i       (hp_wr),
+    .hp_addr_i     (hp_addr),
+    .hp_wdata_i    (hp_wdata),
+    .hp_rdata_o    (hp_rdata),
+    .dsp_sel_i     (sel_int | rd_done_int),
+    .dsp_we_i      (bus_we & sel_int),
+    .dsp_rd_done_i (rd_done_int),
+    .dsp_addr_i    (int_addr),
+    .dsp_wdata_i   (bus_wdata),
+    .dsp_rdata_o   (int_rdata),
+    .hreq_o,
+    .irq_o         (irq_host_o)
   );
 
   logic [3:0] signals_rdata;
   host_signals u_host_signals (
-    .clk_ref_i, .rst_ni, .wr_i(bus_we & sel_signals), .wdata_i(bus_wdata[3:0]), .rdata_o(signals_rdata),
+    .clk_ref_i, .rst_ni,
+    .wr_i    (bus_we & sel_signals),
+    .wdata_i (bus_wdata[3:0]),
+    .rdata_o (signals_rdata),
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 
@@ -258,23 +345,48 @@ module board_top #(
   assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
                      hreq_o, f1er_o, eror_o, breq_o, ipos_o};
   interrupt_controller u_interrupt_controller (
-    .clk_ref_i, .rst_ni, .line_i(pic_line),
-    .wr_i(pic_sel & pic_wr), .addr_i(pic_addr), .wdata_i(pic_wdata), .rdata_o(pic_rdata),
-    .ist_o(pic_ist_o), .sig_o(pic_sig_o), .msk_o(pic_msk_o), .elr_o(pic_elr_o), .irq_o(isa_irq_o)
+    .clk_ref_i, .rst_ni,
+    .line_i  (pic_line),
+    .wr_i    (pic_sel & pic_wr),
+    .addr_i  (pic_addr),
+    .wdata_i (pic_wdata),
+    .rdata_o (pic_rdata),
+    .ist_o   (pic_ist_o),
+    .sig_o   (pic_sig_o),
+    .msk_o   (pic_msk_o),
+    .elr_o   (pic_elr_o),
+    .irq_o   (isa_irq_o)
+  );
+
+  logic [15:0] panel_rdata;
+  panel_port u_panel_port (
+    .clk_ref_i, .rst_ni, .jpan_i,
+    .rdata_o (panel_rdata)
   );
 
   logic        dpram_sel;
   logic [15:0] dpram_rdata;
   assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
-  logic [15:0] panel_rdata;
-  panel_port u_panel_port (.clk_ref_i, .rst_ni, .jpan_i, .rdata_o(panel_rdata));
-
   dpram u_dpram (
-    .clk_pwm_i, .clk_ref_i, .rst_ni, .small_i(dpram_small_q),
-    .cpu_sel_i(dpram_sel), .cpu_x_i(pa_x_i), .cpu_addr_i(pa_addr_i[13:0]), .cpu_rd_ni(pa_rd_ni), .cpu_wr_ni(pa_wr_ni),
-    .cpu_wdata_i(pa_wdata_i[15:0]), .cpu_rdata_o(dpram_rdata), .cpu_busy_o(busy_cpu_o),
-    .mem_sel_i(mem_sel), .mem_rd_i(mem_rd), .mem_wr_i(mem_wr), .mem_addr_i(mem_addr), .mem_be_i(mem_be),
-    .mem_wdata_i(mem_wdata), .mem_rdata_o(mem_rdata), .mem_busy_o(mem_busy), .host_busy_o(busy_host_o)
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .small_i     (dpram_small_q),
+    .cpu_sel_i   (dpram_sel),
+    .cpu_x_i     (pa_x_i),
+    .cpu_addr_i  (pa_addr_i[13:0]),
+    .cpu_rd_ni   (pa_rd_ni),
+    .cpu_wr_ni   (pa_wr_ni),
+    .cpu_wdata_i (pa_wdata_i[15:0]),
+    .cpu_rdata_o (dpram_rdata),
+    .cpu_busy_o  (busy_cpu_o),
+    .mem_sel_i   (mem_sel),
+    .mem_rd_i    (mem_rd),
+    .mem_wr_i    (mem_wr),
+    .mem_addr_i  (mem_addr),
+    .mem_be_i    (mem_be),
+    .mem_wdata_i (mem_wdata),
+    .mem_rdata_o (mem_rdata),
+    .mem_busy_o  (mem_busy),
+    .host_busy_o (busy_host_o)
   );
   assign pa_ta_n_o = busy_cpu_o;
 

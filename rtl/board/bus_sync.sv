@@ -1,6 +1,7 @@
-// Port A synchroniser: the CPU's bus pins pass two flip-flops on clk_ref_i. One strobe a write (we_o, with address and data
-// of stage 1, at the edge after the one that first saw /WR low), one a read (rd_done_o, at the edge at which /RD is seen high
-// again, with the address of stage 2, because the CPU may already show the next one). Asynchronous reset. docs/architecture.md.
+// Port A synchroniser: the CPU's bus pins pass two flip-flops on clk_ref_i. One strobe a write (we_o, with address and
+// data of stage 1, at the edge after the one that first saw /WR low), one a read (rd_done_o, at the edge at which /RD
+// is seen high again, with the address of stage 2, because the CPU may already show the next one). Asynchronous reset.
+// docs/architecture.md.
 `default_nettype none
 
 module bus_sync (

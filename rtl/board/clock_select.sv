@@ -1,7 +1,7 @@
-// The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins; with no driver the net idles high;
-// with jumper E1 (ext_clock_i) both come from outside. The conflict flag rises when drivers of one net have disagreed for more
-// than 2 clk, and stays until there is one driver again.
-// The choice is registered on clk_ref_i, external clocks are sampled on clk_pwm_i. Asynchronous reset. docs/clock.md.
+// The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins; with no driver the net idles
+// high; with jumper E1 (ext_clock_i) both come from outside. The conflict flag rises when drivers of one net have
+// disagreed for more than 2 clk, and stays until there is one driver again. The choice is registered on clk_ref_i,
+// external clocks are sampled on clk_pwm_i. Asynchronous reset. docs/clock.md.
 `default_nettype none
 
 module clock_select (

@@ -1,11 +1,12 @@
-// Control panel port JPAN of Turbo PMAC boards: sixteen asynchronous low-true inputs through two flip-flops on clk_ref_i, so that
-// the firmware never reads a level that is just changing. Reset: nothing pulled low. docs/boards.md.
+// Control panel port JPAN of Turbo PMAC boards: sixteen asynchronous low-true inputs through two flip-flops on
+// clk_ref_i, so that the firmware never reads a level that is just changing. Reset: nothing pulled low. docs/boards.md.
 `default_nettype none
 
 module panel_port (
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  input  wire logic [15:0] jpan_i,  // JOG-, JOG+, PREJ, STRT, STEP, STOP, HOME, HOLD, FPD0..FPD3 from bit 0 up; 15..12 spare
+  // JOG-, JOG+, PREJ, STRT, STEP, STOP, HOME, HOLD, FPD0..FPD3 from bit 0 up; 15..12 spare
+  input  wire logic [15:0] jpan_i,
   output logic [15:0]      rdata_o
 );
 

@@ -1,6 +1,6 @@
-// Hardware watchdog: trips when 25 ms pass without a strobe from the firmware, or without an edge of the servo clock, and
-// stays tripped until reset. Two timers count a 38.4 kHz clock (clk_ref_i / 1024) down from 960. Both run from reset on.
-// Clock clk_ref_i, asynchronous reset. docs/watchdog.md, servo-ic:10.
+// Hardware watchdog: trips when 25 ms pass without a strobe from the firmware, or without an edge of the servo clock,
+// and stays tripped until reset. Two timers count a 38.4 kHz clock (clk_ref_i / 1024) down from 960. Both run from
+// reset on. Clock clk_ref_i, asynchronous reset. docs/watchdog.md, servo-ic:10.
 `default_nettype none
 
 module watchdog (

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Every register, field and code of the generated maps is used by the RTL or by the model of its block.
 
-A description that nobody reads is a second source that drifts. What counts, in the folders named below: in
-SystemVerilog brick_regs_pkg::ServoChannelStatusEquLsb, in C++ the name with its register (status::kEqu), through
-namespace aliases and using-directives too. A register counts by its address or its name, a field that fills its
-register with it, and a field that is stored only by the mask of written bits of its register.
+A description that nobody reads is a second source that drifts. What counts, in the folders below: in SystemVerilog
+brick_regs_pkg::ServoChannelStatusEquLsb, in C++ the name with its register (status::kEqu), through namespace aliases
+and using-directives too. A register counts by its address or its name, a field that fills its register with it, and a
+field that is stored only by the mask of written bits of its register.
 
     check_used.py [--root TREE]    exit 1 with one line for each that is not used
 """

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
-#include "systemc/cosim/engines.h"
+#include "systemc/board/model_board.h"
+#include "systemc/core/start_value.h"
 
 namespace brick {
 
-BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
+BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::uint64_t seed)
     : sc_module(name),
       bus_sync_("bus_sync"),
       address_decode_("address_decode"),
@@ -20,6 +21,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics)
       panel_port_("panel_port"),
       gate_ics_(ics) {
   inputs_.fitted = ics;
+  for (unsigned i = 0; i < Dpram::kWords; ++i) dpram_.poke(i, start_word(start_seed(seed), i));
   reset_all(0);
   outputs_ = pins();
 }
@@ -45,10 +47,7 @@ void BoardTop::reset_all(Tick t) {
   gate_ics_.reset(t);
   rdata_ = 0;
   from_dpram_ = false;
-  fitted_ = 0;
-  macro_gate_ = 0;
-  ext_clock_ = dpram_small_ = jpan_fitted_ = false;
-  select_lines(0, t);
+  take_straps(kNoStraps, t);
   connect();
 }
 
@@ -65,20 +64,14 @@ void BoardTop::execute(Tick t) {
   if (ref && select_.any) rdata_ = read_data(t - 1);
   const int written_ic = select_.ic;
   const BusSync::Where read = bus_sync_.rd_where();
-  const int read_ic =
-      ref && bus_sync_.rd_done() ? AddressDecode::decode(read, fitted_ & gate_ics_.built(), jpan_fitted_).ic : -1;
+  const int read_ic = ref && bus_sync_.rd_done()
+                          ? AddressDecode::decode(read, straps_.fitted & gate_ics_.built(), straps_.jpan_fitted).ic
+                          : -1;
 
   advance_all(t);
   gate_ics_.advance(t);
   from_dpram_ = dpram_.in.cpu_sel;
-  if (next_ref_edge(now_) <= t) {
-    fitted_ = inputs_.fitted;
-    macro_gate_ = macro_gates();
-    ext_clock_ = inputs_.ext_clock;
-    dpram_small_ = inputs_.dpram_small;
-    jpan_fitted_ = inputs_.jpan_fitted;
-    if (line_select_ != inputs_.line_select) select_lines(inputs_.line_select, t);
-  }
+  if (next_ref_edge(now_) <= t && straps_ != inputs_) take_straps(inputs_, t);
   if (read_ic >= 0) gate_ics_.read_done(static_cast<unsigned>(read_ic), read.x, read.addr, t);
   if (write_ic) gate_ics_.write(static_cast<unsigned>(written_ic), where.x, where.addr, wdata, t);
   now_ = t;
@@ -96,14 +89,15 @@ std::uint32_t BoardTop::read_data(Tick t) const {
 
 void BoardTop::connect() {
   bus_sync_.set_pins(inputs_);
-  select_ = AddressDecode::decode(bus_sync_.where(), fitted_ & gate_ics_.built(), jpan_fitted_);
+  select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted);
   connect_clocks();
   connect_host();
 }
 
 void BoardTop::connect_clocks() {
-  gate_ics_.set_macro_gates(macro_gate_, now_);
-  clock_select_.in = {gate_ics_.drivers().phase & fitted_, gate_ics_.drivers().servo & fitted_, ext_clock_};
+  gate_ics_.set_macro_gates(straps_.macro_gate & gate_ics_.built() >> kMaxServoIcs, now_);
+  clock_select_.in = {gate_ics_.drivers().phase & straps_.fitted, gate_ics_.drivers().servo & straps_.fitted,
+                      straps_.ext_clock};
   clock_select_.phase_level = gate_ics_.phase_levels();
   clock_select_.servo_level = gate_ics_.servo_levels();
   clock_select_.ext_phase = inputs_.ext_phase;
@@ -128,7 +122,7 @@ void BoardTop::connect_host() {
   host_signals_.in.wr = bus_sync_.we() && select_.signals;
   host_signals_.in.wdata = bus_sync_.wdata() & 0xF;
   Dpram::Inputs& ram = dpram_.in;
-  ram.small = dpram_small_;
+  ram.small = straps_.dpram_small;
   ram.cpu_sel = (inputs_.pa_aa & 4) != 0 && !inputs_.pa_int;
   ram.cpu_x = inputs_.pa_x;
   ram.cpu_addr = inputs_.pa_addr & 0x3FFF;
@@ -138,14 +132,7 @@ void BoardTop::connect_host() {
 
   // ISA side
   IsaSlave::Inputs& isa = isa_slave_.in;
-  isa.isa_sa = inputs_.isa_sa & 0xFFFFF;
-  isa.isa_sd = inputs_.isa_sd;
-  isa.isa_ior_n = inputs_.isa_ior_n;
-  isa.isa_iow_n = inputs_.isa_iow_n;
-  isa.isa_memr_n = inputs_.isa_memr_n;
-  isa.isa_memw_n = inputs_.isa_memw_n;
-  isa.isa_aen = inputs_.isa_aen;
-  isa.isa_sbhe_n = inputs_.isa_sbhe_n;
+  static_cast<IsaPins&>(isa) = inputs_;
   isa.mem_rdata = dpram_.mem_rdata();
   isa.mem_busy = dpram_.mem_busy();
   hp.hp_sel = isa_slave_.hp_sel();
@@ -170,19 +157,19 @@ void BoardTop::connect_host() {
   pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
 }
 
-void BoardTop::select_lines(std::uint32_t sources, Tick t) {
-  line_select_ = sources;
+void BoardTop::take_straps(const Straps& straps, Tick t) {
+  straps_ = straps;
   std::uint32_t interrupting = 0;
-  for (unsigned line = 0; line < 3; ++line) interrupting |= 1u << (sources >> 4 * line & 0xF);
+  for (unsigned line = 0; line < 3; ++line) interrupting |= 1u << (straps_.line_select >> 4 * line & 0xF);
   gate_ics_.set_interrupting(interrupting >> 1 & 0xFF, t);
 }
 
 std::uint32_t BoardTop::selected_lines() const {
-  const std::uint32_t fitted_equ = ((fitted_ & 1) != 0 ? 0x0Fu : 0u) | ((fitted_ & 2) != 0 ? 0xF0u : 0u);
+  const std::uint32_t fitted_equ = ((straps_.fitted & 1) != 0 ? 0x0Fu : 0u) | ((straps_.fitted & 2) != 0 ? 0xF0u : 0u);
   const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u)
                                                                           << 9;  // by the digits of line_select
   std::uint32_t lines = 0;
-  for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (line_select_ >> 4 * line & 0xF) & 1) << line;
+  for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (straps_.line_select >> 4 * line & 0xF) & 1) << line;
   return lines;
 }
 
@@ -232,7 +219,7 @@ Tick BoardTop::next_event() const {
   each_block([&next](const auto& block) { next = std::min(next, block.next_event()); });
   if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
   if (select_.ic >= 0) next = std::min(next, gate_ics_.next_word_event(static_cast<unsigned>(select_.ic), now_));
-  if (straps_move()) next = std::min(next, next_ref_edge(now_));
+  if (straps_ != inputs_) next = std::min(next, next_ref_edge(now_));
   if (select_.any && next > next_ref_edge(now_) && read_data(now_) != rdata_) next = next_ref_edge(now_);
   return next;
 }
@@ -262,7 +249,7 @@ Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
 Tick BoardTop::quiet_until(const BoardOutputs& watched) const {
   if (!inputs_.rst_n) return in_reset_ ? kNever : now_;
   const Tick any_pin = next_event() - 1;
-  if (bus_sync_.write_pending() || straps_move()) return any_pin;
+  if (bus_sync_.write_pending() || straps_ != inputs_) return any_pin;
 
   // With no write under way each group of pins has its own cause; only those that interrupt the CPU are told apart.
   constexpr BoardOutputs kClocks = select_pins(pin::kPhase, pin::kServo, pin::kPhaseSource, pin::kSourceConflict);
@@ -282,8 +269,8 @@ Tick BoardTop::quiet_until(const BoardOutputs& watched) const {
   return quiet;
 }
 
-std::unique_ptr<Board> make_model_board(std::uint32_t fitted) {
-  return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), fitted);
+std::unique_ptr<Board> make_model_board(std::uint32_t fitted, std::uint64_t seed) {
+  return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), fitted, seed);
 }
 
 }  // namespace brick

@@ -29,7 +29,7 @@ namespace brick {
 
 class BoardTop : public sc_core::sc_module, public Board {
  public:
-  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics = 0x3);
+  explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics = 0x3, std::uint64_t seed = 0);
 
   Tick now() const override { return now_; }
   void set_inputs(const BoardInputs& inputs) override;
@@ -72,14 +72,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool show_pins();    // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();  // the same for the watched ICs
   std::uint32_t read_data(Tick t) const;
-  void select_lines(std::uint32_t sources, Tick t);
+  void take_straps(const Straps& straps, Tick t);
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
-  std::uint32_t macro_gates() const { return inputs_.macro_gate & gate_ics_.built() >> kMaxServoIcs; }
-  bool straps_move() const {
-    return inputs_.fitted != fitted_ || macro_gates() != macro_gate_ || inputs_.ext_clock != ext_clock_ ||
-           inputs_.dpram_small != dpram_small_ || inputs_.jpan_fitted != jpan_fitted_ ||
-           inputs_.line_select != line_select_;
-  }
   Tick next_event() const;
   Tick next_clock_event() const { return std::min(clock_select_.next_event(), gate_ics_.next_clock_event()); }
 
@@ -96,13 +90,11 @@ class BoardTop : public sc_core::sc_module, public Board {
   GateIcs gate_ics_;
 
   BoardInputs inputs_;
-  std::uint32_t fitted_ = 0;  // straps as taken over on clk_ref
-  std::uint32_t macro_gate_ = 0;
-  bool ext_clock_ = false, dpram_small_ = false, jpan_fitted_ = false;
-  std::uint32_t line_select_ = 0;
-  AddressSelect select_;     // of the address in stage 1
-  std::uint32_t rdata_ = 0;  // registered read data
-  bool from_dpram_ = false;  // read data pins show the dual-ported RAM
+  static constexpr Straps kNoStraps{0, 0, false, false, 0, false};
+  Straps straps_ = kNoStraps;  // as taken over on clk_ref
+  AddressSelect select_;       // of the address in stage 1
+  std::uint32_t rdata_ = 0;    // registered read data
+  bool from_dpram_ = false;    // read data pins show the dual-ported RAM
   bool in_reset_ = true;
   Tick now_ = 0;
   BoardOutputs outputs_, stop_on_;

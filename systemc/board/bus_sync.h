@@ -23,7 +23,7 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
     bool operator==(const Where& o) const { return addr == o.addr && aa == o.aa && x == o.x && internal == o.internal; }
   };
 
-  void set_pins(const BoardInputs& pins) {
+  void set_pins(const PortAPins& pins) {
     where0_ = {pins.pa_addr & 0x7FFFF, static_cast<std::uint8_t>(pins.pa_aa & 0xF), pins.pa_x, pins.pa_int};
     wdata0_ = pins.pa_wdata & 0xFFFFFF;
     rd0_n_ = pins.pa_rd_n;

@@ -11,9 +11,10 @@
 
 namespace brick {
 
-struct BoardInputs {
-  bool rst_n = false;
-  // Port A, the CPU's external bus (host-bus:2)
+// Inputs, in groups by who drives them. Whoever drives or samples a group takes it as a whole.
+
+// Port A, the CPU's external bus (host-bus:2).
+struct PortAPins {
   std::uint32_t pa_addr = 0;  // A[18:0]; A[5:0] of the on-chip peripheral when pa_int is 1
   bool pa_x = false;          // 1 = X space, 0 = Y space
   std::uint8_t pa_aa = 0;     // AA3..AA0, 1 = region selected
@@ -21,7 +22,10 @@ struct BoardInputs {
   bool pa_rd_n = true;
   bool pa_wr_n = true;
   std::uint32_t pa_wdata = 0;  // D[23:0] as the CPU drives it
-  // ISA / PC104 host bus (host-bus:3.4)
+};
+
+// ISA / PC104 host bus (host-bus:3.4).
+struct IsaPins {
   std::uint32_t isa_sa = 0;  // SA[19:0]
   std::uint16_t isa_sd = 0;  // SD[15:0] as the host drives it
   bool isa_ior_n = true;
@@ -30,17 +34,37 @@ struct BoardInputs {
   bool isa_memw_n = true;
   bool isa_aen = false;
   bool isa_sbhe_n = true;  // 0 = upper byte lane used
-  // straps
+};
+
+// What is fitted and how the jumpers stand; taken over on clk_ref.
+struct Straps {
   std::uint32_t fitted = 0x3;  // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
   std::uint32_t macro_gate = 0;       // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
   bool dpram_small = false;           // dual-ported RAM of 8192 words, not 32768
   bool jpan_fitted = false;           // control panel port of Turbo PMAC boards
-  std::uint16_t jpan = 0xFFFF;        // its inputs, low-true, bits as Y:$078800 (rtl/regs/board.rdl)
   std::uint16_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
   bool ext_clock = false;             // jumper E1: phase and servo come from outside
+
+  bool operator!=(const Straps& o) const {
+    return fitted != o.fitted || macro_gate != o.macro_gate || dpram_small != o.dpram_small ||
+           jpan_fitted != o.jpan_fitted || line_select != o.line_select || ext_clock != o.ext_clock;
+  }
+};
+
+// What else comes in at a connector.
+struct ConnectorPins {
+  std::uint16_t jpan = 0xFFFF;  // control panel inputs, low-true, bits as Y:$078800 (rtl/regs/board.rdl)
   bool ext_phase = true;
   bool ext_servo = true;
 };
+
+struct HostInputs : IsaPins, Straps, ConnectorPins {};  // all but what the CPU drives
+
+struct BoardInputs : PortAPins, HostInputs {
+  bool rst_n = false;
+};
+
+constexpr std::uint32_t pin_mask(unsigned width) { return width >= 32 ? ~0u : (1u << width) - 1; }
 
 // One field of the packed output words. `name` is the trace and script name (docs/signals.md), scope `brick` left out.
 struct PinField {
@@ -90,9 +114,9 @@ inline constexpr std::array kAll{kPaData,      kPaTaN,          kIrqHost, kPhase
 struct BoardOutputs {
   std::array<std::uint32_t, kBoardOutputWords> w{};
 
-  constexpr std::uint32_t get(const PinField& f) const { return (w[f.word] >> f.lsb) & mask(f.width); }
+  constexpr std::uint32_t get(const PinField& f) const { return (w[f.word] >> f.lsb) & pin_mask(f.width); }
   constexpr void set(const PinField& f, std::uint32_t value) {
-    w[f.word] = (w[f.word] & ~(mask(f.width) << f.lsb)) | ((value & mask(f.width)) << f.lsb);
+    w[f.word] = (w[f.word] & ~(pin_mask(f.width) << f.lsb)) | ((value & pin_mask(f.width)) << f.lsb);
   }
   bool operator==(const BoardOutputs& o) const { return w == o.w; }
   bool operator!=(const BoardOutputs& o) const { return w != o.w; }
@@ -102,9 +126,6 @@ struct BoardOutputs {
       if ((w[i] ^ o.w[i]) & select.w[i]) return true;
     return false;
   }
-
- private:
-  static constexpr std::uint32_t mask(unsigned width) { return width >= 32 ? ~0u : (1u << width) - 1; }
 };
 
 // A selection of output pins, to stop a run at their next change.

@@ -1,24 +1,25 @@
-// Makes a board for an engine. The Verilated headers stay behind this line.
+// Makes a board for an engine; the model alone is made by systemc/board/model_board.h. The Verilated headers stay
+// behind this line.
 #pragma once
 
 #include <memory>
 #include <stdexcept>
 #include <string>
 
+#include "systemc/board/model_board.h"
 #include "systemc/core/board.h"
 
 namespace brick {
 
 struct RtlOptions {
-  // 0: all flip-flops and memories start as zero. Else they start at random, by this seed: reset must bring the
-  // flip-flops to where the model is, while memory differs from the model's until it is written.
+  // 0: all flip-flops start as zero. Else they start at random, by this seed, and reset must bring them to where the
+  // model is. The content of the dual-ported RAM follows from it as the model's from its own (core/start_value.h).
   std::uint64_t seed = 0;
   bool seeded_bug = false;  // negative control, see rtl/board/board_sim.sv
 };
 
 // Throws std::runtime_error when no Verilated variant has all the ICs of `fitted`.
 std::unique_ptr<Board> make_rtl_board(std::uint32_t fitted, const RtlOptions& options = {});
-std::unique_ptr<Board> make_model_board(std::uint32_t fitted);  // systemc/board/board_top.h, the SystemC model
 
 // Runs both and compares every pin at every tick. run_until() throws LockstepDifference at the first difference.
 std::unique_ptr<Board> make_lockstep_board(std::unique_ptr<Board> rtl, std::unique_ptr<Board> model);

@@ -3,17 +3,16 @@
 #pragma once
 
 #include <verilated.h>
-#ifdef BRICK_RTL_COVERAGE
-#include <verilated_cov.h>
-#endif
 
 #include <array>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "systemc/core/start_value.h"
+#include "systemc/cosim/drive.h"
 #include "systemc/cosim/engines.h"
+#include "systemc/cosim/rtl_coverage.h"
 
 namespace brick {
 
@@ -42,8 +41,9 @@ class RtlBoard : public Board {
  public:
   RtlBoard(std::uint32_t fitted, const RtlOptions& options) : fitted_(fitted) {
     context_.randReset(options.seed == 0 ? 0 : 2);
-    context_.randSeed(static_cast<int>(options.seed % 0x7FFFFFFF));
+    context_.randSeed(static_cast<int>(1 + options.seed % 0x7FFFFFFE));  // 0 would be the time of day
     model_ = std::make_unique<Model>(&context_, "");
+    model_->start_seed_i = start_seed(options.seed);
     model_->seeded_bug_i = options.seeded_bug;
     // Asynchronous reset acts on an edge of rst_ni, so it must have been high once. Power-on is tick 0, in reset.
     BoardInputs start;
@@ -58,9 +58,7 @@ class RtlBoard : public Board {
     for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = model_->pins_o[i];
   }
   ~RtlBoard() override {
-#ifdef BRICK_RTL_COVERAGE
-    if (const char* file = std::getenv("BRICK_RTL_COVERAGE_FILE")) context_.coveragep()->write(file);
-#endif
+    write_coverage(context_);
     model_->final();
     Verilated::threadContextp(
         &context_);  // its scopes leave the context last used, which may be another board's, long gone
@@ -71,32 +69,9 @@ class RtlBoard : public Board {
   const BoardOutputs& outputs() const override { return outputs_; }
 
   void set_inputs(const BoardInputs& in) override {
-    Model& m = *model_;
-    m.rst_ni = in.rst_n;
-    m.pa_addr_i = in.pa_addr & 0x7FFFF;
-    m.pa_x_i = in.pa_x;
-    m.pa_aa_i = in.pa_aa & 0xF;
-    m.pa_int_i = in.pa_int;
-    m.pa_rd_ni = in.pa_rd_n;
-    m.pa_wr_ni = in.pa_wr_n;
-    m.pa_wdata_i = in.pa_wdata & 0xFFFFFF;
-    m.isa_sa_i = in.isa_sa & 0xFFFFF;
-    m.isa_sd_i = in.isa_sd;
-    m.isa_ior_ni = in.isa_ior_n;
-    m.isa_iow_ni = in.isa_iow_n;
-    m.isa_memr_ni = in.isa_memr_n;
-    m.isa_memw_ni = in.isa_memw_n;
-    m.isa_aen_i = in.isa_aen;
-    m.isa_sbhe_ni = in.isa_sbhe_n;
-    m.fitted_i = in.fitted & fitted_;
-    m.macro_gate_i = in.macro_gate & 0xF;
-    m.dpram_small_i = in.dpram_small;
-    m.jpan_fitted_i = in.jpan_fitted;
-    m.line_select_i = in.line_select & 0xFFF;
-    m.jpan_i = in.jpan;
-    m.ext_clock_i = in.ext_clock;
-    m.ext_phase_i = in.ext_phase;
-    m.ext_servo_i = in.ext_servo;
+    BoardInputs built = in;
+    built.fitted &= fitted_;  // the Verilated board may have more
+    drive(*model_, built);
   }
 
   Tick run_until(Tick limit, const BoardOutputs& stop_on) override {
@@ -130,10 +105,7 @@ class RtlBoard : public Board {
   }
 
   void set_motor_inputs(unsigned ic, const MotorInputs& in) override {
-    if (!has(ic)) return;
-    std::uint64_t pins = static_cast<std::uint64_t>((in.adc_a & 0xFu) | (in.adc_b & 0xFu) << 4) << 48;
-    for (unsigned n = 0; n < kChannels; ++n) pins |= static_cast<std::uint64_t>(in.pins[n] & 0xFFFu) << 12 * n;
-    model_->motor_i[ic] = pins;
+    if (has(ic)) drive_motor(*model_, ic, in);
   }
   MotorOutputs motor_outputs(unsigned ic) const override {
     MotorOutputs out;

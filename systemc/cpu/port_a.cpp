@@ -42,7 +42,7 @@ PortA::PortA(sc_core::sc_module_name name, Signals& signals)
   socket.register_b_transport(this, &PortA::b_transport);
 }
 
-void PortA::reset(Tick edge, std::int64_t cycle, BoardInputs& pins) {
+void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   bcr_ = regs::cpu_bus::kBcr.reset;
   pctl_ = regs::cpu_bus::kPctl.reset;
   clock_.restart(edge, cycle, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
@@ -184,7 +184,7 @@ void PortA::after_low() {
   }
 }
 
-void PortA::step(BoardInputs& pins, const BoardOutputs& board) {
+void PortA::step(PortAPins& pins, const BoardOutputs& board) {
   const bool shown = !cycle_.on_chip;
   switch (step_) {
     case Step::kAddress:

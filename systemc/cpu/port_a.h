@@ -56,14 +56,14 @@ class PortA : public sc_core::sc_module {
   tlm_utils::simple_target_socket<PortA> socket{"socket"};
 
   // Registers to their reset values, no cycle under way; CPU cycle `cycle` begins with edge `edge`. Pins go idle.
-  void reset(Tick edge, std::int64_t cycle, BoardInputs& pins);
+  void reset(Tick edge, std::int64_t cycle, PortAPins& pins);
   const CpuClock& clock() const { return clock_; }
   unsigned wait_states(unsigned area) const;  // AA0..AA2, 3 = default area
 
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
   bool running() const { return state_ == State::kRunning; }
   Tick stands_at() const { return stand_; }
-  void step(BoardInputs& pins, const BoardOutputs& board);   // pins are seen first by the edge after stands_at()
+  void step(PortAPins& pins, const BoardOutputs& board);     // pins are seen first by the edge after stands_at()
   void board_changed(Tick tick, const BoardOutputs& board);  // for the waveform: read data while /RD is low
 
   std::function<void(const PortACycle&)> on_cycle;  // at the end of each cycle

@@ -21,6 +21,8 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   // Memory without arbitration, for software that has no pins: 16-bit accesses at the host's byte offset.
   tlm_utils::simple_target_socket_optional<Dpram> socket;
 
+  static constexpr unsigned kWords = 32768;
+
   using Inputs = DpramInputs;
   Inputs in;
 
@@ -41,7 +43,7 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   }
 
  private:
-  static constexpr unsigned kWords = 32768, kSmallWords = 8192;
+  static constexpr unsigned kSmallWords = 8192;
   unsigned fitted() const { return in.small ? kSmallWords : kWords; }
   bool cpu_active() const { return cpu_rd_ || cpu_wr_; }
   bool conflict() const {

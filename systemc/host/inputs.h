@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "systemc/core/board_pins.h"
+
 namespace brick {
 
 struct InterruptControllerInputs {
@@ -41,11 +43,7 @@ struct DpramInputs {
   std::uint16_t mem_wdata = 0;
 };
 
-struct IsaSlaveInputs {
-  std::uint32_t isa_sa = 0;
-  std::uint16_t isa_sd = 0;
-  bool isa_ior_n = true, isa_iow_n = true, isa_memr_n = true, isa_memw_n = true;
-  bool isa_aen = false, isa_sbhe_n = true;
+struct IsaSlaveInputs : IsaPins {
   std::uint8_t hp_rdata = 0, pic_rdata = 0;
   std::uint16_t mem_rdata = 0;
   bool mem_busy = false;

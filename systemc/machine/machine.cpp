@@ -16,15 +16,26 @@ constexpr std::size_t kBusCyclesKept = 16;
 
 std::unique_ptr<Board> make_board(const MachineConfig& c) {
   const std::uint32_t fitted = c.board.fitted;
+  const RtlOptions rtl{c.seed, c.seeded_bug};
   switch (c.engine) {
     case Engine::kRtl:
-      return make_rtl_board(fitted, {0, c.seeded_bug});
+      return make_rtl_board(fitted, rtl);
     case Engine::kSystemC:
-      return make_model_board(fitted);
+      return make_model_board(fitted, c.seed);
     case Engine::kLockstep:
       break;
   }
-  return make_lockstep_board(make_rtl_board(fitted, {0, c.seeded_bug}), make_model_board(fitted));
+  return make_lockstep_board(make_rtl_board(fitted, rtl), make_model_board(fitted, c.seed));
+}
+
+Straps straps(const BoardConfig& board) {
+  Straps s;
+  s.fitted = board.fitted;
+  s.macro_gate = board.macro_gate;
+  s.dpram_small = board.dpram_words < 32768;
+  s.jpan_fitted = board.jpan;
+  s.line_select = static_cast<std::uint16_t>(board.line_select);
+  return s;
 }
 
 std::uint32_t trap_handler(const Cpu& cpu, std::uint32_t cause) {
@@ -91,11 +102,8 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     named.trap_return(time);
     if (tracing_cpu) named.pc(time, pc, elf.get());
   };
-  host_inputs.fitted = inputs.fitted = config.board.fitted;
-  host_inputs.macro_gate = inputs.macro_gate = config.board.macro_gate;
-  host_inputs.dpram_small = inputs.dpram_small = config.board.dpram_words < 32768;
-  host_inputs.line_select = inputs.line_select = static_cast<std::uint16_t>(config.board.line_select);
-  host_inputs.jpan_fitted = inputs.jpan_fitted = config.board.jpan;
+  static_cast<Straps&>(host_inputs) = straps(config.board);
+  static_cast<HostInputs&>(inputs) = host_inputs;
   named.outputs(0, {}, board->outputs());
   power_on();
 }
@@ -177,23 +185,7 @@ void Machine::Impl::trace_cpu(bool on) {
 }
 
 void Machine::Impl::apply_host_inputs() {
-  inputs.isa_sa = host_inputs.isa_sa;
-  inputs.isa_sd = host_inputs.isa_sd;
-  inputs.isa_ior_n = host_inputs.isa_ior_n;
-  inputs.isa_iow_n = host_inputs.isa_iow_n;
-  inputs.isa_memr_n = host_inputs.isa_memr_n;
-  inputs.isa_memw_n = host_inputs.isa_memw_n;
-  inputs.isa_aen = host_inputs.isa_aen;
-  inputs.isa_sbhe_n = host_inputs.isa_sbhe_n;
-  inputs.fitted = host_inputs.fitted;
-  inputs.macro_gate = host_inputs.macro_gate;
-  inputs.dpram_small = host_inputs.dpram_small;
-  inputs.jpan_fitted = host_inputs.jpan_fitted;
-  inputs.line_select = host_inputs.line_select;
-  inputs.jpan = host_inputs.jpan;
-  inputs.ext_clock = host_inputs.ext_clock;
-  inputs.ext_phase = host_inputs.ext_phase;
-  inputs.ext_servo = host_inputs.ext_servo;
+  static_cast<HostInputs&>(inputs) = host_inputs;
   board->set_inputs(inputs);
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
 }
@@ -204,7 +196,7 @@ Machine::~Machine() = default;
 
 Tick Machine::now() const { return impl_->board->now(); }
 Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_->run_until(limit, stop_on); }
-BoardInputs& Machine::inputs() { return impl_->host_inputs; }
+HostInputs& Machine::inputs() { return impl_->host_inputs; }
 void Machine::apply() { impl_->apply_host_inputs(); }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }

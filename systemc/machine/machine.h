@@ -45,7 +45,7 @@ struct MachineConfig {
   std::string firmware;    // ELF path
   std::string flash_file;  // "" = flash content is lost at the end
   bool jumper_e3 = false;
-  std::uint64_t seed = 1;   // initial content of RAM and DPRAM
+  std::uint64_t seed = 1;   // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
   Tick batch = 0;           // 0 = as long as the rule allows; else no advance longer than this many ticks
   bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
 };
@@ -63,7 +63,7 @@ class Machine : public sc_core::sc_module {
   Tick run_until(Tick limit, const BoardOutputs& stop_on = {});
 
   // The pins that the host owns. The host edits them and calls apply(); edge now()+1 is the first to see them.
-  BoardInputs& inputs();
+  HostInputs& inputs();
   void apply();
   const BoardOutputs& outputs() const;
 

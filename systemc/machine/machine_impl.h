@@ -80,8 +80,8 @@ struct Machine::Impl {
   std::unique_ptr<ElfFile> elf;
   std::uint64_t power_ons = 0;
 
-  BoardInputs host_inputs;  // as the host edits them
-  BoardInputs inputs;       // as the board has them
+  HostInputs host_inputs;  // as the host edits them
+  BoardInputs inputs;      // as the board has them
 
   struct Event {
     Tick tick;

@@ -33,7 +33,7 @@ void MachineSignals::outputs(TimeFs time, const BoardOutputs& before, const Boar
   data_bus(time, after);
 }
 
-void MachineSignals::inputs(TimeFs time, const BoardInputs& in, const BoardOutputs& board) {
+void MachineSignals::inputs(TimeFs time, const HostInputs& in, const BoardOutputs& board) {
   signals_.set(sa_, time, in.isa_sa);
   signals_.set(ior_n_, time, in.isa_ior_n);
   signals_.set(iow_n_, time, in.isa_iow_n);

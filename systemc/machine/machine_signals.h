@@ -15,7 +15,7 @@ class MachineSignals {
   explicit MachineSignals(Signals& signals);
 
   void outputs(TimeFs time, const BoardOutputs& before, const BoardOutputs& after);
-  void inputs(TimeFs time, const BoardInputs& in, const BoardOutputs& board);
+  void inputs(TimeFs time, const HostInputs& in, const BoardOutputs& board);
   void pc(TimeFs time, std::uint32_t pc, const ElfFile* elf);
 
   // cpu.task follows the nesting of traps.

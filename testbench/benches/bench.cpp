@@ -1,7 +1,9 @@
 #include "testbench/benches/bench.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <ostream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,6 +20,13 @@ bool BenchReport::step(const std::string& name, bool passed, const std::string& 
   return passed;
 }
 
+bool BenchReport::step(const std::string& name, const Comparison& compared, unsigned least, const std::string& detail) {
+  if (!compared.difference().empty()) return step(name, false, compared.difference());
+  if (compared.made() < least)
+    return step(name, false, fmt::format("{} compared, expected {} or more", compared.made(), least));
+  return step(name, true, detail);
+}
+
 bool BenchReport::passed() const {
   return !steps_.empty() && std::all_of(steps_.begin(), steps_.end(), [](const BenchStep& s) { return s.passed; });
 }
@@ -27,6 +36,28 @@ std::string BenchContext::ask(const std::string& line) const {
   std::string text = reply.complete ? "" : "no reply";
   for (const auto& l : reply.lines) text += (text.empty() ? "" : "|") + l;
   return text;
+}
+
+std::vector<long> BenchContext::numbers(const std::string& line) const {
+  std::vector<long> values;
+  for (const auto& l : link.command(line).lines) values.push_back(std::strtol(l.c_str(), nullptr, 10));
+  return values;
+}
+
+std::string BenchContext::problems() const {
+  constexpr std::pair<unsigned, const char*> kBits[] = {
+      {10, "flash error"}, {7, "configuration error"}, {3, "no phase clock"}};  // of the first word
+  const std::string answer = ask("???");
+  if (answer.size() < 6) return "`" + answer + "`, no status";
+  const long word = std::strtol(answer.substr(0, 6).c_str(), nullptr, 16);
+  std::string text;
+  for (const auto& [bit, name] : kBits)
+    if ((word >> bit & 1) != 0) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text.empty() ? "none" : text;
+}
+
+Tick BenchContext::next_fall(const PinField& pin, Tick limit) const {
+  return bus.wait_pin(pin, 1, limit) && bus.wait_pin(pin, 0, limit) ? bus.now() : -1;
 }
 
 namespace {
@@ -56,8 +87,5 @@ const Bench* find_bench(const std::string& name) {
     if (bench.name == name) return &bench;
   return nullptr;
 }
-
-std::string printed(const std::string& value) { return value; }
-std::string printed(std::int64_t value) { return std::to_string(value); }
 
 }  // namespace brick

@@ -1,5 +1,5 @@
 // A testbench: a named host program with steps and a verdict. Each has a negative control, a deliberately wrong rule or
-// a seeded bug with which it must fail, so that its verdict means something.
+// a seeded bug with which a named step must fail, so that its verdict means something.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "systemc/machine/machine.h"
+#include "testbench/benches/comparison.h"
 #include "testbench/host/host_bus.h"
 #include "testbench/host/host_link.h"
 
@@ -27,6 +28,8 @@ class BenchReport {
   BenchReport(std::ostream& out, Machine& machine) : out_(out), machine_(machine) {}
 
   bool step(const std::string& name, bool passed, const std::string& detail);
+  // Passes when nothing differs in `least` comparisons or more; `detail` is for a step that passes.
+  bool step(const std::string& name, const Comparison& compared, unsigned least, const std::string& detail);
   template <class T>
   bool equal(const std::string& name, const T& measured, const T& expected);
   void fail(const std::string& name, const std::string& detail) { step(name, false, detail); }
@@ -49,7 +52,10 @@ struct BenchContext {
   std::uint64_t seed;
   bool negative;
 
-  std::string ask(const std::string& line) const;  // data lines joined by '|'
+  std::string ask(const std::string& line) const;            // data lines joined by '|'
+  std::vector<long> numbers(const std::string& line) const;  // data lines as numbers
+  Tick next_fall(const PinField& pin, Tick limit) const;     // its tick, -1 after `limit` at either level
+  std::string problems() const;                              // what ??? reports of flash and clocks: "none", or by name
   void expect(const std::string& line, const std::string& answer) const { report.equal(line, ask(line), answer); }
 };
 
@@ -60,12 +66,18 @@ struct BenchNeed {
 };
 extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc;
 
+// What `brick run --negative` does, and the proof that the bench sees it: the first step that fails.
+struct NegativeControl {
+  std::string does;                                   // one line
+  std::string step;                                   // its name, '*' for what depends on the seed
+  std::string says;                                   // part of its detail
+  std::function<void(MachineConfig&)> seed_bug = {};  // changes the machine; empty if the bench does it itself
+};
+
 struct Bench {
   std::string name;
   std::string description;  // one line
-  std::string negative;     // what --negative does, one line
-  std::function<void(MachineConfig&)>
-      seed_bug;  // changes the machine for the negative control; empty if the bench does it itself
+  NegativeControl negative;
   std::function<void(BenchContext&)> run;
   BenchNeed need = kAnyBoard;
   std::string board = "geobrick-lv-8";  // without --board
@@ -74,9 +86,6 @@ struct Bench {
 // Every bench there is, in the order of `brick list`.
 const std::vector<Bench>& all_benches();
 const Bench* find_bench(const std::string& name);
-
-std::string printed(const std::string& value);
-std::string printed(std::int64_t value);
 
 template <class T>
 bool BenchReport::equal(const std::string& name, const T& measured, const T& expected) {

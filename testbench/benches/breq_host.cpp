@@ -161,20 +161,22 @@ std::string BreqHost::motion_line() {
   }
 }
 
-bool BreqHost::verdict(const std::string& step) {
+bool BreqHost::verdict(const std::string& step, const BreqScoreboard::Counts& least) {
   const auto& violations = scoreboard_.violations();
-  const auto& c = scoreboard_.counts();
-  std::string detail =
-      fmt::format("{} lines, BREQ pulsed {} times, stayed low {} times, raised by execution {} times, {} queries",
-                  c.lines - counted_.lines, c.pulses - counted_.pulses, c.stays_low - counted_.stays_low,
-                  c.raised_by_execution - counted_.raised_by_execution, c.queries - counted_.queries);
-  counted_ = c;
+  const BreqScoreboard::Counts c = scoreboard_.counts() - counted_;
+  counted_ = scoreboard_.counts();
+  const auto text = [](const BreqScoreboard::Counts& n) {
+    return fmt::format("{} lines, BREQ pulsed {} times, stayed low {} times, raised by execution {} times, {} queries",
+                       n.lines, n.pulses, n.stays_low, n.raised_by_execution, n.queries);
+  };
+  std::string detail = text(c);
+  if (!c.reaches(least)) detail += "; expected at least " + text(least);
   const bool good = violations.size() == reported_;
   if (!good) {
     detail += fmt::format("; {} violations, the first: {}", violations.size() - reported_, violations[reported_]);
     reported_ = violations.size();
   }
-  return context_.report.step(step, good, detail);
+  return context_.report.step(step, good && c.reaches(least), detail);
 }
 
 }  // namespace brick

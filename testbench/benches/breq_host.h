@@ -42,8 +42,8 @@ class BreqHost {
   unsigned random(unsigned below) { return static_cast<unsigned>(random_() % below); }
 
   BreqScoreboard& scoreboard() { return scoreboard_; }
-  // One step: no violation since the last call of this kind.
-  bool verdict(const std::string& step);
+  // One step: no violation since the last call of this kind, and as much of each kind as `least` says.
+  bool verdict(const std::string& step, const BreqScoreboard::Counts& least);
   unsigned interrupts() const { return interrupts_; }
 
  private:

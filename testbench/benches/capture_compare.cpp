@@ -3,8 +3,6 @@
 // auto-increment both ways, on the own counter or that of channel 1, EQU written by the host, and EQU as an interrupt.
 // Judged by testbench/checkers/channel_scoreboard.h.
 #include <algorithm>
-#include <array>
-#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -14,11 +12,12 @@
 namespace brick {
 namespace {
 
-constexpr unsigned kA = 1u << kEncA, kB = 1u << kEncB;
 // M-variables, + 100 for each further channel; 108 to 117 as usual for Turbo PMAC.
 constexpr unsigned kStatus = 100, kCaptured = 103, kCompareA = 108, kCompareB = 109, kIncrement = 110, kEquWrite = 111,
                    kEquState = 112, kEquBit = 116, kCaptBit = 117;
-constexpr std::uint32_t kJudged = 0xFFFF0F;  // of the status: all but encoder loss and the bits that read 0
+// Of the status: all but encoder loss and the bits that read 0.
+constexpr std::uint32_t kJudged = span(word::status::kHallCapture, word::status::kDemuxInvalid).mask() |
+                                  span(word::status::kEncoderError, word::status::kFlagT).mask();
 
 class CaptureCompareBench {
  public:
@@ -27,15 +26,15 @@ class CaptureCompareBench {
   }
 
   void run() {
-    host_.define(kStatus, 'X', 0, "0,24");
-    host_.define(kCaptured, 'X', 3, "0,24,S");
-    host_.define(kCompareA, 'Y', 7, "0,24,S");
-    host_.define(kCompareB, 'X', 7, "0,24,S");
-    host_.define(kIncrement, 'X', 6, "0,24,S");
-    host_.define(kEquWrite, 'X', 5, "11");
-    host_.define(kEquState, 'X', 5, "12");
-    host_.define(kEquBit, 'X', 0, "9");
-    host_.define(kCaptBit, 'X', 0, "11");
+    host_.define(kStatus, word::kStatus);
+    host_.define(kCaptured, word::kFlagPosition, true);
+    host_.define(kCompareA, word::kCompareA, true);
+    host_.define(kCompareB, word::kCompareB, true);
+    host_.define(kIncrement, word::kCompareIncrement, true);
+    host_.define(kEquWrite, word::kControl, false, word::control::kEquWrite);
+    host_.define(kEquState, word::kControl, false, word::control::kEquState);
+    host_.define(kEquBit, word::kStatus, false, word::status::kEqu);
+    host_.define(kCaptBit, word::kStatus, false, word::status::kCaptured);
     host_.sclk(1 + host_.pick(3));
     std::vector<unsigned> decode(host_.channels());
     for (unsigned& d : decode) d = 3 + 4 * host_.pick(2);
@@ -75,8 +74,7 @@ class CaptureCompareBench {
     const auto sclk = static_cast<unsigned>(host_.period());
     for (unsigned i = 0; i < steps; ++i) {
       if (host_.pick(turns) == 0) a_leads = !a_leads;
-      const bool equal = ((pins & kA) != 0) == ((pins & kB) != 0);
-      pins = static_cast<std::uint16_t>(pins ^ (equal == a_leads ? kA : kB));
+      pins = wheel_step(pins, a_leads);
       holds.push_back({pins, 2 * sclk + host_.pick(2 * sclk)});
       for (unsigned n = 0; noise != 0 && n < 2; ++n) {
         pins = static_cast<std::uint16_t>(pins ^ (1u << host_.pick(kChannelPins) & noise));
@@ -90,22 +88,19 @@ class CaptureCompareBench {
   // Status, X:+3 and status again of all channels against the scoreboards; the read arms.
   unsigned judge(const std::string& name, const std::string& detail) {
     const auto status = host_.read(kStatus), captured = host_.read(kCaptured), after = host_.read(kCaptBit);
-    std::string wrong;
+    Comparison same;
     unsigned taken = 0;
     for (unsigned i = 0; i < host_.channels(); ++i) {
       ChannelScoreboard& board = host_.board(i);
-      const auto check = [&](const char* what, long measured, long expected) {
-        if (measured != expected && wrong.empty())
-          wrong = fmt::format("{} I7mn2={} I7mn3={} I7mn4={} I7mn5={} {}: ${:06X}, expected ${:06X}", host_.name(i),
-                              board.capture.code, board.capture.flag, board.capture.gated ? 1 : 0, board.capture.gate,
-                              what, measured & 0xFFFFFF, expected & 0xFFFFFF);
-      };
-      check("status", status[i] & kJudged, board.status(kJudged));
-      taken += board.capture.captured() ? 1 : 0;
-      check("X:+3", captured[i] & 0xFFFFFF, board.capture.read());
-      check("captured bit after the read", after[i], 0);
+      const Capture& c = board.capture;
+      const std::string who =
+          fmt::format("{} I7mn2={} I7mn3={} I7mn4={} I7mn5={}", host_.name(i), c.code, c.flag, c.gated ? 1 : 0, c.gate);
+      same.word(who + " status", status[i] & kJudged, board.status(kJudged));
+      taken += c.captured() ? 1 : 0;
+      same.word(who + " X:+3", captured[i], board.capture.read());
+      same.equal(who + " captured bit after the read", after[i], 0);
     }
-    b_.report.step(name, wrong.empty(), wrong.empty() ? fmt::format("{} captured{}", taken, detail) : wrong);
+    b_.report.step(name, same, 3 * host_.channels(), fmt::format("{} captured{}", taken, detail));
     return taken;
   }
 
@@ -141,22 +136,21 @@ class CaptureCompareBench {
       host_.play();
       taken += judge(fmt::format("round {}, moved", round), "");
     }
-    judge_counts("positions meanwhile");
+    judge_counts("positions meanwhile", 8 * 64, 0);
     b_.report.step("captured while moving", taken >= 32, fmt::format("{} of 64, expected 32 or more", taken));
   }
 
-  void judge_counts(const std::string& name) {
-    std::string bad;
-    std::size_t events = 0, equs = 0;
+  // Every count and every edge of EQU; so many of each there must be.
+  void judge_counts(const std::string& name, unsigned least_counts, unsigned least_equs) {
+    Comparison counts, equs;
     for (unsigned i = 0; i < host_.channels(); ++i) {
       const auto d = host_.counts(i), e = host_.equs(i);
-      events += d.events;
-      equs += e.events;
-      if (!d.text.empty() && bad.empty()) bad = host_.name(i) + " counter, " + d.text;
-      if (!e.text.empty() && bad.empty()) bad = host_.name(i) + " EQU, " + e.text;
+      counts.judged(host_.name(i) + " counter", d.text, static_cast<unsigned>(d.events));
+      equs.judged(host_.name(i) + " EQU", e.text, static_cast<unsigned>(e.events));
     }
-    b_.report.step(name, bad.empty(),
-                   bad.empty() ? fmt::format("{} counts and {} edges of EQU, each at its tick", events, equs) : bad);
+    b_.report.step(name + ", counters", counts, least_counts,
+                   fmt::format("{} counts, each at its tick", counts.made()));
+    b_.report.step(name + ", EQU", equs, least_equs, fmt::format("{} edges, each at its tick", equs.made()));
   }
 
   // 0 -> 4 or 8 -> 12 captures where the counter stands; armed again by the read, 4 alone does nothing.
@@ -181,7 +175,7 @@ class CaptureCompareBench {
     set(2, base, code);
     set(2, plus_4(), code);
     b_.report.equal<std::int64_t>("back and again, captures", judge("as the scoreboard", ""), n);
-    judge_counts("positions meanwhile");
+    judge_counts("positions meanwhile", 8 * n, 0);
   }
 
   // The channel whose counter channel `i` compares.
@@ -230,17 +224,18 @@ class CaptureCompareBench {
       for (unsigned i = 0; i < host_.channels(); ++i)
         host_.drive(i, start + host_.pick(100), walk(host_.pins(i), 300, 0, 60));
       host_.play();
-      judge_counts(fmt::format("compare {}, increments{} (* channel 1's counter)", round + 1, shown));
+      judge_counts(fmt::format("compare {}, increments{} (* channel 1's counter)", round + 1, shown),
+                   100 * host_.channels(), 10 * host_.channels());
       const auto a_now = host_.read(kCompareA), b_now = host_.read(kCompareB), equ = host_.read(kEquBit);
-      std::string wrong;
+      Comparison same;
       for (unsigned i = 0; i < host_.channels(); ++i) {
         const Compare& c = host_.board(i).compare;
-        if ((a_now[i] & 0xFFFFFF) != c.a || (b_now[i] & 0xFFFFFF) != c.b || equ[i] != (c.equ ? 1 : 0))
-          wrong += fmt::format(" {}: A=${:06X} B=${:06X} EQU={}, expected ${:06X} ${:06X} {}", host_.name(i),
-                               a_now[i] & 0xFFFFFF, b_now[i] & 0xFFFFFF, equ[i], c.a, c.b, c.equ ? 1 : 0);
+        same.word(host_.name(i) + " compare A", a_now[i], c.a);
+        same.word(host_.name(i) + " compare B", b_now[i], c.b);
+        same.equal(host_.name(i) + " EQU", equ[i], c.equ ? 1 : 0);
       }
-      b_.report.step("A, B and EQU afterwards", wrong.empty(),
-                     wrong.empty() ? fmt::format("{}: A={} B={}", host_.name(0), a_now[0], b_now[0]) : wrong);
+      b_.report.step("A, B and EQU afterwards", same, 3 * host_.channels(),
+                     fmt::format("{}: A={} B={}", host_.name(0), a_now[0], b_now[0]));
     }
   }
 
@@ -260,12 +255,15 @@ class CaptureCompareBench {
       for (unsigned i = 0; i < n; ++i) state[i] = 1 - state[i];
       write(kEquState, state);  // bit 12 alone
       for (unsigned i = 0; i < n; ++i) state[i] = 1 - state[i];
-      unsigned wrong = 0;
-      for (unsigned i = 0; i < n; ++i)
-        wrong += bit[i] != state[i] || fallen[i] != 0 || pin_is(i) != state[i] ||
-                 before[i] != (host_.board(i).compare.equ ? 1 : 0);
-      for (unsigned i = 0; i < n; ++i) host_.board(i).compare.equ = state[i] != 0;
-      b_.report.equal<std::int64_t>("M111, M112: EQU written, wrong channels", wrong, 0);
+      Comparison same;
+      for (unsigned i = 0; i < n; ++i) {
+        same.equal(host_.name(i) + " EQU before", before[i], host_.board(i).compare.equ ? 1 : 0);
+        same.equal(host_.name(i) + " EQU in the status", bit[i], state[i]);
+        same.equal(host_.name(i) + " EQU pin, bit 12 written again", pin_is(i), state[i]);
+        same.equal(host_.name(i) + " control bit 11", fallen[i], 0);
+        host_.board(i).compare.equ = state[i] != 0;
+      }
+      b_.report.step("M111, M112: EQU written", same, 4 * n, fmt::format("{} comparisons", same.made()));
     }
     for (auto& seen : host_.player().seen) seen.equs.clear();
     for (unsigned i = 0; i < n; ++i) host_.board(i).equs.clear();
@@ -298,11 +296,7 @@ class CaptureCompareBench {
       // A wheel that turns up: A leads in mode 3, B in mode 7.
       std::uint16_t pins = host_.pins(i);
       std::vector<ChannelHost::Hold> holds;
-      for (unsigned k = 0; k < 6; ++k) {
-        const bool equal = ((pins & kA) != 0) == ((pins & kB) != 0);
-        pins = static_cast<std::uint16_t>(pins ^ (equal == (board.decoder.mode == 3) ? kA : kB));
-        holds.push_back({pins, 200});
-      }
+      for (unsigned k = 0; k < 6; ++k) holds.push_back({pins = wheel_step(pins, board.decoder.mode == 3), 200});
       const std::uint8_t before = b_.bus.read_pic_status();
       host_.drive(i, host_.now() + 100, holds);
       const bool came = b_.bus.wait_pin(pin::kIsaIrq, 1, 5000);
@@ -310,15 +304,17 @@ class CaptureCompareBench {
       host_.play();
       const auto& edges = host_.player().seen[i].equs;
       const Tick rise = edges.size() == 1 ? edges[0].tick : -1;
-      b_.report.step(fmt::format("EQU{} leaves {} upwards: IR{} and the interrupt", code, passed, line),
-                     before == 0 && came && rise >= 0 && irq >= rise && irq <= rise + 5 * kTicksPerRef,
-                     fmt::format("IRQ {} ticks after EQU, expected 0 to {}; IST before ${:02X}", irq - rise,
-                                 5 * kTicksPerRef, before));
+      const std::string name = fmt::format("EQU{} leaves {} upwards: ", code, passed);
+      b_.report.equal<std::int64_t>(name + "IST before", before, 0);
+      // Two flip-flops on clk_ref and the edge detector of the interrupt controller.
+      b_.report.step(name + fmt::format("IR{} and the interrupt", line),
+                     came && rise >= 0 && irq - rise == 3 * kTicksPerRef,
+                     fmt::format("IRQ {} ticks after EQU, expected {}", irq - rise, 3 * kTicksPerRef));
       const HostBus::Pic pic = b_.bus.read_pic();
       b_.report.equal<std::int64_t>("IST", pic.ist, 1 << line);
       b_.bus.clear_pic();
       b_.bus.write_pic_mask(0);
-      judge_counts("EQU at its tick");
+      judge_counts("at their ticks", 6, 1);
     }
   }
 
@@ -332,12 +328,12 @@ void run(BenchContext& b) { CaptureCompareBench(b).run(); }
 
 // covers: CARD-1 CARD-2
 Bench capture_compare_bench() {
-  return {"capture-compare",
-          "every trigger code with every flag, gated and de-multiplexed index, compare both ways, EQU as an interrupt",
-          "the scoreboard's EQU toggles when a position is reached instead of left",
-          nullptr,
-          run,
-          kAServoIc};
+  return {
+      "capture-compare",
+      "every trigger code with every flag, gated and de-multiplexed index, compare both ways, EQU as an interrupt",
+      {"the scoreboard's EQU toggles when a position is reached instead of left", "compare 1, *, EQU", "EQU: change"},
+      run,
+      kAServoIc};
 }
 
 }  // namespace brick

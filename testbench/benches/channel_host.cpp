@@ -75,8 +75,8 @@ void ChannelHost::cycle(const PortACycle& c) {
                                            fs_to_tick(c.data_time)};
 }
 
-ChannelHost::BusRead ChannelHost::last_read(bool x, std::uint32_t address) const {
-  const auto at = reads_.find(2 * address + (x ? 1 : 0));
+ChannelHost::BusRead ChannelHost::last_read(unsigned channel, const regs::Register& word) const {
+  const auto at = reads_.find(2 * address(channel, word) + (word.space == 'X' ? 1 : 0));
   return at == reads_.end() ? BusRead{} : at->second;
 }
 
@@ -150,17 +150,17 @@ void ChannelHost::play() {
 }
 
 namespace {
-// The first difference in words; `slack` is how much later than the rule an edge may be.
+// The first difference in words.
 ChannelHost::Difference differ(std::vector<ChannelScoreboard::Change>& expected,
-                               std::vector<ChannelScoreboard::Change>& seen, Tick slack) {
+                               std::vector<ChannelScoreboard::Change>& seen) {
   ChannelHost::Difference d{"", expected.size()};
   const auto text = [](const std::vector<ChannelScoreboard::Change>& list, std::size_t i) {
     return i < list.size() ? fmt::format("{} at tick {}", list[i].value, list[i].tick) : std::string("nothing");
   };
-  for (std::size_t i = 0; i < std::max(expected.size(), seen.size()) && d.text.empty(); ++i) {
-    const bool same = i < expected.size() && i < seen.size() && expected[i].value == seen[i].value &&
-                      seen[i].tick >= expected[i].tick && seen[i].tick <= expected[i].tick + slack;
-    if (!same) d.text = fmt::format("change {}: {}, expected {}", i + 1, text(seen, i), text(expected, i));
+  const auto [e, s] = std::mismatch(expected.begin(), expected.end(), seen.begin(), seen.end());
+  if (e != expected.end() || s != seen.end()) {
+    const auto at = static_cast<std::size_t>(e - expected.begin());
+    d.text = fmt::format("change {}: {}, expected {}", at + 1, text(seen, at), text(expected, at));
   }
   expected.clear();
   seen.clear();
@@ -169,10 +169,10 @@ ChannelHost::Difference differ(std::vector<ChannelScoreboard::Change>& expected,
 }  // namespace
 
 ChannelHost::Difference ChannelHost::counts(unsigned channel) {
-  return differ(boards_[channel]->counts, player_.seen[channel].counts, 0);
+  return differ(boards_[channel]->counts, player_.seen[channel].counts);
 }
 ChannelHost::Difference ChannelHost::equs(unsigned channel) {
-  return differ(boards_[channel]->equs, player_.seen[channel].equs, kTicksPerRef);
+  return differ(boards_[channel]->equs, player_.seen[channel].equs);
 }
 
 }  // namespace brick

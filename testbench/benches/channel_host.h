@@ -21,6 +21,12 @@ struct PinEvent {
   std::uint16_t pins;
 };
 
+// A and B one step on: 00, 10, 11, 01 of {A, B} when A leads, else back.
+constexpr std::uint16_t wheel_step(std::uint16_t pins, bool a_leads) {
+  const bool equal = (pins >> kEncA & 1) == (pins >> kEncB & 1);
+  return static_cast<std::uint16_t>(pins ^ (equal == a_leads ? 1u << kEncA : 1u << kEncB));
+}
+
 // Plays a list of levels and records what the output pins show.
 class PinPlayer : public MotorPeer {
  public:
@@ -89,7 +95,7 @@ class ChannelHost : public ServoHost {
     std::uint32_t data = 0;
     Tick servo = -1, end = -1;  // `end`: the data was taken
   };
-  BusRead last_read(bool x, std::uint32_t address) const;
+  BusRead last_read(unsigned channel, const regs::Register& word) const;
 
  private:
   void cycle(const PortACycle& c);

@@ -1,7 +1,5 @@
 #include "testbench/benches/clock_host.h"
 
-#include <cstdlib>
-
 #include <fmt/format.h>
 
 namespace brick {
@@ -28,10 +26,6 @@ std::int64_t ClockHost::source_signal() {
   const Signals& signals = bench_.machine.signals();
   const auto id = signals.find("clock.source");
   return id ? static_cast<std::int64_t>(signals.value(*id)) : -1;
-}
-
-std::int64_t ClockHost::status(unsigned bits) {
-  return std::strtol(bench_.ask("???").substr(0, 6).c_str(), nullptr, 16) & bits;
 }
 
 void ClockHost::settle(const ClockSetting& from, const ClockSetting& to) {
@@ -76,21 +70,18 @@ void ClockHost::restarted(unsigned ic) {
   checker_.run(now(), settings_[ic]);
 }
 
-Tick ClockHost::next_fall(const PinField& pin) {
-  const Tick limit = 4 * settings_[source_].servo() + ClockChecker::kHandOver;
-  if (!bench_.bus.wait_pin(pin, 1, limit) || !bench_.bus.wait_pin(pin, 0, limit)) return -1;
-  return now();
-}
-
-void ClockHost::check(const std::string& name) {
+void ClockHost::check(const std::string& name, unsigned falls) {
   checker_.finish(now());
   const auto& found = checker_.violations();
-  const std::size_t fresh = found.size() - judged_;
-  bench_.report.step(name, fresh == 0,
-                     fresh == 0 ? fmt::format("{} falls of PHASE, {} of SERVO so far", checker_.counts().phase_falls,
-                                              checker_.counts().servo_falls)
-                                : fmt::format("{} violations, the first: {}", fresh, found[judged_].text));
+  const ClockChecker::Counts& counts = checker_.counts();
+  const unsigned phase = counts.phase_falls - counted_.phase_falls, servo = counts.servo_falls - counted_.servo_falls;
+  std::string text = fmt::format("{} falls of PHASE, {} of SERVO", phase, servo);
+  if (phase < falls) text += fmt::format(", expected {} or more of PHASE", falls);
+  if (found.size() > judged_)
+    text += fmt::format("; {} violations, the first: {}", found.size() - judged_, found[judged_].text);
+  bench_.report.step(name, phase >= falls && found.size() == judged_, text);
   judged_ = found.size();
+  counted_ = counts;
 }
 
 void ClockHost::verdict(const std::string& name, unsigned periods) {
@@ -112,6 +103,7 @@ void ClockHost::verdict(const std::string& name, unsigned periods) {
   if (fresh > 0) text += ", the first: " + checker_.violations()[judged_].text;
   bench_.report.step(name, good, text);
   judged_ = checker_.violations().size();
+  counted_ = checker_.counts();
 }
 
 }  // namespace brick

@@ -35,8 +35,7 @@ class ClockHost {
 
   std::string ask(const std::string& line) { return bench_.ask(line); }
   void expect(const std::string& line, const std::string& answer) { bench_.expect(line, answer); }
-  std::int64_t source_signal();        // clock.source
-  std::int64_t status(unsigned bits);  // bits of the first word of ???
+  std::int64_t source_signal();  // clock.source
   Tick now() const { return bench_.bus.now(); }
 
   // I7m00, I7m01, I7m02 in one line. On the source the clocks change, on another IC nothing happens.
@@ -51,17 +50,20 @@ class ClockHost {
   // Runs `periods` servo periods and reports source, both periods as measured, and what the checker found since the
   // last verdict.
   void verdict(const std::string& name, unsigned periods = 2);
-  void check(const std::string& name);  // the checker's part alone
+  void check(const std::string& name, unsigned falls = 2);  // the checker's part alone; so many of PHASE at least
 
  private:
-  Tick next_fall(const PinField& pin);
+  Tick next_fall(const PinField& pin) {
+    return bench_.next_fall(pin, 4 * settings_[source_].servo() + ClockChecker::kHandOver);
+  }
   void settle(const ClockSetting& from, const ClockSetting& to);
 
   BenchContext& bench_;
   ClockChecker checker_;
   std::array<ClockSetting, kClockIcs> settings_{};
   unsigned source_ = 0;
-  std::size_t judged_ = 0;
+  std::size_t judged_ = 0;  // violations
+  ClockChecker::Counts counted_;
 };
 
 }  // namespace brick

@@ -14,7 +14,6 @@
 namespace brick {
 namespace {
 
-constexpr unsigned kConfigurationError = 1u << 7, kNoPhaseClock = 1u << 3;  // 5th and 6th character of ???
 constexpr Tick kMillisecond = kPwmClockHz / 1000;
 constexpr Tick kRestart =
     7 * kMillisecond;      // $$$ writes every register of every IC (22) between the inputs and the output
@@ -81,18 +80,15 @@ class SelectBench {
 
   // Every direction variable: 0 on the source, `inputs` on the others (1 on a MACROGATE), 0 where there is no IC.
   void directions(const std::string& name, unsigned inputs, std::uint32_t gates = 0, std::uint32_t present = ~0u) {
-    std::string wrong;
+    Comparison same;
     for (const unsigned ic : fitted_) {
       const bool gate = ic >= kFirstMacroIc && (gates >> (ic - kFirstMacroIc) & 1) != 0;
       const unsigned expected = ic == host_.source() || (present >> ic & 1) == 0 ? 0 : gate ? 1 : inputs;
-      const std::string variable = fmt::format("I{}", direction_variable(ic));
-      const std::string answer = host_.ask(variable);
-      if (answer != std::to_string(expected)) wrong += fmt::format(" {}={} (expected {})", variable, answer, expected);
+      const std::string variable = fmt::format("I{}", direction_variable(ic)), answer = host_.ask(variable);
+      same.judged(variable, answer == std::to_string(expected) ? "" : fmt::format("{}, expected {}", answer, expected));
     }
-    b_.report.step(name, wrong.empty(),
-                   wrong.empty() ? fmt::format("I{}=0, {} others are inputs", direction_variable(host_.source()),
-                                               fitted_.size() - 1)
-                                 : wrong);
+    b_.report.step(name, same, 2,
+                   fmt::format("I{}=0, {} others are inputs", direction_variable(host_.source()), fitted_.size() - 1));
   }
 
   // CLK-2, CLK-6: variables of ICs that are not the source have no effect.
@@ -108,16 +104,16 @@ class SelectBench {
   // I19-2: live, by one line as the manual demands, in both orders of writing.
   void by_one_line() {
     bool new_first = (b_.seed & 1) != 0;
-    for (const unsigned ic : some(fitted_.size() / 2)) {
+    const auto order = some(fitted_.size() / 2);
+    for (const unsigned ic : order) {
       const std::string line = both(ic, host_.source(), new_first);
       new_first = !new_first;
       host_.move(ic, line);
       host_.verdict(line);
     }
     directions("directions after the last move", 3);
-    const auto& counts = host_.checker().counts();
-    b_.report.step("hand-overs", counts.odd_highs > 0,
-                   fmt::format("one odd high level each ({}), every low level whole", counts.odd_highs));
+    b_.report.equal<std::int64_t>("odd high levels, one each hand-over", host_.checker().counts().odd_highs,
+                                  static_cast<std::int64_t>(order.size()));
   }
 
   // A follower with the same I7m00 has its turnarounds where the phase clock has them, three ticks later. It shows when
@@ -128,19 +124,17 @@ class SelectBench {
       if (ic != host_.source()) host_.program(ic, same);
     host_.program(host_.source(), same);
     b_.bus.wait(16 * same.phase());  // outside the window only each fourth edge moves a turnaround
-    std::string behind;
-    bool good = true;
+    Comparison behind;
     for (const unsigned ic : some(1 + fitted_.size() / 4)) {
       b_.bus.wait(6 * same.phase() + pick(static_cast<unsigned>(same.phase())));
       const Tick before = host_.checker().last_phase_fall();
       host_.move(ic, both(ic, host_.source(), pick(2) != 0));
       const Tick offset = (host_.checker().last_phase_fall() - before) % same.half();
-      const Tick late = offset > same.half() / 2 ? offset - same.half() : offset;
-      good = good && late == kSync;
-      behind += fmt::format(" {}", late);
+      behind.equal(fmt::format("I{}, ticks behind the old source", direction_variable(ic)),
+                   offset > same.half() / 2 ? offset - same.half() : offset, kSync);
     }
-    b_.report.step("followers in step when they take over", good,
-                   fmt::format("ticks behind the old source:{}; expected {}", behind, kSync));
+    b_.report.step("followers in step when they take over", behind, 1,
+                   fmt::format("{} of them, {} ticks behind the old source", behind.made(), kSync));
     host_.verdict("same I7m00..02 in every IC");
   }
 
@@ -157,8 +151,7 @@ class SelectBench {
       host_.move(ic, "$$$", kRestart);
       host_.verdict(i19 + ", SAVE, $$$");
       directions("directions, " + i19, 3);
-      b_.report.equal<std::int64_t>("no configuration error, no missing phase clock",
-                                    host_.status(kConfigurationError | kNoPhaseClock), 0);
+      problems("none");
     }
   }
 
@@ -195,6 +188,10 @@ class SelectBench {
     host_.verdict("one source again");
   }
 
+  void problems(const std::string& expected) {
+    b_.report.equal<std::string>("problems in ???", b_.problems(), expected);
+  }
+
   void idle(const std::string& name) {
     const BoardOutputs& out = b_.machine.outputs();
     b_.report.equal<std::string>(name,
@@ -208,12 +205,11 @@ class SelectBench {
     host_.stop(variable + "=3");
     b_.bus.wait(2 * kMillisecond + 10 * host_.setting(host_.source()).phase());
     idle("no source");
-    b_.report.equal<std::int64_t>("status bits 7 and 3", host_.status(kConfigurationError | kNoPhaseClock),
-                                  kNoPhaseClock);
-    host_.check("nothing moves without a source");
+    problems("no phase clock");
+    host_.check("nothing moves without a source", 0);
     host_.start(host_.source(), variable + "=0");
     host_.verdict("source again");
-    b_.report.equal<std::int64_t>("status bits 7 and 3", host_.status(kConfigurationError | kNoPhaseClock), 0);
+    problems("none");
   }
 
   bool restart() {
@@ -232,8 +228,7 @@ class SelectBench {
     if (!restart()) return;
     host_.expect("I19", std::to_string(direction_variable(ic)));
     idle(fmt::format("IC of I{} missing", direction_variable(ic)));
-    b_.report.equal<std::int64_t>("status bits 7 and 3", host_.status(kConfigurationError | kNoPhaseClock),
-                                  kConfigurationError | kNoPhaseClock);
+    problems("configuration error, no phase clock");
   }
 
   // Jumper E3 repairs it. Re-initialisation passes a MACROGATE over: with servo IC 0 missing too the next in the order
@@ -259,7 +254,7 @@ class SelectBench {
     host_.expect("I19", std::to_string(direction_variable(first)));
     directions("directions, re-initialised", 3, b_.machine.inputs().macro_gate, present);
     if (gate) host_.expect("I6807=3 I6807", "1");
-    b_.report.equal<std::int64_t>("status bits 7 and 3", host_.status(kConfigurationError | kNoPhaseClock), 0);
+    problems("none");
   }
 
   // Jumper E1: the clocks come from the connector, every IC is an input, dividers have no effect.
@@ -267,7 +262,7 @@ class SelectBench {
     const std::string variable = fmt::format("I{}", direction_variable(host_.source()));
     host_.stop(variable + "=3");
     b_.bus.wait(ClockChecker::release(host_.setting(host_.source())));
-    BoardInputs& in = b_.machine.inputs();
+    HostInputs& in = b_.machine.inputs();
     in.ext_clock = true;
     b_.machine.apply();
     b_.bus.wait(2 * kSync);
@@ -292,7 +287,7 @@ class SelectBench {
     b_.report.equal<std::int64_t>("the last one tick after its pin", host_.checker().last_phase_fall(),
                                   origin + (kPeriods - 1) * outside.phase() + outside.high() + 1);
     host_.check(fmt::format("clocks from outside, {} ticks", outside.phase()));
-    b_.report.equal<std::int64_t>("status bit 3", host_.status(kNoPhaseClock), 0);
+    problems("none");
     host_.checker().ignore();
     in.ext_clock = false;
     in.ext_phase = in.ext_servo = true;
@@ -315,8 +310,8 @@ class SelectBench {
 Bench clock_select_bench() {
   return {"clock-select",
           "half of the ICs as the source of phase and servo clock, by one line and by I19, SAVE, $$$",
-          "servo dividers one higher than the checker is told",
-          nullptr,
+          {"servo dividers one higher than the checker is told", "own I7m00..02 in every IC",
+           "violations but *SERVO does not fall"},
           [](BenchContext& b) { SelectBench(b).sources(); },
           kTwoIcs,
           "all-ics"};
@@ -326,8 +321,8 @@ Bench clock_select_bench() {
 Bench clock_faults_bench() {
   return {"clock-faults",
           "two sources of the clocks, none, a missing IC, a MACROGATE, clocks from outside (E1)",
-          "servo dividers one higher than the checker is told",
-          nullptr,
+          {"servo dividers one higher than the checker is told", "own I7m00..02 in every IC",
+           "violations but *SERVO does not fall"},
           [](BenchContext& b) { SelectBench(b).faults(); },
           kTwoIcs,
           "turbo-pmac2-pc"};

@@ -38,8 +38,7 @@ class EncoderMoves {
   std::vector<ChannelHost::Hold> even(std::uint16_t pins, unsigned steps, bool a_leads, Tick sclk) const {
     std::vector<ChannelHost::Hold> holds{{pins, host_.period()}};
     for (unsigned i = 0; i < steps; ++i) {
-      const bool equal = ((pins & kA) != 0) == ((pins & kB) != 0);
-      pins = static_cast<std::uint16_t>(pins ^ (equal == a_leads ? kA : kB));
+      pins = wheel_step(pins, a_leads);
       holds.push_back({pins, sclk * host_.period()});
     }
     return holds;

@@ -3,7 +3,6 @@
 // scoreboard's filter at that time.
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -18,36 +17,38 @@ constexpr unsigned kAena = 114, kPins = 130, kControl = 131, kCaptured = 117, kP
 
 // The usual M-variables of the flags and their status bits, servo-ic:2.2.
 struct Flag {
-  unsigned number, bit;
+  unsigned number;
+  regs::Field bit;
   ChannelPin pin;
 };
-constexpr std::array<Flag, 10> kFlags{{{115, 19, kUser},
-                                       {119, 14, kEncC},
-                                       {120, 16, kHmfl},
-                                       {121, 17, kPlim},
-                                       {122, 18, kMlim},
-                                       {123, 15, kFault},
-                                       {124, 20, kW},
-                                       {125, 21, kV},
-                                       {126, 22, kU},
-                                       {127, 23, kT}}};
+constexpr std::array<Flag, 10> kFlags{{{115, word::status::kUser, kUser},
+                                       {119, word::status::kChc, kEncC},
+                                       {120, word::status::kHmfl, kHmfl},
+                                       {121, word::status::kPlim, kPlim},
+                                       {122, word::status::kMlim, kMlim},
+                                       {123, word::status::kFault, kFault},
+                                       {124, word::status::kFlagW, kW},
+                                       {125, word::status::kFlagV, kV},
+                                       {126, word::status::kFlagU, kU},
+                                       {127, word::status::kFlagT, kT}}};
+constexpr regs::Field kLevels = span(word::status::kCha, word::status::kFlagT);  // all input pins
 
 class FlagsBench {
  public:
   explicit FlagsBench(BenchContext& b) : b_(b), host_(b) {
     for (unsigned i = 0; i < host_.channels(); ++i) {
       host_.board(i).keep_levels = true;
-      if (b.negative) host_.board(i).samples = 1;
+      if (b.negative) host_.board(i).filter.lets_one_pass = true;
     }
   }
 
   void run() {
-    for (const Flag& f : kFlags) host_.define(f.number, 'X', 0, std::to_string(f.bit));
-    host_.define(kPins, 'X', 0, "12,12");
-    host_.define(kControl, 'X', 5, "0,24");
-    host_.define(kAena, 'X', 5, "14");
-    host_.define(kCaptured, 'X', 0, "11");
-    host_.define(kPosition, 'X', 3, "0,24,S");
+    for (const Flag& f : kFlags) host_.define(f.number, word::kStatus, false, f.bit);
+    host_.define(kPins, word::kStatus, false, kLevels);
+    host_.define(kControl, word::kControl);
+    host_.define(kAena, word::kControl, false, word::control::kAena);
+    host_.define(kCaptured, word::kStatus, false, word::status::kCaptured);
+    host_.define(kPosition, word::kFlagPosition, true);
     host_.sclk(3 + host_.pick(2));
     levels("nothing connected");
     walking(false);
@@ -64,23 +65,21 @@ class FlagsBench {
   }
 
   // Bits 23..12 of all channels show their pins.
-  bool levels(const std::string& name) {
+  void compare_levels(Comparison& same, const std::string& when) {
     const auto read = host_.read(kPins);
-    std::string bad;
     for (unsigned i = 0; i < host_.channels(); ++i)
-      if (read[i] != host_.pins(i) && bad.empty())
-        bad = fmt::format("{} ${:03X}, expected ${:03X}", host_.name(i), read[i], host_.pins(i));
-    if (!name.empty() || !bad.empty())
-      b_.report.step(name.empty() ? "status bits 23..12" : name, bad.empty(),
-                     bad.empty() ? fmt::format("${:03X} on all channels", read[0]) : bad);
-    return bad.empty();
+      same.word(fmt::format("{} status bits 23..12, {}", host_.name(i), when), read[i], host_.pins(i));
+  }
+  void levels(const std::string& name) {
+    Comparison same;
+    compare_levels(same, name);
+    b_.report.step(name, same, host_.channels(), fmt::format("status bits 23..12 of {} channels", same.made()));
   }
 
   // One pin a channel differs from the others, each in turn; and one channel's M-variables, which are not only bits of
   // one field.
   void walking(bool low) {
-    unsigned good = 0, flags = 0;
-    std::string bad;
+    Comparison same;
     const unsigned first = host_.pick(kChannelPins);
     for (unsigned step = 0; step < kChannelPins; ++step) {
       std::vector<std::uint16_t> pins;
@@ -89,20 +88,17 @@ class FlagsBench {
         pins.push_back(low ? static_cast<std::uint16_t>(~one & kAllPins) : one);
       }
       put(pins);
-      good += levels("") ? 1 : 0;
+      compare_levels(same, fmt::format("pattern {}", step + 1));
       const unsigned i = (step + first) % host_.channels();
       const auto read = host_.numbers(fmt::format("M{} M{}..{}", 115 + 100 * i, 119 + 100 * i, 127 + 100 * i));
-      for (unsigned k = 0; k < kFlags.size(); ++k) {
-        const long expected = pins[i] >> kFlags[k].pin & 1;
-        const bool same = k < read.size() && read[k] == expected;
-        flags += same ? 1 : 0;
-        if (!same && bad.empty())
-          bad = fmt::format(", M{} of {}, expected {}", kFlags[k].number + 100 * i, host_.name(i), expected);
-      }
+      for (unsigned k = 0; k < std::min(read.size(), kFlags.size()); ++k)
+        same.equal(fmt::format("{} M{}", host_.name(i), kFlags[k].number + 100 * i), read[k],
+                   pins[i] >> kFlags[k].pin & 1);
     }
-    b_.report.step(fmt::format("one pin {}, each in turn", low ? "low" : "high"),
-                   good == kChannelPins && flags == kChannelPins * kFlags.size(),
-                   fmt::format("{} of 12 words of all channels, {} of 120 M-variables{}", good, flags, bad));
+    constexpr unsigned kVariables = kChannelPins * kFlags.size();
+    b_.report.step(fmt::format("one pin {}, each in turn", low ? "low" : "high"), same,
+                   kChannelPins * host_.channels() + kVariables,
+                   fmt::format("12 words of {} channels, {} M-variables", host_.channels(), kVariables));
   }
 
   // A pulse on every pin, again and again, while the host reads. Of one SCLK period: never seen. Of two: each read
@@ -123,27 +119,25 @@ class FlagsBench {
       }
       b_.bus.wait(40 * p);
       const Tick end = start + kPulses * 4 * p;
-      unsigned judged = 0, pulses = 0;
-      std::string bad;
+      Comparison same;
+      unsigned pulses = 0;
       while (host_.now() < end) {
         host_.read(kPins);
         for (unsigned i = 0; i < host_.channels(); ++i) {
-          const auto read = host_.last_read(true, host_.address(i, 0));
+          const auto read = host_.last_read(i, word::kStatus);
           host_.board(i).advance(host_.now());
           const long expected = level_during(i, read.tick, read.end);
-          const long shown = read.data >> 12;
           if (expected < 0) continue;
-          ++judged;
+          const long shown = kLevels.get(read.data);
           pulses += shown != base[i] ? 1 : 0;
-          if (shown != expected && bad.empty())
-            bad = fmt::format("{} at tick {}: ${:03X}, expected ${:03X}", host_.name(i), read.tick, shown, expected);
+          same.word(fmt::format("{} bits 23..12 at tick {}", host_.name(i), read.tick), shown, expected);
         }
       }
       host_.play();
-      const bool enough = judged >= 10 && (length == 1 ? pulses == 0 : pulses > 0);
-      b_.report.step(fmt::format("pulses of {} SCLK period{} on all pins", length, length == 1 ? "" : "s"),
-                     bad.empty() && enough,
-                     bad.empty() ? fmt::format("{} reads, {} of them during a pulse", judged, pulses) : bad);
+      const std::string name = fmt::format("pulses of {} SCLK period{} on all pins", length, length == 1 ? "" : "s");
+      b_.report.step(name, same, 10, fmt::format("{} reads, {} of them during a pulse", same.made(), pulses));
+      b_.report.step(name + " seen", length == 1 ? pulses == 0 : pulses > 0,
+                     fmt::format("{} times, expected {}", pulses, length == 1 ? "never" : "once or more"));
     }
   }
 
@@ -181,11 +175,13 @@ class FlagsBench {
                     {{host_.pins(i), 1 + host_.pick(90)}, {other, length * host_.period()}, {host_.pins(i), 1}});
       }
       host_.play();
-      long captured = 0;
-      for (const long c : host_.read(kCaptured)) captured += c;
-      b_.report.equal<std::int64_t>(fmt::format("HMFL, PLIM, MLIM, USER for {} SCLK period{}, channels that captured",
-                                                length, length == 1 ? "" : "s"),
-                                    captured, length == 1 ? 0 : n);
+      const auto captured = host_.read(kCaptured);
+      Comparison same;
+      for (unsigned i = 0; i < n; ++i)
+        same.equal(fmt::format("{} I7mn2={} I7mn3={} captured", host_.name(i), codes[i], flags[i]), captured[i],
+                   length == 1 ? 0 : 1);
+      b_.report.step(fmt::format("HMFL, PLIM, MLIM, USER for {} SCLK period{}", length, length == 1 ? "" : "s"), same,
+                     n, fmt::format("{} channels captured", length == 1 ? "no" : "all"));
     }
   }
 
@@ -197,9 +193,13 @@ class FlagsBench {
     return text;
   }
 
-  // Bits of the control word that belong to I7mnk, servo-ic:2.5: lowest bit and width.
-  static constexpr std::array<std::array<unsigned, 2>, 10> kFields{
-      {{0, 4}, {13, 1}, {4, 4}, {8, 2}, {15, 1}, {16, 2}, {22, 2}, {20, 2}, {19, 1}, {18, 1}}};
+  // Bits of the control word that belong to I7mnk, servo-ic:2.5.
+  static constexpr std::array<regs::Field, 10> kFields{
+      {word::control::kDecode, word::control::kCompareChannel,
+       span(word::control::kCaptureSource, word::control::kFlagInvert), word::control::kFlagSelect,
+       word::control::kGatedIndex, span(word::control::kGateState, word::control::kIndexDemux),
+       span(word::control::kAbDac, word::control::kCPfm), span(word::control::kAbInvert, word::control::kCInvert),
+       word::control::kPfmDirInvert, word::control::kHardware1t}};
 
   void aena() {
     const unsigned n = host_.channels();
@@ -220,32 +220,31 @@ class FlagsBench {
     b_.report.equal<std::string>("AENA with a fault", enables(), enables(&on));
     // All I-variables of all channels; the word is theirs and the M-variable's together.
     std::vector<std::uint32_t> words(n);
-    for (unsigned i = 0; i < n; ++i) words[i] = static_cast<std::uint32_t>(on[i]) << 14;
+    for (unsigned i = 0; i < n; ++i) words[i] = word::control::kAena.set(0, static_cast<std::uint32_t>(on[i]));
     for (unsigned k = 0; k < kFields.size(); ++k) {
       std::vector<unsigned> values(n);
       for (unsigned i = 0; i < n; ++i) {
-        values[i] = host_.pick(1u << kFields[k][1]);
+        values[i] = host_.pick(1u << kFields[k].width);
         const bool first = k == 1 && i % kChannels == 0;  // I7m11 is no choice
-        if (!first) words[i] |= values[i] << kFields[k][0];
+        if (!first) words[i] = kFields[k].set(words[i], values[i]);
       }
       host_.assign(k, values);
     }
-    constexpr std::uint32_t kJudged = 0xFFFFFF & ~(1u << 12);
     const auto judge = [&](const char* name) {
       const auto read = host_.read(kControl);
-      std::string bad;
+      Comparison same;
       for (unsigned i = 0; i < n; ++i) {
-        const std::uint32_t mask = i % kChannels == 0 ? kJudged & ~(1u << 13) : kJudged;
-        if ((read[i] & mask) != (words[i] & mask) && bad.empty())
-          bad = fmt::format("{} X:+5 = ${:06X}, expected ${:06X}", host_.name(i), read[i], words[i]);
+        std::uint32_t judged = 0xFFFFFF & ~word::control::kEquState.mask();
+        if (i % kChannels == 0) judged &= ~word::control::kCompareChannel.mask();
+        same.word(host_.name(i) + " X:+5", read[i] & judged, words[i] & judged);
       }
-      b_.report.step(name, bad.empty(), bad.empty() ? fmt::format("{} X:+5 = ${:06X}", host_.name(0), read[0]) : bad);
+      b_.report.step(name, same, n, fmt::format("{} X:+5 = ${:06X}", host_.name(0), read[0]));
     };
     judge("control words after I7mn0 to I7mn9");
     b_.report.equal<std::string>("AENA meanwhile", enables(), enables(&on));
     for (unsigned i = 0; i < n; ++i) {
       on[i] = 1 - on[i];
-      words[i] ^= 1u << 14;
+      words[i] ^= word::control::kAena.mask();
     }
     write();
     b_.report.equal<std::string>("M114 ... the other way", enables(), enables(&on));
@@ -268,8 +267,7 @@ void run(BenchContext& b) { FlagsBench(b).run(); }
 Bench flags_bench() {
   return {"flags",
           "every input pin at its status bit and M-variable, the filter, AENA and the control word",
-          "the scoreboard's filter lets one sample pass",
-          nullptr,
+          {"the scoreboard's filter lets one sample pass", "pulses of 1 SCLK period on all pins", "bits 23..12"},
           run,
           kAServoIc};
 }

@@ -47,9 +47,9 @@ void OutputHost::forget() {
   accesses_.clear();
 }
 
-Tick OutputHost::written(bool x, std::uint32_t address) const {
+Tick OutputHost::written(unsigned channel, const regs::Register& word) const {
   for (auto a = accesses_.rbegin(); a != accesses_.rend(); ++a)
-    if (a->write && a->x == x && a->address == address) return a->tick;
+    if (a->write && a->x == (word.space == 'X') && a->address == address(channel, word)) return a->tick;
   return -1;
 }
 

@@ -43,7 +43,7 @@ class OutputHost : public ServoHost, public MotorPeer {
   const std::vector<Edge>& phase() const { return phase_; }
   const std::vector<Access>& accesses() const { return accesses_; }
   // Last write to a word that is recorded, -1 if none.
-  Tick written(bool x, std::uint32_t address) const;
+  Tick written(unsigned channel, const regs::Register& word) const;
 
  private:
   void cycle(const PortACycle& c);

@@ -21,8 +21,8 @@ class Pfm {
  public:
   explicit Pfm(BenchContext& b) : host_(b), boards_(host_.channels()), inverted_(host_.channels()) {
     if (b.negative) rule_[0].largest = rule_[1].largest = 1 << 23;
-    host_.define(100 + kCommand, 'Y', 4, "0,24,S");
-    host_.define(100 + kPosition, 'X', 1, "0,24,S");
+    host_.define(100 + kCommand, word::kOutC, true);
+    host_.define(100 + kPosition, word::kPhasePosition, true);
     std::vector<std::string> words;
     for (unsigned i = 0; i < host_.channels(); ++i) {
       words.push_back(fmt::format("M{}=0", 100 * (i + 1) + kCommand));
@@ -113,13 +113,13 @@ void Pfm::command(const std::vector<int>& values) {
     words.push_back(fmt::format("M{}={}", 100 * (i + 1) + kCommand, values[i]));
   host_.say(words);
   for (unsigned i = 0; i < host_.channels(); ++i) {
-    const Tick at = host_.written(false, host_.address(i, 4));
+    const Tick at = host_.written(i, word::kOutC);
     if (at < 0) report().fail(host_.name(i), "the command never came to its word");
     commands_[i].push_back({at, values[i]});
   }
 }
 
-// Every count is one pulse, within two SCLK periods of its leading edge.
+// Every count is one pulse, at the first edge of SCLK after its leading edge.
 std::string Pfm::count_difference(unsigned channel) const {
   const unsigned n = channel % kChannels;
   const auto& changes = host_.changes(channel / kChannels);
@@ -133,7 +133,7 @@ std::string Pfm::count_difference(unsigned channel) const {
     if (i == pulses.size()) return fmt::format("count {} at tick {}, expected none", after, changes[k].tick);
     while (level + 1 < seen.size() && seen[level + 1].tick <= pulses[i]) ++level;
     const std::uint32_t expected = (before + ((seen[level].pins & 2) != 0 ? 0xFFFFFF : 1)) & 0xFFFFFF;
-    if (after != expected || changes[k].tick < pulses[i] || changes[k].tick > pulses[i] + 2 * kSclkPeriod)
+    if (after != expected || changes[k].tick <= pulses[i] || changes[k].tick > pulses[i] + kSclkPeriod)
       return fmt::format("count {} at tick {}, expected {} after tick {}", after, changes[k].tick, expected, pulses[i]);
     ++i;
   }
@@ -148,28 +148,23 @@ void Pfm::end(const std::string& what) {
   std::array<Tick, 2> grid{-1, -1};
   for (unsigned i = 0; i < host_.channels(); ++i)
     if (const auto pulses = rises(i); !pulses.empty() && grid[i / kChannels] < 0) grid[i / kChannels] = pulses.front();
-  std::string text, counts;
-  std::int64_t edges = 0, counted = 0;
+  Comparison edges, counts;
+  unsigned alone = 0;  // channels whose pulses can be told apart at the pin
   const auto position = host_.numbers(fmt::format("M{},{},100", 100 + kPosition, host_.channels()));
   for (unsigned i = 0; i < host_.channels(); ++i) {
     const auto seen = levels(i);
-    const std::string difference = boards_[i].judge(rule(i), commands_[i], seen, grid[i / kChannels], to);
-    edges += static_cast<std::int64_t>(seen.size()) - 1;
-    if (!difference.empty() && text.empty()) text = fmt::format("{}: {}", host_.name(i), difference);
+    edges.judged(host_.name(i), boards_[i].judge(rule(i), commands_[i], seen, grid[i / kChannels], to),
+                 static_cast<unsigned>(seen.size()) - 1);
     const PfmScoreboard::Pulses& p = boards_[i].pulses();
-    if (p.overlap) continue;  // pulses that run together cannot be told apart at the pin
-    counted += p.up + p.down;
-    std::string off = count_difference(i);
-    if (off.empty() && position.at(i) - position_.at(i) != p.up - p.down)
-      off = fmt::format("M{} went from {} to {}, {} pulses up, {} down", 100 * (i + 1) + kPosition, position_[i],
-                        position[i], p.up, p.down);
-    if (!off.empty() && counts.empty()) counts = fmt::format("{}: {}", host_.name(i), off);
+    if (p.overlap) continue;  // pulses that run together
+    ++alone;
+    counts.judged(host_.name(i), count_difference(i), static_cast<unsigned>(p.up + p.down));
+    counts.equal(fmt::format("{} M{} less {}", host_.name(i), 100 * (i + 1) + kPosition, position_[i]),
+                 position.at(i) - position_[i], p.up - p.down);
   }
-  report().step(what, text.empty() && edges > 0,
-                text.empty() ? fmt::format("{} edges, each at its tick", edges) : text);
-  if (counted > 0 || !counts.empty())
-    report().step(what + ", one count a pulse", counts.empty(),
-                  counts.empty() ? fmt::format("{} pulses", counted) : counts);
+  report().step(what, edges, 2 * host_.channels(), fmt::format("{} edges, each at its tick", edges.made()));
+  report().step(what + ", one count a pulse", counts, 2 * alone,
+                fmt::format("{} pulses of {} channels, on the others they run together", counts.made() - alone, alone));
 }
 
 // servo-ic:14/6; the same downwards on every second channel.
@@ -183,14 +178,15 @@ void Pfm::vector6() {
   for (unsigned i = 0; i < 2; ++i) {
     const auto pulses = rises(i);
     const auto seen = levels(i);
-    Tick period = 0, width = 0;
+    const std::string who = fmt::format("{} at ${:06X}, ", host_.name(i), values[i] & 0xFFFFFF);
+    Comparison same;
+    for (std::size_t k = 0; k + 1 < pulses.size(); ++k)
+      same.equal(who + "period in ticks", pulses[k + 1] - pulses[k], 256 * 12);
     for (std::size_t k = 0; k + 1 < seen.size(); ++k)
-      if ((seen[k].pins & 1) != 0) width = std::max(width, seen[k + 1].tick - seen[k].tick);
-    for (std::size_t k = 0; k + 1 < pulses.size(); ++k) period = std::max(period, pulses[k + 1] - pulses[k]);
-    report().equal<std::int64_t>(
-        fmt::format("{} at ${:06X}: period in ticks, 38.4 kHz", host_.name(i), values[i] & 0xFFFFFF), period, 256 * 12);
-    report().equal<std::int64_t>("width in ticks, I7004=15", width, 15 * 12);
-    report().equal<std::int64_t>("direction pin", seen.back().pins >> 1, i);
+      if ((seen[k].pins & 1) != 0)
+        same.equal(who + "width in ticks, I7004=15", seen[k + 1].tick - seen[k].tick, 15 * 12);
+    same.equal(who + "direction pin", seen.back().pins >> 1, i);
+    report().step(who + "38.4 kHz, 180 ticks wide", same, 14, fmt::format("{} pulses", pulses.size()));
   }
   end("$010000 and -$010000");
 }
@@ -255,8 +251,8 @@ void run(BenchContext& b) {
 Bench pfm_bench() {
   return {"pfm",
           "pulse trains on eight channels, every edge at its tick from power-up on; each pulse counted",
-          "the scoreboard knows no ceiling of PFM_CLK / 4",
-          nullptr,
+          {"the scoreboard knows no ceiling of PFM_CLK / 4", "commands about 2^22 and far beyond",
+           "servo_ic*expected pulse"},
           run,
           kAServoIc};
 }

@@ -3,6 +3,7 @@
 // 12 phases has its tick (testbench/checkers/pwm_scoreboard.h), through new commands at any time and new I7000.
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -17,22 +18,25 @@ constexpr unsigned kPhases = 3;  // A, B, C of a channel
 constexpr std::array<const MotorField*, kPhases> kTop{&motor_pin::kPwmATop, &motor_pin::kPwmBTop, &motor_pin::kPwmCTop};
 constexpr std::array<const MotorField*, kPhases> kBottom{&motor_pin::kPwmABot, &motor_pin::kPwmBBot,
                                                          &motor_pin::kPwmCBot};
-constexpr std::array<unsigned, kPhases> kVariable{2, 4, 7};  // M102, M104, M107: OUT A, B, C
-constexpr Tick kNear = 8;                                    // of a turn to the edge of PHASE, servo-ic:5.1/6
+constexpr std::array<unsigned, kPhases> kVariable{2, 4, 7};  // M102, M104, M107
+constexpr std::array<regs::Register, kPhases> kOut{word::kOutA, word::kOutB, word::kOutC};
+constexpr Tick kNear = 8;  // of a turn to the edge of PHASE, servo-ic:5.1/6
+enum Switches : unsigned { kOff = 0, kUpper = 1, kLower = 2, kShort = 3 };
 
 class Pwm {
  public:
   explicit Pwm(BenchContext& b) : host_(b), commands_(kPhases * host_.channels()), inverted_(host_.channels()) {
     rule_.greater = !b.negative;
-    for (unsigned i = 0; i < kPhases; ++i) host_.define(100 + kVariable[i], 'Y', 2 + i, "8,16,S");
+    for (unsigned i = 0; i < kPhases; ++i) host_.define(100 + kVariable[i], kOut[i], true, ServoHost::kCommand);
   }
 
   void vectors();
   void round(unsigned number);
   void new_limits();
-  void total() const {
-    host_report().step("upper and lower switch both on, ever", shorts_ == 0,
-                       fmt::format("{} times in {} edges", shorts_, edges_));
+  void total() {
+    drop();
+    report_.step("upper and lower switch both on, ever", shorts_, 1000 * host_.places(),
+                 fmt::format("never in {} levels of {} phases", shorts_.made(), phases()));
   }
 
  private:
@@ -45,7 +49,6 @@ class Pwm {
     return fmt::format("{} {}", host_.name(phase / kPhases), "ABC"[phase % kPhases]);
   }
   Tick period(unsigned place) const { return 4 * static_cast<Tick>(limit_[place]) + 6; }
-  BenchReport& host_report() const { return report_; }
 
   std::vector<PwmLevel> levels(unsigned phase) const;
   void drop();
@@ -54,7 +57,7 @@ class Pwm {
   void configure(unsigned limit, unsigned other, unsigned phase_divider, unsigned servo_divider, unsigned dead);
   void invert(const std::vector<unsigned>& values);
   bool find_triangle();
-  std::string differences(unsigned places, unsigned& edges);
+  Comparison differences(unsigned places);
   void on_times(const std::string& what, unsigned places);
   void judge(const std::string& what, unsigned places = 2);  // of as many ICs as there are
   int random_command(unsigned place);
@@ -68,8 +71,8 @@ class Pwm {
   std::array<unsigned, 2> limit_{6527, 6527};
   std::array<Tick, 2> bottom_{};
   std::array<unsigned, 2> limit_then_{};
-  unsigned dead_ = 15, shorts_ = 0;
-  std::size_t edges_ = 0;
+  unsigned dead_ = 15;
+  Comparison shorts_;
 };
 
 std::vector<PwmLevel> Pwm::levels(unsigned phase) const {
@@ -86,10 +89,8 @@ std::vector<PwmLevel> Pwm::levels(unsigned phase) const {
 // Forgets the record; what was in it has shorted no phase.
 void Pwm::drop() {
   for (unsigned p = 0; p < phases(); ++p) {
-    const auto seen = levels(p);
-    edges_ += seen.size() - 1;
-    shorts_ +=
-        static_cast<unsigned>(std::count_if(seen.begin(), seen.end(), [](const PwmLevel& l) { return l.pins == 3; }));
+    for (const PwmLevel& l : levels(p))
+      shorts_.judged(name(p), l.pins != kShort ? "" : fmt::format("both switches on at tick {}", l.tick));
   }
   host_.forget();
 }
@@ -100,7 +101,7 @@ void Pwm::command(const std::vector<std::pair<unsigned, int>>& values) {
     words.push_back(fmt::format("M{}={}", 100 * (phase / kPhases + 1) + kVariable[phase % kPhases], value));
   host_.say(words);
   for (const auto& [phase, value] : values) {
-    const Tick at = host_.written(false, host_.address(phase / kPhases, 2 + phase % kPhases));
+    const Tick at = host_.written(phase / kPhases, kOut[phase % kPhases]);
     if (at < 0) report_.fail(name(phase), "the command never came to its word");
     commands_[phase].push_back({at, value});
   }
@@ -143,7 +144,7 @@ bool Pwm::find_triangle() {
   for (unsigned i = 0; i < host_.places(); ++i) {
     const auto seen = levels(kPhases * kChannels * i);
     std::size_t last = seen.size() - 1;  // first level after the upper switch was on
-    while (last > 0 && seen[last - 1].pins != 1) --last;
+    while (last > 0 && seen[last - 1].pins != kUpper) --last;
     if (last == 0) {
       report_.fail(name(kPhases * kChannels * i), "no falling edge at command 0");
       return false;
@@ -157,14 +158,14 @@ bool Pwm::find_triangle() {
 }
 
 // A write beside a turn may count from this one or from the next.
-std::string Pwm::differences(unsigned places, unsigned& edges) {
+Comparison Pwm::differences(unsigned places) {
   const Tick to = host_.now();
-  std::string text;
+  Comparison same;
   for (unsigned p = 0; p < phases() && place(p) < places; ++p) {
     const auto seen = levels(p);
     const Tick from = bottom_[place(p)] + 1 + rule_.dead;
     std::string first;
-    bool same = false;
+    bool good = false;
     for (const Tick shift : {0, 9}) {
       auto commands = commands_[p];
       for (auto& c : commands) c.tick += shift;
@@ -173,58 +174,56 @@ std::string Pwm::differences(unsigned places, unsigned& edges) {
       const auto turns = pwm_turns(bottom_[place(p)], limit_then_[place(p)], to, changes);
       const std::string difference = pwm_difference(seen, pwm_switches(turns, commands, rule_), from, to);
       if (first.empty()) first = difference;
-      same = same || difference.empty();
+      good = good || difference.empty();
     }
-    if (!same) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name(p), first);
-    edges += static_cast<unsigned>(
-        std::count_if(seen.begin(), seen.end(), [from](const PwmLevel& l) { return l.tick > from; }));
+    const auto edges = std::count_if(seen.begin(), seen.end(), [from](const PwmLevel& l) { return l.tick > from; });
+    same.judged(name(p), good ? "" : first, static_cast<unsigned>(edges));
   }
-  return text;
+  return same;
 }
 
 // The same once more by the formula: on times of both switches in the last whole period.
 void Pwm::on_times(const std::string& what, unsigned places) {
-  std::string bad;
+  Comparison same;
   Tick least = kNever, most = 0;
   for (unsigned p = 0; p < phases() && place(p) < places; ++p) {
     const Tick whole = period(place(p)), raw = pwm_on_time(limit_[place(p)], commands_[p].back().value);
     const Tick upper = raw == whole ? whole : std::max<Tick>(0, raw - rule_.dead);
     const Tick lower = raw == 0 ? whole : std::max<Tick>(0, whole - raw - rule_.dead);
     const auto seen = levels(p);
-    const Tick from = host_.now() - whole, on = pwm_time(seen, 1, from, host_.now()),
-               off = pwm_time(seen, 2, from, host_.now());
+    const Tick from = host_.now() - whole, on = pwm_time(seen, kUpper, from, host_.now());
     least = std::min(least, on);
     most = std::max(most, on);
-    if (bad.empty() && (on != upper || off != lower))
-      bad = fmt::format("{}: upper {}, lower {}, expected {}, {} at command {}", name(p), on, off, upper, lower,
-                        commands_[p].back().value);
+    const std::string where = fmt::format("{} at command {}", name(p), commands_[p].back().value);
+    same.equal(where + " upper", on, upper);
+    same.equal(where + " lower", pwm_time(seen, kLower, from, host_.now()), lower);
   }
-  report_.step(what + ", on times in a period", bad.empty(),
-               bad.empty() ? fmt::format("upper switches {} to {} ticks", least, most) : bad);
+  report_.step(what + ", on times in a period", same, 2 * kPhases * kChannels * places,
+               fmt::format("upper switches {} to {} ticks", least, most));
 }
 
+// The window is two PWM periods of the slower IC or more, and at most three of its half periods make a PHASE period,
+// but for the two at its ends.
 void Pwm::judge(const std::string& what, unsigned places) {
   places = std::min(places, host_.places());
   host_.wait(2 * std::max(period(0), period(1)));
-  unsigned edges = 0;
-  const std::string text = differences(places, edges);
-  report_.step(what, text.empty() && edges > 0,
-               text.empty() ? fmt::format("{} edges, each at its tick", edges) : text.substr(0, 300));
+  const Comparison edges = differences(places);
+  report_.step(what, edges, kPhases * kChannels * places, fmt::format("{} edges, each at its tick", edges.made()));
   on_times(what, places);
 
-  Tick off = 0;
+  Comparison rises;
   for (unsigned i = 0; i < places; ++i) {
     const auto turns = pwm_turns(bottom_[i], limit_then_[i], host_.now(), i == 0 ? changes_ : std::vector<PwmChange>{});
     for (const auto& edge : host_.phase()) {
       if (!edge.high || edge.tick < bottom_[i] || edge.tick > host_.now() - kNear) continue;
       Tick best = kNever;
       for (const PwmTurn& t : turns)
-        best = std::min(best, edge.tick < t.tick ? t.tick - edge.tick : edge.tick - t.tick);
-      off = std::max(off, best);
+        if (std::abs(t.tick - edge.tick) < std::abs(best)) best = t.tick - edge.tick;
+      rises.equal(fmt::format("{} ticks from PHASE at {} to a turn", servo_ic_scope(host_.ic(i)), edge.tick), best,
+                  host_.behind(i));
     }
   }
-  report_.step("PHASE rises at a turn", off <= kNear,
-               fmt::format("at most {} ticks apart, expected {} or less", off, kNear));
+  report_.step("PHASE rises at a turn", rises, 2 * places, fmt::format("{} rises", rises.made()));
 }
 
 // Commands that matter: anywhere, about 0, at and beyond the ends of the triangle, and pulses about as long as the dead
@@ -257,7 +256,7 @@ void Pwm::vectors() {
   command(values);
   host_.wait(3 * period(0));
   for (unsigned v = 0; v < 6; ++v) {
-    const Tick high = pwm_time(levels(v), 1, host_.now() - 26114, host_.now());
+    const Tick high = pwm_time(levels(v), kUpper, host_.now() - 26114, host_.now());
     report_.equal<std::int64_t>(fmt::format("I7000=6527, command {}: high ticks of 26114, {}", kCommands[v], name(v)),
                                 high, kHigh[v]);
   }
@@ -268,7 +267,7 @@ void Pwm::vectors() {
   const auto seen = levels(0);
   Tick shortest = kNever, longest = 0;
   for (std::size_t i = 1; i + 1 < seen.size(); ++i)
-    if (seen[i].pins == 0) {
+    if (seen[i].pins == kOff) {
       shortest = std::min(shortest, seen[i + 1].tick - seen[i].tick);
       longest = std::max(longest, seen[i + 1].tick - seen[i].tick);
     }
@@ -309,7 +308,7 @@ void Pwm::new_limits() {
   for (unsigned i = 0; i < 4; ++i) {
     limit_[0] = 3500 + host_.pick(3500);
     host_.say({fmt::format("I7000={}", limit_[0])});
-    changes_.push_back({host_.written(true, host_.base(0) + 0x1C), limit_[0]});
+    changes_.push_back({host_.written(0, regs::servo_ic::kPwmControl), limit_[0]});
     list += fmt::format("{}{}", i == 0 ? "" : ", ", limit_[0]);
     host_.wait(period(0) + host_.pick(static_cast<unsigned>(period(0))));
   }
@@ -331,8 +330,7 @@ Bench pwm_bench() {
   return {"pwm",
           "commands on 24 phases: on times, dead time, inversion, new commands and I7000 while running, every edge at "
           "its tick",
-          "the scoreboard compares with >= instead of >",
-          nullptr,
+          {"the scoreboard compares with >= instead of >", "I7004=0", "expected tick"},
           run,
           kServoIc0};
 }

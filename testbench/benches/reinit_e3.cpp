@@ -47,22 +47,15 @@ void check_defaults(BenchContext& b) {
   b.expect("RX$10000", "0");
   const std::string open = b.ask("OPEN ROTARY");
   b.report.step("no rotary buffer is left", open.rfind("ERR", 0) == 0, open);
-  const std::string status = b.ask("???");
-  // bits 10, 7, 3 of the first word: flash error, configuration error, phase clock missing
-  b.report.equal<std::int64_t>("problems in " + status, std::strtol(status.substr(0, 6).c_str(), nullptr, 16) & 0x488,
-                               0);
+  b.report.equal<std::string>("problems in ???", b.problems(), "none");
 }
 
 void check_clocks(BenchContext& b) {
   constexpr Tick kPhase = 2 * 6527 + 3, kServo = 4 * kPhase;
   for (const auto& [pin, period] : {std::pair{pin::kPhase, kPhase}, std::pair{pin::kServo, kServo}}) {
-    Tick edge[2] = {0, 1};
-    for (Tick& at : edge) {
-      b.bus.wait_pin(pin, 1, 2 * kServo);
-      b.bus.wait_pin(pin, 0, 2 * kServo);
-      at = b.bus.now();
-    }
-    b.report.equal<std::int64_t>(fmt::format("{} period, ticks", pin.name), edge[1] - edge[0], period);
+    const Tick before = b.next_fall(pin, 2 * kServo);
+    b.report.equal<std::int64_t>(fmt::format("{} period, ticks", pin.name), b.next_fall(pin, 2 * kServo) - before,
+                                 period);
   }
 }
 
@@ -80,6 +73,7 @@ void run(BenchContext& b) {
   b.machine.power_cycle();
   const Tick power = b.bus.now();
   const bool up = b.link.connect(kPatience);
+  b.report.equal<std::int64_t>("watchdog.tripped with jumper E3", b.machine.outputs().get(pin::kWdTripped), 0);
   b.report.step("answers with jumper E3", up,
                 fmt::format("{:.1f} ms after power-up", static_cast<double>(b.bus.now() - power) / kMillisecond));
   if (!up) return;
@@ -100,8 +94,7 @@ void run(BenchContext& b) {
 Bench reinit_e3_bench() {
   return {"reinit-e3",
           "SAVEd settings that stop the controller; power-up with jumper E3, and $$$***, restore the defaults",
-          "the jumper is not put in",
-          nullptr,
+          {"the jumper is not put in", "watchdog.tripped with jumper E3", "1, expected 0"},
           run,
           kServoIcs01};
 }

@@ -1,10 +1,6 @@
 #include "testbench/benches/servo_host.h"
 
-#include <cstdlib>
-
 #include <fmt/format.h>
-
-#include "rtl/regs/brick_regs.hpp"
 
 namespace brick {
 
@@ -24,11 +20,15 @@ unsigned ServoHost::i_channel(unsigned channel, unsigned k) const {
   return i_global(channel / kChannels, 0) + 10 * (channel % kChannels + 1) + k;
 }
 std::uint32_t ServoHost::base(unsigned place) const { return regs::kGateIcs[ic(place)].base; }
-std::uint32_t ServoHost::address(unsigned channel, unsigned offset) const {
-  return base(channel / kChannels) + 8 * (channel % kChannels) + offset;
+std::uint32_t ServoHost::address(unsigned channel, const regs::Register& word) const {
+  return base(channel / kChannels) + 8 * (channel % kChannels) + word.address;
 }
 std::string ServoHost::name(unsigned channel) const {
   return fmt::format("{}.ch{}", servo_ic_scope(ic(channel / kChannels)), channel % kChannels + 1);
+}
+
+Tick ServoHost::behind(unsigned place) const {
+  return bench_.machine.outputs().get(pin::kPhaseSource) == ic(place) ? 0 : 3;
 }
 
 std::string ServoHost::ask(const std::string& line) {
@@ -57,15 +57,14 @@ void ServoHost::say(const std::vector<std::string>& words) {
 
 std::vector<long> ServoHost::numbers(const std::string& line) {
   before_command();
-  std::vector<long> values;
-  for (const auto& l : bench_.link.command(line).lines) values.push_back(std::strtol(l.c_str(), nullptr, 10));
-  return values;
+  return bench_.numbers(line);
 }
 
-void ServoHost::define(unsigned number, char space, unsigned offset, const std::string& part) {
+void ServoHost::define(unsigned number, const regs::Register& word, bool is_signed, regs::Field part) {
   std::vector<std::string> words;
   for (unsigned i = 0; i < channels(); ++i)
-    words.push_back(fmt::format("M{}->{}:${:X},{}", 100 * i + number, space, address(i, offset), part));
+    words.push_back(fmt::format("M{}->{}:${:X},{},{},{}", 100 * i + number, word.space, address(i, word), part.lsb,
+                                part.width, is_signed ? 'S' : 'U'));
   say(words);
 }
 

@@ -6,9 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "testbench/benches/bench.h"
 
 namespace brick {
+
+namespace word = regs::servo_channel;  // words of a channel and their bits
+
+// Bits that are no field of their own, and those from the lowest of one field to the highest of another: some
+// I-variables cover several.
+constexpr regs::Field bits(unsigned lsb, unsigned width) {
+  regs::Field field{};
+  field.lsb = lsb;
+  field.width = width;
+  return field;
+}
+constexpr regs::Field span(regs::Field low, regs::Field high) { return bits(low.lsb, high.lsb + high.width - low.lsb); }
 
 // Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names:
 // servo-ic:1.2, servo-ic:1.4, servo-ic:2.1.
@@ -23,11 +36,14 @@ class ServoHost {
   unsigned places() const { return static_cast<unsigned>(ics_.size()); }
   unsigned channels() const { return places() * kChannels; }
   unsigned ic(unsigned place) const { return ics_.at(place); }
-  unsigned i_global(unsigned place, unsigned k) const;             // I7m0k
-  unsigned i_channel(unsigned channel, unsigned k) const;          // I7mnk
-  std::uint32_t base(unsigned place) const;                        // address of the IC
-  std::uint32_t address(unsigned channel, unsigned offset) const;  // of a word of the channel
-  std::string name(unsigned channel) const;                        // servo_ic0.ch1
+  unsigned i_global(unsigned place, unsigned k) const;     // I7m0k
+  unsigned i_channel(unsigned channel, unsigned k) const;  // I7mnk
+  std::uint32_t base(unsigned place) const;                // address of the IC
+  std::uint32_t address(unsigned channel, const regs::Register& word) const;
+  std::string name(unsigned channel) const;  // servo_ic0.ch1
+  // Ticks by which an IC is behind the nets PHASE and SERVO: none where it drives them, else two flip-flops
+  // (servo-ic:5.1/6).
+  Tick behind(unsigned place) const;
   std::uint32_t pin(const MotorField& pin, unsigned channel) const {
     return bench_.machine.motor_outputs(ic(channel / kChannels)).get(pin, channel % kChannels);
   }
@@ -36,8 +52,9 @@ class ServoHost {
   void expect(const std::string& line, const std::string& answer);
   void say(const std::vector<std::string>& words);     // several to a line; no answer expected
   std::vector<long> numbers(const std::string& line);  // data lines as numbers
-  // M(number + 100 n) of channel n = 0, 1, ... -> a part of its word.
-  void define(unsigned number, char space, unsigned offset, const std::string& part);
+  // M(number + 100 n) of channel n = 0, 1, ... -> a word, or a field of it.
+  static constexpr regs::Field kWord = bits(0, 24), kCommand = bits(8, 16);  // of OUT A, B, C: servo-ic:5.11
+  void define(unsigned number, const regs::Register& word, bool is_signed = false, regs::Field part = kWord);
 
   unsigned pick(unsigned count) { return static_cast<unsigned>(random_() % count); }
   std::mt19937_64& random() { return random_; }

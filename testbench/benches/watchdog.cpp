@@ -11,7 +11,7 @@
 
 #include "testbench/benches/benches.h"
 #include "testbench/benches/output_watch.h"
-#include "testbench/checkers/watchdog_probe.h"
+#include "testbench/benches/watchdog_probe.h"
 
 namespace brick {
 namespace {
@@ -105,7 +105,10 @@ void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) 
 // Amplifiers, switches and pulses are off a few ticks after the trip and stay so; a DAC word under way ends, the next
 // is 0.
 void outputs_safe(BenchContext& b, OutputWatch& outputs) {
-  b.report.equal<std::int64_t>("IPOS, EROR, F1ER", b.machine.outputs().get(pin::kIpos), 0);
+  const BoardOutputs& out = b.machine.outputs();
+  b.report.equal<std::string>("IPOS, EROR, F1ER",
+                              fmt::format("{} {} {}", out.get(pin::kIpos), out.get(pin::kEror), out.get(pin::kF1er)),
+                              "0 0 0");
   outputs.begin();
   b.bus.wait(kOutputs);
   b.report.equal<std::string>("AENA, EQU, PWM, DAC, PFM that are on", outputs.alive(), "");
@@ -115,19 +118,22 @@ void outputs_safe(BenchContext& b, OutputWatch& outputs) {
 void outputs_at_once(BenchContext& b) {
   constexpr Tick kAtOnce = 3 * kTicksPerRef;
   b.bus.wait(kAtOnce);
-  unsigned on = 0;
+  Comparison off;
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
     for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n)
       for (const MotorField* pin :
            {&motor_pin::kAena, &motor_pin::kEqu, &motor_pin::kPfmPulse, &motor_pin::kPwmATop, &motor_pin::kPwmABot,
             &motor_pin::kPwmBTop, &motor_pin::kPwmBBot, &motor_pin::kPwmCTop, &motor_pin::kPwmCBot})
-        on += b.machine.motor_outputs(ic).get(*pin, n);
-  b.report.equal<std::int64_t>(fmt::format("AENA, EQU, PFM, PWM that are on {} ticks after the trip", kAtOnce), on, 0);
+        off.equal(fmt::format("{}.ch{}.{}", servo_ic_scope(ic), n + 1, pin->name),
+                  b.machine.motor_outputs(ic).get(*pin, n), 0);
+  b.report.step(fmt::format("AENA, EQU, PFM, PWM {} ticks after the trip", kAtOnce), off, 9 * 2 * kChannels,
+                fmt::format("{} pins are off", off.made()));
 }
 
 void dead(BenchContext& b, OutputWatch& outputs) {
   const BoardOutputs& out = b.machine.outputs();
-  b.report.equal<std::int64_t>("watchdog.tripped and line WDO", out.get(pin::kWdTripped) + out.get(pin::kWdo), 2);
+  b.report.equal<std::string>("watchdog.tripped and line WDO",
+                              fmt::format("{} {}", out.get(pin::kWdTripped), out.get(pin::kWdo)), "1 1");
   const HostBus::Pic pic = b.bus.read_pic();
   const unsigned lines = wdo_lines(b.board);
   b.report.equal<std::string>(
@@ -208,8 +214,8 @@ Bench watchdog_bench() {
   return {"watchdog",
           "servo frequency too high: the background starves, I40 runs out, the circuit trips 25 ms later; again after "
           "a reset",
-          "the controller's I40 is three times what the scoreboard is told",
-          nullptr,
+          {"the controller's I40 is three times what the scoreboard is told", "trip, servo * kHz, I40=*",
+           "I40 and 25 ms: tripped at"},
           run,
           kServoIcs01};
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "systemc/cosim/drive.h"
 #include "testbench/benchmark/benchmark.h"
 
 namespace brick {
@@ -24,22 +25,23 @@ struct BareLoop::Model {
 };
 
 BareLoop::BareLoop() : model_(std::make_unique<Model>()) {
-  Vboard_s2& t = model_->top;
-  t.rst_ni = 1;
-  t.fitted_i = 3;
-  t.pa_rd_ni = t.pa_wr_ni = t.isa_ior_ni = t.isa_iow_ni = t.isa_memr_ni = t.isa_memw_ni = t.isa_sbhe_ni = 1;
-  t.ext_phase_i = t.ext_servo_i = 1;
-  t.eval();
-  t.rst_ni = 0;
+  BoardInputs in;
+  in.rst_n = true;
+  drive(model_->top, in);
+  model_->top.eval();
+  in.rst_n = false;
+  drive(model_->top, in);
   for (int i = 0; i < 30; ++i) model_->tick();
-  t.rst_ni = 1;
-  t.pa_addr_i = 0x78004;
-  t.pa_x_i = 1;
-  t.pa_aa_i = 2;
-  t.pa_wdata_i = 0x3008D2;
-  t.pa_wr_ni = 0;
+  in.rst_n = true;
+  in.pa_addr = 0x78004;
+  in.pa_x = true;
+  in.pa_aa = 2;
+  in.pa_wdata = 0x3008D2;
+  in.pa_wr_n = false;
+  drive(model_->top, in);
   for (int i = 0; i < 20; ++i) model_->tick();
-  t.pa_wr_ni = 1;
+  in.pa_wr_n = true;
+  drive(model_->top, in);
 }
 
 BareLoop::~BareLoop() { Verilated::threadContextp(&model_->context); }  // as in systemc/cosim/rtl_board.h

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "systemc/cosim/engines.h"
+#include "systemc/board/model_board.h"
 
 namespace brick {
 namespace {

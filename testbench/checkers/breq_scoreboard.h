@@ -47,6 +47,14 @@ class BreqScoreboard {
   const std::vector<std::string>& violations() const { return violations_; }
   struct Counts {
     unsigned lines = 0, pulses = 0, stays_low = 0, raised_by_execution = 0, queries = 0;
+    Counts operator-(const Counts& o) const {
+      return {lines - o.lines, pulses - o.pulses, stays_low - o.stays_low, raised_by_execution - o.raised_by_execution,
+              queries - o.queries};
+    }
+    bool reaches(const Counts& least) const {
+      return lines >= least.lines && pulses >= least.pulses && stays_low >= least.stays_low &&
+             raised_by_execution >= least.raised_by_execution && queries >= least.queries;
+    }
   };
   const Counts& counts() const { return counts_; }
   bool expect_full() const { return systems_[selected_].full.value_or(false); }

@@ -1,6 +1,9 @@
 #include "testbench/checkers/channel_scoreboard.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "rtl/regs/brick_regs.hpp"
 
 namespace brick {
 
@@ -28,7 +31,7 @@ void ChannelScoreboard::follow(Tick tick, std::uint32_t from, int direction) {
 void ChannelScoreboard::edge(std::int64_t k) {
   const Tick tick = phase_ + k * period_;
   const std::uint32_t before = decoder.raw();
-  int moved = decoder.step(k, filter_.level());
+  int moved = decoder.step(k, filter.level());
   while (!pulses_.empty() && pulses_.front().tick < tick) {
     if (decoder.mode == 8) moved = decoder.count(k, pulses_.front().direction);
     pulses_.pop_front();
@@ -38,15 +41,15 @@ void ChannelScoreboard::edge(std::int64_t k) {
     if (own_compare) follow(tick, before, moved);
     if (on_count) on_count(tick, before, moved);
   }
-  capture.step(filter_.level(), decoder.raw());
+  capture.step(filter.level(), decoder.raw());
   while (!driven_.empty() && driven_.front().tick + kSync <= tick) {
     pins_ = driven_.front().pins;
     driven_.pop_front();
     busy_ = kSettle;
   }
-  const std::uint16_t level = filter_.level();
-  filter_.sample(pins_, samples);
-  if (keep_levels && filter_.level() != level) levels.push_back({tick, filter_.level()});
+  const std::uint16_t level = filter.level();
+  filter.sample(pins_);
+  if (keep_levels && filter.level() != level) levels.push_back({tick, filter.level()});
 }
 
 void ChannelScoreboard::advance(Tick tick) {
@@ -63,10 +66,14 @@ void ChannelScoreboard::advance(Tick tick) {
 }
 
 std::uint32_t ChannelScoreboard::status(std::uint32_t mask) const {
-  const std::uint32_t bits = capture.hall() | (capture.incomplete() ? 1u : 0u) << 3 | (decoder.error() ? 1u : 0u) << 8 |
-                             (compare.equ ? 1u : 0u) << 9 | (capture.gated_index() ? 1u : 0u) << 10 |
-                             (capture.captured() ? 1u : 0u) << 11 |
-                             static_cast<std::uint32_t>(capture.shown(filter_.level())) << 12;
+  using namespace regs::servo_channel::status;
+  std::uint32_t bits = std::uint32_t{capture.shown(filter.level())} << kCha.lsb;
+  bits = kHallCapture.set(bits, capture.hall());
+  for (const auto& [field, set] :
+       {std::pair{kDemuxInvalid, capture.incomplete()}, std::pair{kEncoderError, decoder.error()},
+        std::pair{kEqu, compare.equ}, std::pair{kCapturedGatedIndex, capture.gated_index()},
+        std::pair{kCaptured, capture.captured()}})
+    bits = field.set(bits, set ? 1 : 0);
   return bits & mask;
 }
 

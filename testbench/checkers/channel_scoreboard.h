@@ -50,13 +50,13 @@ class ChannelScoreboard {
   Quadrature decoder{kIdleChannelPins};
   Capture capture{kIdleChannelPins};
   Compare compare;
-  unsigned samples = 3;                                         // of the filter; 1 is a deliberately wrong rule
+  SclkFilter filter{kIdleChannelPins};
   std::function<void(Tick, std::uint32_t from, int)> on_count;  // compares of other channels that follow this one
   bool own_compare = true;                                      // I7mn1 = 0
   void follow(Tick tick, std::uint32_t from, int direction);    // a count of the source that compare follows
 
   std::vector<Change> counts, equs;  // every change, until taken
-  std::uint16_t level() const { return filter_.level(); }
+  std::uint16_t level() const { return filter.level(); }
   bool keep_levels = false;
   std::vector<Change> levels;                      // filtered inputs, if kept
   std::uint32_t status(std::uint32_t mask) const;  // X:+0 as far as it follows from the rules: not ENC_LOSS
@@ -77,7 +77,6 @@ class ChannelScoreboard {
   std::int64_t index(Tick tick) const;
   void edge(std::int64_t k);
 
-  SclkFilter filter_{kIdleChannelPins};
   std::uint16_t pins_ = kIdleChannelPins;
   std::deque<Driven> driven_;
   std::deque<Pulse> pulses_;

@@ -65,7 +65,7 @@ TimeFs HostBus::cycle_start() {
   return start;
 }
 
-void HostBus::drive_at(TimeFs time, const std::function<void(BoardInputs&)>& edit) {
+void HostBus::drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit) {
   advance_to(fs_to_tick(time) - 1);  // the edge fs_to_tick(time) is the first to see the change
   edit(machine_.inputs());
   machine_.apply();
@@ -76,7 +76,7 @@ std::uint16_t HostBus::cycle(Command command, std::uint32_t address, std::uint16
   const bool write = command == Command::kIoWrite || command == Command::kMemoryWrite;
   const isa::CycleTimes& times = memory ? isa::kMemory : isa::kIo;
   const TimeFs start = cycle_start();
-  const auto strobe = [command](BoardInputs& in, bool level) {
+  const auto strobe = [command](HostInputs& in, bool level) {
     switch (command) {
       case Command::kIoRead:
         in.isa_ior_n = level;
@@ -93,13 +93,13 @@ std::uint16_t HostBus::cycle(Command command, std::uint32_t address, std::uint16
     }
   };
 
-  drive_at(start, [&](BoardInputs& in) {
+  drive_at(start, [&](HostInputs& in) {
     in.isa_sa = address;
     in.isa_aen = false;
     in.isa_sbhe_n = !memory;
   });
-  if (write) drive_at(start + times.data_valid, [&](BoardInputs& in) { in.isa_sd = data; });
-  drive_at(start + times.command_low, [&](BoardInputs& in) { strobe(in, false); });
+  if (write) drive_at(start + times.data_valid, [&](HostInputs& in) { in.isa_sd = data; });
+  drive_at(start + times.command_low, [&](HostInputs& in) { strobe(in, false); });
 
   TimeFs end = start + times.command_high;
   for (;;) {  // IOCHRDY is looked at one BCLK before the command would end, and again at each BCLK
@@ -113,8 +113,8 @@ std::uint16_t HostBus::cycle(Command command, std::uint32_t address, std::uint16
   }
   advance_to(fs_to_tick_floor(end - isa::kReadSetup));
   const auto read = static_cast<std::uint16_t>(machine_.outputs().get(pin::kIsaSd));
-  drive_at(end, [&](BoardInputs& in) { strobe(in, true); });
-  drive_at(end + (times.release - times.command_high), [](BoardInputs& in) {
+  drive_at(end, [&](HostInputs& in) { strobe(in, true); });
+  drive_at(end + (times.release - times.command_high), [](HostInputs& in) {
     in.isa_sd = kIdleData;
     in.isa_sbhe_n = true;
   });

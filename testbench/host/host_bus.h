@@ -81,7 +81,7 @@ class HostBus {
  private:
   enum class Command { kIoRead, kIoWrite, kMemoryRead, kMemoryWrite };
   std::uint16_t cycle(Command command, std::uint32_t address, std::uint16_t data);
-  void drive_at(TimeFs time, const std::function<void(BoardInputs&)>& edit);
+  void drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit);
   TimeFs cycle_start();
   void step_to(Tick limit, const BoardOutputs& stop_on);
 

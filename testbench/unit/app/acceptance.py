@@ -1,4 +1,8 @@
-"""The built command from outside: replies, times, exit statuses, messages. usage: acceptance.py BRICK CASE; each CASE is one test."""
+"""The built command from outside: replies, times, exit statuses, messages.
+
+usage: acceptance.py BRICK CASE; each CASE is one test.
+"""
+
 import json
 import pathlib
 import re
@@ -9,7 +13,8 @@ import command
 from command import BOARDS, brick, check, play
 
 GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
-ANSWERS = ["1.947", "603382", "7007", "5", "10", "ERR003"]  # the three DEFINEs: nothing, nothing, lower-numbered buffer exists
+# the three DEFINEs: nothing, nothing, lower-numbered buffer exists
+ANSWERS = ["1.947", "603382", "7007", "5", "10", "ERR003"]
 
 
 # covers: CARD-3
@@ -22,8 +27,9 @@ def golden():
 # covers: CARD-1 CARD-2
 def same_everywhere():
     """Every reply and its simulated time, on all engines and batch sizes."""
-    lines = [l for command in GOLDEN + ["&1B0", "OPEN ROT", "X1", "DWELL1", "R", "@wait 3ms", "PR", "@pic", "@dpram 0xC000 4"] for l in (command, "@time")]
-    runs = [(e, b) for e in ("systemc", "rtl", "lockstep") for b in ("0",)] + [("systemc", "1000"), ("systemc", "7"), ("rtl", "64")]
+    commands = [*GOLDEN, "&1B0", "OPEN ROT", "X1", "DWELL1", "R", "@wait 3ms", "PR", "@pic", "@dpram 0xC000 4"]
+    lines = [line for command in commands for line in (command, "@time")]
+    runs = [("systemc", "0"), ("rtl", "0"), ("lockstep", "0"), ("systemc", "1000"), ("systemc", "7"), ("rtl", "64")]
     first = None
     for engine, batch in runs:
         r = play(lines, "--engine", engine, "--batch", batch)
@@ -33,9 +39,19 @@ def same_everywhere():
         check(r.stdout == first, f"{engine} batch {batch} differs:\n{r.stdout}\nexpected as systemc:\n{first}")
 
 
+def version():
+    """What the command says is what the build has and what the newest entry of the change log is about."""
+    tree = pathlib.Path(__file__).resolve().parents[3]
+    said = brick("--version").stdout
+    built = re.search(r"^project\(brick VERSION (\S+)", (tree / "CMakeLists.txt").read_text(), re.M)[1]
+    newest = re.search(r"^## (\S+)", (tree / "CHANGELOG.md").read_text(), re.M)[1]
+    check(said == f"brick {built}\n" and newest == built, f"{said!r}, CMakeLists.txt {built}, CHANGELOG.md {newest}")
+
+
 def at_lines():
-    r = play(["@pic", "@pic MSK=12 ELR=10", "@pic", "@dpram 0xC000 = 1234 ABCD", "@dpram 0xC000 2", "@signal clock.source", "@until clock.servo=0 1ms",
-              "@until clock.servo=1 1ms", "@signal clock.servo", "I16", "@expect 5", "P1..3", "@expect 0|0|0", "UUU", "@expect ERR003", "@wait 1ms", "@time"])
+    r = play(["@pic", "@pic MSK=12 ELR=10", "@pic", "@dpram 0xC000 = 1234 ABCD", "@dpram 0xC000 2",
+              "@signal clock.source", "@until clock.servo=0 1ms", "@until clock.servo=1 1ms", "@signal clock.servo",
+              "I16", "@expect 5", "P1..3", "@expect 0|0|0", "UUU", "@expect ERR003", "@wait 1ms", "@time"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     out = r.stdout.split("\n")
     check(re.fullmatch(r"IST=00 SIG=[0-9A-F]{2} MSK=00 ELR=00", out[0]), out[0])
@@ -45,9 +61,10 @@ def at_lines():
 
 
 def motor_pins():
-    """The hand at the encoder of motor 6 (servo IC 1, channel 2) counts, with x4 both ways; an input pin is a signal at once."""
-    r = play(["@encoder 6 37 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=37", "@encoder 6 -40 100000",
-              "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=-3", "@signal servo_ic0.ch1.count", "@expect servo_ic0.ch1.count=0",
+    """The hand at encoder 6 (servo IC 1, channel 2) counts, with x4 both ways; an input pin is a signal at once."""
+    r = play(["@encoder 6 37 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=37",
+              "@encoder 6 -40 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=-3",
+              "@signal servo_ic0.ch1.count", "@expect servo_ic0.ch1.count=0",
               "@input servo_ic0.ch1.hmfl=1", "@signal servo_ic0.ch1.hmfl", "@expect servo_ic0.ch1.hmfl=1",
               "@until servo_ic0.ch1.adc_strobe=1 200us", "@until servo_ic0.ch1.adc_strobe=0 200us"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
@@ -58,7 +75,8 @@ def motor_pins():
 
 
 def restarts():
-    r = play(["I16=7", "P1=3", "@reset", "I16", "@expect 5", "I16=8", "@power", "I16", "@expect 5", "I16=9", "$$$", "I16", "@expect 5", "VERSION"])
+    r = play(["I16=7", "P1=3", "@reset", "I16", "@expect 5", "I16=8", "@power", "I16", "@expect 5", "I16=9", "$$$",
+              "I16", "@expect 5", "VERSION"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     check(r.stdout.split() == ["5", "5", "5", "1.947"], r.stdout)
 
@@ -83,21 +101,25 @@ def boards():
     check(r.returncode == 0 and rows["geobrick-lv-4"][1:5] == ["4", "0", "-", "7007"], r.stdout + r.stderr)
     check(rows["umac-turbo"][1:6] == ["8", "2", "3", "0", "6807"] and "yes" in rows["turbo-pmac-pci"], r.stdout)
     found = {b["name"]: b["ics"] for b in json.loads(brick("boards", "--json").stdout)}
-    check(found["geobrick-lv-4"] == ["servo IC 0"] and found["geobrick-lv-8"] == ["servo IC 0", "servo IC 1"], str(found))
+    check(found["geobrick-lv-4"] == ["servo IC 0"] and found["geobrick-lv-8"] == ["servo IC 0", "servo IC 1"],
+          str(found))
     one = brick("boards", "turbo-pmac2-pci-lite").stdout
     check("IR5 EQU1, IR6 EQU2, IR7 WDO" in one and "I19=7007" in one and "control panel    none" in one, one)
     small = brick("boards", "turbo-pmac-pci").stdout
-    check("JPAN, Y:$078800" in small and "$060000..$060FFF" in small and "0x3FFF" in small and "TYPE TURBO1" in small, small)
+    check("JPAN, Y:$078800" in small and "$060000..$060FFF" in small and "0x3FFF" in small and "TYPE TURBO1" in small,
+          small)
     file = json.loads(brick("boards", str(BOARDS / "geo-pmac.toml"), "--json").stdout)
-    check((file["axes"], file["jpan"], file["feedback_option_2"], file["interrupts"][7]) == (2, False, True, "WDO"), str(file))
+    check((file["axes"], file["jpan"], file["feedback_option_2"], file["interrupts"][7]) == (2, False, True, "WDO"),
+          str(file))
     check(play(["VERSION"], "--board", "geobrick-lv-4").stdout.split() == ["1.947"], "four axes")
 
 
 # covers: BREQ-6
 def jpan():
     """The panel selects whose BREQ the host sees; the same times on all engines."""
-    lines = ["&2DEFINE ROTARY 40", "OPEN ROTARY", "CLOSE", "&1", "I2=0", "@signal breq", "@expect breq=0", "@jpan FPD=2", "@until breq=1 3ms", "@time",
-             "@jpan FPD3=0", "@until breq=0 3ms", "@jpan FPD=0 START=0", "@wait 3ms", "I59", "@expect 2", "@jpan START=1 FPD=2", "@until breq=1 3ms",
+    lines = ["&2DEFINE ROTARY 40", "OPEN ROTARY", "CLOSE", "&1", "I2=0", "@signal breq", "@expect breq=0",
+             "@jpan FPD=2", "@until breq=1 3ms", "@time", "@jpan FPD3=0", "@until breq=0 3ms", "@jpan FPD=0 START=0",
+             "@wait 3ms", "I59", "@expect 2", "@jpan START=1 FPD=2", "@until breq=1 3ms",
              "I2=1", "@signal breq", "@expect breq=0", "@signal host.jpan", "@expect host.jpan=$FDFF", "@time"]
     first = None
     for engine in ("systemc", "rtl", "lockstep"):
@@ -107,7 +129,8 @@ def jpan():
         check(r.stdout == first, f"{engine}: {r.stdout}, expected {first}")
     r = play(["VERSION", "@jpan FPD=1"])
     check(r.returncode == 2 and r.stdout == "", f"exit {r.returncode}: {r.stdout}")
-    check("stdin:2: @jpan: this board has no control panel port; expected" in r.stderr and r.stderr.count("\n") == 1, r.stderr)
+    check("stdin:2: @jpan: this board has no control panel port; expected" in r.stderr and r.stderr.count("\n") == 1,
+          r.stderr)
 
 
 def lists():
@@ -123,7 +146,8 @@ def statuses():
     check(play(["I16", "@expect 6"]).returncode == 1, "@expect")
     check(play(["UUU"]).returncode == 0, "an ERR reply is an answer")
     r = play(["I16", "@expect 6", "I17"])
-    check("stdin:2" in r.stderr and "`5`" in r.stderr and "`6`" in r.stderr and r.stdout.split() == ["5"], r.stderr + r.stdout)
+    check("stdin:2" in r.stderr and "`5`" in r.stderr and "`6`" in r.stderr and r.stdout.split() == ["5"],
+          r.stderr + r.stdout)
 
 
 def contention():
@@ -132,7 +156,8 @@ def contention():
         r = play(["I7107=0", "@wait 1ms", "VERSION"], "--engine", engine)
         check(r.returncode == 1, f"exit {r.returncode}, expected 1: {r.stderr}")
         check(r.stdout.split() == ["1.947"], r.stdout)
-        check(re.fullmatch(r"brick exec: clock contention from tick \d+ \(.*\): servo IC 0 \(I7007\) and servo IC 1 \(I7107\) drive .*; expected one source\n",
+        check(re.fullmatch(r"brick exec: clock contention from tick \d+ \(.*\): servo IC 0 \(I7007\) and "
+                           r"servo IC 1 \(I7107\) drive .*; expected one source\n",
                            r.stderr), r.stderr)
     r = play(["I7107=0 I7007=3", "@wait 1ms", "I7007=0 I7107=3", "@wait 1ms"])
     check(r.returncode == 0 and r.stderr == "", f"moved there and back: exit {r.returncode}: {r.stderr}")
@@ -191,7 +216,7 @@ def bad_input():
 
 # covers: WDT-1 WDT-2
 def dead_flash():
-    """A flash file with settings that stop the controller, from one process to the next; jumper E3 and SAVE repair it."""
+    """A flash file with settings that stop the controller outlives the process; jumper E3 and SAVE repair it."""
     ask = ["VERSION", "I17", "I19"]
     with tempfile.TemporaryDirectory() as folder:
         file = f"{folder}/flash.bin"
@@ -199,14 +224,16 @@ def dead_flash():
         check(r.returncode == 0 and r.stdout.split() == ["1.947"], r.stdout + r.stderr)
         for engine in ("systemc", "rtl"):
             r = play(ask, "--flash", file, "--engine", engine)
-            check(r.returncode == 1 and r.stdout == "" and "does not answer" in r.stderr and "--jumper E3" in r.stderr, r.stdout + r.stderr)
+            check(r.returncode == 1 and r.stdout == "" and "does not answer" in r.stderr and "--jumper E3" in r.stderr,
+                  r.stdout + r.stderr)
         r = play(ask, "--flash", file, "--jumper", "E3")
         check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
         check(play(ask, "--flash", file).returncode == 1, "the jumper does not change what is SAVEd")
         check(play(["SAVE"], "--flash", file, "--jumper", "E3").returncode == 0, "SAVE")
         r = play(ask, "--flash", file)
         check(r.returncode == 0 and r.stdout.split() == ["1.947", "10", "7007"], r.stdout + r.stderr)
-        r = play(["I19=7957", "SAVE", "@reset", "@wait 40ms", "@signal watchdog.tripped", "@jumper E3 on", "@power", "I19", "@jumper E3 off"])
+        r = play(["I19=7957", "SAVE", "@reset", "@wait 40ms", "@signal watchdog.tripped", "@jumper E3 on", "@power",
+                  "I19", "@jumper E3 off"])
         check(r.stdout.split() == ["watchdog.tripped=1", "7007"], r.stdout + r.stderr)
 
 
@@ -224,7 +251,8 @@ def installed():
 def wave_window():
     with tempfile.TemporaryDirectory() as folder:
         for ending in ("vcd", "fst"):
-            r = play(["VERSION", "@wait 1ms"], "--wave", f"{folder}/new/x.{ending}", "--wave-from", "1ms", "--wave-to", "14ms")
+            r = play(["VERSION", "@wait 1ms"], "--wave", f"{folder}/new/x.{ending}", "--wave-from", "1ms", "--wave-to",
+                     "14ms")
             check(r.returncode == 0, r.stderr)
             check(pathlib.Path(f"{folder}/new/x.{ending}").stat().st_size > 1000, ending)
         times = [int(t) for t in re.findall(r"^#(\d+)", pathlib.Path(f"{folder}/new/x.vcd").read_text(), re.M)]
@@ -234,10 +262,11 @@ def wave_window():
 # covers: CARD-4
 def wave():
     """A bench writes a VCD with the contract's names and data in them, the same on every engine."""
-    names = """clock.phase clock.servo clock.source host.breq host.irq host.ipos host.eror host.f1er host.hreq host.wdo host.isa.sa host.isa.sd
-        host.isa.ior_n host.isa.iow_n host.isa.memr_n host.isa.memw_n host.isa.iochrdy host.isa.aen host.pic.ist host.pic.sig host.pic.msk
-        host.pic.elr dpram.busy_host dpram.busy_cpu bus.addr bus.data bus.aa bus.rd_n bus.wr_n bus.ta_n cpu.pc cpu.task cpu.symbol
-        watchdog.tripped""".split()
+    names = """
+        clock.phase clock.servo clock.source host.breq host.irq host.ipos host.eror host.f1er host.hreq host.wdo
+        host.isa.sa host.isa.sd host.isa.ior_n host.isa.iow_n host.isa.memr_n host.isa.memw_n host.isa.iochrdy
+        host.isa.aen host.pic.ist host.pic.sig host.pic.msk host.pic.elr dpram.busy_host dpram.busy_cpu
+        bus.addr bus.data bus.aa bus.rd_n bus.wr_n bus.ta_n cpu.pc cpu.task cpu.symbol watchdog.tripped"""
     texts = []
     with tempfile.TemporaryDirectory() as folder:
         for engine in ("systemc", "rtl", "lockstep"):
@@ -254,13 +283,14 @@ def wave():
         elif word[0] == "$upscope":
             scope.pop()
         elif word[0] == "$var":
-            codes[".".join(scope + [word[4]])] = word[3]
-    for name in names:
+            codes[".".join([*scope, word[4]])] = word[3]
+    for name in names.split():
         check("brick." + name in codes, f"no signal {name}")
-    changes = lambda name: len(re.findall(rf"^(?:[01]|b[01]+ |s\S+ ){re.escape(codes['brick.' + name])}$", texts[0], re.M))
-    for name, least in {"clock.phase": 100, "clock.servo": 40, "host.isa.sa": 100, "host.isa.sd": 100, "host.pic.msk": 3, "bus.addr": 20,
-                        "cpu.pc": 100, "cpu.symbol": 100, "cpu.task": 50, "host.isa.memw_n": 30}.items():
-        check(changes(name) >= least, f"{name} changes {changes(name)} times, expected {least} or more")
+    least_changes = {"clock.phase": 100, "clock.servo": 40, "host.isa.sa": 100, "host.isa.sd": 100, "host.pic.msk": 3,
+                     "bus.addr": 20, "cpu.pc": 100, "cpu.symbol": 100, "cpu.task": 50, "host.isa.memw_n": 30}
+    for name, least in least_changes.items():
+        changes = len(re.findall(rf"^(?:[01]|b[01]+ |s\S+ ){re.escape(codes['brick.' + name])}$", texts[0], re.M))
+        check(changes >= least, f"{name} changes {changes} times, expected {least} or more")
 
 
 globals()[command.CASE]()

@@ -4,11 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "rtl/regs/brick_regs.hpp"
+
 namespace brick {
 namespace {
 
 constexpr std::uint16_t kA = 1u << kEncA, kB = 1u << kEncB, kC = 1u << kEncC, kHome = 1u << kHmfl;
 constexpr Tick kSclk = 12;
+using namespace regs::servo_channel;
+constexpr std::uint32_t kError = status::kEncoderError.mask(), kCaptured = status::kCaptured.mask(),
+                        kGatedIndex = status::kCapturedGatedIndex.mask();
 
 class ChannelScoreboardRules : public ::testing::Test {
  protected:
@@ -61,12 +66,12 @@ TEST_F(ChannelScoreboardRules, BothLinesAtOnceAreAnErrorAndNoCount) {
   board_.decoder.mode = 3;
   put(kA | kB);
   EXPECT_EQ(board_.decoder.counter(), 0);
-  EXPECT_EQ(board_.status(0x100), 0x100u);
+  EXPECT_EQ(board_.status(kError), kError);
   put(kB);
   EXPECT_EQ(board_.decoder.counter(), 1);
-  EXPECT_EQ(board_.status(0x100), 0x100u);
+  EXPECT_EQ(board_.status(kError), kError);
   board_.decoder.clear_error();
-  EXPECT_EQ(board_.status(0x100), 0u);
+  EXPECT_EQ(board_.status(kError), 0u);
 }
 
 TEST_F(ChannelScoreboardRules, PassesTwoSamplesAndNotOne) {
@@ -78,6 +83,18 @@ TEST_F(ChannelScoreboardRules, PassesTwoSamplesAndNotOne) {
   put(kA, 2 * kSclk);
   put(0);
   EXPECT_EQ(board_.counts.size(), 2u);  // up and down again
+}
+
+// The wrong rule of the negative controls differs where one sample decides, and nowhere else.
+TEST_F(ChannelScoreboardRules, WrongFilterIsAsLateAndPassesOneSample) {
+  board_.filter.lets_one_pass = true;
+  board_.decoder.mode = 3;
+  board_.counts.clear();
+  put(kA, 129);  // driven at 120: sampled at 132 and 144, counted at 156, as with the right rule
+  put(kA | kB, kSclk);
+  put(kA);
+  ASSERT_EQ(board_.counts.size(), 3u);
+  EXPECT_EQ(board_.counts[0].tick, 156);
 }
 
 TEST_F(ChannelScoreboardRules, CountsTwoPeriodsAfterTheFirstSample) {
@@ -101,14 +118,14 @@ TEST_F(ChannelScoreboardRules, CapturesOnceOnTheEdgeOfAFlag) {
   board_.capture.code = 2;
   put(kA);
   put(kA | kHome);
-  EXPECT_EQ(board_.status(0x800), 0x800u);
+  EXPECT_EQ(board_.status(kCaptured), kCaptured);
   EXPECT_EQ(board_.capture.position(), 1u);
   put(kA | kB);
   put(kA | kB | kHome);
   EXPECT_EQ(board_.capture.position(), 1u) << "not armed";
   EXPECT_EQ(board_.capture.read(), 1u);
   put(kB | kHome);
-  EXPECT_EQ(board_.status(0x800), 0u) << "true already when armed";
+  EXPECT_EQ(board_.status(kCaptured), 0u) << "true already when armed";
   put(kB);
   put(kB | kHome);
   EXPECT_EQ(board_.capture.read(), 3u);
@@ -123,7 +140,7 @@ TEST_F(ChannelScoreboardRules, GatesTheIndex) {
   EXPECT_FALSE(board_.capture.captured());
   put(kB | kC);
   put(kC);
-  EXPECT_EQ(board_.status(0xC00), 0xC00u);
+  EXPECT_EQ(board_.status(kCaptured | kGatedIndex), kCaptured | kGatedIndex);
   EXPECT_EQ(board_.capture.read(), 4u);  // the count that enters 00 included
 }
 

@@ -27,7 +27,7 @@ Machine::Machine(sc_core::sc_module_name name, const MachineConfig&)
 Machine::~Machine() = default;
 
 Tick Machine::now() const { return impl_->now; }
-BoardInputs& Machine::inputs() { return impl_->pins; }
+HostInputs& Machine::inputs() { return impl_->pins; }
 const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
 Signals& Machine::signals() { return impl_->signals; }
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->cycles; }

@@ -1,5 +1,5 @@
-// Test top: the blocks of a channel that have a parameter for what the data sheet leaves open, once for each value. Bit or element 0
-// has the parameter at 0; the three ADCs drop 0, 4 and 6 bits.
+// Test top: the blocks of a channel that have a parameter for what the data sheet leaves open, once for each value. Bit
+// or element 0 has the parameter at 0; the three ADCs drop 0, 4 and 6 bits.
 `default_nettype none
 
 module choices_bench (
@@ -41,19 +41,34 @@ module choices_bench (
     logic [11:0] a_fraction, b_fraction;
     logic        mark, echo, unused;
     channel_compare #(.EquOnLeave(i == 1)) u_compare (
-      .clk_ref_i, .rst_ni, .ce_i, .fine_i, .other_i, .count_i, .down_i, .hold_i, .counter_i, .fraction_i, .we_i, .wdata_i,
-      .a_o(a_o[i]), .b_o(b_o[i]), .inc_o(inc), .a_fraction_o(a_fraction), .b_fraction_o(b_fraction), .equ_o(equ_o[i])
+      .clk_ref_i, .rst_ni, .ce_i, .fine_i, .other_i,
+      .count_i, .down_i, .hold_i, .counter_i, .fraction_i,
+      .we_i, .wdata_i,
+      .a_o(a_o[i]), .b_o(b_o[i]), .inc_o(inc),
+      .a_fraction_o(a_fraction), .b_fraction_o(b_fraction),
+      .equ_o(equ_o[i])
     );
     channel_decode #(.ALeadsUp(i == 1)) u_decode (
-      .clk_ref_i, .rst_ni, .ce_i, .ready_i, .mode_i, .hold_i, .abc_i, .pulse_i, .pulse_down_i, .count_o(count_o[i]),
-      .down_o(down_o[i]), .error_o(error_o[i]), .mark_o(mark), .echo_o(echo)
+      .clk_ref_i, .rst_ni, .ce_i, .ready_i, .mode_i, .hold_i,
+      .abc_i, .pulse_i, .pulse_down_i,
+      .count_o(count_o[i]), .down_o(down_o[i]), .error_o(error_o[i]),
+      .mark_o(mark), .echo_o(echo)
     );
     assign unused = &{1'b0, inc, a_fraction, b_fraction, mark, echo};
   end
 
-  channel_adc #(.Latency(5'd0)) u_adc_0 (.clk_ref_i, .rst_ni, .sample_i, .bit_i, .phase_fall_i, .data_i, .value_o(value_o[0]));
-  channel_adc u_adc_4 (.clk_ref_i, .rst_ni, .sample_i, .bit_i, .phase_fall_i, .data_i, .value_o(value_o[1]));
-  channel_adc #(.Latency(5'd6)) u_adc_6 (.clk_ref_i, .rst_ni, .sample_i, .bit_i, .phase_fall_i, .data_i, .value_o(value_o[2]));
+  channel_adc #(.Latency(5'd0)) u_adc_0 (
+    .clk_ref_i, .rst_ni, .sample_i, .bit_i, .phase_fall_i, .data_i,
+    .value_o(value_o[0])
+  );
+  channel_adc u_adc_4 (
+    .clk_ref_i, .rst_ni, .sample_i, .bit_i, .phase_fall_i, .data_i,
+    .value_o(value_o[1])
+  );
+  channel_adc #(.Latency(5'd6)) u_adc_6 (
+    .clk_ref_i, .rst_ni, .sample_i, .bit_i, .phase_fall_i, .data_i,
+    .value_o(value_o[2])
+  );
 
 endmodule : choices_bench
 

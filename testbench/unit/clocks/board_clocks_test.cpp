@@ -3,15 +3,15 @@
 
 #include <string>
 
-#include "systemc/board/board_top.h"
+#include "systemc/cosim/engines.h"
 #include "testbench/unit/clocks/board_rig.h"
-#include "testbench/unit/clocks/rtl_board.h"
-#include "testbench/unit/clocks/servo_ic_rig.h"
+#include "testbench/unit/clocks/clock_words.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
 
+constexpr std::uint32_t kTwoIcs = 0x3, kFourIcs = 0xF;  // as BoardInputs::fitted
 constexpr std::uint32_t kNoSource = 31, kExternalSource = 30;
 // A clock pin is released within one SERVO period and taken within one more; of PHASE and SERVO periods at reset
 // values.
@@ -19,11 +19,10 @@ constexpr Tick kHandOver = 3 * 4 * 13057;
 
 class BoardOn : public ::testing::TestWithParam<bool> {
  protected:
-  static std::unique_ptr<Board> make() {
-    if (GetParam()) return std::make_unique<RtlBoard>();
-    return std::make_unique<BoardTop>(sc_core::sc_gen_unique_name("board_top"), kTestIcs);
+  static BoardRig board_with(std::uint32_t ics) {
+    return BoardRig(GetParam() ? make_rtl_board(ics) : make_model_board(ics), ics);
   }
-  BoardRig rig{make(), kTestIcs};
+  BoardRig rig = board_with(kTwoIcs);
 };
 INSTANTIATE_TEST_SUITE_P(Engines, BoardOn, ::testing::Values(true, false),
                          [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); });
@@ -38,19 +37,20 @@ TEST_P(BoardOn, ClocksIdleHighWithNoSource) {
 }
 
 TEST_P(BoardOn, EveryServoIcIsAtItsAddress) {
-  const std::uint32_t bases[] = {0x78000, 0x78100, 0x78200, 0x78220};
-  for (std::uint32_t i = 0; i < 4; ++i) rig.write(true, bases[i] + kAdcStrobe, 0x111111 * (i + 1));
-  for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(rig.read(true, bases[i] + kAdcStrobe), 0x111111 * (i + 1));
-  EXPECT_EQ(rig.read(true, bases[0] + kClockWord), 0x3038D2u);
-  EXPECT_EQ(rig.read(false, bases[0] + kClockWord), 0u) << "the Y word belongs to a channel";
+  BoardRig four = board_with(kFourIcs);
+  const std::uint32_t bases[] = {0x78000, 0x78100, 0x78200, 0x78300};
+  for (std::uint32_t i = 0; i < 4; ++i) four.write(true, bases[i] + kAdcStrobe, 0x111111 * (i + 1));
+  for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(four.read(true, bases[i] + kAdcStrobe), 0x111111 * (i + 1));
+  EXPECT_EQ(four.read(true, bases[0] + kClockWord), 0x3038D2u);
+  EXPECT_EQ(four.read(false, bases[0] + kClockWord), 0u) << "the Y word belongs to a channel";
 }
 
 TEST_P(BoardOn, AbsentIcReadsZeroIgnoresWritesAndDoesNotDrive) {
-  for (const std::uint32_t base : {0x78300u, 0x78120u, 0x79200u, 0x7B320u, 0x7A400u}) {
+  for (const std::uint32_t base : {0x78200u, 0x78120u, 0x79200u, 0x7B320u, 0x7A400u}) {
     rig.write(true, base + kAdcStrobe, 0xFFFFFF);
     EXPECT_EQ(rig.read(true, base + kAdcStrobe), 0u) << std::hex << base;
   }
-  rig.in.fitted = kTestIcs & ~1u;  // IC 0 is built but not fitted
+  rig.in.fitted = kTwoIcs & ~1u;  // IC 0 is built but not fitted
   rig.apply();
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), 0u);
@@ -63,7 +63,7 @@ TEST_P(BoardOn, IcTakenOutWhileItWorksNoLongerDrivesClocksDataAndInterrupts) {
   constexpr std::uint32_t kControl = 5, kEquHigh = 0x1800;  // EQU initial state 1, write enable
   for (const std::uint32_t ic : {0u, 1u}) {
     const std::uint32_t other = 1 - ic;
-    rig.in.fitted = kTestIcs;
+    rig.in.fitted = kTwoIcs;
     rig.in.line_select = 0x951;  // IR5: EQU1, IR6: EQU5
     rig.apply();
     rig.write(true, kServoIcBase[other] + kClockWord, clock_word(0, 3, 3));
@@ -74,7 +74,7 @@ TEST_P(BoardOn, IcTakenOutWhileItWorksNoLongerDrivesClocksDataAndInterrupts) {
     ASSERT_EQ(rig.get(pin::kPicSig) >> 5 & 3, 3u);
     rig.edge(pin::kServo, 0);  // PHASE and SERVO are low
 
-    rig.in.fitted = kTestIcs & ~(1u << ic);
+    rig.in.fitted = kTwoIcs & ~(1u << ic);
     rig.apply();
     rig.run(12);
     EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
@@ -99,7 +99,7 @@ TEST_P(BoardOn, IcTakenOutWhileItWorksNoLongerDrivesClocksDataAndInterrupts) {
 
     rig.write(true, kServoIcBase[other] + kClockWord, clock_word(0, 3, 3));
     rig.run(kHandOver);
-    rig.in.fitted = kTestIcs;
+    rig.in.fitted = kTwoIcs;
     rig.apply();
     rig.run(kHandOver);
     EXPECT_EQ(rig.read(true, kServoIcBase[ic] + kAdcStrobe), 0xFFFFFEu);
@@ -110,24 +110,25 @@ TEST_P(BoardOn, IcTakenOutWhileItWorksNoLongerDrivesClocksDataAndInterrupts) {
 
 TEST_P(BoardOn, TheIcWithDirectionZeroSuppliesTheWholeBoard) {
   BRICK_COVERS("I19-2 CLK-6");
+  BoardRig four = board_with(kFourIcs);
   const struct {
     std::uint32_t base, index, max_count;
-  } sources[] = {{0x78000, 0, 6527}, {0x78100, 1, 5000}, {0x78220, 10, 3000}, {0x78200, 2, 1473}};
+  } sources[] = {{0x78000, 0, 6527}, {0x78100, 1, 5000}, {0x78300, 3, 3000}, {0x78200, 2, 1473}};
   for (const auto& s : sources) {
-    rig.write(true, s.base + kPwmWord, pwm_word(s.max_count));
-    rig.write(true, s.base + kClockWord, clock_word(0, 3, 0));
-    rig.run(kHandOver);
-    EXPECT_EQ(rig.get(pin::kPhaseSource), s.index);
-    EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
+    four.write(true, s.base + kPwmWord, pwm_word(s.max_count));
+    four.write(true, s.base + kClockWord, clock_word(0, 3, 0));
+    four.run(kHandOver);
+    EXPECT_EQ(four.get(pin::kPhaseSource), s.index);
+    EXPECT_EQ(four.get(pin::kSourceConflict), 0u);
     const Tick period = 2 * Tick{s.max_count} + 3;
-    const Tick rise = rig.edge(pin::kPhase, 1);
-    EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, period);
-    const Tick fall = rig.edge(pin::kServo, 0);
-    EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 4 * period);
-    rig.write(true, s.base + kClockWord, clock_word(0, 3, 3));
+    const Tick rise = four.edge(pin::kPhase, 1);
+    EXPECT_EQ(four.edge(pin::kPhase, 1) - rise, period);
+    const Tick fall = four.edge(pin::kServo, 0);
+    EXPECT_EQ(four.edge(pin::kServo, 0) - fall, 4 * period);
+    four.write(true, s.base + kClockWord, clock_word(0, 3, 3));
   }
-  rig.run(kHandOver);
-  EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
+  four.run(kHandOver);
+  EXPECT_EQ(four.get(pin::kPhaseSource), kNoSource);
 }
 
 // The divider variables of an IC that is not the source are stored and have no effect.

@@ -12,8 +12,6 @@
 namespace brick {
 
 constexpr std::uint32_t kServoIcBase[] = {0x78000, 0x78100, 0x78200};
-constexpr std::uint32_t kServoIc2StarBase = 0x78220;
-constexpr unsigned kServoIc2Star = 10;  // its bit in BoardInputs::fitted
 constexpr std::uint32_t kWatchdogStrobe = 0x70011, kHostSignals = 0x70010;
 
 class BoardRig {

@@ -1,12 +1,9 @@
-// The Verilated servo IC with the same calls as the model, one clk_pwm edge at a time. The Verilated header stays in
-// the .cpp.
+// The Verilated servo IC.
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <memory>
 
-#include "systemc/core/ticks.h"
+#include "testbench/unit/clocks/rtl_ic.h"
 
 namespace brick {
 
@@ -20,29 +17,8 @@ struct ServoIcInputs {
   unsigned adc_a = 0, adc_b = 0;   // bit n-1: channel n
 };
 
-class RtlServoIc {
- public:
-  RtlServoIc();  // in reset and not selected
-  ~RtlServoIc();
-
-  ServoIcInputs in;
-
-  void settle();  // what the inputs change without an edge
-  void tick();    // the next clk_pwm edge, and clk_ref with every third
-  Tick now() const { return now_; }
-
-  bool phase() const;
-  bool servo() const;
-  bool phase_oe() const;
-  bool servo_oe() const;
-  std::uint64_t motor() const;  // the first two words of MotorOutputs
-  std::uint32_t rdata();        // combinational, with the present address
-
- private:
-  void drive();
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-  Tick now_ = 0;
+struct RtlServoIc : RtlIc<ServoIcInputs> {
+  RtlServoIc();
 };
 
 }  // namespace brick

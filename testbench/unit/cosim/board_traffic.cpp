@@ -8,17 +8,13 @@
 namespace brick {
 
 namespace {
-constexpr std::uint32_t kClockWords[] = {0x078004, 0x078104};  // directions and dividers
-constexpr std::uint32_t kMaxPhase[] = {0x07801C, 0x07811C};    // PWM count
-bool is_one_of(std::uint32_t address, const std::uint32_t (&list)[2]) {
-  return address == list[0] || address == list[1];
-}
+constexpr Tick kTripTime = 3'000'000;  // without a strobe the watchdog trips after 25 ms = 2949120 ticks
 }  // namespace
 
 void start_clocks(Board& board, BoardInputs& inputs) {
   board.run_until(30);
   inputs.rst_n = true;
-  inputs.pa_addr = kClockWords[0];
+  inputs.pa_addr = regs::kGateIcs[0].base + regs::servo_ic::kClockControl.address;
   inputs.pa_x = true;
   inputs.pa_aa = 2;
   inputs.pa_wdata = regs::servo_ic::kClockControl.reset & ~regs::servo_ic::clock_control::kPhaseExternal.mask() &
@@ -35,16 +31,32 @@ void start_clocks(Board& board, BoardInputs& inputs) {
 
 BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed), options_(options) {
   for (unsigned line = 0; line < 3; ++line)
-    inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | pick(16));
+    inputs_.line_select =
+        static_cast<std::uint16_t>(inputs_.line_select << 4 | (pick(8) == 0 ? pick(16) : 1 + pick(9)));
   inputs_.jpan_fitted = pick(2) != 0;
   inputs_.dpram_small = pick(2) != 0;
-  reset_at_ = 12 + pick(30);  // released there
-  cpu_.at = host_.at = reset_at_ + 10;
+  for (unsigned ic = 0; ic < regs::kGateIcs.size(); ++ic)
+    if ((options.ics >> ic & 1) != 0) ics_.push_back(ic);
+  inputs_.fitted = options.ics;
+  reset_at_ = options.start + 12 + pick(30);  // released there
+  cpu_.at = host_.at = outside_at_ = reset_at_ + 10;
 }
 
 std::uint32_t BoardTraffic::pick(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
 
-Tick BoardTraffic::next() const { return std::min({cpu_.at, host_.at, reset_at_}); }
+unsigned BoardTraffic::one_of_ics() { return ics_[pick(static_cast<std::uint32_t>(ics_.size()))]; }
+
+Tick BoardTraffic::next() const { return std::min({cpu_.at, host_.at, outside_at_, reset_at_}); }
+
+void BoardTraffic::run(Board& board, Tick end) {
+  board.set_inputs(inputs_);
+  while (next() < end) {
+    board.run_until(next());
+    change();
+    board.set_inputs(inputs_);
+  }
+  board.run_until(end);
+}
 
 void BoardTraffic::change() {
   const Tick now = next();
@@ -52,24 +64,61 @@ void BoardTraffic::change() {
     in_reset_ = !in_reset_;
     inputs_.rst_n = !in_reset_;
     reset_at_ = in_reset_ ? now + 1 + pick(40) : kNever;
+    driver_ = one_of_ics();
   }
   if (cpu_.at == now) cpu_step();
   if (host_.at == now) host_step();
+  if (outside_at_ == now) outside_step();
+}
+
+// External PHASE and SERVO, jumper E1, now and then what is fitted and of which kind.
+void BoardTraffic::outside_step() {
+  switch (pick(8)) {
+    case 0:
+      if (pick(8) == 0) inputs_.ext_clock = !inputs_.ext_clock;
+      break;
+    case 1:
+      if (pick(4) == 0) inputs_.fitted = pick(3) == 0 ? pick(1u << regs::kGateIcs.size()) : options_.ics;
+      break;
+    case 2:
+      if (pick(2) == 0) inputs_.macro_gate = pick(16);
+      break;
+    case 3:
+    case 4:
+      inputs_.ext_servo = !inputs_.ext_servo;
+      break;
+    default:
+      inputs_.ext_phase = !inputs_.ext_phase;
+      break;
+  }
+  outside_at_ += 1 + pick(500);
+}
+
+void BoardTraffic::pause() {
+  if (options_.dense || pick(60) != 0) return;
+  const Tick ticks = 1000 + pick(60'000);
+  for (Tick* at : {&cpu_.at, &host_.at, &outside_at_}) *at += ticks;
 }
 
 void BoardTraffic::choose_cpu_address() {
-  // Registers of a servo IC's clocks, its other words, all gate ICs, DPRAM (few words, so that the sides meet),
-  // latches, the host port, and addresses in no region with any area select.
+  // Registers of an IC's clocks, its other words, EQU by hand, all gate ICs, DPRAM (few words, the first most of all,
+  // so that the sides meet), latches, the host port, and addresses in no region with any area select.
   inputs_.pa_int = false;
   inputs_.pa_x = pick(2) != 0;
-  switch (pick(8)) {
+  switch (pick(9)) {
     case 0:
-      inputs_.pa_addr = pick(3) == 0 ? kMaxPhase[pick(2)] : kClockWords[pick(2)];
+      choose_clock_address();
+      break;
+    case 8: {
+      using namespace regs::servo_channel;
+      inputs_.pa_addr = regs::kGateIcs[pick(2)].base + 8 * pick(4) + kControl.address;
       inputs_.pa_x = true;
       inputs_.pa_aa = 2;
+      inputs_.pa_wdata = control::kEquState.set(control::kEquWrite.set(inputs_.pa_wdata, 1), pick(2));
       break;
+    }
     case 1:
-      inputs_.pa_addr = 0x078000 + (pick(2) << 8) + pick(64);
+      inputs_.pa_addr = regs::kGateIcs[one_of_ics()].base + pick(64);
       inputs_.pa_aa = 2;
       break;
     case 2:
@@ -78,7 +127,7 @@ void BoardTraffic::choose_cpu_address() {
       break;
     case 3:
     case 4:
-      inputs_.pa_addr = 0x060000 + (pick(4) == 0 ? (pick(2) == 0 ? 0x3FFC : 0x0FFE) : 0) + pick(4);
+      inputs_.pa_addr = 0x060000 + (pick(4) == 0 ? (pick(2) == 0 ? 0x3FFC : 0x0FFE) : 0) + (pick(2) == 0 ? 0 : pick(4));
       inputs_.pa_aa = 4;
       break;
     case 5:
@@ -98,6 +147,35 @@ void BoardTraffic::choose_cpu_address() {
   }
 }
 
+// Of both kinds of IC, whose fields are the same. The data goes with it.
+void BoardTraffic::choose_clock_address() {
+  const unsigned ic = one_of_ics();
+  const auto& [name, macro, base, variable] = regs::kGateIcs[ic];
+  const bool count = pick(3) == 0;
+  inputs_.pa_addr = base + (macro ? (count ? regs::macro_ic::kPwmControl : regs::macro_ic::kClockControl)
+                                  : (count ? regs::servo_ic::kPwmControl : regs::servo_ic::kClockControl))
+                               .address;
+  inputs_.pa_x = true;
+  inputs_.pa_aa = 2;
+  if (pick(8) == 0) return;
+  if (count)
+    inputs_.pa_wdata = regs::servo_ic::pwm_control::kMaxCount.set(pick(256), pick(4) == 0 ? pick(7000) : pick(100));
+  else
+    inputs_.pa_wdata = choose_clock_data(ic == driver_);
+}
+
+// Short clocks, so that PHASE and SERVO move often; one IC drives them and the others follow, but for every second
+// word.
+std::uint32_t BoardTraffic::choose_clock_data(bool drives) {
+  using namespace regs::servo_ic;
+  const std::uint32_t external = pick(2) == 0 ? pick(4) : (drives ? 0 : 3);
+  std::uint32_t word = choose_cpu_data() & 0xFFF;
+  word = clock_control::kPhaseExternal.set(word, external & 1);
+  word = clock_control::kServoExternal.set(word, external >> 1);
+  word = clock_control::kPhaseDivider.set(word, pick(3) == 0 ? pick(16) : 0);
+  return clock_control::kServoDivider.set(word, pick(3) == 0 ? pick(16) : pick(3));
+}
+
 std::uint32_t BoardTraffic::choose_cpu_data() {
   switch (pick(4)) {
     case 0:
@@ -111,32 +189,16 @@ std::uint32_t BoardTraffic::choose_cpu_data() {
   }
 }
 
-// Short clocks, so that PHASE and SERVO move often; mostly one IC as source, sometimes none or both.
-std::uint32_t BoardTraffic::choose_clock_data() {
-  using namespace regs::servo_ic;
-  if (is_one_of(inputs_.pa_addr, kMaxPhase))
-    return pwm_control::kMaxCount.set(pick(256), pick(4) == 0 ? pick(7000) : pick(100));
-  std::uint32_t word = choose_cpu_data() & 0xFFF;
-  const std::uint32_t external = pick(3) == 0 ? pick(4) : (inputs_.pa_addr == kClockWords[0] ? 0 : 3);
-  word = clock_control::kPhaseExternal.set(word, external & 1);
-  word = clock_control::kServoExternal.set(word, external >> 1);
-  word = clock_control::kPhaseDivider.set(word, pick(3) == 0 ? pick(16) : 0);
-  return clock_control::kServoDivider.set(word, pick(3) == 0 ? pick(16) : pick(3));
-}
-
 void BoardTraffic::cpu_step() {
   const Tick step = 1 + pick(4);
   bool& strobe = cpu_.write ? inputs_.pa_wr_n : inputs_.pa_rd_n;
   switch (cpu_.step++) {
     case 0:
+      inputs_.pa_wdata = choose_cpu_data();
       choose_cpu_address();
       if (pick(4) == 0) inputs_.jpan = static_cast<std::uint16_t>(pick(0x10000));
       cpu_.write = pick(2) != 0;
-      if (cpu_.write) {
-        const bool clocks =
-            inputs_.pa_x && (is_one_of(inputs_.pa_addr, kClockWords) || is_one_of(inputs_.pa_addr, kMaxPhase));
-        inputs_.pa_wdata = clocks && pick(8) != 0 ? choose_clock_data() : choose_cpu_data();
-      }
+      cpu_.dpram_accesses += inputs_.pa_aa == 4 && inputs_.pa_addr - regs::kDpramBase < regs::kDpramSize;
       cpu_.at += step;
       break;
     case 1:
@@ -145,14 +207,24 @@ void BoardTraffic::cpu_step() {
       break;
     case 2:
       strobe = true;
+      if (inputs_.pa_int && pick(2) == 0) {  // the CPU may show something else before the strobe is seen high
+        inputs_.pa_int = pick(2) != 0;
+        inputs_.pa_addr = pick(10);
+      }
       cpu_.at += pick(3) == 0 ? 1 : step;
       break;
     default:
       if (pick(2) != 0) inputs_.pa_aa = 0, inputs_.pa_int = false;
       cpu_.step = 0;
-      cpu_.at += options_.dense ? 1 + pick(12) : 500 + pick(20'000);
+      cpu_.at += 1 + pick(12);
+      pause();
       if (options_.reset_one_in != 0 && pick(options_.reset_one_in) == 0 && reset_at_ == kNever)
         reset_at_ = cpu_.at + pick(20);
+      if (cpu_.at >= options_.silent_at && reset_at_ == kNever) {
+        options_.silent_at = kNever;
+        cpu_.at += kTripTime;
+        reset_at_ = cpu_.at + pick(200'000);
+      }
       break;
   }
 }
@@ -161,11 +233,13 @@ void BoardTraffic::choose_host_address() {
   host_.memory = pick(3) == 0;
   if (host_.memory) {
     const std::uint32_t offset =
-        pick(4) == 0 ? pick(0x10000) : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + pick(16);
+        pick(4) == 0 ? pick(0x10000)
+                     : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + (pick(2) == 0 ? pick(4) : pick(16));
     inputs_.isa_sa = (pick(16) == 0 ? 0xC0000 : 0xD0000) + offset;
   } else {
     inputs_.isa_sa = (pick(16) == 0 ? pick(0x400) : regs::host_io::kBase + pick(16));
   }
+  host_.dpram_accesses += host_.memory && inputs_.isa_sa - regs::kDpramWindowBase < regs::kDpramWindowSize;
   inputs_.isa_sbhe_n = pick(2) != 0;
   inputs_.isa_aen = pick(16) == 0;
   inputs_.isa_sd = static_cast<std::uint16_t>(pick(4) == 0 ? pick(0x10000) : 1u << pick(16));
@@ -190,7 +264,8 @@ void BoardTraffic::host_step() {
       break;
     default:
       host_.step = 0;
-      host_.at += options_.dense ? 1 + pick(30) : 500 + pick(20'000);
+      host_.at += 1 + pick(30);
+      pause();
       break;
   }
 }

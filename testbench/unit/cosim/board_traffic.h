@@ -1,10 +1,12 @@
-// Random but repeatable traffic on all pins of a board: Port A cycles to every region and to none, host cycles to every
-// address of the I/O block and the DPRAM window, both at random ticks and overlapping, resets in between. It holds the
-// rules of both buses that the board relies on: one strobe at a time on each, address and data still around it.
+// Random but repeatable traffic on all pins of a board but the motors': Port A cycles to every region and to none, host
+// cycles to every address of the I/O block and the DPRAM window, clocks from outside and straps, each at random ticks
+// and overlapping, resets in between. It holds the rules of both buses that the board relies on: one strobe at a time
+// on each, address and data still around it.
 #pragma once
 
 #include <cstdint>
 #include <random>
+#include <vector>
 
 #include "systemc/core/board.h"
 
@@ -18,7 +20,10 @@ class BoardTraffic {
  public:
   struct Options {
     unsigned reset_one_in = 400;  // accesses between two resets, on average; 0 = none but the first
-    bool dense = true;            // short pauses between accesses
+    bool dense = true;            // without long pauses of everybody
+    std::uint32_t ics = 0x3;      // that take part, as in BoardInputs::fitted
+    Tick silent_at = kNever;      // Port A rests from there until the watchdog has tripped, and a reset follows
+    Tick start = 0;
   };
   explicit BoardTraffic(std::uint64_t seed) : BoardTraffic(seed, Options{}) {}
   BoardTraffic(std::uint64_t seed, Options options);
@@ -26,6 +31,10 @@ class BoardTraffic {
   const BoardInputs& inputs() const { return inputs_; }
   Tick next() const;  // the inputs change so that the edge next()+1 is the first to see it
   void change();      // to be called when the board stands at next()
+  void run(Board& board, Tick end);
+
+  unsigned dpram_accesses_of_cpu() const { return cpu_.dpram_accesses; }
+  unsigned dpram_accesses_of_host() const { return host_.dpram_accesses; }
 
  private:
   struct Bus {
@@ -33,20 +42,27 @@ class BoardTraffic {
     int step = 0;
     bool write = false;
     bool memory = false;
+    unsigned dpram_accesses = 0;
   };
   std::uint32_t pick(std::uint32_t below);
+  unsigned one_of_ics();
   void cpu_step();
   void host_step();
+  void outside_step();
+  void pause();
   void choose_cpu_address();
+  void choose_clock_address();
   std::uint32_t choose_cpu_data();
-  std::uint32_t choose_clock_data();
+  std::uint32_t choose_clock_data(bool drives);
   void choose_host_address();
 
   std::mt19937_64 random_;
   Options options_;
   BoardInputs inputs_;
   Bus cpu_, host_;
-  Tick reset_at_ = kNever;
+  std::vector<unsigned> ics_;  // indices
+  unsigned driver_ = 0;        // of the clocks, mostly
+  Tick outside_at_ = 0, reset_at_ = kNever;
   bool in_reset_ = true;
 };
 

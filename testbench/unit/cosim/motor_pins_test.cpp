@@ -1,79 +1,20 @@
-// The motor side of the board on all engines: equal at every tick under random life; the report of a difference names
-// the pin; who watches is told edge by edge, and a run stops at a selected pin. A long run:
-// BRICK_MOTOR_TICKS=1000000000 bin/unit_cosim --gtest_filter='*MotorPinsAre*OneIc' (seed: BRICK_MOTOR_SEED).
+// The motor side of the board on all engines: who watches is told edge by edge, a run stops at a selected pin, and the
+// report of a difference names the pin.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <array>
-#include <cstdlib>
 #include <tuple>
 #include <vector>
 
 #include "systemc/cosim/engines.h"
+#include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/clocks/clock_words.h"
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
-
-std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 0);
-}
-
-constexpr std::uint32_t kServoIcMask = (1u << kMaxServoIcs) - 1;
-
-struct Size {
-  const char* name;
-  std::uint32_t fitted;
-  Tick ticks;
-  bool macro_drives = false;
-};
-
-class MotorPins : public ::testing::TestWithParam<Size> {};
-
-TEST_P(MotorPins, AreEqualAtEveryTickUnderRandomLife) {
-  BRICK_COVERS("CARD-6");
-  const auto [name, fitted, ticks, macro_drives] = GetParam();
-  auto board = make_lockstep_board(make_rtl_board(fitted), make_model_board(fitted));
-  const Tick end = from_environment("BRICK_MOTOR_TICKS", ticks);
-  MotorTrafficOptions options{fitted};
-  options.macro_drives = macro_drives;
-  const std::uint64_t seed = from_environment("BRICK_MOTOR_SEED", 1);
-  MotorTraffic traffic(seed, options);
-  std::array<MotorOutputs, kMaxServoIcs> moved;
-  std::uint32_t sources = 0, trips = 0;  // ICs whose PHASE the board took; of the watchdog
-  board->on_change = [&](Tick, const BoardOutputs& before, const BoardOutputs& after) {
-    sources |= 1u << after.get(pin::kPhaseSource);
-    trips += after.get(pin::kWdTripped) & ~before.get(pin::kWdTripped);
-  };
-  board->watch_motors(~0u);
-  board->on_motor_change = [&](Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
-    for (unsigned i = 0; i < kMotorOutputWords; ++i) moved[ic].w[i] |= before.w[i] ^ after.w[i];
-  };
-  ASSERT_NO_THROW(traffic.run(*board, end)) << "seed " << seed;
-  RecordProperty("watchdog_trips", static_cast<int>(trips));
-  if (seed != 1 && end < 10'000'000) return;  // a short run may miss something of what follows
-  // Life there was: of every fitted servo IC a switch and a counter moved, and of the whole board every kind of pin.
-  MotorOutputs all;
-  for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
-    if ((fitted >> ic & 1) == 0) continue;
-    EXPECT_NE(moved[ic].w[0] & 0xFFFFFF, 0u) << servo_ic_scope(ic);
-    EXPECT_NE(moved[ic].w[2] | moved[ic].w[3] | moved[ic].w[4] | moved[ic].w[5], 0u) << servo_ic_scope(ic);
-    for (unsigned n = 0; n < kChannels; ++n)
-      for (const MotorField& f : motor_pin::kAll) all.set(f, 0, all.get(f, 0) | moved[ic].get(f, n));
-  }
-  for (const MotorField& f : motor_pin::kAll) { EXPECT_NE(all.get(f, 0), 0u) << f.name << " never moved"; }
-  if (end >= 200'000'000) { EXPECT_NE(trips, 0u); }
-  EXPECT_NE(sources & fitted & (macro_drives ? ~kServoIcMask : kServoIcMask), 0u);
-}
-
-INSTANTIATE_TEST_SUITE_P(Boards, MotorPins,
-                         ::testing::Values(Size{"OneIc", 0x1, 400'000}, Size{"TwoIcs", 0x3, 400'000},
-                                           Size{"AllIcs", 0x3FFFFF, 120'000},
-                                           Size{"AllIcsByMacro", 0x3FFFFF, 120'000, true}),
-                         [](const auto& size) { return std::string(size.param.name); });
 
 TEST(MotorPinsOfAnEngine, DoNotDependOnHowARunIsCut) {
   using Seen = std::vector<std::tuple<Tick, unsigned, std::uint32_t>>;
@@ -137,79 +78,58 @@ TEST(MotorPinsOfAnEngine, OfAnIcThatIsNotFittedShowZero) {
   }
 }
 
-void write(Board& board, BoardInputs& in, std::uint32_t address, bool x, std::uint32_t word) {
-  in.pa_addr = address;
-  in.pa_x = x;
-  in.pa_aa = 2;
-  in.pa_wdata = word;
-  board.set_inputs(in);
-  board.run_until(board.now() + 6);
-  in.pa_wr_n = false;
-  board.set_inputs(in);
-  board.run_until(board.now() + 12);
-  in.pa_wr_n = true;
-  board.set_inputs(in);
-  board.run_until(board.now() + 12);
-}
-
 // The reset is asynchronous: what it clears is seen at the first tick in reset, wherever that lies between two edges of
 // clk_ref. So soon after the last reset no other pin has left its level.
 TEST(MotorPinsOfAnEngine, LoseTheirCountAtTheFirstTickOfAReset) {
   for (const bool rtl : {true, false})
     for (const Tick at : {240, 241, 242}) {
-      auto board = rtl ? make_rtl_board(0x1) : make_model_board(0x1);
-      BoardInputs in;
-      in.fitted = 1;
-      in.rst_n = false;
-      board->set_inputs(in);
-      board->run_until(30);
-      in.rst_n = true;
-      board->set_inputs(in);
-      write(*board, in, 0x07801D, true, 3);  // channel 4: quadrature x 4
-      board->run_until(130);
+      BoardRig rig(rtl ? make_rtl_board(0x1) : make_model_board(0x1), 0x1);
+      Board& board = rig.board();
+      rig.write(true, 0x07801D, 3);  // channel 4: quadrature x 4
+      board.run_until(130);
       MotorInputs turned;
       turned.pins[3] ^= 1;
-      board->set_motor_inputs(0, turned);
-      board->run_until(at);
-      ASSERT_NE(board->motor_outputs(0).get(motor_pin::kCount, 3), 0u);
+      board.set_motor_inputs(0, turned);
+      board.run_until(at);
+      ASSERT_NE(board.motor_outputs(0).get(motor_pin::kCount, 3), 0u);
       std::vector<Tick> cleared;
-      board->watch_motors(1);
-      board->on_motor_change = [&](Tick t, unsigned, const MotorOutputs& before, const MotorOutputs& after) {
+      board.watch_motors(1);
+      board.on_motor_change = [&](Tick t, unsigned, const MotorOutputs& before, const MotorOutputs& after) {
         if (before.get(motor_pin::kCount, 3) != 0 && after.get(motor_pin::kCount, 3) == 0) cleared.push_back(t);
       };
-      in.rst_n = false;
-      board->set_inputs(in);
-      board->run_until(at + 30);
+      rig.in.rst_n = false;
+      rig.apply();
+      board.run_until(at + 30);
       EXPECT_THAT(cleared, ::testing::ElementsAre(at + 1)) << "rtl " << rtl;
     }
 }
 
 // 25 ms without a strobe: servo-ic:10. 960 periods of 1024 clk_ref are 2949120 ticks.
 TEST(MotorPinsOfTheBoard, AreOffAfterTheWatchdogTripped) {
-  auto board = make_lockstep_board(make_rtl_board(0x3), make_model_board(0x3));
-  BoardInputs in;
-  start_clocks(*board, in);
-  write(*board, in, 0x078005, true, 1u << 14 | 1u << 11 | 1u << 12);  // channel 1: AENA; EQU set by hand
-  write(*board, in, 0x07800D, true, 1u << 23);                        // channel 2: PFM
-  write(*board, in, 0x07800C, false, 0x100000);
-  write(*board, in, 0x078015, true, 1u << 22);  // channel 3: DAC
-  write(*board, in, 0x078012, false, 0x7FFFFF);
-  board->watch_motors(1);
+  BoardRig rig(make_lockstep_board(make_rtl_board(0x3), make_model_board(0x3)), 0x3);
+  Board& board = rig.board();
+  rig.write(true, 0x078000 + kClockWord, clock_word(0, 3, 0));
+  rig.write(true, 0x078005, 1u << 14 | 1u << 11 | 1u << 12);  // channel 1: AENA; EQU set by hand
+  rig.write(true, 0x07800D, 1u << 23);                        // channel 2: PFM
+  rig.write(false, 0x07800C, 0x100000);
+  rig.write(true, 0x078015, 1u << 22);  // channel 3: DAC
+  rig.write(false, 0x078012, 0x7FFFFF);
+  board.watch_motors(1);
   MotorOutputs moved;
-  board->on_motor_change = [&](Tick, unsigned, const MotorOutputs& before, const MotorOutputs& after) {
+  board.on_motor_change = [&](Tick, unsigned, const MotorOutputs& before, const MotorOutputs& after) {
     for (unsigned i = 0; i < kMotorOutputWords; ++i) moved.w[i] |= before.w[i] ^ after.w[i];
   };
-  const Tick trip = board->run_until(4'000'000, select_pins(pin::kWdTripped));
+  const Tick trip = board.run_until(4'000'000, select_pins(pin::kWdTripped));
   ASSERT_LT(trip, 2'949'120 + 200'000);
   EXPECT_EQ(moved.get(motor_pin::kPwmATop, 0), 1u);
   EXPECT_EQ(moved.get(motor_pin::kPfmPulse, 1), 1u);
   EXPECT_EQ(moved.get(motor_pin::kDac, 2), 1u);
   EXPECT_EQ(moved.get(motor_pin::kAena, 0), 1u) << "falls with the trip";
   EXPECT_EQ(moved.get(motor_pin::kEqu, 0), 1u) << "falls with the trip";
-  board->run_until(trip + 2 * 26114);  // the next DAC word starts at PHASE
+  board.run_until(trip + 2 * 26114);  // the next DAC word starts at PHASE
   moved = {};
-  board->run_until(trip + 6 * 26114);
-  const MotorOutputs off = board->motor_outputs(0);
+  board.run_until(trip + 6 * 26114);
+  const MotorOutputs off = board.motor_outputs(0);
   for (unsigned n = 0; n < kChannels; ++n)
     for (const MotorField& f : motor_pin::kAll) {
       if (f.shared || f.name == "count") continue;

@@ -101,10 +101,11 @@ void MotorTraffic::bus_step() {
       if (one_in(2)) inputs_.pa_aa = 0;
       bus_step_ = 0;
       bus_at_ += started_ < 6 * ics_.size() ? 1 : 1 + up_to(one_in(10) ? 20'000 : options_.bus_pause);
-      if (options_.reset_one_in == 0 || reset_at_ != kNever) break;
-      if (one_in(options_.reset_one_in)) {
+      if (reset_at_ != kNever) break;
+      if (options_.reset_one_in != 0 && one_in(options_.reset_one_in)) {
         reset_at_ = bus_at_ + below(20);
-      } else if (one_in(10 * options_.reset_one_in)) {
+      } else if (bus_at_ >= options_.silent_at || (options_.reset_one_in != 0 && one_in(10 * options_.reset_one_in))) {
+        options_.silent_at = kNever;
         bus_at_ += kTripTime;
         reset_at_ = bus_at_ + below(200'000);
       }

@@ -20,6 +20,7 @@ struct MotorTrafficOptions {
   unsigned reset_one_in =
       2000;  // accesses between two resets, on average, ten times that between two trips of the watchdog; 0 = neither
   bool macro_drives = false;  // the first MACRO IC drives the clocks
+  Tick silent_at = kNever;    // Port A rests from there until the watchdog has tripped, and a reset follows
 };
 
 class MotorTraffic {

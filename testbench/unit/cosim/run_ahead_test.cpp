@@ -55,7 +55,7 @@ class Host {
     while (rig_.machine.now() < end) rig_.machine.run_until(cut_ == 0 ? end : std::min(end, rig_.machine.now() + cut_));
   }
   void command(bool memory, bool write, std::uint64_t address, std::uint16_t data) {
-    BoardInputs& in = rig_.machine.inputs();
+    HostInputs& in = rig_.machine.inputs();
     in.isa_sa = static_cast<std::uint32_t>(address);
     in.isa_sd = data;
     in.isa_sbhe_n = !memory;

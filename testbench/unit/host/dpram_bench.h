@@ -11,8 +11,8 @@ namespace brick {
 
 class DpramBench {
  public:
-  explicit DpramBench(bool small = false)
-      : model("dpram"), both(make_rtl_dpram(), model, [](const Dpram& m) {
+  explicit DpramBench(bool small = false, int seed = 0)
+      : model("dpram"), both(make_rtl_dpram(seed), model, [](const Dpram& m) {
           return Outputs{{"cpu_rdata", m.cpu_rdata()},
                          {"cpu_busy", m.cpu_busy()},
                          {"mem_rdata", m.mem_rdata()},

@@ -15,7 +15,7 @@ class IsaBench {
  public:
   using Inputs = IsaSlave::Inputs;
 
-  IsaBench(std::unique_ptr<RtlBlock<Inputs>> rtl, const IsaSlave::Config& config)
+  IsaBench(RtlBlock<Inputs, Outputs> rtl, const IsaSlave::Config& config)
       : model("isa_slave", config), both(std::move(rtl), model, [](const IsaSlave& m) {
           return Outputs{
               {"isa_sd", m.isa_sd()},     {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},

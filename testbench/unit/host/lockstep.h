@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "systemc/core/model_block.h"
-#include "testbench/unit/host/rtl_block.h"
+#include "testbench/unit/host/rtl_blocks.h"
 
 namespace brick {
 
@@ -21,8 +21,7 @@ class Lockstep {
   using Inputs = typename Model::Inputs;
   using Show = Outputs (*)(const Model&);
 
-  Lockstep(std::unique_ptr<RtlBlock<Inputs>> rtl, Model& model, Show show)
-      : rtl_(std::move(rtl)), model_(model), show_(show) {
+  Lockstep(RtlBlock<Inputs, Outputs> rtl, Model& model, Show show) : rtl_(std::move(rtl)), model_(model), show_(show) {
     model_.reset(0);
   }
 
@@ -32,13 +31,12 @@ class Lockstep {
 
   void tick() {
     apply();
-    const Outputs before = rtl_->outputs();
+    const Outputs before = rtl_.outputs();
     const Tick promised = model_.next_event();
-    ++now_;
-    rtl_->clock(is_ref_edge(now_));
-    if (!lazy || promised <= now_) model_.advance(now_);
+    rtl_.tick();
+    if (!lazy || promised <= now()) model_.advance(now());
     compare();
-    if (rtl_->outputs() != before && promised > now_)
+    if (rtl_.outputs() != before && promised > now())
       note("outputs changed, but next_event() said tick " + std::to_string(promised));
   }
   void ticks(int n) {
@@ -46,38 +44,39 @@ class Lockstep {
   }
   // Through the next edge of clk_ref, n times.
   void ref(int n = 1) {
-    for (Tick end = next_ref_edge(now_) + (n - 1) * kTicksPerRef; now_ < end;) tick();
+    for (Tick end = next_ref_edge(now()) + (n - 1) * kTicksPerRef; now() < end;) tick();
   }
   void reset() {
     apply();
-    rtl_->reset();
-    model_.reset(now_);
+    rtl_.reset();
+    model_.reset(now());
     compare();
   }
 
   // An output as it stands with the present inputs.
   std::uint32_t get(std::string_view name) {
     apply();
-    for (const auto& [key, value] : rtl_->outputs())
+    for (const auto& [key, value] : rtl_.outputs())
       if (key == name) return value;
     throw std::logic_error("no output " + std::string(name));
   }
 
-  Tick now() const { return now_; }
+  Tick now() const { return rtl_.now(); }
   // First difference of the two, "" while they agree.
   const std::string& difference() const { return difference_; }
 
  private:
   void apply() {
-    model_.advance(now_);  // edges that were left out belong to the old inputs
+    model_.advance(now());  // edges that were left out belong to the old inputs
     model_.in = in;
     if (mutate) mutate(model_.in);
-    rtl_->drive(in);
+    rtl_.in = in;
+    rtl_.settle();
     compare();
   }
   void compare() {
     if (!difference_.empty()) return;
-    const Outputs rtl = rtl_->outputs(), model = show_(model_);
+    const Outputs rtl = rtl_.outputs(), model = show_(model_);
     for (std::size_t i = 0; i < rtl.size(); ++i) {
       if (rtl[i].second == model[i].second) continue;
       std::ostringstream text;
@@ -86,13 +85,12 @@ class Lockstep {
     }
   }
   void note(const std::string& text) {
-    if (difference_.empty()) difference_ = "tick " + std::to_string(now_) + ": " + text;
+    if (difference_.empty()) difference_ = "tick " + std::to_string(now()) + ": " + text;
   }
 
-  std::unique_ptr<RtlBlock<Inputs>> rtl_;
+  RtlBlock<Inputs, Outputs> rtl_;
   Model& model_;
   Show show_;
-  Tick now_ = 0;
   std::string difference_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/clocks/clock_words.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
@@ -21,8 +22,6 @@ constexpr std::uint32_t kBases[22] = {0x78000, 0x78100, 0x78200, 0x78300, 0x7920
 std::uint32_t clock_address(unsigned ic) { return kBases[ic] + (ic < kFirstMacro ? 0x04 : 0x0C); }
 std::uint32_t pwm_address(unsigned ic) { return kBases[ic] + (ic < kFirstMacro ? 0x1C : 0x0D); }
 std::uint32_t strobe_address(unsigned ic) { return kBases[ic] + (ic < kFirstMacro ? 0x14 : 0x0E); }
-
-constexpr std::uint32_t clock_word(unsigned direction) { return 0x3008D2 | direction << 12; }
 
 class AllIcs : public ::testing::TestWithParam<std::string> {
  protected:
@@ -46,7 +45,7 @@ TEST_P(AllIcs, AnIcThatIsNotFittedIsNotThere) {
     rig.in.fitted = kAll & ~(1u << ic);
     rig.apply();
     rig.run(3);
-    rig.write(true, clock_address(ic), clock_word(0));
+    rig.write(true, clock_address(ic), clock_word(0, 3, 0));
     EXPECT_EQ(rig.read(true, strobe_address(ic)), 0u) << "IC " << ic;
     EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource) << "IC " << ic;
     const unsigned next = (ic + 1) % 22;
@@ -58,8 +57,8 @@ TEST_P(AllIcs, EachCanSupplyTheBoard) {
   BRICK_COVERS("I19-2 CLK-2");
   for (unsigned ic = 0; ic < 22; ++ic) {
     const std::uint32_t max_count = 300 + ic;
-    rig.write(true, pwm_address(ic), max_count << 8 | 15);
-    rig.write(true, clock_address(ic), clock_word(0));
+    rig.write(true, pwm_address(ic), pwm_word(max_count));
+    rig.write(true, clock_address(ic), clock_word(0, 3, 0));
     rig.run(60'000);  // past the period of the reset value, and the pins are taken with rising edges
     EXPECT_EQ(rig.get(pin::kPhaseSource), ic);
     EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
@@ -68,7 +67,7 @@ TEST_P(AllIcs, EachCanSupplyTheBoard) {
     EXPECT_EQ(rig.edge(pin::kPhase, 1) - rise, period) << "IC " << ic;
     const Tick fall = rig.edge(pin::kServo, 0);
     EXPECT_EQ(rig.edge(pin::kServo, 0) - fall, 4 * period) << "IC " << ic;
-    rig.write(true, clock_address(ic), clock_word(3));
+    rig.write(true, clock_address(ic), clock_word(0, 3, 3));
     rig.run(4 * period);  // released while high
   }
   EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource);
@@ -76,7 +75,7 @@ TEST_P(AllIcs, EachCanSupplyTheBoard) {
 
 TEST_P(AllIcs, LowestIndexOfSeveralSourcesWins) {
   for (unsigned ic = 22; ic-- > 0;) {
-    rig.write(true, clock_address(ic), clock_word(0));
+    rig.write(true, clock_address(ic), clock_word(0, 3, 0));
     rig.run(60'000);
     EXPECT_EQ(rig.get(pin::kPhaseSource), ic);
     EXPECT_EQ(rig.get(pin::kSourceConflict), ic == 21 ? 0u : 1u);
@@ -93,9 +92,9 @@ TEST_P(AllIcs, AMacroGateDrivesPhaseAtMostAndHasNoSupplementaryChannels) {
       const bool gate = (gates >> i & 1) != 0;
       rig.write(true, kBases[ic] + 0x15, 0x39FFFF);
       EXPECT_EQ(rig.read(true, kBases[ic] + 0x15), gate ? 0u : 0x39FFFFu);
-      rig.write(true, clock_address(ic), clock_word(3));
-      EXPECT_EQ(rig.read(true, clock_address(ic)), clock_word(gate ? 1 : 3));
-      rig.write(true, clock_address(ic), clock_word(0));
+      rig.write(true, clock_address(ic), clock_word(0, 3, 3));
+      EXPECT_EQ(rig.read(true, clock_address(ic)), clock_word(0, 3, gate ? 1 : 3));
+      rig.write(true, clock_address(ic), clock_word(0, 3, 0));
       rig.run(60'000);
       EXPECT_EQ(rig.get(pin::kPhaseSource), ic);
       rig.edge(pin::kPhase, 0);
@@ -105,7 +104,7 @@ TEST_P(AllIcs, AMacroGateDrivesPhaseAtMostAndHasNoSupplementaryChannels) {
         low += rig.get(pin::kServo) == 0;
       }
       EXPECT_EQ(low == 0, gate) << "SERVO of MACRO IC " << i;
-      rig.write(true, clock_address(ic), clock_word(3));
+      rig.write(true, clock_address(ic), clock_word(0, 3, 3));
       rig.run(4 * 13057);
     }
   }

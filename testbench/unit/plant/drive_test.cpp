@@ -6,8 +6,9 @@ namespace brick::plant {
 namespace {
 
 // Control word: x4 decode, AENA; A and B as DACs; C as PFM.
-constexpr std::uint32_t kX4 = 3, kAena = 1u << 14, kDacMode = 1u << 22, kPfmMode = 1u << 23, kInvertAb = 1u << 20;
-constexpr unsigned kLossBit = 7, kErrorBit = 8, kCaptureBit = 11, kFaultBit = 15;
+using namespace servo_channel;
+constexpr std::uint32_t kX4 = 3, kAena = control::kAena.mask(), kDacMode = control::kAbDac.mask(),
+                        kPfmMode = control::kCPfm.mask(), kInvertAb = control::kAbInvert.mask();
 
 PlantParameters one_axis(Drive drive, unsigned channel = 0) {
   AxisParameters axis;
@@ -29,27 +30,27 @@ TEST(PlantAtIc, StepperTurnsPfmPulsesIntoCounts) {
     pulses += pulse && !last;
     last = pulse;
   };
-  rig.write(true, 13, kX4 | kPfmMode);
-  rig.write(false, 12, 0x010000);
+  rig.write(1, kControl, kX4 | kPfmMode);
+  rig.write(1, kOutC, 0x010000);
   rig.run(2 * 3072);
   EXPECT_EQ(pulses, 2);
   EXPECT_EQ(plant.axis(0).stepper().steps(), 0) << "AENA is off";
-  rig.write(true, 13, kX4 | kPfmMode | kAena);
+  rig.write(1, kControl, kX4 | kPfmMode | kAena);
   rig.run(100 * 3072);
-  rig.write(false, 12, 0);
+  rig.write(1, kOutC, 0);
   rig.run(2 * IcRig::kPhase);
   EXPECT_EQ(pulses, 102);
   EXPECT_EQ(plant.axis(0).stepper().steps(), 100);
   EXPECT_EQ(rig.counter(1), 100);
   EXPECT_EQ(plant.axis(0).counts(rig.now()), 100);
 
-  rig.write(false, 12, 0xFE0000);  // twice as fast, down
+  rig.write(1, kOutC, 0xFE0000);  // twice as fast, down
   rig.run(150 * 1536);
-  rig.write(false, 12, 0);
+  rig.write(1, kOutC, 0);
   rig.run(2 * IcRig::kPhase);
   EXPECT_NEAR(rig.counter(1), -50, 1);  // where in its period the first pulse falls is the accumulator's business
   EXPECT_EQ(rig.counter(1), plant.axis(0).stepper().steps());
-  EXPECT_FALSE(rig.status(1, kErrorBit));
+  EXPECT_FALSE(rig.status(1, status::kEncoderError));
 }
 
 // OUT A = $400000 is 5 V, half of full scale: 5 A x 0.1 N m/A on 1e-4 kg m2 = 5000 rad/s2. 10 ms: 50 rad/s, 0.25 rad =
@@ -57,21 +58,21 @@ TEST(PlantAtIc, StepperTurnsPfmPulsesIntoCounts) {
 TEST(PlantAtIc, DacTorqueAcceleratesTheMotor) {
   Plant plant(one_axis(Drive::kTorque));
   IcRig rig(plant);
-  rig.write(true, 5, kX4 | kDacMode);
-  rig.write(false, 2, 0x400000);
+  rig.write(0, kControl, kX4 | kDacMode);
+  rig.write(0, kOutA, 0x400000);
   rig.run(2 * IcRig::kPhase);
   EXPECT_EQ(plant.dac(0).volts(0), 5);
   EXPECT_EQ(plant.axis(0).motor().speed(), 0) << "AENA is off";
-  rig.write(true, 5, kX4 | kDacMode | kAena);
+  rig.write(0, kControl, kX4 | kDacMode | kAena);
   rig.run(1024 * 1152);
   EXPECT_NEAR(plant.axis(0).motor().speed(), 50, 0.06);  // one step more or less
   EXPECT_NEAR(static_cast<double>(plant.axis(0).counts(rig.now())), 0.25 * 4000 / 6.283185, 1);
-  EXPECT_EQ(rig.read(false, 5), 0x400000u);  // ADC A: 5 A of 10
-  EXPECT_EQ(rig.read(false, 6), 0xC00000u);  // what goes in at A comes out at B
+  EXPECT_EQ(rig.read(0, kAdcA), 0x400000u);  // ADC A: 5 A of 10
+  EXPECT_EQ(rig.read(0, kAdcB), 0xC00000u);  // what goes in at A comes out at B
 
-  rig.write(true, 5, kX4 | kDacMode);
+  rig.write(0, kControl, kX4 | kDacMode);
   rig.run(4 * IcRig::kPhase);
-  EXPECT_EQ(rig.read(false, 5), 0u);
+  EXPECT_EQ(rig.read(0, kAdcA), 0u);
   const double speed = plant.axis(0).motor().speed();
   EXPECT_GT(speed, 49.9);
   rig.run(1024 * 1152);
@@ -88,9 +89,9 @@ TEST(PlantAtIc, PwmRunsABrushMotor) {
   parameters.axes[0].motor.inductance = 1e-4;
   Plant plant(parameters);
   IcRig rig(plant);
-  rig.write(false, 2, 300u << 8);
-  rig.write(false, 3, (0x10000u - 300) << 8);
-  rig.write(true, 5, kX4 | kAena);
+  rig.write(0, kOutA, 300u << 8);
+  rig.write(0, kOutB, (0x10000u - 300) << 8);
+  rig.write(0, kControl, kX4 | kAena);
   rig.run(472000);
   const std::int64_t from = plant.axis(0).position(rig.now());
   const Tick begin = rig.now();
@@ -99,7 +100,7 @@ TEST(PlantAtIc, PwmRunsABrushMotor) {
   const double turns = static_cast<double>(plant.axis(0).position(rig.now()) - from) / kUnitsPerCount / 4000;
   EXPECT_NEAR(turns * 6.283185307 / seconds, 48 * 1200.0 / 6006 / 0.1, 1.0);
   EXPECT_NEAR(rig.counter(0), static_cast<double>(plant.axis(0).counts(rig.now())), 3);  // 1.6 counts a phase
-  EXPECT_FALSE(rig.status(0, kErrorBit));
+  EXPECT_FALSE(rig.status(0, status::kEncoderError));
 }
 
 // Commands -300, 600, -300 are a vector along B: 48/2 V x 4 x 600 / 6006 = 9.59 V, on 1 ohm 9.59 A. The rotor comes to
@@ -112,14 +113,14 @@ TEST(PlantAtIc, PwmHoldsAThreePhaseRotor) {
   parameters.axes[0].motor.torque_constant = 0.05;
   Plant plant(parameters);
   IcRig rig(plant);
-  rig.write(false, 2, (0x10000u - 300) << 8);
-  rig.write(false, 3, 600u << 8);
-  rig.write(false, 4, (0x10000u - 300) << 8);
-  rig.write(true, 5, kX4 | kAena);
+  rig.write(0, kOutA, (0x10000u - 300) << 8);
+  rig.write(0, kOutB, 600u << 8);
+  rig.write(0, kOutC, (0x10000u - 300) << 8);
+  rig.write(0, kControl, kX4 | kAena);
   rig.run(1800000);
   EXPECT_NEAR(rig.counter(0), 4000.0 / 12, 1.5);
-  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(false, 5) << 8) / 256 / 8388608.0 * 10, -4.795, 0.3);
-  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(false, 6) << 8) / 256 / 8388608.0 * 10, 9.59, 0.3);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(0, kAdcA) << 8) / 256 / 8388608.0 * 10, -4.795, 0.3);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(0, kAdcB) << 8) / 256 / 8388608.0 * 10, 9.59, 0.3);
 }
 
 // 24 bits at 39.3216 MHz / 2^n fit into half a phase period of 3003 ticks up to n = 4.
@@ -129,13 +130,12 @@ TEST(PlantAtIc, ConvertersWorkAtEveryBitRate) {
     parameters.axes[0].motor.inertia = 1000;
     Plant plant(parameters);
     IcRig rig(plant);
-    rig.write(true, 0x04, n << 9 | n << 6 | 0x12);
-    rig.write(true, 8 * (n % 4) + 5, kDacMode | kAena);
-    rig.write(false, 8 * (n % 4) + 2, 0x345000);
+    rig.write(0, servo_ic::kClockControl, n << 9 | n << 6 | 0x12);
+    rig.write(n % 4, kControl, kDacMode | kAena);
+    rig.write(n % 4, kOutA, 0x345000);
     rig.run(8 * IcRig::kPhase);
     EXPECT_EQ(plant.dac(0).value(n % 4), 0x345000 >> 6) << n;
-    EXPECT_EQ(rig.read(false, 8 * (n % 4) + 5), 0x345000u)
-        << n;  // full scale of both is the same; the low ten bits are 0
+    EXPECT_EQ(rig.read(n % 4, kAdcA), 0x345000u) << n;  // full scale of both is the same; the low ten bits are 0
     EXPECT_EQ(plant.adc(0).command(), 0xFFFFFEu) << n;
   }
 }
@@ -144,15 +144,15 @@ TEST(PlantAtIc, WrongPolarityShortsTheBus) {
   PlantParameters parameters = one_axis(Drive::kThreePhase);
   Plant plant(parameters);
   IcRig rig(plant);
-  rig.write(true, 0x1C, IcRig::kMaxCount << 8 | 15);  // dead time
-  rig.write(true, 5, kX4 | kAena);
+  rig.write(0, servo_ic::kPwmControl, IcRig::kMaxCount << 8 | 15);  // dead time
+  rig.write(0, kControl, kX4 | kAena);
   rig.run(8000);
   EXPECT_EQ(plant.axis(0).amplifier().fault(), Amplifier::Fault::kNone);
-  EXPECT_FALSE(rig.status(0, kFaultBit));
-  rig.write(true, 5, kX4 | kAena | kInvertAb);  // the dead time is an overlap now
+  EXPECT_FALSE(rig.status(0, status::kFault));
+  rig.write(0, kControl, kX4 | kAena | kInvertAb);  // the dead time is an overlap now
   rig.run(8000);
   EXPECT_EQ(plant.axis(0).amplifier().fault(), Amplifier::Fault::kShortedBus);
-  EXPECT_TRUE(rig.status(0, kFaultBit));
+  EXPECT_TRUE(rig.status(0, status::kFault));
 }
 
 // 48 V and no load on 1 ohm: beyond 20 A the stage trips, says so on FAULT and in ADC A, and is cleared through the
@@ -162,20 +162,20 @@ TEST(PlantAtIc, OverCurrentTripsAndIsCleared) {
   parameters.axes[0].motor.coulomb = 10;
   Plant plant(parameters);
   IcRig rig(plant);
-  rig.write(false, 18, 1501u << 8);  // all of the bus
-  rig.write(false, 19, (0x10000u - 1502) << 8);
-  rig.write(true, 21, kX4 | kAena);
+  rig.write(2, kOutA, 1501u << 8);  // all of the bus
+  rig.write(2, kOutB, (0x10000u - 1502) << 8);
+  rig.write(2, kControl, kX4 | kAena);
   rig.run(100000);
-  EXPECT_TRUE(rig.status(2, kFaultBit));
-  EXPECT_EQ(rig.read(false, 21) >> 6, 1u) << "no current, cause 1";
-  rig.write(true, 0x14, 0xF9CDFE);  // another axis
+  EXPECT_TRUE(rig.status(2, status::kFault));
+  EXPECT_EQ(rig.read(2, kAdcA) >> 6, 1u) << "no current, cause 1";
+  rig.write(0, servo_ic::kAdcStrobe, 0xF9CDFE);  // another axis
   rig.run(3 * IcRig::kPhase);
-  EXPECT_TRUE(rig.status(2, kFaultBit));
-  rig.write(false, 18, 0);
-  rig.write(false, 19, 0);
-  rig.write(true, 0x14, 0xFACDFE);
+  EXPECT_TRUE(rig.status(2, status::kFault));
+  rig.write(2, kOutA, 0);
+  rig.write(2, kOutB, 0);
+  rig.write(0, servo_ic::kAdcStrobe, 0xFACDFE);
   rig.run(3 * IcRig::kPhase);
-  EXPECT_FALSE(rig.status(2, kFaultBit));
+  EXPECT_FALSE(rig.status(2, status::kFault));
   EXPECT_TRUE(plant.axis(0).amplifier().on());
 }
 
@@ -186,14 +186,14 @@ TEST(PlantAtIc, IndexIsCapturedAtItsCount) {
   parameters.axes[0].encoder.index_at = 42;
   Plant plant(parameters);
   IcRig rig(plant);
-  rig.write(true, 5, kX4 | 1u << 4 | 1u << 15);  // gated index
+  rig.write(0, kControl, kX4 | control::kCaptureSource.set(0, 1) | control::kGatedIndex.mask());
   plant.axis(0).turn(60, 60 * 400);
   rig.run(60 * 400 + 100);
-  EXPECT_TRUE(rig.status(0, kCaptureBit));
-  EXPECT_EQ(rig.read(true, 3), 42u);
+  EXPECT_TRUE(rig.status(0, status::kCaptured));
+  EXPECT_EQ(rig.read(0, kFlagPosition), 42u);
   plant.axis(0).turn(80, 80 * 400);
   rig.run(80 * 400 + 2 * IcRig::kPhase);
-  EXPECT_EQ(rig.read(true, 3), 42u) << "one shot";
+  EXPECT_EQ(rig.read(0, kFlagPosition), 42u) << "one shot";
   EXPECT_EQ(rig.counter(0), 140);
 }
 
@@ -204,23 +204,23 @@ TEST(PlantAtIc, FaultyDiscAndCutWiresAreFound) {
   parameters.axes[0].encoder.wiring = EncoderParameters::Wiring::kComplements;
   Plant plant(parameters);
   IcRig rig(plant);
-  rig.write(true, 29, kX4);
-  rig.write(true, 24, 0);  // nothing was wired at reset
+  rig.write(3, kControl, kX4);
+  rig.write(3, kStatus, 0);  // nothing was wired at reset
   plant.axis(0).turn(28, 28 * 400);
   rig.run(28 * 400 + 100);
-  EXPECT_FALSE(rig.status(3, kErrorBit));
-  EXPECT_FALSE(rig.status(3, kLossBit));
+  EXPECT_FALSE(rig.status(3, status::kEncoderError));
+  EXPECT_FALSE(rig.status(3, status::kEncoderLoss));
   plant.axis(0).turn(4, 4 * 400);
   rig.run(4 * 400 + 2 * IcRig::kPhase);
-  EXPECT_TRUE(rig.status(3, kErrorBit));
-  EXPECT_FALSE(rig.status(3, kLossBit));
+  EXPECT_TRUE(rig.status(3, status::kEncoderError));
+  EXPECT_FALSE(rig.status(3, status::kEncoderLoss));
   EXPECT_EQ(rig.counter(3), 32 - 2);
   plant.axis(0).cut(1u << kW);  // B is low at count 32: V = 0, W stays pulled up
   rig.run(100);
-  EXPECT_FALSE(rig.status(3, kLossBit));
+  EXPECT_FALSE(rig.status(3, status::kEncoderLoss));
   plant.axis(0).turn(2, 2 * 400);  // B high
   rig.run(2 * 400 + 100);
-  EXPECT_TRUE(rig.status(3, kLossBit));
+  EXPECT_TRUE(rig.status(3, status::kEncoderLoss));
 }
 
 // Pulse and direction: each disturbance of A that passes the filter counts, down because B is low. Shorter than SCLK
@@ -248,10 +248,10 @@ TEST(PlantAtIc, FilterPassesNoiseByItsLength) {
       EXPECT_LE(-counter, begun);
       EXPECT_GE(-counter, begun - 1);
     };
-    rig.write(true, 5, 1u << 10);  // holds the counter at 0
+    rig.write(0, kControl, control::kCounterReset.mask());  // holds the counter at 0
     rig.run(2 * IcRig::kPhase);
     while (rig.now() < quiet_since + 100) rig.run(1);
-    rig.write(true, 5, 0);
+    rig.write(0, kControl, 0);
     begun = 0;
     counting = true;
     rig.run(300000);

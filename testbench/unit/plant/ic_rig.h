@@ -2,10 +2,14 @@
 // phase period of 2 x 1500 + 3 ticks.
 #pragma once
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/servo_ic/servo_ic.h"
 #include "testbench/unit/plant/plant_rig.h"
 
 namespace brick::plant {
+
+namespace servo_channel = regs::servo_channel;
+namespace servo_ic = regs::servo_ic;
 
 class IcRig : public PlantRig {
  public:
@@ -14,24 +18,34 @@ class IcRig : public PlantRig {
 
   explicit IcRig(MotorPeer& peer) : PlantRig(peer) {
     ic_.reset(0);
-    write(true, 0x1C, kMaxCount << 8);  // no dead time, PFM pulses of one PFM_CLK
-    write(true, 0x04, 0x0008D2);
+    using namespace servo_ic;
+    write(0, kPwmControl, pwm_control::kMaxCount.set(0, kMaxCount));  // no dead time, PFM pulses of one PFM_CLK
+    write(0, kClockControl, 0x0008D2);
     run(2 * 13057);  // the new maximum count is taken at a turnaround
   }
 
-  // Executed by the next edge of clk_ref.
-  void write(bool x, unsigned offset, std::uint32_t value) {
+  // Words of channel 0..3, or with channel 0 of the whole IC. A write is executed by the next edge of clk_ref.
+  void write(unsigned channel, const regs::Register& word, std::uint32_t value) {
     run(kTicksPerRef - 1 - now_ % kTicksPerRef);
-    strobe_ = [=] { ic_.write(x, offset, value); };
+    const unsigned offset = kChannelWords * channel + word.address;
+    strobe_ = [=, x = word.space == 'X'] { ic_.write(x, offset, value); };
     tick();
   }
-  std::uint32_t read(bool x, unsigned offset) const { return ic_.read(x, offset); }
-  // Signed counter of channel 0..3, as the last falling edge of PHASE latched it.
-  int counter(unsigned channel) const { return static_cast<int>(read(true, 8 * channel + 1) << 8) >> 8; }
-  bool status(unsigned channel, unsigned bit) const { return (read(true, 8 * channel) >> bit & 1) != 0; }
+  std::uint32_t read(unsigned channel, const regs::Register& word) const {
+    return ic_.read(word.space == 'X', kChannelWords * channel + word.address);
+  }
+  // Signed counter of a channel, as the last falling edge of PHASE latched it.
+  int counter(unsigned channel) const {
+    return static_cast<int>(read(channel, servo_channel::kPhasePosition) << 8) >> 8;
+  }
+  bool status(unsigned channel, const regs::Field& bit) const {
+    return bit.get(read(channel, servo_channel::kStatus)) != 0;
+  }
   const MotorOutputs& outputs() const { return outputs_; }
 
  private:
+  static constexpr unsigned kChannelWords = 8;
+
   void edge() override {
     ic_.set_motor_inputs(inputs[0]);
     ic_.advance(now_);

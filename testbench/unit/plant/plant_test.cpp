@@ -42,16 +42,17 @@ Outcome run(std::uint64_t seed, bool eager) {
           static_cast<std::uint16_t>(rig.inputs[0].adc_a), static_cast<std::uint16_t>(rig.inputs[0].adc_b)})
       outcome.hash = (outcome.hash ^ word) * 0x100000001B3;
   };
-  rig.write(true, 5, 3u | 1u << 14);
-  rig.write(true, 13, 3u | 1u << 14 | 1u << 23);
-  rig.write(false, 2, 400u << 8);
-  rig.write(false, 12, 0x013579);
+  using namespace servo_channel;
+  rig.write(0, kControl, 3u | control::kAena.mask());
+  rig.write(1, kControl, 3u | control::kAena.mask() | control::kCPfm.mask());
+  rig.write(0, kOutA, 400u << 8);
+  rig.write(1, kOutC, 0x013579);
   plant.axis(2).turn(300, 50000);
   rig.run(100000);
   plant.axis(2).turn(-320, 33333);
   rig.run(50000);
   outcome.position = plant.axis(0).position(rig.now());
-  outcome.adc = rig.read(false, 5);
+  outcome.adc = rig.read(0, kAdcA);
   return outcome;
 }
 

@@ -1,65 +1,55 @@
 #include "testbench/unit/register_bits/rtl_servo_channel.h"
 
 #include "Vservo_channel.h"
-#include "verilated.h"
+#include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {
+namespace {
 
-struct RtlServoChannel::Impl {
-  VerilatedContext context;
-  Vservo_channel top{&context};
-};
-
-RtlServoChannel::RtlServoChannel() : impl_(std::make_unique<Impl>()) {
-  Vservo_channel& t = impl_->top;
-  t.sclk_ce_i = t.pfm_ce_i = t.sel_i = 1;
-  for (bool level : {true, false, true}) {  // the asynchronous reset acts on its falling edge
-    t.rst_ni = level;
-    t.eval();
-  }
+void drive(Vservo_channel& v, const ServoChannelInputs& in) {
+  v.x_i = in.x;
+  v.addr_i = in.addr & 7;
+  v.sel_i = v.sclk_ce_i = v.pfm_ce_i = true;
+  v.we_i = in.we;
+  v.wdata_i = in.wdata & 0xFFFFFF;
+  v.read_capture_i = in.read_capture;
+  v.phase_fall_i = v.servo_fall_i = in.latch;
+  v.pins_i = in.pins & 0xFFF;
+  // What comes from the rest of the IC, and the pins of the ADCs, rests.
+  v.trip_i = v.turn_i = v.dac_load_i = v.dac_shift_i = v.adc_sample_i = v.adc_a_i = v.adc_b_i = false;
+  v.count1_i = v.down1_i = v.hold1_i = false;
+  v.cnt_i = v.counter1_i = 0;
+  v.deadtime_i = v.adc_bit_i = 0;
+  v.fraction1_i = 0;
 }
-RtlServoChannel::~RtlServoChannel() { impl_->top.final(); }
+std::uint32_t sample(const Vservo_channel& v) { return v.rdata_o; }
+
+}  // namespace
+
+RtlServoChannel::RtlServoChannel() : RtlBlock(verilated_shell(drive, sample)) {}
 
 void RtlServoChannel::step(std::int64_t periods) {
-  Vservo_channel& t = impl_->top;
-  while (periods-- > 0) {
-    t.clk_ref_i = 1;
-    t.eval();
-    t.clk_ref_i = 0;
-    t.eval();
-  }
+  while (periods-- > 0) ref_edge();
 }
-void RtlServoChannel::pins(unsigned levels) { impl_->top.pins_i = static_cast<SData>(levels); }
 
-void RtlServoChannel::latch() {
-  Vservo_channel& t = impl_->top;
-  t.phase_fall_i = t.servo_fall_i = 1;
+void RtlServoChannel::step_with(bool ServoChannelInputs::*strobe) {
+  in.*strobe = true;
   step();
-  t.phase_fall_i = t.servo_fall_i = 0;
+  in.*strobe = false;
 }
 
 void RtlServoChannel::write(bool x, unsigned offset, std::uint32_t word) {
-  Vservo_channel& t = impl_->top;
-  t.x_i = x;
-  t.addr_i = static_cast<CData>(offset);
-  t.wdata_i = word;
-  t.we_i = 1;
-  step();
-  t.we_i = 0;
+  in.x = x;
+  in.addr = offset;
+  in.wdata = word;
+  step_with(&ServoChannelInputs::we);
 }
 
 std::uint32_t RtlServoChannel::read(bool x, unsigned offset) {
-  Vservo_channel& t = impl_->top;
-  t.x_i = x;
-  t.addr_i = static_cast<CData>(offset);
-  t.eval();
-  return t.rdata_o;
-}
-
-void RtlServoChannel::read_capture() {
-  impl_->top.read_capture_i = 1;
-  step();
-  impl_->top.read_capture_i = 0;
+  in.x = x;
+  in.addr = offset;
+  settle();
+  return outputs();
 }
 
 }  // namespace brick

@@ -1,7 +1,7 @@
 // The watchdog with the real image: tasks that take more CPU time than the servo period gives them, and what does not
 // trip it. Trip times are arithmetic of testbench/checkers/watchdog_scoreboard.h; the load is that of the tasks
 // themselves.
-#include "testbench/checkers/watchdog_probe.h"
+#include "testbench/benches/watchdog_probe.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {

@@ -1,9 +1,10 @@
 /* A small firmware for tests of the machine. Registers that live through everything:
- *   s0 PMAC base of X:$070000, s1 address of X:$078000, s2 address of X:$FFFFC0, s3 main memory Y:$000100, s4 counter of
- *   background loops, s5 straps.
- * It starts the clocks, then the background either sleeps (main memory Y:$000100 = 0) or counts and uses the bus. PHASE writes
- * its count to X:$070010 as the very first instruction, so that a test can compute when that cycle begins. SERVO strobes the
- * watchdog unless Y:$000101 is set. A character from the host comes back incremented, and goes to the DPRAM.
+ *   s0 PMAC base of X:$070000, s1 address of X:$078000, s2 address of X:$FFFFC0, s3 main memory Y:$000100, s4 counter
+ *   of background loops, s5 straps.
+ * It starts the clocks, then the background either sleeps (main memory Y:$000100 = 0) or counts and uses the bus. PHASE
+ * writes its count to X:$070010 as the very first instruction, so that a test can compute when that cycle begins. SERVO
+ * strobes the watchdog unless Y:$000101 is set. A character from the host comes back incremented, and goes to the
+ * DPRAM.
  */
   .option arch, +zicsr
   .section .init, "ax"

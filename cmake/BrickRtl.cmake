@@ -1,0 +1,33 @@
+# How RTL is Verilated: the flags of every model in one place, and the libraries of modules under test.
+set(BRICK_RTL ${CMAKE_SOURCE_DIR}/rtl)
+
+# brick_verilate(brick_rtl TOP board_sim PREFIX Vboard_s2 CONFIG a.vlt SOURCES a.sv ARGS -GMask=1): one model more in a
+# library. Flip-flops and memories start as its context's randReset() says.
+function(brick_verilate library)
+  cmake_parse_arguments(V "" "TOP;PREFIX;CONFIG" "SOURCES;ARGS" ${ARGN})
+  verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX}
+    SOURCES ${V_CONFIG} ${BRICK_RTL}/regs/brick_regs_pkg.sv ${V_SOURCES}
+    VERILATOR_ARGS -O3 --x-assign fast --x-initial unique ${V_ARGS} ${BRICK_RTL_ARGS}
+    OPT_FAST ${BRICK_RTL_OPT} OPT_SLOW ${BRICK_RTL_SLOW_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
+endfunction()
+
+# brick_add_rtl_shell(macro_ic_rtl SOURCES rtl_macro_ic.cpp LIBRARIES brick_core): a library of shells
+# (testbench/unit/rtl/verilated_shell.h), then for each module that they hold
+# brick_add_rtl_module(macro_ic_rtl TOP macro_ic SOURCES a.sv [PREFIX Vmacro_ic] [ARGS ...]): Verilated with lint.
+function(brick_add_rtl_shell library)
+  cmake_parse_arguments(S "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(${library} STATIC ${S_SOURCES})
+  set_source_files_properties(${S_SOURCES} PROPERTIES COMPILE_OPTIONS "${BRICK_WARNINGS}")  # generated code is not ours
+  if(BRICK_COVERAGE)
+    target_compile_definitions(${library} PRIVATE BRICK_RTL_COVERAGE=1)
+  endif()
+  target_link_libraries(${library} PUBLIC ${S_LIBRARIES})
+endfunction()
+function(brick_add_rtl_module library)
+  cmake_parse_arguments(M "" "TOP;PREFIX" "SOURCES;ARGS" ${ARGN})
+  if(NOT M_PREFIX)
+    set(M_PREFIX V${M_TOP})
+  endif()
+  brick_verilate(${library} TOP ${M_TOP} PREFIX ${M_PREFIX} CONFIG ${BRICK_RTL}/lint.vlt SOURCES ${M_SOURCES}
+    ARGS -Wall ${M_ARGS})
+endfunction()

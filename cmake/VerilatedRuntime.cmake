@@ -1,0 +1,27 @@
+# verilate() compiles Verilator's runtime once for each library; it is the same for all, so here it is one library,
+# which they link. To be included after every target is there.
+set(runtime ${VERILATOR_ROOT}/include)
+add_library(brick_verilated STATIC ${runtime}/verilated.cpp ${runtime}/verilated_dpi.cpp
+            ${runtime}/verilated_threads.cpp $<$<BOOL:${BRICK_COVERAGE}>:${runtime}/verilated_cov.cpp>)
+target_include_directories(brick_verilated SYSTEM PRIVATE ${runtime} ${runtime}/vltstd)
+target_compile_options(brick_verilated PRIVATE ${BRICK_RTL_OPT})
+target_link_libraries(brick_verilated PUBLIC Threads::Threads)
+
+function(brick_share_verilated_runtime folder)
+  get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  list(REMOVE_ITEM targets brick_verilated)
+  foreach(target ${targets})
+    get_target_property(sources ${target} SOURCES)
+    set(own ${sources})
+    list(FILTER own EXCLUDE REGEX "^${runtime}/verilated[a-z_]*\\.cpp$")
+    if(NOT own STREQUAL sources)
+      set_property(TARGET ${target} PROPERTY SOURCES ${own})
+      target_link_libraries(${target} PUBLIC brick_verilated)
+    endif()
+  endforeach()
+  get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+  foreach(below ${folders})
+    brick_share_verilated_runtime(${below})
+  endforeach()
+endfunction()
+brick_share_verilated_runtime(${CMAKE_SOURCE_DIR})

@@ -1,0 +1,46 @@
+// A board that is wired wrongly: what it gets is changed on the way. For negative controls of what compares boards.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "systemc/core/board.h"
+
+namespace brick {
+
+class DistortedBoard : public Board {
+ public:
+  explicit DistortedBoard(std::unique_ptr<Board> board) : board_(std::move(board)) {
+    board_->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+      if (on_change) on_change(t, before, after);
+    };
+    board_->on_motor_change = [this](Tick t, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+      if (on_motor_change) on_motor_change(t, ic, before, after);
+    };
+  }
+
+  std::function<void(BoardInputs&)> distort = [](BoardInputs&) {};
+  std::function<void(unsigned ic, MotorInputs&)> distort_motor = [](unsigned, MotorInputs&) {};
+
+  Tick now() const override { return board_->now(); }
+  void set_inputs(const BoardInputs& inputs) override {
+    BoardInputs changed = inputs;
+    distort(changed);
+    board_->set_inputs(changed);
+  }
+  const BoardOutputs& outputs() const override { return board_->outputs(); }
+  Tick run_until(Tick limit, const BoardOutputs& stop_on) override { return board_->run_until(limit, stop_on); }
+  void set_motor_inputs(unsigned ic, const MotorInputs& inputs) override {
+    MotorInputs changed = inputs;
+    distort_motor(ic, changed);
+    board_->set_motor_inputs(ic, changed);
+  }
+  MotorOutputs motor_outputs(unsigned ic) const override { return board_->motor_outputs(ic); }
+  void watch_motors(std::uint32_t ics) override { board_->watch_motors(ics); }
+  void stop_on_motor(unsigned ic, const MotorOutputs& select) override { board_->stop_on_motor(ic, select); }
+
+ private:
+  std::unique_ptr<Board> board_;
+};
+
+}  // namespace brick

@@ -1,0 +1,113 @@
+// The words of systemc/cosim/drive.h mean the same on both sides: each bit of each field is changed alone, the RTL
+// moves its pins by that, and as the model does, which knows the field by its name and not by its place.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "systemc/cosim/drive.h"
+#include "systemc/cosim/engines.h"
+#include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/cosim/board_traffic.h"
+#include "testbench/unit/cosim/distorted_board.h"
+
+namespace brick {
+namespace {
+
+using Edit = std::function<void(BoardInputs&)>;
+using Changes = std::vector<std::pair<Tick, BoardOutputs>>;
+
+// Both engines, with what somebody else drives distorted on its way.
+std::unique_ptr<DistortedBoard> distorted(std::uint32_t fitted, Edit edit, Changes& changes) {
+  auto board = std::make_unique<DistortedBoard>(make_lockstep_board(make_rtl_board(fitted), make_model_board(fitted)));
+  board->distort = std::move(edit);
+  board->on_change = [&changes](Tick t, const BoardOutputs&, const BoardOutputs& after) {
+    changes.emplace_back(t, after);
+  };
+  return board;
+}
+
+// Random accesses from both sides, with a control panel and clocks from outside.
+Changes traffic(const Edit& edit) {
+  constexpr Tick kEnd = 20'000;
+  Changes changes;
+  const auto board = distorted(0x3, edit, changes);
+  BoardTraffic traffic(2, {0, true});
+  while (traffic.next() < kEnd) {
+    board->run_until(traffic.next(), {});
+    traffic.change();
+    BoardInputs in = traffic.inputs();
+    in.ext_clock = in.jpan_fitted = true;
+    in.dpram_small = false;
+    board->set_inputs(in);
+  }
+  return changes;
+}
+
+// Every IC is read, each kind of a MACRO IC shows itself, EQU of every channel can be chosen as an interrupt.
+Changes census(const Edit& edit) {
+  constexpr std::uint32_t kAll = 0x3FFFFF;
+  constexpr std::uint32_t kServo[] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200,
+                                      0x7B300, 0x78220, 0x78320, 0x79220, 0x79320, 0x7A220, 0x7A320, 0x7B220, 0x7B320};
+  constexpr std::uint32_t kMacro[] = {0x78400, 0x79400, 0x7A400, 0x7B400};
+  constexpr std::uint32_t kEquHigh = 3u << 11;  // set by hand, servo-ic:2.5
+  Changes changes;
+  BoardRig rig(distorted(kAll, edit, changes), kAll);
+  rig.in.line_select = 0;
+  for (unsigned channel = 0; channel < 8; ++channel)
+    rig.write(true, kServo[channel / 4] + 8 * (channel % 4) + 5, kEquHigh);
+  for (const std::uint32_t base : kServo) rig.read(true, base + 4);
+  for (const std::uint32_t base : kMacro) {
+    rig.write(true, base + 0x15, 0x39FFFF);
+    rig.read(true, base + 0x15);
+  }
+  return changes;
+}
+
+// No board has two strobes of a bus at once: a strobe is held idle instead.
+template <class Field>
+void change(BoardInputs& in, const Field& field, unsigned bit) {
+  using Value = std::decay_t<decltype(in.*field.pin)>;
+  constexpr std::string_view kStrobes[] = {"pa_rd_n", "pa_wr_n", "isa_ior_n", "isa_iow_n", "isa_memr_n", "isa_memw_n"};
+  for (const std::string_view strobe : kStrobes)
+    if (field.name == strobe) return void(in.*field.pin = true);
+  in.*field.pin = static_cast<Value>(in.*field.pin ^ 1u << bit);
+}
+
+TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
+  const Changes usual_traffic = traffic([](BoardInputs&) {}), usual_census = census([](BoardInputs&) {});
+  const auto check = [&](const auto& field) {
+    const bool straps = field.name == "fitted" || field.name == "macro_gate" || field.name == "line_select";
+    for (unsigned bit = 0; bit < field.width; ++bit) {
+      SCOPED_TRACE(::testing::Message() << field.name << " bit " << bit);
+      const Edit edit = [&](BoardInputs& in) { change(in, field, bit); };
+      try {
+        EXPECT_TRUE(straps ? census(edit) != usual_census : traffic(edit) != usual_traffic) << "nothing moved";
+      } catch (const LockstepDifference& e) { ADD_FAILURE() << e.what(); }
+    }
+  };
+  std::apply([&](const auto&... field) { (check(field), ...); }, kInputFields);
+}
+
+TEST(InputLayout, EachPinHasOnePlace) {
+  // Port A: A, D, AA, X, internal, two strobes. ISA: SA, SD, six lines. Connectors: JPAN, two clocks. Straps: ICs,
+  // kinds of MACRO ICs, three digits of sources, three jumpers.
+  constexpr unsigned kPins = (19 + 24 + 4 + 1 + 1 + 2) + (20 + 16 + 6) + (16 + 2) + (22 + 4 + 3 * 4 + 3);
+  unsigned pins = 0;
+  BoardInputWords taken{};
+  const auto check = [&](const auto& field) {
+    ASSERT_LT(field.word, kBoardInputWords) << field.name;
+    ASSERT_LE(field.lsb + field.width, 32u) << field.name;
+    const std::uint32_t place = pin_mask(field.width) << field.lsb;
+    EXPECT_EQ(taken[field.word] & place, 0u) << field.name;
+    taken[field.word] |= place;
+    pins += field.width;
+  };
+  std::apply([&](const auto&... field) { (check(field), ...); }, kInputFields);
+  EXPECT_EQ(pins, kPins);
+}
+
+}  // namespace
+}  // namespace brick

@@ -1,0 +1,23 @@
+// The Verilated modules of rtl/host: inputs as the models have them, outputs by name.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "systemc/host/inputs.h"
+#include "testbench/unit/rtl/rtl_block.h"
+
+namespace brick {
+
+using Outputs = std::vector<std::pair<std::string_view, std::uint32_t>>;
+
+RtlBlock<InterruptControllerInputs, Outputs> make_rtl_interrupt_controller(int seed = shell_seed());
+RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals();
+RtlBlock<HostPortInputs, Outputs> make_rtl_host_port();
+RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed = 0);  // memory has no reset: as the model, it starts as zero
+RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave();
+RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave_variant();  // IoBase 0x310, window 0xE0000, ten-bit decode
+
+}  // namespace brick

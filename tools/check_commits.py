@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Checks that commits that change code say why: `area: imperative summary` in 60 characters or fewer, then a body.
+
+Judged are the commits after the one that added this file, merges apart. Without a history that reaches back to it (a
+copy without .git, a shallow clone) there is nothing to judge, and the check passes and says so.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+from common import ROOT, finish
+
+SELF = "tools/check_commits.py"
+CODE = re.compile(r"\.(sv|vlt|rdl|cpp|h|c|S|py|cmake|vec)$|CMakeLists\.txt$|^dev$")
+SUMMARY = re.compile(r"[\w./, -]+: \S")
+LONGEST = 60
+
+
+def git(root, *arguments):
+    done = subprocess.run(["git", *arguments], cwd=root, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    return done.stdout if done.returncode == 0 else ""
+
+
+def commit_problems(root, commit):
+    summary, _, body = git(root, "log", "-1", "--format=%B", commit).strip().partition("\n")
+    short = commit[:10]
+    if len(summary) > LONGEST or not SUMMARY.match(summary):
+        yield f"{short}: summary '{summary}'; expected 'area: what it does' in {LONGEST} characters or fewer"
+    changed = git(root, "show", "--format=", "--name-only", commit).splitlines()
+    if any(CODE.search(file) for file in changed) and not body.strip():
+        yield f"{short} {summary}: changes code and does not say why in its body"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
+    root = parser.parse_args().root
+    shallow = git(root, "rev-parse", "--is-shallow-repository").strip()
+    first = git(root, "log", "--diff-filter=A", "--format=%H", "--", SELF).split()
+    if shallow != "false" or not first:
+        print("no history back to the commit that brought this check: nothing to judge")
+        sys.exit(0)
+    commits = git(root, "rev-list", "--no-merges", f"{first[-1]}..HEAD").split()
+    finish(f"{len(commits)} commits", [problem for commit in commits for problem in commit_problems(root, commit)])
+
+
+if __name__ == "__main__":
+    main()
