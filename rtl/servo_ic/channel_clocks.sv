@@ -30,10 +30,7 @@ module channel_clocks (
   // An edge of PHASE or SERVO turns a flip-flop over; the next edge of clk_ref sees the difference.
   logic [2:0] edge_pwm_q, edge_ref_q;
   logic       phase_rise;
-  always_comb begin
-    {servo_fall_o, phase_fall_o, phase_rise} = 3'd0;
-    if (edge_pwm_q != edge_ref_q) {servo_fall_o, phase_fall_o, phase_rise} = edge_pwm_q ^ edge_ref_q;
-  end
+  assign {servo_fall_o, phase_fall_o, phase_rise} = edge_pwm_q ^ edge_ref_q;
 
   // Low for the first of the three clk_pwm periods in a clk_ref period: the two flip-flops differ for that long.
   logic toggle_q, toggle_pwm_q, low;

@@ -80,14 +80,12 @@ module channel_compare #(
       if (hit_b) a_q <= down ? a_q - inc_q : a_q + inc_q;
       if (hit_a) b_q <= down ? b_q - inc_q : b_q + inc_q;
       if (hit_a != hit_b) equ_q <= ~equ_q;
-      if (we_i != 6'd0) begin
-        if (we_i[0]) a_q   <= wdata_i;
-        if (we_i[1]) b_q   <= wdata_i;
-        if (we_i[2]) inc_q <= wdata_i;
-        if (we_i[3]) af_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12];
-        if (we_i[4]) bf_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12];
-        if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
-      end
+      if (we_i[0]) a_q   <= wdata_i;
+      if (we_i[1]) b_q   <= wdata_i;
+      if (we_i[2]) inc_q <= wdata_i;
+      if (we_i[3]) af_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer2CompareALsb +: 12];
+      if (we_i[4]) bf_q  <= wdata_i[brick_regs_pkg::ServoChannelFineTimer1CompareBLsb +: 12];
+      if (we_i[5]) equ_q <= wdata_i[brick_regs_pkg::ServoChannelControlEquStateLsb];
       if (ce_i) begin
         if (fine_i) last_q <= pos;
         known_q <= fine_i & ~hold_i;

@@ -27,9 +27,8 @@ module channel_decode #(
     else if (ce_i) last_q <= abc_i;
   end
 
-  // Where neither a line changed nor the mode needs more than a change, there is nothing to decode.
   logic look;
-  assign look = ce_i & ready_i & (abc_i != last_q | mode_i[3]);
+  assign look = ce_i & ready_i;
 
   // Place in the hall cycle 001, 011, 010, 110, 100, 101 of {A, B, C}, for {C, B, A} from 7 down to 0; 7 is no place. A
   // table and not a function, which Verilator would make once for each servo IC.

@@ -38,7 +38,7 @@ module channel_index (
   assign c = demux_i ? part_q[3] : level_i[C];
 
   logic equal, equal_q;
-  // Nobody looks at these between two SCLK edges.
+  // Nobody looks at these between two SCLK edges: docs/simulation-speed.md.
   always_comb begin
     state   = 4'd0;
     equal   = 1'b0;

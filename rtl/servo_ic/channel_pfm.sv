@@ -21,16 +21,9 @@ module channel_pfm (
   logic [24:0] sum;
   logic [7:0]  left_q;
   logic        pulse_q, down_q, event_q;
-  always_comb begin
-    size = 24'd0;
-    step = 24'd0;
-    sum  = 25'd0;
-    if (run_i && pfm_ce_i) begin
-      size = command_i[23] ? -command_i : command_i;
-      step = size > Limit ? Limit : size;
-      sum  = command_i[23] ? {1'b0, acc_q} - {1'b0, step} : {1'b0, acc_q} + {1'b0, step};
-    end
-  end
+  assign size = command_i[23] ? -command_i : command_i;
+  assign step = size > Limit ? Limit : size;
+  assign sum  = command_i[23] ? {1'b0, acc_q} - {1'b0, step} : {1'b0, acc_q} + {1'b0, step};
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin

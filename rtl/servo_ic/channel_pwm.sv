@@ -42,7 +42,7 @@ module channel_pwm (
         command_b_q <= {~command_b_i[15], command_b_i};
         command_c_q <= {~command_c_i[15], command_c_i};
       end
-      if (raw != raw_q || wait_q != 36'd0) begin  // rarely: a simulator passes over the rest
+      if (raw != raw_q || wait_q != 36'd0) begin  // rarely: docs/simulation-speed.md
         raw_q <= raw;
         for (int unsigned k = 0; k < 3; k++) begin
           if (raw[k] != raw_q[k]) begin

@@ -77,7 +77,7 @@ module channel_subcount (
       rest_q      <= 23'd0;
       e_q         <= 12'd0;
       lag_q       <= 5'd0;
-    end else if (count_i || echo_i || (!enable_i && valid_q)) begin  // what is not valid is clear already
+    end else if (count_i || echo_i || !enable_i) begin
       valid_q     <= enable_i & count_i & ~reversed_i;
       full_q      <= 1'b0;
       steps_q     <= Steps;

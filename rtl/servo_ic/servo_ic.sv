@@ -75,7 +75,7 @@ module servo_ic (
   assign rdata_o = ic_rdata | channel_rdata;
   assign equ_o   = equ;
 
-  // What moves with clk_ref only stands apart, so that a simulator packs it only then.
+  // What moves with clk_ref only stands apart, so that a simulator packs it only then: docs/simulation-speed.md.
   logic [23:0] slow;
   assign slow    = {equ, aena, dac_b, dac_a, dir, pulse};
   assign motor_o = {12'h0, serial, slow, pwm};
