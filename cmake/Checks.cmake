@@ -15,6 +15,7 @@ endif()
 brick_add_check(lint.layers tools/check_layers.py)           # who may include whom, firmware and C++
 brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml says
 brick_add_check(format.clang tools/check_format.py clang)
+brick_add_check(format.lines tools/check_format.py lines)
 brick_add_check(lint.commits tools/check_commits.py)  # a commit that changes code says why
 brick_add_check(docs.links tools/check_links.py)
 brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule
