@@ -48,7 +48,8 @@ FILES_RUN_ON = (
     (r"unit/board_model/", "S"),
 )
 NO_ENGINE = "passed"  # what the page shows of such a test
-WITH_FIRMWARE = re.compile(r"unit/system/(?!clock_checker|watchdog_scoreboard)|unit/app/|benches/")  # the image runs there on each engine
+# The image runs there, on each engine.
+WITH_FIRMWARE = re.compile(r"unit/system/(?!clock_checker|watchdog_scoreboard)|unit/app/|benches/")
 
 
 def read_requirements(root):
