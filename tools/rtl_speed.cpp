@@ -11,22 +11,24 @@
 
 #include "Vboard_s2.h"
 #include "Vboard_s2___024root.h"
+#include "systemc/cosim/drive.h"
 #include "verilated.h"
 
 namespace {
 
 VerilatedContext context;
 Vboard_s2 top{&context, ""};
+brick::BoardInputs in;
 std::uint64_t now = 0, sum = 0;
 bool busy = false, second_eval = false;
 
 void turn_encoders() {
   static const unsigned kAb[] = {0, 1, 3, 2};
   for (unsigned ic = 0; ic < 2; ++ic) {
-    std::uint64_t pins = 0;
+    brick::MotorInputs motor;
     for (unsigned n = 0; n < 4; ++n)
-      pins |= static_cast<std::uint64_t>(0xF80 | kAb[(now / 60 + 4 * ic + n) & 3]) << 12 * n;
-    top.motor_i[ic] = pins;
+      motor.pins[n] = static_cast<std::uint16_t>(0xF80 | kAb[(now / 60 + 4 * ic + n) & 3]);
+    brick::drive_motor(top, ic, motor);
   }
 }
 
@@ -41,7 +43,8 @@ void tick() {
     top.eval();
   else
     top.rootp->__Vtrigrprev__TOP__clk_pwm_i = top.rootp->__Vtrigrprev__TOP__clk_ref_i = 0;
-  sum = (sum * 31 + top.pins_o[0]) ^ (top.motor_o[0] * 7 + top.motor_o[1]);
+  for (const std::uint32_t word : top.pins_o) sum = sum * 31 + word;
+  for (unsigned ic = 0; ic < 2; ++ic) sum = sum * 31 + top.motor_o[ic];
 }
 
 void ticks(std::uint64_t n) {
@@ -49,13 +52,15 @@ void ticks(std::uint64_t n) {
 }
 
 void write(std::uint32_t address, bool x, std::uint32_t value) {
-  top.pa_addr_i = address & 0x7FFFF;
-  top.pa_x_i = x;
-  top.pa_aa_i = 2;
-  top.pa_wdata_i = value;
-  top.pa_wr_ni = 0;
+  in.pa_addr = address;
+  in.pa_x = x;
+  in.pa_aa = 2;
+  in.pa_wdata = value;
+  in.pa_wr_n = false;
+  brick::drive(top, in);
   ticks(20);
-  top.pa_wr_ni = 1;
+  in.pa_wr_n = true;
+  brick::drive(top, in);
   ticks(10);
 }
 
@@ -65,14 +70,15 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   busy = std::strcmp(argv[1], "busy") == 0;
   second_eval = argc > 3;
-  top.rst_ni = 1;
-  top.fitted_i = 3;
-  top.pa_rd_ni = top.pa_wr_ni = top.isa_ior_ni = top.isa_iow_ni = top.isa_memr_ni = top.isa_memw_ni = 1;
-  top.isa_sbhe_ni = top.ext_phase_i = top.ext_servo_i = 1;
+  in.rst_n = true;
+  in.fitted = 3;
+  brick::drive(top, in);
   top.eval();
-  top.rst_ni = 0;
+  in.rst_n = false;
+  brick::drive(top, in);
   ticks(30);
-  top.rst_ni = 1;
+  in.rst_n = true;
+  brick::drive(top, in);
   write(0x78004, true, 0x3008D2);  // servo IC 0 drives PHASE and SERVO
   for (std::uint32_t channel = 0; busy && channel < 8; ++channel) {
     const std::uint32_t at = 0x78000 + (channel / 4) * 0x100 + 8 * (channel % 4), n = channel % 4;

@@ -31,27 +31,18 @@ module clock_select (
   logic        several_d, several_q;  // a net has more than one driver
   assign drivers_d = {ext_clock_i, servo_oe_i & fitted_i, phase_oe_i & fitted_i};
 
-  // Recomputed only when the set of drivers changes.
   logic        ext;
   logic [21:0] p, s;
   always_comb begin
     {ext, s, p}   = drivers_d;
-    phase_grant_d = phase_grant_q;
-    servo_grant_d = servo_grant_q;
-    phase_idle_d  = phase_idle_q;
-    servo_idle_d  = servo_idle_q;
-    source_d      = source_q;
-    several_d     = several_q;
-    if (drivers_d != drivers_q) begin
-      phase_grant_d = ext ? 22'h0 : p & -p;
-      servo_grant_d = ext ? 22'h0 : s & -s;
-      phase_idle_d  = ~ext & (p == 22'h0);
-      servo_idle_d  = ~ext & (s == 22'h0);
-      several_d     = ext ? (|p | |s) : (p != (p & -p)) | (s != (s & -s));
-      source_d      = ext ? brick_regs_pkg::ClockSourceOutside : brick_regs_pkg::ClockSourceNone;
-      for (int unsigned i = 0; i < 22; i++) begin
-        if (phase_grant_d[i]) source_d = 5'(i);
-      end
+    phase_grant_d = ext ? 22'h0 : p & -p;
+    servo_grant_d = ext ? 22'h0 : s & -s;
+    phase_idle_d  = ~ext & (p == 22'h0);
+    servo_idle_d  = ~ext & (s == 22'h0);
+    several_d     = ext ? (|p | |s) : (p != (p & -p)) | (s != (s & -s));
+    source_d      = ext ? brick_regs_pkg::ClockSourceOutside : brick_regs_pkg::ClockSourceNone;
+    for (int unsigned i = 0; i < 22; i++) begin
+      if (phase_grant_d[i]) source_d = 5'(i);
     end
   end
 

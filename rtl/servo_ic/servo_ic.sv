@@ -29,7 +29,7 @@ module servo_ic (
   input  wire logic [47:0] pins_i,
   input  wire logic [3:0]  adc_a_i,
   input  wire logic [3:0]  adc_b_i,
-  output logic [3:0]       equ_o,        // as in motor_o; apart, so that all instances have the same users of motor_o
+  output logic [3:0]       equ_o,        // as in motor_o, for the interrupt controller
   output logic [63:0]      motor_o       // serial clocks and strobes, EQU, AENA, DAC B, DAC A, DIR, PULSE, PWM
 );
 
