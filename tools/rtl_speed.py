@@ -26,8 +26,9 @@ def build(tree, folder, mask):
                *(f for block in ("servo_ic", "macro_ic", "host", "board") for f in sorted((rtl / block).glob("*.sv"))
                  if not f.name.startswith("brick_fpga"))]
     command = ["verilator", "--cc", "--exe", "--build", "-j", "1", "--prefix", "Vboard_s2", "--top-module", "board_sim",
-               f"-GServoIcMask=18'h{mask:X}", "-Mdir", folder, *VERILATE, "-CFLAGS", f"-O3 -std=c++17 -I{tree.resolve()}",
-               "-MAKEFLAGS", "OPT_FAST=-O3 OPT_GLOBAL=-O3", *sources, HERE / "rtl_speed.cpp", "-o", "rtl_speed"]
+               f"-GServoIcMask=18'h{mask:X}", "-Mdir", folder, *VERILATE,
+               "-CFLAGS", f"-O3 -std=c++17 -I{tree.resolve()}", "-MAKEFLAGS", "OPT_FAST=-O3 OPT_GLOBAL=-O3",
+               *sources, HERE / "rtl_speed.cpp", "-o", "rtl_speed"]
     done = subprocess.run(command, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           env={**os.environ, "OBJCACHE": "ccache"})
     if done.returncode != 0:
