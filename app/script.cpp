@@ -1,5 +1,6 @@
 #include "app/script.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <string_view>
@@ -58,7 +59,8 @@ void read_until(ScriptLine& line, LineReader& in) {
   line.kind = Kind::kUntil;
   line.name = in.name(form);
   if (!in.take("=")) in.fail(form);
-  line.value = in.word(form);
+  line.value = in.take("-") ? "-" : "";  // signed signals
+  line.value += in.word(form);
   if (in.at_end()) in.fail(form);
   line.time = in.time();
 }
@@ -78,8 +80,8 @@ void read_encoder(ScriptLine& line, LineReader& in) {
   line.motor = static_cast<unsigned>(in.number(1, UINT32_MAX, "a motor, 1, 2, ..."));
   if (in.at_end()) in.fail(form);
   const char* counts = "a number of counts other than 0, for example -2000";
-  if (in.peek() == "0") in.fail(counts);
   line.counts = in.number(-std::int64_t{UINT32_MAX}, UINT32_MAX, counts);
+  if (line.counts == 0) throw UsageError(fmt::format("`0` is not known; expected {}", counts));
   line.rate = in.at_end() ? kHandRate
                           : in.number(1, kHighestRate, fmt::format("a rate, 1 to {} counts per second", kHighestRate));
 }
@@ -100,10 +102,13 @@ void read_jpan(ScriptLine& line, LineReader& in) {
     line.levels = static_cast<std::uint16_t>((line.levels & ~inputs) | levels);
   };
   const auto bit_of_next = [&] {  // of kInputs; a name with its sign is two words
-    const bool jog = in.take("JOG");
-    for (unsigned bit = 0; bit < kInputs.size(); ++bit)
-      if (in.take(jog ? kInputs[bit].substr(3) : kInputs[bit])) return bit;
-    in.fail(form);
+    std::string name = in.word(form);
+    if (in.take("-")) name += '-';
+    if (in.take("+")) name += '+';
+    for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    const auto* input = std::find(kInputs.begin(), kInputs.end(), name);
+    if (input == kInputs.end()) in.fail(form);
+    return static_cast<unsigned>(input - kInputs.begin());
   };
   const auto read_one = [&] {
     const bool fpd = in.take("FPD");
@@ -125,7 +130,8 @@ void read_jpan(ScriptLine& line, LineReader& in) {
 }
 
 void read_at_line(ScriptLine& line) {
-  if (line.text.rfind("@expect", 0) == 0 && (line.text.size() == 7 || std::isspace(line.text[7]) != 0)) {
+  if (line.text.rfind("@expect", 0) == 0 &&
+      (line.text.size() == 7 || std::isspace(static_cast<unsigned char>(line.text[7])) != 0)) {
     line.kind = Kind::kExpect;  // the rest as it stands
     line.value = line.text.size() > 8 ? line.text.substr(8) : "";
     return;

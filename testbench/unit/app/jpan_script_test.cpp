@@ -41,8 +41,8 @@ TEST(JpanScript, DrivesThePinsOfDocsBoards) {
 }
 
 TEST(JpanScript, ErrorsNameTheWordAndTheInputs) {
-  for (const char* bad :
-       {"FPD", "FPD=16", "FPD=-1", "FPD=x", "FPD4=0", "START=2", "START", "START=", "=1", "GO=0", "START 0"}) {
+  for (const char* bad : {"FPD", "FPD=16", "FPD=-1", "FPD=x", "FPD4=0", "START=2", "START", "START=", "=1", "GO=0",
+                          "START 0", "JOG=0", "JOG P=0", "JOG 0=1", "JOG-+=0"}) {
     std::string error = "no error";
     try {
       std::istringstream in("VERSION\n@jpan " + std::string(bad));

@@ -64,6 +64,16 @@ TEST(Script, ReadsEveryKindOfLine) {
   EXPECT_EQ(s[18].value, "");
 }
 
+// Values as @signal prints them: of a counter that has gone down, of a bus.
+TEST(Script, WaitsForEveryKindOfValue) {
+  const auto s = read("@until ch1.count=-37 5ms\n@until bus.addr=$78004 5ms\n@until cpu.symbol=main 2.5 us\n");
+  EXPECT_EQ(s[0].value, "-37");
+  EXPECT_EQ(s[0].time, 5'000'000'000'000);
+  EXPECT_EQ(s[1].value, "$78004");
+  EXPECT_EQ(s[2].value, "main");
+  EXPECT_EQ(s[2].time, 2'500'000'000);
+}
+
 TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
   for (const char* bad : {"@wait",
                           "@wait 10",
@@ -71,6 +81,7 @@ TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
                           "@until breq 5ms",
                           "@until breq=1",
                           "@until breq=1 5",
+                          "@until count=- 5ms",
                           "@signal",
                           "@pic MSK=100",
                           "@pic FOO=1",
@@ -90,6 +101,7 @@ TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
                           "@encoder 1",
                           "@encoder 0 100",
                           "@encoder 1 0",
+                          "@encoder 1 -0",
                           "@encoder 1 5 0",
                           "@encoder 1 x",
                           "@encoder 1 5 9830401",
