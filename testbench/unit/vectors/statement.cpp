@@ -51,8 +51,17 @@ Word Statement::register_word() {
 }
 
 std::int64_t Statement::term() {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 48;
+  const std::size_t begin = place();
   std::int64_t value = number("a number, decimal or $hex");
-  while (take("<<")) value *= std::int64_t{1} << (number(0, 31, "a number of places, 0 to 31"));
+  while (take("<<")) {
+    const std::int64_t shift = number(0, 31, "a number of places, 0 to 31");
+    if (std::abs(value) > kLargest >> shift) {
+      back_to(begin);
+      fail("a value of at most 48 bits");
+    }
+    value *= std::int64_t{1} << shift;
+  }
   return value;
 }
 
