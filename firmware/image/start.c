@@ -1,4 +1,4 @@
-/* Start-up (firmware:8.1): clocks, variables, memory, and every layer in its turn. */
+/* Start-up (firmware:8.4): clocks, variables, memory, and every layer in its turn. */
 #include "firmware/image/start.h"
 
 #include "firmware/base/memory_map.h"

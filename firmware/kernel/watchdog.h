@@ -1,4 +1,4 @@
-/* The watchdog of the tasks (firmware:8.4): a counter that the servo task takes down and the background reloads, and
+/* The watchdog of the tasks (firmware:8.3): a counter that the servo task takes down and the background reloads, and
  * the strobe of the hardware watchdog, which stops when the counter has passed 0. */
 #ifndef FIRMWARE_KERNEL_WATCHDOG_H
 #define FIRMWARE_KERNEL_WATCHDOG_H
