@@ -1,8 +1,8 @@
 // Interrupt controller between the board's eight signal lines and the one interrupt of the host bus. Registers
 // (addr_i): 0 read IST, write clears the latches; 1 SIG; 2 MSK, 1 = enabled; 3 ELR, 0 = rising edge, 1 = level. IST =
 // MSK & (ELR ? line : latch), IRQ = any IST. A latch is set by a rising edge while enabled and edge-sensed, and cleared
-// by a write to 0 or while masked; a coincident edge wins over the clear. Lines pass two flip-flops, so a line must
-// stay for three clocks to be seen for sure, and raises IRQ at the third edge. Clock clk_ref_i, asynchronous reset.
+// by a write to 0 or while masked; a coincident edge wins over the clear. Lines pass two flip-flops: a level of one
+// clock is seen for sure, and an edge raises IRQ at the third clock. Clock clk_ref_i, asynchronous reset.
 // docs/interrupt_controller.md.
 `default_nettype none
 
