@@ -68,7 +68,7 @@ enum decode {
   DECODE_X1_CCW = 5, /* Quadrature x1, counter-clockwise */
   DECODE_X2_CCW = 6, /* Quadrature x2, counter-clockwise */
   DECODE_X4_CCW = 7, /* Quadrature x4, counter-clockwise */
-  DECODE_INTERNAL_PULSE = 8, /* The channel's own PFM drives its counter */
+  DECODE_INTERNAL_PULSE = 8, /* Pulses of the own PFM count, with their sign */
   DECODE_HALL_CW = 11, /* Hall sensors on A, B, C, six counts a cycle, clockwise */
   DECODE_MLDT = 12, /* The own PFM pulse clears timer 2, the echo on A copies it to timer 1 */
   DECODE_HALL_CCW = 15, /* Hall sensors, counter-clockwise */
@@ -179,7 +179,7 @@ enum clock_source {
 #define SERVO_CHANNEL_STATUS_HALL_CAPTURE_SHIFT 0u
 #define SERVO_CHANNEL_STATUS_HALL_CAPTURE_MASK 0x000007u /* W, V, U latched by a capture on a hall edge (bit 0 = W) */
 #define SERVO_CHANNEL_STATUS_DEMUX_INVALID_SHIFT 3u
-#define SERVO_CHANNEL_STATUS_DEMUX_INVALID_MASK 0x000008u /* 1 while the de-multiplexed C/U/V/W set is incomplete */
+#define SERVO_CHANNEL_STATUS_DEMUX_INVALID_MASK 0x000008u /* 1 until the line C has been seen in all four states of A and B */
 #define SERVO_CHANNEL_STATUS_ENCODER_LOSS_SHIFT 7u
 #define SERVO_CHANNEL_STATUS_ENCODER_LOSS_MASK 0x000080u /* Encoder loss, latched; write 0 to clear */
 #define SERVO_CHANNEL_STATUS_ENCODER_ERROR_SHIFT 8u
@@ -187,7 +187,7 @@ enum clock_source {
 #define SERVO_CHANNEL_STATUS_EQU_SHIFT 9u
 #define SERVO_CHANNEL_STATUS_EQU_MASK 0x000200u /* Compare output EQU */
 #define SERVO_CHANNEL_STATUS_CAPTURED_GATED_INDEX_SHIFT 10u
-#define SERVO_CHANNEL_STATUS_CAPTURED_GATED_INDEX_MASK 0x000400u /* Captured on gated index; cleared by reading X:+3 */
+#define SERVO_CHANNEL_STATUS_CAPTURED_GATED_INDEX_MASK 0x000400u /* A capture with the gated index; reading X:+3 ends it */
 #define SERVO_CHANNEL_STATUS_CAPTURED_SHIFT 11u
 #define SERVO_CHANNEL_STATUS_CAPTURED_MASK 0x000800u /* Position captured; cleared by reading X:+3 */
 #define SERVO_CHANNEL_STATUS_CHA_SHIFT 12u
@@ -255,9 +255,9 @@ enum clock_source {
 #define SERVO_CHANNEL_CONTROL_FLAG_SELECT_SHIFT 8u
 #define SERVO_CHANNEL_CONTROL_FLAG_SELECT_MASK 0x000300u /* Flag of a capture (I7mn3) */
 #define SERVO_CHANNEL_CONTROL_COUNTER_RESET_SHIFT 10u
-#define SERVO_CHANNEL_CONTROL_COUNTER_RESET_MASK 0x000400u /* 1 holds the counter at 0 and clears the encoder error */
+#define SERVO_CHANNEL_CONTROL_COUNTER_RESET_MASK 0x000400u /* While it is 1 the counter stands at 0, the encoder error falls */
 #define SERVO_CHANNEL_CONTROL_EQU_WRITE_SHIFT 11u
-#define SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK 0x000800u /* Writing 1 copies bit 12 to EQU, then the bit falls back */
+#define SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK 0x000800u /* 1 gives EQU the value of bit 12 and falls back by itself */
 #define SERVO_CHANNEL_CONTROL_EQU_STATE_SHIFT 12u
 #define SERVO_CHANNEL_CONTROL_EQU_STATE_MASK 0x001000u /* EQU initial state */
 #define SERVO_CHANNEL_CONTROL_COMPARE_CHANNEL_SHIFT 13u

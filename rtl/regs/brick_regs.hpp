@@ -81,7 +81,7 @@ enum Code : std::uint32_t {
   kX1Ccw = 5,  // Quadrature x1, counter-clockwise
   kX2Ccw = 6,  // Quadrature x2, counter-clockwise
   kX4Ccw = 7,  // Quadrature x4, counter-clockwise
-  kInternalPulse = 8,  // The channel's own PFM drives its counter
+  kInternalPulse = 8,  // Pulses of the own PFM count, with their sign
   kHallCw = 11,  // Hall sensors on A, B, C, six counts a cycle, clockwise
   kMldt = 12,  // The own PFM pulse clears timer 2, the echo on A copies it to timer 1
   kHallCcw = 15,  // Hall sensors, counter-clockwise
