@@ -434,6 +434,10 @@ class Citations(Tree):
     def test_other_ways_of_pointing_fail(self):
         self.fails("servo-ic:5.1-5.11", "'servo-ic:' is no citation")
         self.fails("servo-ic:5.1, 5.11", "'5.11' names no sheet")
+        self.fails("servo-ic: 5.1", "'servo-ic: 5.1' is no citation")
+        self.fails("Servo_ic 5.1", "'Servo_ic 5.1' is no citation")
+        self.fails("servo-ic:5.1/1 and /2", "'servo-ic:5.1/1 and /2' names a rule without its section")
+        self.fails("servo-ic:5.1 rule 2", "'servo-ic:5.1 rule 2' names a rule without its section")
         self.fails("docs/datasheet/servo-ic.md 5.1", "'docs/datasheet/servo-ic.md 5.1' points into a page by number")
         self.fails("design.md section 7", "'design.md section 7' points into a page by number")
         self.fails("see section 7", "'section 7' names no sheet")
