@@ -64,7 +64,7 @@ def motor_pins():
     """The hand at encoder 6 (servo IC 1, channel 2) counts, with x4 both ways; an input pin is a signal at once."""
     r = play(["@encoder 6 37 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=37",
               "@encoder 6 -40 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=-3",
-              "@signal servo_ic0.ch1.count", "@expect servo_ic0.ch1.count=0",
+              "@until servo_ic1.ch2.count=-3 1us", "@signal servo_ic0.ch1.count", "@expect servo_ic0.ch1.count=0",
               "@input servo_ic0.ch1.hmfl=1", "@signal servo_ic0.ch1.hmfl", "@expect servo_ic0.ch1.hmfl=1",
               "@until servo_ic0.ch1.adc_strobe=1 200us", "@until servo_ic0.ch1.adc_strobe=0 200us"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
