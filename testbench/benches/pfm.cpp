@@ -163,6 +163,7 @@ void Pfm::end(const std::string& what) {
                  position.at(i) - position_[i], p.up - p.down);
   }
   report().step(what, edges, 2 * host_.channels(), fmt::format("{} edges, each at its tick", edges.made()));
+  if (alone == 0) return;  // nothing to compare
   report().step(what + ", one count a pulse", counts, 2 * alone,
                 fmt::format("{} pulses of {} channels, on the others they run together", counts.made() - alone, alone));
 }
