@@ -14,7 +14,7 @@ import sys
 from common import ROOT, finish
 
 SELF = "tools/check_commits.py"
-CODE = re.compile(r"\.(sv|vlt|rdl|cpp|h|c|S|py|cmake|vec)$|CMakeLists\.txt$|^dev$")
+CODE = re.compile(r"\.(sv|vlt|rdl|cpp|hpp|h|c|S|ld|def|py|cmake|vec)$|CMakeLists\.txt$|^(dev|\.ci/run)$")
 SUMMARY = re.compile(r"[\w./, -]+: \S")
 LONGEST = 60
 
