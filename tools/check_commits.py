@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-from common import ROOT, finish
+from common import GIT, ROOT, finish
 
 SELF = "tools/check_commits.py"
 CODE = re.compile(r"\.(sv|vlt|rdl|cpp|hpp|h|c|S|ld|def|py|cmake|vec)$|CMakeLists\.txt$|^(dev|\.ci/run)$")
@@ -20,7 +20,7 @@ LONGEST = 60
 
 
 def git(root, *arguments):
-    done = subprocess.run(["git", *arguments], cwd=root, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    done = subprocess.run([*GIT, *arguments], cwd=root, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     return done.stdout if done.returncode == 0 else ""
 
 
