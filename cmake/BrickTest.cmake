@@ -6,7 +6,7 @@
 include(GoogleTest)
 function(brick_sanitize target)
   target_compile_options(${target} PUBLIC ${BRICK_SANITIZER_FLAGS} -O1 -g1)
-  target_link_options(${target} PUBLIC ${BRICK_SANITIZER_FLAGS})
+  target_link_options(${target} PUBLIC ${BRICK_SANITIZER_LINK_FLAGS})
 endfunction()
 
 # A file of nothing owns the precompiled headers of one set of flags.

@@ -32,11 +32,14 @@ endif()
 # Flags of the sanitizers, for the whole tree (preset asan) and for the few native libraries that every build tests with
 # them.
 set(BRICK_SANITIZER_FLAGS -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+# Linked to a fixed place. Where the kernel moves programs by 32 random bits (vm.mmap_rnd_bits; many do since Linux
+# 6.5), one start in four would fall into what the runtime of g++ 12 keeps for its heap, and die before main().
+set(BRICK_SANITIZER_LINK_FLAGS ${BRICK_SANITIZER_FLAGS} -no-pie)
 if(BRICK_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")  # a short build, line numbers in reports, assertions on
   list(APPEND BRICK_WARNINGS -Wno-maybe-uninitialized)  # instrumented code makes g++ 12 warn inside <regex>
   add_compile_options(${BRICK_SANITIZER_FLAGS})
-  add_link_options(${BRICK_SANITIZER_FLAGS})
+  add_link_options(${BRICK_SANITIZER_LINK_FLAGS})
 endif()
 if(BRICK_COVERAGE)
   add_compile_options(--coverage -O1)

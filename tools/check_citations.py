@@ -12,9 +12,8 @@ import collections
 import contextlib
 import pathlib
 import re
-import subprocess
 
-from common import ROOT, finish
+from common import ROOT, finish, tracked
 
 SHEETS = ("servo-ic", "host-bus", "firmware")
 PAGES = "docs/datasheet"
@@ -50,19 +49,11 @@ PAGE_NAME = re.compile(r"(?<![\w/.*}-])(?:[\w./-]*[\w-]+\.md|docs/[\w./-]+\.(?:t
 Section = collections.namedtuple("Section", "line rules")
 
 
-def tracked(root):
-    """(name, text) of every text file that git tracks or would; where git cannot tell, of all but build products."""
-    names = []
-    if (root / ".git").exists():
-        listing = ["git", "-C", root, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-        names = subprocess.run(listing, capture_output=True, text=True, check=False).stdout.split("\0")
-    paths = [root / name for name in names if name]
-    if not paths:
-        products = {".git", "build", "out"}
-        paths = [path for path in root.rglob("*") if not products & set(path.relative_to(root).parts[:2])]
-    for path in sorted(path for path in paths if path.is_file() and not path.is_symlink()):
+def texts(root):
+    """(name, text) of every text file of the tree."""
+    for path in tracked(root):
         with contextlib.suppress(UnicodeDecodeError):  # a picture or the like
-            yield path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")
+            yield path.as_posix(), (root / path).read_text(encoding="utf-8")
 
 
 def read_sheet(text, page):
@@ -140,7 +131,7 @@ def main():
         if (root / page).exists():
             sheets[sheet], twice = read_sheet((root / page).read_text(encoding="utf-8"), page)
             problems += twice
-    for file, text in tracked(root):
+    for file, text in texts(root):
         if file in EXEMPT:
             continue
         for number, line in enumerate(text.splitlines(), 1):

@@ -11,16 +11,16 @@ import re
 import subprocess
 import sys
 
-from common import ROOT, finish
+from common import GIT, ROOT, finish
 
 SELF = "tools/check_commits.py"
-CODE = re.compile(r"\.(sv|vlt|rdl|cpp|h|c|S|py|cmake|vec)$|CMakeLists\.txt$|^dev$")
+CODE = re.compile(r"\.(sv|vlt|rdl|cpp|hpp|h|c|S|ld|def|py|cmake|vec)$|CMakeLists\.txt$|^(dev|\.ci/run)$")
 SUMMARY = re.compile(r"[\w./, -]+: \S")
 LONGEST = 60
 
 
 def git(root, *arguments):
-    done = subprocess.run(["git", *arguments], cwd=root, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    done = subprocess.run([*GIT, *arguments], cwd=root, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     return done.stdout if done.returncode == 0 else ""
 
 

@@ -13,7 +13,7 @@ import re
 import shutil
 import subprocess
 
-from common import ROOT, finish, skip
+from common import ROOT, finish, skip, tracked
 
 MAJOR = 14  # other versions format a few things differently
 LONGEST = 120
@@ -21,15 +21,6 @@ FORMATTED = {".cpp", ".h", ".c"}
 TEXTS = FORMATTED | {".sv", ".vlt", ".rdl", ".vec", ".py", ".cmake", ".md", ".txt", ".S", ".ld", ".def", ".hpp"}
 GENERATED = re.compile(r"(?:Generated|Made) by")  # in one of the first lines
 TABLES = {".def", "docs/requirements.txt", "docs/design-files.txt"}  # one row a line
-
-
-def sources(root):
-    """Every file of the tree, relative to it, but for what git ignores (build/, waves/out/)."""
-    if (root / ".git").exists():
-        listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root, text=True,
-                                stdout=subprocess.PIPE, check=True).stdout.splitlines()
-        return sorted(pathlib.Path(name) for name in listed if (root / name).is_file())
-    return sorted(path.relative_to(root) for path in root.rglob("*") if path.is_file() and "build" not in path.parts)
 
 
 def is_script(root, file):
@@ -68,7 +59,7 @@ def line_problems(root, files):
 
 
 def check_lines(root):
-    files = [file for file in sources(root) if file.suffix in TEXTS or is_script(root, file)]
+    files = [file for file in tracked(root) if file.suffix in TEXTS or is_script(root, file)]
     finish(f"lines, {len(files)} files", [*line_problems(root, files)])
 
 
@@ -80,7 +71,7 @@ def check_clang(root):
     found = re.search(r"version (\d+)", version)
     if not found or int(found.group(1)) != MAJOR:
         skip(f"the sources are formatted by clang-format {MAJOR}, here is: {version.strip()}")
-    files = [file for file in sources(root) if file.suffix in FORMATTED]
+    files = [file for file in tracked(root) if file.suffix in FORMATTED]
     done = subprocess.run([program, "--dry-run", "-Werror", *map(str, files)], cwd=root, stdin=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, text=True)
     bad = sorted({line.split(":")[0] for line in done.stderr.splitlines() if "[-Wclang-format-violations]" in line})

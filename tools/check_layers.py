@@ -19,7 +19,8 @@ CPP = [{"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"}, {"
        {"systemc/cosim"}, {"systemc/machine"}, {"testbench/host", "testbench/plant"}, {"testbench/checkers"},
        {"testbench/benches"}, {"testbench/benchmark", "app"}]
 FREE = ("testbench/unit",)  # may include anything
-INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.M)
+# Of what stands in <> only our own folders.
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"|<(?=(?:firmware|systemc|testbench|app)/))([^">]+)[">]', re.M)
 # Firmware sources are written by clang-format: what stands in column 0 is a declaration or a definition.
 FUNCTION = re.compile(r"^(?!static|typedef|return|else|#)\w[\w \t*]*?[ *](\w+)\([^;{}]*\)\s*([;{])", re.M)
 VARIABLE = re.compile(r"^extern\s+([^;]*?)(\w+)(?:\[\w*\])?(?:, (\w+))*\s*(?:\)\([^;]*\))?;", re.M)
@@ -103,6 +104,9 @@ def declarations(sources):
         defined = {name for name, end in FUNCTION.findall(source) if end == "{"}
         for name in {name for name, end in FUNCTION.findall(text) if end == ";"} - defined:
             problems.append(f"{path}: declares {name}(), which {unit}.c does not define")
+        if ending == "c":
+            problems += [f"{path}: extern inside a function: include the header of the file that defines it"
+                         for _ in re.finditer(r"^[ \t]+extern\b", text, re.M)]
         for match in VARIABLE.finditer(text):
             name = match.group(2)
             if ending == "c":

@@ -1,10 +1,12 @@
 """What the scripts in this folder share: where the tree is, which files are sources, how a check reports."""
 
 import pathlib
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SKIPPED = 77  # ctest shows this exit status as "Skipped"
+GIT = ["git", "-c", "safe.directory=*"]  # also a clone that is another user's, as in a container
 
 
 def files(root, folders, suffixes):
@@ -15,6 +17,20 @@ def files(root, folders, suffixes):
             if path.suffix in suffixes and path.is_file() and "__pycache__" not in path.parts:
                 found.append(path.relative_to(root))
     return sorted(found)
+
+
+def tracked(root):
+    """Every file that git tracks or would, relative to `root`; where git cannot tell, all but build products."""
+    names = []
+    if (root / ".git").exists():
+        listing = [*GIT, "-C", root, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        names = subprocess.run(listing, capture_output=True, text=True, check=False).stdout.split("\0")
+    found = [pathlib.Path(name) for name in names if name]
+    if not found:
+        products = {".git", "build", "out"}
+        found = [path.relative_to(root) for path in root.rglob("*")]
+        found = [path for path in found if not products & set(path.parts[:2])]
+    return sorted(path for path in found if (root / path).is_file() and not (root / path).is_symlink())
 
 
 def skip(reason):

@@ -22,7 +22,7 @@ def main():
     command = [sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format", "concise", "--quiet",
                "--config", ROOT / "pyproject.toml", root]
     done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    problems = done.stdout.splitlines()
+    problems = done.stdout.splitlines() or [f"ruff ended with exit status {done.returncode} and said nothing"]
     finish("ruff", problems if done.returncode else [])
 
 

@@ -62,16 +62,19 @@ def main():
     database.mkdir(exist_ok=True)
     (database / "compile_commands.json").write_text(json.dumps(commands, indent=1))
     wanted = [c["file"] for c in commands if not options.patterns or any(p in c["file"] for p in options.patterns)]
+    if not wanted:
+        sys.exit(f"tidy.py: no source of {options.build} has {' or '.join(options.patterns)} in its path")
 
     def judge(file):
         done = subprocess.run([program, "--quiet", "-p", database, file], text=True, capture_output=True)
-        return file, (done.stdout or done.stderr) if done.returncode else ""
+        return file, (done.stdout or done.stderr or f"exit status {done.returncode}") if done.returncode else ""
 
     problems = set()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for number, (file, text) in enumerate(pool.map(judge, wanted), 1):
             print(f"[{number}/{len(wanted)}] {pathlib.Path(file).relative_to(ROOT)}", file=sys.stderr, flush=True)
-            problems |= {line.replace(f"{ROOT}/", "") for line in text.splitlines() if " error: " in line}
+            found = {line.replace(f"{ROOT}/", "") for line in text.splitlines() if " error: " in line}
+            problems |= found if found or not text else {f"{file}: clang-tidy failed: {text.strip()[-300:]}"}
     finish(f"clang-tidy, {len(wanted)} sources", sorted(problems))
 
 

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "firmware/base/dimensions.h"
+
 struct rotary {
   uint32_t base, size;     /* words; size 0: not defined. Background */
   uint32_t write;          /* next word to store. Background */

@@ -1,5 +1,6 @@
 /* The hardware behind hal.h on the modelled board: machine-mode CSRs, straps, flash and the bus-control latches. */
 #include "firmware/hal/hal.h"
+
 #include "rtl/regs/brick_regs.h"
 
 /* mie and mip bits, docs/architecture.md "Interrupts". */

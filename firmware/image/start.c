@@ -7,7 +7,6 @@
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
-#include "firmware/command/command.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"

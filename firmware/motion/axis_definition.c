@@ -1,5 +1,6 @@
 /* Axis definitions of the motors: stored and counted. Commands make and report them (command/axis_commands.c). */
 #include "firmware/motion/axis_definition.h"
+
 #include "firmware/base/dimensions.h"
 
 struct axis_definition axis_definitions[MOTORS];

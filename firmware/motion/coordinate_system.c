@@ -1,5 +1,6 @@
 /* State of the coordinate systems at start-up, and the modes that programs and hosts set alike. */
 #include "firmware/motion/coordinate_system.h"
+
 #include "firmware/base/dimensions.h"
 #include "firmware/variables/i_variables.h"
 

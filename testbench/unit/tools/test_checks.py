@@ -461,6 +461,8 @@ class Citations(Tree):
         self.write("docs/datasheet/servo-ic.md", self.SHEET.replace("2. rises", "```\n2. rises\n```"))
         self.expect(self.run_tool("check_citations.py"), 1,
                     "docs/clock.md:1: 'servo-ic:5.1/2': rule 2 is not in section 5.1")
+
+
 class Layers(Tree):
     """Both trees, small: an include upward, a circle, a declaration away from its definition."""
 
@@ -485,6 +487,10 @@ class Layers(Tree):
     def test_an_upward_include_in_the_firmware_fails(self):
         self.write("firmware/hal/hal.h", '#include "firmware/kernel/tasks.h"\nuint32_t hal_cycles(void);\n')
         self.check(1, "firmware/hal/hal.h: includes firmware/kernel/tasks.h, which is not below firmware/hal")
+
+    def test_an_upward_include_in_angle_brackets_fails(self):
+        self.write("firmware/hal/hal.c", "#include <stdint.h>\n#include <firmware/kernel/tasks.h>\n")
+        self.check(1, "firmware/hal/hal.c: includes firmware/kernel/tasks.h, which is not below firmware/hal")
 
     def test_an_upward_include_in_the_model_fails(self):
         self.write("systemc/board/board_top.cpp", '#include "systemc/cosim/engines.h"\n')
@@ -519,6 +525,8 @@ class Layers(Tree):
     def test_a_foreign_variable_fails(self):
         self.write("firmware/kernel/tasks.c", "extern volatile uint32_t work;\n")
         self.check(1, "firmware/kernel/tasks.c: extern work")
+        self.write("firmware/kernel/tasks.c", "void f(void) {\n  extern uint32_t hal_cycles(void);\n}\n")
+        self.check(1, "firmware/kernel/tasks.c: extern inside a function")
         self.write("firmware/kernel/tasks.c", "")
         self.write("firmware/kernel/tasks.h", "extern volatile uint32_t work;\n")
         self.check(1, "firmware/kernel/tasks.h: declares work, which firmware/kernel/tasks.c does not define")
