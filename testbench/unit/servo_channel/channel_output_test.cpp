@@ -316,6 +316,16 @@ TEST_F(ChannelTest, WritesOfReadOnlyWordsChangeNothing) {
   }
 }
 
+// T, U, V, W (bits 23 to 20), USER (19) and B (13) are pulled up.
+TEST(ChannelReset, OpenInputsReadAsTheirPullUps) {
+  ChannelsRig rig;
+  rig.reset();
+  rig.in.pins.fill(kIdleChannelPins);
+  rig.ticks(200);
+  EXPECT_EQ(rig.peek(1, words::kStatus) & 0xFFF000, 0xF82000u);
+  EXPECT_EQ(rig.difference, "");
+}
+
 TEST(ChannelReset, WordsHaveTheValuesOfTheMap) {
   ChannelsRig rig;
   rig.reset();
