@@ -17,7 +17,7 @@ static uint32_t flash[HAL_FLASH_BYTES / 4];
 static uint32_t straps[6];
 static uint32_t fitted, signals, cycles, look, real_time;
 static uint32_t mask, masked_since, longest_mask; /* enum: who is held off */
-static unsigned breq_edges, writes;
+static unsigned breq_edges, writes, strobes;
 static struct fake_edge edges[EDGES];
 static struct fake_write write_log[LOG_LENGTH];
 
@@ -70,7 +70,7 @@ void fake_hal_power_on(uint32_t ics) {
   straps[HAL_STRAP_FITTED] = fitted = ics;
   signals = cycles = real_time = 0;
   mask = MASK_NONE;
-  breq_edges = writes = 0;
+  breq_edges = writes = strobes = 0;
   look = LOOK_CYCLES;
   longest_mask = 0;
   nothing = HAL_WORD_MASK;
@@ -95,6 +95,7 @@ void fake_hal_clear_breq_edges(void) { breq_edges = 0; }
 void fake_hal_set_cycles(uint32_t value) { cycles = value; }
 void fake_hal_pass(uint32_t passed) { cycles += passed; }
 void fake_hal_set_look(uint32_t passed) { look = passed; }
+unsigned fake_hal_strobes(void) { return strobes; }
 bool fake_hal_masked(void) { return mask != MASK_NONE; }
 
 uint32_t fake_hal_longest_mask(void) {
@@ -190,7 +191,7 @@ void hal_idle(const volatile uint32_t* work) {
   cycles += hal_cycles_per_ms();
   on_wait();
 }
-void hal_watchdog_strobe(void) {}
+void hal_watchdog_strobe(void) { ++strobes; }
 void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)transmit; }
 bool hal_servo_pending(void) { return false; }
 void hal_clear_words(uint32_t first, uint32_t count) {

@@ -20,6 +20,7 @@ void fake_hal_set_look(uint32_t cycles); /* time that a look at the cycle counte
 bool fake_hal_masked(void);              /* some task is held off */
 uint32_t fake_hal_longest_mask(void);    /* longest time that one was, in cycles, since the last call */
 void fake_hal_real_time_taken(void);
+unsigned fake_hal_strobes(void);                /* of the hardware watchdog since power-on */
 void fake_hal_fit(uint32_t fitted);             /* changes the ICs without power-on */
 void fake_hal_stop_clocks(bool stopped);        /* no phase interrupt comes */
 const char* fake_host_output(uint32_t* length); /* everything sent to the host since the last call; valid until then */

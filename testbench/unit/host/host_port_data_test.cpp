@@ -33,12 +33,14 @@ TEST_F(HostPortTest, TwoWordsWaitAndKeepTheirOrder) {
 }
 
 TEST_F(HostPortTest, UpperBytesStayFromWordToWord) {
-  host_write(kData5, 0);
-  host_write(kData6, 0);
-  for (const unsigned c : {'#', '1', '?'}) {
-    host_write(kData7, c);
-    both_.ref();
-    EXPECT_EQ(cpu_read(kHorx), c) << "polling recipe: +5 and +6 once, then characters at +7";
+  for (const unsigned upper : {0x0000u, 0xA5C3u}) {  // 0 is the polling recipe: +5 and +6 once, then characters at +7
+    host_write(kData5, upper >> 8);
+    host_write(kData6, upper);
+    for (const unsigned c : {'#', '1', '?'}) {
+      host_write(kData7, c);
+      both_.ref();
+      EXPECT_EQ(cpu_read(kHorx), upper << 8 | c);
+    }
   }
 }
 
@@ -79,6 +81,7 @@ TEST_F(HostPortTest, HlendReversesTheBytes) {
   both_.ref();
   EXPECT_EQ(host_read(kData5), 0xEFu);
   EXPECT_EQ(host_read(kData6), 0xCDu);
+  EXPECT_EQ(isr() & kRxdf, kRxdf) << "the low byte at +5 frees nothing";
   EXPECT_EQ(host_read(kData7), 0xABu);
   EXPECT_EQ(isr() & kRxdf, 0u) << "+7 is the last byte in either order";
 }
@@ -142,6 +145,15 @@ TEST_F(HostPortTest, WritingAFullRegisterOverwritesIt) {
   EXPECT_EQ(cpu_read(kHorx), 3u) << "the host did not look at TXDE";
   both_.ref(3);
   EXPECT_EQ(hsr() & kHrdf, 0u);
+  cpu_write(kHotx, 4);
+  both_.ref();
+  cpu_write(kHotx, 5);
+  cpu_write(kHotx, 6);
+  host_read(kData7);
+  both_.ref();
+  EXPECT_EQ(host_read(kData7), 6u) << "the CPU did not look at HTDE";
+  both_.ref(3);
+  EXPECT_EQ(isr() & kRxdf, 0u);
 }
 
 }  // namespace

@@ -146,6 +146,22 @@ TEST_F(InterruptControllerTest, EdgeWhileLevelSensedIsNotRemembered) {
   EXPECT_EQ(read(kStatus), 0u);
 }
 
+TEST_F(InterruptControllerTest, SwitchingToLevelsAndBackKeepsTheLatch) {
+  write(kMask, 0x10);
+  line(0x10);
+  both_.ref(3);
+  line(0);
+  both_.ref(3);
+  EXPECT_EQ(read(kStatus), 0x10u);
+  write(kEdgeLevel, 0x10);
+  both_.ref(3);
+  EXPECT_EQ(read(kStatus), 0u) << "the line is low";
+  write(kEdgeLevel, 0x00);
+  EXPECT_EQ(read(kStatus), 0x10u) << "nobody has cleared it";
+  write(kStatus, 0);
+  EXPECT_EQ(read(kStatus), 0u);
+}
+
 TEST_F(InterruptControllerTest, MaskingClearsTheLatch) {
   write(kMask, 0xFF);
   line(0x81);

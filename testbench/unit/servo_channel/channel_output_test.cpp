@@ -52,7 +52,7 @@ TEST_F(ChannelTest, DeadTimeHoldsBothSwitchesOff) {
 TEST_F(ChannelTest, PulseShorterThanTheDeadTimeIsSwallowed) {
   rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
   rig_.write(1, words::kOutA,
-             static_cast<std::uint32_t>(6527 - 100) << 8);  // low for 2 (6528 - 6427) - 1 = 201 < 240
+             static_cast<std::uint32_t>(6527 - 100) << 8);  // low for 26114 - (2 * 6427 + 13057) = 203 < 240
   rig_.ticks(3 * 26114);
   for (Tick t = 0; t < 26114; ++t) {
     rig_.tick();
@@ -179,6 +179,36 @@ TEST_F(ChannelSerialTest, StrobeWordsAppearBitByBitAndKeepTheLast) {
   EXPECT_NE(rig_.pins().serial & kDacStrobe, 0u) << "the last bit is held";
 }
 
+// Strobe and data change when the clock falls, or with the first bit, and stand when it rises; a new rise of PHASE
+// starts over, here before the word is out.
+TEST_F(ChannelSerialTest, BitsChangeAsTheClockFallsAndPhaseStartsOver) {
+  control(1, kDac);
+  rig_.write(1, words::kOutA, 0xAAAA80);
+  rig_.write(ic_words::kDacStrobe, 0x555555);
+  wait_for_phase(true);
+  wait_for_phase(true);
+  ChannelPins last = rig_.pins();
+  for (Tick t = 0; t < 24 * 24; ++t) {
+    rig_.tick();
+    const ChannelPins now = rig_.pins();
+    const bool rises = (now.serial & ~last.serial & kDacClk) != 0;
+    EXPECT_FALSE(rises && (((now.serial ^ last.serial) & kDacStrobe) != 0 || now.others != last.others)) << t;
+    last = now;
+  }
+  rig_.write(ic_words::kDacStrobe, 0x800000);  // the first bit alone
+  rig_.write(ic_words::kPwmControl, pwm_control(kMaxCount, 15));
+  rig_.ticks(3 * 13057);
+  int starts = 0;
+  bool high = true;
+  for (Tick t = 0; t < 20 * kPhase; ++t) {
+    rig_.tick();
+    const bool now = (rig_.pins().serial & kDacStrobe) != 0;
+    starts += now && !high;
+    high = now;
+  }
+  EXPECT_EQ(starts, 20) << "a stream of 576 ticks each 203";
+}
+
 TEST_F(ChannelSerialTest, DividersGiveEveryBitRate) {
   for (unsigned n = 0; n < 6; ++n) {
     rig_.write(ic_words::kClockControl, ic_words::clock_control::kAdcDivider.set(
@@ -243,51 +273,57 @@ TEST_F(ChannelTest, TripTurnsEverythingOffAndOutputsIgnoreWrites) {
   rig_.ref(2);
   EXPECT_EQ(rig_.pins().pwm, 0u);
   EXPECT_EQ(rig_.pins().others & ~0xF0u, 0u) << "all but DIR, which rests";
-  rig_.write(1, words::kOutA, 0x123456);
-  EXPECT_EQ(rig_.peek(1, words::kOutA), 0x7FFF00u);
+  EXPECT_FALSE(status(1, status_bit::kEqu));
+  for (const regs::Register& word : {words::kOutA, words::kOutB, words::kOutC}) {
+    const std::uint32_t held = rig_.peek(1, word);
+    rig_.write(1, word, 0x123456);
+    EXPECT_EQ(rig_.peek(1, word), held) << word.name;
+  }
   rig_.ticks(500);
   EXPECT_EQ(rig_.pins().pwm, 0u);
 }
 
-TEST_F(ChannelTest, EveryBitOfEveryWordReadsAsTheMapSays) {
-  struct Word {
-    bool x;
-    unsigned offset;
-    std::uint32_t written;  // bits that keep what is written
-  };
-  const Word words[] = {{true, 5, 0xFFFFFF & ~0x40C00u},
-                        {true, 6, 0xFFFFFF},
-                        {true, 7, 0xFFFFFF},
-                        {false, 7, 0xFFFFFF},
-                        {false, 2, 0xFFFFFF},
-                        {false, 3, 0xFFFFFF},
-                        {false, 4, 0xFFFFFF},
-                        {true, 1, 0},
-                        {true, 2, 0},
-                        {true, 3, 0},
-                        {false, 0, 0},
-                        {false, 1, 0},
-                        {false, 5, 0},
-                        {false, 6, 0}};
+// What the written words hold, bit by bit, is in unit_register_bits. Here every other word is made to hold something,
+// the clocks are taken away so that it stays, and nothing that is written to it or beside it may show.
+TEST_F(ChannelTest, WritesOfReadOnlyWordsChangeNothing) {
+  const regs::Register read_only[] = {words::kPhasePosition, words::kServoPosition, words::kFlagPosition,
+                                      words::kTimer1,        words::kTimer2,        words::kAdcA,
+                                      words::kAdcB};
+  rig_.in.adc_a = rig_.in.adc_b = 0xF;
+  rig_.write(ic_words::kPwmControl, pwm_control(1000, 15));  // time for 24 bits in a half of PHASE
   for (unsigned ch = 1; ch <= 4; ++ch) {
-    for (const Word& w : words) {
-      for (unsigned bit = 0; bit < 24; ++bit) {
-        if (w.written != 0 && (w.written >> bit & 1) == 0) continue;  // bits with an action have tests of their own
-        const std::uint32_t before = rig_.peek(w.x, base(ch) + w.offset);
-        rig_.write(w.x, base(ch) + w.offset, 1u << bit);
-        rig_.ref(2);
-        const std::uint32_t after = rig_.peek(w.x, base(ch) + w.offset);
-        if (w.written != 0) {
-          EXPECT_EQ(after, 1u << bit) << (w.x ? "X" : "Y") << w.offset;
-        } else if (w.offset < 5 && !(w.offset == 1 && !w.x) && !(w.x && w.offset == 2)) {
-          EXPECT_EQ(after, before) << (w.x ? "X" : "Y") << w.offset;
-        } else {
-          EXPECT_FALSE(bit == 23 && (after >> 23 & 1) != 0) << (w.x ? "X" : "Y") << w.offset;
-        }
-      }
-      if (w.written != 0) rig_.write(w.x, base(ch) + w.offset, 0);
-    }
+    control(ch, kX4 | kFlag);
+    steps(ch, 5, true);
+    pin(ch, kHmfl, true);
+    step(ch, false);
   }
+  rig_.ticks(4 * 2003);
+  rig_.write(ic_words::kClockControl, ic_words::kClockControl.reset);  // both clocks are inputs
+  rig_.ticks(3 * 2003);
+  for (unsigned ch = 1; ch <= 4; ++ch) {
+    for (const regs::Register& word : read_only) {
+      const std::uint32_t held = rig_.peek(ch, word);
+      EXPECT_NE(held, 0u) << word.name;
+      for (unsigned bit = 0; bit < 24; ++bit) {
+        rig_.write(ch, word, 1u << bit);
+        rig_.ref();
+        EXPECT_EQ(rig_.peek(ch, word), held) << word.name << ", bit " << bit << " written";
+      }
+      rig_.write(ch, word, ~held & 0xFFFFFF);
+      EXPECT_EQ(rig_.peek(ch, word), held) << word.name;
+    }
+    EXPECT_TRUE(status(ch, status_bit::kCaptured)) << "writing is not reading";
+  }
+}
+
+// T, U, V, W (bits 23 to 20), USER (19) and B (13) are pulled up.
+TEST(ChannelReset, OpenInputsReadAsTheirPullUps) {
+  ChannelsRig rig;
+  rig.reset();
+  rig.in.pins.fill(kIdleChannelPins);
+  rig.ticks(200);
+  EXPECT_EQ(rig.peek(1, words::kStatus) & 0xFFF000, 0xF82000u);
+  EXPECT_EQ(rig.difference, "");
 }
 
 TEST(ChannelReset, WordsHaveTheValuesOfTheMap) {

@@ -1,0 +1,66 @@
+// The watchdog counter natively, a servo interrupt at a time: how long it lets the real-time task strobe, and the
+// strobes between two such tasks (firmware:8.3, servo-ic:10/2, servo-ic:10/8).
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+
+#include "testbench/unit/firmware_platform/controller.h"
+
+extern "C" {
+#include "firmware/hal/hal.h"
+}
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kCounter = 0x25;  // Y: the counter, X: the lowest value
+
+class WatchdogTask : public ::testing::Test {
+ protected:
+  // Strobes of so many servo interrupts, the real-time task behind each and no background.
+  unsigned strobes(unsigned interrupts) {
+    const unsigned before = fake_hal_strobes();
+    c_.servo(interrupts);
+    return fake_hal_strobes() - before;
+  }
+  std::int32_t counter() { return hal_signed(*hal_y(kCounter)); }
+
+  Controller c_;
+};
+
+// I40 interrupts take the counter from I40 to 0, a strobe behind each of them; the next makes it -1.
+TEST_F(WatchdogTask, StrobesDownToZeroAndNotBelow) {
+  for (const unsigned i40 : {1u, 2u, 3u, 100u, 65535u, 0u}) {
+    const unsigned load = i40 == 0 ? 4095 : i40;
+    c_.line("I8=0 I40=" + std::to_string(i40));
+    ASSERT_EQ(counter(), static_cast<std::int32_t>(load)) << "at the end of a background pass";
+    EXPECT_EQ(strobes(load - 1), load - 1);
+    EXPECT_EQ(counter(), 1);
+    EXPECT_EQ(strobes(1), 1u) << "at 0 it still does";
+    EXPECT_EQ(counter(), 0);
+    EXPECT_EQ(strobes(5), 0u) << "below 0 no more";
+    EXPECT_EQ(counter(), -5);
+    EXPECT_EQ(hal_signed(*hal_x(kCounter)), -5) << "the lowest value";
+  }
+  c_.line("I40=10");
+  EXPECT_EQ(strobes(3), 3u) << "a background that comes back is forgiven";
+  EXPECT_EQ(hal_signed(*hal_x(kCounter)), -5) << "and remembered";
+}
+
+// A real-time task every 256 servo cycles of 0.5 ms would strobe every 128 ms. The servo task does within each, when
+// 10 ms have passed: with the 21st cycle at the latest.
+TEST_F(WatchdogTask, ServoTaskStrobesBetweenRareRealTimeTasks) {
+  c_.line("I40=0 I8=255");
+  unsigned longest = 0, since = 0;
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    fake_hal_pass(hal_cycles_per_ms() / 2);
+    since = strobes(1) != 0 ? 0 : since + 1;
+    longest = since > longest ? since : longest;
+  }
+  EXPECT_GE(longest, 19u) << "not more often than it must";
+  EXPECT_LE(longest, 20u);
+}
+
+}  // namespace
+}  // namespace brick

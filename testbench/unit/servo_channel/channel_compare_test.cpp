@@ -1,0 +1,74 @@
+// Writes of the compares against what the hardware does to them: a write never turns EQU, and it beats a move at the
+// same edge (servo-ic:5.10). What the compares do by themselves is in channel_capture_test.cpp.
+#include "testbench/unit/servo_channel/channel_fixture.h"
+
+namespace brick {
+namespace {
+
+class ChannelCompareTest : public ChannelTest {
+ protected:
+  static constexpr std::uint32_t kFar = 0x400000;
+
+  void SetUp() override {
+    ChannelTest::SetUp();
+    control(1, kX4 | kCounterReset);
+    control(1, kX4);
+  }
+  void place(std::uint32_t a, std::uint32_t b, std::uint32_t increment) {
+    rig_.write(1, words::kCompareA, a);
+    rig_.write(1, words::kCompareB, b);
+    rig_.write(1, words::kCompareIncrement, increment);
+  }
+};
+
+TEST_F(ChannelCompareTest, WritingNeverTurnsEqu) {
+  steps(1, 4, true);
+  for (const bool level : {false, true}) {
+    control(1, kX4 | kEquWrite | (level ? kEquState : 0));
+    for (const std::uint32_t value : {3u, 4u, 5u, kFar}) {
+      place(value, kFar, 4);
+      place(kFar, value, 4);
+      place(value, value, 0);
+      rig_.ticks(4 * kSclk);
+      EXPECT_EQ(bool{equ(1)}, level) << value;
+    }
+  }
+}
+
+TEST_F(ChannelCompareTest, IncrementOf0LeavesTheComparesWhereTheyAre) {
+  place(2, kFar, 0);
+  steps(1, 4, true);
+  EXPECT_TRUE(equ(1));
+  EXPECT_EQ(rig_.peek(1, words::kCompareA), 2u);
+  EXPECT_EQ(rig_.peek(1, words::kCompareB), kFar);
+}
+
+// Leaving 0 moves the other compare by 7. Written one edge before, the new value moves; written at the edge or after
+// it, it stands.
+TEST_F(ChannelCompareTest, AWriteBeatsAMoveAtTheSameEdge) {
+  for (const bool of_a : {true, false}) {
+    const regs::Register& other = of_a ? words::kCompareA : words::kCompareB;
+    const auto prepare = [&] {
+      control(1, kX4 | kCounterReset);
+      control(1, kX4);
+      place(of_a ? kFar : 0, of_a ? 0 : kFar, 7);
+      while (rig_.now() % kSclk != 0) rig_.tick();
+    };
+    prepare();
+    const Tick start = rig_.now();
+    const bool before = bool{equ(1)};
+    step(1, true, 0);
+    while (bool{equ(1)} == before) rig_.tick();
+    const Tick count = rig_.now() - start;
+    for (const Tick edge : {count - kTicksPerRef, count, count + kTicksPerRef}) {
+      prepare();
+      step(1, true, edge - kTicksPerRef);
+      rig_.write(1, other, 777);
+      rig_.ticks(kHold);
+      EXPECT_EQ(rig_.peek(1, other), edge < count ? 784u : 777u) << edge - count;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace brick
