@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Lints the RTL: lint_rtl.py verilator|yosys|icarus.
 
-verilator  --lint-only -Wall with every module as a top in turn; warnings are errors. Waivers stand in rtl/lint.vlt
-           only, each with its reason in a comment on the line above it.
+verilator  --lint-only -Wall with every module as a top in turn, the board also with other ICs; warnings are errors.
+           Waivers stand in rtl/lint.vlt only, each with its reason in a comment on the line above it.
 yosys      elaborates every module and checks for latches, undriven and multiply driven nets.
 icarus     elaborates every module.
 Every Verilog file below rtl/ is read by all three: one of another kind than .sv is a problem.
@@ -20,6 +20,9 @@ from common import ROOT, files, finish, skip
 
 TOP = "board_top"
 SIMULATION_ONLY = {"board_sim"}  # tops for simulation, never synthesized: read by Verilator only
+# Boards with other ICs than the default parameters build: a MACRO IC alone, as on the Ultralite, and all.
+VARIANTS = {"board_sim": (("-GServoIcMask=18'h00000", "-GMacroIcMask=4'h1"),
+                          ("-GServoIcMask=18'h3FFFF", "-GMacroIcMask=4'hF"))}
 VERILOG = {".v", ".vh", ".sv", ".svh", ".vl", ".verilog"}
 
 
@@ -85,11 +88,11 @@ def lint_verilator(root, packages, modules):
     waivers = ["rtl/lint.vlt"] if (root / "rtl/lint.vlt").exists() else []
     for module in modules:
         command = ["verilator", "--lint-only", "-Wall", *(a for folder in folders for a in ("-y", folder)), *waivers,
-                   *map(str, packages),
-                   str(module), "--top-module", module.stem]
-        status, output = run(command, root)
-        if status != 0 or "%Warning" in output or "%Error" in output:
-            problems.append(f"{module}:\n{output.strip()}")
+                   *map(str, packages), str(module), "--top-module", module.stem]
+        for parameters in [(), *VARIANTS.get(module.stem, ())]:
+            status, output = run([*command, *parameters], root)
+            if status != 0 or "%Warning" in output or "%Error" in output:
+                problems.append(f"{module} {' '.join(parameters)}\n{output.strip()}")
     return problems
 
 

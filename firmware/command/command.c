@@ -19,8 +19,7 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return c >= 'A' && c <= 'Z'; }
 static bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
 
-/* Addresses ---------------------------------------------------------------------------------------------------------
- */
+/* Addresses -------------------------------------------------------------------------------------------------------- */
 
 /* `&n`, `#n`, `##n`: modal. Without a number the present one is reported. */
 static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_t* selected) {
@@ -51,8 +50,7 @@ static error_t address_motor(struct lexer* lx) {
   return address(lx, 0, MOTOR_GROUPS, &session.motor_group);
 }
 
-/* Keywords ----------------------------------------------------------------------------------------------------------
- */
+/* Keywords --------------------------------------------------------------------------------------------------------- */
 
 /* Commands of one letter stop, start and abort: they must stand alone. `RAPID`, `A10` or `UUU` are something else. */
 static bool stands_alone(const char* at, const char* keyword) {
@@ -94,8 +92,7 @@ static error_t keyword(struct lexer* lx) {
   return best->run(lx);
 }
 
-/* One command -------------------------------------------------------------------------------------------------------
- */
+/* One command ------------------------------------------------------------------------------------------------------ */
 
 static bool starts_constant(const char* at) {
   if (*at == '$') return is_hex_digit(at[1]);

@@ -116,8 +116,7 @@ static error_t assign_range(struct lexer* lx, char letter, const struct range* r
   return ERR_NONE;
 }
 
-/* M-variable definitions --------------------------------------------------------------------------------------------
- */
+/* M-variable definitions ------------------------------------------------------------------------------------------- */
 
 static error_t read_part(struct lexer* lx, struct m_definition* definition) {
   int32_t number;

@@ -31,8 +31,7 @@ void hal_delay_us(uint32_t us);                      /* busy wait */
 void hal_host_signals(uint32_t set, uint32_t clear); /* bits HAL_SIGNAL_*: latch X:$070010 */
 enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL_F1ER = 8 };
 
-/* Kernel only. ------------------------------------------------------------------------------------------------------
- */
+/* Kernel only. ----------------------------------------------------------------------------------------------------- */
 void hal_set_cpu_clock(uint32_t i52); /* cycles a microsecond for hal_delay_us and hal_cycles_per_ms */
 uint32_t hal_cycles_per_ms(void);
 void hal_interrupts_off(void);    /* no task enabled, nothing latched */

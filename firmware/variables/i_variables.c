@@ -19,8 +19,7 @@ static int32_t integer_of[VARIABLE_COUNT]; /* the same, for tasks that must not 
 static uint32_t timer_start[16][2];        /* servo count when Isx11, Isx12 were written */
 static uint32_t directions_pending;        /* bit per IC: direction written, not yet in the IC */
 
-/* Reading ------------------------------------------------------------------------------------------------------------
- */
+/* Reading ---------------------------------------------------------------------------------------------------------- */
 
 static bool is_timer(uint32_t number) {
   const uint32_t inside = number % 100u;
@@ -54,9 +53,7 @@ i_format_t i_variable_format(uint32_t number) {
   return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
 }
 
-/* Hardware and kernel
- * -----------------------------------------------------------------------------------------------------------
- */
+/* Hardware and kernel ---------------------------------------------------------------------------------------------- */
 
 #define FIELD(mask) \
   __builtin_ctz(mask), __builtin_popcount(mask) /* lsb and width of a field, or of several that are one variable */
@@ -145,8 +142,7 @@ void i_variable_apply_clock_directions(void) {
   clock_watch_changed();
 }
 
-/* Writing ------------------------------------------------------------------------------------------------------------
- */
+/* Writing ---------------------------------------------------------------------------------------------------------- */
 
 static void store(uint32_t number, double value) {
   int32_t whole = INT32_MAX;
@@ -219,8 +215,7 @@ void i_variable_write(uint32_t number, double value) {
   if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) clock_watch_changed();
 }
 
-/* Start-up -----------------------------------------------------------------------------------------------------------
- */
+/* Start-up --------------------------------------------------------------------------------------------------------- */
 
 double i_variable_default(uint32_t number) {
   const struct i_place place = i_table_place(number);

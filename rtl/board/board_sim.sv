@@ -22,8 +22,13 @@ module board_sim #(
   output logic [31:0]      count_o[72]   // no pins: position counters, channel n of IC i in word 4 * i + n - 1
 );
 
-  localparam integer Ics = $countones(ServoIcMask);
-  logic [64*Ics-1:0] motor_in, motor_out;
+  localparam integer MotorBits = ServoIcMask == 0 ? 1 : 64 * $countones(ServoIcMask);
+  logic [MotorBits-1:0] motor_in, motor_out;
+  if (ServoIcMask == 0) begin : gen_no_motors
+    logic unused_out;
+    assign motor_in   = motor_i[0][0];
+    assign unused_out = &{1'b0, motor_out};
+  end
   for (genvar i = 0; i < 18; i++) begin : gen_motor
     if (ServoIcMask[i]) begin : gen_built
       localparam integer Motor = 64 * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));

@@ -1,9 +1,9 @@
 // The controller board: servo and MACRO ICs, clock selection, bus decoding, watchdog and the host side, from Port A
 // pins to ISA pins. clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing
 // between them is synchronous. ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in
-// fitted_i; one servo IC at least), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are
-// of the kind MACROGATE. All outputs are registers or gates behind registers: they change at clock edges only.
-// docs/architecture.md has the map.
+// fitted_i), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
+// All outputs are registers or gates behind registers: they change at clock edges only. docs/architecture.md has the
+// map.
 `default_nettype none
 
 module board_top #(
@@ -47,12 +47,12 @@ module board_top #(
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
   input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
-  // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first.
+  // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first; without any one bit, unused.
   // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
   // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks
   // and strobes.
-  input  wire logic [64*$countones(ServoIcMask)-1:0] motor_i,
-  output logic [64*$countones(ServoIcMask)-1:0]      motor_o,
+  input  wire logic [(ServoIcMask == 0 ? 1 : 64*$countones(ServoIcMask))-1:0] motor_i,
+  output logic [(ServoIcMask == 0 ? 1 : 64*$countones(ServoIcMask))-1:0]      motor_o,
   // clocks, host signals, watchdog, interrupt controller as seen from outside
   output logic             phase_o,
   output logic             servo_o,
@@ -209,6 +209,11 @@ module board_top #(
       assign ic_servo_oe[i]     = 1'b0;
       assign equ[4*i+:4]        = 4'h0;
     end
+  end
+  if (ServoIcMask == 0) begin : gen_no_motors
+    logic unused_in;
+    assign unused_in = &{1'b0, motor_i};
+    assign motor_o   = 1'b0;
   end
 
   for (genvar i = 18; i < 22; i++) begin : gen_macro_ic

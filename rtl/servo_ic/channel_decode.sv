@@ -35,7 +35,7 @@ module channel_decode #(
   localparam logic [23:0] HallPlace = {3'd7, 3'd1, 3'd5, 3'd0, 3'd3, 3'd2, 3'd4, 3'd7};
 
   logic ccw;  // the two codes of a mode differ in this bit
-  assign ccw = mode_i[2];
+  assign ccw = |(mode_i & (brick_regs_pkg::DecodeX4Cw ^ brick_regs_pkg::DecodeX4Ccw));
 
   logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
   logic [2:0] hall, last_hall;

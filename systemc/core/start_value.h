@@ -8,7 +8,9 @@ namespace brick {
 
 // What board_sim gets.
 constexpr std::uint32_t start_seed(std::uint64_t seed) {
-  return seed <= 1 ? 0 : static_cast<std::uint32_t>(seed ^ seed >> 32);
+  if (seed <= 1) return 0;
+  const auto folded = static_cast<std::uint32_t>(seed ^ seed >> 32);
+  return folded == 0 ? 1 : folded;  // both halves equal, as in the largest seed, is no reason to start with zero
 }
 
 constexpr std::uint16_t start_word(std::uint32_t start_seed, std::uint32_t index) {

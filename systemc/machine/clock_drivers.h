@@ -8,27 +8,26 @@
 
 #include <fmt/format.h>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/ticks.h"
-#include "systemc/machine/machine_signals.h"
 
 namespace brick {
 
 class ClockDrivers {
  public:
-  void reset() { inputs_.fill(3); }
+  void reset() { words_.fill(regs::servo_ic::kClockControl.reset); }
 
   // A write cycle to a gate IC; anything but a clock word is ignored.
   void write(bool x, std::uint32_t address, std::uint32_t value) {
-    for (unsigned ic = 0; x && ic < kIcs; ++ic)
-      if (clock_word(ic) == address) inputs_[ic] = value >> 12 & 3;
+    for (unsigned ic = 0; x && ic < words_.size(); ++ic)
+      if (clock_word(regs::kGateIcs[ic]) == address) words_[ic] = value;
   }
 
   // "servo IC 0 (I7007) and MACRO IC 0 (I6807)": all that drive one of the nets, and the jumper.
   std::string names(std::uint32_t fitted, bool external) const {
     std::string text;
-    for (unsigned ic = 0; ic < kIcs; ++ic)
-      if ((fitted >> ic & 1) != 0 && inputs_[ic] != 3)
-        text += fmt::format("{}{} (I{})", joint(text), name(ic), clock_source_variable(ic));
+    for (unsigned ic = 0; ic < words_.size(); ++ic)
+      if ((fitted >> ic & 1) != 0 && drives(words_[ic])) text += joint(text) + name(regs::kGateIcs[ic]);
     return external ? text + joint(text) + "the external clocks (E1)" : text;
   }
 
@@ -42,23 +41,24 @@ class ClockDrivers {
   }
 
  private:
-  static constexpr unsigned kIcs = 22, kFirstStarred = 10, kFirstMacro = 18;
   static constexpr Tick kDelay = 3;
 
-  static const char* joint(const std::string& before) { return before.empty() ? "" : " and "; }
-  static std::string name(unsigned ic) {
-    if (ic >= kFirstMacro) return fmt::format("MACRO IC {}", ic - kFirstMacro);
-    return ic < kFirstStarred ? fmt::format("servo IC {}", ic) : fmt::format("servo IC {}*", ic - 8);
+  static std::string joint(const std::string& before) { return before.empty() ? "" : " and "; }
+  static std::string name(const regs::GateIc& ic) {
+    return fmt::format("{} IC {} (I{})", ic.macro ? "MACRO" : "servo", ic.name, ic.direction_variable);
   }
-  // X address of the word with the direction bits, servo-ic:1.2, servo-ic:1.3, servo-ic:2.6, servo-ic:6.2.
-  static std::uint32_t clock_word(unsigned ic) {
-    if (ic >= kFirstMacro) return 0x7840C + 0x1000 * (ic - kFirstMacro);
-    if (ic < 2) return 0x78004 + 0x100 * ic;
-    const std::uint32_t number = ic < kFirstStarred ? ic : ic - 8;  // m of m and m*
-    return 0x78004 + 0x1000 * ((number - 2) / 2) + (number % 2 == 0 ? 0x200 : 0x300) + (ic < kFirstStarred ? 0 : 0x20);
+  static std::uint32_t clock_word(const regs::GateIc& ic) {
+    return ic.base + (ic.macro ? regs::macro_ic::kClockControl : regs::servo_ic::kClockControl).address;
   }
+  static bool drives(std::uint32_t word) {
+    namespace field = regs::servo_ic::clock_control;  // a MACRO IC has them at the same places
+    return field::kPhaseExternal.get(word) == regs::clock_direction::kOutput ||
+           field::kServoExternal.get(word) == regs::clock_direction::kOutput;
+  }
+  static_assert(regs::servo_ic::clock_control::kPhaseExternal.lsb == regs::macro_ic::clock_control::kPhaseExternal.lsb);
+  static_assert(regs::servo_ic::clock_control::kServoExternal.lsb == regs::macro_ic::clock_control::kServoExternal.lsb);
 
-  std::array<unsigned, kIcs> inputs_{};  // bit 0 PHASE, bit 1 SERVO: 1 = taken from the net
+  std::array<std::uint32_t, regs::kGateIcs.size()> words_{};  // as written, with the direction bits
 };
 
 }  // namespace brick

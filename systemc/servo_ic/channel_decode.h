@@ -72,7 +72,8 @@ class BasicChannelDecode {
   }
 
  private:
-  static constexpr std::uint32_t kCounterClockwise = 4;  // the two codes of a mode differ in this bit
+  // The two codes of a mode differ in this bit.
+  static constexpr std::uint32_t kCounterClockwise = regs::decode::kX4Cw ^ regs::decode::kX4Ccw;
 
   // Place in the cycle 00, 10, 11, 01 of {A, B}.
   static unsigned position(unsigned abc) { return (abc & 2) | ((abc ^ abc >> 1) & 1); }

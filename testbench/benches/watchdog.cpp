@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "testbench/benches/benches.h"
 #include "testbench/benches/output_watch.h"
 #include "testbench/benches/watchdog_probe.h"
@@ -70,11 +71,10 @@ constexpr Tick kOutputs = kMillisecond / 2;  // several PWM and phase periods at
 // Every output of the servo ICs in use: each channel enabled, EQU set, and A, B, C as PWM, DAC with PWM, or PWM with
 // PFM in turn.
 void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) {
-  constexpr unsigned kBase[2] = {0x78000, 0x78100};
   unsigned mode = static_cast<unsigned>(random() % 4), modes[2][kChannels] = {};
   for (unsigned ic = 0; ic < 2; ++ic)
     for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n) {
-      const unsigned word = kBase[ic] + 8 * n;
+      const unsigned word = regs::kGateIcs[ic].base + 8 * n;
       modes[ic][n] = mode = (mode + 1) % 4;  // I7mn6
       const unsigned command =
           1 + static_cast<unsigned>(random() % 60);  // of A, and negative of B: all four switches have their time

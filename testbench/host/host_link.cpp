@@ -127,8 +127,7 @@ Reply HostLink::control(std::uint8_t c) {
   return reply;
 }
 
-// --------------------------------------------------------------------------------------------------------------
-// framing
+// ------------------------------------------------------------------------------------------------------------- framing
 
 // What I3, I4 and I6 are once `line` has been executed.
 Framing HostLink::framing_after(const std::string& line) const {
@@ -151,8 +150,7 @@ Framing HostLink::framing_after(const std::string& line) const {
   return next;
 }
 
-// --------------------------------------------------------------------------------------------------------------
-// connect
+// ------------------------------------------------------------------------------------------------------------- connect
 
 // Before this the framing is not known, so the answer is only waited for until the line is quiet; then I3 is asked for.
 bool HostLink::try_connect(Tick deadline) {

@@ -38,7 +38,7 @@ BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed),
   for (unsigned ic = 0; ic < regs::kGateIcs.size(); ++ic)
     if ((options.ics >> ic & 1) != 0) ics_.push_back(ic);
   inputs_.fitted = options.ics;
-  reset_at_ = options.start + 12 + pick(30);  // released there
+  reset_at_ = 12 + pick(30);  // released there
   cpu_.at = host_.at = outside_at_ = reset_at_ + 10;
 }
 

@@ -23,7 +23,6 @@ class BoardTraffic {
     bool dense = true;            // without long pauses of everybody
     std::uint32_t ics = 0x3;      // that take part, as in BoardInputs::fitted
     Tick silent_at = kNever;      // Port A rests from there until the watchdog has tripped, and a reset follows
-    Tick start = 0;
   };
   explicit BoardTraffic(std::uint64_t seed) : BoardTraffic(seed, Options{}) {}
   BoardTraffic(std::uint64_t seed, Options options);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/cosim/drive.h"
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/clocks/board_rig.h"
@@ -48,20 +49,18 @@ Changes traffic(const Edit& edit) {
 
 // Every IC is read, each kind of a MACRO IC shows itself, EQU of every channel can be chosen as an interrupt.
 Changes census(const Edit& edit) {
-  constexpr std::uint32_t kAll = 0x3FFFFF;
-  constexpr std::uint32_t kServo[] = {0x78000, 0x78100, 0x78200, 0x78300, 0x79200, 0x79300, 0x7A200, 0x7A300, 0x7B200,
-                                      0x7B300, 0x78220, 0x78320, 0x79220, 0x79320, 0x7A220, 0x7A320, 0x7B220, 0x7B320};
-  constexpr std::uint32_t kMacro[] = {0x78400, 0x79400, 0x7A400, 0x7B400};
-  constexpr std::uint32_t kEquHigh = 3u << 11;  // set by hand, servo-ic:2.5
+  constexpr std::uint32_t kAll = (1u << regs::kGateIcs.size()) - 1;
+  constexpr regs::Register kMacroOnly = regs::macro_ic::kSupplementary1, kControl = regs::servo_channel::kControl;
+  namespace control = regs::servo_channel::control;
   Changes changes;
   BoardRig rig(distorted(kAll, edit, changes), kAll);
   rig.in.line_select = 0;
   for (unsigned channel = 0; channel < 8; ++channel)
-    rig.write(true, kServo[channel / 4] + 8 * (channel % 4) + 5, kEquHigh);
-  for (const std::uint32_t base : kServo) rig.read(true, base + 4);
-  for (const std::uint32_t base : kMacro) {
-    rig.write(true, base + 0x15, 0x39FFFF);
-    rig.read(true, base + 0x15);
+    rig.write(true, regs::kGateIcs[channel / 4].base + 8 * (channel % 4) + kControl.address,
+              control::kEquWrite.at(1) | control::kEquState.at(1));
+  for (const regs::GateIc& ic : regs::kGateIcs) {
+    if (ic.macro) rig.write(true, ic.base + kMacroOnly.address, kMacroOnly.written);
+    rig.read(true, ic.base + (ic.macro ? kMacroOnly : regs::servo_ic::kClockControl).address);
   }
   return changes;
 }

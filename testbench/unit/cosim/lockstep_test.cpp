@@ -164,6 +164,7 @@ TEST(Lockstep, DualPortedRamStartsByTheSeedOnBothEngines) {
   const std::vector<std::uint32_t> zeros(65), two = read(2), three = read(3);  // 65 = 65536 / 1022, rounded up
   EXPECT_EQ(read(0), zeros);
   EXPECT_EQ(read(1), zeros);
+  EXPECT_NE(read(~std::uint64_t{0}), zeros);
   for (std::size_t i = 1; i < two.size(); ++i) {  // neighbours and seeds differ: 2 of 65536 words are equal by chance
     EXPECT_NE(two[i], two[i - 1]) << i;
     EXPECT_NE(two[i], three[i]) << i;

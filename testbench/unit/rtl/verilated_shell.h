@@ -1,7 +1,7 @@
 // The one shell around a Verilated module under test: context, start values, clocks, reset and coverage. A module adds
 // what its ports are called, as two functions beside its Verilated header:
-//   void drive(Vservo_ic& v, const ServoIcInputs& in)   sets every input port but clocks and rst_ni
-//   IcOutputs sample(const Vservo_ic& v)                shows the outputs that tests look at
+//   void drive(Vservo_ic& v, const ServoIcInputs& in)   sets every input port but the clocks, rst_ni where tests move
+//   it IcOutputs sample(const Vservo_ic& v)                shows the outputs that tests look at
 // and its constructor is RtlBlock(verilated_shell(drive, sample)). To be included in such a .cpp only, see rtl_block.h.
 #pragma once
 
