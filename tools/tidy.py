@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs clang-tidy 14 over our C and C++ by the rules of .clang-tidy: tidy.py BUILD [PATTERN ...] [--jobs N].
 
-BUILD is a folder that CMake configured and in which everything is built (generated headers), as build/release. A
-PATTERN narrows it to the sources whose path has it. Each source is judged by itself, with its first command and without
-the precompiled headers, so a missing include shows here. Exit status 0 clean, 1 findings.
+BUILD is a folder that CMake configured (which makes the Verilated headers too), as build/release. A PATTERN narrows
+it to the sources whose path has it. Each source is judged by itself, with its first command and without the
+precompiled headers, so a missing include shows here. Exit status 0 clean, 1 findings.
 """
 
 import argparse
