@@ -3,6 +3,7 @@
 // the initiator's delay grows to that edge. Bad payloads get TLM error responses.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -14,7 +15,8 @@
 namespace brick {
 
 inline TimeFs time_to_fs(const sc_core::sc_time& time) {
-  static const auto fs_per_unit = static_cast<TimeFs>(sc_core::sc_get_time_resolution().to_seconds() * 1e15 + 0.5);
+  static const auto fs_per_unit =
+      static_cast<TimeFs>(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15));
   return static_cast<TimeFs>(time.value()) * fs_per_unit;
 }
 

@@ -274,7 +274,7 @@ stop:
   BOTH(Lw, LOAD(std::uint32_t, std::uint32_t))
   FULL(Lh, LOAD(std::uint16_t, std::int16_t))
   FULL(Lhu, LOAD(std::uint16_t, std::uint16_t))
-  FULL(Lb, LOAD(std::uint8_t, std::int8_t))
+  FULL(Lb, LOAD(std::uint8_t, std::int8_t))  // NOLINT(bugprone-signed-char-misuse): extends the sign
   FULL(Lbu, LOAD(std::uint8_t, std::uint8_t))
   BOTH(Sw, STORE(std::uint32_t, word_tag, e.mask))
   FULL(Sh, STORE(std::uint16_t, part_tag, 0xFFFFu))

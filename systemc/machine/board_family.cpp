@@ -35,11 +35,11 @@ std::string ic_number(unsigned ic) {
 std::string numbers(std::uint32_t fitted, std::initializer_list<unsigned> ends) {
   std::vector<std::string> names;
   unsigned ic = 0;
-  for (auto end = ends.begin(); end != ends.end(); ++end)
-    for (; ic < *end; ++ic) {
+  for (const unsigned end : ends)
+    for (; ic < end; ++ic) {
       if ((fitted >> ic & 1) == 0) continue;
       unsigned last = ic;
-      while (last + 1 < *end && (fitted >> (last + 1) & 1) != 0) ++last;
+      while (last + 1 < end && (fitted >> (last + 1) & 1) != 0) ++last;
       if (last < ic + 2) last = ic;
       names.push_back(last == ic ? ic_number(ic) : ic_number(ic) + "-" + ic_number(last));
       ic = last;

@@ -2,6 +2,7 @@
 // latency, the board to where the CPU stands or to the next edge of a bus cycle, until the board has come to the limit.
 // Results do not depend on how far each step goes, only speed does.
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "systemc/machine/machine_impl.h"
@@ -124,7 +125,9 @@ void Machine::Impl::keep_kernel_time(Tick from) {
   const auto process = sc_core::sc_get_current_process_handle();
   if (!process.valid() || process.proc_kind() != sc_core::SC_THREAD_PROC_) return;
   static const double kUnitsPerFs = 1e-15 / sc_core::sc_get_time_resolution().to_seconds();
-  const auto units = [](TimeFs t) { return static_cast<std::int64_t>(static_cast<double>(t) * kUnitsPerFs + 0.5); };
+  const auto units = [](TimeFs t) {
+    return static_cast<std::int64_t>(std::llround(static_cast<double>(t) * kUnitsPerFs));
+  };
   const auto kernel = static_cast<std::int64_t>(sc_core::sc_time_stamp().value());
   if (!kernel_offset) kernel_offset = kernel - units(tick_to_fs(from));
   const std::int64_t target = *kernel_offset + units(tick_to_fs(board->now()));

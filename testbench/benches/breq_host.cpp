@@ -28,7 +28,7 @@ BreqHost::BreqHost(BenchContext& context, Tick line_time)
 BreqHost::~BreqHost() { context_.bus.watch({}, nullptr); }
 
 Reply BreqHost::must(const std::string& command) {
-  const Reply reply = context_.link.command(command);
+  Reply reply = context_.link.command(command);
   if (!reply.complete) throw HostBusError("no reply to `" + command + "`; expected: acknowledge or error");
   if (reply.error)
     context_.report.fail(command, (reply.lines.empty() ? "error" : reply.lines.back()) + ", expected no error");

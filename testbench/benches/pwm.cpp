@@ -109,7 +109,7 @@ void Pwm::command(const std::vector<std::pair<unsigned, int>>& values) {
 
 void Pwm::zero() {
   std::vector<std::pair<unsigned, int>> values;
-  for (unsigned p = 0; p < phases(); ++p) values.push_back({p, 0});
+  for (unsigned p = 0; p < phases(); ++p) values.emplace_back(p, 0);
   command(values);
 }
 
@@ -252,7 +252,7 @@ void Pwm::vectors() {
   configure(6527, 6527, 0, 3, 0);
   if (!find_triangle()) return;
   std::vector<std::pair<unsigned, int>> values;
-  for (unsigned p = 0; p < phases(); ++p) values.push_back({p, kCommands[(p + p / 6) % 6]});
+  for (unsigned p = 0; p < phases(); ++p) values.emplace_back(p, kCommands[(p + p / 6) % 6]);
   command(values);
   host_.wait(3 * period(0));
   for (unsigned v = 0; v < 6; ++v) {
@@ -289,7 +289,7 @@ void Pwm::round(unsigned number) {
   for (unsigned set = 0; set < 3; ++set) {  // the second and third while the first runs
     std::vector<std::pair<unsigned, int>> values;
     for (unsigned p = 0; p < phases(); ++p)
-      if (set == 0 || host_.pick(2) == 0) values.push_back({p, random_command(place(p))});
+      if (set == 0 || host_.pick(2) == 0) values.emplace_back(p, random_command(place(p)));
     command(values);
     host_.wait(host_.pick(static_cast<unsigned>(period(0))));
   }
@@ -302,7 +302,7 @@ void Pwm::new_limits() {
   configure(5000, 5000, 0, 5, host_.pick(60));
   if (!find_triangle()) return;
   std::vector<std::pair<unsigned, int>> values;
-  for (unsigned p = 0; p < phases() / 2; ++p) values.push_back({p, random_command(0)});
+  for (unsigned p = 0; p < phases() / 2; ++p) values.emplace_back(p, random_command(0));
   command(values);
   std::string list;
   for (unsigned i = 0; i < 4; ++i) {

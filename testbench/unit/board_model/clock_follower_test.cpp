@@ -195,7 +195,7 @@ class Life {
         for (int i = 0; i < 5000 && pair_.edge == edge; ++i) pair_.run(1);
         pair_.run(pick(6));
       }
-      const std::string difference = pair_.compare();
+      std::string difference = pair_.compare();
       if (!difference.empty()) return difference;
     }
     return "";

@@ -22,8 +22,8 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
       const MotorOutputs o = rig.board().motor_outputs(ic);
       all.insert(all.end(), o.w.begin(), o.w.end());
     }
-    for (unsigned ic = 0; ic < 3; ++ic)
-      for (unsigned word = 0; word < 64; ++word) all.push_back(rig.read(word < 32, kServoIcBase[ic] + word % 32));
+    for (const auto base : kServoIcBase)
+      for (unsigned word = 0; word < 64; ++word) all.push_back(rig.read(word < 32, base + word % 32));
     return all;
   }
   void compare() {

@@ -280,12 +280,12 @@ TEST_F(MotorBoard, StopsAtASelectedMotorPin) {
 
 TEST_F(MotorBoard, TripSwitchesTheOutputsOff) {
   start_clocks();
-  for (unsigned ic = 0; ic < 3; ++ic) {
-    rig.write(true, kServoIcBase[ic] + kControl, 0x4003);         // PWM, amplifier enabled
-    rig.write(true, kServoIcBase[ic] + 8 + kControl, 0x5803);     // EQU of channel 2 set by hand
-    rig.write(true, kServoIcBase[ic] + 16 + kControl, 0xC04003);  // DAC, PFM
-    rig.write(false, kServoIcBase[ic] + 16 + kOutA, 0x7FFFC0);
-    rig.write(false, kServoIcBase[ic] + 16 + kOutC, 0x300000);
+  for (const auto base : kServoIcBase) {
+    rig.write(true, base + kControl, 0x4003);         // PWM, amplifier enabled
+    rig.write(true, base + 8 + kControl, 0x5803);     // EQU of channel 2 set by hand
+    rig.write(true, base + 16 + kControl, 0xC04003);  // DAC, PFM
+    rig.write(false, base + 16 + kOutA, 0x7FFFC0);
+    rig.write(false, base + 16 + kOutC, 0x300000);
   }
   rig.board().watch_motors(0x1);
   unsigned reported = 0;

@@ -52,7 +52,7 @@ class Trace : public ::testing::Test {
       writer->close();
       signals.attach(nullptr);
     }
-    const std::string text = read(file);
+    std::string text = read(file);
     std::remove(file.c_str());
     return text;
   }

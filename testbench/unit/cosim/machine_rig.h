@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "systemc/cpu/port_a.h"
@@ -12,7 +13,7 @@ namespace brick {
 
 struct MachineRig {
   explicit MachineRig(const std::string& program, MachineConfig config = {})
-      : machine(sc_core::sc_gen_unique_name("machine"), with(config, program)) {}
+      : machine(sc_core::sc_gen_unique_name("machine"), with(std::move(config), program)) {}
 
   static MachineConfig with(MachineConfig config, const std::string& program) {
     config.firmware = std::string(BRICK_PROBES) + "/" + program + ".elf";

@@ -65,7 +65,7 @@ std::string error_of(const std::string& path) {
 
 std::string error_after(const std::function<void(Bytes&)>& change) {
   const Changed file(change);
-  const std::string message = error_of(file.path());
+  std::string message = error_of(file.path());
   EXPECT_THAT(message, AllOf(HasSubstr(file.path()), HasSubstr("expected"))) << "names the file and what was expected";
   EXPECT_EQ(message.find('\n'), std::string::npos) << "one line";
   return message;

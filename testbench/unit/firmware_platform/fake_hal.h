@@ -3,6 +3,7 @@
 #ifndef TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
 #define TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
 
+/* NOLINTBEGIN(modernize-*): C, also where C++ includes it */
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -49,5 +50,6 @@ void fake_hal_clear_writes(void);
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND(modernize-*) */
 
 #endif

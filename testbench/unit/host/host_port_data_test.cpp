@@ -36,7 +36,7 @@ TEST_F(HostPortTest, UpperBytesStayFromWordToWord) {
   for (const unsigned upper : {0x0000u, 0xA5C3u}) {  // 0 is the polling recipe: +5 and +6 once, then characters at +7
     host_write(kData5, upper >> 8);
     host_write(kData6, upper);
-    for (const unsigned c : {'#', '1', '?'}) {
+    for (const unsigned char c : {'#', '1', '?'}) {
       host_write(kData7, c);
       both_.ref();
       EXPECT_EQ(cpu_read(kHorx), upper << 8 | c);

@@ -119,8 +119,8 @@ TEST(PlantAtIc, PwmHoldsAThreePhaseRotor) {
   rig.write(0, kControl, kX4 | kAena);
   rig.run(1800000);
   EXPECT_NEAR(rig.counter(0), 4000.0 / 12, 1.5);
-  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(0, kAdcA) << 8) / 256 / 8388608.0 * 10, -4.795, 0.3);
-  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(0, kAdcB) << 8) / 256 / 8388608.0 * 10, 9.59, 0.3);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(0, kAdcA) << 8) / 256.0 / 8388608.0 * 10, -4.795, 0.3);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.read(0, kAdcB) << 8) / 256.0 / 8388608.0 * 10, 9.59, 0.3);
 }
 
 // 24 bits at 39.3216 MHz / 2^n fit into half a phase period of 3003 ticks up to n = 4.

@@ -83,7 +83,7 @@ class LongWords : public ::testing::TestWithParam<BitsEngine> {
   void expect(bool x, unsigned offset, std::uint32_t value) {
     readings_.push_back({x, offset, value, channel_->read(x, offset)});
   }
-  bool sound(std::function<std::uint32_t(const Reading&)> stuck) const {
+  bool sound(const std::function<std::uint32_t(const Reading&)>& stuck) const {
     for (const Reading& r : readings_)
       if (stuck(r) != r.expected) return false;
     return true;

@@ -47,7 +47,7 @@ class Reader {
   auto taken_apart(const TomlTable& in, const std::string& key, const toml::node& node, Take take) const {
     try {
       Statement s(in.text_in(key, node), vector_, marks_);
-      const auto result = take(s);
+      auto result = take(s);
       s.end();
       return result;
     } catch (const UsageError& e) {

@@ -50,6 +50,7 @@ int run_negatives(const std::string& path, const std::string& engine) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): only options that contradict each other, in every run
 int main(int argc, char** argv) {
   std::string path, engine = "systemc";
   bool draw = false, negative = false;
