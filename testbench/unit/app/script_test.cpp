@@ -36,6 +36,7 @@ TEST(Script, ReadsEveryKindOfLine) {
       "-50\n@encoder 1 7 100\n@reset\n@power\n"
       "@expect 1|2 3\n@expect\n@time\n");
   std::vector<Kind> kinds;
+  kinds.reserve(s.size());
   for (const auto& line : s) kinds.push_back(line.kind);
   EXPECT_EQ(kinds,
             (std::vector<Kind>{Kind::kCommand,    Kind::kCommand, Kind::kControl,  Kind::kWait,     Kind::kUntil,
