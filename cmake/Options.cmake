@@ -25,8 +25,10 @@ else()
   set(BRICK_RTL_OPT -O1)
 endif()
 set(BRICK_RTL_ARGS "")  # verilate(... VERILATOR_ARGS ... ${BRICK_RTL_ARGS})
+set(BRICK_RTL_BITS "")  # of small modules: brick_add_rtl_module(... ARGS ${BRICK_RTL_BITS})
 if(BRICK_COVERAGE)
   set(BRICK_RTL_ARGS --coverage-line)
+  set(BRICK_RTL_BITS --coverage-toggle)  # makes the code of a servo IC ten times as long: 16 MB, so not of one
 endif()
 
 # Flags of the sanitizers, for the whole tree (preset asan) and for the few native libraries that every build tests with
@@ -42,6 +44,6 @@ if(BRICK_SANITIZE)
   add_link_options(${BRICK_SANITIZER_LINK_FLAGS})
 endif()
 if(BRICK_COVERAGE)
-  add_compile_options(--coverage -O1)
+  add_compile_options(--coverage -O1 -g0)  # nobody debugs it
   add_link_options(--coverage)
 endif()

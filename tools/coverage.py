@@ -2,9 +2,9 @@
 """What a run of the tests reached: coverage.py BUILD [--tests TEXT] [--write], after a run of a coverage build.
 
 C++ and C: lines run at least once, a row a folder, from gcov (BUILD/**/*.gcda). RTL: lines run at least once and bits
-that rose and fell, a row a module, from the counters of the Verilated models (BUILD/rtl/*.dat, one file a model of a
-process, merged by verilator_coverage). BUILD/missed.txt lists what was not reached. The table goes to the standard
-output, with --write to docs/coverage.md as well; TEXT says there which tests ran.
+that rose and fell, a row a module, from the counters of the Verilated models (BUILD/rtl/*.dat, files of each life of
+a model; a point counts as often as in the life that reached it most). BUILD/missed.txt lists what was not reached. The
+table goes to the standard output, with --write to docs/coverage.md as well; TEXT says there which tests ran.
 """
 
 import argparse
@@ -17,6 +17,8 @@ import pathlib
 import re
 import subprocess
 import sys
+import textwrap
+import xml.etree.ElementTree
 
 from common import ROOT
 
@@ -31,32 +33,42 @@ def percent(pair):
 
 def gcov_lines(build):
     """{(file, line): times run} of our C and C++."""
-    def read(data):
-        done = subprocess.run(["gcov", "--json-format", "--stdout", "--relative-only", "--source-prefix", ROOT, data],
+    def read(data):  # names are relative to the folder of the compiler, where ccache made them so
+        done = subprocess.run(["gcov", "--json-format", "--stdout", data],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-        return [json.loads(text) for text in done.stdout.splitlines() if text]
+        for part in (json.loads(text) for text in done.stdout.splitlines() if text):
+            for file in part["files"]:
+                path = os.path.normpath(os.path.join(part["current_working_directory"], file["file"]))
+                name = os.path.relpath(path, ROOT)
+                if OURS.match(name):
+                    yield name, file["lines"]
 
     lines = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for found in pool.map(read, sorted(build.rglob("*.gcda"))):
-            for file in (file for part in found for file in part["files"]):
-                if OURS.match(file["file"]):
-                    for line in file["lines"]:
-                        lines[file["file"], line["line_number"]] += line["count"]
+        for found in pool.map(lambda data: list(read(data)), sorted(build.rglob("*.gcda"))):
+            for name, counted in found:
+                for line in counted:
+                    lines[name, line["line_number"]] += line["count"]
     return lines
 
 
-def rtl_points(data):
-    """{(kind, file, line, what): times} over all instances, from a merged .dat; kind is line, branch or toggle."""
-    points = collections.Counter()
-    for text in data.read_text().splitlines():
-        found = re.match(r"C '(.*)' (\d+)$", text)
-        if not found:
-            continue
-        key = dict(part.split("\x02", 1) for part in found[1].split("\x01") if part)
-        kind = key["page"].split("/")[0].removeprefix("v_")
-        file = str(pathlib.Path(key["f"]).resolve().relative_to(ROOT))
-        points[kind, file, int(key["l"]), f"{key.get('n', '')} {key.get('o', '')}"] += int(found[2])
+def rtl_points(files):
+    """{(kind, file, line, what): times} of our RTL; kind is line, branch or toggle, times the most of any instance in
+    any life: the sum over lives would take a bit that rose in each and never fell for one that did both."""
+    most = {}
+    for data in files:
+        for text in data.read_text().splitlines():
+            if text.startswith("C '"):
+                key, times = text.rsplit(" ", 1)
+                most[key] = max(most.get(key, 0), int(times))
+    points = {}
+    for text, times in most.items():
+        key = dict(part.split("\x02", 1) for part in text[3:-1].split("\x01") if part)
+        file = os.path.relpath(key["f"], ROOT)
+        if file.startswith("rtl/"):
+            kind = key["page"].split("/")[0].removeprefix("v_")
+            point = kind, file, int(key["l"]), f"{key.get('n', '')} {key.get('o', '')}"
+            points[point] = max(points.get(point, 0), times)
     return points
 
 
@@ -70,7 +82,7 @@ def cpp_rows(lines):
 
 
 def rtl_rows(points):
-    """{module: (lines, bits)}; a bit counts when it changed both ways, so at least twice."""
+    """{module: (lines, bits)}; a bit that changed twice rose and fell."""
     modules = collections.defaultdict(lambda: [[0, 0], [0, 0]])
     for (kind, file, _, _), times in points.items():
         pair = modules[file][kind == "toggle"]
@@ -88,22 +100,32 @@ def page(tests, cpp, rtl):
     command = ["git", "rev-parse", "--short=10", "HEAD"]
     commit = subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE).stdout.strip()
     today = datetime.date.today().isoformat()
+    ran = textwrap.wrap(f"What the tests reached, by `./dev coverage` at commit {commit}, {today}: {tests}.", 120)
     lines = ["<!-- Generated by tools/coverage.py (./dev coverage). Do not edit. -->", "# Coverage", "",
-             f"What the tests reached, by `./dev coverage` at commit {commit}, {today}{': ' + tests if tests else ''}.",
+             *ran, "",
              "The figures say what no test runs. They do not say that what is run is checked: for that are the",
              f"negative controls and planted misreadings ([verification plan]({PLAN.removeprefix('docs/')})).", "",
              "## RTL", "",
-             "Lines and branches that ran at least once in any instance, of the board or of a module alone; bits of",
-             "the board with two servo ICs that rose and fell at least once in any instance.", "",
+             "Lines and branches that ran at least once in any instance, of the board with two servo ICs or of a",
+             "module alone; bits that rose and fell in one instance of a module that is tested alone. A row without",
+             "bits has no counters of them: those of a whole servo IC are 16 MB of generated C++.", "",
              "| module | lines | bits |", "|---|---|---|"]
     lines += [f"| `{file}` | {percent(ran)} | {percent(bits)} |" for file, (ran, bits) in rtl.items()]
-    ran, bits = (total(column) for column in zip(*rtl.values(), strict=True))
-    lines += [f"| all | {percent(ran)} | {percent(bits)} |", "",
+    all_lines, bits = (total(column) for column in zip(*rtl.values(), strict=True))
+    lines += [f"| all | {percent(all_lines)} | {percent(bits)} |", "",
               "## C++ and C", "", "Lines that ran at least once; the firmware as compiled for the build machine.", "",
               "| folder | lines |", "|---|---|"]
     lines += [f"| `{folder}` | {percent(pair)} |" for folder, pair in cpp.items()]
     lines += [f"| all | {percent(total(cpp.values()))} |", ""]
     return "\n".join(lines)
+
+
+def passed(results):
+    """How many tests passed, in words, from the results of ctest; nothing where there are none."""
+    if not results.exists():
+        return ""
+    suite = xml.etree.ElementTree.parse(results).getroot()
+    return f"{int(suite.get('tests')) - int(suite.get('failures'))} of {suite.get('tests')} tests passed"
 
 
 def missed(lines, points):
@@ -122,10 +144,9 @@ def main():
     data = sorted((options.build / "rtl").glob("*.dat"))
     if not data:
         sys.exit(f"coverage.py: {options.build}/rtl holds no .dat; expected the counters of a run (./dev coverage)")
-    merged = options.build / "rtl.dat"
-    subprocess.run(["verilator_coverage", "--write", merged, *data], check=True, stdout=subprocess.DEVNULL)
-    lines, points = gcov_lines(options.build), rtl_points(merged)
-    text = page(options.tests, cpp_rows(lines), rtl_rows(points))
+    lines, points = gcov_lines(options.build), rtl_points(data)
+    tests = ", ".join(filter(None, [passed(options.build / "tests.xml"), options.tests]))
+    text = page(tests, cpp_rows(lines), rtl_rows(points))
     (options.build / "missed.txt").write_text(missed(lines, points))
     print(text)
     if options.write:

@@ -1,5 +1,5 @@
-// Coverage counters of a Verilated model. In a build with coverage (./dev coverage) each model of each process leaves a
-// file of its own in the folder that BRICK_RTL_COVERAGE names; tools/coverage.py merges them. Otherwise nothing.
+// Coverage counters of a Verilated model. In a build with coverage (./dev coverage) each model of each process leaves
+// files of its own in the folder that BRICK_RTL_COVERAGE names; tools/coverage.py merges them. Otherwise nothing.
 #pragma once
 
 #include <verilated.h>
@@ -19,7 +19,18 @@ inline void write_coverage([[maybe_unused]] VerilatedContext& context) {
   const char* folder = std::getenv("BRICK_RTL_COVERAGE");
   if (folder == nullptr) return;
   const std::string name = std::to_string(getpid()) + "_" + std::to_string(++written);
+  context.coveragep()->forcePerInstance(true);  // a bit that rose in one and fell in another did not do both
   context.coveragep()->write((folder + ("/" + name) + ".dat").c_str());
+#endif
+}
+
+// After the first evaluation, in which a bit may differ from the random start value of what its counter compares it
+// with: a bit that changes from here on has changed. The lines of that evaluation go to a file of their own, for the
+// counter of an always_comb block counts then only.
+inline void start_coverage([[maybe_unused]] VerilatedContext& context) {
+#ifdef BRICK_RTL_COVERAGE
+  write_coverage(context);
+  context.coveragep()->zero();
 #endif
 }
 

@@ -33,6 +33,9 @@ class VerilatedShell : public VerilatedTop<Inputs, Outputs> {
     set_pwm(*top_, false, 0);
     top_->clk_ref_i = false;
     drive_(*top_, Inputs{});
+    top_->rst_ni = true;
+    top_->eval();
+    start_coverage(context_);
     reset();
   }
   ~VerilatedShell() override {
