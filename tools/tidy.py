@@ -22,7 +22,7 @@ FOLDERS = ("app", "firmware", "systemc", "testbench")
 
 
 def arguments_for_clang(command):
-    """A command of g++ without its precompiled header and its warnings, which clang does not all know."""
+    """A command of g++ without its precompiled header, warnings and -fno- switches, which clang does not all know."""
     words, kept = shlex.split(command), []
     while words[0].endswith(("ccache", "cmake", "-E", "env")) or words[0].startswith("CCACHE"):
         words.pop(0)
@@ -32,7 +32,7 @@ def arguments_for_clang(command):
             skip_next = False
         elif word == "-include" and after.endswith("cmake_pch.hxx"):
             skip_next = True
-        elif not word.startswith(("-W", "-fsanitize", "-fno-sanitize")):
+        elif not word.startswith(("-W", "-fsanitize", "-fno-")):
             kept.append(word)
     return kept
 

@@ -6,7 +6,6 @@
 namespace brick {
 namespace {
 
-using rv::field;
 using Half = std::uint16_t;
 
 // Scatters bits of `v`: "5|4:2" style lists as pairs (source bit, target bit).
