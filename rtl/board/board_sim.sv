@@ -13,10 +13,10 @@ module board_sim #(
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  input  wire logic [31:0] inputs_i[6],
+  input  wire logic [31:0] inputs_i[8],
   input  wire logic [31:0] start_seed_i,
   input  wire logic        seeded_bug_i,
-  output logic [31:0]      pins_o[3],
+  output logic [31:0]      pins_o[4],
   input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top, also those not built
   output logic [63:0]      motor_o[18],
   output logic [31:0]      count_o[72]   // no pins: position counters, channel n of IC i in word 4 * i + n - 1
@@ -144,6 +144,7 @@ module board_sim #(
   assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
                       isa_iochrdy, isa_sd};
   assign pins_o[2] = {elr, msk, sig, ist};
+  assign pins_o[3] = 32'h0;
 
 endmodule : board_sim
 

@@ -103,6 +103,13 @@ module board_top #(
   logic [3:0]  bus_aa, bus_rd_aa;
   logic [23:0] bus_wdata;
 
+  logic rd_toggle, wr_toggle;
+  bus_strobes u_bus_strobes (
+    .rst_ni, .pa_rd_ni, .pa_wr_ni,
+    .rd_toggle_o (rd_toggle),
+    .wr_toggle_o (wr_toggle)
+  );
+
   bus_sync u_bus_sync (
     .clk_ref_i, .rst_ni,
     .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
@@ -157,7 +164,7 @@ module board_top #(
     .sel_panel_o   (rd_panel),
     .sel_ic_o      (rd_ic)
   );
-  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic};
+  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic, rd_toggle, wr_toggle};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;

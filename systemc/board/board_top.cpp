@@ -29,6 +29,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
 void BoardTop::set_inputs(const BoardInputs& inputs) {
   if (!in_reset_) advance_all(now_);  // what has passed saw the old inputs
   inputs_ = inputs;
+  bus_strobes_.set_pins(inputs_, inputs_.rst_n);
   connect();
 }
 

@@ -13,6 +13,7 @@
 #include <systemc>
 
 #include "systemc/board/address_decode.h"
+#include "systemc/board/bus_strobes.h"
 #include "systemc/board/bus_sync.h"
 #include "systemc/board/clock_select.h"
 #include "systemc/board/gate_ics.h"
@@ -77,6 +78,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   Tick next_event() const;
   Tick next_clock_event() const { return std::min(clock_select_.next_event(), gate_ics_.next_clock_event()); }
 
+  BusStrobes bus_strobes_;
   BusSync bus_sync_;
   AddressDecode address_decode_;
   ClockSelect clock_select_;

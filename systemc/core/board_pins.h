@@ -75,7 +75,7 @@ struct PinField {
   bool hex;
 };
 
-constexpr unsigned kBoardOutputWords = 3;
+constexpr unsigned kBoardOutputWords = 4;
 
 namespace pin {
 constexpr PinField kPaData{"bus.rdata", 0, 0, 24, true};  // D[23:0] as the board drives it

@@ -22,7 +22,7 @@ struct InputField {
 template <class Group, class Value>
 InputField(std::string_view, Value Group::*, unsigned, unsigned, unsigned) -> InputField<Group, Value>;
 
-constexpr unsigned kBoardInputWords = 6;
+constexpr unsigned kBoardInputWords = 8;
 using BoardInputWords = std::array<std::uint32_t, kBoardInputWords>;
 
 // rst_n is apart: it is asynchronous, a port of its own.

@@ -72,6 +72,12 @@ class RtlBoard : public Board {
     BoardInputs built = in;
     built.fitted &= fitted_;  // the Verilated board may have more
     drive(*model_, built);
+    // What has no clock acts at once, before the next edge: the reset, and flip-flops that a strobe clocks.
+    const bool now = in.rst_n != rst_n_ || in.pa_rd_n != rd_n_ || in.pa_wr_n != wr_n_;
+    rst_n_ = in.rst_n;
+    rd_n_ = in.pa_rd_n;
+    wr_n_ = in.pa_wr_n;
+    if (now) model_->eval();
   }
 
   Tick run_until(Tick limit, const BoardOutputs& stop_on) override {
@@ -90,8 +96,9 @@ class RtlBoard : public Board {
       if (!forget_clocks(*m.rootp, 0)) m.eval();
       bool stop = false;
       const auto& pins = m.pins_o;
-      if (__builtin_expect(((pins[0] ^ outputs_.w[0]) | (pins[1] ^ outputs_.w[1]) | (pins[2] ^ outputs_.w[2])) != 0,
-                           0)) {
+      std::uint32_t moved = 0;
+      for (unsigned i = 0; i < kBoardOutputWords; ++i) moved |= pins[i] ^ outputs_.w[i];
+      if (__builtin_expect(moved != 0, 0)) {
         const BoardOutputs before = outputs_;
         for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = pins[i];
         if (on_change) on_change(now_, before, outputs_);
@@ -152,6 +159,7 @@ class RtlBoard : public Board {
   BoardOutputs outputs_;
   std::vector<Watched> watched_;
   std::array<MotorOutputs, kMaxServoIcs> stop_{};
+  bool rst_n_ = true, rd_n_ = true, wr_n_ = true;
   Tick now_ = 0;
 };
 

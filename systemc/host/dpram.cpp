@@ -67,11 +67,10 @@ void Dpram::host_edge(bool blocked) {
   }
 }
 
-// Memory has no reset: at the edge that begins the reset the flip-flops fall, but a write that they had granted is
-// still made.
+// A write that was granted but not made yet is lost; the memory keeps its content. The host's is made from the first
+// tick of its clk_ref on.
 void Dpram::reset(Tick t) {
-  if (in.mem_wr && host_own_) host_write();
-  if (cpu_wr_ && !cpu_done_ && !cpu_blocked()) poke(cpu_cell_, in.cpu_wdata);
+  if (in.mem_wr && host_own_ && !is_ref_edge(now_)) host_write();
   cpu_rd_ = cpu_wr_ = cpu_done_ = cpu_busy_ = host_own_ = mem_busy_ = false;
   cpu_cell_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
