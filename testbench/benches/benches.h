@@ -8,6 +8,7 @@ namespace brick {
 Bench smoke_bench();
 Bench breq_rotary_bench();
 Bench watchdog_bench();
+Bench dpram_bench();
 Bench reinit_e3_bench();
 Bench clock_select_bench();
 Bench clock_faults_bench();
