@@ -12,6 +12,7 @@
 namespace brick {
 
 namespace {
+constexpr std::string_view kPowerGood = "watchdog.pwr_good";  // the one input of @input that is no channel's
 
 using Kind = ScriptLine::Kind;
 
@@ -40,7 +41,7 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         const auto id = find_signal(signals, line.name);
         if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
       } else if (line.kind == Kind::kInput) {
-        find_channel_pin(signals, line.name);
+        if (line.name != kPowerGood) find_channel_pin(signals, line.name);
       } else if (line.kind == Kind::kJpan && !link_.bus().machine().inputs().jpan_fitted) {
         throw UsageError(
             "this board has no control panel port; expected a board with JPAN, for example --board turbo-pmac-pci");
@@ -177,6 +178,11 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       machine.set_jumper_e3(line.on);
       break;
     case Kind::kInput: {
+      if (line.name == kPowerGood) {
+        machine.inputs().pwr_good = line.on;
+        machine.apply();
+        break;
+      }
       const ChannelPinPlace pin = find_channel_pin(machine.signals(), line.name);
       const auto bit = static_cast<std::uint16_t>(1u << pin.pin);
       std::uint16_t& pins = machine.motor_inputs()[pin.ic].pins[pin.channel];

@@ -50,7 +50,7 @@ module board_sim #(
   logic        pa_ta_n, irq_host;
   logic [15:0] isa_sd;
   logic        isa_iochrdy, isa_memcs16_n, isa_irq;
-  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict;
+  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict, relay, led;
   logic [4:0]  source;
   logic [7:0]  ist, sig, msk, elr;
 
@@ -86,6 +86,7 @@ module board_sim #(
     .ext_clock_i       (inputs_i[4][28]),
     .ext_phase_i       (inputs_i[4][29]),
     .ext_servo_i       (inputs_i[4][30]),
+    .pwr_good_i        (inputs_i[7][0]),
     .line_select_i     (inputs_i[5][11:0]),
     .motor_i           (motor_in),
     .motor_o           (motor_out),
@@ -98,6 +99,8 @@ module board_sim #(
     .hreq_o            (hreq),
     .wdo_o             (wdo),
     .wd_tripped_o      (wd_tripped),
+    .wd_relay_o        (relay),
+    .wd_led_o          (led),
     .busy_host_o       (busy_host),
     .busy_cpu_o        (busy_cpu),
     .phase_source_o    (source),
@@ -144,7 +147,8 @@ module board_sim #(
   assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
                       isa_iochrdy, isa_sd};
   assign pins_o[2] = {elr, msk, sig, ist};
-  assign pins_o[3] = 32'h0;
+  assign pins_o[3][23:0]  = 24'h0;
+  assign pins_o[3][31:24] = {6'h0, led, relay};
 
 endmodule : board_sim
 

@@ -46,6 +46,7 @@ module board_top #(
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
+  input  wire logic        pwr_good_i,  // 5 V is good
   input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
   // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first; without any one bit, unused.
   // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
@@ -63,6 +64,8 @@ module board_top #(
   output logic             hreq_o,
   output logic             wdo_o,
   output logic             wd_tripped_o,
+  output logic             wd_relay_o,      // energised
+  output logic             wd_led_o,
   output logic             busy_host_o,
   output logic             busy_cpu_o,
   output logic [4:0]       phase_source_o,
@@ -277,9 +280,12 @@ module board_top #(
     .clk_ref_i, .rst_ni,
     .strobe_i (bus_we & sel_strobe),
     .servo_i  (servo_o),
-    .trip_o   (wd_tripped_o)
+    .pwr_good_i,
+    .trip_o   (wd_tripped_o),
+    .relay_o  (wd_relay_o)
   );
-  assign wdo_o = wd_tripped_o;
+  assign wdo_o    = wd_tripped_o;
+  assign wd_led_o = wd_tripped_o;
 
   // ------------------------------------------------------------------ host side
   logic       hp_sel, hp_rd_done, hp_wr;

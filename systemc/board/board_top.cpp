@@ -107,6 +107,7 @@ void BoardTop::connect_clocks() {
   gate_ics_.set_clocks(clock_select_.phase(), clock_select_.servo(), now_);
   gate_ics_.set_trip(watchdog_.trip(), now_);
   watchdog_.servo = clock_select_.servo();
+  watchdog_.pwr_good = inputs_.pwr_good;
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
 }
 
@@ -192,6 +193,7 @@ BoardOutputs BoardTop::pins() const {
            at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
   o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
            at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
+  o.w[3] = at(pin::kWdRelay, watchdog_.relay()) | at(pin::kWdLed, watchdog_.trip());
   return o;
 }
 

@@ -56,6 +56,7 @@ struct ConnectorPins {
   std::uint16_t jpan = 0xFFFF;  // control panel inputs, low-true, bits as Y:$078800 (rtl/regs/board.rdl)
   bool ext_phase = true;
   bool ext_servo = true;
+  bool pwr_good = true;  // 5 V is good, to the watchdog
 };
 
 struct HostInputs : IsaPins, Straps, ConnectorPins {};  // all but what the CPU drives
@@ -105,10 +106,12 @@ constexpr PinField kPicIst{"host.pic.ist", 2, 0, 8, true};
 constexpr PinField kPicSig{"host.pic.sig", 2, 8, 8, true};
 constexpr PinField kPicMsk{"host.pic.msk", 2, 16, 8, true};
 constexpr PinField kPicElr{"host.pic.elr", 2, 24, 8, true};
-inline constexpr std::array kAll{kPaData,      kPaTaN,          kIrqHost, kPhase,     kServo,      kBreq,
-                                 kIpos,        kEror,           kF1er,    kIsaSd,     kIsaIochrdy, kIsaMemcs16N,
-                                 kIsaIrq,      kHreq,           kWdo,     kWdTripped, kBusyHost,   kBusyCpu,
-                                 kPhaseSource, kSourceConflict, kPicIst,  kPicSig,    kPicMsk,     kPicElr};
+constexpr PinField kWdRelay{"watchdog.relay", 3, 24, 1, false};  // 1 = energised
+constexpr PinField kWdLed{"watchdog.led", 3, 25, 1, false};      // 1 = the red lamp is on
+inline constexpr std::array kAll{kPaData, kPaTaN,     kIrqHost,  kPhase,      kServo,       kBreq,           kIpos,
+                                 kEror,   kF1er,      kIsaSd,    kIsaIochrdy, kIsaMemcs16N, kIsaIrq,         kHreq,
+                                 kWdo,    kWdTripped, kBusyHost, kBusyCpu,    kPhaseSource, kSourceConflict, kPicIst,
+                                 kPicSig, kPicMsk,    kPicElr,   kWdRelay,    kWdLed};
 }  // namespace pin
 
 struct BoardOutputs {

@@ -49,7 +49,8 @@ inline constexpr std::tuple kInputFields{InputField{"pa_addr", &BoardInputs::pa_
                                          InputField{"ext_clock", &BoardInputs::ext_clock, 4, 28, 1},
                                          InputField{"ext_phase", &BoardInputs::ext_phase, 4, 29, 1},
                                          InputField{"ext_servo", &BoardInputs::ext_servo, 4, 30, 1},
-                                         InputField{"line_select", &BoardInputs::line_select, 5, 0, 12}};
+                                         InputField{"line_select", &BoardInputs::line_select, 5, 0, 12},
+                                         InputField{"pwr_good", &BoardInputs::pwr_good, 7, 0, 1}};
 
 constexpr BoardInputWords pack(const BoardInputs& in) {
   BoardInputWords words{};

@@ -17,6 +17,7 @@ MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
   memw_n_ = signals.add("host.isa.memw_n", 1, Radix::kBinary, 1);
   aen_ = signals.add("host.isa.aen", 1, Radix::kBinary);
   jpan_ = signals.add("host.jpan", 16, Radix::kHex, 0xFFFF);
+  pwr_good_ = signals.add("watchdog.pwr_good", 1, Radix::kBinary, 1);
   pc_ = signals.add("cpu.pc", 32, Radix::kHex);
   task_ = signals.add("cpu.task", 2, Radix::kDecimal);
   symbol_ = signals.add("cpu.symbol", 1, Radix::kText);
@@ -41,6 +42,7 @@ void MachineSignals::inputs(TimeFs time, const HostInputs& in, const BoardOutput
   signals_.set(memw_n_, time, in.isa_memw_n);
   signals_.set(aen_, time, in.isa_aen);
   signals_.set(jpan_, time, in.jpan);
+  signals_.set(pwr_good_, time, in.pwr_good);
   host_reads_ = !in.isa_ior_n || !in.isa_memr_n;
   host_data_ = in.isa_sd;
   data_bus(time, board);
