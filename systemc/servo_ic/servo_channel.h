@@ -30,7 +30,7 @@ class ServoChannel {
   // Registers, offset 0..7, after all edges up to `now` have been executed.
   std::uint32_t read(Tick now, bool x, unsigned offset, bool trip) const;
   void write(Tick now, bool x, unsigned offset, std::uint32_t value, bool trip);
-  void read_done(Tick now) { capture_.read(now); }  // of X:+3
+  void read_taken(Tick now) { capture_.read(now); }  // of X:+3
 
   void set_pins(Tick now, unsigned pins);  // bits by ChannelPin
 

@@ -112,19 +112,6 @@ Tick ServoChannels::next_event() const {
   return next;
 }
 
-Tick ServoChannels::next_word_event() const {
-  const Tick ref = next_ref_edge(now_);
-  if (phase_rises_ != in.phase_rises || phase_falls_ != in.phase_falls || servo_falls_ != in.servo_falls) return ref;
-  Tick next = kNever;
-  for (const ServoChannel& channel : channel_) {
-    if (!channel.quiet(now_)) return ref;
-    if (!channel.settled()) next = std::min(next, sclk_.next());
-    const std::int64_t periods = channel.pfm().periods_to_pulse(channel.pfm_inputs(in.trip, in.deadtime));
-    if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
-  }
-  return next;
-}
-
 Tick ServoChannels::next_equ_event(unsigned channels) const {
   Tick next = kNever;
   for (unsigned i = 0; i < kChannels; ++i)
