@@ -15,7 +15,7 @@ void ServoChannels::reset(Tick t) {
 }
 
 void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
-  channel_[offset >> 3].write(now_, x, offset & 7, value, in.trip);
+  channel_[offset >> 3].write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
 }
 
 void ServoChannels::advance(Tick t) {
