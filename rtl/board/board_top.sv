@@ -358,6 +358,8 @@ module board_top #(
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .small_i     (dpram_small_q),
+    .rd_toggle_i (rd_toggle),
+    .wr_toggle_i (wr_toggle),
     .cpu_sel_i   (dpram_sel),
     .cpu_x_i     (pa_x_i),
     .cpu_addr_i  (pa_addr_i[13:0]),
@@ -365,6 +367,7 @@ module board_top #(
     .cpu_wr_ni   (pa_wr_ni),
     .cpu_wdata_i (pa_wdata_i[15:0]),
     .cpu_rdata_o (dpram_rdata),
+    .cpu_wait_o  (pa_ta_n_o),
     .cpu_busy_o  (busy_cpu_o),
     .mem_sel_i   (mem_sel),
     .mem_rd_i    (mem_rd),
@@ -376,7 +379,6 @@ module board_top #(
     .mem_busy_o  (mem_busy),
     .host_busy_o (busy_host_o)
   );
-  assign pa_ta_n_o = busy_cpu_o;
 
   // ------------------------------------------------------------------ read data towards the CPU
   logic [23:0] reg_rdata, bus_rdata;
