@@ -172,6 +172,17 @@ std::size_t PortA::seen_at(TimeFs time) const {
   return i;
 }
 
+// How long D and /TA stood after the strobe.
+void PortA::hold_times() {
+  if (!cycle_.data_lost) cycle_.data_held = cycle_.end;
+  cycle_.ta_held = cycle_.end;
+  const Seen& first = seen_.front();
+  for (auto s = seen_.rbegin(); s != seen_.rend(); ++s) {
+    if (!cycle_.data_lost && !s->same_data(first)) cycle_.data_held = s->time;
+    if (s->busy != first.busy) cycle_.ta_held = s->time;
+  }
+}
+
 std::uint32_t PortA::address_pins() const { return cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu); }
 
 void PortA::watch_address(const PortAPins& pins) {
@@ -278,11 +289,7 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
     case Step::kEnd:
       cycle_.end = time_;
       watch_address(pins);
-      if (!cycle_.data_lost) {
-        const auto moved =
-            std::find_if(seen_.begin(), seen_.end(), [this](const Seen& s) { return !s.same_data(seen_[0]); });
-        cycle_.data_held = moved == seen_.end() ? time_ : moved->time;
-      }
+      hold_times();
       pins.pa_aa = 0;
       pins.pa_int = false;
       if (shown) signals_.set(aa_, time_, 0);

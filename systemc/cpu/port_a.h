@@ -61,6 +61,7 @@ struct PortACycle {
 
   // /TA, unless no wait state is programmed.
   TimeFs ta_moved = 0;   // last change up to the end of the strobe, the start if there was none
+  TimeFs ta_held = 0;    // first change from the end of the strobe on, the end of the cycle if there was none
   bool ta_high = false;  // the device still said "not yet" as the strobe rose
   unsigned ta_seen = 0,
            ta_missed = 0;  // it moved between a sample and the end of the strobe and was taken after, before
@@ -111,6 +112,7 @@ class PortA : public sc_core::sc_module {
   std::size_t seen_at(TimeFs time) const;
   bool acknowledged();
   void take_data();
+  void hold_times();
   std::uint32_t random();
   std::uint32_t address_pins() const;
   void watch_address(const PortAPins& pins);
