@@ -34,8 +34,9 @@ struct TimingPlace {
   std::uint32_t address = 0;
   char space = ' ';  // 'X', 'Y'; the ISA bus: 'I' for I/O, 'M' for memory
   bool write = false;
-  bool has_pc = false;   // false: a host's cycle
-  std::uint32_t pc = 0;  // of the load or store
+  bool has_pc = false;                // false: a host's cycle
+  std::uint32_t pc = 0;               // of the load or store
+  unsigned wait_states = 0, i52 = 0;  // Port A: of the cycle
 };
 
 // One rule in one region.
