@@ -24,6 +24,8 @@ struct RunOptions {
   std::string json;
   std::string gdb;  // port, "" = no debugger
   std::string batch = "0";
+  std::string bcr;    // hexadecimal, "" = as the firmware sets it
+  std::string waive;  // file of timing waivers
 };
 
 // Adds --engine, --board and so on to a command. `engine` is the default.

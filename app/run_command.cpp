@@ -61,6 +61,10 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
     report.fail("no error of the machine", error);
     std::cerr << "brick run: " << error << '\n';
   }
+  const Simulation::TimingVerdict timing = simulation.timing_verdict();
+  for (const std::string& violation : timing.failures) report.fail("bus timing", violation);
+  for (const auto* list : {&timing.failures, &timing.waived, &timing.unused})
+    for (const std::string& line : *list) std::cerr << "brick run: " << line << '\n';
   const bool passed = report.passed();
   std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
   if (!options.json.empty()) {
