@@ -22,13 +22,6 @@ void need_file(const std::string& option, const std::string& file, const std::st
     throw UsageError(fmt::format("{} {}: cannot be read; expected {}", option, file, what));
 }
 
-void need_folder(const std::string& option, const std::string& file) {
-  const fs::path folder = fs::path(file).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder))
-    throw UsageError(fmt::format("{} {}: no such folder {}; expected an existing one", option, file, folder.string()));
-  if (fs::is_directory(file)) throw UsageError(fmt::format("{} {}: is a folder; expected a file", option, file));
-}
-
 std::uint32_t forced_bcr(const std::string& text) {
   const std::string digits = text.substr(text[0] == '$' ? 1 : text.compare(0, 2, "0x") == 0 ? 2 : 0);
   if (digits.empty() || digits.size() > 6 || digits.find_first_not_of("0123456789ABCDEFabcdef") != std::string::npos)
@@ -37,6 +30,13 @@ std::uint32_t forced_bcr(const std::string& text) {
 }
 
 }  // namespace
+
+void need_folder(const std::string& option, const std::string& file) {
+  const fs::path folder = fs::path(file).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder))
+    throw UsageError(fmt::format("{} {}: no such folder {}; expected an existing one", option, file, folder.string()));
+  if (fs::is_directory(file)) throw UsageError(fmt::format("{} {}: is a folder; expected a file", option, file));
+}
 
 void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine) {
   o.engine = engine;
@@ -134,11 +134,11 @@ WaveWindow wave_window(const RunOptions& o) {
   return window;
 }
 
-void write_json(const std::string& file, const std::string& text) {
+void write_json(const std::string& file, const std::string& text, const std::string& option) {
   std::ofstream out(file);
   out << text << '\n';
   out.flush();
-  if (!out) throw UsageError(fmt::format("--json {}: cannot be written; expected a writable place", file));
+  if (!out) throw UsageError(fmt::format("{} {}: cannot be written; expected a writable place", option, file));
 }
 
 }  // namespace brick

@@ -21,6 +21,7 @@ class TimingBook {
   TimingBook& operator=(const TimingBook&) = delete;
 
   PortATiming& port_a() { return port_a_; }
+  const PortATiming& port_a() const { return port_a_; }
   void add(TimingLedger& ledger);  // of another bus; not owned
   const std::vector<TimingLedger*>& ledgers() const { return ledgers_; }
 

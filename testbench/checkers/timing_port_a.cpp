@@ -151,6 +151,12 @@ void PortATiming::read(const PortACycle& c, const Limits& rows) {
   enter(k104, rows, c.data_valid - c.start);
   enter(k105, rows, c.data_valid - c.strobe_low);
   enter(k106, rows, c.data_held - c.strobe_high);
+  const TimeFs margin =
+      std::min(*rows.row[k104] - (c.data_valid - c.start), c.data_lost ? c.data_held - c.strobe_high : INT64_MAX);
+  if (margin < worst_margin_) {
+    worst_margin_ = margin;
+    worst_read_ = c;
+  }
   if (last_read_) between(k113, *last_read_, c, c.strobe_low - last_read_->strobe_high);
 }
 
@@ -189,6 +195,8 @@ void PortATiming::forget() {
   last_read_.reset();
   last_write_.reset();
   ta_moves_ = {};
+  worst_read_.reset();
+  worst_margin_ = INT64_MAX;
 }
 
 }  // namespace brick

@@ -56,6 +56,9 @@ class PortATiming {
   TimingLedger& ledger() { return ledger_; }
   const TimingLedger& ledger() const { return ledger_; }
 
+  // The read with the least margin for the data (rows 104 to 106), which the board and the wait states decide.
+  const std::optional<PortACycle>& worst_read() const { return worst_read_; }
+
   // /TA moved between a sample and the end of the strobe (rows 118, 119) and was taken as it stood after, or before.
   struct TaMoves {
     std::uint64_t seen = 0, missed = 0;
@@ -84,6 +87,8 @@ class PortATiming {
   Limits stretched_;
   std::optional<PortACycle> last_read_, last_write_;
   TaMoves ta_moves_;
+  std::optional<PortACycle> worst_read_;
+  TimeFs worst_margin_ = INT64_MAX;
   unsigned region_ = 0;  // of the cycle in hand
   TimingPlace place_;
 };
