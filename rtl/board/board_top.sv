@@ -285,7 +285,8 @@ module board_top #(
   logic       hp_sel, hp_rd_done, hp_wr;
   logic [2:0] hp_addr;
   logic [7:0] hp_wdata, hp_rdata;
-  logic       pic_sel, pic_wr;
+  logic       pic_sel, pic_wr, pic_rd, unused_pic;
+  assign unused_pic = &{1'b0, pic_rd};
   logic [1:0] pic_addr;
   logic [7:0] pic_wdata, pic_rdata;
   logic        mem_sel, mem_rd, mem_wr, mem_busy;
@@ -306,6 +307,7 @@ module board_top #(
     .hp_rdata_i     (hp_rdata),
     .pic_sel_o      (pic_sel),
     .pic_wr_o       (pic_wr),
+    .pic_rd_o       (pic_rd),
     .pic_addr_o     (pic_addr),
     .pic_wdata_o    (pic_wdata),
     .pic_rdata_i    (pic_rdata),

@@ -87,12 +87,13 @@ void drive(V& v, const IsaSlaveInputs& in) {
 }
 template <class V>
 Outputs sample(const V& v) {
-  return {{"isa_sd", v.isa_sd_o},     {"isa_iochrdy", v.isa_iochrdy_o}, {"isa_memcs16_n", v.isa_memcs16_no},
-          {"hp_sel", v.hp_sel_o},     {"hp_rd_done", v.hp_rd_done_o},   {"hp_wr", v.hp_wr_o},
-          {"hp_addr", v.hp_addr_o},   {"hp_wdata", v.hp_wdata_o},       {"pic_sel", v.pic_sel_o},
-          {"pic_wr", v.pic_wr_o},     {"pic_addr", v.pic_addr_o},       {"pic_wdata", v.pic_wdata_o},
-          {"mem_sel", v.mem_sel_o},   {"mem_rd", v.mem_rd_o},           {"mem_wr", v.mem_wr_o},
-          {"mem_addr", v.mem_addr_o}, {"mem_be", v.mem_be_o},           {"mem_wdata", v.mem_wdata_o}};
+  return {{"isa_sd", v.isa_sd_o},       {"isa_iochrdy", v.isa_iochrdy_o}, {"isa_memcs16_n", v.isa_memcs16_no},
+          {"hp_sel", v.hp_sel_o},       {"hp_rd_done", v.hp_rd_done_o},   {"hp_wr", v.hp_wr_o},
+          {"hp_addr", v.hp_addr_o},     {"hp_wdata", v.hp_wdata_o},       {"pic_sel", v.pic_sel_o},
+          {"pic_wr", v.pic_wr_o},       {"pic_rd", v.pic_rd_o},           {"pic_addr", v.pic_addr_o},
+          {"pic_wdata", v.pic_wdata_o}, {"mem_sel", v.mem_sel_o},         {"mem_rd", v.mem_rd_o},
+          {"mem_wr", v.mem_wr_o},       {"mem_addr", v.mem_addr_o},       {"mem_be", v.mem_be_o},
+          {"mem_wdata", v.mem_wdata_o}};
 }
 
 }  // namespace
