@@ -7,6 +7,7 @@
 #include "Vinterrupt_controller.h"
 #include "Visa_slave.h"
 #include "Visa_slave_variant.h"
+#include "Vpic_8259.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {
@@ -21,6 +22,18 @@ void drive(Vinterrupt_controller& v, const InterruptControllerInputs& in) {
 Outputs sample(const Vinterrupt_controller& v) {
   return {{"rdata", v.rdata_o}, {"ist", v.ist_o}, {"sig", v.sig_o},
           {"msk", v.msk_o},     {"elr", v.elr_o}, {"irq", v.irq_o}};
+}
+
+void drive(Vpic_8259& v, const Pic8259Inputs& in) {
+  v.line_i = in.line;
+  v.rd_i = in.rd;
+  v.wr_i = in.wr;
+  v.addr_i = in.addr;
+  v.wdata_i = in.wdata;
+}
+Outputs sample(const Vpic_8259& v) {
+  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},     {"isr", v.isr_o},
+          {"imr", v.imr_o},     {"level", v.level_o}, {"irq", v.irq_o}};
 }
 
 void drive(Vhost_signals& v, const HostSignalsInputs& in) {
@@ -100,6 +113,9 @@ Outputs sample(const V& v) {
 
 RtlBlock<InterruptControllerInputs, Outputs> make_rtl_interrupt_controller(int seed) {
   return verilated_shell<Vinterrupt_controller, InterruptControllerInputs, Outputs>(drive, sample, seed);
+}
+RtlBlock<Pic8259Inputs, Outputs> make_rtl_pic_8259(int seed) {
+  return verilated_shell<Vpic_8259, Pic8259Inputs, Outputs>(drive, sample, seed);
 }
 RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals() {
   return verilated_shell<Vhost_signals, HostSignalsInputs, Outputs>(drive, sample);
