@@ -24,6 +24,7 @@ struct Pic8259Inputs {
 
 struct HostSignalsInputs {
   bool wr = false;
+  bool ctrl_wr = false;
   std::uint8_t wdata = 0;  // 4 bits
 };
 

@@ -38,10 +38,12 @@ Outputs sample(const Vpic_8259& v) {
 
 void drive(Vhost_signals& v, const HostSignalsInputs& in) {
   v.wr_i = in.wr;
+  v.ctrl_wr_i = in.ctrl_wr;
   v.wdata_i = in.wdata & 0xF;
 }
 Outputs sample(const Vhost_signals& v) {
-  return {{"rdata", v.rdata_o}, {"ipos", v.ipos_o}, {"breq", v.breq_o}, {"eror", v.eror_o}, {"f1er", v.f1er_o}};
+  return {{"rdata", v.rdata_o}, {"ctrl", v.ctrl_o}, {"ipos", v.ipos_o},
+          {"breq", v.breq_o},   {"eror", v.eror_o}, {"f1er", v.f1er_o}};
 }
 
 void drive(Vhost_port& v, const HostPortInputs& in) {
