@@ -2,8 +2,8 @@
 // pins to ISA pins. clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing
 // between them is synchronous. ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in
 // fitted_i), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
-// All outputs are registers or gates behind registers: they change at clock edges only. docs/architecture.md has the
-// map.
+// Outputs are registers or gates behind registers, but for what a strobe turns off without a clock.
+// docs/architecture.md has the map.
 `default_nettype none
 
 module board_top #(
@@ -22,6 +22,7 @@ module board_top #(
   input  wire logic        pa_wr_ni,
   input  wire logic [23:0] pa_wdata_i,
   output logic [23:0]      pa_data_o,
+  output logic             pa_data_oe_o,
   output logic             pa_ta_n_o,
   output logic             irq_host_o,
   // ISA
@@ -42,12 +43,19 @@ module board_top #(
   input  wire logic [3:0]  macro_gate_i,
   input  wire logic        dpram_small_i,  // 8192 words, not 32768
   input  wire logic        jpan_fitted_i,
-  input  wire logic [11:0] line_select_i,  // sources of IR5 (3..0), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
+  // Sources of IR5 (3..0), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, 10 CTRL0, 11 CTRL1, 12 MI1, 13 MI2, 14 AXEXP0,
+  // 15 AXEXP1
+  input  wire logic [11:0] line_select_i,
+  input  wire logic        pic_8259_i,     // the interrupt controller is an 8259
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
   input  wire logic        pwr_good_i,  // 5 V is good
   input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
+  input  wire logic        mi1_i,   // machine inputs of JOPTO
+  input  wire logic        mi2_i,
+  input  wire logic        axexp0_i,  // interrupt lines of an axis expansion board
+  input  wire logic        axexp1_i,
   // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first; without any one bit, unused.
   // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
   // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks
@@ -70,6 +78,11 @@ module board_top #(
   output logic             busy_cpu_o,
   output logic [4:0]       phase_source_o,
   output logic             source_conflict_o,
+  output logic             brld_n_o,  // lamps of the control panel
+  output logic             erld_n_o,
+  output logic             f1ld_n_o,
+  output logic             ipld_n_o,
+  output logic [1:0]       ctrl_o,
   output logic [7:0]       pic_ist_o,
   output logic [7:0]       pic_sig_o,
   output logic [7:0]       pic_msk_o,
@@ -80,7 +93,7 @@ module board_top #(
   localparam logic [21:0] IcMask = {MacroIcMask, ServoIcMask};
   logic [21:0] fitted_q;
   logic [3:0]  macro_gate_q;
-  logic        ext_clock_q, dpram_small_q, jpan_fitted_q;
+  logic        ext_clock_q, dpram_small_q, jpan_fitted_q, pic_8259_q;
   logic [11:0] line_select_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -90,6 +103,7 @@ module board_top #(
       dpram_small_q <= 1'b0;
       jpan_fitted_q <= 1'b0;
       line_select_q <= 12'h0;
+      pic_8259_q    <= 1'b0;
     end else begin
       fitted_q      <= fitted_i;
       macro_gate_q  <= macro_gate_i & MacroIcMask;
@@ -97,13 +111,14 @@ module board_top #(
       dpram_small_q <= dpram_small_i;
       jpan_fitted_q <= jpan_fitted_i;
       line_select_q <= line_select_i;
+      pic_8259_q    <= pic_8259_i;
     end
   end
 
   // ------------------------------------------------------------------ Port A: synchroniser and decoding
-  logic [18:0] bus_addr, bus_rd_addr;
-  logic        bus_x, bus_rd_x, bus_int, bus_rd_int, bus_we, bus_rd_done;
-  logic [3:0]  bus_aa, bus_rd_aa;
+  logic [18:0] bus_addr;
+  logic        bus_x, bus_int, bus_we, bus_rd;
+  logic [3:0]  bus_aa;
   logic [23:0] bus_wdata;
 
   logic rd_toggle, wr_toggle;
@@ -115,21 +130,19 @@ module board_top #(
 
   bus_sync u_bus_sync (
     .clk_ref_i, .rst_ni,
-    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
-    .addr_o    (bus_addr),
-    .x_o       (bus_x),
-    .aa_o      (bus_aa),
-    .int_o     (bus_int),
-    .wdata_o   (bus_wdata),
-    .we_o      (bus_we),
-    .rd_done_o (bus_rd_done),
-    .rd_addr_o (bus_rd_addr),
-    .rd_x_o    (bus_rd_x),
-    .rd_aa_o   (bus_rd_aa),
-    .rd_int_o  (bus_rd_int)
+    .rd_toggle_i (rd_toggle),
+    .wr_toggle_i (wr_toggle),
+    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_wdata_i,
+    .addr_o  (bus_addr),
+    .x_o     (bus_x),
+    .aa_o    (bus_aa),
+    .int_o   (bus_int),
+    .wdata_o (bus_wdata),
+    .we_o    (bus_we),
+    .rd_o    (bus_rd)
   );
 
-  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_panel;
+  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_ctrl, sel_panel;
   logic [21:0] sel_ic;
   address_decode u_address_decode (
     .addr_i        (bus_addr),
@@ -142,32 +155,12 @@ module board_top #(
     .sel_int_o     (sel_int),
     .sel_signals_o (sel_signals),
     .sel_strobe_o  (sel_strobe),
+    .sel_ctrl_o    (sel_ctrl),
     .sel_panel_o   (sel_panel),
     .sel_ic_o      (sel_ic)
   );
-
-  // Side effects of a read belong to the address one stage later: the CPU may have moved on by then.
-  logic       rd_done_int;
-  logic [5:0] int_addr;
-  assign rd_done_int = bus_rd_done & bus_rd_int;
-  assign int_addr    = rd_done_int ? bus_rd_addr[5:0] : bus_addr[5:0];
-  logic        rd_any, rd_int, rd_signals, rd_strobe, rd_panel, unused_rd;
-  logic [21:0] rd_ic;
-  address_decode u_read_decode (
-    .addr_i        (bus_rd_addr),
-    .x_i           (bus_rd_x),
-    .aa_i          (bus_rd_aa),
-    .int_i         (bus_rd_int),
-    .fitted_i      (fitted_q & IcMask),
-    .jpan_i        (jpan_fitted_q),
-    .sel_any_o     (rd_any),
-    .sel_int_o     (rd_int),
-    .sel_signals_o (rd_signals),
-    .sel_strobe_o  (rd_strobe),
-    .sel_panel_o   (rd_panel),
-    .sel_ic_o      (rd_ic)
-  );
-  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic};
+  logic unused_sel;  // of ICs that are not built
+  assign unused_sel = &{1'b0, sel_ic};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
@@ -191,9 +184,7 @@ module board_top #(
         .addr_i      (bus_addr[4:0]),
         .we_i        (bus_we),
         .wdata_i     (bus_wdata),
-        .read_done_i (bus_rd_done & rd_ic[i]),
-        .read_x_i    (bus_rd_x),
-        .read_addr_i (bus_rd_addr[4:0]),
+        .rd_i        (bus_rd),
         .rdata_o     (rdata),
         .phase_i     (phase_o),
         .servo_i     (servo_o),
@@ -291,7 +282,7 @@ module board_top #(
   logic       hp_sel, hp_rd_done, hp_wr;
   logic [2:0] hp_addr;
   logic [7:0] hp_wdata, hp_rdata;
-  logic       pic_sel, pic_wr;
+  logic       pic_sel, pic_wr, pic_rd;
   logic [1:0] pic_addr;
   logic [7:0] pic_wdata, pic_rdata;
   logic        mem_sel, mem_rd, mem_wr, mem_busy;
@@ -312,6 +303,7 @@ module board_top #(
     .hp_rdata_i     (hp_rdata),
     .pic_sel_o      (pic_sel),
     .pic_wr_o       (pic_wr),
+    .pic_rd_o       (pic_rd),
     .pic_addr_o     (pic_addr),
     .pic_wdata_o    (pic_wdata),
     .pic_rdata_i    (pic_rdata),
@@ -334,10 +326,10 @@ module board_top #(
     .hp_addr_i     (hp_addr),
     .hp_wdata_i    (hp_wdata),
     .hp_rdata_o    (hp_rdata),
-    .dsp_sel_i     (sel_int | rd_done_int),
-    .dsp_we_i      (bus_we & sel_int),
-    .dsp_rd_done_i (rd_done_int),
-    .dsp_addr_i    (int_addr),
+    .dsp_sel_i     (sel_int),
+    .dsp_we_i      (bus_we),
+    .dsp_rd_i      (bus_rd),
+    .dsp_addr_i    (bus_addr[5:0]),
     .dsp_wdata_i   (bus_wdata),
     .dsp_rdata_o   (int_rdata),
     .hreq_o,
@@ -347,39 +339,75 @@ module board_top #(
   logic [3:0] signals_rdata;
   host_signals u_host_signals (
     .clk_ref_i, .rst_ni,
-    .wr_i    (bus_we & sel_signals),
-    .wdata_i (bus_wdata[3:0]),
-    .rdata_o (signals_rdata),
+    .wr_i      (bus_we & sel_signals),
+    .ctrl_wr_i (bus_we & sel_ctrl),
+    .wdata_i   (bus_wdata[3:0]),
+    .rdata_o   (signals_rdata),
+    .ctrl_o,
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 
   // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
-  // EQU1..EQU4 are the channels of servo IC 0, EQU5..EQU8 those of IC 1.
+  // EQU1..EQU4 are the channels of servo IC 0, EQU5..EQU8 those of IC 1. The choice is a strap: it stands still while
+  // lines from outside pass on to the flip-flops in the controllers, which are the first to look at them.
   logic [7:0]  pic_line;
   logic [15:0] line_source;
   logic        unused_equ;
   assign unused_equ  = &{1'b0, equ[71:8]};
-  assign line_source = {6'h0, wdo_o, equ[7:0], 1'b0};
+  assign line_source = {axexp1_i, axexp0_i, mi2_i, mi1_i, ctrl_o, wdo_o, equ[7:0], 1'b0};
   assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
                      hreq_o, f1er_o, eror_o, breq_o, ipos_o};
+  logic [7:0] turbo_rdata, turbo_ist, turbo_msk, turbo_elr, old_rdata, old_irr, old_isr, old_imr;
+  logic       turbo_irq, old_irq, old_level;
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni,
     .line_i  (pic_line),
-    .wr_i    (pic_sel & pic_wr),
+    .wr_i    (pic_sel & pic_wr & ~pic_8259_q),
     .addr_i  (pic_addr),
     .wdata_i (pic_wdata),
-    .rdata_o (pic_rdata),
-    .ist_o   (pic_ist_o),
+    .rdata_o (turbo_rdata),
+    .ist_o   (turbo_ist),
     .sig_o   (pic_sig_o),
-    .msk_o   (pic_msk_o),
-    .elr_o   (pic_elr_o),
-    .irq_o   (isa_irq_o)
+    .msk_o   (turbo_msk),
+    .elr_o   (turbo_elr),
+    .irq_o   (turbo_irq)
   );
+
+  pic_8259 u_pic_8259 (
+    .clk_ref_i, .rst_ni,
+    .line_i  (pic_line),
+    .rd_i    (pic_rd & pic_8259_q),
+    .wr_i    (pic_sel & pic_wr & pic_8259_q),
+    .addr_i  (pic_addr),
+    .wdata_i (pic_wdata),
+    .rdata_o (old_rdata),
+    .irr_o   (old_irr),
+    .isr_o   (old_isr),
+    .imr_o   (old_imr),
+    .level_o (old_level),
+    .irq_o   (old_irq)
+  );
+  logic unused_isr;
+  assign unused_isr = &{1'b0, old_isr};
+  assign pic_rdata  = pic_8259_q ? old_rdata : turbo_rdata;
+  assign pic_ist_o  = pic_8259_q ? old_irr & ~old_imr : turbo_ist;
+  assign pic_msk_o  = pic_8259_q ? ~old_imr : turbo_msk;
+  assign pic_elr_o  = pic_8259_q ? {8{old_level}} : turbo_elr;
+  assign isa_irq_o  = pic_8259_q ? old_irq : turbo_irq;
 
   logic [15:0] panel_rdata;
   panel_port u_panel_port (
     .clk_ref_i, .rst_ni, .jpan_i,
-    .rdata_o (panel_rdata)
+    .rdata_o  (panel_rdata),
+    .fitted_i (jpan_fitted_q),
+    .breq_i   (breq_o),
+    .eror_i   (eror_o),
+    .f1er_i   (f1er_o),
+    .ipos_i   (ipos_o),
+    .brld_no  (brld_n_o),
+    .erld_no  (erld_n_o),
+    .f1ld_no  (f1ld_n_o),
+    .ipld_no  (ipld_n_o)
   );
 
   logic        dpram_sel;
@@ -411,29 +439,33 @@ module board_top #(
   );
 
   // ------------------------------------------------------------------ read data towards the CPU
-  // Registered while a register region is addressed, so that a value is never torn; holds otherwise.
-  logic [23:0] rdata_d, rdata_q;
+  logic [23:0] reg_rdata, bus_rdata;
+  logic        bus_rdata_oe;
   always_comb begin
-    rdata_d = rdata_q;
-    if (sel_any) begin
-      if (sel_int)          rdata_d = int_rdata;
-      else if (sel_signals) rdata_d = {20'h0, signals_rdata};
-      else if (sel_panel)   rdata_d = {8'h0, panel_rdata};
-      else                  rdata_d = gen_macro_ic[21].rdata_chain;
-    end
+    reg_rdata = gen_macro_ic[21].rdata_chain;
+    if (sel_int)          reg_rdata = int_rdata;
+    else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
+    else if (sel_ctrl)    reg_rdata = {22'h0, ctrl_o};
+    else if (sel_panel)   reg_rdata = {8'h0, panel_rdata};
   end
+  bus_read u_bus_read (
+    .clk_ref_i, .rst_ni, .pa_rd_ni,
+    .rd_i      (bus_rd),
+    .sel_any_i (sel_any),
+    .sel_int_i (sel_int),
+    .data_i    (reg_rdata),
+    .data_o    (bus_rdata),
+    .oe_o      (bus_rdata_oe)
+  );
 
-  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) rdata_q <= 24'h0;
-    else         rdata_q <= rdata_d;
-  end
-
+  // The dual-ported RAM answers on clk_pwm; its word is good when /TA says so.
   logic from_dpram_q;
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) from_dpram_q <= 1'b0;
     else         from_dpram_q <= dpram_sel;
   end
-  assign pa_data_o = from_dpram_q ? {8'h0, dpram_rdata} : rdata_q;
+  assign pa_data_o    = from_dpram_q ? {8'h0, dpram_rdata} : bus_rdata;
+  assign pa_data_oe_o = bus_rdata_oe | (from_dpram_q & ~pa_rd_ni);
 
 endmodule : board_top
 

@@ -16,6 +16,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       isa_slave_("isa_slave"),
       host_port_("host_port"),
       interrupt_controller_("interrupt_controller"),
+      pic_8259_("pic_8259"),
       host_signals_("host_signals"),
       dpram_("dpram"),
       panel_port_("panel_port"),
@@ -30,6 +31,7 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   if (!in_reset_) advance_all(now_);  // what has passed saw the old inputs
   inputs_ = inputs;
   bus_strobes_.set_pins(inputs_, inputs_.rst_n);
+  bus_read_.set_rd_n(inputs_.pa_rd_n);
   connect();
 }
 
@@ -46,7 +48,7 @@ void BoardTop::watch_motors(std::uint32_t ics) {
 void BoardTop::reset_all(Tick t) {
   each_block([t](ModelBlock& block) { block.reset(t); });
   gate_ics_.reset(t);
-  rdata_ = 0;
+  bus_read_.reset();
   from_dpram_ = false;
   take_straps(kNoStraps, t);
   connect();
@@ -58,38 +60,36 @@ void BoardTop::advance_all(Tick t) {
 
 // The edge t. Everything that looks at a register of another block does so before any block executes the edge.
 void BoardTop::execute(Tick t) {
-  const bool ref = is_ref_edge(t);
-  const bool write_ic = ref && bus_sync_.we() && select_.ic >= 0;
+  const bool ref = is_ref_edge(t), read = ref && bus_sync_.rd(), write = ref && bus_sync_.we();
   const BusSync::Where where = bus_sync_.where();
   const std::uint32_t wdata = bus_sync_.wdata();
-  if (ref && select_.any) rdata_ = read_data(t - 1);
-  const int written_ic = select_.ic;
-  const BusSync::Where read = bus_sync_.rd_where();
-  const int read_ic = ref && bus_sync_.rd_done()
-                          ? AddressDecode::decode(read, straps_.fitted & gate_ics_.built(), straps_.jpan_fitted).ic
-                          : -1;
+  const int ic = select_.ic;
+  if (read && select_.any)
+    bus_read_.take(read_data(t - 1), select_.internal);
+  else if (read)
+    bus_read_.take_nothing();
 
   advance_all(t);
   gate_ics_.advance(t);
   from_dpram_ = dpram_.in.cpu_sel;
   if (next_ref_edge(now_) <= t && straps_ != inputs_) take_straps(inputs_, t);
-  if (read_ic >= 0) gate_ics_.read_done(static_cast<unsigned>(read_ic), read.x, read.addr, t);
-  if (write_ic) gate_ics_.write(static_cast<unsigned>(written_ic), where.x, where.addr, wdata, t);
+  if (read && ic >= 0) gate_ics_.read_taken(static_cast<unsigned>(ic), where.x, where.addr, t);
+  if (write && ic >= 0) gate_ics_.write(static_cast<unsigned>(ic), where.x, where.addr, wdata, t);
   now_ = t;
   connect();
 }
 
-// After the edge t.
 std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
+  if (select_.ctrl) return host_signals_.ctrl();
   if (select_.panel) return panel_port_.rdata();
   if (select_.ic < 0) return 0;
   return gate_ics_.read(static_cast<unsigned>(select_.ic), bus_sync_.where().x, bus_sync_.where().addr, t);
 }
 
 void BoardTop::connect() {
-  bus_sync_.set_pins(inputs_);
+  bus_sync_.set_pins(inputs_, bus_strobes_);
   select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted);
   connect_clocks();
   connect_host();
@@ -113,15 +113,20 @@ void BoardTop::connect_clocks() {
 
 void BoardTop::connect_host() {
   // Port A side
-  const bool read_done = bus_sync_.rd_done() && bus_sync_.rd_where().internal;
   HostPort::Inputs& hp = host_port_.in;
-  hp.dsp_sel = select_.internal || read_done;
-  hp.dsp_we = bus_sync_.we() && select_.internal;
-  hp.dsp_rd_done = read_done;
-  hp.dsp_addr = (read_done ? bus_sync_.rd_where() : bus_sync_.where()).addr & 0x3F;
+  hp.dsp_sel = select_.internal;
+  hp.dsp_we = bus_sync_.we();
+  hp.dsp_rd = bus_sync_.rd();
+  hp.dsp_addr = bus_sync_.where().addr & 0x3F;
   hp.dsp_wdata = bus_sync_.wdata();
   panel_port_.jpan = inputs_.jpan;
+  panel_port_.fitted = straps_.jpan_fitted;
+  panel_port_.breq = host_signals_.breq();
+  panel_port_.eror = host_signals_.eror();
+  panel_port_.f1er = host_signals_.f1er();
+  panel_port_.ipos = host_signals_.ipos();
   host_signals_.in.wr = bus_sync_.we() && select_.signals;
+  host_signals_.in.ctrl_wr = bus_sync_.we() && select_.ctrl;
   host_signals_.in.wdata = bus_sync_.wdata() & 0xF;
   Dpram::Inputs& ram = dpram_.in;
   ram.small = straps_.dpram_small;
@@ -150,15 +155,19 @@ void BoardTop::connect_host() {
   ram.mem_addr = isa_slave_.mem_addr();
   ram.mem_be = isa_slave_.mem_be();
   ram.mem_wdata = isa_slave_.mem_wdata();
-  InterruptController::Inputs& pic = interrupt_controller_.in;
-  pic.wr = isa_slave_.pic_sel() && isa_slave_.pic_wr();
-  pic.addr = isa_slave_.pic_addr();
-  pic.wdata = isa_slave_.pic_wdata();
   isa.hp_rdata = host_port_.hp_rdata();
-  isa.pic_rdata = interrupt_controller_.rdata();
+  connect_interrupts();
+}
 
+// One of the two controllers is fitted; the other is neither read nor written.
+void BoardTop::connect_interrupts() {
   // IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
-  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
+  const auto line =
+      static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
+  const bool old = straps_.pic_8259, write = isa_slave_.pic_sel() && isa_slave_.pic_wr();
+  interrupt_controller_.in = {line, write && !old, isa_slave_.pic_addr(), isa_slave_.pic_wdata()};
+  pic_8259_.in = {line, isa_slave_.pic_rd() && old, write && old, isa_slave_.pic_addr(), isa_slave_.pic_wdata()};
+  isa_slave_.in.pic_rdata = old ? pic_8259_.rdata() : interrupt_controller_.rdata();
 }
 
 void BoardTop::take_straps(const Straps& straps, Tick t) {
@@ -170,8 +179,10 @@ void BoardTop::take_straps(const Straps& straps, Tick t) {
 
 std::uint32_t BoardTop::selected_lines() const {
   const std::uint32_t fitted_equ = ((straps_.fitted & 1) != 0 ? 0x0Fu : 0u) | ((straps_.fitted & 2) != 0 ? 0xF0u : 0u);
-  const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u)
-                                                                          << 9;  // by the digits of line_select
+  const auto at = [](bool level, unsigned source) { return (level ? 1u : 0u) << source; };
+  const std::uint32_t sources =  // by the digits of line_select
+      (gate_ics_.equ() & fitted_equ) << 1 | at(watchdog_.trip(), 9) | std::uint32_t{host_signals_.ctrl()} << 10 |
+      at(inputs_.mi1, 12) | at(inputs_.mi2, 13) | at(inputs_.axexp0, 14) | at(inputs_.axexp1, 15);
   std::uint32_t lines = 0;
   for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (straps_.line_select >> 4 * line & 0xF) & 1) << line;
   return lines;
@@ -181,19 +192,30 @@ std::uint32_t BoardTop::selected_lines() const {
 BoardOutputs BoardTop::pins() const {
   const auto at = [](const PinField& f, std::uint32_t value) { return value << f.lsb; };
   BoardOutputs o;
-  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_) | at(pin::kPaTaN, dpram_.cpu_wait()) |
+  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : bus_read_.data()) | at(pin::kPaTaN, dpram_.cpu_wait()) |
            at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) |
            at(pin::kServo, clock_select_.servo()) | at(pin::kBreq, host_signals_.breq()) |
            at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
            at(pin::kF1er, host_signals_.f1er());
   o.w[1] = at(pin::kIsaSd, isa_slave_.isa_sd()) | at(pin::kIsaIochrdy, isa_slave_.isa_iochrdy()) |
-           at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) | at(pin::kIsaIrq, interrupt_controller_.irq()) |
+           at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) |
+           at(pin::kIsaIrq, straps_.pic_8259 ? pic_8259_.irq() : interrupt_controller_.irq()) |
            at(pin::kHreq, host_port_.hreq()) | at(pin::kWdo, watchdog_.trip()) | at(pin::kWdTripped, watchdog_.trip()) |
            at(pin::kBusyHost, dpram_.host_busy()) | at(pin::kBusyCpu, dpram_.cpu_busy()) |
            at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
-  o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
-           at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
-  o.w[3] = at(pin::kWdRelay, watchdog_.relay()) | at(pin::kWdLed, watchdog_.trip());
+  o.w[2] = at(pin::kPicSig, interrupt_controller_.sig());
+  if (straps_.pic_8259) {
+    const auto enabled = static_cast<std::uint8_t>(~pic_8259_.imr());
+    o.w[2] |= at(pin::kPicIst, pic_8259_.irr() & enabled) | at(pin::kPicMsk, enabled) |
+              at(pin::kPicElr, pic_8259_.level() ? 0xFF : 0);
+  } else {
+    o.w[2] |= at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicMsk, interrupt_controller_.msk()) |
+              at(pin::kPicElr, interrupt_controller_.elr());
+  }
+  o.w[3] = at(pin::kPaDataOe, data_oe()) | at(pin::kBrldN, panel_port_.brld_n()) |
+           at(pin::kErldN, panel_port_.erld_n()) | at(pin::kF1ldN, panel_port_.f1ld_n()) |
+           at(pin::kIpldN, panel_port_.ipld_n()) | std::uint32_t{host_signals_.ctrl()} << pin::kCtrl0.lsb |
+           at(pin::kWdRelay, watchdog_.relay()) | at(pin::kWdLed, watchdog_.trip());
   return o;
 }
 
@@ -222,10 +244,8 @@ bool BoardTop::show_motors() {
 Tick BoardTop::next_event() const {
   Tick next = gate_ics_.next_event();
   each_block([&next](const auto& block) { next = std::min(next, block.next_event()); });
-  if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
-  if (select_.ic >= 0) next = std::min(next, gate_ics_.next_word_event(static_cast<unsigned>(select_.ic), now_));
+  if (from_dpram_ != dpram_.in.cpu_sel || data_oe() != (outputs_.get(pin::kPaDataOe) != 0)) next = now_ + 1;
   if (straps_ != inputs_) next = std::min(next, next_ref_edge(now_));
-  if (select_.any && next > next_ref_edge(now_) && read_data(now_) != rdata_) next = next_ref_edge(now_);
   return next;
 }
 

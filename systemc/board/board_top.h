@@ -13,6 +13,7 @@
 #include <systemc>
 
 #include "systemc/board/address_decode.h"
+#include "systemc/board/bus_read.h"
 #include "systemc/board/bus_strobes.h"
 #include "systemc/board/bus_sync.h"
 #include "systemc/board/clock_select.h"
@@ -25,6 +26,7 @@
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
 #include "systemc/host/isa_slave.h"
+#include "systemc/host/pic_8259.h"
 
 namespace brick {
 
@@ -55,12 +57,12 @@ class BoardTop : public sc_core::sc_module, public Board {
   // The blocks of the buses, by their own types: this is the innermost loop of the model.
   template <class F>
   void each_block(F f) {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_),
+    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(pic_8259_),
         f(host_signals_), f(dpram_), f(panel_port_);
   }
   template <class F>
   void each_block(F f) const {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_),
+    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(pic_8259_),
         f(host_signals_), f(dpram_), f(panel_port_);
   }
   void reset_all(Tick t);
@@ -69,10 +71,12 @@ class BoardTop : public sc_core::sc_module, public Board {
   void connect();  // copies wires: outputs of the blocks to inputs of the others
   void connect_clocks();
   void connect_host();
+  void connect_interrupts();
   BoardOutputs pins() const;
-  bool show_pins();    // updates outputs_ after an edge; true when a selected pin changed
-  bool show_motors();  // the same for the watched ICs
-  std::uint32_t read_data(Tick t) const;
+  bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed
+  bool show_motors();                     // the same for the watched ICs
+  std::uint32_t read_data(Tick t) const;  // of the selected register, after the edge t
+  bool data_oe() const { return bus_read_.oe() || (from_dpram_ && !inputs_.pa_rd_n); }
   void take_straps(const Straps& straps, Tick t);
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
   Tick next_event() const;
@@ -80,22 +84,23 @@ class BoardTop : public sc_core::sc_module, public Board {
 
   BusStrobes bus_strobes_;
   BusSync bus_sync_;
+  BusRead bus_read_;
   AddressDecode address_decode_;
   ClockSelect clock_select_;
   Watchdog watchdog_;
   IsaSlave isa_slave_;
   HostPort host_port_;
   InterruptController interrupt_controller_;
+  Pic8259 pic_8259_;
   HostSignals host_signals_;
   Dpram dpram_;
   PanelPort panel_port_;
   GateIcs gate_ics_;
 
   BoardInputs inputs_;
-  static constexpr Straps kNoStraps{0, 0, false, false, 0, false};
+  static constexpr Straps kNoStraps{0, 0, false, false, 0, false, false};
   Straps straps_ = kNoStraps;  // as taken over on clk_ref
-  AddressSelect select_;       // of the address in stage 1
-  std::uint32_t rdata_ = 0;    // registered read data
+  AddressSelect select_;       // of the address in bus_sync
   bool from_dpram_ = false;    // read data pins show the dual-ported RAM
   bool in_reset_ = true;
   Tick now_ = 0;

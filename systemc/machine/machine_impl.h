@@ -24,12 +24,16 @@ constexpr Tick kInterruptLatency = 16;
 // The reset line is held for about a microsecond.
 constexpr Tick kResetTicks = 120;
 
+// INIT/ of the control panel must be low for about a microsecond to be taken for more than a spike.
+constexpr Tick kInitTicks = 120;
+
 // Turns device accesses of the CPU into transactions on Port A.
 class PortAInitiator : public sc_core::sc_module, public DeviceBus {
  public:
   PortAInitiator(sc_core::sc_module_name name, PortA& port_a);
   ~PortAInitiator() override;
   Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override;
+  bool under_way() const { return under_way_; }
   void forget() { under_way_ = false; }  // reset in the middle of an access
 
   tlm_utils::simple_initiator_socket<PortAInitiator> socket{"socket"};
@@ -56,10 +60,12 @@ struct Machine::Impl {
   void main_memory_wait() { cpu.set_wait(MachineMemory::kMain, memory_wait(port_a.wait_states(0))); }
   void trace_cpu(bool on);
   void apply_host_inputs();
+  void see_init();
 
   // run.cpp: the run-ahead rule
   Tick run_until(Tick limit, const BoardOutputs& stop_on);
   void run_cpu(Tick known);
+  void run_master();
   bool deliver_due();
   Tick board_limit(Tick limit) const;
   void keep_kernel_time(Tick from);
@@ -75,7 +81,9 @@ struct Machine::Impl {
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};
-  GdbServer* debugger = nullptr;  // runs the CPU when there is one
+  BusMaster* master = nullptr;                     // makes the bus cycles when there is one
+  std::optional<BusMaster::Access> master_access;  // under way
+  GdbServer* debugger = nullptr;                   // runs the CPU when there is one
   MachineMemory memory;
   std::unique_ptr<ElfFile> elf;
   std::uint64_t power_ons = 0;
@@ -90,7 +98,9 @@ struct Machine::Impl {
   std::deque<Event> events;  // pin changes that the CPU has not seen yet
   bool cpu_runs = false;     // false: reset, watchdog, or no firmware
   Tick reset_until = kNever;
-  bool stopped = false;  // the present run came to a selected edge
+  bool init_low = false, init_holds = false;  // INIT/ is low; it holds the reset line
+  Tick init_at = kNever;                      // INIT/ will have been low for long enough
+  bool stopped = false;                       // the present run came to a selected edge
   BoardOutputs stop_on;
   bool tracing_cpu = false;
   std::vector<BusCycle> bus_cycles;

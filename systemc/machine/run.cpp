@@ -31,7 +31,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
   while (board->now() < limit && !stopped) {
     const Tick from = board->now();
     motors.step();
-    Tick target = std::min({limit, reset_until, motors.next_event()});
+    Tick target = std::min({limit, reset_until, init_at, motors.next_event()});
     if (config.batch > 0) target = std::min(target, from + config.batch);
     if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
       debugger->poll(!cpu_runs || (cpu.asleep() && !port_a.running()));
@@ -42,6 +42,11 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     target = board_limit(target);
     if (target > from) board->run_until(target, cpu_runs && cpu.asleep() && !port_a.running() ? watched : stop_on);
     stopped = motors.take_stop() || stopped;
+    if (board->now() == init_at) {
+      init_at = kNever;
+      init_holds = true;
+      begin_reset(false);
+    }
     if (board->now() == reset_until) start_cpu();
     while (port_a.running() && board->now() == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());
@@ -69,6 +74,7 @@ Tick Machine::Impl::board_limit(Tick limit) const {
 // Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the
 // edges up to t - latency, so it may start before known + 1 + latency.
 void Machine::Impl::run_cpu(Tick known) {
+  if (master != nullptr && reset_until == kNever) return run_master();
   const CpuClock& clock = port_a.clock();
   while (cpu_runs && !port_a.running()) {
     if (deliver_due()) continue;
@@ -80,6 +86,24 @@ void Machine::Impl::run_cpu(Tick known) {
       debugger->run(limit);
     else
       cpu.run(limit);
+  }
+}
+
+// Finishes the access of the bus master and begins the next, all in the future of the board. When the CPU was in the
+// middle of an access as the master came, that one is finished first and its result is nobody's.
+void Machine::Impl::run_master() {
+  for (unsigned made = 0; !port_a.running() && made < 64; ++made) {
+    Cycle start = std::max(port_a.free_at(), port_a.clock().first_cycle(board->now() + 1));
+    const bool begin = !initiator.under_way();
+    if (begin) {
+      master_access = master->next();
+      if (!master_access) return;
+      start += master_access->idle;
+    }
+    const BusMaster::Access a = master_access.value_or(BusMaster::Access{});
+    const std::uint32_t address = kPmacBase + 8 * a.address + (a.x ? 4 : 0);
+    const DeviceBus::Result result = initiator.access(address, 4, a.write, a.data, start);
+    if (!result.retry && master_access) master->done(a, result.data);
   }
 }
 
