@@ -7,6 +7,8 @@ namespace brick {
 
 Bench smoke_bench();
 Bench breq_rotary_bench();
+Bench breq_select_bench();
+Bench interrupts_bench();
 Bench watchdog_bench();
 Bench dpram_bench();
 Bench reinit_e3_bench();

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "testbench/unit/host/lockstep.h"
-#include "testbench/unit/host/pic_8259_reference.h"
+#include "testbench/checkers/reference_8259.h"
 
 namespace brick {
 namespace {
