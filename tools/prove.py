@@ -120,8 +120,8 @@ def build(rules, solvers, fault=None):
     others = f"delete t:$assert */{fault.rule} %d; " if fault else ""
     script = (f"read_verilog -sv -formal -defer {' '.join(map(str, sources))}; "
               f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules; "
-              f"proc -norom; flatten; memory_map; opt -full; {PREPARE[rules.clocks]}; {others}"
-              f"setundef -undriven -anyseq; opt_clean; write_smt2 -wires {stem}.smt2; "
+              f"proc -norom; flatten; setundef -undriven -anyseq; memory_map; opt -full; {PREPARE[rules.clocks]}; "
+              f"{others}opt_clean; write_smt2 -wires {stem}.smt2; "
               f"chformal -cover -remove; techmap; abc -g AND -fast; opt_clean; write_aiger -zinit {stem}.aig")
     model = solvers.out / f"{stem}.smt2"
     model.unlink(missing_ok=True)
