@@ -164,7 +164,7 @@ module board_top #(
     .sel_panel_o   (rd_panel),
     .sel_ic_o      (rd_ic)
   );
-  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic, rd_toggle, wr_toggle};
+  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
@@ -382,6 +382,8 @@ module board_top #(
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .small_i     (dpram_small_q),
+    .rd_toggle_i (rd_toggle),
+    .wr_toggle_i (wr_toggle),
     .cpu_sel_i   (dpram_sel),
     .cpu_x_i     (pa_x_i),
     .cpu_addr_i  (pa_addr_i[13:0]),
@@ -389,6 +391,7 @@ module board_top #(
     .cpu_wr_ni   (pa_wr_ni),
     .cpu_wdata_i (pa_wdata_i[15:0]),
     .cpu_rdata_o (dpram_rdata),
+    .cpu_wait_o  (pa_ta_n_o),
     .cpu_busy_o  (busy_cpu_o),
     .mem_sel_i   (mem_sel),
     .mem_rd_i    (mem_rd),
@@ -400,7 +403,6 @@ module board_top #(
     .mem_busy_o  (mem_busy),
     .host_busy_o (busy_host_o)
   );
-  assign pa_ta_n_o = busy_cpu_o;
 
   // ------------------------------------------------------------------ read data towards the CPU
   // Registered while a register region is addressed, so that a value is never torn; holds otherwise.

@@ -24,7 +24,7 @@ struct Least {
   unsigned dense, sparse;
 };
 constexpr std::pair<PinField, Least> kChanges[] = {
-    {pin::kPaData, {12000, 200}}, {pin::kPaTaN, {54, 0}},         {pin::kIrqHost, {60, 0}},
+    {pin::kPaData, {12000, 200}}, {pin::kPaTaN, {2700, 40}},      {pin::kIrqHost, {60, 0}},
     {pin::kPhase, {150, 80}},     {pin::kServo, {90, 60}},        {pin::kBreq, {42, 0}},
     {pin::kIpos, {42, 0}},        {pin::kEror, {42, 0}},          {pin::kF1er, {42, 0}},
     {pin::kIsaSd, {1500, 600}},   {pin::kIsaIochrdy, {12, 0}},    {pin::kIsaMemcs16N, {1500, 700}},
@@ -133,9 +133,9 @@ TEST(BoardLockstepControl, PinsThatRestAreNamed) {
   const Life life(board);
   BoardTraffic traffic(1);
   traffic.run(board, 1'000'000);
-  EXPECT_THAT(life.lacks(traffic, &Least::dense),
-              ::testing::ElementsAre("bus.ta_n: 0 of 54", "host.isa.iochrdy: 0 of 12", "dpram.busy_host: 0 of 12",
-                                     "dpram.busy_cpu: 0 of 54"));
+  EXPECT_THAT(
+      life.lacks(traffic, &Least::dense),
+      ::testing::ElementsAre("host.isa.iochrdy: 0 of 12", "dpram.busy_host: 0 of 12", "dpram.busy_cpu: 0 of 54"));
 }
 
 // What a reset does not clear and nobody has written: the DPRAM, which starts by another seed than the model's. The
