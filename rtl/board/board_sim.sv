@@ -47,7 +47,7 @@ module board_sim #(
   end
 
   logic [23:0] pa_data;
-  logic        pa_ta_n, irq_host;
+  logic        pa_data_oe, pa_ta_n, irq_host;
   logic [15:0] isa_sd;
   logic        isa_iochrdy, isa_memcs16_n, isa_irq;
   logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict;
@@ -64,6 +64,7 @@ module board_sim #(
     .pa_wr_ni          (inputs_i[0][26]),
     .pa_wdata_i        (inputs_i[1][23:0]),
     .pa_data_o         (pa_data),
+    .pa_data_oe_o      (pa_data_oe),
     .pa_ta_n_o         (pa_ta_n),
     .irq_host_o        (irq_host),
     .isa_sa_i          (inputs_i[2][19:0]),
@@ -144,7 +145,8 @@ module board_sim #(
   assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
                       isa_iochrdy, isa_sd};
   assign pins_o[2] = {elr, msk, sig, ist};
-  assign pins_o[3] = 32'h0;
+  assign pins_o[3][7:0]  = {7'h0, pa_data_oe};
+  assign pins_o[3][31:8] = 24'h0;
 
 endmodule : board_sim
 

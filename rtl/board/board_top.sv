@@ -2,8 +2,8 @@
 // pins to ISA pins. clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing
 // between them is synchronous. ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in
 // fitted_i), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
-// All outputs are registers or gates behind registers: they change at clock edges only. docs/architecture.md has the
-// map.
+// Outputs are registers or gates behind registers, but for what a strobe turns off without a clock.
+// docs/architecture.md has the map.
 `default_nettype none
 
 module board_top #(
@@ -22,6 +22,7 @@ module board_top #(
   input  wire logic        pa_wr_ni,
   input  wire logic [23:0] pa_wdata_i,
   output logic [23:0]      pa_data_o,
+  output logic             pa_data_oe_o,
   output logic             pa_ta_n_o,
   output logic             irq_host_o,
   // ISA
@@ -98,9 +99,9 @@ module board_top #(
   end
 
   // ------------------------------------------------------------------ Port A: synchroniser and decoding
-  logic [18:0] bus_addr, bus_rd_addr;
-  logic        bus_x, bus_rd_x, bus_int, bus_rd_int, bus_we, bus_rd_done;
-  logic [3:0]  bus_aa, bus_rd_aa;
+  logic [18:0] bus_addr;
+  logic        bus_x, bus_int, bus_we, bus_rd;
+  logic [3:0]  bus_aa;
   logic [23:0] bus_wdata;
 
   logic rd_toggle, wr_toggle;
@@ -112,18 +113,16 @@ module board_top #(
 
   bus_sync u_bus_sync (
     .clk_ref_i, .rst_ni,
-    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i,
-    .addr_o    (bus_addr),
-    .x_o       (bus_x),
-    .aa_o      (bus_aa),
-    .int_o     (bus_int),
-    .wdata_o   (bus_wdata),
-    .we_o      (bus_we),
-    .rd_done_o (bus_rd_done),
-    .rd_addr_o (bus_rd_addr),
-    .rd_x_o    (bus_rd_x),
-    .rd_aa_o   (bus_rd_aa),
-    .rd_int_o  (bus_rd_int)
+    .rd_toggle_i (rd_toggle),
+    .wr_toggle_i (wr_toggle),
+    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_wdata_i,
+    .addr_o  (bus_addr),
+    .x_o     (bus_x),
+    .aa_o    (bus_aa),
+    .int_o   (bus_int),
+    .wdata_o (bus_wdata),
+    .we_o    (bus_we),
+    .rd_o    (bus_rd)
   );
 
   logic        sel_any, sel_int, sel_signals, sel_strobe, sel_panel;
@@ -142,29 +141,8 @@ module board_top #(
     .sel_panel_o   (sel_panel),
     .sel_ic_o      (sel_ic)
   );
-
-  // Side effects of a read belong to the address one stage later: the CPU may have moved on by then.
-  logic       rd_done_int;
-  logic [5:0] int_addr;
-  assign rd_done_int = bus_rd_done & bus_rd_int;
-  assign int_addr    = rd_done_int ? bus_rd_addr[5:0] : bus_addr[5:0];
-  logic        rd_any, rd_int, rd_signals, rd_strobe, rd_panel, unused_rd;
-  logic [21:0] rd_ic;
-  address_decode u_read_decode (
-    .addr_i        (bus_rd_addr),
-    .x_i           (bus_rd_x),
-    .aa_i          (bus_rd_aa),
-    .int_i         (bus_rd_int),
-    .fitted_i      (fitted_q & IcMask),
-    .jpan_i        (jpan_fitted_q),
-    .sel_any_o     (rd_any),
-    .sel_int_o     (rd_int),
-    .sel_signals_o (rd_signals),
-    .sel_strobe_o  (rd_strobe),
-    .sel_panel_o   (rd_panel),
-    .sel_ic_o      (rd_ic)
-  );
-  assign unused_rd = &{1'b0, rd_any, rd_int, rd_signals, rd_strobe, rd_panel, rd_ic, sel_ic};
+  logic unused_sel;  // of ICs that are not built
+  assign unused_sel = &{1'b0, sel_ic};
 
   // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
   logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
@@ -188,9 +166,7 @@ module board_top #(
         .addr_i      (bus_addr[4:0]),
         .we_i        (bus_we),
         .wdata_i     (bus_wdata),
-        .read_done_i (bus_rd_done & rd_ic[i]),
-        .read_x_i    (bus_rd_x),
-        .read_addr_i (bus_rd_addr[4:0]),
+        .rd_i        (bus_rd),
         .rdata_o     (rdata),
         .phase_i     (phase_o),
         .servo_i     (servo_o),
@@ -328,10 +304,10 @@ module board_top #(
     .hp_addr_i     (hp_addr),
     .hp_wdata_i    (hp_wdata),
     .hp_rdata_o    (hp_rdata),
-    .dsp_sel_i     (sel_int | rd_done_int),
-    .dsp_we_i      (bus_we & sel_int),
-    .dsp_rd_done_i (rd_done_int),
-    .dsp_addr_i    (int_addr),
+    .dsp_sel_i     (sel_int),
+    .dsp_we_i      (bus_we),
+    .dsp_rd_i      (bus_rd),
+    .dsp_addr_i    (bus_addr[5:0]),
     .dsp_wdata_i   (bus_wdata),
     .dsp_rdata_o   (int_rdata),
     .hreq_o,
@@ -405,29 +381,32 @@ module board_top #(
   );
 
   // ------------------------------------------------------------------ read data towards the CPU
-  // Registered while a register region is addressed, so that a value is never torn; holds otherwise.
-  logic [23:0] rdata_d, rdata_q;
+  logic [23:0] reg_rdata, bus_rdata;
+  logic        bus_rdata_oe;
   always_comb begin
-    rdata_d = rdata_q;
-    if (sel_any) begin
-      if (sel_int)          rdata_d = int_rdata;
-      else if (sel_signals) rdata_d = {20'h0, signals_rdata};
-      else if (sel_panel)   rdata_d = {8'h0, panel_rdata};
-      else                  rdata_d = gen_macro_ic[21].rdata_chain;
-    end
+    reg_rdata = gen_macro_ic[21].rdata_chain;
+    if (sel_int)          reg_rdata = int_rdata;
+    else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
+    else if (sel_panel)   reg_rdata = {8'h0, panel_rdata};
   end
+  bus_read u_bus_read (
+    .clk_ref_i, .rst_ni, .pa_rd_ni,
+    .rd_i      (bus_rd),
+    .sel_any_i (sel_any),
+    .sel_int_i (sel_int),
+    .data_i    (reg_rdata),
+    .data_o    (bus_rdata),
+    .oe_o      (bus_rdata_oe)
+  );
 
-  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) rdata_q <= 24'h0;
-    else         rdata_q <= rdata_d;
-  end
-
+  // The dual-ported RAM answers on clk_pwm; its word is good when /TA says so.
   logic from_dpram_q;
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) from_dpram_q <= 1'b0;
     else         from_dpram_q <= dpram_sel;
   end
-  assign pa_data_o = from_dpram_q ? {8'h0, dpram_rdata} : rdata_q;
+  assign pa_data_o    = from_dpram_q ? {8'h0, dpram_rdata} : bus_rdata;
+  assign pa_data_oe_o = bus_rdata_oe | (from_dpram_q & ~pa_rd_ni);
 
 endmodule : board_top
 

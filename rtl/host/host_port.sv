@@ -20,7 +20,7 @@ module host_port (
   // CPU side
   input  wire logic        dsp_sel_i,
   input  wire logic        dsp_we_i,       // one clk_ref
-  input  wire logic        dsp_rd_done_i,  // one clk_ref at the end of a read
+  input  wire logic        dsp_rd_i,       // one clk_ref, at which a read takes its sample
   input  wire logic [5:0]  dsp_addr_i,     // low six bits of X:$FFFFxx
   input  wire logic [23:0] dsp_wdata_i,
   output logic [23:0]      dsp_rdata_o,
@@ -49,7 +49,7 @@ module host_port (
   assign host_wr       = hp_sel_i & hp_wr_i;
   assign host_rd_done  = hp_sel_i & hp_rd_done_i;
   assign cpu_wr        = dsp_sel_i & dsp_we_i;
-  assign horx_read     = dsp_sel_i & dsp_rd_done_i & (dsp_addr_i == Horx);
+  assign horx_read     = dsp_sel_i & dsp_rd_i & (dsp_addr_i == Horx);
   assign hotx_write    = cpu_wr & (dsp_addr_i == Hotx);
   assign data7_read    = host_rd_done & (hp_addr_i == Data7);
   assign data7_write   = host_wr & (hp_addr_i == Data7);

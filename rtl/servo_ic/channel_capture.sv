@@ -1,5 +1,6 @@
 // Position capture: one shot, triggered by the rising edge of the condition that I7mn2, I7mn3 and I7mn4 select; reading
-// X:+3 arms it again. A capture at the edge of that read wins. Clock clk_ref_i, asynchronous reset.
+// X:+3 arms it again, at the edge at which the read takes its sample. A capture at that edge wins.
+// Clock clk_ref_i, asynchronous reset.
 `default_nettype none
 
 module channel_capture (
@@ -20,7 +21,7 @@ module channel_capture (
   input  wire logic        gated_i,         // I7mn4
   input  wire logic [23:0] counter_d_i,     // position after this edge
   input  wire logic [11:0] fraction_d_i,
-  input  wire logic        read_i,          // this edge ends a read of X:+3
+  input  wire logic        read_i,          // this edge takes the sample of a read of X:+3
   output logic [23:0]      position_o,
   output logic [11:0]      fraction_o,
   output logic             captured_o,

@@ -104,11 +104,12 @@ module channel_regs (
         if ({x_i, addr_i} == OutB) out_b_q <= wdata_i;
         if ({x_i, addr_i} == OutC) out_c_q <= wdata_i;
       end
-      // Any write clears the error, a 0 clears the loss; both come back with the next SCLK if the cause lasts.
-      if (we_status || control_q[brick_regs_pkg::ServoChannelControlCounterResetLsb])     error_q <= 1'b0;
-      else if (error_i)                                                                   error_q <= 1'b1;
-      if (we_status && !wdata_i[brick_regs_pkg::ServoChannelStatusEncoderLossLsb])        loss_q  <= 1'b0;
-      else if (loss_i)                                                                    loss_q  <= 1'b1;
+      // Any write clears the error, a 0 clears the loss; what happens at that edge is not lost.
+      if (control_q[brick_regs_pkg::ServoChannelControlCounterResetLsb]) error_q <= 1'b0;
+      else if (error_i)                                                  error_q <= 1'b1;
+      else if (we_status)                                                error_q <= 1'b0;
+      if (loss_i)                                                                         loss_q <= 1'b1;
+      else if (we_status && !wdata_i[brick_regs_pkg::ServoChannelStatusEncoderLossLsb])   loss_q <= 1'b0;
     end
   end
 

@@ -12,7 +12,7 @@ module servo_channel (
   input  wire logic        sel_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
-  input  wire logic        read_capture_i,  // this edge ends a read of X:+3
+  input  wire logic        read_capture_i,  // this edge takes the sample of a read of X:+3
   output logic [23:0]      rdata_o,         // 0 when not selected
   // from the IC
   input  wire logic        trip_i,          // the watchdog has tripped

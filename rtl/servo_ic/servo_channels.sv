@@ -7,15 +7,13 @@ module servo_channels (
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  // bus: we_i is high for the one clk_ref edge that writes, read_done_i for the one that ends a read of read_addr_i
+  // bus: we_i is high for the one clk_ref edge that writes, rd_i for the one that takes rdata_o as a read's sample
   input  wire logic        sel_i,
   input  wire logic        x_i,
   input  wire logic [4:0]  addr_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
-  input  wire logic        read_done_i,
-  input  wire logic        read_x_i,
-  input  wire logic [4:0]  read_addr_i,
+  input  wire logic        rd_i,
   output logic [23:0]      rdata_o,       // 0 when not selected
   // from the registers and the clock chain of the IC
   input  wire logic        trip_i,
@@ -68,9 +66,7 @@ module servo_channels (
     sel          = 4'd0;
     read_capture = 4'd0;
     if (sel_i) sel[addr_i[4:3]] = 1'b1;
-    if (read_done_i && read_x_i && read_addr_i[2:0] == brick_regs_pkg::ServoChannelFlagPositionAddr[2:0]) begin
-      read_capture[read_addr_i[4:3]] = 1'b1;
-    end
+    if (rd_i && x_i && addr_i[2:0] == brick_regs_pkg::ServoChannelFlagPositionAddr[2:0]) read_capture = sel;
   end
 
   logic [95:0] rdata, counter;

@@ -13,9 +13,7 @@ module servo_ic (
   input  wire logic [4:0]  addr_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
-  input  wire logic        read_done_i,  // this clk_ref edge ends a read of the word below
-  input  wire logic        read_x_i,
-  input  wire logic [4:0]  read_addr_i,
+  input  wire logic        rd_i,         // this clk_ref edge takes rdata_o as a read's sample
   output logic [23:0]      rdata_o,
   // clock pins
   input  wire logic        phase_i,
@@ -65,7 +63,7 @@ module servo_ic (
   logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ, serial;
   servo_channels u_channels (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .read_done_i, .read_x_i, .read_addr_i, .rdata_o(channel_rdata),
+    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .rd_i, .rdata_o(channel_rdata),
     .trip_i, .dividers_i(clock_dividers), .dac_strobe_i(dac_strobe), .adc_strobe_i(adc_strobe), .deadtime_i(deadtime),
     .cnt_i(cnt), .turn_i(turn), .phase_rise_i(phase_rise), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
     .pins_i, .adc_a_i, .adc_b_i,

@@ -30,6 +30,7 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   if (!in_reset_) advance_all(now_);  // what has passed saw the old inputs
   inputs_ = inputs;
   bus_strobes_.set_pins(inputs_, inputs_.rst_n);
+  bus_read_.set_rd_n(inputs_.pa_rd_n);
   connect();
 }
 
@@ -46,7 +47,7 @@ void BoardTop::watch_motors(std::uint32_t ics) {
 void BoardTop::reset_all(Tick t) {
   each_block([t](ModelBlock& block) { block.reset(t); });
   gate_ics_.reset(t);
-  rdata_ = 0;
+  bus_read_.reset();
   from_dpram_ = false;
   take_straps(kNoStraps, t);
   connect();
@@ -58,28 +59,25 @@ void BoardTop::advance_all(Tick t) {
 
 // The edge t. Everything that looks at a register of another block does so before any block executes the edge.
 void BoardTop::execute(Tick t) {
-  const bool ref = is_ref_edge(t);
-  const bool write_ic = ref && bus_sync_.we() && select_.ic >= 0;
+  const bool ref = is_ref_edge(t), read = ref && bus_sync_.rd(), write = ref && bus_sync_.we();
   const BusSync::Where where = bus_sync_.where();
   const std::uint32_t wdata = bus_sync_.wdata();
-  if (ref && select_.any) rdata_ = read_data(t - 1);
-  const int written_ic = select_.ic;
-  const BusSync::Where read = bus_sync_.rd_where();
-  const int read_ic = ref && bus_sync_.rd_done()
-                          ? AddressDecode::decode(read, straps_.fitted & gate_ics_.built(), straps_.jpan_fitted).ic
-                          : -1;
+  const int ic = select_.ic;
+  if (read && select_.any)
+    bus_read_.take(read_data(t - 1), select_.internal);
+  else if (read)
+    bus_read_.take_nothing();
 
   advance_all(t);
   gate_ics_.advance(t);
   from_dpram_ = dpram_.in.cpu_sel;
   if (next_ref_edge(now_) <= t && straps_ != inputs_) take_straps(inputs_, t);
-  if (read_ic >= 0) gate_ics_.read_done(static_cast<unsigned>(read_ic), read.x, read.addr, t);
-  if (write_ic) gate_ics_.write(static_cast<unsigned>(written_ic), where.x, where.addr, wdata, t);
+  if (read && ic >= 0) gate_ics_.read_taken(static_cast<unsigned>(ic), where.x, where.addr, t);
+  if (write && ic >= 0) gate_ics_.write(static_cast<unsigned>(ic), where.x, where.addr, wdata, t);
   now_ = t;
   connect();
 }
 
-// After the edge t.
 std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
@@ -89,7 +87,7 @@ std::uint32_t BoardTop::read_data(Tick t) const {
 }
 
 void BoardTop::connect() {
-  bus_sync_.set_pins(inputs_);
+  bus_sync_.set_pins(inputs_, bus_strobes_);
   select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted);
   connect_clocks();
   connect_host();
@@ -112,12 +110,11 @@ void BoardTop::connect_clocks() {
 
 void BoardTop::connect_host() {
   // Port A side
-  const bool read_done = bus_sync_.rd_done() && bus_sync_.rd_where().internal;
   HostPort::Inputs& hp = host_port_.in;
-  hp.dsp_sel = select_.internal || read_done;
-  hp.dsp_we = bus_sync_.we() && select_.internal;
-  hp.dsp_rd_done = read_done;
-  hp.dsp_addr = (read_done ? bus_sync_.rd_where() : bus_sync_.where()).addr & 0x3F;
+  hp.dsp_sel = select_.internal;
+  hp.dsp_we = bus_sync_.we();
+  hp.dsp_rd = bus_sync_.rd();
+  hp.dsp_addr = bus_sync_.where().addr & 0x3F;
   hp.dsp_wdata = bus_sync_.wdata();
   panel_port_.jpan = inputs_.jpan;
   host_signals_.in.wr = bus_sync_.we() && select_.signals;
@@ -180,7 +177,7 @@ std::uint32_t BoardTop::selected_lines() const {
 BoardOutputs BoardTop::pins() const {
   const auto at = [](const PinField& f, std::uint32_t value) { return value << f.lsb; };
   BoardOutputs o;
-  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : rdata_) | at(pin::kPaTaN, dpram_.cpu_wait()) |
+  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : bus_read_.data()) | at(pin::kPaTaN, dpram_.cpu_wait()) |
            at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) |
            at(pin::kServo, clock_select_.servo()) | at(pin::kBreq, host_signals_.breq()) |
            at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
@@ -192,6 +189,7 @@ BoardOutputs BoardTop::pins() const {
            at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
   o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
            at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
+  o.w[3] = at(pin::kPaDataOe, data_oe());
   return o;
 }
 
@@ -220,10 +218,8 @@ bool BoardTop::show_motors() {
 Tick BoardTop::next_event() const {
   Tick next = gate_ics_.next_event();
   each_block([&next](const auto& block) { next = std::min(next, block.next_event()); });
-  if (from_dpram_ != dpram_.in.cpu_sel) next = now_ + 1;
-  if (select_.ic >= 0) next = std::min(next, gate_ics_.next_word_event(static_cast<unsigned>(select_.ic), now_));
+  if (from_dpram_ != dpram_.in.cpu_sel || data_oe() != (outputs_.get(pin::kPaDataOe) != 0)) next = now_ + 1;
   if (straps_ != inputs_) next = std::min(next, next_ref_edge(now_));
-  if (select_.any && next > next_ref_edge(now_) && read_data(now_) != rdata_) next = next_ref_edge(now_);
   return next;
 }
 

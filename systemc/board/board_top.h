@@ -13,6 +13,7 @@
 #include <systemc>
 
 #include "systemc/board/address_decode.h"
+#include "systemc/board/bus_read.h"
 #include "systemc/board/bus_strobes.h"
 #include "systemc/board/bus_sync.h"
 #include "systemc/board/clock_select.h"
@@ -70,9 +71,10 @@ class BoardTop : public sc_core::sc_module, public Board {
   void connect_clocks();
   void connect_host();
   BoardOutputs pins() const;
-  bool show_pins();    // updates outputs_ after an edge; true when a selected pin changed
-  bool show_motors();  // the same for the watched ICs
-  std::uint32_t read_data(Tick t) const;
+  bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed
+  bool show_motors();                     // the same for the watched ICs
+  std::uint32_t read_data(Tick t) const;  // of the selected register, after the edge t
+  bool data_oe() const { return bus_read_.oe() || (from_dpram_ && !inputs_.pa_rd_n); }
   void take_straps(const Straps& straps, Tick t);
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
   Tick next_event() const;
@@ -80,6 +82,7 @@ class BoardTop : public sc_core::sc_module, public Board {
 
   BusStrobes bus_strobes_;
   BusSync bus_sync_;
+  BusRead bus_read_;
   AddressDecode address_decode_;
   ClockSelect clock_select_;
   Watchdog watchdog_;
@@ -94,8 +97,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   BoardInputs inputs_;
   static constexpr Straps kNoStraps{0, 0, false, false, 0, false};
   Straps straps_ = kNoStraps;  // as taken over on clk_ref
-  AddressSelect select_;       // of the address in stage 1
-  std::uint32_t rdata_ = 0;    // registered read data
+  AddressSelect select_;       // of the address in bus_sync
   bool from_dpram_ = false;    // read data pins show the dual-ported RAM
   bool in_reset_ = true;
   Tick now_ = 0;

@@ -70,10 +70,10 @@ std::uint32_t GateIcs::read(unsigned ic, bool x, std::uint32_t addr, Tick t) con
   return servo_ic_[ic]->read(x, addr & 31);
 }
 
-void GateIcs::read_done(unsigned ic, bool x, std::uint32_t addr, Tick t) {
+void GateIcs::read_taken(unsigned ic, bool x, std::uint32_t addr, Tick t) {
   if (ic >= kServoIcs) return;
   catch_up(ic, t);
-  servo_ic_[ic]->read_done(x, addr & 31);
+  servo_ic_[ic]->read_taken(x, addr & 31);
 }
 
 void GateIcs::write(unsigned ic, bool x, std::uint32_t addr, std::uint32_t value, Tick t) {
@@ -86,12 +86,6 @@ void GateIcs::write(unsigned ic, bool x, std::uint32_t addr, std::uint32_t value
   }
   drive(ic);
   show_drivers();
-}
-
-Tick GateIcs::next_word_event(unsigned ic, Tick now) const {
-  if (ic >= kServoIcs) return kNever;
-  catch_up(ic, now);
-  return servo_ic_[ic]->next_word_event();
 }
 
 void GateIcs::set_clocks(bool phase, bool servo, Tick now) {

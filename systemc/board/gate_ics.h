@@ -41,10 +41,8 @@ class GateIcs {
 
   // Registers; `ic` as in BoardInputs::fitted. The edges up to t have been executed with the inputs as they were set.
   std::uint32_t read(unsigned ic, bool x, std::uint32_t addr, Tick t) const;
-  void read_done(unsigned ic, bool x, std::uint32_t addr, Tick t);
+  void read_taken(unsigned ic, bool x, std::uint32_t addr, Tick t);
   void write(unsigned ic, bool x, std::uint32_t addr, std::uint32_t value, Tick t);
-  // Of an IC that is being read; the word may read differently from that edge on.
-  Tick next_word_event(unsigned ic, Tick now) const;
 
   // Inputs, for the edges after `now`.
   void set_clocks(bool phase, bool servo, Tick now);

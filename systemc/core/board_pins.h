@@ -1,7 +1,7 @@
 // The pins of the controller board, as every engine shows them: the Verilated RTL (rtl/board/board_sim.sv packs the
 // same words), the SystemC model, and lock-step, which compares the packed words tick by tick. All outputs are
-// registered: they change only at a clock edge. All inputs are sampled by the first clock edge after they were applied.
-// Active-low pins end in _n.
+// registered: they change only at a clock edge, or without one when a strobe ends. All inputs are sampled by the first
+// clock edge after they were applied. Active-low pins end in _n.
 #pragma once
 
 #include <array>
@@ -105,10 +105,11 @@ constexpr PinField kPicIst{"host.pic.ist", 2, 0, 8, true};
 constexpr PinField kPicSig{"host.pic.sig", 2, 8, 8, true};
 constexpr PinField kPicMsk{"host.pic.msk", 2, 16, 8, true};
 constexpr PinField kPicElr{"host.pic.elr", 2, 24, 8, true};
-inline constexpr std::array kAll{kPaData,      kPaTaN,          kIrqHost, kPhase,     kServo,      kBreq,
-                                 kIpos,        kEror,           kF1er,    kIsaSd,     kIsaIochrdy, kIsaMemcs16N,
-                                 kIsaIrq,      kHreq,           kWdo,     kWdTripped, kBusyHost,   kBusyCpu,
-                                 kPhaseSource, kSourceConflict, kPicIst,  kPicSig,    kPicMsk,     kPicElr};
+constexpr PinField kPaDataOe{"bus.rdata_oe", 3, 0, 1, false};  // 1 = the board drives D: /RD is low and the word stands
+inline constexpr std::array kAll{kPaData, kPaTaN,     kIrqHost,  kPhase,      kServo,       kBreq,           kIpos,
+                                 kEror,   kF1er,      kIsaSd,    kIsaIochrdy, kIsaMemcs16N, kIsaIrq,         kHreq,
+                                 kWdo,    kWdTripped, kBusyHost, kBusyCpu,    kPhaseSource, kSourceConflict, kPicIst,
+                                 kPicSig, kPicMsk,    kPicElr,   kPaDataOe};
 }  // namespace pin
 
 struct BoardOutputs {

@@ -45,14 +45,17 @@ class RtlBoard : public Board {
     model_ = std::make_unique<Model>(&context_, "");
     model_->start_seed_i = start_seed(options.seed);
     model_->seeded_bug_i = options.seeded_bug;
-    // Asynchronous reset acts on an edge of rst_ni, so it must have been high once. Power-on is tick 0, in reset.
+    // What acts without a clock acts on an edge here: rst_ni must have been high once, and /RD, which turns the data
+    // pins off, low. Power-on is tick 0, in reset.
     BoardInputs start;
     start.fitted = fitted;
     start.rst_n = true;
+    start.pa_rd_n = false;
     set_inputs(start);
     for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) set_motor_inputs(ic, {});
     model_->eval();
     start.rst_n = false;
+    start.pa_rd_n = true;
     set_inputs(start);
     model_->eval();
     for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = model_->pins_o[i];

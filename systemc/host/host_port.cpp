@@ -86,7 +86,7 @@ std::uint32_t HostPort::cpu_read(unsigned addr) const {
 
 bool HostPort::idle() const {
   const bool host = in.hp_sel && (in.hp_wr || in.hp_rd_done);
-  const bool cpu = in.dsp_sel && (in.dsp_we || in.dsp_rd_done);
+  const bool cpu = in.dsp_sel && (in.dsp_we || in.dsp_rd);
   return !host && !cpu && !tx_move() && !rx_move();
 }
 
@@ -102,7 +102,7 @@ void HostPort::step() {
     rx_ = hotx_;
     rxdf_ = htde_ = true;
   }
-  if (in.dsp_sel && in.dsp_rd_done && in.dsp_addr == kHorx && hrdf_before) hrdf_ = false;
+  if (in.dsp_sel && in.dsp_rd && in.dsp_addr == kHorx && hrdf_before) hrdf_ = false;
   if (in.hp_sel && in.hp_rd_done && in.hp_addr == kData7 && rxdf_before) rxdf_ = false;
   if (in.dsp_sel && in.dsp_we) cpu_write();
   if (in.hp_sel && in.hp_wr) host_write();
@@ -206,7 +206,7 @@ void HostPort::cpu_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time
   in.dsp_addr = static_cast<std::uint8_t>(kHcr + payload.get_address() / 8);
   if (payload.is_read()) {
     set_payload_value(payload, x ? cpu_read(in.dsp_addr) : std::uint32_t{0});
-    in.dsp_rd_done = true;
+    in.dsp_rd = true;
   } else {
     in.dsp_we = true;
     in.dsp_wdata = payload_value<std::uint32_t>(payload);

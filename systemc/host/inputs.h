@@ -24,7 +24,7 @@ struct HostPortInputs {
   bool hp_sel = false, hp_rd_done = false, hp_wr = false;
   std::uint8_t hp_addr = 0;  // 0..7
   std::uint8_t hp_wdata = 0;
-  bool dsp_sel = false, dsp_we = false, dsp_rd_done = false;
+  bool dsp_sel = false, dsp_we = false, dsp_rd = false;
   std::uint8_t dsp_addr = 0;  // low six bits of X:$FFFFxx
   std::uint32_t dsp_wdata = 0;
 };

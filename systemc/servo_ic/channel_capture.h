@@ -55,7 +55,7 @@ class ChannelCapture {
     if (hall_mode) hall_ = halls;
     captured_at_ = t;
   }
-  // A read of X:+3 ends at the edge t, which has been executed. A capture at that edge wins.
+  // A read of X:+3 took its sample at the edge t, which has been executed. A capture at that edge wins.
   void read(Tick t) {
     if (captured_at_ == t) return;
     armed_ = true;

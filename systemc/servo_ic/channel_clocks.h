@@ -15,7 +15,8 @@ class ChannelDivider {
  public:
   void reset(Tick t) { *this = {next_ref_edge(t), t, 0}; }
 
-  Tick next() const { return next_; }  // edge that starts the next period
+  Tick start() const { return start_; }  // edge that started the present period
+  Tick next() const { return next_; }    // and the next one
   Tick mid() const { return start_ + (kTicksPerRef << n_) / 2; }
   bool fast() const { return n_ == 0; }  // the present period is one clk_ref long, without a middle
 

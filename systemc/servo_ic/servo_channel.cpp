@@ -86,7 +86,7 @@ std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) c
   }
 }
 
-void ServoChannel::write(Tick now, bool x, unsigned offset, std::uint32_t value, bool trip) {
+void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint32_t value, bool trip) {
   settle_ = 0;
   switch (word(x, offset)) {
     case word(words::kTimer1):
@@ -108,8 +108,8 @@ void ServoChannel::write(Tick now, bool x, unsigned offset, std::uint32_t value,
       compare_.set_a(value);
       break;
     case word(words::kStatus):
-      error_ = false;
-      loss_ = loss_ && status_bits::kEncoderLoss.is_set(value);
+      error_ = sclk && error_now_ && !hold();
+      loss_ = (sclk && loss_now_) || (loss_ && status_bits::kEncoderLoss.is_set(value));
       break;
     case word(words::kControl):
       subcount_.advance(now, fine());
@@ -201,8 +201,10 @@ ChannelPosition ServoChannel::sclk(Tick edge, const ChannelPosition* channel1) {
   subcount_.sclk(edge, fine(), d.count, d.echo, reversed, counter_.t1());
   capture_.sclk(edge, ready, index, level, control_, hold() ? 0 : counter_.counter(),
                 d.count ? (d.down ? 4095 : 0) : old_fraction);
-  error_ = (error_ || d.error) && !hold();
-  if (ready && index_.sclk(pins)) loss_ = true;
+  error_now_ = d.error;
+  error_ = (error_ || error_now_) && !hold();
+  loss_now_ = ready && index_.sclk(pins);
+  loss_ = loss_ || loss_now_;
   input_.sclk(edge);
 
   if (settle_ < kSettled) ++settle_;

@@ -29,8 +29,9 @@ class ServoChannel {
 
   // Registers, offset 0..7, after all edges up to `now` have been executed.
   std::uint32_t read(Tick now, bool x, unsigned offset, bool trip) const;
-  void write(Tick now, bool x, unsigned offset, std::uint32_t value, bool trip);
-  void read_done(Tick now) { capture_.read(now); }  // of X:+3
+  // `sclk`: this edge is one of SCLK.
+  void write(Tick now, bool sclk, bool x, unsigned offset, std::uint32_t value, bool trip);
+  void read_taken(Tick now) { capture_.read(now); }  // of X:+3
 
   void set_pins(Tick now, unsigned pins);  // bits by ChannelPin
 
@@ -117,6 +118,7 @@ class ServoChannel {
   Tick equ_write_until_ = 0;  // edge at which EQU write falls back
   std::array<std::uint32_t, 3> out_{};
   bool error_ = false, loss_ = false;
+  bool error_now_ = false, loss_now_ = false;  // at the last SCLK; while settled at each
   unsigned settle_ = 0;
   unsigned servo_fraction_ = 0;
 

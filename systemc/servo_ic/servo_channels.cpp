@@ -15,7 +15,7 @@ void ServoChannels::reset(Tick t) {
 }
 
 void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
-  channel_[offset >> 3].write(now_, x, offset & 7, value, in.trip);
+  channel_[offset >> 3].write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
 }
 
 void ServoChannels::advance(Tick t) {
@@ -108,19 +108,6 @@ Tick ServoChannels::next_event() const {
     if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
     if (!pfm.run && channel.pfm().pulse()) next = std::min(next, ref);
     if (!in.trip) next = std::min(next, channel.next_pwm_event(now_, in.line));
-  }
-  return next;
-}
-
-Tick ServoChannels::next_word_event() const {
-  const Tick ref = next_ref_edge(now_);
-  if (phase_rises_ != in.phase_rises || phase_falls_ != in.phase_falls || servo_falls_ != in.servo_falls) return ref;
-  Tick next = kNever;
-  for (const ServoChannel& channel : channel_) {
-    if (!channel.quiet(now_)) return ref;
-    if (!channel.settled()) next = std::min(next, sclk_.next());
-    const std::int64_t periods = channel.pfm().periods_to_pulse(channel.pfm_inputs(in.trip, in.deadtime));
-    if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
   }
   return next;
 }

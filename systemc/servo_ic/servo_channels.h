@@ -35,11 +35,12 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   Inputs in;
   void set_pins(unsigned channel, unsigned pins) { channel_[channel].set_pins(now_, pins); }  // channel 0..3
 
-  // Registers, offset 0..31, as they stand after the last executed edge, which also executes a write or ends a read.
+  // Registers, offset 0..31, as they stand after the last executed edge, which also executes a write or takes the
+  // sample of a read.
   std::uint32_t read(bool x, unsigned offset) const { return channel_[offset >> 3].read(now_, x, offset & 7, in.trip); }
   void write(bool x, unsigned offset, std::uint32_t value);
-  void read_done(bool x, unsigned offset) {
-    if (x && (offset & 7) == regs::servo_channel::kFlagPosition.address) channel_[offset >> 3].read_done(now_);
+  void read_taken(bool x, unsigned offset) {
+    if (x && (offset & 7) == regs::servo_channel::kFlagPosition.address) channel_[offset >> 3].read_taken(now_);
   }
   void turn() {
     for (ServoChannel& channel : channel_) channel.load_pwm();
@@ -74,7 +75,6 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
 
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
   Tick next_event() const override;
-  Tick next_word_event() const;                  // first edge after which a word of a channel may read differently
   Tick next_equ_event(unsigned channels) const;  // no edge before it changes EQU of one of them, bit n-1 for channel n
   void advance(Tick t) override;                 // not beyond the end of the line
   void reset(Tick t) override;

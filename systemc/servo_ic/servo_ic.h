@@ -27,7 +27,8 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
   // Registers as they stand after the last executed edge; a write is executed by that edge, so call advance() first.
   std::uint32_t read(bool x, unsigned offset) const { return regs_.read(x, offset) | channels_.read(x, offset); }
   void write(bool x, unsigned offset, std::uint32_t value);
-  void read_done(bool x, unsigned offset) { channels_.read_done(x, offset); }  // the last executed edge ended a read
+  // The last executed edge took the word, as it stood before, as the sample of a read.
+  void read_taken(bool x, unsigned offset) { channels_.read_taken(x, offset); }
 
   // Motor side: pins of a channel (0..3) as status bits 23..12 show them, and whether the watchdog has tripped.
   void set_channel_pins(unsigned channel, unsigned pins) { channels_.set_pins(channel, pins); }
@@ -50,9 +51,8 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
   bool servo() const { return clock_gen_.servo(); }
   const ClockGen& clock_gen() const override { return clock_gen_; }
 
-  // Clock pins only; the words that a read may show, the motor outputs and EQU can change from the others on.
+  // Clock pins only; motor outputs and EQU can change from the others on.
   Tick next_event() const override { return clock_gen_.next_event(); }
-  Tick next_word_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_word_event()); }
   Tick next_motor_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_event()); }
   Tick next_equ_event(unsigned channels) const { return channels_.next_equ_event(channels); }
   void advance(Tick t) override;

@@ -220,8 +220,8 @@ TEST_P(BoardOn, HostSignalLatchReadsBackAndDrivesItsPins) {
   }
 }
 
-// A write takes place at the second clk_ref edge that sees /WR low: edges n (first) and n + 1.
-TEST_P(BoardOn, WriteTakesPlaceAtTheSecondReferenceEdge) {
+// A write takes place at the third clk_ref edge that sees /WR low (host-bus:2.6).
+TEST_P(BoardOn, WriteTakesPlaceAtTheThirdReferenceEdge) {
   while (rig.now() % 3 != 0) rig.run(1);
   rig.in.pa_addr = kHostSignals;
   rig.in.pa_x = true;
@@ -229,18 +229,19 @@ TEST_P(BoardOn, WriteTakesPlaceAtTheSecondReferenceEdge) {
   rig.in.pa_wr_n = false;
   rig.apply();
   const Tick start = rig.now();
-  EXPECT_EQ(rig.edge(pin::kBreq, 1, 100) - start, 6);
+  EXPECT_EQ(rig.edge(pin::kBreq, 1, 100) - start, 9);
 }
 
-// The edge after the one that first saw the address loads the read data.
-TEST_P(BoardOn, ReadDataIsThereAtTheSecondReferenceEdge) {
+// A read takes its sample at the third that sees /RD low.
+TEST_P(BoardOn, ReadDataIsThereAtTheThirdReferenceEdge) {
   while (rig.now() % 3 != 0) rig.run(1);
   rig.in.pa_addr = 0x7801C;
   rig.in.pa_x = true;
   rig.in.pa_aa = 2;
+  rig.in.pa_rd_n = false;
   rig.apply();
   const Tick start = rig.now();
-  EXPECT_EQ(rig.edge(pin::kPaData, 0x197F0F, 100) - start, 6);
+  EXPECT_EQ(rig.edge(pin::kPaData, 0x197F0F, 100) - start, 9);
 }
 
 // 960 periods of 39.3216 MHz / 1024 are 25 ms. Both timers start at reset; the clock of the timers is free-running.

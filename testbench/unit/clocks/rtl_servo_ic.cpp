@@ -10,11 +10,11 @@ void drive(Vservo_ic& v, const ServoIcInputs& in) {
   v.rst_ni = in.rst_n;
   v.trip_i = in.trip;
   v.sel_i = in.sel;
-  v.x_i = v.read_x_i = in.x;
-  v.addr_i = v.read_addr_i = in.addr & 31;
+  v.x_i = in.x;
+  v.addr_i = in.addr & 31;
   v.we_i = in.we;
   v.wdata_i = in.wdata & 0xFFFFFF;
-  v.read_done_i = in.read_done;
+  v.rd_i = in.rd;
   v.phase_i = in.phase;
   v.servo_i = in.servo;
   v.pins_i = in.pins[0] | QData{in.pins[1]} << 12 | QData{in.pins[2]} << 24 | QData{in.pins[3]} << 36;

@@ -9,7 +9,7 @@ namespace brick {
 
 struct ServoIcInputs {
   bool rst_n = true, trip = false;
-  bool sel = true, x = false, we = false, read_done = false;  // read_done: of the same word
+  bool sel = true, x = false, we = false, rd = false;
   unsigned addr = 0;
   std::uint32_t wdata = 0;
   bool phase = true, servo = true;

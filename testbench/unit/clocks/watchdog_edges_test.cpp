@@ -26,9 +26,9 @@ class WatchdogEdges : public ::testing::TestWithParam<bool> {
     rig.in.ext_servo = level;
     rig.apply();
   }
-  // A write takes place at the second reference edge from a strobe that falls at one.
+  // A write takes place at the third reference edge from a strobe that falls at one.
   void strobe_at(Tick edge) {
-    run_to(edge - 6);
+    run_to(edge - 9);
     rig.in.pa_addr = kWatchdogStrobe;
     rig.in.pa_x = true;
     rig.in.pa_wr_n = false;

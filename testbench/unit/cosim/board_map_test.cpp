@@ -78,12 +78,11 @@ class BoardMap : public ::testing::TestWithParam<bool> {
     rig.apply();
     rig.run(6);
   }
-  void on_chip_read_begins(unsigned address) {
+  void begin_on_chip_read(unsigned address) {
     rig.in.pa_addr = address & 0x3F;
     rig.in.pa_x = rig.in.pa_int = true;
     rig.in.pa_rd_n = false;
     rig.apply();
-    rig.run(12);
   }
 
   BoardRig rig;
@@ -111,25 +110,31 @@ TEST_P(BoardMap, ControlPanelPortShowsItsInputs) {
     EXPECT_EQ(rig.read(false, other), 0u);
 }
 
-// The word follows the pins while the CPU looks at it: two edges of clk_ref through the port, one into the read data
-// register.
+// Two edges of clk_ref through the port, then a read's sample: the word that it takes at an edge has pins that moved
+// before the edge two earlier, and it keeps that word whatever follows.
 TEST_P(BoardMap, ControlPanelInputsPassTwoStages) {
   rig.in.jpan_fitted = true;
   rig.in.pa_addr = 0x078800;
   rig.in.pa_x = false;
   rig.in.pa_aa = 2;
-  rig.in.pa_rd_n = false;
   rig.apply();
-  rig.run(31 - rig.now() % 3);
-  const Tick start = rig.now() + (3 - rig.now() % 3) - 1;  // the next edge is one of clk_ref
-  rig.board().run_until(start);
-  ASSERT_EQ(rig.get(pin::kPaData), 0xFFFFu);
-  rig.in.jpan = 0xFDFF;
-  rig.apply();
-  rig.run(1 + 3 + 2);
-  EXPECT_EQ(rig.get(pin::kPaData), 0xFFFFu);
-  rig.run(1);
-  EXPECT_EQ(rig.get(pin::kPaData), 0xFDFFu);
+  for (const Tick late : {0, 1}) {
+    rig.in.jpan = 0xFFFF;
+    rig.apply();
+    rig.run(30 + (3 - rig.now() % 3) - 1);  // the next edge is one of clk_ref
+    rig.in.pa_rd_n = false;                 // first seen there; its sample is taken two of clk_ref later
+    rig.apply();
+    rig.run(late);
+    rig.in.jpan = 0xFDFF;
+    rig.apply();
+    rig.run(7 - late);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 1u);
+    EXPECT_EQ(rig.get(pin::kPaData), late == 0 ? 0xFDFFu : 0xFFFFu);
+    rig.run(30);
+    EXPECT_EQ(rig.get(pin::kPaData), late == 0 ? 0xFDFFu : 0xFFFFu) << "one sample a read";
+    rig.in.pa_rd_n = true;
+    rig.apply();
+  }
 }
 
 // host-bus:6.1: 8192 words are $060000..$060FFF, host 0x0000..0x3FFF.
@@ -273,18 +278,97 @@ TEST_P(BoardMap, BusyStretchesTheCycleOfTheLaterSide) {
   end(&BoardInputs::isa_memw_n);
 }
 
-// docs/architecture.md, Port A: the side effect of a read belongs to its end. HRDF falls when HORX has been read.
-TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsEnd) {
+// docs/port-a.md: the word of a read and its side effect are of one edge, the third of clk_ref that sees /RD low. HRDF
+// falls when HORX has been read. On the on-chip page no pin is driven.
+TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsSample) {
   on_chip_write(0xFFFFC2, 1);  // HRIE
-  io_write(7, 0x41);
-  ASSERT_EQ(rig.get(pin::kIrqHost), 1u);
-  on_chip_read_begins(0xFFFFC6);
-  EXPECT_EQ(rig.get(pin::kPaData), 0x41u);
-  EXPECT_EQ(rig.get(pin::kIrqHost), 1u) << "still being read";
-  rig.in.pa_rd_n = true;
-  rig.apply();
-  rig.run(9);
-  EXPECT_EQ(rig.get(pin::kIrqHost), 0u);
+  for (Tick first = 1; first <= 3; ++first) {
+    io_write(7, static_cast<std::uint16_t>(0x40 + first));
+    rig.run(30);
+    rig.run(6 - first - rig.now() % 3);  // the edge of clk_ref that first sees /RD low is so many ticks away
+    begin_on_chip_read(0xFFFFC6);
+    rig.run(first + 5);
+    EXPECT_EQ(rig.get(pin::kIrqHost), 1u) << "before the sample";
+    rig.run(1);
+    EXPECT_EQ(rig.get(pin::kIrqHost), 0u) << first;
+    EXPECT_EQ(rig.get(pin::kPaData), 0x40u + static_cast<std::uint32_t>(first));
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u);
+    io_write(7, 0x55);  // /RD still low
+    EXPECT_EQ(rig.get(pin::kPaData), 0x40u + static_cast<std::uint32_t>(first));
+    rig.in.pa_rd_n = true;
+    rig.apply();
+    rig.run(9);
+    EXPECT_EQ(rig.get(pin::kIrqHost), 1u) << "the end of the cycle takes nothing more";
+    begin_on_chip_read(0xFFFFC6);
+    rig.run(9);
+    EXPECT_EQ(rig.get(pin::kPaData), 0x55u);
+    rig.in.pa_rd_n = true;
+    rig.apply();
+  }
+}
+
+// docs/port-a.md: the board drives the bus from the sample on and no longer than /RD is low.
+TEST_P(BoardMap, DataPinsAreDrivenFromTheSampleToTheEndOfTheRead) {
+  struct Case {
+    std::uint32_t address;
+    std::uint8_t aa;
+    std::uint32_t oe;
+  };
+  for (const Case& c : {Case{kHostSignals, 0, 1},
+                        {kServoIcBase[0], 2, 1},
+                        {0x078020, 2, 1},
+                        {kHostSignals, 2, 0},
+                        {0x050000, 0, 0},
+                        {kServoIcBase[0], 8, 0}}) {
+    SCOPED_TRACE(::testing::Message() << std::hex << c.address << " AA " << unsigned{c.aa});
+    rig.run(30);
+    rig.run(3 - rig.now() % 3);
+    rig.in.pa_addr = c.address;
+    rig.in.pa_x = true;
+    rig.in.pa_aa = c.aa;
+    rig.in.pa_rd_n = false;
+    rig.apply();
+    rig.run(8);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u) << "the third edge of clk_ref has not come";
+    rig.run(1);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), c.oe);
+    rig.run(40);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), c.oe);
+    rig.in.pa_rd_n = true;
+    rig.apply();
+    rig.run(1);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u) << "off with /RD";
+    rig.in.pa_rd_n = false;
+    rig.apply();
+    rig.run(5);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u) << "the next read has its own sample";
+    rig.in.pa_rd_n = true;
+    rig.apply();
+    rig.run(9);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u) << "too short for one";
+  }
+}
+
+// /WR high for a tick only, less than a period of clk_ref: each of the writes is made, once.
+TEST_P(BoardMap, WritesBackToBackDoNotMerge) {
+  for (Tick phase = 0; phase < 3; ++phase) {
+    rig.write(true, kHostSignals, 0);
+    rig.run(30 + phase);
+    rig.in.pa_x = true;
+    rig.in.pa_addr = kHostSignals;
+    rig.apply();
+    for (const std::uint32_t value : {0x1u, 0x3u, 0x7u}) {
+      rig.in.pa_wr_n = false;
+      rig.apply();
+      rig.in.pa_wdata = value;  // behind the strobe
+      rig.apply();
+      rig.run(9);
+      EXPECT_EQ(rig.get(pin::kIpos) | rig.get(pin::kBreq) << 1 | rig.get(pin::kEror) << 2, value) << phase;
+      rig.in.pa_wr_n = true;
+      rig.apply();
+      rig.run(1);
+    }
+  }
 }
 
 // servo-ic:7.2: the lowest-numbered driver wins each net; here only SERVO has two.

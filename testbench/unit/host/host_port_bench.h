@@ -59,9 +59,9 @@ class HostPortTest : public ::testing::Test {
   }
   std::uint32_t cpu_read(std::uint8_t addr) {
     const std::uint32_t value = cpu_peek(addr);
-    both_.in.dsp_sel = both_.in.dsp_rd_done = true;
+    both_.in.dsp_sel = both_.in.dsp_rd = true;
     both_.ref();
-    both_.in.dsp_sel = both_.in.dsp_rd_done = false;
+    both_.in.dsp_sel = both_.in.dsp_rd = false;
     return value;
   }
   void host_send(std::uint32_t word) {  // HLEND = 0
@@ -87,7 +87,7 @@ class HostPortTest : public ::testing::Test {
         in.dsp_addr = static_cast<std::uint8_t>(random() % 8 ? 2 + random() % 6 : random() % 64);
         in.dsp_wdata = random() & 0xFFFFFF;
         in.dsp_we = random() % 4 == 0;
-        in.dsp_rd_done = !in.dsp_we && random() % 3 == 0;
+        in.dsp_rd = !in.dsp_we && random() % 3 == 0;
         in.dsp_sel = random() % 8 != 0;
       }
       if (random() % 3000 == 0) both_.reset();

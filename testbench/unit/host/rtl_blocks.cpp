@@ -39,7 +39,7 @@ void drive(Vhost_port& v, const HostPortInputs& in) {
   v.hp_wdata_i = in.hp_wdata;
   v.dsp_sel_i = in.dsp_sel;
   v.dsp_we_i = in.dsp_we;
-  v.dsp_rd_done_i = in.dsp_rd_done;
+  v.dsp_rd_i = in.dsp_rd;
   v.dsp_addr_i = in.dsp_addr;
   v.dsp_wdata_i = in.dsp_wdata;
 }

@@ -68,9 +68,9 @@ class BitsRig {
   // With the side effect of a bus read.
   std::uint32_t read(bool x, unsigned addr) {
     const std::uint32_t word = peek(x, addr);
-    in.read_done = true;
+    in.rd = true;
     to_ref(x, addr);
-    in.read_done = false;
+    in.rd = false;
     return word;
   }
   // The same by name: a word of the IC, a word of a channel (1..4).

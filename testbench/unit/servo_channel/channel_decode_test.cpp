@@ -96,19 +96,22 @@ TEST_F(ChannelDecodeTest, ErrorOfEachQuadratureModeCountsNothing) {
   }
 }
 
-// A code that is none is an error for as long as it stands: cleared, the bit is set again by the next SCLK. A jump over
-// one or two codes is an error once.
+// A code that is none is an error for as long as it stands: cleared, the bit is set again by the next SCLK, and a clear
+// at the edge of an SCLK, one of the four edges of its period, clears nothing. A jump over one or two codes is an error
+// once.
 TEST_F(ChannelDecodeTest, HallCodesThatAreNoneLastAndJumpsDoNot) {
   control(1, decode_mode(regs::decode::kHallCw));
   for (const unsigned none : {0u, 7u}) {
     rig_.in.pins[0] = none;
     rig_.ticks(kHold);
+    unsigned cleared = 0;
     for (Tick phase = 0; phase < kSclk; phase += kTicksPerRef) {
       clear_error();
-      EXPECT_FALSE(status(1, status_bit::kEncoderError)) << "a write beats the cause at the same edge";
+      cleared += !status(1, status_bit::kEncoderError);
       rig_.ticks(kSclk);
       EXPECT_TRUE(status(1, status_bit::kEncoderError)) << none;
     }
+    EXPECT_EQ(cleared, 3u) << none;
   }
   rig_.in.pins[0] = 4;  // 001 of {A, B, C}
   rig_.ticks(kHold);
@@ -123,6 +126,29 @@ TEST_F(ChannelDecodeTest, HallCodesThatAreNoneLastAndJumpsDoNot) {
     EXPECT_FALSE(status(1, status_bit::kEncoderError)) << jump << " stands now";
   }
   EXPECT_EQ(counter(1), start);
+}
+
+// The clear takes what was there before: an error of its own edge stays, one of the edge before is gone.
+TEST_F(ChannelDecodeTest, AnErrorAtTheEdgeOfItsClearIsNotLost) {
+  control(1, kX4);
+  const auto both_lines = [&] {  // at the same place in the period of SCLK each time
+    rig_.ticks(kHold);
+    clear_error();
+    while (rig_.now() % kSclk != 0) rig_.tick();
+    rig_.in.pins[0] ^= 1u << kA | 1u << kB;
+  };
+  both_lines();
+  const Tick start = rig_.now();
+  while (!status(1, status_bit::kEncoderError)) rig_.tick();
+  const Tick error = rig_.now() - start;
+  ASSERT_EQ(error % kTicksPerRef, 0);
+  for (const Tick clear : {error - kTicksPerRef, error, error + kTicksPerRef}) {
+    both_lines();
+    rig_.ticks(clear - kTicksPerRef);
+    clear_error();  // with the next edge
+    rig_.ticks(kHold);
+    EXPECT_EQ(bool{status(1, status_bit::kEncoderError)}, clear <= error) << clear - error;
+  }
 }
 
 // The sign is that of the command, whatever the DIR pin shows; at most one count an SCLK, however fast the pulses are.

@@ -229,6 +229,7 @@ TEST_F(ChannelTest, EncoderLossNeedsEqualPairsForTwoSamples) {
   EXPECT_TRUE(status(1, status_bit::kEncoderLoss));
   rig_.write(1, words::kStatus, status_bit::kEncoderLoss.mask());
   EXPECT_TRUE(status(1, status_bit::kEncoderLoss)) << "writing 1 leaves it";
+  while (rig_.now() % kSclk != 0) rig_.tick();  // SCLK began with the edge at tick 6: the write is apart from it
   rig_.write(1, words::kStatus, 0);
   EXPECT_FALSE(status(1, status_bit::kEncoderLoss));
   rig_.ticks(3 * kSclk);

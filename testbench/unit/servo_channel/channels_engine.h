@@ -79,11 +79,11 @@ class ModelChannelsEngine : public ChannelsEngine {
       set_inputs(model_, in);
     }
     while (now_ < end) {
-      const bool strobe = in.we || in.read_done;
+      const bool strobe = in.we || in.rd;
       now_ = strobe ? std::min(end, now_ + kTicksPerRef - now_ % kTicksPerRef) : end;
       model_.advance(now_);
       if (!strobe || now_ % kTicksPerRef != 0) continue;
-      if (in.read_done) model_.read_done(in.x, in.addr);
+      if (in.rd) model_.read_taken(in.x, in.addr);
       if (in.we) model_.write(in.x, in.addr, in.wdata);
     }
   }

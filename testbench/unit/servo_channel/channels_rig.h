@@ -35,7 +35,7 @@ class ChannelsRig {
     ++now_;
     const bool ref = now_ % kTicksPerRef == 0;
     rtl_.tick();
-    const bool strobe = ref && (in.we || in.read_done);
+    const bool strobe = ref && (in.we || in.rd);
     if (!in.rst_n) {
       model_.reset(now_);
       seen_ = now_;
@@ -43,7 +43,7 @@ class ChannelsRig {
       advance(now_);
     }
     if (strobe && in.rst_n) {
-      if (in.read_done) model_.read_done(in.x, in.addr);
+      if (in.rd) model_.read_taken(in.x, in.addr);
       std::uint32_t value = in.wdata;
       if (in.we && mutate) mutate(in.x, in.addr, value);
       if (in.we) model_.write(in.x, in.addr, value);
@@ -78,9 +78,9 @@ class ChannelsRig {
   // A read as the bus does it, with its side effect.
   std::uint32_t read(bool x, unsigned addr) {
     const std::uint32_t value = peek(x, addr);
-    in.read_done = true;
+    in.rd = true;
     ref();
-    in.read_done = false;
+    in.rd = false;
     return value;
   }
   // The same by name: a word of the IC, a word of a channel (1..4).

@@ -79,9 +79,9 @@ class ChannelsDevice : public Device {
     address(x, addr);
     run_to_ref();  // the first edge that sees the address; the next one takes the data
     const std::uint32_t value = engine_->word(in_);
-    in_.read_done = true;
+    in_.rd = true;
     run_to_ref();
-    in_.read_done = false;
+    in_.rd = false;
     return value;
   }
   std::string command(const std::string&) override { throw DeviceError("the channels take no commands"); }
