@@ -53,6 +53,8 @@ module board_sim #(
   logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict;
   logic [4:0]  source;
   logic [7:0]  ist, sig, msk, elr;
+  logic        brld_n, erld_n, f1ld_n, ipld_n;
+  logic [1:0]  ctrl;
 
   board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
@@ -88,6 +90,11 @@ module board_sim #(
     .ext_phase_i       (inputs_i[4][29]),
     .ext_servo_i       (inputs_i[4][30]),
     .line_select_i     (inputs_i[5][11:0]),
+    .mi1_i             (inputs_i[5][12]),
+    .mi2_i             (inputs_i[5][13]),
+    .axexp0_i          (inputs_i[5][14]),
+    .axexp1_i          (inputs_i[5][15]),
+    .pic_8259_i        (inputs_i[5][16]),
     .motor_i           (motor_in),
     .motor_o           (motor_out),
     .phase_o           (phase),
@@ -103,6 +110,11 @@ module board_sim #(
     .busy_cpu_o        (busy_cpu),
     .phase_source_o    (source),
     .source_conflict_o (conflict),
+    .brld_n_o          (brld_n),
+    .erld_n_o          (erld_n),
+    .f1ld_n_o          (f1ld_n),
+    .ipld_n_o          (ipld_n),
+    .ctrl_o            (ctrl),
     .pic_ist_o         (ist),
     .pic_sig_o         (sig),
     .pic_msk_o         (msk),
@@ -145,8 +157,10 @@ module board_sim #(
   assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
                       isa_iochrdy, isa_sd};
   assign pins_o[2] = {elr, msk, sig, ist};
-  assign pins_o[3][7:0]  = {7'h0, pa_data_oe};
-  assign pins_o[3][31:8] = 24'h0;
+  assign pins_o[3][7:0]   = {7'h0, pa_data_oe};
+  assign pins_o[3][15:8]  = 8'h0;
+  assign pins_o[3][23:16] = {2'b00, ctrl, ipld_n, f1ld_n, erld_n, brld_n};
+  assign pins_o[3][31:24] = 8'h0;
 
 endmodule : board_sim
 

@@ -35,6 +35,7 @@ module isa_slave #(
   // interrupt controller
   output logic             pic_sel_o,
   output logic             pic_wr_o,
+  output logic             pic_rd_o,     // one clk_ref, at the edge that takes pic_rdata_i: reads may have effects
   output logic [1:0]       pic_addr_o,
   output logic [7:0]       pic_wdata_o,
   input  wire logic [7:0]  pic_rdata_i,
@@ -144,6 +145,7 @@ module isa_slave #(
 
   assign pic_sel_o   = target[1];
   assign pic_wr_o    = target[1] & finish & cmd2_q[1];
+  assign pic_rd_o    = target[1] & start & cmd1_q[0];
   assign pic_addr_o  = addr[1:0];
   assign pic_wdata_o = sd2_q[7:0];
 

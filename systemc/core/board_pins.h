@@ -39,15 +39,18 @@ struct IsaPins {
 // What is fitted and how the jumpers stand; taken over on clk_ref.
 struct Straps {
   std::uint32_t fitted = 0x3;  // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
-  std::uint32_t macro_gate = 0;       // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
-  bool dpram_small = false;           // dual-ported RAM of 8192 words, not 32768
-  bool jpan_fitted = false;           // control panel port of Turbo PMAC boards
-  std::uint16_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
-  bool ext_clock = false;             // jumper E1: phase and servo come from outside
+  std::uint32_t macro_gate = 0;  // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
+  bool dpram_small = false;      // dual-ported RAM of 8192 words, not 32768
+  bool jpan_fitted = false;      // control panel port of Turbo PMAC boards
+  // Sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, then CTRL0, CTRL1, MI1, MI2, AXEXP0, AXEXP1.
+  std::uint16_t line_select = 0x951;
+  bool ext_clock = false;  // jumper E1: phase and servo come from outside
+  bool pic_8259 = false;   // the interrupt controller is an 8259
 
   bool operator!=(const Straps& o) const {
     return fitted != o.fitted || macro_gate != o.macro_gate || dpram_small != o.dpram_small ||
-           jpan_fitted != o.jpan_fitted || line_select != o.line_select || ext_clock != o.ext_clock;
+           jpan_fitted != o.jpan_fitted || line_select != o.line_select || ext_clock != o.ext_clock ||
+           pic_8259 != o.pic_8259;
   }
 };
 
@@ -56,9 +59,13 @@ struct ConnectorPins {
   std::uint16_t jpan = 0xFFFF;  // control panel inputs, low-true, bits as Y:$078800 (rtl/regs/board.rdl)
   bool ext_phase = true;
   bool ext_servo = true;
+  bool mi1 = false, mi2 = false;        // machine inputs of JOPTO, to the interrupt controller
+  bool axexp0 = false, axexp1 = false;  // interrupt lines of an axis expansion board
 };
 
-struct HostInputs : IsaPins, Straps, ConnectorPins {};  // all but what the CPU drives
+struct HostInputs : IsaPins, Straps, ConnectorPins {  // all but what the CPU drives
+  bool jpan_init_n = true;  // INIT/ of the control panel: goes to the card's reset circuit, not to the board's logic
+};
 
 struct BoardInputs : PortAPins, HostInputs {
   bool rst_n = false;
@@ -106,10 +113,17 @@ constexpr PinField kPicSig{"host.pic.sig", 2, 8, 8, true};
 constexpr PinField kPicMsk{"host.pic.msk", 2, 16, 8, true};
 constexpr PinField kPicElr{"host.pic.elr", 2, 24, 8, true};
 constexpr PinField kPaDataOe{"bus.rdata_oe", 3, 0, 1, false};  // 1 = the board drives D: /RD is low and the word stands
+constexpr PinField kBrldN{"host.brld_n", 3, 16, 1, false};     // lamps of the control panel, 0 = lit
+constexpr PinField kErldN{"host.erld_n", 3, 17, 1, false};
+constexpr PinField kF1ldN{"host.f1ld_n", 3, 18, 1, false};
+constexpr PinField kIpldN{"host.ipld_n", 3, 19, 1, false};
+constexpr PinField kCtrl0{"host.ctrl0", 3, 20, 1, false};  // outputs of the Ultralite, written by user programs
+constexpr PinField kCtrl1{"host.ctrl1", 3, 21, 1, false};
 inline constexpr std::array kAll{kPaData, kPaTaN,     kIrqHost,  kPhase,      kServo,       kBreq,           kIpos,
                                  kEror,   kF1er,      kIsaSd,    kIsaIochrdy, kIsaMemcs16N, kIsaIrq,         kHreq,
                                  kWdo,    kWdTripped, kBusyHost, kBusyCpu,    kPhaseSource, kSourceConflict, kPicIst,
-                                 kPicSig, kPicMsk,    kPicElr,   kPaDataOe};
+                                 kPicSig, kPicMsk,    kPicElr,   kPaDataOe,   kBrldN,       kErldN,          kF1ldN,
+                                 kIpldN,  kCtrl0,     kCtrl1};
 }  // namespace pin
 
 struct BoardOutputs {

@@ -49,7 +49,12 @@ inline constexpr std::tuple kInputFields{InputField{"pa_addr", &BoardInputs::pa_
                                          InputField{"ext_clock", &BoardInputs::ext_clock, 4, 28, 1},
                                          InputField{"ext_phase", &BoardInputs::ext_phase, 4, 29, 1},
                                          InputField{"ext_servo", &BoardInputs::ext_servo, 4, 30, 1},
-                                         InputField{"line_select", &BoardInputs::line_select, 5, 0, 12}};
+                                         InputField{"line_select", &BoardInputs::line_select, 5, 0, 12},
+                                         InputField{"mi1", &BoardInputs::mi1, 5, 12, 1},
+                                         InputField{"mi2", &BoardInputs::mi2, 5, 13, 1},
+                                         InputField{"axexp0", &BoardInputs::axexp0, 5, 14, 1},
+                                         InputField{"axexp1", &BoardInputs::axexp1, 5, 15, 1},
+                                         InputField{"pic_8259", &BoardInputs::pic_8259, 5, 16, 1}};
 
 constexpr BoardInputWords pack(const BoardInputs& in) {
   BoardInputWords words{};

@@ -38,6 +38,7 @@ class IsaSlave final : public sc_core::sc_module, public RefClockedBlock {
   // Interrupt controller
   bool pic_sel() const { return target() & kPic; }
   bool pic_wr() const { return pic_sel() && finish() && (cmd2_ & kIow); }
+  bool pic_rd() const { return pic_sel() && start() && (cmd1_ & kIor); }
   std::uint8_t pic_addr() const { return addr() & 3; }
   std::uint8_t pic_wdata() const { return sd2_ & 0xFF; }
   // Dual-ported RAM

@@ -74,6 +74,12 @@ const BenchNeed kServoIcs01{"servo ICs 0 and 1", [](const BoardConfig& b) { retu
 const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { return count(b.fitted) >= 2; }};
 const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
 
+BenchNeed without_8259(const BenchNeed& need) {
+  const std::string controller = "an interrupt controller that is no 8259";
+  return {need.what.empty() ? controller : need.what + " and " + controller,
+          [met = need.met](const BoardConfig& b) { return met(b) && !b.pic_8259; }};
+}
+
 const std::vector<Bench>& all_benches() {
   static const std::vector<Bench> benches{
       smoke_bench(),        breq_rotary_bench(), watchdog_bench(),      reinit_e3_bench(),       clock_select_bench(),

@@ -38,7 +38,9 @@ def every_board():
     every_bench = {b["name"] for b in json.loads(brick("list", "--json").stdout)}
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
                "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3"}, "geobrick-lv-8": {"clock-macro"},
-               "turbo-pmac-pci": {"clock-macro"}, "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
+               "turbo-pmac-pci": {"clock-macro"},
+               "pmac-pc": {"clock-macro", "breq-rotary", "watchdog", "capture-compare"},
+               "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
                "turbo-pmac2-ultralite": every_bench - {"smoke", "breq-rotary", "clock-macro"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):

@@ -18,12 +18,13 @@ class IsaBench {
   IsaBench(RtlBlock<Inputs, Outputs> rtl, const IsaSlave::Config& config)
       : model("isa_slave", config), both(std::move(rtl), model, [](const IsaSlave& m) {
           return Outputs{
-              {"isa_sd", m.isa_sd()},     {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
-              {"hp_sel", m.hp_sel()},     {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
-              {"hp_addr", m.hp_addr()},   {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
-              {"pic_wr", m.pic_wr()},     {"pic_addr", m.pic_addr()},       {"pic_wdata", m.pic_wdata()},
-              {"mem_sel", m.mem_sel()},   {"mem_rd", m.mem_rd()},           {"mem_wr", m.mem_wr()},
-              {"mem_addr", m.mem_addr()}, {"mem_be", m.mem_be()},           {"mem_wdata", m.mem_wdata()}};
+              {"isa_sd", m.isa_sd()},       {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
+              {"hp_sel", m.hp_sel()},       {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
+              {"hp_addr", m.hp_addr()},     {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
+              {"pic_wr", m.pic_wr()},       {"pic_rd", m.pic_rd()},           {"pic_addr", m.pic_addr()},
+              {"pic_wdata", m.pic_wdata()}, {"mem_sel", m.mem_sel()},         {"mem_rd", m.mem_rd()},
+              {"mem_wr", m.mem_wr()},       {"mem_addr", m.mem_addr()},       {"mem_be", m.mem_be()},
+              {"mem_wdata", m.mem_wdata()}};
         }) {}
 
   IsaSlave model;
@@ -46,6 +47,7 @@ class IsaBench {
     if (is_ref_edge(both.now() + 1)) {  // the edge about to come sees them
       if (both.get("hp_wr")) strobes.push_back({"hp_wr", both.get("hp_addr"), both.get("hp_wdata")});
       if (both.get("hp_rd_done")) strobes.push_back({"hp_rd", both.get("hp_addr"), 0});
+      if (both.get("pic_rd")) strobes.push_back({"pic_rd", both.get("pic_addr"), 0});
       if (both.get("pic_wr") && both.get("pic_sel"))
         strobes.push_back({"pic_wr", both.get("pic_addr"), both.get("pic_wdata")});
       if (both.get("mem_wr"))
