@@ -7,8 +7,8 @@
 #include <random>
 #include <sstream>
 
-#include "testbench/unit/host/lockstep.h"
 #include "testbench/checkers/reference_8259.h"
+#include "testbench/unit/host/lockstep.h"
 
 namespace brick {
 namespace {
