@@ -40,8 +40,9 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
                                  bench.need.what, config.board.name, bench.board));
   if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
   Simulation simulation(options, config, bench.name);
-  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine,
+  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}\n", bench.name, bench.description, options.engine,
                            config.board.name, config.seed,
+                           config.aperture > 0 ? fmt::format(", aperture {} ns", options.aperture) : "",
                            negative ? ", NEGATIVE CONTROL: " + bench.negative.does : "");
   BenchReport report(std::cout, simulation.machine());
   try {

@@ -47,6 +47,8 @@ void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   pctl_ = regs::cpu_bus::kPctl.reset;
   clock_.restart(edge, cycle, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
   state_ = State::kIdle;
+  stand_ = edge;
+  in_doubt_ = false;
   next_start_ = cycle;
   pins.pa_aa = 0;
   pins.pa_int = false;
@@ -163,7 +165,38 @@ void PortA::next(Step step) {
   const bool sample = step == Step::kSampleTa || step == Step::kSampleData;
   time_ = time_of(step);
   if (sample) time_ = std::max(time_, cycle_.strobe_low);  // a cycle without time for the set-up takes what is there
-  stand_ = sample ? fs_to_tick_floor(time_) : fs_to_tick(time_) - 1;
+  const Tick before = stand_;                              // what comes later is not seen earlier
+  const bool strobe = step == Step::kStrobeLow || step == Step::kStrobeHigh;
+  in_doubt_ = false;
+  if (sample || aperture_ == nullptr || !aperture_->on()) {
+    stand_ = sample ? fs_to_tick_floor(time_) : fs_to_tick(time_) - 1;
+  } else if (strobe) {
+    stand_ = aperture_->seen(time_) - 1;
+  } else {
+    stand_ = aperture_->first(time_) - 1;
+    in_doubt_ = aperture_->in_doubt(time_) && aperture_->last(time_) - 1 > std::max(stand_, before);
+  }
+  stand_ = std::max(stand_, before);
+}
+
+void PortA::move_bus(PortAPins& pins) const {
+  switch (step_) {
+    case Step::kAddress:
+      pins.pa_addr = cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu);
+      pins.pa_x = cycle_.x;
+      pins.pa_aa = cycle_.aa;
+      pins.pa_int = cycle_.on_chip;
+      break;
+    case Step::kDriveData:
+      pins.pa_wdata = cycle_.data;
+      break;
+    case Step::kEnd:
+      pins.pa_aa = 0;
+      pins.pa_int = false;
+      break;
+    default:
+      break;
+  }
 }
 
 // After the strobe has fallen: what is sampled next, or the end of the strobe. Each sample of /TA that says "not yet"
@@ -185,14 +218,20 @@ void PortA::after_low() {
 }
 
 void PortA::step(PortAPins& pins, const BoardOutputs& board) {
+  if (in_doubt_) {
+    const PortAPins from = pins;
+    PortAPins to = pins;
+    move_bus(to);
+    pins = aperture_->mixed(from, to, time_);
+    stand_ = aperture_->last(time_) - 1;
+    in_doubt_ = false;
+    return;
+  }
   const bool shown = !cycle_.on_chip;
+  move_bus(pins);
   switch (step_) {
     case Step::kAddress:
       cycle_.start = time_;
-      pins.pa_addr = cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu);
-      pins.pa_x = cycle_.x;
-      pins.pa_aa = cycle_.aa;
-      pins.pa_int = cycle_.on_chip;
       if (shown) {
         signals_.set(addr_, time_, pins.pa_addr);
         signals_.set(x_, time_, cycle_.x);
@@ -202,7 +241,6 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
       break;
     case Step::kDriveData:
       cycle_.data_time = time_;
-      pins.pa_wdata = cycle_.data;
       if (shown) signals_.set(data_, time_, cycle_.data);
       if (shape_.data_driven < shape_.strobe_low)
         next(Step::kStrobeLow);
@@ -239,8 +277,6 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
       break;
     case Step::kEnd:
       cycle_.end = time_;
-      pins.pa_aa = 0;
-      pins.pa_int = false;
       if (shown) signals_.set(aa_, time_, 0);
       state_ = State::kDone;
       next_start_ = start_ + shape_.clocks + cycle_.stretched + shape_.idle_clocks;

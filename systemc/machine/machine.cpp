@@ -84,12 +84,14 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
       owner(machine),
       board(make_board(config)),
       motors(*board, signals, config.board.fitted),
+      aperture(config.aperture, config.seed),
       memory(cpu, config.flash_file) {
   initiator.cpu = &cpu;
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
   board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
     board_changed(t, before, after);
   };
+  port_a.set_aperture(&aperture);
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
   port_a.on_control = [this] { main_memory_wait(); };
   cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle c) {
@@ -206,6 +208,7 @@ MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->mo
 void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }
 void Machine::attach(MotorPeer& peer) { impl_->motors.attach(peer); }
 void Machine::detach(MotorPeer& peer) { impl_->motors.detach(peer); }
+Aperture& Machine::aperture() { return impl_->aperture; }
 Cpu& Machine::cpu() { return impl_->cpu; }
 std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }
 

@@ -10,6 +10,7 @@
 
 #include <systemc>
 
+#include "systemc/core/aperture.h"
 #include "systemc/core/board.h"
 #include "systemc/core/signals.h"
 #include "systemc/cpu/cpu.h"
@@ -46,6 +47,7 @@ struct MachineConfig {
   std::string flash_file;  // "" = flash content is lost at the end
   bool jumper_e3 = false;
   std::uint64_t seed = 1;   // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
+  TimeFs aperture = 0;      // of the board's inputs, systemc/core/aperture.h; 0 = none
   Tick batch = 0;           // 0 = as long as the rule allows; else no advance longer than this many ticks
   bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
 };
@@ -77,6 +79,8 @@ class Machine : public sc_core::sc_module {
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
   void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once
   void detach(MotorPeer& peer);
+
+  Aperture& aperture();  // of the pins that CPU and host drive; a host's pins move by it
 
   Signals& signals();  // every named signal of docs/signals.md
   Cpu& cpu();
