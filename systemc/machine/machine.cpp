@@ -200,6 +200,7 @@ Tick Machine::now() const { return impl_->board->now(); }
 Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_->run_until(limit, stop_on); }
 HostInputs& Machine::inputs() { return impl_->host_inputs; }
 void Machine::apply() { impl_->apply_host_inputs(); }
+PortAPins& Machine::port_a() { return impl_->inputs; }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }

@@ -68,6 +68,7 @@ class Machine : public sc_core::sc_module {
   HostInputs& inputs();
   void apply();
   const BoardOutputs& outputs() const;
+  PortAPins& port_a();  // of a machine without firmware: the pins of its CPU's bus, which nobody else drives
 
   std::uint32_t fitted() const;  // ICs of the board, as BoardInputs::fitted
 
