@@ -10,6 +10,12 @@ namespace brick {
 int list_command(bool json);
 int boards_command(const std::string& name_or_file, bool json);  // "": all boards of the boards folder
 int exec_command(const RunOptions& options, const std::string& script, bool raw);
-int run_command(const RunOptions& options, const std::string& bench, bool negative);
+struct TimingOptions {
+  RunOptions run;
+  std::string bench;  // "" with sweep only
+  std::string wavedrom;
+  bool sweep = false;
+};
+int timing_command(const TimingOptions& options);
 
 }  // namespace brick

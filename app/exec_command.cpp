@@ -55,6 +55,13 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
     std::cerr << "brick exec: " << error << '\n';
     if (failure.empty()) failure = error;
   }
+  const Simulation::TimingVerdict timing = simulation.timing_verdict();
+  for (const std::string& violation : timing.failures) {
+    std::cerr << "brick exec: " << violation << '\n';
+    if (failure.empty()) failure = violation;
+  }
+  for (const auto* list : {&timing.waived, &timing.unused})
+    for (const std::string& line : *list) std::cerr << "brick exec: " << line << '\n';
   if (!options.json.empty()) {
     nlohmann::json results = simulation.measures();
     results["engine"] = options.engine;

@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/cpu_command.h"
+#include "app/run_bench.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -24,6 +25,7 @@ struct Commands {
   std::function<int()> chosen;
 
   RunOptions run_options, exec_options;
+  TimingOptions timing_options;
   std::string bench, script, elf, board, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
@@ -41,7 +43,7 @@ struct Commands {
     run->add_flag("--negative", negative, "negative control: a deliberate fault, with which the bench must fail");
     run->callback([this, run] {
       if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
-      chosen = [this] { return run_command(run_options, bench, negative); };
+      chosen = [this] { return run_bench(run_options, bench, negative); };
     });
 
     auto* exec = app.add_subcommand("exec", "plays a host script against the started controller, prints the replies");
@@ -53,6 +55,21 @@ struct Commands {
         "@jpan @reset @power "
         "@expect @time.");
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
+
+    auto* timing = app.add_subcommand(
+        "timing", "bus-timing report of a testbench: rules, margins, BREQ and interrupt times, bus load");
+    timing->add_option("BENCH", timing_options.bench, "name of the bench, see brick list; not needed with --sweep");
+    add_run_options(*timing, timing_options.run, "systemc");
+    timing->add_flag("--sweep", timing_options.sweep,
+                     "instead: the least wait states of each region at each CPU clock, found by driving the bus");
+    timing
+        ->add_option("--wavedrom", timing_options.wavedrom,
+                     "write the read with the least margin as a WaveDrom figure to FILE")
+        ->type_name("FILE");
+    timing->callback([this, timing] {
+      if (timing->count("--board") == 0 && !timing_options.sweep) timing_options.run.board.clear();
+      chosen = [this] { return timing_command(timing_options); };
+    });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");
     boards->add_option("BOARD", board, "NAME or FILE.toml: all about this one (default: a table of all)");

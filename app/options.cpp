@@ -22,14 +22,21 @@ void need_file(const std::string& option, const std::string& file, const std::st
     throw UsageError(fmt::format("{} {}: cannot be read; expected {}", option, file, what));
 }
 
+std::uint32_t forced_bcr(const std::string& text) {
+  const std::string digits = text.substr(text[0] == '$' ? 1 : text.compare(0, 2, "0x") == 0 ? 2 : 0);
+  if (digits.empty() || digits.size() > 6 || digits.find_first_not_of("0123456789ABCDEFabcdef") != std::string::npos)
+    throw UsageError(fmt::format("--bcr {}: is no word; expected up to six hexadecimal digits", text));
+  return static_cast<std::uint32_t>(std::stoul(digits, nullptr, 16));
+}
+
+}  // namespace
+
 void need_folder(const std::string& option, const std::string& file) {
   const fs::path folder = fs::path(file).parent_path();
   if (!folder.empty() && !fs::is_directory(folder))
     throw UsageError(fmt::format("{} {}: no such folder {}; expected an existing one", option, file, folder.string()));
   if (fs::is_directory(file)) throw UsageError(fmt::format("{} {}: is a folder; expected a file", option, file));
 }
-
-}  // namespace
 
 void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine) {
   o.engine = engine;
@@ -55,6 +62,10 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
   command.add_option("--json", o.json, "write the results to FILE");
   command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")
       ->type_name("PORT");
+  command.add_option("--waive", o.waive, "violations of the bus timing that are known and harmless, FILE.toml")
+      ->type_name("FILE");
+  command.add_option("--bcr", o.bcr, "wait states of all areas as in BCR, hexadecimal, whatever the firmware writes")
+      ->type_name("HEX");
   command.add_option("--batch", o.batch, "longest advance in ticks, 0 = as the rules allow; changes speed only")
       ->capture_default_str()
       ->group("Advanced");
@@ -110,6 +121,7 @@ MachineConfig machine_config(const RunOptions& o) {
       throw UsageError(fmt::format("--jumper {}: no such jumper; expected E3", jumper));
     config.jumper_e3 = true;
   }
+  if (!o.bcr.empty()) config.bcr = forced_bcr(o.bcr);
   config.board = read_board_file(board_path(o.board));
   config.firmware = o.firmware.empty() ? default_firmware() : o.firmware;
   need_file("--firmware", config.firmware, "an ELF image for RV32");
@@ -140,11 +152,11 @@ WaveWindow wave_window(const RunOptions& o) {
   return window;
 }
 
-void write_json(const std::string& file, const std::string& text) {
+void write_json(const std::string& file, const std::string& text, const std::string& option) {
   std::ofstream out(file);
   out << text << '\n';
   out.flush();
-  if (!out) throw UsageError(fmt::format("--json {}: cannot be written; expected a writable place", file));
+  if (!out) throw UsageError(fmt::format("{} {}: cannot be written; expected a writable place", option, file));
 }
 
 }  // namespace brick

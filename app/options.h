@@ -25,6 +25,8 @@ struct RunOptions {
   std::string gdb;  // port, "" = no debugger
   std::string aperture = "0";
   std::string batch = "0";
+  std::string bcr;    // hexadecimal, "" = as the firmware sets it
+  std::string waive;  // file of timing waivers
 };
 
 // Adds --engine, --board and so on to a command. `engine` is the default.
@@ -44,7 +46,9 @@ std::uint16_t gdb_port(const RunOptions& options);                              
 std::uint64_t parse_count(const std::string& option, const std::string& text);  // throws UsageError
 std::string engine_name(Engine engine);
 
-// Writes the results file; throws UsageError when it cannot be written.
-void write_json(const std::string& file, const std::string& text);
+// Writes the file of an option; throws UsageError when it cannot be written.
+void write_json(const std::string& file, const std::string& text, const std::string& option = "--json");
+// Throws UsageError when `file` stands in no folder, or is one.
+void need_folder(const std::string& option, const std::string& file);
 
 }  // namespace brick

@@ -47,10 +47,16 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
 Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title)
     : title_(std::move(title)),
       machine_(make_machine(config)),
+      timing_(std::make_unique<TimingBook>(*machine_)),
+      waivers_(options.waive.empty() ? TimingWaivers() : TimingWaivers(options.waive)),
       bus_(*machine_),
       link_(bus_),
       terminal_(isatty(STDERR_FILENO) == 1) {
   bus_.set_heartbeat([this] { progress(); });
+  waivers_.check(timing_->ledgers());
+  timing_->on_violation = [this](const TimingLedger& ledger, const TimingViolation& violation) {
+    if (debugger_ && waivers_.reason(ledger, violation).empty()) debugger_->bus_error(timing_->text(ledger, violation));
+  };
   if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
   if (options.wave.empty()) return;
   wave_ = options.wave;
@@ -105,6 +111,22 @@ void Simulation::progress() {
                   static_cast<double>(machine_->now_fs()) * 1e-12, static_cast<double>(machine_->now()) / wall * 1e-6)
           .c_str(),
       stderr);
+}
+
+Simulation::TimingVerdict Simulation::timing_verdict() {
+  TimingVerdict verdict;
+  for (const TimingLedger* ledger : timing_->ledgers()) {
+    for (const TimingViolation& violation : ledger->violations()) {
+      const std::string reason = waivers_.reason(*ledger, violation);
+      const std::string text = timing_->text(*ledger, violation);
+      if (reason.empty())
+        verdict.failures.push_back(text);
+      else
+        verdict.waived.push_back(fmt::format("{}; waived: {}", text, reason));
+    }
+  }
+  verdict.unused = waivers_.unused();
+  return verdict;
 }
 
 nlohmann::json Simulation::measures() const {

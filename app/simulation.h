@@ -6,10 +6,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "app/options.h"
+#include "app/timing_waivers.h"
 #include "systemc/core/trace.h"
 #include "systemc/cpu/gdb_server.h"
 #include "systemc/machine/machine.h"
@@ -29,6 +31,13 @@ class Simulation {
   Machine& machine() { return *machine_; }
   HostBus& bus() { return bus_; }
   HostLink& link() { return link_; }
+  TimingBook& timing() { return *timing_; }
+
+  // What broke a rule of the buses, one line each: what fails the run, what a waiver excuses, waivers not needed.
+  struct TimingVerdict {
+    std::vector<std::string> failures, waived, unused;
+  };
+  TimingVerdict timing_verdict();
 
   nlohmann::json measures() const;  // simulated and wall time, ticks/s, instructions/s
   std::string measures_text() const;
@@ -42,6 +51,8 @@ class Simulation {
   std::string title_;
   std::unique_ptr<Machine> machine_;
   std::unique_ptr<GdbServer> debugger_;
+  std::unique_ptr<TimingBook> timing_;
+  TimingWaivers waivers_;
   HostBus bus_;
   HostLink link_;
   std::unique_ptr<TraceWriter> trace_;

@@ -12,6 +12,7 @@ if(NOT BRICK_COVERAGE)  # coverage counters belong to an instance: nothing is sh
   set(generated ${CMAKE_BINARY_DIR}/systemc/cosim/CMakeFiles/brick_rtl.dir)
   brick_add_check(lint.shared tools/check_shared.py ${generated}/Vboard_all.dir)
 endif()
+brick_add_check(lint.memory tools/area.py --memory)  # the dual-ported RAM is block RAM, not flip-flops
 brick_add_check(lint.layers tools/check_layers.py)           # who may include whom, firmware and C++
 brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml says
 brick_add_check(format.clang tools/check_format.py clang)

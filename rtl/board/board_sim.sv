@@ -118,7 +118,7 @@ module board_sim #(
   endfunction
 
   initial begin
-    for (int i = 0; i < 32768; i++) u_board.u_dpram.mem[i] = start_word(start_seed_i, i);
+    for (int i = 0; i < 32768; i++) u_board.u_dpram.u_memory.mem[i] = start_word(start_seed_i, i);
   end
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.

@@ -1,9 +1,8 @@
-// Dual-ported RAM, 16 bits wide, with BUSY arbitration. The CPU side works on clk_pwm_i (data two edges after the edge
-// that first saw the strobe), the host side on clk_ref_i; the clocks are of one phase, so no synchroniser stands
-// between. Word index: CPU {address, X} (Y word even, X word odd), host byte offset / 2. A side owns its cell from the
-// edge that granted it to the end of its strobe. Same cell and at least one write: the later side sees BUSY and waits;
-// requests that meet at one edge go to the CPU. A CPU strobe that ends while BUSY does nothing. Words beyond the fitted
-// size read 0 and take no writes. Asynchronous reset, the content is kept. docs/dpram.md.
+// Dual-ported RAM, 16 bits wide, with BUSY arbitration. Each side has a port and a clock of its own; the clocks are of
+// one phase, so what one side says to the other needs no synchroniser. Word index: CPU {address, X} (Y word even, X
+// word odd), host byte offset / 2. The order is that of the sampling edges, ties go to the CPU. The later side of one
+// word sees BUSY if one of the two writes, until the earlier one has ended its strobe. Words beyond the fitted size
+// read 0 and take no writes. Asynchronous reset, the content is kept. docs/dpram.md, host-bus:6.9.
 `default_nettype none
 
 module dpram (
@@ -11,7 +10,9 @@ module dpram (
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
   input  wire logic        small_i,      // strap: only the first 8192 words are fitted
-  // CPU side: Port A pins, not yet synchronised
+  // CPU side: Port A pins and the falls of its strobes (bus_strobes), not yet synchronised
+  input  wire logic        rd_toggle_i,
+  input  wire logic        wr_toggle_i,
   input  wire logic        cpu_sel_i,
   input  wire logic        cpu_x_i,
   input  wire logic [13:0] cpu_addr_i,
@@ -19,7 +20,9 @@ module dpram (
   input  wire logic        cpu_wr_ni,
   input  wire logic [15:0] cpu_wdata_i,
   output logic [15:0]      cpu_rdata_o,
-  output logic             cpu_busy_o,
+  output logic             cpu_valid_o,  // the word of the last read stands, or it was not for this RAM
+  output logic             cpu_wait_o,   // /TA: from the fall of the strobe until the access is done
+  output logic             cpu_busy_o,   // waits for the host's access to the same word
   // host side, from isa_slave
   input  wire logic        mem_sel_i,    // a command is under way
   input  wire logic        mem_rd_i,     // 1 read, 0 write
@@ -32,81 +35,120 @@ module dpram (
   output logic             host_busy_o   // BUSY pin of the host side
 );
 
-  logic [15:0] mem [0:32767];
+  // ---------------------------------------------------------------- CPU side, pins
+  // Toggles and levels of the strobes pass two flip-flops. Select and address stand from before the fall to the end of
+  // the strobe, so one flip-flop is enough: it is read when the toggle has come through two.
+  logic        rd1_q, rd2_q, wr1_q, wr2_q, rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q, sel_q;
+  logic [14:0] pins_q;
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      {rd1_q, rd2_q, wr1_q, wr2_q}                 <= 4'h0;
+      {rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q} <= 4'h0;
+      sel_q                                        <= 1'b0;
+      pins_q                                       <= 15'h0;
+    end else begin
+      {rd1_q, rd2_q, wr1_q, wr2_q} <= {rd_toggle_i, rd1_q, wr_toggle_i, wr1_q};
+      {rd_low1_q, rd_low2_q}       <= {~cpu_rd_ni, rd_low1_q};
+      {wr_low1_q, wr_low2_q}       <= {~cpu_wr_ni, wr_low1_q};
+      sel_q                        <= cpu_sel_i;
+      pins_q                       <= {cpu_addr_i, cpu_x_i};
+    end
+  end
 
-  // ---------------------------------------------------------------- CPU side
-  logic        cpu_rd_q, cpu_wr_q, cpu_done_q, cpu_busy_q, host_own_q;
-  logic [14:0] cpu_cell_q;
-  logic [15:0] cpu_rdata_q;
-  logic        cpu_active, same_cell, any_write, cpu_blocked, cpu_grant, cpu_here, host_here, host_we;
-
-  assign cpu_active  = cpu_rd_q | cpu_wr_q;
-  assign same_cell   = cpu_cell_q == mem_addr_i;
-  assign any_write   = cpu_wr_q | ~mem_rd_i;
-  assign cpu_blocked = host_own_q & same_cell & any_write;
-  assign cpu_grant   = cpu_active & ~cpu_done_q & ~cpu_blocked;
-  assign cpu_here    = ~small_i | (cpu_cell_q[14:13] == 2'b00);
-  assign host_here   = ~small_i | (mem_addr_i[14:13] == 2'b00);
-
-  // mem_wr_i lasts three ticks, so the same word is written three times; nobody can see that, the host owns the cell.
-  assign host_we = mem_wr_i & host_own_q & host_here;
+  // ---------------------------------------------------------------- CPU side, arbitration
+  // A strobe is a request until its done toggle has followed: at once if it is not for this RAM, when it is granted, or
+  // when it ended while BUSY. A grant reads at once. A write samples its data there and is made two edges later, if
+  // /WR then proves to have been low at the sample: a strobe that was too short writes nothing.
+  logic        rd_done_q, rd_ack_q, wr_done_q, busy_q, own_q, own_wr_q, sampled_q, proven_q, show_q;
+  logic [14:0] cell_q;
+  logic [15:0] wdata_q;
+  logic        rd_new, wr_new, request, ended, conflict, blocked, grant, pins_here, cell_here, host_own_q, mem_busy_q;
+  assign rd_new    = rd2_q ^ rd_done_q;
+  assign wr_new    = wr2_q ^ wr_done_q;
+  assign request   = sel_q & (rd_new | wr_new) & ~sampled_q & ~proven_q;
+  assign ended     = busy_q & ~(wr_new ? wr_low2_q : rd_low2_q);
+  assign conflict  = (pins_q == mem_addr_i) & (wr_new | ~mem_rd_i);
+  assign blocked   = (host_own_q | mem_busy_q) & conflict;  // the host is there, or was first to wait
+  assign grant     = request & ~ended & ~blocked;
+  assign pins_here = ~small_i | (pins_q[14:13] == 2'b00);
+  assign cell_here = ~small_i | (cell_q[14:13] == 2'b00);
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      cpu_rd_q    <= 1'b0;
-      cpu_wr_q    <= 1'b0;
-      cpu_done_q  <= 1'b0;
-      cpu_busy_q  <= 1'b0;
-      cpu_cell_q  <= 15'h0;
-      cpu_rdata_q <= 16'h0;
+      rd_done_q <= 1'b0;
+      rd_ack_q  <= 1'b0;
+      wr_done_q <= 1'b0;
+      busy_q    <= 1'b0;
+      own_q     <= 1'b0;
+      own_wr_q  <= 1'b0;
+      sampled_q <= 1'b0;
+      proven_q  <= 1'b0;
+      show_q    <= 1'b0;
+      cell_q    <= 15'h0;
+      wdata_q   <= 16'h0;
     end else begin
-      cpu_rd_q <= cpu_sel_i & ~cpu_rd_ni;
-      cpu_wr_q <= cpu_sel_i & ~cpu_wr_ni;
-      if (cpu_active) begin
-        if (!cpu_done_q) cpu_busy_q <= cpu_blocked;
-        if (cpu_grant)   cpu_done_q <= 1'b1;
-        if (cpu_grant && cpu_rd_q) cpu_rdata_q <= cpu_here ? mem[cpu_cell_q] : 16'h0;
-      end else begin
-        cpu_done_q <= 1'b0;
-        cpu_busy_q <= 1'b0;
-        cpu_cell_q <= {cpu_addr_i, cpu_x_i};  // held while the strobe is low
+      if (wr_new && (!sel_q || grant || (request && ended)))            wr_done_q <= wr2_q;
+      if (rd_new && (!sel_q || (~wr_new && (grant || (request && ended))))) rd_done_q <= rd2_q;
+      rd_ack_q  <= rd_done_q;  // a clock after the data: /TA may be sampled later than they are
+      busy_q    <= request & ~ended & blocked;
+      sampled_q <= grant & wr_new;
+      proven_q  <= sampled_q;
+      if (grant) begin
+        own_q    <= 1'b1;
+        own_wr_q <= wr_new;
+        cell_q   <= pins_q;
+        wdata_q  <= cpu_wdata_i;
+        if (!wr_new) show_q <= pins_here;
+      end else if (request || !(sampled_q || proven_q || (own_wr_q ? wr_low2_q : rd_low2_q))) begin
+        own_q <= 1'b0;
       end
     end
   end
 
-  // Two write ports. The CPU's data is taken from the pins at the granting edge, when it has been valid for a tick.
-  always_ff @(posedge clk_pwm_i) begin
-    if (cpu_grant && cpu_wr_q && cpu_here) mem[cpu_cell_q] <= cpu_wdata_i;
-    if (host_we && mem_be_i[0]) mem[mem_addr_i][7:0]  <= mem_wdata_i[7:0];
-    if (host_we && mem_be_i[1]) mem[mem_addr_i][15:8] <= mem_wdata_i[15:8];
-  end
-
-  assign cpu_rdata_o = cpu_rdata_q;
-  assign cpu_busy_o  = cpu_busy_q;
+  assign cpu_valid_o = rd_toggle_i == rd_done_q;
+  assign cpu_wait_o = cpu_sel_i & ((rd_toggle_i ^ rd_ack_q) | (wr_toggle_i ^ wr_done_q));
+  assign cpu_busy_o = busy_q;
 
   // ---------------------------------------------------------------- host side
-  logic [15:0] mem_rdata_q;
-  logic        mem_busy_q, host_blocked;
-  assign host_blocked = cpu_active & same_cell & any_write;
+  logic        host_show_q, host_blocked, host_grant, host_here, host_we;
+  assign host_blocked = (own_q & (cell_q == mem_addr_i) & (own_wr_q | ~mem_rd_i)) | (request & conflict & ~mem_busy_q);
+  assign host_grant   = mem_sel_i & ~host_own_q & ~host_blocked;
+  assign host_here    = ~small_i | (mem_addr_i[14:13] == 2'b00);
+  assign host_we      = mem_wr_i & host_own_q & host_here;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       host_own_q  <= 1'b0;
       mem_busy_q  <= 1'b0;
-      mem_rdata_q <= 16'h0;
-    end else if (!mem_sel_i) begin
-      host_own_q <= 1'b0;
-      mem_busy_q <= 1'b0;
-    end else if (!host_own_q) begin
-      host_own_q <= ~host_blocked;
-      mem_busy_q <= host_blocked;
-      if (!host_blocked && mem_rd_i) mem_rdata_q <= host_here ? mem[mem_addr_i] : 16'h0;
+      host_show_q <= 1'b0;
+    end else begin
+      host_own_q <= mem_sel_i & (host_own_q | host_grant);
+      mem_busy_q <= mem_sel_i & ~host_own_q & host_blocked;
+      if (host_grant && mem_rd_i) host_show_q <= host_here;
     end
   end
 
-  assign mem_rdata_o = mem_rdata_q;
   assign mem_busy_o  = mem_busy_q;
   assign host_busy_o = mem_busy_q;
+
+  // ---------------------------------------------------------------- memory
+  logic [15:0] cpu_rdata, host_rdata;
+  dpram_memory u_memory (
+    .a_clk_i   (clk_pwm_i),
+    .a_we_i    (proven_q & wr_low2_q & cell_here),
+    .a_re_i    (grant & ~wr_new),
+    .a_addr_i  (proven_q ? cell_q : pins_q),
+    .a_wdata_i (wdata_q),
+    .a_rdata_o (cpu_rdata),
+    .b_clk_i   (clk_ref_i),
+    .b_we_i    ({2{host_we}} & mem_be_i),
+    .b_re_i    (host_grant & mem_rd_i),
+    .b_addr_i  (mem_addr_i),
+    .b_wdata_i (mem_wdata_i),
+    .b_rdata_o (host_rdata)
+  );
+  assign cpu_rdata_o = show_q ? cpu_rdata : 16'h0;
+  assign mem_rdata_o = host_show_q ? host_rdata : 16'h0;
 
 endmodule : dpram
 

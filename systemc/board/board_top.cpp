@@ -121,6 +121,8 @@ void BoardTop::connect_host() {
   host_signals_.in.wdata = bus_sync_.wdata() & 0xF;
   Dpram::Inputs& ram = dpram_.in;
   ram.small = straps_.dpram_small;
+  ram.rd_toggle = bus_strobes_.rd_toggle();
+  ram.wr_toggle = bus_strobes_.wr_toggle();
   ram.cpu_sel = (inputs_.pa_aa & 4) != 0 && !inputs_.pa_int;
   ram.cpu_x = inputs_.pa_x;
   ram.cpu_addr = inputs_.pa_addr & 0x3FFF;
@@ -175,7 +177,7 @@ std::uint32_t BoardTop::selected_lines() const {
 BoardOutputs BoardTop::pins() const {
   const auto at = [](const PinField& f, std::uint32_t value) { return value << f.lsb; };
   BoardOutputs o;
-  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : bus_read_.data()) | at(pin::kPaTaN, dpram_.cpu_busy()) |
+  o.w[0] = at(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : bus_read_.data()) | at(pin::kPaTaN, dpram_.cpu_wait()) |
            at(pin::kIrqHost, host_port_.irq()) | at(pin::kPhase, clock_select_.phase()) |
            at(pin::kServo, clock_select_.servo()) | at(pin::kBreq, host_signals_.breq()) |
            at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |

@@ -2,6 +2,7 @@
 #include "systemc/cpu/gdb_server.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "systemc/cpu/decode.h"
 #include "systemc/cpu/gdb_hex.h"
@@ -12,6 +13,7 @@ namespace brick {
 namespace {
 
 constexpr unsigned kStackPointer = 2;
+constexpr const char* kBusErrorStop = "T0athread:1;";  // GDB's number of SIGBUS
 constexpr unsigned kMcause = 0x342;
 constexpr std::uint32_t kInterrupt = 0x8000'0000;
 constexpr auto kLookEvery = std::chrono::milliseconds(5);
@@ -112,9 +114,8 @@ void GdbServer::Impl::before_instruction() {
 
 std::string GdbServer::Impl::stop_reason() {
   if (pending != Pending::kNone) {
-    const bool attach = pending == Pending::kAttach;
-    pending = Pending::kNone;
-    return attach ? "attach" : "T02thread:1;";
+    const Pending why = std::exchange(pending, Pending::kNone);
+    return why == Pending::kAttach ? "attach" : why == Pending::kBusError ? kBusErrorStop : "T02thread:1;";
   }
   if (!watch_hit.empty()) {
     std::string hit;
@@ -154,6 +155,7 @@ void GdbServer::Impl::stop(const std::string& reason) {
   if (reason == "attach") {
     last_stop = trap_reason("");  // told when the new debugger asks
   } else {
+    if (!console.empty()) link.send("O" + gdb::encode(std::exchange(console, {})));
     last_stop = reason;
     link.send(reason);
   }
@@ -177,6 +179,7 @@ void GdbServer::Impl::detach() {
   breakpoints[1].clear();
   watches.clear();
   watch_hit.clear();
+  console.clear();
   pending = Pending::kNone;
   stepping = in_handler = stop_owed = false;
   resumed = true;
@@ -193,6 +196,12 @@ std::uint16_t GdbServer::port() const { return impl_->link.port(); }
 Cpu::Stop GdbServer::run(Cycle limit) {
   impl_->on_time = on_time;
   return impl_->run(limit);
+}
+
+void GdbServer::bus_error(const std::string& text) {
+  if (!impl_->link.connected()) return;
+  impl_->pending = Impl::Pending::kBusError;
+  impl_->console += text + "\n";
 }
 
 void GdbServer::poll(bool idle) {

@@ -34,6 +34,10 @@ class GdbServer {
   // or is held, so there is no next instruction to stop before, and the debugger is served here.
   void poll(bool idle);
 
+  // The device access of the instruction that just runs broke a rule of the bus: `text` goes to the debugger's console,
+  // and the program stops behind the instruction as if a bus error had been signalled.
+  void bus_error(const std::string& text);
+
   std::function<std::string()> on_time;  // answer to `monitor time`
 
  private:

@@ -25,7 +25,10 @@ struct GdbServer::Impl {
   void stop(const std::string& reason);
   void serve();
   void detach();
-  bool stepwise() const { return stepping || !breakpoints[0].empty() || !breakpoints[1].empty() || !watches.empty(); }
+  bool stepwise() const {
+    return pending == Pending::kBusError || stepping || !breakpoints[0].empty() || !breakpoints[1].empty() ||
+           !watches.empty();
+  }
 
   // gdb_commands.cpp: what each packet does. No answer: the program is resumed or the debugger has gone.
   std::optional<std::string> answer(std::string_view packet);
@@ -45,7 +48,8 @@ struct GdbServer::Impl {
   GdbLink link;
   std::function<std::string()> on_time;
 
-  enum class Pending { kNone, kBreak, kAttach } pending = Pending::kNone;
+  enum class Pending { kNone, kBreak, kAttach, kBusError } pending = Pending::kNone;
+  std::string console;     // what a bus error has to say
   bool waiting = true;     // for the first debugger
   bool resumed = false;    // set by the packet that lets the program go on
   bool stop_owed = false;  // the program runs and a connected debugger waits for news

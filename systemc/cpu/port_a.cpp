@@ -25,6 +25,9 @@ constexpr Region kRegions[] = {
     {0x070000, 0x0700FF, kDefaultArea},  // latches
     {0x078000, 0x07BFFF, 1},             // gate ICs
 };
+// D as the board drives it.
+bool drives_data(const BoardOutputs&) { return true; }
+
 constexpr std::uint32_t kOnChipFirst = 0xFFFF80, kOnChipLast = 0xFFFFFF;
 constexpr std::uint32_t kOnChipAddressPins = 0x3F;
 
@@ -62,7 +65,7 @@ void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
 unsigned PortA::wait_states(unsigned area) const {
   using namespace regs::cpu_bus::bcr;
   constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
-  return kFields[area].get(bcr_);
+  return kFields[area].get(forced_bcr_.value_or(bcr_));
 }
 
 void PortA::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
@@ -115,9 +118,6 @@ bool PortA::begin(tlm::tlm_generic_payload& payload, PortARequest& request) {
     control_register(payload, request);
     return false;
   }
-  ta_sampled_ = cycle_.on_chip || cycle_.wait_states == 0;
-  acknowledged_ = ta_sampled_;
-  data_sampled_ = cycle_.write;
   state_ = State::kRunning;
   next(Step::kAddress);
   return true;
@@ -148,10 +148,6 @@ TimeFs PortA::time_of(Step step) const {
       return clock_.time(start_, shape_.data_driven);
     case Step::kStrobeLow:
       return clock_.time(start_, shape_.strobe_low);
-    case Step::kSampleTa:
-      return clock_.time(start_, shape_.strobe_high - 1 + stretch) - kTaSetup;
-    case Step::kSampleData:
-      return clock_.time(start_, shape_.strobe_high + stretch) - kReadDataSetup;
     case Step::kStrobeHigh:
       return clock_.time(start_, shape_.strobe_high + stretch);
     case Step::kEnd:
@@ -162,16 +158,15 @@ TimeFs PortA::time_of(Step step) const {
 
 void PortA::next(Step step) {
   step_ = step;
-  const bool sample = step == Step::kSampleTa || step == Step::kSampleData;
   time_ = time_of(step);
-  if (sample) time_ = std::max(time_, cycle_.strobe_low);  // a cycle without time for the set-up takes what is there
-  const Tick before = stand_;                              // what comes later is not seen earlier
-  const bool strobe = step == Step::kStrobeLow || step == Step::kStrobeHigh;
-  in_doubt_ = false;
-  if (sample || aperture_ == nullptr || !aperture_->on()) {
-    stand_ = sample ? fs_to_tick_floor(time_) : fs_to_tick(time_) - 1;
-  } else if (strobe) {
-    stand_ = aperture_->seen(time_) - 1;
+  const Tick before = stand_;  // what comes later is not seen earlier
+  in_doubt_ = resumed_ = false;
+  if (aperture_ == nullptr || !aperture_->on()) {
+    stand_ = late_ = fs_to_tick(time_) - 1;
+  } else if (step == Step::kStrobeLow || step == Step::kStrobeHigh) {
+    late_ = aperture_->seen(time_) - 1;
+    // What the board shows as the strobe rises is not what it shows later.
+    stand_ = step == Step::kStrobeLow ? late_ : std::min(late_, fs_to_tick(time_) - 1);
   } else {
     stand_ = aperture_->first(time_) - 1;
     in_doubt_ = aperture_->in_doubt(time_) && aperture_->last(time_) - 1 > std::max(stand_, before);
@@ -182,7 +177,7 @@ void PortA::next(Step step) {
 void PortA::move_bus(PortAPins& pins) const {
   switch (step_) {
     case Step::kAddress:
-      pins.pa_addr = cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu);
+      pins.pa_addr = address_pins();
       pins.pa_x = cycle_.x;
       pins.pa_aa = cycle_.aa;
       pins.pa_int = cycle_.on_chip;
@@ -199,39 +194,122 @@ void PortA::move_bus(PortAPins& pins) const {
   }
 }
 
-// After the strobe has fallen: what is sampled next, or the end of the strobe. Each sample of /TA that says "not yet"
-// adds a clock, and data sampled before it does not count.
-void PortA::after_low() {
-  const bool data_first = time_of(Step::kSampleData) <= time_of(Step::kSampleTa);
-  if (!data_sampled_ && (ta_sampled_ || data_first))
-    next(Step::kSampleData);
-  else if (!ta_sampled_)
-    next(Step::kSampleTa);
-  else if (acknowledged_)
-    next(Step::kStrobeHigh);
-  else {
-    ++cycle_.stretched;
-    ta_sampled_ = false;
-    data_sampled_ = cycle_.write;
-    after_low();
+void PortA::see(TimeFs time, const BoardOutputs& board) {
+  const Seen now{time, board.get(pin::kPaData), drives_data(board), board.get(pin::kPaTaN) != 0};
+  if (seen_.empty() || !now.same_data(seen_.back()) || now.busy != seen_.back().busy) seen_.push_back(now);
+}
+
+// Index of what stood on the pins at `time`.
+std::size_t PortA::seen_at(TimeFs time) const {
+  std::size_t i = seen_.size() - 1;
+  while (i > 0 && seen_[i].time > time) --i;
+  return i;
+}
+
+// How long D and /TA stood after the strobe.
+void PortA::hold_times() {
+  if (!cycle_.data_lost) cycle_.data_held = cycle_.end;
+  cycle_.ta_held = cycle_.end;
+  const Seen& first = seen_.front();
+  for (auto s = seen_.rbegin(); s != seen_.rend(); ++s) {
+    if (!cycle_.data_lost && !s->same_data(first)) cycle_.data_held = s->time;
+    if (s->busy != first.busy) cycle_.ta_held = s->time;
   }
 }
 
-void PortA::step(PortAPins& pins, const BoardOutputs& board) {
-  if (in_doubt_) {
-    const PortAPins from = pins;
-    PortAPins to = pins;
-    move_bus(to);
-    pins = aperture_->mixed(from, to, time_);
-    stand_ = aperture_->last(time_) - 1;
-    in_doubt_ = false;
-    return;
+std::uint32_t PortA::address_pins() const { return cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu); }
+
+void PortA::watch_address(const PortAPins& pins) {
+  if (pins.pa_addr != address_pins() || pins.pa_x != cycle_.x || pins.pa_aa != cycle_.aa) cycle_.address_moved = true;
+}
+
+std::uint32_t PortA::random() {  // splitmix64
+  std::uint64_t z = random_ += 0x9E3779B97F4A7C15u;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
+}
+
+// Whether the strobe may rise now. /TA is sampled a quarter and its set-up before; if it moves from there on it is seen
+// or not seen (rows 118 and 119).
+bool PortA::acknowledged() {
+  if (cycle_.on_chip || cycle_.wait_states == 0) return true;
+  cycle_.ta_time = clock_.time(start_, shape_.strobe_high - 1 + 4 * cycle_.stretched) - kTaSetup;
+  const std::size_t at = seen_at(cycle_.ta_time);
+  bool busy = seen_[at].busy, moved = false;
+  for (std::size_t i = 1; i < seen_.size(); ++i) {
+    if (seen_[i].busy == seen_[i - 1].busy) continue;
+    cycle_.ta_moved = seen_[i].time;
+    moved = moved || i > at;
   }
+  cycle_.ta_high = seen_.back().busy;
+  if (moved) {
+    busy = (random() & 1) != 0;
+    ++(busy == cycle_.ta_high ? cycle_.ta_seen : cycle_.ta_missed);
+  }
+  return !busy;
+}
+
+// The word of a read, and what D did until now, /RD high. Bits that moved after the sample are anything, and so are all
+// of them when nobody drove the bus (rows 104 to 106).
+void PortA::take_data() {
+  // A cycle without time for the set-up takes what is there as /RD falls.
+  cycle_.data_time = std::max(time_ - kReadDataSetup, cycle_.strobe_low);
+  const std::size_t at = seen_at(cycle_.data_time);
+  cycle_.data = seen_[at].data;
+  if (cycle_.on_chip) return;
+  std::uint32_t moved = seen_[at].driven ? 0 : kWordMask;
+  for (std::size_t i = 1; i < seen_.size(); ++i) {
+    const Seen &before = seen_[i - 1], &after = seen_[i];
+    if (after.same_data(before)) continue;
+    if (i > at) moved |= after.driven == before.driven ? after.data ^ before.data : kWordMask;
+    if (after.driven) cycle_.data_valid = after.time;
+    cycle_.data_lost = !after.driven;
+    cycle_.data_held = after.time;
+  }
+  if (!seen_.back().driven && !cycle_.data_lost) cycle_.data_valid = time_;  // never there
+  if (moved == 0) return;
+  cycle_.corrupted = true;
+  cycle_.data = (cycle_.data & ~moved) | (random() & moved);
+}
+
+// The first half of a step that takes two.
+void PortA::half_step(PortAPins& pins) {
+  const PortAPins from = pins;
+  PortAPins to = pins;
+  move_bus(to);
+  pins = aperture_->mixed(from, to, time_);
+  stand_ = aperture_->last(time_) - 1;
+  in_doubt_ = false;
+  resumed_ = true;
+}
+
+// The strobe has ended for the CPU; false if it goes on.
+bool PortA::end_strobe(const PortAPins& pins) {
+  if (!acknowledged()) {  // one clock more
+    ++cycle_.stretched;
+    next(Step::kStrobeHigh);
+    return false;
+  }
+  if (!cycle_.write) take_data();
+  watch_address(pins);
+  cycle_.strobe_high = time_;
+  seen_.erase(seen_.begin(), seen_.end() - 1);
+  resumed_ = late_ > stand_;
+  stand_ = std::max(stand_, late_);
+  return !resumed_;
+}
+
+void PortA::step(PortAPins& pins, const BoardOutputs& board) {
+  if (step_ == Step::kEnd && !resumed_) watch_address(pins);
+  if (in_doubt_) return half_step(pins);
   const bool shown = !cycle_.on_chip;
   move_bus(pins);
   switch (step_) {
     case Step::kAddress:
-      cycle_.start = time_;
+      cycle_.start = cycle_.data_valid = cycle_.ta_moved = time_;
+      seen_.clear();
+      see(time_, board);
       if (shown) {
         signals_.set(addr_, time_, pins.pa_addr);
         signals_.set(x_, time_, cycle_.x);
@@ -242,41 +320,26 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
     case Step::kDriveData:
       cycle_.data_time = time_;
       if (shown) signals_.set(data_, time_, cycle_.data);
-      if (shape_.data_driven < shape_.strobe_low)
-        next(Step::kStrobeLow);
-      else
-        after_low();
+      next(shape_.data_driven < shape_.strobe_low ? Step::kStrobeLow : Step::kStrobeHigh);
       break;
     case Step::kStrobeLow:
       cycle_.strobe_low = time_;
       (cycle_.write ? pins.pa_wr_n : pins.pa_rd_n) = false;
+      watch_address(pins);
+      cycle_.both_strobes = !pins.pa_rd_n && !pins.pa_wr_n;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 0);
       if (shown && !cycle_.write) signals_.set(data_, time_, board.get(pin::kPaData));
-      if (cycle_.write && shape_.data_driven > shape_.strobe_low)
-        next(Step::kDriveData);
-      else
-        after_low();
-      break;
-    case Step::kSampleTa:
-      cycle_.ta_time = time_;
-      ta_sampled_ = true;
-      acknowledged_ = board.get(pin::kPaTaN) == 0;
-      after_low();
-      break;
-    case Step::kSampleData:
-      cycle_.data_time = time_;
-      data_sampled_ = true;
-      cycle_.data = board.get(pin::kPaData);
-      after_low();
+      next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
       break;
     case Step::kStrobeHigh:
-      cycle_.strobe_high = time_;
+      if (!resumed_ && !end_strobe(pins)) break;
       pins.pa_rd_n = pins.pa_wr_n = true;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 1);
       next(Step::kEnd);
       break;
     case Step::kEnd:
       cycle_.end = time_;
+      hold_times();
       if (shown) signals_.set(aa_, time_, 0);
       state_ = State::kDone;
       next_start_ = start_ + shape_.clocks + cycle_.stretched + shape_.idle_clocks;
@@ -286,9 +349,11 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
 }
 
 void PortA::board_changed(Tick tick, const BoardOutputs& board) {
-  const bool reading = state_ == State::kRunning && !cycle_.write && !cycle_.on_chip && step_ != Step::kAddress &&
-                       step_ != Step::kStrobeLow && step_ != Step::kEnd;
-  if (reading) signals_.set(data_, tick_to_fs(tick), board.get(pin::kPaData));
+  if (state_ != State::kRunning || step_ == Step::kAddress) return;
+  const TimeFs time = tick_to_fs(tick);
+  see(time, board);
+  if (cycle_.write || cycle_.on_chip || step_ == Step::kStrobeLow || step_ == Step::kEnd) return;
+  signals_.set(data_, time, board.get(pin::kPaData));
 }
 
 }  // namespace brick

@@ -8,6 +8,9 @@
 #include <tlm>
 
 #include <functional>
+#include <optional>
+#include <vector>
+
 #include <systemc>
 
 #include "systemc/core/aperture.h"
@@ -30,14 +33,14 @@ struct PortARequest : tlm::tlm_extension<PortARequest> {
   void copy_from(const tlm::tlm_extension_base& other) override { *this = static_cast<const PortARequest&>(other); }
 };
 
-// A finished cycle with all its edges, for checkers and reports.
+// A finished cycle with all its edges as the pins had them, for checkers and reports.
 struct PortACycle {
   std::uint32_t address = 0;  // PMAC word address
   bool x = false;
   std::uint8_t aa = 0;
   bool on_chip = false;
   bool write = false;
-  std::uint32_t data = 0;
+  std::uint32_t data = 0;  // read: as the CPU took it
   std::uint32_t pc = 0;
   unsigned wait_states = 0;  // programmed
   unsigned stretched = 0;    // clocks added by /TA
@@ -47,7 +50,22 @@ struct PortACycle {
   TimeFs data_time = 0;  // write: data driven; read: data sampled
   TimeFs ta_time = 0;    // last sample of /TA
   TimeFs strobe_high = 0;
-  TimeFs end = 0;  // address and AA no longer valid
+  TimeFs end = 0;              // address and AA no longer valid; write: data no longer driven
+  bool both_strobes = false;   // the other strobe was low too
+  bool address_moved = false;  // A, X or AA changed before the end
+
+  // A read: what D did.
+  TimeFs data_valid = 0;   // last change up to /RD high, the start if there was none
+  TimeFs data_held = 0;    // first change from /RD high on, the end if there was none
+  bool data_lost = false;  // let go before /RD rose, at data_held
+  bool corrupted = false;  // D moved or was not driven between the sample and /RD high: those bits are random
+
+  // /TA, unless no wait state is programmed.
+  TimeFs ta_moved = 0;   // last change up to the end of the strobe, the start if there was none
+  TimeFs ta_held = 0;    // first change from the end of the strobe on, the end of the cycle if there was none
+  bool ta_high = false;  // the device still said "not yet" as the strobe rose
+  unsigned ta_seen = 0,
+           ta_missed = 0;  // it moved between a sample and the end of the strobe and was taken after, before
 };
 
 class PortA : public sc_core::sc_module {
@@ -60,45 +78,70 @@ class PortA : public sc_core::sc_module {
   void reset(Tick edge, std::int64_t cycle, PortAPins& pins);
   void set_aperture(Aperture* aperture) { aperture_ = aperture; }  // not owned
   const CpuClock& clock() const { return clock_; }
-  unsigned wait_states(unsigned area) const;  // AA0..AA2, 3 = default area
+  std::int64_t free_at() const { return next_start_; }  // CPU cycle at which the next access may begin
+  unsigned wait_states(unsigned area) const;            // AA0..AA2, 3 = default area
+
+  // Wait states of all areas as in BCR, whatever the program writes there.
+  void force_wait_states(std::uint32_t bcr) { forced_bcr_ = bcr; }
+  // Of what a read takes from a bus that moves, and of whether a moving /TA is seen: the same on every engine.
+  void seed(std::uint64_t seed) { random_ = seed; }
 
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
   bool running() const { return state_ == State::kRunning; }
   Tick stands_at() const { return stand_; }
   void step(PortAPins& pins, const BoardOutputs& board);     // pins are seen first by the edge after stands_at()
-  void board_changed(Tick tick, const BoardOutputs& board);  // for the waveform: read data while /RD is low
+  void board_changed(Tick tick, const BoardOutputs& board);  // after each edge that changes an output
 
   std::function<void(const PortACycle&)> on_cycle;  // at the end of each cycle
   std::function<void()> on_control;                 // BCR or PCTL was written
 
  private:
   enum class State { kIdle, kRunning, kDone };
-  enum class Step { kAddress, kDriveData, kStrobeLow, kSampleTa, kSampleData, kStrobeHigh, kEnd };
+  enum class Step { kAddress, kDriveData, kStrobeLow, kStrobeHigh, kEnd };
+  struct Seen {  // what the board drives, from `time` on
+    TimeFs time;
+    std::uint32_t data;
+    bool driven, busy;
+    bool same_data(const Seen& o) const { return data == o.data && driven == o.driven; }
+  };
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
   bool begin(tlm::tlm_generic_payload& payload, PortARequest& request);
   void control_register(tlm::tlm_generic_payload& payload, PortARequest& request);
   void next(Step step);
   void move_bus(PortAPins& pins) const;  // of a step at which lines move together
-  void after_low();
+  void half_step(PortAPins& pins);
+  bool end_strobe(const PortAPins& pins);
   TimeFs time_of(Step step) const;
+  void see(TimeFs time, const BoardOutputs& board);
+  std::size_t seen_at(TimeFs time) const;
+  bool acknowledged();
+  void take_data();
+  void hold_times();
+  std::uint32_t random();
+  std::uint32_t address_pins() const;
+  void watch_address(const PortAPins& pins);
 
   Signals& signals_;
   Signals::Id addr_, data_, aa_, x_, rd_n_, wr_n_;
   CpuClock clock_;
   std::uint32_t bcr_ = 0, pctl_ = 0;
+  std::optional<std::uint32_t> forced_bcr_;
+  std::uint64_t random_ = 1;
 
   State state_ = State::kIdle;
   Step step_ = Step::kAddress;
   Tick stand_ = 0;
   Aperture* aperture_ = nullptr;
+  Tick late_ = 0;          // where the strobe moves
   bool in_doubt_ = false;  // of a bus at this step: the next edge sees a part of it
+  bool resumed_ = false;   // the step has begun
   TimeFs time_ = 0;        // of step_
   PortAShape shape_{};
   PortACycle cycle_;
   std::int64_t start_ = 0;       // CPU cycle at which the cycle begins
   std::int64_t next_start_ = 0;  // earliest next one
-  bool ta_sampled_ = false, data_sampled_ = false, acknowledged_ = false;
+  std::vector<Seen> seen_;       // of the cycle under way, oldest first
 };
 
 }  // namespace brick

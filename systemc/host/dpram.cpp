@@ -8,71 +8,95 @@ Dpram::Dpram(const sc_core::sc_module_name& name) : sc_module(name), socket("soc
   socket.register_b_transport(this, &Dpram::b_transport);
 }
 
-bool Dpram::cpu_idle() const {
-  const bool rd = in.cpu_sel && !in.cpu_rd_n, wr = in.cpu_sel && !in.cpu_wr_n;
-  if (rd != cpu_rd_ || wr != cpu_wr_) return false;
-  if (!cpu_active()) return !cpu_done_ && !cpu_busy_;
-  return cpu_done_ || (cpu_busy_ && cpu_blocked());
+// One more tick would change nothing.
+bool Dpram::cpu_settled() const {
+  const auto still = [](const Strobe& s, bool toggle, bool strobe_n) {
+    return s.toggle1 == toggle && s.toggle2 == toggle && s.low1 == !strobe_n && s.low2 == !strobe_n &&
+           s.acknowledged == s.done;
+  };
+  if (!still(rd_, in.rd_toggle, in.cpu_rd_n) || !still(wr_, in.wr_toggle, in.cpu_wr_n)) return false;
+  if (sel_ != in.cpu_sel || pins_ != pin_cell() || sampled_ || proven_) return false;
+  if (rd_.pending() || wr_.pending()) return sel_ && cpu_busy_ && cpu_blocked() && !ended();
+  return !cpu_busy_ && (!own_ || owned());
 }
 
-bool Dpram::host_idle() const {
+bool Dpram::host_settled() const {
   if (in.mem_wr && host_own_) return false;
   if (!in.mem_sel) return !host_own_ && !mem_busy_;
   return host_own_ || (mem_busy_ && host_blocked());
 }
 
 Tick Dpram::next_event() const {
-  if (!cpu_idle()) return now_ + 1;
-  return host_idle() ? kNever : next_ref_edge(now_);
+  // Strobes of other devices show nowhere; advance() lets them pass when it is called next.
+  const bool others = !in.cpu_sel && !sel_ && !own_ && !sampled_ && !proven_ && !cpu_busy_;
+  if (!others && !cpu_settled()) return now_ + 1;
+  return host_settled() ? kNever : next_ref_edge(now_);
 }
 
 void Dpram::advance(Tick t) {
-  for (Tick edge = next_event(); edge <= t; edge = next_event()) {
+  while (now_ < t) {
+    const bool settled = cpu_settled();
+    if (settled && host_settled()) break;
+    const Tick edge = settled ? next_ref_edge(now_) : now_ + 1;
+    if (edge > t) break;
     now_ = edge;
-    // Both decisions come from the state before the edge. Of the cells that are then touched no one is touched twice.
+    // Both decisions come from the state before the edge. They never let both sides at one word of which one writes.
     const bool block_cpu = cpu_blocked(), block_host = host_blocked();
     if (is_ref_edge(edge)) host_edge(block_host);
     cpu_edge(block_cpu);
+    cpu_pins();
   }
   now_ = t;
 }
 
 void Dpram::cpu_edge(bool blocked) {
-  if (!cpu_active()) {
-    cpu_done_ = cpu_busy_ = false;
-    cpu_cell_ = static_cast<std::uint16_t>((in.cpu_addr & 0x3FFF) << 1 | (in.cpu_x ? 1 : 0));
-  } else if (!cpu_done_) {
-    cpu_busy_ = blocked;
-    cpu_done_ = !blocked;
-    if (cpu_done_ && cpu_rd_) cpu_rdata_ = peek(cpu_cell_);
-    if (cpu_done_ && cpu_wr_) poke(cpu_cell_, in.cpu_wdata);
+  if (proven_ && wr_.low2) poke(cell_, wdata_);
+  const bool asked = request(), over = ended(), write = wr_.pending();
+  const bool grant = asked && !over && !blocked, finished = grant || (asked && over);
+  const bool held = owned();
+  rd_.acknowledged = rd_.done;
+  if (rd_.pending() && (!sel_ || (!write && finished))) rd_.done = rd_.toggle2;
+  if (wr_.pending() && (!sel_ || finished)) wr_.done = wr_.toggle2;
+  cpu_busy_ = asked && !over && blocked;
+  proven_ = sampled_;
+  sampled_ = grant && write;
+  if (grant) {
+    own_ = true;
+    own_wr_ = write;
+    cell_ = pins_;
+    wdata_ = in.cpu_wdata;
+    if (!write) cpu_rdata_ = peek(cell_);
+  } else if (asked || !held) {
+    own_ = false;
   }
-  cpu_rd_ = in.cpu_sel && !in.cpu_rd_n;
-  cpu_wr_ = in.cpu_sel && !in.cpu_wr_n;
 }
 
-void Dpram::host_write() {
-  const unsigned lanes = ((in.mem_be & 1) ? 0x00FFu : 0u) | ((in.mem_be & 2) ? 0xFF00u : 0u);
-  poke(in.mem_addr, static_cast<std::uint16_t>((peek(in.mem_addr) & ~lanes) | (in.mem_wdata & lanes)));
+void Dpram::cpu_pins() {
+  const auto sample = [](Strobe& s, bool toggle, bool strobe_n) {
+    s.toggle2 = s.toggle1;
+    s.toggle1 = toggle;
+    s.low2 = s.low1;
+    s.low1 = !strobe_n;
+  };
+  sample(rd_, in.rd_toggle, in.cpu_rd_n);
+  sample(wr_, in.wr_toggle, in.cpu_wr_n);
+  sel_ = in.cpu_sel;
+  pins_ = pin_cell();
 }
 
 void Dpram::host_edge(bool blocked) {
-  if (in.mem_wr && host_own_) host_write();
-  if (!in.mem_sel) {
-    host_own_ = mem_busy_ = false;
-  } else if (!host_own_) {
-    host_own_ = !blocked;
-    mem_busy_ = blocked;
-    if (host_own_ && in.mem_rd) mem_rdata_ = peek(in.mem_addr);
-  }
+  if (in.mem_wr && host_own_) poke(in.mem_addr, in.mem_wdata, in.mem_be);
+  const bool grant = in.mem_sel && !host_own_ && !blocked;
+  if (grant && in.mem_rd) mem_rdata_ = peek(in.mem_addr);
+  mem_busy_ = in.mem_sel && !host_own_ && blocked;
+  host_own_ = in.mem_sel && (host_own_ || grant);
 }
 
-// A write that was granted but not made yet is lost; the memory keeps its content. The host's is made from the first
-// tick of its clk_ref on.
+// A write that was granted but not made yet is lost; the memory keeps its content.
 void Dpram::reset(Tick t) {
-  if (in.mem_wr && host_own_ && !is_ref_edge(now_)) host_write();
-  cpu_rd_ = cpu_wr_ = cpu_done_ = cpu_busy_ = host_own_ = mem_busy_ = false;
-  cpu_cell_ = cpu_rdata_ = mem_rdata_ = 0;
+  rd_ = wr_ = Strobe{};
+  sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
+  pins_ = cell_ = wdata_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
 }
 

@@ -1,15 +1,16 @@
-// Model of rtl/host/dpram.sv: 16-bit memory with two ports and BUSY arbitration. The CPU side samples its pins at every
-// tick, the host side at clk_ref edges; nothing is executed while neither side has anything to do. docs/dpram.md.
+// Model of rtl/host/dpram.sv: 16-bit memory with two ports and BUSY arbitration. The CPU side works at every tick, the
+// host side at clk_ref edges; nothing is executed while neither side has anything to do, and edges that only let the
+// strobe of another device pass are executed when the next one matters. docs/dpram.md.
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include <tlm_utils/simple_target_socket.h>
 #include <systemc>
 #include <tlm>
 
 #include "systemc/core/model_block.h"
+#include "systemc/host/dpram_memory.h"
 #include "systemc/host/inputs.h"
 
 namespace brick {
@@ -21,12 +22,14 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   // Memory without arbitration, for software that has no pins: 16-bit accesses at the host's byte offset.
   tlm_utils::simple_target_socket_optional<Dpram> socket;
 
-  static constexpr unsigned kWords = 32768;
+  static constexpr unsigned kWords = DpramMemory::kWords;
 
   using Inputs = DpramInputs;
   Inputs in;
 
   std::uint16_t cpu_rdata() const { return cpu_rdata_; }
+  bool cpu_valid() const { return in.rd_toggle == rd_.done; }
+  bool cpu_wait() const { return in.cpu_sel && (in.rd_toggle != rd_.acknowledged || in.wr_toggle != wr_.done); }
   bool cpu_busy() const { return cpu_busy_; }
   std::uint16_t mem_rdata() const { return mem_rdata_; }
   bool mem_busy() const { return mem_busy_; }
@@ -37,30 +40,45 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   void reset(Tick t) override;
 
   // Content, for initial values and reports. Index = host byte offset / 2; beyond the fitted size 0.
-  std::uint16_t peek(unsigned index) const { return index < fitted() ? mem_[index] : 0; }
-  void poke(unsigned index, std::uint16_t value) {
-    if (index < fitted()) mem_[index] = value;
+  std::uint16_t peek(unsigned index) const { return index < fitted() ? memory_.read(index) : 0; }
+  void poke(unsigned index, std::uint16_t value, unsigned bytes = 3) {
+    if (index < fitted()) memory_.write(index, value, bytes);
   }
 
  private:
   static constexpr unsigned kSmallWords = 8192;
+  struct Strobe {
+    bool toggle1 = false, toggle2 = false, low1 = false, low2 = false, done = false, acknowledged = false;
+    bool pending() const { return toggle2 != done; }
+  };
+
   unsigned fitted() const { return in.small ? kSmallWords : kWords; }
-  bool cpu_active() const { return cpu_rd_ || cpu_wr_; }
-  bool conflict() const {
-    return cpu_cell_ == in.mem_addr && (cpu_wr_ || !in.mem_rd);
-  }  // of the two requests as they stand
-  bool cpu_blocked() const { return host_own_ && conflict(); }
-  bool host_blocked() const { return cpu_active() && conflict(); }
-  bool cpu_idle() const;
-  bool host_idle() const;
+  std::uint16_t pin_cell() const {
+    return static_cast<std::uint16_t>((in.cpu_addr & 0x3FFF) << 1 | (in.cpu_x ? 1 : 0));
+  }
+  bool request() const { return sel_ && (rd_.pending() || wr_.pending()) && !sampled_ && !proven_; }
+  bool ended() const { return cpu_busy_ && !(wr_.pending() ? wr_ : rd_).low2; }
+  bool conflict() const { return pins_ == in.mem_addr && (wr_.pending() || !in.mem_rd); }
+  bool cpu_blocked() const { return (host_own_ || mem_busy_) && conflict(); }
+  bool owned() const { return sampled_ || proven_ || (own_wr_ ? wr_ : rd_).low2; }
+  bool host_blocked() const {
+    return (own_ && cell_ == in.mem_addr && (own_wr_ || !in.mem_rd)) || (request() && conflict() && !mem_busy_);
+  }
+  bool cpu_settled() const;
+  bool host_settled() const;
   void cpu_edge(bool blocked);
-  void host_write();
+  void cpu_pins();
   void host_edge(bool blocked);
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
-  std::vector<std::uint16_t> mem_ = std::vector<std::uint16_t>(kWords);
-  bool cpu_rd_ = false, cpu_wr_ = false, cpu_done_ = false, cpu_busy_ = false;
-  std::uint16_t cpu_cell_ = 0, cpu_rdata_ = 0;
+  DpramMemory memory_;
+  // CPU side: pins as sampled, then the access under way
+  Strobe rd_, wr_;
+  bool sel_ = false;
+  std::uint16_t pins_ = 0;
+  bool cpu_busy_ = false, own_ = false, own_wr_ = false, sampled_ = false, proven_ = false;
+  std::uint16_t cell_ = 0, wdata_ = 0, cpu_rdata_ = 0;
+  // host side
   bool host_own_ = false, mem_busy_ = false;
   std::uint16_t mem_rdata_ = 0;
   Tick now_ = 0;

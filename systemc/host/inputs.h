@@ -31,7 +31,8 @@ struct HostPortInputs {
 
 struct DpramInputs {
   bool small = false;  // strap: only the first 8192 words are fitted
-  // Port A pins
+  // Port A pins and the falls of its strobes
+  bool rd_toggle = false, wr_toggle = false;
   bool cpu_sel = false, cpu_x = false;
   std::uint16_t cpu_addr = 0;  // 14 bits
   bool cpu_rd_n = true, cpu_wr_n = true;

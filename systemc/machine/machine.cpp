@@ -92,16 +92,20 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     board_changed(t, before, after);
   };
   port_a.set_aperture(&aperture);
+  port_a.seed(config.seed);
+  if (config.bcr) port_a.force_wait_states(*config.bcr);
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
   port_a.on_control = [this] { main_memory_wait(); };
   cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle c) {
     const TimeFs time = port_a.clock().time(c);
     named.trap(time, cause);
+    if (owner.on_task) owner.on_task(time);
     if (tracing_cpu) named.pc(time, trap_handler(cpu, cause), elf.get());
   };
   cpu.on_mret = [this](std::uint32_t pc, Cycle c) {
     const TimeFs time = port_a.clock().time(c);
     named.trap_return(time);
+    if (owner.on_task) owner.on_task(time);
     if (tracing_cpu) named.pc(time, pc, elf.get());
   };
   static_cast<Straps&>(host_inputs) = straps(config.board);
@@ -133,6 +137,7 @@ void Machine::Impl::begin_reset(bool power) {
   cpu_runs = false;
   events.clear();
   initiator.forget();
+  master_access.reset();
   clock_drivers.reset();
   port_a.reset(board->now(), cpu.cycle(), inputs);
   inputs.rst_n = false;
@@ -148,13 +153,14 @@ void Machine::Impl::start_cpu() {
   events.clear();
   main_memory_wait();
   cpu.reset(elf ? elf->entry() : 0);
-  cpu_runs = elf != nullptr;
+  cpu_runs = elf != nullptr && master == nullptr;
 }
 
 void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const BoardOutputs& after) {
   static constexpr BoardOutputs kSeenByCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
   named.outputs(tick_to_fs(tick), before, after);
   port_a.board_changed(tick, after);
+  if (owner.on_outputs) owner.on_outputs(tick, before, after);
   if (before.differs(after, stop_on)) stopped = true;
   if (before.get(pin::kSourceConflict) == 0 && after.get(pin::kSourceConflict) != 0) {
     if (!inputs.pa_wr_n)
@@ -176,6 +182,7 @@ void Machine::Impl::cycle_done(const PortACycle& c) {
   bus_cycles.push_back({fs_to_tick(c.start), c.x ? 'X' : 'Y', c.address, c.write, c.data, c.pc});
   if (c.write) clock_drivers.write(c.x, c.address, c.data);
   if (tracing_cpu) named.pc(c.start, c.pc, elf.get());
+  if (owner.check_bus_cycle) owner.check_bus_cycle(c);
   if (owner.on_bus_cycle) owner.on_bus_cycle(c);
 }
 
@@ -218,6 +225,13 @@ void Machine::attach_debugger(GdbServer* debugger) {
   if (debugger == nullptr) return;
   debugger->on_time = [this] { return std::to_string(impl_->cpu_time() / kFsPerNs) + " ns"; };
 }
+
+void Machine::attach_bus_master(BusMaster* master) {
+  impl_->master = master;
+  if (master != nullptr) impl_->cpu_runs = false;
+}
+std::string Machine::function_at(std::uint32_t pc) const { return impl_->elf ? impl_->elf->symbol_at(pc) : ""; }
+unsigned Machine::task() const { return impl_->named.task(); }
 
 void Machine::reset() { impl_->begin_reset(false); }
 void Machine::set_jumper_e3(bool on) {

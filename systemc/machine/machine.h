@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,10 +47,26 @@ struct MachineConfig {
   std::string firmware;    // ELF path
   std::string flash_file;  // "" = flash content is lost at the end
   bool jumper_e3 = false;
-  std::uint64_t seed = 1;   // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
-  TimeFs aperture = 0;      // of the board's inputs, systemc/core/aperture.h; 0 = none
-  Tick batch = 0;           // 0 = as long as the rule allows; else no advance longer than this many ticks
+  std::uint64_t seed = 1;            // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
+  TimeFs aperture = 0;               // of the board's inputs, systemc/core/aperture.h; 0 = none
+  Tick batch = 0;                    // 0 = as long as the rule allows; else no advance longer than this many ticks
+  std::optional<std::uint32_t> bcr;  // wait states, whatever the firmware writes to BCR
   bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
+};
+
+// Makes bus cycles in the CPU's place, for tests of the bus itself. BCR and PCTL are written like any other word.
+class BusMaster {
+ public:
+  struct Access {
+    bool x = false;
+    std::uint32_t address = 0;
+    bool write = false;
+    std::uint32_t data = 0;
+    unsigned idle = 0;  // CPU clocks to let pass before it begins
+  };
+  virtual ~BusMaster() = default;
+  virtual std::optional<Access> next() = 0;  // none: asked again when the machine is advanced again
+  virtual void done(const Access& access, std::uint32_t data) = 0;
 };
 
 class Machine : public sc_core::sc_module {
@@ -87,6 +104,10 @@ class Machine : public sc_core::sc_module {
   Cpu& cpu();
   std::uint64_t instructions() const;
   void attach_debugger(GdbServer* debugger);  // not owned; nullptr = none
+  // Not owned. The CPU stops where it is and takes the bus again, after nullptr, at the next reset only.
+  void attach_bus_master(BusMaster* master);
+  std::string function_at(std::uint32_t pc) const;  // name of the firmware's function, "" if none holds pc
+  unsigned task() const;                            // cpu.task
 
   void reset();                 // pulls the reset line: board and CPU start again, RAM and flash keep their content
   void power_cycle();           // RAM content is lost, flash stays
@@ -110,6 +131,11 @@ class Machine : public sc_core::sc_module {
 
   // Called at the end of each Port A cycle with the exact times of all its edges (systemc/cpu/port_a.h), for checkers.
   std::function<void(const PortACycle&)> on_bus_cycle;
+  std::function<void(const PortACycle&)> check_bus_cycle;  // the same, for what judges every run
+
+  // Called after each edge that changes an output of the board, and as the CPU takes or leaves a trap.
+  std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)> on_outputs;
+  std::function<void(TimeFs)> on_task;
 
  private:
   struct Impl;

@@ -30,6 +30,7 @@ class PortAInitiator : public sc_core::sc_module, public DeviceBus {
   PortAInitiator(sc_core::sc_module_name name, PortA& port_a);
   ~PortAInitiator() override;
   Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override;
+  bool under_way() const { return under_way_; }
   void forget() { under_way_ = false; }  // reset in the middle of an access
 
   tlm_utils::simple_initiator_socket<PortAInitiator> socket{"socket"};
@@ -60,6 +61,7 @@ struct Machine::Impl {
   // run.cpp: the run-ahead rule
   Tick run_until(Tick limit, const BoardOutputs& stop_on);
   void run_cpu(Tick known);
+  void run_master();
   bool deliver_due();
   Tick board_limit(Tick limit) const;
   void keep_kernel_time(Tick from);
@@ -76,7 +78,9 @@ struct Machine::Impl {
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};
-  GdbServer* debugger = nullptr;  // runs the CPU when there is one
+  BusMaster* master = nullptr;                     // makes the bus cycles when there is one
+  std::optional<BusMaster::Access> master_access;  // under way
+  GdbServer* debugger = nullptr;                   // runs the CPU when there is one
   MachineMemory memory;
   std::unique_ptr<ElfFile> elf;
   std::uint64_t power_ons = 0;

@@ -57,7 +57,7 @@ void MachineSignals::pc(TimeFs time, std::uint32_t pc, const ElfFile* elf) {
 }
 
 void MachineSignals::trap(TimeFs time, std::uint32_t cause) {
-  unsigned task = static_cast<unsigned>(signals_.value(task_));
+  unsigned task = this->task();
   interrupted_.push_back(task);
   constexpr std::uint32_t kInterrupt = 0x8000'0000;
   if (cause == (kInterrupt | kIrqPhase)) task = 3;

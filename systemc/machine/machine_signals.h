@@ -21,6 +21,7 @@ class MachineSignals {
   // cpu.task follows the nesting of traps.
   void trap(TimeFs time, std::uint32_t cause);
   void trap_return(TimeFs time);
+  unsigned task() const { return static_cast<unsigned>(signals_.value(task_)); }
   void restart(TimeFs time);
 
  private:

@@ -70,6 +70,7 @@ Tick Machine::Impl::board_limit(Tick limit) const {
 // Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the
 // edges up to t - latency, so it may start before known + 1 + latency.
 void Machine::Impl::run_cpu(Tick known) {
+  if (master != nullptr && reset_until == kNever) return run_master();
   const CpuClock& clock = port_a.clock();
   while (cpu_runs && !port_a.running()) {
     if (deliver_due()) continue;
@@ -81,6 +82,24 @@ void Machine::Impl::run_cpu(Tick known) {
       debugger->run(limit);
     else
       cpu.run(limit);
+  }
+}
+
+// Finishes the access of the bus master and begins the next, all in the future of the board. When the CPU was in the
+// middle of an access as the master came, that one is finished first and its result is nobody's.
+void Machine::Impl::run_master() {
+  for (unsigned made = 0; !port_a.running() && made < 64; ++made) {
+    Cycle start = std::max(port_a.free_at(), port_a.clock().first_cycle(board->now() + 1));
+    const bool begin = !initiator.under_way();
+    if (begin) {
+      master_access = master->next();
+      if (!master_access) return;
+      start += master_access->idle;
+    }
+    const BusMaster::Access a = master_access.value_or(BusMaster::Access{});
+    const std::uint32_t address = kPmacBase + 8 * a.address + (a.x ? 4 : 0);
+    const DeviceBus::Result result = initiator.access(address, 4, a.write, a.data, start);
+    if (!result.retry && master_access) master->done(a, result.data);
   }
 }
 

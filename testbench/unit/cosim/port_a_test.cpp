@@ -40,7 +40,8 @@ class PortARig {
       if (payload_.get_response_status() != tlm::TLM_INCOMPLETE_RESPONSE) break;
       while (port_a.running()) {
         EXPECT_GE(port_a.stands_at(), now) << "the board would have to go back";
-        now = port_a.stands_at();
+        for (; now < port_a.stands_at(); ++now)
+          if (board_(now + 1) != board_(now)) port_a.board_changed(now + 1, board_(now + 1));
         const BoardInputs before = pins;
         port_a.step(pins, board_(now));
         if (on_pins) on_pins(now, before, pins);

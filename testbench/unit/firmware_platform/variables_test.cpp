@@ -306,6 +306,11 @@ TEST(SavedData, WaitStatesAreThoseOfTheCpuClockPlusI37) {
   c.restart();
   EXPECT_EQ(x(0xFFFFFB), bcr(1, 10, 4, 7, 15));
   EXPECT_EQ(x(0xFFFFFD), 9u) << "multiplier of the CPU clock - 1";
+  for (const unsigned i52 : {0u, 1u, 2u}) {  // three would give the DPRAM write data too late
+    c.line("I52=" + std::to_string(i52) + " SAVE");
+    c.restart();
+    EXPECT_EQ(x(0xFFFFFB), bcr(1, 7, i52 < 2 ? 4 : 3, 7, 15)) << i52;
+  }
 }
 
 TEST(SavedData, DamageIsReportedAndDefaultsAreUsed) {

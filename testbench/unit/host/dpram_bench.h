@@ -13,10 +13,8 @@ class DpramBench {
  public:
   explicit DpramBench(bool small = false, int seed = 0)
       : model("dpram"), both(make_rtl_dpram(seed), model, [](const Dpram& m) {
-          return Outputs{{"cpu_rdata", m.cpu_rdata()},
-                         {"cpu_busy", m.cpu_busy()},
-                         {"mem_rdata", m.mem_rdata()},
-                         {"mem_busy", m.mem_busy()},
+          return Outputs{{"cpu_rdata", m.cpu_rdata()}, {"cpu_valid", m.cpu_valid()}, {"cpu_wait", m.cpu_wait()},
+                         {"cpu_busy", m.cpu_busy()},   {"mem_rdata", m.mem_rdata()}, {"mem_busy", m.mem_busy()},
                          {"host_busy", m.host_busy()}};
         }) {
     both.in.small = small;
@@ -32,21 +30,24 @@ class DpramBench {
     both.in.cpu_rd_n = both.in.cpu_wr_n = true;
     both.in.cpu_sel = false;
   }
-  // Whole accesses without a competitor, with a tick of rest after them.
+  // Whole accesses without a competitor, and the time that their end takes to be seen.
   unsigned cpu_read(unsigned word) {
     cpu_start_read(word);
-    both.ticks(3);
+    both.ticks(kAccess);
     const unsigned value = both.get("cpu_rdata");
     cpu_end();
-    both.ticks(2);
+    both.ticks(kRest);
     return value;
   }
   void cpu_write(unsigned word, unsigned value) {
     cpu_start_write(word, value);
-    both.ticks(3);
+    both.ticks(kAccess);
     cpu_end();
-    both.ticks(2);
+    both.ticks(kRest);
   }
+  // Of the CPU's strobe: the access takes place at the third edge after its fall; its end has come through two
+  // flip-flops and a third after four.
+  static constexpr int kAccess = 3, kRest = 4;
 
   // The request is seen by the next clk_ref edge.
   void host_start(unsigned word, bool read) {
@@ -78,6 +79,7 @@ class DpramBench {
     both.ref(2);
     host_end_write(value, lanes);
   }
+  bool cpu_wait() { return both.get("cpu_wait"); }
   bool cpu_busy() { return both.get("cpu_busy"); }
   bool host_busy() { return both.get("host_busy"); }
 
@@ -119,6 +121,8 @@ class DpramBench {
  private:
   void cpu_start(unsigned word, bool read, unsigned value) {
     both.in.cpu_sel = true;
+    both.in.rd_toggle ^= read;  // as bus_strobes makes them
+    both.in.wr_toggle ^= !read;
     both.in.cpu_addr = static_cast<std::uint16_t>(word / 2);
     both.in.cpu_x = word % 2;
     both.in.cpu_rd_n = !read;

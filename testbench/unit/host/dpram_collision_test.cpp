@@ -42,10 +42,10 @@ TEST_F(DpramCollisionTest, CpuWaitsForAHostWriteAndThenReadsTheNewValue) {
   host_start(8, false);
   both.ref();
   cpu_start_read(8);
-  both.tick();
+  both.ticks(2);
   EXPECT_FALSE(cpu_busy());
   both.tick();
-  EXPECT_TRUE(cpu_busy()) << "two edges after the strobe was first seen";
+  EXPECT_TRUE(cpu_busy()) << "the third edge after the fall of the strobe";
   both.ref(5);
   EXPECT_TRUE(cpu_busy());
   host_end_write(0xABCD);
@@ -53,6 +53,9 @@ TEST_F(DpramCollisionTest, CpuWaitsForAHostWriteAndThenReadsTheNewValue) {
   both.tick();
   EXPECT_FALSE(cpu_busy());
   EXPECT_EQ(both.get("cpu_rdata"), 0xABCDu) << "data together with the end of BUSY";
+  EXPECT_TRUE(cpu_wait()) << "/TA one later";
+  both.tick();
+  EXPECT_FALSE(cpu_wait());
 }
 
 TEST_F(DpramCollisionTest, CpuWriteWaitsForAHostRead) {
@@ -99,43 +102,59 @@ TEST_F(DpramCollisionTest, HostWriteWaitsForACpuRead) {
   EXPECT_EQ(cpu_read(8), 0x2468u);
 }
 
-TEST_F(DpramCollisionTest, AddressIsTheOneThatCameWithTheStrobe) {
-  host_start(8, false);
-  both.ref();
+// The cell of a granted write is the one that its strobe came with, whatever the pins show when it is made.
+TEST_F(DpramCollisionTest, AddressMayGoWithTheStrobe) {
   cpu_start_write(8, 0x3333);
-  both.ticks(3);
-  both.in.cpu_addr = 100;  // the pins change while the strobe is still low
-  both.ticks(3);
-  EXPECT_TRUE(cpu_busy()) << "still waits for cell 8";
-  host_end_write(0x4444);
-  both.ticks(2);
+  both.ticks(kAccess);
   cpu_end();
-  both.ticks(2);
-  EXPECT_EQ(host_read(8), 0x3333u);
+  both.in.cpu_addr = 100;
+  host_start(8, true);
+  while (!host_busy()) both.tick();
+  while (host_busy()) both.tick();
+  EXPECT_EQ(both.get("mem_rdata"), 0x3333u);
+  host_end_read();
   EXPECT_EQ(host_read(200), 0u);
 }
 
 TEST_F(DpramCollisionTest, RequestsThatMeetAtOneEdgeGoToTheCpu) {
-  // The host's request meets its first clk_ref edge at tick T. The CPU's strobe, first sampled at tick T - 1, is ready
-  // at T too; sampled at T it is ready one tick later.
-  for (const int lead : {1, 0}) {
+  // The host's request meets its first clk_ref edge at tick T. The CPU's strobe that fell before tick T - 2 has come
+  // through two flip-flops and is ready at T too; one tick later it is ready at T + 1.
+  for (const int later : {0, 1}) {
     cpu_end();
     both.in.mem_sel = false;
     both.ref(3);
-    if (lead == 1) {
-      both.ticks(1);
-      cpu_start_write(8, 0x1000);
-      both.ticks(1);
-    } else {
-      both.ticks(2);
-      cpu_start_write(8, 0x2000);
-    }
+    both.ticks(later);
+    cpu_start_write(8, 0x1000);
+    both.ticks(2 - later);
     host_start(8, false);
     both.tick();
     ASSERT_TRUE(is_ref_edge(both.now()));
     both.tick();
-    EXPECT_EQ(host_busy(), lead == 1);
-    EXPECT_EQ(cpu_busy(), lead == 0);
+    EXPECT_EQ(host_busy(), later == 0);
+    EXPECT_EQ(cpu_busy(), later == 1);
+  }
+}
+
+// The host waits for one access of the CPU, not for those that it begins after that.
+TEST_F(DpramCollisionTest, AWaitingHostIsNextHoweverSoonTheCpuComesAgain) {
+  for (const int high : {0, 1, 2, 3}) {
+    cpu_start_write(8, 0x0001);
+    both.ref();
+    host_start(8, true);
+    both.ref();
+    ASSERT_TRUE(host_busy());
+    cpu_end();
+    both.ticks(high);
+    cpu_start_write(8, 0x0002);
+    both.ref(3);
+    EXPECT_FALSE(host_busy()) << high;
+    EXPECT_TRUE(cpu_busy()) << high;
+    EXPECT_EQ(both.get("mem_rdata"), 0x0001u) << high;
+    host_end_read();
+    while (cpu_wait()) both.tick();
+    cpu_end();
+    both.ref(3);
+    EXPECT_EQ(host_read(8), 0x0002u);
   }
 }
 
@@ -201,9 +220,8 @@ TEST_F(DpramCollisionTest, A32BitItemTears) {
   EXPECT_EQ(host_read(9) << 16 | host_read(8), 0x00030004u) << "a second reading tells";
 }
 
-// How long either side waits is the other's strobe and what it takes to see it end: the host's own edge, and two ticks
-// for a strobe of the CPU, which is sampled before it is looked at. Strobes of any length, so that no sum is right by
-// chance.
+// How long either side waits is the other's strobe and what it takes to see it end: the host's own edge, and three
+// ticks for a strobe of the CPU. Strobes of any length, so that no sum is right by chance.
 TEST_F(DpramCollisionTest, BusyEndsWithTheStrobeOfTheOther) {
   for (const int length : {2, 9, 40}) {
     host_start(8, false);
@@ -226,7 +244,7 @@ TEST_F(DpramCollisionTest, BusyEndsWithTheStrobeOfTheOther) {
     cpu_end();
     const Tick end = both.now();
     while (host_busy()) both.tick();
-    EXPECT_LE(both.now() - end, 1 + kTicksPerRef) << length << ": sampled, then the next edge of clk_ref";
+    EXPECT_LE(both.now() - end, 3 + kTicksPerRef) << length << ": two flip-flops and a third, then clk_ref";
     host_end_read();
   }
 }

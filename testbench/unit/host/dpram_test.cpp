@@ -16,34 +16,52 @@ class DpramSmallTest : public ::testing::Test, protected DpramBench {
   void TearDown() override { EXPECT_LOCKSTEP(both); }
 };
 
-TEST_F(DpramTest, CpuDataComesTwoEdgesAfterTheStrobe) {
+TEST_F(DpramTest, CpuDataComesWithTheThirdEdgeAndTheEndOfTheWaitOneLater) {
   host_write(6, 0x1234);
+  EXPECT_FALSE(cpu_wait());
   cpu_start_read(6);
-  both.tick();
+  EXPECT_TRUE(cpu_wait()) << "with the strobe, before any edge";
+  both.ticks(2);
   EXPECT_NE(both.get("cpu_rdata"), 0x1234u);
   both.tick();
   EXPECT_EQ(both.get("cpu_rdata"), 0x1234u);
+  EXPECT_TRUE(cpu_wait()) << "/TA may be sampled up to 3 ns after the data";
+  both.tick();
+  EXPECT_FALSE(cpu_wait());
   EXPECT_FALSE(cpu_busy());
+  both.ticks(20);
+  EXPECT_EQ(both.get("cpu_rdata"), 0x1234u) << "held";
+}
+
+TEST_F(DpramTest, CpuWriteWaitsForTheThirdEdgeAndIsMadeTwoLater) {
+  cpu_start_write(6, 0x4321);
+  for (int tick = 0; tick < 3; ++tick) {
+    EXPECT_TRUE(cpu_wait()) << tick;
+    both.tick();
+  }
+  EXPECT_FALSE(cpu_wait());
+  cpu_end();
+  both.tick();
+  EXPECT_EQ(model.peek(6), 0u);
+  both.tick();
+  EXPECT_EQ(model.peek(6), 0x4321u);
 }
 
 TEST_F(DpramTest, YWordIsAtTheEvenAndXWordAtTheOddHostWord) {
   for (const unsigned address : {0x0000u, 0x0001u, 0x1000u, 0x3FFFu}) {  // less $060000; host offset 4a and 4a + 2
     host_write(4 * address / 2, 0xA000 + address);
     host_write((4 * address + 2) / 2, 0x5000 + address);
-    both.in.cpu_sel = true;
-    both.in.cpu_addr = static_cast<std::uint16_t>(address);
-    both.in.cpu_rd_n = false;
-    both.in.cpu_x = false;
-    both.ticks(3);
-    EXPECT_EQ(both.get("cpu_rdata"), 0xA000 + address) << "Y";
-    both.in.cpu_rd_n = true;
-    both.ticks(2);
-    both.in.cpu_rd_n = false;
-    both.in.cpu_x = true;
-    both.ticks(3);
-    EXPECT_EQ(both.get("cpu_rdata"), 0x5000 + address) << "X";
-    cpu_end();
-    both.ticks(2);
+    for (const bool x : {false, true}) {
+      both.in.cpu_sel = true;
+      both.in.cpu_addr = static_cast<std::uint16_t>(address);
+      both.in.cpu_x = x;
+      both.in.cpu_rd_n = false;
+      both.in.rd_toggle = !both.in.rd_toggle;
+      both.ticks(kAccess);
+      EXPECT_EQ(both.get("cpu_rdata"), (x ? 0x5000 : 0xA000) + address) << (x ? "X" : "Y");
+      cpu_end();
+      both.ticks(kRest);
+    }
   }
 }
 
@@ -66,14 +84,65 @@ TEST_F(DpramTest, HostWritesSingleBytes) {
   EXPECT_EQ(cpu_read(9), 0x2233u);
 }
 
-TEST_F(DpramTest, CpuDataMayComeOneTickAfterTheStrobe) {
+TEST_F(DpramTest, CpuDataMayComeTwoTicksAfterTheStrobe) {
   cpu_start_write(5, 0xDEAD);
+  both.ticks(2);
+  both.in.cpu_wdata = 0xBEEF;  // valid from here on, rows 102 and 108 of the bus timing let data lag the strobe
   both.tick();
-  both.in.cpu_wdata = 0xBEEF;  // valid from here on, row 110 of the bus timing lets data lag the strobe
-  both.ticks(2);
+  both.in.cpu_wdata = 0xDEAD;  // sampled
   cpu_end();
-  both.ticks(2);
+  both.ticks(kRest);
   EXPECT_EQ(host_read(5), 0xBEEFu);
+}
+
+// Cycles back to back: /RD may be high for 13.5 ns only (row 113), less than two ticks, or even between two edges.
+TEST_F(DpramTest, StrobesWithoutATickBetweenThemAreTwo) {
+  for (const int high : {0, 1, 2}) {
+    for (unsigned word = 10; word < 14; ++word) {
+      cpu_start_write(word, 0x100 * word + static_cast<unsigned>(high));
+      both.ticks(kAccess);
+      cpu_end();
+      both.ticks(high);
+    }
+    for (unsigned word = 10; word < 14; ++word) {
+      cpu_start_read(word);
+      both.ticks(kAccess + 1);
+      EXPECT_FALSE(cpu_wait());
+      EXPECT_EQ(both.get("cpu_rdata"), 0x100 * word + static_cast<unsigned>(high)) << high;
+      cpu_end();
+      both.ticks(high);
+    }
+    both.ticks(kRest);
+  }
+}
+
+// Ended before its data were sampled: nobody knows what stood on the bus then.
+TEST_F(DpramTest, AWriteStrobeThatIsTooShortWritesNothing) {
+  cpu_write(7, 0x0F0F);
+  for (const int length : {0, 1, 2}) {
+    cpu_start_write(7, 0x1111);
+    both.ticks(length);
+    both.in.cpu_wr_n = true;
+    both.ticks(10);
+    cpu_end();
+    both.ticks(kRest);
+    EXPECT_EQ(host_read(7), 0x0F0Fu) << length;
+  }
+}
+
+TEST_F(DpramTest, StrobesOfOtherDevicesDoNotWait) {
+  cpu_start_read(6);
+  both.in.cpu_sel = false;
+  for (int tick = 0; tick < 6; ++tick) {
+    EXPECT_FALSE(cpu_wait());
+    both.tick();
+  }
+  cpu_end();
+  both.tick();
+  both.in.cpu_sel = true;  // selected, no strobe yet: nothing is left of the one before
+  both.ticks(3);
+  EXPECT_FALSE(cpu_wait());
+  both.in.cpu_sel = false;
 }
 
 TEST_F(DpramTest, UnselectedStrobesDoNothing) {

@@ -49,6 +49,8 @@ Outputs sample(const Vhost_port& v) {
 
 void drive(Vdpram& v, const DpramInputs& in) {
   v.small_i = in.small;
+  v.rd_toggle_i = in.rd_toggle;
+  v.wr_toggle_i = in.wr_toggle;
   v.cpu_sel_i = in.cpu_sel;
   v.cpu_x_i = in.cpu_x;
   v.cpu_addr_i = in.cpu_addr;
@@ -63,10 +65,8 @@ void drive(Vdpram& v, const DpramInputs& in) {
   v.mem_wdata_i = in.mem_wdata;
 }
 Outputs sample(const Vdpram& v) {
-  return {{"cpu_rdata", v.cpu_rdata_o},
-          {"cpu_busy", v.cpu_busy_o},
-          {"mem_rdata", v.mem_rdata_o},
-          {"mem_busy", v.mem_busy_o},
+  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_valid", v.cpu_valid_o}, {"cpu_wait", v.cpu_wait_o},
+          {"cpu_busy", v.cpu_busy_o},   {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o},
           {"host_busy", v.host_busy_o}};
 }
 

@@ -329,10 +329,55 @@ class Area(unittest.TestCase):
         log = self.stat(top=(0, {})) + self.stat(top=(0, {"LUT4": 10, "CCU2C": 3, "PFUMX": 9, "TRELLIS_FF": 4}))
         self.assertEqual(area.ecp5(log)["top"], area.Figures(16, 4, 0))
 
+    def test_a_memory_fills_block_ram(self):
+        before = self.stat(top=(0, {"ram": 2}), ram=(524288, {"$memrd": 2}))
+        good = before + self.stat(top=(0, {"ram": 2}), ram=(0, {"DP16KD": 32}))
+        self.assertEqual(list(area.memory_problems(good)), [])
+        for cells in ({"$mem_v2": 1}, {"DP16KD": 64}, {"$_DFFE_PN0P_": 524288}, {"TRELLIS_DPR16X4": 8192}):
+            problems = list(area.memory_problems(before + self.stat(top=(0, {"ram": 2}), ram=(0, cells))))
+            self.assertEqual(len(problems), 1, cells)
+            self.assertIn("ram: a memory of 524288 bits takes", problems[0])
+
     def test_the_page_has_every_row(self):
         page = (TOOLS.parent / "docs/area.md").read_text()
         for name, text in area.ROWS.items():
-            self.assertRegex(page, rf"\| `{name}` \| {re.escape(text)} \| \d+ \| \d+ \| \d+ \| \d+ \|")
+            self.assertRegex(page, rf"\| `{name}` \| {re.escape(text)} \| \d+ \| \d+ \| \d* \| \d+ \| \d+ \| \d* \|")
+
+
+@unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
+class BlockRam(Tree):
+    """The memory of the dual-ported RAM, written in ways that no block RAM can follow."""
+
+    def memory(self, old=None, new=None):
+        """area.py --memory of the real one with `old` in its text replaced by `new`."""
+        texts = {name: (TOOLS.parent / f"rtl/host/{name}.sv").read_text() for name in ("dpram", "dpram_memory")}
+        if old is not None:
+            self.assertEqual(len(re.findall(old, texts["dpram_memory"])), 1)
+            texts["dpram_memory"] = re.sub(old, new, texts["dpram_memory"])
+        for name, text in texts.items():
+            self.write(f"rtl/host/{name}.sv", text)
+        return self.run_tool("area.py", "--memory")
+
+    def test_as_it_stands(self):
+        self.expect(self.memory(), 0, "block RAM")
+
+    def test_all_written_with_one_clock_and_read_without(self):
+        self.expect(self.memory("(?s)always_ff.*end\n", """always_ff @(posedge a_clk_i) begin
+            if (a_we_i) mem[a_addr_i] <= a_wdata_i;
+            if (b_we_i[0]) mem[b_addr_i][7:0] <= b_wdata_i[7:0];
+            if (b_we_i[1]) mem[b_addr_i][15:8] <= b_wdata_i[15:8];
+          end
+          assign a_rdata_o = mem[a_addr_i];
+          assign b_rdata_o = mem[b_addr_i];
+          """), 1, "dpram_memory: a memory of 524288 bits takes 0 DP16KD; expected 32 and nothing else")
+
+    def test_read_without_a_register(self):
+        self.expect(self.memory(r"else if \(a_re_i\) a_rdata_o <= (mem\[a_addr_i\]);\n  end",
+                                r"end\n  assign a_rdata_o = \1;"), 1, "dpram_memory: its memory fits no block RAM")
+
+    def test_written_by_the_other_side_too(self):
+        self.expect(self.memory(r"if \(a_we_i\) ", "if (b_we_i[0]) mem[b_addr_i] <= b_wdata_i;\n    if (a_we_i) "), 1,
+                    "dpram_memory: its memory fits no block RAM")
 
 
 class Figures(Tree):

@@ -1,10 +1,10 @@
-// `brick run BENCH`: runs a testbench, prints its steps, the verdict and the measures.
+#include "app/run_bench.h"
+
 #include <iostream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/commands.h"
 #include "app/simulation.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/cosim/engines.h"
@@ -30,7 +30,7 @@ nlohmann::json steps_json(const BenchReport& report) {
 
 }  // namespace
 
-int run_command(const RunOptions& given, const std::string& name, bool negative) {
+int run_bench(const RunOptions& given, const std::string& name, bool negative, const RunExtras& extras) {
   const Bench& bench = need_bench(name);
   RunOptions options = given;
   if (options.board.empty()) options.board = bench.board;
@@ -41,6 +41,7 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
   if (!bench.firmware) config.firmware.clear();
   if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
   Simulation simulation(options, config, bench.name);
+  if (extras.before) extras.before(simulation);
   std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}\n", bench.name, bench.description, options.engine,
                            config.board.name, config.seed,
                            config.aperture > 0 ? fmt::format(", aperture {} ns", options.aperture) : "",
@@ -63,22 +64,25 @@ int run_command(const RunOptions& given, const std::string& name, bool negative)
   } catch (const GdbKilled& e) { report.fail("debugger", e.what()); }
   for (const std::string& error : simulation.machine().take_run_errors()) {
     report.fail("no error of the machine", error);
-    std::cerr << "brick run: " << error << '\n';
+    std::cerr << "brick " << extras.command << ": " << error << '\n';
   }
+  const Simulation::TimingVerdict timing = simulation.timing_verdict();
+  for (const std::string& violation : timing.failures) report.fail("bus timing", violation);
+  for (const auto* list : {&timing.failures, &timing.waived, &timing.unused})
+    for (const std::string& line : *list) std::cerr << "brick " << extras.command << ": " << line << '\n';
   const bool passed = report.passed();
   std::cout << fmt::format("{} {}\n{}\n", passed ? "PASS" : "FAIL", bench.name, simulation.measures_text());
-  if (!options.json.empty()) {
-    nlohmann::json results = simulation.measures();
-    results["bench"] = bench.name;
-    results["engine"] = options.engine;
-    results["board"] = config.board.name;
-    results["seed"] = config.seed;
-    results["negative"] = negative;
-    results["verdict"] = passed ? "PASS" : "FAIL";
-    results["steps"] = steps_json(report);
-    if (!options.wave.empty()) results["wave"] = options.wave;
-    write_json(options.json, results.dump(2));
-  }
+  nlohmann::json results = simulation.measures();
+  results["bench"] = bench.name;
+  results["engine"] = options.engine;
+  results["board"] = config.board.name;
+  results["seed"] = config.seed;
+  results["negative"] = negative;
+  results["verdict"] = passed ? "PASS" : "FAIL";
+  results["steps"] = steps_json(report);
+  if (!options.wave.empty()) results["wave"] = options.wave;
+  if (extras.after) extras.after(simulation, results);
+  if (!options.json.empty()) write_json(options.json, results.dump(2));
   return passed ? 0 : 1;
 }
 

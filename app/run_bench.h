@@ -1,0 +1,25 @@
+// One run of a bench, as `brick run` and `brick timing` make it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "app/options.h"
+
+namespace brick {
+
+class Simulation;
+
+// What a command adds to the run.
+struct RunExtras {
+  std::string command = "run";                              // for messages
+  std::function<void(Simulation&)> before;                  // the machine is made, nothing has run
+  std::function<void(Simulation&, nlohmann::json&)> after;  // the verdict is printed; may add to the results
+};
+
+// Exit status. Throws UsageError.
+int run_bench(const RunOptions& options, const std::string& bench, bool negative, const RunExtras& extras = {});
+
+}  // namespace brick

@@ -1,0 +1,126 @@
+#include "testbench/checkers/timing_traffic.h"
+
+#include <fmt/format.h>
+
+#include "rtl/regs/brick_regs.hpp"
+
+namespace brick {
+
+namespace {
+
+constexpr std::uint32_t kAllBits = 0xFFFFFF, kMostWaitStates = 0x1FFFFF;
+constexpr unsigned kResetMultiplier = 8, kFastest = 32;
+constexpr unsigned kAccessesPerPhase = 6, kLongestIdle = 4;
+constexpr Tick kAdvance = 48;
+constexpr unsigned kFirstMacroIc = 18;
+
+// Lowest fitted IC: servo ICs 0..9 and 2*..9*, then MACRO ICs (host-bus:1/5, host-bus:1/6).
+std::uint32_t gate_ic_base(unsigned ic) {
+  constexpr std::uint32_t kServo[] = {0x078000, 0x078100, 0x078200, 0x078300, 0x079200,
+                                      0x079300, 0x07A200, 0x07A300, 0x07B200, 0x07B300};
+  constexpr std::uint32_t kMacro[] = {0x078400, 0x079400, 0x07A400, 0x07B400};
+  if (ic < 10) return kServo[ic];
+  return ic < kFirstMacroIc ? kServo[ic - 8] + 0x20 : kMacro[ic - kFirstMacroIc];
+}
+
+}  // namespace
+
+BusTraffic::BusTraffic(Machine& machine, std::uint64_t seed) : machine_(machine), random_(seed) {
+  machine_.attach_bus_master(this);
+  const std::uint32_t fitted = machine_.fitted();
+  if (fitted != 0) {
+    const unsigned ic = static_cast<unsigned>(__builtin_ctz(fitted));
+    const std::uint32_t base = gate_ic_base(ic);
+    if (ic < kFirstMacroIc)  // words that the hardware leaves alone: increment of the compare position of each channel
+      for (unsigned channel = 0; channel < 4; ++channel)
+        words_[Region::kGateIcs].push_back({true, base + 8 * channel + 6});
+    else  // ADC strobe and node activation
+      words_[Region::kGateIcs] = {{true, base + 0x0E}, {false, base + 0x0F}};
+  }
+  for (unsigned i = 0; i < 6; ++i) words_[Region::kDpram].push_back({i % 2 != 0, 0x060C00 + i / 2});
+  words_[Region::kDefaultArea] = {{true, 0x070010}, {true, 0x070011}};
+  set_clock(kResetMultiplier);
+  control(regs::cpu_bus::kBcr.address, kMostWaitStates);
+  for (auto& region : words_) {
+    read_.clear();
+    for (const Word& w : region) {
+      queue_.push_back({w.x, w.address, true, kAllBits, kLongestIdle});
+      queue_.push_back({w.x, w.address, false, 0, kLongestIdle});
+    }
+    finish();
+    for (std::size_t i = 0; i < region.size(); ++i) region[i].mask = region[i].value = read_[i];
+  }
+}
+
+BusTraffic::~BusTraffic() { machine_.attach_bus_master(nullptr); }
+
+std::optional<BusMaster::Access> BusTraffic::next() {
+  if (under_way_ == queue_.size()) return std::nullopt;
+  return queue_[under_way_++];
+}
+
+void BusTraffic::done(const Access& access, std::uint32_t data) {
+  queue_.pop_front();
+  --under_way_;
+  if (!access.write) read_.push_back(data);
+}
+
+void BusTraffic::finish(const std::function<void()>& meanwhile) {
+  while (!queue_.empty()) {
+    if (meanwhile) meanwhile();
+    machine_.run_until(machine_.now() + kAdvance);
+  }
+}
+
+void BusTraffic::control(std::uint32_t address, std::uint32_t value) {
+  queue_.push_back({true, address, true, value, 0});
+}
+
+void BusTraffic::set_clock(unsigned multiplier) {
+  multiplier_ = multiplier;
+  control(regs::cpu_bus::kPctl.address, multiplier - 1);
+}
+
+void BusTraffic::set_wait_states(Region region, unsigned ws) {
+  if (forced_) return;
+  using namespace regs::cpu_bus::bcr;
+  const regs::Field field = region == Region::kGateIcs ? kBa1w : region == Region::kDpram ? kBa2w : kBdfw;
+  control(regs::cpu_bus::kBcr.address, (kMostWaitStates & ~field.mask()) | ws << field.lsb);
+}
+
+// A new clock begins with an edge of the board's: a few periods of the fastest one move that edge.
+void BusTraffic::another_phase() {
+  control(regs::cpu_bus::kPctl.address, kFastest - 1);
+  queue_.push_back({true, regs::cpu_bus::kPctl.address, false, 0, draw(3 * kFastest)});
+  control(regs::cpu_bus::kPctl.address, multiplier_ - 1);
+}
+
+void BusTraffic::exercise(Region region, unsigned count, const std::function<void()>& meanwhile) {
+  auto& words = words_[region];
+  for (unsigned i = 0; i < count && !words.empty(); ++i) {
+    if (i % kAccessesPerPhase == 0) another_phase();
+    Word& w = words[draw(static_cast<std::uint32_t>(words.size()))];
+    const bool write = draw(2) != 0;
+    const std::uint32_t value = static_cast<std::uint32_t>(random_()) & kAllBits;
+    queue_.push_back({w.x, w.address, write, value, draw(2) != 0 ? 0 : draw(kLongestIdle)});
+    if (write) w.value = value & w.mask;
+  }
+  finish(meanwhile);
+}
+
+std::string BusTraffic::verify(Region region) {
+  const auto& words = words_[region];
+  control(regs::cpu_bus::kBcr.address, kMostWaitStates);
+  control(regs::cpu_bus::kPctl.address, kResetMultiplier - 1);
+  finish();
+  read_.clear();
+  for (const Word& w : words) queue_.push_back({w.x, w.address, false, 0, kLongestIdle});
+  finish();
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if ((read_[i] & words[i].mask) != words[i].value)
+      return fmt::format("{}:${:06X} holds ${:06X}, expected ${:06X}", words[i].x ? 'X' : 'Y', words[i].address,
+                         read_[i] & words[i].mask, words[i].value);
+  return "";
+}
+
+}  // namespace brick

@@ -1,0 +1,66 @@
+// Bus cycles of all kinds in the CPU's place (BusMaster): words of each region are written and read in random order, at
+// every phase of the CPU clock to the board's, at any clock and number of wait states. It knows what each word must
+// hold, so a write that was lost is found too. The sweep of `brick timing` and the bench bus-timing drive it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "systemc/machine/machine.h"
+#include "testbench/checkers/timing_port_a.h"
+
+namespace brick {
+
+class BusTraffic final : public BusMaster {
+ public:
+  using Region = PortATiming::Region;
+  static constexpr unsigned kMultipliers = 32;
+  static constexpr unsigned most_wait_states(Region region) { return region == Region::kDpram ? 7 : 31; }
+
+  // Takes the bus of the machine until it goes; the CPU comes back with the next reset.
+  BusTraffic(Machine& machine, std::uint64_t seed);
+  ~BusTraffic() override;
+  BusTraffic(const BusTraffic&) = delete;
+  BusTraffic& operator=(const BusTraffic&) = delete;
+
+  bool has(Region region) const { return !words_[region].empty(); }
+  void set_clock(unsigned multiplier);               // I52 + 1
+  void set_wait_states(Region region, unsigned ws);  // the other regions get the most they can have
+  void keep_wait_states() { forced_ = true; }        // BCR is forced from outside
+
+  // `count` random accesses in the region. While they run `meanwhile` is called again and again: a host at work, which
+  // may read the same words.
+  void exercise(Region region, unsigned count, const std::function<void()>& meanwhile = {});
+  // Reads every word of the region back, with all the time there is: "" or what is wrong. Sets clock and wait states.
+  std::string verify(Region region);
+  std::uint32_t first_address(Region region) const { return words_[region].front().address; }
+
+  std::optional<Access> next() override;
+  void done(const Access& access, std::uint32_t data) override;
+
+ private:
+  struct Word {
+    bool x;
+    std::uint32_t address;
+    std::uint32_t mask = 0, value = 0;  // bits that can be written, and what they hold
+  };
+  void finish(const std::function<void()>& meanwhile = {});
+  void control(std::uint32_t address, std::uint32_t value);
+  void another_phase();
+  std::uint32_t draw(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
+
+  Machine& machine_;
+  std::mt19937_64 random_;
+  std::array<std::vector<Word>, PortATiming::kRegions> words_;
+  std::deque<Access> queue_;
+  std::vector<std::uint32_t> read_;  // in order
+  std::size_t under_way_ = 0;
+  unsigned multiplier_ = 8;
+  bool forced_ = false;
+};
+
+}  // namespace brick
