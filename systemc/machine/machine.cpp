@@ -85,12 +85,14 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
       owner(machine),
       board(make_board(config)),
       motors(*board, signals, config.board.fitted),
+      aperture(config.aperture, config.seed),
       memory(cpu, config.flash_file) {
   initiator.cpu = &cpu;
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
   board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
     board_changed(t, before, after);
   };
+  port_a.set_aperture(&aperture);
   port_a.seed(config.seed);
   if (config.bcr) port_a.force_wait_states(*config.bcr);
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
@@ -218,6 +220,7 @@ Tick Machine::now() const { return impl_->board->now(); }
 Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_->run_until(limit, stop_on); }
 HostInputs& Machine::inputs() { return impl_->host_inputs; }
 void Machine::apply() { impl_->apply_host_inputs(); }
+PortAPins& Machine::port_a() { return impl_->inputs; }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
@@ -226,6 +229,7 @@ MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->mo
 void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }
 void Machine::attach(MotorPeer& peer) { impl_->motors.attach(peer); }
 void Machine::detach(MotorPeer& peer) { impl_->motors.detach(peer); }
+Aperture& Machine::aperture() { return impl_->aperture; }
 Cpu& Machine::cpu() { return impl_->cpu; }
 std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }
 

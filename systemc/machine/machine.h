@@ -11,6 +11,7 @@
 
 #include <systemc>
 
+#include "systemc/core/aperture.h"
 #include "systemc/core/board.h"
 #include "systemc/core/signals.h"
 #include "systemc/cpu/cpu.h"
@@ -48,6 +49,7 @@ struct MachineConfig {
   std::string flash_file;  // "" = flash content is lost at the end
   bool jumper_e3 = false;
   std::uint64_t seed = 1;            // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
+  TimeFs aperture = 0;               // of the board's inputs, systemc/core/aperture.h; 0 = none
   Tick batch = 0;                    // 0 = as long as the rule allows; else no advance longer than this many ticks
   std::optional<std::uint32_t> bcr;  // wait states, whatever the firmware writes to BCR
   bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
@@ -84,6 +86,7 @@ class Machine : public sc_core::sc_module {
   HostInputs& inputs();
   void apply();
   const BoardOutputs& outputs() const;
+  PortAPins& port_a();  // of a machine without firmware: the pins of its CPU's bus, which nobody else drives
 
   std::uint32_t fitted() const;  // ICs of the board, as BoardInputs::fitted
 
@@ -95,6 +98,8 @@ class Machine : public sc_core::sc_module {
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
   void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once
   void detach(MotorPeer& peer);
+
+  Aperture& aperture();  // of the pins that CPU and host drive; a host's pins move by it
 
   Signals& signals();  // every named signal of docs/signals.md
   Cpu& cpu();

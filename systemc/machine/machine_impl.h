@@ -78,6 +78,7 @@ struct Machine::Impl {
   MachineSignals named{signals};
   std::unique_ptr<Board> board;
   MotorSide motors;
+  Aperture aperture;
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};

@@ -21,5 +21,6 @@ Bench flags_bench();
 Bench pwm_bench();
 Bench pfm_bench();
 Bench serial_dac_adc_bench();
+Bench port_a_phase_bench();
 
 }  // namespace brick

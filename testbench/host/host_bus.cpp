@@ -66,8 +66,18 @@ TimeFs HostBus::cycle_start() {
 }
 
 void HostBus::drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit) {
-  advance_to(fs_to_tick(time) - 1);  // the edge fs_to_tick(time) is the first to see the change
-  edit(machine_.inputs());
+  Aperture& aperture = machine_.aperture();
+  advance_to(aperture.first(time) - 1);  // that edge may be the first to see the change
+  HostInputs& pins = machine_.inputs();
+  const HostInputs before = pins;
+  edit(pins);
+  if (aperture.in_doubt(time) && aperture.last(time) - 1 > now()) {
+    const HostInputs after = pins;
+    static_cast<IsaPins&>(pins) = aperture.mixed<IsaPins>(before, after, time);
+    machine_.apply();
+    advance_to(aperture.last(time) - 1);
+    pins = after;
+  }
   machine_.apply();
 }
 
