@@ -133,6 +133,7 @@ void BoardTop::connect_host() {
   // ISA side
   IsaSlave::Inputs& isa = isa_slave_.in;
   static_cast<IsaPins&>(isa) = inputs_;
+  static_cast<IsaStraps&>(isa) = inputs_;
   isa.mem_rdata = dpram_.mem_rdata();
   isa.mem_busy = dpram_.mem_busy();
   hp.hp_sel = isa_slave_.hp_sel();
@@ -140,6 +141,7 @@ void BoardTop::connect_host() {
   hp.hp_wr = isa_slave_.hp_wr();
   hp.hp_addr = isa_slave_.hp_addr();
   hp.hp_wdata = isa_slave_.hp_wdata();
+  hp.hp_reset = isa_slave_.host_reset();
   ram.mem_sel = isa_slave_.mem_sel();
   ram.mem_rd = isa_slave_.mem_rd();
   ram.mem_wr = isa_slave_.mem_wr();
@@ -147,6 +149,7 @@ void BoardTop::connect_host() {
   ram.mem_be = isa_slave_.mem_be();
   ram.mem_wdata = isa_slave_.mem_wdata();
   InterruptController::Inputs& pic = interrupt_controller_.in;
+  pic.reset = isa_slave_.host_reset();
   pic.wr = isa_slave_.pic_sel() && isa_slave_.pic_wr();
   pic.addr = isa_slave_.pic_addr();
   pic.wdata = isa_slave_.pic_wdata();
@@ -189,7 +192,8 @@ BoardOutputs BoardTop::pins() const {
            at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
   o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
            at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
-  o.w[3] = at(pin::kPaDataOe, data_oe());
+  o.w[3] = at(pin::kPaDataOe, data_oe()) | at(pin::kIsaSdOe, isa_slave_.isa_sd_oe()) |
+           at(pin::kTxde, host_port_.txde()) | at(pin::kRxdf, host_port_.rxdf());
   return o;
 }
 

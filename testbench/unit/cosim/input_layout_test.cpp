@@ -91,9 +91,10 @@ TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
 }
 
 TEST(InputLayout, EachPinHasOnePlace) {
-  // Port A: A, D, AA, X, internal, two strobes. ISA: SA, SD, six lines. Connectors: JPAN, two clocks. Straps: ICs,
-  // kinds of MACRO ICs, three digits of sources, three jumpers.
-  constexpr unsigned kPins = (19 + 24 + 4 + 1 + 1 + 2) + (20 + 16 + 6) + (16 + 2) + (22 + 4 + 3 * 4 + 3);
+  // Port A: A, D, AA, X, internal, two strobes. ISA: LA, SA, SD, seven lines; its switches and window. Connectors:
+  // JPAN, two clocks. Straps: ICs, kinds of MACRO ICs, three digits of sources, three jumpers.
+  constexpr unsigned kPins =
+      (19 + 24 + 4 + 1 + 1 + 2) + (7 + 20 + 16 + 7) + (8 + 10 + 3) + (16 + 2) + (22 + 4 + 3 * 4 + 3);
   unsigned pins = 0;
   BoardInputWords taken{};
   const auto check = [&](const auto& field) {
