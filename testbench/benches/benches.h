@@ -18,5 +18,7 @@ Bench flags_bench();
 Bench pwm_bench();
 Bench pfm_bench();
 Bench serial_dac_adc_bench();
+Bench host_port_bench();
+Bench isa_timing_bench();
 
 }  // namespace brick

@@ -39,7 +39,7 @@ def every_board():
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
                "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3"}, "geobrick-lv-8": {"clock-macro"},
                "turbo-pmac-pci": {"clock-macro"}, "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
-               "turbo-pmac2-ultralite": every_bench - {"smoke", "breq-rotary", "clock-macro"}}
+               "turbo-pmac2-ultralite": every_bench - {"smoke", "breq-rotary", "clock-macro", "host-port", "isa-timing"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
@@ -128,6 +128,16 @@ def pfm():
 def serial_dac_adc():
     for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
         bench_passes("serial-dac-adc", engine, seed)
+
+
+def host_port():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("host-port", engine, seed)
+
+
+def isa_timing():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("isa-timing", engine, seed)
 
 
 def capture_compare():
