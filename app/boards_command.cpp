@@ -46,6 +46,7 @@ nlohmann::json as_json(const BoardConfig& b) {
           {"clock_source", clock_source(b)},
           {"dpram_words", b.dpram_words},
           {"interrupts", interrupt_lines(b)},
+          {"pic", b.pic_8259 ? "8259" : "pic"},
           {"jpan", b.jpan},
           {"feedback_option_2", b.feedback_option_2},
           {"type", type(b)},
@@ -84,7 +85,7 @@ void print_all(const BoardConfig& b) {
   line("clock source", fmt::format("I19={} after re-initialisation", clock_source(b)));
   line("dual-ported RAM", fmt::format("{} x 16 bits, PMAC $060000..${:06X}, host 0x0000..0x{:04X}", b.dpram_words,
                                       0x060000 + b.dpram_words / 2 - 1, 2 * b.dpram_words - 1));
-  line("interrupts", fmt::format("{}", fmt::join(lines, ", ")));
+  line("interrupts", fmt::format("{}{}", fmt::join(lines, ", "), b.pic_8259 ? ", by an 8259" : ""));
   line("control panel", b.jpan ? "JPAN, Y:$078800" : "none");
   if (b.feedback_option_2) line("options", "Feedback Option 2 (SSI inputs)");
   line("answers", fmt::format("TYPE {}, CID {}", type(b), b.card));

@@ -93,7 +93,7 @@ void read_jpan(ScriptLine& line, LineReader& in) {
   constexpr unsigned kFpd = 8;
   constexpr std::uint32_t kNumbers = 0xF;
   const char* form =
-      "@jpan NAME=0 or NAME=1 (JOG-, JOG+, PREJOG, START, STEP, STOP, HOME, HOLD, FPD0 to FPD3; 0 is active), "
+      "@jpan NAME=0 or NAME=1 (JOG-, JOG+, PREJOG, START, STEP, STOP, HOME, HOLD, FPD0 to FPD3, INIT; 0 is active), "
       "or FPD=0 to 15";
   if (in.at_end()) in.fail(form);
   line.kind = Kind::kJpan;
@@ -111,6 +111,11 @@ void read_jpan(ScriptLine& line, LineReader& in) {
     return static_cast<unsigned>(input - kInputs.begin());
   };
   const auto read_one = [&] {
+    if (in.take("INIT")) {
+      in.expect("=");
+      line.init = in.number(0, 1, form) == 1;
+      return;
+    }
     const bool fpd = in.take("FPD");
     const unsigned bit = fpd ? kFpd : bit_of_next();
     in.expect("=");

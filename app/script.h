@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <istream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct ScriptLine {
   bool on = false;                       // @jumper, @input
   unsigned motor = 0;                    // @encoder
   std::uint16_t inputs = 0, levels = 0;  // @jpan: inputs named, and their levels
+  std::optional<bool> init;              // @jpan INIT: level
   std::int64_t counts = 0, rate = 0;     // @encoder, rate in counts per second
 };
 

@@ -12,7 +12,6 @@
 namespace brick {
 
 namespace {
-
 using Kind = ScriptLine::Kind;
 
 std::string visible(const std::string& bytes) {
@@ -32,7 +31,7 @@ void ScriptPlayer::fail(const ScriptLine& line, const std::string& text) const {
 }
 
 void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
-  const Machine& machine = link_.bus().machine();
+  Machine& machine = link_.bus().machine();
   const Signals& signals = link_.bus().machine().signals();
   for (const ScriptLine& line : script) {
     try {
@@ -40,10 +39,12 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         const auto id = find_signal(signals, line.name);
         if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
       } else if (line.kind == Kind::kInput) {
-        find_channel_pin(signals, line.name);
-      } else if (line.kind == Kind::kJpan && !link_.bus().machine().inputs().jpan_fitted) {
+        if (!find_connector_pin(signals, line.name)) find_channel_pin(signals, line.name);
+      } else if (line.kind == Kind::kJpan && !machine.inputs().jpan_fitted) {
         throw UsageError(
             "this board has no control panel port; expected a board with JPAN, for example --board turbo-pmac-pci");
+      } else if ((line.kind == Kind::kPicWrite || line.kind == Kind::kPicClear) && machine.inputs().pic_8259) {
+        throw UsageError("the interrupt controller of this board is an 8259; expected @pic alone");
       } else if (line.kind == Kind::kEncoder && !motor_place(machine.fitted(), line.motor)) {
         unsigned motors = 0;
         while (motor_place(machine.fitted(), motors + 1)) ++motors;
@@ -109,6 +110,10 @@ void ScriptPlayer::restart(const ScriptLine& line) {
     machine.reset();
   else
     machine.power_cycle();
+  reconnect(line);
+}
+
+void ScriptPlayer::reconnect(const ScriptLine& line) {
   if (!link_.connect(HostLink::kBootTime))
     fail(line, "the controller does not answer after the restart; expected an acknowledge");
 }
@@ -152,6 +157,11 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       answer(line, {line.name + "=" + signal_text(machine.signals(), find_signal(machine.signals(), line.name))});
       break;
     case Kind::kPicRead: {
+      if (machine.inputs().pic_8259) {
+        const HostBus::Pic8259 p = bus.read_8259();
+        answer(line, {fmt::format("IRR={:02X} ISR={:02X} IMR={:02X}", p.irr, p.isr, p.imr)});
+        break;
+      }
       const HostBus::Pic p = bus.read_pic();
       answer(line, {fmt::format("IST={:02X} SIG={:02X} MSK={:02X} ELR={:02X}", p.ist, p.sig, p.msk, p.elr)});
       break;
@@ -177,6 +187,11 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       machine.set_jumper_e3(line.on);
       break;
     case Kind::kInput: {
+      if (const auto connector = find_connector_pin(machine.signals(), line.name)) {
+        machine.inputs().** connector = line.on;
+        machine.apply();
+        break;
+      }
       const ChannelPinPlace pin = find_channel_pin(machine.signals(), line.name);
       const auto bit = static_cast<std::uint16_t>(1u << pin.pin);
       std::uint16_t& pins = machine.motor_inputs()[pin.ic].pins[pin.channel];
@@ -187,7 +202,10 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
     case Kind::kJpan: {
       std::uint16_t& jpan = machine.inputs().jpan;
       jpan = static_cast<std::uint16_t>((jpan & ~line.inputs) | line.levels);
+      const bool released = line.init.value_or(false) && !machine.inputs().jpan_init_n;
+      if (line.init) machine.inputs().jpan_init_n = *line.init;
       machine.apply();
+      if (released) reconnect(line);
       break;
     }
     case Kind::kEncoder:

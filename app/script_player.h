@@ -39,6 +39,7 @@ class ScriptPlayer {
   void command(const ScriptLine& line);
   void answer(const ScriptLine& line, std::vector<std::string> lines, bool error = false);
   void restart(const ScriptLine& line);
+  void reconnect(const ScriptLine& line);  // the controller has started anew
   void turn_encoder(const ScriptLine& line);
   void print_unsolicited();
   [[noreturn]] void fail(const ScriptLine& line, const std::string& text) const;

@@ -54,6 +54,18 @@ Signals::Id find_signal(const Signals& signals, const std::string& name) {
   throw UsageError(fmt::format("no signal `{}`; expected one like {}", name, fmt::join(like, ", ")));
 }
 
+std::optional<bool HostInputs::*> find_connector_pin(const Signals& signals, const std::string& name) {
+  static const std::pair<std::string_view, bool HostInputs::*> kPins[] = {{"host.mi1", &HostInputs::mi1},
+                                                                          {"host.mi2", &HostInputs::mi2},
+                                                                          {"host.axexp0", &HostInputs::axexp0},
+                                                                          {"host.axexp1", &HostInputs::axexp1},
+                                                                          {"watchdog.pwr_good", &HostInputs::pwr_good}};
+  const std::string& found = signals.info(find_signal(signals, name)).name;
+  for (const auto& [pin, place] : kPins)
+    if (found == pin) return place;
+  return std::nullopt;
+}
+
 ChannelPinPlace find_channel_pin(const Signals& signals, const std::string& name) {
   const std::string& found = signals.info(find_signal(signals, name)).name;
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
@@ -61,7 +73,7 @@ ChannelPinPlace find_channel_pin(const Signals& signals, const std::string& name
       for (unsigned pin = 0; pin < kChannelPins; ++pin)
         if (found == fmt::format("{}.ch{}.{}", servo_ic_scope(ic), channel + 1, kChannelPinNames[pin]))
           return {ic, channel, pin};
-  throw UsageError(fmt::format("`{}` is no input pin; expected one like servo_ic0.ch1.{}", found,
+  throw UsageError(fmt::format("`{}` is no input pin; expected one like servo_ic0.ch1.{}, or host.mi1", found,
                                fmt::join(kChannelPinNames, ", ")));
 }
 

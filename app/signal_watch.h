@@ -1,6 +1,7 @@
 // Named signals as a user speaks of them: found by full name or by its end, shown as text, waited for.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "testbench/host/host_bus.h"
@@ -15,6 +16,10 @@ struct ChannelPinPlace {
   unsigned ic, channel, pin;  // pin as in ChannelPin
 };
 ChannelPinPlace find_channel_pin(const Signals& signals, const std::string& name);
+
+// The pin of a connector beside the channels that this names: host.mi1, host.mi2, host.axexp0, host.axexp1; nothing if
+// it is none.
+std::optional<bool HostInputs::*> find_connector_pin(const Signals& signals, const std::string& name);
 
 // Binary and decimal signals in decimal, hexadecimal ones with `$`, text as it is.
 std::string signal_text(const Signals& signals, Signals::Id id);

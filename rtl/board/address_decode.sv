@@ -1,6 +1,6 @@
 // Decodes the synchronised Port A address into one select per register block (docs/architecture.md, memory map): gate
-// ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010 and X:$070011, on-chip page by int_i,
-// the control panel port at Y:$078800. Combinational. What is not fitted is not selected: its words read 0.
+// ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010..$070012, on-chip page by int_i, the
+// control panel port at Y:$078800. Combinational. What is not fitted is not selected: its words read 0.
 `default_nettype none
 
 module address_decode (
@@ -14,6 +14,7 @@ module address_decode (
   output logic             sel_int_o,     // host port
   output logic             sel_signals_o, // X:$070010 host signals
   output logic             sel_strobe_o,  // X:$070011 watchdog strobe
+  output logic             sel_ctrl_o,    // X:$070012 control outputs
   output logic             sel_panel_o,   // Y:$078800 control panel port
   output logic [21:0]      sel_ic_o
 );
@@ -46,6 +47,7 @@ module address_decode (
   assign sel_int_o     = int_i;
   assign sel_signals_o = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesHostSignalsAddr[7:0]);
   assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesWatchdogStrobeAddr[7:0]);
+  assign sel_ctrl_o    = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesControlOutputsAddr[7:0]);
   assign sel_panel_o   = gate & ~x_i & jpan_i & (addr_i[13:0] == brick_regs_pkg::JpanInputsAddr[13:0]);
   assign sel_any_o     = int_i | gate | latch;
 

@@ -51,9 +51,11 @@ module board_sim #(
   logic [15:0] isa_sd;
   logic [1:0]  isa_sd_oe;
   logic        isa_iochrdy, isa_memcs16_n, isa_irq, port_txde, port_rxdf;
-  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict;
+  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict, relay, led;
   logic [4:0]  source;
   logic [7:0]  ist, sig, msk, elr;
+  logic        brld_n, erld_n, f1ld_n, ipld_n;
+  logic [1:0]  ctrl;
 
   board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
@@ -91,12 +93,18 @@ module board_sim #(
     .ext_clock_i       (inputs_i[4][28]),
     .ext_phase_i       (inputs_i[4][29]),
     .ext_servo_i       (inputs_i[4][30]),
+    .pwr_good_i        (inputs_i[7][0]),
     .line_select_i     (inputs_i[5][11:0]),
     .io_base_i         (inputs_i[6][15:8]),
     .window_i          (inputs_i[6][25:16]),
     .io_decode16_i     (inputs_i[6][26]),
     .window_flat_i     (inputs_i[6][27]),
     .slot8_i           (inputs_i[6][28]),
+    .mi1_i             (inputs_i[5][12]),
+    .mi2_i             (inputs_i[5][13]),
+    .axexp0_i          (inputs_i[5][14]),
+    .axexp1_i          (inputs_i[5][15]),
+    .pic_8259_i        (inputs_i[5][16]),
     .motor_i           (motor_in),
     .motor_o           (motor_out),
     .phase_o           (phase),
@@ -110,10 +118,17 @@ module board_sim #(
     .port_rxdf_o       (port_rxdf),
     .wdo_o             (wdo),
     .wd_tripped_o      (wd_tripped),
+    .wd_relay_o        (relay),
+    .wd_led_o          (led),
     .busy_host_o       (busy_host),
     .busy_cpu_o        (busy_cpu),
     .phase_source_o    (source),
     .source_conflict_o (conflict),
+    .brld_n_o          (brld_n),
+    .erld_n_o          (erld_n),
+    .f1ld_n_o          (f1ld_n),
+    .ipld_n_o          (ipld_n),
+    .ctrl_o            (ctrl),
     .pic_ist_o         (ist),
     .pic_sig_o         (sig),
     .pic_msk_o         (msk),
@@ -158,8 +173,8 @@ module board_sim #(
   assign pins_o[2] = {elr, msk, sig, ist};
   assign pins_o[3][7:0]   = {7'h0, pa_data_oe};
   assign pins_o[3][15:8]  = {4'h0, port_rxdf, port_txde, isa_sd_oe};
-  assign pins_o[3][23:16] = 8'h0;
-  assign pins_o[3][31:24] = 8'h0;
+  assign pins_o[3][23:16] = {2'b00, ctrl, ipld_n, f1ld_n, erld_n, brld_n};
+  assign pins_o[3][31:24] = {6'h0, led, relay};
 
 endmodule : board_sim
 

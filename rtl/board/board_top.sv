@@ -46,7 +46,10 @@ module board_top #(
   input  wire logic [3:0]  macro_gate_i,
   input  wire logic        dpram_small_i,  // 8192 words, not 32768
   input  wire logic        jpan_fitted_i,
-  input  wire logic [11:0] line_select_i,  // sources of IR5 (3..0), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
+  // Sources of IR5 (3..0), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, 10 CTRL0, 11 CTRL1, 12 MI1, 13 MI2, 14 AXEXP0,
+  // 15 AXEXP1
+  input  wire logic [11:0] line_select_i,
+  input  wire logic        pic_8259_i,     // the interrupt controller is an 8259
   input  wire logic [7:0]  io_base_i,      // A11..A4 of the host's I/O block
   input  wire logic        io_decode16_i,
   input  wire logic [9:0]  window_i,       // A23..A14 of the host's memory window
@@ -55,7 +58,12 @@ module board_top #(
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
+  input  wire logic        pwr_good_i,  // 5 V is good
   input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
+  input  wire logic        mi1_i,   // machine inputs of JOPTO
+  input  wire logic        mi2_i,
+  input  wire logic        axexp0_i,  // interrupt lines of an axis expansion board
+  input  wire logic        axexp1_i,
   // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first; without any one bit, unused.
   // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
   // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks
@@ -74,10 +82,17 @@ module board_top #(
   output logic             port_rxdf_o,
   output logic             wdo_o,
   output logic             wd_tripped_o,
+  output logic             wd_relay_o,      // energised
+  output logic             wd_led_o,
   output logic             busy_host_o,
   output logic             busy_cpu_o,
   output logic [4:0]       phase_source_o,
   output logic             source_conflict_o,
+  output logic             brld_n_o,  // lamps of the control panel
+  output logic             erld_n_o,
+  output logic             f1ld_n_o,
+  output logic             ipld_n_o,
+  output logic [1:0]       ctrl_o,
   output logic [7:0]       pic_ist_o,
   output logic [7:0]       pic_sig_o,
   output logic [7:0]       pic_msk_o,
@@ -88,7 +103,7 @@ module board_top #(
   localparam logic [21:0] IcMask = {MacroIcMask, ServoIcMask};
   logic [21:0] fitted_q;
   logic [3:0]  macro_gate_q;
-  logic        ext_clock_q, dpram_small_q, jpan_fitted_q;
+  logic        ext_clock_q, dpram_small_q, jpan_fitted_q, pic_8259_q;
   logic [11:0] line_select_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -98,6 +113,7 @@ module board_top #(
       dpram_small_q <= 1'b0;
       jpan_fitted_q <= 1'b0;
       line_select_q <= 12'h0;
+      pic_8259_q    <= 1'b0;
     end else begin
       fitted_q      <= fitted_i;
       macro_gate_q  <= macro_gate_i & MacroIcMask;
@@ -105,6 +121,7 @@ module board_top #(
       dpram_small_q <= dpram_small_i;
       jpan_fitted_q <= jpan_fitted_i;
       line_select_q <= line_select_i;
+      pic_8259_q    <= pic_8259_i;
     end
   end
 
@@ -135,7 +152,7 @@ module board_top #(
     .rd_o    (bus_rd)
   );
 
-  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_panel;
+  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_ctrl, sel_panel;
   logic [21:0] sel_ic;
   address_decode u_address_decode (
     .addr_i        (bus_addr),
@@ -148,6 +165,7 @@ module board_top #(
     .sel_int_o     (sel_int),
     .sel_signals_o (sel_signals),
     .sel_strobe_o  (sel_strobe),
+    .sel_ctrl_o    (sel_ctrl),
     .sel_panel_o   (sel_panel),
     .sel_ic_o      (sel_ic)
   );
@@ -263,15 +281,18 @@ module board_top #(
     .clk_ref_i, .rst_ni,
     .strobe_i (bus_we & sel_strobe),
     .servo_i  (servo_o),
-    .trip_o   (wd_tripped_o)
+    .pwr_good_i,
+    .trip_o   (wd_tripped_o),
+    .relay_o  (wd_relay_o)
   );
-  assign wdo_o = wd_tripped_o;
+  assign wdo_o    = wd_tripped_o;
+  assign wd_led_o = wd_tripped_o;
 
   // ------------------------------------------------------------------ host side
   logic       hp_sel, hp_rd_done, hp_wr;
   logic [2:0] hp_addr;
   logic [7:0] hp_wdata, hp_rdata;
-  logic       pic_sel, pic_wr, pic_rd, unused_pic_rd, host_reset;
+  logic       pic_sel, pic_wr, pic_rd, host_reset;
   logic [1:0] pic_addr;
   logic [7:0] pic_wdata, pic_rdata;
   logic        mem_sel, mem_rd, mem_wr, mem_busy;
@@ -293,8 +314,8 @@ module board_top #(
     .hp_wdata_o     (hp_wdata),
     .hp_rdata_i     (hp_rdata),
     .pic_sel_o      (pic_sel),
-    .pic_rd_o       (pic_rd),
     .pic_wr_o       (pic_wr),
+    .pic_rd_o       (pic_rd),
     .pic_addr_o     (pic_addr),
     .pic_wdata_o    (pic_wdata),
     .pic_rdata_i    (pic_rdata),
@@ -307,8 +328,6 @@ module board_top #(
     .mem_rdata_i    (mem_rdata),
     .mem_busy_i     (mem_busy)
   );
-
-  assign unused_pic_rd = pic_rd;
 
   logic [23:0] int_rdata;
   host_port u_host_port (
@@ -335,40 +354,76 @@ module board_top #(
   logic [3:0] signals_rdata;
   host_signals u_host_signals (
     .clk_ref_i, .rst_ni,
-    .wr_i    (bus_we & sel_signals),
-    .wdata_i (bus_wdata[3:0]),
-    .rdata_o (signals_rdata),
+    .wr_i      (bus_we & sel_signals),
+    .ctrl_wr_i (bus_we & sel_ctrl),
+    .wdata_i   (bus_wdata[3:0]),
+    .rdata_o   (signals_rdata),
+    .ctrl_o,
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 
   // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
-  // EQU1..EQU4 are the channels of servo IC 0, EQU5..EQU8 those of IC 1.
+  // EQU1..EQU4 are the channels of servo IC 0, EQU5..EQU8 those of IC 1. The choice is a strap: it stands still while
+  // lines from outside pass on to the flip-flops in the controllers, which are the first to look at them.
   logic [7:0]  pic_line;
   logic [15:0] line_source;
   logic        unused_equ;
   assign unused_equ  = &{1'b0, equ[71:8]};
-  assign line_source = {6'h0, wdo_o, equ[7:0], 1'b0};
+  assign line_source = {axexp1_i, axexp0_i, mi2_i, mi1_i, ctrl_o, wdo_o, equ[7:0], 1'b0};
   assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
                      hreq_o, f1er_o, eror_o, breq_o, ipos_o};
+  logic [7:0] turbo_rdata, turbo_ist, turbo_msk, turbo_elr, old_rdata, old_irr, old_isr, old_imr;
+  logic       turbo_irq, old_irq, old_level;
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni,
     .reset_i (host_reset),
     .line_i  (pic_line),
-    .wr_i    (pic_sel & pic_wr),
+    .wr_i    (pic_sel & pic_wr & ~pic_8259_q),
     .addr_i  (pic_addr),
     .wdata_i (pic_wdata),
-    .rdata_o (pic_rdata),
-    .ist_o   (pic_ist_o),
+    .rdata_o (turbo_rdata),
+    .ist_o   (turbo_ist),
     .sig_o   (pic_sig_o),
-    .msk_o   (pic_msk_o),
-    .elr_o   (pic_elr_o),
-    .irq_o   (isa_irq_o)
+    .msk_o   (turbo_msk),
+    .elr_o   (turbo_elr),
+    .irq_o   (turbo_irq)
   );
+
+  pic_8259 u_pic_8259 (
+    .clk_ref_i, .rst_ni,
+    .line_i  (pic_line),
+    .rd_i    (pic_rd & pic_8259_q),
+    .wr_i    (pic_sel & pic_wr & pic_8259_q),
+    .addr_i  (pic_addr),
+    .wdata_i (pic_wdata),
+    .rdata_o (old_rdata),
+    .irr_o   (old_irr),
+    .isr_o   (old_isr),
+    .imr_o   (old_imr),
+    .level_o (old_level),
+    .irq_o   (old_irq)
+  );
+  logic unused_isr;
+  assign unused_isr = &{1'b0, old_isr};
+  assign pic_rdata  = pic_8259_q ? old_rdata : turbo_rdata;
+  assign pic_ist_o  = pic_8259_q ? old_irr & ~old_imr : turbo_ist;
+  assign pic_msk_o  = pic_8259_q ? ~old_imr : turbo_msk;
+  assign pic_elr_o  = pic_8259_q ? {8{old_level}} : turbo_elr;
+  assign isa_irq_o  = pic_8259_q ? old_irq : turbo_irq;
 
   logic [15:0] panel_rdata;
   panel_port u_panel_port (
     .clk_ref_i, .rst_ni, .jpan_i,
-    .rdata_o (panel_rdata)
+    .rdata_o  (panel_rdata),
+    .fitted_i (jpan_fitted_q),
+    .breq_i   (breq_o),
+    .eror_i   (eror_o),
+    .f1er_i   (f1er_o),
+    .ipos_i   (ipos_o),
+    .brld_no  (brld_n_o),
+    .erld_no  (erld_n_o),
+    .f1ld_no  (f1ld_n_o),
+    .ipld_no  (ipld_n_o)
   );
 
   logic        dpram_sel;
@@ -406,6 +461,7 @@ module board_top #(
     reg_rdata = gen_macro_ic[21].rdata_chain;
     if (sel_int)          reg_rdata = int_rdata;
     else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
+    else if (sel_ctrl)    reg_rdata = {22'h0, ctrl_o};
     else if (sel_panel)   reg_rdata = {8'h0, panel_rdata};
   end
   bus_read u_bus_read (

@@ -139,12 +139,17 @@ namespace board_latches {  // Board latches
 constexpr std::uint32_t kBase = 0x70010;
 constexpr Register kHostSignals{'X', 0x70010, 0x0, 0xF, "host_signals"};
 constexpr Register kWatchdogStrobe{'X', 0x70011, 0x0, 0xFFFFFF, "watchdog_strobe"};
+constexpr Register kControlOutputs{'X', 0x70012, 0x0, 0x3, "control_outputs"};
 namespace host_signals {
 constexpr Field kIpos{0, 1, "ipos"};
 constexpr Field kBreq{1, 1, "breq"};
 constexpr Field kEror{2, 1, "eror"};
 constexpr Field kF1er{3, 1, "f1er"};
 }  // namespace host_signals
+namespace control_outputs {
+constexpr Field kCtrl0{0, 1, "ctrl0"};
+constexpr Field kCtrl1{1, 1, "ctrl1"};
+}  // namespace control_outputs
 }  // namespace board_latches
 
 namespace servo_ic {  // Servo IC, registers of the whole IC

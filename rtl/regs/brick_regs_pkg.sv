@@ -110,6 +110,11 @@ package brick_regs_pkg;
   localparam logic [23:0] BoardLatchesWatchdogStrobeAddr = 24'h070011;  // X
   localparam logic [23:0] BoardLatchesWatchdogStrobeReset = 24'h000000;
   localparam logic [23:0] BoardLatchesWatchdogStrobeWritten = 24'hFFFFFF;
+  localparam logic [23:0] BoardLatchesControlOutputsAddr = 24'h070012;  // X
+  localparam logic [23:0] BoardLatchesControlOutputsReset = 24'h000000;
+  localparam logic [23:0] BoardLatchesControlOutputsWritten = 24'h000003;
+  localparam int BoardLatchesControlOutputsCtrl0Lsb = 0;
+  localparam int BoardLatchesControlOutputsCtrl1Lsb = 1;
 
   // Servo IC, registers of the whole IC
   localparam logic [23:0] ServoIcClockControlAddr = 24'h000004;  // X

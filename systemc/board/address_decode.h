@@ -13,6 +13,7 @@ struct AddressSelect {
   bool internal = false;  // host port
   bool signals = false;   // X:$070010 host signals
   bool strobe = false;    // X:$070011 watchdog strobe
+  bool ctrl = false;      // X:$070012 control outputs
   bool panel = false;     // Y:$078800 control panel port
   int ic = -1;            // servo or MACRO IC, index as in BoardInputs::fitted
 };
@@ -32,6 +33,7 @@ class AddressDecode : public sc_core::sc_module {
       s.any = true;
       s.signals = w.x && a == regs::board_latches::kHostSignals.address;
       s.strobe = w.x && a == regs::board_latches::kWatchdogStrobe.address;
+      s.ctrl = w.x && a == regs::board_latches::kControlOutputs.address;
     } else if ((w.aa & 2) != 0 && (a >> 14) == 0x1E) {
       s.any = true;
       s.panel = jpan && !w.x && a == regs::jpan::kInputs.address;

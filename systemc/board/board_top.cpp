@@ -16,6 +16,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       isa_slave_("isa_slave"),
       host_port_("host_port"),
       interrupt_controller_("interrupt_controller"),
+      pic_8259_("pic_8259"),
       host_signals_("host_signals"),
       dpram_("dpram"),
       panel_port_("panel_port"),
@@ -81,6 +82,7 @@ void BoardTop::execute(Tick t) {
 std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
+  if (select_.ctrl) return host_signals_.ctrl();
   if (select_.panel) return panel_port_.rdata();
   if (select_.ic < 0) return 0;
   return gate_ics_.read(static_cast<unsigned>(select_.ic), bus_sync_.where().x, bus_sync_.where().addr, t);
@@ -105,6 +107,7 @@ void BoardTop::connect_clocks() {
   gate_ics_.set_clocks(clock_select_.phase(), clock_select_.servo(), now_);
   gate_ics_.set_trip(watchdog_.trip(), now_);
   watchdog_.servo = clock_select_.servo();
+  watchdog_.pwr_good = inputs_.pwr_good;
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
 }
 
@@ -117,7 +120,13 @@ void BoardTop::connect_host() {
   hp.dsp_addr = bus_sync_.where().addr & 0x3F;
   hp.dsp_wdata = bus_sync_.wdata();
   panel_port_.jpan = inputs_.jpan;
+  panel_port_.fitted = straps_.jpan_fitted;
+  panel_port_.breq = host_signals_.breq();
+  panel_port_.eror = host_signals_.eror();
+  panel_port_.f1er = host_signals_.f1er();
+  panel_port_.ipos = host_signals_.ipos();
   host_signals_.in.wr = bus_sync_.we() && select_.signals;
+  host_signals_.in.ctrl_wr = bus_sync_.we() && select_.ctrl;
   host_signals_.in.wdata = bus_sync_.wdata() & 0xF;
   Dpram::Inputs& ram = dpram_.in;
   ram.small = straps_.dpram_small;
@@ -148,16 +157,20 @@ void BoardTop::connect_host() {
   ram.mem_addr = isa_slave_.mem_addr();
   ram.mem_be = isa_slave_.mem_be();
   ram.mem_wdata = isa_slave_.mem_wdata();
-  InterruptController::Inputs& pic = interrupt_controller_.in;
-  pic.reset = isa_slave_.host_reset();
-  pic.wr = isa_slave_.pic_sel() && isa_slave_.pic_wr();
-  pic.addr = isa_slave_.pic_addr();
-  pic.wdata = isa_slave_.pic_wdata();
   isa.hp_rdata = host_port_.hp_rdata();
-  isa.pic_rdata = interrupt_controller_.rdata();
+  connect_interrupts();
+}
 
+// One of the two controllers is fitted; the other is neither read nor written.
+void BoardTop::connect_interrupts() {
   // IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
-  pic.line = static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
+  const auto line =
+      static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
+  const bool old = straps_.pic_8259, write = isa_slave_.pic_sel() && isa_slave_.pic_wr();
+  interrupt_controller_.in = {isa_slave_.host_reset(), line, write && !old, isa_slave_.pic_addr(),
+                              isa_slave_.pic_wdata()};
+  pic_8259_.in = {line, isa_slave_.pic_rd() && old, write && old, isa_slave_.pic_addr(), isa_slave_.pic_wdata()};
+  isa_slave_.in.pic_rdata = old ? pic_8259_.rdata() : interrupt_controller_.rdata();
 }
 
 void BoardTop::take_straps(const Straps& straps, Tick t) {
@@ -169,8 +182,10 @@ void BoardTop::take_straps(const Straps& straps, Tick t) {
 
 std::uint32_t BoardTop::selected_lines() const {
   const std::uint32_t fitted_equ = ((straps_.fitted & 1) != 0 ? 0x0Fu : 0u) | ((straps_.fitted & 2) != 0 ? 0xF0u : 0u);
-  const std::uint32_t sources = (gate_ics_.equ() & fitted_equ) << 1 | (watchdog_.trip() ? 1u : 0u)
-                                                                          << 9;  // by the digits of line_select
+  const auto at = [](bool level, unsigned source) { return (level ? 1u : 0u) << source; };
+  const std::uint32_t sources =  // by the digits of line_select
+      (gate_ics_.equ() & fitted_equ) << 1 | at(watchdog_.trip(), 9) | std::uint32_t{host_signals_.ctrl()} << 10 |
+      at(inputs_.mi1, 12) | at(inputs_.mi2, 13) | at(inputs_.axexp0, 14) | at(inputs_.axexp1, 15);
   std::uint32_t lines = 0;
   for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (straps_.line_select >> 4 * line & 0xF) & 1) << line;
   return lines;
@@ -186,14 +201,25 @@ BoardOutputs BoardTop::pins() const {
            at(pin::kIpos, host_signals_.ipos()) | at(pin::kEror, host_signals_.eror()) |
            at(pin::kF1er, host_signals_.f1er());
   o.w[1] = at(pin::kIsaSd, isa_slave_.isa_sd()) | at(pin::kIsaIochrdy, isa_slave_.isa_iochrdy()) |
-           at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) | at(pin::kIsaIrq, interrupt_controller_.irq()) |
+           at(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n()) |
+           at(pin::kIsaIrq, straps_.pic_8259 ? pic_8259_.irq() : interrupt_controller_.irq()) |
            at(pin::kHreq, host_port_.hreq()) | at(pin::kWdo, watchdog_.trip()) | at(pin::kWdTripped, watchdog_.trip()) |
            at(pin::kBusyHost, dpram_.host_busy()) | at(pin::kBusyCpu, dpram_.cpu_busy()) |
            at(pin::kPhaseSource, clock_select_.phase_source()) | at(pin::kSourceConflict, clock_select_.conflict());
-  o.w[2] = at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicSig, interrupt_controller_.sig()) |
-           at(pin::kPicMsk, interrupt_controller_.msk()) | at(pin::kPicElr, interrupt_controller_.elr());
-  o.w[3] = at(pin::kPaDataOe, data_oe()) | at(pin::kIsaSdOe, isa_slave_.isa_sd_oe()) |
-           at(pin::kTxde, host_port_.txde()) | at(pin::kRxdf, host_port_.rxdf());
+  o.w[2] = at(pin::kPicSig, interrupt_controller_.sig());
+  if (straps_.pic_8259) {
+    const auto enabled = static_cast<std::uint8_t>(~pic_8259_.imr());
+    o.w[2] |= at(pin::kPicIst, pic_8259_.irr() & enabled) | at(pin::kPicMsk, enabled) |
+              at(pin::kPicElr, pic_8259_.level() ? 0xFF : 0);
+  } else {
+    o.w[2] |= at(pin::kPicIst, interrupt_controller_.ist()) | at(pin::kPicMsk, interrupt_controller_.msk()) |
+              at(pin::kPicElr, interrupt_controller_.elr());
+  }
+  o.w[3] = at(pin::kPaDataOe, data_oe()) | at(pin::kBrldN, panel_port_.brld_n()) |
+           at(pin::kErldN, panel_port_.erld_n()) | at(pin::kF1ldN, panel_port_.f1ld_n()) |
+           at(pin::kIpldN, panel_port_.ipld_n()) | std::uint32_t{host_signals_.ctrl()} << pin::kCtrl0.lsb |
+           at(pin::kIsaSdOe, isa_slave_.isa_sd_oe()) | at(pin::kTxde, host_port_.txde()) |
+           at(pin::kRxdf, host_port_.rxdf()) | at(pin::kWdRelay, watchdog_.relay()) | at(pin::kWdLed, watchdog_.trip());
   return o;
 }
 

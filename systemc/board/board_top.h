@@ -26,6 +26,7 @@
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
 #include "systemc/host/isa_slave.h"
+#include "systemc/host/pic_8259.h"
 
 namespace brick {
 
@@ -56,12 +57,12 @@ class BoardTop : public sc_core::sc_module, public Board {
   // The blocks of the buses, by their own types: this is the innermost loop of the model.
   template <class F>
   void each_block(F f) {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_),
+    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(pic_8259_),
         f(host_signals_), f(dpram_), f(panel_port_);
   }
   template <class F>
   void each_block(F f) const {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_),
+    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(pic_8259_),
         f(host_signals_), f(dpram_), f(panel_port_);
   }
   void reset_all(Tick t);
@@ -70,6 +71,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   void connect();  // copies wires: outputs of the blocks to inputs of the others
   void connect_clocks();
   void connect_host();
+  void connect_interrupts();
   BoardOutputs pins() const;
   bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();                     // the same for the watched ICs
@@ -89,13 +91,14 @@ class BoardTop : public sc_core::sc_module, public Board {
   IsaSlave isa_slave_;
   HostPort host_port_;
   InterruptController interrupt_controller_;
+  Pic8259 pic_8259_;
   HostSignals host_signals_;
   Dpram dpram_;
   PanelPort panel_port_;
   GateIcs gate_ics_;
 
   BoardInputs inputs_;
-  static constexpr Straps kNoStraps{0, 0, false, false, 0, false};
+  static constexpr Straps kNoStraps{0, 0, false, false, 0, false, false};
   Straps straps_ = kNoStraps;  // as taken over on clk_ref
   AddressSelect select_;       // of the address in bus_sync
   bool from_dpram_ = false;    // read data pins show the dual-ported RAM

@@ -1,4 +1,4 @@
-// Model of rtl/board/panel_port.sv: the control panel inputs through two stages on clk_ref.
+// Model of rtl/board/panel_port.sv: the control panel inputs through two stages on clk_ref, and the lamps.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,13 @@ class PanelPort : public sc_core::sc_module, public RefClockedBlock {
 
   std::uint16_t jpan = kIdle;  // input pins
 
+  bool fitted = false, breq = false, eror = false, f1er = false, ipos = false;
+
   std::uint16_t rdata() const { return jpan2_; }
+  bool brld_n() const { return !(fitted && breq); }
+  bool erld_n() const { return !(fitted && eror); }
+  bool f1ld_n() const { return !(fitted && f1er); }
+  bool ipld_n() const { return !(fitted && ipos); }
 
  private:
   static constexpr std::uint16_t kIdle = regs::jpan::kInputs.reset;

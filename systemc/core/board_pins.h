@@ -61,15 +61,18 @@ struct IsaStraps {
 // What is fitted and how the jumpers stand; taken over on clk_ref.
 struct Straps {
   std::uint32_t fitted = 0x3;  // bit i = IC i fitted: 0..9 servo IC 0..9, 10..17 servo IC 2*..9*, 18..21 MACRO IC 0..3
-  std::uint32_t macro_gate = 0;       // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
-  bool dpram_small = false;           // dual-ported RAM of 8192 words, not 32768
-  bool jpan_fitted = false;           // control panel port of Turbo PMAC boards
-  std::uint16_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO
-  bool ext_clock = false;             // jumper E1: phase and servo come from outside
+  std::uint32_t macro_gate = 0;  // bit i: MACRO IC i is a MACROGATE, not a DSPGATE2
+  bool dpram_small = false;      // dual-ported RAM of 8192 words, not 32768
+  bool jpan_fitted = false;      // control panel port of Turbo PMAC boards
+  // Sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, then CTRL0, CTRL1, MI1, MI2, AXEXP0, AXEXP1.
+  std::uint16_t line_select = 0x951;
+  bool ext_clock = false;  // jumper E1: phase and servo come from outside
+  bool pic_8259 = false;   // the interrupt controller is an 8259
 
   bool operator!=(const Straps& o) const {
     return fitted != o.fitted || macro_gate != o.macro_gate || dpram_small != o.dpram_small ||
-           jpan_fitted != o.jpan_fitted || line_select != o.line_select || ext_clock != o.ext_clock;
+           jpan_fitted != o.jpan_fitted || line_select != o.line_select || ext_clock != o.ext_clock ||
+           pic_8259 != o.pic_8259;
   }
 };
 
@@ -78,9 +81,14 @@ struct ConnectorPins {
   std::uint16_t jpan = 0xFFFF;  // control panel inputs, low-true, bits as Y:$078800 (rtl/regs/board.rdl)
   bool ext_phase = true;
   bool ext_servo = true;
+  bool mi1 = false, mi2 = false;        // machine inputs of JOPTO, to the interrupt controller
+  bool axexp0 = false, axexp1 = false;  // interrupt lines of an axis expansion board
+  bool pwr_good = true;                 // 5 V is good, to the watchdog
 };
 
-struct HostInputs : IsaPins, IsaStraps, Straps, ConnectorPins {};  // all but what the CPU drives
+struct HostInputs : IsaPins, IsaStraps, Straps, ConnectorPins {  // all but what the CPU drives
+  bool jpan_init_n = true;  // INIT/ of the control panel: goes to the card's reset circuit, not to the board's logic
+};
 
 struct BoardInputs : PortAPins, HostInputs {
   bool rst_n = false;
@@ -131,10 +139,19 @@ constexpr PinField kPaDataOe{"bus.rdata_oe", 3, 0, 1, false};  // 1 = the board 
 constexpr PinField kIsaSdOe{"host.isa.sd_oe", 3, 8, 2, true};  // the board drives SD[15:8] (2), SD[7:0] (1)
 constexpr PinField kTxde{"host.port.txde", 3, 10, 1, false};   // host port: TX is empty
 constexpr PinField kRxdf{"host.port.rxdf", 3, 11, 1, false};   // RX holds a word
-inline constexpr std::array kAll{kPaData, kPaTaN,     kIrqHost,  kPhase,      kServo,       kBreq,           kIpos,
-                                 kEror,   kF1er,      kIsaSd,    kIsaIochrdy, kIsaMemcs16N, kIsaIrq,         kHreq,
-                                 kWdo,    kWdTripped, kBusyHost, kBusyCpu,    kPhaseSource, kSourceConflict, kPicIst,
-                                 kPicSig, kPicMsk,    kPicElr,   kIsaSdOe,    kTxde,        kRxdf,           kPaDataOe};
+constexpr PinField kBrldN{"host.brld_n", 3, 16, 1, false};     // lamps of the control panel, 0 = lit
+constexpr PinField kErldN{"host.erld_n", 3, 17, 1, false};
+constexpr PinField kF1ldN{"host.f1ld_n", 3, 18, 1, false};
+constexpr PinField kIpldN{"host.ipld_n", 3, 19, 1, false};
+constexpr PinField kCtrl0{"host.ctrl0", 3, 20, 1, false};  // outputs of the Ultralite, written by user programs
+constexpr PinField kCtrl1{"host.ctrl1", 3, 21, 1, false};
+constexpr PinField kWdRelay{"watchdog.relay", 3, 24, 1, false};  // 1 = energised
+constexpr PinField kWdLed{"watchdog.led", 3, 25, 1, false};      // 1 = the red lamp is on
+inline constexpr std::array kAll{
+    kPaData,      kPaTaN,          kIrqHost,     kPhase,  kServo,  kBreq,   kIpos,      kEror,     kF1er,
+    kIsaSd,       kIsaIochrdy,     kIsaMemcs16N, kIsaIrq, kHreq,   kWdo,    kWdTripped, kBusyHost, kBusyCpu,
+    kPhaseSource, kSourceConflict, kPicIst,      kPicSig, kPicMsk, kPicElr, kIsaSdOe,   kTxde,     kRxdf,
+    kPaDataOe,    kBrldN,          kErldN,       kF1ldN,  kIpldN,  kCtrl0,  kCtrl1,     kWdRelay,  kWdLed};
 }  // namespace pin
 
 struct BoardOutputs {

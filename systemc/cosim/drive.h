@@ -56,7 +56,13 @@ inline constexpr std::tuple kInputFields{InputField{"pa_addr", &BoardInputs::pa_
                                          InputField{"window", &BoardInputs::window, 6, 16, 10},
                                          InputField{"io_decode16", &BoardInputs::io_decode16, 6, 26, 1},
                                          InputField{"window_flat", &BoardInputs::window_flat, 6, 27, 1},
-                                         InputField{"slot8", &BoardInputs::slot8, 6, 28, 1}};
+                                         InputField{"slot8", &BoardInputs::slot8, 6, 28, 1},
+                                         InputField{"mi1", &BoardInputs::mi1, 5, 12, 1},
+                                         InputField{"mi2", &BoardInputs::mi2, 5, 13, 1},
+                                         InputField{"axexp0", &BoardInputs::axexp0, 5, 14, 1},
+                                         InputField{"axexp1", &BoardInputs::axexp1, 5, 15, 1},
+                                         InputField{"pic_8259", &BoardInputs::pic_8259, 5, 16, 1},
+                                         InputField{"pwr_good", &BoardInputs::pwr_good, 7, 0, 1}};
 
 constexpr BoardInputWords pack(const BoardInputs& in) {
   BoardInputWords words{};

@@ -14,7 +14,7 @@ void HostSignals::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_tim
   if (payload.is_read()) {
     set_payload_value(payload, std::uint32_t{latch_});
   } else {
-    in = {true, static_cast<std::uint8_t>(payload_value<std::uint32_t>(payload) & 0xF)};
+    in = {true, false, static_cast<std::uint8_t>(payload_value<std::uint32_t>(payload) & 0xF)};
     advance(edge);
     in = {};
   }

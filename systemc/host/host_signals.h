@@ -1,4 +1,5 @@
-// Model of rtl/host/host_signals.sv: the latch of IPOS, BREQ, EROR and F1ER. docs/host-bus.md.
+// Model of rtl/host/host_signals.sv: the latches of IPOS, BREQ, EROR and F1ER, and of CTRL0 and CTRL1.
+// docs/host-bus.md.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@ class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
   Inputs in;
 
   std::uint8_t rdata() const { return latch_; }
+  std::uint8_t ctrl() const { return ctrl_; }
   bool ipos() const { return regs::board_latches::host_signals::kIpos.is_set(latch_); }
   bool breq() const { return regs::board_latches::host_signals::kBreq.is_set(latch_); }
   bool eror() const { return regs::board_latches::host_signals::kEror.is_set(latch_); }
@@ -30,15 +32,19 @@ class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
 
  private:
   static constexpr std::uint8_t kWritten = regs::board_latches::kHostSignals.written;
+  static constexpr std::uint8_t kCtrlWritten = regs::board_latches::kControlOutputs.written;
 
-  bool idle() const override { return !in.wr || (in.wdata & kWritten) == latch_; }
+  bool idle() const override {
+    return (!in.wr || (in.wdata & kWritten) == latch_) && (!in.ctrl_wr || (in.wdata & kCtrlWritten) == ctrl_);
+  }
   void step() override {
     if (in.wr) latch_ = in.wdata & kWritten;
+    if (in.ctrl_wr) ctrl_ = in.wdata & kCtrlWritten;
   }
-  void reset_registers() override { latch_ = 0; }
+  void reset_registers() override { latch_ = ctrl_ = 0; }
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
-  std::uint8_t latch_ = 0;
+  std::uint8_t latch_ = 0, ctrl_ = 0;
 };
 
 }  // namespace brick

@@ -16,8 +16,16 @@ struct InterruptControllerInputs {
   std::uint8_t wdata = 0;
 };
 
+struct Pic8259Inputs {
+  std::uint8_t line = 0;
+  bool rd = false, wr = false;
+  std::uint8_t addr = 0;  // 0..3
+  std::uint8_t wdata = 0;
+};
+
 struct HostSignalsInputs {
   bool wr = false;
+  bool ctrl_wr = false;
   std::uint8_t wdata = 0;  // 4 bits
 };
 

@@ -19,6 +19,7 @@ struct BoardFamily {
   std::uint32_t product;   // bits of the straps page, Product below
   std::string_view type;   // answer to TYPE, up to the comma
   bool control_outputs;    // interrupt lines can come from CTRL0, CTRL1
+  bool outside_lines;      // ... from MI1, MI2 of JOPTO and AXEXP0, AXEXP1 of an axis expansion board
 };
 
 // Word 5 of the straps page (docs/architecture.md).
@@ -34,9 +35,10 @@ const BoardFamily* find_board_family(std::string_view name);  // nullptr: no suc
 std::vector<std::string> board_family_names();
 
 // Sources of the interrupt controller's lines IR5, IR6 and IR7, by their code in BoardInputs::line_select.
-constexpr std::array<std::string_view, 12> kInterruptSources{"none", "EQU1", "EQU2", "EQU3", "EQU4",  "EQU5",
-                                                             "EQU6", "EQU7", "EQU8", "WDO",  "CTRL0", "CTRL1"};
-constexpr unsigned kSourceEqu8 = 8, kSourceWdo = 9, kSourceCtrl0 = 10;
+constexpr std::array<std::string_view, 16> kInterruptSources{"none", "EQU1", "EQU2",   "EQU3",  "EQU4",  "EQU5",
+                                                             "EQU6", "EQU7", "EQU8",   "WDO",   "CTRL0", "CTRL1",
+                                                             "MI1",  "MI2",  "AXEXP0", "AXEXP1"};
+constexpr unsigned kSourceEqu8 = 8, kSourceWdo = 9, kSourceCtrl0 = 10, kSourceCtrl1 = 11, kSourceMi1 = 12;
 
 // Names of the fitted ICs, e.g. "servo IC 0", "servo IC 2*", "MACRO IC 0", in the order of BoardInputs::fitted.
 std::vector<std::string> fitted_ic_names(std::uint32_t fitted);

@@ -26,8 +26,9 @@ const std::vector<std::string> kKeys{"title",       "family",     "bus",        
                                      "card",        "servo_ics",  "macro_ics",    "macro_gates",
                                      "dpram_words", "interrupts", "jpan",         "feedback_option_2",
                                      "io_base",     "io_decode",  "dpram_window", "dpram_window_kib",
-                                     "slot",        "notes"};
+                                     "slot",        "pic",        "notes"};
 const std::vector<std::string> kBuses{"isa", "pci", "pc104", "internal"};
+const std::vector<std::string> kInterruptControllers{"pic", "8259"};
 
 std::string content_of(const std::string& path) {
   std::ifstream file(path);
@@ -58,6 +59,7 @@ class Reader {
       file_.fail(file_.need("dpram_words"), "dpram_words", "8192 or 32768");
     read_options(board);
     if (file_.has("interrupts")) board.line_select = interrupts(board.fitted);
+    if (file_.has("pic")) board.pic_8259 = is_8259(board.bus);
     if (file_.has("notes")) board.notes = file_.texts("notes");
     return board;
   }
@@ -154,12 +156,25 @@ class Reader {
       if (code != 0 && code <= kSourceEqu8 && (fitted >> ((code - 1) / 4) & 1) == 0)
         file_.fail(list[line], "interrupts",
                    fmt::format("a compare output that is there: servo IC {} is not fitted", (code - 1) / 4));
-      if (code >= kSourceCtrl0 && !family_->control_outputs)
+      if (code >= kSourceMi1 && !family_->outside_lines)
+        file_.fail(list[line], "interrupts",
+                   fmt::format("a compare output, WDO or none: a {} has no MI or AXEXP lines", family_->name));
+      if ((code == kSourceCtrl0 || code == kSourceCtrl1) && !family_->control_outputs)
         file_.fail(list[line], "interrupts",
                    fmt::format("a compare output, WDO or none: a {} has no CTRL outputs", family_->name));
       select |= code << 4 * line;
     }
     return select;
+  }
+
+  // An 8259 asks for the register addresses of an ISA card.
+  bool is_8259(const std::string& bus) const {
+    const std::string name = file_.text("pic");
+    if (std::find(kInterruptControllers.begin(), kInterruptControllers.end(), name) == kInterruptControllers.end())
+      file_.fail(file_.need("pic"), "pic", fmt::format("one of {}", fmt::join(kInterruptControllers, ", ")));
+    if (name == "8259" && bus != "isa" && bus != "pc104")
+      file_.fail(file_.need("pic"), "pic", "pic: only a board for the isa or pc104 bus can have an 8259");
+    return name == "8259";
   }
 
   // A list of ICs as bits of BoardInputs::fitted.

@@ -35,6 +35,7 @@ Straps straps(const BoardConfig& board) {
   s.dpram_small = board.dpram_words < 32768;
   s.jpan_fitted = board.jpan;
   s.line_select = static_cast<std::uint16_t>(board.line_select);
+  s.pic_8259 = board.pic_8259;
   return s;
 }
 
@@ -145,7 +146,7 @@ void Machine::Impl::power_on() {
 
 void Machine::Impl::begin_reset(bool power) {
   memory.set_strap(MachineMemory::Strap::kPowerOn, power);
-  reset_until = board->now() + kResetTicks;
+  reset_until = init_holds ? kNever : board->now() + kResetTicks;
   cpu_runs = false;
   events.clear();
   initiator.forget();
@@ -214,10 +215,22 @@ void Machine::Impl::apply_host_inputs(TimeFs time) {
   board->set_inputs(inputs);
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
   host_bus_moved(time);
+  see_init();
 }
 
 void Machine::Impl::host_bus_moved(TimeFs time) {
   if (owner.on_host_bus) owner.on_host_bus(time, inputs, board->outputs());
+}
+
+// The card's reset circuit: INIT/ pulls the reset line after kInitTicks and as long as it is low, and kResetTicks more.
+void Machine::Impl::see_init() {
+  const bool low = config.board.jpan && !host_inputs.jpan_init_n;
+  if (low == init_low) return;
+  init_low = low;
+  init_at = low ? board->now() + kInitTicks : kNever;
+  if (low || !init_holds) return;
+  init_holds = false;
+  reset_until = board->now() + kResetTicks;
 }
 
 Machine::Machine(sc_core::sc_module_name name, const MachineConfig& config)

@@ -32,6 +32,7 @@ struct BoardConfig {
   std::uint32_t macro_gate = 0;       // as BoardInputs::macro_gate
   std::uint32_t dpram_words = 32768;  // 16-bit words: 8192 or 32768
   bool jpan = false;                  // Turbo PMAC control panel port fitted
+  bool pic_8259 = false;              // the interrupt controller is an 8259
   std::uint32_t card = 603382;        // CID reply
   std::uint32_t product = 0;          // other bits of word 5 of the straps page, systemc/machine/board_family.h
   std::uint32_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: kInterruptSources of board_family.h

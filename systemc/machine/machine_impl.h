@@ -25,6 +25,9 @@ constexpr Tick kInterruptLatency = 16;
 // The reset line is held for about a microsecond.
 constexpr Tick kResetTicks = 120;
 
+// INIT/ of the control panel must be low for about a microsecond to be taken for more than a spike.
+constexpr Tick kInitTicks = 120;
+
 // Turns device accesses of the CPU into transactions on Port A.
 class PortAInitiator : public sc_core::sc_module, public DeviceBus {
  public:
@@ -59,6 +62,7 @@ struct Machine::Impl {
   void trace_cpu(bool on);
   void apply_host_inputs(TimeFs time);
   void host_bus_moved(TimeFs time);
+  void see_init();
 
   // run.cpp: the run-ahead rule
   Tick run_until(Tick limit, const BoardOutputs& stop_on);
@@ -97,7 +101,9 @@ struct Machine::Impl {
   std::deque<Event> events;  // pin changes that the CPU has not seen yet
   bool cpu_runs = false;     // false: reset, watchdog, or no firmware
   Tick reset_until = kNever;
-  bool stopped = false;  // the present run came to a selected edge
+  bool init_low = false, init_holds = false;  // INIT/ is low; it holds the reset line
+  Tick init_at = kNever;                      // INIT/ will have been low for long enough
+  bool stopped = false;                       // the present run came to a selected edge
   BoardOutputs stop_on;
   bool tracing_cpu = false;
   std::vector<BusCycle> bus_cycles;

@@ -17,6 +17,12 @@ MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
   memw_n_ = signals.add("host.isa.memw_n", 1, Radix::kBinary, 1);
   aen_ = signals.add("host.isa.aen", 1, Radix::kBinary);
   jpan_ = signals.add("host.jpan", 16, Radix::kHex, 0xFFFF);
+  init_n_ = signals.add("host.init_n", 1, Radix::kBinary, 1);
+  mi1_ = signals.add("host.mi1", 1, Radix::kBinary);
+  mi2_ = signals.add("host.mi2", 1, Radix::kBinary);
+  axexp0_ = signals.add("host.axexp0", 1, Radix::kBinary);
+  axexp1_ = signals.add("host.axexp1", 1, Radix::kBinary);
+  pwr_good_ = signals.add("watchdog.pwr_good", 1, Radix::kBinary, 1);
   pc_ = signals.add("cpu.pc", 32, Radix::kHex);
   task_ = signals.add("cpu.task", 2, Radix::kDecimal);
   symbol_ = signals.add("cpu.symbol", 1, Radix::kText);
@@ -41,6 +47,12 @@ void MachineSignals::inputs(TimeFs time, const HostInputs& in, const BoardOutput
   signals_.set(memw_n_, time, in.isa_memw_n);
   signals_.set(aen_, time, in.isa_aen);
   signals_.set(jpan_, time, in.jpan);
+  signals_.set(init_n_, time, in.jpan_init_n);
+  signals_.set(mi1_, time, in.mi1);
+  signals_.set(mi2_, time, in.mi2);
+  signals_.set(axexp0_, time, in.axexp0);
+  signals_.set(axexp1_, time, in.axexp1);
+  signals_.set(pwr_good_, time, in.pwr_good);
   host_reads_ = !in.isa_ior_n || !in.isa_memr_n;
   host_data_ = in.isa_sd;
   data_bus(time, board);

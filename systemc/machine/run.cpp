@@ -31,7 +31,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
   while (board->now() < limit && !stopped) {
     const Tick from = board->now();
     motors.step();
-    Tick target = std::min({limit, reset_until, motors.next_event()});
+    Tick target = std::min({limit, reset_until, init_at, motors.next_event()});
     if (config.batch > 0) target = std::min(target, from + config.batch);
     if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
       debugger->poll(!cpu_runs || (cpu.asleep() && !port_a.running()));
@@ -42,6 +42,11 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     target = board_limit(target);
     if (target > from) board->run_until(target, cpu_runs && cpu.asleep() && !port_a.running() ? watched : stop_on);
     stopped = motors.take_stop() || stopped;
+    if (board->now() == init_at) {
+      init_at = kNever;
+      init_holds = true;
+      begin_reset(false);
+    }
     if (board->now() == reset_until) start_cpu();
     while (port_a.running() && board->now() == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());

@@ -74,11 +74,19 @@ const BenchNeed kServoIcs01{"servo ICs 0 and 1", [](const BoardConfig& b) { retu
 const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { return count(b.fitted) >= 2; }};
 const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
 
+BenchNeed without_8259(const BenchNeed& need) {
+  const std::string controller = "an interrupt controller that is no 8259";
+  return {need.what.empty() ? controller : need.what + " and " + controller,
+          [met = need.met](const BoardConfig& b) { return met(b) && !b.pic_8259; }};
+}
+
 const std::vector<Bench>& all_benches() {
   static const std::vector<Bench> benches{
-      smoke_bench(),        breq_rotary_bench(), watchdog_bench(),       reinit_e3_bench(),       clock_select_bench(),
-      clock_faults_bench(), clock_macro_bench(), encoder_bench(),        capture_compare_bench(), flags_bench(),
-      pwm_bench(),          pfm_bench(),         serial_dac_adc_bench(), host_port_bench(),       isa_timing_bench()};
+      smoke_bench(),          breq_rotary_bench(),     breq_select_bench(),  interrupts_bench(),   dpram_bench(),
+      watchdog_bench(),       reinit_e3_bench(),       clock_select_bench(), clock_faults_bench(), clock_macro_bench(),
+      encoder_bench(),        capture_compare_bench(), flags_bench(),        pwm_bench(),          pfm_bench(),
+      serial_dac_adc_bench(), host_port_bench(),       isa_timing_bench(),
+  };
   return benches;
 }
 

@@ -7,7 +7,10 @@ namespace brick {
 
 Bench smoke_bench();
 Bench breq_rotary_bench();
+Bench breq_select_bench();
+Bench interrupts_bench();
 Bench watchdog_bench();
+Bench dpram_bench();
 Bench reinit_e3_bench();
 Bench clock_select_bench();
 Bench clock_faults_bench();

@@ -32,7 +32,32 @@ void clocks(BenchContext& b) {
     b.report.fail("clock.source", "no such signal");
 }
 
+void write_icr(BenchContext& b, std::uint32_t bits) {
+  b.bus.io_write(regs::host_io::kIcr.address - HostBus::kIoBase, static_cast<std::uint8_t>(bits));
+}
+
+// The same request by an 8259: host-bus:4.5.
+void interrupt_controller_8259(BenchContext& b) {
+  const auto text = [](const HostBus::Pic8259& p) {
+    return fmt::format("IRR={:02X} ISR={:02X} IMR={:02X}", p.irr, p.isr, p.imr);
+  };
+  b.bus.command_8259(0x1B);  // ICW1: level, single, ICW4
+  b.bus.mask_8259(0x08);     // ICW2: vectors from 8
+  b.bus.mask_8259(0x01);     // ICW4
+  b.bus.mask_8259(0xEF);     // HREQ alone
+  b.report.equal<std::string>("8259, initialised", text(b.bus.read_8259()), "IRR=00 ISR=00 IMR=EF");
+  write_icr(b, regs::host_io::icr::kTreq.mask());  // the port can take a character: HREQ = 1
+  b.report.equal<std::string>("HREQ by level", text(b.bus.read_8259()), "IRR=10 ISR=00 IMR=EF");
+  b.report.equal<std::int64_t>("IRQ pin", b.machine.outputs().get(pin::kIsaIrq), 1);
+  b.report.equal<std::int64_t>("vector", b.bus.acknowledge_8259(), 8 + 4);
+  write_icr(b, 0);
+  b.report.equal<std::string>("HREQ in service", text(b.bus.read_8259()), "IRR=00 ISR=10 IMR=EF");
+  b.bus.command_8259(0x64);  // its end
+  b.bus.mask_8259(0xFF);
+}
+
 void interrupt_controller(BenchContext& b) {
+  if (b.board.pic_8259) return interrupt_controller_8259(b);
   const auto text = [](const HostBus::Pic& p) {
     return fmt::format("IST={:02X} MSK={:02X} ELR={:02X}", p.ist, p.msk, p.elr);
   };
@@ -43,13 +68,10 @@ void interrupt_controller(BenchContext& b) {
                               "IST=00 MSK=00 ELR=A5");
   b.bus.write_pic_edge_level(0x10);  // HREQ level sensed
   b.bus.write_pic_mask(0x10);
-  const auto write_icr = [&b](std::uint32_t bits) {
-    b.bus.io_write(regs::host_io::kIcr.address - HostBus::kIoBase, static_cast<std::uint8_t>(bits));
-  };
-  write_icr(regs::host_io::icr::kTreq.mask());  // the port can take a character: HREQ = 1
+  write_icr(b, regs::host_io::icr::kTreq.mask());  // the port can take a character: HREQ = 1
   b.report.equal<std::string>("HREQ by level", text(b.bus.read_pic()), "IST=10 MSK=10 ELR=10");
   b.report.equal<std::int64_t>("IRQ pin", b.machine.outputs().get(pin::kIsaIrq), 1);
-  write_icr(0);
+  write_icr(b, 0);
   b.report.equal<std::string>("HREQ gone", text(b.bus.read_pic()), "IST=00 MSK=10 ELR=10");
   b.bus.write_pic_mask(0x00);
   b.bus.write_pic_edge_level(0x00);

@@ -115,4 +115,15 @@ void HostBus::write_pic_mask(std::uint8_t v) { io_write(regs::host_io::kPicMask,
 void HostBus::write_pic_edge_level(std::uint8_t v) { io_write(regs::host_io::kPicEdgeLevel, v); }
 void HostBus::clear_pic() { io_write(regs::host_io::kPicStatus, 0); }
 
+HostBus::Pic8259 HostBus::read_8259() {
+  constexpr std::uint8_t kSelectIrr = 0x0A, kSelectIsr = 0x0B;  // OCW3
+  Pic8259 pic{};
+  command_8259(kSelectIrr);
+  pic.irr = io_read(kCommand8259);
+  command_8259(kSelectIsr);
+  pic.isr = io_read(kCommand8259);
+  pic.imr = io_read(kMask8259);
+  return pic;
+}
+
 }  // namespace brick

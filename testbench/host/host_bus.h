@@ -18,6 +18,8 @@ class HostBus : public IsaHost {
   static constexpr std::uint8_t kRxdf = regs::host_io::isr::kRxdf.mask();  // a character waits to be read
   static constexpr std::uint8_t kTxde = regs::host_io::isr::kTxde.mask();  // the next character may be written
 
+  static constexpr std::uint32_t kCommand8259 = 8, kMask8259 = 9, kAcknowledge8259 = 10;
+
   explicit HostBus(Machine& machine);
 
   // Registers and memory ----------------------------------------------------------------------------------------------
@@ -48,6 +50,15 @@ class HostBus : public IsaHost {
   void write_pic_mask(std::uint8_t v);
   void write_pic_edge_level(std::uint8_t v);
   void clear_pic();
+
+  // The 8259 in its place, host-bus:4.5.
+  struct Pic8259 {
+    std::uint8_t irr, isr, imr;
+  };
+  Pic8259 read_8259();
+  std::uint8_t acknowledge_8259() { return io_read(kAcknowledge8259); }  // the vector
+  void command_8259(std::uint8_t v) { io_write(kCommand8259, v); }       // ICW1, OCW2, OCW3
+  void mask_8259(std::uint8_t v) { io_write(kMask8259, v); }             // OCW1; ICW2, ICW4 after ICW1
 
  private:
   // What the computer's start-up gives a PCI board.

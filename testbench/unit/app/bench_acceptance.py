@@ -38,8 +38,12 @@ def every_board():
     every_bench = {b["name"] for b in json.loads(brick("list", "--json").stdout)}
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
                "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3"}, "geobrick-lv-8": {"clock-macro"},
-               "turbo-pmac-pci": {"clock-macro"}, "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
-               "turbo-pmac2-ultralite": every_bench - {"smoke", "breq-rotary", "clock-macro", "host-port", "isa-timing"}}
+               "turbo-pmac-pci": {"clock-macro"},
+               "pmac-pc": {"clock-macro", "breq-rotary", "breq-select", "watchdog", "capture-compare"},
+               "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
+                "turbo-pmac2-ultralite":
+                    every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram",
+                                    "host-port", "isa-timing"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
@@ -70,6 +74,25 @@ def breq_rotary():
 
 def breq_rotary_lockstep():
     bench_passes("breq-rotary", "lockstep", "3")
+
+
+def dpram():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("dpram", engine, seed)
+
+
+# covers: BREQ-6 BREQ-7
+def breq_select():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("breq-select", engine, seed)
+
+
+# covers: BREQ-5
+def interrupts():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("interrupts", engine, seed)
+    r, results = run_json("interrupts", "--engine", "lockstep", "--board", "pmac-pc")  # an 8259
+    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
 
 
 # covers: WDT-1

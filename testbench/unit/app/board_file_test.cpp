@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
+
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -78,6 +80,41 @@ TEST(BoardFile, TurboPmacHasTheControlPanelAndTheSmallDualPortedRam) {
   EXPECT_FALSE(board.notes.empty()) << "its DSPGATEs are not modelled";
 }
 
+// host-bus:4.2, the lines that jumpers do not choose; codes as BoardInputs::line_select.
+TEST(BoardFile, InterruptLinesAreThoseOfTheProduct) {
+  constexpr unsigned kEqu1 = 1, kEqu2 = 2, kEqu3 = 3, kEqu5 = 5, kWdo = 9, kCtrl0 = 10, kCtrl1 = 11;
+  const struct {
+    const char* board;
+    unsigned ir5, ir6, ir7;
+  } table[] = {{"turbo-pmac2-pc", kEqu1, kEqu5, kWdo},       {"turbo-pmac2-pci", kEqu1, kEqu5, kWdo},
+               {"turbo-pmac2-pci-lite", kEqu1, kEqu2, kWdo}, {"turbo-pmac2-ultralite", kCtrl0, kCtrl1, kWdo},
+               {"turbo-pmac-pci", kEqu1, kEqu2, kEqu3},      {"pmac-pc", kEqu1, kEqu2, kEqu3}};
+  for (const auto& row : table)
+    EXPECT_EQ(read_board_file(tree(row.board)).line_select, row.ir5 | row.ir6 << 4 | row.ir7 << 8) << row.board;
+}
+
+// host-bus:4.2, last row: each jumper's choices.
+TEST(BoardFile, JumpersOfATurboPmacChooseAmongItsSources) {
+  const char* choices[3][4] = {
+      {"EQU1", "EQU5", "AXEXP1", "MI1"}, {"EQU2", "EQU6", "AXEXP0", "MI2"}, {"EQU3", "EQU7", "EQU4", "EQU8"}};
+  constexpr unsigned codes[3][4] = {{1, 5, 15, 12}, {2, 6, 14, 13}, {3, 7, 4, 8}};
+  for (unsigned i = 0; i < 4; ++i) {
+    const TemporaryFile file(with("servo_ics",
+                                  fmt::format("servo_ics = [0, 1]\ninterrupts = [\"{}\", \"{}\", \"{}\"]",
+                                              choices[0][i], choices[1][i], choices[2][i]),
+                                  "turbo-pmac"));
+    EXPECT_EQ(read_board_file(file.path()).line_select, codes[0][i] | codes[1][i] << 4 | codes[2][i] << 8);
+  }
+}
+
+TEST(BoardFile, OneWithAnIsaBusCanHaveAn8259) {
+  EXPECT_TRUE(read_board_file(tree("pmac-pc")).pic_8259);
+  EXPECT_FALSE(read_board_file(tree("turbo-pmac-pci")).pic_8259);
+  for (const char* bus : {"isa", "pc104"})
+    EXPECT_EQ(error_of(with("bus", fmt::format("bus = \"{}\"\npic = \"8259\"", bus))), "no error");
+  EXPECT_EQ(error_of(with("bus", "bus = \"pci\"\npic = \"pic\"")), "no error");
+}
+
 TEST(BoardFile, GeoPmacHasTwoAxesOnOneServoIc) {
   const BoardConfig board = read_board_file(tree("geo-pmac"));
   EXPECT_EQ(board.fitted, 1u);
@@ -96,7 +133,7 @@ TEST(BoardFile, EveryFileOfTheTreeIsGood) {
     EXPECT_NE(default_clock_source(board.fitted, board.macro_gate), 0u);
     ++files;
   }
-  EXPECT_GE(files, 10u);
+  EXPECT_GE(files, 11u);
 }
 
 TEST(BoardFile, GoodFileHasNoError) {
@@ -149,6 +186,8 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
        "expected none, EQU1,"},
       {"bus", "bus = \"isa\"\ninterrupts = [\"EQU1\", \"EQU5\", \"WDO\"]", ":4: interrupts:", "\"EQU5\"",
        "servo IC 1 is not fitted"},
+      {"bus", "bus = \"isa\"\npic = \"8258\"", ":4: pic:", "\"8258\"", "expected one of pic, 8259"},
+      {"bus", "bus = \"pci\"\npic = \"8259\"", ":4: pic:", "\"8259\"", "only a board for the isa or pc104 bus"},
       {"title", "title = ", ":1:", "", "expected TOML"},
   };
   for (const auto& k : cases)
@@ -178,6 +217,8 @@ TEST(BoardFile, ImpossibleBoardsAreRefused) {
       {"turbo-pmac2", "servo_ics", "servo_ics = [0, \"2*\"]", "servo ICs 0 to 9 and MACRO IC 0"},
       {"turbo-pmac2", "bus", "bus = \"isa\"\nfeedback_option_2 = true", "an option of a geo-pmac only"},
       {"turbo-pmac2", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"none\", \"WDO\"]", "has no CTRL outputs"},
+      {"turbo-pmac2", "bus", "bus = \"isa\"\ninterrupts = [\"MI1\", \"none\", \"WDO\"]", "has no MI or AXEXP lines"},
+      {"turbo-pmac", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"none\", \"WDO\"]", "has no CTRL outputs"},
       {"turbo-pmac2-ultralite", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]",
        "expected what a turbo-pmac2-ultralite can have: MACRO ICs"},
       {"umac-turbo", "servo_ics", "servo_ics = [0, 2]",

@@ -32,7 +32,9 @@ constexpr std::pair<PinField, Least> kChanges[] = {
     {pin::kWdTripped, {0, 2}},    {pin::kBusyHost, {12, 0}},      {pin::kBusyCpu, {54, 0}},
     {pin::kPhaseSource, {24, 7}}, {pin::kSourceConflict, {6, 0}}, {pin::kPicIst, {18, 2}},
     {pin::kPicSig, {180, 9}},     {pin::kPicMsk, {48, 20}},       {pin::kPicElr, {48, 25}},
-    {kEquLines, {45, 2}},
+    {kEquLines, {45, 2}},         {pin::kBrldN, {25, 0}},         {pin::kErldN, {25, 0}},
+    {pin::kF1ldN, {25, 0}},       {pin::kIpldN, {25, 0}},         {pin::kCtrl0, {45, 0}},
+    {pin::kCtrl1, {45, 0}},
 };
 constexpr Least kDpramAccessesOfCpu{2700, 40}, kDpramAccessesOfHost{1200, 500};
 

@@ -31,8 +31,7 @@ void start_clocks(Board& board, BoardInputs& inputs) {
 
 BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed), options_(options) {
   for (unsigned line = 0; line < 3; ++line)
-    inputs_.line_select =
-        static_cast<std::uint16_t>(inputs_.line_select << 4 | (pick(8) == 0 ? pick(16) : 1 + pick(9)));
+    inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (pick(8) == 0 ? 0 : 1 + pick(15)));
   inputs_.jpan_fitted = pick(2) != 0;
   inputs_.dpram_small = pick(2) != 0;
   for (unsigned ic = 0; ic < regs::kGateIcs.size(); ++ic)
@@ -71,8 +70,10 @@ void BoardTraffic::change() {
   if (outside_at_ == now) outside_step();
 }
 
-// External PHASE and SERVO, jumper E1, now and then what is fitted and of which kind.
+// External PHASE and SERVO, interrupt lines, jumper E1, now and then what is fitted and of which kind.
 void BoardTraffic::outside_step() {
+  static constexpr bool BoardInputs::*interrupt_lines[] = {&BoardInputs::mi1, &BoardInputs::mi2, &BoardInputs::axexp0,
+                                                           &BoardInputs::axexp1};
   switch (pick(8)) {
     case 0:
       if (pick(8) == 0) inputs_.ext_clock = !inputs_.ext_clock;
@@ -83,6 +84,13 @@ void BoardTraffic::outside_step() {
     case 2:
       if (pick(2) == 0) inputs_.macro_gate = pick(16);
       break;
+    case 5: {
+      bool& line = inputs_.*interrupt_lines[pick(4)];
+      line = !line;
+      if (pick(8) == 0) inputs_.pic_8259 = !inputs_.pic_8259;
+      if (pick(8) == 0) inputs_.jpan_fitted = !inputs_.jpan_fitted;
+      break;
+    }
     case 3:
     case 4:
       inputs_.ext_servo = !inputs_.ext_servo;
@@ -131,7 +139,7 @@ void BoardTraffic::choose_cpu_address() {
       inputs_.pa_aa = 4;
       break;
     case 5:
-      inputs_.pa_addr = 0x070000 + (pick(3) == 0 ? pick(256) : 0x10 + pick(2));
+      inputs_.pa_addr = 0x070000 + (pick(3) == 0 ? pick(256) : 0x10 + pick(3));
       inputs_.pa_aa = 0;
       break;
     case 6:

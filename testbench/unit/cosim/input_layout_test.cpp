@@ -42,6 +42,7 @@ Changes traffic(const Edit& edit) {
     BoardInputs in = traffic.inputs();
     in.ext_clock = in.jpan_fitted = true;
     in.dpram_small = false;
+    in.line_select = board->now() < kEnd / 2 ? 0xEDC : 0xF51;  // all lines that come from outside
     board->set_inputs(in);
   }
   return changes;
@@ -92,9 +93,10 @@ TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
 
 TEST(InputLayout, EachPinHasOnePlace) {
   // Port A: A, D, AA, X, internal, two strobes. ISA: LA, SA, SD, seven lines; its switches and window. Connectors:
-  // JPAN, two clocks. Straps: ICs, kinds of MACRO ICs, three digits of sources, three jumpers.
+  // JPAN, two clocks, four interrupt lines, 5 V good. Straps: ICs, kinds of MACRO ICs, three digits of sources, kind of
+  // interrupt controller, three jumpers.
   constexpr unsigned kPins =
-      (19 + 24 + 4 + 1 + 1 + 2) + (7 + 20 + 16 + 7) + (8 + 10 + 3) + (16 + 2) + (22 + 4 + 3 * 4 + 3);
+      (19 + 24 + 4 + 1 + 1 + 2) + (7 + 20 + 16 + 7) + (8 + 10 + 3) + (16 + 2 + 4 + 1) + (22 + 4 + 3 * 4 + 1 + 3);
   unsigned pins = 0;
   BoardInputWords taken{};
   const auto check = [&](const auto& field) {

@@ -11,15 +11,19 @@ namespace {
 class HostSignalsTest : public ::testing::Test {
  protected:
   HostSignals model_{"signals"};
-  Lockstep<HostSignals> both_{
-      make_rtl_host_signals(), model_, [](const HostSignals& m) {
-        return Outputs{
-            {"rdata", m.rdata()}, {"ipos", m.ipos()}, {"breq", m.breq()}, {"eror", m.eror()}, {"f1er", m.f1er()}};
-      }};
+  Lockstep<HostSignals> both_{make_rtl_host_signals(), model_, [](const HostSignals& m) {
+                                return Outputs{{"rdata", m.rdata()}, {"ctrl", m.ctrl()}, {"ipos", m.ipos()},
+                                               {"breq", m.breq()},   {"eror", m.eror()}, {"f1er", m.f1er()}};
+                              }};
   void write(unsigned value) {
-    both_.in = {true, static_cast<std::uint8_t>(value)};
+    both_.in = {true, false, static_cast<std::uint8_t>(value)};
     both_.ref();
     both_.in.wr = false;
+  }
+  void write_ctrl(unsigned value) {
+    both_.in = {false, true, static_cast<std::uint8_t>(value)};
+    both_.ref();
+    both_.in.ctrl_wr = false;
   }
 };
 
@@ -36,6 +40,21 @@ TEST_F(HostSignalsTest, EachBitDrivesItsLine) {
   EXPECT_EQ(both_.get("rdata"), 15u) << "no strobe, no change";
   both_.reset();
   EXPECT_EQ(both_.get("rdata"), 0u);
+  EXPECT_LOCKSTEP(both_);
+}
+
+// host-bus:5.7/16: CTRL0 and CTRL1 are a word of their own, so each writer leaves the other's bits alone.
+TEST_F(HostSignalsTest, ControlOutputsAndHostSignalsDoNotTouchEachOther) {
+  for (unsigned value = 0; value < 16; ++value) {
+    write(value);
+    write_ctrl(~value & 0xF);
+    EXPECT_EQ(both_.get("rdata"), value);
+    EXPECT_EQ(both_.get("ctrl"), ~value & 3);
+    write(value);
+    EXPECT_EQ(both_.get("ctrl"), ~value & 3);
+  }
+  both_.reset();
+  EXPECT_EQ(both_.get("ctrl"), 0u);
   EXPECT_LOCKSTEP(both_);
 }
 

@@ -210,6 +210,58 @@ TEST_F(InterruptControllerTest, EdgeThatMeetsTheClearIsKept) {
   }
 }
 
+// Two rises and one clear or masking, at every clock to each other. A line driven before clock k is looked at by the
+// edge detector at clock k + 2: what comes there at the clear's clock or later stays.
+TEST_F(InterruptControllerTest, NoAlignmentOfEdgesAndClearLosesOrDoublesAnInterrupt) {
+  constexpr int kClocks = 12, kSeenAfter = 2;
+  for (int fall = 1; fall <= 3; ++fall)
+    for (int rise = fall + 1; rise <= fall + 3; ++rise)
+      for (int clear = 0; clear < kClocks; ++clear)
+        for (const bool masked : {false, true}) {  // for one clock, instead of a clear
+          both_.reset();
+          line(0);
+          both_.ref(4);
+          write(kMask, kBreq);
+          bool latched = false;
+          for (int clock = 0; clock < kClocks + 2; ++clock) {
+            line(clock < fall || clock >= rise ? kBreq : 0);
+            both_.in.wr = clock == clear || (masked && clock == clear + 1);
+            both_.in.addr = masked ? kMask : kStatus;
+            both_.in.wdata = masked && clock == clear ? 0 : kBreq;
+            both_.ref();
+            both_.in.wr = false;
+            const bool edge = clock == kSeenAfter || clock == rise + kSeenAfter;
+            // MSK = 0 stands after its clock: it takes the latch at the next one, and the edge of that clock with it.
+            const bool ends = masked ? clock == clear + 1 : clock == clear;
+            latched = (latched && !ends) || (edge && !(masked && ends));
+            const bool enabled = !masked || clock != clear;
+            ASSERT_EQ(read(kStatus), latched && enabled ? kBreq : 0u)
+                << "low " << fall << ".." << rise << ", clear " << clear << ", masked " << masked << ", clock "
+                << clock;
+          }
+        }
+}
+
+// host-bus:4.1/8: a level of one clk_ref is seen wherever it lies; a shorter one when an edge falls into it.
+TEST_F(InterruptControllerTest, LeastPulseIsOneClock) {
+  for (Tick width = 1; width <= 2 * kTicksPerRef; ++width)
+    for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
+      both_.reset();
+      line(0);
+      both_.ref(4);
+      write(kMask, 0xFF);
+      both_.ticks(static_cast<int>(phase));
+      line(0x80);
+      const Tick from = both_.now();
+      both_.ticks(static_cast<int>(width));
+      line(0);
+      const bool sampled = both_.now() / kTicksPerRef > from / kTicksPerRef;
+      both_.ref(5);
+      EXPECT_EQ(read(kStatus), sampled ? 0x80u : 0u) << width << " ticks, phase " << phase;
+      EXPECT_TRUE(sampled || width < kTicksPerRef);
+    }
+}
+
 TEST_F(InterruptControllerTest, EachLineHasItsOwnBit) {
   write(kMask, 0xFF);
   for (unsigned bit = 0; bit < 8; ++bit) {

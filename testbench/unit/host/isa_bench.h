@@ -49,6 +49,7 @@ class IsaBench {
     if (is_ref_edge(both.now() + 1)) {  // the edge about to come sees them
       if (both.get("hp_wr")) strobes.push_back({"hp_wr", both.get("hp_addr"), both.get("hp_wdata")});
       if (both.get("hp_rd_done")) strobes.push_back({"hp_rd", both.get("hp_addr"), 0});
+      if (both.get("pic_rd")) strobes.push_back({"pic_rd", both.get("pic_addr"), 0});
       if (both.get("pic_wr") && both.get("pic_sel"))
         strobes.push_back({"pic_wr", both.get("pic_addr"), both.get("pic_wdata")});
       if (both.get("mem_wr"))

@@ -37,7 +37,7 @@ TEST_F(IsaSlaveTest, SixteenBytesAreDecoded) {
       EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_rd", offset, 0}, {"hp_wr", offset, 0x40 + offset}}));
     } else if (offset < 12) {
       EXPECT_EQ(value, 0xFFB0 + offset - 8);
-      EXPECT_EQ(strobes, (std::vector<Strobe>{{"pic_wr", offset - 8, 0x40 + offset}}));
+      EXPECT_EQ(strobes, (std::vector<Strobe>{{"pic_rd", offset - 8, 0}, {"pic_wr", offset - 8, 0x40 + offset}}));
     } else {
       EXPECT_EQ(value, 0xFFFFu) << "+12..15 hold nothing while the window is flat";
       EXPECT_TRUE(strobes.empty());
@@ -133,6 +133,27 @@ TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
   EXPECT_EQ(bus_data(), first) << "a host never sees a byte in transition";
   both.in.isa_ior_n = true;
   ticks(9);
+}
+
+// What a read of the interrupt controller gives and what it does belong to one clk_ref edge (8259: acknowledge, poll).
+TEST_F(IsaSlaveTest, ReadOfTheInterruptControllerTakesDataAndEffectAtOneEdge) {
+  for (int phase = 0; phase < 3; ++phase) {
+    both.in.isa_sa = 0x21A;
+    ticks(12 + phase);
+    both.in.isa_ior_n = false;
+    while (!both.get("pic_rd")) {
+      EXPECT_EQ(both.get("isa_sd_oe"), 0u) << "no data before";
+      tick();
+    }
+    do tick();
+    while (both.now() % kTicksPerRef != 0);
+    EXPECT_EQ(bus_data(), 0xFFB2u);
+    EXPECT_EQ(both.get("pic_rd"), 0u) << "one clk_ref";
+    ticks(60);
+    both.in.isa_ior_n = true;
+    ticks(9);
+    io_read(0x213);
+  }
 }
 
 // host-bus:3.4/16: the block of 128 KiB that LA names, whatever SA and AEN are.

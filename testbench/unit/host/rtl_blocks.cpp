@@ -6,6 +6,7 @@
 #include "Vhost_signals.h"
 #include "Vinterrupt_controller.h"
 #include "Visa_slave.h"
+#include "Vpic_8259.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {
@@ -23,12 +24,26 @@ Outputs sample(const Vinterrupt_controller& v) {
           {"msk", v.msk_o},     {"elr", v.elr_o}, {"irq", v.irq_o}};
 }
 
+void drive(Vpic_8259& v, const Pic8259Inputs& in) {
+  v.line_i = in.line;
+  v.rd_i = in.rd;
+  v.wr_i = in.wr;
+  v.addr_i = in.addr;
+  v.wdata_i = in.wdata;
+}
+Outputs sample(const Vpic_8259& v) {
+  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},     {"isr", v.isr_o},
+          {"imr", v.imr_o},     {"level", v.level_o}, {"irq", v.irq_o}};
+}
+
 void drive(Vhost_signals& v, const HostSignalsInputs& in) {
   v.wr_i = in.wr;
+  v.ctrl_wr_i = in.ctrl_wr;
   v.wdata_i = in.wdata & 0xF;
 }
 Outputs sample(const Vhost_signals& v) {
-  return {{"rdata", v.rdata_o}, {"ipos", v.ipos_o}, {"breq", v.breq_o}, {"eror", v.eror_o}, {"f1er", v.f1er_o}};
+  return {{"rdata", v.rdata_o}, {"ctrl", v.ctrl_o}, {"ipos", v.ipos_o},
+          {"breq", v.breq_o},   {"eror", v.eror_o}, {"f1er", v.f1er_o}};
 }
 
 void drive(Vhost_port& v, const HostPortInputs& in) {
@@ -106,6 +121,9 @@ Outputs sample(const Visa_slave& v) {
 
 RtlBlock<InterruptControllerInputs, Outputs> make_rtl_interrupt_controller(int seed) {
   return verilated_shell<Vinterrupt_controller, InterruptControllerInputs, Outputs>(drive, sample, seed);
+}
+RtlBlock<Pic8259Inputs, Outputs> make_rtl_pic_8259(int seed) {
+  return verilated_shell<Vpic_8259, Pic8259Inputs, Outputs>(drive, sample, seed);
 }
 RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals() {
   return verilated_shell<Vhost_signals, HostSignalsInputs, Outputs>(drive, sample);

@@ -1,0 +1,208 @@
+// Interrupt controller of the original PMAC PC, an 8259A alone on its lines. addr_i: 0 writes ICW1, OCW2, OCW3 and
+// reads IRR, ISR or the poll byte; 1 writes ICW2 to ICW4 and OCW1 and reads IMR or the poll byte; a read of 2 is the
+// acknowledge cycle and gives the vector. rd_i is high for the one clk_ref that takes rdata_o, so that what is read and
+// what the read does are of one moment. Lines pass two flip-flops, INT is a third. Cascading and the three-byte
+// acknowledge of 8080 systems are not built: their bits are taken without effect. Clock clk_ref_i, asynchronous reset,
+// after which nothing is enabled. docs/pic_8259.md.
+`default_nettype none
+
+module pic_8259 (
+  input  wire logic       clk_ref_i,
+  input  wire logic       rst_ni,
+  input  wire logic [7:0] line_i,
+  input  wire logic       rd_i,
+  input  wire logic       wr_i,
+  input  wire logic [1:0] addr_i,
+  input  wire logic [7:0] wdata_i,
+  output logic [7:0]      rdata_o,
+  output logic [7:0]      irr_o,
+  output logic [7:0]      isr_o,
+  output logic [7:0]      imr_o,
+  output logic            level_o,  // 1: lines are level-sensed
+  output logic            irq_o
+);
+
+  // What the next write to address 1 is.
+  localparam logic [1:0] StepReady = 2'd0, StepIcw2 = 2'd1, StepIcw3 = 2'd2, StepIcw4 = 2'd3;
+  localparam logic [2:0] DefaultLevel = 3'd7;  // of a request that has gone, and the lowest after ICW1
+
+  logic [7:0] line1_q, line2_q;
+  logic [7:0] armed_d, armed_q;  // the line has been low since its last acknowledge
+  logic [7:0] isr_d, isr_q, imr_d, imr_q;
+  logic [2:0] lowest_d, lowest_q;  // level of the lowest priority
+  logic [4:0] vector_d, vector_q;
+  logic [1:0] step_d, step_q;
+  logic       icw3_d, icw3_q, icw4_d, icw4_q;  // will be written
+  logic       level_d, level_q, aeoi_d, aeoi_q, turn_d, turn_q;  // turn: rotate at each automatic end
+  logic       special_d, special_q, read_isr_d, read_isr_q, poll_d, poll_q, int_q;
+
+  // ---------------------------------------------------------------- requests and priority
+  // The set bit of the highest priority as its distance from the level above the lowest; 8: none is set.
+  function automatic logic [3:0] rank(input logic [7:0] bits, input logic [2:0] lowest);
+    logic [7:0] turned;
+    turned = (bits >> (4'd1 + {1'b0, lowest})) | (bits << (3'd7 - lowest));
+    rank   = 4'd8;
+    for (int i = 7; i >= 0; i--) if (turned[i]) rank = i[3:0];
+  endfunction
+
+  logic [7:0] irr, serviced;
+  logic [3:0] rank_request, rank_serviced;
+  logic [2:0] level_request, level_serviced, level_ack;
+  logic       pending;
+  assign irr            = line2_q & (armed_q | {8{level_q}});
+  assign serviced       = isr_q & ~(imr_q & {8{special_q}});  // levels that hold off others
+  assign rank_request   = rank(irr & ~imr_q, lowest_q);
+  assign rank_serviced  = rank(serviced, lowest_q);
+  assign level_request  = rank_request[2:0] + lowest_q + 3'd1;
+  assign level_serviced = rank_serviced[2:0] + lowest_q + 3'd1;
+  assign pending        = (step_q == StepReady) & (rank_request < rank_serviced);
+  assign level_ack      = pending ? level_request : DefaultLevel;
+
+  // ---------------------------------------------------------------- accesses
+  logic rd_poll, ack, icw1, ocw2, ocw3, second;
+  assign rd_poll = rd_i & poll_q & ~addr_i[1];
+  assign ack     = pending & (rd_poll | (rd_i & (addr_i == 2'd2)));
+  assign icw1    = wr_i & (addr_i == 2'd0) & wdata_i[4];
+  assign ocw2    = wr_i & (addr_i == 2'd0) & (wdata_i[4:3] == 2'b00);
+  assign ocw3    = wr_i & (addr_i == 2'd0) & (wdata_i[4:3] == 2'b01);
+  assign second  = wr_i & (addr_i == 2'd1);
+
+  // OCW2: rotate, specific level, end of interrupt.
+  logic       ocw2_turn, ocw2_specific, ocw2_end;
+  logic [2:0] ocw2_level;
+  assign ocw2_turn     = wdata_i[7];
+  assign ocw2_specific = wdata_i[6];
+  assign ocw2_end      = wdata_i[5];
+  assign ocw2_level    = ocw2_specific ? wdata_i[2:0] : level_serviced;
+
+  always_comb begin
+    isr_d    = isr_q;
+    lowest_d = lowest_q;
+    turn_d   = turn_q;
+    // A line that is low now arms its next edge, whatever clears it.
+    armed_d  = armed_q;
+    if (ack) begin
+      armed_d[level_ack] = 1'b0;
+      if (!aeoi_q) isr_d[level_ack] = 1'b1;
+      else if (turn_q) lowest_d = level_ack;
+    end
+    if (ocw2 && ocw2_end && (ocw2_specific || !rank_serviced[3])) begin
+      isr_d[ocw2_level] = 1'b0;
+      if (ocw2_turn) lowest_d = ocw2_level;
+    end
+    if (ocw2 && !ocw2_end) begin
+      if (!ocw2_specific) turn_d = ocw2_turn;
+      else if (ocw2_turn) lowest_d = ocw2_level;
+    end
+    if (icw1) begin
+      armed_d  = 8'h00;
+      isr_d    = 8'h00;
+      lowest_d = DefaultLevel;
+      turn_d   = 1'b0;
+    end
+    armed_d = armed_d | ~line2_q;
+  end
+
+  always_comb begin
+    imr_d    = imr_q;
+    vector_d = vector_q;
+    step_d   = step_q;
+    aeoi_d   = aeoi_q;
+    if (second) begin
+      unique case (step_q)
+        StepIcw2: begin
+          vector_d = wdata_i[7:3];
+          step_d   = icw3_q ? StepIcw3 : (icw4_q ? StepIcw4 : StepReady);
+        end
+        StepIcw3: step_d = icw4_q ? StepIcw4 : StepReady;
+        StepIcw4: begin
+          aeoi_d = wdata_i[1];
+          step_d = StepReady;
+        end
+        default: imr_d = wdata_i;
+      endcase
+    end
+    if (icw1) begin
+      imr_d  = 8'h00;
+      aeoi_d = 1'b0;
+      step_d = StepIcw2;
+    end
+  end
+
+  always_comb begin
+    level_d    = icw1 ? wdata_i[3] : level_q;
+    icw3_d     = icw1 ? ~wdata_i[1] : icw3_q;
+    icw4_d     = icw1 ? wdata_i[0] : icw4_q;
+    special_d  = special_q;
+    read_isr_d = read_isr_q;
+    poll_d     = poll_q & ~rd_poll;
+    if (ocw3) begin
+      if (wdata_i[6]) special_d = wdata_i[5];
+      if (wdata_i[1]) read_isr_d = wdata_i[0];
+      poll_d = wdata_i[2];
+    end
+    if (icw1) begin
+      special_d  = 1'b0;
+      read_isr_d = 1'b0;
+      poll_d     = 1'b0;
+    end
+  end
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      line1_q    <= 8'h00;
+      line2_q    <= 8'h00;
+      armed_q    <= 8'h00;
+      isr_q      <= 8'h00;
+      imr_q      <= 8'hFF;
+      lowest_q   <= DefaultLevel;
+      vector_q   <= 5'h00;
+      step_q     <= StepReady;
+      icw3_q     <= 1'b0;
+      icw4_q     <= 1'b0;
+      level_q    <= 1'b0;
+      aeoi_q     <= 1'b0;
+      turn_q     <= 1'b0;
+      special_q  <= 1'b0;
+      read_isr_q <= 1'b0;
+      poll_q     <= 1'b0;
+      int_q      <= 1'b0;
+    end else begin
+      line1_q    <= line_i;
+      line2_q    <= line1_q;
+      armed_q    <= armed_d;
+      isr_q      <= isr_d;
+      imr_q      <= imr_d;
+      lowest_q   <= lowest_d;
+      vector_q   <= vector_d;
+      step_q     <= step_d;
+      icw3_q     <= icw3_d;
+      icw4_q     <= icw4_d;
+      level_q    <= level_d;
+      aeoi_q     <= aeoi_d;
+      turn_q     <= turn_d;
+      special_q  <= special_d;
+      read_isr_q <= read_isr_d;
+      poll_q     <= poll_d;
+      int_q      <= pending;
+    end
+  end
+
+  always_comb begin
+    unique case (addr_i)
+      2'd0:    rdata_o = poll_q ? {pending, 4'h0, level_ack} : (read_isr_q ? isr_q : irr);
+      2'd1:    rdata_o = poll_q ? {pending, 4'h0, level_ack} : imr_q;
+      2'd2:    rdata_o = {vector_q, level_ack};
+      default: rdata_o = 8'hFF;
+    endcase
+  end
+
+  assign irr_o   = irr;
+  assign isr_o   = isr_q;
+  assign imr_o   = imr_q;
+  assign level_o = level_q;
+  assign irq_o   = int_q;
+
+endmodule : pic_8259
+
+`default_nettype wire

@@ -1,0 +1,59 @@
+// Model of rtl/host/pic_8259.sv: the 8259A of the original PMAC PC. docs/pic_8259.md.
+#pragma once
+
+#include <cstdint>
+
+#include <systemc>
+
+#include "systemc/host/inputs.h"
+#include "systemc/host/ref_clocked_block.h"
+
+namespace brick {
+
+class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
+ public:
+  explicit Pic8259(const sc_core::sc_module_name& name) : sc_module(name) {}
+
+  using Inputs = Pic8259Inputs;
+  Inputs in;
+
+  std::uint8_t rdata() const;
+  std::uint8_t irr() const { return line2_ & (level_ ? 0xFF : armed_); }
+  std::uint8_t isr() const { return isr_; }
+  std::uint8_t imr() const { return imr_; }
+  bool level() const { return level_; }
+  bool irq() const { return int_; }
+
+ private:
+  enum class Step : std::uint8_t { kReady, kIcw2, kIcw3, kIcw4 };  // what the next write to address 1 is
+  enum Address : unsigned { kCommand = 0, kMask = 1, kAcknowledge = 2 };
+  static constexpr unsigned kDefaultLevel = 7;  // of a request that has gone, and the lowest after ICW1
+
+  bool idle() const override;
+  void step() override;
+  void reset_registers() override;
+
+  // Levels in the order of priority: 0 is the one above the lowest, 8 none of `bits`.
+  unsigned rank(std::uint8_t bits) const;
+  unsigned level_of(unsigned rank) const { return (rank + lowest_ + 1) & 7; }
+  std::uint8_t serviced() const { return isr_ & ~(special_ ? imr_ : 0); }  // levels that hold off others
+  bool pending() const { return step_ == Step::kReady && rank(irr() & ~imr_) < rank(serviced()); }
+  unsigned acknowledged() const { return pending() ? level_of(rank(irr() & ~imr_)) : kDefaultLevel; }
+  bool reads_poll() const { return in.rd && poll_ && in.addr <= kMask; }
+
+  void acknowledge();
+  void write_command();
+  void write_icw1();
+  void write_ocw2();
+  void write_second();
+
+  std::uint8_t line1_ = 0, line2_ = 0;
+  std::uint8_t armed_ = 0;  // the line has been low since its last acknowledge
+  std::uint8_t isr_ = 0, imr_ = 0xFF, vector_ = 0;
+  unsigned lowest_ = kDefaultLevel;
+  Step step_ = Step::kReady;
+  bool icw3_ = false, icw4_ = false;  // will be written
+  bool level_ = false, aeoi_ = false, turn_ = false, special_ = false, read_isr_ = false, poll_ = false, int_ = false;
+};
+
+}  // namespace brick

@@ -1,0 +1,319 @@
+// The 8259: every cell of the mode matrix of docs/pic_8259.md, which is read from there; random talk against a second
+// description of the part; alignments of edges, acknowledges and writes clock by clock. RTL and model in lock-step
+// throughout.
+#include "systemc/host/pic_8259.h"
+
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "testbench/checkers/reference_8259.h"
+#include "testbench/unit/host/lockstep.h"
+
+namespace brick {
+namespace {
+
+constexpr unsigned kCommand = 0, kMask = 1, kAcknowledge = 2;
+
+class Rig {
+ public:
+  Pic8259 model{"pic"};
+  Lockstep<Pic8259> both{make_rtl_pic_8259(), model, [](const Pic8259& m) {
+                           return Outputs{{"rdata", m.rdata()}, {"irr", m.irr()},     {"isr", m.isr()},
+                                          {"imr", m.imr()},     {"level", m.level()}, {"irq", m.irq()}};
+                         }};
+
+  void write(unsigned addr, unsigned value) {
+    both.in.wr = true;
+    both.in.addr = static_cast<std::uint8_t>(addr);
+    both.in.wdata = static_cast<std::uint8_t>(value);
+    both.ref();
+    both.in.wr = false;
+    settle();
+  }
+  unsigned read(unsigned addr) {
+    both.in.rd = true;
+    both.in.addr = static_cast<std::uint8_t>(addr);
+    const unsigned value = both.get("rdata");
+    both.ref();
+    both.in.rd = false;
+    settle();
+    return value;
+  }
+  void line(unsigned n, bool high) {
+    const auto bit = static_cast<std::uint8_t>(1u << n);
+    both.in.line = static_cast<std::uint8_t>(high ? both.in.line | bit : both.in.line & ~bit);
+  }
+  void settle() { both.ref(4); }
+};
+
+// --------------------------------------------------------------------------------------------------- the mode matrix
+
+struct Cell {
+  std::string name, steps;
+  bool level = false;
+};
+
+// gtest prints parameters by their name.
+void PrintTo(const Cell& cell, std::ostream* out) { *out << cell.steps; }
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" `"), end = text.find_last_not_of(" `");
+  return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
+}
+
+std::vector<Cell> read_cells() {
+  std::vector<Cell> cells;
+  std::ifstream page(BRICK_PIC_8259_PAGE);
+  bool matrix = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("| cell |", 0) == 0) matrix = true;
+    if (!matrix || line.rfind("| ", 0) != 0 || line.rfind("| cell |", 0) == 0) continue;
+    std::istringstream columns(line.substr(1));
+    std::string name, triggers, steps;
+    std::getline(columns, name, '|');
+    std::getline(columns, triggers, '|');
+    std::getline(columns, steps, '|');
+    for (const bool level : {false, true})
+      if (triggers.find(level ? "level" : "edge") != std::string::npos)
+        cells.push_back({trimmed(name) + (level ? "Level" : "Edge"), trimmed(steps), level});
+  }
+  return cells;
+}
+
+class Pic8259Cell : public ::testing::TestWithParam<Cell>, protected Rig {
+ protected:
+  void step(const std::string& text) {
+    SCOPED_TRACE(text);
+    std::istringstream words(text);
+    std::string verb, word;
+    words >> verb;
+    std::vector<unsigned> values;
+    while (words >> word) values.push_back(static_cast<unsigned>(std::stoul(word, nullptr, 16)));
+    ASSERT_FALSE(values.empty());
+    const unsigned value = values.front();
+    if (verb == "up" || verb == "down") {
+      for (const unsigned n : values) line(n, verb == "up");
+      settle();
+    } else if (verb == "icw1") {
+      write(kCommand, value | (GetParam().level ? 8 : 0));
+    } else if (verb == "init") {
+      step("icw1 13");
+      write(kMask, 0x08);
+      write(kMask, value);
+    } else if (verb == "second" || verb == "mask") {
+      write(kMask, value);
+    } else if (verb == "ocw2" || verb == "ocw3") {
+      write(kCommand, value);
+    } else if (verb == "write2" || verb == "write3") {
+      write(verb.back() - '0', value);
+    } else if (verb == "int") {
+      EXPECT_EQ(both.get("irq"), value);
+    } else {
+      EXPECT_EQ(read_of(verb), value);
+    }
+  }
+
+ private:
+  unsigned read_of(const std::string& verb) {
+    if (verb == "inta") return read(kAcknowledge);
+    if (verb == "imr") return read(kMask);
+    if (verb.rfind("read", 0) == 0) return read(verb.back() - '0');
+    if (verb != "irr" && verb != "isr" && verb != "poll") throw std::logic_error("no such step");
+    write(kCommand, verb == "irr" ? 0x0A : verb == "isr" ? 0x0B : 0x0C);
+    return read(kCommand);
+  }
+};
+
+TEST_P(Pic8259Cell, Holds) {
+  std::istringstream steps(GetParam().steps);
+  for (std::string text; std::getline(steps, text, ',');) step(trimmed(text));
+  EXPECT_LOCKSTEP(both);
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, Pic8259Cell, ::testing::ValuesIn(read_cells()),
+                         [](const auto& cell) { return cell.param.name; });
+
+TEST(Pic8259Matrix, IsReadFromItsPage) { EXPECT_GE(read_cells().size(), 130u); }
+
+// --------------------------------------------------------------------------------------------- against the reference
+
+class Pic8259Random : public ::testing::Test, protected Rig {
+ protected:
+  static constexpr unsigned kOperations = 2500;
+
+  unsigned pick(unsigned below) { return static_cast<unsigned>(random_() % below); }
+  unsigned command() {
+    switch (pick(8)) {
+      case 0:
+        return 0x10 | pick(256);
+      case 1:
+      case 2:
+        return 0x08 | (pick(256) & 0x67);
+      case 3:
+        return 0x20;
+      default:
+        return pick(256) & 0xE7;
+    }
+  }
+  // The first difference of the two descriptions, "" if there is none. `broken`: the reference is told something else.
+  std::string talk(unsigned seed, bool broken) {
+    random_.seed(seed);
+    Reference8259 reference;
+    for (unsigned i = 0; i < kOperations; ++i) {
+      unsigned expected = 0, measured = 0;
+      switch (pick(8)) {
+        case 0: {
+          const unsigned value = command();
+          if (value >> 4 != 0 && (value & 0x10) != 0 && pick(3) != 0) break;  // few of them
+          write(kCommand, value);
+          reference.write(false, static_cast<std::uint8_t>(broken ? value ^ 0x80 : value));
+          break;
+        }
+        case 1: {
+          const unsigned value = pick(2) != 0 ? pick(256) : 0;
+          write(kMask, value);
+          reference.write(true, static_cast<std::uint8_t>(value));
+          break;
+        }
+        case 2:
+        case 3:
+          measured = read(kAcknowledge);
+          expected = reference.vector();
+          ++acknowledged_;
+          break;
+        case 4: {
+          const bool a0 = pick(4) == 0;
+          measured = read(a0 ? kMask : kCommand);
+          expected = reference.read(a0);
+          break;
+        }
+        default: {
+          const unsigned n = pick(8);
+          const bool high = (both.in.line >> n & 1) == 0;
+          line(n, high);
+          settle();
+          reference.line(n, high);
+          break;
+        }
+      }
+      if (measured != expected || (both.get("irq") != 0) != reference.interrupts())
+        return "operation " + std::to_string(i) + ": read " + std::to_string(measured) + ", expected " +
+               std::to_string(expected) + ", INT " + std::to_string(both.get("irq"));
+      if (!both.difference().empty()) return both.difference();
+    }
+    return "";
+  }
+  unsigned acknowledged_ = 0;
+
+ private:
+  std::mt19937 random_;
+};
+
+TEST_F(Pic8259Random, AgreesWithASecondDescription) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    both.in = {};
+    both.reset();
+    EXPECT_EQ(talk(seed, false), "") << "seed " << seed;
+  }
+  EXPECT_GE(acknowledged_, 6 * kOperations / 8);
+}
+
+TEST_F(Pic8259Random, ComparisonSeesAWrongRotation) { EXPECT_NE(talk(1, true), ""); }
+
+// ------------------------------------------------------------------------------------------------------ clock by clock
+
+class Pic8259Clocks : public ::testing::Test, protected Rig {
+ protected:
+  void initialize() {
+    both.in = {};
+    both.reset();
+    both.ref(3);
+    write(kCommand, 0x13);
+    write(kMask, 0x08);
+    write(kMask, 0x01);
+  }
+};
+
+TEST_F(Pic8259Clocks, EdgeRaisesTheInterruptAtTheThirdClock) {
+  initialize();
+  line(1, true);
+  both.ref(2);
+  EXPECT_EQ(both.get("irr"), 0x02u);
+  EXPECT_EQ(both.get("irq"), 0u);
+  both.ref();
+  EXPECT_EQ(both.get("irq"), 1u);
+  EXPECT_LOCKSTEP(both);
+}
+
+// A line that falls for `low` clocks and rises `lead` clocks around the acknowledge of its last edge is asked for
+// again, unless the controller has not seen it high before: then there was nothing to acknowledge.
+TEST_F(Pic8259Clocks, EdgeThatMeetsTheAcknowledgeIsKept) {
+  for (int low = 1; low <= 3; ++low)
+    for (int lead = 0; lead <= 6; ++lead) {
+      SCOPED_TRACE(::testing::Message() << "low for " << low << ", acknowledge " << lead << " clocks after the fall");
+      initialize();
+      line(1, true);
+      both.ref(5);
+      line(1, false);
+      for (int clock = 0; clock < 8; ++clock) {
+        if (clock == low) line(1, true);
+        both.in.rd = clock == lead;
+        both.in.addr = kAcknowledge;
+        if (clock == lead) {
+          // Two flip-flops: the fall of clock 0 is seen at clock 2, the rise `low` later.
+          const bool seen_low = lead >= 2 && lead < 2 + low;
+          EXPECT_EQ(both.get("rdata"), seen_low ? 0x0Fu : 0x09u);
+        }
+        both.ref();
+      }
+      both.in.rd = false;
+      const bool second_edge_taken = lead >= 2 + low;  // acknowledged after it had come
+      EXPECT_EQ(both.get("irr"), second_edge_taken ? 0u : 0x02u);
+      EXPECT_LOCKSTEP(both);
+    }
+}
+
+TEST_F(Pic8259Clocks, EdgeThatMeetsIcw1IsKept) {
+  for (int lead = 0; lead <= 4; ++lead) {  // clocks from the line's rise to the write; it is seen at the second
+    initialize();
+    line(1, true);
+    if (lead > 0) both.ref(lead);
+    write(kCommand, 0x13);
+    write(kMask, 0x08);
+    write(kMask, 0x01);
+    EXPECT_EQ(both.get("irr"), lead < 2 ? 0x02u : 0u) << "lead " << lead;
+    EXPECT_LOCKSTEP(both);
+  }
+}
+
+TEST_F(Pic8259Clocks, RandomLinesReadsAndWritesAgree) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    both.lazy = seed % 2;
+    for (int i = 0; i < 3000 && both.difference().empty(); ++i) {
+      if (random() % 5 == 0) both.in.line ^= static_cast<std::uint8_t>(1u << random() % 8);
+      if (both.now() % kTicksPerRef == 0) {
+        both.in.addr = random() % 4;
+        both.in.wr = random() % 4 == 0;
+        both.in.rd = !both.in.wr && random() % 3 == 0;
+        both.in.wdata = static_cast<std::uint8_t>(random() % 3 == 0 ? random() % 0x10 : random());
+      }
+      if (random() % 2000 == 0) both.reset();
+      both.tick();
+    }
+    ASSERT_EQ(both.difference(), "") << "seed " << seed;
+  }
+}
+
+TEST_F(Pic8259Clocks, ComparisonSeesALostAcknowledge) {
+  both.mutate = [](Pic8259::Inputs& in) { in.rd = false; };
+  initialize();
+  line(1, true);
+  both.ref(4);
+  read(kAcknowledge);
+  EXPECT_NE(both.difference(), "");
+}
+
+}  // namespace
+}  // namespace brick
