@@ -43,7 +43,8 @@ def every_board():
                "pmac-pc": {"clock-macro", "breq-rotary", "breq-select", "watchdog", "capture-compare"},
                "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
                 "turbo-pmac2-ultralite":
-                    every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram"}}
+                    every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram",
+                                    "host-port", "isa-timing"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
@@ -156,6 +157,16 @@ def serial_dac_adc():
 def port_a_phase():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
         bench_passes("port-a-phase", engine, seed, firmware=False)
+
+
+def host_port():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("host-port", engine, seed)
+
+
+def isa_timing():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("isa-timing", engine, seed)
 
 
 def capture_compare():

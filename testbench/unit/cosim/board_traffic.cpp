@@ -265,15 +265,27 @@ void BoardTraffic::choose_host_address() {
     const std::uint32_t offset =
         pick(4) == 0 ? pick(0x10000)
                      : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + (pick(2) == 0 ? pick(4) : pick(16));
-    inputs_.isa_sa = (pick(16) == 0 ? 0xC0000 : 0xD0000) + offset;
+    const std::uint32_t window = static_cast<std::uint32_t>(inputs_.window) << 14;
+    inputs_.set_address((window ^ (pick(8) == 0 ? 1u << (14 + pick(10)) : 0)) + offset);
   } else {
-    inputs_.isa_sa = (pick(16) == 0 ? pick(0x400) : regs::host_io::kBase + pick(16));
+    inputs_.set_address((16u * inputs_.io_base + pick(16)) ^ (pick(8) == 0 ? 1u << (4 + pick(12)) : 0));
   }
   ++host_.accesses;
+  if (pick(100) == 0) choose_host_set_up();
+  if (pick(20) == 0) static_cast<IsaStraps&>(inputs_) = {};
+  inputs_.isa_resetdrv = pick(200) == 0;  // to the next cycle
   host_.dpram_accesses += host_.memory && inputs_.isa_sa - regs::kDpramWindowBase < regs::kDpramWindowSize;
   inputs_.isa_sbhe_n = pick(2) != 0;
   inputs_.isa_aen = pick(16) == 0;
   inputs_.isa_sd = static_cast<std::uint16_t>(pick(4) == 0 ? pick(0x10000) : 1u << pick(16));
+}
+
+void BoardTraffic::choose_host_set_up() {
+  inputs_.io_base = static_cast<std::uint8_t>(pick(0x100));
+  inputs_.io_decode16 = pick(2) != 0;
+  inputs_.window = static_cast<std::uint16_t>(pick(0x400));
+  inputs_.window_flat = pick(2) != 0;
+  inputs_.slot8 = pick(2) != 0;
 }
 
 void BoardTraffic::host_step() {

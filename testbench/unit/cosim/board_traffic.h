@@ -61,6 +61,7 @@ class BoardTraffic {
   std::uint32_t choose_cpu_data();
   std::uint32_t choose_clock_data(bool drives);
   void choose_host_address();
+  void choose_host_set_up();
 
   std::mt19937_64 random_;
   Options options_;
