@@ -93,9 +93,9 @@ TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
 
 TEST(InputLayout, EachPinHasOnePlace) {
   // Port A: A, D, AA, X, internal, two strobes. ISA: SA, SD, six lines. Connectors: JPAN, two clocks, four interrupt
-  // lines. Straps: ICs,
-  // kinds of MACRO ICs, three digits of sources, kind of interrupt controller, three jumpers.
-  constexpr unsigned kPins = (19 + 24 + 4 + 1 + 1 + 2) + (20 + 16 + 6) + (16 + 2 + 4) + (22 + 4 + 3 * 4 + 1 + 3);
+  // lines, 5 V good. Straps: ICs, kinds of MACRO ICs, three digits of sources, kind of interrupt controller, three
+  // jumpers.
+  constexpr unsigned kPins = (19 + 24 + 4 + 1 + 1 + 2) + (20 + 16 + 6) + (16 + 2 + 4 + 1) + (22 + 4 + 3 * 4 + 1 + 3);
   unsigned pins = 0;
   BoardInputWords taken{};
   const auto check = [&](const auto& field) {
