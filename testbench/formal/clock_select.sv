@@ -57,10 +57,12 @@ module clock_select_rules (
   logic [21:0] phase_oe_q = 22'h0, servo_oe_q = 22'h0;
   logic [4:0]  source_q = 5'd0;
   logic [23:0] servo_drivers_q = 24'h0;
-  logic [3:0]  stood_q = 4'd0, servo_stood_q = 4'd0;
-  logic        level, servo_level, several;
+  logic [1:0]  stood_q = 2'd0, servo_stood_q = 2'd0;
+  logic        level, servo_level, several, stands, servo_stands;
   assign level       = (n < 5'd22) ? phase_i[n] : ext_phase_i;
   assign servo_level = (n < 5'd22) ? servo_i[n] : ext_servo_i;
+  assign stands       = source == source_q && level == level_q;
+  assign servo_stands = servo_drivers == servo_drivers_q && servo_level == servo_level_q;
   always @($global_clock) begin
     if (edge_ref && rst_ni) begin
       outside_q  <= ext_clock_i;
@@ -68,9 +70,8 @@ module clock_select_rules (
       servo_oe_q <= servo_oe_i & fitted_i;
     end
     {source_q, servo_drivers_q, level_q, servo_level_q} <= {source, servo_drivers, level, servo_level};
-    stood_q       <= (source == source_q && level == level_q) ? stood_q + {3'd0, stood_q != 4'd15} : 4'd0;
-    servo_stood_q <= (servo_drivers == servo_drivers_q && servo_level == servo_level_q)
-                         ? servo_stood_q + {3'd0, servo_stood_q != 4'd15} : 4'd0;
+    stood_q       <= stands ? stood_q + {1'b0, stood_q != 2'd3} : 2'd0;
+    servo_stood_q <= servo_stands ? servo_stood_q + {1'b0, servo_stood_q != 2'd3} : 2'd0;
   end
 
   assign several = |(phase_oe_q & (phase_oe_q - 22'h1)) | (|(servo_oe_q & (servo_oe_q - 22'h1)));
@@ -96,20 +97,20 @@ module clock_select_rules (
       C4: cover (n == 5'd3 && phase_oe_q == 22'hF8);
     end
 
-    // R5: PHASE is the level of its source, if both have stood for three steps.
-    if (source == n && n < 5'd22 && stood_q >= 4'd3) begin
+    // R5: PHASE is the level of its source, if both have stood for four steps.
+    if (source == n && n < 5'd22 && stands && stood_q == 2'd3) begin
       R5: assert (phase == level);
       C5: cover (!phase && (phase_oe_q & phase_i) != 22'h0);
     end
 
-    // R6: SERVO is the level of its driver, if both have stood for three steps.
-    if (n < 5'd22 && servo_drivers[n] && servo_stood_q >= 4'd3) begin
+    // R6: SERVO is the level of its driver, if both have stood for four steps.
+    if (n < 5'd22 && servo_drivers[n] && servo_stands && servo_stood_q == 2'd3) begin
       R6: assert (servo == servo_level);
       C6: cover (!servo && (servo_oe_q & servo_i) != 22'h0);
     end
 
-    // R7: With no driver for three steps both nets are high.
-    if (phase_drivers[22] && servo_drivers[22] && stood_q >= 4'd3 && servo_stood_q >= 4'd3) begin
+    // R7: With no driver for four steps both nets are high.
+    if (phase_drivers[22] && servo_drivers[22] && stands && stood_q == 2'd3 && servo_stands && servo_stood_q == 2'd3) begin
       R7: assert (phase && servo);
       C7: cover (phase_i == 22'h0);
     end

@@ -60,7 +60,8 @@ class Proofs(Tree):
 
     def test_a_rule_that_does_not_hold_fails_by_either_engine(self):
         self.prove(1, "R1 refuted at step 11", ("count <= 4'd9", "count <= 4'd8"))
-        self.prove(1, "induction of 5 steps fails in its base at ['R1']", ("pdr", "induction 5"), ("count <= 4'd9", "count == 4'd0"))
+        self.prove(1, "induction of 5 steps fails in its base at ['R1']", ("pdr", "induction 5"),
+                   ("count <= 4'd9", "count == 4'd0"))
 
     def test_no_answer_in_time_fails(self):
         self.prove(1, "yosys: no answer within 0.001 s", limit="0.001")
