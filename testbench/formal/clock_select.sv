@@ -110,7 +110,8 @@ module clock_select_rules (
     end
 
     // R7: With no driver for four steps both nets are high.
-    if (phase_drivers[22] && servo_drivers[22] && stands && stood_q == 2'd3 && servo_stands && servo_stood_q == 2'd3) begin
+    if (phase_drivers[22] && stands && stood_q == 2'd3 && servo_drivers[22] && servo_stands &&
+        servo_stood_q == 2'd3) begin
       R7: assert (phase && servo);
       C7: cover (phase_i == 22'h0);
     end
