@@ -40,7 +40,8 @@ def every_board():
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
                "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3"}, "geobrick-lv-8": {"clock-macro"},
                "turbo-pmac-pci": {"clock-macro"},
-               "pmac-pc": {"clock-macro", "breq-rotary", "breq-select", "watchdog", "capture-compare"},
+               "pmac-pc": {"clock-macro", "breq-rotary", "breq-select", "watchdog", "capture-compare",
+                           "isa-timing"},
                "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
                 "turbo-pmac2-ultralite":
                     every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram",
