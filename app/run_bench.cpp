@@ -51,8 +51,9 @@ int run_bench(const RunOptions& given, const std::string& name, bool negative, c
       report.step("controller answers", up,
                   up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
       if (!up) return;
-      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report,
-                           config.board,         config.seed,      negative};
+      BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
+                           config.board,          config.seed,      negative,          simulation.timing(),
+                           config.bcr.has_value()};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

@@ -84,7 +84,7 @@ const std::vector<Bench>& all_benches() {
   static const std::vector<Bench> benches{
       smoke_bench(),        breq_rotary_bench(), watchdog_bench(),      reinit_e3_bench(),       clock_select_bench(),
       clock_faults_bench(), clock_macro_bench(), encoder_bench(),       capture_compare_bench(), flags_bench(),
-      pwm_bench(),          pfm_bench(),         serial_dac_adc_bench()};
+      pwm_bench(),          pfm_bench(),         serial_dac_adc_bench(), bus_timing_bench()};
   return benches;
 }
 

@@ -10,6 +10,7 @@
 
 #include "systemc/machine/machine.h"
 #include "testbench/benches/comparison.h"
+#include "testbench/checkers/timing_book.h"
 #include "testbench/host/host_bus.h"
 #include "testbench/host/host_link.h"
 
@@ -51,6 +52,8 @@ struct BenchContext {
   const BoardConfig& board;
   std::uint64_t seed;
   bool negative;
+  TimingBook& timing;  // what judges the buses of this run
+  bool forced_wait_states;
 
   std::string ask(const std::string& line) const;            // data lines joined by '|'
   std::vector<long> numbers(const std::string& line) const;  // data lines as numbers
