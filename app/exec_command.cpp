@@ -49,6 +49,7 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   } catch (const std::exception& e) {  // the script, the engines or the bus: bad input was found before
     failure = e.what();
   }
+  if (config.aperture > 0) std::cerr << simulation.aperture_text() << '\n';
   if (!failure.empty()) std::cerr << "brick exec: " << failure << '\n';
   for (const std::string& error : simulation.machine().take_run_errors()) {
     std::cerr << "brick exec: " << error << '\n';

@@ -53,6 +53,12 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--flash", o.flash, "file that keeps SAVEd data between runs");
+  command
+      .add_option("--aperture", o.aperture,
+                  "nanoseconds around a clock edge within which a pin that CPU or host moves is taken early or late "
+                  "at random, by --seed; up to 4")
+      ->type_name("NS")
+      ->capture_default_str();
   command.add_option("--json", o.json, "write the results to FILE");
   command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")
       ->type_name("PORT");
@@ -72,6 +78,17 @@ std::uint64_t parse_count(const std::string& option, const std::string& text) {
     if (used == text.size() && text[0] != '-' && text[0] != '+') return value;
   } catch (const std::exception&) {}
   throw UsageError(fmt::format("{} {}: is no number; expected an integer of 0 or more", option, text));
+}
+
+TimeFs parse_aperture(const std::string& text) {
+  TimeFs width = -1;
+  try {
+    width = text == "0" ? 0 : parse_time(text + "ns");
+  } catch (const UsageError&) {}
+  if (width < 0 || width > Aperture::kMost)
+    throw UsageError(
+        fmt::format("--aperture {}: is no aperture; expected nanoseconds, 0 to {}", text, Aperture::kMost / kFsPerNs));
+  return width;
 }
 
 std::uint16_t gdb_port(const RunOptions& o) {
@@ -95,6 +112,7 @@ MachineConfig machine_config(const RunOptions& o) {
   else
     throw UsageError(fmt::format("--engine {}: no such engine; expected rtl, systemc or lockstep", o.engine));
   config.seed = parse_count("--seed", o.seed);
+  config.aperture = parse_aperture(o.aperture);
   config.batch = static_cast<Tick>(parse_count("--batch", o.batch));
   if (config.batch < 0 || config.batch >= kNever)
     throw UsageError(fmt::format("--batch {}: is too large; expected ticks", o.batch));

@@ -23,6 +23,7 @@ struct RunOptions {
   std::string flash;
   std::string json;
   std::string gdb;  // port, "" = no debugger
+  std::string aperture = "0";
   std::string batch = "0";
   std::string bcr;    // hexadecimal, "" = as the firmware sets it
   std::string waive;  // file of timing waivers
@@ -40,6 +41,7 @@ struct WaveWindow {
 };
 WaveWindow wave_window(const RunOptions& options);
 
+TimeFs parse_aperture(const std::string& text);                                 // throws UsageError
 std::uint16_t gdb_port(const RunOptions& options);                              // throws UsageError
 std::uint64_t parse_count(const std::string& option, const std::string& text);  // throws UsageError
 std::string engine_name(Engine engine);

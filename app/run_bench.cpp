@@ -38,21 +38,25 @@ int run_bench(const RunOptions& given, const std::string& name, bool negative, c
   if (!bench.need.met(config.board))
     throw UsageError(fmt::format("{} needs {}, which board {} has not; expected a board such as {}", bench.name,
                                  bench.need.what, config.board.name, bench.board));
+  if (!bench.firmware) config.firmware.clear();
   if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
   Simulation simulation(options, config, bench.name);
   if (extras.before) extras.before(simulation);
-  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}\n", bench.name, bench.description, options.engine,
+  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}\n", bench.name, bench.description, options.engine,
                            config.board.name, config.seed,
+                           config.aperture > 0 ? fmt::format(", aperture {} ns", options.aperture) : "",
                            negative ? ", NEGATIVE CONTROL: " + bench.negative.does : "");
   BenchReport report(std::cout, simulation.machine());
   try {
     simulation.run([&] {
-      const bool up = simulation.link().connect(HostLink::kBootTime);
-      report.step("controller answers", up,
-                  up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
-      if (!up) return;
-      BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
-                           config.board,          config.seed,      negative,          simulation.timing(),
+      if (bench.firmware) {
+        const bool up = simulation.link().connect(HostLink::kBootTime);
+        report.step("controller answers", up,
+                    up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
+        if (!up) return;
+      }
+      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report,
+                           config.board,         config.seed,      negative,          simulation.timing(),
                            config.bcr.has_value()};
       bench.run(context);
     });

@@ -12,7 +12,6 @@
 namespace brick {
 
 namespace {
-
 using Kind = ScriptLine::Kind;
 
 std::string visible(const std::string& bytes) {

@@ -58,7 +58,8 @@ std::optional<bool HostInputs::*> find_connector_pin(const Signals& signals, con
   static const std::pair<std::string_view, bool HostInputs::*> kPins[] = {{"host.mi1", &HostInputs::mi1},
                                                                           {"host.mi2", &HostInputs::mi2},
                                                                           {"host.axexp0", &HostInputs::axexp0},
-                                                                          {"host.axexp1", &HostInputs::axexp1}};
+                                                                          {"host.axexp1", &HostInputs::axexp1},
+                                                                          {"watchdog.pwr_good", &HostInputs::pwr_good}};
   const std::string& found = signals.info(find_signal(signals, name)).name;
   for (const auto& [pin, place] : kPins)
     if (found == pin) return place;

@@ -136,12 +136,27 @@ Simulation::TimingVerdict Simulation::timing_verdict() {
 
 nlohmann::json Simulation::measures() const {
   const double wall = seconds_ > 0 ? seconds_ : 1e-9;
-  return {{"simulated_ns", machine_->now_fs() / kFsPerNs},
+  const Aperture::Counts& moves = machine_->aperture().counts();
+  return {{"aperture",
+           {{"fs", machine_->aperture().width()},
+            {"moves", moves.moves},
+            {"early", moves.early},
+            {"late", moves.late},
+            {"split", moves.split}}},
+          {"simulated_ns", machine_->now_fs() / kFsPerNs},
           {"ticks", machine_->now()},
           {"wall_seconds", seconds_},
           {"ticks_per_second", static_cast<double>(machine_->now()) / wall},
           {"instructions", machine_->instructions()},
           {"instructions_per_second", static_cast<double>(machine_->instructions()) / wall}};
+}
+
+std::string Simulation::aperture_text() const {
+  const Aperture& aperture = machine_->aperture();
+  const Aperture::Counts& c = aperture.counts();
+  if (!aperture.on()) return "";
+  return fmt::format("aperture {:g} ns: {} moves of pins, {} within it: {} early, {} late, {} of a bus line by line",
+                     static_cast<double>(aperture.width()) * 1e-6, c.moves, c.inside(), c.early, c.late, c.split);
 }
 
 std::string Simulation::measures_text() const {
@@ -150,6 +165,7 @@ std::string Simulation::measures_text() const {
                                  static_cast<double>(machine_->now_fs()) * 1e-12, seconds_,
                                  static_cast<double>(machine_->now()) / wall * 1e-6,
                                  static_cast<double>(machine_->instructions()) / wall * 1e-6);
+  if (const std::string moves = aperture_text(); !moves.empty()) text += '\n' + moves;
   if (!wave_.empty()) text += fmt::format("\nwaveform {}", wave_);
   return text;
 }

@@ -41,6 +41,7 @@ class Simulation {
 
   nlohmann::json measures() const;  // simulated and wall time, ticks/s, instructions/s
   std::string measures_text() const;
+  std::string aperture_text() const;  // "" without --aperture
 
  private:
   void wait_for_debugger(std::uint16_t port);

@@ -39,18 +39,27 @@ static bool hex_number(struct lexer* lx, double* value) {
   return true;
 }
 
+/* The first digits, nine of them at most that count: they fit into 32 bits. Nothing more follows: it is the number. */
+static bool short_integer(const char** at, uint32_t* low, unsigned* digits) {
+  const char* text = *at;
+  *low = 0;
+  *digits = 0;
+  while (is_digit(*text) && *digits < SHORT_DIGITS) {
+    *low = *low * 10u + (uint32_t)(*text++ - '0');
+    if (*low != 0) ++*digits;
+  }
+  *at = text;
+  return !is_digit(*text) && *text != '.';
+}
+
 bool lexer_number(struct lexer* lx, double* value) {
   char first = lexer_peek(lx);
   if (first == '$') return hex_number(lx, value);
   if (!is_digit(first) && !(first == '.' && is_digit(lx->at[1]))) return false;
   const char* text = lx->at;
-  uint32_t low = 0; /* nine digits fit: the usual number needs no 64-bit arithmetic */
-  unsigned digits = 0;
-  while (is_digit(*text) && digits < SHORT_DIGITS) {
-    low = low * 10u + (uint32_t)(*text++ - '0');
-    if (low != 0) digits++;
-  }
-  if (!is_digit(*text) && *text != '.') {
+  uint32_t low; /* the usual number needs no 64-bit arithmetic */
+  unsigned digits;
+  if (short_integer(&text, &low, &digits)) {
     lx->at = text;
     *value = (double)low;
     return true;
@@ -98,7 +107,18 @@ error_t lexer_constant(struct lexer* lx, double* value) {
   return ERR_NONE;
 }
 
+/* The usual one, `&5`, needs no floating-point arithmetic, which is slow here: T_CS (host-bus:5.7/9). */
 error_t lexer_integer(struct lexer* lx, int32_t* value) {
+  if (is_digit(lexer_peek(lx))) {
+    const char* text = lx->at;
+    uint32_t low;
+    unsigned digits;
+    if (short_integer(&text, &low, &digits)) {
+      lx->at = text;
+      *value = (int32_t)low;
+      return ERR_NONE;
+    }
+  }
   double constant;
   error_t error = lexer_constant(lx, &constant);
   if (error != ERR_NONE) return error;

@@ -49,8 +49,9 @@ module board_sim #(
   logic [23:0] pa_data;
   logic        pa_data_oe, pa_ta_n, irq_host;
   logic [15:0] isa_sd;
-  logic        isa_iochrdy, isa_memcs16_n, isa_irq;
-  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict;
+  logic [1:0]  isa_sd_oe;
+  logic        isa_iochrdy, isa_memcs16_n, isa_irq, port_txde, port_rxdf;
+  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict, relay, led;
   logic [4:0]  source;
   logic [7:0]  ist, sig, msk, elr;
   logic        brld_n, erld_n, f1ld_n, ipld_n;
@@ -69,6 +70,7 @@ module board_sim #(
     .pa_data_oe_o      (pa_data_oe),
     .pa_ta_n_o         (pa_ta_n),
     .irq_host_o        (irq_host),
+    .isa_la_i          (inputs_i[6][6:0]),
     .isa_sa_i          (inputs_i[2][19:0]),
     .isa_ior_ni        (inputs_i[2][20]),
     .isa_iow_ni        (inputs_i[2][21]),
@@ -76,8 +78,10 @@ module board_sim #(
     .isa_memw_ni       (inputs_i[2][23]),
     .isa_aen_i         (inputs_i[2][24]),
     .isa_sbhe_ni       (inputs_i[2][25]),
+    .isa_resetdrv_i    (inputs_i[6][7]),
     .isa_sd_i          (inputs_i[3][15:0]),
     .isa_sd_o          (isa_sd),
+    .isa_sd_oe_o       (isa_sd_oe),
     .isa_iochrdy_o     (isa_iochrdy),
     .isa_memcs16_n_o   (isa_memcs16_n),
     .isa_irq_o         (isa_irq),
@@ -89,7 +93,13 @@ module board_sim #(
     .ext_clock_i       (inputs_i[4][28]),
     .ext_phase_i       (inputs_i[4][29]),
     .ext_servo_i       (inputs_i[4][30]),
+    .pwr_good_i        (inputs_i[7][0]),
     .line_select_i     (inputs_i[5][11:0]),
+    .io_base_i         (inputs_i[6][15:8]),
+    .window_i          (inputs_i[6][25:16]),
+    .io_decode16_i     (inputs_i[6][26]),
+    .window_flat_i     (inputs_i[6][27]),
+    .slot8_i           (inputs_i[6][28]),
     .mi1_i             (inputs_i[5][12]),
     .mi2_i             (inputs_i[5][13]),
     .axexp0_i          (inputs_i[5][14]),
@@ -104,8 +114,12 @@ module board_sim #(
     .eror_o            (eror),
     .f1er_o            (f1er),
     .hreq_o            (hreq),
+    .port_txde_o       (port_txde),
+    .port_rxdf_o       (port_rxdf),
     .wdo_o             (wdo),
     .wd_tripped_o      (wd_tripped),
+    .wd_relay_o        (relay),
+    .wd_led_o          (led),
     .busy_host_o       (busy_host),
     .busy_cpu_o        (busy_cpu),
     .phase_source_o    (source),
@@ -158,9 +172,9 @@ module board_sim #(
                       isa_iochrdy, isa_sd};
   assign pins_o[2] = {elr, msk, sig, ist};
   assign pins_o[3][7:0]   = {7'h0, pa_data_oe};
-  assign pins_o[3][15:8]  = 8'h0;
+  assign pins_o[3][15:8]  = {4'h0, port_rxdf, port_txde, isa_sd_oe};
   assign pins_o[3][23:16] = {2'b00, ctrl, ipld_n, f1ld_n, erld_n, brld_n};
-  assign pins_o[3][31:24] = 8'h0;
+  assign pins_o[3][31:24] = {6'h0, led, relay};
 
 endmodule : board_sim
 

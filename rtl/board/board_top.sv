@@ -25,7 +25,8 @@ module board_top #(
   output logic             pa_data_oe_o,
   output logic             pa_ta_n_o,
   output logic             irq_host_o,
-  // ISA
+  // ISA; SD is driven for each byte lane, IOCHRDY and MEMCS16# are open collector: 0 pulls, 1 lets go
+  input  wire logic [6:0]  isa_la_i,  // LA[23:17]
   input  wire logic [19:0] isa_sa_i,
   input  wire logic [15:0] isa_sd_i,
   input  wire logic        isa_ior_ni,
@@ -34,7 +35,9 @@ module board_top #(
   input  wire logic        isa_memw_ni,
   input  wire logic        isa_aen_i,
   input  wire logic        isa_sbhe_ni,
+  input  wire logic        isa_resetdrv_i,
   output logic [15:0]      isa_sd_o,
+  output logic [1:0]       isa_sd_oe_o,
   output logic             isa_iochrdy_o,
   output logic             isa_memcs16_n_o,
   output logic             isa_irq_o,
@@ -47,9 +50,15 @@ module board_top #(
   // 15 AXEXP1
   input  wire logic [11:0] line_select_i,
   input  wire logic        pic_8259_i,     // the interrupt controller is an 8259
+  input  wire logic [7:0]  io_base_i,      // A11..A4 of the host's I/O block
+  input  wire logic        io_decode16_i,
+  input  wire logic [9:0]  window_i,       // A23..A14 of the host's memory window
+  input  wire logic        window_flat_i,
+  input  wire logic        slot8_i,
   input  wire logic        ext_clock_i,
   input  wire logic        ext_phase_i,
   input  wire logic        ext_servo_i,
+  input  wire logic        pwr_good_i,  // 5 V is good
   input  wire logic [15:0] jpan_i,  // control panel inputs, low-true
   input  wire logic        mi1_i,   // machine inputs of JOPTO
   input  wire logic        mi2_i,
@@ -69,8 +78,12 @@ module board_top #(
   output logic             eror_o,
   output logic             f1er_o,
   output logic             hreq_o,
+  output logic             port_txde_o,
+  output logic             port_rxdf_o,
   output logic             wdo_o,
   output logic             wd_tripped_o,
+  output logic             wd_relay_o,      // energised
+  output logic             wd_led_o,
   output logic             busy_host_o,
   output logic             busy_cpu_o,
   output logic [4:0]       phase_source_o,
@@ -268,15 +281,18 @@ module board_top #(
     .clk_ref_i, .rst_ni,
     .strobe_i (bus_we & sel_strobe),
     .servo_i  (servo_o),
-    .trip_o   (wd_tripped_o)
+    .pwr_good_i,
+    .trip_o   (wd_tripped_o),
+    .relay_o  (wd_relay_o)
   );
-  assign wdo_o = wd_tripped_o;
+  assign wdo_o    = wd_tripped_o;
+  assign wd_led_o = wd_tripped_o;
 
   // ------------------------------------------------------------------ host side
   logic       hp_sel, hp_rd_done, hp_wr;
   logic [2:0] hp_addr;
   logic [7:0] hp_wdata, hp_rdata;
-  logic       pic_sel, pic_wr, pic_rd;
+  logic       pic_sel, pic_wr, pic_rd, host_reset;
   logic [1:0] pic_addr;
   logic [7:0] pic_wdata, pic_rdata;
   logic        mem_sel, mem_rd, mem_wr, mem_busy;
@@ -285,10 +301,12 @@ module board_top #(
   logic [15:0] mem_wdata, mem_rdata;
 
   isa_slave u_isa_slave (
-    .clk_ref_i, .rst_ni,
-    .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
-    .isa_sd_o, .isa_iochrdy_o,
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .isa_la_i, .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
+    .isa_resetdrv_i, .isa_sd_o, .isa_sd_oe_o, .isa_iochrdy_o,
     .isa_memcs16_no (isa_memcs16_n_o),
+    .io_base_i, .io_decode16_i, .window_i, .window_flat_i, .slot8_i,
+    .host_reset_o   (host_reset),
     .hp_sel_o       (hp_sel),
     .hp_rd_done_o   (hp_rd_done),
     .hp_wr_o        (hp_wr),
@@ -320,6 +338,7 @@ module board_top #(
     .hp_addr_i     (hp_addr),
     .hp_wdata_i    (hp_wdata),
     .hp_rdata_o    (hp_rdata),
+    .hp_reset_i    (host_reset),
     .dsp_sel_i     (sel_int),
     .dsp_we_i      (bus_we),
     .dsp_rd_i      (bus_rd),
@@ -327,7 +346,9 @@ module board_top #(
     .dsp_wdata_i   (bus_wdata),
     .dsp_rdata_o   (int_rdata),
     .hreq_o,
-    .irq_o         (irq_host_o)
+    .irq_o         (irq_host_o),
+    .txde_o        (port_txde_o),
+    .rxdf_o        (port_rxdf_o)
   );
 
   logic [3:0] signals_rdata;
@@ -355,6 +376,7 @@ module board_top #(
   logic       turbo_irq, old_irq, old_level;
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni,
+    .reset_i (host_reset),
     .line_i  (pic_line),
     .wr_i    (pic_sel & pic_wr & ~pic_8259_q),
     .addr_i  (pic_addr),
@@ -406,6 +428,7 @@ module board_top #(
 
   logic        dpram_sel;
   logic [15:0] dpram_rdata;
+  logic        dpram_valid;
   assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
@@ -419,6 +442,7 @@ module board_top #(
     .cpu_wr_ni   (pa_wr_ni),
     .cpu_wdata_i (pa_wdata_i[15:0]),
     .cpu_rdata_o (dpram_rdata),
+    .cpu_valid_o (dpram_valid),
     .cpu_wait_o  (pa_ta_n_o),
     .cpu_busy_o  (busy_cpu_o),
     .mem_sel_i   (mem_sel),
@@ -452,14 +476,14 @@ module board_top #(
     .oe_o      (bus_rdata_oe)
   );
 
-  // The dual-ported RAM answers on clk_pwm; its word is good when /TA says so.
+  // The dual-ported RAM answers on clk_pwm.
   logic from_dpram_q;
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) from_dpram_q <= 1'b0;
     else         from_dpram_q <= dpram_sel;
   end
   assign pa_data_o    = from_dpram_q ? {8'h0, dpram_rdata} : bus_rdata;
-  assign pa_data_oe_o = bus_rdata_oe | (from_dpram_q & ~pa_rd_ni);
+  assign pa_data_oe_o = bus_rdata_oe | (from_dpram_q & dpram_valid & ~pa_rd_ni);
 
 endmodule : board_top
 

@@ -20,6 +20,7 @@ module dpram (
   input  wire logic        cpu_wr_ni,
   input  wire logic [15:0] cpu_wdata_i,
   output logic [15:0]      cpu_rdata_o,
+  output logic             cpu_valid_o,  // the word of the last read stands, or it was not for this RAM
   output logic             cpu_wait_o,   // /TA: from the fall of the strobe until the access is done
   output logic             cpu_busy_o,   // waits for the host's access to the same word
   // host side, from isa_slave
@@ -104,6 +105,7 @@ module dpram (
     end
   end
 
+  assign cpu_valid_o = rd_toggle_i == rd_done_q;
   assign cpu_wait_o = cpu_sel_i & ((rd_toggle_i ^ rd_ack_q) | (wr_toggle_i ^ wr_done_q));
   assign cpu_busy_o = busy_q;
 

@@ -17,6 +17,7 @@ module host_port (
   input  wire logic [2:0]  hp_addr_i,
   input  wire logic [7:0]  hp_wdata_i,
   output logic [7:0]       hp_rdata_o,
+  input  wire logic        hp_reset_i,     // RESETDRV: empties both ways, the host's registers as after a reset
   // CPU side
   input  wire logic        dsp_sel_i,
   input  wire logic        dsp_we_i,       // one clk_ref
@@ -25,7 +26,9 @@ module host_port (
   input  wire logic [23:0] dsp_wdata_i,
   output logic [23:0]      dsp_rdata_o,
   output logic             hreq_o,
-  output logic             irq_o
+  output logic             irq_o,
+  output logic             txde_o,
+  output logic             rxdf_o
 );
 
   localparam logic [2:0] Icr   = brick_regs_pkg::HostIoIcrAddr[2:0];
@@ -68,7 +71,7 @@ module host_port (
   assign hc    = cvr_q[brick_regs_pkg::HostIoCvrHcLsb];
 
   // ---------------------------------------------------------------- flags
-  // A read frees only what was full; INIT comes last, it wins over everything that happens in the same clock.
+  // A read frees only what was full; INIT and RESETDRV come last, they win over all that happens in the same clock.
   assign tx_move = ~txde_q & ~hrdf_q;
   assign rx_move = ~htde_q & ~rxdf_q;
   always_comb begin
@@ -76,11 +79,11 @@ module host_port (
     hrdf_d = tx_move | (hrdf_q & ~horx_read);
     htde_d = (htde_q | rx_move) & ~hotx_write;
     rxdf_d = rx_move | (rxdf_q & ~data7_read);
-    if (init && hp_wdata_i[brick_regs_pkg::HostIoIcrTreqLsb]) begin
+    if (hp_reset_i || (init && hp_wdata_i[brick_regs_pkg::HostIoIcrTreqLsb])) begin
       txde_d = 1'b1;
       hrdf_d = 1'b0;
     end
-    if (init && hp_wdata_i[brick_regs_pkg::HostIoIcrRreqLsb]) begin
+    if (hp_reset_i || (init && hp_wdata_i[brick_regs_pkg::HostIoIcrRreqLsb])) begin
       rxdf_d = 1'b0;
       htde_d = 1'b1;
     end
@@ -122,6 +125,11 @@ module host_port (
           default: ;
         endcase
       end
+      if (hp_reset_i) begin
+        icr_q <= brick_regs_pkg::HostIoIcrReset;
+        cvr_q <= brick_regs_pkg::HostIoCvrReset;
+        ivr_q <= brick_regs_pkg::HostIoIvrReset;
+      end
       if (cpu_wr) begin
         case (dsp_addr_i)
           Hcr:     hcr_q  <= dsp_wdata_i & brick_regs_pkg::Hi08HcrWritten;
@@ -132,6 +140,9 @@ module host_port (
       end
     end
   end
+
+  assign txde_o = txde_q;
+  assign rxdf_o = rxdf_q;
 
   // ---------------------------------------------------------------- what the two sides read
   assign hreq_o = (rreq & rxdf_q) | (treq & txde_q);

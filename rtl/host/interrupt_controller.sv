@@ -2,13 +2,15 @@
 // (addr_i): 0 read IST, write clears the latches; 1 SIG; 2 MSK, 1 = enabled; 3 ELR, 0 = rising edge, 1 = level. IST =
 // MSK & (ELR ? line : latch), IRQ = any IST. A latch is set by a rising edge while enabled and edge-sensed, and cleared
 // by a write to 0 or while masked; a coincident edge wins over the clear. Lines pass two flip-flops: a level of one
-// clock is seen for sure, and an edge raises IRQ at the third clock. Clock clk_ref_i, asynchronous reset.
+// clock is seen for sure, and an edge raises IRQ at the third clock. Clock clk_ref_i, asynchronous reset; reset_i, the
+// host's RESETDRV, clears the registers.
 // docs/interrupt_controller.md.
 `default_nettype none
 
 module interrupt_controller (
   input  wire logic       clk_ref_i,
   input  wire logic       rst_ni,
+  input  wire logic       reset_i,
   input  wire logic [7:0] line_i,
   input  wire logic       wr_i,
   input  wire logic [1:0] addr_i,
@@ -49,6 +51,11 @@ module interrupt_controller (
       latch_q <= latch_d;
       if (wr_i && addr_i == AddrMask)      msk_q <= wdata_i;
       if (wr_i && addr_i == AddrEdgeLevel) elr_q <= wdata_i;
+      if (reset_i) begin
+        latch_q <= 8'h00;
+        msk_q   <= brick_regs_pkg::HostIoPicMaskReset;
+        elr_q   <= brick_regs_pkg::HostIoPicEdgeLevelReset;
+      end
     end
   end
 

@@ -1,19 +1,18 @@
-// ISA / PC104 slave: sixteen I/O bytes at IoBase (AEN must be 0) and a 64 KiB memory window of 16 bits at MemPage.
-// Commands pass two flip-flops on clk_ref_i. With s1 the first and s2 the second stage, the start of a command is the
-// edge at which s1 is low and s2 still high: the address is taken and I/O read data loaded. Its end is the edge at
-// which s1 is high and s2 still low: a write takes place with the data sampled while the command was last seen low, and
-// a read's side effect too. I/O: +0..7 host port, +8..11 interrupt controller, +12..15 read 0xFF. IOCHRDY falls while
-// the dual-ported RAM is busy. Byte lanes: SBHE# and SA0; an odd byte with SBHE# high is moved to the low lane (8-bit
-// host). Clock clk_ref_i, asynchronous reset. docs/host-bus.md.
+// ISA / PC104 slave: sixteen I/O bytes and the window of the dual-ported RAM. Commands pass two flip-flops on
+// clk_pwm_i, and clk_ref_i works with what comes out; addresses and data are sampled all the time and used where the
+// bus promises that they stand (host-bus:3.4). A cycle starts at the clk_ref edge that finds a command low, I/O data or
+// the request to the RAM follows one edge later. It ends at the edge that finds no command: writes, with the data of
+// the last clk_pwm edge that saw the command low, and side effects of reads follow one edge later. Two commands at
+// once, or one that was low at a reset, do nothing. The data bus is driven in a read of ours alone and let go with the
+// command, without a clock. IOCHRDY and MEMCS16# are open collector: 0 pulls, 1 lets go. Asynchronous reset; RESETDRV
+// resets what stands behind this bus (host_reset_o). docs/host-bus.md.
 `default_nettype none
 
-module isa_slave #(
-  parameter logic [15:0] IoBase    = brick_regs_pkg::HostIoBase[15:0],
-  parameter logic [3:0]  MemPage   = brick_regs_pkg::DpramWindowBase[19:16],
-  parameter logic        DecodeAll = 1'b1  // 0: classic ten-bit I/O decode
-) (
+module isa_slave (
+  input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
+  input  wire logic [6:0]  isa_la_i,    // LA[23:17]
   input  wire logic [19:0] isa_sa_i,
   input  wire logic [15:0] isa_sd_i,
   input  wire logic        isa_ior_ni,
@@ -22,20 +21,29 @@ module isa_slave #(
   input  wire logic        isa_memw_ni,
   input  wire logic        isa_aen_i,
   input  wire logic        isa_sbhe_ni,
+  input  wire logic        isa_resetdrv_i,
   output logic [15:0]      isa_sd_o,
+  output logic [1:0]       isa_sd_oe_o,  // SD[15:8], SD[7:0]
   output logic             isa_iochrdy_o,
   output logic             isa_memcs16_no,
+  // switches and set-up, taken over on clk_ref_i
+  input  wire logic [7:0]  io_base_i,      // A11..A4 of the I/O block
+  input  wire logic        io_decode16_i,  // 0: SA[15:10] are not compared
+  input  wire logic [9:0]  window_i,       // A23..A14 of the memory window
+  input  wire logic        window_flat_i,  // 1: 64 KiB, 0: 16 KiB, whose page is the register at +12
+  input  wire logic        slot8_i,        // no LA: A23..A20 are not compared, A19..A17 come from SA
+  output logic             host_reset_o,   // RESETDRV, synchronised
   // host port
   output logic             hp_sel_o,
-  output logic             hp_rd_done_o,
-  output logic             hp_wr_o,
+  output logic             hp_rd_done_o,   // one clk_ref at the end of a read that showed data
+  output logic             hp_wr_o,        // one clk_ref at the end of a write
   output logic [2:0]       hp_addr_o,
   output logic [7:0]       hp_wdata_o,
   input  wire logic [7:0]  hp_rdata_i,
   // interrupt controller
   output logic             pic_sel_o,
+  output logic             pic_rd_o,       // one clk_ref, at the edge that takes pic_rdata_i: reads may have effects
   output logic             pic_wr_o,
-  output logic             pic_rd_o,     // one clk_ref, at the edge that takes pic_rdata_i: reads may have effects
   output logic [1:0]       pic_addr_o,
   output logic [7:0]       pic_wdata_o,
   input  wire logic [7:0]  pic_rdata_i,
@@ -46,119 +54,211 @@ module isa_slave #(
   output logic [14:0]      mem_addr_o,
   output logic [1:0]       mem_be_o,
   output logic [15:0]      mem_wdata_o,
-  input  wire logic [15:0] mem_rdata_i,
+  input  wire logic [15:0] mem_rdata_i,  // mem_busy_i and mem_rdata_i: from the clk_ref edge after mem_sel_o on
   input  wire logic        mem_busy_i
 );
 
-  // ---------------------------------------------------------------- synchroniser
-  // Commands are kept as 1 = active: {MEMW, MEMR, IOW, IOR}.
-  logic [3:0]  cmd1_q, cmd2_q;
-  logic [19:0] sa1_q;
-  logic [15:0] sd1_q, sd2_q;
-  logic        aen1_q, sbhe1_nq, start, finish, idle2;
+  // Commands are kept as 1 = active.
+  localparam integer Ior = 0, Iow = 1, Memr = 2, Memw = 3;
+  // What a cycle is for.
+  localparam integer Port = 0, Pic = 1, Other = 2, Memory = 3;
 
-  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+  // ---------------------------------------------------------------- clk_pwm: synchroniser, samples of LA and data
+  // A reset leaves the synchroniser active: a command that is low then is part of a cycle that nobody knows.
+  logic [3:0]  cmd1_q, cmd2_q;
+  logic [15:0] sd1_q, sd2_q, wdata_q;
+  logic [6:0]  la, la1_q, la2_q;
+  logic [3:0]  la_hit_q;  // the youngest of them is MEMCS16#, the oldest belongs to the time before the command
+  logic        la_hit;
+  logic [7:0]  io_base_q;
+  logic [9:0]  window_q;
+  logic        io_decode16_q, window_flat_q, slot8_q;
+
+  assign la     = slot8_q ? {4'h0, isa_sa_i[19:17]} : isa_la_i;
+  assign la_hit = (la2_q[2:0] == window_q[5:3]) & (slot8_q | (la2_q[6:3] == window_q[9:6]));
+
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      cmd1_q   <= 4'h0;
-      cmd2_q   <= 4'h0;
-      sa1_q    <= 20'h0;
+      cmd1_q   <= 4'hF;
+      cmd2_q   <= 4'hF;
       sd1_q    <= 16'h0;
       sd2_q    <= 16'h0;
-      aen1_q   <= 1'b0;
-      sbhe1_nq <= 1'b1;
+      wdata_q  <= 16'h0;
+      la1_q    <= 7'h0;
+      la2_q    <= 7'h0;
+      la_hit_q <= 4'h0;
     end else begin
       cmd1_q   <= ~{isa_memw_ni, isa_memr_ni, isa_iow_ni, isa_ior_ni};
       cmd2_q   <= cmd1_q;
-      sa1_q    <= isa_sa_i;
       sd1_q    <= isa_sd_i;
       sd2_q    <= sd1_q;
-      aen1_q   <= isa_aen_i;
-      sbhe1_nq <= isa_sbhe_ni;
+      if (cmd2_q[Iow] | cmd2_q[Memw]) wdata_q <= sd2_q;
+      la1_q    <= la;
+      la2_q    <= la1_q;
+      la_hit_q <= {la_hit_q[2:0], la_hit};
     end
   end
 
-  assign idle2  = cmd2_q == 4'h0;
-  assign start  = (cmd1_q != 4'h0) & idle2;
-  assign finish = (cmd1_q == 4'h0) & ~idle2;
-
-  // ---------------------------------------------------------------- decoding, at the start
-  logic       io_hit, mem_hit, port_hit, pic_hit, byte8;
-  logic [3:0] target, target_q;  // {memory, reserved, interrupt controller, host port}
-  assign io_hit   = (cmd1_q[1] | cmd1_q[0]) & ~aen1_q & (sa1_q[9:4] == IoBase[9:4]) &
-                    (~DecodeAll | (sa1_q[15:10] == IoBase[15:10]));
-  assign port_hit = sa1_q[3] == brick_regs_pkg::HostIoIcrAddr[3];             // +0..7
-  assign pic_hit  = sa1_q[3:2] == brick_regs_pkg::HostIoPicStatusAddr[3:2];  // +8..11
-  assign mem_hit  = (cmd1_q[3] | cmd1_q[2]) & (sa1_q[19:16] == MemPage);
-  assign byte8    = sbhe1_nq & sa1_q[0];
-  assign target   = start ? {mem_hit, io_hit & ~port_hit & ~pic_hit, io_hit & pic_hit, io_hit & port_hit} : target_q;
-
-  logic [15:0] addr_q;
-  logic [1:0]  be_q;
-  logic        byte8_q, load_q, load_d;
-  // Memory data comes at the next edge that is not busy.
-  assign load_d = start ? mem_hit & cmd1_q[2] : load_q & mem_busy_i & ~finish;
-
-  logic [15:0] sd_d, sd_q;
-  always_comb begin
-    sd_d = sd_q;
-    if (start && cmd1_q[0] && (target[2:0] != 3'b000)) begin
-      sd_d = {8'hFF, target[0] ? hp_rdata_i : (target[1] ? pic_rdata_i : 8'hFF)};
-    end else if (load_q && !mem_busy_i) begin
-      sd_d = byte8_q ? {mem_rdata_i[15:8], mem_rdata_i[15:8]} : mem_rdata_i;
-    end
-  end
-
-  logic memcs16_nq;
+  // ---------------------------------------------------------------- clk_ref: address, switches, RESETDRV
+  logic [16:0] sa_q;
+  logic        aen_q, sbhe_nq;
+  logic [1:0]  resetdrv_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      sa_q          <= 17'h0;
+      aen_q         <= 1'b0;
+      sbhe_nq       <= 1'b1;
+      resetdrv_q    <= 2'b00;
+      io_base_q     <= 8'h0;
+      io_decode16_q <= 1'b0;
+      window_q      <= 10'h0;
+      window_flat_q <= 1'b0;
+      slot8_q       <= 1'b0;
+    end else begin
+      sa_q          <= isa_sa_i[16:0];
+      aen_q         <= isa_aen_i;
+      sbhe_nq       <= isa_sbhe_ni;
+      resetdrv_q    <= {resetdrv_q[0], isa_resetdrv_i};
+      io_base_q     <= io_base_i;
+      io_decode16_q <= io_decode16_i;
+      window_q      <= window_i;
+      window_flat_q <= window_flat_i;
+      slot8_q       <= slot8_i;
+    end
+  end
+  assign host_reset_o = resetdrv_q[1];
+
+  // ---------------------------------------------------------------- decoding, at the start of a cycle
+  logic       io_hit, mem_hit, byte8;
+  logic [3:0] decoded;
+  assign io_hit  = ~aen_q & (sa_q[9:4] == io_base_q[5:0]) &
+                   (~io_decode16_q | (sa_q[15:10] == {4'h0, io_base_q[7:6]}));
+  assign mem_hit = la_hit_q[3] & (sa_q[16] == window_q[2]) & (window_flat_q | (sa_q[15:14] == window_q[1:0]));
+  assign byte8   = sbhe_nq & sa_q[0];  // an 8-bit host's odd byte is on the low lane
+  always_comb begin
+    decoded = 4'h0;
+    case (cmd2_q)
+      4'd1 << Ior, 4'd1 << Iow: begin
+        decoded[Port]  = io_hit & (sa_q[3] == brick_regs_pkg::HostIoIcrAddr[3]);             // +0..7
+        decoded[Pic]   = io_hit & (sa_q[3:2] == brick_regs_pkg::HostIoPicStatusAddr[3:2]);  // +8..11
+        decoded[Other] = io_hit & (sa_q[3:2] == brick_regs_pkg::HostIoPageAddr[3:2]);       // +12..15
+      end
+      4'd1 << Memr, 4'd1 << Memw: decoded[Memory] = mem_hit;
+      default: ;  // two commands at once
+    endcase
+  end
+
+  // ---------------------------------------------------------------- the cycle
+  logic        active_q;          // from the start to the end; a reset leaves it on, with no target
+  logic        fresh_q, load_q;   // the clock after the start; RAM data has still to come
+  logic        drive_q, shown_q;  // data of a read is on the bus, was there with the command still low
+  logic        finish_q;          // the clock after the end
+  logic [3:0]  kind_q, target_q;
+  logic [1:0]  lanes_q, be_q, page_q;
+  logic [14:0] mem_addr_q;
+  logic [3:0]  io_addr_q;
+  logic        byte8_q;
+  logic        start, ends, spoilt, io_load, mem_load;
+  logic [7:0]  io_rdata;
+  logic [15:0] sd_q;
+
+  assign start    = ~active_q & (cmd2_q != 4'h0);
+  assign ends     = active_q & (cmd2_q == 4'h0) & ~resetdrv_q[1];
+  assign spoilt   = active_q & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
+  assign io_load  = fresh_q & kind_q[Ior] & (target_q[Port] | target_q[Pic] | target_q[Other]);
+  assign mem_load = load_q & ~mem_busy_i;
+
+  always_comb begin
+    io_rdata = 8'hFF;
+    if (target_q[Port])      io_rdata = hp_rdata_i;
+    else if (target_q[Pic])  io_rdata = pic_rdata_i;
+    else if (!window_flat_q && io_addr_q == brick_regs_pkg::HostIoPageAddr[3:0]) io_rdata = {6'h3F, page_q};
+  end
+
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      active_q   <= 1'b1;
+      fresh_q    <= 1'b0;
+      load_q     <= 1'b0;
+      drive_q    <= 1'b0;
+      shown_q    <= 1'b0;
+      finish_q   <= 1'b0;
+      kind_q     <= 4'h0;
       target_q   <= 4'h0;
-      addr_q     <= 16'h0;
+      lanes_q    <= 2'b00;
       be_q       <= 2'b00;
       byte8_q    <= 1'b0;
-      load_q     <= 1'b0;
+      mem_addr_q <= 15'h0;
+      io_addr_q  <= 4'h0;
+      page_q     <= 2'b00;
       sd_q       <= 16'hFFFF;
-      memcs16_nq <= 1'b1;
     end else begin
-      memcs16_nq <= sa1_q[19:16] != MemPage;
-      load_q     <= load_d;
-      sd_q       <= sd_d;
+      fresh_q  <= start;
+      finish_q <= ends;
+      shown_q  <= ~start & (shown_q | (drive_q & ~ends & ~spoilt));
       if (start) begin
-        target_q <= target;
-        addr_q   <= sa1_q[15:0];
-        be_q     <= byte8 ? 2'b10 : {~sbhe1_nq, ~sa1_q[0]};
-        byte8_q  <= byte8;
-      end else if (finish) begin
+        active_q   <= 1'b1;
+        kind_q     <= cmd2_q;
+        target_q   <= decoded;
+        lanes_q    <= (decoded[Memory] & ~byte8) ? {~sbhe_nq, ~sa_q[0]} : 2'b01;
+        be_q       <= byte8 ? 2'b10 : {~sbhe_nq, ~sa_q[0]};
+        byte8_q    <= byte8;
+        mem_addr_q <= {window_flat_q ? sa_q[15:14] : page_q, sa_q[13:1]};
+        io_addr_q  <= sa_q[3:0];
+      end else if (ends) begin
+        active_q <= 1'b0;
+      end
+      if (fresh_q) load_q <= kind_q[Memr] & target_q[Memory];
+      else if (mem_load) load_q <= 1'b0;
+      if (io_load) sd_q <= {8'hFF, io_rdata};
+      else if (mem_load) sd_q <= byte8_q ? {mem_rdata_i[15:8], mem_rdata_i[15:8]} : mem_rdata_i;
+      if (io_load | mem_load) drive_q <= 1'b1;
+      if (ends | spoilt) begin
+        drive_q <= 1'b0;
+        load_q  <= 1'b0;
+      end
+      if (spoilt) target_q <= 4'h0;
+      if (finish_q & kind_q[Iow] & target_q[Other] & ~window_flat_q &
+          (io_addr_q == brick_regs_pkg::HostIoPageAddr[3:0])) begin
+        page_q <= wdata_q[brick_regs_pkg::HostIoPagePageLsb +: brick_regs_pkg::HostIoPagePageWidth];
+      end
+      if (resetdrv_q[1]) begin  // as after the reset
+        active_q <= 1'b1;
+        drive_q  <= 1'b0;
+        load_q   <= 1'b0;
         target_q <= 4'h0;
+        page_q   <= 2'b00;
       end
     end
   end
 
   // ---------------------------------------------------------------- towards the blocks
-  logic [15:0] addr;
-  assign addr = start ? sa1_q[15:0] : addr_q;
+  assign hp_sel_o     = target_q[Port];
+  assign hp_rd_done_o = target_q[Port] & finish_q & shown_q;
+  assign hp_wr_o      = target_q[Port] & finish_q & kind_q[Iow];
+  assign hp_addr_o    = io_addr_q[2:0];
+  assign hp_wdata_o   = wdata_q[7:0];
 
-  assign hp_sel_o     = target[0];
-  assign hp_rd_done_o = target[0] & finish & cmd2_q[0];
-  assign hp_wr_o      = target[0] & finish & cmd2_q[1];
-  assign hp_addr_o    = addr[2:0];
-  assign hp_wdata_o   = sd2_q[7:0];
+  assign pic_sel_o     = target_q[Pic];
+  assign pic_rd_o      = target_q[Pic] & fresh_q & kind_q[Ior];
+  assign pic_wr_o      = target_q[Pic] & finish_q & kind_q[Iow];
+  assign pic_addr_o    = io_addr_q[1:0];
+  assign pic_wdata_o   = wdata_q[7:0];
 
-  assign pic_sel_o   = target[1];
-  assign pic_wr_o    = target[1] & finish & cmd2_q[1];
-  assign pic_rd_o    = target[1] & start & cmd1_q[0];
-  assign pic_addr_o  = addr[1:0];
-  assign pic_wdata_o = sd2_q[7:0];
-
-  assign mem_sel_o   = target[3] & ~finish;
-  assign mem_rd_o    = start ? cmd1_q[2] : cmd2_q[2];
-  assign mem_wr_o    = target[3] & finish & cmd2_q[3];
-  assign mem_addr_o  = addr[15:1];
+  assign mem_sel_o   = target_q[Memory] & active_q;
+  assign mem_rd_o    = kind_q[Memr];
+  assign mem_wr_o    = target_q[Memory] & finish_q & kind_q[Memw];
+  assign mem_addr_o  = mem_addr_q;
   assign mem_be_o    = be_q;
-  assign mem_wdata_o = byte8_q ? {sd2_q[7:0], sd2_q[7:0]} : sd2_q;
+  assign mem_wdata_o = byte8_q ? {wdata_q[7:0], wdata_q[7:0]} : wdata_q;
 
+  // ---------------------------------------------------------------- towards the bus
+  logic read_low;
+  assign read_low = ((kind_q[Ior] & ~isa_ior_ni) | (kind_q[Memr] & ~isa_memr_ni)) & isa_iow_ni & isa_memw_ni;
   assign isa_sd_o       = sd_q;
+  assign isa_sd_oe_o    = lanes_q & {2{drive_q & read_low}};
   assign isa_iochrdy_o  = ~mem_busy_i;
-  assign isa_memcs16_no = memcs16_nq;
+  assign isa_memcs16_no = ~la_hit_q[0];
 
 endmodule : isa_slave
 

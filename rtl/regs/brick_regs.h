@@ -476,7 +476,7 @@ enum clock_source {
 #define CPU_BUS_PCTL_MULTIPLIER_SHIFT 0u
 #define CPU_BUS_PCTL_MULTIPLIER_MASK 0x00001Fu /* n, the value of I52 */
 
-/* Host I/O block. Byte offsets from the I/O base address. Offsets 4 and 12..15 hold nothing: 4 reads 0x00, 12..15 read 0xFF. */
+/* Host I/O block. Byte offsets from the I/O base address. Offsets 4 and 13..15 hold nothing: 4 reads 0x00, 13..15 read 0xFF. */
 #define HOST_IO_BASE 0x000210u
 #define HOST_IO_ICR 0x210u /* Interface control register */
 #define HOST_IO_ICR_RESET 0x00u
@@ -538,5 +538,10 @@ enum clock_source {
 #define HOST_IO_PIC_EDGE_LEVEL 0x21Bu /* Edge or level */
 #define HOST_IO_PIC_EDGE_LEVEL_RESET 0x00u
 #define HOST_IO_PIC_EDGE_LEVEL_WRITTEN 0xFFu
+#define HOST_IO_PAGE 0x21Cu /* Page of the memory window */
+#define HOST_IO_PAGE_RESET 0x00u
+#define HOST_IO_PAGE_WRITTEN 0x03u
+#define HOST_IO_PAGE_PAGE_SHIFT 0u
+#define HOST_IO_PAGE_PAGE_MASK 0x03u /* Which 16 KiB of the dual-ported RAM the window shows */
 
 #endif

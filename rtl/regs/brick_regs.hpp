@@ -378,6 +378,7 @@ constexpr Register kPicStatus{'B', 0x218, 0x0, 0x0, "pic_status"};
 constexpr Register kPicSignal{'B', 0x219, 0x0, 0x0, "pic_signal"};
 constexpr Register kPicMask{'B', 0x21A, 0x0, 0xFF, "pic_mask"};
 constexpr Register kPicEdgeLevel{'B', 0x21B, 0x0, 0xFF, "pic_edge_level"};
+constexpr Register kPage{'B', 0x21C, 0x0, 0x3, "page"};
 namespace icr {
 constexpr Field kRreq{0, 1, "rreq"};
 constexpr Field kTreq{1, 1, "treq"};
@@ -399,6 +400,9 @@ constexpr Field kHf2{3, 1, "hf2"};
 constexpr Field kHf3{4, 1, "hf3"};
 constexpr Field kHreq{7, 1, "hreq"};
 }  // namespace isr
+namespace page {
+constexpr Field kPage{0, 2, "page"};
+}  // namespace page
 }  // namespace host_io
 
 }  // namespace brick::regs

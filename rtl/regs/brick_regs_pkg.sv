@@ -440,6 +440,11 @@ package brick_regs_pkg;
   localparam logic [23:0] HostIoPicEdgeLevelAddr = 24'h00021B;
   localparam logic [7:0] HostIoPicEdgeLevelReset = 8'h00;
   localparam logic [7:0] HostIoPicEdgeLevelWritten = 8'hFF;
+  localparam logic [23:0] HostIoPageAddr = 24'h00021C;
+  localparam logic [7:0] HostIoPageReset = 8'h00;
+  localparam logic [7:0] HostIoPageWritten = 8'h03;
+  localparam int HostIoPagePageLsb = 0;
+  localparam int HostIoPagePageWidth = 2;
 endpackage : brick_regs_pkg
 
 `default_nettype wire

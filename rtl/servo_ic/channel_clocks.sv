@@ -1,12 +1,14 @@
 // What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref
-// sees them, and the strobe words with their serial clocks. Clock clk_ref_i; on clk_pwm_i run the edges' way to
-// clk_ref_i and the shape of a 39.3216 MHz serial clock.
+// sees them, and the strobe words with their serial clocks. A trip of the watchdog starts a DAC stream of its own,
+// whose words are zero, when the one under way has ended: PHASE may have stopped. Clock clk_ref_i; on clk_pwm_i run the
+// edges' way to clk_ref_i and the shape of a 39.3216 MHz serial clock.
 `default_nettype none
 
 module channel_clocks (
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
+  input  wire logic        trip_i,
   input  wire logic [11:0] dividers_i,    // I7m03, as in the clock control word
   input  wire logic [23:0] dac_strobe_i,  // I7m05
   input  wire logic [23:0] adc_strobe_i,  // I7m06
@@ -81,20 +83,33 @@ module channel_clocks (
     .ce_o(adc_ce), .mid_o(adc_mid), .fast_o(adc_fast)
   );
 
-  logic       dac_sample, adc_load, adc_shift, unused_stream;
+  logic       dac_busy, dac_sample, adc_busy, adc_load, adc_shift, unused_stream;
   logic [4:0] dac_bit;
-  assign unused_stream = &{1'b0, dac_sample, dac_bit, adc_load, adc_shift};
+  assign unused_stream = &{1'b0, dac_sample, dac_bit, adc_busy, adc_load, adc_shift};
+
+  // From the trip until a stream has started since.
+  logic tripped_q, zero_q;
+  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      tripped_q <= 1'b0;
+      zero_q    <= 1'b0;
+    end else begin
+      tripped_q <= trip_i;
+      zero_q    <= (trip_i & ~tripped_q) | (zero_q & ~dac_load_o);
+    end
+  end
 
   channel_strobe u_dac_stream (
     .clk_ref_i, .rst_ni,
-    .start_i(phase_rise), .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .low_i(low), .word_i(dac_strobe_i),
-    .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
+    .start_i(phase_rise | (zero_q & ~dac_busy)),
+    .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .low_i(low), .word_i(dac_strobe_i),
+    .busy_o(dac_busy), .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
     .clk_o(dac_clk_o), .strobe_o(dac_strobe_o)
   );
   channel_strobe u_adc_stream (
     .clk_ref_i, .rst_ni,
     .start_i(phase_rise), .ce_i(adc_ce), .mid_i(adc_mid), .fast_i(adc_fast), .low_i(low), .word_i(adc_strobe_i),
-    .load_o(adc_load), .shift_o(adc_shift), .sample_o(adc_sample_o), .bit_o(adc_bit_o),
+    .busy_o(adc_busy), .load_o(adc_load), .shift_o(adc_shift), .sample_o(adc_sample_o), .bit_o(adc_bit_o),
     .clk_o(adc_clk_o), .strobe_o(adc_strobe_o)
   );
 

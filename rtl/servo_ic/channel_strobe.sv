@@ -13,6 +13,7 @@ module channel_strobe (
   input  wire logic        fast_i,    // a bit is one clk_ref long
   input  wire logic        low_i,     // low part of a clock of that speed
   input  wire logic [23:0] word_i,
+  output logic             busy_o,
   output logic             load_o,    // this edge starts bit 23, the next bit
   output logic             shift_o,
   output logic             sample_o,  // this edge takes the received bit number bit_o (0 is the first)
@@ -27,6 +28,7 @@ module channel_strobe (
   logic        busy;
 
   assign busy     = left_q != 5'd0;
+  assign busy_o   = busy;
   assign bit_o    = 5'd24 - left_q;
   assign strobe_o = word_q[23];
 

@@ -48,7 +48,7 @@ module servo_channels (
 
   channel_clocks u_clocks (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .dividers_i, .dac_strobe_i, .adc_strobe_i,
+    .trip_i, .dividers_i, .dac_strobe_i, .adc_strobe_i,
     .phase_rise_i, .phase_fall_i, .servo_fall_i,
     .sclk_ce_o(sclk_ce), .pfm_ce_o(pfm_ce), .phase_fall_o(phase_fall), .servo_fall_o(servo_fall),
     .dac_load_o(dac_load), .dac_shift_o(dac_shift), .adc_sample_o(adc_sample), .adc_bit_o(adc_bit),

@@ -107,6 +107,7 @@ void BoardTop::connect_clocks() {
   gate_ics_.set_clocks(clock_select_.phase(), clock_select_.servo(), now_);
   gate_ics_.set_trip(watchdog_.trip(), now_);
   watchdog_.servo = clock_select_.servo();
+  watchdog_.pwr_good = inputs_.pwr_good;
   watchdog_.strobe = bus_sync_.we() && select_.strobe;
 }
 
@@ -141,6 +142,7 @@ void BoardTop::connect_host() {
   // ISA side
   IsaSlave::Inputs& isa = isa_slave_.in;
   static_cast<IsaPins&>(isa) = inputs_;
+  static_cast<IsaStraps&>(isa) = inputs_;
   isa.mem_rdata = dpram_.mem_rdata();
   isa.mem_busy = dpram_.mem_busy();
   hp.hp_sel = isa_slave_.hp_sel();
@@ -148,6 +150,7 @@ void BoardTop::connect_host() {
   hp.hp_wr = isa_slave_.hp_wr();
   hp.hp_addr = isa_slave_.hp_addr();
   hp.hp_wdata = isa_slave_.hp_wdata();
+  hp.hp_reset = isa_slave_.host_reset();
   ram.mem_sel = isa_slave_.mem_sel();
   ram.mem_rd = isa_slave_.mem_rd();
   ram.mem_wr = isa_slave_.mem_wr();
@@ -164,7 +167,8 @@ void BoardTop::connect_interrupts() {
   const auto line =
       static_cast<std::uint8_t>((host_signals_.rdata() & 0xF) | host_port_.hreq() << 4 | selected_lines() << 5);
   const bool old = straps_.pic_8259, write = isa_slave_.pic_sel() && isa_slave_.pic_wr();
-  interrupt_controller_.in = {line, write && !old, isa_slave_.pic_addr(), isa_slave_.pic_wdata()};
+  interrupt_controller_.in = {isa_slave_.host_reset(), line, write && !old, isa_slave_.pic_addr(),
+                              isa_slave_.pic_wdata()};
   pic_8259_.in = {line, isa_slave_.pic_rd() && old, write && old, isa_slave_.pic_addr(), isa_slave_.pic_wdata()};
   isa_slave_.in.pic_rdata = old ? pic_8259_.rdata() : interrupt_controller_.rdata();
 }
@@ -213,7 +217,9 @@ BoardOutputs BoardTop::pins() const {
   }
   o.w[3] = at(pin::kPaDataOe, data_oe()) | at(pin::kBrldN, panel_port_.brld_n()) |
            at(pin::kErldN, panel_port_.erld_n()) | at(pin::kF1ldN, panel_port_.f1ld_n()) |
-           at(pin::kIpldN, panel_port_.ipld_n()) | std::uint32_t{host_signals_.ctrl()} << pin::kCtrl0.lsb;
+           at(pin::kIpldN, panel_port_.ipld_n()) | std::uint32_t{host_signals_.ctrl()} << pin::kCtrl0.lsb |
+           at(pin::kIsaSdOe, isa_slave_.isa_sd_oe()) | at(pin::kTxde, host_port_.txde()) |
+           at(pin::kRxdf, host_port_.rxdf()) | at(pin::kWdRelay, watchdog_.relay()) | at(pin::kWdLed, watchdog_.trip());
   return o;
 }
 

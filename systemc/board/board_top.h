@@ -76,7 +76,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();                     // the same for the watched ICs
   std::uint32_t read_data(Tick t) const;  // of the selected register, after the edge t
-  bool data_oe() const { return bus_read_.oe() || (from_dpram_ && !inputs_.pa_rd_n); }
+  bool data_oe() const { return bus_read_.oe() || (from_dpram_ && dpram_.cpu_valid() && !inputs_.pa_rd_n); }
   void take_straps(const Straps& straps, Tick t);
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
   Tick next_event() const;

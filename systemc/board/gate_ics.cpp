@@ -36,15 +36,14 @@ void GateIcs::reset(Tick t) {
   macro_gates_ = 0;
   for_each_bit(built_, [&](unsigned ic) {
     ClockFollower& follower = *follower_[ic];
+    if (ic < kServoIcs) servo_ic_[ic]->set_trip(false);  // the watchdog is reset too
     follower.reset(t);
     follower.restart_history();
     follower.set_pins(true, true);
-    if (ic < kServoIcs) {
-      servo_ic_[ic]->set_trip(false);
+    if (ic < kServoIcs)
       look(ic, t);
-    } else {
+    else
       macro_ic_[ic - kServoIcs]->set_gate(false);
-    }
     drive(ic);
   });
   show_drivers();

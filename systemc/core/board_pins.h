@@ -26,6 +26,7 @@ struct PortAPins {
 
 // ISA / PC104 host bus (host-bus:3.4).
 struct IsaPins {
+  std::uint8_t isa_la = 0;   // LA[23:17]
   std::uint32_t isa_sa = 0;  // SA[19:0]
   std::uint16_t isa_sd = 0;  // SD[15:0] as the host drives it
   bool isa_ior_n = true;
@@ -34,6 +35,27 @@ struct IsaPins {
   bool isa_memw_n = true;
   bool isa_aen = false;
   bool isa_sbhe_n = true;  // 0 = upper byte lane used
+  bool isa_resetdrv = false;
+
+  void set_address(std::uint32_t address) {  // of 24 bits; I/O has 16
+    isa_la = static_cast<std::uint8_t>(address >> 17 & 0x7F);
+    isa_sa = address & 0xFFFFF;
+  }
+};
+
+// Switches and set-up of the host bus (host-bus:3.1, host-bus:3.7).
+struct IsaStraps {
+  std::uint8_t io_base = 0x21;  // A11..A4 of the I/O block
+  bool io_decode16 = true;      // false: SA[15:10] are not compared
+  std::uint16_t window = 0x34;  // A23..A14 of the memory window
+  bool window_flat = true;      // 64 KiB, not 16 KiB with a page register
+  bool slot8 = false;           // the slot has no LA: A23..A20 are not compared, A19..A17 come from SA
+
+  static constexpr IsaStraps none() { return {0, false, 0, false, false}; }  // as a reset leaves them
+  bool operator!=(const IsaStraps& o) const {
+    return io_base != o.io_base || io_decode16 != o.io_decode16 || window != o.window || window_flat != o.window_flat ||
+           slot8 != o.slot8;
+  }
 };
 
 // What is fitted and how the jumpers stand; taken over on clk_ref.
@@ -61,9 +83,10 @@ struct ConnectorPins {
   bool ext_servo = true;
   bool mi1 = false, mi2 = false;        // machine inputs of JOPTO, to the interrupt controller
   bool axexp0 = false, axexp1 = false;  // interrupt lines of an axis expansion board
+  bool pwr_good = true;                 // 5 V is good, to the watchdog
 };
 
-struct HostInputs : IsaPins, Straps, ConnectorPins {  // all but what the CPU drives
+struct HostInputs : IsaPins, IsaStraps, Straps, ConnectorPins {  // all but what the CPU drives
   bool jpan_init_n = true;  // INIT/ of the control panel: goes to the card's reset circuit, not to the board's logic
 };
 
@@ -113,17 +136,22 @@ constexpr PinField kPicSig{"host.pic.sig", 2, 8, 8, true};
 constexpr PinField kPicMsk{"host.pic.msk", 2, 16, 8, true};
 constexpr PinField kPicElr{"host.pic.elr", 2, 24, 8, true};
 constexpr PinField kPaDataOe{"bus.rdata_oe", 3, 0, 1, false};  // 1 = the board drives D: /RD is low and the word stands
+constexpr PinField kIsaSdOe{"host.isa.sd_oe", 3, 8, 2, true};  // the board drives SD[15:8] (2), SD[7:0] (1)
+constexpr PinField kTxde{"host.port.txde", 3, 10, 1, false};   // host port: TX is empty
+constexpr PinField kRxdf{"host.port.rxdf", 3, 11, 1, false};   // RX holds a word
 constexpr PinField kBrldN{"host.brld_n", 3, 16, 1, false};     // lamps of the control panel, 0 = lit
 constexpr PinField kErldN{"host.erld_n", 3, 17, 1, false};
 constexpr PinField kF1ldN{"host.f1ld_n", 3, 18, 1, false};
 constexpr PinField kIpldN{"host.ipld_n", 3, 19, 1, false};
 constexpr PinField kCtrl0{"host.ctrl0", 3, 20, 1, false};  // outputs of the Ultralite, written by user programs
 constexpr PinField kCtrl1{"host.ctrl1", 3, 21, 1, false};
-inline constexpr std::array kAll{kPaData, kPaTaN,     kIrqHost,  kPhase,      kServo,       kBreq,           kIpos,
-                                 kEror,   kF1er,      kIsaSd,    kIsaIochrdy, kIsaMemcs16N, kIsaIrq,         kHreq,
-                                 kWdo,    kWdTripped, kBusyHost, kBusyCpu,    kPhaseSource, kSourceConflict, kPicIst,
-                                 kPicSig, kPicMsk,    kPicElr,   kPaDataOe,   kBrldN,       kErldN,          kF1ldN,
-                                 kIpldN,  kCtrl0,     kCtrl1};
+constexpr PinField kWdRelay{"watchdog.relay", 3, 24, 1, false};  // 1 = energised
+constexpr PinField kWdLed{"watchdog.led", 3, 25, 1, false};      // 1 = the red lamp is on
+inline constexpr std::array kAll{
+    kPaData,      kPaTaN,          kIrqHost,     kPhase,  kServo,  kBreq,   kIpos,      kEror,     kF1er,
+    kIsaSd,       kIsaIochrdy,     kIsaMemcs16N, kIsaIrq, kHreq,   kWdo,    kWdTripped, kBusyHost, kBusyCpu,
+    kPhaseSource, kSourceConflict, kPicIst,      kPicSig, kPicMsk, kPicElr, kIsaSdOe,   kTxde,     kRxdf,
+    kPaDataOe,    kBrldN,          kErldN,       kF1ldN,  kIpldN,  kCtrl0,  kCtrl1,     kWdRelay,  kWdLed};
 }  // namespace pin
 
 struct BoardOutputs {

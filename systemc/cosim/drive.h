@@ -50,11 +50,19 @@ inline constexpr std::tuple kInputFields{InputField{"pa_addr", &BoardInputs::pa_
                                          InputField{"ext_phase", &BoardInputs::ext_phase, 4, 29, 1},
                                          InputField{"ext_servo", &BoardInputs::ext_servo, 4, 30, 1},
                                          InputField{"line_select", &BoardInputs::line_select, 5, 0, 12},
+                                         InputField{"isa_la", &BoardInputs::isa_la, 6, 0, 7},
+                                         InputField{"isa_resetdrv", &BoardInputs::isa_resetdrv, 6, 7, 1},
+                                         InputField{"io_base", &BoardInputs::io_base, 6, 8, 8},
+                                         InputField{"window", &BoardInputs::window, 6, 16, 10},
+                                         InputField{"io_decode16", &BoardInputs::io_decode16, 6, 26, 1},
+                                         InputField{"window_flat", &BoardInputs::window_flat, 6, 27, 1},
+                                         InputField{"slot8", &BoardInputs::slot8, 6, 28, 1},
                                          InputField{"mi1", &BoardInputs::mi1, 5, 12, 1},
                                          InputField{"mi2", &BoardInputs::mi2, 5, 13, 1},
                                          InputField{"axexp0", &BoardInputs::axexp0, 5, 14, 1},
                                          InputField{"axexp1", &BoardInputs::axexp1, 5, 15, 1},
-                                         InputField{"pic_8259", &BoardInputs::pic_8259, 5, 16, 1}};
+                                         InputField{"pic_8259", &BoardInputs::pic_8259, 5, 16, 1},
+                                         InputField{"pwr_good", &BoardInputs::pwr_good, 7, 0, 1}};
 
 constexpr BoardInputWords pack(const BoardInputs& in) {
   BoardInputWords words{};

@@ -47,6 +47,8 @@ void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   pctl_ = regs::cpu_bus::kPctl.reset;
   clock_.restart(edge, cycle, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
   state_ = State::kIdle;
+  stand_ = edge;
+  in_doubt_ = false;
   next_start_ = cycle;
   pins.pa_aa = 0;
   pins.pa_int = false;
@@ -154,7 +156,39 @@ TimeFs PortA::time_of(Step step) const {
 void PortA::next(Step step) {
   step_ = step;
   time_ = time_of(step);
-  stand_ = fs_to_tick(time_) - 1;
+  const Tick before = stand_;  // what comes later is not seen earlier
+  in_doubt_ = resumed_ = false;
+  if (aperture_ == nullptr || !aperture_->on()) {
+    stand_ = late_ = fs_to_tick(time_) - 1;
+  } else if (step == Step::kStrobeLow || step == Step::kStrobeHigh) {
+    late_ = aperture_->seen(time_) - 1;
+    // What the board shows as the strobe rises is not what it shows later.
+    stand_ = step == Step::kStrobeLow ? late_ : std::min(late_, fs_to_tick(time_) - 1);
+  } else {
+    stand_ = aperture_->first(time_) - 1;
+    in_doubt_ = aperture_->in_doubt(time_) && aperture_->last(time_) - 1 > std::max(stand_, before);
+  }
+  stand_ = std::max(stand_, before);
+}
+
+void PortA::move_bus(PortAPins& pins) const {
+  switch (step_) {
+    case Step::kAddress:
+      pins.pa_addr = address_pins();
+      pins.pa_x = cycle_.x;
+      pins.pa_aa = cycle_.aa;
+      pins.pa_int = cycle_.on_chip;
+      break;
+    case Step::kDriveData:
+      pins.pa_wdata = cycle_.data;
+      break;
+    case Step::kEnd:
+      pins.pa_aa = 0;
+      pins.pa_int = false;
+      break;
+    default:
+      break;
+  }
 }
 
 void PortA::see(TimeFs time, const BoardOutputs& board) {
@@ -236,17 +270,43 @@ void PortA::take_data() {
   cycle_.data = (cycle_.data & ~moved) | (random() & moved);
 }
 
+// The first half of a step that takes two.
+void PortA::half_step(PortAPins& pins) {
+  const PortAPins from = pins;
+  PortAPins to = pins;
+  move_bus(to);
+  pins = aperture_->mixed(from, to, time_);
+  stand_ = aperture_->last(time_) - 1;
+  in_doubt_ = false;
+  resumed_ = true;
+}
+
+// The strobe has ended for the CPU; false if it goes on.
+bool PortA::end_strobe(const PortAPins& pins) {
+  if (!acknowledged()) {  // one clock more
+    ++cycle_.stretched;
+    next(Step::kStrobeHigh);
+    return false;
+  }
+  if (!cycle_.write) take_data();
+  watch_address(pins);
+  cycle_.strobe_high = time_;
+  seen_.erase(seen_.begin(), seen_.end() - 1);
+  resumed_ = late_ > stand_;
+  stand_ = std::max(stand_, late_);
+  return !resumed_;
+}
+
 void PortA::step(PortAPins& pins, const BoardOutputs& board) {
+  if (step_ == Step::kEnd && !resumed_) watch_address(pins);
+  if (in_doubt_) return half_step(pins);
   const bool shown = !cycle_.on_chip;
+  move_bus(pins);
   switch (step_) {
     case Step::kAddress:
       cycle_.start = cycle_.data_valid = cycle_.ta_moved = time_;
       seen_.clear();
       see(time_, board);
-      pins.pa_addr = address_pins();
-      pins.pa_x = cycle_.x;
-      pins.pa_aa = cycle_.aa;
-      pins.pa_int = cycle_.on_chip;
       if (shown) {
         signals_.set(addr_, time_, pins.pa_addr);
         signals_.set(x_, time_, cycle_.x);
@@ -256,7 +316,6 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
       break;
     case Step::kDriveData:
       cycle_.data_time = time_;
-      pins.pa_wdata = cycle_.data;
       if (shown) signals_.set(data_, time_, cycle_.data);
       next(shape_.data_driven < shape_.strobe_low ? Step::kStrobeLow : Step::kStrobeHigh);
       break;
@@ -270,25 +329,14 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
       next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
       break;
     case Step::kStrobeHigh:
-      if (!acknowledged()) {  // one clock more
-        ++cycle_.stretched;
-        next(Step::kStrobeHigh);
-        break;
-      }
-      if (!cycle_.write) take_data();
-      watch_address(pins);
-      cycle_.strobe_high = time_;
-      seen_.erase(seen_.begin(), seen_.end() - 1);
+      if (!resumed_ && !end_strobe(pins)) break;
       pins.pa_rd_n = pins.pa_wr_n = true;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 1);
       next(Step::kEnd);
       break;
     case Step::kEnd:
       cycle_.end = time_;
-      watch_address(pins);
       hold_times();
-      pins.pa_aa = 0;
-      pins.pa_int = false;
       if (shown) signals_.set(aa_, time_, 0);
       state_ = State::kDone;
       next_start_ = start_ + shape_.clocks + cycle_.stretched + shape_.idle_clocks;

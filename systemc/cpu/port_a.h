@@ -13,6 +13,7 @@
 
 #include <systemc>
 
+#include "systemc/core/aperture.h"
 #include "systemc/core/board_pins.h"
 #include "systemc/core/cpu_clock.h"
 #include "systemc/core/signals.h"
@@ -75,6 +76,7 @@ class PortA : public sc_core::sc_module {
 
   // Registers to their reset values, no cycle under way; CPU cycle `cycle` begins with edge `edge`. Pins go idle.
   void reset(Tick edge, std::int64_t cycle, PortAPins& pins);
+  void set_aperture(Aperture* aperture) { aperture_ = aperture; }  // not owned
   const CpuClock& clock() const { return clock_; }
   std::int64_t free_at() const { return next_start_; }  // CPU cycle at which the next access may begin
   unsigned wait_states(unsigned area) const;            // AA0..AA2, 3 = default area
@@ -107,6 +109,9 @@ class PortA : public sc_core::sc_module {
   bool begin(tlm::tlm_generic_payload& payload, PortARequest& request);
   void control_register(tlm::tlm_generic_payload& payload, PortARequest& request);
   void next(Step step);
+  void move_bus(PortAPins& pins) const;  // of a step at which lines move together
+  void half_step(PortAPins& pins);
+  bool end_strobe(const PortAPins& pins);
   TimeFs time_of(Step step) const;
   void see(TimeFs time, const BoardOutputs& board);
   std::size_t seen_at(TimeFs time) const;
@@ -127,7 +132,11 @@ class PortA : public sc_core::sc_module {
   State state_ = State::kIdle;
   Step step_ = Step::kAddress;
   Tick stand_ = 0;
-  TimeFs time_ = 0;  // of step_
+  Aperture* aperture_ = nullptr;
+  Tick late_ = 0;          // where the strobe moves
+  bool in_doubt_ = false;  // of a bus at this step: the next edge sees a part of it
+  bool resumed_ = false;   // the step has begun
+  TimeFs time_ = 0;        // of step_
   PortAShape shape_{};
   PortACycle cycle_;
   std::int64_t start_ = 0;       // CPU cycle at which the cycle begins

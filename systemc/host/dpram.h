@@ -28,6 +28,7 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Inputs in;
 
   std::uint16_t cpu_rdata() const { return cpu_rdata_; }
+  bool cpu_valid() const { return in.rd_toggle == rd_.done; }
   bool cpu_wait() const { return in.cpu_sel && (in.rd_toggle != rd_.acknowledged || in.wr_toggle != wr_.done); }
   bool cpu_busy() const { return cpu_busy_; }
   std::uint16_t mem_rdata() const { return mem_rdata_; }

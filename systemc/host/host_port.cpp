@@ -87,11 +87,25 @@ std::uint32_t HostPort::cpu_read(unsigned addr) const {
 bool HostPort::idle() const {
   const bool host = in.hp_sel && (in.hp_wr || in.hp_rd_done);
   const bool cpu = in.dsp_sel && (in.dsp_we || in.dsp_rd);
-  return !host && !cpu && !tx_move() && !rx_move();
+  return !host && !cpu && !tx_move() && !rx_move() && !(in.hp_reset && !host_side_reset());
+}
+
+bool HostPort::host_side_reset() const {
+  return icr_ == regs::host_io::kIcr.reset && cvr_ == regs::host_io::kCvr.reset && ivr_ == regs::host_io::kIvr.reset &&
+         txde_ && htde_ && !hrdf_ && !rxdf_;
+}
+
+void HostPort::reset_host_side() {
+  icr_ = regs::host_io::kIcr.reset;
+  cvr_ = regs::host_io::kCvr.reset;
+  ivr_ = regs::host_io::kIvr.reset;
+  txde_ = htde_ = true;
+  hrdf_ = rxdf_ = false;
 }
 
 // Registers first move by themselves, then the strobes of this edge act on top; INIT is part of the host's write and
-// comes last. Everything that a strobe tests is the state before the edge, as with the RTL's flip-flops.
+// comes last, but for RESETDRV. Everything that a strobe tests is the state before the edge, as with the RTL's
+// flip-flops.
 void HostPort::step() {
   const bool hrdf_before = hrdf_, rxdf_before = rxdf_;
   if (tx_move()) {
@@ -106,6 +120,7 @@ void HostPort::step() {
   if (in.hp_sel && in.hp_rd_done && in.hp_addr == kData7 && rxdf_before) rxdf_ = false;
   if (in.dsp_sel && in.dsp_we) cpu_write();
   if (in.hp_sel && in.hp_wr) host_write();
+  if (in.hp_reset) reset_host_side();
 }
 
 void HostPort::cpu_write() {
@@ -168,15 +183,11 @@ void HostPort::host_write() {
 }
 
 void HostPort::reset_registers() {
-  icr_ = regs::host_io::kIcr.reset;
-  cvr_ = regs::host_io::kCvr.reset;
-  ivr_ = regs::host_io::kIvr.reset;
+  reset_host_side();
   hcr_ = regs::hi08::kHcr.reset;
   hbar_ = regs::hi08::kHbar.reset;
   hpcr_ = regs::hi08::kHpcr.reset;
   tx_ = horx_ = hotx_ = rx_ = 0;
-  txde_ = htde_ = true;
-  hrdf_ = rxdf_ = false;
 }
 
 void HostPort::host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {

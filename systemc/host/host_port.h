@@ -29,6 +29,8 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
   std::uint32_t dsp_rdata() const { return cpu_read(in.dsp_addr); }
   bool hreq() const;
   bool irq() const;
+  bool txde() const { return txde_; }
+  bool rxdf() const { return rxdf_; }
 
   // Without side effects.
   std::uint8_t host_read(unsigned addr) const;
@@ -38,6 +40,8 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
   bool idle() const override;
   void step() override;
   void reset_registers() override;
+  bool host_side_reset() const;
+  void reset_host_side();
   void host_write();
   void cpu_write();
   void host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);

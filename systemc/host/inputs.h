@@ -9,6 +9,7 @@
 namespace brick {
 
 struct InterruptControllerInputs {
+  bool reset = false;  // RESETDRV
   std::uint8_t line = 0;
   bool wr = false;
   std::uint8_t addr = 0;  // 0..3
@@ -32,6 +33,7 @@ struct HostPortInputs {
   bool hp_sel = false, hp_rd_done = false, hp_wr = false;
   std::uint8_t hp_addr = 0;  // 0..7
   std::uint8_t hp_wdata = 0;
+  bool hp_reset = false;  // RESETDRV
   bool dsp_sel = false, dsp_we = false, dsp_rd = false;
   std::uint8_t dsp_addr = 0;  // low six bits of X:$FFFFxx
   std::uint32_t dsp_wdata = 0;
@@ -52,7 +54,7 @@ struct DpramInputs {
   std::uint16_t mem_wdata = 0;
 };
 
-struct IsaSlaveInputs : IsaPins {
+struct IsaSlaveInputs : IsaPins, IsaStraps {
   std::uint8_t hp_rdata = 0, pic_rdata = 0;
   std::uint16_t mem_rdata = 0;
   bool mem_busy = false;

@@ -23,7 +23,9 @@ std::uint8_t InterruptController::read(unsigned addr) const {
 }
 
 bool InterruptController::idle() const {
-  return !in.wr && in.line == line1_ && line1_ == line2_ && line2_ == line3_ && (latch_ & ~msk_) == 0;
+  const bool cleared = latch_ == 0 && msk_ == 0 && elr_ == 0;
+  return !in.wr && (!in.reset || cleared) && in.line == line1_ && line1_ == line2_ && line2_ == line3_ &&
+         (latch_ & ~msk_) == 0;
 }
 
 void InterruptController::step() {
@@ -33,6 +35,7 @@ void InterruptController::step() {
   latch_ = (rise & msk_ & ~elr_) | (clear ? 0 : latch_ & msk_);
   if (in.wr && in.addr == kMask) msk_ = in.wdata;
   if (in.wr && in.addr == kEdgeLevel) elr_ = in.wdata;
+  if (in.reset) latch_ = msk_ = elr_ = 0;
   line3_ = line2_;
   line2_ = line1_;
   line1_ = in.line;
@@ -48,7 +51,7 @@ void InterruptController::b_transport(tlm::tlm_generic_payload& payload, sc_core
     set_payload_value(payload, read(addr));
   } else {
     const Inputs before = in;
-    in = {before.line, true, addr, payload_value<std::uint8_t>(payload)};
+    in = {before.reset, before.line, true, addr, payload_value<std::uint8_t>(payload)};
     advance(edge);
     in = before;
   }

@@ -1,5 +1,6 @@
 // Model of rtl/host/isa_slave.sv: synchronises the ISA commands, decodes them and drives the host port, the interrupt
-// controller and the dual-ported RAM. Asleep while the pins stand still. docs/host-bus.md.
+// controller and the dual-ported RAM. Its pipelines run behind: only edges that others can see are events.
+// docs/host-bus.md.
 #pragma once
 
 #include <cstdint>
@@ -7,77 +8,92 @@
 #include <systemc>
 
 #include "rtl/regs/brick_regs.hpp"
+#include "systemc/core/model_block.h"
 #include "systemc/host/inputs.h"
-#include "systemc/host/ref_clocked_block.h"
 
 namespace brick {
 
-class IsaSlave final : public sc_core::sc_module, public RefClockedBlock {
+class IsaSlave final : public sc_core::sc_module, public ModelBlock {
  public:
-  struct Config {
-    std::uint16_t io_base = regs::host_io::kBase;
-    std::uint8_t mem_page = regs::kDpramWindowBase >> 16;  // SA[19:16]
-    bool decode_all = true;                                // false: classic ten-bit I/O decode
-  };
-  explicit IsaSlave(const sc_core::sc_module_name& name) : IsaSlave(name, Config()) {}
-  IsaSlave(const sc_core::sc_module_name& name, const Config& config) : sc_module(name), config_(config) {}
+  explicit IsaSlave(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = IsaSlaveInputs;
   Inputs in;
 
   // Host bus
   std::uint16_t isa_sd() const { return sd_; }
+  std::uint8_t isa_sd_oe() const { return drive_ && read_low() ? lanes_ : 0; }
   bool isa_iochrdy() const { return !in.mem_busy; }
-  bool isa_memcs16_n() const { return memcs16_n_; }
+  bool isa_memcs16_n() const { return (la_hits_ & 1) == 0; }
+  bool host_reset() const { return (resetdrv_ & 2) != 0; }
   // Host port
-  bool hp_sel() const { return target() & kHostPort; }
-  bool hp_rd_done() const { return hp_sel() && finish() && (cmd2_ & kIor); }
-  bool hp_wr() const { return hp_sel() && finish() && (cmd2_ & kIow); }
-  std::uint8_t hp_addr() const { return addr() & 7; }
-  std::uint8_t hp_wdata() const { return sd2_ & 0xFF; }
+  bool hp_sel() const { return target_ & kPort; }
+  bool hp_rd_done() const { return hp_sel() && finish_ && shown_; }
+  bool hp_wr() const { return hp_sel() && finish_ && (kind_ & kIow); }
+  std::uint8_t hp_addr() const { return io_addr_ & 7; }
+  std::uint8_t hp_wdata() const { return wdata_ & 0xFF; }
   // Interrupt controller
-  bool pic_sel() const { return target() & kPic; }
-  bool pic_wr() const { return pic_sel() && finish() && (cmd2_ & kIow); }
-  bool pic_rd() const { return pic_sel() && start() && (cmd1_ & kIor); }
-  std::uint8_t pic_addr() const { return addr() & 3; }
-  std::uint8_t pic_wdata() const { return sd2_ & 0xFF; }
+  bool pic_sel() const { return target_ & kPic; }
+  bool pic_rd() const { return pic_sel() && fresh_ && (kind_ & kIor); }
+  bool pic_wr() const { return pic_sel() && finish_ && (kind_ & kIow); }
+  std::uint8_t pic_addr() const { return io_addr_ & 3; }
+  std::uint8_t pic_wdata() const { return wdata_ & 0xFF; }
   // Dual-ported RAM
-  bool mem_sel() const { return (target() & kMemory) && !finish(); }
-  bool mem_rd() const { return (start() ? cmd1_ : cmd2_) & kMemr; }
-  bool mem_wr() const { return (target() & kMemory) && finish() && (cmd2_ & kMemw); }
-  std::uint16_t mem_addr() const { return addr() >> 1; }
+  bool mem_sel() const { return (target_ & kMemory) && active_; }
+  bool mem_rd() const { return kind_ & kMemr; }
+  bool mem_wr() const { return (target_ & kMemory) && finish_ && (kind_ & kMemw); }
+  std::uint16_t mem_addr() const { return mem_addr_; }
   std::uint8_t mem_be() const { return be_; }
-  std::uint16_t mem_wdata() const { return byte8_ ? static_cast<std::uint16_t>((sd2_ & 0xFF) * 0x101) : sd2_; }
+  std::uint16_t mem_wdata() const { return byte8_ ? static_cast<std::uint16_t>((wdata_ & 0xFF) * 0x101) : wdata_; }
+
+  Tick next_event() const override;
+  void advance(Tick t) override;
+  void reset(Tick t) override;
 
  private:
-  enum Command : std::uint8_t { kIor = 1, kIow = 2, kMemr = 4, kMemw = 8 };
-  enum Target : std::uint8_t { kHostPort = 1, kPic = 2, kReserved = 4, kMemory = 8 };
-
-  bool idle() const override;
-  void step() override;
-  void reset_registers() override;
+  enum Command : std::uint8_t { kIor = 1, kIow = 2, kMemr = 4, kMemw = 8, kAll = 15 };
+  static constexpr std::uint8_t kAllHits = 15, kOldestHit = 8;  // of la_hits_
+  static constexpr std::uint32_t kSa = 0x1FFFF;                 // what of SA the cycle needs
+  enum Target : std::uint8_t { kPort = 1, kPic = 2, kOther = 4, kMemory = 8 };
 
   std::uint8_t command_pins() const {
     return (in.isa_ior_n ? 0 : kIor) | (in.isa_iow_n ? 0 : kIow) | (in.isa_memr_n ? 0 : kMemr) |
            (in.isa_memw_n ? 0 : kMemw);
   }
-  bool start() const { return cmd1_ != 0 && cmd2_ == 0; }
-  bool finish() const { return cmd1_ == 0 && cmd2_ != 0; }
-  std::uint8_t target() const { return start() ? decode() : target_; }
+  // What the synchroniser shows n clk_pwm edges from now.
+  std::uint8_t command_in(Tick n) const { return n == 0 ? cmd2_ : n == 1 ? cmd1_ : command_pins(); }
+  std::uint16_t data_in(Tick n) const { return n == 0 ? sd2_ : n == 1 ? sd1_ : in.isa_sd; }
+  std::uint8_t la_pins() const {
+    return static_cast<std::uint8_t>(straps_.slot8 ? in.isa_sa >> 17 & 7 : in.isa_la & 0x7Fu);
+  }
+  bool la_hit(unsigned la) const { return ((la << 3 ^ straps_.window) & (straps_.slot8 ? 0x38u : 0x3F8u)) == 0; }
+  bool read_low() const {
+    return (((kind_ & kIor) && !in.isa_ior_n) || ((kind_ & kMemr) && !in.isa_memr_n)) && in.isa_iow_n && in.isa_memw_n;
+  }
+  bool spoilt(unsigned command) const { return active_ && (command & ~kind_ & kAll) != 0; }
+  bool addresses_page() const { return !straps_.window_flat && io_addr_ == regs::host_io::kPage.address % 16; }
   std::uint8_t decode() const;
-  std::uint16_t addr() const { return start() ? static_cast<std::uint16_t>(sa1_) : addr_; }
-  bool memcs16_n_next() const { return (sa1_ >> 16) != config_.mem_page; }
+  std::uint8_t io_read() const;
+  bool ref_acts(unsigned command) const;
+  bool settled() const;
+  void pwm_edge(std::uint8_t la, bool hit);
+  void ref_edge();
+  void begin();
 
-  Config config_;
-  // synchroniser
-  std::uint8_t cmd1_ = 0, cmd2_ = 0;
-  std::uint32_t sa1_ = 0;
-  std::uint16_t sd1_ = 0, sd2_ = 0;
-  bool aen1_ = false, sbhe1_n_ = true;
-  // the command under way
-  std::uint8_t target_ = 0, be_ = 0;
-  std::uint16_t addr_ = 0, sd_ = 0xFFFF;
-  bool byte8_ = false, load_ = false, memcs16_n_ = true;
+  Tick now_ = 0;
+  // clk_pwm
+  std::uint8_t cmd1_ = kAll, cmd2_ = kAll, la1_ = 0, la2_ = 0, la_hits_ = 0;
+  std::uint16_t sd1_ = 0, sd2_ = 0, wdata_ = 0;
+  // clk_ref: samples
+  std::uint32_t sa_ = 0;
+  bool aen_ = false, sbhe_n_ = true;
+  std::uint8_t resetdrv_ = 0;
+  IsaStraps straps_ = IsaStraps::none();
+  // the cycle
+  bool active_ = true, fresh_ = false, load_ = false, drive_ = false, shown_ = false, finish_ = false, byte8_ = false;
+  std::uint8_t kind_ = 0, target_ = 0, lanes_ = 0, be_ = 0, page_ = 0, io_addr_ = 0;
+  std::uint16_t mem_addr_ = 0, sd_ = 0xFFFF;
+  std::uint8_t oe_shown_ = 0;  // after the last edge
 };
 
 }  // namespace brick

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/toml_table.h"
 
@@ -20,9 +21,12 @@ constexpr unsigned kServoIcs = 10, kFirstMacroIc = 18,
 constexpr const char* kServoIcNames = "servo IC numbers 0 to 9, or \"2*\" to \"9*\" in quotes";
 constexpr const char* kMacroIcNames = "MACRO IC numbers 0 to 3";
 constexpr std::size_t kInterruptLines = 3;
-const std::vector<std::string> kKeys{
-    "title",       "family",      "bus",        "axes", "card", "servo_ics",         "macro_ics",
-    "macro_gates", "dpram_words", "interrupts", "pic",  "jpan", "feedback_option_2", "notes"};
+constexpr std::uint32_t kCardWindow = 0xD4000;
+const std::vector<std::string> kKeys{"title",       "family",     "bus",          "axes",
+                                     "card",        "servo_ics",  "macro_ics",    "macro_gates",
+                                     "dpram_words", "interrupts", "jpan",         "feedback_option_2",
+                                     "io_base",     "io_decode",  "dpram_window", "dpram_window_kib",
+                                     "slot",        "pic",        "notes"};
 const std::vector<std::string> kBuses{"isa", "pci", "pc104", "internal"};
 const std::vector<std::string> kInterruptControllers{"pic", "8259"};
 
@@ -101,6 +105,41 @@ class Reader {
     board.bus = file_.text("bus");
     if (std::find(kBuses.begin(), kBuses.end(), board.bus) == kBuses.end())
       file_.fail(file_.need("bus"), "bus", fmt::format("one of {}", fmt::join(kBuses, ", ")));
+    read_host_bus(board);
+  }
+
+  // Switches and window of a card. A PCI bridge and the processor inside a Brick have places of their own.
+  void read_host_bus(BoardConfig& board) const {
+    const bool card = board.bus == "isa" || board.bus == "pc104";
+    if (!card) {
+      for (const char* key : {"io_base", "io_decode", "dpram_window", "dpram_window_kib", "slot"})
+        if (file_.has(key)) file_.fail(file_.need(key), key, "nothing: only isa and pc104 boards have it");
+      return;
+    }
+    board.window = kCardWindow;
+    board.window_flat = false;
+    if (file_.has("io_base")) {
+      constexpr const char* kBase = "a multiple of 16 from 0x000 to 0xFF0, as the eight switches can say";
+      board.io_base = static_cast<std::uint32_t>(file_.integer("io_base", 0, 0xFF0, kBase));
+      if (board.io_base % 16 != 0) file_.fail(file_.need("io_base"), "io_base", kBase);
+    }
+    board.io_decode16 = choice("io_decode", 16, 10) == 16;
+    board.window_flat = choice("dpram_window_kib", 16, 64) == 64;
+    board.slot8 = choice("slot", 16, 8) == 8;
+    if (board.window_flat) board.window = regs::kDpramWindowBase;
+    if (file_.has("dpram_window")) {
+      const std::uint32_t size = board.window_flat ? 0x10000 : 0x4000;
+      const std::string place = fmt::format("an address below 16 MiB, a multiple of 0x{:X}", size);
+      board.window = static_cast<std::uint32_t>(file_.integer("dpram_window", 0, 0xFFFFFF, place));
+      if (board.window % size != 0) file_.fail(file_.need("dpram_window"), "dpram_window", place);
+    }
+  }
+  std::int64_t choice(const std::string& key, std::int64_t usual, std::int64_t other) const {
+    if (!file_.has(key)) return usual;
+    const std::string expected = fmt::format("{} or {}", std::min(usual, other), std::max(usual, other));
+    const std::int64_t value = file_.integer(key, 0, 1'000'000, expected);
+    if (value != usual && value != other) file_.fail(file_.need(key), key, expected);
+    return value;
   }
 
   // Sources of IR5, IR6 and IR7 as digits of BoardInputs::line_select.

@@ -39,6 +39,18 @@ Straps straps(const BoardConfig& board) {
   return s;
 }
 
+IsaStraps isa_straps(const BoardConfig& board) {
+  IsaStraps s;
+  s.io_base = static_cast<std::uint8_t>(board.io_base >> 4);
+  s.io_decode16 = board.io_decode16;
+  s.window = static_cast<std::uint16_t>(board.window >> 14);
+  s.window_flat = board.window_flat;
+  s.slot8 = board.slot8;
+  return s;
+}
+
+PciBridge::Local pci_local(const BoardConfig& board) { return {board.io_base, board.window, 2 * board.dpram_words}; }
+
 std::uint32_t trap_handler(const Cpu& cpu, std::uint32_t cause) {
   constexpr unsigned kMtvec = 0x305;
   constexpr std::uint32_t kInterrupt = 0x8000'0000;
@@ -85,12 +97,15 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
       owner(machine),
       board(make_board(config)),
       motors(*board, signals, config.board.fitted),
+      aperture(config.aperture, config.seed),
       memory(cpu, config.flash_file) {
   initiator.cpu = &cpu;
+  if (config.board.bus == "pci") pci = std::make_unique<PciBridge>("pci_bridge", pci_local(config.board));
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
   board->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
     board_changed(t, before, after);
   };
+  port_a.set_aperture(&aperture);
   port_a.seed(config.seed);
   if (config.bcr) port_a.force_wait_states(*config.bcr);
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
@@ -108,6 +123,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     if (tracing_cpu) named.pc(time, pc, elf.get());
   };
   static_cast<Straps&>(host_inputs) = straps(config.board);
+  static_cast<IsaStraps&>(host_inputs) = isa_straps(config.board);
   static_cast<HostInputs&>(inputs) = host_inputs;
   named.outputs(0, {}, board->outputs());
   power_on();
@@ -142,6 +158,7 @@ void Machine::Impl::begin_reset(bool power) {
   inputs.rst_n = false;
   board->set_inputs(inputs);
   named.restart(tick_to_fs(board->now()));
+  host_bus_moved(tick_to_fs(board->now()));
 }
 
 void Machine::Impl::start_cpu() {
@@ -156,10 +173,13 @@ void Machine::Impl::start_cpu() {
 }
 
 void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const BoardOutputs& after) {
+  static constexpr BoardOutputs kHostBus =
+      select_pins(pin::kIsaSd, pin::kIsaSdOe, pin::kIsaIochrdy, pin::kIsaMemcs16N, pin::kTxde);
   static constexpr BoardOutputs kSeenByCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
   named.outputs(tick_to_fs(tick), before, after);
   port_a.board_changed(tick, after);
   if (owner.on_outputs) owner.on_outputs(tick, before, after);
+  if (before.differs(after, kHostBus)) host_bus_moved(tick_to_fs(tick));
   if (before.differs(after, stop_on)) stopped = true;
   if (before.get(pin::kSourceConflict) == 0 && after.get(pin::kSourceConflict) != 0) {
     if (!inputs.pa_wr_n)
@@ -192,11 +212,20 @@ void Machine::Impl::trace_cpu(bool on) {
   cpu.on_flow = [this](std::uint32_t pc, Cycle c) { named.pc(port_a.clock().time(c), pc, elf.get()); };
 }
 
-void Machine::Impl::apply_host_inputs() {
+void Machine::Impl::take_host_inputs() {
   static_cast<HostInputs&>(inputs) = host_inputs;
   board->set_inputs(inputs);
+}
+
+void Machine::Impl::apply_host_inputs(TimeFs time) {
+  take_host_inputs();
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
+  host_bus_moved(time);
   see_init();
+}
+
+void Machine::Impl::host_bus_moved(TimeFs time) {
+  if (owner.on_host_bus) owner.on_host_bus(time, inputs, board->outputs());
 }
 
 // The card's reset circuit: INIT/ pulls the reset line after kInitTicks and as long as it is low, and kResetTicks more.
@@ -217,8 +246,14 @@ Machine::~Machine() = default;
 Tick Machine::now() const { return impl_->board->now(); }
 Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_->run_until(limit, stop_on); }
 HostInputs& Machine::inputs() { return impl_->host_inputs; }
-void Machine::apply() { impl_->apply_host_inputs(); }
+void Machine::apply_partly() { impl_->take_host_inputs(); }
+void Machine::apply(TimeFs time) { impl_->apply_host_inputs(time); }
+PortAPins& Machine::port_a() { return impl_->inputs; }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }
+TimeFs Machine::cpu_period() const {
+  const CpuClock& clock = impl_->port_a.clock();
+  return tick_to_fs(CpuClock::kTicksPerMultiplier) / clock.multiplier();
+}
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
 void Machine::apply_motor_inputs() { impl_->motors.apply(); }
@@ -226,6 +261,7 @@ MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->mo
 void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }
 void Machine::attach(MotorPeer& peer) { impl_->motors.attach(peer); }
 void Machine::detach(MotorPeer& peer) { impl_->motors.detach(peer); }
+Aperture& Machine::aperture() { return impl_->aperture; }
 Cpu& Machine::cpu() { return impl_->cpu; }
 std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }
 
@@ -252,6 +288,8 @@ const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return 
 
 const std::vector<std::string>& Machine::run_errors() const { return impl_->run_errors; }
 std::vector<std::string> Machine::take_run_errors() { return std::exchange(impl_->run_errors, {}); }
+
+PciBridge* Machine::pci() { return impl_->pci.get(); }
 
 Signals& Machine::signals() {
   // Without a waveform nobody follows each call: what is asked for now is what stands now.

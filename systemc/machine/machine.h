@@ -11,6 +11,7 @@
 
 #include <systemc>
 
+#include "systemc/core/aperture.h"
 #include "systemc/core/board.h"
 #include "systemc/core/signals.h"
 #include "systemc/cpu/cpu.h"
@@ -19,6 +20,7 @@
 namespace brick {
 
 class GdbServer;
+class PciBridge;
 struct PortACycle;
 
 enum class Engine { kRtl, kSystemC, kLockstep };
@@ -36,6 +38,11 @@ struct BoardConfig {
   std::uint32_t product = 0;          // other bits of word 5 of the straps page, systemc/machine/board_family.h
   std::uint32_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: kInterruptSources of board_family.h
   std::string family = "geo-brick-lv", bus = "internal";
+  std::uint32_t io_base = 0x210;   // of the host's I/O block
+  bool io_decode16 = true;         // false: the host's I/O addresses have ten bits
+  std::uint32_t window = 0xD0000;  // of the dual-ported RAM in the host's memory
+  bool window_flat = true;         // 64 KiB; false: 16 KiB with a page register
+  bool slot8 = false;              // in a slot of eight bits
   unsigned axes = 8;
   bool feedback_option_2 = false;
   std::vector<std::string> notes;  // what differs from the product, for the user
@@ -48,6 +55,7 @@ struct MachineConfig {
   std::string flash_file;  // "" = flash content is lost at the end
   bool jumper_e3 = false;
   std::uint64_t seed = 1;            // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
+  TimeFs aperture = 0;               // of the board's inputs, systemc/core/aperture.h; 0 = none
   Tick batch = 0;                    // 0 = as long as the rule allows; else no advance longer than this many ticks
   std::optional<std::uint32_t> bcr;  // wait states, whatever the firmware writes to BCR
   bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
@@ -82,8 +90,12 @@ class Machine : public sc_core::sc_module {
 
   // The pins that the host owns. The host edits them and calls apply(); edge now()+1 is the first to see them.
   HostInputs& inputs();
-  void apply();
+  void apply() { apply(now_fs()); }
+  void apply(TimeFs time);  // the same with the exact time, which that edge is the first not to be before
+  void apply_partly();      // some lines of a move that is in doubt (systemc/core/aperture.h): outside all move later
   const BoardOutputs& outputs() const;
+  PortAPins& port_a();  // of a machine without firmware: the pins of its CPU's bus, which nobody else drives
+  PciBridge* pci();     // between the host and these pins on boards with a PCI connector, else nullptr
 
   std::uint32_t fitted() const;  // ICs of the board, as BoardInputs::fitted
 
@@ -95,6 +107,8 @@ class Machine : public sc_core::sc_module {
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
   void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once
   void detach(MotorPeer& peer);
+
+  Aperture& aperture();  // of the pins that CPU and host drive; a host's pins move by it
 
   Signals& signals();  // every named signal of docs/signals.md
   Cpu& cpu();
@@ -132,6 +146,12 @@ class Machine : public sc_core::sc_module {
   // Called after each edge that changes an output of the board, and as the CPU takes or leaves a trap.
   std::function<void(Tick, const BoardOutputs& before, const BoardOutputs& after)> on_outputs;
   std::function<void(TimeFs)> on_task;
+
+  // Called when pins of the host bus or the reset line may have moved, and when: of the board's at the edge that moved
+  // them, of the host's as it said. For checkers (testbench/checkers/isa_checker.h).
+  std::function<void(TimeFs, const BoardInputs&, const BoardOutputs&)> on_host_bus;
+
+  TimeFs cpu_period() const;  // of the CPU clock as it stands
 
  private:
   struct Impl;

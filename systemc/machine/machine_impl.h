@@ -9,6 +9,7 @@
 
 #include "systemc/cpu/gdb_server.h"
 #include "systemc/cpu/port_a.h"
+#include "systemc/host/pci_bridge.h"
 #include "systemc/machine/clock_drivers.h"
 #include "systemc/machine/machine.h"
 #include "systemc/machine/machine_signals.h"
@@ -60,7 +61,9 @@ struct Machine::Impl {
   void cycle_done(const PortACycle& cycle);
   void main_memory_wait() { cpu.set_wait(MachineMemory::kMain, memory_wait(port_a.wait_states(0))); }
   void trace_cpu(bool on);
-  void apply_host_inputs();
+  void take_host_inputs();
+  void apply_host_inputs(TimeFs time);
+  void host_bus_moved(TimeFs time);
   void see_init();
 
   // run.cpp: the run-ahead rule
@@ -79,6 +82,7 @@ struct Machine::Impl {
   MachineSignals named{signals};
   std::unique_ptr<Board> board;
   MotorSide motors;
+  Aperture aperture;
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};
@@ -86,6 +90,7 @@ struct Machine::Impl {
   std::optional<BusMaster::Access> master_access;  // under way
   GdbServer* debugger = nullptr;                   // runs the CPU when there is one
   MachineMemory memory;
+  std::unique_ptr<PciBridge> pci;
   std::unique_ptr<ElfFile> elf;
   std::uint64_t power_ons = 0;
 

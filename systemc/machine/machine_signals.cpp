@@ -22,6 +22,7 @@ MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
   mi2_ = signals.add("host.mi2", 1, Radix::kBinary);
   axexp0_ = signals.add("host.axexp0", 1, Radix::kBinary);
   axexp1_ = signals.add("host.axexp1", 1, Radix::kBinary);
+  pwr_good_ = signals.add("watchdog.pwr_good", 1, Radix::kBinary, 1);
   pc_ = signals.add("cpu.pc", 32, Radix::kHex);
   task_ = signals.add("cpu.task", 2, Radix::kDecimal);
   symbol_ = signals.add("cpu.symbol", 1, Radix::kText);
@@ -51,6 +52,7 @@ void MachineSignals::inputs(TimeFs time, const HostInputs& in, const BoardOutput
   signals_.set(mi2_, time, in.mi2);
   signals_.set(axexp0_, time, in.axexp0);
   signals_.set(axexp1_, time, in.axexp1);
+  signals_.set(pwr_good_, time, in.pwr_good);
   host_reads_ = !in.isa_ior_n || !in.isa_memr_n;
   host_data_ = in.isa_sd;
   data_bus(time, board);

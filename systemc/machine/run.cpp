@@ -68,7 +68,8 @@ Tick Machine::Impl::board_limit(Tick limit) const {
     return std::min(limit, port_a.stands_at());
   }
   if (!cpu_runs || cpu.asleep()) return limit;
-  return std::min(limit, port_a.clock().tick(cpu.cycle()) - 1);
+  const Tick next = port_a.clock().tick(cpu.cycle()) - 1;
+  return std::min(limit, aperture.on() ? next - 1 : next);  // an edge that may see its first move early
 }
 
 // Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the

@@ -53,9 +53,13 @@ class ChannelStrobe {
     divider_.reset(t);
     now_ = t;
     pending_ = false;
+    asked_ = kNever;
     left_ = 0;
     word_ = 0;
   }
+
+  // From the edge t on, a bit clock that finds no stream under way starts one, unless PHASE has done so.
+  void ask(Tick t) { asked_ = t; }
 
   // Executes the edges up to t; `rise`: PHASE rises at t, an edge of clk_ref. `load` and `sample` (with the number of
   // the first bit and how many bits) are called in the order of their edges.
@@ -65,8 +69,9 @@ class ChannelStrobe {
       const Tick ce = divider_.next();
       if (left_ != 0 && !divider_.fast() && now_ < divider_.mid() && divider_.mid() <= t) sample(24 - left_, 1u);
       if (ce > t) break;
+      if (left_ == 0 && ce >= asked_) pending_ = true;
       if (left_ == 0 && !pending_ && !(rise && ce == t)) {
-        divider_.take(rise ? t - 1 : t, n);  // nothing to send
+        divider_.take(std::min(rise ? t - 1 : t, asked_ - 1), n);  // nothing to send
         now_ = std::max(now_, ce);
         continue;
       }
@@ -84,6 +89,7 @@ class ChannelStrobe {
       if (divider_.fast() && left_ != 0) sample(24 - left_, 1u);
       if (pending_ || (rise && ce == t)) {
         pending_ = rise = false;
+        if (ce >= asked_) asked_ = kNever;
         left_ = 24;
         word_ = word;
         load();
@@ -97,13 +103,13 @@ class ChannelStrobe {
     now_ = t;
   }
 
-  bool idle() const { return left_ == 0 && !pending_; }
+  bool idle() const { return left_ == 0 && !pending_ && asked_ == kNever; }
   unsigned left() const { return left_; }  // bits to go, the present one included
   bool strobe() const { return word_ >> (left_ != 0 ? left_ - 1 : 0) & 1; }
   bool clk(Tick now) const { return left_ != 0 && (divider_.fast() ? now % kTicksPerRef != 0 : now >= divider_.mid()); }
 
   Tick next_event(Tick now) const {
-    if (left_ == 0) return pending_ ? divider_.next() : kNever;
+    if (left_ == 0) return pending_ ? divider_.next() : asked_ == kNever ? kNever : std::max(now + 1, asked_);
     if (divider_.fast()) return now + (now % kTicksPerRef == 1 ? 2 : 1);
     return now < divider_.mid() ? divider_.mid() : divider_.next();
   }
@@ -112,6 +118,7 @@ class ChannelStrobe {
   ChannelDivider divider_;
   Tick now_ = 0;
   bool pending_ = false;
+  Tick asked_ = kNever;
   unsigned left_ = 0;
   std::uint32_t word_ = 0;
 };

@@ -11,6 +11,7 @@ void ServoChannels::reset(Tick t) {
   pfm_.reset(t);
   dac_.reset(t);
   adc_.reset(t);
+  if (in.trip) dac_.ask(next_ref_edge(t) + kTicksPerRef);
   phase_rises_ = phase_falls_ = servo_falls_ = in.phase_rises = in.phase_falls = in.servo_falls = false;
 }
 

@@ -33,6 +33,10 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     std::uint8_t adc_a = 0, adc_b = 0;  // bit n-1: channel n
   };
   Inputs in;
+  void set_trip(bool trip) {
+    if (trip && !in.trip) dac_.ask(next_ref_edge(now_) + kTicksPerRef);  // it is seen, then it asks
+    in.trip = trip;
+  }
   void set_pins(unsigned channel, unsigned pins) { channel_[channel].set_pins(now_, pins); }  // channel 0..3
 
   // Registers, offset 0..31, as they stand after the last executed edge, which also executes a write or takes the

@@ -39,7 +39,7 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
   }
   MotorOutputs motor_outputs() const { return channels_.motor_outputs(); }
   unsigned equ() const { return channels_.equ(); }  // bit n-1 for channel n
-  void set_trip(bool trip) { channels_.in.trip = trip; }
+  void set_trip(bool trip) { channels_.set_trip(trip); }
   const ServoChannels& channels() const { return channels_; }
 
   // Clock pins; the inputs are seen by the edges to come.

@@ -85,6 +85,7 @@ struct Bench {
   std::function<void(BenchContext&)> run;
   BenchNeed need = kAnyBoard;
   std::string board = "geobrick-lv-8";  // without --board
+  bool firmware = true;                 // false: no CPU runs, the bench drives Port A itself
 };
 
 // Every bench there is, in the order of `brick list`.

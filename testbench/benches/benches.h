@@ -8,7 +8,10 @@ namespace brick {
 Bench smoke_bench();
 Bench bus_timing_bench();
 Bench breq_rotary_bench();
+Bench breq_select_bench();
+Bench interrupts_bench();
 Bench watchdog_bench();
+Bench dpram_bench();
 Bench reinit_e3_bench();
 Bench clock_select_bench();
 Bench clock_faults_bench();
@@ -19,5 +22,8 @@ Bench flags_bench();
 Bench pwm_bench();
 Bench pfm_bench();
 Bench serial_dac_adc_bench();
+Bench port_a_phase_bench();
+Bench host_port_bench();
+Bench isa_timing_bench();
 
 }  // namespace brick

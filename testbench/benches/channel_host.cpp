@@ -69,10 +69,10 @@ ChannelHost::~ChannelHost() {
 
 void ChannelHost::cycle(const PortACycle& c) {
   if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
-  const Tick sampled = fs_to_tick_floor(c.start);
-  const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), sampled);
-  reads_[2 * c.address + (c.x ? 1 : 0)] = {sampled, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next),
-                                           fs_to_tick(c.data_time)};
+  const Tick sample = bus_edge(c.strobe_low), before = sample - 1 - kTicksPerRef;  // what falls there is latched
+  const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), before);
+  reads_[2 * c.address + (c.x ? 1 : 0)] = {before, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next),
+                                           sample};
 }
 
 ChannelHost::BusRead ChannelHost::last_read(unsigned channel, const regs::Register& word) const {

@@ -93,7 +93,7 @@ class ChannelHost : public ServoHost {
   struct BusRead {
     Tick tick = -1;
     std::uint32_t data = 0;
-    Tick servo = -1, end = -1;  // `end`: the data was taken
+    Tick servo = -1, end = -1;  // `end`: the sample was taken
   };
   BusRead last_read(unsigned channel, const regs::Register& word) const;
 

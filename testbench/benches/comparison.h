@@ -18,6 +18,9 @@ class Comparison {
   bool equal(const std::string& where, std::int64_t measured, std::int64_t expected) {
     return note(where, measured == expected, printed(measured), printed(expected));
   }
+  bool equal(const std::string& where, const std::string& measured, const std::string& expected) {
+    return note(where, measured == expected, measured, expected);
+  }
   bool word(const std::string& where, std::int64_t measured, std::int64_t expected) {  // low 24 bits
     const std::int64_t m = measured & 0xFFFFFF, e = expected & 0xFFFFFF;
     return note(where, m == e, fmt::format("${:06X}", m), fmt::format("${:06X}", e));

@@ -6,14 +6,6 @@
 
 namespace brick {
 
-namespace {
-// A write takes place at the second edge of clk_ref that sees the strobe low (docs/servo_ic.md).
-Tick taken(TimeFs strobe_low) {
-  const Tick seen = fs_to_tick(strobe_low);
-  return (seen + kTicksPerRef - 1) / kTicksPerRef * kTicksPerRef + kTicksPerRef;
-}
-}  // namespace
-
 OutputHost::OutputHost(BenchContext& b) : ServoHost(b, b.seed * 104'729) {
   changes_.resize(places());
   b.machine.attach(*this);
@@ -55,7 +47,7 @@ Tick OutputHost::written(unsigned channel, const regs::Register& word) const {
 
 void OutputHost::cycle(const PortACycle& c) {
   if (c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
-  accesses_.push_back({c.write ? taken(c.strobe_low) : fs_to_tick_floor(c.data_time), c.write, c.x, c.address, c.data});
+  accesses_.push_back({bus_edge(c.strobe_low) - (c.write ? 0 : 1), c.write, c.x, c.address, c.data});
 }
 
 }  // namespace brick

@@ -18,7 +18,7 @@ class OutputHost : public ServoHost, public MotorPeer {
     MotorOutputs pins;
   };
   struct Access {
-    Tick tick;  // write: the word has the value from here on; read: data sampled
+    Tick tick;  // write: the word has the value from here on; read: data as they stood after this edge
     bool write, x;
     std::uint32_t address, data;
   };

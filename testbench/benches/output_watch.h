@@ -1,13 +1,15 @@
-// Collects which output pins of the servo ICs were high in a stretch of time, for benches that expect outputs to be
-// alive or dead.
+// Collects which output pins of the servo ICs were high in a stretch of time, and what the DACs at them hold, for
+// benches that expect outputs to be alive or dead.
 #pragma once
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "systemc/machine/machine.h"
+#include "testbench/plant/dac_peer.h"
 
 namespace brick {
 
@@ -23,7 +25,10 @@ class OutputWatch : public MotorPeer {
   std::uint32_t ics() const override { return ics_; }
   Tick next_event() const override { return kNever; }
   bool step(Tick, MotorInputPins&) override { return false; }
-  void changed(Tick, unsigned ic, const MotorOutputs&, const MotorOutputs& after) override { add(ic, after); }
+  void changed(Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) override {
+    add(ic, after);
+    dac_[ic].changed(before, after);
+  }
 
   void begin() {
     for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
@@ -32,6 +37,8 @@ class OutputWatch : public MotorPeer {
     }
   }
   bool was_high(unsigned ic, const MotorField& pin, unsigned channel) const { return high_[ic].get(pin, channel) != 0; }
+
+  const plant::DacPeer& dac(unsigned ic) const { return dac_.at(ic); }
 
   // Names of the pins that an amplifier obeys and that were high since begin(): "servo_ic0.ch1.aena ...".
   std::string alive() const {
@@ -54,6 +61,7 @@ class OutputWatch : public MotorPeer {
   Machine& machine_;
   std::uint32_t ics_;
   std::array<MotorOutputs, kMaxServoIcs> high_{};
+  std::vector<plant::DacPeer> dac_ = std::vector<plant::DacPeer>(kMaxServoIcs, plant::DacPeer());
 };
 
 }  // namespace brick

@@ -23,6 +23,12 @@ constexpr regs::Field bits(unsigned lsb, unsigned width) {
 }
 constexpr regs::Field span(regs::Field low, regs::Field high) { return bits(low.lsb, high.lsb + high.width - low.lsb); }
 
+// The edge at which a write takes place and a read takes its sample: the third of clk_ref after the strobe falls
+// (host-bus:2.6).
+constexpr Tick bus_edge(TimeFs strobe_low) {
+  return (fs_to_tick(strobe_low) + kTicksPerRef - 1) / kTicksPerRef * kTicksPerRef + 2 * kTicksPerRef;
+}
+
 // Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names:
 // servo-ic:1.2, servo-ic:1.4, servo-ic:2.1.
 class ServoHost {

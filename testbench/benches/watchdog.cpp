@@ -1,8 +1,11 @@
-// watchdog: a servo frequency that is too high takes the CPU time of the tasks below it. The real-time task still runs,
-// the background does not: its counter (I40) falls below zero, the strobe ends, and the circuit trips 25 ms later.
-// Nothing tells the board that it is overloaded: the cost of the tasks in CPU cycles, wait states included, is more
-// than the servo period leaves. The settings are SAVEd, so the reset line does not help. Judged by
-// testbench/checkers/watchdog_scoreboard.h.
+// watchdog: trips by each cause, with all outputs in use, and looks at the amplifiers' end of them. 5 V that are no
+// longer good trip at once; clocks that stop, 25 ms after the last edge of SERVO, although strobes come and PHASE
+// cannot start a DAC word any more. A servo frequency that is too high takes the CPU time of the tasks below it: the
+// real-time task still runs, the background does not, its counter (I40) falls below zero, the strobe ends, and the
+// circuit trips 25 ms later. Nothing tells the board that it is overloaded: the cost of the tasks in CPU cycles, wait
+// states included, is more than the servo period leaves. Those settings are SAVEd, so the reset line does not help.
+// Judged by testbench/checkers/watchdog_scoreboard.h.
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <random>
@@ -97,26 +100,20 @@ void outputs_on(BenchContext& b, std::mt19937_64& random, OutputWatch& outputs) 
       for (const MotorField* pin :
            {&kAena, &kEqu, dac ? &kDac : &kPwmATop, dac ? &kDacB : &kPwmBBot, pfm ? &kPfmPulse : &kPwmCTop})
         expect_high(*pin);
+      for (const bool second : {false, true})
+        if (dac && outputs.dac(ic).value(n, second) == 0)
+          missing += fmt::format(" {}.ch{} DAC {}", servo_ic_scope(ic), n + 1, second ? 'B' : 'A');
     }
   b.report.step("outputs of all channels in use", missing.empty(),
                 missing.empty() ? "AENA, EQU, PWM, DAC, PFM" : "dead:" + missing);
 }
 
-// Amplifiers, switches and pulses are off a few ticks after the trip and stay so; a DAC word under way ends, the next
-// is 0.
-void outputs_safe(BenchContext& b, OutputWatch& outputs) {
-  const BoardOutputs& out = b.machine.outputs();
-  b.report.equal<std::string>("IPOS, EROR, F1ER",
-                              fmt::format("{} {} {}", out.get(pin::kIpos), out.get(pin::kEror), out.get(pin::kF1er)),
-                              "0 0 0");
-  outputs.begin();
-  b.bus.wait(kOutputs);
-  b.report.equal<std::string>("AENA, EQU, PWM, DAC, PFM that are on", outputs.alive(), "");
-}
-
-// `ticks` after the trip, DAC lines left out.
-void outputs_at_once(BenchContext& b) {
-  constexpr Tick kAtOnce = 3 * kTicksPerRef;
+// A few ticks after the trip amplifiers, switches and pulses are off, DAC lines left out; 2 ms after the trip every DAC
+// has got zero, from PHASE or from the circuit itself, and nothing moves any more.
+void outputs_off(BenchContext& b, OutputWatch& outputs) {
+  constexpr Tick kAtOnce = 3 * kTicksPerRef, kDacsBy = 2 * kMillisecond;
+  const Tick trip = b.bus.now();
+  std::array<std::uint64_t, 2> updates{outputs.dac(0).updates(), outputs.dac(1).updates()};
   b.bus.wait(kAtOnce);
   Comparison off;
   for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
@@ -128,9 +125,26 @@ void outputs_at_once(BenchContext& b) {
                   b.machine.motor_outputs(ic).get(*pin, n), 0);
   b.report.step(fmt::format("AENA, EQU, PFM, PWM {} ticks after the trip", kAtOnce), off, 9 * 2 * kChannels,
                 fmt::format("{} pins are off", off.made()));
+  const BoardOutputs& out = b.machine.outputs();
+  b.report.equal<std::string>("relay and lamp", fmt::format("{} {}", out.get(pin::kWdRelay), out.get(pin::kWdLed)),
+                              "0 1");
+
+  b.bus.advance_to(trip + kDacsBy);
+  Comparison zero;
+  for (unsigned ic = 0; ic < 2; ++ic)
+    for (unsigned n = 0; n < kChannels && (b.board.fitted >> ic & 1) != 0; ++n)
+      for (const bool second : {false, true})
+        zero.equal(fmt::format("{} DAC {}{}", servo_ic_scope(ic), n + 1, second ? 'B' : 'A'),
+                   outputs.dac(ic).value(n, second), 0);
+  for (unsigned ic = 0; ic < 2; ++ic) updates[ic] = outputs.dac(ic).updates() - updates[ic];
+  b.report.step("DACs 2 ms after the trip", zero, 4 * kChannels,
+                fmt::format("{} DACs hold 0, {} and {} words since", zero.made(), updates[0], updates[1]));
+  outputs.begin();
+  b.bus.wait(kOutputs);
+  b.report.equal<std::string>("AENA, EQU, PWM, DAC, PFM that are on", outputs.alive(), "");
 }
 
-void dead(BenchContext& b, OutputWatch& outputs) {
+void dead(BenchContext& b) {
   const BoardOutputs& out = b.machine.outputs();
   b.report.equal<std::string>("watchdog.tripped and line WDO",
                               fmt::format("{} {}", out.get(pin::kWdTripped), out.get(pin::kWdo)), "1 1");
@@ -154,7 +168,63 @@ void dead(BenchContext& b, OutputWatch& outputs) {
   b.report.equal<std::int64_t>("instructions since", static_cast<std::int64_t>(b.machine.instructions() - instructions),
                                0);
   b.report.equal<std::int64_t>("latched while SERVO goes on", b.machine.outputs().get(pin::kWdTripped), 1);
-  outputs_safe(b, outputs);
+  b.report.equal<std::string>("IPOS, EROR, F1ER",
+                              fmt::format("{} {} {}", out.get(pin::kIpos), out.get(pin::kEror), out.get(pin::kF1er)),
+                              "0 0 0");
+}
+
+// The reset line, without settings that would trip it again.
+void recover(BenchContext& b, WatchdogProbe& probe) {
+  b.machine.reset();
+  b.bus.wait(kMillisecond / 100);
+  probe.reset();
+  const BoardOutputs& out = b.machine.outputs();
+  b.report.equal<std::string>(
+      "reset line: tripped, relay, lamp",
+      fmt::format("{} {} {}", out.get(pin::kWdTripped), out.get(pin::kWdRelay), out.get(pin::kWdLed)), "0 1 0");
+  b.report.step("the controller answers", b.link.connect(kPatience), "");
+}
+
+// Two flip-flops and the latch on clk_ref: the third edge after the fall.
+void supply(BenchContext& b, std::mt19937_64& random, WatchdogProbe& probe) {
+  OutputWatch outputs(b.machine, b.board.fitted);
+  outputs_on(b, random, outputs);
+  b.bus.wait(static_cast<Tick>(random() % (3 * kTicksPerRef)));
+  const Tick fall = b.bus.now();
+  b.machine.inputs().pwr_good = false;
+  b.machine.apply();
+  b.bus.wait_pin(pin::kWdTripped, 1, kMillisecond);
+  const Tick took = b.bus.now() - fall;
+  b.report.step("trip, 5 V not good", took > 2 * kTicksPerRef && took <= 3 * kTicksPerRef,
+                fmt::format("{} ticks, expected {} to {}", took, 2 * kTicksPerRef + 1, 3 * kTicksPerRef));
+  outputs_off(b, outputs);
+  b.machine.inputs().pwr_good = true;
+  b.machine.apply();
+  b.bus.wait(kMillisecond);
+  b.report.equal<std::int64_t>("latched when 5 V are good again", b.machine.outputs().get(pin::kWdTripped), 1);
+  recover(b, probe);
+}
+
+// No IC drives the clocks any more.
+void clocks_stop(BenchContext& b, std::mt19937_64& random, WatchdogProbe& probe, WatchdogScoreboard& scoreboard) {
+  OutputWatch outputs(b.machine, b.board.fitted);
+  outputs_on(b, random, outputs);
+  b.bus.wait(static_cast<Tick>(random() % 100'000));
+  b.ask("I7007=3 I7107=3");
+  const unsigned strobes = scoreboard.strobes();
+  const std::uint64_t words = outputs.dac(0).updates();
+  b.bus.wait(20 * kMillisecond);
+  b.report.equal<std::int64_t>("DAC words of IC 0 without PHASE in 20 ms",
+                               static_cast<std::int64_t>(outputs.dac(0).updates() - words), 0);
+  b.bus.wait_pin(pin::kWdTripped, 1, kPatience);
+  const double ms = static_cast<double>(b.bus.now() - probe.last_servo_edge()) / static_cast<double>(kMillisecond);
+  b.report.step("trip, no edge of SERVO", ms >= 24.97 && ms <= 25.001,
+                fmt::format("{:.3f} ms after the last, expected 24.97 to 25.00; {} strobes meanwhile", ms,
+                            scoreboard.strobes() - strobes));
+  b.report.step("strobed all the time", scoreboard.strobes() - strobes >= 10,
+                fmt::format("{}", scoreboard.strobes() - strobes));
+  outputs_off(b, outputs);
+  recover(b, probe);
 }
 
 void verdict(BenchContext& b, WatchdogScoreboard& scoreboard, const std::string& name) {
@@ -182,6 +252,8 @@ void run(BenchContext& b) {
   WatchdogScoreboard scoreboard;
   WatchdogProbe probe(b.bus, scoreboard);
   idle(b, scoreboard);
+  supply(b, random, probe);
+  clocks_stop(b, random, probe, scoreboard);
 
   const unsigned i7000 = starving_i7000(b, random), i40 = 300 + static_cast<unsigned>(random() % 200);
   // The same set-up on servo IC 1, SAVEd as the source of the next start.
@@ -197,11 +269,11 @@ void run(BenchContext& b) {
   if (b.negative) b.ask(fmt::format("I40={}", 3 * i40));
   probe.expect_starvation(servo_period(i7000), WatchdogScoreboard::counter_of(i40));
   b.link.send(fmt::format("I7000={}", i7000));
-  if (b.bus.wait_pin(pin::kWdTripped, 1, kPatience)) outputs_at_once(b);
+  if (b.bus.wait_pin(pin::kWdTripped, 1, kPatience)) outputs_off(b, *outputs);
   verdict(b, scoreboard,
           fmt::format("trip, servo {:.1f} kHz, I40={}", 117'964.8 / static_cast<double>(servo_period(i7000)), i40));
   if (scoreboard.tripped_at() < 0) return;
-  dead(b, *outputs);
+  dead(b);
   outputs.reset();  // the restart has none
 
   restart(b, probe, scoreboard, i40);
@@ -212,8 +284,8 @@ void run(BenchContext& b) {
 // covers: WDT-1
 Bench watchdog_bench() {
   return {"watchdog",
-          "servo frequency too high: the background starves, I40 runs out, the circuit trips 25 ms later; again after "
-          "a reset",
+          "trips when 5 V fail, when the clocks stop and when the background starves by too high a servo frequency; "
+          "DACs, amplifiers, relay, lamp",
           {"the controller's I40 is three times what the scoreboard is told", "trip, servo * kHz, I40=*",
            "I40 and 25 ms: tripped at"},
           run,

@@ -33,6 +33,7 @@ class WatchdogProbe {
     period_ = period;
     counter_ = counter;
   }
+  Tick last_servo_edge() const { return last_edge_; }  // either level
   void reset() {
     scoreboard_.reset(bus_.now());
     last_fall_ = -1;
@@ -43,6 +44,7 @@ class WatchdogProbe {
   static constexpr std::uint32_t kStrobe = 0x070011;
 
   void edge(Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+    if (before.get(pin::kServo) != after.get(pin::kServo)) last_edge_ = t;
     if (before.get(pin::kServo) != 0 && after.get(pin::kServo) == 0) {
       if (period_ != 0 && last_fall_ >= 0 && t - last_fall_ == period_) {
         scoreboard_.starved(last_fall_, period_, counter_);
@@ -56,7 +58,7 @@ class WatchdogProbe {
 
   HostBus& bus_;
   WatchdogScoreboard& scoreboard_;
-  Tick period_ = 0, last_fall_ = -1;
+  Tick period_ = 0, last_fall_ = -1, last_edge_ = -1;
   unsigned counter_ = 0;
 };
 

@@ -42,7 +42,7 @@ void write(Board& board, BoardInputs& in, bool x, std::uint32_t address, std::ui
 
 // A read of the host port's status takes six periods of the 8.33 MHz bus clock, the command four of them.
 void poll(Board& board, BoardInputs& in) {
-  in.isa_sa = 0x212;
+  in.set_address(0x212);
   board.set_inputs(in);
   board.run_until(board.now() + 14);
   in.isa_ior_n = false;

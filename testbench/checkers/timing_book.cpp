@@ -12,9 +12,17 @@ TimingBook::TimingBook(Machine& machine) : machine_(machine) {
     port_a_.cycle(c);
     if (on_cycle) on_cycle(c);
   };
+  add(isa_.ledger());
+  isa_.set_cpu_period([&machine] { return machine.cpu_period(); });
+  machine.on_host_bus = [this](TimeFs time, const BoardInputs& in, const BoardOutputs& out) {
+    isa_.pins(time, in, out);
+  };
 }
 
-TimingBook::~TimingBook() { machine_.check_bus_cycle = nullptr; }
+TimingBook::~TimingBook() {
+  machine_.check_bus_cycle = nullptr;
+  machine_.on_host_bus = nullptr;
+}
 
 void TimingBook::add(TimingLedger& ledger) {
   ledgers_.push_back(&ledger);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/checkers/isa_checker.h"
 #include "testbench/checkers/timing_port_a.h"
 #include "testbench/checkers/timing_rules.h"
 
@@ -15,12 +16,13 @@ class Machine;
 
 class TimingBook {
  public:
-  explicit TimingBook(Machine& machine);  // judges each bus cycle of the CPU from now on
+  explicit TimingBook(Machine& machine);  // judges each bus cycle of CPU and host from now on
   ~TimingBook();
   TimingBook(const TimingBook&) = delete;
   TimingBook& operator=(const TimingBook&) = delete;
 
   PortATiming& port_a() { return port_a_; }
+  IsaChecker& isa() { return isa_; }
   const PortATiming& port_a() const { return port_a_; }
   void add(TimingLedger& ledger);  // of another bus; not owned
   const std::vector<TimingLedger*>& ledgers() const { return ledgers_; }
@@ -36,6 +38,7 @@ class TimingBook {
  private:
   Machine& machine_;
   PortATiming port_a_;
+  IsaChecker isa_;
   std::vector<TimingLedger*> ledgers_;
 };
 

@@ -1,139 +1,77 @@
 #include "testbench/host/host_bus.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace brick {
 
-namespace {
-constexpr Tick kHeartbeat = 1'000'000;       // ticks between two looks at the wall clock, 8.5 ms
-constexpr std::uint16_t kIdleData = 0xFFFF;  // pull-ups of the data bus
-}  // namespace
-
-// ---------------------------------------------------------------------------------------------------------------- time
-
-void HostBus::step_to(Tick limit, const BoardOutputs& stop_on) {
-  const BoardOutputs before = machine_.outputs();
-  BoardOutputs stop = stop_on;
-  for (unsigned i = 0; i < kBoardOutputWords; ++i) stop.w[i] |= watched_.w[i];
-  machine_.run_until(limit, stop);
-  if (on_edge_ && before.differs(machine_.outputs(), watched_)) on_edge_(machine_.now(), before, machine_.outputs());
+HostBus::HostBus(Machine& machine) : IsaHost(machine), bridge_(machine.pci()) {
+  if (bridge_ != nullptr) start_pci();
 }
 
-void HostBus::advance_to(Tick tick) {
-  while (now() < tick) {
-    step_to(std::min(tick, now() + kHeartbeat), {});
-    if (heartbeat_) heartbeat_();
-  }
-}
+std::uint32_t HostBus::io_base() const { return std::uint32_t{switches().io_base} << 4; }
+std::uint32_t HostBus::window() const { return std::uint32_t{switches().window} << 14; }
 
-void HostBus::advance_to_stop(Tick limit) {
-  step_to(std::min(limit, now() + kHeartbeat), {});
-  if (heartbeat_) heartbeat_();
-}
-
-void HostBus::wait_change(const PinField& pin, Tick limit) {
-  const std::uint32_t value = machine_.outputs().get(pin);
-  while (now() < limit && machine_.outputs().get(pin) == value) {
-    step_to(std::min(limit, now() + kHeartbeat), select_pins(pin));
-    if (heartbeat_) heartbeat_();
-  }
-}
-
-bool HostBus::wait_pin(const PinField& pin, std::uint32_t value, Tick timeout) {
-  const Tick limit = now() + timeout;
-  while (machine_.outputs().get(pin) != value) {
-    if (now() >= limit) return false;
-    wait_change(pin, limit);
-  }
-  return true;
-}
-
-void HostBus::watch(const BoardOutputs& pins, EdgeHook on_edge) {
-  watched_ = pins;
-  on_edge_ = std::move(on_edge);
-}
-
-// ---------------------------------------------------------------------------------------------------------- bus cycles
-
-// First BCLK edge from now on, after the pause that the host's own program makes.
-TimeFs HostBus::cycle_start() {
-  const TimeFs earliest = std::max(free_at_, machine_.now_fs() + 1);
-  TimeFs start = (earliest + isa::kBclk - 1) / isa::kBclk * isa::kBclk;
-  if (pace_) start += pace_() * isa::kBclk;
-  return start;
-}
-
-void HostBus::drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit) {
-  advance_to(fs_to_tick(time) - 1);  // the edge fs_to_tick(time) is the first to see the change
-  edit(machine_.inputs());
-  machine_.apply();
-}
-
-std::uint16_t HostBus::cycle(Command command, std::uint32_t address, std::uint16_t data) {
-  const bool memory = command == Command::kMemoryRead || command == Command::kMemoryWrite;
-  const bool write = command == Command::kIoWrite || command == Command::kMemoryWrite;
-  const isa::CycleTimes& times = memory ? isa::kMemory : isa::kIo;
-  const TimeFs start = cycle_start();
-  const auto strobe = [command](HostInputs& in, bool level) {
-    switch (command) {
-      case Command::kIoRead:
-        in.isa_ior_n = level;
-        break;
-      case Command::kIoWrite:
-        in.isa_iow_n = level;
-        break;
-      case Command::kMemoryRead:
-        in.isa_memr_n = level;
-        break;
-      case Command::kMemoryWrite:
-        in.isa_memw_n = level;
-        break;
-    }
-  };
-
-  drive_at(start, [&](HostInputs& in) {
-    in.isa_sa = address;
-    in.isa_aen = false;
-    in.isa_sbhe_n = !memory;
-  });
-  if (write) drive_at(start + times.data_valid, [&](HostInputs& in) { in.isa_sd = data; });
-  drive_at(start + times.command_low, [&](HostInputs& in) { strobe(in, false); });
-
-  TimeFs end = start + times.command_high;
-  for (;;) {  // IOCHRDY is looked at one BCLK before the command would end, and again at each BCLK
-    advance_to(fs_to_tick_floor(end - isa::kReadyToHigh));
-    if (machine_.outputs().get(pin::kIsaIochrdy)) break;
-    end += isa::kBclk;
-    if (end - start > isa::kLongestStretch)
-      throw HostBusError(
-          fmt::format("host bus: IOCHRDY stays low in the {} cycle at {}{:X}; expected: high within 15.6 us (t10)",
-                      write ? "write" : "read", memory ? "memory address 0x" : "I/O address 0x", address));
-  }
-  advance_to(fs_to_tick_floor(end - isa::kReadSetup));
-  const auto read = static_cast<std::uint16_t>(machine_.outputs().get(pin::kIsaSd));
-  drive_at(end, [&](HostInputs& in) { strobe(in, true); });
-  drive_at(end + (times.release - times.command_high), [](HostInputs& in) {
-    in.isa_sd = kIdleData;
-    in.isa_sbhe_n = true;
-  });
-  free_at_ = end + (times.next - times.command_high);
-  return memory ? read : read & 0xFF;
-}
+// ---------------------------------------------------------------------------------------------- registers and memory
 
 std::uint8_t HostBus::io_read(std::uint32_t offset) {
-  return static_cast<std::uint8_t>(cycle(Command::kIoRead, kIoBase + offset, 0));
+  if (bridge_ != nullptr) return static_cast<std::uint8_t>(pci(PciSpace::kIo, kPciIo + offset, false, 0, 1));
+  return read_io(io_base() + offset);
 }
 
-void HostBus::io_write(std::uint32_t offset, std::uint8_t value) { cycle(Command::kIoWrite, kIoBase + offset, value); }
+void HostBus::io_write(std::uint32_t offset, std::uint8_t value) {
+  if (bridge_ != nullptr)
+    pci(PciSpace::kIo, kPciIo + offset, true, value, 1);
+  else
+    write_io(io_base() + offset, value);
+}
+
+// A window of 16 KiB shows one of four pages. The page is set each time: nobody knows who has been here since.
+std::uint32_t HostBus::window_address(std::uint32_t byte_offset) {
+  if (switches().window_flat) return window() + byte_offset;
+  io_write(regs::host_io::kPage, static_cast<std::uint8_t>(byte_offset >> 14));
+  return window() + (byte_offset & 0x3FFF);
+}
 
 std::uint16_t HostBus::dpram_read(std::uint32_t byte_offset) {
-  return cycle(Command::kMemoryRead, kDpramWindow + byte_offset, 0);
+  if (bridge_ != nullptr)
+    return static_cast<std::uint16_t>(pci(PciSpace::kMemory, kPciMemory + byte_offset, false, 0, 2));
+  return read_memory(window_address(byte_offset), 3);
 }
 
 void HostBus::dpram_write(std::uint32_t byte_offset, std::uint16_t value) {
-  cycle(Command::kMemoryWrite, kDpramWindow + byte_offset, value);
+  if (bridge_ != nullptr)
+    pci(PciSpace::kMemory, kPciMemory + byte_offset, true, value, 2);
+  else
+    write_memory(window_address(byte_offset), value, 3);
+}
+
+// ----------------------------------------------------------------------------------------------------------------- PCI
+
+void HostBus::start_pci() {
+  bridge_->attach(*this);
+  pci(PciSpace::kConfiguration, PciBridge::kBar0, true, kPciIo, 4);
+  pci(PciSpace::kConfiguration, PciBridge::kBar1, true, kPciMemory, 4);
+  pci(PciSpace::kConfiguration, PciBridge::kCommand, true, PciBridge::kIoEnable | PciBridge::kMemoryEnable, 4);
+}
+
+// Little-endian, as PCI is. Beyond a window nobody answers, and a PC reads ones.
+std::uint32_t HostBus::pci(PciSpace space, std::uint32_t address, bool write, std::uint32_t value, unsigned bytes) {
+  unsigned char data[4];
+  for (unsigned n = 0; n < 4; ++n) data[n] = write ? static_cast<unsigned char>(value >> 8 * n) : 0xFF;
+  PciCommand command(space);
+  tlm::tlm_generic_payload payload;
+  payload.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+  payload.set_address(address);
+  payload.set_data_ptr(data);
+  payload.set_data_length(bytes);
+  payload.set_streaming_width(bytes);
+  payload.set_extension(&command);
+  sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+  bridge_->transport(payload, delay);
+  payload.clear_extension(&command);
+  std::uint32_t result = 0;
+  for (unsigned n = 0; n < bytes; ++n) result |= static_cast<std::uint32_t>(data[n]) << 8 * n;
+  return result;
 }
 
 // ----------------------------------------------------------------------------------------------------------- host port

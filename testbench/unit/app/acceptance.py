@@ -68,6 +68,8 @@ def motor_pins():
               "@input servo_ic0.ch1.hmfl=1", "@signal servo_ic0.ch1.hmfl", "@expect servo_ic0.ch1.hmfl=1",
               "@until servo_ic0.ch1.adc_strobe=1 200us", "@until servo_ic0.ch1.adc_strobe=0 200us"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    r = play(["@input host.mi1=1", "@signal mi1", "@expect mi1=1"])
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     r = play(["@input servo_ic0.ch1.pwm_a_top=1"])
     check(r.returncode == 2 and "is no input pin" in r.stderr, r.stderr)
     r = play(["@encoder 9 1"])
@@ -114,13 +116,26 @@ def boards():
     check(play(["VERSION"], "--board", "geobrick-lv-4").stdout.split() == ["1.947"], "four axes")
 
 
+def pic_8259():
+    """The other interrupt controller as a user sees it."""
+    r = play(["@pic", "@expect IRR=00 ISR=00 IMR=FF", "@input host.mi1=1", "@signal host.irq", "@expect host.irq=0"],
+             "--board", "pmac-pc")
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    r = play(["@pic clear"], "--board", "pmac-pc")
+    check(r.returncode == 2 and "the interrupt controller of this board is an 8259" in r.stderr, r.stderr)
+    check("by an 8259" in brick("boards", "pmac-pc").stdout, "brick boards")
+
+
 # covers: BREQ-6
 def jpan():
     """The panel selects whose BREQ the host sees; the same times on all engines."""
     lines = ["&2DEFINE ROTARY 40", "OPEN ROTARY", "CLOSE", "&1", "I2=0", "@signal breq", "@expect breq=0",
              "@jpan FPD=2", "@until breq=1 3ms", "@time", "@jpan FPD3=0", "@until breq=0 3ms", "@jpan FPD=0 START=0",
              "@wait 3ms", "I59", "@expect 2", "@jpan START=1 FPD=2", "@until breq=1 3ms",
-             "I2=1", "@signal breq", "@expect breq=0", "@signal host.jpan", "@expect host.jpan=$FDFF", "@time"]
+             "@signal brld_n", "@expect brld_n=0",
+             "I2=1", "@signal breq", "@expect breq=0", "@signal host.jpan", "@expect host.jpan=$FDFF", "@time",
+             "@jpan INIT=0", "@wait 300ns", "@jpan INIT=1", "I59", "@expect 2",  # a spike
+             "@jpan INIT=0", "@wait 10us", "@jpan INIT=1", "I59", "@expect 0", "@time"]
     first = None
     for engine in ("systemc", "rtl", "lockstep"):
         r = play(lines, "--board", "turbo-pmac-pci", "--engine", engine)

@@ -14,11 +14,12 @@ def run_json(bench, *options):
         return r, json.loads(pathlib.Path(f"{folder}/r.json").read_text())
 
 
-def bench_passes(name, engine, seed="1"):
+def bench_passes(name, engine, seed="1", firmware=True):
     r, results = run_json(name, "--engine", engine, "--seed", seed)
     check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
     check(f"PASS {name}" in r.stdout and "ticks/s" in r.stdout and "instructions/s" in r.stdout, r.stdout)
-    check(len(results["steps"]) > 5 and results["ticks"] > 0 and results["instructions"] > 0, str(results))
+    check(len(results["steps"]) > 5 and results["ticks"] > 0 and (results["instructions"] > 0) == firmware,
+          str(results))
 
 
 def fails_its_negative_control(name, engine="systemc", **other):
@@ -39,9 +40,11 @@ def every_board():
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
                "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3"}, "geobrick-lv-8": {"clock-macro"},
                "turbo-pmac-pci": {"clock-macro"},
-               "pmac-pc": {"clock-macro", "breq-rotary", "watchdog", "capture-compare"},
+               "pmac-pc": {"clock-macro", "breq-rotary", "breq-select", "watchdog", "capture-compare"},
                "umac-turbo": {"watchdog", "reinit-e3", "pwm"},
-               "turbo-pmac2-ultralite": every_bench - {"smoke", "breq-rotary", "clock-macro"}}
+                "turbo-pmac2-ultralite":
+                    every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram",
+                                    "host-port", "isa-timing"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
@@ -72,6 +75,25 @@ def breq_rotary():
 
 def breq_rotary_lockstep():
     bench_passes("breq-rotary", "lockstep", "3")
+
+
+def dpram():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("dpram", engine, seed)
+
+
+# covers: BREQ-6 BREQ-7
+def breq_select():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("breq-select", engine, seed)
+
+
+# covers: BREQ-5
+def interrupts():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("interrupts", engine, seed)
+    r, results = run_json("interrupts", "--engine", "lockstep", "--board", "pmac-pc")  # an 8259
+    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
 
 
 # covers: WDT-1
@@ -130,6 +152,21 @@ def pfm():
 def serial_dac_adc():
     for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
         bench_passes("serial-dac-adc", engine, seed)
+
+
+def port_a_phase():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("port-a-phase", engine, seed, firmware=False)
+
+
+def host_port():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("host-port", engine, seed)
+
+
+def isa_timing():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("isa-timing", engine, seed)
 
 
 def capture_compare():

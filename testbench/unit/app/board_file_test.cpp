@@ -218,8 +218,6 @@ TEST(BoardFile, ImpossibleBoardsAreRefused) {
       {"turbo-pmac2", "bus", "bus = \"isa\"\nfeedback_option_2 = true", "an option of a geo-pmac only"},
       {"turbo-pmac2", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"none\", \"WDO\"]", "has no CTRL outputs"},
       {"turbo-pmac2", "bus", "bus = \"isa\"\ninterrupts = [\"MI1\", \"none\", \"WDO\"]", "has no MI or AXEXP lines"},
-      {"turbo-pmac2-ultralite", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"AXEXP0\", \"WDO\"]",
-       "has no MI or AXEXP lines"},
       {"turbo-pmac", "bus", "bus = \"isa\"\ninterrupts = [\"CTRL0\", \"none\", \"WDO\"]", "has no CTRL outputs"},
       {"turbo-pmac2-ultralite", "servo_ics", "servo_ics = [0]\nmacro_ics = [0]",
        "expected what a turbo-pmac2-ultralite can have: MACRO ICs"},

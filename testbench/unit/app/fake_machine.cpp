@@ -29,6 +29,7 @@ Machine::~Machine() = default;
 Tick Machine::now() const { return impl_->now; }
 HostInputs& Machine::inputs() { return impl_->pins; }
 const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
+PciBridge* Machine::pci() { return nullptr; }
 Signals& Machine::signals() { return impl_->signals; }
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->cycles; }
 
@@ -41,13 +42,14 @@ Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) {
       m.outputs = m.fake.planned.front().second;
       m.fake.planned.erase(m.fake.planned.begin());
     }
+    m.outputs.set(pin::kIsaSdOe, !m.applied.isa_memr_n ? 3 : !m.applied.isa_ior_n ? 1 : 0);
     m.outputs.set(pin::kIsaIochrdy, m.now < m.fake.ready_low_from || m.now >= m.fake.ready_low_to);
     if (before.differs(m.outputs, stop_on)) break;
   }
   return m.now;
 }
 
-void Machine::apply() {
+void Machine::apply(TimeFs) {
   Impl& m = *impl_;
   FakeMachine& f = m.fake;
   f.changes.push_back({m.now + 1, m.applied, m.pins});
@@ -63,13 +65,14 @@ void Machine::apply() {
   if (m.applied.isa_memr_n && !m.pins.isa_memr_n) m.outputs.set(pin::kIsaSd, f.memory[word]);
   if (!m.applied.isa_memw_n && m.pins.isa_memw_n) f.memory[word] = m.pins.isa_sd;
   if (!m.applied.isa_iow_n && m.pins.isa_iow_n) {
-    f.io[offset] = static_cast<std::uint8_t>(m.pins.isa_sd);
-    if (offset == 7 && m.pins.isa_sd == '\r') {
+    const auto byte = static_cast<std::uint8_t>(m.pins.isa_sd);
+    f.io[offset] = byte;
+    if (offset == 7 && byte == '\r') {
       const std::string answer = f.controller ? f.controller(f.line) : "";
       f.to_host.insert(f.to_host.end(), answer.begin(), answer.end());
       f.line.clear();
     } else if (offset == 7) {
-      f.line.push_back(static_cast<char>(m.pins.isa_sd));
+      f.line.push_back(static_cast<char>(byte));
     }
   }
   m.applied = m.pins;

@@ -40,9 +40,18 @@ TEST(JpanScript, DrivesThePinsOfDocsBoards) {
   }
 }
 
+// INIT/ is no input of the port.
+TEST(JpanScript, InitIsApartFromTheInputs) {
+  EXPECT_FALSE(line("@jpan FPD=1").init);
+  EXPECT_EQ(line("@jpan INIT=0").init, false);
+  EXPECT_EQ(line("@jpan init=1").init, true);
+  EXPECT_EQ(line("@jpan INIT=0").inputs, 0u);
+  EXPECT_EQ(line("@jpan FPD=1 INIT=0 START=0").inputs, 0x0F08u);
+}
+
 TEST(JpanScript, ErrorsNameTheWordAndTheInputs) {
   for (const char* bad : {"FPD", "FPD=16", "FPD=-1", "FPD=x", "FPD4=0", "START=2", "START", "START=", "=1", "GO=0",
-                          "START 0", "JOG=0", "JOG P=0", "JOG 0=1", "JOG-+=0"}) {
+                          "START 0", "JOG=0", "JOG P=0", "JOG 0=1", "JOG-+=0", "INIT", "INIT=2", "INIT0=0"}) {
     std::string error = "no error";
     try {
       std::istringstream in("VERSION\n@jpan " + std::string(bad));

@@ -174,7 +174,7 @@ class MotorBoard : public ::testing::Test {
   }
   std::uint32_t ist() const { return rig.get(pin::kPicIst); }
   void isa_write(std::uint32_t address, std::uint16_t value) {
-    rig.in.isa_sa = address;
+    rig.in.set_address(address);
     rig.in.isa_sd = value;
     rig.apply();
     rig.run(20);

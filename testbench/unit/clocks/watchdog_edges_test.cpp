@@ -92,5 +92,36 @@ TEST_P(WatchdogEdges, RisesAndFallsOfServoCountAlike) {
   EXPECT_TRUE(tripped());
 }
 
+// Two flip-flops and the latch (servo-ic:10/4), whatever the phase to clk_ref; relay and lamp with the trip.
+TEST_P(WatchdogEdges, FiveVoltsThatFailTripAtTheThirdEdge) {
+  const auto relay_and_lamp = [&] { return rig.get(pin::kWdRelay) << 1 | rig.get(pin::kWdLed); };
+  for (const Tick phase : {0, 1, 2}) {
+    run_to(rig.now() + 300 + phase);
+    EXPECT_EQ(relay_and_lamp(), 2u) << "energised, dark";
+    const Tick third = (rig.now() / kTicksPerRef + 3) * kTicksPerRef;
+    rig.in.pwr_good = false;
+    rig.apply();
+    EXPECT_EQ(rig.edge(pin::kWdTripped, 1, 20), third);
+    EXPECT_EQ(relay_and_lamp(), 1u) << "released, lit";
+    rig.in.pwr_good = true;
+    rig.apply();
+    rig.run(kMs);
+    EXPECT_TRUE(tripped()) << "latched";
+    rig.in.rst_n = false;
+    rig.apply();
+    rig.run(10 + phase);
+    EXPECT_EQ(relay_and_lamp(), 0u);
+    rig.in.rst_n = true;
+    rig.apply();
+  }
+  rig.in.rst_n = rig.in.pwr_good = false;
+  rig.apply();
+  rig.run(10);
+  rig.in.rst_n = true;
+  rig.apply();
+  const Tick third = (rig.now() / kTicksPerRef + 3) * kTicksPerRef;
+  EXPECT_EQ(rig.edge(pin::kWdTripped, 1, 20), third) << "not good from the start";
+}
+
 }  // namespace
 }  // namespace brick

@@ -34,20 +34,20 @@ class BoardMap : public ::testing::TestWithParam<bool> {
     rig.run(12);
   }
   void io_write(unsigned offset, std::uint16_t value) {
-    rig.in.isa_sa = kIoBase + offset;
+    rig.in.set_address(kIoBase + offset);
     rig.in.isa_sd = value;
     strobe(&BoardInputs::isa_iow_n, 60);
     end(&BoardInputs::isa_iow_n);
   }
   std::uint32_t io_read(unsigned offset) {
-    rig.in.isa_sa = kIoBase + offset;
+    rig.in.set_address(kIoBase + offset);
     strobe(&BoardInputs::isa_ior_n, 60);
     const std::uint32_t value = rig.get(pin::kIsaSd) & 0xFF;
     end(&BoardInputs::isa_ior_n);
     return value;
   }
   void memory_address(unsigned offset) {
-    rig.in.isa_sa = kMemBase + offset;
+    rig.in.set_address(kMemBase + offset);
     rig.in.isa_sbhe_n = false;
   }
   std::uint32_t memory_read(unsigned offset) {

@@ -8,6 +8,7 @@
 namespace brick {
 
 namespace {
+constexpr Tick kShortestLegal = 9;     // ticks of a strobe, host-bus:2.5: 78.7 ns
 constexpr Tick kTripTime = 3'000'000;  // without a strobe the watchdog trips after 25 ms = 2949120 ticks
 }  // namespace
 
@@ -61,6 +62,7 @@ void BoardTraffic::change() {
   const Tick now = next();
   if (reset_at_ == now) {
     in_reset_ = !in_reset_;
+    seen_.reset_in_cycle += in_reset_ && (!inputs_.pa_rd_n || !inputs_.pa_wr_n);
     inputs_.rst_n = !in_reset_;
     reset_at_ = in_reset_ ? now + 1 + pick(40) : kNever;
     driver_ = one_of_ics();
@@ -197,6 +199,9 @@ std::uint32_t BoardTraffic::choose_cpu_data() {
   }
 }
 
+// A strobe from far too short to long; the next one after a rest, at once, or within the same tick: at the fastest CPU
+// clock the least high is shorter than one. Now and then what no bus master does: both strobes, or another address in
+// the middle of a cycle.
 void BoardTraffic::cpu_step() {
   const Tick step = 1 + pick(4);
   bool& strobe = cpu_.write ? inputs_.pa_wr_n : inputs_.pa_rd_n;
@@ -207,24 +212,41 @@ void BoardTraffic::cpu_step() {
       if (pick(4) == 0) inputs_.jpan = static_cast<std::uint16_t>(pick(0x10000));
       cpu_.write = pick(2) != 0;
       cpu_.dpram_accesses += inputs_.pa_aa == 4 && inputs_.pa_addr - regs::kDpramBase < regs::kDpramSize;
-      cpu_.at += step;
+      ++cpu_.accesses;
+      cpu_.at += hurries_ ? pick(2) : step;
       break;
     case 1:
       strobe = false;
-      cpu_.at += 1 + pick(24);  // from far too short to long
+      cpu_.fell = cpu_.at;
+      cpu_.at += pick(4);
       break;
     case 2:
-      strobe = true;
-      if (inputs_.pa_int && pick(2) == 0) {  // the CPU may show something else before the strobe is seen high
+      if (cpu_.write && pick(2) != 0) inputs_.pa_wdata = choose_cpu_data();  // behind the strobe
+      if (pick(40) == 0) {
+        inputs_.pa_rd_n = inputs_.pa_wr_n = false;
+        ++seen_.both_strobes;
+      }
+      if (pick(40) == 0) {
+        choose_cpu_address();
+        ++seen_.address_moved;
+      }
+      cpu_.at += pick(2) == 0 ? 9 + pick(2) : pick(22);  // legal, or anything
+      break;
+    case 3:
+      inputs_.pa_rd_n = inputs_.pa_wr_n = true;
+      seen_.too_short += cpu_.at - cpu_.fell < kShortestLegal;
+      if (inputs_.pa_int && pick(2) == 0) {  // the CPU may show something else at once
         inputs_.pa_int = pick(2) != 0;
         inputs_.pa_addr = pick(10);
       }
-      cpu_.at += pick(3) == 0 ? 1 : step;
+      hurries_ = pick(3) == 0;
+      seen_.back_to_back += hurries_;
+      cpu_.at += hurries_ ? pick(2) : step;
       break;
     default:
-      if (pick(2) != 0) inputs_.pa_aa = 0, inputs_.pa_int = false;
+      if (pick(2) != 0 && !hurries_) inputs_.pa_aa = 0, inputs_.pa_int = false;
       cpu_.step = 0;
-      cpu_.at += 1 + pick(12);
+      if (!hurries_) cpu_.at += 1 + pick(12);
       pause();
       if (options_.reset_one_in != 0 && pick(options_.reset_one_in) == 0 && reset_at_ == kNever)
         reset_at_ = cpu_.at + pick(20);
@@ -243,14 +265,27 @@ void BoardTraffic::choose_host_address() {
     const std::uint32_t offset =
         pick(4) == 0 ? pick(0x10000)
                      : (pick(4) == 0 ? (pick(2) == 0 ? 0xFFF0 : 0x3FF8) : 0) + (pick(2) == 0 ? pick(4) : pick(16));
-    inputs_.isa_sa = (pick(16) == 0 ? 0xC0000 : 0xD0000) + offset;
+    const std::uint32_t window = static_cast<std::uint32_t>(inputs_.window) << 14;
+    inputs_.set_address((window ^ (pick(8) == 0 ? 1u << (14 + pick(10)) : 0)) + offset);
   } else {
-    inputs_.isa_sa = (pick(16) == 0 ? pick(0x400) : regs::host_io::kBase + pick(16));
+    inputs_.set_address((16u * inputs_.io_base + pick(16)) ^ (pick(8) == 0 ? 1u << (4 + pick(12)) : 0));
   }
+  ++host_.accesses;
+  if (pick(100) == 0) choose_host_set_up();
+  if (pick(20) == 0) static_cast<IsaStraps&>(inputs_) = {};
+  inputs_.isa_resetdrv = pick(200) == 0;  // to the next cycle
   host_.dpram_accesses += host_.memory && inputs_.isa_sa - regs::kDpramWindowBase < regs::kDpramWindowSize;
   inputs_.isa_sbhe_n = pick(2) != 0;
   inputs_.isa_aen = pick(16) == 0;
   inputs_.isa_sd = static_cast<std::uint16_t>(pick(4) == 0 ? pick(0x10000) : 1u << pick(16));
+}
+
+void BoardTraffic::choose_host_set_up() {
+  inputs_.io_base = static_cast<std::uint8_t>(pick(0x100));
+  inputs_.io_decode16 = pick(2) != 0;
+  inputs_.window = static_cast<std::uint16_t>(pick(0x400));
+  inputs_.window_flat = pick(2) != 0;
+  inputs_.slot8 = pick(2) != 0;
 }
 
 void BoardTraffic::host_step() {

@@ -1,7 +1,7 @@
 // Random but repeatable traffic on all pins of a board but the motors': Port A cycles to every region and to none, host
 // cycles to every address of the I/O block and the DPRAM window, clocks from outside and straps, each at random ticks
-// and overlapping, resets in between. It holds the rules of both buses that the board relies on: one strobe at a time
-// on each, address and data still around it.
+// and overlapping, resets in between. Cycles of the CPU are legal, back to back, too short or quite wrong; those of the
+// host keep the rules of their bus.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,12 @@ class BoardTraffic {
   void change();      // to be called when the board stands at next()
   void run(Board& board, Tick end);
 
+  // What was made, on both buses, and how often what.
+  struct Seen {
+    unsigned too_short = 0, back_to_back = 0, both_strobes = 0, address_moved = 0, reset_in_cycle = 0;
+  };
+  const Seen& seen() const { return seen_; }
+  unsigned accesses() const { return cpu_.accesses + host_.accesses; }
   unsigned dpram_accesses_of_cpu() const { return cpu_.dpram_accesses; }
   unsigned dpram_accesses_of_host() const { return host_.dpram_accesses; }
 
@@ -41,7 +47,8 @@ class BoardTraffic {
     int step = 0;
     bool write = false;
     bool memory = false;
-    unsigned dpram_accesses = 0;
+    unsigned accesses = 0, dpram_accesses = 0;
+    Tick fell = 0;
   };
   std::uint32_t pick(std::uint32_t below);
   unsigned one_of_ics();
@@ -54,6 +61,7 @@ class BoardTraffic {
   std::uint32_t choose_cpu_data();
   std::uint32_t choose_clock_data(bool drives);
   void choose_host_address();
+  void choose_host_set_up();
 
   std::mt19937_64 random_;
   Options options_;
@@ -63,6 +71,8 @@ class BoardTraffic {
   unsigned driver_ = 0;        // of the clocks, mostly
   Tick outside_at_ = 0, reset_at_ = kNever;
   bool in_reset_ = true;
+  bool hurries_ = false;  // the CPU's next cycle follows at once
+  Seen seen_;
 };
 
 }  // namespace brick

@@ -92,10 +92,11 @@ TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
 }
 
 TEST(InputLayout, EachPinHasOnePlace) {
-  // Port A: A, D, AA, X, internal, two strobes. ISA: SA, SD, six lines. Connectors: JPAN, two clocks, four interrupt
-  // lines. Straps: ICs,
-  // kinds of MACRO ICs, three digits of sources, kind of interrupt controller, three jumpers.
-  constexpr unsigned kPins = (19 + 24 + 4 + 1 + 1 + 2) + (20 + 16 + 6) + (16 + 2 + 4) + (22 + 4 + 3 * 4 + 1 + 3);
+  // Port A: A, D, AA, X, internal, two strobes. ISA: LA, SA, SD, seven lines; its switches and window. Connectors:
+  // JPAN, two clocks, four interrupt lines, 5 V good. Straps: ICs, kinds of MACRO ICs, three digits of sources, kind of
+  // interrupt controller, three jumpers.
+  constexpr unsigned kPins =
+      (19 + 24 + 4 + 1 + 1 + 2) + (7 + 20 + 16 + 7) + (8 + 10 + 3) + (16 + 2 + 4 + 1) + (22 + 4 + 3 * 4 + 1 + 3);
   unsigned pins = 0;
   BoardInputWords taken{};
   const auto check = [&](const auto& field) {

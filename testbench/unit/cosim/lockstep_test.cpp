@@ -107,7 +107,7 @@ TEST(Lockstep, ReportsEqualAccessesInARowAsOneLineAndEachSideForItself) {
   auto board = lockstep({0, true});
   BoardInputs in;
   start_clocks(*board, in);
-  in.isa_sa = 0x212;
+  in.set_address(0x212);
   constexpr unsigned kPolls = 6000;  // 100 ticks each: past the fifth fall of SERVO, 5 x 52228 ticks at reset values
   const Tick first = board->now();
   unsigned polls = 0;
@@ -148,7 +148,7 @@ TEST(Lockstep, DualPortedRamStartsByTheSeedOnBothEngines) {
     in.rst_n = true;
     std::vector<std::uint32_t> words;
     for (std::uint32_t offset = 0; offset < 0x10000; offset += 0x3FE) {
-      in.isa_sa = 0xD0000 + offset;
+      in.set_address(0xD0000 + offset);
       board->set_inputs(in);
       board->run_until(board->now() + 12);
       in.isa_memr_n = false;

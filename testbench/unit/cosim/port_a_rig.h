@@ -40,7 +40,9 @@ class PortARig {
         EXPECT_GE(port_a.stands_at(), now) << "the board would have to go back";
         for (; now < port_a.stands_at(); ++now)
           if (board_(now + 1) != board_(now)) port_a.board_changed(now + 1, board_(now + 1));
+        const BoardInputs before = pins;
         port_a.step(pins, board_(now));
+        if (on_pins) on_pins(now, before, pins);
       }
     }
     cycle = request_.done;
@@ -64,6 +66,7 @@ class PortARig {
   BoardInputs pins;
   std::optional<PortACycle> last;
   Tick now = 0;
+  std::function<void(Tick, const BoardInputs& before, const BoardInputs& after)> on_pins;
   std::int64_t cycle = 12;
 
  private:

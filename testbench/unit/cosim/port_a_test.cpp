@@ -237,5 +237,104 @@ TEST(PortA, NewClockStartsWithAnEdgeAndCountsExactly) {
   EXPECT_EQ(rig.port_a.clock().first_cycle(edge + 2), rig.cycle + 2);
 }
 
+// A pin that moves within the aperture of an edge is taken early or late, lines of a bus one by one, and every other
+// move as without one.
+TEST(PortA, ApertureTakesMovesNearAnEdgeEarlyOrLate) {
+  constexpr TimeFs kWidth = kFsPerNs;
+  Aperture aperture(kWidth, 7);
+  PortARig rig, plain;
+  rig.port_a.set_aperture(&aperture);
+  std::vector<Tick> falls, plain_falls;
+  unsigned steps = 0;
+  rig.on_pins = [&](Tick t, const BoardInputs& before, const BoardInputs& after) {
+    if (before.pa_rd_n && !after.pa_rd_n) falls.push_back(t + 1);
+    if (!after.pa_rd_n) return;
+    steps += before.pa_addr != after.pa_addr;
+  };
+  plain.on_pins = [&](Tick t, const BoardInputs& before, const BoardInputs& after) {
+    if (before.pa_rd_n && !after.pa_rd_n) plain_falls.push_back(t + 1);
+  };
+  unsigned early = 0, late = 0, reads = 0;
+  std::vector<PortACycle> cycles;
+  for (PortARig* r : {&rig, &plain}) {
+    r->set_clock(23);  // a cycle is 12/23 of a tick: edges at every 23rd of one
+    for (unsigned ws = 4; ws <= 31; ++ws) {
+      r->set_wait_states(ws);
+      for (unsigned i = 0; i < 40; ++i) {
+        r->read('X', 0x078000 | (i % 2 == 0 ? 0x2AAAu : 0x1555u));  // all lines move
+        if (r == &rig) cycles.push_back(*rig.last);
+        r->cycle += 2 + i % 5;  // the address stands alone
+      }
+    }
+  }
+  ASSERT_EQ(falls.size(), plain_falls.size());
+  ASSERT_EQ(falls.size(), cycles.size());
+  for (std::size_t i = 0; i < falls.size(); ++i, ++reads) {
+    const Tick sure = fs_to_tick(cycles[i].strobe_low);
+    ASSERT_EQ(plain_falls[i], sure);
+    const bool near_next = tick_to_fs(sure) - cycles[i].strobe_low < kWidth;
+    const bool near_last = cycles[i].strobe_low - tick_to_fs(sure - 1) <= kWidth;
+    if (falls[i] < sure) {
+      EXPECT_TRUE(near_last);
+      EXPECT_EQ(falls[i], sure - 1);
+      ++early;
+    } else if (falls[i] > sure) {
+      EXPECT_TRUE(near_next);
+      EXPECT_EQ(falls[i], sure + 1);
+      ++late;
+    }
+  }
+  // In doubt are the edge itself and two 23rds before and after it; half of these are taken otherwise than by their
+  // time.
+  EXPECT_NEAR(early, reads / 23.0, reads / 46.0);
+  EXPECT_NEAR(late, reads * 1.5 / 23.0, reads / 46.0);
+  EXPECT_GT(steps, cycles.size() + cycles.size() / 20) << "some addresses in two steps";
+  EXPECT_GT(aperture.counts().split, 100u);
+}
+
+TEST(PortA, NoApertureIsExact) {
+  Aperture none;
+  PortARig with, without;
+  with.port_a.set_aperture(&none);
+  std::vector<Tick> moves[2];
+  for (PortARig* rig : {&with, &without})
+    rig->on_pins = [&list = moves[rig == &with]](Tick t, const BoardInputs&, const BoardInputs&) { list.push_back(t); };
+  for (PortARig* rig : {&with, &without}) {
+    rig->set_clock(24);
+    rig->set_wait_states(22);
+    for (unsigned i = 0; i < 100; ++i) rig->write('Y', 0x078000 + i, i);
+  }
+  EXPECT_GT(moves[0].size(), 400u);
+  EXPECT_EQ(moves[0], moves[1]);
+  EXPECT_EQ(none.counts().inside(), 0u);
+}
+
+// host-bus:2.6: whatever the CPU clock, the wait states of host-bus:2.5 keep what the board's side needs, with a
+// nanosecond of aperture, by the rows as the data sheet prints them.
+TEST(PortA, WaitStatesOfEachClockKeepWhatTheBoardNeeds) {
+  BRICK_COVERS("CARD-5");
+  constexpr double kRef = 1e9 / 39'321'600.0, kAperture = 1.0;
+  const double sampled_earliest = kRef - kAperture, sampled_latest = 2 * kRef + kAperture;  // after the strobe falls
+  const double made_latest = 3 * kRef + kAperture;
+  for (unsigned i52 = 0; i52 <= 31; ++i52) {
+    const double tc = tc_ns(i52 + 1);
+    const unsigned gate = i52 <= 7 ? 7 : i52 <= 9 ? 10 : i52 <= 15 ? 15 : i52 <= 23 ? 22 : 31;
+    const unsigned latches = i52 <= 9 ? 15 : 31, on_chip = std::max(7u, i52);
+    for (const unsigned ws : {gate, latches, on_chip}) {
+      SCOPED_TRACE(::testing::Message() << "I52 = " << i52 << ", " << ws << " wait states");
+      const double after = 1.25 + (ws >= 8 ? 1 : 0);
+      const double wr_low = (ws - 0.5) * tc - 4, hold = after * tc - 2;
+      EXPECT_GT((ws + 0.25) * tc - 5, made_latest) << "row 105: the sample of a read";
+      EXPECT_GT(wr_low, made_latest) << "row 102: the write is made before /WR rises";
+      EXPECT_LT(wr_low - ((ws - 0.25) * tc - 3), sampled_earliest) << "row 108: write data late";
+      EXPECT_GT(wr_low + hold, sampled_latest) << "rows 103 and 109: address and data gone early";
+      EXPECT_GT((ws + 0.25) * tc - 4 + hold, sampled_latest) << "row 117";
+      // Two falls of a strobe in a row: rows 102 and 114, 116 and 113.
+      EXPECT_GT(wr_low + (ws >= 8 ? 3.5 : 2.5) * tc - 4, kRef + 2 * kAperture);
+      EXPECT_GT((ws + 0.25) * tc - 4 + (ws >= 8 ? 2.75 : 1.75) * tc - 4, kRef + 2 * kAperture);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace brick

@@ -56,7 +56,7 @@ class Host {
   }
   void command(bool memory, bool write, std::uint64_t address, std::uint16_t data) {
     HostInputs& in = rig_.machine.inputs();
-    in.isa_sa = static_cast<std::uint32_t>(address);
+    in.set_address(static_cast<std::uint32_t>(address));
     in.isa_sd = data;
     in.isa_sbhe_n = !memory;
     rig_.machine.apply();

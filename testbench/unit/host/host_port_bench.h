@@ -18,10 +18,11 @@ class HostPortTest : public ::testing::Test {
   enum IcrBit : std::uint8_t { kRreq = 1, kTreq = 2, kHlend = 0x20, kInit = 0x80 };
 
   HostPort model_{"host_port"};
-  Lockstep<HostPort> both_{
-      make_rtl_host_port(), model_, [](const HostPort& m) {
-        return Outputs{{"hp_rdata", m.hp_rdata()}, {"dsp_rdata", m.dsp_rdata()}, {"hreq", m.hreq()}, {"irq", m.irq()}};
-      }};
+  Lockstep<HostPort> both_{make_rtl_host_port(), model_, [](const HostPort& m) {
+                             return Outputs{{"hp_rdata", m.hp_rdata()}, {"dsp_rdata", m.dsp_rdata()},
+                                            {"hreq", m.hreq()},         {"irq", m.irq()},
+                                            {"txde", m.txde()},         {"rxdf", m.rxdf()}};
+                           }};
 
   void TearDown() override {
     if (!both_.mutate) { EXPECT_LOCKSTEP(both_); }
@@ -89,6 +90,7 @@ class HostPortTest : public ::testing::Test {
         in.dsp_we = random() % 4 == 0;
         in.dsp_rd = !in.dsp_we && random() % 3 == 0;
         in.dsp_sel = random() % 8 != 0;
+        in.hp_reset = random() % 60 == 0;
       }
       if (random() % 3000 == 0) both_.reset();
       both_.tick();

@@ -132,6 +132,33 @@ TEST_F(HostPortTest, CommandWrittenAtTheMomentOfTakingIsNotLost) {
   EXPECT_EQ(host_peek(kCvr), 0xA6u);
 }
 
+// host-bus:3.8: the host's side as after the board's reset, both ways empty; what the CPU has set up stays.
+TEST_F(HostPortTest, ResetdrvEmptiesBothWays) {
+  cpu_write(kHcr, 0x1F);
+  host_write(kIcr, kRreq | kHlend);
+  host_write(kCvr, 0x91);
+  host_write(kIvr, 0x33);
+  cpu_write(kHotx, 0x123456);
+  both_.ref(2);
+  cpu_write(kHotx, 0x654321);
+  host_write(kData7, 1);
+  both_.ref(2);
+  host_write(kData7, 2);
+  both_.ref(2);
+  ASSERT_EQ(isr() & (kRxdf | kTxde), unsigned{kRxdf});
+  both_.in.hp_reset = true;
+  both_.ref();
+  both_.in.hp_reset = false;
+  EXPECT_EQ(isr() & 0x87u, unsigned{kTxde | kTrdy});
+  EXPECT_EQ(hsr() & (kHrdf | kHtde | kHcp), unsigned{kHtde});
+  EXPECT_EQ(host_peek(kIcr), 0u);
+  EXPECT_EQ(host_peek(kCvr), 0x32u);
+  EXPECT_EQ(host_peek(kIvr), 0x0Fu);
+  EXPECT_EQ(cpu_peek(kHcr), 0x1Fu);
+  EXPECT_EQ(both_.get("txde"), 1u);
+  EXPECT_EQ(both_.get("rxdf"), 0u);
+}
+
 TEST_F(HostPortTest, RandomAccessesOfBothSidesAgree) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     random_run(seed, 6000);

@@ -44,6 +44,7 @@ class InterruptControllerTest : public ::testing::Test {
       if (both_.now() % kTicksPerRef == 0) {
         both_.in.wr = random() % 6 == 0;
         both_.in.wdata = static_cast<std::uint8_t>(random());
+        both_.in.reset = random() % 40 == 0;
       }
       if (random() % 2000 == 0) both_.reset();
       both_.tick();
@@ -62,6 +63,25 @@ TEST_F(InterruptControllerTest, ResetBlocksEverythingAndSelectsEdges) {
   both_.ref(4);
   EXPECT_EQ(both_.get("irq"), 0u) << "mask is 0";
   EXPECT_EQ(read(kSignal), 0xFFu) << "SIG ignores mask and mode";
+}
+
+// host-bus:3.8
+TEST_F(InterruptControllerTest, ResetdrvClearsRegistersAndLatches) {
+  write(kMask, 0xFF);
+  write(kEdgeLevel, 0x0F);
+  line(0xF0);
+  both_.ref(4);
+  ASSERT_EQ(read(kStatus), 0xF0u);
+  both_.in.reset = true;
+  both_.ref();
+  EXPECT_EQ(both_.get("irq"), 0u);
+  both_.in.reset = false;
+  both_.ref(4);
+  EXPECT_EQ(read(kMask), 0u);
+  EXPECT_EQ(read(kEdgeLevel), 0u);
+  write(kMask, 0xFF);
+  both_.ref(4);
+  EXPECT_EQ(read(kStatus), 0u) << "the lines have been high all the time";
 }
 
 TEST_F(InterruptControllerTest, MaskAndModeHoldEveryBit) {

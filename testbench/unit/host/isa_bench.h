@@ -15,17 +15,19 @@ class IsaBench {
  public:
   using Inputs = IsaSlave::Inputs;
 
-  IsaBench(RtlBlock<Inputs, Outputs> rtl, const IsaSlave::Config& config)
-      : model("isa_slave", config), both(std::move(rtl), model, [](const IsaSlave& m) {
+  IsaBench()
+      : model("isa_slave"), both(make_rtl_isa_slave(), model, [](const IsaSlave& m) {
           return Outputs{
               {"isa_sd", m.isa_sd()},       {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
+              {"isa_sd_oe", m.isa_sd_oe()}, {"host_reset", m.host_reset()},   {"pic_rd", m.pic_rd()},
               {"hp_sel", m.hp_sel()},       {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
               {"hp_addr", m.hp_addr()},     {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
-              {"pic_wr", m.pic_wr()},       {"pic_rd", m.pic_rd()},           {"pic_addr", m.pic_addr()},
-              {"pic_wdata", m.pic_wdata()}, {"mem_sel", m.mem_sel()},         {"mem_rd", m.mem_rd()},
-              {"mem_wr", m.mem_wr()},       {"mem_addr", m.mem_addr()},       {"mem_be", m.mem_be()},
-              {"mem_wdata", m.mem_wdata()}};
-        }) {}
+              {"pic_wr", m.pic_wr()},       {"pic_addr", m.pic_addr()},       {"pic_wdata", m.pic_wdata()},
+              {"mem_sel", m.mem_sel()},     {"mem_rd", m.mem_rd()},           {"mem_wr", m.mem_wr()},
+              {"mem_addr", m.mem_addr()},   {"mem_be", m.mem_be()},           {"mem_wdata", m.mem_wdata()}};
+        }) {
+    both.ticks(12);  // switches are taken over, the bus is idle
+  }
 
   IsaSlave model;
   Lockstep<IsaSlave> both;
@@ -59,26 +61,45 @@ class IsaBench {
     for (int i = 0; i < n; ++i) tick();
   }
 
-  // Whole cycles: address 90 ns before the command (11 ticks), I/O command 530 ns (63 ticks), memory 240 ns (28 ticks),
+  // Whole cycles: address 91 ns before the command (11 ticks), I/O command 530 ns (63 ticks), memory 240 ns (28 ticks),
   // hold 25 ns (3 ticks), then the pins hold something else.
   std::uint16_t io_read(unsigned address) { return cycle(address, &Inputs::isa_ior_n, 63, 0); }
   void io_write(unsigned address, unsigned value) { cycle(address, &Inputs::isa_iow_n, 63, value); }
   std::uint16_t mem_read(unsigned address) { return cycle(address, &Inputs::isa_memr_n, 28, 0); }
   void mem_write(unsigned address, unsigned value) { cycle(address, &Inputs::isa_memw_n, 28, value); }
 
+  void set_address(unsigned address) {
+    both.in.isa_sa = address & 0xFFFFF;
+    both.in.isa_la = static_cast<std::uint8_t>(address >> 17);
+  }
+  // What a host finds on the bus: lanes that nobody drives are pulled up.
+  unsigned bus_data() {
+    const unsigned oe = both.get("isa_sd_oe");
+    return both.get("isa_sd") | ((oe & 1) != 0 ? 0u : 0x00FFu) | ((oe & 2) != 0 ? 0u : 0xFF00u);
+  }
+
   std::uint16_t cycle(unsigned address, bool Inputs::*command, int width, unsigned value) {
-    both.in.isa_sa = address;
+    set_address(address);
     both.in.isa_sd = static_cast<std::uint16_t>(value);
     ticks(11);
     both.in.*command = false;
     ticks(width);
-    const auto data = static_cast<std::uint16_t>(both.get("isa_sd"));
+    const auto data = static_cast<std::uint16_t>(bus_data());
     both.in.*command = true;
     ticks(3);
     both.in.isa_sd = static_cast<std::uint16_t>(~value);
-    both.in.isa_sa = ~address & 0xFFFFF;
+    set_address(~address);
     ticks(12);
     return data;
+  }
+
+  void choose_straps(std::mt19937& random) {
+    auto& in = both.in;
+    in.io_base = random() % 2 ? 0x21 : static_cast<std::uint8_t>(random());
+    in.io_decode16 = random() % 4 != 0;
+    in.window = random() % 2 ? 0x35 : static_cast<std::uint16_t>(random() % 0x400);
+    in.window_flat = random() % 2;
+    in.slot8 = random() % 4 == 0;
   }
 
   void random_run(unsigned seed, int ticks) {
@@ -96,14 +117,23 @@ class IsaBench {
           in.*commands[random() % 4] = false;
           if (random() % 50 == 0) in.*commands[random() % 4] = false;  // no host does this; both must still agree
         } else {
-          in.isa_sa = random() % 4 ? 0x210 + random() % 16 : 0xD0000 + random() % 0x10000;
-          if (random() % 16 == 0) in.isa_sa ^= 1u << random() % 20;
+          const unsigned io = unsigned{in.io_base} << 4 | random() % 16, memory = in.window << 14 | random() % 0x10000;
+          unsigned address = random() % 4 ? io : memory;
+          if (random() % 16 == 0) address ^= 1u << random() % 24;
+          set_address(address);
           in.isa_sd = static_cast<std::uint16_t>(random());
           in.isa_aen = random() % 8 == 0;
           in.isa_sbhe_n = random() % 2;
         }
         left = 1 + static_cast<int>(random() % 24);
+        if (random() % 100 == 0)
+          in.isa_resetdrv = !in.isa_resetdrv;
+        else if (in.isa_resetdrv && random() % 4 == 0)
+          in.isa_resetdrv = false;
+        if (random() % 60 == 0) choose_straps(random);
+        if (random() % 200 == 0) both.reset();
       }
+      if (random() % 64 == 0) in.isa_la = static_cast<std::uint8_t>(random() % 0x80);  // a host may let go of it early
       if (both.now() % kTicksPerRef == 0) {
         in.mem_busy = random() % 3 == 0;  // also at the end of a command, where it is one clock late
         in.mem_rdata = static_cast<std::uint16_t>(random());

@@ -7,8 +7,8 @@
 #include <random>
 #include <sstream>
 
+#include "testbench/checkers/reference_8259.h"
 #include "testbench/unit/host/lockstep.h"
-#include "testbench/unit/host/pic_8259_reference.h"
 
 namespace brick {
 namespace {

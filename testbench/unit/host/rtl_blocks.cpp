@@ -6,7 +6,6 @@
 #include "Vhost_signals.h"
 #include "Vinterrupt_controller.h"
 #include "Visa_slave.h"
-#include "Visa_slave_variant.h"
 #include "Vpic_8259.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
@@ -14,6 +13,7 @@ namespace brick {
 namespace {
 
 void drive(Vinterrupt_controller& v, const InterruptControllerInputs& in) {
+  v.reset_i = in.reset;
   v.line_i = in.line;
   v.wr_i = in.wr;
   v.addr_i = in.addr;
@@ -52,6 +52,7 @@ void drive(Vhost_port& v, const HostPortInputs& in) {
   v.hp_wr_i = in.hp_wr;
   v.hp_addr_i = in.hp_addr;
   v.hp_wdata_i = in.hp_wdata;
+  v.hp_reset_i = in.hp_reset;
   v.dsp_sel_i = in.dsp_sel;
   v.dsp_we_i = in.dsp_we;
   v.dsp_rd_i = in.dsp_rd;
@@ -59,7 +60,8 @@ void drive(Vhost_port& v, const HostPortInputs& in) {
   v.dsp_wdata_i = in.dsp_wdata;
 }
 Outputs sample(const Vhost_port& v) {
-  return {{"hp_rdata", v.hp_rdata_o}, {"dsp_rdata", v.dsp_rdata_o}, {"hreq", v.hreq_o}, {"irq", v.irq_o}};
+  return {{"hp_rdata", v.hp_rdata_o}, {"dsp_rdata", v.dsp_rdata_o}, {"hreq", v.hreq_o},
+          {"irq", v.irq_o},           {"txde", v.txde_o},           {"rxdf", v.rxdf_o}};
 }
 
 void drive(Vdpram& v, const DpramInputs& in) {
@@ -80,12 +82,13 @@ void drive(Vdpram& v, const DpramInputs& in) {
   v.mem_wdata_i = in.mem_wdata;
 }
 Outputs sample(const Vdpram& v) {
-  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_wait", v.cpu_wait_o}, {"cpu_busy", v.cpu_busy_o},
-          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o}};
+  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_valid", v.cpu_valid_o}, {"cpu_wait", v.cpu_wait_o},
+          {"cpu_busy", v.cpu_busy_o},   {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o},
+          {"host_busy", v.host_busy_o}};
 }
 
-template <class V>  // both of its variants
-void drive(V& v, const IsaSlaveInputs& in) {
+void drive(Visa_slave& v, const IsaSlaveInputs& in) {
+  v.isa_la_i = in.isa_la;
   v.isa_sa_i = in.isa_sa;
   v.isa_sd_i = in.isa_sd;
   v.isa_ior_ni = in.isa_ior_n;
@@ -94,20 +97,25 @@ void drive(V& v, const IsaSlaveInputs& in) {
   v.isa_memw_ni = in.isa_memw_n;
   v.isa_aen_i = in.isa_aen;
   v.isa_sbhe_ni = in.isa_sbhe_n;
+  v.isa_resetdrv_i = in.isa_resetdrv;
+  v.io_base_i = in.io_base;
+  v.io_decode16_i = in.io_decode16;
+  v.window_i = in.window;
+  v.window_flat_i = in.window_flat;
+  v.slot8_i = in.slot8;
   v.hp_rdata_i = in.hp_rdata;
   v.pic_rdata_i = in.pic_rdata;
   v.mem_rdata_i = in.mem_rdata;
   v.mem_busy_i = in.mem_busy;
 }
-template <class V>
-Outputs sample(const V& v) {
+Outputs sample(const Visa_slave& v) {
   return {{"isa_sd", v.isa_sd_o},       {"isa_iochrdy", v.isa_iochrdy_o}, {"isa_memcs16_n", v.isa_memcs16_no},
+          {"isa_sd_oe", v.isa_sd_oe_o}, {"host_reset", v.host_reset_o},   {"pic_rd", v.pic_rd_o},
           {"hp_sel", v.hp_sel_o},       {"hp_rd_done", v.hp_rd_done_o},   {"hp_wr", v.hp_wr_o},
           {"hp_addr", v.hp_addr_o},     {"hp_wdata", v.hp_wdata_o},       {"pic_sel", v.pic_sel_o},
-          {"pic_wr", v.pic_wr_o},       {"pic_rd", v.pic_rd_o},           {"pic_addr", v.pic_addr_o},
-          {"pic_wdata", v.pic_wdata_o}, {"mem_sel", v.mem_sel_o},         {"mem_rd", v.mem_rd_o},
-          {"mem_wr", v.mem_wr_o},       {"mem_addr", v.mem_addr_o},       {"mem_be", v.mem_be_o},
-          {"mem_wdata", v.mem_wdata_o}};
+          {"pic_wr", v.pic_wr_o},       {"pic_addr", v.pic_addr_o},       {"pic_wdata", v.pic_wdata_o},
+          {"mem_sel", v.mem_sel_o},     {"mem_rd", v.mem_rd_o},           {"mem_wr", v.mem_wr_o},
+          {"mem_addr", v.mem_addr_o},   {"mem_be", v.mem_be_o},           {"mem_wdata", v.mem_wdata_o}};
 }
 
 }  // namespace
@@ -129,9 +137,6 @@ RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed) {
 }
 RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave() {
   return verilated_shell<Visa_slave, IsaSlaveInputs, Outputs>(drive, sample);
-}
-RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave_variant() {
-  return verilated_shell<Visa_slave_variant, IsaSlaveInputs, Outputs>(drive, sample);
 }
 
 }  // namespace brick

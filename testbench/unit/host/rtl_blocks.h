@@ -19,6 +19,5 @@ RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals();
 RtlBlock<HostPortInputs, Outputs> make_rtl_host_port();
 RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed = 0);  // memory has no reset: as the model, it starts as zero
 RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave();
-RtlBlock<IsaSlaveInputs, Outputs> make_rtl_isa_slave_variant();  // IoBase 0x310, window 0xE0000, ten-bit decode
 
 }  // namespace brick

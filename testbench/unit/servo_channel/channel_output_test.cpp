@@ -236,6 +236,52 @@ TEST_F(ChannelSerialTest, DacSendsEighteenBitsOfTheCommand) {
   EXPECT_EQ(receive(kDacClk, [&] { return rig_.other(kDacA, 3); }), 0u) << "0 after a watchdog trip";
 }
 
+// PHASE has stopped; the trip comes while a word is under way, or long after it, at several bit clocks. The word ends,
+// then each DAC gets 18 zeros, at the latest 2 x 24 bits and what it takes to see the trip later, and nothing follows.
+TEST_F(ChannelSerialTest, TripSendsAZeroWordWithoutPhase) {
+  const std::uint32_t stopped = ic_words::kClockControl.reset;  // both clocks from outside
+  for (const unsigned n : {0u, 1u, 3u, 7u})
+    for (const bool idle : {false, true}) {
+      rig_.in.trip = false;
+      const auto dividers = [n](std::uint32_t w) { return ic_words::clock_control::kDacDivider.set(w, n); };
+      rig_.write(ic_words::kClockControl, dividers(kOwnClocks));
+      for (unsigned ch = 1; ch <= 4; ++ch) {
+        control(ch, kDac);
+        rig_.write(ch, words::kOutA, 0x555540 + (ch << 8));
+        rig_.write(ch, words::kOutB, 0xAAAA80);
+      }
+      wait_for_phase(true);
+      wait_for_phase(true);
+      rig_.write(ic_words::kClockControl, dividers(stopped));
+      const Tick bit = 3 << n;
+      rig_.ticks(idle ? 30 * bit : 9 * bit);
+
+      std::array<std::uint32_t, 8> shift{};
+      unsigned latched = 0, wrong = 0;
+      Tick zero_at = -1;
+      const Tick trip = rig_.now();
+      rig_.in.trip = true;
+      ChannelPins last = rig_.pins();
+      for (Tick t = 0; t < 80 * bit + 40; ++t) {
+        rig_.tick();
+        const ChannelPins now = rig_.pins();
+        if ((now.serial & ~last.serial & kDacClk) != 0)
+          for (unsigned i = 0; i < 8; ++i)
+            shift[i] = shift[i] << 1 | (rig_.other(i < 4 ? kDacA : kDacB, i % 4 + 1) ? 1 : 0);
+        if ((last.serial & ~now.serial & kDacStrobe) != 0) {
+          ++latched;
+          zero_at = rig_.now();
+          wrong = 0;
+          for (const std::uint32_t word : shift) wrong += (word & 0x3FFFF) != 0;
+        }
+        last = now;
+      }
+      EXPECT_EQ(latched, idle ? 1u : 2u) << "n " << n;
+      EXPECT_EQ(wrong, 0u) << "DACs that are not zero, n " << n;
+      EXPECT_LE(zero_at - trip, 2 * 24 * bit + 6 * kTicksPerRef) << "n " << n;
+    }
+}
+
 TEST_F(ChannelSerialTest, AdcKeepsEighteenBitsAfterTheHeader) {
   const std::uint32_t a = 0x2B5D3, b = 0x1A2C6;  // 18 bits each
   for (unsigned ch = 1; ch <= 4; ++ch) {

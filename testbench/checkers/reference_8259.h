@@ -21,6 +21,7 @@ class Reference8259 {
   }
 
   bool interrupts() const { return winner().has_value(); }
+  bool polls() const { return poll_; }  // the next read is one
 
   // The acknowledge cycle.
   std::uint8_t vector() { return static_cast<std::uint8_t>(base_ | take(winner())); }

@@ -1,0 +1,305 @@
+// interrupts: every source on every line of the interrupt controller, by edge and by level; masks; an edge at every
+// alignment to a clear; the least pulse; random lines and writes, judged edge by edge by
+// testbench/checkers/interrupt_scoreboard.h. Lines pass two flip-flops and an edge detector: SIG shows a change 6 ticks
+// after its pin, the interrupt 9. On a board with an 8259 see interrupts_8259.cpp.
+#include "systemc/machine/board_family.h"
+#include "testbench/benches/benches.h"
+#include "testbench/benches/interrupt_host.h"
+#include "testbench/checkers/interrupt_scoreboard.h"
+
+namespace brick {
+namespace {
+
+constexpr Tick kMillisecond = kPwmClockHz / 1000;
+constexpr unsigned kClear = 8, kMask = 10, kEdgeLevel = 11;
+constexpr Tick kSigAfter = 2 * kTicksPerRef, kIrqAfter = 3 * kTicksPerRef;  // a pin that moves at an edge of clk_ref
+
+class Interrupts : public InterruptHost {
+ public:
+  explicit Interrupts(BenchContext& context) : InterruptHost(context) {
+    const BoardOutputs pins = select_pins(pin::kPicIst, pin::kPicSig, pin::kPicMsk, pin::kPicElr, pin::kIsaIrq,
+                                          pin::kIpos, pin::kBreq, pin::kEror, pin::kF1er, pin::kHreq, pin::kWdo);
+    b.bus.watch(pins, [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+      changes_.push_back({t, before, after});
+    });
+  }
+  ~Interrupts() { b.bus.watch({}, nullptr); }
+  Interrupts(const Interrupts&) = delete;
+  Interrupts& operator=(const Interrupts&) = delete;
+
+  void run() {
+    calibrate();
+    for (unsigned n = 0; n < kFixed.size(); ++n) fixed_line(n);
+    for (const unsigned source : sources()) chosen_lines(source);
+    alignments();
+    pulses();
+    random_traffic();
+    watchdog();
+  }
+
+ private:
+  struct Change {
+    Tick tick;
+    BoardOutputs before, after;
+  };
+  std::uint32_t out(const PinField& f) const { return b.machine.outputs().get(f); }
+  std::string shown() const {
+    return fmt::format("IST={:02X} SIG={:02X} IRQ={}", out(pin::kPicIst), out(pin::kPicSig), out(pin::kIsaIrq));
+  }
+  // Tick of the last change of a pin since `from`; -1: none.
+  Tick moved(const PinField& f, Tick from) const {
+    for (auto c = changes_.rbegin(); c != changes_.rend() && c->tick >= from; ++c)
+      if (c->before.get(f) != c->after.get(f)) return c->tick;
+    return -1;
+  }
+  void set(std::uint8_t mask, std::uint8_t edge_level) {
+    b.bus.write_pic_mask(0);
+    b.bus.write_pic_edge_level(edge_level);
+    b.bus.clear_pic();
+    b.bus.write_pic_mask(mask);
+    b.bus.wait(40);
+    changes_.clear();
+  }
+  void clear() {
+    b.bus.clear_pic();
+    b.bus.wait(40);
+  }
+
+  // When a write takes place after its command has ended, for each phase to clk_ref: seen at the mask's pins.
+  void calibrate() {
+    set(0, 0);
+    bool good = true;
+    for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
+      const Tick end = (b.bus.now() / kTicksPerRef + 40) * kTicksPerRef + phase;
+      std::vector<std::pair<Tick, Edit>> edits;
+      add_write(edits, end, kMask, static_cast<std::uint8_t>(0x10 << phase));
+      play(std::move(edits));
+      b.bus.wait(60);
+      const Tick at = moved(pin::kPicMsk, end);
+      good = good && at > end && at % kTicksPerRef == 0;
+      written_after_[static_cast<std::size_t>(phase)] = at - end;
+    }
+    b.report.step("writes take place", good,
+                  fmt::format("{}, {}, {} ticks after the command at the phases of clk_ref", written_after_[0],
+                              written_after_[1], written_after_[2]));
+  }
+
+  // IR0 to IR4.
+  void fixed_line(unsigned n) {
+    const PinField* pins[] = {&pin::kIpos, &pin::kBreq, &pin::kEror, &pin::kF1er, &pin::kHreq};
+    const auto bit = static_cast<std::uint8_t>(1u << n);
+    set(0xFF, 0);
+    Comparison same;
+    const auto state = [&](const std::string& when, const std::string& expected) {
+      same.equal(when, shown(), expected);
+    };
+    const std::string on = fmt::format("IST={0:02X} SIG={0:02X} IRQ=1", bit),
+                      high = fmt::format("IST=00 SIG={:02X} IRQ=0", bit), off = "IST=00 SIG=00 IRQ=0",
+                      latched = fmt::format("IST={:02X} SIG=00 IRQ=1", bit);
+    const auto raise = [&](Tick irq_after) {
+      const Tick from = b.bus.now();
+      drive_fixed(n, true);
+      b.bus.wait(40);
+      const Tick line = moved(*pins[n], from);
+      same.equal("SIG after its pin", moved(pin::kPicSig, from) - line, kSigAfter);
+      same.equal("IRQ after its pin", moved(pin::kIsaIrq, from) - line, irq_after);
+    };
+    raise(kIrqAfter);
+    state("rise", on);
+    clear();
+    state("cleared while high", high);
+    drive_fixed(n, false);
+    b.bus.wait(40);
+    state("fall", off);
+    raise(kIrqAfter);
+    drive_fixed(n, false);
+    b.bus.wait(40);
+    state("rise and fall", latched);
+    b.bus.write_pic_mask(static_cast<std::uint8_t>(~bit));
+    b.bus.write_pic_mask(0xFF);
+    b.bus.wait(40);
+    state("masked for a moment", off);
+
+    set(0xFF, bit);
+    raise(kSigAfter);
+    state("level", on);
+    clear();
+    state("level, cleared while high", on);
+    b.bus.write_pic_mask(static_cast<std::uint8_t>(~bit));
+    b.bus.wait(40);
+    state("level, masked", high);
+    b.bus.write_pic_mask(0xFF);
+    drive_fixed(n, false);
+    b.bus.wait(40);
+    state("level, fall", off);
+    b.report.step(fmt::format("IR{} {}", n, kFixed[n]), same, 15,
+                  "edge and level: SIG 6, interrupt 9 ticks after the pin");
+  }
+
+  // One source on all three lines: two by edge and one by level, then the other way round.
+  void chosen_lines(unsigned source) {
+    Comparison same;
+    select(source, source, source);
+    const auto state = [&](const std::string& when, unsigned ist, unsigned sig) {
+      same.equal(when, shown(), fmt::format("IST={:02X} SIG={:02X} IRQ={}", ist, sig, ist != 0 ? 1 : 0));
+    };
+    for (const unsigned level : {0x40u, 0xA0u}) {
+      const unsigned edge = 0xE0 & ~level, masked = 0x20u << pick(3);
+      set(0xE0, static_cast<std::uint8_t>(level));
+      drive(source, true);
+      state("high", 0xE0, 0xE0);
+      clear();
+      state("cleared while high", level, 0xE0);
+      drive(source, false);
+      state("low", 0, 0);
+      b.bus.write_pic_mask(static_cast<std::uint8_t>(0xE0 & ~masked));
+      drive(source, true);
+      state("high, one masked", 0xE0 & ~masked, 0xE0);
+      b.bus.write_pic_mask(0xE0);
+      b.bus.wait(40);
+      state("no longer masked", (0xE0 & ~masked) | (masked & level), 0xE0);
+      drive(source, false);
+      state("low again", edge & ~masked, 0);
+    }
+    set(0xE0, 0xE0);
+    for (unsigned line = 0; line < 3 && source >= kSourceMi1; ++line) {  // and on each of them alone
+      const unsigned other = pick(2) == 0 ? 0 : kSourceMi1 + (source - kSourceMi1 + 1) % 4;
+      select(line == 0 ? source : other, line == 1 ? source : other, line == 2 ? source : other);
+      drive(source, true);
+      state("alone", 0x20u << line, 0x20u << line);
+      drive(source, false);
+    }
+    b.report.step(fmt::format("IR5, IR6, IR7 from {}", kInterruptSources[source]), same, 12, "by edge and by level");
+  }
+
+  // A rise of MI1, and a clear that takes place from 5 clocks before to 5 after the detector has it, at every tick. The
+  // negative control makes the write cycle end a clock later.
+  void alignments() {
+    select(kSourceMi1, 0, 0);
+    Comparison same;
+    unsigned kept = 0, cleared = 0;
+    for (Tick lead = -15; lead <= 15; ++lead) {
+      set(0x20, 0);
+      const Tick rise = b.bus.now() + 150 + pick(3), end = rise + lead;
+      std::vector<std::pair<Tick, Edit>> edits;
+      add_write(edits, b.negative ? end + kTicksPerRef : end, kClear, 0);
+      edits.emplace_back(rise, [](HostInputs& in) { in.mi1 = true; });
+      play(std::move(edits));
+      b.bus.advance_to(rise + 60);
+      const Tick sampled = (rise / kTicksPerRef + 1) * kTicksPerRef, detected = sampled + 2 * kTicksPerRef;
+      const Tick written = end + written_after_[static_cast<std::size_t>(end % kTicksPerRef)];
+      const bool keeps = detected >= written;
+      ++(keeps ? kept : cleared);
+      same.equal(fmt::format("rise at {}, clear at {}: IST", detected - rise, written - rise), out(pin::kPicIst),
+                 keeps ? 0x20u : 0u);
+      drive(kSourceMi1, false);
+    }
+    b.report.step("an edge that meets a clear is kept", same, 31,
+                  fmt::format("{} alignments: {} kept, {} cleared", same.made(), kept, cleared));
+    b.report.step("both outcomes seen", kept >= 5 && cleared >= 5, fmt::format("{} and {}", kept, cleared));
+  }
+
+  // host-bus:4.1/8: one clk_ref is always enough; less is when an edge falls into it.
+  void pulses() {
+    Comparison same;
+    unsigned seen = 0;
+    for (Tick width = 1; width <= 2 * kTicksPerRef; ++width)
+      for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
+        set(0x20, 0);
+        const Tick rise = (b.bus.now() / kTicksPerRef + 10) * kTicksPerRef + phase, fall = rise + width;
+        play({{rise, [](HostInputs& in) { in.mi1 = true; }}, {fall, [](HostInputs& in) { in.mi1 = false; }}});
+        b.bus.wait(40);
+        const bool sampled = fall / kTicksPerRef > rise / kTicksPerRef;
+        seen += sampled ? 1 : 0;
+        same.equal(fmt::format("{} ticks at phase {}: IST", width, phase), out(pin::kPicIst), sampled ? 0x20u : 0u);
+      }
+    b.report.step("least pulse", same, 18, fmt::format("{} of {} pulses seen; 3 ticks are enough", seen, same.made()));
+  }
+
+  // Three lines from outside move at any tick, mask, mode and clears come at any tick: every edge of clk_ref is judged.
+  void random_traffic() {
+    constexpr unsigned kWrites = 150;
+    select(kSourceMi1, kSourceMi1 + 1, kSourceMi1 + 2);
+    set(0, 0);
+    std::vector<std::pair<Tick, Edit>> edits;
+    std::vector<std::pair<Tick, InterruptScoreboard::Write>> writes;  // by the edge at which they take place
+    std::vector<std::pair<Tick, unsigned>> toggles;                   // line, by the tick
+    const Tick begin = (b.bus.now() / kTicksPerRef + 1) * kTicksPerRef;
+    Tick end = begin + 200;
+    for (unsigned i = 0; i < kWrites; ++i, end += 110 + pick(100)) {
+      const unsigned offset = pick(3) == 0 ? kEdgeLevel : pick(2) == 0 ? kMask : kClear;
+      const auto value = static_cast<std::uint8_t>(pick(8) << 5);
+      add_write(edits, end, offset, value);
+      writes.push_back({end + written_after_[static_cast<std::size_t>(end % kTicksPerRef)],
+                        {offset == kMask, offset == kEdgeLevel, offset == kClear, value}});
+    }
+    for (Tick t = begin + 50; t < end; t += 1 + pick(60)) {
+      const unsigned line = pick(3);
+      toggles.emplace_back(t, line);
+      edits.emplace_back(t, [line](HostInputs& in) { in.*kOutside[line] = !(in.*kOutside[line]); });
+    }
+    play(std::move(edits));
+    b.bus.advance_to(end + 30);
+
+    InterruptScoreboard scoreboard;
+    Comparison same;
+    std::uint8_t lines = 0;
+    std::size_t toggle = 0, write = 0, change = 0;
+    BoardOutputs now = changes_.empty() ? b.machine.outputs() : changes_.front().before;
+    for (Tick t = begin; t < end + 20; t += kTicksPerRef) {
+      for (; toggle < toggles.size() && toggles[toggle].first < t; ++toggle)
+        lines = static_cast<std::uint8_t>(lines ^ 0x20u << toggles[toggle].second);
+      InterruptScoreboard::Write at;
+      if (write < writes.size() && writes[write].first == t) at = writes[write++].second;
+      const InterruptScoreboard::Shown expected = scoreboard.edge(lines, at);
+      for (; change < changes_.size() && changes_[change].tick <= t; ++change) now = changes_[change].after;
+      same.equal(fmt::format("tick {}: IST, SIG, IRQ", t),
+                 fmt::format("{:02X} {:02X} {}", now.get(pin::kPicIst), now.get(pin::kPicSig), now.get(pin::kIsaIrq)),
+                 fmt::format("{:02X} {:02X} {:d}", expected.ist, expected.sig, expected.irq));
+    }
+    b.report.step(
+        "random lines and writes", same, 5000,
+        fmt::format("{} edges of clk_ref, {} writes, {} edges taken", same.made(), write, scoreboard.edges()));
+    b.report.step("edges taken at random", scoreboard.edges() >= 30,
+                  fmt::format("{}, 30 at least", scoreboard.edges()));
+    for (unsigned i = 0; i < 3; ++i) drive(kSourceMi1 + i, false);
+  }
+
+  // WDO on each line: the clocks stop, because they are to come from outside (E1) and nobody makes them.
+  void watchdog() {
+    select(kSourceWdo, kSourceWdo, kSourceWdo);
+    set(0xE0, 0x40);
+    b.machine.inputs().ext_clock = true;
+    b.machine.apply();
+    const bool tripped = b.bus.wait_pin(pin::kWdo, 1, 30 * kMillisecond);
+    const Tick trip = b.bus.now();
+    b.bus.wait(40);
+    b.report.step("IR5, IR6, IR7 from WDO", tripped && shown() == "IST=E0 SIG=E0 IRQ=1", shown());
+    b.report.equal<Tick>("SIG after the trip, ticks", moved(pin::kPicSig, trip) - trip, kSigAfter);
+    clear();
+    b.report.equal<std::string>("cleared while tripped", shown(), "IST=40 SIG=E0 IRQ=1");
+    b.machine.take_run_errors();  // the board's own source of the clocks is told of
+  }
+
+  std::array<Tick, kTicksPerRef> written_after_{};
+  std::vector<Change> changes_;
+};
+
+}  // namespace
+
+// covers: BREQ-5 CARD-1
+Bench interrupts_bench() {
+  return {
+      "interrupts",
+      "every source of every interrupt line, edge and level, masks, clears at every alignment; on an 8259 its modes",
+      {"the clear comes a clock later than the scoreboard is told", "an edge that meets a clear is kept",
+       "IST: 0, expected 32"},
+      [](BenchContext& b) {
+        if (b.board.pic_8259)
+          interrupts_8259(b);
+        else
+          Interrupts(b).run();
+      }};
+}
+
+}  // namespace brick

@@ -1,0 +1,134 @@
+#include "testbench/benches/isa_malformed.h"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "rtl/regs/brick_regs.hpp"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kLast = 7, kMask = 10, kMemory = 0x200;  // I/O offsets; a word of the dual-ported RAM
+constexpr std::uint16_t kWord = 0x6B2D;
+constexpr std::uint8_t kBackspace = 0x08;  // does nothing to an empty line
+
+class MalformedHosts {
+ public:
+  explicit MalformedHosts(BenchContext& b) : b_(b) {}
+
+  void run() {
+    b_.bus.dpram_write(kMemory, kWord);
+    b_.bus.write_pic_mask(0);
+    provoke("strobe of 30 ns", {"t2"}, [this] { short_strobe(); });
+    provoke("two commands at once", {"one-command"}, [this] { two_commands(); });
+    provoke("address moves", {"address-stands"}, [this] { moving_address(); });
+    provoke("TX written while full", {"room-in-tx"}, [this] { full_tx(); });
+    provoke("RESETDRV in a write", {"whole-cycle"}, [this] { resetdrv(); });
+    provoke("reset in a memory write", {"whole-cycle"}, [this] { board_reset(false); });
+    provoke("power loss in a memory write", {"whole-cycle"}, [this] { board_reset(true); });
+  }
+
+ private:
+  void provoke(const std::string& name, const std::vector<std::string>& rules, const std::function<void()>& host) {
+    TimingLedger& ledger = b_.timing.isa().ledger();
+    b_.bus.wait(60);
+    ledger.forget();
+    host();
+    std::vector<std::string> broken;
+    for (const TimingViolation& v : ledger.violations()) broken.push_back(ledger.rules()[v.rule].id);
+    ledger.forget();
+    b_.report.equal(name, fmt::format("{}", fmt::join(broken, " ")), fmt::format("{}", fmt::join(rules, " ")));
+    works(name);
+  }
+  void works(const std::string& after) {
+    const std::string number = std::to_string(++probes_);
+    b_.link.command("P1=" + number);
+    const std::string answer = b_.ask("P1");
+    const std::uint16_t word = b_.bus.dpram_read(kMemory);
+    const std::uint8_t mask = b_.bus.io_read(kMask);
+    const bool good = answer == number && word == kWord && mask == 0;
+    b_.report.step(after + ": the machine works", good,
+                   fmt::format("P1 {}, word {:04X}, MSK {:02X}{}", answer, word, mask,
+                               good ? "" : fmt::format(", expected P1 {}, word {:04X}, MSK 00", number, kWord)));
+  }
+
+  // A point in time after all cycles; `offset` nanoseconds later pins move.
+  void begin() { start_ = std::max(b_.bus.free_at(), b_.machine.now_fs()) + isa::ns(1000); }
+  void at(std::int64_t offset, const std::function<void(HostInputs&)>& edit) {
+    b_.bus.drive_at(start_ + isa::ns(offset), edit);
+  }
+  void address(std::uint32_t offset, std::uint8_t data = kBackspace) {
+    begin();
+    const std::uint32_t port = b_.bus.io_base() + offset;
+    at(0, [=](HostInputs& in) { in.isa_sa = port, in.isa_sd = static_cast<std::uint16_t>(0xFF00 | data); });
+  }
+  void rest(std::int64_t offset) {
+    at(offset, [](HostInputs& in) {
+      in.isa_sd = 0xFFFF;
+      in.isa_sbhe_n = true;
+    });
+  }
+
+  void short_strobe() {
+    address(kLast);
+    at(120, [](HostInputs& in) { in.isa_ior_n = false; });
+    at(150, [](HostInputs& in) { in.isa_ior_n = true; });
+    rest(400);
+  }
+  void two_commands() {
+    address(kMask, 0xFF);
+    at(120, [](HostInputs& in) { in.isa_iow_n = false; });
+    at(300, [](HostInputs& in) { in.isa_ior_n = false; });
+    at(900, [](HostInputs& in) { in.isa_iow_n = in.isa_ior_n = true; });
+    rest(1000);
+  }
+  void moving_address() {
+    address(kLast);
+    const std::uint32_t mask = b_.bus.io_base() + kMask;
+    at(120, [](HostInputs& in) { in.isa_iow_n = false; });
+    at(300, [=](HostInputs& in) { in.isa_sa = mask; });
+    at(700, [](HostInputs& in) { in.isa_iow_n = true; });
+    rest(800);
+  }
+  // The firmware needs longer for a character than the host for a write.
+  void full_tx() {
+    for (int i = 0; i < 4; ++i) b_.bus.io_write(regs::host_io::kData7, kBackspace);
+  }
+  void resetdrv() {
+    address(kMask, 0xFF);
+    at(120, [](HostInputs& in) { in.isa_iow_n = false; });
+    at(300, [](HostInputs& in) { in.isa_resetdrv = true; });
+    at(800, [](HostInputs& in) { in.isa_iow_n = true; });
+    rest(900);
+    at(1500, [](HostInputs& in) { in.isa_resetdrv = false; });
+    b_.bus.wait(60);
+  }
+  void board_reset(bool power) {
+    begin();
+    const std::uint32_t word = b_.bus.window() + (kMemory & 0x3FFF);  // page 0 has been turned up
+    at(0, [=](HostInputs& in) { in.set_address(word), in.isa_sbhe_n = false, in.isa_sd = 0x1234; });
+    at(150, [](HostInputs& in) { in.isa_memw_n = false; });
+    at(400, [](HostInputs&) {});
+    if (power)
+      b_.machine.power_cycle();
+    else
+      b_.machine.reset();
+    at(2500, [](HostInputs& in) { in.isa_memw_n = true; });
+    rest(2600);
+    b_.link.connect(HostLink::kBootTime);
+  }
+
+  BenchContext& b_;
+  TimeFs start_ = 0;
+  int probes_ = 0;
+};
+
+}  // namespace
+
+void malformed_hosts(BenchContext& b) { MalformedHosts(b).run(); }
+
+}  // namespace brick

@@ -1,0 +1,227 @@
+// isa-timing: the host bus at its pins (host-bus:3.4). Hosts of 16 and of 8 bits, at usual times, slowly and at the
+// limit of every rule at once, read and write the I/O block and the memory window while the CPU is in the same words;
+// RESETDRV; addresses that are nobody's; and hosts that keep no rule, each of which must be named and leave the machine
+// working. Judged by testbench/checkers/isa_checker.h; the cross of kind, width and IOCHRDY is counted.
+#include <algorithm>
+#include <map>
+#include <random>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "rtl/regs/brick_regs.hpp"
+#include "testbench/benches/benches.h"
+#include "testbench/benches/isa_malformed.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kShared = 0x40;  // host offset of the words that both sides use: Y:$060010, X:$060010
+constexpr std::uint32_t kDpramY = 0x060010;
+
+// The CPU in two words of the RAM: it counts up in one, and reads the other, in which the host counts.
+class Contender final : public BusMaster {
+ public:
+  Contender(Machine& machine, std::uint64_t seed) : machine_(machine), random_(seed) {
+    machine_.attach_bus_master(this);
+  }
+  ~Contender() override { machine_.attach_bus_master(nullptr); }
+  Contender(const Contender&) = delete;
+  Contender& operator=(const Contender&) = delete;
+
+  std::uint16_t written() const { return count_; }
+  unsigned reads() const { return reads_; }
+  unsigned backwards() const { return backwards_; }  // reads that are older than the one before
+  void forget() { seen_ = 0; }
+
+  std::optional<Access> next() override {
+    const auto idle = static_cast<unsigned>(random_() % 12);
+    if (random_() % 2 == 0) return Access{false, kDpramY, true, ++count_, idle};
+    return Access{true, kDpramY, false, 0, idle};
+  }
+  void done(const Access& access, std::uint32_t data) override {
+    if (access.write) return;
+    ++reads_;
+    backwards_ += data < seen_ ? 1 : 0;
+    seen_ = data;
+  }
+
+ private:
+  Machine& machine_;
+  std::mt19937_64 random_;
+  std::uint16_t count_ = 0;
+  std::uint32_t seen_ = 0;
+  unsigned reads_ = 0, backwards_ = 0;
+};
+
+class IsaTimingBench {
+ public:
+  explicit IsaTimingBench(BenchContext& b) : b_(b), isa_(b.timing.isa()), random_(b.seed) {}
+
+  void run() {
+    malformed_hosts(b_);
+    resetdrv();
+    nobodys_addresses();
+    {
+      Contender cpu(b_.machine, b_.seed + 1);
+      isa::HostTimes tight = isa::kTight;
+      if (b_.negative) tight.io.command_high -= isa::ns(1);
+      for (const unsigned width : {16u, 8u}) {
+        set_width(width);
+        exercise(cpu, width, "usual times", isa::kTypical);
+        exercise(cpu, width, "slow", isa::kSlow);
+        exercise(cpu, width, "at the limits", tight);
+      }
+      b_.report.step("words that the CPU read", cpu.backwards() == 0 && cpu.reads() > 100,
+                     fmt::format("{}, {} of them older than the one before", cpu.reads(), cpu.backwards()));
+    }
+    set_width(16);
+    b_.bus.set_times(isa::kTypical);
+    b_.machine.reset();
+    b_.report.step("the firmware is back", b_.link.connect(HostLink::kBootTime), "after a reset");
+    rules();
+    cross();
+    if (b_.negative) isa_.ledger().forget();  // the step has said it
+  }
+
+ private:
+  std::uint32_t draw(std::uint32_t below) { return static_cast<std::uint32_t>(random_() % below); }
+
+  // A slot of eight bits has neither LA nor SBHE#.
+  void set_width(unsigned bits) {
+    b_.bus.drive_at(b_.machine.now_fs() + isa::ns(500), [bits](HostInputs& in) { in.slot8 = bits == 8; });
+    b_.bus.wait(24);
+    b_.bus.set_width(bits);
+  }
+
+  void exercise(Contender& cpu, unsigned width, const std::string& times, const isa::HostTimes& host) {
+    constexpr unsigned kRounds = 40;
+    b_.bus.set_times(host);
+    cpu.forget();
+    Comparison same;
+    std::map<std::uint32_t, std::uint16_t> words;
+    std::uint16_t counter = 0, seen = 0;
+    bus().dpram_write(kShared + 2, 0);
+    for (unsigned i = 0; i < kRounds; ++i) {
+      const std::uint32_t offset = 0x80 + 2 * draw((2 * b_.board.dpram_words - 0x80) / 2);
+      words[offset] = static_cast<std::uint16_t>(random_());
+      bus().dpram_write(offset, words[offset]);
+      if (width == 16) {  // two cycles of eight bits would tear
+        bus().dpram_write(kShared + 2, ++counter);
+        const std::uint16_t shared = bus().dpram_read(kShared);
+        same.judged("word that the CPU writes", shared >= seen && shared <= cpu.written() ? "" : "went backwards");
+        seen = shared;
+      } else {
+        bus().write_memory(memory(kShared + 2), 0, 1);
+        bus().read_memory(memory(kShared), 1);
+      }
+      const auto& [where, value] = *std::next(words.begin(), draw(static_cast<std::uint32_t>(words.size())));
+      same.word(fmt::format("offset ${:04X}", where), bus().dpram_read(where), value);
+      const auto byte = static_cast<std::uint8_t>(random_());
+      bus().io_write(regs::host_io::kIvr, byte);
+      same.word("IVR", bus().io_read(regs::host_io::kIvr), byte);
+      port();
+    }
+    b_.report.step(fmt::format("host of {} bits, {}", width, times), same, 2 * kRounds,
+                   fmt::format("{} words and bytes", same.made()));
+  }
+  // Both kinds of bytes of the host port, twice each, so that the distances of host-bus:3.3 are there. Both ways of the
+  // port may be full: the CPU does not look.
+  void port() {
+    for (int i = 0; i < 2; ++i) bus().io_read(regs::host_io::kData6), bus().io_read(regs::host_io::kIsr);
+    for (int i = 0; i < 2; ++i) bus().io_write(regs::host_io::kData5, 0), bus().io_write(regs::host_io::kIcr, 0);
+    if (b_.machine.outputs().get(pin::kTxde) != 0) bus().io_write(regs::host_io::kData7, 0);
+  }
+  std::uint32_t memory(std::uint32_t offset) { return bus().window() + (offset & 0x3FFF); }  // page 0 is turned up
+  HostBus& bus() { return b_.bus; }
+
+  // host-bus:3.8
+  void resetdrv() {
+    Comparison same;
+    bus().io_write(regs::host_io::kIvr, 0x55);
+    bus().write_pic_mask(0xFF);
+    bus().write_pic_edge_level(0xFF);
+    bus().io_write(regs::host_io::kPage, 3);
+    for (const bool level : {true, false}) {
+      bus().drive_at(b_.machine.now_fs() + isa::ns(1000), [=](HostInputs& in) { in.isa_resetdrv = level; });
+      bus().wait(120);
+    }
+    same.word("IVR", bus().io_read(regs::host_io::kIvr), 0x0F);
+    same.word("MSK", bus().io_read(regs::host_io::kPicMask), 0);
+    same.word("ELR", bus().io_read(regs::host_io::kPicEdgeLevel), 0);
+    same.word("ISR", bus().port_status(), 0x06);
+    const bool flat = b_.machine.inputs().window_flat;
+    same.word("page", bus().io_read(regs::host_io::kPage), flat ? 0xFF : 0xFC);
+    b_.report.step("RESETDRV", same, 5, "host port, interrupt controller and page as after power-on");
+    b_.expect("VERSION", "1.947");
+  }
+
+  void nobodys_addresses() {
+    Comparison same;
+    const std::uint32_t size = b_.machine.inputs().window_flat ? 0x10000 : 0x4000;
+    for (unsigned bit = 4; bit < 12; ++bit) same.word("I/O", bus().read_io((bus().io_base() + 2) ^ 1u << bit), 0xFF);
+    for (std::uint32_t bit = size; bit <= 0x800000; bit <<= 1)
+      same.word("memory", bus().read_memory(bus().window() ^ bit, 3), 0xFFFF);
+    b_.report.step("addresses that are nobody's", same, 16, fmt::format("{} read as ones", same.made()));
+  }
+
+  // A row for each rule: evaluated, kept, and at the limit where the host decides.
+  void rules() {
+    const TimingLedger& ledger = isa_.ledger();
+    constexpr unsigned kAtLimit[] = {IsaChecker::kT1,  IsaChecker::kT2,  IsaChecker::kT3,  IsaChecker::kT6,
+                                     IsaChecker::kT7,  IsaChecker::kT9,  IsaChecker::kT11, IsaChecker::kT12,
+                                     IsaChecker::kT13, IsaChecker::kT15, IsaChecker::kT18};
+    for (unsigned rule = 0; rule < ledger.rules().size(); ++rule) {
+      TimingRow worst;
+      std::uint64_t evaluations = 0, violations = 0;
+      for (unsigned region = 0; region < ledger.regions().size(); ++region) {
+        const TimingRow& row = ledger.row(rule, region);
+        evaluations += row.evaluations;
+        violations += row.violations;
+        if (row.evaluations > 0 && row.margin < worst.margin) worst = row;
+      }
+      const TimingRule& r = ledger.rules()[rule];
+      const bool holds = r.kind == TimingRule::Kind::kHolds;
+      const bool limit = std::find(std::begin(kAtLimit), std::end(kAtLimit), rule) != std::end(kAtLimit);
+      const bool reached = !limit || worst.margin < isa::ns(1);
+      std::string text = fmt::format("{}: {} times", r.text, evaluations);
+      if (evaluations > 0 && !holds)
+        text += fmt::format(", worst {}, {} {} required", timing_text(worst.measured),
+                            r.kind == TimingRule::Kind::kMost ? "at most" : "at least", timing_text(worst.required));
+      if (!reached) text += "; expected to be at its limit";
+      b_.report.step(r.id, evaluations > 0 && violations == 0 && reached, text);
+    }
+  }
+
+  void cross() {
+    constexpr const char* kKinds[] = {"I/O read", "I/O write", "memory read", "memory write"};
+    for (unsigned kind = 0; kind < IsaChecker::kKinds; ++kind) {
+      const bool memory = kind >= IsaChecker::kMemoryRead;
+      for (unsigned wide = 0; wide <= (memory ? 1u : 0u); ++wide)
+        for (unsigned stretched = 0; stretched <= (memory ? 1u : 0u); ++stretched) {
+          const std::uint64_t cycles = isa_.cycles(static_cast<IsaChecker::Kind>(kind), wide, stretched);
+          b_.report.step(
+              fmt::format("{}, {} bits{}", kKinds[kind], wide != 0 ? 16 : 8, stretched != 0 ? ", IOCHRDY low" : ""),
+              cycles > 0, fmt::format("{} cycles", cycles));
+        }
+    }
+  }
+
+  BenchContext& b_;
+  IsaChecker& isa_;
+  std::mt19937_64 random_;
+};
+
+}  // namespace
+
+Bench isa_timing_bench() {
+  return {"isa-timing",
+          "host bus at its pins: every rule at its limit, 8 and 16 bits, IOCHRDY, RESETDRV, hosts that keep no rule",
+          {"the host ends I/O commands 1 ns too early", "t2", "529.000 ns"},
+          [](BenchContext& b) { IsaTimingBench(b).run(); },
+          kAnyBoard,
+          "turbo-pmac2-pc"};
+}
+
+}  // namespace brick

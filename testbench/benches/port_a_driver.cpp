@@ -1,0 +1,124 @@
+#include "testbench/benches/port_a_driver.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace brick {
+
+namespace {
+
+constexpr TimeFs kRefPeriod = tick_to_fs(kTicksPerRef);
+constexpr TimeFs kClockAtOne = 101'725'260;  // TC at I52 = 0: 12 ticks, in femtoseconds
+
+}  // namespace
+
+PortALimits port_a_limits(unsigned i52, unsigned wait_states, bool write) {
+  const TimeFs tc = kClockAtOne / (i52 + 1), ws = wait_states, form = ws <= 3 ? 0 : ws <= 7 ? 1 : 2;
+  const auto row = [tc](TimeFs quarters, TimeFs guard) {
+    return std::max<TimeFs>(0, quarters * tc / 4 - guard * kFsPerNs / 10);
+  };
+  PortALimits l{};
+  l.clock = tc;
+  l.ready = row(1, -20);
+  if (write) {
+    l.setup = row(ws <= 1 ? 1 : ws <= 3 ? 3 : 5, 20);
+    l.low = row(ws <= 1 ? 6 : ws <= 3 ? 4 * ws : 4 * ws - 2, 40);
+    l.hold = l.data_hold = row(1 + 4 * form, 20);
+    l.data = std::max<TimeFs>(0, l.low - row(4 * ws - 1, 30));
+  } else {
+    l.setup = row(2, 20);
+    l.low = row(4 * ws + 1, 40);
+    l.hold = row(ws == 1 ? 1 : form == 2 ? 9 : 5, 20);
+    l.sample = row(4 * ws + 1, 50);
+  }
+  return l;
+}
+
+PortADriver::PortADriver(Machine& machine, std::uint64_t seed)
+    : machine_(machine), aperture_(kAperture, seed), random_(seed) {}
+
+unsigned PortADriver::least_phase(bool write) const {
+  return *std::min_element(phases_[write].begin(), phases_[write].end());
+}
+
+void PortADriver::run_to(Tick tick) {
+  if (then_at_ <= tick) {
+    machine_.run_until(std::exchange(then_at_, kNever));
+    std::exchange(then_, nullptr)();
+  }
+  if (machine_.now() < tick) machine_.run_until(tick);
+}
+
+void PortADriver::show(TimeFs time) {
+  const PortAPins& pins = machine_.port_a();
+  Signals& signals = machine_.signals();
+  const TimeFs now = std::max(time, machine_.now_fs());
+  const auto set = [&](const char* name, std::uint64_t value) { signals.set(*signals.find(name), now, value); };
+  set("bus.addr", pins.pa_addr);
+  set("bus.x", pins.pa_x);
+  set("bus.aa", pins.pa_aa);
+  set("bus.data", pins.pa_wdata);
+  set("bus.rd_n", pins.pa_rd_n);
+  set("bus.wr_n", pins.pa_wr_n);
+}
+
+void PortADriver::move(TimeFs time, const std::function<void(PortAPins&)>& edit) {
+  run_to(aperture_.first(time) - 1);
+  PortAPins& pins = machine_.port_a();
+  const PortAPins from = pins;
+  edit(pins);
+  if (aperture_.in_doubt(time) && aperture_.last(time) - 1 > machine_.now()) {
+    const PortAPins to = pins;
+    pins = aperture_.mixed(from, to, time);
+    machine_.apply();
+    show(time);
+    run_to(aperture_.last(time) - 1);
+    pins = to;
+  }
+  machine_.apply();
+  if (machine_.signals().traced()) show(time);
+}
+
+std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t data) {
+  const PortALimits l = port_a_limits(i52_, place.wait_states, write);
+  const TimeFs start = free_at_, fall = start + l.setup;
+  ++phases_[write][static_cast<std::size_t>((fall - tick_to_fs(fs_to_tick_floor(fall) / kTicksPerRef * kTicksPerRef)) *
+                                            kBins / kRefPeriod % kBins)];
+  move(start, [&](PortAPins& p) {
+    p.pa_addr = place.address;
+    p.pa_x = place.x;
+    p.pa_aa = place.aa;
+    p.pa_int = place.on_chip;
+  });
+  move(fall, [&](PortAPins& p) { (write ? p.pa_wr_n : p.pa_rd_n) = false; });
+  if (write) move(fall + l.data, [&](PortAPins& p) { p.pa_wdata = data; });
+  TimeFs rise = fall + l.low;
+  for (; !place.on_chip; rise += l.clock, ++stretched_) {
+    run_to(fs_to_tick_floor(rise - l.ready));
+    if (machine_.outputs().get(pin::kPaTaN) == 0) break;
+  }
+  std::uint32_t word = 0;
+  if (write) {
+    if (spoiled_ > 0) move(rise - spoiled_, [&](PortAPins& p) { p.pa_wdata = ~data & 0xFFFFFF; });
+  } else {
+    run_to(fs_to_tick_floor(rise - (l.low - l.sample)));
+    word = machine_.outputs().get(pin::kPaData);
+    floating_ += !place.on_chip && machine_.outputs().get(pin::kPaDataOe) == 0;
+  }
+  move(rise, [](PortAPins& p) { p.pa_rd_n = p.pa_wr_n = true; });
+  if (write) move(rise + l.data_hold, [&](PortAPins& p) { p.pa_wdata = random() & 0xFFFFFF; });
+  free_at_ = rise + l.hold;
+  // Nothing holds the lines until the next address; it comes at once, or this is what stands there.
+  move(free_at_, [&](PortAPins& p) {
+    p.pa_addr = random() & 0x7FFFF;
+    p.pa_x = (random() & 1) != 0;
+    p.pa_aa = random() & 0xF;
+    p.pa_int = false;
+  });
+  return word;
+}
+
+void PortADriver::rest() { run_to(fs_to_tick_floor(free_at_)); }
+
+}  // namespace brick

@@ -1,0 +1,273 @@
+#include "testbench/checkers/isa_checker.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace brick {
+namespace {
+
+constexpr TimeFs kNs = kFsPerNs;
+constexpr TimeFs kBclk = 120 * kNs;
+constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
+
+std::vector<TimingRule> rules() {
+  using Kind = TimingRule::Kind;
+  const auto row = [](const char* id, const char* text, int number, Kind kind) {
+    return TimingRule{id, text, "host-bus:3.4/" + std::to_string(number), kind};
+  };
+  const auto strobe = [](const char* id, const char* text, int number) {
+    return TimingRule{id, text, "host-bus:3.3/" + std::to_string(number), Kind::kLeast};
+  };
+  const auto sound = [](const char* id, const char* text, int number) {
+    return TimingRule{id, text, "host-bus:3.9/" + std::to_string(number), Kind::kHolds};
+  };
+  return {row("t1", "SA, AEN valid before IOR#, IOW# low", 1, Kind::kLeast),
+          row("t2", "IOR#, IOW#, 8-bit MEMR#, MEMW# low", 2, Kind::kLeast),
+          row("t3", "address held after the command", 3, Kind::kLeast),
+          row("t4", "IOR#, 8-bit MEMR# low to data valid", 4, Kind::kMost),
+          row("t5", "data held after the read command", 5, Kind::kLeast),
+          row("t5off", "data off after the read command", 5, Kind::kMost),
+          row("t6", "write data valid after the command's fall", 6, Kind::kMost),
+          row("t7", "write data held after IOW#", 7, Kind::kLeast),
+          row("t8", "command low to IOCHRDY low", 8, Kind::kMost),
+          row("t9", "IOCHRDY high to the command's end", 9, Kind::kLeast),
+          row("t10", "IOCHRDY low", 10, Kind::kMost),
+          row("t11", "command high to the next command", 11, Kind::kLeast),
+          row("t12", "LA valid before MEMR#, MEMW# low", 12, Kind::kLeast),
+          row("t13", "16-bit MEMR#, MEMW# low", 13, Kind::kLeast),
+          row("t14", "16-bit MEMR# low to data valid", 14, Kind::kMost),
+          row("t15", "write data held after MEMW#", 15, Kind::kLeast),
+          row("t16", "LA to MEMCS16# low", 16, Kind::kMost),
+          row("t18", "SA, SBHE# valid before MEMR#, MEMW# low", 18, Kind::kLeast),
+          strobe("h1", "host port: read strobe low", 1),
+          strobe("h2", "host port: read strobe high", 2),
+          strobe("h3", "host port: read strobe high after +0, +1, +2, +7", 3),
+          strobe("h4", "host port: write strobe low", 4),
+          strobe("h5", "host port: write strobe high after +0, +1, +7", 5),
+          strobe("h6", "host port: write strobe high otherwise", 6),
+          sound("one-command", "one command at a time", 1),
+          sound("address-stands", "SA, SBHE#, AEN stand while a command is low", 2),
+          sound("room-in-tx", "+7 is written while TX is empty", 3),
+          sound("whole-cycle", "no reset while a command is low", 4),
+          sound("ours-only", "the board drives data in reads of its own only", 5)};
+}
+
+}  // namespace
+
+IsaChecker::IsaChecker()
+    : ledger_("ISA", rules(), {"I/O", "memory of 16 bits", "memory of 8 bits"}),
+      cpu_period_([] { return kUsualPeriod; }) {}
+
+unsigned IsaChecker::commands(const BoardInputs& in) {
+  return (in.isa_ior_n ? 0u : 1u) | (in.isa_iow_n ? 0u : 2u) | (in.isa_memr_n ? 0u : 4u) | (in.isa_memw_n ? 0u : 8u);
+}
+
+std::uint32_t IsaChecker::address(const BoardInputs& in, bool memory) {
+  if (!memory) return in.isa_sa & 0xFFFF;
+  return in.slot8 ? in.isa_sa & 0xFFFFF : static_cast<std::uint32_t>(in.isa_la) << 17 | (in.isa_sa & 0x1FFFF);
+}
+
+bool IsaChecker::ours(const BoardInputs& in, const Cycle& c) const {
+  if (c.memory()) {
+    const std::uint32_t size = in.window_flat ? 0x10000 : 0x4000, space = in.slot8 ? 0xFFFFF : 0xFFFFFF;
+    return ((c.address ^ static_cast<std::uint32_t>(in.window) << 14) & space & ~(size - 1)) == 0;
+  }
+  if (in.isa_aen) return false;  // DMA
+  const std::uint32_t compared = in.io_decode16 ? 0xFFF0 : 0x03F0;
+  return ((c.address ^ static_cast<std::uint32_t>(in.io_base) << 4) & compared) == 0;
+}
+
+// 0 to 7 for a byte of the host port, else -1.
+int IsaChecker::port_byte(const BoardInputs& in, const Cycle& c) const {
+  const bool port = !c.memory() && ours(in, c) && (c.address & 8) == 0;
+  return port ? static_cast<int>(c.address & 7) : -1;
+}
+
+TimingPlace IsaChecker::place(TimeFs time, const Cycle& c) {
+  TimingPlace where;
+  where.time = time;
+  where.address = c.address;
+  where.space = c.memory() ? 'M' : 'I';
+  where.write = c.write();
+  return where;
+}
+
+void IsaChecker::pins(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
+  const BoardInputs before = std::exchange(in_, in);
+  const BoardOutputs shown = std::exchange(out_, out);
+  if (!std::exchange(known_, true)) return;
+
+  if (in.isa_la != before.isa_la) la_at_ = t;
+  if (in.isa_sa != before.isa_sa || in.isa_aen != before.isa_aen || in.isa_sbhe_n != before.isa_sbhe_n)
+    address_moved(t);
+  if (in.isa_sd != before.isa_sd) host_data_moved(t);
+  if (shown.get(pin::kIsaMemcs16N) != 0 && out.get(pin::kIsaMemcs16N) == 0) {
+    Cycle block;
+    block.kind = kMemoryRead;
+    block.address = static_cast<std::uint32_t>(in.isa_la) << 17;
+    ledger_.enter(kT16, kMemory16, 66 * kNs, t - la_at_, place(t, block));
+  }
+
+  const bool reset = (before.rst_n && !in.rst_n) || (!before.isa_resetdrv && in.isa_resetdrv);
+  if (reset) {
+    ledger_.holds(kWholeCycle, region(cycle_), !in_cycle_, place(t));
+    cycle_.whole = false;
+  }
+  if (shown.get(pin::kIsaIochrdy) != out.get(pin::kIsaIochrdy)) ready_moved(t, out.get(pin::kIsaIochrdy) != 0);
+  if (shown.get(pin::kIsaSd) != out.get(pin::kIsaSd) || shown.get(pin::kIsaSdOe) != out.get(pin::kIsaSdOe))
+    board_data(t, in, shown);
+
+  const unsigned now = commands(in), then = commands(before);
+  if (now == then) return;
+  if ((now & (now - 1)) != 0) {  // more than one is low
+    if (in_cycle_) cycle_.alone = false;
+    ledger_.holds(kOneCommand, region(cycle_), false, place(t));
+  }
+  if (then != 0 && now == 0) end(t, before, out);
+  if (then == 0 && now != 0) begin(t, now, in, out);
+}
+
+// --------------------------------------------------------------------------------------------------------- what moves
+
+void IsaChecker::address_moved(TimeFs t) {
+  sa_at_ = t;
+  if (in_cycle_) cycle_.moved = true;
+  if (!in_cycle_ && std::exchange(hold_address_, false)) enter(kT3, 25 * kNs, t - high_at_, t);
+}
+
+void IsaChecker::host_data_moved(TimeFs t) {
+  data_at_ = t;
+  if (!in_cycle_ && std::exchange(hold_data_, false)) enter(cycle_.memory() ? kT15 : kT7, 25 * kNs, t - high_at_, t);
+}
+
+void IsaChecker::ready_moved(TimeFs t, bool ready) {
+  if (!in_cycle_) return;
+  if (!ready) {
+    cycle_.ready_low = t;
+    enter(kT8, 366 * kNs, t - cycle_.low, t);
+  } else if (cycle_.ready_low != kNone) {
+    cycle_.ready_high = t;
+    enter(kT10, 15'600 * kNs, t - cycle_.ready_low, t);
+  }
+}
+
+// SD as the board drives it. In the tick after a command it may still be on (t5).
+void IsaChecker::board_data(TimeFs t, const BoardInputs& in, const BoardOutputs& shown) {
+  const unsigned driven = out_.get(pin::kIsaSdOe), before = shown.get(pin::kIsaSdOe);
+  if (driven != 0 && before == 0) {
+    const bool read = in_cycle_ && cycle_.alone && !cycle_.write();
+    ledger_.holds(kOursOnly, region(cycle_), read && ours(in, cycle_), place(t));
+  }
+  if (in_cycle_) {
+    if (driven != 0) {
+      cycle_.data_valid = t;
+      cycle_.answered = true;
+    } else if (before != 0) {
+      cycle_.data_gone = t;
+    }
+    return;
+  }
+  if (before == 0 || !read_floats_) return;
+  if (driven == 0) {
+    enter(kT5, 0, t - high_at_, t);
+    enter(kT5Off, 30 * kNs, t - high_at_, t);
+    read_floats_ = false;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------------- a cycle
+
+void IsaChecker::begin(TimeFs t, unsigned now, const BoardInputs& in, const BoardOutputs& out) {
+  // Nothing moved since the last command: it was held at least until now.
+  if (std::exchange(hold_address_, false)) enter(kT3, 25 * kNs, t - high_at_, t);
+  if (std::exchange(hold_data_, false)) enter(cycle_.memory() ? kT15 : kT7, 25 * kNs, t - high_at_, t);
+
+  if (std::exchange(read_floats_, false)) enter(kT5Off, 30 * kNs, t - high_at_, t);
+
+  cycle_ = {};
+  cycle_.kind = (now & 1) != 0 ? kIoRead : (now & 2) != 0 ? kIoWrite : (now & 4) != 0 ? kMemoryRead : kMemoryWrite;
+  cycle_.alone = (now & (now - 1)) == 0;
+  cycle_.low = t;
+  cycle_.address = address(in, cycle_.memory());
+  cycle_.wide = cycle_.memory() && !in.slot8 && out.get(pin::kIsaMemcs16N) == 0;
+  in_cycle_ = true;
+  if (high_at_ != kNone) enter(kT11, 170 * kNs, t - high_at_, t);
+  if (cycle_.memory()) {
+    if (!in.slot8) enter(kT12, 111 * kNs, t - la_at_, t);
+    enter(kT18, 34 * kNs, t - sa_at_, t);
+  } else if (!in.isa_aen) {
+    enter(kT1, 91 * kNs, t - sa_at_, t);
+  }
+  port_strobe(t, in);
+}
+
+// host-bus:3.3: how long the strobe was high before.
+void IsaChecker::port_strobe(TimeFs t, const BoardInputs& in) {
+  const int byte = port_byte(in, cycle_);
+  if (byte < 0) return;
+  const TimeFs long_high = 5 * cpu_period_() / 2 + 3'300'000;
+  if (cycle_.write()) {
+    if (port_write_.end == kNone) return;
+    if (port_write_.slow)
+      enter(kH5, long_high, t - port_write_.end, t);
+    else
+      enter(kH6, 8'250'000, t - port_write_.end, t);
+  } else if (port_read_.end != kNone) {
+    enter(kH2, 4'950'000, t - port_read_.end, t);
+    const bool such = byte <= 2 || byte == 7;
+    if (such && port_read_.slow) enter(kH3, long_high, t - port_read_.end, t);
+  }
+}
+
+// `in` as it stood while the command was low.
+void IsaChecker::end(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
+  in_cycle_ = false;
+  const bool stretched = cycle_.ready_low != kNone;
+  if (cycle_.alone) {
+    ++cycles_[cycle_.kind][cycle_.wide][stretched];
+    ledger_.holds(kOneCommand, region(cycle_), true, place(t));
+  }
+  ledger_.holds(kAddressStands, region(cycle_), !cycle_.moved, place(t));
+  if (cycle_.wide)
+    enter(kT13, 219 * kNs, t - cycle_.low, t);
+  else
+    enter(kT2, 530 * kNs, t - cycle_.low, t);
+  // IOCHRDY that is still low has been high for less than no time.
+  if (stretched && cycle_.whole) enter(kT9, kBclk, cycle_.ready_high == kNone ? -1 : t - cycle_.ready_high, t);
+  high_at_ = t;
+  hold_address_ = true;
+  if (cycle_.write())
+    end_write(t, in, out);
+  else
+    end_read(t);
+  const int byte = port_byte(in, cycle_);
+  if (byte < 0) return;
+  const bool slow = byte <= 1 || byte == 7 || (byte == 2 && !cycle_.write());
+  (cycle_.write() ? port_write_ : port_read_) = {t, slow};
+  if (cycle_.write())
+    enter(kH4, 6'600'000, t - cycle_.low, t);
+  else
+    enter(kH1, cpu_period_() + 4'950'000, t - cycle_.low, t);
+}
+
+void IsaChecker::end_read(TimeFs t) {
+  read_floats_ = out_.get(pin::kIsaSdOe) != 0;
+  if (!cycle_.answered || !cycle_.alone || !cycle_.whole) return;
+  ++answered_;
+  const bool stretched = cycle_.ready_low != kNone;
+  if (!stretched) {  // with IOCHRDY low data come later by right
+    if (cycle_.wide)
+      enter(kT14, 173 * kNs, cycle_.data_valid - cycle_.low, t);
+    else
+      enter(kT4, 489 * kNs, cycle_.data_valid - cycle_.low, t);
+  }
+  if (!read_floats_) enter(kT5, 0, cycle_.data_gone - t, t);  // gone before the command
+}
+
+void IsaChecker::end_write(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
+  hold_data_ = true;
+  enter(kT6, 22 * kNs, data_at_ - cycle_.low, t);
+  if (port_byte(in, cycle_) == 7) ledger_.holds(kRoomInTx, kIo, out.get(pin::kTxde) != 0, place(t));
+}
+
+}  // namespace brick

@@ -1,0 +1,171 @@
+// The bridge of a PCI board: configuration space, address ranges, byte enables, and the local cycles that come of it
+// (host-bus:3.6). The local bus is played by a list of the cycles that were asked for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "systemc/host/pci_bridge.h"
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+class LocalCycles : public LocalBus {
+ public:
+  std::uint8_t read_io(std::uint32_t port) override {
+    cycles.push_back(fmt::format("in {:X}", port));
+    return static_cast<std::uint8_t>(port);
+  }
+  void write_io(std::uint32_t port, std::uint8_t value) override {
+    cycles.push_back(fmt::format("out {:X} {:02X}", port, value));
+  }
+  std::uint16_t read_memory(std::uint32_t address, unsigned lanes) override {
+    cycles.push_back(fmt::format("read {:X} {}", address, lanes));
+    return static_cast<std::uint16_t>(0x1000 + address);
+  }
+  void write_memory(std::uint32_t address, std::uint16_t value, unsigned lanes) override {
+    cycles.push_back(fmt::format("write {:X} {:04X} {}", address, value, lanes));
+  }
+  bool irq() const override { return interrupt; }
+
+  std::vector<std::string> cycles;
+  bool interrupt = false;
+};
+
+class PciBridgeTest : public ::testing::Test {
+ protected:
+  static constexpr std::uint32_t kIo = 0xE000, kMemory = 0xFEB00000;
+
+  PciBridgeTest() {
+    bridge_.attach(local_);
+    configure(PciBridge::kBar0, kIo);
+    configure(PciBridge::kBar1, kMemory);
+    configure(PciBridge::kCommand, 3);
+  }
+  // `data` holds the bytes from `address` on; `enables` one bit a byte.
+  tlm::tlm_response_status access(PciSpace space, std::uint64_t address, bool write, std::vector<unsigned char>& data,
+                                  int enables = -1, bool command = true) {
+    PciCommand extension(space);
+    std::vector<unsigned char> bytes(data.size());
+    for (std::size_t n = 0; n < bytes.size(); ++n) bytes[n] = (enables >> n & 1) != 0 ? TLM_BYTE_ENABLED : 0;
+    tlm::tlm_generic_payload payload;
+    payload.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
+    payload.set_address(address);
+    payload.set_data_ptr(data.data());
+    payload.set_data_length(static_cast<unsigned>(data.size()));
+    payload.set_streaming_width(static_cast<unsigned>(data.size()));
+    if (enables >= 0) {
+      payload.set_byte_enable_ptr(bytes.data());
+      payload.set_byte_enable_length(static_cast<unsigned>(bytes.size()));
+    }
+    if (command) payload.set_extension(&extension);
+    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+    bridge_.transport(payload, delay);
+    if (command) payload.clear_extension(&extension);
+    return payload.get_response_status();
+  }
+  std::uint32_t read(PciSpace space, std::uint64_t address, unsigned length, int enables = -1) {
+    std::vector<unsigned char> data(length);
+    EXPECT_EQ(access(space, address, false, data, enables), tlm::TLM_OK_RESPONSE);
+    std::uint32_t value = 0;
+    for (unsigned n = 0; n < length; ++n) value |= static_cast<std::uint32_t>(data[n]) << 8 * n;
+    return value;
+  }
+  void write(PciSpace space, std::uint64_t address, std::uint32_t value, unsigned length, int enables = -1) {
+    std::vector<unsigned char> data;
+    for (unsigned n = 0; n < length; ++n) data.push_back(static_cast<unsigned char>(value >> 8 * n));
+    EXPECT_EQ(access(space, address, true, data, enables), tlm::TLM_OK_RESPONSE);
+  }
+  std::uint32_t configuration(std::uint32_t address) { return read(PciSpace::kConfiguration, address, 4); }
+  void configure(std::uint32_t address, std::uint32_t value) { write(PciSpace::kConfiguration, address, value, 4); }
+  tlm::tlm_response_status try_read(PciSpace space, std::uint64_t address, unsigned length = 1) {
+    std::vector<unsigned char> data(length);
+    return access(space, address, false, data);
+  }
+
+  LocalCycles local_;
+  PciBridge bridge_{
+      sc_core::sc_gen_unique_name("bridge"), {0x210, 0xD0000, 0x10000}, {0x1234, 0x5678, 0x9ABC, 0xDEF0, 7}};
+};
+
+TEST_F(PciBridgeTest, ConfigurationSpaceSaysWhatItIs) {
+  EXPECT_EQ(configuration(PciBridge::kId), 0x56781234u);
+  EXPECT_EQ(configuration(PciBridge::kSubsystem), 0xDEF09ABCu);
+  EXPECT_EQ(configuration(PciBridge::kClass) & 0xFF, 7u);
+  EXPECT_EQ(configuration(PciBridge::kCommand), 0x02000003u) << "medium DEVSEL; I/O and memory are on";
+  EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x0100u) << "INTA#";
+  configure(PciBridge::kInterrupt, 11);
+  EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x010Bu);
+  EXPECT_EQ(configuration(0x18), 0u);
+  EXPECT_EQ(read(PciSpace::kConfiguration, PciBridge::kId + 2, 2), 0x5678u);
+}
+
+TEST_F(PciBridgeTest, OnesWrittenToABarTellItsSize) {
+  configure(PciBridge::kBar0, 0xFFFFFFFF);
+  configure(PciBridge::kBar1, 0xFFFFFFFF);
+  EXPECT_EQ(configuration(PciBridge::kBar0), 0xFFFFFFF1u) << "16 bytes of I/O";
+  EXPECT_EQ(configuration(PciBridge::kBar1), 0xFFFF0000u) << "64 KiB of memory, 32 bits, not prefetchable";
+}
+
+TEST_F(PciBridgeTest, IoIsBytesOnTheLocalBus) {
+  EXPECT_EQ(read(PciSpace::kIo, kIo + 2, 1), 0x12u);
+  write(PciSpace::kIo, kIo + 7, 0x41, 1);
+  EXPECT_EQ(read(PciSpace::kIo, kIo + 4, 4), 0x17161514u);
+  write(PciSpace::kIo, kIo + 4, 0x44332211, 4, 0b1010);
+  EXPECT_THAT(local_.cycles, ::testing::ElementsAre("in 212", "out 217 41", "in 214", "in 215", "in 216", "in 217",
+                                                    "out 215 22", "out 217 44"));
+}
+
+TEST_F(PciBridgeTest, MemoryIsHalfWordsTheLowOneFirst) {
+  EXPECT_EQ(read(PciSpace::kMemory, kMemory + 0x1050, 4), 0x20522050u) << "low halves of 0x1000 + address";
+  write(PciSpace::kMemory, kMemory + 8, 0x44332211, 4);
+  EXPECT_THAT(local_.cycles,
+              ::testing::ElementsAre("read D1050 3", "read D1052 3", "write D0008 2211 3", "write D000A 4433 3"));
+  local_.cycles.clear();
+  write(PciSpace::kMemory, kMemory + 8, 0x44332211, 4, 0b0110);
+  write(PciSpace::kMemory, kMemory + 8, 0x44332211, 4, 0b1000);
+  write(PciSpace::kMemory, kMemory + 8, 0x44332211, 4, 0);
+  write(PciSpace::kMemory, kMemory + 0xFFFF, 0x55, 1);
+  read(PciSpace::kMemory, kMemory + 2, 2);
+  EXPECT_THAT(local_.cycles, ::testing::ElementsAre("write D0008 2211 2", "write D000A 4433 1", "write D000A 4433 2",
+                                                    "write DFFFE 5500 2", "read D0002 3"));
+}
+
+TEST_F(PciBridgeTest, NobodyAnswersOutsideTheRangesOrWithoutEnable) {
+  using Space = PciSpace;
+  for (const auto& [space, address] : std::vector<std::pair<Space, std::uint64_t>>{{Space::kIo, kIo - 1},
+                                                                                   {Space::kIo, kIo + 16},
+                                                                                   {Space::kMemory, kMemory - 1},
+                                                                                   {Space::kMemory, kMemory + 0x10000},
+                                                                                   {Space::kIo, kMemory},
+                                                                                   {Space::kConfiguration, 256}})
+    EXPECT_EQ(try_read(space, address), tlm::TLM_ADDRESS_ERROR_RESPONSE) << std::hex << address;
+  configure(PciBridge::kCommand, PciBridge::kMemoryEnable);
+  EXPECT_EQ(try_read(Space::kIo, kIo), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(try_read(Space::kMemory, kMemory), tlm::TLM_OK_RESPONSE);
+  configure(PciBridge::kCommand, PciBridge::kIoEnable);
+  EXPECT_EQ(try_read(Space::kIo, kIo), tlm::TLM_OK_RESPONSE);
+  EXPECT_EQ(try_read(Space::kMemory, kMemory), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(local_.cycles.size(), 2u);
+}
+
+TEST_F(PciBridgeTest, BurstsAndPayloadsWithoutCommandAreRefused) {
+  EXPECT_EQ(try_read(PciSpace::kMemory, kMemory, 8), tlm::TLM_BURST_ERROR_RESPONSE);
+  EXPECT_EQ(try_read(PciSpace::kMemory, kMemory + 2, 4), tlm::TLM_BURST_ERROR_RESPONSE);
+  std::vector<unsigned char> data(4);
+  EXPECT_EQ(access(PciSpace::kMemory, kMemory, false, data, -1, false), tlm::TLM_COMMAND_ERROR_RESPONSE);
+  EXPECT_TRUE(local_.cycles.empty());
+}
+
+TEST_F(PciBridgeTest, IntaIsLowWhileTheBoardInterrupts) {
+  EXPECT_TRUE(bridge_.inta_n());
+  local_.interrupt = true;
+  EXPECT_FALSE(bridge_.inta_n());
+}
+
+}  // namespace
+}  // namespace brick
