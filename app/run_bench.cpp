@@ -56,7 +56,8 @@ int run_bench(const RunOptions& given, const std::string& name, bool negative, c
         if (!up) return;
       }
       BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report,
-                           config.board,         config.seed,      negative,          simulation.timing()};
+                           config.board,         config.seed,      negative,          simulation.timing(),
+                           config.bcr.has_value()};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

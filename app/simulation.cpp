@@ -114,17 +114,22 @@ void Simulation::progress() {
 }
 
 Simulation::TimingVerdict Simulation::timing_verdict() {
+  constexpr std::size_t kViolationsTold = 20;
   TimingVerdict verdict;
+  std::size_t more = 0;
   for (const TimingLedger* ledger : timing_->ledgers()) {
     for (const TimingViolation& violation : ledger->violations()) {
       const std::string reason = waivers_.reason(*ledger, violation);
       const std::string text = timing_->text(*ledger, violation);
-      if (reason.empty())
+      if (reason.empty() && verdict.failures.size() < kViolationsTold)
         verdict.failures.push_back(text);
+      else if (reason.empty())
+        ++more;
       else
         verdict.waived.push_back(fmt::format("{}; waived: {}", text, reason));
     }
   }
+  if (more > 0) verdict.failures.push_back(fmt::format("bus timing: {} more, see brick timing --json", more));
   verdict.unused = waivers_.unused();
   return verdict;
 }

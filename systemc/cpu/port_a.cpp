@@ -25,9 +25,6 @@ constexpr Region kRegions[] = {
     {0x070000, 0x0700FF, kDefaultArea},  // latches
     {0x078000, 0x07BFFF, 1},             // gate ICs
 };
-// D as the board drives it.
-bool drives_data(const BoardOutputs&) { return true; }
-
 constexpr std::uint32_t kOnChipFirst = 0xFFFF80, kOnChipLast = 0xFFFFFF;
 constexpr std::uint32_t kOnChipAddressPins = 0x3F;
 
@@ -195,7 +192,7 @@ void PortA::move_bus(PortAPins& pins) const {
 }
 
 void PortA::see(TimeFs time, const BoardOutputs& board) {
-  const Seen now{time, board.get(pin::kPaData), drives_data(board), board.get(pin::kPaTaN) != 0};
+  const Seen now{time, board.get(pin::kPaData), board.get(pin::kPaDataOe) != 0, board.get(pin::kPaTaN) != 0};
   if (seen_.empty() || !now.same_data(seen_.back()) || now.busy != seen_.back().busy) seen_.push_back(now);
 }
 

@@ -81,7 +81,7 @@ DeviceBus::Result PortAInitiator::access(std::uint32_t address, unsigned bytes, 
     payload_.set_byte_enable_ptr(nullptr);
     payload_.set_dmi_allowed(false);
     request_.start = now;
-    request_.pc = cpu->pc();
+    request_.pc = by_master ? 0 : cpu->pc();
   }
   payload_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
@@ -273,6 +273,7 @@ void Machine::attach_debugger(GdbServer* debugger) {
 
 void Machine::attach_bus_master(BusMaster* master) {
   impl_->master = master;
+  impl_->initiator.by_master = master != nullptr;
   if (master != nullptr) impl_->cpu_runs = false;
 }
 std::string Machine::function_at(std::uint32_t pc) const { return impl_->elf ? impl_->elf->symbol_at(pc) : ""; }

@@ -39,6 +39,7 @@ class PortAInitiator : public sc_core::sc_module, public DeviceBus {
 
   tlm_utils::simple_initiator_socket<PortAInitiator> socket{"socket"};
   Cpu* cpu = nullptr;
+  bool by_master = false;  // not the CPU asks
 
  private:
   PortA& port_a_;

@@ -53,6 +53,7 @@ struct BenchContext {
   std::uint64_t seed;
   bool negative;
   TimingBook& timing;  // what judges the buses of this run
+  bool forced_wait_states;
 
   std::string ask(const std::string& line) const;            // data lines joined by '|'
   std::vector<long> numbers(const std::string& line) const;  // data lines as numbers

@@ -6,6 +6,7 @@
 namespace brick {
 
 Bench smoke_bench();
+Bench bus_timing_bench();
 Bench breq_rotary_bench();
 Bench breq_select_bench();
 Bench interrupts_bench();

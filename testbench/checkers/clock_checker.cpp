@@ -43,6 +43,7 @@ void ClockChecker::run(Tick now, const ClockSetting& s) {
   if (mode_ == Mode::kMove && stage_ != Stage::kNew && !(now_is_ == s))
     violate(now, Kind::kUnsettled, "the new source is not seen");
   now_is_ = s;
+  shortest_.end();
   begin(Mode::kRun, std::nullopt, Stage::kOld);
 }
 
@@ -54,6 +55,7 @@ void ClockChecker::change(Tick now, const ClockSetting& to) {
 void ClockChecker::move(Tick now, const ClockSetting& to, Tick hand_over) {
   finish(now);
   hand_over_ = hand_over;
+  shortest_.begin(now_is_, to);
   begin(Mode::kMove, to, Stage::kOld);
 }
 
@@ -76,6 +78,7 @@ void ClockChecker::pins(Tick now, bool phase, bool servo, bool conflict) {
   if (conflict && !conflict_ && !conflict_allowed_)
     violate(now, Kind::kConflict, "two sources disagree for more than 2 ticks");
   conflict_ = conflict;
+  shortest_.pins(now, phase, servo);
   const bool phase_changed = phase != phase_;
   if (mode_ == Mode::kIgnore) {
     falls_.reset();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "systemc/core/ticks.h"
+#include "testbench/checkers/shortest_levels.h"
 
 namespace brick {
 
@@ -47,7 +48,10 @@ class ClockChecker {
 
   // What the host does
   // --------------------------------------------------------------------------------------------------
-  void ignore() { mode_ = Mode::kIgnore; }  // reset, watchdog: no rule until told otherwise
+  void ignore() {  // reset, watchdog: no rule until told otherwise
+    mode_ = Mode::kIgnore;
+    shortest_.end();
+  }
   // Every edge from now on is exact. Ends a transition, which must be over: no odd pulse is pending, the new setting is
   // seen.
   void run(Tick now, const ClockSetting& s);
@@ -79,6 +83,7 @@ class ClockChecker {
     unsigned phase_falls = 0, servo_falls = 0, odd_highs = 0;
   };
   const Counts& counts() const { return counts_; }
+  const ShortestLevels& shortest_levels() const { return shortest_; }  // while the source moved
   Tick last_phase_fall() const { return last_fall_; }
 
  private:
@@ -116,6 +121,7 @@ class ClockChecker {
   bool first_servo_ = false;       // the new source's first fall of SERVO is still to come
   bool conflict_ = false, conflict_allowed_ = false;
   Counts counts_;
+  ShortestLevels shortest_;
   std::vector<Violation> violations_;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr unsigned kWaitStates = 32, kMultipliers = 33;
 
-// host-bus:2.2, host-bus:2.5/6, host-bus:2.5/7.
+// host-bus:2.2, host-bus:2.5/6, host-bus:2.5/7, host-bus:2.6/6 to host-bus:2.6/8.
 std::vector<TimingRule> port_a_rules() {
   constexpr auto kLeast = TimingRule::Kind::kLeast, kMost = TimingRule::Kind::kMost, kHolds = TimingRule::Kind::kHolds;
   return {{"100", "cycle: address and AA valid", "host-bus:2.2/100", kLeast},
@@ -31,6 +31,9 @@ std::vector<TimingRule> port_a_rules() {
           {"117", "/RD high to address invalid", "host-bus:2.2/117", kLeast},
           {"118", "/TA set-up before /RD or /WR high", "host-bus:2.2/118", kLeast},
           {"119", "/TA hold after /RD or /WR high", "host-bus:2.2/119", kLeast},
+          {"w1", "/WR low to write data valid", "host-bus:2.6/6", kMost},
+          {"w2", "/WR low to address or write data invalid", "host-bus:2.6/7", kLeast},
+          {"s1", "fall of a strobe to its next fall", "host-bus:2.6/8", kLeast},
           {"a", "/RD and /WR never low together", "host-bus:2.5/6", kHolds},
           {"b", "address, AA stand through the strobe", "host-bus:2.5/7", kHolds}};
 }
@@ -116,6 +119,25 @@ std::optional<TimeFs> PortATiming::required(Rule rule, const PortAConditions& at
   }
 }
 
+// Periods of clk_ref (three ticks) and of clk_pwm, and a nanosecond for the flip-flop that misses or just catches an
+// edge.
+std::optional<TimeFs> PortATiming::needed(Rule rule, Region region) {
+  constexpr TimeFs kAperture = kFsPerNs;
+  constexpr Tick kRef = kTicksPerRef;
+  switch (rule) {
+    case kW1:
+      return tick_to_fs(region == kDpram ? 2 : kRef) - kAperture;
+    case kW2:
+      if (region == kDpram) return std::nullopt;
+      return tick_to_fs(2 * kRef) + kAperture;
+    case kS1:
+      if (region == kDpram) return std::nullopt;
+      return tick_to_fs(kRef) + kAperture;
+    default:
+      return std::nullopt;
+  }
+}
+
 const PortATiming::Limits& PortATiming::limits(const PortACycle& c) {
   const auto fill = [&](unsigned stretched) {
     Limits all;
@@ -132,7 +154,7 @@ const PortATiming::Limits& PortATiming::limits(const PortACycle& c) {
 void PortATiming::cycle(const PortACycle& c) {
   if (c.on_chip) return;  // moves no pin
   region_ = c.aa == 2 ? kGateIcs : c.aa == 4 ? kDpram : kDefaultArea;
-  place_ = {c.start, c.address, c.x ? 'X' : 'Y', c.write, true, c.pc};
+  place_ = {c.start, c.address, c.x ? 'X' : 'Y', c.write, c.pc != 0, c.pc};
   place_.wait_states = c.wait_states;
   place_.i52 = c.multiplier - 1;
   const Limits& rows = limits(c);
@@ -157,6 +179,7 @@ void PortATiming::read(const PortACycle& c, const Limits& rows) {
     worst_margin_ = margin;
     worst_read_ = c;
   }
+  if (last_read_ && last_read_->aa == c.aa) need(kS1, c.strobe_low - last_read_->strobe_low);
   if (last_read_) between(k113, *last_read_, c, c.strobe_low - last_read_->strobe_high);
 }
 
@@ -169,6 +192,9 @@ void PortATiming::write(const PortACycle& c, const Limits& rows) {
   enter(k109, rows, c.end - c.strobe_high);
   enter(k110, rows, c.data_time - c.strobe_low);
   enter(k111, rows, c.end - c.strobe_high);
+  need(kW1, c.data_time - c.strobe_low);
+  need(kW2, c.end - c.strobe_low);
+  if (last_write_ && last_write_->aa == c.aa) need(kS1, c.strobe_low - last_write_->strobe_low);
   if (last_read_) between(k112, *last_read_, c, c.data_time - last_read_->strobe_high);
   if (last_write_) between(k114, *last_write_, c, c.strobe_low - last_write_->strobe_high);
 }

@@ -42,6 +42,9 @@ class PortATiming {
     k117,
     k118,
     k119,
+    kW1,
+    kW2,
+    kS1,
     kOneStrobe,
     kAddressStands,
     kRules
@@ -65,6 +68,9 @@ class PortATiming {
   };
   const TaMoves& ta_moves() const { return ta_moves_; }
 
+  // What the board needs of a write, and of two strobes in a row (host-bus:2.6, host-bus:6.9/8).
+  static std::optional<TimeFs> needed(Rule rule, Region region);
+
   // What the formula asks for in femtoseconds, less than one in favour of the part; none: the row does not apply.
   static std::optional<TimeFs> required(Rule rule, const PortAConditions& at);
 
@@ -78,6 +84,10 @@ class PortATiming {
   void acknowledge(const PortACycle& c, const Limits& limits);
   void enter(Rule rule, const Limits& limits, TimeFs measured) {
     if (limits.row[rule]) ledger_.enter(rule, region_, *limits.row[rule], measured, place_);
+  }
+  void need(Rule rule, TimeFs measured) {
+    if (const auto time = needed(rule, static_cast<Region>(region_)))
+      ledger_.enter(rule, region_, *time, measured, place_);
   }
   // Between two cycles the fewer wait states count, and the faster clock.
   void between(Rule rule, const PortACycle& first, const PortACycle& c, TimeFs measured);

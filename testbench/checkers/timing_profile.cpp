@@ -13,7 +13,7 @@ constexpr TimeFs kLongestPulse = 50'000 * kFsPerNs;  // host-bus:5.7/6: longer i
 constexpr unsigned kRealTimeTask = 1;
 constexpr std::uint32_t kCarriageReturn = 0x0D;
 
-constexpr BoardOutputs kLines = select_pins(pin::kIpos, pin::kBreq, pin::kEror, pin::kF1er, pin::kHreq, pin::kWdo);
+constexpr BoardOutputs kLines = select_pins(pin::kIpos, pin::kBreq, pin::kEror, pin::kF1er, pin::kHreq);
 constexpr BoardOutputs kMask = select_pins(pin::kPicMsk, pin::kPicElr);
 
 }  // namespace
@@ -73,9 +73,9 @@ void TimingProfile::outputs(Tick tick, const BoardOutputs& before, const BoardOu
   if (rose(pin::kIsaIrq) && line_rose_) interrupt_.enter(now - *line_rose_, now);
   if (rose(pin::kIsaIrq)) line_rose_.reset();
   if (!before.differs(after, kLines)) return;
-  constexpr unsigned kIr7 = 7;
-  const std::pair<const PinField*, unsigned> lines[] = {{&pin::kIpos, 0}, {&pin::kBreq, 1}, {&pin::kEror, 2},
-                                                        {&pin::kF1er, 3}, {&pin::kHreq, 4}, {&pin::kWdo, kIr7}};
+  // The lines that no board file moves (host-bus:4.2).
+  const std::pair<const PinField*, unsigned> lines[] = {
+      {&pin::kIpos, 0}, {&pin::kBreq, 1}, {&pin::kEror, 2}, {&pin::kF1er, 3}, {&pin::kHreq, 4}};
   for (const auto& [line, bit] : lines)
     if (rose(*line) && (after.get(pin::kPicMsk) >> bit & 1) != 0 && after.get(pin::kIsaIrq) == 0) line_rose_ = now;
 }

@@ -43,12 +43,13 @@ BusTraffic::BusTraffic(Machine& machine, std::uint64_t seed) : machine_(machine)
   control(regs::cpu_bus::kBcr.address, kMostWaitStates);
   for (auto& region : words_) {
     read_.clear();
-    for (const Word& w : region) {
-      queue_.push_back({w.x, w.address, true, kAllBits, kLongestIdle});
-      queue_.push_back({w.x, w.address, false, 0, kLongestIdle});
-    }
+    for (const Word& w : region)
+      for (const std::uint32_t value : {0u, kAllBits}) {
+        queue_.push_back({w.x, w.address, true, value, kLongestIdle});
+        queue_.push_back({w.x, w.address, false, 0, kLongestIdle});
+      }
     finish();
-    for (std::size_t i = 0; i < region.size(); ++i) region[i].mask = region[i].value = read_[i];
+    for (std::size_t i = 0; i < region.size(); ++i) region[i].mask = region[i].value = read_[2 * i + 1] & ~read_[2 * i];
   }
 }
 
@@ -100,11 +101,17 @@ void BusTraffic::exercise(Region region, unsigned count, const std::function<voi
   for (unsigned i = 0; i < count && !words.empty(); ++i) {
     if (i % kAccessesPerPhase == 0) another_phase();
     Word& w = words[draw(static_cast<std::uint32_t>(words.size()))];
-    const bool write = draw(2) != 0;
+    const bool write = i < 2 ? i == 0 : draw(2) != 0;  // both, however few
     const std::uint32_t value = static_cast<std::uint32_t>(random_()) & kAllBits;
     queue_.push_back({w.x, w.address, write, value, draw(2) != 0 ? 0 : draw(kLongestIdle)});
     if (write) w.value = value & w.mask;
   }
+  finish(meanwhile);
+}
+
+void BusTraffic::share(unsigned count, const std::function<void()>& meanwhile) {
+  for (unsigned i = 0; i < count; ++i)
+    queue_.push_back({false, kSharedAddress, draw(2) != 0, i, draw(i == 0 ? 16 * kLongestIdle : kLongestIdle)});
   finish(meanwhile);
 }
 

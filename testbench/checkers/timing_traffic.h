@@ -35,6 +35,10 @@ class BusTraffic final : public BusMaster {
   // `count` random accesses in the region. While they run `meanwhile` is called again and again: a host at work, which
   // may read the same words.
   void exercise(Region region, unsigned count, const std::function<void()>& meanwhile = {});
+  // `count` accesses of one word of the dual-ported RAM that the host may write meanwhile: nobody knows what it holds.
+  void share(unsigned count, const std::function<void()>& meanwhile);
+  static constexpr std::uint32_t kSharedAddress = 0x060C10;                        // Y
+  static constexpr std::uint32_t kSharedOffset = 4 * (kSharedAddress - 0x060000);  // of the host
   // Reads every word of the region back, with all the time there is: "" or what is wrong. Sets clock and wait states.
   std::string verify(Region region);
   std::uint32_t first_address(Region region) const { return words_[region].front().address; }

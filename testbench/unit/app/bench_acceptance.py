@@ -188,6 +188,16 @@ def flags_lockstep():
     bench_passes("flags", "lockstep", "3")
 
 
+# covers: CARD-5
+def bus_timing():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("bus-timing", engine, seed)
+
+
+def bus_timing_lockstep():
+    bench_passes("bus-timing", "lockstep", "3")
+
+
 if CASE.endswith("_negative"):
     fails_its_negative_control(CASE.removesuffix("_negative").replace("_", "-"))
 else:

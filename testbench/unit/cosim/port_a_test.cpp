@@ -4,81 +4,13 @@
 
 #include <gmock/gmock.h>
 
-#include <optional>
-
+#include "testbench/unit/cosim/port_a_rig.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
 namespace {
 
 constexpr double kNs = 1e6;  // femtoseconds
-
-// Presents accesses to the bus master and moves the pins along, with a board that shows `board(tick)`.
-class PortARig {
- public:
-  explicit PortARig(std::function<BoardOutputs(Tick)> board = [](Tick) { return BoardOutputs{}; })
-      : board_(std::move(board)) {
-    port_a.on_cycle = [this](const PortACycle& c) { last = c; };
-    port_a.reset(0, 0, pins);
-    payload_.set_extension(&request_);
-    payload_.set_data_ptr(reinterpret_cast<unsigned char*>(&data_));
-  }
-  ~PortARig() { payload_.clear_extension(&request_); }
-
-  tlm::tlm_response_status access(char space, std::uint32_t address, bool write, std::uint32_t data = 0,
-                                  unsigned bytes = 4) {
-    payload_.set_address(kPmacBase + 8ull * address + (space == 'X' ? 4 : 0));
-    payload_.set_command(write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
-    payload_.set_data_length(bytes);
-    payload_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-    data_ = data;
-    request_.start = cycle;
-    auto& bus = static_cast<sc_core::sc_export<tlm::tlm_fw_transport_if<>>&>(port_a.socket);
-    for (;;) {
-      sc_core::sc_time delay;
-      bus->b_transport(payload_, delay);
-      if (payload_.get_response_status() != tlm::TLM_INCOMPLETE_RESPONSE) break;
-      while (port_a.running()) {
-        EXPECT_GE(port_a.stands_at(), now) << "the board would have to go back";
-        for (; now < port_a.stands_at(); ++now)
-          if (board_(now + 1) != board_(now)) port_a.board_changed(now + 1, board_(now + 1));
-        const BoardInputs before = pins;
-        port_a.step(pins, board_(now));
-        if (on_pins) on_pins(now, before, pins);
-      }
-    }
-    cycle = request_.done;
-    return payload_.get_response_status();
-  }
-  std::uint32_t read(char space, std::uint32_t address) {
-    EXPECT_EQ(access(space, address, false), tlm::TLM_OK_RESPONSE);
-    return data_;
-  }
-  void write(char space, std::uint32_t address, std::uint32_t data) {
-    EXPECT_EQ(access(space, address, true, data), tlm::TLM_OK_RESPONSE);
-  }
-  void set_clock(unsigned multiplier) { write('X', 0xFFFFFD, multiplier - 1); }
-  void set_wait_states(unsigned ws) {  // all areas
-    const unsigned three_bits = std::min(ws, 7u);
-    write('X', 0xFFFFFB, ws | ws << 5 | three_bits << 10 | three_bits << 13 | ws << 16);
-  }
-
-  // Called at each tick at which pins move.
-  std::function<void(Tick, const BoardInputs& before, const BoardInputs& after)> on_pins;
-
-  Signals signals;
-  PortA port_a{sc_core::sc_gen_unique_name("port_a"), signals};
-  BoardInputs pins;
-  std::optional<PortACycle> last;
-  Tick now = 0;
-  std::int64_t cycle = 12;
-
- private:
-  std::function<BoardOutputs(Tick)> board_;
-  PortARequest request_;
-  tlm::tlm_generic_payload payload_;
-  std::uint32_t data_ = 0;
-};
 
 double tc_ns(unsigned n) { return 1e9 / (9'830'400.0 * n); }  // CPU clock period
 int form(unsigned ws) { return ws <= 3 ? 0 : ws <= 7 ? 1 : 2; }
@@ -251,6 +183,7 @@ std::function<BoardOutputs(Tick)> busy_until(Tick release) {
     BoardOutputs o;
     o.set(pin::kPaTaN, t < release);
     o.set(pin::kPaData, t < release ? 0xBAD : 0x600D);
+    o.set(pin::kPaDataOe, 1);
     return o;
   };
 }
@@ -283,6 +216,7 @@ TEST(PortA, ReadsWhatThePinsShowAtTheSampleAndNotLater) {
   const auto slow = [](Tick t) {
     BoardOutputs o;
     o.set(pin::kPaData, t < 45 ? 0x111111 : 0x222222);
+    o.set(pin::kPaDataOe, 1);
     return o;
   };
   PortARig quick(slow), patient(slow);

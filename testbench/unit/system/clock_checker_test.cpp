@@ -363,5 +363,29 @@ TEST(ClockChecker, FindsEdgesWithoutASource) {
   }
 }
 
+// kSlow: PHASE 5899 x 3 = 17697 ticks, high 8848, low 8849, SERVO low 17697, high 17697. kDefault: 13057, 6528, 6529,
+// 13057, 39171. While the source moves from one to the other the lesser of each pair is the bound.
+TEST(ShortestLevels, EachLevelAtItsBoundAndATickLess) {
+  for (const Tick less : {0, 1}) {
+    ShortestLevels shortest;
+    shortest.pins(90, true, true);
+    shortest.pins(100, false, false);  // before the move: no bound
+    shortest.pins(200, true, true);
+    shortest.begin(kDefault, kSlow);
+    shortest.pins(200 + 17697 - less, true, false);
+    shortest.pins(200 + 17697 + 13057 - 2 * less, true, true);
+    shortest.pins(40000, false, true);
+    shortest.pins(40000 + 6529 - less, true, true);
+    shortest.pins(40000 + 6529 + 6528 - 2 * less, false, true);
+    for (const auto& [servo, high, bound] :
+         {std::tuple{false, false, 6529}, {false, true, 6528}, {true, false, 13057}, {true, true, 17697}}) {
+      EXPECT_EQ(shortest.level(servo, high).bound, bound);
+      EXPECT_EQ(shortest.level(servo, high).length, bound - less);
+    }
+    EXPECT_EQ(shortest.kept(1), less == 0);
+    EXPECT_FALSE(shortest.kept(2)) << "SERVO low was seen once";
+  }
+}
+
 }  // namespace
 }  // namespace brick

@@ -1,0 +1,114 @@
+// What the CPU takes from a bus that moves: bits of D that change between the sample of row 104 and /RD high, a bus
+// that nobody drives, and /TA that changes inside rows 118 and 119. At I52 = 7, ticks of 8.477 ns and TC of 12.716 ns.
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "testbench/unit/cosim/port_a_rig.h"
+#include "testbench/unit/covers.h"
+
+namespace brick {
+namespace {
+
+BoardOutputs shows(std::uint32_t data, bool driven = true, bool busy = false) {
+  BoardOutputs o;
+  o.set(pin::kPaData, data);
+  o.set(pin::kPaDataOe, driven);
+  o.set(pin::kPaTaN, busy);
+  return o;
+}
+
+std::uint32_t read(std::function<BoardOutputs(Tick)> board, std::uint64_t seed, PortACycle* cycle = nullptr,
+                   unsigned ws = 7) {
+  PortARig rig(std::move(board));
+  rig.port_a.seed(seed);
+  rig.write('X', 0xFFFFFB, ws << 5 | 3 << 10);
+  rig.cycle = 12 + 18;  // behind the write to BCR
+  const std::uint32_t data = rig.read('X', 0x078000);
+  if (cycle != nullptr) *cycle = *rig.last;
+  return data;
+}
+Tick edge_before(TimeFs time) { return fs_to_tick_floor(time); }
+
+TEST(PortASamples, BitsThatMoveAfterTheSampleAreRandomBySeed) {
+  BRICK_COVERS("CARD-5");
+  PortACycle c;
+  read([](Tick) { return shows(0); }, 1, &c);
+  const Tick in_time = edge_before(c.data_time), late = in_time + 1;
+  ASSERT_LT(tick_to_fs(late), c.strobe_high) << "an edge inside the window";
+  const auto moves_at = [](Tick when) { return [when](Tick t) { return shows(t < when ? 0x111111 : 0x112211); }; };
+  std::set<std::uint32_t> words;
+  for (std::uint64_t seed = 1; seed <= 64; ++seed) {
+    EXPECT_EQ(read(moves_at(in_time), seed, &c), 0x112211u) << "in time";
+    EXPECT_FALSE(c.corrupted);
+    const std::uint32_t word = read(moves_at(late), seed, &c);
+    EXPECT_EQ(word, read(moves_at(late), seed)) << "the same seed, the same word";
+    EXPECT_EQ(word & ~0x003300u, 0x110011u) << "bits that stood";
+    EXPECT_TRUE(c.corrupted);
+    EXPECT_EQ(c.data_valid, tick_to_fs(late));
+    words.insert(word);
+  }
+  EXPECT_GT(words.size(), 8u) << "of sixteen";
+}
+
+TEST(PortASamples, ABusThatNobodyDrivesGivesAnything) {
+  BRICK_COVERS("CARD-5");
+  PortACycle c;
+  std::set<std::uint32_t> words;
+  for (std::uint64_t seed = 1; seed <= 32; ++seed) words.insert(read([](Tick) { return shows(5, false); }, seed, &c));
+  EXPECT_GT(words.size(), 30u);
+  EXPECT_EQ(c.data_valid, c.strobe_high) << "never before";
+  const Tick gone = edge_before(c.strobe_high);
+  read([gone](Tick t) { return shows(5, t < gone); }, 1, &c);
+  EXPECT_TRUE(c.corrupted && c.data_lost);
+  EXPECT_EQ(c.data_held, tick_to_fs(gone));
+}
+
+TEST(PortASamples, HoldEndsWithTheFirstChangeAfterTheStrobe) {
+  PortACycle c;
+  read([](Tick) { return shows(5); }, 1, &c);
+  EXPECT_EQ(c.data_held, c.end);
+  const Tick after = fs_to_tick(c.strobe_high);
+  read([after](Tick t) { return shows(t < after ? 5 : 6); }, 1, &c);
+  EXPECT_FALSE(c.corrupted);
+  EXPECT_EQ(c.data_held, tick_to_fs(after));
+}
+
+// /TA falls between the sample, TC / 4 + 2 ns before /RD would rise, and that rise.
+TEST(PortASamples, TaThatMovesInItsWindowIsSeenOrNotBySeed) {
+  BRICK_COVERS("CARD-5");
+  const auto ready_at = [](Tick when) { return [when](Tick t) { return shows(7, true, t < when); }; };
+  PortACycle c;
+  read(ready_at(0), 1, &c);
+  ASSERT_EQ(c.stretched, 0u);
+  const Tick in_time = edge_before(c.ta_time), inside = edge_before(c.strobe_high);
+  ASSERT_GT(inside, in_time);
+  unsigned seen = 0, missed = 0;
+  for (std::uint64_t seed = 1; seed <= 64; ++seed) {
+    read(ready_at(in_time), seed, &c);
+    EXPECT_EQ(c.stretched + c.ta_seen + c.ta_missed, 0u) << "in time";
+    read(ready_at(inside), seed, &c);
+    EXPECT_EQ(c.stretched, c.ta_missed);
+    EXPECT_EQ(c.ta_seen + c.ta_missed, 1u);
+    EXPECT_FALSE(c.ta_high);
+    seen += c.ta_seen;
+    missed += c.ta_missed;
+    read(ready_at(inside + 1), seed, &c);
+    EXPECT_EQ(c.ta_seen + c.ta_missed, 0u) << "after the window of one sample and before that of the next";
+    EXPECT_EQ(c.stretched, 1u);
+  }
+  EXPECT_GT(seen, 16u);
+  EXPECT_GT(missed, 16u);
+}
+
+TEST(PortASamples, ForcedWaitStatesWinOverTheProgram) {
+  PortARig rig;
+  rig.port_a.force_wait_states(9 << 5);
+  rig.write('X', 0xFFFFFB, 3 << 5);
+  EXPECT_EQ(rig.read('X', 0xFFFFFB), 3u << 5) << "the program reads what it wrote";
+  rig.read('X', 0x078000);
+  EXPECT_EQ(rig.last->wait_states, 9u);
+}
+
+}  // namespace
+}  // namespace brick
