@@ -11,9 +11,9 @@ Dpram::Dpram(const sc_core::sc_module_name& name) : sc_module(name), socket("soc
 // One more tick would change nothing.
 bool Dpram::cpu_settled() const {
   const auto still = [](const Strobe& s, bool toggle, bool strobe_n) {
-    return s.toggle1 == toggle && s.toggle2 == toggle && s.low1 == !strobe_n && s.low2 == !strobe_n &&
-           s.acknowledged == s.done;
+    return s.toggle1 == toggle && s.toggle2 == toggle && s.low1 == !strobe_n && s.low2 == !strobe_n;
   };
+  if (rd_.acknowledged != rd_.done) return false;  // of a write nobody waits for it
   if (!still(rd_, in.rd_toggle, in.cpu_rd_n) || !still(wr_, in.wr_toggle, in.cpu_wr_n)) return false;
   if (sel_ != in.cpu_sel || pins_ != pin_cell() || sampled_ || proven_) return false;
   if (rd_.pending() || wr_.pending()) return sel_ && cpu_busy_ && cpu_blocked() && !ended();
