@@ -43,6 +43,7 @@ Changes traffic(const Edit& edit) {
     in.ext_clock = in.jpan_fitted = true;
     in.dpram_small = false;
     in.line_select = board->now() < kEnd / 2 ? 0xEDC : 0xF51;  // all lines that come from outside
+    in.slot8 = board->now() >= kEnd / 2;  // SA[19:17] count on an 8-bit slot only, LA[23:20] on the other
     board->set_inputs(in);
   }
   return changes;
