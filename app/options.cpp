@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -47,6 +48,14 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
   command.add_option("--wave", o.wave, "write a waveform, FILE.vcd or FILE.fst");
   command.add_option("--wave-from", o.wave_from, "first time in the waveform, for example 10ms");
   command.add_option("--wave-to", o.wave_to, "last time in the waveform");
+  command
+      .add_option(
+          "--trace", o.trace,
+          "what goes into the waveform: names or globs of docs/signals.md, for example 'clock.*,host.*', or all; "
+          "may be repeated (default: all but the serial clocks)")
+      ->type_name("GROUPS")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--seed", o.seed, "seed of what memories and flip-flops start with and of the host's timing")
       ->capture_default_str();
   command.add_option("--jumper", o.jumpers, "jumper that is on: E3 (factory defaults at start); may be repeated")
@@ -130,6 +139,7 @@ MachineConfig machine_config(const RunOptions& o) {
   if (!o.json.empty()) need_folder("--json", o.json);
   if (!o.gdb.empty()) gdb_port(o);
   wave_window(o);
+  trace_groups(o);
   return config;
 }
 
@@ -150,6 +160,22 @@ WaveWindow wave_window(const RunOptions& o) {
     throw UsageError(fmt::format("--wave {}: unknown kind of waveform; expected FILE.vcd or FILE.fst", o.wave));
   if (window.from > window.to) throw UsageError("--wave-from is later than --wave-to; expected the earlier time first");
   return window;
+}
+
+TraceGroups trace_groups(const RunOptions& o) {
+  if (o.trace.empty()) return {};
+  if (o.wave.empty()) throw UsageError("--trace needs a waveform; expected --wave FILE.vcd or FILE.fst");
+  std::vector<std::string> patterns;
+  for (const std::string& list : o.trace) {
+    std::stringstream in(list + ',');
+    for (std::string pattern; std::getline(in, pattern, ',');) {
+      if (pattern.empty())
+        throw UsageError(
+            fmt::format("--trace {}: an empty name; expected names or globs with commas between them", list));
+      patterns.push_back(pattern);
+    }
+  }
+  return TraceGroups(std::move(patterns));
 }
 
 void write_json(const std::string& file, const std::string& text, const std::string& option) {

@@ -18,6 +18,7 @@ struct RunOptions {
   std::string firmware;                 // "" = the one that belongs to this brick
   std::string wave;
   std::string wave_from, wave_to;
+  std::vector<std::string> trace;  // patterns, separated by commas
   std::string seed = "1";
   std::vector<std::string> jumpers;
   std::string flash;
@@ -40,6 +41,7 @@ struct WaveWindow {
   TimeFs to = INT64_MAX;
 };
 WaveWindow wave_window(const RunOptions& options);
+TraceGroups trace_groups(const RunOptions& options);  // throws UsageError
 
 TimeFs parse_aperture(const std::string& text);                                 // throws UsageError
 std::uint16_t gdb_port(const RunOptions& options);                              // throws UsageError

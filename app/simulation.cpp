@@ -61,13 +61,17 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
   if (options.wave.empty()) return;
   wave_ = options.wave;
   const WaveWindow window = wave_window(options);
+  const TraceGroups groups = trace_groups(options);
+  if (const auto unknown = groups.unmatched(machine_->signals()))
+    throw UsageError(fmt::format("--trace {}: board {} has no such signal; expected names or globs of docs/signals.md",
+                                 *unknown, config.board.name));
   try {
     const auto folder = std::filesystem::path(options.wave).parent_path();
     std::error_code ignored;  // opening the file says what is wrong
     if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
     trace_ = TraceWriter::open(options.wave, window.from, window.to);
   } catch (const std::exception& e) { throw UsageError(fmt::format("--wave {}; expected a writable place", e.what())); }
-  machine_->signals().attach(trace_.get());
+  machine_->signals().attach(trace_.get(), groups);
 }
 
 void Simulation::wait_for_debugger(std::uint16_t port) {

@@ -6,8 +6,9 @@ assert, each with a cover of its premise. Its header says how, in comment lines:
   proof: pdr | induction N   property directed reachability (yosys-abc), or base case and step of N (z3)
   clocks: one | several      several: every clock is a signal that the file makes, time runs in steps of its own
   steps: N                   within which premises are reached and faults refuted
+  edit: what and why (FILE)  an edit of the RTL for the proof, such as a shallower memory; its text as of a fault
   fault RULE: what is wrong (FILE), then '  - old text' and '  + new text': with that edit this rule, judged
-                             alone, must be refuted; the waveform is DIR/NAME.RULE.vcd
+                             alone, must be refuted; the waveform is DIR/NAME.fault.RULE.vcd
 Every verdict needs the solver's words of success: no answer in time is a failure. docs/formal.md.
 Exit status 0 proved, 1 not, 77 Yosys or z3 is not installed.
 """
@@ -24,10 +25,16 @@ from common import ROOT, finish, skip
 from lint_rtl import SIMULATION_ONLY, rtl_files
 
 FOLDER = "testbench/formal"
-Fault = collections.namedtuple("Fault", "rule what file old new")
+Edit = collections.namedtuple("Edit", "rule what file old new")
 
 # Memories become flip-flops and asynchronous inputs synchronous ones, as the back ends want it.
-PREPARE = {"one": "async2sync; dffunmap", "several": "clk2fflogic"}
+PREPARE = {"one": "memory_map; opt -full; async2sync; dffunmap",
+           "several": "memory_collect; opt -full; clk2fflogic; memory_map -formal; opt -full"}
+# A cover as an assert that it is not reached, so that one search does for both.
+COVER = """(* techmap_celltype = "$cover" *) module cover_as_assert (input A, input EN);
+  \\$assert _TECHMAP_REPLACE_ (.A(~A), .EN(EN));
+endmodule
+"""
 
 
 class Failed(Exception):
@@ -45,11 +52,13 @@ class Rules:
         written = re.findall(r"^ +// ([A-Z]\d+): (.*(?:\n +// .*)*)", self.text, re.M)
         self.english = {label: re.sub(r"\s+// *", " ", english) for label, english in written}
         self.rules = [label for label in self.english if label.startswith("R")]
+        self.covers = [f"C{label[1:]}" for label in self.rules]
         self.proof = self.setting("proof", r"pdr|induction \d+")
         self.clocks = self.setting("clocks", "one|several")
         self.steps = int(self.setting("steps", r"\d+"))
-        found = re.findall(r"^// fault (\w+): (.*) \((\S+)\)\n//   - (.*)\n//   \+ ?(.*)\n", self.text, re.M)
-        self.faults = [Fault(*row) for row in found]
+        found = re.findall(r"^// (?:fault )?(edit|R\d+): (.*) \((\S+)\)\n//   - (.*)\n//   \+ ?(.*)\n", self.text, re.M)
+        self.faults = [Edit(*row) for row in found if row[0] != "edit"]
+        self.edits = [Edit(*row) for row in found if row[0] == "edit"]
         self.check()
 
     def setting(self, key, form):
@@ -63,9 +72,9 @@ class Rules:
         asserts, covers = re.findall(r"(\w*):? *assert *\(", code), re.findall(r"(\w*):? *cover *\(", code)
         if asserts != list(self.english) or not self.rules:
             raise Failed(f"{self.path}: each assert needs its rule in English above it, has {asserts}")
-        if sorted(covers) != sorted(f"C{label[1:]}" for label in self.rules):
+        if sorted(covers) != sorted(self.covers):
             raise Failed(f"{self.path}: rules {self.rules} need one cover each, has {covers}")
-        if not self.faults or len(self.faults) != len(re.findall(r"^// fault", self.text, re.M)):
+        if not self.faults or len(self.faults) != len(re.findall(r"^// fault ", self.text, re.M)):
             raise Failed(f"{self.path}: header needs a planted fault: RULE, what, file, old and new text")
         for fault in self.faults:
             if fault.rule not in self.rules:
@@ -83,92 +92,113 @@ class Solvers:
             done = subprocess.run(command, cwd=self.out, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT, text=True, timeout=self.limit)
         except subprocess.TimeoutExpired as late:
-            raise Failed(f"{command[0]}: no answer within {self.limit} s") from late
+            raise Failed(f"{command[0]}: no answer within {self.limit:g} s") from late
         return done.stdout
 
-    def trace(self, stem):
-        return os.path.relpath(self.out / f"{stem}.vcd")
+    def abc(self, stem, label, commands):
+        """What yosys-abc says of one rule or cover, and the step at which it is refuted or reached, None: it is not."""
+        name = f"{stem}.{label}"
+        said = self.run("yosys-abc", "-c", f"read_aiger {name}.aig; fold; strash; {commands}; write_cex -a {name}.aiw")
+        found = re.search(r"was asserted in frame (\d+)", said)
+        return said, int(found.group(1)) if found else None
+
+    def search(self, stem, label, steps):
+        said, step = self.abc(stem, label, f"bmc3 -F {steps}")
+        if step is None and "No output asserted" not in said:
+            raise Failed(f"{stem}: search for {label} gave no verdict\n{said[-2000:]}")
+        return step
 
     def smtbmc(self, stem, *options):
         return self.run("yosys-smtbmc", "-s", "z3", "--unroll", "--noprogress", *options, f"{stem}.smt2")
 
-    def refuted(self, stem, steps):
-        """(rule, step) that a bounded search refutes first, waveform in stem.vcd; None when it says that none is."""
-        said = self.smtbmc(stem, "-t", str(steps), "--dump-vcd", f"{stem}.vcd")
-        found = re.search(r"Assert failed in \S+: (\w+)", said)
-        if found and "Status: FAILED" in said:
-            return found.group(1), int(re.findall(r"Checking assertions in step (\d+)", said)[-1])
-        if "Status: PASSED" not in said:
-            raise Failed(f"{stem}: bounded search gave no verdict\n{said[-2000:]}")
-        return None
+    def trace(self, stem, label):
+        """Waveform of what abc() found last, replayed on the whole model."""
+        name = f"{stem}.{label}"
+        said = self.smtbmc(stem, "--aig", f"{name}.aim:{name}.aiw", "--aig-noheader", "--dump-vcd", f"{name}.vcd")
+        if not re.search(rf"Assert failed in \S+: {label}$", said, re.M):
+            raise Failed(f"{name}: the trace does not show the fault\n{said[-2000:]}")
+        return os.path.relpath(self.out / f"{name}.vcd")
 
 
 def build(rules, solvers, fault=None):
-    """Models of the design: .smt2 and .aig; with a fault its rule alone is judged."""
+    """Models of the design: .smt2 with all rules, an .aig of each rule and cover; with a fault of its rule alone."""
     packages, modules = rtl_files(rules.root)
-    sources = [rules.root / f for f in packages + modules if f.stem not in SIMULATION_ONLY]
-    stem = rules.name
-    if fault:
-        stem = f"{rules.name}.{fault.rule}"
-        text = (rules.root / fault.file).read_text()
-        count = text.count(fault.old)
-        if count != 1:
-            raise Failed(f"{rules.path}: '{fault.old}' occurs {count} times in {fault.file}, expected 1")
-        planted = solvers.out / f"{stem}.sv"
-        planted.write_text(text.replace(fault.old, fault.new))
-        sources = [planted if f == rules.root / fault.file else f for f in sources]
-    others = f"delete t:$assert */{fault.rule} %d; " if fault else ""
-    script = (f"read_verilog -sv -formal -defer {' '.join(map(str, sources))}; "
-              f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules; "
-              f"proc -norom; flatten; setundef -undriven -anyseq; memory_map; opt -full; {PREPARE[rules.clocks]}; "
-              f"{others}opt_clean; write_smt2 -wires {stem}.smt2; "
-              f"chformal -cover -remove; techmap; abc -g AND -fast; opt_clean; write_aiger -zinit {stem}.aig")
+    sources = {str(f): rules.root / f for f in packages + modules if f.stem not in SIMULATION_ONLY}
+    stem = f"{rules.name}.fault" if fault else rules.name
+    for edit in rules.edits + ([fault] if fault else []):
+        text = sources[edit.file].read_text() if edit.file in sources else ""
+        if text.count(edit.old) != 1:
+            raise Failed(f"{rules.path}: '{edit.old}' occurs {text.count(edit.old)} times in {edit.file}, not once")
+        sources[edit.file] = solvers.out / f"{stem}.{pathlib.Path(edit.file).name}"
+        sources[edit.file].write_text(text.replace(edit.old, edit.new))
+    labels = [fault.rule] if fault else [*rules.english, *rules.covers]
+    (solvers.out / "cover.v").write_text(COVER)
+    script = [f"read_verilog -sv -formal -defer {' '.join(map(str, sources.values()))}",
+              f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules",
+              f"proc -norom; flatten; setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
+              f"write_smt2 -wires {stem}.smt2",
+              "techmap -map cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
+    for label in labels:
+        script.append(f"design -load m; delete t:$assert */{label} %d; opt_clean; "
+                      f"write_aiger -zinit -no-startoffset -map {stem}.{label}.aim {stem}.{label}.aig")
     model = solvers.out / f"{stem}.smt2"
     model.unlink(missing_ok=True)
-    said = solvers.run("yosys", "-q", "-p", script)
+    said = solvers.run("yosys", "-q", "-p", "; ".join(script))
     asserted = re.findall(r"^; yosys-smt2-assert \d+ (\S+)", model.read_text() if model.exists() else "", re.M)
-    if re.search(r"^ERROR", said, re.M) or sorted(asserted) != sorted([fault.rule] if fault else rules.english):
+    if re.search(r"^ERROR", said, re.M) or sorted(asserted) != sorted(rules.english):
         raise Failed(f"{rules.path}: Yosys made no model of all rules, but of {asserted}\n{said[-2000:]}")
     return stem
 
 
-def prove(rules, stem, solvers):
-    """How it was proved; raises where it was not."""
-    if rules.proof == "pdr":
-        said = solvers.run("yosys-abc", "-c", f"read_aiger {stem}.aig; fold; strash; pdr")
-        if "Property proved." in said:
-            return "pdr, " + re.search(r"Invariant F\[(\d+)\]|$", said).expand(r"\1") + " frames"
-        frame = re.search(r"was asserted in frame (\d+)", said)
-        steps = int(frame.group(1)) + 2 if frame else rules.steps
-    else:
-        steps = int(rules.proof.split()[1])
-        said = solvers.smtbmc(stem, "-i", "-t", str(steps), "--dump-vcd", f"{stem}.vcd")
-    wrong = solvers.refuted(stem, steps)
-    if wrong:
-        raise Failed(f"{wrong[0]} refuted at step {wrong[1]}, see {solvers.trace(stem)}: {rules.english[wrong[0]]}")
-    if rules.proof == "pdr" or "Status: PASSED" not in said:
-        raise Failed(f"{rules.path}: holds for {steps} steps, but is not proved\n{said[-2000:]}")
-    return f"induction, {steps} steps"
+def reached(rules, solvers):
+    """{cover: step}; raises where one is out of reach."""
+    steps = {label: solvers.search(rules.name, label, rules.steps) for label in rules.covers}
+    out_of_reach = [label for label, step in steps.items() if step is None]
+    if out_of_reach:
+        raise Failed(f"{rules.path}: premises {out_of_reach} not reached in {rules.steps} steps: rules may say nothing")
+    return steps
+
+
+def prove(rules, solvers):
+    """{rule: how it was proved}; raises where one was not."""
+    how = {}
+    for label in rules.english if rules.proof == "pdr" else ():
+        said, step = solvers.abc(rules.name, label, "scleanup; scorr; dc2; scleanup; pdr")
+        if step is not None:
+            trace = solvers.trace(rules.name, label)
+            raise Failed(f"{rules.path}: {label} refuted at step {step}, see {trace}: {rules.english[label]}")
+        if "Property proved." not in said:
+            raise Failed(f"{rules.path}: {label} is not proved\n{said[-2000:]}")
+        frames = re.search(r"Invariant F\[(\d+)\]", said)
+        how[label] = f"pdr, {frames.group(1)} frames" if frames else "pdr"
+    if rules.proof != "pdr":
+        steps = rules.proof.split()[1]
+        for name, options in (("base", ()), ("step", ("-i",))):
+            vcd = f"{rules.name}.{name}.vcd"
+            said = solvers.smtbmc(rules.name, "-t", steps, *options, "--dump-vcd", vcd)
+            if "Status: PASSED" not in said:
+                failed = re.findall(r"Assert failed in \S+: (\w+)", said)
+                raise Failed(f"{rules.path}: induction of {steps} steps fails in its {name} at {failed}, "
+                             f"see {os.path.relpath(solvers.out / vcd)}\n{said[-500:]}")
+        how = dict.fromkeys(rules.english, f"induction, {steps} steps")
+    return how
 
 
 def judge(root, name, solvers):
     """Proves one file and prints its verdicts."""
     rules = Rules(root, name)
-    stem = build(rules, solvers)
-    how = prove(rules, stem, solvers)
-    said = solvers.smtbmc(stem, "-c", "-t", str(rules.steps))
-    steps = dict(re.findall(r"Reached cover statement at (\w+) in step (\d+)", said))
+    build(rules, solvers)
+    how = prove(rules, solvers)
+    steps = reached(rules, solvers)
     for label, english in rules.english.items():
-        premise = f"; premise at step {steps.get('C' + label[1:], 'none')}" if label in rules.rules else ""
-        print(f"{name} {label} proved ({how}{premise}): {english}")
-    if len(steps) != len(rules.rules):
-        raise Failed(f"{rules.path}: premises not reached in {rules.steps} steps: rules may say nothing\n{said[-500:]}")
+        premise = f"; premise at step {steps['C' + label[1:]]}" if label in rules.rules else ""
+        print(f"{name} {label} proved ({how[label]}{premise}): {english}")
     for fault in rules.faults:
         stem = build(rules, solvers, fault)
-        found = solvers.refuted(stem, rules.steps)
-        if not found:
+        step = solvers.search(stem, fault.rule, rules.steps)
+        if step is None:
             raise Failed(f"{rules.path}: with '{fault.what}' {fault.rule} still holds for {rules.steps} steps")
-        print(f"{name} {found[0]} refuted at step {found[1]} with '{fault.what}': {solvers.trace(stem)}")
+        print(f"{name} {fault.rule} refuted at step {step} with '{fault.what}': {solvers.trace(stem, fault.rule)}")
 
 
 def main():

@@ -62,10 +62,12 @@ module dpram (
   logic        rd_done_q, rd_ack_q, wr_done_q, busy_q, own_q, own_wr_q, sampled_q, proven_q, show_q;
   logic [14:0] cell_q;
   logic [15:0] wdata_q;
-  logic        rd_new, wr_new, request, ended, conflict, blocked, grant, pins_here, cell_here, host_own_q, mem_busy_q;
+  logic        rd_new, wr_new, fallen, request, ended, conflict, blocked, grant, pins_here, cell_here;
+  logic        host_own_q, mem_busy_q;
   assign rd_new    = rd2_q ^ rd_done_q;
   assign wr_new    = wr2_q ^ wr_done_q;
-  assign request   = sel_q & (rd_new | wr_new) & ~sampled_q & ~proven_q;
+  assign fallen    = rd_new | wr_new;  // so the strobe before has ended, even if it was not seen high
+  assign request   = sel_q & fallen & ~sampled_q & ~proven_q;
   assign ended     = busy_q & ~(wr_new ? wr_low2_q : rd_low2_q);
   assign conflict  = (pins_q == mem_addr_i) & (wr_new | ~mem_rd_i);
   assign blocked   = (host_own_q | mem_busy_q) & conflict;  // the host is there, or was first to wait
@@ -99,7 +101,7 @@ module dpram (
         cell_q   <= pins_q;
         wdata_q  <= cpu_wdata_i;
         if (!wr_new) show_q <= pins_here;
-      end else if (request || !(sampled_q || proven_q || (own_wr_q ? wr_low2_q : rd_low2_q))) begin
+      end else if (!sampled_q && !proven_q && (fallen || !(own_wr_q ? wr_low2_q : rd_low2_q))) begin
         own_q <= 1'b0;
       end
     end

@@ -1,6 +1,7 @@
 // Model of rtl/board/board_top.sv: the controller board behind the Board face, event-driven. Time jumps from one event
-// to the next; at an event the blocks of the buses execute their edges, then the wires between them are copied
-// (systemc/core/model_block.h). The ICs keep a time of their own and catch up when somebody looks
+// to the next (systemc/core/model_block.h). An event concerns the blocks whose time it is: they execute their edge,
+// what they show is wired to the inputs of others (board_wires.cpp), and those whose inputs have changed are asked when
+// they are next. Nobody else is touched. The ICs keep a time of their own and catch up when somebody looks
 // (docs/architecture.md). ICs are built for the bits of `ics`, as the RTL's parameters ServoIcMask and MacroIcMask;
 // BoardInputs::fitted selects at run time.
 #pragma once
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 
 #include <systemc>
@@ -42,7 +44,7 @@ class BoardTop : public sc_core::sc_module, public Board {
 
   void set_motor_inputs(unsigned ic, const MotorInputs& inputs) override;
   MotorOutputs motor_outputs(unsigned ic) const override { return gate_ics_.motor_outputs(ic, now_); }
-  void watch_motors(std::uint32_t ics) override;
+  void watch_motor(unsigned ic, const MotorOutputs& select) override;
   void stop_on_motor(unsigned ic, const MotorOutputs& select) override {
     if (ic < kMaxServoIcs) stop_on_motor_[ic] = select;
   }
@@ -54,33 +56,77 @@ class BoardTop : public sc_core::sc_module, public Board {
   HostPort& host_port() { return host_port_; }
 
  private:
-  // The blocks of the buses, by their own types: this is the innermost loop of the model.
-  template <class F>
-  void each_block(F f) {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(pic_8259_),
-        f(host_signals_), f(dpram_), f(panel_port_);
+  // What may change: the blocks of the buses, which all have a next event, then what else feeds them.
+  enum Part : unsigned {
+    kBusSync,
+    kClockSelect,
+    kWatchdog,
+    kIsaSlave,
+    kHostPort,
+    kInterruptController,
+    kPic8259,
+    kHostSignals,
+    kDpram,
+    kPanelPort,
+    kBlocks,
+    kIcClocks = kBlocks,
+    kPortAPins,
+    kIsaPins,
+    kConnectorPins,
+    kStraps
+  };
+  using Parts = std::uint32_t;
+  template <class... P>
+  static constexpr Parts parts(P... p) {
+    return ((1u << p) | ...);
   }
+  static constexpr Parts kEveryBlock = (1u << kBlocks) - 1, kEverything = ~0u;
+
+  // Those of the blocks in `which`, by their own types: this is the innermost loop of the model.
   template <class F>
-  void each_block(F f) const {
-    f(bus_sync_), f(clock_select_), f(watchdog_), f(isa_slave_), f(host_port_), f(interrupt_controller_), f(pic_8259_),
-        f(host_signals_), f(dpram_), f(panel_port_);
+  void each_block(Parts which, F f) {
+    const auto call = [&](Part part, auto& block) {
+      if ((which >> part & 1) != 0) f(part, block);
+    };
+    call(kBusSync, bus_sync_), call(kClockSelect, clock_select_), call(kWatchdog, watchdog_);
+    call(kIsaSlave, isa_slave_), call(kHostPort, host_port_), call(kInterruptController, interrupt_controller_);
+    call(kPic8259, pic_8259_);
+    call(kHostSignals, host_signals_), call(kDpram, dpram_), call(kPanelPort, panel_port_);
   }
+
   void reset_all(Tick t);
-  void advance_all(Tick t);
   void execute(Tick t);
-  void connect();  // copies wires: outputs of the blocks to inputs of the others
-  void connect_clocks();
-  void connect_host();
-  void connect_interrupts();
-  BoardOutputs pins() const;
+  Parts due(Tick t) const;  // blocks whose next event has come
+  void schedule(Parts which);
+  Tick next_event() const;
+  Tick next_clock_event() const { return std::min(next_[kClockSelect], gate_ics_.next_clock_event()); }
+
+  // Bytes, not values: what equal groups have between their fields may differ, which costs time only, and no new field
+  // is forgotten here.
+  template <class Group>
+  static bool same(const Group& a, const Group& b) {
+    return std::memcmp(&a, &b, sizeof(Group)) == 0;
+  }
+
+  // board_wires.cpp. `changed`: what may show other values than before.
+  void connect(Parts changed);
+  void connect_port_a(Parts& changed);
+  void connect_clocks(Parts& changed);
+  void connect_host_port(Parts& changed);
+  void connect_dpram(Parts& changed);
+  void connect_interrupts(Parts& changed);
+  void connect_isa(Parts& changed);
+  void connect_panel(Parts& changed);
+  template <class Block>
+  class Wires;
+  BoardOutputs pins(Parts changed) const;
+  std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
+
   bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();                     // the same for the watched ICs
   std::uint32_t read_data(Tick t) const;  // of the selected register, after the edge t
   bool data_oe() const { return bus_read_.oe() || (from_dpram_ && dpram_.cpu_valid() && !inputs_.pa_rd_n); }
   void take_straps(const Straps& straps, Tick t);
-  std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
-  Tick next_event() const;
-  Tick next_clock_event() const { return std::min(clock_select_.next_event(), gate_ics_.next_clock_event()); }
 
   BusStrobes bus_strobes_;
   BusSync bus_sync_;
@@ -104,8 +150,17 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool from_dpram_ = false;    // read data pins show the dual-ported RAM
   bool in_reset_ = true;
   Tick now_ = 0;
+
+  std::array<Tick, kBlocks> next_{};  // event of each block, as long as its inputs stay as they are
+  Tick first_ = 0;                    // of these
+  Tick next_own_ = kNever;     // the board's: what follows a pin without a clock, or with the next edge of clk_pwm
+  Parts touched_ = 0;          // blocks that have executed the edges up to now() and must be asked anew
+  Parts shown_ = kEverything;  // what may have changed at the last edge
+  bool straps_differ_ = true;  // from the pins
+  std::uint32_t lines_ = 0;    // of the interrupt controller, but for HREQ
+  std::uint32_t equ_ = 0;      // of the ICs, as wired to the interrupt controller
   BoardOutputs outputs_, stop_on_;
-  std::array<MotorOutputs, kMaxServoIcs> motor_outputs_, stop_on_motor_;
+  std::array<MotorOutputs, kMaxServoIcs> motor_outputs_, stop_on_motor_, watched_motor_;
 };
 
 }  // namespace brick

@@ -70,7 +70,7 @@ std::uint32_t GateIcs::read(unsigned ic, bool x, std::uint32_t addr, Tick t) con
 }
 
 void GateIcs::read_taken(unsigned ic, bool x, std::uint32_t addr, Tick t) {
-  if (ic >= kServoIcs) return;
+  if (ic >= kServoIcs || !ServoChannels::read_acts(x, addr & 31)) return;
   catch_up(ic, t);
   servo_ic_[ic]->read_taken(x, addr & 31);
 }
@@ -150,13 +150,12 @@ MotorOutputs GateIcs::motor_outputs(unsigned ic, Tick now) const {
   return servo_ic_[ic]->motor_outputs();
 }
 
-void GateIcs::watch(std::uint32_t servo_ics, Tick now) {
-  const std::uint32_t before = watched_;
-  watched_ = servo_ics & built_ & ((1u << kServoIcs) - 1);
-  for_each_bit(before | watched_, [&](unsigned ic) {
-    catch_up(ic, now);
-    look(ic, now);
-  });
+void GateIcs::watch(unsigned ic, const MotorOutputs& select, Tick now) {
+  if (!has(ic) || select == watched_outputs_[ic]) return;
+  watched_outputs_[ic] = select;
+  watched_ = (watched_ & ~(1u << ic)) | (select != MotorOutputs{} ? 1u : 0u) << ic;
+  catch_up(ic, now);
+  look(ic, now);
 }
 
 void GateIcs::catch_up_all(Tick t) {
@@ -175,7 +174,7 @@ void GateIcs::look(unsigned ic, Tick now) {
     equ_ = (equ_ & ~(0xFu << 4 * ic)) | (servo_ic.equ() & channels) << 4 * ic;
     next = servo_ic.next_equ_event(channels);
   }
-  if ((watched_ & bit) != 0) next = std::min(next, servo_ic.next_motor_event());
+  if ((watched_ & bit) != 0) next = std::min(next, servo_ic.next_motor_event(watched_outputs_[ic]));
   looked_ |= bit;
   look_[ic] = std::max(next, now + 1);
   next_look_ = *std::min_element(look_.begin(), look_.end());

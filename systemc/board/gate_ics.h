@@ -58,7 +58,7 @@ class GateIcs {
   std::uint32_t equ() const { return equ_; }
   void set_interrupting(std::uint32_t equ, Tick now);
   MotorOutputs motor_outputs(unsigned ic, Tick now) const;
-  void watch(std::uint32_t servo_ics, Tick now);
+  void watch(unsigned ic, const MotorOutputs& select, Tick now);
   // Watched ICs whose outputs may have changed since the last call.
   std::uint32_t take_changes() {
     const std::uint32_t ics = looked_ & watched_;
@@ -93,6 +93,7 @@ class GateIcs {
   std::uint32_t drives_ = 0;  // ICs that drive PHASE or SERVO
   std::uint32_t phase_levels_ = ~0u, servo_levels_ = ~0u;
   std::uint32_t watched_ = 0, looked_ = 0, equ_ = 0, interrupting_ = 0;
+  std::array<MotorOutputs, kServoIcs> watched_outputs_{};
   std::array<Tick, kServoIcs> look_{};
   Tick next_clock_ = kNever, next_look_ = kNever;
 };

@@ -45,10 +45,16 @@ class Board {
     return {};
   }
 
-  // Bit i: changes of servo IC i's motor outputs are reported to on_motor_change, edge by edge, after on_change of the
-  // same edge, rising index first. An IC that nobody watches costs an event-driven engine nothing.
-  virtual void watch_motors(std::uint32_t ics) { (void)ics; }
-  // run_until() also ends after an edge at which an output selected here changes; the IC must be watched.
+  // Changes of the selected motor outputs of servo IC `ic` are reported to on_motor_change, edge by edge, after
+  // on_change of the same edge, rising index first; the others read 0 there. What nobody watches costs an event-driven
+  // engine nothing.
+  virtual void watch_motor(unsigned ic, const MotorOutputs& select) { (void)ic, (void)select; }
+  // All outputs of the servo ICs whose bit is 1, none of the others.
+  void watch_motors(std::uint32_t ics) {
+    for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+      watch_motor(ic, (ics >> ic & 1) != 0 ? kAllMotorOutputs : MotorOutputs{});
+  }
+  // run_until() also ends after an edge at which an output selected here changes; it must be watched.
   virtual void stop_on_motor(unsigned ic, const MotorOutputs& select) { (void)ic, (void)select; }
   std::function<void(Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after)> on_motor_change;
 };

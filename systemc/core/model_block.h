@@ -5,9 +5,10 @@
 //    board sets it after edge n and takes it away after edge n+1, so exactly the edge n+1 (clk_ref) sees it.
 //  - Outputs are functions named as the RTL ports without _o: the state after the last executed edge (a combinational
 //    output, such as a read multiplexer, follows the inputs as they stand).
-//  - At an event the board calls advance(t) of every block, then copies the wires, then asks next_event() anew. So edge
-//  t
-//    sees what the others showed before t, whatever the order of the calls.
+//  - At an event t the board calls advance(t) of the blocks whose next_event() it is, then copies the wires that they
+//    feed, then asks them and those they feed for next_event() anew. A block may stay behind until then; before an
+//    input of it changes, advance(t) lets it execute what has passed. So edge t sees what the others showed before t,
+//    whatever the order of the calls.
 //  - An IC (systemc/servo_ic/clock_follower.h) may stay behind: before an input of it changes or anything about it is
 //  asked,
 //    its owner executes the edges that it has missed, with the inputs as they were.

@@ -68,6 +68,15 @@ struct MotorOutputs {
   }
   bool operator==(const MotorOutputs& o) const { return w == o.w; }
   bool operator!=(const MotorOutputs& o) const { return w != o.w; }
+  MotorOutputs operator&(const MotorOutputs& o) const {
+    MotorOutputs r;
+    for (unsigned i = 0; i < kMotorOutputWords; ++i) r.w[i] = w[i] & o.w[i];
+    return r;
+  }
+  MotorOutputs& operator|=(const MotorOutputs& o) {
+    for (unsigned i = 0; i < kMotorOutputWords; ++i) w[i] |= o.w[i];
+    return *this;
+  }
   // True when any bit selected by `select` differs.
   bool differs(const MotorOutputs& o, const MotorOutputs& select) const {
     std::uint32_t d = 0;
@@ -82,6 +91,8 @@ struct MotorOutputs {
   static constexpr unsigned lsb(const MotorField& f, unsigned channel) { return f.lsb + f.stride * channel; }
   static constexpr std::uint32_t mask(const MotorField& f) { return (1u << f.width) - 1; }
 };
+
+constexpr MotorOutputs kAllMotorOutputs{{~0u, ~0u, ~0u, ~0u, ~0u, ~0u}};
 
 // Scope of an IC in waveforms and scripts: servo_ic0 .. servo_ic9, and servo_ic2s .. servo_ic9s for 2* .. 9*.
 inline std::string servo_ic_scope(unsigned ic) {

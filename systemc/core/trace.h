@@ -13,7 +13,8 @@ class TraceWriter {
  public:
   virtual ~TraceWriter() = default;
 
-  virtual void declare(Signals::Id id, const Signals::Info& info) = 0;  // all before the first record
+  // All before the first record. `of` is what the records name: the signal itself, or of an alias its signal.
+  virtual void declare(Signals::Id id, const Signals::Info& info, Signals::Id of) = 0;
   virtual void record(Signals::Id id, TimeFs time, std::uint64_t value) = 0;
   virtual void record_text(Signals::Id id, TimeFs time, const std::string& text) = 0;
   virtual void flush_until(TimeFs time) = 0;  // no record before `time` will come any more

@@ -34,8 +34,11 @@ class FstWriter : public TraceQueue {
       const Signals::Info& info = declared()[id].info;
       const bool text = info.radix == Radix::kText;
       const std::string range = !text && info.width > 1 ? " [" + std::to_string(info.width - 1) + ":0]" : "";
-      handles_[id] = fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : FST_VT_VCD_WIRE, FST_VD_IMPLICIT,
-                                        text ? 0 : info.width, (signal + range).c_str(), 0);
+      fstHandle& handle = handles_[declared()[id].of];
+      const fstHandle made =
+          fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : FST_VT_VCD_WIRE, FST_VD_IMPLICIT,
+                             text ? 0 : info.width, (signal + range).c_str(), handle);
+      if (handle == 0) handle = made;
     }
     for (const auto& [child, sub] : scope.scopes) write_scope(child, sub);
     fstWriterSetUpscope(context_.get());

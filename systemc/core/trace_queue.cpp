@@ -7,30 +7,43 @@
 namespace brick {
 
 namespace {
-// Records are sorted and written in lots: sorting for every bus access would cost more than the simulation.
+// Records are merged and written in lots: doing it for every bus access would cost more than the simulation.
 constexpr std::size_t kLot = 16384;
 }  // namespace
 
-void TraceQueue::declare(Signals::Id id, const Signals::Info& info) {
+void TraceQueue::declare(Signals::Id id, const Signals::Info& info, Signals::Id of) {
   if (header_) throw std::logic_error("signal " + info.name + " is declared after the waveform began");
-  if (id >= declared_.size()) declared_.resize(id + 1);
+  if (std::max(id, of) >= declared_.size()) declared_.resize(std::max(id, of) + 1);
+  declared_[of].info = info;  // a signal may be known by its aliases alone
   declared_[id].info = info;
+  declared_[id].of = of;
+  declared_[id].declared = true;
 }
 
 void TraceQueue::record(Signals::Id id, TimeFs time, std::uint64_t value) {
   if (time > to_) return;
-  pending_.push_back({time, value, id});
+  add(time, value, id);
 }
 
 void TraceQueue::record_text(Signals::Id id, TimeFs time, const std::string& text) {
   if (time > to_) return;
-  pending_.push_back({time, texts_.size(), id});
-  texts_.push_back(text);
+  const auto [entry, added] = text_index_.try_emplace(text, texts_.size());
+  if (added) texts_.push_back(&entry->first);
+  add(time, entry->second, id);
+}
+
+// A source goes forward in time, so each finds a run that it can lengthen, and there are few to be merged. Of two
+// records of one time the later one never goes to an earlier run: those had ended beyond that time already.
+void TraceQueue::add(TimeFs time, std::uint64_t value, Signals::Id id) {
+  const auto run =
+      std::find_if(runs_.begin(), runs_.end(), [time](const auto& r) { return r.empty() || r.back().time <= time; });
+  (run != runs_.end() ? *run : runs_.emplace_back()).push_back({time, value, id});
+  ++pending_;
 }
 
 void TraceQueue::flush_until(TimeFs time) {
   complete_ = std::max(complete_, time);
-  if (pending_.size() >= kLot) write_until(complete_);
+  if (pending_ >= kLot) write_until(complete_);
 }
 
 void TraceQueue::write_until(TimeFs time) {
@@ -38,6 +51,7 @@ void TraceQueue::write_until(TimeFs time) {
     header_ = true;
     TraceScope top;
     for (Signals::Id id = 0; id < declared_.size(); ++id) {
+      if (!declared_[id].declared) continue;
       TraceScope* scope = &top;
       const std::string& name = declared_[id].info.name;
       std::size_t start = 0;
@@ -47,29 +61,36 @@ void TraceQueue::write_until(TimeFs time) {
     }
     write_header(top);
   }
-  std::stable_sort(pending_.begin(), pending_.end(), [](const Record& a, const Record& b) { return a.time < b.time; });
-  const auto end = std::find_if(pending_.begin(), pending_.end(), [&](const Record& r) { return r.time >= time; });
-  for (auto r = pending_.begin(); r != end; ++r) write_one(*r);
-  pending_.erase(pending_.begin(), end);
-  std::vector<std::string> kept;
-  for (Record& r : pending_) {
-    if (declared_[r.id].info.radix != Radix::kText) continue;
-    kept.push_back(std::move(texts_[r.value]));
-    r.value = kept.size() - 1;
+  merge_until(time);
+}
+
+void TraceQueue::merge_until(TimeFs time) {
+  std::vector<std::size_t> next(runs_.size());
+  for (;;) {
+    const Record* first = nullptr;
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      if (next[i] == runs_[i].size()) continue;
+      const Record& r = runs_[i][next[i]];
+      if (r.time < time && (first == nullptr || r.time < first->time)) first = &r, from = i;
+    }
+    if (first == nullptr) break;
+    write_one(*first);
+    ++next[from];
   }
-  texts_ = std::move(kept);
+  pending_ = 0;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    runs_[i].erase(runs_[i].begin(), runs_[i].begin() + static_cast<std::ptrdiff_t>(next[i]));
+    pending_ += runs_[i].size();
+  }
 }
 
 void TraceQueue::write_one(const Record& r) {
   Declared& d = declared_[r.id];
-  const bool text = d.info.radix == Radix::kText;
   if (r.time > from_) open_window();
-  if (d.known && (text ? d.text == texts_[r.value] : d.value == r.value)) return;
+  if (d.known && d.value == r.value) return;
   d.known = true;
-  if (text)
-    d.text = texts_[r.value];
-  else
-    d.value = r.value;
+  d.value = r.value;
   if (!window_) return;
   advance(r.time);
   write_declared(r.id);
@@ -86,7 +107,7 @@ void TraceQueue::open_window() {
 
 void TraceQueue::write_declared(Signals::Id id) {
   if (declared_[id].info.radix == Radix::kText)
-    write_text(id, declared_[id].text);
+    write_text(id, *texts_[declared_[id].value]);
   else
     write_value(id, declared_[id].value);
 }

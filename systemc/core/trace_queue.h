@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "systemc/core/trace.h"
@@ -22,7 +23,7 @@ class TraceQueue : public TraceWriter {
  public:
   TraceQueue(TimeFs from, TimeFs to) : from_(from), to_(to) {}
 
-  void declare(Signals::Id id, const Signals::Info& info) override;
+  void declare(Signals::Id id, const Signals::Info& info, Signals::Id of) override;
   void record(Signals::Id id, TimeFs time, std::uint64_t value) override;
   void record_text(Signals::Id id, TimeFs time, const std::string& text) override;
   void flush_until(TimeFs time) override;
@@ -31,9 +32,10 @@ class TraceQueue : public TraceWriter {
  protected:
   struct Declared {
     Signals::Info info;
-    bool known = false;  // a record has given it a value
-    std::uint64_t value = 0;
-    std::string text;
+    bool declared = false;    // has a name in this file
+    Signals::Id of = 0;       // as declare()
+    bool known = false;       // a record has given it a value
+    std::uint64_t value = 0;  // of a text: index into texts_
   };
   const std::vector<Declared>& declared() const { return declared_; }
 
@@ -46,10 +48,12 @@ class TraceQueue : public TraceWriter {
  private:
   struct Record {
     TimeFs time;
-    std::uint64_t value;  // of a text: index into texts_
+    std::uint64_t value;  // as in Declared
     Signals::Id id;
   };
+  void add(TimeFs time, std::uint64_t value, Signals::Id id);
   void write_until(TimeFs time);
+  void merge_until(TimeFs time);
   void write_one(const Record& r);
   void open_window();
   void write_declared(Signals::Id id);
@@ -57,10 +61,12 @@ class TraceQueue : public TraceWriter {
 
   const TimeFs from_, to_;
   std::vector<Declared> declared_;
-  std::vector<Record> pending_;
-  std::vector<std::string> texts_;
-  TimeFs complete_ = 0;       // no record before this time will come any more
-  std::int64_t last_ps_ = 0;  // time written last
+  std::vector<std::vector<Record>> runs_;  // what is held back, each in order of time: about one for each source
+  std::size_t pending_ = 0;                // records in them
+  std::unordered_map<std::string, std::size_t> text_index_;
+  std::vector<const std::string*> texts_;  // keys of text_index_, each kept once: there are as many as functions
+  TimeFs complete_ = 0;                    // no record before this time will come any more
+  std::int64_t last_ps_ = 0;               // time written last
   bool header_ = false;
   bool window_ = false;
   bool closed_ = false;

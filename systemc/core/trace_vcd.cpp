@@ -1,6 +1,7 @@
 // Value change dump (IEEE 1364 clause 18) with the `string` variables that GTKWave reads as an extension.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -14,6 +15,7 @@ namespace brick {
 namespace {
 
 constexpr std::size_t kFileBuffer = 1 << 16;
+constexpr std::size_t kCode = 5;  // longest identifier code of a 32-bit number
 
 // Identifier codes are numbers to base 94 in the printable characters.
 std::string code_of(Signals::Id id) {
@@ -24,9 +26,11 @@ std::string code_of(Signals::Id id) {
 
 // White space ends a string value, so it is written as an octal escape, as GTKWave does.
 std::string escaped(const std::string& text) {
+  const auto plain = [](char c) { return c > ' ' && c < 0x7F && c != '\\'; };
+  if (std::all_of(text.begin(), text.end(), plain)) return text;
   std::string out;
   for (const char c : text) {
-    if (c > ' ' && c < 0x7F && c != '\\')
+    if (plain(c))
       out += c;
     else
       out += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
@@ -57,12 +61,13 @@ class VcdWriter : public TraceQueue {
     out_ += fmt::format("$scope module {} $end\n", name);
     for (const auto& [signal, id] : scope.signals) {
       const Signals::Info& info = declared()[id].info;
+      const std::string& code = codes_[declared()[id].of];
       if (info.radix == Radix::kText)
-        out_ += fmt::format("$var string 1 {} {} $end\n", codes_[id], signal);
+        out_ += fmt::format("$var string 1 {} {} $end\n", code, signal);
       else if (info.width == 1)
-        out_ += fmt::format("$var wire 1 {} {} $end\n", codes_[id], signal);
+        out_ += fmt::format("$var wire 1 {} {} $end\n", code, signal);
       else
-        out_ += fmt::format("$var wire {} {} {} [{}:0] $end\n", info.width, codes_[id], signal, info.width - 1);
+        out_ += fmt::format("$var wire {} {} {} [{}:0] $end\n", info.width, code, signal, info.width - 1);
     }
     for (const auto& [child, sub] : scope.scopes) write_scope(child, sub);
     out_ += "$upscope $end\n";
@@ -70,25 +75,26 @@ class VcdWriter : public TraceQueue {
   void write_time(std::int64_t ps, bool first) override {
     if (dumping_) out_ += "$end\n";
     dumping_ = first;
-    out_ += '#';
-    out_ += fmt::format_int(ps).c_str();
-    out_ += first ? "\n$dumpvars\n" : "\n";
+    const fmt::format_int digits(ps);
+    line_.assign(1, '#').append(digits.data(), digits.size()).push_back('\n');
+    out_ += line_;
+    if (first) out_ += "$dumpvars\n";
     if (out_.size() > kFileBuffer) write_out();
   }
   void write_value(Signals::Id id, std::uint64_t value) override {
     const unsigned width = declared()[id].info.width;
-    if (width == 1) {
-      out_ += static_cast<char>('0' + (value & 1));
-    } else {
-      out_ += 'b';
-      for (unsigned i = width; i-- > 0;) out_ += static_cast<char>('0' + ((value >> i) & 1));
-      out_ += ' ';
-    }
-    out_ += codes_[id];
-    out_ += '\n';
+    char line[1 + 64 + 1 + kCode + 1];
+    char* end = line;
+    if (width > 1) *end++ = 'b';
+    for (unsigned i = width; i-- > 0;) *end++ = static_cast<char>('0' + ((value >> i) & 1));
+    if (width > 1) *end++ = ' ';
+    end = std::copy(codes_[id].begin(), codes_[id].end(), end);
+    *end++ = '\n';
+    out_.append(line, end);
   }
   void write_text(Signals::Id id, const std::string& text) override {
-    out_ += fmt::format("s{} {}\n", escaped(text), codes_[id]);
+    line_.assign(1, 's').append(escaped(text)).append(1, ' ').append(codes_[id]).push_back('\n');
+    out_ += line_;
   }
   void write_out() {
     if (std::fwrite(out_.data(), 1, out_.size(), file_.get()) != out_.size()) fail();
@@ -109,7 +115,7 @@ class VcdWriter : public TraceQueue {
   std::string name_;
   std::unique_ptr<std::FILE, Closer> file_;
   std::vector<std::string> codes_;
-  std::string out_;
+  std::string out_, line_;
   bool dumping_ = false;
 };
 

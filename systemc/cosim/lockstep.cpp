@@ -129,7 +129,7 @@ class LockstepBoard : public Board {
     model_->on_motor_change = [this](Tick t, unsigned ic, const MotorOutputs&, const MotorOutputs& after) {
       model_motors_.push_back({t, ic, after});
     };
-    for (Board* b : {rtl_.get(), model_.get()}) b->watch_motors(kEveryIc);
+    for (Board* b : {rtl_.get(), model_.get()}) b->watch_motors(~0u);
     Motors rtl_pins;
     for (unsigned ic = 0; ic < kMaxServoIcs; ++ic) {
       rtl_pins[ic] = rtl_->motor_outputs(ic);
@@ -156,7 +156,9 @@ class LockstepBoard : public Board {
     model_->set_motor_inputs(ic, inputs);
   }
   MotorOutputs motor_outputs(unsigned ic) const override { return ic < kMaxServoIcs ? motors_[ic] : MotorOutputs{}; }
-  void watch_motors(std::uint32_t ics) override { watched_ = ics; }
+  void watch_motor(unsigned ic, const MotorOutputs& select) override {
+    if (ic < kMaxServoIcs) watched_[ic] = select;
+  }
   void stop_on_motor(unsigned ic, const MotorOutputs& select) override {
     if (ic >= kMaxServoIcs) return;
     stop_[ic] = select;
@@ -179,8 +181,6 @@ class LockstepBoard : public Board {
   }
 
  private:
-  static constexpr std::uint32_t kEveryIc = (1u << kMaxServoIcs) - 1;
-
   // Hands the changes of the stretch on, edge by edge: the board's pins first. Says whether the run was to end with the
   // last one.
   bool deliver(const BoardOutputs& stop_on) {
@@ -195,11 +195,11 @@ class LockstepBoard : public Board {
         stopped |= before.differs(outputs_, stop_on);
       } else {
         const MotorChange& c = rtl_motors_[k++];
-        const MotorOutputs before = motors_[c.ic];
+        const MotorOutputs &watched = watched_[c.ic], before = motors_[c.ic] & watched, after = c.after & watched;
         motors_[c.ic] = c.after;
-        if ((watched_ >> c.ic & 1) == 0) continue;
-        if (on_motor_change) on_motor_change(c.tick, c.ic, before, c.after);
-        stopped |= before.differs(c.after, stop_[c.ic]);
+        if (before == after) continue;
+        if (on_motor_change) on_motor_change(c.tick, c.ic, before, after);
+        stopped |= before.differs(after, stop_[c.ic]);
       }
     }
     return stopped;
@@ -259,8 +259,7 @@ class LockstepBoard : public Board {
   std::vector<MotorChange> rtl_motors_, model_motors_;
   BoardInputs inputs_;
   BoardOutputs outputs_;
-  Motors motors_, stop_{};
-  std::uint32_t watched_ = 0;
+  Motors motors_, stop_{}, watched_{};
   AccessLog log_;
 };
 

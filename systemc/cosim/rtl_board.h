@@ -125,10 +125,19 @@ class RtlBoard : public Board {
     for (unsigned n = 0; n < kChannels; ++n) out.w[2 + n] = model_->count_o[4 * ic + n];
     return out;
   }
-  void watch_motors(std::uint32_t ics) override {
-    watched_.clear();
-    for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
-      if (has(ic) && (ics >> ic & 1) != 0) watched_.push_back({ic, motor_outputs(ic)});
+  void watch_motor(unsigned ic, const MotorOutputs& select) override {
+    if (!has(ic)) return;
+    const auto place = std::find_if(watched_.begin(), watched_.end(), [ic](const Watched& w) { return w.ic >= ic; });
+    const bool there = place != watched_.end() && place->ic == ic;
+    if (select == MotorOutputs{}) {
+      if (there) watched_.erase(place);
+    } else {
+      const Watched watched{ic, select, motor_outputs(ic) & select};
+      if (there)
+        *place = watched;
+      else
+        watched_.insert(place, watched);
+    }
   }
   void stop_on_motor(unsigned ic, const MotorOutputs& select) override {
     if (ic < kMaxServoIcs) stop_[ic] = select;
@@ -137,21 +146,22 @@ class RtlBoard : public Board {
  private:
   struct Watched {
     unsigned ic;
-    MotorOutputs last;
+    MotorOutputs select, last;
   };
   bool has(unsigned ic) const { return ic < kMaxServoIcs && (fitted_ >> ic & 1) != 0; }
   // Counters move with clk_ref and with the asynchronous reset only; a serial clock of 39.3216 MHz is lowered and
   // raised by clk_pwm.
   bool motor_differs(const Watched& w, bool counters) const {
     const Model& m = *model_;
-    std::uint64_t d = m.motor_o[w.ic] ^ (static_cast<std::uint64_t>(w.last.w[1]) << 32 | w.last.w[0]);
+    const auto pair = [](const MotorOutputs& o) { return static_cast<std::uint64_t>(o.w[1]) << 32 | o.w[0]; };
+    std::uint64_t d = (m.motor_o[w.ic] & pair(w.select)) ^ pair(w.last);
     if (counters)
-      for (unsigned n = 0; n < kChannels; ++n) d |= m.count_o[4 * w.ic + n] ^ w.last.w[2 + n];
+      for (unsigned n = 0; n < kChannels; ++n) d |= (m.count_o[4 * w.ic + n] & w.select.w[2 + n]) ^ w.last.w[2 + n];
     return d != 0;
   }
   bool motor_changed(Watched& w) {
     const MotorOutputs before = w.last;
-    w.last = motor_outputs(w.ic);
+    w.last = motor_outputs(w.ic) & w.select;
     if (on_motor_change) on_motor_change(now_, w.ic, before, w.last);
     return before.differs(w.last, stop_[w.ic]);
   }

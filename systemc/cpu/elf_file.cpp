@@ -135,8 +135,7 @@ ElfFile::ElfFile(const std::string& path) : path_(path) {
       if (!in_code || name[0] == '$' || name[0] == '.' || (type != kSymbolNone && type != kSymbolFunction)) continue;
       const std::uint32_t section_end = f.u32(section(home) + 12) + f.u32(section(home) + 20);
       if (functions_.count(value) != 0 && type != kSymbolFunction) continue;  // a label at a function's start
-      functions_[value] = name;
-      function_ends_[value] = bytes != 0 ? value + bytes : section_end;  // without a size: up to the next one
+      functions_[value] = {name, bytes != 0 ? value + bytes : section_end};   // without a size: up to the next one
     }
   }
 }
@@ -146,11 +145,12 @@ std::optional<std::uint32_t> ElfFile::symbol(const std::string& name) const {
   return found == symbols_.end() ? std::nullopt : std::optional<std::uint32_t>(found->second);
 }
 
-std::string ElfFile::symbol_at(std::uint32_t address) const {
-  auto next = functions_.upper_bound(address);
-  if (next == functions_.begin()) return "";
-  const auto& [start, name] = *--next;
-  return address < function_ends_.at(start) ? name : "";
+const std::string& ElfFile::symbol_at(std::uint32_t address) const {
+  static const std::string kNone;
+  const auto next = functions_.upper_bound(address);
+  if (next == functions_.begin()) return kNone;
+  const Function& function = std::prev(next)->second;
+  return address < function.end ? function.name : kNone;
 }
 
 void ElfFile::load(Cpu& cpu) const {

@@ -29,15 +29,18 @@ class ElfFile {
   }  // what the program occupies when stored and when running
   std::uint32_t entry() const { return entry_; }
   std::optional<std::uint32_t> symbol(const std::string& name) const;
-  std::string symbol_at(std::uint32_t address) const;  // name of the function that holds the address, "" if none
-  void load(Cpu& cpu) const;                           // every segment must lie in mapped memory
+  const std::string& symbol_at(std::uint32_t address) const;  // name of the function that holds the address, "" if none
+  void load(Cpu& cpu) const;                                  // every segment must lie in mapped memory
  private:
   std::string path_;
   std::vector<Segment> segments_;
   std::uint32_t entry_ = 0;
   std::map<std::string, std::uint32_t> symbols_;
-  std::map<std::uint32_t, std::string> functions_;
-  std::map<std::uint32_t, std::uint32_t> function_ends_;
+  struct Function {
+    std::string name;
+    std::uint32_t end;
+  };
+  std::map<std::uint32_t, Function> functions_;  // by their first address
   std::vector<Range> ranges_;
 };
 

@@ -11,13 +11,13 @@ Dpram::Dpram(const sc_core::sc_module_name& name) : sc_module(name), socket("soc
 // One more tick would change nothing.
 bool Dpram::cpu_settled() const {
   const auto still = [](const Strobe& s, bool toggle, bool strobe_n) {
-    return s.toggle1 == toggle && s.toggle2 == toggle && s.low1 == !strobe_n && s.low2 == !strobe_n &&
-           s.acknowledged == s.done;
+    return s.toggle1 == toggle && s.toggle2 == toggle && s.low1 == !strobe_n && s.low2 == !strobe_n;
   };
+  if (rd_.acknowledged != rd_.done) return false;  // of a write nobody waits for it
   if (!still(rd_, in.rd_toggle, in.cpu_rd_n) || !still(wr_, in.wr_toggle, in.cpu_wr_n)) return false;
   if (sel_ != in.cpu_sel || pins_ != pin_cell() || sampled_ || proven_) return false;
   if (rd_.pending() || wr_.pending()) return sel_ && cpu_busy_ && cpu_blocked() && !ended();
-  return !cpu_busy_ && (!own_ || owned());
+  return !cpu_busy_ && !(own_ && released());
 }
 
 bool Dpram::host_settled() const {
@@ -53,7 +53,7 @@ void Dpram::cpu_edge(bool blocked) {
   if (proven_ && wr_.low2) poke(cell_, wdata_);
   const bool asked = request(), over = ended(), write = wr_.pending();
   const bool grant = asked && !over && !blocked, finished = grant || (asked && over);
-  const bool held = owned();
+  const bool over_since = released();
   rd_.acknowledged = rd_.done;
   if (rd_.pending() && (!sel_ || (!write && finished))) rd_.done = rd_.toggle2;
   if (wr_.pending() && (!sel_ || finished)) wr_.done = wr_.toggle2;
@@ -66,7 +66,7 @@ void Dpram::cpu_edge(bool blocked) {
     cell_ = pins_;
     wdata_ = in.cpu_wdata;
     if (!write) cpu_rdata_ = peek(cell_);
-  } else if (asked || !held) {
+  } else if (over_since) {
     own_ = false;
   }
 }

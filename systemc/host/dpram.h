@@ -60,7 +60,9 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   bool ended() const { return cpu_busy_ && !(wr_.pending() ? wr_ : rd_).low2; }
   bool conflict() const { return pins_ == in.mem_addr && (wr_.pending() || !in.mem_rd); }
   bool cpu_blocked() const { return (host_own_ || mem_busy_) && conflict(); }
-  bool owned() const { return sampled_ || proven_ || (own_wr_ ? wr_ : rd_).low2; }
+  bool released() const {  // a new strobe has fallen, or the last one is seen high
+    return !sampled_ && !proven_ && (rd_.pending() || wr_.pending() || !(own_wr_ ? wr_ : rd_).low2);
+  }
   bool host_blocked() const {
     return (own_ && cell_ == in.mem_addr && (own_wr_ || !in.mem_rd)) || (request() && conflict() && !mem_busy_);
   }

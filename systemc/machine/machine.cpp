@@ -292,8 +292,8 @@ std::vector<std::string> Machine::take_run_errors() { return std::exchange(impl_
 PciBridge* Machine::pci() { return impl_->pci.get(); }
 
 Signals& Machine::signals() {
-  // Without a waveform nobody follows each call: what is asked for now is what stands now.
-  if (!impl_->signals.traced()) impl_->named.pc(now_fs(), impl_->cpu.pc(), impl_->elf.get());
+  // Unless a waveform wants it nobody follows each call: what is asked for now is what stands now.
+  if (!impl_->named.traces_pc()) impl_->named.pc(now_fs(), impl_->cpu.pc(), impl_->elf.get());
   return impl_->signals;
 }
 

@@ -71,7 +71,7 @@ struct Machine::Impl {
   void run_cpu(Tick known);
   void run_master();
   bool deliver_due();
-  Tick board_limit(Tick limit) const;
+  Tick board_limit(Tick limit, Tick now) const;
   void keep_kernel_time(Tick from);
   TimeFs cpu_time() const;
 

@@ -29,11 +29,10 @@ MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
 }
 
 void MachineSignals::outputs(TimeFs time, const BoardOutputs& before, const BoardOutputs& after) {
-  for (std::size_t i = 0; i < pin::kAll.size(); ++i) {
-    const PinField& f = pin::kAll[i];
-    if (before.w[f.word] == after.w[f.word]) continue;
-    signals_.set(pin_[i], time, after.get(f));
-  }
+  BoardOutputs moved;
+  for (unsigned i = 0; i < kBoardOutputWords; ++i) moved.w[i] = before.w[i] ^ after.w[i];
+  for (std::size_t i = 0; i < pin::kAll.size(); ++i)
+    if (moved.get(pin::kAll[i]) != 0) signals_.set(pin_[i], time, after.get(pin::kAll[i]));
   if (before.w[pin::kPhaseSource.word] == after.w[pin::kPhaseSource.word]) return;
   signals_.set(source_, time, clock_source_variable(after.get(pin::kPhaseSource)));
   data_bus(time, after);

@@ -16,6 +16,7 @@ class MachineSignals {
 
   void outputs(TimeFs time, const BoardOutputs& before, const BoardOutputs& after);
   void inputs(TimeFs time, const HostInputs& in, const BoardOutputs& board);
+  bool traces_pc() const { return signals_.traced(pc_) || signals_.traced(symbol_); }
   void pc(TimeFs time, std::uint32_t pc, const ElfFile* elf);
 
   // cpu.task follows the nesting of traps.

@@ -22,6 +22,11 @@ MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
       ic.adc[n] = {signals.add(scope + "adc_a", 1, Radix::kBinary), signals.add(scope + "adc_b", 1, Radix::kBinary)};
       for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
         const MotorField& field = motor_pin::kAll[f];
+        if (field.shared && n > 0) {
+          ic.output[n][f] = ic.output[0][f];
+          signals.add_alias(scope + std::string(field.name), ic.output[0][f]);
+          continue;
+        }
         ic.output[n][f] = signals.add(scope + std::string(field.name), field.width,
                                       field.width > 1 ? Radix::kSigned : Radix::kBinary);
         signals.ask(ic.output[n][f], [this, i, n, &field] { return board_.motor_outputs(i).get(field, n); });
@@ -73,35 +78,48 @@ void MotorSide::stop_on(unsigned ic, const MotorOutputs& select) {
 
 // Who is watched, and which edges end a run: what the user, the peers and the waveform want.
 void MotorSide::watch() {
-  std::uint32_t ics = traced_ ? fitted_ : 0;
-  for (const Peer& p : peers_) ics |= p.peer->ics() & fitted_;
-  for (const Ic& ic : ics_)
-    if (select_[ic.index] != MotorOutputs{}) ics |= 1u << ic.index;
-  board_.watch_motors(ics);
   for (const Ic& ic : ics_) {
-    MotorOutputs select = select_[ic.index];
+    MotorOutputs stops = select_[ic.index], watched = traced_[ic.index];
     for (const Peer& p : peers_) {
-      const MotorOutputs more = p.peer->stops(ic.index);
-      for (unsigned i = 0; i < kMotorOutputWords; ++i) select.w[i] |= more.w[i];
+      stops |= p.peer->stops(ic.index);
+      if ((p.peer->ics() >> ic.index & 1) != 0) watched = kAllMotorOutputs;
     }
-    board_.stop_on_motor(ic.index, select);
+    watched |= stops;
+    board_.watch_motor(ic.index, watched);
+    board_.stop_on_motor(ic.index, stops);
   }
 }
 
-void MotorSide::begin_run() {
-  stopped_ = false;
-  if (traced_ == signals_.traced()) return;
-  traced_ = signals_.traced();
+// The waveform wants other outputs than before: from here on it has them.
+void MotorSide::take_groups() {
+  attachments_ = signals_.attachments();
+  for (Ic& ic : ics_) {
+    MotorOutputs& traced = traced_[ic.index];
+    traced = {};
+    ic.shown.clear();
+    for (unsigned n = 0; n < kChannels; ++n) {
+      for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
+        const MotorField& field = motor_pin::kAll[f];
+        if (!signals_.traced(ic.output[n][f]) || (field.shared && n > 0)) continue;
+        MotorOutputs place;
+        place.set(field, n, ~0u);
+        traced |= place;
+        for (unsigned word = 0; word < kMotorOutputWords; ++word)
+          if (const std::uint32_t mask = place.w[word]; mask != 0)
+            ic.shown.push_back({word, mask, static_cast<unsigned>(__builtin_ctz(mask)), ic.output[n][f]});
+      }
+    }
+  }
   watch();
-  if (!traced_) return;
   for (const Ic& ic : ics_) {
-    MotorOutputs inverse = board_.motor_outputs(ic.index);
+    const MotorOutputs present = board_.motor_outputs(ic.index);
+    MotorOutputs inverse = present;
     for (std::uint32_t& word : inverse.w) word = ~word;
-    show(tick_to_fs(board_.now()), ic.index, inverse, board_.motor_outputs(ic.index));
+    show(tick_to_fs(board_.now()), ic.index, inverse, present);
   }
 }
 
-void MotorSide::step() {
+void MotorSide::step_peers() {
   const Tick now = board_.now();
   bool edited = false;
   for (Peer& p : peers_) {
@@ -113,20 +131,8 @@ void MotorSide::step() {
   if (edited) apply();
 }
 
-Tick MotorSide::next_event() const {
-  Tick next = kNever;
-  for (const Peer& p : peers_) next = std::min(next, p.peer->next_event());
-  return next;
-}
-
-bool MotorSide::take_stop() {
-  const bool stopped = stopped_;
-  stopped_ = false;
-  return stopped;
-}
-
 void MotorSide::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
-  if (traced_) show(tick_to_fs(tick), ic, before, after);
+  if (before.differs(after, traced_[ic])) show(tick_to_fs(tick), ic, before, after);
   for (Peer& p : peers_) {
     if ((p.peer->ics() >> ic & 1) == 0) continue;
     p.peer->changed(tick, ic, before, after);
@@ -137,13 +143,9 @@ void MotorSide::changed(Tick tick, unsigned ic, const MotorOutputs& before, cons
 
 void MotorSide::show(TimeFs time, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
   if (place_[ic] < 0) return;
-  const Ic& names = ics_[static_cast<std::size_t>(place_[ic])];
-  for (unsigned n = 0; n < kChannels; ++n) {
-    for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
-      const std::uint32_t value = after.get(motor_pin::kAll[f], n);
-      if (value != before.get(motor_pin::kAll[f], n)) signals_.set(names.output[n][f], time, value);
-    }
-  }
+  for (const Shown& s : ics_[static_cast<std::size_t>(place_[ic])].shown)
+    if (((before.w[s.word] ^ after.w[s.word]) & s.mask) != 0)
+      signals_.set(s.id, time, (after.w[s.word] & s.mask) >> s.lsb);
 }
 
 }  // namespace brick

@@ -2,7 +2,9 @@
 // ... (docs/signals.md). Outputs are followed edge by edge only while somebody needs them: a waveform, a peer, a wait.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "systemc/core/board.h"
@@ -23,21 +25,39 @@ class MotorSide {
   void stop_on(unsigned ic,
                const MotorOutputs& select);  // take_stop() tells of such an edge; an empty selection ends it
 
-  void begin_run();         // once a run, before the others
-  void step();              // peers whose time has come
-  Tick next_event() const;  // of the peers, after now
-  bool take_stop();         // a selected edge has come since the last call
+  void begin_run() {  // once a run, before the others
+    stopped_ = false;
+    if (attachments_ != signals_.attachments()) take_groups();
+  }
+  void step() {  // peers whose time has come
+    if (!peers_.empty()) step_peers();
+  }
+  Tick next_event() const {  // of the peers, after now
+    Tick next = kNever;
+    for (const Peer& p : peers_) next = std::min(next, p.peer->next_event());
+    return next;
+  }
+  bool take_stop() { return std::exchange(stopped_, false); }  // a selected edge has come since the last call
 
  private:
   void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after);
   void show(TimeFs time, unsigned ic, const MotorOutputs& before, const MotorOutputs& after);
+  void step_peers();
   void watch();
+  void take_groups();
 
+  struct Shown {  // an output in the waveform
+    unsigned word;
+    std::uint32_t mask;
+    unsigned lsb;
+    Signals::Id id;
+  };
   struct Ic {
     unsigned index;
     std::array<std::array<Signals::Id, kChannelPins>, kChannels> pin;
     std::array<std::array<Signals::Id, 2>, kChannels> adc;
     std::array<std::array<Signals::Id, motor_pin::kAll.size()>, kChannels> output;
+    std::vector<Shown> shown;
   };
   struct Peer {
     MotorPeer* peer;
@@ -52,7 +72,9 @@ class MotorSide {
   std::vector<Peer> peers_;
   MotorInputPins inputs_, applied_;
   std::array<MotorOutputs, kMaxServoIcs> select_{};  // of the user
-  bool traced_ = false, stopped_ = false;
+  std::array<MotorOutputs, kMaxServoIcs> traced_{};  // of the waveform
+  unsigned attachments_ = 0;                         // as traced_ knows them
+  bool stopped_ = false;
 };
 
 }  // namespace brick

@@ -21,50 +21,49 @@ BoardOutputs both(BoardOutputs a, const BoardOutputs& b) {
 }  // namespace
 
 Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
-  if (tracing_cpu != signals.traced()) trace_cpu(signals.traced());
+  if (tracing_cpu != named.traces_pc()) trace_cpu(named.traces_pc());
   motors.begin_run();
   stop_on = stop;
   stopped = false;
   const BoardOutputs watched = both(kWakesCpu, stop_on);
   const Tick begin = board->now();
-  run_cpu(board->now());
-  while (board->now() < limit && !stopped) {
-    const Tick from = board->now();
+  Tick now = begin;
+  run_cpu(now);
+  while (now < limit && !stopped) {
     motors.step();
     Tick target = std::min({limit, reset_until, init_at, motors.next_event()});
-    if (config.batch > 0) target = std::min(target, from + config.batch);
+    if (config.batch > 0) target = std::min(target, now + config.batch);
     if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
       debugger->poll(!cpu_runs || (cpu.asleep() && !port_a.running()));
-      target = std::min(target, from + kDebuggerLatency);
+      target = std::min(target, now + kDebuggerLatency);
     }
-    const bool awake = cpu_runs && !port_a.running() && !cpu.asleep();
-    if (awake) run_cpu(std::max(from, std::min(target, board->quiet_until(watched))));
-    target = board_limit(target);
-    if (target > from) board->run_until(target, cpu_runs && cpu.asleep() && !port_a.running() ? watched : stop_on);
+    if (cpu_runs && !port_a.running() && !cpu.asleep())
+      run_cpu(std::max(now, std::min(target, board->quiet_until(watched))));
+    target = board_limit(target, now);
+    if (target > now) now = board->run_until(target, cpu_runs && !port_a.running() && cpu.asleep() ? watched : stop_on);
     stopped = motors.take_stop() || stopped;
-    if (board->now() == init_at) {
+    if (now == init_at) {
       init_at = kNever;
       init_holds = true;
       begin_reset(false);
     }
-    if (board->now() == reset_until) start_cpu();
-    while (port_a.running() && board->now() == port_a.stands_at()) {
+    if (now == reset_until) start_cpu();
+    while (port_a.running() && now == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());
       board->set_inputs(inputs);
     }
-    run_cpu(board->now());
-    if (signals.traced()) signals.flush_until(tick_to_fs(board->now()));
+    run_cpu(now);
+    if (signals.traced()) signals.flush_until(tick_to_fs(now));
   }
   stop_on = {};
   keep_kernel_time(begin);
-  return board->now();
+  return now;
 }
 
 // Never past a tick at which the CPU could change the board's inputs.
-Tick Machine::Impl::board_limit(Tick limit) const {
+Tick Machine::Impl::board_limit(Tick limit, Tick now) const {
   if (port_a.running()) {
-    if (port_a.stands_at() < board->now())
-      throw std::logic_error("the board has run past an edge of the bus cycle under way");
+    if (port_a.stands_at() < now) throw std::logic_error("the board has run past an edge of the bus cycle under way");
     return std::min(limit, port_a.stands_at());
   }
   if (!cpu_runs || cpu.asleep()) return limit;

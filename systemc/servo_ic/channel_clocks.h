@@ -108,10 +108,17 @@ class ChannelStrobe {
   bool strobe() const { return word_ >> (left_ != 0 ? left_ - 1 : 0) & 1; }
   bool clk(Tick now) const { return left_ != 0 && (divider_.fast() ? now % kTicksPerRef != 0 : now >= divider_.mid()); }
 
-  Tick next_event(Tick now) const {
-    if (left_ == 0) return pending_ ? divider_.next() : asked_ == kNever ? kNever : std::max(now + 1, asked_);
-    if (divider_.fast()) return now + (now % kTicksPerRef == 1 ? 2 : 1);
-    return now < divider_.mid() ? divider_.mid() : divider_.next();
+  // Of the strobe, and where asked of the clock and of the data bits; the divider is `n`.
+  Tick next_event(Tick now, unsigned n, bool clock, bool data) const {
+    const Tick load = asked_ == kNever ? kNever : std::max(now + 1, asked_);
+    if (left_ == 0) return pending_ ? divider_.next() : load;
+    if (clock && divider_.fast()) return now + (now % kTicksPerRef == 1 ? 2 : 1);
+    if (clock && now < divider_.mid()) return divider_.mid();
+    if (clock || data || pending_) return divider_.next();
+    const std::uint32_t to_go = (1u << (left_ - 1)) - 1, other = (strobe() ? ~word_ : word_) & to_go;
+    if (other == 0) return load;
+    const unsigned highest = 31 - static_cast<unsigned>(__builtin_clz(other));
+    return std::min(load, divider_.after(left_ - 1 - highest, n));
   }
 
  private:

@@ -97,10 +97,13 @@ void ServoChannels::run_sclk(Tick t) {
   }
 }
 
-Tick ServoChannels::next_event() const {
+Tick ServoChannels::next_event(const MotorOutputs& select) const {
   const Tick ref = next_ref_edge(now_);
-  Tick next = std::min(dac_.next_event(now_), adc_.next_event(now_));
-  if (phase_rises_ != in.phase_rises) next = std::min(next, ref);
+  Tick next = kNever;
+  const bool dac = has_dac(select), adc = has_adc(select);
+  if (dac) next = dac_.next_event(now_, divider(kDac), (select.w[1] & kDacClk) != 0, has_dac_data(select));
+  if (adc) next = std::min(next, adc_.next_event(now_, divider(kAdc), (select.w[1] & kAdcClk) != 0, false));
+  if ((dac || adc) && phase_rises_ != in.phase_rises) next = std::min(next, ref);
   for (const ServoChannel& channel : channel_) {
     if (!channel.quiet(now_)) next = std::min(next, ref);
     if (!channel.settled()) next = std::min(next, sclk_.next());
@@ -108,7 +111,7 @@ Tick ServoChannels::next_event() const {
     const std::int64_t periods = channel.pfm().periods_to_change(pfm);
     if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
     if (!pfm.run && channel.pfm().pulse()) next = std::min(next, ref);
-    if (!in.trip) next = std::min(next, channel.next_pwm_event(now_, in.line));
+    if (!in.trip && has_pwm(select)) next = std::min(next, channel.next_pwm_event(now_, in.line));
   }
   return next;
 }

@@ -3,6 +3,7 @@
 // docs/servo_channel.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -43,8 +44,11 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   // sample of a read.
   std::uint32_t read(bool x, unsigned offset) const { return channel_[offset >> 3].read(now_, x, offset & 7, in.trip); }
   void write(bool x, unsigned offset, std::uint32_t value);
+  static bool read_acts(bool x, unsigned offset) {  // taking the word does something
+    return x && (offset & 7) == regs::servo_channel::kFlagPosition.address;
+  }
   void read_taken(bool x, unsigned offset) {
-    if (x && (offset & 7) == regs::servo_channel::kFlagPosition.address) channel_[offset >> 3].read_taken(now_);
+    if (read_acts(x, offset)) channel_[offset >> 3].read_taken(now_);
   }
   void turn() {
     for (ServoChannel& channel : channel_) channel.load_pwm();
@@ -78,7 +82,11 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   MotorOutputs motor_outputs() const;
 
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
-  Tick next_event() const override;
+  Tick next_event() const override { return next_event(kAllMotorOutputs); }
+  Tick next_event(const MotorOutputs& select) const;      // of the outputs selected
+  bool follow_clocks(const MotorOutputs& select) const {  // whether such an output moves by the clocks alone
+    return has_pwm(select) || has_dac(select) || has_adc(select);
+  }
   Tick next_equ_event(unsigned channels) const;  // no edge before it changes EQU of one of them, bit n-1 for channel n
   void advance(Tick t) override;                 // not beyond the end of the line
   void reset(Tick t) override;
@@ -89,6 +97,13 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   void jump(Tick by);
 
  private:
+  static bool has_pwm(const MotorOutputs& select) { return (select.w[0] & kPwmPins) != 0; }
+  static bool has_adc(const MotorOutputs& select) { return (select.w[1] & kAdcPins) != 0; }
+  bool has_dac(const MotorOutputs& select) const { return (select.w[1] & kDacPins) != 0 || has_dac_data(select); }
+  bool has_dac_data(const MotorOutputs& select) const {
+    return (select.w[1] & kDacData) != 0 &&
+           std::any_of(channel_.begin(), channel_.end(), [](const ServoChannel& c) { return !c.shows_pwm(0); });
+  }
   Tick next_equ_of(const ServoChannel& channel) const;
   template <class Pin>
   unsigned each(Pin pin) const {
@@ -100,6 +115,9 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
 
+  static constexpr std::uint32_t kPwmPins = 0xFFFFFF;  // of word 0 of the outputs
+  static constexpr std::uint32_t kDacData = 0xFF, kDacPins = 0x30000, kAdcPins = 0xC0000, kDacClk = 0x10000,
+                                 kAdcClk = 0x40000;  // of word 1
   static constexpr regs::Field kSclk = regs::servo_ic::clock_control::kSclkDivider,
                                kPfm = regs::servo_ic::clock_control::kPfmDivider,
                                kDac = regs::servo_ic::clock_control::kDacDivider,

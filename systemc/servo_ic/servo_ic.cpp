@@ -58,6 +58,12 @@ void ServoIc::advance(Tick t) {
   }
 }
 
+// A turn of the triangle loads the PWM commands, an edge of PHASE starts the serial streams.
+Tick ServoIc::next_motor_event(const MotorOutputs& select) const {
+  const Tick next = channels_.next_event(select);
+  return channels_.follow_clocks(select) ? std::min(clock_gen_.next_special_edge(), next) : next;
+}
+
 void ServoIc::mark() {
   clock_gen_.mark();
   channels_.mark();

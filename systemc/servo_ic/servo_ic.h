@@ -53,7 +53,7 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
 
   // Clock pins only; motor outputs and EQU can change from the others on.
   Tick next_event() const override { return clock_gen_.next_event(); }
-  Tick next_motor_event() const { return std::min(clock_gen_.next_special_edge(), channels_.next_event()); }
+  Tick next_motor_event(const MotorOutputs& select = kAllMotorOutputs) const;  // of the outputs selected
   Tick next_equ_event(unsigned channels) const { return channels_.next_equ_event(channels); }
   void advance(Tick t) override;
   void reset(Tick t) override;

@@ -220,7 +220,7 @@ Bench isa_timing_bench() {
           "host bus at its pins: every rule at its limit, 8 and 16 bits, IOCHRDY, RESETDRV, hosts that keep no rule",
           {"the host ends I/O commands 1 ns too early", "t2", "529.000 ns"},
           [](BenchContext& b) { IsaTimingBench(b).run(); },
-          kAnyBoard,
+          without_8259(kAnyBoard),
           "turbo-pmac2-pc"};
 }
 

@@ -94,14 +94,13 @@ std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t d
   move(fall, [&](PortAPins& p) { (write ? p.pa_wr_n : p.pa_rd_n) = false; });
   if (write) move(fall + l.data, [&](PortAPins& p) { p.pa_wdata = data; });
   TimeFs rise = fall + l.low;
+  if (write && spoiled_ > 0) move(rise - spoiled_, [&](PortAPins& p) { p.pa_wdata = ~data & 0xFFFFFF; });
   for (; !place.on_chip; rise += l.clock, ++stretched_) {
     run_to(fs_to_tick_floor(rise - l.ready));
     if (machine_.outputs().get(pin::kPaTaN) == 0) break;
   }
   std::uint32_t word = 0;
-  if (write) {
-    if (spoiled_ > 0) move(rise - spoiled_, [&](PortAPins& p) { p.pa_wdata = ~data & 0xFFFFFF; });
-  } else {
+  if (!write) {
     run_to(fs_to_tick_floor(rise - (l.low - l.sample)));
     word = machine_.outputs().get(pin::kPaData);
     floating_ += !place.on_chip && machine_.outputs().get(pin::kPaDataOe) == 0;

@@ -1,20 +1,17 @@
 // How fast the engines are: a table on stdout. Each ratio compares runs that were made in turn, in the same minute, and
 // every number is the median of five, because the machine under us is never quiet.
-//   brick_benchmark FIRMWARE.elf [--quick]
+//   brick_benchmark FIRMWARE.elf [--quick] [PART...], PART one of boards, cpu, machine, bus
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "systemc/core/trace.h"
 #include "systemc/cosim/engines.h"
-#include "systemc/machine/machine.h"
 #include "testbench/benchmark/benchmark.h"
-#include "testbench/host/host_link.h"
+#include "testbench/benchmark/measure.h"
 
 namespace brick {
 
@@ -36,25 +33,6 @@ void start_clocks(Board& board, std::uint32_t fitted) {
 }
 
 namespace {
-
-constexpr int kRounds = 5;
-constexpr double kTicksPerSecond = 117'964'800;
-
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
-}
-
-void row(const std::string& what, const std::string& measured, const std::string& goal, bool met) {
-  fmt::print("{:<58} {:>22}   {:<22} {}\n", what, measured, goal, goal.empty() ? "" : met ? "met" : "MISSED");
-  std::fflush(stdout);
-}
 
 // Waveform of a board alone: its pins.
 class PinTrace {
@@ -140,49 +118,6 @@ void scaling(Tick ticks) {
       median(ratio) >= 0.8 && median(ratio) <= 1.2);
 }
 
-// The whole controller with its firmware: idle (waits for the host), and busy (the host asks without a pause).
-void machine(Engine engine, const char* name, const std::string& firmware, double simulated, const std::string& vcd,
-             bool goal) {
-  MachineConfig config;
-  config.engine = engine;
-  config.firmware = firmware;
-  for (const bool traced : {false, true}) {
-    Machine machine(sc_core::sc_gen_unique_name("machine"), config);
-    HostBus bus(machine);
-    HostLink link(bus);
-    if (!link.connect(static_cast<Tick>(0.2 * kTicksPerSecond))) {
-      row(fmt::format("{} engine", name), "firmware is silent", "", true);
-      return;
-    }
-    std::unique_ptr<TraceWriter> writer;
-    if (traced) {
-      writer = TraceWriter::open(vcd + ".3.vcd");
-      machine.signals().attach(writer.get());
-    }
-    const auto ticks = static_cast<Tick>((traced ? 0.1 : 1.0) * simulated * kTicksPerSecond);
-    std::vector<double> idle, busy, instructions;
-    for (int round = 0; round < kRounds; ++round) {
-      const double idle_seconds = seconds([&] { machine.run_until(machine.now() + ticks); });
-      idle.push_back(static_cast<double>(ticks) / kTicksPerSecond / idle_seconds);
-      const Tick begin = machine.now();
-      const std::uint64_t before = machine.instructions();
-      const double busy_seconds = seconds([&] {
-        while (machine.now() < begin + ticks / 10) link.command("I10,20 P1=P1+SQRT(2) P1");
-      });
-      busy.push_back(static_cast<double>(machine.now() - begin) / kTicksPerSecond / busy_seconds);
-      instructions.push_back(static_cast<double>(machine.instructions() - before) / busy_seconds);
-    }
-    machine.signals().attach(nullptr);
-    const std::string with = traced ? ", VCD" : "";
-    const bool judged = goal && !traced;
-    row(fmt::format("{} engine, idle firmware{}", name, with), fmt::format("{:.3f} sim s/s", median(idle)),
-        judged ? ">= 10 sim s/s" : "", median(idle) >= 10);
-    row(fmt::format("{} engine, host asks without pause{}", name, with), fmt::format("{:.3f} sim s/s", median(busy)),
-        "", true);
-    row("  instructions", fmt::format("{:.2f} M/s", median(instructions) / 1e6), "", true);
-  }
-}
-
 void cpu(std::uint64_t instructions) {
   std::vector<double> rate;
   for (int round = 0; round < kRounds; ++round) {
@@ -198,24 +133,41 @@ void cpu(std::uint64_t instructions) {
 }  // namespace brick
 
 int main(int argc, char** argv) {
-  const bool quick = argc == 3 && std::string(argv[2]) == "--quick";
-  if (argc < 2 || (argc == 3 && !quick) || argc > 3) {
-    fmt::print(stderr, "usage: brick_benchmark FIRMWARE.elf [--quick]\n");
+  const std::set<std::string> known{"boards", "cpu", "machine", "bus"};
+  std::set<std::string> parts;
+  bool quick = false, usage = argc < 2;
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--quick")
+      quick = true;
+    else if (known.count(word) != 0)
+      parts.insert(word);
+    else
+      usage = true;
+  }
+  if (usage) {
+    fmt::print(stderr, "usage: brick_benchmark FIRMWARE.elf [--quick] [boards|cpu|machine|bus ...]\n");
     return 2;
   }
-  const std::string vcd = (std::filesystem::temp_directory_path() / "brick_benchmark").string();
+  if (parts.empty()) parts = known;
+  const std::string waves = (std::filesystem::temp_directory_path() / "brick_benchmark").string();
   try {
     fmt::print("{:<58} {:>22}   {:<22}\n", "what", "median of 5", "goal");
-    brick::boards(quick ? 1'000'000 : 4'000'000, vcd);
-    brick::scaling(quick ? 2'000'000 : 8'000'000);
-    brick::cpu(quick ? 50'000'000 : 200'000'000);
-    brick::machine(brick::Engine::kSystemC, "SystemC", argv[1], quick ? 1 : 5, vcd, true);
-    brick::machine(brick::Engine::kRtl, "RTL", argv[1], quick ? 0.01 : 0.05, vcd, false);
-    brick::machine(brick::Engine::kLockstep, "lock-step", argv[1], quick ? 0.01 : 0.05, vcd, false);
+    if (parts.count("boards") != 0) {
+      brick::boards(quick ? 1'000'000 : 4'000'000, waves);
+      brick::scaling(quick ? 2'000'000 : 8'000'000);
+    }
+    if (parts.count("cpu") != 0) brick::cpu(quick ? 50'000'000 : 200'000'000);
+    if (parts.count("machine") != 0) {
+      brick::measure_machine(brick::Engine::kSystemC, "SystemC", argv[1], quick ? 1 : 5, waves);
+      brick::measure_machine(brick::Engine::kRtl, "RTL", argv[1], quick ? 0.01 : 0.05, waves);
+      brick::measure_machine(brick::Engine::kLockstep, "lock-step", argv[1], quick ? 0.01 : 0.05, waves);
+    }
+    if (parts.count("bus") != 0) brick::measure_bus(argv[1], quick ? 0.05 : 0.5);
   } catch (const std::exception& e) {
     fmt::print(stderr, "brick_benchmark: {}\n", e.what());
     return 2;
   }
-  for (const char* n : {".1.vcd", ".2.vcd", ".3.vcd"}) std::filesystem::remove(vcd + n);
+  for (const char* n : {".1.vcd", ".2.vcd", ".3.vcd"}) std::filesystem::remove(waves + n);
   return 0;
 }

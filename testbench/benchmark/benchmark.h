@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "systemc/core/board.h"
+#include "systemc/machine/machine.h"
 
 namespace brick {
 
@@ -26,5 +28,13 @@ std::uint64_t run_cpu_alone(std::uint64_t instructions);
 
 // Lets servo IC 0 drive PHASE and SERVO at their reset values: reset, then one write to X:$078004.
 void start_clocks(Board& board, std::uint32_t fitted = 0x3);
+
+// The whole controller with its firmware: idle (waits for the host), busy (the host asks without a pause), and both
+// with a waveform at `wave`.
+void measure_machine(Engine engine, const std::string& name, const std::string& firmware, double simulated,
+                     const std::string& wave);
+
+// The SystemC engine where every tick counts: host and CPU use their buses without a pause.
+void measure_bus(const std::string& firmware, double simulated);
 
 }  // namespace brick

@@ -2,16 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <vector>
 
 #include "systemc/board/model_board.h"
+#include "testbench/benchmark/measure.h"
 
 namespace brick {
 namespace {
-
-constexpr double kTicksPerSecond = 117'964'800;
 
 struct Case {
   const char* name;
@@ -71,15 +69,15 @@ double rate(const Case& c) {
   }
   board->watch_motors(c.watched);
   board->run_until(board->now() + 2'000'000);
-  const auto begin = std::chrono::steady_clock::now();
-  const Tick end = board->now() + static_cast<Tick>(c.simulated * kTicksPerSecond);
-  while (board->now() < end) {
-    const Tick strobe = std::min(end, board->now() + 2'000'000);  // the watchdog waits for 25 ms
-    while (c.polls && board->now() < strobe) poll(*board, in);
-    board->run_until(strobe);
-    write(*board, in, true, 0x70011, 0);
-  }
-  return c.simulated / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return c.simulated / seconds([&] {
+           const Tick end = board->now() + static_cast<Tick>(c.simulated * kTicksPerSecond);
+           while (board->now() < end) {
+             const Tick strobe = std::min(end, board->now() + 2'000'000);  // the watchdog waits for 25 ms
+             while (c.polls && board->now() < strobe) poll(*board, in);
+             board->run_until(strobe);
+             write(*board, in, true, 0x70011, 0);
+           }
+         });
 }
 
 }  // namespace
@@ -99,8 +97,7 @@ void model_speed(int only) {
       if (only < 0 || only == static_cast<int>(i)) rates[i].push_back(rate(kCases[i]));
   for (std::size_t i = 0; i < std::size(kCases); ++i) {
     if (rates[i].empty()) continue;
-    std::sort(rates[i].begin(), rates[i].end());
-    fmt::print("{:<58} {:>10.2f} sim s/s\n", kCases[i].name, rates[i][2]);
+    fmt::print("{:<58} {:>10.2f} sim s/s\n", kCases[i].name, median(rates[i]));
   }
 }
 

@@ -12,44 +12,44 @@ constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
 
 std::vector<TimingRule> rules() {
   using Kind = TimingRule::Kind;
-  const auto row = [](const char* id, const char* text, int number, Kind kind) {
-    return TimingRule{id, text, "host-bus:3.4/" + std::to_string(number), kind};
+  const auto row = [](const char* id, const char* text, const char* source, Kind kind) {
+    return TimingRule{id, text, source, kind};
   };
-  const auto strobe = [](const char* id, const char* text, int number) {
-    return TimingRule{id, text, "host-bus:3.3/" + std::to_string(number), Kind::kLeast};
+  const auto strobe = [&row](const char* id, const char* text, const char* source) {
+    return row(id, text, source, Kind::kLeast);
   };
-  const auto sound = [](const char* id, const char* text, int number) {
-    return TimingRule{id, text, "host-bus:3.9/" + std::to_string(number), Kind::kHolds};
+  const auto sound = [&row](const char* id, const char* text, const char* source) {
+    return row(id, text, source, Kind::kHolds);
   };
-  return {row("t1", "SA, AEN valid before IOR#, IOW# low", 1, Kind::kLeast),
-          row("t2", "IOR#, IOW#, 8-bit MEMR#, MEMW# low", 2, Kind::kLeast),
-          row("t3", "address held after the command", 3, Kind::kLeast),
-          row("t4", "IOR#, 8-bit MEMR# low to data valid", 4, Kind::kMost),
-          row("t5", "data held after the read command", 5, Kind::kLeast),
-          row("t5off", "data off after the read command", 5, Kind::kMost),
-          row("t6", "write data valid after the command's fall", 6, Kind::kMost),
-          row("t7", "write data held after IOW#", 7, Kind::kLeast),
-          row("t8", "command low to IOCHRDY low", 8, Kind::kMost),
-          row("t9", "IOCHRDY high to the command's end", 9, Kind::kLeast),
-          row("t10", "IOCHRDY low", 10, Kind::kMost),
-          row("t11", "command high to the next command", 11, Kind::kLeast),
-          row("t12", "LA valid before MEMR#, MEMW# low", 12, Kind::kLeast),
-          row("t13", "16-bit MEMR#, MEMW# low", 13, Kind::kLeast),
-          row("t14", "16-bit MEMR# low to data valid", 14, Kind::kMost),
-          row("t15", "write data held after MEMW#", 15, Kind::kLeast),
-          row("t16", "LA to MEMCS16# low", 16, Kind::kMost),
-          row("t18", "SA, SBHE# valid before MEMR#, MEMW# low", 18, Kind::kLeast),
-          strobe("h1", "host port: read strobe low", 1),
-          strobe("h2", "host port: read strobe high", 2),
-          strobe("h3", "host port: read strobe high after +0, +1, +2, +7", 3),
-          strobe("h4", "host port: write strobe low", 4),
-          strobe("h5", "host port: write strobe high after +0, +1, +7", 5),
-          strobe("h6", "host port: write strobe high otherwise", 6),
-          sound("one-command", "one command at a time", 1),
-          sound("address-stands", "SA, SBHE#, AEN stand while a command is low", 2),
-          sound("room-in-tx", "+7 is written while TX is empty", 3),
-          sound("whole-cycle", "no reset while a command is low", 4),
-          sound("ours-only", "the board drives data in reads of its own only", 5)};
+  return {row("t1", "SA, AEN valid before IOR#, IOW# low", "host-bus:3.4/1", Kind::kLeast),
+          row("t2", "IOR#, IOW#, 8-bit MEMR#, MEMW# low", "host-bus:3.4/2", Kind::kLeast),
+          row("t3", "address held after the command", "host-bus:3.4/3", Kind::kLeast),
+          row("t4", "IOR#, 8-bit MEMR# low to data valid", "host-bus:3.4/4", Kind::kMost),
+          row("t5", "data held after the read command", "host-bus:3.4/5", Kind::kLeast),
+          row("t5off", "data off after the read command", "host-bus:3.4/5", Kind::kMost),
+          row("t6", "write data valid after the command's fall", "host-bus:3.4/6", Kind::kMost),
+          row("t7", "write data held after IOW#", "host-bus:3.4/7", Kind::kLeast),
+          row("t8", "command low to IOCHRDY low", "host-bus:3.4/8", Kind::kMost),
+          row("t9", "IOCHRDY high to the command's end", "host-bus:3.4/9", Kind::kLeast),
+          row("t10", "IOCHRDY low", "host-bus:3.4/10", Kind::kMost),
+          row("t11", "command high to the next command", "host-bus:3.4/11", Kind::kLeast),
+          row("t12", "LA valid before MEMR#, MEMW# low", "host-bus:3.4/12", Kind::kLeast),
+          row("t13", "16-bit MEMR#, MEMW# low", "host-bus:3.4/13", Kind::kLeast),
+          row("t14", "16-bit MEMR# low to data valid", "host-bus:3.4/14", Kind::kMost),
+          row("t15", "write data held after MEMW#", "host-bus:3.4/15", Kind::kLeast),
+          row("t16", "LA to MEMCS16# low", "host-bus:3.4/16", Kind::kMost),
+          row("t18", "SA, SBHE# valid before MEMR#, MEMW# low", "host-bus:3.4/18", Kind::kLeast),
+          strobe("h1", "host port: read strobe low", "host-bus:3.3/1"),
+          strobe("h2", "host port: read strobe high", "host-bus:3.3/2"),
+          strobe("h3", "host port: read strobe high after +0, +1, +2, +7", "host-bus:3.3/3"),
+          strobe("h4", "host port: write strobe low", "host-bus:3.3/4"),
+          strobe("h5", "host port: write strobe high after +0, +1, +7", "host-bus:3.3/5"),
+          strobe("h6", "host port: write strobe high otherwise", "host-bus:3.3/6"),
+          sound("one-command", "one command at a time", "host-bus:3.9/1"),
+          sound("address-stands", "SA, SBHE#, AEN stand while a command is low", "host-bus:3.9/2"),
+          sound("room-in-tx", "+7 is written while TX is empty", "host-bus:3.9/3"),
+          sound("whole-cycle", "no reset while a command is low", "host-bus:3.9/4"),
+          sound("ours-only", "the board drives data in reads of its own only", "host-bus:3.9/5")};
 }
 
 }  // namespace

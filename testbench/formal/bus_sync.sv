@@ -1,8 +1,8 @@
 // Rules of the Port A synchroniser with the flip-flops that its strobes turn over (bus_strobes): one strobe a cycle, at
-// one edge, with the cycle's own address and data. A step is half a period of clk_ref, 12.7 ns; a pin may change at any.
-// An edge of clk_ref that comes with a change takes the old level, one a step later the new one: between them lies every
-// phase, and a pin that is taken early or late at random. Assumed of the bus, of host-bus:2.2 with the wait states of
-// host-bus:2.5 (least: /WR low 78.7 ns at I52 = 7):
+// one edge, with the cycle's own address and data. A step is half a period of clk_ref, 12.7 ns; a pin may change at
+// any. An edge of clk_ref that comes with a change takes the old level, one a step later the new one: between them lies
+// every phase, and a pin that is taken early or late at random. Assumed of the bus, of host-bus:2.2 with the wait
+// states of host-bus:2.5 (least: /WR low 78.7 ns at I52 = 7):
 // - /RD and /WR are never low together (host-bus:2.1/2); low for 5 steps or more, the next fall 6 or more after the
 //   last (rows 102, 113, 114, 116);
 // - address, space and AA stand from the fall to the rise (rows 101, 103, 115, 117), write data from a step after the

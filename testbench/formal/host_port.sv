@@ -1,7 +1,7 @@
 // Rules of the host port, host-bus:3.2, about words: between a host and a CPU that look at their flags, each word comes
 // out once, in order and unchanged. Assumed: each side makes one access at a time (a bus has one cycle at a time,
 // host-bus:2.1/2), and fills or empties a register only after its flag told it so since the last time (host-bus:3.1/5,
-// host-bus:3.1/6), whenever it looked; an INIT is such news to the CPU too. Everything else is free.
+// host-bus:3.1/6), whenever it looked; an INIT or RESETDRV is such news to the CPU too. Everything else is free.
 // proof: pdr
 // clocks: one
 // steps: 14
@@ -65,9 +65,10 @@ module host_port_rules (
   input wire logic        wr_i,
   input wire logic [2:0]  addr_i,
   input wire logic [7:0]  wdata_i,
+  input wire logic        reset_i,  // RESETDRV
   input wire logic        cpu_sel_i,
   input wire logic        cpu_we_i,
-  input wire logic        cpu_rd_done_i,
+  input wire logic        cpu_rd_i,  // a read takes its sample
   input wire logic [5:0]  cpu_addr_i,
   input wire logic [23:0] cpu_wdata_i,
   input wire logic [1:0]  follow_i
@@ -78,11 +79,12 @@ module host_port_rules (
 
   logic [7:0]  rdata;
   logic [23:0] cpu_rdata;
-  logic        hreq, irq;
+  logic        hreq, irq, txde, rxdf;
   host_port dut (.clk_ref_i(clk_i), .rst_ni, .hp_sel_i(sel_i), .hp_rd_done_i(rd_done_i), .hp_wr_i(wr_i),
-                 .hp_addr_i(addr_i), .hp_wdata_i(wdata_i), .hp_rdata_o(rdata), .dsp_sel_i(cpu_sel_i),
-                 .dsp_we_i(cpu_we_i), .dsp_rd_done_i(cpu_rd_done_i), .dsp_addr_i(cpu_addr_i),
-                 .dsp_wdata_i(cpu_wdata_i), .dsp_rdata_o(cpu_rdata), .hreq_o(hreq), .irq_o(irq));
+                 .hp_addr_i(addr_i), .hp_wdata_i(wdata_i), .hp_rdata_o(rdata), .hp_reset_i(reset_i),
+                 .dsp_sel_i(cpu_sel_i), .dsp_we_i(cpu_we_i), .dsp_rd_i(cpu_rd_i), .dsp_addr_i(cpu_addr_i),
+                 .dsp_wdata_i(cpu_wdata_i), .dsp_rdata_o(cpu_rdata), .hreq_o(hreq), .irq_o(irq), .txde_o(txde),
+                 .rxdf_o(rxdf));
 
   // What both sides do and see at the pins.
   logic host_wr, cpu_wr, data, send, fetch, cpu_send, cpu_fetch, init, init_tx, init_rx, isr, hsr;
@@ -92,10 +94,10 @@ module host_port_rules (
   assign send      = host_wr & (addr_i == 3'd7);
   assign fetch     = sel_i & rd_done_i & (addr_i == 3'd7);
   assign cpu_send  = cpu_wr & (cpu_addr_i == Hotx);
-  assign cpu_fetch = cpu_sel_i & cpu_rd_done_i & (cpu_addr_i == Horx);
+  assign cpu_fetch = cpu_sel_i & cpu_rd_i & (cpu_addr_i == Horx);
   assign init      = host_wr & (addr_i == Icr) & wdata_i[7];
-  assign init_tx   = init & wdata_i[1];
-  assign init_rx   = init & wdata_i[0];
+  assign init_tx   = (init & wdata_i[1]) | reset_i;
+  assign init_rx   = (init & wdata_i[0]) | reset_i;
   assign isr       = sel_i & (addr_i == Isr);
   assign hsr       = cpu_sel_i & (cpu_addr_i == Hsr);
 
@@ -122,17 +124,19 @@ module host_port_rules (
       may_fetch_q     <= (may_fetch_q | (isr & rdata[0])) & ~fetch & ~init_rx;
       cpu_may_send_q  <= (cpu_may_send_q | (hsr & cpu_rdata[1])) & ~cpu_send;
       cpu_may_fetch_q <= (cpu_may_fetch_q | (hsr & cpu_rdata[0])) & ~cpu_fetch & ~init_tx;
-      if (host_wr && addr_i == Cvr)                             command_q <= wdata_i[7];
-      else if (cpu_wr && cpu_addr_i == Hsr && cpu_wdata_i[2])   command_q <= 1'b0;
-      if (host_wr && addr_i == Icr)      icr_q    <= wdata_i;
-      if (cpu_wr && cpu_addr_i == Hcr)   enable_q <= cpu_wdata_i[2:0];
+      if (reset_i)                                            command_q <= 1'b0;
+      else if (host_wr && addr_i == Cvr)                      command_q <= wdata_i[7];
+      else if (cpu_wr && cpu_addr_i == Hsr && cpu_wdata_i[2]) command_q <= 1'b0;
+      if (reset_i)                          icr_q    <= 8'h00;
+      else if (host_wr && addr_i == Icr)    icr_q    <= wdata_i;
+      if (cpu_wr && cpu_addr_i == Hcr)      enable_q <= cpu_wdata_i[2:0];
       word_q <= word;
     end
   end
   always @(posedge clk_i) begin
     started_q <= 1'b1;
     assume (started_q || !rst_ni);
-    assume (!(wr_i && rd_done_i) && !(cpu_we_i && cpu_rd_done_i));
+    assume (!(wr_i && rd_done_i) && !(cpu_we_i && cpu_rd_i));
     assume (!(host_wr && data) || may_send_q);
     assume (!fetch || may_fetch_q);
     assume (!cpu_send || cpu_may_send_q);
@@ -199,9 +203,9 @@ module host_port_rules (
       C8: cover (cpu_rdata[1] && cpu_count == 2'd1);
     end
 
-    // R9: HREQ is (RREQ and RXDF) or (TREQ and TXDE).
+    // R9: HREQ is (RREQ and RXDF) or (TREQ and TXDE); the pins of the two flags agree with ISR.
     if (isr) begin
-      R9: assert (hreq == ((icr_q[0] && rdata[0]) || (icr_q[1] && rdata[1])));
+      R9: assert (hreq == ((icr_q[0] && rdata[0]) || (icr_q[1] && rdata[1])) && rdata[1:0] == {txde, rxdf});
       C9: cover (hreq && !icr_q[1]);
     end
 

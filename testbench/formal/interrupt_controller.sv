@@ -17,6 +17,7 @@
 module interrupt_controller_rules (
   input wire logic       clk_i,
   input wire logic       rst_ni,
+  input wire logic       reset_i,  // RESETDRV
   input wire logic [7:0] line_i,
   input wire logic       wr_i,
   input wire logic [1:0] addr_i,
@@ -25,8 +26,8 @@ module interrupt_controller_rules (
 
   logic [7:0] rdata, ist, sig, msk, elr;
   logic       irq;
-  interrupt_controller dut (.clk_ref_i(clk_i), .rst_ni, .line_i, .wr_i, .addr_i, .wdata_i, .rdata_o(rdata),
-                            .ist_o(ist), .sig_o(sig), .msk_o(msk), .elr_o(elr), .irq_o(irq));
+  interrupt_controller dut (.clk_ref_i(clk_i), .rst_ni, .reset_i, .line_i, .wr_i, .addr_i, .wdata_i,
+                            .rdata_o(rdata), .ist_o(ist), .sig_o(sig), .msk_o(msk), .elr_o(elr), .irq_o(irq));
 
   (* anyconst *) logic [2:0] n;
   logic clear, high, enabled, edges, pending, rise;
@@ -47,7 +48,7 @@ module interrupt_controller_rules (
       pin_q    <= 4'h0;
     end else begin
       high_q   <= high;
-      event_q  <= (event_q | (pending & edges)) & enabled & ~clear;
+      event_q  <= (event_q | (pending & edges)) & enabled & ~clear & ~reset_i;
       served_q <= (served_q | clear) & ~rise;
       blind_q  <= ~enabled | (blind_q & ~(rise & edges));
       pin_q    <= {pin_q[2:0], line_i[n]};
@@ -73,7 +74,7 @@ module interrupt_controller_rules (
       end
 
       // R4: A rise of an enabled edge line is pending a clock later, even if a clear meets it.
-      if ($past(rise && enabled && edges) && enabled && edges) begin
+      if ($past(rise && enabled && edges && !reset_i) && enabled && edges) begin
         R4: assert (pending);
         C4: cover ($past(clear));
       end
@@ -116,8 +117,9 @@ module interrupt_controller_rules (
       R11: assert (rdata == (addr_i[1] ? (addr_i[0] ? elr : msk) : (addr_i[0] ? sig : ist)));
       C11: cover (addr_i == 2'd0 && rdata != 8'h00 && rdata != sig && rdata != msk);
 
-      // R12: MSK and ELR change by a write to them alone.
-      R12: assert (msk == ($past(wr_i && addr_i == 2'd2) ? $past(wdata_i) : $past(msk)) &&
+      // R12: MSK and ELR change by a write to them alone, and are 0 after RESETDRV.
+      R12: assert ($past(reset_i) ? (msk | elr) == 8'h00 :
+                   msk == ($past(wr_i && addr_i == 2'd2) ? $past(wdata_i) : $past(msk)) &&
                    elr == ($past(wr_i && addr_i == 2'd3) ? $past(wdata_i) : $past(elr)));
       C12: cover (msk != elr && msk != 8'h00 && elr != 8'h00);
     end

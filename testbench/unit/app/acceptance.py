@@ -211,6 +211,10 @@ def bad_input():
             (["exec", "-", "--wave", "/proc/none/x.vcd"], "", "/proc/none"),
             (["exec", "-", "--wave", f"{folder}/x.vcd", "--wave-from", "10"], "", "--wave-from"),
             (["exec", "-", "--wave-to", "10ms"], "", "--wave-to"),
+            (["exec", "-", "--trace", "all"], "", "--trace"),
+            (["exec", "-", "--wave", f"{folder}/x.vcd", "--trace", "clock.*,nothing.*"], "", "nothing.*"),
+            (["exec", "-", "--wave", f"{folder}/x.vcd", "--trace", "servo_ic9.*"], "", "servo_ic9.*"),
+            (["exec", "-", "--wave", f"{folder}/x.vcd", "--trace", "clock.*,,breq"], "", "clock.*,,breq"),
             (["exec", "-"], "VERSION\n@frob\n", "stdin:2: @frob"),
             (["exec", "-"], "VERSION\n@signal nothing.here\n", "stdin:2: @signal"),
             (["exec", "-"], "@until host.breq=2 1ms\n", "stdin:1: @until"),
@@ -274,6 +278,44 @@ def wave_window():
         check(times[0] == 10**9 and times[-1] <= 14 * 10**9, f"{times[0]} to {times[-1]} ps")
 
 
+def names_in(text):
+    """Full name -> identifier code of the variables of a VCD."""
+    scope, codes = [], {}
+    for line in text.split("$enddefinitions")[0].splitlines():
+        word = line.split()
+        if word[0] == "$scope":
+            scope.append(word[2])
+        elif word[0] == "$upscope":
+            scope.pop()
+        elif word[0] == "$var":
+            codes[".".join([*scope, word[4]])] = word[3]
+    return codes
+
+
+# covers: CARD-4
+def trace():
+    """--trace chooses what goes into a waveform; without it everything does but the serial clocks."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(f"{folder}/x.vcd")
+
+        def names(*options):
+            r = play(["@wait 1ms"], "--wave", str(file), *options)
+            check(r.returncode == 0, r.stderr)
+            return set(names_in(file.read_text()))
+
+        everything, default = names("--trace", "all"), names()
+        serial = {n for n in everything if n.endswith((".dac_clk", ".adc_clk"))}
+        check(len(serial) == 16 and default == everything - serial, f"left out: {sorted(everything - default)}")
+        clocks = {n for n in everything if n.startswith("brick.clock.")}
+        check(len(clocks) >= 4, str(clocks))
+        for options in (["--trace", "clock.*,host.breq"], ["--trace", "clock.*", "--trace", "breq"]):
+            check(names(*options) == clocks | {"brick.host.breq"}, str(options))
+        name = "servo_ic1.ch2.dac_clk"  # the clock of the whole IC, under one of its names
+        check(names("--trace", name) == {"brick." + name}, name)
+        code = names_in(file.read_text())["brick." + name]
+        check(len(re.findall(rf"^1{re.escape(code)}$", file.read_text(), re.M)) > 100, f"{name} does not move")
+
+
 # covers: CARD-4
 def wave():
     """A bench writes a VCD with the contract's names and data in them, the same on every engine."""
@@ -290,15 +332,7 @@ def wave():
             check(r.returncode == 0, r.stdout + r.stderr)
             texts.append(file.read_text())
     check(texts[0] == texts[1] == texts[2], "the waveforms of the engines differ")
-    scope, codes = [], {}
-    for line in texts[0].split("$enddefinitions")[0].splitlines():
-        word = line.split()
-        if word[0] == "$scope":
-            scope.append(word[2])
-        elif word[0] == "$upscope":
-            scope.pop()
-        elif word[0] == "$var":
-            codes[".".join([*scope, word[4]])] = word[3]
+    codes = names_in(texts[0])
     for name in names.split():
         check("brick." + name in codes, f"no signal {name}")
     least_changes = {"clock.phase": 100, "clock.servo": 40, "host.isa.sa": 100, "host.isa.sd": 100, "host.pic.msk": 3,

@@ -110,7 +110,54 @@ TEST_P(MotorPins, LeaveTheBoardPinsAloneWhenWatched) {
   }
 }
 
+// Who watches some outputs is told of these, at the same edges as one who watches all.
+TEST_P(MotorPins, SelectedAreReportedAtTheirEdgesAndNoOthers) {
+  BRICK_COVERS("CARD-4");
+  constexpr Tick kEnd = 250'000;
+  const auto seen = [](std::uint64_t seed, const MotorOutputs& select) {
+    auto board = make_model_board(kThree);
+    for (unsigned ic = 0; ic < 3; ++ic) board->watch_motor(ic, select);
+    std::vector<Change> list;
+    board->on_motor_change = [&](Tick t, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+      list.push_back({t, ic, before, after});
+    };
+    MotorTraffic(seed, kBusy).run(*board, kEnd, 100'000);
+    return list;
+  };
+  const std::vector<Change> all = seen(GetParam(), kAllMotorOutputs);
+  for (const MotorField& field : motor_pin::kAll) {
+    MotorOutputs select;
+    select.set(field, 1, ~0u);
+    std::vector<Change> expected;
+    for (const Change& c : all)
+      if (c.before.differs(c.after, select)) expected.push_back({c.tick, c.ic, c.before & select, c.after & select});
+    EXPECT_TRUE(seen(GetParam(), select) == expected) << field.name;
+    EXPECT_GT(expected.size(), 0u) << field.name << " never moves: the test shows nothing";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, MotorPins, ::testing::Range<std::uint64_t>(1, 4));
+
+// PHASE has just risen and the streams run: with their clocks the next event is a bit away, without them the fall of
+// PHASE, half a period of 2 (2 I7m00 + 3) ticks later, I7m00 = 6527, or what a servo IC does on the way at a turn.
+TEST(LeftOutMotorPins, MakeNoEvent) {
+  const auto quiet = [](const MotorOutputs& select) {
+    BoardRig rig(make_model_board(kThree), kThree);
+    rig.board().watch_motor(0, select);
+    rig.write(true, kServoIcBase[0] + 4, 0x0008D2);
+    while (rig.board().outputs().get(pin::kPhase) != 0) rig.board().run_until(200'000, select_pins(pin::kPhase));
+    while (rig.board().outputs().get(pin::kPhase) == 0) rig.board().run_until(200'000, select_pins(pin::kPhase));
+    rig.board().run_until(rig.board().now() + 120);
+    return rig.board().quiet_until(select_pins(pin::kPicIst)) - rig.board().now();
+  };
+  MotorOutputs clocks, data;
+  clocks.set(motor_pin::kDacClk, 0, 1);
+  data.set(motor_pin::kDac, 0, 1);
+  data.set(motor_pin::kCount, 0, ~0u);
+  EXPECT_GT(quiet({}), 5'000);
+  EXPECT_GT(quiet(data), 5'000);
+  EXPECT_LT(quiet(clocks), 100);
+}
 
 // A word that PHASE or SERVO latches, read again and again: each read takes the same position as when the IC is
 // watched.

@@ -36,7 +36,7 @@ class DistortedBoard : public Board {
     board_->set_motor_inputs(ic, changed);
   }
   MotorOutputs motor_outputs(unsigned ic) const override { return board_->motor_outputs(ic); }
-  void watch_motors(std::uint32_t ics) override { board_->watch_motors(ics); }
+  void watch_motor(unsigned ic, const MotorOutputs& select) override { board_->watch_motor(ic, select); }
   void stop_on_motor(unsigned ic, const MotorOutputs& select) override { board_->stop_on_motor(ic, select); }
 
  private:

@@ -13,9 +13,8 @@ class DpramBench {
  public:
   explicit DpramBench(bool small = false, int seed = 0)
       : model("dpram"), both(make_rtl_dpram(seed), model, [](const Dpram& m) {
-          return Outputs{{"cpu_rdata", m.cpu_rdata()}, {"cpu_valid", m.cpu_valid()}, {"cpu_wait", m.cpu_wait()},
-                         {"cpu_busy", m.cpu_busy()},   {"mem_rdata", m.mem_rdata()}, {"mem_busy", m.mem_busy()},
-                         {"host_busy", m.host_busy()}};
+          return Outputs{{"cpu_rdata", m.cpu_rdata()}, {"cpu_wait", m.cpu_wait()}, {"cpu_busy", m.cpu_busy()},
+                         {"mem_rdata", m.mem_rdata()}, {"mem_busy", m.mem_busy()}, {"host_busy", m.host_busy()}};
         }) {
     both.in.small = small;
   }

@@ -158,6 +158,22 @@ TEST_F(DpramCollisionTest, AWaitingHostIsNextHoweverSoonTheCpuComesAgain) {
   }
 }
 
+// Between two strobes of a fast CPU /WR may be high for less than a tick (row 114), where no edge sees it.
+TEST_F(DpramCollisionTest, HostIsLetInByTheNextStrobeIfTheHighBeforeItWasTooShortToBeSeen) {
+  cpu_start_write(8, 0x4444);
+  both.ticks(6);
+  host_start(8, true);
+  both.ref(2);
+  EXPECT_TRUE(host_busy());
+  both.in.cpu_sel = false;  // another device's write follows, /WR is low at every edge
+  both.in.wr_toggle ^= true;
+  both.ticks(3);
+  both.ref(2);
+  EXPECT_FALSE(host_busy());
+  EXPECT_EQ(both.get("mem_rdata"), 0x4444u);
+  both.in.cpu_wr_n = true;
+}
+
 TEST_F(DpramCollisionTest, CpuStrobeThatEndsWhileBusyDoesNothing) {
   for (const bool read : {false, true}) {  // what the host does meanwhile: a read leaves the cell as it was
     host_start(8, read);

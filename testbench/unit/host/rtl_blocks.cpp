@@ -82,9 +82,8 @@ void drive(Vdpram& v, const DpramInputs& in) {
   v.mem_wdata_i = in.mem_wdata;
 }
 Outputs sample(const Vdpram& v) {
-  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_valid", v.cpu_valid_o}, {"cpu_wait", v.cpu_wait_o},
-          {"cpu_busy", v.cpu_busy_o},   {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o},
-          {"host_busy", v.host_busy_o}};
+  return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_wait", v.cpu_wait_o}, {"cpu_busy", v.cpu_busy_o},
+          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o}};
 }
 
 void drive(Visa_slave& v, const IsaSlaveInputs& in) {

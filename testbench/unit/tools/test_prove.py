@@ -53,27 +53,28 @@ class Proofs(Tree):
         said = self.prove(0, "R1 proved (pdr")
         self.assertIn("premise at step 11): The count stops at nine.", said)
         self.assertIn("R1 refuted at step 12 with 'it goes on'", said)
-        self.assertTrue((self.root / "out/counter.R1.vcd").exists())
+        self.assertTrue((self.root / "out/counter.fault.R1.vcd").exists())
 
     def test_induction_proves_too(self):
         self.prove(0, "R1 proved (induction, 2 steps", ("pdr", "induction 2"))
 
     def test_a_rule_that_does_not_hold_fails_by_either_engine(self):
         self.prove(1, "R1 refuted at step 11", ("count <= 4'd9", "count <= 4'd8"))
-        self.prove(1, "R1 refuted at step 3", ("pdr", "induction 5"), ("count <= 4'd9", "count == 4'd0"))
+        self.prove(1, "induction of 5 steps fails in its base at ['R1']", ("pdr", "induction 5"),
+                   ("count <= 4'd9", "count == 4'd0"))
 
     def test_no_answer_in_time_fails(self):
         self.prove(1, "yosys: no answer within 0.001 s", limit="0.001")
 
     def test_a_rule_that_holds_but_is_not_inductive_fails(self):
-        self.prove(1, "holds for 1 steps, but is not proved", ("pdr", "induction 1"),
+        self.prove(1, "induction of 1 steps fails in its step at ['R1']", ("pdr", "induction 1"),
                    ("count <= 4'd9", "count != 4'd12"))
 
     def test_a_premise_out_of_reach_fails(self):
-        self.prove(1, "premises not reached in 14 steps", ("count == 4'd9", "count == 4'd10"))
+        self.prove(1, "premises ['C1'] not reached in 14 steps", ("count == 4'd9", "count == 4'd10"))
 
     def test_assumptions_that_contradict_each_other_fail(self):
-        self.prove(1, "premises not reached", ("assume (", "assume (rst_ni); assume ("))
+        self.prove(1, "premises ['C1'] not reached", ("assume (", "assume (rst_ni); assume ("))
 
     def test_a_fault_that_the_rule_does_not_see_fails(self):
         self.prove(1, "with 'it goes on' R1 still holds for 14 steps", ("+ count_o < 4'd10", "+ count_o <= 4'd8"))

@@ -1,0 +1,128 @@
+// Rules of the PHASE and SERVO nets, servo-ic:7.2/5 to servo-ic:7.2/7 and servo-ic:7.3/1, for any IC (`n`) and whatever
+// ICs, jumper and pins do: at most one driver, the right one, and its level. A step is half a period of clk_pwm; every
+// input may change at any. Nothing is assumed but that a run starts in reset.
+// proof: pdr
+// clocks: several
+// steps: 24
+// fault R1: each IC that drives is let onto the net (rtl/board/clock_select.sv)
+//   - phase_grant_d = ext ? 22'h0 : p & -p;
+//   + phase_grant_d = ext ? 22'h0 : p;
+// fault R4: an IC that is not fitted can be the source (rtl/board/clock_select.sv)
+//   - phase_oe_i & fitted_i};
+//   + phase_oe_i};
+`default_nettype none
+
+module clock_select_rules (
+  input wire logic        rst_ni,
+  input wire logic [21:0] fitted_i,
+  input wire logic [21:0] phase_i,
+  input wire logic [21:0] servo_i,
+  input wire logic [21:0] phase_oe_i,
+  input wire logic [21:0] servo_oe_i,
+  input wire logic        ext_clock_i,
+  input wire logic        ext_phase_i,
+  input wire logic        ext_servo_i
+);
+
+  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
+  logic [2:0] step_q = 3'd0;
+  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0, edge_ref, started_q = 1'b0;
+  always @($global_clock) begin
+    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
+    clk_pwm_q <= ~clk_pwm_q;
+    clk_ref_q <= step_q < 3'd3;
+    started_q <= 1'b1;
+  end
+  assign edge_ref = step_q == 3'd0;  // at the end of this step
+  always_comb assume (rst_ni == started_q);
+
+  logic       phase, servo, conflict;
+  logic [4:0] source;
+  clock_select dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .fitted_i, .phase_i, .servo_i, .phase_oe_i,
+                    .servo_oe_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .phase_o(phase), .servo_o(servo),
+                    .phase_source_o(source), .conflict_o(conflict));
+  // From inside: who is let onto each net.
+  (* hierconn *) wire logic [21:0] \dut.phase_grant_q ;
+  (* hierconn *) wire logic [21:0] \dut.servo_grant_q ;
+  (* hierconn *) wire logic        \dut.phase_idle_q ;
+  (* hierconn *) wire logic        \dut.servo_idle_q ;
+  (* hierconn *) wire logic [44:0] \dut.drivers_q ;
+  logic [23:0] phase_drivers, servo_drivers;
+  assign phase_drivers = {\dut.drivers_q [44], \dut.phase_idle_q , \dut.phase_grant_q };
+  assign servo_drivers = {\dut.drivers_q [44], \dut.servo_idle_q , \dut.servo_grant_q };
+
+  // The ICs that drove at the last edge of clk_ref, and for how many steps a level and the right to it have stood.
+  (* anyconst *) logic [4:0] n;
+  logic        outside_q = 1'b0, level_q, servo_level_q;
+  logic [21:0] phase_oe_q = 22'h0, servo_oe_q = 22'h0;
+  logic [4:0]  source_q = 5'd0;
+  logic [23:0] servo_drivers_q = 24'h0;
+  logic [1:0]  stood_q = 2'd0, servo_stood_q = 2'd0;
+  logic        level, servo_level, several, stands, servo_stands;
+  assign level       = (n < 5'd22) ? phase_i[n] : ext_phase_i;
+  assign servo_level = (n < 5'd22) ? servo_i[n] : ext_servo_i;
+  assign stands       = source == source_q && level == level_q;
+  assign servo_stands = servo_drivers == servo_drivers_q && servo_level == servo_level_q;
+  always @($global_clock) begin
+    if (edge_ref && rst_ni) begin
+      outside_q  <= ext_clock_i;
+      phase_oe_q <= phase_oe_i & fitted_i;
+      servo_oe_q <= servo_oe_i & fitted_i;
+    end
+    {source_q, servo_drivers_q, level_q, servo_level_q} <= {source, servo_drivers, level, servo_level};
+    stood_q       <= stands ? stood_q + {1'b0, stood_q != 2'd3} : 2'd0;
+    servo_stood_q <= servo_stands ? servo_stood_q + {1'b0, servo_stood_q != 2'd3} : 2'd0;
+  end
+
+  assign several = |(phase_oe_q & (phase_oe_q - 22'h1)) | (|(servo_oe_q & (servo_oe_q - 22'h1)));
+
+  always @($global_clock) if (rst_ni) begin
+    // R1: PHASE has exactly one driver: an IC, the outside, or the pull-up.
+    R1: assert (phase_drivers != 24'h0 && (phase_drivers & (phase_drivers - 24'h1)) == 24'h0);
+    C1: cover (\dut.drivers_q [43:0] == 44'h6);
+
+    // R2: SERVO has exactly one driver, which may be another one.
+    R2: assert (servo_drivers != 24'h0 && (servo_drivers & (servo_drivers - 24'h1)) == 24'h0);
+    C2: cover (servo_drivers[3] && phase_drivers[2]);
+
+    // R3: With jumper E1 at the last edge of clk_ref the source is the outside; with no IC and no jumper there is none.
+    if (outside_q || phase_oe_q == 22'h0) begin
+      R3: assert (outside_q ? phase_drivers[23] : (phase_drivers[22] && source >= 5'd22));
+      C3: cover (outside_q && phase_oe_q != 22'h0);
+    end
+
+    // R4: An IC is the source of PHASE only if it is fitted, drives, and no lower one does.
+    if (source == n && n < 5'd22) begin
+      R4: assert (phase_oe_q[n] && !outside_q && (phase_oe_q & ((22'h1 << n) - 22'h1)) == 22'h0 && phase_drivers[n]);
+      C4: cover (n == 5'd3 && phase_oe_q == 22'hF8);
+    end
+
+    // R5: PHASE is the level of its source, if both have stood for four steps.
+    if (source == n && n < 5'd22 && stands && stood_q == 2'd3) begin
+      R5: assert (phase == level);
+      C5: cover (!phase && (phase_oe_q & phase_i) != 22'h0);
+    end
+
+    // R6: SERVO is the level of its driver, if both have stood for four steps.
+    if (n < 5'd22 && servo_drivers[n] && servo_stands && servo_stood_q == 2'd3) begin
+      R6: assert (servo == servo_level);
+      C6: cover (!servo && (servo_oe_q & servo_i) != 22'h0);
+    end
+
+    // R7: With no driver for four steps both nets are high.
+    if (phase_drivers[22] && stands && stood_q == 2'd3 && servo_drivers[22] && servo_stands &&
+        servo_stood_q == 2'd3) begin
+      R7: assert (phase && servo);
+      C7: cover (phase_i == 22'h0);
+    end
+
+    // R8: A conflict shows only while a net has more than one driver that asks for it.
+    if (conflict) begin
+      R8: assert (several || (outside_q && (phase_oe_q | servo_oe_q) != 22'h0));
+      C8: cover (!outside_q);
+    end
+  end
+
+endmodule : clock_select_rules
+
+`default_nettype wire

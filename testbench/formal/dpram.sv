@@ -1,0 +1,176 @@
+// Rules of the dual-ported RAM, host-bus:6.9, for each word (`c` is any): the two sides never meet in it, both come to
+// their turn, and what either reads is what was last written. A step is half a period of clk_pwm, 4.2 ns; a pin of the
+// CPU may change at any, and an edge takes what stood a step before it. Assumed, and all else is free:
+// - of the CPU, host-bus:2.2: /RD and /WR are never low together, high for a step or more; select and address stand
+//   from fall to rise, write data from 12.7 ns after the fall to the rise (rows 101 to 117); a strobe of this RAM ends
+//   after /TA is low (row 118), one of another device lasts 50.9 ns or more;
+// - of isa_slave: its outputs change with clk_ref, direction and address stand from the command's start to the clock
+//   after its end, in which a write has its strobe. It may end a command at any time, BUSY or not.
+// edit: four words of memory instead of 32768, and nothing else asked for (rtl/host/dpram_memory.sv)
+//   - mem [0:32767]
+//   + mem [0:3]
+// proof: pdr
+// clocks: several
+// steps: 60
+// fault R2: the host does not see that the CPU asks at the same edge (rtl/host/dpram.sv)
+//   - | (request & conflict & ~mem_busy_q);
+//   + ;
+// fault R6: only a new strobe of this RAM ends the one before (rtl/host/dpram.sv)
+//   - (fallen || !(own_wr_q
+//   + (request || !(own_wr_q
+`default_nettype none
+
+module dpram_rules (
+  input wire logic        rst_ni,
+  input wire logic        rd_ni,
+  input wire logic        wr_ni,
+  input wire logic        sel_i,
+  input wire logic [1:0]  addr_i,
+  input wire logic [15:0] wdata_i,
+  input wire logic        host_sel_i,
+  input wire logic        host_rd_i,
+  input wire logic        host_wr_i,
+  input wire logic [1:0]  host_addr_i,
+  input wire logic [1:0]  host_be_i,
+  input wire logic [15:0] host_wdata_i
+);
+
+  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
+  logic [2:0] step_q = 3'd0;
+  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0, edge_ref;
+  always @($global_clock) begin
+    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
+    clk_pwm_q <= ~clk_pwm_q;
+    clk_ref_q <= step_q < 3'd3;
+  end
+  assign edge_ref = step_q == 3'd0;  // at the end of this step
+
+  logic        rd_toggle, wr_toggle, cpu_wait, cpu_busy, host_busy, host_busy_pin;
+  logic [15:0] rdata, host_rdata;
+  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle));
+  dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_toggle_i(rd_toggle),
+             .wr_toggle_i(wr_toggle), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
+             .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i(wdata_i), .cpu_rdata_o(rdata),
+             .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy), .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i),
+             .mem_wr_i(host_wr_i), .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
+             .mem_wdata_i(host_wdata_i), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
+             .host_busy_o(host_busy_pin));
+  // From inside: who owns which word, and the ports of the memory.
+  (* hierconn *) wire logic        \dut.grant ;
+  (* hierconn *) wire logic        \dut.own_q ;
+  (* hierconn *) wire logic        \dut.own_wr_q ;
+  (* hierconn *) wire logic        \dut.host_own_q ;
+  (* hierconn *) wire logic [14:0] \dut.cell_q ;
+  (* hierconn *) wire logic        \dut.u_memory.a_we_i ;
+  (* hierconn *) wire logic        \dut.u_memory.a_re_i ;
+  (* hierconn *) wire logic [14:0] \dut.u_memory.a_addr_i ;
+  (* hierconn *) wire logic [1:0]  \dut.u_memory.b_we_i ;
+  (* hierconn *) wire logic        \dut.u_memory.b_re_i ;
+
+  // ---------------------------------------------------------------- both sides, a step ago
+  logic        started_q = 1'b0, awake_q = 1'b0, rd_nq = 1'b1, wr_nq = 1'b1, wait_q = 1'b0;
+  logic        sel_q, host_sel_q = 1'b0, host_rd_q, host_wr_q = 1'b0;
+  logic [1:0]  addr_q, host_addr_q, host_be_q;
+  logic [15:0] wdata_q, host_wdata_q, rdata_q;
+  logic [3:0]  low_q = 4'd0;  // steps that a strobe has been low
+  always @($global_clock) begin
+    {started_q, awake_q, rd_nq, wr_nq, wait_q} <= {1'b1, started_q, rd_ni, wr_ni, cpu_wait};
+    {sel_q, addr_q, wdata_q, rdata_q} <= {sel_i, addr_i, wdata_i, rdata};
+    {host_sel_q, host_rd_q, host_wr_q} <= {host_sel_i, host_rd_i, host_wr_i};
+    {host_addr_q, host_be_q, host_wdata_q} <= {host_addr_i, host_be_i, host_wdata_i};
+    low_q <= (rd_ni & wr_ni) ? 4'd0 : low_q + {3'd0, low_q != 4'd12};
+  end
+  logic was_low, rise, host_moves;
+  assign was_low    = ~rd_nq | ~wr_nq;
+  assign rise       = was_low & rd_ni & wr_ni;
+  assign host_moves = step_q == 3'd1;
+  always_comb begin
+    assume (rst_ni == started_q);
+    assume (awake_q || (rd_ni && wr_ni && !host_sel_i && !host_wr_i));
+    assume (rd_ni || wr_ni);
+    if (was_low) begin
+      assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
+      assume (sel_i == sel_q && addr_i == addr_q);
+      assume (low_q < 4'd3 || wdata_i == wdata_q);
+      assume (!rise || (sel_q ? !wait_q : low_q == 4'd12));
+    end
+    assume (!host_wr_i || (!host_sel_i && !host_rd_i));
+    if (!host_moves) begin
+      assume (host_sel_i == host_sel_q && host_wr_i == host_wr_q && host_wdata_i == host_wdata_q);
+      assume (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q);
+    end else begin
+      assume (host_wr_i == (host_sel_q && !host_sel_i && !host_rd_q));
+      assume (!host_sel_q ||
+              (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q));
+    end
+  end
+
+  // ---------------------------------------------------------------- what an observer of the pins counts
+  logic       conflict, host_here, host_ends, granted_q = 1'b0, ended_q = 1'b0, cpu_busy_q = 1'b0;
+  logic [3:0] cpu_steps_q = 4'd0, host_steps_q = 4'd0;
+  logic [1:0] turns_q = 2'd0;
+  assign host_here = host_sel_i | host_wr_i;
+  assign conflict  = host_here & (host_addr_i == addr_i) & (~host_rd_i | ~wr_ni);
+  assign host_ends = host_sel_q & ~host_sel_i;
+  always @($global_clock) begin
+    cpu_busy_q <= cpu_busy;
+    // The CPU: was its access granted; steps of /TA since its fall or the host's end; host accesses that it waited for.
+    granted_q   <= (was_low & granted_q) | (~clk_pwm_q & \dut.grant );
+    cpu_steps_q <= (!cpu_wait || conflict) ? 4'd0 : cpu_steps_q + {3'd0, cpu_steps_q != 4'd15};
+    turns_q     <= !cpu_busy ? 2'd0 : turns_q + {1'd0, host_ends && conflict && turns_q != 2'd3};
+    // The host: steps of BUSY since the CPU's strobe has first been high.
+    ended_q      <= host_busy & (ended_q | (rd_ni & wr_ni));
+    host_steps_q <= !(host_busy && ended_q) ? 4'd0 : host_steps_q + {3'd0, host_steps_q != 4'd15};
+  end
+
+  logic touch_a, touch_b, write_a, write_b;
+  assign write_a = \dut.u_memory.a_we_i ;
+  assign write_b = \dut.u_memory.b_we_i != 2'b00;
+  assign touch_a = write_a | \dut.u_memory.a_re_i ;
+  assign touch_b = write_b | \dut.u_memory.b_re_i ;
+
+  always @($global_clock) begin
+    // R1: The ports never touch one word at one edge if one of them writes: mutual exclusion in the memory.
+    if (edge_ref && touch_a && touch_b && \dut.u_memory.a_addr_i [1:0] == host_addr_i) begin
+      R1: assert (!write_a && !write_b);
+      C1: cover (!cpu_busy);
+    end
+
+    // R2: From its grant to the end of its strobe or command a side is alone in its word, if one of the two writes.
+    if (\dut.own_q && \dut.host_own_q && \dut.cell_q [1:0] == host_addr_i) begin
+      R2: assert (!\dut.own_wr_q && (host_rd_i || (!host_sel_i && !host_wr_i)));
+      C2: cover (host_sel_i && was_low);
+    end
+
+    // R3: BUSY means wait: /TA is up with BUSY, and no strobe that heeds /TA ends before its access was granted.
+    R3: assert ((!cpu_busy || cpu_wait) && (!rise || !sel_q || granted_q));
+    C3: cover (rise && sel_q && granted_q);
+
+    // R4: The CPU is let in within 8 steps, 34 ns, of its fall or the end of the host's access to its word.
+    if (cpu_wait) begin
+      R4: assert (cpu_steps_q <= 4'd7);
+      C4: cover (cpu_steps_q == 4'd7);
+    end
+
+    // R5: While the CPU is BUSY the host ends one access to its word, and no second: no starvation.
+    if (cpu_busy) begin
+      R5: assert (turns_q <= 2'd1);
+      C5: cover (turns_q == 2'd1);
+    end
+
+    // R6: The host is let in at most 13 steps, 55 ns, after the CPU's strobe ended, even if a new one falls at once.
+    if (host_busy) begin
+      R6: assert (host_steps_q <= 4'd13);
+      C6: cover (host_steps_q == 4'd6 && !rd_ni);
+    end
+
+    // R7: The CPU becomes BUSY only by the word that the host is at or has just left, and if one of the two writes.
+    if (cpu_busy && !cpu_busy_q) begin
+      R7: assert (addr_q == host_addr_q && (!host_rd_q || !wr_nq));
+      C7: cover (host_rd_q);
+    end
+  end
+
+endmodule : dpram_rules
+
+`default_nettype wire
