@@ -97,7 +97,9 @@ void IsaChecker::pins(TimeFs t, const BoardInputs& in, const BoardOutputs& out) 
   const BoardOutputs shown = std::exchange(out_, out);
   if (!std::exchange(known_, true)) return;
 
-  if (in.isa_la != before.isa_la) la_at_ = t;
+  // Out of reset the board decodes anew what stands there.
+  const bool released = (in.rst_n && !before.rst_n) || (!in.isa_resetdrv && before.isa_resetdrv);
+  if (in.isa_la != before.isa_la || released) la_at_ = t;
   if (in.isa_sa != before.isa_sa || in.isa_aen != before.isa_aen || in.isa_sbhe_n != before.isa_sbhe_n)
     address_moved(t);
   if (in.isa_sd != before.isa_sd) host_data_moved(t);

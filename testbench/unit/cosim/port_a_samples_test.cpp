@@ -23,7 +23,7 @@ std::uint32_t read(std::function<BoardOutputs(Tick)> board, std::uint64_t seed, 
   PortARig rig(std::move(board));
   rig.port_a.seed(seed);
   rig.write('X', 0xFFFFFB, ws << 5 | 3 << 10);
-  rig.cycle = 12 + 18;  // behind the write to BCR
+  rig.cycle = 31;  // behind the write to BCR; /RD rises at tick 46.5 + 7.75 x 1.5, an edge an eighth before it
   const std::uint32_t data = rig.read('X', 0x078000);
   if (cycle != nullptr) *cycle = *rig.last;
   return data;
