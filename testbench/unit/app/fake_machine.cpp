@@ -11,6 +11,7 @@ struct Machine::Impl {
   BoardOutputs outputs;
   Signals signals;
   std::vector<BusCycle> cycles;
+  Aperture aperture;  // none
 };
 
 namespace {
@@ -30,6 +31,8 @@ Tick Machine::now() const { return impl_->now; }
 HostInputs& Machine::inputs() { return impl_->pins; }
 const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
 PciBridge* Machine::pci() { return nullptr; }
+Aperture& Machine::aperture() { return impl_->aperture; }
+void Machine::apply_partly() {}
 Signals& Machine::signals() { return impl_->signals; }
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->cycles; }
 
