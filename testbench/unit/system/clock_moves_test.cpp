@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "testbench/benches/clock_host.h"
+#include "testbench/checkers/timing_book.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -17,7 +18,8 @@ TEST_P(ClockMoves, OneLineMakesEveryIcTheSourceInBothOrders) {
   start(config);
   std::ostringstream out;
   BenchReport report(out, machine());
-  BenchContext bench{machine(), bus(), link(), report, config.board, 1, false};
+  TimingBook timing(machine());
+  BenchContext bench{machine(), bus(), link(), report, config.board, 1, false, timing, false};
   {
     ClockHost host(bench);
     for (unsigned ic = 0; ic < kClockIcs; ++ic) host.program(ic, {2600 + 100 * ic, ic % 3, 2 + ic % 3});
