@@ -55,8 +55,8 @@ int run_bench(const RunOptions& given, const std::string& name, bool negative, c
                     up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
         if (!up) return;
       }
-      BenchContext context{simulation.machine(), simulation.bus(), simulation.link(), report,
-                           config.board,         config.seed,      negative,          simulation.timing(),
+      BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
+                           config.board,          config.seed,      negative,          simulation.timing(),
                            config.bcr.has_value()};
       bench.run(context);
     });

@@ -41,8 +41,8 @@ TimingWaivers::TimingWaivers(const std::string& path) : path_(path) {
     w.address = entry.text("address");
     w.reason = entry.text("reason");
     if (w.reason.empty()) entry.fail(entry.need("reason"), "reason", "why the violation is harmless");
-    static const std::regex kAddress(
-        R"((X:|Y:|I/O |memory )(?:\$|0x)([0-9A-Fa-f]{1,6})(?:\.\.(?:X:|Y:|I/O |memory )?(?:\$|0x)([0-9A-Fa-f]{1,6}))?)");
+    static const std::regex kAddress(R"((X:|Y:|I/O |memory )(?:\$|0x)([0-9A-Fa-f]{1,6})(?:\.\.(?:X:|Y:|I/O |memory )?)"
+                                     R"((?:\$|0x)([0-9A-Fa-f]{1,6}))?)");
     std::smatch m;
     if (!std::regex_match(w.address, m, kAddress)) entry.fail(entry.need("address"), "address", kAddressForm);
     w.space = m[1].str()[0] == 'm' ? 'M' : m[1].str()[0];

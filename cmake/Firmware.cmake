@@ -21,5 +21,6 @@ function(brick_add_firmware)
     COMMAND ${RISCV_GCC} -march=rv32imc -mabi=ilp32 -nostdlib -Wl,--gc-sections -T ${script} ${objects} -lgcc -o ${elf}
     DEPENDS ${objects} ${script} COMMENT "RV32 link ${F_NAME}.elf" VERBATIM)
   add_custom_target(firmware_${F_NAME} ALL DEPENDS ${elf})
-  set_target_properties(firmware_${F_NAME} PROPERTIES FIRMWARE_OBJECTS "${objects}" FIRMWARE_SCRIPT ${script})  # for variants in tests
+  # For variants of it in tests.
+  set_target_properties(firmware_${F_NAME} PROPERTIES FIRMWARE_OBJECTS "${objects}" FIRMWARE_SCRIPT ${script})
 endfunction()

@@ -1,5 +1,5 @@
-/* The firmware with one bad access: now and then, as it strobes the watchdog, it lowers the gate ICs' wait states to two
- * and reads a word of a servo IC before it puts them back. Linked around hal_watchdog_strobe (--wrap). */
+/* The firmware with one bad access: now and then, as it strobes the watchdog, it lowers the gate ICs' wait states to
+ * two and reads a word of a servo IC before it puts them back. Linked around hal_watchdog_strobe (--wrap). */
 #include "firmware/hal/hal.h"
 #include "rtl/regs/brick_regs.h"
 
