@@ -131,11 +131,21 @@ module board_top #(
   logic [3:0]  bus_aa;
   logic [23:0] bus_wdata;
 
-  logic rd_toggle, wr_toggle;
+  // Registers see the strobes of their own regions only: main memory and the dual-ported RAM have shorter cycles, whose
+  // address is gone when clk_ref looks. The RAM sees every strobe, for the next one ends its access.
+  logic own, rd_toggle, wr_toggle, any_rd_toggle, any_wr_toggle;
+  assign own = pa_int_i | pa_aa_i[1] | (pa_aa_i == 4'h0);
   bus_strobes u_bus_strobes (
     .rst_ni, .pa_rd_ni, .pa_wr_ni,
+    .sel_i       (own),
     .rd_toggle_o (rd_toggle),
     .wr_toggle_o (wr_toggle)
+  );
+  bus_strobes u_any_strobes (
+    .rst_ni, .pa_rd_ni, .pa_wr_ni,
+    .sel_i       (1'b1),
+    .rd_toggle_o (any_rd_toggle),
+    .wr_toggle_o (any_wr_toggle)
   );
 
   bus_sync u_bus_sync (
@@ -433,8 +443,8 @@ module board_top #(
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .small_i     (dpram_small_q),
-    .rd_toggle_i (rd_toggle),
-    .wr_toggle_i (wr_toggle),
+    .rd_toggle_i (any_rd_toggle),
+    .wr_toggle_i (any_wr_toggle),
     .cpu_sel_i   (dpram_sel),
     .cpu_x_i     (pa_x_i),
     .cpu_addr_i  (pa_addr_i[13:0]),

@@ -34,7 +34,9 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   if (!same<ConnectorPins>(inputs, inputs_)) changed |= parts(kConnectorPins);
   if (!same<Straps>(inputs, inputs_)) straps_differ_ = straps_ != inputs;
   inputs_ = inputs;
-  bus_strobes_.set_pins(inputs_, inputs_.rst_n);
+  const bool own = inputs_.pa_int || (inputs_.pa_aa & 2) != 0 || (inputs_.pa_aa & 0xF) == 0;
+  bus_strobes_.set_pins(inputs_, own, inputs_.rst_n);
+  any_strobes_.set_pins(inputs_, true, inputs_.rst_n);
   bus_read_.set_rd_n(inputs_.pa_rd_n);
   touched_ = 0;
   connect(changed);

@@ -128,7 +128,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool data_oe() const { return bus_read_.oe() || (from_dpram_ && dpram_.cpu_valid() && !inputs_.pa_rd_n); }
   void take_straps(const Straps& straps, Tick t);
 
-  BusStrobes bus_strobes_;
+  BusStrobes bus_strobes_, any_strobes_;  // of the register regions, of all
   BusSync bus_sync_;
   BusRead bus_read_;
   AddressDecode address_decode_;

@@ -115,8 +115,8 @@ void BoardTop::connect_dpram(Parts& changed) {
   Wires to(*this, kDpram, dpram_, changed);
   if ((changed & parts(kStraps)) != 0) to(in.small, straps_.dpram_small);
   if ((changed & parts(kPortAPins)) != 0) {
-    to(in.rd_toggle, bus_strobes_.rd_toggle());
-    to(in.wr_toggle, bus_strobes_.wr_toggle());
+    to(in.rd_toggle, any_strobes_.rd_toggle());
+    to(in.wr_toggle, any_strobes_.wr_toggle());
     to(in.cpu_sel, (inputs_.pa_aa & 4) != 0 && !inputs_.pa_int);
     to(in.cpu_x, inputs_.pa_x);
     to(in.cpu_addr, inputs_.pa_addr & 0x3FFF);

@@ -1,5 +1,5 @@
-// Model of rtl/board/bus_strobes.sv: the falls of /RD and /WR, each as a level that turns over. It knows no clock: a
-// fall acts at once, before the next edge of anything.
+// Model of rtl/board/bus_strobes.sv: the falls of /RD and /WR in cycles that are selected, each as a level that turns
+// over. It knows no clock: a fall acts at once, before the next edge of anything.
 #pragma once
 
 #include "systemc/core/board_pins.h"
@@ -8,9 +8,9 @@ namespace brick {
 
 class BusStrobes {
  public:
-  void set_pins(const PortAPins& pins, bool rst_n) {
-    rd_toggle_ = rst_n && rd_toggle_ != (rd_n_ && !pins.pa_rd_n);
-    wr_toggle_ = rst_n && wr_toggle_ != (wr_n_ && !pins.pa_wr_n);
+  void set_pins(const PortAPins& pins, bool sel, bool rst_n) {
+    rd_toggle_ = rst_n && rd_toggle_ != (sel && rd_n_ && !pins.pa_rd_n);
+    wr_toggle_ = rst_n && wr_toggle_ != (sel && wr_n_ && !pins.pa_wr_n);
     rd_n_ = pins.pa_rd_n;
     wr_n_ = pins.pa_wr_n;
   }

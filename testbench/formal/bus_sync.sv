@@ -14,8 +14,8 @@
 //   - wr2_q ^ wr3_q
 //   + wr1_q ^ wr3_q
 // fault R2: /RD is sampled as a level, so short highs are missed (rtl/board/bus_strobes.sv)
-//   - else         rd_q <= ~rd_q;
-//   + else         rd_q <= pa_rd_ni;
+//   - else if (sel_i) rd_q <= ~rd_q;
+//   + else if (sel_i) rd_q <= pa_rd_ni;
 // fault R4: data are sampled with the strobe, not after it (rtl/board/bus_sync.sv)
 //   - wdata_q <= pa_wdata_i;
 //   + if (wr_toggle_i != wr1_q) wdata_q <= pa_wdata_i;
@@ -35,7 +35,8 @@ module bus_sync_rules (
   logic        rd_toggle, wr_toggle, we, rd;
   logic [24:0] where;
   logic [23:0] wdata;
-  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle));
+  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .sel_i(1'b1),
+                       .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle));
   bus_sync dut (.clk_ref_i(clk_q), .rst_ni, .rd_toggle_i(rd_toggle), .wr_toggle_i(wr_toggle),
                 .pa_int_i(where_i[24]), .pa_aa_i(where_i[23:20]), .pa_x_i(where_i[19]), .pa_addr_i(where_i[18:0]),
                 .pa_wdata_i(wdata_i), .addr_o(where[18:0]), .x_o(where[19]), .aa_o(where[23:20]), .int_o(where[24]),

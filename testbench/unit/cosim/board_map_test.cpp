@@ -371,6 +371,39 @@ TEST_P(BoardMap, WritesBackToBackDoNotMerge) {
   }
 }
 
+// host-bus:2.6/9: the strobe of a RAM cycle, /WR 22.3 ns before the next cycle's /RD as at I52 = 31, is none of the
+// registers': the read that follows is one read, and nothing is written there.
+TEST_P(BoardMap, StrobesOfOtherDevicesDoNotTouchTheRegistersThatFollow) {
+  for (const std::uint8_t other : {std::uint8_t{1}, std::uint8_t{4}}) {  // main memory, dual-ported RAM
+    for (Tick phase = 0; phase < 3; ++phase) {
+      rig.write(true, kHostSignals, 0x5);
+      rig.run(30 + phase);
+      rig.in.pa_x = true;
+      rig.in.pa_addr = 0x60000;
+      rig.in.pa_aa = other;
+      rig.in.pa_wdata = 0xA;
+      rig.apply();
+      rig.in.pa_wr_n = false;
+      rig.apply();
+      rig.run(2);
+      rig.in.pa_wr_n = true;
+      rig.in.pa_aa = 0;
+      rig.in.pa_addr = kHostSignals;
+      rig.apply();
+      rig.run(1);
+      rig.in.pa_rd_n = false;
+      rig.apply();
+      rig.run(9);
+      EXPECT_EQ(rig.get(pin::kPaDataOe), 1u) << phase;
+      EXPECT_EQ(rig.get(pin::kPaData), 0x5u) << phase;
+      rig.in.pa_rd_n = true;
+      rig.apply();
+      rig.run(12);
+      EXPECT_EQ(rig.read(true, kHostSignals), 0x5u) << phase;
+    }
+  }
+}
+
 // servo-ic:7.2: the lowest-numbered driver wins each net; here only SERVO has two.
 TEST_P(BoardMap, TwoDriversOfServoAloneAreAConflictToo) {
   rig.write(true, kServoIcBase[1] + 4, 0x3008D2);             // IC 1 drives both
