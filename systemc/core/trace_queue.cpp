@@ -14,7 +14,7 @@ constexpr std::size_t kLot = 16384;
 void TraceQueue::declare(Signals::Id id, const Signals::Info& info, Signals::Id of) {
   if (header_) throw std::logic_error("signal " + info.name + " is declared after the waveform began");
   if (std::max(id, of) >= declared_.size()) declared_.resize(std::max(id, of) + 1);
-  declared_[of].info = info;  // a signal may be known by its aliases alone
+  if (!declared_[of].declared) declared_[of].info = info;  // a signal may be known by its aliases alone
   declared_[id].info = info;
   declared_[id].of = of;
   declared_[id].declared = true;
