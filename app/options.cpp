@@ -65,7 +65,7 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
   command
       .add_option("--aperture", o.aperture,
                   "nanoseconds around a clock edge within which a pin that CPU or host moves is taken early or late "
-                  "at random, by --seed; up to 4")
+                  "at random, by --seed; up to 1")
       ->type_name("NS")
       ->capture_default_str();
   command.add_option("--json", o.json, "write the results to FILE");

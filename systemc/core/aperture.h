@@ -14,7 +14,7 @@ namespace brick {
 
 class Aperture {
  public:
-  static constexpr TimeFs kMost = 4 * kFsPerNs;  // less than half a tick: one edge at most is in doubt
+  static constexpr TimeFs kMost = kFsPerNs;  // more would eat the hold times of the bus (row 106: 0)
 
   struct Counts {
     std::uint64_t moves = 0, early = 0, late = 0, split = 0;  // split: a bus, of which a part was early

@@ -165,6 +165,8 @@ class BreqSelect {
     std::array<unsigned, 16> order{};
     std::iota(order.begin(), order.end(), 0u);
     std::shuffle(order.begin(), order.end(), random_);
+    if (numbers < order.size())  // those that select come first, so that a buffer with room is among them
+      std::stable_partition(order.begin(), order.end(), [](unsigned n) { return n >= 1 && n <= 8; });
     for (unsigned i = 0; i < numbers; ++i) panel(order[i]);
     verdict(fmt::format("FPDn/, I59={}", group), numbers, b_.board.jpan ? 1 : 0);
   }

@@ -204,8 +204,8 @@ class PortAPhase {
       flag(false);
       settle();
     }
-    same.within("captures that the read has shown", shown, kSteps / 4, INT32_MAX);
-    same.within("captures that came later and were kept", kept, kSteps / 4, INT32_MAX);
+    same.within("captures that the read has shown", shown, kSteps / 8, INT32_MAX);
+    same.within("captures that came later and were kept", kept, kSteps / 8, INT32_MAX);
     b_.report.step(
         name("captured position"), same, 6 * kSteps,
         fmt::format("{} captures: {} shown by the read they met, {} kept for the next", shown + kept, shown, kept));

@@ -137,6 +137,7 @@ IsaHost::Result IsaHost::cycle(const Cycle& c) {
     in.isa_sbhe_n = true;
   });
   free_at_ = end + (times.next - times.command_high);
+  if (!c.memory()) free_at_ = std::max(free_at_, end + isa::port_recovery(machine_.cpu_period()) - times.command_low);
   return result;
 }
 

@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "app"))
-from command import BRICK, CASE, brick, check, play  # noqa: E402
+from command import BRICK, CASE, brick, check, play
 
 HASTY = sys.argv[3]
 
@@ -27,7 +27,7 @@ def bad_access():
                          r"read of gate ICs AA1: [\d.]+ ns, at most 29\.968 ns required; (\d+) times, first at "
                          r"[\d.]+ ms, pc 0x[0-9A-F]{8} in hasty_read, 2 wait states, I52 = 7", r.stderr)
         check(line and int(line[1]) > 1, f"{engine}: {r.stderr}")
-        check({w for w in re.findall(r"in (\w+), 2 wait", r.stderr)} == {"hasty_read"}, r.stderr)
+        check(set(re.findall(r"in (\w+), 2 wait", r.stderr)) == {"hasty_read"}, r.stderr)
         check(len(re.findall(r"rule 104 .* at X:\$078006", r.stderr)) == 1, r.stderr)
     r = brick("run", "smoke", "--engine", "systemc", "--firmware", HASTY)
     check(r.returncode == 1 and "FAIL  bus timing: Port A rule 104" in r.stdout and "FAIL smoke" in r.stdout, r.stdout)
