@@ -22,6 +22,7 @@ Tick IsaSlave::next_event() const {
 }
 
 void IsaSlave::advance(Tick t) {
+  if (t <= now_) return;  // no edge, so the enable as it is now has not been seen yet
   while (now_ < t && !settled()) {
     ++now_;
     const std::uint8_t la = la_pins();
