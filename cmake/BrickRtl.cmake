@@ -2,11 +2,13 @@
 set(BRICK_RTL ${CMAKE_SOURCE_DIR}/rtl)
 
 # brick_verilate(brick_rtl TOP board_sim PREFIX Vboard_s2 CONFIG a.vlt SOURCES a.sv ARGS -GMask=1): one model more in a
-# library. Flip-flops and memories start as its context's randReset() says.
+# library. The register maps and the synchroniser go to each. Flip-flops and memories start as its context's
+# randReset() says.
 function(brick_verilate library)
   cmake_parse_arguments(V "" "TOP;PREFIX;CONFIG" "SOURCES;ARGS" ${ARGN})
   verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX}
-    SOURCES ${V_CONFIG} ${BRICK_RTL}/regs/brick_regs_pkg.sv ${V_SOURCES}
+    SOURCES ${V_CONFIG} ${BRICK_RTL}/regs/brick_regs_pkg.sv
+      ${BRICK_RTL}/common/sync2.sv ${V_SOURCES}
     VERILATOR_ARGS -O3 --x-assign fast --x-initial unique ${V_ARGS} ${BRICK_RTL_ARGS}
     OPT_FAST ${BRICK_RTL_OPT} OPT_SLOW ${BRICK_RTL_SLOW_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
 endfunction()

@@ -58,7 +58,8 @@ module board_sim #(
   logic [1:0]  ctrl;
 
   board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
-    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .clk_pwm_i, .clk_ref_i,
+    .rst_pin_ni        (rst_ni),
     .pa_addr_i         (inputs_i[0][18:0]),
     .pa_aa_i           (inputs_i[0][22:19]),
     .pa_x_i            (inputs_i[0][23]),
@@ -146,6 +147,9 @@ module board_sim #(
   initial begin
     for (int i = 0; i < 32768; i++) u_board.u_dpram.u_memory.mem[i] = start_word(start_seed_i, i);
   end
+
+  // A simulator resets at the fall of a reset only, so the board's must have been high before the first.
+  initial u_board.u_reset_sync.u_pwm.sync2_q = 1'b1;
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
   logic       bug_q, servo_last_q;

@@ -12,7 +12,7 @@ module board_top #(
 ) (
   input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
-  input  wire logic        rst_ni,
+  input  wire logic        rst_pin_ni,
   // Port A
   input  wire logic [18:0] pa_addr_i,
   input  wire logic        pa_x_i,
@@ -98,6 +98,12 @@ module board_top #(
   output logic [7:0]       pic_msk_o,
   output logic [7:0]       pic_elr_o
 );
+
+  logic rst_ni;  // of every block
+  reset_sync u_reset_sync (
+    .clk_pwm_i, .clk_ref_i, .rst_pin_ni,
+    .rst_no (rst_ni)
+  );
 
   // ------------------------------------------------------------------ straps, taken over on clk_ref
   localparam logic [21:0] IcMask = {MacroIcMask, ServoIcMask};

@@ -1,7 +1,8 @@
 // The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins; with no driver the net idles
 // high; with jumper E1 (ext_clock_i) both come from outside. The conflict flag rises when drivers of one net have
-// disagreed for more than 2 clk, and stays until there is one driver again. The choice is registered on clk_ref_i,
-// external clocks are sampled on clk_pwm_i. Asynchronous reset. docs/clock.md.
+// disagreed for more than 2 clk, and stays until there is one driver again. The choice is registered on clk_ref_i.
+// External clocks pass a synchroniser on clk_pwm_i; the nets leave through flip-flops, a clk later than the IC's level.
+// Asynchronous reset. docs/clock.md.
 `default_nettype none
 
 module clock_select (
@@ -66,19 +67,13 @@ module clock_select (
     end
   end
 
-  logic ext_phase_q, ext_servo_q;
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      ext_phase_q <= 1'b1;
-      ext_servo_q <= 1'b1;
-    end else begin
-      ext_phase_q <= ext_phase_i;
-      ext_servo_q <= ext_servo_i;
-    end
-  end
+  logic ext_phase, ext_servo;
+  sync2 #(.Reset(1'b1)) u_phase_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(ext_phase_i), .q_o(ext_phase));
+  sync2 #(.Reset(1'b1)) u_servo_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(ext_servo_i), .q_o(ext_servo));
 
   // Drivers at different levels, which takes several.
   logic disagree, conflict_d, conflict_q;
+  logic phase_q, servo_q;              // the nets
   logic [1:0] disagree_d, disagree_q;  // clk since they do
   logic [21:0] phase_low, phase_high, servo_low, servo_high;
   always_comb begin
@@ -90,7 +85,7 @@ module clock_select (
     if (several_q) begin
       {servo_low, phase_low}   = drivers_q[43:0] & ~{servo_i, phase_i};
       {servo_high, phase_high} = drivers_q[43:0] & {servo_i, phase_i};
-      if (drivers_q[44]) disagree = (ext_phase_q ? |phase_low : |phase_high) | (ext_servo_q ? |servo_low : |servo_high);
+      if (drivers_q[44]) disagree = (ext_phase ? |phase_low : |phase_high) | (ext_servo ? |servo_low : |servo_high);
       else               disagree = (|phase_low & |phase_high) | (|servo_low & |servo_high);
       if (disagree) disagree_d = (disagree_q == Tolerated) ? Tolerated : disagree_q + 2'd1;
       conflict_d = conflict_q | (disagree & (disagree_q == Tolerated));
@@ -101,14 +96,18 @@ module clock_select (
     if (!rst_ni) begin
       disagree_q <= 2'd0;
       conflict_q <= 1'b0;
+      phase_q    <= 1'b1;
+      servo_q    <= 1'b1;
     end else begin
       disagree_q <= disagree_d;
       conflict_q <= conflict_d;
+      phase_q    <= phase_idle_q | (drivers_q[44] & ext_phase) | (|(phase_grant_q & phase_i));
+      servo_q    <= servo_idle_q | (drivers_q[44] & ext_servo) | (|(servo_grant_q & servo_i));
     end
   end
 
-  assign phase_o        = phase_idle_q | (drivers_q[44] & ext_phase_q) | (|(phase_grant_q & phase_i));
-  assign servo_o        = servo_idle_q | (drivers_q[44] & ext_servo_q) | (|(servo_grant_q & servo_i));
+  assign phase_o        = phase_q;
+  assign servo_o        = servo_q;
   assign phase_source_o = source_q;
   assign conflict_o     = conflict_q & several_q;
 

@@ -20,18 +20,8 @@ module panel_port (
   output logic             ipld_no
 );
 
-  logic [15:0] jpan1_q, jpan2_q;
-  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      jpan1_q <= 16'hFFFF;
-      jpan2_q <= 16'hFFFF;
-    end else begin
-      jpan1_q <= jpan_i;
-      jpan2_q <= jpan1_q;
-    end
-  end
+  sync2 #(.Width(16), .Reset(16'hFFFF)) u_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(jpan_i), .q_o(rdata_o));
 
-  assign rdata_o = jpan2_q;
   assign brld_no = ~(fitted_i & breq_i);
   assign erld_no = ~(fitted_i & eror_i);
   assign f1ld_no = ~(fitted_i & f1er_i);

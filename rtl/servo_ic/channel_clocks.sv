@@ -1,7 +1,7 @@
 // What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref
 // sees them, and the strobe words with their serial clocks. A trip of the watchdog starts a DAC stream of its own,
 // whose words are zero, when the one under way has ended: PHASE may have stopped. Clock clk_ref_i; on clk_pwm_i run the
-// edges' way to clk_ref_i and the shape of a 39.3216 MHz serial clock.
+// edges' way to clk_ref_i and the pads of the serial clocks.
 `default_nettype none
 
 module channel_clocks (
@@ -34,9 +34,9 @@ module channel_clocks (
   logic       phase_rise;
   assign {servo_fall_o, phase_fall_o, phase_rise} = edge_pwm_q ^ edge_ref_q;
 
-  // Low for the first of the three clk_pwm periods in a clk_ref period: the two flip-flops differ for that long.
-  logic toggle_q, toggle_pwm_q, low;
-  assign low = toggle_q ^ toggle_pwm_q;
+  // Which of the three clk_pwm edges in a clk_ref period comes next: the two flip-flops differ before the first.
+  logic toggle_q, toggle_pwm_q, ref_last, ref_last_q, ref_next_q;
+  assign ref_last = toggle_q ^ toggle_pwm_q;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -52,9 +52,13 @@ module channel_clocks (
     if (!rst_ni) begin
       edge_pwm_q   <= 3'd0;
       toggle_pwm_q <= 1'b0;
+      ref_last_q   <= 1'b0;
+      ref_next_q   <= 1'b0;
     end else begin
       edge_pwm_q   <= edge_pwm_q ^ {servo_fall_i, phase_fall_i, phase_rise_i};
       toggle_pwm_q <= toggle_q;
+      ref_last_q   <= ref_last;
+      ref_next_q   <= ref_last_q;
     end
   end
 
@@ -83,6 +87,7 @@ module channel_clocks (
     .ce_o(adc_ce), .mid_o(adc_mid), .fast_o(adc_fast)
   );
 
+  logic       dac_clk_d, dac_runs_fast, adc_clk_d, adc_runs_fast;
   logic       dac_busy, dac_sample, adc_busy, adc_load, adc_shift, unused_stream;
   logic [4:0] dac_bit;
   assign unused_stream = &{1'b0, dac_sample, dac_bit, adc_busy, adc_load, adc_shift};
@@ -102,15 +107,23 @@ module channel_clocks (
   channel_strobe u_dac_stream (
     .clk_ref_i, .rst_ni,
     .start_i(phase_rise | (zero_q & ~dac_busy)),
-    .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .low_i(low), .word_i(dac_strobe_i),
+    .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .word_i(dac_strobe_i),
     .busy_o(dac_busy), .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
-    .clk_o(dac_clk_o), .strobe_o(dac_strobe_o)
+    .clk_d_o(dac_clk_d), .fast_o(dac_runs_fast), .strobe_o(dac_strobe_o)
+  );
+  channel_serial_clock u_dac_clk (
+    .clk_pwm_i, .rst_ni, .ref_next_i(ref_next_q), .ref_last_i(ref_last),
+    .clk_d_i(dac_clk_d), .fast_i(dac_runs_fast), .clk_o(dac_clk_o)
   );
   channel_strobe u_adc_stream (
     .clk_ref_i, .rst_ni,
-    .start_i(phase_rise), .ce_i(adc_ce), .mid_i(adc_mid), .fast_i(adc_fast), .low_i(low), .word_i(adc_strobe_i),
+    .start_i(phase_rise), .ce_i(adc_ce), .mid_i(adc_mid), .fast_i(adc_fast), .word_i(adc_strobe_i),
     .busy_o(adc_busy), .load_o(adc_load), .shift_o(adc_shift), .sample_o(adc_sample_o), .bit_o(adc_bit_o),
-    .clk_o(adc_clk_o), .strobe_o(adc_strobe_o)
+    .clk_d_o(adc_clk_d), .fast_o(adc_runs_fast), .strobe_o(adc_strobe_o)
+  );
+  channel_serial_clock u_adc_clk (
+    .clk_pwm_i, .rst_ni, .ref_next_i(ref_next_q), .ref_last_i(ref_last),
+    .clk_d_i(adc_clk_d), .fast_i(adc_runs_fast), .clk_o(adc_clk_o)
   );
 
 endmodule : channel_clocks

@@ -11,14 +11,14 @@ module channel_strobe (
   input  wire logic        ce_i,      // bit clock: start and middle of a bit
   input  wire logic        mid_i,
   input  wire logic        fast_i,    // a bit is one clk_ref long
-  input  wire logic        low_i,     // low part of a clock of that speed
   input  wire logic [23:0] word_i,
   output logic             busy_o,
   output logic             load_o,    // this edge starts bit 23, the next bit
   output logic             shift_o,
   output logic             sample_o,  // this edge takes the received bit number bit_o (0 is the first)
   output logic [4:0]       bit_o,
-  output logic             clk_o,
+  output logic             clk_d_o,   // level of the serial clock from this edge on, for one clk_pwm at least
+  output logic             fast_o,    // a clock of one clk_ref runs: low for one clk_pwm, high for two
   output logic             strobe_o
 );
 
@@ -32,24 +32,22 @@ module channel_strobe (
   assign bit_o    = 5'd24 - left_q;
   assign strobe_o = word_q[23];
 
-  logic level, fast;
   always_comb begin
     load_o   = 1'b0;
     shift_o  = 1'b0;
     sample_o = 1'b0;
-    level    = 1'b0;
-    fast     = 1'b0;
+    clk_d_o  = 1'b0;
+    fast_o   = 1'b0;
     if (ce_i) begin
       if (pending_q || start_i) load_o = 1'b1;
       else                      shift_o = busy;
     end
     if (busy) begin
       sample_o = fast_i ? ce_i : mid_i;
-      level    = fast_i | clk_q;
-      fast     = fast_i;
+      clk_d_o  = ~ce_i & (mid_i | clk_q);
+      fast_o   = fast_i;
     end
   end
-  assign clk_o = level & ~(fast & low_i);
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin

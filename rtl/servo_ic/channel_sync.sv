@@ -8,17 +8,7 @@ module channel_sync (
   output logic [47:0]      pins_o
 );
 
-  logic [47:0] sync1_q, sync2_q;
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      sync1_q <= 48'd0;
-      sync2_q <= 48'd0;
-    end else begin
-      sync1_q <= pins_i;
-      sync2_q <= sync1_q;
-    end
-  end
-  assign pins_o = sync2_q;
+  sync2 #(.Width(48)) u_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(pins_i), .q_o(pins_o));
 
 endmodule : channel_sync
 

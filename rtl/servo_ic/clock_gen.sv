@@ -4,8 +4,8 @@
 // MHz), asynchronous reset. docs/clock.md, servo-ic:5.1.
 //
 // The triangle is kept as a ramp: ramp = up ? cnt : ~cnt, which counts up in both directions from -(I+1) to I+1 (I =
-// I7m00). So a turnaround is ramp == top, half way is ramp == -1, and nearly every tick is one increment and two
-// comparisons.
+// I7m00). So a turnaround is ramp == I+1, half way is ramp == -1. Both and the window around the turnaround are
+// compared a tick ahead and registered: at the edge itself a few levels of logic are left.
 `default_nettype none
 
 module clock_gen (
@@ -33,11 +33,17 @@ module clock_gen (
       brick_regs_pkg::ServoIcPwmControlReset[brick_regs_pkg::ServoIcPwmControlMaxCountLsb +: 15];
   localparam logic [3:0] ServoDivReset =
       brick_regs_pkg::ServoIcClockControlReset[brick_regs_pkg::ServoIcClockControlServoDividerLsb +: 4];
-  localparam logic signed [17:0] Window = 18'sd8;  // clk in which a turnaround follows the external edge at once
-  localparam logic [1:0] MissLimit = 2'd3;         // the fourth edge in a row outside the window forces it
+  localparam logic [16:0] Window = 17'd8;   // clk in which a turnaround follows the external edge at once
+  localparam logic [1:0] MissLimit = 2'd3;  // the fourth edge in a row outside the window forces it
 
-  logic [16:0] ramp_d, ramp_q, top_d, top_q;
-  logic        up_d, up_q;
+  logic [16:0] ramp_d, ramp_q;
+  logic [14:0] max_q;                     // I of the running half triangle
+  logic [16:0] close_from_q;              // I - Window: from this ramp on the coming turnaround is in the window next
+  logic [16:0] recent_to_q;               // Window - 2 - I: below this ramp the last one is, next
+  logic        up_q;
+  logic        at_top_d, at_top_q, at_middle_d, at_middle_q;
+  logic        close_d, close_q;          // the coming turnaround is in the window
+  logic        recent_d, recent_q;        // the last one is in the window
   logic [3:0]  phase_cnt_d, phase_cnt_q;  // turnarounds to the next phase tick
   logic [3:0]  fall_cnt_d, fall_cnt_q;    // turnarounds to the middle of the phase period
   logic        odd_d, odd_q;              // odd number of half triangles a period: PHASE falls half way up or down
@@ -45,55 +51,53 @@ module clock_gen (
   logic [1:0]  miss_d, miss_q;
   logic        phase_d, phase_q, servo_d, servo_q;
   logic        phase_oe_q, servo_oe_q;
-  logic        phase_ext, servo_ext;       // the pin is followed: a pin still driven is not
-  logic [1:0]  sync1_q, sync2_q;          // {servo, phase} pins, two-flop synchroniser
+  logic        phase_ext, servo_ext;      // the pin is followed: a pin still driven is not
+  logic        phase_pin, servo_pin;      // pins behind their synchronisers
+
+  sync2 #(.Reset(1'b1)) u_phase_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(phase_i), .q_o(phase_pin));
+  sync2 #(.Reset(1'b1)) u_servo_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(servo_i), .q_o(servo_pin));
 
   // Every other tick is just one more step of the ramp.
-  logic at_top, at_middle, ext_phase, ext_servo, phase_release, servo_release, special, turn, retard;
-  assign at_top    = ramp_q == top_q;
-  assign at_middle = &ramp_q;
+  logic ext_phase, ext_servo, phase_release, servo_release, special, turn, retard;
   assign phase_ext = phase_ext_i & ~phase_oe_q;
   assign servo_ext = servo_ext_i & ~servo_oe_q;
-  assign ext_phase = phase_ext & (sync2_q[0] != phase_q);
-  assign ext_servo = servo_ext & (sync2_q[1] != servo_q);
+  assign ext_phase = phase_ext & (phase_pin != phase_q);
+  assign ext_servo = servo_ext & (servo_pin != servo_q);
   // A pin that is to become an input goes while it is high. SERVO rises with an edge of PHASE, so PHASE waits for
   // SERVO.
   assign servo_release = servo_oe_q & servo_ext_i & servo_q;
   assign phase_release = phase_oe_q & phase_ext_i & phase_q & (servo_q | ~(servo_oe_q & servo_ext_i));
-  assign special   = at_top | at_middle | ext_phase | ext_servo | phase_release | servo_release;
+  assign special   = at_top_q | at_middle_q | ext_phase | ext_servo | phase_release | servo_release;
 
-  // External rising edge: the nearest turnaround is moved to this edge, the coming one forward or the last one back.
-  logic signed [17:0] to_next, from_last;
+  // External rising edge: the nearest turnaround is moved to this edge, in the first half of the way the last one back,
+  // in the second half the coming one forward.
   always_comb begin
-    turn      = at_top;
-    retard    = 1'b0;
-    miss_d    = miss_q;
-    to_next   = 18'sd0;
-    from_last = 18'sd0;
-    if (ext_phase && sync2_q[0]) begin
-      to_next   = $signed({top_q[16], top_q}) - $signed({ramp_q[16], ramp_q});
-      from_last = $signed({top_q[16], top_q}) + $signed({ramp_q[16], ramp_q}) + 18'sd1;
-      if (to_next <= Window || from_last <= Window || miss_q == MissLimit) begin
+    turn   = at_top_q;
+    retard = 1'b0;
+    miss_d = miss_q;
+    if (ext_phase && phase_pin) begin
+      if ((ramp_q[16] ? recent_q : close_q) || miss_q == MissLimit) begin
         miss_d = 2'd0;
-        if (to_next <= from_last) turn = 1'b1;
-        else                      retard = 1'b1;
+        turn   = at_top_q | ~ramp_q[16];
+        retard = ramp_q[16];
       end else begin
         miss_d = miss_q + 2'd1;
       end
     end
   end
 
-  // Triangle. A new maximum count is taken at the bottom turnaround.
+  // Triangle: a way is 2 I + 3 ticks, and -(I + 1) is ~I. A new maximum count is taken at the bottom turnaround.
   always_comb begin
-    ramp_d = ramp_q + 17'd1;
-    top_d  = top_q;
-    up_d   = up_q;
+    ramp_d      = ramp_q + 17'd1;
+    at_top_d    = ramp_q == {2'b00, max_q};
+    at_middle_d = &ramp_q[16:1] & ~ramp_q[0];
+    close_d     = $signed(ramp_q) >= $signed(close_from_q);
+    recent_d    = $signed(ramp_q) < $signed(recent_to_q);
     if (turn || retard) begin
-      ramp_d = -top_q;
-    end
-    if (turn) begin
-      up_d = ~up_q;
-      if (!up_q) top_d = {2'b00, max_count_i} + 17'd1;
+      ramp_d      = ~{2'b00, max_q};
+      at_top_d    = 1'b0;
+      at_middle_d = max_q == 15'd0;
+      recent_d    = up_q | ~turn | ({1'b0, max_count_i} <= {1'b0, max_q} + 16'd7);  // not with a new I far larger
     end
   end
 
@@ -106,7 +110,7 @@ module clock_gen (
     if (!special) begin
       // nothing
     end else if (phase_ext) begin
-      phase_d     = sync2_q[0];
+      phase_d     = phase_pin;
       phase_cnt_d = phase_div_i;
       fall_cnt_d  = 4'd0;
       odd_d       = 1'b0;
@@ -121,7 +125,7 @@ module clock_gen (
         if (fall_cnt_q != 4'd0) fall_cnt_d = fall_cnt_q - 4'd1;
         if (fall_cnt_q == 4'd1 && !odd_q) phase_d = 1'b0;
       end
-    end else if (at_middle && odd_q && fall_cnt_q == 4'd0) begin
+    end else if (at_middle_q && odd_q && fall_cnt_q == 4'd0) begin
       phase_d = 1'b0;
     end
     if (phase_release) phase_d = 1'b1;  // a fall at this edge stays away from the net, so no latch may see it
@@ -135,7 +139,7 @@ module clock_gen (
     if (!special) begin
       // nothing
     end else if (servo_ext) begin
-      servo_d     = sync2_q[1];
+      servo_d     = servo_pin;
       servo_cnt_d = servo_div_i;
     end else if (phase_q != phase_d) begin
       if (phase_d) begin
@@ -154,8 +158,14 @@ module clock_gen (
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
       ramp_q      <= 17'd0;
-      top_q       <= {2'b00, MaxCountReset} + 17'd1;
+      max_q       <= MaxCountReset;
+      close_from_q <= {2'b00, MaxCountReset} - Window;
+      recent_to_q <= Window - 17'd2 - {2'b00, MaxCountReset};
       up_q        <= 1'b1;
+      at_top_q    <= 1'b0;
+      at_middle_q <= 1'b0;
+      close_q     <= 1'b0;
+      recent_q    <= 1'b0;
       phase_cnt_q <= 4'd0;
       fall_cnt_q  <= 4'd0;
       odd_q       <= 1'b0;
@@ -165,15 +175,21 @@ module clock_gen (
       servo_q     <= 1'b1;
       phase_oe_q  <= 1'b0;
       servo_oe_q  <= 1'b0;
-      sync1_q     <= 2'b11;
-      sync2_q     <= 2'b11;
     end else begin
-      ramp_q  <= ramp_d;
-      sync1_q <= {servo_i, phase_i};
-      sync2_q <= sync1_q;
+      ramp_q      <= ramp_d;
+      at_top_q    <= at_top_d;
+      at_middle_q <= at_middle_d;
+      close_q     <= close_d;
+      recent_q    <= recent_d;
+      if (turn) begin
+        up_q <= ~up_q;
+        if (!up_q) begin
+          max_q    <= max_count_i;
+          close_from_q <= {2'b00, max_count_i} - Window;
+          recent_to_q  <= Window - 17'd2 - {2'b00, max_count_i};
+        end
+      end
       if (special) begin
-        top_q       <= top_d;
-        up_q        <= up_d;
         phase_cnt_q <= phase_cnt_d;
         fall_cnt_q  <= fall_cnt_d;
         odd_q       <= odd_d;
@@ -182,9 +198,9 @@ module clock_gen (
         phase_q     <= phase_d;
         servo_q     <= servo_d;
         if (phase_release)                                           phase_oe_q <= 1'b0;
-        else if (!phase_ext_i && !phase_q && phase_d && sync2_q[0])  phase_oe_q <= 1'b1;
+        else if (!phase_ext_i && !phase_q && phase_d && phase_pin)  phase_oe_q <= 1'b1;
         if (servo_release)                                           servo_oe_q <= 1'b0;
-        else if (!servo_ext_i && !servo_q && servo_d && sync2_q[1])  servo_oe_q <= 1'b1;
+        else if (!servo_ext_i && !servo_q && servo_d && servo_pin)  servo_oe_q <= 1'b1;
       end
     end
   end

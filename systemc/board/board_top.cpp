@@ -34,9 +34,13 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   if (!same<ConnectorPins>(inputs, inputs_)) changed |= parts(kConnectorPins);
   if (!same<Straps>(inputs, inputs_)) straps_differ_ = straps_ != inputs;
   inputs_ = inputs;
+  if (!inputs_.rst_n)
+    reset_end_ = kNever;
+  else if (reset_end_ == kNever)
+    reset_end_ = next_ref_edge(now_) + kResetRelease;
   const bool own = inputs_.pa_int || (inputs_.pa_aa & 2) != 0 || (inputs_.pa_aa & 0xF) == 0;
-  bus_strobes_.set_pins(inputs_, own, inputs_.rst_n);
-  any_strobes_.set_pins(inputs_, true, inputs_.rst_n);
+  bus_strobes_.set_pins(inputs_, own, !held());
+  any_strobes_.set_pins(inputs_, true, !held());
   bus_read_.set_rd_n(inputs_.pa_rd_n);
   touched_ = 0;
   connect(changed);
@@ -164,8 +168,8 @@ Tick BoardTop::next_event() const {
 Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
   stop_on_ = stop_on;
   while (now_ < limit) {
-    if (!inputs_.rst_n) {
-      now_ = in_reset_ ? limit : now_ + 1;
+    if (held()) {
+      now_ = in_reset_ ? std::min(limit, reset_end_) : now_ + 1;
       in_reset_ = true;
       reset_all(now_);
     } else {
@@ -184,7 +188,7 @@ Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
 }
 
 Tick BoardTop::quiet_until(const BoardOutputs& watched) const {
-  if (!inputs_.rst_n) return in_reset_ ? kNever : now_;
+  if (held()) return in_reset_ ? reset_end_ : now_;
   const Tick any_pin = next_event() - 1;
   if (bus_sync_.write_pending() || straps_differ_) return any_pin;
 

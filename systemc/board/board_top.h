@@ -148,7 +148,12 @@ class BoardTop : public sc_core::sc_module, public Board {
   Straps straps_ = kNoStraps;  // as taken over on clk_ref
   AddressSelect select_;       // of the address in bus_sync
   bool from_dpram_ = false;    // read data pins show the dual-ported RAM
-  bool in_reset_ = true;
+  // The board is in reset up to reset_end_, kNever while the pin is low: rtl/common/reset_sync.sv. From the first edge
+  // of clk_ref that sees the pin high it is one period of clk_ref and two edges of clk_pwm.
+  static constexpr Tick kResetRelease = kTicksPerRef + 2;
+  bool held() const { return now_ < reset_end_; }
+  Tick reset_end_ = kNever;
+  bool in_reset_ = true;  // and an edge has been executed in it
   Tick now_ = 0;
 
   std::array<Tick, kBlocks> next_{};  // event of each block, as long as its inputs stay as they are

@@ -8,6 +8,7 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
+#include "systemc/core/sync2.h"
 
 namespace brick {
 
@@ -25,8 +26,8 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   bool ext_phase = true, ext_servo = true;             // inputs
   std::uint32_t phase_level = ~0u, servo_level = ~0u;  // levels of the IC outputs
 
-  bool phase() const { return net(q_.phase, phase_level, ext_phase_q_); }
-  bool servo() const { return net(q_.servo, servo_level, ext_servo_q_); }
+  bool phase() const { return phase_q_; }
+  bool servo() const { return servo_q_; }
   std::uint32_t phase_source() const {
     if (q_.ext) return regs::clock_source::kOutside;
     return q_.phase == 0 ? regs::clock_source::kNone : static_cast<std::uint32_t>(__builtin_ctz(q_.phase));
@@ -37,19 +38,21 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   bool settled() const { return !(in != q_); }
 
   Tick next_event() const override {
-    const bool ext_moves = q_.ext && (ext_phase != ext_phase_q_ || ext_servo != ext_servo_q_);
-    if (ext_moves) return now_ + 1;
+    if (q_.ext && (ext_phase_.moves(ext_phase) || ext_servo_.moves(ext_servo))) return now_ + 1;
+    if (phase_net() != phase_q_ || servo_net() != servo_q_) return now_ + 1;
     const Tick conflict_rises = !conflict_ && disagree() ? now_ + kTolerated + 1 - disagree_ : kNever;
     return std::min(conflict_rises, in != q_ ? next_ref_edge(now_) : kNever);
   }
   void advance(Tick t) override {
     if (t <= now_) return;
-    // Nothing that disagree() looks at has changed since now_, so all edges up to t see the same.
+    // Nothing that disagree() and the nets look at has changed since now_, so all edges up to t see the same.
     if (disagree() && disagree_ + (t - now_) > kTolerated) conflict_ = true;
     disagree_ = disagree() ? std::min(kTolerated, disagree_ + (t - now_)) : 0;
     conflict_ = conflict_ && several();
-    ext_phase_q_ = ext_phase;
-    ext_servo_q_ = ext_servo;
+    phase_q_ = phase_net();
+    servo_q_ = servo_net();
+    ext_phase_.advance(ext_phase, t - now_);
+    ext_servo_.advance(ext_servo, t - now_);
     if (next_ref_edge(now_) <= t) q_ = in;
     now_ = t;
   }
@@ -57,7 +60,8 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
     q_ = Drivers{};
     conflict_ = false;
     disagree_ = 0;
-    ext_phase_q_ = ext_servo_q_ = true;
+    ext_phase_ = ext_servo_ = Sync2{true, true};
+    phase_q_ = servo_q_ = true;
     now_ = t;
   }
 
@@ -69,19 +73,23 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
     return (q_.phase & (q_.phase - 1)) != 0 || (q_.servo & (q_.servo - 1)) != 0;
   }
   bool disagree() const {
-    return several() && (fight(q_.phase, phase_level, ext_phase_q_) || fight(q_.servo, servo_level, ext_servo_q_));
+    return several() &&
+           (fight(q_.phase, phase_level, ext_phase_.level()) || fight(q_.servo, servo_level, ext_servo_.level()));
   }
   bool fight(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
     const bool low = (drivers & ~level) != 0, high = (drivers & level) != 0;
     return q_.ext ? (ext_level ? low : high) : low && high;
   }
+  bool phase_net() const { return net(q_.phase, phase_level, ext_phase_.level()); }
+  bool servo_net() const { return net(q_.servo, servo_level, ext_servo_.level()); }
   bool net(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
     if (q_.ext) return ext_level;
     return drivers == 0 || (level & drivers & (0u - drivers)) != 0;  // lowest-numbered driver wins, idle is high
   }
 
   Drivers q_;
-  bool ext_phase_q_ = true, ext_servo_q_ = true;
+  Sync2 ext_phase_{true, true}, ext_servo_{true, true};
+  bool phase_q_ = true, servo_q_ = true;  // the nets
   bool conflict_ = false;
   Tick disagree_ = 0;  // ticks for which they have, kTolerated at most
   Tick now_ = 0;

@@ -1,6 +1,8 @@
 // Model of rtl/servo_ic/channel_pwm.sv. Between two special edges of the clock chain the triangle is a straight line,
-// so the edge at which the comparison changes is computed, not searched for.
+// so the edge at which the comparison changes is computed, not searched for; the switches follow one edge later.
 #pragma once
+
+#include <algorithm>
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
@@ -25,30 +27,31 @@ class ChannelPwm {
   void run(Tick now, Tick t, TriangleLine line, unsigned deadtime) {
     const Tick crossing = next_change(now, line);
     if (crossing <= t) {
-      change(crossing, deadtime);
+      compare(crossing, deadtime);
       line.cnt += line.slope * static_cast<int>(crossing - now - 1);
       const Tick second = crossing + distance(line);
-      if (second <= t) change(second, deadtime);
+      if (second <= t) compare(second, deadtime);
     }
+    if (follow_at_ <= t) follow(deadtime);
     settle(t);
   }
 
   Tick next_event(Tick now, TriangleLine line) const {
-    const Tick crossing = next_change(now, line);
-    return on_at_ < crossing ? on_at_ : crossing;
+    return std::min(on_at_, std::min(follow_at_, next_change(now, line) + 1));
   }
 
   // The same state as that of `o`, `by` ticks later.
   bool repeats(const ChannelPwm& o, Tick by) const {
-    return command_ == o.command_ && raw_ == o.raw_ && on_ == o.on_ &&
-           on_at_ == (o.on_at_ == kNever ? kNever : o.on_at_ + by);
+    return command_ == o.command_ && raw_ == o.raw_ && last_ == o.last_ && on_ == o.on_ &&
+           on_at_ == later(o.on_at_, by) && follow_at_ == later(o.follow_at_, by);
   }
   void jump(Tick by) {
-    if (on_at_ != kNever) on_at_ += by;
+    on_at_ = later(on_at_, by);
+    follow_at_ = later(follow_at_, by);
   }
 
-  bool top() const { return on_ && raw_; }
-  bool bot() const { return on_ && !raw_; }
+  bool top() const { return on_ && last_; }
+  bool bot() const { return on_ && !last_; }
 
  private:
   // Edges from that of line.cnt to the one that compares differently.
@@ -60,11 +63,18 @@ class ChannelPwm {
   Tick next_change(Tick now, TriangleLine line) const {
     return now + 1 + ((command_ > line.cnt) != raw_ ? 0 : distance(line));
   }
-  void change(Tick edge, unsigned deadtime) {
-    settle(edge - 1);
+  // The comparison changes at this edge.
+  void compare(Tick edge, unsigned deadtime) {
+    if (follow_at_ <= edge) follow(deadtime);
     raw_ = !raw_;
+    follow_at_ = edge + 1;
+  }
+  void follow(unsigned deadtime) {
+    settle(follow_at_ - 1);
+    last_ = !last_;
     on_ = deadtime == 0;
-    on_at_ = on_ ? kNever : edge + kDeadtimeUnit * static_cast<Tick>(deadtime);
+    on_at_ = on_ ? kNever : follow_at_ + kDeadtimeUnit * static_cast<Tick>(deadtime);
+    follow_at_ = kNever;
   }
   void settle(Tick t) {
     if (on_at_ > t) return;
@@ -72,13 +82,16 @@ class ChannelPwm {
     on_at_ = kNever;
   }
 
+  static Tick later(Tick edge, Tick by) { return edge == kNever ? kNever : edge + by; }
+
   static constexpr Tick kDeadtimeUnit = 16;  // ticks
   static constexpr Tick kWaitReset =
       kDeadtimeUnit * Tick{regs::servo_ic::pwm_control::kDeadtime.get(regs::servo_ic::kPwmControl.reset)};
   static constexpr int kFar = 1 << 24;  // beyond the end of any line
   int command_ = 0;
-  bool raw_ = false;
-  bool on_ = false;  // one of the two switches is on
+  bool raw_ = false, last_ = false;  // comparison, and what the switches follow
+  bool on_ = false;                  // one of the two switches is on
+  Tick follow_at_ = kNever;          // edge at which they take the comparison
   Tick on_at_ = kWaitReset;
 };
 

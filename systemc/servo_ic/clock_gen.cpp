@@ -42,16 +42,16 @@ void ClockGen::skip(Tick edges) {
 }
 
 // At a rising edge of the external phase clock. Returns true when the coming turnaround is moved here; `retard` is set
-// when the last one is moved back to here.
+// when the last one is moved back to here. In the first half of the way the last one is the nearest.
 bool ClockGen::align(bool& retard) {
-  const int to_next = s_.top - s_.ramp;
-  const int from_last = s_.top + s_.ramp + 1;
-  if (to_next > kWindow && from_last > kWindow && s_.miss != kMissLimit) {
+  const bool first_half = s_.ramp < 0;
+  const int distance = first_half ? s_.top + s_.ramp + 1 : s_.top - s_.ramp;
+  if (distance > kWindow && s_.miss != kMissLimit) {
     ++s_.miss;
     return false;
   }
   s_.miss = 0;
-  retard = to_next > from_last;
+  retard = first_half;
   return !retard;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "systemc/core/clock_delays.h"
 #include "testbench/benches/benches.h"
 #include "testbench/benches/output_host.h"
 #include "testbench/checkers/pwm_scoreboard.h"
@@ -137,7 +138,8 @@ void Pwm::invert(const std::vector<unsigned>& values) {
   inverted_ = values;
 }
 
-// At command 0 the upper switch goes off when the counter comes up to 0, I7m00 + 2 ticks after the bottom turn.
+// At command 0 the upper switch goes off when the counter comes up to 0, I7m00 + 2 ticks after the bottom turn. All
+// turns here are later by kPwmDelay, as the switches are.
 bool Pwm::find_triangle() {
   drop();
   host_.wait(2 * std::max(period(0), period(1)) + rule_.dead);
@@ -220,7 +222,7 @@ void Pwm::judge(const std::string& what, unsigned places) {
       for (const PwmTurn& t : turns)
         if (std::abs(t.tick - edge.tick) < std::abs(best)) best = t.tick - edge.tick;
       rises.equal(fmt::format("{} ticks from PHASE at {} to a turn", servo_ic_scope(host_.ic(i)), edge.tick), best,
-                  host_.behind(i));
+                  host_.behind(i) + kPwmDelay);
     }
   }
   report_.step("PHASE rises at a turn", rises, 2 * places, fmt::format("{} rises", rises.made()));

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "systemc/core/clock_delays.h"
 #include "testbench/benches/benches.h"
 #include "testbench/benches/output_host.h"
 #include "testbench/checkers/serial_scoreboard.h"
@@ -289,7 +290,7 @@ void Serial::judge_reads(const std::string& what, unsigned place) {
 void Serial::judge(const std::string& what) {
   std::vector<Tick> rises;
   for (const auto& e : host_.phase())
-    if (e.high && e.tick > begin_ + kNear) rises.push_back(e.tick);
+    if (e.high && e.tick > begin_ + kNear) rises.push_back(e.tick - kNetDelay);
   for (unsigned place = 0; place < host_.places(); ++place) {
     judge_dac(what, place, rises);
     judge_adc(what, place, rises);

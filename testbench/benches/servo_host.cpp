@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "systemc/core/clock_delays.h"
+
 namespace brick {
 
 namespace {
@@ -28,7 +30,7 @@ std::string ServoHost::name(unsigned channel) const {
 }
 
 Tick ServoHost::behind(unsigned place) const {
-  return bench_.machine.outputs().get(pin::kPhaseSource) == ic(place) ? 0 : 3;
+  return bench_.machine.outputs().get(pin::kPhaseSource) == ic(place) ? -kNetDelay : kPinDelay;
 }
 
 std::string ServoHost::ask(const std::string& line) {

@@ -47,8 +47,8 @@ class ServoHost {
   std::uint32_t base(unsigned place) const;                // address of the IC
   std::uint32_t address(unsigned channel, const regs::Register& word) const;
   std::string name(unsigned channel) const;  // servo_ic0.ch1
-  // Ticks by which an IC is behind the nets PHASE and SERVO: none where it drives them, else two flip-flops
-  // (servo-ic:5.1/6).
+  // Ticks by which an IC is behind the nets PHASE and SERVO: two flip-flops (servo-ic:5.1/6), but the one that drives
+  // them is ahead (servo-ic:5.1/11).
   Tick behind(unsigned place) const;
   std::uint32_t pin(const MotorField& pin, unsigned channel) const {
     return bench_.machine.motor_outputs(ic(channel / kChannels)).get(pin, channel % kChannels);

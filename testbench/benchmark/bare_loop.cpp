@@ -33,6 +33,8 @@ BareLoop::BareLoop() : model_(std::make_unique<Model>()) {
   drive(model_->top, in);
   for (int i = 0; i < 30; ++i) model_->tick();
   in.rst_n = true;
+  drive(model_->top, in);
+  for (int i = 0; i < 10; ++i) model_->tick();  // the reset has ended after the eighth
   in.pa_addr = 0x78004;
   in.pa_x = true;
   in.pa_aa = 2;

@@ -21,13 +21,15 @@ void start_clocks(Board& board, std::uint32_t fitted) {
   board.set_inputs(in);
   board.run_until(30);
   in.rst_n = true;
+  board.set_inputs(in);
+  board.run_until(40);  // the reset has ended after tick 38
   in.pa_addr = 0x78004;
   in.pa_x = true;
   in.pa_aa = 2;
   in.pa_wdata = 0x3008D2;
   in.pa_wr_n = false;
   board.set_inputs(in);
-  board.run_until(50);
+  board.run_until(60);
   in.pa_wr_n = true;
   board.set_inputs(in);
 }

@@ -142,7 +142,7 @@ TEST_P(BoardOn, DividersOfOtherIcsHaveNoEffect) {
   EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), clock_word(7, 9, 3));
 }
 
-// servo-ic:7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 three ticks behind, then makes the
+// servo-ic:7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 four ticks behind, then makes the
 // clocks of the same grid itself; the next turnaround finds PHASE high, so it takes the pin with the rise after that:
 // the first tick at which the two differ is the fall of IC 0 after that, the third such tick shows the conflict.
 TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
@@ -153,8 +153,8 @@ TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   for (int rises = 0; rises < 2; ++rises) rig.edge(pin::kPhase, 1);
   rig.run(12);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "both high: two drivers, no fight";
-  const Tick first = rig.edge(pin::kPhase, 0);
-  rig.run(2);
+  const Tick first = rig.edge(pin::kPhase, 0) - kNetDelay;
+  rig.run(2 - kNetDelay);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
   EXPECT_EQ(rig.edge(pin::kSourceConflict, 1) - first, 3);
   rig.run(100'000);
@@ -197,8 +197,9 @@ TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {
   EXPECT_EQ(rig.get(pin::kPhaseSource), kExternalSource);
   rig.in.ext_phase = rig.in.ext_servo = false;
   rig.apply();
-  EXPECT_EQ(rig.get(pin::kPhase), 1u) << "no edge yet";
-  rig.run(1);
+  rig.run(2);
+  EXPECT_EQ(rig.get(pin::kPhase), 1u) << "in the synchroniser";
+  rig.run(kNetDelay);
   EXPECT_EQ(rig.get(pin::kPhase), 0u);
   EXPECT_EQ(rig.get(pin::kServo), 0u);
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
@@ -209,6 +210,23 @@ TEST_P(BoardOn, JumperE1TakesTheClocksFromOutside) {
   rig.apply();
   rig.run(kHandOver);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u);
+}
+
+// Two edges of clk_ref see the line high, then two of clk_pwm; the reference edge after those is the first that works.
+// It takes the straps, the next one the drivers.
+TEST_P(BoardOn, ResetIsLetGoInStepWithBothClocksAtWhateverTickTheLineRises) {
+  rig.in.ext_clock = true;
+  for (const Tick phase : {0, 1, 2}) {
+    rig.in.rst_n = false;
+    rig.apply();
+    rig.run(1);
+    EXPECT_EQ(rig.get(pin::kPhaseSource), kNoSource) << "at once";
+    while (rig.now() % kTicksPerRef != phase) rig.run(1);
+    const Tick seen = rig.now() - phase + kTicksPerRef, works = seen + kTicksPerRef + 2 + 1;
+    rig.in.rst_n = true;
+    rig.apply();
+    EXPECT_EQ(rig.edge(pin::kPhaseSource, kExternalSource, 100), works + kTicksPerRef) << "line high after " << phase;
+  }
 }
 
 TEST_P(BoardOn, HostSignalLatchReadsBackAndDrivesItsPins) {
@@ -248,7 +266,7 @@ TEST_P(BoardOn, ReadDataIsThereAtTheThirdReferenceEdge) {
 TEST_P(BoardOn, WatchdogTripsAfter25MsWithoutStrobe) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   EXPECT_EQ(rig.edge(pin::kWdTripped, 1),
-            960 * 1024 * 3 + 6);  // reset ended after tick 7: clk_ref edges count from tick 9
+            960 * 1024 * 3 + 12);  // clk_ref edges count from tick 15
   EXPECT_EQ(rig.get(pin::kWdo), 1u);
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "systemc/core/board.h"
+#include "systemc/core/clock_delays.h"
 
 namespace brick {
 
@@ -16,12 +17,16 @@ constexpr std::uint32_t kWatchdogStrobe = 0x70011, kHostSignals = 0x70010;
 
 class BoardRig {
  public:
+  // The pin is let go after tick 7. Two flip-flops on clk_ref take it at 9 and 12, two on clk_pwm at 13 and 14.
+  static constexpr Tick kResetEnd = 14;
+
   explicit BoardRig(std::unique_ptr<Board> board, std::uint32_t fitted) : board_(std::move(board)) {
     in.fitted = fitted;
     apply();
     run(7);
     in.rst_n = true;
     apply();
+    run(kResetEnd - now());
   }
 
   Board& board() { return *board_; }

@@ -1,6 +1,6 @@
 // The watchdog's timers to the edge of clk_ref: what meets the edge at which one would run out (servo-ic:10/5,
-// servo-ic:10/6), and which edges of SERVO count (servo-ic:10/4). Reset ends after tick 7, so clk_ref counts from tick
-// 9 and both timers would run out at kEnd.
+// servo-ic:10/6), and which edges of SERVO count (servo-ic:10/4). Reset ends after tick 14, so clk_ref counts from tick
+// 15 and both timers would run out at kEnd.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,7 +11,7 @@
 namespace brick {
 namespace {
 
-constexpr Tick kMs = kPwmClockHz / 1000, kTimeout = 960 * 1024 * kTicksPerRef, kEnd = kTimeout + 6;
+constexpr Tick kMs = kPwmClockHz / 1000, kTimeout = 960 * 1024 * kTicksPerRef, kEnd = kTimeout + 12;
 
 class WatchdogEdges : public ::testing::TestWithParam<bool> {
  protected:
@@ -60,11 +60,11 @@ TEST_P(WatchdogEdges, StrobeOneEdgeLaterIsTooLate) {
   EXPECT_TRUE(tripped());
 }
 
-// From outside SERVO reaches the net one tick later, then two stages on clk_ref; the edge that sees them differ
-// reloads. A change 5 ticks before the end is sampled 3 ticks before it and acts at it.
+// From outside SERVO reaches the net at the third tick, then two stages on clk_ref; the edge that sees them differ
+// reloads. A change 7 ticks before the end is on the net 4 ticks before it, sampled 3 ticks before it and acts at it.
 TEST_P(WatchdogEdges, ServoAtTheVeryEdgeWins) {
   strobe_at(kEnd - 3000);
-  run_to(kEnd - 5);
+  run_to(kEnd - 7);
   servo(false);
   run_to(kEnd + 10);
   EXPECT_FALSE(tripped());
@@ -72,7 +72,7 @@ TEST_P(WatchdogEdges, ServoAtTheVeryEdgeWins) {
 
 TEST_P(WatchdogEdges, ServoOneEdgeLaterIsTooLate) {
   strobe_at(kEnd - 3000);
-  run_to(kEnd - 4);
+  run_to(kEnd - 6);
   servo(false);
   EXPECT_EQ(rig.edge(pin::kWdTripped, 1, 10), kEnd);
 }
@@ -119,7 +119,7 @@ TEST_P(WatchdogEdges, FiveVoltsThatFailTripAtTheThirdEdge) {
   rig.run(10);
   rig.in.rst_n = true;
   rig.apply();
-  const Tick third = (rig.now() / kTicksPerRef + 3) * kTicksPerRef;
+  const Tick works = (rig.now() / kTicksPerRef + 3) * kTicksPerRef, third = works + 2 * kTicksPerRef;
   EXPECT_EQ(rig.edge(pin::kWdTripped, 1, 20), third) << "not good from the start";
 }
 

@@ -21,10 +21,10 @@ void start_clocks(Board& board, BoardInputs& inputs) {
   inputs.pa_wdata = regs::servo_ic::kClockControl.reset & ~regs::servo_ic::clock_control::kPhaseExternal.mask() &
                     ~regs::servo_ic::clock_control::kServoExternal.mask();
   board.set_inputs(inputs);
-  board.run_until(36);
+  board.run_until(40);  // the reset has ended after tick 38
   inputs.pa_wr_n = false;
   board.set_inputs(inputs);
-  board.run_until(48);
+  board.run_until(52);
   inputs.pa_wr_n = true;
   board.set_inputs(inputs);
   board.run_until(kClocksStarted);

@@ -58,7 +58,7 @@ TEST(Lockstep, ReportsTheSeededBugWithSignalTickAndAccesses) {
     EXPECT_THAT(text, ::testing::HasSubstr("\n  clock.servo: rtl 1, systemc 0"));
     EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("clock.phase:")));
     EXPECT_THAT(text, ::testing::HasSubstr("last bus accesses:\n  tick           30  reset released\n"
-                                           "  tick           36  CPU  write X:$078004 = $3008D2 AA=2"));
+                                           "  tick           40  CPU  write X:$078004 = $3008D2 AA=2"));
   }
 }
 
