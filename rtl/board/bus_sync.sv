@@ -24,8 +24,9 @@ module bus_sync (
   output logic             rd_o
 );
 
-  logic        rd1_q, rd2_q, rd3_q, wr1_q, wr2_q, wr3_q;  // only the second stage looks at the first
-  logic [24:0] where_q;                                   // {int, aa, x, addr}
+  (* async_reg = "true" *) logic rd1_q, rd2_q, wr1_q, wr2_q;  // only the second stage looks at the first
+  logic        rd3_q, wr3_q;
+  logic [24:0] where_q;  // {int, aa, x, addr}
   logic [23:0] wdata_q;
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin

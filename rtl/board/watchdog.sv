@@ -18,7 +18,8 @@ module watchdog (
 
   logic [9:0]  prescale_q;
   logic [15:0] strobe_left_d, strobe_left_q, servo_left_d, servo_left_q;
-  logic        servo1_q, servo2_q, good1_q, good2_q, trip_d, trip_q, relay_q;
+  (* async_reg = "true" *) logic good1_q, good2_q;
+  logic        servo1_q, servo2_q, trip_d, trip_q, relay_q;
   logic        count, servo_edge;
   assign count      = &prescale_q;
   assign servo_edge = servo1_q != servo2_q;

@@ -38,7 +38,8 @@ module dpram (
   // ---------------------------------------------------------------- CPU side, pins
   // Toggles and levels of the strobes pass two flip-flops. Select and address stand from before the fall to the end of
   // the strobe, so one flip-flop is enough: it is read when the toggle has come through two.
-  logic        rd1_q, rd2_q, wr1_q, wr2_q, rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q, sel_q;
+  (* async_reg = "true" *) logic rd1_q, rd2_q, wr1_q, wr2_q, rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q;
+  logic        sel_q;
   logic [14:0] pins_q;
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin

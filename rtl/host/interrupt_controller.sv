@@ -28,7 +28,8 @@ module interrupt_controller (
   localparam logic [1:0] AddrMask      = brick_regs_pkg::HostIoPicMaskAddr[1:0];
   localparam logic [1:0] AddrEdgeLevel = brick_regs_pkg::HostIoPicEdgeLevelAddr[1:0];
 
-  logic [7:0] line1_q, line2_q, line3_q;  // line3_q is line2_q one clock ago, for the edge
+  (* async_reg = "true" *) logic [7:0] line1_q, line2_q;
+  logic [7:0] line3_q;  // line2_q one clock ago, for the edge
   logic [7:0] msk_q, elr_q, latch_d, latch_q, rise;
   logic       clear;
 

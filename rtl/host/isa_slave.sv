@@ -65,9 +65,11 @@ module isa_slave (
 
   // ---------------------------------------------------------------- clk_pwm: synchroniser, samples of LA and data
   // A reset leaves the synchroniser active: a command that is low then is part of a cycle that nobody knows.
-  logic [3:0]  cmd1_q, cmd2_q;
-  logic [15:0] sd1_q, sd2_q, wdata_q;
-  logic [6:0]  la, la1_q, la2_q;
+  (* async_reg = "true" *) logic [3:0]  cmd1_q, cmd2_q;
+  (* async_reg = "true" *) logic [15:0] sd1_q, sd2_q;
+  (* async_reg = "true" *) logic [6:0]  la1_q, la2_q;
+  logic [15:0] wdata_q;
+  logic [6:0]  la;
   logic [3:0]  la_hit_q;  // the youngest of them is MEMCS16#, the oldest belongs to the time before the command
   logic        la_hit;
   logic [7:0]  io_base_q;
@@ -102,7 +104,7 @@ module isa_slave (
   // ---------------------------------------------------------------- clk_ref: address, switches, RESETDRV
   logic [16:0] sa_q;
   logic        aen_q, sbhe_nq;
-  logic [1:0]  resetdrv_q;
+  (* async_reg = "true" *) logic [1:0] resetdrv_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       sa_q          <= 17'h0;

@@ -26,7 +26,7 @@ module pic_8259 (
   localparam logic [1:0] StepReady = 2'd0, StepIcw2 = 2'd1, StepIcw3 = 2'd2, StepIcw4 = 2'd3;
   localparam logic [2:0] DefaultLevel = 3'd7;  // of a request that has gone, and the lowest after ICW1
 
-  logic [7:0] line1_q, line2_q;
+  (* async_reg = "true" *) logic [7:0] line1_q, line2_q;
   logic [7:0] armed_d, armed_q;  // the line has been low since its last acknowledge
   logic [7:0] isr_d, isr_q, imr_d, imr_q;
   logic [2:0] lowest_d, lowest_q;  // level of the lowest priority

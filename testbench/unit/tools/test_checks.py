@@ -581,6 +581,28 @@ class Layers(Tree):
         self.check(1, "firmware/kernel/tasks.h: declares task_hooks")
 
 
+
+@unittest.skipIf(shutil.which("yosys") is None, "yosys is not installed")
+class ClockCrossings(Tree):
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(TOOLS.parent / "rtl", self.root / "rtl")
+
+    def plant(self, path, old, new):
+        text = (self.root / path).read_text()
+        self.assertEqual(text.count(old), 1, old)
+        self.write(path, text.replace(old, new))
+
+    def test_a_pin_that_feeds_logic_fails(self):
+        self.plant("rtl/board/clock_select.sv", ".d_i(ext_phase_i), .q_o(ext_phase)", ".d_i(1'b1), .q_o()")
+        self.plant("rtl/board/clock_select.sv", "(drivers_q[44] & ext_phase)", "(drivers_q[44] & ext_phase_i)")
+        self.expect(self.run_tool("check_cdc.py"), 1, "ext_phase_i reaches u_clock_select.phase_q (data)")
+
+    def test_logic_that_looks_at_the_first_flip_flop_fails(self):
+        self.plant("rtl/board/bus_sync.sv", "rd2_q ^ rd3_q", "rd1_q ^ rd3_q")
+        self.expect(self.run_tool("check_cdc.py"), 1, "u_bus_strobes.rd_q reaches u_bus_sync.rd1_q (data)")
+
+
 if __name__ == "__main__":
     run = unittest.main(exit=False).result
     # A case that lacks its program is skipped, and then so is this test in ctest's eyes (exit status 77).
