@@ -35,6 +35,7 @@ module isa_slave (
   output logic             host_reset_o,   // RESETDRV, synchronised
   // host port
   output logic             hp_sel_o,
+  output logic             hp_rd_o,        // one clk_ref, at the edge that takes hp_rdata_i
   output logic             hp_rd_done_o,   // one clk_ref at the end of a read that showed data
   output logic             hp_wr_o,        // one clk_ref at the end of a write
   output logic [2:0]       hp_addr_o,
@@ -234,6 +235,7 @@ module isa_slave (
 
   // ---------------------------------------------------------------- towards the blocks
   assign hp_sel_o     = target_q[Port];
+  assign hp_rd_o      = target_q[Port] & fresh_q & kind_q[Ior];
   assign hp_rd_done_o = target_q[Port] & finish_q & shown_q;
   assign hp_wr_o      = target_q[Port] & finish_q & kind_q[Iow];
   assign hp_addr_o    = io_addr_q[2:0];

@@ -28,6 +28,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   bool host_reset() const { return (resetdrv_ & 2) != 0; }
   // Host port
   bool hp_sel() const { return target_ & kPort; }
+  bool hp_rd() const { return hp_sel() && fresh_ && (kind_ & kIor); }
   bool hp_rd_done() const { return hp_sel() && finish_ && shown_; }
   bool hp_wr() const { return hp_sel() && finish_ && (kind_ & kIow); }
   std::uint8_t hp_addr() const { return io_addr_ & 7; }
