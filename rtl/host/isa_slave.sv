@@ -242,7 +242,7 @@ module isa_slave (
   assign hp_wdata_o   = wdata_q[7:0];
 
   assign pic_sel_o     = target_q[Pic];
-  assign pic_rd_o      = target_q[Pic] & fresh_q & kind_q[Ior];
+  assign pic_rd_o      = target_q[Pic] & fresh_q & kind_q[Ior] & (cmd2_q == kind_q);  // command still there, alone
   assign pic_wr_o      = target_q[Pic] & finish_q & kind_q[Iow];
   assign pic_addr_o    = io_addr_q[1:0];
   assign pic_wdata_o   = wdata_q[7:0];

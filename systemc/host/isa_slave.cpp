@@ -8,7 +8,7 @@ namespace brick {
 
 // The first edge at which an output moves. MEMCS16# and the write data move with clk_pwm, all others with clk_ref.
 Tick IsaSlave::next_event() const {
-  if (isa_sd_oe() != oe_shown_) return now_ + 1;
+  if (isa_sd_oe() != oe_shown_ || (fresh_ && pic_sel())) return now_ + 1;  // pic_rd goes with the command
   Tick next = kNever;
   for (Tick n = 0; n < 3 && next == kNever; ++n) {
     const unsigned la = n == 0 ? la2_ : n == 1 ? la1_ : la_pins();

@@ -35,7 +35,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   std::uint8_t hp_wdata() const { return wdata_ & 0xFF; }
   // Interrupt controller
   bool pic_sel() const { return target_ & kPic; }
-  bool pic_rd() const { return pic_sel() && fresh_ && (kind_ & kIor); }
+  bool pic_rd() const { return pic_sel() && fresh_ && (kind_ & kIor) && cmd2_ == kind_; }
   bool pic_wr() const { return pic_sel() && finish_ && (kind_ & kIow); }
   std::uint8_t pic_addr() const { return io_addr_ & 3; }
   std::uint8_t pic_wdata() const { return wdata_ & 0xFF; }

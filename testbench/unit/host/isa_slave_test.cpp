@@ -375,6 +375,26 @@ TEST_F(IsaSlaveTest, ReadTooShortForItsDataTakesNothing) {
   EXPECT_GT(reads, 0u);
 }
 
+// A read of an 8259 acknowledges at the edge that takes the byte: not if the command is gone by then, or another came.
+TEST_F(IsaSlaveTest, ReadThatEndsBeforeItsByteIsTakenAcknowledgesNothing) {
+  for (int phase = 0; phase < 3; ++phase) {
+    for (const bool second : {false, true}) {
+      for (const int width : {1, 2, 3, 20}) {
+        strobes.clear();
+        set_address(0x21A);
+        at_phase(phase);
+        both.in.isa_ior_n = false;
+        ticks(width);
+        (second ? both.in.isa_iow_n : both.in.isa_ior_n) = !second;
+        ticks(20);
+        both.in.isa_ior_n = both.in.isa_iow_n = true;
+        ticks(15);
+        EXPECT_EQ(strobes.size(), width == 20 ? 1u : 0u) << phase << " " << width << " " << second;
+      }
+    }
+  }
+}
+
 TEST_F(IsaSlaveTest, AddressThatMovesDuringACycleIsNotLookedAt) {
   set_address(0x217);
   both.in.isa_sd = 0x41;
