@@ -69,7 +69,9 @@ module isa_slave (
   logic [3:0]  cmd1_q, cmd2_q;
   logic [15:0] sd1_q, sd2_q, wdata_q;
   logic [6:0]  la, la1_q, la2_q;
-  logic [3:0]  la_hit_q;  // the youngest of them is MEMCS16#, the oldest belongs to the time before the command
+  // The youngest is MEMCS16#, the oldest belongs to the time before the command: LA may go with it. In a slot of 8 bits
+  // the second is taken, as SA may be late (host-bus:3.4/18) and stands: two edges before the command at most.
+  logic [3:0]  la_hit_q;
   logic        la_hit;
   logic [7:0]  io_base_q;
   logic [9:0]  window_q;
@@ -134,7 +136,8 @@ module isa_slave (
   logic [3:0] decoded;
   assign io_hit  = ~aen_q & (sa_q[9:4] == io_base_q[5:0]) &
                    (~io_decode16_q | (sa_q[15:10] == {4'h0, io_base_q[7:6]}));
-  assign mem_hit = la_hit_q[3] & (sa_q[16] == window_q[2]) & (window_flat_q | (sa_q[15:14] == window_q[1:0]));
+  assign mem_hit = (slot8_q ? la_hit_q[1] : la_hit_q[3]) & (sa_q[16] == window_q[2]) &
+                   (window_flat_q | (sa_q[15:14] == window_q[1:0]));
   assign byte8   = sbhe_nq & sa_q[0];  // an 8-bit host's odd byte is on the low lane
   always_comb begin
     decoded = 4'h0;

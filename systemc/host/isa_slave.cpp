@@ -109,8 +109,8 @@ void IsaSlave::begin() {
 std::uint8_t IsaSlave::decode() const {
   if (cmd2_ == kMemr || cmd2_ == kMemw) {
     const std::uint32_t compared = straps_.window_flat ? 0x10000 : 0x1C000;
-    const bool hit =
-        (la_hits_ & kOldestHit) != 0 && ((sa_ ^ static_cast<std::uint32_t>(straps_.window) << 14) & compared) == 0;
+    const bool hit = (la_hits_ & (straps_.slot8 ? kSecondHit : kOldestHit)) != 0 &&
+                     ((sa_ ^ static_cast<std::uint32_t>(straps_.window) << 14) & compared) == 0;
     return hit ? kMemory : 0;
   }
   if (cmd2_ != kIor && cmd2_ != kIow) return 0;  // two commands at once

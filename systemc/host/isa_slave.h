@@ -53,8 +53,8 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
 
  private:
   enum Command : std::uint8_t { kIor = 1, kIow = 2, kMemr = 4, kMemw = 8, kAll = 15 };
-  static constexpr std::uint8_t kAllHits = 15, kOldestHit = 8;  // of la_hits_
-  static constexpr std::uint32_t kSa = 0x1FFFF;                 // what of SA the cycle needs
+  static constexpr std::uint8_t kAllHits = 15, kSecondHit = 2, kOldestHit = 8;  // of la_hits_
+  static constexpr std::uint32_t kSa = 0x1FFFF;                                 // what of SA the cycle needs
   enum Target : std::uint8_t { kPort = 1, kPic = 2, kOther = 4, kMemory = 8 };
 
   std::uint8_t command_pins() const {
