@@ -305,7 +305,7 @@ module board_top #(
   assign wd_led_o = wd_tripped_o;
 
   // ------------------------------------------------------------------ host side
-  logic       hp_sel, hp_rd_done, hp_wr;
+  logic       hp_sel, hp_rd, hp_rd_done, hp_wr;
   logic [2:0] hp_addr;
   logic [7:0] hp_wdata, hp_rdata;
   logic       pic_sel, pic_wr, pic_rd, host_reset;
@@ -324,6 +324,7 @@ module board_top #(
     .io_base_i, .io_decode16_i, .window_i, .window_flat_i, .slot8_i,
     .host_reset_o   (host_reset),
     .hp_sel_o       (hp_sel),
+    .hp_rd_o        (hp_rd),
     .hp_rd_done_o   (hp_rd_done),
     .hp_wr_o        (hp_wr),
     .hp_addr_o      (hp_addr),
@@ -349,6 +350,7 @@ module board_top #(
   host_port u_host_port (
     .clk_ref_i, .rst_ni,
     .hp_sel_i      (hp_sel),
+    .hp_rd_i       (hp_rd),
     .hp_rd_done_i  (hp_rd_done),
     .hp_wr_i       (hp_wr),
     .hp_addr_i     (hp_addr),

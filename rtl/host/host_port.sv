@@ -12,6 +12,7 @@ module host_port (
   input  wire logic        rst_ni,
   // host side
   input  wire logic        hp_sel_i,
+  input  wire logic        hp_rd_i,        // one clk_ref, at the edge that takes hp_rdata_o
   input  wire logic        hp_rd_done_i,   // one clk_ref at the end of a read
   input  wire logic        hp_wr_i,        // one clk_ref
   input  wire logic [2:0]  hp_addr_i,
@@ -65,20 +66,22 @@ module host_port (
   logic [23:0] tx_q, horx_q, hotx_q, rx_q;
   logic        txde_d, txde_q, hrdf_d, hrdf_q, htde_d, htde_q, rxdf_d, rxdf_q;
   logic        rreq, treq, hlend, hc, tx_move, rx_move;
+  logic        saw_q;  // the read under way found a word in RX
   assign rreq  = icr_q[brick_regs_pkg::HostIoIcrRreqLsb];
   assign treq  = icr_q[brick_regs_pkg::HostIoIcrTreqLsb];
   assign hlend = icr_q[brick_regs_pkg::HostIoIcrHlendLsb];
   assign hc    = cvr_q[brick_regs_pkg::HostIoCvrHcLsb];
 
   // ---------------------------------------------------------------- flags
-  // A read frees only what was full; INIT and RESETDRV come last, they win over all that happens in the same clock.
+  // A read frees only what was full, one of the host what was full when its byte was taken; INIT and RESETDRV come
+  // last, they win over all that happens in the same clock.
   assign tx_move = ~txde_q & ~hrdf_q;
   assign rx_move = ~htde_q & ~rxdf_q;
   always_comb begin
     txde_d = (txde_q | tx_move) & ~data7_write;
     hrdf_d = tx_move | (hrdf_q & ~horx_read);
     htde_d = (htde_q | rx_move) & ~hotx_write;
-    rxdf_d = rx_move | (rxdf_q & ~data7_read);
+    rxdf_d = rx_move | (rxdf_q & ~(data7_read & saw_q));
     if (hp_reset_i || (init && hp_wdata_i[brick_regs_pkg::HostIoIcrTreqLsb])) begin
       txde_d = 1'b1;
       hrdf_d = 1'b0;
@@ -103,6 +106,7 @@ module host_port (
       rx_q   <= 24'h0;
       txde_q <= brick_regs_pkg::HostIoIsrReset[brick_regs_pkg::HostIoIsrTxdeLsb];
       rxdf_q <= brick_regs_pkg::HostIoIsrReset[brick_regs_pkg::HostIoIsrRxdfLsb];
+      saw_q  <= 1'b0;
       hrdf_q <= brick_regs_pkg::Hi08HsrReset[brick_regs_pkg::Hi08HsrHrdfLsb];
       htde_q <= brick_regs_pkg::Hi08HsrReset[brick_regs_pkg::Hi08HsrHtdeLsb];
     end else begin
@@ -110,6 +114,7 @@ module host_port (
       hrdf_q <= hrdf_d;
       htde_q <= htde_d;
       rxdf_q <= rxdf_d;
+      if (hp_sel_i & hp_rd_i) saw_q <= rxdf_q;
       if (tx_move) horx_q <= tx_q;
       if (rx_move) rx_q <= hotx_q;
       if (hotx_write) hotx_q <= dsp_wdata_i;

@@ -35,6 +35,7 @@ module isa_slave (
   output logic             host_reset_o,   // RESETDRV, synchronised
   // host port
   output logic             hp_sel_o,
+  output logic             hp_rd_o,        // one clk_ref, at the edge that takes hp_rdata_i
   output logic             hp_rd_done_o,   // one clk_ref at the end of a read that showed data
   output logic             hp_wr_o,        // one clk_ref at the end of a write
   output logic [2:0]       hp_addr_o,
@@ -70,7 +71,9 @@ module isa_slave (
   (* async_reg = "true" *) logic [6:0]  la1_q, la2_q;
   logic [15:0] wdata_q;
   logic [6:0]  la;
-  logic [3:0]  la_hit_q;  // the youngest of them is MEMCS16#, the oldest belongs to the time before the command
+  // The youngest is MEMCS16#, the oldest belongs to the time before the command: LA may go with it. In a slot of 8 bits
+  // the second is taken, as SA may be late (host-bus:3.4/18) and stands: two edges before the command at most.
+  logic [3:0]  la_hit_q;
   logic        la_hit;
   logic [7:0]  io_base_q;
   logic [9:0]  window_q;
@@ -135,7 +138,8 @@ module isa_slave (
   logic [3:0] decoded;
   assign io_hit  = ~aen_q & (sa_q[9:4] == io_base_q[5:0]) &
                    (~io_decode16_q | (sa_q[15:10] == {4'h0, io_base_q[7:6]}));
-  assign mem_hit = la_hit_q[3] & (sa_q[16] == window_q[2]) & (window_flat_q | (sa_q[15:14] == window_q[1:0]));
+  assign mem_hit = (slot8_q ? la_hit_q[1] : la_hit_q[3]) & (sa_q[16] == window_q[2]) &
+                   (window_flat_q | (sa_q[15:14] == window_q[1:0]));
   assign byte8   = sbhe_nq & sa_q[0];  // an 8-bit host's odd byte is on the low lane
   always_comb begin
     decoded = 4'h0;
@@ -236,13 +240,14 @@ module isa_slave (
 
   // ---------------------------------------------------------------- towards the blocks
   assign hp_sel_o     = target_q[Port];
+  assign hp_rd_o      = target_q[Port] & fresh_q & kind_q[Ior];
   assign hp_rd_done_o = target_q[Port] & finish_q & shown_q;
   assign hp_wr_o      = target_q[Port] & finish_q & kind_q[Iow];
   assign hp_addr_o    = io_addr_q[2:0];
   assign hp_wdata_o   = wdata_q[7:0];
 
   assign pic_sel_o     = target_q[Pic];
-  assign pic_rd_o      = target_q[Pic] & fresh_q & kind_q[Ior];
+  assign pic_rd_o      = target_q[Pic] & fresh_q & kind_q[Ior] & (cmd2_q == kind_q);  // command still there, alone
   assign pic_wr_o      = target_q[Pic] & finish_q & kind_q[Iow];
   assign pic_addr_o    = io_addr_q[1:0];
   assign pic_wdata_o   = wdata_q[7:0];

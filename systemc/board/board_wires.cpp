@@ -102,6 +102,7 @@ void BoardTop::connect_host_port(Parts& changed) {
   }
   if ((changed & parts(kIsaSlave)) != 0) {
     to(in.hp_sel, isa_slave_.hp_sel());
+    to(in.hp_rd, isa_slave_.hp_rd());
     to(in.hp_rd_done, isa_slave_.hp_rd_done());
     to(in.hp_wr, isa_slave_.hp_wr());
     to(in.hp_addr, isa_slave_.hp_addr());

@@ -85,7 +85,7 @@ std::uint32_t HostPort::cpu_read(unsigned addr) const {
 }
 
 bool HostPort::idle() const {
-  const bool host = in.hp_sel && (in.hp_wr || in.hp_rd_done);
+  const bool host = in.hp_sel && (in.hp_wr || in.hp_rd_done || (in.hp_rd && saw_ != rxdf_));
   const bool cpu = in.dsp_sel && (in.dsp_we || in.dsp_rd);
   return !host && !cpu && !tx_move() && !rx_move() && !(in.hp_reset && !host_side_reset());
 }
@@ -117,7 +117,8 @@ void HostPort::step() {
     rxdf_ = htde_ = true;
   }
   if (in.dsp_sel && in.dsp_rd && in.dsp_addr == kHorx && hrdf_before) hrdf_ = false;
-  if (in.hp_sel && in.hp_rd_done && in.hp_addr == kData7 && rxdf_before) rxdf_ = false;
+  if (in.hp_sel && in.hp_rd_done && in.hp_addr == kData7 && rxdf_before && saw_) rxdf_ = false;
+  if (in.hp_sel && in.hp_rd) saw_ = rxdf_before;
   if (in.dsp_sel && in.dsp_we) cpu_write();
   if (in.hp_sel && in.hp_wr) host_write();
   if (in.hp_reset) reset_host_side();
@@ -188,6 +189,7 @@ void HostPort::reset_registers() {
   hbar_ = regs::hi08::kHbar.reset;
   hpcr_ = regs::hi08::kHpcr.reset;
   tx_ = horx_ = hotx_ = rx_ = 0;
+  saw_ = false;
 }
 
 void HostPort::host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
@@ -198,6 +200,7 @@ void HostPort::host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_tim
   in.hp_addr = static_cast<std::uint8_t>(payload.get_address());
   if (payload.is_read()) {
     set_payload_value(payload, host_read(in.hp_addr));
+    saw_ = rxdf_;
     in.hp_rd_done = true;
   } else {
     in.hp_wr = true;

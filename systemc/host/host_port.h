@@ -54,6 +54,7 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
   std::uint16_t hpcr_;
   std::uint32_t tx_ = 0, horx_ = 0, hotx_ = 0, rx_ = 0;
   bool txde_ = true, hrdf_ = false, htde_ = true, rxdf_ = false;
+  bool saw_ = false;  // the host's read under way found a word in RX
 };
 
 }  // namespace brick

@@ -30,7 +30,7 @@ struct HostSignalsInputs {
 };
 
 struct HostPortInputs {
-  bool hp_sel = false, hp_rd_done = false, hp_wr = false;
+  bool hp_sel = false, hp_rd = false, hp_rd_done = false, hp_wr = false;
   std::uint8_t hp_addr = 0;  // 0..7
   std::uint8_t hp_wdata = 0;
   bool hp_reset = false;  // RESETDRV

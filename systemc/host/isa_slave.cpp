@@ -8,7 +8,7 @@ namespace brick {
 
 // The first edge at which an output moves. MEMCS16# and the write data move with clk_pwm, all others with clk_ref.
 Tick IsaSlave::next_event() const {
-  if (isa_sd_oe() != oe_shown_) return now_ + 1;
+  if (isa_sd_oe() != oe_shown_ || (fresh_ && pic_sel())) return now_ + 1;  // pic_rd goes with the command
   Tick next = kNever;
   for (Tick n = 0; n < 3 && next == kNever; ++n) {
     const unsigned la = n == 0 ? la2_ : n == 1 ? la1_ : la_pins();
@@ -110,8 +110,8 @@ void IsaSlave::begin() {
 std::uint8_t IsaSlave::decode() const {
   if (cmd2_ == kMemr || cmd2_ == kMemw) {
     const std::uint32_t compared = straps_.window_flat ? 0x10000 : 0x1C000;
-    const bool hit =
-        (la_hits_ & kOldestHit) != 0 && ((sa_ ^ static_cast<std::uint32_t>(straps_.window) << 14) & compared) == 0;
+    const bool hit = (la_hits_ & (straps_.slot8 ? kSecondHit : kOldestHit)) != 0 &&
+                     ((sa_ ^ static_cast<std::uint32_t>(straps_.window) << 14) & compared) == 0;
     return hit ? kMemory : 0;
   }
   if (cmd2_ != kIor && cmd2_ != kIow) return 0;  // two commands at once

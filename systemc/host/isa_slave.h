@@ -28,13 +28,14 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   bool host_reset() const { return (resetdrv_ & 2) != 0; }
   // Host port
   bool hp_sel() const { return target_ & kPort; }
+  bool hp_rd() const { return hp_sel() && fresh_ && (kind_ & kIor); }
   bool hp_rd_done() const { return hp_sel() && finish_ && shown_; }
   bool hp_wr() const { return hp_sel() && finish_ && (kind_ & kIow); }
   std::uint8_t hp_addr() const { return io_addr_ & 7; }
   std::uint8_t hp_wdata() const { return wdata_ & 0xFF; }
   // Interrupt controller
   bool pic_sel() const { return target_ & kPic; }
-  bool pic_rd() const { return pic_sel() && fresh_ && (kind_ & kIor); }
+  bool pic_rd() const { return pic_sel() && fresh_ && (kind_ & kIor) && cmd2_ == kind_; }
   bool pic_wr() const { return pic_sel() && finish_ && (kind_ & kIow); }
   std::uint8_t pic_addr() const { return io_addr_ & 3; }
   std::uint8_t pic_wdata() const { return wdata_ & 0xFF; }
@@ -52,8 +53,8 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
 
  private:
   enum Command : std::uint8_t { kIor = 1, kIow = 2, kMemr = 4, kMemw = 8, kAll = 15 };
-  static constexpr std::uint8_t kAllHits = 15, kOldestHit = 8;  // of la_hits_
-  static constexpr std::uint32_t kSa = 0x1FFFF;                 // what of SA the cycle needs
+  static constexpr std::uint8_t kAllHits = 15, kSecondHit = 2, kOldestHit = 8;  // of la_hits_
+  static constexpr std::uint32_t kSa = 0x1FFFF;                                 // what of SA the cycle needs
   enum Target : std::uint8_t { kPort = 1, kPic = 2, kOther = 4, kMemory = 8 };
 
   std::uint8_t command_pins() const {

@@ -8,6 +8,7 @@ namespace {
 
 constexpr TimeFs kNs = kFsPerNs;
 constexpr TimeFs kBclk = 120 * kNs;
+constexpr TimeFs kT16Limit = 66 * kNs;
 constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
 
 std::vector<TimingRule> rules() {
@@ -97,18 +98,11 @@ void IsaChecker::pins(TimeFs t, const BoardInputs& in, const BoardOutputs& out) 
   const BoardOutputs shown = std::exchange(out_, out);
   if (!std::exchange(known_, true)) return;
 
-  // Out of reset the board decodes anew what stands there.
-  const bool released = (in.rst_n && !before.rst_n) || (!in.isa_resetdrv && before.isa_resetdrv);
-  if (in.isa_la != before.isa_la || released) la_at_ = t;
+  if (in.isa_la != before.isa_la) la_at_ = t;
+  block_select(t, before, shown);
   if (in.isa_sa != before.isa_sa || in.isa_aen != before.isa_aen || in.isa_sbhe_n != before.isa_sbhe_n)
     address_moved(t);
   if (in.isa_sd != before.isa_sd) host_data_moved(t);
-  if (shown.get(pin::kIsaMemcs16N) != 0 && out.get(pin::kIsaMemcs16N) == 0) {
-    Cycle block;
-    block.kind = kMemoryRead;
-    block.address = static_cast<std::uint32_t>(in.isa_la) << 17;
-    ledger_.enter(kT16, kMemory16, 66 * kNs, t - la_at_, place(t, block));
-  }
 
   const bool reset = (before.rst_n && !in.rst_n) || (!before.isa_resetdrv && in.isa_resetdrv);
   if (reset) {
@@ -130,6 +124,32 @@ void IsaChecker::pins(TimeFs t, const BoardInputs& in, const BoardOutputs& out) 
 }
 
 // --------------------------------------------------------------------------------------------------------- what moves
+
+// Row 16 is about a move of LA that selects the block of the window. Switches and resets move MEMCS16# too, and so does
+// SA in a slot of 8 bits: those are nobody's time to keep.
+void IsaChecker::block_select(TimeFs t, const BoardInputs& before, const BoardOutputs& shown) {
+  const bool listens = in_.rst_n && !in_.isa_resetdrv && !in_.slot8;
+  const bool same = listens && before.rst_n && !before.isa_resetdrv && !before.slot8 && before.window == in_.window;
+  if (!same) block_due_ = kNone;
+  if (in_.isa_la != before.isa_la) {
+    block_overdue(t, before);
+    block_due_ = same && in_.isa_la == in_.window >> 3 && shown.get(pin::kIsaMemcs16N) != 0 ? t : kNone;
+  }
+  if (block_due_ != kNone && out_.get(pin::kIsaMemcs16N) == 0) block_selected(t, in_);
+}
+
+// LA moves on or a command falls, and MEMCS16# has not come: only a time beyond the limit is known to break the rule.
+void IsaChecker::block_overdue(TimeFs t, const BoardInputs& in) {
+  if (block_due_ != kNone && t - block_due_ > kT16Limit) block_selected(t, in);
+}
+
+void IsaChecker::block_selected(TimeFs t, const BoardInputs& in) {
+  Cycle block;
+  block.kind = kMemoryRead;
+  block.address = static_cast<std::uint32_t>(in.isa_la) << 17;
+  ledger_.enter(kT16, kMemory16, kT16Limit, t - block_due_, place(t, block));
+  block_due_ = kNone;
+}
 
 void IsaChecker::address_moved(TimeFs t) {
   sa_at_ = t;
@@ -185,6 +205,7 @@ void IsaChecker::begin(TimeFs t, unsigned now, const BoardInputs& in, const Boar
   if (std::exchange(hold_data_, false)) enter(cycle_.memory() ? kT15 : kT7, 25 * kNs, t - high_at_, t);
 
   if (std::exchange(read_floats_, false)) enter(kT5Off, 30 * kNs, t - high_at_, t);
+  block_overdue(t, in);
 
   cycle_ = {};
   cycle_.kind = (now & 1) != 0 ? kIoRead : (now & 2) != 0 ? kIoWrite : (now & 4) != 0 ? kMemoryRead : kMemoryWrite;

@@ -89,6 +89,9 @@ class IsaChecker {
     ledger_.enter(rule, region(cycle_), required, measured, place(time));
   }
 
+  void block_select(TimeFs t, const BoardInputs& before, const BoardOutputs& shown);
+  void block_overdue(TimeFs t, const BoardInputs& in);
+  void block_selected(TimeFs t, const BoardInputs& in);
   void address_moved(TimeFs t);
   void host_data_moved(TimeFs t);
   void begin(TimeFs t, unsigned commands, const BoardInputs& in, const BoardOutputs& out);
@@ -107,6 +110,7 @@ class IsaChecker {
   bool in_cycle_ = false;  // a command is low
   Cycle cycle_;            // the present one, or the last
   TimeFs la_at_ = 0, sa_at_ = 0, data_at_ = 0, high_at_ = kNone;
+  TimeFs block_due_ = kNone;  // LA selected the block of the window then, and MEMCS16# has still to fall
   bool hold_address_ = false, hold_data_ = false, read_floats_ = false;  // rules of the last cycle still to be judged
   PortAccess port_read_, port_write_;
   std::array<std::array<std::array<std::uint64_t, 2>, 2>, kKinds> cycles_{};

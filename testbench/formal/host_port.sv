@@ -1,7 +1,8 @@
 // Rules of the host port, host-bus:3.2, about words: between a host and a CPU that look at their flags, each word comes
 // out once, in order and unchanged. Assumed: each side makes one access at a time (a bus has one cycle at a time,
 // host-bus:2.1/2), and fills or empties a register only after its flag told it so since the last time (host-bus:3.1/5,
-// host-bus:3.1/6), whenever it looked; an INIT or RESETDRV is such news to the CPU too. Everything else is free.
+// host-bus:3.1/6), whenever it looked; an INIT or RESETDRV is such news to the CPU too. The host may read +7 blindly: a
+// word counts as taken if RXDF was 1 when the byte was. Everything else is free.
 // proof: pdr
 // clocks: one
 // steps: 14
@@ -12,8 +13,11 @@
 //   - hrdf_d = tx_move | (hrdf_q & ~horx_read);
 //   + hrdf_d = (tx_move & ~dsp_sel_i) | (hrdf_q & ~horx_read);
 // fault R6: the word stays in RX after it was read (rtl/host/host_port.sv)
-//   - rxdf_d = rx_move | (rxdf_q & ~data7_read);
-//   + rxdf_d = rx_move | (rxdf_q & ~(data7_read & htde_q));
+//   - rxdf_d = rx_move | (rxdf_q & ~(data7_read & saw_q));
+//   + rxdf_d = rx_move | (rxdf_q & ~(data7_read & saw_q & htde_q));
+// fault R7: a read that found RX empty frees the word that came meanwhile (rtl/host/host_port.sv)
+//   - rxdf_d = rx_move | (rxdf_q & ~(data7_read & saw_q));
+//   + rxdf_d = rx_move | (rxdf_q & ~data7_read);
 `default_nettype none
 
 // Words of one way between their writer and their reader: how many, and one of them, followed from end to end.
@@ -61,6 +65,7 @@ module host_port_rules (
   input wire logic        clk_i,
   input wire logic        rst_ni,
   input wire logic        sel_i,
+  input wire logic        rd_i,     // a read takes its byte
   input wire logic        rd_done_i,
   input wire logic        wr_i,
   input wire logic [2:0]  addr_i,
@@ -80,8 +85,8 @@ module host_port_rules (
   logic [7:0]  rdata;
   logic [23:0] cpu_rdata;
   logic        hreq, irq, txde, rxdf;
-  host_port dut (.clk_ref_i(clk_i), .rst_ni, .hp_sel_i(sel_i), .hp_rd_done_i(rd_done_i), .hp_wr_i(wr_i),
-                 .hp_addr_i(addr_i), .hp_wdata_i(wdata_i), .hp_rdata_o(rdata), .hp_reset_i(reset_i),
+  host_port dut (.clk_ref_i(clk_i), .rst_ni, .hp_sel_i(sel_i), .hp_rd_i(rd_i), .hp_rd_done_i(rd_done_i),
+                 .hp_wr_i(wr_i), .hp_addr_i(addr_i), .hp_wdata_i(wdata_i), .hp_rdata_o(rdata), .hp_reset_i(reset_i),
                  .dsp_sel_i(cpu_sel_i), .dsp_we_i(cpu_we_i), .dsp_rd_i(cpu_rd_i), .dsp_addr_i(cpu_addr_i),
                  .dsp_wdata_i(cpu_wdata_i), .dsp_rdata_o(cpu_rdata), .hreq_o(hreq), .irq_o(irq), .txde_o(txde),
                  .rxdf_o(rxdf));
@@ -103,6 +108,7 @@ module host_port_rules (
 
   // What each side knows: the flags seen since it last acted on them, and the registers that it wrote.
   logic        started_q = 1'b0;
+  logic        read_q, full_q;  // the byte of a read was taken, and there was a word
   logic        may_send_q, may_fetch_q, cpu_may_send_q, cpu_may_fetch_q, command_q;
   logic [7:0]  icr_q;
   logic [2:0]  enable_q;
@@ -115,11 +121,13 @@ module host_port_rules (
   end
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {may_send_q, may_fetch_q, cpu_may_send_q, cpu_may_fetch_q, command_q} <= 5'd0;
+      {read_q, full_q, may_send_q, may_fetch_q, cpu_may_send_q, cpu_may_fetch_q, command_q} <= 7'd0;
       icr_q    <= 8'h00;
       enable_q <= 3'd0;
       word_q   <= 24'h0;
     end else begin
+      read_q          <= ((sel_i & rd_i) | read_q) & ~fetch & ~init_rx;
+      if (sel_i & rd_i) full_q <= rxdf;
       may_send_q      <= (may_send_q | (isr & rdata[1])) & ~send;
       may_fetch_q     <= (may_fetch_q | (isr & rdata[0])) & ~fetch & ~init_rx;
       cpu_may_send_q  <= (cpu_may_send_q | (hsr & cpu_rdata[1])) & ~cpu_send;
@@ -138,7 +146,8 @@ module host_port_rules (
     assume (started_q || !rst_ni);
     assume (!(wr_i && rd_done_i) && !(cpu_we_i && cpu_rd_i));
     assume (!(host_wr && data) || may_send_q);
-    assume (!fetch || may_fetch_q);
+    assume (!rd_i || !(wr_i || rd_done_i));
+    assume (!fetch || read_q);
     assume (!cpu_send || cpu_may_send_q);
     assume (!cpu_fetch || cpu_may_fetch_q);
   end
@@ -149,9 +158,9 @@ module host_port_rules (
   word_ledger to_cpu (.clk_i, .rst_ni, .empty_i(init_tx), .put_i(send), .word_i(word), .take_i(cpu_fetch),
                       .follow_i(follow_i[0]), .count_o(count), .settled_o(settled), .first_o(first),
                       .word_o(followed));
-  word_ledger to_host (.clk_i, .rst_ni, .empty_i(init_rx), .put_i(cpu_send), .word_i(cpu_wdata_i), .take_i(fetch),
-                       .follow_i(follow_i[1]), .count_o(cpu_count), .settled_o(cpu_settled), .first_o(cpu_first),
-                       .word_o(cpu_followed));
+  word_ledger to_host (.clk_i, .rst_ni, .empty_i(init_rx), .put_i(cpu_send), .word_i(cpu_wdata_i),
+                       .take_i(fetch & full_q), .follow_i(follow_i[1]), .count_o(cpu_count),
+                       .settled_o(cpu_settled), .first_o(cpu_first), .word_o(cpu_followed));
 
   always @(posedge clk_i) if (rst_ni) begin
     // R1: The CPU reads each word of the host in its turn and unchanged.

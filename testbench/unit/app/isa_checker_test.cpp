@@ -172,6 +172,41 @@ TEST_F(IsaCheckerTest, EachRowOfTheMemoryCycleHasItsLimit) {
   expect_limit(IsaChecker::kT18, read, &Points::sa, -34 * kNs, 1, kWide, usual);
 }
 
+// MEMCS16# also follows switches and resets, and SA in a slot of 8 bits: row 16 is about LA alone.
+TEST_F(IsaCheckerTest, Row16IsJudgedForMovesOfLaToTheWindow) {
+  const auto select = [this](TimeFs t, unsigned level) { at(t, [=] { out_.set(pin::kIsaMemcs16N, level); }); };
+  const std::vector<std::function<void()>> others{
+      [this] { in_.window ^= 8; }, [this] { in_.slot8 = !in_.slot8; }, [this] { in_.rst_n = !in_.rst_n; },
+      [this] { in_.isa_resetdrv = !in_.isa_resetdrv; }, [this] { in_.isa_sa ^= 0x20000; }};
+  at(1000 * kNs, [this] { in_.isa_la = 6; });
+  select(1030 * kNs, 0);
+  play();
+  const auto evaluations = [this] {
+    return checker_.ledger().row(IsaChecker::kT16, IsaChecker::kMemory16).evaluations;
+  };
+  ASSERT_EQ(evaluations(), 1u);
+  for (const auto& other : others) {  // away and back, with LA as it was
+    for (const unsigned level : {1u, 0u}) {
+      at(now_ + 5000 * kNs, other);
+      select(now_ + 5100 * kNs, level);
+      play();
+    }
+  }
+  EXPECT_EQ(evaluations(), 1u);
+
+  select(now_ + 1000 * kNs, 1);
+  at(now_ + 1000 * kNs, [this] { in_.isa_la = 7; });
+  at(now_ + 2000 * kNs, [this] { in_.isa_la = 6; });
+  at(now_ + 2040 * kNs, [this] { in_.isa_la = 7; });  // too short for it
+  at(now_ + 3000 * kNs, [this] { in_.isa_la = 6; });
+  play();
+  EXPECT_THAT(broken(), ::testing::IsEmpty());
+  at(now_ + 200 * kNs, [this] { in_.isa_memr_n = false; });  // it never came
+  play();
+  EXPECT_EQ(broken(), std::vector<std::string>{"t16"});
+  EXPECT_EQ(timing_address(checker_.ledger().violations()[0].where), "memory 0x0C0000");
+}
+
 // host-bus:3.3 at 80 MHz: TC is 12.5 ns, so read strobes are low for 17.45 ns, 34.55 ns apart after a slow byte.
 TEST_F(IsaCheckerTest, StrobesOfTheHostPortHaveTheirLimits) {
   const auto only = [this](Rule rule, const auto& run, TimeFs Points::*point, TimeFs limit) {

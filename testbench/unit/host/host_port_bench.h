@@ -28,7 +28,7 @@ class HostPortTest : public ::testing::Test {
     if (!both_.mutate) { EXPECT_LOCKSTEP(both_); }
   }
 
-  // One access each, one clk_ref.
+  // One access each: one clk_ref, a read of the host two, its byte and its end.
   void host_write(std::uint8_t addr, unsigned value) {
     both_.in.hp_sel = both_.in.hp_wr = true;
     both_.in.hp_addr = addr;
@@ -42,7 +42,10 @@ class HostPortTest : public ::testing::Test {
   }
   unsigned host_read(std::uint8_t addr) {
     const unsigned value = host_peek(addr);
-    both_.in.hp_sel = both_.in.hp_rd_done = true;
+    both_.in.hp_sel = both_.in.hp_rd = true;
+    both_.ref();
+    both_.in.hp_rd = false;
+    both_.in.hp_rd_done = true;
     both_.ref();
     both_.in.hp_sel = both_.in.hp_rd_done = false;
     return value;
@@ -83,6 +86,7 @@ class HostPortTest : public ::testing::Test {
         in.hp_wdata = static_cast<std::uint8_t>(random());
         if (in.hp_addr == kIcr && random() % 4) in.hp_wdata &= 0x7F;
         in.hp_wr = random() % 4 == 0;
+        in.hp_rd = random() % 2;
         in.hp_rd_done = !in.hp_wr && random() % 3 == 0;
         in.hp_sel = random() % 8 != 0;
         in.dsp_addr = static_cast<std::uint8_t>(random() % 8 ? 2 + random() % 6 : random() % 64);

@@ -17,14 +17,28 @@ class IsaBench {
 
   IsaBench()
       : model("isa_slave"), both(make_rtl_isa_slave(), model, [](const IsaSlave& m) {
-          return Outputs{
-              {"isa_sd", m.isa_sd()},       {"isa_iochrdy", m.isa_iochrdy()}, {"isa_memcs16_n", m.isa_memcs16_n()},
-              {"isa_sd_oe", m.isa_sd_oe()}, {"host_reset", m.host_reset()},   {"pic_rd", m.pic_rd()},
-              {"hp_sel", m.hp_sel()},       {"hp_rd_done", m.hp_rd_done()},   {"hp_wr", m.hp_wr()},
-              {"hp_addr", m.hp_addr()},     {"hp_wdata", m.hp_wdata()},       {"pic_sel", m.pic_sel()},
-              {"pic_wr", m.pic_wr()},       {"pic_addr", m.pic_addr()},       {"pic_wdata", m.pic_wdata()},
-              {"mem_sel", m.mem_sel()},     {"mem_rd", m.mem_rd()},           {"mem_wr", m.mem_wr()},
-              {"mem_addr", m.mem_addr()},   {"mem_be", m.mem_be()},           {"mem_wdata", m.mem_wdata()}};
+          return Outputs{{"isa_sd", m.isa_sd()},
+                         {"isa_iochrdy", m.isa_iochrdy()},
+                         {"isa_memcs16_n", m.isa_memcs16_n()},
+                         {"isa_sd_oe", m.isa_sd_oe()},
+                         {"host_reset", m.host_reset()},
+                         {"pic_rd", m.pic_rd()},
+                         {"hp_sel", m.hp_sel()},
+                         {"hp_rd", m.hp_rd()},
+                         {"hp_rd_done", m.hp_rd_done()},
+                         {"hp_wr", m.hp_wr()},
+                         {"hp_addr", m.hp_addr()},
+                         {"hp_wdata", m.hp_wdata()},
+                         {"pic_sel", m.pic_sel()},
+                         {"pic_wr", m.pic_wr()},
+                         {"pic_addr", m.pic_addr()},
+                         {"pic_wdata", m.pic_wdata()},
+                         {"mem_sel", m.mem_sel()},
+                         {"mem_rd", m.mem_rd()},
+                         {"mem_wr", m.mem_wr()},
+                         {"mem_addr", m.mem_addr()},
+                         {"mem_be", m.mem_be()},
+                         {"mem_wdata", m.mem_wdata()}};
         }) {
     both.ticks(12);  // switches are taken over, the bus is idle
   }

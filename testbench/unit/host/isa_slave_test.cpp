@@ -206,6 +206,25 @@ TEST_F(IsaSlaveTest, EightBitSlotIsDecodedWithoutLa) {
   EXPECT_EQ(strobes, (std::vector<Strobe>{{"mem_wr", 0, 1u << 16 | 1}, {"mem_wr", 0, 2u << 16 | 0x0202}}));
 }
 
+// host-bus:3.4/18: SA[19:17] of an 8-bit slot are as late as all of SA. 34 ns are four ticks and a little; at 25 ns
+// the aperture of the first flip-flop is covered too.
+TEST_F(IsaSlaveTest, EightBitSlotTakesItsWholeAddress25NanosecondsBeforeTheCommand) {
+  both.in.slot8 = true;
+  both.in.isa_sbhe_n = true;
+  for (int phase = 0; phase < 3; ++phase) {
+    set_address(0x20000);
+    at_phase(phase);
+    strobes.clear();
+    set_address(0xD0000);
+    ticks(3);
+    both.in.isa_memw_n = false;
+    ticks(28);
+    both.in.isa_memw_n = true;
+    ticks(12);
+    EXPECT_EQ(strobes.size(), 1u) << phase;
+  }
+}
+
 TEST_F(IsaSlaveTest, PageRegisterChoosesAQuarter) {
   io_write(0x21C, 3);
   EXPECT_EQ(io_read(0x21C), 0xFFFFu) << "no page register while the window is flat";
@@ -373,6 +392,26 @@ TEST_F(IsaSlaveTest, ReadTooShortForItsDataTakesNothing) {
     }
   }
   EXPECT_GT(reads, 0u);
+}
+
+// A read of an 8259 acknowledges at the edge that takes the byte: not if the command is gone by then, or another came.
+TEST_F(IsaSlaveTest, ReadThatEndsBeforeItsByteIsTakenAcknowledgesNothing) {
+  for (int phase = 0; phase < 3; ++phase) {
+    for (const bool second : {false, true}) {
+      for (const int width : {1, 2, 3, 20}) {
+        strobes.clear();
+        set_address(0x21A);
+        at_phase(phase);
+        both.in.isa_ior_n = false;
+        ticks(width);
+        (second ? both.in.isa_iow_n : both.in.isa_ior_n) = !second;
+        ticks(20);
+        both.in.isa_ior_n = both.in.isa_iow_n = true;
+        ticks(15);
+        EXPECT_EQ(strobes.size(), width == 20 ? 1u : 0u) << phase << " " << width << " " << second;
+      }
+    }
+  }
 }
 
 TEST_F(IsaSlaveTest, AddressThatMovesDuringACycleIsNotLookedAt) {

@@ -48,6 +48,7 @@ Outputs sample(const Vhost_signals& v) {
 
 void drive(Vhost_port& v, const HostPortInputs& in) {
   v.hp_sel_i = in.hp_sel;
+  v.hp_rd_i = in.hp_rd;
   v.hp_rd_done_i = in.hp_rd_done;
   v.hp_wr_i = in.hp_wr;
   v.hp_addr_i = in.hp_addr;
@@ -108,13 +109,28 @@ void drive(Visa_slave& v, const IsaSlaveInputs& in) {
   v.mem_busy_i = in.mem_busy;
 }
 Outputs sample(const Visa_slave& v) {
-  return {{"isa_sd", v.isa_sd_o},       {"isa_iochrdy", v.isa_iochrdy_o}, {"isa_memcs16_n", v.isa_memcs16_no},
-          {"isa_sd_oe", v.isa_sd_oe_o}, {"host_reset", v.host_reset_o},   {"pic_rd", v.pic_rd_o},
-          {"hp_sel", v.hp_sel_o},       {"hp_rd_done", v.hp_rd_done_o},   {"hp_wr", v.hp_wr_o},
-          {"hp_addr", v.hp_addr_o},     {"hp_wdata", v.hp_wdata_o},       {"pic_sel", v.pic_sel_o},
-          {"pic_wr", v.pic_wr_o},       {"pic_addr", v.pic_addr_o},       {"pic_wdata", v.pic_wdata_o},
-          {"mem_sel", v.mem_sel_o},     {"mem_rd", v.mem_rd_o},           {"mem_wr", v.mem_wr_o},
-          {"mem_addr", v.mem_addr_o},   {"mem_be", v.mem_be_o},           {"mem_wdata", v.mem_wdata_o}};
+  return {{"isa_sd", v.isa_sd_o},
+          {"isa_iochrdy", v.isa_iochrdy_o},
+          {"isa_memcs16_n", v.isa_memcs16_no},
+          {"isa_sd_oe", v.isa_sd_oe_o},
+          {"host_reset", v.host_reset_o},
+          {"pic_rd", v.pic_rd_o},
+          {"hp_sel", v.hp_sel_o},
+          {"hp_rd", v.hp_rd_o},
+          {"hp_rd_done", v.hp_rd_done_o},
+          {"hp_wr", v.hp_wr_o},
+          {"hp_addr", v.hp_addr_o},
+          {"hp_wdata", v.hp_wdata_o},
+          {"pic_sel", v.pic_sel_o},
+          {"pic_wr", v.pic_wr_o},
+          {"pic_addr", v.pic_addr_o},
+          {"pic_wdata", v.pic_wdata_o},
+          {"mem_sel", v.mem_sel_o},
+          {"mem_rd", v.mem_rd_o},
+          {"mem_wr", v.mem_wr_o},
+          {"mem_addr", v.mem_addr_o},
+          {"mem_be", v.mem_be_o},
+          {"mem_wdata", v.mem_wdata_o}};
 }
 
 }  // namespace
