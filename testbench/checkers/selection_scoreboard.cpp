@@ -34,7 +34,9 @@ void SelectionScoreboard::edge(Tick now, bool breq, bool lamp_n) {
 }
 
 void SelectionScoreboard::settled(Tick now, bool breq, bool sig) {
-  constexpr Tick kRecognised = 32;  // a task begins that much after PHASE at the latest
+  // A task begins that much after PHASE at the latest: WX, which makes the edge that counts, holds the servo task back
+  // while it writes.
+  constexpr Tick kRecognised = ns_to_ticks(2000);
   const bool expect = expected(), by_host = limit_ == kHostLimit;
   const bool interrupted = by_host && phase_ <= last_ && phase_ >= start_ - kRecognised;
   const Tick allowed = limit_ + (interrupted ? kTasks : 0);
