@@ -45,7 +45,7 @@ def every_board():
                "umac-turbo": {"watchdog", "reinit-e3", "pwm", "port-a-phase"},
                "turbo-pmac2-ultralite":
                    every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram",
-                                  "host-port", "isa-timing"}}
+                                  "host-port", "isa-timing", "bus-timing"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
