@@ -128,8 +128,8 @@ std::string name_of(const ::testing::TestParamInfo<BoardLockstep::ParamType>& in
 INSTANTIATE_TEST_SUITE_P(Boards, BoardLockstep,
                          ::testing::Combine(::testing::Values(kTwoIcs, kFiveIcs), ::testing::Values(1, 2)), name_of);
 
-// Random accesses of host and CPU, at random phases, by seeds of a million ticks each. BRICK_ACCESSES asks for more:
-// ten million were made once (docs/cosim.md).
+// Random accesses of host and CPU, at random phases, by seeds of a million ticks each. BRICK_ACCESSES=10000000 in the
+// environment asks for more than the hundred thousand of the test suite.
 TEST(BoardLockstepAccesses, AHundredThousandLeaveNoDifference) {
   BRICK_COVERS("CARD-6");
   const char* asked = std::getenv("BRICK_ACCESSES");
