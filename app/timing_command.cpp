@@ -20,6 +20,12 @@ namespace {
 int sweep_command(const TimingOptions& options) {
   MachineConfig config = machine_config(options.run);
   if (config.bcr) throw UsageError("--bcr: --sweep sets the wait states itself; expected one of the two");
+  const std::pair<const char*, bool> of_a_bench[] = {{"--wavedrom", !options.wavedrom.empty()},
+                                                     {"--wave", !options.run.wave.empty()},
+                                                     {"--waive", !options.run.waive.empty()},
+                                                     {"--gdb", !options.run.gdb.empty()}};
+  for (const auto& [option, given] : of_a_bench)
+    if (given) throw UsageError(fmt::format("{}: --sweep runs no bench; expected one of the two", option));
   config.firmware.clear();
   Machine machine("brick", config);
   const bool terminal = isatty(STDERR_FILENO) == 1;

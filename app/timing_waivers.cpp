@@ -1,6 +1,7 @@
 #include "app/timing_waivers.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -23,7 +24,8 @@ std::string read_file(const std::string& path) {
   std::ifstream in(path);
   std::stringstream text;
   text << in.rdbuf();
-  if (!in) throw UsageError(fmt::format("--waive {}: cannot be read; expected a TOML file of waivers", path));
+  if (!in || std::filesystem::is_directory(path))
+    throw UsageError(fmt::format("--waive {}: cannot be read; expected a TOML file of waivers", path));
   return text.str();
 }
 
@@ -40,7 +42,8 @@ TimingWaivers::TimingWaivers(const std::string& path) : path_(path) {
     w.rule = entry.text("rule");
     w.address = entry.text("address");
     w.reason = entry.text("reason");
-    if (w.reason.empty()) entry.fail(entry.need("reason"), "reason", "why the violation is harmless");
+    if (w.reason.find_first_not_of(" \t\n") == std::string::npos)
+      entry.fail(entry.need("reason"), "reason", "why the violation is harmless");
     static const std::regex kAddress(R"((X:|Y:|I/O |memory )(?:\$|0x)([0-9A-Fa-f]{1,6})(?:\.\.(?:X:|Y:|I/O |memory )?)"
                                      R"((?:\$|0x)([0-9A-Fa-f]{1,6}))?)");
     std::smatch m;

@@ -2,7 +2,7 @@
 // pins to ISA pins. clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing
 // between them is synchronous. ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in
 // fitted_i), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
-// Outputs are registers or gates behind registers, but for what a strobe turns off without a clock.
+// Outputs are registers or gates behind registers, but for what a strobe moves without a clock: /TA, data enables.
 // docs/architecture.md has the map.
 `default_nettype none
 

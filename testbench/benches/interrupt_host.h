@@ -76,7 +76,7 @@ class InterruptHost {
   // A write cycle whose command ends at tick `end`, 80 ticks or more from now.
   static void add_write(std::vector<std::pair<Tick, Edit>>& edits, Tick end, unsigned offset, std::uint8_t value) {
     edits.emplace_back(end - 80, [=](HostInputs& in) {
-      in.isa_sa = HostBus::kIoBase + offset;
+      in.isa_sa = 16u * in.io_base + offset;
       in.isa_sd = value;
       in.isa_aen = false;
     });

@@ -1,6 +1,6 @@
-// Rules of the dual-ported RAM, host-bus:6.9, for each word (`c` is any): the two sides never meet in it, both come to
-// their turn, and what either reads is what was last written. A step is half a period of clk_pwm, 4.2 ns; a pin of the
-// CPU may change at any, and an edge takes what stood a step before it. Assumed, and all else is free:
+// Rules of the dual-ported RAM's arbiter, host-bus:6.9: the two sides never meet in a word, and both come to their
+// turn. That what either reads is what was last written is tested, not proved. A step is half a period of clk_pwm, 4.2
+// ns; a pin of the CPU may change at any, and an edge takes what stood a step before it. Assumed, and all else is free:
 // - of the CPU, host-bus:2.2: /RD and /WR are never low together, high for a step or more; select and address stand
 //   from fall to rise, write data from 12.7 ns after the fall to the rise (rows 101 to 117); a strobe of this RAM ends
 //   after /TA is low (row 118), one of another device lasts 50.9 ns or more;

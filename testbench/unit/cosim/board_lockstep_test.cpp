@@ -134,6 +134,7 @@ TEST(BoardLockstepAccesses, AHundredThousandLeaveNoDifference) {
   BRICK_COVERS("CARD-6");
   const char* asked = std::getenv("BRICK_ACCESSES");
   const unsigned long least = asked != nullptr ? std::strtoul(asked, nullptr, 10) : 100'000;
+  ASSERT_GE(least, 100'000ul) << "BRICK_ACCESSES";
   unsigned long made = 0;
   for (std::uint64_t seed = 100; made < least; ++seed) {
     auto board = make_lockstep_board(make_rtl_board(kTwoIcs), make_model_board(kTwoIcs));

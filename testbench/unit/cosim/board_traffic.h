@@ -1,7 +1,6 @@
 // Random but repeatable traffic on all pins of a board but the motors': Port A cycles to every region and to none, host
 // cycles to every address of the I/O block and the DPRAM window, clocks from outside and straps, each at random ticks
-// and overlapping, resets in between. Cycles of the CPU are legal, back to back, too short or quite wrong; those of the
-// host keep the rules of their bus.
+// and overlapping, resets in between. Cycles of both sides are legal, back to back, too short or quite wrong.
 #pragma once
 
 #include <cstdint>

@@ -50,17 +50,19 @@ def waivers():
 
 
 def bad_waivers():
-    for text in ('[[waive]]\nrule = "104"\n', "waive"):
+    blank = '[[waive]]\nrule = "104"\naddress = "X:$078000"\nreason = "  "\n'
+    for text in ('[[waive]]\nrule = "104"\n', "waive", blank):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "known.toml"
             file.write_text(text)
             r = play(["VERSION"], "--waive", str(file))
             check(r.returncode == 2 and r.stderr.count("\n") == 1 and "known.toml" in r.stderr, r.stderr)
-    for options in (["--waive", "/nowhere"], ["--bcr", "1234567"], ["--bcr", "xyz"]):
+    for options in (["--waive", "/nowhere"], ["--waive", "/"], ["--bcr", "1234567"], ["--bcr", "xyz"]):
         r = play(["VERSION"], *options)
         check(r.returncode == 2 and r.stderr.count("\n") == 1 and "expected" in r.stderr, r.stderr)
     for arguments in (["timing"], ["timing", "smoke", "--sweep"], ["timing", "nothing"],
-                      ["timing", "--sweep", "--bcr", "0"]):
+                      ["timing", "--sweep", "--bcr", "0"], ["timing", "--sweep", "--wave", "x.vcd"],
+                      ["timing", "--sweep", "--wavedrom", "x.json"], ["timing", "--sweep", "--gdb", "0"]):
         r = brick(*arguments)
         check(r.returncode == 2 and r.stderr.count("\n") == 1 and "expected" in r.stderr, f"{arguments}: {r.stderr}")
 
