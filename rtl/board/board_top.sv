@@ -391,7 +391,7 @@ module board_top #(
   assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
                      hreq_o, f1er_o, eror_o, breq_o, ipos_o};
   logic [7:0] turbo_rdata, turbo_ist, turbo_msk, turbo_elr, old_rdata, old_irr, old_isr, old_imr;
-  logic       turbo_irq, old_irq, old_level;
+  logic       turbo_request, turbo_served, old_request, old_served, old_level;
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni,
     .reset_i (host_reset),
@@ -427,7 +427,13 @@ module board_top #(
   assign pic_ist_o  = pic_8259_q ? old_irr & ~old_imr : turbo_ist;
   assign pic_msk_o  = pic_8259_q ? ~old_imr : turbo_msk;
   assign pic_elr_o  = pic_8259_q ? {8{old_level}} : turbo_elr;
-  assign isa_irq_o  = pic_8259_q ? old_irq : turbo_irq;
+
+  host_interrupt u_host_interrupt (
+    .clk_ref_i, .rst_ni,
+    .request_i (pic_8259_q ? old_request : turbo_request),
+    .served_i  (pic_8259_q ? old_served : turbo_served),
+    .irq_o     (isa_irq_o)
+  );
 
   logic [15:0] panel_rdata;
   panel_port u_panel_port (

@@ -17,6 +17,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       host_port_("host_port"),
       interrupt_controller_("interrupt_controller"),
       pic_8259_("pic_8259"),
+      host_interrupt_("host_interrupt"),
       host_signals_("host_signals"),
       dpram_("dpram"),
       panel_port_("panel_port"),

@@ -24,6 +24,7 @@
 #include "systemc/board/watchdog.h"
 #include "systemc/core/board.h"
 #include "systemc/host/dpram.h"
+#include "systemc/host/host_interrupt.h"
 #include "systemc/host/host_port.h"
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
@@ -65,6 +66,7 @@ class BoardTop : public sc_core::sc_module, public Board {
     kHostPort,
     kInterruptController,
     kPic8259,
+    kHostInterrupt,
     kHostSignals,
     kDpram,
     kPanelPort,
@@ -90,7 +92,7 @@ class BoardTop : public sc_core::sc_module, public Board {
     };
     call(kBusSync, bus_sync_), call(kClockSelect, clock_select_), call(kWatchdog, watchdog_);
     call(kIsaSlave, isa_slave_), call(kHostPort, host_port_), call(kInterruptController, interrupt_controller_);
-    call(kPic8259, pic_8259_);
+    call(kPic8259, pic_8259_), call(kHostInterrupt, host_interrupt_);
     call(kHostSignals, host_signals_), call(kDpram, dpram_), call(kPanelPort, panel_port_);
   }
 
@@ -115,6 +117,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   void connect_host_port(Parts& changed);
   void connect_dpram(Parts& changed);
   void connect_interrupts(Parts& changed);
+  void connect_host_interrupt(Parts& changed);
   void connect_isa(Parts& changed);
   void connect_panel(Parts& changed);
   template <class Block>
@@ -137,6 +140,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   IsaSlave isa_slave_;
   HostPort host_port_;
   InterruptController interrupt_controller_;
+  HostInterrupt host_interrupt_;
   Pic8259 pic_8259_;
   HostSignals host_signals_;
   Dpram dpram_;

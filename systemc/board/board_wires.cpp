@@ -41,6 +41,7 @@ void BoardTop::connect(Parts changed) {
   if (from(kPortAPins, kIsaSlave, kStraps)) connect_dpram(changed);
   if (from(kIsaSlave, kHostPort, kHostSignals, kWatchdog, kConnectorPins, kStraps) || equ_ != gate_ics_.equ())
     connect_interrupts(changed);
+  if (from(kInterruptController, kPic8259, kStraps)) connect_host_interrupt(changed);
   if (from(kIsaPins, kHostPort, kInterruptController, kPic8259, kDpram, kStraps)) connect_isa(changed);
   if (from(kConnectorPins, kHostSignals, kStraps)) connect_panel(changed);
 }
@@ -163,6 +164,12 @@ void BoardTop::connect_interrupts(Parts& changed) {
 }
 
 void BoardTop::connect_isa(Parts& changed) {
+void BoardTop::connect_host_interrupt(Parts& changed) {
+  Wires to(*this, kHostInterrupt, host_interrupt_, changed);
+  to(host_interrupt_.in.request, straps_.pic_8259 ? pic_8259_.request() : interrupt_controller_.request());
+  to(host_interrupt_.in.served, straps_.pic_8259 ? pic_8259_.served() : interrupt_controller_.served());
+}
+
   IsaSlave::Inputs& in = isa_slave_.in;
   Wires to(*this, kIsaSlave, isa_slave_, changed);
   if ((changed & parts(kIsaPins)) != 0) {
@@ -253,13 +260,13 @@ BoardOutputs BoardTop::pins(Parts changed) const {
     const InterruptController& own = interrupt_controller_;
     const bool old = straps_.pic_8259;
     const auto enabled = static_cast<std::uint8_t>(~pic_8259_.imr());
-    o.set(pin::kIsaIrq, old ? pic_8259_.irq() : own.irq());
     o.set(pin::kPicIst, old ? pic_8259_.irr() & enabled : own.ist());
     o.set(pin::kPicSig, own.sig());
     o.set(pin::kPicMsk, old ? enabled : own.msk());
     o.set(pin::kPicElr, !old ? own.elr() : pic_8259_.level() ? 0xFF : 0);
   }
   return o;
+  if (from(kHostInterrupt)) o.set(pin::kIsaIrq, host_interrupt_.irq());
 }
 
 }  // namespace brick

@@ -2,6 +2,7 @@
 #include "testbench/unit/host/rtl_blocks.h"
 
 #include "Vdpram.h"
+#include "Vhost_interrupt.h"
 #include "Vhost_port.h"
 #include "Vhost_signals.h"
 #include "Vinterrupt_controller.h"
@@ -20,8 +21,8 @@ void drive(Vinterrupt_controller& v, const InterruptControllerInputs& in) {
   v.wdata_i = in.wdata;
 }
 Outputs sample(const Vinterrupt_controller& v) {
-  return {{"rdata", v.rdata_o}, {"ist", v.ist_o}, {"sig", v.sig_o},
-          {"msk", v.msk_o},     {"elr", v.elr_o}, {"irq", v.irq_o}};
+  return {{"rdata", v.rdata_o}, {"ist", v.ist_o},         {"sig", v.sig_o},      {"msk", v.msk_o},
+          {"elr", v.elr_o},     {"request", v.request_o}, {"served", v.served_o}};
 }
 
 void drive(Vpic_8259& v, const Pic8259Inputs& in) {
@@ -32,8 +33,8 @@ void drive(Vpic_8259& v, const Pic8259Inputs& in) {
   v.wdata_i = in.wdata;
 }
 Outputs sample(const Vpic_8259& v) {
-  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},     {"isr", v.isr_o},
-          {"imr", v.imr_o},     {"level", v.level_o}, {"irq", v.irq_o}};
+  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},         {"isr", v.isr_o},      {"imr", v.imr_o},
+          {"level", v.level_o}, {"request", v.request_o}, {"served", v.served_o}};
 }
 
 void drive(Vhost_signals& v, const HostSignalsInputs& in) {
