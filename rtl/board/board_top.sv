@@ -452,7 +452,7 @@ module board_top #(
 
   logic        dpram_sel;
   logic [15:0] dpram_rdata;
-  logic        dpram_valid;
+  logic        dpram_drive;
   assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
@@ -466,7 +466,7 @@ module board_top #(
     .cpu_wr_ni   (pa_wr_ni),
     .cpu_wdata_i (pa_wdata_i[15:0]),
     .cpu_rdata_o (dpram_rdata),
-    .cpu_valid_o (dpram_valid),
+    .cpu_drive_o (dpram_drive),
     .cpu_wait_o  (pa_ta_n_o),
     .cpu_busy_o  (busy_cpu_o),
     .mem_sel_i   (mem_sel),
@@ -500,14 +500,8 @@ module board_top #(
     .oe_o      (bus_rdata_oe)
   );
 
-  // The dual-ported RAM answers on clk_pwm.
-  logic from_dpram_q;
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) from_dpram_q <= 1'b0;
-    else         from_dpram_q <= dpram_sel;
-  end
-  assign pa_data_o    = from_dpram_q ? {8'h0, dpram_rdata} : bus_rdata;
-  assign pa_data_oe_o = bus_rdata_oe | (from_dpram_q & dpram_valid & ~pa_rd_ni);
+  assign pa_data_o    = dpram_drive ? {8'h0, dpram_rdata} : bus_rdata;
+  assign pa_data_oe_o = bus_rdata_oe | dpram_drive;
 
 endmodule : board_top
 

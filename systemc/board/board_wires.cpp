@@ -125,6 +125,7 @@ void BoardTop::connect_dpram(Parts& changed) {
     to(in.cpu_rd_n, inputs_.pa_rd_n);
     to(in.cpu_wr_n, inputs_.pa_wr_n);
     to(in.cpu_wdata, inputs_.pa_wdata & 0xFFFF);
+    dpram_.rd_moved();
   }
   if ((changed & parts(kIsaSlave)) != 0) {
     to(in.mem_sel, isa_slave_.mem_sel());
@@ -212,8 +213,8 @@ BoardOutputs BoardTop::pins(Parts changed) const {
   BoardOutputs o = outputs_;
   const auto from = [changed](auto... part) { return (changed & parts(part...)) != 0; };
   if (from(kPortAPins, kBusSync, kDpram)) {
-    o.set(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : bus_read_.data());
-    o.set(pin::kPaDataOe, data_oe());
+    o.set(pin::kPaData, dpram_.cpu_drive() ? dpram_.cpu_rdata() : bus_read_.data());
+    o.set(pin::kPaDataOe, bus_read_.oe() || dpram_.cpu_drive());
     o.set(pin::kPaTaN, dpram_.cpu_wait());
     o.set(pin::kBusyHost, dpram_.host_busy());
     o.set(pin::kBusyCpu, dpram_.cpu_busy());

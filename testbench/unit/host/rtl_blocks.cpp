@@ -37,6 +37,12 @@ Outputs sample(const Vpic_8259& v) {
           {"level", v.level_o}, {"request", v.request_o}, {"served", v.served_o}};
 }
 
+void drive(Vhost_interrupt& v, const HostInterruptInputs& in) {
+  v.request_i = in.request;
+  v.served_i = in.served;
+}
+Outputs sample(const Vhost_interrupt& v) { return {{"irq", v.irq_o}}; }
+
 void drive(Vhost_signals& v, const HostSignalsInputs& in) {
   v.wr_i = in.wr;
   v.ctrl_wr_i = in.ctrl_wr;
@@ -85,7 +91,8 @@ void drive(Vdpram& v, const DpramInputs& in) {
 }
 Outputs sample(const Vdpram& v) {
   return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_wait", v.cpu_wait_o}, {"cpu_busy", v.cpu_busy_o},
-          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o}};
+          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o},
+          {"cpu_drive", v.cpu_drive_o}};
 }
 
 void drive(Visa_slave& v, const IsaSlaveInputs& in) {
@@ -141,6 +148,9 @@ RtlBlock<InterruptControllerInputs, Outputs> make_rtl_interrupt_controller(int s
 }
 RtlBlock<Pic8259Inputs, Outputs> make_rtl_pic_8259(int seed) {
   return verilated_shell<Vpic_8259, Pic8259Inputs, Outputs>(drive, sample, seed);
+}
+RtlBlock<HostInterruptInputs, Outputs> make_rtl_host_interrupt(int seed) {
+  return verilated_shell<Vhost_interrupt, HostInterruptInputs, Outputs>(drive, sample, seed);
 }
 RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals() {
   return verilated_shell<Vhost_signals, HostSignalsInputs, Outputs>(drive, sample);
