@@ -394,32 +394,34 @@ module board_top #(
   logic       turbo_request, turbo_served, old_request, old_served, old_level;
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni,
-    .reset_i (host_reset),
-    .line_i  (pic_line),
-    .wr_i    (pic_sel & pic_wr & ~pic_8259_q),
-    .addr_i  (pic_addr),
-    .wdata_i (pic_wdata),
-    .rdata_o (turbo_rdata),
-    .ist_o   (turbo_ist),
-    .sig_o   (pic_sig_o),
-    .msk_o   (turbo_msk),
-    .elr_o   (turbo_elr),
-    .irq_o   (turbo_irq)
+    .reset_i   (host_reset),
+    .line_i    (pic_line),
+    .wr_i      (pic_sel & pic_wr & ~pic_8259_q),
+    .addr_i    (pic_addr),
+    .wdata_i   (pic_wdata),
+    .rdata_o   (turbo_rdata),
+    .ist_o     (turbo_ist),
+    .sig_o     (pic_sig_o),
+    .msk_o     (turbo_msk),
+    .elr_o     (turbo_elr),
+    .request_o (turbo_request),
+    .served_o  (turbo_served)
   );
 
   pic_8259 u_pic_8259 (
     .clk_ref_i, .rst_ni,
-    .line_i  (pic_line),
-    .rd_i    (pic_rd & pic_8259_q),
-    .wr_i    (pic_sel & pic_wr & pic_8259_q),
-    .addr_i  (pic_addr),
-    .wdata_i (pic_wdata),
-    .rdata_o (old_rdata),
-    .irr_o   (old_irr),
-    .isr_o   (old_isr),
-    .imr_o   (old_imr),
-    .level_o (old_level),
-    .irq_o   (old_irq)
+    .line_i    (pic_line),
+    .rd_i      (pic_rd & pic_8259_q),
+    .wr_i      (pic_sel & pic_wr & pic_8259_q),
+    .addr_i    (pic_addr),
+    .wdata_i   (pic_wdata),
+    .rdata_o   (old_rdata),
+    .irr_o     (old_irr),
+    .isr_o     (old_isr),
+    .imr_o     (old_imr),
+    .level_o   (old_level),
+    .request_o (old_request),
+    .served_o  (old_served)
   );
   logic unused_isr;
   assign unused_isr = &{1'b0, old_isr};

@@ -139,8 +139,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   IsaSlave isa_slave_;
   HostPort host_port_;
   InterruptController interrupt_controller_;
-  HostInterrupt host_interrupt_;
   Pic8259 pic_8259_;
+  HostInterrupt host_interrupt_;
   HostSignals host_signals_;
   Dpram dpram_;
   PanelPort panel_port_;

@@ -164,13 +164,13 @@ void BoardTop::connect_interrupts(Parts& changed) {
   to_old(old.line, line);
 }
 
-void BoardTop::connect_isa(Parts& changed) {
 void BoardTop::connect_host_interrupt(Parts& changed) {
   Wires to(*this, kHostInterrupt, host_interrupt_, changed);
   to(host_interrupt_.in.request, straps_.pic_8259 ? pic_8259_.request() : interrupt_controller_.request());
   to(host_interrupt_.in.served, straps_.pic_8259 ? pic_8259_.served() : interrupt_controller_.served());
 }
 
+void BoardTop::connect_isa(Parts& changed) {
   IsaSlave::Inputs& in = isa_slave_.in;
   Wires to(*this, kIsaSlave, isa_slave_, changed);
   if ((changed & parts(kIsaPins)) != 0) {
@@ -266,8 +266,8 @@ BoardOutputs BoardTop::pins(Parts changed) const {
     o.set(pin::kPicMsk, old ? enabled : own.msk());
     o.set(pin::kPicElr, !old ? own.elr() : pic_8259_.level() ? 0xFF : 0);
   }
-  return o;
   if (from(kHostInterrupt)) o.set(pin::kIsaIrq, host_interrupt_.irq());
+  return o;
 }
 
 }  // namespace brick
