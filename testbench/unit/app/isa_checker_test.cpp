@@ -12,6 +12,8 @@ namespace {
 
 constexpr TimeFs kNs = kFsPerNs;
 
+constexpr TimeFs kUsual = -1;
+
 // The points of one cycle, and of what the board does in it; kNever does not happen. Whatever is not set keeps the
 // rules.
 struct Points {
@@ -19,7 +21,8 @@ struct Points {
   TimeFs width = 600 * kNs;
   TimeFs release = 40 * kNs, data_release = 40 * kNs;  // from its end
   TimeFs next = 300 * kNs;
-  TimeFs valid = kNever, off = 8 * kNs;               // of read data; off from the end
+  TimeFs valid = kUsual, off = 8 * kNs;               // of read data, usually in reads alone; off from the end
+  unsigned lanes = 3;                                 // that the board drives
   TimeFs ready_low = kNever, ready_high = 200 * kNs;  // from the fall
   TimeFs memcs16 = 30 * kNs;                          // from LA
 };
@@ -62,8 +65,10 @@ class IsaCheckerTest : public ::testing::Test {
     at(low + p.sa, [=] { in_.isa_sa = address & 0xFFFFF, in_.isa_sbhe_n = !memory; });
     at(low + p.data, [=] { in_.isa_sd = ++data_; });
     at(low, [=] { in_.*command = false; });
-    if (p.valid != kNever) {
-      at(low + p.valid, [=] { out_.set(pin::kIsaSdOe, 3); });
+    const bool read = command == &BoardInputs::isa_ior_n || command == &BoardInputs::isa_memr_n;
+    const bool shows = p.valid == kUsual ? read && p.width > 50 * kNs : p.valid != kNever;
+    if (shows) {
+      at(low + (p.valid == kUsual ? 50 * kNs : p.valid), [=] { out_.set(pin::kIsaSdOe, p.lanes); });
       at(high + p.off, [=] { out_.set(pin::kIsaSdOe, 0); });
     }
     if (p.ready_low != kNever) {
@@ -125,14 +130,12 @@ class IsaCheckerTest : public ::testing::Test {
 TEST_F(IsaCheckerTest, EachRowOfTheIoCycleHasItsLimit) {
   const auto read = [this](const Points& p) { io(p); };
   const auto write = [this](const Points& p) { iow(p); };
-  Points answered;
-  answered.valid = 50 * kNs;
   expect_limit(IsaChecker::kT1, read, &Points::sa, -91 * kNs, 1);
   expect_limit(IsaChecker::kT2, read, &Points::width, 530 * kNs, -1);
   expect_limit(IsaChecker::kT3, read, &Points::release, 25 * kNs, -1);
-  expect_limit(IsaChecker::kT4, read, &Points::valid, 489 * kNs, 1, IsaChecker::kIo, answered);
-  expect_limit(IsaChecker::kT5, read, &Points::off, 0, -1, IsaChecker::kIo, answered);
-  expect_limit(IsaChecker::kT5Off, read, &Points::off, 30 * kNs, 1, IsaChecker::kIo, answered);
+  expect_limit(IsaChecker::kT4, read, &Points::valid, 489 * kNs, 1);
+  expect_limit(IsaChecker::kT5, read, &Points::off, 0, -1);
+  expect_limit(IsaChecker::kT5Off, read, &Points::off, 30 * kNs, 1);
   expect_limit(IsaChecker::kT6, write, &Points::data, 22 * kNs, 1);
   expect_limit(IsaChecker::kT7, write, &Points::data_release, 25 * kNs, -1);
   expect_limit(IsaChecker::kT11, read, &Points::next, 170 * kNs, -1, IsaChecker::kIo, [] {
@@ -148,8 +151,7 @@ TEST_F(IsaCheckerTest, EachRowOfTheMemoryCycleHasItsLimit) {
   const auto write = [this](const Points& p) { memw(p); };
   Points usual;
   usual.width = 250 * kNs;
-  Points answered = usual, stretched = usual;
-  answered.valid = 50 * kNs;
+  Points stretched = usual;
   stretched.ready_low = 70 * kNs;
   stretched.width = 400 * kNs;
   expect_limit(IsaChecker::kT8, read, &Points::ready_low, 366 * kNs, 1, kWide, [&] {
@@ -166,7 +168,7 @@ TEST_F(IsaCheckerTest, EachRowOfTheMemoryCycleHasItsLimit) {
   }());
   expect_limit(IsaChecker::kT12, read, &Points::la, -111 * kNs, 1, kWide, usual);
   expect_limit(IsaChecker::kT13, read, &Points::width, 219 * kNs, -1, kWide, usual);
-  expect_limit(IsaChecker::kT14, read, &Points::valid, 173 * kNs, 1, kWide, answered);
+  expect_limit(IsaChecker::kT14, read, &Points::valid, 173 * kNs, 1, kWide, usual);
   expect_limit(IsaChecker::kT15, write, &Points::data_release, 25 * kNs, -1, kWide, usual);
   expect_limit(IsaChecker::kT16, read, &Points::memcs16, 66 * kNs, 1, kWide, usual);
   expect_limit(IsaChecker::kT18, read, &Points::sa, -34 * kNs, 1, kWide, usual);
@@ -205,6 +207,65 @@ TEST_F(IsaCheckerTest, Row16IsJudgedForMovesOfLaToTheWindow) {
   play();
   EXPECT_EQ(broken(), std::vector<std::string>{"t16"});
   EXPECT_EQ(timing_address(checker_.ledger().violations()[0].where), "memory 0x0C0000");
+}
+
+// Rows 4 and 14: the board's own, for as long as the limit, and no data on every lane that the host reads.
+TEST_F(IsaCheckerTest, ReadThatTheBoardDoesNotAnswerBreaksTheRowOfItsData) {
+  Points never;
+  never.valid = kNever;
+  io(never);
+  ASSERT_EQ(broken(), std::vector<std::string>{"t4"});
+  EXPECT_EQ(checker_.ledger().violations()[0].measured, never.width);
+  EXPECT_EQ(timing_address(checker_.ledger().violations()[0].where), "I/O 0x212");
+  checker_.ledger().forget();
+  memr(never);
+  EXPECT_EQ(broken(), std::vector<std::string>{"t14"});
+  checker_.ledger().forget();
+  never.ready_low = 70 * kNs;  // that IOCHRDY was low is no excuse
+  memr(never);
+  EXPECT_EQ(broken(), std::vector<std::string>{"t14"});
+  checker_.ledger().forget();
+  for (const unsigned lanes : {1u, 2u}) {
+    Points half;
+    half.lanes = lanes;
+    memr(half);
+    EXPECT_EQ(broken(), std::vector<std::string>{"t14"}) << lanes;
+    checker_.ledger().forget();
+    io(half);
+    EXPECT_EQ(broken().size(), lanes - 1) << "I/O is on the lower lane";
+    checker_.ledger().forget();
+  }
+  EXPECT_EQ(checker_.read_cycles_answered(), 1u);
+}
+
+TEST_F(IsaCheckerTest, ReadThatTheBoardNeedNotAnswerBreaksNothing) {
+  Points never;
+  never.valid = kNever;
+  io(never, 0x220);
+  memr(never, 0xE0000);
+  in_.isa_aen = true;
+  show();
+  io(never);
+  in_.isa_aen = false;
+  show();
+  never.width = 489 * kNs;  // too short for its data, and reported as such
+  io(never);
+  EXPECT_EQ(broken(), std::vector<std::string>{"t2"});
+  checker_.ledger().forget();
+  never.width = 600 * kNs;
+
+  // host-bus:3.8/4: from a reset's end, 120 ns.
+  for (const auto& level : std::vector<std::function<void(bool)>>{[this](bool on) { in_.isa_resetdrv = on; },
+                                                                  [this](bool on) { in_.rst_n = !on; }}) {
+    for (const TimeFs after : {120 * kNs - 1, 120 * kNs}) {
+      at(end_ + 500 * kNs, [=] { level(true); });
+      at(end_ + 1000 * kNs - after, [=] { level(false); });
+      never.next = 1000 * kNs;
+      io(never);
+      EXPECT_EQ(broken().size(), after == 120 * kNs ? 1u : 0u);
+      checker_.ledger().forget();
+    }
+  }
 }
 
 // host-bus:3.3 at 80 MHz: TC is 12.5 ns, so read strobes are low for 17.45 ns, 34.55 ns apart after a slow byte.
@@ -254,8 +315,10 @@ TEST_F(IsaCheckerTest, UnsoundHostsAreNamed) {
 
   end_ = now_;
   at(end_ + 500 * kNs, [this] { in_.isa_ior_n = false; });
+  at(end_ + 600 * kNs, [this] { out_.set(pin::kIsaSdOe, 1); });
   at(end_ + 700 * kNs, [this] { in_.isa_sa = 0x219; });
   at(end_ + 1100 * kNs, [this] { in_.isa_ior_n = true; });
+  at(end_ + 1105 * kNs, [this] { out_.set(pin::kIsaSdOe, 0); });
   play();
   EXPECT_EQ(broken(), std::vector<std::string>{"address-stands"});
   checker_.ledger().forget();
@@ -279,6 +342,32 @@ TEST_F(IsaCheckerTest, UnsoundHostsAreNamed) {
     EXPECT_EQ(broken(), std::vector<std::string>{"whole-cycle"});
     checker_.ledger().forget();
   }
+}
+
+// One strobe rises in the instant in which another falls: no time between two cycles.
+TEST_F(IsaCheckerTest, CommandThatIsHandedOverIsTwoCyclesWithoutRecovery) {
+  at(end_ + 300 * kNs, [this] { in_.isa_sa = 0x21A; });
+  at(end_ + 500 * kNs, [this] { in_.isa_ior_n = false; });
+  at(end_ + 550 * kNs, [this] { out_.set(pin::kIsaSdOe, 1); });
+  at(end_ + 1100 * kNs, [this] { in_.isa_ior_n = true, in_.isa_iow_n = false; });
+  at(end_ + 1105 * kNs, [this] { out_.set(pin::kIsaSdOe, 0); });
+  at(end_ + 1700 * kNs, [this] { in_.isa_iow_n = true; });
+  play();
+  ASSERT_EQ(broken(), std::vector<std::string>{"t11"});
+  EXPECT_EQ(checker_.ledger().violations()[0].measured, 0);
+  EXPECT_TRUE(checker_.ledger().violations()[0].where.write);
+  EXPECT_EQ(checker_.cycles(IsaChecker::kIoRead, 0, 0), 1u);
+  EXPECT_EQ(checker_.cycles(IsaChecker::kIoWrite, 0, 0), 1u);
+  checker_.ledger().forget();
+
+  end_ = now_;  // to two at once
+  at(end_ + 500 * kNs, [this] { in_.isa_iow_n = false; });
+  at(end_ + 1100 * kNs, [this] { in_.isa_iow_n = true, in_.isa_memr_n = in_.isa_memw_n = false; });
+  at(end_ + 1700 * kNs, [this] { in_.isa_memr_n = in_.isa_memw_n = true; });
+  play();
+  EXPECT_THAT(broken(), ::testing::IsSupersetOf({"t11", "one-command"}));
+  EXPECT_EQ(checker_.cycles(IsaChecker::kIoWrite, 0, 0), 2u) << "the first of them was sound";
+  EXPECT_EQ(checker_.cycles(IsaChecker::kMemoryRead, 0, 0), 0u);
 }
 
 TEST_F(IsaCheckerTest, BoardThatDrivesWhereItMayNotIsNamed) {
