@@ -141,6 +141,7 @@ Machine::Impl::~Impl() {
 
 void Machine::Impl::power_on() {
   memory.randomize(config.seed + power_ons++);
+  if (pci) pci->reset();
   memory.set_strap(MachineMemory::Strap::kJumperE3, jumper_e3);
   memory.set_strap(MachineMemory::Strap::kFitted, config.board.fitted);
   memory.set_strap(MachineMemory::Strap::kCard, config.board.card);

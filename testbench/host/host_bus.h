@@ -63,7 +63,7 @@ class HostBus : public IsaHost {
  private:
   // What the computer's start-up gives a PCI board.
   static constexpr std::uint32_t kPciIo = 0xE000, kPciMemory = 0xFEB0'0000;
-  void start_pci();
+  void bridge_reset() override;
   std::uint32_t pci(PciSpace space, std::uint32_t address, bool write, std::uint32_t value, unsigned bytes);
   std::uint32_t window_address(std::uint32_t byte_offset);
 

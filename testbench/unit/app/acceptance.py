@@ -81,6 +81,9 @@ def restarts():
               "I16", "@expect 5", "VERSION"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     check(r.stdout.split() == ["5", "5", "5", "1.947"], r.stdout)
+    r = play(["I16=7", "@power", "I16", "@dpram 0x40 = 1234", "@dpram 0x40 1", "@expect 1234"], "--board",
+             "turbo-pmac2-pci")
+    check(r.returncode == 0 and r.stdout.split()[:1] == ["5"], f"the bridge is set up again: {r.stdout}{r.stderr}")
 
 
 def flash():
