@@ -175,8 +175,7 @@ def slot_of_8_bits():
     with tempfile.TemporaryDirectory() as folder:
         board = pathlib.Path(folder) / "slot8.toml"
         board.write_text((BOARDS / "turbo-pmac2-pc.toml").read_text() + "slot = 8\n")
-        for bench, engine in (("smoke", "systemc"), ("host-port", "systemc"), ("bus-timing", "systemc"),
-                              ("isa-timing", "lockstep")):
+        for bench, engine in (("smoke", "systemc"), ("host-port", "systemc"), ("isa-timing", "lockstep")):
             bench_passes(bench, engine, board=str(board))
         r = brick("run", "dpram", "--board", str(board))
         check(r.returncode == 2 and "dpram needs a slot of 16 bits, which board slot8 has not" in r.stderr, r.stderr)
