@@ -161,6 +161,10 @@ def jpan():
         check(r.returncode == 0, f"{engine}: exit {r.returncode}: {r.stderr}")
         first = first or r.stdout
         check(r.stdout == first, f"{engine}: {r.stdout}, expected {first}")
+    for line in ("VERSION", "@reset", "@power"):
+        r = play(["@jpan INIT=0", "@wait 10us", line], "--board", "turbo-pmac-pci")
+        check(r.returncode == 1 and "stdin:3: " in r.stderr and r.stderr.count("\n") == 1,
+              f"{line} while INIT is low: exit {r.returncode}: {r.stderr}")
     r = play(["VERSION", "@jpan FPD=1"])
     check(r.returncode == 2 and r.stdout == "", f"exit {r.returncode}: {r.stdout}")
     check("stdin:2: @jpan: this board has no control panel port; expected" in r.stderr and r.stderr.count("\n") == 1,
@@ -211,6 +215,7 @@ def bad_input():
             (["run", "nothing"], "", "nothing"),
             (["exec"], "", "FILE"),
             (["exec", f"{folder}/none.txt"], "", "none.txt"),
+            (["exec", folder], "", folder),
             (["exec", "-", "--engine", "verilog"], "", "verilog"),
             (["exec", "-", "--frob"], "", "--frob"),
             (["exec", "-", "--seed", "x"], "", "--seed"),
