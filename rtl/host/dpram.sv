@@ -58,7 +58,7 @@ module dpram (
 
   // ---------------------------------------------------------------- CPU side, arbitration
   // A strobe is a request until its done toggle has followed: at once if it is not for this RAM, when it is granted, or
-  // when it is high again. It is granted only while it is seen low: what has ended does not take the next one's address.
+  // when it is high again. It is granted only while it is seen low: what has ended takes nothing of the next one's.
   // A grant reads at once. A write samples its data there and is made two edges later, if /WR then proves to have been
   // low, and no other strobe to have fallen, from the address' sample to that of the data.
   logic        rd_done_q, rd_ack_q, wr_done_q, busy_q, own_q, own_wr_q, sampled_q, proven_q, show_q;

@@ -57,8 +57,8 @@ module clock_gen (
   sync2 #(.Reset(1'b1)) u_phase_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(phase_i), .q_o(phase_pin));
   sync2 #(.Reset(1'b1)) u_servo_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(servo_i), .q_o(servo_pin));
 
-  // Every other tick is just one more step of the ramp. Of what follows a pin no edge is told apart here: it would be the
-  // longest path there is.
+  // Every other tick is just one more step of the ramp. Of an IC that follows a pin no edge is told apart here: that
+  // would be the longest path there is.
   logic ext_rise, phase_release, servo_release, special, turn, retard;
   assign phase_ext = phase_ext_i & ~phase_oe_q;
   assign servo_ext = servo_ext_i & ~servo_oe_q;
@@ -101,8 +101,8 @@ module clock_gen (
     end
   end
 
-  // Phase clock. While external, PHASE follows the pin and the divider is kept ready for a full period. Only then does a
-  // turnaround come from outside.
+  // Phase clock. While external, PHASE follows the pin and the divider is kept ready for a full period. Only then does
+  // a turnaround come from outside.
   always_comb begin
     phase_d     = phase_q;
     phase_cnt_d = phase_cnt_q;

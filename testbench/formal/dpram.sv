@@ -55,8 +55,9 @@ module dpram_rules (
   dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_toggle_i(rd_toggle),
              .wr_toggle_i(wr_toggle), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
              .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i(wdata_i), .cpu_rdata_o(rdata),
-             .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy), .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i),
-             .mem_wr_i(host_wr_i), .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
+             .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy),
+             .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i), .mem_wr_i(host_wr_i),
+             .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
              .mem_wdata_i(host_wdata_i), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
              .host_busy_o(host_busy_pin));
   // From inside: who owns which word, and the ports of the memory.

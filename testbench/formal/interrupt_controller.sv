@@ -37,7 +37,8 @@ module interrupt_controller_rules (
   logic [7:0] rdata, ist, sig, msk, elr;
   logic       request, served, irq;
   interrupt_controller dut (.clk_ref_i(clk_i), .rst_ni, .reset_i, .line_i, .wr_i, .addr_i, .wdata_i,
-                            .rdata_o(rdata), .ist_o(ist), .sig_o(sig), .msk_o(msk), .elr_o(elr), .request_o(request), .served_o(served));
+                            .rdata_o(rdata), .ist_o(ist), .sig_o(sig), .msk_o(msk), .elr_o(elr),
+                            .request_o(request), .served_o(served));
   host_interrupt line (.clk_ref_i(clk_i), .rst_ni, .request_i(request), .served_i(served), .irq_o(irq));
 
   (* anyconst *) logic [2:0] n;
