@@ -62,7 +62,9 @@ void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
 unsigned PortA::wait_states(unsigned area) const {
   using namespace regs::cpu_bus::bcr;
   constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
-  return kFields[area].get(forced_bcr_.value_or(bcr_));
+  constexpr std::uint32_t kDevices = kBa1w.mask() | kBa2w.mask() | kBdfw.mask();
+  const bool set_up = ((bcr_ ^ regs::cpu_bus::kBcr.reset) & kDevices) != 0 || pctl_ != regs::cpu_bus::kPctl.reset;
+  return kFields[area].get(forced_bcr_ && set_up ? *forced_bcr_ : bcr_);
 }
 
 void PortA::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {

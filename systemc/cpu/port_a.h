@@ -81,7 +81,8 @@ class PortA : public sc_core::sc_module {
   std::int64_t free_at() const { return next_start_; }  // CPU cycle at which the next access may begin
   unsigned wait_states(unsigned area) const;            // AA0..AA2, 3 = default area
 
-  // Wait states of all areas as in BCR, whatever the program writes there.
+  // Wait states of all areas as in BCR, whatever the program writes there. They act when it has left what a reset gives
+  // it: another CPU clock, or other wait states of a device; until then it may not know yet what clock it will have.
   void force_wait_states(std::uint32_t bcr) { forced_bcr_ = bcr; }
   // Of what a read takes from a bus that moves, and of whether a moving /TA is seen: the same on every engine.
   void seed(std::uint64_t seed) { random_ = seed; }

@@ -110,5 +110,25 @@ TEST(PortASamples, ForcedWaitStatesWinOverTheProgram) {
   EXPECT_EQ(rig.last->wait_states, 9u);
 }
 
+// Not before the program has set up its bus: by another clock, or by other wait states of a device.
+TEST(PortASamples, ForcedWaitStatesActAfterTheSetUp) {
+  const auto wait_states = [](std::uint32_t i52, std::uint32_t bcr) {
+    PortARig rig;
+    rig.port_a.force_wait_states(9 << 5);
+    rig.write('X', 0xFFFFFB, 0x1FFFFF);
+    rig.write('X', 0xFFFFFD, i52);
+    rig.write('X', 0xFFFFFB, bcr);
+    rig.read('X', 0x078000);
+    return rig.last->wait_states;
+  };
+  EXPECT_EQ(wait_states(7, 0x1FFFFF), 31u) << "as after a reset";
+  EXPECT_EQ(wait_states(7, 0x1FFFE1), 31u) << "another number for main memory alone";
+  EXPECT_EQ(wait_states(31, 0x1FFFE5), 9u);
+  EXPECT_EQ(wait_states(0, 0x1FFFFF), 9u);
+  EXPECT_EQ(wait_states(7, 0x1FFFDF), 9u);
+  EXPECT_EQ(wait_states(7, 0x1FFBFF), 9u);
+  EXPECT_EQ(wait_states(7, 0x1EFFFF), 9u);
+}
+
 }  // namespace
 }  // namespace brick
