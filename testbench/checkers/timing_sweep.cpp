@@ -11,9 +11,11 @@ constexpr unsigned kQuick = 24, kSure = 600;  // accesses: to look for the least
 class Sweep {
  public:
   Sweep(Machine& machine, std::uint64_t seed) : machine_(machine), traffic_(machine, seed) {
-    machine_.check_bus_cycle = [this](const PortACycle& c) { judge_.cycle(c); };
+    pins_.on_cycle = [this](const PinCycle& c) { judge_.cycle(c); };
+    pins_.board_moved(machine.now_fs(), machine.outputs());
+    machine_.attach_port_a_watch(&pins_);
   }
-  ~Sweep() { machine_.check_bus_cycle = nullptr; }
+  ~Sweep() { machine_.attach_port_a_watch(nullptr); }
 
   SweepCell cell(unsigned i52, PortATiming::Region region) {
     SweepCell cell{i52, region, {}, "-"};
@@ -52,6 +54,7 @@ class Sweep {
   }
 
   Machine& machine_;
+  PinWatch pins_;
   PortATiming judge_;
   BusTraffic traffic_;
 };

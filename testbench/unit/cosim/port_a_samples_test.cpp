@@ -40,12 +40,9 @@ TEST(PortASamples, BitsThatMoveAfterTheSampleAreRandomBySeed) {
   std::set<std::uint32_t> words;
   for (std::uint64_t seed = 1; seed <= 64; ++seed) {
     EXPECT_EQ(read(moves_at(in_time), seed, &c), 0x112211u) << "in time";
-    EXPECT_FALSE(c.corrupted);
     const std::uint32_t word = read(moves_at(late), seed, &c);
     EXPECT_EQ(word, read(moves_at(late), seed)) << "the same seed, the same word";
     EXPECT_EQ(word & ~0x003300u, 0x110011u) << "bits that stood";
-    EXPECT_TRUE(c.corrupted);
-    EXPECT_EQ(c.data_valid, tick_to_fs(late));
     words.insert(word);
   }
   EXPECT_GT(words.size(), 8u) << "of sixteen";
@@ -57,21 +54,13 @@ TEST(PortASamples, ABusThatNobodyDrivesGivesAnything) {
   std::set<std::uint32_t> words;
   for (std::uint64_t seed = 1; seed <= 32; ++seed) words.insert(read([](Tick) { return shows(5, false); }, seed, &c));
   EXPECT_GT(words.size(), 30u);
-  EXPECT_EQ(c.data_valid, c.strobe_high) << "never before";
   const Tick gone = edge_before(c.strobe_high);
-  read([gone](Tick t) { return shows(5, t < gone); }, 1, &c);
-  EXPECT_TRUE(c.corrupted && c.data_lost);
-  EXPECT_EQ(c.data_held, tick_to_fs(gone));
-}
-
-TEST(PortASamples, HoldEndsWithTheFirstChangeAfterTheStrobe) {
-  PortACycle c;
-  read([](Tick) { return shows(5); }, 1, &c);
-  EXPECT_EQ(c.data_held, c.end);
+  words.clear();
+  for (std::uint64_t seed = 1; seed <= 32; ++seed)
+    words.insert(read([gone](Tick t) { return shows(5, t < gone); }, seed, &c));
+  EXPECT_GT(words.size(), 30u) << "let go just before /RD rises";
   const Tick after = fs_to_tick(c.strobe_high);
-  read([after](Tick t) { return shows(t < after ? 5 : 6); }, 1, &c);
-  EXPECT_FALSE(c.corrupted);
-  EXPECT_EQ(c.data_held, tick_to_fs(after));
+  EXPECT_EQ(read([after](Tick t) { return shows(5, t < after); }, 1), 5u) << "no hold is needed";
 }
 
 // /TA falls between the sample, TC / 4 + 2 ns before /RD would rise, and that rise.
@@ -83,22 +72,18 @@ TEST(PortASamples, TaThatMovesInItsWindowIsSeenOrNotBySeed) {
   ASSERT_EQ(c.stretched, 0u);
   const Tick in_time = edge_before(c.ta_time), inside = edge_before(c.strobe_high);
   ASSERT_GT(inside, in_time);
-  unsigned seen = 0, missed = 0;
+  unsigned seen = 0;
   for (std::uint64_t seed = 1; seed <= 64; ++seed) {
     read(ready_at(in_time), seed, &c);
-    EXPECT_EQ(c.stretched + c.ta_seen + c.ta_missed, 0u) << "in time";
+    EXPECT_EQ(c.stretched, 0u) << "in time";
     read(ready_at(inside), seed, &c);
-    EXPECT_EQ(c.stretched, c.ta_missed);
-    EXPECT_EQ(c.ta_seen + c.ta_missed, 1u);
-    EXPECT_FALSE(c.ta_high);
-    seen += c.ta_seen;
-    missed += c.ta_missed;
+    EXPECT_LE(c.stretched, 1u);
+    seen += c.stretched == 0;
     read(ready_at(inside + 1), seed, &c);
-    EXPECT_EQ(c.ta_seen + c.ta_missed, 0u) << "after the window of one sample and before that of the next";
-    EXPECT_EQ(c.stretched, 1u);
+    EXPECT_EQ(c.stretched, 1u) << "after the window of one sample and before that of the next";
   }
   EXPECT_GT(seen, 16u);
-  EXPECT_GT(missed, 16u);
+  EXPECT_LT(seen, 48u);
 }
 
 TEST(PortASamples, ForcedWaitStatesWinOverTheProgram) {
