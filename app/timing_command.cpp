@@ -22,7 +22,7 @@ int sweep_command(const TimingOptions& options) {
   if (config.bcr) throw UsageError("--bcr: --sweep sets the wait states itself; expected one of the two");
   const std::pair<const char*, bool> of_a_bench[] = {{"--wavedrom", !options.wavedrom.empty()},
                                                      {"--wave", !options.run.wave.empty()},
-                                                     {"--waive", !options.run.waive.empty()},
+                                                     {"--waive", options.run.waive.has_value()},
                                                      {"--gdb", !options.run.gdb.empty()}};
   for (const auto& [option, given] : of_a_bench)
     if (given) throw UsageError(fmt::format("{}: --sweep runs no bench; expected one of the two", option));
