@@ -42,7 +42,8 @@ int sweep_command(const TimingOptions& options) {
     list.push_back({{"i52", c.i52},
                     {"region", names.ledger().regions()[c.region]},
                     {"least", c.least ? nlohmann::json(*c.least) : nlohmann::json()},
-                    {"below", c.below}});
+                    {"below", c.below},
+                    {"address", c.address}});
   }
   const nlohmann::json results = {
       {"engine", options.run.engine}, {"board", config.board.name}, {"seed", config.seed}, {"sweep", list}};
