@@ -17,7 +17,8 @@ namespace {
 std::vector<ScriptLine> open_script(const std::string& file, const std::string& name) {
   if (file == "-") return read_script(std::cin, name);
   std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file)) throw UsageError(fmt::format("{}: cannot be read; expected a host script, or - for standard input", file));
+  if (!in || std::filesystem::is_directory(file))
+    throw UsageError(fmt::format("{}: cannot be read; expected a host script, or - for standard input", file));
   return read_script(in, name);
 }
 
