@@ -220,10 +220,11 @@ class Interrupts : public InterruptHost {
       same.equal(when + ": IRQ falls", edge(0, written), written);
       same.equal(when + ": IRQ rises", edge(1, written), rise);
     };
+    const Tick place = pick(3);  // of the rise in its clock: three of the clears meet it then
     for (Tick lead = -15; lead <= 15; ++lead) {
       set(0x60, 0);
       drive(kSourceMi1, true);
-      const Tick rise = b.bus.now() + 150 + pick(3), end = rise + lead;
+      const Tick rise = (b.bus.now() / kTicksPerRef + 50) * kTicksPerRef + place, end = rise + lead;
       std::vector<std::pair<Tick, Edit>> edits;
       add_write(edits, end, kClear, 0);
       edits.emplace_back(rise, [](HostInputs& in) { in.mi2 = true; });
