@@ -203,14 +203,16 @@ std::size_t PortA::seen_at(TimeFs time) const {
   return i;
 }
 
-// How long D and /TA stood after the strobe.
+// How long D and /TA stood after the strobe. The board ends both with the strobe itself, without a clock: an edge that
+// sees it rise early, within the aperture, shows that end before the pin has moved.
 void PortA::hold_times() {
   if (!cycle_.data_lost) cycle_.data_held = cycle_.end;
   cycle_.ta_held = cycle_.end;
   const Seen& first = seen_.front();
   for (auto s = seen_.rbegin(); s != seen_.rend(); ++s) {
-    if (!cycle_.data_lost && !s->same_data(first)) cycle_.data_held = s->time;
-    if (s->busy != first.busy) cycle_.ta_held = s->time;
+    const TimeFs time = std::max(s->time, cycle_.strobe_high);
+    if (!cycle_.data_lost && !s->same_data(first)) cycle_.data_held = time;
+    if (s->busy != first.busy) cycle_.ta_held = time;
   }
 }
 
