@@ -308,6 +308,34 @@ TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsSample) {
 }
 
 // docs/port-a.md: the board drives the bus from the sample on and no longer than /RD is low.
+// host-bus:6.9/8: the third edge of clk_pwm after the strobe has the word.
+TEST_P(BoardMap, DataPinsAreDrivenFromTheWordOfTheRamToTheEndOfTheRead) {
+  rig.write(true, 0x060000, 0x1234);
+  for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
+    rig.run(30 + phase);
+    rig.in.pa_addr = 0x060000;
+    rig.in.pa_x = true;
+    rig.in.pa_aa = 4;
+    rig.apply();
+    rig.run(2);
+    rig.in.pa_rd_n = false;
+    rig.apply();
+    rig.run(2);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u);
+    rig.run(1);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 1u);
+    EXPECT_EQ(rig.get(pin::kPaData), 0x1234u);
+    rig.run(20);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 1u);
+    rig.in.pa_rd_n = true;
+    rig.apply();
+    rig.run(1);
+    EXPECT_EQ(rig.get(pin::kPaDataOe), 0u) << "off with /RD";
+    rig.in.pa_aa = 0;
+    rig.apply();
+  }
+}
+
 TEST_P(BoardMap, DataPinsAreDrivenFromTheSampleToTheEndOfTheRead) {
   struct Case {
     std::uint32_t address;
@@ -368,6 +396,42 @@ TEST_P(BoardMap, WritesBackToBackDoNotMerge) {
       rig.apply();
       rig.run(1);
     }
+  }
+}
+
+// host-bus:2.6/1: lows of a tick, 33.9 ns apart. The two words that HOTX gets go to RX one after the other; of the two
+// that the host has sent each read frees one.
+TEST_P(BoardMap, EachFallOfAStrobeIsAnAccessHoweverShortAndSoon) {
+  const auto strobes = [this](bool BoardInputs::*strobe, unsigned word, Tick phase, Tick apart) {
+    rig.in.pa_addr = word;
+    rig.in.pa_x = rig.in.pa_int = true;
+    rig.apply();
+    rig.run(6 + 3 - rig.now() % 3 + phase);
+    for (int i = 0; i < 2; ++i)
+      for (const bool level : {false, true}) {
+        rig.in.*strobe = level;
+        rig.apply();
+        rig.run(level ? apart - 1 : 1);
+      }
+    rig.run(9);
+    rig.in.pa_int = false;
+    rig.apply();
+  };
+  constexpr unsigned kRxdf = 1, kTrdy = 4;
+  for (Tick phase = 0; phase < 3; ++phase) {
+    rig.run(30);
+    rig.in.pa_wdata = 0x41;
+    strobes(&BoardInputs::pa_wr_n, 0x07, phase, 4);  // X:$FFFFC7
+    for (int word = 0; word < 2; ++word) {
+      EXPECT_NE(io_read(2) & kRxdf, 0u) << "word " << word << ", phase " << phase;
+      EXPECT_EQ(io_read(7), 0x41u);
+    }
+    EXPECT_EQ(io_read(2) & kRxdf, 0u);
+    io_write(7, 0x42);
+    io_write(7, 0x43);
+    EXPECT_EQ(io_read(2) & kTrdy, 0u);
+    strobes(&BoardInputs::pa_rd_n, 0x06, phase, 7);  // X:$FFFFC6: the second word needs a period to come
+    EXPECT_NE(io_read(2) & kTrdy, 0u) << "phase " << phase;
   }
 }
 
