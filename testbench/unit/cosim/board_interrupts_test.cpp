@@ -116,6 +116,25 @@ TEST_P(BoardInterrupts, ControlOutputsAreALatchOfTheirOwn) {
   EXPECT_EQ(rig.read(true, kControlOutputs), 3u) << "an X word";
 }
 
+// host-bus:3.5/1: one line, high while any enabled line interrupts.
+TEST_P(BoardInterrupts, LineToThePcIsActiveHigh) {
+  rig.run(6);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u);
+  io_write(10, 0x03);
+  for (const unsigned signals : {1u, 2u, 3u}) {
+    rig.write(true, kHostSignals, signals);
+    rig.run(12);
+    EXPECT_EQ(rig.get(pin::kIsaIrq), 1u);
+    io_write(8, 0);
+    EXPECT_EQ(rig.get(pin::kIsaIrq), 0u) << "cleared";
+    rig.write(true, kHostSignals, 0);
+    rig.run(12);
+  }
+  rig.write(true, kHostSignals, 4);
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u) << "masked";
+}
+
 // host-bus:5.6/5: a low level lights; without the connector they stay dark.
 TEST_P(BoardInterrupts, LampsAreTheInverseOfTheirSignals) {
   BRICK_COVERS("BREQ-6");

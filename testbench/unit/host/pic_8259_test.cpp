@@ -275,6 +275,32 @@ TEST_F(Pic8259Clocks, EdgeThatMeetsTheAcknowledgeIsKept) {
     }
 }
 
+// Line 2 falls for one clock around the acknowledge of line 1, and is asked for again.
+TEST_F(Pic8259Clocks, EdgeOfAnotherLineThatMeetsAnAcknowledgeIsKept) {
+  for (int lead = 0; lead <= 5; ++lead) {
+    initialize();
+    line(2, true);
+    both.ref(5);
+    both.in.addr = kAcknowledge;
+    both.in.rd = true;
+    both.ref();
+    both.in.rd = false;
+    EXPECT_EQ(both.get("irr"), 0u);
+    line(1, true);
+    both.ref(5);
+    line(2, false);
+    for (int clock = 0; clock < 8; ++clock) {
+      if (clock == 1) line(2, true);
+      both.in.rd = clock == lead;
+      if (clock == lead) { EXPECT_EQ(both.get("rdata"), 0x09u); }
+      both.ref();
+    }
+    both.in.rd = false;
+    EXPECT_EQ(both.get("irr"), 0x04u) << "acknowledge " << lead << " clocks after the fall";
+    EXPECT_LOCKSTEP(both);
+  }
+}
+
 TEST_F(Pic8259Clocks, EdgeThatMeetsIcw1IsKept) {
   for (int lead = 0; lead <= 4; ++lead) {  // clocks from the line's rise to the write; it is seen at the second
     initialize();
