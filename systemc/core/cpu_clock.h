@@ -18,6 +18,8 @@ class CpuClock {
     n_ = n;
     reciprocal_ = ~std::uint64_t{0} / divisor() + 1;
   }
+  // Number of the cycle since power-on, as if the clock had always been this fast.
+  Cycle number(Cycle cycle) const { return edge_ * n_ / kTicksPerMultiplier + cycle - cycle_; }
   unsigned multiplier() const { return static_cast<unsigned>(n_); }
 
   // The start of a cycle, from which times are counted without a division each.
