@@ -23,6 +23,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       panel_port_("panel_port"),
       gate_ics_(ics) {
   inputs_.fitted = ics;
+  isa_slave_.leave_ends_out();
   for (unsigned i = 0; i < Dpram::kWords; ++i) dpram_.poke(i, start_word(start_seed(seed), i));
   reset_all(0);
   outputs_ = pins(kEverything);
@@ -39,14 +40,46 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
     reset_end_ = kNever;
   else if (reset_end_ == kNever)
     reset_end_ = next_ref_edge(now_) + kResetRelease;
-  const bool own = inputs_.pa_int || (inputs_.pa_aa & 2) != 0 || (inputs_.pa_aa & 0xF) == 0;
-  bus_strobes_.set_pins(inputs_, own, !held());
-  any_strobes_.set_pins(inputs_, true, !held());
-  bus_read_.set_rd_n(inputs_.pa_rd_n);
+  if (changed == 0) return;
   touched_ = 0;
-  connect(changed);
-  schedule(touched_);
-  if (pins(changed | touched_) != outputs_) next_own_ = now_ + 1;
+  if ((changed & parts(kPortAPins)) != 0) drive_port_a();
+  if ((changed & ~parts(kPortAPins)) != 0) connect(changed & ~parts(kPortAPins));
+  if (touched_ != 0) schedule(touched_);
+}
+
+void BoardTop::set_port_a(const BoardInputs& inputs) {
+  static_cast<PortAPins&>(inputs_) = inputs;
+  touched_ = 0;
+  drive_port_a();
+  if (touched_ != 0) schedule(touched_);
+}
+
+// The CPU's bus alone has pins that follow others without a clock. What hangs on its inputs shows nothing else before
+// the next edge, so there is nothing to wire on; while no strobe moves or is on its way nobody takes notice of the
+// rest.
+void BoardTop::drive_port_a() {
+  const bool strobe = any_strobes_.moves(inputs_) || held();
+  if (strobe) {
+    const bool own = inputs_.pa_int || (inputs_.pa_aa & 2) != 0 || (inputs_.pa_aa & 0xF) == 0;
+    bus_strobes_.set_pins(inputs_, own, !held());
+    any_strobes_.set_pins(inputs_, true, !held());
+    bus_read_.set_rd_n(inputs_.pa_rd_n);
+  }
+  if (strobe || bus_sync_.under_way()) {
+    bus_sync_.advance(now_);
+    touched_ |= parts(kBusSync);
+  }
+  bus_sync_.set_pins(inputs_, bus_strobes_);
+  const bool selected = Dpram::Inputs::selected(inputs_);
+  if (strobe || selected || dpram_.in.cpu_sel) {
+    dpram_.advance(now_);
+    touched_ |= parts(kDpram);
+  }
+  dpram_.in.set_cpu_pins(inputs_, any_strobes_.rd_toggle(), any_strobes_.wr_toggle());
+  dpram_.rd_moved();
+  const bool oe = bus_read_.oe() || dpram_.cpu_drive();
+  if (oe != (outputs_.get(pin::kPaDataOe) != 0) || dpram_.cpu_wait() != (outputs_.get(pin::kPaTaN) != 0))
+    next_own_ = now_ + 1;
 }
 
 void BoardTop::set_motor_inputs(unsigned ic, const MotorInputs& inputs) {
@@ -74,30 +107,26 @@ void BoardTop::reset_all(Tick t) {
 
 BoardTop::Parts BoardTop::due(Tick t) const {
   Parts which = 0;
-  for (unsigned i = 0; i < kBlocks; ++i) which |= (next_[i] <= t ? 1u : 0u) << i;
+  for (unsigned i = 0; i < (seldom_ <= t ? kBlocks : kBusy); ++i) which |= (next_[i] <= t ? 1u : 0u) << i;
   return which;
 }
 
 void BoardTop::schedule(Parts which) {
   each_block(which, [this](Part part, const auto& block) { next_[part] = block.next_event(); });
-  Tick first = kNever;  // without branches, which nobody could foresee
-  for (const Tick next : next_) first = std::min(first, next);
-  first_ = first;
+  const auto first = [this](unsigned from, unsigned to,
+                            Tick earliest) {  // without branches, which nobody could foresee
+    for (unsigned i = from; i < to; ++i) earliest = std::min(earliest, next_[i]);
+    return earliest;
+  };
+  if ((which >> kBusy) != 0) seldom_ = first(kBusy, kBlocks, kNever);
+  first_ = first(0, kBusy, seldom_);
 }
 
 // The edge t. What looks at a register of another block does so before any block executes the edge.
 void BoardTop::execute(Tick t) {
-  const bool ref = is_ref_edge(t), read = ref && bus_sync_.rd(), write = ref && bus_sync_.we();
-  const BusSync::Where where = bus_sync_.where();
-  const std::uint32_t wdata = bus_sync_.wdata();
-  const int ic = select_.ic;
-  if (read && select_.any)
-    bus_read_.take(read_data(t - 1), select_.internal);
-  else if (read)
-    bus_read_.take_nothing();
-
   Parts changed = first_ <= t ? due(t) : 0;
   touched_ = changed;
+  const IcAccess ic = (changed & parts(kBusSync)) != 0 ? take_strobe(t) : IcAccess{};
   each_block(changed, [t](Part, auto& block) { block.advance(t); });
   if (gate_ics_.next_event() <= t && gate_ics_.advance(t)) changed |= parts(kIcClocks);
   Parts own = 0;
@@ -105,19 +134,37 @@ void BoardTop::execute(Tick t) {
     next_own_ = kNever;
     own = parts(kPortAPins);
   }
-  if (ref && straps_differ_) {
+  if (straps_differ_ && is_ref_edge(t)) {
     take_straps(inputs_, t);
     changed |= parts(kStraps);
   }
-  if (read && ic >= 0) gate_ics_.read_taken(static_cast<unsigned>(ic), where.x, where.addr, t);
-  if (write && ic >= 0) {
-    gate_ics_.write(static_cast<unsigned>(ic), where.x, where.addr, wdata, t);
+  if (ic.read) gate_ics_.read_taken(ic.number, ic.where.x, ic.where.addr, t);
+  if (ic.write) {
+    gate_ics_.write(ic.number, ic.where.x, ic.where.addr, ic.wdata, t);
     changed |= parts(kIcClocks);
   }
   now_ = t;
   connect(changed);
   schedule(touched_);
   shown_ = changed | touched_ | own;
+}
+
+// The strobe of a Port A access that the edge t sees: of a read it takes the sample; an access of an IC is returned.
+BoardTop::IcAccess BoardTop::take_strobe(Tick t) {
+  bus_sync_.advance(t - 1);
+  const bool read = bus_sync_.rd(), write = bus_sync_.we();
+  if (!read && !write) return {};
+  select();
+  if (read && select_.any)
+    bus_read_.take(read_data(t - 1), select_.internal);
+  else if (read)
+    bus_read_.take_nothing();
+  if (select_.ic < 0) return {};
+  return {read, write, static_cast<unsigned>(select_.ic), bus_sync_.where(), bus_sync_.wdata()};
+}
+
+void BoardTop::select() {
+  select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted);
 }
 
 std::uint32_t BoardTop::read_data(Tick t) const {

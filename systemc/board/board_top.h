@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <type_traits>
 
 #include <systemc>
 
@@ -39,6 +40,7 @@ class BoardTop : public sc_core::sc_module, public Board {
 
   Tick now() const override { return now_; }
   void set_inputs(const BoardInputs& inputs) override;
+  void set_port_a(const BoardInputs& inputs) override;
   const BoardOutputs& outputs() const override { return outputs_; }
   Tick run_until(Tick limit, const BoardOutputs& stop_on = {}) override;
   Tick quiet_until(const BoardOutputs& watched) const override;
@@ -60,15 +62,16 @@ class BoardTop : public sc_core::sc_module, public Board {
   // What may change: the blocks of the buses, which all have a next event, then what else feeds them.
   enum Part : unsigned {
     kBusSync,
-    kClockSelect,
-    kWatchdog,
     kIsaSlave,
     kHostPort,
+    kDpram,
+    kBusy,  // those before have events all the time that a bus is used, those from here on seldom
+    kClockSelect = kBusy,
+    kWatchdog,
     kInterruptController,
     kPic8259,
     kHostInterrupt,
     kHostSignals,
-    kDpram,
     kPanelPort,
     kBlocks,
     kIcClocks = kBlocks,
@@ -87,27 +90,77 @@ class BoardTop : public sc_core::sc_module, public Board {
   // Those of the blocks in `which`, by their own types: this is the innermost loop of the model.
   template <class F>
   void each_block(Parts which, F f) {
-    const auto call = [&](Part part, auto& block) {
-      if ((which >> part & 1) != 0) f(part, block);
-    };
-    call(kBusSync, bus_sync_), call(kClockSelect, clock_select_), call(kWatchdog, watchdog_);
-    call(kIsaSlave, isa_slave_), call(kHostPort, host_port_), call(kInterruptController, interrupt_controller_);
-    call(kPic8259, pic_8259_), call(kHostInterrupt, host_interrupt_);
-    call(kHostSignals, host_signals_), call(kDpram, dpram_), call(kPanelPort, panel_port_);
+    for (which &= kEveryBlock; which != 0; which &= which - 1) {
+      switch (__builtin_ctz(which)) {
+        case kBusSync:
+          f(kBusSync, bus_sync_);
+          break;
+        case kClockSelect:
+          f(kClockSelect, clock_select_);
+          break;
+        case kWatchdog:
+          f(kWatchdog, watchdog_);
+          break;
+        case kIsaSlave:
+          f(kIsaSlave, isa_slave_);
+          break;
+        case kHostPort:
+          f(kHostPort, host_port_);
+          break;
+        case kInterruptController:
+          f(kInterruptController, interrupt_controller_);
+          break;
+        case kPic8259:
+          f(kPic8259, pic_8259_);
+          break;
+        case kHostInterrupt:
+          f(kHostInterrupt, host_interrupt_);
+          break;
+        case kHostSignals:
+          f(kHostSignals, host_signals_);
+          break;
+        case kDpram:
+          f(kDpram, dpram_);
+          break;
+        case kPanelPort:
+          f(kPanelPort, panel_port_);
+          break;
+      }
+    }
   }
 
+  struct IcAccess {  // of the CPU to a register of an IC
+    bool read = false, write = false;
+    unsigned number = 0;
+    BusSync::Where where;
+    std::uint32_t wdata = 0;
+  };
+
   void reset_all(Tick t);
+  void drive_port_a();
   void execute(Tick t);
+  IcAccess take_strobe(Tick t);
+  void select();
   Parts due(Tick t) const;  // blocks whose next event has come
   void schedule(Parts which);
   Tick next_event() const;
   Tick next_clock_event() const { return std::min(next_[kClockSelect], gate_ics_.next_clock_event()); }
 
   // Bytes, not values: what equal groups have between their fields may differ, which costs time only, and no new field
-  // is forgotten here.
+  // is forgotten here. Word by word, because a call of memcmp() costs more than it compares.
   template <class Group>
   static bool same(const Group& a, const Group& b) {
-    return std::memcmp(&a, &b, sizeof(Group)) == 0;
+    using Word = std::conditional_t<sizeof(Group) >= 8, std::uint64_t, std::uint32_t>;
+    static_assert(sizeof(Group) >= sizeof(Word));
+    const auto word = [](const Group& group, std::size_t at) {
+      Word w;
+      std::memcpy(&w, reinterpret_cast<const unsigned char*>(&group) + at, sizeof w);
+      return w;
+    };
+    constexpr std::size_t kLast = sizeof(Group) - sizeof(Word);  // may overlap the one before
+    Word differ = word(a, kLast) ^ word(b, kLast);
+    for (std::size_t at = 0; at < kLast; at += sizeof(Word)) differ |= word(a, at) ^ word(b, at);
+    return differ == 0;
   }
 
   // board_wires.cpp. `changed`: what may show other values than before.
@@ -149,7 +202,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   BoardInputs inputs_;
   static constexpr Straps kNoStraps{0, 0, false, false, 0, false, false};
   Straps straps_ = kNoStraps;  // as taken over on clk_ref
-  AddressSelect select_;       // of the address in bus_sync
+  AddressSelect select_;       // of the address in bus_sync, while a strobe is shown
+  bool strobe_wired_ = false;  // and the blocks of the buses have it
   // The board is in reset up to reset_end_, kNever while the pin is low: rtl/common/reset_sync.sv. From the first edge
   // of clk_ref that sees the pin high it is one period of clk_ref and two edges of clk_pwm.
   static constexpr Tick kResetRelease = kTicksPerRef + 2;
@@ -159,7 +213,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   Tick now_ = 0;
 
   std::array<Tick, kBlocks> next_{};  // event of each block, as long as its inputs stay as they are
-  Tick first_ = 0;                    // of these
+  Tick seldom_ = 0, first_ = 0;       // of those from kBusy on, of all
   Tick next_own_ = kNever;            // the board's: what follows a pin without a clock
   Parts touched_ = 0;                 // blocks that have executed the edges up to now() and must be asked anew
   Parts shown_ = kEverything;         // what may have changed at the last edge

@@ -35,10 +35,10 @@ class BoardTop::Wires {
 // Each with all its sources.
 void BoardTop::connect(Parts changed) {
   const auto from = [&changed](auto... part) { return (changed & parts(part...)) != 0; };
-  if (from(kPortAPins, kBusSync, kStraps)) connect_port_a(changed);
+  if (from(kBusSync, kStraps)) connect_port_a(changed);
   if (from(kIcClocks, kClockSelect, kWatchdog, kConnectorPins, kStraps)) connect_clocks(changed);
   if (from(kBusSync, kIsaSlave, kStraps)) connect_host_port(changed);
-  if (from(kPortAPins, kIsaSlave, kStraps)) connect_dpram(changed);
+  if (from(kIsaSlave, kStraps)) connect_dpram(changed);
   if (from(kIsaSlave, kHostPort, kHostSignals, kWatchdog, kConnectorPins, kStraps) || equ_ != gate_ics_.equ())
     connect_interrupts(changed);
   if (from(kInterruptController, kPic8259, kStraps)) connect_host_interrupt(changed);
@@ -47,14 +47,13 @@ void BoardTop::connect(Parts changed) {
 }
 
 void BoardTop::connect_port_a(Parts& changed) {
-  if ((changed & parts(kPortAPins)) != 0) {
-    Parts none = 0;  // it shows nothing without a clock
-    Wires(*this, kBusSync, bus_sync_, none).touch();
-    bus_sync_.set_pins(inputs_, bus_strobes_);
+  const bool write = bus_sync_.we(), strobe = write || bus_sync_.rd();
+  if (!strobe && !strobe_wired_) {
+    changed &= ~parts(kBusSync);  // nor is there anything for the host port
+    return;
   }
-  if ((changed & parts(kBusSync, kStraps)) == 0) return;
-  select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted);
-  const bool write = bus_sync_.we();
+  strobe_wired_ = strobe;
+  select();
 
   Wires latch(*this, kHostSignals, host_signals_, changed);
   latch(host_signals_.in.wr, write && select_.signals);
@@ -116,18 +115,7 @@ void BoardTop::connect_dpram(Parts& changed) {
   Dpram::Inputs& in = dpram_.in;
   Wires to(*this, kDpram, dpram_, changed);
   if ((changed & parts(kStraps)) != 0) to(in.small, straps_.dpram_small);
-  if ((changed & parts(kPortAPins)) != 0) {
-    to(in.rd_toggle, any_strobes_.rd_toggle());
-    to(in.wr_toggle, any_strobes_.wr_toggle());
-    to(in.cpu_sel, (inputs_.pa_aa & 4) != 0 && !inputs_.pa_int);
-    to(in.cpu_x, inputs_.pa_x);
-    to(in.cpu_addr, inputs_.pa_addr & 0x3FFF);
-    to(in.cpu_rd_n, inputs_.pa_rd_n);
-    to(in.cpu_wr_n, inputs_.pa_wr_n);
-    to(in.cpu_wdata, inputs_.pa_wdata & 0xFFFF);
-    dpram_.rd_moved();
-  }
-  if ((changed & parts(kIsaSlave)) != 0) {
+  if ((changed & parts(kIsaSlave)) != 0 && (isa_slave_.mem_target() || in.mem_sel || in.mem_wr)) {
     to(in.mem_sel, isa_slave_.mem_sel());
     to(in.mem_rd, isa_slave_.mem_rd());
     to(in.mem_wr, isa_slave_.mem_wr());
@@ -143,7 +131,8 @@ void BoardTop::connect_interrupts(Parts& changed) {
   Pic8259::Inputs& old = pic_8259_.in;
   Wires to(*this, kInterruptController, interrupt_controller_, changed);
   Wires to_old(*this, kPic8259, pic_8259_, changed);
-  if ((changed & parts(kIsaSlave, kStraps)) != 0) {
+  const bool concerned = isa_slave_.pic_target() || in.wr || old.rd || old.wr || in.reset != isa_slave_.host_reset();
+  if (((changed & parts(kIsaSlave)) != 0 && concerned) || (changed & parts(kStraps)) != 0) {
     const bool write = isa_slave_.pic_sel() && isa_slave_.pic_wr();
     to(in.wr, write && !straps_.pic_8259);
     to(in.addr, isa_slave_.pic_addr());
@@ -225,7 +214,7 @@ BoardOutputs BoardTop::pins(Parts changed) const {
     o.set(pin::kIsaIochrdy, isa_slave_.isa_iochrdy());
     o.set(pin::kIsaMemcs16N, isa_slave_.isa_memcs16_n());
   }
-  if (from(kHostPort)) {
+  if (from(kHostPort) && (host_port_.stepped() || changed == kEverything)) {
     o.set(pin::kIrqHost, host_port_.irq());
     o.set(pin::kHreq, host_port_.hreq());
     o.set(pin::kTxde, host_port_.txde());

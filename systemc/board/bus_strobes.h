@@ -14,6 +14,7 @@ class BusStrobes {
     rd_n_ = pins.pa_rd_n;
     wr_n_ = pins.pa_wr_n;
   }
+  bool moves(const PortAPins& pins) const { return pins.pa_rd_n != rd_n_ || pins.pa_wr_n != wr_n_; }
   bool rd_toggle() const { return rd_toggle_; }
   bool wr_toggle() const { return wr_toggle_; }
 

@@ -2,6 +2,7 @@
 // Address and data are executed only where a strobe uses them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include <systemc>
@@ -26,30 +27,38 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
   void set_pins(const PortAPins& pins, const BusStrobes& strobes) {
     where0_ = {pins.pa_addr & 0x7FFFF, static_cast<std::uint8_t>(pins.pa_aa & 0xF), pins.pa_x, pins.pa_int};
     wdata0_ = pins.pa_wdata & 0xFFFFFF;
-    rd_[0] = strobes.rd_toggle();
-    wr_[0] = strobes.wr_toggle();
+    rd_.set(strobes.rd_toggle());
+    wr_.set(strobes.wr_toggle());
   }
 
   // Of the access whose strobe is next, right when rd() or we() is.
   const Where& where() const { return where_; }
   std::uint32_t wdata() const { return wdata_; }
-  bool we() const { return wr_[2] != wr_[3]; }
-  bool rd() const { return rd_[2] != rd_[3]; }
+  bool we() const { return wr_.strobe(); }
+  bool rd() const { return rd_.strobe(); }
+  bool under_way() const { return rd_.under_way() || wr_.under_way(); }
   // A write is under way; an access that the on-chip page may see is.
-  bool write_pending() const { return under_way(wr_); }
-  bool internal_pending() const { return where0_.internal || under_way(rd_) || under_way(wr_); }
+  bool write_pending() const { return wr_.under_way(); }
+  bool internal_pending() const { return where0_.internal || under_way(); }
 
-  Tick next_event() const override { return under_way(rd_) || under_way(wr_) ? next_ref_edge(now_) : kNever; }
+  // The edge with which a strobe begins or ends. One of a read acts at its end only, when the sample is taken: where
+  // nobody else wants to know of it (the on-chip page does) it has no beginning.
+  Tick next_event() const override {
+    const bool write = wr_.under_way();
+    if (!write && !rd_.under_way()) return kNever;
+    const Tick edge = next_ref_edge(now_);
+    if (rd() || we()) return edge;
+    const Tick begin =
+        std::min(edge + kTicksPerRef * rd_.edges_to_strobe(), edge + kTicksPerRef * wr_.edges_to_strobe());
+    return write || where0_.internal ? begin : begin + kTicksPerRef;
+  }
 
   void advance(Tick t) override {
-    if (next_ref_edge(now_) <= t && next_event() != kNever) {
+    for (Tick edge = next_ref_edge(now_); under_way() && edge <= t; edge += kTicksPerRef) {
       where_ = where0_;
       wdata_ = wdata0_;
-      for (bool* stage : {rd_, wr_}) {
-        stage[3] = stage[2];
-        stage[2] = stage[1];
-        stage[1] = stage[0];
-      }
+      rd_.shift();
+      wr_.shift();
     }
     now_ = t;
   }
@@ -57,18 +66,34 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
   void reset(Tick t) override {
     where_ = Where{};
     wdata_ = 0;
-    for (unsigned stage = 1; stage < 4; ++stage) rd_[stage] = wr_[stage] = false;
+    rd_.reset();
+    wr_.reset();
     now_ = t;
   }
 
  private:
-  static bool under_way(const bool (&stage)[4]) {
-    return stage[0] != stage[1] || stage[1] != stage[2] || stage[2] != stage[3];
-  }
+  // A level and three stages behind it, the level in bit 0.
+  class Stages {
+   public:
+    void set(bool level) { bits_ = (bits_ & 14u) | (level ? 1u : 0u); }
+    void shift() { bits_ = (bits_ << 1 | (bits_ & 1)) & 15; }
+    void reset() { bits_ = bits_ & 1; }
+    bool under_way() const { return bits_ != 0 && bits_ != 15; }
+    bool strobe() const { return ((bits_ >> 2 ^ bits_ >> 3) & 1) != 0; }
+    // Edges before the one with which a strobe begins; many when none does.
+    Tick edges_to_strobe() const {
+      const unsigned moves = bits_ ^ bits_ >> 1;
+      return (moves & 2) != 0 ? 0 : (moves & 1) != 0 ? 1 : kMany;
+    }
+
+   private:
+    static constexpr Tick kMany = 1 << 20;
+    unsigned bits_ = 0;
+  };
 
   Where where0_, where_;
   std::uint32_t wdata0_ = 0, wdata_ = 0;
-  bool rd_[4] = {}, wr_[4] = {};  // stage 0: as bus_strobes shows it
+  Stages rd_, wr_;
   Tick now_ = 0;
 };
 

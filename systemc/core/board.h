@@ -19,6 +19,8 @@ class Board {
 
   // Applies inputs: the clock edge now()+1 is the first to see them. Outputs do not change by this call.
   virtual void set_inputs(const BoardInputs& inputs) = 0;
+  // The same when no others than those of Port A have changed.
+  virtual void set_port_a(const BoardInputs& inputs) { set_inputs(inputs); }
 
   // Outputs as they stand after the edge now().
   virtual const BoardOutputs& outputs() const = 0;

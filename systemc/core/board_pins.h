@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <type_traits>
 
 namespace brick {
 
@@ -37,6 +38,11 @@ struct IsaPins {
   bool isa_sbhe_n = true;  // 0 = upper byte lane used
   bool isa_resetdrv = false;
 
+  bool operator==(const IsaPins& o) const {
+    return isa_la == o.isa_la && isa_sa == o.isa_sa && isa_sd == o.isa_sd && isa_ior_n == o.isa_ior_n &&
+           isa_iow_n == o.isa_iow_n && isa_memr_n == o.isa_memr_n && isa_memw_n == o.isa_memw_n &&
+           isa_aen == o.isa_aen && isa_sbhe_n == o.isa_sbhe_n && isa_resetdrv == o.isa_resetdrv;
+  }
   void set_address(std::uint32_t address) {  // of 24 bits; I/O has 16
     isa_la = static_cast<std::uint8_t>(address >> 17 & 0x7F);
     isa_sa = address & 0xFFFFF;
@@ -51,12 +57,11 @@ struct IsaStraps {
   bool window_flat = true;      // 64 KiB, not 16 KiB with a page register
   bool slot8 = false;           // the slot has no LA: A23..A20 are not compared, A19..A17 come from SA
 
-  static constexpr IsaStraps none() { return {0, false, 0, false, false}; }  // as a reset leaves them
-  bool operator!=(const IsaStraps& o) const {
-    return io_base != o.io_base || io_decode16 != o.io_decode16 || window != o.window || window_flat != o.window_flat ||
-           slot8 != o.slot8;
-  }
+  static constexpr IsaStraps none() { return {0, false, 0, false, false}; }                   // as a reset leaves them
+  bool operator!=(const IsaStraps& o) const { return std::memcmp(this, &o, sizeof o) != 0; }  // no byte between them
 };
+
+static_assert(std::has_unique_object_representations_v<IsaStraps>);
 
 // What is fitted and how the jumpers stand; taken over on clk_ref.
 struct Straps {
@@ -165,9 +170,9 @@ struct BoardOutputs {
   bool operator!=(const BoardOutputs& o) const { return w != o.w; }
   // True when any bit selected by `select` differs.
   bool differs(const BoardOutputs& o, const BoardOutputs& select) const {
-    for (unsigned i = 0; i < kBoardOutputWords; ++i)
-      if ((w[i] ^ o.w[i]) & select.w[i]) return true;
-    return false;
+    std::uint32_t bits = 0;  // without branches
+    for (unsigned i = 0; i < kBoardOutputWords; ++i) bits |= (w[i] ^ o.w[i]) & select.w[i];
+    return bits != 0;
   }
 };
 

@@ -44,8 +44,7 @@ void Signals::trace_name(Id id) {
   trace_->declare(id, info_[id], same_as_[id]);
 }
 
-void Signals::set(Id id, TimeFs time, std::uint64_t value) {
-  if (value_[id] == value) return;
+void Signals::change(Id id, TimeFs time, std::uint64_t value) {
   value_[id] = value;
   if (traced(id)) trace_->record(id, time, value);
 }

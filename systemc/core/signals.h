@@ -30,7 +30,9 @@ class Signals {
   // One more name of the signal `of`, which is set under its first name.
   Id add_alias(const std::string& name, Id of);
 
-  void set(Id id, TimeFs time, std::uint64_t value);
+  void set(Id id, TimeFs time, std::uint64_t value) {
+    if (value_[id] != value) change(id, time, value);
+  }
   void set_text(Id id, TimeFs time, const std::string& text);
 
   // The value is not followed while the waveform does not want it: whoever wants it asks `source`.
@@ -60,6 +62,7 @@ class Signals {
 
  private:
   Id declare(const std::string& name, unsigned width, Radix radix);
+  void change(Id id, TimeFs time, std::uint64_t value);
   void trace_name(Id id);
 
   std::vector<Info> info_;

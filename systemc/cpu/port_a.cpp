@@ -116,6 +116,7 @@ bool PortA::begin(tlm::tlm_generic_payload& payload, PortARequest& request) {
   }
   shape_ = port_a_shape(cycle_.wait_states, cycle_.write);
   start_ = std::max(request.start, next_start_);
+  origin_ = clock_.origin(start_);
   if (cycle_.on_chip && (address == regs::cpu_bus::kBcr.address || address == regs::cpu_bus::kPctl.address)) {
     control_register(payload, request);
     return false;
@@ -142,18 +143,17 @@ void PortA::control_register(tlm::tlm_generic_payload& payload, PortARequest& re
 }
 
 TimeFs PortA::time_of(Step step) const {
-  const unsigned stretch = 4 * cycle_.stretched;
   switch (step) {
     case Step::kAddress:
-      return clock_.time(start_);
+      return clock_.time(origin_, 0);
     case Step::kDriveData:
-      return clock_.time(start_, shape_.data_driven);
+      return clock_.time(origin_, shape_.data_driven);
     case Step::kStrobeLow:
-      return clock_.time(start_, shape_.strobe_low);
+      return clock_.time(origin_, shape_.strobe_low);
     case Step::kStrobeHigh:
-      return clock_.time(start_, shape_.strobe_high + stretch);
+      return clock_.time(origin_, shape_.strobe_high);
     case Step::kEnd:
-      return clock_.time(start_, 4 * (shape_.clocks + shape_.held_clocks) + stretch);
+      return clock_.time(origin_, 4 * (shape_.clocks + shape_.held_clocks));
   }
   return 0;
 }
@@ -221,7 +221,7 @@ std::uint32_t PortA::random() {  // splitmix64
 // or not seen (rows 118 and 119).
 bool PortA::acknowledged() {
   if (cycle_.on_chip || cycle_.wait_states == 0) return true;
-  cycle_.ta_time = clock_.time(start_, shape_.strobe_high - 1 + 4 * cycle_.stretched) - kTaSetup;
+  cycle_.ta_time = clock_.time(origin_, shape_.strobe_high - 1) - kTaSetup;
   const std::size_t at = seen_at(cycle_.ta_time);
   const bool busy = seen_[at].busy, now_busy = seen_.back().busy;
   bool moved = false;
@@ -261,6 +261,7 @@ void PortA::half_step(PortAPins& pins) {
 bool PortA::end_strobe() {
   if (!acknowledged()) {  // one clock more
     ++cycle_.stretched;
+    origin_ = clock_.origin(start_ + cycle_.stretched);
     next(Step::kStrobeHigh);
     return false;
   }

@@ -132,6 +132,7 @@ class PortA : public sc_core::sc_module {
   PortAShape shape_{};
   PortACycle cycle_;
   std::int64_t start_ = 0;       // CPU cycle at which the cycle begins
+  CpuClock::Origin origin_;      // of that cycle, later by the clocks that /TA has added
   std::int64_t next_start_ = 0;  // earliest next one
   std::vector<Seen> seen_;       // of the cycle under way, oldest first
 };

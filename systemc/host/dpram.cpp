@@ -28,13 +28,16 @@ bool Dpram::host_settled() const {
 }
 
 Tick Dpram::next_event() const {
-  // Strobes of other devices show nowhere; advance() lets them pass when it is called next.
-  const bool others = !in.cpu_sel && !sel_ && !own_ && !sampled_ && !proven_ && !cpu_busy_;
-  if (!others && !cpu_settled()) return now_ + 1;
+  if (!others() && !cpu_settled()) return now_ + 1;
   return host_settled() ? kNever : next_ref_edge(now_);
 }
 
 void Dpram::advance(Tick t) {
+  if (others() && host_settled()) {
+    let_others_pass(t - now_);
+    now_ = t;
+    return;
+  }
   while (now_ < t) {
     const bool settled = cpu_settled();
     if (settled && host_settled()) break;
@@ -48,6 +51,20 @@ void Dpram::advance(Tick t) {
     cpu_pins();
   }
   now_ = t;
+}
+
+// Nothing of them but their way through the stages.
+void Dpram::let_others_pass(Tick count) {
+  const bool rd_low = !in.cpu_rd_n, wr_low = !in.cpu_wr_n;
+  if (count >= 4) {
+    rd_ = {in.rd_toggle, in.rd_toggle, rd_low, rd_low, in.rd_toggle, in.rd_toggle};
+    wr_ = {in.wr_toggle, in.wr_toggle, wr_low, wr_low, in.wr_toggle, in.wr_toggle};
+  }
+  for (Tick n = count < 4 ? count : 0; n > 0; --n) {
+    rd_ = {in.rd_toggle, rd_.toggle1, rd_low, rd_.low1, rd_.toggle2, rd_.done};
+    wr_ = {in.wr_toggle, wr_.toggle1, wr_low, wr_.low1, wr_.toggle2, wr_.done};
+  }
+  pins_ = pin_cell();
 }
 
 void Dpram::cpu_edge(bool blocked) {

@@ -73,6 +73,9 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   bool host_blocked() const {
     return (own_ && cell_ == in.mem_addr && (own_wr_ || !in.mem_rd)) || (request() && conflict() && !mem_busy_);
   }
+  // Strobes of other devices show nowhere; advance() lets them pass when it is called next.
+  bool others() const { return !in.cpu_sel && !sel_ && !own_ && !sampled_ && !proven_ && !cpu_busy_; }
+  void let_others_pass(Tick count);
   bool cpu_settled() const;
   bool host_settled() const;
   void cpu_edge(bool blocked);

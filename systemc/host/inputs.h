@@ -56,6 +56,18 @@ struct DpramInputs {
   std::uint16_t mem_addr = 0;  // 15 bits
   std::uint8_t mem_be = 0;
   std::uint16_t mem_wdata = 0;
+
+  static bool selected(const PortAPins& pins) { return (pins.pa_aa & 4) != 0 && !pins.pa_int; }
+  void set_cpu_pins(const PortAPins& pins, bool rd_fall, bool wr_fall) {
+    rd_toggle = rd_fall;
+    wr_toggle = wr_fall;
+    cpu_sel = selected(pins);
+    cpu_x = pins.pa_x;
+    cpu_addr = static_cast<std::uint16_t>(pins.pa_addr & 0x3FFF);
+    cpu_rd_n = pins.pa_rd_n;
+    cpu_wr_n = pins.pa_wr_n;
+    cpu_wdata = static_cast<std::uint16_t>(pins.pa_wdata);
+  }
 };
 
 struct IsaSlaveInputs : IsaPins, IsaStraps {

@@ -9,37 +9,57 @@ namespace brick {
 // The first edge at which an output moves. MEMCS16# moves with clk_pwm, all others with clk_ref.
 Tick IsaSlave::next_event() const {
   if (isa_sd_oe() != oe_shown_ || (fresh_ && pic_sel())) return now_ + 1;  // pic_rd goes with the command
-  Tick next = kNever;
-  for (Tick n = 0; n < 3 && next == kNever; ++n) {
-    const unsigned la = n == 0 ? la2_ : n == 1 ? la1_ : la_pins();
-    if (la_hit(la) == isa_memcs16_n()) next = now_ + 1 + n;
-  }
+  const unsigned commands = command_pins();
+  const std::uint8_t la = la_pins();
+  const Tick next = la != la1_ || la != la2_ || la_hit(la) == isa_memcs16_n() ? next_memcs16() : kNever;
   const Tick edge = next_ref_edge(now_);
   const bool settings = straps_ != in || resetdrv_ != (in.isa_resetdrv ? 3 : 0);
-  if (settings || ref_acts(command_in(edge - 1 - now_))) return std::min(next, edge);
-  return ref_acts(command_pins()) ? std::min(next, edge + kTicksPerRef) : next;
+  const unsigned at_edge = command_in(edge - 1 - now_);
+  if (settings || ref_shows(at_edge)) return std::min(next, edge);
+  // At the edge after it the commands are what the pins are.
+  const bool shows = ref_acts(at_edge) ? commands != 0 : ref_shows(commands);
+  return shows ? std::min(next, edge + kTicksPerRef) : next;
+}
+
+Tick IsaSlave::next_memcs16() const {
+  for (Tick n = 0; n < 3; ++n) {
+    const unsigned la = n == 0 ? la2_ : n == 1 ? la1_ : la_pins();
+    if (la_hit(la) == isa_memcs16_n()) return now_ + 1 + n;
+  }
+  return kNever;
 }
 
 void IsaSlave::advance(Tick t) {
   if (t <= now_) return;  // no edge, so the enable as it is now has not been seen yet
-  while (now_ < t && !settled()) {
-    ++now_;
-    const std::uint8_t la = la_pins();
-    const bool hit = la_hit(la2_);
-    if (is_ref_edge(now_)) ref_edge();
-    pwm_edge(la, hit);
+  const bool still = stages_still();
+  for (Tick edge = next_ref_edge(now_); !(still && commands_settled()); edge += kTicksPerRef) {
+    if (edge > t) {
+      pwm_edges(t - now_, still);
+      break;
+    }
+    pwm_edges(edge - 1 - now_, still);
+    if (ref_acts(cmd2_) || (drive_ && !shown_)) cycle_edge();
+    pwm_edges(1, still);
+    if (!still) sample();
+    now_ = edge;
+    if (!still && commands_settled() && stages_still()) break;
   }
   now_ = t;
   oe_shown_ = isa_sd_oe();
 }
 
-// No edge changes anything while the pins stand.
-bool IsaSlave::settled() const {
-  const bool data = in.isa_sd == sd1_ && sd1_ == sd2_ && ((cmd2_ & (kIow | kMemw)) == 0 || sd_low_ == sd2_);
-  const bool la = la_pins() == la1_ && la1_ == la2_ && la_hits_ == (la_hit(la2_) ? kAllHits : 0);
-  const bool address = (in.isa_sa & kSa) == sa_ && in.isa_aen == aen_ && in.isa_sbhe_n == sbhe_n_;
-  return command_pins() == cmd1_ && cmd1_ == cmd2_ && data && la && address && (shown_ || !drive_) &&
-         !(straps_ != in) && resetdrv_ == (in.isa_resetdrv ? 3 : 0) && !ref_acts(cmd2_);
+// No edge does anything while these and the rest stand.
+bool IsaSlave::commands_settled() const {
+  const std::uint8_t commands = command_pins();
+  return commands == cmd1_ && commands == cmd2_ && (shown_ || !drive_) && !ref_acts(commands);
+}
+
+// What comes in has passed all stages, but for the commands.
+bool IsaSlave::stages_still() const {
+  const std::uint8_t la = la_pins();
+  const bool data = in.isa_sd == sd1_ && sd1_ == sd2_ && (!writes(command_pins() | cmd1_ | cmd2_) || sd_low_ == sd2_);
+  return data && la == la1_ && la == la2_ && la_hits_ == (la_hit(la) ? kAllHits : 0) && (in.isa_sa & kSa) == sa_ &&
+         in.isa_aen == aen_ && in.isa_sbhe_n == sbhe_n_ && resetdrv_ == (in.isa_resetdrv ? 3 : 0) && !(straps_ != in);
 }
 
 // The cycle moves on at a clk_ref edge that sees these commands.
@@ -50,20 +70,59 @@ bool IsaSlave::ref_acts(unsigned command) const {
   return (command == 0 && !host_reset()) || (spoilt(command) && target_ != 0);
 }
 
-// --------------------------------------------------------------------------------------------------------------- edges
-
-void IsaSlave::pwm_edge(std::uint8_t la, bool hit) {
-  if ((cmd2_ & (kIow | kMemw)) != 0) sd_low_ = sd2_;
-  cmd2_ = cmd1_;
-  cmd1_ = command_pins();
-  sd2_ = sd1_;
-  sd1_ = in.isa_sd;
-  la2_ = la1_;
-  la1_ = la;
-  la_hits_ = static_cast<std::uint8_t>((la_hits_ << 1 | (hit ? 1 : 0)) & kAllHits);
+// The same where others can see it.
+bool IsaSlave::ref_shows(unsigned command) const {
+  if (!ref_acts(command)) return false;
+  const bool ends = active_ ? command == 0 && !fresh_ && !load_ : command == 0;
+  return !ends || host_reset() || end_shows();
 }
 
-void IsaSlave::ref_edge() {
+// --------------------------------------------------------------------------------------------------------------- edges
+
+// `count` edges of clk_pwm. What comes in leaves the two stages with the third; LA is compared behind them.
+void IsaSlave::pwm_edges(Tick count, bool still) {
+  if (count <= 0) return;
+  const std::uint8_t commands = command_pins();
+  if (still) {
+    cmd2_ = count == 1 ? cmd1_ : commands;
+    cmd1_ = commands;
+    return;
+  }
+  const std::uint8_t la = la_pins();
+  unsigned hits = la_hits_ * 2u + (la_hit(la2_) ? 1 : 0);
+  if (writes(cmd2_)) sd_low_ = sd2_;
+  if (count == 1) {
+    cmd2_ = cmd1_;
+    sd2_ = sd1_;
+    la2_ = la1_;
+  } else {
+    hits = hits * 2 + (la_hit(la1_) ? 1 : 0);
+    if (writes(cmd1_)) sd_low_ = sd1_;
+    cmd2_ = commands;
+    sd2_ = in.isa_sd;
+    la2_ = la;
+  }
+  if (count > 2) {
+    const Tick more = std::min<Tick>(count - 2, 4);
+    hits = la_hit(la) ? ~(~hits << more) : hits << more;
+    if (writes(commands)) sd_low_ = in.isa_sd;
+  }
+  cmd1_ = commands;
+  sd1_ = in.isa_sd;
+  la1_ = la;
+  la_hits_ = static_cast<std::uint8_t>(hits & kAllHits);
+}
+
+// What moves with every edge of clk_ref.
+void IsaSlave::sample() {
+  sa_ = in.isa_sa & kSa;
+  aen_ = in.isa_aen;
+  sbhe_n_ = in.isa_sbhe_n;
+  resetdrv_ = static_cast<std::uint8_t>((resetdrv_ << 1 | (in.isa_resetdrv ? 1 : 0)) & 3);
+  straps_ = in;
+}
+
+void IsaSlave::cycle_edge() {
   const bool reset = host_reset();
   const bool begins = !active_ && cmd2_ != 0, ends = active_ && cmd2_ == 0 && !reset, spoils = spoilt(cmd2_);
   const bool io_load = fresh_ && (kind_ & kIor) && (target_ & (kPort | kPic | kOther));
@@ -88,12 +147,6 @@ void IsaSlave::ref_edge() {
     drive_ = load_ = false;
     target_ = page_ = 0;
   }
-
-  sa_ = in.isa_sa & kSa;
-  aen_ = in.isa_aen;
-  sbhe_n_ = in.isa_sbhe_n;
-  resetdrv_ = static_cast<std::uint8_t>((resetdrv_ << 1 | (in.isa_resetdrv ? 1 : 0)) & 3);
-  straps_ = in;
 }
 
 void IsaSlave::begin() {

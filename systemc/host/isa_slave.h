@@ -26,6 +26,9 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   bool isa_iochrdy() const { return !in.mem_busy; }
   bool isa_memcs16_n() const { return (la_hits_ & 1) == 0; }
   bool host_reset() const { return (resetdrv_ & 2) != 0; }
+  // The block that the present cycle is for, or the last one was: only its wires move.
+  bool pic_target() const { return (target_ & kPic) != 0; }
+  bool mem_target() const { return (target_ & kMemory) != 0; }
   // Host port
   bool hp_sel() const { return target_ & kPort; }
   bool hp_rd() const { return hp_sel() && fresh_ && (kind_ & kIor); }
@@ -47,6 +50,10 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   std::uint8_t mem_be() const { return be_; }
   std::uint16_t mem_wdata() const { return byte8_ ? static_cast<std::uint16_t>((wdata_ & 0xFF) * 0x101) : wdata_; }
 
+  // Whoever looks on takes no notice of the end of an I/O read but of the host port's receive register, where alone it
+  // does something: the others are no events any more.
+  void leave_ends_out() { every_end_ = false; }
+
   Tick next_event() const override;
   void advance(Tick t) override;
   void reset(Tick t) override;
@@ -57,6 +64,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   static constexpr std::uint32_t kSa = 0x1FFFF;                                 // what of SA the cycle needs
   enum Target : std::uint8_t { kPort = 1, kPic = 2, kOther = 4, kMemory = 8 };
 
+  static bool writes(unsigned commands) { return (commands & (kIow | kMemw)) != 0; }
   std::uint8_t command_pins() const {
     return (in.isa_ior_n ? 0 : kIor) | (in.isa_iow_n ? 0 : kIow) | (in.isa_memr_n ? 0 : kMemr) |
            (in.isa_memw_n ? 0 : kMemw);
@@ -75,9 +83,16 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   std::uint8_t decode() const;
   std::uint8_t io_read() const;
   bool ref_acts(unsigned command) const;
-  bool settled() const;
-  void pwm_edge(std::uint8_t la, bool hit);
-  void ref_edge();
+  bool ref_shows(unsigned command) const;
+  bool end_shows() const {
+    return every_end_ || kind_ != kIor || (hp_sel() && hp_addr() == (regs::host_io::kData7.address & 7));
+  }
+  bool commands_settled() const;
+  bool stages_still() const;
+  Tick next_memcs16() const;
+  void pwm_edges(Tick count, bool still);
+  void sample();
+  void cycle_edge();
   void begin();
 
   Tick now_ = 0;
@@ -95,6 +110,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   std::uint8_t kind_ = 0, target_ = 0, lanes_ = 0, be_ = 0, page_ = 0, io_addr_ = 0;
   std::uint16_t mem_addr_ = 0, sd_ = 0xFFFF;
   std::uint8_t oe_shown_ = 0;  // after the last edge
+  bool every_end_ = true;
 };
 
 }  // namespace brick

@@ -11,7 +11,10 @@ class RefClockedBlock : public ModelBlock {
   Tick next_event() const final { return idle() ? kNever : next_ref_edge(now_); }
 
   void advance(Tick t) final {
-    for (Tick edge = next_ref_edge(now_); edge <= t && !idle(); edge += kTicksPerRef) step();
+    for (Tick edge = next_ref_edge(now_); edge <= t && !idle(); edge += kTicksPerRef) {
+      step();
+      stepped_ = edge;
+    }
     now_ = t;
   }
 
@@ -21,6 +24,7 @@ class RefClockedBlock : public ModelBlock {
   }
 
   Tick now() const { return now_; }
+  bool stepped() const { return stepped_ == now_; }  // the last edge was not idle
 
  protected:
   virtual bool idle() const = 0;
@@ -28,7 +32,7 @@ class RefClockedBlock : public ModelBlock {
   virtual void reset_registers() = 0;
 
  private:
-  Tick now_ = 0;
+  Tick now_ = 0, stepped_ = 0;
 };
 
 }  // namespace brick

@@ -229,7 +229,7 @@ void Machine::Impl::apply_host_inputs(TimeFs time) {
   take_host_inputs();
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
   host_bus_moved(time);
-  see_init();
+  if (config.board.jpan) see_init();
 }
 
 // While a move of the host is in doubt the board has a part of it; outside nothing moves before the host says when.
@@ -239,7 +239,7 @@ void Machine::Impl::host_bus_moved(TimeFs time) {
 
 // The card's reset circuit: INIT/ pulls the reset line after kInitTicks and as long as it is low, and kResetTicks more.
 void Machine::Impl::see_init() {
-  const bool low = config.board.jpan && !host_inputs.jpan_init_n;
+  const bool low = !host_inputs.jpan_init_n;
   if (low == init_low) return;
   init_low = low;
   init_at = low ? board->now() + kInitTicks : kNever;

@@ -1,9 +1,25 @@
 // Named signals of the machine, see machine_signals.h.
 #include "systemc/machine/machine_signals.h"
 
+#include <array>
+
 #include "systemc/cpu/cpu.h"
 
 namespace brick {
+
+namespace {
+
+// Place in pin::kAll of the field that holds each bit of the output words.
+using Places = std::array<std::array<std::uint8_t, 32>, kBoardOutputWords>;
+constexpr Places kPlaces = [] {
+  Places places{};
+  for (std::size_t i = 0; i < pin::kAll.size(); ++i)
+    for (unsigned bit = 0; bit < pin::kAll[i].width; ++bit)
+      places[pin::kAll[i].word][pin::kAll[i].lsb + bit] = static_cast<std::uint8_t>(i);
+  return places;
+}();
+
+}  // namespace
 
 MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
   for (const PinField& f : pin::kAll)
@@ -32,10 +48,14 @@ MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
 }
 
 void MachineSignals::outputs(TimeFs time, const BoardOutputs& before, const BoardOutputs& after) {
-  BoardOutputs moved;
-  for (unsigned i = 0; i < kBoardOutputWords; ++i) moved.w[i] = before.w[i] ^ after.w[i];
-  for (std::size_t i = 0; i < pin::kAll.size(); ++i)
-    if (moved.get(pin::kAll[i]) != 0) signals_.set(pin_[i], time, after.get(pin::kAll[i]));
+  for (unsigned word = 0; word < kBoardOutputWords; ++word) {
+    for (std::uint32_t moved = before.w[word] ^ after.w[word]; moved != 0;) {
+      const std::size_t i = kPlaces[word][static_cast<unsigned>(__builtin_ctz(moved))];
+      const PinField& field = pin::kAll[i];
+      signals_.set(pin_[i], time, after.get(field));
+      moved &= ~(pin_mask(field.width) << field.lsb);
+    }
+  }
   if (before.get(pin::kPhaseSource) != after.get(pin::kPhaseSource))
     signals_.set(source_, time, clock_source_variable(after.get(pin::kPhaseSource)));
   static constexpr BoardOutputs kData = select_pins(pin::kIsaSd, pin::kIsaSdOe);

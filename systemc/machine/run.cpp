@@ -31,7 +31,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
   run_cpu(now);
   while (now < limit && !stopped) {
     motors.step();
-    Tick target = std::min({limit, reset_until, init_at, motors.next_event()});
+    Tick target = std::min(std::min(limit, motors.next_event()), std::min(reset_until, init_at));
     if (config.batch > 0) target = std::min(target, now + config.batch);
     if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
       debugger->poll(!cpu_runs || (cpu.asleep() && !port_a.running()));
@@ -50,13 +50,13 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     if (now == reset_until) start_cpu();
     while (port_a.running() && now == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());
-      board->set_inputs(inputs);
+      board->set_port_a(inputs);
     }
     run_cpu(now);
     if (signals.traced()) signals.flush_until(tick_to_fs(now));
   }
   stop_on = {};
-  keep_kernel_time(begin);
+  if (sc_core::sc_is_running()) keep_kernel_time(begin);
   return now;
 }
 
@@ -74,10 +74,11 @@ Tick Machine::Impl::board_limit(Tick limit, Tick now) const {
 // Runs the CPU while every interrupt pin is known up to tick `known`: an instruction that starts at time t sees the
 // edges up to t - latency, so it may start before known + 1 + latency.
 void Machine::Impl::run_cpu(Tick known) {
+  if (port_a.running()) return;
   if (master != nullptr && reset_until == kNever) return run_master();
   const CpuClock& clock = port_a.clock();
   while (cpu_runs && !port_a.running()) {
-    if (deliver_due()) continue;
+    if (!events.empty() && deliver_due()) continue;
     if (cpu.asleep()) return;
     Cycle limit = clock.first_cycle(known + 1 + kInterruptLatency);
     if (!events.empty()) limit = std::min(limit, clock.first_cycle(events.front().tick + kInterruptLatency));
@@ -121,7 +122,6 @@ TimeFs Machine::Impl::cpu_time() const {
 
 // Gives the CPU the oldest pin change when its time has come; a sleeping CPU's time jumps there.
 bool Machine::Impl::deliver_due() {
-  if (events.empty()) return false;
   const Cycle due = port_a.clock().first_cycle(events.front().tick + kInterruptLatency);
   if (cpu.cycle() < due) {
     if (!cpu.asleep()) return false;
@@ -151,7 +151,6 @@ bool Machine::Impl::deliver_due() {
 
 // Inside a SystemC process the kernel's time follows the board's.
 void Machine::Impl::keep_kernel_time(Tick from) {
-  if (!sc_core::sc_is_running()) return;
   const auto process = sc_core::sc_get_current_process_handle();
   if (!process.valid() || process.proc_kind() != sc_core::SC_THREAD_PROC_) return;
   static const double kUnitsPerFs = 1e-15 / sc_core::sc_get_time_resolution().to_seconds();

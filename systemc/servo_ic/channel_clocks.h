@@ -24,8 +24,9 @@ class ChannelDivider {
   Tick after(std::int64_t k, unsigned n) const { return next_ + (k - 1) * (kTicksPerRef << n); }
 
   // How many periods start up to t; n has not changed since the present one started.
-  std::int64_t count(Tick t, unsigned n) const { return t < next_ ? 0 : (t - next_) / (kTicksPerRef << n) + 1; }
+  std::int64_t count(Tick t, unsigned n) const { return t < next_ ? 0 : ((t - next_) / kTicksPerRef >> n) + 1; }
   bool steady(unsigned n) const { return n_ == n; }
+  void take_steadily(Tick t) { take(t, n_); }  // the same with the divider as it is
 
   // Executes the edges up to t and returns how many of them started a period.
   std::int64_t take(Tick t, unsigned n) {
@@ -65,6 +66,11 @@ class ChannelStrobe {
   // the first bit and how many bits) are called in the order of their edges.
   template <class Load, class Sample>
   void advance(Tick t, bool rise, unsigned n, std::uint32_t word, Load load, Sample sample) {
+    if (idle() && !rise && divider_.steady(n)) {  // the divider is executed when it is looked at
+      now_ = t;
+      return;
+    }
+    divider_.take_steadily(now_);
     for (;;) {
       const Tick ce = divider_.next();
       if (left_ != 0 && !divider_.fast() && now_ < divider_.mid() && divider_.mid() <= t) sample(24 - left_, 1u);

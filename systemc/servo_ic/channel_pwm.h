@@ -13,6 +13,9 @@ namespace brick {
 struct TriangleLine {
   int cnt = 0;
   int slope = 1;
+
+  TriangleLine after(Tick edges) const { return {cnt + slope * static_cast<int>(edges), slope}; }
+  bool operator!=(const TriangleLine& o) const { return cnt != o.cnt || slope != o.slope; }
 };
 
 class ChannelPwm {

@@ -161,7 +161,7 @@ void ServoChannel::load_pwm() {
   for (unsigned i = 0; i < 3; ++i) pwm_[i].load(static_cast<std::int16_t>(out_[i] >> 8));
 }
 
-void ServoChannel::run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime) {
+void ServoChannel::run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime) const {
   for (ChannelPwm& pwm : pwm_) pwm.run(now, t, line, deadtime);
 }
 

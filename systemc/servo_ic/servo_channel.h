@@ -41,7 +41,7 @@ class ServoChannel {
   void sample_adc(unsigned bit, unsigned count, bool a, bool b);
   void load_dac(bool trip);
   void load_pwm();
-  void run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime);
+  void run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime) const;
   bool advance_pfm(std::int64_t periods, bool trip, unsigned width) {  // true when a pulse begins with the last of them
     if (!pfm_.advance(periods, pfm_inputs(trip, width))) return false;
     settle_ = 0;
@@ -129,7 +129,8 @@ class ServoChannel {
   ChannelSubcount subcount_;
   ChannelCapture capture_;
   ChannelCompare compare_;
-  std::array<ChannelPwm, 3> pwm_, marked_;
+  mutable std::array<ChannelPwm, 3> pwm_;  // executed when somebody looks at it
+  std::array<ChannelPwm, 3> marked_;
   ChannelPfm pfm_;
   std::array<ChannelDac, 2> dac_;
   std::array<ChannelAdc, 2> adc_;

@@ -5,7 +5,7 @@
 namespace brick {
 
 void ServoChannels::reset(Tick t) {
-  now_ = phase_rise_ = t;
+  now_ = phase_rise_ = pwm_now_ = t;
   for (ServoChannel& channel : channel_) channel.reset(t);
   sclk_.reset(t);
   pfm_.reset(t);
@@ -21,8 +21,12 @@ void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
 
 void ServoChannels::advance(Tick t) {
   if (t <= now_) return;
-  for (ServoChannel& channel : channel_) channel.run_pwm(now_, t, in.line, in.deadtime);
-  in.line.cnt += in.line.slope * static_cast<int>(t - now_);
+  if (in.line != pwm_line_.after(now_ - pwm_now_) || in.deadtime != pwm_deadtime_) {
+    catch_up_pwm();
+    pwm_line_ = in.line;
+    pwm_deadtime_ = in.deadtime;
+  }
+  in.line = in.line.after(t - now_);
 
   // An edge of PHASE or SERVO acts at the next edge of clk_ref; all latches take what was there before it.
   const Tick edge = next_ref_edge(now_);
@@ -42,6 +46,13 @@ void ServoChannels::advance(Tick t) {
   now_ = t;
 }
 
+void ServoChannels::catch_up_pwm() const {
+  if (pwm_now_ == now_) return;
+  for (const ServoChannel& channel : channel_) channel.run_pwm(pwm_now_, now_, pwm_line_, pwm_deadtime_);
+  pwm_line_ = pwm_line_.after(now_ - pwm_now_);
+  pwm_now_ = now_;
+}
+
 // Edges of clk_ref up to t. PHASE rises at t or not at all.
 void ServoChannels::run_ref(Tick t, bool phase_rise) {
   dac_.advance(
@@ -57,11 +68,14 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
           channel_[i].sample_adc(bit, count, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
       });
 
+  bool pfm = false;
   for (ServoChannel& channel : channel_) {
     if (channel.hold()) channel.hold_counter();
-    if (!channel.pfm_inputs(in.trip, in.deadtime).run) channel.stop_pfm();
+    const bool run = channel.pfm_inputs(in.trip, in.deadtime).run;
+    if (!run) channel.stop_pfm();
+    pfm = pfm || run;
   }
-  for (;;) {
+  while (pfm) {
     Tick stop = t;  // where a PFM pulse begins: the next SCLK may count it
     for (const ServoChannel& channel : channel_) {
       const std::int64_t periods = channel.pfm().periods_to_pulse(channel.pfm_inputs(in.trip, in.deadtime));
@@ -70,8 +84,10 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
     run_sclk(stop);
     const std::int64_t periods = pfm_.take(stop, divider(kPfm));
     for (ServoChannel& channel : channel_) channel.advance_pfm(periods, in.trip, in.deadtime);
-    if (stop == t) break;
+    if (stop == t) return;
   }
+  run_sclk(t);
+  pfm_.take(t, divider(kPfm));
 }
 
 void ServoChannels::run_sclk(Tick t) {
@@ -100,6 +116,7 @@ void ServoChannels::run_sclk(Tick t) {
 Tick ServoChannels::next_event(const MotorOutputs& select) const {
   const Tick ref = next_ref_edge(now_);
   Tick next = kNever;
+  if (has_pwm(select)) catch_up_pwm();
   const bool dac = has_dac(select), adc = has_adc(select);
   if (dac) next = dac_.next_event(now_, divider(kDac), (select.w[1] & kDacClk) != 0, has_dac_data(select));
   if (adc) next = std::min(next, adc_.next_event(now_, divider(kAdc), (select.w[1] & kAdcClk) != 0, false));
@@ -135,6 +152,7 @@ Tick ServoChannels::next_equ_of(const ServoChannel& channel) const {
 }
 
 void ServoChannels::mark() {
+  catch_up_pwm();
   marked_ = now_;
   for (ServoChannel& channel : channel_) channel.mark();
 }
@@ -143,6 +161,7 @@ void ServoChannels::mark() {
 // streams, which the period after the jump does again, provided that none is under way at either end, however PHASE
 // falls into the bit clock.
 bool ServoChannels::repeats() const {
+  catch_up_pwm();
   const unsigned slow = std::max(divider(kDac), divider(kAdc));
   const bool calm =
       dac_.idle() && adc_.idle() && (phase_rise_ < marked_ || now_ - phase_rise_ > 26 * (kTicksPerRef << slow));
@@ -151,6 +170,8 @@ bool ServoChannels::repeats() const {
 }
 
 void ServoChannels::jump(Tick by) {
+  catch_up_pwm();
+  pwm_now_ += by;
   for (ServoChannel& channel : channel_) channel.jump(by);
   run_ref(now_ + by, false);
   now_ += by;
@@ -166,6 +187,7 @@ MotorOutputs ServoChannels::motor_outputs() const {
 }
 
 std::uint32_t ServoChannels::pwm() const {
+  catch_up_pwm();
   std::uint32_t pins = 0;
   for (unsigned i = 0; i < kChannels; ++i) pins |= channel_[i].pwm(in.trip) << (6 * i);
   return pins;

@@ -51,6 +51,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     if (read_acts(x, offset)) channel_[offset >> 3].read_taken(now_);
   }
   void turn() {
+    catch_up_pwm();
     for (ServoChannel& channel : channel_) channel.load_pwm();
   }
 
@@ -112,6 +113,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     return bits;
   }
   unsigned divider(const regs::Field& clock) const { return clock.get(in.clock_control); }
+  void catch_up_pwm() const;
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
 
@@ -129,6 +131,11 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   Tick phase_rise_ = 0;                                                   // edge that took the last one
   Tick marked_ = 0;
   Tick now_ = 0;
+  // The PWM acts on nothing inside: it has been executed up to here only and goes on along this line when somebody
+  // looks at it or the line ends.
+  mutable Tick pwm_now_ = 0;
+  mutable TriangleLine pwm_line_;
+  unsigned pwm_deadtime_ = 0;
 };
 
 }  // namespace brick

@@ -16,16 +16,20 @@ IsaHost::IsaHost(Machine& machine) : machine_(machine), width_(machine.inputs().
 // ---------------------------------------------------------------------------------------------------------------- time
 
 void IsaHost::step_to(Tick limit, const BoardOutputs& stop_on) {
+  if (!on_edge_) {
+    machine_.run_until(limit, stop_on);
+    return;
+  }
   const BoardOutputs before = machine_.outputs();
   BoardOutputs stop = stop_on;
   for (unsigned i = 0; i < kBoardOutputWords; ++i) stop.w[i] |= watched_.w[i];
   machine_.run_until(limit, stop);
-  if (on_edge_ && before.differs(machine_.outputs(), watched_)) on_edge_(machine_.now(), before, machine_.outputs());
+  if (before.differs(machine_.outputs(), watched_)) on_edge_(machine_.now(), before, machine_.outputs());
 }
 
 void IsaHost::advance_to(Tick tick) {
-  while (now() < tick) {
-    step_to(std::min(tick, now() + kHeartbeat), {});
+  for (Tick at = now(); at < tick; at = now()) {
+    step_to(std::min(tick, at + kHeartbeat), {});
     if (heartbeat_) heartbeat_();
   }
 }
@@ -84,6 +88,19 @@ void IsaHost::drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit
   free_at_ = std::max(free_at_, time);
 }
 
+// The same for a point of a cycle; pins that stay are nothing to stop for.
+template <class Edit>
+void IsaHost::drive(TimeFs time, const Edit& edit) {
+  if (machine_.aperture().on()) return drive_at(time, edit);
+  free_at_ = std::max(free_at_, time);
+  IsaPins moved = machine_.inputs();
+  edit(moved);
+  if (moved == machine_.inputs()) return;
+  advance_to(fs_to_tick(time) - 1);
+  edit(machine_.inputs());
+  machine_.apply(time);
+}
+
 std::uint16_t IsaHost::data_bus() const {
   const std::uint32_t driven = machine_.outputs().get(pin::kIsaSdOe);
   const unsigned floats = ((driven & 1) != 0 ? 0u : 0x00FFu) | ((driven & 2) != 0 ? 0u : 0xFF00u);
@@ -92,32 +109,32 @@ std::uint16_t IsaHost::data_bus() const {
 
 IsaHost::Result IsaHost::cycle(const Cycle& c) {
   const TimeFs start = cycle_start();
-  const auto strobe = [&c](HostInputs& in, bool level) {
+  const auto strobe = [&c](IsaPins& in, bool level) {
     bool IsaPins::*const pins[] = {&IsaPins::isa_ior_n, &IsaPins::isa_iow_n, &IsaPins::isa_memr_n,
                                    &IsaPins::isa_memw_n};
     in.*pins[static_cast<unsigned>(c.command)] = level;
   };
   Result result{0, false};
   isa::CycleTimes times = c.memory() ? (width_ == 8 ? times_.memory8 : times_.memory) : times_.io;
-  const auto address = [&](HostInputs& in) {
+  const auto address = [&](IsaPins& in) {
     in.isa_sa = c.address & 0xFFFFF;
     in.isa_aen = false;
     in.isa_sbhe_n = !c.sbhe;
   };
 
   // The points up to the command, in the order of time.
-  drive_at(start, [&](HostInputs& in) {
+  drive(start, [&](IsaPins& in) {
     in.isa_la = c.memory() ? static_cast<std::uint8_t>(c.address >> 17) : in.isa_la;
     if (times.address == 0) address(in);
   });
   bool data_driven = !c.write();
   const auto data = [&](TimeFs until) {
     if (data_driven || times.data_valid > until) return;
-    drive_at(start + times.data_valid, [&](HostInputs& in) { in.isa_sd = c.data; });
+    drive(start + times.data_valid, [&](IsaPins& in) { in.isa_sd = c.data; });
     data_driven = true;
   };
   data(times.address);
-  if (times.address != 0) drive_at(start + times.address, address);
+  if (times.address != 0) drive(start + times.address, address);
   data(isa::kMemcs16);
   if (c.memory() && width_ == 16) {
     advance_to(fs_to_tick_floor(start + isa::kMemcs16));
@@ -125,20 +142,30 @@ IsaHost::Result IsaHost::cycle(const Cycle& c) {
     if (result.narrow) times = times_.memory8;
   }
   data(times.command_low);
-  drive_at(start + times.command_low, [&](HostInputs& in) { strobe(in, false); });
+  drive(start + times.command_low, [&](IsaPins& in) { strobe(in, false); });
   data(times.command_high);
 
-  TimeFs end = stretch(c, start, start + times.command_low, start + times.command_high);
+  const TimeFs low = start + times.command_low, high = start + times.command_high;
+  const TimeFs end = not_ready(times, high) ? stretch(c, start, low, high) : high;
   advance_to(fs_to_tick_floor(end - times.sample));
   result.data = data_bus();
-  drive_at(end, [&](HostInputs& in) { strobe(in, true); });
-  drive_at(end + (times.release - times.command_high), [](HostInputs& in) {
+  drive(end, [&](IsaPins& in) { strobe(in, true); });
+  const TimeFs release = end + (times.release - times.command_high);
+  drive(release, [](IsaPins& in) {
     in.isa_sd = kIdleData;
     in.isa_sbhe_n = true;
   });
+  advance_to(fs_to_tick(release) - 1);
   free_at_ = end + (times.next - times.command_high);
   if (!c.memory()) free_at_ = std::max(free_at_, end + isa::port_recovery(machine_.cpu_period()) - times.command_low);
   return result;
+}
+
+// Whether IOCHRDY falls before it is looked at for the first time. If not, all stand until the sample: one advance.
+bool IsaHost::not_ready(const isa::CycleTimes& times, TimeFs end) {
+  if (pins().get(pin::kIsaIochrdy) == 0) return true;
+  wait_change(pin::kIsaIochrdy, fs_to_tick_floor(end - times.sample));
+  return pins().get(pin::kIsaIochrdy) == 0 && now() <= fs_to_tick_floor(end - isa::kReadyToHigh);
 }
 
 // IOCHRDY is looked at one BCLK before the command would end, and again at each BCLK.

@@ -79,7 +79,10 @@ class IsaHost : public LocalBus {
     bool narrow;  // a memory cycle of eight bits
   };
   Result cycle(const Cycle& c);
+  template <class Edit>
+  void drive(TimeFs time, const Edit& edit);
   std::uint8_t cycle8(Command command, std::uint32_t address, std::uint8_t data);
+  bool not_ready(const isa::CycleTimes& times, TimeFs end);
   TimeFs stretch(const Cycle& c, TimeFs start, TimeFs low, TimeFs end);
   TimeFs cycle_start();
   void step_to(Tick limit, const BoardOutputs& stop_on);
