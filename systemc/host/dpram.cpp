@@ -1,5 +1,7 @@
 #include "systemc/host/dpram.h"
 
+#include <algorithm>
+
 #include "systemc/core/register_access.h"
 
 namespace brick {
@@ -53,18 +55,12 @@ void Dpram::advance(Tick t) {
   now_ = t;
 }
 
-// Nothing of them but their way through the stages.
+// Nothing of them but their way through the stages, which is four edges long.
 void Dpram::let_others_pass(Tick count) {
-  const bool rd_low = !in.cpu_rd_n, wr_low = !in.cpu_wr_n;
-  if (count >= 4) {
-    rd_ = {in.rd_toggle, in.rd_toggle, rd_low, rd_low, in.rd_toggle, in.rd_toggle};
-    wr_ = {in.wr_toggle, in.wr_toggle, wr_low, wr_low, in.wr_toggle, in.wr_toggle};
+  for (Tick n = std::min<Tick>(count, 4); n > 0; --n) {
+    cpu_edge(false);
+    cpu_pins();
   }
-  for (Tick n = count < 4 ? count : 0; n > 0; --n) {
-    rd_ = {in.rd_toggle, rd_.toggle1, rd_low, rd_.low1, rd_.toggle2, rd_.done};
-    wr_ = {in.wr_toggle, wr_.toggle1, wr_low, wr_.low1, wr_.toggle2, wr_.done};
-  }
-  pins_ = pin_cell();
 }
 
 void Dpram::cpu_edge(bool blocked) {
