@@ -9,6 +9,16 @@ function(brick_rtl_list sources top)
   set(${sources} ${files} PARENT_SCOPE)
 endfunction()
 
+file(GLOB_RECURSE rtl_files RELATIVE ${BRICK_RTL} CONFIGURE_DEPENDS ${BRICK_RTL}/*.sv)
+file(GLOB rtl_lists ${BRICK_RTL}/*.f)
+foreach(list ${rtl_lists})
+  file(STRINGS ${list} listed)
+  list(REMOVE_ITEM rtl_files ${listed})
+endforeach()
+foreach(file ${rtl_files})
+  message(WARNING "rtl/${file} is in no file list, so nothing is built of it: ./dev cores writes the lists")
+endforeach()
+
 # brick_verilate(brick_rtl TOP board_sim PREFIX Vboard_s2 CONFIG a.vlt SOURCES a.sv ARGS -GMask=1): one model more in a
 # library, of its list of files when it says no others. Flip-flops and memories start as its context's randReset() says.
 function(brick_verilate library)

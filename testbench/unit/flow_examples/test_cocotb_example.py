@@ -14,7 +14,7 @@ class Cocotb(Installed):
         """Names of the tests that failed, of the four."""
         example, work = self.data / "examples/cocotb_servo_channel", self.prefix / "sim"
         shutil.rmtree(work, ignore_errors=True)
-        done = subprocess.run([sys.executable, example / "run.py", "--build", work], timeout=60, text=True,
+        done = subprocess.run([sys.executable, example / "run.py", "--build", work], timeout=100, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         cases = ElementTree.parse(work / "results.xml").findall(".//testcase")
         self.assertEqual(len(cases), 4, done.stdout)

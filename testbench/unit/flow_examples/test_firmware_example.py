@@ -18,7 +18,7 @@ class FirmwareChange(Installed):
     def run_example(self):
         example = self.data / "examples/firmware_change"
         where = {"BUILD": str(self.prefix / "image"), "BRICK": f"{self.build}/bin/brick"}
-        return subprocess.run([example / "run.sh"], timeout=100, text=True, env={**os.environ, **where},
+        return subprocess.run([example / "run.sh"], timeout=250, text=True, env={**os.environ, **where},
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def content(self, elf):
