@@ -166,7 +166,8 @@ Bench dpram_bench() {
           "host and firmware at the same words of the dual-ported RAM: old or new, BUSY, ties, torn items",
           {"one host write in eight is told to the scoreboard with a wrong value", "every word old or new, none lost",
            "which nobody has written there"},
-          run};
+          run,
+          kASlotOf16Bits};
 }
 
 }  // namespace brick
