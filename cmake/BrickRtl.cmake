@@ -1,21 +1,39 @@
 # How RTL is Verilated: the flags of every model in one place, and the libraries of modules under test.
 set(BRICK_RTL ${CMAKE_SOURCE_DIR}/rtl)
 
+# brick_rtl_list(sources servo_ic): the files of rtl/servo_ic.f, in its order. What is not in a list is not built.
+function(brick_rtl_list sources top)
+  file(STRINGS ${BRICK_RTL}/${top}.f files REGEX "^[^/]")
+  list(TRANSFORM files PREPEND ${BRICK_RTL}/)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${BRICK_RTL}/${top}.f)
+  set(${sources} ${files} PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE rtl_files RELATIVE ${BRICK_RTL} CONFIGURE_DEPENDS ${BRICK_RTL}/*.sv)
+file(GLOB rtl_lists ${BRICK_RTL}/*.f)
+foreach(list ${rtl_lists})
+  file(STRINGS ${list} listed)
+  list(REMOVE_ITEM rtl_files ${listed})
+endforeach()
+foreach(file ${rtl_files})
+  message(WARNING "rtl/${file} is in no file list, so nothing is built of it: ./dev cores writes the lists")
+endforeach()
+
 # brick_verilate(brick_rtl TOP board_sim PREFIX Vboard_s2 CONFIG a.vlt SOURCES a.sv ARGS -GMask=1): one model more in a
-# library. The register maps and the synchroniser go to each. Flip-flops and memories start as its context's
-# randReset() says.
+# library, of its list of files when it says no others. Flip-flops and memories start as its context's randReset() says.
 function(brick_verilate library)
   cmake_parse_arguments(V "" "TOP;PREFIX;CONFIG" "SOURCES;ARGS" ${ARGN})
-  verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX}
-    SOURCES ${V_CONFIG} ${BRICK_RTL}/regs/brick_regs_pkg.sv
-      ${BRICK_RTL}/common/sync2.sv ${V_SOURCES}
+  if(NOT V_SOURCES)
+    brick_rtl_list(V_SOURCES ${V_TOP})
+  endif()
+  verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX} SOURCES ${V_CONFIG} ${V_SOURCES}
     VERILATOR_ARGS -O3 --x-assign fast --x-initial unique ${V_ARGS} ${BRICK_RTL_ARGS}
     OPT_FAST ${BRICK_RTL_OPT} OPT_SLOW ${BRICK_RTL_SLOW_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
 endfunction()
 
 # brick_add_rtl_shell(macro_ic_rtl SOURCES rtl_macro_ic.cpp LIBRARIES brick_core): a library of shells
 # (testbench/unit/rtl/verilated_shell.h), then for each module that they hold
-# brick_add_rtl_module(macro_ic_rtl TOP macro_ic SOURCES a.sv [PREFIX Vmacro_ic] [ARGS ...]): Verilated with lint.
+# brick_add_rtl_module(macro_ic_rtl TOP macro_ic [SOURCES a.sv] [PREFIX Vmacro_ic] [ARGS ...]): Verilated with lint.
 function(brick_add_rtl_shell library)
   cmake_parse_arguments(S "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(${library} STATIC ${S_SOURCES})

@@ -11,3 +11,12 @@ endif()
 install(DIRECTORY boards DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.toml)
 install(DIRECTORY waves DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.gtkw PATTERN out EXCLUDE)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# What a design of others takes: RTL with its lists, cores and register maps; the firmware's sources; examples. None of
+# it is built, so `cmake --install DIR --component brick_sources` needs no build.
+install(DIRECTORY rtl DESTINATION ${BRICK_DATA_DIR} COMPONENT brick_sources
+  FILES_MATCHING REGEX "\\.(sv|f|core|vlt|rdl|xml|h|hpp)$" PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY firmware DESTINATION ${BRICK_DATA_DIR} COMPONENT brick_sources
+  FILES_MATCHING REGEX "\\.(c|h|S|ld|def)$")
+install(DIRECTORY examples DESTINATION ${BRICK_DATA_DIR} COMPONENT brick_sources USE_SOURCE_PERMISSIONS
+  PATTERN __pycache__ EXCLUDE PATTERN build EXCLUDE PATTERN sim_build EXCLUDE)

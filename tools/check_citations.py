@@ -33,7 +33,7 @@ CITATIONS = re.compile(rf"{CITATION.pattern}(?:, {CITATION.pattern})*")
 NO_SHEET = "names no sheet: expected SHEET:SECTION"
 LEFTOVERS = (  # looked for where citations are masked by x
     (rf"(?<![\w/.-])(?:{SHEET}):(?={NUMBER})", "is no citation: expected SHEET:SECTION or SHEET:SECTION/RULE"),
-    (rf"(?i)(?<![\w/.-])(?:servo[-_]ic|host[-_]bus|firmware):? ?{POINT}\b", "is no citation: expected SHEET:SECTION"),
+    (rf"(?i)(?<![\w/.:-])(?:servo[-_]ic|host[-_]bus|firmware):? ?{POINT}\b", "is no citation: expected SHEET:SECTION"),
     (r"x{8,}(?:(?:,| and| to) /\d+| rule \d+)", "names a rule without its section: expected SHEET:SECTION/RULE"),
     (r"(?:\.\.|\w)/shared\b\S*", "lies outside the tree"),
     (rf"[\w./-]+\.md,? (?:section )?{NUMBER}\b", "points into a page by number: expected SHEET:SECTION"),

@@ -22,9 +22,8 @@ VERILATE = ["-O3", "-fno-table", "--x-assign", "fast", "--x-initial", "unique",
 def build(tree, folder, mask):
     """The executable of one tree."""
     rtl = tree / "rtl"
-    sources = [rtl / "verilate.vlt", rtl / "regs/brick_regs_pkg.sv",
-               *(f for block in ("servo_ic", "macro_ic", "host", "board") for f in sorted((rtl / block).glob("*.sv"))
-                 if not f.name.startswith("brick_fpga"))]
+    listed = (rtl / "board_sim.f").read_text().splitlines()
+    sources = [rtl / "verilate.vlt", *(rtl / line for line in listed if not line.startswith("//"))]
     command = ["verilator", "--cc", "--exe", "--build", "-j", "1", "--prefix", "Vboard_s2", "--top-module", "board_sim",
                f"-GServoIcMask=18'h{mask:X}", "-Mdir", folder, *VERILATE,
                "-CFLAGS", f"-O3 -std=c++17 -I{tree.resolve()}", "-MAKEFLAGS", "OPT_FAST=-O3 OPT_GLOBAL=-O3",

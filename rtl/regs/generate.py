@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the register headers and docs/registers.md from the SystemRDL maps in this folder.
+"""Writes register headers, IP-XACT and docs/registers.md from the SystemRDL maps in this folder.
 
     generate.py            writes the files
+    generate.py --html DIR writes them, and pages to read in a browser
     generate.py --check    exit 1 when a committed file differs from what would be written
-    exit 77 when the systemrdl-compiler package (PyPI) is not installed
+    exit 77 when the packages of PyPI are not installed (tools/requirements.txt)
 """
 import argparse
 import difflib
@@ -11,9 +12,10 @@ import sys
 from pathlib import Path
 
 try:
+    from ipxact import COMPONENTS, write_ipxact
     from maps import Maps
-except ImportError:
-    print("skipped: Python package systemrdl-compiler is not installed (pip install systemrdl-compiler)")
+except ImportError as missing:
+    print(f"skipped: {missing} (./dev setup installs tools/requirements.txt)")
     sys.exit(77)
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -247,15 +249,26 @@ def write_markdown(maps):
     return out + [""]
 
 
+# IP-XACT, HTML -----------------------------------------------------------------------------------------------------
+def write_html(maps, folder):
+    from peakrdl_html import HTMLExporter
+    tops = ["brick_cpu", "servo_channel", "servo_channel_fine", "brick_host_io", "brick_host_memory"]
+    HTMLExporter().export([maps.compiler.elaborate(top).top for top in tops], str(folder), title="brick registers")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 when a file is stale")
+    parser.add_argument("--html", type=Path, metavar="DIR", help="folder of the pages; DIR/index.html is the first")
     parser.add_argument("--output", type=Path, default=ROOT, help="tree to write or check (default: this repository)")
     options = parser.parse_args()
     maps = Maps()
     stale = 0
-    for path, writer in (("rtl/regs/brick_regs_pkg.sv", write_sv), ("rtl/regs/brick_regs.h", write_c),
-                         ("rtl/regs/brick_regs.hpp", write_hpp), ("docs/registers.md", write_markdown)):
+    writers = {"rtl/regs/brick_regs_pkg.sv": write_sv, "rtl/regs/brick_regs.h": write_c,
+               "rtl/regs/brick_regs.hpp": write_hpp, "docs/registers.md": write_markdown}
+    for component in COMPONENTS:
+        writers[f"rtl/regs/{component}.xml"] = lambda maps, name=component: write_ipxact(maps.compiler, name, NOTICE)
+    for path, writer in writers.items():
         text = "\n".join(writer(maps))
         target = options.output / path
         if not options.check:
@@ -270,6 +283,9 @@ def main():
                                               lineterm="")
             for line in list(difference)[:12]:
                 print("  " + line)
+    if options.html:
+        write_html(maps, options.html)
+        print(f"{options.html}/index.html")
     return 1 if stale else 0
 
 

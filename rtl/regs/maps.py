@@ -1,4 +1,4 @@
-"""The register maps of this folder as plain Python: what generate.py writes down in four languages.
+"""The register maps of this folder as plain Python: what generate.py writes down in several languages.
 
 Needs the package systemrdl-compiler (PyPI).
 """
@@ -110,7 +110,7 @@ class Maps:
 
     def __init__(self):
         self.blocks, self.ics, self.memories, self.codes = [], [], [], []
-        compiler = RDLCompiler()
+        self.compiler = compiler = RDLCompiler()
         compiler.compile_file(str(HERE / "brick.rdl"))
         for top in ("brick_cpu", "brick_host_io", "brick_host_memory"):
             root = compiler.elaborate(top).top

@@ -39,9 +39,11 @@ module channel_decode #(
 
   logic [1:0] step;  // along the quadrature cycle 00, 10, 11, 01 of {A, B}
   logic [2:0] hall, last_hall;
+  logic       moved;  // by one: as a variable of its own, because Icarus 11 never settles on a bit of `step` read here
   logic       a_rises, hall_up, hall_down, hall_jump, count, down;
   always_comb begin
     step      = 2'd0;
+    moved     = 1'b0;
     a_rises   = 1'b0;
     hall      = 3'd7;
     last_hall = 3'd7;
@@ -53,6 +55,7 @@ module channel_decode #(
     error_o   = 1'b0;
     if (look) begin
       step    = {abc_i[1], abc_i[0] ^ abc_i[1]} - {last_q[1], last_q[0] ^ last_q[1]};
+      moved   = (step == 2'd1) | (step == 2'd3);
       a_rises = abc_i[0] & ~last_q[0];
       down    = (step == 2'd3) ^ ccw ^ ~ALeadsUp;
       case (mode_i)
@@ -61,15 +64,15 @@ module channel_decode #(
           down  = ~abc_i[1] ^ ccw;
         end
         brick_regs_pkg::DecodeX1Cw, brick_regs_pkg::DecodeX1Ccw: begin
-          count   = step[0] & ~abc_i[1] & ~last_q[1];
+          count   = moved & ~abc_i[1] & ~last_q[1];
           error_o = step == 2'd2;
         end
         brick_regs_pkg::DecodeX2Cw, brick_regs_pkg::DecodeX2Ccw: begin
-          count   = step[0] & (abc_i[0] ^ last_q[0]);
+          count   = moved & (abc_i[0] ^ last_q[0]);
           error_o = step == 2'd2;
         end
         brick_regs_pkg::DecodeX4Cw, brick_regs_pkg::DecodeX4Ccw: begin
-          count   = step[0];
+          count   = moved;
           error_o = step == 2'd2;
         end
         brick_regs_pkg::DecodeInternalPulse: begin

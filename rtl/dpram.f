@@ -1,0 +1,4 @@
+// Dual-ported RAM: what dpram is made of, in compile order.
+// Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+host/dpram_memory.sv
+host/dpram.sv

@@ -1,0 +1,4 @@
+// Latch of the host signals, BREQ among them: what host_signals is made of, in compile order.
+// Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+regs/brick_regs_pkg.sv
+host/host_signals.sv

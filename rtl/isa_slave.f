@@ -1,0 +1,4 @@
+// Slave on the ISA bus: what isa_slave is made of, in compile order.
+// Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+regs/brick_regs_pkg.sv
+host/isa_slave.sv

@@ -1,0 +1,3 @@
+// Interrupt controller 8259: what pic_8259 is made of, in compile order.
+// Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+host/pic_8259.sv

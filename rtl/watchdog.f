@@ -1,0 +1,3 @@
+// Watchdog: what watchdog is made of, in compile order.
+// Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+board/watchdog.sv
