@@ -1,5 +1,6 @@
 // `brick boards`: a table of what is fitted on each board, or all about one.
 #include <algorithm>
+#include <functional>
 #include <iostream>
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ std::vector<std::string> kinds(const BoardConfig& board) {
   return names;
 }
 
-nlohmann::json as_json(const BoardConfig& b) {
+nlohmann::json board_json(const BoardConfig& b) {
   return {{"name", b.name},
           {"title", b.title},
           {"family", b.family},
@@ -52,6 +53,34 @@ nlohmann::json as_json(const BoardConfig& b) {
           {"type", type(b)},
           {"card", b.card},
           {"notes", b.notes}};
+}
+
+// Switches and window of a card have the names of their keys in the board file.
+bool is_card(const BoardConfig& b) { return b.bus == "isa" || b.bus == "pc104"; }
+unsigned io_bits(const BoardConfig& b) { return b.io_decode16 ? 16 : 10; }
+unsigned slot_bits(const BoardConfig& b) { return b.slot8 ? 8 : 16; }
+std::uint32_t window_kib(const BoardConfig& b) { return b.window_flat ? 64 : 16; }
+
+nlohmann::json as_json(const BoardConfig& b) {
+  nlohmann::json json = board_json(b);
+  if (!is_card(b)) return json;
+  json.update({{"io_base", b.io_base},
+               {"io_decode", io_bits(b)},
+               {"dpram_window", b.window},
+               {"dpram_window_kib", window_kib(b)},
+               {"slot", slot_bits(b)}});
+  return json;
+}
+
+void print_host_bus(const BoardConfig& b, const std::function<void(const char*, const std::string&)>& line) {
+  if (!is_card(b)) {
+    line("host bus", b.bus + " (the model has the pins of the ISA bus)");
+    return;
+  }
+  line("host bus", fmt::format("{}, {} bits", b.bus, slot_bits(b)));
+  line("host I/O", fmt::format("0x{:03X}..0x{:03X}, {} address bits", b.io_base, b.io_base + 15, io_bits(b)));
+  line("host memory", fmt::format("0x{:05X}..0x{:05X}, {}", b.window, b.window + 1024 * window_kib(b) - 1,
+                                  b.window_flat ? "flat" : "16 KiB a page"));
 }
 
 void print_table(const std::vector<BoardConfig>& boards) {
@@ -79,7 +108,7 @@ void print_all(const BoardConfig& b) {
   for (unsigned i = 0; i < kLines; ++i) lines[i] = fmt::format("IR{} {}", i, lines[i]);
   std::cout << fmt::format("{}: {}\n", b.name, b.title);
   line("family", b.family);
-  line("host bus", b.bus == "isa" ? "isa" : b.bus + " (the model has the pins of the ISA bus)");
+  print_host_bus(b, line);
   line("axes", std::to_string(b.axes));
   line("ICs", fmt::format("{}", fmt::join(kinds(b), ", ")));
   line("clock source", fmt::format("I19={} after re-initialisation", clock_source(b)));

@@ -1,4 +1,5 @@
 // `brick exec`: starts the controller, plays a host script, prints the replies.
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -16,7 +17,8 @@ namespace {
 std::vector<ScriptLine> open_script(const std::string& file, const std::string& name) {
   if (file == "-") return read_script(std::cin, name);
   std::ifstream in(file);
-  if (!in) throw UsageError(fmt::format("{}: cannot be read; expected a host script, or - for standard input", file));
+  if (!in || std::filesystem::is_directory(file))
+    throw UsageError(fmt::format("{}: cannot be read; expected a host script, or - for standard input", file));
   return read_script(in, name);
 }
 

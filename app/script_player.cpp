@@ -69,7 +69,6 @@ void ScriptPlayer::answer(const ScriptLine& line, std::vector<std::string> lines
 }
 
 void ScriptPlayer::print_unsolicited() {
-  if (!link_.bus().machine().inputs().jpan_init_n) return;  // held in reset: nobody drives the bus
   link_.poll();
   for (const auto& text : link_.take_unsolicited()) out_ << text << '\n';
   out_ << std::flush;

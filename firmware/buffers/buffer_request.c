@@ -14,8 +14,8 @@
 static struct {
   bool high;         /* level of the pin. All tasks, under the mask */
   uint32_t rise;     /* cycle count at its last rise */
-  int32_t on, off;   /* I16 and I17 at the last look. Background */
-  uint32_t selected; /* coordinate system shown at the last look. Background */
+  int32_t on, off;   /* I16 and I17 at the last look. All tasks, under the mask */
+  uint32_t selected; /* coordinate system shown at the last look. As those */
 } request;
 
 static void drive(bool high) {

@@ -22,6 +22,6 @@ void buffer_request_line_calculated(uint32_t cs); /* real-time task, line no lon
 void buffer_request_opened(uint32_t cs);          /* OPEN ROTARY, OPEN BINARY ROTARY */
 void buffer_request_emptied(uint32_t cs);         /* CLEAR, DELETE, DEFINE: Full = 0 */
 void buffer_request_evaluate(void);               /* addressed C.S., I16 or I17 changed: pin shows the selected C.S. */
-void buffer_request_poll(void); /* background pass: notices changes of I16, I17 and of the selection */
+void buffer_request_poll(void); /* real-time task, first: notices changes of I16, I17 and of the selection */
 
 #endif

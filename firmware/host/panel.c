@@ -12,7 +12,8 @@
 enum { SELECTABLE = 8 };
 
 static bool fitted;
-static volatile uint32_t low; /* inputs that are pulled low, as 1. B writes */
+static uint32_t low;                /* inputs that are pulled low, as 1, at the last pass. Background */
+static volatile uint32_t selection; /* number that FPDn/ give. Real-time task */
 
 static uint32_t read_low(void) {
   return ~*hal_y(JPAN_Y_INPUTS) & JPAN_INPUTS_RESET & ~(uint32_t)JPAN_INPUTS_SPARE_MASK;
@@ -21,19 +22,25 @@ static uint32_t read_low(void) {
 void panel_initialize(void) {
   fitted = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;
   low = fitted ? read_low() : 0u;
+  selection = 0u;
 }
 
 bool panel_active(void) { return fitted && ((uint32_t)i_integer(I2_CONTROL_PANEL_DISABLE) & 1u) == 0u; }
 
 static uint32_t number(uint32_t inputs) { return (inputs & JPAN_INPUTS_FPD_MASK) >> JPAN_INPUTS_FPD_SHIFT; }
 
-uint32_t panel_cs(void) {
-  const uint32_t n = number(low);
+static uint32_t selected(uint32_t n) {
   if (n == 0u || n > SELECTABLE) return COORDINATE_SYSTEMS;
   return n - 1u +
          SELECTABLE * ((uint32_t)i_integer(I59_CONTROL_PANEL_GROUP) &
                        1u); /* groups 2 and 3 are further motors, not further systems */
 }
+
+void panel_select(void) {
+  if (fitted) selection = number(read_low());
+}
+
+uint32_t panel_cs(void) { return selected(selection); }
 
 static void choose_group(uint32_t pulled) {
   static const uint32_t inputs[] = {JPAN_INPUTS_HOME_MASK, JPAN_INPUTS_PREJOG_MASK, JPAN_INPUTS_START_MASK,
@@ -64,6 +71,6 @@ void panel_pass(void) {
   if (pulled == 0u || !panel_active()) return;
   if (number(now) == 0u)
     choose_group(pulled);
-  else if (panel_cs() != COORDINATE_SYSTEMS)
-    act(panel_cs(), pulled);
+  else if (selected(number(now)) != COORDINATE_SYSTEMS)
+    act(selected(number(now)), pulled);
 }

@@ -3,7 +3,6 @@
 
 #include "firmware/base/memory_map.h"
 #include "firmware/base/status.h"
-#include "firmware/buffers/buffer_request.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
@@ -17,7 +16,6 @@
 void background_pass(void) {
   clock_watch_pass();
   panel_pass();
-  buffer_request_poll();
   *hal_x(MEMORY_GLOBAL_STATUS) = status_word();
   *hal_y(MEMORY_GLOBAL_STATUS) = motion_global_status2();
   line_input_pass();

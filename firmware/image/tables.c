@@ -17,8 +17,14 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/phase_period.h"
 
-const struct task_hooks task_hooks = {
-    .servo = servo_update, .real_time = calculate_programs, .phase_period = phase_period};
+/* What the panel selects and how BREQ stands come before the calculation of lines, which may take long. */
+static void real_time(void) {
+  panel_select();
+  buffer_request_poll();
+  calculate_programs();
+}
+
+const struct task_hooks task_hooks = {.servo = servo_update, .real_time = real_time, .phase_period = phase_period};
 
 static void buffer_request_changed(uint32_t instance) {
   (void)instance;

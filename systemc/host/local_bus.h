@@ -14,7 +14,8 @@ class LocalBus {
   // 16 bits at an even address; bit 0 of `lanes` is the low byte, bit 1 the high one, one of them at least is 1.
   virtual std::uint16_t read_memory(std::uint32_t address, unsigned lanes) = 0;
   virtual void write_memory(std::uint32_t address, std::uint16_t value, unsigned lanes) = 0;
-  virtual bool irq() const = 0;  // the board's interrupt pin
+  virtual bool irq() const = 0;   // the board's interrupt pin
+  virtual void bridge_reset() {}  // the bridge has forgotten its ranges, as at power-on: configure it
 };
 
 }  // namespace brick

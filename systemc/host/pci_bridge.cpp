@@ -35,20 +35,33 @@ PciBridge::PciBridge(const sc_core::sc_module_name& name, const Local& local, co
   socket.register_b_transport(this, &PciBridge::transport);
 }
 
+void PciBridge::reset() {
+  command_ = bar0_ = bar1_ = 0;
+  interrupt_line_ = 0;
+  if (bus_ != nullptr) bus_->bridge_reset();
+}
+
+// What TLM-2.0 asks of a target before it looks at the address; TLM_OK_RESPONSE if there is nothing to refuse.
+tlm::tlm_response_status PciBridge::malformed(const tlm::tlm_generic_payload& payload) {
+  const unsigned length = payload.get_data_length();
+  if (payload.get_extension<PciCommand>() == nullptr || payload.get_command() == tlm::TLM_IGNORE_COMMAND)
+    return tlm::TLM_COMMAND_ERROR_RESPONSE;
+  if (length == 0 || payload.get_address() % 4 + length > 4 || payload.get_streaming_width() < length)  // no bursts
+    return tlm::TLM_BURST_ERROR_RESPONSE;
+  if (payload.get_byte_enable_ptr() != nullptr && payload.get_byte_enable_length() == 0)
+    return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
+  return payload.get_data_ptr() == nullptr ? tlm::TLM_GENERIC_ERROR_RESPONSE : tlm::TLM_OK_RESPONSE;
+}
+
 // Local cycles let the machine's time pass while this call lasts, so nothing is added to the delay.
 void PciBridge::transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) {
   const std::uint64_t address = payload.get_address();
-  const PciCommand* command = payload.get_extension<PciCommand>();
   const unsigned length = payload.get_data_length();
-  if (command == nullptr || payload.get_command() == tlm::TLM_IGNORE_COMMAND) {
-    payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
+  if (const tlm::tlm_response_status status = malformed(payload); status != tlm::TLM_OK_RESPONSE) {
+    payload.set_response_status(status);
     return;
   }
-  if (length == 0 || address % 4 + length > 4 || payload.get_streaming_width() < length) {  // no bursts
-    payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
-    return;
-  }
-  const PciSpace space = command->space;
+  const PciSpace space = payload.get_extension<PciCommand>()->space;
   const std::uint32_t io = bar0_, memory = bar1_, io_size = kIoBytes, memory_size = local_.window_bytes;
   const bool hit = space == PciSpace::kConfiguration ? address < 256
                    : space == PciSpace::kIo
@@ -79,8 +92,7 @@ void PciBridge::transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) 
   payload.set_response_status(tlm::TLM_OK_RESPONSE);
 }
 
-// -------------------------------------------------------------------------------------------------- configuration
-// space
+// --------------------------------------------------------------------------------------------------- configuration
 
 std::uint32_t PciBridge::read_configuration(std::uint32_t address) const {
   switch (address) {
@@ -113,8 +125,7 @@ void PciBridge::write_configuration(std::uint32_t address, std::uint32_t value, 
   if (address == kInterrupt) interrupt_line_ = static_cast<std::uint8_t>(merged(interrupt_line_));
 }
 
-// --------------------------------------------------------------------------------------------------------- local
-// cycles
+// ---------------------------------------------------------------------------------------------------- local cycles
 
 std::uint32_t PciBridge::read_io(std::uint32_t offset, unsigned bytes) {
   std::uint32_t value = 0;

@@ -41,6 +41,7 @@ class PciBridge final : public sc_core::sc_module {
   tlm_utils::simple_target_socket_optional<PciBridge> socket;
 
   void attach(LocalBus& bus) { bus_ = &bus; }  // not owned; makes the local cycles and lets the time pass
+  void reset();                                // power-on: no ranges, nothing enabled
   bool inta_n() const { return bus_ == nullptr || !bus_->irq(); }
 
   void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
@@ -59,6 +60,7 @@ class PciBridge final : public sc_core::sc_module {
   static constexpr std::uint32_t kIoBytes = 16;
 
  private:
+  static tlm::tlm_response_status malformed(const tlm::tlm_generic_payload& payload);
   std::uint32_t read_configuration(std::uint32_t address) const;
   void write_configuration(std::uint32_t address, std::uint32_t value, unsigned bytes);
   std::uint32_t read_io(std::uint32_t offset, unsigned bytes);

@@ -118,21 +118,23 @@ class Reader {
     }
     board.window = kCardWindow;
     board.window_flat = false;
-    if (file_.has("io_base")) {
-      constexpr const char* kBase = "a multiple of 16 from 0x000 to 0xFF0, as the eight switches can say";
-      board.io_base = static_cast<std::uint32_t>(file_.integer("io_base", 0, 0xFF0, kBase));
-      if (board.io_base % 16 != 0) file_.fail(file_.need("io_base"), "io_base", kBase);
-    }
     board.io_decode16 = choice("io_decode", 16, 10) == 16;
     board.window_flat = choice("dpram_window_kib", 16, 64) == 64;
     board.slot8 = choice("slot", 16, 8) == 8;
     if (board.window_flat) board.window = regs::kDpramWindowBase;
-    if (file_.has("dpram_window")) {
-      const std::uint32_t size = board.window_flat ? 0x10000 : 0x4000;
-      const std::string place = fmt::format("an address below 16 MiB, a multiple of 0x{:X}", size);
-      board.window = static_cast<std::uint32_t>(file_.integer("dpram_window", 0, 0xFFFFFF, place));
-      if (board.window % size != 0) file_.fail(file_.need("dpram_window"), "dpram_window", place);
-    }
+    if (file_.has("io_base"))
+      board.io_base = place("io_base", board.io_decode16 ? 0x1000 : 0x400, 16,
+                            board.io_decode16 ? "as the eight switches can say" : "as io_decode = 10 can tell apart");
+    if (file_.has("dpram_window"))
+      board.window = place("dpram_window", board.slot8 ? 0x10'0000 : 0x100'0000, board.window_flat ? 0x10000 : 0x4000,
+                           board.slot8 ? "below 1 MiB, as a slot of 8 bits has no LA" : "below 16 MiB");
+  }
+  // An address from 0 to the last multiple of `step` below `end`.
+  std::uint32_t place(const std::string& key, std::uint32_t end, std::uint32_t step, const char* why) const {
+    const std::string expected = fmt::format("a multiple of 0x{:X} from 0 to 0x{:X}, {}", step, end - step, why);
+    const auto value = static_cast<std::uint32_t>(file_.integer(key, 0, end - step, expected));
+    if (value % step != 0) file_.fail(file_.need(key), key, expected);
+    return value;
   }
   std::int64_t choice(const std::string& key, std::int64_t usual, std::int64_t other) const {
     if (!file_.has(key)) return usual;

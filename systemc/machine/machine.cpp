@@ -28,6 +28,10 @@ std::unique_ptr<Board> make_board(const MachineConfig& c) {
   return make_lockstep_board(make_rtl_board(fitted, rtl), make_model_board(fitted, c.seed));
 }
 
+std::unique_ptr<Board> wired(const MachineConfig& c, std::unique_ptr<Board> board) {
+  return c.rewire ? c.rewire(std::move(board)) : std::move(board);
+}
+
 Straps straps(const BoardConfig& board) {
   Straps s;
   s.fitted = board.fitted;
@@ -95,7 +99,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     : config(machine_config),
       jumper_e3(config.jumper_e3),
       owner(machine),
-      board(make_board(config)),
+      board(wired(config, make_board(config))),
       motors(*board, signals, config.board.fitted),
       aperture(config.aperture, config.seed),
       memory(cpu, config.flash_file) {
@@ -137,6 +141,7 @@ Machine::Impl::~Impl() {
 
 void Machine::Impl::power_on() {
   memory.randomize(config.seed + power_ons++);
+  if (pci) pci->reset();
   memory.set_strap(MachineMemory::Strap::kJumperE3, jumper_e3);
   memory.set_strap(MachineMemory::Strap::kFitted, config.board.fitted);
   memory.set_strap(MachineMemory::Strap::kCard, config.board.card);

@@ -58,6 +58,7 @@ struct MachineConfig {
   TimeFs aperture = 0;               // of the board's inputs, systemc/core/aperture.h; 0 = none
   Tick batch = 0;                    // 0 = as long as the rule allows; else no advance longer than this many ticks
   std::optional<std::uint32_t> bcr;  // wait states, whatever the firmware writes to BCR
+  std::function<std::unique_ptr<Board>(std::unique_ptr<Board>)> rewire;  // negative controls: a board that is faulty
   bool seeded_bug = false;  // lock-step negative control: the RTL gets a deliberate bug (rtl/board/board_sim.sv)
 };
 

@@ -73,6 +73,7 @@ const BenchNeed kServoIc0{"servo IC 0", [](const BoardConfig& b) { return (b.fit
 const BenchNeed kServoIcs01{"servo ICs 0 and 1", [](const BoardConfig& b) { return (b.fitted & 3) == 3; }};
 const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { return count(b.fitted) >= 2; }};
 const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
+const BenchNeed kASlotOf16Bits{"a slot of 16 bits", [](const BoardConfig& b) { return !b.slot8; }};
 
 BenchNeed without_8259(const BenchNeed& need) {
   const std::string controller = "an interrupt controller that is no 8259";

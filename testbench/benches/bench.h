@@ -67,14 +67,14 @@ struct BenchNeed {
   std::string what;  // "" if any board will do
   std::function<bool(const BoardConfig&)> met = [](const BoardConfig&) { return true; };
 };
-extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc;
+extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc, kASlotOf16Bits;
 BenchNeed without_8259(const BenchNeed& need);  // and the interrupt controller of the Turbo boards
 
 // What `brick run --negative` does, and the proof that the bench sees it: the first step that fails.
 struct NegativeControl {
   std::string does;                                   // one line
-  std::string step;                                   // its name, '*' for what depends on the seed
-  std::string says;                                   // part of its detail
+  std::string step;                                   // its name; '*', '?' for what depends on the seed
+  std::string says;                                   // part of its detail, likewise
   std::function<void(MachineConfig&)> seed_bug = {};  // changes the machine; empty if the bench does it itself
 };
 

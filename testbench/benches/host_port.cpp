@@ -1,6 +1,6 @@
 // host-port: the HI08 from both sides. Registers and their reset values, flags, HLEND, INIT, HREQ, host commands, and
 // words both ways at random: what one side sent is what the other got, none lost, none twice, in order.
-#include <deque>
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -17,6 +17,8 @@ namespace io = regs::host_io;
 namespace dsp = regs::hi08;
 constexpr std::uint32_t kRreq = io::icr::kRreq.mask(), kTreq = io::icr::kTreq.mask(), kInit = io::icr::kInit.mask(),
                         kHlend = io::icr::kHlend.mask();
+
+using Words = std::vector<std::uint32_t>;
 
 class HostPortBench {
  public:
@@ -181,7 +183,7 @@ class HostPortBench {
     Peer(const Peer&) = delete;
     Peer& operator=(const Peer&) = delete;
 
-    std::vector<std::uint32_t> sent, received;
+    Words sent, received;
     std::size_t wanted = 0;  // words to send
 
     std::optional<Access> next() override {
@@ -214,11 +216,14 @@ class HostPortBench {
     constexpr std::size_t kWords = 300;
     Peer peer(b_.machine, b_.seed + 1);
     peer.wanted = kWords;
-    std::vector<std::uint32_t> sent, received;
+    Words sent, received;
     unsigned full = 0;
     const Tick limit = b_.bus.now() + ns_to_ticks(20'000'000);
-    while ((sent.size() < kWords || received.size() < kWords || peer.received.size() < sent.size()) &&
-           b_.bus.now() < limit) {
+    const auto differ = [](const Words& from, const Words& to) {
+      return !std::equal(to.begin(), to.end(), from.begin(), from.begin() + std::min(from.size(), to.size()));
+    };
+    const auto all = [&] { return std::min({sent.size(), received.size(), peer.received.size()}) >= kWords; };
+    while (!all() && !differ(sent, peer.received) && !differ(peer.sent, received) && b_.bus.now() < limit) {
       const std::uint32_t status = isr(0xFF);
       const bool room = (status & HostBus::kTxde) != 0, word = (status & HostBus::kRxdf) != 0;
       full += !room && word ? 1 : 0;
@@ -233,14 +238,15 @@ class HostPortBench {
     }
     compare("words host to CPU", sent, peer.received, kWords);
     compare("words CPU to host", peer.sent, received, kWords);
-    b_.report.step("both ways full at once", full > 0, fmt::format("{} times", full));
+    constexpr unsigned kLeast =
+        kWords / 30;  // one access in four of the CPU is followed by a pause that a word of the host fits into
+    b_.report.step("both ways full at once", full >= kLeast, fmt::format("{} times, at least {}", full, kLeast));
   }
 
-  void compare(const std::string& name, const std::vector<std::uint32_t>& sent,
-               const std::vector<std::uint32_t>& received, std::size_t least) {
+  void compare(const std::string& name, const Words& sent, const Words& received, std::size_t least) {
     std::size_t same = 0;
     while (same < sent.size() && same < received.size() && sent[same] == received[same]) ++same;
-    const auto at = [same](const std::vector<std::uint32_t>& v) {
+    const auto at = [same](const Words& v) {
       return same < v.size() ? fmt::format("${:06X}", v[same]) : std::string("nothing");
     };
     const bool good = same >= least && same == sent.size() && same == received.size();
@@ -258,10 +264,11 @@ class HostPortBench {
 }  // namespace
 
 Bench host_port_bench() {
-  return {"host-port",
-          "host port from both sides: flags, INIT, HLEND, HREQ, host commands, words both ways at random",
-          {"the host writes words without looking at TXDE", "words host to CPU", "expected $"},
-          [](BenchContext& b) { HostPortBench(b).run(); }};
+  return {
+      "host-port",
+      "host port from both sides: flags, INIT, HLEND, HREQ, host commands, words both ways at random",
+      {"the host writes words without looking at TXDE", "words host to CPU", "arrived as $??????, expected $??????;"},
+      [](BenchContext& b) { HostPortBench(b).run(); }};
 }
 
 }  // namespace brick

@@ -8,7 +8,8 @@ namespace {
 
 constexpr TimeFs kNs = kFsPerNs;
 constexpr TimeFs kBclk = 120 * kNs;
-constexpr TimeFs kT16Limit = 66 * kNs;
+constexpr TimeFs kHold = 25 * kNs;  // t3, t7, t15
+constexpr TimeFs kT4Limit = 489 * kNs, kT14Limit = 173 * kNs, kT16Limit = 66 * kNs;
 constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
 
 std::vector<TimingRule> rules() {
@@ -68,6 +69,12 @@ std::uint32_t IsaChecker::address(const BoardInputs& in, bool memory) {
   return in.slot8 ? in.isa_sa & 0xFFFFF : static_cast<std::uint32_t>(in.isa_la) << 17 | (in.isa_sa & 0x1FFFF);
 }
 
+unsigned IsaChecker::lanes(const BoardInputs& in, bool memory) {
+  const bool odd = (in.isa_sa & 1) != 0;
+  if (!memory || (odd && in.isa_sbhe_n)) return 1;  // the odd byte of an 8-bit host is on the lower lane
+  return (in.isa_sbhe_n ? 0u : 2u) | (odd ? 0u : 1u);
+}
+
 bool IsaChecker::ours(const BoardInputs& in, const Cycle& c) const {
   if (c.memory()) {
     const std::uint32_t size = in.window_flat ? 0x10000 : 0x4000, space = in.slot8 ? 0xFFFFF : 0xFFFFFF;
@@ -109,18 +116,22 @@ void IsaChecker::pins(TimeFs t, const BoardInputs& in, const BoardOutputs& out) 
     ledger_.holds(kWholeCycle, region(cycle_), !in_cycle_, place(t));
     cycle_.whole = false;
   }
+  const bool asleep = !before.rst_n || before.isa_resetdrv;
+  if (asleep && in.rst_n && !in.isa_resetdrv) awake_at_ = t + kBclk;  // host-bus:3.8/4
   if (shown.get(pin::kIsaIochrdy) != out.get(pin::kIsaIochrdy)) ready_moved(t, out.get(pin::kIsaIochrdy) != 0);
   if (shown.get(pin::kIsaSd) != out.get(pin::kIsaSd) || shown.get(pin::kIsaSdOe) != out.get(pin::kIsaSdOe))
     board_data(t, in, shown);
 
   const unsigned now = commands(in), then = commands(before);
   if (now == then) return;
+  if ((now & then) == 0) {  // also where one falls in the instant in which the other rises: two cycles
+    if (then != 0) end(t, before, out);
+    if (now != 0) begin(t, now, in, out);
+  }
   if ((now & (now - 1)) != 0) {  // more than one is low
-    if (in_cycle_) cycle_.alone = false;
+    cycle_.alone = false;
     ledger_.holds(kOneCommand, region(cycle_), false, place(t));
   }
-  if (then != 0 && now == 0) end(t, before, out);
-  if (then == 0 && now != 0) begin(t, now, in, out);
 }
 
 // --------------------------------------------------------------------------------------------------------- what moves
@@ -154,12 +165,12 @@ void IsaChecker::block_selected(TimeFs t, const BoardInputs& in) {
 void IsaChecker::address_moved(TimeFs t) {
   sa_at_ = t;
   if (in_cycle_) cycle_.moved = true;
-  if (!in_cycle_ && std::exchange(hold_address_, false)) enter(kT3, 25 * kNs, t - high_at_, t);
+  if (!in_cycle_ && std::exchange(hold_address_, false)) enter(kT3, kHold, t - high_at_, t);
 }
 
 void IsaChecker::host_data_moved(TimeFs t) {
   data_at_ = t;
-  if (!in_cycle_ && std::exchange(hold_data_, false)) enter(cycle_.memory() ? kT15 : kT7, 25 * kNs, t - high_at_, t);
+  if (!in_cycle_ && std::exchange(hold_data_, false)) enter(cycle_.memory() ? kT15 : kT7, kHold, t - high_at_, t);
 }
 
 void IsaChecker::ready_moved(TimeFs t, bool ready) {
@@ -183,7 +194,7 @@ void IsaChecker::board_data(TimeFs t, const BoardInputs& in, const BoardOutputs&
   if (in_cycle_) {
     if (driven != 0) {
       cycle_.data_valid = t;
-      cycle_.answered = true;
+      cycle_.answered = cycle_.answered || (driven & cycle_.lanes) == cycle_.lanes;
     } else if (before != 0) {
       cycle_.data_gone = t;
     }
@@ -200,9 +211,10 @@ void IsaChecker::board_data(TimeFs t, const BoardInputs& in, const BoardOutputs&
 // ------------------------------------------------------------------------------------------------------------- a cycle
 
 void IsaChecker::begin(TimeFs t, unsigned now, const BoardInputs& in, const BoardOutputs& out) {
-  // Nothing moved since the last command: it was held at least until now.
-  if (std::exchange(hold_address_, false)) enter(kT3, 25 * kNs, t - high_at_, t);
-  if (std::exchange(hold_data_, false)) enter(cycle_.memory() ? kT15 : kT7, 25 * kNs, t - high_at_, t);
+  // Nothing moved since the last command: it was held at least until now. A shorter pause is row 11's.
+  const bool held = t - high_at_ >= kHold;
+  if (std::exchange(hold_address_, false) && held) enter(kT3, kHold, t - high_at_, t);
+  if (std::exchange(hold_data_, false) && held) enter(cycle_.memory() ? kT15 : kT7, kHold, t - high_at_, t);
 
   if (std::exchange(read_floats_, false)) enter(kT5Off, 30 * kNs, t - high_at_, t);
   block_overdue(t, in);
@@ -213,14 +225,21 @@ void IsaChecker::begin(TimeFs t, unsigned now, const BoardInputs& in, const Boar
   cycle_.low = t;
   cycle_.address = address(in, cycle_.memory());
   cycle_.wide = cycle_.memory() && !in.slot8 && out.get(pin::kIsaMemcs16N) == 0;
+  cycle_.lanes = lanes(in, cycle_.memory());
   in_cycle_ = true;
-  if (high_at_ != kNone) enter(kT11, 170 * kNs, t - high_at_, t);
+  bool sound = in.rst_n && !in.isa_resetdrv && t >= awake_at_;
+  const auto least = [&](Rule rule, TimeFs required, TimeFs since) {
+    enter(rule, required, t - since, t);
+    sound = sound && t - since >= required;
+  };
+  if (high_at_ != kNone) least(kT11, 170 * kNs, high_at_);
   if (cycle_.memory()) {
-    if (!in.slot8) enter(kT12, 111 * kNs, t - la_at_, t);
-    enter(kT18, 34 * kNs, t - sa_at_, t);
+    if (!in.slot8) least(kT12, 111 * kNs, la_at_);
+    least(kT18, 34 * kNs, sa_at_);
   } else if (!in.isa_aen) {
-    enter(kT1, 91 * kNs, t - sa_at_, t);
+    least(kT1, 91 * kNs, sa_at_);
   }
+  cycle_.due = sound && !cycle_.write() && ours(in, cycle_);
   port_strobe(t, in);
 }
 
@@ -275,15 +294,16 @@ void IsaChecker::end(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
 
 void IsaChecker::end_read(TimeFs t) {
   read_floats_ = out_.get(pin::kIsaSdOe) != 0;
-  if (!cycle_.answered || !cycle_.alone || !cycle_.whole) return;
-  ++answered_;
-  const bool stretched = cycle_.ready_low != kNone;
-  if (!stretched) {  // with IOCHRDY low data come later by right
-    if (cycle_.wide)
-      enter(kT14, 173 * kNs, cycle_.data_valid - cycle_.low, t);
-    else
-      enter(kT4, 489 * kNs, cycle_.data_valid - cycle_.low, t);
+  if (!cycle_.alone || !cycle_.whole) return;
+  const Rule row = cycle_.wide ? kT14 : kT4;
+  const TimeFs limit = cycle_.wide ? kT14Limit : kT4Limit;
+  if (!cycle_.answered) {  // a command that ends before the limit asks for nothing
+    if (cycle_.due && t - cycle_.low > limit) enter(row, limit, t - cycle_.low, t);
+    return;
   }
+  ++answered_;
+  const bool stretched = cycle_.ready_low != kNone;  // then data come later by right
+  if (!stretched) enter(row, limit, cycle_.data_valid - cycle_.low, t);
   if (!read_floats_) enter(kT5, 0, cycle_.data_gone - t, t);  // gone before the command
 }
 

@@ -67,7 +67,9 @@ class IsaChecker {
   struct Cycle {
     Kind kind = kIoRead;
     std::uint32_t address = 0;
-    bool wide = false, alone = true, whole = true, moved = false, answered = false;
+    bool wide = false, alone = true, whole = true, moved = false;
+    unsigned lanes = 0;                  // of SD that it uses
+    bool due = false, answered = false;  // a sound read of the board's own; all its lanes have been driven
     TimeFs low = 0, ready_low = kNone, ready_high = kNone, data_valid = kNone, data_gone = kNone;
     bool write() const { return kind == kIoWrite || kind == kMemoryWrite; }
     bool memory() const { return kind == kMemoryRead || kind == kMemoryWrite; }
@@ -80,6 +82,7 @@ class IsaChecker {
 
   static unsigned commands(const BoardInputs& in);
   static std::uint32_t address(const BoardInputs& in, bool memory);
+  static unsigned lanes(const BoardInputs& in, bool memory);
   bool ours(const BoardInputs& in, const Cycle& c) const;
   int port_byte(const BoardInputs& in, const Cycle& c) const;
   TimingPlace place(TimeFs time) const { return place(time, cycle_); }
@@ -110,6 +113,7 @@ class IsaChecker {
   bool in_cycle_ = false;  // a command is low
   Cycle cycle_;            // the present one, or the last
   TimeFs la_at_ = 0, sa_at_ = 0, data_at_ = 0, high_at_ = kNone;
+  TimeFs awake_at_ = 0;       // the board answers from then on, when it is not in reset
   TimeFs block_due_ = kNone;  // LA selected the block of the window then, and MEMCS16# has still to fall
   bool hold_address_ = false, hold_data_ = false, read_floats_ = false;  // rules of the last cycle still to be judged
   PortAccess port_read_, port_write_;

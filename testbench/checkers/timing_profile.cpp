@@ -9,7 +9,6 @@ namespace brick {
 
 namespace {
 
-constexpr TimeFs kLongestPulse = 50'000 * kFsPerNs;  // host-bus:5.7/6: longer is no pulse, the buffer is full
 constexpr unsigned kRealTimeTask = 1;
 constexpr std::uint32_t kCarriageReturn = 0x0D;
 
@@ -87,12 +86,12 @@ void TimingProfile::breq_edge(TimeFs now, bool level) {
     line_end_.reset();
     return;
   }
-  const TimeFs low = fell_ ? now - *fell_ : INT64_MAX;
+  // A pulse falls and rises for one line. With another line before the rise it was `&n` that moved the pin.
   if (machine_.task() == kRealTimeTask) {
     rise_.enter(now - real_time_, now);
-  } else if (fell_for_ && low <= kLongestPulse) {
+  } else if (fell_ && fell_for_ && !line_end_) {
     fall_.enter(*fell_ - *fell_for_, *fell_);
-    pulse_.enter(low, now);
+    pulse_.enter(now - *fell_, now);
   }
   fell_.reset();
   line_end_.reset();

@@ -5,7 +5,9 @@
 namespace brick {
 
 HostBus::HostBus(Machine& machine) : IsaHost(machine), bridge_(machine.pci()) {
-  if (bridge_ != nullptr) start_pci();
+  if (bridge_ == nullptr) return;
+  bridge_->attach(*this);
+  HostBus::bridge_reset();
 }
 
 std::uint32_t HostBus::io_base() const { return std::uint32_t{switches().io_base} << 4; }
@@ -47,8 +49,7 @@ void HostBus::dpram_write(std::uint32_t byte_offset, std::uint16_t value) {
 
 // ----------------------------------------------------------------------------------------------------------------- PCI
 
-void HostBus::start_pci() {
-  bridge_->attach(*this);
+void HostBus::bridge_reset() {
   pci(PciSpace::kConfiguration, PciBridge::kBar0, true, kPciIo, 4);
   pci(PciSpace::kConfiguration, PciBridge::kBar1, true, kPciMemory, 4);
   pci(PciSpace::kConfiguration, PciBridge::kCommand, true, PciBridge::kIoEnable | PciBridge::kMemoryEnable, 4);

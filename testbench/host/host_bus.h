@@ -33,7 +33,10 @@ class HostBus : public IsaHost {
   std::uint32_t window() const;   // address of the memory window
 
   // Host port, host-bus:3.1 "polling recipe" -------------------------------------------------------------------------
-  std::uint8_t port_status() { return io_read(regs::host_io::kIsr); }
+  std::uint8_t port_status() {  // 0 where nobody drives the bus, as while a reset holds: the register is never all ones
+    const std::uint8_t status = io_read(regs::host_io::kIsr);
+    return status == 0xFF ? 0 : status;
+  }
   void pause_polling() { pause(isa::kPollPause); }             // after a look at the status that found nothing
   bool tripped() const { return pins().get(pin::kWdo) != 0; }  // line WDO: nobody will answer until a reset
   void open_port();                                            // once: high and middle byte zero
@@ -63,7 +66,7 @@ class HostBus : public IsaHost {
  private:
   // What the computer's start-up gives a PCI board.
   static constexpr std::uint32_t kPciIo = 0xE000, kPciMemory = 0xFEB0'0000;
-  void start_pci();
+  void bridge_reset() override;
   std::uint32_t pci(PciSpace space, std::uint32_t address, bool write, std::uint32_t value, unsigned bytes);
   std::uint32_t window_address(std::uint32_t byte_offset);
 

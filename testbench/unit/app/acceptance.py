@@ -81,6 +81,9 @@ def restarts():
               "I16", "@expect 5", "VERSION"])
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     check(r.stdout.split() == ["5", "5", "5", "1.947"], r.stdout)
+    r = play(["I16=7", "@power", "I16", "@dpram 0x40 = 1234", "@dpram 0x40 1", "@expect 1234"], "--board",
+             "turbo-pmac2-pci")
+    check(r.returncode == 0 and r.stdout.split()[:1] == ["5"], f"the bridge is set up again: {r.stdout}{r.stderr}")
 
 
 def flash():
@@ -113,6 +116,22 @@ def boards():
     file = json.loads(brick("boards", str(BOARDS / "geo-pmac.toml"), "--json").stdout)
     check((file["axes"], file["jpan"], file["feedback_option_2"], file["interrupts"][7]) == (2, False, True, "WDO"),
           str(file))
+    keys = ("io_base", "io_decode", "dpram_window", "dpram_window_kib", "slot", "pic")
+    card = json.loads(brick("boards", "umac-turbo", "--json").stdout)
+    check([card[k] for k in keys] == [0x210, 16, 0xD4000, 16, 16, "pic"], str(card))
+    check("io_base" not in file, "a host inside the product has no switches")
+    with tempfile.TemporaryDirectory() as folder:
+        other = pathlib.Path(folder) / "slot.toml"
+        other.write_text((BOARDS / "pmac-pc.toml").read_text() +
+                         "io_base = 0x330\nio_decode = 10\ndpram_window = 0xCC000\nslot = 8\n")
+        shown = brick("boards", str(other)).stdout
+        check(all(re.search(line, shown) for line in (
+            r"host bus +isa, 8 bits\n", r"host I/O +0x330\.\.0x33F, 10 address bits\n",
+            r"host memory +0xCC000\.\.0xCFFFF, 16 KiB a page\n")), shown)
+        card = json.loads(brick("boards", str(other), "--json").stdout)
+        check([card[k] for k in keys] == [0x330, 10, 0xCC000, 16, 8, "8259"], str(card))
+        r = play(["VERSION", "@dpram 0x40 = 1234", "@dpram 0x40 1", "@expect 1234"], "--board", str(other))
+        check(r.returncode == 0, r.stdout + r.stderr)
     check(play(["VERSION"], "--board", "geobrick-lv-4").stdout.split() == ["1.947"], "four axes")
 
 
@@ -142,6 +161,10 @@ def jpan():
         check(r.returncode == 0, f"{engine}: exit {r.returncode}: {r.stderr}")
         first = first or r.stdout
         check(r.stdout == first, f"{engine}: {r.stdout}, expected {first}")
+    for line in ("VERSION", "@reset", "@power"):
+        r = play(["@jpan INIT=0", "@wait 10us", line], "--board", "turbo-pmac-pci")
+        check(r.returncode == 1 and "stdin:3: " in r.stderr and r.stderr.count("\n") == 1,
+              f"{line} while INIT is low: exit {r.returncode}: {r.stderr}")
     r = play(["VERSION", "@jpan FPD=1"])
     check(r.returncode == 2 and r.stdout == "", f"exit {r.returncode}: {r.stdout}")
     check("stdin:2: @jpan: this board has no control panel port; expected" in r.stderr and r.stderr.count("\n") == 1,
@@ -192,6 +215,7 @@ def bad_input():
             (["run", "nothing"], "", "nothing"),
             (["exec"], "", "FILE"),
             (["exec", f"{folder}/none.txt"], "", "none.txt"),
+            (["exec", folder], "", folder),
             (["exec", "-", "--engine", "verilog"], "", "verilog"),
             (["exec", "-", "--frob"], "", "--frob"),
             (["exec", "-", "--seed", "x"], "", "--seed"),

@@ -14,8 +14,8 @@ def run_json(bench, *options):
         return r, json.loads(pathlib.Path(f"{folder}/r.json").read_text())
 
 
-def bench_passes(name, engine, seed="1", firmware=True):
-    r, results = run_json(name, "--engine", engine, "--seed", seed)
+def bench_passes(name, engine, seed="1", firmware=True, board=None):
+    r, results = run_json(name, "--engine", engine, "--seed", seed, *(("--board", board) if board else ()))
     check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
     check(f"PASS {name}" in r.stdout and "ticks/s" in r.stdout and "instructions/s" in r.stdout, r.stdout)
     check(len(results["steps"]) > 5 and results["ticks"] > 0 and (results["instructions"] > 0) == firmware,
@@ -168,6 +168,17 @@ def host_port():
 def isa_timing():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
         bench_passes("isa-timing", engine, seed)
+
+
+def slot_of_8_bits():
+    """A card without LA and SBHE#: what needs words in one access says so, the others pass."""
+    with tempfile.TemporaryDirectory() as folder:
+        board = pathlib.Path(folder) / "slot8.toml"
+        board.write_text((BOARDS / "turbo-pmac2-pc.toml").read_text() + "slot = 8\n")
+        for bench, engine in (("smoke", "systemc"), ("host-port", "systemc"), ("isa-timing", "lockstep")):
+            bench_passes(bench, engine, board=str(board))
+        r = brick("run", "dpram", "--board", str(board))
+        check(r.returncode == 2 and "dpram needs a slot of 16 bits, which board slot8 has not" in r.stderr, r.stderr)
 
 
 def capture_compare():

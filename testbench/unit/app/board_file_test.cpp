@@ -115,6 +115,36 @@ TEST(BoardFile, OneWithAnIsaBusCanHaveAn8259) {
   EXPECT_EQ(error_of(with("bus", "bus = \"pci\"\npic = \"pic\"")), "no error");
 }
 
+// host-bus:3.1, host-bus:3.7: the default of each key, what else it can be, and how one depends on another.
+TEST(BoardFile, SwitchesAndWindowOfACard) {
+  const auto card = [](const std::string& keys) {
+    const TemporaryFile file(with("bus", "bus = \"pc104\"\n" + keys));
+    return read_board_file(file.path());
+  };
+  const BoardConfig usual = card("");
+  EXPECT_EQ(usual.io_base, 0x210u);
+  EXPECT_TRUE(usual.io_decode16);
+  EXPECT_EQ(usual.window, 0xD4000u);
+  EXPECT_FALSE(usual.window_flat);
+  EXPECT_FALSE(usual.slot8);
+  EXPECT_FALSE(usual.pic_8259);
+  for (const std::uint32_t base : {0x000u, 0x330u, 0xFF0u})
+    EXPECT_EQ(card(fmt::format("io_base = {}", base)).io_base, base);
+  EXPECT_EQ(card("io_base = 0x3F0\nio_decode = 10").io_base, 0x3F0u);
+  EXPECT_FALSE(card("io_decode = 10").io_decode16);
+  EXPECT_TRUE(card("io_decode = 16").io_decode16);
+  EXPECT_EQ(card("dpram_window_kib = 64").window, 0xD0000u) << "the flat one has a place of its own";
+  EXPECT_TRUE(card("dpram_window_kib = 64").window_flat);
+  EXPECT_EQ(card("dpram_window_kib = 64\ndpram_window = 0xE0000").window, 0xE0000u);
+  EXPECT_EQ(card("dpram_window = 0xFFC000").window, 0xFFC000u);
+  EXPECT_EQ(card("dpram_window = 0xFC000\nslot = 8").window, 0xFC000u);
+  EXPECT_TRUE(card("slot = 8").slot8);
+  EXPECT_FALSE(card("slot = 16").slot8);
+  const BoardConfig brick = read_board_file(tree("geobrick-lv-8"));
+  EXPECT_EQ(brick.window, 0xD0000u);
+  EXPECT_TRUE(brick.window_flat);
+}
+
 TEST(BoardFile, GeoPmacHasTwoAxesOnOneServoIc) {
   const BoardConfig board = read_board_file(tree("geo-pmac"));
   EXPECT_EQ(board.fitted, 1u);
@@ -188,6 +218,32 @@ TEST(BoardFile, ErrorsSayWhereWhatWasFoundAndWhatWasExpected) {
        "servo IC 1 is not fitted"},
       {"bus", "bus = \"isa\"\npic = \"8258\"", ":4: pic:", "\"8258\"", "expected one of pic, 8259"},
       {"bus", "bus = \"pci\"\npic = \"8259\"", ":4: pic:", "\"8259\"", "only a board for the isa or pc104 bus"},
+      {"bus", "bus = \"isa\"\npic = 8259", ":4: pic:", "found 8259;", "expected a text in quotes"},
+      {"bus", "bus = \"isa\"\nio_base = 0x218", ":4: io_base:", "found 0x218;",
+       "expected a multiple of 0x10 from 0 to 0xFF0"},
+      {"bus", "bus = \"isa\"\nio_base = 0x1000", ":4: io_base:", "found 0x1000;", "the eight switches"},
+      {"bus", "bus = \"isa\"\nio_base = -16", ":4: io_base:", "found -16;", "from 0 to 0xFF0"},
+      {"bus", "bus = \"isa\"\nio_base = \"0x210\"", ":4: io_base:", "found \"0x210\";", "a multiple of 0x10"},
+      {"bus", "bus = \"isa\"\nio_decode = 10\nio_base = 0x400", ":5: io_base:", "found 0x400;",
+       "expected a multiple of 0x10 from 0 to 0x3F0, as io_decode = 10 can tell apart"},
+      {"bus", "bus = \"isa\"\nio_decode = 12", ":4: io_decode:", "found 12;", "expected 10 or 16"},
+      {"bus", "bus = \"isa\"\ndpram_window = 0xD2000", ":4: dpram_window:", "found 0xD2000;",
+       "expected a multiple of 0x4000 from 0 to 0xFFC000"},
+      {"bus", "bus = \"isa\"\ndpram_window_kib = 64\ndpram_window = 0xD4000", ":5: dpram_window:", "found 0xD4000;",
+       "expected a multiple of 0x10000 from 0 to 0xFF0000"},
+      {"bus", "bus = \"isa\"\ndpram_window = 0x1000000", ":4: dpram_window:", "found 0x1000000;", "below 16 MiB"},
+      {"bus", "bus = \"isa\"\nslot = 8\ndpram_window = 0x1D4000", ":5: dpram_window:", "found 0x1D4000;",
+       "expected a multiple of 0x4000 from 0 to 0xFC000, below 1 MiB, as a slot of 8 bits has no LA"},
+      {"bus", "bus = \"isa\"\ndpram_window_kib = 32", ":4: dpram_window_kib:", "found 32;", "expected 16 or 64"},
+      {"bus", "bus = \"isa\"\nslot = 32", ":4: slot:", "found 32;", "expected 8 or 16"},
+      {"bus", "bus = \"isa\"\nslot = true", ":4: slot:", "found true;", "expected 8 or 16"},
+      {"bus", "bus = \"pci\"\nio_base = 0x210", ":4: io_base:", "found 0x210;", "only isa and pc104 boards have it"},
+      {"bus", "bus = \"pci\"\nio_decode = 16", ":4: io_decode:", "found 16;", "only isa and pc104 boards have it"},
+      {"bus", "bus = \"internal\"\ndpram_window = 0xD0000", ":4: dpram_window:", "found 0xD0000;",
+       "only isa and pc104 boards have it"},
+      {"bus", "bus = \"internal\"\ndpram_window_kib = 64", ":4: dpram_window_kib:", "found 64;",
+       "only isa and pc104 boards have it"},
+      {"bus", "bus = \"internal\"\nslot = 16", ":4: slot:", "found 16;", "only isa and pc104 boards have it"},
       {"title", "title = ", ":1:", "", "expected TOML"},
   };
   for (const auto& k : cases)

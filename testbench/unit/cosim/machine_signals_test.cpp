@@ -52,7 +52,9 @@ TEST_F(NamedSignals, AreAllThereWithWidthAndRadix) {
       {"host.mi2", 1, Radix::kBinary},
       {"host.axexp0", 1, Radix::kBinary},
       {"host.axexp1", 1, Radix::kBinary},
+      {"host.isa.la", 7, Radix::kHex},
       {"host.isa.sa", 20, Radix::kHex},
+      {"host.isa.sbhe_n", 1, Radix::kBinary},
       {"host.isa.sd", 16, Radix::kHex},
       {"host.isa.ior_n", 1, Radix::kBinary},
       {"host.isa.iow_n", 1, Radix::kBinary},
@@ -60,6 +62,7 @@ TEST_F(NamedSignals, AreAllThereWithWidthAndRadix) {
       {"host.isa.memw_n", 1, Radix::kBinary},
       {"host.isa.iochrdy", 1, Radix::kBinary},
       {"host.isa.aen", 1, Radix::kBinary},
+      {"host.isa.resetdrv", 1, Radix::kBinary},
       {"host.pic.ist", 8, Radix::kHex},
       {"host.pic.sig", 8, Radix::kHex},
       {"host.pic.msk", 8, Radix::kHex},
@@ -117,6 +120,7 @@ TEST_F(NamedSignals, HostBusShowsTheCommandsAndWhoeverDrivesTheData) {
   BoardInputs in;
   BoardOutputs board;
   board.set(pin::kIsaSd, 0xB0AD);
+  board.set(pin::kIsaSdOe, 3);
   in.isa_sa = 0xD1050;
   in.isa_sd = 0x4057;
   const struct {
@@ -135,10 +139,33 @@ TEST_F(NamedSignals, HostBusShowsTheCommandsAndWhoeverDrivesTheData) {
     EXPECT_EQ(value("host.isa.sd"), c.data) << c.name;
     in.*c.pin = true;
   }
-  in.isa_aen = true;
+  in.isa_aen = in.isa_resetdrv = true;
+  in.isa_sbhe_n = false;
+  in.set_address(0xFD1050);
   machine.inputs(0, in, board);
   EXPECT_EQ(value("host.isa.aen"), 1u);
+  EXPECT_EQ(value("host.isa.resetdrv"), 1u);
+  EXPECT_EQ(value("host.isa.sbhe_n"), 0u);
   EXPECT_EQ(value("host.isa.sa"), 0xD1050u);
+  EXPECT_EQ(value("host.isa.la"), 0x7Eu) << "A23..A17";
+}
+
+// host-bus:3.8/1: a lane that nobody drives reads as ones, whatever the board has in its register.
+TEST_F(NamedSignals, DataLanesThatTheBoardDoesNotDriveArePulledUpInARead) {
+  BoardInputs in;
+  in.isa_memr_n = false;
+  machine.inputs(0, in, {});
+  for (const auto& [lanes, data] : {std::pair{0u, 0xFFFFu}, {1u, 0xFFADu}, {2u, 0xB0FFu}, {3u, 0xB0ADu}}) {
+    BoardOutputs board;
+    machine.outputs(0, board, board);
+    board.set(pin::kIsaSd, 0xB0AD);
+    machine.outputs(1, {}, board);
+    BoardOutputs drives = board;
+    drives.set(pin::kIsaSdOe, lanes);
+    machine.outputs(2, board, drives);
+    EXPECT_EQ(value("host.isa.sd"), data) << lanes;
+    machine.outputs(3, drives, {});
+  }
 }
 
 // 0 background, 1 real-time, 2 servo, 3 phase; a handler that is interrupted comes back.

@@ -8,6 +8,7 @@
 
 #include "systemc/core/cpu_clock.h"
 #include "systemc/cpu/cycle_costs.h"
+#include "systemc/host/pci_bridge.h"
 #include "testbench/unit/cosim/machine_rig.h"
 #include "testbench/unit/covers.h"
 
@@ -72,6 +73,29 @@ TEST(Machine, ResetKeepsRamAndPowerCycleLosesIt) {
   EXPECT_EQ(rig.y(0x103), 1u);
   EXPECT_NE(rig.y(0x200), 0xABCDEFu);
   EXPECT_NE(rig.y(0x201), random) << "RAM comes up at random";
+}
+
+// host-bus:3.6/4: the bridge loses its ranges with the power, not with the card's reset.
+TEST(Machine, PowerCycleResetsThePciBridge) {
+  struct StartUp final : LocalBus {
+    std::uint8_t read_io(std::uint32_t) override { return 0xFF; }
+    void write_io(std::uint32_t, std::uint8_t) override {}
+    std::uint16_t read_memory(std::uint32_t, unsigned) override { return 0xFFFF; }
+    void write_memory(std::uint32_t, std::uint16_t, unsigned) override {}
+    bool irq() const override { return false; }
+    void bridge_reset() override { ++asked; }
+    unsigned asked = 0;
+  } start_up;
+  MachineConfig config;
+  config.board.bus = "pci";
+  MachineRig rig("probe", config);
+  ASSERT_NE(rig.machine.pci(), nullptr);
+  rig.machine.pci()->attach(start_up);
+  rig.machine.reset();
+  rig.machine.run_until(kMs);
+  EXPECT_EQ(start_up.asked, 0u);
+  rig.machine.power_cycle();
+  EXPECT_EQ(start_up.asked, 1u);
 }
 
 TEST(Machine, RamAtPowerOnDependsOnTheSeedOnly) {

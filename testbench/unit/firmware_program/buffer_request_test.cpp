@@ -177,15 +177,15 @@ TEST_F(BufferRequest, ZeroPointsKeepItLowUntilTheyChange) {
   EXPECT_FALSE(full_bit(0));
 }
 
-TEST_F(BufferRequest, AChangedPointThatNobodyReportedIsNoticedInTheNextPass) {
+TEST_F(BufferRequest, AChangedPointThatNobodyReportedIsNoticedByTheRealTimeTask) {
   open();
   store(8);
   platform::set_i(17, 6);
-  buffer_request_poll();
+  platform::real_time();
   EXPECT_FALSE(breq());
   EXPECT_TRUE(full_bit(0));
   platform::set_i(16, 9);
-  buffer_request_poll();
+  platform::real_time();
   EXPECT_TRUE(breq());
 }
 

@@ -76,6 +76,19 @@ TEST_F(Panel, BoardsWithoutAPanelAlwaysShowTheAddressedCoordinateSystem) {
   EXPECT_TRUE(breq());
 }
 
+// However long the background is kept from a pass: what it does for the host has no part in T_FPD.
+TEST_F(Panel, TheRealTimeTaskAloneTakesTheSelection) {
+  BRICK_COVERS("BREQ-6");
+  platform::fit_panel();
+  open_two();
+  platform::pull_panel(fpd(2));
+  platform::real_time();
+  EXPECT_TRUE(breq());
+  platform::pull_panel(fpd(1));
+  platform::real_time();
+  EXPECT_FALSE(breq());
+}
+
 // Lines that enter another system's buffer do not move the pin; those of the selected one pulse it.
 TEST_F(Panel, OnlyLinesOfTheSelectedSystemPulseBreq) {
   BRICK_COVERS("BREQ-6 BREQ-1");

@@ -84,10 +84,12 @@ void fit_panel() {
   i_variable_write(I2_CONTROL_PANEL_DISABLE, 0);
 }
 
+void pull_panel(std::uint32_t low) { *hal_y(JPAN_Y_INPUTS) = JPAN_INPUTS_RESET & ~low; }
+
 void panel(std::uint32_t low) {
-  *hal_y(JPAN_Y_INPUTS) = JPAN_INPUTS_RESET & ~low;
+  pull_panel(low);
   panel_pass();
-  buffer_request_poll();
+  real_time();
 }
 
 void set_i(std::uint32_t number, double value) {

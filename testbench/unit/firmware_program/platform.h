@@ -52,7 +52,8 @@ std::vector<Edge> edges();                  // since the last clear_edges()
 void clear_edges();
 double longest_mask_us();                        // longest time that a task was held off
 void fit_panel();                                // a Turbo PMAC with JPAN; I2 = 0
-void panel(std::uint32_t low);                   // inputs pulled low, as 1, and a background pass
+void pull_panel(std::uint32_t low);              // inputs pulled low, as 1
+void panel(std::uint32_t low);                   // the same, a background pass and a real-time task
 void set_i(std::uint32_t number, double value);  // without telling anybody
 
 }  // namespace platform

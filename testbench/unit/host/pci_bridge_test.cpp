@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,10 @@ class LocalCycles : public LocalBus {
     cycles.push_back(fmt::format("write {:X} {:04X} {}", address, value, lanes));
   }
   bool irq() const override { return interrupt; }
+  void bridge_reset() override { ++resets; }
 
   std::vector<std::string> cycles;
+  unsigned resets = 0;
   bool interrupt = false;
 };
 
@@ -42,6 +45,9 @@ class PciBridgeTest : public ::testing::Test {
 
   PciBridgeTest() {
     bridge_.attach(local_);
+    start_up();
+  }
+  void start_up() {
     configure(PciBridge::kBar0, kIo);
     configure(PciBridge::kBar1, kMemory);
     configure(PciBridge::kCommand, 3);
@@ -159,6 +165,70 @@ TEST_F(PciBridgeTest, BurstsAndPayloadsWithoutCommandAreRefused) {
   std::vector<unsigned char> data(4);
   EXPECT_EQ(access(PciSpace::kMemory, kMemory, false, data, -1, false), tlm::TLM_COMMAND_ERROR_RESPONSE);
   EXPECT_TRUE(local_.cycles.empty());
+}
+
+// A payload of one byte with one attribute changed; nothing moves, not even in its data.
+TEST_F(PciBridgeTest, PayloadsThatTlmForbidsAreAnsweredAsItDemands) {
+  using Payload = tlm::tlm_generic_payload;
+  unsigned char byte = 0x5A, enable = TLM_BYTE_ENABLED;
+  const struct {
+    const char* what;
+    std::function<void(Payload&)> edit;
+    tlm::tlm_response_status expected;
+  } cases[] = {
+      {"nothing", [](Payload&) {}, tlm::TLM_OK_RESPONSE},
+      {"no length", [](Payload& p) { p.set_data_length(0); }, tlm::TLM_BURST_ERROR_RESPONSE},
+      {"no streaming width", [](Payload& p) { p.set_streaming_width(0); }, tlm::TLM_BURST_ERROR_RESPONSE},
+      {"streamed", [](Payload& p) { p.set_data_length(2), p.set_streaming_width(1); }, tlm::TLM_BURST_ERROR_RESPONSE},
+      {"wide stream", [](Payload& p) { p.set_streaming_width(4); }, tlm::TLM_OK_RESPONSE},
+      {"burst", [](Payload& p) { p.set_data_length(5), p.set_streaming_width(5); }, tlm::TLM_BURST_ERROR_RESPONSE},
+      {"enables of no length", [&](Payload& p) { p.set_byte_enable_ptr(&enable); },
+       tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE},
+      {"enables", [&](Payload& p) { p.set_byte_enable_ptr(&enable), p.set_byte_enable_length(1); },
+       tlm::TLM_OK_RESPONSE},
+      {"length without enables", [](Payload& p) { p.set_byte_enable_length(1); }, tlm::TLM_OK_RESPONSE},
+      {"no data", [](Payload& p) { p.set_data_ptr(nullptr); }, tlm::TLM_GENERIC_ERROR_RESPONSE},
+      {"no command", [](Payload& p) { p.set_command(tlm::TLM_IGNORE_COMMAND); }, tlm::TLM_COMMAND_ERROR_RESPONSE},
+      {"beyond 32 bits", [](Payload& p) { p.set_address(p.get_address() | 1ull << 32); },
+       tlm::TLM_ADDRESS_ERROR_RESPONSE},
+  };
+  for (const auto& c : cases) {
+    for (const auto command : {tlm::TLM_READ_COMMAND, tlm::TLM_WRITE_COMMAND}) {
+      PciCommand extension(PciSpace::kIo);
+      Payload payload;
+      payload.set_command(command);
+      payload.set_address(kIo);
+      payload.set_data_ptr(&byte);
+      payload.set_data_length(1);
+      payload.set_streaming_width(1);
+      payload.set_extension(&extension);
+      c.edit(payload);
+      byte = 0x5A;
+      local_.cycles.clear();
+      sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+      bridge_.transport(payload, delay);
+      payload.clear_extension(&extension);
+      const bool good = c.expected == tlm::TLM_OK_RESPONSE;
+      EXPECT_EQ(payload.get_response_status(), c.expected) << c.what;
+      EXPECT_EQ(local_.cycles.size(), good ? 1u : 0u) << c.what;
+      EXPECT_EQ(byte, good && command == tlm::TLM_READ_COMMAND ? 0x10 : 0x5A) << c.what;
+    }
+  }
+}
+
+// host-bus:3.6/4
+TEST_F(PciBridgeTest, PowerOnForgetsTheRangesAndAsksForNewOnes) {
+  configure(PciBridge::kInterrupt, 11);
+  bridge_.reset();
+  EXPECT_EQ(local_.resets, 1u);
+  EXPECT_EQ(configuration(PciBridge::kCommand) & 3, 0u);
+  EXPECT_EQ(configuration(PciBridge::kBar0), 1u);
+  EXPECT_EQ(configuration(PciBridge::kBar1), 0u);
+  EXPECT_EQ(configuration(PciBridge::kInterrupt), 0x0100u);
+  EXPECT_EQ(try_read(PciSpace::kIo, kIo), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(try_read(PciSpace::kMemory, kMemory), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  start_up();
+  EXPECT_EQ(try_read(PciSpace::kIo, kIo), tlm::TLM_OK_RESPONSE);
 }
 
 TEST_F(PciBridgeTest, IntaIsLowWhileTheBoardInterrupts) {

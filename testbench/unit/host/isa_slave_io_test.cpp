@@ -1,0 +1,139 @@
+// I/O cycles of the ISA slave: which of them are the board's (host-bus:3.1), when data come and go (host-bus:3.4), and
+// the edge at which a read or a write takes place.
+#include "testbench/unit/host/isa_slave_fixture.h"
+
+namespace brick {
+namespace {
+
+// host-bus:3.1
+TEST_F(IsaSlaveTest, SixteenBytesAreDecoded) {
+  for (unsigned offset = 0; offset < 16; ++offset) {
+    strobes.clear();
+    const unsigned value = io_read(0x210 + offset);
+    io_write(0x210 + offset, 0x40 + offset);
+    if (offset < 8) {
+      EXPECT_EQ(value, 0xFFA0 + offset);
+      EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_rd", offset, 0}, {"hp_wr", offset, 0x40 + offset}}));
+    } else if (offset < 12) {
+      EXPECT_EQ(value, 0xFFB0 + offset - 8);
+      EXPECT_EQ(strobes, (std::vector<Strobe>{{"pic_rd", offset - 8, 0}, {"pic_wr", offset - 8, 0x40 + offset}}));
+    } else {
+      EXPECT_EQ(value, 0xFFFFu) << "+12..15 hold nothing while the window is flat";
+      EXPECT_TRUE(strobes.empty());
+    }
+  }
+}
+
+TEST_F(IsaSlaveTest, EveryAddressBitAndAenAreCompared) {
+  for (unsigned bit = 4; bit < 16; ++bit) {  // the switches compare A4..A11, above that is 0
+    io_write((0x217) ^ (1u << bit), 0x55);
+    EXPECT_TRUE(strobes.empty()) << "SA" << bit;
+  }
+  both.in.isa_aen = true;
+  io_write(0x217, 0x55);
+  EXPECT_TRUE(strobes.empty()) << "a DMA cycle";
+  both.in.isa_aen = false;
+  mem_write(0x00217, 0x55);
+  EXPECT_TRUE(strobes.empty()) << "memory is not I/O";
+  io_write(0x217, 0x55);
+  EXPECT_EQ(strobes.size(), 1u);
+}
+
+TEST_F(IsaSlaveTest, EverySwitchOfTheBaseIsCompared) {
+  for (unsigned base : {0x00u, 0x21u, 0xFFu, 0x01u, 0x02u, 0x04u, 0x08u, 0x10u, 0x20u, 0x40u, 0x80u}) {
+    both.in.io_base = static_cast<std::uint8_t>(base);
+    ticks(3);
+    for (unsigned other = 1; other < 0x100; other <<= 1) io_write((base ^ other) << 4 | 7, 1);
+    EXPECT_TRUE(strobes.empty()) << base;
+    io_write(base << 4 | 7, 2);
+    EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 7, 2}}));
+    strobes.clear();
+  }
+}
+
+TEST_F(IsaSlaveTest, ClassicDecodeLooksAtTenBits) {
+  both.in.io_decode16 = false;
+  both.in.io_base = 0x71;  // A10 is set, and is not compared
+  ticks(3);
+  for (unsigned bit = 10; bit < 16; ++bit) io_write(0x317 ^ 1u << bit, bit);
+  EXPECT_EQ(strobes.size(), 6u);
+  strobes.clear();
+  for (unsigned bit = 4; bit < 10; ++bit) io_write(0x317 ^ 1u << bit, bit);
+  EXPECT_TRUE(strobes.empty());
+}
+
+// host-bus:3.4/4, host-bus:3.4/5
+TEST_F(IsaSlaveTest, IoReadDataIsThereWithin120NanosecondsAndGoesWithTheCommand) {
+  for (int phase = 0; phase < 3; ++phase) {  // of clk_ref against the command
+    both.in.isa_sa = 0x212;
+    at_phase(phase);
+    both.in.isa_ior_n = false;
+    const int valid = ticks_until("isa_sd_oe", 1, 60);
+    EXPECT_GE(valid, 0);
+    EXPECT_LE(valid, within(120)) << "t4 as aimed for";
+    EXPECT_LE(valid, 8) << "the third clk_ref edge at the latest";
+    EXPECT_EQ(bus_data(), 0xFFA2u) << "an I/O byte is on the low lane";
+    ticks(60);
+    EXPECT_EQ(bus_data(), 0xFFA2u);
+    both.in.isa_ior_n = true;
+    EXPECT_EQ(both.get("isa_sd_oe"), 0u) << "t5: without a clock";
+  }
+}
+
+// host-bus:3.4/7, host-bus:3.4/15
+TEST_F(IsaSlaveTest, WriteTakesTheDataLastSeenWhileTheCommandWasLow) {
+  for (int phase = 0; phase < 3; ++phase) {
+    strobes.clear();
+    both.in.isa_sa = 0x217;
+    both.in.isa_sd = 0x11;
+    at_phase(phase);
+    both.in.isa_iow_n = false;
+    ticks(20);
+    both.in.isa_sd = 0x22;  // late data
+    ticks(40);
+    EXPECT_TRUE(strobes.empty()) << "nothing before the command ends";
+    both.in.isa_iow_n = true;
+    both.in.isa_sd = 0x33;  // no hold at all
+    both.in.isa_sa = 0;
+    ticks(within(170));
+    EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 7, 0x22}})) << "before the next command may come (t11)";
+  }
+}
+
+TEST_F(IsaSlaveTest, ReadDataStaysWhileTheRegisterChanges) {
+  both.in.isa_sa = 0x212;
+  ticks(11);
+  both.in.isa_ior_n = false;
+  ticks(10);
+  const unsigned first = bus_data();
+  EXPECT_EQ(first, 0xFFA2u);
+  both.in.isa_sa = 0x213;
+  ticks(30);
+  EXPECT_EQ(bus_data(), first) << "a host never sees a byte in transition";
+  both.in.isa_ior_n = true;
+  ticks(9);
+}
+
+// What a read of the interrupt controller gives and what it does belong to one clk_ref edge (8259: acknowledge, poll).
+TEST_F(IsaSlaveTest, ReadOfTheInterruptControllerTakesDataAndEffectAtOneEdge) {
+  for (int phase = 0; phase < 3; ++phase) {
+    both.in.isa_sa = 0x21A;
+    ticks(12 + phase);
+    both.in.isa_ior_n = false;
+    while (!both.get("pic_rd")) {
+      EXPECT_EQ(both.get("isa_sd_oe"), 0u) << "no data before";
+      tick();
+    }
+    do tick();
+    while (both.now() % kTicksPerRef != 0);
+    EXPECT_EQ(bus_data(), 0xFFB2u);
+    EXPECT_EQ(both.get("pic_rd"), 0u) << "one clk_ref";
+    ticks(60);
+    both.in.isa_ior_n = true;
+    ticks(9);
+    io_read(0x213);
+  }
+}
+
+}  // namespace
+}  // namespace brick

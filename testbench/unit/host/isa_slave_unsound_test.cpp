@@ -1,0 +1,137 @@
+// The ISA slave where a host keeps no rule (host-bus:3.9) or is reset in mid-cycle (host-bus:3.8): nothing happens that
+// was not asked for, and the next cycle is one again.
+#include "testbench/unit/host/isa_slave_fixture.h"
+
+namespace brick {
+namespace {
+
+TEST_F(IsaSlaveTest, TwoCommandsAtOnceDoNothing) {
+  bool Inputs::*const commands[] = {&Inputs::isa_ior_n, &Inputs::isa_iow_n, &Inputs::isa_memr_n, &Inputs::isa_memw_n};
+  for (const auto first : commands) {
+    for (const auto second : commands) {
+      if (first == second) continue;
+      for (const int delay : {0, 30}) {
+        strobes.clear();
+        const bool memory = first == commands[2] || first == commands[3];
+        set_address(memory ? 0xD0000 : 0x217);
+        ticks(11);
+        both.in.*first = false;
+        ticks(delay);
+        both.in.*second = false;
+        ticks(8);
+        EXPECT_EQ(both.get("isa_sd_oe"), 0u);
+        EXPECT_EQ(both.get("mem_sel"), 0u);
+        ticks(40);
+        both.in.*first = true;
+        ticks(20);
+        both.in.*second = true;
+        ticks(12);
+        EXPECT_TRUE(strobes.empty());
+      }
+    }
+  }
+  io_write(0x217, 1);
+  EXPECT_EQ(strobes.size(), 1u) << "the next cycle is one again";
+}
+
+TEST_F(IsaSlaveTest, ReadTooShortForItsDataTakesNothing) {
+  std::size_t reads = 0;
+  for (int phase = 0; phase < 3; ++phase) {
+    for (int width = 1; width <= 12; ++width) {
+      strobes.clear();
+      set_address(0x217);
+      at_phase(phase);
+      both.in.isa_ior_n = false;
+      ticks(width);
+      const bool data = both.get("isa_sd_oe") != 0;
+      both.in.isa_ior_n = true;
+      ticks(15);
+      if (!data) { EXPECT_TRUE(strobes.empty()) << width; }
+      reads += strobes.size();
+    }
+  }
+  EXPECT_GT(reads, 0u);
+}
+
+// A read of an 8259 acknowledges at the edge that takes the byte: not if the command is gone by then, or another came.
+TEST_F(IsaSlaveTest, ReadThatEndsBeforeItsByteIsTakenAcknowledgesNothing) {
+  for (int phase = 0; phase < 3; ++phase) {
+    for (const bool second : {false, true}) {
+      for (const int width : {1, 2, 3, 20}) {
+        strobes.clear();
+        set_address(0x21A);
+        at_phase(phase);
+        both.in.isa_ior_n = false;
+        ticks(width);
+        (second ? both.in.isa_iow_n : both.in.isa_ior_n) = !second;
+        ticks(20);
+        both.in.isa_ior_n = both.in.isa_iow_n = true;
+        ticks(15);
+        EXPECT_EQ(strobes.size(), width == 20 ? 1u : 0u) << phase << " " << width << " " << second;
+      }
+    }
+  }
+}
+
+TEST_F(IsaSlaveTest, AddressThatMovesDuringACycleIsNotLookedAt) {
+  set_address(0x217);
+  both.in.isa_sd = 0x41;
+  ticks(11);
+  both.in.isa_iow_n = false;
+  ticks(12);
+  set_address(0x21A);
+  ticks(50);
+  both.in.isa_iow_n = true;
+  ticks(12);
+  EXPECT_EQ(strobes, (std::vector<Strobe>{{"hp_wr", 7, 0x41}}));
+}
+
+TEST_F(IsaSlaveTest, CommandThatWasLowAtAResetDoesNothing) {
+  for (const bool line : {true, false}) {  // the board's reset, RESETDRV
+    for (const auto command : {&Inputs::isa_iow_n, &Inputs::isa_ior_n, &Inputs::isa_memw_n}) {
+      for (int moment : {1, 4, 7, 10, 40}) {
+        strobes.clear();
+        set_address(command == &Inputs::isa_memw_n ? 0xD0000 : 0x217);
+        ticks(11);
+        both.in.*command = false;
+        ticks(moment);
+        if (line) {
+          both.reset();
+        } else {
+          both.in.isa_resetdrv = true;
+          ticks(12);
+          both.in.isa_resetdrv = false;
+        }
+        EXPECT_EQ(both.get("isa_sd_oe"), 0u);
+        ticks(30);
+        EXPECT_EQ(both.get("isa_sd_oe"), 0u) << "not taken up again";
+        both.in.*command = true;
+        ticks(15);
+        EXPECT_TRUE(strobes.empty()) << moment;
+      }
+    }
+  }
+  io_write(0x217, 1);
+  EXPECT_EQ(strobes.size(), 1u);
+}
+
+// host-bus:3.8
+TEST_F(IsaSlaveTest, ResetdrvResetsTheHostSide) {
+  both.in.window_flat = false;
+  ticks(3);
+  io_write(0x21C, 2);
+  EXPECT_EQ(io_read(0x21C), 0xFFFEu);
+  both.in.isa_resetdrv = true;
+  EXPECT_LE(ticks_until("host_reset", 1, 20), 6) << "two clk_ref edges";
+  strobes.clear();
+  EXPECT_EQ(io_read(0x212), 0xFFFFu) << "nobody answers";
+  io_write(0x217, 1);
+  EXPECT_TRUE(strobes.empty());
+  both.in.isa_resetdrv = false;
+  EXPECT_LE(ticks_until("host_reset", 0, 20), 6);
+  ticks(6);
+  EXPECT_EQ(io_read(0x21C), 0xFFFCu);
+}
+
+}  // namespace
+}  // namespace brick
