@@ -39,6 +39,8 @@ class ChipFactory {
   virtual ~ChipFactory() = default;
   virtual std::unique_ptr<Chip> servo_ic() const = 0;
   virtual std::unique_ptr<Chip> interrupt_controller() const = 0;
+  virtual std::unique_ptr<Chip> host_signals() const = 0;
+  virtual std::unique_ptr<Chip> watchdog() const = 0;
   virtual std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const = 0;
 };
 

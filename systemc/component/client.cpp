@@ -66,9 +66,8 @@ void Client::set_input(const Pin& pin) {
   inputs_differ_ = true;
 }
 
-// The edges that have passed belong to the old levels.
+// The scheduler executes the edges that have passed with the old levels before it applies the new ones.
 void Client::input_changed(const Pin& pin) {
-  catch_up(scheduler_.tick());
   set_input(pin);
   touch();
 }
@@ -137,9 +136,7 @@ void Client::deliver(bool all) {
 std::uint32_t Client::access(bool write, unsigned address, std::uint32_t value) {
   const unsigned ticket = tickets_++;
   while (served_ != ticket) sc_core::wait(free_);
-  const Tick tick = scheduler_.tick();
-  catch_up(tick);
-  const Tick edge = next_ref_edge(tick);
+  const Tick edge = next_ref_edge(scheduler_.tick());
   access_ = {edge, write, address, value};
   touch();
   sc_core::wait(scheduler_.time_of(edge) - sc_core::sc_time_stamp());

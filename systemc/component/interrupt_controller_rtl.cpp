@@ -27,7 +27,7 @@ struct Ports {
     v.addr_i = static_cast<CData>(address & 3);
     v.wdata_i = static_cast<CData>(value);
   }
-  static std::uint32_t read(const Module& v) { return v.rdata_o; }
+  static std::uint32_t read(const Module& v, unsigned) { return v.rdata_o; }
 };
 
 }  // namespace

@@ -10,5 +10,7 @@ namespace brick::component {
 
 std::unique_ptr<Chip> rtl_servo_ic(std::uint64_t seed);
 std::unique_ptr<Chip> rtl_interrupt_controller(std::uint64_t seed);
+std::unique_ptr<Chip> rtl_host_signals(std::uint64_t seed);
+std::unique_ptr<Chip> rtl_watchdog(std::uint64_t seed);
 
 }  // namespace brick::component

@@ -1,6 +1,8 @@
+#include <brick/host_signals.h>
 #include <brick/interrupt_controller.h>
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
+#include <brick/watchdog.h>
 
 #include "systemc/board/model_board.h"
 #include "systemc/component/board_chip.h"
@@ -29,6 +31,8 @@ class RtlFactory final : public ChipFactory {
   explicit RtlFactory(std::uint64_t seed) : seed_(seed) {}
   std::unique_ptr<Chip> servo_ic() const override { return rtl_servo_ic(seed_); }
   std::unique_ptr<Chip> interrupt_controller() const override { return rtl_interrupt_controller(seed_); }
+  std::unique_ptr<Chip> host_signals() const override { return rtl_host_signals(seed_); }
+  std::unique_ptr<Chip> watchdog() const override { return rtl_watchdog(seed_); }
   std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const override {
     return board_chip(rtl_board(fitted, seed), fitted, false);
   }
@@ -46,6 +50,12 @@ class LockstepFactory final : public ChipFactory {
   std::unique_ptr<Chip> interrupt_controller() const override {
     return lockstep_chip("interrupt_controller", rtl_.interrupt_controller(), model_.interrupt_controller(),
                          InterruptController::pin_table());
+  }
+  std::unique_ptr<Chip> host_signals() const override {
+    return lockstep_chip("host_signals", rtl_.host_signals(), model_.host_signals(), HostSignals::pin_table());
+  }
+  std::unique_ptr<Chip> watchdog() const override {
+    return lockstep_chip("watchdog", rtl_.watchdog(), model_.watchdog(), Watchdog::pin_table());
   }
   std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const override {
     return board_chip(make_lockstep_board(rtl_board(fitted, seed), make_model_board(fitted, seed)), fitted, false);

@@ -53,8 +53,7 @@ void Scheduler::step() {
   }
   sc_time wake = next == kNever ? sc_core::sc_max_time() : time_of(next);
   if (!eager_.empty()) {
-    // Not before everybody has had his say in this instant: a later delta cycle may still change an input.
-    if (sc_core::sc_pending_activity_at_current_time()) return sc_core::next_trigger(sc_core::SC_ZERO_TIME);
+    // Nothing is pending before that time; it is zero while a later delta cycle may still change an input.
     const sc_time grid = sc_time::from_value((now.value() / grid_ + 1) * grid_);
     wake = std::min({wake, grid, now + sc_core::sc_time_to_pending_activity()});
     const Tick changed = run_ahead(tick, tick_at(wake));

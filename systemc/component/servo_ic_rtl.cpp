@@ -43,7 +43,7 @@ struct Ports {
     v.addr_i = static_cast<CData>(address / 8);
     v.wdata_i = value & 0xFFFFFF;
   }
-  static std::uint32_t read(const Vservo_ic& v) { return v.rdata_o; }
+  static std::uint32_t read(const Vservo_ic& v, unsigned) { return v.rdata_o; }
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 //   static void drive(V& v, const PinWords& in)            every input port but the clocks and the register bus
 //   static void sample(const V& v, PinWords& out)
 //   static void access(V& v, bool on, bool write, unsigned address, std::uint32_t value)   strobes of the register bus
-//   static std::uint32_t read(const V& v)                  the word that it shows
+//   static std::uint32_t read(const V& v, unsigned address)   the word that it shows
 #pragma once
 
 #include <verilated.h>
@@ -79,7 +79,7 @@ class VerilatedChip final : public Chip {
   std::uint32_t read(unsigned address) override {
     Ports::access(*top_, true, false, address, 0);
     top_->eval();
-    const std::uint32_t value = Ports::read(*top_);
+    const std::uint32_t value = Ports::read(*top_, address);
     finish_access();
     return value;
   }
@@ -90,7 +90,7 @@ class VerilatedChip final : public Chip {
   std::uint32_t peek(unsigned address) override {
     Ports::access(*top_, true, false, address, 0);
     top_->eval();
-    const std::uint32_t value = Ports::read(*top_);
+    const std::uint32_t value = Ports::read(*top_, address);
     Ports::access(*top_, false, false, 0, 0);
     top_->eval();
     return value;

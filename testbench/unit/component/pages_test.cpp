@@ -8,8 +8,10 @@
 #include <sstream>
 
 #include <brick/board.h>
+#include <brick/host_signals.h>
 #include <brick/interrupt_controller.h>
 #include <brick/servo_ic.h>
+#include <brick/watchdog.h>
 
 namespace brick::component {
 namespace {
@@ -91,6 +93,8 @@ TEST(ComponentPages, DrawingsAreThoseOfThePinTables) {
   };
   place("servo_ic", drawing("ServoIc", ServoIc::pin_table(), "registers: 32 X and 32 Y words"));
   place("interrupt_controller", drawing("InterruptController", InterruptController::pin_table(), "registers: 4 bytes"));
+  place("host_signals", drawing("HostSignals", HostSignals::pin_table(), "registers: 2 words"));
+  place("watchdog", drawing("Watchdog", Watchdog::pin_table(), "registers: 1 word"));
   place("board", drawing("Board", Board::pin_table(0x3), ""));
   if (std::getenv("BRICK_WRITE_PAGES") != nullptr) std::ofstream(BRICK_COMPONENTS_PAGE) << page;
   EXPECT_TRUE(page == before) << "docs/components.md is not what the pin tables say; BRICK_WRITE_PAGES=1 writes it";
