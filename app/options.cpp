@@ -26,7 +26,7 @@ void need_file(const std::string& option, const std::string& file, const std::st
 std::uint32_t forced_bcr(const std::string& text) {
   const std::string digits = text.substr(text[0] == '$' ? 1 : text.compare(0, 2, "0x") == 0 ? 2 : 0);
   if (digits.empty() || digits.size() > 6 || digits.find_first_not_of("0123456789ABCDEFabcdef") != std::string::npos)
-    throw UsageError(fmt::format("--bcr {}: is no word; expected up to six hexadecimal digits", text));
+    throw UsageError(fmt::format("--bcr \"{}\": is no word; expected up to six hexadecimal digits", text));
   return static_cast<std::uint32_t>(std::stoul(digits, nullptr, 16));
 }
 
@@ -71,9 +71,16 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
   command.add_option("--json", o.json, "write the results to FILE");
   command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")
       ->type_name("PORT");
-  command.add_option("--waive", o.waive, "violations of the bus timing that are known and harmless, FILE.toml")
+  // An empty text is a mistake, not an option left out.
+  command
+      .add_option_function<std::string>(
+          "--waive", [&o](const std::string& file) { o.waive = file; },
+          "violations of the bus timing that are known and harmless, FILE.toml")
       ->type_name("FILE");
-  command.add_option("--bcr", o.bcr, "wait states of all areas as in BCR, hexadecimal, whatever the firmware writes")
+  command
+      .add_option_function<std::string>(
+          "--bcr", [&o](const std::string& word) { o.bcr = word; },
+          "wait states of all areas as in BCR, hexadecimal, whatever the firmware writes after start-up")
       ->type_name("HEX");
   command.add_option("--batch", o.batch, "longest advance in ticks, 0 = as the rules allow; changes speed only")
       ->capture_default_str()
@@ -130,7 +137,7 @@ MachineConfig machine_config(const RunOptions& o) {
       throw UsageError(fmt::format("--jumper {}: no such jumper; expected E3", jumper));
     config.jumper_e3 = true;
   }
-  if (!o.bcr.empty()) config.bcr = forced_bcr(o.bcr);
+  if (o.bcr) config.bcr = forced_bcr(*o.bcr);
   config.board = read_board_file(board_path(o.board));
   config.firmware = o.firmware.empty() ? default_firmware() : o.firmware;
   need_file("--firmware", config.firmware, "an ELF image for RV32");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,8 @@ struct RunOptions {
   std::string gdb;  // port, "" = no debugger
   std::string aperture = "0";
   std::string batch = "0";
-  std::string bcr;    // hexadecimal, "" = as the firmware sets it
-  std::string waive;  // file of timing waivers
+  std::optional<std::string> bcr;    // hexadecimal; none: as the firmware sets it
+  std::optional<std::string> waive;  // file of timing waivers
 };
 
 // Adds --engine, --board and so on to a command. `engine` is the default.

@@ -48,7 +48,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     : title_(std::move(title)),
       machine_(make_machine(config)),
       timing_(std::make_unique<TimingBook>(*machine_)),
-      waivers_(options.waive.empty() ? TimingWaivers() : TimingWaivers(options.waive)),
+      waivers_(options.waive ? TimingWaivers(*options.waive) : TimingWaivers()),
       bus_(*machine_),
       link_(bus_),
       terminal_(isatty(STDERR_FILENO) == 1) {

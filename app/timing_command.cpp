@@ -22,7 +22,7 @@ int sweep_command(const TimingOptions& options) {
   if (config.bcr) throw UsageError("--bcr: --sweep sets the wait states itself; expected one of the two");
   const std::pair<const char*, bool> of_a_bench[] = {{"--wavedrom", !options.wavedrom.empty()},
                                                      {"--wave", !options.run.wave.empty()},
-                                                     {"--waive", !options.run.waive.empty()},
+                                                     {"--waive", options.run.waive.has_value()},
                                                      {"--gdb", !options.run.gdb.empty()}};
   for (const auto& [option, given] : of_a_bench)
     if (given) throw UsageError(fmt::format("{}: --sweep runs no bench; expected one of the two", option));
@@ -42,7 +42,8 @@ int sweep_command(const TimingOptions& options) {
     list.push_back({{"i52", c.i52},
                     {"region", names.ledger().regions()[c.region]},
                     {"least", c.least ? nlohmann::json(*c.least) : nlohmann::json()},
-                    {"below", c.below}});
+                    {"below", c.below},
+                    {"address", c.address}});
   }
   const nlohmann::json results = {
       {"engine", options.run.engine}, {"board", config.board.name}, {"seed", config.seed}, {"sweep", list}};

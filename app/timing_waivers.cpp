@@ -25,7 +25,7 @@ std::string read_file(const std::string& path) {
   std::stringstream text;
   text << in.rdbuf();
   if (!in || std::filesystem::is_directory(path))
-    throw UsageError(fmt::format("--waive {}: cannot be read; expected a TOML file of waivers", path));
+    throw UsageError(fmt::format("--waive \"{}\": cannot be read; expected a TOML file of waivers", path));
   return text.str();
 }
 
@@ -44,13 +44,14 @@ TimingWaivers::TimingWaivers(const std::string& path) : path_(path) {
     w.reason = entry.text("reason");
     if (w.reason.find_first_not_of(" \t\n") == std::string::npos)
       entry.fail(entry.need("reason"), "reason", "why the violation is harmless");
-    static const std::regex kAddress(R"((X:|Y:|I/O |memory )(?:\$|0x)([0-9A-Fa-f]{1,6})(?:\.\.(?:X:|Y:|I/O |memory )?)"
+    static const std::regex kAddress(R"((X:|Y:|I/O |memory )(?:\$|0x)([0-9A-Fa-f]{1,6})(?:\.\.(X:|Y:|I/O |memory )?)"
                                      R"((?:\$|0x)([0-9A-Fa-f]{1,6}))?)");
     std::smatch m;
     if (!std::regex_match(w.address, m, kAddress)) entry.fail(entry.need("address"), "address", kAddressForm);
     w.space = m[1].str()[0] == 'm' ? 'M' : m[1].str()[0];
     w.first = static_cast<std::uint32_t>(std::stoul(m[2], nullptr, 16));
-    w.last = m[3].matched ? static_cast<std::uint32_t>(std::stoul(m[3], nullptr, 16)) : w.first;
+    if (m[3].matched && m[3] != m[1]) entry.fail(entry.need("address"), "address", "both ends in one space");
+    w.last = m[4].matched ? static_cast<std::uint32_t>(std::stoul(m[4], nullptr, 16)) : w.first;
     if (w.last < w.first) entry.fail(entry.need("address"), "address", "the lower address first");
     waivers_.push_back(std::move(w));
   }
@@ -60,10 +61,21 @@ void TimingWaivers::check(const std::vector<TimingLedger*>& ledgers) const {
   std::vector<std::string> known;
   for (const TimingLedger* ledger : ledgers)
     for (const TimingRule& rule : ledger->rules()) known.push_back(rule.id);
-  for (const Waiver& w : waivers_)
+  for (const Waiver& w : waivers_) {
     if (std::find(known.begin(), known.end(), w.rule) == known.end())
       throw UsageError(fmt::format("{}:{}: rule: no rule \"{}\"; expected one of {}", path_, w.line, w.rule,
                                    fmt::join(known, ", ")));
+    std::string buses;
+    const bool there = std::any_of(ledgers.begin(), ledgers.end(), [&](const TimingLedger* ledger) {
+      const auto& rules = ledger->rules();
+      if (std::none_of(rules.begin(), rules.end(), [&](const TimingRule& r) { return r.id == w.rule; })) return false;
+      buses += buses.empty() ? ledger->bus() : " or " + ledger->bus();
+      return ledger->spaces().find(w.space) != std::string::npos;
+    });
+    if (!there)
+      throw UsageError(fmt::format("{}:{}: address: \"{}\" is on another bus than rule {}; expected an address of {}",
+                                   path_, w.line, w.address, w.rule, buses));
+  }
 }
 
 std::string TimingWaivers::reason(const TimingLedger& ledger, const TimingViolation& v) {

@@ -15,7 +15,7 @@ class TimingWaivers {
   TimingWaivers() = default;                        // none
   explicit TimingWaivers(const std::string& path);  // throws UsageError
 
-  // Every rule must be one of the ledgers. Throws UsageError.
+  // Every rule must be one of the ledgers, its address one of that bus. Throws UsageError.
   void check(const std::vector<TimingLedger*>& ledgers) const;
 
   // The reason, if this violation is waived; "" if not. What is asked for counts as used.

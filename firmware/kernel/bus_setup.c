@@ -39,12 +39,19 @@ static uint32_t wait_states(uint32_t i52, uint32_t i37) {
 }
 
 /* The slowest bus while the clock changes, so that no cycle is ever too short. */
-void bus_setup(uint32_t i52, uint32_t i37) {
+static void set_bus(uint32_t i52, uint32_t bcr) {
   *hal_x(CPU_BUS_X_BCR) = CPU_BUS_BCR_RESET;
   *hal_x(CPU_BUS_X_PCTL) = i52;
-  *hal_x(CPU_BUS_X_BCR) = wait_states(i52, i37);
+  *hal_x(CPU_BUS_X_BCR) = bcr;
   clock_in_force = i52;
   hal_set_cpu_clock(i52);
 }
 
-void bus_setup_first(void) { bus_setup(RESET_I52, 0); }
+/* Until I52 and I37 are known: the clock after reset, main memory at its pace, the devices with the most they can have.
+ * What `brick run --bcr` forces acts when this is left, so with no other clock than the one it is meant for. */
+void bus_setup_first(void) {
+  const uint32_t main_memory = wait_states(RESET_I52, 0) & CPU_BUS_BCR_BA0W_MASK;
+  set_bus(RESET_I52, (CPU_BUS_BCR_RESET & ~CPU_BUS_BCR_BA0W_MASK) | main_memory);
+}
+
+void bus_setup(uint32_t i52, uint32_t i37) { set_bus(i52, wait_states(i52, i37)); }

@@ -17,6 +17,8 @@ class CpuClock {
     cycle_ = cycle;
     n_ = n;
   }
+  // Number of the cycle since power-on, as if the clock had always been this fast.
+  Cycle number(Cycle cycle) const { return edge_ * n_ / kTicksPerMultiplier + cycle - cycle_; }
   unsigned multiplier() const { return static_cast<unsigned>(n_); }
 
   // Time of the instant `quarters` quarter cycles after the start of `cycle`, rounded down to a femtosecond.

@@ -49,6 +49,9 @@ void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   state_ = State::kIdle;
   stand_ = edge;
   in_doubt_ = false;
+  moving_ta_.reset();
+  levels_ = {};
+  if (watch_ != nullptr) watch_->bus_reset();
   next_start_ = cycle;
   pins.pa_aa = 0;
   pins.pa_int = false;
@@ -62,7 +65,9 @@ void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
 unsigned PortA::wait_states(unsigned area) const {
   using namespace regs::cpu_bus::bcr;
   constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
-  return kFields[area].get(forced_bcr_.value_or(bcr_));
+  constexpr std::uint32_t kDevices = kBa1w.mask() | kBa2w.mask() | kBdfw.mask();
+  const bool set_up = ((bcr_ ^ regs::cpu_bus::kBcr.reset) & kDevices) != 0 || pctl_ != regs::cpu_bus::kPctl.reset;
+  return kFields[area].get(forced_bcr_ && set_up ? *forced_bcr_ : bcr_);
 }
 
 void PortA::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
@@ -203,22 +208,7 @@ std::size_t PortA::seen_at(TimeFs time) const {
   return i;
 }
 
-// How long D and /TA stood after the strobe.
-void PortA::hold_times() {
-  if (!cycle_.data_lost) cycle_.data_held = cycle_.end;
-  cycle_.ta_held = cycle_.end;
-  const Seen& first = seen_.front();
-  for (auto s = seen_.rbegin(); s != seen_.rend(); ++s) {
-    if (!cycle_.data_lost && !s->same_data(first)) cycle_.data_held = s->time;
-    if (s->busy != first.busy) cycle_.ta_held = s->time;
-  }
-}
-
 std::uint32_t PortA::address_pins() const { return cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu); }
-
-void PortA::watch_address(const PortAPins& pins) {
-  if (pins.pa_addr != address_pins() || pins.pa_x != cycle_.x || pins.pa_aa != cycle_.aa) cycle_.address_moved = true;
-}
 
 std::uint32_t PortA::random() {  // splitmix64
   std::uint64_t z = random_ += 0x9E3779B97F4A7C15u;
@@ -233,21 +223,14 @@ bool PortA::acknowledged() {
   if (cycle_.on_chip || cycle_.wait_states == 0) return true;
   cycle_.ta_time = clock_.time(start_, shape_.strobe_high - 1 + 4 * cycle_.stretched) - kTaSetup;
   const std::size_t at = seen_at(cycle_.ta_time);
-  bool busy = seen_[at].busy, moved = false;
-  for (std::size_t i = 1; i < seen_.size(); ++i) {
-    if (seen_[i].busy == seen_[i - 1].busy) continue;
-    cycle_.ta_moved = seen_[i].time;
-    moved = moved || i > at;
-  }
-  cycle_.ta_high = seen_.back().busy;
-  if (moved) {
-    busy = (random() & 1) != 0;
-    ++(busy == cycle_.ta_high ? cycle_.ta_seen : cycle_.ta_missed);
-  }
-  return !busy;
+  const bool busy = seen_[at].busy, now_busy = seen_.back().busy;
+  bool moved = false;
+  for (std::size_t i = at + 1; i < seen_.size(); ++i) moved = moved || seen_[i].busy != seen_[i - 1].busy;
+  if (!moved) return !busy;
+  return moving_ta_ ? *moving_ta_ != now_busy : (random() & 1) == 0;
 }
 
-// The word of a read, and what D did until now, /RD high. Bits that moved after the sample are anything, and so are all
+// The word of a read, at /RD high. Bits that moved after the sample are anything, and so are all
 // of them when nobody drove the bus (rows 104 to 106).
 void PortA::take_data() {
   // A cycle without time for the set-up takes what is there as /RD falls.
@@ -256,18 +239,11 @@ void PortA::take_data() {
   cycle_.data = seen_[at].data;
   if (cycle_.on_chip) return;
   std::uint32_t moved = seen_[at].driven ? 0 : kWordMask;
-  for (std::size_t i = 1; i < seen_.size(); ++i) {
+  for (std::size_t i = at + 1; i < seen_.size(); ++i) {
     const Seen &before = seen_[i - 1], &after = seen_[i];
-    if (after.same_data(before)) continue;
-    if (i > at) moved |= after.driven == before.driven ? after.data ^ before.data : kWordMask;
-    if (after.driven) cycle_.data_valid = after.time;
-    cycle_.data_lost = !after.driven;
-    cycle_.data_held = after.time;
+    moved |= after.driven == before.driven ? after.data ^ before.data : kWordMask;
   }
-  if (!seen_.back().driven && !cycle_.data_lost) cycle_.data_valid = time_;  // never there
-  if (moved == 0) return;
-  cycle_.corrupted = true;
-  cycle_.data = (cycle_.data & ~moved) | (random() & moved);
+  if (moved != 0) cycle_.data = (cycle_.data & ~moved) | (random() & moved);
 }
 
 // The first half of a step that takes two.
@@ -282,29 +258,59 @@ void PortA::half_step(PortAPins& pins) {
 }
 
 // The strobe has ended for the CPU; false if it goes on.
-bool PortA::end_strobe(const PortAPins& pins) {
+bool PortA::end_strobe() {
   if (!acknowledged()) {  // one clock more
     ++cycle_.stretched;
     next(Step::kStrobeHigh);
     return false;
   }
   if (!cycle_.write) take_data();
-  watch_address(pins);
   cycle_.strobe_high = time_;
-  seen_.erase(seen_.begin(), seen_.end() - 1);
+  tell_watch();
   resumed_ = late_ > stand_;
   stand_ = std::max(stand_, late_);
   return !resumed_;
 }
 
+// What the lines do at this step, whenever the board's flip-flops see it.
+void PortA::tell_watch() {
+  if (watch_ == nullptr || cycle_.on_chip) return;
+  switch (step_) {
+    case Step::kAddress:
+      levels_.addr = address_pins();
+      levels_.x = cycle_.x;
+      levels_.aa = cycle_.aa;
+      levels_.addr_oe = true;
+      levels_.multiplier = cycle_.multiplier;
+      levels_.wait_states = cycle_.wait_states;
+      levels_.pc = cycle_.pc;
+      break;
+    case Step::kDriveData:
+      levels_.data = cycle_.data;
+      levels_.data_oe = true;
+      break;
+    case Step::kStrobeLow:
+      (cycle_.write ? levels_.wr_n : levels_.rd_n) = false;
+      break;
+    case Step::kStrobeHigh:
+      levels_.rd_n = levels_.wr_n = true;
+      break;
+    case Step::kEnd:
+      levels_.aa = 0;
+      levels_.addr_oe = levels_.data_oe = false;
+      break;
+  }
+  watch_->cpu_moved(time_, levels_);
+}
+
 void PortA::step(PortAPins& pins, const BoardOutputs& board) {
-  if (step_ == Step::kEnd && !resumed_) watch_address(pins);
+  if (step_ != Step::kStrobeHigh && !resumed_) tell_watch();
   if (in_doubt_) return half_step(pins);
   const bool shown = !cycle_.on_chip;
   move_bus(pins);
   switch (step_) {
     case Step::kAddress:
-      cycle_.start = cycle_.data_valid = cycle_.ta_moved = time_;
+      cycle_.start = time_;
       seen_.clear();
       see(time_, board);
       if (shown) {
@@ -322,21 +328,18 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
     case Step::kStrobeLow:
       cycle_.strobe_low = time_;
       (cycle_.write ? pins.pa_wr_n : pins.pa_rd_n) = false;
-      watch_address(pins);
-      cycle_.both_strobes = !pins.pa_rd_n && !pins.pa_wr_n;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 0);
       if (shown && !cycle_.write) signals_.set(data_, time_, board.get(pin::kPaData));
       next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
       break;
     case Step::kStrobeHigh:
-      if (!resumed_ && !end_strobe(pins)) break;
+      if (!resumed_ && !end_strobe()) break;
       pins.pa_rd_n = pins.pa_wr_n = true;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 1);
       next(Step::kEnd);
       break;
     case Step::kEnd:
       cycle_.end = time_;
-      hold_times();
       if (shown) signals_.set(aa_, time_, 0);
       state_ = State::kDone;
       next_start_ = start_ + shape_.clocks + cycle_.stretched + shape_.idle_clocks;

@@ -18,6 +18,7 @@
 #include "systemc/core/cpu_clock.h"
 #include "systemc/core/signals.h"
 #include "systemc/cpu/port_a_timing.h"
+#include "systemc/cpu/port_a_watch.h"
 
 namespace brick {
 
@@ -33,7 +34,7 @@ struct PortARequest : tlm::tlm_extension<PortARequest> {
   void copy_from(const tlm::tlm_extension_base& other) override { *this = static_cast<const PortARequest&>(other); }
 };
 
-// A finished cycle with all its edges as the pins had them, for checkers and reports.
+// A finished cycle as the bus master made it, for scoreboards and reports; what the lines did: port_a_watch.h.
 struct PortACycle {
   std::uint32_t address = 0;  // PMAC word address
   bool x = false;
@@ -50,22 +51,7 @@ struct PortACycle {
   TimeFs data_time = 0;  // write: data driven; read: data sampled
   TimeFs ta_time = 0;    // last sample of /TA
   TimeFs strobe_high = 0;
-  TimeFs end = 0;              // address and AA no longer valid; write: data no longer driven
-  bool both_strobes = false;   // the other strobe was low too
-  bool address_moved = false;  // A, X or AA changed before the end
-
-  // A read: what D did.
-  TimeFs data_valid = 0;   // last change up to /RD high, the start if there was none
-  TimeFs data_held = 0;    // first change from /RD high on, the end if there was none
-  bool data_lost = false;  // let go before /RD rose, at data_held
-  bool corrupted = false;  // D moved or was not driven between the sample and /RD high: those bits are random
-
-  // /TA, unless no wait state is programmed.
-  TimeFs ta_moved = 0;   // last change up to the end of the strobe, the start if there was none
-  TimeFs ta_held = 0;    // first change from the end of the strobe on, the end of the cycle if there was none
-  bool ta_high = false;  // the device still said "not yet" as the strobe rose
-  unsigned ta_seen = 0,
-           ta_missed = 0;  // it moved between a sample and the end of the strobe and was taken after, before
+  TimeFs end = 0;  // address and AA no longer valid; write: data no longer driven
 };
 
 class PortA : public sc_core::sc_module {
@@ -81,10 +67,14 @@ class PortA : public sc_core::sc_module {
   std::int64_t free_at() const { return next_start_; }  // CPU cycle at which the next access may begin
   unsigned wait_states(unsigned area) const;            // AA0..AA2, 3 = default area
 
-  // Wait states of all areas as in BCR, whatever the program writes there.
+  // Wait states of all areas as in BCR, whatever the program writes there. They act when it has left what a reset gives
+  // it: another CPU clock, or other wait states of a device; until then it may not know yet what clock it will have.
   void force_wait_states(std::uint32_t bcr) { forced_bcr_ = bcr; }
+  void set_watch(PortAWatch* watch) { watch_ = watch; }  // not owned; nullptr = none
   // Of what a read takes from a bus that moves, and of whether a moving /TA is seen: the same on every engine.
   void seed(std::uint64_t seed) { random_ = seed; }
+  // Of the next cycle: a moving /TA is taken as it stands after its move, or before; none: by the seed.
+  void take_moving_ta(std::optional<bool> after) { moving_ta_ = after; }
 
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
   bool running() const { return state_ == State::kRunning; }
@@ -111,22 +101,24 @@ class PortA : public sc_core::sc_module {
   void next(Step step);
   void move_bus(PortAPins& pins) const;  // of a step at which lines move together
   void half_step(PortAPins& pins);
-  bool end_strobe(const PortAPins& pins);
+  bool end_strobe();
   TimeFs time_of(Step step) const;
   void see(TimeFs time, const BoardOutputs& board);
   std::size_t seen_at(TimeFs time) const;
   bool acknowledged();
   void take_data();
-  void hold_times();
   std::uint32_t random();
   std::uint32_t address_pins() const;
-  void watch_address(const PortAPins& pins);
+  void tell_watch();
 
   Signals& signals_;
   Signals::Id addr_, data_, aa_, x_, rd_n_, wr_n_;
   CpuClock clock_;
   std::uint32_t bcr_ = 0, pctl_ = 0;
   std::optional<std::uint32_t> forced_bcr_;
+  std::optional<bool> moving_ta_;
+  PortAWatch* watch_ = nullptr;
+  PortALevels levels_;
   std::uint64_t random_ = 1;
 
   State state_ = State::kIdle;

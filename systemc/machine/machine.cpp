@@ -180,9 +180,11 @@ void Machine::Impl::start_cpu() {
 void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const BoardOutputs& after) {
   static constexpr BoardOutputs kHostBus =
       select_pins(pin::kIsaSd, pin::kIsaSdOe, pin::kIsaIochrdy, pin::kIsaMemcs16N, pin::kTxde);
+  static constexpr BoardOutputs kPortA = select_pins(pin::kPaData, pin::kPaDataOe, pin::kPaTaN);
   static constexpr BoardOutputs kSeenByCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
   named.outputs(tick_to_fs(tick), before, after);
   port_a.board_changed(tick, after);
+  if (port_a_watch != nullptr && before.differs(after, kPortA)) port_a_watch->board_moved(tick_to_fs(tick), after);
   if (owner.on_outputs) owner.on_outputs(tick, before, after);
   if (before.differs(after, kHostBus)) host_bus_moved(tick_to_fs(tick));
   if (before.differs(after, stop_on)) stopped = true;
@@ -280,6 +282,10 @@ void Machine::attach_bus_master(BusMaster* master) {
   impl_->master = master;
   impl_->initiator.by_master = master != nullptr;
   if (master != nullptr) impl_->cpu_runs = false;
+}
+void Machine::attach_port_a_watch(PortAWatch* watch) {
+  impl_->port_a_watch = watch;
+  impl_->port_a.set_watch(watch);
 }
 std::string Machine::function_at(std::uint32_t pc) const { return impl_->elf ? impl_->elf->symbol_at(pc) : ""; }
 unsigned Machine::task() const { return impl_->named.task(); }

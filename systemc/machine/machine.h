@@ -21,6 +21,7 @@ namespace brick {
 
 class GdbServer;
 class PciBridge;
+class PortAWatch;
 struct PortACycle;
 
 enum class Engine { kRtl, kSystemC, kLockstep };
@@ -71,6 +72,9 @@ class BusMaster {
     bool write = false;
     std::uint32_t data = 0;
     unsigned idle = 0;  // CPU clocks to let pass before it begins
+    // It begins in a CPU clock whose number, CpuClock::number(), is `slot` modulo `slots`.
+    unsigned slot = 0, slots = 1;
+    std::optional<bool> moving_ta = {};  // a moving /TA is taken as it stands after, before its move; none: by the seed
   };
   virtual ~BusMaster() = default;
   virtual std::optional<Access> next() = 0;  // none: asked again when the machine is advanced again
@@ -117,6 +121,8 @@ class Machine : public sc_core::sc_module {
   void attach_debugger(GdbServer* debugger);  // not owned; nullptr = none
   // Not owned. The CPU stops where it is and takes the bus again, after nullptr, at the next reset only.
   void attach_bus_master(BusMaster* master);
+  // Not owned; nullptr = none. It sees the lines of Port A move (systemc/cpu/port_a_watch.h).
+  void attach_port_a_watch(PortAWatch* watch);
   std::string function_at(std::uint32_t pc) const;  // name of the firmware's function, "" if none holds pc
   unsigned task() const;                            // cpu.task
 

@@ -86,6 +86,7 @@ struct Machine::Impl {
   PortA port_a{"port_a", signals};
   PortAInitiator initiator{"cpu_bus", port_a};
   Cpu cpu{&initiator};
+  PortAWatch* port_a_watch = nullptr;
   BusMaster* master = nullptr;                     // makes the bus cycles when there is one
   std::optional<BusMaster::Access> master_access;  // under way
   GdbServer* debugger = nullptr;                   // runs the CPU when there is one

@@ -92,13 +92,19 @@ void Machine::Impl::run_cpu(Tick known) {
 // Finishes the access of the bus master and begins the next, all in the future of the board. When the CPU was in the
 // middle of an access as the master came, that one is finished first and its result is nobody's.
 void Machine::Impl::run_master() {
+  const CpuClock& clock = port_a.clock();
   for (unsigned made = 0; !port_a.running() && made < 64; ++made) {
-    Cycle start = std::max(port_a.free_at(), port_a.clock().first_cycle(board->now() + 1));
+    Cycle start = clock.first_cycle(board->now());
+    if (clock.tick(start) == board->now()) ++start;  // begins with an edge that has been
+    start = std::max(port_a.free_at(), start);
     const bool begin = !initiator.under_way();
     if (begin) {
       master_access = master->next();
       if (!master_access) return;
       start += master_access->idle;
+      start += (master_access->slots + master_access->slot - clock.number(start) % master_access->slots) %
+               master_access->slots;
+      port_a.take_moving_ta(master_access->moving_ta);
     }
     const BusMaster::Access a = master_access.value_or(BusMaster::Access{});
     const std::uint32_t address = kPmacBase + 8 * a.address + (a.x ? 4 : 0);

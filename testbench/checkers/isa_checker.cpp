@@ -57,7 +57,7 @@ std::vector<TimingRule> rules() {
 }  // namespace
 
 IsaChecker::IsaChecker()
-    : ledger_("ISA", rules(), {"I/O", "memory of 16 bits", "memory of 8 bits"}),
+    : ledger_("ISA", "IM", rules(), {"I/O", "memory of 16 bits", "memory of 8 bits"}),
       cpu_period_([] { return kUsualPeriod; }) {}
 
 unsigned IsaChecker::commands(const BoardInputs& in) {

@@ -9,9 +9,11 @@ namespace brick {
 TimingBook::TimingBook(Machine& machine) : machine_(machine) {
   add(port_a_.ledger());
   machine.check_bus_cycle = [this](const PortACycle& c) {
-    port_a_.cycle(c);
     if (on_cycle) on_cycle(c);
   };
+  pins_.on_cycle = [this](const PinCycle& c) { port_a_.cycle(c); };
+  pins_.board_moved(machine.now_fs(), machine.outputs());
+  machine.attach_port_a_watch(&pins_);
   add(isa_.ledger());
   isa_.set_cpu_period([&machine] { return machine.cpu_period(); });
   machine.on_host_bus = [this](TimeFs time, const BoardInputs& in, const BoardOutputs& out) {
@@ -20,6 +22,7 @@ TimingBook::TimingBook(Machine& machine) : machine_(machine) {
 }
 
 TimingBook::~TimingBook() {
+  machine_.attach_port_a_watch(nullptr);
   machine_.check_bus_cycle = nullptr;
   machine_.on_host_bus = nullptr;
 }
@@ -50,7 +53,8 @@ std::string TimingBook::text(const TimingLedger& ledger, const TimingViolation& 
                   timing_address(v.where), v.where.write ? "write" : "read", ledger.regions()[v.region], times);
   text += v.count == 1 ? "once" : fmt::format("{} times", v.count);
   text += fmt::format(", first at {}", place_text(v.where));
-  if (v.where.has_pc) text += fmt::format(", {} wait states, I52 = {}", v.where.wait_states, v.where.i52);
+  if (v.where.space == 'X' || v.where.space == 'Y')
+    text += fmt::format(", {} wait states, I52 = {}", v.where.wait_states, v.where.i52);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "systemc/cpu/port_a.h"
 #include "testbench/checkers/isa_checker.h"
 #include "testbench/checkers/timing_port_a.h"
 #include "testbench/checkers/timing_rules.h"
@@ -33,10 +34,11 @@ class TimingBook {
 
   // At the first violation of a rule at an address, in the middle of the access.
   std::function<void(const TimingLedger&, const TimingViolation&)> on_violation;
-  std::function<void(const PortACycle&)> on_cycle;  // after its evaluation
+  std::function<void(const PortACycle&)> on_cycle;  // each cycle of the CPU, on-chip ones too
 
  private:
   Machine& machine_;
+  PinWatch pins_;
   PortATiming port_a_;
   IsaChecker isa_;
   std::vector<TimingLedger*> ledgers_;

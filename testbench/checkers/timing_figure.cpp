@@ -36,7 +36,7 @@ class Lane {
 
 }  // namespace
 
-nlohmann::json timing_figure(const PortACycle& c, const std::string& caption) {
+nlohmann::json timing_figure(const PinCycle& c, const std::string& caption) {
   // A quarter of TC, 1/9.8304 MHz by the multiplier; an edge between two steps is drawn at the later one.
   const TimeFs quarter = 1'220'703'125 / (48 * static_cast<TimeFs>(c.multiplier));
   const auto step = [&](TimeFs t) {
@@ -50,9 +50,9 @@ nlohmann::json timing_figure(const PortACycle& c, const std::string& caption) {
   address.edge(kLead, '=').edge(step(c.end), 'x').node(kLead, 'a');
   strobe.edge(step(c.strobe_low), '0').edge(step(c.strobe_high), '1').node(step(c.strobe_low), 'b');
   strobe.node(step(c.strobe_high), 'd');
-  const TimeFs stands = c.write ? c.data_time : c.data_valid;
+  const TimeFs stands = c.data_valid;
   data.edge(std::max(step(stands), kLead), c.corrupted ? '8' : '=').node(step(stands), 'c');
-  data.edge(step(c.write ? c.end : c.data_held), 'x');
+  data.edge(step(c.data_held), 'x');
   if (c.stretched > 0) ta.edge(step(c.strobe_low), '1').edge(step(c.ta_moved), '0');
   const std::string word = fmt::format("${:06X}", c.data);
   const std::string from = c.write ? "c->d " : "a->c ";

@@ -8,7 +8,7 @@ namespace {
 
 constexpr unsigned kWaitStates = 32, kMultipliers = 33;
 
-// host-bus:2.2, host-bus:2.5/6, host-bus:2.5/7, host-bus:2.6/6 to host-bus:2.6/8.
+// host-bus:2.2, host-bus:2.5/6, host-bus:2.5/7, host-bus:2.5/9, host-bus:2.5/10, host-bus:2.6/6 to host-bus:2.6/8.
 std::vector<TimingRule> port_a_rules() {
   constexpr auto kLeast = TimingRule::Kind::kLeast, kMost = TimingRule::Kind::kMost, kHolds = TimingRule::Kind::kHolds;
   return {{"100", "cycle: address and AA valid", "host-bus:2.2/100", kLeast},
@@ -35,7 +35,9 @@ std::vector<TimingRule> port_a_rules() {
           {"w2", "/WR low to address or write data invalid", "host-bus:2.6/7", kLeast},
           {"s1", "fall of a strobe to its next fall", "host-bus:2.6/8", kLeast},
           {"a", "/RD and /WR never low together", "host-bus:2.5/6", kHolds},
-          {"b", "address, AA stand through the strobe", "host-bus:2.5/7", kHolds}};
+          {"b", "address, AA stand through the strobe", "host-bus:2.5/7", kHolds},
+          {"c", "board lets go of D to CPU drives it", "host-bus:2.5/9", kLeast},
+          {"d", "CPU lets go of D to board drives it", "host-bus:2.5/10", kLeast}};
 }
 
 // `quarters` quarters of TC; TC is 1/9.8304 MHz by the multiplier, a quarter of it 5^13 / (48 x multiplier) fs.
@@ -54,7 +56,7 @@ int by_form(unsigned ws, int to_3, int to_7, int from_8) { return ws <= 3 ? to_3
 }  // namespace
 
 PortATiming::PortATiming()
-    : ledger_("Port A", port_a_rules(), {"gate ICs AA1", "dual-ported RAM AA2", "default area"}),
+    : ledger_("Port A", "XY", port_a_rules(), {"gate ICs AA1", "dual-ported RAM AA2", "default area"}),
       cache_(kWaitStates * kMultipliers) {}
 
 // In quarters of TC and tenths of a nanosecond.
@@ -138,35 +140,42 @@ std::optional<TimeFs> PortATiming::needed(Rule rule, Region region) {
   }
 }
 
-const PortATiming::Limits& PortATiming::limits(const PortACycle& c) {
-  const auto fill = [&](unsigned stretched) {
+TimeFs PortATiming::quarters(std::int64_t count, unsigned multiplier) { return floor_quarters(count, multiplier); }
+
+PortATiming::Limits PortATiming::limits(const PinCycle& c, unsigned stretched) {
+  const auto fill = [&] {
     Limits all;
     for (unsigned r = 0; r <= k119; ++r)
       all.row[r] = required(static_cast<Rule>(r), {c.multiplier, c.wait_states, stretched});
     return all;
   };
-  if (c.stretched != 0) return stretched_ = fill(c.stretched);
+  if (stretched != 0) return fill();
   auto& known = cache_[c.multiplier * kWaitStates + c.wait_states];
-  if (!known) known = fill(0);
+  if (!known) known = fill();
   return *known;
 }
 
-void PortATiming::cycle(const PortACycle& c) {
-  if (c.on_chip) return;  // moves no pin
+void PortATiming::cycle(const PinCycle& c) {
   region_ = c.aa == 2 ? kGateIcs : c.aa == 4 ? kDpram : kDefaultArea;
   place_ = {c.start, c.address, c.x ? 'X' : 'Y', c.write, c.pc != 0, c.pc};
   place_.wait_states = c.wait_states;
   place_.i52 = c.multiplier - 1;
-  const Limits& rows = limits(c);
+  // The CPU keeps what /TA asked for; the data have until the strobe ended.
+  Limits rows = limits(c, c.asked);
+  if (c.stretched != c.asked) {
+    const Limits data = limits(c, c.stretched);
+    for (const Rule rule : {k104, k105}) rows.row[rule] = data.row[rule];
+  }
   enter(k100, rows, c.end - c.start);
   c.write ? write(c, rows) : read(c, rows);
   if (c.wait_states > 0) acknowledge(c, rows);
   ledger_.holds(kOneStrobe, region_, !c.both_strobes, place_);
   ledger_.holds(kAddressStands, region_, !c.address_moved, place_);
+  if (c.turnaround) ledger_.enter(c.cpu_followed ? kBoardLetsGo : kCpuLetsGo, region_, 0, *c.turnaround, place_);
   (c.write ? last_write_ : last_read_) = c;
 }
 
-void PortATiming::read(const PortACycle& c, const Limits& rows) {
+void PortATiming::read(const PinCycle& c, const Limits& rows) {
   enter(k115, rows, c.strobe_low - c.start);
   enter(k116, rows, c.strobe_high - c.strobe_low);
   enter(k117, rows, c.end - c.strobe_high);
@@ -183,26 +192,26 @@ void PortATiming::read(const PortACycle& c, const Limits& rows) {
   if (last_read_) between(k113, *last_read_, c, c.strobe_low - last_read_->strobe_high);
 }
 
-void PortATiming::write(const PortACycle& c, const Limits& rows) {
+void PortATiming::write(const PinCycle& c, const Limits& rows) {
   enter(k101, rows, c.strobe_low - c.start);
   enter(k102, rows, c.strobe_high - c.strobe_low);
   enter(k103, rows, c.end - c.strobe_high);
   enter(k107, rows, c.strobe_high - c.start);
-  enter(k108, rows, c.strobe_high - c.data_time);
-  enter(k109, rows, c.end - c.strobe_high);
-  enter(k110, rows, c.data_time - c.strobe_low);
-  enter(k111, rows, c.end - c.strobe_high);
-  need(kW1, c.data_time - c.strobe_low);
-  need(kW2, c.end - c.strobe_low);
+  enter(k108, rows, c.strobe_high - c.data_valid);
+  enter(k109, rows, c.data_held - c.strobe_high);
+  enter(k110, rows, c.data_on - c.strobe_low);
+  enter(k111, rows, c.data_off - c.strobe_high);
+  need(kW1, c.data_valid - c.strobe_low);
+  need(kW2, std::min(c.end, c.data_held) - c.strobe_low);
   if (last_write_ && last_write_->aa == c.aa) need(kS1, c.strobe_low - last_write_->strobe_low);
-  if (last_read_) between(k112, *last_read_, c, c.data_time - last_read_->strobe_high);
+  if (last_read_) between(k112, *last_read_, c, c.data_on - last_read_->strobe_high);
   if (last_write_) between(k114, *last_write_, c, c.strobe_low - last_write_->strobe_high);
 }
 
 // A move inside the window is no fault by itself: the device may be ready at any phase of the CPU clock. It is one when
 // wrong data come of it: the strobe ended although the device had taken its answer back, or the data were not there
 // yet.
-void PortATiming::acknowledge(const PortACycle& c, const Limits& rows) {
+void PortATiming::acknowledge(const PinCycle& c, const Limits& rows) {
   ta_moves_.seen += c.ta_seen;
   ta_moves_.missed += c.ta_missed;
   const TimeFs set_up = c.strobe_high - c.ta_moved;
@@ -211,7 +220,7 @@ void PortATiming::acknowledge(const PortACycle& c, const Limits& rows) {
   enter(k119, rows, inside && c.ta_high ? -set_up : c.ta_held - c.strobe_high);
 }
 
-void PortATiming::between(Rule rule, const PortACycle& first, const PortACycle& c, TimeFs measured) {
+void PortATiming::between(Rule rule, const PinCycle& first, const PinCycle& c, TimeFs measured) {
   PortAConditions at{std::max(first.multiplier, c.multiplier), std::min(first.wait_states, c.wait_states), 0};
   if (const auto time = required(rule, at)) ledger_.enter(rule, region_, *time, measured, place_);
 }

@@ -1,13 +1,13 @@
-// Checker of the CPU's bus: every row of host-bus:2.2 and the two conditions of host-bus:2.5, evaluated for the CPU
-// clock and the wait states of each cycle from the edges that the pins had. The formulas are written out here from the
-// data sheet; nothing is shared with the bus master (systemc/cpu/port_a_timing.h).
+// Checker of the CPU's bus: every row of host-bus:2.2 and the conditions of host-bus:2.5, evaluated for the CPU clock
+// and the wait states of each cycle from what the lines showed (timing_pins.h). The formulas are written out here from
+// the data sheet; nothing is shared with the bus master (systemc/cpu/port_a_timing.h).
 #pragma once
 
 #include <array>
 #include <optional>
 #include <vector>
 
-#include "systemc/cpu/port_a.h"
+#include "testbench/checkers/timing_pins.h"
 #include "testbench/checkers/timing_rules.h"
 
 namespace brick {
@@ -47,20 +47,22 @@ class PortATiming {
     kS1,
     kOneStrobe,
     kAddressStands,
+    kBoardLetsGo,
+    kCpuLetsGo,
     kRules
   };
   enum Region : unsigned { kGateIcs, kDpram, kDefaultArea, kRegions };
 
   PortATiming();
 
-  void cycle(const PortACycle& c);
+  void cycle(const PinCycle& c);
   void forget();  // all evaluations, and the cycle before
 
   TimingLedger& ledger() { return ledger_; }
   const TimingLedger& ledger() const { return ledger_; }
 
   // The read with the least margin for the data (rows 104 to 106), which the board and the wait states decide.
-  const std::optional<PortACycle>& worst_read() const { return worst_read_; }
+  const std::optional<PinCycle>& worst_read() const { return worst_read_; }
 
   // /TA moved between a sample and the end of the strobe (rows 118, 119) and was taken as it stood after, or before.
   struct TaMoves {
@@ -71,6 +73,8 @@ class PortATiming {
   // What the board needs of a write, and of two strobes in a row (host-bus:2.6, host-bus:6.9/8).
   static std::optional<TimeFs> needed(Rule rule, Region region);
 
+  // So many quarters of TC in femtoseconds, rounded down.
+  static TimeFs quarters(std::int64_t count, unsigned multiplier);
   // What the formula asks for in femtoseconds, less than one in favour of the part; none: the row does not apply.
   static std::optional<TimeFs> required(Rule rule, const PortAConditions& at);
 
@@ -78,10 +82,10 @@ class PortATiming {
   struct Limits {
     std::array<std::optional<TimeFs>, k119 + 1> row;
   };
-  const Limits& limits(const PortACycle& c);
-  void read(const PortACycle& c, const Limits& limits);
-  void write(const PortACycle& c, const Limits& limits);
-  void acknowledge(const PortACycle& c, const Limits& limits);
+  Limits limits(const PinCycle& c, unsigned stretched);
+  void read(const PinCycle& c, const Limits& limits);
+  void write(const PinCycle& c, const Limits& limits);
+  void acknowledge(const PinCycle& c, const Limits& limits);
   void enter(Rule rule, const Limits& limits, TimeFs measured) {
     if (limits.row[rule]) ledger_.enter(rule, region_, *limits.row[rule], measured, place_);
   }
@@ -90,14 +94,13 @@ class PortATiming {
       ledger_.enter(rule, region_, *time, measured, place_);
   }
   // Between two cycles the fewer wait states count, and the faster clock.
-  void between(Rule rule, const PortACycle& first, const PortACycle& c, TimeFs measured);
+  void between(Rule rule, const PinCycle& first, const PinCycle& c, TimeFs measured);
 
   TimingLedger ledger_;
   std::vector<std::optional<Limits>> cache_;  // by CPU clock and wait states, without /TA
-  Limits stretched_;
-  std::optional<PortACycle> last_read_, last_write_;
+  std::optional<PinCycle> last_read_, last_write_;
   TaMoves ta_moves_;
-  std::optional<PortACycle> worst_read_;
+  std::optional<PinCycle> worst_read_;
   TimeFs worst_margin_ = INT64_MAX;
   unsigned region_ = 0;  // of the cycle in hand
   TimingPlace place_;

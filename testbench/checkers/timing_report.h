@@ -18,6 +18,6 @@ std::string timing_load(const TimingProfile& profile, TimeFs run);
 nlohmann::json timing_json(const TimingBook& book, const TimingProfile& profile, TimeFs run);
 
 // WaveDrom source of a cycle, a quarter of a CPU clock a step. `caption` stands above it.
-nlohmann::json timing_figure(const PortACycle& cycle, const std::string& caption);
+nlohmann::json timing_figure(const PinCycle& cycle, const std::string& caption);
 
 }  // namespace brick

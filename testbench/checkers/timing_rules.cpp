@@ -4,8 +4,10 @@
 
 namespace brick {
 
-TimingLedger::TimingLedger(std::string bus, std::vector<TimingRule> rules, std::vector<std::string> regions)
+TimingLedger::TimingLedger(std::string bus, std::string spaces, std::vector<TimingRule> rules,
+                           std::vector<std::string> regions)
     : bus_(std::move(bus)),
+      spaces_(std::move(spaces)),
       rules_(std::move(rules)),
       regions_(std::move(regions)),
       rows_(rules_.size() * regions_.size()) {}

@@ -57,7 +57,8 @@ struct TimingViolation {
 
 class TimingLedger {
  public:
-  TimingLedger(std::string bus, std::vector<TimingRule> rules, std::vector<std::string> regions);
+  // `spaces`: those of TimingPlace that the bus has.
+  TimingLedger(std::string bus, std::string spaces, std::vector<TimingRule> rules, std::vector<std::string> regions);
 
   // One evaluation; `rule` and `region` are indices. For kHolds measured is 0 when the condition held.
   void enter(unsigned rule, unsigned region, TimeFs required, TimeFs measured, const TimingPlace& where) {
@@ -72,6 +73,7 @@ class TimingLedger {
   }
 
   const std::string& bus() const { return bus_; }
+  const std::string& spaces() const { return spaces_; }
   const std::vector<TimingRule>& rules() const { return rules_; }
   const std::vector<std::string>& regions() const { return regions_; }
   const TimingRow& row(unsigned rule, unsigned region) const { return rows_[region * rules_.size() + rule]; }
@@ -90,7 +92,7 @@ class TimingLedger {
   }
   void violated(unsigned rule, unsigned region, TimeFs required, TimeFs measured, const TimingPlace& where);
 
-  std::string bus_;
+  std::string bus_, spaces_;
   std::vector<TimingRule> rules_;
   std::vector<std::string> regions_;
   std::vector<TimingRow> rows_;  // region by region

@@ -6,31 +6,25 @@ namespace brick {
 
 namespace {
 
-constexpr unsigned kQuick = 24, kSure = 600;  // accesses: to look for the least, to confirm it
-
 class Sweep {
  public:
   Sweep(Machine& machine, std::uint64_t seed) : machine_(machine), traffic_(machine, seed) {
-    machine_.check_bus_cycle = [this](const PortACycle& c) { judge_.cycle(c); };
+    pins_.on_cycle = [this](const PinCycle& c) { judge_.cycle(c); };
+    pins_.board_moved(machine.now_fs(), machine.outputs());
+    machine_.attach_port_a_watch(&pins_);
   }
-  ~Sweep() { machine_.check_bus_cycle = nullptr; }
+  ~Sweep() { machine_.attach_port_a_watch(nullptr); }
 
   SweepCell cell(unsigned i52, PortATiming::Region region) {
-    SweepCell cell{i52, region, {}, "-"};
-    unsigned ws = BusTraffic::most_wait_states(region);
-    std::string fails = trial(i52, region, ws, kQuick);
-    while (fails.empty() && ws > 1) fails = trial(i52, region, --ws, kQuick);
-    if (!fails.empty()) {
-      cell.below = fails;
-      if (ws++ == BusTraffic::most_wait_states(region)) return cell;
-    }
-    for (; ws <= BusTraffic::most_wait_states(region); ++ws) {
-      fails = trial(i52, region, ws, kSure);
-      if (fails.empty()) {
-        cell.least = ws;
+    SweepCell cell{i52, region, {}, "-", ""};
+    for (unsigned ws = BusTraffic::most_wait_states(region); ws > 0; --ws) {
+      if (const std::string fails = trial(i52, region, ws); !fails.empty()) {
+        cell.below = fails;
+        const auto& violations = judge_.ledger().violations();
+        if (!violations.empty()) cell.address = timing_address(violations.front().where);
         break;
       }
-      cell.below = fails;
+      cell.least = ws;
     }
     return cell;
   }
@@ -38,20 +32,22 @@ class Sweep {
 
  private:
   // What fails: "" or rules.
-  std::string trial(unsigned i52, PortATiming::Region region, unsigned ws, unsigned accesses) {
+  std::string trial(unsigned i52, PortATiming::Region region, unsigned ws) {
     traffic_.set_wait_states(region, ws);
     traffic_.set_clock(i52 + 1);
     judge_.forget();
-    traffic_.exercise(region, accesses);
+    traffic_.every_phase(region);
     std::string fails;
     for (unsigned rule = 0; rule < PortATiming::kRules; ++rule)
       if (judge_.ledger().row(rule, region).violations > 0)
         fails += (fails.empty() ? "" : " ") + judge_.ledger().rules()[rule].id;
+    if (fails.empty() && traffic_.wrong_reads() > 0) fails = "wrong word";
     if (!traffic_.verify(region).empty()) fails += fails.empty() ? "write lost" : ", write lost";
     return fails;
   }
 
   Machine& machine_;
+  PinWatch pins_;
   PortATiming judge_;
   BusTraffic traffic_;
 };

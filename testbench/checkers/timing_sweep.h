@@ -17,6 +17,7 @@ struct SweepCell {
   PortATiming::Region region = PortATiming::kGateIcs;
   std::optional<unsigned> least;  // none: not even the most that the field holds
   std::string below;              // rules that fail with one less, "-" where nothing is less than 1
+  std::string address;            // of the first of these violations
 };
 
 // `progress` is told each clock that is done.

@@ -1,5 +1,7 @@
 #include "testbench/checkers/timing_traffic.h"
 
+#include <numeric>
+
 #include <fmt/format.h>
 
 #include "rtl/regs/brick_regs.hpp"
@@ -10,6 +12,7 @@ namespace {
 
 constexpr std::uint32_t kAllBits = 0xFFFFFF, kMostWaitStates = 0x1FFFFF;
 constexpr unsigned kResetMultiplier = 8, kFastest = 32;
+constexpr unsigned kTickMultiplier = 12;  // a CPU clock is a tick
 constexpr unsigned kAccessesPerPhase = 6, kLongestIdle = 4;
 constexpr Tick kAdvance = 48;
 constexpr unsigned kFirstMacroIc = 18;
@@ -45,8 +48,8 @@ BusTraffic::BusTraffic(Machine& machine, std::uint64_t seed) : machine_(machine)
     read_.clear();
     for (const Word& w : region)
       for (const std::uint32_t value : {0u, kAllBits}) {
-        queue_.push_back({w.x, w.address, true, value, kLongestIdle});
-        queue_.push_back({w.x, w.address, false, 0, kLongestIdle});
+        queue_.push_back({{w.x, w.address, true, value, kLongestIdle}});
+        queue_.push_back({{w.x, w.address, false, 0, kLongestIdle}});
       }
     finish();
     for (std::size_t i = 0; i < region.size(); ++i) region[i].mask = region[i].value = read_[2 * i + 1] & ~read_[2 * i];
@@ -61,6 +64,8 @@ std::optional<BusMaster::Access> BusTraffic::next() {
 }
 
 void BusTraffic::done(const Access& access, std::uint32_t data) {
+  const Queued& made = queue_.front();
+  if (made.judged && (data & made.mask) != made.value) ++wrong_reads_;
   queue_.pop_front();
   --under_way_;
   if (!access.write) read_.push_back(data);
@@ -74,7 +79,7 @@ void BusTraffic::finish(const std::function<void()>& meanwhile) {
 }
 
 void BusTraffic::control(std::uint32_t address, std::uint32_t value) {
-  queue_.push_back({true, address, true, value, 0});
+  queue_.push_back({{true, address, true, value, 0}});
 }
 
 void BusTraffic::set_clock(unsigned multiplier) {
@@ -83,7 +88,6 @@ void BusTraffic::set_clock(unsigned multiplier) {
 }
 
 void BusTraffic::set_wait_states(Region region, unsigned ws) {
-  if (forced_) return;
   using namespace regs::cpu_bus::bcr;
   const regs::Field field = region == Region::kGateIcs ? kBa1w : region == Region::kDpram ? kBa2w : kBdfw;
   control(regs::cpu_bus::kBcr.address, (kMostWaitStates & ~field.mask()) | ws << field.lsb);
@@ -92,8 +96,20 @@ void BusTraffic::set_wait_states(Region region, unsigned ws) {
 // A new clock begins with an edge of the board's: a few periods of the fastest one move that edge.
 void BusTraffic::another_phase() {
   control(regs::cpu_bus::kPctl.address, kFastest - 1);
-  queue_.push_back({true, regs::cpu_bus::kPctl.address, false, 0, draw(3 * kFastest)});
+  queue_.push_back({{true, regs::cpu_bus::kPctl.address, false, 0, draw(3 * kFastest)}});
   control(regs::cpu_bus::kPctl.address, multiplier_ - 1);
+}
+
+BusTraffic::Queued BusTraffic::access(Word& w, bool write, std::uint32_t value) {
+  Queued a{{w.x, w.address, write, value, 0}};
+  if (write) {
+    w.value = value & w.mask;
+  } else {
+    a.judged = true;
+    a.mask = w.mask;
+    a.value = w.value;
+  }
+  return a;
 }
 
 void BusTraffic::exercise(Region region, unsigned count, const std::function<void()>& meanwhile) {
@@ -103,15 +119,42 @@ void BusTraffic::exercise(Region region, unsigned count, const std::function<voi
     Word& w = words[draw(static_cast<std::uint32_t>(words.size()))];
     const bool write = i < 2 ? i == 0 : draw(2) != 0;  // both, however few
     const std::uint32_t value = static_cast<std::uint32_t>(random_()) & kAllBits;
-    queue_.push_back({w.x, w.address, write, value, draw(2) != 0 ? 0 : draw(kLongestIdle)});
-    if (write) w.value = value & w.mask;
+    queue_.push_back(access(w, write, value));
+    queue_.back().idle = draw(2) != 0 ? 0 : draw(kLongestIdle);
   }
   finish(meanwhile);
 }
 
+// The clock begins anew at each edge of clk_pwm in a period of clk_ref; from there its clocks have as many phases as
+// its multiplier and the four quarters of a clock leave. Each write turns all bits over, so one that is lost shows.
+unsigned BusTraffic::every_phase(Region region) {
+  const unsigned slots = multiplier_ / std::gcd(multiplier_, 4u);
+  auto& words = words_[region];
+  unsigned made = 0;
+  for (unsigned edge = 0; edge < kTicksPerRef; ++edge) {
+    control(regs::cpu_bus::kPctl.address, kTickMultiplier - 1);
+    control(regs::cpu_bus::kPctl.address, multiplier_ - 1);
+    queue_.back().slot = edge;
+    queue_.back().slots = kTicksPerRef;
+    for (unsigned slot = 0; slot < slots; ++slot)
+      for (const bool moving_ta : {false, true}) {
+        if (moving_ta && region != Region::kDpram) continue;
+        for (const bool write_first : {true, false})
+          for (const bool first : {true, false}) {
+            Word& w = words[made++ / 4 % words.size()];
+            queue_.push_back(access(w, write_first == first, ~w.value & kAllBits));
+            queue_.back().moving_ta = moving_ta;
+            if (first) queue_.back().slot = slot, queue_.back().slots = slots;
+          }
+      }
+  }
+  finish();
+  return made;
+}
+
 void BusTraffic::share(unsigned count, const std::function<void()>& meanwhile) {
   for (unsigned i = 0; i < count; ++i)
-    queue_.push_back({false, kSharedAddress, draw(2) != 0, i, draw(i == 0 ? 16 * kLongestIdle : kLongestIdle)});
+    queue_.push_back({{false, kSharedAddress, draw(2) != 0, i, draw(i == 0 ? 16 * kLongestIdle : kLongestIdle)}});
   finish(meanwhile);
 }
 
@@ -121,8 +164,9 @@ std::string BusTraffic::verify(Region region) {
   control(regs::cpu_bus::kPctl.address, kResetMultiplier - 1);
   finish();
   read_.clear();
-  for (const Word& w : words) queue_.push_back({w.x, w.address, false, 0, kLongestIdle});
+  for (const Word& w : words) queue_.push_back({{w.x, w.address, false, 0, kLongestIdle}});
   finish();
+  wrong_reads_ = 0;
   for (std::size_t i = 0; i < words.size(); ++i)
     if ((read_[i] & words[i].mask) != words[i].value)
       return fmt::format("{}:${:06X} holds ${:06X}, expected ${:06X}", words[i].x ? 'X' : 'Y', words[i].address,

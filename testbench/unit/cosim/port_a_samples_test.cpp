@@ -40,12 +40,9 @@ TEST(PortASamples, BitsThatMoveAfterTheSampleAreRandomBySeed) {
   std::set<std::uint32_t> words;
   for (std::uint64_t seed = 1; seed <= 64; ++seed) {
     EXPECT_EQ(read(moves_at(in_time), seed, &c), 0x112211u) << "in time";
-    EXPECT_FALSE(c.corrupted);
     const std::uint32_t word = read(moves_at(late), seed, &c);
     EXPECT_EQ(word, read(moves_at(late), seed)) << "the same seed, the same word";
     EXPECT_EQ(word & ~0x003300u, 0x110011u) << "bits that stood";
-    EXPECT_TRUE(c.corrupted);
-    EXPECT_EQ(c.data_valid, tick_to_fs(late));
     words.insert(word);
   }
   EXPECT_GT(words.size(), 8u) << "of sixteen";
@@ -57,21 +54,13 @@ TEST(PortASamples, ABusThatNobodyDrivesGivesAnything) {
   std::set<std::uint32_t> words;
   for (std::uint64_t seed = 1; seed <= 32; ++seed) words.insert(read([](Tick) { return shows(5, false); }, seed, &c));
   EXPECT_GT(words.size(), 30u);
-  EXPECT_EQ(c.data_valid, c.strobe_high) << "never before";
   const Tick gone = edge_before(c.strobe_high);
-  read([gone](Tick t) { return shows(5, t < gone); }, 1, &c);
-  EXPECT_TRUE(c.corrupted && c.data_lost);
-  EXPECT_EQ(c.data_held, tick_to_fs(gone));
-}
-
-TEST(PortASamples, HoldEndsWithTheFirstChangeAfterTheStrobe) {
-  PortACycle c;
-  read([](Tick) { return shows(5); }, 1, &c);
-  EXPECT_EQ(c.data_held, c.end);
+  words.clear();
+  for (std::uint64_t seed = 1; seed <= 32; ++seed)
+    words.insert(read([gone](Tick t) { return shows(5, t < gone); }, seed, &c));
+  EXPECT_GT(words.size(), 30u) << "let go just before /RD rises";
   const Tick after = fs_to_tick(c.strobe_high);
-  read([after](Tick t) { return shows(t < after ? 5 : 6); }, 1, &c);
-  EXPECT_FALSE(c.corrupted);
-  EXPECT_EQ(c.data_held, tick_to_fs(after));
+  EXPECT_EQ(read([after](Tick t) { return shows(5, t < after); }, 1), 5u) << "no hold is needed";
 }
 
 // /TA falls between the sample, TC / 4 + 2 ns before /RD would rise, and that rise.
@@ -83,22 +72,18 @@ TEST(PortASamples, TaThatMovesInItsWindowIsSeenOrNotBySeed) {
   ASSERT_EQ(c.stretched, 0u);
   const Tick in_time = edge_before(c.ta_time), inside = edge_before(c.strobe_high);
   ASSERT_GT(inside, in_time);
-  unsigned seen = 0, missed = 0;
+  unsigned seen = 0;
   for (std::uint64_t seed = 1; seed <= 64; ++seed) {
     read(ready_at(in_time), seed, &c);
-    EXPECT_EQ(c.stretched + c.ta_seen + c.ta_missed, 0u) << "in time";
+    EXPECT_EQ(c.stretched, 0u) << "in time";
     read(ready_at(inside), seed, &c);
-    EXPECT_EQ(c.stretched, c.ta_missed);
-    EXPECT_EQ(c.ta_seen + c.ta_missed, 1u);
-    EXPECT_FALSE(c.ta_high);
-    seen += c.ta_seen;
-    missed += c.ta_missed;
+    EXPECT_LE(c.stretched, 1u);
+    seen += c.stretched == 0;
     read(ready_at(inside + 1), seed, &c);
-    EXPECT_EQ(c.ta_seen + c.ta_missed, 0u) << "after the window of one sample and before that of the next";
-    EXPECT_EQ(c.stretched, 1u);
+    EXPECT_EQ(c.stretched, 1u) << "after the window of one sample and before that of the next";
   }
   EXPECT_GT(seen, 16u);
-  EXPECT_GT(missed, 16u);
+  EXPECT_LT(seen, 48u);
 }
 
 TEST(PortASamples, ForcedWaitStatesWinOverTheProgram) {
@@ -108,6 +93,26 @@ TEST(PortASamples, ForcedWaitStatesWinOverTheProgram) {
   EXPECT_EQ(rig.read('X', 0xFFFFFB), 3u << 5) << "the program reads what it wrote";
   rig.read('X', 0x078000);
   EXPECT_EQ(rig.last->wait_states, 9u);
+}
+
+// Not before the program has set up its bus: by another clock, or by other wait states of a device.
+TEST(PortASamples, ForcedWaitStatesActAfterTheSetUp) {
+  const auto wait_states = [](std::uint32_t i52, std::uint32_t bcr) {
+    PortARig rig;
+    rig.port_a.force_wait_states(9 << 5);
+    rig.write('X', 0xFFFFFB, 0x1FFFFF);
+    rig.write('X', 0xFFFFFD, i52);
+    rig.write('X', 0xFFFFFB, bcr);
+    rig.read('X', 0x078000);
+    return rig.last->wait_states;
+  };
+  EXPECT_EQ(wait_states(7, 0x1FFFFF), 31u) << "as after a reset";
+  EXPECT_EQ(wait_states(7, 0x1FFFE1), 31u) << "another number for main memory alone";
+  EXPECT_EQ(wait_states(31, 0x1FFFE5), 9u);
+  EXPECT_EQ(wait_states(0, 0x1FFFFF), 9u);
+  EXPECT_EQ(wait_states(7, 0x1FFFDF), 9u);
+  EXPECT_EQ(wait_states(7, 0x1FFBFF), 9u);
+  EXPECT_EQ(wait_states(7, 0x1EFFFF), 9u);
 }
 
 }  // namespace

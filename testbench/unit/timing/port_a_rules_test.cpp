@@ -87,26 +87,25 @@ std::optional<Formula> row(unsigned number, unsigned ws, unsigned more) {
 }
 
 // A cycle with all the time in the world, and nothing that moves. The data of a write come and go with the strobe.
-PortACycle easy(bool write, unsigned n, unsigned ws, unsigned more, TimeFs start = 1'000'000 * kFsPerNs) {
+PinCycle easy(bool write, unsigned n, unsigned ws, unsigned more, TimeFs start = 1'000'000 * kFsPerNs) {
   constexpr TimeFs kLong = 100'000 * kFsPerNs;
-  PortACycle c;
+  PinCycle c;
   c.address = 0x078003;
   c.x = true;
   c.aa = 2;
   c.write = write;
   c.multiplier = n;
   c.wait_states = ws;
-  c.stretched = more;
+  c.stretched = c.asked = more;
   c.start = c.ta_moved = start;
   c.strobe_low = start + kLong;
   c.data_valid = start;
-  c.data_time = start + 2 * kLong;
   c.strobe_high = start + 3 * kLong;
   c.end = c.data_held = c.ta_held = start + 4 * kLong;
   if (write) {
     const TimeFs quarter = 25'431'315 / n;
-    c.data_time = c.strobe_low + (ws <= 3 ? quarter : 0);
-    c.end = c.ta_held = c.strobe_high + quarter * (ws <= 3 ? 1 : ws <= 7 ? 5 : 9);
+    c.data_on = c.data_valid = c.strobe_low + (ws <= 3 ? quarter : 0);
+    c.end = c.ta_held = c.data_held = c.data_off = c.strobe_high + quarter * (ws <= 3 ? 1 : ws <= 7 ? 5 : 9);
   }
   return c;
 }
@@ -121,26 +120,25 @@ std::vector<std::string> violated(const PortATiming& timing) {
 struct RowCase {
   unsigned number;
   bool write;
-  std::function<void(PortACycle&, TimeFs time)> measure;
+  std::function<void(PinCycle&, TimeFs time)> measure;
 };
 const std::vector<RowCase>& cases_of_one_cycle() {
-  static const std::vector<RowCase> cases{
-      {100, true, [](PortACycle& c, TimeFs t) { c.start = c.end - t; }},
-      {101, true, [](PortACycle& c, TimeFs t) { c.strobe_low = c.start + t; }},
-      {102, true, [](PortACycle& c, TimeFs t) { c.strobe_low = c.strobe_high - t; }},
-      {103, true, [](PortACycle& c, TimeFs t) { c.end = c.strobe_high + t; }},
-      {104, false, [](PortACycle& c, TimeFs t) { c.data_valid = c.start + t; }},
-      {105, false, [](PortACycle& c, TimeFs t) { c.data_valid = c.strobe_low + t; }},
-      {106, false, [](PortACycle& c, TimeFs t) { c.data_held = c.strobe_high + t; }},
-      {107, true, [](PortACycle& c, TimeFs t) { c.start = c.strobe_high - t; }},
-      {108, true, [](PortACycle& c, TimeFs t) { c.data_time = c.strobe_high - t; }},
-      {109, true, [](PortACycle& c, TimeFs t) { c.end = c.strobe_high + t; }},
-      {110, true, [](PortACycle& c, TimeFs t) { c.data_time = c.strobe_low + t; }},
-      {111, true, [](PortACycle& c, TimeFs t) { c.end = c.strobe_high + t; }},
-      {115, false, [](PortACycle& c, TimeFs t) { c.strobe_low = c.start + t; }},
-      {116, false, [](PortACycle& c, TimeFs t) { c.strobe_low = c.strobe_high - t; }},
-      {117, false, [](PortACycle& c, TimeFs t) { c.end = c.strobe_high + t; }},
-      {119, true, [](PortACycle& c, TimeFs t) { c.ta_held = c.strobe_high + t; }}};
+  static const std::vector<RowCase> cases{{100, true, [](PinCycle& c, TimeFs t) { c.start = c.end - t; }},
+                                          {101, true, [](PinCycle& c, TimeFs t) { c.strobe_low = c.start + t; }},
+                                          {102, true, [](PinCycle& c, TimeFs t) { c.strobe_low = c.strobe_high - t; }},
+                                          {103, true, [](PinCycle& c, TimeFs t) { c.end = c.strobe_high + t; }},
+                                          {104, false, [](PinCycle& c, TimeFs t) { c.data_valid = c.start + t; }},
+                                          {105, false, [](PinCycle& c, TimeFs t) { c.data_valid = c.strobe_low + t; }},
+                                          {106, false, [](PinCycle& c, TimeFs t) { c.data_held = c.strobe_high + t; }},
+                                          {107, true, [](PinCycle& c, TimeFs t) { c.start = c.strobe_high - t; }},
+                                          {108, true, [](PinCycle& c, TimeFs t) { c.data_valid = c.strobe_high - t; }},
+                                          {109, true, [](PinCycle& c, TimeFs t) { c.data_held = c.strobe_high + t; }},
+                                          {110, true, [](PinCycle& c, TimeFs t) { c.data_on = c.strobe_low + t; }},
+                                          {111, true, [](PinCycle& c, TimeFs t) { c.data_off = c.strobe_high + t; }},
+                                          {115, false, [](PinCycle& c, TimeFs t) { c.strobe_low = c.start + t; }},
+                                          {116, false, [](PinCycle& c, TimeFs t) { c.strobe_low = c.strobe_high - t; }},
+                                          {117, false, [](PinCycle& c, TimeFs t) { c.end = c.strobe_high + t; }},
+                                          {119, true, [](PinCycle& c, TimeFs t) { c.ta_held = c.strobe_high + t; }}};
   return cases;
 }
 
@@ -169,7 +167,7 @@ TEST(PortATiming, EachRowOfOneCyclePassesAtItsLimitAndFailsOneFemtosecondBeyond)
   for (const RowCase& test : cases_of_one_cycle())
     at_and_beyond_the_limit(test.number, [&](unsigned n, unsigned ws, unsigned more, TimeFs time) {
       PortATiming timing;
-      PortACycle c = easy(test.write, n, ws, more);
+      PinCycle c = easy(test.write, n, ws, more);
       test.measure(c, time);
       timing.cycle(c);
       return violated(timing);
@@ -185,10 +183,10 @@ TEST(PortATiming, RowsBetweenCyclesPassAtTheirLimitAndFailOneFemtosecondBeyond) 
   for (const Case& test : {Case{112, false, true}, Case{113, false, false}, Case{114, true, true}})
     at_and_beyond_the_limit(test.number, [&](unsigned n, unsigned ws, unsigned, TimeFs time) {
       PortATiming timing;
-      const PortACycle first = easy(test.first_writes, n, ws, 0);
+      const PinCycle first = easy(test.first_writes, n, ws, 0);
       timing.cycle(first);
-      PortACycle second = easy(test.second_writes, n, ws, 0, first.end);
-      (test.number == 112 ? second.data_time : second.strobe_low) = first.strobe_high + time;
+      PinCycle second = easy(test.second_writes, n, ws, 0, first.end);
+      (test.number == 112 ? second.data_on : second.strobe_low) = first.strobe_high + time;
       timing.cycle(second);
       return violated(timing);
     });
@@ -202,7 +200,7 @@ TEST(PortATiming, TaSetUpPassesAtItsLimitAndFailsOneFemtosecondBeyondWithWrongDa
       for (const unsigned ws : kWaitStates)
         for (const TimeFs less : {0, 1}) {
           PortATiming timing;
-          PortACycle c = easy(false, n, ws, 2);
+          PinCycle c = easy(false, n, ws, 2);
           c.ta_moved = c.strobe_high - row(118, ws, 2)->fs(n) + less;
           c.corrupted = corrupted;
           timing.cycle(c);
@@ -214,7 +212,7 @@ TEST(PortATiming, TaSetUpPassesAtItsLimitAndFailsOneFemtosecondBeyondWithWrongDa
 // The device took its answer back before the strobe rose: no hold.
 TEST(PortATiming, TaThatRisesBeforeTheStrobeDoesIsAHoldViolation) {
   PortATiming timing;
-  PortACycle c = easy(true, 8, 3, 0);
+  PinCycle c = easy(true, 8, 3, 0);
   c.ta_moved = c.strobe_high - 1;
   c.ta_high = true;
   timing.cycle(c);
@@ -223,7 +221,7 @@ TEST(PortATiming, TaThatRisesBeforeTheStrobeDoesIsAHoldViolation) {
 
 TEST(PortATiming, TaMovesAreCountedAndNoViolationByThemselves) {
   PortATiming timing;
-  PortACycle c;
+  PinCycle c;
   for (unsigned i = 0; i < 2; ++i) {
     c = easy(true, 8, 3, 1, c.end + 1000 * kFsPerNs);
     c.ta_moved = c.strobe_high - 1;
@@ -241,9 +239,9 @@ TEST(PortATiming, BetweenCyclesOfTwoRegionsTheFewerWaitStatesCount) {
   for (const auto& [first_ws, second_ws, needs_ws] : {std::array{15u, 3u, 3u}, {3u, 15u, 3u}, {7u, 31u, 7u}}) {
     for (const TimeFs less : {0, 1}) {
       PortATiming timing;
-      const PortACycle first = easy(true, 16, first_ws, 0);
+      const PinCycle first = easy(true, 16, first_ws, 0);
       timing.cycle(first);
-      PortACycle second = easy(true, 16, second_ws, 0, first.end);
+      PinCycle second = easy(true, 16, second_ws, 0, first.end);
       second.strobe_low = first.strobe_high + row(114, needs_ws, 0)->fs(16) - less;
       timing.cycle(second);
       EXPECT_EQ(::testing::Matches(::testing::Contains("114"))(violated(timing)), less == 1);
@@ -253,7 +251,7 @@ TEST(PortATiming, BetweenCyclesOfTwoRegionsTheFewerWaitStatesCount) {
 
 TEST(PortATiming, ConditionsOfTheStrobes) {
   PortATiming timing;
-  PortACycle c = easy(true, 8, 7, 0);
+  PinCycle c = easy(true, 8, 7, 0);
   timing.cycle(c);
   EXPECT_THAT(violated(timing), ::testing::IsEmpty());
   c = easy(true, 8, 7, 0, c.end + 1000 * kFsPerNs);
@@ -278,9 +276,9 @@ TEST(PortATiming, WhatTheBoardNeedsOfAWrite) {
                            {4, periods(2, 117'964'800) - kFsPerNs, 0}}) {
     for (const TimeFs beyond : {0, 1}) {
       PortATiming timing;
-      PortACycle c = easy(true, 32, 1, 0);
+      PinCycle c = easy(true, 32, 1, 0);
       c.aa = static_cast<std::uint8_t>(test.aa);
-      c.data_time = c.strobe_low + test.w1 + beyond;
+      c.data_valid = c.strobe_low + test.w1 + beyond;
       if (test.w2 > 0) {
         c.end = c.strobe_low + test.w2 - beyond;
         c.strobe_high = c.end - 10 * kFsPerNs;
@@ -299,10 +297,10 @@ TEST(PortATiming, TwoFallsOfAStrobeAreAPeriodOfTheReferenceClockApart) {
     for (const unsigned aa : {0u, 2u, 4u})
       for (const TimeFs less : {0, 1}) {
         PortATiming timing;
-        PortACycle c = easy(write, 32, 1, 0);
+        PinCycle c = easy(write, 32, 1, 0);
         c.aa = static_cast<std::uint8_t>(aa);
         timing.cycle(c);
-        PortACycle next = easy(write, 32, 1, 0, c.end);
+        PinCycle next = easy(write, 32, 1, 0, c.end);
         next.aa = c.aa;
         next.strobe_low = c.strobe_low + least - less;
         timing.cycle(next);
@@ -310,22 +308,25 @@ TEST(PortATiming, TwoFallsOfAStrobeAreAPeriodOfTheReferenceClockApart) {
       }
 }
 
-TEST(PortATiming, OnChipCyclesHaveNoPins) {
-  PortATiming timing;
-  PortACycle c = easy(true, 8, 7, 0);
-  c.on_chip = true;
-  c.both_strobes = true;
-  timing.cycle(c);
-  for (unsigned rule = 0; rule < PortATiming::kRules; ++rule)
-    for (unsigned region = 0; region < PortATiming::kRegions; ++region)
-      EXPECT_EQ(timing.ledger().row(rule, region).evaluations, 0u);
+// Both drive D, by a femtosecond: the one that came later is told.
+TEST(PortATiming, OneSideLetsGoBeforeTheOtherDrives) {
+  for (const bool cpu_followed : {true, false})
+    for (const TimeFs both : {0, 1}) {
+      PortATiming timing;
+      PinCycle c = easy(cpu_followed, 8, 7, 0);
+      c.turnaround = -both;
+      c.cpu_followed = cpu_followed;
+      timing.cycle(c);
+      EXPECT_EQ(violated(timing),
+                both == 0 ? std::vector<std::string>{} : std::vector<std::string>{cpu_followed ? "c" : "d"});
+    }
 }
 
 TEST(TimingLedger, OneViolationForEachRuleAndAddressWithItsCount) {
   PortATiming timing;
   std::vector<std::uint32_t> told;
   timing.ledger().on_violation = [&](const TimingViolation& v) { told.push_back(v.where.address); };
-  PortACycle c;
+  PinCycle c;
   for (const std::uint32_t address : {0x078000u, 0x078001u, 0x078000u}) {
     c = easy(false, 8, 7, 0, c.end + 1000 * kFsPerNs);
     c.address = address;

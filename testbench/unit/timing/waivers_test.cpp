@@ -75,12 +75,22 @@ TEST(TimingWaivers, EveryMistakeIsOneLineWithItsPlace) {
                 HasSubstr(":3: address: found \"" + std::string(address) + "\"; expected an address such as"));
   EXPECT_THAT(problem("[[waive]]\nrule = \"104\"\naddress = \"X:$2..$1\"\nreason = \"r\"\n"),
               HasSubstr("expected the lower address first"));
+  EXPECT_THAT(problem("[[waive]]\nrule = \"104\"\naddress = \"X:$1..Y:$2\"\nreason = \"r\"\n"),
+              HasSubstr(":3: address: found \"X:$1..Y:$2\"; expected both ends in one space"));
+  EXPECT_THAT(problem("[[waive]]\nrule = \"104\"\naddress = \"X:$1..X:$2\"\nreason = \"r\"\n", ledgers), "none");
+  for (const char* address : {"I/O 0x213", "memory 0x0D0000..0x0D1000"})
+    EXPECT_THAT(
+        problem(std::string("[[waive]]\nrule = \"104\"\naddress = \"") + address + "\"\nreason = \"r\"\n", ledgers),
+        HasSubstr(":1: address: \"" + std::string(address) +
+                  "\" is on another bus than rule 104; expected an address of Port A"));
   EXPECT_THAT(problem("[[waive]\n"), HasSubstr("expected TOML"));
   EXPECT_THAT(problem("waive = 3\n"), HasSubstr("a list in brackets"));
   try {
     TimingWaivers("/nowhere/waivers.toml");
     FAIL();
-  } catch (const UsageError& e) { EXPECT_THAT(e.what(), HasSubstr("--waive /nowhere/waivers.toml: cannot be read")); }
+  } catch (const UsageError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("--waive \"/nowhere/waivers.toml\": cannot be read"));
+  }
 }
 
 }  // namespace

@@ -95,12 +95,14 @@ const std::vector<DeviceKind>& device_kinds() {
        true,
        false,
        {"rtl", "systemc", "both", "board_rtl", "board_systemc", "board_both"}},
-      {"controller", controller_signals(), false, true, {"rtl", "systemc", "both"}}};
+      {"controller", controller_signals(), false, true, {"rtl", "systemc", "both"}},
+      {"buses", buses_signals(), false, false, {"rtl", "systemc", "both"}}};
   return kinds;
 }
 
 std::unique_ptr<Device> make_device(const std::string& kind, const std::string& engine, const std::string& board) {
   if (kind == "controller") return make_controller(engine, board);
+  if (kind == "buses") return make_buses(engine);
   const std::string on_board = "board_";
   if (engine.rfind(on_board, 0) == 0) return make_board_device(engine.substr(on_board.size()));
   if (engine == "both") return compared(make_channels(true), make_channels(false));

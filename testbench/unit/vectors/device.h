@@ -23,6 +23,8 @@ class DeviceError : public std::runtime_error {
 struct DeviceSignal {
   std::string name;
   bool input;
+  unsigned width = 1;       // more than 1: drawn as a number
+  std::string enable = {};  // the signal that is 0 while nobody drives this one
 };
 
 class Device {
@@ -64,11 +66,13 @@ std::unique_ptr<Device> make_device(const std::string& kind, const std::string& 
 // Two devices of one kind, one step at a time; DeviceError at the first difference.
 std::unique_ptr<Device> compared(std::unique_ptr<Device> first, std::unique_ptr<Device> second);
 
-// The kinds (channels_device.cpp, board_device.cpp, controller_device.cpp).
+// The kinds (channels_device.cpp, board_device.cpp, controller_device.cpp, buses_device.cpp).
 std::vector<DeviceSignal> channels_signals();
 std::unique_ptr<Device> make_channels(bool rtl);
 std::unique_ptr<Device> make_board_device(const std::string& engine);  // rtl, systemc, both
 std::vector<DeviceSignal> controller_signals();
+std::vector<DeviceSignal> buses_signals();
+std::unique_ptr<Device> make_buses(const std::string& engine);  // rtl, systemc, both
 std::unique_ptr<Device> make_controller(const std::string& engine, const std::string& board);
 
 }  // namespace brick

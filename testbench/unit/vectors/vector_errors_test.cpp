@@ -59,7 +59,7 @@ TEST(VectorErrors, WholeFile) {
             "a.vec:2: unknown key foo; expected title, section, number, device, board, units, steps, negative, wave");
   EXPECT_EQ(error("title = 3"), "a.vec:1: title: found 3; expected a text in quotes");
   EXPECT_EQ(error("title = \"t\"\nsection = \"s\"\ndevice = \"toaster\""),
-            "a.vec:3: device: found \"toaster\"; expected channels or controller");
+            "a.vec:3: device: found \"toaster\"; expected channels or controller or buses");
   EXPECT_EQ(error(with_steps("wait 3")),
             "a.vec:5: steps: found \"wait 3 \"; expected a line with 'expect', 'read' or a reply");
   const std::string good = with_steps("expect ch1.equ is 0");

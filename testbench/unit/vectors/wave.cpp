@@ -57,27 +57,46 @@ class Drawing {
     const unsigned signal = wave_.signals[row];
     const std::string& name = vector_.signals[signal].name;
     if (name == "bus") return bus_lane(signal);
-    const bool number = name.find(".position") != std::string::npos;
+    const unsigned width = vector_.signals[signal].width;
+    const bool number = width > 1 || name.find(".position") != std::string::npos;
+    const std::optional<unsigned> enable = enable_of(signal);
     std::string wave;
     std::vector<std::string> data;
-    std::optional<std::uint32_t> last;
+    bool drawn = false;  // the column before shows `last`
+    std::uint32_t last = 0;
     for (const Stretch& s : stretches_) {
       if (!wave.empty()) wave += '|';
       for (Tick t = s.from; t < s.to; t += s.step) {
         const std::uint32_t value = run_.record.value(signal, t);
-        const bool same = last && *last == value && !(number && t == s.from);
+        if (enable && run_.record.value(*enable, t) == 0) {
+          wave += drawn || t == s.from ? 'z' : '.';
+          drawn = false;
+          continue;
+        }
+        const bool same = drawn && last == value && !(number && t == s.from);
+        drawn = true;
         last = value;
         if (run_.record.edges({signal, Edge::kChanges}, t + 1, t + s.step + 1).size() > 1)
           fail(s.line, fmt::format("several changes of {} within {} ticks from tick {}; expected a smaller step", name,
                                    s.step, t));
         wave += same ? '.' : number ? '=' : value != 0 ? '1' : '0';
-        if (number && !same) data.push_back(std::to_string(static_cast<std::int32_t>(value)));
+        if (number && !same)
+          data.push_back(width > 1 ? fmt::format("${:X}", value) : std::to_string(static_cast<std::int32_t>(value)));
       }
     }
     Json lane{{"name", name}, {"wave", wave}};
     if (number) lane["data"] = data;
     if (nodes_[row].find_first_not_of('.') != std::string::npos) lane["node"] = nodes_[row];
     return lane;
+  }
+
+  std::optional<unsigned> enable_of(unsigned signal) const {
+    const auto& all = vector_.signals;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const DeviceSignal& s) {
+      return !all[signal].enable.empty() && s.name == all[signal].enable;
+    });
+    if (found == all.end()) return std::nullopt;
+    return static_cast<unsigned>(found - all.begin());
   }
 
   // A bus cycle is short: it is shown for six columns from the one in which it ends, or until the next.
