@@ -1,4 +1,4 @@
-// A controller board with one servo IC in a Lattice ECP5 (LFE5U-85F-6BG756C): board_top between real pads. Buses that
+// A controller board with one servo IC in a Lattice ECP5 (LFE5U-85F-8BG756C): board_top between real pads. Buses that
 // others drive too have tri-state pads, IOCHRDY and MEMCS16# are open-collector lines of the ISA bus, only pulled low.
 // clk_i is an oscillator of 39.3216 MHz; rst_ni the board's reset line. docs/fpga.md.
 `default_nettype none

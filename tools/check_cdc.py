@@ -56,8 +56,6 @@ SAMPLED = [
     ("ext_clock_i", "ext_clock_q", STRAP),
     ("line_select_i", "line_select_q", STRAP),
     ("pic_8259_i", "pic_8259_q", STRAP),
-    ("pa_aa_i", "from_dpram_q", BUS),
-    ("pa_int_i", "from_dpram_q", BUS),
     ("motor_i", "*.u_adc_[ab].*", "changes with the fall of ADC_CLK, is taken at its rise"),
 ]
 # Inputs that reach their synchroniser through a multiplexer that only a jumper moves.
@@ -66,7 +64,7 @@ SELECTED = {"mi1_i", "mi2_i", "axexp0_i", "axexp1_i", "isa_la_i", "isa_sa_i"}
 STROBES = {"pa_rd_ni": "u_*_strobes.rd_q", "pa_wr_ni": "u_*_strobes.wr_q"}
 RESETS = {"rst_pin_ni", "pa_rd_ni"}
 # Outputs that follow a strobe or an address without a clock.
-THROUGH = {"pa_ta_n_o", "pa_data_oe_o", "isa_sd_oe_o"}
+THROUGH = {"pa_ta_n_o", "isa_sd_oe_o"}
 
 FLIP_FLOPS = ("$dff", "$adff", "$dffe", "$adffe", "$sdff", "$sdffe", "$aldff", "$dffsr")
 

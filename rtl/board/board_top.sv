@@ -391,35 +391,37 @@ module board_top #(
   assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
                      hreq_o, f1er_o, eror_o, breq_o, ipos_o};
   logic [7:0] turbo_rdata, turbo_ist, turbo_msk, turbo_elr, old_rdata, old_irr, old_isr, old_imr;
-  logic       turbo_irq, old_irq, old_level;
+  logic       turbo_request, turbo_served, old_request, old_served, old_level;
   interrupt_controller u_interrupt_controller (
     .clk_ref_i, .rst_ni,
-    .reset_i (host_reset),
-    .line_i  (pic_line),
-    .wr_i    (pic_sel & pic_wr & ~pic_8259_q),
-    .addr_i  (pic_addr),
-    .wdata_i (pic_wdata),
-    .rdata_o (turbo_rdata),
-    .ist_o   (turbo_ist),
-    .sig_o   (pic_sig_o),
-    .msk_o   (turbo_msk),
-    .elr_o   (turbo_elr),
-    .irq_o   (turbo_irq)
+    .reset_i   (host_reset),
+    .line_i    (pic_line),
+    .wr_i      (pic_sel & pic_wr & ~pic_8259_q),
+    .addr_i    (pic_addr),
+    .wdata_i   (pic_wdata),
+    .rdata_o   (turbo_rdata),
+    .ist_o     (turbo_ist),
+    .sig_o     (pic_sig_o),
+    .msk_o     (turbo_msk),
+    .elr_o     (turbo_elr),
+    .request_o (turbo_request),
+    .served_o  (turbo_served)
   );
 
   pic_8259 u_pic_8259 (
     .clk_ref_i, .rst_ni,
-    .line_i  (pic_line),
-    .rd_i    (pic_rd & pic_8259_q),
-    .wr_i    (pic_sel & pic_wr & pic_8259_q),
-    .addr_i  (pic_addr),
-    .wdata_i (pic_wdata),
-    .rdata_o (old_rdata),
-    .irr_o   (old_irr),
-    .isr_o   (old_isr),
-    .imr_o   (old_imr),
-    .level_o (old_level),
-    .irq_o   (old_irq)
+    .line_i    (pic_line),
+    .rd_i      (pic_rd & pic_8259_q),
+    .wr_i      (pic_sel & pic_wr & pic_8259_q),
+    .addr_i    (pic_addr),
+    .wdata_i   (pic_wdata),
+    .rdata_o   (old_rdata),
+    .irr_o     (old_irr),
+    .isr_o     (old_isr),
+    .imr_o     (old_imr),
+    .level_o   (old_level),
+    .request_o (old_request),
+    .served_o  (old_served)
   );
   logic unused_isr;
   assign unused_isr = &{1'b0, old_isr};
@@ -427,7 +429,13 @@ module board_top #(
   assign pic_ist_o  = pic_8259_q ? old_irr & ~old_imr : turbo_ist;
   assign pic_msk_o  = pic_8259_q ? ~old_imr : turbo_msk;
   assign pic_elr_o  = pic_8259_q ? {8{old_level}} : turbo_elr;
-  assign isa_irq_o  = pic_8259_q ? old_irq : turbo_irq;
+
+  host_interrupt u_host_interrupt (
+    .clk_ref_i, .rst_ni,
+    .request_i (pic_8259_q ? old_request : turbo_request),
+    .served_i  (pic_8259_q ? old_served : turbo_served),
+    .irq_o     (isa_irq_o)
+  );
 
   logic [15:0] panel_rdata;
   panel_port u_panel_port (
@@ -446,7 +454,7 @@ module board_top #(
 
   logic        dpram_sel;
   logic [15:0] dpram_rdata;
-  logic        dpram_valid;
+  logic        dpram_drive;
   assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
@@ -460,7 +468,7 @@ module board_top #(
     .cpu_wr_ni   (pa_wr_ni),
     .cpu_wdata_i (pa_wdata_i[15:0]),
     .cpu_rdata_o (dpram_rdata),
-    .cpu_valid_o (dpram_valid),
+    .cpu_drive_o (dpram_drive),
     .cpu_wait_o  (pa_ta_n_o),
     .cpu_busy_o  (busy_cpu_o),
     .mem_sel_i   (mem_sel),
@@ -494,14 +502,8 @@ module board_top #(
     .oe_o      (bus_rdata_oe)
   );
 
-  // The dual-ported RAM answers on clk_pwm.
-  logic from_dpram_q;
-  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni) from_dpram_q <= 1'b0;
-    else         from_dpram_q <= dpram_sel;
-  end
-  assign pa_data_o    = from_dpram_q ? {8'h0, dpram_rdata} : bus_rdata;
-  assign pa_data_oe_o = bus_rdata_oe | (from_dpram_q & dpram_valid & ~pa_rd_ni);
+  assign pa_data_o    = dpram_drive ? {8'h0, dpram_rdata} : bus_rdata;
+  assign pa_data_oe_o = bus_rdata_oe | dpram_drive;
 
 endmodule : board_top
 

@@ -20,7 +20,7 @@ module dpram (
   input  wire logic        cpu_wr_ni,
   input  wire logic [15:0] cpu_wdata_i,
   output logic [15:0]      cpu_rdata_o,
-  output logic             cpu_valid_o,  // the word of the last read stands, or it was not for this RAM
+  output logic             cpu_drive_o,  // the word of this read stands; off with /RD, without a clock
   output logic             cpu_wait_o,   // /TA: from the fall of the strobe until the access is done
   output logic             cpu_busy_o,   // waits for the host's access to the same word
   // host side, from isa_slave
@@ -58,57 +58,83 @@ module dpram (
 
   // ---------------------------------------------------------------- CPU side, arbitration
   // A strobe is a request until its done toggle has followed: at once if it is not for this RAM, when it is granted, or
-  // when it ended while BUSY. A grant reads at once. A write samples its data there and is made two edges later, if
-  // /WR then proves to have been low at the sample: a strobe that was too short writes nothing.
+  // when it is high again. It is granted only while it is seen low: what has ended takes nothing of the next one's.
+  // A grant reads at once. A write samples its data there and is made two edges later, if /WR then proves to have been
+  // low, and no other strobe to have fallen, from the address' sample to that of the data.
   logic        rd_done_q, rd_ack_q, wr_done_q, busy_q, own_q, own_wr_q, sampled_q, proven_q, show_q;
+  logic        rd_waits_q, wr_waits_q;  // not done a clock ago: a strobe's level may come a clock after its fall
   logic [14:0] cell_q;
   logic [15:0] wdata_q;
-  logic        rd_new, wr_new, fallen, request, ended, conflict, blocked, grant, pins_here, cell_here;
+  logic        rd_new, wr_new, rd_low, wr_low, rd_over, wr_over, rd_follows, wr_follows, fallen, still;
+  logic        rd_replaced, wr_replaced;  // the next one has fallen before the end of this was seen
+  logic        request, conflict, blocked, grant, pins_here, cell_here;
   logic        host_own_q, mem_busy_q;
-  assign rd_new    = rd2_q ^ rd_done_q;
-  assign wr_new    = wr2_q ^ wr_done_q;
-  assign fallen    = rd_new | wr_new;  // so the strobe before has ended, even if it was not seen high
-  assign request   = sel_q & fallen & ~sampled_q & ~proven_q;
-  assign ended     = busy_q & ~(wr_new ? wr_low2_q : rd_low2_q);
-  assign conflict  = (pins_q == mem_addr_i) & (wr_new | ~mem_rd_i);
-  assign blocked   = (host_own_q | mem_busy_q) & conflict;  // the host is there, or was first to wait
-  assign grant     = request & ~ended & ~blocked;
-  assign pins_here = ~small_i | (pins_q[14:13] == 2'b00);
-  assign cell_here = ~small_i | (cell_q[14:13] == 2'b00);
+  assign rd_new      = rd2_q ^ rd_done_q;
+  assign wr_new      = wr2_q ^ wr_done_q;
+  assign rd_low      = rd_new & rd_low2_q;
+  assign wr_low      = wr_new & wr_low2_q;
+  assign rd_over     = rd_waits_q & ~rd_low2_q;
+  assign wr_over     = wr_waits_q & ~wr_low2_q;
+  assign fallen      = rd_new | wr_new;  // so the strobe before has ended, even if it was not seen high
+  assign still       = wr_low2_q & ~wr_new;  // the write under way, not a next one
+  assign request     = sel_q & (rd_low | wr_low) & ~sampled_q & ~proven_q;
+  assign conflict    = (pins_q == mem_addr_i) & (wr_low | ~mem_rd_i);
+  assign blocked     = (host_own_q | mem_busy_q) & conflict;  // the host is there, or was first to wait
+  assign grant       = request & ~blocked;
+  assign rd_follows  = rd_new & (~sel_q | rd_over | (grant & ~wr_low));
+  assign wr_follows  = wr_new & (~sel_q | wr_over | grant);
+  assign rd_replaced = rd_waits_q & ~rd_new;
+  assign wr_replaced = wr_waits_q & ~wr_new;
+  assign pins_here   = ~small_i | (pins_q[14:13] == 2'b00);
+  assign cell_here   = ~small_i | (cell_q[14:13] == 2'b00);
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      rd_done_q <= 1'b0;
-      rd_ack_q  <= 1'b0;
-      wr_done_q <= 1'b0;
-      busy_q    <= 1'b0;
-      own_q     <= 1'b0;
-      own_wr_q  <= 1'b0;
-      sampled_q <= 1'b0;
-      proven_q  <= 1'b0;
-      show_q    <= 1'b0;
-      cell_q    <= 15'h0;
-      wdata_q   <= 16'h0;
+      rd_done_q  <= 1'b0;
+      rd_ack_q   <= 1'b0;
+      rd_waits_q <= 1'b0;
+      wr_done_q  <= 1'b0;
+      wr_waits_q <= 1'b0;
+      busy_q     <= 1'b0;
+      own_q      <= 1'b0;
+      own_wr_q   <= 1'b0;
+      sampled_q  <= 1'b0;
+      proven_q   <= 1'b0;
+      show_q     <= 1'b0;
+      cell_q     <= 15'h0;
+      wdata_q    <= 16'h0;
     end else begin
-      if (wr_new && (!sel_q || grant || (request && ended)))            wr_done_q <= wr2_q;
-      if (rd_new && (!sel_q || (~wr_new && (grant || (request && ended))))) rd_done_q <= rd2_q;
-      rd_ack_q  <= rd_done_q;  // a clock after the data: /TA may be sampled later than they are
-      busy_q    <= request & ~ended & blocked;
-      sampled_q <= grant & wr_new;
-      proven_q  <= sampled_q;
+      if (rd_follows)       rd_done_q <= rd2_q;
+      else if (rd_replaced) rd_done_q <= ~rd2_q;
+      if (wr_follows)       wr_done_q <= wr2_q;
+      else if (wr_replaced) wr_done_q <= ~wr2_q;
+      rd_ack_q   <= rd_done_q;  // a clock after the data: /TA may be sampled later than they are
+      rd_waits_q <= rd_new & ~rd_follows;
+      wr_waits_q <= wr_new & ~wr_follows;
+      busy_q     <= request & blocked;
+      sampled_q  <= grant & wr_low;
+      proven_q   <= sampled_q & still;
       if (grant) begin
         own_q    <= 1'b1;
-        own_wr_q <= wr_new;
+        own_wr_q <= wr_low;
         cell_q   <= pins_q;
         wdata_q  <= cpu_wdata_i;
-        if (!wr_new) show_q <= pins_here;
+        if (!wr_low) show_q <= pins_here;
       end else if (!sampled_q && !proven_q && (fallen || !(own_wr_q ? wr_low2_q : rd_low2_q))) begin
         own_q <= 1'b0;
       end
     end
   end
 
-  assign cpu_valid_o = rd_toggle_i == rd_done_q;
+  // The pins show a word of this RAM from its grant to the end of /RD, without a clock there.
+  logic rd_low_n, drive_q;
+  assign rd_low_n = rst_ni & ~cpu_rd_ni;
+  always_ff @(posedge clk_pwm_i or negedge rd_low_n) begin
+    if (!rd_low_n)             drive_q <= 1'b0;
+    else if (grant && !wr_low) drive_q <= 1'b1;
+  end
+
+  assign cpu_drive_o = drive_q;
   assign cpu_wait_o = cpu_sel_i & ((rd_toggle_i ^ rd_ack_q) | (wr_toggle_i ^ wr_done_q));
   assign cpu_busy_o = busy_q;
 
@@ -138,8 +164,8 @@ module dpram (
   logic [15:0] cpu_rdata, host_rdata;
   dpram_memory u_memory (
     .a_clk_i   (clk_pwm_i),
-    .a_we_i    (proven_q & wr_low2_q & cell_here),
-    .a_re_i    (grant & ~wr_new),
+    .a_we_i    (proven_q & still & cell_here),
+    .a_re_i    (grant & ~wr_low),
     .a_addr_i  (proven_q ? cell_q : pins_q),
     .a_wdata_i (wdata_q),
     .a_rdata_o (cpu_rdata),

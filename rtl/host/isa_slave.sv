@@ -69,7 +69,7 @@ module isa_slave (
   (* async_reg = "true" *) logic [3:0]  cmd1_q, cmd2_q;
   (* async_reg = "true" *) logic [15:0] sd1_q, sd2_q;
   (* async_reg = "true" *) logic [6:0]  la1_q, la2_q;
-  logic [15:0] wdata_q;
+  logic [15:0] sd_low_q;  // the last with a write command low
   logic [6:0]  la;
   // The youngest is MEMCS16#, the oldest belongs to the time before the command: LA may go with it. In a slot of 8 bits
   // the second is taken, as SA may be late (host-bus:3.4/18) and stands: two edges before the command at most.
@@ -88,7 +88,7 @@ module isa_slave (
       cmd2_q   <= 4'hF;
       sd1_q    <= 16'h0;
       sd2_q    <= 16'h0;
-      wdata_q  <= 16'h0;
+      sd_low_q <= 16'h0;
       la1_q    <= 7'h0;
       la2_q    <= 7'h0;
       la_hit_q <= 4'h0;
@@ -97,7 +97,7 @@ module isa_slave (
       cmd2_q   <= cmd1_q;
       sd1_q    <= isa_sd_i;
       sd2_q    <= sd1_q;
-      if (cmd2_q[Iow] | cmd2_q[Memw]) wdata_q <= sd2_q;
+      if (cmd2_q[Iow] | cmd2_q[Memw]) sd_low_q <= sd2_q;
       la1_q    <= la;
       la2_q    <= la1_q;
       la_hit_q <= {la_hit_q[2:0], la_hit};
@@ -166,7 +166,7 @@ module isa_slave (
   logic        byte8_q;
   logic        start, ends, spoilt, io_load, mem_load;
   logic [7:0]  io_rdata;
-  logic [15:0] sd_q;
+  logic [15:0] sd_q, wdata_q;     // read data; write data, for who works on clk_ref
 
   assign start    = ~active_q & (cmd2_q != 4'h0);
   assign ends     = active_q & (cmd2_q == 4'h0) & ~resetdrv_q[1];
@@ -198,6 +198,7 @@ module isa_slave (
       io_addr_q  <= 4'h0;
       page_q     <= 2'b00;
       sd_q       <= 16'hFFFF;
+      wdata_q    <= 16'h0;
     end else begin
       fresh_q  <= start;
       finish_q <= ends;
@@ -213,6 +214,7 @@ module isa_slave (
         io_addr_q  <= sa_q[3:0];
       end else if (ends) begin
         active_q <= 1'b0;
+        wdata_q  <= sd_low_q;
       end
       if (fresh_q) load_q <= kind_q[Memr] & target_q[Memory];
       else if (mem_load) load_q <= 1'b0;

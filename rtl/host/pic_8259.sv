@@ -1,9 +1,9 @@
 // Interrupt controller of the original PMAC PC, an 8259A alone on its lines. addr_i: 0 writes ICW1, OCW2, OCW3 and
 // reads IRR, ISR or the poll byte; 1 writes ICW2 to ICW4 and OCW1 and reads IMR or the poll byte; a read of 2 is the
 // acknowledge cycle and gives the vector. rd_i is high for the one clk_ref that takes rdata_o, so that what is read and
-// what the read does are of one moment. Lines pass two flip-flops, INT is a third. Cascading and the three-byte
-// acknowledge of 8080 systems are not built: their bits are taken without effect. Clock clk_ref_i, asynchronous reset,
-// after which nothing is enabled. docs/pic_8259.md.
+// what the read does are of one moment. Lines pass two flip-flops, INT is a third, in host_interrupt. Cascading and the
+// three-byte acknowledge of 8080 systems are not built: their bits are taken without effect. Clock clk_ref_i,
+// asynchronous reset, after which nothing is enabled. docs/pic_8259.md.
 `default_nettype none
 
 module pic_8259 (
@@ -19,7 +19,8 @@ module pic_8259 (
   output logic [7:0]      isr_o,
   output logic [7:0]      imr_o,
   output logic            level_o,  // 1: lines are level-sensed
-  output logic            irq_o
+  output logic            request_o,  // INT is to be high after the coming edge
+  output logic            served_o    // a request is acknowledged
 );
 
   // What the next write to address 1 is.
@@ -34,7 +35,7 @@ module pic_8259 (
   logic [1:0] step_d, step_q;
   logic       icw3_d, icw3_q, icw4_d, icw4_q;  // will be written
   logic       level_d, level_q, aeoi_d, aeoi_q, turn_d, turn_q;  // turn: rotate at each automatic end
-  logic       special_d, special_q, read_isr_d, read_isr_q, poll_d, poll_q, int_q;
+  logic       special_d, special_q, read_isr_d, read_isr_q, poll_d, poll_q;
 
   // ---------------------------------------------------------------- requests and priority
   // The set bit of the highest priority as its distance from the level above the lowest; 8: none is set.
@@ -166,7 +167,6 @@ module pic_8259 (
       special_q  <= 1'b0;
       read_isr_q <= 1'b0;
       poll_q     <= 1'b0;
-      int_q      <= 1'b0;
     end else begin
       line1_q    <= line_i;
       line2_q    <= line1_q;
@@ -184,7 +184,6 @@ module pic_8259 (
       special_q  <= special_d;
       read_isr_q <= read_isr_d;
       poll_q     <= poll_d;
-      int_q      <= pending;
     end
   end
 
@@ -201,7 +200,9 @@ module pic_8259 (
   assign isr_o   = isr_q;
   assign imr_o   = imr_q;
   assign level_o = level_q;
-  assign irq_o   = int_q;
+
+  assign request_o = pending;
+  assign served_o  = ack;
 
 endmodule : pic_8259
 

@@ -57,17 +57,17 @@ module clock_gen (
   sync2 #(.Reset(1'b1)) u_phase_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(phase_i), .q_o(phase_pin));
   sync2 #(.Reset(1'b1)) u_servo_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(servo_i), .q_o(servo_pin));
 
-  // Every other tick is just one more step of the ramp.
-  logic ext_phase, ext_servo, phase_release, servo_release, special, turn, retard;
+  // Every other tick is just one more step of the ramp. Of an IC that follows a pin no edge is told apart here: that
+  // would be the longest path there is.
+  logic ext_rise, phase_release, servo_release, special, turn, retard;
   assign phase_ext = phase_ext_i & ~phase_oe_q;
   assign servo_ext = servo_ext_i & ~servo_oe_q;
-  assign ext_phase = phase_ext & (phase_pin != phase_q);
-  assign ext_servo = servo_ext & (servo_pin != servo_q);
+  assign ext_rise  = phase_ext & phase_pin & ~phase_q;
   // A pin that is to become an input goes while it is high. SERVO rises with an edge of PHASE, so PHASE waits for
   // SERVO.
   assign servo_release = servo_oe_q & servo_ext_i & servo_q;
   assign phase_release = phase_oe_q & phase_ext_i & phase_q & (servo_q | ~(servo_oe_q & servo_ext_i));
-  assign special   = at_top_q | at_middle_q | ext_phase | ext_servo | phase_release | servo_release;
+  assign special   = at_top_q | at_middle_q | phase_ext_i | servo_ext_i;
 
   // External rising edge: the nearest turnaround is moved to this edge, in the first half of the way the last one back,
   // in the second half the coming one forward.
@@ -75,7 +75,7 @@ module clock_gen (
     turn   = at_top_q;
     retard = 1'b0;
     miss_d = miss_q;
-    if (ext_phase && phase_pin) begin
+    if (ext_rise) begin
       if ((ramp_q[16] ? recent_q : close_q) || miss_q == MissLimit) begin
         miss_d = 2'd0;
         turn   = at_top_q | ~ramp_q[16];
@@ -101,7 +101,8 @@ module clock_gen (
     end
   end
 
-  // Phase clock. While external, PHASE follows the pin and the divider is made ready for a full period.
+  // Phase clock. While external, PHASE follows the pin and the divider is kept ready for a full period. Only then does
+  // a turnaround come from outside.
   always_comb begin
     phase_d     = phase_q;
     phase_cnt_d = phase_cnt_q;
@@ -114,7 +115,7 @@ module clock_gen (
       phase_cnt_d = phase_div_i;
       fall_cnt_d  = 4'd0;
       odd_d       = 1'b0;
-    end else if (turn) begin
+    end else if (at_top_q) begin
       if (phase_cnt_q == 4'd0) begin
         phase_d     = 1'b1;
         phase_cnt_d = phase_div_i;

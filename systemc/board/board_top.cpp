@@ -17,6 +17,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       host_port_("host_port"),
       interrupt_controller_("interrupt_controller"),
       pic_8259_("pic_8259"),
+      host_interrupt_("host_interrupt"),
       host_signals_("host_signals"),
       dpram_("dpram"),
       panel_port_("panel_port"),
@@ -45,7 +46,7 @@ void BoardTop::set_inputs(const BoardInputs& inputs) {
   touched_ = 0;
   connect(changed);
   schedule(touched_);
-  if (from_dpram_ != dpram_.in.cpu_sel || pins(changed | touched_) != outputs_) next_own_ = now_ + 1;
+  if (pins(changed | touched_) != outputs_) next_own_ = now_ + 1;
 }
 
 void BoardTop::set_motor_inputs(unsigned ic, const MotorInputs& inputs) {
@@ -63,13 +64,12 @@ void BoardTop::reset_all(Tick t) {
   each_block(kEveryBlock, [t](Part, ModelBlock& block) { block.reset(t); });
   gate_ics_.reset(t);
   bus_read_.reset();
-  from_dpram_ = false;
   take_straps(kNoStraps, t);
   touched_ = kEveryBlock;
   connect(kEverything);
   schedule(kEveryBlock);
   shown_ = kEverything;
-  next_own_ = from_dpram_ != dpram_.in.cpu_sel ? now_ + 1 : kNever;
+  next_own_ = kNever;
 }
 
 BoardTop::Parts BoardTop::due(Tick t) const {
@@ -102,7 +102,6 @@ void BoardTop::execute(Tick t) {
   if (gate_ics_.next_event() <= t && gate_ics_.advance(t)) changed |= parts(kIcClocks);
   Parts own = 0;
   if (next_own_ <= t) {
-    from_dpram_ = dpram_.in.cpu_sel;
     next_own_ = kNever;
     own = parts(kPortAPins);
   }

@@ -24,6 +24,7 @@
 #include "systemc/board/watchdog.h"
 #include "systemc/core/board.h"
 #include "systemc/host/dpram.h"
+#include "systemc/host/host_interrupt.h"
 #include "systemc/host/host_port.h"
 #include "systemc/host/host_signals.h"
 #include "systemc/host/interrupt_controller.h"
@@ -65,6 +66,7 @@ class BoardTop : public sc_core::sc_module, public Board {
     kHostPort,
     kInterruptController,
     kPic8259,
+    kHostInterrupt,
     kHostSignals,
     kDpram,
     kPanelPort,
@@ -90,7 +92,7 @@ class BoardTop : public sc_core::sc_module, public Board {
     };
     call(kBusSync, bus_sync_), call(kClockSelect, clock_select_), call(kWatchdog, watchdog_);
     call(kIsaSlave, isa_slave_), call(kHostPort, host_port_), call(kInterruptController, interrupt_controller_);
-    call(kPic8259, pic_8259_);
+    call(kPic8259, pic_8259_), call(kHostInterrupt, host_interrupt_);
     call(kHostSignals, host_signals_), call(kDpram, dpram_), call(kPanelPort, panel_port_);
   }
 
@@ -115,6 +117,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   void connect_host_port(Parts& changed);
   void connect_dpram(Parts& changed);
   void connect_interrupts(Parts& changed);
+  void connect_host_interrupt(Parts& changed);
   void connect_isa(Parts& changed);
   void connect_panel(Parts& changed);
   template <class Block>
@@ -125,7 +128,6 @@ class BoardTop : public sc_core::sc_module, public Board {
   bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed
   bool show_motors();                     // the same for the watched ICs
   std::uint32_t read_data(Tick t) const;  // of the selected register, after the edge t
-  bool data_oe() const { return bus_read_.oe() || (from_dpram_ && dpram_.cpu_valid() && !inputs_.pa_rd_n); }
   void take_straps(const Straps& straps, Tick t);
 
   BusStrobes bus_strobes_, any_strobes_;  // of the register regions, of all
@@ -138,6 +140,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   HostPort host_port_;
   InterruptController interrupt_controller_;
   Pic8259 pic_8259_;
+  HostInterrupt host_interrupt_;
   HostSignals host_signals_;
   Dpram dpram_;
   PanelPort panel_port_;
@@ -147,7 +150,6 @@ class BoardTop : public sc_core::sc_module, public Board {
   static constexpr Straps kNoStraps{0, 0, false, false, 0, false, false};
   Straps straps_ = kNoStraps;  // as taken over on clk_ref
   AddressSelect select_;       // of the address in bus_sync
-  bool from_dpram_ = false;    // read data pins show the dual-ported RAM
   // The board is in reset up to reset_end_, kNever while the pin is low: rtl/common/reset_sync.sv. From the first edge
   // of clk_ref that sees the pin high it is one period of clk_ref and two edges of clk_pwm.
   static constexpr Tick kResetRelease = kTicksPerRef + 2;
@@ -158,12 +160,12 @@ class BoardTop : public sc_core::sc_module, public Board {
 
   std::array<Tick, kBlocks> next_{};  // event of each block, as long as its inputs stay as they are
   Tick first_ = 0;                    // of these
-  Tick next_own_ = kNever;     // the board's: what follows a pin without a clock, or with the next edge of clk_pwm
-  Parts touched_ = 0;          // blocks that have executed the edges up to now() and must be asked anew
-  Parts shown_ = kEverything;  // what may have changed at the last edge
-  bool straps_differ_ = true;  // from the pins
-  std::uint32_t lines_ = 0;    // of the interrupt controller, but for HREQ
-  std::uint32_t equ_ = 0;      // of the ICs, as wired to the interrupt controller
+  Tick next_own_ = kNever;            // the board's: what follows a pin without a clock
+  Parts touched_ = 0;                 // blocks that have executed the edges up to now() and must be asked anew
+  Parts shown_ = kEverything;         // what may have changed at the last edge
+  bool straps_differ_ = true;         // from the pins
+  std::uint32_t lines_ = 0;           // of the interrupt controller, but for HREQ
+  std::uint32_t equ_ = 0;             // of the ICs, as wired to the interrupt controller
   BoardOutputs outputs_, stop_on_;
   std::array<MotorOutputs, kMaxServoIcs> motor_outputs_, stop_on_motor_, watched_motor_;
 };

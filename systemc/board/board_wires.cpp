@@ -41,6 +41,7 @@ void BoardTop::connect(Parts changed) {
   if (from(kPortAPins, kIsaSlave, kStraps)) connect_dpram(changed);
   if (from(kIsaSlave, kHostPort, kHostSignals, kWatchdog, kConnectorPins, kStraps) || equ_ != gate_ics_.equ())
     connect_interrupts(changed);
+  if (from(kInterruptController, kPic8259, kStraps)) connect_host_interrupt(changed);
   if (from(kIsaPins, kHostPort, kInterruptController, kPic8259, kDpram, kStraps)) connect_isa(changed);
   if (from(kConnectorPins, kHostSignals, kStraps)) connect_panel(changed);
 }
@@ -124,6 +125,7 @@ void BoardTop::connect_dpram(Parts& changed) {
     to(in.cpu_rd_n, inputs_.pa_rd_n);
     to(in.cpu_wr_n, inputs_.pa_wr_n);
     to(in.cpu_wdata, inputs_.pa_wdata & 0xFFFF);
+    dpram_.rd_moved();
   }
   if ((changed & parts(kIsaSlave)) != 0) {
     to(in.mem_sel, isa_slave_.mem_sel());
@@ -160,6 +162,12 @@ void BoardTop::connect_interrupts(Parts& changed) {
   const std::uint32_t line = lines_ | host_port_.hreq() << 4;
   to(in.line, line);
   to_old(old.line, line);
+}
+
+void BoardTop::connect_host_interrupt(Parts& changed) {
+  Wires to(*this, kHostInterrupt, host_interrupt_, changed);
+  to(host_interrupt_.in.request, straps_.pic_8259 ? pic_8259_.request() : interrupt_controller_.request());
+  to(host_interrupt_.in.served, straps_.pic_8259 ? pic_8259_.served() : interrupt_controller_.served());
 }
 
 void BoardTop::connect_isa(Parts& changed) {
@@ -205,8 +213,8 @@ BoardOutputs BoardTop::pins(Parts changed) const {
   BoardOutputs o = outputs_;
   const auto from = [changed](auto... part) { return (changed & parts(part...)) != 0; };
   if (from(kPortAPins, kBusSync, kDpram)) {
-    o.set(pin::kPaData, from_dpram_ ? dpram_.cpu_rdata() : bus_read_.data());
-    o.set(pin::kPaDataOe, data_oe());
+    o.set(pin::kPaData, dpram_.cpu_drive() ? dpram_.cpu_rdata() : bus_read_.data());
+    o.set(pin::kPaDataOe, bus_read_.oe() || dpram_.cpu_drive());
     o.set(pin::kPaTaN, dpram_.cpu_wait());
     o.set(pin::kBusyHost, dpram_.host_busy());
     o.set(pin::kBusyCpu, dpram_.cpu_busy());
@@ -253,12 +261,12 @@ BoardOutputs BoardTop::pins(Parts changed) const {
     const InterruptController& own = interrupt_controller_;
     const bool old = straps_.pic_8259;
     const auto enabled = static_cast<std::uint8_t>(~pic_8259_.imr());
-    o.set(pin::kIsaIrq, old ? pic_8259_.irq() : own.irq());
     o.set(pin::kPicIst, old ? pic_8259_.irr() & enabled : own.ist());
     o.set(pin::kPicSig, own.sig());
     o.set(pin::kPicMsk, old ? enabled : own.msk());
     o.set(pin::kPicElr, !old ? own.elr() : pic_8259_.level() ? 0xFF : 0);
   }
+  if (from(kHostInterrupt)) o.set(pin::kIsaIrq, host_interrupt_.irq());
   return o;
 }
 

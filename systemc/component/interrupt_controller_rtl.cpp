@@ -1,6 +1,6 @@
 // The Verilated interrupt controller behind the pins of its component.
-#include "Vinterrupt_controller.h"
-#include "Vinterrupt_controller___024root.h"
+#include "Vinterrupt_pins.h"
+#include "Vinterrupt_pins___024root.h"
 #include "systemc/component/interrupt_controller_words.h"
 #include "systemc/component/rtl_chips.h"
 #include "systemc/component/verilated_chip.h"
@@ -8,7 +8,7 @@
 namespace brick::component {
 namespace {
 using namespace interrupt_controller_words;
-using Module = Vinterrupt_controller;
+using Module = Vinterrupt_pins;
 
 struct Ports {
   static constexpr unsigned kOutputWords = 2;

@@ -45,7 +45,7 @@ class Aperture {
     return early ? first(time) : last(time);
   }
 
-  // A bus whose move at `time` is in doubt: what the edge first(time) sees.
+  // A bus whose move at `time` is in doubt: what the edge first(time) sees. Lines that stay are nobody's choice.
   template <class Pins>
   Pins mixed(const Pins& from, const Pins& to, TimeFs time) {
     static_assert(std::is_trivially_copyable_v<Pins>);
@@ -60,7 +60,7 @@ class Aperture {
       any = any || moved != 0;
       all = all && moved == moves;
     }
-    ++(all ? counts_.early : any ? counts_.split : counts_.late);
+    if (any || !all) ++(all ? counts_.early : any ? counts_.split : counts_.late);
     Pins pins;
     std::memcpy(&pins, now, sizeof pins);
     return pins;

@@ -16,7 +16,8 @@ bool Dpram::cpu_settled() const {
   if (rd_.acknowledged != rd_.done) return false;  // of a write nobody waits for it
   if (!still(rd_, in.rd_toggle, in.cpu_rd_n) || !still(wr_, in.wr_toggle, in.cpu_wr_n)) return false;
   if (sel_ != in.cpu_sel || pins_ != pin_cell() || sampled_ || proven_) return false;
-  if (rd_.pending() || wr_.pending()) return sel_ && cpu_busy_ && cpu_blocked() && !ended();
+  if (rd_.waits != rd_.pending() || wr_.waits != wr_.pending()) return false;
+  if (rd_.pending() || wr_.pending()) return request() && cpu_busy_ && cpu_blocked() && !rd_.over() && !wr_.over();
   return !cpu_busy_ && !(own_ && released());
 }
 
@@ -50,22 +51,29 @@ void Dpram::advance(Tick t) {
 }
 
 void Dpram::cpu_edge(bool blocked) {
-  if (proven_ && wr_.low2) poke(cell_, wdata_);
-  const bool asked = request(), over = ended(), write = wr_.pending();
-  const bool grant = asked && !over && !blocked, finished = grant || (asked && over);
+  if (proven_ && still()) poke(cell_, wdata_);
+  const bool asked = request(), write = wr_.low(), grant = asked && !blocked;
   const bool over_since = released();
-  rd_.acknowledged = rd_.done;
-  if (rd_.pending() && (!sel_ || (!write && finished))) rd_.done = rd_.toggle2;
-  if (wr_.pending() && (!sel_ || finished)) wr_.done = wr_.toggle2;
-  cpu_busy_ = asked && !over && blocked;
-  proven_ = sampled_;
+  proven_ = sampled_ && still();
   sampled_ = grant && write;
+  rd_.acknowledged = rd_.done;
+  const auto follow = [this](Strobe& s, bool granted) {
+    const bool replaced = s.waits && !s.pending();  // the next one has fallen before the end of this was seen
+    if (replaced || (s.pending() && (!sel_ || s.over() || granted))) s.done = !s.done;
+    s.waits = s.pending() && !replaced;
+  };
+  follow(rd_, grant && !write);
+  follow(wr_, grant);
+  cpu_busy_ = asked && blocked;
   if (grant) {
     own_ = true;
     own_wr_ = write;
     cell_ = pins_;
     wdata_ = in.cpu_wdata;
-    if (!write) cpu_rdata_ = peek(cell_);
+    if (!write) {
+      cpu_rdata_ = peek(cell_);
+      drive_ = !in.cpu_rd_n;
+    }
   } else if (over_since) {
     own_ = false;
   }
@@ -95,7 +103,7 @@ void Dpram::host_edge(bool blocked) {
 // A write that was granted but not made yet is lost; the memory keeps its content.
 void Dpram::reset(Tick t) {
   rd_ = wr_ = Strobe{};
-  sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
+  drive_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
   pins_ = cell_ = wdata_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
 }

@@ -28,7 +28,11 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Inputs in;
 
   std::uint16_t cpu_rdata() const { return cpu_rdata_; }
-  bool cpu_valid() const { return in.rd_toggle == rd_.done; }
+  bool cpu_drive() const { return drive_ && !in.cpu_rd_n; }
+  // Whoever moves /RD says so: what it turns off without a clock stays off, though it falls again before the next edge.
+  void rd_moved() {
+    if (in.cpu_rd_n) drive_ = false;
+  }
   bool cpu_wait() const { return in.cpu_sel && (in.rd_toggle != rd_.acknowledged || in.wr_toggle != wr_.done); }
   bool cpu_busy() const { return cpu_busy_; }
   std::uint16_t mem_rdata() const { return mem_rdata_; }
@@ -49,16 +53,19 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   static constexpr unsigned kSmallWords = 8192;
   struct Strobe {
     bool toggle1 = false, toggle2 = false, low1 = false, low2 = false, done = false, acknowledged = false;
+    bool waits = false;  // not done a tick ago: the level may come a tick after the fall
     bool pending() const { return toggle2 != done; }
+    bool low() const { return pending() && low2; }
+    bool over() const { return waits && !low2; }
   };
 
   unsigned fitted() const { return in.small ? kSmallWords : kWords; }
   std::uint16_t pin_cell() const {
     return static_cast<std::uint16_t>((in.cpu_addr & 0x3FFF) << 1 | (in.cpu_x ? 1 : 0));
   }
-  bool request() const { return sel_ && (rd_.pending() || wr_.pending()) && !sampled_ && !proven_; }
-  bool ended() const { return cpu_busy_ && !(wr_.pending() ? wr_ : rd_).low2; }
-  bool conflict() const { return pins_ == in.mem_addr && (wr_.pending() || !in.mem_rd); }
+  bool request() const { return sel_ && (rd_.low() || wr_.low()) && !sampled_ && !proven_; }
+  bool still() const { return wr_.low2 && !wr_.pending(); }  // the write under way, not a next one
+  bool conflict() const { return pins_ == in.mem_addr && (wr_.low() || !in.mem_rd); }
   bool cpu_blocked() const { return (host_own_ || mem_busy_) && conflict(); }
   bool released() const {  // a new strobe has fallen, or the last one is seen high
     return !sampled_ && !proven_ && (rd_.pending() || wr_.pending() || !(own_wr_ ? wr_ : rd_).low2);
@@ -78,6 +85,7 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Strobe rd_, wr_;
   bool sel_ = false;
   std::uint16_t pins_ = 0;
+  bool drive_ = false;  // the word of this read stands
   bool cpu_busy_ = false, own_ = false, own_wr_ = false, sampled_ = false, proven_ = false;
   std::uint16_t cell_ = 0, wdata_ = 0, cpu_rdata_ = 0;
   // host side

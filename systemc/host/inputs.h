@@ -23,6 +23,10 @@ struct Pic8259Inputs {
   std::uint8_t wdata = 0;
 };
 
+struct HostInterruptInputs {
+  bool request = false, served = false;
+};
+
 struct HostSignalsInputs {
   bool wr = false;
   bool ctrl_wr = false;

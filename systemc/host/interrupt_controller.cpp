@@ -28,14 +28,19 @@ bool InterruptController::idle() const {
          (latch_ & ~msk_) == 0;
 }
 
-void InterruptController::step() {
+InterruptController::Registers InterruptController::coming() const {
+  if (in.reset) return {0, 0, 0};
   const std::uint8_t rise = line2_ & ~line3_;
-  const bool clear = in.wr && in.addr == kStatus;
   // An edge that meets the clear stays: its interrupt has not been served.
-  latch_ = (rise & msk_ & ~elr_) | (clear ? 0 : latch_ & msk_);
-  if (in.wr && in.addr == kMask) msk_ = in.wdata;
-  if (in.wr && in.addr == kEdgeLevel) elr_ = in.wdata;
-  if (in.reset) latch_ = msk_ = elr_ = 0;
+  const auto latch = static_cast<std::uint8_t>((rise & msk_ & ~elr_) | (served() ? 0 : latch_ & msk_));
+  return {latch, in.wr && in.addr == kMask ? in.wdata : msk_, in.wr && in.addr == kEdgeLevel ? in.wdata : elr_};
+}
+
+void InterruptController::step() {
+  const Registers next = coming();
+  latch_ = next.latch;
+  msk_ = next.msk;
+  elr_ = next.elr;
   line3_ = line2_;
   line2_ = line1_;
   line1_ = in.line;

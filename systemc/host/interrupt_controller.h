@@ -29,7 +29,11 @@ class InterruptController final : public sc_core::sc_module, public RefClockedBl
   std::uint8_t sig() const { return line2_; }
   std::uint8_t msk() const { return msk_; }
   std::uint8_t elr() const { return elr_; }
-  bool irq() const { return ist() != 0; }
+  bool request() const {  // any IST after the coming edge, a level line a clock later
+    const Registers next = coming();
+    return (next.msk & ((next.elr & line2_) | (~next.elr & next.latch))) != 0;
+  }
+  bool served() const { return in.wr && in.addr == kStatus; }
 
   std::uint8_t read(unsigned addr) const;
 
@@ -40,6 +44,11 @@ class InterruptController final : public sc_core::sc_module, public RefClockedBl
     kMask = regs::host_io::kPicMask.address & 3,
     kEdgeLevel = regs::host_io::kPicEdgeLevel.address & 3
   };
+
+  struct Registers {
+    std::uint8_t latch, msk, elr;
+  };
+  Registers coming() const;  // after the coming edge
 
   bool idle() const override;
   void step() override;

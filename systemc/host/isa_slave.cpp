@@ -6,14 +6,13 @@ namespace brick {
 
 // ---------------------------------------------------------------------------------------------------------------- time
 
-// The first edge at which an output moves. MEMCS16# and the write data move with clk_pwm, all others with clk_ref.
+// The first edge at which an output moves. MEMCS16# moves with clk_pwm, all others with clk_ref.
 Tick IsaSlave::next_event() const {
   if (isa_sd_oe() != oe_shown_ || (fresh_ && pic_sel())) return now_ + 1;  // pic_rd goes with the command
   Tick next = kNever;
   for (Tick n = 0; n < 3 && next == kNever; ++n) {
     const unsigned la = n == 0 ? la2_ : n == 1 ? la1_ : la_pins();
-    const bool data = (command_in(n) & (kIow | kMemw)) != 0 && data_in(n) != wdata_;
-    if (data || la_hit(la) == isa_memcs16_n()) next = now_ + 1 + n;
+    if (la_hit(la) == isa_memcs16_n()) next = now_ + 1 + n;
   }
   const Tick edge = next_ref_edge(now_);
   const bool settings = straps_ != in || resetdrv_ != (in.isa_resetdrv ? 3 : 0);
@@ -36,7 +35,7 @@ void IsaSlave::advance(Tick t) {
 
 // No edge changes anything while the pins stand.
 bool IsaSlave::settled() const {
-  const bool data = in.isa_sd == sd1_ && sd1_ == sd2_ && ((cmd2_ & (kIow | kMemw)) == 0 || wdata_ == sd2_);
+  const bool data = in.isa_sd == sd1_ && sd1_ == sd2_ && ((cmd2_ & (kIow | kMemw)) == 0 || sd_low_ == sd2_);
   const bool la = la_pins() == la1_ && la1_ == la2_ && la_hits_ == (la_hit(la2_) ? kAllHits : 0);
   const bool address = (in.isa_sa & kSa) == sa_ && in.isa_aen == aen_ && in.isa_sbhe_n == sbhe_n_;
   return command_pins() == cmd1_ && cmd1_ == cmd2_ && data && la && address && (shown_ || !drive_) &&
@@ -54,7 +53,7 @@ bool IsaSlave::ref_acts(unsigned command) const {
 // --------------------------------------------------------------------------------------------------------------- edges
 
 void IsaSlave::pwm_edge(std::uint8_t la, bool hit) {
-  if ((cmd2_ & (kIow | kMemw)) != 0) wdata_ = sd2_;
+  if ((cmd2_ & (kIow | kMemw)) != 0) sd_low_ = sd2_;
   cmd2_ = cmd1_;
   cmd1_ = command_pins();
   sd2_ = sd1_;
@@ -83,6 +82,7 @@ void IsaSlave::ref_edge() {
   active_ = begins || (active_ && !ends);
   if (begins) begin();
   if (turns_page) page_ = static_cast<std::uint8_t>(regs::host_io::page::kPage.get(wdata_));
+  if (ends) wdata_ = sd_low_;
   if (reset) {
     active_ = true;
     drive_ = load_ = false;
@@ -132,7 +132,7 @@ void IsaSlave::reset(Tick t) {
   now_ = t;
   cmd1_ = cmd2_ = kAll;
   la1_ = la2_ = la_hits_ = 0;
-  sd1_ = sd2_ = wdata_ = 0;
+  sd1_ = sd2_ = sd_low_ = wdata_ = 0;
   sa_ = 0;
   aen_ = false;
   sbhe_n_ = true;

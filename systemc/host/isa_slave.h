@@ -63,7 +63,6 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   }
   // What the synchroniser shows n clk_pwm edges from now.
   std::uint8_t command_in(Tick n) const { return n == 0 ? cmd2_ : n == 1 ? cmd1_ : command_pins(); }
-  std::uint16_t data_in(Tick n) const { return n == 0 ? sd2_ : n == 1 ? sd1_ : in.isa_sd; }
   std::uint8_t la_pins() const {
     return static_cast<std::uint8_t>(straps_.slot8 ? in.isa_sa >> 17 & 7 : in.isa_la & 0x7Fu);
   }
@@ -84,7 +83,8 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   Tick now_ = 0;
   // clk_pwm
   std::uint8_t cmd1_ = kAll, cmd2_ = kAll, la1_ = 0, la2_ = 0, la_hits_ = 0;
-  std::uint16_t sd1_ = 0, sd2_ = 0, wdata_ = 0;
+  std::uint16_t sd1_ = 0, sd2_ = 0, sd_low_ = 0;  // sd_low_: the last with a write command low
+  std::uint16_t wdata_ = 0;                       // the same for who works on clk_ref
   // clk_ref: samples
   std::uint32_t sa_ = 0;
   bool aen_ = false, sbhe_n_ = true;

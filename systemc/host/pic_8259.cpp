@@ -18,18 +18,16 @@ std::uint8_t Pic8259::rdata() const {
 
 bool Pic8259::idle() const {
   return !in.rd && !in.wr && in.line == line1_ && line1_ == line2_ &&
-         (armed_ | static_cast<std::uint8_t>(~line2_)) == armed_ && int_ == pending();
+         (armed_ | static_cast<std::uint8_t>(~line2_)) == armed_;
 }
 
 void Pic8259::step() {
   const std::uint8_t low = ~line2_;
-  const bool was_pending = pending();
-  if (was_pending && (reads_poll() || (in.rd && in.addr == kAcknowledge))) acknowledge();
+  if (served()) acknowledge();
   if (reads_poll()) poll_ = false;
   if (in.wr && in.addr == kCommand) write_command();
   if (in.wr && in.addr == kMask) write_second();
   armed_ |= low;  // a line that is low now arms its next edge, whatever clears it
-  int_ = was_pending;
   line2_ = line1_;
   line1_ = in.line;
 }
@@ -101,7 +99,7 @@ void Pic8259::reset_registers() {
   imr_ = 0xFF;
   lowest_ = kDefaultLevel;
   step_ = Step::kReady;
-  icw3_ = icw4_ = level_ = aeoi_ = turn_ = special_ = read_isr_ = poll_ = int_ = false;
+  icw3_ = icw4_ = level_ = aeoi_ = turn_ = special_ = read_isr_ = poll_ = false;
 }
 
 }  // namespace brick

@@ -22,7 +22,8 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   std::uint8_t isr() const { return isr_; }
   std::uint8_t imr() const { return imr_; }
   bool level() const { return level_; }
-  bool irq() const { return int_; }
+  bool request() const { return pending(); }
+  bool served() const { return pending() && (reads_poll() || (in.rd && in.addr == kAcknowledge)); }
 
  private:
   enum class Step : std::uint8_t { kReady, kIcw2, kIcw3, kIcw4 };  // what the next write to address 1 is
@@ -53,7 +54,7 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
   unsigned lowest_ = kDefaultLevel;
   Step step_ = Step::kReady;
   bool icw3_ = false, icw4_ = false;  // will be written
-  bool level_ = false, aeoi_ = false, turn_ = false, special_ = false, read_isr_ = false, poll_ = false, int_ = false;
+  bool level_ = false, aeoi_ = false, turn_ = false, special_ = false, read_isr_ = false, poll_ = false;
 };
 
 }  // namespace brick

@@ -225,14 +225,16 @@ void Machine::Impl::take_host_inputs() {
 }
 
 void Machine::Impl::apply_host_inputs(TimeFs time) {
+  host_moves = false;
   take_host_inputs();
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
   host_bus_moved(time);
   see_init();
 }
 
+// While a move of the host is in doubt the board has a part of it; outside nothing moves before the host says when.
 void Machine::Impl::host_bus_moved(TimeFs time) {
-  if (owner.on_host_bus) owner.on_host_bus(time, inputs, board->outputs());
+  if (owner.on_host_bus && !host_moves) owner.on_host_bus(time, inputs, board->outputs());
 }
 
 // The card's reset circuit: INIT/ pulls the reset line after kInitTicks and as long as it is low, and kResetTicks more.
@@ -253,7 +255,10 @@ Machine::~Machine() = default;
 Tick Machine::now() const { return impl_->board->now(); }
 Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) { return impl_->run_until(limit, stop_on); }
 HostInputs& Machine::inputs() { return impl_->host_inputs; }
-void Machine::apply_partly() { impl_->take_host_inputs(); }
+void Machine::apply_partly() {
+  impl_->host_moves = true;
+  impl_->take_host_inputs();
+}
 void Machine::apply(TimeFs time) { impl_->apply_host_inputs(time); }
 PortAPins& Machine::port_a() { return impl_->inputs; }
 const BoardOutputs& Machine::outputs() const { return impl_->board->outputs(); }

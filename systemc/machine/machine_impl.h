@@ -95,8 +95,9 @@ struct Machine::Impl {
   std::unique_ptr<ElfFile> elf;
   std::uint64_t power_ons = 0;
 
-  HostInputs host_inputs;  // as the host edits them
-  BoardInputs inputs;      // as the board has them
+  HostInputs host_inputs;   // as the host edits them
+  bool host_moves = false;  // of a move that is in doubt the board has a part
+  BoardInputs inputs;       // as the board has them
 
   struct Event {
     Tick tick;

@@ -39,6 +39,8 @@ void ClockGen::skip(Tick edges) {
   s_.servo2 = edges > 1 ? in.servo : s_.servo1;
   s_.phase1 = in.phase;
   s_.servo1 = in.servo;
+  if (phase_ext()) s_.phase_cnt = in.phase_div, s_.fall_cnt = 0, s_.odd = false;  // kept ready for a full period
+  if (servo_ext()) s_.servo_cnt = in.servo_div;
 }
 
 // At a rising edge of the external phase clock. Returns true when the coming turnaround is moved here; `retard` is set

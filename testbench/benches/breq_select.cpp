@@ -19,6 +19,7 @@ using Buffer = SelectionScoreboard::Buffer;
 constexpr Tick kPhase = 2 * 6527 + 3;  // default phase period; a servo period is 4 of them, here 1 but in the end
 constexpr Tick kMicrosecond = ns_to_ticks(1000);
 constexpr std::uint8_t kBreqLine = 0x02;
+constexpr unsigned kLeastEdges = 24;
 constexpr unsigned kSystems = SelectionScoreboard::kSystems;
 
 class BreqSelect {
@@ -61,6 +62,7 @@ class BreqSelect {
     if (b_.board.jpan)
       times += fmt::format("; T_FPD a real-time interrupt period and {:.2f} us of 100", microseconds(longest_beyond_));
     b_.report.step("longest times", true, times);
+    activity();
   }
 
  private:
@@ -255,6 +257,7 @@ class BreqSelect {
 
   void verdict(const std::string& step, unsigned causes, unsigned edges = 0) {
     const SelectionScoreboard::Counts c = scoreboard_.take_counts();
+    seen_ += c;
     std::string detail = fmt::format("{} selections: {} idle, {} with room, {} full, {} none; {} edges of BREQ",
                                      c.causes, c.idle, c.ready, c.full, c.none, c.edges);
     const bool enough = c.causes >= causes && c.edges >= edges;
@@ -269,9 +272,21 @@ class BreqSelect {
     first_wrong_ist_.clear();
   }
 
+  // Each state of a buffer was selected, and both edges of pin and interrupt were there to be judged.
+  void activity() {
+    const bool panel = b_.board.jpan;
+    const bool each = seen_.idle > 0 && seen_.ready > 0 && seen_.full > 0 && (seen_.none > 0) == panel;
+    b_.report.step(
+        "what the scoreboard has judged", each && seen_.edges >= kLeastEdges && interrupts_ >= kLeastEdges / 3,
+        fmt::format("{} selections: {} idle, {} with room, {} full, {} none; {} edges of BREQ{}, {} interrupts",
+                    seen_.causes, seen_.idle, seen_.ready, seen_.full, seen_.none, seen_.edges,
+                    panel ? " and BRLD/" : "", interrupts_));
+  }
+
   BenchContext& b_;
   std::mt19937_64 random_;
   SelectionScoreboard scoreboard_;
+  SelectionScoreboard::Counts seen_;  // in all
   std::array<Buffer, kSystems> states_{};
   Tick real_time_ = kPhase, longest_beyond_ = -kPhase;
   bool level_ = false;

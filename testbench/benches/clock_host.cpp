@@ -84,6 +84,11 @@ void ClockHost::check(const std::string& name, unsigned falls) {
   counted_ = counts;
 }
 
+void ClockHost::shortest_levels() {
+  const ShortestLevels& shortest = checker_.shortest_levels();
+  bench_.report.step("shortest levels while the source moves", shortest.kept(2), shortest.text());
+}
+
 void ClockHost::verdict(const std::string& name, unsigned periods) {
   const ClockSetting& s = settings_[source_];
   bench_.bus.wait(s.servo() * (periods - 1));

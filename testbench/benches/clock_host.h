@@ -51,6 +51,7 @@ class ClockHost {
   // last verdict.
   void verdict(const std::string& name, unsigned periods = 2);
   void check(const std::string& name, unsigned falls = 2);  // the checker's part alone; so many of PHASE at least
+  void shortest_levels();  // both levels of both nets, each seen twice or more while the source moved
 
  private:
   Tick next_fall(const PinField& pin) {

@@ -47,6 +47,7 @@ class MacroBench {
     b_.report.step("MACRO ICs fitted", !macros_.empty(), std::to_string(macros_.size()));
     if (macros_.empty()) return;
     for (const unsigned ic : macros_) source(ic);
+    host_.shortest_levels();
     ranges();
     for (const unsigned i8 : {0u, 2u, 3 + pick(4)}) rates(i8);
   }

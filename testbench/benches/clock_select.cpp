@@ -34,7 +34,7 @@ class SelectBench {
     by_one_line();
     in_step();
     by_i19();
-    shortest_levels();
+    host_.shortest_levels();
   }
 
   void faults() {
@@ -46,6 +46,7 @@ class SelectBench {
     missing_ic();
     macrogate();
     external_clocks();
+    host_.shortest_levels();
   }
 
  private:
@@ -188,12 +189,6 @@ class SelectBench {
     b_.report.equal<std::int64_t>("clock.conflict, one source again", b_.machine.outputs().get(pin::kSourceConflict),
                                   0);
     host_.verdict("one source again");
-  }
-
-  // Both levels of both nets, each seen often enough while the source moved.
-  void shortest_levels() {
-    const ShortestLevels& shortest = host_.checker().shortest_levels();
-    b_.report.step("shortest levels while the source moves", shortest.kept(2), shortest.text());
   }
 
   void problems(const std::string& expected) {

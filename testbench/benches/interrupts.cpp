@@ -15,6 +15,7 @@ constexpr unsigned kClear = 8, kMask = 10, kEdgeLevel = 11;
 // From the command's end to the write: two edges of the synchroniser, the next clk_ref, one more (docs/host-bus.md).
 constexpr Tick kWriteLatency = 2 + 2 * kTicksPerRef;
 constexpr Tick kSigAfter = 2 * kTicksPerRef, kIrqAfter = 3 * kTicksPerRef;  // a pin that moves at an edge of clk_ref
+constexpr Tick kIrqLow = 4 * kTicksPerRef;
 
 class Interrupts : public InterruptHost {
  public:
@@ -34,6 +35,7 @@ class Interrupts : public InterruptHost {
     for (unsigned n = 0; n < kFixed.size(); ++n) fixed_line(n);
     for (const unsigned source : sources()) chosen_lines(source);
     alignments();
+    leftovers();
     pulses();
     random_traffic();
     watchdog();
@@ -52,6 +54,12 @@ class Interrupts : public InterruptHost {
   Tick moved(const PinField& f, Tick from) const {
     for (auto c = changes_.rbegin(); c != changes_.rend() && c->tick >= from; ++c)
       if (c->before.get(f) != c->after.get(f)) return c->tick;
+    return -1;
+  }
+  // Tick of the first change of IRQ to this level, after the tick of a write; -1: none.
+  Tick edge(unsigned level, Tick from) const {
+    for (const Change& c : changes_)
+      if (c.tick >= from && c.before.get(pin::kIsaIrq) != level && c.after.get(pin::kIsaIrq) == level) return c.tick;
     return -1;
   }
   void set(std::uint8_t mask, std::uint8_t edge_level) {
@@ -98,22 +106,22 @@ class Interrupts : public InterruptHost {
     const std::string on = fmt::format("IST={0:02X} SIG={0:02X} IRQ=1", bit),
                       high = fmt::format("IST=00 SIG={:02X} IRQ=0", bit), off = "IST=00 SIG=00 IRQ=0",
                       latched = fmt::format("IST={:02X} SIG=00 IRQ=1", bit);
-    const auto raise = [&](Tick irq_after) {
+    const auto raise = [&] {
       const Tick from = b.bus.now();
       drive_fixed(n, true);
       b.bus.wait(40);
       const Tick line = moved(*pins[n], from);
       same.equal("SIG after its pin", moved(pin::kPicSig, from) - line, kSigAfter);
-      same.equal("IRQ after its pin", moved(pin::kIsaIrq, from) - line, irq_after);
+      same.equal("IRQ after its pin", moved(pin::kIsaIrq, from) - line, kIrqAfter);
     };
-    raise(kIrqAfter);
+    raise();
     state("rise", on);
     clear();
     state("cleared while high", high);
     drive_fixed(n, false);
     b.bus.wait(40);
     state("fall", off);
-    raise(kIrqAfter);
+    raise();
     drive_fixed(n, false);
     b.bus.wait(40);
     state("rise and fall", latched);
@@ -123,7 +131,7 @@ class Interrupts : public InterruptHost {
     state("masked for a moment", off);
 
     set(0xFF, bit);
-    raise(kSigAfter);
+    raise();
     state("level", on);
     clear();
     state("level, cleared while high", on);
@@ -199,6 +207,52 @@ class Interrupts : public InterruptHost {
     b.report.step("an edge that meets a clear is kept", same, 31,
                   fmt::format("{} alignments: {} kept, {} cleared", same.made(), kept, cleared));
     b.report.step("both outcomes seen", kept >= 5 && cleared >= 5, fmt::format("{} and {}", kept, cleared));
+  }
+
+  // host-bus:3.5/2: MI1 has interrupted and is cleared; MI2 rises from 5 clocks before the clear to 5 after it.
+  // Whatever the clear leaves, or comes later, raises IRQ anew, after it has been low for long enough. Then a level
+  // that stays.
+  void leftovers() {
+    select(kSourceMi1, kSourceMi1 + 1, 0);
+    Comparison same;
+    unsigned left = 0;
+    const auto judge = [&](const std::string& when, Tick written, Tick rise) {
+      same.equal(when + ": IRQ falls", edge(0, written), written);
+      same.equal(when + ": IRQ rises", edge(1, written), rise);
+    };
+    const Tick place = pick(3);  // of the rise in its clock: three of the clears meet it then
+    for (Tick lead = -15; lead <= 15; ++lead) {
+      set(0x60, 0);
+      drive(kSourceMi1, true);
+      const Tick rise = (b.bus.now() / kTicksPerRef + 50) * kTicksPerRef + place, end = rise + lead;
+      std::vector<std::pair<Tick, Edit>> edits;
+      add_write(edits, end, kClear, 0);
+      edits.emplace_back(rise, [](HostInputs& in) { in.mi2 = true; });
+      play(std::move(edits));
+      b.bus.advance_to(rise + 60);
+      const Tick detected = (rise / kTicksPerRef + 3) * kTicksPerRef;
+      const Tick written = end + written_after_[static_cast<std::size_t>(end % kTicksPerRef)];
+      left += detected == written ? 1 : 0;
+      judge(fmt::format("rise at {}", detected - written), written,
+            detected < written ? -1 : std::max(detected, written + kIrqLow));
+      drive(kSourceMi1, false);
+      drive(kSourceMi1 + 1, false);
+    }
+    for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
+      set(0x20, 0x20);
+      drive(kSourceMi1, true);
+      const Tick end = (b.bus.now() / kTicksPerRef + 40) * kTicksPerRef + phase;
+      std::vector<std::pair<Tick, Edit>> edits;
+      add_write(edits, end, kClear, 0);
+      play(std::move(edits));
+      b.bus.advance_to(end + 60);
+      const Tick written = end + written_after_[static_cast<std::size_t>(phase)];
+      judge("a level stays", written, written + kIrqLow);
+      drive(kSourceMi1, false);
+    }
+    b.report.step("what a clear leaves raises IRQ anew", same, 68,
+                  fmt::format("{} ticks low at least; {} rises met the clear", kIrqLow, left));
+    b.report.step("a rise met the clear", left >= 3, fmt::format("{}", left));
   }
 
   // host-bus:4.1/8: one clk_ref is always enough; less is when an edge falls into it.

@@ -17,7 +17,8 @@ namespace {
 
 constexpr TimeFs kRefPeriod = tick_to_fs(kTicksPerRef);
 constexpr unsigned kSteps = 128;  // of the phase: 0.2 ns each
-constexpr Tick kSettled = 75;     // six periods of SCLK: a pin is through the filter
+constexpr unsigned kLeastStretched = 100;
+constexpr Tick kSettled = 75;  // six periods of SCLK: a pin is through the filter
 
 // Wait states of host-bus:2.5.
 struct Clock {
@@ -46,6 +47,8 @@ class PortAPhase {
     b_.report.step("moves within a nanosecond of an edge", c.early > 1000 && c.late > 1000 && c.split > 1000,
                    fmt::format("{} of {}: {} early, {} late, {} of a bus line by line", c.inside(), c.moves, c.early,
                                c.late, c.split));
+    b_.report.step("clocks that /TA added", driver_.stretched() >= kLeastStretched,
+                   fmt::format("{}, {} at least", driver_.stretched(), kLeastStretched));
   }
 
  private:

@@ -49,6 +49,11 @@ class SelectionScoreboard {
   Tick longest_panel() const { return longest_panel_; }
   struct Counts {
     unsigned causes = 0, edges = 0, idle = 0, ready = 0, full = 0, none = 0;
+    Counts& operator+=(const Counts& o) {
+      causes += o.causes, edges += o.edges;
+      idle += o.idle, ready += o.ready, full += o.full, none += o.none;
+      return *this;
+    }
   };
   Counts take_counts() { return std::exchange(counts_, {}); }
 

@@ -18,6 +18,9 @@
 // fault R6: only a new strobe of this RAM ends the one before (rtl/host/dpram.sv)
 //   - (fallen || !(own_wr_q
 //   + (request || !(own_wr_q
+// fault R8: the end of /RD does not turn the pins off (rtl/host/dpram.sv)
+//   - rst_ni & ~cpu_rd_ni
+//   + rst_ni
 `default_nettype none
 
 module dpram_rules (
@@ -45,15 +48,16 @@ module dpram_rules (
   end
   assign edge_ref = step_q == 3'd0;  // at the end of this step
 
-  logic        rd_toggle, wr_toggle, cpu_wait, cpu_busy, host_busy, host_busy_pin;
+  logic        rd_toggle, wr_toggle, cpu_drive, cpu_wait, cpu_busy, host_busy, host_busy_pin;
   logic [15:0] rdata, host_rdata;
   bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .sel_i(1'b1),
                        .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle));
   dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_toggle_i(rd_toggle),
              .wr_toggle_i(wr_toggle), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
              .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i(wdata_i), .cpu_rdata_o(rdata),
-             .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy), .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i),
-             .mem_wr_i(host_wr_i), .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
+             .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy),
+             .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i), .mem_wr_i(host_wr_i),
+             .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
              .mem_wdata_i(host_wdata_i), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
              .host_busy_o(host_busy_pin));
   // From inside: who owns which word, and the ports of the memory.
@@ -170,6 +174,10 @@ module dpram_rules (
       R7: assert (addr_q == host_addr_q && (!host_rd_q || !wr_nq));
       C7: cover (host_rd_q);
     end
+
+    // R8: The CPU's data pins are driven while /RD is low and its own access has been granted, never else.
+    R8: assert (!cpu_drive || (!rd_ni && granted_q));
+    C8: cover (cpu_drive && cpu_wait);
   end
 
 endmodule : dpram_rules

@@ -1,5 +1,6 @@
-// Rules of the interrupt controller, host-bus:4.1, for each of its eight lines (`n` is any) and whatever lines, writes
-// and resets do: no event is lost, none comes twice. Nothing is assumed but that a run starts in reset.
+// Rules of the interrupt controller, host-bus:4.1, with the line to the host, host-bus:3.5, for each of its eight lines
+// (`n` is any) and whatever lines, writes and resets do: no event is lost, none comes twice, and a host that senses the
+// edges of IRQ has one for each. Nothing is assumed but that a run starts in reset.
 // proof: pdr
 // clocks: one
 // steps: 12
@@ -12,6 +13,15 @@
 // fault R8: an edge is remembered while its line is masked (rtl/host/interrupt_controller.sv)
 //   - (rise & msk_q & ~elr_q)
 //   + (rise & ~elr_q)
+// fault R14: a clear leaves IRQ high while requests remain (rtl/host/host_interrupt.sv)
+//   - request_i & ~served_i & (low_q == 3'd0)
+//   + request_i & (low_q == 3'd0)
+// fault R13: IRQ is low for a clock less (rtl/host/host_interrupt.sv)
+//   - IrqLowClocks - 3'd1
+//   + IrqLowClocks - 3'd2
+// fault R15: a latched edge asks for one clock only (rtl/host/interrupt_controller.sv)
+//   - (~elr_d & latch_d)
+//   + (~elr_d & rise)
 `default_nettype none
 
 module interrupt_controller_rules (
@@ -25,9 +35,11 @@ module interrupt_controller_rules (
 );
 
   logic [7:0] rdata, ist, sig, msk, elr;
-  logic       irq;
+  logic       request, served, irq;
   interrupt_controller dut (.clk_ref_i(clk_i), .rst_ni, .reset_i, .line_i, .wr_i, .addr_i, .wdata_i,
-                            .rdata_o(rdata), .ist_o(ist), .sig_o(sig), .msk_o(msk), .elr_o(elr), .irq_o(irq));
+                            .rdata_o(rdata), .ist_o(ist), .sig_o(sig), .msk_o(msk), .elr_o(elr),
+                            .request_o(request), .served_o(served));
+  host_interrupt line (.clk_ref_i(clk_i), .rst_ni, .request_i(request), .served_i(served), .irq_o(irq));
 
   (* anyconst *) logic [2:0] n;
   logic clear, high, enabled, edges, pending, rise;
@@ -40,18 +52,24 @@ module interrupt_controller_rules (
 
   // What an observer of the pins remembers. `pin_q[k]` is the line k + 1 clocks ago.
   logic       started_q = 1'b0;
-  logic       high_q, event_q, served_q, blind_q;
+  logic       high_q, edges_q, event_q, served_q, blind_q;
   logic [3:0] pin_q;
+  logic [2:0] low_q, stands_q;  // clocks that IRQ has been low; that n is pending, since a clear or another mode
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {high_q, event_q, served_q, blind_q} <= 4'b0001;
+      {high_q, edges_q, event_q, served_q, blind_q} <= 5'b00001;
       pin_q    <= 4'h0;
+      low_q    <= 3'd4;
+      stands_q <= 3'd0;
     end else begin
       high_q   <= high;
+      edges_q  <= edges;
       event_q  <= (event_q | (pending & edges)) & enabled & ~clear & ~reset_i;
       served_q <= (served_q | clear) & ~rise;
       blind_q  <= ~enabled | (blind_q & ~(rise & edges));
       pin_q    <= {pin_q[2:0], line_i[n]};
+      low_q    <= irq ? 3'd0 : low_q + {2'd0, low_q != 3'd4};
+      stands_q <= (clear || !pending || edges != edges_q) ? 3'd0 : stands_q + {2'd0, stands_q != 3'd4};
     end
   end
 
@@ -67,9 +85,9 @@ module interrupt_controller_rules (
       R2: assert (enabled || !pending);
       C2: cover (!enabled && rise);
 
-      // R3: An enabled edge line that was low and is high raises IRQ at the third clock.
+      // R3: An enabled edge line that was low and is high raises IRQ at the third clock, if that may rise.
       if (pin_q[2] && !pin_q[3] && enabled && edges && $past(enabled && edges)) begin
-        R3: assert (pending && irq);
+        R3: assert (pending && (irq || $past(clear) || low_q != 3'd4));
         C3: cover (!$past(irq));
       end
 
@@ -109,9 +127,11 @@ module interrupt_controller_rules (
         C9: cover (pending && $past(clear));
       end
 
-      // R10: IRQ is the OR of IST.
-      R10: assert (irq == (ist != 8'h00));
-      C10: cover (irq && !pending);
+      // R10: IRQ is high only by a bit of IST, or by a level line that was high a clock ago.
+      if (irq) begin
+        R10: assert (ist != 8'h00 || (msk & elr & $past(sig)) != 8'h00);
+        C10: cover (!pending);
+      end
 
       // R11: The four addresses read IST, SIG, MSK and ELR.
       R11: assert (rdata == (addr_i[1] ? (addr_i[0] ? elr : msk) : (addr_i[0] ? sig : ist)));
@@ -122,6 +142,24 @@ module interrupt_controller_rules (
                    msk == ($past(wr_i && addr_i == 2'd2) ? $past(wdata_i) : $past(msk)) &&
                    elr == ($past(wr_i && addr_i == 2'd3) ? $past(wdata_i) : $past(elr)));
       C12: cover (msk != elr && msk != 8'h00 && elr != 8'h00);
+
+      // R13: IRQ is never low for less than four clocks.
+      if (irq && !$past(irq)) begin
+        R13: assert (low_q == 3'd4);
+        C13: cover ($past(clear, 5) && $past(irq, 5));
+      end
+
+      // R14: A clear pulls IRQ down, so that whatever is pending after it has an edge to come.
+      if ($past(clear)) begin
+        R14: assert (!irq);
+        C14: cover (pending && $past(irq));
+      end
+
+      // R15: What has been pending for four clocks since the last clear has raised IRQ, unless its mode was changed.
+      if (stands_q == 3'd4 && pending && edges == edges_q) begin
+        R15: assert (irq);
+        C15: cover ($past(clear, 5) && edges);
+      end
     end
   end
 

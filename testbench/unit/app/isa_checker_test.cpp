@@ -122,6 +122,28 @@ TEST_F(IsaCheckerTest, StrobesOfTheHostPortHaveTheirLimits) {
       IsaChecker::kH1, [this](const Points& p) { io(p); }, &Points::width, 11'200'000);
 }
 
+// host-bus:3.3, rows 3, 5 and 6: after which byte, before which one.
+TEST_F(IsaCheckerTest, BytesOfTheHostPortHaveTheirDistances) {
+  const auto evaluated = [this](Rule rule) { return checker_.ledger().row(rule, IsaChecker::kIo).evaluations; };
+  for (std::uint32_t first = 0; first < 8; ++first)
+    for (std::uint32_t second = 0; second < 8; ++second) {
+      SCOPED_TRACE(::testing::Message() << "+" << first << ", then +" << second);
+      const auto is = [](std::uint32_t byte, const std::vector<std::uint32_t>& bytes) {
+        return std::find(bytes.begin(), bytes.end(), byte) != bytes.end();
+      };
+      io({}, 0x210 + first);
+      checker_.ledger().forget();
+      io({}, 0x210 + second);
+      EXPECT_EQ(evaluated(IsaChecker::kH2), 1u);
+      EXPECT_EQ(evaluated(IsaChecker::kH3), is(first, {0, 1, 2, 7}) && is(second, {0, 1, 2, 7}) ? 1u : 0u);
+      iow({}, 0x210 + first);
+      checker_.ledger().forget();
+      iow({}, 0x210 + second);
+      EXPECT_EQ(evaluated(IsaChecker::kH5), is(first, {0, 1, 7}) ? 1u : 0u);
+      EXPECT_EQ(evaluated(IsaChecker::kH6), is(first, {0, 1, 7}) ? 0u : 1u);
+    }
+}
+
 TEST_F(IsaCheckerTest, CyclesAreCountedByKindWidthAndIochrdy) {
   Points stretched;
   stretched.ready_low = 70 * kNs;

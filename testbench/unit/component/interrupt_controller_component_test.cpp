@@ -4,6 +4,7 @@
 #include <brick/interrupt_controller.h>
 #include <brick/rtl.h>
 
+#include "systemc/host/host_interrupt.h"
 #include "systemc/host/interrupt_controller.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/rig.h"
@@ -16,24 +17,26 @@ constexpr Tick kTicks = 1'000'000;
 
 class PicBlock final : public Block {
  public:
-  PicBlock() : pic_("block") { pic_.reset(0); }
+  PicBlock() : pic_("block"), line_("line") {
+    pic_.reset(0);
+    line_.reset(0);
+  }
 
   void set(const std::string& pin, std::uint32_t value) override {
-    pic_.advance(now_);
     if (pin == "rst_n") reset_ = value == 0;
     if (pin == "resetdrv") pic_.in.reset = value != 0;
     if (pin.rfind("ir", 0) == 0) {
       const unsigned line = static_cast<unsigned>(pin[2] - '0');
       pic_.in.line = static_cast<std::uint8_t>((pic_.in.line & ~(1u << line)) | value << line);
     }
-    if (reset_) pic_.reset(now_);
+    if (reset_) reset(now_);
   }
   void edge(Tick t) override {
     now_ = t;
     if (reset_)
-      pic_.reset(t);
+      reset(t);
     else if (!is_ref_edge(t) || !write_)
-      pic_.advance(t);
+      step(t);
   }
   bool moved() override { return true; }
   std::uint32_t read(unsigned address) override { return pic_.read(address); }
@@ -43,15 +46,27 @@ class PicBlock final : public Block {
       pic_.in.wr = true;
       pic_.in.addr = static_cast<std::uint8_t>(access.address);
       pic_.in.wdata = static_cast<std::uint8_t>(access.value);
-      pic_.advance(now_);
+      step(now_);
       pic_.in.wr = false;
     }
     write_ = false;
   }
-  std::map<std::string, std::uint32_t> outputs() const override { return {{"irq", pic_.irq()}}; }
+  std::map<std::string, std::uint32_t> outputs() const override { return {{"irq", line_.irq()}}; }
 
  private:
+  // The line of the bus sees what the controller showed before the edge.
+  void step(Tick t) {
+    line_.in = {pic_.request(), pic_.served()};
+    line_.advance(t);
+    pic_.advance(t);
+  }
+  void reset(Tick t) {
+    pic_.reset(t);
+    line_.reset(t);
+  }
+
   brick::InterruptController pic_;
+  HostInterrupt line_;
   bool reset_ = false, write_ = false;
   Tick now_ = 0;
 };

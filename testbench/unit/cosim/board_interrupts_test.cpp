@@ -22,11 +22,27 @@ class BoardInterrupts : public ::testing::TestWithParam<bool> {
     rig.run(10);
     rig.in.*command = false;
     rig.apply();
-    rig.run(60);
+    run(60);
     data = rig.get(pin::kIsaSd) & 0xFF;
     rig.in.*command = true;
     rig.apply();
-    rig.run(12);
+    run(12);
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      rig.run(1);
+      irq_low = rig.get(pin::kIsaIrq) != 0 ? 0 : irq_low + 1;
+      longest_low = std::max(longest_low, irq_low);
+    }
+  }
+  // Ticks for which IRQ is low after a cycle that serves, before it is high again.
+  template <class Service>
+  int low_after(Service service) {
+    longest_low = irq_low = 0;
+    service();
+    run(30);
+    EXPECT_EQ(rig.get(pin::kIsaIrq), 1u);
+    return longest_low;
   }
   void io_write(unsigned offset, std::uint16_t value) {
     rig.in.isa_sd = value;
@@ -53,6 +69,7 @@ class BoardInterrupts : public ::testing::TestWithParam<bool> {
 
   BoardRig rig;
   std::uint32_t data = 0;
+  int irq_low = 0, longest_low = 0;
 };
 
 // host-bus:4.2/3: codes 10 CTRL0, 11 CTRL1, 12 MI1, 13 MI2, 14 AXEXP0, 15 AXEXP1.
@@ -99,6 +116,25 @@ TEST_P(BoardInterrupts, ControlOutputsAreALatchOfTheirOwn) {
   EXPECT_EQ(rig.read(true, kControlOutputs), 3u) << "an X word";
 }
 
+// host-bus:3.5/1: one line, high while any enabled line interrupts.
+TEST_P(BoardInterrupts, LineToThePcIsActiveHigh) {
+  rig.run(6);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u);
+  io_write(10, 0x03);
+  for (const unsigned signals : {1u, 2u, 3u}) {
+    rig.write(true, kHostSignals, signals);
+    rig.run(12);
+    EXPECT_EQ(rig.get(pin::kIsaIrq), 1u);
+    io_write(8, 0);
+    EXPECT_EQ(rig.get(pin::kIsaIrq), 0u) << "cleared";
+    rig.write(true, kHostSignals, 0);
+    rig.run(12);
+  }
+  rig.write(true, kHostSignals, 4);
+  rig.run(12);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u) << "masked";
+}
+
 // host-bus:5.6/5: a low level lights; without the connector they stay dark.
 TEST_P(BoardInterrupts, LampsAreTheInverseOfTheirSignals) {
   BRICK_COVERS("BREQ-6");
@@ -135,6 +171,33 @@ TEST_P(BoardInterrupts, The8259TakesTheOtherControllersPlace) {
   EXPECT_EQ(io_read(8), 0x00u);
   EXPECT_EQ(io_read(9), 0xFDu) << "IMR";
   EXPECT_EQ(io_read(11), 0xFFu);
+}
+
+// host-bus:3.5/2: a PC senses edges, so what a service leaves raises IRQ anew, 4 clocks of clk_ref later.
+TEST_P(BoardInterrupts, IrqRisesAnewForALevelThatAClearLeaves) {
+  rig.run(6);
+  select(12, 0, 0);
+  io_write(11, 0x20);
+  io_write(10, 0x20);
+  rig.in.mi1 = true;
+  settle();
+  EXPECT_EQ(low_after([&] { io_write(8, 0); }), 12);
+  EXPECT_EQ(low_after([&] { io_read(8); }), 0) << "a read of IST serves nothing";
+}
+
+TEST_P(BoardInterrupts, IrqRisesAnewForWhatAnAcknowledgeLeaves) {
+  fit_8259();
+  for (const auto& [offset, value] : {std::pair{8u, 0x13}, {9u, 0x08}, {9u, 0x03}, {9u, 0x00}})  // AEOI
+    io_write(offset, static_cast<std::uint16_t>(value));
+  select(12, 13, 15);
+  rig.in.mi1 = rig.in.mi2 = rig.in.axexp1 = true;
+  settle();
+  for (const unsigned vector : {0x0Du, 0x0Eu}) {
+    EXPECT_EQ(low_after([&] { io_read(10); }), 12);
+    EXPECT_EQ(data, vector);
+  }
+  EXPECT_EQ(io_read(10), 0x0Fu);
+  EXPECT_EQ(rig.get(pin::kIsaIrq), 0u);
 }
 
 TEST_P(BoardInterrupts, The8259HasTheLinesOfTheBoardInTheirOrder) {

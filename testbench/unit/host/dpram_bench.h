@@ -14,7 +14,8 @@ class DpramBench {
   explicit DpramBench(bool small = false, int seed = 0)
       : model("dpram"), both(make_rtl_dpram(seed), model, [](const Dpram& m) {
           return Outputs{{"cpu_rdata", m.cpu_rdata()}, {"cpu_wait", m.cpu_wait()}, {"cpu_busy", m.cpu_busy()},
-                         {"mem_rdata", m.mem_rdata()}, {"mem_busy", m.mem_busy()}, {"host_busy", m.host_busy()}};
+                         {"mem_rdata", m.mem_rdata()}, {"mem_busy", m.mem_busy()}, {"host_busy", m.host_busy()},
+                         {"cpu_drive", m.cpu_drive()}};
         }) {
     both.in.small = small;
   }
@@ -28,6 +29,7 @@ class DpramBench {
   void cpu_end() {
     both.in.cpu_rd_n = both.in.cpu_wr_n = true;
     both.in.cpu_sel = false;
+    both.get("cpu_drive");  // the pins are high before a strobe falls again, though not for a tick
   }
   // Whole accesses without a competitor, and the time that their end takes to be seen.
   unsigned cpu_read(unsigned word) {

@@ -130,6 +130,99 @@ TEST_F(DpramTest, AWriteStrobeThatIsTooShortWritesNothing) {
   }
 }
 
+// A strobe that has ended before its access, as one without wait states, and the next with another address at once:
+// what is asked for once is done once, where it was asked for, at whatever tick each of the two falls and rises.
+TEST_F(DpramTest, AStrobeThatHasEndedTakesNothingOfTheNext) {
+  unsigned made = 0;
+  for (const bool busy : {false, true})
+    for (int low = 0; low <= 6; ++low)
+      for (int high = 1; high <= 4; ++high) {
+        SCOPED_TRACE(::testing::Message() << "low for " << low << ", high for " << high << ", BUSY " << busy);
+        host_write(20, 0x2020);
+        host_write(21, 0x2121);
+        if (busy) {
+          host_start(20, true);
+          both.ref();
+        }
+        cpu_start_write(20, 0xAAAA);
+        both.ticks(low);
+        cpu_end();
+        both.in.cpu_addr = 500;  // nobody's
+        both.ticks(high);
+        cpu_start_write(21, 0xDEAD);  // not yet its data
+        both.tick();
+        both.in.cpu_wdata = 0xBBBB;
+        both.ticks(kAccess + 2);
+        EXPECT_FALSE(cpu_wait());
+        cpu_end();
+        both.ticks(kRest);
+        if (busy) host_end_read();
+        EXPECT_EQ(host_read(21), 0xBBBBu);
+        EXPECT_EQ(host_read(1000), 0u);
+        EXPECT_EQ(host_read(1001), 0u);
+        const unsigned first = host_read(20);
+        EXPECT_TRUE(first == 0x2020 || (first == 0xAAAA && low >= kAccess && !busy)) << std::hex << first;
+        EXPECT_EQ(first == 0xAAAA, low >= kAccess && !busy);
+        made += first == 0xAAAA ? 1 : 0;
+        ASSERT_EQ(both.difference(), "");
+      }
+  EXPECT_EQ(made, 16u);
+}
+
+// The same for reads: the pins are driven with the word of the strobe that is low, or not at all.
+TEST_F(DpramTest, NoReadShowsTheWordOfTheStrobeBefore) {
+  host_write(20, 0x2020);
+  host_write(21, 0x2121);
+  for (const bool busy : {false, true})
+    for (int low = 0; low <= 6; ++low)
+      for (int high = 1; high <= 4; ++high) {
+        SCOPED_TRACE(::testing::Message() << "low for " << low << ", high for " << high << ", BUSY " << busy);
+        if (busy) {
+          host_start(20, false);
+          both.ref();
+        }
+        cpu_start_read(20);
+        both.ticks(low);
+        cpu_end();
+        EXPECT_FALSE(both.get("cpu_drive"));
+        both.ticks(high);
+        cpu_start_read(21);
+        for (int tick = 0; tick < kAccess + 3; ++tick) {
+          if (both.get("cpu_drive") != 0) { EXPECT_EQ(both.get("cpu_rdata"), 0x2121u) << tick; }
+          both.tick();
+        }
+        EXPECT_TRUE(both.get("cpu_drive"));
+        EXPECT_FALSE(cpu_wait());
+        cpu_end();
+        both.ticks(kRest);
+        if (busy) host_end_write(0x2020);
+        both.ticks(kRest);
+        ASSERT_EQ(both.difference(), "");
+      }
+}
+
+TEST_F(DpramTest, ThePinsAreDrivenFromTheDataToTheEndOfTheStrobe) {
+  for (int cycle = 0; cycle < 2; ++cycle) {
+    EXPECT_FALSE(both.get("cpu_drive"));
+    cpu_start_read(6);
+    for (int tick = 0; tick < kAccess; ++tick) {
+      EXPECT_FALSE(both.get("cpu_drive")) << tick;
+      both.tick();
+    }
+    EXPECT_TRUE(both.get("cpu_drive"));
+    both.ticks(4);
+    EXPECT_TRUE(both.get("cpu_drive"));
+    both.in.cpu_rd_n = true;
+    EXPECT_FALSE(both.get("cpu_drive")) << "without a clock";
+    both.ticks(2);
+    cpu_end();
+  }
+  cpu_start_write(6, 1);
+  both.ticks(kAccess + 2);
+  EXPECT_FALSE(both.get("cpu_drive"));
+  cpu_end();
+}
+
 TEST_F(DpramTest, StrobesOfOtherDevicesDoNotWait) {
   cpu_start_read(6);
   both.in.cpu_sel = false;

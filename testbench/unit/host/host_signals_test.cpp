@@ -50,6 +50,7 @@ TEST_F(HostSignalsTest, ControlOutputsAndHostSignalsDoNotTouchEachOther) {
     write_ctrl(~value & 0xF);
     EXPECT_EQ(both_.get("rdata"), value);
     EXPECT_EQ(both_.get("ctrl"), ~value & 3);
+    write(value ^ 0xF);
     write(value);
     EXPECT_EQ(both_.get("ctrl"), ~value & 3);
   }

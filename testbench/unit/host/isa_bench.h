@@ -56,9 +56,10 @@ class IsaBench {
     bool operator==(const Strobe& o) const { return what == o.what && addr == o.addr && data == o.data; }
   };
   std::vector<Strobe> strobes;
+  std::uint8_t port = 0xA0;  // what the host port shows at +0
 
   void tick() {
-    both.in.hp_rdata = static_cast<std::uint8_t>(0xA0 + both.get("hp_addr"));
+    both.in.hp_rdata = static_cast<std::uint8_t>(port + both.get("hp_addr"));
     both.in.pic_rdata = static_cast<std::uint8_t>(0xB0 + both.get("pic_addr"));
     if (is_ref_edge(both.now() + 1)) {  // the edge about to come sees them
       if (both.get("hp_wr")) strobes.push_back({"hp_wr", both.get("hp_addr"), both.get("hp_wdata")});

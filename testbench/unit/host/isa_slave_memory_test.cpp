@@ -114,6 +114,16 @@ TEST_F(IsaSlaveTest, EightBitSlotIsDecodedWithoutLa) {
   EXPECT_EQ(strobes, (std::vector<Strobe>{{"mem_wr", 0, 1u << 16 | 1}, {"mem_wr", 0, 2u << 16 | 0x0202}}));
 }
 
+// host-bus:3.7/5: SMEMR# and SMEMW# stand for A23 to A20, whatever the card's switches say of them.
+TEST_F(IsaSlaveTest, EightBitSlotComparesNoAddressAboveOneMebibyte) {
+  both.in.slot8 = true;
+  both.in.window |= 0x3C0;
+  ticks(3);
+  both.in.isa_sbhe_n = true;
+  mem_write(0xD0000, 1);
+  EXPECT_EQ(strobes, (std::vector<Strobe>{{"mem_wr", 0, 1u << 16 | 1}}));
+}
+
 // host-bus:3.4/18: SA[19:17] of an 8-bit slot are as late as all of SA. 34 ns are four ticks and a little; at 25 ns
 // the aperture of the first flip-flop is covered too.
 TEST_F(IsaSlaveTest, EightBitSlotTakesItsWholeAddress25NanosecondsBeforeTheCommand) {

@@ -15,6 +15,14 @@
 
 namespace brick {
 
+// A model with something that /RD acts on without a clock wants to know when it moves.
+template <class Model>
+auto rd_moved(Model& model, int) -> decltype(model.rd_moved()) {
+  model.rd_moved();
+}
+template <class Model>
+void rd_moved(Model&, long) {}
+
 template <class Model>
 class Lockstep {
  public:
@@ -70,6 +78,7 @@ class Lockstep {
     model_.advance(now());  // edges that were left out belong to the old inputs
     model_.in = in;
     if (mutate) mutate(model_.in);
+    rd_moved(model_, 0);
     rtl_.in = in;
     rtl_.settle();
     compare();

@@ -110,6 +110,30 @@ TEST_F(PciBridgeTest, ConfigurationSpaceSaysWhatItIs) {
   EXPECT_EQ(read(PciSpace::kConfiguration, PciBridge::kId + 2, 2), 0x5678u);
 }
 
+// host-bus:3.6/4: until the computer's start-up has been there nobody answers but the configuration space.
+TEST_F(PciBridgeTest, NothingIsEnabledAfterPowerOn) {
+  PciBridge fresh("fresh", {0x210, 0xD0000, 0x10000});
+  for (const auto& [space, address] :
+       {std::pair{PciSpace::kIo, 0u}, {PciSpace::kMemory, 0u}, {PciSpace::kConfiguration, PciBridge::kCommand + 0u}}) {
+    unsigned char data[2] = {0xFF, 0xFF};
+    PciCommand command(space);
+    tlm::tlm_generic_payload payload;
+    payload.set_command(tlm::TLM_READ_COMMAND);
+    payload.set_address(address);
+    payload.set_data_ptr(data);
+    payload.set_data_length(2);
+    payload.set_streaming_width(2);
+    payload.set_extension(&command);
+    fresh.attach(local_);
+    sc_core::sc_time delay;
+    fresh.transport(payload, delay);
+    payload.clear_extension(&command);
+    EXPECT_EQ(payload.is_response_ok(), space == PciSpace::kConfiguration);
+    if (space == PciSpace::kConfiguration) { EXPECT_EQ(data[0] & 3, 0); }
+  }
+  EXPECT_THAT(local_.cycles, ::testing::IsEmpty());
+}
+
 TEST_F(PciBridgeTest, OnesWrittenToABarTellItsSize) {
   configure(PciBridge::kBar0, 0xFFFFFFFF);
   configure(PciBridge::kBar1, 0xFFFFFFFF);

@@ -2,6 +2,7 @@
 #include "testbench/unit/host/rtl_blocks.h"
 
 #include "Vdpram.h"
+#include "Vhost_interrupt.h"
 #include "Vhost_port.h"
 #include "Vhost_signals.h"
 #include "Vinterrupt_controller.h"
@@ -20,8 +21,8 @@ void drive(Vinterrupt_controller& v, const InterruptControllerInputs& in) {
   v.wdata_i = in.wdata;
 }
 Outputs sample(const Vinterrupt_controller& v) {
-  return {{"rdata", v.rdata_o}, {"ist", v.ist_o}, {"sig", v.sig_o},
-          {"msk", v.msk_o},     {"elr", v.elr_o}, {"irq", v.irq_o}};
+  return {{"rdata", v.rdata_o}, {"ist", v.ist_o},         {"sig", v.sig_o},      {"msk", v.msk_o},
+          {"elr", v.elr_o},     {"request", v.request_o}, {"served", v.served_o}};
 }
 
 void drive(Vpic_8259& v, const Pic8259Inputs& in) {
@@ -32,9 +33,15 @@ void drive(Vpic_8259& v, const Pic8259Inputs& in) {
   v.wdata_i = in.wdata;
 }
 Outputs sample(const Vpic_8259& v) {
-  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},     {"isr", v.isr_o},
-          {"imr", v.imr_o},     {"level", v.level_o}, {"irq", v.irq_o}};
+  return {{"rdata", v.rdata_o}, {"irr", v.irr_o},         {"isr", v.isr_o},      {"imr", v.imr_o},
+          {"level", v.level_o}, {"request", v.request_o}, {"served", v.served_o}};
 }
+
+void drive(Vhost_interrupt& v, const HostInterruptInputs& in) {
+  v.request_i = in.request;
+  v.served_i = in.served;
+}
+Outputs sample(const Vhost_interrupt& v) { return {{"irq", v.irq_o}}; }
 
 void drive(Vhost_signals& v, const HostSignalsInputs& in) {
   v.wr_i = in.wr;
@@ -84,7 +91,8 @@ void drive(Vdpram& v, const DpramInputs& in) {
 }
 Outputs sample(const Vdpram& v) {
   return {{"cpu_rdata", v.cpu_rdata_o}, {"cpu_wait", v.cpu_wait_o}, {"cpu_busy", v.cpu_busy_o},
-          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o}};
+          {"mem_rdata", v.mem_rdata_o}, {"mem_busy", v.mem_busy_o}, {"host_busy", v.host_busy_o},
+          {"cpu_drive", v.cpu_drive_o}};
 }
 
 void drive(Visa_slave& v, const IsaSlaveInputs& in) {
@@ -140,6 +148,9 @@ RtlBlock<InterruptControllerInputs, Outputs> make_rtl_interrupt_controller(int s
 }
 RtlBlock<Pic8259Inputs, Outputs> make_rtl_pic_8259(int seed) {
   return verilated_shell<Vpic_8259, Pic8259Inputs, Outputs>(drive, sample, seed);
+}
+RtlBlock<HostInterruptInputs, Outputs> make_rtl_host_interrupt(int seed) {
+  return verilated_shell<Vhost_interrupt, HostInterruptInputs, Outputs>(drive, sample, seed);
 }
 RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals() {
   return verilated_shell<Vhost_signals, HostSignalsInputs, Outputs>(drive, sample);

@@ -15,6 +15,7 @@ using Outputs = std::vector<std::pair<std::string_view, std::uint32_t>>;
 
 RtlBlock<InterruptControllerInputs, Outputs> make_rtl_interrupt_controller(int seed = shell_seed());
 RtlBlock<Pic8259Inputs, Outputs> make_rtl_pic_8259(int seed = shell_seed());
+RtlBlock<HostInterruptInputs, Outputs> make_rtl_host_interrupt(int seed = shell_seed());
 RtlBlock<HostSignalsInputs, Outputs> make_rtl_host_signals();
 RtlBlock<HostPortInputs, Outputs> make_rtl_host_port();
 RtlBlock<DpramInputs, Outputs> make_rtl_dpram(int seed = 0);  // memory has no reset: as the model, it starts as zero

@@ -249,6 +249,21 @@ TEST(PortATiming, BetweenCyclesOfTwoRegionsTheFewerWaitStatesCount) {
   }
 }
 
+// host-bus:2.2/2: the shorter time is asked for, whichever of the two cycles had the faster clock.
+TEST(PortATiming, BetweenCyclesOfTwoClocksTheFasterCounts) {
+  for (const auto& [first_n, second_n] : {std::array{8u, 16u}, {16u, 8u}}) {
+    for (const TimeFs less : {0, 1}) {
+      PortATiming timing;
+      const PinCycle first = easy(true, first_n, 15, 0);
+      timing.cycle(first);
+      PinCycle second = easy(true, second_n, 15, 0, first.end);
+      second.strobe_low = first.strobe_high + row(114, 15, 0)->fs(16) - less;
+      timing.cycle(second);
+      EXPECT_EQ(::testing::Matches(::testing::Contains("114"))(violated(timing)), less == 1);
+    }
+  }
+}
+
 TEST(PortATiming, ConditionsOfTheStrobes) {
   PortATiming timing;
   PinCycle c = easy(true, 8, 7, 0);
@@ -320,6 +335,20 @@ TEST(PortATiming, OneSideLetsGoBeforeTheOtherDrives) {
       EXPECT_EQ(violated(timing),
                 both == 0 ? std::vector<std::string>{} : std::vector<std::string>{cpu_followed ? "c" : "d"});
     }
+}
+
+// host-bus:2.6/9: the strobe of another region's cycle comes between two of one, however soon.
+TEST(PortATiming, StrobesOfTwoRegionsKeepNoDistance) {
+  for (const bool write : {true, false}) {
+    PortATiming timing;
+    PinCycle c = easy(write, 32, 1, 0);
+    timing.cycle(c);
+    PinCycle next = easy(write, 32, 1, 0, c.end);
+    next.aa = 0;
+    next.strobe_low = c.strobe_low + 1;
+    timing.cycle(next);
+    EXPECT_THAT(violated(timing), ::testing::Not(::testing::Contains("s1")));
+  }
 }
 
 TEST(TimingLedger, OneViolationForEachRuleAndAddressWithItsCount) {

@@ -1,0 +1,140 @@
+// Rules of the 8259, host-bus:4.5, whatever lines, reads and writes do, in all its modes: what is masked does not
+// interrupt, what interrupts is above all in service, a request is acknowledged once, and an end ends what it should.
+// `n` is any level; a rank is the distance from the level of the highest priority. Assumed is only that a run starts in
+// reset and that isa_slave does not read and write at one clock.
+// proof: pdr
+// clocks: one
+// steps: 14
+// fault R1: the mask holds nothing off (rtl/host/pic_8259.sv)
+//   - rank(irr & ~imr_q, lowest_q)
+//   + rank(irr, lowest_q)
+// fault R2: a request interrupts the service of its own level (rtl/host/pic_8259.sv)
+//   - (rank_request < rank_serviced)
+//   + (rank_request <= rank_serviced) & ~rank_request[3]
+// fault R4: an acknowledged line need not fall (rtl/host/pic_8259.sv)
+//   - armed_d[level_ack] = 1'b0
+//   + armed_d[level_ack] = 1'b1
+// fault R5: a spurious acknowledge puts IR7 in service (rtl/host/pic_8259.sv)
+//   - pending & (rd_poll | (rd_i & (addr_i == 2'd2)))
+//   + rd_poll | (rd_i & (addr_i == 2'd2))
+// fault R6: an end without a level ends the one that asks (rtl/host/pic_8259.sv)
+//   - wdata_i[2:0] : level_serviced
+//   + wdata_i[2:0] : level_request
+// fault R8: an automatic end leaves its level in service (rtl/host/pic_8259.sv)
+//   - if (!aeoi_q) isr_d
+//   + if (1'b1) isr_d
+`default_nettype none
+
+module pic_8259_rules (
+  input wire logic       clk_i,
+  input wire logic       rst_ni,
+  input wire logic [7:0] line_i,
+  input wire logic       rd_i,
+  input wire logic       wr_i,
+  input wire logic [1:0] addr_i,
+  input wire logic [7:0] wdata_i
+);
+
+  logic [7:0] rdata, irr, isr, imr;
+  logic       level, request, served;
+  pic_8259 dut (.clk_ref_i(clk_i), .rst_ni, .line_i, .rd_i, .wr_i, .addr_i, .wdata_i, .rdata_o(rdata), .irr_o(irr),
+                .isr_o(isr), .imr_o(imr), .level_o(level), .request_o(request), .served_o(served));
+  // From inside: the modes that the words have set.
+  (* hierconn *) wire logic [2:0] \dut.lowest_q ;
+  (* hierconn *) wire logic       \dut.special_q ;
+  (* hierconn *) wire logic       \dut.aeoi_q ;
+  (* hierconn *) wire logic       \dut.poll_q ;
+
+  (* anyconst *) logic [2:0] n;
+  logic [2:0] acked, rank_acked, rank_n;
+  logic       icw1, ocw2, end_plain, holds, acknowledge;
+  assign acked       = rdata[2:0];  // what the host reads in an acknowledge
+  assign rank_acked  = acked - \dut.lowest_q - 3'd1;
+  assign rank_n      = n - \dut.lowest_q - 3'd1;
+  assign icw1        = wr_i & (addr_i == 2'd0) & wdata_i[4];
+  assign ocw2        = wr_i & (addr_i == 2'd0) & (wdata_i[4:3] == 2'b00);
+  assign end_plain   = ocw2 & (wdata_i[6:5] == 2'b01);
+  assign acknowledge = rd_i & ((addr_i == 2'd2) | (\dut.poll_q & ~addr_i[1]));
+  assign holds       = isr[n] & ~(\dut.special_q & imr[n]);  // n holds off others
+
+  // What an observer of the pins remembers. `pin_q[k]` is line n k + 1 clocks ago.
+  logic       started_q = 1'b0, once_q, above;
+  logic [1:0] pin_q;
+  logic [2:0] lowest_q;
+  logic [7:0] isr_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      once_q <= 1'b0;
+      pin_q  <= 2'b00;
+    end else begin
+      once_q <= ((once_q & ~icw1) | (served & (acked == n))) & pin_q[1];
+      pin_q  <= {pin_q[0], line_i[n]};
+    end
+  end
+
+  // Whether the level that an end has taken out of service was above n.
+  always_ff @(posedge clk_i) {isr_q, lowest_q} <= {isr, \dut.lowest_q };
+  always_comb begin
+    above = 1'b0;
+    for (int unsigned k = 0; k < 8; k++) begin
+      if (isr_q[k] && !isr[k]) above = (k[2:0] - lowest_q - 3'd1) < (n - lowest_q - 3'd1);
+    end
+  end
+
+  always @(posedge clk_i) begin
+    started_q <= 1'b1;
+    assume (started_q || !rst_ni);
+    assume (!rd_i || !wr_i);
+    if (started_q && rst_ni && $past(rst_ni)) begin
+      // R1: INT is asked for only by a level that asks and is not masked, and such a one is acknowledged.
+      if (request) begin
+        R1: assert ((irr & ~imr) != 8'h00 && (!served || (irr[acked] && !imr[acked])));
+        C1: cover (served && (irr & imr) != 8'h00);
+      end
+
+      // R2: What is acknowledged is above every level that holds off others.
+      if (served && holds) begin
+        R2: assert (rank_acked < rank_n);
+        C2: cover (\dut.lowest_q != 3'd7);
+      end
+
+      // R3: What is acknowledged is the highest of all that ask and are not masked.
+      if (served && irr[n] && !imr[n]) begin
+        R3: assert (rank_acked <= rank_n);
+        C3: cover (acked != n);
+      end
+
+      // R4: By edge a line that was acknowledged does not ask again before it has been low.
+      if (once_q && !level) begin
+        R4: assert (!irr[n]);
+        C4: cover (pin_q[0] && pin_q[1]);
+      end
+
+      // R5: An acknowledge without a request gives IR7 and changes nothing in service.
+      if ($past(acknowledge && !request)) begin
+        R5: assert ($past(rdata[2:0]) == 3'd7 && isr == $past(isr));
+        C5: cover ($past(imr) != 8'hFF);
+      end
+
+      // R6: An end without a level ends the highest that holds off others, and it alone, or nothing if none does.
+      if ($past(end_plain)) begin
+        R6: assert ((isr & ~isr_q) == 8'h00 && ((isr_q & ~isr) & ((isr_q & ~isr) - 8'd1)) == 8'h00 &&
+                    (!$past(holds) || (isr != isr_q && (!isr[n] || above))));
+        C6: cover ($past(holds) && isr[n]);
+      end
+
+      // R7: In service comes a level by its acknowledge alone, and goes by an end or ICW1 alone.
+      R7: assert (isr[n] ? $past(isr[n] || (served && acked == n)) : $past(!isr[n] || icw1 || (ocw2 && wdata_i[5])));
+      C7: cover (isr[n] && !$past(isr[n]));
+
+      // R8: With automatic ends nothing comes into service.
+      if ($past(served && \dut.aeoi_q )) begin
+        R8: assert ((isr & ~$past(isr)) == 8'h00);
+        C8: cover ($past(irr) != irr);
+      end
+    end
+  end
+
+endmodule : pic_8259_rules
+
+`default_nettype wire

@@ -1,0 +1,117 @@
+"""Negative controls of the checks of the RTL: lint, shared functions, clock crossings."""
+
+import shutil
+import subprocess
+import sys
+import unittest
+
+from tree import TOOLS, Tree, run
+
+
+@unittest.skipUnless(shutil.which("verilator"), "verilator is not installed")
+class Lint(Tree):
+    GOOD = ("`default_nettype none\nmodule board_top (input wire a_i, output wire b_o);\n  assign b_o = a_i;\n"
+            "endmodule : board_top\n")
+
+    def test_clean_rtl_passes(self):
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 0, "clean")
+
+    def test_an_unused_input_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i", "= 1'b0"))
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "UNUSED")
+
+    def test_a_waiver_without_a_reason_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.write("rtl/lint.vlt", "`verilator_config\nlint_off -rule WIDTH -file \"*\"\n")
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "waiver without a reason")
+
+    def test_a_latch_fails(self):
+        latch = self.GOOD.replace("assign b_o = a_i;", "always_latch if (a_i) b_o = 1'b1;")
+        self.write("rtl/board/board_top.sv", latch.replace("output wire", "output logic"))
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "latch or initial block")
+
+    @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
+    def test_yosys_fails_on_an_undriven_net(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("= a_i;", "= a_i ^ c;\n  wire c;"))
+        self.expect(self.run_tool("lint_rtl.py", "yosys"), 1, "has no driver")
+
+    @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
+    def test_yosys_fails_on_a_latch_that_always_star_makes(self):
+        latch = self.GOOD.replace("assign b_o = a_i;", "always @* if (a_i) b_o = 1'b1;")
+        self.write("rtl/board/board_top.sv", latch.replace("output wire", "output reg"))
+        self.expect(self.run_tool("lint_rtl.py", "yosys"), 1, "dlatch")
+
+    def test_a_file_that_no_tool_reads_fails(self):
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.write("rtl/servo_ic/channel_extra.v", "module channel_extra;\nendmodule\n")
+        self.expect(self.run_tool("lint_rtl.py", "verilator"), 1, "channel_extra.v: no tool reads it")
+
+    def test_every_tool_finds_the_fault_of_a_module_that_the_board_does_not_use(self):
+        spare = self.GOOD.replace("board_top", "spare")
+        self.write("rtl/board/board_top.sv", self.GOOD)
+        self.write("rtl/servo_ic/spare.sv", spare.replace("  assign", "  nothing u_nothing ();\n  assign"))
+        for tool, program in (("verilator", "verilator"), ("yosys", "yosys"), ("icarus", "iverilog")):
+            if shutil.which(program) is not None:
+                self.expect(self.run_tool("lint_rtl.py", tool), 1, "nothing")
+        self.write("rtl/servo_ic/spare.sv", spare.replace("= a_i", "= a_i ^ c;\n  wire c"))
+        for tool, text in (("verilator", "UNDRIVEN"), ("yosys", "has no driver")):
+            if shutil.which(tool) is not None:
+                self.expect(self.run_tool("lint_rtl.py", tool), 1, text)
+
+    @unittest.skipUnless(shutil.which("iverilog"), "iverilog is not installed")
+    def test_icarus_fails_on_an_unknown_module(self):
+        self.write("rtl/board/board_top.sv", self.GOOD.replace("  assign", "  nothing u_nothing ();\n  assign"))
+        self.expect(self.run_tool("lint_rtl.py", "icarus"), 1, "nothing")
+
+
+class SharedFunctions(Tree):
+    """Generated code as Verilator writes it; only what the .cmake file lists is built."""
+
+    def generated(self, *ics, listed=True):
+        name = "Vboard_x_servo_ic__DepSet_h1__0.cpp"
+        self.write("Vboard_x.dir/Vboard_x.cmake", f'set(Vboard_x_CLASSES_FAST "/build/{name}")\n' if listed else "")
+        function = "Vboard_x_servo_ic___nba_sequent__TOP__gen_servo_ic__BRA__{}__KET____0(Vboard_x_servo_ic* vlSelf)"
+        self.write(f"Vboard_x.dir/{name}",
+                   "".join(f"VL_INLINE_OPT void {function.format(ic)} {{\n}}\n" for ic in ics))
+        return self.check()
+
+    def check(self):
+        return subprocess.run([sys.executable, TOOLS / "check_shared.py", self.root / "Vboard_x.dir"], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def test_one_set_passes(self):
+        self.expect(self.generated(0), 0, "clean")
+
+    def test_a_second_set_fails(self):
+        self.expect(self.generated(0, 7), 1, "servo IC 7 has 1 functions of its own")
+
+    def test_nothing_to_check_fails(self):
+        self.expect(self.generated(0, listed=False), 1, "no functions of servo_ic found")
+        (self.root / "Vboard_x.dir/Vboard_x.cmake").unlink()
+        self.expect(self.check(), 1, "no such file; expected a folder that the build has generated")
+
+
+@unittest.skipIf(shutil.which("yosys") is None, "yosys is not installed")
+class ClockCrossings(Tree):
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(TOOLS.parent / "rtl", self.root / "rtl")
+
+    def plant(self, path, old, new):
+        text = (self.root / path).read_text()
+        self.assertEqual(text.count(old), 1, old)
+        self.write(path, text.replace(old, new))
+
+    def test_a_pin_that_feeds_logic_fails(self):
+        self.plant("rtl/board/clock_select.sv", ".d_i(ext_phase_i), .q_o(ext_phase)", ".d_i(1'b1), .q_o()")
+        self.plant("rtl/board/clock_select.sv", "(drivers_q[44] & ext_phase)", "(drivers_q[44] & ext_phase_i)")
+        self.expect(self.run_tool("check_cdc.py"), 1, "ext_phase_i reaches u_clock_select.phase_q (data)")
+
+    def test_logic_that_looks_at_the_first_flip_flop_fails(self):
+        self.plant("rtl/board/bus_sync.sv", "rd2_q ^ rd3_q", "rd1_q ^ rd3_q")
+        self.expect(self.run_tool("check_cdc.py"), 1, "u_bus_strobes.rd_q reaches u_bus_sync.rd1_q (data)")
+
+
+if __name__ == "__main__":
+    run()
