@@ -3,8 +3,7 @@
 namespace brick {
 
 ServoIc::ServoIc(const sc_core::sc_module_name& name)
-    : sc_module(name), socket("socket"), regs_("regs"), clock_gen_("clock_gen"), channels_("channels") {
-  socket.register_b_transport(this, &ServoIc::b_transport);
+    : sc_module(name), regs_("regs"), clock_gen_("clock_gen"), channels_("channels") {
   apply_registers();
 }
 
@@ -79,25 +78,6 @@ void ServoIc::jump(Tick by) {
   channels_.jump(by);
   now_ += by;
   chain_edge_ += by;
-}
-
-void ServoIc::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) {
-  const sc_dt::uint64 address = payload.get_address();
-  if (address >= 32 * 8 || address % 4 != 0) return payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  if (payload.get_data_length() != 4 || payload.get_streaming_width() < 4)
-    return payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
-  if (payload.get_byte_enable_ptr() != nullptr) return payload.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-
-  const bool x = (address & 4) != 0;
-  const auto offset = static_cast<unsigned>(address / 8);
-  unsigned char* data = payload.get_data_ptr();
-  if (payload.is_write()) {
-    write(x, offset, data[0] | data[1] << 8 | data[2] << 16);
-  } else if (payload.is_read()) {
-    const std::uint32_t value = read(x, offset);
-    for (unsigned i = 0; i < 4; ++i) data[i] = static_cast<unsigned char>(value >> (8 * i));
-  }
-  payload.set_response_status(tlm::TLM_OK_RESPONSE);
 }
 
 }  // namespace brick

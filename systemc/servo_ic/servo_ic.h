@@ -1,14 +1,11 @@
-// Model of rtl/servo_ic/servo_ic.sv: servo IC (DSPGATE1) with its register face and its clock pins. The register face
-// is a TLM-2.0 target socket (address 8 * offset + 4 for X, + 0 for Y, 4 bytes, value in the low 24 bits); the board,
-// which keeps time in ticks, uses read() and write() behind it.
+// Model of rtl/servo_ic/servo_ic.sv: servo IC (DSPGATE1) with its register face and its clock pins, in ticks. Ports, a
+// TLM-2.0 socket and SystemC's time are in front of it in systemc/component.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 
-#include <tlm_utils/simple_target_socket.h>
 #include <systemc>
-#include <tlm>
 
 #include "systemc/core/model_block.h"
 #include "systemc/servo_ic/clock_follower.h"
@@ -21,8 +18,6 @@ namespace brick {
 class ServoIc : public sc_core::sc_module, public ClockFollower {
  public:
   explicit ServoIc(const sc_core::sc_module_name& name);
-
-  tlm_utils::simple_target_socket_optional<ServoIc> socket;
 
   // Registers as they stand after the last executed edge; a write is executed by that edge, so call advance() first.
   std::uint32_t read(bool x, unsigned offset) const { return regs_.read(x, offset) | channels_.read(x, offset); }
@@ -62,7 +57,6 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
   void mark() override;
   bool repeats() const override;
   void jump(Tick by) override;
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
   void apply_registers();
 
   ServoIcRegs regs_;

@@ -246,32 +246,5 @@ TYPED_TEST(ServoIcOn, PinIsNotTakenWhileItsNetIsLow) {
   EXPECT_TRUE(this->rig.servo_oe());
 }
 
-// The model's register face for SystemC users.
-TEST(ServoIcSocket, ReadsAndWritesTheSameRegisters) {
-  ServoIc ic(sc_core::sc_gen_unique_name("servo_ic"));
-  ic.reset(0);
-  auto access = [&](tlm::tlm_command command, std::uint64_t address, std::uint32_t value, unsigned length = 4) {
-    unsigned char data[4];
-    for (unsigned i = 0; i < 4; ++i) data[i] = static_cast<unsigned char>(value >> (8 * i));
-    tlm::tlm_generic_payload payload;
-    payload.set_command(command);
-    payload.set_address(address);
-    payload.set_data_ptr(data);
-    payload.set_data_length(length);
-    payload.set_streaming_width(length);
-    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    ic.socket.get_base_export()->b_transport(payload, delay);
-    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
-    return std::make_pair(payload.get_response_status(),
-                          data[0] | data[1] << 8 | data[2] << 16 | static_cast<std::uint32_t>(data[3]) << 24);
-  };
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 8 * kClockWord + 4, 0), std::make_pair(tlm::TLM_OK_RESPONSE, 0x3038D2u));
-  EXPECT_EQ(access(tlm::TLM_WRITE_COMMAND, 8 * kAdcStrobe + 4, 0xF84DFE).first, tlm::TLM_OK_RESPONSE);
-  EXPECT_EQ(ic.read(true, kAdcStrobe), 0xF84DFEu);
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 8 * kAdcStrobe, 0).second, 0u) << "the Y word";
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 256, 0).first, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 0, 0, 2).first, tlm::TLM_BURST_ERROR_RESPONSE);
-}
-
 }  // namespace
 }  // namespace brick

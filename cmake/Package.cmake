@@ -1,0 +1,47 @@
+# What other people's designs link: find_package(brick) with brick::systemc (components on the SystemC model) and
+# brick::rtl (the engines with the Verilated RTL). Each is one library of all it needs of ours, so that the installed
+# tree has nothing but it and the public headers; tools/check_package.py builds examples/ against such a tree.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/brick)
+
+# brick_add_package_library(systemc PARTS brick_board ... LIBRARIES PkgConfig::SYSTEMC)
+function(brick_add_package_library name)
+  cmake_parse_arguments(P "" "" "PARTS;LIBRARIES" ${ARGN})
+  set(objects ${P_PARTS})
+  list(TRANSFORM objects REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
+  add_library(brick_package_${name} STATIC ${objects})
+  set_target_properties(brick_package_${name} PROPERTIES OUTPUT_NAME brick_${name} EXPORT_NAME ${name}
+                                                         LINKER_LANGUAGE CXX)
+  target_compile_features(brick_package_${name} INTERFACE cxx_std_17)
+  target_link_libraries(brick_package_${name} INTERFACE ${P_LIBRARIES})
+  install(TARGETS brick_package_${name} EXPORT brickTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT package
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+brick_add_package_library(systemc
+  PARTS brick_component brick_board brick_macro_ic brick_servo_ic brick_host_model
+  LIBRARIES PkgConfig::SYSTEMC Threads::Threads)
+brick_add_package_library(rtl
+  PARTS brick_component_rtl brick_chips brick_cosim brick_rtl brick_verilated
+  LIBRARIES brick_package_systemc fmt::fmt Threads::Threads)
+
+install(EXPORT brickTargets NAMESPACE brick:: DESTINATION ${package_dir} COMPONENT package)
+install(DIRECTORY systemc/component/include/brick DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT package)
+configure_package_config_file(cmake/brickConfig.cmake.in ${CMAKE_BINARY_DIR}/brickConfig.cmake
+                              INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/brickConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/brickConfig.cmake ${CMAKE_BINARY_DIR}/brickConfigVersion.cmake
+        DESTINATION ${package_dir} COMPONENT package)
+file(RELATIVE_PATH BRICK_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)  # an installed tree may be moved
+foreach(file brick brick-rtl)
+  configure_file(cmake/${file}.pc.in ${CMAKE_BINARY_DIR}/${file}.pc @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/${file}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT package)
+endforeach()
+
+if(NOT BRICK_SANITIZE AND NOT BRICK_COVERAGE)  # a user's program knows nothing of their flags
+  add_test(NAME package.examples
+    COMMAND Python3::Interpreter tools/check_package.py --build ${CMAKE_BINARY_DIR} --compiler ${CMAKE_CXX_COMPILER}
+    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  set_tests_properties(package.examples PROPERTIES TIMEOUT 300 LABELS unit)
+endif()

@@ -1,0 +1,124 @@
+#include "systemc/component/board_chip.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "systemc/component/board_words.h"
+
+namespace brick::component {
+namespace {
+using namespace board_words;
+
+class BoardChip final : public Chip {
+ public:
+  BoardChip(std::unique_ptr<brick::Board> board, std::uint32_t fitted, bool foresees)
+      : board_(std::move(board)), foresees_(foresees) {
+    for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+      if ((fitted >> ic & 1) != 0) {
+        place_[ic] = static_cast<unsigned>(ics_.size());
+        ics_.push_back(ic);
+      }
+    outputs_.resize(motor_output(static_cast<unsigned>(ics_.size())));
+    watched_.resize(outputs_.size());
+    inputs_.resize(motor_input(static_cast<unsigned>(ics_.size())));
+    take_pins();
+    board_->on_motor_change = [this](Tick, unsigned ic, const MotorOutputs&, const MotorOutputs& after) {
+      motor_moved_ = true;
+      take_motor(ic, after);
+    };
+  }
+
+  Tick now() const override { return board_->now(); }
+  const PinWords& outputs() const override { return outputs_; }
+
+  void watch(const PinWords& outputs) override {
+    watched_ = outputs;
+    std::copy_n(watched_.begin(), kBoardOutputWords, pins_.w.begin());
+    motors_ = false;
+    for (const unsigned ic : ics_) {
+      const unsigned word = motor_output(place_[ic]);
+      const MotorOutputs select{{watched_[word], watched_[word + 1], 0, 0, 0, 0}};
+      board_->watch_motor(ic, select);
+      board_->stop_on_motor(ic, select);
+      take_motor(ic, board_->motor_outputs(ic) & select);
+      motors_ = motors_ || select != MotorOutputs{};
+    }
+    any_ = motors_ || pins_ != BoardOutputs{};
+  }
+
+  void set_inputs(const PinWords& inputs) override {
+    for (const unsigned ic : ics_) {
+      const auto first = motor_input(place_[ic]);
+      if (set_ && std::equal(&inputs[first], &inputs[first + kChannels - 1] + 1, &inputs_[first])) continue;
+      MotorInputs pins;
+      pins.adc_a = pins.adc_b = 0;
+      for (unsigned n = 0; n < kChannels; ++n) {
+        const std::uint32_t word = inputs[first + n];
+        pins.pins[n] = static_cast<std::uint16_t>(word & 0xFFF);
+        pins.adc_a = static_cast<std::uint8_t>(pins.adc_a | (word >> servo_ic_words::kAdcA & 1) << n);
+        pins.adc_b = static_cast<std::uint8_t>(pins.adc_b | (word >> servo_ic_words::kAdcB & 1) << n);
+      }
+      board_->set_motor_inputs(ic, pins);
+    }
+    if (!set_ || !std::equal(inputs.begin(), inputs.begin() + kReset + 1, inputs_.begin())) {
+      BoardInputs in;
+      std::apply(
+          [&](const auto&... f) {
+            ((in.*f.pin = static_cast<std::remove_reference_t<decltype(in.*f.pin)>>(inputs[f.word] >> f.lsb &
+                                                                                    pin_mask(f.width))),
+             ...);
+          },
+          kInputFields);
+      in.rst_n = bit(inputs, kReset, 0);
+      board_->set_inputs(in);
+    }
+    inputs_ = inputs;
+    set_ = true;
+  }
+
+  bool run_until(Tick limit) override {
+    motor_moved_ = false;
+    board_->run_until(limit, pins_);
+    return take_pins() || motor_moved_;
+  }
+
+  bool foresees() const override { return foresees_; }
+  Tick quiet_until() const override {
+    static constexpr BoardOutputs kAll{{~0u, ~0u, ~0u, ~0u}};
+    return any_ ? board_->quiet_until(motors_ ? kAll : pins_) : kNever;
+  }
+
+  std::uint32_t read(unsigned) override { throw std::logic_error("a board has no registers but behind its buses"); }
+  void write(unsigned, std::uint32_t) override { throw std::logic_error("a board has no registers"); }
+  std::uint32_t peek(unsigned) override { return 0; }
+
+ private:
+  bool take_pins() {
+    const BoardOutputs& now = board_->outputs();
+    bool moved = false;
+    for (unsigned i = 0; i < kBoardOutputWords; ++i) {
+      moved = moved || ((now.w[i] ^ outputs_[i]) & watched_[i]) != 0;
+      outputs_[i] = now.w[i];
+    }
+    return moved;
+  }
+  void take_motor(unsigned ic, const MotorOutputs& now) {
+    outputs_[motor_output(place_[ic])] = now.w[0];
+    outputs_[motor_output(place_[ic]) + 1] = now.w[1];
+  }
+
+  std::unique_ptr<brick::Board> board_;
+  std::vector<unsigned> ics_;
+  std::array<unsigned, kMaxServoIcs> place_{};
+  BoardOutputs pins_;  // watched
+  PinWords inputs_, outputs_, watched_;
+  bool foresees_, motors_ = false, any_ = false, set_ = false, motor_moved_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Chip> board_chip(std::unique_ptr<brick::Board> board, std::uint32_t fitted, bool foresees) {
+  return std::make_unique<BoardChip>(std::move(board), fitted & kServoIcs, foresees);
+}
+
+}  // namespace brick::component

@@ -1,0 +1,54 @@
+// A block behind the pins of a component, in one engine. It knows no kernel time: who owns it says up to which edge it
+// runs and sets its inputs in between. Pins are packed words, laid out as the component's pin table says. Outputs are
+// what stands after an edge; what a reset or another level changes without one is seen after the next.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "systemc/core/ticks.h"
+
+namespace brick::component {
+
+using PinWords = std::vector<std::uint32_t>;
+
+class Chip {
+ public:
+  virtual ~Chip() = default;
+
+  virtual Tick now() const = 0;  // edges executed
+  virtual const PinWords& outputs() const = 0;
+  virtual void watch(const PinWords& outputs) = 0;      // the bits that the calls below speak of
+  virtual void set_inputs(const PinWords& inputs) = 0;  // edge now() + 1 is the first to see them
+  // Executes edges up to `limit` or to the first that changes a watched output: true then.
+  virtual bool run_until(Tick limit) = 0;
+
+  // Whether quiet_until() looks ahead: a tick up to which no watched output changes, the inputs staying as they are.
+  virtual bool foresees() const { return false; }
+  virtual Tick quiet_until() const { return now(); }
+
+  // Registers. Edge now() + 1 is one of clk_ref: it is executed and takes the sample of the read, or makes the write.
+  virtual std::uint32_t read(unsigned address) = 0;
+  virtual void write(unsigned address, std::uint32_t value) = 0;
+  virtual std::uint32_t peek(unsigned address) = 0;  // what a read would take now
+};
+
+class ChipFactory {
+ public:
+  virtual ~ChipFactory() = default;
+  virtual std::unique_ptr<Chip> servo_ic() const = 0;
+  virtual std::unique_ptr<Chip> interrupt_controller() const = 0;
+  virtual std::unique_ptr<Chip> host_signals() const = 0;
+  virtual std::unique_ptr<Chip> watchdog() const = 0;
+  virtual std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const = 0;
+};
+
+inline bool differ(const PinWords& a, const PinWords& b, const PinWords& select) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (((a[i] ^ b[i]) & select[i]) != 0) return true;
+  return false;
+}
+inline bool bit(const PinWords& words, unsigned word, unsigned lsb) { return (words[word] >> lsb & 1) != 0; }
+
+}  // namespace brick::component

@@ -1,0 +1,156 @@
+#include "systemc/component/client.h"
+
+#include <sysc/kernel/sc_dynamic_processes.h>
+
+#include <algorithm>
+#include <string>
+
+#include "systemc/core/model_block.h"
+
+namespace brick::component {
+namespace {
+std::size_t words(const std::vector<PinInfo>& table, bool inputs) {
+  unsigned count = 0;
+  for (const PinInfo& info : table)
+    if ((info.direction == PinDirection::kIn) == inputs) count = std::max(count, info.word + 1);
+  return count;
+}
+std::uint32_t mask(const PinInfo& info) { return (info.width >= 32 ? ~0u : (1u << info.width) - 1) << info.lsb; }
+void put(PinWords& words, const PinInfo& info, std::uint32_t value) {
+  words[info.word] = (words[info.word] & ~mask(info)) | (value << info.lsb & mask(info));
+}
+}  // namespace
+
+Client::Client(Scheduler& scheduler, const std::vector<PinInfo>& table)
+    : scheduler_(scheduler),
+      table_(table),
+      outputs_(words(table, false)),
+      inputs_(words(table, true)),
+      shown_(outputs_.size()),
+      watched_(outputs_.size()) {
+  for (const PinInfo& info : table_)
+    if (info.direction == PinDirection::kIn) put(inputs_, info, info.idle);
+  scheduler_.add(*this);
+}
+Client::~Client() { scheduler_.remove(*this); }
+
+void Client::elaborate() {
+  bool any = false;
+  for (Pin* pin : pins_) {
+    if (!pin->bound()) continue;
+    const PinInfo& info = pin->info();
+    if (info.direction == PinDirection::kOut) {
+      outputs_[info.word].push_back(pin);
+      watched_[info.word] |= mask(info);
+      any = true;
+      continue;
+    }
+    sc_core::sc_spawn_options process;
+    process.spawn_method();
+    process.dont_initialize();
+    process.set_sensitivity(&pin->changed());
+    sc_core::sc_spawn([this, pin] { input_changed(*pin); }, ("on_" + info.name).c_str(), &process);
+  }
+  chip_->watch(watched_);
+  eager_ = any && !chip_->foresees();
+}
+
+void Client::start() {
+  for (const Pin* pin : pins_)
+    if (pin->bound() && pin->info().direction == PinDirection::kIn) set_input(*pin);
+  deliver(true);
+}
+
+void Client::set_input(const Pin& pin) {
+  put(inputs_, pin.info(), pin.read());
+  inputs_differ_ = true;
+}
+
+// The scheduler executes the edges that have passed with the old levels before it applies the new ones.
+void Client::input_changed(const Pin& pin) {
+  set_input(pin);
+  touch();
+}
+
+void Client::touch() {
+  touched_ = true;
+  scheduler_.wake();
+}
+
+void Client::serve(Tick tick) {
+  catch_up(tick);
+  deliver(false);
+  if (inputs_differ_) chip_->set_inputs(inputs_);
+  inputs_differ_ = touched_ = false;
+  due_ = eager_ ? kNever : std::min(quiet_until(), kNever - 1) + 1;
+}
+
+Tick Client::quiet_until() const {
+  const Tick chip = chip_->foresees() || eager_ ? chip_->quiet_until() : kNever;
+  return std::min(chip, access_.edge == kNever ? kNever : access_.edge - 1);
+}
+
+bool Client::run(Tick limit) {
+  while (chip_->now() < limit)
+    if (step(limit)) {
+      due_ = chip_->now();
+      return true;
+    }
+  return false;
+}
+
+void Client::catch_up(Tick tick) {
+  if (chip_->now() > tick)
+    SC_REPORT_ERROR(
+        "/brick/ahead",
+        "a pin has changed, or a register was accessed, where the engine has run ahead: from sc_main() only "
+        "at multiples of TimeOptions::grid");
+  while (chip_->now() < tick)
+    if (step(tick) && chip_->now() < tick)
+      SC_REPORT_FATAL("/brick/late", ("an output changed unforeseen at tick " + std::to_string(chip_->now())).c_str());
+}
+
+// Edges up to `limit`, or to the first that changes a watched output (true), or to that of an access.
+bool Client::step(Tick limit) {
+  if (access_.edge > limit) return chip_->run_until(limit);
+  if (chip_->now() < access_.edge - 1) return chip_->run_until(access_.edge - 1);
+  access_.edge = kNever;
+  if (access_.write)
+    chip_->write(access_.address, access_.value);
+  else
+    access_.value = chip_->read(access_.address);
+  return differ(chip_->outputs(), shown_, watched_);
+}
+
+void Client::deliver(bool all) {
+  const PinWords& now = chip_->outputs();
+  for (std::size_t word = 0; word < shown_.size(); ++word) {
+    const std::uint32_t moved = all ? ~0u : now[word] ^ shown_[word];
+    if ((moved & watched_[word]) != 0)
+      for (Pin* pin : outputs_[word])
+        if ((moved & mask(pin->info())) != 0) pin->write((now[word] & mask(pin->info())) >> pin->info().lsb);
+    shown_[word] = now[word];
+  }
+}
+
+std::uint32_t Client::access(bool write, unsigned address, std::uint32_t value) {
+  const unsigned ticket = tickets_++;
+  while (served_ != ticket) sc_core::wait(free_);
+  const Tick edge = next_ref_edge(scheduler_.tick());
+  access_ = {edge, write, address, value};
+  touch();
+  sc_core::wait(scheduler_.time_of(edge) - sc_core::sc_time_stamp());
+  catch_up(edge);
+  const std::uint32_t result = access_.value;
+  ++served_;
+  free_.notify();
+  return result;
+}
+
+std::uint32_t Client::peek(unsigned address) {
+  const Tick tick = scheduler_.tick();
+  if (chip_->now() < tick) catch_up(tick);
+  return chip_->peek(address);
+}
+
+}  // namespace brick::component

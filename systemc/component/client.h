@@ -1,0 +1,66 @@
+// A component's half behind the ports: its chip, the packed words of its pins, the register access under way.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <systemc>
+
+#include "systemc/component/chip.h"
+#include "systemc/component/include/brick/pins.h"
+#include "systemc/component/scheduler.h"
+
+namespace brick::component {
+
+class Client {
+ public:
+  Client(Scheduler& scheduler, const std::vector<PinInfo>& table);
+  ~Client();
+
+  void set_chip(std::unique_ptr<Chip> chip) { chip_ = std::move(chip); }
+  void add(Pin& pin) { pins_.push_back(&pin); }
+  const std::vector<Pin*>& pins() const { return pins_; }
+  void elaborate();  // once all ports are bound: what is watched, who wakes us
+
+  // For the initiator's process; waits.
+  std::uint32_t access(bool write, unsigned address, std::uint32_t value);
+  std::uint32_t peek(unsigned address);
+
+  // For the scheduler.
+  void start();           // levels of all inputs and outputs
+  void serve(Tick tick);  // at an edge that is due, or when an input has changed or an access has come
+  bool run(Tick limit);   // ahead of kernel time, to the first edge that changes a watched output: true, and it is due
+  bool eager() const { return eager_; }
+  bool touched() const { return touched_; }
+  Tick due() const { return due_; }
+  Tick quiet_until() const;
+
+ private:
+  struct Access {
+    Tick edge = kNever;  // of clk_ref that makes it; kNever: none, or it has been made
+    bool write = false;
+    unsigned address = 0;
+    std::uint32_t value = 0;
+  };
+  void input_changed(const Pin& pin);
+  void set_input(const Pin& pin);
+  void touch();
+  void catch_up(Tick tick);
+  bool step(Tick limit);
+  void deliver(bool all);
+
+  Scheduler& scheduler_;
+  const std::vector<PinInfo>& table_;
+  std::unique_ptr<Chip> chip_;
+  std::vector<Pin*> pins_;
+  std::vector<std::vector<Pin*>> outputs_;  // bound ones, by word
+  PinWords inputs_, shown_, watched_;
+  Access access_;
+  unsigned tickets_ = 0, served_ = 0;  // initiators in the order of their calls
+  sc_core::sc_event free_;
+  bool eager_ = false, touched_ = false, inputs_differ_ = true;
+  Tick due_ = 0;
+};
+
+}  // namespace brick::component

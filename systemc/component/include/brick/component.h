@@ -1,0 +1,58 @@
+// What all components have in common: pins, the register socket, the time base, the engine. Everything happens through
+// events; a component whose bound outputs stand still costs nothing.
+//
+// Register sockets (TLM-2.0, generic payload, blocking). An access waits for the delay that is annotated, then for the
+// first edge of clk_ref after it, which takes the sample of the read or executes the write; it returns in the instant
+// of that edge with the delay 0, so its result and its time do not depend on the initiator's quantum. Accesses that
+// meet take one edge each, in the order of their calls. Debug transport reads what a read would take now and changes
+// nothing; it writes nothing. No DMI: reads have side effects.
+//   TLM_ADDRESS_ERROR_RESPONSE      not aligned to the width of the register, or beyond the last
+//   TLM_BURST_ERROR_RESPONSE        another length than one register, or a streaming width below it
+//   TLM_BYTE_ENABLE_ERROR_RESPONSE  byte enables: a register is read and written as a whole
+//   TLM_COMMAND_ERROR_RESPONSE      neither read nor write
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <systemc>
+#include <tlm>
+
+#include <brick/engine.h>
+#include <brick/pins.h>
+#include <brick/time_base.h>
+
+namespace brick::component {
+
+class Chip;
+class Client;
+
+class Component : public sc_core::sc_module {
+ public:
+  ~Component() override;
+
+  const std::vector<Pin*>& pins() const;           // in the order of the table
+  void trace(sc_core::sc_trace_file* file) const;  // all bound pins, after elaboration: COMPONENT.PIN
+
+ protected:
+  struct RegisterFace {
+    unsigned width;           // bytes of a register
+    std::uint64_t addresses;  // bytes of all
+  };
+  Component(const sc_core::sc_module_name& name, TimeBase& time, const std::vector<PinInfo>& table,
+            RegisterFace registers = {1, 0});
+  void set_chip(std::unique_ptr<Chip> chip);  // once, at the end of the construction
+  void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  unsigned debug(tlm::tlm_generic_payload& payload);
+
+ private:
+  friend class Pin;
+  const PinInfo& add(Pin& pin, std::string_view name);
+  void end_of_elaboration() override;
+
+  const std::vector<PinInfo>& table_;
+  RegisterFace registers_;
+  std::unique_ptr<Client> client_;
+};
+
+}  // namespace brick::component

@@ -1,0 +1,93 @@
+// Ports of a component. A pin may stay unbound: an input then has its idle level, an output costs nothing. A pin of one
+// bit is a port of bool, a wider one of sc_uint. A pin that goes both ways is three ports: NAME_i, NAME_o and NAME_oe,
+// high while the component drives it; NAME_o is high while it does not.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <systemc>
+
+namespace brick::component {
+
+class Component;
+
+enum class PinDirection {
+  kIn,
+  kOut,
+  kInner  // no port: compared in lock-step
+};
+
+// A row of a component's pin table, which serves ports, documentation, traces and messages alike.
+struct PinInfo {
+  std::string name;  // of the port
+  PinDirection direction;
+  unsigned word, lsb, width;  // place in the packed words of inputs or outputs
+  std::uint32_t idle;         // level of an input that is not bound
+  std::string section;        // of the data sheet
+  std::string meaning;        // for the documentation
+};
+
+class Pin {
+ public:
+  virtual ~Pin() = default;
+  Pin(const Pin&) = delete;
+  Pin& operator=(const Pin&) = delete;
+
+  const PinInfo& info() const { return info_; }
+  virtual bool bound() const = 0;
+  virtual std::uint32_t read() const = 0;
+  virtual void write(std::uint32_t value) = 0;                 // outputs only
+  virtual const sc_core::sc_event& changed() const = 0;        // inputs only
+  virtual void trace(sc_core::sc_trace_file* file) const = 0;  // the signal bound, under the component's and pin's name
+
+ protected:
+  Pin(Component& owner, std::string_view name, unsigned width);
+  const Component& owner_;
+
+ private:
+  const PinInfo& info_;
+};
+
+template <unsigned kWidth>
+using PinValue = std::conditional_t<kWidth == 1, bool, sc_dt::sc_uint<static_cast<int>(kWidth)>>;
+
+std::string pin_trace_name(const Component& owner, const PinInfo& info);
+
+template <unsigned kWidth = 1>
+class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>,
+           public Pin {
+  using Port = sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+
+ public:
+  In(Component& owner, const std::string& name) : Port(name.c_str()), Pin(owner, name, kWidth) {}
+  bool bound() const override { return this->get_interface() != nullptr; }
+  std::uint32_t read() const override { return static_cast<std::uint32_t>(this->operator->()->read()); }
+  void write(std::uint32_t) override {}
+  const sc_core::sc_event& changed() const override { return this->operator->()->value_changed_event(); }
+  void trace(sc_core::sc_trace_file* file) const override {
+    sc_core::sc_trace(file, this->operator->()->read(), pin_trace_name(owner_, info()));
+  }
+};
+
+template <unsigned kWidth = 1>
+class Out : public sc_core::sc_port<sc_core::sc_signal_inout_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>,
+            public Pin {
+  using Port = sc_core::sc_port<sc_core::sc_signal_inout_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+
+ public:
+  Out(Component& owner, const std::string& name) : Port(name.c_str()), Pin(owner, name, kWidth) {}
+  bool bound() const override { return this->get_interface() != nullptr; }
+  std::uint32_t read() const override { return static_cast<std::uint32_t>(this->operator->()->read()); }
+  void write(std::uint32_t value) override {
+    const_cast<Out&>(*this).operator->()->write(static_cast<PinValue<kWidth>>(value));
+  }
+  const sc_core::sc_event& changed() const override { return this->operator->()->value_changed_event(); }
+  void trace(sc_core::sc_trace_file* file) const override {
+    sc_core::sc_trace(file, this->operator->()->read(), pin_trace_name(owner_, info()));
+  }
+};
+
+}  // namespace brick::component

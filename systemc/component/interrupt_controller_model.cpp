@@ -1,0 +1,73 @@
+// The interrupt controller of the SystemC model behind the pins of its component.
+#include "systemc/host/interrupt_controller.h"
+
+#include <algorithm>
+
+#include "systemc/component/interrupt_controller_words.h"
+#include "systemc/component/model_chip.h"
+#include "systemc/component/model_chips.h"
+#include "systemc/host/host_interrupt.h"
+
+namespace brick::component {
+namespace {
+using namespace interrupt_controller_words;
+
+class InterruptControllerModel final : public ModelChip {
+ public:
+  InterruptControllerModel() : ModelChip(2), pic_("model"), line_("line") { power_on(); }
+
+  std::uint32_t peek(unsigned address) override { return pic_.read(address); }
+
+ private:
+  void drive(const PinWords& in) override {
+    pic_.in.line = static_cast<std::uint8_t>(in[0] >> kLine);
+    pic_.in.reset = bit(in, 0, kResetDrv);
+    wire();
+  }
+  bool reset_low(const PinWords& in) const override { return !bit(in, 0, kRstN); }
+  Tick next_event() const override {
+    if (watched_[0] == 0 && watched_[1] == 0) return kNever;
+    return std::min(pic_.next_event(), line_.next_event());
+  }
+  void block_advance(Tick t) override {
+    while (pic_.now() < t) {
+      wire();
+      both(std::min({t, pic_.next_event(), line_.next_event()}));
+    }
+    wire();
+  }
+  void block_reset(Tick t) override {
+    pic_.reset(t);
+    line_.reset(t);
+    wire();
+  }
+  void block_access(Tick t, bool write, unsigned address, std::uint32_t value) override {
+    pic_.in.wr = write;
+    pic_.in.addr = static_cast<std::uint8_t>(address);
+    pic_.in.wdata = static_cast<std::uint8_t>(value);
+    wire();
+    both(t);
+    pic_.in.wr = false;
+    wire();
+  }
+  void show(PinWords& words) const override {
+    words[0] =
+        pic_.ist() | std::uint32_t{pic_.sig()} << 8 | std::uint32_t{pic_.msk()} << 16 | std::uint32_t{pic_.elr()} << 24;
+    words[1] = std::uint32_t{line_.irq()} << kIrq;
+  }
+
+  void wire() { line_.in = {pic_.request(), pic_.served()}; }
+  void both(Tick t) {  // the line sees what the controller showed before edge t
+    line_.advance(t);
+    pic_.advance(t);
+  }
+
+  brick::InterruptController pic_;
+  HostInterrupt line_;
+};
+
+}  // namespace
+
+std::unique_ptr<Chip> model_interrupt_controller() { return std::make_unique<InterruptControllerModel>(); }
+
+}  // namespace brick::component

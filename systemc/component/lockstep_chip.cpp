@@ -1,0 +1,106 @@
+#include "systemc/component/lockstep_chip.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace brick::component {
+namespace {
+
+class LockstepChip final : public Chip {
+ public:
+  LockstepChip(std::string name, std::unique_ptr<Chip> rtl, std::unique_ptr<Chip> model,
+               const std::vector<PinInfo>& table)
+      : name_(std::move(name)),
+        rtl_(std::move(rtl)),
+        model_(std::move(model)),
+        table_(table),
+        watched_(rtl_->outputs().size()),
+        before_(watched_.size()) {
+    const PinWords all(watched_.size(), ~0u);
+    rtl_->watch(all);
+    model_->watch(all);
+  }
+
+  Tick now() const override { return rtl_->now(); }
+  const PinWords& outputs() const override { return rtl_->outputs(); }
+  void watch(const PinWords& outputs) override { watched_ = outputs; }
+  void set_inputs(const PinWords& inputs) override {
+    rtl_->set_inputs(inputs);
+    model_->set_inputs(inputs);
+  }
+
+  bool run_until(Tick limit) override {
+    while (now() < limit) {
+      before_ = rtl_->outputs();
+      rtl_->run_until(std::min({limit, model_->quiet_until(), kNever - 1}) + (model_->quiet_until() < limit ? 1 : 0));
+      while (model_->now() < now())
+        if (model_->run_until(now()) && model_->now() < now()) fail(model_->now(), before_);
+      compare();
+      if (differ(rtl_->outputs(), before_, watched_)) return true;
+    }
+    return false;
+  }
+  Tick quiet_until() const override { return model_->quiet_until(); }
+
+  std::uint32_t read(unsigned address) override {
+    const std::uint32_t rtl = rtl_->read(address), model = model_->read(address);
+    same_word(address, rtl, model);
+    compare();
+    return rtl;
+  }
+  void write(unsigned address, std::uint32_t value) override {
+    rtl_->write(address, value);
+    model_->write(address, value);
+    compare();
+  }
+  std::uint32_t peek(unsigned address) override {
+    const std::uint32_t rtl = rtl_->peek(address);
+    same_word(address, rtl, model_->peek(address));
+    return rtl;
+  }
+
+ private:
+  void compare() const {
+    if (rtl_->outputs() != model_->outputs()) fail(now(), rtl_->outputs());
+  }
+  void same_word(unsigned address, std::uint32_t rtl, std::uint32_t model) const {
+    if (rtl == model) return;
+    std::ostringstream text;
+    text << "\n  register at byte " << address << std::hex << std::uppercase << ": rtl $" << rtl << ", systemc $"
+         << model;
+    report(now(), text.str());
+  }
+  void fail(Tick tick, const PinWords& rtl) const {
+    std::ostringstream text;
+    for (const PinInfo& info : table_) {
+      if (info.direction == PinDirection::kIn) continue;
+      const auto value = [&info](const PinWords& words) {
+        return words[info.word] >> info.lsb & (info.width >= 32 ? ~0u : (1u << info.width) - 1);
+      };
+      if (value(rtl) != value(model_->outputs()))
+        text << "\n  " << info.name << ": rtl " << value(rtl) << ", systemc " << value(model_->outputs());
+    }
+    report(tick, text.str());
+  }
+  void report(Tick tick, const std::string& differences) const {
+    const TimeFs time = tick_to_fs(tick);
+    std::ostringstream text;
+    text << name_ << ": RTL and SystemC model differ at tick " << tick << " (" << time / kFsPerNs << " ns)"
+         << differences;
+    SC_REPORT_ERROR("/brick/lockstep", text.str().c_str());
+  }
+
+  std::string name_;
+  std::unique_ptr<Chip> rtl_, model_;
+  const std::vector<PinInfo>& table_;
+  PinWords watched_, before_;
+};
+
+}  // namespace
+
+std::unique_ptr<Chip> lockstep_chip(std::string name, std::unique_ptr<Chip> rtl, std::unique_ptr<Chip> model,
+                                    const std::vector<PinInfo>& table) {
+  return std::make_unique<LockstepChip>(std::move(name), std::move(rtl), std::move(model), table);
+}
+
+}  // namespace brick::component

@@ -1,0 +1,16 @@
+// Makers of the Verilated chips. Free of Verilator, whose headers and SystemC's do not go into one file.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "systemc/component/chip.h"
+
+namespace brick::component {
+
+std::unique_ptr<Chip> rtl_servo_ic(std::uint64_t seed);
+std::unique_ptr<Chip> rtl_interrupt_controller(std::uint64_t seed);
+std::unique_ptr<Chip> rtl_host_signals(std::uint64_t seed);
+std::unique_ptr<Chip> rtl_watchdog(std::uint64_t seed);
+
+}  // namespace brick::component

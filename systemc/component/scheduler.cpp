@@ -1,0 +1,96 @@
+#include "systemc/component/scheduler.h"
+
+#include <sysc/kernel/sc_dynamic_processes.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "systemc/component/client.h"
+
+namespace brick::component {
+namespace {
+using sc_core::sc_time;
+const TimeBase* the_one = nullptr;  // of this simulation
+}  // namespace
+
+Scheduler::Scheduler(const TimeOptions& options)
+    : epoch_(options.epoch.value()),
+      grid_(std::max<sc_time::value_type>(options.grid.value(), 1)),
+      unit_(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15)) {
+  if (unit_ > kFsPerNs)
+    SC_REPORT_ERROR("/brick/resolution",
+                    "the kernel's time resolution is coarser than 1 ns: edges would fall together");
+}
+
+sc_time Scheduler::time_of(Tick edge) const {
+  return sc_time::from_value(epoch_ + static_cast<sc_time::value_type>(tick_to_fs(edge) / unit_) + 1);
+}
+
+// The last edge whose true time is before `instant`.
+Tick Scheduler::tick_at(const sc_time& instant) const {
+  if (instant.value() <= epoch_) return 0;
+  return fs_to_tick(static_cast<TimeFs>(instant.value() - epoch_) * unit_) - 1;
+}
+
+void Scheduler::remove(Client& client) { clients_.erase(std::find(clients_.begin(), clients_.end(), &client)); }
+
+void Scheduler::start() {
+  started_ = true;
+  for (Client* client : clients_) {
+    client->start();
+    if (client->eager()) eager_.push_back(client);
+  }
+}
+
+void Scheduler::step() {
+  if (!started_) start();
+  const sc_time now = sc_core::sc_time_stamp();
+  const Tick tick = tick_at(now);
+  Tick next = kNever;
+  for (Client* client : clients_) {
+    if (client->due() <= tick || client->touched()) client->serve(tick);
+    next = std::min(next, client->due());
+  }
+  sc_time wake = next == kNever ? sc_core::sc_max_time() : time_of(next);
+  if (!eager_.empty()) {
+    // Nothing is pending before that time; it is zero while a later delta cycle may still change an input.
+    const sc_time grid = sc_time::from_value((now.value() / grid_ + 1) * grid_);
+    wake = std::min({wake, grid, now + sc_core::sc_time_to_pending_activity()});
+    const Tick changed = run_ahead(tick, tick_at(wake));
+    if (changed != kNever) wake = time_of(changed);
+  }
+  if (wake == sc_core::sc_max_time())
+    sc_core::next_trigger(changed_);
+  else
+    sc_core::next_trigger(wake - now, changed_);
+}
+
+// Returns the first edge at which an output changed, and nobody stands beyond it.
+Tick Scheduler::run_ahead(Tick from, Tick limit) {
+  if (eager_.size() == 1) return eager_.front()->run(limit) ? eager_.front()->due() : kNever;
+  for (Tick to = from; to < limit;) {
+    Tick quiet = kNever;
+    for (const Client* client : eager_) quiet = std::min(quiet, client->quiet_until());
+    to = std::min(limit, std::max(quiet, to) + 1);
+    bool changed = false;
+    for (Client* client : eager_) changed = client->run(to) || changed;
+    if (changed) return to;
+  }
+  return kNever;
+}
+
+TimeBase::TimeBase(const sc_core::sc_module_name& name, const TimeOptions& options) : sc_module(name) {
+  if (the_one != nullptr) SC_REPORT_ERROR("/brick/time_base", "a simulation has one time base: share it");
+  the_one = this;
+  scheduler_ = std::make_unique<Scheduler>(options);
+  sc_core::sc_spawn_options process;
+  process.spawn_method();
+  sc_core::sc_spawn([this] { scheduler_->step(); }, "step", &process);
+}
+TimeBase::~TimeBase() {
+  if (the_one == this) the_one = nullptr;
+}
+sc_time TimeBase::time_of(Tick edge) const { return scheduler_->time_of(edge); }
+Tick TimeBase::tick_at(const sc_time& instant) const { return scheduler_->tick_at(instant); }
+
+}  // namespace brick::component

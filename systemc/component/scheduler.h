@@ -1,0 +1,43 @@
+// Moves all components of a simulation, in one process; the rules are in brick/time_base.h and docs/architecture.md.
+// A component that foresees its outputs is woken for their next change. The others execute edges ahead of kernel time:
+// in one go when there is one, in turn when there are several, so that none passes an edge at which another changes.
+// All ports are written here, so that a signal has one driver.
+#pragma once
+
+#include <vector>
+
+#include <systemc>
+
+#include "systemc/component/include/brick/time_base.h"
+#include "systemc/core/ticks.h"
+
+namespace brick::component {
+
+class Client;
+
+class Scheduler {
+ public:
+  explicit Scheduler(const TimeOptions& options);
+
+  sc_core::sc_time time_of(Tick edge) const;
+  Tick tick_at(const sc_core::sc_time& instant) const;
+  Tick tick() const { return tick_at(sc_core::sc_time_stamp()); }
+
+  void add(Client& client) { clients_.push_back(&client); }
+  void remove(Client& client);
+  void wake() { changed_.notify(sc_core::SC_ZERO_TIME); }  // later in this instant: a client has been touched
+
+  void step();  // the process
+
+ private:
+  void start();
+  Tick run_ahead(Tick from, Tick limit);
+
+  sc_core::sc_time::value_type epoch_, grid_;
+  TimeFs unit_;  // of the kernel's resolution
+  std::vector<Client*> clients_, eager_;
+  sc_core::sc_event changed_;
+  bool started_ = false;
+};
+
+}  // namespace brick::component

@@ -1,0 +1,78 @@
+// The servo IC of the SystemC model behind the pins of its component.
+#include "systemc/servo_ic/servo_ic.h"
+
+#include "systemc/component/model_chip.h"
+#include "systemc/component/model_chips.h"
+#include "systemc/component/servo_ic_words.h"
+
+namespace brick::component {
+namespace {
+using namespace servo_ic_words;
+
+class ServoIcModel final : public ModelChip {
+ public:
+  ServoIcModel() : ModelChip(kOutputWords), ic_("model") {
+    ic_.set_motor_inputs({});
+    power_on();
+  }
+
+  std::uint32_t peek(unsigned address) override { return ic_.read((address & 4) != 0, address / 8); }
+
+ private:
+  void drive(const PinWords& in) override {
+    MotorInputs pins;
+    pins.adc_a = pins.adc_b = 0;
+    for (unsigned n = 0; n < kChannels; ++n) {
+      pins.pins[n] = static_cast<std::uint16_t>(in[n] & 0xFFF);
+      pins.adc_a = static_cast<std::uint8_t>(pins.adc_a | (in[n] >> kAdcA & 1) << n);
+      pins.adc_b = static_cast<std::uint8_t>(pins.adc_b | (in[n] >> kAdcB & 1) << n);
+    }
+    ic_.set_motor_inputs(pins);
+    ic_.set_trip(bit(in, kControl, kTrip));
+    ic_.set_pins(bit(in, kControl, kPhaseIn), bit(in, kControl, kServoIn));
+  }
+  bool reset_low(const PinWords& in) const override { return !bit(in, kControl, kRstN); }
+
+  void watch_changed() override {
+    motor_ = {};
+    motor_.w[0] = watched_[0];
+    motor_.w[1] = watched_[1];
+    channels_of_equ_ = watched_[0] == 0 && (watched_[1] & ~kEquPins) == 0 ? watched_[1] / kFirstEqu : 0;
+  }
+  Tick next_event() const override {
+    Tick next = watched_[kClocks] != 0 ? ic_.next_event() : kNever;
+    if (channels_of_equ_ != 0)
+      next = std::min(next, ic_.next_equ_event(channels_of_equ_));
+    else if (motor_ != MotorOutputs{})
+      next = std::min(next, ic_.next_motor_event(motor_));
+    return next;
+  }
+  void block_advance(Tick t) override { ic_.advance(t); }
+  void block_reset(Tick t) override { ic_.reset(t); }
+  void block_access(Tick t, bool write, unsigned address, std::uint32_t value) override {
+    ic_.advance(t);
+    if (write)
+      ic_.write((address & 4) != 0, address / 8, value & 0xFFFFFF);
+    else
+      ic_.read_taken((address & 4) != 0, address / 8);
+  }
+  void show(PinWords& words) const override {
+    const MotorOutputs motor = ic_.motor_outputs();
+    words[0] = motor.w[0];
+    words[1] = motor.w[1];
+    const auto level = [](bool value, bool oe) { return static_cast<std::uint32_t>(value || !oe); };
+    words[kClocks] = level(ic_.phase(), ic_.phase_oe()) << kPhase | std::uint32_t{ic_.phase_oe()} << kPhaseOe |
+                     level(ic_.servo(), ic_.servo_oe()) << kServo | std::uint32_t{ic_.servo_oe()} << kServoOe;
+  }
+
+  static constexpr std::uint32_t kFirstEqu = 1u << motor_pin::kEqu.lsb, kEquPins = 0xF * kFirstEqu;
+  brick::ServoIc ic_;
+  MotorOutputs motor_;            // watched
+  unsigned channels_of_equ_ = 0;  // nothing but EQU of these is watched
+};
+
+}  // namespace
+
+std::unique_ptr<Chip> model_servo_ic() { return std::make_unique<ServoIcModel>(); }
+
+}  // namespace brick::component

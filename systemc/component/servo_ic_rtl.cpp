@@ -1,0 +1,55 @@
+// The Verilated servo IC behind the pins of its component.
+#include "Vservo_ic.h"
+#include "Vservo_ic___024root.h"
+#include "systemc/component/rtl_chips.h"
+#include "systemc/component/servo_ic_words.h"
+#include "systemc/component/verilated_chip.h"
+
+namespace brick::component {
+namespace {
+using namespace servo_ic_words;
+
+struct Ports {
+  static constexpr unsigned kOutputWords = servo_ic_words::kOutputWords;
+
+  static void drive(Vservo_ic& v, const PinWords& in) {
+    QData pins = 0;
+    unsigned adc_a = 0, adc_b = 0;
+    for (unsigned n = 0; n < kChannels; ++n) {
+      pins |= QData{in[n] & 0xFFF} << 12 * n;
+      adc_a |= (in[n] >> kAdcA & 1) << n;
+      adc_b |= (in[n] >> kAdcB & 1) << n;
+    }
+    v.pins_i = pins;
+    v.adc_a_i = static_cast<CData>(adc_a);
+    v.adc_b_i = static_cast<CData>(adc_b);
+    v.rst_ni = bit(in, kControl, kRstN);
+    v.trip_i = bit(in, kControl, kTrip);
+    v.phase_i = bit(in, kControl, kPhaseIn);
+    v.servo_i = bit(in, kControl, kServoIn);
+  }
+  static void sample(const Vservo_ic& v, PinWords& out) {
+    out[0] = static_cast<std::uint32_t>(v.motor_o);
+    out[1] = static_cast<std::uint32_t>(v.motor_o >> 32);
+    const std::uint32_t phase_oe = v.phase_oe_o, servo_oe = v.servo_oe_o;
+    out[kClocks] = (v.phase_o | (phase_oe ^ 1u)) << kPhase | phase_oe << kPhaseOe |
+                   (v.servo_o | (servo_oe ^ 1u)) << kServo | servo_oe << kServoOe;
+  }
+  static void access(Vservo_ic& v, bool on, bool write, unsigned address, std::uint32_t value) {
+    v.sel_i = on;
+    v.we_i = on && write;
+    v.rd_i = on && !write;
+    v.x_i = (address & 4) != 0;
+    v.addr_i = static_cast<CData>(address / 8);
+    v.wdata_i = value & 0xFFFFFF;
+  }
+  static std::uint32_t read(const Vservo_ic& v, unsigned) { return v.rdata_o; }
+};
+
+}  // namespace
+
+std::unique_ptr<Chip> rtl_servo_ic(std::uint64_t seed) {
+  return std::make_unique<VerilatedChip<Vservo_ic, Ports>>(seed);
+}
+
+}  // namespace brick::component

@@ -1,0 +1,43 @@
+// The watchdog of the SystemC model behind the pins of its component.
+#include "systemc/board/watchdog.h"
+
+#include "systemc/component/model_chip.h"
+#include "systemc/component/model_chips.h"
+#include "systemc/component/watchdog_words.h"
+
+namespace brick::component {
+namespace {
+using namespace watchdog_words;
+
+class WatchdogModel final : public ModelChip {
+ public:
+  WatchdogModel() : ModelChip(1), watchdog_("model") { power_on(); }
+
+  std::uint32_t peek(unsigned) override { return 0; }
+
+ private:
+  void drive(const PinWords& in) override {
+    watchdog_.servo = bit(in, 0, kServo);
+    watchdog_.pwr_good = bit(in, 0, kPwrGood);
+  }
+  bool reset_low(const PinWords& in) const override { return !bit(in, 0, kRstN); }
+  Tick next_event() const override { return watched_[0] == 0 ? kNever : watchdog_.next_event(); }
+  void block_advance(Tick t) override { watchdog_.advance(t); }
+  void block_reset(Tick t) override { watchdog_.reset(t); }
+  void block_access(Tick t, bool write, unsigned, std::uint32_t) override {
+    watchdog_.strobe = write;
+    watchdog_.advance(t);
+    watchdog_.strobe = false;
+  }
+  void show(PinWords& words) const override {
+    words[0] = std::uint32_t{watchdog_.trip()} << kTrip | std::uint32_t{watchdog_.relay()} << kRelay;
+  }
+
+  brick::Watchdog watchdog_;
+};
+
+}  // namespace
+
+std::unique_ptr<Chip> model_watchdog() { return std::make_unique<WatchdogModel>(); }
+
+}  // namespace brick::component

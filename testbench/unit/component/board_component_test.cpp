@@ -1,0 +1,219 @@
+// The board's component against the board of the model, on random traffic at Port A, at the ISA bus and on the motor
+// side. What a board sees at which tick is written down by a board in between, then played to the ports.
+#include <gtest/gtest.h>
+
+#include <brick/board.h>
+#include <brick/rtl.h>
+
+#include "systemc/board/model_board.h"
+#include "systemc/cosim/drive.h"
+#include "testbench/unit/component/own_process.h"
+#include "testbench/unit/component/rig.h"
+#include "testbench/unit/cosim/board_traffic.h"
+#include "testbench/unit/cosim/motor_traffic.h"
+#include "testbench/unit/covers.h"
+
+namespace brick::component {
+namespace {
+
+constexpr std::uint32_t kFitted = 0x3;
+
+// Names of the component's ports where they differ from those of core/board_pins.h.
+const std::map<std::string, std::string> kPorts{{"pa_wdata", "pa_data_i"},
+                                                {"isa_sd", "isa_sd_i"},
+                                                {"bus.rdata", "pa_data_o"},
+                                                {"bus.rdata_oe", "pa_data_oe"},
+                                                {"bus.ta_n", "pa_ta_n"},
+                                                {"cpu.irq_host", "irq_host"},
+                                                {"clock.phase", "phase"},
+                                                {"clock.servo", "servo"},
+                                                {"host.breq", "breq"},
+                                                {"host.ipos", "ipos"},
+                                                {"host.eror", "eror"},
+                                                {"host.f1er", "f1er"},
+                                                {"host.isa.rdata", "isa_sd_o"},
+                                                {"host.isa.sd_oe", "isa_sd_oe"},
+                                                {"host.isa.iochrdy", "isa_iochrdy"},
+                                                {"host.isa.memcs16_n", "isa_memcs16_n"},
+                                                {"host.irq", "isa_irq"},
+                                                {"host.hreq", "hreq"},
+                                                {"host.wdo", "wdo"},
+                                                {"watchdog.tripped", "wd_tripped"},
+                                                {"watchdog.relay", "wd_relay"},
+                                                {"watchdog.led", "wd_led"},
+                                                {"host.brld_n", "brld_n"},
+                                                {"host.erld_n", "erld_n"},
+                                                {"host.f1ld_n", "f1ld_n"},
+                                                {"host.ipld_n", "ipld_n"},
+                                                {"host.ctrl0", "ctrl0"},
+                                                {"host.ctrl1", "ctrl1"},
+                                                {"dpram.busy_host", "busy_host"},
+                                                {"dpram.busy_cpu", "busy_cpu"},
+                                                {"clock.source_ic", "phase_source"},
+                                                {"clock.conflict", "source_conflict"},
+                                                {"host.port.txde", "txde"},
+                                                {"host.port.rxdf", "rxdf"}};
+std::string port(std::string_view name) {
+  const auto place = kPorts.find(std::string(name));
+  return place == kPorts.end() ? std::string(name) : place->second;
+}
+
+// Passes everything on and writes it down: inputs at a time between two edges, outputs at that of their edge.
+class Recorder final : public brick::Board {
+ public:
+  explicit Recorder(const Binds& binds) : binds_(binds), board_(make_model_board(kFitted)) {
+    for (unsigned ic = 0; ic < 2; ++ic) board_->watch_motor(ic, kAllMotorOutputs);
+    board_->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
+      for (const PinField& f : pin::kAll)
+        if (before.get(f) != after.get(f)) note(t, port(f.name), after.get(f));
+    };
+    board_->on_motor_change = [this](Tick t, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+      for (const MotorField& f : motor_pin::kAll)
+        for (unsigned n = 0; f.width == 1 && n < (f.shared ? 1 : kChannels); ++n)
+          if (before.get(f, n) != after.get(f, n))
+            note(t, motor_port(ic, f.shared ? std::string(f.name) : channel(n, f.name)), after.get(f, n));
+    };
+  }
+  Tick now() const override { return board_->now(); }
+  const BoardOutputs& outputs() const override { return board_->outputs(); }
+  Tick run_until(Tick limit, const BoardOutputs& stop_on) override { return board_->run_until(limit, stop_on); }
+  void set_inputs(const BoardInputs& in) override {
+    board_->set_inputs(in);
+    next_call();
+    std::apply(
+        [&](const auto&... f) {
+          ((in.*f.pin != inputs_.*f.pin ? drive(port(f.name), static_cast<std::uint32_t>(in.*f.pin)) : void()), ...);
+        },
+        kInputFields);
+    if (in.rst_n != inputs_.rst_n || first_) drive("rst_n", in.rst_n);
+    inputs_ = in;
+    first_ = false;
+  }
+  void set_motor_inputs(unsigned ic, const MotorInputs& in) override {
+    board_->set_motor_inputs(ic, in);
+    next_call();
+    MotorInputs& old = motors_[ic];
+    for (unsigned n = 0; n < kChannels; ++n) {
+      for (unsigned i = 0; i < kChannelPins; ++i)
+        if (((in.pins[n] ^ old.pins[n]) >> i & 1) != 0)
+          drive(motor_port(ic, channel(n, kChannelPinNames[i])), in.pins[n] >> i & 1);
+      if (((in.adc_a ^ old.adc_a) >> n & 1) != 0) drive(motor_port(ic, channel(n, "adc_a")), in.adc_a >> n & 1);
+      if (((in.adc_b ^ old.adc_b) >> n & 1) != 0) drive(motor_port(ic, channel(n, "adc_b")), in.adc_b >> n & 1);
+    }
+    old = in;
+  }
+
+  Traffic traffic;
+  Seen seen;
+
+ private:
+  static std::string channel(unsigned n, std::string_view name) {
+    return "ch" + std::to_string(n + 1) + "_" + std::string(name);
+  }
+  static std::string motor_port(unsigned ic, const std::string& pin) { return servo_ic_scope(ic) + "_" + pin; }
+  void note(Tick t, const std::string& pin, std::uint32_t value) {
+    if (binds_(pin) && pin.rfind("host.pic", 0) != 0)  // no port
+      seen.changes.emplace_back(edge_time(t), pin, value);
+  }
+  // The changes of one call are in one instant, at random between the two edges; those of the next call at the same
+  // tick are later: a strobe that turns twice between two edges does turn.
+  void next_call() {
+    const Picoseconds last = edge_time(now() + 1) - 1;
+    if (at_ != now())
+      place_ = now() == 0 ? 0 : edge_time(now()) + random_() % 8000;
+    else
+      place_ = std::min(last, place_ + 1 + random_() % 40);
+    at_ = now();
+  }
+  void drive(const std::string& pin, std::uint32_t value) {
+    if (binds_(pin)) traffic.pins.push_back({place_, pin, value});
+  }
+
+  Binds binds_;
+  std::unique_ptr<brick::Board> board_;
+  BoardInputs inputs_;
+  std::array<MotorInputs, kMaxServoIcs> motors_{};
+  bool first_ = true;
+  std::mt19937 random_{7};
+  Tick at_ = -1;
+  Picoseconds place_ = 0;
+};
+
+template <class Drive>
+void board_agrees(const Engine& engine, Tick ticks, const Binds& binds, std::size_t least_changes, const Drive& life) {
+  Recorder recorder(binds);
+  life(recorder, ticks);
+  recorder.traffic.end = edge_time(ticks);
+  EXPECT_GE(recorder.seen.changes.size(), least_changes);
+  TimeBase time("time");
+  Board board("board", time, {kFitted, 0}, engine);
+  const sc_core::sc_time quantum;
+  Rig rig("rig", board, recorder.traffic, 0, quantum, binds);
+  sc_core::sc_start(sc_core::sc_time::from_value(recorder.traffic.end - 1));
+  EXPECT_EQ(difference(rig.seen, recorder.seen, recorder.traffic.end, binds), "");
+}
+
+void buses(brick::Board& board, Tick ticks) {
+  BoardTraffic::Options options;
+  options.dense = false;
+  BoardTraffic(11, options).run(board, ticks);
+}
+void motors(brick::Board& board, Tick ticks) {
+  MotorTrafficOptions options;
+  options.ics = kFitted;
+  MotorTraffic(12, options).run(board, ticks);
+}
+
+bool no_serial_clocks(const std::string& pin) {
+  return pin.find("dac") == std::string::npos && pin.find("adc_") == std::string::npos;
+}
+bool few(const std::string& pin) {
+  return pin == "isa_irq" || pin == "phase" || (pin.rfind("servo_ic", 0) != 0 && pin.find("_o") == std::string::npos);
+}
+
+// Inputs, and no output but the motors'.
+bool motor_side(const std::string& pin) {
+  return pin.rfind("servo_ic", 0) == 0 ||
+         std::none_of(pin::kAll.begin(), pin::kAll.end(), [&pin](const PinField& f) { return port(f.name) == pin; });
+}
+
+constexpr Tick kTicks = 1'000'000;
+
+TEST(BoardComponent, ModelAgreesWithTheBoardOnItsBuses) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] { board_agrees(model_engine(), kTicks, no_serial_clocks, 10'000, buses); });
+}
+TEST(BoardComponent, ModelAgreesWithTheBoardOnItsMotorSide) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] { board_agrees(model_engine(), kTicks, all, 10'000, motors); });
+}
+TEST(BoardComponent, MotorSideIsForeseenAlone) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] { board_agrees(model_engine(), kTicks / 4, motor_side, 2'000, motors); });
+}
+TEST(BoardComponent, RtlAgreesWithTheBoard) {
+  BRICK_COVERS("CARD-1 CARD-2");
+  in_own_process([] { board_agrees(rtl_engine(), kTicks, no_serial_clocks, 10'000, buses); });
+}
+TEST(BoardComponent, LockstepAgreesWithTheBoard) {
+  BRICK_COVERS("CARD-1 CARD-2");
+  in_own_process([] { board_agrees(lockstep_engine(), kTicks / 4, all, 2'000, motors); });
+}
+TEST(BoardComponent, UnboundPinsChangeNothing) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] { board_agrees(model_engine(), kTicks, few, 1'000, buses); });
+}
+
+// A pin that is new in the table needs a port.
+TEST(BoardComponent, EveryPinHasItsPort) {
+  in_own_process([] {
+    TimeBase time("time");
+    Board board("board", time);
+    std::size_t ports = 0;
+    for (const PinInfo& info : Board::pin_table(0x3)) ports += info.direction != PinDirection::kInner;
+    EXPECT_EQ(board.pins().size(), ports);
+  });
+}
+
+}  // namespace
+}  // namespace brick::component
