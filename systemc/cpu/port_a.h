@@ -79,6 +79,7 @@ class PortA : public sc_core::sc_module {
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
   bool running() const { return state_ == State::kRunning; }
   Tick stands_at() const { return stand_; }
+  TimeFs started_at() const { return clock_.time(origin_, 0); }  // the cycle under way, or not before then
   void step(PortAPins& pins, const BoardOutputs& board);     // pins are seen first by the edge after stands_at()
   void board_changed(Tick tick, const BoardOutputs& board);  // after each edge that changes an output
 
