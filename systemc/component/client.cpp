@@ -77,13 +77,20 @@ void Client::touch() {
   scheduler_.wake();
 }
 
-void Client::serve(Tick tick) {
+void Client::show(Tick tick) {
   catch_up(tick);
   deliver(false);
+  foresee();
+}
+
+void Client::take(Tick tick) {
+  catch_up(tick);
   if (inputs_differ_) chip_->set_inputs(inputs_);
   inputs_differ_ = touched_ = false;
-  due_ = eager_ ? kNever : std::min(quiet_until(), kNever - 1) + 1;
+  foresee();
 }
+
+void Client::foresee() { due_ = eager_ ? kNever : std::min(quiet_until(), kNever - 1) + 1; }
 
 Tick Client::quiet_until() const {
   const Tick chip = chip_->foresees() || eager_ ? chip_->quiet_until() : kNever;

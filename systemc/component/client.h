@@ -28,11 +28,12 @@ class Client {
   std::uint32_t peek(unsigned address);
 
   // For the scheduler.
-  void start();           // levels of all inputs and outputs
-  void serve(Tick tick);  // at an edge that is due, or when an input has changed or an access has come
-  bool run(Tick limit);   // ahead of kernel time, to the first edge that changes a watched output: true, and it is due
+  void start();          // levels of all inputs and outputs
+  void show(Tick tick);  // outputs of the edge that is due
+  void take(Tick tick);  // touched: inputs and an access, at the end of an instant
+  bool run(Tick limit);  // ahead of kernel time, to the first edge that changes a watched output: true, and it is due
   bool eager() const { return eager_; }
-  bool touched() const { return touched_; }
+  bool touched() const { return touched_; }  // an input has changed or an access has come
   Tick due() const { return due_; }
   Tick quiet_until() const;
 
@@ -46,6 +47,7 @@ class Client {
   void input_changed(const Pin& pin);
   void set_input(const Pin& pin);
   void touch();
+  void foresee();
   void catch_up(Tick tick);
   bool step(Tick limit);
   void deliver(bool all);
@@ -59,7 +61,7 @@ class Client {
   Access access_;
   unsigned tickets_ = 0, served_ = 0;  // initiators in the order of their calls
   sc_core::sc_event free_;
-  bool eager_ = false, touched_ = false, inputs_differ_ = true;
+  bool eager_ = false, touched_ = true, inputs_differ_ = true;
   Tick due_ = 0;
 };
 

@@ -46,14 +46,18 @@ void Scheduler::step() {
   if (!started_) start();
   const sc_time now = sc_core::sc_time_stamp();
   const Tick tick = tick_at(now);
+  for (Client* client : clients_)
+    if (client->due() <= tick) client->show(tick);
+  // An input may still change in a later delta cycle of this instant, by our own outputs too: the last one counts.
+  if (sc_core::sc_pending_activity_at_current_time()) return sc_core::next_trigger(sc_core::SC_ZERO_TIME);
   Tick next = kNever;
   for (Client* client : clients_) {
-    if (client->due() <= tick || client->touched()) client->serve(tick);
+    if (client->touched()) client->take(tick);
     next = std::min(next, client->due());
   }
   sc_time wake = next == kNever ? sc_core::sc_max_time() : time_of(next);
   if (!eager_.empty()) {
-    // Nothing is pending before that time; it is zero while a later delta cycle may still change an input.
+    // Nothing is pending before that time.
     const sc_time grid = sc_time::from_value((now.value() / grid_ + 1) * grid_);
     wake = std::min({wake, grid, now + sc_core::sc_time_to_pending_activity()});
     const Tick changed = run_ahead(tick, tick_at(wake));

@@ -1,7 +1,8 @@
 // Moves all components of a simulation, in one process; the rules are in brick/time_base.h and docs/architecture.md.
 // A component that foresees its outputs is woken for their next change. The others execute edges ahead of kernel time:
 // in one go when there is one, in turn when there are several, so that none passes an edge at which another changes.
-// All ports are written here, so that a signal has one driver.
+// All ports are written here, so that a signal has one driver. Outputs change in the first delta cycle of their
+// instant, inputs are taken in its last, when nothing is pending in it any more.
 #pragma once
 
 #include <vector>

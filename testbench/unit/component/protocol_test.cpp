@@ -9,6 +9,7 @@
 #include "systemc/component/lockstep_chip.h"
 #include "systemc/component/model_chips.h"
 #include "systemc/component/rtl_chips.h"
+#include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/rig.h"
 #include "testbench/unit/covers.h"
@@ -17,45 +18,6 @@ namespace brick::component {
 namespace {
 
 using sc_core::sc_time;
-
-// A process of the test with a socket.
-class Initiator : public sc_core::sc_module {
- public:
-  Initiator(const sc_core::sc_module_name& name, std::function<void(Initiator&)> program)
-      : sc_module(name), program_(std::move(program)) {
-    SC_HAS_PROCESS(Initiator);
-    SC_THREAD(run);
-  }
-  tlm_utils::simple_initiator_socket<Initiator> socket{"socket"};
-  bool ended = false;
-
-  std::uint32_t data = 0;
-  using Payload = std::unique_ptr<tlm::tlm_generic_payload>;
-  Payload payload(tlm::tlm_command command, std::uint64_t address, unsigned length = 4) {
-    auto p = std::make_unique<tlm::tlm_generic_payload>();
-    p->set_command(command);
-    p->set_address(address);
-    p->set_data_ptr(reinterpret_cast<unsigned char*>(&data));
-    p->set_data_length(length);
-    p->set_streaming_width(length);
-    return p;
-  }
-  tlm::tlm_response_status send(const Payload& p, sc_time& delay) {
-    socket->b_transport(*p, delay);
-    return p->get_response_status();
-  }
-  tlm::tlm_response_status send(const Payload& p) {
-    sc_time none;
-    return send(p, none);
-  }
-
- private:
-  void run() {
-    program_(*this);
-    ended = true;
-  }
-  std::function<void(Initiator&)> program_;
-};
 
 void with_servo_ic(const Engine& engine, const std::function<void(Initiator&)>& program) {
   TimeBase time("time");
