@@ -140,18 +140,37 @@ void Client::deliver(bool all) {
   }
 }
 
+// An initiator's place in the queue; it leaves by its destructor when its process is killed or reset, too, wherever it
+// waits, and what has not been made then is not made.
+class Client::Turn {
+ public:
+  explicit Turn(Client& client) : client_(client), place_(client.queue_.insert(client.queue_.end(), this)) {}
+  ~Turn() {
+    if (first()) client_.access_.edge = kNever;
+    client_.queue_.erase(place_);
+    client_.free_.notify();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  void wait() const {
+    while (!first()) sc_core::wait(client_.free_);
+  }
+
+ private:
+  bool first() const { return client_.queue_.front() == this; }
+  Client& client_;
+  std::list<const Turn*>::iterator place_;
+};
+
 std::uint32_t Client::access(bool write, unsigned address, std::uint32_t value) {
-  const unsigned ticket = tickets_++;
-  while (served_ != ticket) sc_core::wait(free_);
+  const Turn turn(*this);
+  turn.wait();
   const Tick edge = next_ref_edge(scheduler_.tick());
   access_ = {edge, write, address, value};
   touch();
   sc_core::wait(scheduler_.time_of(edge) - sc_core::sc_time_stamp());
   catch_up(edge);
-  const std::uint32_t result = access_.value;
-  ++served_;
-  free_.notify();
-  return result;
+  return access_.value;
 }
 
 std::uint32_t Client::peek(unsigned address) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <memory>
 #include <vector>
 
@@ -59,7 +60,8 @@ class Client {
   std::vector<std::vector<Pin*>> outputs_;  // bound ones, by word
   PinWords inputs_, shown_, watched_;
   Access access_;
-  unsigned tickets_ = 0, served_ = 0;  // initiators in the order of their calls
+  class Turn;
+  std::list<const Turn*> queue_;  // initiators in the order of their calls; the first has access_
   sc_core::sc_event free_;
   bool eager_ = false, touched_ = true, inputs_differ_ = true;
   Tick due_ = 0;

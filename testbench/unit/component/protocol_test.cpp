@@ -91,6 +91,30 @@ TEST(RegisterSocket, AccessesThatMeetTakeOneEdgeEach) {
   });
 }
 
+// Killed under way, killed in the queue, reset under way: others go on, what was not made yet is not made.
+TEST(RegisterSocket, AKilledOrResetInitiatorLeavesItFree) {
+  BRICK_COVERS("CARD-1");
+  for (const bool rtl : {false, true})
+    in_own_process([rtl] {
+      with_servo_ic(rtl ? rtl_engine() : model_engine(), [](Initiator& i) {
+        constexpr std::uint64_t kClockControl = 36;
+        const auto write = [&i] { return sc_core::sc_spawn([&i] { i.write(kClockControl, 0x3008D2); }); };
+        sc_core::wait(1, sc_core::SC_US);  // the next edge of clk_ref is 120, at 1017.2 ns
+        auto under_way = write(), waiting = write();
+        sc_core::wait(5, sc_core::SC_NS);
+        waiting.kill();
+        under_way.kill();
+        EXPECT_EQ(i.read(kClockControl), 0x3038D2u) << "not written";
+        EXPECT_EQ(sc_core::sc_time_stamp().value(), edge_time(120));
+        auto again = write();
+        sc_core::wait(5, sc_core::SC_NS);
+        again.reset();
+        EXPECT_EQ(i.read(kClockControl), 0x3008D2u);
+        EXPECT_EQ(sc_core::sc_time_stamp().value(), edge_time(126)) << "after the write, at 123";
+      });
+    });
+}
+
 TEST(RegisterSocket, DebugTransportReadsAndChangesNothing) {
   BRICK_COVERS("CARD-1");
   for (const bool rtl : {false, true})
