@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "systemc/component/error.h"
 #include "systemc/core/model_block.h"
 
 namespace brick::component {
@@ -108,10 +109,9 @@ bool Client::run(Tick limit) {
 
 void Client::catch_up(Tick tick) {
   if (chip_->now() > tick)
-    SC_REPORT_ERROR(
-        "/brick/ahead",
-        "a pin has changed, or a register was accessed, where the engine has run ahead: from sc_main() only "
-        "at multiples of TimeOptions::grid");
+    raise_error("/brick/ahead",
+                "a pin has changed, or a register was accessed, where the engine has run ahead: from sc_main() only "
+                "at multiples of TimeOptions::grid");
   while (chip_->now() < tick)
     if (step(tick) && chip_->now() < tick)
       SC_REPORT_FATAL("/brick/late", ("an output changed unforeseen at tick " + std::to_string(chip_->now())).c_str());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "systemc/component/error.h"
+
 namespace brick::component {
 namespace {
 
@@ -70,7 +72,7 @@ class LockstepChip final : public Chip {
          << model;
     report(now(), text.str());
   }
-  void fail(Tick tick, const PinWords& rtl) const {
+  [[noreturn]] void fail(Tick tick, const PinWords& rtl) const {
     std::ostringstream text;
     for (const PinInfo& info : table_) {
       if (info.direction == PinDirection::kIn) continue;
@@ -82,12 +84,12 @@ class LockstepChip final : public Chip {
     }
     report(tick, text.str());
   }
-  void report(Tick tick, const std::string& differences) const {
+  [[noreturn]] void report(Tick tick, const std::string& differences) const {
     const TimeFs time = tick_to_fs(tick);
     std::ostringstream text;
     text << name_ << ": RTL and SystemC model differ at tick " << tick << " (" << time / kFsPerNs << " ns)"
          << differences;
-    SC_REPORT_ERROR("/brick/lockstep", text.str().c_str());
+    raise_error("/brick/lockstep", text.str());
   }
 
   std::string name_;

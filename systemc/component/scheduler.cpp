@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "systemc/component/client.h"
+#include "systemc/component/error.h"
 
 namespace brick::component {
 namespace {
@@ -18,8 +19,7 @@ Scheduler::Scheduler(const TimeOptions& options)
       grid_(std::max<sc_time::value_type>(options.grid.value(), 1)),
       unit_(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15)) {
   if (unit_ > kFsPerNs)
-    SC_REPORT_ERROR("/brick/resolution",
-                    "the kernel's time resolution is coarser than 1 ns: edges would fall together");
+    raise_error("/brick/resolution", "the kernel's time resolution is coarser than 1 ns: edges would fall together");
 }
 
 sc_time Scheduler::time_of(Tick edge) const {
@@ -84,7 +84,7 @@ Tick Scheduler::run_ahead(Tick from, Tick limit) {
 }
 
 TimeBase::TimeBase(const sc_core::sc_module_name& name, const TimeOptions& options) : sc_module(name) {
-  if (the_one != nullptr) SC_REPORT_ERROR("/brick/time_base", "a simulation has one time base: share it");
+  if (the_one != nullptr) raise_error("/brick/time_base", "a simulation has one time base: share it");
   the_one = this;
   scheduler_ = std::make_unique<Scheduler>(options);
   sc_core::sc_spawn_options process;

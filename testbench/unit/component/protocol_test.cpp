@@ -160,6 +160,11 @@ TEST(Time, ACoarseKernelIsRefused) {
     sc_core::sc_set_time_resolution(10, sc_core::SC_NS);
     EXPECT_THROW(TimeBase("time"), sc_core::sc_report);
   });
+  in_own_process([] {
+    sc_core::sc_set_time_resolution(10, sc_core::SC_NS);
+    sc_core::sc_report_handler::set_actions(sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
+    EXPECT_THROW(TimeBase("time"), std::runtime_error) << "whatever a report does";
+  });
 }
 
 // What a main program does between two calls of sc_start().
