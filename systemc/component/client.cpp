@@ -174,8 +174,7 @@ std::uint32_t Client::access(bool write, unsigned address, std::uint32_t value) 
 }
 
 std::uint32_t Client::peek(unsigned address) {
-  const Tick tick = scheduler_.tick();
-  if (chip_->now() < tick) catch_up(tick);
+  catch_up(scheduler_.tick());
   return chip_->peek(address);
 }
 

@@ -80,13 +80,13 @@ void Component::transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& d
     set_value(payload, registers_.width, client_->access(false, address, 0));
 }
 
+// Command, address, data pointer and length are all that counts here; the status is left as it is.
 unsigned Component::debug(tlm::tlm_generic_payload& payload) {
-  if (!check(payload, registers_.width, registers_.addresses)) return 0;
-  if (!payload.is_read()) {
-    payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
+  const std::uint64_t address = payload.get_address();
+  if (!payload.is_read() || payload.get_data_ptr() == nullptr || payload.get_data_length() < registers_.width ||
+      address % registers_.width != 0 || address >= registers_.addresses)
     return 0;
-  }
-  set_value(payload, registers_.width, client_->peek(static_cast<unsigned>(payload.get_address())));
+  set_value(payload, registers_.width, client_->peek(static_cast<unsigned>(address)));
   return registers_.width;
 }
 

@@ -115,27 +115,6 @@ TEST(RegisterSocket, AKilledOrResetInitiatorLeavesItFree) {
     });
 }
 
-TEST(RegisterSocket, DebugTransportReadsAndChangesNothing) {
-  BRICK_COVERS("CARD-1");
-  for (const bool rtl : {false, true})
-    in_own_process([rtl] {
-      with_servo_ic(rtl ? rtl_engine() : model_engine(), [](Initiator& i) {
-        auto read = i.payload(tlm::TLM_READ_COMMAND, 4 * 9), write = i.payload(tlm::TLM_WRITE_COMMAND, 4 * 9);
-        EXPECT_EQ(i.socket->transport_dbg(*read), 4u);
-        EXPECT_EQ(i.data, 0x3038D2u);
-        i.data = 0;
-        EXPECT_EQ(i.socket->transport_dbg(*write), 0u);
-        EXPECT_EQ(i.socket->transport_dbg(*read), 4u);
-        EXPECT_EQ(i.data, 0x3038D2u) << "not written";
-        auto beyond = i.payload(tlm::TLM_READ_COMMAND, 256);
-        EXPECT_EQ(i.socket->transport_dbg(*beyond), 0u);
-        EXPECT_EQ(sc_core::sc_time_stamp(), sc_core::SC_ZERO_TIME);
-        tlm::tlm_dmi dmi;
-        EXPECT_FALSE(i.socket->get_direct_mem_ptr(*read, dmi)) << "a read may act";
-      });
-    });
-}
-
 TEST(Time, EdgesComeInTheFirstInstantAfterTheirTrueTime) {
   BRICK_COVERS("CARD-1");
   in_own_process([] {

@@ -5,7 +5,8 @@
 // first edge of clk_ref after it, which takes the sample of the read or executes the write; it returns in the instant
 // of that edge with the delay 0, so its result and its time do not depend on the initiator's quantum. Accesses that
 // meet take one edge each, in the order of their calls. Debug transport reads what a read would take now and changes
-// nothing; it writes nothing. No DMI: reads have side effects.
+// nothing, or is the error /brick/ahead (brick/time_base.h); it writes nothing and leaves the status. No DMI: reads
+// have side effects.
 //   TLM_ADDRESS_ERROR_RESPONSE      not aligned to the width of the register, or beyond the last
 //   TLM_BURST_ERROR_RESPONSE        another length than one register, or a streaming width below it
 //   TLM_BYTE_ENABLE_ERROR_RESPONSE  byte enables: a register is read and written as a whole
