@@ -129,5 +129,38 @@ TEST(ClockNet, SourceMovesBetweenEngines) {
   in_own_process([] { nets_agree(model_engine(), lockstep_engine()); });
 }
 
+// In a module of the user's, pins go to its own ports, inputs to its outputs too.
+class Board : public sc_core::sc_module {
+ public:
+  Board(const sc_core::sc_module_name& name, TimeBase& time) : sc_module(name), ic("ic", time) {
+    ic.ch[0].pwm_a_top(top);
+    ic.ch[1].enc_a(top);
+    ic.ch[1].enc_b.bind(both);
+    ic.ch[1].enc_c(in);
+  }
+  sc_core::sc_out<bool> top{"top"};
+  sc_core::sc_inout<bool> both{"both"};
+  sc_core::sc_in<bool> in{"in"};
+  ServoIc ic;
+};
+
+TEST(ClockNet, InputsBindToPortsOfEveryKind) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] {
+    TimeBase time("time");
+    Board board("board", time);
+    sc_core::sc_signal<bool> top("top"), both("both"), in("in");
+    board.top(top);
+    board.both(both);
+    board.in(in);
+    sc_core::sc_start(1, sc_core::SC_US);
+    both = true;
+    sc_core::sc_start(1, sc_core::SC_US);
+    EXPECT_TRUE(board.ic.ch[1].enc_a.bound());
+    EXPECT_EQ(board.ic.ch[1].enc_b.read(), 1u);
+    EXPECT_EQ(board.ic.ch[1].enc_c.read(), 0u);
+  });
+}
+
 }  // namespace
 }  // namespace brick::component

@@ -60,9 +60,15 @@ template <unsigned kWidth = 1>
 class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>,
            public Pin {
   using Port = sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+  using Outer = sc_core::sc_port_b<sc_core::sc_signal_inout_if<PinValue<kWidth>>>;
 
  public:
   In(Component& owner, const std::string& name) : Port(name.c_str()), Pin(owner, name, kWidth) {}
+  // A signal, or a port of the module around: sc_in, and as with sc_in also sc_out and sc_inout.
+  using Port::bind;
+  using Port::operator();
+  void bind(Outer& port) { sc_core::sc_port_base::bind(port); }
+  void operator()(Outer& port) { bind(port); }
   bool bound() const override { return this->get_interface() != nullptr; }
   std::uint32_t read() const override { return static_cast<std::uint32_t>(this->operator->()->read()); }
   void write(std::uint32_t) override {}
