@@ -12,6 +12,11 @@ namespace brick::component {
 namespace {
 using sc_core::sc_time;
 const TimeBase* the_one = nullptr;  // of this simulation
+
+// The end of time: 2.5 hours, which 64 bits of femtoseconds hold.
+constexpr TimeFs kLastFs = 9'000'000 * (kFsPerNs * 1'000'000);
+constexpr Tick kLastTick = fs_to_tick(kLastFs) - 1;
+[[noreturn]] void out_of_time() { raise_error("/brick/time", "beyond 2.5 hours after the epoch, or before it"); }
 }  // namespace
 
 Scheduler::Scheduler(const TimeOptions& options)
@@ -23,12 +28,17 @@ Scheduler::Scheduler(const TimeOptions& options)
 }
 
 sc_time Scheduler::time_of(Tick edge) const {
+  if (edge < 0 || edge > kLastTick) out_of_time();
+  return instant_of(edge);
+}
+sc_time Scheduler::instant_of(Tick edge) const {
   return sc_time::from_value(epoch_ + static_cast<sc_time::value_type>(tick_to_fs(edge) / unit_) + 1);
 }
 
 // The last edge whose true time is before `instant`.
 Tick Scheduler::tick_at(const sc_time& instant) const {
   if (instant.value() <= epoch_) return 0;
+  if (instant.value() - epoch_ > static_cast<sc_time::value_type>(kLastFs / unit_)) out_of_time();
   return fs_to_tick(static_cast<TimeFs>(instant.value() - epoch_) * unit_) - 1;
 }
 
@@ -55,7 +65,7 @@ void Scheduler::step() {
     if (client->touched()) client->take(tick);
     next = std::min(next, client->due());
   }
-  sc_time wake = next == kNever ? sc_core::sc_max_time() : time_of(next);
+  sc_time wake = next == kNever ? sc_core::sc_max_time() : instant_of(std::min(next, kLastTick + 1));
   if (!eager_.empty()) {
     // Nothing is pending before that time.
     const sc_time grid = sc_time::from_value((now.value() / grid_ + 1) * grid_);

@@ -32,6 +32,7 @@ class Scheduler {
 
  private:
   void start();
+  sc_core::sc_time instant_of(Tick edge) const;
   Tick run_ahead(Tick from, Tick limit);
 
   sc_core::sc_time::value_type epoch_, grid_;

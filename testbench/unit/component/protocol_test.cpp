@@ -134,6 +134,32 @@ TEST(Time, EdgesComeInTheFirstInstantAfterTheirTrueTime) {
   });
 }
 
+TEST(Time, EndsAfterTwoAndAHalfHours) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] {
+    TimeBase time("time");
+    InterruptController pic("pic", time);
+    sc_core::sc_signal<bool> line("line"), irq("irq");
+    pic.ir[1](line);
+    pic.irq(irq);
+    constexpr Tick kLast = Tick{9000} * kPwmClockHz - 1;  // 2.5 hours are tick 9000 x 117964800, not before them
+    EXPECT_EQ(time.time_of(kLast).value(), edge_time(kLast));
+    EXPECT_THROW(time.time_of(kLast + 1), sc_core::sc_report);
+    EXPECT_THROW(time.time_of(-1), sc_core::sc_report);
+    EXPECT_EQ(time.tick_at(sc_time(9000, sc_core::SC_SEC)), kLast);
+    EXPECT_THROW(time.tick_at(sc_time(9001, sc_core::SC_SEC)), sc_core::sc_report);
+    sc_core::sc_start(8000, sc_core::SC_SEC);
+    line = true;
+    sc_core::sc_start(1200, sc_core::SC_SEC);
+    line = false;
+    std::string type;
+    try {
+      sc_core::sc_start(1, sc_core::SC_MS);
+    } catch (const sc_core::sc_report& report) { type = report.get_msg_type(); }
+    EXPECT_EQ(type, "/brick/time");
+  });
+}
+
 TEST(Time, ACoarseKernelIsRefused) {
   in_own_process([] {
     sc_core::sc_set_time_resolution(10, sc_core::SC_NS);
