@@ -6,6 +6,7 @@
 
 #include "systemc/component/board_words.h"
 #include "systemc/component/chip.h"
+#include "systemc/component/error.h"
 #include "systemc/component/servo_ic_pins.h"
 
 namespace brick::component {
@@ -149,9 +150,17 @@ BoardServoIc::BoardServoIc(Component& board, const std::string& ic)
       adc_clk(board, ic + "adc_clk"),
       adc_strobe(board, ic + "adc_strobe") {}
 
+namespace {
+std::uint32_t checked(std::uint32_t fitted) {
+  constexpr unsigned kIcs = 22;  // as many as BoardInputs::fitted has bits
+  if (fitted >> kIcs != 0) raise_error("/brick/fitted", "BoardOptions::fitted has bits beyond 21, the last MACRO IC");
+  return fitted;
+}
+}  // namespace
+
 #define BRICK_PIN(name) name(*this, #name)
 Board::Board(const sc_core::sc_module_name& name, TimeBase& time, const BoardOptions& options, const Engine& engine)
-    : Component(name, time, pin_table(options.fitted)),
+    : Component(name, time, pin_table(checked(options.fitted))),
       BRICK_PIN(rst_n),
       BRICK_PIN(pa_addr),
       BRICK_PIN(pa_aa),

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "systemc/component/board_words.h"
+#include "systemc/component/error.h"
+#include "systemc/cosim/engines.h"
 
 namespace brick::component {
 namespace {
@@ -78,7 +80,9 @@ class BoardChip final : public Chip {
 
   bool run_until(Tick limit) override {
     motor_moved_ = false;
-    board_->run_until(limit, pins_);
+    try {
+      board_->run_until(limit, pins_);
+    } catch (const LockstepDifference& difference) { raise_error("/brick/lockstep", difference.what()); }
     return take_pins() || motor_moved_;
   }
 

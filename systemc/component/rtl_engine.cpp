@@ -6,25 +6,13 @@
 
 #include "systemc/board/model_board.h"
 #include "systemc/component/board_chip.h"
+#include "systemc/component/board_options.h"
 #include "systemc/component/lockstep_chip.h"
 #include "systemc/component/model_chips.h"
 #include "systemc/component/rtl_chips.h"
-#include "systemc/cosim/engines.h"
 
 namespace brick::component {
 namespace {
-
-// An Engine's seed is for flip-flops, a board's for its memory; a Verilated board takes one for both.
-std::unique_ptr<brick::Board> rtl_board(std::uint32_t fitted, std::uint64_t seed) {
-  RtlOptions options;
-  options.seed = seed;
-  try {
-    return make_rtl_board(fitted, options);
-  } catch (const std::runtime_error& error) {
-    SC_REPORT_ERROR("/brick/fitted", error.what());
-    return nullptr;
-  }
-}
 
 class RtlFactory final : public ChipFactory {
  public:
@@ -34,7 +22,7 @@ class RtlFactory final : public ChipFactory {
   std::unique_ptr<Chip> host_signals() const override { return rtl_host_signals(seed_); }
   std::unique_ptr<Chip> watchdog() const override { return rtl_watchdog(seed_); }
   std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const override {
-    return board_chip(rtl_board(fitted, seed), fitted, false);
+    return board_chip(make_rtl_board(fitted, board_options(seed_, seed)), fitted, false);
   }
 
  private:
@@ -43,7 +31,7 @@ class RtlFactory final : public ChipFactory {
 
 class LockstepFactory final : public ChipFactory {
  public:
-  explicit LockstepFactory(std::uint64_t seed) : rtl_(seed) {}
+  explicit LockstepFactory(std::uint64_t seed) : seed_(seed), rtl_(seed) {}
   std::unique_ptr<Chip> servo_ic() const override {
     return lockstep_chip("servo_ic", rtl_.servo_ic(), model_.servo_ic(), ServoIc::pin_table());
   }
@@ -58,10 +46,13 @@ class LockstepFactory final : public ChipFactory {
     return lockstep_chip("watchdog", rtl_.watchdog(), model_.watchdog(), Watchdog::pin_table());
   }
   std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const override {
-    return board_chip(make_lockstep_board(rtl_board(fitted, seed), make_model_board(fitted, seed)), fitted, false);
+    return board_chip(
+        make_lockstep_board(make_rtl_board(fitted, board_options(seed_, seed)), make_model_board(fitted, seed)), fitted,
+        false);
   }
 
  private:
+  std::uint64_t seed_;
   RtlFactory rtl_;
   ModelFactory model_;
 };

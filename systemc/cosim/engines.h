@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -13,9 +14,11 @@ namespace brick {
 
 struct RtlOptions {
   // 0: all flip-flops start as zero. Else they start at random, by this seed, and reset must bring them to where the
-  // model is. The content of the dual-ported RAM follows from it as the model's from its own (core/start_value.h).
+  // model is.
   std::uint64_t seed = 0;
   bool seeded_bug = false;  // negative control, see rtl/board/board_sim.sv
+  // Of the content of the dual-ported RAM (core/start_value.h), as the model's own; none: `seed`.
+  std::optional<std::uint64_t> ram_seed = std::nullopt;
 };
 
 // Throws std::runtime_error when no Verilated variant has all the ICs of `fitted`.

@@ -43,7 +43,7 @@ class RtlBoard : public Board {
     context_.randReset(options.seed == 0 ? 0 : 2);
     context_.randSeed(static_cast<int>(1 + options.seed % 0x7FFFFFFE));  // 0 would be the time of day
     model_ = std::make_unique<Model>(&context_, "");
-    model_->start_seed_i = start_seed(options.seed);
+    model_->start_seed_i = start_seed(options.ram_seed.value_or(options.seed));
     model_->seeded_bug_i = options.seeded_bug;
     // What acts without a clock acts on an edge here: rst_ni must have been high once, and /RD, which turns the data
     // pins off, low. Power-on is tick 0, in reset.

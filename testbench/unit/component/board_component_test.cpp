@@ -6,6 +6,9 @@
 #include <brick/rtl.h>
 
 #include "systemc/board/model_board.h"
+#include "systemc/component/board_chip.h"
+#include "systemc/component/board_options.h"
+#include "systemc/component/board_words.h"
 #include "systemc/cosim/drive.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/rig.h"
@@ -202,6 +205,54 @@ TEST(BoardComponent, LockstepAgreesWithTheBoard) {
 TEST(BoardComponent, UnboundPinsChangeNothing) {
   BRICK_COVERS("CARD-1");
   in_own_process([] { board_agrees(model_engine(), kTicks, few, 1'000, buses); });
+}
+
+TEST(BoardComponent, ADifferenceInLockstepIsAnErrorOfTheComponent) {
+  BRICK_COVERS("CARD-2");
+  in_own_process([] {
+    RtlOptions bug;
+    bug.seeded_bug = true;
+    const auto chip = board_chip(make_lockstep_board(make_rtl_board(0x3, bug), make_model_board(0x3)), 0x3, false);
+    PinWords inputs(board_words::motor_input(2));
+    const auto set = [&](const std::string& pin, std::uint32_t value) {
+      for (const PinInfo& info : Board::pin_table(0x3))
+        if (info.name == pin) inputs[info.word] = (inputs[info.word] & ~(1u << info.lsb)) | value << info.lsb;
+    };
+    for (const PinInfo& info : Board::pin_table(0x3))
+      if (info.direction == PinDirection::kIn) inputs[info.word] |= info.idle << info.lsb;
+    set("ext_clock", 1);
+    std::string type;
+    try {
+      for (unsigned i = 0; i < 20; ++i) {  // the fifth fall of SERVO is late
+        set("ext_servo", i % 2);
+        chip->set_inputs(inputs);
+        chip->run_until(chip->now() + 500);
+      }
+    } catch (const sc_core::sc_report& report) { type = report.get_msg_type(); }
+    EXPECT_EQ(type, "/brick/lockstep");
+  });
+}
+
+TEST(BoardComponent, FlipFlopsStartByTheSeedOfTheEngine) {
+  const RtlOptions options = board_options(5, 7);
+  EXPECT_EQ(options.seed, 5u);
+  EXPECT_EQ(options.ram_seed, 7u) << "the RAM by that of the board, as the model's";
+  EXPECT_FALSE(options.seeded_bug);
+}
+
+TEST(BoardComponent, FittedHasTheBitsOfTheIcs) {
+  BRICK_COVERS("CARD-1");
+  for (const Engine& engine : {model_engine(), rtl_engine(), lockstep_engine()})
+    in_own_process([&engine] {
+      TimeBase time("time");
+      BoardOptions options;
+      options.fitted = 1u << 22 | 0x3;
+      std::string type;
+      try {
+        Board board("board", time, options, engine);
+      } catch (const sc_core::sc_report& report) { type = report.get_msg_type(); }
+      EXPECT_EQ(type, "/brick/fitted");
+    });
 }
 
 // A pin that is new in the table needs a port.

@@ -26,7 +26,7 @@ struct BoardServoIc {
 
 class Board final : public Component {
  public:
-  // With the Verilated RTL an error /brick/fitted when no variant has all the ICs.
+  // An error /brick/fitted when BoardOptions::fitted has other bits than 0..21.
   Board(const sc_core::sc_module_name& name, TimeBase& time, const BoardOptions& options = {},
         const Engine& engine = model_engine());
 
