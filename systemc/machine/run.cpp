@@ -51,6 +51,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     while (port_a.running() && now == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());
       board->set_port_a(inputs);
+      if (port_a.strobe_moved()) port_a.board_follows(board->port_a_at_once());
     }
     run_cpu(now);
     if (signals.traced()) signals.flush_until(tick_to_fs(now));
