@@ -69,6 +69,7 @@ void ScriptPlayer::answer(const ScriptLine& line, std::vector<std::string> lines
 }
 
 void ScriptPlayer::print_unsolicited() {
+  if (!link_.bus().machine().inputs().jpan_init_n) return;  // looking takes longer than a spike of INIT/ may
   link_.poll();
   for (const auto& text : link_.take_unsolicited()) out_ << text << '\n';
   out_ << std::flush;

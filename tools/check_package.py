@@ -66,7 +66,8 @@ def main():
         problems = [] if good else [text]
         if good:
             problems += points_back(prefix, {str(ROOT), str(options.build.resolve())})
-            for folder in sorted(p.parent for p in (ROOT / "examples").glob("*/CMakeLists.txt")):
+            uses = [p for p in (ROOT / "examples").glob("*/CMakeLists.txt") if "find_package(brick" in p.read_text()]
+            for folder in sorted(p.parent for p in uses):
                 problems += filter(None, [example(folder, work, prefix, options.compiler)])
             problems += filter(None, [pkg_config(ROOT / "examples/servo_ic", work, prefix, options.compiler)])
     finish("package", problems)

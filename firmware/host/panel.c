@@ -19,21 +19,20 @@ static uint32_t read_low(void) {
   return ~*hal_y(JPAN_Y_INPUTS) & JPAN_INPUTS_RESET & ~(uint32_t)JPAN_INPUTS_SPARE_MASK;
 }
 
+static uint32_t number(uint32_t inputs) { return (inputs & JPAN_INPUTS_FPD_MASK) >> JPAN_INPUTS_FPD_SHIFT; }
+
 void panel_initialize(void) {
   fitted = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;
   low = fitted ? read_low() : 0u;
-  selection = 0u;
+  selection = number(low);
 }
 
 bool panel_active(void) { return fitted && ((uint32_t)i_integer(I2_CONTROL_PANEL_DISABLE) & 1u) == 0u; }
 
-static uint32_t number(uint32_t inputs) { return (inputs & JPAN_INPUTS_FPD_MASK) >> JPAN_INPUTS_FPD_SHIFT; }
-
+/* Groups 2 and 3 of I59 are further motors, not further systems. */
 static uint32_t selected(uint32_t n) {
   if (n == 0u || n > SELECTABLE) return COORDINATE_SYSTEMS;
-  return n - 1u +
-         SELECTABLE * ((uint32_t)i_integer(I59_CONTROL_PANEL_GROUP) &
-                       1u); /* groups 2 and 3 are further motors, not further systems */
+  return n - 1u + SELECTABLE * ((uint32_t)i_integer(I59_CONTROL_PANEL_GROUP) & 1u);
 }
 
 void panel_select(void) {

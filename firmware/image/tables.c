@@ -8,21 +8,14 @@
 #include "firmware/command/session.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
+#include "firmware/image/real_time.h"
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/servo_update.h"
-#include "firmware/run/calculate.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/phase_period.h"
-
-/* What the panel selects and how BREQ stands come before the calculation of lines, which may take long. */
-static void real_time(void) {
-  panel_select();
-  buffer_request_poll();
-  calculate_programs();
-}
 
 const struct task_hooks task_hooks = {.servo = servo_update, .real_time = real_time, .phase_period = phase_period};
 

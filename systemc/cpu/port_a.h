@@ -79,7 +79,8 @@ class PortA : public sc_core::sc_module {
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
   bool running() const { return state_ == State::kRunning; }
   Tick stands_at() const { return stand_; }
-  void step(PortAPins& pins, const BoardOutputs& board);  // pins are seen first by the edge after stands_at()
+  TimeFs started_at() const { return clock_.time(origin_, 0); }  // the cycle under way, or not before then
+  void step(PortAPins& pins, const BoardOutputs& board);         // pins are seen first by the edge after stands_at()
   // That step moved a strobe: what of the board follows without a clock does so at its time.
   bool strobe_moved() const { return strobe_moved_; }
   void board_follows(const BoardOutputs& board);

@@ -40,8 +40,12 @@ class PciBridge final : public sc_core::sc_module {
 
   tlm_utils::simple_target_socket_optional<PciBridge> socket;
 
-  void attach(LocalBus& bus) { bus_ = &bus; }  // not owned; makes the local cycles and lets the time pass
-  void reset();                                // power-on: no ranges, nothing enabled
+  // Makes the local cycles and lets the time pass. Not owned; detach() it before it goes.
+  void attach(LocalBus& bus) { bus_ = &bus; }
+  void detach(const LocalBus& bus) {
+    if (bus_ == &bus) bus_ = nullptr;  // another one may have come since
+  }
+  void reset();  // power-on: no ranges, nothing enabled
   bool inta_n() const { return bus_ == nullptr || !bus_->irq(); }
 
   void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);

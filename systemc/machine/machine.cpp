@@ -176,6 +176,7 @@ void Machine::Impl::start_cpu() {
   main_memory_wait();
   cpu.reset(elf ? elf->entry() : 0);
   cpu_runs = elf != nullptr && master == nullptr;
+  host_bus_moved(tick_to_fs(board->now()));
 }
 
 void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const BoardOutputs& after) {

@@ -54,7 +54,8 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
       if (port_a.strobe_moved()) port_a.board_follows(board->port_a_at_once());
     }
     run_cpu(now);
-    if (signals.traced()) signals.flush_until(tick_to_fs(now));
+    if (signals.traced())  // a cycle is told when it is over, with the time at which it began
+      signals.flush_until(port_a.running() ? std::min(tick_to_fs(now), port_a.started_at()) : tick_to_fs(now));
   }
   stop_on = {};
   if (sc_core::sc_is_running()) keep_kernel_time(begin);

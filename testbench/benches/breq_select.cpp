@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "rtl/regs/brick_regs.hpp"
 #include "testbench/benches/benches.h"
@@ -40,10 +42,16 @@ class BreqSelect {
   void run() {
     prepare();
     by_host("&n, I2=1", 1, 40);
+    among_tasks();
+    if (!b_.board.jpan) in_motion();
     i2(0);
     if (b_.board.jpan) {
       for (unsigned group = 0; group < 4; ++group) by_panel(group, group < 2 ? 16 : 8);
       by_host("&n moves nothing, I2=0", 0, 8);
+      i59(0);
+      i2(1);
+      in_motion();
+      i2(0);
       groups_by_panel();
       other_buffers();
     } else {
@@ -60,7 +68,8 @@ class BreqSelect {
         fmt::format("T_CS {:.2f} us of 10, {:.2f} of 30 with tasks that interrupted",
                     microseconds(scoreboard_.longest_host()), microseconds(scoreboard_.longest_interrupted()));
     if (b_.board.jpan)
-      times += fmt::format("; T_FPD a real-time interrupt period and {:.2f} us of 100", microseconds(longest_beyond_));
+      times += fmt::format("; T_FPD a real-time interrupt period and {:.2f} us of 100",
+                           microseconds(scoreboard_.longest_panel()));
     b_.report.step("longest times", true, times);
     activity();
   }
@@ -122,7 +131,8 @@ class BreqSelect {
 
   void address(unsigned cs) {
     scoreboard_.host(cs, b_.bus.now());
-    select_by(fmt::format("#1&{}", cs + 1));  // after a number `&` would be an operator
+    const bool wrong = b_.negative && !b_.board.jpan && scoreboard_.i2() == 0;
+    select_by(fmt::format("#1&{}", (wrong ? cs + 1 : cs) % kSystems + 1));  // after a number `&` would be an operator
   }
 
   void i2(unsigned value) {
@@ -137,7 +147,9 @@ class BreqSelect {
 
   // The command stands behind another one that turns CTRL0 over: that edge is the beginning of its time.
   void select_by(const std::string& command) {
+    const Tick begin = b_.bus.now();
     b_.ask(fmt::format("WX$70012,{} {}", 1 - b_.machine.outputs().get(pin::kCtrl0), command));
+    lead_ = scoreboard_.execution() - begin;
     settle();
   }
 
@@ -146,19 +158,94 @@ class BreqSelect {
     b_.machine.apply();
   }
 
-  // At any time within the real-time interrupt's period. The negative control gives the panel the next number.
+  // At any time within the real-time interrupt's period. The negative control gives the panel the next number, and on
+  // a board without a panel the host.
   void panel(unsigned number, std::uint32_t others = 0) {
     b_.bus.wait(pick(static_cast<unsigned>(real_time_)));
     scoreboard_.panel(number, b_.bus.now());
     drive_panel((b_.negative ? number + 1 : number) << regs::jpan::inputs::kFpd.lsb | others);
     settle();
-    longest_beyond_ = std::max(longest_beyond_, scoreboard_.longest_panel() - real_time_);
   }
 
   void by_host(const std::string& step, unsigned i2_value, unsigned times) {
     const bool moves = i2_value != 0 || !b_.board.jpan;
     for (unsigned i = 0; i < times; ++i) address(moves && i < kSystems ? i : pick(kSystems));
     verdict(step, times, moves ? times / 5 : 0);
+  }
+
+  // One of the systems that the panel can name in group 0, but C.S. 1.
+  unsigned some(Buffer state) const {
+    return static_cast<unsigned>(std::find(states_.begin() + 1, states_.begin() + 8, state) - states_.begin());
+  }
+
+  // PHASE falls as `&n` is executed: the beginning of its transmission is set by how long the last one took.
+  void among_tasks() {
+    constexpr unsigned kTimes = 32, kLeast = 16;
+    constexpr Tick kAhead = 3 * kMicrosecond;
+    const unsigned before = scoreboard_.interrupted();
+    address(some(Buffer::kReady));
+    for (unsigned i = 0; i < kTimes; ++i) {
+      const Tick fall = b_.next_fall(pin::kPhase, 2 * kPhase);
+      b_.bus.wait((kPhase - (lead_ + kAhead) % kPhase + fall - b_.bus.now()) % kPhase);
+      address(some(i % 2 == 0 ? Buffer::kFull : Buffer::kReady));
+    }
+    const unsigned met = scoreboard_.interrupted() - before;
+    b_.report.step("&n and tasks meet", met >= kLeast, fmt::format("{} of {}, at least {}", met, kTimes, kLeast));
+    verdict("&n among tasks", kTimes, kTimes);
+  }
+
+  // C.S. 1 runs moves of four axes one after the other, and the real-time task calculates most of the time.
+  void in_motion() {
+    constexpr unsigned kMoves = 220, kTimes = 16, kPanel = 10;
+    constexpr Tick kCalculation = 200 * kMicrosecond;
+    const unsigned ready = some(Buffer::kReady), full = some(Buffer::kFull);
+    std::string long_line = "P1=SIN(1)";
+    for (unsigned i = 0; i < 12; ++i) long_line += "+SIN(1)";
+    b_.ask("I8=0 I7002=1 I6802=1");
+    real_time(2 * kPhase);
+    address(full);
+    for (const char* line : {"&1DELETE ROTARY", "DEFINE ROTARY 3000", "I5187=0 I5188=0 I5189=1000000", "INC B0"})
+      b_.expect(line, "");
+    b_.ask("OPEN ROTARY");
+    for (unsigned i = 0; i < kMoves; ++i)
+      b_.ask(fmt::format("X{} Y{} Z{} A{}", 1 + pick(99), 1 + pick(99), 1 + pick(99), 1 + pick(99)));
+    b_.ask("CLOSE");
+    b_.ask("R");
+    back_to(full);
+    scoreboard_.calculation(kCalculation);
+    for (unsigned i = 0; i < kTimes; ++i) address(i % 2 == 0 ? ready : full);
+    verdict("&n while a program runs", kTimes, kTimes);
+    if (b_.board.jpan) {
+      panel(full + 1);
+      i2(0);
+      for (unsigned i = 0; i < kPanel; ++i) {  // while the background has a long line to do
+        b_.link.send(long_line);
+        panel(1 + (i % 2 == 0 ? ready : full));
+        b_.link.finish();
+      }
+      i2(1);
+      verdict("FPDn/ while a program runs", kPanel, kPanel);
+    }
+    scoreboard_.calculation(0);
+    const std::vector<long> left = b_.numbers("&1PR");
+    const bool ran = left.size() == 1 && left[0] > 0 && left[0] < kMoves - kTimes;
+    b_.report.step("a program that ran all the time", ran, fmt::format("{} of {} lines left", left, kMoves));
+    b_.ask("A");
+    b_.bus.wait(2 * real_time_);
+    b_.expect("DELETE ROTARY", "");
+    b_.expect("DEFINE ROTARY 20", "");
+    b_.ask("I8=0 I7002=0 I6802=0");
+    real_time(kPhase);
+    back_to(full);
+  }
+
+  // Another system was addressed, and the pin with it; from here on it is judged again.
+  void back_to(unsigned cs) {
+    b_.ask(fmt::format("&{}", cs + 1));
+    b_.bus.clear_pic();
+    seen_ += scoreboard_.take_counts();
+    scoreboard_.nothing(b_.bus.now());
+    settle();
   }
 
   // All numbers, in any order; of the later groups half of them.
@@ -288,7 +375,8 @@ class BreqSelect {
   SelectionScoreboard scoreboard_;
   SelectionScoreboard::Counts seen_;  // in all
   std::array<Buffer, kSystems> states_{};
-  Tick real_time_ = kPhase, longest_beyond_ = -kPhase;
+  Tick real_time_ = kPhase;
+  Tick lead_ = 0;  // from the beginning of a command's transmission to its execution, the last time
   bool level_ = false;
   unsigned interrupts_ = 0;
   std::string first_wrong_ist_;
@@ -299,13 +387,13 @@ class BreqSelect {
 
 // covers: BREQ-6 BREQ-7
 Bench breq_select_bench() {
-  return {
-      "breq-select",
-      "whose BREQ the host sees: &n, I2, I59 and the panel's FPDn/ over sixteen buffers; lamp, INIT/",
-      {"the panel's number is one higher than the scoreboard is told", "FPDn/, I59=0", "is selected (&*I2=0, I59=0"},
-      [](BenchContext& b) { BreqSelect(b).run(); },
-      without_8259(kAnyBoard),
-      "turbo-pmac-pci"};
+  return {"breq-select",
+          "whose BREQ the host sees: &n, I2, I59 and the panel's FPDn/ over sixteen buffers; lamp, INIT/",
+          {"the panel's number, or `&n` on a board without a panel, is one higher than the scoreboard is told",
+           "FPDn/, I59=0", "is selected (&*I2=0, I59=0"},
+          [](BenchContext& b) { BreqSelect(b).run(); },
+          without_8259(kAnyBoard),
+          "turbo-pmac-pci"};
 }
 
 }  // namespace brick

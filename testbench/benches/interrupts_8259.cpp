@@ -27,7 +27,7 @@ class Interrupts8259 : public InterruptHost {
  private:
   void initialize(bool level) {
     b.bus.command_8259(level ? 0x1B : 0x13);
-    b.bus.mask_8259(kBase);
+    b.bus.mask_8259(b.negative ? kBase + 8 : kBase);
     b.bus.mask_8259(0x01);
     b.bus.wait(kSettled);
   }

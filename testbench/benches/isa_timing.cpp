@@ -25,7 +25,8 @@ static_assert(2 * kExercises * kRounds < 0x100);  // the host counts on, with th
 // What the rounds of one width make at least. Of 16 bits: two writes and two reads of the RAM, one of each in the words
 // that the CPU uses, and a read of nobody's memory, which is three of 8 bits. Of 8 bits: three writes and three reads,
 // one of each in those words. Of both: five reads and five writes of the host port. The CPU is in each of its two words
-// for a sixth of the time; one access in sixteen must meet it.
+// for a sixth of the time; as many accesses as one in sixteen must meet it, and the last exercise goes on until they
+// do.
 constexpr unsigned kN = kExercises * kRounds, kMet = kN / 16;
 constexpr unsigned kIoReads = 2 * 5 * kN, kIoWrites = kIoReads, kIo = kIoReads + kIoWrites;
 constexpr unsigned kWideReads = 2 * kN, kWideWrites = kWideReads, kWide = kWideReads + kWideWrites;
@@ -143,6 +144,7 @@ class IsaTimingBench {
         exercise(cpu, width, "usual times", isa::kTypical);
         exercise(cpu, width, "slow", isa::kSlow);
         exercise(cpu, width, "at the limits", tight);
+        meet_cpu(width);
       }
       // It begins an access in 44 clocks at most, every second a read; the host in two cycles.
       b_.report.step(
@@ -199,6 +201,24 @@ class IsaTimingBench {
     b_.report.step(fmt::format("host of {} bits, {}", width, times), same, (width == 16 ? 4 : 2) * kRounds,
                    fmt::format("{} words and bytes", same.made()));
   }
+  // By the host at the limits, so that one of its cycles ends with row 9 too; its narrow ones are long enough without.
+  void meet_cpu(unsigned width) {
+    constexpr unsigned kMost = 64 * kMet;
+    const bool wide = width == 16;
+    const auto met = [&](IsaChecker::Kind kind) { return isa_.cycles(kind, wide, 1) >= kMet; };
+    const auto at_limit = [&] {
+      return !wide || isa_.ledger().row(IsaChecker::kT9, IsaChecker::kMemory16).margin < isa::ns(1);
+    };
+    bus().io_write(regs::host_io::kPage, 0);
+    unsigned tries = 0;
+    for (; tries < kMost && !(met(IsaChecker::kMemoryRead) && met(IsaChecker::kMemoryWrite) && at_limit()); ++tries) {
+      bus().write_memory(bus().window() + kShared + 2, counter_, wide ? 3 : 1);
+      bus().read_memory(bus().window() + kShared, wide ? 3 : 1);
+    }
+    b_.report.step(fmt::format("host of {} bits meets the CPU", width), tries < kMost,
+                   fmt::format("{} accesses more", 2 * tries));
+  }
+
   // Both kinds of bytes of the host port, twice each, so that the distances of host-bus:3.3 are there. Both ways of the
   // port may be full: the CPU does not look.
   void port() {

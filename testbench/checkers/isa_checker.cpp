@@ -9,7 +9,8 @@ namespace {
 constexpr TimeFs kNs = kFsPerNs;
 constexpr TimeFs kBclk = 120 * kNs;
 constexpr TimeFs kHold = 25 * kNs;  // t3, t7, t15
-constexpr TimeFs kT4Limit = 489 * kNs, kT14Limit = 173 * kNs, kT16Limit = 66 * kNs;
+constexpr TimeFs kT2Limit = 530 * kNs, kT4Limit = 489 * kNs, kT13Limit = 219 * kNs, kT14Limit = 173 * kNs;
+constexpr TimeFs kT16Limit = 66 * kNs;
 constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
 
 std::vector<TimingRule> rules() {
@@ -177,6 +178,7 @@ void IsaChecker::ready_moved(TimeFs t, bool ready) {
   if (!in_cycle_) return;
   if (!ready) {
     cycle_.ready_low = t;
+    cycle_.ready_high = kNone;
     enter(kT8, 366 * kNs, t - cycle_.low, t);
   } else if (cycle_.ready_low != kNone) {
     cycle_.ready_high = t;
@@ -184,20 +186,19 @@ void IsaChecker::ready_moved(TimeFs t, bool ready) {
   }
 }
 
-// SD as the board drives it. In the tick after a command it may still be on (t5).
+// SD as the board drives it. In the tick after a command it may still be on (t5). Whose the read is cannot be said when
+// its address has moved: the board takes what it samples after the command has fallen.
 void IsaChecker::board_data(TimeFs t, const BoardInputs& in, const BoardOutputs& shown) {
   const unsigned driven = out_.get(pin::kIsaSdOe), before = shown.get(pin::kIsaSdOe);
-  if (driven != 0 && before == 0) {
+  if (driven != 0 && before == 0 && !(in_cycle_ && cycle_.moved)) {
     const bool read = in_cycle_ && cycle_.alone && !cycle_.write();
     ledger_.holds(kOursOnly, region(cycle_), read && ours(in, cycle_), place(t));
   }
   if (in_cycle_) {
-    if (driven != 0) {
-      cycle_.data_valid = t;
-      cycle_.answered = cycle_.answered || (driven & cycle_.lanes) == cycle_.lanes;
-    } else if (before != 0) {
-      cycle_.data_gone = t;
-    }
+    const bool whole = (driven & cycle_.lanes) == cycle_.lanes, was = (before & cycle_.lanes) == cycle_.lanes;
+    if (whole) cycle_.data_valid = t;
+    if (was && !whole) cycle_.data_gone = t;
+    cycle_.answered = cycle_.answered || whole;
     return;
   }
   if (before == 0 || !read_floats_) return;
@@ -271,9 +272,9 @@ void IsaChecker::end(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
   }
   ledger_.holds(kAddressStands, region(cycle_), !cycle_.moved, place(t));
   if (cycle_.wide)
-    enter(kT13, 219 * kNs, t - cycle_.low, t);
+    enter(kT13, kT13Limit, t - cycle_.low, t);
   else
-    enter(kT2, 530 * kNs, t - cycle_.low, t);
+    enter(kT2, kT2Limit, t - cycle_.low, t);
   // IOCHRDY that is still low has been high for less than no time.
   if (stretched && cycle_.whole) enter(kT9, kBclk, cycle_.ready_high == kNone ? -1 : t - cycle_.ready_high, t);
   high_at_ = t;
@@ -292,19 +293,29 @@ void IsaChecker::end(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
     enter(kH1, cpu_period_() + 4'950'000, t - cycle_.low, t);
 }
 
-void IsaChecker::end_read(TimeFs t) {
-  read_floats_ = out_.get(pin::kIsaSdOe) != 0;
-  if (!cycle_.alone || !cycle_.whole) return;
-  const Rule row = cycle_.wide ? kT14 : kT4;
+// When data have to be there: rows 4 and 14; behind IOCHRDY for a host that ends the command one BCLK after it (row 9)
+// and looks at them as long before as in a cycle without it. kNone: IOCHRDY is still low.
+TimeFs IsaChecker::data_limit() const {
   const TimeFs limit = cycle_.wide ? kT14Limit : kT4Limit;
+  if (cycle_.ready_low == kNone) return limit;
+  if (cycle_.ready_high == kNone) return kNone;
+  const TimeFs sample = cycle_.wide ? kT13Limit - kT14Limit : kT2Limit - kT4Limit;
+  return std::max(limit, cycle_.ready_high - cycle_.low + kBclk - sample);
+}
+
+void IsaChecker::end_read(TimeFs t) {
+  const unsigned driven = out_.get(pin::kIsaSdOe);
+  read_floats_ = driven != 0;
+  if (!cycle_.alone || !cycle_.whole || cycle_.moved) return;
+  const Rule row = cycle_.wide ? kT14 : kT4;
+  const TimeFs limit = data_limit();
   if (!cycle_.answered) {  // a command that ends before the limit asks for nothing
-    if (cycle_.due && t - cycle_.low > limit) enter(row, limit, t - cycle_.low, t);
+    if (cycle_.due && limit != kNone && t - cycle_.low > limit) enter(row, limit, t - cycle_.low, t);
     return;
   }
   ++answered_;
-  const bool stretched = cycle_.ready_low != kNone;  // then data come later by right
-  if (!stretched) enter(row, limit, cycle_.data_valid - cycle_.low, t);
-  if (!read_floats_) enter(kT5, 0, cycle_.data_gone - t, t);  // gone before the command
+  if (limit != kNone) enter(row, limit, cycle_.data_valid - cycle_.low, t);
+  if ((driven & cycle_.lanes) != cycle_.lanes) enter(kT5, 0, cycle_.data_gone - t, t);  // gone before the command
 }
 
 void IsaChecker::end_write(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {

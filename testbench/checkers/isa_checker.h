@@ -70,7 +70,8 @@ class IsaChecker {
     bool wide = false, alone = true, whole = true, moved = false;
     unsigned lanes = 0;                  // of SD that it uses
     bool due = false, answered = false;  // a sound read of the board's own; all its lanes have been driven
-    TimeFs low = 0, ready_low = kNone, ready_high = kNone, data_valid = kNone, data_gone = kNone;
+    TimeFs low = 0, ready_low = kNone, ready_high = kNone;
+    TimeFs data_valid = kNone, data_gone = kNone;  // last moves: on all lanes; of one of them away
     bool write() const { return kind == kIoWrite || kind == kMemoryWrite; }
     bool memory() const { return kind == kMemoryRead || kind == kMemoryWrite; }
   };
@@ -99,6 +100,7 @@ class IsaChecker {
   void host_data_moved(TimeFs t);
   void begin(TimeFs t, unsigned commands, const BoardInputs& in, const BoardOutputs& out);
   void end(TimeFs t, const BoardInputs& in, const BoardOutputs& out);
+  TimeFs data_limit() const;
   void end_read(TimeFs t);
   void end_write(TimeFs t, const BoardInputs& in, const BoardOutputs& out);
   void port_strobe(TimeFs t, const BoardInputs& in);

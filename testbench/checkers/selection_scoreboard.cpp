@@ -38,17 +38,19 @@ void SelectionScoreboard::settled(Tick now, bool breq, bool sig) {
   // while it writes.
   constexpr Tick kRecognised = ns_to_ticks(2000);
   const bool expect = expected(), by_host = limit_ == kHostLimit;
-  const bool interrupted = by_host && phase_ <= last_ && phase_ >= start_ - kRecognised;
-  const Tick allowed = limit_ + (interrupted ? kTasks : 0);
+  const bool calculated = by_host && calculation_ > 0;
+  const bool interrupted = by_host && (calculated || (phase_ <= last_ && phase_ >= start_ - kRecognised));
+  const Tick allowed = limit_ + (interrupted ? kTasks + calculation_ : 0);
   const unsigned changes = level_ != expect ? 1 : 0;
   if (breq != expect || edges_ != changes)
     violate(now, fmt::format("BREQ={:d} after {} edges, expected {:d} after {}", breq, edges_, expect, changes));
   else if (edges_ != 0 && last_ - start_ > allowed)
     violate(last_, fmt::format("BREQ {} ticks after its cause, expected {} at most", last_ - start_, allowed));
   if (sig != breq) violate(now, fmt::format("SIG bit 1 is {:d}, BREQ {:d}", sig, breq));
-  if (edges_ != 0) {
+  if (edges_ != 0 && !calculated) {
     Tick& longest = interrupted ? longest_interrupted_ : by_host ? longest_host_ : longest_panel_;
-    longest = std::max(longest, last_ - start_);
+    longest = std::max(longest, last_ - start_ - (by_host ? 0 : real_time_));
+    interrupted_ += interrupted ? 1 : 0;
   }
   ++counts_.causes;
   const unsigned cs = selected();

@@ -33,7 +33,8 @@ class SelectionScoreboard {
   void executed(Tick now) { start_ = now; }
   void phase_fell(Tick now) { phase_ = now; }  // phase, servo, real-time task may interrupt the command
   void real_time_period(Tick period) { real_time_ = period; }
-  Tick limit() const { return limit_ + kTasks; }
+  void calculation(Tick longest) { calculation_ = longest; }  // of a real-time task, where programs run
+  Tick limit() const { return limit_ + kTasks + calculation_; }
 
   // What is seen. settled(): nothing more is expected of the last cause.
   void edge(Tick now, bool breq, bool lamp_n);
@@ -41,12 +42,15 @@ class SelectionScoreboard {
 
   static constexpr unsigned kNone = kSystems;
   unsigned selected() const;
+  unsigned i2() const { return i2_; }
+  Tick execution() const { return start_; }  // of the last cause
   bool expected() const { return selected() != kNone && buffers_[selected()] == Buffer::kReady; }
 
   const std::vector<std::string>& violations() const { return violations_; }
   Tick longest_host() const { return longest_host_; }  // of those that no task interrupted
   Tick longest_interrupted() const { return longest_interrupted_; }
-  Tick longest_panel() const { return longest_panel_; }
+  unsigned interrupted() const { return interrupted_; }  // edges that show their longest time
+  Tick longest_panel() const { return longest_panel_; }  // beyond the real-time interrupt's period
   struct Counts {
     unsigned causes = 0, edges = 0, idle = 0, ready = 0, full = 0, none = 0;
     Counts& operator+=(const Counts& o) {
@@ -68,7 +72,8 @@ class SelectionScoreboard {
   unsigned edges_ = 0;  // since then
   Tick start_ = 0, limit_ = 0, last_ = 0, real_time_ = 0;
   Tick phase_ = 0;  // its last fall
-  Tick longest_host_ = 0, longest_interrupted_ = 0, longest_panel_ = 0;
+  Tick calculation_ = 0, longest_host_ = 0, longest_interrupted_ = 0, longest_panel_ = -kPanelBase;
+  unsigned interrupted_ = 0;
   Counts counts_;
   std::vector<std::string> violations_;
 };

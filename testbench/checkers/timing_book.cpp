@@ -19,6 +19,7 @@ TimingBook::TimingBook(Machine& machine) : machine_(machine) {
   machine.on_host_bus = [this](TimeFs time, const BoardInputs& in, const BoardOutputs& out) {
     isa_.pins(time, in, out);
   };
+  machine.apply();  // tells it of the pins as they stand
 }
 
 TimingBook::~TimingBook() {

@@ -9,6 +9,7 @@ namespace brick {
 
 namespace {
 
+constexpr TimeFs kLongestPulse = 50'000 * kFsPerNs;  // host-bus:5.7/6
 constexpr unsigned kRealTimeTask = 1;
 constexpr std::uint32_t kCarriageReturn = 0x0D;
 
@@ -86,12 +87,14 @@ void TimingProfile::breq_edge(TimeFs now, bool level) {
     line_end_.reset();
     return;
   }
-  // A pulse falls and rises for one line. With another line before the rise it was `&n` that moved the pin.
+  // A pulse falls and rises for one line. With another line before the rise it was `&n` that moved the pin, and a long
+  // low within one line is either one that selects and clears or a pulse that breaks its bound.
   if (machine_.task() == kRealTimeTask) {
     rise_.enter(now - real_time_, now);
   } else if (fell_ && fell_for_ && !line_end_) {
-    fall_.enter(*fell_ - *fell_for_, *fell_);
-    pulse_.enter(now - *fell_, now);
+    const TimeFs low = now - *fell_;
+    if (low <= kLongestPulse) fall_.enter(*fell_ - *fell_for_, *fell_);
+    (low <= kLongestPulse ? pulse_ : longer_).enter(low, now);
   }
   fell_.reset();
   line_end_.reset();

@@ -41,6 +41,7 @@ class TimingProfile {
   };
   const Span& fall() const { return fall_; }            // CR read by the CPU to BREQ low, for lines that pulse it
   const Span& pulse() const { return pulse_; }          // BREQ low, for those lines
+  const Span& longer() const { return longer_; }        // lows within a line that are longer than a pulse may be
   const Span& rise() const { return rise_; }            // start of the real-time interrupt that raises BREQ to its rise
   const Span& interrupt() const { return interrupt_; }  // enabled line high to IRQ high
 
@@ -51,7 +52,7 @@ class TimingProfile {
   Machine& machine_;
   std::array<Load, kTasks> tasks_{};
   std::map<std::pair<unsigned, std::uint32_t>, Load> by_pc_;
-  Span fall_, pulse_, rise_, interrupt_;
+  Span fall_, pulse_, longer_, rise_, interrupt_;
   std::optional<TimeFs> line_end_;         // a CR whose line has not moved BREQ yet
   std::optional<TimeFs> fell_, fell_for_;  // BREQ is low since, and the CR that it fell for
   std::optional<TimeFs> line_rose_;        // the last rise of an interrupt line, as long as the mask has not changed

@@ -23,6 +23,8 @@ std::vector<SpanRow> span_rows(const TimingProfile& p) {
   return {
       {"T_FALL", "CR of a line read by the CPU to BREQ low", "host-bus:5.7/5", "one pass of the background", p.fall()},
       {"T_PULSE", "BREQ low for a stored line", "host-bus:5.7/6", "1 us to 50 us", p.pulse()},
+      {"longer", "BREQ low longer than that within one line", "host-bus:5.7/6",
+       "a line such as &1CLEAR, else T_PULSE is broken", p.longer()},
       {"T_RISE", "start of the real-time interrupt to its rise of BREQ", "host-bus:5.7/8", "within that interrupt",
        p.rise()},
       {"line to IRQ", "enabled line high to IRQ high", "host-bus:4.1/8", "at most 76.3 ns", p.interrupt()}};

@@ -10,6 +10,10 @@ HostBus::HostBus(Machine& machine) : IsaHost(machine), bridge_(machine.pci()) {
   HostBus::bridge_reset();
 }
 
+HostBus::~HostBus() {
+  if (bridge_ != nullptr) bridge_->detach(*this);
+}
+
 std::uint32_t HostBus::io_base() const { return std::uint32_t{switches().io_base} << 4; }
 std::uint32_t HostBus::window() const { return std::uint32_t{switches().window} << 14; }
 

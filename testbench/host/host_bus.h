@@ -21,6 +21,9 @@ class HostBus : public IsaHost {
   static constexpr std::uint32_t kCommand8259 = 8, kMask8259 = 9, kAcknowledge8259 = 10;
 
   explicit HostBus(Machine& machine);
+  ~HostBus() override;
+  HostBus(const HostBus&) = delete;
+  HostBus& operator=(const HostBus&) = delete;
 
   // Registers and memory ----------------------------------------------------------------------------------------------
   std::uint8_t io_read(std::uint32_t offset);  // offset 0..15 from the base

@@ -157,7 +157,6 @@ IsaHost::Result IsaHost::cycle(const Cycle& c) {
   });
   advance_to(fs_to_tick(release) - 1);
   free_at_ = end + (times.next - times.command_high);
-  if (!c.memory()) free_at_ = std::max(free_at_, end + isa::port_recovery(machine_.cpu_period()) - times.command_low);
   return result;
 }
 

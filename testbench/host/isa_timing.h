@@ -47,7 +47,4 @@ constexpr TimeFs kLongestStretch = 15'600 * kFsPerNs;  // t10
 
 constexpr TimeFs kPollPause = 12 * kBclk;  // what a host program does between two looks at a status register
 
-// From one strobe of the host port to the next, for a CPU clock of period `tc`: rules h3 and h5 (host-bus:3.3).
-constexpr TimeFs port_recovery(TimeFs tc) { return 5 * tc / 2 + 3'300'000; }
-
 }  // namespace brick::isa

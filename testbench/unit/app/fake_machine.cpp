@@ -33,7 +33,6 @@ const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
 PciBridge* Machine::pci() { return nullptr; }
 Aperture& Machine::aperture() { return impl_->aperture; }
 void Machine::apply_partly() {}
-TimeFs Machine::cpu_period() const { return 12 * kFsPerNs; }
 Signals& Machine::signals() { return impl_->signals; }
 const std::vector<Machine::BusCycle>& Machine::last_bus_cycles() const { return impl_->cycles; }
 

@@ -52,6 +52,27 @@ TEST_F(IsaCheckerTest, EachRowOfTheMemoryCycleHasItsLimit) {
   expect_limit(IsaChecker::kT18, read, &Points::sa, -34 * kNs, 1, kWide, usual);
 }
 
+// Behind IOCHRDY: one BCLK to the command's end (row 9), and the host looks at the data as long before that as without
+// it, t13 - t14 = 46 ns or t2 - t4 = 41 ns.
+TEST_F(IsaCheckerTest, DataBehindIochrdyHaveTheirLimit) {
+  Points stretched;
+  stretched.ready_low = 70 * kNs;
+  stretched.ready_high = 700 * kNs;
+  stretched.width = 1000 * kNs;
+  expect_limit(
+      IsaChecker::kT14, [this](const Points& p) { memr(p); }, &Points::valid, (700 + 120 - 46) * kNs, 1,
+      IsaChecker::kMemory16, stretched);
+  in_.slot8 = true;
+  expect_limit(
+      IsaChecker::kT4, [this](const Points& p) { memr(p); }, &Points::valid, (700 + 120 - 41) * kNs, 1,
+      IsaChecker::kMemory8, stretched);
+  in_.slot8 = false;
+  stretched.ready_high = 80 * kNs;  // the row itself is the later one
+  expect_limit(
+      IsaChecker::kT14, [this](const Points& p) { memr(p); }, &Points::valid, 173 * kNs, 1, IsaChecker::kMemory16,
+      stretched);
+}
+
 // MEMCS16# also follows switches and resets, and SA in a slot of 8 bits: row 16 is about LA alone.
 TEST_F(IsaCheckerTest, Row16IsJudgedForMovesOfLaToTheWindow) {
   const auto select = [this](TimeFs t, unsigned level) { at(t, [=] { out_.set(pin::kIsaMemcs16N, level); }); };

@@ -20,6 +20,10 @@ TEST_F(IsaCheckerTest, ReadThatTheBoardDoesNotAnswerBreaksTheRowOfItsData) {
   memr(never);
   EXPECT_EQ(broken(), std::vector<std::string>{"t14"});
   checker_.ledger().forget();
+  never.ready_high = 700 * kNs;  // but while it is low nothing is promised
+  memr(never);
+  EXPECT_EQ(broken(), std::vector<std::string>{"t9"});
+  checker_.ledger().forget();
   for (const unsigned lanes : {1u, 2u}) {
     Points half;
     half.lanes = lanes;
@@ -31,6 +35,22 @@ TEST_F(IsaCheckerTest, ReadThatTheBoardDoesNotAnswerBreaksTheRowOfItsData) {
     checker_.ledger().forget();
   }
   EXPECT_EQ(checker_.read_cycles_answered(), 1u);
+}
+
+// Row 5: each lane that the host reads, until the command ends.
+TEST_F(IsaCheckerTest, DataThatGoBeforeTheCommandBreakRow5) {
+  for (const unsigned left : {0u, 1u, 2u}) {
+    for (const TimeFs early : {kNs, TimeFs{0}}) {
+      at(end_ + 900 * kNs - early, [=] { out_.set(pin::kIsaSdOe, left); });
+      memr({});
+      EXPECT_EQ(broken(), early > 0 ? std::vector<std::string>{"t5"} : std::vector<std::string>{}) << left;
+      checker_.ledger().forget();
+    }
+  }
+  at(end_ + 400 * kNs, [=] { out_.set(pin::kIsaSdOe, 1); });  // gone, and back too late
+  at(end_ + 300 * kNs + 174 * kNs, [=] { out_.set(pin::kIsaSdOe, 3); });
+  memr({});
+  EXPECT_EQ(broken(), std::vector<std::string>{"t14"});
 }
 
 TEST_F(IsaCheckerTest, ReadThatTheBoardNeedNotAnswerBreaksNothing) {
@@ -82,6 +102,21 @@ TEST_F(IsaCheckerTest, UnsoundHostsAreNamed) {
   play();
   EXPECT_EQ(broken(), std::vector<std::string>{"address-stands"});
   checker_.ledger().forget();
+
+  // The board takes what it samples after the fall: the old address or the new one, and need not stay silent or speak.
+  for (const auto& [first, second, answered] :
+       {std::tuple{0x212u, 0x300u, false}, {0x300u, 0x212u, true}, {0x300u, 0x212u, false}, {0x212u, 0x300u, true}}) {
+    end_ = now_;
+    at(end_ + 300 * kNs, [=, sa = first] { in_.isa_sa = sa; });
+    at(end_ + 500 * kNs, [this] { in_.isa_ior_n = false; });
+    at(end_ + 510 * kNs, [=, sa = second] { in_.isa_sa = sa; });
+    if (answered) at(end_ + 560 * kNs, [this] { out_.set(pin::kIsaSdOe, 1); });
+    at(end_ + 1100 * kNs, [this] { in_.isa_ior_n = true; });
+    at(end_ + 1105 * kNs, [this] { out_.set(pin::kIsaSdOe, 0); });
+    play();
+    EXPECT_EQ(broken(), std::vector<std::string>{"address-stands"}) << first << (answered ? ", answered" : "");
+    checker_.ledger().forget();
+  }
 
   end_ = now_;
   iow({}, 0x217);

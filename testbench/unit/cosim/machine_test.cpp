@@ -9,6 +9,7 @@
 #include "systemc/core/cpu_clock.h"
 #include "systemc/cpu/cycle_costs.h"
 #include "systemc/host/pci_bridge.h"
+#include "testbench/host/host_bus.h"
 #include "testbench/unit/cosim/machine_rig.h"
 #include "testbench/unit/covers.h"
 
@@ -96,6 +97,32 @@ TEST(Machine, PowerCycleResetsThePciBridge) {
   EXPECT_EQ(start_up.asked, 0u);
   rig.machine.power_cycle();
   EXPECT_EQ(start_up.asked, 1u);
+}
+
+// Nobody makes local cycles then, and nobody is told of a power-on.
+TEST(Machine, HostThatHasLeftIsNotAskedByItsBridge) {
+  MachineConfig config;
+  config.board.bus = "pci";
+  MachineRig rig("probe", config);
+  {
+    HostBus host(rig.machine);
+    host.wait(240);
+    EXPECT_NE(host.io_read(2), 0xFF);
+  }
+  PciCommand command(PciSpace::kIo);
+  unsigned char data = 0;
+  tlm::tlm_generic_payload payload;
+  payload.set_command(tlm::TLM_READ_COMMAND);
+  payload.set_address(0xE002);
+  payload.set_data_ptr(&data);
+  payload.set_data_length(1);
+  payload.set_streaming_width(1);
+  payload.set_extension(&command);
+  sc_core::sc_time delay;
+  rig.machine.pci()->transport(payload, delay);
+  payload.clear_extension(&command);
+  EXPECT_EQ(payload.get_response_status(), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  rig.machine.power_cycle();
 }
 
 TEST(Machine, RamAtPowerOnDependsOnTheSeedOnly) {

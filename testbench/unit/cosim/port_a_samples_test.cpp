@@ -63,29 +63,6 @@ TEST(PortASamples, ABusThatNobodyDrivesGivesAnything) {
   EXPECT_EQ(read([after](Tick t) { return shows(5, t < after); }, 1), 5u) << "no hold is needed";
 }
 
-// An edge that sees /RD rise early lets the board go before the pin has moved; that is no hold time of the board's.
-TEST(PortASamples, HoldOfAStrobeThatIsSeenToEndEarlyIsNone) {
-  Aperture aperture(kFsPerNs, 3);
-  Tick gone = kNever;
-  PortARig rig([&gone](Tick t) { return shows(5, t < gone); });
-  rig.port_a.set_aperture(&aperture);
-  rig.on_pins = [&gone](Tick t, const BoardInputs& before, const BoardInputs& after) {
-    if (!before.pa_rd_n && after.pa_rd_n) gone = t + 1;
-  };
-  rig.set_clock(23);  // /RD rises at every 23rd of a tick, two of them in the last nanosecond before an edge
-  rig.set_wait_states(7);
-  unsigned early = 0;
-  for (unsigned i = 0; i < 1000; ++i) {
-    gone = kNever;
-    ASSERT_EQ(rig.read('X', 0x078000), 5u);
-    ASSERT_FALSE(rig.last->corrupted);
-    ASSERT_GE(rig.last->data_held, rig.last->strobe_high);
-    early += tick_to_fs(gone) < rig.last->strobe_high ? 1 : 0;
-    rig.cycle += 1 + i % 3;
-  }
-  EXPECT_NEAR(early, 1000 / 23.0, 500 / 23.0) << "half of two 23rds";
-}
-
 // /TA falls between the sample, TC / 4 + 2 ns before /RD would rise, and that rise.
 TEST(PortASamples, TaThatMovesInItsWindowIsSeenOrNotBySeed) {
   BRICK_COVERS("CARD-5");

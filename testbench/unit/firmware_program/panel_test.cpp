@@ -183,6 +183,17 @@ TEST_F(Panel, StepOfARunningProgramQuitsIt) {
   EXPECT_LT(coordinate_systems[0].position[AXIS_X], 4.0) << "the calculated moves were finished, the rest kept";
 }
 
+// Before the first real-time task: what the panel shows at start-up holds from there on.
+TEST_F(Panel, SelectionIsThereFromTheStart) {
+  BRICK_COVERS("BREQ-6");
+  platform::fit_panel();
+  panel(0);
+  platform::pull_panel(fpd(3));
+  EXPECT_EQ(panel_cs(), COORDINATE_SYSTEMS);
+  panel_initialize();
+  EXPECT_EQ(panel_cs(), 2u);
+}
+
 TEST_F(Panel, InputsThatAreLowAtStartAskForNothing) {
   platform::fit_panel();
   panel(kStart);

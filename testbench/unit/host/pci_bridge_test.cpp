@@ -98,6 +98,21 @@ class PciBridgeTest : public ::testing::Test {
       sc_core::sc_gen_unique_name("bridge"), {0x210, 0xD0000, 0x10000}, {0x1234, 0x5678, 0x9ABC, 0xDEF0, 7}};
 };
 
+// Whoever made the local cycles is gone: power-on tells nobody, INTA# is high.
+TEST_F(PciBridgeTest, BusThatHasLeftIsNotCalled) {
+  LocalCycles other;
+  bridge_.attach(other);
+  bridge_.detach(local_);  // replaced long ago
+  bridge_.reset();
+  EXPECT_EQ(other.resets, 1u);
+  other.interrupt = true;
+  EXPECT_FALSE(bridge_.inta_n());
+  bridge_.detach(other);
+  bridge_.reset();
+  EXPECT_EQ(other.resets + local_.resets, 1u);
+  EXPECT_TRUE(bridge_.inta_n());
+}
+
 TEST_F(PciBridgeTest, ConfigurationSpaceSaysWhatItIs) {
   EXPECT_EQ(configuration(PciBridge::kId), 0x56781234u);
   EXPECT_EQ(configuration(PciBridge::kSubsystem), 0xDEF09ABCu);
