@@ -39,6 +39,8 @@ TimingWaivers::TimingWaivers(const std::string& path) : path_(path) {
     const TomlTable entry = file.table("waive", item, {"rule", "address", "reason"});
     Waiver w;
     w.line = TomlTable::line(item);
+    w.rule_line = TomlTable::line(entry.need("rule"));
+    w.address_line = TomlTable::line(entry.need("address"));
     w.rule = entry.text("rule");
     w.address = entry.text("address");
     w.reason = entry.text("reason");
@@ -63,7 +65,7 @@ void TimingWaivers::check(const std::vector<TimingLedger*>& ledgers) const {
     for (const TimingRule& rule : ledger->rules()) known.push_back(rule.id);
   for (const Waiver& w : waivers_) {
     if (std::find(known.begin(), known.end(), w.rule) == known.end())
-      throw UsageError(fmt::format("{}:{}: rule: no rule \"{}\"; expected one of {}", path_, w.line, w.rule,
+      throw UsageError(fmt::format("{}:{}: rule: no rule \"{}\"; expected one of {}", path_, w.rule_line, w.rule,
                                    fmt::join(known, ", ")));
     std::string buses;
     const bool there = std::any_of(ledgers.begin(), ledgers.end(), [&](const TimingLedger* ledger) {
@@ -74,7 +76,7 @@ void TimingWaivers::check(const std::vector<TimingLedger*>& ledgers) const {
     });
     if (!there)
       throw UsageError(fmt::format("{}:{}: address: \"{}\" is on another bus than rule {}; expected an address of {}",
-                                   path_, w.line, w.address, w.rule, buses));
+                                   path_, w.address_line, w.address, w.rule, buses));
   }
 }
 

@@ -27,7 +27,7 @@ class TimingWaivers {
     std::string rule, address, reason;
     char space = ' ';
     std::uint32_t first = 0, last = 0;
-    int line = 0;
+    int line = 0, rule_line = 0, address_line = 0;
     bool used = false;
   };
   std::string path_;

@@ -64,7 +64,7 @@ SELECTED = {"mi1_i", "mi2_i", "axexp0_i", "axexp1_i", "isa_la_i", "isa_sa_i"}
 STROBES = {"pa_rd_ni": "u_*_strobes.rd_q", "pa_wr_ni": "u_*_strobes.wr_q"}
 RESETS = {"rst_pin_ni", "pa_rd_ni"}
 # Outputs that follow a strobe or an address without a clock.
-THROUGH = {"pa_ta_n_o", "isa_sd_oe_o"}
+THROUGH = {"pa_ta_n_o", "pa_data_o", "pa_data_oe_o", "isa_sd_oe_o"}
 
 FLIP_FLOPS = ("$dff", "$adff", "$dffe", "$adffe", "$sdff", "$sdffe", "$aldff", "$dffsr")
 

@@ -126,15 +126,21 @@ module dpram (
     end
   end
 
-  // The pins show a word of this RAM from its grant to the end of /RD, without a clock there.
-  logic rd_low_n, drive_q;
+  // The pins show a word of this RAM from its grant to the end of /RD, without a clock there. A read that was given up
+  // may be granted when the next has fallen already: its word is not that one's.
+  logic rd_low_n, drive_q, drive_rd_q;
   assign rd_low_n = rst_ni & ~cpu_rd_ni;
   always_ff @(posedge clk_pwm_i or negedge rd_low_n) begin
     if (!rd_low_n)             drive_q <= 1'b0;
     else if (grant && !wr_low) drive_q <= 1'b1;
   end
 
-  assign cpu_drive_o = drive_q;
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni)               drive_rd_q <= 1'b0;
+    else if (grant && !wr_low) drive_rd_q <= rd2_q;
+  end
+
+  assign cpu_drive_o = drive_q & (rd_toggle_i == drive_rd_q);
   assign cpu_wait_o = cpu_sel_i & ((rd_toggle_i ^ rd_ack_q) | (wr_toggle_i ^ wr_done_q));
   assign cpu_busy_o = busy_q;
 

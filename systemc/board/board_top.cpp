@@ -82,6 +82,12 @@ void BoardTop::drive_port_a() {
     next_own_ = now_ + 1;
 }
 
+BoardOutputs BoardTop::port_a_at_once() const {
+  BoardOutputs o = outputs_;
+  set_port_a_pins(o);
+  return o;
+}
+
 void BoardTop::set_motor_inputs(unsigned ic, const MotorInputs& inputs) {
   gate_ics_.set_motor_inputs(ic, inputs, now_);
 }

@@ -42,6 +42,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   void set_inputs(const BoardInputs& inputs) override;
   void set_port_a(const BoardInputs& inputs) override;
   const BoardOutputs& outputs() const override { return outputs_; }
+  BoardOutputs port_a_at_once() const override;
   Tick run_until(Tick limit, const BoardOutputs& stop_on = {}) override;
   Tick quiet_until(const BoardOutputs& watched) const override;
 
@@ -176,6 +177,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   template <class Block>
   class Wires;
   BoardOutputs pins(Parts changed) const;
+  void set_port_a_pins(BoardOutputs& o) const;
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
 
   bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed

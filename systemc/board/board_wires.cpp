@@ -198,13 +198,17 @@ std::uint32_t BoardTop::selected_lines() const {
 }
 
 // The packed words of systemc/core/board_pins.h: what each part shows.
+void BoardTop::set_port_a_pins(BoardOutputs& o) const {
+  o.set(pin::kPaData, dpram_.cpu_drive() ? dpram_.cpu_rdata() : bus_read_.data());
+  o.set(pin::kPaDataOe, bus_read_.oe() || dpram_.cpu_drive());
+  o.set(pin::kPaTaN, dpram_.cpu_wait());
+}
+
 BoardOutputs BoardTop::pins(Parts changed) const {
   BoardOutputs o = outputs_;
   const auto from = [changed](auto... part) { return (changed & parts(part...)) != 0; };
   if (from(kPortAPins, kBusSync, kDpram)) {
-    o.set(pin::kPaData, dpram_.cpu_drive() ? dpram_.cpu_rdata() : bus_read_.data());
-    o.set(pin::kPaDataOe, bus_read_.oe() || dpram_.cpu_drive());
-    o.set(pin::kPaTaN, dpram_.cpu_wait());
+    set_port_a_pins(o);
     o.set(pin::kBusyHost, dpram_.host_busy());
     o.set(pin::kBusyCpu, dpram_.cpu_busy());
   }

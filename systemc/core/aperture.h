@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 #include "systemc/core/ticks.h"
@@ -24,13 +25,15 @@ class Aperture {
   Aperture() = default;  // none: a move is seen by the first edge that is not before it
   Aperture(TimeFs width, std::uint64_t seed) : width_(width), seed_(seed) {}
 
-  TimeFs width() const { return width_; }
-  bool on() const { return width_ > 0; }
+  TimeFs width() const { return early_ ? kMost : width_; }
+  bool on() const { return width() > 0; }
+  // Until called again: all moves within the greatest width are taken early, late; none: as above.
+  void take(std::optional<bool> early) { early_ = early; }
   const Counts& counts() const { return counts_; }
 
   // The first edge that may see a move at `time`, and the first that surely does.
-  Tick first(TimeFs time) const { return fs_to_tick(std::max<TimeFs>(0, time - width_)); }
-  Tick last(TimeFs time) const { return fs_to_tick(time + width_); }
+  Tick first(TimeFs time) const { return fs_to_tick(std::max<TimeFs>(0, time - width())); }
+  Tick last(TimeFs time) const { return fs_to_tick(time + width()); }
 
   bool in_doubt(TimeFs time) {
     ++counts_.moves;
@@ -40,7 +43,7 @@ class Aperture {
   // A single line: the edge that sees it move.
   Tick seen(TimeFs time) {
     if (!in_doubt(time)) return last(time);
-    const bool early = (draw(time) & 1) != 0;
+    const bool early = early_ ? *early_ : (draw(time) & 1) != 0;
     ++(early ? counts_.early : counts_.late);
     return early ? first(time) : last(time);
   }
@@ -55,7 +58,8 @@ class Aperture {
     bool any = false, all = true;
     for (std::size_t i = 0; i < sizeof(Pins); ++i) {
       const auto moves = static_cast<unsigned char>(before[i] ^ after[i]);
-      const auto moved = static_cast<unsigned char>(moves & draw(time + static_cast<TimeFs>(i) + 1));
+      const std::uint64_t chosen = early_ ? *early_ ? ~0ull : 0 : draw(time + static_cast<TimeFs>(i) + 1);
+      const auto moved = static_cast<unsigned char>(moves & chosen);
       now[i] = static_cast<unsigned char>(before[i] ^ moved);
       any = any || moved != 0;
       all = all && moved == moves;
@@ -76,6 +80,7 @@ class Aperture {
   }
 
   TimeFs width_ = 0;
+  std::optional<bool> early_;
   std::uint64_t seed_ = 0;
   Counts counts_;
 };

@@ -25,6 +25,10 @@ class Board {
   // Outputs as they stand after the edge now().
   virtual const BoardOutputs& outputs() const = 0;
 
+  // The same between edges, after set_inputs(): D, its enable and /TA as they follow the pins of Port A without a
+  // clock; outputs() has that with the next edge. Who does not say is taken to have flip-flops there.
+  virtual BoardOutputs port_a_at_once() const { return outputs(); }
+
   // Executes edges up to and including `limit`, or up to and including the first edge at which an output selected by
   // `stop_on` changes. Returns now().
   virtual Tick run_until(Tick limit, const BoardOutputs& stop_on = {}) = 0;

@@ -142,6 +142,11 @@ class LockstepBoard : public Board {
 
   Tick now() const override { return rtl_->now(); }
   const BoardOutputs& outputs() const override { return outputs_; }
+  BoardOutputs port_a_at_once() const override {
+    const BoardOutputs rtl = rtl_->port_a_at_once(), model = model_->port_a_at_once();
+    if (rtl != model) fail(now(), differences(rtl, model));
+    return model;
+  }
   void set_inputs(const BoardInputs& inputs) override {
     log_.inputs_changed(now(), inputs_, inputs);
     inputs_ = inputs;

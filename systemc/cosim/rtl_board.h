@@ -70,6 +70,15 @@ class RtlBoard : public Board {
 
   Tick now() const override { return now_; }
   const BoardOutputs& outputs() const override { return outputs_; }
+  BoardOutputs port_a_at_once() const override {
+    static constexpr BoardOutputs kPortA = select_pins(pin::kPaData, pin::kPaDataOe, pin::kPaTaN);
+    if (!settled_) model_->eval();
+    settled_ = true;
+    BoardOutputs out = outputs_;
+    for (unsigned i = 0; i < kBoardOutputWords; ++i)
+      out.w[i] = (out.w[i] & ~kPortA.w[i]) | (model_->pins_o[i] & kPortA.w[i]);
+    return out;
+  }
 
   void set_inputs(const BoardInputs& in) override {
     BoardInputs built = in;
@@ -81,6 +90,7 @@ class RtlBoard : public Board {
     rd_n_ = in.pa_rd_n;
     wr_n_ = in.pa_wr_n;
     if (now) model_->eval();
+    settled_ = now;
   }
 
   Tick run_until(Tick limit, const BoardOutputs& stop_on) override {
@@ -173,6 +183,7 @@ class RtlBoard : public Board {
   std::vector<Watched> watched_;
   std::array<MotorOutputs, kMaxServoIcs> stop_{};
   bool rst_n_ = true, rd_n_ = true, wr_n_ = true;
+  mutable bool settled_ = true;  // what has no clock follows the inputs
   Tick now_ = 0;
 };
 

@@ -305,6 +305,7 @@ void PortA::tell_watch() {
 }
 
 void PortA::step(PortAPins& pins, const BoardOutputs& board) {
+  strobe_moved_ = false;
   if (step_ != Step::kStrobeHigh && !resumed_) tell_watch();
   if (in_doubt_) return half_step(pins);
   const bool shown = !cycle_.on_chip;
@@ -329,6 +330,7 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
     case Step::kStrobeLow:
       cycle_.strobe_low = time_;
       (cycle_.write ? pins.pa_wr_n : pins.pa_rd_n) = false;
+      strobe_moved_ = true;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 0);
       if (shown && !cycle_.write) signals_.set(data_, time_, board.get(pin::kPaData));
       next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
@@ -336,6 +338,7 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
     case Step::kStrobeHigh:
       if (!resumed_ && !end_strobe()) break;
       pins.pa_rd_n = pins.pa_wr_n = true;
+      strobe_moved_ = true;
       if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 1);
       next(Step::kEnd);
       break;
@@ -347,6 +350,12 @@ void PortA::step(PortAPins& pins, const BoardOutputs& board) {
       if (on_cycle) on_cycle(cycle_);
       break;
   }
+}
+
+void PortA::board_follows(const BoardOutputs& board) {
+  const TimeFs time = step_ == Step::kEnd ? cycle_.strobe_high : cycle_.strobe_low;
+  see(time, board);
+  if (watch_ != nullptr) watch_->board_moved(time, board);
 }
 
 void PortA::board_changed(Tick tick, const BoardOutputs& board) {

@@ -80,7 +80,10 @@ class PortA : public sc_core::sc_module {
   bool running() const { return state_ == State::kRunning; }
   Tick stands_at() const { return stand_; }
   TimeFs started_at() const { return clock_.time(origin_, 0); }  // the cycle under way, or not before then
-  void step(PortAPins& pins, const BoardOutputs& board);     // pins are seen first by the edge after stands_at()
+  void step(PortAPins& pins, const BoardOutputs& board);         // pins are seen first by the edge after stands_at()
+  // That step moved a strobe: what of the board follows without a clock does so at its time.
+  bool strobe_moved() const { return strobe_moved_; }
+  void board_follows(const BoardOutputs& board);
   void board_changed(Tick tick, const BoardOutputs& board);  // after each edge that changes an output
 
   std::function<void(const PortACycle&)> on_cycle;  // at the end of each cycle
@@ -129,7 +132,8 @@ class PortA : public sc_core::sc_module {
   Tick late_ = 0;          // where the strobe moves
   bool in_doubt_ = false;  // of a bus at this step: the next edge sees a part of it
   bool resumed_ = false;   // the step has begun
-  TimeFs time_ = 0;        // of step_
+  bool strobe_moved_ = false;
+  TimeFs time_ = 0;  // of step_
   PortAShape shape_{};
   PortACycle cycle_;
   std::int64_t start_ = 0;       // CPU cycle at which the cycle begins

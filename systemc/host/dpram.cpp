@@ -86,6 +86,7 @@ void Dpram::cpu_edge(bool blocked) {
     if (!write) {
       cpu_rdata_ = peek(cell_);
       drive_ = !in.cpu_rd_n;
+      drive_rd_ = rd_.toggle2;
     }
   } else if (over_since) {
     own_ = false;
@@ -116,7 +117,7 @@ void Dpram::host_edge(bool blocked) {
 // A write that was granted but not made yet is lost; the memory keeps its content.
 void Dpram::reset(Tick t) {
   rd_ = wr_ = Strobe{};
-  drive_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
+  drive_ = drive_rd_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
   pins_ = cell_ = wdata_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
 }

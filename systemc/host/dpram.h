@@ -28,7 +28,7 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Inputs in;
 
   std::uint16_t cpu_rdata() const { return cpu_rdata_; }
-  bool cpu_drive() const { return drive_ && !in.cpu_rd_n; }
+  bool cpu_drive() const { return drive_ && !in.cpu_rd_n && in.rd_toggle == drive_rd_; }
   // Whoever moves /RD says so: what it turns off without a clock stays off, though it falls again before the next edge.
   void rd_moved() {
     if (in.cpu_rd_n) drive_ = false;
@@ -88,7 +88,7 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Strobe rd_, wr_;
   bool sel_ = false;
   std::uint16_t pins_ = 0;
-  bool drive_ = false;  // the word of this read stands
+  bool drive_ = false, drive_rd_ = false;  // the word of a read stands; which one it was
   bool cpu_busy_ = false, own_ = false, own_wr_ = false, sampled_ = false, proven_ = false;
   std::uint16_t cell_ = 0, wdata_ = 0, cpu_rdata_ = 0;
   // host side

@@ -70,16 +70,17 @@ bool IsaSlave::ref_acts(unsigned command) const {
   return (command == 0 && !host_reset()) || (spoilt(command) && target_ != 0);
 }
 
-// The same where others can see it.
+// The same where others can see it. The end of a read does not show, unless the next command came before it was seen:
+// then it is what takes the data from the bus.
 bool IsaSlave::ref_shows(unsigned command) const {
   if (!ref_acts(command)) return false;
   const bool ends = active_ ? command == 0 && !fresh_ && !load_ : command == 0;
-  return !ends || host_reset() || end_shows();
+  return !ends || host_reset() || end_shows() || (drive_ && command_pins() != 0);
 }
 
 // --------------------------------------------------------------------------------------------------------------- edges
 
-// `count` edges of clk_pwm. What comes in leaves the two stages with the third; LA is compared behind them.
+// `count` edges of clk_pwm, two at most. LA is compared behind the two stages.
 void IsaSlave::pwm_edges(Tick count, bool still) {
   if (count <= 0) return;
   const std::uint8_t commands = command_pins();
@@ -101,11 +102,6 @@ void IsaSlave::pwm_edges(Tick count, bool still) {
     cmd2_ = commands;
     sd2_ = in.isa_sd;
     la2_ = la;
-  }
-  if (count > 2) {
-    const Tick more = std::min<Tick>(count - 2, 4);
-    hits = la_hit(la) ? ~(~hits << more) : hits << more;
-    if (writes(commands)) sd_low_ = in.isa_sd;
   }
   cmd1_ = commands;
   sd1_ = in.isa_sd;

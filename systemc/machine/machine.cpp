@@ -158,6 +158,7 @@ void Machine::Impl::begin_reset(bool power) {
   events.clear();
   initiator.forget();
   master_access.reset();
+  aperture.take({});
   clock_drivers.reset();
   port_a.reset(board->now(), cpu.cycle(), inputs);
   inputs.rst_n = false;
@@ -230,6 +231,7 @@ void Machine::Impl::apply_host_inputs(TimeFs time) {
   take_host_inputs();
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
   host_bus_moved(time);
+  if (port_a_watch != nullptr && !elf) port_a_watch->board_moved(time, board->port_a_at_once());
   if (config.board.jpan) see_init();
 }
 
@@ -287,7 +289,10 @@ void Machine::attach_debugger(GdbServer* debugger) {
 void Machine::attach_bus_master(BusMaster* master) {
   impl_->master = master;
   impl_->initiator.by_master = master != nullptr;
-  if (master != nullptr) impl_->cpu_runs = false;
+  if (master != nullptr)
+    impl_->cpu_runs = false;
+  else
+    impl_->aperture.take({});
 }
 void Machine::attach_port_a_watch(PortAWatch* watch) {
   impl_->port_a_watch = watch;

@@ -75,6 +75,8 @@ class BusMaster {
     // It begins in a CPU clock whose number, CpuClock::number(), is `slot` modulo `slots`.
     unsigned slot = 0, slots = 1;
     std::optional<bool> moving_ta = {};  // a moving /TA is taken as it stands after, before its move; none: by the seed
+    // Moves up to Aperture::kMost from an edge are taken early, late; none: by the machine's aperture.
+    std::optional<bool> early = {};
   };
   virtual ~BusMaster() = default;
   virtual std::optional<Access> next() = 0;  // none: asked again when the machine is advanced again

@@ -51,6 +51,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     while (port_a.running() && now == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());
       board->set_port_a(inputs);
+      if (port_a.strobe_moved()) port_a.board_follows(board->port_a_at_once());
     }
     run_cpu(now);
     if (signals.traced())  // a cycle is told when it is over, with the time at which it began
@@ -96,13 +97,18 @@ void Machine::Impl::run_cpu(Tick known) {
 void Machine::Impl::run_master() {
   const CpuClock& clock = port_a.clock();
   for (unsigned made = 0; !port_a.running() && made < 64; ++made) {
-    Cycle start = clock.first_cycle(board->now());
-    if (clock.tick(start) == board->now()) ++start;  // begins with an edge that has been
-    start = std::max(port_a.free_at(), start);
     const bool begin = !initiator.under_way();
     if (begin) {
       master_access = master->next();
       if (!master_access) return;
+      aperture.take(master_access->early);
+    }
+    Cycle start = clock.first_cycle(board->now());
+    if (clock.tick(start) == board->now()) ++start;  // begins with an edge that has been
+    start = std::max(port_a.free_at(), start);
+    while (std::max(aperture.first(clock.time(start)) - 1, port_a.stands_at()) < board->now())
+      ++start;  // an edge that might have seen it has been
+    if (begin) {
       start += master_access->idle;
       start += (master_access->slots + master_access->slot - clock.number(start) % master_access->slots) %
                master_access->slots;

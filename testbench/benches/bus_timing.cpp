@@ -87,7 +87,9 @@ class BusTimingBench {
         traffic.share(kShared, host);
       const std::string problem = traffic.verify(region);
       if (problem.empty()) return;
-      if (wrong_++ == 0) first_wrong_ = fmt::format("I52 = {}, {} wait states: {}", n - 1, ws, problem);
+      if (wrong_++ == 0)
+        first_wrong_ =
+            fmt::format("I52 = {}, {} wait states: {}", n - 1, b_.forced_wait_states ? forced_[region] : ws, problem);
     };
     for (unsigned r = 0; r < PortATiming::kRegions; ++r) {
       const auto region = static_cast<Region>(r);
@@ -178,8 +180,7 @@ class BusTimingBench {
     clock_ = c.multiplier;
     wait_states_ = c.wait_states;
     ++cycles_;
-    const unsigned region = c.aa == 2 ? Region::kGateIcs : c.aa == 4 ? Region::kDpram : Region::kDefaultArea;
-    ++cross_[{region, c.write, c.wait_states, c.multiplier, c.stretched > 0}];
+    ++cross_[{PortATiming::region(c.aa), c.write, c.wait_states, c.multiplier, c.stretched > 0}];
   }
   bool stretched(unsigned n, unsigned ws) const {
     return cross_.count({Region::kDpram, false, ws, n, true}) > 0 &&

@@ -103,7 +103,9 @@ void both_sides(BenchContext& b, Sides& sides) {
   b.expect(words + fmt::format("M5->DP:${:06X}", kAddress), "");
   for (unsigned place = 0; place < kPlaces; ++place) sides.host_write(place, sides.next());
 
-  for (int round = 0; round < 16; ++round) {
+  // Two sides without a common clock: on until they have met, but not for ever.
+  const auto met = [&] { return sides.busy_cpu >= 10 && sides.busy_host >= 10 && sides.ties >= 1; };
+  for (int round = 0; round < 16 || (!met() && round < 96); ++round) {
     const unsigned busy = sides.random(kPlaces);  // most accesses of a round meet here
     const auto place = [&] { return sides.random(4) != 0 ? busy : sides.random(kPlaces); };
     std::string line;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "testbench/checkers/timing_port_a.h"
 #include "testbench/checkers/timing_report.h"
 
 namespace brick {
@@ -37,8 +38,8 @@ class Lane {
 }  // namespace
 
 nlohmann::json timing_figure(const PinCycle& c, const std::string& caption) {
-  // A quarter of TC, 1/9.8304 MHz by the multiplier; an edge between two steps is drawn at the later one.
-  const TimeFs quarter = 1'220'703'125 / (48 * static_cast<TimeFs>(c.multiplier));
+  // An edge between two steps is drawn at the later one.
+  const TimeFs quarter = PortATiming::quarters(1, c.multiplier);
   const auto step = [&](TimeFs t) {
     return kLead + static_cast<unsigned>((std::max<TimeFs>(t - c.start, 0) + quarter - 1000) / quarter);
   };

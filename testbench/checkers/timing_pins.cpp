@@ -8,9 +8,8 @@ namespace brick {
 
 namespace {
 
-constexpr TimeFs kReadSetUp = 5 * kFsPerNs;           // rows 104, 105: what the CPU leaves itself before /RD rises
-constexpr TimeFs kTaSetUp = 2 * kFsPerNs;             // row 118, before a quarter of TC
-constexpr TimeFs kAtOnce = tick_to_fs(1) + kFsPerNs;  // the engine's grain, and an aperture
+constexpr TimeFs kReadSetUp = 5 * kFsPerNs;  // rows 104, 105: what the CPU leaves itself before /RD rises
+constexpr TimeFs kTaSetUp = 2 * kFsPerNs;    // row 118, before a quarter of TC
 
 }  // namespace
 
@@ -51,9 +50,10 @@ void PinWatch::cpu_moved(TimeFs time, const PortALevels& levels) {
 }
 
 void PinWatch::board_moved(TimeFs time, const BoardOutputs& board) {
-  Board now{time, board.get(pin::kPaData), board.get(pin::kPaDataOe) != 0, board.get(pin::kPaTaN) != 0};
-  // The board's enable ends with /RD, without a clock.
-  if (!now.driven && seen_.back().driven && cpu_.rd_n && time - rd_high_ < kAtOnce) now.time = rd_high_;
+  const Board now{time, board.get(pin::kPaData), board.get(pin::kPaDataOe) != 0, board.get(pin::kPaTaN) != 0};
+  const Board& was = seen_.back();
+  if (now.data == was.data && now.driven == was.driven && now.busy == was.busy) return;
+  if (now.driven != was.driven && cpu_.rd_n) drives_outside_ = drives_outside_ || now.driven || time > rd_high_;
   board_drives_.set(now.driven, now.time);
   if (state_ == State::kIdle)
     seen_.assign(1, now);
@@ -65,6 +65,8 @@ void PinWatch::bus_reset() {
   state_ = State::kIdle;
   cpu_ = {};
   cpu_drives_ = {};
+  rd_high_ = kReset;
+  drives_outside_ = false;
   seen_.erase(seen_.begin(), seen_.end() - 1);
 }
 
@@ -103,6 +105,8 @@ void PinWatch::finish(TimeFs time) {
   } else {
     read_data();
   }
+  cycle_.drives_outside = drives_outside_ || (seen_.back().driven && (cycle_.write || time > cycle_.strobe_high));
+  drives_outside_ = false;
   acknowledge();
   turnaround(time);
   seen_.erase(seen_.begin(), seen_.end() - 1);

@@ -1,9 +1,10 @@
 // A cycle of Port A as the lines showed it: made from the levels and their times alone (systemc/cpu/port_a_watch.h),
 // whoever drove them. It begins with the fall of a strobe and is complete when the address, and in a write the data,
-// have gone. What the engine shows at the edge after the end of /RD because it needs no clock is dated with /RD itself.
+// have gone.
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -28,12 +29,13 @@ struct PinCycle {
   bool both_strobes = false;   // the other one was low too
   bool address_moved = false;  // while the strobe was low
 
-  TimeFs data_on = 0;      // write: the CPU drives D
-  TimeFs data_off = 0;     // write: and no longer
-  TimeFs data_valid = 0;   // last change of D up to the end of the strobe; the strobe's end if nobody drove D
-  TimeFs data_held = 0;    // first change from the end of the strobe on, the end of the cycle if there was none
-  bool data_lost = false;  // read: let go before /RD rose, at data_held
-  bool corrupted = false;  // read: D moved, or nobody drove it, in the last 5 ns of /RD
+  TimeFs data_on = 0;           // write: the CPU drives D
+  TimeFs data_off = 0;          // write: and no longer
+  TimeFs data_valid = 0;        // last change of D up to the end of the strobe; the strobe's end if nobody drove D
+  TimeFs data_held = 0;         // first change from the end of the strobe on, the end of the cycle if there was none
+  bool data_lost = false;       // read: let go before /RD rose, at data_held
+  bool drives_outside = false;  // since the cycle before the board drove D with /RD high
+  bool corrupted = false;       // read: D moved, or nobody drove it, in the last 5 ns of /RD
 
   TimeFs ta_moved = 0;                  // last change of /TA up to the end of the strobe, the start if there was none
   TimeFs ta_held = 0;                   // first change from there on, the end of the cycle if there was none
@@ -84,8 +86,10 @@ class PinWatch final : public PortAWatch {
   PinCycle cycle_;
   bool ended_ = false, data_moved_ = false;  // since the strobe fell; since it rose
   PortALevels cpu_;
-  TimeFs address_time_ = 0, data_time_ = 0;  // of their last moves
-  TimeFs rd_high_ = -1;
+  TimeFs address_time_ = 0, data_time_ = 0;                             // of their last moves
+  static constexpr TimeFs kReset = std::numeric_limits<TimeFs>::max();  // lets go of D without /RD
+  TimeFs rd_high_ = kReset;
+  bool drives_outside_ = false;
   Driving cpu_drives_, board_drives_;
   std::vector<Board> seen_{1};  // since the address came, oldest first
   std::size_t seen_high_ = 0;   // how many of them until the strobe rose

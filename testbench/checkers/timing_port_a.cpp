@@ -7,6 +7,7 @@ namespace brick {
 namespace {
 
 constexpr unsigned kWaitStates = 32, kMultipliers = 33;
+constexpr unsigned k150MHz = 16;  // x 9.8304 MHz, the first that is not below
 
 // host-bus:2.2, host-bus:2.5/6, host-bus:2.5/7, host-bus:2.5/9, host-bus:2.5/10, host-bus:2.6/6 to host-bus:2.6/8.
 std::vector<TimingRule> port_a_rules() {
@@ -37,7 +38,9 @@ std::vector<TimingRule> port_a_rules() {
           {"a", "/RD and /WR never low together", "host-bus:2.5/6", kHolds},
           {"b", "address, AA stand through the strobe", "host-bus:2.5/7", kHolds},
           {"c", "board lets go of D to CPU drives it", "host-bus:2.5/9", kLeast},
-          {"d", "CPU lets go of D to board drives it", "host-bus:2.5/10", kLeast}};
+          {"d", "CPU lets go of D to board drives it", "host-bus:2.5/10", kLeast},
+          {"e", "board drives D inside /RD only", "host-bus:2.6/5", kHolds},
+          {"f", "two wait states or more from 150 MHz on", "host-bus:2.2/5", kHolds}};
 }
 
 // `quarters` quarters of TC; TC is 1/9.8304 MHz by the multiplier, a quarter of it 5^13 / (48 x multiplier) fs.
@@ -156,7 +159,7 @@ PortATiming::Limits PortATiming::limits(const PinCycle& c, unsigned stretched) {
 }
 
 void PortATiming::cycle(const PinCycle& c) {
-  region_ = c.aa == 2 ? kGateIcs : c.aa == 4 ? kDpram : kDefaultArea;
+  region_ = region(c.aa);
   place_ = {c.start, c.address, c.x ? 'X' : 'Y', c.write, c.pc != 0, c.pc};
   place_.wait_states = c.wait_states;
   place_.i52 = c.multiplier - 1;
@@ -171,6 +174,8 @@ void PortATiming::cycle(const PinCycle& c) {
   if (c.wait_states > 0) acknowledge(c, rows);
   ledger_.holds(kOneStrobe, region_, !c.both_strobes, place_);
   ledger_.holds(kAddressStands, region_, !c.address_moved, place_);
+  ledger_.holds(kEnoughWaitStates, region_, c.multiplier < k150MHz || c.wait_states > 1, place_);
+  ledger_.holds(kDrivesInside, region_, !c.drives_outside, place_);
   if (c.turnaround) ledger_.enter(c.cpu_followed ? kBoardLetsGo : kCpuLetsGo, region_, 0, *c.turnaround, place_);
   (c.write ? last_write_ : last_read_) = c;
 }

@@ -49,11 +49,15 @@ class PortATiming {
     kAddressStands,
     kBoardLetsGo,
     kCpuLetsGo,
+    kDrivesInside,
+    kEnoughWaitStates,
     kRules
   };
   enum Region : unsigned { kGateIcs, kDpram, kDefaultArea, kRegions };
 
   PortATiming();
+
+  static Region region(std::uint8_t aa) { return aa == 2 ? kGateIcs : aa == 4 ? kDpram : kDefaultArea; }
 
   void cycle(const PinCycle& c);
   void forget();  // all evaluations, and the cycle before

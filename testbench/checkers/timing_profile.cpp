@@ -48,7 +48,7 @@ void TimingProfile::cycle(const PortACycle& c) {
     if (!c.write && c.address == regs::hi08::kHorx.address && c.data == kCarriageReturn) line_end_ = c.data_time;
     return;
   }
-  const unsigned task = std::min(machine_.task(), kTasks - 1);
+  const unsigned task = c.pc == 0 ? kBench : machine_.task();
   for (Load* load : {&tasks_[task], &by_pc_[{task, c.pc}]}) {
     ++load->cycles;
     load->time += c.end - c.start;

@@ -8,7 +8,7 @@ namespace brick {
 
 namespace {
 
-constexpr const char* kTaskNames[TimingProfile::kTasks] = {"background", "real-time", "servo", "phase"};
+constexpr const char* kTaskNames[TimingProfile::kTasks] = {"background", "real-time", "servo", "phase", "bench"};
 
 double ns(TimeFs time) { return static_cast<double>(time) / kFsPerNs; }
 double percent(TimeFs part, TimeFs whole) {
@@ -39,7 +39,9 @@ std::vector<std::pair<std::pair<unsigned, std::string>, TimingProfile::Load>> by
   return list;
 }
 
-std::string function_name(const std::string& name) { return name.empty() ? "?" : name; }
+std::string function_name(unsigned task, const std::string& name) {
+  return !name.empty() ? name : task == TimingProfile::kBench ? "bus master" : "?";
+}
 
 }  // namespace
 
@@ -99,7 +101,8 @@ std::string timing_load(const TimingProfile& profile, TimeFs run) {
   for (unsigned task = 0; task < TimingProfile::kTasks; ++task)
     text += line(kTaskNames[task], "all", profile.tasks()[task]);
   text += line("all", "", all);
-  for (const auto& [key, load] : by_load(profile)) text += line(kTaskNames[key.first], function_name(key.second), load);
+  for (const auto& [key, load] : by_load(profile))
+    text += line(kTaskNames[key.first], function_name(key.first, key.second), load);
   return text;
 }
 
@@ -142,7 +145,7 @@ nlohmann::json timing_json(const TimingBook& book, const TimingProfile& profile,
                        {"rule", row.rule}};
   for (const auto& [key, l] : by_load(profile))
     load.push_back({{"task", kTaskNames[key.first]},
-                    {"function", key.second},
+                    {"function", function_name(key.first, key.second)},
                     {"cycles", l.cycles},
                     {"us", ns(l.time) / 1000},
                     {"percent", percent(l.time, run)}});

@@ -126,11 +126,28 @@ void BusTraffic::exercise(Region region, unsigned count, const std::function<voi
 }
 
 // The clock begins anew at each edge of clk_pwm in a period of clk_ref; from there its clocks have as many phases as
-// its multiplier and the four quarters of a clock leave. Each write turns all bits over, so one that is lost shows.
+// its multiplier and the four quarters of a clock leave. Each write turns all bits over and is read before the next one
+// of its word, so one that is lost shows.
 unsigned BusTraffic::every_phase(Region region) {
+  constexpr bool kWrite = true, kRead = false;
+  constexpr std::array<std::pair<bool, bool>, 5> kPairs{
+      {{kWrite, kRead}, {kRead, kWrite}, {kRead, kRead}, {kWrite, kWrite}, {kRead, kRead}}};
   const unsigned slots = multiplier_ / std::gcd(multiplier_, 4u);
   auto& words = words_[region];
+  std::size_t word = 0;
   unsigned made = 0;
+  const auto pair = [&](std::pair<bool, bool> writes, unsigned slot, bool early, bool moving_ta) {
+    Word &first = words[word], &second = words[(word + (writes.first == writes.second ? 1 : 0)) % words.size()];
+    for (const bool behind : {false, true}) {
+      Word& w = behind ? second : first;
+      queue_.push_back(access(w, behind ? writes.second : writes.first, ~w.value & kAllBits));
+      Queued& a = queue_.back();
+      a.early = early;
+      a.moving_ta = moving_ta;
+      if (!behind) a.slot = slot, a.slots = slots;
+      ++made;
+    }
+  };
   for (unsigned edge = 0; edge < kTicksPerRef; ++edge) {
     control(regs::cpu_bus::kPctl.address, kTickMultiplier - 1);
     control(regs::cpu_bus::kPctl.address, multiplier_ - 1);
@@ -139,13 +156,10 @@ unsigned BusTraffic::every_phase(Region region) {
     for (unsigned slot = 0; slot < slots; ++slot)
       for (const bool moving_ta : {false, true}) {
         if (moving_ta && region != Region::kDpram) continue;
-        for (const bool write_first : {true, false})
-          for (const bool first : {true, false}) {
-            Word& w = words[made++ / 4 % words.size()];
-            queue_.push_back(access(w, write_first == first, ~w.value & kAllBits));
-            queue_.back().moving_ta = moving_ta;
-            if (first) queue_.back().slot = slot, queue_.back().slots = slots;
-          }
+        for (const bool early : {false, true}) {
+          for (const auto& writes : kPairs) pair(writes, slot, early, moving_ta);
+          word = (word + 1) % words.size();
+        }
       }
   }
   finish();
@@ -159,7 +173,7 @@ void BusTraffic::share(unsigned count, const std::function<void()>& meanwhile) {
 }
 
 std::string BusTraffic::verify(Region region) {
-  const auto& words = words_[region];
+  auto& words = words_[region];
   control(regs::cpu_bus::kBcr.address, kMostWaitStates);
   control(regs::cpu_bus::kPctl.address, kResetMultiplier - 1);
   finish();
@@ -167,11 +181,15 @@ std::string BusTraffic::verify(Region region) {
   for (const Word& w : words) queue_.push_back({{w.x, w.address, false, 0, kLongestIdle}});
   finish();
   wrong_reads_ = 0;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    if ((read_[i] & words[i].mask) != words[i].value)
-      return fmt::format("{}:${:06X} holds ${:06X}, expected ${:06X}", words[i].x ? 'X' : 'Y', words[i].address,
-                         read_[i] & words[i].mask, words[i].value);
-  return "";
+  std::string problem;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    Word& w = words[i];
+    const std::uint32_t holds = read_[i] & w.mask;
+    if (holds != w.value && problem.empty())
+      problem = fmt::format("{}:${:06X} holds ${:06X}, expected ${:06X}", w.x ? 'X' : 'Y', w.address, holds, w.value);
+    w.value = holds;  // what comes next starts from there
+  }
+  return problem;
 }
 
 }  // namespace brick

@@ -35,9 +35,9 @@ class BusTraffic final : public BusMaster {
   // may read the same words.
   void exercise(Region region, unsigned count, const std::function<void()>& meanwhile = {});
 
-  // Write and read, and read and write, one at once after the other, the first of each pair at every phase of the CPU
-  // clock to clk_ref; the dual-ported RAM with a moving /TA seen at once, and not: whatever the seed, the worst is
-  // among them. The number of accesses is returned.
+  // Reads and writes in all pairs, one at once after the other, the first of each at every phase of the CPU clock to
+  // clk_ref, what moves within a nanosecond of an edge taken early, and late; the dual-ported RAM with a moving /TA
+  // seen at once, and not: whatever the seed, the worst is among them. The number of accesses is returned.
   unsigned every_phase(Region region);
   // `count` accesses of one word of the dual-ported RAM that the host may write meanwhile: nobody knows what it holds.
   void share(unsigned count, const std::function<void()>& meanwhile);
@@ -47,7 +47,6 @@ class BusTraffic final : public BusMaster {
   unsigned wrong_reads() const { return wrong_reads_; }
   // Reads every word of the region back, with all the time there is: "" or what is wrong. Sets clock and wait states.
   std::string verify(Region region);
-  std::uint32_t first_address(Region region) const { return words_[region].front().address; }
 
   std::optional<Access> next() override;
   void done(const Access& access, std::uint32_t data) override;

@@ -1,6 +1,6 @@
 // The host's ISA / PC104 cycles as points in time (host-bus:3.4), counted from the start of a cycle. BCLK is 8.333 MHz:
-// an 8-bit cycle takes 6 BCLK, a 16-bit memory cycle 3 BCLK and one of recovery. A host is typical, slow, or at the
-// limit of every rule at once.
+// an 8-bit cycle takes 6 BCLK, an I/O cycle one more of recovery, a 16-bit memory cycle 3 BCLK and one of recovery. A
+// host is typical, slow, or at the limit of every rule at once.
 #pragma once
 
 #include "systemc/core/ticks.h"
@@ -26,7 +26,10 @@ struct HostTimes {
   bool exact_ready;                // ends exactly t9 after IOCHRDY, not with the next BCLK
 };
 
-constexpr CycleTimes kIo{0, ns(120), ns(60), ns(10), ns(660), ns(700), ns(720)};
+// A PC leaves a BCLK of recovery after an I/O cycle: 300 ns between two strobes, which the host port needs of a CPU at
+// its slowest clock (host-bus:3.3, 257.6 ns at I52 = 0).
+constexpr CycleTimes kIo{0, ns(120), ns(60), ns(10), ns(660), ns(700), ns(840)};
+constexpr CycleTimes kMemory8{0, ns(120), ns(60), ns(10), ns(660), ns(700), ns(720)};
 constexpr CycleTimes kMemory{0, ns(120), ns(60), ns(10), ns(360), ns(400), ns(480)};
 constexpr CycleTimes kSlowIo{0, ns(360), ns(120), ns(10), ns(1560), ns(1800), ns(2400)};
 constexpr CycleTimes kSlowMemory{0, ns(360), ns(120), ns(10), ns(960), ns(1200), ns(1800)};
@@ -37,7 +40,7 @@ constexpr CycleTimes kTightMemory{ns(111 - 34),  ns(111),      ns(111 + 22),    
 constexpr CycleTimes kTightMemory8{ns(111 - 34),  ns(111),      ns(111 + 22),      ns(530 - 489),
                                    ns(111 + 530), ns(641 + 25), ns(641 + 170 - 91)};
 
-constexpr HostTimes kTypical{kIo, kMemory, kIo, kBclk, false};
+constexpr HostTimes kTypical{kIo, kMemory, kMemory8, kBclk, false};
 constexpr HostTimes kSlow{kSlowIo, kSlowMemory, kSlowIo, kBclk, false};
 constexpr HostTimes kTight{kTightIo, kTightMemory, kTightMemory8, ns(1), true};
 

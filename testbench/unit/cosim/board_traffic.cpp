@@ -288,9 +288,11 @@ void BoardTraffic::choose_host_set_up() {
   inputs_.slot8 = pick(2) != 0;
 }
 
+// Some hosts are unsound: commands of an edge or two, highs as short, a second command at the same time, commands that
+// follow one another at once, an address that moves.
 void BoardTraffic::host_step() {
-  bool& strobe = host_.memory ? (host_.write ? inputs_.isa_memw_n : inputs_.isa_memr_n)
-                              : (host_.write ? inputs_.isa_iow_n : inputs_.isa_ior_n);
+  bool* const strobes[] = {&inputs_.isa_ior_n, &inputs_.isa_iow_n, &inputs_.isa_memr_n, &inputs_.isa_memw_n};
+  bool& strobe = *strobes[(host_.memory ? 2 : 0) + (host_.write ? 1 : 0)];
   switch (host_.step++) {
     case 0:
       choose_host_address();
@@ -299,10 +301,18 @@ void BoardTraffic::host_step() {
       break;
     case 1:
       strobe = false;
+      if (pick(24) == 0) *strobes[pick(4)] = false;
       host_.at += pick(8) == 0 ? 1 + pick(10) : 20 + pick(60);
       break;
     case 2:
-      strobe = true;
+      for (bool* const s : strobes) *s = true;
+      if (pick(6) == 0) {  // and again
+        host_.step = 1;
+        if (pick(4) == 0) *strobes[pick(4)] = false;
+        if (pick(4) == 0) inputs_.isa_sa ^= 1u << pick(17);
+        host_.at += 1 + pick(4);
+        break;
+      }
       host_.at += 1 + pick(12);
       break;
     default:

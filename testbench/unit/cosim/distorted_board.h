@@ -19,6 +19,7 @@ class DistortedBoard : public Board {
     };
   }
 
+  bool at_once = true;  // false: flip-flops where the enable of D and /TA have none
   std::function<void(BoardInputs&)> distort = [](BoardInputs&) {};
   std::function<void(unsigned ic, MotorInputs&)> distort_motor = [](unsigned, MotorInputs&) {};
 
@@ -29,6 +30,7 @@ class DistortedBoard : public Board {
     board_->set_inputs(changed);
   }
   const BoardOutputs& outputs() const override { return board_->outputs(); }
+  BoardOutputs port_a_at_once() const override { return at_once ? board_->port_a_at_once() : outputs(); }
   Tick run_until(Tick limit, const BoardOutputs& stop_on) override { return board_->run_until(limit, stop_on); }
   void set_motor_inputs(unsigned ic, const MotorInputs& inputs) override {
     MotorInputs changed = inputs;

@@ -84,6 +84,24 @@ class OnePinBoard : public Board {
   Tick now_ = 0;
 };
 
+class AtOnceBoard final : public OnePinBoard {
+ public:
+  AtOnceBoard() : OnePinBoard(nullptr) {}
+  BoardOutputs port_a_at_once() const override {
+    BoardOutputs o = outputs();
+    o.set(pin::kPaTaN, 1);
+    return o;
+  }
+};
+
+TEST(Lockstep, ComparesWhatFollowsAStrobeWithoutAClock) {
+  BRICK_COVERS("CARD-6");
+  const auto board = make_lockstep_board(std::make_unique<AtOnceBoard>(), std::make_unique<OnePinBoard>(nullptr));
+  EXPECT_THROW(board->port_a_at_once(), LockstepDifference);
+  const auto alike = make_lockstep_board(std::make_unique<AtOnceBoard>(), std::make_unique<AtOnceBoard>());
+  EXPECT_EQ(alike->port_a_at_once().get(pin::kPaTaN), 1u);
+}
+
 TEST(Lockstep, ComparesEveryPinInBothDirections) {
   BRICK_COVERS("CARD-6");
   for (const PinField& f : pin::kAll) {

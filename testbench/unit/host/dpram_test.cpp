@@ -201,6 +201,32 @@ TEST_F(DpramTest, NoReadShowsTheWordOfTheStrobeBefore) {
       }
 }
 
+// A read that waits is given up and the host goes while /RD is high: its grant may come when the next has fallen.
+TEST_F(DpramTest, NoReadShowsTheWordOfOneThatWasGivenUp) {
+  host_write(20, 0x2020);
+  host_write(21, 0x2121);
+  unsigned waited = 0;
+  for (int low = 8; low <= 14; ++low)
+    for (int host_goes = -6; host_goes <= 8; ++host_goes)
+      for (int high = 1; high <= 3; ++high) {
+        SCOPED_TRACE(::testing::Message() << low << ", host goes at " << host_goes << ", high for " << high);
+        host_start(20, false);
+        both.ref();
+        cpu_start_read(20);
+        for (int tick = 0; tick < low + high + kAccess + 6; ++tick) {
+          if (tick == low) waited += both.get("cpu_busy") != 0 ? 1 : 0, cpu_end();
+          if (tick == low + high) cpu_start_read(21);
+          if (tick == low + host_goes) both.in.mem_sel = both.in.mem_rd = both.in.mem_wr = false;
+          if (tick >= low + high && both.get("cpu_drive") != 0) { ASSERT_EQ(both.get("cpu_rdata"), 0x2121u) << tick; }
+          both.tick();
+        }
+        cpu_end();
+        both.ticks(kRest);
+        ASSERT_EQ(both.difference(), "");
+      }
+  EXPECT_GT(waited, 50u);
+}
+
 TEST_F(DpramTest, ThePinsAreDrivenFromTheDataToTheEndOfTheStrobe) {
   for (int cycle = 0; cycle < 2; ++cycle) {
     EXPECT_FALSE(both.get("cpu_drive"));

@@ -45,12 +45,13 @@ PinCycle read(const std::vector<Shows>& board, unsigned more_clocks = 0) {
 }
 
 TEST(PinWatch, DataOfARead) {
-  PinCycle c = read({{kLow + 50 * kNs, 5}, {kHigh + 5 * kNs, 0, false}});
+  PinCycle c = read({{kLow + 50 * kNs, 5}, {kHigh, 0, false}});
   EXPECT_EQ(c.data_valid, kLow + 50 * kNs);
-  EXPECT_EQ(c.data_held, kHigh) << "the enable ends with /RD; the engine shows it at its next edge";
-  EXPECT_TRUE(!c.corrupted && !c.data_lost && c.data == 5);
-  c = read({{kLow + 50 * kNs, 5}, {kHigh + 12 * kNs, 0, false}});
-  EXPECT_EQ(c.data_held, kHigh + 12 * kNs) << "more than an edge later it is late";
+  EXPECT_EQ(c.data_held, kHigh);
+  EXPECT_TRUE(!c.corrupted && !c.data_lost && c.data == 5 && !c.drives_outside);
+  c = read({{kLow + 50 * kNs, 5}, {kHigh + 1, 0, false}});
+  EXPECT_EQ(c.data_held, kHigh + 1);
+  EXPECT_TRUE(c.drives_outside);
   c = read({{kLow + 50 * kNs, 5}, {kHigh - 4 * kNs, 6}});
   EXPECT_TRUE(c.corrupted);
   EXPECT_EQ(c.data_valid, kHigh - 4 * kNs);
@@ -60,6 +61,14 @@ TEST(PinWatch, DataOfARead) {
   c = read({{kLow + 50 * kNs, 5}, {kHigh - 10 * kNs, 0, false}});
   EXPECT_TRUE(c.corrupted && c.data_lost);
   EXPECT_EQ(c.data_held, kHigh - 10 * kNs);
+}
+
+TEST(PinWatch, TheBoardDrivesInsideReadStrobesOnly) {
+  EXPECT_FALSE(read({{kLow, 5}, {kHigh, 5, false}}).drives_outside);
+  EXPECT_TRUE(read({{kLow - 1, 5}, {kHigh, 5, false}}).drives_outside) << "before /RD falls";
+  EXPECT_TRUE(read({{kLow + kNs, 5}}).drives_outside) << "for ever";
+  EXPECT_TRUE(read({{kStart - 9 * kNs, 5}, {kStart - 8 * kNs, 5, false}, {kLow, 5}, {kHigh, 5, false}}).drives_outside)
+      << "between cycles";
 }
 
 TEST(PinWatch, ClocksThatTaAskedFor) {

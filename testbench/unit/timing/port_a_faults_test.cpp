@@ -7,7 +7,8 @@
 #include <set>
 
 #include "systemc/machine/machine.h"
-#include "testbench/checkers/timing_port_a.h"
+#include "testbench/checkers/timing_traffic.h"
+#include "testbench/unit/cosim/distorted_board.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {
@@ -94,8 +95,8 @@ Rules broken(Engine engine, const std::function<void(Script&)>& fault) {
     pins.pa_rd_n = levels.rd_n;
     pins.pa_wr_n = levels.wr_n;
     pins.pa_wdata = levels.data;
-    machine.apply();
     watch.cpu_moved(move.time, levels);
+    machine.apply(move.time);
   }
   machine.attach_port_a_watch(nullptr);
   EXPECT_EQ(timing.ledger().row(PortATiming::k100, PortATiming::kGateIcs).evaluations, 5u);
@@ -183,6 +184,59 @@ TEST(PortAFaults, EachIsFoundByItsRuleOnBothEngines) {
   BRICK_COVERS("CARD-5");
   for (const Engine engine : {Engine::kSystemC, Engine::kRtl})
     for (const Fault& fault : faults()) EXPECT_EQ(broken(engine, fault.seed), fault.rules) << fault.what;
+}
+
+// I52 = 31: the CPU drives D 9 / 4 TC = 7.15 ns after the /RD of a read with seven wait states. An enable that ends
+// with a flip-flop of clk_pwm is up to 8.48 ns late.
+TEST(PortAFaults, AnEnableThatWaitsForAClockIsFoundOnBothEngines) {
+  BRICK_COVERS("CARD-5");
+  for (const Engine engine : {Engine::kSystemC, Engine::kRtl})
+    for (const bool waits : {false, true}) {
+      MachineConfig config;
+      config.engine = engine;
+      config.rewire = [waits](std::unique_ptr<Board> board) {
+        auto distorted = std::make_unique<DistortedBoard>(std::move(board));
+        distorted->at_once = !waits;
+        return distorted;
+      };
+      Machine machine(sc_core::sc_gen_unique_name("brick"), config);
+      BusTraffic traffic(machine, 1);
+      PinWatch watch;
+      PortATiming timing;
+      watch.on_cycle = [&](const PinCycle& c) { timing.cycle(c); };
+      machine.attach_port_a_watch(&watch);
+      traffic.set_clock(32);
+      traffic.set_wait_states(PortATiming::kDpram, 7);
+      traffic.every_phase(PortATiming::kDpram);
+      machine.attach_port_a_watch(nullptr);
+      Rules rules;
+      for (const TimingViolation& v : timing.ledger().violations()) rules.insert(timing.ledger().rules()[v.rule].id);
+      EXPECT_EQ(rules, waits ? (Rules{"c", "e"}) : Rules{}) << (engine == Engine::kRtl ? "RTL" : "SystemC");
+      EXPECT_GT(timing.ledger().row(PortATiming::kDrivesInside, PortATiming::kDpram).evaluations, 100u);
+    }
+}
+
+// A board that drives D in a write, or while nobody asks.
+TEST(PortAFaults, ABoardThatDrivesUnaskedIsFound) {
+  for (const bool in_a_write : {true, false}) {
+    PinWatch watch;
+    PortATiming timing;
+    watch.on_cycle = [&](const PinCycle& c) { timing.cycle(c); };
+    const Script script(1000 * kNs);
+    const TimeFs begin = in_a_write ? script.cycles[1].low + 20 * kNs : script.cycles[0].address - 50 * kNs;
+    BoardOutputs drives;
+    drives.set(pin::kPaDataOe, 1);
+    std::vector<std::pair<TimeFs, BoardOutputs>> board{{begin + 10 * kNs, {}}, {begin, drives}};
+    PortALevels levels;
+    levels.wait_states = 7;
+    for (const Move& move : script.moves()) {
+      for (; !board.empty() && board.back().first < move.time; board.pop_back())
+        watch.board_moved(board.back().first, board.back().second);
+      move.edit(levels);
+      watch.cpu_moved(move.time, levels);
+    }
+    EXPECT_EQ(timing.ledger().row(PortATiming::kDrivesInside, PortATiming::kGateIcs).violations, 1u);
+  }
 }
 
 // Lines of a board that is made up: it lets go of D 40 ns after /RD, and the CPU drives 28.6 ns after it.

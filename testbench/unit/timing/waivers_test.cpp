@@ -69,7 +69,7 @@ TEST(TimingWaivers, EveryMistakeIsOneLineWithItsPlace) {
   EXPECT_THAT(problem(good + "reason = \"\"\n"), HasSubstr(":4: reason: found \"\"; expected why"));
   EXPECT_THAT(problem(good + "reason = \"r\"\nwhy = 1\n"), HasSubstr(":5: unknown key why"));
   EXPECT_THAT(problem("[[waive]]\nrule = \"99\"\naddress = \"X:$078000\"\nreason = \"r\"\n", ledgers),
-              HasSubstr(":1: rule: no rule \"99\"; expected one of 100, 101"));
+              HasSubstr(":2: rule: no rule \"99\"; expected one of 100, 101"));
   for (const char* address : {"078000", "X:078000", "Z:$078000", "X:$0780000", "X:$078000..", ""})
     EXPECT_THAT(problem(std::string("[[waive]]\nrule = \"104\"\naddress = \"") + address + "\"\nreason = \"r\"\n"),
                 HasSubstr(":3: address: found \"" + std::string(address) + "\"; expected an address such as"));
@@ -81,7 +81,7 @@ TEST(TimingWaivers, EveryMistakeIsOneLineWithItsPlace) {
   for (const char* address : {"I/O 0x213", "memory 0x0D0000..0x0D1000"})
     EXPECT_THAT(
         problem(std::string("[[waive]]\nrule = \"104\"\naddress = \"") + address + "\"\nreason = \"r\"\n", ledgers),
-        HasSubstr(":1: address: \"" + std::string(address) +
+        HasSubstr(":3: address: \"" + std::string(address) +
                   "\" is on another bus than rule 104; expected an address of Port A"));
   EXPECT_THAT(problem("[[waive]\n"), HasSubstr("expected TOML"));
   EXPECT_THAT(problem("waive = 3\n"), HasSubstr("a list in brackets"));
