@@ -184,7 +184,7 @@ constexpr Tick kTicks = 1'000'000;
 
 TEST(BoardComponent, ModelAgreesWithTheBoardOnItsBuses) {
   BRICK_COVERS("CARD-1");
-  in_own_process([] { board_agrees(model_engine(), kTicks, no_serial_clocks, 10'000, buses); });
+  in_own_process([] { board_agrees(model_engine(), kTicks, no_serial_clocks, 5'000, buses); });
 }
 TEST(BoardComponent, ModelAgreesWithTheBoardOnItsMotorSide) {
   BRICK_COVERS("CARD-1");
@@ -196,7 +196,7 @@ TEST(BoardComponent, MotorSideIsForeseenAlone) {
 }
 TEST(BoardComponent, RtlAgreesWithTheBoard) {
   BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { board_agrees(rtl_engine(), kTicks, no_serial_clocks, 10'000, buses); });
+  in_own_process([] { board_agrees(rtl_engine(), kTicks, no_serial_clocks, 5'000, buses); });
 }
 TEST(BoardComponent, LockstepAgreesWithTheBoard) {
   BRICK_COVERS("CARD-1 CARD-2");
