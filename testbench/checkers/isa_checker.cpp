@@ -8,7 +8,9 @@ namespace {
 
 constexpr TimeFs kNs = kFsPerNs;
 constexpr TimeFs kBclk = 120 * kNs;
-constexpr TimeFs kHold = 25 * kNs;  // t3, t7, t15
+constexpr TimeFs kHold = 25 * kNs;                                // t3, t7, t15
+constexpr TimeFs kTakenBefore = 9 * kNs, kTakenAfter = 17 * kNs;  // host-bus:3.9/2
+constexpr TimeFs kLongestWait = 15'600 * kNs;                     // row 10
 constexpr TimeFs kT2Limit = 530 * kNs, kT4Limit = 489 * kNs, kT13Limit = 219 * kNs, kT14Limit = 173 * kNs;
 constexpr TimeFs kT16Limit = 66 * kNs;
 constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
@@ -166,6 +168,7 @@ void IsaChecker::block_selected(TimeFs t, const BoardInputs& in) {
 void IsaChecker::address_moved(TimeFs t) {
   sa_at_ = t;
   if (in_cycle_) cycle_.moved = true;
+  if (in_cycle_ && t - cycle_.low <= kTakenAfter) cycle_.unsure = true;
   if (!in_cycle_ && std::exchange(hold_address_, false)) enter(kT3, kHold, t - high_at_, t);
 }
 
@@ -182,15 +185,15 @@ void IsaChecker::ready_moved(TimeFs t, bool ready) {
     enter(kT8, 366 * kNs, t - cycle_.low, t);
   } else if (cycle_.ready_low != kNone) {
     cycle_.ready_high = t;
-    enter(kT10, 15'600 * kNs, t - cycle_.ready_low, t);
+    enter(kT10, kLongestWait, t - cycle_.ready_low, t);
   }
 }
 
 // SD as the board drives it. In the tick after a command it may still be on (t5). Whose the read is cannot be said when
-// its address has moved: the board takes what it samples after the command has fallen.
+// its address moved around the fall of the command.
 void IsaChecker::board_data(TimeFs t, const BoardInputs& in, const BoardOutputs& shown) {
   const unsigned driven = out_.get(pin::kIsaSdOe), before = shown.get(pin::kIsaSdOe);
-  if (driven != 0 && before == 0 && !(in_cycle_ && cycle_.moved)) {
+  if (driven != 0 && before == 0 && !(in_cycle_ && cycle_.unsure)) {
     const bool read = in_cycle_ && cycle_.alone && !cycle_.write();
     ledger_.holds(kOursOnly, region(cycle_), read && ours(in, cycle_), place(t));
   }
@@ -224,6 +227,7 @@ void IsaChecker::begin(TimeFs t, unsigned now, const BoardInputs& in, const Boar
   cycle_.kind = (now & 1) != 0 ? kIoRead : (now & 2) != 0 ? kIoWrite : (now & 4) != 0 ? kMemoryRead : kMemoryWrite;
   cycle_.alone = (now & (now - 1)) == 0;
   cycle_.low = t;
+  cycle_.unsure = t - sa_at_ < kTakenBefore;
   cycle_.address = address(in, cycle_.memory());
   cycle_.wide = cycle_.memory() && !in.slot8 && out.get(pin::kIsaMemcs16N) == 0;
   cycle_.lanes = lanes(in, cycle_.memory());
@@ -277,6 +281,8 @@ void IsaChecker::end(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
     enter(kT2, kT2Limit, t - cycle_.low, t);
   // IOCHRDY that is still low has been high for less than no time.
   if (stretched && cycle_.whole) enter(kT9, kBclk, cycle_.ready_high == kNone ? -1 : t - cycle_.ready_high, t);
+  if (stretched && cycle_.ready_high == kNone && t - cycle_.ready_low > kLongestWait)
+    enter(kT10, kLongestWait, t - cycle_.ready_low, t);
   high_at_ = t;
   hold_address_ = true;
   if (cycle_.write())
@@ -306,7 +312,7 @@ TimeFs IsaChecker::data_limit() const {
 void IsaChecker::end_read(TimeFs t) {
   const unsigned driven = out_.get(pin::kIsaSdOe);
   read_floats_ = driven != 0;
-  if (!cycle_.alone || !cycle_.whole || cycle_.moved) return;
+  if (!cycle_.alone || !cycle_.whole || cycle_.unsure) return;
   const Rule row = cycle_.wide ? kT14 : kT4;
   const TimeFs limit = data_limit();
   if (!cycle_.answered) {  // a command that ends before the limit asks for nothing

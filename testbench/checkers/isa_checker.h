@@ -68,6 +68,7 @@ class IsaChecker {
     Kind kind = kIoRead;
     std::uint32_t address = 0;
     bool wide = false, alone = true, whole = true, moved = false;
+    bool unsure = false;                 // the address moved where the board may take either (host-bus:3.9/2)
     unsigned lanes = 0;                  // of SD that it uses
     bool due = false, answered = false;  // a sound read of the board's own; all its lanes have been driven
     TimeFs low = 0, ready_low = kNone, ready_high = kNone;

@@ -20,7 +20,8 @@ AccessHost::AccessHost(Machine& machine, AccessCpu& cpu, std::uint64_t seed, boo
 void AccessHost::times() {
   isa::HostTimes times = std::array{isa::kTypical, isa::kTight, isa::kTight, isa::kSlow}[pick(4)];
   times.grid = 1;
-  // At the limit for the host port too, whose CPU may be at its slowest clock (host-bus:3.3/3, 3.3/5: 257.6 ns).
+  // At the limit for the host port too, whose CPU may be at its slowest clock (host-bus:3.3/3, host-bus:3.3/5: 257.6
+  // ns).
   times.io.next = std::max(times.io.next, times.io.command_high + isa::ns(258) - times.io.command_low);
   bus_.set_times(times);
   bus_.wait(kApart);  // the least times between two cycles are those of the first

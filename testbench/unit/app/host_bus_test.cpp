@@ -44,7 +44,7 @@ TEST_F(HostBusTest, WriteCycleKeepsTheTimesOfTheTable) {
   EXPECT_LE(when(data), when(write_low) + 22 + kTickNs) << "t6";
   EXPECT_GE(when(data, 2) - when(write_high), 25 - kTickNs) << "t7";
   EXPECT_GE(when(write_low, 2) - when(write_high), 170 - kTickNs) << "t11";
-  EXPECT_NEAR(when(write_low, 2) - when(write_low), 720, kTickNs) << "six BCLK";
+  EXPECT_NEAR(when(write_low, 2) - when(write_low), 840, kTickNs) << "six BCLK and one of recovery";
   EXPECT_EQ(fake.io[7], 0x41);
   EXPECT_EQ(fake.io[3], 0x42);
 }

@@ -32,7 +32,7 @@ std::unique_ptr<DistortedBoard> distorted(std::uint32_t fitted, Edit edit, Chang
 
 // Random accesses from both sides, with a control panel and clocks from outside.
 Changes traffic(const Edit& edit) {
-  constexpr Tick kEnd = 20'000;
+  constexpr Tick kEnd = 40'000;
   Changes changes;
   const auto board = distorted(0x3, edit, changes);
   BoardTraffic traffic(2, {0, true});

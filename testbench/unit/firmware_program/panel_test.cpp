@@ -89,6 +89,21 @@ TEST_F(Panel, TheRealTimeTaskAloneTakesTheSelection) {
   EXPECT_FALSE(breq());
 }
 
+// It does so before it calculates lines, which may take long: what a line selects shows with the next task.
+TEST_F(Panel, SelectionComesBeforeTheCalculationOfLines) {
+  BRICK_COVERS("BREQ-6");
+  platform::fit_panel();
+  ASSERT_EQ(host("&1DEF ROT 50 B0 OPEN ROT"), "");
+  for (const char* line : {"I59=1 DWELL1000", "DWELL1"}) ASSERT_EQ(host(line), "");
+  platform::pull_panel(fpd(1));
+  ASSERT_EQ(host("CLOSE R"), "");
+  platform::real_time();
+  EXPECT_EQ(i_integer(59), 1) << "the line was calculated";
+  EXPECT_TRUE(breq()) << "after the selection had been looked at";
+  platform::real_time();
+  EXPECT_FALSE(breq());
+}
+
 // Lines that enter another system's buffer do not move the pin; those of the selected one pulse it.
 TEST_F(Panel, OnlyLinesOfTheSelectedSystemPulseBreq) {
   BRICK_COVERS("BREQ-6 BREQ-1");
