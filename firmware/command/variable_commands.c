@@ -15,7 +15,8 @@ struct range {
   uint32_t first, count, step;
 };
 
-static error_t read_number(struct lexer* lx, uint32_t* number) {
+/* A number or a computed one, below `end`. */
+static error_t read_number(struct lexer* lx, uint32_t end, uint32_t* number) {
   double value;
   if (lexer_peek(lx) == '(') {
     (void)lexer_accept(lx, '(');
@@ -25,25 +26,25 @@ static error_t read_number(struct lexer* lx, uint32_t* number) {
   } else if (!lexer_number(lx, &value) || value > VARIABLE_COUNT || (double)(uint32_t)value != value) {
     return ERR_DATA; /* `P1.5` is no variable; a computed number loses its fraction */
   }
-  if (value < 0.0 || value >= (double)VARIABLE_COUNT) return ERR_DATA;
+  if (!(value >= 0.0 && value < (double)end)) return ERR_DATA; /* an expression may be no number at all */
   *number = (uint32_t)value;
   return ERR_NONE;
 }
 
 static error_t read_range(struct lexer* lx, struct range* range) {
-  error_t error = read_number(lx, &range->first);
+  error_t error = read_number(lx, VARIABLE_COUNT, &range->first);
   range->count = 1;
   range->step = 1;
   if (error != ERR_NONE) return error;
   if (lexer_keyword(lx, "..")) {
     uint32_t last;
-    error = read_number(lx, &last);
+    error = read_number(lx, VARIABLE_COUNT, &last);
     if (error != ERR_NONE) return error;
     if (last < range->first) return ERR_DATA;
     range->count = last - range->first + 1u;
   } else if (lexer_accept(lx, ',')) {
-    error = read_number(lx, &range->count);
-    if (error == ERR_NONE && lexer_accept(lx, ',')) error = read_number(lx, &range->step);
+    error = read_number(lx, VARIABLE_COUNT + 1u, &range->count);
+    if (error == ERR_NONE && lexer_accept(lx, ',')) error = read_number(lx, VARIABLE_COUNT, &range->step);
     if (error != ERR_NONE) return error;
     if (range->count == 0u || range->first + (range->count - 1u) * range->step >= VARIABLE_COUNT) return ERR_DATA;
   }

@@ -50,7 +50,8 @@ double i_variable_read(uint32_t number) {
 }
 
 i_format_t i_variable_format(uint32_t number) {
-  return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
+  const struct i_place place = i_table_place(number);
+  return i_table_entry(place)->hex != 0u && !i_of_absent_ic(place) ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
 }
 
 /* Hardware and kernel ---------------------------------------------------------------------------------------------- */
@@ -266,6 +267,7 @@ void i_variable_initialize(void) {
   defaults(0, 100, source);
   repeat(100, 31, source);
   defaults(4900, 10, source);
+  defaults(I5061_ADC_RING, 16, source);
   repeat(5100, 15, source);
   ic_defaults(~0u, source);
   defaults(8000, 72, source); /* at most 18 servo ICs of four channels */
