@@ -2,6 +2,7 @@
 #include "firmware/command/memory_commands.h"
 
 #include "firmware/base/float48.h"
+#include "firmware/base/mathematics.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
@@ -35,7 +36,7 @@ static void report_word(form_t form, bool hex, uint32_t address) {
 }
 
 static void write_word(form_t form, uint32_t address, double value) {
-  const int64_t whole = (int64_t)(value < 0.0 ? value - 0.5 : value + 0.5);
+  const int64_t whole = math_nearest(value);
   const struct float48 word = float48_pack(value);
   const uint32_t state = hal_mask_servo();
   switch (form) {

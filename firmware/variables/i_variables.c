@@ -4,6 +4,7 @@
 #include "firmware/variables/i_variables.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/base/mathematics.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/clock_watch.h"
@@ -156,10 +157,7 @@ static void store(uint32_t number, double value) {
 
 /* Limited-range integers never fail: the bits above the range are dropped. */
 static int32_t reduce(const struct i_entry* entry, double value) {
-  if (!(value < 140737488355328.0)) value = 140737488355327.0; /* +-2^47, the controller's own limit */
-  if (!(value > -140737488355328.0)) value = -140737488355328.0;
-  const int64_t whole = value < 0.0 ? -(int64_t)(0.5 - value) : (int64_t)(value + 0.5);
-  const uint32_t bits = (uint32_t)whole & ((1u << entry->bits) - 1u);
+  const uint32_t bits = (uint32_t)math_nearest(value) & ((1u << entry->bits) - 1u);
   if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u)
     return (int32_t)(bits | ~((1u << entry->bits) - 1u));
   return (int32_t)bits;

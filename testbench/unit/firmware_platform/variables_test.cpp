@@ -365,7 +365,7 @@ TEST(MVariables, PointAtPartsOfWords) {
   c.line("M2->Y:$10F0,15 M3->X:$10F1,0,24,S M3=-2");
   EXPECT_EQ(c.line("M2 M3 M1"), "1|-2|165");
   EXPECT_EQ(c.line("RX$10F1 RHX$10F1"), "-2|FFFFFE");
-  EXPECT_EQ(c.line("I9=1 M2->"), "M2->Y:$10F0,15,1");
+  EXPECT_EQ(c.line("I9=1 M2->"), "M2->Y:$10F0,15");
   c.line("M4->D:$10F2 M4=-1 M5->L:$10F3 M5=0.25");
   EXPECT_EQ(c.line("M4 M5"), "-1|0.25");
   EXPECT_EQ(c.line("M5 RHD$10F2"), "0.25|FFFFFFFFFFFF");
