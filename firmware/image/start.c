@@ -18,6 +18,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/motor_status.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/variables/i_variables.h"
 
@@ -65,6 +66,7 @@ void start(enum start_mode mode) {
   panel_initialize();
   coordinate_systems_initialize();
   axis_definition_initialize();
+  motor_status_initialize();
   regions_initialize();
   rotary_initialize();
   open_buffer_initialize();
