@@ -74,7 +74,7 @@ static error_t read_words(struct lexer* lx, form_t form, bool hex) {
   error_t error = read_address(lx, &address);
   if (error == ERR_NONE && lexer_accept(lx, ',')) error = lexer_integer(lx, &count);
   if (error != ERR_NONE) return error;
-  if (count < 1 || count > COUNT_LIMIT) return ERR_DATA;
+  if (count < 1 || count > COUNT_LIMIT || address + (uint32_t)count > HAL_WORD_MASK + 1u) return ERR_DATA;
   for (uint32_t i = 0; i < (uint32_t)count; ++i) {
     if (i != 0u) reply_char(' ');
     report_word(form, hex, address + i);
@@ -92,6 +92,7 @@ static error_t write_words(struct lexer* lx, form_t form) {
     double value;
     error = expression_evaluate(lx, session.cs, &value);
     if (error != ERR_NONE) return error;
+    if (address > HAL_WORD_MASK) return ERR_DATA;
     write_word(form, address++, value);
   }
   return ERR_NONE;

@@ -33,6 +33,23 @@ uint32_t hal_cycles(void) {
   return cycles;
 }
 
+uint64_t hal_long_cycles(void) {
+  uint32_t high, low, again;
+  do {
+    __asm__ volatile(CSR("csrr %0, mcycleh") : "=r"(high));
+    low = hal_cycles();
+    __asm__ volatile(CSR("csrr %0, mcycleh") : "=r"(again));
+  } while (again != high);
+  return ((uint64_t)high << 32) | low;
+}
+
+uint32_t hal_image_checksum(void) {
+  extern const uint32_t __code_start[], __code_end[]; /* image/turbo.ld */
+  uint32_t sum = 0;
+  for (const uint32_t* word = __code_start; word != __code_end; ++word) sum += *word;
+  return sum & HAL_WORD_MASK;
+}
+
 void hal_set_cpu_clock(uint32_t i52) { cycles_per_ms = (98304u * (i52 + 1u)) / 10u; }
 uint32_t hal_cycles_per_ms(void) { return cycles_per_ms; }
 

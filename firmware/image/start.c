@@ -14,6 +14,7 @@
 #include "firmware/image/saved_data.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/bus_setup.h"
+#include "firmware/kernel/calendar.h"
 #include "firmware/kernel/clock_watch.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/axis_definition.h"
@@ -73,6 +74,7 @@ void start(enum start_mode mode) {
   buffer_request_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
+  calendar_initialize();
   tasks_initialize();
   phase_task_initialize();
   hal_interrupts_on();
