@@ -44,9 +44,11 @@ uint64_t hal_long_cycles(void) {
 }
 
 uint32_t hal_image_checksum(void) {
-  extern const uint32_t __code_start[], __code_end[]; /* image/turbo.ld */
+  const uint32_t *word, *end; /* symbols of image/turbo.ld */
   uint32_t sum = 0;
-  for (const uint32_t* word = __code_start; word != __code_end; ++word) sum += *word;
+  __asm__("la %0, __code_start" : "=r"(word));
+  __asm__("la %0, __code_end" : "=r"(end));
+  for (; word != end; ++word) sum += *word;
   return sum & HAL_WORD_MASK;
 }
 

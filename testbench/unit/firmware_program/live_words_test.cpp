@@ -78,7 +78,8 @@ TEST_F(LiveWords, AxisScalesAndOffset) {
   EXPECT_EQ(host("WL$14F,1 RL$14F"), "100") << "made by the definition";
 }
 
-// firmware:5.4, 5.5: bits 0 (runs) and 4 (continuous) of word 1, 17 (in position) of word 2; targets in L:+$41 on.
+// firmware:5.4, firmware:5.5: bits 0 (runs) and 4 (continuous) of word 1, 17 (in position) of word 2; targets in L:+$41
+// on.
 TEST_F(LiveWords, CoordinateSystemShowsItsProgram) {
   const auto agree = [](const std::string& n, const std::string& base) {
     const std::string status = host("&" + n + "??");
