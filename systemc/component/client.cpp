@@ -90,6 +90,7 @@ void Client::take(Tick tick) {
   catch_up(tick);
   if (inputs_differ_) chip_->set_inputs(inputs_);
   begin_cycles();
+  end_cycles();  // some need no edge
   inputs_differ_ = touched_ = false;
   foresee();
 }
@@ -174,18 +175,25 @@ class Client::Turn {
   std::list<const Turn*>::iterator place_;
 };
 
-std::uint32_t Client::access(unsigned number, const Cycle& cycle) {
+Client::Answer Client::access(unsigned number, Cycle cycle) {
   Face& face = *faces_.at(number);
   const Turn turn(*this, face);
   turn.wait();
+  cycle.asked = scheduler_.time();
   face.cycle = cycle;
   face.state = Face::kAsked;
   touch();
   sc_core::wait(face.ended);
-  return chip_->value(number);
+  const Answer answer{chip_->value(number), true};
+  const auto end = chip_->bus_end(number);
+  if (!end) return answer;
+  if (const sc_core::sc_time at = scheduler_.instant_at(end->time); at > sc_core::sc_time_stamp())
+    sc_core::wait(at - sc_core::sc_time_stamp());
+  return {answer.value, end->made};
 }
 
-std::uint32_t Client::peek(unsigned face, unsigned address) {
+std::optional<std::uint32_t> Client::peek(unsigned face, unsigned address) {
+  if (!chip_->peeks(face, address)) return {};
   catch_up(scheduler_.tick());
   return chip_->peek(face, address);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <systemc>
@@ -25,8 +26,12 @@ class Client {
   void elaborate();  // once all ports are bound: what is watched, who wakes us
 
   // For the initiator's process; waits.
-  std::uint32_t access(unsigned face, const Cycle& cycle);
-  std::uint32_t peek(unsigned face, unsigned address);
+  struct Answer {
+    std::uint32_t value;
+    bool made;  // false: the bus could not
+  };
+  Answer access(unsigned face, Cycle cycle);
+  std::optional<std::uint32_t> peek(unsigned face, unsigned address);
 
   // For the scheduler.
   void start();          // levels of all inputs and outputs

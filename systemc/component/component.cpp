@@ -75,11 +75,19 @@ void Component::transport(unsigned face, tlm::tlm_generic_payload& payload, sc_c
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
   delay = sc_core::SC_ZERO_TIME;
   const auto address = static_cast<unsigned>(payload.get_address());
-  if (payload.is_write())
-    client_->access(face, {true, address, value_of(payload, registers.width), ~0u});
-  else
-    set_value(payload, registers.width, client_->access(face, {false, address, 0, ~0u}));
+  const bool write = payload.is_write();
+  const BusAnswer answer = access(face, write, address, write ? value_of(payload, registers.width) : 0, ~0u);
+  if (!answer.made) return payload.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+  if (!write) set_value(payload, registers.width, answer.value);
 }
+
+Component::BusAnswer Component::access(unsigned face, bool write, unsigned address, std::uint32_t value,
+                                       unsigned lanes) {
+  const Client::Answer answer = client_->access(face, {write, address, value, lanes, 0});
+  return {answer.value, answer.made};
+}
+
+std::optional<std::uint32_t> Component::peek(unsigned face, unsigned address) { return client_->peek(face, address); }
 
 // Command, address, data pointer and length are all that counts here; the status is left as it is.
 unsigned Component::debug(unsigned face, tlm::tlm_generic_payload& payload) {
@@ -88,8 +96,9 @@ unsigned Component::debug(unsigned face, tlm::tlm_generic_payload& payload) {
   if (!payload.is_read() || payload.get_data_ptr() == nullptr || payload.get_data_length() < registers.width ||
       address % registers.width != 0 || address >= registers.addresses)
     return 0;
-  set_value(payload, registers.width, client_->peek(face, static_cast<unsigned>(address)));
-  return registers.width;
+  const std::optional<std::uint32_t> value = peek(face, static_cast<unsigned>(address));
+  if (value) set_value(payload, registers.width, *value);
+  return value ? registers.width : 0;
 }
 
 }  // namespace brick::component

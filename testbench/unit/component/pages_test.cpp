@@ -95,7 +95,7 @@ TEST(ComponentPages, DrawingsAreThoseOfThePinTables) {
   place("interrupt_controller", drawing("InterruptController", InterruptController::pin_table(), "registers: 4 bytes"));
   place("host_signals", drawing("HostSignals", HostSignals::pin_table(), "registers: 2 words"));
   place("watchdog", drawing("Watchdog", Watchdog::pin_table(), "registers: 1 word"));
-  place("board", drawing("Board", Board::pin_table(0x3), ""));
+  place("board", drawing("Board", Board::pin_table(0x3), "port_a: words; isa_io, isa_memory: bytes"));
   if (std::getenv("BRICK_WRITE_PAGES") != nullptr) std::ofstream(BRICK_COMPONENTS_PAGE) << page;
   EXPECT_TRUE(page == before) << "docs/components.md is not what the pin tables say; BRICK_WRITE_PAGES=1 writes it";
 }

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <systemc>
@@ -49,10 +50,17 @@ class Component : public sc_core::sc_module {
   void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) { transport(0, payload, delay); }
   unsigned debug(tlm::tlm_generic_payload& payload) { return debug(0, payload); }
 
+  struct BusAnswer {
+    std::uint32_t value;
+    bool made;  // false: the bus could not
+  };
+  BusAnswer access(unsigned face, bool write, unsigned address, std::uint32_t value, unsigned lanes);  // waits
+  std::optional<std::uint32_t> peek(unsigned face, unsigned address);
+  void end_of_elaboration() override;
+
  private:
   friend class Pin;
   const PinInfo& add(Pin& pin, std::string_view name);
-  void end_of_elaboration() override;
 
   const std::vector<PinInfo>& table_;
   std::vector<RegisterFace> faces_;
