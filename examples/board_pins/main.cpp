@@ -1,6 +1,6 @@
-// The controller board with a CPU of one's own that makes the bus cycles itself, on the pins of Port A (by transactions:
-// examples/board). It starts PHASE and SERVO, reads a register back, writes a word of the dual-ported RAM, and is
-// interrupted by each fall of PHASE. The engine is the argument: model, rtl.
+// The controller board with a CPU of one's own that makes its bus cycles itself, on the pins of Port A; examples/board
+// has one that leaves them to a socket. It starts PHASE and SERVO, reads a register back, writes a word of the
+// dual-ported RAM, and is interrupted by each fall of PHASE. The engine is the argument: model, rtl.
 #include <brick/board.h>
 #ifdef WITH_RTL
 #include <brick/rtl.h>
