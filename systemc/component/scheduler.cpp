@@ -31,8 +31,13 @@ sc_time Scheduler::time_of(Tick edge) const {
   if (edge < 0 || edge > kLastTick) out_of_time();
   return instant_of(edge);
 }
-sc_time Scheduler::instant_of(Tick edge) const {
-  return sc_time::from_value(epoch_ + static_cast<sc_time::value_type>(tick_to_fs(edge) / unit_) + 1);
+sc_time Scheduler::instant_of(Tick edge) const { return instant_at(tick_to_fs(edge)); }
+sc_time Scheduler::instant_at(TimeFs time) const {
+  return sc_time::from_value(epoch_ + static_cast<sc_time::value_type>(time / unit_) + 1);
+}
+TimeFs Scheduler::time() const {
+  const sc_time::value_type now = sc_core::sc_time_stamp().value();
+  return now <= epoch_ ? 0 : static_cast<TimeFs>(now - epoch_) * unit_;
 }
 
 // The last edge whose true time is before `instant`.
