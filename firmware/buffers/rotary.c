@@ -7,6 +7,7 @@
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
 
 static void reset(struct rotary* ring) {
   ring->write = ring->read = 0;
@@ -107,6 +108,8 @@ bool rotary_consume(uint32_t cs, uint32_t count) {
 
 void rotary_skip_line_rest(uint32_t cs) {
   word48_t next;
-  while (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0)
+  while (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0) {
     if (rotary_consume(cs, 1)) break;
+    slice_pause();
+  }
 }

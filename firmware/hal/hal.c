@@ -98,5 +98,28 @@ void hal_clear_words(uint32_t first, uint32_t count) {
   for (; at < end; at += 8) at[0] = at[1] = at[2] = at[3] = at[4] = at[5] = at[6] = at[7] = 0;
 }
 
+enum { SIDE_STACK_WORDS = 2048, FRAME_WORDS = 16 }; /* FRAME: what hal_exchange_stacks keeps */
+
+void hal_exchange_stacks(uint32_t** other);
+
+static uint32_t side_stack[SIDE_STACK_WORDS] __attribute__((aligned(16)));
+static uint32_t* other_stack; /* stack pointer of the side that does not run */
+static void (*side_task)(void);
+
+static _Noreturn void side_main(void) {
+  for (;;) {
+    side_task();
+    hal_exchange_stacks(&other_stack);
+  }
+}
+
+void hal_side_begin(void (*task)(void)) {
+  side_task = task;
+  other_stack = side_stack + SIDE_STACK_WORDS - FRAME_WORDS;
+  *other_stack = (uint32_t)&side_main; /* the return address */
+}
+
+void hal_side_change(void) { hal_exchange_stacks(&other_stack); }
+
 uint32_t hal_strap(unsigned word) { return ((const volatile uint32_t*)0x3FFFF000u)[word]; }
 uint32_t* hal_flash(void) { return (uint32_t*)0x30000000u; }

@@ -44,6 +44,11 @@ void hal_host_interrupts(bool receive, bool transmit); /* HRIE, HTIE of the host
 void hal_clear_words(uint32_t first, uint32_t count);  /* X and Y words of main memory */
 bool hal_servo_pending(void);                          /* the next servo interrupt waits already */
 
+/* A stack beside that of the background and the interrupts: what runs on it can be left in the middle of any function
+ * and gone on with later, or forgotten. Natively it is not left: the change to it runs `task` to its end. */
+void hal_side_begin(void (*task)(void)); /* the next change calls `task` anew, each one after its end again */
+void hal_side_change(void);              /* to the side stack, or back from it */
+
 /* Straps, read-only words of the board description. */
 enum {
   HAL_STRAP_E3 = 0,

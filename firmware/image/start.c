@@ -19,6 +19,7 @@
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/run/calculate.h"
 #include "firmware/variables/i_variables.h"
 
 enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
@@ -64,6 +65,7 @@ void start(enum start_mode mode) {
   session_initialize();
   panel_initialize();
   coordinate_systems_initialize();
+  calculate_initialize();
   axis_definition_initialize();
   regions_initialize();
   rotary_initialize();
