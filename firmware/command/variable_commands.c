@@ -25,7 +25,7 @@ static error_t read_number(struct lexer* lx, uint32_t* number) {
   } else if (!lexer_number(lx, &value) || value > VARIABLE_COUNT || (double)(uint32_t)value != value) {
     return ERR_DATA; /* `P1.5` is no variable; a computed number loses its fraction */
   }
-  if (value < 0.0 || value >= (double)VARIABLE_COUNT) return ERR_DATA;
+  if (!(value >= 0.0 && value < (double)VARIABLE_COUNT)) return ERR_DATA;
   *number = (uint32_t)value;
   return ERR_NONE;
 }

@@ -11,12 +11,14 @@
 
 struct m_definition m_variable_definition(uint32_t number) {
   const uint32_t x = *hal_x(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK;
-  const struct m_definition definition = {(m_form_t)(x >> 20), *hal_y(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK,
+  const uint32_t form = x >> 20 <= M_FORM_LAST ? x >> 20 : M_FORM_NONE; /* a host may have written over it */
+  const struct m_definition definition = {(m_form_t)form, *hal_y(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK,
                                           (uint8_t)((x >> 8) & 0x1Fu), (uint8_t)(x & 0x1Fu), ((x >> 5) & 1u) != 0u};
   return definition;
 }
 
 void m_variable_define(uint32_t number, const struct m_definition* definition) {
+  if (number >= VARIABLE_COUNT) return;
   const uint32_t state = hal_mask_real_time();
   *hal_x(MEMORY_M_DEFINITIONS + number) = ((uint32_t)definition->form << 20) | ((uint32_t)definition->lsb << 8) |
                                           (definition->is_signed ? 0x20u : 0u) | definition->width;

@@ -7,7 +7,7 @@
 
 #include "firmware/base/dimensions.h"
 
-typedef enum { M_FORM_NONE, M_FORM_X, M_FORM_Y, M_FORM_D, M_FORM_L, M_FORM_DP } m_form_t;
+typedef enum { M_FORM_NONE, M_FORM_X, M_FORM_Y, M_FORM_D, M_FORM_L, M_FORM_DP, M_FORM_LAST = M_FORM_DP } m_form_t;
 
 struct m_definition {
   m_form_t form;
