@@ -101,7 +101,10 @@ bool rotary_consume(uint32_t cs, uint32_t count) {
   if (ring->read >= ring->size) ring->read -= ring->size;
   ring->used -= count;
   if (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0) return false;
-  ring->lines--;
+  if (ring->used == 0)
+    ring->lines = 0; /* also when a host has written over the marks */
+  else if (ring->lines != 0)
+    ring->lines--;
   buffer_request_line_calculated(cs);
   return true;
 }
