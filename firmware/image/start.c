@@ -27,7 +27,6 @@ enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
 static bool load_user;       /* user memory was saved */
 static uint32_t initial_ics; /* ICs found at the last re-initialisation */
 
-/* What was saved, or the defaults: if they are asked for, by jumper E3 or `$$$***`, or if nothing good was saved. */
 static void load_variables(enum start_mode mode) {
   const bool use_saved = mode == START_SAVED && (hal_strap(HAL_STRAP_E3) & 1u) == 0u;
   const saved_t saved = use_saved ? saved_data_restore_variables(&initial_ics) : SAVED_NONE;
@@ -45,6 +44,7 @@ static void load_user_memory(void) {
     hal_clear_words(first, CLEARED_AT_ONCE);
     hal_watchdog_strobe();
   }
+  axis_definition_initialize();
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   if (load_user) saved_data_restore_user_memory();
 }
@@ -66,7 +66,6 @@ void start(enum start_mode mode) {
   panel_initialize();
   coordinate_systems_initialize();
   calculate_initialize();
-  axis_definition_initialize();
   regions_initialize();
   rotary_initialize();
   open_buffer_initialize();
