@@ -11,6 +11,7 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/panel.h"
+#include "firmware/image/fault.h"
 #include "firmware/image/saved_data.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/bus_setup.h"
@@ -27,6 +28,7 @@ enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
 static bool load_user;       /* user memory was saved */
 static uint32_t initial_ics; /* ICs found at the last re-initialisation */
 
+/* What was saved, or the defaults: if they are asked for, by jumper E3 or `$$$***`, or if nothing good was saved. */
 static void load_variables(enum start_mode mode) {
   const bool use_saved = mode == START_SAVED && (hal_strap(HAL_STRAP_E3) & 1u) == 0u;
   const saved_t saved = use_saved ? saved_data_restore_variables(&initial_ics) : SAVED_NONE;
@@ -46,6 +48,7 @@ static void load_user_memory(void) {
   }
   axis_definition_initialize();
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
+  fault_show();
   if (load_user) saved_data_restore_user_memory();
 }
 
