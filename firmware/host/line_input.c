@@ -172,10 +172,13 @@ void line_input_text(void) {
   } while (count == CHUNK);
 }
 
-void line_input_pass(void) {
+void line_input_urgent(void) {
   uint32_t urgent = host_port_urgent();
   for (uint8_t c = 0; urgent != 0u; ++c, urgent >>= 1)
     if ((urgent & 1u) != 0u) (void)control_character(c);
+}
+
+void line_input_pass(void) {
   uint8_t c;
   bool flushed, some;
   do {
