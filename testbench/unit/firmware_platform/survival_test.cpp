@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
 #include "testbench/unit/firmware_platform/framing.h"
+#include "testbench/unit/random_lines.h"
 
 extern "C" {
 #include "firmware/buffers/rotary_ring.h"
@@ -111,6 +113,30 @@ TEST(Survival, AxisDefinitionsAreSaved) {
   EXPECT_EQ(c.line("$$$***"), "");
   c.send("I6=1 I3=2\r");
   EXPECT_EQ(c.line("&1#1->"), "0");
+}
+
+// The image natively, under the address and undefined-behaviour sanitizers: an index past a table ends the test.
+// BRICK_RANDOM_LINES: lines of each seed.
+TEST(Survival, RandomLinesStayInsideEveryTable) {
+  const char* wanted = std::getenv("BRICK_RANDOM_LINES");
+  const long lines = wanted != nullptr ? std::strtol(wanted, nullptr, 10) : 4000;
+  unsigned long answered = 0;
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    SCOPED_TRACE(seed);
+    Controller c;
+    RandomLines random(seed);
+    for (long i = 0; i < lines; ++i) {
+      const std::string line = random.next();
+      SCOPED_TRACE(line);
+      if (!c.send(line + "\r").empty()) ++answered;
+      c.servo(3);
+      if (::testing::Test::HasFailure()) return;
+    }
+    c.send("\x18");
+    c.send("CLOSE I4=0 I6=1 I3=2\r");
+    EXPECT_EQ(c.line("VER"), "1.947");
+  }
+  EXPECT_GT(answered, 2 * static_cast<unsigned long>(lines)) << "of three times as many";
 }
 
 }  // namespace
