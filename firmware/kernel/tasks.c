@@ -20,7 +20,8 @@ volatile uint32_t tasks_phase_stamp;
 static volatile uint32_t real_time_period; /* I8. B or R */
 static volatile uint32_t servo_count;      /* S */
 static uint32_t real_time_prescaler;       /* S */
-static volatile bool real_time_active;     /* R */
+static volatile bool real_time_due;        /* S sets, R clears: not one that a control character asked for */
+static volatile bool real_time_active;     /* R: one that was due */
 static uint32_t real_time_longest;         /* R, cycles */
 static uint32_t servo_began;               /* S, cycle counter */
 static volatile uint32_t servo_period;     /* S, cycles between the last two */
@@ -28,7 +29,7 @@ static volatile uint32_t servo_period;     /* S, cycles between the last two */
 void tasks_initialize(void) {
   servo_count = 0;
   real_time_prescaler = 0;
-  real_time_active = false;
+  real_time_due = real_time_active = false;
   real_time_longest = 0;
   servo_period = 0;
   servo_began = hal_cycles();
@@ -58,6 +59,7 @@ void tasks_servo_interrupt(void) {
   if (++real_time_prescaler > real_time_period) {
     real_time_prescaler = 0;
     if (real_time_active) status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
+    real_time_due = true;
     hal_request_real_time();
   } else if (watchdog_strobe_is_old(began) && !real_time_active && !hal_real_time_pending()) {
     watchdog_strobe(began); /* the real-time task has done its duty, the next is not due yet */
@@ -68,7 +70,8 @@ void tasks_servo_interrupt(void) {
 
 void tasks_real_time_interrupt(void) {
   const uint32_t began = hal_cycles();
-  real_time_active = true;
+  real_time_active = real_time_due;
+  real_time_due = false;
   task_hooks.real_time();
   watchdog_strobe(began);
   background_wake();

@@ -120,5 +120,38 @@ TEST_F(Survival, AbortForgetsALineThatIsHalfCalculated) {
   expect_alive();
 }
 
+// From the character to the call of run_abort, whatever the controller is at.
+class AbortLatency : public Survival {
+ protected:
+  double ms_to_abort() {
+    double began = board.now_ms(), found = -1.0;
+    board.cpu().on_flow = [this, &found](std::uint32_t pc, Cycle) {
+      if (found < 0.0 && elf_.symbol_at(pc) == "run_abort") found = board.now_ms();
+    };
+    board.send("\x01", 2.0);
+    board.cpu().on_flow = nullptr;
+    EXPECT_GE(found, 0.0) << "no abort within 2 ms";
+    return found - began;
+  }
+
+ private:
+  ElfFile elf_{BRICK_FIRMWARE_ELF};
+};
+
+TEST_F(AbortLatency, IsBelowAMillisecond) {
+  EXPECT_LE(ms_to_abort(), 1.0) << "idle";
+  for (const char* line : {"SAVE\r", "P0..8191\r", "M0..8191=5\r", "I5192..6599,1=0\r"}) {
+    board.send(line, 3.0);
+    EXPECT_LE(ms_to_abort(), 1.0) << line;
+    board.run_ms(400.0);
+    board.send("", 1.0);
+  }
+  run(16, worst_lines());
+  board.run_ms(5.0);
+  EXPECT_LE(ms_to_abort(), 1.0) << "16 programs";
+  EXPECT_EQ(std::stoul(ask("&16??").substr(0, 6), nullptr, 16) & 1u, 0u) << "running";
+  expect_alive();
+}
+
 }  // namespace
 }  // namespace brick
