@@ -33,9 +33,10 @@ error_t rotary_define(uint32_t cs, uint32_t words) {
   error_t error = region_define(REGION_ROTARY, cs, words);
   if (error != ERR_NONE) return error;
   struct rotary* ring = &rotary_buffers[cs];
+  const uint32_t base = region_base(REGION_ROTARY, cs);
   uint32_t state = hal_mask_real_time();
   reset(ring);
-  ring->base = region_base(REGION_ROTARY, cs);
+  ring->base = base;
   ring->size = words;
   ring->requested = false;
   buffer_request_emptied(cs);

@@ -13,6 +13,7 @@
 #define CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
 
 static uint32_t cycles_per_ms = 78643u; /* 8 x 9.8304 MHz until I52 is known */
+static uint32_t cycles_per_us = 79u;    /* rounded up */
 static uint32_t host_signals;
 static uint32_t watchdog_phase;
 
@@ -33,12 +34,16 @@ uint32_t hal_cycles(void) {
   return cycles;
 }
 
-void hal_set_cpu_clock(uint32_t i52) { cycles_per_ms = (98304u * (i52 + 1u)) / 10u; }
+void hal_set_cpu_clock(uint32_t i52) {
+  cycles_per_ms = (98304u * (i52 + 1u)) / 10u;
+  cycles_per_us = cycles_per_ms / 1000u + 1u;
+}
 uint32_t hal_cycles_per_ms(void) { return cycles_per_ms; }
 
-void hal_delay_us(uint32_t us) {
-  const uint32_t start = hal_cycles();
-  const uint32_t cycles = (uint32_t)(((uint64_t)us * cycles_per_ms) / 1000u);
+void hal_delay_us(uint32_t us) { hal_await_us(hal_cycles(), us); }
+
+void hal_await_us(uint32_t start, uint32_t us) {
+  const uint32_t cycles = us * cycles_per_us; /* no division: tasks are held off while BREQ pulses */
   while (hal_cycles() - start < cycles) {}
 }
 

@@ -144,6 +144,9 @@ uint32_t hal_cycles(void) {
   return cycles;
 }
 void hal_delay_us(uint32_t us) { cycles += us * CYCLES_PER_US; }
+void hal_await_us(uint32_t start, uint32_t us) {
+  if (cycles - start < us * CYCLES_PER_US) cycles = start + us * CYCLES_PER_US;
+}
 void hal_set_cpu_clock(uint32_t i52) { (void)i52; }
 uint32_t hal_cycles_per_ms(void) { return 78643; }
 
