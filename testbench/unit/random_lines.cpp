@@ -44,7 +44,7 @@ std::string RandomLines::constant() {
                                                  "8388607",
                                                  "-8388608",
                                                  "140737488355328"};
-  if (one_in(10)) return pick(edges);
+  if (one_in(30)) return pick(edges);
   std::string text = (one_in(4) ? "-" : "") + integer(100000);
   if (text.find('$') == std::string::npos && one_in(3)) text += "." + std::to_string(below(10000));
   return text;
@@ -226,7 +226,8 @@ std::string RandomLines::next() {
   if (one_in(10)) {
     text = harmless(garbage());
   } else {
-    for (unsigned i = 0, count = 1 + below(one_in(4) ? 8 : 2); i < count; ++i) text += (i == 0 ? "" : " ") + grammar();
+    for (unsigned i = 0, count = 1 + below(one_in(8) ? 8 : one_in(3) ? 2 : 1); i < count; ++i)
+      text += (i == 0 ? "" : " ") + grammar();
     if (one_in(20)) {
       text[below(static_cast<unsigned>(text.size()))] = static_cast<char>(' ' + below(95));
       text = harmless(text);
