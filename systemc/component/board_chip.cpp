@@ -92,9 +92,12 @@ class BoardChip final : public Chip {
     return any_ ? board_->quiet_until(motors_ ? kAll : pins_) : kNever;
   }
 
-  std::uint32_t read(unsigned) override { throw std::logic_error("a board has no registers but behind its buses"); }
-  void write(unsigned, std::uint32_t) override { throw std::logic_error("a board has no registers"); }
-  std::uint32_t peek(unsigned) override { return 0; }
+  void begin(unsigned, const Cycle&) override { throw std::logic_error("a board has no register face"); }
+  void abandon(unsigned) override {}
+  bool busy(unsigned) const override { return false; }
+  std::uint32_t value(unsigned) const override { return 0; }
+  Tick no_end_until() const override { return kNever; }
+  std::uint32_t peek(unsigned, unsigned) override { return 0; }
 
  private:
   bool take_pins() {

@@ -13,6 +13,14 @@ namespace brick::component {
 
 using PinWords = std::vector<std::uint32_t>;
 
+// An access to a register face, as an initiator asks for it.
+struct Cycle {
+  bool write = false;
+  unsigned address = 0;
+  std::uint32_t value = 0;
+  unsigned lanes = ~0u;  // bytes used
+};
+
 class Chip {
  public:
   virtual ~Chip() = default;
@@ -21,17 +29,21 @@ class Chip {
   virtual const PinWords& outputs() const = 0;
   virtual void watch(const PinWords& outputs) = 0;      // the bits that the calls below speak of
   virtual void set_inputs(const PinWords& inputs) = 0;  // edge now() + 1 is the first to see them
-  // Executes edges up to `limit` or to the first that changes a watched output: true then.
+  // Executes edges up to `limit` or to the first that changes a watched output or ends a cycle: true then.
   virtual bool run_until(Tick limit) = 0;
 
-  // Whether quiet_until() looks ahead: a tick up to which no watched output changes, the inputs staying as they are.
+  // Whether quiet_until() looks ahead: a tick up to which run_until() would not stop, the inputs staying as they are.
   virtual bool foresees() const { return false; }
   virtual Tick quiet_until() const { return now(); }
 
-  // Registers. Edge now() + 1 is one of clk_ref: it is executed and takes the sample of the read, or makes the write.
-  virtual std::uint32_t read(unsigned address) = 0;
-  virtual void write(unsigned address, std::uint32_t value) = 0;
-  virtual std::uint32_t peek(unsigned address) = 0;  // what a read would take now
+  // Register faces, in the order of the component's sockets. Edge now() + 1 is the first to see the cycle; the face has
+  // none under way.
+  virtual void begin(unsigned face, const Cycle& cycle) = 0;
+  virtual void abandon(unsigned face) = 0;               // what has not been made of its cycle is not made
+  virtual bool busy(unsigned face) const = 0;            // its cycle has not ended with edge now()
+  virtual std::uint32_t value(unsigned face) const = 0;  // what the last read took
+  virtual Tick no_end_until() const = 0;                 // a tick up to which no cycle ends; kNever: none is under way
+  virtual std::uint32_t peek(unsigned face, unsigned address) = 0;  // what a read would take now
 };
 
 class ChipFactory {

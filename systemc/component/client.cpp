@@ -22,7 +22,7 @@ void put(PinWords& words, const PinInfo& info, std::uint32_t value) {
 }
 }  // namespace
 
-Client::Client(Scheduler& scheduler, const std::vector<PinInfo>& table)
+Client::Client(Scheduler& scheduler, const std::vector<PinInfo>& table, std::size_t faces)
     : scheduler_(scheduler),
       table_(table),
       outputs_(words(table, false)),
@@ -31,6 +31,7 @@ Client::Client(Scheduler& scheduler, const std::vector<PinInfo>& table)
       watched_(outputs_.size()) {
   for (const PinInfo& info : table_)
     if (info.direction == PinDirection::kIn) put(inputs_, info, info.idle);
+  while (faces_.size() < faces) faces_.push_back(std::make_unique<Face>());
   scheduler_.add(*this);
 }
 Client::~Client() { scheduler_.remove(*this); }
@@ -81,26 +82,44 @@ void Client::touch() {
 void Client::show(Tick tick) {
   catch_up(tick);
   deliver(false);
+  end_cycles();
   foresee();
 }
 
 void Client::take(Tick tick) {
   catch_up(tick);
   if (inputs_differ_) chip_->set_inputs(inputs_);
+  begin_cycles();
   inputs_differ_ = touched_ = false;
   foresee();
 }
 
+void Client::begin_cycles() {
+  for (unsigned i = 0; i < faces_.size(); ++i) {
+    Face& face = *faces_[i];
+    if (face.abandoned) chip_->abandon(i);
+    face.abandoned = false;
+    if (face.state != Face::kAsked) continue;
+    chip_->begin(i, face.cycle);
+    face.state = Face::kUnderWay;
+  }
+}
+
+void Client::end_cycles() {
+  for (unsigned i = 0; i < faces_.size(); ++i)
+    if (faces_[i]->state == Face::kUnderWay && !chip_->busy(i)) {
+      faces_[i]->state = Face::kFree;
+      faces_[i]->ended.notify(sc_core::SC_ZERO_TIME);  // the outputs of this edge show then
+    }
+}
+
 void Client::foresee() { due_ = eager_ ? kNever : std::min(quiet_until(), kNever - 1) + 1; }
 
-Tick Client::quiet_until() const {
-  const Tick chip = chip_->foresees() || eager_ ? chip_->quiet_until() : kNever;
-  return std::min(chip, access_.edge == kNever ? kNever : access_.edge - 1);
-}
+Tick Client::quiet_until() const { return chip_->foresees() || eager_ ? chip_->quiet_until() : chip_->no_end_until(); }
 
 bool Client::run(Tick limit) {
   while (chip_->now() < limit)
-    if (step(limit)) {
+    if (chip_->run_until(limit)) {
       due_ = chip_->now();
       return true;
     }
@@ -113,20 +132,8 @@ void Client::catch_up(Tick tick) {
                 "a pin has changed, or a register was accessed, where the engine has run ahead: from sc_main() only "
                 "at multiples of TimeOptions::grid");
   while (chip_->now() < tick)
-    if (step(tick) && chip_->now() < tick)
+    if (chip_->run_until(tick) && chip_->now() < tick)
       SC_REPORT_FATAL("/brick/late", ("an output changed unforeseen at tick " + std::to_string(chip_->now())).c_str());
-}
-
-// Edges up to `limit`, or to the first that changes a watched output (true), or to that of an access.
-bool Client::step(Tick limit) {
-  if (access_.edge > limit) return chip_->run_until(limit);
-  if (chip_->now() < access_.edge - 1) return chip_->run_until(access_.edge - 1);
-  access_.edge = kNever;
-  if (access_.write)
-    chip_->write(access_.address, access_.value);
-  else
-    access_.value = chip_->read(access_.address);
-  return differ(chip_->outputs(), shown_, watched_);
 }
 
 void Client::deliver(bool all) {
@@ -144,38 +151,43 @@ void Client::deliver(bool all) {
 // waits, and what has not been made then is not made.
 class Client::Turn {
  public:
-  explicit Turn(Client& client) : client_(client), place_(client.queue_.insert(client.queue_.end(), this)) {}
+  Turn(Client& client, Face& face) : client_(client), face_(face), place_(face.queue.insert(face.queue.end(), this)) {}
   ~Turn() {
-    if (first()) client_.access_.edge = kNever;
-    client_.queue_.erase(place_);
-    client_.free_.notify();
+    if (first() && face_.state == Face::kUnderWay) {
+      face_.abandoned = true;
+      client_.touch();
+    }
+    if (first()) face_.state = Face::kFree;
+    face_.queue.erase(place_);
+    face_.free.notify();
   }
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
   void wait() const {
-    while (!first()) sc_core::wait(client_.free_);
+    while (!first()) sc_core::wait(face_.free);
   }
 
  private:
-  bool first() const { return client_.queue_.front() == this; }
+  bool first() const { return face_.queue.front() == this; }
   Client& client_;
+  Face& face_;
   std::list<const Turn*>::iterator place_;
 };
 
-std::uint32_t Client::access(bool write, unsigned address, std::uint32_t value) {
-  const Turn turn(*this);
+std::uint32_t Client::access(unsigned number, const Cycle& cycle) {
+  Face& face = *faces_.at(number);
+  const Turn turn(*this, face);
   turn.wait();
-  const Tick edge = next_ref_edge(scheduler_.tick());
-  access_ = {edge, write, address, value};
+  face.cycle = cycle;
+  face.state = Face::kAsked;
   touch();
-  sc_core::wait(scheduler_.time_of(edge) - sc_core::sc_time_stamp());
-  catch_up(edge);
-  return access_.value;
+  sc_core::wait(face.ended);
+  return chip_->value(number);
 }
 
-std::uint32_t Client::peek(unsigned address) {
+std::uint32_t Client::peek(unsigned face, unsigned address) {
   catch_up(scheduler_.tick());
-  return chip_->peek(address);
+  return chip_->peek(face, address);
 }
 
 }  // namespace brick::component

@@ -16,7 +16,7 @@ namespace brick::component {
 
 class Client {
  public:
-  Client(Scheduler& scheduler, const std::vector<PinInfo>& table);
+  Client(Scheduler& scheduler, const std::vector<PinInfo>& table, std::size_t faces);
   ~Client();
 
   void set_chip(std::unique_ptr<Chip> chip) { chip_ = std::move(chip); }
@@ -25,13 +25,13 @@ class Client {
   void elaborate();  // once all ports are bound: what is watched, who wakes us
 
   // For the initiator's process; waits.
-  std::uint32_t access(bool write, unsigned address, std::uint32_t value);
-  std::uint32_t peek(unsigned address);
+  std::uint32_t access(unsigned face, const Cycle& cycle);
+  std::uint32_t peek(unsigned face, unsigned address);
 
   // For the scheduler.
   void start();          // levels of all inputs and outputs
   void show(Tick tick);  // outputs of the edge that is due
-  void take(Tick tick);  // touched: inputs and an access, at the end of an instant
+  void take(Tick tick);  // touched: inputs and accesses, at the end of an instant
   bool run(Tick limit);  // ahead of kernel time, to the first edge that changes a watched output: true, and it is due
   bool eager() const { return eager_; }
   bool touched() const { return touched_; }  // an input has changed or an access has come
@@ -39,11 +39,13 @@ class Client {
   Tick quiet_until() const;
 
  private:
-  struct Access {
-    Tick edge = kNever;  // of clk_ref that makes it; kNever: none, or it has been made
-    bool write = false;
-    unsigned address = 0;
-    std::uint32_t value = 0;
+  class Turn;
+  struct Face {
+    enum { kFree, kAsked, kUnderWay } state = kFree;
+    bool abandoned = false;  // the cycle under way, whose process has been killed
+    Cycle cycle;
+    std::list<const Turn*> queue;  // initiators in the order of their calls; the first has the face
+    sc_core::sc_event free, ended;
   };
   void input_changed(const Pin& pin);
   void set_input(const Pin& pin);
@@ -52,6 +54,8 @@ class Client {
   void catch_up(Tick tick);
   bool step(Tick limit);
   void deliver(bool all);
+  void begin_cycles();
+  void end_cycles();
 
   Scheduler& scheduler_;
   const std::vector<PinInfo>& table_;
@@ -59,10 +63,7 @@ class Client {
   std::vector<Pin*> pins_;
   std::vector<std::vector<Pin*>> outputs_;  // bound ones, by word
   PinWords inputs_, shown_, watched_;
-  Access access_;
-  class Turn;
-  std::list<const Turn*> queue_;  // initiators in the order of their calls; the first has access_
-  sc_core::sc_event free_;
+  std::vector<std::unique_ptr<Face>> faces_;
   bool eager_ = false, touched_ = true, inputs_differ_ = true;
   Tick due_ = 0;
 };

@@ -16,11 +16,11 @@ std::string pin_trace_name(const Component& owner, const PinInfo& info) {
 }
 
 Component::Component(const sc_core::sc_module_name& name, TimeBase& time, const std::vector<PinInfo>& table,
-                     RegisterFace registers)
+                     std::vector<RegisterFace> faces)
     : sc_module(name),
       table_(table),
-      registers_(registers),
-      client_(std::make_unique<Client>(time.scheduler(), table)) {}
+      faces_(std::move(faces)),
+      client_(std::make_unique<Client>(time.scheduler(), table, faces_.size())) {}
 Component::~Component() = default;
 
 void Component::set_chip(std::unique_ptr<Chip> chip) { client_->set_chip(std::move(chip)); }
@@ -69,25 +69,27 @@ void set_value(tlm::tlm_generic_payload& payload, unsigned width, std::uint32_t 
 }
 }  // namespace
 
-void Component::transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  if (!check(payload, registers_.width, registers_.addresses)) return;
+void Component::transport(unsigned face, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  const RegisterFace& registers = faces_.at(face);
+  if (!check(payload, registers.width, registers.addresses)) return;
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
   delay = sc_core::SC_ZERO_TIME;
   const auto address = static_cast<unsigned>(payload.get_address());
   if (payload.is_write())
-    client_->access(true, address, value_of(payload, registers_.width));
+    client_->access(face, {true, address, value_of(payload, registers.width), ~0u});
   else
-    set_value(payload, registers_.width, client_->access(false, address, 0));
+    set_value(payload, registers.width, client_->access(face, {false, address, 0, ~0u}));
 }
 
 // Command, address, data pointer and length are all that counts here; the status is left as it is.
-unsigned Component::debug(tlm::tlm_generic_payload& payload) {
+unsigned Component::debug(unsigned face, tlm::tlm_generic_payload& payload) {
+  const RegisterFace& registers = faces_.at(face);
   const std::uint64_t address = payload.get_address();
-  if (!payload.is_read() || payload.get_data_ptr() == nullptr || payload.get_data_length() < registers_.width ||
-      address % registers_.width != 0 || address >= registers_.addresses)
+  if (!payload.is_read() || payload.get_data_ptr() == nullptr || payload.get_data_length() < registers.width ||
+      address % registers.width != 0 || address >= registers.addresses)
     return 0;
-  set_value(payload, registers_.width, client_->peek(static_cast<unsigned>(address)));
-  return registers_.width;
+  set_value(payload, registers.width, client_->peek(face, static_cast<unsigned>(address)));
+  return registers.width;
 }
 
 }  // namespace brick::component

@@ -20,7 +20,7 @@ const std::vector<PinInfo>& HostSignals::pin_table() {
 }
 
 HostSignals::HostSignals(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine)
-    : Component(name, time, pin_table(), {4, 8}),
+    : Component(name, time, pin_table(), {{4, 8}}),
       registers("registers"),
       rst_n(*this, "rst_n"),
       ipos(*this, "ipos"),

@@ -13,7 +13,9 @@ class HostSignalsModel final : public ModelChip {
  public:
   HostSignalsModel() : ModelChip(1), latches_("model") { power_on(); }
 
-  std::uint32_t peek(unsigned address) override { return address == kSignalsByte ? latches_.rdata() : latches_.ctrl(); }
+  std::uint32_t peek(unsigned, unsigned address) override {
+    return address == kSignalsByte ? latches_.rdata() : latches_.ctrl();
+  }
 
  private:
   void drive(const PinWords&) override {}
@@ -21,11 +23,14 @@ class HostSignalsModel final : public ModelChip {
   Tick next_event() const override { return latches_.next_event(); }
   void block_advance(Tick t) override { latches_.advance(t); }
   void block_reset(Tick t) override { latches_.reset(t); }
-  void block_access(Tick t, bool write, unsigned address, std::uint32_t value) override {
-    latches_.in = {write && address == kSignalsByte, write && address == kControlByte,
-                   static_cast<std::uint8_t>(value & 0xF)};
-    latches_.advance(t);
+  void before(unsigned, const Face& face) override {
+    const Cycle& c = face.cycle;
+    latches_.in = {c.write && c.address == kSignalsByte, c.write && c.address == kControlByte,
+                   static_cast<std::uint8_t>(c.value & 0xF)};
+  }
+  bool after(unsigned, Face&) override {
     latches_.in = {};
+    return true;
   }
   void show(PinWords& words) const override {
     words[0] = latches_.rdata() << kSignals | std::uint32_t{latches_.ctrl()} << kControl;

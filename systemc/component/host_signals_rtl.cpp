@@ -17,12 +17,13 @@ struct Ports {
     const std::uint32_t signals = v.ipos_o | v.breq_o << 1 | v.eror_o << 2 | v.f1er_o << 3;
     out[0] = signals << kSignals | std::uint32_t{v.ctrl_o} << kControl;
   }
-  static void access(Vhost_signals& v, bool on, bool write, unsigned address, std::uint32_t value) {
-    v.wr_i = on && write && address == kSignalsByte;
-    v.ctrl_wr_i = on && write && address == kControlByte;
-    v.wdata_i = value & 0xF;
+  static void access(Vhost_signals& v, unsigned, bool on, const Face& face) {
+    const Cycle& c = face.cycle;
+    v.wr_i = on && c.write && c.address == kSignalsByte;
+    v.ctrl_wr_i = on && c.write && c.address == kControlByte;
+    v.wdata_i = c.value & 0xF;
   }
-  static std::uint32_t read(const Vhost_signals& v, unsigned address) {
+  static std::uint32_t read(const Vhost_signals& v, unsigned, unsigned address) {
     return address == kSignalsByte ? v.rdata_o : v.ctrl_o;
   }
 };

@@ -24,7 +24,7 @@ const std::vector<PinInfo>& InterruptController::pin_table() {
 }
 
 InterruptController::InterruptController(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine)
-    : Component(name, time, pin_table(), {1, 4}),
+    : Component(name, time, pin_table(), {{1, 4}}),
       registers("registers"),
       rst_n(*this, "rst_n"),
       resetdrv(*this, "resetdrv"),

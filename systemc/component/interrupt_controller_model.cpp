@@ -16,7 +16,7 @@ class InterruptControllerModel final : public ModelChip {
  public:
   InterruptControllerModel() : ModelChip(2), pic_("model"), line_("line") { power_on(); }
 
-  std::uint32_t peek(unsigned address) override { return pic_.read(address); }
+  std::uint32_t peek(unsigned, unsigned address) override { return pic_.read(address); }
 
  private:
   void drive(const PinWords& in) override {
@@ -41,14 +41,16 @@ class InterruptControllerModel final : public ModelChip {
     line_.reset(t);
     wire();
   }
-  void block_access(Tick t, bool write, unsigned address, std::uint32_t value) override {
-    pic_.in.wr = write;
-    pic_.in.addr = static_cast<std::uint8_t>(address);
-    pic_.in.wdata = static_cast<std::uint8_t>(value);
+  void before(unsigned, const Face& face) override {
+    pic_.in.wr = face.cycle.write;
+    pic_.in.addr = static_cast<std::uint8_t>(face.cycle.address);
+    pic_.in.wdata = static_cast<std::uint8_t>(face.cycle.value);
     wire();
-    both(t);
+  }
+  bool after(unsigned, Face&) override {
     pic_.in.wr = false;
     wire();
+    return true;
   }
   void show(PinWords& words) const override {
     words[0] =

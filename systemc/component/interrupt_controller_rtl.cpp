@@ -22,12 +22,12 @@ struct Ports {
     out[0] = v.ist_o | std::uint32_t{v.sig_o} << 8 | std::uint32_t{v.msk_o} << 16 | std::uint32_t{v.elr_o} << 24;
     out[1] = std::uint32_t{v.irq_o} << kIrq;
   }
-  static void access(Module& v, bool on, bool write, unsigned address, std::uint32_t value) {
-    v.wr_i = on && write;
-    v.addr_i = static_cast<CData>(address & 3);
-    v.wdata_i = static_cast<CData>(value);
+  static void access(Module& v, unsigned, bool on, const Face& face) {
+    v.wr_i = on && face.cycle.write;
+    v.addr_i = static_cast<CData>(face.cycle.address & 3);
+    v.wdata_i = static_cast<CData>(face.cycle.value);
   }
-  static std::uint32_t read(const Module& v, unsigned) { return v.rdata_o; }
+  static std::uint32_t read(const Module& v, unsigned, unsigned) { return v.rdata_o; }
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "systemc/component/error.h"
 
@@ -34,36 +35,62 @@ class LockstepChip final : public Chip {
   bool run_until(Tick limit) override {
     while (now() < limit) {
       before_ = rtl_->outputs();
-      rtl_->run_until(std::min({limit, model_->quiet_until(), kNever - 1}) + (model_->quiet_until() < limit ? 1 : 0));
+      const bool rtl = rtl_->run_until(std::min({limit, model_->quiet_until(), kNever - 1}) +
+                                       (model_->quiet_until() < limit ? 1 : 0));
       while (model_->now() < now())
         if (model_->run_until(now()) && model_->now() < now()) fail(model_->now(), before_);
       compare();
-      if (differ(rtl_->outputs(), before_, watched_)) return true;
+      if (end_cycles() || (rtl && differ(rtl_->outputs(), before_, watched_))) return true;
     }
     return false;
   }
   Tick quiet_until() const override { return model_->quiet_until(); }
 
-  std::uint32_t read(unsigned address) override {
-    const std::uint32_t rtl = rtl_->read(address), model = model_->read(address);
-    same_word(address, rtl, model);
-    compare();
-    return rtl;
+  void begin(unsigned face, const Cycle& cycle) override {
+    rtl_->begin(face, cycle);
+    model_->begin(face, cycle);
+    under_way_.push_back({face, cycle});
   }
-  void write(unsigned address, std::uint32_t value) override {
-    rtl_->write(address, value);
-    model_->write(address, value);
-    compare();
+  void abandon(unsigned face) override {
+    rtl_->abandon(face);
+    model_->abandon(face);
+    under_way_.erase(
+        std::remove_if(under_way_.begin(), under_way_.end(), [face](const auto& c) { return c.first == face; }),
+        under_way_.end());
   }
-  std::uint32_t peek(unsigned address) override {
-    const std::uint32_t rtl = rtl_->peek(address);
-    same_word(address, rtl, model_->peek(address));
+  bool busy(unsigned face) const override { return rtl_->busy(face); }
+  std::uint32_t value(unsigned face) const override { return rtl_->value(face); }
+  Tick no_end_until() const override { return model_->no_end_until(); }
+  std::uint32_t peek(unsigned face, unsigned address) override {
+    const std::uint32_t rtl = rtl_->peek(face, address);
+    same_word(address, rtl, model_->peek(face, address));
     return rtl;
   }
 
  private:
   void compare() const {
     if (rtl_->outputs() != model_->outputs()) fail(now(), rtl_->outputs());
+  }
+  // Cycles end at one edge and read the same; true if one has.
+  bool end_cycles() {
+    bool ended = false;
+    for (auto c = under_way_.begin(); c != under_way_.end();) {
+      const auto& [face, cycle] = *c;
+      if (rtl_->busy(face) != model_->busy(face)) {
+        std::ostringstream text;
+        text << "\n  access at byte " << cycle.address << ": ended with " << (rtl_->busy(face) ? "systemc" : "rtl")
+             << " alone";
+        report(now(), text.str());
+      }
+      if (rtl_->busy(face)) {
+        ++c;
+        continue;
+      }
+      if (!cycle.write) same_word(cycle.address, rtl_->value(face), model_->value(face));
+      c = under_way_.erase(c);
+      ended = true;
+    }
+    return ended;
   }
   void same_word(unsigned address, std::uint32_t rtl, std::uint32_t model) const {
     if (rtl == model) return;
@@ -96,6 +123,7 @@ class LockstepChip final : public Chip {
   std::unique_ptr<Chip> rtl_, model_;
   const std::vector<PinInfo>& table_;
   PinWords watched_, before_;
+  std::vector<std::pair<unsigned, Cycle>> under_way_;  // by face
 };
 
 }  // namespace

@@ -127,7 +127,7 @@ ServoIcChannel::ServoIcChannel(Component& ic, unsigned n, const std::string& pre
       equ(ic, prefix + channel_pin(n, "equ")) {}
 
 ServoIc::ServoIc(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine)
-    : Component(name, time, pin_table(), {4, 32 * 8}),
+    : Component(name, time, pin_table(), {{4, 32 * 8}}),
       registers("registers"),
       rst_n(*this, "rst_n"),
       trip(*this, "trip"),

@@ -16,7 +16,7 @@ class ServoIcModel final : public ModelChip {
     power_on();
   }
 
-  std::uint32_t peek(unsigned address) override { return ic_.read((address & 4) != 0, address / 8); }
+  std::uint32_t peek(unsigned, unsigned address) override { return ic_.read((address & 4) != 0, address / 8); }
 
  private:
   void drive(const PinWords& in) override {
@@ -49,12 +49,14 @@ class ServoIcModel final : public ModelChip {
   }
   void block_advance(Tick t) override { ic_.advance(t); }
   void block_reset(Tick t) override { ic_.reset(t); }
-  void block_access(Tick t, bool write, unsigned address, std::uint32_t value) override {
-    ic_.advance(t);
-    if (write)
-      ic_.write((address & 4) != 0, address / 8, value & 0xFFFFFF);
+  void before(unsigned, const Face&) override {}
+  bool after(unsigned, Face& face) override {
+    const unsigned address = face.cycle.address;
+    if (face.cycle.write)
+      ic_.write((address & 4) != 0, address / 8, face.cycle.value & 0xFFFFFF);
     else
       ic_.read_taken((address & 4) != 0, address / 8);
+    return true;
   }
   void show(PinWords& words) const override {
     const MotorOutputs motor = ic_.motor_outputs();

@@ -35,15 +35,16 @@ struct Ports {
     out[kClocks] = (v.phase_o | (phase_oe ^ 1u)) << kPhase | phase_oe << kPhaseOe |
                    (v.servo_o | (servo_oe ^ 1u)) << kServo | servo_oe << kServoOe;
   }
-  static void access(Vservo_ic& v, bool on, bool write, unsigned address, std::uint32_t value) {
+  static void access(Vservo_ic& v, unsigned, bool on, const Face& face) {
+    const Cycle& c = face.cycle;
     v.sel_i = on;
-    v.we_i = on && write;
-    v.rd_i = on && !write;
-    v.x_i = (address & 4) != 0;
-    v.addr_i = static_cast<CData>(address / 8);
-    v.wdata_i = value & 0xFFFFFF;
+    v.we_i = on && c.write;
+    v.rd_i = on && !c.write;
+    v.x_i = (c.address & 4) != 0;
+    v.addr_i = static_cast<CData>(c.address / 8);
+    v.wdata_i = c.value & 0xFFFFFF;
   }
-  static std::uint32_t read(const Vservo_ic& v, unsigned) { return v.rdata_o; }
+  static std::uint32_t read(const Vservo_ic& v, unsigned, unsigned) { return v.rdata_o; }
 };
 
 }  // namespace

@@ -3,16 +3,20 @@
 //   static constexpr unsigned kOutputWords
 //   static void drive(V& v, const PinWords& in)            every input port but the clocks and the register bus
 //   static void sample(const V& v, PinWords& out)
-//   static void access(V& v, bool on, bool write, unsigned address, std::uint32_t value)   strobes of the register bus
-//   static std::uint32_t read(const V& v, unsigned address)   the word that it shows
+//   static void access(V& v, unsigned face, bool on, const Face& cycle)   lines of a register face for a beat, or idle
+//   static std::uint32_t read(const V& v, unsigned face, unsigned address)   the word that it shows then
+// and if it has other faces than one on clk_ref, or cycles of more than a beat, or words that show with no access line:
+//   static const std::vector<FaceClock>& faces()
+//   static bool after(const V& v, unsigned face, Face& cycle)   with the edge of a beat: the cycle has ended
+//   static std::uint32_t peek(const V& v, unsigned face, unsigned address)
 #pragma once
 
 #include <verilated.h>
 
 #include <memory>
+#include <utility>
 
-#include "systemc/component/chip.h"
-#include "systemc/core/model_block.h"
+#include "systemc/component/faces.h"
 #include "systemc/cosim/rtl_board.h"
 
 namespace brick::component {
@@ -28,17 +32,37 @@ bool set_pwm(V&, bool, long) {
   return false;
 }
 
+template <class Ports>
+auto faces_of(int) -> decltype(Ports::faces()) {
+  return Ports::faces();
+}
+template <class Ports>
+std::vector<FaceClock> faces_of(long) {
+  return {FaceClock::kRef};
+}
+template <class Ports, class V>
+auto after_beat(const V& v, unsigned face, Face& cycle, int) -> decltype(Ports::after(v, face, cycle)) {
+  return Ports::after(v, face, cycle);
+}
+template <class Ports, class V>
+bool after_beat(const V&, unsigned, Face&, long) {
+  return true;
+}
+
 template <class V, class Ports>
 class VerilatedChip final : public Chip {
  public:
   explicit VerilatedChip(std::uint64_t seed)
-      : outputs_(Ports::kOutputWords), sampled_(Ports::kOutputWords), watched_(Ports::kOutputWords) {
+      : faces_(faces_of<Ports>(0)),
+        outputs_(Ports::kOutputWords),
+        sampled_(Ports::kOutputWords),
+        watched_(Ports::kOutputWords) {
     context_.randReset(seed == 0 ? 0 : 2);
     context_.randSeed(static_cast<int>(1 + seed % 0x7FFFFFFE));  // 0 would be the time of day
     top_ = std::make_unique<V>(&context_, "");
     every_edge_ = set_pwm(*top_, false, 0);
     top_->clk_ref_i = false;
-    Ports::access(*top_, false, false, 0, 0);
+    for (unsigned face = 0; face < faces_.count(); ++face) Ports::access(*top_, face, false, Face{});
     for (const bool level : {true, false, true}) {  // the asynchronous reset acts on its falling edge
       top_->rst_ni = level;
       top_->eval();
@@ -72,31 +96,53 @@ class VerilatedChip final : public Chip {
       } else {
         ++now_;
       }
-      if (edge()) return true;
+      if (faces_.next() == now_ ? beat() : edge()) return true;
     }
     return false;
   }
-  std::uint32_t read(unsigned address) override {
-    Ports::access(*top_, true, false, address, 0);
-    top_->eval();
-    const std::uint32_t value = Ports::read(*top_, address);
-    finish_access();
-    return value;
+
+  void begin(unsigned face, const Cycle& cycle) override { faces_.begin(face, cycle, now_); }
+  void abandon(unsigned face) override {
+    if (!faces_.busy(face)) return;
+    Ports::access(*top_, face, false, Face{});
+    faces_.end(face);
   }
-  void write(unsigned address, std::uint32_t value) override {
-    Ports::access(*top_, true, true, address, value);
-    finish_access();
-  }
-  std::uint32_t peek(unsigned address) override {
-    Ports::access(*top_, true, false, address, 0);
-    top_->eval();
-    const std::uint32_t value = Ports::read(*top_, address);
-    Ports::access(*top_, false, false, 0, 0);
-    top_->eval();
-    return value;
-  }
+  bool busy(unsigned face) const override { return faces_.busy(face); }
+  std::uint32_t value(unsigned face) const override { return faces_.value(face); }
+  Tick no_end_until() const override { return faces_.next() == kNever ? kNever : faces_.next() - 1; }
+  std::uint32_t peek(unsigned face, unsigned address) override { return peek_at(face, address, 0); }
 
  private:
+  template <class P = Ports>
+  auto peek_at(unsigned face, unsigned address, int) -> decltype(P::peek(std::declval<V&>(), face, address)) {
+    return P::peek(*top_, face, address);
+  }
+  std::uint32_t peek_at(unsigned face, unsigned address, long) {
+    Face read;
+    read.cycle.address = address;
+    Ports::access(*top_, face, true, read);
+    top_->eval();
+    const std::uint32_t value = Ports::read(*top_, face, address);
+    Ports::access(*top_, face, false, Face{});
+    top_->eval();
+    return value;
+  }
+  // Edge now_ has a beat; true if a cycle ends with it or a watched output changes.
+  bool beat() {
+    faces_.at(now_, [this](unsigned i, Face& face) {
+      Ports::access(*top_, i, true, face);
+      if (face.cycle.write || face.beat != 0) return;
+      top_->eval();
+      face.value = Ports::read(*top_, i, face.cycle.address);
+    });
+    const bool moved = edge();
+    const bool ended = faces_.after(now_, [this](unsigned i, Face& face) {
+      const bool done = !top_->rst_ni || after_beat<Ports>(*top_, i, face, 0);
+      if (done) Ports::access(*top_, i, false, Face{});
+      return done;
+    });
+    return moved || ended;
+  }
   bool edge() {
     V& v = *top_;
     set_pwm(v, true, 0);
@@ -111,14 +157,10 @@ class VerilatedChip final : public Chip {
     sampled_.swap(outputs_);
     return differ(sampled_, outputs_, watched_);
   }
-  void finish_access() {
-    ++now_;
-    edge();
-    Ports::access(*top_, false, false, 0, 0);
-  }
 
   VerilatedContext context_;
   std::unique_ptr<V> top_;
+  Faces faces_;
   PinWords outputs_, sampled_, watched_;
   bool every_edge_ = true, reset_moved_ = false;
   Tick now_ = 0;

@@ -17,7 +17,7 @@ const std::vector<PinInfo>& Watchdog::pin_table() {
 }
 
 Watchdog::Watchdog(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine)
-    : Component(name, time, pin_table(), {4, 4}),
+    : Component(name, time, pin_table(), {{4, 4}}),
       registers("registers"),
       rst_n(*this, "rst_n"),
       servo(*this, "servo"),

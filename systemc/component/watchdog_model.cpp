@@ -13,7 +13,7 @@ class WatchdogModel final : public ModelChip {
  public:
   WatchdogModel() : ModelChip(1), watchdog_("model") { power_on(); }
 
-  std::uint32_t peek(unsigned) override { return 0; }
+  std::uint32_t peek(unsigned, unsigned) override { return 0; }
 
  private:
   void drive(const PinWords& in) override {
@@ -24,10 +24,10 @@ class WatchdogModel final : public ModelChip {
   Tick next_event() const override { return watched_[0] == 0 ? kNever : watchdog_.next_event(); }
   void block_advance(Tick t) override { watchdog_.advance(t); }
   void block_reset(Tick t) override { watchdog_.reset(t); }
-  void block_access(Tick t, bool write, unsigned, std::uint32_t) override {
-    watchdog_.strobe = write;
-    watchdog_.advance(t);
+  void before(unsigned, const Face& face) override { watchdog_.strobe = face.cycle.write; }
+  bool after(unsigned, Face&) override {
     watchdog_.strobe = false;
+    return true;
   }
   void show(PinWords& words) const override {
     words[0] = std::uint32_t{watchdog_.trip()} << kTrip | std::uint32_t{watchdog_.relay()} << kRelay;

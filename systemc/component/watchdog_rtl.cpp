@@ -20,8 +20,8 @@ struct Ports {
   static void sample(const Vwatchdog& v, PinWords& out) {
     out[0] = std::uint32_t{v.trip_o} << kTrip | std::uint32_t{v.relay_o} << kRelay;
   }
-  static void access(Vwatchdog& v, bool on, bool write, unsigned, std::uint32_t) { v.strobe_i = on && write; }
-  static std::uint32_t read(const Vwatchdog&, unsigned) { return 0; }
+  static void access(Vwatchdog& v, unsigned, bool on, const Face& face) { v.strobe_i = on && face.cycle.write; }
+  static std::uint32_t read(const Vwatchdog&, unsigned, unsigned) { return 0; }
 };
 
 }  // namespace

@@ -225,9 +225,14 @@ class Distorted : public Chip {
   }
   bool foresees() const override { return true; }
   Tick quiet_until() const override { return now() < from_ ? std::min(chip_->quiet_until(), from_ - 1) : now(); }
-  std::uint32_t read(unsigned address) override { return chip_->read(address); }
-  void write(unsigned address, std::uint32_t value) override { chip_->write(address, value); }
-  std::uint32_t peek(unsigned address) override { return chip_->peek(address) + (now() < from_ ? 0 : 1); }
+  void begin(unsigned face, const Cycle& cycle) override { chip_->begin(face, cycle); }
+  void abandon(unsigned face) override { chip_->abandon(face); }
+  bool busy(unsigned face) const override { return chip_->busy(face); }
+  std::uint32_t value(unsigned face) const override { return chip_->value(face) + (now() < from_ ? 0 : 1); }
+  Tick no_end_until() const override { return chip_->no_end_until(); }
+  std::uint32_t peek(unsigned face, unsigned address) override {
+    return chip_->peek(face, address) + (now() < from_ ? 0 : 1);
+  }
 
  private:
   void take() {
@@ -253,7 +258,7 @@ TEST(LockstepChip, SaysWhereTheEnginesDiffer) {
     } catch (const sc_core::sc_report& report) { message = report.get_msg(); }
     EXPECT_EQ(message,
               "interrupt_controller: RTL and SystemC model differ at tick 1234 (10460 ns)\n  irq: rtl 0, systemc 1");
-    EXPECT_THROW(chip->peek(2), sc_core::sc_report) << "a register";
+    EXPECT_THROW(chip->peek(0, 2), sc_core::sc_report) << "a register";
   });
 }
 

@@ -40,11 +40,14 @@ class Component : public sc_core::sc_module {
     unsigned width;           // bytes of a register
     std::uint64_t addresses;  // bytes of all
   };
+  // Faces are numbered as here; `registers` of a component with one socket is face 0.
   Component(const sc_core::sc_module_name& name, TimeBase& time, const std::vector<PinInfo>& table,
-            RegisterFace registers = {1, 0});
+            std::vector<RegisterFace> faces = {});
   void set_chip(std::unique_ptr<Chip> chip);  // once, at the end of the construction
-  void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
-  unsigned debug(tlm::tlm_generic_payload& payload);
+  void transport(unsigned face, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  unsigned debug(unsigned face, tlm::tlm_generic_payload& payload);
+  void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) { transport(0, payload, delay); }
+  unsigned debug(tlm::tlm_generic_payload& payload) { return debug(0, payload); }
 
  private:
   friend class Pin;
@@ -52,7 +55,7 @@ class Component : public sc_core::sc_module {
   void end_of_elaboration() override;
 
   const std::vector<PinInfo>& table_;
-  RegisterFace registers_;
+  std::vector<RegisterFace> faces_;
   std::unique_ptr<Client> client_;
 };
 
