@@ -103,9 +103,24 @@ void hal_clear_words(uint32_t first, uint32_t count) {
   for (; at < end; at += 8) at[0] = at[1] = at[2] = at[3] = at[4] = at[5] = at[6] = at[7] = 0;
 }
 
-enum { SIDE_STACK_WORDS = 2048, FRAME_WORDS = 16 }; /* FRAME: what hal_exchange_stacks keeps */
+enum { SIDE_STACK_WORDS = 2048, FRAME_WORDS = 16 }; /* FRAME: of exchange_stacks */
 
-void hal_exchange_stacks(uint32_t** other);
+/* A call that comes back when the other side makes it: what a C function keeps goes to the present stack, whose pointer
+ * is exchanged with *other. */
+static __attribute__((naked, noipa)) void exchange_stacks(uint32_t** other __attribute__((unused))) {
+  __asm__ volatile(
+      "addi sp, sp, -64\n"
+      "sw ra, 0(sp)\n sw s0, 4(sp)\n sw s1, 8(sp)\n sw s2, 12(sp)\n"
+      "sw s3, 16(sp)\n sw s4, 20(sp)\n sw s5, 24(sp)\n sw s6, 28(sp)\n"
+      "sw s7, 32(sp)\n sw s8, 36(sp)\n sw s9, 40(sp)\n sw s10, 44(sp)\n"
+      "sw s11, 48(sp)\n"
+      "lw t0, 0(a0)\n sw sp, 0(a0)\n mv sp, t0\n"
+      "lw ra, 0(sp)\n lw s0, 4(sp)\n lw s1, 8(sp)\n lw s2, 12(sp)\n"
+      "lw s3, 16(sp)\n lw s4, 20(sp)\n lw s5, 24(sp)\n lw s6, 28(sp)\n"
+      "lw s7, 32(sp)\n lw s8, 36(sp)\n lw s9, 40(sp)\n lw s10, 44(sp)\n"
+      "lw s11, 48(sp)\n"
+      "addi sp, sp, 64\n ret");
+}
 
 static uint32_t side_stack[SIDE_STACK_WORDS] __attribute__((aligned(16)));
 static uint32_t* other_stack; /* stack pointer of the side that does not run */
@@ -114,7 +129,7 @@ static void (*side_task)(void);
 static _Noreturn void side_main(void) {
   for (;;) {
     side_task();
-    hal_exchange_stacks(&other_stack);
+    exchange_stacks(&other_stack);
   }
 }
 
@@ -124,7 +139,7 @@ void hal_side_begin(void (*task)(void)) {
   *other_stack = (uint32_t)&side_main; /* the return address */
 }
 
-void hal_side_change(void) { hal_exchange_stacks(&other_stack); }
+void hal_side_change(void) { exchange_stacks(&other_stack); }
 
 uint32_t hal_strap(unsigned word) { return ((const volatile uint32_t*)0x3FFFF000u)[word]; }
 uint32_t* hal_flash(void) { return (uint32_t*)0x30000000u; }
