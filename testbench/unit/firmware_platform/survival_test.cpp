@@ -37,7 +37,7 @@ TEST(Survival, DefinitionsThatAHostWroteOverAreReadAsSomeDefinition) {
       EXPECT_EQ(c.line("P1=M1"), "");
     }
   }
-  EXPECT_EQ(c.line("WX$4001,$700000"), "") << "no such form";
+  EXPECT_EQ(c.line("WX$4001,$F00000"), "") << "no such form";
   EXPECT_EQ(c.line("M1->"), "*");
 }
 
