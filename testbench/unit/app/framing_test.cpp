@@ -109,7 +109,7 @@ TEST_F(FramingTest, ConnectsAgainAfterARestartAnywhereInALine) {
 
 TEST_F(FramingTest, GivesUpOnAReplyWithoutEnd) {
   FakeMachine& fake = FakeMachine::last();
-  fake.controller = [](const std::string&) { return std::string(2 * HostLink::kLongestReply, 'X'); };
+  fake.controller = [](const std::string&) { return std::string(HostLink::kLongestReply + 100, 'X'); };
   const Reply reply = link.command("LIST");
   EXPECT_FALSE(reply.complete);
   EXPECT_EQ(reply.raw.size(), HostLink::kLongestReply);

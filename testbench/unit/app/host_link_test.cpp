@@ -89,8 +89,8 @@ TEST(ReplyParser, ChecksumsMayLookLikeAnything) {
   EXPECT_TRUE(lf.quiet());
   EXPECT_FALSE(lf.reply().error);
   EXPECT_EQ(lf.reply().lines, Lines{});
-  auto text = parsed({1, 1}, "\n25\r" + checksum("\n25\r") + std::string("\n2"), '2');
-  EXPECT_TRUE(text.quiet()) << "a line that begins like the checksum of the command";
+  auto text = parsed({1, 1}, std::string("\n25\r") + checksum("\n25\r") + "\n2", '2');
+  EXPECT_TRUE(text.quiet()) << "the same behind data";
   EXPECT_EQ(text.reply().lines, (Lines{"25"}));
 }
 
