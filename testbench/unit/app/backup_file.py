@@ -11,17 +11,17 @@ import sys
 
 GLOBALS = {2: 1, 3: 2, 6: 1, 8: 2, 9: 2, 10: 3713991, 16: 5, 17: 10, 18: 10, 19: 7007, 37: "$0", 52: 7, 53: 12, 54: 12,
            60: 15, 61: 8, 63: 1, 67: "$0", 68: 15, 78: 32, 79: 32, 80: 32, 81: 32, 82: 32, 83: 15, 84: 3, 85: 32,
-           **{i: "$0" for i in (*range(20, 25), *range(69, 78))},
-           **dict(zip(range(90, 100), ("$39", "$4", "$FF", "$7F", "$A0", "$7", "$A1", "$0", "$60", "$30")))}
+           **dict.fromkeys((*range(20, 25), *range(69, 78)), "$0"),
+           **dict(enumerate(("$39", "$4", "$FF", "$7F", "$A0", "$7", "$A1", "$0", "$60", "$30"), start=90))}
 MOTOR = {2: "$78002", 3: "$3501", 4: "$3501", 5: "$35C0", 7: 96, 8: 96, 9: 96, 10: "$0", 11: 32000, 12: 16000,
          13: 1250.5, 14: -1250.5, 15: 0.25, 16: 32, 17: 0.015625, 19: 0.015625, 21: 50, 22: 32, 23: 32, 24: "$1",
          25: "$78000", 26: -16, 27: 4000.25, 28: 160, 29: -3, 30: 2000, 31: 1280, 32: 1280, 34: 1, 36: 0.5, 39: -0.5,
          42: "$0", 43: "$0", 55: "$0", 63: 4194304, 65: 16, 66: 6527, 67: 4194304, 69: 20480, 70: 1, 71: 1000, 72: 1365,
-         **{i: "$0" for i in (81, 82, 84, 91, 95)}, 83: "$78001", 87: 64, 92: 10}
+         **dict.fromkeys((81, 82, 84, 91, 95), "$0"), 83: "$78001", 87: 64, 92: 10}
 COORDINATE_SYSTEM = {88: 50, 89: 1000, 90: 1000, 93: "$2000", 94: 1644, 95: 1644, 99: 0.9998474121}
 SERVO_IC = {0: 6527, 2: 3, 3: 2258, 4: 15, 5: "$7FFFC0", 6: "$FFFFFE"}
 CHANNEL = {0: 7, 2: 1}
-PLCS, PLC_LINES = 31, 130
+PLCS, PLC_LINES = 31, 165
 
 
 def i_variables():
@@ -54,7 +54,7 @@ def text_of(value):
 
 
 def p_values():
-    return dict(zip(range(8192), numbers(1)))
+    return dict(zip(range(8192), numbers(1), strict=False))
 
 
 def pq_variables():
@@ -71,11 +71,12 @@ def m_definitions():
     words = [(f"{space}:$", f",{offset},{width}{sign}") for space in "XY" for width in (4, 8, 12, 16, 20)
              for offset in range(0, 25 - width, 4) for sign in ("", ",S", ",U")]
     words += [(f"{space}:$", f",{bit}{one}") for space in "XY" for bit in range(24) for one in ("", ",1")]
-    words += [(f"{space}:$", form) for space in "XY" for form in (",24", ",24,S", ",0,24", ",0,24,U", ",0,24,S")]
+    words += [(f"{space}:$", form) for space in "XY" for form in (",24", ",0,24", ",0,24,U", ",0,24,S")]
     words += [("D:$", ""), ("L:$", ""), ("DP:$60", "")]
     forms = [("M definition", word) for word in words for _ in range(6)] + [("M definition", None)] * 20
+    forms += [("M of signed words", (f"{space}:$", ",24,S")) for space in "XY"] * 6
     forms += [("M of DPRAM floats", ("F:$60", ""))] * 8
-    forms += [("M of BCD", (f"Y:$", f",{offset},4,{code}")) for offset in (0, 4) for code in "DC"]
+    forms += [("M of BCD", ("Y:$", f",{offset},4,{code}")) for offset in (0, 4) for code in "DC"]
     forms += [("M of accessories", (name, "")) for name in ("TWD:4,0.8.3,U", "TWB:0,5", "TWR:0,0", "TWS:1")]
     turn = itertools.cycle(forms)
     for n in range(8192):
@@ -136,7 +137,8 @@ def lines():
 def write(folder):
     """Writes the files; returns `file:line` -> (kind, line)."""
     files = {name: [f"; {name}, made by the data sheet", "/* what is read out of a controller",
-                    "   has comments like these */"] for name in ("backup.pmc", "variables.pmc", "axes.pmc", "plcs.pmc")}
+                    "   has comments like these */"]
+             for name in ("backup.pmc", "variables.pmc", "axes.pmc", "plcs.pmc")}
     places = {}
     for file, kind, line in lines():
         if file != "backup.pmc":
