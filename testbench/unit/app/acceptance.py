@@ -215,7 +215,6 @@ def backup():
         places = backup_file.write(folder)
         job = pathlib.Path(folder) / "backup.pmc"
         values = backup_file.p_values()
-    XX
         asked = range(2000, 8192, 43)  # lines of PLCs that cannot be opened assign lower ones
         job.write_text(job.read_text() + "FROB ; a fault\n" + "".join(f"P{n}\n" for n in asked) + "I3\nI5189\n")
         r = brick("exec", str(job), "--json", f"{folder}/x.json", timeout=550)
