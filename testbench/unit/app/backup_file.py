@@ -77,7 +77,7 @@ def m_definitions():
     forms += [("M of signed words", (f"{space}:$", ",24,S")) for space in "XY"] * 6
     forms += [("M of DPRAM floats", ("F:$60", ""))] * 8
     forms += [("M of BCD", ("Y:$", f",{offset},4,{code}")) for offset in (0, 4) for code in "DC"]
-    forms += [("M of accessories", (name, "")) for name in ("TWD:4,0.8.3,U", "TWB:0,5", "TWR:0,0", "TWS:1")]
+    forms += [("M of accessories", (name, "")) for name in ("TWD:4,0,8.3,U", "TWB:0,5,8,S", "TWR:0,0", "TWS:1")]
     turn = itertools.cycle(forms)
     for n in range(8192):
         kind, form = next(turn)
