@@ -1,0 +1,97 @@
+// Random programs of every kind are entered, listed, cleared, entered from their listing and listed again: the words
+// and the text must be the same. And lines that are no programs at all: nothing stops, and no word outside its buffer
+// changes. BRICK_ROUND_TRIPS: programs of each kind.
+#include <cstdlib>
+#include <map>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_program/program_generator.h"
+
+namespace {
+
+using platform::host;
+using platform::host_lines;
+
+struct Kind {
+  const char* text;
+  fixed_kind kind;
+  std::uint32_t number, where;
+};
+constexpr Kind kKinds[] = {{"PROG 7", FIXED_PROG, 7, WHERE_PROG},
+                           {"PLC 31", FIXED_PLC, 31, WHERE_PLC},
+                           {"FORWARD", FIXED_FORWARD, 0, WHERE_KINEMATIC},
+                           {"INVERSE", FIXED_INVERSE, 0, WHERE_KINEMATIC}};
+
+unsigned programs_of_each_kind() {
+  const char* text = std::getenv("BRICK_ROUND_TRIPS");
+  return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 150;
+}
+
+std::vector<word48_t> words_of(const Kind& kind) {
+  std::vector<word48_t> words;
+  const fixed_program* program = fixed_program_find(kind.kind, kind.number);
+  for (std::uint32_t i = 0; program != nullptr && i < program->words; ++i)
+    words.push_back(fixed_program_word(program, i));
+  return words;
+}
+
+class RoundTrip : public FirmwareTest {
+ protected:
+  static void enter(const Kind& kind, const std::vector<std::string>& lines) {
+    ASSERT_EQ(host(std::string("OPEN ") + kind.text + " CLEAR"), "");
+    for (const std::string& line : lines) {
+      ASSERT_LE(line.size(), 255u);
+      ASSERT_EQ(host(line), "") << line;
+    }
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+  static std::vector<std::string> list(const Kind& kind) { return host_lines(std::string("LIST ") + kind.text); }
+  // As clients do it: 80 words at a time, from the last offset on.
+  static std::vector<std::string> list_in_parts(const Kind& kind) {
+    std::map<unsigned, std::string> lines;
+    for (unsigned start = 0;;) {
+      const auto part = host_lines(std::string("LIST ") + kind.text + "," + std::to_string(start) + ",80");
+      if (part.empty() || part[0].substr(0, 3) == "ERR") break;
+      std::size_t characters = 0;
+      for (const std::string& line : part) {
+        const std::size_t colon = line.find(':');
+        lines[static_cast<unsigned>(std::stoul(line.substr(0, colon)))] = line.substr(colon + 1);
+        characters += line.size() + 1;
+      }
+      EXPECT_LE(characters, 1400u);
+      const unsigned last = lines.rbegin()->first;
+      start = last > start ? last : last + 1;
+    }
+    std::vector<std::string> text;
+    for (const auto& line : lines) text.push_back(line.second);
+    return text;
+  }
+};
+
+TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
+  BRICK_COVERS("I9-1 I9-3");
+  std::set<std::string> produced;
+  unsigned lines = 0;
+  for (const Kind& kind : kKinds)
+    for (unsigned seed = 0; seed < programs_of_each_kind(); ++seed) {
+      SCOPED_TRACE(std::string(kind.text) + " seed " + std::to_string(seed));
+      ProgramGenerator generator(seed, kind.where);
+      const std::vector<std::string> program = generator.program(12);
+      ASSERT_EQ(host("I9=" + std::to_string(seed % 4)), "");
+      ASSERT_NO_FATAL_FAILURE(enter(kind, program));
+      const std::vector<word48_t> words = words_of(kind);
+      const std::vector<std::string> listed = list(kind);
+      ASSERT_GE(words.size(), program.size());
+      EXPECT_EQ(list_in_parts(kind), listed);
+      ASSERT_NO_FATAL_FAILURE(enter(kind, listed));
+      ASSERT_EQ(words_of(kind), words);
+      ASSERT_EQ(list(kind), listed);
+      lines += static_cast<unsigned>(program.size());
+      for (const std::string& name : generator.produced()) produced.insert(name);
+    }
+  EXPECT_GE(lines, 4 * 12 * programs_of_each_kind());
+  for (std::uint32_t i = 0; i < statement_row_count; ++i)
+    EXPECT_EQ(produced.count(statement_rows[i].name), 1u) << statement_rows[i].name << " was never produced";
+}
+
+}  // namespace
