@@ -1,18 +1,21 @@
-/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros. Layout in 32-bit words:
- * mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words: (number, value low, value
- * high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator. */
+/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros, and the fixed programs.
+ * Layout in 32-bit words: mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words:
+ * (number, value low, value high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator,
+ * (kind and number, count, (X, Y) of each word) of programs, a separator. */
 #include "firmware/image/saved_data.h"
 
 #include <stdbool.h>
 
 #include "firmware/base/dimensions.h"
 #include "firmware/base/memory_map.h"
+#include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/user_memory.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/variables/i_variables.h"
 
-#define MARK 0x42524B32u
+#define MARK 0x42524B33u
 #define SEPARATOR 0xFFFFFFFFu
 enum { WORD_MARK, WORD_CHECKSUM, WORD_COUNT, WORD_INITIAL_ICS, WORD_SAVED_ICS, WORD_DATA };
 enum { USER_FIRST = MEMORY_M_DEFINITIONS, USER_END = MEMORY_BUFFERS }; /* M definitions, P, Q */
@@ -30,11 +33,41 @@ static uint32_t checksum(const uint32_t* data, uint32_t count) {
   return sum;
 }
 
+enum { KIND_BIT = 16 }; /* of a program's kind, above its number */
+
 static uint32_t checked_words(uint32_t count) { return count + WORD_DATA - WORD_COUNT; }
 
 /* SAVE is one background pass, longer than a small I40 allows. */
 static void keep_alive(uint32_t step) {
   if (step % 64u == 0u) watchdog_reload();
+}
+
+static uint32_t write_programs(uint32_t* data, uint32_t count) {
+  for (uint32_t index = 0; index < fixed_programs_count(); ++index) {
+    const struct fixed_program* program = fixed_program_at(index);
+    if (program->words == 0u) continue; /* open and empty */
+    data[count++] = (uint32_t)program->kind << KIND_BIT | program->number;
+    data[count++] = program->words;
+    for (uint32_t offset = 0; offset < program->words; ++offset) {
+      keep_alive(offset);
+      const word48_t word = fixed_program_word(program, offset);
+      data[count++] = (uint32_t)(word >> 24) & HAL_WORD_MASK;
+      data[count++] = (uint32_t)word & HAL_WORD_MASK;
+    }
+  }
+  data[count++] = SEPARATOR;
+  return count;
+}
+
+static void restore_programs(const uint32_t* data) {
+  while (*data != SEPARATOR) {
+    const uint32_t kind = data[0] >> KIND_BIT, number = data[0] & 0xFFFFu, words = data[1];
+    data += 2;
+    if (!fixed_program_restore((enum fixed_kind)kind, number, words)) return; /* not written by this firmware */
+    const uint32_t base = fixed_program_at(fixed_programs_count() - 1u)->base;
+    for (uint32_t offset = 0; offset < words; ++offset, data += 2)
+      user_memory_write(base + offset, (word48_t)data[0] << 24 | data[1]);
+  }
 }
 
 void saved_data_write(uint32_t initial_ics) {
@@ -62,6 +95,7 @@ void saved_data_write(uint32_t initial_ics) {
     data[count++] = y;
   }
   data[count++] = SEPARATOR;
+  count = write_programs(data, count);
   flash[WORD_MARK] = MARK;
   flash[WORD_COUNT] = count;
   flash[WORD_INITIAL_ICS] = initial_ics;
@@ -92,8 +126,10 @@ saved_t saved_data_restore_variables(uint32_t* initial_ics) {
 
 void saved_data_restore_user_memory(void) {
   if (user_words == 0) return;
-  for (const uint32_t* data = user_words; *data != SEPARATOR; data += 3) {
+  const uint32_t* data = user_words;
+  for (; *data != SEPARATOR; data += 3) {
     *hal_x(data[0]) = data[1];
     *hal_y(data[0]) = data[2];
   }
+  restore_programs(data + 1);
 }

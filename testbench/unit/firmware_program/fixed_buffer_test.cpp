@@ -278,6 +278,50 @@ TEST_F(FixedBuffer, OpeningAPlcDisablesIt) {
     EXPECT_EQ(host(text), "ERR003") << text;
 }
 
+// firmware:8.5; the ring comes back in no case.
+TEST_F(FixedBuffer, SaveKeepsProgramsAndNoRotaryBuffer) {
+  ASSERT_EQ(host("OPEN PROG 32767 X1 Y2 CLOSE OPEN PLC 31 P1=1 P2=$F CLOSE"), "");
+  ASSERT_EQ(host("&16OPEN FORWARD Q7=P1 CLOSE OPEN INVERSE P1=Q7/3 CLOSE"), "");
+  ASSERT_EQ(host("&1DEF ROT 100 I14=1 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("CLOSE SAVE"), "");
+  ASSERT_EQ(host("DEL ROT OPEN PROG 32767 CLEAR X3 CLOSE OPEN PROG 2 X4 CLOSE"), "");
+  platform::reset();
+  EXPECT_EQ(host("LIST PROG 32767"), "X1Y2");
+  EXPECT_EQ(host("LIST PLC 31"), "P1=1|P2=$F");
+  EXPECT_EQ(host("&16LIST FORWARD"), "Q7=P1");
+  EXPECT_EQ(host("LIST INVERSE"), "P1=Q7/3");
+  EXPECT_EQ(host("LIST PROG 2"), "ERR003") << "it was not saved";
+  EXPECT_EQ(host("&1LIST ROT"), "ERR003");
+  EXPECT_EQ(open_words(), 26624u - 2u - 3u - 2u - 4u);
+  EXPECT_EQ(plc_enabled(), 0x80000000u) << "what there is comes up enabled (firmware:8.4)";
+  ASSERT_EQ(host("OPEN PROG 32767 Z3 CLOSE"), "") << "it can be added to";
+  EXPECT_EQ(host("LIST PROG 32767"), "X1Y2|Z3");
+  EXPECT_EQ(host("LIST PLC 31"), "P1=1|P2=$F");
+}
+
+TEST_F(FixedBuffer, DefaultsHaveNoPrograms) {
+  ASSERT_EQ(host("OPEN PROG 1 X1 CLOSE SAVE"), "");
+  platform::reset("$$$***");
+  EXPECT_EQ(host("LIST PROG 1"), "ERR003");
+  EXPECT_EQ(open_words(), 26624u);
+  platform::reset();
+  EXPECT_EQ(host("LIST PROG 1"), "X1") << "the flash store is untouched until SAVE";
+}
+
+TEST_F(FixedBuffer, FullMemoryIsSavedAndRestored) {
+  std::string line;
+  for (int i = 0; i < 64; ++i) line += "X" + std::to_string(i);
+  ASSERT_EQ(host("OPEN PROG 1"), "");
+  for (unsigned i = 0; i < 26624 / 64; ++i) ASSERT_EQ(host(line), "");
+  ASSERT_EQ(host("CLOSE SAVE"), "");
+  platform::reset();
+  EXPECT_EQ(host("SIZE"), "0");
+  const Lines listed = platform::host_lines("LIST PROG 1");
+  ASSERT_EQ(listed.size(), 26624u / 64);
+  for (const std::string& text : listed) ASSERT_EQ(text, line);
+}
+
 TEST_F(FixedBuffer, ResetForgetsWhatWasNotSaved) {
   ASSERT_EQ(host("OPEN PROG 1 X1 CLOSE"), "");
   platform::power_up();

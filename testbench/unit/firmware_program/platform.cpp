@@ -31,6 +31,12 @@ void power_up() {
   longest_mask_us();
 }
 
+void reset(const std::string& command) {
+  fake_hal_set_look(100);  // the start waits for clocks
+  EXPECT_EQ(host(command), "");
+  fake_hal_set_look(0);
+}
+
 std::vector<std::string> host_lines(const std::string& line) {
   std::string text = line;
   bool quoted = false;

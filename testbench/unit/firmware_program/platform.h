@@ -46,6 +46,7 @@ struct Edge {
 };
 
 void power_up();                                               // a Geo Brick, as after power-on
+void reset(const std::string& command = "$$$");                // memory is as saved
 std::string host(const std::string& line);                     // reply lines joined by `|`, or `ERRnnn`
 std::vector<std::string> host_lines(const std::string& line);  // the same, a string a reply line
 void pass_us(double us);                                       // time passes in the background task

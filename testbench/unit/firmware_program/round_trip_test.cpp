@@ -94,4 +94,78 @@ TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
     EXPECT_EQ(produced.count(statement_rows[i].name), 1u) << statement_rows[i].name << " was never produced";
 }
 
+// Nine tenths of a line from the grammar, the rest anything that can be typed.
+std::string spoil(std::string line, std::mt19937& random) {
+  static const std::string characters = " ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789()+-*/%&|^=!<>~,.:;#$@?\"'_[]{}";
+  for (unsigned i = 0, count = 1 + random() % 3; i < count && !line.empty(); ++i) {
+    const std::size_t at = random() % line.size();
+    switch (random() % 4) {
+      case 0:
+        line.erase(at, 1 + random() % 3);
+        break;
+      case 1:
+        line.insert(at, line.substr(random() % line.size(), random() % 10));
+        break;
+      default:
+        line[at] = characters[random() % characters.size()];
+        break;
+    }
+  }
+  return line.substr(0, 255);
+}
+
+bool is_word_of_reset_or_memory(const std::string& line) {  // they change what the test looks at, or wait
+  for (const char* text : {"$", "W", "SAVE", "DEF", "DEL", "OPEN", "CL"})
+    if (line.find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
+  unsigned stored = 0, refused = 0;
+  std::mt19937 random(7);
+  ASSERT_EQ(host("OPEN PROG 1 X1 Y2 CLOSE"), "");
+  for (const Kind& kind : kKinds) {
+    ProgramGenerator generator(99, kind.where);
+    ASSERT_EQ(host(std::string("OPEN ") + kind.text), "");
+    for (unsigned i = 0; i < 20 * programs_of_each_kind(); ++i) {
+      const std::string line = spoil(generator.statement(), random);
+      if (is_word_of_reset_or_memory(line)) continue;
+      const std::string reply = host(line);
+      ++(reply.substr(0, 3) == "ERR" ? refused : stored);
+    }
+    (void)host("CLOSE");
+    const std::vector<word48_t> words = words_of(kind);
+    const std::vector<std::string> listed = list(kind);
+    ASSERT_EQ(host(std::string("OPEN ") + kind.text + " CLEAR"), "");
+    for (const std::string& line : listed)
+      if (line.size() <= 255) (void)host(line);
+    (void)host("CLOSE");
+    EXPECT_EQ(list(kind), listed) << kind.text;
+    EXPECT_EQ(words_of(kind), words) << kind.text << ": what was taken is listed so that it is taken again";
+  }
+  EXPECT_GE(stored, programs_of_each_kind());
+  EXPECT_GE(refused, programs_of_each_kind());
+  EXPECT_EQ(host("LIST PROG 1"), "X1Y2");
+}
+
+// What a host writes over a program with WX and WY is listed as something, and nothing else happens.
+TEST_F(RoundTrip, DamagedWordsAreListed) {
+  std::mt19937_64 random(3);
+  ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(host("P1=1 IF(P1=$10) CMD\"ABCDEFG\" ENDIF"), "");
+  ASSERT_EQ(host("CLOSE"), "");
+  const std::uint32_t words = fixed_program_find(FIXED_PLC, 1)->words;
+  for (unsigned round = 0; round < programs_of_each_kind(); ++round) {
+    for (std::uint32_t i = 0; i < words; ++i) {
+      word48_t word = random() & WORD48_MASK;
+      if (random() % 3 != 0) word = (word & ~(WORD48_MASK << 43)) | (14ull << 43);            // operators
+      if (random() % 2 != 0) word &= ~(0x3FFull << 30) & ~WORD_START_OF_LINE & ~0xFFFF00ull;  // small numbers
+      user_memory_write(i, word);
+    }
+    ASSERT_FALSE(list(kKinds[1]).size() > 1 && host("LIST PLC 1").empty());
+    ASSERT_EQ(host("OPEN PLC 1"), "");
+    (void)host("CLOSE");
+  }
+}
+
 }  // namespace
