@@ -55,6 +55,7 @@ static error_t address(void) {
 
 bool program_statement(struct lexer* lx, error_t* error) {
   uint32_t where = open_where();
+  if (where == 0) return false;
   const bool one_a_line = (where & WHERE_MOVES) == 0;
   if (line.count != 0 && !one_a_line) where |= WHERE_BEGUN;
   if (line.called) where |= WHERE_CALLED;

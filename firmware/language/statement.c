@@ -182,6 +182,8 @@ static error_t compile_assignment(struct lexer* lx, uint32_t group, uint32_t whe
 }
 
 error_t statement_compile(struct lexer* lx, struct statement head, uint32_t where, struct word_list* out) {
+  if (head.kind == STATEMENT_ROW && head.index < AXIS_COUNT && (where & WHERE_MOVES) != 0)
+    return statement_axis_compile(lx, head.index, out);
   if (head.kind == STATEMENT_ASSIGNMENT) return compile_assignment(lx, head.index, where, out);
   if (head.kind == STATEMENT_NONE || (statement_rows[head.index].where & where & WHERE_KINDS) == 0) return ERR_DATA;
   return statement_argument_compile(lx, &statement_rows[head.index], out);

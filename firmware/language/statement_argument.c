@@ -62,17 +62,24 @@ static error_t value(struct lexer* lx, const struct statement_row* row, struct w
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
 }
 
-/* X1000^0.5: distance behind a trigger. X1000:500: velocity at the end of a PVT move. */
-static error_t axis(struct lexer* lx, const struct statement_row* row, struct word_list* out) {
-  error_t error = value(lx, row, out);
-  if (error != ERR_NONE) return error;
+/* X1000^0.5: distance behind a trigger. X1000:500: velocity at the end of a PVT move. A decimal constant goes the
+ * shortest way: it is what the time to BREQ is made of (host-bus:5.7, T_FALL). */
+error_t statement_axis_compile(struct lexer* lx, uint32_t axis, struct word_list* out) {
   struct statement_row second = {0, 0, 0, ARGUMENT_VALUE, 0};
-  if (lexer_accept(lx, '^'))
-    second.code = WORD_KEY(1, 2, code_number(row));
-  else if (lexer_accept(lx, ':'))
-    second.code = WORD_KEY(1, 3, code_number(row));
-  else
-    return ERR_NONE;
+  error_t error;
+  const char first = lexer_peek(lx);
+  if (first >= '0' && first <= '9') {
+    struct instruction in = {OP_AXIS, 0, axis, 0.0};
+    error = lexer_constant(lx, &in.value);
+    if (error == ERR_NONE) error = word_list_add_instruction(out, &in);
+  } else {
+    error = value(lx, &statement_rows[axis], out);
+  }
+  if (error != ERR_NONE) return error;
+  const char next = lexer_peek(lx);
+  if (next != '^' && next != ':') return ERR_NONE;
+  lx->at++;
+  second.code = WORD_KEY(1, next == '^' ? 2 : 3, axis);
   return value(lx, &second, out);
 }
 
@@ -243,7 +250,7 @@ error_t statement_argument_compile(struct lexer* lx, const struct statement_row*
     case ARGUMENT_NONE:
       return plain(row, out);
     case ARGUMENT_AXIS:
-      return axis(lx, row, out);
+      return statement_axis_compile(lx, code_number(row), out);
     case ARGUMENT_AXES:
     case ARGUMENT_FRAX:
       return axes(lx, row, out);

@@ -86,7 +86,9 @@ static word48_t encode_wide(uint32_t kind, double value) {
   return body + ((word48_t)CODE_WIDE << 43);
 }
 
-static bool encode_short(uint32_t code1, uint32_t code2, uint32_t n, double value, word48_t* word) {
+/* Inlined: the usual constant of an axis is packed within the time to BREQ. */
+static inline __attribute__((always_inline)) bool encode_short(uint32_t code1, uint32_t code2, uint32_t n, double value,
+                                                               word48_t* word) {
   uint64_t mantissa;
   uint32_t exponent, short_mantissa;
   if (!pack_short(value, &short_mantissa, &exponent)) {
