@@ -13,6 +13,7 @@
 
 #include <verilated.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -52,7 +53,9 @@ bool after_beat(const V&, unsigned, Face&, long) {
 template <class V, class Ports>
 class VerilatedChip final : public Chip {
  public:
-  explicit VerilatedChip(std::uint64_t seed)
+  // `prepare`: inputs that are read once, when the simulation begins.
+  explicit VerilatedChip(
+      std::uint64_t seed, const std::function<void(V&)>& prepare = [](V&) {})
       : faces_(faces_of<Ports>(0)),
         outputs_(Ports::kOutputWords),
         sampled_(Ports::kOutputWords),
@@ -60,6 +63,7 @@ class VerilatedChip final : public Chip {
     context_.randReset(seed == 0 ? 0 : 2);
     context_.randSeed(static_cast<int>(1 + seed % 0x7FFFFFFE));  // 0 would be the time of day
     top_ = std::make_unique<V>(&context_, "");
+    prepare(*top_);
     every_edge_ = set_pwm(*top_, false, 0);
     top_->clk_ref_i = false;
     for (unsigned face = 0; face < faces_.count(); ++face) Ports::access(*top_, face, false, Face{});
