@@ -94,6 +94,21 @@ TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
     EXPECT_EQ(produced.count(statement_rows[i].name), 1u) << statement_rows[i].name << " was never produced";
 }
 
+// The comparison itself: one word of a program is another, and the listing is no longer downloaded to the words it had.
+TEST_F(RoundTrip, AnotherWordIsNoticed) {
+  const Kind& kind = kKinds[0];
+  ASSERT_NO_FATAL_FAILURE(enter(kind, {"X1 Y2", "P1=$A+1"}));
+  const std::vector<word48_t> words = words_of(kind);
+  for (std::uint32_t i = 0; i < words.size(); ++i) {
+    ASSERT_NO_FATAL_FAILURE(enter(kind, {"X1 Y2", "P1=$A+1"}));
+    const instruction in = word_decode(words[i]);
+    user_memory_write(i, words[i] ^ (in.operation == OP_APPLY || in.operation == OP_ASSIGN_POP ? 1 : 1 << 20));
+    const std::vector<std::string> listed = list(kind);
+    ASSERT_NO_FATAL_FAILURE(enter(kind, listed));
+    EXPECT_NE(words_of(kind), words) << "word " << i;
+  }
+}
+
 // Nine tenths of a line from the grammar, the rest anything that can be typed.
 std::string spoil(std::string line, std::mt19937& random) {
   static const std::string characters = " ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789()+-*/%&|^=!<>~,.:;#$@?\"'_[]{}";
@@ -134,6 +149,10 @@ TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
       ++(reply.substr(0, 3) == "ERR" ? refused : stored);
     }
     (void)host("CLOSE");
+    (void)host("I3=1");  // ranges such as I0..9=1 are commands, and change what replies look like
+    (void)host("I4=0");
+    (void)host("I68=15");
+    ASSERT_EQ(host("&1"), "");
     const std::vector<word48_t> words = words_of(kind);
     const std::vector<std::string> listed = list(kind);
     ASSERT_EQ(host(std::string("OPEN ") + kind.text + " CLEAR"), "");
