@@ -1,4 +1,4 @@
-// Fixed buffers (firmware:4.1 to firmware:4.3, 4.7): which can be opened when, what is stored, order and room,
+// Fixed buffers (firmware:4.1 to firmware:4.3, firmware:4.7): which can be opened when, what is stored, order and room,
 // structure.
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
