@@ -10,7 +10,12 @@ if(TARGET firmware_turbo)
 endif()
 install(DIRECTORY boards DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.toml)
 install(DIRECTORY waves DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.gtkw PATTERN out EXCLUDE)
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# What README and headers point to.
+foreach(component Unspecified package)
+  install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component})
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component}
+    FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN *.png)
+endforeach()
 
 # What a design of others takes: RTL with its lists, cores and register maps; the firmware's sources; examples. None of
 # it is built, so `cmake --install DIR --component brick_sources` needs no build.

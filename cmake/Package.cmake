@@ -14,7 +14,7 @@ function(brick_add_package_library name)
                                                          LINKER_LANGUAGE CXX)
   target_compile_features(brick_package_${name} INTERFACE cxx_std_17)
   target_link_libraries(brick_package_${name} INTERFACE ${P_LIBRARIES})
-  install(TARGETS brick_package_${name} EXPORT brickTargets
+  install(TARGETS brick_package_${name} EXPORT brick_${name}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT package
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
@@ -26,7 +26,9 @@ brick_add_package_library(rtl
   PARTS brick_component_rtl brick_chips brick_cosim brick_rtl brick_verilated
   LIBRARIES brick_package_systemc fmt::fmt Threads::Threads)
 
-install(EXPORT brickTargets NAMESPACE brick:: DESTINATION ${package_dir} COMPONENT package)
+foreach(name systemc rtl)
+  install(EXPORT brick_${name} NAMESPACE brick:: DESTINATION ${package_dir} COMPONENT package)
+endforeach()
 install(DIRECTORY systemc/component/include/brick DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT package)
 configure_package_config_file(cmake/brickConfig.cmake.in ${CMAKE_BINARY_DIR}/brickConfig.cmake
                               INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)

@@ -119,7 +119,7 @@ def core(rtl, name, title, tops):
     out += ["  waivers:", "    files: [lint.vlt]", "    file_type: vlt", "", "targets:",
             "  default:", "    filesets: [rtl]", f"    toplevel: {name}", *listed,
             "  lint:", "    description: Verilator with all warnings", "    filesets: [waivers, rtl]",
-            f"    toplevel: {name}", "    flow: lint",
+            f"    toplevel: {name}", *listed, "    flow: lint",
             "    flow_options: {tool: verilator, verilator_options: [-Wall]}",
             "  sim:", "    description: Icarus, without a test bench of its own", "    filesets: [rtl]",
             f"    toplevel: {name}", *listed, "    flow: sim",
