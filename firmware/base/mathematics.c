@@ -19,6 +19,12 @@ enum { EXPONENT_BIAS = 1023, FRACTION_BITS = 52 };
 
 double math_absolute(double x) { return x < 0.0 ? -x : x; }
 
+int64_t math_nearest(double x) {
+  if (!(x < MATH_LARGEST)) return (int64_t)MATH_LARGEST - 1;
+  if (!(x > -MATH_LARGEST)) return -(int64_t)MATH_LARGEST;
+  return x < 0.0 ? -(int64_t)(0.5 - x) : (int64_t)(x + 0.5);
+}
+
 int64_t math_to_integer(double x) {
   union bits b = {x};
   bool negative = (b.word >> 63) != 0;

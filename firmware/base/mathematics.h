@@ -24,6 +24,7 @@ double math_exponential(double x);
 double math_divide(double a, double b);
 double math_modulo(double a, double b); /* [0, b), or [-n, n) for b = -n */
 int64_t math_to_integer(double x);      /* floor, saturating at +-2^62 */
+int64_t math_nearest(double x);         /* halves away from 0, saturating at +-2^47; what is no number too */
 
 double math_scale(double m, int exponent); /* m * 2^exponent, 0 on underflow */
 

@@ -11,6 +11,8 @@ enum {
   MEMORY_TASK_DURATIONS = 0x000037,      /* Y: servo task, X: phase task, in half CPU cycles */
   MEMORY_DPRAM_END = 0x00003F,           /* Y: address after the dual-ported RAM, tells its size */
   MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
+  MEMORY_CS_WORDS = 0x002000,            /* registers of coordinate system 1, the others each CS_STRIDE on */
+  MEMORY_CS_STRIDE = 0x100,
   MEMORY_M_DEFINITIONS = 0x004000,
   MEMORY_P_VARIABLES = 0x006000,
   MEMORY_Q_VARIABLES = 0x008000,

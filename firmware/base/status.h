@@ -17,6 +17,7 @@ enum {
 
 void status_initialize(void);
 void status_set(uint32_t bits);
+void status_clear(uint32_t bits);         /* those that stay until the next start or until a user writes them 0 */
 void status_show(uint32_t bits, bool on); /* a bit that follows what it tells */
 uint32_t status_word(void);
 bool status_motors_may_enable(void); /* false while the phase clock is missing or the IC set differs */

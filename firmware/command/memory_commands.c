@@ -2,6 +2,7 @@
 #include "firmware/command/memory_commands.h"
 
 #include "firmware/base/float48.h"
+#include "firmware/base/mathematics.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
@@ -35,7 +36,7 @@ static void report_word(form_t form, bool hex, uint32_t address) {
 }
 
 static void write_word(form_t form, uint32_t address, double value) {
-  const int64_t whole = (int64_t)(value < 0.0 ? value - 0.5 : value + 0.5);
+  const int64_t whole = math_nearest(value);
   const struct float48 word = float48_pack(value);
   const uint32_t state = hal_mask_servo();
   switch (form) {
@@ -73,7 +74,7 @@ static error_t read_words(struct lexer* lx, form_t form, bool hex) {
   error_t error = read_address(lx, &address);
   if (error == ERR_NONE && lexer_accept(lx, ',')) error = lexer_integer(lx, &count);
   if (error != ERR_NONE) return error;
-  if (count < 1 || count > COUNT_LIMIT) return ERR_DATA;
+  if (count < 1 || count > COUNT_LIMIT || address + (uint32_t)count > HAL_WORD_MASK + 1u) return ERR_DATA;
   for (uint32_t i = 0; i < (uint32_t)count; ++i) {
     if (i != 0u) reply_char(' ');
     report_word(form, hex, address + i);
@@ -91,6 +92,7 @@ static error_t write_words(struct lexer* lx, form_t form) {
     double value;
     error = expression_evaluate(lx, session.cs, &value);
     if (error != ERR_NONE) return error;
+    if (address > HAL_WORD_MASK) return ERR_DATA;
     write_word(form, address++, value);
   }
   return ERR_NONE;

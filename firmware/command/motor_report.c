@@ -1,23 +1,15 @@
 /* Motor n's registers stand at $80 * n (firmware:1.10): D:+$08 commanded and D:+$0B actual position in 1/(32 Ixx08)
- * count, D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle, X:+$30 and Y:+$40
- * status words. */
+ * count, D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle. Status
+ * words: motion/motor_status.h. */
 #include "firmware/command/motor_report.h"
 
 #include "firmware/base/memory_map.h"
 #include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/motor_status.h"
 #include "firmware/variables/i_variables.h"
 
-enum {
-  COMMANDED = 0x08,
-  ACTUAL = 0x0B,
-  COMPENSATION = 0x10,
-  VELOCITY = 0x1D,
-  STATUS_1 = 0x30,
-  STATUS_2 = 0x40,
-  BIAS = 0x4C
-};
-#define MOTOR_ACTIVATED 0x800000u
+enum { COMMANDED = 0x08, ACTUAL = 0x0B, COMPENSATION = 0x10, VELOCITY = 0x1D, BIAS = 0x4C };
 
 static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
@@ -40,10 +32,8 @@ static void report_scaled(int64_t value, int32_t scale) {
 }
 
 void motor_report_status(uint32_t motor) {
-  uint32_t first = *hal_x(base(motor) + STATUS_1) & HAL_WORD_MASK & ~MOTOR_ACTIVATED;
-  if (variable(motor, IXX00_ACTIVATED) != 0) first |= MOTOR_ACTIVATED;
-  reply_hex(first, 6);
-  reply_hex(*hal_y(base(motor) + STATUS_2) & HAL_WORD_MASK, 6);
+  reply_hex(motor_status(motor, 0), 6);
+  reply_hex(motor_status(motor, 1), 6);
 }
 
 void motor_report_position(uint32_t motor) {

@@ -1,6 +1,7 @@
 /* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
 #include "firmware/command/program_commands.h"
 
+#include "firmware/base/status.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
@@ -106,6 +107,12 @@ static error_t cmd_quit(struct lexer* lx) { return control(lx, run_quit); }
 static error_t cmd_abort(struct lexer* lx) { return control(lx, run_abort); }
 static error_t cmd_hold(struct lexer* lx) { return control(lx, run_hold); }
 
+/* E: no loop can be closed, so there is nothing to do; without clocks it is refused as it would be. */
+static error_t cmd_enable(struct lexer* lx) {
+  (void)lx;
+  return status_motors_may_enable() ? ERR_NONE : ERR_PHASING;
+}
+
 static error_t cmd_end_block(struct lexer* lx) {
   (void)lx;
   run_end_block(session.cs);
@@ -173,6 +180,7 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"PE", cmd_executing},
                                                  {"A", cmd_abort},
                                                  {"B", cmd_point},
+                                                 {"E", cmd_enable},
                                                  {"H", cmd_hold},
                                                  {"Q", cmd_quit},
                                                  {"R", cmd_run},

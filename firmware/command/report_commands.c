@@ -109,6 +109,19 @@ static error_t serial_number(struct lexer* lx) {
   return ERR_NONE;
 }
 
+static error_t id_number(struct lexer* lx) {
+  (void)lx;
+  reply_hex(0, 8);
+  reply_hex(hal_strap(HAL_STRAP_CARD), 8);
+  reply_end_line();
+  return ERR_NONE;
+}
+
+static error_t checksum(struct lexer* lx) {
+  (void)lx;
+  return number((int64_t)hal_image_checksum());
+}
+
 const struct command_entry report_commands[] = {
     {"???", global_status},
     {"??", cs_status},
@@ -127,5 +140,7 @@ const struct command_entry report_commands[] = {
     {"EAVERSION", extended_algorithm},
     {"EAVER", extended_algorithm},
     {"SID", serial_number},
+    {"IDNUMBER", id_number},
+    {"CHECKSUM", checksum},
     {0, 0},
 };

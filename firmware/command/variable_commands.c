@@ -4,6 +4,7 @@
 #include "firmware/command/variable_commands.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/command/m_definition.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/language/expression.h"
@@ -15,7 +16,8 @@ struct range {
   uint32_t first, count, step;
 };
 
-static error_t read_number(struct lexer* lx, uint32_t* number) {
+/* A number or a computed one, below `end`. */
+static error_t read_number(struct lexer* lx, uint32_t end, uint32_t* number) {
   double value;
   if (lexer_peek(lx) == '(') {
     (void)lexer_accept(lx, '(');
@@ -25,25 +27,25 @@ static error_t read_number(struct lexer* lx, uint32_t* number) {
   } else if (!lexer_number(lx, &value) || value > VARIABLE_COUNT || (double)(uint32_t)value != value) {
     return ERR_DATA; /* `P1.5` is no variable; a computed number loses its fraction */
   }
-  if (value < 0.0 || value >= (double)VARIABLE_COUNT) return ERR_DATA;
+  if (!(value >= 0.0 && value < (double)end)) return ERR_DATA; /* an expression may be no number at all */
   *number = (uint32_t)value;
   return ERR_NONE;
 }
 
 static error_t read_range(struct lexer* lx, struct range* range) {
-  error_t error = read_number(lx, &range->first);
+  error_t error = read_number(lx, VARIABLE_COUNT, &range->first);
   range->count = 1;
   range->step = 1;
   if (error != ERR_NONE) return error;
   if (lexer_keyword(lx, "..")) {
     uint32_t last;
-    error = read_number(lx, &last);
+    error = read_number(lx, VARIABLE_COUNT, &last);
     if (error != ERR_NONE) return error;
     if (last < range->first) return ERR_DATA;
     range->count = last - range->first + 1u;
   } else if (lexer_accept(lx, ',')) {
-    error = read_number(lx, &range->count);
-    if (error == ERR_NONE && lexer_accept(lx, ',')) error = read_number(lx, &range->step);
+    error = read_number(lx, VARIABLE_COUNT + 1u, &range->count);
+    if (error == ERR_NONE && lexer_accept(lx, ',')) error = read_number(lx, VARIABLE_COUNT, &range->step);
     if (error != ERR_NONE) return error;
     if (range->count == 0u || range->first + (range->count - 1u) * range->step >= VARIABLE_COUNT) return ERR_DATA;
   }
@@ -116,88 +118,18 @@ static error_t assign_range(struct lexer* lx, char letter, const struct range* r
   return ERR_NONE;
 }
 
-/* M-variable definitions ------------------------------------------------------------------------------------------- */
-
-static error_t read_part(struct lexer* lx, struct m_definition* definition) {
-  int32_t number;
-  definition->width = 24;
-  if (!lexer_accept(lx, ',')) return ERR_NONE;
-  error_t error = lexer_integer(lx, &number);
-  if (error != ERR_NONE) return error;
-  if (number < 0 || number > 24) return ERR_DATA;
-  if (number == 24) return ERR_NONE; /* `Y:address,24`: the whole word */
-  definition->lsb = (uint8_t)number;
-  definition->width = 1;
-  if (!lexer_accept(lx, ',')) return ERR_NONE;
-  if (lexer_peek(lx) != 'S' && lexer_peek(lx) != 'U') {
-    error = lexer_integer(lx, &number);
-    if (error != ERR_NONE) return error;
-    if (number < 1 || number + definition->lsb > 24) return ERR_DATA;
-    definition->width = (uint8_t)number;
-    if (!lexer_accept(lx, ',')) return ERR_NONE;
-  }
-  definition->is_signed = lexer_accept(lx, 'S');
-  return definition->is_signed || lexer_accept(lx, 'U') ? ERR_NONE : ERR_DATA;
-}
-
-static error_t read_definition(struct lexer* lx, struct m_definition* definition) {
-  static const struct {
-    const char* name;
-    m_form_t form;
-  } forms[] = {{"DP", M_FORM_DP}, {"X", M_FORM_X}, {"Y", M_FORM_Y}, {"D", M_FORM_D}, {"L", M_FORM_L}};
-  *definition = (struct m_definition){M_FORM_NONE, 0, 0, 0, false};
-  if (lexer_accept(lx, '*')) return ERR_NONE;
-  for (unsigned i = 0; i < sizeof forms / sizeof forms[0] && definition->form == M_FORM_NONE; ++i)
-    if (lexer_keyword(lx, forms[i].name)) definition->form = forms[i].form;
-  if (definition->form == M_FORM_NONE) return ERR_DATA;
-  (void)lexer_accept(lx, ':');
-  int32_t place;
-  error_t error = lexer_integer(lx, &place);
-  if (error != ERR_NONE) return error;
-  if (place < 0 || place > 0xFFFFFF) return ERR_DATA;
-  definition->address = (uint32_t)place;
-  const bool has_part = definition->form == M_FORM_X || definition->form == M_FORM_Y;
-  return has_part ? read_part(lx, definition) : ERR_NONE;
-}
-
-static void report_definition(uint32_t number) {
-  static const char* const names[] = {"*", "X:$", "Y:$", "D:$", "L:$", "DP:$"};
-  const struct m_definition definition = m_variable_definition(number);
-  if ((i_integer(I9_LISTING_FORM) & 1) != 0) {
-    reply_char('M');
-    reply_integer((int64_t)number);
-    reply_text("->");
-  }
-  reply_text(names[definition.form]);
-  if (definition.form != M_FORM_NONE) reply_hex(definition.address, 0);
-  if (definition.form == M_FORM_X || definition.form == M_FORM_Y) {
-    reply_char(',');
-    reply_integer(definition.lsb);
-    reply_char(',');
-    reply_integer(definition.width);
-    if (definition.is_signed) reply_text(",S");
-  }
-  reply_end_line();
-}
-
 static error_t definition_command(struct lexer* lx, const struct range* range) {
-  static const char starts[] = "XYDL*";
   struct m_definition definition;
-  bool defines = false;
-  const char next = lexer_peek(lx);
-  for (const char* start = starts; *start != '\0'; ++start) defines = defines || *start == next;
-  if (defines) {
-    const error_t error = read_definition(lx, &definition);
-    if (error != ERR_NONE) return error;
-  }
-  for (uint32_t i = 0; i < range->count; ++i) {
+  bool defines;
+  const error_t error = m_definition_read(lx, &definition, &defines);
+  for (uint32_t i = 0; error == ERR_NONE && i < range->count; ++i) {
     const uint32_t number = range->first + i * range->step;
     if (defines)
       m_variable_define(number, &definition);
     else
-      report_definition(number);
+      m_definition_report(number);
   }
-  return ERR_NONE;
+  return error;
 }
 
 error_t variable_command(struct lexer* lx, char letter) {

@@ -33,6 +33,25 @@ uint32_t hal_cycles(void) {
   return cycles;
 }
 
+uint64_t hal_long_cycles(void) {
+  uint32_t high, low, again;
+  do {
+    __asm__ volatile(CSR("csrr %0, mcycleh") : "=r"(high));
+    low = hal_cycles();
+    __asm__ volatile(CSR("csrr %0, mcycleh") : "=r"(again));
+  } while (again != high);
+  return ((uint64_t)high << 32) | low;
+}
+
+uint32_t hal_image_checksum(void) {
+  const uint32_t *word, *end; /* symbols of image/turbo.ld */
+  uint32_t sum = 0;
+  __asm__("la %0, __code_start" : "=r"(word));
+  __asm__("la %0, __code_end" : "=r"(end));
+  for (; word != end; ++word) sum += *word;
+  return sum & HAL_WORD_MASK;
+}
+
 void hal_set_cpu_clock(uint32_t i52) { cycles_per_ms = (98304u * (i52 + 1u)) / 10u; }
 uint32_t hal_cycles_per_ms(void) { return cycles_per_ms; }
 

@@ -27,6 +27,8 @@ uint32_t hal_mask_all(void);       /* holds off every task and the host port */
 void hal_unmask(uint32_t state);
 
 uint32_t hal_cycles(void);                           /* CPU cycle counter, low 32 bits */
+uint64_t hal_long_cycles(void);                      /* all of it */
+uint32_t hal_image_checksum(void);                   /* sum of the words of code and constants, 24 bits */
 void hal_delay_us(uint32_t us);                      /* busy wait */
 void hal_host_signals(uint32_t set, uint32_t clear); /* bits HAL_SIGNAL_*: latch X:$070010 */
 enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL_F1ER = 8 };

@@ -16,6 +16,7 @@
 void background_pass(void) {
   clock_watch_pass();
   panel_pass();
+  /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
   *hal_x(MEMORY_GLOBAL_STATUS) = status_word();
   *hal_y(MEMORY_GLOBAL_STATUS) = motion_global_status2();
   line_input_pass();

@@ -14,10 +14,12 @@
 #include "firmware/image/saved_data.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/bus_setup.h"
+#include "firmware/kernel/calendar.h"
 #include "firmware/kernel/clock_watch.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/motor_status.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/variables/i_variables.h"
 
@@ -65,12 +67,14 @@ void start(enum start_mode mode) {
   panel_initialize();
   coordinate_systems_initialize();
   axis_definition_initialize();
+  motor_status_initialize();
   regions_initialize();
   rotary_initialize();
   open_buffer_initialize();
   buffer_request_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
+  calendar_initialize();
   tasks_initialize();
   phase_task_initialize();
   hal_interrupts_on();

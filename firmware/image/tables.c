@@ -1,5 +1,7 @@
 /* The const tables that join the layers: what lower layers call in higher ones. Nothing is registered at run time. */
+#include "firmware/base/memory_map.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/command/calendar_commands.h"
 #include "firmware/command/command.h"
 #include "firmware/command/memory_commands.h"
 #include "firmware/command/program_commands.h"
@@ -11,13 +13,17 @@
 #include "firmware/image/real_time.h"
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/tasks.h"
+#include "firmware/motion/live_words.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/servo_update.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/phase_period.h"
+#include "firmware/variables/words.h"
 
 const struct task_hooks task_hooks = {.servo = servo_update, .real_time = real_time, .phase_period = phase_period};
+
+const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
 
 static void buffer_request_changed(uint32_t instance) {
   (void)instance;
@@ -37,7 +43,7 @@ static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session
 
 uint32_t (*const buffer_request_selected)(void) = selected_cs;
 
-const struct command_entry* const command_tables[] = {report_commands, system_commands, memory_commands,
-                                                      program_commands, 0};
+const struct command_entry* const command_tables[] = {report_commands,   system_commands,  memory_commands,
+                                                      calendar_commands, program_commands, 0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;

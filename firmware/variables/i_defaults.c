@@ -9,6 +9,18 @@
 #define CONVERSION_RESULTS 0x3501u /* result of line 0 of the encoder conversion table */
 #define CS_REGISTERS 0x2000u
 
+/* firmware:1.11 */
+#define MACRO_NODES 0x20u          /* of a MACRO IC, from its base */
+#define MACRO_NOTHING 0x35E5u      /* output and flags of motors without a node */
+#define MACRO_FLAGS 0x3440u        /* copies of the nodes' flags */
+#define MACRO_NO_FEEDBACK 0x3521u  /* feedback of motors without a line */
+#define MACRO_FLAG_MODE 0x040001u  /* flags come over MACRO */
+#define MACRO_CONVERSION 0x280000u /* a line that takes a node's word as it is */
+#define MACRO_CONVERSION_BITS 0x018000u
+#define MACRO_RING_CONTROL 0x4000u
+#define MULTIPLEXED_ADC 0x078800u
+enum { MACRO_MOTORS = 8, MACRO_FEEDBACK_MOTORS = 16 };
+
 bool i_of_gate_ic(struct i_place place) { return place.group >= I_GROUP_MACRO && place.group <= I_GROUP_CHANNEL; }
 
 bool i_of_absent_ic(struct i_place place) {
@@ -44,9 +56,38 @@ static uint32_t channel_base(uint32_t channel) {
   return 0;
 }
 
-static uint32_t channel_address(uint32_t motor, uint32_t offset) {
+/* Without a servo IC the first eight motors are on the nodes of MACRO IC 0 that carry motors, two of four of them. The
+ * addresses of the others lead to registers that stay zero. */
+static bool motors_on_macro_ic(void) {
+  return (gate_ic_found() & ((1u << GATE_IC_MACRO) - 1u)) == 0u && gate_ic_present(GATE_IC_MACRO);
+}
+
+static uint32_t macro_node(uint32_t motor) { /* 0..7 */
+  return gate_ic_base(GATE_IC_MACRO) + MACRO_NODES + 4u * motor;
+}
+
+/* `offset` into the registers of the channel, of which a node has the command output only. */
+static uint32_t motor_address(uint32_t motor, uint32_t offset) {
+  if (motors_on_macro_ic()) return motor <= MACRO_MOTORS ? macro_node(motor - 1u) : MACRO_NOTHING;
   const uint32_t base = channel_base(motor - 1u);
   return base == 0u ? 0u : base + offset;
+}
+
+static uint32_t motor_flags(uint32_t motor) {
+  if (!motors_on_macro_ic() || motor > MACRO_MOTORS) return motor_address(motor, 0);
+  return MACRO_FLAGS + 4u * ((motor - 1u) / 2u) + (motor - 1u) % 2u;
+}
+
+/* A line of the conversion table takes one word of a channel, two of a node: source with its form, then bits. */
+static uint32_t motor_feedback(uint32_t motor) {
+  if (!motors_on_macro_ic()) return CONVERSION_RESULTS - 1u + motor;
+  return motor <= MACRO_FEEDBACK_MOTORS ? CONVERSION_RESULTS - 1u + 2u * motor : MACRO_NO_FEEDBACK;
+}
+
+static uint32_t conversion_line(uint32_t line) {
+  if (!motors_on_macro_ic()) return channel_base(line);
+  if (line >= 2u * MACRO_MOTORS) return 0;
+  return line % 2u == 0u ? MACRO_CONVERSION | macro_node(line / 2u) : MACRO_CONVERSION_BITS;
 }
 
 static uint32_t macro_base(uint32_t position) {
@@ -99,19 +140,26 @@ double i_default_value(struct i_place place, const struct i_entry* entry, uint32
     case I_FIELD_MOTOR_ACTIVE:
       return place.instance == 1u ? 1.0 : 0.0;
     case I_FIELD_MOTOR_OUTPUT:
-      return channel_address(place.instance, 2);
+      return motor_address(place.instance, 2);
     case I_FIELD_MOTOR_FEEDBACK:
-      return CONVERSION_RESULTS - 1u + place.instance;
+      return motor_feedback(place.instance);
     case I_FIELD_MOTOR_FLAGS:
-      return channel_address(place.instance, 0);
+      return motor_flags(place.instance);
+    case I_FIELD_MOTOR_FLAG_MODE:
+      if (!motors_on_macro_ic()) return entry->value;
+      return place.instance <= MACRO_FEEDBACK_MOTORS ? MACRO_FLAG_MODE : 0u;
     case I_FIELD_MOTOR_PHASE:
-      return channel_address(place.instance, 1);
+      return motor_address(place.instance, 1);
     case I_FIELD_CONFIGURATION:
       return configuration(place.offset);
     case I_FIELD_TIME_BASE:
       return CS_REGISTERS + 0x100u * place.instance;
     case I_FIELD_CONVERSION:
-      return channel_base(place.offset);
+      return conversion_line(place.offset);
+    case I_FIELD_ADC_RING:
+      return motors_on_macro_ic() ? MULTIPLEXED_ADC : 0u;
+    case I_FIELD_IC_RING_CONTROL:
+      return motors_on_macro_ic() && place.instance == GATE_IC_MACRO ? MACRO_RING_CONTROL : 0u;
     case I_FIELD_IC_CLOCK_DIRECTION:
       return i_clock_direction(place.instance, clock_source);
     case I_FIELD_IC_CHANNEL:

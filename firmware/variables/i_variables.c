@@ -4,6 +4,7 @@
 #include "firmware/variables/i_variables.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/base/mathematics.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/clock_watch.h"
@@ -50,7 +51,8 @@ double i_variable_read(uint32_t number) {
 }
 
 i_format_t i_variable_format(uint32_t number) {
-  return i_table_entry(i_table_place(number))->hex != 0u ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
+  const struct i_place place = i_table_place(number);
+  return i_table_entry(place)->hex != 0u && !i_of_absent_ic(place) ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
 }
 
 /* Hardware and kernel ---------------------------------------------------------------------------------------------- */
@@ -155,10 +157,7 @@ static void store(uint32_t number, double value) {
 
 /* Limited-range integers never fail: the bits above the range are dropped. */
 static int32_t reduce(const struct i_entry* entry, double value) {
-  if (!(value < 140737488355328.0)) value = 140737488355327.0; /* +-2^47, the controller's own limit */
-  if (!(value > -140737488355328.0)) value = -140737488355328.0;
-  const int64_t whole = value < 0.0 ? -(int64_t)(0.5 - value) : (int64_t)(value + 0.5);
-  const uint32_t bits = (uint32_t)whole & ((1u << entry->bits) - 1u);
+  const uint32_t bits = (uint32_t)math_nearest(value) & ((1u << entry->bits) - 1u);
   if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u)
     return (int32_t)(bits | ~((1u << entry->bits) - 1u));
   return (int32_t)bits;
@@ -266,6 +265,7 @@ void i_variable_initialize(void) {
   defaults(0, 100, source);
   repeat(100, 31, source);
   defaults(4900, 10, source);
+  defaults(I5061_ADC_RING, 16, source);
   repeat(5100, 15, source);
   ic_defaults(~0u, source);
   defaults(8000, 72, source); /* at most 18 servo ICs of four channels */

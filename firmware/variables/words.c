@@ -21,9 +21,12 @@ bool word_exists(bool x, uint32_t address) {
 uint32_t word_read(bool x, uint32_t address) {
   if (x && address == PHASE_PERIOD) return phase_period() / 2u;
   if (!word_exists(x, address)) return 0;
+  uint32_t live;
+  if (address < word_hooks.end && word_hooks.read(x, address, &live)) return live & HAL_WORD_MASK;
   return (x ? *hal_x(address) : *hal_y(address)) & HAL_WORD_MASK;
 }
 
 void word_write(bool x, uint32_t address, uint32_t value) {
+  if (address < word_hooks.end && word_hooks.write(x, address, value & HAL_WORD_MASK)) return;
   if (word_exists(x, address)) *(x ? hal_x(address) : hal_y(address)) = value & HAL_WORD_MASK;
 }

@@ -53,6 +53,10 @@ class ChipFactory {
   virtual std::unique_ptr<Chip> interrupt_controller() const = 0;
   virtual std::unique_ptr<Chip> host_signals() const = 0;
   virtual std::unique_ptr<Chip> watchdog() const = 0;
+  virtual std::unique_ptr<Chip> macro_ic() const = 0;
+  virtual std::unique_ptr<Chip> clock_select() const = 0;
+  virtual std::unique_ptr<Chip> host_port() const = 0;
+  virtual std::unique_ptr<Chip> dpram(std::uint64_t ram_seed) const = 0;  // of what it holds at power-on
   virtual std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const = 0;
 };
 

@@ -43,53 +43,86 @@ void Component::trace(sc_core::sc_trace_file* file) const {
 void Component::end_of_elaboration() { client_->elaborate(); }
 
 namespace {
-bool check(tlm::tlm_generic_payload& payload, unsigned width, std::uint64_t addresses) {
-  payload.set_dmi_allowed(false);
-  if (payload.get_command() == tlm::TLM_IGNORE_COMMAND)
-    payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-  else if (payload.get_address() % width != 0 || payload.get_address() >= addresses)
-    payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  else if (payload.get_byte_enable_ptr() != nullptr)
-    payload.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-  else if (payload.get_data_length() != width || payload.get_streaming_width() < width)
-    payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
-  else
-    payload.set_response_status(tlm::TLM_OK_RESPONSE);
-  return payload.is_response_ok();
+bool valid_enables(const tlm::tlm_generic_payload& payload) {
+  const unsigned char* enables = payload.get_byte_enable_ptr();
+  return enables == nullptr || (payload.get_byte_enable_length() != 0 &&
+                                std::all_of(enables, enables + payload.get_byte_enable_length(), [](unsigned char e) {
+                                  return e == TLM_BYTE_DISABLED || e == TLM_BYTE_ENABLED;
+                                }));
+}
+
+tlm::tlm_response_status answer_of(const tlm::tlm_generic_payload& payload, unsigned width, std::uint64_t addresses,
+                                   bool bytes) {
+  const std::uint64_t address = payload.get_address();
+  const unsigned length = payload.get_data_length();
+  if (payload.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
+  if (address >= addresses || (bytes ? length > addresses - address : address % width != 0))
+    return tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  if (bytes ? !valid_enables(payload) : payload.get_byte_enable_ptr() != nullptr)
+    return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
+  if ((bytes ? length == 0 : length != width) || payload.get_streaming_width() < length)
+    return tlm::TLM_BURST_ERROR_RESPONSE;
+  return tlm::TLM_OK_RESPONSE;
+}
+
+// The byte at `address` of those that a payload moves; nullptr if it moves none there.
+unsigned char* byte_at(tlm::tlm_generic_payload& payload, std::uint64_t address) {
+  const std::uint64_t i = address - payload.get_address();
+  if (address < payload.get_address() || i >= payload.get_data_length()) return nullptr;
+  const unsigned char* enables = payload.get_byte_enable_ptr();
+  const bool off = enables != nullptr && enables[i % payload.get_byte_enable_length()] == TLM_BYTE_DISABLED;
+  return off ? nullptr : payload.get_data_ptr() + i;
 }
 
 // Bytes are in the order of their addresses, the least first, whatever the host's own order.
-std::uint32_t value_of(const tlm::tlm_generic_payload& payload, unsigned width) {
-  std::uint32_t value = 0;
-  for (unsigned i = 0; i < width; ++i) value |= static_cast<std::uint32_t>(payload.get_data_ptr()[i]) << 8 * i;
-  return value;
+Cycle cycle_of(tlm::tlm_generic_payload& payload, std::uint64_t address, unsigned width) {
+  Cycle cycle{payload.is_write(), static_cast<unsigned>(address), 0, 0};
+  for (unsigned i = 0; i < width; ++i)
+    if (const unsigned char* byte = byte_at(payload, address + i)) {
+      cycle.lanes |= 1u << i;
+      if (cycle.write) cycle.value |= static_cast<std::uint32_t>(*byte) << 8 * i;
+    }
+  return cycle;
 }
-void set_value(tlm::tlm_generic_payload& payload, unsigned width, std::uint32_t value) {
-  for (unsigned i = 0; i < width; ++i) payload.get_data_ptr()[i] = static_cast<unsigned char>(value >> 8 * i);
+void set_value(tlm::tlm_generic_payload& payload, std::uint64_t address, unsigned width, std::uint32_t value) {
+  for (unsigned i = 0; i < width; ++i)
+    if (unsigned char* byte = byte_at(payload, address + i)) *byte = static_cast<unsigned char>(value >> 8 * i);
 }
 }  // namespace
 
-void Component::transport(unsigned face, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  const RegisterFace& registers = faces_.at(face);
-  if (!check(payload, registers.width, registers.addresses)) return;
+void Component::transport(unsigned number, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  const RegisterFace& face = faces_.at(number);
+  payload.set_dmi_allowed(false);
+  payload.set_response_status(answer_of(payload, face.width, face.addresses, face.access == Access::kBytes));
+  if (!payload.is_response_ok()) return;
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
   delay = sc_core::SC_ZERO_TIME;
-  const auto address = static_cast<unsigned>(payload.get_address());
-  if (payload.is_write())
-    client_->access(face, {true, address, value_of(payload, registers.width), ~0u});
-  else
-    set_value(payload, registers.width, client_->access(face, {false, address, 0, ~0u}));
+  const std::uint64_t end = payload.get_address() + payload.get_data_length();
+  for (std::uint64_t at = payload.get_address() / face.width * face.width; at < end; at += face.width) {
+    const Cycle cycle = cycle_of(payload, at, face.width);
+    if (cycle.lanes == 0) continue;
+    const std::uint32_t value = client_->access(number, cycle);
+    if (!cycle.write) set_value(payload, at, face.width, value);
+  }
 }
 
 // Command, address, data pointer and length are all that counts here; the status is left as it is.
-unsigned Component::debug(unsigned face, tlm::tlm_generic_payload& payload) {
-  const RegisterFace& registers = faces_.at(face);
+unsigned Component::debug(unsigned number, tlm::tlm_generic_payload& payload) {
+  const RegisterFace& face = faces_.at(number);
+  const bool bytes = face.access == Access::kBytes;
   const std::uint64_t address = payload.get_address();
-  if (!payload.is_read() || payload.get_data_ptr() == nullptr || payload.get_data_length() < registers.width ||
-      address % registers.width != 0 || address >= registers.addresses)
-    return 0;
-  set_value(payload, registers.width, client_->peek(face, static_cast<unsigned>(address)));
-  return registers.width;
+  const unsigned length = payload.get_data_length();
+  if (!payload.is_read() || payload.get_data_ptr() == nullptr || address >= face.addresses) return 0;
+  if (!bytes && (length < face.width || address % face.width != 0)) return 0;
+  const auto count =
+      bytes ? static_cast<unsigned>(std::min<std::uint64_t>(length, face.addresses - address)) : face.width;
+  std::uint32_t word = 0;
+  for (unsigned i = 0; i < count; ++i) {
+    const auto at = static_cast<unsigned>(address + i), lane = at % face.width;
+    if (i == 0 || lane == 0) word = client_->peek(number, at - lane);
+    payload.get_data_ptr()[i] = static_cast<unsigned char>(word >> 8 * lane);
+  }
+  return count;
 }
 
 }  // namespace brick::component

@@ -28,8 +28,7 @@ InterruptController::InterruptController(const sc_core::sc_module_name& name, Ti
       registers("registers"),
       rst_n(*this, "rst_n"),
       resetdrv(*this, "resetdrv"),
-      ir{In<>{*this, "ir0"}, In<>{*this, "ir1"}, In<>{*this, "ir2"}, In<>{*this, "ir3"},
-         In<>{*this, "ir4"}, In<>{*this, "ir5"}, In<>{*this, "ir6"}, In<>{*this, "ir7"}},
+      ir(pin_array<In<>, 8>(*this, "ir")),
       irq(*this, "irq") {
   registers.register_b_transport(this, &InterruptController::transport);
   registers.register_transport_dbg(this, &InterruptController::debug);

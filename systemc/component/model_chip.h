@@ -66,6 +66,8 @@ class ModelChip : public Chip {
   virtual void before(unsigned face, const Face& cycle) = 0;
   virtual bool after(unsigned face, Face& cycle) = 0;
   virtual void idle(unsigned face) { (void)face; }
+  // What a read takes before the edge of its first beat.
+  virtual std::uint32_t sample(unsigned face, unsigned address) { return peek(face, address); }
   void power_on() {
     block_reset(0);
     take();
@@ -97,7 +99,7 @@ class ModelChip : public Chip {
   bool beat(Tick t) {
     if (now_ < t - 1) advance(t - 1);
     faces_.at(t, [this](unsigned i, Face& face) {
-      if (!face.cycle.write && face.beat == 0) face.value = peek(i, face.cycle.address);
+      if (!face.cycle.write && face.beat == 0) face.value = sample(i, face.cycle.address);
       if (!in_reset_) before(i, face);
     });
     advance(t);

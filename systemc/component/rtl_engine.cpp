@@ -1,5 +1,9 @@
+#include <brick/clock_select.h>
+#include <brick/dpram.h>
+#include <brick/host_port.h>
 #include <brick/host_signals.h>
 #include <brick/interrupt_controller.h>
+#include <brick/macro_ic.h>
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
 #include <brick/watchdog.h>
@@ -21,6 +25,10 @@ class RtlFactory final : public ChipFactory {
   std::unique_ptr<Chip> interrupt_controller() const override { return rtl_interrupt_controller(seed_); }
   std::unique_ptr<Chip> host_signals() const override { return rtl_host_signals(seed_); }
   std::unique_ptr<Chip> watchdog() const override { return rtl_watchdog(seed_); }
+  std::unique_ptr<Chip> macro_ic() const override { return rtl_macro_ic(seed_); }
+  std::unique_ptr<Chip> clock_select() const override { return rtl_clock_select(seed_); }
+  std::unique_ptr<Chip> host_port() const override { return rtl_host_port(seed_); }
+  std::unique_ptr<Chip> dpram(std::uint64_t ram_seed) const override { return rtl_dpram(seed_, ram_seed); }
   std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const override {
     return board_chip(make_rtl_board(fitted, board_options(seed_, seed)), fitted, false);
   }
@@ -44,6 +52,18 @@ class LockstepFactory final : public ChipFactory {
   }
   std::unique_ptr<Chip> watchdog() const override {
     return lockstep_chip("watchdog", rtl_.watchdog(), model_.watchdog(), Watchdog::pin_table());
+  }
+  std::unique_ptr<Chip> macro_ic() const override {
+    return lockstep_chip("macro_ic", rtl_.macro_ic(), model_.macro_ic(), MacroIc::pin_table());
+  }
+  std::unique_ptr<Chip> clock_select() const override {
+    return lockstep_chip("clock_select", rtl_.clock_select(), model_.clock_select(), ClockSelect::pin_table());
+  }
+  std::unique_ptr<Chip> host_port() const override {
+    return lockstep_chip("host_port", rtl_.host_port(), model_.host_port(), HostPort::pin_table());
+  }
+  std::unique_ptr<Chip> dpram(std::uint64_t ram_seed) const override {
+    return lockstep_chip("dpram", rtl_.dpram(ram_seed), model_.dpram(ram_seed), Dpram::pin_table());
   }
   std::unique_ptr<Chip> board(std::uint32_t fitted, std::uint64_t seed) const override {
     return board_chip(

@@ -11,6 +11,7 @@
 //   static std::uint32_t peek(const V& v, unsigned face, unsigned address)
 #pragma once
 
+#include <functional>
 #include <utility>
 
 #include "systemc/component/faces.h"
@@ -38,12 +39,15 @@ bool after_beat(const V&, unsigned, Face&, long) {
 template <class V, class Ports>
 class VerilatedChip final : public Chip {
  public:
-  explicit VerilatedChip(std::uint64_t seed)
+  // `prepare`: inputs that are read once, when the simulation begins.
+  explicit VerilatedChip(
+      std::uint64_t seed, const std::function<void(V&)>& prepare = [](V&) {})
       : top_(seed),
         faces_(faces_of<Ports>(0)),
         outputs_(Ports::kOutputWords),
         sampled_(Ports::kOutputWords),
         watched_(Ports::kOutputWords) {
+    prepare(*top_);
     every_edge_ = set_pwm(*top_, false, 0);
     top_->clk_ref_i = false;
     for (unsigned face = 0; face < faces_.count(); ++face) Ports::access(*top_, face, false, Face{});

@@ -2,13 +2,7 @@
 
 #include <algorithm>
 
-#include "systemc/core/register_access.h"
-
 namespace brick {
-
-Dpram::Dpram(const sc_core::sc_module_name& name) : sc_module(name), socket("socket") {
-  socket.register_b_transport(this, &Dpram::b_transport);
-}
 
 // One more tick would change nothing.
 bool Dpram::cpu_settled() const {
@@ -120,17 +114,6 @@ void Dpram::reset(Tick t) {
   drive_ = drive_rd_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
   pins_ = cell_ = wdata_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
-}
-
-void Dpram::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  if (!check_payload(payload, 2, 2 * fitted())) return;
-  const Tick edge = catch_up(*this, now_, delay);
-  const auto index = static_cast<unsigned>(payload.get_address() / 2);
-  if (payload.is_read())
-    set_payload_value(payload, peek(index));
-  else
-    poke(index, payload_value<std::uint16_t>(payload));
-  delay = delay_until(edge);
 }
 
 }  // namespace brick

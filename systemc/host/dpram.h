@@ -5,9 +5,7 @@
 
 #include <cstdint>
 
-#include <tlm_utils/simple_target_socket.h>
 #include <systemc>
-#include <tlm>
 
 #include "systemc/core/model_block.h"
 #include "systemc/host/dpram_memory.h"
@@ -17,10 +15,7 @@ namespace brick {
 
 class Dpram final : public sc_core::sc_module, public ModelBlock {
  public:
-  explicit Dpram(const sc_core::sc_module_name& name);
-
-  // Memory without arbitration, for software that has no pins: 16-bit accesses at the host's byte offset.
-  tlm_utils::simple_target_socket_optional<Dpram> socket;
+  explicit Dpram(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   static constexpr unsigned kWords = DpramMemory::kWords;
 
@@ -81,7 +76,6 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   void cpu_edge(bool blocked);
   void cpu_pins();
   void host_edge(bool blocked);
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
   DpramMemory memory_;
   // CPU side: pins as sampled, then the access under way

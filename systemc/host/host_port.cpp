@@ -1,7 +1,6 @@
 #include "systemc/host/host_port.h"
 
 #include "rtl/regs/brick_regs.hpp"
-#include "systemc/core/register_access.h"
 
 namespace brick {
 namespace {
@@ -28,12 +27,7 @@ void set_byte(std::uint32_t& word, unsigned lsb, std::uint8_t value) {
 
 }  // namespace
 
-HostPort::HostPort(const sc_core::sc_module_name& name)
-    : sc_module(name), host_socket("host_socket"), cpu_socket("cpu_socket") {
-  reset_registers();
-  host_socket.register_b_transport(this, &HostPort::host_transport);
-  cpu_socket.register_b_transport(this, &HostPort::cpu_transport);
-}
+HostPort::HostPort(const sc_core::sc_module_name& name) : sc_module(name) { reset_registers(); }
 
 bool HostPort::hreq() const { return (icr::kRreq.is_set(icr_) && rxdf_) || (icr::kTreq.is_set(icr_) && txde_); }
 
@@ -190,44 +184,6 @@ void HostPort::reset_registers() {
   hpcr_ = regs::hi08::kHpcr.reset;
   tx_ = horx_ = hotx_ = rx_ = 0;
   saw_ = false;
-}
-
-void HostPort::host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  if (!check_payload(payload, 1, 8)) return;
-  const Tick edge = catch_up(*this, now(), delay);
-  const Inputs before = in;
-  in.hp_sel = true;
-  in.hp_addr = static_cast<std::uint8_t>(payload.get_address());
-  if (payload.is_read()) {
-    set_payload_value(payload, host_read(in.hp_addr));
-    saw_ = rxdf_;
-    in.hp_rd_done = true;
-  } else {
-    in.hp_wr = true;
-    in.hp_wdata = payload_value<std::uint8_t>(payload);
-  }
-  advance(edge);
-  in = before;
-  delay = delay_until(edge);
-}
-
-void HostPort::cpu_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  if (!check_payload(payload, 4, 48)) return;
-  const bool x = payload.get_address() % 8 == 4;  // the Y words of the page do not exist: they read 0
-  const Tick edge = catch_up(*this, now(), delay);
-  const Inputs before = in;
-  in.dsp_sel = x;
-  in.dsp_addr = static_cast<std::uint8_t>(kHcr + payload.get_address() / 8);
-  if (payload.is_read()) {
-    set_payload_value(payload, x ? cpu_read(in.dsp_addr) : std::uint32_t{0});
-    in.dsp_rd = true;
-  } else {
-    in.dsp_we = true;
-    in.dsp_wdata = payload_value<std::uint32_t>(payload);
-  }
-  advance(edge);
-  in = before;
-  delay = delay_until(edge);
 }
 
 }  // namespace brick

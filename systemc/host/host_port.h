@@ -5,9 +5,7 @@
 
 #include <cstdint>
 
-#include <tlm_utils/simple_target_socket.h>
 #include <systemc>
-#include <tlm>
 
 #include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
@@ -17,10 +15,6 @@ namespace brick {
 class HostPort final : public sc_core::sc_module, public RefClockedBlock {
  public:
   explicit HostPort(const sc_core::sc_module_name& name);
-
-  // For use without the pins of a board. Host: bytes 0..7. CPU: X:$FFFFC2.. as 32-bit words at byte 8(a - $FFFFC2) + 4.
-  tlm_utils::simple_target_socket_optional<HostPort> host_socket;
-  tlm_utils::simple_target_socket_optional<HostPort> cpu_socket;
 
   using Inputs = HostPortInputs;
   Inputs in;
@@ -44,8 +38,6 @@ class HostPort final : public sc_core::sc_module, public RefClockedBlock {
   void reset_host_side();
   void host_write();
   void cpu_write();
-  void host_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
-  void cpu_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
   bool tx_move() const { return !txde_ && !hrdf_; }
   bool rx_move() const { return !htde_ && !rxdf_; }

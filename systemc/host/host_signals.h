@@ -4,9 +4,7 @@
 
 #include <cstdint>
 
-#include <tlm_utils/simple_target_socket.h>
 #include <systemc>
-#include <tlm>
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/inputs.h"
@@ -16,9 +14,7 @@ namespace brick {
 
 class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit HostSignals(const sc_core::sc_module_name& name);
-
-  tlm_utils::simple_target_socket_optional<HostSignals> socket;  // one 32-bit word: X:$070010
+  explicit HostSignals(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = HostSignalsInputs;
   Inputs in;
@@ -42,7 +38,6 @@ class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
     if (in.ctrl_wr) ctrl_ = in.wdata & kCtrlWritten;
   }
   void reset_registers() override { latch_ = ctrl_ = 0; }
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
 
   std::uint8_t latch_ = 0, ctrl_ = 0;
 };

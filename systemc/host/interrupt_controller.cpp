@@ -1,13 +1,6 @@
 #include "systemc/host/interrupt_controller.h"
 
-#include "systemc/core/register_access.h"
-
 namespace brick {
-
-InterruptController::InterruptController(const sc_core::sc_module_name& name) : sc_module(name), socket("socket") {
-  socket.register_b_transport(this, &InterruptController::b_transport);
-  socket.register_transport_dbg(this, &InterruptController::transport_dbg);
-}
 
 std::uint8_t InterruptController::read(unsigned addr) const {
   switch (addr & 3) {
@@ -47,26 +40,5 @@ void InterruptController::step() {
 }
 
 void InterruptController::reset_registers() { line1_ = line2_ = line3_ = latch_ = msk_ = elr_ = 0; }
-
-void InterruptController::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-  if (!check_payload(payload, 1, 4)) return;
-  const Tick edge = catch_up(*this, now(), delay);
-  const auto addr = static_cast<std::uint8_t>(payload.get_address());
-  if (payload.is_read()) {
-    set_payload_value(payload, read(addr));
-  } else {
-    const Inputs before = in;
-    in = {before.reset, before.line, true, addr, payload_value<std::uint8_t>(payload)};
-    advance(edge);
-    in = before;
-  }
-  delay = delay_until(edge);
-}
-
-unsigned InterruptController::transport_dbg(tlm::tlm_generic_payload& payload) {
-  if (!check_payload(payload, 1, 4) || !payload.is_read()) return 0;
-  set_payload_value(payload, read(static_cast<unsigned>(payload.get_address())));
-  return 1;
-}
 
 }  // namespace brick

@@ -4,9 +4,7 @@
 
 #include <cstdint>
 
-#include <tlm_utils/simple_target_socket.h>
 #include <systemc>
-#include <tlm>
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/inputs.h"
@@ -16,10 +14,7 @@ namespace brick {
 
 class InterruptController final : public sc_core::sc_module, public RefClockedBlock {
  public:
-  explicit InterruptController(const sc_core::sc_module_name& name);
-
-  // Registers as bytes 0..3: status and clear, signal, mask, edge/level. For use without the pins of a board.
-  tlm_utils::simple_target_socket_optional<InterruptController> socket;
+  explicit InterruptController(const sc_core::sc_module_name& name) : sc_module(name) {}
 
   using Inputs = InterruptControllerInputs;
   Inputs in;
@@ -53,8 +48,6 @@ class InterruptController final : public sc_core::sc_module, public RefClockedBl
   bool idle() const override;
   void step() override;
   void reset_registers() override;
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
-  unsigned transport_dbg(tlm::tlm_generic_payload& payload);
 
   std::uint8_t line1_ = 0, line2_ = 0, line3_ = 0;  // line3_ is line2_ one edge ago
   std::uint8_t latch_ = 0, msk_ = 0, elr_ = 0;

@@ -1,13 +1,10 @@
 // Model of rtl/macro_ic/macro_ic.sv: MACRO IC (DSPGATE2 or MACROGATE), clock part. The clock chain is that of the servo
-// IC (ClockGen). The register face is a TLM-2.0 target socket (address 8 * offset + 4 for X, + 0 for Y, 4 bytes, value
-// in the low 24 bits); the board, which keeps time in ticks, uses read() and write() behind it.
+// IC (ClockGen).
 #pragma once
 
 #include <cstdint>
 
-#include <tlm_utils/simple_target_socket.h>
 #include <systemc>
-#include <tlm>
 
 #include "systemc/core/model_block.h"
 #include "systemc/macro_ic/macro_ic_regs.h"
@@ -19,8 +16,6 @@ namespace brick {
 class MacroIc : public sc_core::sc_module, public ClockFollower {
  public:
   explicit MacroIc(const sc_core::sc_module_name& name);
-
-  tlm_utils::simple_target_socket_optional<MacroIc> socket;
 
   // Registers as they stand after the last executed edge; a write is executed by that edge, so call advance() first.
   std::uint32_t read(bool x, unsigned offset) const { return regs_.read(x, offset); }
@@ -44,7 +39,6 @@ class MacroIc : public sc_core::sc_module, public ClockFollower {
   void mark() override { clock_gen_.mark(); }
   bool repeats() const override { return clock_gen_.repeats(); }
   void jump(Tick by) override { clock_gen_.jump(by); }
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
   void apply_registers();
 
   MacroIcRegs regs_;

@@ -12,9 +12,11 @@ import tempfile
 import command
 from command import BOARDS, brick, check, play
 
-GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
+GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "I124", "I124=I124|$20000", "I124", "i20 i21 i22 i23",
+          "M1->X:$078001,0,24,S", "M1->", "#1?", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
 # the three DEFINEs: nothing, nothing, lower-numbered buffer exists
-ANSWERS = ["1.947", "603382", "7007", "5", "10", "ERR003"]
+ANSWERS = ["1.947", "603382", "7007", "5", "10", "$1", "$20001", "$0", "$0", "$0", "$0", "X:$78001,24,S",
+           "850000000000", "ERR003"]
 
 
 # covers: CARD-3

@@ -94,8 +94,8 @@ void nets_agree(const Engine& first, const Engine& second) {
   ServoIc a("a", time, first), b("b", time, second);
   const sc_core::sc_time quantum;
   Rig rig_a("rig_a", a, traffic[0], 4, quantum, clocks), rig_b("rig_b", b, traffic[1], 4, quantum, clocks);
-  rig_a.socket.bind(a.registers);
-  rig_b.socket.bind(b.registers);
+  rig_a.socket().bind(a.registers);
+  rig_b.socket().bind(b.registers);
   Net phase("phase"), servo("servo");
   sc_core::sc_signal<bool> phase_net("phase_net", true), servo_net("servo_net", true);
   phase.net(phase_net);

@@ -8,15 +8,19 @@
 #include <sstream>
 
 #include <brick/board.h>
+#include <brick/clock_select.h>
+#include <brick/dpram.h>
+#include <brick/host_port.h>
 #include <brick/host_signals.h>
 #include <brick/interrupt_controller.h>
+#include <brick/macro_ic.h>
 #include <brick/servo_ic.h>
 #include <brick/watchdog.h>
 
 namespace brick::component {
 namespace {
 
-// One channel of one IC stands for all; "" for the others.
+// One channel of one IC stands for all, one IC of the clock selection too; "" for the others.
 std::string shown_name(std::string name) {
   const auto replace = [&name](const std::string& one, const std::string& all) {
     if (const auto at = name.find(one); at != std::string::npos) name.replace(at, one.size(), all);
@@ -24,6 +28,11 @@ std::string shown_name(std::string name) {
   if (name.rfind("servo_ic1_", 0) == 0) return "";
   for (const char* other : {"ch2_", "ch3_", "ch4_"})
     if (name.find(other) != std::string::npos) return "";
+  for (const std::string pins : {"phase_i", "servo_i", "phase_oe_i", "servo_oe_i"}) {
+    if (name.size() == pins.size() || name.compare(0, pins.size(), pins) != 0) continue;
+    if (name != pins + "0") return "";
+    name = pins + "N";
+  }
   replace("ch1_", "chN_");
   replace("servo_ic0_", "servo_icM_");
   return name;
@@ -95,6 +104,10 @@ TEST(ComponentPages, DrawingsAreThoseOfThePinTables) {
   place("interrupt_controller", drawing("InterruptController", InterruptController::pin_table(), "registers: 4 bytes"));
   place("host_signals", drawing("HostSignals", HostSignals::pin_table(), "registers: 2 words"));
   place("watchdog", drawing("Watchdog", Watchdog::pin_table(), "registers: 1 word"));
+  place("macro_ic", drawing("MacroIc", MacroIc::pin_table(), "registers: 64 X and 64 Y words"));
+  place("clock_select", drawing("ClockSelect", ClockSelect::pin_table(), ""));
+  place("host_port", drawing("HostPort", HostPort::pin_table(), "host: 8 bytes; cpu: 6 words"));
+  place("dpram", drawing("Dpram", Dpram::pin_table(), "host: 65536 bytes; cpu: 32768 words"));
   place("board", drawing("Board", Board::pin_table(0x3), ""));
   if (std::getenv("BRICK_WRITE_PAGES") != nullptr) std::ofstream(BRICK_COMPONENTS_PAGE) << page;
   EXPECT_TRUE(page == before) << "docs/components.md is not what the pin tables say; BRICK_WRITE_PAGES=1 writes it";

@@ -37,10 +37,13 @@ std::string difference(Seen component, Seen block, Picoseconds end, const Binds&
         changes.end());
     std::sort(changes.begin(), changes.end());
     cut(changes, end, [](const Change& c) { return std::get<0>(c); });
-    cut(seen->answers, end, [](const Answer& a) { return a.first; });
+    for (std::vector<Answer>* answers : {&seen->answers, &seen->others})
+      cut(*answers, end, [](const Answer& a) { return a.first; });
   }
   const std::string changes = first_difference("change", component.changes, block.changes);
-  return changes.empty() ? first_difference("access", component.answers, block.answers) : changes;
+  if (!changes.empty()) return changes;
+  const std::string answers = first_difference("access", component.answers, block.answers);
+  return answers.empty() ? first_difference("other access", component.others, block.others) : answers;
 }
 
 }  // namespace brick::component

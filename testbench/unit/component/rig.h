@@ -1,4 +1,4 @@
-// A component between signals and an initiator, driven by a list of traffic; records what its ports and its socket do.
+// A component between signals and initiators, driven by a list of traffic; records what its ports and its sockets do.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,12 @@
 
 #include <gtest/gtest.h>
 #include <sysc/kernel/sc_dynamic_processes.h>
-#include <tlm_utils/simple_initiator_socket.h>
 
 #include <brick/component.h>
+#include <brick/rtl.h>
 
+#include "testbench/unit/component/own_process.h"
+#include "testbench/unit/component/player.h"
 #include "testbench/unit/component/traffic.h"
 
 namespace brick::component {
@@ -23,10 +25,14 @@ inline bool all(const std::string&) { return true; }
 
 class Rig : public sc_core::sc_module {
  public:
-  // `binds`: the pins that get a signal; `quantum`: how far the initiator's own time runs ahead of the kernel's.
+  // `binds`: the pins that get a signal; `quantum`: how far an initiator's own time runs ahead of the kernel's; `width`
+  // of the registers, at the second socket `other_width`.
   Rig(const sc_core::sc_module_name& name, Component& component, const Traffic& traffic, unsigned width,
-      const sc_core::sc_time& quantum, const Binds& binds)
-      : sc_module(name), traffic_(traffic), width_(width), quantum_(quantum) {
+      const sc_core::sc_time& quantum, const Binds& binds, unsigned other_width = 4)
+      : sc_module(name),
+        traffic_(traffic),
+        first_("first", traffic.accesses, width, quantum, seen.answers),
+        second_("second", traffic.others, other_width, quantum, seen.others) {
     for (Pin* pin : component.pins()) {
       const PinInfo& info = pin->info();
       if (!binds(info.name)) continue;
@@ -34,11 +40,11 @@ class Rig : public sc_core::sc_module {
     }
     SC_HAS_PROCESS(Rig);
     SC_THREAD(drive);
-    SC_THREAD(initiate);
   }
 
-  tlm_utils::simple_initiator_socket_optional<Rig> socket{"socket"};
   Seen seen;
+  Player::Socket& socket() { return first_.socket; }
+  Player::Socket& other_socket() { return second_.socket; }
   sc_core::sc_signal<bool>& signal(const std::string& pin) { return *bits_.at(pin); }
 
  private:
@@ -85,34 +91,8 @@ class Rig : public sc_core::sc_module {
     }
   }
 
-  void initiate() {
-    sc_core::sc_time local;
-    for (const Access& access : traffic_.accesses) {
-      local += time(access.idle);
-      if (local > quantum_) {
-        wait(local);
-        local = sc_core::SC_ZERO_TIME;
-      }
-      unsigned char data[4];
-      for (unsigned i = 0; i < width_; ++i) data[i] = static_cast<unsigned char>(access.value >> 8 * i);
-      tlm::tlm_generic_payload payload;
-      payload.set_command(access.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND);
-      payload.set_address(access.address);
-      payload.set_data_ptr(data);
-      payload.set_data_length(width_);
-      payload.set_streaming_width(width_);
-      socket->b_transport(payload, local);
-      const sc_core::sc_time end = sc_core::sc_time_stamp() + local;
-      if (!payload.is_response_ok()) SC_REPORT_ERROR("/test/response", payload.get_response_string().c_str());
-      std::uint32_t value = 0;
-      for (unsigned i = 0; i < width_; ++i) value |= static_cast<std::uint32_t>(data[i]) << 8 * i;
-      seen.answers.emplace_back(end.value(), value);
-    }
-  }
-
   const Traffic& traffic_;
-  unsigned width_;
-  sc_core::sc_time quantum_;
+  Player first_, second_;
   std::vector<std::shared_ptr<void>> signals_;  // of all widths
   std::map<std::string, sc_core::sc_signal<bool>*> bits_;
   std::map<std::string, std::function<void(std::uint32_t)>> writes_;
@@ -122,7 +102,17 @@ class Rig : public sc_core::sc_module {
 // traffic left out. "" when there is none.
 std::string difference(Seen component, Seen block, Picoseconds end, const Binds& binds);
 
-// The component on this engine agrees with the block inside; at least so much happened.
+// The component does what is expected of it; `connect(rig, component)` binds its sockets.
+template <class C, class Connect>
+void does(const Seen& expected, const Traffic& traffic, C& component, const sc_core::sc_time& quantum, unsigned width,
+          unsigned other_width, const Binds& binds, const Connect& connect) {
+  Rig rig("rig", component, traffic, width, quantum, binds, other_width);
+  connect(rig, component);
+  sc_core::sc_start(sc_core::sc_time::from_value(traffic.end - 1));
+  EXPECT_EQ(difference(rig.seen, expected, traffic.end, binds), "");
+}
+
+// It agrees with the block inside; at least so much happened.
 template <class C>
 void agrees(Block& block, Traffic traffic, const Engine& engine, const sc_core::sc_time& quantum, unsigned width,
             const Binds& binds, std::size_t least_accesses, std::size_t least_changes) {
@@ -134,10 +124,21 @@ void agrees(Block& block, Traffic traffic, const Engine& engine, const sc_core::
   EXPECT_GE(expected.changes.size(), least_changes);
   TimeBase time("time");
   C component("component", time, engine);
-  Rig rig("rig", component, traffic, width, quantum, binds);
-  rig.socket.bind(component.registers);
-  sc_core::sc_start(sc_core::sc_time::from_value(traffic.end - 1));
-  EXPECT_EQ(difference(rig.seen, expected, traffic.end, binds), "");
+  does(expected, traffic, component, quantum, width, 4, binds, [](Rig& rig, C& c) { rig.socket().bind(c.registers); });
+}
+
+// Each engine with each quantum, and a seed of its own, in a process of its own.
+template <class Simulation>
+void on_each_engine(const Simulation& simulation) {
+  std::uint32_t seed = 0;
+  for (const double quantum_us : {0.0, 3.0, 10.0})
+    for (const auto& engine :
+         {+[] { return model_engine(); }, +[] { return rtl_engine(); }, +[] { return lockstep_engine(); }}) {
+      ++seed;
+      SCOPED_TRACE(::testing::Message() << "engine " << (seed - 1) % 3 << " (model, rtl, lockstep), quantum "
+                                        << quantum_us << " us");
+      in_own_process([&] { simulation(engine(), sc_core::sc_time(quantum_us, sc_core::SC_US), seed); });
+    }
 }
 
 }  // namespace brick::component

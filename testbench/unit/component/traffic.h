@@ -38,10 +38,13 @@ struct Access {
   bool write;
   unsigned address;
   std::uint32_t value;
+  unsigned length = 0;      // bytes, 4 at most; 0: the width of the socket
+  unsigned enables = 0xFF;  // bytes that are enabled, bit 0 the first; all of them: no byte enables
 };
 struct Traffic {
   std::vector<PinChange> pins;  // by time
   std::vector<Access> accesses;
+  std::vector<Access> others;  // at a second socket
   Picoseconds end = 0;
 };
 
@@ -50,7 +53,7 @@ using Change = std::tuple<Picoseconds, std::string, std::uint32_t>;  // of an ou
 using Answer = std::pair<Picoseconds, std::uint32_t>;                // end of an access, what it read
 struct Seen {
   std::vector<Change> changes;
-  std::vector<Answer> answers;
+  std::vector<Answer> answers, others;
 };
 
 // The block inside, through its C++ face.

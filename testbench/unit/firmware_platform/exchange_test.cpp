@@ -6,6 +6,7 @@
 #include "testbench/unit/firmware_platform/framing.h"
 
 extern "C" {
+#include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
 }
 
@@ -84,6 +85,52 @@ TEST(HostExchange, IdentifiesItself) {
   EXPECT_EQ(c.send("VERSION\r"), "1.947\r\x06");
   EXPECT_EQ(c.send("VID\r"), "1\r\x06");
   EXPECT_EQ(c.send("???\r"), "000000000800\r\x06");
+}
+
+TEST(HostExchange, IdentifiesTheBoardAndTheFirmware) {
+  Controller c;
+  EXPECT_EQ(c.line("CPU DATE EAVER"), "DSP56321|07/01/2014|0");
+  EXPECT_EQ(c.line("SID IDNUMBER"), "0000000934F6|00000000000934F6");  // 603382 = $934F6
+  EXPECT_EQ(c.line("CHECKSUM"), std::to_string(0xABCDEF));
+  fake_hal_set_strap(HAL_STRAP_CARD, 602404);
+  EXPECT_EQ(c.line("CID"), "602404");
+}
+
+// Jan. 1, 2000, was a Saturday, and a year has 365 days, every fourth 366.
+TEST(HostExchange, TellsDateAndTime) {
+  Controller c;
+  EXPECT_EQ(c.line("TODAY TIME"), "SAT 01/01/2000|00:00:00");
+  fake_hal_pass(78643000);
+  EXPECT_EQ(c.line("TIME"), "00:00:01");
+  EXPECT_EQ(c.line("TIME=17:45:24 TODAY=02/29/2028"), "");
+  EXPECT_EQ(c.line("TODAY TIME"), "TUE 02/29/2028|17:45:24");
+  EXPECT_EQ(c.line("TIME=08:30 TIME"), "08:30:00");
+  const char* const nights[][2] = {{"12/31/2099", "FRI 01/01/2100"}, {"02/28/2027", "MON 03/01/2027"},
+                                   {"02/28/2028", "TUE 02/29/2028"}, {"12/31/2003", "THU 01/01/2004"},
+                                   {"12/31/2004", "SAT 01/01/2005"}, {"04/30/2026", "FRI 05/01/2026"}};
+  for (const auto& [before, after] : nights) {
+    EXPECT_EQ(c.line(std::string("TODAY=") + before + " TIME=23:59:59"), "") << before;
+    fake_hal_pass(78643000);
+    EXPECT_EQ(c.line("TODAY TIME"), std::string(after) + "|00:00:00");
+  }
+  c.line("TODAY=05/06/2007 TIME=01:02:03");
+  for (const char* text : {"TODAY=02/29/2027", "TODAY=13/01/2027", "TODAY=00/01/2027", "TODAY=01/00/2027",
+                           "TODAY=01/32/2027", "TODAY=01/01/1999", "TODAY=01/01/2100", "TODAY=01/01", "TODAY=",
+                           "TIME=24:00", "TIME=12:60", "TIME=12:00:60", "TIME=12", "TIME=", "TIME=-1:00", "TIME=1:1:"})
+    EXPECT_EQ(c.line(text), "ERR003") << text;
+  EXPECT_EQ(c.line("TODAY TIME"), "SUN 05/06/2007|01:02:03");
+  c.line("$$$");
+  EXPECT_EQ(c.line("TODAY"), "SAT 01/01/2000");
+}
+
+TEST(HostExchange, EnableIsTakenUnlessTheClocksAreMissing) {
+  Controller c;
+  EXPECT_EQ(c.send("&1E\r"), "\x06");
+  EXPECT_EQ(c.line("E5"), "ERR003");
+  fake_hal_stop_clocks(true);
+  for (int i = 0; i < 20000; ++i) (void)hal_cycles();
+  EXPECT_EQ(c.line("E"), "ERR018");
+  fake_hal_stop_clocks(false);
 }
 
 TEST(HostExchange, ClockSourceIsDecimalInEveryReportMode) {

@@ -70,6 +70,17 @@ TEST_F(Image, ServoCounterAndTimersFollowTheServoClock) {
   EXPECT_NEAR(std::stoi(timer), 2000 - 226, 3);
 }
 
+TEST_F(Image, DateAndTimeFollowTheCpuClockAndTheImageHasAChecksum) {
+  board.send("I6=1 I3=2\r");
+  EXPECT_EQ(board.send("TODAY TIME\r"), "SAT 01/01/2000\r00:00:00\r\x06");
+  board.send("TODAY=12/31/2027 TIME=23:59:58\r");
+  board.run_ms(2100.0);
+  EXPECT_EQ(board.send("TODAY TIME\r"), "SAT 01/01/2028\r00:00:00\r\x06");
+  const std::string sum = board.send("CHECKSUM\r");
+  EXPECT_GT(std::stoi(sum), 0);
+  EXPECT_EQ(board.send("CHECKSUM\r"), sum);
+}
+
 TEST_F(Image, BackgroundReloadsTheWatchdogCounter) {
   board.send("I6=1 I3=2 I40=100\r");
   board.run_ms(100.0);

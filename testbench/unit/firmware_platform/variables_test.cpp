@@ -365,7 +365,7 @@ TEST(MVariables, PointAtPartsOfWords) {
   c.line("M2->Y:$10F0,15 M3->X:$10F1,0,24,S M3=-2");
   EXPECT_EQ(c.line("M2 M3 M1"), "1|-2|165");
   EXPECT_EQ(c.line("RX$10F1 RHX$10F1"), "-2|FFFFFE");
-  EXPECT_EQ(c.line("I9=1 M2->"), "M2->Y:$10F0,15,1");
+  EXPECT_EQ(c.line("I9=1 M2->"), "M2->Y:$10F0,15");
   c.line("M4->D:$10F2 M4=-1 M5->L:$10F3 M5=0.25");
   EXPECT_EQ(c.line("M4 M5"), "-1|0.25");
   EXPECT_EQ(c.line("M5 RHD$10F2"), "0.25|FFFFFFFFFFFF");
@@ -378,6 +378,35 @@ TEST(MVariables, WordsThatDoNotExistReadZero) {
   // X:$FFFF8C: half the CPU cycles of a phase period, 13057 / 117.9648 MHz at 78.6432 MHz.
   EXPECT_EQ(c.line("M2->X:$FFFF8C,0,24 M2"), std::to_string(13057 * 8 / 12 / 2));
   EXPECT_EQ(c.line("WX$60010,$1234,$5678 RHX$60010,2"), "1234 5678");
+}
+
+// firmware:1.9: one word to 64, decimal and signed or hexadecimal; no address is outside 24 bits.
+TEST(Memory, IsReadAndWrittenInEveryForm) {
+  Controller c;
+  EXPECT_EQ(c.line("WX$10F0,1,-2,$7FFFFF"), "");
+  EXPECT_EQ(c.line("WY:$10F0,$800000,3,P0+4"), "");
+  EXPECT_EQ(c.line("RX$10F0,3 RY:$10F0,3"), "1 -2 8388607|-8388608 3 4");
+  EXPECT_EQ(c.line("RHX$10F0,3 RHY$10F0,2"), "1 FFFFFE 7FFFFF|800000 3");
+  EXPECT_EQ(c.line("RHL$10F0,2 RHD$10F1"), "000001800000 FFFFFE000003|FFFFFE000003");
+  EXPECT_EQ(c.line("WD$10F0,-1 RD$10F0 RHD$10F0"), "-1|FFFFFFFFFFFF");
+  EXPECT_EQ(c.line("WL$10F0,0.75,-1 RL$10F0,2 RHL$10F0,2"), "0.75 -1|6000000007FF 8000000007FF");
+}
+
+TEST(Memory, AddressesAndCountsAreChecked) {
+  Controller c;
+  EXPECT_EQ(
+      c.line("RX$FFFFFF RHY$FFFFC0,64"), "0|" + [] {
+        std::string zeros = "0";
+        for (int i = 1; i < 64; ++i) zeros += " 0";
+        return zeros;
+      }());
+  for (const char* form : {"X", "Y", "L", "D"})
+    for (const char* rest : {"$1000000", "-1", "$FFFFFF,2", "$FFFFC1,64", "0,0", "0,65", "0,-1", "0,1.5", "1.5", "",
+                             ":", "$10F0,", "4294967296", "34359738369"})
+      for (const char* command : {"R", "RH"}) EXPECT_EQ(c.line(std::string(command) + form + rest), "ERR003") << rest;
+  for (const char* form : {"X", "Y", "L", "D"})
+    for (const char* rest : {"$1000000,1", "-1,1", "$FFFFFF,1,2", "$10F0", "$10F0,", "1.5,1", "$10F0,1,"})
+      EXPECT_EQ(c.line(std::string("W") + form + rest), "ERR003") << rest;
 }
 
 TEST(ConfigurationError, IsReportedWhenTheIcSetDiffersFromTheSavedOne) {

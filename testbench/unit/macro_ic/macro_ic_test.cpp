@@ -156,27 +156,5 @@ TYPED_TEST(MacroIcOn, ResetStopsDrivingAndRestoresTheRegisters) {
   EXPECT_EQ(this->rig.read(false, macro::kJio), 0u);
 }
 
-// The model's register face for SystemC users.
-TEST(MacroIcSocket, ReadsAndWritesTheSameRegisters) {
-  MacroIc ic(sc_core::sc_gen_unique_name("macro_ic"));
-  ic.reset(0);
-  auto access = [&](tlm::tlm_command command, std::uint64_t address, std::uint32_t value, unsigned length = 4) {
-    tlm::tlm_generic_payload payload;
-    payload.set_command(command);
-    payload.set_address(address);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(&value));
-    payload.set_data_length(length);
-    payload.set_streaming_width(length);
-    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    ic.socket.get_base_export()->b_transport(payload, delay);
-    return std::make_pair(payload.get_response_status(), value);
-  };
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 8 * macro::kClock + 4, 0), std::make_pair(tlm::TLM_OK_RESPONSE, 0x3038D2u));
-  EXPECT_EQ(access(tlm::TLM_WRITE_COMMAND, 8 * macro::kMultiplexer, 0xABCDEF).first, tlm::TLM_OK_RESPONSE);
-  EXPECT_EQ(ic.read(false, macro::kMultiplexer), 0xABCDEFu);
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 64 * 8, 0).first, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-  EXPECT_EQ(access(tlm::TLM_READ_COMMAND, 0, 0, 2).first, tlm::TLM_BURST_ERROR_RESPONSE);
-}
-
 }  // namespace
 }  // namespace brick

@@ -59,6 +59,52 @@ TEST_P(Commands, LongFormReportsFullStatements) {
   EXPECT_EQ(ask("I124"), "I124=$1");
 }
 
+// firmware:13, those of variables, byte for byte.
+TEST_P(Commands, GoldenExchangesOfVariables) {
+  BRICK_COVERS("I9-1 I9-2 I19-1");
+  start();
+  const auto bytes = [this](const std::string& line) { return link().command(line).raw; };
+  EXPECT_EQ(bytes("I3"), "2\r\x06");  // 1
+  bytes("P1=25 P2=50 P3=75");
+  EXPECT_EQ(bytes("P1..3"), "25\r50\r75\r\x06");  // 2
+  EXPECT_EQ(bytes("I124"), "$1\r\x06");           // 8
+  EXPECT_EQ(bytes("I124=I124|$20000"), "\x06");   // 9
+  EXPECT_EQ(bytes("I124"), "$20001\r\x06");
+  EXPECT_EQ(bytes("i20 i21 i22 i23"), "$0\r$0\r$0\r$0\r\x06");  // 10
+  EXPECT_EQ(bytes("i6=1 i3=2 ver"), "1.947\r\x06");             // 11
+  EXPECT_EQ(bytes("cid"), "603382\r\x06");                      // 12
+  EXPECT_EQ(bytes("I41=1"), "\x06");                            // 23
+  EXPECT_EQ(bytes("I100=0"), "\x06");
+  EXPECT_EQ(bytes("I100"), "1\r\x06");
+  EXPECT_EQ(bytes("I41=0"), "\x06");
+  for (const char* style : {"I9=0", "I9=2"}) {
+    bytes(style);
+    EXPECT_EQ(bytes("I19"), "7007\r\x06");  // 28
+  }
+  bytes("I9=3");
+  EXPECT_EQ(bytes("I16"), "I16=5\r\x06");  // 7
+  EXPECT_EQ(bytes("I19"), "I19=7007\r\x06");
+  bytes("I9=2 I5111=10000");
+  wait(ms_to_ticks(10));
+  EXPECT_NEAR(std::stoi(ask("I5111")), 10000 - 23, 4);  // 26: 2258.7 servo interrupts a second
+}
+
+// Counter, status and control words of servo IC 0, as their M-variables have them, and the words that the firmware
+// keeps.
+TEST_P(Commands, MVariablesReachTheChipsAndTheStatus) {
+  start();
+  EXPECT_EQ(ask("M1->X:$78001,24,S M2->X:$78005,14 M3->Y:$78002,8,16,S M4->X:$78005,4,4"), "");
+  EXPECT_EQ(ask("M1 M2 M4"), "0|0|" + ask("I7012"));
+  EXPECT_EQ(ask("M2=1 M3=-1000 M4=9"), "");
+  EXPECT_EQ(ask("M2..4"), "1|-1000|9");
+  EXPECT_EQ(ask("RHY$78002"), "FC1800");
+  EXPECT_EQ(ask("M5->X:$0,24 P1=M5"), "");
+  wait(ms_to_ticks(10));
+  EXPECT_NEAR(std::stoi(ask("P2=M5-P1 P2")), 23, 4);
+  EXPECT_EQ(ask("M6->X:$B0,23 M7->X:$2000,24,S M8->Y:$203F,17 M6..8"), "1|3713991|1");
+  EXPECT_EQ(ask("M9->DP:$60010 M10->F:$60011 M9=-70000 M10=0.375 M9..10 RHX$60010,2"), "-70000|0.375|FFFE 3EC0");
+}
+
 TEST_P(Commands, ExpressionsAndComputedIndices) {
   start();
   EXPECT_EQ(ask("P10=1+2*3"), "");

@@ -7,9 +7,12 @@
 // meet take one edge each, in the order of their calls. Debug transport reads what a read would take now and changes
 // nothing, or is the error /brick/ahead (brick/time_base.h); it writes nothing and leaves the status. No DMI: reads
 // have side effects.
+// A socket of bytes (that of the host of the dual-ported RAM) takes any address and length; each word that the bytes
+// touch is an access of its own. A socket on clk_pwm says so.
 //   TLM_ADDRESS_ERROR_RESPONSE      not aligned to the width of the register, or beyond the last
 //   TLM_BURST_ERROR_RESPONSE        another length than one register, or a streaming width below it
-//   TLM_BYTE_ENABLE_ERROR_RESPONSE  byte enables: a register is read and written as a whole
+//   TLM_BYTE_ENABLE_ERROR_RESPONSE  byte enables: a register is read and written as a whole; in a socket of bytes: of
+//                                   no length, or with other values than TLM defines
 //   TLM_COMMAND_ERROR_RESPONSE      neither read nor write
 #pragma once
 
@@ -36,9 +39,11 @@ class Component : public sc_core::sc_module {
   void trace(sc_core::sc_trace_file* file) const;  // all bound pins, after elaboration: COMPONENT.PIN
 
  protected:
+  enum class Access { kWords, kBytes };
   struct RegisterFace {
     unsigned width;           // bytes of a register
     std::uint64_t addresses;  // bytes of all
+    Access access = Access::kWords;
   };
   // Faces are numbered as here; `registers` of a component with one socket is face 0.
   Component(const sc_core::sc_module_name& name, TimeBase& time, const std::vector<PinInfo>& table,
@@ -46,6 +51,15 @@ class Component : public sc_core::sc_module {
   void set_chip(std::unique_ptr<Chip> chip);  // once, at the end of the construction
   void transport(unsigned face, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
   unsigned debug(unsigned face, tlm::tlm_generic_payload& payload);
+  // To be registered with the socket of a face.
+  template <unsigned kFace>
+  void transport_at(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+    transport(kFace, payload, delay);
+  }
+  template <unsigned kFace>
+  unsigned debug_at(tlm::tlm_generic_payload& payload) {
+    return debug(kFace, payload);
+  }
   void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) { transport(0, payload, delay); }
   unsigned debug(tlm::tlm_generic_payload& payload) { return debug(0, payload); }
 

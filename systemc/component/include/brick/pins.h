@@ -3,10 +3,12 @@
 // high while the component drives it; NAME_o is high while it does not.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <systemc>
 
@@ -95,5 +97,16 @@ class Out : public sc_core::sc_port<sc_core::sc_signal_inout_if<PinValue<kWidth>
     sc_core::sc_trace(file, this->operator->()->read(), pin_trace_name(owner_, info()));
   }
 };
+
+// NAME0, NAME1, ...
+template <class P, std::size_t... kNumber>
+std::array<P, sizeof...(kNumber)> pin_array(Component& owner, const std::string& name,
+                                            std::index_sequence<kNumber...>) {
+  return {P{owner, name + std::to_string(kNumber)}...};
+}
+template <class P, std::size_t kCount>
+std::array<P, kCount> pin_array(Component& owner, const std::string& name) {
+  return pin_array<P>(owner, name, std::make_index_sequence<kCount>());
+}
 
 }  // namespace brick::component

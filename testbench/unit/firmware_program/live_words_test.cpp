@@ -1,0 +1,159 @@
+// Status words, time base, timers, targets and axis definitions at their addresses (firmware:1.10), read through the
+// M-variables that the published definition files have for them, against what `? ?? ???` answer.
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/base/status.h"
+}
+
+namespace {
+
+using platform::host;
+
+class LiveWords : public FirmwareTest {
+ protected:
+  static std::string m(const std::string& definition) { return host("M1->" + definition + " M1"); }
+};
+
+// firmware:5.2, one variable after the other; an idle motor shows an open loop (18) and Ixx34 (16).
+TEST_F(LiveWords, MotorStatusBitsFollowTheirVariables) {
+  EXPECT_EQ(host("#1?"), "850000000000") << "activated, open loop, integration mode";
+  EXPECT_EQ(host("#2?"), "050000000000");
+  const std::pair<const char*, unsigned> causes[] = {
+      {"00=1", 23}, {"34=1", 16}, {"59=2", 9}, {"59=1", 8}, {"01=2", 7}, {"01=1", 6},
+      {"06=2", 5},  {"06=1", 4},  {"97=2", 3}, {"97=1", 2}, {"96=2", 1}, {"96=1", 0},
+  };
+  for (const unsigned motor : {1u, 7u, 32u}) {
+    const std::string n = std::to_string(motor);
+    char address[8];
+    std::snprintf(address, sizeof address, "$%X", 0xB0 + 0x80 * (motor - 1));
+    host("I" + n + "00=0 I" + n + "34=0");
+    EXPECT_EQ(host("#" + n + "?"), "040000000000");
+    for (const auto& [assignment, bit] : causes) {
+      const std::string variable = std::string(assignment).substr(0, 3);
+      host("I" + n + assignment);
+      char expected[16];
+      std::snprintf(expected, sizeof expected, "%06X000000", 0x040000u | 1u << bit);
+      EXPECT_EQ(host("#" + n + "?"), expected) << assignment;
+      EXPECT_EQ(m("X:" + std::string(address) + "," + std::to_string(bit)), "1") << assignment;
+      host("I" + n + variable + "0");
+      EXPECT_EQ(m("X:" + std::string(address) + "," + std::to_string(bit)), "0") << assignment;
+    }
+    host("I" + std::to_string(3300 + 50 * (motor - 1)) + "=1");
+    EXPECT_EQ(host("#" + n + "?"), "140000000000");
+  }
+}
+
+// firmware:5.3: system in 23..20, axis in 19..16, bit 15.
+TEST_F(LiveWords, MotorStatusTellsTheAxis) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"&1#5->100A", "018000"}, {"&2#5->100B", "128000"},  {"&16#5->100C", "F38000"}, {"&1#5->10U", "048000"},
+      {"&1#5->2W", "048000"},   {"&3#5->1000X", "278000"}, {"&1#5->2X-3Y", "078000"}, {"&1#5->5Z+7", "078000"},
+      {"&1#5->I", "058000"},    {"&9#5->-1V", "848000"},
+  };
+  for (const auto& [definition, word] : cases) {
+    EXPECT_EQ(host(definition), "");
+    EXPECT_EQ(host("#5?").substr(6), word) << definition;
+    EXPECT_EQ(std::stoul(host("RHY$2C0"), nullptr, 16), std::stoul(word, nullptr, 16)) << definition;
+    host("UNDEFINE ALL");
+    EXPECT_EQ(host("#5? RHY$2C0"), "050000000000|0");
+  }
+}
+
+TEST_F(LiveWords, AxisScalesAndOffset) {
+  host("&1#2->100X+20.5Y-0.25Z+7");
+  EXPECT_EQ(m("L:$14F"), "100");
+  EXPECT_EQ(m("L:$150"), "20.5");
+  EXPECT_EQ(m("L:$151"), "-0.25");
+  EXPECT_EQ(m("L:$152"), "7");
+  host("&1#3->5B #4->3V #32->-2W-1.5");
+  EXPECT_EQ(host("RL$1CF,4"), "5 0 0 0");
+  EXPECT_EQ(host("RL$24F,4"), "0 3 0 0");
+  EXPECT_EQ(host("RL$104F,4"), "0 0 -2 -1.5");
+  EXPECT_EQ(host("WL$14F,1 RL$14F"), "100") << "made by the definition";
+}
+
+// firmware:5.4, firmware:5.5: bits 0 (runs) and 4 (continuous) of word 1, 17 (in position) of word 2; targets in L:+$41
+// on.
+TEST_F(LiveWords, CoordinateSystemShowsItsProgram) {
+  const auto agree = [](const std::string& n, const std::string& base) {
+    const std::string status = host("&" + n + "??");
+    for (unsigned word = 0; word < 3; ++word) {
+      const std::string address = base + (word == 1 ? "3F" : "40"), half = word == 0 ? "RHX$" : "RHY$";
+      EXPECT_EQ(std::stoul(host(half + address), nullptr, 16), std::stoul(status.substr(6 * word, 6), nullptr, 16))
+          << status << " " << word;
+    }
+  };
+  agree("1", "20");
+  agree("16", "2F");
+  ASSERT_EQ(host("&3 I68=15 DEF ROT 200 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("TM100 TA40 TS0"), "");
+  ASSERT_EQ(host("X7.5 A-2 Z3"), "");
+  ASSERT_EQ(host("CLOSE"), "");
+  EXPECT_EQ(host("M1->X:$2240,0 M2->Y:$223F,17 M3->L:$2247 M1..3"), "0|1|0");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(30);
+  agree("3", "22");
+  EXPECT_EQ(host("M1..3"), "1|0|7.5") << "runs, not in position, target of X";
+  EXPECT_EQ(m("X:$2240,4"), "1");
+  EXPECT_EQ(host("RL$2241,9"), "-2 0 0 0 0 0 7.5 0 3");
+  EXPECT_EQ(host("RL$2141,9"), "0 0 0 0 0 0 0 0 0") << "the next one stands";
+  platform::servo_ticks(2000);
+  EXPECT_EQ(host("RL$2241,9"), "-2 0 0 0 0 0 7.5 0 3");
+  EXPECT_EQ(host("Q"), "");
+  platform::servo_ticks(10);
+  agree("3", "22");
+  EXPECT_EQ(host("M1->X:$2240,0 M1..2"), "0|1");
+}
+
+TEST_F(LiveWords, DwellShowsInTheMotorsOfTheSystem) {
+  host("&1#1->X &2#2->X");
+  ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("DWELL500"), "");
+  ASSERT_EQ(host("CLOSE R"), "");
+  platform::servo_ticks(30);
+  EXPECT_EQ(m("X:$B0,15"), "1");
+  EXPECT_EQ(m("X:$130,15"), "0");
+  platform::servo_ticks(2000);
+  EXPECT_EQ(m("X:$B0,15"), "0");
+}
+
+// 100 % is I10, 2^-23 ms; Isx94 is added each servo cycle.
+TEST_F(LiveWords, TimeBase) {
+  EXPECT_EQ(host("RX$2000 RX$2002"), "3713991|3713991");
+  ASSERT_EQ(host("I5194=1000"), "");
+  ASSERT_EQ(host("%50"), "");
+  EXPECT_EQ(m("X:$2000,24,S"), "1856996");  // 1856995.5
+  platform::servo_ticks(3);
+  EXPECT_EQ(m("X:$2002,24,S"), std::to_string(3713991 - 3000));
+  EXPECT_EQ(host("RX$2100 RX$2102"), "3713991|3713991");
+  EXPECT_EQ(host("WX$2000,5 RX$2000"), "1856996") << "set by % only";
+}
+
+TEST_F(LiveWords, TimersAreReadAndSet) {
+  ASSERT_EQ(host("I6611=1000 I6612=-5"), "");
+  platform::servo_ticks(10);
+  EXPECT_EQ(host("RX$2F15 RY$2F15"), "990|-15");
+  EXPECT_EQ(host("M1->X:$2F15,24,S M2->Y:$2F15,24,S M1=50 M2=60 I6611..6612"), "50|60");
+  platform::servo_ticks(10);
+  EXPECT_EQ(host("M1 M2"), "40|50");
+}
+
+TEST_F(LiveWords, GlobalStatus) {
+  EXPECT_EQ(host("??? RHX$6 RHY$6"), "000000000800|0|800");
+  ASSERT_EQ(host("DEF ROT 20 OPEN ROT"), "");
+  EXPECT_EQ(host("RHY$6"), "C0800") << "bits 19 and 18, on the next line already";
+  host("CLOSE");
+  status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING | STATUS_FLASH_ERROR);
+  EXPECT_EQ(m("X:$6,22"), "1");
+  EXPECT_EQ(host("M1=0 ???"), "000600000800") << "what stays can be cleared, bit by bit";
+  EXPECT_EQ(host("WX$6,0 WY$6,0 ???"), "000400000800") << "the cause of the other is still there";
+  EXPECT_EQ(host("WX$6,$FFFFFF ???"), "000400000800");
+}
+
+}  // namespace
