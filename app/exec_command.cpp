@@ -18,13 +18,15 @@ std::vector<ScriptLine> open_script(const std::string& file, const std::string& 
   if (file == "-") return read_script(std::cin, name);
   std::ifstream in(file);
   if (!in || std::filesystem::is_directory(file))
-    throw UsageError(fmt::format("{}: cannot be read; expected a host script, or - for standard input", file));
+    throw UsageError(
+        fmt::format("{}: cannot be read; expected a command file or host script, or - for standard input", file));
   return read_script(in, name);
 }
 
 nlohmann::json exchanges_json(const ScriptPlayer& player) {
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& e : player.exchanges()) list.push_back({{"line", e.line}, {"reply", e.reply}, {"error", e.error}});
+  for (const auto& e : player.exchanges())
+    list.push_back({{"place", e.place}, {"line", e.line}, {"reply", e.reply}, {"error", e.error}});
   return list;
 }
 
@@ -35,8 +37,13 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   const MachineConfig config = machine_config(options);
   const auto script = open_script(file, name);
   Simulation simulation(options, config, "exec");
-  ScriptPlayer player(simulation.link(), std::cout, name, raw);
+  ScriptPlayer player(simulation.link(), std::cout, raw);
   player.check(script);
+  const auto tell = [&simulation](const std::string& text) { simulation.tell("brick exec: " + text); };
+  player.on_refused = tell;
+  simulation.progress_text = [&] {
+    return fmt::format(", line {} of {}, {} refused", player.played(), script.size(), player.refused().count());
+  };
   std::string failure;
   try {
     simulation.run([&] {
@@ -51,6 +58,7 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   } catch (const std::exception& e) {  // the script, the engines or the bus: bad input was found before
     failure = e.what();
   }
+  if (const std::string sum = player.refused().summary(script.size()); !sum.empty()) tell(sum);
   if (config.aperture > 0) std::cerr << simulation.aperture_text() << '\n';
   if (!failure.empty()) std::cerr << "brick exec: " << failure << '\n';
   for (const std::string& error : simulation.machine().take_run_errors()) {

@@ -46,12 +46,14 @@ struct Commands {
       chosen = [this] { return run_bench(run_options, bench, negative); };
     });
 
-    auto* exec = app.add_subcommand("exec", "plays a host script against the started controller, prints the replies");
-    exec->add_option("FILE", script, "host script, - = standard input")->required();
+    auto* exec =
+        app.add_subcommand("exec", "sends a command file or host script to the started controller, prints the replies");
+    exec->add_option("FILE", script, "command file or host script, - = standard input")->required();
     add_run_options(*exec, exec_options, "systemc");
     exec->add_flag("--raw", raw, "print every byte sent by the controller, control bytes as <06>");
     exec->footer(
-        "A script holds the controller's command lines and @wait @until @signal @pic @dpram @jumper @input @encoder "
+        "The file holds the controller's command lines, comments, #include #define #ifdef (docs/scripts.md) and @wait "
+        "@until @signal @pic @dpram @jumper @input @encoder "
         "@jpan @reset @power "
         "@expect @time.");
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });

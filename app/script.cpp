@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/command_file.h"
 #include "app/line_reader.h"
 #include "systemc/core/usage_error.h"
 
@@ -190,22 +191,15 @@ bool is_control(const std::string& text) {
 
 std::vector<ScriptLine> read_script(std::istream& in, const std::string& file) {
   std::vector<ScriptLine> script;
-  unsigned number_of_line = 0;
-  for (std::string text; std::getline(in, text);) {
-    ++number_of_line;
-    const std::size_t end = text.find_last_not_of(" \t\r");
-    text.erase(end == std::string::npos ? 0 : end + 1);
-    const std::size_t begin = text.find_first_not_of(" \t");
-    if (begin == std::string::npos) continue;
+  for (SourceLine& source : read_command_file(in, file)) {
     ScriptLine line;
-    line.number = number_of_line;
-    line.text = text.substr(begin);
+    line.place = std::move(source.place);
+    line.text = std::move(source.text);
     if (line.text[0] == '@') {
       try {
         read_at_line(line);
       } catch (const UsageError& e) {
-        const std::string what = line.text.substr(0, line.text.find_first_of(" \t"));
-        throw UsageError(fmt::format("{}:{}: {}: {}", file, number_of_line, what, e.what()));
+        throw UsageError(fmt::format("{}: {}: {}", line.place, line.first_word(), e.what()));
       }
     } else if (is_control(line.text)) {
       line.kind = Kind::kControl;

@@ -1,5 +1,6 @@
-// Host scripts: the controller's own command lines and lines that begin with `@` (docs/command.md). The whole script is
-// read and checked before anything runs; errors are UsageErrors that begin with file and line.
+// Host scripts and command files: the controller's own command lines and lines that begin with `@` (docs/scripts.md),
+// after comments, includes and macros (app/command_file.h). The whole of it is read and checked before anything runs;
+// errors are UsageErrors that begin with file and line.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct ScriptLine {
     kTime
   };
   Kind kind = Kind::kCommand;
-  unsigned number = 0;
+  std::string place;               // file:line, for messages
   std::string text;                // command line, control characters, expected text, or the whole @ line for messages
   std::string name;                // signal, input pin
   std::string value;               // @until
@@ -47,6 +48,8 @@ struct ScriptLine {
   std::uint16_t inputs = 0, levels = 0;  // @jpan: inputs named, and their levels
   std::optional<bool> init;              // @jpan INIT: level
   std::int64_t counts = 0, rate = 0;     // @encoder, rate in counts per second
+
+  std::string first_word() const { return text.substr(0, text.find_first_of(" \t")); }
 };
 
 // `file` is the name in messages.

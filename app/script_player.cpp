@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/byte_text.h"
 #include "app/hand_encoder.h"
 #include "app/signal_watch.h"
 #include "systemc/core/usage_error.h"
@@ -13,21 +14,10 @@ namespace brick {
 
 namespace {
 using Kind = ScriptLine::Kind;
-
-std::string visible(const std::string& bytes) {
-  std::string text;
-  for (const unsigned char c : bytes)
-    if (c < ' ' || c >= 0x7F)
-      text += fmt::format("<{:02X}>", c);
-    else
-      text.push_back(static_cast<char>(c));
-  return text;
-}
-
 }  // namespace
 
 void ScriptPlayer::fail(const ScriptLine& line, const std::string& text) const {
-  throw ScriptFailure(fmt::format("{}:{}: {}: {}", file_, line.number, line.text, text));
+  throw ScriptFailure(fmt::format("{}: {}: {}", line.place, line.text, text));
 }
 
 void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
@@ -51,21 +41,32 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         throw UsageError(fmt::format("no encoder of motor {} on this board; expected 1 to {}", line.motor, motors));
       }
     } catch (const UsageError& e) {
-      throw UsageError(fmt::format("{}:{}: {}: {}", file_, line.number,
-                                   line.text.substr(0, line.text.find_first_of(" \t")), e.what()));
+      throw UsageError(fmt::format("{}: {}: {}", line.place, line.first_word(), e.what()));
     }
   }
 }
 
 void ScriptPlayer::play(const std::vector<ScriptLine>& script) {
-  for (const ScriptLine& line : script) play_line(line);
+  for (std::size_t i = 0; i < script.size(); ++i) {
+    last_refused_ = false;
+    play_line(script[i]);
+    const bool expected = i + 1 < script.size() && script[i + 1].kind == Kind::kExpect;
+    if (last_refused_ && !expected) refuse(script[i]);
+    ++played_;
+  }
+}
+
+void ScriptPlayer::refuse(const ScriptLine& line) {
+  const std::string text = refused_.add(line.place, line.text, last_.empty() ? "" : last_.back());
+  if (on_refused && !text.empty()) on_refused(text);
 }
 
 void ScriptPlayer::answer(const ScriptLine& line, std::vector<std::string> lines, bool error) {
   for (const auto& text : lines) out_ << text << '\n';
   out_ << std::flush;
-  exchanges_.push_back({line.text, lines, error});
+  exchanges_.push_back({line.place, line.text, lines, error});
   last_ = std::move(lines);
+  last_refused_ = error;
 }
 
 void ScriptPlayer::print_unsolicited() {
@@ -86,20 +87,23 @@ void ScriptPlayer::command(const ScriptLine& line) {
       reply.raw += one.raw;
       reply.lines.insert(reply.lines.end(), one.lines.begin(), one.lines.end());
       reply.error = reply.error || one.error;
+      if (reply.bad_checksum.empty()) reply.bad_checksum = one.bad_checksum;
       reply.complete = one.complete;
     }
   }
   if (!reply.complete) {
     if (link_.bus().tripped())
       fail(line, "no reply: the watchdog has tripped (WDO); expected an answer, see @reset and @power");
-    fail(line, reply.raw.empty()
-                   ? "no reply; expected an acknowledge or an error from the controller"
-                   : "the reply has no end: `" + visible(reply.raw) + "`; expected an acknowledge or an error");
+    fail(line, reply.raw.empty() ? "no reply; expected an acknowledge or an error from the controller"
+                                 : fmt::format("the reply has no end: {}; expected an acknowledge or an error",
+                                               beginning_of(reply.raw)));
   }
+  if (!reply.bad_checksum.empty()) fail(line, reply.bad_checksum + " (I4)");
   if (raw_) {
-    if (!reply.raw.empty()) out_ << visible(reply.raw) << '\n' << std::flush;
-    exchanges_.push_back({line.text, reply.lines, reply.error});
+    if (!reply.raw.empty()) out_ << visible_bytes(reply.raw) << '\n' << std::flush;
+    exchanges_.push_back({line.place, line.text, reply.lines, reply.error});
     last_ = reply.lines;
+    last_refused_ = reply.error;
   } else {
     answer(line, reply.lines, reply.error);
   }

@@ -1,11 +1,14 @@
 // Plays a host script against a running controller and prints the replies.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <iosfwd>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "app/refused_lines.h"
 #include "app/script.h"
 #include "testbench/host/host_link.h"
 
@@ -20,15 +23,19 @@ class ScriptFailure : public std::runtime_error {
 
 class ScriptPlayer {
  public:
-  // `file` is the name in messages; `raw` prints every byte received, control bytes as <06>.
-  ScriptPlayer(HostLink& link, std::ostream& out, std::string file, bool raw)
-      : link_(link), out_(out), file_(std::move(file)), raw_(raw) {}
+  // `raw` prints every byte received, control bytes as <06>.
+  ScriptPlayer(HostLink& link, std::ostream& out, bool raw) : link_(link), out_(out), raw_(raw) {}
 
   void check(const std::vector<ScriptLine>& script) const;  // names and values of signals; throws UsageError
   void play(const std::vector<ScriptLine>& script);
 
+  // Is told of each line that the controller refused and no @expect behind it expected: place, line, error, meaning.
+  std::function<void(const std::string&)> on_refused;
+  std::size_t played() const { return played_; }
+  const RefusedLines& refused() const { return refused_; }
+
   struct Exchange {
-    std::string line;
+    std::string place, line;
     std::vector<std::string> reply;
     bool error;
   };
@@ -36,6 +43,7 @@ class ScriptPlayer {
 
  private:
   void play_line(const ScriptLine& line);
+  void refuse(const ScriptLine& line);
   void command(const ScriptLine& line);
   void answer(const ScriptLine& line, std::vector<std::string> lines, bool error = false);
   void restart(const ScriptLine& line);
@@ -46,9 +54,11 @@ class ScriptPlayer {
 
   HostLink& link_;
   std::ostream& out_;
-  std::string file_;
   bool raw_;
   std::vector<std::string> last_;  // what @expect compares with
+  bool last_refused_ = false;
+  std::size_t played_ = 0;
+  RefusedLines refused_;
   std::vector<Exchange> exchanges_;
 };
 

@@ -84,7 +84,7 @@ void Simulation::wait_for_debugger(std::uint16_t port) {
 }
 
 Simulation::~Simulation() {
-  if (shown_) std::fputs("\r\033[K", stderr);
+  clear_progress();
   if (machine_) machine_->signals().attach(nullptr);
 }
 
@@ -98,8 +98,7 @@ void Simulation::run(const std::function<void()>& host) {
     machine_->signals().attach(nullptr);
     trace_->close();
   }
-  if (shown_) std::fputs("\r\033[K", stderr);
-  shown_ = false;
+  clear_progress();
   if (thread.error()) std::rethrow_exception(thread.error());
 }
 
@@ -110,11 +109,21 @@ void Simulation::progress() {
   last_progress_ = now;
   shown_ = true;
   const double wall = std::chrono::duration<double>(now - begin_).count();
-  std::fputs(
-      fmt::format("\r\033[K{}: {:.1f} ms simulated, {:.1f} M ticks/s", title_,
-                  static_cast<double>(machine_->now_fs()) * 1e-12, static_cast<double>(machine_->now()) / wall * 1e-6)
-          .c_str(),
-      stderr);
+  std::fputs(fmt::format("\r\033[K{}: {:.1f} ms simulated, {:.1f} M ticks/s{}", title_,
+                         static_cast<double>(machine_->now_fs()) * 1e-12,
+                         static_cast<double>(machine_->now()) / wall * 1e-6, progress_text ? progress_text() : "")
+                 .c_str(),
+             stderr);
+}
+
+void Simulation::clear_progress() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
+}
+
+void Simulation::tell(const std::string& line) {
+  clear_progress();
+  std::fputs((line + '\n').c_str(), stderr);
 }
 
 Simulation::TimingVerdict Simulation::timing_verdict() {

@@ -39,6 +39,9 @@ class Simulation {
   };
   TimingVerdict timing_verdict();
 
+  std::function<std::string()> progress_text;  // more for the line that a terminal shows
+  void tell(const std::string& line);          // on stderr, beside that line
+
   nlohmann::json measures() const;  // simulated and wall time, ticks/s, instructions/s
   std::string measures_text() const;
   std::string aperture_text() const;  // "" without --aperture
@@ -46,6 +49,7 @@ class Simulation {
  private:
   void wait_for_debugger(std::uint16_t port);
   void progress();
+  void clear_progress();
   double wall_seconds() const;
 
   std::string title_;

@@ -117,33 +117,36 @@ double math_square_root(double x) {
   union bits b = {x};
   b.word = (b.word >> 1) + (UINT64_C(0x1FF8) << 48); /* halves the exponent: within 6 % of the root */
   double root = b.value;
-  for (int i = 0; i < 4; i++) root = 0.5 * (root + x / root);
+  for (int i = 0; i < 4; i++) {
+    root = 0.5 * (root + x / root);
+    mathematics_pause();
+  }
   return root;
+}
+
+/* c[0] x^(n-1) + ... + c[n-1] */
+static double polynomial(double x, const double* c, unsigned n) {
+  double p = c[0];
+  for (unsigned i = 1; i < n; i++) {
+    p = p * x + c[i];
+    mathematics_pause();
+  }
+  return p;
 }
 
 /* sin and cos on [-pi/4, pi/4]; the first term left out is below 1e-17. */
 static double sine_series(double x) {
+  static const double TERMS[] = {-1.0 / 1307674368000.0, 1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0,
+                                 -1.0 / 5040.0,          1.0 / 120.0,        -1.0 / 6.0};
   double s = x * x;
-  double p = -1.0 / 1307674368000.0;
-  p = p * s + 1.0 / 6227020800.0;
-  p = p * s - 1.0 / 39916800.0;
-  p = p * s + 1.0 / 362880.0;
-  p = p * s - 1.0 / 5040.0;
-  p = p * s + 1.0 / 120.0;
-  p = p * s - 1.0 / 6.0;
-  return x + x * s * p;
+  return x + x * s * polynomial(s, TERMS, sizeof TERMS / sizeof TERMS[0]);
 }
 
 static double cosine_series(double x) {
+  static const double TERMS[] = {1.0 / 20922789888000.0, -1.0 / 87178291200.0, 1.0 / 479001600.0, -1.0 / 3628800.0,
+                                 1.0 / 40320.0,          -1.0 / 720.0,         1.0 / 24.0};
   double s = x * x;
-  double p = 1.0 / 20922789888000.0;
-  p = p * s - 1.0 / 87178291200.0;
-  p = p * s + 1.0 / 479001600.0;
-  p = p * s - 1.0 / 3628800.0;
-  p = p * s + 1.0 / 40320.0;
-  p = p * s - 1.0 / 720.0;
-  p = p * s + 1.0 / 24.0;
-  return 1.0 - 0.5 * s + s * s * p;
+  return 1.0 - 0.5 * s + s * s * polynomial(s, TERMS, sizeof TERMS / sizeof TERMS[0]);
 }
 
 /* Reduces to [-pi/4, pi/4] radians and returns the quadrant. Degrees are reduced before the conversion, so SIN(180) is
@@ -181,7 +184,10 @@ static double arc_series(double x) {
     factor *= 2.0;
   }
   double s = x * x, sum = 0.0;
-  for (int k = 23; k >= 1; k -= 2) sum = 1.0 / (double)k - s * sum;
+  for (int k = 23; k >= 1; k -= 2) {
+    sum = 1.0 / (double)k - s * sum;
+    mathematics_pause();
+  }
   return factor * x * sum;
 }
 
@@ -219,7 +225,10 @@ double math_logarithm(double x) {
     exponent--;
   }
   double t = (m - 1.0) / (m + 1.0), s = t * t, sum = 0.0;
-  for (int k = 21; k >= 1; k -= 2) sum = 1.0 / (double)k + s * sum;
+  for (int k = 21; k >= 1; k -= 2) {
+    sum = 1.0 / (double)k + s * sum;
+    mathematics_pause();
+  }
   return (double)exponent * LN2_HIGH + (2.0 * t * sum + (double)exponent * LN2_LOW);
 }
 
@@ -228,6 +237,9 @@ double math_exponential(double x) {
   if (x < -700.0) return 0.0;
   double k = math_floor(x / (LN2_HIGH + LN2_LOW) + 0.5);
   double r = (x - k * LN2_HIGH) - k * LN2_LOW, sum = 1.0;
-  for (int i = 14; i >= 1; i--) sum = 1.0 + sum * r / (double)i;
+  for (int i = 14; i >= 1; i--) {
+    sum = 1.0 + sum * r / (double)i;
+    mathematics_pause();
+  }
   return math_scale(sum, (int)k);
 }

@@ -9,6 +9,9 @@
 #define MATH_LARGEST \
   140737488355328.0 /* 2^47: what a division by zero saturates to, the report limit of firmware:1.6 */
 
+/* Called between the steps of long functions, so that a task that has little time can go on later: image/tables.c. */
+extern void (*const mathematics_pause)(void);
+
 double math_floor(double x);
 double math_absolute(double x);
 double math_square_root(double x);

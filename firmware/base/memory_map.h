@@ -10,6 +10,7 @@ enum {
   MEMORY_WATCHDOG_COUNT = 0x000025,      /* Y: counter, X: lowest value since reset */
   MEMORY_TASK_DURATIONS = 0x000037,      /* Y: servo task, X: phase task, in half CPU cycles */
   MEMORY_DPRAM_END = 0x00003F,           /* Y: address after the dual-ported RAM, tells its size */
+  MEMORY_FAULT = 0x000070,               /* three long words: image/fault.h */
   MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
   MEMORY_CS_WORDS = 0x002000,            /* registers of coordinate system 1, the others each CS_STRIDE on */
   MEMORY_CS_STRIDE = 0x100,

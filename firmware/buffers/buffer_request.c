@@ -13,7 +13,7 @@
 
 static struct {
   bool high;         /* level of the pin. All tasks, under the mask */
-  uint32_t rise;     /* cycle count at its last rise */
+  uint32_t changed;  /* cycle count at its last change */
   int32_t on, off;   /* I16 and I17 at the last look. All tasks, under the mask */
   uint32_t selected; /* coordinate system shown at the last look. As those */
 } request;
@@ -25,7 +25,7 @@ static void drive(bool high) {
     hal_host_signals(HAL_SIGNAL_BREQ, 0);
   else
     hal_host_signals(0, HAL_SIGNAL_BREQ);
-  if (high) request.rise = hal_cycles();
+  request.changed = hal_cycles();
 }
 
 static bool is_ready(uint32_t cs) {
@@ -37,7 +37,7 @@ static bool is_ready(uint32_t cs) {
 void buffer_request_initialize(void) {
   request.high = false;
   hal_host_signals(0, HAL_SIGNAL_BREQ);
-  request.rise = hal_cycles();
+  request.changed = hal_cycles();
   request.on = i_integer(I16_ROTARY_REQUEST_ON);
   request.off = i_integer(I17_ROTARY_REQUEST_OFF);
   request.selected = buffer_request_selected();
@@ -45,7 +45,7 @@ void buffer_request_initialize(void) {
 
 void buffer_request_begin_line(uint32_t cs) {
   if (cs != buffer_request_selected()) return;
-  if (request.high && hal_cycles() - request.rise < BREQ_HIGH_CYCLES_FASTEST_CPU) hal_delay_us(BREQ_HIGH_US);
+  if (request.high) hal_await_us(request.changed, BREQ_HIGH_US);
   drive(false);
 }
 
@@ -53,7 +53,7 @@ void buffer_request_line_stored(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
   if ((int32_t)ring->lines >= i_integer(I17_ROTARY_REQUEST_OFF)) ring->full = true;
   if (cs != buffer_request_selected() || !is_ready(cs)) return;
-  hal_delay_us(BREQ_PULSE_US);
+  hal_await_us(request.changed, BREQ_PULSE_US);
   drive(true);
 }
 

@@ -8,8 +8,7 @@
 
 enum {
   BREQ_PULSE_US = 2, /* T_PULSE: low time of a line that does not fill the buffer; at least 1 us */
-  BREQ_HIGH_US = 1,  /* least high time between two pulses, so that the interrupt controller sees each edge */
-  BREQ_HIGH_CYCLES_FASTEST_CPU = 315 /* 1 us at I52 = 31; below this the last rise may be too recent at any CPU clock */
+  BREQ_HIGH_US = 1   /* least high time between two pulses, so that the interrupt controller sees each edge */
 };
 
 /* The coordinate system that drives the pin; COORDINATE_SYSTEMS: none. Hosts and panels select it: image/tables.c. */

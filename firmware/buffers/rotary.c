@@ -7,6 +7,7 @@
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
 
 static void reset(struct rotary* ring) {
   ring->write = ring->read = 0;
@@ -32,9 +33,10 @@ error_t rotary_define(uint32_t cs, uint32_t words) {
   error_t error = region_define(REGION_ROTARY, cs, words);
   if (error != ERR_NONE) return error;
   struct rotary* ring = &rotary_buffers[cs];
+  const uint32_t base = region_base(REGION_ROTARY, cs);
   uint32_t state = hal_mask_real_time();
   reset(ring);
-  ring->base = region_base(REGION_ROTARY, cs);
+  ring->base = base;
   ring->size = words;
   ring->requested = false;
   buffer_request_emptied(cs);
@@ -100,13 +102,18 @@ bool rotary_consume(uint32_t cs, uint32_t count) {
   if (ring->read >= ring->size) ring->read -= ring->size;
   ring->used -= count;
   if (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0) return false;
-  ring->lines--;
+  if (ring->used == 0)
+    ring->lines = 0; /* also when a host has written over the marks */
+  else if (ring->lines != 0)
+    ring->lines--;
   buffer_request_line_calculated(cs);
   return true;
 }
 
 void rotary_skip_line_rest(uint32_t cs) {
   word48_t next;
-  while (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0)
+  while (rotary_peek(cs, 0, &next) && (next & WORD_START_OF_LINE) == 0) {
     if (rotary_consume(cs, 1)) break;
+    slice_pause();
+  }
 }

@@ -1,5 +1,5 @@
-/* Control characters: run control of all coordinate systems at once, and the reports of eight motors. Background task.
- */
+/* Control characters: run control of all coordinate systems at once, and the reports of eight motors. Background
+ * task; those that stop things in the real-time task too. */
 #include "firmware/command/control_characters.h"
 
 #include "firmware/base/dimensions.h"

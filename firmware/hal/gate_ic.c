@@ -98,6 +98,16 @@ static void reset_channels(unsigned ic) {
     *hal_x(address_of(ic, GATE_WORD_CHANNEL, channel)) = shadow[ic].channel[channel];
 }
 
+void gate_ic_outputs_off(void) {
+  static const uint32_t outputs[] = {SERVO_CHANNEL_Y_OUT_A, SERVO_CHANNEL_Y_OUT_B, SERVO_CHANNEL_Y_OUT_C};
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
+    if (gate_ic_present(ic)) reset_channels(ic);
+  for (unsigned ic = 0; ic < GATE_IC_MACRO; ++ic)
+    for (unsigned channel = 0; gate_ic_present(ic) && channel < GATE_IC_CHANNELS; ++channel)
+      for (unsigned i = 0; i < sizeof outputs / sizeof outputs[0]; ++i)
+        *hal_y(gate_ic_base(ic) + SERVO_CHANNEL_STRIDE * channel + outputs[i]) = 0;
+}
+
 /* A released clock pin is driven on until both clocks are high: one and a half phase periods at most (docs/clock.md).
  */
 static uint32_t release_began, release_us;

@@ -13,6 +13,7 @@
 #define CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
 
 static uint32_t cycles_per_ms = 78643u; /* 8 x 9.8304 MHz until I52 is known */
+static uint32_t cycles_per_us = 79u;    /* rounded up */
 static uint32_t host_signals;
 static uint32_t watchdog_phase;
 
@@ -52,12 +53,16 @@ uint32_t hal_image_checksum(void) {
   return sum & HAL_WORD_MASK;
 }
 
-void hal_set_cpu_clock(uint32_t i52) { cycles_per_ms = (98304u * (i52 + 1u)) / 10u; }
+void hal_set_cpu_clock(uint32_t i52) {
+  cycles_per_ms = (98304u * (i52 + 1u)) / 10u;
+  cycles_per_us = cycles_per_ms / 1000u + 1u;
+}
 uint32_t hal_cycles_per_ms(void) { return cycles_per_ms; }
 
-void hal_delay_us(uint32_t us) {
-  const uint32_t start = hal_cycles();
-  const uint32_t cycles = (uint32_t)(((uint64_t)us * cycles_per_ms) / 1000u);
+void hal_delay_us(uint32_t us) { hal_await_us(hal_cycles(), us); }
+
+void hal_await_us(uint32_t start, uint32_t us) {
+  const uint32_t cycles = us * cycles_per_us; /* no division: tasks are held off while BREQ pulses */
   while (hal_cycles() - start < cycles) {}
 }
 
@@ -116,6 +121,44 @@ void hal_clear_words(uint32_t first, uint32_t count) {
   volatile uint32_t* end = hal_y(first + count);
   for (; at < end; at += 8) at[0] = at[1] = at[2] = at[3] = at[4] = at[5] = at[6] = at[7] = 0;
 }
+
+enum { SIDE_STACK_WORDS = 2048, FRAME_WORDS = 16 }; /* FRAME: of exchange_stacks */
+
+/* A call that comes back when the other side makes it: what a C function keeps goes to the present stack, whose pointer
+ * is exchanged with *other. */
+static __attribute__((naked, noipa)) void exchange_stacks(uint32_t** other __attribute__((unused))) {
+  __asm__ volatile(
+      "addi sp, sp, -64\n"
+      "sw ra, 0(sp)\n sw s0, 4(sp)\n sw s1, 8(sp)\n sw s2, 12(sp)\n"
+      "sw s3, 16(sp)\n sw s4, 20(sp)\n sw s5, 24(sp)\n sw s6, 28(sp)\n"
+      "sw s7, 32(sp)\n sw s8, 36(sp)\n sw s9, 40(sp)\n sw s10, 44(sp)\n"
+      "sw s11, 48(sp)\n"
+      "lw t0, 0(a0)\n sw sp, 0(a0)\n mv sp, t0\n"
+      "lw ra, 0(sp)\n lw s0, 4(sp)\n lw s1, 8(sp)\n lw s2, 12(sp)\n"
+      "lw s3, 16(sp)\n lw s4, 20(sp)\n lw s5, 24(sp)\n lw s6, 28(sp)\n"
+      "lw s7, 32(sp)\n lw s8, 36(sp)\n lw s9, 40(sp)\n lw s10, 44(sp)\n"
+      "lw s11, 48(sp)\n"
+      "addi sp, sp, 64\n ret");
+}
+
+static uint32_t side_stack[SIDE_STACK_WORDS] __attribute__((aligned(16)));
+static uint32_t* other_stack; /* stack pointer of the side that does not run */
+static void (*side_task)(void);
+
+static _Noreturn void side_main(void) {
+  for (;;) {
+    side_task();
+    exchange_stacks(&other_stack);
+  }
+}
+
+void hal_side_begin(void (*task)(void)) {
+  side_task = task;
+  other_stack = side_stack + SIDE_STACK_WORDS - FRAME_WORDS;
+  *other_stack = (uint32_t)&side_main; /* the return address */
+}
+
+void hal_side_change(void) { exchange_stacks(&other_stack); }
 
 uint32_t hal_strap(unsigned word) { return ((const volatile uint32_t*)0x3FFFF000u)[word]; }
 uint32_t* hal_flash(void) { return (uint32_t*)0x30000000u; }

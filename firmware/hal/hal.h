@@ -29,7 +29,8 @@ void hal_unmask(uint32_t state);
 uint32_t hal_cycles(void);                           /* CPU cycle counter, low 32 bits */
 uint64_t hal_long_cycles(void);                      /* all of it */
 uint32_t hal_image_checksum(void);                   /* sum of the words of code and constants, 24 bits */
-void hal_delay_us(uint32_t us);                      /* busy wait */
+void hal_delay_us(uint32_t us);                      /* busy wait, 10 % longer at most */
+void hal_await_us(uint32_t start, uint32_t us);      /* the same, counted from hal_cycles() = `start` */
 void hal_host_signals(uint32_t set, uint32_t clear); /* bits HAL_SIGNAL_*: latch X:$070010 */
 enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL_F1ER = 8 };
 
@@ -45,6 +46,11 @@ void hal_watchdog_strobe(void);
 void hal_host_interrupts(bool receive, bool transmit); /* HRIE, HTIE of the host port */
 void hal_clear_words(uint32_t first, uint32_t count);  /* X and Y words of main memory */
 bool hal_servo_pending(void);                          /* the next servo interrupt waits already */
+
+/* A stack beside that of the background and the interrupts: what runs on it can be left in the middle of any function
+ * and gone on with later, or forgotten. Natively it is not left: the change to it runs `task` to its end. */
+void hal_side_begin(void (*task)(void)); /* the next change calls `task` anew, each one after its end again */
+void hal_side_change(void);              /* to the side stack, or back from it */
 
 /* Straps, read-only words of the board description. */
 enum {

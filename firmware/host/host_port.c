@@ -11,7 +11,8 @@
 
 enum { RECEIVE_SIZE = 2048, TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500 };
 
-/* ^A ^D ^K ^O ^Q stop things: they act before lines that arrived earlier, and again in their own place. */
+/* ^A ^D ^K ^O ^Q stop things: they act in the real-time task, which is asked for at once, whatever the background is
+ * at, and again in their own place. */
 #define URGENT ((1u << 0x01) | (1u << 0x04) | (1u << 0x0B) | (1u << 0x0F) | (1u << 0x11))
 
 static uint8_t receive[RECEIVE_SIZE], transmit[TRANSMIT_SIZE];
@@ -48,7 +49,10 @@ void host_port_character(uint8_t c) {
   receive[receive_head % RECEIVE_SIZE] = c;
   ++receive_head;
   if (c >= ' ') return;
-  if (((URGENT >> c) & 1u) != 0u) urgent |= 1u << c;
+  if (((URGENT >> c) & 1u) != 0u) {
+    urgent |= 1u << c;
+    hal_request_real_time();
+  }
   background_wake();
 }
 
@@ -143,6 +147,7 @@ void host_port_send(uint8_t c) {
 void host_port_open_output(void) { discard = 0; }
 
 uint32_t host_port_urgent(void) {
+  if (urgent == 0u) return 0;
   const uint32_t state = hal_mask_all();
   const uint32_t codes = urgent;
   urgent = 0;

@@ -17,6 +17,6 @@ uint32_t host_port_take_text(uint8_t* text, uint32_t most, bool* flushed);
 bool host_port_waiting(void);     /* characters received and not taken */
 void host_port_send(uint8_t c);   /* background: waits for room; gives up after half a second without a reader */
 void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
-uint32_t host_port_urgent(void);  /* control characters that may not wait, bit = code; cleared by the call */
+uint32_t host_port_urgent(void);  /* real-time task: control characters that may not wait, bit = code; cleared */
 
 #endif

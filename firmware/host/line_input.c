@@ -26,12 +26,13 @@ enum { CHECKSUM_SO_FAR = 0x0E, LAST_LINE = 0x19 };
 /* The line is kept as it came and in upper case, converted as it comes: little is left to do at its end. */
 static char texts[2][LINE_LIMIT + 1], upper[LINE_LIMIT + 1];
 static uint32_t current; /* which of `texts` is being received; the other is the last line executed */
-static uint32_t length, last_length;
-static bool too_long, bad_character, quoted;
+static uint32_t length;  /* as it came, which may be more than is kept */
+static uint32_t last_length;
+static bool bad_character, quoted;
 
 static void start_line(void) {
   length = 0;
-  too_long = bad_character = quoted = false;
+  bad_character = quoted = false;
 }
 
 void line_input_initialize(void) {
@@ -81,7 +82,7 @@ static void execute(void) {
   host_port_open_output();
   if (bad_character)
     error = ERR_CHARACTER;
-  else if (too_long)
+  else if (count > LINE_LIMIT)
     error = ERR_DATA;
   else {
     texts[current][count] = '\0';
@@ -105,22 +106,16 @@ static void add(const uint8_t* from, uint32_t count) {
   for (uint32_t i = 0; i < count; ++i) {
     const char c = (char)from[i];
     if (from[i] > 0x7Fu) bad_character = true;
-    if (at >= LINE_LIMIT) {
-      too_long = true;
-      continue;
-    }
+    if (at++ >= LINE_LIMIT) continue;
     if (c == '"') quoted = !quoted;
-    text[at] = c;
-    upper[at++] = !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+    text[at - 1u] = c;
+    upper[at - 1u] = !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
   }
   length = at;
 }
 
 static void backspace(void) {
-  if (too_long)
-    too_long = false;
-  else if (length != 0u && texts[current][--length] == '"')
-    quoted = !quoted;
+  if (length != 0u && --length < LINE_LIMIT && texts[current][length] == '"') quoted = !quoted;
 }
 
 static void repeat_last(void) {
@@ -149,7 +144,7 @@ static bool character(uint8_t c) {
       execute();
       return true;
     case CHECKSUM_SO_FAR:
-      host_port_send(checksum(texts[current], length));
+      host_port_send(checksum(texts[current], length < LINE_LIMIT ? length : LINE_LIMIT));
       break;
     case LAST_LINE:
       host_port_open_output();
@@ -177,10 +172,13 @@ void line_input_text(void) {
   } while (count == CHUNK);
 }
 
-void line_input_pass(void) {
+void line_input_urgent(void) {
   uint32_t urgent = host_port_urgent();
   for (uint8_t c = 0; urgent != 0u; ++c, urgent >>= 1)
     if ((urgent & 1u) != 0u) (void)control_character(c);
+}
+
+void line_input_pass(void) {
   uint8_t c;
   bool flushed, some;
   do {

@@ -5,6 +5,7 @@
 void line_input_initialize(void);
 void line_input_text(
     void); /* background between passes: takes text that has come, so that less is left to do at its CR */
-void line_input_pass(void); /* background: urgent control characters, then characters up to the end of one line */
+void line_input_urgent(void); /* real-time task: control characters that may not wait for the background */
+void line_input_pass(void);   /* background: characters up to the end of one line */
 
 #endif

@@ -3,6 +3,7 @@
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/image/background_pass.h"
+#include "firmware/image/fault.h"
 #include "firmware/image/start.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/bus_setup.h"
@@ -15,6 +16,7 @@ _Noreturn void image_main(void) {
   host_port_initialize();
   line_input_initialize();
   start(START_SAVED);
+  fault_start_done();
   for (;;) {
     if (clock_watch_close())
       clock_watch_poll();

@@ -1,6 +1,8 @@
-/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros. Layout in 32-bit words:
- * mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words: (number, value low, value
- * high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator. */
+/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros, and axis definitions.
+ * Layout in 32-bit words: mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words:
+ * (number, value low, value high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator,
+ * (motor, words of its definition) of axes, a separator. A checksum says that nothing has changed, not who wrote it:
+ * the numbers are checked again where they become places. */
 #include "firmware/image/saved_data.h"
 
 #include <stdbool.h>
@@ -10,11 +12,13 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/motion/axis_definition.h"
 #include "firmware/variables/i_variables.h"
 
 #define MARK 0x42524B32u
 #define SEPARATOR 0xFFFFFFFFu
 enum { WORD_MARK, WORD_CHECKSUM, WORD_COUNT, WORD_INITIAL_ICS, WORD_SAVED_ICS, WORD_DATA };
+enum { AXIS_DEFINITION_WORDS = sizeof(struct axis_definition) / 4 };
 enum { USER_FIRST = MEMORY_M_DEFINITIONS, USER_END = MEMORY_BUFFERS }; /* M definitions, P, Q */
 
 union double_words {
@@ -22,7 +26,12 @@ union double_words {
   uint32_t word[2];
 };
 
-static const uint32_t* user_words; /* where the user memory part begins, after saved_data_restore_variables */
+/* The record at `at` and where the data end. Never beyond them: a store without a separator ends there too. */
+static const uint32_t *user_words, *data_end;
+
+static bool has_record(const uint32_t* at, uint32_t words) {
+  return at < data_end && (uint32_t)(data_end - at) >= words && *at != SEPARATOR;
+}
 
 static uint32_t checksum(const uint32_t* data, uint32_t count) {
   uint32_t sum = MARK;
@@ -62,6 +71,13 @@ void saved_data_write(uint32_t initial_ics) {
     data[count++] = y;
   }
   data[count++] = SEPARATOR;
+  for (uint32_t motor = 0; motor < MOTORS; ++motor) {
+    if (!axis_definitions[motor].assigned) continue;
+    data[count++] = motor;
+    __builtin_memcpy(&data[count], &axis_definitions[motor], sizeof axis_definitions[motor]);
+    count += AXIS_DEFINITION_WORDS;
+  }
+  data[count++] = SEPARATOR;
   flash[WORD_MARK] = MARK;
   flash[WORD_COUNT] = count;
   flash[WORD_INITIAL_ICS] = initial_ics;
@@ -78,8 +94,9 @@ saved_t saved_data_restore_variables(uint32_t* initial_ics) {
   if (flash[WORD_MARK] != MARK || count > HAL_FLASH_BYTES / 4u - WORD_DATA) return SAVED_DAMAGED;
   if (flash[WORD_CHECKSUM] != checksum(flash + WORD_COUNT, checked_words(count))) return SAVED_DAMAGED;
   *initial_ics = flash[WORD_INITIAL_ICS];
+  data_end = data + count;
   i_variable_begin_restore(flash[WORD_SAVED_ICS]);
-  for (; *data != SEPARATOR; data += 4) {
+  for (; has_record(data, 4); data += 4) {
     union double_words value;
     value.word[0] = data[1];
     value.word[1] = data[2];
@@ -92,8 +109,12 @@ saved_t saved_data_restore_variables(uint32_t* initial_ics) {
 
 void saved_data_restore_user_memory(void) {
   if (user_words == 0) return;
-  for (const uint32_t* data = user_words; *data != SEPARATOR; data += 3) {
+  const uint32_t* data = user_words;
+  for (; has_record(data, 3); data += 3) {
+    if (data[0] - USER_FIRST >= USER_END - USER_FIRST) continue;
     *hal_x(data[0]) = data[1];
     *hal_y(data[0]) = data[2];
   }
+  for (++data; has_record(data, 1 + AXIS_DEFINITION_WORDS); data += 1 + AXIS_DEFINITION_WORDS)
+    if (data[0] < MOTORS) __builtin_memcpy(&axis_definitions[data[0]], data + 1, sizeof axis_definitions[0]);
 }

@@ -11,6 +11,7 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/panel.h"
+#include "firmware/image/fault.h"
 #include "firmware/image/saved_data.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/bus_setup.h"
@@ -21,6 +22,7 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/run/calculate.h"
 #include "firmware/variables/i_variables.h"
 
 enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
@@ -46,7 +48,9 @@ static void load_user_memory(void) {
     hal_clear_words(first, CLEARED_AT_ONCE);
     hal_watchdog_strobe();
   }
+  axis_definition_initialize();
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
+  fault_show();
   if (load_user) saved_data_restore_user_memory();
 }
 
@@ -66,7 +70,7 @@ void start(enum start_mode mode) {
   session_initialize();
   panel_initialize();
   coordinate_systems_initialize();
-  axis_definition_initialize();
+  calculate_initialize();
   motor_status_initialize();
   regions_initialize();
   rotary_initialize();

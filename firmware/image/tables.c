@@ -1,4 +1,5 @@
 /* The const tables that join the layers: what lower layers call in higher ones. Nothing is registered at run time. */
+#include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/command/calendar_commands.h"
@@ -12,6 +13,7 @@
 #include "firmware/host/panel.h"
 #include "firmware/image/real_time.h"
 #include "firmware/image/system_commands.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/phase_task.h"
@@ -20,6 +22,8 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/phase_period.h"
 #include "firmware/variables/words.h"
+
+void (*const mathematics_pause)(void) = slice_pause;
 
 const struct task_hooks task_hooks = {.servo = servo_update, .real_time = real_time, .phase_period = phase_period};
 

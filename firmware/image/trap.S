@@ -85,7 +85,7 @@ trap_vector:
   .option norvc
   j trap_exception
   .rept 15
-  j trap_unexpected
+  j trap_exception
   .endr
   j trap_phase                  /* 16 */
   j trap_servo                  /* 17 */
@@ -127,37 +127,18 @@ trap_host:
   restore_registers
   mret
 
-  /* Load (5) or store (7) where nothing answers, through an M-variable or a pointer that a user set: the access is
-   * skipped, as on a bus with pull-ups. Anything else is a fault of the firmware: stop, so that the hardware watchdog
-   * reports it. */
+  /* Nothing but these interrupts is meant to come: an access where nothing answers, an instruction that there is not.
+   * What the task was about cannot go on and is not gone back to. */
   .global trap_exception
 trap_exception:
-  addi sp, sp, -16
-  sw t0, 0(sp)
-  sw t1, 4(sp)
-  csrr t0, mcause
-  addi t1, t0, -5
-  beqz t1, 1f
-  addi t1, t0, -7
-  bnez t1, trap_unexpected
-1:
-  csrr t0, mepc
-  lhu t1, 0(t0)
-  andi t1, t1, 3
-  addi t1, t1, -3
-  addi t0, t0, 2
-  bnez t1, 2f                   /* a compressed instruction has two bytes */
-  addi t0, t0, 2
-2:
-  csrw mepc, t0
-  lw t0, 0(sp)
-  lw t1, 4(sp)
-  addi sp, sp, 16
-  mret
-
-  .global trap_unexpected
-trap_unexpected:
   csrw mie, zero
+  la sp, __stack_top
+  csrr a0, mcause
+  csrr a1, mepc
+  csrr a2, mtval
+  call fault_take
+  beqz a0, 1f
+  j _start
 1:
-  j 1b
+  j 1b                          /* the hardware watchdog is not strobed any more */
   .option pop

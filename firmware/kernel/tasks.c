@@ -13,35 +13,53 @@
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/watchdog.h"
 
+enum { LONGEST_SLICE_MS = 5 }; /* the watchdog is not strobed meanwhile */
+
 volatile uint32_t tasks_phase_stamp;
 
 static volatile uint32_t real_time_period; /* I8. B or R */
 static volatile uint32_t servo_count;      /* S */
 static uint32_t real_time_prescaler;       /* S */
-static volatile bool real_time_active;     /* R */
+static volatile bool real_time_due;        /* S sets, R clears: not one that a control character asked for */
+static volatile bool real_time_active;     /* R: one that was due */
 static uint32_t real_time_longest;         /* R, cycles */
+static uint32_t servo_began;               /* S, cycle counter */
+static volatile uint32_t servo_period;     /* S, cycles between the last two */
 
 void tasks_initialize(void) {
   servo_count = 0;
   real_time_prescaler = 0;
-  real_time_active = false;
+  real_time_due = real_time_active = false;
   real_time_longest = 0;
+  servo_period = 0;
+  servo_began = hal_cycles();
   watchdog_initialize();
 }
 
 void tasks_set_real_time_period(uint32_t i8) { real_time_period = i8; }
 uint32_t tasks_servo_count(void) { return servo_count; }
 
+/* Half of the time from one real-time interrupt to the next: the background has the rest. */
+uint32_t tasks_real_time_slice(void) {
+  const uint32_t longest = LONGEST_SLICE_MS * hal_cycles_per_ms(), period = servo_period;
+  if (period > longest) return longest; /* no overflow below: I8 is 255 at most */
+  const uint32_t half = period * (real_time_period + 1u) / 2u;
+  return half < longest ? half : longest;
+}
+
 void tasks_servo_interrupt(void) {
   const uint32_t began = hal_cycles();
   const uint32_t count = servo_count + 1u;
   servo_count = count;
+  servo_period = began - servo_began;
+  servo_began = began;
   *hal_x(MEMORY_SERVO_COUNT) = count & HAL_WORD_MASK;
   watchdog_count();
   task_hooks.servo();
   if (++real_time_prescaler > real_time_period) {
     real_time_prescaler = 0;
     if (real_time_active) status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
+    real_time_due = true;
     hal_request_real_time();
   } else if (watchdog_strobe_is_old(began) && !real_time_active && !hal_real_time_pending()) {
     watchdog_strobe(began); /* the real-time task has done its duty, the next is not due yet */
@@ -52,7 +70,8 @@ void tasks_servo_interrupt(void) {
 
 void tasks_real_time_interrupt(void) {
   const uint32_t began = hal_cycles();
-  real_time_active = true;
+  real_time_active = real_time_due;
+  real_time_due = false;
   task_hooks.real_time();
   watchdog_strobe(began);
   background_wake();

@@ -21,6 +21,7 @@ extern volatile uint32_t tasks_phase_stamp; /* cycle counter at the last phase i
 
 void tasks_initialize(void);
 uint32_t tasks_servo_count(void);             /* servo interrupts since start, 32 bits */
+uint32_t tasks_real_time_slice(void);         /* CPU cycles that the real-time task may calculate at once */
 void tasks_set_real_time_period(uint32_t i8); /* I8: servo interrupts between real-time tasks, less one. Any task */
 
 #endif

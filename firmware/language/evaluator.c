@@ -9,6 +9,9 @@
 #include "firmware/variables/m_variables.h"
 #include "firmware/variables/pq_variables.h"
 
+#define EXPONENT_MASK UINT64_C(0x7FF0000000000000)
+#define FRACTION_MASK UINT64_C(0x000FFFFFFFFFFFFF)
+
 static uint32_t variable_index(double number) { /* 0..8191; anything else wraps, as the address calculation would */
   return (uint32_t)math_to_integer(number) % VARIABLE_COUNT;
 }
@@ -99,9 +102,21 @@ static double operator_unary(uint32_t code, double a, uint32_t cs) {
   }
 }
 
+/* Only numbers come to the stack, so nothing that takes one has to look: beyond the largest there is the largest, where
+ * nothing is defined 0. */
+static double number_of(double value) {
+  union {
+    double value;
+    uint64_t bits;
+  } u = {value};
+  if ((~u.bits & EXPONENT_MASK) != 0) return value;
+  u.bits = (u.bits & FRACTION_MASK) != 0 ? 0 : u.bits - 1u;
+  return u.value;
+}
+
 static bool push(struct evaluator* ev, double value) {
   if (ev->depth >= EXPRESSION_DEPTH) return false;
-  ev->stack[ev->depth++] = value;
+  ev->stack[ev->depth++] = number_of(value);
   return true;
 }
 

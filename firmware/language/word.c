@@ -23,6 +23,10 @@ enum modal { MODAL_MODE, MODAL_ABS, MODAL_INC, MODAL_FRAX };
 enum wide { WIDE_AXIS = 0, WIDE_RATE = 9, WIDE_PUSH = 31 };
 enum { SHORT_FRACTION = 23, WIDE_FRACTION = 32 };
 
+enum { TAIL_BITS = 47 };
+#define TAIL_MASK (WORD_START_OF_LINE - 1u)
+#define HEAD_MASK ((UINT64_C(1) << (64 - TAIL_BITS)) - 1u)
+
 union double_bits {
   double value;
   uint64_t bits;
@@ -201,19 +205,20 @@ struct instruction word_decode(word48_t word) {
   return in;
 }
 
+/* The tail has the bits below the mark of a line's start, so that it never looks like one. */
 word48_t word_double_head(double value) {
   union double_bits d = {value};
-  struct instruction in = {OP_PUSH_DOUBLE, 0, (uint32_t)(d.bits >> 48), 0.0};
+  struct instruction in = {OP_PUSH_DOUBLE, 0, (uint32_t)(d.bits >> TAIL_BITS), 0.0};
   return word_encode(&in);
 }
 
 word48_t word_double_tail(double value) {
   union double_bits d = {value};
-  return d.bits & WORD48_MASK;
+  return d.bits & TAIL_MASK;
 }
 
 double word_double_join(word48_t head, word48_t tail) {
   union double_bits d = {0.0};
-  d.bits = ((head & 0xFFFFu) << 48) | (tail & WORD48_MASK);
+  d.bits = ((head & HEAD_MASK) << TAIL_BITS) | (tail & TAIL_MASK);
   return d.value;
 }

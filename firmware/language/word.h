@@ -39,7 +39,7 @@ enum operation {
   OP_PREFIX,        /* number = bits 10 and up of the next command's variable number */
   OP_ASSIGN,        /* group, number 0..1023, value that word_holds_short */
   OP_PUSH,          /* value */
-  OP_PUSH_DOUBLE,   /* value's upper 16 bits here, lower 48 in the next word, which is not an operation */
+  OP_PUSH_DOUBLE,   /* value's upper 17 bits here, lower 47 in the next word, which is not an operation */
   OP_PUSH_VARIABLE, /* group, number */
   OP_PUSH_INDEXED,  /* group; pops the number */
   OP_APPLY,         /* number = enum operator_code; pops its operands, pushes the result */

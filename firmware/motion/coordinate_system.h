@@ -50,7 +50,8 @@ struct coordinate_system {
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
   volatile bool end_block;      /* `/`: S starts no further move */
-  bool run_time_error;          /* R */
+  volatile bool settling; /* moves are dropped: set by B or R, S stands still; R finds the position and clears it */
+  bool run_time_error;    /* R */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
   uint32_t incremental, feedrate_axes; /* axis masks */
   bool vector_absolute, time_mode;

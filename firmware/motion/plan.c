@@ -1,8 +1,12 @@
-/* Planning of moves (firmware:7.5), real-time task. RAPID moves are planned as unblended LINEAR moves at the feedrate:
- * their own speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
+/* Planning of moves (firmware:7.5), real-time task, in slices: an abort forgets what is half planned, so only what an
+ * abort sets anyway is written before the last pause. RAPID moves are planned as unblended LINEAR moves at the
+ * feedrate: their own speeds (Ixx19 to Ixx21, Ixx22) belong to motors, and the axes are virtual. */
 #include "firmware/motion/plan.h"
 
+#include <stdatomic.h>
+
 #include "firmware/base/mathematics.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/variables/i_variables.h"
 
@@ -23,6 +27,7 @@ static double feed_time(uint32_t cs, const struct coordinate_system* s, const do
   uint32_t axes = 0;
   if (limit > 0.0 && feed > limit) feed = limit;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    slice_pause();
     if (delta[axis] == 0.0) continue;
     if (((s->feedrate_axes >> axis) & 1u) == 0) {
       other = larger(other, math_absolute(delta[axis]));
@@ -54,14 +59,17 @@ static void finish(uint32_t cs, struct move* m, bool blends) {
   m->joins = blends && s->may_join;
   m->line_offset = s->line_offset;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    m->start[axis] = s->position[axis];
     m->velocity_before[axis] = s->velocity[axis];
-    s->velocity[axis] = 0.0;
-    if (m->delta[axis] == 0.0) continue;
-    s->position[axis] += m->delta[axis];
-    s->velocity[axis] = m->delta[axis] / time;
+    s->velocity[axis] = m->delta[axis] == 0.0 ? 0.0 : m->delta[axis] / time;
+    slice_pause();
   }
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    m->start[axis] = s->position[axis];
+    if (m->delta[axis] != 0.0) s->position[axis] += m->delta[axis];
+  }
+  s->pending_axes = 0;
   s->may_join = blends;
+  atomic_signal_fence(memory_order_release);
   s->next_valid = true; /* last: from here on the servo task may start it */
   cs_busy |= 1u << cs;
 }
@@ -70,9 +78,10 @@ void plan_line(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct move* m = next_move(s);
   m->kind = MOVE_LINEAR;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     m->delta[axis] = ((s->pending_axes >> axis) & 1u) ? s->pending[axis] - s->position[axis] : 0.0;
-  s->pending_axes = 0;
+    slice_pause();
+  }
   set_times(cs, m, s->time_mode ? cs_variable(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta));
   finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0);
 }

@@ -1,6 +1,8 @@
 /* Where the virtual axes of a coordinate system are: the executing move's profile evaluated at the present trajectory
- * time. Used when a program is aborted; the servo task is held off meanwhile. */
+ * time. Used when a program is aborted: the trajectory stands still meanwhile. */
 #include "firmware/motion/position.h"
+
+#include "firmware/kernel/slice.h"
 
 /* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`. */
 static double rise(double t, double length, double s) {
@@ -30,6 +32,7 @@ void cs_present_position(const struct coordinate_system* s, double position[AXIS
   double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->acceleration, half = in / 2.0;
   double stop = t - (half + (double)m->time - out / 2.0);
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    slice_pause();
     double before = m->blended ? m->velocity_before[axis] : 0.0;
     double now = m->kind == MOVE_LINEAR ? m->delta[axis] / (double)m->time : 0.0;
     double x = m->start[axis] + before * (t - half) + (now - before) * rise(t, in, s_part(m, in));

@@ -4,6 +4,7 @@
 
 #include "firmware/motion/coordinate_system.h"
 
-void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]); /* servo task held off */
+/* Real-time task, in slices, while `settling` makes the servo task leave the system alone. */
+void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]);
 
 #endif

@@ -71,6 +71,7 @@ static void update_dwell(struct coordinate_system* s) {
 
 static __attribute__((noinline)) void update(struct coordinate_system* s) {
   slew_time_base(s);
+  if (s->settling) return;
   if (!s->active) {
     begin_from_rest(s);
     return;

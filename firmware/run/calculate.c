@@ -1,14 +1,23 @@
 /* Execution of program words, real-time task: statements in sequence until a move is calculated. LINEAR moves are
  * calculated one ahead, a DWELL lets nothing be calculated until it is over (firmware:7.9). Running out of lines is no
- * error in a rotary program: the coordinate system keeps running and waits. */
+ * error in a rotary program: the coordinate system keeps running and waits. A round over all systems is made in slices
+ * of the real-time task, left between words, inside functions and inside the planning of a move. */
 #include "firmware/run/calculate.h"
+
+#include <stdatomic.h>
 
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/kernel/tasks.h"
 #include "firmware/language/evaluator.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/plan.h"
+#include "firmware/motion/position.h"
 #include "firmware/variables/i_variables.h"
+
+/* The system that the round under way is at; none: COORDINATE_SYSTEMS. R, and B with R held off. */
+static uint32_t calculated = COORDINATE_SYSTEMS;
 
 enum outcome { OUTCOME_NO_WORD, OUTCOME_WORD, OUTCOME_LINE, OUTCOME_MOVE, OUTCOME_ERROR };
 
@@ -121,7 +130,7 @@ static void stop_with_error(uint32_t cs, struct coordinate_system* s) {
   s->quit = true;
 }
 
-static __attribute__((noinline)) void calculate_ahead(uint32_t cs) {
+static void calculate_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->quit || s->end_block) {
     if (s->active || (s->next_valid && !s->end_block)) return; /* what is calculated is still to be executed */
@@ -135,10 +144,45 @@ static __attribute__((noinline)) void calculate_ahead(uint32_t cs) {
     if (outcome == OUTCOME_MOVE && s->stepping) s->quit = true;
     if (outcome == OUTCOME_MOVE || outcome == OUTCOME_NO_WORD || outcome == OUTCOME_ERROR) return;
     if (outcome == OUTCOME_LINE) lines++;
+    slice_pause();
   }
 }
 
-void calculate_programs(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
-    if (coordinate_systems[cs].running) calculate_ahead(cs);
+/* After an abort: the axes are where the stopped trajectory has them, what is left of a begun line is lost. The servo
+ * task looks at nothing else while `settling`, so it falls last. */
+static void settle(uint32_t cs, struct coordinate_system* s) {
+  double position[AXIS_COUNT];
+  cs_present_position(s, position);
+  rotary_skip_line_rest(cs);
+  s->active = s->next_valid = s->blend_decided = s->may_join = false;
+  s->pending_axes = s->evaluator.depth = s->prefix = 0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    s->position[axis] = position[axis];
+    s->velocity[axis] = 0.0;
+  }
+  atomic_signal_fence(memory_order_release);
+  s->settling = false;
 }
+
+static void calculate_round(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
+    struct coordinate_system* s = &coordinate_systems[cs];
+    calculated = cs;
+    if (s->settling) settle(cs, s);
+    if (s->running) calculate_ahead(cs);
+  }
+  calculated = COORDINATE_SYSTEMS;
+}
+
+void calculate_initialize(void) {
+  calculated = COORDINATE_SYSTEMS;
+  slice_initialize(calculate_round);
+}
+
+void calculate_forget(uint32_t cs) {
+  if (calculated != cs) return;
+  calculated = COORDINATE_SYSTEMS;
+  slice_restart();
+}
+
+void calculate_programs(void) { slice_run(tasks_real_time_slice()); }

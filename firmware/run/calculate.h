@@ -2,6 +2,10 @@
 #ifndef FIRMWARE_RUN_CALCULATE_H
 #define FIRMWARE_RUN_CALCULATE_H
 
-void calculate_programs(void); /* real-time task: running programs, as far ahead as their moves allow */
+#include <stdint.h>
+
+void calculate_initialize(void);
+void calculate_programs(void);      /* real-time task: a slice; running programs, as far ahead as their moves allow */
+void calculate_forget(uint32_t cs); /* what is half calculated for it; real-time task held off, or outside of a slice */
 
 #endif

@@ -1,57 +1,50 @@
-/* Run control. Requests are flags that the real-time and servo tasks act on; only an abort reaches into the moves, with
- * both tasks held off. */
+/* Run control, in the background and, for control characters, in the real-time task. Requests are flags that the
+ * real-time and servo tasks act on; an abort stops the trajectory at once and leaves the rest to the calculation. */
 #include "firmware/run/run_control.h"
 
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/position.h"
+#include "firmware/run/calculate.h"
 #include "firmware/variables/i_variables.h"
 
 #define LARGEST_PERCENT 225.0
 #define LARGEST_PROGRAM 32767.99999
 
-/* The executing and the calculated move are dropped where the axes are now. */
+/* The executing and the calculated move are dropped where the axes are now. That takes long to find out: the trajectory
+ * stops here, the calculation does the rest before anything else for this system. Servo and real-time tasks held off.
+ */
 static void drop_moves(uint32_t cs) {
-  struct coordinate_system* s = &coordinate_systems[cs];
-  double position[AXIS_COUNT];
-  uint32_t state = hal_mask_servo();
-  cs_present_position(s, position);
-  s->active = s->next_valid = s->blend_decided = s->may_join = false;
-  s->pending_axes = 0;
-  s->evaluator.depth = 0;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    s->position[axis] = position[axis];
-    s->velocity[axis] = 0.0;
-  }
-  hal_unmask(state);
+  coordinate_systems[cs].settling = true;
+  calculate_forget(cs);
 }
 
-/* The time base goes to `target` at `rate` a servo cycle. */
+/* The time base goes to `target` at `rate` a servo cycle. Servo and real-time tasks held off. */
 static void slew_to(uint32_t cs, int32_t target, enum i_name rate) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  int32_t slew = (int32_t)cs_variable(cs, rate);
-  uint32_t state = hal_mask_servo();
-  s->increment_slew = slew;
+  s->increment_slew = i_integer(i_cs(cs, rate));
   s->increment_target = target;
   cs_busy |= 1u << cs;
-  hal_unmask(state);
 }
 
 static void release_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!s->held) return;
+  uint32_t state = hal_mask_servo();
   s->held = false;
   slew_to(cs, s->increment_command, ISX95_FEED_HOLD_SLEW);
+  hal_unmask(state);
 }
 
 error_t run_point(uint32_t cs, double program) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->running) return ERR_PROGRAM_RUNNING;
   if (program < 0.0 || program > LARGEST_PROGRAM) return ERR_DATA;
+  uint32_t state = hal_mask_servo();
   if (s->next_valid) drop_moves(cs);
   s->end_block = false;
+  hal_unmask(state);
   s->pointer = program == 0.0 ? POINTER_ROTARY : POINTER_FIXED;
   s->fixed_program = (uint32_t)program;
   return ERR_NONE;
@@ -89,8 +82,7 @@ void run_quit(uint32_t cs) {
 void run_abort(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   uint32_t state = hal_mask_servo();
-  if (s->active || s->running || s->next_valid) drop_moves(cs);
-  rotary_skip_line_rest(cs);
+  drop_moves(cs);
   s->running = s->quit = s->end_block = s->stepping = s->continuous = false;
   hal_unmask(state);
   release_hold(cs);
@@ -98,9 +90,12 @@ void run_abort(uint32_t cs) {
 
 void run_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (s->held || !(s->running || s->active)) return;
-  s->held = true;
-  slew_to(cs, 0, ISX95_FEED_HOLD_SLEW);
+  uint32_t state = hal_mask_servo();
+  if (!s->held && (s->running || s->active)) {
+    s->held = true;
+    slew_to(cs, 0, ISX95_FEED_HOLD_SLEW);
+  }
+  hal_unmask(state);
 }
 
 void run_end_block(uint32_t cs) {
@@ -115,9 +110,13 @@ double run_time_base(uint32_t cs) {
 error_t run_set_time_base(uint32_t cs, double percent) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
-  s->increment_full = i_integer(I10_SERVO_PERIOD);
-  s->increment_command = (int32_t)((double)s->increment_full * percent / 100.0 + 0.5);
-  if (!s->held) slew_to(cs, s->increment_command, ISX94_TIME_BASE_SLEW);
+  const int32_t full = i_integer(I10_SERVO_PERIOD);
+  const int32_t command = (int32_t)((double)full * percent / 100.0 + 0.5);
+  uint32_t state = hal_mask_servo();
+  s->increment_full = full;
+  s->increment_command = command;
+  if (!s->held) slew_to(cs, command, ISX94_TIME_BASE_SLEW);
+  hal_unmask(state);
   return ERR_NONE;
 }
 

@@ -1,5 +1,5 @@
 /* Run control of the coordinate systems (firmware:4.10, firmware:4.11), called by the command interpreter in the
- * background task. */
+ * background task. What stops (quit, abort, hold) is called by the real-time task too, for control characters. */
 #ifndef FIRMWARE_RUN_RUN_CONTROL_H
 #define FIRMWARE_RUN_RUN_CONTROL_H
 

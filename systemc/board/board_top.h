@@ -57,6 +57,7 @@ class BoardTop : public sc_core::sc_module, public Board {
   ServoIc* servo_ic(unsigned index) { return gate_ics_.servo_ic(index, now_); }
   MacroIc* macro_ic(unsigned index) { return gate_ics_.macro_ic(index, now_); }
   Dpram& dpram() { return dpram_; }
+  std::optional<std::uint16_t> dpram_word(unsigned index) const override { return dpram_.peek(index); }
   HostPort& host_port() { return host_port_; }
 
  private:

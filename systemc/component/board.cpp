@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "systemc/component/board_buses.h"
 #include "systemc/component/board_words.h"
 #include "systemc/component/chip.h"
 #include "systemc/component/error.h"
@@ -158,9 +159,11 @@ std::uint32_t checked(std::uint32_t fitted) {
 }
 }  // namespace
 
+constexpr std::uint64_t kPortABytes = std::uint64_t{8} << 24;  // X and Y of 2^24 words
+
 #define BRICK_PIN(name) name(*this, #name)
 Board::Board(const sc_core::sc_module_name& name, TimeBase& time, const BoardOptions& options, const Engine& engine)
-    : Component(name, time, pin_table(checked(options.fitted))),
+    : Component(name, time, pin_table(checked(options.fitted)), {{4, kPortABytes}, {1, 0}}),
       BRICK_PIN(rst_n),
       BRICK_PIN(pa_addr),
       BRICK_PIN(pa_aa),
@@ -235,6 +238,11 @@ Board::Board(const sc_core::sc_module_name& name, TimeBase& time, const BoardOpt
     if ((options.fitted >> ic & 1) != 0)
       servo_ic.push_back(std::make_unique<BoardServoIc>(*this, servo_ic_scope(ic) + "_"));
   set_chip(engine.factory().board(options.fitted, options.seed));
+  port_a.register_b_transport(this, &Board::transport_port_a);
+  port_a.register_transport_dbg(this, &Board::debug_port_a);
+  isa_io.register_b_transport(this, &Board::transport_io);
+  isa_memory.register_b_transport(this, &Board::transport_memory);
+  isa_memory.register_transport_dbg(this, &Board::debug_memory);
 }
 #undef BRICK_PIN
 

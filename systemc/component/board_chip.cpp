@@ -1,8 +1,9 @@
 #include "systemc/component/board_chip.h"
 
 #include <algorithm>
-#include <stdexcept>
+#include <optional>
 
+#include "systemc/component/board_buses.h"
 #include "systemc/component/board_words.h"
 #include "systemc/component/error.h"
 #include "systemc/cosim/engines.h"
@@ -14,7 +15,7 @@ using namespace board_words;
 class BoardChip final : public Chip {
  public:
   BoardChip(std::unique_ptr<brick::Board> board, std::uint32_t fitted, bool foresees)
-      : board_(std::move(board)), foresees_(foresees) {
+      : board_(std::move(board)), buses_(*board_), foresees_(foresees) {
     for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
       if ((fitted >> ic & 1) != 0) {
         place_[ic] = static_cast<unsigned>(ics_.size());
@@ -70,31 +71,50 @@ class BoardChip final : public Chip {
       take_fields<word>(inputs[word]);
     };
     each_word(take, std::make_integer_sequence<unsigned, kBoardInputWords>());
-    if (moved) board_->set_inputs(pins_in_);
+    if (moved) buses_.set_inputs(pins_in_);
     inputs_ = inputs;
     set_ = true;
   }
 
   bool run_until(Tick limit) override {
     motor_moved_ = false;
-    try {
-      board_->run_until(limit, pins_);
-    } catch (const LockstepDifference& difference) { raise_error("/brick/lockstep", difference.what()); }
-    return take_pins() || motor_moved_;
+    return compared([&] {
+      while (now() < limit) {
+        BoardOutputs stop = buses_.stops();
+        for (unsigned i = 0; i < kBoardOutputWords; ++i) stop.w[i] |= pins_.w[i];
+        board_->run_until(std::min(limit, buses_.next()), stop);
+        const bool moved = take_pins() || motor_moved_;
+        if (buses_.step() || moved) return true;
+      }
+      return false;
+    });
   }
 
   bool foresees() const override { return foresees_; }
   Tick quiet_until() const override {
     static constexpr BoardOutputs kAll{{~0u, ~0u, ~0u, ~0u}};
-    return any_ ? board_->quiet_until(motors_ ? kAll : pins_) : kNever;
+    return std::min(any_ ? board_->quiet_until(motors_ ? kAll : pins_) : kNever, no_end_until());
   }
 
-  void begin(unsigned, const Cycle&) override { throw std::logic_error("a board has no register face"); }
-  void abandon(unsigned) override {}
-  bool busy(unsigned) const override { return false; }
-  std::uint32_t value(unsigned) const override { return 0; }
-  Tick no_end_until() const override { return kNever; }
-  std::uint32_t peek(unsigned, unsigned) override { return 0; }
+  // A cycle goes from stand to stand. What it drives there the next edge sees, so what is foreseen ends there too.
+  void begin(unsigned face, const Cycle& cycle) override {
+    compared([&] { buses_.begin(face, cycle); });
+  }
+  void abandon(unsigned face) override { buses_.abandon(face); }
+  bool busy(unsigned face) const override { return buses_.busy(face); }
+  std::uint32_t value(unsigned face) const override { return buses_.value(face); }
+  std::optional<BusEnd> bus_end(unsigned face) const override { return buses_.end(face); }
+  Tick no_end_until() const override {
+    const Tick next = buses_.next();
+    return next == kNever ? kNever : next - 1;
+  }
+  bool peeks(unsigned face, unsigned address) const override {
+    return (face == kPortAFace && BoardBuses::is_control(address)) || dpram_index(face, address).has_value();
+  }
+  std::uint32_t peek(unsigned face, unsigned address) override {
+    if (face == kPortAFace && BoardBuses::is_control(address)) return buses_.control(address);
+    return compared([&] { return dpram_word(face, address); });
+  }
 
  private:
   template <class F, unsigned... kWord>
@@ -108,6 +128,28 @@ class BoardChip final : public Chip {
       if (f.word == kWord) pins_in_.*f.pin = static_cast<Field>(word >> f.lsb & pin_mask(f.width));
     };
     std::apply([&](const auto&... f) { (take(f), ...); }, kInputFields);
+  }
+  // In lock-step the two boards may differ.
+  template <class Act>
+  auto compared(const Act& act) const -> decltype(act()) {
+    try {
+      return act();
+    } catch (const LockstepDifference& difference) { raise_error("/brick/lockstep", difference.what()); }
+  }
+  // The word of the dual-ported RAM at this byte address, if it is one: of Port A, or of a window without pages.
+  std::optional<unsigned> dpram_index(unsigned face, unsigned address) const {
+    constexpr unsigned kPortABytes = 8 * 0x60000, kWords = 32768;
+    const BoardInputs& in = buses_.inputs();
+    if (face == kIsaFace && ((address & kIsaMemory) == 0 || !in.window_flat)) return {};
+    const unsigned first = face == kPortAFace ? kPortABytes : kIsaMemory | unsigned{in.window} << 14;
+    const unsigned index = (address - first) / (face == kPortAFace ? 4 : 2);
+    if (address < first || index >= kWords || !board_->dpram_word(index)) return {};
+    return index;
+  }
+  std::uint32_t dpram_word(unsigned face, unsigned address) const {
+    constexpr unsigned kSmallWords = 8192;
+    const unsigned index = *dpram_index(face, address);
+    return buses_.inputs().dpram_small && index >= kSmallWords ? 0 : *board_->dpram_word(index);
   }
   bool take_pins() {
     const BoardOutputs& now = board_->outputs();
@@ -124,6 +166,7 @@ class BoardChip final : public Chip {
   }
 
   std::unique_ptr<brick::Board> board_;
+  BoardBuses buses_;
   std::vector<unsigned> ics_;
   std::array<unsigned, kMaxServoIcs> place_{};
   BoardOutputs pins_;    // watched

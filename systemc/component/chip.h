@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "systemc/core/ticks.h"
@@ -19,6 +20,7 @@ struct Cycle {
   unsigned address = 0;
   std::uint32_t value = 0;
   unsigned lanes = ~0u;  // bytes used
+  TimeFs asked = 0;      // true time of the call, for a bus with clocks of its own
 };
 
 class Chip {
@@ -42,8 +44,21 @@ class Chip {
   virtual void abandon(unsigned face) = 0;               // what has not been made of its cycle is not made
   virtual bool busy(unsigned face) const = 0;            // its cycle has not ended with edge now()
   virtual std::uint32_t value(unsigned face) const = 0;  // what the last read took
-  virtual Tick no_end_until() const = 0;                 // a tick up to which no cycle ends; kNever: none is under way
+  // Of a face that is a bus, whose cycles end between two edges: when the last one did, and whether it was made.
+  struct BusEnd {
+    TimeFs time;
+    bool made;
+  };
+  virtual std::optional<BusEnd> bus_end(unsigned face) const {
+    (void)face;
+    return {};
+  }
+  virtual Tick no_end_until() const = 0;  // a tick up to which no cycle ends; kNever: none is under way
   virtual std::uint32_t peek(unsigned face, unsigned address) = 0;  // what a read would take now
+  virtual bool peeks(unsigned face, unsigned address) const {       // whether it can say
+    (void)face, (void)address;
+    return true;
+  }
 };
 
 class ChipFactory {

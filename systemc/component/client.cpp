@@ -90,28 +90,88 @@ void Client::show(Tick tick) {
 void Client::take(Tick tick) {
   catch_up(tick);
   if (inputs_differ_) chip_->set_inputs(inputs_);
-  begin_cycles();
+  do begin_cycles();
+  while (end_cycles());  // some need no edge
   inputs_differ_ = touched_ = false;
   foresee();
 }
+
+// An access of an initiator, which stands on its process' stack: it goes with it when the process is killed or reset,
+// wherever that waits, and what has not been made then is not made. Accesses of one instant have the order of their
+// processes' names, which no quantum changes, as it would that of the calls.
+class Client::Request {
+ public:
+  Request(Client& client, Face& face, const Cycle& cycle)
+      : client_(client),
+        face_(face),
+        cycle_(cycle),
+        time_(sc_core::sc_time_stamp()),
+        process_(sc_core::sc_get_current_process_handle().name()) {
+    const auto before = [this](const Request* other) {
+      return time_ != other->time_ ? time_ < other->time_ : process_ < other->process_;
+    };
+    face_.waiting.insert(std::find_if(face_.waiting.begin(), face_.waiting.end(), before), this);
+    client_.touch();
+  }
+  ~Request() {
+    face_.waiting.remove(this);
+    if (face_.under_way != this) return;
+    face_.under_way = nullptr;
+    face_.abandoned = true;
+    client_.touch();
+  }
+  Request(const Request&) = delete;
+  Request& operator=(const Request&) = delete;
+
+  const Cycle& cycle() const { return cycle_; }
+  void end(const Answer& answer, const sc_core::sc_time& until) {
+    answer_ = answer;
+    until_ = until;
+    ended_ = true;
+  }
+  bool ended() const { return ended_; }
+  const Answer& answer() const { return answer_; }
+  const sc_core::sc_time& until() const { return until_; }
+
+ private:
+  Client& client_;
+  Face& face_;
+  const Cycle cycle_;
+  const sc_core::sc_time time_;
+  const std::string process_;
+  bool ended_ = false;
+  Answer answer_{0, true};
+  sc_core::sc_time until_;  // a bus ends between two edges
+};
 
 void Client::begin_cycles() {
   for (unsigned i = 0; i < faces_.size(); ++i) {
     Face& face = *faces_[i];
     if (face.abandoned) chip_->abandon(i);
     face.abandoned = false;
-    if (face.state != Face::kAsked) continue;
-    chip_->begin(i, face.cycle);
-    face.state = Face::kUnderWay;
+    if (face.under_way != nullptr || face.waiting.empty()) continue;
+    face.under_way = face.waiting.front();
+    face.waiting.pop_front();
+    Cycle cycle = face.under_way->cycle();
+    cycle.asked = scheduler_.time();
+    chip_->begin(i, cycle);
   }
 }
 
-void Client::end_cycles() {
-  for (unsigned i = 0; i < faces_.size(); ++i)
-    if (faces_[i]->state == Face::kUnderWay && !chip_->busy(i)) {
-      faces_[i]->state = Face::kFree;
-      faces_[i]->ended.notify(sc_core::SC_ZERO_TIME);  // the outputs of this edge show then
-    }
+bool Client::end_cycles() {
+  bool ended = false;
+  for (unsigned i = 0; i < faces_.size(); ++i) {
+    Face& face = *faces_[i];
+    if (face.under_way == nullptr || chip_->busy(i)) continue;
+    const auto end = chip_->bus_end(i);
+    face.under_way->end({chip_->value(i), !end || end->made},
+                        end ? scheduler_.instant_at(end->time) : sc_core::SC_ZERO_TIME);
+    face.under_way = nullptr;
+    face.ended.notify(sc_core::SC_ZERO_TIME);  // the outputs of this edge show then
+    if (!face.waiting.empty()) touched_ = true;
+    ended = true;
+  }
+  return ended;
 }
 
 void Client::foresee() { due_ = eager_ ? kNever : std::min(quiet_until(), kNever - 1) + 1; }
@@ -148,45 +208,16 @@ void Client::deliver(bool all) {
   }
 }
 
-// An initiator's place in the queue; it leaves by its destructor when its process is killed or reset, too, wherever it
-// waits, and what has not been made then is not made.
-class Client::Turn {
- public:
-  Turn(Client& client, Face& face) : client_(client), face_(face), place_(face.queue.insert(face.queue.end(), this)) {}
-  ~Turn() {
-    if (first() && face_.state == Face::kUnderWay) {
-      face_.abandoned = true;
-      client_.touch();
-    }
-    if (first()) face_.state = Face::kFree;
-    face_.queue.erase(place_);
-    face_.free.notify();
-  }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-  void wait() const {
-    while (!first()) sc_core::wait(face_.free);
-  }
-
- private:
-  bool first() const { return face_.queue.front() == this; }
-  Client& client_;
-  Face& face_;
-  std::list<const Turn*>::iterator place_;
-};
-
-std::uint32_t Client::access(unsigned number, const Cycle& cycle) {
+Client::Answer Client::access(unsigned number, const Cycle& cycle) {
   Face& face = *faces_.at(number);
-  const Turn turn(*this, face);
-  turn.wait();
-  face.cycle = cycle;
-  face.state = Face::kAsked;
-  touch();
-  sc_core::wait(face.ended);
-  return chip_->value(number);
+  Request request(*this, face, cycle);
+  while (!request.ended()) sc_core::wait(face.ended);
+  if (request.until() > sc_core::sc_time_stamp()) sc_core::wait(request.until() - sc_core::sc_time_stamp());
+  return request.answer();
 }
 
-std::uint32_t Client::peek(unsigned face, unsigned address) {
+std::optional<std::uint32_t> Client::peek(unsigned face, unsigned address) {
+  if (!chip_->peeks(face, address)) return {};
   catch_up(scheduler_.tick());
   return chip_->peek(face, address);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <systemc>
@@ -25,8 +26,12 @@ class Client {
   void elaborate();  // once all ports are bound: what is watched, who wakes us
 
   // For the initiator's process; waits.
-  std::uint32_t access(unsigned face, const Cycle& cycle);
-  std::uint32_t peek(unsigned face, unsigned address);
+  struct Answer {
+    std::uint32_t value;
+    bool made;  // false: the bus could not
+  };
+  Answer access(unsigned face, const Cycle& cycle);
+  std::optional<std::uint32_t> peek(unsigned face, unsigned address);
 
   // For the scheduler.
   void start();          // levels of all inputs and outputs
@@ -39,13 +44,12 @@ class Client {
   Tick quiet_until() const;
 
  private:
-  class Turn;
+  class Request;
   struct Face {
-    enum { kFree, kAsked, kUnderWay } state = kFree;
-    bool abandoned = false;  // the cycle under way, whose process has been killed
-    Cycle cycle;
-    std::list<const Turn*> queue;  // initiators in the order of their calls; the first has the face
-    sc_core::sc_event free, ended;
+    std::list<Request*> waiting;  // by the time of the call, then by the name of the process
+    Request* under_way = nullptr;
+    bool abandoned = false;  // the cycle under way: its process has been killed
+    sc_core::sc_event ended;
   };
   void input_changed(const Pin& pin);
   void set_input(const Pin& pin);
@@ -55,7 +59,7 @@ class Client {
   bool step(Tick limit);
   void deliver(bool all);
   void begin_cycles();
-  void end_cycles();
+  bool end_cycles();  // one has ended
 
   Scheduler& scheduler_;
   const std::vector<PinInfo>& table_;

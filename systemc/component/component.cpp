@@ -55,13 +55,14 @@ tlm::tlm_response_status answer_of(const tlm::tlm_generic_payload& payload, unsi
                                    bool bytes) {
   const std::uint64_t address = payload.get_address();
   const unsigned length = payload.get_data_length();
-  if (payload.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
+  if (!payload.is_read() && !payload.is_write()) return tlm::TLM_COMMAND_ERROR_RESPONSE;
   if (address >= addresses || (bytes ? length > addresses - address : address % width != 0))
     return tlm::TLM_ADDRESS_ERROR_RESPONSE;
   if (bytes ? !valid_enables(payload) : payload.get_byte_enable_ptr() != nullptr)
     return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
   if ((bytes ? length == 0 : length != width) || payload.get_streaming_width() < length)
     return tlm::TLM_BURST_ERROR_RESPONSE;
+  if (payload.get_data_ptr() == nullptr) return tlm::TLM_GENERIC_ERROR_RESPONSE;
   return tlm::TLM_OK_RESPONSE;
 }
 
@@ -76,7 +77,7 @@ unsigned char* byte_at(tlm::tlm_generic_payload& payload, std::uint64_t address)
 
 // Bytes are in the order of their addresses, the least first, whatever the host's own order.
 Cycle cycle_of(tlm::tlm_generic_payload& payload, std::uint64_t address, unsigned width) {
-  Cycle cycle{payload.is_write(), static_cast<unsigned>(address), 0, 0};
+  Cycle cycle{payload.is_write(), static_cast<unsigned>(address), 0, 0, 0};
   for (unsigned i = 0; i < width; ++i)
     if (const unsigned char* byte = byte_at(payload, address + i)) {
       cycle.lanes |= 1u << i;
@@ -101,10 +102,19 @@ void Component::transport(unsigned number, tlm::tlm_generic_payload& payload, sc
   for (std::uint64_t at = payload.get_address() / face.width * face.width; at < end; at += face.width) {
     const Cycle cycle = cycle_of(payload, at, face.width);
     if (cycle.lanes == 0) continue;
-    const std::uint32_t value = client_->access(number, cycle);
-    if (!cycle.write) set_value(payload, at, face.width, value);
+    const Client::Answer answer = client_->access(number, cycle);
+    if (!answer.made) return payload.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+    if (!cycle.write) set_value(payload, at, face.width, answer.value);
   }
 }
+
+Component::BusAnswer Component::access(unsigned face, bool write, unsigned address, std::uint32_t value,
+                                       unsigned lanes) {
+  const Client::Answer answer = client_->access(face, {write, address, value, lanes, 0});
+  return {answer.value, answer.made};
+}
+
+std::optional<std::uint32_t> Component::peek(unsigned face, unsigned address) { return client_->peek(face, address); }
 
 // Command, address, data pointer and length are all that counts here; the status is left as it is.
 unsigned Component::debug(unsigned number, tlm::tlm_generic_payload& payload) {
@@ -119,7 +129,11 @@ unsigned Component::debug(unsigned number, tlm::tlm_generic_payload& payload) {
   std::uint32_t word = 0;
   for (unsigned i = 0; i < count; ++i) {
     const auto at = static_cast<unsigned>(address + i), lane = at % face.width;
-    if (i == 0 || lane == 0) word = client_->peek(number, at - lane);
+    if (i == 0 || lane == 0) {
+      const std::optional<std::uint32_t> seen = peek(number, at - lane);
+      if (!seen) return i;
+      word = *seen;
+    }
     payload.get_data_ptr()[i] = static_cast<unsigned char>(word >> 8 * lane);
   }
   return count;

@@ -33,8 +33,13 @@ sc_time Scheduler::time_of(Tick edge) const {
   if (edge < 0 || edge > kLastTick) out_of_time();
   return sc_time::from_value(instant_of(edge));
 }
-Scheduler::Units Scheduler::instant_of(Tick edge) const {
-  return epoch_ + static_cast<Units>(tick_to_fs(edge) / unit_) + 1;
+Scheduler::Units Scheduler::instant_of(Tick edge) const { return instant_at(tick_to_fs(edge)).value(); }
+sc_time Scheduler::instant_at(TimeFs time) const {
+  return sc_time::from_value(epoch_ + static_cast<Units>(time / unit_) + 1);
+}
+TimeFs Scheduler::time() const {
+  const Units now = sc_core::sc_time_stamp().value();
+  return now <= epoch_ ? 0 : static_cast<TimeFs>(now - epoch_) * unit_;
 }
 
 // The last edge whose true time is before `instant`.
@@ -73,8 +78,10 @@ void Scheduler::step() {
   if (!started_) start();
   const sc_time now = sc_core::sc_time_stamp();
   const Tick tick = tick_at(now);
-  for (Client* client : clients_)
+  for (Client* client : clients_) {
     if (client->due() <= tick) client->show(tick);
+    touched_ = touched_ || client->touched();  // the next cycle waits for the one that has ended
+  }
   // An input may still change in a later delta cycle of this instant, by our own outputs too: the last one counts. If
   // all foresee their outputs and nobody is touched, there is nothing to wait for: a touch wakes us again.
   if ((touched_ || !eager_.empty()) && instant_goes_on()) return;

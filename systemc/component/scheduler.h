@@ -23,6 +23,8 @@ class Scheduler {
 
   sc_core::sc_time time_of(Tick edge) const;
   Tick tick_at(const sc_core::sc_time& instant) const;
+  sc_core::sc_time instant_at(TimeFs time) const;  // in which what has this true time acts
+  TimeFs time() const;                             // what has this true time or a later one acts after this instant
   Tick tick() const { return tick_at(sc_core::sc_time_stamp()); }
 
   void add(Client& client) { clients_.push_back(&client); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "systemc/core/board_pins.h"
 #include "systemc/core/motor_pins.h"
@@ -38,6 +39,12 @@ class Board {
   virtual Tick quiet_until(const BoardOutputs& watched) const {
     (void)watched;
     return now();
+  }
+
+  // What the dual-ported RAM holds at host byte offset 2 * index, for reports; none: this engine cannot say.
+  virtual std::optional<std::uint16_t> dpram_word(unsigned index) const {
+    (void)index;
+    return {};
   }
 
   // Called after each edge at which an output changed, in order of ticks, with the values before and after.

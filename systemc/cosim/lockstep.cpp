@@ -147,6 +147,12 @@ class LockstepBoard : public Board {
     if (rtl != model) fail(now(), differences(rtl, model));
     return model;
   }
+  std::optional<std::uint16_t> dpram_word(unsigned index) const override {
+    const auto rtl = rtl_->dpram_word(index), model = model_->dpram_word(index);
+    if (rtl && model && *rtl != *model)
+      fail(now(), line(fmt::format("word {} of the dual-ported RAM", index), 16, true, *rtl, *model));
+    return model;
+  }
   void set_inputs(const BoardInputs& inputs) override {
     log_.inputs_changed(now(), inputs_, inputs);
     inputs_ = inputs;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,17 @@
 #include "systemc/cosim/verilated_module.h"
 
 namespace brick {
+
+// The memory of the dual-ported RAM, where the Verilated class has it as an array.
+template <class Root>
+auto dpram_word(const Root& root, unsigned index, int) -> decltype(std::optional<std::uint16_t>(
+    root.board_sim__DOT__u_board__DOT__u_dpram__DOT__u_memory__DOT__mem[index])) {
+  return root.board_sim__DOT__u_board__DOT__u_dpram__DOT__u_memory__DOT__mem[index];
+}
+template <class Root>
+std::optional<std::uint16_t> dpram_word(const Root&, unsigned, long) {
+  return {};
+}
 
 template <class Model>
 class RtlBoard : public Board {
@@ -44,6 +56,10 @@ class RtlBoard : public Board {
     for (unsigned i = 0; i < kBoardOutputWords; ++i)
       out.w[i] = (out.w[i] & ~kPortA.w[i]) | (model_->pins_o[i] & kPortA.w[i]);
     return out;
+  }
+
+  std::optional<std::uint16_t> dpram_word(unsigned index) const override {
+    return brick::dpram_word(*model_->rootp, index, 0);
   }
 
   void set_inputs(const BoardInputs& in) override {

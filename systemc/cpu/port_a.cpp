@@ -1,369 +1,51 @@
-// Port A bus master: decoding, the edges of a cycle one after the other, wait states and /TA, see port_a.h.
+// The socket of Port A and the signals of its lines, see port_a.h.
 #include "systemc/cpu/port_a.h"
 
-#include <algorithm>
 #include <cstring>
-
-#include "rtl/regs/brick_regs.hpp"
 
 namespace brick {
 
-namespace {
-
-constexpr std::uint32_t kWordMask = 0xFFFFFF;
-// Areas by their select lines. AA3 would select flash and battery RAM, which are not on this bus: BA3W is storage.
-constexpr unsigned kDefaultArea = 3;
-constexpr unsigned kOnChipWaitStates = 7;
-
-// Regions of docs/architecture.md that lie on Port A; the first three of each area select.
-struct Region {
-  std::uint32_t first, last;
-  unsigned area;
-};
-constexpr Region kRegions[] = {
-    {0x060000, 0x063FFF, 2},             // DPRAM
-    {0x070000, 0x0700FF, kDefaultArea},  // latches
-    {0x078000, 0x07BFFF, 1},             // gate ICs
-};
-constexpr std::uint32_t kOnChipFirst = 0xFFFF80, kOnChipLast = 0xFFFFFF;
-constexpr std::uint32_t kOnChipAddressPins = 0x3F;
-
-}  // namespace
-
 PortA::PortA(sc_core::sc_module_name name, Signals& signals)
     : sc_core::sc_module(name),
+      PortAMaster(this),
       signals_(signals),
-      addr_(signals.add("bus.addr", 19, Radix::kHex)),
-      data_(signals.add("bus.data", 24, Radix::kHex)),
-      aa_(signals.add("bus.aa", 4, Radix::kBinary)),
-      x_(signals.add("bus.x", 1, Radix::kBinary)),
-      rd_n_(signals.add("bus.rd_n", 1, Radix::kBinary, 1)),
-      wr_n_(signals.add("bus.wr_n", 1, Radix::kBinary, 1)) {
+      lines_{signals.add("bus.addr", 19, Radix::kHex),      signals.add("bus.data", 24, Radix::kHex),
+             signals.add("bus.aa", 4, Radix::kBinary),      signals.add("bus.x", 1, Radix::kBinary),
+             signals.add("bus.rd_n", 1, Radix::kBinary, 1), signals.add("bus.wr_n", 1, Radix::kBinary, 1)} {
   socket.register_b_transport(this, &PortA::b_transport);
 }
 
-void PortA::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
-  bcr_ = regs::cpu_bus::kBcr.reset;
-  pctl_ = regs::cpu_bus::kPctl.reset;
-  clock_.restart(edge, cycle, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
-  state_ = State::kIdle;
-  stand_ = edge;
-  in_doubt_ = false;
-  moving_ta_.reset();
-  levels_ = {};
-  if (watch_ != nullptr) watch_->bus_reset();
-  next_start_ = cycle;
-  pins.pa_aa = 0;
-  pins.pa_int = false;
-  pins.pa_rd_n = pins.pa_wr_n = true;
-  const TimeFs now = tick_to_fs(edge);
-  signals_.set(aa_, now, 0);
-  signals_.set(rd_n_, now, 1);
-  signals_.set(wr_n_, now, 1);
-}
-
-unsigned PortA::wait_states(unsigned area) const {
-  using namespace regs::cpu_bus::bcr;
-  constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
-  constexpr std::uint32_t kDevices = kBa1w.mask() | kBa2w.mask() | kBdfw.mask();
-  const bool set_up = ((bcr_ ^ regs::cpu_bus::kBcr.reset) & kDevices) != 0 || pctl_ != regs::cpu_bus::kPctl.reset;
-  return kFields[area].get(forced_bcr_ && set_up ? *forced_bcr_ : bcr_);
+void PortA::line_moved(PortALine line, TimeFs time, std::uint32_t value) {
+  signals_.set(lines_[static_cast<unsigned>(line)], time, value);
 }
 
 void PortA::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
   auto* request = payload.get_extension<PortARequest>();
-  if (state_ == State::kIdle && !begin(payload, *request)) return;
-  if (state_ != State::kDone) return;  // the status stays incomplete
-  state_ = State::kIdle;
-  if (!cycle_.write) std::memcpy(payload.get_data_ptr(), &cycle_.data, sizeof cycle_.data);
-  request->done = start_ + shape_.clocks + cycle_.stretched;
-  delay += sc_core::sc_time(static_cast<double>(cycle_.end - cycle_.start), sc_core::SC_FS);
+  if (!under_way() && !ask(payload, *request)) return;
+  if (!done()) return;  // the status stays incomplete
+  take_answer();
+  const PortACycle& cycle = answer();
+  if (!cycle.write) std::memcpy(payload.get_data_ptr(), &cycle.data, sizeof cycle.data);
+  request->done = done_at();
+  delay += sc_core::sc_time(static_cast<double>(cycle.end - cycle.start), sc_core::SC_FS);
   payload.set_response_status(tlm::TLM_OK_RESPONSE);
 }
 
-bool PortA::begin(tlm::tlm_generic_payload& payload, PortARequest& request) {
+bool PortA::ask(tlm::tlm_generic_payload& payload, PortARequest& request) {
   const std::uint32_t offset = static_cast<std::uint32_t>(payload.get_address()) - kPmacBase;
-  const std::uint32_t address = offset / 8;
-  const bool x = (offset & 4) != 0;
   request.done = request.start + 1;
   if (payload.get_data_length() != 4 || offset % 4 != 0) {
     payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);  // the bus knows whole words only
     return false;
   }
-  cycle_ = PortACycle{};
-  cycle_.on_chip = x && address >= kOnChipFirst && address <= kOnChipLast;
-  unsigned area = kDefaultArea;
-  if (!cycle_.on_chip) {
-    const auto region = std::find_if(std::begin(kRegions), std::end(kRegions),
-                                     [&](const Region& r) { return address >= r.first && address <= r.last; });
-    if (region == std::end(kRegions)) {
-      payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-      return false;
-    }
-    area = region->area;
-  }
-  cycle_.address = address;
-  cycle_.x = x;
-  cycle_.aa = static_cast<std::uint8_t>(area < kDefaultArea ? 1u << area : 0);
-  cycle_.write = payload.is_write();
-  cycle_.pc = request.pc;
-  cycle_.multiplier = clock_.multiplier();
-  // The on-chip peripherals keep their own pace when the core gets faster than 8 x 9.83 MHz.
-  cycle_.wait_states = cycle_.on_chip ? std::max(kOnChipWaitStates, clock_.multiplier() - 1) : wait_states(area);
-  if (cycle_.write) {
-    std::memcpy(&cycle_.data, payload.get_data_ptr(), sizeof cycle_.data);
-    cycle_.data &= kWordMask;
-  }
-  shape_ = port_a_shape(cycle_.wait_states, cycle_.write);
-  start_ = std::max(request.start, next_start_);
-  origin_ = clock_.origin(start_);
-  if (cycle_.on_chip && (address == regs::cpu_bus::kBcr.address || address == regs::cpu_bus::kPctl.address)) {
-    control_register(payload, request);
+  PortAAccess access{offset / 8, (offset & 4) != 0, payload.is_write(), 0, request.start, request.pc};
+  if (!maps(access.address, access.x)) {
+    payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
     return false;
   }
-  state_ = State::kRunning;
-  next(Step::kAddress);
+  if (access.write) std::memcpy(&access.data, payload.get_data_ptr(), sizeof access.data);
+  begin(access);
   return true;
-}
-
-void PortA::control_register(tlm::tlm_generic_payload& payload, PortARequest& request) {
-  const bool is_bcr = cycle_.address == regs::cpu_bus::kBcr.address;
-  std::uint32_t& reg = is_bcr ? bcr_ : pctl_;
-  request.done = start_ + shape_.clocks;
-  next_start_ = request.done;
-  if (cycle_.write) {
-    reg = cycle_.data & (is_bcr ? regs::cpu_bus::kBcr : regs::cpu_bus::kPctl).written;
-    if (!is_bcr)
-      clock_.restart(clock_.tick(request.done), request.done, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
-    if (on_control) on_control();
-  } else {
-    std::memcpy(payload.get_data_ptr(), &reg, sizeof reg);
-  }
-  payload.set_response_status(tlm::TLM_OK_RESPONSE);
-}
-
-TimeFs PortA::time_of(Step step) const {
-  switch (step) {
-    case Step::kAddress:
-      return clock_.time(origin_, 0);
-    case Step::kDriveData:
-      return clock_.time(origin_, shape_.data_driven);
-    case Step::kStrobeLow:
-      return clock_.time(origin_, shape_.strobe_low);
-    case Step::kStrobeHigh:
-      return clock_.time(origin_, shape_.strobe_high);
-    case Step::kEnd:
-      return clock_.time(origin_, 4 * (shape_.clocks + shape_.held_clocks));
-  }
-  return 0;
-}
-
-void PortA::next(Step step) {
-  step_ = step;
-  time_ = time_of(step);
-  const Tick before = stand_;  // what comes later is not seen earlier
-  in_doubt_ = resumed_ = false;
-  if (aperture_ == nullptr || !aperture_->on()) {
-    stand_ = late_ = fs_to_tick(time_) - 1;
-  } else if (step == Step::kStrobeLow || step == Step::kStrobeHigh) {
-    late_ = aperture_->seen(time_) - 1;
-    // What the board shows as the strobe rises is not what it shows later.
-    stand_ = step == Step::kStrobeLow ? late_ : std::min(late_, fs_to_tick(time_) - 1);
-  } else {
-    stand_ = aperture_->first(time_) - 1;
-    in_doubt_ = aperture_->in_doubt(time_) && aperture_->last(time_) - 1 > std::max(stand_, before);
-  }
-  stand_ = std::max(stand_, before);
-}
-
-void PortA::move_bus(PortAPins& pins) const {
-  switch (step_) {
-    case Step::kAddress:
-      pins.pa_addr = address_pins();
-      pins.pa_x = cycle_.x;
-      pins.pa_aa = cycle_.aa;
-      pins.pa_int = cycle_.on_chip;
-      break;
-    case Step::kDriveData:
-      pins.pa_wdata = cycle_.data;
-      break;
-    case Step::kEnd:
-      pins.pa_aa = 0;
-      pins.pa_int = false;
-      break;
-    default:
-      break;
-  }
-}
-
-void PortA::see(TimeFs time, const BoardOutputs& board) {
-  const Seen now{time, board.get(pin::kPaData), board.get(pin::kPaDataOe) != 0, board.get(pin::kPaTaN) != 0};
-  if (seen_.empty() || !now.same_data(seen_.back()) || now.busy != seen_.back().busy) seen_.push_back(now);
-}
-
-// Index of what stood on the pins at `time`.
-std::size_t PortA::seen_at(TimeFs time) const {
-  std::size_t i = seen_.size() - 1;
-  while (i > 0 && seen_[i].time > time) --i;
-  return i;
-}
-
-std::uint32_t PortA::address_pins() const { return cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu); }
-
-std::uint32_t PortA::random() {  // splitmix64
-  std::uint64_t z = random_ += 0x9E3779B97F4A7C15u;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
-}
-
-// Whether the strobe may rise now. /TA is sampled a quarter and its set-up before; if it moves from there on it is seen
-// or not seen (rows 118 and 119).
-bool PortA::acknowledged() {
-  if (cycle_.on_chip || cycle_.wait_states == 0) return true;
-  cycle_.ta_time = clock_.time(origin_, shape_.strobe_high - 1) - kTaSetup;
-  const std::size_t at = seen_at(cycle_.ta_time);
-  const bool busy = seen_[at].busy, now_busy = seen_.back().busy;
-  bool moved = false;
-  for (std::size_t i = at + 1; i < seen_.size(); ++i) moved = moved || seen_[i].busy != seen_[i - 1].busy;
-  if (!moved) return !busy;
-  return moving_ta_ ? *moving_ta_ != now_busy : (random() & 1) == 0;
-}
-
-// The word of a read, at /RD high. Bits that moved after the sample are anything, and so are all
-// of them when nobody drove the bus (rows 104 to 106).
-void PortA::take_data() {
-  // A cycle without time for the set-up takes what is there as /RD falls.
-  cycle_.data_time = std::max(time_ - kReadDataSetup, cycle_.strobe_low);
-  const std::size_t at = seen_at(cycle_.data_time);
-  cycle_.data = seen_[at].data;
-  if (cycle_.on_chip) return;
-  std::uint32_t moved = seen_[at].driven ? 0 : kWordMask;
-  for (std::size_t i = at + 1; i < seen_.size(); ++i) {
-    const Seen &before = seen_[i - 1], &after = seen_[i];
-    moved |= after.driven == before.driven ? after.data ^ before.data : kWordMask;
-  }
-  if (moved != 0) cycle_.data = (cycle_.data & ~moved) | (random() & moved);
-}
-
-// The first half of a step that takes two.
-void PortA::half_step(PortAPins& pins) {
-  const PortAPins from = pins;
-  PortAPins to = pins;
-  move_bus(to);
-  pins = aperture_->mixed(from, to, time_);
-  stand_ = aperture_->last(time_) - 1;
-  in_doubt_ = false;
-  resumed_ = true;
-}
-
-// The strobe has ended for the CPU; false if it goes on.
-bool PortA::end_strobe() {
-  if (!acknowledged()) {  // one clock more
-    ++cycle_.stretched;
-    origin_ = clock_.origin(start_ + cycle_.stretched);
-    next(Step::kStrobeHigh);
-    return false;
-  }
-  if (!cycle_.write) take_data();
-  cycle_.strobe_high = time_;
-  tell_watch();
-  resumed_ = late_ > stand_;
-  stand_ = std::max(stand_, late_);
-  return !resumed_;
-}
-
-// What the lines do at this step, whenever the board's flip-flops see it.
-void PortA::tell_watch() {
-  if (watch_ == nullptr || cycle_.on_chip) return;
-  switch (step_) {
-    case Step::kAddress:
-      levels_.addr = address_pins();
-      levels_.x = cycle_.x;
-      levels_.aa = cycle_.aa;
-      levels_.addr_oe = true;
-      levels_.multiplier = cycle_.multiplier;
-      levels_.wait_states = cycle_.wait_states;
-      levels_.pc = cycle_.pc;
-      break;
-    case Step::kDriveData:
-      levels_.data = cycle_.data;
-      levels_.data_oe = true;
-      break;
-    case Step::kStrobeLow:
-      (cycle_.write ? levels_.wr_n : levels_.rd_n) = false;
-      break;
-    case Step::kStrobeHigh:
-      levels_.rd_n = levels_.wr_n = true;
-      break;
-    case Step::kEnd:
-      levels_.aa = 0;
-      levels_.addr_oe = levels_.data_oe = false;
-      break;
-  }
-  watch_->cpu_moved(time_, levels_);
-}
-
-void PortA::step(PortAPins& pins, const BoardOutputs& board) {
-  strobe_moved_ = false;
-  if (step_ != Step::kStrobeHigh && !resumed_) tell_watch();
-  if (in_doubt_) return half_step(pins);
-  const bool shown = !cycle_.on_chip;
-  move_bus(pins);
-  switch (step_) {
-    case Step::kAddress:
-      cycle_.start = time_;
-      seen_.clear();
-      see(time_, board);
-      if (shown) {
-        signals_.set(addr_, time_, pins.pa_addr);
-        signals_.set(x_, time_, cycle_.x);
-        signals_.set(aa_, time_, cycle_.aa);
-      }
-      next(cycle_.write && shape_.data_driven < shape_.strobe_low ? Step::kDriveData : Step::kStrobeLow);
-      break;
-    case Step::kDriveData:
-      cycle_.data_time = time_;
-      if (shown) signals_.set(data_, time_, cycle_.data);
-      next(shape_.data_driven < shape_.strobe_low ? Step::kStrobeLow : Step::kStrobeHigh);
-      break;
-    case Step::kStrobeLow:
-      cycle_.strobe_low = time_;
-      (cycle_.write ? pins.pa_wr_n : pins.pa_rd_n) = false;
-      strobe_moved_ = true;
-      if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 0);
-      if (shown && !cycle_.write) signals_.set(data_, time_, board.get(pin::kPaData));
-      next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
-      break;
-    case Step::kStrobeHigh:
-      if (!resumed_ && !end_strobe()) break;
-      pins.pa_rd_n = pins.pa_wr_n = true;
-      strobe_moved_ = true;
-      if (shown) signals_.set(cycle_.write ? wr_n_ : rd_n_, time_, 1);
-      next(Step::kEnd);
-      break;
-    case Step::kEnd:
-      cycle_.end = time_;
-      if (shown) signals_.set(aa_, time_, 0);
-      state_ = State::kDone;
-      next_start_ = start_ + shape_.clocks + cycle_.stretched + shape_.idle_clocks;
-      if (on_cycle) on_cycle(cycle_);
-      break;
-  }
-}
-
-void PortA::board_follows(const BoardOutputs& board) {
-  const TimeFs time = step_ == Step::kEnd ? cycle_.strobe_high : cycle_.strobe_low;
-  see(time, board);
-  if (watch_ != nullptr) watch_->board_moved(time, board);
-}
-
-void PortA::board_changed(Tick tick, const BoardOutputs& board) {
-  if (state_ != State::kRunning || step_ == Step::kAddress) return;
-  const TimeFs time = tick_to_fs(tick);
-  see(time, board);
-  if (cycle_.write || cycle_.on_chip || step_ == Step::kStrobeLow || step_ == Step::kEnd) return;
-  signals_.set(data_, time, board.get(pin::kPaData));
 }
 
 }  // namespace brick

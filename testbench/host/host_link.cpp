@@ -1,26 +1,15 @@
 #include "testbench/host/host_link.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
 #include <utility>
+
+#include "testbench/host/framing_probe.h"
 
 namespace brick {
 
 namespace {
-
 constexpr Tick kConnectQuiet = ns_to_ticks(2'000'000);
-
-std::string squeezed(const std::string& line) {
-  std::string text;
-  for (const unsigned char c : line)
-    if (c > ' ') text.push_back(static_cast<char>(std::toupper(c)));
-  return text;
 }
-
-bool restarts(const std::string& line) { return squeezed(line).rfind("$$$", 0) == 0; }
-
-}  // namespace
 
 // ---------------------------------------------------------------------------------------------------------- characters
 
@@ -70,43 +59,65 @@ bool HostLink::send(const std::string& line, Tick timeout) {
   return put('\r', deadline);
 }
 
-// A line that assigns I3 or I4 may be acknowledged by the old setting or by the new one: only quiet ends such a reply.
-Reply HostLink::finish(Tick timeout) {
-  const Framing next = framing_after(sent_);
-  const bool changes = next.i3 != framing_.i3 || next.i4 != framing_.i4;
-  Framing expected = framing_;
-  if (changes) expected = {0, next.i4, framing_.i6};
-  ReplyParser parser(expected);
-  const Tick deadline = bus_.now() + timeout;
-  const bool by_quiet = expected.i3 < 2;
+Reply HostLink::collect(ReplyParser parser, Tick timeout) {
   std::size_t taken = 0;
+  Tick deadline = bus_.now() + timeout;
   for (;;) {
+    if (taken < incoming_.size()) deadline = bus_.now() + timeout;
     while (taken < incoming_.size() && !parser.complete()) parser.take(static_cast<std::uint8_t>(incoming_[taken++]));
-    if (parser.complete()) break;
-    const Tick limit = by_quiet ? std::min(deadline, bus_.now() + kQuietTime) : deadline;
-    if (receive(limit)) continue;
+    if (parser.complete() || taken >= kLongestReply) break;
+    if (receive(parser.ends_by_quiet() ? std::min(deadline, bus_.now() + kQuietTime) : deadline)) continue;
     if (parser.quiet() || bus_.now() >= deadline || bus_.tripped()) break;
   }
   incoming_.erase(0, taken);
+  return parser.reply();
+}
+
+// A line that changes I3 or I4 may be acknowledged by the old setting or by the new one, or not at all.
+Reply HostLink::collect_and_ask() {
+  while (incoming_.size() < kLongestReply && receive(bus_.now() + kQuietTime)) {}
+  const Framing before = framing_;
+  const bool known = ask_framing(may_take_long(sent_) ? kSaveTime : kReplyTime);
+  ReplyParser parser(before, command_checksum(sent_), true);
+  for (const char c : std::exchange(incoming_, "")) parser.take(static_cast<std::uint8_t>(c));
+  parser.quiet();
   Reply reply = parser.reply();
-  unsolicited_.insert(unsolicited_.end(), reply.unsolicited.begin(), reply.unsolicited.end());
-  if (changes) {  // a checksum that came or not
-    while (receive(bus_.now() + kQuietTime)) {}
-    incoming_.clear();
-  }
-  if (reply.complete && !reply.error) framing_ = next;
+  reply.complete = known;
   return reply;
 }
 
-Reply HostLink::command(const std::string& line) {
-  return command(line, squeezed(line).find("SAVE") != std::string::npos ? kSaveTime : kReplyTime);
+Reply HostLink::finish(Tick timeout) {
+  Reply reply;
+  if (may_change_framing(sent_)) {
+    reply = collect_and_ask();
+  } else {
+    reply = collect(ReplyParser(framing_, command_checksum(sent_)), timeout);
+    const bool silent = reply.complete && framing_.i3 == 0 && may_take_long(sent_);  // it may not even have begun
+    const bool lost = !reply.complete && !bus_.tripped() && reply.raw.size() < kLongestReply;
+    const Framing before = framing_;
+    if ((silent || lost) && ask_framing(silent ? kSaveTime : 4 * kQuietTime) && !(framing_ == before)) {
+      ReplyParser parser(framing_, command_checksum(sent_));  // a program has changed I3 or I4
+      for (const char c : reply.raw + std::exchange(incoming_, "")) parser.take(static_cast<std::uint8_t>(c));
+      parser.quiet();
+      reply = parser.reply();
+    }
+  }
+  unsolicited_.insert(unsolicited_.end(), reply.unsolicited.begin(), reply.unsolicited.end());
+  return reply;
 }
 
+Reply HostLink::command(const std::string& line) { return command(line, may_take_long(line) ? kSaveTime : kReplyTime); }
+
 Reply HostLink::command(const std::string& line, Tick timeout) {
-  if (!send(line, timeout)) return {};
-  if (!restarts(line)) return finish(timeout);
+  if (!send(line, may_take_long(sent_) ? kSaveTime : timeout)) return {};
+  return may_restart(line) ? restarted() : finish(timeout);
+}
+
+// Data of what stood before the restart, and an error there, which means that it was never reached.
+Reply HostLink::restarted() {
+  Reply reply = collect(ReplyParser(framing_, command_checksum(sent_), true), kQuietTime);
+  if (reply.error) return reply;
   incoming_.clear();
-  Reply reply;
   reply.complete = connect(kBootTime);
   return reply;
 }
@@ -115,7 +126,7 @@ Reply HostLink::control(std::uint8_t c) {
   poll();
   Reply reply;
   if (!put(c, bus_.now() + kReplyTime)) return reply;
-  ReplyParser parser(framing_);
+  ReplyParser parser(framing_, std::nullopt);
   while (receive(bus_.now() + kQuietTime)) {
     for (const char byte : incoming_) parser.take(static_cast<std::uint8_t>(byte));
     incoming_.clear();
@@ -123,31 +134,29 @@ Reply HostLink::control(std::uint8_t c) {
   }
   parser.quiet();
   reply = parser.reply();
+  if (may_change_framing({reinterpret_cast<const char*>(&c), 1})) ask_framing(kReplyTime);
   reply.complete = true;  // no answer is an answer to most control characters
   return reply;
 }
 
 // ------------------------------------------------------------------------------------------------------------- framing
 
-// What I3, I4 and I6 are once `line` has been executed.
-Framing HostLink::framing_after(const std::string& line) const {
-  Framing next = framing_;
-  const std::string text = squeezed(line);
-  const auto follow = [&](const char* name, unsigned& value, unsigned by_default) {
-    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
-      if (at != 0 && std::isalpha(static_cast<unsigned char>(text[at - 1]))) continue;
-      const bool hex = text.compare(at + 3, 1, "$") == 0;
-      const char* digits = text.c_str() + at + 3 + (hex ? 1 : 0);
-      if (*digits == '*') value = by_default;
-      // Two bits are kept of whatever is assigned: `I3=5` is `I3=1`.
-      const auto first = static_cast<unsigned char>(*digits);
-      if (hex ? std::isxdigit(first) : std::isdigit(first)) value = std::strtoul(digits, nullptr, hex ? 16 : 10) & 3u;
+// What comes before the answer stays in incoming_. False when there is none. It is asked again only where something
+// else came: an answer that is late must not come twice.
+bool HostLink::ask_framing(Tick timeout) {
+  const Tick deadline = bus_.now() + timeout;
+  std::size_t begin;
+  do {
+    begin = incoming_.size();
+    if (!put(kAskFraming, deadline) || !receive(deadline)) return false;
+    while (incoming_.size() < kLongestReply && receive(bus_.now() + kQuietTime)) {}
+    if (const auto answer = framing_answer(incoming_, begin)) {
+      incoming_.erase(answer->begin);
+      framing_ = answer->framing;
+      return true;
     }
-  };
-  follow("I3=", next.i3, 1);
-  follow("I4=", next.i4, 0);
-  follow("I6=", next.i6, 3);
-  return next;
+  } while (incoming_.size() > begin && incoming_.size() < kLongestReply && !bus_.tripped());
+  return false;
 }
 
 // ------------------------------------------------------------------------------------------------------------- connect
@@ -160,7 +169,7 @@ bool HostLink::try_connect(Tick deadline) {
   if (incoming_.empty() && !receive(std::min(deadline, bus_.now() + kReplyTime))) return false;
   while (receive(std::min(deadline, bus_.now() + kConnectQuiet))) {}
   incoming_.clear();
-  framing_ = {2, 0, 1};
+  framing_ = {2, 0};
   if (!send("I3", std::max<Tick>(1, deadline - bus_.now()))) return false;
   const Reply reply = finish(std::min(kReplyTime, std::max<Tick>(1, deadline - bus_.now())));
   if (!reply.complete || reply.error || reply.lines.size() != 1) return false;

@@ -1,5 +1,5 @@
 // Talks to the controller as host software does: sends command lines through the host port, collects replies,
-// understands the framing of I3, I4 and I6 (firmware:6) and follows changes of them that pass through it.
+// understands the framing of I3, I4 and I6 (firmware:6) and follows it when a line, a program or a restart changes it.
 #pragma once
 
 #include <string>
@@ -16,6 +16,7 @@ class HostLink {
   static constexpr Tick kReplyTime = ns_to_ticks(1'000'000'000);  // longest wait for an answer
   static constexpr Tick kSaveTime = ns_to_ticks(10'000'000'000);  // SAVE takes seconds
   static constexpr Tick kQuietTime = ns_to_ticks(5'000'000);      // I3 = 0 and 1: nothing for so long means the end
+  static constexpr std::size_t kLongestReply = 1 << 20;           // bytes; no reply is longer than that
 
   explicit HostLink(HostBus& bus) : bus_(bus) {}
 
@@ -23,8 +24,9 @@ class HostLink {
   // `timeout`.
   bool connect(Tick timeout);
 
-  // Sends `line` and CR, returns the reply. Control characters may be inside. A line that restarts the controller
-  // ($$$, $$$***) connects again.
+  // Sends `line` and CR, returns the reply. Control characters may be inside. `timeout`: from one character to the
+  // next. A line that restarts the controller ($$$, $$$*** anywhere in it) connects again, one that may change I3 or
+  // I4 looks what they are then; so does one whose reply does not end.
   Reply command(const std::string& line);
   Reply command(const std::string& line, Tick timeout);
 
@@ -46,7 +48,10 @@ class HostLink {
  private:
   bool put(std::uint8_t c, Tick deadline);
   bool receive(Tick deadline);  // one byte into incoming_
-  Framing framing_after(const std::string& line) const;
+  Reply collect(ReplyParser parser, Tick timeout);
+  Reply collect_and_ask();
+  Reply restarted();
+  bool ask_framing(Tick timeout);
   bool try_connect(Tick deadline);
 
   HostBus& bus_;
@@ -54,7 +59,7 @@ class HostLink {
   std::string incoming_;  // received while sending, not yet looked at
   std::string stray_;     // begun line of unsolicited text
   std::vector<std::string> unsolicited_;
-  std::string sent_;  // line that finish() waits for
+  std::string sent_;  // line that finish() waits for, or that was the last
 };
 
 }  // namespace brick

@@ -1,16 +1,15 @@
-// A host on the ISA / PC104 pins: time, and single cycles with real edges (host-bus:3.4). It knows the board by its
-// pins alone: data by what is driven on SD, the width of memory by MEMCS16#, waiting by IOCHRDY. Every call advances
-// the machine; pins are read and driven only while the board stands at that time, so the result is the same on every
-// engine.
+// A host on the ISA / PC104 pins of a machine: time, and the cycles of the bus master (systemc/host/isa_master.h).
+// Every call advances the machine; pins are read and driven only while the board stands at that time, so the result is
+// the same on every engine.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
 
-#include "systemc/host/local_bus.h"
+#include "systemc/host/isa_cycles.h"
+#include "systemc/host/isa_timing.h"
 #include "systemc/machine/machine.h"
-#include "testbench/host/isa_timing.h"
 
 namespace brick {
 
@@ -20,24 +19,21 @@ class HostBusError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-class IsaHost : public LocalBus {
+class IsaHost : public IsaCycles {
  public:
   explicit IsaHost(Machine& machine);
 
   // Bus cycles ------------------------------------------------------------------------------------------------------
-  std::uint8_t read_io(std::uint32_t port) override;
-  void write_io(std::uint32_t port, std::uint8_t value) override;
-  std::uint16_t read_memory(std::uint32_t address, unsigned lanes) override;
-  void write_memory(std::uint32_t address, std::uint16_t value, unsigned lanes) override;
   bool irq() const override { return machine_.outputs().get(pin::kIsaIrq) != 0; }
 
   void set_times(const isa::HostTimes& times) { times_ = times; }
   const isa::HostTimes& times() const { return times_; }
+  unsigned width() const override { return width_; }
   void set_width(unsigned bits) { width_ = bits; }  // 8: no SBHE#, nobody looks at MEMCS16#
 
   // Pins one by one, for hosts that keep no rule. `time` is not before now; the cycles above start after it.
   void drive_at(TimeFs time, const std::function<void(HostInputs&)>& edit);
-  std::uint16_t data_bus() const;  // lanes that nobody drives are pulled up
+  std::uint16_t data_bus() const { return IsaMaster::data_bus(pins()); }
   TimeFs free_at() const { return free_at_; }
 
   // Time --------------------------------------------------------------------------------------------------------------
@@ -65,29 +61,14 @@ class IsaHost : public LocalBus {
   const IsaStraps& switches() const { return machine_.inputs(); }
 
  private:
-  enum class Command { kIoRead, kIoWrite, kMemoryRead, kMemoryWrite };
-  struct Cycle {
-    Command command;
-    std::uint32_t address;
-    std::uint16_t data;
-    bool sbhe;
-    bool memory() const { return command == Command::kMemoryRead || command == Command::kMemoryWrite; }
-    bool write() const { return command == Command::kIoWrite || command == Command::kMemoryWrite; }
-  };
-  struct Result {
-    std::uint16_t data;
-    bool narrow;  // a memory cycle of eight bits
-  };
-  Result cycle(const Cycle& c);
+  IsaResult cycle(const IsaCycle& c) override;
   template <class Edit>
   void drive(TimeFs time, const Edit& edit);
-  std::uint8_t cycle8(Command command, std::uint32_t address, std::uint8_t data);
-  bool not_ready(const isa::CycleTimes& times, TimeFs end);
-  TimeFs stretch(const Cycle& c, TimeFs start, TimeFs low, TimeFs end);
   TimeFs cycle_start();
   void step_to(Tick limit, const BoardOutputs& stop_on);
 
   Machine& machine_;
+  IsaMaster isa_;
   isa::HostTimes times_ = isa::kTypical;
   unsigned width_;
   TimeFs free_at_ = 0;  // the bus is free for the next cycle

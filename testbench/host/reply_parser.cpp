@@ -1,16 +1,40 @@
 #include "testbench/host/reply_parser.h"
 
+#include <utility>
+
+#include <fmt/format.h>
+
 namespace brick {
 
 namespace {
 constexpr char kStx = 0x02, kAck = 0x06, kBell = 0x07, kLf = 0x0A, kCr = 0x0D;
 }
 
+std::uint8_t command_checksum(std::string_view line) {
+  unsigned sum = 0;
+  for (const unsigned char c : line)
+    if (c >= ' ') sum += c;
+  return static_cast<std::uint8_t>(sum);
+}
+
+// True when the byte was one. That of an error is not known to be sent, let alone what it counts.
+bool ReplyParser::take_checksum(std::uint8_t byte) {
+  const Due due = std::exchange(due_, Due::kNothing);
+  if (due == Due::kNothing) return false;
+  const std::uint8_t sum = std::exchange(sum_, std::uint8_t{0});
+  const std::uint8_t expected = due == Due::kLine ? sum : due == Due::kCommand ? command_.value_or(byte) : byte;
+  if (mixed_ && byte != expected) return false;
+  if (byte != expected && reply_.bad_checksum.empty()) {
+    const std::string whose = due == Due::kLine && !reply_.lines.empty() ? "`" + reply_.lines.back() + "`" : "the line";
+    reply_.bad_checksum = fmt::format("the checksum of {} is ${:02X}, expected ${:02X}", whose, byte, expected);
+  }
+  if (due != Due::kLine) reply_.complete = !mixed_;
+  return true;
+}
+
 void ReplyParser::end_line() {
-  if (tagged_)
-    reply_.unsolicited.push_back(line_);
-  else
-    reply_.lines.push_back(line_);
+  (tagged_ ? reply_.unsolicited : reply_.lines).push_back(line_);
+  if (reply_.error && !tagged_) numbered_ = true;
   line_.clear();
   tagged_ = false;
 }
@@ -18,37 +42,40 @@ void ReplyParser::end_line() {
 void ReplyParser::take(std::uint8_t byte) {
   const char c = static_cast<char>(byte);
   reply_.raw.push_back(c);
-  if (skip_) {
-    skip_ = false;
-    reply_.complete = last_;
+  if (take_checksum(byte)) return;
+  if (held_) {
+    take_text(*std::exchange(held_, std::nullopt));
+  } else if (handshake_ && (framing_.checksums() || mixed_) && byte == command_.value_or(byte)) {
+    held_ = c;
     return;
   }
+  take_text(c);
+}
+
+void ReplyParser::take_text(char c) {
+  const bool sums = framing_.checksums() || mixed_;
   handshake_ = false;
+  sum_ = static_cast<std::uint8_t>(sum_ + static_cast<unsigned char>(c));
   switch (c) {
     case kAck:
       if (!line_.empty()) end_line();
-      skip_ = last_ = framing_.checksums();  // the checksum of the command line follows the acknowledge
-      reply_.complete = !last_;
+      if (sums) due_ = Due::kCommand;
+      reply_.complete = !sums;
       break;
     case kBell:
       if (!line_.empty()) end_line();
       reply_.error = true;
-      if (framing_.i6 % 2 == 0) {  // no number follows
-        reply_.lines.emplace_back("ERR");
-        reply_.complete = true;
-      }
       break;
-    case kCr: {
+    case kCr:
       if (line_.empty() && reply_.error) break;  // I6 = 3: BELL CR ERRnnn CR
-      const bool number = reply_.error && !tagged_;
       end_line();
-      skip_ = framing_.checksums();
-      last_ = number;
-      if (number) reply_.complete = !skip_;
+      if (!sums) sum_ = 0;
+      if (sums) due_ = numbered_ ? Due::kError : Due::kLine;
+      reply_.complete = numbered_ && !sums;
       break;
-    }
     case kLf:
-      handshake_ = true;
+      sum_ = static_cast<std::uint8_t>(kLf);
+      handshake_ = framing_.i3 == 1 || mixed_;
       break;
     case kStx:
       if (line_.empty()) {
@@ -61,20 +88,22 @@ void ReplyParser::take(std::uint8_t byte) {
   }
 }
 
+bool ReplyParser::quiet_is_the_end() {
+  if (reply_.error || mixed_ || framing_.i3 == 0 || held_) return true;
+  if (framing_.i3 != 1 || !framing_.checksums()) return framing_.i3 == 1 && handshake_;
+  if (line_.size() != 1) return false;  // a LF and one character: that should have been the checksum
+  reply_.bad_checksum = fmt::format("the checksum of the line is ${:02X}, expected ${:02X}",
+                                    static_cast<unsigned char>(line_[0]), command_.value_or(0));
+  line_.clear();
+  return true;
+}
+
 bool ReplyParser::quiet() {
-  if (reply_.complete) return true;
-  if (reply_.error) {
-    if (!line_.empty()) end_line();
-    reply_.complete = true;
-  } else if (framing_.i3 == 0) {
-    if (!line_.empty()) end_line();
-    reply_.complete = true;
-  } else if (framing_.i3 == 1) {
-    const bool with_checksum = framing_.checksums() && line_.size() == 1;  // LF and the checksum of the command line
-    reply_.complete = handshake_ || with_checksum;
-    if (with_checksum) line_.clear();
-  }
-  return reply_.complete;
+  if (reply_.complete || !quiet_is_the_end()) return reply_.complete;
+  if (!line_.empty()) end_line();
+  if (reply_.error && !numbered_) reply_.lines.emplace_back("ERR");  // I6 = 0, 2
+  reply_.complete = true;
+  return true;
 }
 
 }  // namespace brick

@@ -4,17 +4,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace brick {
 
-// What I3, I4 and I6 say about the form of an answer.
+// What I3 and I4 say about the form of an answer. That of an error, I6, shows by itself.
 struct Framing {
   unsigned i3 = 1;
   unsigned i4 = 1;
-  unsigned i6 = 1;
-  bool checksums() const { return i4 & 1; }
+  bool checksums() const { return (i4 & 1) != 0; }
+  bool operator==(const Framing& other) const { return i3 == other.i3 && checksums() == other.checksums(); }
 };
 
 struct Reply {
@@ -22,32 +24,50 @@ struct Reply {
       lines;  // data lines without framing, error as "ERRnnn" in the last one ("ERR" when I6 sends no number)
   std::vector<std::string> unsolicited;  // lines that a program sent, tagged by <CTRL-B> (I64)
   std::string raw;                       // every byte received
+  std::string bad_checksum;              // what was wrong with the first checksum that was, else empty
   bool error = false;                    // BELL was received
-  bool complete = false;                 // false: time-out
+  bool complete = false;                 // false: time-out, or longer than any reply is
 };
+
+// Of a line sent to the controller: the sum of its characters, control characters left out (host-bus:8.3/3).
+std::uint8_t command_checksum(std::string_view line);
 
 class ReplyParser {
  public:
-  explicit ReplyParser(Framing framing) : framing_(framing) {}
+  // `mixed`: the line may change I3 and I4 half-way, so that only quiet ends the reply, and bytes are taken for
+  // checksums where they agree with one. `command`: the checksum of the line; none: any byte will do.
+  ReplyParser(Framing framing, std::optional<std::uint8_t> command, bool mixed = false)
+      : framing_(framing), command_(command), mixed_(mixed) {}
 
   void take(std::uint8_t byte);
   bool complete() const { return reply_.complete; }  // the framing itself says that nothing more comes
 
-  // Nothing has come for a while: true when the answer is complete with that (I3 = 0 and 1 have no other end).
+  // Nothing has come for a while: true when the answer is complete with that. I3 = 0 and 1 have no other end, nor have
+  // errors without a number and errors among checksums.
   bool quiet();
+  bool ends_by_quiet() const { return mixed_ || framing_.i3 < 2 || reply_.error; }
 
   const Reply& reply() const { return reply_; }
 
  private:
+  enum class Due { kNothing, kLine, kCommand, kError };  // whose checksum may come next
+
+  bool take_checksum(std::uint8_t byte);
+  void take_text(char c);
   void end_line();
+  bool quiet_is_the_end();
 
   Framing framing_;
+  std::optional<std::uint8_t> command_;
+  bool mixed_;
   Reply reply_;
   std::string line_;
-  bool tagged_ = false;     // the line began with <CTRL-B>
-  bool skip_ = false;       // the next byte is a checksum
-  bool last_ = false;       // nothing comes after that checksum
-  bool handshake_ = false;  // I3 = 1: the last thing was a LF, with its checksum if any
+  std::uint8_t sum_ = 0;  // of the line that is being received, or of the last one
+  Due due_ = Due::kNothing;
+  bool tagged_ = false;       // the line began with <CTRL-B>
+  bool numbered_ = false;     // the number of the error has come
+  bool handshake_ = false;    // I3 = 1: the last thing was a LF
+  std::optional<char> held_;  // what came behind that LF: the command's checksum, or the first character of a line
 };
 
 }  // namespace brick

@@ -3,12 +3,16 @@
 usage: acceptance.py BRICK CASE; each CASE is one test.
 """
 
+import collections
 import json
+import os
 import pathlib
+import pty
 import re
 import subprocess
 import tempfile
 
+import backup_file
 import command
 from command import BOARDS, brick, check, play
 
@@ -145,6 +149,124 @@ def pic_8259():
     r = play(["@pic clear"], "--board", "pmac-pc")
     check(r.returncode == 2 and "the interrupt controller of this board is an 8259" in r.stderr, r.stderr)
     check("by an 8259" in brick("boards", "pmac-pc").stdout, "brick boards")
+
+
+def dialogue():
+    """I3, I4, I6 and restarts in the middle of a script do not lose the dialogue."""
+    lines, expected = [], []
+    for i3, i4, i6 in ((0, 0, 1), (1, 0, 0), (2, 1, 3), (3, 1, 1), (0, 1, 2), (1, 1, 3), (3, 0, 0), (2, 0, 1)):
+        lines += [f"I16 I3={i3} I4={i4} I6={i6}", "I16 I17", "P1=1", "I16 UUU", "I17"]
+        expected += ["5", "5", "10", "5", "ERR003" if i6 % 2 else "ERR", "10"]
+    for line in ("$$$", "I16=7 $$$", "I3=0 $$$***", "I16=7 I4=1 $$$***", "I3=1 SAVE", "I3=0", "SAVE"):
+        lines += [line, "I16 I17"]
+        expected += ["5", "10"]
+    r = play(lines)
+    check(r.returncode == 0 and r.stdout.split() == expected, f"{r.stdout.split()}, expected {expected}: {r.stderr}")
+    check(r.stderr.count("I16 UUU") == 8 and "stdin:4: `I16 UUU`: ERR003: unknown command" in r.stderr, r.stderr)
+    r = play(["UUU", "@expect ERR003", "UUU $$$", "I16", "@expect 5"])
+    check(r.returncode == 0 and r.stderr.count("\n") == 2 and "stdin:3: " in r.stderr, "expected errors are not told")
+
+
+def command_files():
+    """Comments, includes, macros and conditions as host programs read them; errors with file and line."""
+    with tempfile.TemporaryDirectory() as folder:
+        job = pathlib.Path(folder) / "job.pmc"
+        (pathlib.Path(folder) / "names.pmc").write_text("#define HEIGHT Q7\n#define SCALE(m,n) #m->n##X\n\nFROB\n")
+        job.write_text('''; a job
+#include "names.pmc"  // names of variables
+#define SUM(a, b) ((a)+(b))
+#ifdef HEIGHT
+HEIGHT = SUM(1, SUM(2,3))
+#else
+UUU
+#endif
+/* over
+lines */ HEIGHT
+@expect 6
+#1->1000X
+#1->
+@expect 1000X
+#1p ; a motor, no directive
+I16
+''')
+        r = brick("exec", str(job), "--json", f"{folder}/x.json")
+        check(r.returncode == 0 and r.stdout.split() == ["ERR003", "6", "1000X", "0", "5"], r.stdout + r.stderr)
+        check(f"brick exec: {folder}/names.pmc:4: `FROB`: ERR003: unknown command" in r.stderr, r.stderr)
+        check("1 of 9 lines refused: 1 x ERR003" in r.stderr, r.stderr)
+        found = json.loads(pathlib.Path(f"{folder}/x.json").read_text())["exchanges"]
+        check(found[-1] == {"place": f"{job}:16", "line": "I16", "reply": ["5"], "error": False}, str(found))
+        for bad, what in (("#include \"none.pmc\"", f"{job}:1: `{folder}/none.pmc` cannot be read; expected"),
+                          ("#define L " + "X" * 300 + "\nL", f"{job}:2: `L` expands to 300 characters; expected"),
+                          ("#include \"job.pmc\"", "expected no file that includes itself"),
+                          ("#ifdef A", f"{job}:1: a condition without its end; expected #endif"),
+                          ("I16\n@frob", f"{job}:2: @frob: ")):
+            job.write_text(bad + "\n")
+            r = brick("exec", str(job))
+            check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1 and what in r.stderr, r.stderr)
+
+
+# What the image does not have yet. It must be exactly this: what is not refused any more is struck out here.
+REFUSED_TODAY = {"PLC"}
+MOST_REFUSED = 20  # of 30,000 lines, but for those
+
+
+# covers: CARD-3
+def backup():
+    """The backup of a controller loads; what is refused is told with its place, and nothing is lost on the way."""
+    with tempfile.TemporaryDirectory() as folder:
+        places = backup_file.write(folder)
+        job = pathlib.Path(folder) / "backup.pmc"
+        values = backup_file.p_values()
+        asked = range(2000, 8192, 43)  # lines of PLCs that cannot be opened assign lower ones
+        job.write_text(job.read_text() + "FROB ; a fault\n" + "".join(f"P{n}\n" for n in asked) + "I3\nI5189\n")
+        r = brick("exec", str(job), "--json", f"{folder}/x.json", timeout=550)
+        check(r.returncode == 0, r.stderr)
+        exchanges = json.loads(pathlib.Path(f"{folder}/x.json").read_text())["exchanges"]
+    check(len(places) >= 30000, f"{len(places)} lines, expected 30,000")
+    sent = [e["line"] for e in exchanges[:len(places)]]
+    check(sent == [line for _, line in places.values()], "other lines were sent")
+    refused = [e for e in exchanges if e["error"]]
+    check(refused[-1]["line"] == "FROB" and refused[-1]["place"].startswith(str(job)), str(refused[-1]))
+    kinds = collections.Counter(places[e["place"]][0] for e in refused[:-1])
+    print(f"{len(places)} lines, {len(refused) - 1} refused: {dict(kinds)}")
+    check(set(kinds) >= REFUSED_TODAY, f"not refused any more, strike it out: {REFUSED_TODAY - set(kinds)}")
+    others = [e for e in refused[:-1] if places[e["place"]][0] not in REFUSED_TODAY]
+    check(len(others) <= MOST_REFUSED, f"{len(others)} refused, expected at most {MOST_REFUSED}: {others[:5]}")
+    told = [line for line in r.stderr.splitlines() if "`: ERR" in line]
+    check(len(told) == min(len(refused), 50), f"{len(told)} refused lines told")
+    for line, e in zip(told, refused, strict=False):
+        check(line.startswith(f"brick exec: {e['place']}: `{e['line']}`: {e['reply'][-1]}: "), f"{line}: {e}")
+    check(f"{len(refused)} of {len(exchanges)} lines refused" in r.stderr, r.stderr[-200:])
+    answers = [float(e["reply"][0]) for e in exchanges[-len(asked) - 2:]]
+    wrong = [(n, a) for n, a in zip(asked, answers, strict=False) if abs(a - values[n]) > 1e-9 * max(1, abs(values[n]))]
+    check(not wrong, f"P variables hold other values than were sent: {wrong}")
+    check(answers[-2:] == [2, 1000], str(answers[-2:]))
+
+
+def progress():
+    """A terminal on stderr sees one line that moves on and goes away; a file sees nothing."""
+    script = "".join(f"P{n}={n}\n" for n in range(8000)) + "FROB\n"
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "long.pmc"
+        file.write_text(script)
+        check(brick("exec", str(file)).stderr.count("\n") == 2, "silent but for the refused line")
+        mine, terminal = pty.openpty()
+        with subprocess.Popen([command.BRICK, "exec", str(file)], stdout=subprocess.PIPE, stderr=terminal) as run:
+            os.close(terminal)
+            seen = b""
+            while chunk := read_some(mine):
+                seen += chunk
+        check(run.returncode == 0, seen.decode())
+    lines = [int(n) for n in re.findall(rb"\r\x1b\[Kexec: [^\r]*, line (\d+) of 8001, \d refused", seen)]
+    check(len(lines) >= 2 and lines == sorted(lines) and lines[-1] > lines[0], str(lines))
+    check(b"\r\x1b[Kbrick exec: " in seen and seen.endswith(b"1 x ERR003\r\n"), str(seen[-200:]))
+
+
+def read_some(terminal):
+    try:
+        return os.read(terminal, 4096)
+    except OSError:  # the other end is closed
+        return b""
 
 
 # covers: BREQ-6

@@ -1,6 +1,7 @@
 #include "testbench/unit/app/fake_machine.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace brick {
 
@@ -48,6 +49,7 @@ Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) {
     m.outputs.set(pin::kIsaSdOe, !m.applied.isa_memr_n ? 3 : !m.applied.isa_ior_n ? 1 : 0);
     m.outputs.set(pin::kIsaIochrdy, m.now < m.fake.ready_low_from || m.now >= m.fake.ready_low_to);
     if (before.differs(m.outputs, stop_on)) break;
+    if (m.fake.planned.empty() && m.fake.ready_low_from == kNever) m.now = limit;  // nothing moves by itself
   }
   return m.now;
 }
@@ -70,10 +72,14 @@ void Machine::apply(TimeFs) {
   if (!m.applied.isa_iow_n && m.pins.isa_iow_n) {
     const auto byte = static_cast<std::uint8_t>(m.pins.isa_sd);
     f.io[offset] = byte;
-    if (offset == 7 && byte == '\r') {
-      const std::string answer = f.controller ? f.controller(f.line) : "";
+    const auto say = [&f](const std::string& answer) {
       f.to_host.insert(f.to_host.end(), answer.begin(), answer.end());
-      f.line.clear();
+    };
+    if (offset == 7 && byte == '\r') {
+      const std::string line = std::exchange(f.line, "");
+      if (f.controller) say(f.controller(line));
+    } else if (offset == 7 && byte < ' ') {
+      if (f.control) say(f.control(static_cast<char>(byte)));
     } else if (offset == 7) {
       f.line.push_back(static_cast<char>(byte));
     }

@@ -21,6 +21,7 @@ struct FakeMachine {
   std::deque<std::uint8_t> to_host;                           // characters of the controller
   std::string line;                                           // characters of the host up to CR
   std::function<std::string(const std::string&)> controller;  // line without CR -> bytes of the answer
+  std::function<std::string(char)> control;                   // other control characters -> bytes of the answer
   std::map<std::uint32_t, std::uint8_t> io;                   // other I/O bytes by offset, written and read back
   std::map<std::uint32_t, std::uint16_t> memory;
   std::vector<std::pair<Tick, BoardOutputs>> planned;   // outputs from that edge on, in order

@@ -5,14 +5,15 @@
 #include "testbench/host/host_link.h"
 #include "testbench/unit/app/fake_machine.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/framing.h"
 
 namespace brick {
 namespace {
 
 using Lines = std::vector<std::string>;
 
-ReplyParser parsed(Framing framing, const std::string& bytes) {
-  ReplyParser parser(framing);
+ReplyParser parsed(Framing framing, const std::string& bytes, std::uint8_t command = 0) {
+  ReplyParser parser(framing, command);
   for (const char c : bytes) {
     EXPECT_FALSE(parser.complete()) << "complete too early in " << bytes;
     parser.take(static_cast<std::uint8_t>(c));
@@ -21,20 +22,20 @@ ReplyParser parsed(Framing framing, const std::string& bytes) {
 }
 
 TEST(ReplyParser, DataUpToTheAcknowledge) {
-  const auto p = parsed({2, 0, 1}, "25\r50\r75\r\x06");
+  const auto p = parsed({2, 0}, "25\r50\r75\r\x06");
   EXPECT_TRUE(p.complete());
   EXPECT_EQ(p.reply().lines, (Lines{"25", "50", "75"}));
   EXPECT_FALSE(p.reply().error);
 }
 
 TEST(ReplyParser, LineFeedsOfI3Equal3AreNoData) {
-  const auto p = parsed({3, 0, 1}, "\n25\r\n50\r\x06");
+  const auto p = parsed({3, 0}, "\n25\r\n50\r\x06");
   EXPECT_TRUE(p.complete());
   EXPECT_EQ(p.reply().lines, (Lines{"25", "50"}));
 }
 
 TEST(ReplyParser, ErrorWithNumberEndsAtItsCr) {
-  const auto p = parsed({2, 0, 1},
+  const auto p = parsed({2, 0},
                         "\x07"
                         "ERR003\r");
   EXPECT_TRUE(p.complete());
@@ -43,9 +44,11 @@ TEST(ReplyParser, ErrorWithNumberEndsAtItsCr) {
 }
 
 TEST(ReplyParser, ErrorFormsOfI6) {
-  EXPECT_TRUE(parsed({2, 0, 0}, "\x07").complete());
-  EXPECT_EQ(parsed({2, 0, 0}, "\x07").reply().lines, (Lines{"ERR"}));
-  const auto p = parsed({3, 0, 3},
+  auto bare = parsed({2, 0}, "\x07");
+  EXPECT_TRUE(bare.ends_by_quiet());
+  EXPECT_TRUE(bare.quiet());
+  EXPECT_EQ(bare.reply().lines, (Lines{"ERR"}));
+  const auto p = parsed({3, 0},
                         "\x07\r\n"
                         "ERR005\r");
   EXPECT_TRUE(p.complete());
@@ -53,7 +56,7 @@ TEST(ReplyParser, ErrorFormsOfI6) {
 }
 
 TEST(ReplyParser, DataBeforeTheErrorIsKept) {
-  EXPECT_EQ(parsed({2, 0, 1},
+  EXPECT_EQ(parsed({2, 0},
                    "7007\r\x07"
                    "ERR003\r")
                 .reply()
@@ -62,28 +65,63 @@ TEST(ReplyParser, DataBeforeTheErrorIsKept) {
 }
 
 TEST(ReplyParser, QuietEndsI3Equal0And1Only) {
-  auto none = parsed({0, 0, 1}, "");
+  auto none = parsed({0, 0}, "");
   EXPECT_TRUE(none.quiet());
-  auto data = parsed({0, 0, 1}, "25\r");
+  auto data = parsed({0, 0}, "25\r");
   EXPECT_TRUE(data.quiet());
   EXPECT_EQ(data.reply().lines, (Lines{"25"}));
-  auto open = parsed({1, 0, 1}, "\n25\r");
+  auto open = parsed({1, 0}, "\n25\r");
   EXPECT_FALSE(open.quiet()) << "the last LF is missing";
   open.take('\n');
   EXPECT_TRUE(open.quiet());
-  auto silent = parsed({2, 0, 1}, "25\r");
+  auto silent = parsed({2, 0}, "25\r");
   EXPECT_FALSE(silent.quiet());
 }
 
 TEST(ReplyParser, ChecksumsMayLookLikeAnything) {
-  const auto p = parsed({2, 1, 1}, std::string("25\r\x07\x06\x0D", 6));  // line checksum BELL, command checksum CR
+  // $F9 and CR add up to ACK; the checksum of the command is BELL.
+  const auto p = parsed({2, 1}, "\xF9\r\x06\x06\x07", 0x07);
   EXPECT_TRUE(p.complete());
   EXPECT_FALSE(p.reply().error);
-  EXPECT_EQ(p.reply().lines, (Lines{"25"}));
+  EXPECT_EQ(p.reply().lines, (Lines{"\xF9"}));
+  EXPECT_EQ(p.reply().bad_checksum, "");
+  auto lf = parsed({1, 1}, "\n\x07", 0x07);  // I3 = 1: the command's checksum behind the LF
+  EXPECT_TRUE(lf.quiet());
+  EXPECT_FALSE(lf.reply().error);
+  EXPECT_EQ(lf.reply().lines, Lines{});
+  auto text = parsed({1, 1}, std::string("\n25\r") + checksum("\n25\r") + "\n2", '2');
+  EXPECT_TRUE(text.quiet()) << "the same behind data";
+  EXPECT_EQ(text.reply().lines, (Lines{"25"}));
+}
+
+// J+ is 117 (firmware:6.5/1); 25 CR is $32 + $35 + $0D = $74.
+TEST(ReplyParser, WrongChecksumsAreTold) {
+  EXPECT_EQ(command_checksum("J\x02+"), 117);
+  EXPECT_EQ(parsed({2, 1}, "25\r\x74\x06u", 117).reply().bad_checksum, "");
+  EXPECT_EQ(parsed({2, 1}, "25\r\x75\x06u", 117).reply().bad_checksum, "the checksum of `25` is $75, expected $74");
+  EXPECT_EQ(parsed({2, 1}, "25\r\x74\x06v", 117).reply().bad_checksum, "the checksum of the line is $76, expected $75");
+  auto lf = parsed({1, 1}, "\nv", 117);
+  EXPECT_TRUE(lf.quiet());
+  EXPECT_EQ(lf.reply().bad_checksum, "the checksum of the line is $76, expected $75");
+  EXPECT_EQ(lf.reply().lines, Lines{});
+}
+
+// No source says whether an error has a checksum, or of what.
+TEST(ReplyParser, ErrorAmongChecksumsEndsWithOrWithoutOne) {
+  auto without = parsed({2, 1},
+                        "\x07"
+                        "ERR003\r");
+  EXPECT_FALSE(without.complete());
+  EXPECT_TRUE(without.quiet());
+  EXPECT_EQ(without.reply().lines, (Lines{"ERR003"}));
+  EXPECT_TRUE(parsed({2, 1},
+                     "\x07"
+                     "ERR003\rx")
+                  .complete());
 }
 
 TEST(ReplyParser, TaggedLinesAreUnsolicited) {
-  const auto p = parsed({2, 0, 1},
+  const auto p = parsed({2, 0},
                         "\x02"
                         "HELLO\r25\r\x06");
   EXPECT_EQ(p.reply().lines, (Lines{"25"}));
@@ -117,41 +155,6 @@ TEST_F(HostLinkTest, ConnectSetsTheFramingWhateverItWas) {
 TEST_F(HostLinkTest, ConnectGivesUpOnASilentController) { EXPECT_FALSE(link.connect(ns_to_ticks(3'000'000))); }
 
 TEST_F(HostLinkTest, NoReplyIsNotComplete) { EXPECT_FALSE(link.command("VERSION", ns_to_ticks(100'000)).complete); }
-
-TEST_F(HostLinkTest, FollowsAssignmentsToI3) {
-  link.command("I3=1 I4=0", ns_to_ticks(20'000'000));
-  for (const std::string acknowledge : {"\n", "\x06", ""}) {  // by the old setting, by ACK, by the new one
-    fake.controller = [&](const std::string& line) -> std::string {
-      return line == "P1" ? "25\r" : line == "I3=0" ? acknowledge : "\n";
-    };
-    EXPECT_TRUE(link.command("I3=0").complete);
-    EXPECT_EQ(link.framing().i3, 0u);
-    EXPECT_EQ(link.command("P1").lines, (Lines{"25"}));
-    link.command("I3=1");
-  }
-  EXPECT_TRUE(link.command("I13=2 P3=0").complete);
-  EXPECT_EQ(link.framing().i3, 1u) << "I13 is not I3";
-}
-TEST_F(HostLinkTest, ReducesWhatIsAssignedToI3AsTheControllerDoes) {
-  const auto i3_after = [&](const std::string& assignment) {
-    link.command("I3=2", ns_to_ticks(20'000'000));
-    fake.controller = [](const std::string&) -> std::string { return "\x06"; };
-    EXPECT_TRUE(link.command(assignment).complete) << assignment;
-    return link.framing().i3;
-  };
-  EXPECT_EQ(i3_after("I3=5"), 1u);
-  EXPECT_EQ(i3_after("I3=$13"), 3u);
-  EXPECT_EQ(i3_after("I3=*"), 1u) << "factory default";
-  EXPECT_EQ(i3_after("I3=16"), 0u);
-}
-
-TEST_F(HostLinkTest, ChecksumThatBeginsWithItsLineIsNoText) {
-  link.command("I3=2 I4=0", ns_to_ticks(20'000'000));
-  fake.controller = [](const std::string& line) -> std::string { return line == "I4=1" ? "\x06X" : "7\r\x44\x06\x7F"; };
-  EXPECT_TRUE(link.command("I4=1").complete);
-  EXPECT_EQ(link.command("P1").lines, (Lines{"7"}));
-  EXPECT_TRUE(link.take_unsolicited().empty());
-}
 
 TEST_F(HostLinkTest, TextBetweenRepliesIsUnsolicited) {
   link.bus();

@@ -44,7 +44,7 @@ TEST(Script, ReadsEveryKindOfLine) {
                                Kind::kDpramWrite, Kind::kJumper,  Kind::kInput,    Kind::kEncoder,  Kind::kEncoder,
                                Kind::kReset,      Kind::kPower,   Kind::kExpect,   Kind::kExpect,   Kind::kTime}));
   EXPECT_EQ(s[1].text, "&2DEFINE ROTARY 50");
-  EXPECT_EQ(s[1].number, 3u);
+  EXPECT_EQ(s[1].place, "job.txt:3");
   EXPECT_EQ(s[2].value, std::string("\x01\x18"));
   EXPECT_EQ(s[3].time, 2'500'000'000);
   EXPECT_EQ(s[4].name, "host.breq");

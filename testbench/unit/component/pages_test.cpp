@@ -108,7 +108,7 @@ TEST(ComponentPages, DrawingsAreThoseOfThePinTables) {
   place("clock_select", drawing("ClockSelect", ClockSelect::pin_table(), ""));
   place("host_port", drawing("HostPort", HostPort::pin_table(), "host: 8 bytes; cpu: 6 words"));
   place("dpram", drawing("Dpram", Dpram::pin_table(), "host: 65536 bytes; cpu: 32768 words"));
-  place("board", drawing("Board", Board::pin_table(0x3), ""));
+  place("board", drawing("Board", Board::pin_table(0x3), "port_a: words; isa_io, isa_memory: bytes"));
   if (std::getenv("BRICK_WRITE_PAGES") != nullptr) std::ofstream(BRICK_COMPONENTS_PAGE) << page;
   EXPECT_TRUE(page == before) << "docs/components.md is not what the pin tables say; BRICK_WRITE_PAGES=1 writes it";
 }

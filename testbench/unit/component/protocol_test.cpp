@@ -109,6 +109,7 @@ TEST(RegisterSocket, AKilledOrResetInitiatorLeavesItFree) {
         auto again = write();
         sc_core::wait(5, sc_core::SC_NS);
         again.reset();
+        sc_core::wait(1, sc_core::SC_PS);  // accesses of one instant have the order of their processes' names
         EXPECT_EQ(i.read(kClockControl), 0x3008D2u);
         EXPECT_EQ(sc_core::sc_time_stamp().value(), edge_time(126)) << "after the write, at 123";
       });

@@ -146,6 +146,9 @@ uint32_t hal_cycles(void) {
 uint64_t hal_long_cycles(void) { return cycles; }
 uint32_t hal_image_checksum(void) { return 0xABCDEFu; }
 void hal_delay_us(uint32_t us) { cycles += us * CYCLES_PER_US; }
+void hal_await_us(uint32_t start, uint32_t us) {
+  if (cycles - start < us * CYCLES_PER_US) cycles = start + us * CYCLES_PER_US;
+}
 void hal_set_cpu_clock(uint32_t i52) { (void)i52; }
 uint32_t hal_cycles_per_ms(void) { return 78643; }
 
@@ -196,6 +199,19 @@ void hal_idle(const volatile uint32_t* work) {
 void hal_watchdog_strobe(void) { ++strobes; }
 void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)transmit; }
 bool hal_servo_pending(void) { return false; }
+
+static void (*side_task)(void);
+static bool on_side;
+
+void hal_side_begin(void (*task)(void)) { side_task = task; }
+
+void hal_side_change(void) {
+  if (on_side) return;
+  on_side = true;
+  side_task();
+  on_side = false;
+}
+
 void hal_clear_words(uint32_t first, uint32_t count) {
   memset(&memory[0][first], 0, 4u * count);
   memset(&memory[1][first], 0, 4u * count);

@@ -6,11 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace brick {
+#include "testbench/host/reply_parser.h"
 
-struct Framing {
-  int i3, i4;
-};
+namespace brick {
 
 inline char checksum(const std::string& bytes) {
   return static_cast<char>(std::accumulate(bytes.begin(), bytes.end(), 0u,
@@ -42,8 +40,8 @@ void for_each_framing(Check check) {
   };
   const Line lines[] = {
       {"P1", {"25"}}, {"p1..3", {"25", "50", "75"}}, {"P2=50 P3 = 75", {}}, {"ver TYPE", {"1.947", "TURBO2, X4"}}};
-  for (int i3 = 0; i3 <= 3; ++i3)
-    for (int i4 = 0; i4 <= 3; ++i4)
+  for (unsigned i3 = 0; i3 <= 3; ++i3)
+    for (unsigned i4 = 0; i4 <= 3; ++i4)
       for (const Line& line : lines)
         check(Framing{i3, i4}, "P1=25 P2=50 P3=75 I3=" + std::to_string(i3) + " I4=" + std::to_string(i4) + "\r",
               std::string(line.command), line.data);

@@ -102,7 +102,9 @@ DeviceBus::Result ImageBoard::access(std::uint32_t address, unsigned bytes, bool
 
 void ImageBoard::step(Cycle limit) {
   const Cycle end = std::min(limit, next_phase_);
-  while (cpu_.cycle() < end && cpu_.run(end) != Cpu::Stop::kSleep) {}
+  while (cpu_.cycle() < end && cpu_.run(on_instruction ? cpu_.cycle() + 1 : end) != Cpu::Stop::kSleep) {
+    if (on_instruction) on_instruction();
+  }
   if (cpu_.asleep() && cpu_.cycle() < end) cpu_.set_cycle(end);
   if (cpu_.cycle() < next_phase_) return;
   next_phase_ += kPhaseCycles;

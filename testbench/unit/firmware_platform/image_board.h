@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -29,6 +30,7 @@ class ImageBoard : public DeviceBus {
   std::uint32_t word(bool x, std::uint32_t address);
   void fill_memory(std::uint32_t pattern);
   Cpu& cpu() { return cpu_; }
+  std::function<void()> on_instruction;  // after each one; empty costs nothing
   std::uint64_t strobes() const { return strobes_; }
   double longest_strobe_gap_ms() const {
     return static_cast<double>(longest_gap_) / kCyclesPerMs;

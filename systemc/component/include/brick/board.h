@@ -1,11 +1,25 @@
 // The controller board: clock selection, servo and MACRO ICs, watchdog, host port, interrupt controller, host signals,
 // dual-ported RAM behind the pins of Port A (the CPU's bus), of ISA and of the connectors. The CPU is the user's: he
 // drives Port A. docs/architecture.md, data sheets host-bus and servo-ic.
+//
+// Each of the two buses is driven by the pins or by its sockets, whose accesses are cycles with real edges on those
+// pins inside: docs/port-a.md, host-bus:3.4. A bus of which a socket and an input pin is bound is an error
+// /brick/two_masters at the end of the elaboration; its output pins show its cycles either way.
+//  - The annotated delay is waited for, then the bus: its first clock after the call, the end of its cycle, and as long
+//  as /TA or
+//    IOCHRDY stretch that. An access returns with the delay 0 as the cycle's address is let go; its time and its result
+//    depend on neither quantum nor engine. Accesses to one bus queue in the order of their calls. No DMI.
+//  - A process that is killed in its access leaves the cycle to go on to its end.
+//  - Debug transport reads the dual-ported RAM (not through a window with pages), BCR and PCTL, and moves 0 bytes of
+//    anything else; it writes nothing.
+//   TLM_GENERIC_ERROR_RESPONSE  rst_n broke the cycle off or is low (Port A); IOCHRDY stayed low for more than 15.6 us
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
+
+#include <tlm_utils/simple_target_socket.h>
 
 #include <brick/component.h>
 #include <brick/servo_ic.h>
@@ -33,6 +47,12 @@ class Board final : public Component {
   In<> rst_n;  // let go of, the board works 6 to 8 ticks later
 
   // Port A, the CPU's external bus (host-bus:2).
+  // The socket: PMAC word X:a is 4 bytes at 8 a + 4, Y:a at 8 a, 24 bits in the low ones. Here too are the on-chip
+  // registers of the bus: BCR, X:$FFFFFB, wait states, and PCTL, X:$FFFFFD, the CPU clock. They start as after a reset
+  // (rst_n), with the longest cycles.
+  //   TLM_ADDRESS_ERROR_RESPONSE  nothing on the bus there (docs/architecture.md), or not a multiple of 4
+  //   TLM_BURST_ERROR_RESPONSE, TLM_BYTE_ENABLE_ERROR_RESPONSE  not one whole word
+  tlm_utils::simple_target_socket_optional<Board> port_a{"port_a"};
   In<19> pa_addr;
   In<4> pa_aa;
   In<> pa_x, pa_int, pa_rd_n, pa_wr_n;
@@ -41,6 +61,12 @@ class Board final : public Component {
   Out<> pa_data_oe, pa_ta_n, irq_host;
 
   // ISA / PC104 (host-bus:3.4).
+  // The sockets: bytes of I/O, $0 to $FFFF, and of memory, $0 to $FFFFFF. An access of any length is split into cycles:
+  // of a byte for I/O, of an aligned word or a byte for memory; in a slot of 8 bits, or where MEMCS16# does not answer,
+  // of bytes. Bytes that are not enabled are not accessed. A lane that nobody drives reads $FF.
+  //   TLM_ADDRESS_ERROR_RESPONSE  beyond the last byte
+  //   TLM_BURST_ERROR_RESPONSE    no byte, or no streaming width
+  tlm_utils::simple_target_socket_optional<Board> isa_io{"isa_io"}, isa_memory{"isa_memory"};
   In<7> isa_la;
   In<20> isa_sa;
   In<16> isa_sd_i;
@@ -71,6 +97,16 @@ class Board final : public Component {
   std::vector<std::unique_ptr<BoardServoIc>> servo_ic;  // the fitted ones, lowest first
 
   static const std::vector<PinInfo>& pin_table(std::uint32_t fitted);
+
+ private:
+  class IsaBus;
+  void end_of_elaboration() override;
+  void transport_port_a(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  void transport_io(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  void transport_memory(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  void transport_isa(bool memory, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  unsigned debug_port_a(tlm::tlm_generic_payload& payload);
+  unsigned debug_memory(tlm::tlm_generic_payload& payload);
 };
 
 }  // namespace brick::component

@@ -4,9 +4,10 @@
 // Register sockets (TLM-2.0, generic payload, blocking). An access waits for the delay that is annotated, then for the
 // first edge of clk_ref after it, which takes the sample of the read or executes the write; it returns in the instant
 // of that edge with the delay 0, so its result and its time do not depend on the initiator's quantum. Accesses that
-// meet take one edge each, in the order of their calls. Debug transport reads what a read would take now and changes
-// nothing, or is the error /brick/ahead (brick/time_base.h); it writes nothing and leaves the status. No DMI: reads
-// have side effects.
+// meet take one edge each, in the order of their times; those of one instant in the order of their processes' names,
+// because that of the calls would depend on the quantum. In reset an access takes its edge too: a read takes what the
+// registers have then, a write is lost. Debug transport reads what a read would take now and changes nothing, or is the
+// error /brick/ahead (brick/time_base.h); it writes nothing and leaves the status. No DMI: reads have side effects.
 // A socket of bytes (that of the host of the dual-ported RAM) takes any address and length; each word that the bytes
 // touch is an access of its own. A socket on clk_pwm says so.
 //   TLM_ADDRESS_ERROR_RESPONSE      not aligned to the width of the register, or beyond the last
@@ -14,9 +15,11 @@
 //   TLM_BYTE_ENABLE_ERROR_RESPONSE  byte enables: a register is read and written as a whole; in a socket of bytes: of
 //                                   no length, or with other values than TLM defines
 //   TLM_COMMAND_ERROR_RESPONSE      neither read nor write
+//   TLM_GENERIC_ERROR_RESPONSE      no data pointer
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <systemc>
@@ -63,10 +66,17 @@ class Component : public sc_core::sc_module {
   void transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) { transport(0, payload, delay); }
   unsigned debug(tlm::tlm_generic_payload& payload) { return debug(0, payload); }
 
+  struct BusAnswer {
+    std::uint32_t value;
+    bool made;  // false: the bus could not
+  };
+  BusAnswer access(unsigned face, bool write, unsigned address, std::uint32_t value, unsigned lanes);  // waits
+  std::optional<std::uint32_t> peek(unsigned face, unsigned address);
+  void end_of_elaboration() override;
+
  private:
   friend class Pin;
   const PinInfo& add(Pin& pin, std::string_view name);
-  void end_of_elaboration() override;
 
   const std::vector<PinInfo>& table_;
   std::vector<RegisterFace> faces_;

@@ -1,0 +1,14 @@
+/* Work of the real-time task that may take longer than the task: it runs a slice of time at each real-time interrupt
+ * and goes on where it stood at the next. It has a stack of its own, so it can be left inside any function; it is left
+ * only where it calls slice_pause, so between two of those nothing else sees what it does but interrupts above. */
+#ifndef FIRMWARE_KERNEL_SLICE_H
+#define FIRMWARE_KERNEL_SLICE_H
+
+#include <stdint.h>
+
+void slice_initialize(void (*work)(void)); /* `work` makes one round; what was under way is forgotten */
+void slice_restart(void);                  /* the same work; real-time task held off, or that task outside of it */
+void slice_run(uint32_t cycles);           /* real-time task: a slice, until its time is over or a round is made */
+void slice_pause(void); /* a place to leave the work; anywhere else, as in the background, it does nothing */
+
+#endif

@@ -1,0 +1,334 @@
+// Port A bus master: decoding, the edges of a cycle one after the other, wait states and /TA, see port_a_master.h.
+#include "systemc/cpu/port_a_master.h"
+
+#include <algorithm>
+
+#include "rtl/regs/brick_regs.hpp"
+
+namespace brick {
+
+namespace {
+
+constexpr std::uint32_t kWordMask = 0xFFFFFF;
+// Areas by their select lines. AA3 would select flash and battery RAM, which are not on this bus: BA3W is storage.
+constexpr unsigned kDefaultArea = 3;
+constexpr unsigned kOnChipWaitStates = 7;
+
+// Regions of docs/architecture.md that lie on Port A; the first three of each area select.
+struct Region {
+  std::uint32_t first, last;
+  unsigned area;
+};
+constexpr Region kRegions[] = {
+    {0x060000, 0x063FFF, 2},             // DPRAM
+    {0x070000, 0x0700FF, kDefaultArea},  // latches
+    {0x078000, 0x07BFFF, 1},             // gate ICs
+};
+constexpr std::uint32_t kOnChipFirst = 0xFFFF80, kOnChipLast = 0xFFFFFF;
+constexpr std::uint32_t kOnChipAddressPins = 0x3F;
+
+bool is_on_chip(std::uint32_t address, bool x) { return x && address >= kOnChipFirst && address <= kOnChipLast; }
+const Region* region_of(std::uint32_t address) {
+  const auto region = std::find_if(std::begin(kRegions), std::end(kRegions),
+                                   [&](const Region& r) { return address >= r.first && address <= r.last; });
+  return region == std::end(kRegions) ? nullptr : region;
+}
+
+}  // namespace
+
+void PortAMaster::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
+  bcr_ = regs::cpu_bus::kBcr.reset;
+  pctl_ = regs::cpu_bus::kPctl.reset;
+  clock_.restart(edge, cycle, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
+  state_ = State::kIdle;
+  stand_ = edge;
+  in_doubt_ = false;
+  moving_ta_.reset();
+  levels_ = {};
+  if (watch_ != nullptr) watch_->bus_reset();
+  next_start_ = cycle;
+  pins.pa_aa = 0;
+  pins.pa_int = false;
+  pins.pa_rd_n = pins.pa_wr_n = true;
+  const TimeFs now = tick_to_fs(edge);
+  show(PortALine::kAa, now, 0);
+  show(PortALine::kRdN, now, 1);
+  show(PortALine::kWrN, now, 1);
+}
+
+unsigned PortAMaster::wait_states(unsigned area) const {
+  using namespace regs::cpu_bus::bcr;
+  constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
+  constexpr std::uint32_t kDevices = kBa1w.mask() | kBa2w.mask() | kBdfw.mask();
+  const bool set_up = ((bcr_ ^ regs::cpu_bus::kBcr.reset) & kDevices) != 0 || pctl_ != regs::cpu_bus::kPctl.reset;
+  return kFields[area].get(forced_bcr_ && set_up ? *forced_bcr_ : bcr_);
+}
+
+bool PortAMaster::maps(std::uint32_t address, bool x) {
+  return is_on_chip(address, x) || region_of(address) != nullptr;
+}
+
+void PortAMaster::begin(const PortAAccess& access) {
+  cycle_ = PortACycle{};
+  cycle_.on_chip = is_on_chip(access.address, access.x);
+  const unsigned area = cycle_.on_chip ? kDefaultArea : region_of(access.address)->area;
+  cycle_.address = access.address;
+  cycle_.x = access.x;
+  cycle_.aa = static_cast<std::uint8_t>(area < kDefaultArea ? 1u << area : 0);
+  cycle_.write = access.write;
+  cycle_.pc = access.pc;
+  cycle_.multiplier = clock_.multiplier();
+  // The on-chip peripherals keep their own pace when the core gets faster than 8 x 9.83 MHz.
+  cycle_.wait_states = cycle_.on_chip ? std::max(kOnChipWaitStates, clock_.multiplier() - 1) : wait_states(area);
+  if (cycle_.write) cycle_.data = access.data & kWordMask;
+  shape_ = port_a_shape(cycle_.wait_states, cycle_.write);
+  start_ = std::max(access.start, next_start_);
+  origin_ = clock_.origin(start_);
+  if (cycle_.on_chip &&
+      (access.address == regs::cpu_bus::kBcr.address || access.address == regs::cpu_bus::kPctl.address))
+    return control_register();
+  state_ = State::kRunning;
+  next(Step::kAddress);
+}
+
+void PortAMaster::control_register() {
+  const bool is_bcr = cycle_.address == regs::cpu_bus::kBcr.address;
+  std::uint32_t& reg = is_bcr ? bcr_ : pctl_;
+  state_ = State::kDone;
+  next_start_ = done_at();
+  if (!cycle_.write) {
+    cycle_.data = reg;
+    return;
+  }
+  reg = cycle_.data & (is_bcr ? regs::cpu_bus::kBcr : regs::cpu_bus::kPctl).written;
+  if (!is_bcr) clock_.restart(clock_.tick(done_at()), done_at(), regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
+  if (on_control) on_control();
+}
+
+TimeFs PortAMaster::time_of(Step step) const {
+  switch (step) {
+    case Step::kAddress:
+      return clock_.time(origin_, 0);
+    case Step::kDriveData:
+      return clock_.time(origin_, shape_.data_driven);
+    case Step::kStrobeLow:
+      return clock_.time(origin_, shape_.strobe_low);
+    case Step::kStrobeHigh:
+      return clock_.time(origin_, shape_.strobe_high);
+    case Step::kEnd:
+      return clock_.time(origin_, 4 * (shape_.clocks + shape_.held_clocks));
+  }
+  return 0;
+}
+
+void PortAMaster::next(Step step) {
+  step_ = step;
+  time_ = time_of(step);
+  const Tick before = stand_;  // what comes later is not seen earlier
+  in_doubt_ = resumed_ = false;
+  if (aperture_ == nullptr || !aperture_->on()) {
+    stand_ = late_ = fs_to_tick(time_) - 1;
+  } else if (step == Step::kStrobeLow || step == Step::kStrobeHigh) {
+    late_ = aperture_->seen(time_) - 1;
+    // What the board shows as the strobe rises is not what it shows later.
+    stand_ = step == Step::kStrobeLow ? late_ : std::min(late_, fs_to_tick(time_) - 1);
+  } else {
+    stand_ = aperture_->first(time_) - 1;
+    in_doubt_ = aperture_->in_doubt(time_) && aperture_->last(time_) - 1 > std::max(stand_, before);
+  }
+  stand_ = std::max(stand_, before);
+}
+
+void PortAMaster::move_bus(PortAPins& pins) const {
+  switch (step_) {
+    case Step::kAddress:
+      pins.pa_addr = address_pins();
+      pins.pa_x = cycle_.x;
+      pins.pa_aa = cycle_.aa;
+      pins.pa_int = cycle_.on_chip;
+      break;
+    case Step::kDriveData:
+      pins.pa_wdata = cycle_.data;
+      break;
+    case Step::kEnd:
+      pins.pa_aa = 0;
+      pins.pa_int = false;
+      break;
+    default:
+      break;
+  }
+}
+
+void PortAMaster::see(TimeFs time, const BoardOutputs& board) {
+  const Seen now{time, board.get(pin::kPaData), board.get(pin::kPaDataOe) != 0, board.get(pin::kPaTaN) != 0};
+  if (seen_.empty() || !now.same_data(seen_.back()) || now.busy != seen_.back().busy) seen_.push_back(now);
+}
+
+// Index of what stood on the pins at `time`.
+std::size_t PortAMaster::seen_at(TimeFs time) const {
+  std::size_t i = seen_.size() - 1;
+  while (i > 0 && seen_[i].time > time) --i;
+  return i;
+}
+
+std::uint32_t PortAMaster::address_pins() const {
+  return cycle_.address & (cycle_.on_chip ? kOnChipAddressPins : 0x7FFFFu);
+}
+
+std::uint32_t PortAMaster::random() {  // splitmix64
+  std::uint64_t z = random_ += 0x9E3779B97F4A7C15u;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
+}
+
+// Whether the strobe may rise now. /TA is sampled a quarter and its set-up before; if it moves from there on it is seen
+// or not seen (rows 118 and 119).
+bool PortAMaster::acknowledged() {
+  if (cycle_.on_chip || cycle_.wait_states == 0) return true;
+  cycle_.ta_time = clock_.time(origin_, shape_.strobe_high - 1) - kTaSetup;
+  const std::size_t at = seen_at(cycle_.ta_time);
+  const bool busy = seen_[at].busy, now_busy = seen_.back().busy;
+  bool moved = false;
+  for (std::size_t i = at + 1; i < seen_.size(); ++i) moved = moved || seen_[i].busy != seen_[i - 1].busy;
+  if (!moved) return !busy;
+  return moving_ta_ ? *moving_ta_ != now_busy : (random() & 1) == 0;
+}
+
+// The word of a read, at /RD high. Bits that moved after the sample are anything, and so are all
+// of them when nobody drove the bus (rows 104 to 106).
+void PortAMaster::take_data() {
+  // A cycle without time for the set-up takes what is there as /RD falls.
+  cycle_.data_time = std::max(time_ - kReadDataSetup, cycle_.strobe_low);
+  const std::size_t at = seen_at(cycle_.data_time);
+  cycle_.data = seen_[at].data;
+  if (cycle_.on_chip) return;
+  std::uint32_t moved = seen_[at].driven ? 0 : kWordMask;
+  for (std::size_t i = at + 1; i < seen_.size(); ++i) {
+    const Seen &before = seen_[i - 1], &after = seen_[i];
+    moved |= after.driven == before.driven ? after.data ^ before.data : kWordMask;
+  }
+  if (moved != 0) cycle_.data = (cycle_.data & ~moved) | (random() & moved);
+}
+
+// The first half of a step that takes two.
+void PortAMaster::half_step(PortAPins& pins) {
+  const PortAPins from = pins;
+  PortAPins to = pins;
+  move_bus(to);
+  pins = aperture_->mixed(from, to, time_);
+  stand_ = aperture_->last(time_) - 1;
+  in_doubt_ = false;
+  resumed_ = true;
+}
+
+// The strobe has ended for the CPU; false if it goes on.
+bool PortAMaster::end_strobe() {
+  if (!acknowledged()) {  // one clock more
+    ++cycle_.stretched;
+    origin_ = clock_.origin(start_ + cycle_.stretched);
+    next(Step::kStrobeHigh);
+    return false;
+  }
+  if (!cycle_.write) take_data();
+  cycle_.strobe_high = time_;
+  tell_watch();
+  resumed_ = late_ > stand_;
+  stand_ = std::max(stand_, late_);
+  return !resumed_;
+}
+
+// What the lines do at this step, whenever the board's flip-flops see it.
+void PortAMaster::tell_watch() {
+  if (watch_ == nullptr || cycle_.on_chip) return;
+  switch (step_) {
+    case Step::kAddress:
+      levels_.addr = address_pins();
+      levels_.x = cycle_.x;
+      levels_.aa = cycle_.aa;
+      levels_.addr_oe = true;
+      levels_.multiplier = cycle_.multiplier;
+      levels_.wait_states = cycle_.wait_states;
+      levels_.pc = cycle_.pc;
+      break;
+    case Step::kDriveData:
+      levels_.data = cycle_.data;
+      levels_.data_oe = true;
+      break;
+    case Step::kStrobeLow:
+      (cycle_.write ? levels_.wr_n : levels_.rd_n) = false;
+      break;
+    case Step::kStrobeHigh:
+      levels_.rd_n = levels_.wr_n = true;
+      break;
+    case Step::kEnd:
+      levels_.aa = 0;
+      levels_.addr_oe = levels_.data_oe = false;
+      break;
+  }
+  watch_->cpu_moved(time_, levels_);
+}
+
+void PortAMaster::step(PortAPins& pins, const BoardOutputs& board) {
+  strobe_moved_ = false;
+  if (step_ != Step::kStrobeHigh && !resumed_) tell_watch();
+  if (in_doubt_) return half_step(pins);
+  const bool shown = !cycle_.on_chip;
+  move_bus(pins);
+  switch (step_) {
+    case Step::kAddress:
+      cycle_.start = time_;
+      seen_.clear();
+      see(time_, board);
+      if (shown) {
+        show(PortALine::kAddr, time_, pins.pa_addr);
+        show(PortALine::kX, time_, cycle_.x);
+        show(PortALine::kAa, time_, cycle_.aa);
+      }
+      next(cycle_.write && shape_.data_driven < shape_.strobe_low ? Step::kDriveData : Step::kStrobeLow);
+      break;
+    case Step::kDriveData:
+      cycle_.data_time = time_;
+      if (shown) show(PortALine::kData, time_, cycle_.data);
+      next(shape_.data_driven < shape_.strobe_low ? Step::kStrobeLow : Step::kStrobeHigh);
+      break;
+    case Step::kStrobeLow:
+      cycle_.strobe_low = time_;
+      (cycle_.write ? pins.pa_wr_n : pins.pa_rd_n) = false;
+      strobe_moved_ = true;
+      if (shown) show(cycle_.write ? PortALine::kWrN : PortALine::kRdN, time_, 0);
+      if (shown && !cycle_.write) show(PortALine::kData, time_, board.get(pin::kPaData));
+      next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
+      break;
+    case Step::kStrobeHigh:
+      if (!resumed_ && !end_strobe()) break;
+      pins.pa_rd_n = pins.pa_wr_n = true;
+      strobe_moved_ = true;
+      if (shown) show(cycle_.write ? PortALine::kWrN : PortALine::kRdN, time_, 1);
+      next(Step::kEnd);
+      break;
+    case Step::kEnd:
+      cycle_.end = time_;
+      if (shown) show(PortALine::kAa, time_, 0);
+      state_ = State::kDone;
+      next_start_ = start_ + shape_.clocks + cycle_.stretched + shape_.idle_clocks;
+      if (on_cycle) on_cycle(cycle_);
+      break;
+  }
+}
+
+void PortAMaster::board_follows(const BoardOutputs& board) {
+  const TimeFs time = step_ == Step::kEnd ? cycle_.strobe_high : cycle_.strobe_low;
+  see(time, board);
+  if (watch_ != nullptr) watch_->board_moved(time, board);
+}
+
+void PortAMaster::board_changed(Tick tick, const BoardOutputs& board) {
+  if (state_ != State::kRunning || step_ == Step::kAddress) return;
+  const TimeFs time = tick_to_fs(tick);
+  see(time, board);
+  if (cycle_.write || cycle_.on_chip || step_ == Step::kStrobeLow || step_ == Step::kEnd) return;
+  show(PortALine::kData, time, board.get(pin::kPaData));
+}
+
+}  // namespace brick

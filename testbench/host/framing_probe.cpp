@@ -1,0 +1,90 @@
+#include "testbench/host/framing_probe.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace brick {
+
+namespace {
+
+constexpr std::size_t kDigits = 12;
+constexpr unsigned char kBackspace = 0x08, kRepeat = 0x09;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+// In capitals, without spaces, texts in quotation marks and the comment at the end.
+std::string commands_of(std::string_view line) {
+  std::string text;
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (quoted || c == '"' || c == ' ' || c == '\t') continue;
+    if (c == ';') break;
+    text.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+  }
+  return text;
+}
+
+// The digits of `text` from `at` on are 3 or 4, or the first of several variables among which these are.
+bool reaches_3_or_4(const std::string& text, std::size_t at) {
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", at), text.size());
+  const std::size_t first = std::min(text.find_first_not_of('0', at), end);
+  if (end - first > 1) return false;
+  const int number = first == end ? 0 : text[first] - '0';
+  const bool several = text.compare(end, 2, "..") == 0 || text.compare(end, 1, ",") == 0;
+  const bool assigns = text.find('=', end) != std::string::npos;
+  return assigns && (several ? number <= 4 : (number == 3 || number == 4) && text.compare(end, 1, "=") == 0);
+}
+
+bool is_status(std::string_view text, const Framing& framing) {
+  std::string form = (framing.i3 & 1) != 0 ? "\n" : "";
+  const std::size_t digits = form.size();
+  if (text.size() < digits + kDigits + 1) return false;
+  for (std::size_t i = digits; i < digits + kDigits; ++i) {
+    const char c = text[i];
+    if (!is_digit(c) && (c < 'A' || c > 'F')) return false;
+    form.push_back(c);
+  }
+  form.push_back('\r');
+  const auto sum = [](std::string_view bytes) {
+    unsigned total = 0;
+    for (const unsigned char c : bytes) total += c;
+    return static_cast<char>(total);
+  };
+  if (framing.checksums()) form.push_back(sum(form));
+  if (framing.i3 != 0) form.push_back(framing.i3 == 1 ? '\n' : '\x06');
+  if (framing.i3 != 0 && framing.checksums()) {  // of a control character: any byte
+    if (text.size() != form.size() + 1) return false;
+    form.push_back(text.back());
+  }
+  return text == form;
+}
+
+}  // namespace
+
+bool may_change_framing(std::string_view line) {
+  for (const unsigned char c : line)
+    if (c == kBackspace || c == kRepeat) return true;
+  const std::string text = commands_of(line);
+  for (std::size_t at = text.find('I'); at != std::string::npos; at = text.find('I', at + 1)) {
+    if (at + 1 == text.size() || (at != 0 && is_letter(text[at - 1]))) continue;
+    if (text[at + 1] == '(' && text.find('=', at) != std::string::npos) return true;
+    if (is_digit(text[at + 1]) && reaches_3_or_4(text, at + 1)) return true;
+  }
+  return false;
+}
+
+bool may_restart(std::string_view line) { return commands_of(line).find("$$$") != std::string::npos; }
+
+bool may_take_long(std::string_view line) { return commands_of(line).find("SAVE") != std::string::npos; }
+
+std::optional<FramingAnswer> framing_answer(std::string_view text, std::size_t from) {
+  for (std::size_t begin = from; begin + kDigits < text.size(); ++begin)
+    for (const unsigned i3 : {2u, 1u, 3u, 0u})
+      for (const unsigned i4 : {0u, 1u})
+        if (is_status(text.substr(begin), {i3, i4})) return FramingAnswer{begin, {i3, i4}};
+  return std::nullopt;
+}
+
+}  // namespace brick

@@ -1,0 +1,29 @@
+// What the controller's answers say about I3 and I4. Which lines may change them is read off the line; what they are
+// then is asked for with ^G, which is answered whatever buffer is open, and whose answer shows both by its form: a line
+// of twelve hexadecimal digits (firmware:5.9/7, firmware:6.2, firmware:6.5). I6 shows by itself in every error.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "testbench/host/reply_parser.h"
+
+namespace brick {
+
+constexpr char kAskFraming = 0x07;  // ^G
+
+// The line may assign I3 or I4: by name, by a range, a list or an index; or it repeats another one.
+bool may_change_framing(std::string_view line);
+bool may_restart(std::string_view line);    // $$$ or $$$*** anywhere in it
+bool may_take_long(std::string_view line);  // SAVE
+
+struct FramingAnswer {
+  std::size_t begin;  // what stands before it belongs to something else
+  Framing framing;
+};
+// The answer that `text` ends with, looked for from `from` on.
+std::optional<FramingAnswer> framing_answer(std::string_view text, std::size_t from);
+
+}  // namespace brick

@@ -1,0 +1,65 @@
+// A controller behind the port of the fake machine that knows the dialogue alone: I3, I4, I6 as assigned, answers
+// framed as the data sheet says (firmware:6.2, firmware:6.3, firmware:6.5), ^G, and a few commands.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "testbench/unit/app/fake_machine.h"
+#include "testbench/unit/firmware_platform/framing.h"
+
+namespace brick {
+
+class DialogueController {
+ public:
+  explicit DialogueController(FakeMachine& machine) {
+    machine.controller = [this](const std::string& line) { return answer(line); };
+    machine.control = [this](char c) { return c == 0x07 ? framed(now(), "", {"0123456789AB"}) : std::string(); };
+  }
+
+  unsigned i3 = 1, i4 = 0, i6 = 1;
+  bool acknowledges_by_the_old = false;  // a line that changes I3, else by the new one
+  int restarts = 0;
+  std::function<void()> before_line;  // what a program does meanwhile
+
+ private:
+  Framing now() const { return {i3, i4}; }
+
+  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 and P2 (25 and 50), SAVE, $$$; all else is an error.
+  std::string answer(const std::string& line) {
+    if (before_line) before_line();
+    const Framing before = now();
+    std::string bytes;
+    std::istringstream in(line);
+    for (std::string word; in >> word;) {
+      for (const auto& [name, text] : {std::pair("P1", "25"), std::pair("P2", "50")})
+        if (word == name) bytes += data(text);
+      if (word == "I3") bytes += data(std::to_string(i3));
+      if (word.size() == 4 && word[2] == '=')
+        (word[1] == '3' ? i3 : word[1] == '4' ? i4 : i6) = static_cast<unsigned>(word[3] - '0');
+      if (word == "I6=1I3=2I4=0") i6 = 1, i3 = 2, i4 = 0;  // what the host link begins with
+      if (word.rfind("$$$", 0) == 0) {
+        ++restarts;
+        i3 = i6 = 1;
+        i4 = 0;
+        return bytes;
+      }
+      if (word == "UUU") return bytes + error();
+    }
+    Framing style = acknowledges_by_the_old ? before : now();
+    style.i4 = i4;
+    return bytes + framed(style, line, {});
+  }
+
+  std::string data(const std::string& text) const {
+    const std::string line = (i3 % 2 == 1 ? "\n" : "") + text + "\r";
+    return i4 % 2 == 1 ? line + checksum(line) : line;
+  }
+
+  std::string error() const {
+    if (i6 % 2 == 0) return "\x07";
+    return std::string("\x07") + (i6 == 3 ? "\r" : "") + (i3 % 2 == 1 ? "\n" : "") + "ERR003\r";
+  }
+};
+
+}  // namespace brick

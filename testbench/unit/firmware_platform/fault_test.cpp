@@ -1,0 +1,87 @@
+// A fault of the firmware itself: motors off, restart, and words that tell what happened (docs/firmware.md). The faults
+// are planted: a program of the test in unused RAM, to which the CPU is sent.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "rtl/regs/brick_regs.h"
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/image_board.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kPlace = 0x200F0000, kNothing = 0x50000000;
+constexpr unsigned kA1 = 11;
+constexpr std::uint32_t kControl = SERVO_IC_0_BASE + SERVO_CHANNEL_X_CONTROL, kFault = 0x70;
+
+struct Planted {
+  const char* name;
+  std::uint32_t instruction, cause, address;
+};
+// RISC-V privileged architecture, mcause: 2 illegal instruction, 5 load, 7 store access fault.
+constexpr Planted kFaults[] = {{"lw a0,0(a1)", 0x0005A503, 5, kNothing},
+                               {"sw a0,0(a1)", 0x00A5A023, 7, kNothing},
+                               {"illegal", 0xFFFFFFFF, 2, 0xFFFFFFFF}};
+
+class Fault : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06"); }
+  void plant(const Planted& fault) {
+    std::memcpy(board.cpu().memory(kPlace, 4), &fault.instruction, 4);
+    board.cpu().invalidate_code();
+    board.cpu().set_reg(kA1, kNothing);
+    board.cpu().set_pc(kPlace);
+  }
+  std::string ask(const std::string& line) {
+    const std::string reply = board.send(line + "\r");
+    return reply.substr(0, reply.find('\r'));
+  }
+  std::uint32_t long_word(std::uint32_t address) {
+    return board.word(true, address) << 24 | board.word(false, address);
+  }
+  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+};
+
+TEST_F(Fault, TurnsOutputsOffAndRestartsAndTells) {
+  unsigned count = 0;
+  EXPECT_EQ(ask("RHX$70"), "0");
+  for (const Planted& fault : kFaults) {
+    SCOPED_TRACE(fault.name);
+    ASSERT_EQ(board.send("P1=5 WX$78005,$4000 WY$78002,1000,1000,1000 WY$7811A,1000\r"), "\x06");
+    ASSERT_EQ(board.word(true, kControl) & SERVO_CHANNEL_CONTROL_AENA_MASK, SERVO_CHANNEL_CONTROL_AENA_MASK);
+    board.run_ms(1.0);
+    plant(fault);
+    board.run_ms(0.2);
+    EXPECT_EQ(board.word(true, kControl) & SERVO_CHANNEL_CONTROL_AENA_MASK, 0u);
+    for (const std::uint32_t output : {0x78002u, 0x78003u, 0x78004u, 0x7811Au})
+      EXPECT_EQ(board.word(false, output), 0u);
+    board.run_ms(30.0);
+    EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+    EXPECT_EQ(ask("P1"), "0") << "a restart, as $$$";
+    EXPECT_EQ(board.word(true, kFault), fault.cause);
+    EXPECT_EQ(board.word(false, kFault), ++count);
+    EXPECT_EQ(long_word(kFault + 1), kPlace);
+    EXPECT_EQ(long_word(kFault + 2), fault.address);
+    EXPECT_EQ(ask("RHX$70"), std::to_string(fault.cause));
+  }
+  board.reset();
+  EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  EXPECT_EQ(ask("RY$70"), std::to_string(count)) << "the reset line keeps it";
+}
+
+TEST_F(Fault, AgainWhileItStartsLeavesTheRestToTheWatchdog) {
+  plant(kFaults[0]);
+  board.run_ms(1.0);
+  plant(kFaults[1]);
+  board.run_ms(1.0);
+  const auto strobes = board.strobes();
+  board.run_ms(50.0);
+  EXPECT_EQ(board.strobes(), strobes);
+  board.reset();
+  EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  EXPECT_EQ(board.word(true, kFault), kFaults[0].cause) << "the first one is the cause";
+}
+
+}  // namespace
+}  // namespace brick

@@ -1,0 +1,176 @@
+// How long the firmware holds a task off, seen instruction by instruction on the CPU model: the longest section of each
+// kind is printed with the function that asked for it, and bounded. A section begins when a task takes bits of mie away
+// that it has, and ends when they are back; interrupts between are not counted.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "systemc/cpu/elf_file.h"
+#include "testbench/unit/firmware_platform/image_board.h"
+#include "testbench/unit/random_lines.h"
+
+namespace brick {
+namespace {
+
+constexpr Cycle kLimit = 400;
+constexpr unsigned kMie = 0x304, kReturnAddress = 1;
+constexpr std::array<CpuInterrupt, 4> kLines = {kIrqRealTime, kIrqServo, kIrqPhase, kIrqHostPort};
+
+std::string line_name(CpuInterrupt line) {
+  static const std::map<CpuInterrupt, std::string> names = {
+      {kIrqRealTime, "real-time"}, {kIrqServo, "servo"}, {kIrqPhase, "phase"}, {kIrqHostPort, "host port"}};
+  return names.at(line);
+}
+
+std::uint32_t above(std::uint32_t cause) {  // what a handler leaves enabled (docs/firmware.md, Tasks)
+  const std::uint32_t host = 1u << kIrqHostPort, phase = 1u << kIrqPhase, servo = 1u << kIrqServo;
+  switch (cause & 0x7FFFFFFF) {
+    case kIrqRealTime:
+      return host | phase | servo;
+    case kIrqServo:
+      return host | phase;
+    case kIrqPhase:
+      return host;
+    default:
+      return 0;
+  }
+}
+
+class MaskWatch {
+ public:
+  MaskWatch(ImageBoard& board, const std::string& elf) : board_(board), elf_(elf) {
+    Cpu& cpu = board.cpu();
+    levels_.push_back({above(kIrqRealTime) | 1u << kIrqRealTime, 0, {}});
+    cpu.on_trap = [this](std::uint32_t cause, std::uint32_t, Cycle now) { levels_.push_back({above(cause), now, {}}); };
+    cpu.on_mret = [this](std::uint32_t, Cycle now) { leave(now); };
+    board.on_instruction = [this] { look(); };
+  }
+  ~MaskWatch() {
+    board_.cpu().on_trap = nullptr;
+    board_.cpu().on_mret = nullptr;
+    board_.on_instruction = nullptr;
+  }
+
+  struct Worst {
+    Cycle cycles = 0;
+    std::string function;
+    unsigned sections = 0;
+  };
+  Worst worst(CpuInterrupt line) const {
+    const auto found = worst_.find(line);
+    return found == worst_.end() ? Worst{} : found->second;
+  }
+  std::map<std::pair<Cycle, std::string>, std::string> table() const {  // the longest of each function
+    std::map<std::pair<Cycle, std::string>, std::string> sorted;
+    for (const auto& [key, cycles] : longest_) sorted[{-cycles, key.second}] = line_name(key.first);
+    return sorted;
+  }
+
+ private:
+  struct Section {
+    bool open = false;
+    Cycle since = 0, interrupted = 0;
+    std::string function;
+  };
+  struct Level {
+    std::uint32_t enabled;
+    Cycle entered;
+    std::array<Section, 4> sections;
+  };
+
+  void leave(Cycle now) {
+    if (levels_.size() == 1) return;
+    const Cycle took = now - levels_.back().entered;
+    levels_.pop_back();
+    for (Section& section : levels_.back().sections) section.interrupted += took;
+  }
+
+  void look() {
+    Level& level = levels_.back();
+    const std::uint32_t off = level.enabled & ~board_.cpu().csr(kMie);
+    const Cycle now = board_.cpu().cycle();
+    for (unsigned i = 0; i < kLines.size(); ++i) {
+      Section& section = level.sections[i];
+      const bool is_off = (off >> kLines[i] & 1) != 0;
+      if (is_off == section.open) continue;
+      if (is_off)
+        section = {true, now, 0, elf_.symbol_at(board_.cpu().reg(kReturnAddress))};
+      else
+        close(kLines[i], section, now);
+    }
+  }
+
+  void close(CpuInterrupt line, Section& section, Cycle now) {
+    section.open = false;
+    if (section.function == "start") return;  // a reset: there are no tasks
+    const Cycle cycles = now - section.since - section.interrupted;
+    Worst& worst = worst_[line];
+    ++worst.sections;
+    if (cycles > worst.cycles) {
+      worst.cycles = cycles;
+      worst.function = section.function;
+    }
+    Cycle& longest = longest_[{line, section.function}];
+    if (cycles > longest) longest = cycles;
+  }
+
+  ImageBoard& board_;
+  ElfFile elf_;
+  std::vector<Level> levels_;
+  std::map<CpuInterrupt, Worst> worst_;
+  std::map<std::pair<CpuInterrupt, std::string>, Cycle> longest_;
+};
+
+// A host that uses everything: programs, variables of each kind, reports, buffers, SAVE, and lines by chance.
+TEST(Mask, LongestSectionThatHoldsATaskOff) {
+  ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
+  ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  MaskWatch watch(board, BRICK_FIRMWARE_ELF);
+  for (const char* line : {"&1DEF ROT 2000 B0",
+                           "M1->X:$5000",
+                           "M2->L:$5001",
+                           "M3->D:$5002",
+                           "M4->DP:$60000",
+                           "M5->Y:$78005,3,4,S",
+                           "M1=1.5 M2=-3.25E M3=1E M4=-5 M5=3",
+                           "P1=M1+M2+M3+M4+M5",
+                           "OPEN ROT",
+                           "TA10 TS2 INC F100 FRAX(A,B,X,Y)",
+                           "A1B2C3U4V5W6X7Y8Z9",
+                           "M2=P1*0.1 X(M2)",
+                           "I5189=5 P(P1)=Q1",
+                           "X.5 DWELL2",
+                           "CLOSE R",
+                           "I7016=3 I124=$20001",
+                           "RX$5000 RL$5001,4 WL$5001,1.25,-3",
+                           "I5111=500",
+                           "?",
+                           "??",
+                           "???",
+                           "%50",
+                           "H",
+                           "R",
+                           "A",
+                           "SAVE",
+                           "I16=3 I17=7"})
+    board.send(std::string(line) + "\r", 30.0);
+  RandomLines random(21);
+  for (int i = 0; i < 300; ++i) board.send(random.next() + "\r", 3.0);
+  for (const auto& [key, line] : watch.table())
+    std::printf("%5d cycles %-10s %s\n", static_cast<int>(-key.first), line.c_str(), key.second.c_str());
+  for (const CpuInterrupt line : kLines) {
+    const auto worst = watch.worst(line);
+    RecordProperty(line_name(line), worst.function + " " + std::to_string(worst.cycles));
+    std::printf("%s held off %d cycles at most, by %s; %u sections\n", line_name(line).c_str(),
+                static_cast<int>(worst.cycles), worst.function.c_str(), worst.sections);
+    EXPECT_LE(worst.cycles, kLimit);
+    EXPECT_GT(worst.sections, 100u) << "hardly any section seen";
+  }
+}
+
+}  // namespace
+}  // namespace brick

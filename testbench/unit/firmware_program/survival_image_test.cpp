@@ -1,0 +1,157 @@
+// Nothing that a host sends stops the controller: programs whose lines take longer than the real-time interrupt, on the
+// cross-compiled image and the CPU model. The hardware watchdog allows 25 ms from strobe to strobe.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/image_board.h"
+
+namespace brick {
+namespace {
+
+constexpr double kStrobeLimitMs = 25.0;
+constexpr unsigned kLineLimit = 255;
+
+// `head`, then `term` as often as a line of 255 characters holds it, joined by `joint`.
+std::string longest(const std::string& head, const std::string& term, const std::string& joint) {
+  std::string line = head + term;
+  while (line.size() + joint.size() + term.size() <= kLineLimit) line += joint + term;
+  return line;
+}
+
+class Survival : public ::testing::Test {
+ protected:
+  void SetUp() override { EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06"); }
+  void accepted(const std::string& line) { ASSERT_EQ(board.send(line + "\r"), "\x06") << line; }
+  std::string ask(const std::string& line) {
+    std::string reply = board.send(line + "\r", 500.0);
+    EXPECT_EQ(reply.empty() ? 0 : reply.back(), '\x06') << line;
+    return reply.substr(0, reply.find('\r'));
+  }
+  // The rings of the first `systems` coordinate systems hold `lines`, and all run.
+  void run(unsigned systems, const std::vector<std::string>& lines) {
+    for (unsigned cs = systems; cs >= 1; --cs) accepted("&" + std::to_string(cs) + "DEF ROT 1500 B0");
+    accepted("OPEN ROT");
+    for (unsigned cs = 1; cs <= systems; ++cs) {
+      accepted("&" + std::to_string(cs));
+      for (const std::string& line : lines) accepted(line);
+    }
+    accepted("CLOSE");
+    for (unsigned cs = 1; cs <= systems; ++cs) accepted("&" + std::to_string(cs) + "R");
+  }
+  // Time passes until nothing is left to calculate; the controller answers all the while.
+  void finish(unsigned systems, double limit_ms) {
+    const double start = board.now_ms();
+    for (unsigned cs = 1; cs <= systems; ++cs)
+      while (ask("&" + std::to_string(cs) + "PR") != "0") {
+        board.run_ms(20.0);
+        ASSERT_LT(board.now_ms() - start, limit_ms) << "&" << cs;
+      }
+  }
+  void expect_alive() {
+    EXPECT_LT(board.longest_strobe_gap_ms(), kStrobeLimitMs);
+    EXPECT_EQ(std::stoul(ask("???").substr(0, 6), nullptr, 16) & 0x400200u, 0u)
+        << "real-time task too long: bits 22 and 9";  // bit 20: this board gives a line faster than any host bus
+    RecordProperty("strobe_gap_us", static_cast<int>(board.longest_strobe_gap_ms() * 1000.0));
+  }
+  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+};
+
+// P1 = 28 ASIN(.5) = 28 x 30 degrees.
+TEST_F(Survival, EightLinesOfTwentyEightArcSines) {
+  BRICK_COVERS("WDT-1");
+  run(1, std::vector<std::string>(8, longest("P1=", "ASIN(.5)", "+")));
+  finish(1, 2000.0);
+  EXPECT_EQ(ask("P1"), "840");
+  expect_alive();
+}
+
+// The longest functions inside each other and beside each other, moves of eight axes by expressions, full lines.
+std::vector<std::string> worst_lines() {
+  std::string nested = "P2=";
+  std::string close;
+  for (unsigned i = 0; nested.size() + close.size() + 12 < kLineLimit; ++i) {
+    static const char* const functions[] = {"ACOS(", "EXP(", "SIN(", "ATAN2(", "SQRT(", "TAN(", "LN(", "ASIN("};
+    nested += functions[i % 8];
+    close += ')';
+  }
+  nested += ".5" + close;
+  return {"TA0 TS0 F1000000 INC FRAX(A,B,U,V,W,X,Y,Z)",
+          nested,
+          longest("P3=", "ACOS(Q1)", "*"),
+          "A(ASIN(.1))B(ASIN(.2))U(ASIN(.3))V(ASIN(.4))W(ACOS(.5))X(ACOS(.6))Y(ACOS(.7))Z(ACOS(.8))",
+          longest("P4=", "EXP(80)", "/"),
+          longest("", "Q(SQRT(2))=1", " "),
+          longest("", "TA(LN(2))", " "),
+          longest("P5=", "Q(Q(1))", "%"),
+          "A1B1U1V1W1X1Y1Z1",
+          longest("", "Q1=ASIN(1)", " ")};
+}
+
+TEST_F(Survival, SixteenSystemsOfTheLongestLines) {
+  BRICK_COVERS("WDT-1");
+  for (const std::string& line : worst_lines()) ASSERT_LE(line.size(), kLineLimit);
+  run(16, worst_lines());
+  finish(16, 10000.0);
+  expect_alive();
+}
+
+// The same line all the time: 20 arc sines take more than two slices, so `A` finds it half calculated.
+TEST_F(Survival, AbortForgetsALineThatIsHalfCalculated) {
+  constexpr int kLines = 14;
+  const std::string line = longest("P1=P1+1+0*(", "ASIN(1)", "+") + ")";
+  std::vector<std::string> lines(kLines, line.substr(0, 11 + 8 * 25 - 1) + ")");
+  run(1, lines);
+  int aborts = 0;
+  for (; ask("PR") != "0" && aborts < 100; ++aborts) {
+    accepted("A");
+    EXPECT_EQ(std::stoul(ask("??").substr(0, 6), nullptr, 16) & 1u, 0u) << "running";
+    board.run_ms(0.7 * aborts);
+    accepted("R");
+    board.run_ms(5.0 * (1 + aborts % 3));
+  }
+  EXPECT_GE(aborts, 3) << "nothing was interrupted";
+  const int done = std::stoi(ask("P1"));
+  EXPECT_GE(done, kLines - aborts) << "an abort loses one line at most";
+  EXPECT_LT(done, kLines) << "no line was aborted";
+  expect_alive();
+}
+
+// From the character to the call of run_abort, whatever the controller is at.
+class AbortLatency : public Survival {
+ protected:
+  double ms_to_abort() {
+    double began = board.now_ms(), found = -1.0;
+    board.cpu().on_flow = [this, &found](std::uint32_t pc, Cycle) {
+      if (found < 0.0 && elf_.symbol_at(pc) == "run_abort") found = board.now_ms();
+    };
+    board.send("\x01", 2.0);
+    board.cpu().on_flow = nullptr;
+    EXPECT_GE(found, 0.0) << "no abort within 2 ms";
+    return found - began;
+  }
+
+ private:
+  ElfFile elf_{BRICK_FIRMWARE_ELF};
+};
+
+TEST_F(AbortLatency, IsBelowAMillisecond) {
+  EXPECT_LE(ms_to_abort(), 1.0) << "idle";
+  for (const char* line : {"SAVE\r", "P0..8191\r", "M0..8191=5\r", "I5192..6599,1=0\r"}) {
+    board.send(line, 3.0);
+    EXPECT_LE(ms_to_abort(), 1.0) << line;
+    board.run_ms(400.0);
+    board.send("", 1.0);
+  }
+  run(16, worst_lines());
+  board.run_ms(5.0);
+  EXPECT_LE(ms_to_abort(), 1.0) << "16 programs";
+  EXPECT_EQ(std::stoul(ask("&16??").substr(0, 6), nullptr, 16) & 1u, 0u) << "running";
+  expect_alive();
+}
+
+}  // namespace
+}  // namespace brick

@@ -1,0 +1,135 @@
+// Nothing that a host sends stops the controller, on the whole machine: random lines, lines that take longer than the
+// real-time interrupt, and control characters that stop things at once whatever the controller is at.
+#include <cstdlib>
+
+#include "systemc/cpu/elf_file.h"
+#include "testbench/unit/random_lines.h"
+#include "testbench/unit/system/controller.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint8_t kControlA = 0x01, kControlX = 0x18, kAcknowledge = 0x06;
+
+class SurvivalOn : public Controller {
+ protected:
+  bool tripped() { return machine().outputs().get(pin::kWdTripped) != 0; }
+
+  std::string where() {
+    return "CPU at " + ElfFile(BRICK_FIRMWARE).symbol_at(machine().cpu().pc()) + ", called from " +
+           ElfFile(BRICK_FIRMWARE).symbol_at(machine().cpu().reg(1));
+  }
+
+  // Everything that comes until an ACK, or until nothing has come for `quiet`.
+  std::string listen(Tick quiet) {
+    std::string text;
+    while (const auto c = bus().get_char(quiet)) {
+      text += static_cast<char>(*c);
+      if (*c == kAcknowledge) break;
+    }
+    return text;
+  }
+
+  // A host that reads nothing while it writes, but when the port is full. False when it is still full after a second
+  // without a character.
+  bool put(const std::string& text) {
+    for (const char c : text) {
+      bool heard = true;
+      while (!bus().put_char(static_cast<std::uint8_t>(c), ms_to_ticks(10))) {
+        if (!heard) return false;
+        heard = !listen(ms_to_ticks(1000)).empty();
+      }
+    }
+    return true;
+  }
+
+  // Whatever I3, I4 and I6 have become.
+  void expect_alive() {
+    EXPECT_FALSE(tripped());
+    put("\x18");
+    while (!listen(ms_to_ticks(50)).empty()) {}
+    ASSERT_TRUE(put("CLOSE\rI4=0 I6=1 I3=2\r"));
+    while (!listen(ms_to_ticks(50)).empty()) {}
+    ASSERT_TRUE(link().connect(ms_to_ticks(2000))) << "no reply";
+    EXPECT_EQ(ask("VER"), "1.947");
+    EXPECT_EQ(ask("RHX$70"), "0") << "a trap is no survival";
+    EXPECT_EQ(ask("RY$70"), "0");
+  }
+};
+
+// BRICK_RANDOM_LINES: lines of each seed; BRICK_RANDOM_SEED: this one alone.
+TEST_P(SurvivalOn, RandomLines) {
+  const char* wanted = std::getenv("BRICK_RANDOM_LINES");
+  const long lines = wanted != nullptr ? std::strtol(wanted, nullptr, 10) : 250;
+  long answered = 0, errors = 0;
+  std::vector<unsigned> seeds = {11, 12, 13};
+  if (const char* seed = std::getenv("BRICK_RANDOM_SEED")) seeds = {static_cast<unsigned>(std::atoi(seed))};
+  for (const unsigned seed : seeds) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    start();
+    RandomLines random(seed);
+    for (long i = 0; i < lines; ++i) {
+      const std::string line = random.next();
+      ASSERT_TRUE(put(line + "\r")) << "line " << i << " is not taken: " << line << ", " << where();
+      const std::string reply = listen(ms_to_ticks(3));
+      if (!reply.empty()) ++answered;
+      if (reply.find('\a') != std::string::npos) ++errors;
+      ASSERT_FALSE(tripped()) << "line " << i << ": " << line;
+    }
+    expect_alive();
+  }
+  const long all = lines * static_cast<long>(seeds.size());
+  std::printf("%ld lines, %ld answered, %ld of them with an error\n", all, answered, errors);
+  EXPECT_GT(answered, all * 2 / 3);
+  EXPECT_LT(errors, answered * 3 / 4) << "hardly anything is understood";
+}
+
+// 28 ASIN(.5) in a line, eight times; the sum is 840 degrees.
+TEST_P(SurvivalOn, EightLinesOfTwentyEightArcSines) {
+  BRICK_COVERS("WDT-1");
+  start();
+  std::string line = "P1=ASIN(.5)";
+  for (int i = 1; i < 28; ++i) line += "+ASIN(.5)";
+  ASSERT_EQ(ask("&1DEF ROT 1500 B0"), "");
+  ASSERT_EQ(ask("OPEN ROT"), "");
+  for (int i = 0; i < 8; ++i) ASSERT_EQ(ask(line), "");
+  ASSERT_EQ(ask("CLOSE"), "");
+  ASSERT_EQ(ask("R"), "");
+  for (int i = 0; i < 200 && ask("PR") != "0"; ++i) wait(ms_to_ticks(10));
+  wait(ms_to_ticks(30));
+  EXPECT_EQ(ask("P1"), "840");
+  EXPECT_EQ(std::stoul(ask("???").substr(0, 6), nullptr, 16) & 0x500200u, 0u) << "real-time or servo task over-run";
+  expect_alive();
+}
+
+// The program counts in the dual-ported RAM, where a host sees it without asking. The reply to P0..8191 is never read,
+// so the background stands; ^A acts nevertheless, and nothing is counted later than 1 ms after it.
+TEST_P(SurvivalOn, ControlAStopsAProgramWhileAReplyIsNotRead) {
+  for (const bool abort : {true, false}) {
+    start();
+    ASSERT_EQ(ask("M1->DP:$060000 I17=1000 &1DEF ROT 1500 B0"), "");
+    ASSERT_EQ(ask("OPEN ROT"), "");
+    for (int i = 0; i < 150; ++i) ASSERT_EQ(ask("M1=M1+1 DWELL1"), "");
+    ASSERT_EQ(ask("CLOSE"), "");
+    ASSERT_EQ(ask("R"), "");
+    ASSERT_TRUE(link().send("P0..8191"));
+    wait(ms_to_ticks(60));
+    const unsigned before = bus().dpram_read(0);
+    EXPECT_GT(before, 5u);
+    if (abort) bus().put_char(kControlA, ms_to_ticks(1));
+    wait(ms_to_ticks(1));
+    const unsigned then = bus().dpram_read(0);
+    wait(ms_to_ticks(40));
+    if (abort)
+      EXPECT_EQ(bus().dpram_read(0), then);
+    else
+      EXPECT_GT(bus().dpram_read(0), then + 5u) << "it counts all the time";
+    bus().put_char(kControlX, ms_to_ticks(1));
+    EXPECT_LT(then, 150u);
+  }
+}
+
+BRICK_ON_ENGINES(SurvivalOn, Engine::kSystemC);
+
+}  // namespace
+}  // namespace brick
