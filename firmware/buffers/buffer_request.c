@@ -3,10 +3,13 @@
  *   line calculated  Full = 0 and high if PR < I16
  *   opened           Full = 1 and low if PR >= I17
  *   I16, I17 changed as for a calculated line if Full is 1, as for an opened buffer if it is 0
+ * While a fixed buffer is open, the pin is its own: a line takes it low for T_PULSE, then Full = 1 and low if no more
+ * than I18 words are open, else Full = 0 and high.
  * The whole pulse runs with the real-time task held off: it lasts 2 us, and no calculation can stretch or cut it. */
 #include "firmware/buffers/buffer_request.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary_ring.h"
 #include "firmware/hal/hal.h"
 #include "firmware/variables/i_variables.h"
@@ -15,7 +18,10 @@ static struct {
   bool high;         /* level of the pin. All tasks, under the mask */
   uint32_t changed;  /* cycle count at its last change */
   int32_t on, off;   /* I16 and I17 at the last look. All tasks, under the mask */
+  int32_t fixed;     /* I18. As those */
   uint32_t selected; /* coordinate system shown at the last look. As those */
+  bool fixed_open;   /* Background, under the mask */
+  bool fixed_full;   /* of the open fixed buffer. As the limits */
 } request;
 
 static void drive(bool high) {
@@ -34,25 +40,36 @@ static bool is_ready(uint32_t cs) {
   return ring->size != 0 && ring->requested && !ring->full;
 }
 
+static bool is_wanted(void) { return request.fixed_open ? !request.fixed_full : is_ready(buffer_request_selected()); }
+
+static void decide_fixed(void) { request.fixed_full = (int32_t)region_open_words() <= request.fixed; }
+
+static void keep_high_time(void) {
+  if (request.high) hal_await_us(request.changed, BREQ_HIGH_US);
+}
+
 void buffer_request_initialize(void) {
-  request.high = false;
+  request.high = request.fixed_open = false;
   hal_host_signals(0, HAL_SIGNAL_BREQ);
   request.changed = hal_cycles();
   request.on = i_integer(I16_ROTARY_REQUEST_ON);
   request.off = i_integer(I17_ROTARY_REQUEST_OFF);
+  request.fixed = i_integer(I18_FIXED_BUFFER_WARNING);
   request.selected = buffer_request_selected();
 }
 
+static bool is_shown(uint32_t cs) { return !request.fixed_open && cs == buffer_request_selected(); }
+
 void buffer_request_begin_line(uint32_t cs) {
-  if (cs != buffer_request_selected()) return;
-  if (request.high) hal_await_us(request.changed, BREQ_HIGH_US);
+  if (!is_shown(cs)) return;
+  keep_high_time();
   drive(false);
 }
 
 void buffer_request_line_stored(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
   if ((int32_t)ring->lines >= i_integer(I17_ROTARY_REQUEST_OFF)) ring->full = true;
-  if (cs != buffer_request_selected() || !is_ready(cs)) return;
+  if (!is_shown(cs) || !is_ready(cs)) return;
   hal_await_us(request.changed, BREQ_PULSE_US);
   drive(true);
 }
@@ -61,10 +78,10 @@ void buffer_request_line_calculated(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
   if (!ring->full || (int32_t)ring->lines >= i_integer(I16_ROTARY_REQUEST_ON)) return;
   ring->full = false;
-  if (cs == buffer_request_selected()) drive(is_ready(cs));
+  if (is_shown(cs)) drive(is_ready(cs));
 }
 
-static void show(void) { drive(is_ready(buffer_request_selected())); }
+static void show(void) { drive(is_wanted()); }
 
 void buffer_request_opened(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
@@ -80,6 +97,32 @@ void buffer_request_emptied(uint32_t cs) {
   show();
 }
 
+static void fixed_shown(bool open) {
+  uint32_t state = hal_mask_real_time();
+  request.fixed_open = open;
+  decide_fixed();
+  show();
+  hal_unmask(state);
+}
+
+void buffer_request_fixed_opened(void) { fixed_shown(true); }
+void buffer_request_fixed_changed(void) { fixed_shown(true); }
+void buffer_request_fixed_closed(void) { fixed_shown(false); }
+
+void buffer_request_fixed_line_stored(void) {
+  uint32_t state = hal_mask_real_time();
+  keep_high_time();
+  drive(false);
+  decide_fixed();
+  if (!request.fixed_full) {
+    hal_await_us(request.changed, BREQ_PULSE_US);
+    drive(true);
+  }
+  hal_unmask(state);
+}
+
+bool buffer_request_fixed_full(void) { return !request.fixed_open || request.fixed_full; }
+
 static void limits_changed(struct rotary* ring) {
   int32_t lines = (int32_t)ring->lines;
   if (ring->full)
@@ -94,6 +137,8 @@ void buffer_request_evaluate(void) {
   bool changed = on != request.on || off != request.off;
   request.on = on;
   request.off = off;
+  request.fixed = i_integer(I18_FIXED_BUFFER_WARNING);
+  decide_fixed();
   request.selected = buffer_request_selected();
   for (uint32_t cs = 0; changed && cs < COORDINATE_SYSTEMS; cs++)
     if (rotary_buffers[cs].requested) limits_changed(&rotary_buffers[cs]);
@@ -103,6 +148,6 @@ void buffer_request_evaluate(void) {
 
 void buffer_request_poll(void) {
   if (request.selected != buffer_request_selected() || request.on != i_integer(I16_ROTARY_REQUEST_ON) ||
-      request.off != i_integer(I17_ROTARY_REQUEST_OFF))
+      request.off != i_integer(I17_ROTARY_REQUEST_OFF) || request.fixed != i_integer(I18_FIXED_BUFFER_WARNING))
     buffer_request_evaluate();
 }

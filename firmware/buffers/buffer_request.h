@@ -20,7 +20,13 @@ void buffer_request_line_stored(uint32_t cs);     /* same section, line counted:
 void buffer_request_line_calculated(uint32_t cs); /* real-time task, line no longer counted */
 void buffer_request_opened(uint32_t cs);          /* OPEN ROTARY, OPEN BINARY ROTARY */
 void buffer_request_emptied(uint32_t cs);         /* CLEAR, DELETE, DEFINE: Full = 0 */
-void buffer_request_evaluate(void);               /* addressed C.S., I16 or I17 changed: pin shows the selected C.S. */
-void buffer_request_poll(void); /* real-time task, first: notices changes of I16, I17 and of the selection */
+/* An open fixed buffer owns the pin, whatever rotary buffers do meanwhile (firmware:4.6). Background. */
+void buffer_request_fixed_opened(void);
+void buffer_request_fixed_changed(void);     /* CLEAR: other open memory */
+void buffer_request_fixed_line_stored(void); /* pin low, then Full decided by I18, and high again unless full */
+void buffer_request_fixed_closed(void);
+bool buffer_request_fixed_full(void); /* Fixed Buffer Full; 1 while none is open */
+void buffer_request_evaluate(void);   /* addressed C.S., I16, I17 or I18 changed: pin shows what it has to */
+void buffer_request_poll(void);       /* real-time task, first: notices changes of I16 to I18 and of the selection */
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/fixed_entry.h"
 #include "firmware/buffers/rotary.h"
 
 static enum open_buffer open_kind;
@@ -21,4 +22,20 @@ error_t open_buffer_open(enum open_buffer kind) {
   return ERR_NONE;
 }
 
-void open_buffer_close(void) { open_kind = OPEN_NONE; }
+error_t open_buffer_open_fixed(enum fixed_kind kind, uint32_t number) {
+  if (open_kind != OPEN_NONE) return ERR_BUFFER_OPEN;
+  const error_t error = fixed_entry_begin(kind, number);
+  if (error == ERR_NONE) open_kind = OPEN_FIXED;
+  return error;
+}
+
+bool open_buffer_is_fixed(enum fixed_kind kind) {
+  const struct fixed_program* program = fixed_program_opened();
+  return program != 0 && program->kind == kind;
+}
+
+error_t open_buffer_close(void) {
+  const enum open_buffer closed = open_kind;
+  open_kind = OPEN_NONE;
+  return closed == OPEN_FIXED ? fixed_entry_end() : ERR_NONE;
+}

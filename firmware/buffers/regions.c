@@ -48,6 +48,16 @@ uint32_t region_base(enum region_kind kind, uint32_t cs) {
   return base;
 }
 
+error_t region_resize_fixed(uint32_t words) {
+  if (words == regions.fixed) return ERR_NONE;
+  if (words > regions.fixed + region_open_words()) return ERR_NO_ROOM;
+  for (uint32_t kind = 0; kind < REGION_KINDS; kind++)
+    for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+      if (regions.words[kind][cs] != 0) return ERR_DATA;
+  regions.fixed = words;
+  return ERR_NONE;
+}
+
 error_t region_define(enum region_kind kind, uint32_t cs, uint32_t words) {
   uint32_t index = owner_index(kind, cs);
   if (words == 0 || regions.words[kind][index] != 0 || is_covered(kind, index)) return ERR_DATA;

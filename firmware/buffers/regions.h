@@ -1,6 +1,6 @@
 /* Memory manager of the user buffers (firmware:4.2). Regions lie in a fixed order, each directly above the one below
  * it, so a region can come or go only while nothing lives above it: fixed programs | CCBUF 16..1 | LOOKAHEAD 16..1 |
- * ROTARY 16..1 | GATHER | open memory up to $010800 Called by the background task only. */
+ * ROTARY 16..1 | GATHER | open memory up to $010800. Called by the background task only. */
 #ifndef FIRMWARE_BUFFERS_REGIONS_H
 #define FIRMWARE_BUFFERS_REGIONS_H
 
@@ -25,6 +25,7 @@ error_t region_define_rest(void);                          /* GATHER over all op
 void region_delete_temporaries(void);                      /* GATHER, ROTARY, LOOKAHEAD, CCBUF of all C.S. */
 uint32_t region_base(enum region_kind kind, uint32_t cs);  /* word offset in user memory */
 uint32_t region_words(enum region_kind kind, uint32_t cs);
-uint32_t region_open_words(void); /* unused long words */
+uint32_t region_open_words(void);            /* unused long words */
+error_t region_resize_fixed(uint32_t words); /* fixed programs: ERR006 no room, ERR003 while something lies above */
 
 #endif

@@ -108,10 +108,8 @@ static error_t constant(struct lexer* lx) {
 }
 
 static error_t one_command(struct lexer* lx) {
-  if (program_buffer_open()) {
-    error_t error;
-    if (program_statement(lx, &error)) return error;
-  }
+  error_t error;
+  if (program_statement(lx, &error)) return error;
   const char first = lexer_peek(lx);
   if (first == '#' || first == '&') {
     ++lx->at;

@@ -4,11 +4,13 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/base/status.h"
+#include "firmware/buffers/open_buffer.h"
 #include "firmware/command/command.h"
 #include "firmware/command/motor_report.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/run/plc_control.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
 
@@ -16,16 +18,17 @@ enum {
   ABORT_ALL = 0x01,
   MOTOR_STATUS = 0x02,
   CS_STATUS = 0x03,
+  DISABLE_PLCS = 0x04,
   FOLLOWING_ERRORS = 0x06,
   GLOBAL_STATUS = 0x07,
   KILL_ALL = 0x0B,
-  CLOSE_ROTARY = 0x0C,
+  CLOSE_ROTARIES = 0x0C,
   HOLD_ALL = 0x0F,
   POSITIONS = 0x10,
   QUIT_ALL = 0x11,
   RUN_ALL = 0x12,
   STEP_ALL = 0x13,
-  OPEN_ROTARY = 0x15,
+  OPEN_ROTARIES = 0x15,
   VELOCITIES = 0x16,
   GROUP = 8
 };
@@ -76,11 +79,14 @@ bool control_character(uint8_t c) {
     case STEP_ALL:
       run_all(true);
       return false;
-    case OPEN_ROTARY:
+    case OPEN_ROTARIES:
       (void)command_line("OPEN ROT");
       return false;
-    case CLOSE_ROTARY:
-      (void)command_line("CLOSE");
+    case CLOSE_ROTARIES: /* no other buffer */
+      if (open_buffer_kind() == OPEN_ROTARY || open_buffer_kind() == OPEN_BINARY_ROTARY) (void)command_line("CLOSE");
+      return false;
+    case DISABLE_PLCS:
+      plc_disable(0xFFFFFFFFu);
       return false;
     case MOTOR_STATUS:
       report_motors(motor_report_status);

@@ -1,52 +1,16 @@
-/* On-line commands that own buffers and programs (firmware:4.3, firmware:4.9, firmware:4.10). */
+/* On-line commands of programs and axes (firmware:4.9, firmware:4.10). */
 #include "firmware/command/program_commands.h"
 
 #include "firmware/base/status.h"
-#include "firmware/buffers/open_buffer.h"
-#include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/axis_commands.h"
 #include "firmware/command/define_commands.h"
-#include "firmware/command/program_line.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/language/statement.h"
+#include "firmware/language/statement_list.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/run/run_control.h"
-
-static error_t cmd_open(struct lexer* lx) {
-  enum open_buffer kind = OPEN_ROTARY;
-  if (lexer_keyword(lx, "BINARY") || lexer_keyword(lx, "BIN")) kind = OPEN_BINARY_ROTARY;
-  if (!lexer_keyword(lx, "ROTARY") && !lexer_keyword(lx, "ROT")) return ERR_DATA;
-  return open_buffer_open(kind);
-}
-
-/* A line entered so far is stored first: CLOSE at its end belongs to it. */
-static error_t cmd_close(struct lexer* lx) {
-  (void)lexer_keyword(lx, "ALL");
-  error_t error = program_line_commit();
-  open_buffer_close();
-  return error;
-}
-
-static error_t cmd_clear(struct lexer* lx) {
-  (void)lx;
-  uint32_t cs = session.cs;
-  if (!program_buffer_open()) return ERR_NEEDS_BUFFER;
-  if (rotary_buffers[cs].size == 0) return ERR_NO_ROOM;
-  if (run_is_running(cs)) return ERR_PROGRAM_RUNNING;
-  program_line_abandon();
-  rotary_clear(cs);
-  return ERR_NONE;
-}
-
-static error_t cmd_size(struct lexer* lx) {
-  (void)lx;
-  int64_t words = region_open_words();
-  reply_integer(open_buffer_kind() == OPEN_NONE ? words : -words - 1); /* one's complement while a buffer is open */
-  reply_end_line();
-  return ERR_NONE;
-}
 
 static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
   (void)lx;
@@ -164,15 +128,9 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"DEFINE", define_command},
                                                  {"DELETE", delete_command},
                                                  {"DELAY", cmd_needs_buffer}, /* not DEL AY */
-                                                 {"CLOSE", cmd_close},
-                                                 {"CLEAR", cmd_clear},
-                                                 {"OPEN", cmd_open},
-                                                 {"SIZE", cmd_size},
                                                  {"FRAX", cmd_frax},
                                                  {"ABS", cmd_abs},
                                                  {"INC", cmd_inc},
-                                                 {"CLS", cmd_close},
-                                                 {"CLR", cmd_clear},
                                                  {"DEF", define_command},
                                                  {"DEL", delete_command},
                                                  {"PR", cmd_rotary_lines},

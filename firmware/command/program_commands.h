@@ -1,4 +1,4 @@
-/* Commands that own buffers and programs: OPEN CLOSE CLEAR DEFINE DELETE B R S Q A PR SIZE ... */
+/* Commands of programs and axes: DEFINE DELETE B R S Q A PR ABS ... */
 #ifndef FIRMWARE_COMMAND_PROGRAM_COMMANDS_H
 #define FIRMWARE_COMMAND_PROGRAM_COMMANDS_H
 

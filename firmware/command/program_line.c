@@ -1,8 +1,9 @@
 /* The program line being entered. Its statements are compiled as they are met and stored together when the host line
  * has ended without an error; a change of the addressed coordinate system inside the line ends the program line of the
- * one before. */
+ * one before. PLCs and kinematic programs have a program line for each statement. */
 #include "firmware/command/program_line.h"
 
+#include "firmware/buffers/fixed_entry.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/session.h"
@@ -14,21 +15,36 @@ static struct {
   word48_t words[LINE_WORDS];
   uint32_t count;
   uint32_t cs;
+  bool called; /* a statement of the line is a call */
 } line;
 
-bool program_buffer_open(void) { return open_buffer_kind() == OPEN_ROTARY; }
+/* Kind of the open program for the statement table; 0: nothing takes text. */
+static uint32_t open_where(void) {
+  static const uint8_t fixed[FIXED_KINDS] = {WHERE_PROG, WHERE_PLC, WHERE_KINEMATIC, WHERE_KINEMATIC};
+  if (open_buffer_kind() == OPEN_ROTARY) return WHERE_ROTARY;
+  return open_buffer_kind() == OPEN_FIXED ? fixed[fixed_program_opened()->kind] : 0;
+}
 
-void program_line_begin(void) { line.count = 0; }
+bool program_buffer_open(void) { return open_where() != 0; }
 
-void program_line_abandon(void) { line.count = 0; }
+static void empty(void) {
+  line.count = 0;
+  line.called = false;
+}
+
+void program_line_begin(void) { empty(); }
+
+void program_line_abandon(void) { empty(); }
 
 error_t program_line_commit(void) {
   uint32_t count = line.count;
-  line.count = 0;
-  return count == 0 ? ERR_NONE : rotary_store(line.cs, line.words, count);
+  empty();
+  if (count == 0) return ERR_NONE;
+  return open_buffer_kind() == OPEN_FIXED ? fixed_entry_store(line.words, count)
+                                          : rotary_store(line.cs, line.words, count);
 }
 
-/* The pending line belongs to the addressed coordinate system, which needs a rotary buffer. */
+/* The pending line of a rotary buffer belongs to the addressed coordinate system, which needs one. */
 static error_t address(void) {
   error_t error = ERR_NONE;
   if (line.count != 0 && line.cs != session.cs) error = program_line_commit();
@@ -38,12 +54,20 @@ static error_t address(void) {
 }
 
 bool program_statement(struct lexer* lx, error_t* error) {
-  const struct statement head = statement_find(lx);
+  uint32_t where = open_where();
+  if (where == 0) return false;
+  const bool one_a_line = (where & WHERE_MOVES) == 0;
+  if (line.count != 0 && !one_a_line) where |= WHERE_BEGUN;
+  if (line.called) where |= WHERE_CALLED;
+  const struct statement head = statement_find(lx, where);
   if (head.kind == STATEMENT_NONE) return false;
-  *error = address();
+  *error = (where & WHERE_ROTARY) != 0 ? address() : ERR_NONE;
   struct word_list list = {line.words, line.count,
                            LINE_WORDS}; /* a change of address has stored and emptied the line */
-  if (*error == ERR_NONE) *error = statement_compile(lx, head, &list);
-  if (*error == ERR_NONE) line.count = list.count;
+  if (*error == ERR_NONE) *error = statement_compile(lx, head, where, &list);
+  if (*error != ERR_NONE) return true;
+  if (one_a_line) line.words[line.count] |= WORD_START_OF_LINE;
+  if (head.kind == STATEMENT_ROW && (statement_rows[head.index].where & CALLS) != 0) line.called = true;
+  line.count = list.count;
   return true;
 }

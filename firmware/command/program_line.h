@@ -6,7 +6,7 @@
 
 bool program_buffer_open(void); /* some buffer is open for ASCII entry */
 void program_line_begin(void);  /* before the first command of each host line */
-/* Compiles one statement into the pending line of the addressed C.S.; false: lx stands before something else. */
+/* Compiles one statement into the pending line; false: no buffer is open, or lx stands before something else. */
 bool program_statement(struct lexer* lx, error_t* error);
 error_t program_line_commit(void); /* at the end of the host line: stores the pending statements as one program line */
 void program_line_abandon(void);   /* after an error: nothing of the line is stored */

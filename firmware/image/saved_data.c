@@ -1,21 +1,24 @@
-/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros, and axis definitions.
- * Layout in 32-bit words: mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then `count` words:
- * (number, value low, value high, integer) of I-variables, a separator, (address, X, Y) of user memory, a separator,
- * (motor, words of its definition) of axes, a separator. A checksum says that nothing has changed, not who wrote it:
- * the numbers are checked again where they become places. */
+/* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros, axis definitions and the
+ * fixed programs. Layout in 32-bit words: mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then
+ * `count` words: (number, value low, value high, integer) of I-variables, a separator, (address, X, Y) of user memory, a
+ * separator, (motor, words of its definition) of axes, a separator, (kind and number, count, (X, Y) of each word) of
+ * programs, a separator. A checksum says that nothing has changed, not who wrote it: the numbers are checked again where
+ * they become places. */
 #include "firmware/image/saved_data.h"
 
 #include <stdbool.h>
 
 #include "firmware/base/dimensions.h"
 #include "firmware/base/memory_map.h"
+#include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/user_memory.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/variables/i_variables.h"
 
-#define MARK 0x42524B32u
+#define MARK 0x42524B33u
 #define SEPARATOR 0xFFFFFFFFu
 enum { WORD_MARK, WORD_CHECKSUM, WORD_COUNT, WORD_INITIAL_ICS, WORD_SAVED_ICS, WORD_DATA };
 enum { AXIS_DEFINITION_WORDS = sizeof(struct axis_definition) / 4 };
@@ -39,11 +42,42 @@ static uint32_t checksum(const uint32_t* data, uint32_t count) {
   return sum;
 }
 
+enum { KIND_BIT = 16 }; /* of a program's kind, above its number */
+
 static uint32_t checked_words(uint32_t count) { return count + WORD_DATA - WORD_COUNT; }
 
 /* SAVE is one background pass, longer than a small I40 allows. */
 static void keep_alive(uint32_t step) {
   if (step % 64u == 0u) watchdog_reload();
+}
+
+static uint32_t write_programs(uint32_t* data, uint32_t count) {
+  for (uint32_t index = 0; index < fixed_programs_count(); ++index) {
+    const struct fixed_program* program = fixed_program_at(index);
+    if (program->words == 0u) continue; /* open and empty */
+    data[count++] = (uint32_t)program->kind << KIND_BIT | program->number;
+    data[count++] = program->words;
+    for (uint32_t offset = 0; offset < program->words; ++offset) {
+      keep_alive(offset);
+      const word48_t word = fixed_program_word(program, offset);
+      data[count++] = (uint32_t)(word >> 24) & HAL_WORD_MASK;
+      data[count++] = (uint32_t)word & HAL_WORD_MASK;
+    }
+  }
+  data[count++] = SEPARATOR;
+  return count;
+}
+
+static void restore_programs(const uint32_t* data) {
+  while (has_record(data, 2)) {
+    const uint32_t kind = data[0] >> KIND_BIT, number = data[0] & 0xFFFFu, words = data[1];
+    data += 2;
+    if (words > (uint32_t)(data_end - data) / 2u) return;
+    if (!fixed_program_restore((enum fixed_kind)kind, number, words)) return; /* not written by this firmware */
+    const uint32_t base = fixed_program_at(fixed_programs_count() - 1u)->base;
+    for (uint32_t offset = 0; offset < words; ++offset, data += 2)
+      user_memory_write(base + offset, (word48_t)data[0] << 24 | data[1]);
+  }
 }
 
 void saved_data_write(uint32_t initial_ics) {
@@ -78,6 +112,7 @@ void saved_data_write(uint32_t initial_ics) {
     count += AXIS_DEFINITION_WORDS;
   }
   data[count++] = SEPARATOR;
+  count = write_programs(data, count);
   flash[WORD_MARK] = MARK;
   flash[WORD_COUNT] = count;
   flash[WORD_INITIAL_ICS] = initial_ics;
@@ -117,4 +152,5 @@ void saved_data_restore_user_memory(void) {
   }
   for (++data; has_record(data, 1 + AXIS_DEFINITION_WORDS); data += 1 + AXIS_DEFINITION_WORDS)
     if (data[0] < MOTORS) __builtin_memcpy(&axis_definitions[data[0]], data + 1, sizeof axis_definitions[0]);
+  restore_programs(data + 1);
 }

@@ -4,6 +4,7 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/base/status.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
@@ -23,6 +24,7 @@
 #include "firmware/motion/motor_status.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/run/calculate.h"
+#include "firmware/run/plc_control.h"
 #include "firmware/variables/i_variables.h"
 
 enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
@@ -50,6 +52,8 @@ static void load_user_memory(void) {
   }
   axis_definition_initialize();
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
+  regions_initialize();
+  fixed_programs_initialize();
   fault_show();
   if (load_user) saved_data_restore_user_memory();
 }
@@ -71,8 +75,8 @@ void start(enum start_mode mode) {
   panel_initialize();
   coordinate_systems_initialize();
   calculate_initialize();
+  plc_control_initialize();
   motor_status_initialize();
-  regions_initialize();
   rotary_initialize();
   open_buffer_initialize();
   buffer_request_initialize();

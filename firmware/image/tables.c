@@ -2,9 +2,12 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/command/buffer_commands.h"
 #include "firmware/command/calendar_commands.h"
 #include "firmware/command/command.h"
+#include "firmware/command/list_commands.h"
 #include "firmware/command/memory_commands.h"
+#include "firmware/command/plc_commands.h"
 #include "firmware/command/program_commands.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/report_commands.h"
@@ -48,6 +51,7 @@ static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session
 uint32_t (*const buffer_request_selected)(void) = selected_cs;
 
 const struct command_entry* const command_tables[] = {report_commands,   system_commands,  memory_commands,
-                                                      calendar_commands, program_commands, 0};
+                                                      calendar_commands, buffer_commands,  list_commands,
+                                                      plc_commands,      program_commands, 0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;

@@ -32,9 +32,17 @@ static const struct {
                  {"EXP", OPERATOR_EXP},     {"ABS", OPERATOR_ABS},   {"INT", OPERATOR_INT},   {"LN", OPERATOR_LN}};
 
 static const char BINARY_SPELLING[] = "+-|^*/%&"; /* in the order of operator_code */
-static const char CLASS_SPELLING[] = "MPQI";      /* in the order of variable_class */
+const char expression_classes[] = "MPQI";
 
-static error_t word_list_add(struct word_list* list, word48_t word) {
+const char* expression_operator_name(uint32_t code) {
+  static const char* const binary[] = {"+", "-", "|", "^", "*", "/", "%", "&", "-"};
+  if (code < sizeof binary / sizeof binary[0]) return binary[code];
+  for (unsigned i = 0; i < sizeof FUNCTIONS / sizeof FUNCTIONS[0]; i++)
+    if (FUNCTIONS[i].code == code) return FUNCTIONS[i].name;
+  return 0;
+}
+
+error_t word_list_add(struct word_list* list, word48_t word) {
   if (list->count >= list->capacity) return ERR_DATA;
   list->words[list->count++] = word;
   return ERR_NONE;
@@ -51,13 +59,17 @@ static error_t emit(struct compiler* c, enum operation operation, uint32_t group
 
 static error_t grow(struct compiler* c) { return ++c->depth > EXPRESSION_DEPTH ? ERR_DATA : ERR_NONE; }
 
-static error_t emit_constant(struct compiler* c, double value) {
-  struct instruction in = {OP_PUSH, 0, 0, value};
+error_t word_list_add_constant(struct word_list* list, double value, bool hexadecimal) {
+  struct instruction in = {OP_PUSH, hexadecimal, 0, value};
+  if (word_holds_exactly(value)) return word_list_add_instruction(list, &in);
+  const word48_t form = hexadecimal ? WORD_DOUBLE_HEXADECIMAL : 0;
+  error_t error = word_list_add(list, word_double_head(value) | form);
+  return error != ERR_NONE ? error : word_list_add(list, word_double_tail(value));
+}
+
+static error_t emit_constant(struct compiler* c, double value, bool hexadecimal) {
   error_t error = grow(c);
-  if (error != ERR_NONE) return error;
-  if (word_holds_exactly(value)) return word_list_add_instruction(c->out, &in);
-  error = word_list_add(c->out, word_double_head(value));
-  return error != ERR_NONE ? error : word_list_add(c->out, word_double_tail(value));
+  return error != ERR_NONE ? error : word_list_add_constant(c->out, value, hexadecimal);
 }
 
 static error_t hold(struct compiler* c, enum pending_kind kind, uint32_t code) {
@@ -122,6 +134,7 @@ static error_t variable(struct compiler* c, struct lexer* lx, uint32_t group, bo
 static error_t operand(struct compiler* c, struct lexer* lx, bool* complete) {
   double value;
   bool found;
+  const bool hexadecimal = lexer_is_hexadecimal(*lx);
   *complete = false;
   if (lexer_accept(lx, '-')) {
     if (!lexer_number(lx, &value)) return hold(c, PENDING_OPERATOR, OPERATOR_NEGATE);
@@ -135,11 +148,12 @@ static error_t operand(struct compiler* c, struct lexer* lx, bool* complete) {
     *complete = true;
   }
   if (*complete)
-    return value > LEXER_CONSTANT_LIMIT || value < -LEXER_CONSTANT_LIMIT ? ERR_DATA : emit_constant(c, value);
+    return value > LEXER_CONSTANT_LIMIT || value < -LEXER_CONSTANT_LIMIT ? ERR_DATA
+                                                                         : emit_constant(c, value, hexadecimal);
   error_t error = open_function(c, lx, &found);
   if (found || error != ERR_NONE) return error;
   for (uint32_t group = 0; group < VARIABLE_CLASSES; group++)
-    if (lexer_accept(lx, CLASS_SPELLING[group])) return variable(c, lx, group, complete);
+    if (lexer_accept(lx, expression_classes[group])) return variable(c, lx, group, complete);
   return ERR_DATA;
 }
 

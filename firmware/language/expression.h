@@ -15,10 +15,15 @@ struct word_list {
 /* Parses and evaluates at once. `cs` (0..15) gives the Q-variables. */
 error_t expression_evaluate(struct lexer* lx, uint32_t cs, double* value);
 
+extern const char expression_classes[];              /* letters of the variables in the order of enum variable_class */
+const char* expression_operator_name(uint32_t code); /* of an operator or function; 0: there is none */
+
 /* Appends a stack program that leaves one value. `bracketed`: the text starts with `(` and ends with the matching `)`.
  */
 error_t expression_compile(struct lexer* lx, bool bracketed, struct word_list* out);
 /* ERR_DATA when the list is full: line too long. */
 error_t word_list_add_instruction(struct word_list* list, const struct instruction* in);
+error_t word_list_add_constant(struct word_list* list, double value, bool hexadecimal);
+error_t word_list_add(struct word_list* list, word48_t word);
 
 #endif

@@ -4,7 +4,7 @@
  * T_FALL). */
 #include "firmware/language/lexer.h"
 
-enum { SHORT_DIGITS = 9, NUMBER_DIGITS = 18 }; /* decimal digits kept; 10^18 fits 63 bits */
+enum { SHORT_DIGITS = 9, NUMBER_DIGITS = LEXER_DECIMALS };
 
 static const double POWER_OF_TEN[NUMBER_DIGITS + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
                                                        1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
@@ -24,6 +24,18 @@ bool lexer_keyword(struct lexer* lx, const char* word) {
     if (*text != *word) return false;
   lx->at = text;
   return true;
+}
+
+bool lexer_is_hexadecimal(struct lexer lx) {
+  if (!lexer_accept(&lx, '-')) (void)lexer_accept(&lx, '+');
+  return lexer_peek(&lx) == '$';
+}
+
+bool lexer_value_starts(struct lexer lx) {
+  if (lexer_peek(&lx) == '(') return true;
+  if (!lexer_accept(&lx, '-')) (void)lexer_accept(&lx, '+');
+  const char c = lexer_peek(&lx);
+  return is_digit(c) || (c == '.' && is_digit(lx.at[1])) || (c == '$' && hex_digit(lx.at[1]) >= 0);
 }
 
 static bool hex_number(struct lexer* lx, double* value) {
@@ -50,6 +62,11 @@ static bool short_integer(const char** at, uint32_t* low, unsigned* digits) {
   }
   *at = text;
   return !is_digit(*text) && *text != '.';
+}
+
+double lexer_decimal(uint64_t digits, unsigned decimals) {
+  const double value = digits <= UINT32_MAX ? (double)(uint32_t)digits : (double)digits; /* the short one is faster */
+  return decimals != 0 ? value / POWER_OF_TEN[decimals] : value;
 }
 
 bool lexer_number(struct lexer* lx, double* value) {
@@ -84,8 +101,7 @@ bool lexer_number(struct lexer* lx, double* value) {
     }
   }
   lx->at = text;
-  *value = sum <= UINT32_MAX ? (double)(uint32_t)sum : (double)sum; /* the short conversion is much the faster one */
-  if (decimals != 0) *value /= POWER_OF_TEN[decimals];
+  *value = lexer_decimal(sum, decimals);
   for (; zeros > 0 && *value <= LEXER_CONSTANT_LIMIT * 1e18; zeros--) *value *= 10.0;
   return true;
 }

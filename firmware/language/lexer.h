@@ -10,6 +10,8 @@
 
 #define LEXER_CONSTANT_LIMIT 34359738368.0 /* 2^35, firmware:1.1 */
 
+enum { LEXER_DECIMALS = 18 }; /* digits of a number that count; 10^18 fits 63 bits */
+
 struct lexer {
   const char* at; /* next character not consumed; text is upper case already, NUL-terminated */
 };
@@ -28,9 +30,13 @@ static inline bool lexer_accept(struct lexer* lx, char c) {
   return true;
 }
 
-bool lexer_keyword(struct lexer* lx, const char* word);  /* consumes `word` (upper case) if it is next */
-bool lexer_number(struct lexer* lx, double* value);      /* unsigned decimal or $hex constant; false: not a number */
-error_t lexer_constant(struct lexer* lx, double* value); /* optional sign and number; ERR_DATA outside +-2^35 */
-error_t lexer_integer(struct lexer* lx, int32_t* value); /* constant without fraction */
+bool lexer_keyword(struct lexer* lx, const char* word);   /* consumes `word` (upper case) if it is next */
+bool lexer_is_hexadecimal(struct lexer lx);               /* `$` behind an optional sign */
+bool lexer_value_starts(struct lexer lx);                 /* a constant with or without sign, or a bracket */
+double lexer_decimal(uint64_t digits, unsigned decimals); /* what these digits, `decimals` of them behind the point,
+                                                              are read as; up to LEXER_DECIMALS */
+bool lexer_number(struct lexer* lx, double* value);       /* unsigned decimal or $hex constant; false: not a number */
+error_t lexer_constant(struct lexer* lx, double* value);  /* optional sign and number; ERR_DATA outside +-2^35 */
+error_t lexer_integer(struct lexer* lx, int32_t* value);  /* constant without fraction */
 
 #endif

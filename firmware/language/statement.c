@@ -1,46 +1,16 @@
-/* Compiler of program statements. Branches, loops, calls and arcs are recognised as statements, so that they are
- * answered with ERR005 when no buffer is open, and refused with ERR003: a ring of words cannot be jumped about in. */
+/* Compiler of program statements: finds the head in the statement table and compiles assignments; what follows the
+ * head is compiled by statement_argument.c. */
 #include "firmware/language/statement.h"
 
+#include "firmware/base/dimensions.h"
+#include "firmware/language/statement_argument.h"
+
 /* What a letter means, A to Z: one more than enum axis or enum variable_class, 0 nothing. Looked up for every value of
- * a line. */
+ * a line. The axes are the first rows of the table. */
 static const uint8_t AXIS_OF[26] = {1, 2, 3, ['U' - 'A'] = 4, 5, 6, 7, 8, 9};
 static const uint8_t CLASS_OF[26] = {['M' - 'A'] = 1, ['P' - 'A'] = 2, ['Q' - 'A'] = 3, ['I' - 'A'] = 4};
 
-static const struct {
-  const char* name;
-  uint8_t operation;
-  uint8_t number;
-} KEYWORDS[] = {/* longer names first */
-                {"DWELL", OP_RATE, RATE_DWELL},
-                {"DWE", OP_RATE, RATE_DWELL},
-                {"DELAY", OP_RATE, RATE_DELAY},
-                {"DLY", OP_RATE, RATE_DELAY},
-                {"TM", OP_RATE, RATE_TM},
-                {"TA", OP_RATE, RATE_TA},
-                {"TS", OP_RATE, RATE_TS},
-                {"LINEAR", OP_MODE, MODE_LINEAR},
-                {"LIN", OP_MODE, MODE_LINEAR},
-                {"RAPID", OP_MODE, MODE_RAPID},
-                {"RPD", OP_MODE, MODE_RAPID},
-                {"ABS", OP_ABS, 0},
-                {"INC", OP_INC, 0},
-                {"NOFRAX", OP_FRAX, 1},
-                {"FRAX", OP_FRAX, 0}};
-
-/* Statements of fixed programs. */
-static const char* const OTHERS[] = {"ADIS", "AROT",   "BLOCKST", "BSTART",  "BSTOP", "CALL",  "CC0",   "CC1",
-                                     "CC2",  "CMD",    "COMMAND", "DISP",    "CC3",   "CCR",   "CIR",   "ELSE",
-                                     "ENDI", "ENDW",   "GOS",     "GOTO",    "IDIS",  "IF(",   "IROT",  "MOVETIME",
-                                     "MVTM", "NORMAL", "NRM",     "PRELUDE", "PSET",  "PVT",   "READ(", "RET",
-                                     "SEND", "SPLINE", "STOP",    "TINIT",   "TSEL",  "WHILE", "WAIT"};
-
-enum { KEYWORD_COUNT = sizeof KEYWORDS / sizeof KEYWORDS[0], OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
-
-static bool number_starts(struct lexer* lx) {
-  char c = lexer_peek(lx);
-  return (c >= '0' && c <= '9') || c == '.' || c == '$' || c == '-' || c == '+' || c == '(';
-}
+enum { WHERE_KINDS = WHERE_PROG | WHERE_ROTARY | WHERE_PLC | WHERE_KINEMATIC };
 
 static bool find_letter(struct lexer* lx, const uint8_t meaning[26], uint32_t* index) {
   uint32_t letter = (uint32_t)(uint8_t)lexer_peek(lx) - 'A';
@@ -67,123 +37,143 @@ static bool skip_brackets(struct lexer* lx) {
 static bool axis_starts(struct lexer* lx, uint32_t* axis) {
   (void)lexer_peek(lx);
   struct lexer start = *lx;
-  if (find_letter(lx, AXIS_OF, axis) && number_starts(lx)) return true;
+  if (find_letter(lx, AXIS_OF, axis)) {
+    char c = lexer_peek(lx);
+    if ((c >= '0' && c <= '9') || c == '.' || c == '$' || c == '-' || c == '+' || c == '(') return true;
+  }
   *lx = start;
   return false;
+}
+
+/* `=`, for M also `==`, `&=`, `|=`, `^=` in a motion program: enum synchronous, or SYNCHRONOUS_COUNT. */
+static bool accept_equals(struct lexer* lx, uint32_t group, uint32_t* synchronous) {
+  static const char letters[] = "&|^"; /* behind SYNCHRONOUS_SET */
+  *synchronous = SYNCHRONOUS_COUNT;
+  for (uint32_t i = 0; group == VARIABLE_M && letters[i] != '\0'; i++)
+    if (lexer_accept(lx, letters[i])) *synchronous = i + SYNCHRONOUS_AND;
+  if (!lexer_accept(lx, '=')) return false;
+  if (group == VARIABLE_M && *synchronous == SYNCHRONOUS_COUNT && lexer_accept(lx, '=')) *synchronous = SYNCHRONOUS_SET;
+  return true;
 }
 
 /* `P5=`, `P(..)=`: an assignment. A query such as `P5` is an on-line command whatever is open. */
 static bool assignment_starts(struct lexer lx) {
-  uint32_t group;
+  uint32_t group, synchronous;
   double number;
   if (!find_letter(&lx, CLASS_OF, &group)) return false;
   bool indexed = lexer_peek(&lx) == '(' ? skip_brackets(&lx) : lexer_number(&lx, &number);
-  return indexed && lexer_peek(&lx) == '=';
+  return indexed && accept_equals(&lx, group, &synchronous);
 }
 
-static bool feed_starts(struct lexer* lx) {
-  struct lexer start = *lx;
-  if (lexer_accept(lx, 'F') && number_starts(lx)) return true;
-  *lx = start;
-  return false;
+/* Letters by which a name of the table is spelled, with blanks where it has one; 0: it is not next. */
+static const char* match(struct lexer lx, const char* name) {
+  (void)lexer_peek(&lx);
+  for (; *name != '\0'; name++) {
+    if (*name == ' ' || *name == '_')
+      (void)lexer_peek(&lx);
+    else if (*lx.at++ != *name)
+      return 0;
+  }
+  return lx.at;
 }
 
-/* Searches for every statement: the first letter decides before anything is called. KEYWORD_COUNT: none. */
-static uint32_t accept_keyword(struct lexer* lx) {
-  char first = lexer_peek(lx);
-  uint32_t i = 0;
-  while (i < KEYWORD_COUNT && !(KEYWORDS[i].name[0] == first && lexer_keyword(lx, KEYWORDS[i].name))) i++;
-  return i;
+/* `M1->` and `M1..5` are on-line commands whatever is open. */
+static bool is_code(struct lexer lx) {
+  double number;
+  if (lexer_peek(&lx) == '(') return true;
+  (void)lexer_number(&lx, &number);
+  return !lexer_keyword(&lx, "->") && !lexer_keyword(&lx, "..") && lexer_peek(&lx) != ',';
 }
 
-static bool accept_other(struct lexer* lx) {
-  char first = lexer_peek(lx);
-  for (uint32_t i = 0; i < OTHER_COUNT; i++)
-    if (OTHERS[i][0] == first && lexer_keyword(lx, OTHERS[i])) return true;
-  return false;
+/* What follows decides between a statement and something else that begins with the same letters. */
+static bool argument_starts(struct lexer lx, const struct statement_row* row, uint32_t where) {
+  const char c = lexer_peek(&lx);
+  switch (row->argument) {
+    case ARGUMENT_NONE:
+    case ARGUMENT_AXES:
+    case ARGUMENT_FRAX:
+      return true;
+    case ARGUMENT_CONDITION:
+    case ARGUMENT_LETTERS:
+      return c == '(';
+    case ARGUMENT_MOTORS:
+    case ARGUMENT_PLCS:
+      return c >= '0' && c <= '9';
+    case ARGUMENT_ADDRESS:
+      return c == '#' || c == '&';
+    case ARGUMENT_TEXT:
+      return c == '"' || c == '^';
+    case ARGUMENT_DISPLAY:
+      return c == '"' || (c >= '0' && c <= '9');
+    case ARGUMENT_CODE:
+      return (where & WHERE_MOVES) != 0 && lexer_value_starts(lx) && is_code(lx);
+    default:
+      return lexer_value_starts(lx);
+  }
 }
 
-/* The head of a statement is looked for once: `lx` is left behind its letter or keyword. */
-struct statement statement_find(struct lexer* lx) {
-  const struct lexer start = *lx;
-  struct statement found = {STATEMENT_NONE, 0};
-  if (axis_starts(lx, &found.index)) {
-    found.kind = STATEMENT_AXIS;
-  } else if (feed_starts(lx)) {
-    found.kind = STATEMENT_FEED;
-  } else if (assignment_starts(*lx)) {
+/* The longest name that fits. Searches for every statement: the first letter decides before anything is called. */
+static bool find_row(struct lexer* lx, uint32_t where, uint32_t* index) {
+  const char first = lexer_peek(lx);
+  const char* end = 0;
+  for (uint32_t i = AXIS_COUNT; i < statement_row_count; i++) {
+    const struct statement_row* row = &statement_rows[i];
+    if (row->name[0] != first) continue;
+    if ((row->where & (WHERE_BEGUN | WHERE_CALLED) & ~where) != 0) continue;
+    const char* found = match(*lx, row->name);
+    if (found == 0 && row->brief != 0) found = match(*lx, row->brief);
+    if (found == 0 || (end != 0 && found <= end)) continue;
+    const struct lexer behind = {found};
+    if (!argument_starts(behind, row, where)) continue;
+    end = found;
+    *index = i;
+  }
+  if (end == 0) return false;
+  lx->at = end;
+  return true;
+}
+
+struct statement statement_find(struct lexer* lx, uint32_t where) {
+  struct statement found = {STATEMENT_ROW, 0};
+  if (axis_starts(lx, &found.index)) return found;
+  if (assignment_starts(*lx)) {
     found.kind = STATEMENT_ASSIGNMENT;
     (void)find_letter(lx, CLASS_OF, &found.index);
-  } else if ((found.index = accept_keyword(lx)) < KEYWORD_COUNT) {
-    if (KEYWORDS[found.index].operation != OP_RATE || number_starts(lx)) found.kind = STATEMENT_KEYWORD;
-  } else if (accept_other(lx) ||
-             ((lexer_accept(lx, 'N') || lexer_accept(lx, 'O') || lexer_accept(lx, 'G')) && number_starts(lx))) {
-    found.kind = STATEMENT_OTHER;
+  } else if (!find_row(lx, where, &found.index)) {
+    found.kind = STATEMENT_NONE;
   }
-  if (found.kind == STATEMENT_NONE) *lx = start;
   return found;
 }
 
-bool statement_starts(struct lexer lx) { return statement_find(&lx).kind != STATEMENT_NONE; }
+bool statement_starts(struct lexer lx) { return statement_find(&lx, 0).kind != STATEMENT_NONE; }
 
-error_t statement_axis_list(struct lexer* lx, uint32_t bare, uint32_t* mask) {
-  uint32_t axis;
-  *mask = bare;
-  if (!lexer_accept(lx, '(')) return ERR_NONE;
-  *mask = 0;
-  do {
-    if (lexer_accept(lx, 'R'))
-      *mask |= AXIS_VECTOR;
-    else if (find_letter(lx, AXIS_OF, &axis))
-      *mask |= 1u << axis;
-    else
-      return ERR_DATA;
-  } while (lexer_accept(lx, ','));
-  return lexer_accept(lx, ')') ? ERR_NONE : ERR_DATA;
-}
-
-/* No space may stand before the bracket of FRAX(. */
-error_t statement_frax_list(struct lexer* lx, uint32_t* mask) {
-  if (*lx->at == ' ' && lexer_peek(lx) == '(') return ERR_DATA;
-  return statement_axis_list(lx, AXIS_XYZ, mask);
-}
-
-/* A value behind an axis letter or a keyword: a constant in the same word, or an expression in brackets before it. */
-static error_t compile_value(struct lexer* lx, enum operation constant, enum operation popped, uint32_t number,
-                             struct word_list* out) {
-  struct instruction in = {constant, 0, number, 0.0};
-  error_t error;
-  if (lexer_peek(lx) == '(') {
-    in.operation = popped;
-    error = expression_compile(lx, true, out);
-  } else {
-    error = lexer_constant(lx, &in.value);
-    if (error == ERR_NONE && constant == OP_RATE && (in.value < 0.0 || (number == RATE_F && in.value == 0.0)))
-      error = ERR_DATA;
-    if (error == ERR_NONE && number == RATE_TM && constant == OP_RATE && in.value > 8388607.0) error = ERR_DATA;
-  }
-  return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
-}
-
-static error_t compile_assignment(struct lexer* lx, uint32_t group, struct word_list* out) {
+static error_t compile_assignment(struct lexer* lx, uint32_t group, uint32_t where, struct word_list* out) {
   struct instruction in = {OP_ASSIGN_POP, group, 0, 0.0};
   double number;
+  uint32_t synchronous;
+  bool indexed = lexer_peek(lx) == '(';
   error_t error = ERR_NONE;
-  if (lexer_peek(lx) == '(') {
+  if (indexed) {
     in.operation = OP_ASSIGN_INDEXED;
     error = expression_compile(lx, true, out);
   } else {
-    if (!lexer_number(lx, &number) || number > 8191.0 || (double)(uint32_t)number != number) return ERR_DATA;
+    if (!lexer_number(lx, &number) || number >= (double)VARIABLE_COUNT || (double)(uint32_t)number != number)
+      return ERR_DATA;
     in.number = (uint32_t)number;
   }
-  if (error != ERR_NONE || !lexer_accept(lx, '=')) return ERR_DATA;
+  if (error != ERR_NONE || !accept_equals(lx, group, &synchronous)) return ERR_DATA;
   struct word_list before = *out;
   error = expression_compile(lx, false, out);
   if (error != ERR_NONE) return error;
+  if (synchronous != SYNCHRONOUS_COUNT) {
+    if ((where & WHERE_MOVES) == 0) return ERR_DATA;
+    in.operation = indexed ? OP_SYNCHRONOUS_INDEXED : OP_SYNCHRONOUS;
+    in.group = synchronous;
+    return word_list_add_instruction(out, &in);
+  }
   struct instruction constant = word_decode(out->words[before.count]);
-  bool single = out->count == before.count + 1 && constant.operation == OP_PUSH;
-  if (single && in.operation == OP_ASSIGN_POP && in.number < 1024 &&
-      word_holds_short(constant.value)) { /* one word holds it all */
+  bool single = out->count == before.count + 1 && constant.operation == OP_PUSH && constant.group == 0;
+  if (single && !indexed && in.number < 1024 && word_holds_short(constant.value)) { /* one word holds it all */
     *out = before;
     in.operation = OP_ASSIGN;
     in.value = constant.value;
@@ -191,40 +181,10 @@ static error_t compile_assignment(struct lexer* lx, uint32_t group, struct word_
   return word_list_add_instruction(out, &in);
 }
 
-static error_t compile_keyword(struct lexer* lx, uint32_t index, struct word_list* out) {
-  struct instruction in = {(enum operation)KEYWORDS[index].operation, 0, KEYWORDS[index].number, 0.0};
-  error_t error = ERR_NONE;
-  switch (in.operation) {
-    case OP_RATE:
-      return compile_value(lx, OP_RATE, OP_RATE_POP, in.number, out);
-    case OP_ABS:
-    case OP_INC:
-      error = statement_axis_list(lx, AXIS_ALL, &in.number);
-      break;
-    case OP_FRAX:
-      if (in.number == 1)
-        in.number = 0; /* NOFRAX */
-      else
-        error = statement_frax_list(lx, &in.number);
-      if (in.number & AXIS_VECTOR) error = ERR_DATA;
-      break;
-    default:
-      break;
-  }
-  return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
-}
-
-error_t statement_compile(struct lexer* lx, struct statement head, struct word_list* out) {
-  switch (head.kind) {
-    case STATEMENT_AXIS:
-      return compile_value(lx, OP_AXIS, OP_AXIS_POP, head.index, out);
-    case STATEMENT_FEED:
-      return compile_value(lx, OP_RATE, OP_RATE_POP, RATE_F, out);
-    case STATEMENT_ASSIGNMENT:
-      return compile_assignment(lx, head.index, out);
-    case STATEMENT_KEYWORD:
-      return compile_keyword(lx, head.index, out);
-    default:
-      return ERR_DATA;
-  }
+error_t statement_compile(struct lexer* lx, struct statement head, uint32_t where, struct word_list* out) {
+  if (head.kind == STATEMENT_ROW && head.index < AXIS_COUNT && (where & WHERE_MOVES) != 0)
+    return statement_axis_compile(lx, head.index, out);
+  if (head.kind == STATEMENT_ASSIGNMENT) return compile_assignment(lx, head.index, where, out);
+  if (head.kind == STATEMENT_NONE || (statement_rows[head.index].where & where & WHERE_KINDS) == 0) return ERR_DATA;
+  return statement_argument_compile(lx, &statement_rows[head.index], out);
 }

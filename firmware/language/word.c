@@ -14,13 +14,19 @@ enum code1 {
   CODE_RATE = 3,
   CODE_M = 4,
   CODE_I = 7,
+  CODE_LETTER = 8,
+  CODE_CALL = 9,
   CODE_WIDE = 10,
   CODE_WIDE_LAST = 13,
   CODE_STACK = 14,
   CODE_PREFIX = 15
 };
 enum modal { MODAL_MODE, MODAL_ABS, MODAL_INC, MODAL_FRAX };
-enum wide { WIDE_AXIS = 0, WIDE_RATE = 9, WIDE_PUSH = 31 };
+enum wide { WIDE_AXIS = 0, WIDE_RATE = 9, WIDE_HEXADECIMAL = 16, WIDE_PUSH = 31 }; /* the 16 is turned over */
+enum call { CALL_PLAIN, CALL_LIST, CALL_TEXT };
+enum { LIST_WORD_BITS = 30, LIST_STATEMENT_BITS = 5 }; /* the list's other two bits are above those of the statement */
+enum stack { STACK_APPLY, STACK_STATEMENT, STACK_CONDITION, STACK_SYNCHRONOUS, STACK_SYNCHRONOUS_INDEXED };
+enum { CONDITION_BITS = 4, SYNCHRONOUS_BITS = 13 }; /* what the group stands above, in the low half */
 enum { SHORT_FRACTION = 23, WIDE_FRACTION = 32 };
 
 enum { TAIL_BITS = 47 };
@@ -84,15 +90,31 @@ static word48_t encode_wide(uint32_t kind, double value) {
   return body + ((word48_t)CODE_WIDE << 43);
 }
 
-static word48_t encode_value(uint32_t code1, uint32_t n, double value, uint32_t wide_kind) {
+/* Inlined: the usual constant of an axis is packed within the time to BREQ. */
+static inline __attribute__((always_inline)) bool encode_short(uint32_t code1, uint32_t code2, uint32_t n, double value,
+                                                               word48_t* word) {
   uint64_t mantissa;
   uint32_t exponent, short_mantissa;
   if (!pack_short(value, &short_mantissa, &exponent)) {
-    if (!pack(value, SHORT_FRACTION, 32, &mantissa, &exponent)) return encode_wide(wide_kind, value);
+    if (!pack(value, SHORT_FRACTION, 32, &mantissa, &exponent)) return false;
     short_mantissa = (uint32_t)mantissa;
   }
-  return fields(code1, 0, n, short_mantissa) | ((word48_t)(exponent & 0x3Fu) << 24);
+  *word = fields(code1, code2, n, short_mantissa) | ((word48_t)(exponent & 0x3Fu) << 24);
+  return true;
 }
+
+/* A value that has to be rounded may become a short one: it takes the short form then, as it will when its listing is
+ * downloaded. */
+static word48_t encode_value(uint32_t code1, const struct instruction* in, uint32_t wide_kind) {
+  word48_t word;
+  if (in->group != 0) return encode_wide(wide_kind ^ WIDE_HEXADECIMAL, in->value);
+  if (encode_short(code1, 0, in->number, in->value, &word)) return word;
+  const word48_t wide = encode_wide(wide_kind, in->value);
+  return encode_short(code1, 0, in->number, word_decode(wide).value, &word) ? word : wide;
+}
+
+/* Operations of the stack code whose group is not in N. */
+static word48_t encode_stack(enum stack stack, uint32_t low) { return fields(CODE_STACK, 0, stack, low); }
 
 bool word_holds_exactly(double value) {
   uint64_t mantissa;
@@ -107,15 +129,32 @@ bool word_holds_short(double value) {
 }
 
 word48_t word_encode(const struct instruction* in) {
+  word48_t word;
   switch (in->operation) {
     case OP_AXIS:
-      return encode_value(CODE_AXIS, in->number, in->value, WIDE_AXIS + in->number);
+      return encode_value(CODE_AXIS, in, WIDE_AXIS + in->number);
     case OP_RATE:
-      return encode_value(CODE_RATE, in->number, in->value, WIDE_RATE + in->number);
+      return encode_value(CODE_RATE, in, WIDE_RATE + in->number);
     case OP_ASSIGN:
-      return encode_value(CODE_M + in->group, in->number, in->value, WIDE_PUSH);
+      return encode_short(CODE_M + in->group, 0, in->number, in->value, &word) ? word : 0;
+    case OP_STATEMENT:
+      return encode_short(in->number >> 13, (in->number >> 10) & 7u, in->number & 0x3FFu, in->value, &word) ? word : 0;
     case OP_PUSH:
-      return encode_wide(WIDE_PUSH, in->value);
+      return encode_wide(in->group != 0 ? WIDE_PUSH ^ WIDE_HEXADECIMAL : WIDE_PUSH, in->value);
+    case OP_STATEMENT_POP:
+      return encode_stack(STACK_STATEMENT, in->number);
+    case OP_CONDITION:
+      return encode_stack(STACK_CONDITION, in->group << CONDITION_BITS | in->number);
+    case OP_SYNCHRONOUS:
+      return encode_stack(STACK_SYNCHRONOUS, in->group << SYNCHRONOUS_BITS | in->number);
+    case OP_SYNCHRONOUS_INDEXED:
+      return encode_stack(STACK_SYNCHRONOUS_INDEXED, in->group << SYNCHRONOUS_BITS);
+    case OP_LIST:
+      return fields(CODE_CALL, CALL_LIST, (in->group & 0x1Fu) | in->number >> LIST_WORD_BITS << LIST_STATEMENT_BITS,
+                    0) |
+             (in->number & ((1u << LIST_WORD_BITS) - 1u));
+    case OP_TEXT:
+      return fields(CODE_CALL, CALL_TEXT, in->group & 0x3FFu, in->number);
     case OP_MODE:
       return fields(CODE_MODAL, MODAL_MODE, in->number, 0);
     case OP_ABS:
@@ -140,6 +179,9 @@ static struct instruction decode_wide(word48_t word) {
   word48_t body = (word & ~WORD_START_OF_LINE) - ((word48_t)CODE_WIDE << 43);
   uint32_t kind = FIELD(body, 40, 5), exponent = FIELD(body, 33, 7);
   in.value = fraction(body & ((UINT64_C(1) << 33) - 1u), WIDE_FRACTION, (int)(exponent ^ 0x40u) - 0x40);
+  in.group = (kind & WIDE_HEXADECIMAL) != 0 && kind != WIDE_PUSH;
+  if (kind == (WIDE_PUSH ^ WIDE_HEXADECIMAL)) in.group = 1;
+  if (in.group != 0) kind ^= WIDE_HEXADECIMAL;
   if (kind < AXIS_COUNT) {
     in.operation = OP_AXIS;
     in.number = kind;
@@ -167,10 +209,75 @@ static enum operation modal_operation(uint32_t code2, uint32_t n) {
   }
 }
 
+/* Codes 14,0: operators, and what pops its operands without being an axis, rate or plain assignment. */
+static struct instruction decode_stack(uint32_t n, uint32_t low) {
+  struct instruction in = {OP_ILLEGAL, 0, low, 0.0};
+  switch (n) {
+    case STACK_APPLY:
+      in.operation = OP_APPLY;
+      break;
+    case STACK_STATEMENT:
+      in.operation = OP_STATEMENT_POP;
+      break;
+    case STACK_CONDITION:
+      in.operation = OP_CONDITION;
+      in.group = low >> CONDITION_BITS;
+      in.number = low & ((1u << CONDITION_BITS) - 1u);
+      if (in.group > CONDITION_INNER_OR) in.operation = OP_ILLEGAL;
+      break;
+    case STACK_SYNCHRONOUS:
+    case STACK_SYNCHRONOUS_INDEXED:
+      in.operation = n == STACK_SYNCHRONOUS ? OP_SYNCHRONOUS : OP_SYNCHRONOUS_INDEXED;
+      in.group = low >> SYNCHRONOUS_BITS;
+      in.number = low & ((1u << SYNCHRONOUS_BITS) - 1u);
+      if (in.group >= SYNCHRONOUS_COUNT) in.operation = OP_ILLEGAL;
+      break;
+    default:
+      break;
+  }
+  return in;
+}
+
+static struct instruction decode_call(word48_t word, uint32_t code2, uint32_t n) {
+  struct instruction in = {OP_ILLEGAL, 0, 0, 0.0};
+  if (code2 == CALL_LIST) {
+    const uint32_t high = (n >> LIST_STATEMENT_BITS) & 3u;
+    in.operation = OP_LIST;
+    in.group = WORD_KEY(CODE_CALL, CALL_LIST, n & ((1u << LIST_STATEMENT_BITS) - 1u));
+    in.number = ((uint32_t)word & ((1u << LIST_WORD_BITS) - 1u)) | high << LIST_WORD_BITS;
+  } else if (code2 == CALL_TEXT) {
+    in.operation = OP_TEXT;
+    in.group = WORD_KEY(CODE_CALL, CALL_TEXT, n);
+    in.number = (uint32_t)word & 0xFFFFFFu;
+  }
+  return in;
+}
+
+/* What the executor does not know yet, or never has to: statements by their code alone. */
+static bool is_statement(uint32_t code1, uint32_t code2, uint32_t n) {
+  switch (code1) {
+    case CODE_AXIS:
+      return (code2 == 1 && n < 4) || ((code2 == 2 || code2 == 3) && n < AXIS_COUNT);
+    case CODE_MODAL:
+      return code2 == MODAL_MODE && n > MODE_RAPID;
+    case CODE_RATE:
+      return code2 == 0 && n >= RATE_COUNT;
+    case CODE_M:
+      return code2 >= 1 && code2 <= 4;
+    case CODE_LETTER:
+    case CODE_CALL:
+      return code2 == 0;
+    default:
+      return false;
+  }
+}
+
 struct instruction word_decode(word48_t word) {
   uint32_t code1 = FIELD(word, 43, 4), code2 = FIELD(word, 40, 3), n = FIELD(word, 30, 10),
            exponent = FIELD(word, 24, 6);
   if (code1 >= CODE_WIDE && code1 <= CODE_WIDE_LAST) return decode_wide(word);
+  if (code1 == CODE_STACK && code2 == 0) return decode_stack(n, (uint32_t)word & 0xFFFFFFu);
+  if (code1 == CODE_CALL && code2 != CALL_PLAIN) return decode_call(word, code2, n);
   struct instruction in = {OP_ILLEGAL, 0, n, 0.0};
   if (code1 >= CODE_M && code1 <= CODE_I && code2 == 0) {
     in.operation = OP_ASSIGN;
@@ -200,9 +307,19 @@ struct instruction word_decode(word48_t word) {
     default:
       break;
   }
-  if (in.operation == OP_AXIS || in.operation == OP_RATE || in.operation == OP_ASSIGN)
+  if (in.operation == OP_ILLEGAL && is_statement(code1, code2, n)) {
+    in.operation = OP_STATEMENT;
+    in.number = WORD_KEY(code1, code2, n);
+  }
+  if (in.operation == OP_AXIS || in.operation == OP_RATE || in.operation == OP_ASSIGN || in.operation == OP_STATEMENT)
     in.value = fraction(word & 0xFFFFFFu, SHORT_FRACTION, (int)(exponent ^ 0x20u) - 0x20);
   return in;
+}
+
+uint32_t word_raw_count(const struct instruction* in) {
+  if (in->operation == OP_PUSH_DOUBLE) return 1;
+  if (in->operation != OP_TEXT) return 0;
+  return ((in->number & TEXT_LENGTH) + WORD_TEXT_CHARACTERS - 1u) / WORD_TEXT_CHARACTERS;
 }
 
 /* The tail has the bits below the mark of a line's start, so that it never looks like one. */

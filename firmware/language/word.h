@@ -11,7 +11,8 @@
 typedef uint64_t word48_t;
 
 #define WORD48_MASK UINT64_C(0xFFFFFFFFFFFF)
-#define WORD_START_OF_LINE (UINT64_C(1) << 47) /* on the first word of each program line */
+#define WORD_START_OF_LINE (UINT64_C(1) << 47)      /* on the first word of each program line */
+#define WORD_DOUBLE_HEXADECIMAL (UINT64_C(1) << 30) /* in the head of a double that was entered so */
 
 enum axis { AXIS_A, AXIS_B, AXIS_C, AXIS_U, AXIS_V, AXIS_W, AXIS_X, AXIS_Y, AXIS_Z, AXIS_COUNT };
 
@@ -46,12 +47,30 @@ enum operation {
   OP_AXIS_POP,      /* as OP_AXIS, OP_RATE, OP_ASSIGN, with the value popped */
   OP_RATE_POP,
   OP_ASSIGN_POP,
-  OP_ASSIGN_INDEXED /* group; pops the value, then the number */
+  OP_ASSIGN_INDEXED,      /* group; pops the value, then the number */
+  OP_STATEMENT,           /* number = WORD_KEY of the statement, value that word_holds_short */
+  OP_STATEMENT_POP,       /* the same with the value popped */
+  OP_CONDITION,           /* group = enum condition, number = enum comparator and CONDITION_MORE; pops two values */
+  OP_SYNCHRONOUS,         /* group = enum synchronous, number of the M-variable; pops the value. All synchronous M */
+  OP_SYNCHRONOUS_INDEXED, /* group; pops the value, then the number */
+  OP_LIST,                /* group = WORD_KEY of the statement, number: 32 bits, of motors, PLCs or letters */
+  OP_TEXT                 /* group = WORD_KEY, number = 24 bits, length lowest (TEXT_...); raw words follow */
 };
+
+/* A statement by the fields that name it. */
+#define WORD_KEY(code1, code2, n) ((uint32_t)(code1) << 13 | (uint32_t)(code2) << 10 | (uint32_t)(n))
+
+enum condition { CONDITION_IF, CONDITION_WHILE, CONDITION_AND, CONDITION_OR, CONDITION_INNER_AND, CONDITION_INNER_OR };
+enum { CONDITION_COMPARATOR = 7, CONDITION_MORE = 8 }; /* an inner AND or OR follows in the same brackets */
+
+enum synchronous { SYNCHRONOUS_SET, SYNCHRONOUS_AND, SYNCHRONOUS_OR, SYNCHRONOUS_XOR, SYNCHRONOUS_COUNT };
+
+enum { TEXT_LENGTH = 0xFF, TEXT_CONTROL_BIT = 8, TEXT_COLUMN_BIT = 16 }; /* control letter or 0; column + 1 or 0 */
+enum { WORD_TEXT_CHARACTERS = 5 }; /* in a raw word behind OP_TEXT, the first one lowest */
 
 struct instruction {
   enum operation operation;
-  uint32_t group;
+  uint32_t group; /* of a constant: 1 when it was entered in hexadecimal, so that it is listed so */
   uint32_t number;
   double value;
 };
@@ -63,5 +82,6 @@ bool word_holds_short(double value);                /* nor does the 24-bit form 
 word48_t word_double_head(double value);            /* OP_PUSH_DOUBLE and the raw word that follows it */
 word48_t word_double_tail(double value);
 double word_double_join(word48_t head, word48_t tail);
+uint32_t word_raw_count(const struct instruction* in); /* words behind this one that are no operations */
 
 #endif

@@ -18,6 +18,10 @@ void coordinate_systems_initialize(void) {
   cs_busy = 0;
 }
 
+void coordinate_systems_forget_programs(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) coordinate_systems[cs].pointer = POINTER_NONE;
+}
+
 void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask) {
   if (operation == OP_FRAX) {
     s->feedrate_axes = mask & AXIS_ALL;

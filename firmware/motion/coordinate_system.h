@@ -87,7 +87,8 @@ extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
  * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
 
-void coordinate_systems_initialize(void); /* power-up, $$$ and $$$***: idle, at 0, without axes */
+void coordinate_systems_initialize(void);      /* power-up, $$$ and $$$***: idle, at 0, without axes */
+void coordinate_systems_forget_programs(void); /* none points to a program any more: R needs a new B */
 void cs_set_axis_mode(struct coordinate_system* s, enum operation operation,
                       uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
 

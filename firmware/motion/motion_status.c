@@ -1,6 +1,7 @@
 /* Status words of the coordinate systems (firmware:5.4 to firmware:5.6, firmware:5.8). */
 #include "firmware/motion/motion_status.h"
 
+#include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary_ring.h"
 #include "firmware/hal/hal.h"
@@ -24,6 +25,7 @@ enum {
   G2_BINARY_ROTARY_OPEN = 20,
   G2_MOTION_OPEN = 19,
   G2_ROTARY_OPEN = 18,
+  G2_PLC_OPEN = 17,
   G2_UMAC = 16,
   G2_FIXED_FULL = 11
 };
@@ -61,6 +63,7 @@ uint32_t motion_global_status2(void) {
   bool rotary = open == OPEN_ROTARY;
   const uint32_t product = hal_strap(HAL_STRAP_PRODUCT);
   return bit((product & HAL_PRODUCT_ULTRALITE) != 0u, G2_ULTRALITE) | bit((product & HAL_PRODUCT_UMAC) != 0u, G2_UMAC) |
-         bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) | bit(rotary, G2_MOTION_OPEN) |
-         bit(rotary, G2_ROTARY_OPEN) | bit(true, G2_FIXED_FULL); /* no fixed buffer is open (firmware:10/5) */
+         bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) |
+         bit(rotary || open_buffer_is_fixed(FIXED_PROG), G2_MOTION_OPEN) | bit(rotary, G2_ROTARY_OPEN) |
+         bit(open_buffer_is_fixed(FIXED_PLC), G2_PLC_OPEN) | bit(buffer_request_fixed_full(), G2_FIXED_FULL);
 }

@@ -1,6 +1,5 @@
 #include "testbench/unit/firmware_program/platform.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cstdio>
 
@@ -32,19 +31,38 @@ void power_up() {
   longest_mask_us();
 }
 
-std::string host(const std::string& line) {
-  std::string text = line, reply;
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const error_t error = command_line(text.c_str());
-  for (const char c : output())
-    if (c != '\n') reply += c == '\r' ? '|' : c;
-  if (error != ERR_NONE) {
-    char number[16];
-    std::snprintf(number, sizeof number, "ERR%03d", static_cast<int>(error));
-    return number;
+void reset(const std::string& command) {
+  fake_hal_set_look(100);  // the start waits for clocks
+  EXPECT_EQ(host(command), "");
+  fake_hal_set_look(0);
+}
+
+std::vector<std::string> host_lines(const std::string& line) {
+  std::string text = line;
+  bool quoted = false;
+  for (char& c : text) {  // as firmware/host/line_input.c
+    if (c == '"') quoted = !quoted;
+    if (!quoted) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   }
-  if (!reply.empty()) reply.pop_back();
+  const error_t error = command_line(text.c_str());
+  std::vector<std::string> lines;
+  std::string reply;
+  for (const char c : output()) {
+    if (c == '\r') lines.push_back(reply);
+    if (c == '\r')
+      reply.clear();
+    else if (c != '\n')
+      reply += c;
+  }
+  if (error == ERR_NONE) return lines;
+  char number[16];
+  std::snprintf(number, sizeof number, "ERR%03d", static_cast<int>(error));
+  return {number};
+}
+
+std::string host(const std::string& line) {
+  std::string reply;
+  for (const std::string& part : host_lines(line)) reply += (reply.empty() ? "" : "|") + part;
   return reply;
 }
 

@@ -12,6 +12,7 @@
 extern "C" {
 #include "firmware/base/mathematics.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
@@ -24,8 +25,10 @@ extern "C" {
 #include "firmware/language/expression.h"
 #include "firmware/language/operators.h"
 #include "firmware/language/statement.h"
+#include "firmware/language/statement_table.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/run/plc_control.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/m_variables.h"
@@ -42,13 +45,15 @@ struct Edge {
   double us;
 };
 
-void power_up();                            // a Geo Brick, as after power-on
-std::string host(const std::string& line);  // reply lines joined by `|`, or `ERRnnn`
-void pass_us(double us);                    // time passes in the background task
-void servo_ticks(unsigned count);           // servo interrupts, the real-time task after every third (I8 = 2)
-void real_time();                           // one real-time interrupt alone
-bool breq();                                // level of the pin
-std::vector<Edge> edges();                  // since the last clear_edges()
+void power_up();                                               // a Geo Brick, as after power-on
+void reset(const std::string& command = "$$$");                // memory is as saved
+std::string host(const std::string& line);                     // reply lines joined by `|`, or `ERRnnn`
+std::vector<std::string> host_lines(const std::string& line);  // the same, a string a reply line
+void pass_us(double us);                                       // time passes in the background task
+void servo_ticks(unsigned count);  // servo interrupts, the real-time task after every third (I8 = 2)
+void real_time();                  // one real-time interrupt alone
+bool breq();                       // level of the pin
+std::vector<Edge> edges();         // since the last clear_edges()
 void clear_edges();
 double longest_mask_us();                        // longest time that a task was held off
 void fit_panel();                                // a Turbo PMAC with JPAN; I2 = 0

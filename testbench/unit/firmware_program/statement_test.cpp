@@ -61,19 +61,25 @@ TEST_F(Statement, RecognisesWhatBeginsAStatement) {
 }
 
 TEST_F(Statement, BranchesAreRefusedInARotaryBuffer) {
-  for (const char* text : {"IF(P1=1)", "WHILE(P1=1)", "GOTO10", "GOSUB10", "N10", "ENDWHILE", "CIRCLE1", "RETURN"})
+  for (const char* text : {"IF(P1=1)", "WHILE(P1=1)", "GOTO10", "GOSUB10", "ELSE", "ENDWHILE", "RETURN", "X1 IF(P1=1)"})
     EXPECT_EQ(platform::host(text), "ERR003") << text;
   EXPECT_EQ(platform::host("PR"), "0");
+  for (const char* text : {"N10 X1", "CIRCLE1", "CALL500", "G01 X5", "M3", "X1:500", "M1==2", "HOME1..4"})
+    EXPECT_EQ(platform::host(text), "") << text;
+  EXPECT_EQ(platform::host("PR"), "8");
 }
 
 TEST_F(Statement, AnErrorStoresNothingOfTheLine) {
   EXPECT_EQ(platform::host("X1 Y2 GOTO3"), "ERR003");
   EXPECT_EQ(platform::host("X1 Y34359738369"), "ERR003");  // beyond 2^35
-  EXPECT_EQ(platform::host("X1:500"), "ERR003");
   EXPECT_EQ(platform::host("TM8388608"), "ERR003");
   EXPECT_EQ(platform::host("DWELL-1"), "ERR003");
   EXPECT_EQ(platform::host("F0"), "ERR003");
-  EXPECT_EQ(platform::host("M1==2"), "ERR003");
+  EXPECT_EQ(platform::host("P1==2"), "ERR003");  // M only
+  EXPECT_EQ(platform::host("HOME33"), "ERR003");
+  EXPECT_EQ(platform::host("N262144"), "ERR003");
+  EXPECT_EQ(platform::host("READ (X)"), "ERR003");
+  EXPECT_EQ(platform::host("SEND\"A"), "ERR003");
   EXPECT_EQ(rotary_buffers[0].used, 0u);
   EXPECT_EQ(platform::host("PR"), "0");
 }

@@ -71,19 +71,56 @@ TEST(ProgramWord, ExactValuesStayExact) {
 
 TEST(ProgramWord, StackInstructionsRoundTrip) {
   for (const operation op :
-       {OP_PUSH_VARIABLE, OP_ASSIGN_POP, OP_PUSH_INDEXED, OP_ASSIGN_INDEXED, OP_APPLY, OP_AXIS_POP, OP_RATE_POP}) {
+       {OP_PUSH_VARIABLE, OP_ASSIGN_POP, OP_PUSH_INDEXED, OP_ASSIGN_INDEXED, OP_AXIS_POP, OP_RATE_POP}) {
     const instruction in = word_decode(encode(op, VARIABLE_Q, 8191, 0.0));
     EXPECT_EQ(in.operation, op);
     EXPECT_EQ(in.group, static_cast<std::uint32_t>(VARIABLE_Q));
     EXPECT_EQ(in.number, 8191u);
   }
+  EXPECT_EQ(word_decode(encode(OP_APPLY, 0, OPERATOR_INT, 0.0)).number, static_cast<std::uint32_t>(OPERATOR_INT));
+}
+
+TEST(ProgramWord, StatementsOfFixedProgramsRoundTrip) {
+  BRICK_COVERS("BIN-3");
+  const struct {
+    operation op;
+    std::uint32_t group, number;
+  } words[] = {{OP_STATEMENT, 0, WORD_KEY(8, 0, 0)},
+               {OP_STATEMENT, 0, WORD_KEY(1, 3, AXIS_Z)},
+               {OP_STATEMENT_POP, 0, WORD_KEY(9, 0, 3)},
+               {OP_CONDITION, CONDITION_INNER_OR, CONDITION_MORE | CONDITION_COMPARATOR},
+               {OP_SYNCHRONOUS, SYNCHRONOUS_XOR, 8191},
+               {OP_SYNCHRONOUS_INDEXED, SYNCHRONOUS_AND, 0},
+               {OP_LIST, WORD_KEY(9, 1, 8), 0xFFFFFFFF},
+               {OP_LIST, WORD_KEY(9, 1, 0), 0x40000001},
+               {OP_TEXT, WORD_KEY(9, 2, 10), 0xFFFFFF}};
+  for (const auto& w : words) {
+    const word48_t word = encode(w.op, w.group, w.number, 0.0);
+    EXPECT_EQ(word & WORD_START_OF_LINE, 0u);
+    const instruction in = word_decode(word);
+    EXPECT_EQ(in.operation, w.op);
+    EXPECT_EQ(in.group, w.group);
+    EXPECT_EQ(in.number, w.number);
+  }
+}
+
+TEST(ProgramWord, HexadecimalConstantsKeepTheirForm) {
+  BRICK_COVERS("I9-3");
+  for (const operation op : {OP_PUSH, OP_AXIS, OP_RATE}) {
+    const instruction hexadecimal = word_decode(encode(op, 1, op == OP_PUSH ? 0 : 3, 31.0));
+    EXPECT_EQ(hexadecimal.operation, op);
+    EXPECT_EQ(hexadecimal.group, 1u);
+    EXPECT_EQ(hexadecimal.value, 31.0);
+    EXPECT_EQ(word_decode(encode(op, 0, op == OP_PUSH ? 0 : 3, 31.0)).group, 0u);
+  }
 }
 
 TEST(ProgramWord, UndefinedCodesAreIllegal) {
-  EXPECT_EQ(word_decode(8ull << 43).operation, OP_ILLEGAL);
-  EXPECT_EQ(word_decode(9ull << 43).operation, OP_ILLEGAL);
+  EXPECT_EQ(word_decode((8ull << 43) | (1ull << 40)).operation, OP_ILLEGAL);
+  EXPECT_EQ(word_decode((9ull << 43) | (5ull << 40)).operation, OP_ILLEGAL);
   EXPECT_EQ(word_decode((1ull << 43) | (9ull << 30)).operation, OP_ILLEGAL);  // axis 9
-  EXPECT_EQ(word_decode((2ull << 43) | (5ull << 30)).operation, OP_ILLEGAL);  // SPLINE2
+  EXPECT_EQ(word_decode((2ull << 43) | (4ull << 40)).operation, OP_ILLEGAL);
+  EXPECT_EQ(word_decode((5ull << 43) | (1ull << 40)).operation, OP_ILLEGAL);  // only M has synchronous ones
   EXPECT_EQ(word_decode(32ull << 30).operation, OP_ILLEGAL);                  // end-of-buffer mark
 }
 

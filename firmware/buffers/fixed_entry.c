@@ -1,0 +1,69 @@
+#include "firmware/buffers/fixed_entry.h"
+
+#include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/program_structure.h"
+
+enum { LONGEST_LINE = 300 }; /* words: as many as a host line can give */
+
+static struct program_structure structure;
+
+static bool is_motion(void) { return fixed_program_opened()->kind == FIXED_PROG; }
+
+/* A program that is added to: what its lines have opened is open. Damaged ones are taken as they are. */
+static void read_structure(void) {
+  const struct fixed_program* program = fixed_program_opened();
+  word48_t words[LONGEST_LINE];
+  program_structure_begin(&structure);
+  for (uint32_t at = 0; at < program->words;) {
+    const uint32_t count = fixed_program_line(program, at);
+    for (uint32_t i = 0; i < count && i < LONGEST_LINE; i++) words[i] = fixed_program_word(program, at + i);
+    (void)program_structure_line(&structure, is_motion(), words, count < LONGEST_LINE ? count : LONGEST_LINE);
+    at += count;
+  }
+}
+
+error_t fixed_entry_begin(enum fixed_kind kind, uint32_t number) {
+  const error_t error = fixed_program_open(kind, number);
+  if (error != ERR_NONE) return error;
+  read_structure();
+  buffer_request_fixed_opened();
+  return ERR_NONE;
+}
+
+static uint32_t line_end(const word48_t* words, uint32_t first, uint32_t count) {
+  uint32_t at = first;
+  do {
+    const struct instruction in = word_decode(words[at]);
+    at += 1u + word_raw_count(&in);
+  } while (at < count && (words[at] & WORD_START_OF_LINE) == 0);
+  return at < count ? at : count;
+}
+
+error_t fixed_entry_store(word48_t* words, uint32_t count) {
+  struct program_structure after = structure;
+  words[0] |= WORD_START_OF_LINE;
+  for (uint32_t at = 0, end; at < count; at = end) {
+    end = line_end(words, at, count);
+    const error_t error = program_structure_line(&after, is_motion(), words + at, end - at);
+    if (error != ERR_NONE) return error;
+  }
+  const error_t error = fixed_program_append(words, count);
+  if (error != ERR_NONE) return error;
+  structure = after;
+  buffer_request_fixed_line_stored();
+  return ERR_NONE;
+}
+
+error_t fixed_entry_clear(void) {
+  const error_t error = fixed_program_clear();
+  if (error != ERR_NONE) return error;
+  program_structure_begin(&structure);
+  buffer_request_fixed_changed();
+  return ERR_NONE;
+}
+
+error_t fixed_entry_end(void) {
+  fixed_program_close();
+  buffer_request_fixed_closed();
+  return structure.depth == 0 ? ERR_NONE : ERR_STRUCTURE;
+}

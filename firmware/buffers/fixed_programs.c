@@ -1,0 +1,134 @@
+/* Fixed programs. A program that is opened again is turned to the top of the others: once an OPEN, not once a line. */
+#include "firmware/buffers/fixed_programs.h"
+
+#include "firmware/base/dimensions.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/buffers/user_memory.h"
+#include "firmware/kernel/watchdog.h"
+
+static struct {
+  struct fixed_program programs[FIXED_PROGRAMS_COUNT]; /* in memory order */
+  uint32_t count;
+  bool open; /* the last one */
+} fixed;
+
+void fixed_programs_initialize(void) {
+  fixed.count = 0;
+  fixed.open = false;
+}
+
+uint32_t fixed_programs_count(void) { return fixed.count; }
+
+const struct fixed_program* fixed_program_at(uint32_t index) { return &fixed.programs[index]; }
+
+const struct fixed_program* fixed_program_find(enum fixed_kind kind, uint32_t number) {
+  for (uint32_t i = 0; i < fixed.count; i++)
+    if (fixed.programs[i].kind == kind && fixed.programs[i].number == number) return &fixed.programs[i];
+  return 0;
+}
+
+word48_t fixed_program_word(const struct fixed_program* program, uint32_t offset) {
+  return user_memory_read(program->base + offset);
+}
+
+uint32_t fixed_program_line(const struct fixed_program* program, uint32_t offset) {
+  uint32_t at = offset;
+  while (at < program->words) {
+    const word48_t word = fixed_program_word(program, at);
+    if (at != offset && (word & WORD_START_OF_LINE) != 0) break;
+    const struct instruction in = word_decode(word);
+    at += 1u + word_raw_count(&in);
+  }
+  return (at < program->words ? at : program->words) - offset;
+}
+
+static uint32_t top(void) {
+  if (fixed.count == 0) return 0;
+  const struct fixed_program* last = &fixed.programs[fixed.count - 1u];
+  return last->base + last->words;
+}
+
+static void reverse(uint32_t first, uint32_t end) {
+  for (; first + 1u < end; first++, end--) {
+    const word48_t word = user_memory_read(first);
+    user_memory_write(first, user_memory_read(end - 1u));
+    user_memory_write(end - 1u, word);
+  }
+}
+
+/* The words of program `index` go above all others: three reversals need no further memory. It takes as long as a SAVE
+ * when memory is full, so the watchdog counter is reloaded. */
+static void raise(uint32_t index) {
+  const struct fixed_program raised = fixed.programs[index];
+  const uint32_t end = top(), middle = raised.base + raised.words;
+  if (index == fixed.count - 1u) return;
+  reverse(raised.base, middle);
+  watchdog_reload();
+  reverse(middle, end);
+  watchdog_reload();
+  reverse(raised.base, end);
+  watchdog_reload();
+  for (uint32_t i = index; i + 1u < fixed.count; i++) {
+    fixed.programs[i] = fixed.programs[i + 1u];
+    fixed.programs[i].base -= raised.words;
+  }
+  fixed.programs[fixed.count - 1u] = raised;
+  fixed.programs[fixed.count - 1u].base = end - raised.words;
+}
+
+static bool has_room(enum fixed_kind kind) {
+  uint32_t motion_programs = 0;
+  for (uint32_t i = 0; i < fixed.count; i++) motion_programs += fixed.programs[i].kind == FIXED_PROG;
+  return fixed.count < FIXED_PROGRAMS_COUNT && (kind != FIXED_PROG || motion_programs < FIXED_PROG_COUNT);
+}
+
+static void enter(enum fixed_kind kind, uint32_t number, uint32_t words) {
+  const uint32_t base = top();
+  fixed.programs[fixed.count++] = (struct fixed_program){(uint16_t)kind, (uint16_t)number, base, words};
+}
+
+error_t fixed_program_open(enum fixed_kind kind, uint32_t number) {
+  const struct fixed_program* there = fixed_program_find(kind, number);
+  if (there != 0) {
+    raise((uint32_t)(there - fixed.programs));
+  } else {
+    if (!has_room(kind)) return ERR_NO_ROOM;
+    enter(kind, number, 0);
+  }
+  fixed.open = true;
+  return ERR_NONE;
+}
+
+const struct fixed_program* fixed_program_opened(void) { return fixed.open ? &fixed.programs[fixed.count - 1u] : 0; }
+
+error_t fixed_program_append(const word48_t* words, uint32_t count) {
+  struct fixed_program* program = &fixed.programs[fixed.count - 1u];
+  const uint32_t at = top();
+  const error_t error = region_resize_fixed(at + count);
+  if (error != ERR_NONE) return error;
+  for (uint32_t i = 0; i < count; i++) user_memory_write(at + i, i == 0 ? words[0] | WORD_START_OF_LINE : words[i]);
+  program->words += count;
+  return ERR_NONE;
+}
+
+error_t fixed_program_clear(void) {
+  struct fixed_program* program = &fixed.programs[fixed.count - 1u];
+  const error_t error = region_resize_fixed(program->base);
+  if (error == ERR_NONE) program->words = 0;
+  return error;
+}
+
+void fixed_program_close(void) {
+  fixed.open = false;
+  if (fixed.count != 0 && fixed.programs[fixed.count - 1u].words == 0) fixed.count--;
+}
+
+bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words) {
+  static const uint32_t limits[FIXED_KINDS] = {FIXED_PROG_LIMIT + 1, FIXED_PLC_COUNT, COORDINATE_SYSTEMS,
+                                               COORDINATE_SYSTEMS};
+  if ((uint32_t)kind >= FIXED_KINDS || number >= limits[kind] || words == 0 || words > USER_MEMORY_WORDS) return false;
+  if (!has_room(kind) || fixed_program_find(kind, number) != 0) return false;
+  if (region_resize_fixed(top() + words) != ERR_NONE) return false;
+  enter(kind, number, words);
+  return true;
+}

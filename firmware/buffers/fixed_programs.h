@@ -1,0 +1,45 @@
+/* Fixed programs: motion programs, PLCs and kinematic programs (firmware:4.1), one above the other from the bottom of
+ * user memory. The open one is always the topmost, so that a line is stored in the time of its words whatever there is.
+ * Background task. */
+#ifndef FIRMWARE_BUFFERS_FIXED_PROGRAMS_H
+#define FIRMWARE_BUFFERS_FIXED_PROGRAMS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/base/error.h"
+#include "firmware/language/word.h"
+
+enum fixed_kind { FIXED_PROG, FIXED_PLC, FIXED_FORWARD, FIXED_INVERSE, FIXED_KINDS };
+
+enum {
+  FIXED_PROG_LIMIT = 32767,  /* highest number */
+  FIXED_PROG_COUNT = 224,    /* as many of them */
+  FIXED_PLC_COUNT = 32,      /* 0 to 31 */
+  FIXED_PROGRAMS_COUNT = 288 /* with the two kinematic ones of each coordinate system */
+};
+
+struct fixed_program {
+  uint16_t kind, number; /* number: of PROG or PLC, or coordinate system from 0 */
+  uint32_t base, words;
+};
+
+void fixed_programs_initialize(void);
+uint32_t fixed_programs_count(void);
+const struct fixed_program* fixed_program_at(uint32_t index);                          /* in memory order */
+const struct fixed_program* fixed_program_find(enum fixed_kind kind, uint32_t number); /* 0: there is none */
+word48_t fixed_program_word(const struct fixed_program* program, uint32_t offset);
+/* Words of the line that begins at `offset`, its raw words with it; 0 at the end. */
+uint32_t fixed_program_line(const struct fixed_program* program, uint32_t offset);
+
+/* The open program. */
+error_t fixed_program_open(enum fixed_kind kind, uint32_t number); /* ERR006: no more programs */
+const struct fixed_program* fixed_program_opened(void);            /* 0: none */
+error_t fixed_program_append(const word48_t* words, uint32_t count);
+error_t fixed_program_clear(void);
+void fixed_program_close(void); /* an empty one is gone */
+
+/* Enters a program whose words are in user memory already, above all others. False: it does not fit. */
+bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words);
+
+#endif

@@ -1,0 +1,87 @@
+/* What is open for entry. A fixed motion or kinematic program is opened only while nothing runs, and leaves no
+ * coordinate system pointing to a program; a PLC may be opened at any time and stands still from then on. */
+#include "firmware/command/buffer_commands.h"
+
+#include "firmware/base/dimensions.h"
+#include "firmware/buffers/fixed_entry.h"
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/command/program_line.h"
+#include "firmware/command/reply.h"
+#include "firmware/command/session.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/run/plc_control.h"
+#include "firmware/run/run_control.h"
+
+static error_t open_numbered(struct lexer* lx, enum fixed_kind kind, int32_t first, int32_t last) {
+  int32_t number;
+  if (lexer_integer(lx, &number) != ERR_NONE || number < first || number > last) return ERR_DATA;
+  if (kind == FIXED_PROG && open_buffer_kind() == OPEN_NONE && run_any_running()) return ERR_PROGRAM_RUNNING;
+  const error_t error = open_buffer_open_fixed(kind, (uint32_t)number);
+  if (error != ERR_NONE) return error;
+  if (kind == FIXED_PLC)
+    plc_disable(1u << number);
+  else
+    coordinate_systems_forget_programs();
+  return ERR_NONE;
+}
+
+static error_t open_kinematic(enum fixed_kind kind) {
+  if (open_buffer_kind() == OPEN_NONE && run_any_running()) return ERR_PROGRAM_RUNNING;
+  const error_t error = open_buffer_open_fixed(kind, session.cs);
+  if (error == ERR_NONE) coordinate_systems_forget_programs();
+  return error;
+}
+
+static error_t cmd_open(struct lexer* lx) {
+  enum open_buffer kind = OPEN_ROTARY;
+  if (lexer_keyword(lx, "PROGRAM") || lexer_keyword(lx, "PROG"))
+    return open_numbered(lx, FIXED_PROG, 1, FIXED_PROG_LIMIT);
+  if (lexer_keyword(lx, "PLC")) return open_numbered(lx, FIXED_PLC, 0, FIXED_PLC_COUNT - 1); /* PLCC takes no text */
+  if (lexer_keyword(lx, "FORWARD") || lexer_keyword(lx, "FWD")) return open_kinematic(FIXED_FORWARD);
+  if (lexer_keyword(lx, "INVERSE") || lexer_keyword(lx, "INV")) return open_kinematic(FIXED_INVERSE);
+  if (lexer_keyword(lx, "BINARY") || lexer_keyword(lx, "BIN")) kind = OPEN_BINARY_ROTARY;
+  if (!lexer_keyword(lx, "ROTARY") && !lexer_keyword(lx, "ROT")) return ERR_DATA;
+  return open_buffer_open(kind);
+}
+
+/* A line entered so far is stored first: CLOSE at its end belongs to it. */
+static error_t cmd_close(struct lexer* lx) {
+  (void)lexer_keyword(lx, "ALL"); /* there is one port */
+  const error_t stored = program_line_commit();
+  const error_t closed = open_buffer_close();
+  return stored != ERR_NONE ? stored : closed;
+}
+
+static error_t clear_rotary(uint32_t cs) {
+  if (rotary_buffers[cs].size == 0) return ERR_NO_ROOM;
+  if (run_is_running(cs)) return ERR_PROGRAM_RUNNING;
+  program_line_abandon();
+  rotary_clear(cs);
+  return ERR_NONE;
+}
+
+static error_t cmd_clear(struct lexer* lx) {
+  (void)lx;
+  if (!program_buffer_open()) return ERR_NEEDS_BUFFER;
+  if (open_buffer_kind() != OPEN_FIXED) return clear_rotary(session.cs);
+  program_line_abandon();
+  return fixed_entry_clear();
+}
+
+static error_t cmd_size(struct lexer* lx) {
+  (void)lx;
+  int64_t words = region_open_words();
+  reply_integer(open_buffer_kind() == OPEN_NONE ? words : -words - 1); /* one's complement while a buffer is open */
+  reply_end_line();
+  return ERR_NONE;
+}
+
+const struct command_entry buffer_commands[] = {{"CLOSE", cmd_close},
+                                                {"CLEAR", cmd_clear},
+                                                {"OPEN", cmd_open},
+                                                {"SIZE", cmd_size},
+                                                {"CLS", cmd_close},
+                                                {"CLR", cmd_clear},
+                                                {0, 0}};

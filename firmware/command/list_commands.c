@@ -1,0 +1,143 @@
+/* LIST of programs and of the gather buffer. With a start, each line carries its offset and the reply is cut where a
+ * client that takes 1,400 characters at a time would lose the rest: it asks again from the last offset. */
+#include "firmware/command/list_commands.h"
+
+#include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/buffers/rotary.h"
+#include "firmware/buffers/user_memory.h"
+#include "firmware/command/reply.h"
+#include "firmware/command/session.h"
+#include "firmware/kernel/watchdog.h"
+#include "firmware/language/lister.h"
+#include "firmware/variables/i_variables.h"
+
+enum {
+  LINE_WORDS = 300,        /* what is longer can only be damaged */
+  REPLY_CHARACTERS = 1000, /* no line is begun behind these: the longest has 350 in long form */
+  LONG_WORD_DIGITS = 6
+};
+
+struct part {
+  bool is_part; /* a start was given */
+  uint32_t start, length;
+};
+
+static uint32_t characters; /* of the reply */
+
+static void put(char c) {
+  reply_char(c);
+  characters++;
+}
+
+/* {,start{,length}} */
+static error_t read_part(struct lexer* lx, struct part* part) {
+  int32_t number;
+  *part = (struct part){false, 0, USER_MEMORY_WORDS};
+  if (!lexer_accept(lx, ',')) return ERR_NONE;
+  if (lexer_integer(lx, &number) != ERR_NONE || number < 0) return ERR_DATA;
+  part->is_part = true;
+  part->start = (uint32_t)number;
+  if (!lexer_accept(lx, ',')) return ERR_NONE;
+  if (lexer_integer(lx, &number) != ERR_NONE || number < 0) return ERR_DATA;
+  part->length = (uint32_t)number;
+  return ERR_NONE;
+}
+
+static void list_line(const word48_t* words, uint32_t count, uint32_t offset, bool with_offset) {
+  if (with_offset) {
+    reply_integer((int64_t)offset);
+    put(':');
+  }
+  lister_line(words, count, (i_integer(I9_LISTING_FORM) & 1) != 0, put);
+  reply_end_line();
+  watchdog_reload();
+}
+
+static error_t list_program(const struct fixed_program* program, const struct part* part) {
+  word48_t words[LINE_WORDS];
+  if (program == 0 || part->start >= program->words) return ERR_DATA;
+  characters = 0;
+  for (uint32_t at = 0; at < program->words && at < part->start + (uint64_t)part->length;) {
+    const uint32_t count = fixed_program_line(program, at);
+    if (at >= part->start) {
+      if (part->is_part && characters > REPLY_CHARACTERS) break;
+      for (uint32_t i = 0; i < count && i < LINE_WORDS; i++) words[i] = fixed_program_word(program, at + i);
+      list_line(words, count < LINE_WORDS ? count : LINE_WORDS, at, part->is_part);
+    }
+    at += count;
+  }
+  return ERR_NONE;
+}
+
+static error_t list_fixed(struct lexer* lx, enum fixed_kind kind, bool numbered) {
+  int32_t number = (int32_t)session.cs;
+  struct part part;
+  if (numbered && (lexer_integer(lx, &number) != ERR_NONE || number < 0)) return ERR_DATA;
+  const error_t error = read_part(lx, &part);
+  return error != ERR_NONE ? error : list_program(fixed_program_find(kind, (uint32_t)number), &part);
+}
+
+/* Lines not calculated yet, from the oldest; offsets are those of the ring, as PC reports them. What is calculated
+ * meanwhile is gone from the list: each line is looked for from the read pointer anew. */
+static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
+  const struct rotary* ring = &rotary_buffers[cs];
+  word48_t words[LINE_WORDS];
+  if (ring->size == 0) return ERR_DATA;
+  for (uint32_t line = 0, ahead = 0; line < lines; line++) {
+    uint32_t count = 0;
+    while (count < LINE_WORDS && rotary_peek(cs, ahead + count, &words[count])) {
+      if (count != 0 && (words[count] & WORD_START_OF_LINE) != 0) break;
+      count++;
+    }
+    if (count == 0) break;
+    list_line(words, count, (ring->read + ahead) % ring->size, with_offset);
+    ahead += count;
+  }
+  return ERR_NONE;
+}
+
+static error_t list_gather(struct lexer* lx) {
+  struct part part;
+  const uint32_t size = region_words(REGION_GATHER, 0), base = region_base(REGION_GATHER, 0);
+  const error_t error = read_part(lx, &part);
+  if (error != ERR_NONE) return error;
+  if (part.start >= size) return ERR_DATA;
+  for (uint32_t at = part.start; at < size && at < part.start + (uint64_t)part.length; at++) {
+    const word48_t word = user_memory_read(base + at);
+    reply_hex((uint32_t)(word >> 24) & HAL_WORD_MASK, LONG_WORD_DIGITS);
+    reply_hex((uint32_t)word & HAL_WORD_MASK, LONG_WORD_DIGITS);
+    reply_end_line();
+    watchdog_reload();
+  }
+  return ERR_NONE;
+}
+
+/* LIST PC{,count}: the next lines of the rotary program to be calculated. */
+static error_t list_pointer(struct lexer* lx) {
+  int32_t count = 1;
+  if (lexer_accept(lx, ',') && lexer_peek(lx) != '\0' && (lexer_integer(lx, &count) != ERR_NONE || count < 1))
+    return ERR_DATA;
+  return list_ring(session.cs, (uint32_t)count, true);
+}
+
+static error_t list_open(void) {
+  const struct part whole = {false, 0, USER_MEMORY_WORDS};
+  if (open_buffer_kind() == OPEN_FIXED) return list_program(fixed_program_opened(), &whole);
+  return open_buffer_kind() == OPEN_ROTARY ? list_ring(session.cs, USER_MEMORY_WORDS, false) : ERR_DATA;
+}
+
+static error_t cmd_list(struct lexer* lx) {
+  if (lexer_keyword(lx, "PROGRAM") || lexer_keyword(lx, "PROG")) return list_fixed(lx, FIXED_PROG, true);
+  if (lexer_keyword(lx, "PLC")) return list_fixed(lx, FIXED_PLC, true);
+  if (lexer_keyword(lx, "PC")) return list_pointer(lx);
+  if (lexer_keyword(lx, "FORWARD") || lexer_keyword(lx, "FWD")) return list_fixed(lx, FIXED_FORWARD, false);
+  if (lexer_keyword(lx, "INVERSE") || lexer_keyword(lx, "INV")) return list_fixed(lx, FIXED_INVERSE, false);
+  if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return list_ring(session.cs, USER_MEMORY_WORDS, false);
+  if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return list_gather(lx);
+  const char c = lexer_peek(lx);
+  return c == '\0' ? list_open() : ERR_DATA;
+}
+
+const struct command_entry list_commands[] = {{"LIST", cmd_list}, {"LIS", cmd_list}, {0, 0}};

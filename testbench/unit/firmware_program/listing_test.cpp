@@ -1,0 +1,119 @@
+// Listings of programs (firmware:4.8): text in both forms, offsets, what a listing refuses.
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+namespace {
+
+using platform::host;
+using platform::host_lines;
+using Lines = std::vector<std::string>;
+
+class Listing : public FirmwareTest {
+ protected:
+  static void enter(const std::string& buffer, const Lines& lines) {
+    ASSERT_EQ(host("OPEN " + buffer + " CLEAR"), "");
+    for (const std::string& line : lines) ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+  static std::string listed(const std::string& line) {
+    enter("PROG 1", {line});
+    return host("LIST PROG 1");
+  }
+};
+
+TEST_F(Listing, ShortAndLongForm) {
+  BRICK_COVERS("I9-1");
+  const Lines lines = {"rapid X1 Y2.50 ; comment", "Linear F(P1*2)", "dwell 100",
+                       "IF (P1 != 2 AND Q3 > .5)", "return",         "end if"};
+  enter("PROG 1", lines);
+  const Lines brief = {"RPD X1Y2.5", "LIN F(P1*2)", "DWE100", "IF(P1!=2 AND Q3>0.5)", "RET", "ENDI"};
+  const Lines full = {"RAPID X1Y2.5", "LINEAR F(P1*2)", "DWELL100", "IF(P1!=2 AND Q3>0.5)", "RETURN", "ENDIF"};
+  for (const int i9 : {0, 2, 1, 3}) {
+    ASSERT_EQ(host("I9=" + std::to_string(i9)), "");
+    EXPECT_EQ(host_lines("LIST PROG 1"), i9 % 2 == 0 ? brief : full) << i9;
+  }
+}
+
+TEST_F(Listing, PlcsAreListedOneStatementALine) {  // as recorded: firmware:4.8
+  enter("PLC 5", {"IF(P1=1) AND (M2=0) CMD\"#1K\" disable plc 3,4", "ELSE", "WHILE(M1=0) ENDWHILE ENDIF RETURN"});
+  EXPECT_EQ(host_lines("LIST PLC 5"),
+            (Lines{"IF(P1=1)", "AND(M2=0)", "CMD\"#1K\"", "DISPLC3,4", "ELSE", "WHILE(M1=0)", "ENDW", "ENDI", "RET"}));
+}
+
+TEST_F(Listing, ConstantsKeepTheirForm) {
+  BRICK_COVERS("I9-3");
+  for (const int i9 : {0, 1, 2, 3}) {
+    ASSERT_EQ(host("I9=" + std::to_string(i9)), "");
+    EXPECT_EQ(listed("I102=$78002"), "I102=$78002");
+    EXPECT_EQ(listed("I102=491522"), "I102=491522");
+    EXPECT_EQ(listed("P1=-$1f*.125"), "P1=-$1F*0.125");
+    EXPECT_EQ(listed("X0.1 Y-0.300 Z1234567890.5"), "X0.1Y-0.3Z1234567890.5");
+    EXPECT_EQ(listed("P1=0.123456789012345678"), "P1=0.12345678901234568");  // 17 digits name a double
+  }
+}
+
+TEST_F(Listing, BracketsAreThoseThatAreNeeded) {
+  EXPECT_EQ(listed("P1=((1+2)+3)"), "P1=1+2+3");
+  EXPECT_EQ(listed("P1=1+(2+3)"), "P1=1+(2+3)");
+  EXPECT_EQ(listed("P1=(1+2)*3"), "P1=(1+2)*3");
+  EXPECT_EQ(listed("P1=(1*2)+(3&4)"), "P1=1*2+3&4");
+  EXPECT_EQ(listed("P1=8/(4/2)"), "P1=8/(4/2)");
+  EXPECT_EQ(listed("P1=-(P2+1)-(-(5))"), "P1=-(P2+1)--(5)");
+  EXPECT_EQ(listed("P(P2+1)=SIN((Q(3)))"), "P(P2+1)=SIN(Q(3))");
+}
+
+TEST_F(Listing, ABlankStandsWhereWordsWouldRunTogether) {
+  EXPECT_EQ(listed("P1=$A B5"), "P1=$A B5");
+  EXPECT_EQ(listed("P1=Q1+$A F5"), "P1=Q1+$A F5");
+  EXPECT_EQ(listed("IF(P1=$1 AND P2=$F)X5"), "IF(P1=$1 AND P2=$F)X5");
+  EXPECT_EQ(listed("ABS A5"), "ABS A5");
+}
+
+TEST_F(Listing, TextIsKeptAsItWas) { EXPECT_EQ(listed("SENDP\"It; is  (5)\" CMD^x"), "SENDP\"It; is  (5)\"CMD^X"); }
+
+TEST_F(Listing, OffsetsCountWordsAndPartsAreCut) {
+  enter("PLC 5", {"IF(M4900=0)", "M4900=1", "ENDIF"});  // 3 words (two values, comparison), 2 (value, M4900=), 1
+  EXPECT_EQ(host_lines("LIST PLC5,0,80"), (Lines{"0:IF(M4900=0)", "3:M4900=1", "5:ENDI"}));
+  EXPECT_EQ(host_lines("LIST PLC5,3"), (Lines{"3:M4900=1", "5:ENDI"}));
+  EXPECT_EQ(host_lines("LIST PLC5,1,3"), (Lines{"3:M4900=1"}));
+  EXPECT_EQ(host("LIST PLC5,6"), "ERR003");  // past its end
+  EXPECT_EQ(host("LIST PLC6"), "ERR003");
+  EXPECT_EQ(host("LIST PLC5,-1"), "ERR003");
+  EXPECT_EQ(host("LIST PLC5,0,X"), "ERR003");
+  EXPECT_EQ(host("LIST PROG 99"), "ERR003");
+  EXPECT_EQ(host("LIST FORWARD"), "ERR003");
+  EXPECT_EQ(host("LIST UNKNOWN"), "ERR003");
+}
+
+TEST_F(Listing, KinematicProgramsBelongToTheirCoordinateSystem) {
+  enter("FORWARD", {"Q7=P1*2"});
+  ASSERT_EQ(host("&3"), "");
+  EXPECT_EQ(host("LIST FORWARD"), "ERR003");
+  enter("INVERSE", {"P1=Q7/2"});
+  EXPECT_EQ(host("LIST INV,0"), "0:P1=Q7/2");
+  EXPECT_EQ(host("&1LIST FWD"), "Q7=P1*2");
+}
+
+TEST_F(Listing, TheOpenBufferAndTheRotaryOne) {
+  EXPECT_EQ(host("LIST"), "ERR003");
+  ASSERT_EQ(host("OPEN PROG 3 X1"), "");
+  EXPECT_EQ(host("LIST"), "X1");
+  ASSERT_EQ(host("CLOSE"), "");
+  EXPECT_EQ(host("LIST ROT"), "ERR003");
+  ASSERT_EQ(host("DEF ROT 20 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("X1 Y(P1)"), "");
+  ASSERT_EQ(host("F5"), "");
+  EXPECT_EQ(host_lines("LIST"), (Lines{"X1Y(P1)", "F5"}));
+  EXPECT_EQ(host_lines("LIST ROT"), (Lines{"X1Y(P1)", "F5"}));
+  EXPECT_EQ(host("LIST PC"), "0:X1Y(P1)");
+  EXPECT_EQ(host_lines("LIST PC,5"), (Lines{"0:X1Y(P1)", "3:F5"}));
+}
+
+TEST_F(Listing, GatherIsListedInLongWords) {
+  EXPECT_EQ(host("LIST GATHER"), "ERR003");
+  ASSERT_EQ(host("DEF GAT 3"), "");
+  ASSERT_EQ(host("WX$A001,$123456 WY$A001,$ABCDEF"), "");
+  EXPECT_EQ(host_lines("LIST GAT,1,2"), (Lines{"123456ABCDEF", "000000000000"}));
+}
+
+}  // namespace

@@ -1,0 +1,190 @@
+// Random programs of every kind are entered, listed, cleared, entered from their listing and listed again: the words
+// and the text must be the same. And lines that are no programs at all: nothing stops, and no word outside its buffer
+// changes. BRICK_ROUND_TRIPS: programs of each kind.
+#include <cstdlib>
+#include <map>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_program/program_generator.h"
+
+namespace {
+
+using platform::host;
+using platform::host_lines;
+
+struct Kind {
+  const char* text;
+  fixed_kind kind;
+  std::uint32_t number, where;
+};
+constexpr Kind kKinds[] = {{"PROG 7", FIXED_PROG, 7, WHERE_PROG},
+                           {"PLC 31", FIXED_PLC, 31, WHERE_PLC},
+                           {"FORWARD", FIXED_FORWARD, 0, WHERE_KINEMATIC},
+                           {"INVERSE", FIXED_INVERSE, 0, WHERE_KINEMATIC}};
+
+unsigned programs_of_each_kind() {
+  const char* text = std::getenv("BRICK_ROUND_TRIPS");
+  return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 150;
+}
+
+std::vector<word48_t> words_of(const Kind& kind) {
+  std::vector<word48_t> words;
+  const fixed_program* program = fixed_program_find(kind.kind, kind.number);
+  for (std::uint32_t i = 0; program != nullptr && i < program->words; ++i)
+    words.push_back(fixed_program_word(program, i));
+  return words;
+}
+
+class RoundTrip : public FirmwareTest {
+ protected:
+  static void enter(const Kind& kind, const std::vector<std::string>& lines) {
+    ASSERT_EQ(host(std::string("OPEN ") + kind.text + " CLEAR"), "");
+    for (const std::string& line : lines) {
+      ASSERT_LE(line.size(), 255u);
+      ASSERT_EQ(host(line), "") << line;
+    }
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+  static std::vector<std::string> list(const Kind& kind) { return host_lines(std::string("LIST ") + kind.text); }
+  // As clients do it: 80 words at a time, from the last offset on.
+  static std::vector<std::string> list_in_parts(const Kind& kind) {
+    std::map<unsigned, std::string> lines;
+    for (unsigned start = 0;;) {
+      const auto part = host_lines(std::string("LIST ") + kind.text + "," + std::to_string(start) + ",80");
+      if (part.empty() || part[0].substr(0, 3) == "ERR") break;
+      std::size_t characters = 0;
+      for (const std::string& line : part) {
+        const std::size_t colon = line.find(':');
+        lines[static_cast<unsigned>(std::stoul(line.substr(0, colon)))] = line.substr(colon + 1);
+        characters += line.size() + 1;
+      }
+      EXPECT_LE(characters, 1400u);
+      const unsigned last = lines.rbegin()->first;
+      start = last > start ? last : last + 1;
+    }
+    std::vector<std::string> text;
+    for (const auto& line : lines) text.push_back(line.second);
+    return text;
+  }
+};
+
+TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
+  BRICK_COVERS("I9-1 I9-3");
+  std::set<std::string> produced;
+  unsigned lines = 0;
+  for (const Kind& kind : kKinds)
+    for (unsigned seed = 0; seed < programs_of_each_kind(); ++seed) {
+      SCOPED_TRACE(std::string(kind.text) + " seed " + std::to_string(seed));
+      ProgramGenerator generator(seed, kind.where);
+      const std::vector<std::string> program = generator.program(12);
+      ASSERT_EQ(host("I9=" + std::to_string(seed % 4)), "");
+      ASSERT_NO_FATAL_FAILURE(enter(kind, program));
+      const std::vector<word48_t> words = words_of(kind);
+      const std::vector<std::string> listed = list(kind);
+      ASSERT_GE(words.size(), program.size());
+      EXPECT_EQ(list_in_parts(kind), listed);
+      ASSERT_NO_FATAL_FAILURE(enter(kind, listed));
+      ASSERT_EQ(words_of(kind), words);
+      ASSERT_EQ(list(kind), listed);
+      lines += static_cast<unsigned>(program.size());
+      for (const std::string& name : generator.produced()) produced.insert(name);
+    }
+  EXPECT_GE(lines, 4 * 12 * programs_of_each_kind());
+  for (std::uint32_t i = 0; i < statement_row_count; ++i)
+    EXPECT_EQ(produced.count(statement_rows[i].name), 1u) << statement_rows[i].name << " was never produced";
+}
+
+// The comparison itself: one word of a program is another, and the listing is no longer downloaded to the words it had.
+TEST_F(RoundTrip, AnotherWordIsNoticed) {
+  const Kind& kind = kKinds[0];
+  ASSERT_NO_FATAL_FAILURE(enter(kind, {"X1 Y2", "P1=$A+1"}));
+  const std::vector<word48_t> words = words_of(kind);
+  for (std::uint32_t i = 0; i < words.size(); ++i) {
+    ASSERT_NO_FATAL_FAILURE(enter(kind, {"X1 Y2", "P1=$A+1"}));
+    const instruction in = word_decode(words[i]);
+    user_memory_write(i, words[i] ^ (in.operation == OP_APPLY || in.operation == OP_ASSIGN_POP ? 1 : 1 << 20));
+    const std::vector<std::string> listed = list(kind);
+    ASSERT_NO_FATAL_FAILURE(enter(kind, listed));
+    EXPECT_NE(words_of(kind), words) << "word " << i;
+  }
+}
+
+// Nine tenths of a line from the grammar, the rest anything that can be typed.
+std::string spoil(std::string line, std::mt19937& random) {
+  static const std::string characters = " ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789()+-*/%&|^=!<>~,.:;#$@?\"'_[]{}";
+  for (unsigned i = 0, count = 1 + random() % 3; i < count && !line.empty(); ++i) {
+    const std::size_t at = random() % line.size();
+    switch (random() % 4) {
+      case 0:
+        line.erase(at, 1 + random() % 3);
+        break;
+      case 1:
+        line.insert(at, line.substr(random() % line.size(), random() % 10));
+        break;
+      default:
+        line[at] = characters[random() % characters.size()];
+        break;
+    }
+  }
+  return line.substr(0, 255);
+}
+
+bool is_word_of_reset_or_memory(const std::string& line) {  // they change what the test looks at, or wait
+  for (const char* text : {"$", "W", "SAVE", "DEF", "DEL", "OPEN", "CL"})
+    if (line.find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
+  unsigned stored = 0, refused = 0;
+  std::mt19937 random(7);
+  ASSERT_EQ(host("OPEN PROG 1 X1 Y2 CLOSE"), "");
+  for (const Kind& kind : kKinds) {
+    ProgramGenerator generator(99, kind.where);
+    ASSERT_EQ(host(std::string("OPEN ") + kind.text), "");
+    for (unsigned i = 0; i < 20 * programs_of_each_kind(); ++i) {
+      const std::string line = spoil(generator.statement(), random);
+      if (is_word_of_reset_or_memory(line)) continue;
+      const std::string reply = host(line);
+      ++(reply.substr(0, 3) == "ERR" ? refused : stored);
+    }
+    (void)host("CLOSE");
+    (void)host("I3=1");  // ranges such as I0..9=1 are commands, and change what replies look like
+    (void)host("I4=0");
+    (void)host("I68=15");
+    ASSERT_EQ(host("&1"), "");
+    const std::vector<word48_t> words = words_of(kind);
+    const std::vector<std::string> listed = list(kind);
+    ASSERT_EQ(host(std::string("OPEN ") + kind.text + " CLEAR"), "");
+    for (const std::string& line : listed)
+      if (line.size() <= 255) (void)host(line);
+    (void)host("CLOSE");
+    EXPECT_EQ(list(kind), listed) << kind.text;
+    EXPECT_EQ(words_of(kind), words) << kind.text << ": what was taken is listed so that it is taken again";
+  }
+  EXPECT_GE(stored, programs_of_each_kind());
+  EXPECT_GE(refused, programs_of_each_kind());
+  EXPECT_EQ(host("LIST PROG 1"), "X1Y2");
+}
+
+// What a host writes over a program with WX and WY is listed as something, and nothing else happens.
+TEST_F(RoundTrip, DamagedWordsAreListed) {
+  std::mt19937_64 random(3);
+  ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(host("P1=1 IF(P1=$10) CMD\"ABCDEFG\" ENDIF"), "");
+  ASSERT_EQ(host("CLOSE"), "");
+  const std::uint32_t words = fixed_program_find(FIXED_PLC, 1)->words;
+  for (unsigned round = 0; round < programs_of_each_kind(); ++round) {
+    for (std::uint32_t i = 0; i < words; ++i) {
+      word48_t word = random() & WORD48_MASK;
+      if (random() % 3 != 0) word = (word & ~(WORD48_MASK << 43)) | (14ull << 43);            // operators
+      if (random() % 2 != 0) word &= ~(0x3FFull << 30) & ~WORD_START_OF_LINE & ~0xFFFF00ull;  // small numbers
+      user_memory_write(i, word);
+    }
+    ASSERT_FALSE(list(kKinds[1]).size() > 1 && host("LIST PLC 1").empty());
+    ASSERT_EQ(host("OPEN PLC 1"), "");
+    (void)host("CLOSE");
+  }
+}
+
+}  // namespace
