@@ -23,7 +23,8 @@ void put(PinWords& words, const PinInfo& info, std::uint32_t value) {
 }  // namespace
 
 Client::Client(Scheduler& scheduler, const std::vector<PinInfo>& table, std::size_t faces)
-    : scheduler_(scheduler),
+    : shared_(scheduler.shared_from_this()),
+      scheduler_(scheduler),
       table_(table),
       outputs_(words(table, false)),
       inputs_(words(table, true)),
@@ -37,6 +38,7 @@ Client::Client(Scheduler& scheduler, const std::vector<PinInfo>& table, std::siz
 Client::~Client() { scheduler_.remove(*this); }
 
 void Client::elaborate() {
+  scheduler_.check();
   bool any = false;
   for (Pin* pin : pins_) {
     if (!pin->bound()) continue;
@@ -209,6 +211,7 @@ void Client::deliver(bool all) {
 }
 
 Client::Answer Client::access(unsigned number, const Cycle& cycle) {
+  scheduler_.check();
   Face& face = *faces_.at(number);
   Request request(*this, face, cycle);
   while (!request.ended()) sc_core::wait(face.ended);

@@ -61,6 +61,7 @@ class Client {
   void begin_cycles();
   bool end_cycles();  // one has ended
 
+  const std::shared_ptr<Scheduler> shared_;
   Scheduler& scheduler_;
   const std::vector<PinInfo>& table_;
   std::unique_ptr<Chip> chip_;

@@ -65,7 +65,11 @@ void Scheduler::spawn() {
   process.spawn_method();
   process.set_sensitivity(&changed_);
   for (Timer& timer : timers_) process.set_sensitivity(&timer.event);
-  sc_core::sc_spawn([this] { step(); }, "step", &process);
+  sc_core::sc_spawn([self = shared_from_this()] { self->step(); }, "step", &process);
+}
+
+void Scheduler::check() const {
+  if (stopped_) raise_error("/brick/time_base", "the time base of a component is gone: it is made first and goes last");
 }
 
 // Runs in this same delta cycle, after all that is runnable in it.
@@ -75,6 +79,7 @@ void Scheduler::touched() {
 }
 
 void Scheduler::step() {
+  if (stopped_) return;
   if (!started_) start();
   const sc_time now = sc_core::sc_time_stamp();
   const Tick tick = tick_at(now);
@@ -154,11 +159,12 @@ Tick Scheduler::run_ahead(Tick from, Tick limit) {
 
 TimeBase::TimeBase(const sc_core::sc_module_name& name, const TimeOptions& options) : sc_module(name) {
   if (the_one != nullptr) raise_error("/brick/time_base", "a simulation has one time base: share it");
-  the_one = this;
-  scheduler_ = std::make_unique<Scheduler>(options);
+  scheduler_ = std::make_shared<Scheduler>(options);
   scheduler_->spawn();
+  the_one = this;
 }
 TimeBase::~TimeBase() {
+  scheduler_->stop();
   if (the_one == this) the_one = nullptr;
 }
 sc_time TimeBase::time_of(Tick edge) const { return scheduler_->time_of(edge); }

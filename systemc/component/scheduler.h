@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include <systemc>
@@ -17,7 +18,7 @@ namespace brick::component {
 
 class Client;
 
-class Scheduler {
+class Scheduler : public std::enable_shared_from_this<Scheduler> {
  public:
   explicit Scheduler(const TimeOptions& options);
 
@@ -31,7 +32,9 @@ class Scheduler {
   void remove(Client& client);
   void touched();  // by each client once until it is taken: an input has changed or an access has come
 
-  void spawn();  // the process
+  void spawn();                     // the process
+  void stop() { stopped_ = true; }  // the time base is gone
+  void check() const;               // it is not: /brick/time_base else
 
  private:
   using Units = sc_core::sc_time::value_type;  // of the kernel's time
@@ -57,7 +60,7 @@ class Scheduler {
   std::array<Timer, 2> timers_;
   sc_core::sc_event changed_;
   unsigned deltas_ = 0;  // that this instant has gone on for
-  bool started_ = false, touched_ = true;
+  bool started_ = false, stopped_ = false, touched_ = true;
 };
 
 }  // namespace brick::component

@@ -1,6 +1,10 @@
 // The socket's protocol, the time base, and what the engines say when something is wrong.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <memory>
+#include <string>
+
 #include <brick/interrupt_controller.h>
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
@@ -208,6 +212,42 @@ TEST(Time, NothingTicksWhenNothingHappens) {
     const auto before = sc_core::sc_delta_count();
     sc_core::sc_start(1, sc_core::SC_SEC);
     EXPECT_LT(sc_core::sc_delta_count() - before, 10u);
+  });
+}
+
+std::string error_of(const std::function<void()>& program) {
+  try {
+    program();
+  } catch (const sc_core::sc_report& report) { return report.get_msg_type(); }
+  return "";
+}
+
+TEST(Time, AComponentMayGoAfterItsBaseButNotRun) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] {
+    auto base = std::make_unique<TimeBase>("time");
+    ServoIc ic("ic", *base);
+    base.reset();
+    TimeBase second("second");  // the place is free
+    EXPECT_EQ(error_of([] { sc_core::sc_start(1, sc_core::SC_US); }), "/brick/time_base");
+  });
+  in_own_process([] {
+    auto base = std::make_unique<TimeBase>("time");
+    auto ic = std::make_unique<ServoIc>("ic", *base);
+    sc_core::sc_start(1, sc_core::SC_US);
+    base.reset();
+    sc_core::sc_start(1, sc_core::SC_US);
+    ic.reset();
+    sc_core::sc_start(1, sc_core::SC_US);
+  });
+}
+
+TEST(Time, ABaseThatFailsLeavesItsPlace) {
+  BRICK_COVERS("CARD-1");
+  in_own_process([] {
+    sc_core::sc_set_time_resolution(10, sc_core::SC_NS);
+    EXPECT_EQ(error_of([] { TimeBase coarse("coarse"); }), "/brick/resolution");
+    EXPECT_EQ(error_of([] { TimeBase again("again"); }), "/brick/resolution") << "not /brick/time_base";
   });
 }
 

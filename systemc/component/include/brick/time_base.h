@@ -35,7 +35,7 @@ struct TimeOptions {
 class TimeBase : public sc_core::sc_module {
  public:
   // The kernel's resolution must be 1 ns or finer: an error /brick/resolution else. A second one in the same
-  // simulation: /brick/time_base.
+  // simulation, and a component that outlives its own: /brick/time_base.
   explicit TimeBase(const sc_core::sc_module_name& name, const TimeOptions& options = TimeOptions{});
   ~TimeBase() override;
 
@@ -46,7 +46,7 @@ class TimeBase : public sc_core::sc_module {
   Scheduler& scheduler() { return *scheduler_; }
 
  private:
-  std::unique_ptr<Scheduler> scheduler_;
+  std::shared_ptr<Scheduler> scheduler_;  // with the components, whoever goes last
 };
 
 }  // namespace brick::component
