@@ -263,8 +263,9 @@ TEST(ITable, IndicesAreCheckedWhereTheyEnter) {
   c.line("P1=1 P2=8191 P3=8192 P4=-1");
   EXPECT_EQ(c.line("I(P2)"), "$0");
   for (const char* letter : {"I", "P", "Q", "M"})
-    for (const char* rest : {"8192", "(P3)", "(P4)", "0..8192", "8191..0", "(P2)..(P3)", "8190,3", "0,8193", "0,0",
-                             "1,8191,2", "4294967296", "(1/0)", "(P4*8191)", "99999999999", "1..", "1,", "1,2,"}) {
+    for (const char* rest : {"8192",   "(P3)", "(P4)",     "0..8192",    "8191..0", "(P2)..(P3)",     "8190,3",
+                             "0,8193", "0,0",  "1,8191,2", "4294967296", "(1/0)",   "(P4*8191)",      "99999999999",
+                             "1..",    "1,",   "1,2,",     "16,4,0",     "16,1,0",  "16,4,(P3-8192)", "16,4,(P1/2)"}) {
       EXPECT_EQ(c.line(std::string(letter) + rest), "ERR003") << letter << rest;
       EXPECT_EQ(c.line(std::string(letter) + rest + "=1"), "ERR003") << letter << rest;
     }

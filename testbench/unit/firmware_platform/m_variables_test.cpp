@@ -80,11 +80,12 @@ TEST(MDefinitions, WhatIsNoneIsAnErrorAndChangesNothing) {
   Controller c;
   c.line("M5->Y:$10F0,3,4");
   for (const char* text :
-       {"X",           "X:",        "X:$1000000", "X:-1",        "X:$0,",      "X:$0,25",     "X:$0,23,4",
-        "X:$0,0,25",   "X:$0,0,0",  "X:$0,0,6,D", "X:$0,0,8,Q",  "X:$0,0,8,",  "X:$0,1.5",    "Y:",
-        "D:",          "L",         "DP",         "F:",          "F:$1000000", "TWB:256,0,1", "TWB:0,8,1",
-        "TWB:0,0,33",  "TWB:0,0,0", "TWB:0,0",    "TWB:0,0,1,D", "TWD:0,1,3",  "TWD:0,0,13",  "TWD:0,0,0",
-        "TWD:0,0,1.9", "TWD:0,0",   "TWR:1,0",    "TWR:0,8",     "TWR:0",      "TWS:256",     "TWS"})
+       {"X",           "X:",         "X:$1000000",  "X:-1",        "X:$0,",        "X:$0,25",   "X:$0,23,4",
+        "X:$0,0,25",   "X:$0,24,8",  "X:$0,24,24",  "X:$0,24,1,S", "X:$0,24,24,S", "X:$0,0,0",  "X:$0,0,6,D",
+        "X:$0,0,8,Q",  "X:$0,0,8,",  "X:$0,1.5",    "Y:",          "D:",           "L",         "DP",
+        "F:",          "F:$1000000", "TWB:256,0,1", "TWB:0,8,1",   "TWB:0,0,33",   "TWB:0,0,0", "TWB:0,0",
+        "TWB:0,0,1,D", "TWD:0,1,3",  "TWD:0,0,13",  "TWD:0,0,0",   "TWD:0,0,1.9",  "TWD:0,0",   "TWR:1,0",
+        "TWR:0,8",     "TWR:0",      "TWS:256",     "TWS"})
     EXPECT_EQ(c.line(std::string("M5->") + text), "ERR003") << text;
   EXPECT_EQ(c.line("M5->"), "Y:$10F0,3,4");
 }
@@ -148,6 +149,15 @@ TEST(MVariables, DigitsAreBinaryCodedDecimal) {
   EXPECT_EQ(y(0x10F0), 0x987654u);
   c.line("M1=1000007 WX$10F0,0");  // as many digits as there are
   EXPECT_EQ(y(0x10F0), 0x000007u);
+  const std::pair<const char*, const char*> beyond_32_bits[] = {{"5000000123", "123"},
+                                                                {"4294967296", "967296"},
+                                                                {"-4294967296", "967296"},
+                                                                {"34359738367", "738367"},
+                                                                {"4294967295*32767", "355265"}};
+  for (const auto& [value, digits] : beyond_32_bits) {
+    c.line("M1=" + std::string(value));
+    EXPECT_EQ(c.line("M1"), digits) << value;
+  }
   c.line("M3=123456");
   EXPECT_EQ(y(0x10F0), 0xEDCBA9u);
   EXPECT_EQ(c.line("M3 M4"), "123456|6");
