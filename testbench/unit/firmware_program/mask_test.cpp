@@ -188,5 +188,28 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
   }
 }
 
+// Programs read axis definitions at their addresses (docs/variables.md, Live words), and preempt who changes them.
+TEST(Mask, AxisDefinitionsChangeWhileTheRealTimeTaskIsHeldOff) {
+  ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
+  ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  constexpr std::uint32_t kBytes = 88;  // of one: two bools, the system, nine scales, the offset
+  const auto first = ElfFile(BRICK_FIRMWARE_ELF).symbol("axis_definitions");
+  ASSERT_TRUE(first.has_value());
+  const auto* memory = board.cpu().memory(*first, kBytes);
+  std::array<std::uint8_t, kBytes> last{};
+  unsigned changes = 0, open_changes = 0;
+  board.on_instruction = [&] {
+    if (std::memcmp(last.data(), memory, kBytes) == 0) return;
+    std::memcpy(last.data(), memory, kBytes);
+    ++changes;
+    if ((board.cpu().csr(kMie) >> kIrqRealTime & 1) != 0) ++open_changes;
+  };
+  for (const char* line : {"&1#1->100.1X+20.5Y-0.25Z+7.3", "#1->5B", "UNDEFINE", "#1->3.3W", "#1->0", "UNDEFINE ALL"})
+    EXPECT_EQ(board.send(std::string(line) + "\r"), "\x06") << line;
+  board.on_instruction = nullptr;
+  EXPECT_GT(changes, 15u) << "hardly any change seen";
+  EXPECT_EQ(open_changes, 0u);
+}
+
 }  // namespace
 }  // namespace brick
