@@ -138,7 +138,7 @@ static void report_multiplexed(const struct m_definition* d) {
   report_number(d->lsb);
   if (d->form == M_FORM_TWR) return;
   report_number(d->width);
-  if (d->decimals == 0u) return;
+  if (d->form != M_FORM_TWD || d->decimals == 0u) return; /* a host may have left bits there in a TWB */
   reply_char('.');
   reply_integer(d->decimals);
 }

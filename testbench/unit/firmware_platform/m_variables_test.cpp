@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <iomanip>
+#include <map>
 #include <random>
 #include <sstream>
 #include <string>
@@ -106,8 +107,13 @@ TEST(MDefinitions, WordsThatAUserWroteAreSafe) {
   EXPECT_EQ(c.line("M1=7 M1 RX$4001"), "7|0");
   std::mt19937 random(20);
   unsigned pointers = 0;
+  std::map<std::string, unsigned> multiplexed;  // by the name of the form
   for (unsigned i = 0; i < 20000; ++i) {
-    const std::uint32_t word = random() & 0xFFFFFFu, address = 0x10F0u + (random() & 0xFu);
+    std::uint32_t word = random() & 0xFFFFFFu, address = 0x10F0u + (random() & 0xFu);
+    if (i % 2 == 1) {  // TWB, TWD, TWR and TWS reach 0 to 255
+      word = (7u + random() % 4u) << 20 | (word & 0xFFFFFu);
+      address = random() & 0xFFu;
+    }
     c.line("WX$4001," + hex(word) + " WY$4001," + hex(address));
     const std::string text = c.line("M1->");
     ASSERT_LE(text.size(), 20u) << text;
@@ -116,9 +122,14 @@ TEST(MDefinitions, WordsThatAUserWroteAreSafe) {
     ASSERT_EQ(c.line("M1=-3"), "");
     if (text == "*") continue;
     ++pointers;
+    if (text[0] == 'T') {
+      ++multiplexed[text.substr(0, 3)];
+      ASSERT_EQ(value + c.line("M1"), "00") << text;
+    }
     ASSERT_EQ(c.line("M2->" + text + " M2->"), text) << hex(word);
   }
   EXPECT_GT(pointers, 2000u);
+  for (const char* form : {"TWB", "TWD", "TWR", "TWS"}) EXPECT_GT(multiplexed[form], 5u) << form;
 }
 
 TEST(MVariables, PartsOfAWordLeaveTheRestAlone) {
