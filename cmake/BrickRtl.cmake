@@ -26,7 +26,12 @@ function(brick_verilate library)
   if(NOT V_SOURCES)
     brick_rtl_list(V_SOURCES ${V_TOP})
   endif()
-  verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX} SOURCES ${V_CONFIG} ${V_SOURCES}
+  # Verilator runs in this folder and writes the names as it gets them: the tree's own place is in no library.
+  foreach(source ${V_CONFIG} ${V_SOURCES})
+    file(RELATIVE_PATH source ${CMAKE_CURRENT_SOURCE_DIR} ${source})
+    list(APPEND sources ${source})
+  endforeach()
+  verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX} SOURCES ${sources}
     VERILATOR_ARGS -O3 --x-assign fast --x-initial unique ${V_ARGS} ${BRICK_RTL_ARGS}
     OPT_FAST ${BRICK_RTL_OPT} OPT_SLOW ${BRICK_RTL_SLOW_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
 endfunction()

@@ -1,6 +1,6 @@
 # What other people's designs link: find_package(brick) with brick::systemc (components on the SystemC model) and
 # brick::rtl (the engines with the Verilated RTL). Each is one library of all it needs of ours, so that the installed
-# tree has nothing but it and the public headers; tools/check_package.py builds examples/ against such a tree.
+# tree has nothing but it and the public headers; tools/check_package.py builds its examples against such a tree.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/brick)
 
@@ -8,6 +8,9 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/brick)
 function(brick_add_package_library name)
   cmake_parse_arguments(P "" "" "PARTS;LIBRARIES" ${ARGN})
   set(objects ${P_PARTS})
+  foreach(part ${P_PARTS})
+    target_compile_options(${part} PRIVATE -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)  # in reports and for debuggers
+  endforeach()
   list(TRANSFORM objects REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
   add_library(brick_package_${name} STATIC ${objects})
   set_target_properties(brick_package_${name} PROPERTIES OUTPUT_NAME brick_${name} EXPORT_NAME ${name}
@@ -26,6 +29,16 @@ brick_add_package_library(rtl
   PARTS brick_component_rtl brick_chips brick_cosim brick_rtl brick_verilated
   LIBRARIES brick_package_systemc fmt::fmt Threads::Threads)
 
+# The examples that use it, and what builds all of them.
+install(FILES examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/brick/examples COMPONENT package)
+file(GLOB lists CONFIGURE_DEPENDS examples/*/CMakeLists.txt)
+foreach(list ${lists})
+  file(STRINGS ${list} uses REGEX "find_package\\(brick")
+  if(uses)
+    get_filename_component(example ${list} DIRECTORY)
+    install(DIRECTORY ${example} DESTINATION ${CMAKE_INSTALL_DATADIR}/brick/examples COMPONENT package)
+  endif()
+endforeach()
 foreach(name systemc rtl)
   install(EXPORT brick_${name} NAMESPACE brick:: DESTINATION ${package_dir} COMPONENT package)
 endforeach()

@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
-"""Installs the package into a folder outside the tree and builds and runs every example there against it.
+"""Installs the package outside the tree and builds and runs its examples as a user does.
 
-What a user does: two commands in a copy of the example's folder, cmake with the place of the package, then the build
-and ctest. Nothing in the installed tree may point back to this one.
+Two commands in an empty folder build and run all examples that the package brings, by CMake; one program is built and
+run with each of its pkg-config files. Each example's tests have to run, none may be skipped. Nothing that is installed
+may name this tree or its build folder: check_package.py --build DIR, or --prefix DIR for what is installed already.
 """
 
 import argparse
 import os
 import pathlib
-import shutil
+import re
 import subprocess
 import tempfile
 
 from common import ROOT, finish
+
+EXAMPLES = "share/brick/examples"
+PROGRAMS = {"brick": ("servo_ic", []), "brick-rtl": ("board", ["rtl"])}  # of each pkg-config file: example, arguments
 
 
 def run(command, **options):
@@ -21,56 +25,74 @@ def run(command, **options):
 
 
 def points_back(prefix, places):
-    """Text files of the installed tree that name the source or the build folder."""
-    for file in sorted(p for p in prefix.rglob("*") if p.suffix in {".cmake", ".h", ".pc"}):
-        text = file.read_text()
-        yield from (f"{file.relative_to(prefix)} names {place}" for place in places if place in text)
+    """Files of the installed tree that name the source or the build folder."""
+    for file in sorted(p for p in prefix.rglob("*") if p.is_file()):
+        content = file.read_bytes()
+        yield from (f"{file.relative_to(prefix)} names {place}" for place in places if place.encode() in content)
 
 
-def example(folder, work, prefix, compiler):
-    """Builds a copy of the example and runs its tests; what went wrong, "" when nothing."""
-    copy = work / folder.name
-    shutil.copytree(folder, copy)
-    environment = {**os.environ, "CTEST_OUTPUT_ON_FAILURE": "1"}
-    configure = ["cmake", "-S", ".", "-B", "build", f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_COMPILER={compiler}"]
-    for command in (configure, ["cmake", "--build", "build", "--target", "all", "test"]):
-        good, text = run(command, cwd=copy, env=environment)
+def examples(prefix, work, compiler):
+    """The two commands; what went wrong, "" when nothing."""
+    lists = sorted((prefix / EXAMPLES).glob("*/CMakeLists.txt"))
+    expected = sum(len(re.findall(r"\badd_test\(", file.read_text())) for file in lists)
+    environment = {**os.environ, "CTEST_OUTPUT_ON_FAILURE": "1", "CXX": compiler}
+    for command in (["cmake", "-S", prefix / EXAMPLES, "-B", "."],
+                    ["cmake", "--build", ".", "--target", "all", "test"]):
+        good, text = run(command, cwd=work, env=environment)
         if not good:
             return text
-    return ""
+    ran = re.search(r"100% tests passed, 0 tests failed out of (\d+)", text)
+    if ran is None or int(ran.group(1)) != expected or expected < len(PROGRAMS):
+        count = ran.group(1) if ran else "no"
+        return f"{text}\n{EXAMPLES}: {count} tests ran; expected: the {expected} of {len(lists)} examples"
+    skipped = re.findall(r"Test +#\d+: (\S+) .*\*\*\*(?:Skipped|Not Run)", text)
+    return f"{EXAMPLES}: skipped: {', '.join(skipped)}" if skipped else ""
 
 
-def pkg_config(folder, work, prefix, compiler):
-    """The same program with pkg-config in place of CMake."""
-    environment = {**os.environ, "PKG_CONFIG_PATH": str(next(prefix.rglob("pkgconfig")))}
-    good, flags = run(["pkg-config", "--cflags", "--libs", "brick"], env=environment)
+def pkg_config(package, prefix, work, compiler):
+    """An example's program by pkg-config in place of CMake; what went wrong."""
+    folder, arguments = PROGRAMS[package]
+    file = next(prefix.rglob(f"pkgconfig/{package}.pc"), None)
+    if file is None:
+        return f"{package}.pc is not installed"
+    environment = {**os.environ, "PKG_CONFIG_PATH": str(file.parent)}
+    good, flags = run(["pkg-config", "--cflags", "--libs", package], env=environment)
     if not good:
-        return flags
-    program = work / "by_pkg_config"
-    command = [compiler, "-std=c++17", folder / "main.cpp", "-o", program, *flags.splitlines()[1].split()]
-    for step in (command, [program]):
+        return f"{package}.pc: {flags}"
+    program = work / package
+    main_cpp = prefix / EXAMPLES / folder / "main.cpp"
+    defines = ["-DWITH_RTL"] if package == "brick-rtl" else []
+    command = [compiler, "-std=c++17", *defines, main_cpp, "-o", program, *flags.splitlines()[1].split()]
+    for step in (command, [program, *arguments]):
         good, text = run(step, cwd=work)
         if not good:
-            return text
+            return f"{package}.pc: {text}"
     return ""
+
+
+def check(prefix, places, compiler):
+    with tempfile.TemporaryDirectory() as name:
+        work = pathlib.Path(name)
+        (work / "empty").mkdir()
+        problems = [*points_back(prefix, places), examples(prefix, work / "empty", compiler)]
+        problems += [pkg_config(package, prefix, work, compiler) for package in PROGRAMS]
+    return list(filter(None, problems))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--build", type=pathlib.Path, required=True)
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--build", type=pathlib.Path)
+    what.add_argument("--prefix", type=pathlib.Path)
     parser.add_argument("--compiler", default="c++")
     options = parser.parse_args()
+    if options.prefix:
+        finish("package", check(options.prefix.resolve(), {str(ROOT)}, options.compiler))
+        return
     with tempfile.TemporaryDirectory() as name:
-        work, prefix = pathlib.Path(name), pathlib.Path(name) / "installed"
-        good, text = run(["cmake", "--install", options.build, "--prefix", prefix, "--component", "package"])
-        problems = [] if good else [text]
-        if good:
-            problems += points_back(prefix, {str(ROOT), str(options.build.resolve())})
-            uses = [p for p in (ROOT / "examples").glob("*/CMakeLists.txt") if "find_package(brick" in p.read_text()]
-            for folder in sorted(p.parent for p in uses):
-                problems += filter(None, [example(folder, work, prefix, options.compiler)])
-            problems += filter(None, [pkg_config(ROOT / "examples/servo_ic", work, prefix, options.compiler)])
-    finish("package", problems)
+        good, text = run(["cmake", "--install", options.build, "--prefix", name, "--component", "package"])
+        places = {str(ROOT), str(options.build.resolve())}
+        finish("package", check(pathlib.Path(name), places, options.compiler) if good else [text])
 
 
 main()

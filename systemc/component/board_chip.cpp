@@ -63,18 +63,15 @@ class BoardChip final : public Chip {
       }
       board_->set_motor_inputs(ic, pins);
     }
-    if (!set_ || !std::equal(inputs.begin(), inputs.begin() + kReset + 1, inputs_.begin())) {
-      BoardInputs in;
-      std::apply(
-          [&](const auto&... f) {
-            ((in.*f.pin = static_cast<std::remove_reference_t<decltype(in.*f.pin)>>(inputs[f.word] >> f.lsb &
-                                                                                    pin_mask(f.width))),
-             ...);
-          },
-          kInputFields);
-      in.rst_n = bit(inputs, kReset, 0);
-      buses_.set_inputs(in);
-    }
+    bool moved = !set_ || inputs[kReset] != inputs_[kReset];
+    pins_in_.rst_n = bit(inputs, kReset, 0);
+    const auto take = [&](auto word) {
+      if (set_ && inputs[word] == inputs_[word]) return;
+      moved = true;
+      take_fields<word>(inputs[word]);
+    };
+    each_word(take, std::make_integer_sequence<unsigned, kBoardInputWords>());
+    if (moved) buses_.set_inputs(pins_in_);
     inputs_ = inputs;
     set_ = true;
   }
@@ -120,6 +117,18 @@ class BoardChip final : public Chip {
   }
 
  private:
+  template <class F, unsigned... kWord>
+  static void each_word(const F& f, std::integer_sequence<unsigned, kWord...>) {
+    (f(std::integral_constant<unsigned, kWord>()), ...);
+  }
+  template <unsigned kWord>
+  void take_fields(std::uint32_t word) {
+    const auto take = [&](const auto& f) {
+      using Field = std::remove_reference_t<decltype(pins_in_.*f.pin)>;
+      if (f.word == kWord) pins_in_.*f.pin = static_cast<Field>(word >> f.lsb & pin_mask(f.width));
+    };
+    std::apply([&](const auto&... f) { (take(f), ...); }, kInputFields);
+  }
   // In lock-step the two boards may differ.
   template <class Act>
   auto compared(const Act& act) const -> decltype(act()) {
@@ -160,7 +169,8 @@ class BoardChip final : public Chip {
   BoardBuses buses_;
   std::vector<unsigned> ics_;
   std::array<unsigned, kMaxServoIcs> place_{};
-  BoardOutputs pins_;  // watched
+  BoardOutputs pins_;    // watched
+  BoardInputs pins_in_;  // as last set
   PinWords inputs_, outputs_, watched_;
   bool foresees_, motors_ = false, any_ = false, set_ = false, motor_moved_ = false;
 };

@@ -75,8 +75,9 @@ void Client::input_changed(const Pin& pin) {
 }
 
 void Client::touch() {
+  if (touched_) return;
   touched_ = true;
-  scheduler_.wake();
+  scheduler_.touched();
 }
 
 void Client::show(Tick tick) {

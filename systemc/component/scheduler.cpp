@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "systemc/component/client.h"
 #include "systemc/component/error.h"
@@ -16,12 +17,13 @@ const TimeBase* the_one = nullptr;  // of this simulation
 // The end of time: 2.5 hours, which 64 bits of femtoseconds hold.
 constexpr TimeFs kLastFs = 9'000'000 * (kFsPerNs * 1'000'000);
 constexpr Tick kLastTick = fs_to_tick(kLastFs) - 1;
+constexpr unsigned kMostDeltas = 100'000;  // of one instant; no design needs so many
 [[noreturn]] void out_of_time() { raise_error("/brick/time", "beyond 2.5 hours after the epoch, or before it"); }
 }  // namespace
 
 Scheduler::Scheduler(const TimeOptions& options)
     : epoch_(options.epoch.value()),
-      grid_(std::max<sc_time::value_type>(options.grid.value(), 1)),
+      grid_(std::max<Units>(options.grid.value(), 1)),
       unit_(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15)) {
   if (unit_ > kFsPerNs)
     raise_error("/brick/resolution", "the kernel's time resolution is coarser than 1 ns: edges would fall together");
@@ -29,21 +31,21 @@ Scheduler::Scheduler(const TimeOptions& options)
 
 sc_time Scheduler::time_of(Tick edge) const {
   if (edge < 0 || edge > kLastTick) out_of_time();
-  return instant_of(edge);
+  return sc_time::from_value(instant_of(edge));
 }
-sc_time Scheduler::instant_of(Tick edge) const { return instant_at(tick_to_fs(edge)); }
+Scheduler::Units Scheduler::instant_of(Tick edge) const { return instant_at(tick_to_fs(edge)).value(); }
 sc_time Scheduler::instant_at(TimeFs time) const {
-  return sc_time::from_value(epoch_ + static_cast<sc_time::value_type>(time / unit_) + 1);
+  return sc_time::from_value(epoch_ + static_cast<Units>(time / unit_) + 1);
 }
 TimeFs Scheduler::time() const {
-  const sc_time::value_type now = sc_core::sc_time_stamp().value();
+  const Units now = sc_core::sc_time_stamp().value();
   return now <= epoch_ ? 0 : static_cast<TimeFs>(now - epoch_) * unit_;
 }
 
 // The last edge whose true time is before `instant`.
 Tick Scheduler::tick_at(const sc_time& instant) const {
   if (instant.value() <= epoch_) return 0;
-  if (instant.value() - epoch_ > static_cast<sc_time::value_type>(kLastFs / unit_)) out_of_time();
+  if (instant.value() - epoch_ > static_cast<Units>(kLastFs / unit_)) out_of_time();
   return fs_to_tick(static_cast<TimeFs>(instant.value() - epoch_) * unit_) - 1;
 }
 
@@ -57,31 +59,83 @@ void Scheduler::start() {
   }
 }
 
+// Sensitive to events of our own, which costs the kernel much less than next_trigger().
+void Scheduler::spawn() {
+  sc_core::sc_spawn_options process;
+  process.spawn_method();
+  process.set_sensitivity(&changed_);
+  for (Timer& timer : timers_) process.set_sensitivity(&timer.event);
+  sc_core::sc_spawn([this] { step(); }, "step", &process);
+}
+
+// Runs in this same delta cycle, after all that is runnable in it.
+void Scheduler::touched() {
+  touched_ = true;
+  changed_.notify();
+}
+
 void Scheduler::step() {
   if (!started_) start();
   const sc_time now = sc_core::sc_time_stamp();
   const Tick tick = tick_at(now);
-  for (Client* client : clients_)
+  for (Client* client : clients_) {
     if (client->due() <= tick) client->show(tick);
-  // An input may still change in a later delta cycle of this instant, by our own outputs too: the last one counts.
-  if (sc_core::sc_pending_activity_at_current_time()) return sc_core::next_trigger(sc_core::SC_ZERO_TIME);
+    touched_ = touched_ || client->touched();  // the next cycle waits for the one that has ended
+  }
+  // An input may still change in a later delta cycle of this instant, by our own outputs too: the last one counts. If
+  // all foresee their outputs and nobody is touched, there is nothing to wait for: a touch wakes us again.
+  if ((touched_ || !eager_.empty()) && instant_goes_on()) return;
   Tick next = kNever;
   for (Client* client : clients_) {
-    if (client->touched()) client->take(tick);
+    if (touched_ && client->touched()) client->take(tick);
     next = std::min(next, client->due());
   }
-  sc_time wake = next == kNever ? sc_core::sc_max_time() : instant_of(std::min(next, kLastTick + 1));
+  touched_ = false;
+  Units wake = next == kNever ? kNoTime : instant_of(std::min(next, kLastTick + 1));
   if (!eager_.empty()) {
-    // Nothing is pending before that time.
-    const sc_time grid = sc_time::from_value((now.value() / grid_ + 1) * grid_);
-    wake = std::min({wake, grid, now + sc_core::sc_time_to_pending_activity()});
-    const Tick changed = run_ahead(tick, tick_at(wake));
-    if (changed != kNever) wake = time_of(changed);
+    cancel_timers();  // they are not what we run up to
+    const Units grid = (now.value() / grid_ + 1) * grid_;
+    const sc_time pending = sc_core::sc_time_to_pending_activity();  // nothing can change before that
+    wake = std::min({wake, grid, now.value() + std::min(pending.value(), kNoTime - now.value())});
+    const Tick changed = run_ahead(tick, tick_at(sc_time::from_value(wake)));
+    if (changed != kNever) wake = time_of(changed).value();
   }
-  if (wake == sc_core::sc_max_time())
-    sc_core::next_trigger(changed_);
+  if (wake == kNoTime)
+    cancel_timers();
   else
-    sc_core::next_trigger(wake - now, changed_);
+    sleep_until(wake);
+}
+
+// Something is pending in this instant: true, and the next delta cycle asks again.
+bool Scheduler::instant_goes_on() {
+  if (!sc_core::sc_pending_activity_at_current_time()) {
+    deltas_ = 0;
+    return false;
+  }
+  if (++deltas_ > kMostDeltas)
+    raise_error("/brick/instant",
+                "no end of this instant after " + std::to_string(kMostDeltas) +
+                    " delta cycles: components wait for the last one. Does a process wait for it too, "
+                    "or do signals go round in a circle?");
+  changed_.notify(sc_core::SC_ZERO_TIME);
+  return true;
+}
+
+void Scheduler::sleep_until(Units wake) {
+  const Units now = sc_core::sc_time_stamp().value();
+  for (Timer& timer : timers_)
+    if (timer.at <= now) timer.at = kNoTime;
+  if (std::min(timers_[0].at, timers_[1].at) <= wake) return;
+  Timer& timer = timers_[timers_[0].at == kNoTime ? 0 : 1];
+  timer.at = wake;
+  timer.event.notify(sc_time::from_value(wake - now));  // the kernel keeps the earlier of two
+}
+
+void Scheduler::cancel_timers() {
+  for (Timer& timer : timers_) {
+    if (timer.at != kNoTime) timer.event.cancel();
+    timer.at = kNoTime;
+  }
 }
 
 // Returns the first edge at which an output changed, and nobody stands beyond it.
@@ -102,9 +156,7 @@ TimeBase::TimeBase(const sc_core::sc_module_name& name, const TimeOptions& optio
   if (the_one != nullptr) raise_error("/brick/time_base", "a simulation has one time base: share it");
   the_one = this;
   scheduler_ = std::make_unique<Scheduler>(options);
-  sc_core::sc_spawn_options process;
-  process.spawn_method();
-  sc_core::sc_spawn([this] { scheduler_->step(); }, "step", &process);
+  scheduler_->spawn();
 }
 TimeBase::~TimeBase() {
   if (the_one == this) the_one = nullptr;

@@ -5,6 +5,7 @@
 // instant, inputs are taken in its last, when nothing is pending in it any more.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <systemc>
@@ -28,20 +29,35 @@ class Scheduler {
 
   void add(Client& client) { clients_.push_back(&client); }
   void remove(Client& client);
-  void wake() { changed_.notify(sc_core::SC_ZERO_TIME); }  // later in this instant: a client has been touched
+  void touched();  // by each client once until it is taken: an input has changed or an access has come
 
-  void step();  // the process
+  void spawn();  // the process
 
  private:
+  using Units = sc_core::sc_time::value_type;  // of the kernel's time
+
+  void step();
   void start();
-  sc_core::sc_time instant_of(Tick edge) const;
+  bool instant_goes_on();
+  void sleep_until(Units wake);
+  void cancel_timers();
+  Units instant_of(Tick edge) const;
   Tick run_ahead(Tick from, Tick limit);
 
-  sc_core::sc_time::value_type epoch_, grid_;
+  Units epoch_, grid_;
   TimeFs unit_;  // of the kernel's resolution
   std::vector<Client*> clients_, eager_;
+  // A timer that has been put off leaves a dead entry in the kernel's queue until its time. So a wake-up before the one
+  // that is pending gets the second timer, and one that turns out too early is let come.
+  struct Timer {
+    sc_core::sc_event event;
+    Units at = kNoTime;
+  };
+  static constexpr Units kNoTime = ~Units{};
+  std::array<Timer, 2> timers_;
   sc_core::sc_event changed_;
-  bool started_ = false;
+  unsigned deltas_ = 0;  // that this instant has gone on for
+  bool started_ = false, touched_ = true;
 };
 
 }  // namespace brick::component

@@ -4,6 +4,7 @@
 #include "systemc/component/rtl_chips.h"
 #include "systemc/component/servo_ic_words.h"
 #include "systemc/component/verilated_chip.h"
+#include "systemc/core/motor_pins.h"
 
 namespace brick::component {
 namespace {

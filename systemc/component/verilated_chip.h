@@ -1,4 +1,4 @@
-// A Verilated module behind the pins of a component: context, start values, clocks, reset, one evaluation an edge. A
+// A Verilated module (systemc/cosim/verilated_module.h) behind the pins of a component, one evaluation an edge. A
 // module adds a struct with what its ports are called, beside its Verilated header:
 //   static constexpr unsigned kOutputWords
 //   static void drive(V& v, const PinWords& in)            every input port but the clocks and the register bus
@@ -11,27 +11,13 @@
 //   static std::uint32_t peek(const V& v, unsigned face, unsigned address)
 #pragma once
 
-#include <verilated.h>
-
 #include <functional>
-#include <memory>
 #include <utility>
 
 #include "systemc/component/faces.h"
-#include "systemc/cosim/rtl_board.h"
+#include "systemc/cosim/verilated_module.h"
 
 namespace brick::component {
-
-// Most modules of the host side work with clk_ref alone.
-template <class V>
-auto set_pwm(V& v, bool level, int) -> decltype(v.clk_pwm_i = level, true) {
-  v.clk_pwm_i = level;
-  return true;
-}
-template <class V>
-bool set_pwm(V&, bool, long) {
-  return false;
-}
 
 template <class Ports>
 auto faces_of(int) -> decltype(Ports::faces()) {
@@ -56,29 +42,18 @@ class VerilatedChip final : public Chip {
   // `prepare`: inputs that are read once, when the simulation begins.
   explicit VerilatedChip(
       std::uint64_t seed, const std::function<void(V&)>& prepare = [](V&) {})
-      : faces_(faces_of<Ports>(0)),
+      : top_(seed),
+        faces_(faces_of<Ports>(0)),
         outputs_(Ports::kOutputWords),
         sampled_(Ports::kOutputWords),
         watched_(Ports::kOutputWords) {
-    context_.randReset(seed == 0 ? 0 : 2);
-    context_.randSeed(static_cast<int>(1 + seed % 0x7FFFFFFE));  // 0 would be the time of day
-    top_ = std::make_unique<V>(&context_, "");
     prepare(*top_);
     every_edge_ = set_pwm(*top_, false, 0);
     top_->clk_ref_i = false;
     for (unsigned face = 0; face < faces_.count(); ++face) Ports::access(*top_, face, false, Face{});
-    for (const bool level : {true, false, true}) {  // the asynchronous reset acts on its falling edge
-      top_->rst_ni = level;
-      top_->eval();
-    }
-    start_coverage(context_);
+    top_.pulse_reset();
+    top_.count_coverage();
     Ports::sample(*top_, outputs_);
-  }
-  ~VerilatedChip() override {
-    write_coverage(context_);
-    top_->final();
-    Verilated::threadContextp(&context_);  // its scopes leave the context last used, which may be long gone
-    top_.reset();
   }
 
   Tick now() const override { return now_; }
@@ -148,22 +123,15 @@ class VerilatedChip final : public Chip {
     return moved || ended;
   }
   bool edge() {
-    V& v = *top_;
-    set_pwm(v, true, 0);
-    v.clk_ref_i = is_ref_edge(now_);
-    v.eval();
-    set_pwm(v, false, 0);
-    v.clk_ref_i = false;
-    if (!forget_clocks(*v.rootp, 0)) v.eval();
+    top_.edge(true, is_ref_edge(now_));
     reset_moved_ = false;
-    Ports::sample(v, sampled_);
+    Ports::sample(*top_, sampled_);
     if (sampled_ == outputs_) return false;
     sampled_.swap(outputs_);
     return differ(sampled_, outputs_, watched_);
   }
 
-  VerilatedContext context_;
-  std::unique_ptr<V> top_;
+  VerilatedModule<V> top_;
   Faces faces_;
   PinWords outputs_, sampled_, watched_;
   bool every_edge_ = true, reset_moved_ = false;

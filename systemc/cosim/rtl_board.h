@@ -2,10 +2,7 @@
 // packed words. A template over the Verilated class, because each set of built ICs is a class of its own.
 #pragma once
 
-#include <verilated.h>
-
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,29 +10,9 @@
 #include "systemc/core/start_value.h"
 #include "systemc/cosim/drive.h"
 #include "systemc/cosim/engines.h"
-#include "systemc/cosim/rtl_coverage.h"
+#include "systemc/cosim/verilated_module.h"
 
 namespace brick {
-
-// A clock must be seen low before its next rising edge, which costs a second evaluation that does nothing, since no
-// flip-flop works on falling edges. Verilator remembers the level of each clock in a public member of its root object:
-// clearing that member does the same for nothing. Its name differs between versions; where none fits we evaluate.
-template <class Root>
-auto forget_clocks(Root& root, int)
-    -> decltype(root.__Vtrigrprev__TOP__clk_pwm_i = 0, root.__Vtrigrprev__TOP__clk_ref_i = 0, true) {
-  root.__Vtrigrprev__TOP__clk_pwm_i = root.__Vtrigrprev__TOP__clk_ref_i = 0;
-  return true;
-}
-template <class Root>
-auto forget_clocks(Root& root, long)
-    -> decltype(root.__Vtrigprevexpr___TOP__clk_pwm_i__0 = 0, root.__Vtrigprevexpr___TOP__clk_ref_i__0 = 0, true) {
-  root.__Vtrigprevexpr___TOP__clk_pwm_i__0 = root.__Vtrigprevexpr___TOP__clk_ref_i__0 = 0;
-  return true;
-}
-template <class Root>
-bool forget_clocks(Root&, ...) {
-  return false;
-}
 
 // The memory of the dual-ported RAM, where the Verilated class has it as an array.
 template <class Root>
@@ -51,10 +28,7 @@ std::optional<std::uint16_t> dpram_word(const Root&, unsigned, long) {
 template <class Model>
 class RtlBoard : public Board {
  public:
-  RtlBoard(std::uint32_t fitted, const RtlOptions& options) : fitted_(fitted) {
-    context_.randReset(options.seed == 0 ? 0 : 2);
-    context_.randSeed(static_cast<int>(1 + options.seed % 0x7FFFFFFE));  // 0 would be the time of day
-    model_ = std::make_unique<Model>(&context_, "");
+  RtlBoard(std::uint32_t fitted, const RtlOptions& options) : model_(options.seed), fitted_(fitted) {
     model_->start_seed_i = start_seed(options.ram_seed.value_or(options.seed));
     model_->seeded_bug_i = options.seeded_bug;
     // What acts without a clock acts on an edge here: rst_ni must have been high once, and /RD, which turns the data
@@ -72,14 +46,6 @@ class RtlBoard : public Board {
     model_->eval();
     for (unsigned i = 0; i < kBoardOutputWords; ++i) outputs_.w[i] = model_->pins_o[i];
   }
-  ~RtlBoard() override {
-    write_coverage(context_);
-    model_->final();
-    Verilated::threadContextp(
-        &context_);  // its scopes leave the context last used, which may be another board's, long gone
-    model_.reset();
-  }
-
   Tick now() const override { return now_; }
   const BoardOutputs& outputs() const override { return outputs_; }
   BoardOutputs port_a_at_once() const override {
@@ -120,9 +86,7 @@ class RtlBoard : public Board {
         to_ref = kTicksPerRef;
       }
       m.eval();
-      m.clk_pwm_i = 0;
-      m.clk_ref_i = 0;
-      if (!forget_clocks(*m.rootp, 0)) m.eval();
+      model_.lower_clocks();
       bool stop = false;
       const auto& pins = m.pins_o;
       std::uint32_t moved = 0;
@@ -192,8 +156,7 @@ class RtlBoard : public Board {
     return before.differs(w.last, stop_[w.ic]);
   }
 
-  VerilatedContext context_;
-  std::unique_ptr<Model> model_;
+  VerilatedModule<Model> model_;
   std::uint32_t fitted_;
   BoardOutputs outputs_;
   std::vector<Watched> watched_;

@@ -1,6 +1,7 @@
 #include "testbench/unit/channel_choices/rtl_choices.h"
 
 #include "Vchoices_bench.h"
+#include "Vchoices_bench___024root.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {

@@ -1,6 +1,7 @@
 #include "testbench/unit/clocks/rtl_servo_ic.h"
 
 #include "Vservo_ic.h"
+#include "Vservo_ic___024root.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {

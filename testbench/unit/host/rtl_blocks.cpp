@@ -2,12 +2,19 @@
 #include "testbench/unit/host/rtl_blocks.h"
 
 #include "Vdpram.h"
+#include "Vdpram___024root.h"
 #include "Vhost_interrupt.h"
+#include "Vhost_interrupt___024root.h"
 #include "Vhost_port.h"
+#include "Vhost_port___024root.h"
 #include "Vhost_signals.h"
+#include "Vhost_signals___024root.h"
 #include "Vinterrupt_controller.h"
+#include "Vinterrupt_controller___024root.h"
 #include "Visa_slave.h"
+#include "Visa_slave___024root.h"
 #include "Vpic_8259.h"
+#include "Vpic_8259___024root.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {

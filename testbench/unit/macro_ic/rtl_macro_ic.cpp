@@ -1,6 +1,7 @@
 #include "testbench/unit/macro_ic/rtl_macro_ic.h"
 
 #include "Vmacro_ic.h"
+#include "Vmacro_ic___024root.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {

@@ -1,6 +1,7 @@
 #include "testbench/unit/register_bits/rtl_servo_channel.h"
 
 #include "Vservo_channel.h"
+#include "Vservo_channel___024root.h"
 #include "testbench/unit/rtl/verilated_shell.h"
 
 namespace brick {

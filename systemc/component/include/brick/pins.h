@@ -1,6 +1,8 @@
 // Ports of a component. A pin may stay unbound: an input then has its idle level, an output costs nothing. A pin of one
-// bit is a port of bool, a wider one of sc_uint. A pin that goes both ways is three ports: NAME_i, NAME_o and NAME_oe,
-// high while the component drives it; NAME_o is high while it does not.
+// bit is a port of bool, a wider one of sc_uint; a port is an sc_port with the interface of sc_in or sc_out, which may
+// not stay unbound: bind it alike, trace it by Component::trace(), ask bound() before reading it. A pin that goes both
+// ways is three ports: NAME_i, NAME_o and NAME_oe, high while the component drives it; NAME_o is high while it does
+// not.
 #pragma once
 
 #include <array>
@@ -59,6 +61,9 @@ using PinValue = std::conditional_t<kWidth == 1, bool, sc_dt::sc_uint<static_cas
 std::string pin_trace_name(const Component& owner, const PinInfo& info);
 
 template <unsigned kWidth = 1>
+class Out;
+
+template <unsigned kWidth = 1>
 class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>,
            public Pin {
   using Port = sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
@@ -71,6 +76,11 @@ class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1
   using Port::operator();
   void bind(Outer& port) { sc_core::sc_port_base::bind(port); }
   void operator()(Outer& port) { bind(port); }
+  // The pin of another component: a signal belongs between the two.
+  template <unsigned kOther>
+  void bind(Out<kOther>& pin) = delete;
+  template <unsigned kOther>
+  void operator()(Out<kOther>& pin) = delete;
   bool bound() const override { return this->get_interface() != nullptr; }
   std::uint32_t read() const override { return static_cast<std::uint32_t>(this->operator->()->read()); }
   void write(std::uint32_t) override {}
@@ -80,7 +90,7 @@ class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1
   }
 };
 
-template <unsigned kWidth = 1>
+template <unsigned kWidth>
 class Out : public sc_core::sc_port<sc_core::sc_signal_inout_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>,
             public Pin {
   using Port = sc_core::sc_port<sc_core::sc_signal_inout_if<PinValue<kWidth>>, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;

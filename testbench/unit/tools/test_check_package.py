@@ -1,0 +1,107 @@
+"""tools/check_package.py on a small installed package: it passes, and each way to break it is named."""
+
+import shutil
+import subprocess
+import sys
+import unittest
+
+from tree import TOOLS, Tree
+
+LIST = """cmake_minimum_required(VERSION 3.25)
+project({0}_example CXX)
+find_package(brick REQUIRED)
+add_executable({0} main.cpp)
+target_link_libraries({0} brick::systemc)
+enable_testing()
+add_test(NAME {0} COMMAND {0})
+set_tests_properties({0} PROPERTIES SKIP_RETURN_CODE 77)
+"""
+MAIN = "#include <brick/answer.h>\nint main() { return brick_answer() == 42 ? 0 : 1; }\n"
+CONFIG = """get_filename_component(prefix ${CMAKE_CURRENT_LIST_DIR}/../../.. ABSOLUTE)
+add_library(brick::systemc STATIC IMPORTED)
+set_target_properties(brick::systemc PROPERTIES IMPORTED_LOCATION ${prefix}/lib/libbrick_systemc.a
+  INTERFACE_INCLUDE_DIRECTORIES ${prefix}/include)
+set(brick_FOUND TRUE)
+"""
+PC = """prefix=${{pcfiledir}}/../..
+Name: {0}
+Description: {0}
+Version: 1
+Cflags: -I${{prefix}}/include
+Libs: -L${{prefix}}/lib -lbrick_systemc
+"""
+
+
+@unittest.skipIf(shutil.which("pkg-config") is None, "pkg-config is not installed")
+class Package(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("include/brick/answer.h", "int brick_answer();\n")
+        self.write("answer.cpp", "#include <brick/answer.h>\nint brick_answer() { return 42; }\n")
+        self.archive()
+        self.write("lib/cmake/brick/brickConfig.cmake", CONFIG)
+        for package in ("brick", "brick-rtl"):
+            self.write(f"lib/pkgconfig/{package}.pc", PC.format(package))
+        for name in ("servo_ic", "board"):
+            self.write(f"share/brick/examples/{name}/CMakeLists.txt", LIST.format(name))
+            self.write(f"share/brick/examples/{name}/main.cpp", MAIN)
+        shutil.copy(TOOLS.parent / "examples/CMakeLists.txt", self.root / "share/brick/examples")
+
+    def archive(self):
+        (self.root / "lib").mkdir(exist_ok=True)
+        subprocess.run(["c++", "-Iinclude", "-c", "answer.cpp"], cwd=self.root, check=True)
+        subprocess.run(["ar", "rc", "lib/libbrick_systemc.a", "answer.o"], cwd=self.root, check=True)
+        (self.root / "answer.o").unlink()
+
+    def check(self, status, *texts):
+        done = subprocess.run([sys.executable, TOOLS / "check_package.py", "--prefix", self.root], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        for text in texts:
+            self.expect(done, status, text)
+
+    def replace(self, path, old, new):
+        text = (self.root / path).read_text()
+        self.assertIn(old, text)
+        self.write(path, text.replace(old, new))
+
+    def test_a_whole_one_passes(self):
+        self.check(0, "package: clean")
+
+    def test_a_library_that_names_the_tree_fails(self):
+        self.write("answer.cpp", f'#include <brick/answer.h>\nconst char* from() {{ return "{TOOLS.parent}/a.cpp"; }}\n'
+                                 "int brick_answer() { return 42; }\n")
+        self.archive()
+        (self.root / "answer.cpp").unlink()
+        self.check(1, f"lib/libbrick_systemc.a names {TOOLS.parent}", "package: 1 problem(s)")
+
+    def test_a_missing_header_fails(self):
+        (self.root / "include/brick/answer.h").unlink()
+        self.check(1, "brick/answer.h: No such file", "package: 3 problem(s)")
+
+    def test_a_missing_function_fails(self):
+        self.write("answer.cpp", "")
+        self.archive()
+        self.check(1, "undefined reference to `brick_answer", "package: 3 problem(s)")
+
+    def test_an_example_that_fails_fails(self):
+        self.replace("share/brick/examples/board/main.cpp", "== 42", "== 43")
+        self.check(1, "50% tests passed, 1 tests failed", "brick-rtl.pc: ", "package: 2 problem(s)")
+
+    def test_a_skipped_test_fails(self):
+        self.write("share/brick/examples/board/main.cpp", "int main(int argc, char**) { return argc > 1 ? 0 : 77; }\n")
+        self.check(1, "share/brick/examples: skipped: board", "package: 1 problem(s)")
+
+    def test_a_test_that_is_left_out_fails(self):
+        self.replace("share/brick/examples/board/CMakeLists.txt", "add_test(", "if(no)\nendif()\n#add_test(")
+        self.replace("share/brick/examples/board/CMakeLists.txt", "set_tests_properties", "#")
+        self.check(1, "1 tests ran; expected: the 2 of 2", "package: 1 problem(s)")
+
+    def test_a_broken_pkg_config_file_fails_by_name(self):
+        self.replace("lib/pkgconfig/brick-rtl.pc", "-lbrick_systemc", "")
+        self.check(1, "brick-rtl.pc: ", "undefined reference", "package: 1 problem(s)")
+        (self.root / "lib/pkgconfig/brick.pc").unlink()
+        self.check(1, "brick.pc is not installed", "package: 2 problem(s)")
+
+
+if __name__ == "__main__":
+    unittest.main()
