@@ -42,7 +42,8 @@ static bool is_ready(uint32_t cs) {
 
 static bool is_wanted(void) { return request.fixed_open ? !request.fixed_full : is_ready(buffer_request_selected()); }
 
-static void decide_fixed(void) { request.fixed_full = (int32_t)region_open_words() <= request.fixed; }
+/* `open`: region_open_words, which looks at every region, before tasks are held off. */
+static void decide_fixed(uint32_t open) { request.fixed_full = (int32_t)open <= request.fixed; }
 
 static void keep_high_time(void) {
   if (request.high) hal_await_us(request.changed, BREQ_HIGH_US);
@@ -98,9 +99,10 @@ void buffer_request_emptied(uint32_t cs) {
 }
 
 static void fixed_shown(bool open) {
+  const uint32_t words = region_open_words();
   uint32_t state = hal_mask_real_time();
   request.fixed_open = open;
-  decide_fixed();
+  decide_fixed(words);
   show();
   hal_unmask(state);
 }
@@ -110,10 +112,11 @@ void buffer_request_fixed_changed(void) { fixed_shown(true); }
 void buffer_request_fixed_closed(void) { fixed_shown(false); }
 
 void buffer_request_fixed_line_stored(void) {
+  const uint32_t words = region_open_words();
   uint32_t state = hal_mask_real_time();
   keep_high_time();
   drive(false);
-  decide_fixed();
+  decide_fixed(words);
   if (!request.fixed_full) {
     hal_await_us(request.changed, BREQ_PULSE_US);
     drive(true);
@@ -132,13 +135,14 @@ static void limits_changed(struct rotary* ring) {
 }
 
 void buffer_request_evaluate(void) {
+  const uint32_t words = region_open_words();
   uint32_t state = hal_mask_real_time();
   int32_t on = i_integer(I16_ROTARY_REQUEST_ON), off = i_integer(I17_ROTARY_REQUEST_OFF);
   bool changed = on != request.on || off != request.off;
   request.on = on;
   request.off = off;
   request.fixed = i_integer(I18_FIXED_BUFFER_WARNING);
-  decide_fixed();
+  decide_fixed(words);
   request.selected = buffer_request_selected();
   for (uint32_t cs = 0; changed && cs < COORDINATE_SYSTEMS; cs++)
     if (rotary_buffers[cs].requested) limits_changed(&rotary_buffers[cs]);

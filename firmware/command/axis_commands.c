@@ -79,7 +79,8 @@ static bool is_query(struct lexer* lx) {
 }
 
 error_t axis_definition_command(struct lexer* lx) {
-  struct axis_definition *d = &axis_definitions[session.motor], made = {0};
+  const struct axis_definition* d = &axis_definitions[session.motor];
+  struct axis_definition made = {0};
   struct lexer start = *lx;
   double zero;
   bool elsewhere = d->assigned && d->cs != session.cs;
@@ -102,14 +103,15 @@ error_t axis_definition_command(struct lexer* lx) {
     if (error != ERR_NONE) return error;
   }
   if (elsewhere) return ERR_DATA;
-  *d = made;
+  axis_define(session.motor, &made);
   return ERR_NONE;
 }
 
 error_t axis_undefine_command(struct lexer* lx) {
+  static const struct axis_definition NONE = {0};
   bool all = lexer_keyword(lx, "ALL");
   if (run_is_running(session.cs)) return ERR_PROGRAM_RUNNING;
   for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if (all || axis_definitions[motor].cs == session.cs) axis_definitions[motor] = (struct axis_definition){0};
+    if (all || axis_definitions[motor].cs == session.cs) axis_define(motor, &NONE);
   return ERR_NONE;
 }

@@ -47,18 +47,18 @@ static bool read_format(struct lexer* lx, struct m_definition* d) {
   return false;
 }
 
-/* `,8` is one bit, `,24` the whole word; then width, or format, or both. */
+/* `,8` is one bit, which a width, a format or both may follow; `,24` the whole word, which only a format may. */
 static error_t read_part(struct lexer* lx, struct m_definition* d) {
   d->width = WHOLE_WORD;
   if (!lexer_accept(lx, ',')) return ERR_NONE;
   error_t error = read_small(lx, &d->lsb);
   if (error != ERR_NONE) return error;
-  if (d->lsb == WHOLE_WORD)
-    d->lsb = 0;
-  else
-    d->width = 1;
+  const bool whole = d->lsb == WHOLE_WORD;
+  if (whole) d->lsb = 0;
+  if (!whole) d->width = 1;
   if (!lexer_accept(lx, ',')) return ERR_NONE;
   if (read_format(lx, d)) return ERR_NONE;
+  if (whole) return ERR_DATA;
   error = read_small(lx, &d->width);
   if (error != ERR_NONE || !lexer_accept(lx, ',')) return error;
   return read_format(lx, d) ? ERR_NONE : ERR_DATA;
@@ -138,7 +138,7 @@ static void report_multiplexed(const struct m_definition* d) {
   report_number(d->lsb);
   if (d->form == M_FORM_TWR) return;
   report_number(d->width);
-  if (d->decimals == 0u) return;
+  if (d->form != M_FORM_TWD || d->decimals == 0u) return; /* a host may have left bits there in a TWB */
   reply_char('.');
   reply_integer(d->decimals);
 }

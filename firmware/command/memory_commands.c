@@ -14,22 +14,21 @@ typedef enum { FORM_X, FORM_Y, FORM_L, FORM_D } form_t;
 enum { COUNT_LIMIT = 64 };
 
 static void report_word(form_t form, bool hex, uint32_t address) {
-  const uint32_t state = hal_mask_servo();
-  const uint32_t x = form == FORM_Y ? 0u : word_read(true, address);
-  const uint32_t y = form == FORM_X ? 0u : word_read(false, address);
-  hal_unmask(state);
-  const struct float48 word = {x, y};
   if (form == FORM_X || form == FORM_Y) {
-    const uint32_t value = form == FORM_X ? x : y;
+    const uint32_t value = word_read(form == FORM_X, address);
     if (hex)
       reply_hex(value, 0);
     else
       reply_integer(hal_signed(value));
-  } else if (hex) {
-    reply_hex(x, 6);
-    reply_hex(y, 6);
+    return;
+  }
+  struct float48 word;
+  word_read_long(address, &word.x, &word.y);
+  if (hex) {
+    reply_hex(word.x, 6);
+    reply_hex(word.y, 6);
   } else if (form == FORM_D) {
-    reply_integer(((int64_t)hal_signed(x) * 16777216) + (int64_t)y);
+    reply_integer(((int64_t)hal_signed(word.x) * 16777216) + (int64_t)word.y);
   } else {
     reply_number(float48_unpack(word));
   }
@@ -38,24 +37,18 @@ static void report_word(form_t form, bool hex, uint32_t address) {
 static void write_word(form_t form, uint32_t address, double value) {
   const int64_t whole = math_nearest(value);
   const struct float48 word = float48_pack(value);
-  const uint32_t state = hal_mask_servo();
   switch (form) {
     case FORM_X:
-      word_write(true, address, (uint32_t)whole);
-      break;
     case FORM_Y:
-      word_write(false, address, (uint32_t)whole);
+      word_write(form == FORM_X, address, (uint32_t)whole);
       break;
     case FORM_D:
-      word_write(true, address, (uint32_t)(whole >> 24));
-      word_write(false, address, (uint32_t)whole);
+      word_write_long(address, (uint32_t)(whole >> 24), (uint32_t)whole);
       break;
     default:
-      word_write(true, address, word.x);
-      word_write(false, address, word.y);
+      word_write_long(address, word.x, word.y);
       break;
   }
-  hal_unmask(state);
 }
 
 static error_t read_address(struct lexer* lx, uint32_t* address) {

@@ -47,7 +47,8 @@ static error_t read_range(struct lexer* lx, struct range* range) {
     error = read_number(lx, VARIABLE_COUNT + 1u, &range->count);
     if (error == ERR_NONE && lexer_accept(lx, ',')) error = read_number(lx, VARIABLE_COUNT, &range->step);
     if (error != ERR_NONE) return error;
-    if (range->count == 0u || range->first + (range->count - 1u) * range->step >= VARIABLE_COUNT) return ERR_DATA;
+    if (range->count == 0u || range->step == 0u || range->first + (range->count - 1u) * range->step >= VARIABLE_COUNT)
+      return ERR_DATA;
   }
   return ERR_NONE;
 }

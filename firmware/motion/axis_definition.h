@@ -15,9 +15,12 @@ struct axis_definition {
   double offset;            /* counts */
 };
 
-extern struct axis_definition axis_definitions[MOTORS]; /* background; part of the SAVE image */
+/* Background; part of the SAVE image. Programs read them too (motion/live_words.c), in the real-time task, so that it
+ * is held off while one changes. */
+extern struct axis_definition axis_definitions[MOTORS];
 
-void axis_definition_initialize(void);        /* none: SAVEd definitions are put back by the start-up */
+void axis_definition_initialize(void); /* none: SAVEd definitions are put back by the start-up */
+void axis_define(uint32_t motor, const struct axis_definition* definition);
 uint32_t axis_definition_motors(uint32_t cs); /* motors assigned to it */
 
 #endif

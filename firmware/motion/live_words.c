@@ -29,9 +29,12 @@ enum { /* of a coordinate system */
        CS_END = MEMORY_CS_WORDS + MEMORY_CS_STRIDE * COORDINATE_SYSTEMS
 };
 
-static uint32_t half(bool x, double value) {
+static const unsigned HALF_X = 1, HALF_Y = 2, BOTH = 3; /* which halves were made */
+
+static void set_float(double value, uint32_t* x, uint32_t* y) {
   const struct float48 word = float48_pack(value);
-  return x ? word.x : word.y;
+  *x = word.x;
+  *y = word.y;
 }
 
 /* Counts a unit of the axis that the motor carries: `place` 0 of A, B, C, U, X; 1 of V, Y; 2 of W, Z. */
@@ -45,72 +48,85 @@ static double axis_scale(uint32_t motor, uint32_t place) {
   return 0.0;
 }
 
-static bool motor_word(bool x, uint32_t motor, uint32_t offset, uint32_t* word) {
-  if (offset == MOTOR_STATUS_1 && x) {
-    *word = motor_status(motor, 0);
-  } else if (offset == MOTOR_STATUS_2 && !x) {
-    *word = motor_status(motor, 1);
-  } else if (offset >= MOTOR_SCALES && offset < MOTOR_OFFSET) {
-    *word = half(x, axis_scale(motor, offset - MOTOR_SCALES));
-  } else if (offset == MOTOR_OFFSET) {
-    *word = half(x, axis_definitions[motor].offset);
-  } else {
-    return false;
+static unsigned motor_word(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
+  if (offset == MOTOR_STATUS_1) {
+    *x = motor_status(motor, 0);
+    return HALF_X;
   }
-  return true;
+  if (offset == MOTOR_STATUS_2) {
+    *y = motor_status(motor, 1);
+    return HALF_Y;
+  }
+  if (offset < MOTOR_SCALES || offset > MOTOR_OFFSET) return 0;
+  set_float(offset == MOTOR_OFFSET ? axis_definitions[motor].offset : axis_scale(motor, offset - MOTOR_SCALES), x, y);
+  return BOTH;
 }
 
-/* Where the executing move ends; without one where the last has ended. */
+/* Where the executing move ends; without one where the last has ended, which is where one that waits begins. The servo
+ * task changes from move to move, the real-time task writes the position: both are held off for the copy only. */
 static double target(const struct coordinate_system* s, uint32_t axis) {
-  const struct move* m = &s->moves[s->executing];
-  if (!s->active) return s->position[axis];
-  return m->kind == MOVE_LINEAR ? m->start[axis] + m->delta[axis] : m->start[axis];
+  const uint32_t state = hal_mask_servo();
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  const bool moves = s->active && m->kind == MOVE_LINEAR;
+  const double delta = m->delta[axis];
+  double start = s->position[axis];
+  if (s->active)
+    start = m->start[axis];
+  else if (s->next_valid)
+    start = next->start[axis];
+  hal_unmask(state);
+  return moves ? start + delta : start;
 }
 
-static bool cs_word(bool x, uint32_t cs, uint32_t offset, uint32_t* word) {
+static unsigned cs_word(uint32_t cs, uint32_t offset, uint32_t* x, uint32_t* y) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (offset - CS_TARGETS < AXIS_COUNT) {
-    *word = half(x, target(s, offset - CS_TARGETS));
-    return true;
+    set_float(target(s, offset - CS_TARGETS), x, y);
+    return BOTH;
   }
   switch (offset) {
     case CS_COMMANDED_TIME_BASE:
-      *word = (uint32_t)s->increment_command;
-      return x;
+      *x = (uint32_t)s->increment_command;
+      return HALF_X;
     case CS_TIME_BASE:
-      *word = (uint32_t)s->increment;
-      return x;
+      *x = (uint32_t)s->increment;
+      return HALF_X;
     case CS_TIMERS:
-      *word = (uint32_t)i_integer(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u));
-      return true;
+      *x = (uint32_t)i_integer(i_cs(cs, ISX11_TIMERS));
+      *y = (uint32_t)i_integer(i_cs(cs, ISX11_TIMERS) + 1u);
+      return BOTH;
     case CS_STATUS_2:
-      *word = motion_cs_status(cs, 1);
-      return !x;
+      *y = motion_cs_status(cs, 1);
+      return HALF_Y;
     case CS_STATUS_1:
-      *word = motion_cs_status(cs, x ? 0u : 2u);
-      return true;
+      *x = motion_cs_status(cs, 0);
+      *y = motion_cs_status(cs, 2);
+      return BOTH;
     default:
-      return false;
+      return 0;
   }
 }
 
-bool live_word_read(bool x, uint32_t address, uint32_t* word) {
+static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
   if (address - MEMORY_MOTOR_WORDS < MOTORS_END - MEMORY_MOTOR_WORDS)
-    return motor_word(x, address / MEMORY_MOTOR_WORDS - 1u, address % MEMORY_MOTOR_WORDS, word);
+    return motor_word(address / MEMORY_MOTOR_WORDS - 1u, address % MEMORY_MOTOR_WORDS, x, y);
   if (address - MEMORY_CS_WORDS < CS_END - MEMORY_CS_WORDS)
-    return cs_word(x, (address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, address % MEMORY_CS_STRIDE, word);
-  if (address != MEMORY_GLOBAL_STATUS) return false;
-  *word = x ? status_word() : motion_global_status2();
-  return true;
+    return cs_word((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, address % MEMORY_CS_STRIDE, x, y);
+  if (address != MEMORY_GLOBAL_STATUS) return 0;
+  *x = status_word();
+  *y = motion_global_status2();
+  return BOTH;
 }
 
+void live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { (void)make(address, x, y); }
+
 /* The timers can be set, global status bits that stay can be cleared; the others belong to the firmware. */
-bool live_word_write(bool x, uint32_t address, uint32_t word) {
-  uint32_t present;
-  if (!live_word_read(x, address, &present)) return false;
-  if (address == MEMORY_GLOBAL_STATUS && x) status_clear(~word);
+bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
+  uint32_t present[2] = {0, 0};
+  if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
+  if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
   if (address >= MEMORY_CS_WORDS && address % MEMORY_CS_STRIDE == CS_TIMERS)
-    i_variable_write(i_cs((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, ISX11_TIMERS) + (x ? 0u : 1u),
-                     (double)hal_signed(word));
+    i_timer_write(i_cs((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, ISX11_TIMERS) + (x ? 0u : 1u),
+                  hal_signed((present[x] & ~mask) | bits));
   return true;
 }

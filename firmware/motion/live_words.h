@@ -6,7 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-bool live_word_read(bool x, uint32_t address, uint32_t* word); /* false: an ordinary word */
-bool live_word_write(bool x, uint32_t address, uint32_t word); /* false: an ordinary word; else done, or not allowed */
+void live_word_read(uint32_t address, uint32_t* x, uint32_t* y); /* replaces the halves that are made */
+/* Bits of `mask`. False: an ordinary word; else done, or not allowed. */
+bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits);
 
 #endif

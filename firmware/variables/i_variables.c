@@ -27,11 +27,17 @@ static bool is_timer(uint32_t number) {
   return number >= 5111u && number < 6700u && (inside == 11u || inside == 12u);
 }
 
+static uint32_t* timer_began(uint32_t number) {
+  return &timer_start[(number - I_CS_FIRST) / I_CS_BLOCK][number % I_CS_BLOCK - ISX11_TIMERS];
+}
+
 /* A timer is its written value less the servo interrupts since; it stops at the lowest 24-bit number. */
 static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
-  const uint32_t elapsed =
-      tasks_servo_count() - timer_start[(number - I_CS_FIRST) / I_CS_BLOCK][number % I_CS_BLOCK - ISX11_TIMERS];
+  const uint32_t* began = timer_began(number);
+  const uint32_t state = hal_mask_real_time();
+  const uint32_t elapsed = tasks_servo_count() - *began;
   const int64_t left = (int64_t)integer_of[number] - (int64_t)elapsed;
+  hal_unmask(state);
   return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
 }
 
@@ -172,6 +178,13 @@ static bool locked(uint32_t number) {
   return number >= 8000u && (locks & 8u) != 0u;
 }
 
+void i_timer_write(uint32_t number, int32_t value) {
+  const uint32_t state = hal_mask_real_time();
+  store(number, value);
+  *timer_began(number) = tasks_servo_count();
+  hal_unmask(state);
+}
+
 void i_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT || locked(number)) return;
   const struct i_place place = i_table_place(number);
@@ -191,8 +204,7 @@ void i_variable_write(uint32_t number, double value) {
       store(number, whole);
       break;
     case I_FIELD_TIMER:
-      store(number, whole);
-      timer_start[place.instance][place.offset - ISX11_TIMERS] = tasks_servo_count();
+      i_timer_write(number, whole);
       break;
     case I_FIELD_IC_CLOCK_DIRECTION:
       store(number, whole & (int32_t)gate_ic_direction_inputs(place.instance));

@@ -11,9 +11,10 @@
 
 double i_variable_read(uint32_t number); /* 0..8191 */
 void i_variable_write(uint32_t number,
-                      double value);        /* reduces to the range, honours I41, writes the hardware field behind it */
-double i_variable_default(uint32_t number); /* what `I{number}=*` assigns */
-int32_t i_integer(uint32_t number);         /* fast read of an integer I-variable, any task */
+                      double value); /* reduces to the range, honours I41, writes the hardware field behind it */
+void i_timer_write(uint32_t number, int32_t value); /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
+double i_variable_default(uint32_t number);         /* what `I{number}=*` assigns */
+int32_t i_integer(uint32_t number);                 /* fast read of an integer I-variable, any task */
 
 /* What a write of an I-variable does in higher layers, by enum i_field of the table; image/tables.c fills it in. Called
  * after the value is stored, without it where the entry is null. `instance`: motor, coordinate system or IC. */

@@ -39,8 +39,9 @@ bool m_definition_is_valid(const struct m_definition* d) {
 }
 
 struct m_definition m_variable_definition(uint32_t number) {
-  const uint32_t x = *hal_x(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK;
-  struct m_definition d = {(m_form_t)(x >> 20),         *hal_y(MEMORY_M_DEFINITIONS + number) & HAL_WORD_MASK,
+  uint32_t x, y;
+  word_read_long(MEMORY_M_DEFINITIONS + number, &x, &y);
+  struct m_definition d = {(m_form_t)(x >> 20),         y,
                            (uint8_t)((x >> 8) & 0x1Fu), (uint8_t)(x & 0x1Fu),
                            (m_format_t)((x >> 5) & 3u), (uint8_t)((x >> 16) & 0xFu)};
   if (d.form == M_FORM_TWB && d.width == 0u) d.width = TWB_BITS;
@@ -50,11 +51,10 @@ struct m_definition m_variable_definition(uint32_t number) {
 
 void m_variable_define(uint32_t number, const struct m_definition* d) {
   if (number >= VARIABLE_COUNT) return;
-  const uint32_t state = hal_mask_real_time();
-  *hal_x(MEMORY_M_DEFINITIONS + number) = ((uint32_t)d->form << 20) | ((uint32_t)d->decimals << 16) |
-                                          ((uint32_t)d->lsb << 8) | ((uint32_t)d->format << 5) | (d->width & 0x1Fu);
-  *hal_y(MEMORY_M_DEFINITIONS + number) = d->address;
-  hal_unmask(state);
+  word_write_long(MEMORY_M_DEFINITIONS + number,
+                  ((uint32_t)d->form << 20) | ((uint32_t)d->decimals << 16) | ((uint32_t)d->lsb << 8) |
+                      ((uint32_t)d->format << 5) | (d->width & 0x1Fu),
+                  d->address);
 }
 
 /* Parts of a word -------------------------------------------------------------------------------------------------- */
@@ -84,12 +84,10 @@ static double read_part(uint32_t word, const struct m_definition* d) {
 
 /* The nearest integer, as many digits or bits of it as there are. */
 static void write_part(bool x, const struct m_definition* d, int64_t whole) {
-  const uint32_t mask = width_mask(d->width);
   uint32_t bits = (uint32_t)whole;
-  if (d->format >= M_BCD) bits = to_digits((uint32_t)(whole < 0 ? -whole : whole) % 1000000u);
+  if (d->format >= M_BCD) bits = to_digits((uint32_t)((whole < 0 ? -whole : whole) % 1000000));
   if (d->format == M_COMPLEMENT_BCD) bits = ~bits;
-  const uint32_t kept = mask == HAL_WORD_MASK ? 0u : word_read(x, d->address) & ~(mask << d->lsb);
-  word_write(x, d->address, kept | ((bits & mask) << d->lsb));
+  word_write_part(x, d->address, width_mask(d->width) << d->lsb, bits << d->lsb);
 }
 
 /* 32 bits in the low halves of X and Y ----------------------------------------------------------------------------- */
@@ -120,20 +118,16 @@ static uint32_t to_single(double value) {
 static double read_value(const struct m_definition* d) {
   if (d->form == M_FORM_NONE) return (double)hal_signed(d->address);
   if (d->form > M_FORM_F) return 0.0;
-  const uint32_t x = d->form == M_FORM_Y ? 0u : word_read(true, d->address);
-  const uint32_t y = d->form == M_FORM_X ? 0u : word_read(false, d->address);
-  const struct float48 word = {x, y};
+  if (d->form == M_FORM_X || d->form == M_FORM_Y) return read_part(word_read(d->form == M_FORM_X, d->address), d);
+  struct float48 word;
+  word_read_long(d->address, &word.x, &word.y);
   switch (d->form) {
-    case M_FORM_X:
-      return read_part(x, d);
-    case M_FORM_Y:
-      return read_part(y, d);
     case M_FORM_D:
-      return (double)(((int64_t)hal_signed(x) * 16777216) + (int64_t)y);
+      return (double)(((int64_t)hal_signed(word.x) * 16777216) + (int64_t)word.y);
     case M_FORM_DP:
-      return (double)(int32_t)join_halves(x, y);
+      return (double)(int32_t)join_halves(word.x, word.y);
     case M_FORM_F:
-      return from_single(join_halves(x, y));
+      return from_single(join_halves(word.x, word.y));
     default:
       return float48_unpack(word);
   }
@@ -141,40 +135,30 @@ static double read_value(const struct m_definition* d) {
 
 double m_variable_read(uint32_t number) {
   if (number >= VARIABLE_COUNT) return 0.0;
-  const uint32_t state = hal_mask_servo(); /* the servo task moves positions of two words */
   const struct m_definition definition = m_variable_definition(number);
-  const double value = read_value(&definition);
-  hal_unmask(state);
-  return value;
+  return read_value(&definition);
 }
 
-static void write_long(uint32_t address, uint32_t x, uint32_t y) {
-  word_write(true, address, x);
-  word_write(false, address, y);
-}
-
-static void write_halves(uint32_t address, uint32_t bits) { write_long(address, bits >> 16, bits & 0xFFFFu); }
+static void write_halves(uint32_t address, uint32_t bits) { word_write_long(address, bits >> 16, bits & 0xFFFFu); }
 
 void m_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT) return;
   const int64_t whole = math_nearest(value);
   const struct float48 word = float48_pack(value);
-  const uint32_t state = hal_mask_servo();
   const struct m_definition d = m_variable_definition(number);
   switch (d.form) {
     case M_FORM_NONE:
-      *hal_x(MEMORY_M_DEFINITIONS + number) = 0;
-      *hal_y(MEMORY_M_DEFINITIONS + number) = (uint32_t)whole & HAL_WORD_MASK;
+      word_write_long(MEMORY_M_DEFINITIONS + number, 0, (uint32_t)whole);
       break;
     case M_FORM_X:
     case M_FORM_Y:
       write_part(d.form == M_FORM_X, &d, whole);
       break;
     case M_FORM_D:
-      write_long(d.address, (uint32_t)(whole >> 24), (uint32_t)whole);
+      word_write_long(d.address, (uint32_t)(whole >> 24), (uint32_t)whole);
       break;
     case M_FORM_L:
-      write_long(d.address, word.x, word.y);
+      word_write_long(d.address, word.x, word.y);
       break;
     case M_FORM_DP:
       write_halves(d.address, (uint32_t)whole);
@@ -185,5 +169,4 @@ void m_variable_write(uint32_t number, double value) {
     default:
       break; /* on the multiplexer, where nothing is */
   }
-  hal_unmask(state);
 }

@@ -105,6 +105,8 @@ TEST(HostExchange, TellsDateAndTime) {
   EXPECT_EQ(c.line("TIME=17:45:24 TODAY=02/29/2028"), "");
   EXPECT_EQ(c.line("TODAY TIME"), "TUE 02/29/2028|17:45:24");
   EXPECT_EQ(c.line("TIME=08:30 TIME"), "08:30:00");
+  for (int second = 0; second < 200; ++second) fake_hal_pass(78643000);
+  EXPECT_EQ(c.line("TIME"), "08:33:20") << "15.7 thousand million cycles, more than 2^33";
   const char* const nights[][2] = {{"12/31/2099", "FRI 01/01/2100"}, {"02/28/2027", "MON 03/01/2027"},
                                    {"02/28/2028", "TUE 02/29/2028"}, {"12/31/2003", "THU 01/01/2004"},
                                    {"12/31/2004", "SAT 01/01/2005"}, {"04/30/2026", "FRI 05/01/2026"}};

@@ -15,7 +15,8 @@ enum { MASK_NONE, MASK_REAL_TIME, MASK_SERVO, MASK_ALL };
 static uint32_t memory[2][WORDS], peripheral[2][PERIPHERALS], nothing;
 static uint32_t flash[HAL_FLASH_BYTES / 4];
 static uint32_t straps[6];
-static uint32_t fitted, signals, cycles, look, real_time;
+static uint32_t fitted, signals, look, real_time;
+static uint64_t cycles;
 static uint32_t mask, masked_since, longest_mask; /* enum: who is held off */
 static unsigned breq_edges, writes, strobes;
 static struct fake_edge edges[EDGES];
@@ -53,7 +54,7 @@ static volatile uint32_t* word(bool x, uint32_t address) {
     last = &peripheral[x][address & (PERIPHERALS - 1u)];
   before.x = x;
   before.address = address;
-  before.cycles = cycles;
+  before.cycles = (uint32_t)cycles;
   before.value = *last;
   return last;
 }
@@ -68,7 +69,8 @@ void fake_hal_power_on(uint32_t ics) {
   memset(flash, 0xFF, sizeof flash);
   memcpy(straps, geo_brick, sizeof straps);
   straps[HAL_STRAP_FITTED] = fitted = ics;
-  signals = cycles = real_time = 0;
+  signals = real_time = 0;
+  cycles = 0;
   mask = MASK_NONE;
   breq_edges = writes = strobes = 0;
   look = LOOK_CYCLES;
@@ -119,7 +121,7 @@ void fake_hal_clear_writes(void) {
 
 static uint32_t hold_off(uint32_t who) {
   const uint32_t held = mask;
-  if (held == MASK_NONE) masked_since = cycles;
+  if (held == MASK_NONE) masked_since = (uint32_t)cycles;
   if (who > mask) mask = who;
   return held;
 }
@@ -130,7 +132,8 @@ uint32_t hal_mask_all(void) { return hold_off(MASK_ALL); }
 
 void hal_unmask(uint32_t state) {
   mask = state;
-  if (state == MASK_NONE && cycles - masked_since > longest_mask) longest_mask = cycles - masked_since;
+  const uint32_t held = (uint32_t)cycles - masked_since;
+  if (state == MASK_NONE && held > longest_mask) longest_mask = held;
 }
 
 /* Time passes by looking at it. */
@@ -140,14 +143,15 @@ void fake_hal_fit(uint32_t ics) { fitted = ics; }
 
 uint32_t hal_cycles(void) {
   cycles += look;
-  if (!clocks_stopped) tasks_phase_stamp = cycles;
-  return cycles;
+  if (!clocks_stopped) tasks_phase_stamp = (uint32_t)cycles;
+  return (uint32_t)cycles;
 }
 uint64_t hal_long_cycles(void) { return cycles; }
 uint32_t hal_image_checksum(void) { return 0xABCDEFu; }
 void hal_delay_us(uint32_t us) { cycles += us * CYCLES_PER_US; }
 void hal_await_us(uint32_t start, uint32_t us) {
-  if (cycles - start < us * CYCLES_PER_US) cycles = start + us * CYCLES_PER_US;
+  const uint32_t passed = (uint32_t)cycles - start, wanted = us * CYCLES_PER_US;
+  if (passed < wanted) cycles += wanted - passed;
 }
 void hal_set_cpu_clock(uint32_t i52) { (void)i52; }
 uint32_t hal_cycles_per_ms(void) { return 78643; }
@@ -155,7 +159,7 @@ uint32_t hal_cycles_per_ms(void) { return 78643; }
 void hal_host_signals(uint32_t set, uint32_t clear) {
   const uint32_t next = (signals & ~clear) | set;
   if (((signals ^ next) & HAL_SIGNAL_BREQ) != 0 && breq_edges < EDGES) {
-    const struct fake_edge edge = {(next & HAL_SIGNAL_BREQ) != 0, cycles};
+    const struct fake_edge edge = {(next & HAL_SIGNAL_BREQ) != 0, (uint32_t)cycles};
     edges[breq_edges++] = edge;
   }
   signals = next;

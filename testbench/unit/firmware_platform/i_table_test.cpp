@@ -12,6 +12,7 @@
 #include "testbench/unit/firmware_platform/controller.h"
 
 extern "C" {
+#include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
 }
 
@@ -33,16 +34,17 @@ const std::vector<Rule> kGlobal = {
     {4, 4, 'u', 2, 0},      {5, 5, 'u', 2, 0},      {6, 6, 'u', 2, 3},          {7, 7, 'u', 8, 0},
     {8, 8, 'u', 8, 2},      {9, 9, 'u', 2, 2},      {10, 10, 'u', 23, 3713991}, {11, 11, 'u', 23, 0},
     {12, 15, 'u', 1, 0},    {16, 16, 'u', 23, 5},   {17, 18, 'u', 23, 10},      {30, 30, 'u', 1, 0},
-    {37, 37, 'u', 24, 0},   {40, 40, 'u', 16, 0},   {41, 41, 'u', 4, 0},        {42, 45, 'u', 1, 0},
-    {46, 46, 'u', 2, 0},    {47, 47, 'u', 8, 0},    {48, 49, 'u', 1, 0},        {50, 50, 'u', 8, 0},
-    {51, 51, 'u', 1, 0},    {52, 52, 'u', 5, 7},    {53, 54, 'u', 4, 12},       {55, 58, 'u', 1, 0},
-    {59, 59, 'u', 2, 0},    {60, 60, 'u', 4, 15},   {61, 61, 'u', 8, 8},        {62, 62, 'u', 1, 0},
-    {63, 63, 'u', 1, 1},    {64, 64, 'u', 1, 0},    {65, 65, 'u', 24, 0},       {66, 66, 'u', 1, 0},
-    {67, 67, 'u', 18, 0},   {68, 68, 'u', 4, 15},   {70, 77, 'u', 16, 0},       {78, 78, 'u', 8, 0},
-    {79, 79, 'u', 8, 32},   {80, 82, 'u', 8, 0},    {83, 83, 'u', 4, 0},        {84, 84, 'u', 2, 0},
-    {85, 85, 'u', 8, 0},    {90, 90, 'u', 8, 0x39}, {91, 91, 'u', 8, 0x4},      {92, 92, 'u', 8, 0xFF},
-    {93, 93, 'u', 8, 0x7F}, {94, 94, 'u', 8, 0xA0}, {95, 95, 'u', 8, 0x7},      {96, 96, 'u', 8, 0xA1},
-    {97, 97, 'u', 8, 0},    {98, 98, 'u', 8, 0x60}, {99, 99, 'u', 8, 0x30},
+    {35, 36, 'u', 1, 0},    {39, 39, 'u', 3, 0},    {69, 69, 'u', 24, 0},       {37, 37, 'u', 24, 0},
+    {40, 40, 'u', 16, 0},   {41, 41, 'u', 4, 0},    {42, 45, 'u', 1, 0},        {46, 46, 'u', 2, 0},
+    {47, 47, 'u', 8, 0},    {48, 49, 'u', 1, 0},    {50, 50, 'u', 8, 0},        {51, 51, 'u', 1, 0},
+    {52, 52, 'u', 5, 7},    {53, 54, 'u', 4, 12},   {55, 58, 'u', 1, 0},        {59, 59, 'u', 2, 0},
+    {60, 60, 'u', 4, 15},   {61, 61, 'u', 8, 8},    {62, 62, 'u', 1, 0},        {63, 63, 'u', 1, 1},
+    {64, 64, 'u', 1, 0},    {65, 65, 'u', 24, 0},   {66, 66, 'u', 1, 0},        {67, 67, 'u', 18, 0},
+    {68, 68, 'u', 4, 15},   {70, 77, 'u', 16, 0},   {78, 78, 'u', 8, 0},        {79, 79, 'u', 8, 32},
+    {80, 82, 'u', 8, 0},    {83, 83, 'u', 4, 0},    {84, 84, 'u', 2, 0},        {85, 85, 'u', 8, 0},
+    {90, 90, 'u', 8, 0x39}, {91, 91, 'u', 8, 0x4},  {92, 92, 'u', 8, 0xFF},     {93, 93, 'u', 8, 0x7F},
+    {94, 94, 'u', 8, 0xA0}, {95, 95, 'u', 8, 0x7},  {96, 96, 'u', 8, 0xA1},     {97, 97, 'u', 8, 0},
+    {98, 98, 'u', 8, 0x60}, {99, 99, 'u', 8, 0x30},
 };
 
 // Without those that depend on motor and board: Ixx00, 02 to 04, 24, 25, 83.
@@ -58,31 +60,43 @@ const std::vector<Rule> kMotor = {
     {60, 60, 'u', 8, 0},        {61, 62, 'f', 0, 0},     {63, 63, 's', 24, 4194304}, {64, 64, 's', 24, 0},
     {65, 65, 's', 24, 16},      {66, 66, 'u', 15, 6527}, {67, 67, 'u', 23, 4194304}, {68, 68, 'u', 15, 0},
     {69, 69, 'u', 15, 20480},   {70, 70, 'u', 8, 1},     {71, 71, 'u', 24, 1000},    {72, 72, 'u', 11, 1365},
-    {76, 76, 'f', 0, 0},        {80, 80, 'u', 3, 0},     {81, 82, 'u', 24, 0},       {84, 84, 'u', 24, 0},
-    {87, 87, 's', 24, 64},      {88, 88, 'u', 8, 0},     {90, 90, 'u', 1, 0},        {91, 91, 'u', 24, 0},
-    {92, 92, 'u', 23, 10},      {95, 95, 'u', 24, 0},    {96, 97, 'u', 2, 0},
+    {73, 73, 's', 16, 0},       {74, 74, 'u', 8, 0},     {77, 77, 's', 16, 0},       {78, 78, 'f', 0, 0},
+    {79, 79, 's', 16, 0},       {85, 85, 'u', 23, 0},    {76, 76, 'f', 0, 0},        {80, 80, 'u', 3, 0},
+    {81, 82, 'u', 24, 0},       {84, 84, 'u', 24, 0},    {87, 87, 's', 24, 64},      {88, 88, 'u', 8, 0},
+    {90, 90, 'u', 1, 0},        {91, 91, 'u', 24, 0},    {92, 92, 'u', 23, 10},      {95, 95, 'u', 24, 0},
+    {96, 97, 'u', 2, 0},
 };
 
 // Without the timers Isx11, Isx12 and without Isx93.
 const std::vector<Rule> kSystem = {
-    {13, 13, 'u', 8, 0},
-    {14, 14, 'u', 23, 0},
-    {20, 20, 'u', 16, 0},
-    {21, 21, 'u', 4, 0},
-    {50, 50, 'u', 1, 0},
-    {53, 53, 'u', 2, 0},
-    {78, 78, 'f', 0, 0},
-    {81, 82, 'u', 23, 0},
-    {83, 86, 'f', 0, 0},
-    {87, 87, 'u', 23, 0},
-    {88, 88, 'u', 23, 50},
-    {89, 90, 'f', 0, 1000},
-    {91, 91, 'u', 15, 0},
-    {92, 92, 'u', 1, 0},
-    {94, 95, 'u', 23, 1644},
-    {96, 98, 'f', 0, 0},
-    {99, 99, 'f', 0, 32763.0 / 32768.0},
+    {13, 13, 'u', 8, 0},     {14, 16, 'u', 23, 0}, {20, 20, 'u', 16, 0},
+    {21, 21, 'u', 4, 0},     {50, 50, 'u', 1, 0},  {53, 53, 'u', 2, 0},
+    {78, 78, 'f', 0, 0},     {79, 79, 'u', 23, 0}, {81, 82, 'u', 23, 0},
+    {83, 86, 'f', 0, 0},     {87, 87, 'u', 23, 0}, {88, 88, 'u', 23, 50},
+    {89, 90, 'f', 0, 1000},  {91, 91, 'u', 15, 0}, {92, 92, 'u', 1, 0},
+    {94, 95, 'u', 23, 1644}, {96, 98, 'f', 0, 0},  {99, 99, 'f', 0, 32763.0 / 32768.0},
 };
+
+// Ranges of those whose factory values depend on motor, system or board.
+const std::vector<Rule> kFound = {{20, 24, 'u', 24, 0}};
+const std::vector<Rule> kMotorFound = {
+    {0, 0, 'u', 1, 0}, {2, 4, 'u', 24, 0}, {24, 25, 'u', 24, 0}, {83, 83, 'u', 24, 0}};
+const std::vector<Rule> kSystemFound = {{11, 12, 's', 24, 0}, {93, 93, 'u', 24, 0}};
+
+// Data gathering. The ring of ADCs from 61 on belongs to motors on a MACRO IC: 0 on a Geo Brick.
+const std::vector<Rule> kGather = {{0, 0, 'u', 2, 0},    {1, 48, 'u', 24, 0},  {49, 49, 'u', 23, 0},
+                                   {50, 51, 'u', 24, 0}, {61, 76, 'u', 24, 0}, {81, 96, 'u', 24, 0}};
+
+// Of an IC, firmware:2.3, as wide as the fields of servo-ic:2.5; those of channel 2: the compare of channel 1 is fixed.
+const std::vector<Rule> kIc = {{0, 0, 'u', 15, 6527},    {1, 1, 'u', 4, 0},  {2, 2, 'u', 4, 3},
+                               {3, 3, 'u', 12, 2258},    {4, 4, 'u', 8, 15}, {5, 5, 'u', 24, 0x7FFFC0},
+                               {6, 6, 'u', 24, 0xFFFFFE}};
+const std::vector<Rule> kChannel2 = {{20, 20, 'u', 4, 7}, {21, 21, 'u', 1, 0}, {22, 22, 'u', 4, 1}, {23, 23, 'u', 2, 0},
+                                     {24, 24, 'u', 1, 0}, {25, 27, 'u', 2, 0}, {28, 29, 'u', 1, 0}};
+// A MACRO IC's two channels have fewer fields; no ring is modelled, its control words are stored. firmware:1.11
+const std::vector<Rule> kMacroChannel2 = {{20, 20, 'u', 4, 7}, {21, 21, 'u', 1, 0},       {22, 22, 'u', 4, 1},
+                                          {23, 23, 'u', 2, 0}, {24, 25, 'u', 1, 0},       {27, 27, 'u', 2, 0},
+                                          {28, 28, 'u', 1, 0}, {40, 40, 'u', 24, 0x4000}, {41, 41, 'u', 24, 0}};
 
 bool among(unsigned number, std::initializer_list<std::pair<unsigned, unsigned>> runs) {
   for (const auto& run : runs)
@@ -138,7 +152,13 @@ TEST(ITable, DefaultsAreThoseOfTheDataSheet) {
   check(0, kGlobal);
   for (unsigned motor = 1; motor <= 32; ++motor) check(100 * motor, kMotor);
   for (unsigned system = 0; system < 16; ++system) check(5100 + 100 * system, kSystem);
-  EXPECT_GT(checked, 32u * 60 + 16 * 20 + 60);
+  check(3300, {{0, 1599, 'f', 0, 0}});
+  check(5000, kGather);
+  for (const unsigned ic : {7000u, 7100u}) {
+    check(ic, kIc);
+    check(ic, kChannel2);
+  }
+  EXPECT_GT(checked, 32u * 60 + 16 * 20 + 60 + 1600);
   for (unsigned number = 0; number < kCount; ++number) {
     const bool settings = number == 3 || number == 6;  // the fixture is a client
     const bool timer = number >= 5100 && number < 6700 && (number % 100 == 11 || number % 100 == 12);
@@ -172,8 +192,55 @@ TEST(ITable, IntegersWrapAtTheRangesOfTheDataSheet) {
         if (base + n != 41) check(base + n, rule);  // the locks, below
   };
   all(0, kGlobal);
-  for (const unsigned motor : {1u, 17u, 32u}) all(100 * motor, kMotor);
-  for (const unsigned system : {0u, 15u}) all(5100 + 100 * system, kSystem);
+  all(0, kFound);
+  for (const unsigned motor : {1u, 17u, 32u}) {
+    all(100 * motor, kMotor);
+    all(100 * motor, kMotorFound);
+  }
+  for (const unsigned system : {0u, 15u}) {
+    all(5100 + 100 * system, kSystem);
+    all(5100 + 100 * system, kSystemFound);
+  }
+  all(3300, {{0, 1599, 'f', 0, 0}});
+  all(5000, kGather);
+  all(7100, kIc);
+  all(7100, kChannel2);
+  all(8000, {{0, 191, 'u', 24, 0}});
+  Controller macro(kMacroIc0);
+  all(6800, kIc);
+  all(6800, kMacroChannel2);
+}
+
+// Every number has a rule here, or is reserved: a new row of the table needs one.
+TEST(ITable, NoRowIsWithoutARule) {
+  Controller c(kGeoBrick | kMacroIc0);
+  std::vector<bool> ruled(kCount, false);
+  const auto mark = [&ruled](unsigned base, const std::vector<Rule>& rules) {
+    for (const Rule& rule : rules)
+      for (unsigned n = rule.first; n <= rule.last; ++n) ruled[base + n] = true;
+  };
+  for (const auto& rules : {kGlobal, kFound}) mark(0, rules);
+  for (const auto& rules : {kMotor, kMotorFound}) mark(100, rules);
+  for (const auto& rules : {kSystem, kSystemFound}) mark(5100, rules);
+  mark(3300, {{0, 49, 'f', 0, 0}});
+  mark(5000, kGather);
+  for (const auto& rules : {kIc, kChannel2}) mark(7000, rules);
+  for (const auto& rules : {kIc, kMacroChannel2}) mark(6800, rules);
+  mark(8000, {{0, 191, 'u', 24, 0}});
+  // Elsewhere: clock source and directions (variables_test.cpp). Channels are alike; 8 and 9 of an IC are read-only.
+  for (const unsigned number : {19u, 6807u, 7007u}) ruled[number] = true;
+  unsigned rows = 0;
+  for (unsigned number = 0; number < kCount; ++number) {
+    const bool first_of_its_kind = number < 200 || (number >= 3300 && number < 3350) ||
+                                   (number >= 5000 && number < 5200) || (number >= 6800 && number < 6850) ||
+                                   (number >= 7000 && number < 7030) || number >= 8000;
+    const bool channel_1 = among(number, {{6810, 6819}, {7010, 7019}});
+    const i_entry* entry = i_table_entry(i_table_place(number));
+    if (!first_of_its_kind || channel_1 || entry->count == 0 || entry->kind == I_KIND_R) continue;
+    ++rows;
+    EXPECT_TRUE(ruled[number]) << "I" << number;
+  }
+  EXPECT_GT(rows, 400u);
 }
 
 TEST(ITable, ReadOutOfEverythingHasEachVariableInItsForm) {
@@ -263,11 +330,14 @@ TEST(ITable, IndicesAreCheckedWhereTheyEnter) {
   c.line("P1=1 P2=8191 P3=8192 P4=-1");
   EXPECT_EQ(c.line("I(P2)"), "$0");
   for (const char* letter : {"I", "P", "Q", "M"})
-    for (const char* rest : {"8192", "(P3)", "(P4)", "0..8192", "8191..0", "(P2)..(P3)", "8190,3", "0,8193", "0,0",
-                             "1,8191,2", "4294967296", "(1/0)", "(P4*8191)", "99999999999", "1..", "1,", "1,2,"}) {
+    for (const char* rest : {"8192",   "(P3)", "(P4)",     "0..8192",    "8191..0", "(P2)..(P3)",     "8190,3",
+                             "0,8193", "0,0",  "1,8191,2", "4294967296", "(1/0)",   "(P4*8191)",      "99999999999",
+                             "1..",    "1,",   "1,2,",     "16,4,0",     "16,1,0",  "16,4,(P3-8192)", "16,4,(P1/2)"}) {
       EXPECT_EQ(c.line(std::string(letter) + rest), "ERR003") << letter << rest;
       EXPECT_EQ(c.line(std::string(letter) + rest + "=1"), "ERR003") << letter << rest;
     }
+  // Inside an expression a computed number wraps (docs/variables.md): 8192 is 0, -1 is 8191.
+  EXPECT_EQ(c.line("P0=77 P8191=78 P10=P(P3) P11=P(P4) P10 P11"), "77|78");
   std::string infinite = "34359738368";  // EXP is 2^47 at most: its 24th power is at the end of a double's range
   for (int i = 0; i < 24; ++i) infinite += "*EXP(40)";
   for (const char* letter : {"I", "P", "Q", "M"})

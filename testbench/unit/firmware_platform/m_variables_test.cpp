@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <iomanip>
+#include <map>
 #include <random>
 #include <sstream>
 #include <string>
@@ -80,11 +81,12 @@ TEST(MDefinitions, WhatIsNoneIsAnErrorAndChangesNothing) {
   Controller c;
   c.line("M5->Y:$10F0,3,4");
   for (const char* text :
-       {"X",           "X:",        "X:$1000000", "X:-1",        "X:$0,",      "X:$0,25",     "X:$0,23,4",
-        "X:$0,0,25",   "X:$0,0,0",  "X:$0,0,6,D", "X:$0,0,8,Q",  "X:$0,0,8,",  "X:$0,1.5",    "Y:",
-        "D:",          "L",         "DP",         "F:",          "F:$1000000", "TWB:256,0,1", "TWB:0,8,1",
-        "TWB:0,0,33",  "TWB:0,0,0", "TWB:0,0",    "TWB:0,0,1,D", "TWD:0,1,3",  "TWD:0,0,13",  "TWD:0,0,0",
-        "TWD:0,0,1.9", "TWD:0,0",   "TWR:1,0",    "TWR:0,8",     "TWR:0",      "TWS:256",     "TWS"})
+       {"X",           "X:",         "X:$1000000",  "X:-1",        "X:$0,",        "X:$0,25",   "X:$0,23,4",
+        "X:$0,0,25",   "X:$0,24,8",  "X:$0,24,24",  "X:$0,24,1,S", "X:$0,24,24,S", "X:$0,0,0",  "X:$0,0,6,D",
+        "X:$0,0,8,Q",  "X:$0,0,8,",  "X:$0,1.5",    "Y:",          "D:",           "L",         "DP",
+        "F:",          "F:$1000000", "TWB:256,0,1", "TWB:0,8,1",   "TWB:0,0,33",   "TWB:0,0,0", "TWB:0,0",
+        "TWB:0,0,1,D", "TWD:0,1,3",  "TWD:0,0,13",  "TWD:0,0,0",   "TWD:0,0,1.9",  "TWD:0,0",   "TWR:1,0",
+        "TWR:0,8",     "TWR:0",      "TWS:256",     "TWS"})
     EXPECT_EQ(c.line(std::string("M5->") + text), "ERR003") << text;
   EXPECT_EQ(c.line("M5->"), "Y:$10F0,3,4");
 }
@@ -105,8 +107,13 @@ TEST(MDefinitions, WordsThatAUserWroteAreSafe) {
   EXPECT_EQ(c.line("M1=7 M1 RX$4001"), "7|0");
   std::mt19937 random(20);
   unsigned pointers = 0;
+  std::map<std::string, unsigned> multiplexed;  // by the name of the form
   for (unsigned i = 0; i < 20000; ++i) {
-    const std::uint32_t word = random() & 0xFFFFFFu, address = 0x10F0u + (random() & 0xFu);
+    std::uint32_t word = random() & 0xFFFFFFu, address = 0x10F0u + (random() & 0xFu);
+    if (i % 2 == 1) {  // TWB, TWD, TWR and TWS reach 0 to 255
+      word = (7u + random() % 4u) << 20 | (word & 0xFFFFFu);
+      address = random() & 0xFFu;
+    }
     c.line("WX$4001," + hex(word) + " WY$4001," + hex(address));
     const std::string text = c.line("M1->");
     ASSERT_LE(text.size(), 20u) << text;
@@ -115,9 +122,14 @@ TEST(MDefinitions, WordsThatAUserWroteAreSafe) {
     ASSERT_EQ(c.line("M1=-3"), "");
     if (text == "*") continue;
     ++pointers;
+    if (text[0] == 'T') {
+      ++multiplexed[text.substr(0, 3)];
+      ASSERT_EQ(value + c.line("M1"), "00") << text;
+    }
     ASSERT_EQ(c.line("M2->" + text + " M2->"), text) << hex(word);
   }
   EXPECT_GT(pointers, 2000u);
+  for (const char* form : {"TWB", "TWD", "TWR", "TWS"}) EXPECT_GT(multiplexed[form], 5u) << form;
 }
 
 TEST(MVariables, PartsOfAWordLeaveTheRestAlone) {
@@ -148,6 +160,15 @@ TEST(MVariables, DigitsAreBinaryCodedDecimal) {
   EXPECT_EQ(y(0x10F0), 0x987654u);
   c.line("M1=1000007 WX$10F0,0");  // as many digits as there are
   EXPECT_EQ(y(0x10F0), 0x000007u);
+  const std::pair<const char*, const char*> beyond_32_bits[] = {{"5000000123", "123"},
+                                                                {"4294967296", "967296"},
+                                                                {"-4294967296", "967296"},
+                                                                {"34359738367", "738367"},
+                                                                {"4294967295*32767", "355265"}};
+  for (const auto& [value, digits] : beyond_32_bits) {
+    c.line("M1=" + std::string(value));
+    EXPECT_EQ(c.line("M1"), digits) << value;
+  }
   c.line("M3=123456");
   EXPECT_EQ(y(0x10F0), 0xEDCBA9u);
   EXPECT_EQ(c.line("M3 M4"), "123456|6");

@@ -111,6 +111,22 @@ TEST_F(LiveWords, CoordinateSystemShowsItsProgram) {
   EXPECT_EQ(host("M1->X:$2240,0 M1..2"), "0|1");
 }
 
+// X10 and X20 follow without a gap: when `/` ends the first, the second is calculated and waits.
+TEST_F(LiveWords, AMoveThatWaitsIsNoTarget) {
+  ASSERT_EQ(host("&1 DEF ROT 200 B0 OPEN ROT"), "");
+  for (const char* line : {"TM500", "X10", "X20", "X30"}) ASSERT_EQ(host(line), "");
+  ASSERT_EQ(host("CLOSE R"), "");
+  platform::servo_ticks(30);
+  EXPECT_EQ(host("RL$2047"), "10");
+  ASSERT_EQ(host("/"), "");
+  platform::servo_ticks(1800);  // 0.44 ms each
+  EXPECT_TRUE(coordinate_systems[0].next_valid) << "nothing waits: the test shows nothing";
+  EXPECT_EQ(host("RL$2047"), "10");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(30);
+  EXPECT_EQ(host("RL$2047"), "20");
+}
+
 TEST_F(LiveWords, DwellShowsInTheMotorsOfTheSystem) {
   host("&1#1->X &2#2->X");
   ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
@@ -142,6 +158,19 @@ TEST_F(LiveWords, TimersAreReadAndSet) {
   EXPECT_EQ(host("M1->X:$2F15,24,S M2->Y:$2F15,24,S M1=50 M2=60 I6611..6612"), "50|60");
   platform::servo_ticks(10);
   EXPECT_EQ(host("M1 M2"), "40|50");
+}
+
+TEST_F(LiveWords, PartOfATimerIsSet) {
+  ASSERT_EQ(host("I6611=$123456 M1->X:$2F15,4,8 M1=$FF"), "");
+  EXPECT_EQ(host("RHX$2F15"), "123FF6");
+}
+
+// firmware:1.5: a lock is about assignments to I-variables; these are writes of memory.
+TEST_F(LiveWords, TimersAreSetWhileTheirVariablesAreLocked) {
+  ASSERT_EQ(host("I6611=7 I6612=8 I41=2"), "");
+  EXPECT_EQ(host("I6611=1 I6612=1 I6611..6612"), "7|8");
+  EXPECT_EQ(host("WX$2F15,50 WY$2F15,60 I6611..6612"), "50|60");
+  EXPECT_EQ(host("M1->X:$2F15,24,S M1=70 I6611"), "70");
 }
 
 TEST_F(LiveWords, GlobalStatus) {

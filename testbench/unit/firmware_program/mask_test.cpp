@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
@@ -130,7 +131,18 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
   ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
   ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
   MaskWatch watch(board, BRICK_FIRMWARE_ELF);
-  for (const char* line : {"&1DEF ROT 2000 B0",
+  for (const char* line : {"&1DEF ROT 2000 B0", "#1->100X+20.5Y-0.25Z+7", "OPEN ROT", "TM20000 X7", "CLOSE", "R"})
+    EXPECT_EQ(board.send(std::string(line) + "\r", 30.0), "\x06") << line;
+  board.run_ms(30.0);
+  // Words that are made when they are read, during a move.
+  EXPECT_EQ(board.send("RL$2047 RL$CF\r"), "7\r100\r\x06");
+  for (const char* line :
+       {"M6->L:$2047 M7->X:$2015 M8->Y:$2015,8,8 M9->X:$6,22 M10->L:$5010 M11->L:$CF", "P2=M6 P3=M11 P4=M7 P5=M9",
+        "M7=500 M8=5 M9=0", "RD$2015 RX$2040 RHL$2047,4 RL$CF,4", "WD$2015,30000000000", "WL$2047,3 WX$6,0 WY$203F,0",
+        "WX$5010,0 WY$5010,$1FFF", "RL$5010", "P6=M10 RY$5010", /* a float of 36 leading zeros */
+        "M12->Y:$5011,24,D M12=5000000123 RHY$5011", "&1A"})
+    EXPECT_EQ(board.send(std::string(line) + "\r", 30.0).find("ERR"), std::string::npos) << line;
+  for (const char* line : {"B0",
                            "M1->X:$5000",
                            "M2->L:$5001",
                            "M3->D:$5002",
@@ -156,7 +168,11 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
                            "R",
                            "A",
                            "SAVE",
-                           "I16=3 I17=7"})
+                           "I16=3 I17=7",
+                           "OPEN PROG 1 CLEAR",
+                           "X1 Y2",
+                           "I18=20",
+                           "CLOSE"})
     board.send(std::string(line) + "\r", 30.0);
   RandomLines random(21);
   for (int i = 0; i < 300; ++i) board.send(random.next() + "\r", 3.0);
@@ -170,6 +186,29 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
     EXPECT_LE(worst.cycles, kLimit);
     EXPECT_GT(worst.sections, 100u) << "hardly any section seen";
   }
+}
+
+// Programs read axis definitions at their addresses (docs/variables.md, Live words), and preempt who changes them.
+TEST(Mask, AxisDefinitionsChangeWhileTheRealTimeTaskIsHeldOff) {
+  ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
+  ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  constexpr std::uint32_t kBytes = 88;  // of one: two bools, the system, nine scales, the offset
+  const auto first = ElfFile(BRICK_FIRMWARE_ELF).symbol("axis_definitions");
+  ASSERT_TRUE(first.has_value());
+  const auto* memory = board.cpu().memory(*first, kBytes);
+  std::array<std::uint8_t, kBytes> last{};
+  unsigned changes = 0, open_changes = 0;
+  board.on_instruction = [&] {
+    if (std::memcmp(last.data(), memory, kBytes) == 0) return;
+    std::memcpy(last.data(), memory, kBytes);
+    ++changes;
+    if ((board.cpu().csr(kMie) >> kIrqRealTime & 1) != 0) ++open_changes;
+  };
+  for (const char* line : {"&1#1->100.1X+20.5Y-0.25Z+7.3", "#1->5B", "UNDEFINE", "#1->3.3W", "#1->0", "UNDEFINE ALL"})
+    EXPECT_EQ(board.send(std::string(line) + "\r"), "\x06") << line;
+  board.on_instruction = nullptr;
+  EXPECT_GT(changes, 15u) << "hardly any change seen";
+  EXPECT_EQ(open_changes, 0u);
 }
 
 }  // namespace
