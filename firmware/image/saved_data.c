@@ -1,9 +1,9 @@
 /* What SAVE keeps in the flash store: I-variables, P, Q and M definitions, without the zeros, axis definitions and the
  * fixed programs. Layout in 32-bit words: mark, checksum, count, ICs at the last re-initialisation, ICs at SAVE, then
- * `count` words: (number, value low, value high, integer) of I-variables, a separator, (address, X, Y) of user memory, a
- * separator, (motor, words of its definition) of axes, a separator, (kind and number, count, (X, Y) of each word) of
- * programs, a separator. A checksum says that nothing has changed, not who wrote it: the numbers are checked again where
- * they become places. */
+ * `count` words: (number, value low, value high, integer) of I-variables, a separator, (address, X, Y) of user memory,
+ * a separator, (motor, words of its definition) of axes, a separator, (kind and number, count, (X, Y) of each word) of
+ * programs, a separator. A checksum says that nothing has changed, not who wrote it: the numbers are checked again
+ * where they become places. */
 #include "firmware/image/saved_data.h"
 
 #include <stdbool.h>

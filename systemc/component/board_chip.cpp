@@ -141,7 +141,8 @@ class BoardChip final : public Chip {
     constexpr unsigned kPortABytes = 8 * 0x60000, kWords = 32768;
     const BoardInputs& in = buses_.inputs();
     if (face == kIsaFace && ((address & kIsaMemory) == 0 || !in.window_flat)) return {};
-    const unsigned first = face == kPortAFace ? kPortABytes : kIsaMemory | unsigned{in.window} << 14;
+    const unsigned first =
+        face == kPortAFace ? kPortABytes : kIsaMemory | (unsigned{in.window} & (in.slot8 ? 0x3Cu : 0x3FCu)) << 14;
     const unsigned index = (address - first) / (face == kPortAFace ? 4 : 2);
     if (address < first || index >= kWords || !board_->dpram_word(index)) return {};
     return index;

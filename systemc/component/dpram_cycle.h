@@ -3,7 +3,7 @@
 //     as long as BUSY; of a write an edge more, which makes it. A read has its word with the edge that grants it.
 //   CPU, on clk_pwm: the strobe is low until /TA is, then high for two edges, 17 ns (host-bus:2.2, rows 113 and 114).
 //     A write is made by the second of them.
-// So a cycle begins with the lines of the one before at rest, also of one that was given up.
+// So a cycle begins with the lines of the one before at rest; after one that was broken off Faces sees to it.
 #pragma once
 
 #include "systemc/component/dpram_words.h"

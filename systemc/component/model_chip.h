@@ -44,7 +44,7 @@ class ModelChip : public Chip {
   void abandon(unsigned face) final {
     if (!faces_.busy(face)) return;
     idle(face);
-    faces_.end(face);
+    faces_.break_off(face, now_);
   }
   bool busy(unsigned face) const final { return faces_.busy(face); }
   std::uint32_t value(unsigned face) const final { return faces_.value(face); }

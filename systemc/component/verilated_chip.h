@@ -84,7 +84,7 @@ class VerilatedChip final : public Chip {
   void abandon(unsigned face) override {
     if (!faces_.busy(face)) return;
     Ports::access(*top_, face, false, Face{});
-    faces_.end(face);
+    faces_.break_off(face, now_);
   }
   bool busy(unsigned face) const override { return faces_.busy(face); }
   std::uint32_t value(unsigned face) const override { return faces_.value(face); }

@@ -267,6 +267,34 @@ TEST(DpramSocket, TheLaterOneWaitsAndADebugReadDisturbsNobody) {
   });
 }
 
+// Killed anywhere in its cycle of 50 ns: who comes at once after it reads his own word, and his write is made.
+TEST(DpramSocket, TheAccessAfterAKilledOneIsWhole) {
+  BRICK_COVERS("CARD-1");
+  on_engines([](const Engine& engine) {
+    simulate(
+        engine, [](Initiator&) {},
+        [](Initiator& i) {
+          set_word(i, 0x10, 0x1111);
+          unsigned broken_off = 0;
+          for (double ns = 0.1; ns < 58; ns += 1.3) {
+            const auto value = static_cast<std::uint32_t>(ns * 100);
+            set_word(i, 0x20, 0x2222);
+            auto reader = sc_core::sc_spawn([&i] { word(i, 0x10); });
+            sc_core::wait(ns, sc_core::SC_NS);
+            broken_off += reader.terminated() ? 0 : 1;
+            if (!reader.terminated()) reader.kill();
+            EXPECT_EQ(word(i, 0x20), 0x2222u) << "read killed after " << ns << " ns";
+            auto writer = sc_core::sc_spawn([&i] { set_word(i, 0x10, 0x1111); });
+            sc_core::wait(ns, sc_core::SC_NS);
+            if (!writer.terminated()) writer.kill();
+            set_word(i, 0x20, value);
+            EXPECT_EQ(word(i, 0x20), value) << "write killed after " << ns << " ns";
+          }
+          EXPECT_GT(broken_off, 30u);
+        });
+  });
+}
+
 // Killed while it waits for the other side: nothing of it is made, BUSY ends, the socket is free.
 TEST(DpramSocket, AKilledInitiatorThatWaitsLeavesNothing) {
   BRICK_COVERS("CARD-1");

@@ -5,10 +5,9 @@
 // Each of the two buses is driven by the pins or by its sockets, whose accesses are cycles with real edges on those
 // pins inside: docs/port-a.md, host-bus:3.4. A bus of which a socket and an input pin is bound is an error
 // /brick/two_masters at the end of the elaboration; its output pins show its cycles either way.
-//  - The annotated delay is waited for, then the bus: its first clock after the call, the end of its cycle, and as long
-//  as /TA or
-//    IOCHRDY stretch that. An access returns with the delay 0 as the cycle's address is let go; its time and its result
-//    depend on neither quantum nor engine. Accesses to one bus queue in the order of their calls. No DMI.
+//  - The annotated delay is waited for, then the bus: its first clock after the call, the end of its cycle, as long as
+//    /TA or IOCHRDY stretch that. An access returns with the delay 0 as the cycle's address is let go; its time and its
+//    result depend on neither quantum nor engine. Accesses to one bus queue as those to a register socket do. No DMI.
 //  - A process that is killed in its access leaves the cycle to go on to its end.
 //  - Debug transport reads the dual-ported RAM (not through a window with pages), BCR and PCTL, and moves 0 bytes of
 //    anything else; it writes nothing.
