@@ -135,7 +135,8 @@ static void limits_changed(struct rotary* ring) {
 }
 
 void buffer_request_evaluate(void) {
-  const uint32_t words = region_open_words();
+  /* Counting takes longer than the pin may follow a selection: only for whom it is. */
+  const uint32_t words = request.fixed_open ? region_open_words() : 0;
   uint32_t state = hal_mask_real_time();
   int32_t on = i_integer(I16_ROTARY_REQUEST_ON), off = i_integer(I17_ROTARY_REQUEST_OFF);
   bool changed = on != request.on || off != request.off;

@@ -86,12 +86,26 @@ error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count) {
   return ERR_NONE;
 }
 
+uint32_t rotary_offset(uint32_t cs, uint32_t offset, uint32_t ahead) {
+  const uint32_t size = rotary_buffers[cs].size, sum = offset + ahead; /* ahead: no more than the size */
+  return sum >= size ? sum - size : sum;
+}
+
+word48_t rotary_word(uint32_t cs, uint32_t offset) { return user_memory_read(rotary_buffers[cs].base + offset); }
+
+struct rotary_lines rotary_lines_ahead(uint32_t cs) {
+  const uint32_t state = hal_mask_real_time();
+  struct rotary_lines lines = {rotary_buffers[cs].read, rotary_buffers[cs].used};
+  hal_unmask(state);
+  for (; lines.words != 0 && (rotary_word(cs, lines.offset) & WORD_START_OF_LINE) == 0; lines.words--)
+    lines.offset = rotary_offset(cs, lines.offset, 1); /* the rest of the line under way */
+  return lines;
+}
+
 bool rotary_peek(uint32_t cs, uint32_t ahead, word48_t* word) {
   const struct rotary* ring = &rotary_buffers[cs];
   if (ahead >= ring->used) return false;
-  uint32_t offset = ring->read + ahead;
-  if (offset >= ring->size) offset -= ring->size;
-  *word = user_memory_read(ring->base + offset);
+  *word = rotary_word(cs, rotary_offset(cs, ring->read, ahead));
   return true;
 }
 

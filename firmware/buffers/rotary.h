@@ -17,6 +17,15 @@ void rotary_clear(uint32_t cs);
 error_t rotary_store(uint32_t cs, const word48_t* words,
                      uint32_t count); /* one line; the first word gets its mark here */
 
+/* Background. The lines whose calculation has not begun. They stay where they are, calculated meanwhile or not, until
+ * the background stores again. */
+struct rotary_lines {
+  uint32_t offset, words; /* of the first one; of all */
+};
+struct rotary_lines rotary_lines_ahead(uint32_t cs);
+uint32_t rotary_offset(uint32_t cs, uint32_t offset, uint32_t ahead); /* `ahead` words behind `offset` */
+word48_t rotary_word(uint32_t cs, uint32_t offset);
+
 /* Real-time task. */
 bool rotary_peek(uint32_t cs, uint32_t ahead, word48_t* word); /* word `ahead` of the read pointer, if stored */
 bool rotary_consume(uint32_t cs, uint32_t count); /* true: that was the end of a line, PR and BREQ are updated */

@@ -3,6 +3,7 @@
 #include "firmware/command/define_commands.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
@@ -53,7 +54,7 @@ static error_t define_gather(struct lexer* lx) {
   return size_argument(lx, &words) != ERR_NONE ? ERR_DATA : region_define(REGION_GATHER, 0, words);
 }
 
-error_t define_command(struct lexer* lx) {
+static error_t define_any(struct lexer* lx) {
   uint32_t cs = session.cs;
   bool running = run_is_running(cs);
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
@@ -80,7 +81,7 @@ static error_t delete_temporaries(void) {
   return ERR_NONE;
 }
 
-error_t delete_command(struct lexer* lx) {
+static error_t delete_any(struct lexer* lx) {
   uint32_t cs = session.cs;
   bool running = run_is_running(cs);
   if (lexer_keyword(lx, "ALL")) {
@@ -95,3 +96,12 @@ error_t delete_command(struct lexer* lx) {
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return region_delete(REGION_GATHER, cs);
   return ERR_DATA;
 }
+
+/* What is open for the fixed buffer that is being filled has changed: it owns BREQ (firmware:4.6). */
+static error_t and_request(error_t error) {
+  if (error == ERR_NONE) buffer_request_evaluate();
+  return error;
+}
+
+error_t define_command(struct lexer* lx) { return and_request(define_any(lx)); }
+error_t delete_command(struct lexer* lx) { return and_request(delete_any(lx)); }

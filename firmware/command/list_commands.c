@@ -79,21 +79,20 @@ static error_t list_fixed(struct lexer* lx, enum fixed_kind kind, bool numbered)
   return error != ERR_NONE ? error : list_program(fixed_program_find(kind, (uint32_t)number), &part);
 }
 
-/* Lines not calculated yet, from the oldest; offsets are those of the ring, as PC reports them. What is calculated
- * meanwhile is gone from the list: each line is looked for from the read pointer anew. */
+/* Lines whose calculation has not begun, as they are at the command; offsets are those of the ring, as PC reports them.
+ */
 static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
-  const struct rotary* ring = &rotary_buffers[cs];
   word48_t words[LINE_WORDS];
-  if (ring->size == 0) return ERR_DATA;
-  for (uint32_t line = 0, ahead = 0; line < lines; line++) {
-    uint32_t count = 0;
-    while (count < LINE_WORDS && rotary_peek(cs, ahead + count, &words[count])) {
-      if (count != 0 && (words[count] & WORD_START_OF_LINE) != 0) break;
-      count++;
-    }
-    if (count == 0) break;
-    list_line(words, count, (ring->read + ahead) % ring->size, with_offset);
-    ahead += count;
+  if (rotary_buffers[cs].size == 0) return ERR_DATA;
+  const struct rotary_lines ahead = rotary_lines_ahead(cs);
+  for (uint32_t line = 0, at = 0; line < lines && at < ahead.words; line++) {
+    const uint32_t first = at;
+    do {
+      words[at - first] = rotary_word(cs, rotary_offset(cs, ahead.offset, at));
+      if (at != first && (words[at - first] & WORD_START_OF_LINE) != 0) break;
+      at++;
+    } while (at - first < LINE_WORDS && at < ahead.words);
+    list_line(words, at - first, rotary_offset(cs, ahead.offset, first), with_offset);
   }
   return ERR_NONE;
 }

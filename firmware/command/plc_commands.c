@@ -20,13 +20,25 @@ static error_t cmd_disable(struct lexer* lx) { return control(lx, plc_disable); 
 static error_t cmd_pause(struct lexer* lx) { return control(lx, plc_pause); }
 static error_t cmd_resume(struct lexer* lx) { return control(lx, plc_resume); }
 
+/* DISPLC1 begins as DISPLAY does. */
+static error_t cmd_disable_short(struct lexer* lx) {
+  lx->at -= sizeof "PLC" - 1;
+  return cmd_disable(lx);
+}
+
 static error_t cmd_display(struct lexer* lx) { /* not DIS PLAY */
   (void)lx;
   return ERR_NEEDS_BUFFER;
 }
 
-const struct command_entry plc_commands[] = {{"DISABLE", cmd_disable}, {"ENABLE", cmd_enable},
-                                             {"RESUME", cmd_resume},   {"PAUSE", cmd_pause},
-                                             {"DISP", cmd_display},    {"ENA", cmd_enable},
-                                             {"DIS", cmd_disable},     {"PAU", cmd_pause},
-                                             {"RES", cmd_resume},      {0, 0}};
+const struct command_entry plc_commands[] = {{"DISABLE", cmd_disable},
+                                             {"ENABLE", cmd_enable},
+                                             {"RESUME", cmd_resume},
+                                             {"PAUSE", cmd_pause},
+                                             {"DISP", cmd_display},
+                                             {"ENA", cmd_enable},
+                                             {"DIS", cmd_disable},
+                                             {"PAU", cmd_pause},
+                                             {"RES", cmd_resume},
+                                             {"DISPLC", cmd_disable_short},
+                                             {0, 0}};

@@ -31,13 +31,13 @@ static error_t report_pointer(uint32_t offset) {
 
 static error_t cmd_calculating(struct lexer* lx) { /* PC */
   (void)lx;
-  return report_pointer(rotary_buffers[session.cs].read);
+  return report_pointer(rotary_lines_ahead(session.cs).offset);
 }
 
 static error_t cmd_executing(struct lexer* lx) { /* PE */
   (void)lx;
   const struct coordinate_system* s = &coordinate_systems[session.cs];
-  return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_buffers[session.cs].read);
+  return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_lines_ahead(session.cs).offset);
 }
 
 /* After a one-letter command a letter or digit means a word that is not known, or a program statement. */

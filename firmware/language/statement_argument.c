@@ -231,6 +231,7 @@ static error_t display(struct lexer* lx, const struct statement_row* row, struct
   error_t error = integer(lx, 0, DISPLAY_COLUMNS - 1, &column);
   if (error != ERR_NONE) return error;
   if (!lexer_accept(lx, ',')) return text(lx, row, column + 1u, out);
+  (void)lexer_peek(lx);
   const char* at = lx->at;
   for (width = 0; *at >= '0' && *at <= '9' && width < 100u; at++) width = width * 10u + (uint32_t)(*at - '0');
   if (*at == '.') {

@@ -121,13 +121,12 @@ static enum outcome calculate_word(uint32_t cs, struct coordinate_system* s) {
 }
 
 static void stop_with_error(uint32_t cs, struct coordinate_system* s) {
-  s->run_time_error = true;
   s->pending_axes = 0;
   s->evaluator.depth = 0;
   s->prefix = 0;
   (void)rotary_consume(cs, 1);
   rotary_skip_line_rest(cs);
-  s->quit = true;
+  s->run_time_error = s->quit = true; /* behind the last pause: R there would forget them */
 }
 
 static void calculate_ahead(uint32_t cs) {
@@ -143,8 +142,10 @@ static void calculate_ahead(uint32_t cs) {
     if (outcome == OUTCOME_ERROR) stop_with_error(cs, s);
     if (outcome == OUTCOME_MOVE && s->stepping) s->quit = true;
     if (outcome == OUTCOME_MOVE || outcome == OUTCOME_NO_WORD || outcome == OUTCOME_ERROR) return;
-    if (outcome == OUTCOME_LINE) lines++;
     slice_pause();
+    if (outcome != OUTCOME_LINE) continue;
+    if (s->quit || s->end_block) return; /* asked for since the round began: other slices have run */
+    lines++;
   }
 }
 

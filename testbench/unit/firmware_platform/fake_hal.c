@@ -205,12 +205,18 @@ void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)tra
 bool hal_servo_pending(void) { return false; }
 
 static void (*side_task)(void);
+static void (*on_pause)(void);
 static bool on_side;
+
+void fake_hal_on_pause(void (*action)(void)) { on_pause = action; }
 
 void hal_side_begin(void (*task)(void)) { side_task = task; }
 
 void hal_side_change(void) {
-  if (on_side) return;
+  if (on_side) {
+    if (on_pause != 0) on_pause();
+    return;
+  }
   on_side = true;
   side_task();
   on_side = false;

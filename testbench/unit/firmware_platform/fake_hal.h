@@ -30,6 +30,9 @@ const char* fake_host_output(uint32_t* length); /* everything sent to the host s
  * reads again. */
 void fake_hal_on_wait(void (*action)(void));
 
+/* What others do where work in slices is left (firmware/kernel/slice.h); then the work goes on. Null: nothing. */
+void fake_hal_on_pause(void (*action)(void));
+
 /* Edges of BREQ in order, newest last. */
 struct fake_edge {
   bool high;

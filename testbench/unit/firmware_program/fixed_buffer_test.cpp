@@ -278,6 +278,20 @@ TEST_F(FixedBuffer, OpeningAPlcDisablesIt) {
     EXPECT_EQ(host(text), "ERR003") << text;
 }
 
+// The short forms without a blank, which begin as DISPLAY does (firmware:4.8).
+TEST_F(FixedBuffer, DisplcIsDisablePlc) {
+  ASSERT_EQ(host("ENABLE PLC 1..3,31"), "");
+  EXPECT_EQ(host("DISPLC1"), "");
+  EXPECT_EQ(plc_enabled(), 0x8000000Cu);
+  EXPECT_EQ(host("displc 2,31 ENAPLC1"), "");
+  EXPECT_EQ(plc_enabled(), 0xAu);
+  EXPECT_EQ(host("DISPLCC3"), "") << "a compiled one";
+  EXPECT_EQ(plc_enabled(), 0xAu);
+  EXPECT_EQ(host("DISPLC"), "ERR003");
+  EXPECT_EQ(host("DISPLC32"), "ERR003");
+  for (const char* text : {"DISP\"A\"", "DISPLAY\"A\"", "DISP LC1"}) EXPECT_EQ(host(text), "ERR005") << text;
+}
+
 // firmware:8.5; the ring comes back in no case.
 TEST_F(FixedBuffer, SaveKeepsProgramsAndNoRotaryBuffer) {
   ASSERT_EQ(host("OPEN PROG 32767 X1 Y2 CLOSE OPEN PLC 31 P1=1 P2=$F CLOSE"), "");

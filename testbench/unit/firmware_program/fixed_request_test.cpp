@@ -84,6 +84,24 @@ TEST_F(FixedRequest, AChangeOfI18IsFollowed) {
   EXPECT_FALSE(full());
 }
 
+// Open memory also changes by other buffers, and the pin follows at once.
+TEST_F(FixedRequest, BuffersThatComeAndGoMeanwhileAreFollowed) {
+  BRICK_COVERS("I18-2");
+  // 26,624 words less 10 a move of CCBUF, less 6 a segment and 2 an output of LOOKAHEAD: 4 and 6 are open, I18 = 10.
+  for (const auto& [define, remove] :
+       {std::pair{"DEF GAT", "DEL GAT"}, {"DEF CCBUF 2662", "DEL CCBUF"}, {"DEF LOOK 4436,1", "DEL LOOK"}}) {
+    ASSERT_EQ(host("OPEN PROG 1"), "");
+    ASSERT_TRUE(breq());
+    ASSERT_EQ(host(define), "") << define;
+    EXPECT_FALSE(breq()) << define;
+    EXPECT_TRUE(full()) << define;
+    ASSERT_EQ(host(remove), "") << remove;
+    EXPECT_TRUE(breq()) << remove;
+    EXPECT_FALSE(full()) << remove;
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+}
+
 TEST_F(FixedRequest, WithoutRoomItNeverRises) {
   ASSERT_EQ(host("DEF GAT " + std::to_string(26624 - 10)), "");  // I18 = 10
   ASSERT_EQ(host("OPEN PROG 1"), "");

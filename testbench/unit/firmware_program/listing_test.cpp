@@ -71,6 +71,14 @@ TEST_F(Listing, ABlankStandsWhereWordsWouldRunTogether) {
 
 TEST_F(Listing, TextIsKeptAsItWas) { EXPECT_EQ(listed("SENDP\"It; is  (5)\" CMD^x"), "SENDP\"It; is  (5)\"CMD^X"); }
 
+TEST_F(Listing, BlanksInADisplayAreNothing) {
+  for (const char* text : {"DISP5,8.2,P1", "DISP 5, 8.2, P1", "DISPLAY 5 ,\t8.2 , P1"})
+    EXPECT_EQ(listed(text), "DISP5,8.2,P1") << text;
+  ASSERT_EQ(host("OPEN PROG 2"), "");
+  for (const char* text : {"DISP 5, ,P1", "DISP 5, ;8.2,P1", "DISP 5, 8 .2,P1"})
+    EXPECT_EQ(host(text), "ERR003") << text;
+}
+
 TEST_F(Listing, OffsetsCountWordsAndPartsAreCut) {
   enter("PLC 5", {"IF(M4900=0)", "M4900=1", "ENDIF"});  // 3 words (two values, comparison), 2 (value, M4900=), 1
   EXPECT_EQ(host_lines("LIST PLC5,0,80"), (Lines{"0:IF(M4900=0)", "3:M4900=1", "5:ENDI"}));

@@ -73,6 +73,16 @@ void real_time() {
   tasks_real_time_interrupt();
 }
 
+void real_time_in_slices(const std::function<void()>& between) {
+  static const std::function<void()>* action;
+  action = &between;
+  hal_request_real_time();  // slices end at once
+  fake_hal_on_pause([] { (*action)(); });
+  real_time();
+  fake_hal_on_pause(nullptr);
+  fake_hal_real_time_taken();
+}
+
 void servo_ticks(unsigned count) {
   for (unsigned i = 0; i < count; ++i) {
     tasks_servo_interrupt();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -52,8 +53,9 @@ std::vector<std::string> host_lines(const std::string& line);  // the same, a st
 void pass_us(double us);                                       // time passes in the background task
 void servo_ticks(unsigned count);  // servo interrupts, the real-time task after every third (I8 = 2)
 void real_time();                  // one real-time interrupt alone
-bool breq();                       // level of the pin
-std::vector<Edge> edges();         // since the last clear_edges()
+void real_time_in_slices(const std::function<void()>& between);  // the same, left wherever it can be: `between` acts
+bool breq();                                                     // level of the pin
+std::vector<Edge> edges();                                       // since the last clear_edges()
 void clear_edges();
 double longest_mask_us();                        // longest time that a task was held off
 void fit_panel();                                // a Turbo PMAC with JPAN; I2 = 0

@@ -120,6 +120,19 @@ TEST_F(Survival, AbortForgetsALineThatIsHalfCalculated) {
   expect_alive();
 }
 
+// Lines without a move are stopped between two of them, not behind all that one round may take.
+TEST_F(Survival, QuitStopsBehindTheLineUnderWay) {
+  constexpr int kLines = 16;
+  run(1, std::vector<std::string>(kLines, longest("P1=", "ASIN(.5)", "+")));
+  accepted("Q");
+  const int left = std::stoi(ask("PR"));
+  EXPECT_GT(left, kLines / 2);
+  board.run_ms(60.0);  // a line takes 20 ms
+  EXPECT_EQ(std::stoul(ask("??").substr(0, 6), nullptr, 16) & 1u, 0u) << "running";
+  EXPECT_GE(std::stoi(ask("PR")), left - 1);
+  expect_alive();
+}
+
 // From the character to the call of run_abort, whatever the controller is at.
 class AbortLatency : public Survival {
  protected:
