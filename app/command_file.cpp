@@ -123,7 +123,8 @@ void Reader::line(File& file, std::string_view text) {
     if (file.chosen()) keep(file, trimmed(text));
     return;
   }
-  const std::string bare = without_comments(file, text);
+  std::string bare = without_comments(file, text);
+  std::replace(bare.begin(), bare.end(), '\t', ' ');  // to the controller it is ^I, the line before once more
   const std::string_view source = trimmed(bare);
   if (const auto found = directive_of(source)) {
     directive(file, *found);

@@ -11,7 +11,6 @@ constexpr std::size_t kDigits = 12;
 constexpr unsigned char kBackspace = 0x08, kRepeat = 0x09;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 // In capitals, without spaces, texts in quotation marks and the comment at the end.
 std::string commands_of(std::string_view line) {
@@ -68,7 +67,7 @@ bool may_change_framing(std::string_view line) {
     if (c == kBackspace || c == kRepeat) return true;
   const std::string text = commands_of(line);
   for (std::size_t at = text.find('I'); at != std::string::npos; at = text.find('I', at + 1)) {
-    if (at + 1 == text.size() || (at != 0 && is_letter(text[at - 1]))) continue;
+    if (at + 1 == text.size()) continue;  // the letter before may be the end of another command: CLOSE I4=1
     if (text[at + 1] == '(' && text.find('=', at) != std::string::npos) return true;
     if (is_digit(text[at + 1]) && reaches_3_or_4(text, at + 1)) return true;
   }

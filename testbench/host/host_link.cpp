@@ -78,7 +78,9 @@ Reply HostLink::collect_and_ask() {
   while (incoming_.size() < kLongestReply && receive(bus_.now() + kQuietTime)) {}
   const Framing before = framing_;
   const bool known = ask_framing(may_take_long(sent_) ? kSaveTime : kReplyTime);
-  ReplyParser parser(before, command_checksum(sent_), true);
+  const bool sums = before.checksums() || framing_.checksums();
+  ReplyParser parser(before, command_checksum(sent_),
+                     sums ? ReplyParser::Mixed::kWithChecksums : ReplyParser::Mixed::kWithoutChecksums);
   for (const char c : std::exchange(incoming_, "")) parser.take(static_cast<std::uint8_t>(c));
   parser.quiet();
   Reply reply = parser.reply();
@@ -115,7 +117,9 @@ Reply HostLink::command(const std::string& line, Tick timeout) {
 
 // Data of what stood before the restart, and an error there, which means that it was never reached.
 Reply HostLink::restarted() {
-  Reply reply = collect(ReplyParser(framing_, command_checksum(sent_), true), kQuietTime);
+  const bool sums = framing_.checksums() || may_change_framing(sent_);
+  const auto mixed = sums ? ReplyParser::Mixed::kWithChecksums : ReplyParser::Mixed::kWithoutChecksums;
+  Reply reply = collect(ReplyParser(framing_, command_checksum(sent_), mixed), kQuietTime);
   if (reply.error) return reply;
   incoming_.clear();
   reply.complete = connect(kBootTime);

@@ -45,7 +45,7 @@ void ReplyParser::take(std::uint8_t byte) {
   if (take_checksum(byte)) return;
   if (held_) {
     take_text(*std::exchange(held_, std::nullopt));
-  } else if (handshake_ && (framing_.checksums() || mixed_) && byte == command_.value_or(byte)) {
+  } else if (handshake_ && sums_ && byte == command_.value_or(byte)) {
     held_ = c;
     return;
   }
@@ -53,14 +53,13 @@ void ReplyParser::take(std::uint8_t byte) {
 }
 
 void ReplyParser::take_text(char c) {
-  const bool sums = framing_.checksums() || mixed_;
   handshake_ = false;
   sum_ = static_cast<std::uint8_t>(sum_ + static_cast<unsigned char>(c));
   switch (c) {
     case kAck:
       if (!line_.empty()) end_line();
-      if (sums) due_ = Due::kCommand;
-      reply_.complete = !sums;
+      if (sums_) due_ = Due::kCommand;
+      reply_.complete = !sums_;
       break;
     case kBell:
       if (!line_.empty()) end_line();
@@ -69,9 +68,9 @@ void ReplyParser::take_text(char c) {
     case kCr:
       if (line_.empty() && reply_.error) break;  // I6 = 3: BELL CR ERRnnn CR
       end_line();
-      if (!sums) sum_ = 0;
-      if (sums) due_ = numbered_ ? Due::kError : Due::kLine;
-      reply_.complete = numbered_ && !sums;
+      if (!sums_) sum_ = 0;
+      if (sums_) due_ = numbered_ ? Due::kError : Due::kLine;
+      reply_.complete = numbered_ && !sums_;
       break;
     case kLf:
       sum_ = static_cast<std::uint8_t>(kLf);

@@ -35,9 +35,14 @@ std::uint8_t command_checksum(std::string_view line);
 class ReplyParser {
  public:
   // `mixed`: the line may change I3 and I4 half-way, so that only quiet ends the reply, and bytes are taken for
-  // checksums where they agree with one. `command`: the checksum of the line; none: any byte will do.
-  ReplyParser(Framing framing, std::optional<std::uint8_t> command, bool mixed = false)
-      : framing_(framing), command_(command), mixed_(mixed) {}
+  // checksums where they agree with one, if there were any before or after it. `command`: the checksum of the line;
+  // none: any byte will do.
+  enum class Mixed { kNo, kWithoutChecksums, kWithChecksums };
+  ReplyParser(Framing framing, std::optional<std::uint8_t> command, Mixed mixed = Mixed::kNo)
+      : framing_(framing),
+        command_(command),
+        mixed_(mixed != Mixed::kNo),
+        sums_(framing.checksums() || mixed == Mixed::kWithChecksums) {}
 
   void take(std::uint8_t byte);
   bool complete() const { return reply_.complete; }  // the framing itself says that nothing more comes
@@ -59,7 +64,7 @@ class ReplyParser {
 
   Framing framing_;
   std::optional<std::uint8_t> command_;
-  bool mixed_;
+  bool mixed_, sums_;
   Reply reply_;
   std::string line_;
   std::uint8_t sum_ = 0;  // of the line that is being received, or of the last one

@@ -74,7 +74,8 @@ TEST(ReplyFuzz, EndsWhateverTheControllerSends) {
   unsigned complete = 0, asked = 0;
   for (int i = 0; i < 50'000; ++i) {
     const Framing framing{static_cast<unsigned>(random() % 4), static_cast<unsigned>(random() % 2)};
-    ReplyParser parser(framing, static_cast<std::uint8_t>(random() % 3 == 0 ? 'u' : random()), random() % 2 == 0);
+    ReplyParser parser(framing, static_cast<std::uint8_t>(random() % 3 == 0 ? 'u' : random()),
+                       static_cast<ReplyParser::Mixed>(random() % 3));
     const std::string text = random_text(random, kPieces, 12);
     asked += framing_answer(text, random() % 4) ? 1 : 0;
     (void)may_change_framing(text);

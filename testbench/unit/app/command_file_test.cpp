@@ -37,6 +37,7 @@ TEST(CommandFile, LeavesCommentsOut) {
       ElementsAre("job.pmc:2 P1=1", "job.pmc:3 P2=2", "job.pmc:5 P3= 3", "job.pmc:9 P4=4"));
   EXPECT_THAT(lines("SEND\"a;b//c/*d\";x\n;; \\file /* no comment\nP1=1\n#1J/ ;\n"),
               ElementsAre("job.pmc:1 SEND\"a;b//c/*d\"", "job.pmc:3 P1=1", "job.pmc:4 #1J/"));
+  EXPECT_THAT(lines("P1=1\tP2=2\nSEND\"a\tb\"\n"), ElementsAre("job.pmc:1 P1=1 P2=2", "job.pmc:2 SEND\"a b\""));
   EXPECT_THAT(lines("\xEF\xBB\xBFI16"), ElementsAre("job.pmc:1 I16"));
 }
 

@@ -13,12 +13,12 @@ namespace {
 using Lines = std::vector<std::string>;
 
 TEST(FramingProbe, KnowsTheLinesThatMayChangeI3AndI4) {
-  for (const char* line : {"I3=0", "i4 = 1", "P1=2 I3=P1", "I03=1", "I0..9=*", "I2..40=0", "I1,5=2", "I(P1)=2",
-                           "I3..4=0", "I3,2=1", "I33\x08=0", "\x09", "#1J+I3=2", "I16 I3=0 I17", "I3=1;I5=2"})
-    EXPECT_TRUE(may_change_framing(line)) << line;
   for (const char* line :
-       {"I3", "I3 I4", "I13=2", "I30=0", "I5..9=*", "I16=3", "P1=I3", "SIN(3)=4", "CMD\"I3=0\"", "I0..99", "M3->I4",
-        "P3=0 ; I3=0", "", "I", "I(P1)", "LIST PLCI3=", "I4900..4999=0", "I34=I3"})
+       {"I3=0", "i4 = 1", "P1=2 I3=P1", "I03=1", "I0..9=*", "I2..40=0", "I1,5=2", "I(P1)=2", "I3..4=0", "I3,2=1",
+        "I33\x08=0", "\x09", "#1J+I3=2", "I16 I3=0 I17", "I3=1;I5=2", "CLOSE I4=1", "A I4=1", "SAVE I3=0"})
+    EXPECT_TRUE(may_change_framing(line)) << line;
+  for (const char* line : {"I3", "I3 I4", "I13=2", "I30=0", "I5..9=*", "I16=3", "P1=I3", "SIN(3)=4", "CMD\"I3=0\"",
+                           "I0..99", "M3->I4", "P3=0 ; I3=0", "", "I", "I(P1)", "I4900..4999=0", "I34=I3"})
     EXPECT_FALSE(may_change_framing(line)) << line;
   for (const char* line : {"$$$", "I16=3 $$$***", " $ $$"}) EXPECT_TRUE(may_restart(line)) << line;
   for (const char* line : {"$$", "CMD\"$$$\"", "P1=$12 ; $$$", "M1->X:$78000,24"})

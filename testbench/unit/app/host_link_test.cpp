@@ -28,6 +28,18 @@ TEST(ReplyParser, DataUpToTheAcknowledge) {
   EXPECT_FALSE(p.reply().error);
 }
 
+// The characters of 100002 and their CR sum up to '0': where checksums cannot be, that is the next value.
+TEST(ReplyParser, NoValueIsTakenForAChecksumWhereNoneCanBe) {
+  ReplyParser without({2, 0}, 0, ReplyParser::Mixed::kWithoutChecksums),
+      with({2, 0}, 0, ReplyParser::Mixed::kWithChecksums);
+  for (const char c : std::string("100002\r0\r5\r\x06")) {
+    without.take(static_cast<std::uint8_t>(c));
+    with.take(static_cast<std::uint8_t>(c));
+  }
+  EXPECT_EQ(without.reply().lines, (Lines{"100002", "0", "5"}));
+  EXPECT_EQ(with.reply().lines, (Lines{"100002", "", "5"})) << "nobody can tell";
+}
+
 TEST(ReplyParser, LineFeedsOfI3Equal3AreNoData) {
   const auto p = parsed({3, 0}, "\n25\r\n50\r\x06");
   EXPECT_TRUE(p.complete());
