@@ -151,6 +151,14 @@ void buffer_request_evaluate(void) {
   hal_unmask(state);
 }
 
+/* The pin follows within 10 us: no more than that. Limits that have changed too are found by the poll. */
+void buffer_request_selection(void) {
+  uint32_t state = hal_mask_real_time();
+  request.selected = buffer_request_selected();
+  show();
+  hal_unmask(state);
+}
+
 void buffer_request_poll(void) {
   if (request.selected != buffer_request_selected() || request.on != i_integer(I16_ROTARY_REQUEST_ON) ||
       request.off != i_integer(I17_ROTARY_REQUEST_OFF) || request.fixed != i_integer(I18_FIXED_BUFFER_WARNING))

@@ -27,6 +27,7 @@ void buffer_request_fixed_line_stored(void); /* pin low, then Full decided by I1
 void buffer_request_fixed_closed(void);
 bool buffer_request_fixed_full(void); /* Fixed Buffer Full; 1 while none is open */
 void buffer_request_evaluate(void);   /* addressed C.S., I16, I17 or I18 changed: pin shows what it has to */
+void buffer_request_selection(void);  /* another coordinate system is addressed. Background */
 void buffer_request_poll(void);       /* real-time task, first: notices changes of I16 to I18 and of the selection */
 
 #endif

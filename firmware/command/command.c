@@ -40,7 +40,7 @@ static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_
 static error_t address_cs(struct lexer* lx) {
   const uint32_t before = session.cs;
   const error_t error = address(lx, 1, (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u, &session.cs);
-  if (session.cs != before) buffer_request_evaluate();
+  if (session.cs != before) buffer_request_selection();
   return error;
 }
 

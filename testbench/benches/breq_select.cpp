@@ -3,6 +3,7 @@
 // interrupt are judged by testbench/checkers/selection_scoreboard.h, the longest times printed. On boards without a
 // panel its inputs and I2 must do nothing.
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -178,16 +179,19 @@ class BreqSelect {
     return static_cast<unsigned>(std::find(states_.begin() + 1, states_.begin() + 8, state) - states_.begin());
   }
 
-  // PHASE falls as `&n` is executed: the beginning of its transmission is set by how long the last one took.
+  // PHASE falls as `&n` is executed: the beginning of its transmission is set by how long the last one of its kind
+  // took.
   void among_tasks() {
     constexpr unsigned kTimes = 32, kLeast = 16;
     constexpr Tick kAhead = 3 * kMicrosecond;
     const unsigned before = scoreboard_.interrupted();
     address(some(Buffer::kReady));
+    std::array<Tick, 2> leads{lead_, lead_};
     for (unsigned i = 0; i < kTimes; ++i) {
       const Tick fall = b_.next_fall(pin::kPhase, 2 * kPhase);
-      b_.bus.wait((kPhase - (lead_ + kAhead) % kPhase + fall - b_.bus.now()) % kPhase);
+      b_.bus.wait((kPhase - (leads[i % 2] + kAhead) % kPhase + fall - b_.bus.now()) % kPhase);
       address(some(i % 2 == 0 ? Buffer::kFull : Buffer::kReady));
+      leads[i % 2] = lead_;
     }
     const unsigned met = scoreboard_.interrupted() - before;
     b_.report.step("&n and tasks meet", met >= kLeast, fmt::format("{} of {}, at least {}", met, kTimes, kLeast));
