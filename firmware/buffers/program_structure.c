@@ -2,6 +2,8 @@
 
 #include "firmware/language/statement_table.h"
 
+enum { KEY_ELSE = WORD_KEY(2, 0, 21), KEY_ENDIF = WORD_KEY(2, 0, 22), KEY_ENDWHILE = WORD_KEY(2, 0, 23) };
+
 enum block { BLOCK_IF, BLOCK_ELSE, BLOCK_WHILE };
 
 void program_structure_begin(struct program_structure* structure) { *structure = (struct program_structure){0}; }
@@ -60,11 +62,11 @@ static error_t condition(struct program_structure* s, const struct instruction* 
 static error_t statement(struct program_structure* s, const struct instruction* in, bool alone, struct scan* scan) {
   if (in->operation == OP_CONDITION) return in->group < CONDITION_INNER_AND ? condition(s, in, alone, scan) : ERR_NONE;
   if (in->operation != OP_STATEMENT) return ERR_NONE;
-  const bool ends = in->number == WORD_KEY(2, 0, 22) || in->number == WORD_KEY(2, 0, 23);
-  const bool is_else = in->number == WORD_KEY(2, 0, 21);
+  const bool ends = in->number == KEY_ENDIF || in->number == KEY_ENDWHILE;
+  const bool is_else = in->number == KEY_ELSE;
   if ((ends || is_else) && scan->one_line) return ERR_STRUCTURE;
-  if (in->number == WORD_KEY(2, 0, 22)) return pop(s, top_is(s, BLOCK_IF) || top_is(s, BLOCK_ELSE));
-  if (in->number == WORD_KEY(2, 0, 23)) return pop(s, top_is(s, BLOCK_WHILE));
+  if (in->number == KEY_ENDIF) return pop(s, top_is(s, BLOCK_IF) || top_is(s, BLOCK_ELSE));
+  if (in->number == KEY_ENDWHILE) return pop(s, top_is(s, BLOCK_WHILE));
   if (!is_else) return ERR_NONE;
   if (!alone) scan->one_line = true;
   return else_line(s, alone, scan->after_one_line);

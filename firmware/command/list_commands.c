@@ -10,12 +10,13 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/language/constant_text.h"
 #include "firmware/language/lister.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
-  LINE_WORDS = 300,        /* what is longer can only be damaged */
-  REPLY_CHARACTERS = 1000, /* no line is begun behind these: the longest has 350 in long form */
+  LINE_WORDS = 300,       /* what is longer can only be damaged */
+  REPLY_CHARACTERS = 780, /* no line is begun behind these: the longest, of `RET` alone, has 600 in long form */
   LONG_WORD_DIGITS = 6
 };
 
@@ -47,11 +48,12 @@ static error_t read_part(struct lexer* lx, struct part* part) {
 
 static void list_line(const word48_t* words, uint32_t count, uint32_t offset, bool with_offset) {
   if (with_offset) {
-    reply_integer((int64_t)offset);
+    integer_text(offset, put);
     put(':');
   }
   lister_line(words, count, (i_integer(I9_LISTING_FORM) & 1) != 0, put);
   reply_end_line();
+  characters++;
   watchdog_reload();
 }
 

@@ -147,13 +147,23 @@ static void condition(const struct instruction* in) {
   if ((in->number & CONDITION_MORE) == 0) put(')');
 }
 
+/* Three and more in a row are a range: so a line does not list longer than it was entered. */
 static void numbers(uint32_t mask, uint32_t first) {
   bool any = false;
   for (uint32_t i = 0; i < 32; i++) {
     if ((mask >> i & 1u) == 0) continue;
+    uint32_t last = i;
+    while (last < 31 && (mask >> (last + 1u) & 1u) != 0) last++;
+    if (last < i + 2u) last = i;
     if (any) put(',');
     integer_text(i + first, put);
+    if (last != i) {
+      put('.');
+      put('.');
+      integer_text(last + first, put);
+    }
     any = true;
+    i = last;
   }
 }
 

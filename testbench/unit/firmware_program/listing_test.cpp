@@ -1,4 +1,6 @@
 // Listings of programs (firmware:4.8): text in both forms, offsets, what a listing refuses.
+#include <algorithm>
+
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
 
@@ -38,6 +40,29 @@ TEST_F(Listing, PlcsAreListedOneStatementALine) {  // as recorded: firmware:4.8
   enter("PLC 5", {"IF(P1=1) AND (M2=0) CMD\"#1K\" disable plc 3,4", "ELSE", "WHILE(M1=0) ENDWHILE ENDIF RETURN"});
   EXPECT_EQ(host_lines("LIST PLC 5"),
             (Lines{"IF(P1=1)", "AND(M2=0)", "CMD\"#1K\"", "DISPLC3,4", "ELSE", "WHILE(M1=0)", "ENDW", "ENDI", "RET"}));
+}
+
+TEST_F(Listing, NumbersInARowAreARange) {
+  EXPECT_EQ(listed("HM1..32"), "HM1..32");
+  EXPECT_EQ(listed("HM1,2,4,5,6,8,31,32"), "HM1,2,4..6,8,31,32");
+  EXPECT_EQ(listed("ENA PLC 0..31"), "ENAPLC0..31");
+}
+
+// Clients take 1,400 characters at a time (firmware:4.8): lines of any length, of what grows most and what does not.
+TEST_F(Listing, APartEndsBefore1400Characters) {
+  std::size_t longest = 0;
+  for (const std::string text : {"RET", "LIN", "HM1..32", "P1=.1 ", "X1"})
+    for (std::size_t size = text.size(); size <= 255; size += 17) {
+      std::string line;
+      while (line.size() + text.size() <= size) line += text;
+      enter("PROG 1", Lines(150, line));
+      ASSERT_EQ(host("I9=1"), "");
+      const std::string part = host("LIST PROG 1,0");
+      longest = std::max(longest, part.size());
+      EXPECT_LT(part.size(), 1400u) << line;
+      EXPECT_GT(part.size(), 700u) << line;
+    }
+  EXPECT_GT(longest, 1000u);
 }
 
 TEST_F(Listing, ConstantsKeepTheirForm) {
