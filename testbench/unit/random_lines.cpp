@@ -120,7 +120,9 @@ std::string RandomLines::statement() {
       return pick({"DWELL", "DELAY"}) + (one_in(2) ? std::to_string(below(5)) : "(" + expression(1) + ")");
     case 4:
       if (!one_in(5)) return "X" + constant();
-      return pick({"GOTO10", "CALL5", "WHILE(1=1)", "SPLINE1", "N5X1", "RET", "SEND\"A\"", "CIRCLE1"});
+      return one_in(2) ? logic()
+                       : pick({"GOTO10", "CALL5", "SPLINE1", "N5X1", "RET", "SEND\"A\"", "CIRCLE1", "HM1..8", "M1==2",
+                               "READ(A,B)", "CMD\"#1J/\"", "DISPLAY 5, 8.2, P1", "ENA PLC 1,3..7", "DISPLC0..31"});
     default: {
       std::string text;
       for (unsigned i = 0, axes = 1 + below(9); i < axes; ++i)
@@ -129,6 +131,12 @@ std::string RandomLines::statement() {
       return text;
     }
   }
+}
+
+std::string RandomLines::logic() {
+  const std::string condition = "(" + expression(1) + pick({"=", "!=", "<", ">", "!<"}) + expression(1) + ")";
+  return pick({"IF" + condition, "WHILE" + condition, "AND" + condition, "OR" + condition, std::string("ELSE"),
+               std::string("ENDIF"), std::string("ENDWHILE"), "WAIT" + condition});
 }
 
 std::string RandomLines::report() {
@@ -176,9 +184,19 @@ std::string RandomLines::buffer() {
   static const std::vector<std::string> texts = {
       "OPEN ROT", "OPEN ROT",   "OPEN BINARY ROT",  "CLOSE",      "CLOSE",    "CLEAR",
       "DEL ROT",  "DEL GATHER", "DELETE ALL TEMPS", "DEF GATHER", "UNDEFINE", "UNDEFINE ALL"};
+  if (one_in(4)) return fixed_buffer();
   if (one_in(2)) return pick(texts);
   return "DEF " + pick({"ROT", "ROT", "ROT", "GATHER", "LOOKAHEAD", "CCBUF"}) + integer(3000) +
          (one_in(4) ? "," + integer(300) : "");
+}
+
+std::string RandomLines::fixed_buffer() {
+  const std::string motion = "PROG" + integer(12), plc = "PLC" + integer(33), part = "," + integer(300) + ",80";
+  return pick({"OPEN " + motion + " CLEAR", "OPEN " + motion, "OPEN " + plc + " CLEAR", "OPEN " + plc,
+               std::string("OPEN FORWARD"), std::string("OPEN INVERSE CLEAR"), "LIST " + motion,
+               "LIST " + motion + part, "LIST " + plc + part, std::string("LIST ROT"), std::string("LIST PC,4"),
+               std::string("LIST FORWARD"), std::string("LIST GATHER,0,9"), "ENABLE " + plc, "DISABLE " + plc,
+               std::string("CLOSE CLEAR")});
 }
 
 std::string RandomLines::run_control() {

@@ -26,10 +26,12 @@ class RandomLines {
   std::string pqm_variable();  // by number or by expression
   std::string assignment();
   std::string statement();
+  std::string logic();
   std::string report();
   std::string definition();
   std::string memory();
   std::string buffer();
+  std::string fixed_buffer();
   std::string run_control();
   std::string grammar();
   std::string garbage();
