@@ -4,15 +4,24 @@
 // writes a signal for each change of an input, one that hears it, and one that waits and writes for each instant in
 // which an output changes; the component, between the same signals.
 #include <brick/board.h>
+#include <brick/clock_select.h>
+#include <brick/dpram.h>
+#include <brick/host_port.h>
+#include <brick/host_signals.h>
 #include <brick/interrupt_controller.h>
+#include <brick/macro_ic.h>
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
+#include <brick/watchdog.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <sysc/kernel/sc_dynamic_processes.h>
+#include <tlm_utils/simple_initiator_socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
 #include "systemc/board/model_board.h"
@@ -180,13 +189,36 @@ Row board(bool rtl) {
   return {"board, host polls", end, face, [=] { return board_kernel(steps, end); }, shell, steps.size(), 20};
 }
 
-// A chip with one line that turns every microsecond.
+// A chip with one line that turns every microsecond; it is behind the ports too, so what it costs is in both.
 struct Line {
-  std::vector<std::uint32_t> inputs;  // at first
+  c::PinWords inputs;  // at first
   unsigned word;
   std::uint32_t mask;
-  std::vector<std::uint32_t> watched;
+  c::PinWords watched;
 };
+
+const c::PinInfo& pin_of(const std::vector<c::PinInfo>& table, const std::string& name) {
+  return *std::find_if(table.begin(), table.end(), [&name](const c::PinInfo& pin) { return pin.name == name; });
+}
+
+template <class Words>
+void put(Words& words, const c::PinInfo& pin, std::uint32_t value) {
+  if (words.size() <= pin.word) words.resize(pin.word + 1);
+  words[pin.word] |= value << pin.lsb;
+}
+
+// `high`: an input of one bit that is tied high.
+Line line_of(const std::vector<c::PinInfo>& table, const std::string& in, const std::string& out,
+             const std::string& high) {
+  Line line;
+  for (const c::PinInfo& pin : table) {
+    if (pin.direction == c::PinDirection::kIn) put(line.inputs, pin, pin.name == high ? 1 : pin.idle);
+    if (pin.direction != c::PinDirection::kIn) put(line.watched, pin, pin.name == out ? 1 : 0);
+  }
+  line.word = pin_of(table, in).word;
+  line.mask = 1u << pin_of(table, in).lsb;
+  return line;
+}
 
 double chip_face(c::Chip& chip, const Line& line, const Ticks& changes, Tick end, Ticks* seen = nullptr) {
   chip.watch(line.watched);
@@ -196,6 +228,7 @@ double chip_face(c::Chip& chip, const Line& line, const Ticks& changes, Tick end
       if (chip.run_until(to) && seen != nullptr) seen->push_back(chip.now());
   };
   return seconds([&] {
+    chip.set_inputs(inputs);
     for (const Tick at : changes) {
       run(at);
       inputs[line.word] ^= line.mask;
@@ -206,47 +239,185 @@ double chip_face(c::Chip& chip, const Line& line, const Ticks& changes, Tick end
 }
 
 template <class C>
-double chip_shell(const c::Engine& engine, c::In<>& (*in)(C&), c::Out<>& (*out)(C&), const Ticks& changes, Tick end) {
+std::unique_ptr<C> component(c::TimeBase& time, const c::Engine& engine) {
+  if constexpr (std::is_same_v<C, c::Dpram>)
+    return std::make_unique<C>("component", time, c::DpramOptions{}, engine);
+  else
+    return std::make_unique<C>("component", time, engine);
+}
+
+c::Pin& pin_of(const c::Component& component, const std::string& name) {
+  return **std::find_if(component.pins().begin(), component.pins().end(),
+                        [&name](const c::Pin* pin) { return pin->info().name == name; });
+}
+
+struct Names {
+  std::string in, out, high;
+};
+
+template <class C>
+double chip_shell(const c::Engine& engine, const Names& names, const Ticks& changes, Tick end) {
   c::TimeBase time("time");
-  C component("component", time, engine);
-  sc_core::sc_signal<bool> line("line"), output("output");
-  in(component).bind(line);
-  out(component).bind(output);
+  const auto block = component<C>(time, engine);
+  const auto input = [&](const std::string& name) -> c::In<>& { return dynamic_cast<c::In<>&>(pin_of(*block, name)); };
+  sc_core::sc_signal<bool> line("line", pin_of(*block, names.in).info().idle != 0), output("output"),
+      high("high", true);
+  input(names.in).bind(line);
+  if (!names.high.empty()) input(names.high).bind(high);
+  dynamic_cast<c::Out<>&>(pin_of(*block, names.out)).bind(output);
   sc_core::sc_spawn([&] { play(time, changes, [&line](Tick) { line = !line.read(); }); });
   return seconds([&] { sc_core::sc_start(time.time_of(end)); });
 }
 
-template <class C>
-Row chip(const std::string& name, bool rtl, std::unique_ptr<c::Chip> (c::ChipFactory::*make)() const, const Line& line,
-         c::In<>& (*in)(C&), c::Out<>& (*out)(C&), double goal) {
-  const auto engine = [rtl] { return rtl ? c::rtl_engine() : c::model_engine(); };
-  const Tick end = rtl ? 2'000'000 : 20'000'000;
+using Make = std::unique_ptr<c::Chip> (*)(const c::ChipFactory&);
+c::Engine engine_of(bool rtl) { return rtl ? c::rtl_engine() : c::model_engine(); }
+Tick length(bool rtl) { return rtl ? 2'000'000 : 20'000'000; }
+Ticks every(Tick period, Tick end) {
   Ticks changes;
-  for (Tick at = 118; at < end; at += 118) changes.push_back(at);
+  for (Tick at = period; at < end; at += period) changes.push_back(at);
+  return changes;
+}
+
+template <class C>
+Row chip(const std::string& name, bool rtl, Make make, const Names& names, double goal = 0) {
+  const Tick end = length(rtl);
+  const Ticks changes = every(118, end);
+  const Line line = line_of(C::pin_table(), names.in, names.out, names.high);
   const auto face = [=] {
-    const auto block = (engine().factory().*make)();
+    const auto block = make(engine_of(rtl).factory());
     return chip_face(*block, line, changes, end);
   };
   const auto bare = [=] {
     Ticks seen;
-    const auto block = (c::model_engine().factory().*make)();
+    const auto block = make(c::model_engine().factory());
     chip_face(*block, line, changes, end, &seen);
     return kernel(changes, seen, end);
   };
-  const auto shell = [=] { return chip_shell<C>(engine(), in, out, changes, end); };
+  const auto shell = [=] { return chip_shell<C>(engine_of(rtl), names, changes, end); };
   return {name, end, face, bare, shell, changes.size(), rtl ? goal : 0};
 }
 
+// A read through a socket every two microseconds, nothing bound: its call and its end are two waits of the kernel.
+constexpr Tick kReadPeriod = 236;
+struct Read {
+  unsigned face, address, width;
+};
+
+double socket_face(c::Chip& chip, const Read& read, const Ticks& calls, Tick end, Ticks* ends = nullptr) {
+  const auto run = [&chip](Tick to) {
+    while (chip.now() < to) chip.run_until(to);
+  };
+  return seconds([&] {
+    for (const Tick at : calls) {
+      run(at);
+      chip.begin(read.face, {false, read.address, 0, ~0u, tick_to_fs(at)});
+      while (chip.busy(read.face)) chip.run_until(at + kReadPeriod - 1);
+      if (ends != nullptr) ends->push_back(chip.now());
+    }
+    run(end);
+  });
+}
+
+struct Master : sc_core::sc_module {
+  explicit Master(const sc_core::sc_module_name& name) : sc_module(name) {}
+  tlm_utils::simple_initiator_socket<Master> socket{"socket"};
+};
+
+template <class Socket>
+double socket_shell(c::TimeBase& time, Socket& socket, unsigned address, unsigned width, const Ticks& calls, Tick end) {
+  Master master("master");
+  master.socket.bind(socket);
+  sc_core::sc_spawn([&] {
+    play(time, calls, [&](Tick) {
+      unsigned char data[4];
+      tlm::tlm_generic_payload payload;
+      payload.set_read();
+      payload.set_address(address);
+      payload.set_data_ptr(data);
+      payload.set_data_length(width);
+      payload.set_streaming_width(width);
+      sc_core::sc_time delay;
+      master.socket->b_transport(payload, delay);
+      if (!payload.is_response_ok()) throw std::logic_error(payload.get_response_string());
+    });
+  });
+  return seconds([&] { sc_core::sc_start(time.time_of(end)); });
+}
+
+template <class Shell>
+Row socket(const std::string& name, bool rtl, Make make, const Read& read, const Shell& shell, double goal = 0) {
+  const Tick end = length(rtl);
+  const Ticks calls = every(kReadPeriod, end);
+  const auto face = [=] {
+    const auto block = make(engine_of(rtl).factory());
+    return socket_face(*block, read, calls, end);
+  };
+  const auto bare = [=] {
+    Ticks ends;
+    const auto block = make(c::model_engine().factory());
+    socket_face(*block, read, calls, end, &ends);
+    return kernel(calls, ends, end);
+  };
+  return {name, end, face, bare, [=] { return shell(rtl, calls, end); }, calls.size(), goal};
+}
+
+double servo_ic_reads(bool rtl, const Ticks& calls, Tick end) {
+  c::TimeBase time("time");
+  c::ServoIc ic("ic", time, engine_of(rtl));
+  return socket_shell(time, ic.registers, 4, 4, calls, end);
+}
+double dpram_reads(bool rtl, const Ticks& calls, Tick end) {
+  c::TimeBase time("time");
+  c::Dpram ram("ram", time, {}, engine_of(rtl));
+  return socket_shell(time, ram.cpu, 0, 2, calls, end);
+}
+constexpr unsigned kDpramOnPortA = 8 * 0x60000, kStatusPort = 0x212;
+double port_a_reads(bool rtl, const Ticks& calls, Tick end) {
+  c::TimeBase time("time");
+  c::Board board("board", time, {}, engine_of(rtl));
+  sc_core::sc_signal<bool> rst_n("rst_n", true);
+  board.rst_n(rst_n);
+  return socket_shell(time, board.port_a, kDpramOnPortA, 4, calls, end);
+}
+double isa_reads(bool rtl, const Ticks& calls, Tick end) {
+  c::TimeBase time("time");
+  c::Board board("board", time, {}, engine_of(rtl));
+  sc_core::sc_signal<bool> rst_n("rst_n", true);
+  board.rst_n(rst_n);
+  return socket_shell(time, board.isa_io, kStatusPort, 1, calls, end);
+}
+
+std::unique_ptr<c::Chip> board_chip(const c::ChipFactory& factory) {
+  auto chip = factory.board(3, 1);
+  c::PinWords inputs;
+  for (const c::PinInfo& pin : c::Board::pin_table(3))
+    if (pin.direction == c::PinDirection::kIn) put(inputs, pin, pin.name == "rst_n" ? 1 : pin.idle);
+  chip->set_inputs(inputs);
+  return chip;
+}
+
 std::vector<Row> rows(bool rtl) {
-  return {board(rtl),
-          chip<c::ServoIc>(
-              "servo IC, encoder", rtl, &c::ChipFactory::servo_ic, {{0xF90, 0xF90, 0xF90, 0xF90, 0xD}, 0, 1, {0, 0, 1}},
-              [](c::ServoIc& ic) -> c::In<>& { return ic.ch[0].enc_a; },
-              [](c::ServoIc& ic) -> c::Out<>& { return ic.phase_o; }, 20),
-          chip<c::InterruptController>(
-              "interrupt controller, a line", rtl, &c::ChipFactory::interrupt_controller, {{1u << 9}, 0, 1, {0, 1}},
-              [](c::InterruptController& pic) -> c::In<>& { return pic.ir[0]; },
-              [](c::InterruptController& pic) -> c::Out<>& { return pic.irq; }, 0)};
+  using F = c::ChipFactory;
+  return {
+      board(rtl),
+      chip<c::ServoIc>(
+          "servo IC, encoder", rtl, [](const F& f) { return f.servo_ic(); }, {"ch1_enc_a", "phase_o", ""}, 20),
+      chip<c::MacroIc>("MACRO IC, PHASE", rtl, [](const F& f) { return f.macro_ic(); }, {"phase_i", "phase_o", ""}),
+      chip<c::ClockSelect>("clock selection, PHASE", rtl, [](const F& f) { return f.clock_select(); },
+                           {"phase_i0", "phase", "phase_oe_i0"}),
+      chip<c::InterruptController>("interrupt controller, a line", rtl,
+                                   [](const F& f) { return f.interrupt_controller(); }, {"ir0", "irq", ""}),
+      chip<c::HostPort>("host port, RESETDRV", rtl, [](const F& f) { return f.host_port(); }, {"resetdrv", "hreq", ""}),
+      chip<c::Dpram>("dual-ported RAM, strap", rtl, [](const F& f) { return f.dpram(1); }, {"small", "busy_cpu", ""}),
+      chip<c::HostSignals>("host signals, reset", rtl, [](const F& f) { return f.host_signals(); },
+                           {"rst_n", "breq", ""}),
+      chip<c::Watchdog>("watchdog, SERVO", rtl, [](const F& f) { return f.watchdog(); }, {"servo", "trip", ""}),
+      socket(
+          "servo IC, register", rtl, [](const F& f) { return f.servo_ic(); }, {0, 4, 4}, servo_ic_reads),
+      socket(
+          "dual-ported RAM, CPU", rtl, [](const F& f) { return f.dpram(1); }, {1, 0, 2}, dpram_reads),
+      socket("board, Port A", rtl, board_chip, {0, kDpramOnPortA, 4}, port_a_reads, 20),
+      socket("board, ISA", rtl, board_chip, {1, kStatusPort, 1}, isa_reads, 20)};
 }
 
 }  // namespace
