@@ -12,9 +12,12 @@ install(DIRECTORY boards DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.
 install(DIRECTORY waves DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.gtkw PATTERN out EXCLUDE)
 # What README and headers point to.
 foreach(component Unspecified package)
-  install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component})
+  install(FILES CHANGELOG.md CONTRIBUTING.md LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
+    COMPONENT ${component})
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component}
     FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN *.png)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/registers DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL
+    COMPONENT ${component})  # pages of the register map, where ./dev registers has made them
 endforeach()
 
 # What a design of others takes: RTL with its lists, cores and register maps; the firmware's sources; examples. None of

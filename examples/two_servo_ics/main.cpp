@@ -1,6 +1,6 @@
-// Two servo ICs on one PHASE and one SERVO net, as on a board: IC 0 drives them, then IC 1 takes over. As the manual
-// has it the new source is told to drive and the old one to let go; no clock of the net comes early on the way. The
-// engine is the argument: model, rtl, lockstep.
+// Two servo ICs on one PHASE and one SERVO net, as on a board: IC 0 drives them, lets go, and a little later IC 1 takes
+// over. No clock of the net comes early on the way, and none is short. The engine is the argument: model, rtl,
+// lockstep.
 #include <brick/servo_ic.h>
 #ifdef WITH_RTL
 #include <brick/rtl.h>
@@ -28,18 +28,42 @@ struct Net : sc_core::sc_module {
   void join() { level = driver[0] && driver[1]; }
 };
 
+// What has been seen of a net, in ticks.
+struct Clock {
+  int falls = 0;
+  double fall = 0;
+  double shortest = 1e9, longest = 0;  // low level
+  double gap = 0;                      // between two falls
+
+  void edge(bool level) {
+    const double now = sc_core::sc_time_stamp().to_seconds() * 117'964'800;
+    if (level) {
+      shortest = std::min(shortest, now - fall);
+      longest = std::max(longest, now - fall);
+    } else {
+      if (falls++ > 0) gap = std::max(gap, now - fall);
+      fall = now;
+    }
+  }
+};
+std::ostream& operator<<(std::ostream& out, const Clock& c) {
+  return out << c.falls << " falls, low for " << c.shortest << " to " << c.longest << " ticks, at most " << c.gap
+             << " apart";
+}
+
 struct Test : sc_core::sc_module {
   std::array<tlm_utils::simple_initiator_socket<Test>, 2> ic;
-  sc_core::sc_in<bool> phase{"phase"};
-  int falls = 0;
-  double shortest = 1e9, longest = 0;  // low level of PHASE, in ticks
-  double gap = 0;                      // between two falls
+  sc_core::sc_in<bool> phase{"phase"}, servo{"servo"};
+  Clock phases, servos;
 
   explicit Test(sc_core::sc_module_name name) : sc_module(name) {
     SC_HAS_PROCESS(Test);
     SC_THREAD(program);
-    SC_METHOD(edge);
+    SC_METHOD(phase_edge);
     sensitive << phase;
+    dont_initialize();
+    SC_METHOD(servo_edge);
+    sensitive << servo;
     dont_initialize();
   }
 
@@ -62,19 +86,8 @@ struct Test : sc_core::sc_module {
     wait(168, sc_core::SC_US);
     write(1, kClockControl, 0x3008D2);
   }
-  void edge() {
-    const double now = sc_core::sc_time_stamp().to_seconds() * 117'964'800;
-    if (phase) {
-      shortest = std::min(shortest, now - fall_);
-      longest = std::max(longest, now - fall_);
-    } else {
-      if (falls++ > 0) gap = std::max(gap, now - fall_);
-      fall_ = now;
-    }
-  }
-
- private:
-  double fall_ = 0;
+  void phase_edge() { phases.edge(phase); }
+  void servo_edge() { servos.edge(servo); }
 };
 
 Engine engine_named(const std::string& name) {
@@ -100,14 +113,18 @@ int sc_main(int count, char* arguments[]) {
     ics[i]->servo_o(servo.driver[i]), ics[i]->servo_i(servo.level);
     ics[i]->phase_oe(driven[i]);
   }
-  test.phase(phase.level);
+  test.phase(phase.level), test.servo(servo.level);
   sc_core::sc_start(6.6, sc_core::SC_MS);
-  std::cout << test.falls << " falls of PHASE, low for " << test.shortest << " to " << test.longest
-            << " ticks, at most " << test.gap << " apart; driven by " << (driven[0] ? "IC 0" : "")
+  std::cout << "PHASE: " << test.phases << "\nSERVO: " << test.servos << "\ndriven by " << (driven[0] ? "IC 0" : "")
             << (driven[1] ? "IC 1" : "") << "\n";
-  // A period is 13057 ticks, 6528 high, 6529 low. 445 us without a fall are the most.
-  const auto is = [](double ticks, double expected) { return ticks > expected - 0.1 && ticks < expected + 0.1; };
-  const bool passed = test.falls > 50 && is(test.shortest, 6529) && is(test.longest, 6529) && test.gap < 52'494 &&
-                      !driven[0] && driven[1];
+  // A period of PHASE is 13057 ticks, 6528 high, 6529 low; 445 us without a fall are the most. SERVO falls with every
+  // fourth of its falls and is low for one period. A period before the old source lets go, 168 us, two periods of PHASE
+  // until the new one is on the net and seven of its falls are the most between two falls of SERVO.
+  const auto low = [](const Clock& clock, double ticks) {
+    return clock.shortest > ticks - 0.1 && clock.longest < ticks + 0.1;
+  };
+  const bool passed = test.phases.falls > 50 && low(test.phases, 6529) && test.phases.gap < 52'494 &&
+                      test.servos.falls > 8 && low(test.servos, 13057) &&
+                      test.servos.gap < 4 * 13'057 + 19'819 + 9 * 13'057 && !driven[0] && driven[1];
   return passed ? 0 : 1;
 }

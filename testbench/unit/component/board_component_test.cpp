@@ -20,6 +20,7 @@ namespace brick::component {
 namespace {
 
 constexpr std::uint32_t kFitted = 0x3;
+using Pins = std::vector<std::string>;
 
 // Names of the component's ports where they differ from those of core/board_pins.h.
 const std::map<std::string, std::string> kPorts{{"pa_wdata", "pa_data_i"},
@@ -64,8 +65,9 @@ std::string port(std::string_view name) {
 // Passes everything on and writes it down: inputs at a time between two edges, outputs at that of their edge.
 class Recorder final : public brick::Board {
  public:
-  explicit Recorder(const Binds& binds) : binds_(binds), board_(make_model_board(kFitted)) {
-    for (unsigned ic = 0; ic < 2; ++ic) board_->watch_motor(ic, kAllMotorOutputs);
+  Recorder(std::uint32_t fitted, const Binds& binds) : binds_(binds), board_(make_model_board(fitted)) {
+    for (unsigned ic = 0; ic < kMaxServoIcs; ++ic)
+      if ((fitted >> ic & 1) != 0) board_->watch_motor(ic, kAllMotorOutputs);
     board_->on_change = [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
       for (const PinField& f : pin::kAll)
         if (before.get(f) != after.get(f)) note(t, port(f.name), after.get(f));
@@ -142,29 +144,26 @@ class Recorder final : public brick::Board {
   Picoseconds place_ = 0;
 };
 
-template <class Drive>
-void board_agrees(const Engine& engine, Tick ticks, const Binds& binds, std::size_t least_changes, const Drive& life) {
-  Recorder recorder(binds);
-  life(recorder, ticks);
-  recorder.traffic.end = edge_time(ticks);
-  EXPECT_GE(recorder.seen.changes.size(), least_changes);
+// `life` drives a board; each output in `moves` does so many times.
+struct Life {
+  std::uint32_t fitted;
+  Tick ticks;
+  std::function<void(brick::Board&, std::uint32_t fitted, Tick end)> live;
+  Pins moves;
+  std::size_t least;
+};
+
+void board_agrees(const Engine& engine, const Life& life, const Binds& binds) {
+  Recorder recorder(life.fitted, binds);
+  life.live(recorder, life.fitted, life.ticks);
+  recorder.traffic.end = edge_time(life.ticks);
+  counts(recorder.seen, life.moves, life.least);
   TimeBase time("time");
-  Board board("board", time, {kFitted, 0}, engine);
+  Board board("board", time, {life.fitted, 0}, engine);
   const sc_core::sc_time quantum;
   Rig rig("rig", board, recorder.traffic, 0, quantum, binds);
   sc_core::sc_start(sc_core::sc_time::from_value(recorder.traffic.end - 1));
   EXPECT_EQ(difference(rig.seen, recorder.seen, recorder.traffic.end, binds), "");
-}
-
-void buses(brick::Board& board, Tick ticks) {
-  BoardTraffic::Options options;
-  options.dense = false;
-  BoardTraffic(11, options).run(board, ticks);
-}
-void motors(brick::Board& board, Tick ticks) {
-  MotorTrafficOptions options;
-  options.ics = kFitted;
-  MotorTraffic(12, options).run(board, ticks);
 }
 
 bool no_serial_clocks(const std::string& pin) {
@@ -174,37 +173,101 @@ bool few(const std::string& pin) {
   return pin == "isa_irq" || pin == "phase" || (pin.rfind("servo_ic", 0) != 0 && pin.find("_o") == std::string::npos);
 }
 
+bool of_motors(const std::string& pin) { return pin.rfind("servo_ic", 0) == 0; }
 // Inputs, and no output but the motors'.
 bool motor_side(const std::string& pin) {
-  return pin.rfind("servo_ic", 0) == 0 ||
+  return of_motors(pin) ||
          std::none_of(pin::kAll.begin(), pin::kAll.end(), [&pin](const PinField& f) { return port(f.name) == pin; });
 }
 
+// The outputs of the board's pin table, those of the motors or the others, without `still`.
+Pins outputs(std::uint32_t fitted, bool motors, const Pins& still) {
+  Pins found;
+  for (const PinInfo& info : Board::pin_table(fitted))
+    if (info.direction == PinDirection::kOut && of_motors(info.name) == motors &&
+        std::find(still.begin(), still.end(), info.name) == still.end())
+      found.push_back(info.name);
+  return found;
+}
+
+void live_on_buses(brick::Board& board, std::uint32_t fitted, Tick end, Tick silent_at) {
+  BoardTraffic::Options options;
+  options.dense = silent_at == kNever;
+  options.ics = fitted;
+  options.silent_at = silent_at;
+  BoardTraffic(11, options).run(board, end);
+}
+
+// Both buses, clocks from outside, straps. Nobody fails to strobe the watchdog for 25 ms.
+Life buses(Tick ticks, std::size_t least, std::uint32_t fitted = kFitted) {
+  const auto live = [](brick::Board& board, std::uint32_t ics, Tick end) { live_on_buses(board, ics, end, kNever); };
+  return {fitted, ticks, live, outputs(fitted, false, {"wdo", "wd_tripped", "wd_led"}), least};
+}
+
+Life motors(Tick ticks, std::size_t least, std::uint32_t fitted = kFitted) {
+  const auto live = [](brick::Board& board, std::uint32_t ics, Tick end) {
+    MotorTrafficOptions options;
+    options.ics = ics;
+    MotorTraffic(12, options).run(board, end);
+  };
+  return {fitted, ticks, live, outputs(fitted, true, {}), least};
+}
+
+// The CPU rests for 25 ms, so the watchdog trips (servo-ic:10); a reset ends it.
+Life trip() {
+  constexpr Tick kSilent = 100'000, kTrip = 3'000'000;
+  const auto live = [](brick::Board& board, std::uint32_t ics, Tick end) { live_on_buses(board, ics, end, kSilent); };
+  return {kFitted, kSilent + kTrip + 400'000, live, {"wdo", "wd_tripped", "wd_led", "wd_relay"}, 2};
+}
+
 constexpr Tick kTicks = 1'000'000;
+constexpr std::uint32_t kFourIcs = 0x4000F, kAllIcs = 0x3FFFFF;  // the other two Verilated boards
 
 TEST(BoardComponent, ModelAgreesWithTheBoardOnItsBuses) {
   BRICK_COVERS("CARD-1");
-  in_own_process([] { board_agrees(model_engine(), kTicks, no_serial_clocks, 5'000, buses); });
+  in_own_process([] { board_agrees(model_engine(), buses(kTicks, 20), no_serial_clocks); });
 }
 TEST(BoardComponent, ModelAgreesWithTheBoardOnItsMotorSide) {
   BRICK_COVERS("CARD-1");
-  in_own_process([] { board_agrees(model_engine(), kTicks, all, 10'000, motors); });
+  in_own_process([] { board_agrees(model_engine(), motors(kTicks, 3), all); });
 }
 TEST(BoardComponent, MotorSideIsForeseenAlone) {
   BRICK_COVERS("CARD-1");
-  in_own_process([] { board_agrees(model_engine(), kTicks / 4, motor_side, 2'000, motors); });
+  in_own_process([] {
+    Life life = motors(kTicks / 4, 40);
+    life.moves = {"servo_ic0_dac_clk", "servo_ic0_ch1_pwm_a_top", "servo_ic1_ch4_pwm_c_bot"};
+    board_agrees(model_engine(), life, motor_side);
+  });
 }
 TEST(BoardComponent, RtlAgreesWithTheBoard) {
   BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { board_agrees(rtl_engine(), kTicks, no_serial_clocks, 5'000, buses); });
+  in_own_process([] { board_agrees(rtl_engine(2), buses(kTicks, 20), no_serial_clocks); });
+  in_own_process([] { board_agrees(rtl_engine(3), motors(kTicks, 3), all); });
 }
 TEST(BoardComponent, LockstepAgreesWithTheBoard) {
   BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { board_agrees(lockstep_engine(), kTicks / 4, all, 2'000, motors); });
+  in_own_process([] { board_agrees(lockstep_engine(4), motors(kTicks, 3), all); });
+}
+TEST(BoardComponent, EachVerilatedBoardAgrees) {
+  BRICK_COVERS("CARD-1 CARD-2");
+  for (const std::uint32_t fitted : {kFourIcs, kAllIcs}) {
+    SCOPED_TRACE(::testing::Message() << "fitted " << fitted);
+    in_own_process([=] { board_agrees(lockstep_engine(5), motors(kTicks / 20, 0, fitted), all); });
+    in_own_process([=] { board_agrees(lockstep_engine(6), buses(kTicks / 20, 0, fitted), no_serial_clocks); });
+  }
+}
+TEST(BoardComponent, AgreesPastATripOfTheWatchdog) {
+  BRICK_COVERS("CARD-1 CARD-2");
+  for (const Engine& engine : {model_engine(), lockstep_engine(7)})
+    in_own_process([&engine] { board_agrees(engine, trip(), no_serial_clocks); });
 }
 TEST(BoardComponent, UnboundPinsChangeNothing) {
   BRICK_COVERS("CARD-1");
-  in_own_process([] { board_agrees(model_engine(), kTicks, few, 1'000, buses); });
+  in_own_process([] {
+    Life life = buses(kTicks, 100);
+    life.moves = {"isa_irq", "phase"};
+    board_agrees(model_engine(), life, few);
+  });
 }
 
 TEST(BoardComponent, ADifferenceInLockstepIsAnErrorOfTheComponent) {

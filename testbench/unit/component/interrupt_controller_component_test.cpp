@@ -98,26 +98,12 @@ Traffic traffic_of(std::uint32_t seed) {
   return traffic;
 }
 
-void pic_agrees(const Engine& engine, double quantum_us, std::uint32_t seed) {
-  PicBlock block;
-  agrees<InterruptController>(block, traffic_of(seed), engine, {quantum_us, sc_core::SC_US}, 1, all, 8000, 1000);
-}
-
-TEST(InterruptControllerComponent, ModelAgreesWithTheBlock) {
-  BRICK_COVERS("CARD-1");
-  in_own_process([] { pic_agrees(model_engine(), 0, 1); });
-}
-TEST(InterruptControllerComponent, QuantumChangesNothing) {
-  BRICK_COVERS("CARD-1");
-  in_own_process([] { pic_agrees(model_engine(), 10, 2); });
-}
-TEST(InterruptControllerComponent, RtlAgreesWithTheBlock) {
+TEST(InterruptControllerComponent, AgreesWithTheBlock) {
   BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { pic_agrees(rtl_engine(), 3, 3); });
-}
-TEST(InterruptControllerComponent, LockstepAgreesWithTheBlock) {
-  BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { pic_agrees(lockstep_engine(), 0, 4); });
+  on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
+    PicBlock block;
+    agrees<InterruptController>(block, traffic_of(seed), engine, quantum, 1, all, 8000, 1000);
+  });
 }
 
 }  // namespace

@@ -16,8 +16,13 @@ class Player : public sc_core::sc_module {
   using Socket = tlm_utils::simple_initiator_socket_optional<Player>;
 
   Player(const sc_core::sc_module_name& name, const std::vector<Access>& accesses, unsigned width,
-         const sc_core::sc_time& quantum, std::vector<Answer>& answers)
-      : sc_module(name), accesses_(accesses), width_(width), quantum_(quantum), answers_(answers) {
+         const sc_core::sc_time& quantum, std::vector<Answer>& answers, std::size_t& annotated)
+      : sc_module(name),
+        accesses_(accesses),
+        width_(width),
+        quantum_(quantum),
+        answers_(answers),
+        annotated_(annotated) {
     SC_HAS_PROCESS(Player);
     SC_THREAD(play);
   }
@@ -48,6 +53,7 @@ class Player : public sc_core::sc_module {
         payload.set_byte_enable_ptr(enables);
         payload.set_byte_enable_length(length);
       }
+      if (local != sc_core::SC_ZERO_TIME) ++annotated_;
       socket->b_transport(payload, local);
       if (!payload.is_response_ok()) SC_REPORT_ERROR("/test/response", payload.get_response_string().c_str());
       std::uint32_t value = 0;
@@ -60,6 +66,7 @@ class Player : public sc_core::sc_module {
   unsigned width_;
   sc_core::sc_time quantum_;
   std::vector<Answer>& answers_;
+  std::size_t& annotated_;
 };
 
 }  // namespace brick::component

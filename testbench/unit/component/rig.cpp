@@ -46,4 +46,10 @@ std::string difference(Seen component, Seen block, Picoseconds end, const Binds&
   return answers.empty() ? first_difference("other access", component.others, block.others) : answers;
 }
 
+void counts(const Seen& seen, const std::vector<std::string>& pins, std::size_t least) {
+  std::map<std::string, std::size_t> count;
+  for (const Change& c : seen.changes) ++count[std::get<1>(c)];
+  for (const std::string& pin : pins) EXPECT_GE(count[pin], least) << pin;
+}
+
 }  // namespace brick::component

@@ -31,8 +31,8 @@ class Rig : public sc_core::sc_module {
       const sc_core::sc_time& quantum, const Binds& binds, unsigned other_width = 4)
       : sc_module(name),
         traffic_(traffic),
-        first_("first", traffic.accesses, width, quantum, seen.answers),
-        second_("second", traffic.others, other_width, quantum, seen.others) {
+        first_("first", traffic.accesses, width, quantum, seen.answers, seen.annotated),
+        second_("second", traffic.others, other_width, quantum, seen.others, seen.annotated) {
     for (Pin* pin : component.pins()) {
       const PinInfo& info = pin->info();
       if (!binds(info.name)) continue;
@@ -102,7 +102,11 @@ class Rig : public sc_core::sc_module {
 // traffic left out. "" when there is none.
 std::string difference(Seen component, Seen block, Picoseconds end, const Binds& binds);
 
-// The component does what is expected of it; `connect(rig, component)` binds its sockets.
+// At least so many changes of each of these pins.
+void counts(const Seen& seen, const std::vector<std::string>& pins, std::size_t least);
+
+// The component does what is expected of it; `connect(rig, component)` binds its sockets. With a quantum, one access in
+// eight at least makes use of it.
 template <class C, class Connect>
 void does(const Seen& expected, const Traffic& traffic, C& component, const sc_core::sc_time& quantum, unsigned width,
           unsigned other_width, const Binds& binds, const Connect& connect) {
@@ -110,6 +114,9 @@ void does(const Seen& expected, const Traffic& traffic, C& component, const sc_c
   connect(rig, component);
   sc_core::sc_start(sc_core::sc_time::from_value(traffic.end - 1));
   EXPECT_EQ(difference(rig.seen, expected, traffic.end, binds), "");
+  if (quantum != sc_core::SC_ZERO_TIME) {
+    EXPECT_GE(rig.seen.annotated, (expected.answers.size() + expected.others.size()) / 8);
+  }
 }
 
 // It agrees with the block inside; at least so much happened.
@@ -127,17 +134,17 @@ void agrees(Block& block, Traffic traffic, const Engine& engine, const sc_core::
   does(expected, traffic, component, quantum, width, 4, binds, [](Rig& rig, C& c) { rig.socket().bind(c.registers); });
 }
 
-// Each engine with each quantum, and a seed of its own, in a process of its own.
+// Each engine with each quantum and a seed of its own, for the traffic and for the RTL's flip-flops, in a process of
+// its own.
 template <class Simulation>
 void on_each_engine(const Simulation& simulation) {
   std::uint32_t seed = 0;
   for (const double quantum_us : {0.0, 3.0, 10.0})
-    for (const auto& engine :
-         {+[] { return model_engine(); }, +[] { return rtl_engine(); }, +[] { return lockstep_engine(); }}) {
+    for (const auto& engine : {+[](std::uint64_t) { return model_engine(); }, &rtl_engine, &lockstep_engine}) {
       ++seed;
       SCOPED_TRACE(::testing::Message() << "engine " << (seed - 1) % 3 << " (model, rtl, lockstep), quantum "
                                         << quantum_us << " us");
-      in_own_process([&] { simulation(engine(), sc_core::sc_time(quantum_us, sc_core::SC_US), seed); });
+      in_own_process([&] { simulation(engine(seed), sc_core::sc_time(quantum_us, sc_core::SC_US), seed); });
     }
 }
 

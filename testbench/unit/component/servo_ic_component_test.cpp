@@ -14,8 +14,6 @@ namespace brick::component {
 namespace {
 
 constexpr Tick kTicks = 1'000'000;
-const sc_core::sc_time kNone;
-sc_core::sc_time us(double n) { return {n, sc_core::SC_US}; }
 
 void servo_ic_agrees(const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed,
                      const Binds& binds = all, Tick ticks = kTicks) {
@@ -25,29 +23,19 @@ void servo_ic_agrees(const Engine& engine, const sc_core::sc_time& quantum, std:
                   binds("dac_clk") ? least : 100);
 }
 
-TEST(ServoIcComponent, ModelAgreesWithTheBlock) {
-  BRICK_COVERS("CARD-1");
-  in_own_process([] { servo_ic_agrees(model_engine(), kNone, 1); });
-}
-TEST(ServoIcComponent, QuantumChangesNothing) {
-  BRICK_COVERS("CARD-1");
-  in_own_process([] { servo_ic_agrees(model_engine(), us(10), 2); });
-}
-TEST(ServoIcComponent, RtlAgreesWithTheBlock) {
+TEST(ServoIcComponent, AgreesWithTheBlock) {
   BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { servo_ic_agrees(rtl_engine(), us(3), 3); });
-}
-TEST(ServoIcComponent, LockstepAgreesWithTheBlock) {
-  BRICK_COVERS("CARD-1 CARD-2");
-  in_own_process([] { servo_ic_agrees(lockstep_engine(), kNone, 4); });
+  on_each_engine([](const Engine& engine, const sc_core::sc_time& quantum, std::uint32_t seed) {
+    servo_ic_agrees(engine, quantum, seed);
+  });
 }
 TEST(ServoIcComponent, UnboundPinsAreIdle) {
   BRICK_COVERS("CARD-1");
   const Binds few = [](const std::string& pin) {
     return pin == "ch2_enc_a" || pin == "ch2_enc_b" || pin == "phase_o" || pin == "ch2_equ" || pin == "ch4_pwm_b_top";
   };
-  in_own_process([&few] { servo_ic_agrees(model_engine(), kNone, 5, few, kTicks / 4); });
-  in_own_process([&few] { servo_ic_agrees(rtl_engine(), kNone, 6, few, kTicks / 4); });
+  for (const Engine& engine : {model_engine(), rtl_engine()})
+    in_own_process([&] { servo_ic_agrees(engine, sc_core::SC_ZERO_TIME, 5, few, kTicks / 4); });
 }
 
 // The comparison sees one unit of the kernel's time and one bit.

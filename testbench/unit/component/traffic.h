@@ -54,6 +54,7 @@ using Answer = std::pair<Picoseconds, std::uint32_t>;                // end of a
 struct Seen {
   std::vector<Change> changes;
   std::vector<Answer> answers, others;
+  std::size_t annotated = 0;  // accesses that began ahead of the kernel's time
 };
 
 // The block inside, through its C++ face.

@@ -7,6 +7,11 @@ import unittest
 
 from tree import TOOLS, Tree
 
+sys.path.insert(0, str(TOOLS))
+from check_package import waveform
+
+MD = ".md"
+
 LIST = """cmake_minimum_required(VERSION 3.25)
 project({0}_example CXX)
 find_package(brick REQUIRED)
@@ -17,11 +22,14 @@ add_test(NAME {0} COMMAND {0})
 set_tests_properties({0} PROPERTIES SKIP_RETURN_CODE 77)
 """
 MAIN = "#include <brick/answer.h>\nint main() { return brick_answer() == 42 ? 0 : 1; }\n"
-CONFIG = """get_filename_component(prefix ${CMAKE_CURRENT_LIST_DIR}/../../.. ABSOLUTE)
+CONFIG = """set(brick_FOUND TRUE)
+if(TARGET brick::systemc)
+  return()
+endif()
+get_filename_component(prefix ${CMAKE_CURRENT_LIST_DIR}/../../.. ABSOLUTE)
 add_library(brick::systemc STATIC IMPORTED)
 set_target_properties(brick::systemc PROPERTIES IMPORTED_LOCATION ${prefix}/lib/libbrick_systemc.a
   INTERFACE_INCLUDE_DIRECTORIES ${prefix}/include)
-set(brick_FOUND TRUE)
 """
 PC = """prefix=${{pcfiledir}}/../..
 Name: {0}
@@ -53,8 +61,8 @@ class Package(Tree):
         subprocess.run(["ar", "rc", "lib/libbrick_systemc.a", "answer.o"], cwd=self.root, check=True)
         (self.root / "answer.o").unlink()
 
-    def check(self, status, *texts):
-        done = subprocess.run([sys.executable, TOOLS / "check_package.py", "--prefix", self.root], text=True,
+    def check(self, status, *texts, options=()):
+        done = subprocess.run([sys.executable, TOOLS / "check_package.py", "--prefix", self.root, *options], text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         for text in texts:
             self.expect(done, status, text)
@@ -96,11 +104,56 @@ class Package(Tree):
         self.replace("share/brick/examples/board/CMakeLists.txt", "set_tests_properties", "#")
         self.check(1, "1 tests ran; expected: the 2 of 2", "package: 1 problem(s)")
 
+    def test_an_example_that_is_not_installed_fails(self):
+        for name in ("servo_ic", "cocotb_servo_channel", "firmware_change"):
+            (self.root / "wanted" / name).mkdir(parents=True)
+        self.check(1, "share/brick/examples: not installed: cocotb_servo_channel, firmware_change",
+                   "servo_ic.vcd was not written", options=["--examples", self.root / "wanted"])
+
+    def test_an_example_without_the_package_is_left_out_by_name(self):
+        shutil.rmtree(self.root / "lib/cmake")
+        done = subprocess.run(["cmake", "-S", self.root / "share/brick/examples", "-B", self.root / "work"], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.expect(done, 0, "left out, the package brick is not installed: board")
+
+    def test_a_link_that_leads_to_nothing_fails(self):
+        self.write(f"share/doc/brick/one{MD}", f"[a](docs/two{MD}#b) [c](docs/three{MD}) [w](https://example.org/)\n")
+        self.write(f"share/doc/brick/docs/two{MD}", f"[up](../one{MD})\n")
+        self.check(1, f"share/doc/brick/one{MD}: docs/three{MD} is not installed", "package: 1 problem(s)")
+
     def test_a_broken_pkg_config_file_fails_by_name(self):
         self.replace("lib/pkgconfig/brick-rtl.pc", "-lbrick_systemc", "")
         self.check(1, "brick-rtl.pc: ", "undefined reference", "package: 1 problem(s)")
         (self.root / "lib/pkgconfig/brick.pc").unlink()
         self.check(1, "brick.pc is not installed", "package: 2 problem(s)")
+
+
+class Waveform(Tree):
+    """Of examples/servo_ic, in units of 1 ps."""
+
+    def dump(self, period=110_685_000, quarters=40, unit="ps"):
+        lines = [f"$timescale\n     1 {unit}\n$end", "$scope module ic $end", "$var wire    1  aaaaa  ch1_enc_a $end",
+                 "$var wire    1  aaaab  ch1_enc_b $end", "$var wire    1  aaaac  phase_o $end", "0aaaaa", "0aaaab",
+                 "1aaaac"]
+        for n in range(quarters):
+            lines += [f"#{n * 1_000_000}", f"{int(n % 4 < 2)}{'aaaab' if n % 2 else 'aaaaa'}"]
+        for n in range(5):
+            lines += [f"#{50_000_000 + n * period // 2}", f"{n % 2}aaaac"]
+        return self.write("servo_ic.vcd", "\n".join([*lines, ""]))
+
+    def wrong(self, **options):
+        self.dump(**options)
+        return waveform(self.root / "servo_ic.vcd")
+
+    def test_a_whole_one_passes(self):
+        self.assertEqual(self.wrong(), "")
+
+    def test_a_period_that_is_late_by_a_tick_fails(self):
+        self.assertIn("ticks of PHASE [13058], expected [13057]", self.wrong(period=110_693_000))
+
+    def test_an_encoder_that_lacks_a_change_and_another_unit_fail(self):
+        self.assertIn("quarters [20, 19], expected [20, 20]", self.wrong(quarters=39))
+        self.assertIn("unit ns, expected ps", self.wrong(unit="ns"))
 
 
 if __name__ == "__main__":

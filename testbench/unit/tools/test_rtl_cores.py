@@ -81,9 +81,9 @@ class Lists(Tree):
 class Cores(Tree):
     """FuseSoC itself resolves the cores; the board needs all the others."""
 
-    def lint(self, name):
+    def lint(self, name, *parameters):
         command = [FUSESOC, "--cores-root", self.root / "rtl", "run", "--target=lint", "--work-root",
-                   self.root / "work", f"brick:ip:{name}"]
+                   self.root / "work", f"brick:ip:{name}", *parameters]
         return subprocess.run(command, cwd=self.root, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def test_the_board_of_the_cores_is_that_of_its_list(self):
@@ -93,6 +93,15 @@ class Cores(Tree):
                            re.M)
         wanted = [line for line in (ROOT / "rtl/board_top.f").read_text().splitlines() if not line.startswith("//")]
         self.assertEqual(sorted(files), sorted(wanted))
+
+    def test_the_board_takes_its_parameters(self):
+        done = self.lint("board_top", "--ServoIcMask", "1", "--MacroIcMask", "3")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        script = next((self.root / "work").glob("*.vc")).read_text()
+        self.assertRegex(script, r"-GServoIcMask=1\b")
+        self.assertRegex(script, r"-GMacroIcMask=3\b")
+        self.plant("rtl/lint.vlt", "'*IcMask'", "'*NoMask'")
+        self.assertIn("expects 18 bits", self.lint("board_top", "--ServoIcMask", "1").stdout)
 
     def test_a_core_that_lacks_one_fails(self):
         self.plant("rtl/macro_ic.core", "      - brick:ip:clock_gen:", "      - brick:ip:common:")

@@ -1,5 +1,6 @@
 // What all components have in common: pins, the register socket, the time base, the engine. Everything happens through
-// events; a component whose bound outputs stand still costs nothing.
+// events. While bound outputs stand still the model wakes seldom; RTL executes each edge and wakes once per
+// TimeOptions::grid. With nothing bound both rest.
 //
 // Register sockets (TLM-2.0, generic payload, blocking). An access waits for the delay that is annotated, then for the
 // first edge of clk_ref after it, which takes the sample of the read or executes the write; it returns in the instant

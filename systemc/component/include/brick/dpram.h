@@ -28,7 +28,7 @@ class Dpram final : public Component {
   // One word of 16 bits an access, on clk_pwm: six edges for a read and five for a write, and BUSY (/TA) on top.
   tlm_utils::simple_target_socket_optional<Dpram> cpu;
 
-  In<> rst_n;                 // reset, asynchronous; outputs follow with the next edge
+  In<> rst_n;                 // reset, asynchronous, idle 1; outputs follow with the next edge
   In<> small;                 // strap: only the first 8192 words are fitted
   Out<> busy_host, busy_cpu;  // the host waits for the CPU; the CPU waits for the host
 

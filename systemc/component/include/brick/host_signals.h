@@ -15,8 +15,9 @@ class HostSignals final : public Component {
   // CTRL0, 1 CTRL1 (X:$070012).
   tlm_utils::simple_target_socket_optional<HostSignals> registers;
 
-  In<> rst_n;  // reset, asynchronous; outputs follow with the next edge
-  Out<> ipos, breq, eror, f1er, ctrl0, ctrl1;
+  In<> rst_n;                    // reset, asynchronous, idle 1; outputs follow with the next edge
+  Out<> ipos, breq, eror, f1er;  // in position, buffer request, following errors: fatal, warning (host-bus:4.3)
+  Out<> ctrl0, ctrl1;            // control outputs (host-bus:4.2)
 
   static const std::vector<PinInfo>& pin_table();
 };

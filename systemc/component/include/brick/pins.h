@@ -1,8 +1,8 @@
 // Ports of a component. A pin may stay unbound: an input then has its idle level, an output costs nothing. A pin of one
 // bit is a port of bool, a wider one of sc_uint; a port is an sc_port with the interface of sc_in or sc_out, which may
-// not stay unbound: bind it alike, trace it by Component::trace(), ask bound() before reading it. A pin that goes both
-// ways is three ports: NAME_i, NAME_o and NAME_oe, high while the component drives it; NAME_o is high while it does
-// not.
+// not stay unbound: bind it alike, trace it by Component::trace(), ask bound() before reading it. Idle levels are 0
+// where the comment of a pin says nothing. A pin that goes both ways is three ports: NAME_i, NAME_o and NAME_oe, high
+// while the component drives it; NAME_o is high while it does not.
 #pragma once
 
 #include <array>
