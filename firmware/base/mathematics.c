@@ -42,6 +42,11 @@ int64_t math_to_integer(double x) {
   return negative ? -whole - (fraction ? 1 : 0) : whole;
 }
 
+bool math_is_finite(double x) {
+  const union bits b = {x};
+  return ((b.word >> FRACTION_BITS) & 0x7FFu) != 0x7FFu;
+}
+
 double math_from_fixed(int64_t mantissa, int exponent) {
   if (mantissa == 0) return 0.0;
   union bits b;

@@ -29,6 +29,7 @@ double math_modulo(double a, double b); /* [0, b), or [-n, n) for b = -n */
 int64_t math_to_integer(double x);      /* floor, saturating at +-2^62 */
 int64_t math_nearest(double x);         /* halves away from 0, saturating at +-2^47; what is no number too */
 
+bool math_is_finite(double x);
 double math_scale(double m, int exponent); /* m * 2^exponent, 0 on underflow */
 
 /* Without floating-point arithmetic: x as mantissa * 2^(exponent - bits), 2^(bits-1) <= |mantissa| < 2^bits, rounded to

@@ -7,13 +7,16 @@ enum {
   MEMORY_SERVO_COUNT = 0x000000,         /* X: servo interrupts */
   MEMORY_GLOBAL_STATUS = 0x000006,       /* X: first word, Y: second */
   MEMORY_REAL_TIME_DURATIONS = 0x00000B, /* X: last, Y: longest real-time task, in half CPU cycles */
+  MEMORY_DISPLAY_POINTER = 0x000024,     /* X: address of the display text */
   MEMORY_WATCHDOG_COUNT = 0x000025,      /* Y: counter, X: lowest value since reset */
   MEMORY_TASK_DURATIONS = 0x000037,      /* Y: servo task, X: phase task, in half CPU cycles */
   MEMORY_DPRAM_END = 0x00003F,           /* Y: address after the dual-ported RAM, tells its size */
   MEMORY_FAULT = 0x000070,               /* three long words: image/fault.h */
   MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
+  MEMORY_DISPLAY = 0x001080,             /* Y: one character a word (run/display.h) */
   MEMORY_CS_WORDS = 0x002000,            /* registers of coordinate system 1, the others each CS_STRIDE on */
   MEMORY_CS_STRIDE = 0x100,
+  MEMORY_PLC_STATUS = 0x003100, /* Y: one word a PLC (run/plc_control.h) */
   MEMORY_M_DEFINITIONS = 0x004000,
   MEMORY_P_VARIABLES = 0x006000,
   MEMORY_Q_VARIABLES = 0x008000,

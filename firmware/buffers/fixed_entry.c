@@ -1,9 +1,7 @@
 #include "firmware/buffers/fixed_entry.h"
 
 #include "firmware/buffers/buffer_request.h"
-#include "firmware/buffers/program_structure.h"
-
-enum { LONGEST_LINE = 300 }; /* words: as many as a host line can give */
+#include "firmware/buffers/program_links.h"
 
 static struct program_structure structure;
 
@@ -11,15 +9,9 @@ static bool is_motion(void) { return fixed_program_opened()->kind == FIXED_PROG;
 
 /* A program that is added to: what its lines have opened is open. Damaged ones are taken as they are. */
 static void read_structure(void) {
-  const struct fixed_program* program = fixed_program_opened();
-  word48_t words[LONGEST_LINE];
-  program_structure_begin(&structure);
-  for (uint32_t at = 0; at < program->words;) {
-    const uint32_t count = fixed_program_line(program, at);
-    for (uint32_t i = 0; i < count && i < LONGEST_LINE; i++) words[i] = fixed_program_word(program, at + i);
-    (void)program_structure_line(&structure, is_motion(), words, count < LONGEST_LINE ? count : LONGEST_LINE);
-    at += count;
-  }
+  error_t error;
+  program_structure_begin(&structure, 0);
+  while (program_links_line(&structure, fixed_program_opened(), &error) != 0) {}
 }
 
 error_t fixed_entry_begin(enum fixed_kind kind, uint32_t number) {
@@ -57,7 +49,7 @@ error_t fixed_entry_store(word48_t* words, uint32_t count) {
 error_t fixed_entry_clear(void) {
   const error_t error = fixed_program_clear();
   if (error != ERR_NONE) return error;
-  program_structure_begin(&structure);
+  program_structure_begin(&structure, 0);
   buffer_request_fixed_changed();
   return ERR_NONE;
 }

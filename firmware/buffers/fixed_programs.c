@@ -1,20 +1,45 @@
 /* Fixed programs. A program that is opened again is turned to the top of the others: once an OPEN, not once a line. */
 #include "firmware/buffers/fixed_programs.h"
 
+#include <stdatomic.h>
+
 #include "firmware/base/dimensions.h"
+#include "firmware/buffers/program_structure.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/kernel/watchdog.h"
 
 static struct {
   struct fixed_program programs[FIXED_PROGRAMS_COUNT]; /* in memory order */
   uint32_t count;
   bool open; /* the last one */
+  volatile uint32_t generation;
 } fixed;
 
+uint16_t fixed_program_links[USER_MEMORY_WORDS];
+
+static void begin_change(void) {
+  fixed.generation++;
+  atomic_signal_fence(memory_order_seq_cst);
+}
+
+static void end_change(void) {
+  atomic_signal_fence(memory_order_seq_cst);
+  fixed.generation++;
+}
+
 void fixed_programs_initialize(void) {
+  begin_change();
   fixed.count = 0;
   fixed.open = false;
+  end_change();
+}
+
+uint32_t fixed_programs_generation(void) { return fixed.generation; }
+
+void fixed_program_set_linked(const struct fixed_program* program) {
+  fixed.programs[program - fixed.programs].linked = true;
 }
 
 uint32_t fixed_programs_count(void) { return fixed.count; }
@@ -38,6 +63,7 @@ uint32_t fixed_program_line(const struct fixed_program* program, uint32_t offset
     if (at != offset && (word & WORD_START_OF_LINE) != 0) break;
     const struct instruction in = word_decode(word);
     at += 1u + word_raw_count(&in);
+    slice_pause();
   }
   return (at < program->words ? at : program->words) - offset;
 }
@@ -51,8 +77,11 @@ static uint32_t top(void) {
 static void reverse(uint32_t first, uint32_t end) {
   for (; first + 1u < end; first++, end--) {
     const word48_t word = user_memory_read(first);
+    const uint16_t link = fixed_program_links[first];
     user_memory_write(first, user_memory_read(end - 1u));
     user_memory_write(end - 1u, word);
+    fixed_program_links[first] = fixed_program_links[end - 1u];
+    fixed_program_links[end - 1u] = link;
   }
 }
 
@@ -62,6 +91,7 @@ static void raise(uint32_t index) {
   const struct fixed_program raised = fixed.programs[index];
   const uint32_t end = top(), middle = raised.base + raised.words;
   if (index == fixed.count - 1u) return;
+  begin_change();
   reverse(raised.base, middle);
   watchdog_reload();
   reverse(middle, end);
@@ -74,6 +104,7 @@ static void raise(uint32_t index) {
   }
   fixed.programs[fixed.count - 1u] = raised;
   fixed.programs[fixed.count - 1u].base = end - raised.words;
+  end_change();
 }
 
 static bool has_room(enum fixed_kind kind) {
@@ -82,9 +113,16 @@ static bool has_room(enum fixed_kind kind) {
   return fixed.count < FIXED_PROGRAMS_COUNT && (kind != FIXED_PROG || motion_programs < FIXED_PROG_COUNT);
 }
 
+static void clear_links(uint32_t from, uint32_t words) {
+  for (uint32_t i = 0; i < words; i++) fixed_program_links[from + i] = LINK_NONE;
+}
+
 static void enter(enum fixed_kind kind, uint32_t number, uint32_t words) {
   const uint32_t base = top();
-  fixed.programs[fixed.count++] = (struct fixed_program){(uint16_t)kind, (uint16_t)number, base, words};
+  clear_links(base, words);
+  begin_change();
+  fixed.programs[fixed.count++] = (struct fixed_program){(uint16_t)kind, (uint16_t)number, base, words, false};
+  end_change();
 }
 
 error_t fixed_program_open(enum fixed_kind kind, uint32_t number) {
@@ -96,6 +134,7 @@ error_t fixed_program_open(enum fixed_kind kind, uint32_t number) {
     enter(kind, number, 0);
   }
   fixed.open = true;
+  fixed.programs[fixed.count - 1u].linked = false;
   return ERR_NONE;
 }
 
@@ -106,6 +145,7 @@ error_t fixed_program_append(const word48_t* words, uint32_t count) {
   const uint32_t at = top();
   const error_t error = region_resize_fixed(at + count);
   if (error != ERR_NONE) return error;
+  clear_links(at, count);
   for (uint32_t i = 0; i < count; i++) user_memory_write(at + i, i == 0 ? words[0] | WORD_START_OF_LINE : words[i]);
   program->words += count;
   return ERR_NONE;
@@ -119,8 +159,10 @@ error_t fixed_program_clear(void) {
 }
 
 void fixed_program_close(void) {
+  begin_change(); /* its words have changed too */
   fixed.open = false;
   if (fixed.count != 0 && fixed.programs[fixed.count - 1u].words == 0) fixed.count--;
+  end_change();
 }
 
 bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words) {

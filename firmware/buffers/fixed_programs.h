@@ -1,6 +1,7 @@
 /* Fixed programs: motion programs, PLCs and kinematic programs (firmware:4.1), one above the other from the bottom of
  * user memory. The open one is always the topmost, so that a line is stored in the time of its words whatever there is.
- * Background task. */
+ * Written by the background task. Who reads in the real-time task looks at fixed_programs_generation before and after.
+ */
 #ifndef FIRMWARE_BUFFERS_FIXED_PROGRAMS_H
 #define FIRMWARE_BUFFERS_FIXED_PROGRAMS_H
 
@@ -22,6 +23,7 @@ enum {
 struct fixed_program {
   uint16_t kind, number; /* number: of PROG or PLC, or coordinate system from 0 */
   uint32_t base, words;
+  bool linked; /* program_links_make has been there since it was opened last */
 };
 
 void fixed_programs_initialize(void);
@@ -31,6 +33,14 @@ const struct fixed_program* fixed_program_find(enum fixed_kind kind, uint32_t nu
 word48_t fixed_program_word(const struct fixed_program* program, uint32_t offset);
 /* Words of the line that begins at `offset`, its raw words with it; 0 at the end. */
 uint32_t fixed_program_line(const struct fixed_program* program, uint32_t offset);
+
+/* Odd while programs are being moved: the real-time task executes none then. Another even number: they may lie
+ * elsewhere. */
+uint32_t fixed_programs_generation(void);
+/* Where execution goes on (program_structure.h), a link a word of user memory; they move with their program. Cleared
+ * where words are stored, written by whichever task executes them. */
+extern uint16_t fixed_program_links[];
+void fixed_program_set_linked(const struct fixed_program* program);
 
 /* The open program. */
 error_t fixed_program_open(enum fixed_kind kind, uint32_t number); /* ERR006: no more programs */

@@ -51,7 +51,7 @@ error_t rotary_delete(uint32_t cs) {
 }
 
 void rotary_delete_all(void) {
-  region_delete_temporaries();
+  regions_delete_from(REGION_CCBUF);
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) forget(cs);
 }
 

@@ -5,6 +5,7 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/fixed_entry.h"
 #include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/program_line.h"
@@ -14,11 +15,22 @@
 #include "firmware/run/plc_control.h"
 #include "firmware/run/run_control.h"
 
+/* What stands in the way, in this order: a buffer is open, a program runs, the password is missing. */
+static error_t may_open(enum fixed_kind kind, uint32_t number) {
+  if (open_buffer_kind() != OPEN_NONE) return ERR_BUFFER_OPEN;
+  if (kind != FIXED_PLC && run_any_running()) return ERR_PROGRAM_RUNNING;
+  return program_password_protects(kind, number) ? ERR_PASSWORD : ERR_NONE;
+}
+
+static error_t open_fixed(enum fixed_kind kind, uint32_t number) {
+  const error_t error = may_open(kind, number);
+  return error != ERR_NONE ? error : open_buffer_open_fixed(kind, number);
+}
+
 static error_t open_numbered(struct lexer* lx, enum fixed_kind kind, int32_t first, int32_t last) {
   int32_t number;
   if (lexer_integer(lx, &number) != ERR_NONE || number < first || number > last) return ERR_DATA;
-  if (kind == FIXED_PROG && open_buffer_kind() == OPEN_NONE && run_any_running()) return ERR_PROGRAM_RUNNING;
-  const error_t error = open_buffer_open_fixed(kind, (uint32_t)number);
+  const error_t error = open_fixed(kind, (uint32_t)number);
   if (error != ERR_NONE) return error;
   if (kind == FIXED_PLC)
     plc_disable(1u << number);
@@ -28,13 +40,12 @@ static error_t open_numbered(struct lexer* lx, enum fixed_kind kind, int32_t fir
 }
 
 static error_t open_kinematic(enum fixed_kind kind) {
-  if (open_buffer_kind() == OPEN_NONE && run_any_running()) return ERR_PROGRAM_RUNNING;
-  const error_t error = open_buffer_open_fixed(kind, session.cs);
+  const error_t error = open_fixed(kind, session.cs);
   if (error == ERR_NONE) coordinate_systems_forget_programs();
   return error;
 }
 
-static error_t cmd_open(struct lexer* lx) {
+static error_t open_named(struct lexer* lx) {
   enum open_buffer kind = OPEN_ROTARY;
   if (lexer_keyword(lx, "PROGRAM") || lexer_keyword(lx, "PROG"))
     return open_numbered(lx, FIXED_PROG, 1, FIXED_PROG_LIMIT);
@@ -46,9 +57,15 @@ static error_t cmd_open(struct lexer* lx) {
   return open_buffer_open(kind);
 }
 
+static error_t cmd_open(struct lexer* lx) {
+  const error_t error = open_named(lx);
+  if (error == ERR_NONE) session_own_buffer();
+  return error;
+}
+
 /* A line entered so far is stored first: CLOSE at its end belongs to it. */
 static error_t cmd_close(struct lexer* lx) {
-  (void)lexer_keyword(lx, "ALL"); /* there is one port */
+  if (!lexer_keyword(lx, "ALL") && !session_owns_buffer()) return ERR_NONE; /* another port has opened it */
   const error_t stored = program_line_commit();
   const error_t closed = open_buffer_close();
   return stored != ERR_NONE ? stored : closed;

@@ -5,10 +5,12 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/compensation_tables.h"
 #include "firmware/command/program_line.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/command/variable_commands.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/language/statement.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/pq_variables.h"
@@ -40,7 +42,8 @@ static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_
 static error_t address_cs(struct lexer* lx) {
   const uint32_t before = session.cs;
   const error_t error = address(lx, 1, (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u, &session.cs);
-  if (session.cs != before) buffer_request_selection();
+  if (session.cs != before && !session_is_program()) buffer_request_selection();
+  if (slice_hurry != 0u) slice_hurry_over(); /* the pin has moved */
   return error;
 }
 
@@ -100,20 +103,28 @@ static bool starts_constant(const char* at) {
   return is_digit(*at) || (*at == '.' && is_digit(at[1]));
 }
 
+/* The next entry of the table that the host fills, else P0. */
 static error_t constant(struct lexer* lx) {
   double value;
   const error_t error = lexer_constant(lx, &value);
-  if (error == ERR_NONE) p_variable_write(0, value);
-  return error;
+  if (error != ERR_NONE) return error;
+  if (compensation_is_filling() && !session_is_program()) return compensation_take(value);
+  p_variable_write(0, value);
+  return ERR_NONE;
 }
 
 static error_t one_command(struct lexer* lx) {
   error_t error;
-  if (program_statement(lx, &error)) return error;
   const char first = lexer_peek(lx);
-  if (first == '#' || first == '&') {
+  if (first == '&') { /* no statement begins so: the pin is waiting (host-bus:5.7, T_CS) */
     ++lx->at;
-    return first == '#' ? address_motor(lx) : address_cs(lx);
+    return address_cs(lx);
+  }
+  if (program_statement(lx, &error)) return error;
+  if (slice_hurry != 0u) slice_hurry_over(); /* a command may take long, and BREQ does not wait for it */
+  if (first == '#') {
+    ++lx->at;
+    return address_motor(lx);
   }
   if (starts_constant(lx->at)) return constant(lx);
   struct lexer after = *lx;
@@ -127,9 +138,8 @@ static error_t one_command(struct lexer* lx) {
 }
 
 error_t command_line(const char* line) {
-  struct lexer lx = {line};
+  struct lexer lx = {program_line_begin(line)};
   error_t error = ERR_NONE;
-  program_line_begin();
   while (error == ERR_NONE && lexer_peek(&lx) != '\0') error = one_command(&lx);
   if (error == ERR_NONE)
     error = program_line_commit();

@@ -4,10 +4,12 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/session.h"
+#include "firmware/command/table_commands.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/run/run_control.h"
 
@@ -54,7 +56,21 @@ static error_t define_gather(struct lexer* lx) {
   return size_argument(lx, &words) != ERR_NONE ? ERR_DATA : region_define(REGION_GATHER, 0, words);
 }
 
+static error_t define_tbuf(struct lexer* lx) {
+  uint32_t matrices;
+  if (size_argument(lx, &matrices) != ERR_NONE) return ERR_DATA;
+  const uint32_t most = UINT32_MAX / TBUF_WORDS_PER_MATRIX;
+  return region_define(REGION_TBUF, 0, (matrices < most ? matrices : most) * TBUF_WORDS_PER_MATRIX);
+}
+
+static error_t define_user(struct lexer* lx) {
+  uint32_t words;
+  if (size_argument(lx, &words) != ERR_NONE) return ERR_DATA;
+  return open_buffer_kind() != OPEN_NONE ? ERR_BUFFER_OPEN : region_define_user(words);
+}
+
 static error_t define_any(struct lexer* lx) {
+  error_t error;
   uint32_t cs = session.cs;
   bool running = run_is_running(cs);
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
@@ -63,7 +79,9 @@ static error_t define_any(struct lexer* lx) {
     return running ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : define_ccbuf(lx, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return define_gather(lx);
-  return ERR_DATA;
+  if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : define_tbuf(lx);
+  if (lexer_keyword(lx, "UBUFFER") || lexer_keyword(lx, "UBUF")) return define_user(lx);
+  return table_define(lx, &error) ? error : ERR_DATA;
 }
 
 static error_t delete_rotary(uint32_t cs) {
@@ -73,10 +91,12 @@ static error_t delete_rotary(uint32_t cs) {
   return error;
 }
 
-static error_t delete_temporaries(void) {
+/* DELETE ALL TEMPS; DELETE ALL takes the tables away too. */
+static error_t delete_all(bool tables) {
   if (open_buffer_kind() != OPEN_NONE) return ERR_DATA;
   if (run_any_running()) return ERR_PROGRAM_RUNNING;
   rotary_delete_all();
+  if (tables) compensation_tables_delete_all();
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_forget_rotary(cs);
   return ERR_NONE;
 }
@@ -84,17 +104,15 @@ static error_t delete_temporaries(void) {
 static error_t delete_any(struct lexer* lx) {
   uint32_t cs = session.cs;
   bool running = run_is_running(cs);
-  if (lexer_keyword(lx, "ALL")) {
-    if (!lexer_keyword(lx, "TEMPS"))
-      (void)lexer_keyword(lx, "TEMP"); /* DELETE ALL: there are no tables beyond these yet */
-    return delete_temporaries();
-  }
+  error_t error;
+  if (lexer_keyword(lx, "ALL")) return delete_all(!lexer_keyword(lx, "TEMPS") && !lexer_keyword(lx, "TEMP"));
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return delete_rotary(cs);
   if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
     return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_CCBUF, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return region_delete(REGION_GATHER, cs);
-  return ERR_DATA;
+  if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : region_delete(REGION_TBUF, cs);
+  return table_delete(lx, &error) ? error : ERR_DATA;
 }
 
 /* What is open for the fixed buffer that is being filled has changed: it owns BREQ (firmware:4.6). */

@@ -4,14 +4,18 @@
 
 #include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
+#include "firmware/command/table_commands.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/language/constant_text.h"
 #include "firmware/language/lister.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
@@ -57,13 +61,14 @@ static void list_line(const word48_t* words, uint32_t count, uint32_t offset, bo
   watchdog_reload();
 }
 
-static error_t list_program(const struct fixed_program* program, const struct part* part) {
+static error_t list_lines(const struct fixed_program* program, const struct part* part, uint32_t lines) {
   word48_t words[LINE_WORDS];
   if (program == 0 || part->start >= program->words) return ERR_DATA;
   characters = 0;
-  for (uint32_t at = 0; at < program->words && at < part->start + (uint64_t)part->length;) {
+  for (uint32_t at = 0; at < program->words && at < part->start + (uint64_t)part->length && lines != 0;) {
     const uint32_t count = fixed_program_line(program, at);
     if (at >= part->start) {
+      lines--;
       if (part->is_part && characters > REPLY_CHARACTERS) break;
       for (uint32_t i = 0; i < count && i < LINE_WORDS; i++) words[i] = fixed_program_word(program, at + i);
       list_line(words, count < LINE_WORDS ? count : LINE_WORDS, at, part->is_part);
@@ -73,12 +78,18 @@ static error_t list_program(const struct fixed_program* program, const struct pa
   return ERR_NONE;
 }
 
+static error_t list_program(const struct fixed_program* program, const struct part* part) {
+  return list_lines(program, part, USER_MEMORY_WORDS);
+}
+
 static error_t list_fixed(struct lexer* lx, enum fixed_kind kind, bool numbered) {
   int32_t number = (int32_t)session.cs;
   struct part part;
   if (numbered && (lexer_integer(lx, &number) != ERR_NONE || number < 0)) return ERR_DATA;
   const error_t error = read_part(lx, &part);
-  return error != ERR_NONE ? error : list_program(fixed_program_find(kind, (uint32_t)number), &part);
+  if (error != ERR_NONE) return error;
+  if (program_password_protects(kind, (uint32_t)number)) return ERR_PASSWORD;
+  return list_program(fixed_program_find(kind, (uint32_t)number), &part);
 }
 
 /* Lines whose calculation has not begun, as they are at the command; offsets are those of the ring, as PC reports them.
@@ -115,12 +126,23 @@ static error_t list_gather(struct lexer* lx) {
   return ERR_NONE;
 }
 
-/* LIST PC{,count}: the next lines of the rotary program to be calculated. */
-static error_t list_pointer(struct lexer* lx) {
+/* LIST PC{,count}, LIST PE{,count}: lines from the one that is calculated next, or executes. What has been calculated
+ * of a ring is free again. */
+static error_t list_pointer(struct lexer* lx, bool executing) {
+  const struct coordinate_system* s = &coordinate_systems[session.cs];
+  struct program_trace trace;
   int32_t count = 1;
   if (lexer_accept(lx, ',') && lexer_peek(lx) != '\0' && (lexer_integer(lx, &count) != ERR_NONE || count < 1))
     return ERR_DATA;
-  return list_ring(session.cs, (uint32_t)count, true);
+  if (executing)
+    run_executing(session.cs, &trace);
+  else
+    run_calculating(session.cs, &trace);
+  const struct program_place* place = &trace.places[trace.depth];
+  if (place->program == 0) return executing && s->active ? ERR_DATA : list_ring(session.cs, (uint32_t)count, true);
+  if (program_password_protects(FIXED_PROG, place->program)) return ERR_PASSWORD;
+  const struct part part = {true, place->offset, USER_MEMORY_WORDS};
+  return list_lines(fixed_program_find(FIXED_PROG, place->program), &part, (uint32_t)count);
 }
 
 static error_t list_open(void) {
@@ -130,13 +152,16 @@ static error_t list_open(void) {
 }
 
 static error_t cmd_list(struct lexer* lx) {
+  error_t error;
   if (lexer_keyword(lx, "PROGRAM") || lexer_keyword(lx, "PROG")) return list_fixed(lx, FIXED_PROG, true);
   if (lexer_keyword(lx, "PLC")) return list_fixed(lx, FIXED_PLC, true);
-  if (lexer_keyword(lx, "PC")) return list_pointer(lx);
+  if (lexer_keyword(lx, "PC")) return list_pointer(lx, false);
+  if (lexer_keyword(lx, "PE")) return list_pointer(lx, true);
   if (lexer_keyword(lx, "FORWARD") || lexer_keyword(lx, "FWD")) return list_fixed(lx, FIXED_FORWARD, false);
   if (lexer_keyword(lx, "INVERSE") || lexer_keyword(lx, "INV")) return list_fixed(lx, FIXED_INVERSE, false);
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return list_ring(session.cs, USER_MEMORY_WORDS, false);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return list_gather(lx);
+  if (table_list(lx, &error)) return error;
   const char c = lexer_peek(lx);
   return c == '\0' ? list_open() : ERR_DATA;
 }

@@ -21,23 +21,31 @@ static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
   return ERR_NONE;
 }
 
-static error_t report_pointer(uint32_t offset) {
-  if (coordinate_systems[session.cs].pointer != POINTER_ROTARY) return ERR_NO_PROGRAM;
-  reply_text("P0:");
-  reply_integer((int64_t)offset);
+/* P1:22>P1000:4: program and line, and what that has called. */
+static error_t report_trace(const struct program_trace* trace) {
+  if (coordinate_systems[session.cs].pointer == POINTER_NONE) return ERR_NO_PROGRAM;
+  for (uint32_t i = 0; i <= trace->depth; i++) {
+    reply_text(i == 0 ? "P" : ">P");
+    reply_integer(trace->places[i].program);
+    reply_char(':');
+    reply_integer(trace->places[i].offset);
+  }
   reply_end_line();
   return ERR_NONE;
 }
 
 static error_t cmd_calculating(struct lexer* lx) { /* PC */
+  struct program_trace trace;
   (void)lx;
-  return report_pointer(rotary_lines_ahead(session.cs).offset);
+  run_calculating(session.cs, &trace);
+  return report_trace(&trace);
 }
 
 static error_t cmd_executing(struct lexer* lx) { /* PE */
+  struct program_trace trace;
   (void)lx;
-  const struct coordinate_system* s = &coordinate_systems[session.cs];
-  return report_pointer(s->active ? s->moves[s->executing].line_offset : rotary_lines_ahead(session.cs).offset);
+  run_executing(session.cs, &trace);
+  return report_trace(&trace);
 }
 
 /* After a one-letter command a letter or digit means a word that is not known, or a program statement. */
@@ -75,6 +83,18 @@ static error_t cmd_hold(struct lexer* lx) { return control(lx, run_hold); }
 static error_t cmd_enable(struct lexer* lx) {
   (void)lx;
   return status_motors_may_enable() ? ERR_NONE : ERR_PHASING;
+}
+
+/* `\`: no move is segmented, so it is the hold of H. `>` goes on after it. */
+static error_t cmd_program_hold(struct lexer* lx) {
+  (void)lx;
+  run_hold(session.cs);
+  return ERR_NONE;
+}
+
+static error_t cmd_resume_forward(struct lexer* lx) {
+  (void)lx;
+  return coordinate_systems[session.cs].held ? run_start(session.cs, false) : ERR_NONE;
 }
 
 static error_t cmd_end_block(struct lexer* lx) {
@@ -144,5 +164,7 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"R", cmd_run},
                                                  {"S", cmd_step},
                                                  {"/", cmd_end_block},
+                                                 {"\\", cmd_program_hold},
+                                                 {">", cmd_resume_forward},
                                                  {"%", cmd_time_base},
                                                  {0, 0}};

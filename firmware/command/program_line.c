@@ -7,6 +7,7 @@
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/session.h"
+#include "firmware/language/axis_constant.h"
 #include "firmware/language/statement.h"
 
 enum { LINE_WORDS = 300 }; /* a host line has at most 255 characters; a two-word constant takes two of them at least */
@@ -15,12 +16,17 @@ static struct {
   word48_t words[LINE_WORDS];
   uint32_t count;
   uint32_t cs;
-  bool called; /* a statement of the line is a call */
+  bool called;       /* a statement of the line is a call */
+  uint32_t where;    /* what was open when words were compiled ahead */
+  const char* ahead; /* where that stopped in the text; 0: nothing was */
 } line;
 
-/* Kind of the open program for the statement table; 0: nothing takes text. */
+#define TEXT_END ((const char*)UINTPTR_MAX) /* the end of the text itself ends the search */
+
+/* Kind of the open program for the statement table; 0: nothing takes text of this port. */
 static uint32_t open_where(void) {
   static const uint8_t fixed[FIXED_KINDS] = {WHERE_PROG, WHERE_PLC, WHERE_KINEMATIC, WHERE_KINEMATIC};
+  if (!session_owns_buffer()) return 0;
   if (open_buffer_kind() == OPEN_ROTARY) return WHERE_ROTARY;
   return open_buffer_kind() == OPEN_FIXED ? fixed[fixed_program_opened()->kind] : 0;
 }
@@ -32,7 +38,32 @@ static void empty(void) {
   line.called = false;
 }
 
-void program_line_begin(void) { empty(); }
+void program_line_forget_ahead(void) { line.ahead = 0; }
+
+static bool takes_axes(uint32_t where) {
+  if ((where & WHERE_ROTARY) != 0) return rotary_buffers[session.cs].size != 0;
+  return (where & WHERE_MOVES) != 0;
+}
+
+void program_line_ahead(const char* text, const char* boundary) {
+  const uint32_t where = open_where();
+  if (!takes_axes(where)) return;
+  if (line.ahead == 0) {
+    empty();
+    line.ahead = text;
+    line.where = where;
+    line.cs = session.cs;
+  }
+  line.count += axis_constants(&line.ahead, boundary, line.words + line.count, LINE_WORDS - line.count);
+}
+
+const char* program_line_begin(const char* text) {
+  const char* const ahead = line.ahead;
+  line.ahead = 0;
+  if (ahead != 0 && line.where == open_where() && line.cs == session.cs) return ahead;
+  empty();
+  return text;
+}
 
 void program_line_abandon(void) { empty(); }
 
@@ -56,6 +87,13 @@ static error_t address(void) {
 bool program_statement(struct lexer* lx, error_t* error) {
   uint32_t where = open_where();
   if (where == 0) return false;
+  if (takes_axes(where) && (line.count == 0 || line.cs == session.cs)) {
+    const uint32_t made = axis_constants(&lx->at, TEXT_END, line.words + line.count, LINE_WORDS - line.count);
+    line.cs = session.cs;
+    line.count += made;
+    *error = ERR_NONE;
+    if (made != 0) return true;
+  }
   const bool one_a_line = (where & WHERE_MOVES) == 0;
   if (line.count != 0 && !one_a_line) where |= WHERE_BEGUN;
   if (line.called) where |= WHERE_CALLED;

@@ -4,22 +4,36 @@
 
 #include "firmware/variables/i_variables.h"
 
-enum { LINE_FEED = 0x0A, CARRIAGE_RETURN = 0x0D, DECIMALS = 10 };
+enum { TAG = 0x02, BELL = 0x07, LINE_FEED = 0x0A, CARRIAGE_RETURN = 0x0D, DECIMALS = 10 };
+
+static enum reply_to recipient;
 
 static bool line_open;
 static uint8_t line_sum;
 
 static void send(uint8_t c) {
+  if (recipient == REPLY_TO_NOBODY) return;
   line_sum = (uint8_t)(line_sum + c);
   reply_sink(c);
 }
 
+static bool is_tagged(void) { return recipient == REPLY_TO_PROGRAM && i_integer(I64_INTERNAL_REPLY_TAG) != 0; }
+static bool has_line_feeds(void) { return (i_integer(I3_IO_HANDSHAKE) & 1) != 0; }
+
+void reply_to(enum reply_to whom) {
+  recipient = whom;
+  line_open = false;
+}
+
+static void begin_line(void) {
+  line_open = true;
+  line_sum = 0;
+  if (has_line_feeds()) send(LINE_FEED);
+  if (is_tagged()) send(TAG);
+}
+
 void reply_char(char c) {
-  if (!line_open) {
-    line_open = true;
-    line_sum = 0;
-    if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) send(LINE_FEED);
-  }
+  if (!line_open) begin_line();
   send((uint8_t)c);
 }
 
@@ -28,16 +42,33 @@ void reply_text(const char* text) {
 }
 
 void reply_end_line(void) {
-  if (!line_open) {
-    line_sum = 0;
-    if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) send(LINE_FEED);
-  }
+  if (!line_open) begin_line();
   send(CARRIAGE_RETURN);
-  if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) reply_sink(line_sum);
+  if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) send(line_sum);
   line_open = false;
 }
 
 bool reply_line_is_open(void) { return line_open; }
+
+/* A program's error is one line by its tag: the CR that I6 = 3 puts behind BELL would end it. */
+void reply_error(error_t error) {
+  const int32_t style = i_integer(I6_ERROR_REPORTING);
+  if (recipient == REPLY_TO_PROGRAM && style == 2) return;
+  const bool tagged = is_tagged(), numbered = (style & 1) != 0;
+  if (!tagged) send(BELL);
+  if (!tagged && style == 3) send(CARRIAGE_RETURN);
+  if (numbered && has_line_feeds()) send(LINE_FEED);
+  if (tagged) send(TAG);
+  if (numbered) {
+    send('E');
+    send('R');
+    send('R');
+    send((uint8_t)('0' + error / 100));
+    send((uint8_t)('0' + error / 10 % 10));
+    send((uint8_t)('0' + error % 10));
+  }
+  if (numbered || tagged) send(CARRIAGE_RETURN);
+}
 
 void reply_integer(int64_t value) {
   char digits[20];

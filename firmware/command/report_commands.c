@@ -6,6 +6,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/image_checksum.h"
 #include "firmware/motion/motion_status.h"
 
 enum { WORD_DIGITS = 6 };
@@ -119,7 +120,7 @@ static error_t id_number(struct lexer* lx) {
 
 static error_t checksum(struct lexer* lx) {
   (void)lx;
-  return number((int64_t)hal_image_checksum());
+  return number((int64_t)image_checksum());
 }
 
 const struct command_entry report_commands[] = {

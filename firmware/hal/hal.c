@@ -44,13 +44,12 @@ uint64_t hal_long_cycles(void) {
   return ((uint64_t)high << 32) | low;
 }
 
-uint32_t hal_image_checksum(void) {
-  const uint32_t *word, *end; /* symbols of image/turbo.ld */
-  uint32_t sum = 0;
-  __asm__("la %0, __code_start" : "=r"(word));
+const uint32_t* hal_image(uint32_t* words) {
+  const uint32_t *begin, *end; /* symbols of image/turbo.ld */
+  __asm__("la %0, __code_start" : "=r"(begin));
   __asm__("la %0, __code_end" : "=r"(end));
-  for (; word != end; ++word) sum += *word;
-  return sum & HAL_WORD_MASK;
+  *words = (uint32_t)(end - begin);
+  return begin;
 }
 
 void hal_set_cpu_clock(uint32_t i52) {
@@ -161,4 +160,7 @@ void hal_side_begin(void (*task)(void)) {
 void hal_side_change(void) { exchange_stacks(&other_stack); }
 
 uint32_t hal_strap(unsigned word) { return ((const volatile uint32_t*)0x3FFFF000u)[word]; }
-uint32_t* hal_flash(void) { return (uint32_t*)0x30000000u; }
+#define FLASH_BASE 0x30000000u
+
+const uint32_t* hal_flash(void) { return (const uint32_t*)FLASH_BASE; }
+void hal_flash_write(uint32_t word, uint32_t value) { ((volatile uint32_t*)FLASH_BASE)[word] = value; }

@@ -28,7 +28,7 @@ void hal_unmask(uint32_t state);
 
 uint32_t hal_cycles(void);                           /* CPU cycle counter, low 32 bits */
 uint64_t hal_long_cycles(void);                      /* all of it */
-uint32_t hal_image_checksum(void);                   /* sum of the words of code and constants, 24 bits */
+const uint32_t* hal_image(uint32_t* words);          /* code and constants, and how many words they have */
 void hal_delay_us(uint32_t us);                      /* busy wait, 10 % longer at most */
 void hal_await_us(uint32_t start, uint32_t us);      /* the same, counted from hal_cycles() = `start` */
 void hal_host_signals(uint32_t set, uint32_t clear); /* bits HAL_SIGNAL_*: latch X:$070010 */
@@ -64,8 +64,10 @@ enum {
 enum { HAL_PRODUCT_JPAN = 1, HAL_PRODUCT_UMAC = 2, HAL_PRODUCT_ULTRALITE = 4, HAL_PRODUCT_TURBO_PMAC_1 = 8 };
 uint32_t hal_strap(unsigned word);
 
-/* Flash store: plain memory, erased to all ones. */
+/* Flash store: plain memory, erased to all ones. A word is written whole, words in the order of the calls; power may go
+ * between any two. */
 enum { HAL_FLASH_BYTES = 0x100000 };
-uint32_t* hal_flash(void);
+const uint32_t* hal_flash(void);
+void hal_flash_write(uint32_t word, uint32_t value);
 
 #endif

@@ -5,21 +5,30 @@
 
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/background.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/variables/i_variables.h"
 #include "rtl/regs/brick_regs.h"
 
-enum { RECEIVE_SIZE = 2048, TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500 };
+enum { TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500 };
 
 /* ^A ^D ^K ^O ^Q stop things: they act in the real-time task, which is asked for at once, whatever the background is
  * at, and again in their own place. */
 #define URGENT ((1u << 0x01) | (1u << 0x04) | (1u << 0x0B) | (1u << 0x0F) | (1u << 0x11))
 
-static uint8_t receive[RECEIVE_SIZE], transmit[TRANSMIT_SIZE];
-static volatile uint32_t receive_head, receive_tail, transmit_head, transmit_tail;
+uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
+volatile uint32_t host_port_received_count, host_port_taken_count;
+
+static uint8_t transmit[TRANSMIT_SIZE];
+static volatile uint32_t transmit_head, transmit_tail;
 static volatile uint32_t urgent, flushed, discard;
-static volatile uint32_t flushed_to;          /* receive_head at the last ^X: what came before is void */
+static volatile uint32_t flushes;             /* ^X so far */
+static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
+
+/* Where transmit_tail stood when a host that did not read was given up: it is not waited for again until it reads. */
+static uint32_t given_up_at;
+static bool given_up;
 
 static void enable(bool receive_on, bool transmit_on) {
   receiving = receive_on;
@@ -28,16 +37,18 @@ static void enable(bool receive_on, bool transmit_on) {
 }
 
 void host_port_initialize(void) {
-  receive_head = receive_tail = transmit_head = transmit_tail = 0;
-  urgent = flushed = flushed_to = discard = 0;
+  host_port_received_count = host_port_taken_count = transmit_head = transmit_tail = 0;
+  urgent = flushed = flushed_to = flushes = discard = 0;
+  given_up = false;
   enable(true, false);
 }
 
 void host_port_character(uint8_t c) {
   if (c == CONTROL_X) {
-    flushed_to = receive_head;
+    flushed_to = host_port_received_count;
     transmit_head = transmit_tail;
     flushed = discard = 1;
+    ++flushes;
     if (i_integer(I63_CONTROL_X_ECHO) != 0) {
       transmit[transmit_head % TRANSMIT_SIZE] = c;
       ++transmit_head;
@@ -46,8 +57,9 @@ void host_port_character(uint8_t c) {
     background_wake();
     return;
   }
-  receive[receive_head % RECEIVE_SIZE] = c;
-  ++receive_head;
+  host_port_received[host_port_received_count % HOST_PORT_RECEIVE_SIZE] = c;
+  ++host_port_received_count;
+  slice_hurry = 1;
   if (c >= ' ') return;
   if (((URGENT >> c) & 1u) != 0u) {
     urgent |= 1u << c;
@@ -66,7 +78,7 @@ bool host_port_next_output(uint8_t* c) {
 void host_port_interrupt(void) {
   const uint32_t status = *hal_x(HI08_X_HSR);
   if ((status & HI08_HSR_HRDF_MASK) != 0u && receiving) {
-    if (receive_head - receive_tail < RECEIVE_SIZE) {
+    if (host_port_received_count - host_port_taken_count < HOST_PORT_RECEIVE_SIZE) {
       host_port_character((uint8_t)*hal_x(HI08_X_HORX));
     } else {
       enable(false, transmitting);
@@ -79,41 +91,44 @@ void host_port_interrupt(void) {
   }
 }
 
-bool host_port_waiting(void) { return receive_tail != receive_head; }
+uint32_t host_port_room(void) { return TRANSMIT_SIZE - (transmit_head - transmit_tail); }
+uint32_t host_port_flushes(void) { return flushes; }
+bool host_port_waiting(void) { return host_port_taken_count != host_port_received_count; }
 
-/* A ^X came, or the queue was full. True: what was taken before is void. */
-static __attribute__((noinline)) bool take_up(void) {
+/* A ^X came, or the queue was full. True: what was taken before is void. `end`: what may be taken now. */
+static __attribute__((noinline)) bool take_up(uint32_t* end) {
   const uint32_t state = hal_mask_all();
   const bool flush = flushed != 0u;
-  if (flush) receive_tail = flushed_to;
+  *end = host_port_received_count;
+  if (flush) host_port_taken_count = flushed_to;
   flushed = 0;
-  if (!receiving && receive_head - receive_tail < RECEIVE_SIZE / 2u) enable(true, transmitting);
+  if (!receiving && host_port_received_count - host_port_taken_count < HOST_PORT_RECEIVE_SIZE / 2u)
+    enable(true, transmitting);
   hal_unmask(state);
   return flush;
 }
 
 /* Runs between the carriage return of a line and BREQ, like the next: nothing is masked in the usual case. */
 bool host_port_take(uint8_t* c, bool* void_before) {
-  *void_before = flushed != 0u || !receiving ? take_up() : false;
-  const uint32_t tail = receive_tail;
-  if (tail == receive_head) return false;
-  *c = receive[tail % RECEIVE_SIZE];
-  receive_tail = tail + 1u;
+  uint32_t end = host_port_received_count; /* before the look at ^X: what comes behind one is not taken before it */
+  *void_before = flushed != 0u || !receiving ? take_up(&end) : false;
+  const uint32_t tail = host_port_taken_count;
+  if (tail == end) return false;
+  *c = host_port_received[tail % HOST_PORT_RECEIVE_SIZE];
+  host_port_taken_count = tail + 1u;
   return true;
 }
 
-uint32_t host_port_take_text(uint8_t* text, uint32_t most, bool* void_before) {
-  *void_before = flushed != 0u || !receiving ? take_up() : false;
-  const uint32_t head = receive_head;
-  uint32_t tail = receive_tail, count = 0;
-  for (; count < most && tail != head; ++tail) {
-    const uint8_t c = receive[tail % RECEIVE_SIZE];
-    if (c < ' ') break;
-    text[count++] = c;
-  }
-  receive_tail = tail;
-  return count;
+uint32_t host_port_text(const uint8_t** text, bool* void_before) {
+  uint32_t end = host_port_received_count; /* as above */
+  *void_before = flushed != 0u || !receiving ? take_up(&end) : false;
+  const uint32_t first = host_port_taken_count % HOST_PORT_RECEIVE_SIZE;
+  const uint32_t stored = end - host_port_taken_count, room = HOST_PORT_RECEIVE_SIZE - first;
+  *text = host_port_received + first;
+  return stored < room ? stored : room;
 }
+
+void host_port_text_taken(uint32_t count) { host_port_taken_count += count; }
 
 /* False when the host has not read for ROOM_TIMEOUT_MS. */
 static bool wait_for_room(void) {
@@ -133,6 +148,8 @@ void host_port_send(uint8_t c) {
   if (discard != 0u) return;
   if (transmit_head - transmit_tail >= TRANSMIT_SIZE && !wait_for_room()) {
     discard = 1;
+    given_up = true;
+    given_up_at = transmit_tail;
     return;
   }
   const uint32_t state = hal_mask_all();
@@ -144,7 +161,11 @@ void host_port_send(uint8_t c) {
   hal_unmask(state);
 }
 
-void host_port_open_output(void) { discard = 0; }
+void host_port_open_output(void) {
+  if (given_up && transmit_tail == given_up_at && host_port_room() == 0u) return;
+  given_up = false;
+  discard = 0;
+}
 
 uint32_t host_port_urgent(void) {
   if (urgent == 0u) return 0;

@@ -2,21 +2,35 @@
 #ifndef FIRMWARE_HOST_HOST_PORT_H
 #define FIRMWARE_HOST_HOST_PORT_H
 
+#define HOST_PORT_RECEIVE_BITS 11                            /* image/trap.S reads this file too */
+#define HOST_PORT_RECEIVE_SIZE (1 << HOST_PORT_RECEIVE_BITS) /* characters */
+
+#ifndef __ASSEMBLER__
 #include <stdbool.h>
 #include <stdint.h>
 
+/* The receive queue. The interrupt owns the first count, the background the second; both run freely and are reduced
+ * when used. */
+extern uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
+extern volatile uint32_t host_port_received_count, host_port_taken_count;
+
 void host_port_initialize(void);
-void host_port_interrupt(void);         /* image/trap.S: one character each way */
+void host_port_interrupt(void);         /* image/trap.S, where it has more to do than a character of a line */
 void host_port_character(uint8_t c);    /* a character from the host: interrupt, or a test */
 bool host_port_next_output(uint8_t* c); /* the next character for the host: interrupt, or a test */
 
 /* Background: next character received. *flushed: ^X came since the last call, what was taken before is void. */
 bool host_port_take(uint8_t* c, bool* flushed);
-/* The same for a run of characters that are no control characters; returns their number, which ends at one of those. */
-uint32_t host_port_take_text(uint8_t* text, uint32_t most, bool* flushed);
+/* The same for all that lie one behind the other, control characters too; they stay where they are until they are let
+ * go. Returns their number. */
+uint32_t host_port_text(const uint8_t** text, bool* flushed);
+void host_port_text_taken(uint32_t count);
+uint32_t host_port_room(void);    /* characters that host_port_send takes without waiting */
+uint32_t host_port_flushes(void); /* ^X so far: what waits to be sent is void */
 bool host_port_waiting(void);     /* characters received and not taken */
 void host_port_send(uint8_t c);   /* background: waits for room; gives up after half a second without a reader */
 void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
 uint32_t host_port_urgent(void);  /* real-time task: control characters that may not wait, bit = code; cleared */
 
+#endif
 #endif

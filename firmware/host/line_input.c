@@ -7,15 +7,16 @@
 
 #include "firmware/command/command.h"
 #include "firmware/command/control_characters.h"
+#include "firmware/command/program_line.h"
 #include "firmware/command/reply.h"
 #include "firmware/host/host_port.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
   LINE_LIMIT = 255,
-  CHUNK = 32,
+  ROUNDS_A_PASS = 64,
   ACKNOWLEDGE = 0x06,
-  BELL = 0x07,
   BACKSPACE = 0x08,
   REPEAT = 0x09,
   LINE_FEED = 0x0A,
@@ -23,16 +24,20 @@ enum {
 };
 enum { CHECKSUM_SO_FAR = 0x0E, LAST_LINE = 0x19 };
 
-/* The line is kept as it came and in upper case, converted as it comes: little is left to do at its end. */
-static char texts[2][LINE_LIMIT + 1], upper[LINE_LIMIT + 1];
+/* The line is kept as it came and in upper case, converted and, as far as it can be, compiled as it comes: little is
+ * left to do at its end. */
+static struct text { char sent[LINE_LIMIT + 1], upper[LINE_LIMIT + 1]; } texts[2];
+static uint32_t letter;  /* where the last letter stands: a number before it is complete */
+static uint32_t looked;  /* `letter` when the line was last compiled as far as it goes */
 static uint32_t current; /* which of `texts` is being received; the other is the last line executed */
 static uint32_t length;  /* as it came, which may be more than is kept */
 static uint32_t last_length;
 static bool bad_character, quoted;
 
 static void start_line(void) {
-  length = 0;
+  length = letter = looked = 0;
   bad_character = quoted = false;
+  program_line_forget_ahead();
 }
 
 void line_input_initialize(void) {
@@ -44,21 +49,6 @@ static uint8_t checksum(const char* text, uint32_t count) {
   uint32_t sum = 0;
   for (uint32_t i = 0; i < count; ++i) sum += (uint8_t)text[i];
   return (uint8_t)sum;
-}
-
-static void report_error(error_t error) {
-  const int32_t style = i_integer(I6_ERROR_REPORTING);
-  host_port_send(BELL);
-  if ((style & 1) == 0) return;
-  if (style == 3) host_port_send(RETURN);
-  if ((i_integer(I3_IO_HANDSHAKE) & 1) != 0) host_port_send(LINE_FEED);
-  host_port_send('E');
-  host_port_send('R');
-  host_port_send('R');
-  host_port_send((uint8_t)('0' + error / 100));
-  host_port_send((uint8_t)('0' + error / 10 % 10));
-  host_port_send((uint8_t)('0' + error % 10));
-  host_port_send(RETURN);
 }
 
 /* A line that turns acknowledging by ACK on or off is acknowledged by ACK itself: both what a client that goes by the
@@ -76,7 +66,7 @@ static void acknowledge(int32_t style_before, uint8_t sum) {
 
 static void execute(void) {
   const int32_t style_before = i_integer(I3_IO_HANDSHAKE);
-  const char* text = texts[current];
+  struct text* const line = &texts[current];
   const uint32_t count = length;
   error_t error = ERR_NONE;
   host_port_open_output();
@@ -85,42 +75,77 @@ static void execute(void) {
   else if (count > LINE_LIMIT)
     error = ERR_DATA;
   else {
-    texts[current][count] = '\0';
-    upper[count] = '\0';
+    line->upper[count] = '\0';
     current ^= 1u;
     last_length = count;
-    error = command_line(upper);
+    error = command_line(line->upper);
   }
   start_line();
   if (reply_line_is_open()) reply_end_line();
   if (error != ERR_NONE)
-    report_error(error);
+    reply_error(error);
   else
-    acknowledge(style_before, (i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0 ? checksum(text, count) : 0u);
+    acknowledge(style_before, (i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0 ? checksum(line->sent, count) : 0u);
+  if (!host_port_waiting()) slice_hurry_over(); /* else another line is on its way */
+}
+
+const char* line_input_as_typed(const char* at) {
+  struct text* const line = &texts[current ^ 1u];
+  if (at < line->upper || at > line->upper + LINE_LIMIT) return at;
+  line->sent[last_length] = '\0';
+  return &line->sent[at - line->upper];
 }
 
 /* Text in quotes keeps its case. */
-static void add(const uint8_t* from, uint32_t count) {
-  char* text = texts[current];
+static char upper_case(char c) {
+  if ((uint8_t)c > 0x7Fu) bad_character = true;
+  if (c == '"') quoted = !quoted;
+  return !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+
+/* A character that does not just go to the line at `at`; false: a control character. */
+static __attribute__((noinline)) bool add_special(char c, uint32_t at) {
+  if ((uint8_t)c < ' ') return false;
+  if (at >= LINE_LIMIT) {
+    if ((uint8_t)c > 0x7Fu) bad_character = true;
+    return true;
+  }
+  texts[current].sent[at] = c;
+  texts[current].upper[at] = c = upper_case(c);
+  if (c >= 'A' && c <= 'Z') letter = at;
+  return true;
+}
+
+/* Takes characters up to a control character; returns their number. Runs for each character in the time to BREQ: those
+ * that stay as they are go the shortest way. */
+static uint32_t add(const uint8_t* from, uint32_t count) {
+  const uint8_t *const begin = from, *const end = from + count;
+  struct text* const text = &texts[current];
   uint32_t at = length;
-  for (uint32_t i = 0; i < count; ++i) {
-    const char c = (char)from[i];
-    if (from[i] > 0x7Fu) bad_character = true;
-    if (at++ >= LINE_LIMIT) continue;
-    if (c == '"') quoted = !quoted;
-    text[at - 1u] = c;
-    upper[at - 1u] = !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+  for (; from != end; ++from, ++at) {
+    const uint32_t c = *from;
+    if (c - ' ' >= 'a' - ' ' || c == '"' || at >= LINE_LIMIT) {
+      if (!add_special((char)c, at)) break;
+      continue;
+    }
+    text->sent[at] = (char)c;
+    text->upper[at] = (char)c;
+    if (c - 'A' <= 'Z' - 'A') letter = at;
   }
   length = at;
+  return (uint32_t)(from - begin);
 }
 
 static void backspace(void) {
-  if (length != 0u && --length < LINE_LIMIT && texts[current][length] == '"') quoted = !quoted;
+  if (length == 0u) return;
+  if (--length < LINE_LIMIT && texts[current].sent[length] == '"') quoted = !quoted;
+  letter = looked = 0; /* what is compiled may end differently now: the rest waits for the end of the line */
+  program_line_forget_ahead();
 }
 
 static void repeat_last(void) {
   start_line();
-  add((const uint8_t*)texts[current ^ 1u], last_length);
+  (void)add((const uint8_t*)texts[current ^ 1u].sent, last_length);
 }
 
 /* True when a line was executed. */
@@ -130,7 +155,7 @@ static bool character(uint8_t c) {
     return true;
   }
   if (c >= ' ') {
-    add(&c, 1);
+    (void)add(&c, 1);
     return false;
   }
   switch (c) {
@@ -144,12 +169,12 @@ static bool character(uint8_t c) {
       execute();
       return true;
     case CHECKSUM_SO_FAR:
-      host_port_send(checksum(texts[current], length < LINE_LIMIT ? length : LINE_LIMIT));
+      host_port_send(checksum(texts[current].sent, length < LINE_LIMIT ? length : LINE_LIMIT));
       break;
     case LAST_LINE:
       host_port_open_output();
-      texts[current ^ 1u][last_length] = '\0';
-      reply_text(texts[current ^ 1u]);
+      texts[current ^ 1u].sent[last_length] = '\0';
+      reply_text(texts[current ^ 1u].sent);
       reply_end_line();
       acknowledge(0, 0);
       break;
@@ -161,15 +186,25 @@ static bool character(uint8_t c) {
   return false;
 }
 
+/* Number of characters. */
+static uint32_t take_text(void) {
+  const uint8_t* text;
+  bool flushed;
+  const uint32_t stored = host_port_text(&text, &flushed);
+  if (flushed) start_line();
+  if (stored == 0u) return 0;
+  const uint32_t taken = add(text, stored);
+  host_port_text_taken(taken);
+  return taken;
+}
+
 void line_input_text(void) {
-  uint8_t text[CHUNK];
-  uint32_t count;
-  do {
-    bool flushed;
-    count = host_port_take_text(text, CHUNK, &flushed);
-    if (flushed) start_line();
-    add(text, count);
-  } while (count == CHUNK);
+  if (take_text() == 0u) {
+    slice_hurry_over(); /* woken by something else: the host has paused */
+  } else if (letter != looked) {
+    looked = letter;
+    program_line_ahead(texts[current].upper, texts[current].upper + letter);
+  }
 }
 
 void line_input_urgent(void) {
@@ -179,11 +214,12 @@ void line_input_urgent(void) {
 }
 
 void line_input_pass(void) {
+  uint32_t left = ROUNDS_A_PASS; /* a host that never pauses does not hold the rest of the background off */
   uint8_t c;
   bool flushed, some;
   do {
-    line_input_text();
+    (void)take_text();
     some = host_port_take(&c, &flushed);
     if (flushed) start_line();
-  } while (some && !character(c));
+  } while (some && !character(c) && --left != 0u);
 }

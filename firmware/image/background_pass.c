@@ -1,4 +1,5 @@
-/* One pass: what the layers have to do now and then, then the host. */
+/* One pass: the host, then what the layers have to do now and then and a scan of a PLC: BREQ must not wait for them
+ * (host-bus:5.7, T_FALL). */
 #include "firmware/image/background_pass.h"
 
 #include "firmware/base/memory_map.h"
@@ -7,20 +8,27 @@
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
+#include "firmware/host/program_texts.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/clock_watch.h"
+#include "firmware/kernel/image_checksum.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
 
 void background_pass(void) {
   clock_watch_pass();
+  line_input_pass();
   panel_pass();
   /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
   *hal_x(MEMORY_GLOBAL_STATUS) = status_word();
   *hal_y(MEMORY_GLOBAL_STATUS) = motion_global_status2();
-  line_input_pass();
+  program_texts_pass();
+  const bool plcs_wait = plc_background_any();
+  if (plcs_wait) plc_background();
+  image_checksum_pass();
   i_variable_apply_clock_directions(); /* written by a program */
-  if (host_port_waiting()) background_wake();
+  if (host_port_waiting() || plcs_wait) background_wake();
   watchdog_reload();
 }

@@ -1,12 +1,16 @@
-/* The flash store: what SAVE keeps. Background task. */
+/* What SAVE keeps and the start-up takes back. Background task. */
 #ifndef FIRMWARE_IMAGE_SAVED_DATA_H
 #define FIRMWARE_IMAGE_SAVED_DATA_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;
-saved_t saved_data_restore_variables(uint32_t* initial_ics); /* I; and the ICs found at the last re-initialisation */
-void saved_data_restore_user_memory(void);                   /* P, Q, M, axes, programs of the data just accepted */
 void saved_data_write(uint32_t initial_ics);
+
+/* In steps, because the I-variables that the clocks need come before them, and they before all that takes long. */
+typedef enum { SAVED_NONE, SAVED_GOOD, SAVED_DAMAGED } saved_t;
+saved_t saved_data_restore_early(uint32_t* initial_ics); /* early I; and the ICs found at the last re-initialisation */
+bool saved_data_rest_is_whole(void);                     /* of what SAVED_GOOD was said of */
+void saved_data_restore_rest(void);                      /* other I, P, Q, M, axes, programs, the password */
 
 #endif

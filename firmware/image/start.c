@@ -4,14 +4,17 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/base/status.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/panel.h"
+#include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
 #include "firmware/image/saved_data.h"
 #include "firmware/kernel/background.h"
@@ -24,25 +27,36 @@
 #include "firmware/motion/motor_status.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/run/calculate.h"
-#include "firmware/run/plc_control.h"
+#include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
 
 enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
 
-static bool load_user;       /* user memory was saved */
+static saved_t saved;        /* what the flash store had for this start */
 static uint32_t initial_ics; /* ICs found at the last re-initialisation */
 
-/* What was saved, or the defaults: if they are asked for, by jumper E3 or `$$$***`, or if nothing good was saved. */
+static void load_defaults(void) {
+  i_variable_initialize();
+  initial_ics = gate_ic_configuration();
+}
+
+/* What was saved and the clocks need, or all defaults: if they are asked for, by jumper E3 or `$$$***`, or if nothing
+ * good was saved. */
 static void load_variables(enum start_mode mode) {
   const bool use_saved = mode == START_SAVED && (hal_strap(HAL_STRAP_E3) & 1u) == 0u;
-  const saved_t saved = use_saved ? saved_data_restore_variables(&initial_ics) : SAVED_NONE;
-  if (saved == SAVED_DAMAGED) status_set(STATUS_FLASH_ERROR);
-  if (saved != SAVED_GOOD) {
-    i_variable_initialize();
-    initial_ics = gate_ic_configuration();
+  saved = use_saved ? saved_data_restore_early(&initial_ics) : SAVED_NONE;
+  if (saved != SAVED_GOOD) load_defaults();
+}
+
+/* The rest of what was saved is looked at when the clocks run. Is it damaged, the variables are not taken either. */
+static void check_saved(void) {
+  if (saved == SAVED_GOOD && !saved_data_rest_is_whole()) {
+    saved = SAVED_DAMAGED;
+    load_defaults();
+    i_variable_write_hardware();
   }
+  if (saved == SAVED_DAMAGED) status_set(STATUS_FLASH_ERROR);
   if (initial_ics != gate_ic_configuration()) status_set(STATUS_CONFIGURATION);
-  load_user = saved == SAVED_GOOD;
 }
 
 static void load_user_memory(void) {
@@ -54,8 +68,10 @@ static void load_user_memory(void) {
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   regions_initialize();
   fixed_programs_initialize();
+  compensation_tables_initialize();
+  program_password_initialize();
   fault_show();
-  if (load_user) saved_data_restore_user_memory();
+  if (saved == SAVED_GOOD) saved_data_restore_rest();
 }
 
 /* The hardware watchdog runs from reset on: 25 ms for the first servo clock edge, and 25 ms from strobe to strobe. So
@@ -70,12 +86,14 @@ void start(enum start_mode mode) {
   load_variables(mode);
   i_variable_write_hardware();
   hal_watchdog_strobe();
+  check_saved();
   load_user_memory();
   session_initialize();
   panel_initialize();
   coordinate_systems_initialize();
   calculate_initialize();
-  plc_control_initialize();
+  plc_initialize();
+  program_texts_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();

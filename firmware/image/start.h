@@ -4,6 +4,6 @@
 
 enum start_mode { START_SAVED, START_DEFAULTS };
 void start(enum start_mode mode); /* power-up, $$$ and $$$*** */
-void start_save(void);            /* SAVE: I, P, Q and M definitions to flash */
+void start_save(void);            /* SAVE */
 
 #endif

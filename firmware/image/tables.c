@@ -7,6 +7,7 @@
 #include "firmware/command/command.h"
 #include "firmware/command/list_commands.h"
 #include "firmware/command/memory_commands.h"
+#include "firmware/command/motor_commands.h"
 #include "firmware/command/plc_commands.h"
 #include "firmware/command/program_commands.h"
 #include "firmware/command/reply.h"
@@ -46,12 +47,12 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
 
 /* BREQ: the host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may
  * be none. */
-static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session.cs; }
+static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session_host_cs(); }
 
 uint32_t (*const buffer_request_selected)(void) = selected_cs;
 
-const struct command_entry* const command_tables[] = {report_commands,   system_commands,  memory_commands,
-                                                      calendar_commands, buffer_commands,  list_commands,
-                                                      plc_commands,      program_commands, 0};
+const struct command_entry* const command_tables[] = {
+    report_commands, system_commands, memory_commands, calendar_commands, buffer_commands,
+    list_commands,   plc_commands,    motor_commands,  program_commands,  0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;

@@ -3,6 +3,9 @@
  * interrupts, calls the C handler and restores. mstatus need not be saved: a trap is only ever taken with MIE set, so
  * MPIE is always 1 on return. Latched interrupts are cleared before the handler runs, so that an edge during the
  * handler counts. */
+#include "firmware/host/host_port.h"
+#include "rtl/regs/brick_regs.h"
+
   .option push
   .option arch, +zicsr
 
@@ -11,6 +14,10 @@
   .equ HOST, 1 << 18
   .equ REAL_TIME, 1 << 19
   .equ FRAME, 80
+
+  .equ HOST_REGISTERS, 0xC0000000 + 8 * (HI08_X_HSR) /* hal_x without its last 4 */
+  .equ HOST_STATUS, 4
+  .equ HOST_CHARACTER, 4 + 8 * ((HI08_X_HORX) - (HI08_X_HSR))
 
   .macro save_registers
   addi sp, sp, -FRAME
@@ -119,11 +126,64 @@ trap_phase:
   task trap_servo, SERVO, HOST | PHASE, tasks_servo_interrupt
   task trap_real_time, REAL_TIME, HOST | PHASE | SERVO, tasks_real_time_interrupt
 
-  /* The host port is the highest task: it runs with interrupts off. */
+  /* The host port is the highest task: it runs with interrupts off. A character of a line goes to its queue here, as
+   * short as it can be: a host writes one every 2 us, and what compiles the line has the rest. Everything else, a full
+   * queue and a queue that is sent as well, is host/host_port.c's. */
+  .macro leave_short_frame
+  lw t0, 0(sp)
+  lw t1, 4(sp)
+  lw t2, 8(sp)
+  lw t3, 12(sp)
+  addi sp, sp, 32
+  .endm
+
   .global trap_host
 trap_host:
+  addi sp, sp, -32
+  sw t0, 0(sp)
+  sw t1, 4(sp)
+  sw t2, 8(sp)
+  sw t3, 12(sp)
+  li t0, HOST_REGISTERS
+  lw t1, HOST_STATUS(t0)
+  andi t1, t1, HI08_HSR_HRDF_MASK
+  beqz t1, 1f
+  lw t2, host_port_received_count
+  lw t3, host_port_taken_count
+  sub t3, t2, t3
+  srli t3, t3, HOST_PORT_RECEIVE_BITS
+  bnez t3, 1f
+  lw t1, HOST_CHARACTER(t0)
+  andi t1, t1, 0xFF
+  li t3, ' '
+  bltu t1, t3, 2f
+3:
+  lla t3, host_port_received
+  andi t0, t2, (1 << HOST_PORT_RECEIVE_BITS) - 1
+  add t3, t3, t0
+  sb t1, 0(t3)
+  addi t2, t2, 1
+  sw t2, host_port_received_count, t3
+  sw t1, slice_hurry, t3
+  leave_short_frame
+  mret
+1:
+  leave_short_frame
   save_registers
   call host_port_interrupt
+  restore_registers
+  mret
+2:
+  li t3, '\r'
+  bne t1, t3, 4f
+  sw t3, background_work, t0
+  j 3b
+4:                              /* another control character, in a word that neither frame uses otherwise */
+  sw t1, 28(sp)
+  leave_short_frame
+  save_registers
+  lw a0, FRAME - 4(sp)
+  call host_port_character
   restore_registers
   mret
 

@@ -12,7 +12,8 @@ enum { PERIODS = 10, DEFAULT_SERVO_DIVIDER = 3 };
 static bool missing;
 static bool watching; /* a set-up was changed at `changed` */
 static uint32_t changed;
-static uint32_t last_tick; /* cycle counter at the last servo task run without clocks */
+static uint32_t last_limit; /* cycles without a phase interrupt, at the last look at the set-up */
+static uint32_t last_tick;  /* cycle counter at the last servo task run without clocks */
 
 static void show_missing(bool now) {
   missing = now;
@@ -29,6 +30,7 @@ void clock_watch_changed(void) {
 void clock_watch_start(void) {
   const uint32_t limit = PERIODS * task_hooks.phase_period();
   const uint32_t start = hal_cycles();
+  last_limit = limit;
   tasks_phase_stamp = start;
   while (tasks_phase_stamp == start && hal_cycles() - start < limit) {}
   show_missing(tasks_phase_stamp == start);
@@ -39,7 +41,9 @@ void clock_watch_start(void) {
 void clock_watch_pass(void) {
   const uint32_t stamp = tasks_phase_stamp; /* before the counter: the age cannot come out negative */
   const uint32_t now = hal_cycles();
+  if (!clock_watch_close() && now - stamp <= last_limit) return; /* the usual case, before each line of the host */
   const uint32_t limit = PERIODS * task_hooks.phase_period();
+  last_limit = limit;
   const bool old = now - stamp > limit;
   if (old && !missing) last_tick = now;
   if (watching && (old || now - changed > limit + limit / 2u)) watching = false;

@@ -9,6 +9,10 @@
 void slice_initialize(void (*work)(void)); /* `work` makes one round; what was under way is forgotten */
 void slice_restart(void);                  /* the same work; real-time task held off, or that task outside of it */
 void slice_run(uint32_t cycles);           /* real-time task: a slice, until its time is over or a round is made */
-void slice_pause(void); /* a place to leave the work; anywhere else, as in the background, it does nothing */
+/* Not 0: the background is at a line of the host, from its first character to BREQ. A slice gives way to it after a
+ * little work of its own, unless its round has lasted too long already. The host port's interrupt sets it. */
+extern volatile uint32_t slice_hurry;
+void slice_hurry_over(void); /* background: the line is done; a slice that gave way goes on */
+void slice_pause(void);      /* a place to leave the work; anywhere else, as in the background, it does nothing */
 
 #endif

@@ -14,6 +14,7 @@
 #include "firmware/kernel/watchdog.h"
 
 enum { LONGEST_SLICE_MS = 5 }; /* the watchdog is not strobed meanwhile */
+enum { TRAP_CYCLES = 122 };    /* entry and return of image/trap.S, which a handler does not see */
 
 volatile uint32_t tasks_phase_stamp;
 
@@ -22,15 +23,16 @@ static volatile uint32_t servo_count;      /* S */
 static uint32_t real_time_prescaler;       /* S */
 static volatile bool real_time_due;        /* S sets, R clears: not one that a control character asked for */
 static volatile bool real_time_active;     /* R: one that was due */
-static uint32_t real_time_longest;         /* R, cycles */
+static volatile bool real_time_late;       /* S sets, R clears: due again before it was done */
+static uint32_t real_time_spent;           /* R, cycles since one was due */
 static uint32_t servo_began;               /* S, cycle counter */
 static volatile uint32_t servo_period;     /* S, cycles between the last two */
 
 void tasks_initialize(void) {
   servo_count = 0;
   real_time_prescaler = 0;
-  real_time_due = real_time_active = false;
-  real_time_longest = 0;
+  real_time_due = real_time_active = real_time_late = false;
+  real_time_spent = 0;
   servo_period = 0;
   servo_began = hal_cycles();
   watchdog_initialize();
@@ -38,6 +40,7 @@ void tasks_initialize(void) {
 
 void tasks_set_real_time_period(uint32_t i8) { real_time_period = i8; }
 uint32_t tasks_servo_count(void) { return servo_count; }
+bool tasks_real_time_is_periodic(void) { return real_time_active; }
 
 /* Half of the time from one real-time interrupt to the next: the background has the rest. */
 uint32_t tasks_real_time_slice(void) {
@@ -45,6 +48,19 @@ uint32_t tasks_real_time_slice(void) {
   if (period > longest) return longest; /* no overflow below: I8 is 255 at most */
   const uint32_t half = period * (real_time_period + 1u) / 2u;
   return half < longest ? half : longest;
+}
+
+/* In half CPU cycles, with the interrupts above it: clients take those out again (docs/firmware.md, Task load). */
+static void show_duration(volatile uint32_t* word, uint32_t cycles) { *word = (cycles / 2u) & HAL_WORD_MASK; }
+
+/* Late is one that runs, and one that the tasks above have not let begin. */
+static void request_real_time(void) {
+  if (real_time_active || real_time_due) {
+    real_time_late = true;
+    status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
+  }
+  real_time_due = true;
+  hal_request_real_time();
 }
 
 void tasks_servo_interrupt(void) {
@@ -58,28 +74,38 @@ void tasks_servo_interrupt(void) {
   task_hooks.servo();
   if (++real_time_prescaler > real_time_period) {
     real_time_prescaler = 0;
-    if (real_time_active) status_set(STATUS_REAL_TIME_REENTRY | STATUS_REAL_TIME_WARNING);
-    real_time_due = true;
-    hal_request_real_time();
+    request_real_time();
   } else if (watchdog_strobe_is_old(began) && !real_time_active && !hal_real_time_pending()) {
     watchdog_strobe(began); /* the real-time task has done its duty, the next is not due yet */
   }
-  *hal_y(MEMORY_TASK_DURATIONS) = ((hal_cycles() - began) / 2u) & HAL_WORD_MASK;
+  show_duration(hal_y(MEMORY_TASK_DURATIONS), hal_cycles() - began + TRAP_CYCLES);
   if (hal_servo_pending()) status_set(STATUS_SERVO_ERROR);
+}
+
+/* A period may have several: control characters ask for one, and a slice that gave way goes on. The words tell what the
+ * period took. A host may write the longest, to have it found anew. */
+static void show_real_time(uint32_t took, bool due) {
+  real_time_spent = due ? took : real_time_spent + took;
+  volatile uint32_t *last = hal_x(MEMORY_REAL_TIME_DURATIONS), *longest = hal_y(MEMORY_REAL_TIME_DURATIONS);
+  show_duration(last, real_time_spent);
+  if (*last > *longest) *longest = *last;
+}
+
+/* The warning is about the last one, re-entry stays. */
+static void judge_real_time(void) {
+  if (!real_time_late && (status_word() & STATUS_REAL_TIME_WARNING) != 0u) status_clear(STATUS_REAL_TIME_WARNING);
+  real_time_late = false;
 }
 
 void tasks_real_time_interrupt(void) {
   const uint32_t began = hal_cycles();
-  real_time_active = real_time_due;
-  real_time_due = false;
+  const bool due = real_time_due;
+  real_time_active = due;
+  if (due) real_time_due = false; /* else the servo task may just have asked */
   task_hooks.real_time();
   watchdog_strobe(began);
   background_wake();
-  const uint32_t took = hal_cycles() - began; /* with the tasks that interrupted it */
-  *hal_x(MEMORY_REAL_TIME_DURATIONS) = (took / 2u) & HAL_WORD_MASK;
-  if (took > real_time_longest) {
-    real_time_longest = took;
-    *hal_y(MEMORY_REAL_TIME_DURATIONS) = (took / 2u) & HAL_WORD_MASK;
-  }
   real_time_active = false;
+  if (due) judge_real_time();
+  show_real_time(hal_cycles() - began + TRAP_CYCLES, due);
 }

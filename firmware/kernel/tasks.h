@@ -3,6 +3,7 @@
 #ifndef FIRMWARE_KERNEL_TASKS_H
 #define FIRMWARE_KERNEL_TASKS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* What the kernel calls; image/tables.c fills it in. */
@@ -21,6 +22,7 @@ extern volatile uint32_t tasks_phase_stamp; /* cycle counter at the last phase i
 
 void tasks_initialize(void);
 uint32_t tasks_servo_count(void);             /* servo interrupts since start, 32 bits */
+bool tasks_real_time_is_periodic(void);       /* real-time task: not one that a control character asked for */
 uint32_t tasks_real_time_slice(void);         /* CPU cycles that the real-time task may calculate at once */
 void tasks_set_real_time_period(uint32_t i8); /* I8: servo interrupts between real-time tasks, less one. Any task */
 

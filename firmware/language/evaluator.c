@@ -12,9 +12,7 @@
 #define EXPONENT_MASK UINT64_C(0x7FF0000000000000)
 #define FRACTION_MASK UINT64_C(0x000FFFFFFFFFFFFF)
 
-static uint32_t variable_index(double number) { /* 0..8191; anything else wraps, as the address calculation would */
-  return (uint32_t)math_to_integer(number) % VARIABLE_COUNT;
-}
+uint32_t variable_index(double number) { return (uint32_t)math_to_integer(number) % VARIABLE_COUNT; }
 
 static double variable_read(uint32_t group, uint32_t cs, double number) {
   uint32_t index = variable_index(number);

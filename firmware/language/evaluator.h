@@ -15,6 +15,7 @@ struct evaluator {
  * is misused, which only a corrupted buffer can bring about. */
 bool evaluator_execute(struct evaluator* ev, const struct instruction* in, word48_t head, word48_t raw, uint32_t cs);
 bool evaluator_pop(struct evaluator* ev, double* value);
+uint32_t variable_index(double number); /* 0..8191; anything else wraps, as the address calculation would */
 void variable_write(uint32_t group, uint32_t cs, double number, double value);
 
 #endif

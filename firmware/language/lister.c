@@ -226,8 +226,9 @@ static void quoted(const struct instruction* in, const word48_t* words, uint32_t
   const uint32_t control = in->number >> TEXT_CONTROL_BIT & 0xFFu, column = in->number >> TEXT_COLUMN_BIT & 0xFFu;
   statement_name(in->group);
   if (control != 0) {
+    const char letter = (char)(control & 0x7Fu);
     put('^');
-    put((char)(control & 0x7Fu));
+    put(letter < ' ' ? '?' : letter);
     return;
   }
   if (column != 0) integer_text(column - 1u, put);

@@ -135,7 +135,13 @@ static bool find_row(struct lexer* lx, uint32_t where, uint32_t* index) {
 
 struct statement statement_find(struct lexer* lx, uint32_t where) {
   struct statement found = {STATEMENT_ROW, 0};
-  if (axis_starts(lx, &found.index)) return found;
+  const struct lexer start = *lx;
+  if (axis_starts(lx, &found.index)) {
+    if (found.index != AXIS_B || (where & (WHERE_PLC | WHERE_KINEMATIC)) == 0) return found;
+    *lx = start; /* no moves there: B{n} is the command that points to a program */
+    found.kind = STATEMENT_NONE;
+    return found;
+  }
   if (assignment_starts(*lx)) {
     found.kind = STATEMENT_ASSIGNMENT;
     (void)find_letter(lx, CLASS_OF, &found.index);

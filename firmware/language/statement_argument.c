@@ -50,6 +50,7 @@ static error_t value(struct lexer* lx, const struct statement_row* row, struct w
     const bool hexadecimal = lexer_is_hexadecimal(*lx);
     error_t error = lexer_constant(lx, &constant);
     if (error == ERR_NONE && !is_in_range(row, constant)) error = ERR_DATA;
+    if (row->argument == ARGUMENT_LABEL && hexadecimal) error = ERR_DATA; /* it would be a pushed value */
     return error != ERR_NONE ? error : add_constant(row, constant, hexadecimal, out);
   }
   struct instruction in = {OP_STATEMENT_POP, 0, row->code, 0.0};
@@ -62,19 +63,10 @@ static error_t value(struct lexer* lx, const struct statement_row* row, struct w
   return error != ERR_NONE ? error : word_list_add_instruction(out, &in);
 }
 
-/* X1000^0.5: distance behind a trigger. X1000:500: velocity at the end of a PVT move. A decimal constant goes the
- * shortest way: it is what the time to BREQ is made of (host-bus:5.7, T_FALL). */
+/* X1000^0.5: distance behind a trigger. X1000:500: velocity at the end of a PVT move. */
 error_t statement_axis_compile(struct lexer* lx, uint32_t axis, struct word_list* out) {
   struct statement_row second = {0, 0, 0, ARGUMENT_VALUE, 0};
-  error_t error;
-  const char first = lexer_peek(lx);
-  if (first >= '0' && first <= '9') {
-    struct instruction in = {OP_AXIS, 0, axis, 0.0};
-    error = lexer_constant(lx, &in.value);
-    if (error == ERR_NONE) error = word_list_add_instruction(out, &in);
-  } else {
-    error = value(lx, &statement_rows[axis], out);
-  }
+  const error_t error = value(lx, &statement_rows[axis], out);
   if (error != ERR_NONE) return error;
   const char next = lexer_peek(lx);
   if (next != '^' && next != ':') return ERR_NONE;

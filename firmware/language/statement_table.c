@@ -1,5 +1,7 @@
 #include "firmware/language/statement_table.h"
 
+#include "firmware/language/statement_key.h"
+
 #define STATEMENT(name, brief, code, argument, where) {name, brief, code, argument, where},
 #define KEY WORD_KEY
 

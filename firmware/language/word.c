@@ -113,6 +113,16 @@ static word48_t encode_value(uint32_t code1, const struct instruction* in, uint3
   return encode_short(code1, 0, in->number, word_decode(wide).value, &word) ? word : wide;
 }
 
+word48_t word_axis(uint32_t axis, bool negative, uint32_t mantissa, int32_t exponent) {
+  const unsigned below = WIDE_FRACTION - SHORT_FRACTION;
+  if ((mantissa & ((1u << below) - 1u)) == 0) {
+    const uint32_t magnitude = mantissa >> below;
+    return fields(CODE_AXIS, 0, axis, negative ? 0u - magnitude : magnitude) | ((uint32_t)exponent & 0x3Fu) << 24;
+  }
+  const uint32_t high = (uint32_t)(CODE_WIDE << 11) + ((WIDE_AXIS + axis) << 8) + (((uint32_t)exponent & 0x7Fu) << 1);
+  return (word48_t)(high | negative) << 32 | (negative ? 0u - mantissa : mantissa);
+}
+
 /* Operations of the stack code whose group is not in N. */
 static word48_t encode_stack(enum stack stack, uint32_t low) { return fields(CODE_STACK, 0, stack, low); }
 

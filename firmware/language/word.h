@@ -77,9 +77,12 @@ struct instruction {
 
 struct instruction word_decode(word48_t word);
 word48_t word_encode(const struct instruction* in); /* one word; a value is rounded to 33 bits when it has to be */
-bool word_holds_exactly(double value);              /* OP_PUSH of this value loses nothing */
-bool word_holds_short(double value);                /* nor does the 24-bit form of OP_ASSIGN, which has no wide form */
-word48_t word_double_head(double value);            /* OP_PUSH_DOUBLE and the raw word that follows it */
+/* OP_AXIS of -+ mantissa / 2^32 x 2^exponent, without a double; the mantissa has its highest bit set, or is 0 and the
+ * exponent too. */
+word48_t word_axis(uint32_t axis, bool negative, uint32_t mantissa, int32_t exponent);
+bool word_holds_exactly(double value);   /* OP_PUSH of this value loses nothing */
+bool word_holds_short(double value);     /* nor does the 24-bit form of OP_ASSIGN, which has no wide form */
+word48_t word_double_head(double value); /* OP_PUSH_DOUBLE and the raw word that follows it */
 word48_t word_double_tail(double value);
 double word_double_join(word48_t head, word48_t tail);
 uint32_t word_raw_count(const struct instruction* in); /* words behind this one that are no operations */

@@ -9,7 +9,6 @@
 #include <stdint.h>
 
 #include "firmware/base/dimensions.h"
-#include "firmware/language/evaluator.h"
 #include "firmware/language/word.h"
 #include "firmware/variables/i_variables.h"
 
@@ -20,6 +19,17 @@ enum {
   VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
   MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware:7.5) */
   CALCULATED_LINES_LIMIT = 32 /* lines without a move that one real-time interrupt works off for a coordinate system */
+};
+
+/* Lines of programs: that of the one that was called last, and before it those from which each was called. Program 0 is
+ * the rotary buffer. */
+enum { CALL_DEPTH = 15 }; /* calls in each other */
+struct program_place {
+  uint16_t program, offset;
+};
+struct program_trace {
+  uint32_t depth;
+  struct program_place places[CALL_DEPTH + 1];
 };
 
 enum program_pointer { POINTER_NONE, POINTER_ROTARY, POINTER_FIXED };
@@ -37,8 +47,9 @@ struct move {
   bool blended;             /* S: began at the velocity of the move before */
   double start[AXIS_COUNT]; /* corner at which it begins */
   double delta[AXIS_COUNT];
-  double velocity_before[AXIS_COUNT]; /* of the move before, units a trajectory unit */
-  uint32_t line_offset;               /* PE: ring offset of its line */
+  double delta_before[AXIS_COUNT]; /* of the move before, and its Tm */
+  int64_t time_before;
+  struct program_trace line; /* PE */
 };
 
 struct coordinate_system {
@@ -58,20 +69,22 @@ struct coordinate_system {
   enum mode mode;
   bool may_join; /* the last calculated move can blend with one after it */
   /* calculation, R */
-  struct evaluator evaluator;
-  uint32_t prefix;             /* OP_PREFIX: added to the number of the next command */
   double position[AXIS_COUNT]; /* end of the last calculated move */
-  double velocity[AXIS_COUNT]; /* of the last calculated move */
-  double pending[AXIS_COUNT];  /* targets of the line being calculated */
+  /* of the last calculated move, and its Tm: a velocity is divided when it is needed */
+  double last_delta[AXIS_COUNT];
+  int64_t last_time;
+  double pending[AXIS_COUNT]; /* targets of the line being calculated */
   uint32_t pending_axes;
-  uint32_t line_offset;
+  struct program_trace line; /* being calculated */
+  uint32_t planned;          /* moves so far */
   /* moves: moves[executing] belongs to S, the other one is the next */
   struct move moves[2];
   volatile uint32_t executing;
-  volatile bool active;     /* S: moves[executing] is under way */
-  volatile bool next_valid; /* R sets when complete, S clears when it starts it */
-  bool blend_decided;       /* S: the next move came before the executing one began to stop */
-  int64_t elapsed;          /* S: trajectory time since the executing move began to change velocity */
+  volatile bool active;      /* S: moves[executing] is under way */
+  volatile bool next_valid;  /* R sets when complete, S clears when it starts it */
+  volatile uint32_t started; /* S: moves so far, counted as `planned` */
+  bool blend_decided;        /* S: the next move came before the executing one began to stop */
+  int64_t elapsed;           /* S: trajectory time since the executing move began to change velocity */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */

@@ -22,20 +22,26 @@ enum {
   M2_COORDINATE_SYSTEM = 20,
   M2_AXIS = 16,
   M2_ASSIGNED = 15,
+  M2_HOME_COMPLETE = 10,
   M2_PHASE_REFERENCE_ERROR = 8
 };
 
 enum { CODE_KINEMATIC = 5, ESA_FIRST = 3300, ESA_BLOCK = 50, COMMUTATED = 1, Y_SOURCE = 2, TWO_BITS = 3 };
 
-static uint32_t without_reference; /* bit per motor that was commutated at the start: `$` is not built */
+static uint32_t without_reference; /* bit per motor that was commutated at the start: `$` finds no reference */
+static uint32_t homed;             /* bit per motor; background */
 
 static uint32_t variable(uint32_t motor, enum i_name ixxnn) { return (uint32_t)i_integer(i_motor(motor + 1u, ixxnn)); }
 static uint32_t bit(bool value, unsigned position) { return value ? 1u << position : 0u; }
 
 void motor_status_initialize(void) {
-  without_reference = 0;
+  without_reference = homed = 0;
   for (uint32_t motor = 0; motor < MOTORS; ++motor)
     without_reference |= bit((variable(motor, IXX01_COMMUTATION_ENABLE) & COMMUTATED) != 0u, motor);
+}
+
+void motor_status_show_home(uint32_t motor, bool complete) {
+  homed = complete ? homed | 1u << motor : homed & ~(1u << motor);
 }
 
 static bool dwells(uint32_t motor) {
@@ -67,7 +73,8 @@ static uint32_t axis_code(const struct axis_definition* d) {
 
 static uint32_t status2(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
-  const uint32_t word = bit(((without_reference >> motor) & 1u) != 0u, M2_PHASE_REFERENCE_ERROR);
+  const uint32_t word = bit(((without_reference >> motor) & 1u) != 0u, M2_PHASE_REFERENCE_ERROR) |
+                        bit(((homed >> motor) & 1u) != 0u, M2_HOME_COMPLETE);
   if (!d->assigned) return word;
   return word | d->cs << M2_COORDINATE_SYSTEM | axis_code(d) << M2_AXIS | bit(true, M2_ASSIGNED);
 }

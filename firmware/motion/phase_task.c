@@ -20,7 +20,8 @@
 
 enum { PHASE_POSITION = 0x34 };
 enum { COMMUTATED = 1, SOURCE_IS_Y = 2 }; /* Ixx01 */
-enum { SHORT_PATH_CYCLES = 40 };          /* of image/trap.S without work, with entry and return */
+enum { SHORT_PATH_CYCLES = 28 };          /* of image/trap.S without work, with entry and return */
+enum { TRAP_CYCLES = 92 }; /* of its entry and return with work, as far as the stamp does not count them */
 
 volatile uint32_t phase_task_work;
 
@@ -61,7 +62,7 @@ void phase_task_interrupt(void) {
   uint32_t left = phase_task_work;
   for (uint32_t index = 0; left != 0u; ++index, left >>= 1)
     if ((left & 1u) != 0u) follow(index);
-  *hal_x(MEMORY_TASK_DURATIONS) = ((hal_cycles() - tasks_phase_stamp) / 2u) & HAL_WORD_MASK;
+  *hal_x(MEMORY_TASK_DURATIONS) = ((hal_cycles() - tasks_phase_stamp + TRAP_CYCLES) / 2u) & HAL_WORD_MASK;
 }
 
 static const volatile uint32_t* source_of(uint32_t motor, bool y) {

@@ -19,16 +19,17 @@ static double larger(double a, double b) { return a > b ? a : b; }
 
 static struct move* next_move(struct coordinate_system* s) { return &s->moves[s->executing ^ 1u]; }
 
-/* Tm of a feed-specified move in ms. */
-static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT]) {
+/* Tm in ms of a feed-specified move of the axes in `moving`. */
+static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT],
+                        uint32_t moving) {
   double unit = cs_variable(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_variable(cs, ISX89_FEEDRATE);
   double limit = cs_variable(cs, ISX98_FEEDRATE_LIMIT), alternate = cs_variable(cs, ISX86_ALTERNATE_FEEDRATE);
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
   if (limit > 0.0 && feed > limit) feed = limit;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    if (((moving >> axis) & 1u) == 0) continue;
     slice_pause();
-    if (delta[axis] == 0.0) continue;
     if (((s->feedrate_axes >> axis) & 1u) == 0) {
       other = larger(other, math_absolute(delta[axis]));
       continue;
@@ -38,37 +39,42 @@ static double feed_time(uint32_t cs, const struct coordinate_system* s, const do
     square += delta[axis] * delta[axis];
   }
   if (axes == 0) return other == 0.0 ? 0.0 : math_divide(other, alternate > 0.0 ? alternate : feed) * unit;
-  double time = math_divide(axes == 1 ? single : math_square_root(square), feed) * unit;
+  double length = axes == 1 ? single : math_square_root(square);
+  slice_pause();
+  double time = math_divide(length, feed) * unit;
+  slice_pause();
   return alternate > 0.0 ? larger(time, other / alternate * unit) : time;
 }
 
 /* Acceleration and the least move time that it allows; both 0: 0.5 ms. */
 static void set_times(uint32_t cs, struct move* m, double milliseconds) {
+  slice_pause();
   double ts = cs_variable(cs, ISX88_S_CURVE_TIME);
   m->acceleration = units(larger(cs_variable(cs, ISX87_ACCELERATION_TIME), 2.0 * ts)) & ~INT64_C(1);
+  slice_pause();
   m->s_curve = units(ts);
   m->time = units(milliseconds < TRAJECTORY_LONGEST_MS ? milliseconds : TRAJECTORY_LONGEST_MS);
   int64_t least = m->acceleration > 0 ? m->acceleration : MOVE_MINIMUM_UNITS;
   if (m->time < least) m->time = least;
+  slice_pause();
 }
 
-/* Most axes stand still in most moves: nothing is calculated for them. */
-static void finish(uint32_t cs, struct move* m, bool blends) {
+/* The axes in `moving` are those whose delta is not 0. */
+static void finish(uint32_t cs, struct move* m, bool blends, uint32_t moving) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  double time = (double)m->time;
   m->joins = blends && s->may_join;
-  m->line_offset = s->line_offset;
+  m->line = s->line;
+  m->time_before = s->last_time;
+  s->last_time = m->time;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    m->velocity_before[axis] = s->velocity[axis];
-    s->velocity[axis] = m->delta[axis] == 0.0 ? 0.0 : m->delta[axis] / time;
-    slice_pause();
-  }
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    m->delta_before[axis] = s->last_delta[axis];
+    s->last_delta[axis] = m->delta[axis];
     m->start[axis] = s->position[axis];
-    if (m->delta[axis] != 0.0) s->position[axis] += m->delta[axis];
+    if (((moving >> axis) & 1u) != 0) s->position[axis] += m->delta[axis];
   }
   s->pending_axes = 0;
   s->may_join = blends;
+  s->planned++;
   atomic_signal_fence(memory_order_release);
   s->next_valid = true; /* last: from here on the servo task may start it */
   cs_busy |= 1u << cs;
@@ -77,13 +83,18 @@ static void finish(uint32_t cs, struct move* m, bool blends) {
 void plan_line(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct move* m = next_move(s);
+  uint32_t moving = 0;
+  slice_pause();
   m->kind = MOVE_LINEAR;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    m->delta[axis] = ((s->pending_axes >> axis) & 1u) ? s->pending[axis] - s->position[axis] : 0.0;
+    m->delta[axis] = 0.0;
+    if (((s->pending_axes >> axis) & 1u) == 0) continue;
+    m->delta[axis] = s->pending[axis] - s->position[axis];
+    if (m->delta[axis] != 0.0) moving |= 1u << axis;
     slice_pause();
   }
-  set_times(cs, m, s->time_mode ? cs_variable(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta));
-  finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0);
+  set_times(cs, m, s->time_mode ? cs_variable(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta, moving));
+  finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0, moving);
 }
 
 /* DWELL stops blending and is timed by the servo clock alone; DELAY is a move of no distance. */
@@ -96,9 +107,9 @@ void plan_wait(uint32_t cs, enum rate kind, double milliseconds) {
   if (kind == RATE_DWELL) {
     m->acceleration = m->s_curve = 0;
     m->time = units(length < TRAJECTORY_LONGEST_MS ? length : TRAJECTORY_LONGEST_MS);
-    finish(cs, m, false);
+    finish(cs, m, false, 0);
   } else {
     set_times(cs, m, length);
-    finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0);
+    finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0, 0);
   }
 }

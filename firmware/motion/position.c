@@ -10,6 +10,7 @@ static double rise(double t, double length, double s) {
   if (t >= length) return t - length / 2.0;
   if (t > length / 2.0) return t - length / 2.0 + rise(length - t, length, s);
   double slope = 1.0 / (length - s);
+  slice_pause();
   if (t < s) return slope * t * t * t / (6.0 * s);
   double straight = t - s;
   return slope * (s * s / 6.0 + s * straight / 2.0 + straight * straight / 2.0);
@@ -21,6 +22,9 @@ static double s_part(const struct move* m, double length) {
   return s > length / 2.0 ? length / 2.0 : s;
 }
 
+/* Most axes stand still in most moves: nothing is calculated for them. */
+static double velocity(double delta, double time) { return delta == 0.0 ? 0.0 : delta / time; }
+
 void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]) {
   const struct move* m = &s->moves[s->executing];
   if (!s->active) {
@@ -30,13 +34,17 @@ void cs_present_position(const struct coordinate_system* s, double position[AXIS
     return;
   }
   double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->acceleration, half = in / 2.0;
-  double stop = t - (half + (double)m->time - out / 2.0);
+  double time = (double)m->time, stop = t - (half + time - out / 2.0);
+  double begun = rise(t, in, s_part(m, in)), ended = s->blend_decided ? 0.0 : rise(stop, out, s_part(m, out));
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     slice_pause();
-    double before = m->blended ? m->velocity_before[axis] : 0.0;
-    double now = m->kind == MOVE_LINEAR ? m->delta[axis] / (double)m->time : 0.0;
-    double x = m->start[axis] + before * (t - half) + (now - before) * rise(t, in, s_part(m, in));
-    if (!s->blend_decided) x -= now * rise(stop, out, s_part(m, out));
-    position[axis] = before == 0.0 && now == 0.0 ? m->start[axis] : x;
+    double before = m->blended ? velocity(m->delta_before[axis], (double)m->time_before) : 0.0;
+    double now = m->kind == MOVE_LINEAR ? velocity(m->delta[axis], time) : 0.0;
+    position[axis] = m->start[axis];
+    if (before == 0.0 && now == 0.0) continue;
+    slice_pause();
+    double x = m->start[axis] + before * (t - half) + (now - before) * begun;
+    slice_pause();
+    position[axis] = x - now * ended;
   }
 }

@@ -27,6 +27,7 @@ static void begin(struct coordinate_system* s, int64_t elapsed, int64_t blend_in
   s->elapsed = elapsed;
   s->active = true;
   s->blend_decided = false;
+  s->started++;
   s->next_valid = false; /* the real-time task sees room for another move */
 }
 

@@ -3,14 +3,17 @@
 #include "firmware/run/run_control.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/run/calculate.h"
+#include "firmware/run/calls.h"
+#include "firmware/run/motion_program.h"
 #include "firmware/variables/i_variables.h"
 
 #define LARGEST_PERCENT 225.0
-#define LARGEST_PROGRAM 32767.99999
 
 /* The executing and the calculated move are dropped where the axes are now. That takes long to find out: the trajectory
  * stops here, the calculation does the rest before anything else for this system. Servo and real-time tasks held off.
@@ -37,27 +40,66 @@ static void release_hold(uint32_t cs) {
   hal_unmask(state);
 }
 
+/* What is still to be settled after an abort is begun anew: it is about the new program then. A line of the rotary
+ * buffer that was begun is lost, whatever was pointed to meanwhile. */
+static void point(uint32_t cs, uint32_t number, uint32_t offset) {
+  const uint32_t state = hal_mask_real_time();
+  calculate_forget(cs);
+  if (number == 0) rotary_skip_line_rest(cs);
+  motion_program_point(cs, number == 0, number, offset);
+  hal_unmask(state);
+}
+
 error_t run_point(uint32_t cs, double program) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->running) return ERR_PROGRAM_RUNNING;
-  if (program < 0.0 || program > LARGEST_PROGRAM) return ERR_DATA;
+  uint32_t number, label, offset = 0;
+  if (!calls_split(program, &number, &label)) return ERR_DATA;
   uint32_t state = hal_mask_servo();
   if (s->next_valid) drop_moves(cs);
   s->end_block = false;
   hal_unmask(state);
-  s->pointer = program == 0.0 ? POINTER_ROTARY : POINTER_FIXED;
-  s->fixed_program = (uint32_t)program;
+  s->pointer = POINTER_NONE;
+  if (program == 0.0) {
+    s->pointer = POINTER_ROTARY;
+    point(cs, 0, 0);
+    return ERR_NONE;
+  }
+  s->fixed_program = number;
+  if (fixed_program_find(FIXED_PROG, number) == 0) return ERR_NONE; /* R is ERR015 */
+  if (label != 0 && calls_find(number, label, &offset) != READER_WORD) return ERR_NONE;
+  s->pointer = POINTER_FIXED;
+  point(cs, number, offset);
   return ERR_NONE;
 }
 
-static bool has_program(uint32_t cs) {
-  return coordinate_systems[cs].pointer == POINTER_ROTARY && rotary_buffers[cs].size != 0;
+static bool has_inactive_motor(uint32_t cs) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++) {
+    const struct axis_definition* d = &axis_definitions[motor];
+    if (d->assigned && d->cs == cs && i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0) return true;
+  }
+  return false;
+}
+
+/* None runs while an open buffer may change it; a PLC changes none. */
+static bool motion_buffer_open(void) { return open_buffer_kind() == OPEN_FIXED && !open_buffer_is_fixed(FIXED_PLC); }
+
+/* ERR015, ERR016. The structure of a fixed program is looked at here, not when it is already running. */
+static error_t check_program(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  struct program_reader reader;
+  if (motion_buffer_open() || s->pointer == POINTER_NONE) return ERR_NO_PROGRAM;
+  if (s->pointer == POINTER_ROTARY) return rotary_buffers[cs].size != 0 ? ERR_NONE : ERR_NO_PROGRAM;
+  reader_fixed(&reader, FIXED_PROG, s->fixed_program, 0);
+  return s->running || reader_check(&reader) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
 }
 
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!VIRTUAL_AXES) return ERR_NO_MOTORS;
-  if (!has_program(cs)) return ERR_NO_PROGRAM;
+  if (has_inactive_motor(cs)) return ERR_NOT_ACTIVATED;
+  const error_t error = check_program(cs);
+  if (error != ERR_NONE) return error;
   release_hold(cs);
   if (s->running && single_step) {     /* a step request ends continuous running behind the calculated moves */
     if (s->continuous) s->quit = true; /* while a step waits for its move, one more changes nothing */
@@ -100,6 +142,17 @@ void run_hold(uint32_t cs) {
 
 void run_end_block(uint32_t cs) {
   if (coordinate_systems[cs].running) coordinate_systems[cs].end_block = true;
+}
+
+void run_calculating(uint32_t cs, struct program_trace* trace) { motion_program_next(cs, trace); }
+
+void run_executing(uint32_t cs, struct program_trace* trace) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_servo();
+  const bool active = s->active;
+  if (active) *trace = s->moves[s->executing].line;
+  hal_unmask(state);
+  if (!active) motion_program_next(cs, trace);
 }
 
 double run_time_base(uint32_t cs) {

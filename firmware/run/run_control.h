@@ -7,14 +7,17 @@
 #include <stdint.h>
 
 #include "firmware/base/error.h"
+#include "firmware/motion/coordinate_system.h"
 
 error_t run_point(uint32_t cs, double program);   /* B{n}: ERR001 while running; 0 is the rotary buffer */
-error_t run_start(uint32_t cs, bool single_step); /* R, S: ERR015 without a valid program */
+error_t run_start(uint32_t cs, bool single_step); /* R, S: ERR015 no valid program, ERR016 its blocks */
 void run_quit(uint32_t cs);                       /* Q: what is calculated is finished, then the program stops */
 void run_abort(uint32_t cs);                      /* A: calculated moves are lost, unread lines are kept */
 void run_hold(uint32_t cs);                       /* H: the time base goes to 0 at Isx95 */
 void run_end_block(uint32_t cs);                  /* `/`: stop at the end of the executing move */
-double run_time_base(uint32_t cs);                /* %: present value */
+void run_calculating(uint32_t cs, struct program_trace* trace); /* PC: the line to be calculated next */
+void run_executing(uint32_t cs, struct program_trace* trace);   /* PE: that of the move that executes, else as PC */
+double run_time_base(uint32_t cs);                              /* %: present value */
 error_t run_set_time_base(uint32_t cs, double percent);
 bool run_is_running(uint32_t cs);
 bool run_any_running(void);

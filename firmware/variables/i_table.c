@@ -76,3 +76,5 @@ struct i_place i_table_place(uint32_t number) {
 }
 
 const struct i_entry* i_table_entry(struct i_place place) { return &entries[row_of[place.group][place.offset]]; }
+
+const struct i_entry* i_table_row(uint32_t number) { return i_table_entry(i_table_place(number)); }

@@ -162,8 +162,8 @@ static void store(uint32_t number, double value) {
 }
 
 /* Limited-range integers never fail: the bits above the range are dropped. */
-static int32_t reduce(const struct i_entry* entry, double value) {
-  const uint32_t bits = (uint32_t)math_nearest(value) & ((1u << entry->bits) - 1u);
+static int32_t reduce(const struct i_entry* entry, uint32_t value) {
+  const uint32_t bits = value & ((1u << entry->bits) - 1u);
   if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u)
     return (int32_t)(bits | ~((1u << entry->bits) - 1u));
   return (int32_t)bits;
@@ -195,7 +195,7 @@ void i_variable_write(uint32_t number, double value) {
     store(number, value);
     return;
   }
-  const int32_t whole = reduce(entry, value);
+  const int32_t whole = reduce(entry, (uint32_t)math_nearest(value));
   const uint32_t state = hal_mask_real_time();
   switch (entry->field) {
     case I_FIELD_CLOCK_SOURCE:
@@ -225,6 +225,8 @@ void i_variable_write(uint32_t number, double value) {
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
   if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) clock_watch_changed();
 }
+
+void i_variable_set_open_memory_end(uint32_t address) { store(I4908_OPEN_MEMORY_END, address); }
 
 /* Start-up --------------------------------------------------------------------------------------------------------- */
 
@@ -283,13 +285,14 @@ void i_variable_initialize(void) {
   defaults(8000, 72, source); /* at most 18 servo ICs of four channels */
 }
 
-bool i_variable_save(uint32_t number, struct i_saved* saved) {
-  const struct i_place place = i_table_place(number);
-  const struct i_entry* entry = i_table_entry(place);
-  if (entry->kind == I_KIND_R || entry->field == I_FIELD_TIMER) return false;
-  saved->value = value_of[number];
-  saved->integer = integer_of[number];
-  return saved->integer != 0 || saved->value != 0.0;
+i_kept_t i_variable_kept(uint32_t number) {
+  const struct i_entry* entry = i_table_row(number);
+  if (entry->kind == I_KIND_R || entry->field == I_FIELD_TIMER || value_of[number] == 0.0) return I_NOT_KEPT;
+  return entry->kind == I_KIND_F ? I_KEPT_FLOAT : I_KEPT_INTEGER;
+}
+
+bool i_variable_is_early(uint32_t number) {
+  return number < I_MOTOR_BLOCK || (number >= I_BASE_MACRO && number < I_BASE_TABLE);
 }
 
 void i_variable_begin_restore(uint32_t saved_ics) {
@@ -298,11 +301,23 @@ void i_variable_begin_restore(uint32_t saved_ics) {
   ic_defaults(~saved_ics, 0);
 }
 
-void i_variable_restore(uint32_t number, const struct i_saved* saved) {
-  if (number >= VARIABLE_COUNT) return;
-  if (i_of_absent_ic(i_table_place(number))) return;
-  value_of[number] = saved->value;
-  integer_of[number] = saved->integer;
+/* The row of a number that takes a value; else none's, which is read-only. */
+static const struct i_entry* row_to_restore(uint32_t number) {
+  static const struct i_entry none = {.kind = I_KIND_R};
+  if (number >= VARIABLE_COUNT) return &none;
+  if (number >= I_BASE_MACRO && i_of_absent_ic(i_table_place(number))) return &none;
+  return i_table_row(number);
+}
+
+void i_variable_restore_integer(uint32_t number, int32_t value) {
+  const struct i_entry* entry = row_to_restore(number);
+  if (entry->kind != I_KIND_U && entry->kind != I_KIND_S) return;
+  integer_of[number] = reduce(entry, (uint32_t)value);
+  value_of[number] = integer_of[number];
+}
+
+void i_variable_restore_float(uint32_t number, double value) {
+  if (row_to_restore(number)->kind == I_KIND_F && math_is_finite(value)) store(number, value);
 }
 
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */

@@ -12,9 +12,10 @@
 double i_variable_read(uint32_t number); /* 0..8191 */
 void i_variable_write(uint32_t number,
                       double value); /* reduces to the range, honours I41, writes the hardware field behind it */
-void i_timer_write(uint32_t number, int32_t value); /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
-double i_variable_default(uint32_t number);         /* what `I{number}=*` assigns */
-int32_t i_integer(uint32_t number);                 /* fast read of an integer I-variable, any task */
+void i_timer_write(uint32_t number, int32_t value);    /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
+double i_variable_default(uint32_t number);            /* what `I{number}=*` assigns */
+void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
+int32_t i_integer(uint32_t number);                    /* fast read of an integer I-variable, any task */
 
 /* What a write of an I-variable does in higher layers, by enum i_field of the table; image/tables.c fills it in. Called
  * after the value is stored, without it where the entry is null. `instance`: motor, coordinate system or IC. */
@@ -31,14 +32,13 @@ void i_variable_initialize(void);
 void i_variable_write_hardware(void); /* ICs and kernel from their I-variables */
 
 /* SAVE and restore. A restore begins with zeros, read-only values and the defaults of ICs that were not there when it
- * was saved. */
-struct i_saved {
-  double value;
-  int32_t integer;
-};
-bool i_variable_save(uint32_t number, struct i_saved* saved); /* false: nothing to keep, zero or not saved at all */
-void i_variable_begin_restore(uint32_t saved_ics);            /* bit per IC of hal/gate_ic.h */
-void i_variable_restore(uint32_t number, const struct i_saved* saved);
+ * was saved. What the store holds is checked: a value that the variable cannot have is left out or reduced. */
+typedef enum { I_NOT_KEPT, I_KEPT_INTEGER, I_KEPT_FLOAT } i_kept_t;
+bool i_variable_is_early(uint32_t number);         /* the clocks or the bus need it: globals and those of ICs */
+i_kept_t i_variable_kept(uint32_t number);         /* NOT: zero, a timer or read-only */
+void i_variable_begin_restore(uint32_t saved_ics); /* bit per IC of hal/gate_ic.h */
+void i_variable_restore_integer(uint32_t number, int32_t value);
+void i_variable_restore_float(uint32_t number, double value);
 
 /* How a value is reported under I9 bit 1. */
 typedef enum { I_FORMAT_DECIMAL, I_FORMAT_HEX } i_format_t;

@@ -54,11 +54,14 @@
 #define GATE_IC_COUNT 22u
 #define SERVO_CHANNEL_STRIDE 8u /* addresses from channel n to n+1 */
 
+#ifndef __ASSEMBLER__
 enum clock_direction {
   CLOCK_DIRECTION_OUTPUT = 0, /* This IC drives the net */
   CLOCK_DIRECTION_INPUT = 1, /* The IC follows the net */
 };
+#endif
 
+#ifndef __ASSEMBLER__
 enum decode {
   DECODE_PULSE_CW = 0, /* Pulse on A, direction on B, clockwise */
   DECODE_X1_CW = 1, /* Quadrature x1, clockwise */
@@ -73,21 +76,27 @@ enum decode {
   DECODE_MLDT = 12, /* The own PFM pulse clears timer 2, the echo on A copies it to timer 1 */
   DECODE_HALL_CCW = 15, /* Hall sensors, counter-clockwise */
 };
+#endif
 
+#ifndef __ASSEMBLER__
 enum capture_source {
   CAPTURE_SOURCE_SOFTWARE = 0, /* Setting the index invert bit */
   CAPTURE_SOURCE_INDEX = 1, /* Index */
   CAPTURE_SOURCE_FLAG = 2, /* The selected flag */
   CAPTURE_SOURCE_INDEX_AND_FLAG = 3, /* Both at once */
 };
+#endif
 
+#ifndef __ASSEMBLER__
 enum flag_select {
   FLAG_SELECT_HMFL = 0, /* Home flag */
   FLAG_SELECT_PLIM = 1, /* Positive limit */
   FLAG_SELECT_MLIM = 2, /* Negative limit */
   FLAG_SELECT_USER = 3, /* User flag */
 };
+#endif
 
+#ifndef __ASSEMBLER__
 enum clock_source {
   CLOCK_SOURCE_SERVO_IC_0 = 0, /* Servo IC 0 */
   CLOCK_SOURCE_SERVO_IC_1 = 1, /* Servo IC 1 */
@@ -114,6 +123,7 @@ enum clock_source {
   CLOCK_SOURCE_OUTSIDE = 30, /* From outside, by jumper E1 */
   CLOCK_SOURCE_NONE = 31, /* No IC drives PHASE */
 };
+#endif
 
 /* Board latches */
 #define BOARD_LATCHES_BASE 0x070010u

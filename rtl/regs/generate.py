@@ -122,10 +122,10 @@ def write_c(maps):
             f"#define GATE_IC_COUNT {len(maps.ics)}u",
             "#define SERVO_CHANNEL_STRIDE 8u /* addresses from channel n to n+1 */"]
     for codes in maps.codes:
-        out += ["", f"enum {codes.name} {{"]
+        out += ["", "#ifndef __ASSEMBLER__", f"enum {codes.name} {{"]
         out += [f"  {codes.name.upper()}_{code.name.upper()} = {code.value},{c_comment(code.desc)}"
                 for code in codes.list]
-        out += ["};"]
+        out += ["};", "#endif"]
     for block in maps.blocks:
         out += ["", f"/* {block.title}{'. ' + block.desc if block.desc else ''} */"]
         if not block.relative:

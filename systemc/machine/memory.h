@@ -6,6 +6,7 @@
 #include <string>
 
 #include "systemc/cpu/cpu.h"
+#include "systemc/machine/flash_file.h"
 
 namespace brick {
 
@@ -28,9 +29,8 @@ class MachineMemory {
   void save_flash() const;             // to the file, if there is one; throws std::runtime_error
 
  private:
-  void load_flash();
   Cpu& cpu_;
-  std::string flash_file_;
+  FlashFile flash_file_;
 };
 
 }  // namespace brick

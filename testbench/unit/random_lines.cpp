@@ -108,6 +108,12 @@ std::string RandomLines::assignment() {
   return left + "=" + expression(3);
 }
 
+std::string RandomLines::settings() {
+  std::string text;
+  for (unsigned i = 0; i < 8; ++i) text += i_variable() + "=" + (one_in(3) ? integer(8388607) : constant()) + " ";
+  return text;
+}
+
 std::string RandomLines::statement() {
   switch (below(6)) {
     case 0:
@@ -236,9 +242,77 @@ std::string RandomLines::garbage() {
   return text;
 }
 
+std::string RandomLines::program_statement() {
+  switch (below(12)) {
+    case 0:
+      return "GOTO" + integer(20);
+    case 1:
+      return pick({"GOSUB", "CALL"}) + integer(20) + (one_in(3) ? "." + integer(99) : "");
+    case 2:
+      return pick({"RET", "N" + integer(20), "O" + integer(20), "STOP", "BSTART", "BSTOP"});
+    case 3:
+      return pick({"G", "M", "T", "D", "S"}) + integer(100) + (one_in(2) ? "X" + constant() : "");
+    case 4:
+      return pick({"ENA", "DIS", "PAUSE", "RESUME"}) + "PLC" + integer(33) + (one_in(3) ? ".." + integer(33) : "");
+    case 5:
+      return pick({"CMD", "SEND", "SENDP", "CMDR", "DISP 3,"}) + pick({"\"P1\"", "\"&1A\"", "\"R\"", "\"\"", "^A"});
+    case 6:
+      return "READ(" + pick({"A", "A,B,C", "X,Y,Z"}) + ")";
+    case 7:
+      return "P" + integer(50) + "=P" + integer(50) + "+1";
+    default:
+      return statement();
+  }
+}
+
+// Blocks are closed and loops end, nearly always.
+void RandomLines::whole_program() {
+  const std::string number = integer(12), plc = integer(32);
+  const unsigned kind = below(4);
+  program_.push_back("CLOSE");
+  if (!one_in(4))
+    program_.push_back(
+        "\x01"
+        "DELETE ALL TEMPS");
+  program_.push_back(kind == 0   ? "OPEN PLC " + plc + " CLEAR"
+                     : kind == 1 ? pick({"&1", "&2"}) + "OPEN " + pick({"FORWARD", "INVERSE"}) + " CLEAR"
+                                 : "OPEN PROG " + number + " CLEAR");
+  std::vector<std::string> open;
+  for (unsigned i = 0, lines = 3 + below(20); i < lines; ++i) {
+    const std::string condition = "(" + expression(1) + pick({"=", "!=", "<", ">", "!<", "!>"}) + expression(1) + ")";
+    if (one_in(6)) {
+      open.push_back("ENDIF");
+      program_.push_back("IF" + condition);
+    } else if (one_in(8)) {
+      const std::string counter = "P" + integer(100);
+      program_.push_back(one_in(10) ? "WHILE" + condition : "WHILE(" + counter + "<" + integer(100) + ")");
+      program_.push_back(counter + "=" + counter + "+1");
+      open.push_back("ENDWHILE");
+    } else if (!open.empty() && one_in(4)) {
+      program_.push_back(open.back());
+      open.pop_back();
+    } else if (!open.empty() && open.back() == "ENDIF" && one_in(6)) {
+      program_.push_back("ELSE");
+    } else {
+      program_.push_back(program_statement());
+    }
+  }
+  for (; !open.empty(); open.pop_back())
+    if (!one_in(20)) program_.push_back(open.back());
+  program_.push_back("CLOSE");
+  if (kind == 0) program_.push_back("I5=" + integer(4) + " ENA PLC " + plc);
+  if (kind > 1) program_.push_back("&" + integer(4) + "B" + number + pick({"R", "R", "S", ""}));
+}
+
 std::string RandomLines::next() {
-  if (one_in(30)) {  // the set-up that gives programs something to run in, as a host would make it
-    return "CLOSE DELETE ALL TEMPS DEF ROT 2000 B0 OPEN ROT R";
+  if (program_.empty() && one_in(40)) whole_program();
+  if (!program_.empty() && !one_in(30)) {
+    std::string line = program_.front();
+    program_.pop_front();
+    return line.substr(0, kLineLimit);
+  }
+  if (one_in(15)) {  // the set-up that gives programs something to run in, as a host would make it
+    return (one_in(4) ? "" : "\x01") + std::string("CLOSE DELETE ALL TEMPS DEF ROT 2000 B0 OPEN ROT R");
   }
   std::string text;
   if (one_in(10)) {

@@ -1,9 +1,11 @@
 // Host lines by chance, for tests that nothing a host sends stops the controller: nine tenths from the grammar, one
 // tenth garbage. Left out is what stops the real one too: clock, watchdog and wait-state settings (I19, I37, I40, I52,
-// the clock variables of an IC) and writes to device registers, directly or by an M-variable.
+// the clock variables of an IC) and writes to device registers, directly or by an M-variable. Programs are entered
+// whole, run and stopped, PLCs enabled, settings saved and reset.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <random>
 #include <string>
 #include <vector>
@@ -13,7 +15,8 @@ namespace brick {
 class RandomLines {
  public:
   explicit RandomLines(unsigned seed) : random_(seed) {}
-  std::string next();  // without its CR; control characters may be inside
+  std::string next();      // without its CR; control characters may be inside
+  std::string settings();  // a line that writes eight I-variables
 
  private:
   unsigned below(unsigned n) { return std::uniform_int_distribution<unsigned>(0, n - 1)(random_); }
@@ -32,11 +35,14 @@ class RandomLines {
   std::string memory();
   std::string buffer();
   std::string fixed_buffer();
+  std::string program_statement();
+  void whole_program();
   std::string run_control();
   std::string grammar();
   std::string garbage();
 
   std::mt19937 random_;
+  std::deque<std::string> program_;  // lines of a whole program that are still to come
 };
 
 }  // namespace brick

@@ -6,7 +6,6 @@ extern "C" {
 #include "firmware/host/line_input.h"
 #include "firmware/image/background_pass.h"
 #include "firmware/image/start.h"
-#include "firmware/kernel/tasks.h"
 }
 
 namespace brick {
@@ -39,11 +38,19 @@ std::string Controller::restart() {
 }
 
 std::string Controller::send(const std::string& characters) {
+  if (fake_interrupts_are_on()) return send_by_interrupts(characters);
   for (const char c : characters) {
     host_port_character(static_cast<std::uint8_t>(c));
     if (c == '\r') background_pass();
   }
   do { background_pass(); } while (host_port_waiting());
+  return output();
+}
+
+// Each character comes when its interrupt does, whatever the firmware is at then.
+std::string Controller::send_by_interrupts(const std::string& characters) {
+  for (const char c : characters) fake_host_input(static_cast<std::uint8_t>(c));
+  do { background_pass(); } while (fake_host_input_waits() || host_port_waiting());
   return output();
 }
 
@@ -61,10 +68,8 @@ std::string Controller::line(const std::string& text) {
 
 void Controller::servo(unsigned interrupts) {
   for (unsigned i = 0; i < interrupts; ++i) {
-    tasks_servo_interrupt();
-    if (!hal_real_time_pending()) continue;
-    fake_hal_real_time_taken();
-    tasks_real_time_interrupt();
+    fake_task_run_servo();
+    if (hal_real_time_pending()) fake_task_run_real_time();
   }
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 
 namespace brick {
 
@@ -21,6 +23,7 @@ class Controller {
 
  private:
   void start();
+  std::string send_by_interrupts(const std::string& characters);
 };
 
 }  // namespace brick

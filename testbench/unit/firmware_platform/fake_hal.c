@@ -1,23 +1,21 @@
 /* Fake hardware for firmware compiled natively. A store through hal_x or hal_y is noticed at the next call: it is
- * masked to 24 bits, and dropped when no IC stands at the address. */
+ * masked to 24 bits, and dropped when no IC stands at the address. Tasks and the host are in fake_tasks.c. */
 #include "testbench/unit/firmware_platform/fake_hal.h"
 
 #include <string.h>
 
 #include "firmware/hal/hal.h"
-#include "firmware/host/host_port.h"
 #include "firmware/kernel/tasks.h"
 #include "rtl/regs/brick_regs.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 
 enum { WORDS = 0x80000, PERIPHERALS = 0x80, LOG_LENGTH = 4096, EDGES = 4096, LOOK_CYCLES = 100, CYCLES_PER_US = 79 };
-enum { MASK_NONE, MASK_REAL_TIME, MASK_SERVO, MASK_ALL };
 
 static uint32_t memory[2][WORDS], peripheral[2][PERIPHERALS], nothing;
 static uint32_t flash[HAL_FLASH_BYTES / 4];
 static uint32_t straps[6];
-static uint32_t fitted, signals, look, real_time;
+static uint32_t fitted, signals, look;
 static uint64_t cycles;
-static uint32_t mask, masked_since, longest_mask; /* enum: who is held off */
 static unsigned breq_edges, writes, strobes;
 static struct fake_edge edges[EDGES];
 static struct fake_write write_log[LOG_LENGTH];
@@ -62,21 +60,33 @@ static volatile uint32_t* word(bool x, uint32_t address) {
 volatile uint32_t* hal_x(uint32_t address) { return word(true, address); }
 volatile uint32_t* hal_y(uint32_t address) { return word(false, address); }
 
+struct fake_word fake_hal_leave_word(void) {
+  const struct fake_word left = {last, before};
+  last = NULL;
+  return left;
+}
+
+void fake_hal_return_to_word(struct fake_word left) {
+  settle();
+  last = left.at;
+  before = left.before;
+}
+
 void fake_hal_power_on(uint32_t ics) {
   static const uint32_t geo_brick[6] = {0, 0, 603382, 32768, 1, 0};
   memset(memory, 0, sizeof memory);
   memset(peripheral, 0, sizeof peripheral);
   memset(flash, 0xFF, sizeof flash);
+  fake_hal_power_goes(FAKE_POWER_STAYS, 0);
   memcpy(straps, geo_brick, sizeof straps);
   straps[HAL_STRAP_FITTED] = fitted = ics;
-  signals = real_time = 0;
+  signals = 0;
   cycles = 0;
-  mask = MASK_NONE;
   breq_edges = writes = strobes = 0;
   look = LOOK_CYCLES;
-  longest_mask = 0;
   nothing = HAL_WORD_MASK;
   last = NULL;
+  fake_tasks_power_on();
 }
 
 void fake_hal_set_strap(unsigned index, uint32_t value) { straps[index] = value; }
@@ -98,13 +108,6 @@ void fake_hal_set_cycles(uint32_t value) { cycles = value; }
 void fake_hal_pass(uint32_t passed) { cycles += passed; }
 void fake_hal_set_look(uint32_t passed) { look = passed; }
 unsigned fake_hal_strobes(void) { return strobes; }
-bool fake_hal_masked(void) { return mask != MASK_NONE; }
-
-uint32_t fake_hal_longest_mask(void) {
-  const uint32_t longest = longest_mask;
-  longest_mask = 0;
-  return longest;
-}
 
 unsigned fake_hal_writes(const struct fake_write** log) {
   settle();
@@ -119,23 +122,6 @@ void fake_hal_clear_writes(void) {
   writes = 0;
 }
 
-static uint32_t hold_off(uint32_t who) {
-  const uint32_t held = mask;
-  if (held == MASK_NONE) masked_since = (uint32_t)cycles;
-  if (who > mask) mask = who;
-  return held;
-}
-
-uint32_t hal_mask_real_time(void) { return hold_off(MASK_REAL_TIME); }
-uint32_t hal_mask_servo(void) { return hold_off(MASK_SERVO); }
-uint32_t hal_mask_all(void) { return hold_off(MASK_ALL); }
-
-void hal_unmask(uint32_t state) {
-  mask = state;
-  const uint32_t held = (uint32_t)cycles - masked_since;
-  if (state == MASK_NONE && held > longest_mask) longest_mask = held;
-}
-
 /* Time passes by looking at it. */
 static bool clocks_stopped;
 void fake_hal_stop_clocks(bool stopped) { clocks_stopped = stopped; }
@@ -147,7 +133,14 @@ uint32_t hal_cycles(void) {
   return (uint32_t)cycles;
 }
 uint64_t hal_long_cycles(void) { return cycles; }
-uint32_t hal_image_checksum(void) { return 0xABCDEFu; }
+
+/* 1, 2, 3, ... up to their number, with a top byte that a sum of 24 bits must lose. */
+const uint32_t* hal_image(uint32_t* words) {
+  static uint32_t image[FAKE_IMAGE_WORDS];
+  for (uint32_t i = 0; i < FAKE_IMAGE_WORDS; ++i) image[i] = 0xA5000000u + i + 1u;
+  *words = FAKE_IMAGE_WORDS;
+  return image;
+}
 void hal_delay_us(uint32_t us) { cycles += us * CYCLES_PER_US; }
 void hal_await_us(uint32_t start, uint32_t us) {
   const uint32_t passed = (uint32_t)cycles - start, wanted = us * CYCLES_PER_US;
@@ -165,62 +158,7 @@ void hal_host_signals(uint32_t set, uint32_t clear) {
   signals = next;
 }
 
-void hal_interrupts_off(void) { real_time = 0; }
-void hal_interrupts_on(void) {}
-void hal_request_real_time(void) { real_time = 1; }
-void fake_hal_real_time_taken(void) { real_time = 0; }
-bool hal_real_time_pending(void) { return real_time != 0; }
-
-/* The host reads all the time. */
-static char output[1 << 20];
-static uint32_t output_length;
-
-static void host_reads(void) {
-  uint8_t c;
-  while (output_length < sizeof output && host_port_next_output(&c)) output[output_length++] = (char)c;
-}
-
-const char* fake_host_output(uint32_t* length) {
-  host_reads();
-  *length = output_length;
-  output_length = 0;
-  return output;
-}
-
-static void (*on_wait)(void);
-
-void fake_hal_on_wait(void (*action)(void)) { on_wait = action; }
-
-void hal_idle(const volatile uint32_t* work) {
-  (void)work;
-  if (on_wait == 0) {
-    host_reads();
-    return;
-  }
-  cycles += hal_cycles_per_ms();
-  on_wait();
-}
 void hal_watchdog_strobe(void) { ++strobes; }
-void hal_host_interrupts(bool receive, bool transmit) { (void)receive, (void)transmit; }
-bool hal_servo_pending(void) { return false; }
-
-static void (*side_task)(void);
-static void (*on_pause)(void);
-static bool on_side;
-
-void fake_hal_on_pause(void (*action)(void)) { on_pause = action; }
-
-void hal_side_begin(void (*task)(void)) { side_task = task; }
-
-void hal_side_change(void) {
-  if (on_side) {
-    if (on_pause != 0) on_pause();
-    return;
-  }
-  on_side = true;
-  side_task();
-  on_side = false;
-}
 
 void hal_clear_words(uint32_t first, uint32_t count) {
   memset(&memory[0][first], 0, 4u * count);
@@ -228,4 +166,25 @@ void hal_clear_words(uint32_t first, uint32_t count) {
 }
 
 uint32_t hal_strap(unsigned index) { return straps[index]; }
-uint32_t* hal_flash(void) { return flash; }
+
+const uint32_t* hal_flash(void) { return flash; }
+
+static uint32_t flash_writes, writes_with_power = FAKE_POWER_STAYS, torn_bits;
+
+void hal_flash_write(uint32_t index, uint32_t value) {
+  flash_writes++;
+  if (writes_with_power == 0) return;
+  if (writes_with_power != FAKE_POWER_STAYS && --writes_with_power == 0)
+    value = (value & ~torn_bits) | (flash[index] & torn_bits);
+  flash[index] = value;
+}
+
+uint32_t* fake_hal_flash(void) { return flash; }
+
+void fake_hal_power_goes(uint32_t after, uint32_t torn) {
+  flash_writes = 0;
+  writes_with_power = after;
+  torn_bits = torn;
+}
+
+uint32_t fake_hal_flash_writes(void) { return flash_writes; }

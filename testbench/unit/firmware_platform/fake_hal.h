@@ -1,5 +1,6 @@
-/* Controls of the fake hardware behind firmware/hal/hal.h: two arrays of PMAC words, strap words, and the host's side
- * of the character queues. Plain C, so that the firmware is compiled exactly as for the target. */
+/* Controls of the fake hardware behind firmware/hal/hal.h: two arrays of PMAC words, strap words, time. Tasks and the
+ * host's side of the character queues: fake_tasks.h. Plain C, so that the firmware is compiled exactly as for the
+ * target. */
 #ifndef TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
 #define TESTBENCH_UNIT_FIRMWARE_PLATFORM_FAKE_HAL_H
 
@@ -18,20 +19,10 @@ unsigned fake_hal_breq_falls(void); /* falling edges of BREQ since power-on */
 void fake_hal_set_cycles(uint32_t cycles);
 void fake_hal_pass(uint32_t cycles);     /* time passes */
 void fake_hal_set_look(uint32_t cycles); /* time that a look at the cycle counter takes; 100 after power-on */
-bool fake_hal_masked(void);              /* some task is held off */
-uint32_t fake_hal_longest_mask(void);    /* longest time that one was, in cycles, since the last call */
-void fake_hal_real_time_taken(void);
-unsigned fake_hal_strobes(void);                /* of the hardware watchdog since power-on */
-void fake_hal_fit(uint32_t fitted);             /* changes the ICs without power-on */
-void fake_hal_stop_clocks(bool stopped);        /* no phase interrupt comes */
-const char* fake_host_output(uint32_t* length); /* everything sent to the host since the last call; valid until then */
-
-/* While the firmware waits: a millisecond passes and `action` is called, in place of the host that reads. Null: it
- * reads again. */
-void fake_hal_on_wait(void (*action)(void));
-
-/* What others do where work in slices is left (firmware/kernel/slice.h); then the work goes on. Null: nothing. */
-void fake_hal_on_pause(void (*action)(void));
+enum { FAKE_IMAGE_WORDS = 1000 };        /* that CHECKSUM adds up: 1, 2, 3, ... in their low 24 bits */
+unsigned fake_hal_strobes(void);         /* of the hardware watchdog since power-on */
+void fake_hal_fit(uint32_t fitted);      /* changes the ICs without power-on */
+void fake_hal_stop_clocks(bool stopped); /* no phase interrupt comes */
 
 /* Edges of BREQ in order, newest last. */
 struct fake_edge {
@@ -49,6 +40,21 @@ struct fake_write {
 };
 unsigned fake_hal_writes(const struct fake_write** log); /* count; only words whose value changed are listed */
 void fake_hal_clear_writes(void);
+
+/* The word handed out last, which the code that runs has not touched yet: an interrupt leaves and returns to it. */
+struct fake_word {
+  uint32_t* at;
+  struct fake_write before;
+};
+struct fake_word fake_hal_leave_word(void);
+void fake_hal_return_to_word(struct fake_word left);
+
+/* Power goes after so many writes to the flash store: those that come later are lost. The last one with power may be
+ * torn: of these bits it leaves what was there. */
+#define FAKE_POWER_STAYS 0xFFFFFFFFu
+void fake_hal_power_goes(uint32_t after, uint32_t torn_bits);
+uint32_t fake_hal_flash_writes(void); /* asked for since then */
+uint32_t* fake_hal_flash(void);
 
 #ifdef __cplusplus
 }

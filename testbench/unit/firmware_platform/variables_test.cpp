@@ -317,7 +317,7 @@ TEST(SavedData, DamageIsReportedAndDefaultsAreUsed) {
   Controller c;
   c.line("I17=33");
   c.line("SAVE");
-  hal_flash()[20] ^= 1u;
+  fake_hal_flash()[20] ^= 1u;
   c.restart();
   EXPECT_EQ(i_integer(17), 10);
   EXPECT_NE(status_word() & STATUS_FLASH_ERROR, 0u);

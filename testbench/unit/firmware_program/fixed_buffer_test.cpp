@@ -242,6 +242,14 @@ TEST_F(FixedBuffer, AProgramThatIsAddedToKeepsItsStructure) {
   EXPECT_EQ(host("CLOSE"), "");
 }
 
+TEST_F(FixedBuffer, LabelsAreDecimal) {
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
+  EXPECT_EQ(host("N$64"), "ERR003");
+  EXPECT_EQ(host("O$64"), "ERR003");
+  EXPECT_EQ(host("N100"), "");
+  EXPECT_EQ(host("CLOSE"), "");
+}
+
 TEST_F(FixedBuffer, BlocksNestToTheirLimit) {
   ASSERT_EQ(host("OPEN PLC 1"), "");
   for (int depth = 0; depth < 32; ++depth) ASSERT_EQ(host("WHILE(P1=1)"), "");

@@ -172,7 +172,18 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
                            "OPEN PROG 1 CLEAR",
                            "X1 Y2",
                            "I18=20",
-                           "CLOSE"})
+                           "CLOSE",
+                           "OPEN PLC 2 CLEAR P1=1 CLOSE OPEN PROG 1 CLEAR",
+                           "N1 P1=P1+1 IF(P1<9) GOSUB 5 M1==P1",
+                           "X(P1) M1|=1 GOTO 1",
+                           "N5 M5==1 CALL 1.00006 X1 RETURN",
+                           "N6 READ(X) RETURN",
+                           "CLOSE",
+                           "B1.00001R",
+                           "PC PE",
+                           "OPEN PLC 2 CLOSE",
+                           "LIST PE",
+                           "A"})
     board.send(std::string(line) + "\r", 30.0);
   RandomLines random(21);
   for (int i = 0; i < 300; ++i) board.send(random.next() + "\r", 3.0);

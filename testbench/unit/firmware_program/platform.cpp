@@ -4,10 +4,12 @@
 #include <cstdio>
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 
 extern "C" {
+#include "firmware/image/background_pass.h"
 #include "firmware/image/start.h"
-#include "firmware/kernel/tasks.h"
 #include "rtl/regs/brick_regs.h"
 }
 
@@ -68,27 +70,29 @@ std::string host(const std::string& line) {
 
 void pass_us(double us) { fake_hal_pass(static_cast<std::uint32_t>(us * kCyclesPerUs)); }
 
+void background(unsigned passes) {
+  for (unsigned i = 0; i < passes; ++i) background_pass();
+}
+
+std::string sent() { return output(); }
+
 void real_time() {
   EXPECT_FALSE(fake_hal_masked()) << "a section that holds a task off was not left";
-  tasks_real_time_interrupt();
+  do { fake_task_run_real_time(); } while (fake_hal_slice_is_left() && fake_interrupts_are_on());
 }
 
 void real_time_in_slices(const std::function<void()>& between) {
   static const std::function<void()>* action;
   action = &between;
-  hal_request_real_time();  // slices end at once
   fake_hal_on_pause([] { (*action)(); });
   real_time();
   fake_hal_on_pause(nullptr);
-  fake_hal_real_time_taken();
 }
 
 void servo_ticks(unsigned count) {
   for (unsigned i = 0; i < count; ++i) {
-    tasks_servo_interrupt();
-    if (!hal_real_time_pending()) continue;
-    fake_hal_real_time_taken();
-    real_time();
+    fake_task_run_servo();
+    if (hal_real_time_pending()) real_time();
   }
 }
 
@@ -121,8 +125,8 @@ void panel(std::uint32_t low) {
 }
 
 void set_i(std::uint32_t number, double value) {
-  const i_saved saved{value, static_cast<std::int32_t>(value)};
-  i_variable_restore(number, &saved);
+  i_variable_restore_float(number, value);  // takes what is no integer, the other the rest
+  i_variable_restore_integer(number, static_cast<std::int32_t>(value));
 }
 
 }  // namespace platform

@@ -15,13 +15,16 @@ extern "C" {
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/open_buffer.h"
+#include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/command/command.h"
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
+#include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
+#include "firmware/language/axis_constant.h"
 #include "firmware/language/evaluator.h"
 #include "firmware/language/expression.h"
 #include "firmware/language/operators.h"
@@ -30,6 +33,7 @@ extern "C" {
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/run/plc_control.h"
+#include "firmware/run/program_output.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/m_variables.h"
@@ -51,6 +55,8 @@ void reset(const std::string& command = "$$$");                // memory is as s
 std::string host(const std::string& line);                     // reply lines joined by `|`, or `ERRnnn`
 std::vector<std::string> host_lines(const std::string& line);  // the same, a string a reply line
 void pass_us(double us);                                       // time passes in the background task
+void background(unsigned passes);  // of the background task; sent() has what programs have sent
+std::string sent();                // every byte since the last reply or call
 void servo_ticks(unsigned count);  // servo interrupts, the real-time task after every third (I8 = 2)
 void real_time();                  // one real-time interrupt alone
 void real_time_in_slices(const std::function<void()>& between);  // the same, left wherever it can be: `between` acts

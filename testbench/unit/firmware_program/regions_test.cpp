@@ -9,24 +9,26 @@ namespace {
 struct Region {
   const char* name;
   region_kind kind;
-  std::uint32_t cs;
+  std::uint32_t cs;  // or motor
   int height;  // place in memory, counted from the bottom (firmware:4.2); written here independently of the firmware
 };
 
-// CCBUF 16..1 | LOOKAHEAD 16..1 | ROTARY 16..1 | GATHER
+// COMP 32..1 | TCOMP 32..1 | BLCOMP 32..1 | TBUF | CCBUF 16..1 | LOOKAHEAD 16..1 | ROTARY 16..1 | GATHER
 std::vector<Region> all_regions() {
   std::vector<Region> list;
   const struct {
     const char* name;
     region_kind kind;
-  } kinds[] = {{"CCBUF", REGION_CCBUF}, {"LOOKAHEAD", REGION_LOOKAHEAD}, {"ROTARY", REGION_ROTARY}};
-  int layer = 0;
-  for (const auto& k : kinds) {
-    for (const std::uint32_t cs : {0u, 1u, 7u, 15u})
-      list.push_back({k.name, k.kind, cs, 100 * layer + 16 - static_cast<int>(cs)});
-    ++layer;
-  }
-  list.push_back({"GATHER", REGION_GATHER, 0, 300});
+    int layer;
+    std::uint32_t last;  // owner, from 0
+  } kinds[] = {{"COMP", REGION_COMP, 0, 31},           {"TCOMP", REGION_TCOMP, 1, 31},
+               {"BLCOMP", REGION_BLCOMP, 2, 31},       {"CCBUF", REGION_CCBUF, 4, 15},
+               {"LOOKAHEAD", REGION_LOOKAHEAD, 5, 15}, {"ROTARY", REGION_ROTARY, 6, 15}};
+  for (const auto& k : kinds)
+    for (const std::uint32_t owner : {0u, 1u, 7u, k.last})
+      list.push_back({k.name, k.kind, owner, 100 * k.layer + 32 - static_cast<int>(owner)});
+  list.push_back({"TBUF", REGION_TBUF, 0, 300});
+  list.push_back({"GATHER", REGION_GATHER, 0, 700});
   return list;
 }
 

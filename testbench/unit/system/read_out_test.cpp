@@ -1,5 +1,6 @@
 // The read-outs that backup clients make: every variable by ranges, on the real image (firmware:1.4). Counts and forms;
 // that each value is the data sheet's is shown natively (testbench/unit/firmware_platform/i_table_test.cpp).
+#include <map>
 #include <regex>
 
 #include "testbench/unit/system/controller.h"
@@ -11,6 +12,13 @@ constexpr unsigned kCount = 8192;
 
 class ReadOut : public Controller {
  protected:
+  // The fastest CPU: most of the time is spent on digits. It takes effect at a reset.
+  void start_fast() {
+    start();
+    ASSERT_EQ(ask("I52=31 SAVE"), "");
+    ASSERT_EQ(ask("$$$"), "");
+  }
+
   // In blocks of a hundred. Each line has to match `form` as a whole.
   std::vector<std::string> all(const std::string& letter, const std::string& behind, const std::string& form) {
     const std::regex shape(form);
@@ -33,7 +41,7 @@ const char* const kDecimal = R"(-?\d+(\.\d+)?)";
 
 TEST_P(ReadOut, OfEveryIVariable) {
   BRICK_COVERS("I9-1 I9-2");
-  start();
+  start_fast();
   const auto bare = all("I", "", std::string(kDecimal) + R"(|\$[0-9A-F]+)");
   ASSERT_EQ(bare.size(), kCount);
   EXPECT_EQ(bare[16], "5");
@@ -48,7 +56,7 @@ TEST_P(ReadOut, OfEveryIVariable) {
 }
 
 TEST_P(ReadOut, OfEveryPAndMVariable) {
-  start();
+  start_fast();
   ASSERT_EQ(ask("P8191=-0.5 M8190->X:$78001,24,S M8191->Y:$78002,8,16,S M0..4=1"), "");
   EXPECT_EQ(all("P", "", kDecimal).back(), "-0.5");
   EXPECT_EQ(all("M", "", kDecimal).at(4), "1");
@@ -60,7 +68,7 @@ TEST_P(ReadOut, OfEveryPAndMVariable) {
 }
 
 TEST_P(ReadOut, OfEachCoordinateSystemsQVariables) {
-  start();
+  start_fast();
   for (unsigned cs = 1; cs <= 16; ++cs) {
     const std::string address = "&" + std::to_string(cs);
     ASSERT_EQ(ask(address + "Q199=" + std::to_string(cs)), "");
@@ -71,7 +79,41 @@ TEST_P(ReadOut, OfEachCoordinateSystemsQVariables) {
   }
 }
 
-BRICK_ON_ENGINES(ReadOut, Engine::kSystemC);
+// As clients list programs: 80 words at a time, on from the last offset. Behind the beginning of the last line nothing
+// begins (no line), behind its last word nothing is (ERR003): both say that there is no more.
+TEST_P(ReadOut, OfProgramsInParts) {
+  BRICK_COVERS("I9-1");
+  start_fast();
+  constexpr unsigned kLines = 60, kWords = 4;  // of each line, and ENTRY_WORDS
+  for (const char* program : {"PLC 3", "PROG 5"}) {
+    ASSERT_EQ(ask(std::string("OPEN ") + program + " CLEAR"), "");
+    for (unsigned line = 0; line < kLines; ++line)
+      ASSERT_EQ(ask("p" + std::to_string(100 + line) + " = p1 + " + std::to_string(line + 1)), "");
+    ASSERT_EQ(ask("CLOSE"), "");
+    std::map<unsigned, std::string> lines;
+    unsigned parts = 0;
+    for (unsigned start = 0;; ++parts) {
+      ASSERT_LE(parts, kLines) << "the parts do not come to an end";
+      const Reply reply = link().command("list " + std::string(program) + "," + std::to_string(start) + ",80");
+      ASSERT_TRUE(reply.complete);
+      if (reply.error || reply.lines.empty()) break;
+      ASSERT_LE(reply.raw.size(), 1400u);
+      for (const std::string& line : reply.lines) {
+        const std::size_t colon = line.find(':');
+        ASSERT_NE(colon, std::string::npos) << line;
+        lines[static_cast<unsigned>(std::stoul(line))] = line.substr(colon + 1);
+      }
+      const unsigned last = lines.rbegin()->first;
+      start = last > start ? last : last + 1;
+    }
+    ASSERT_EQ(lines.size(), kLines) << program;
+    for (unsigned line = 0; line < kLines; ++line)
+      EXPECT_EQ(lines[kWords * line], "P" + std::to_string(100 + line) + "=P1+" + std::to_string(line + 1));
+    EXPECT_GE(parts, 2u);
+  }
+}
+
+BRICK_ON_ENGINES(ReadOut, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
 }  // namespace brick

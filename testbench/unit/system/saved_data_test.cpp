@@ -1,8 +1,11 @@
 // SAVE through the flash store: across `$$$`, across the power, and in a file from one run to the next.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
+#include "systemc/machine/board_file.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -72,6 +75,99 @@ TEST_P(SavedDataFile, ADamagedFileIsReportedAndDefaultsAreUsed) {
   EXPECT_EQ(status() & kFlashError, 0u) << "a new SAVE repairs it";
 }
 
+// All that takes a value has one. What sets up the clocks, the CPU and the dialogue keeps its own.
+class SavedVariables : public Controller {
+ protected:
+  void set_all() {
+    for (const char* line : {"I5..8=1", "I11..18=1", "I42..49=1", "I69..99=1"}) EXPECT_EQ(ask(line), "") << line;
+    for (const char* line : {"I100..3299=1", "I3300..4899=1", "I5000..6799=1", "I8000..8191=1"})
+      EXPECT_EQ(ask(line), "") << line;
+    for (unsigned ic = 6800; ic < 8000; ic += 50) {
+      const auto number = [&](unsigned offset) { return std::to_string(ic + offset); };
+      const std::string channels = " I" + number(10) + ".." + number(49) + "=1";
+      EXPECT_EQ(ask("I" + number(5) + "=1 I" + number(6) + "=1" + channels), "");
+    }
+  }
+  // Of each variable but the timers, which no SAVE keeps.
+  std::vector<std::string> values() {
+    std::vector<std::string> all;
+    const auto take = [&](unsigned first, unsigned end) {
+      for (unsigned from = first; from < end; from += 100)
+        for (std::string& line :
+             link().command("I" + std::to_string(from) + ".." + std::to_string(std::min(from + 100, end) - 1)).lines)
+          all.push_back(std::move(line));
+    };
+    take(0, 5100);
+    for (unsigned cs = 5100; cs < 6700; cs += 100) {
+      take(cs, cs + 11);
+      take(cs + 13, cs + 100);
+    }
+    take(6700, 8192);
+    return all;
+  }
+};
+
+TEST_P(SavedVariables, AllAtOnceComeBackWithinTheHardwareWatchdogsTime) {
+  for (const std::string board : {"geobrick-lv-8", "all-ics"}) {
+    MachineConfig config;
+    config.board = read_board_file("boards/" + board + ".toml");
+    start(config);
+    set_all();
+    const std::vector<std::string> before = values();
+    ASSERT_EQ(before.size(), 8192u - 32) << board;
+    EXPECT_GE(std::count_if(before.begin(), before.end(), [](const auto& value) { return value != "0"; }), 6500)
+        << board;
+    EXPECT_EQ(ask("SAVE"), "");
+    for (const bool power : {false, true}) {
+      ask("I130=2 I5187=2 I3350=2");
+      if (power)
+        machine().power_cycle();
+      else
+        link().command("$$$");
+      ASSERT_TRUE(link().connect(machine().now() + ms_to_ticks(150))) << board << (power ? ", power" : ", $$$");
+      EXPECT_EQ(values() == before, true) << board << (power ? ", power" : ", $$$");
+    }
+  }
+}
+
+// By the reset line and by the power, at random instants of a SAVE and in its last 30 us, in which the image comes to
+// count: all that comes back is of one SAVE.
+TEST_P(SavedDataFile, AStartInsideSaveLeavesOldOrNew) {
+  start();
+  std::mt19937 random(7);
+  int stored = 1;
+  const auto set = [this](int n) { ask("I17=" + std::to_string(n) + " P1=" + std::to_string(n) + " P8000=P1"); };
+  const auto text = [](int n) { return std::to_string(n) + "|" + std::to_string(n) + "|" + std::to_string(n); };
+  set(stored);
+  const Tick begin = machine().now();
+  ASSERT_EQ(ask("SAVE"), "");
+  const Tick duration = machine().now() - begin;
+  unsigned old_ones = 0, new_ones = 0;
+  for (int cut = 0; cut < 16; ++cut) {
+    set(stored + 1);
+    link().send("SAVE");
+    const Tick last = ms_to_ticks(1) / 30;
+    wait(cut % 2 == 0 ? duration - last + static_cast<Tick>(random() % static_cast<unsigned>(2 * last))
+                      : static_cast<Tick>(random() % static_cast<unsigned>(duration)));
+    if (cut % 4 < 2)
+      machine().reset();
+    else
+      machine().power_cycle();
+    ASSERT_TRUE(link().connect(ms_to_ticks(50)));
+    EXPECT_EQ(status() & kFlashError, 0u);
+    const std::string got = ask("I17 P1 P8000");
+    if (got == text(stored + 1)) {
+      ++stored;
+      ++new_ones;
+    } else {
+      ASSERT_EQ(got, text(stored)) << cut;
+      ++old_ones;
+    }
+  }
+  EXPECT_GE(old_ones, 6u);
+  EXPECT_GE(new_ones, 1u);
+}
+
 TEST_P(SavedDataFile, IsRefusedWhileAProgramRuns) {
   start();
   ask("&1DEFINE ROTARY 100");
@@ -84,6 +180,7 @@ TEST_P(SavedDataFile, IsRefusedWhileAProgramRuns) {
 }
 
 BRICK_ON_ENGINES(SavedDataFile, Engine::kSystemC);
+BRICK_ON_ENGINES(SavedVariables, Engine::kSystemC);
 
 }  // namespace
 }  // namespace brick

@@ -1,0 +1,32 @@
+/* The program of each coordinate system, rotary or fixed: its executor and the calls it is in. Real-time task; the
+ * background changes it while the system does not run and is not being calculated. */
+#ifndef FIRMWARE_RUN_MOTION_PROGRAM_H
+#define FIRMWARE_RUN_MOTION_PROGRAM_H
+
+#include "firmware/base/dimensions.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/run/executor.h"
+
+struct motion_program {
+  struct executor x;
+  struct program_position callers[CALL_DEPTH];
+  uint32_t depth; /* calls under way */
+  bool reading;   /* READ stands at its caller's values; its own place is kept in: */
+  struct program_position reader;
+  bool in_block;        /* between BLOCKSTART and BLOCKSTOP */
+  bool under_way;       /* a stop waits for the end of the line */
+  uint32_t interrupt;   /* real-time interrupt that these belong to: */
+  uint32_t lines;       /* worked off in it */
+  uint32_t jumps_begin; /* x.jumps_back at its begin, or at the last move */
+};
+
+extern struct motion_program motion_programs[COORDINATE_SYSTEMS];
+
+void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t offset); /* nothing of it is begun */
+void motion_program_restart(uint32_t cs);                                              /* the same once more */
+void motion_program_end_read(struct motion_program* p);              /* back from the caller's values, if it is there */
+void motion_program_drop_line(struct motion_program* p);             /* what is left of a begun line is lost */
+void motion_program_trace(uint32_t cs, struct program_trace* trace); /* the line under way */
+void motion_program_next(uint32_t cs, struct program_trace* trace);  /* background: the line to be calculated next */
+
+#endif

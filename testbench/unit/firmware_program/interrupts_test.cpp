@@ -1,0 +1,144 @@
+// Interrupts anywhere in the firmware (testbench/unit/firmware_platform/fake_interrupts.h): what they find, and that
+// lines which the host streams into a program that runs are executed once each, in order.
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "testbench/unit/firmware_program/published.h"
+}
+
+namespace {
+
+using platform::host;
+
+class Interrupts : public FirmwareTest {
+ protected:
+  void TearDown() override {
+    fake_interrupts_on_take(nullptr);
+    fake_interrupts_end();
+    fake_tasks_ignore_masks(false);
+  }
+};
+
+// The planted races. -------------------------------------------------------------------------------------------------
+
+unsigned looks, halves_seen;
+
+bool is_torn(std::uint64_t wide) { return static_cast<std::uint32_t>(wide) != wide >> 32; }
+
+void look(fake_task task) {
+  if (task != FAKE_SERVO) return;
+  ++looks;
+  if (published.first != published.second || is_torn(published.wide)) ++halves_seen;
+}
+
+void write(fake_task task) {
+  if (task != FAKE_SERVO) return;
+  ++looks;
+  published.wide += (std::uint64_t{1} << 32) + 1;
+}
+
+struct Seen {
+  unsigned looks, halves;
+};
+
+template <typename Step>
+Seen run_with(void (*action)(fake_task), Step step) {
+  published = {};
+  looks = halves_seen = 0;
+  fake_interrupts_begin(1, 10);
+  fake_interrupts_on_take(action);
+  for (std::uint32_t i = 1; i <= 4000; ++i) step(i);
+  fake_interrupts_end();
+  return {looks, halves_seen};
+}
+
+constexpr unsigned kLooks = 50;
+
+TEST_F(Interrupts, TwoWordsPublishedWithoutAMaskAreSeenHalf) {
+  for (const bool masked : {false, true}) {
+    const Seen seen = run_with(look, [&](std::uint32_t i) { publish_words(i, masked); });
+    EXPECT_GT(seen.looks, kLooks);
+    EXPECT_EQ(seen.halves > 0, !masked) << seen.halves << " of " << seen.looks;
+  }
+}
+
+TEST_F(Interrupts, WideValuePublishedWithoutAMaskIsSeenHalf) {
+  for (const bool masked : {false, true}) {
+    const Seen seen = run_with(look, [&](std::uint32_t i) { publish_wide(i, masked); });
+    EXPECT_GT(seen.looks, kLooks);
+    EXPECT_EQ(seen.halves > 0, !masked) << seen.halves << " of " << seen.looks;
+  }
+}
+
+TEST_F(Interrupts, WideValueReadWithoutAMaskIsReadHalf) {
+  for (const bool masked : {false, true}) {
+    unsigned torn = 0;
+    const Seen seen = run_with(write, [&](std::uint32_t) { torn += is_torn(read_published(masked)) ? 1 : 0; });
+    EXPECT_GT(seen.looks, kLooks);
+    EXPECT_EQ(torn > 0, !masked) << torn << " of " << seen.looks;
+    EXPECT_FALSE(is_torn(published.wide)) << "what an interrupt wrote is whole again";
+  }
+}
+
+// The firmware. ------------------------------------------------------------------------------------------------------
+
+constexpr unsigned kLines = 400, kTries = 3000;
+
+// Line n of coordinate system s: P(1000 s + P(s)) = n, P(s) = P(s) + 1. Empty when each was executed once and in order.
+std::string stream(std::uint32_t seed) {
+  for (unsigned cs = 2; cs >= 1; --cs)
+    if (!host("&" + std::to_string(cs) + "DEF ROT 60 B0").empty()) return "no buffer";
+  if (!host("OPEN ROT &2R &1R").empty()) return "does not run";
+  fake_interrupts_begin(seed, 20 + seed % 7 * 40);
+  for (unsigned n = 0; n < kLines; ++n) {
+    const std::string cs = std::to_string(1 + n % 2), next = "P" + cs;
+    const std::string line = "P(" + cs + "000+" + next + ")=" + std::to_string(n) + " " + next + "=" + next + "+1";
+    if (!host("&" + cs).empty()) return "& is refused";
+    std::string reply;
+    unsigned tries = 0;
+    do { reply = host(line); } while (reply == "ERR006" && ++tries < kTries);  // until there is room
+    if (!reply.empty()) return line + " is answered by " + reply;
+  }
+  for (const char* cs : {"&1", "&2"}) {
+    unsigned tries = 0;
+    while (host(std::string(cs) + "PR") != "0" && ++tries < kTries) {}
+    if (tries == kTries) return std::string(cs) + ": not all are calculated";
+  }
+  fake_interrupts_end();
+  platform::servo_ticks(30);
+  for (unsigned cs = 1; cs <= 2; ++cs) {
+    if (p_variable_read(cs) != kLines / 2) return "executed: " + std::to_string(p_variable_read(cs));
+    for (unsigned i = 0; i < kLines / 2; ++i)
+      if (p_variable_read(1000 * cs + i) != 2 * i + cs - 1) return "place " + std::to_string(i) + " is another line";
+  }
+  return host("&1 A &2 A CLOSE DEL ALL TEMPS");
+}
+
+TEST_F(Interrupts, StreamedLinesAreExecutedOnceAndInOrder) {
+  BRICK_COVERS("BREQ-1");
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    platform::power_up();
+    EXPECT_EQ(stream(seed), "") << "seed " << seed;
+    const fake_interrupt_counts counts = fake_interrupts_counts();
+    EXPECT_GT(counts.taken[FAKE_REAL_TIME], 100u);
+    EXPECT_GT(counts.held_off, 20u) << "nothing came while it was masked";
+  }
+}
+
+// The same with critical sections that hold nobody off.
+TEST_F(Interrupts, StreamWithoutMasksLosesLines) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    platform::power_up();
+    fake_tasks_ignore_masks(true);
+    const std::string found = stream(seed);
+    fake_interrupts_end();
+    if (!found.empty()) return;
+  }
+  FAIL() << "nothing was found";
+}
+
+}  // namespace

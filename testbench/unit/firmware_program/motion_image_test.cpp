@@ -1,0 +1,63 @@
+// Fixed motion programs on the cross-compiled image: what endless ones cost, and that nothing waits for them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/image_board.h"
+
+namespace brick {
+namespace {
+
+class MotionImage : public ::testing::Test {
+ protected:
+  void SetUp() override { EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06"); }
+  void accepted(const std::string& line) { ASSERT_EQ(board.send(line + "\r"), "\x06") << line; }
+  void store(int number, const std::vector<std::string>& lines) {
+    accepted("OPEN PROG " + std::to_string(number) + " CLEAR");
+    for (const std::string& line : lines) accepted(line);
+    accepted("CLOSE");
+  }
+  double value(const std::string& name) { return std::stod(board.send(name + "\r")); }
+  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+};
+
+TEST_F(MotionImage, FifteenEndlessProgramsLeaveHostWatchdogAndBlending) {
+  store(1, {"WHILE(1=1)", "P(Q1)=P(Q1)+1 IF(P(Q1)<0)P0=ASIN(.5)+ATAN2(3)", "ENDWHILE"});
+  store(2, {"N1 GOSUB 10 P(Q1)=P(Q1)+1 P0=LN(5)+SIN(30)", "GOTO 1", "N10 WHILE(P0!<0) P0=-1", "RETURN"});
+  store(16, {"TM20TA10TS0INC", "WHILE(P40<50) P40=P40+1 X1", "DWELL0", "P41=1"});
+  for (int cs = 1; cs <= 15; ++cs)
+    accepted("&" + std::to_string(cs) + "Q1=" + std::to_string(20 + cs) + "B" + (cs % 2 == 0 ? "1R" : "2R"));
+  accepted("&16B16R");
+  const double began = board.now_ms();
+  double longest = 0.0;
+  while (value("P41") == 0.0 && board.now_ms() - began < 2000.0) {
+    const double asked = board.now_ms();
+    EXPECT_EQ(board.send("I3\r"), "2\r\x06");
+    longest = std::max(longest, board.now_ms() - asked);
+  }
+  // 50 moves of 20 ms and the last deceleration; blended all of them, else 30 ms each.
+  EXPECT_NEAR(board.now_ms() - began, 50 * 20.0 + 10.0, 15.0);
+  EXPECT_LT(longest, 5.0);
+  RecordProperty("reply_ms", std::to_string(longest));
+  for (int cs = 1; cs <= 15; ++cs) EXPECT_GT(value("P" + std::to_string(20 + cs)), 20.0) << cs;
+  EXPECT_EQ(std::stoul(board.send("???\r").substr(0, 6), nullptr, 16) & 0x508200u, 0u);
+  EXPECT_LT(board.longest_strobe_gap_ms(), 12.0);
+  accepted("&1A");
+  board.run_ms(4.0);
+  EXPECT_EQ(board.send("&1??\r").at(7) & 2, 2) << "in position, while the others go on";
+}
+
+TEST_F(MotionImage, LoopsWithoutAMoveGoRoundTwiceAnInterrupt) {
+  store(1, {"WHILE(P1<1000) P1=P1+1", "P2=1"});
+  accepted("B1R");
+  const double began = board.now_ms();
+  while (value("P2") == 0.0) ASSERT_LT(board.now_ms() - began, 1000.0);
+  RecordProperty("loop_ms", std::to_string(board.now_ms() - began));
+  EXPECT_NEAR(board.now_ms() - began, 500 * 3 * 3713991.0 / 8388608.0, 15.0) << "500 real-time interrupts";
+}
+
+}  // namespace
+}  // namespace brick

@@ -1,0 +1,322 @@
+// PLCs (firmware:4.3, firmware:7.2, firmware:8.1): which run, in which order, how far a turn goes, where it goes on.
+#include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/run/plc.h"
+}
+
+namespace {
+
+using platform::background;
+using platform::host;
+using platform::servo_ticks;
+using Lines = std::vector<std::string>;
+
+class Plc : public FirmwareTest {
+ protected:
+  static void load(int number, const Lines& lines) {
+    ASSERT_EQ(host("OPEN PLC " + std::to_string(number) + " CLEAR"), "");
+    for (const std::string& line : lines) ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("CLOSE"), "");
+  }
+  // Appends its number to the list P201, P202, ... whose length is P200.
+  static Lines logs(int number) { return {"P200=P200+1", "P(200+P200)=" + std::to_string(number)}; }
+  static std::string list() {
+    std::string text;
+    for (unsigned i = 1; i <= static_cast<unsigned>(p_variable_read(200)); ++i)
+      text += static_cast<char>('0' + static_cast<int>(p_variable_read(200 + i)));
+    return text;
+  }
+  static double p(unsigned number) { return p_variable_read(number); }
+  // As a client defines it: M50nn -> Y:$31nn,22, 0 while it runs.
+  static bool shown_running(unsigned number) { return (*hal_y(0x3100 + number) >> 22 & 1u) == 0; }
+};
+
+TEST_F(Plc, BackgroundPlcsTakeTurnsInRisingOrderOneScanAPass) {
+  for (const int n : {7, 2, 5, 1}) load(n, logs(n));
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1..2,5,7"), "");
+  background(1);
+  EXPECT_EQ(list(), "1") << "PLC 1 is the first after a start";
+  background(8);
+  EXPECT_EQ(list(), "125712571");
+}
+
+TEST_F(Plc, MissingOnesAreDisabledWhenTheirTurnComes) {
+  load(3, logs(3));
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1..4"), "");
+  background(8);
+  EXPECT_EQ(plc_enabled(), 1u << 3);
+  EXPECT_EQ(list().substr(0, 3), "333");
+  EXPECT_FALSE(shown_running(1));
+  EXPECT_TRUE(shown_running(3));
+}
+
+TEST_F(Plc, I5SaysWhichClassRuns) {
+  load(0, {"P1=P1+1"});
+  load(4, {"P2=P2+1"});
+  ASSERT_EQ(host("ENABLE PLC 0,4"), "");
+  for (int i5 = 0; i5 <= 3; ++i5) {
+    ASSERT_EQ(host("P1=0 P2=0 I5=" + std::to_string(i5)), "");
+    background(5);
+    EXPECT_EQ(p(1), 0.0) << "PLC 0 is not of the background";
+    servo_ticks(9);  // I8 = 2: three real-time interrupts
+    EXPECT_EQ(p(1), (i5 & 1) != 0 ? 3.0 : 0.0) << i5;
+    EXPECT_EQ(p(2), (i5 & 2) != 0 ? 5.0 : 0.0) << i5;
+  }
+}
+
+TEST_F(Plc, Plc0ScansOnceARealTimeInterruptByI8) {
+  load(0, {"P1=P1+1"});
+  ASSERT_EQ(host("I5=1 ENABLE PLC 0"), "");
+  background(1);  // reads its blocks
+  for (const int i8 : {0, 1, 4, 9}) {
+    ASSERT_EQ(host("I8=" + std::to_string(i8)), "");
+    servo_ticks(10);  // whatever the prescaler stood at
+    const double before = p(1);
+    servo_ticks(120);
+    EXPECT_EQ(p(1) - before, 120.0 / (i8 + 1)) << i8;
+  }
+  const double before = p(1);
+  platform::real_time();  // one that a control character has asked for
+  EXPECT_EQ(p(1), before);
+}
+
+// However long it is: its blocks are looked for in the background, not in the interrupt.
+TEST_F(Plc, Plc0BeginsWhenTheBackgroundHasReadItsBlocks) {
+  load(0, {"IF(P2=0)", "P1=P1+1", "ENDIF"});
+  ASSERT_EQ(host("I5=1"), "");
+  plc_enable(1);
+  servo_ticks(9);
+  EXPECT_EQ(p(1), 0.0);
+  EXPECT_TRUE(plc_background_any());
+  background(1);
+  EXPECT_FALSE(plc_background_any());
+  servo_ticks(9);
+  EXPECT_EQ(p(1), 3.0);
+}
+
+TEST_F(Plc, LoopOfABackgroundPlcGivesWayAndGoesOn) {
+  load(1, {"P10=0", "WHILE(P10<3)", "P10=P10+1", "ENDWHILE", "P11=P11+1"});
+  load(2, {"P12=P12+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1,2"), "");
+  const Lines expected = {"1|0|0", "1|0|1", "2|0|1", "2|0|2", "3|0|2", "3|0|3", "3|1|3"};
+  for (const std::string& values : expected) {  // three turns end at ENDWHILE, the fourth finds the loop over
+    background(1);
+    EXPECT_EQ(host("P10..12"), values);
+  }
+}
+
+TEST_F(Plc, LoopOfPlc0IsExecutedInOneScan) {
+  load(0, {"P10=0", "WHILE(P10<50)", "P10=P10+1", "ENDWHILE", "P11=P11+1"});
+  ASSERT_EQ(host("I5=1 ENABLE PLC 0"), "");
+  background(1);
+  servo_ticks(3);
+  EXPECT_EQ(host("P10 P11"), "50|1");
+}
+
+TEST_F(Plc, NestedBlocksAndConditionsGovernAScan) {
+  load(1, {"IF(P1=1)", "AND(P2=1)", "P10=P10+1", "ELSE", "IF(P1=2)", "OR(P2=2)", "P11=P11+1", "ELSE", "P12=P12+1",
+           "ENDIF", "ENDIF", "P13=P13+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  for (const char* set : {"P1=1 P2=1", "P1=1 P2=0", "P1=2 P2=0", "P1=0 P2=2", "P1=0 P2=0"}) {
+    ASSERT_EQ(host(set), "");
+    background(1);
+  }
+  EXPECT_EQ(host("P10..13"), "1|2|2|5");
+}
+
+TEST_F(Plc, DisabledPlcEndsItsScanAndBeginsAtTheTop) {
+  load(1, {"P1=P1+1", "DISABLE PLC 1", "P2=P2+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  background(5);
+  EXPECT_EQ(host("P1 P2"), "1|1") << "disabled, it ends its scan";
+  EXPECT_FALSE(shown_running(1));
+  ASSERT_EQ(host("ENAPLC1"), "");
+  EXPECT_TRUE(shown_running(1));
+  background(5);
+  EXPECT_EQ(host("P1 P2"), "2|2");
+
+  load(2, {"P3=P3+1", "WHILE(P4=0)", "ENDWHILE", "P5=P5+1"});
+  ASSERT_EQ(host("ENABLE PLC 2"), "");
+  background(5);
+  EXPECT_EQ(host("P3 P5"), "1|0");
+  ASSERT_EQ(host("ENABLE PLC 2"), "");
+  background(2);
+  EXPECT_EQ(host("P3 P5"), "1|0") << "it runs: nothing to enable";
+  ASSERT_EQ(host("DISABLE PLC 2 ENABLE PLC 2"), "");
+  background(2);
+  EXPECT_EQ(host("P3 P5"), "2|0") << "out of its loop, at the top";
+}
+
+TEST_F(Plc, PausedPlcGoesOnWhereItWas) {
+  load(1, {"P1=P1+1", "PAUSE PLC 1", "P2=P2+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  background(3);
+  EXPECT_EQ(host("P1 P2"), "1|0") << "it stops behind its PAUSE";
+  EXPECT_FALSE(shown_running(1));
+  ASSERT_EQ(host("RESUME PLC 1"), "");
+  background(1);
+  EXPECT_EQ(host("P1 P2"), "1|1");
+  background(1);
+  EXPECT_EQ(host("P1 P2"), "2|1");
+  ASSERT_EQ(host("ENABLE PLC 1"), "");  // paused: from the top
+  background(1);
+  EXPECT_EQ(host("P1 P2"), "3|1");
+  ASSERT_EQ(host("DISPLC1 RESPLC1"), "");
+  background(3);
+  EXPECT_EQ(host("P1 P2"), "3|1") << "a disabled one is not resumed";
+}
+
+TEST_F(Plc, PlcsControlEachOtherByListsAndRanges) {
+  for (const int n : {1, 2, 3, 4}) load(n + 10, {"P" + std::to_string(n) + "=P" + std::to_string(n) + "+1"});
+  load(1, {"IF(P10=1)", "DISABLE PLC 11..12,14", "P10=0", "ENDIF", "IF(P10=2)", "ENABLE PLC 11,12", "PAUSE PLC 13",
+           "P10=0", "ENDIF", "IF(P10=3)", "RESUME PLC 13", "P10=0", "ENDIF"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1,11..14"), "");
+  background(10);
+  EXPECT_EQ(host("P1..4"), "2|2|2|2");
+  ASSERT_EQ(host("P10=1"), "");
+  background(4);
+  EXPECT_EQ(plc_enabled(), 1u << 1 | 1u << 13);
+  ASSERT_EQ(host("P10=2"), "");
+  background(4);
+  EXPECT_EQ(plc_enabled(), 1u << 1 | 1u << 11 | 1u << 12);
+  ASSERT_EQ(host("P10=3"), "");
+  background(4);
+  EXPECT_EQ(plc_enabled(), 1u << 1 | 7u << 11);
+}
+
+TEST_F(Plc, Plc0DisablesABackgroundPlcAndItself) {
+  load(0, {"DISABLE PLC 0,3", "P1=P1+1"});
+  load(3, {"P2=P2+1"});
+  ASSERT_EQ(host("I5=3 ENABLE PLC 0,3"), "");
+  background(2);
+  servo_ticks(9);
+  background(2);
+  EXPECT_EQ(host("P1 P2"), "1|2");
+}
+
+TEST_F(Plc, MotorAndSystemAreAddressedByEachForItself) {
+  load(1, {"Q1=Q1+1", "ADDRESS#3&2", "Q2=Q2+1"});
+  load(2, {"Q3=Q3+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1,2 &5"), "");
+  background(4);
+  EXPECT_EQ(q_variable_read(0, 1), 1.0) << "&1 is the default";
+  EXPECT_EQ(q_variable_read(1, 1), 1.0) << "the address stays from scan to scan";
+  EXPECT_EQ(q_variable_read(1, 2), 2.0);
+  EXPECT_EQ(q_variable_read(0, 3), 2.0) << "it is that of PLC 1 alone";
+  EXPECT_EQ(q_variable_read(4, 3), 0.0) << "the host's address means nothing";
+  ASSERT_EQ(host("DISABLE PLC 1 ENABLE PLC 1"), "");
+  background(2);
+  EXPECT_EQ(q_variable_read(0, 1), 2.0) << "&1 again";
+}
+
+TEST_F(Plc, WhatIsEnabledAfterOpenCloseSaveAndReset) {
+  load(1, {"P1=P1+1"});
+  load(2, {"P2=P2+1"});
+  ASSERT_EQ(host("I5=2"), "");
+  background(3);
+  EXPECT_EQ(host("P1 P2"), "0|0") << "a new one is disabled";
+  ASSERT_EQ(host("ENABLE PLC 1,2"), "");
+  ASSERT_EQ(host("OPEN PLC 1"), "");
+  plc_enable(1u << 1);  // as another port would
+  background(2);
+  EXPECT_EQ(p(1), 0.0) << "it is open";
+  ASSERT_EQ(host("P3=1"), "");
+  ASSERT_EQ(host("CLOSE"), "");
+  background(2);
+  EXPECT_EQ(host("P1 P3"), "1|1");
+  ASSERT_EQ(host("DISABLE PLC 1,2 P1=0 P2=0 SAVE"), "");
+  background(2);
+  EXPECT_EQ(plc_enabled(), 0u) << "SAVE changes nothing";
+  platform::reset("$$$");
+  EXPECT_EQ(plc_enabled(), 6u) << "all that were saved";
+  background(3);
+  EXPECT_EQ(host("P1 P2"), "2|1");
+  platform::reset("$$$***");
+  EXPECT_EQ(plc_enabled(), 0u);
+}
+
+// Opening PLC 2 moves the words of PLC 3, which stands in a loop.
+TEST_F(Plc, PlcGoesOnWhenProgramsMove) {
+  load(2, {"P1=P1+1"});
+  load(3, {"P3=P3+1", "WHILE(P4=0)", "P5=P5+1", "ENDWHILE", "P6=P6+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 3"), "");
+  background(2);
+  ASSERT_EQ(host("P3 P5 P6"), "1|2|0");
+  ASSERT_EQ(host("OPEN PLC 2"), "");
+  ASSERT_EQ(host("P7=1"), "");
+  ASSERT_EQ(host("CLOSE"), "");
+  background(1);
+  EXPECT_EQ(host("P3 P5 P6"), "1|3|0");
+  ASSERT_EQ(host("P4=1"), "");
+  background(1);
+  EXPECT_EQ(host("P3 P5 P6"), "1|3|1");
+}
+
+TEST_F(Plc, ControlDDisablesAll) {
+  load(0, {"P1=P1+1"});
+  load(9, {"P2=P2+1"});
+  ASSERT_EQ(host("I5=3 ENABLE PLC 0,9"), "");
+  background(1);
+  servo_ticks(3);
+  ASSERT_EQ(host("P1 P2"), "1|1");
+  host_port_character(0x04);
+  platform::real_time();
+  EXPECT_EQ(plc_enabled(), 0u) << "without the background";
+  servo_ticks(9);
+  background(3);
+  EXPECT_EQ(host("P1 P2"), "1|1");
+  EXPECT_FALSE(shown_running(0));
+}
+
+TEST_F(Plc, DamagedStatementDisablesItsPlcAlone) {
+  load(1, {"P1=P1+1", "P2=P2+1"});
+  load(2, {"P3=P3+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1,2"), "");
+  background(2);
+  // PLC 1 lies lowest: its second statement, an axis move, which no PLC has.
+  const fixed_program* program = fixed_program_find(FIXED_PLC, 1);
+  const instruction in{OP_AXIS, 0, AXIS_X, 5.0};
+  user_memory_write(program->base + program->words / 2, word_encode(&in) | WORD_START_OF_LINE);
+  background(6);
+  EXPECT_EQ(host("P1..3"), "2|1|6");
+  EXPECT_FALSE(shown_running(1));
+  EXPECT_TRUE(shown_running(2));
+}
+
+TEST_F(Plc, UnfinishedBlockOfAClosedPlcDoesNotRunAway) {
+  ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
+  ASSERT_EQ(host("P1=P1+1"), "");
+  ASSERT_EQ(host("WHILE(P2=0)"), "");
+  ASSERT_EQ(host("P3=P3+1"), "");
+  ASSERT_EQ(host("CLOSE"), "ERR009");
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  background(4);
+  EXPECT_LE(p(3), 4.0);
+}
+
+TEST_F(Plc, ReturnEndsTheScan) {
+  load(1, {"P1=P1+1", "IF(P1>2)", "RETURN", "ENDIF", "P2=P2+1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  background(5);
+  EXPECT_EQ(host("P1 P2"), "5|2");
+}
+
+// Isx11 loses one a servo interrupt: 30 of them are over after 30 (firmware:8.1).
+TEST_F(Plc, TimerHoldsALoop) {
+  load(1, {"P1=P1+1", "I5111=30", "WHILE(I5111>0)", "ENDWHILE", "P2=P2+1", "I5212=12", "WHILE(I5212>0)", "ENDWHILE",
+           "P3=P3+1", "DISABLE PLC 1"});
+  ASSERT_EQ(host("I5=2 ENABLE PLC 1"), "");
+  unsigned first = 0, second = 0;
+  for (unsigned tick = 0; tick < 60; ++tick) {
+    background(1);
+    if (first == 0 && p(2) > 0.0) first = tick;
+    if (second == 0 && p(3) > 0.0) second = tick;
+    servo_ticks(1);
+  }
+  EXPECT_EQ(first, 30u);
+  EXPECT_EQ(second, 42u);
+  EXPECT_EQ(host("P1..3"), "1|1|1");
+}
+
+}  // namespace

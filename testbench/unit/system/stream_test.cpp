@@ -1,0 +1,189 @@
+// Streams of program lines into rotary and fixed buffers: none is lost, doubled or reordered, whether the host heeds
+// BREQ or not, with `&n` and resets in between. Each line leaves a trace of its own: it writes its number to the next
+// place of its coordinate system and counts, so the scoreboard knows nothing of buffers.
+#include <cstdlib>
+#include <random>
+
+#include "testbench/unit/system/controller.h"
+
+namespace brick {
+namespace {
+
+constexpr unsigned kPlaces = 500, kSystems = 2, kBlock = 200;
+constexpr unsigned kBreqLine = 1;  // bit of SIG
+
+enum class Fault { kNone, kLost, kDoubled, kSwapped };
+
+class StreamOn : public Controller {
+ protected:
+  // BRICK_STREAM_LINES: lines of each stream.
+  long lines() const {
+    const char* wanted = std::getenv("BRICK_STREAM_LINES");
+    if (wanted != nullptr) return std::strtol(wanted, nullptr, 10);
+    return GetParam() == Engine::kSystemC ? 2000 : 200;
+  }
+
+  static std::string text(unsigned cs, long number) {
+    const std::string count = "P" + std::to_string(cs);
+    return "P(" + std::to_string(1000 * cs) + "+" + count + ")=" + std::to_string(number) + count + "=" + count + "+1";
+  }
+
+  // As a host that heeds BREQ: it writes when there is room; else it writes and repeats what is refused.
+  void put(const std::string& line) {
+    if (heeds_) {
+      for (unsigned tries = 0; (bus().read_pic_signals() >> kBreqLine & 1) == 0; ++tries) {
+        ASSERT_LT(tries, 100000u) << "BREQ stays low";
+        wait(ms_to_ticks(1) / 10);
+      }
+    }
+    std::string reply = ask(line);
+    for (unsigned tries = 0; reply == "ERR006"; ++tries) {
+      ++refused_;
+      ASSERT_FALSE(heeds_) << "refused while BREQ was high: " << line;
+      ASSERT_LT(tries, 100000u) << "no room";
+      wait(ms_to_ticks(1));
+      reply = ask(line);
+    }
+    ASSERT_EQ(reply, "") << line;
+  }
+
+  void open() {
+    for (unsigned cs = kSystems; cs >= 1; --cs) ASSERT_EQ(ask("&" + std::to_string(cs) + "DEF ROT 80 B0"), "");
+    ASSERT_EQ(ask("I16=2 I17=4"), "");  // full before there is no room for a line more
+    ASSERT_EQ(ask("OPEN ROT"), "");
+    for (unsigned cs = kSystems; cs >= 1; --cs) {
+      ASSERT_EQ(ask("&" + std::to_string(cs) + "INC TA0 TS0 TM10"), "");
+      ASSERT_EQ(ask("R"), "");
+    }
+    selected_ = 1;
+  }
+
+  void select(unsigned cs) {
+    if (cs != selected_) { ASSERT_EQ(ask("&" + std::to_string(cs)), ""); }
+    selected_ = cs;
+    if (heeds_) wait(ns_to_ticks(20'000));  // the pin follows within 10 us
+  }
+
+  // What the lines have left: empty when it is what was sent, or the beginning of it when `all` is false.
+  std::string difference(unsigned cs, const std::vector<long>& sent, bool all) {
+    const unsigned count = static_cast<unsigned>(std::stoul(ask("P(" + std::to_string(cs) + ")")));
+    if (count > sent.size() || (all && count != sent.size()))
+      return std::to_string(count) + " executed of " + std::to_string(sent.size());
+    if (count == 0) return "";
+    const std::string first = std::to_string(1000 * cs), last = std::to_string(1000 * cs + count - 1);
+    const Reply reply = link().command("P" + first + ".." + last);
+    if (reply.lines.size() != count) return "a reply of " + std::to_string(reply.lines.size()) + " lines";
+    for (unsigned i = 0; i < count; ++i)
+      if (reply.lines[i] != std::to_string(sent[i]))
+        return "place " + std::to_string(i) + " holds " + reply.lines[i] + ", expected " + std::to_string(sent[i]);
+    return "";
+  }
+
+  // One block of lines; what the scoreboard finds. `reset`: the controller restarts with lines still to be executed.
+  std::string block(unsigned size, bool reset, Fault fault) {
+    std::vector<long> sent[kSystems + 1];
+    long held = -1;
+    for (unsigned i = 0; i < size; ++i) {
+      if (random_() % 4 == 0) select(1 + random_() % kSystems);
+      sent[selected_].push_back(number_);
+      const bool here = i == size / 2;
+      const std::string line = text(selected_, number_) + (random_() % 5 == 0 ? "X0" : "");
+      if (here && fault == Fault::kSwapped) {
+        held = number_++;
+        continue;
+      }
+      if (!here || fault != Fault::kLost) put(line);
+      if (here && fault == Fault::kDoubled) put(line);
+      if (held >= 0) {
+        put(text(selected_, held));
+        held = -1;
+      }
+      ++number_;
+      if (HasFatalFailure()) return "";
+    }
+    std::string found;
+    if (reset) {
+      for (unsigned cs = 1; cs <= kSystems; ++cs) found += difference(cs, sent[cs], false);
+      if (!link().command("$$$").complete) return "no answer after the reset";
+      if (ask("P1 P2") != "0|0") found += "something is executed after the reset";
+      open();
+      return found;
+    }
+    for (unsigned cs = 1; cs <= kSystems; ++cs) {
+      select(cs);
+      for (unsigned tries = 0; ask("PR") != "0"; ++tries) {
+        if (tries == 5000) return "not all are executed";
+        wait(ms_to_ticks(1));
+      }
+      wait(ms_to_ticks(5));  // moves of no length
+      found += difference(cs, sent[cs], true);
+      put("P" + std::to_string(cs) + "=0");
+      wait(ms_to_ticks(5));
+    }
+    return found;
+  }
+
+  std::mt19937 random_{1};
+  bool heeds_ = false;
+  unsigned selected_ = 1;
+  long number_ = 0, refused_ = 0;
+};
+
+TEST_P(StreamOn, RotaryBuffersExecuteEachLineOnceAndInOrder) {
+  BRICK_COVERS("BREQ-3");
+  start();
+  ASSERT_NO_FATAL_FAILURE(open());
+  unsigned blocks = 0;
+  while (number_ < lines()) {
+    heeds_ = ++blocks % 2 == 0;
+    const std::string found = block(kBlock, blocks % 7 == 3, Fault::kNone);
+    ASSERT_FALSE(HasFatalFailure());
+    ASSERT_EQ(found, "") << "block " << blocks;
+  }
+  EXPECT_GT(refused_, 0) << "no ring was ever full";
+  std::printf("%ld lines, %ld times refused\n", number_, refused_);
+}
+
+// Written, listed, executed, written anew over what there was.
+TEST_P(StreamOn, FixedBuffersKeepAndExecuteEachLineInOrder) {
+  start();
+  unsigned blocks = 0;
+  while (number_ < lines()) {
+    const std::string program = std::to_string(1 + ++blocks % 5);
+    if (blocks % 5 == 0) { ASSERT_EQ(ask("SAVE"), ""); }
+    if (blocks % 5 == 0) { ASSERT_TRUE(link().command("$$$").complete); }
+    ASSERT_EQ(ask("P1=0 OPEN PROG " + program + " CLEAR"), "");
+    std::vector<long> sent;
+    std::string listing;
+    for (unsigned i = 0; i < kBlock; ++i, ++number_) {
+      sent.push_back(number_);
+      listing += (listing.empty() ? "" : "|") + text(1, number_);
+      ASSERT_EQ(ask(text(1, number_)), "");
+    }
+    ASSERT_EQ(ask("CLOSE"), "");
+    ASSERT_EQ(ask("LIST PROG " + program), listing);
+    ASSERT_EQ(ask("&1 B" + program + " R"), "");
+    for (unsigned tries = 0; (std::stoul(ask("??").substr(0, 6), nullptr, 16) & 1) != 0; ++tries) {
+      ASSERT_LT(tries, 1000u) << "the program does not end";
+      wait(ms_to_ticks(1));
+    }
+    ASSERT_EQ(difference(1, sent, true), "") << "block " << blocks;
+  }
+  std::printf("%ld lines\n", number_);
+}
+
+// The scoreboard itself: a host that loses a line, writes one twice, or two in the wrong order.
+TEST_P(StreamOn, AFaultIsFound) {
+  if (GetParam() != Engine::kSystemC) return;
+  for (const Fault fault : {Fault::kNone, Fault::kLost, Fault::kDoubled, Fault::kSwapped}) {
+    random_.seed(5);
+    start();
+    ASSERT_NO_FATAL_FAILURE(open());
+    EXPECT_EQ(block(40, false, fault).empty(), fault == Fault::kNone) << static_cast<int>(fault);
+  }
+}
+
+BRICK_ON_ENGINES(StreamOn, Engine::kSystemC, Engine::kLockstep);
+
+}  // namespace
+}  // namespace brick
