@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "app/macros.h"
 #include "systemc/core/usage_error.h"
 
@@ -17,7 +18,8 @@ namespace brick {
 
 namespace {
 
-constexpr std::size_t kDeepestInclude = 16, kMostIncludes = 1000;
+constexpr std::size_t kDeepestInclude = 16, kMostIncludes = 1000, kMostMebibytes = 64;
+constexpr char kEndOfDosText = 0x1A;
 constexpr const char* kSpaces = " \t\r\f\v";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -33,11 +35,10 @@ bool is_expect(std::string_view text) {
          (text.size() == kWord.size() || text.find_first_of(kSpaces, kWord.size()) == kWord.size());
 }
 
-// An error that begins with its place. `included`: it says where that file was included.
+// An error that begins with its place.
 class PlacedError : public UsageError {
  public:
-  PlacedError(const std::string& text, bool is_included) : UsageError(text), included(is_included) {}
-  bool included;
+  using UsageError::UsageError;
 };
 
 struct Directive {
@@ -61,7 +62,11 @@ std::optional<Directive> directive_of(std::string_view text) {
 
 class Reader {
  public:
-  void read(std::istream& in, const std::string& file);
+  void read(std::istream& in, const std::string& name) {
+    File file;
+    file.name = name;
+    read(in, file);
+  }
   std::vector<SourceLine> take() { return std::move(lines_); }
 
  private:
@@ -71,12 +76,17 @@ class Reader {
   };
   struct File {
     std::string name;
+    const File* includer = nullptr;
+    std::string included;  // for messages, where
     unsigned line = 0;
     unsigned comment = 0;  // line where the comment begins that is open
     std::vector<Condition> conditions;
     bool chosen() const { return conditions.empty() || (conditions.back().outer && conditions.back().chosen); }
   };
 
+  void read(std::istream& in, File& file);
+  bool next_line(std::istream& in, std::string& text);
+  std::string_view behind_comments(File& file, std::string_view text) const;
   std::string without_comments(File& file, std::string_view text) const;
   void line(File& file, std::string_view text);
   void directive(File& file, const Directive& directive);
@@ -86,8 +96,38 @@ class Reader {
 
   Macros macros_;
   std::vector<SourceLine> lines_;
-  std::size_t depth_ = 0, includes_ = 0;
+  std::size_t includes_ = 0, bytes_ = 0;
 };
+
+// Lines end with LF, CR LF or, as old editors write them, with CR alone.
+bool Reader::next_line(std::istream& in, std::string& text) {
+  text.clear();
+  for (int c = in.get(); c != std::istream::traits_type::eof(); c = in.get()) {
+    if (++bytes_ > kMostMebibytes << 20)
+      throw UsageError(fmt::format("the text is too long; expected at most {} MiB in all files", kMostMebibytes));
+    if (c == '\r' && in.peek() == '\n') in.get();
+    if (c == '\r' || c == '\n') return true;
+    text.push_back(static_cast<char>(c));
+  }
+  if (!text.empty() && text.back() == kEndOfDosText) text.pop_back();
+  return !text.empty();
+}
+
+// Of a line that begins with comments what follows them.
+std::string_view Reader::behind_comments(File& file, std::string_view text) const {
+  for (;;) {
+    if (file.comment == 0) {
+      text = trimmed(text);
+      if (text.substr(0, 2) != "/*") return text;
+      file.comment = file.line;
+      text.remove_prefix(2);
+    }
+    const std::size_t end = text.find("*/");
+    if (end == std::string_view::npos) return {};
+    file.comment = 0;
+    text.remove_prefix(end + 2);
+  }
+}
 
 std::string Reader::without_comments(File& file, std::string_view text) const {
   std::string result;
@@ -113,33 +153,35 @@ std::string Reader::without_comments(File& file, std::string_view text) const {
 }
 
 void Reader::keep(const File& file, std::string_view text) {
-  if (!text.empty()) lines_.push_back({fmt::format("{}:{}", file.name, file.line), std::string(text)});
+  if (!text.empty()) lines_.push_back({fmt::format("{}:{}", file.name, file.line), file.included, std::string(text)});
 }
 
 void Reader::line(File& file, std::string_view text) {
   if (text.find('\0') != std::string_view::npos)
     throw UsageError("a NUL byte in the line; expected text in ASCII or UTF-8");
-  if (file.comment == 0 && is_expect(trimmed(text))) {  // as it stands: it is compared with what the controller says
-    if (file.chosen()) keep(file, trimmed(text));
+  text = behind_comments(file, text);
+  if (is_expect(text)) {  // as it stands: it is compared with what the controller says
+    if (file.chosen()) keep(file, text);
     return;
   }
   std::string bare = without_comments(file, text);
-  std::replace(bare.begin(), bare.end(), '\t', ' ');  // to the controller it is ^I, the line before once more
+  for (char& c : bare)  // to the controller they are ^I, ^K, ^L: the line before once more, kill, close
+    if (c == '\t' || c == '\v' || c == '\f') c = ' ';
   const std::string_view source = trimmed(bare);
   if (const auto found = directive_of(source)) {
     directive(file, *found);
   } else if (file.chosen()) {
     const std::string expanded = macros_.expand(source);
-    if (expanded != source && expanded.size() > kControllerLine)
-      throw UsageError(fmt::format("`{}` expands to {} characters; expected at most {}, the controller's line", source,
-                                   expanded.size(), kControllerLine));
+    if (expanded != source && expanded[0] != '@' && expanded.size() > kControllerLine)
+      throw UsageError(fmt::format("{} expands to {} characters; expected at most {}, the controller's line",
+                                   beginning_of(source), expanded.size(), kControllerLine));
     keep(file, trimmed(expanded));
   }
 }
 
 void Reader::directive(File& file, const Directive& directive) {
   const std::string& word = directive.word;
-  if (word == "ifdef" || word == "ifndef" || word == "else" || word == "endif") {
+  if (word == "ifdef" || word == "ifndef" || word == "if" || word == "elif" || word == "else" || word == "endif") {
     condition(file, directive);
   } else if (!file.chosen()) {
     return;
@@ -155,69 +197,82 @@ void Reader::directive(File& file, const Directive& directive) {
   }
 }
 
+// Where nothing is chosen anyway, conditions are counted only: what they say is not looked at.
 void Reader::condition(File& file, const Directive& directive) {
-  const bool outer = file.chosen();
-  if (directive.word == "ifdef" || directive.word == "ifndef") {
-    const bool defined = macros_.defined(directive.rest);
-    file.conditions.push_back({file.line, outer, defined == (directive.word == "ifdef"), false});
+  const std::string& word = directive.word;
+  const bool outer = word == "elif" && !file.conditions.empty() ? file.conditions.back().outer : file.chosen();
+  if (outer && (word == "if" || word == "elif"))
+    throw UsageError(fmt::format("`#{}` is not known; expected #ifdef or #ifndef", word));
+  if (word == "ifdef" || word == "ifndef" || word == "if") {
+    const bool defined = outer && macros_.defined(directive.rest);
+    file.conditions.push_back({file.line, outer, defined == (word == "ifdef"), false});
     return;
   }
-  if (!directive.rest.empty())
-    throw UsageError(fmt::format("`{}` behind #{}; expected nothing", directive.rest, directive.word));
   if (file.conditions.empty())
-    throw UsageError(fmt::format("#{} without a beginning; expected #ifdef or #ifndef before it", directive.word));
+    throw UsageError(fmt::format("#{} without a beginning; expected #ifdef or #ifndef before it", word));
   Condition& open = file.conditions.back();
-  if (directive.word == "endif") {
+  if (open.outer && !directive.rest.empty())
+    throw UsageError(fmt::format("{} behind #{}; expected nothing", beginning_of(directive.rest), word));
+  if (word == "endif") {
     file.conditions.pop_back();
-  } else if (open.has_else) {
+  } else if (word == "else" && open.has_else) {
     throw UsageError(fmt::format("a second #else; expected #endif of the condition in line {}", open.line));
-  } else {
+  } else if (word == "else") {
     open.has_else = true;
     open.chosen = !open.chosen;
   }
 }
 
-// Folders in names are divided by / or, as on the host programs' own system, by a backslash.
+// Folders in names are divided by / or, as on the host programs' own system, by a backslash. A name is made shorter
+// only where that leads to the same file: behind a symbolic link `..` leads elsewhere.
 void Reader::include(const File& file, std::string_view name) {
   constexpr const char* kForm = "#include \"FILE\"";
   std::string text(name);
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
   if (text.empty() || text.find('"') != std::string::npos)
-    throw UsageError(fmt::format("`{}` is no file; expected {}", name, kForm));
+    throw UsageError(fmt::format("{} is no file; expected {}", beginning_of(name), kForm));
   std::replace(text.begin(), text.end(), '\\', '/');
-  const auto path = (std::filesystem::path(file.name).parent_path() / text).lexically_normal();
-  if (depth_ == kDeepestInclude)
-    throw UsageError(fmt::format("`{}` is included by a file {} deep; expected no file that includes itself",
-                                 path.string(), kDeepestInclude));
-  if (++includes_ > kMostIncludes)
-    throw UsageError(fmt::format("`{}` is one file too many; expected at most {}", path.string(), kMostIncludes));
   std::error_code ignored;
-  std::ifstream in(path);
-  if (!std::filesystem::is_regular_file(path, ignored) || !in)
-    throw UsageError(fmt::format("`{}` cannot be read; expected a command file", path.string()));
-  ++depth_;
-  try {
-    read(in, path.string());
-  } catch (const PlacedError& e) {
-    if (e.included) throw;
-    throw PlacedError(fmt::format("{} (included at {}:{})", e.what(), file.name, file.line), true);
-  }
-  --depth_;
+  auto path = std::filesystem::path(file.name).parent_path() / text;
+  if (std::filesystem::equivalent(path, path.lexically_normal(), ignored)) path = path.lexically_normal();
+
+  File included;
+  included.name = path.string();
+  included.includer = &file;
+  included.included = fmt::format(" (included at {}:{})", file.name, file.line);
+  const std::string shown = beginning_of(included.name, kControllerLine);
+  std::size_t depth = 0;
+  bool inside_itself = false;
+  for (const File* outer = &file; outer != nullptr; outer = outer->includer, ++depth)
+    if (std::filesystem::equivalent(path, outer->name, ignored)) inside_itself = true;
+  if (depth > kDeepestInclude)
+    throw UsageError(
+        inside_itself
+            ? fmt::format("{} includes itself again and again, {} deep; expected no file that includes itself without "
+                          "an end",
+                          shown, depth)
+            : fmt::format("{} is included {} deep; expected at most {}", shown, depth, kDeepestInclude));
+  if (++includes_ > kMostIncludes)
+    throw UsageError(fmt::format("{} is one file too many; expected at most {}", shown, kMostIncludes));
+  const bool regular = std::filesystem::is_regular_file(path, ignored);  // opening a pipe would wait for its writer
+  std::ifstream in;
+  if (regular) in.open(path);
+  if (!in.is_open()) throw UsageError(fmt::format("{} cannot be read; expected a command file", shown));
+  read(in, included);
 }
 
-void Reader::read(std::istream& in, const std::string& name) {
-  File file;
-  file.name = name;
-  const auto fail = [&](unsigned number, const std::string& what) {
-    throw PlacedError(fmt::format("{}:{}: {}", name, number, what), false);
+void Reader::read(std::istream& in, File& file) {
+  const auto fail = [&](unsigned line, const std::string& what) {
+    throw PlacedError(fmt::format("{}:{}: {}{}", file.name, line, what, file.included));
   };
-  for (std::string text; std::getline(in, text);) {
-    if (++file.line == 1 && text.rfind(kByteOrderMark, 0) == 0) text.erase(0, kByteOrderMark.size());
-    try {
+  try {
+    for (std::string text; file.line++, next_line(in, text);) {
+      if (file.line == 1 && text.rfind(kByteOrderMark, 0) == 0) text.erase(0, kByteOrderMark.size());
       line(file, text);
-    } catch (const PlacedError&) { throw; } catch (const UsageError& e) {
-      fail(file.line, e.what());
     }
+    if (in.bad()) throw UsageError("the file cannot be read to its end; expected a readable command file");
+  } catch (const PlacedError&) { throw; } catch (const UsageError& e) {
+    fail(file.line, e.what());
   }
   if (file.comment != 0) fail(file.comment, "a comment without its end; expected */");
   if (!file.conditions.empty())

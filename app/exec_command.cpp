@@ -2,9 +2,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/script_player.h"
 #include "app/simulation.h"
@@ -17,7 +19,8 @@ namespace {
 std::vector<ScriptLine> open_script(const std::string& file, const std::string& name) {
   if (file == "-") return read_script(std::cin, name);
   std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file))
+  std::error_code ignored;
+  if (!in || std::filesystem::is_directory(file, ignored))
     throw UsageError(
         fmt::format("{}: cannot be read; expected a command file or host script, or - for standard input", file));
   return read_script(in, name);
@@ -25,8 +28,11 @@ std::vector<ScriptLine> open_script(const std::string& file, const std::string& 
 
 nlohmann::json exchanges_json(const ScriptPlayer& player) {
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& e : player.exchanges())
-    list.push_back({{"place", e.place}, {"line", e.line}, {"reply", e.reply}, {"error", e.error}});
+  for (const auto& e : player.exchanges()) {
+    nlohmann::json reply = nlohmann::json::array();
+    for (const auto& text : e.reply) reply.push_back(utf8_text(text));
+    list.push_back({{"place", utf8_text(e.place)}, {"line", utf8_text(e.line)}, {"reply", reply}, {"error", e.error}});
+  }
   return list;
 }
 
@@ -41,6 +47,7 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   player.check(script);
   const auto tell = [&simulation](const std::string& text) { simulation.tell("brick exec: " + text); };
   player.on_refused = tell;
+  player.before_output = [&simulation] { simulation.before_output(); };
   simulation.progress_text = [&] {
     return fmt::format(", line {} of {}, {} refused", player.played(), script.size(), player.refused().count());
   };
@@ -60,29 +67,25 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   }
   if (const std::string sum = player.refused().summary(script.size()); !sum.empty()) tell(sum);
   if (config.aperture > 0) std::cerr << simulation.aperture_text() << '\n';
-  if (!failure.empty()) std::cerr << "brick exec: " << failure << '\n';
-  for (const std::string& error : simulation.machine().take_run_errors()) {
-    std::cerr << "brick exec: " << error << '\n';
-    if (failure.empty()) failure = error;
-  }
+  std::vector<std::string> failures;
+  if (!failure.empty()) failures.push_back(failure);
+  if (!std::cout.flush()) failures.emplace_back("the replies cannot be written to stdout; expected room for them");
   const Simulation::TimingVerdict timing = simulation.timing_verdict();
-  for (const std::string& violation : timing.failures) {
-    std::cerr << "brick exec: " << violation << '\n';
-    if (failure.empty()) failure = violation;
-  }
-  for (const auto* list : {&timing.waived, &timing.unused})
-    for (const std::string& line : *list) std::cerr << "brick exec: " << line << '\n';
+  for (const auto& list : {simulation.machine().take_run_errors(), timing.failures})
+    failures.insert(failures.end(), list.begin(), list.end());
+  for (const auto* list : {&std::as_const(failures), &timing.waived, &timing.unused})
+    for (const std::string& text : *list) tell(text);
   if (!options.json.empty()) {
     nlohmann::json results = simulation.measures();
     results["engine"] = options.engine;
     results["board"] = config.board.name;
     results["seed"] = config.seed;
-    results["passed"] = failure.empty();
-    if (!failure.empty()) results["failure"] = failure;
+    results["passed"] = failures.empty();
+    if (!failures.empty()) results["failure"] = utf8_text(failures.front());
     results["exchanges"] = exchanges_json(player);
-    write_json(options.json, results.dump(2));
+    write_json(options.json, results);
   }
-  return failure.empty() ? 0 : 1;
+  return failures.empty() ? 0 : 1;
 }
 
 }  // namespace brick

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "app/time_text.h"
 #include "systemc/core/usage_error.h"
 
@@ -29,7 +30,8 @@ std::vector<std::string> cut(std::string_view text, char comment) {
     if (text[i] == '"') {
       end = text.find('"', end);
       if (end == std::string_view::npos)
-        throw UsageError(fmt::format("`{}` is a text without its end; expected a closing \"", text.substr(i)));
+        throw UsageError(
+            fmt::format("{} is a text without its end; expected a closing \"", beginning_of(text.substr(i))));
       ++end;
     } else if (in_word(text[i])) {
       while (end < text.size() && in_word(text[end])) ++end;
@@ -71,7 +73,7 @@ void LineReader::fail_since(std::size_t begin, std::string_view expected) const 
   if (begin == words_.size()) throw UsageError(fmt::format("the line ends; expected {}", expected));
   std::string found;
   for (std::size_t i = begin; i <= next_ && i < words_.size(); ++i) found += words_[i];
-  throw UsageError(fmt::format("`{}` is not known; expected {}", found, expected));
+  throw UsageError(fmt::format("{} is not known; expected {}", beginning_of(found), expected));
 }
 
 bool LineReader::take(std::string_view word) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/byte_text.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -35,14 +36,15 @@ std::string_view piece(std::string_view text, std::size_t at) {
 
 std::string_view name_at_start(std::string_view text, const char* form) {
   if (text.empty() || !starts_name(text[0]))
-    throw UsageError(fmt::format("`{}` is no name of a macro; expected {}", text, form));
+    throw UsageError(fmt::format("{} is no name of a macro; expected {}", beginning_of(text), form));
   return piece(text, 0);
 }
 
 std::string_view only_name(std::string_view text, const char* form) {
   text = trimmed(text);
   const std::string_view name = name_at_start(text, form);
-  if (name.size() != text.size()) throw UsageError(fmt::format("`{}` is not known; expected {}", text, form));
+  if (name.size() != text.size())
+    throw UsageError(fmt::format("{} is not known; expected {}", beginning_of(text), form));
   return name;
 }
 
@@ -76,14 +78,16 @@ void Macros::define(std::string_view text) {
   Macro macro;
   if (at < text.size() && text[at] == '(') {
     macro.parameters = list_in_brackets(text, ++at);
-    if (!macro.parameters) throw UsageError(fmt::format("`{}` has no closing bracket; expected {}", text, kForm));
+    if (!macro.parameters)
+      throw UsageError(fmt::format("{} has no closing bracket; expected {}", beginning_of(text), kForm));
     for (auto p = macro.parameters->begin(); p != macro.parameters->end(); ++p) {
       only_name(*p, "the name of an argument, as in #define NAME(A,B) TEXT");
       if (std::find(macro.parameters->begin(), p, *p) != p)
-        throw UsageError(fmt::format("two arguments of `{}` are called `{}`; expected different names", name, *p));
+        throw UsageError(fmt::format("two arguments of {} are called {}; expected different names", beginning_of(name),
+                                     beginning_of(*p)));
     }
   } else if (at < text.size() && text.find_first_of(kSpaces, at) != at) {
-    throw UsageError(fmt::format("`{}` is no name of a macro; expected {}", text, kForm));
+    throw UsageError(fmt::format("{} is no name of a macro; expected {}", beginning_of(text), kForm));
   }
   macro.text = trimmed(text.substr(at));
   macros_.insert_or_assign(name, std::move(macro));
@@ -115,9 +119,9 @@ std::string Macros::expand(std::string_view text, Work& work) const {
       result += replacement(macro->first, macro->second, text, at, work);
     if (!work.names.empty() && result.size() > kLongest)
       throw UsageError(
-          fmt::format("macro `{}` expands to more than {} characters; expected less: the controller's "
+          fmt::format("macro {} expands to more than {} characters; expected less: the controller's "
                       "line has 255",
-                      work.names.front(), kLongest));
+                      beginning_of(work.names.front()), kLongest));
   }
   return result;
 }
@@ -126,11 +130,12 @@ std::string Macros::expand(std::string_view text, Work& work) const {
 std::string Macros::replacement(std::string_view name, const Macro& macro, std::string_view text, std::size_t& at,
                                 Work& work) const {
   if (std::find(work.names.begin(), work.names.end(), name) != work.names.end())
-    throw UsageError(fmt::format("macro `{}` expands to itself ({}, {}); expected a text without it", name,
-                                 fmt::join(work.names, ", "), name));
+    throw UsageError(fmt::format("macro {} expands to itself ({}); expected a text without it", beginning_of(name),
+                                 cut_text(fmt::format("{}, {}", fmt::join(work.names, ", "), name))));
   if (work.names.size() == kDeepest || ++work.replacements > kMostReplacements)
-    throw UsageError(fmt::format("macro `{}` has too many macros in it; expected at most {}, {} deep",
-                                 work.names.empty() ? name : work.names.front(), kMostReplacements, kDeepest));
+    throw UsageError(fmt::format("macro {} has too many macros in it; expected at most {}, {} deep",
+                                 beginning_of(work.names.empty() ? name : work.names.front()), kMostReplacements,
+                                 kDeepest));
   std::string body = macro.text;
   if (macro.parameters) {
     const Arguments given = arguments(name, macro, text, at, work);
@@ -141,7 +146,8 @@ std::string Macros::replacement(std::string_view name, const Macro& macro, std::
       const auto argument = given.find(word);
       body += argument == given.end() ? word : std::string_view(argument->second);
       if (body.size() > kLongest)
-        throw UsageError(fmt::format("macro `{}` expands to more than {} characters; expected less", name, kLongest));
+        throw UsageError(
+            fmt::format("macro {} expands to more than {} characters; expected less", beginning_of(name), kLongest));
     }
   }
   work.names.push_back(name);
@@ -152,16 +158,17 @@ std::string Macros::replacement(std::string_view name, const Macro& macro, std::
 
 Macros::Arguments Macros::arguments(std::string_view name, const Macro& macro, std::string_view text, std::size_t& at,
                                     Work& work) const {
-  const std::string form = fmt::format("{}({})", name, fmt::join(*macro.parameters, ","));
+  const std::string form = cut_text(fmt::format("{}({})", name, fmt::join(*macro.parameters, ",")));
   const std::size_t open = text.find_first_not_of(kSpaces, at);
   if (open == std::string_view::npos || text[open] != '(')
-    throw UsageError(fmt::format("macro `{}` without arguments; expected {}", name, form));
+    throw UsageError(fmt::format("macro {} without arguments; expected {}", beginning_of(name), form));
   at = open + 1;
   auto list = list_in_brackets(text, at);
-  if (!list) throw UsageError(fmt::format("`{}` has no closing bracket; expected {}", text.substr(open), form));
+  if (!list)
+    throw UsageError(fmt::format("{} has no closing bracket; expected {}", beginning_of(text.substr(open)), form));
   if (list->empty() && macro.parameters->size() == 1) list->emplace_back();
   if (list->size() != macro.parameters->size())
-    throw UsageError(fmt::format("macro `{}` with {} arguments; expected {}", name, list->size(), form));
+    throw UsageError(fmt::format("macro {} with {} arguments; expected {}", beginning_of(name), list->size(), form));
   Arguments given;
   for (std::size_t i = 0; i < list->size(); ++i) given[(*macro.parameters)[i]] = expand((*list)[i], work);
   return given;

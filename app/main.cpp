@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <systemc>
 
+#include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/cpu_command.h"
 #include "app/run_bench.h"
@@ -89,7 +90,7 @@ struct Commands {
 };
 
 int report_usage(const std::string& where, const std::string& text) {
-  std::cerr << where << ": " << text.substr(0, text.find('\n')) << '\n';
+  std::cerr << where << ": " << readable_text(text.substr(0, text.find('\n'))) << '\n';
   return 2;
 }
 

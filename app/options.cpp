@@ -185,9 +185,10 @@ TraceGroups trace_groups(const RunOptions& o) {
   return TraceGroups(std::move(patterns));
 }
 
-void write_json(const std::string& file, const std::string& text, const std::string& option) {
+// File names come from the system: they may be no UTF-8.
+void write_json(const std::string& file, const nlohmann::json& value, const std::string& option) {
   std::ofstream out(file);
-  out << text << '\n';
+  out << value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   out.flush();
   if (!out) throw UsageError(fmt::format("{} {}: cannot be written; expected a writable place", option, file));
 }

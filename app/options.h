@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "systemc/core/ticks.h"
 #include "systemc/machine/machine.h"
@@ -50,7 +51,7 @@ std::uint64_t parse_count(const std::string& option, const std::string& text);  
 std::string engine_name(Engine engine);
 
 // Writes the file of an option; throws UsageError when it cannot be written.
-void write_json(const std::string& file, const std::string& text, const std::string& option = "--json");
+void write_json(const std::string& file, const nlohmann::json& value, const std::string& option = "--json");
 // Throws UsageError when `file` stands in no folder, or is one.
 void need_folder(const std::string& option, const std::string& file);
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "app/command_file.h"
 
 namespace brick {
@@ -43,7 +44,8 @@ std::string_view error_meaning(std::string_view error) {
 std::string RefusedLines::add(const std::string& place, const std::string& line, const std::string& error) {
   ++by_error_[error];
   if (++count_ > kTold) return "";
-  std::string text = fmt::format("{}: `{}`: {}: {}", place, line, error, error_meaning(error));
+  std::string text =
+      fmt::format("{}: {}: {}: {}", place, beginning_of(line, kControllerLine), error, error_meaning(error));
   if (line.size() > kControllerLine)
     text += fmt::format("; the line has {} characters, expected at most {}", line.size(), kControllerLine);
   return text;

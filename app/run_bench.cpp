@@ -62,7 +62,9 @@ int run_bench(const RunOptions& given, const std::string& name, bool negative, c
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
     report.fail("host", e.what());
-  } catch (const GdbKilled& e) { report.fail("debugger", e.what()); }
+  } catch (const GdbKilled& e) { report.fail("debugger", e.what()); } catch (const Interrupted& e) {
+    report.fail("run to its end", e.what());
+  }
   for (const std::string& error : simulation.machine().take_run_errors()) {
     report.fail("no error of the machine", error);
     std::cerr << "brick " << extras.command << ": " << error << '\n';
@@ -83,7 +85,7 @@ int run_bench(const RunOptions& given, const std::string& name, bool negative, c
   results["steps"] = steps_json(report);
   if (!options.wave.empty()) results["wave"] = options.wave;
   if (extras.after) extras.after(simulation, results);
-  if (!options.json.empty()) write_json(options.json, results.dump(2));
+  if (!options.json.empty()) write_json(options.json, results);
   return passed ? 0 : 1;
 }
 

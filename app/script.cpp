@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "app/command_file.h"
 #include "app/line_reader.h"
-#include "systemc/core/usage_error.h"
 
 namespace brick {
 
@@ -18,7 +19,8 @@ namespace {
 using Kind = ScriptLine::Kind;
 constexpr std::uint32_t kDpramBytes = 0x10000;
 constexpr std::int64_t kHandRate = 10'000,
-                       kHighestRate = 9'830'400;  // @encoder, counts per second: one count per SCLK at most
+                       kHighestRate = 9'830'400,  // @encoder, counts per second: one count per SCLK at most
+    kLongestTurn = 9000;                          // seconds, as of any time
 constexpr std::int64_t kHighestByte = 0xFF, kHighestWord = 0xFFFF;
 
 void read_pic(ScriptLine& line, LineReader& in) {
@@ -38,7 +40,8 @@ void read_dpram(ScriptLine& line, LineReader& in) {
   const std::string text = in.peek();
   const std::int64_t offset =
       in.number(0, kDpramBytes - 1, "an even number of bytes below 65536 (decimal, or hex with 0x)");
-  if (offset % 2 != 0) throw UsageError(fmt::format("`{}` is no offset; expected an even number of bytes", text));
+  if (offset % 2 != 0)
+    throw UsageError(fmt::format("{} is no offset; expected an even number of bytes", beginning_of(text)));
   line.offset = static_cast<std::uint32_t>(offset);
   if (in.take("=")) {
     line.kind = Kind::kDpramWrite;
@@ -85,6 +88,9 @@ void read_encoder(ScriptLine& line, LineReader& in) {
   if (line.counts == 0) throw UsageError(fmt::format("`0` is not known; expected {}", counts));
   line.rate = in.at_end() ? kHandRate
                           : in.number(1, kHighestRate, fmt::format("a rate, 1 to {} counts per second", kHighestRate));
+  if (std::abs(line.counts) / line.rate > kLongestTurn)
+    throw UsageError(fmt::format("{} counts, {} a second, take too long; expected at most {} s", line.counts, line.rate,
+                                 kLongestTurn));
 }
 
 // FPD=n sets the four inputs FPDn/ to the number n: low means 1. The others are levels of one pin.
@@ -189,18 +195,23 @@ bool is_control(const std::string& text) {
 
 }  // namespace
 
+UsageError ScriptLine::wrong(const std::string& what) const {
+  constexpr std::size_t kLongestWord = 20;
+  return UsageError(
+      fmt::format("{}: {}: {}{}", place, cut_text(text.substr(0, text.find(' ')), kLongestWord), what, included));
+}
+
 std::vector<ScriptLine> read_script(std::istream& in, const std::string& file) {
   std::vector<ScriptLine> script;
   for (SourceLine& source : read_command_file(in, file)) {
     ScriptLine line;
     line.place = std::move(source.place);
+    line.included = std::move(source.included);
     line.text = std::move(source.text);
     if (line.text[0] == '@') {
       try {
         read_at_line(line);
-      } catch (const UsageError& e) {
-        throw UsageError(fmt::format("{}: {}: {}", line.place, line.first_word(), e.what()));
-      }
+      } catch (const UsageError& e) { throw line.wrong(e.what()); }
     } else if (is_control(line.text)) {
       line.kind = Kind::kControl;
       for (std::size_t i = 1; i < line.text.size(); i += 2)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "systemc/core/ticks.h"
+#include "systemc/core/usage_error.h"
 
 namespace brick {
 
@@ -35,7 +36,7 @@ struct ScriptLine {
     kTime
   };
   Kind kind = Kind::kCommand;
-  std::string place;               // file:line, for messages
+  std::string place, included;     // file:line and who included that file, for messages
   std::string text;                // command line, control characters, expected text, or the whole @ line for messages
   std::string name;                // signal, input pin
   std::string value;               // @until
@@ -49,7 +50,7 @@ struct ScriptLine {
   std::optional<bool> init;              // @jpan INIT: level
   std::int64_t counts = 0, rate = 0;     // @encoder, rate in counts per second
 
-  std::string first_word() const { return text.substr(0, text.find_first_of(" \t")); }
+  UsageError wrong(const std::string& what) const;  // that this @ line is; `what` was expected
 };
 
 // `file` is the name in messages.

@@ -1,11 +1,13 @@
 #include "app/script_player.h"
 
+#include <algorithm>
 #include <ostream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "app/byte_text.h"
+#include "app/command_file.h"
 #include "app/hand_encoder.h"
 #include "app/signal_watch.h"
 #include "systemc/core/usage_error.h"
@@ -14,10 +16,20 @@ namespace brick {
 
 namespace {
 using Kind = ScriptLine::Kind;
+constexpr std::size_t kLongestError = 20, kEasilySeen = 40;  // characters
+
+// With the place where two long texts part, which may be behind what is shown of them.
+std::string difference(const std::string& actual, const std::string& expected) {
+  const std::size_t same = static_cast<std::size_t>(
+      std::mismatch(actual.begin(), actual.end(), expected.begin(), expected.end()).first - actual.begin());
+  return fmt::format("got {}, expected {}{}", beginning_of(actual, kControllerLine),
+                     beginning_of(expected, kControllerLine),
+                     same < kEasilySeen ? "" : fmt::format("; they differ from byte {} on", same + 1));
+}
 }  // namespace
 
 void ScriptPlayer::fail(const ScriptLine& line, const std::string& text) const {
-  throw ScriptFailure(fmt::format("{}: {}: {}", line.place, line.text, text));
+  throw ScriptFailure(fmt::format("{}: {}: {}", line.place, beginning_of(line.text, kControllerLine), text));
 }
 
 void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
@@ -40,9 +52,7 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         while (motor_place(machine.fitted(), motors + 1)) ++motors;
         throw UsageError(fmt::format("no encoder of motor {} on this board; expected 1 to {}", line.motor, motors));
       }
-    } catch (const UsageError& e) {
-      throw UsageError(fmt::format("{}: {}: {}", line.place, line.first_word(), e.what()));
-    }
+    } catch (const UsageError& e) { throw line.wrong(e.what()); }
   }
 }
 
@@ -56,24 +66,40 @@ void ScriptPlayer::play(const std::vector<ScriptLine>& script) {
   }
 }
 
+// The error is the last line of the reply, but for what control characters behind it are answered.
 void ScriptPlayer::refuse(const ScriptLine& line) {
-  const std::string text = refused_.add(line.place, line.text, last_.empty() ? "" : last_.back());
+  const auto error =
+      std::find_if(last_.rbegin(), last_.rend(), [](const auto& text) { return text.rfind("ERR", 0) == 0; });
+  const std::string text =
+      refused_.add(line.place, line.text, error == last_.rend() ? "ERR" : cut_text(*error, kLongestError));
   if (on_refused && !text.empty()) on_refused(text);
 }
 
-void ScriptPlayer::answer(const ScriptLine& line, std::vector<std::string> lines, bool error) {
+void ScriptPlayer::print(const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  if (before_output) before_output();
   for (const auto& text : lines) out_ << text << '\n';
   out_ << std::flush;
+}
+
+void ScriptPlayer::keep(const ScriptLine& line, const std::vector<std::string>& lines, bool error) {
   exchanges_.push_back({line.place, line.text, lines, error});
-  last_ = std::move(lines);
+  last_.clear();
+  for (const auto& text : lines) last_.push_back(readable_text(text));
   last_refused_ = error;
+}
+
+void ScriptPlayer::answer(const ScriptLine& line, const std::vector<std::string>& lines, bool error) {
+  keep(line, lines, error);
+  print(last_);
 }
 
 void ScriptPlayer::print_unsolicited() {
   if (!link_.bus().machine().inputs().jpan_init_n) return;  // looking takes longer than a spike of INIT/ may
   link_.poll();
-  for (const auto& text : link_.take_unsolicited()) out_ << text << '\n';
-  out_ << std::flush;
+  std::vector<std::string> lines = link_.take_unsolicited();
+  for (auto& text : lines) text = readable_text(text);
+  print(lines);
 }
 
 void ScriptPlayer::command(const ScriptLine& line) {
@@ -100,10 +126,8 @@ void ScriptPlayer::command(const ScriptLine& line) {
   }
   if (!reply.bad_checksum.empty()) fail(line, reply.bad_checksum + " (I4)");
   if (raw_) {
-    if (!reply.raw.empty()) out_ << visible_bytes(reply.raw) << '\n' << std::flush;
-    exchanges_.push_back({line.place, line.text, reply.lines, reply.error});
-    last_ = reply.lines;
-    last_refused_ = reply.error;
+    keep(line, reply.lines, reply.error);
+    if (!reply.raw.empty()) print({visible_bytes(reply.raw)});
   } else {
     answer(line, reply.lines, reply.error);
   }
@@ -222,11 +246,11 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       break;
     case Kind::kExpect: {
       const std::string actual = fmt::format("{}", fmt::join(last_, "|"));
-      if (actual != line.value) fail(line, fmt::format("got `{}`, expected `{}`", actual, line.value));
+      if (actual != line.value) fail(line, difference(actual, line.value));
       break;
     }
     case Kind::kTime:
-      out_ << fmt::format("time={} ns\n", machine.now_fs() / kFsPerNs) << std::flush;
+      print({fmt::format("time={} ns", machine.now_fs() / kFsPerNs)});
       break;
   }
 }

@@ -31,6 +31,7 @@ class ScriptPlayer {
 
   // Is told of each line that the controller refused and no @expect behind it expected: place, line, error, meaning.
   std::function<void(const std::string&)> on_refused;
+  std::function<void()> before_output;  // is called before each line that is printed
   std::size_t played() const { return played_; }
   const RefusedLines& refused() const { return refused_; }
 
@@ -45,7 +46,9 @@ class ScriptPlayer {
   void play_line(const ScriptLine& line);
   void refuse(const ScriptLine& line);
   void command(const ScriptLine& line);
-  void answer(const ScriptLine& line, std::vector<std::string> lines, bool error = false);
+  void answer(const ScriptLine& line, const std::vector<std::string>& lines, bool error = false);
+  void keep(const ScriptLine& line, const std::vector<std::string>& lines, bool error);
+  void print(const std::vector<std::string>& lines);
   void restart(const ScriptLine& line);
   void reconnect(const ScriptLine& line);  // the controller has started anew
   void turn_encoder(const ScriptLine& line);
@@ -55,7 +58,7 @@ class ScriptPlayer {
   HostLink& link_;
   std::ostream& out_;
   bool raw_;
-  std::vector<std::string> last_;  // what @expect compares with
+  std::vector<std::string> last_;  // what @expect compares with, as it is printed
   bool last_refused_ = false;
   std::size_t played_ = 0;
   RefusedLines refused_;

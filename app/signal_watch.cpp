@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/byte_text.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -47,11 +48,11 @@ Signals::Id find_signal(const Signals& signals, const std::string& name) {
       like.push_back(signals.info(id).name);
     }
     throw UsageError(
-        fmt::format("`{}` is not one signal; expected one of {}{}", name, fmt::join(like, ", "),
+        fmt::format("{} is not one signal; expected one of {}{}", beginning_of(name), fmt::join(like, ", "),
                     like.size() < found.size() ? fmt::format(" and {} more", found.size() - like.size()) : ""));
   }
   if (like.empty()) like = {"host.breq", "host.irq", "clock.phase", "clock.source", "cpu.task"};
-  throw UsageError(fmt::format("no signal `{}`; expected one like {}", name, fmt::join(like, ", ")));
+  throw UsageError(fmt::format("no signal {}; expected one like {}", beginning_of(name), fmt::join(like, ", ")));
 }
 
 std::optional<bool HostInputs::*> find_connector_pin(const Signals& signals, const std::string& name) {
@@ -93,7 +94,8 @@ std::string signal_value_text(const Signals& signals, Signals::Id id, const std:
       if (used + 1 == value.size() && std::isdigit(static_cast<unsigned char>(value[1])) && number <= lowest)
         return shown(info, (2 * lowest - number) & (2 * lowest - 1));
     } catch (const std::exception&) {}
-    throw UsageError(fmt::format("`{}` is no value of {}; expected -{} to {}", value, info.name, lowest, lowest - 1));
+    throw UsageError(
+        fmt::format("{} is no value of {}; expected -{} to {}", beginning_of(value), info.name, lowest, lowest - 1));
   }
   const bool dollar = value.size() > 1 && value[0] == '$';
   const bool prefixed = value.size() > 2 && value[0] == '0' && (value[1] == 'x' || value[1] == 'X');
@@ -105,8 +107,8 @@ std::string signal_value_text(const Signals& signals, Signals::Id id, const std:
     const std::uint64_t number = std::stoull(digits, &used, base);
     if (used == digits.size() && digits[0] != '-' && number <= largest) return shown(info, number);
   } catch (const std::exception&) {}
-  throw UsageError(
-      fmt::format("`{}` is no value of {}; expected 0 to {} (decimal, or hex with $)", value, info.name, largest));
+  throw UsageError(fmt::format("{} is no value of {}; expected 0 to {} (decimal, or hex with $)", beginning_of(value),
+                               info.name, largest));
 }
 
 namespace {

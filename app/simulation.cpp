@@ -1,12 +1,14 @@
 #include "app/simulation.h"
 
 #include <unistd.h>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -36,6 +38,20 @@ class HostThread : public sc_core::sc_module {
   std::exception_ptr error_;
 };
 
+// The signal that asked to stop; the next one ends the process at once.
+volatile std::sig_atomic_t asked_to_stop = 0;
+
+void stop_when_asked() {
+  struct sigaction action {};
+  action.sa_handler = [](int signal) { asked_to_stop = signal; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;  // as of nohup
+    sigaction(signal, &action, nullptr);
+  }
+}
+
 std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
   try {
     return std::make_unique<Machine>("brick", config);
@@ -51,7 +67,8 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
       waivers_(options.waive ? TimingWaivers(*options.waive) : TimingWaivers()),
       bus_(*machine_),
       link_(bus_),
-      terminal_(isatty(STDERR_FILENO) == 1) {
+      terminal_(isatty(STDERR_FILENO) == 1),
+      prints_to_terminal_(isatty(STDOUT_FILENO) == 1) {
   bus_.set_heartbeat([this] { progress(); });
   waivers_.check(timing_->ledgers());
   timing_->on_violation = [this](const TimingLedger& ledger, const TimingViolation& violation) {
@@ -91,6 +108,7 @@ Simulation::~Simulation() {
 void Simulation::run(const std::function<void()>& host) {
   if (debugger_) fmt::print(stderr, "gdb: waiting on 127.0.0.1:{}\n", debugger_->port());
   HostThread thread("host", host);
+  if (!debugger_) stop_when_asked();  // a machine that stands in the debugger would not look
   begin_ = last_progress_ = std::chrono::steady_clock::now();
   sc_core::sc_start();  // returns when the thread has ended: nothing else is scheduled
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
@@ -103,6 +121,10 @@ void Simulation::run(const std::function<void()>& host) {
 }
 
 void Simulation::progress() {
+  if (asked_to_stop != 0)
+    throw Interrupted(fmt::format("stopped by {} after {:.3f} ms of simulated time",
+                                  asked_to_stop == SIGINT ? "SIGINT" : "SIGTERM",
+                                  static_cast<double>(machine_->now_fs()) * 1e-12));
   if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now - last_progress_ < std::chrono::milliseconds(300)) return;
@@ -123,7 +145,11 @@ void Simulation::clear_progress() {
 
 void Simulation::tell(const std::string& line) {
   clear_progress();
-  std::fputs((line + '\n').c_str(), stderr);
+  std::fputs((readable_text(line) + '\n').c_str(), stderr);
+}
+
+void Simulation::before_output() {
+  if (prints_to_terminal_) clear_progress();
 }
 
 Simulation::TimingVerdict Simulation::timing_verdict() {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@
 #include "testbench/host/host_link.h"
 
 namespace brick {
+
+// A signal asked the command to stop (SIGINT, SIGTERM): the run ends as one that fails, and the flash file is written.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class Simulation {
  public:
@@ -41,6 +48,7 @@ class Simulation {
 
   std::function<std::string()> progress_text;  // more for the line that a terminal shows
   void tell(const std::string& line);          // on stderr, beside that line
+  void before_output();                        // on stdout, which may be the same terminal
 
   nlohmann::json measures() const;  // simulated and wall time, ticks/s, instructions/s
   std::string measures_text() const;
@@ -63,7 +71,7 @@ class Simulation {
   std::string wave_;
   std::chrono::steady_clock::time_point begin_, last_progress_;
   double seconds_ = 0;
-  bool terminal_ = false, shown_ = false;
+  bool terminal_ = false, prints_to_terminal_ = false, shown_ = false;
 };
 
 }  // namespace brick

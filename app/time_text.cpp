@@ -2,13 +2,14 @@
 
 #include <cctype>
 
+#include "app/byte_text.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
 
 TimeFs parse_time(const std::string& text) {
   const auto bad = [&] {
-    return UsageError("`" + text + "` is no time; expected a number with ns, us, ms or s, for example 10ms");
+    return UsageError(beginning_of(text) + " is no time; expected a number with ns, us, ms or s, for example 10ms");
   };
   constexpr TimeFs kLongest = 9'000'000'000'000'000'000;  // 2.5 hours
   std::size_t at = 0;
@@ -34,7 +35,7 @@ TimeFs parse_time(const std::string& text) {
   if (count == 0 || femtoseconds == 0) throw bad();
   __int128 value = digits * femtoseconds;
   for (; decimals > 0; --decimals) value /= 10;
-  if (value > kLongest) throw UsageError("`" + text + "` is too long a time; expected at most 9000s");
+  if (value > kLongest) throw UsageError(beginning_of(text) + " is too long a time; expected at most 9000s");
   return static_cast<TimeFs>(value);
 }
 

@@ -47,7 +47,7 @@ int sweep_command(const TimingOptions& options) {
   }
   const nlohmann::json results = {
       {"engine", options.run.engine}, {"board", config.board.name}, {"seed", config.seed}, {"sweep", list}};
-  write_json(options.run.json, results.dump(2));
+  write_json(options.run.json, results);
   return 0;
 }
 
@@ -80,7 +80,7 @@ int timing_command(const TimingOptions& options) {
       const std::string caption = fmt::format(
           "{}: the read with the least margin, {}", options.bench,
           s.timing().place_text({port_a.worst_read()->start, 0, ' ', false, true, port_a.worst_read()->pc}));
-      write_json(options.wavedrom, timing_figure(*port_a.worst_read(), caption).dump(2), "--wavedrom");
+      write_json(options.wavedrom, timing_figure(*port_a.worst_read(), caption), "--wavedrom");
     }
     profile.reset();
   };

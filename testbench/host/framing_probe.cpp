@@ -8,7 +8,6 @@ namespace brick {
 namespace {
 
 constexpr std::size_t kDigits = 12;
-constexpr unsigned char kBackspace = 0x08, kRepeat = 0x09;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -63,8 +62,6 @@ bool is_status(std::string_view text, const Framing& framing) {
 }  // namespace
 
 bool may_change_framing(std::string_view line) {
-  for (const unsigned char c : line)
-    if (c == kBackspace || c == kRepeat) return true;
   const std::string text = commands_of(line);
   for (std::size_t at = text.find('I'); at != std::string::npos; at = text.find('I', at + 1)) {
     if (at + 1 == text.size()) continue;  // the letter before may be the end of another command: CLOSE I4=1
@@ -74,16 +71,38 @@ bool may_change_framing(std::string_view line) {
   return false;
 }
 
+bool has_control_characters(std::string_view line) {
+  return std::any_of(line.begin(), line.end(), [](unsigned char c) { return c < ' '; });
+}
+
 bool may_restart(std::string_view line) { return commands_of(line).find("$$$") != std::string::npos; }
 
 bool may_take_long(std::string_view line) { return commands_of(line).find("SAVE") != std::string::npos; }
 
 std::optional<FramingAnswer> framing_answer(std::string_view text, std::size_t from) {
+  constexpr std::size_t kLongestForm = kDigits + 5;  // LF, CR, ACK, two checksums
+  if (text.size() > kLongestForm) from = std::max(from, text.size() - kLongestForm);
   for (std::size_t begin = from; begin + kDigits < text.size(); ++begin)
     for (const unsigned i3 : {2u, 1u, 3u, 0u})
       for (const unsigned i4 : {0u, 1u})
         if (is_status(text.substr(begin), {i3, i4})) return FramingAnswer{begin, {i3, i4}};
   return std::nullopt;
+}
+
+std::string without_answers(std::string text, std::size_t from, const Framing& framing, unsigned most) {
+  const std::size_t length = kDigits + 1 + (framing.i3 & 1) + (framing.checksums() ? 1 : 0) +
+                             (framing.i3 == 0       ? 0
+                              : framing.checksums() ? 2
+                                                    : 1);
+  for (std::size_t at = from; most > 0 && at + length <= text.size();) {
+    if (!is_status(std::string_view(text).substr(at, length), framing)) {
+      ++at;
+      continue;
+    }
+    text.erase(at, length);
+    --most;
+  }
+  return text;
 }
 
 }  // namespace brick

@@ -14,10 +14,11 @@ namespace brick {
 
 constexpr char kAskFraming = 0x07;  // ^G
 
-// The line may assign I3 or I4: by name, by a range, a list or an index; or it repeats another one.
+// The line may assign I3 or I4: by name, by a range, a list or an index.
 bool may_change_framing(std::string_view line);
-bool may_restart(std::string_view line);    // $$$ or $$$*** anywhere in it
-bool may_take_long(std::string_view line);  // SAVE
+bool has_control_characters(std::string_view line);  // each may be answered by itself, or repeat another line
+bool may_restart(std::string_view line);             // $$$ or $$$*** anywhere in it
+bool may_take_long(std::string_view line);           // SAVE
 
 struct FramingAnswer {
   std::size_t begin;  // what stands before it belongs to something else
@@ -25,5 +26,7 @@ struct FramingAnswer {
 };
 // The answer that `text` ends with, looked for from `from` on.
 std::optional<FramingAnswer> framing_answer(std::string_view text, std::size_t from);
+// The text without answers of that form, at most `most` of them, looked for from `from` on.
+std::string without_answers(std::string text, std::size_t from, const Framing& framing, unsigned most);
 
 }  // namespace brick

@@ -2,6 +2,7 @@
 // understands the framing of I3, I4 and I6 (firmware:6) and follows it when a line, a program or a restart changes it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ class HostLink {
   bool connect(Tick timeout);
 
   // Sends `line` and CR, returns the reply. Control characters may be inside. `timeout`: from one character to the
-  // next. A line that restarts the controller ($$$, $$$*** anywhere in it) connects again, one that may change I3 or
-  // I4 looks what they are then; so does one whose reply does not end.
+  // next. A line that restarts the controller ($$$, $$$*** anywhere in it) connects again. What I3 and I4 are is looked
+  // at after a line that may change them or has control characters, where no end of the reply shows (I3 = 0, or a reply
+  // that does not end), and where checksums came that were not expected, or wrong ones: a program may change them too.
   Reply command(const std::string& line);
   Reply command(const std::string& line, Tick timeout);
 
@@ -46,11 +48,18 @@ class HostLink {
   const Framing& framing() const { return framing_; }
 
  private:
+  using Checksum = std::optional<std::uint8_t>;  // of the line that is answered; none: any byte will do
+
   bool put(std::uint8_t c, Tick deadline);
   bool receive(Tick deadline);  // one byte into incoming_
-  Reply collect(ReplyParser parser, Tick timeout);
-  Reply collect_and_ask();
+  void take_stray(std::size_t end);
+  ReplyParser collect(ReplyParser parser, Tick timeout);
+  Reply parsed(const std::string& bytes, Checksum command, const Framing& before, bool mixed) const;
+  Reply asked(Checksum command, bool mixed, Tick timeout);
+  Reply confirmed(const ReplyParser& parser, Checksum command);
   Reply restarted();
+  void expect_late_checksum(const Reply& reply, Checksum command);
+  void look_for_late_checksum();
   bool ask_framing(Tick timeout);
   bool try_connect(Tick deadline);
 
@@ -59,7 +68,10 @@ class HostLink {
   std::string incoming_;  // received while sending, not yet looked at
   std::string stray_;     // begun line of unsolicited text
   std::vector<std::string> unsolicited_;
-  std::string sent_;  // line that finish() waits for, or that was the last
+  std::string sent_;           // line that finish() waits for, or that was the last
+  unsigned unanswered_ = 0;    // ^G
+  bool acknowledged_ = false;  // the last line was, without a checksum
+  Checksum acknowledged_sum_;  // which would have been this one
 };
 
 }  // namespace brick

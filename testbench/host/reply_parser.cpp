@@ -42,6 +42,7 @@ void ReplyParser::end_line() {
 void ReplyParser::take(std::uint8_t byte) {
   const char c = static_cast<char>(byte);
   reply_.raw.push_back(c);
+  if (std::exchange(unexpected_, std::nullopt) == byte) maybe_checksums_ = true;
   if (take_checksum(byte)) return;
   if (held_) {
     take_text(*std::exchange(held_, std::nullopt));
@@ -68,7 +69,7 @@ void ReplyParser::take_text(char c) {
     case kCr:
       if (line_.empty() && reply_.error) break;  // I6 = 3: BELL CR ERRnnn CR
       end_line();
-      if (!sums_) sum_ = 0;
+      if (!sums_) unexpected_ = std::exchange(sum_, std::uint8_t{0});
       if (sums_) due_ = numbered_ ? Due::kError : Due::kLine;
       reply_.complete = numbered_ && !sums_;
       break;

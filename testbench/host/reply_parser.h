@@ -53,6 +53,8 @@ class ReplyParser {
   bool ends_by_quiet() const { return mixed_ || framing_.i3 < 2 || reply_.error; }
 
   const Reply& reply() const { return reply_; }
+  // Where no checksums are expected: behind a data line came what would be its checksum, as data may also happen to be.
+  bool maybe_checksums() const { return maybe_checksums_; }
 
  private:
   enum class Due { kNothing, kLine, kCommand, kError };  // whose checksum may come next
@@ -64,14 +66,15 @@ class ReplyParser {
 
   Framing framing_;
   std::optional<std::uint8_t> command_;
-  bool mixed_, sums_;
+  bool mixed_, sums_, maybe_checksums_ = false;
   Reply reply_;
   std::string line_;
   std::uint8_t sum_ = 0;  // of the line that is being received, or of the last one
   Due due_ = Due::kNothing;
-  bool tagged_ = false;       // the line began with <CTRL-B>
-  bool numbered_ = false;     // the number of the error has come
-  bool handshake_ = false;    // I3 = 1: the last thing was a LF
+  std::optional<std::uint8_t> unexpected_;  // that checksum, behind a line
+  bool tagged_ = false;                     // the line began with <CTRL-B>
+  bool numbered_ = false;                   // the number of the error has come
+  bool handshake_ = false;                  // I3 = 1: the last thing was a LF
   std::optional<char> held_;  // what came behind that LF: the command's checksum, or the first character of a line
 };
 

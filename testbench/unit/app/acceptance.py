@@ -3,17 +3,16 @@
 usage: acceptance.py BRICK CASE; each CASE is one test.
 """
 
-import collections
 import json
 import os
 import pathlib
-import pty
 import re
+import signal
 import subprocess
 import tempfile
 
-import backup_file
 import command
+import exchange_file
 from command import BOARDS, brick, check, play
 
 GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "I124", "I124=I124|$20000", "I124", "i20 i21 i22 i23",
@@ -28,6 +27,16 @@ def golden():
     r = play(GOLDEN)
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     check(r.stdout.split() == ANSWERS, f"{r.stdout.split()}, expected {ANSWERS}")
+
+
+# covers: CARD-3 BIN-2 BREQ-3 BREQ-4 I18-3 I19-1
+def exchanges():
+    """The golden exchanges and every command of firmware:11, byte for byte on each engine."""
+    for name, least in (("golden.txt", 100), ("commands.txt", 100)):
+        for engine in ("systemc", "rtl", "lockstep"):
+            found, compared = exchange_file.differences(name, "--engine", engine)
+            check(not found, f"{engine}: " + "\n".join(found))
+            check(compared >= least, f"{engine} {name}: {compared} compared, expected {least} or more")
 
 
 # covers: CARD-1 CARD-2
@@ -54,18 +63,6 @@ def version():
     check(said == f"brick {built}\n" and newest == built, f"{said!r}, CMakeLists.txt {built}, CHANGELOG.md {newest}")
 
 
-def at_lines():
-    r = play(["@pic", "@pic MSK=12 ELR=10", "@pic", "@dpram 0xC000 = 1234 ABCD", "@dpram 0xC000 2",
-              "@signal clock.source", "@until clock.servo=0 1ms", "@until clock.servo=1 1ms", "@signal clock.servo",
-              "I16", "@expect 5", "P1..3", "@expect 0|0|0", "UUU", "@expect ERR003", "@wait 1ms", "@time"])
-    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
-    out = r.stdout.split("\n")
-    check(re.fullmatch(r"IST=00 SIG=[0-9A-F]{2} MSK=00 ELR=00", out[0]), out[0])
-    check(re.fullmatch(r"IST=[0-9A-F]{2} SIG=[0-9A-F]{2} MSK=12 ELR=10", out[1]), out[1])
-    check(out[2:5] == ["1234 ABCD", "clock.source=7007", "clock.servo=1"], str(out))
-    check(re.fullmatch(r"time=\d+ ns", out[-2]), out[-2])
-
-
 def motor_pins():
     """The hand at encoder 6 (servo IC 1, channel 2) counts, with x4 both ways; an input pin is a signal at once."""
     r = play(["@encoder 6 37 100000", "@signal servo_ic1.ch2.count", "@expect servo_ic1.ch2.count=37",
@@ -82,16 +79,6 @@ def motor_pins():
     check(r.returncode == 2 and "expected 1 to 8" in r.stderr, r.stderr)
 
 
-def restarts():
-    r = play(["I16=7", "P1=3", "@reset", "I16", "@expect 5", "I16=8", "@power", "I16", "@expect 5", "I16=9", "$$$",
-              "I16", "@expect 5", "VERSION"])
-    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
-    check(r.stdout.split() == ["5", "5", "5", "1.947"], r.stdout)
-    r = play(["I16=7", "@power", "I16", "@dpram 0x40 = 1234", "@dpram 0x40 1", "@expect 1234"], "--board",
-             "turbo-pmac2-pci")
-    check(r.returncode == 0 and r.stdout.split()[:1] == ["5"], f"the bridge is set up again: {r.stdout}{r.stderr}")
-
-
 def flash():
     with tempfile.TemporaryDirectory() as folder:
         file = f"{folder}/flash.bin"
@@ -101,9 +88,27 @@ def flash():
         check(play(["I16"]).stdout.split() == ["5"], "another controller has the default")
 
 
-def raw():
-    r = play(["I16", "P1=1", "UUU"], "--raw")
-    check(r.stdout.split("\n")[:3] == ["5<0D><06>", "<06>", "<07>ERR003<0D>"], r.stdout)
+def flash_signals():
+    """SIGINT and SIGTERM end a run and keep what was SAVEd; one that is killed leaves the file as it was."""
+    with tempfile.TemporaryDirectory() as folder:
+        file, link = f"{folder}/flash.bin", f"{folder}/link.bin"
+        os.symlink(file, link)
+        for number, (name, keeps) in enumerate((("SIGINT", True), ("SIGTERM", True), ("SIGKILL", False)), 20):
+            before = play(["I16"], "--flash", link).stdout.split()
+            with subprocess.Popen([command.BRICK, "exec", "-", "--flash", link], text=True, stdin=subprocess.PIPE,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+                run.stdin.write(f"I16={number}\nSAVE\nVERSION\n@wait 1000s\n")
+                run.stdin.close()
+                check(run.stdout.readline() == "1.947\n", f"{name}: VERSION, when the SAVE is over")
+                run.send_signal(getattr(signal, name))
+                said, code = run.stderr.read(), run.wait(60)
+            after = play(["I16"], "--flash", link).stdout.split()
+            check(after == ([str(number)] if keeps else before), f"{name}: I16 {after}, before it {before}")
+            if keeps:
+                check(code == 1 and f"stopped by {name}" in said, f"{name}: status {code}, {said}")
+            check(os.path.islink(link) and os.path.getsize(file) == 1 << 20, f"{name}: a link stays one")
+            left = sorted(os.listdir(folder))
+            check(left == ["flash.bin", "link.bin"], f"{name}: {left}")
 
 
 def boards():
@@ -149,124 +154,6 @@ def pic_8259():
     r = play(["@pic clear"], "--board", "pmac-pc")
     check(r.returncode == 2 and "the interrupt controller of this board is an 8259" in r.stderr, r.stderr)
     check("by an 8259" in brick("boards", "pmac-pc").stdout, "brick boards")
-
-
-def dialogue():
-    """I3, I4, I6 and restarts in the middle of a script do not lose the dialogue."""
-    lines, expected = [], []
-    for i3, i4, i6 in ((0, 0, 1), (1, 0, 0), (2, 1, 3), (3, 1, 1), (0, 1, 2), (1, 1, 3), (3, 0, 0), (2, 0, 1)):
-        lines += [f"I16 I3={i3} I4={i4} I6={i6}", "I16 I17", "P1=1", "I16 UUU", "I17"]
-        expected += ["5", "5", "10", "5", "ERR003" if i6 % 2 else "ERR", "10"]
-    for line in ("$$$", "I16=7 $$$", "I3=0 $$$***", "I16=7 I4=1 $$$***", "I3=1 SAVE", "I3=0", "SAVE"):
-        lines += [line, "I16 I17"]
-        expected += ["5", "10"]
-    r = play(lines)
-    check(r.returncode == 0 and r.stdout.split() == expected, f"{r.stdout.split()}, expected {expected}: {r.stderr}")
-    check(r.stderr.count("I16 UUU") == 8 and "stdin:4: `I16 UUU`: ERR003: unknown command" in r.stderr, r.stderr)
-    r = play(["UUU", "@expect ERR003", "UUU $$$", "I16", "@expect 5"])
-    check(r.returncode == 0 and r.stderr.count("\n") == 2 and "stdin:3: " in r.stderr, "expected errors are not told")
-
-
-def command_files():
-    """Comments, includes, macros and conditions as host programs read them; errors with file and line."""
-    with tempfile.TemporaryDirectory() as folder:
-        job = pathlib.Path(folder) / "job.pmc"
-        (pathlib.Path(folder) / "names.pmc").write_text("#define HEIGHT Q7\n#define SCALE(m,n) #m->n##X\n\nFROB\n")
-        job.write_text('''; a job
-#include "names.pmc"  // names of variables
-#define SUM(a, b) ((a)+(b))
-#ifdef HEIGHT
-HEIGHT = SUM(1, SUM(2,3))
-#else
-UUU
-#endif
-/* over
-lines */ HEIGHT
-@expect 6
-#1->1000X
-#1->
-@expect 1000X
-#1p ; a motor, no directive
-I16
-''')
-        r = brick("exec", str(job), "--json", f"{folder}/x.json")
-        check(r.returncode == 0 and r.stdout.split() == ["ERR003", "6", "1000X", "0", "5"], r.stdout + r.stderr)
-        check(f"brick exec: {folder}/names.pmc:4: `FROB`: ERR003: unknown command" in r.stderr, r.stderr)
-        check("1 of 9 lines refused: 1 x ERR003" in r.stderr, r.stderr)
-        found = json.loads(pathlib.Path(f"{folder}/x.json").read_text())["exchanges"]
-        check(found[-1] == {"place": f"{job}:16", "line": "I16", "reply": ["5"], "error": False}, str(found))
-        for bad, what in (("#include \"none.pmc\"", f"{job}:1: `{folder}/none.pmc` cannot be read; expected"),
-                          ("#define L " + "X" * 300 + "\nL", f"{job}:2: `L` expands to 300 characters; expected"),
-                          ("#include \"job.pmc\"", "expected no file that includes itself"),
-                          ("#ifdef A", f"{job}:1: a condition without its end; expected #endif"),
-                          ("I16\n@frob", f"{job}:2: @frob: ")):
-            job.write_text(bad + "\n")
-            r = brick("exec", str(job))
-            check(r.returncode == 2 and r.stdout == "" and r.stderr.count("\n") == 1 and what in r.stderr, r.stderr)
-
-
-# What the image does not have yet. It must be exactly this: what is not refused any more is struck out here.
-REFUSED_TODAY = {"PLC"}
-MOST_REFUSED = 20  # of 30,000 lines, but for those
-
-
-# covers: CARD-3
-def backup():
-    """The backup of a controller loads; what is refused is told with its place, and nothing is lost on the way."""
-    with tempfile.TemporaryDirectory() as folder:
-        places = backup_file.write(folder)
-        job = pathlib.Path(folder) / "backup.pmc"
-        values = backup_file.p_values()
-        asked = range(2000, 8192, 43)  # lines of PLCs that cannot be opened assign lower ones
-        job.write_text(job.read_text() + "FROB ; a fault\n" + "".join(f"P{n}\n" for n in asked) + "I3\nI5189\n")
-        r = brick("exec", str(job), "--json", f"{folder}/x.json", timeout=550)
-        check(r.returncode == 0, r.stderr)
-        exchanges = json.loads(pathlib.Path(f"{folder}/x.json").read_text())["exchanges"]
-    check(len(places) >= 30000, f"{len(places)} lines, expected 30,000")
-    sent = [e["line"] for e in exchanges[:len(places)]]
-    check(sent == [line for _, line in places.values()], "other lines were sent")
-    refused = [e for e in exchanges if e["error"]]
-    check(refused[-1]["line"] == "FROB" and refused[-1]["place"].startswith(str(job)), str(refused[-1]))
-    kinds = collections.Counter(places[e["place"]][0] for e in refused[:-1])
-    print(f"{len(places)} lines, {len(refused) - 1} refused: {dict(kinds)}")
-    check(set(kinds) >= REFUSED_TODAY, f"not refused any more, strike it out: {REFUSED_TODAY - set(kinds)}")
-    others = [e for e in refused[:-1] if places[e["place"]][0] not in REFUSED_TODAY]
-    check(len(others) <= MOST_REFUSED, f"{len(others)} refused, expected at most {MOST_REFUSED}: {others[:5]}")
-    told = [line for line in r.stderr.splitlines() if "`: ERR" in line]
-    check(len(told) == min(len(refused), 50), f"{len(told)} refused lines told")
-    for line, e in zip(told, refused, strict=False):
-        check(line.startswith(f"brick exec: {e['place']}: `{e['line']}`: {e['reply'][-1]}: "), f"{line}: {e}")
-    check(f"{len(refused)} of {len(exchanges)} lines refused" in r.stderr, r.stderr[-200:])
-    answers = [float(e["reply"][0]) for e in exchanges[-len(asked) - 2:]]
-    wrong = [(n, a) for n, a in zip(asked, answers, strict=False) if abs(a - values[n]) > 1e-9 * max(1, abs(values[n]))]
-    check(not wrong, f"P variables hold other values than were sent: {wrong}")
-    check(answers[-2:] == [2, 1000], str(answers[-2:]))
-
-
-def progress():
-    """A terminal on stderr sees one line that moves on and goes away; a file sees nothing."""
-    script = "".join(f"P{n}={n}\n" for n in range(8000)) + "FROB\n"
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "long.pmc"
-        file.write_text(script)
-        check(brick("exec", str(file)).stderr.count("\n") == 2, "silent but for the refused line")
-        mine, terminal = pty.openpty()
-        with subprocess.Popen([command.BRICK, "exec", str(file)], stdout=subprocess.PIPE, stderr=terminal) as run:
-            os.close(terminal)
-            seen = b""
-            while chunk := read_some(mine):
-                seen += chunk
-        check(run.returncode == 0, seen.decode())
-    lines = [int(n) for n in re.findall(rb"\r\x1b\[Kexec: [^\r]*, line (\d+) of 8001, \d refused", seen)]
-    check(len(lines) >= 2 and lines == sorted(lines) and lines[-1] > lines[0], str(lines))
-    check(b"\r\x1b[Kbrick exec: " in seen and seen.endswith(b"1 x ERR003\r\n"), str(seen[-200:]))
-
-
-def read_some(terminal):
-    try:
-        return os.read(terminal, 4096)
-    except OSError:  # the other end is closed
-        return b""
 
 
 # covers: BREQ-6
@@ -448,81 +335,6 @@ def installed():
         command.BRICK = f"{folder}/bin/brick"
         golden()
         boards()
-
-
-def wave_window():
-    with tempfile.TemporaryDirectory() as folder:
-        for ending in ("vcd", "fst"):
-            r = play(["VERSION", "@wait 1ms"], "--wave", f"{folder}/new/x.{ending}", "--wave-from", "1ms", "--wave-to",
-                     "14ms")
-            check(r.returncode == 0, r.stderr)
-            check(pathlib.Path(f"{folder}/new/x.{ending}").stat().st_size > 1000, ending)
-        times = [int(t) for t in re.findall(r"^#(\d+)", pathlib.Path(f"{folder}/new/x.vcd").read_text(), re.M)]
-        check(times[0] == 10**9 and times[-1] <= 14 * 10**9, f"{times[0]} to {times[-1]} ps")
-
-
-def names_in(text):
-    """Full name -> identifier code of the variables of a VCD."""
-    scope, codes = [], {}
-    for line in text.split("$enddefinitions")[0].splitlines():
-        word = line.split()
-        if word[0] == "$scope":
-            scope.append(word[2])
-        elif word[0] == "$upscope":
-            scope.pop()
-        elif word[0] == "$var":
-            codes[".".join([*scope, word[4]])] = word[3]
-    return codes
-
-
-# covers: CARD-4
-def trace():
-    """--trace chooses what goes into a waveform; without it everything does but the serial clocks."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(f"{folder}/x.vcd")
-
-        def names(*options):
-            r = play(["@wait 1ms"], "--wave", str(file), *options)
-            check(r.returncode == 0, r.stderr)
-            return set(names_in(file.read_text()))
-
-        everything, default = names("--trace", "all"), names()
-        serial = {n for n in everything if n.endswith((".dac_clk", ".adc_clk"))}
-        check(len(serial) == 16 and default == everything - serial, f"left out: {sorted(everything - default)}")
-        clocks = {n for n in everything if n.startswith("brick.clock.")}
-        check(len(clocks) >= 4, str(clocks))
-        for options in (["--trace", "clock.*,host.breq"], ["--trace", "clock.*", "--trace", "breq"]):
-            check(names(*options) == clocks | {"brick.host.breq"}, str(options))
-        name = "servo_ic1.ch2.dac_clk"  # the clock of the whole IC, under one of its names
-        check(names("--trace", name) == {"brick." + name}, name)
-        code = names_in(file.read_text())["brick." + name]
-        check(len(re.findall(rf"^1{re.escape(code)}$", file.read_text(), re.M)) > 100, f"{name} does not move")
-
-
-# covers: CARD-4
-def wave():
-    """A bench writes a VCD with the contract's names and data in them, the same on every engine."""
-    names = """
-        clock.phase clock.servo clock.source host.breq host.irq host.ipos host.eror host.f1er host.hreq host.wdo
-        host.isa.sa host.isa.sd host.isa.ior_n host.isa.iow_n host.isa.memr_n host.isa.memw_n host.isa.iochrdy
-        host.isa.aen host.pic.ist host.pic.sig host.pic.msk host.pic.elr dpram.busy_host dpram.busy_cpu
-        bus.addr bus.data bus.aa bus.rd_n bus.wr_n bus.ta_n cpu.pc cpu.task cpu.symbol watchdog.tripped"""
-    texts = []
-    with tempfile.TemporaryDirectory() as folder:
-        for engine in ("systemc", "rtl", "lockstep"):
-            file = pathlib.Path(f"{folder}/{engine}.vcd")
-            r = brick("run", "smoke", "--engine", engine, "--wave", str(file))
-            check(r.returncode == 0, r.stdout + r.stderr)
-            texts.append(file.read_text())
-    check(texts[0] == texts[1] == texts[2], "the waveforms of the engines differ")
-    codes = names_in(texts[0])
-    for name in names.split():
-        check("brick." + name in codes, f"no signal {name}")
-    least_changes = {"clock.phase": 100, "clock.servo": 40, "host.isa.sa": 100, "host.isa.sd": 100, "host.pic.msk": 3,
-                     "bus.addr": 20, "cpu.pc": 100, "cpu.symbol": 100, "cpu.task": 50, "host.isa.memw_n": 30}
-    for name, least in least_changes.items():
-        changes = len(re.findall(rf"^(?:[01]|b[01]+ |s\S+ ){re.escape(codes['brick.' + name])}$", texts[0], re.M))
-        check(changes >= least, f"{name} changes {changes} times, expected {least} or more")
 
 
 globals()[command.CASE]()

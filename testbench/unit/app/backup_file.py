@@ -21,7 +21,7 @@ MOTOR = {2: "$78002", 3: "$3501", 4: "$3501", 5: "$35C0", 7: 96, 8: 96, 9: 96, 1
 COORDINATE_SYSTEM = {88: 50, 89: 1000, 90: 1000, 93: "$2000", 94: 1644, 95: 1644, 99: 0.9998474121}
 SERVO_IC = {0: 6527, 2: 3, 3: 2258, 4: 15, 5: "$7FFFC0", 6: "$FFFFFE"}
 CHANNEL = {0: 7, 2: 1}
-PLCS, PLC_LINES = 31, 165
+PLCS, PLC_LINES = 31, 110
 
 
 def i_variables():
@@ -60,7 +60,8 @@ def p_values():
 def pq_variables():
     for n, value in p_values().items():
         yield f"P{n}={text_of(value)}"
-    for cs, values in ((1, numbers(2)), (2, numbers(3))):
+    for cs in range(1, 17):
+        values = numbers(1 + cs)
         yield f"&{cs}"
         for n in range(200):
             yield f"Q{n}={text_of(next(values))}"
@@ -106,8 +107,8 @@ def plc(number):
     """Of every statement that a PLC may hold, then of assignments."""
     yield f"OPEN PLC {number} CLEAR"
     body = [f"ADDRESS#{number % 32 + 1}&{number % 4 + 1}", "IF(M4900=0)", "AND(P1>3 OR P2!<-4)", "M4900=1", "ELSE",
-            f"I5111={number}*8388608/I10", "WHILE(I5111>0 AND M1=0)", "ENDWHILE", "ENDIF", "IF(P3~5) P4=SIN(P5)*2",
-            "OR(Q1!=7)", f"P{number + 100}=P{number + 100}%16|$F0", "ENDI", "WHILE(P6<0)", "P6=P6+1", "ENDW",
+            f"I5111={number}*8388608/I10", "WHILE(I5111>0 AND M1=0)", "ENDWHILE", "ENDIF", "IF(P3~5)", "OR(Q1!=7)",
+            "P4=SIN(P5)*2", f"P{number + 100}=P{number + 100}%16|$F0", "ENDI", "WHILE(P6<0)", "P6=P6+1", "ENDW",
             "CMD\"&1B10R\"", "COMMAND\"#1J/\"", "CMD^A", "SENDP\"done; // not a comment\"", "SEND\"ready\"",
             f"DISABLE PLC {number}", "ENABLE PLC 0..3", "DIS PLC4,5", "PAUSE PLC6", "RESUME PLC6", "M100=M101^$3",
             "I124=I124|$20000", "P(P1+10)=Q(10)", "RETURN"]

@@ -41,11 +41,13 @@ def every_board():
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
                "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase"}, "geobrick-lv-8": {"clock-macro"},
                "turbo-pmac-pci": {"clock-macro"},
-               "pmac-pc": {"clock-macro", "breq-rotary", "breq-select", "watchdog", "capture-compare", "isa-timing"},
+               "pmac-pc": {"clock-macro", "breq-rotary", "breq-fixed", "breq-select", "watchdog", "capture-compare",
+                           "isa-timing"},
                "umac-turbo": {"watchdog", "reinit-e3", "pwm", "port-a-phase"},
                "turbo-pmac2-ultralite":
-                   every_bench - {"smoke", "breq-rotary", "breq-select", "interrupts", "clock-macro", "dpram",
-                                  "host-port", "isa-timing", "bus-timing"}}
+                    every_bench - {"smoke", "breq-rotary", "breq-fixed", "breq-select", "interrupts", "clock-macro",
+                                   "dpram", "host-port", "isa-timing", "bus-timing", "plc", "listing", "variables",
+                                   "status", "save-restore"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
@@ -83,9 +85,48 @@ def breq_rotary_lockstep():
     bench_passes("breq-rotary", "lockstep", "3")
 
 
+# covers: I18-2
+def breq_fixed():
+    for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
+        bench_passes("breq-fixed", engine, seed)
+
+
 def dpram():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2"), ("lockstep", "3")):
         bench_passes("dpram", engine, seed)
+
+
+# covers: I9-1 I9-3
+def listing():
+    for seed in ("1", "2", "3"):
+        bench_passes("listing", "systemc", seed)
+
+
+# covers: I9-1 I9-3
+def listing_lockstep():
+    bench_passes("listing", "lockstep", "4")
+
+
+# covers: I9-1 I9-2 I9-3
+def variables():
+    for seed in ("1", "2", "3"):
+        bench_passes("variables", "systemc", seed)
+
+
+# covers: I9-1 I9-2 I9-3
+def variables_lockstep():
+    bench_passes("variables", "lockstep", "4")
+
+
+# covers: BREQ-5
+def status():
+    for seed in ("1", "2"):
+        bench_passes("status", "systemc", seed)
+
+
+# covers: BREQ-5
+def status_lockstep():
+    bench_passes("status", "lockstep", "3")
 
 
 # covers: BREQ-6 BREQ-7
@@ -113,6 +154,13 @@ def reinit_e3():
     for engine, seed in (("systemc", "1"), ("rtl", "2"), ("lockstep", "3")):
         bench_passes("reinit-e3", engine, seed)
     r, results = run_json("reinit-e3", "--engine", "lockstep", "--board", "turbo-pmac2-pc")  # with a MACRO IC
+    check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
+
+
+def save_restore():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "3"), ("lockstep", "4")):
+        bench_passes("save-restore", engine, seed)
+    r, results = run_json("save-restore", "--engine", "systemc", "--board", "turbo-pmac-pci")  # with INIT/
     check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
 
 
@@ -212,6 +260,15 @@ def bus_timing():
 
 def bus_timing_lockstep():
     bench_passes("bus-timing", "lockstep", "3")
+
+
+def plc():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("plc", engine, seed)
+
+
+def plc_lockstep():
+    bench_passes("plc", "lockstep", "3")
 
 
 if CASE.endswith("_negative"):

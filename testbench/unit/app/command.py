@@ -1,4 +1,4 @@
-"""The built command, called from outside: what acceptance.py and bench_acceptance.py share."""
+"""The built command, called from outside: what the *acceptance.py share."""
 import pathlib
 import subprocess
 import sys

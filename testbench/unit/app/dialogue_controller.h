@@ -25,17 +25,18 @@ class DialogueController {
  private:
   Framing now() const { return {i3, i4}; }
 
-  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 and P2 (25 and 50), SAVE, $$$; all else is an error.
+  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 to P4 (25, 50, 3, 22221), $$$; UUU is an error.
   std::string answer(const std::string& line) {
     if (before_line) before_line();
     const Framing before = now();
     std::string bytes;
     std::istringstream in(line);
     for (std::string word; in >> word;) {
-      for (const auto& [name, text] : {std::pair("P1", "25"), std::pair("P2", "50")})
+      for (const auto& [name, text] :
+           {std::pair("P1", "25"), std::pair("P2", "50"), std::pair("P3", "3"), std::pair("P4", "22221")})
         if (word == name) bytes += data(text);
       if (word == "I3") bytes += data(std::to_string(i3));
-      if (word.size() == 4 && word[2] == '=')
+      if (word.size() == 4 && word[0] == 'I' && word[2] == '=')
         (word[1] == '3' ? i3 : word[1] == '4' ? i4 : i6) = static_cast<unsigned>(word[3] - '0');
       if (word == "I6=1I3=2I4=0") i6 = 1, i3 = 2, i4 = 0;  // what the host link begins with
       if (word.rfind("$$$", 0) == 0) {

@@ -57,7 +57,10 @@ Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) {
 void Machine::apply(TimeFs) {
   Impl& m = *impl_;
   FakeMachine& f = m.fake;
-  f.changes.push_back({m.now + 1, m.applied, m.pins});
+  if (f.records) f.changes.push_back({m.now + 1, m.applied, m.pins});
+  for (; !f.later.empty() && f.later.front().first <= m.now; f.later.pop_front())
+    f.to_host.insert(f.to_host.end(), f.later.front().second.begin(), f.later.front().second.end());
+  if (f.never_quiet && f.to_host.empty()) f.to_host.push_back('X');
   const std::uint32_t offset = m.pins.isa_sa - 0x210, word = m.pins.isa_sa - 0xD0000;
   if (m.applied.isa_ior_n && !m.pins.isa_ior_n) {
     std::uint8_t value = f.io[offset];
@@ -72,12 +75,15 @@ void Machine::apply(TimeFs) {
   if (!m.applied.isa_iow_n && m.pins.isa_iow_n) {
     const auto byte = static_cast<std::uint8_t>(m.pins.isa_sd);
     f.io[offset] = byte;
-    const auto say = [&f](const std::string& answer) {
-      f.to_host.insert(f.to_host.end(), answer.begin(), answer.end());
+    const auto say = [&](const std::string& answer, Tick after = 0) {
+      if (after == 0 && f.later.empty())
+        f.to_host.insert(f.to_host.end(), answer.begin(), answer.end());
+      else
+        f.later.emplace_back((f.later.empty() ? m.now : f.later.back().first) + after, answer);
     };
     if (offset == 7 && byte == '\r') {
       const std::string line = std::exchange(f.line, "");
-      if (f.controller) say(f.controller(line));
+      if (f.controller) say(f.controller(line), f.thinking);
     } else if (offset == 7 && byte < ' ') {
       if (f.control) say(f.control(static_cast<char>(byte)));
     } else if (offset == 7) {

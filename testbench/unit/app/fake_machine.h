@@ -18,11 +18,15 @@ struct FakeMachine {
     BoardInputs before, after;
   };  // `seen`: the first edge that sees it
   std::vector<Change> changes;
+  bool records = true;                                        // them
   std::deque<std::uint8_t> to_host;                           // characters of the controller
   std::string line;                                           // characters of the host up to CR
   std::function<std::string(const std::string&)> controller;  // line without CR -> bytes of the answer
   std::function<std::string(char)> control;                   // other control characters -> bytes of the answer
-  std::map<std::uint32_t, std::uint8_t> io;                   // other I/O bytes by offset, written and read back
+  Tick thinking = 0;         // from a line to its answer; what is asked meanwhile is answered behind it
+  bool never_quiet = false;  // where nothing else is to be said, X
+  std::deque<std::pair<Tick, std::string>> later;  // answers that are being thought of
+  std::map<std::uint32_t, std::uint8_t> io;        // other I/O bytes by offset, written and read back
   std::map<std::uint32_t, std::uint16_t> memory;
   std::vector<std::pair<Tick, BoardOutputs>> planned;   // outputs from that edge on, in order
   Tick ready_low_from = kNever, ready_low_to = kNever;  // IOCHRDY

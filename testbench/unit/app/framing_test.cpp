@@ -15,11 +15,13 @@ using Lines = std::vector<std::string>;
 TEST(FramingProbe, KnowsTheLinesThatMayChangeI3AndI4) {
   for (const char* line :
        {"I3=0", "i4 = 1", "P1=2 I3=P1", "I03=1", "I0..9=*", "I2..40=0", "I1,5=2", "I(P1)=2", "I3..4=0", "I3,2=1",
-        "I33\x08=0", "\x09", "#1J+I3=2", "I16 I3=0 I17", "I3=1;I5=2", "CLOSE I4=1", "A I4=1", "SAVE I3=0"})
+        "#1J+I3=2", "I16 I3=0 I17", "I3=1;I5=2", "CLOSE I4=1", "A I4=1", "SAVE I3=0"})
     EXPECT_TRUE(may_change_framing(line)) << line;
   for (const char* line : {"I3", "I3 I4", "I13=2", "I30=0", "I5..9=*", "I16=3", "P1=I3", "SIN(3)=4", "CMD\"I3=0\"",
                            "I0..99", "M3->I4", "P3=0 ; I3=0", "", "I", "I(P1)", "I4900..4999=0", "I34=I3"})
     EXPECT_FALSE(may_change_framing(line)) << line;
+  for (const char* line : {"I33\x08=0", "\x09", "P1\x1F"}) EXPECT_TRUE(has_control_characters(line)) << line;
+  for (const char* line : {"", "P1=2 ; I3", "\xC3\xBC"}) EXPECT_FALSE(has_control_characters(line)) << line;
   for (const char* line : {"$$$", "I16=3 $$$***", " $ $$"}) EXPECT_TRUE(may_restart(line)) << line;
   for (const char* line : {"$$", "CMD\"$$$\"", "P1=$12 ; $$$", "M1->X:$78000,24"})
     EXPECT_FALSE(may_restart(line)) << line;
@@ -42,7 +44,10 @@ TEST(FramingProbe, ReadsEverySettingOffAnAnswer) {
 
 class FramingTest : public ::testing::Test {
  protected:
-  FramingTest() { EXPECT_TRUE(link.connect(HostLink::kBootTime)); }
+  FramingTest() {
+    FakeMachine::last().records = false;
+    EXPECT_TRUE(link.connect(HostLink::kBootTime));
+  }
 
   Lines reply(const std::string& line) {
     const Reply reply = link.command(line);
@@ -92,6 +97,69 @@ TEST_F(FramingTest, FindsOutWhenAProgramChangesI3) {
     EXPECT_EQ(reply("P1"), (Lines{"25"})) << i3;
     EXPECT_EQ(reply("P2"), (Lines{"50"})) << i3;
   }
+}
+
+// 22221 CR and its checksum, $06: an acknowledge, where no checksum is expected. 3 CR adds up to $40.
+TEST_F(FramingTest, FindsOutWhenAProgramChangesI4) {
+  for (const unsigned i3 : {2u, 3u, 1u, 2u, 0u})
+    for (const unsigned i4 : {1u, 0u, 1u, 1u, 0u, 0u}) {
+      SCOPED_TRACE("I3=" + std::to_string(i3) + " I4=" + std::to_string(i4));
+      controller.before_line = [&] { controller.i3 = i3; };
+      EXPECT_EQ(reply("P1"), (Lines{"25"}));
+      for (const char* line : {"P1", "P1 P2", "P4 P1", "P3=1 P3", "P5=1", "X", "P1 UUU"}) {
+        controller.i4 = 1 - i4;
+        controller.before_line = [&] { controller.i4 = i4; };
+        const std::string first(line);
+        EXPECT_EQ(reply(line), first == "P1"        ? (Lines{"25"})
+                               : first == "P1 P2"   ? (Lines{"25", "50"})
+                               : first == "P4 P1"   ? (Lines{"22221", "25"})
+                               : first == "P3=1 P3" ? (Lines{"3"})
+                               : first == "P1 UUU"  ? (Lines{"25", "ERR003"})
+                                                    : Lines{})
+            << line;
+        controller.before_line = nullptr;
+        EXPECT_EQ(reply("P2"), (Lines{"50"})) << "behind " << line;
+        EXPECT_EQ(link.take_unsolicited(), Lines{}) << line;
+      }
+    }
+}
+
+// Quiet is no end of a reply that nothing ends, nor of one that a restart may end.
+TEST_F(FramingTest, WaitsForTheErrorOfASlowLine) {
+  FakeMachine& fake = FakeMachine::last();
+  for (const Tick thinking : {0, 6, 40, 130}) {
+    SCOPED_TRACE(std::to_string(thinking) + " ms");
+    fake.thinking = ns_to_ticks(thinking * 1'000'000);
+    EXPECT_EQ(reply("I3=0"), Lines{});
+    EXPECT_EQ(reply("P1 UUU"), (Lines{"25", "ERR003"}));
+    EXPECT_EQ(reply("P5=1"), Lines{});
+    EXPECT_EQ(reply("P2"), (Lines{"50"}));
+    EXPECT_EQ(reply("I3=2"), Lines{});
+    const int restarts = controller.restarts;
+    EXPECT_EQ(reply("P1 UUU $$$"), (Lines{"25", "ERR003"}));
+    EXPECT_EQ(controller.restarts, restarts);
+    EXPECT_EQ(reply("P1 $$$"), (Lines{"25"}));
+    EXPECT_EQ(controller.restarts, restarts + 1);
+    EXPECT_EQ(reply("P2"), (Lines{"50"}));
+    EXPECT_EQ(link.take_unsolicited(), Lines{});
+  }
+}
+
+// Each control character may be answered by itself; the answer of the line comes behind.
+TEST_F(FramingTest, ControlCharactersInALineDoNotShiftTheReplies) {
+  EXPECT_EQ(reply("P1\x07"), (Lines{"0123456789AB", "25"}));
+  EXPECT_EQ(reply("P2"), (Lines{"50"}));
+  EXPECT_EQ(reply("\x07UUU\x07"), (Lines{"0123456789AB", "0123456789AB", "ERR003"}));
+  EXPECT_EQ(reply("P2"), (Lines{"50"}));
+  EXPECT_EQ(link.take_unsolicited(), Lines{});
+}
+
+TEST_F(FramingTest, EndsWhereTheControllerIsNeverQuiet) {
+  FakeMachine& fake = FakeMachine::last();
+  fake.never_quiet = true;
+  link.poll();
+  EXPECT_LT(link.control(0x10).raw.size(), HostLink::kLongestReply + 2);
+  EXPECT_EQ(link.take_unsolicited(), Lines{}) << "there is no end of the line";
 }
 
 TEST_F(FramingTest, ConnectsAgainAfterARestartAnywhereInALine) {

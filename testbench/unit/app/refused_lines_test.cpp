@@ -44,5 +44,19 @@ TEST(ByteText, CutsWhatIsEndless) {
   EXPECT_EQ(beginning_of(std::string(1 << 20, 'X')), "`" + std::string(60, 'X') + "`... (1048576 bytes)");
 }
 
+// U+00FC, a half of a pair, U+0085 (a control character), a form longer than needed, U+20AC cut short, beyond the end.
+TEST(ByteText, LetsNothingThroughThatActsOnATerminal) {
+  EXPECT_EQ(readable_text("\xC3\xBC \x1B[2J\x7F\xFF"), "\xC3\xBC <1B>[2J<7F><FF>");
+  EXPECT_EQ(readable_text("\xED\xA0\x80|\xC2\x85|\xC0\x8A|\xE2\x82|\xF4\x90\x80\x80"),
+            "<ED><A0><80>|<C2><85>|<C0><8A>|<E2><82>|<F4><90><80><80>");
+  EXPECT_EQ(readable_text("\xE2\x82\xAC\xF0\x9F\x98\x80"), "\xE2\x82\xAC\xF0\x9F\x98\x80");
+  EXPECT_EQ(utf8_text("a\x06\xC3\xBC\xC3"), "a\x06\xC3\xBC<C3>");
+  EXPECT_EQ(visible_bytes("a\x06\xC3\xBC~"), "a<06><C3><BC>~");
+  EXPECT_EQ(cut_text("\x1B"
+                     "234",
+                     2),
+            "<1B>2...");
+}
+
 }  // namespace
 }  // namespace brick

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "app/time_text.h"
@@ -106,10 +108,22 @@ TEST(Script, ErrorsSayWhereWhatAndWhatWasExpected) {
                           "@encoder 1 5 0",
                           "@encoder 1 x",
                           "@encoder 1 5 9830401",
+                          "@encoder 1 4294967295 1",
                           "@encoder 1 5 6 7",
                           "@jpan FPD=x"})
     EXPECT_THAT(error_of(std::string("VERSION\n") + bad), AllOf(HasSubstr("job.txt:2: @"), HasSubstr("expected")))
         << bad;
+}
+
+TEST(Script, ErrorsInAtLinesSayWhoIncludedTheFile) {
+  const std::string folder = ::testing::TempDir() + "brick_script_included/";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "bad.pmc") << "I16\n@frob\n";
+  EXPECT_EQ(error_of("#include \"" + folder + "bad.pmc\"").find(folder + "bad.pmc:2: @frob: `@frob` is not known"), 0u);
+  EXPECT_THAT(error_of("#include \"" + folder + "bad.pmc\""), ::testing::EndsWith(" (included at job.txt:1)"));
+  std::filesystem::remove_all(folder);
+  EXPECT_LT(error_of("@frob" + std::string(1 << 16, 'X')).size(), 300u);
+  EXPECT_THAT(error_of("@wait \x1B[2J"), HasSubstr("`<1B>`"));
 }
 
 // Quadrature by hand: the levels of A and B after each edge, and the tick of each, by the rule of the data sheet.

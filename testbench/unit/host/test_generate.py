@@ -1,4 +1,4 @@
-"""The freshness check must fail on a stale or missing header; the generated files in the tree must be fresh."""
+"""The freshness check fails on a stale or missing header; the generated files are fresh; the pages are made."""
 import subprocess
 import sys
 import tempfile
@@ -40,8 +40,25 @@ class StaleFiles(unittest.TestCase):
             self.assertIn(f"{name} is stale", done.stdout)
 
 
+class Pages(unittest.TestCase):
+    """--html: a page each block and register, and what finds them."""
+
+    def test_pages_have_every_block(self):
+        with tempfile.TemporaryDirectory() as tree:
+            pages = Path(tree) / "pages"
+            done = run("--check", "--html", pages)
+            self.assertEqual(done.returncode, 0, done.stdout)
+            self.assertEqual(done.stdout, f"{pages}/index.html\n")
+            self.assertIn("<html", (pages / "index.html").read_text())
+            self.assertGreater(len(list((pages / "content").glob("*.html"))), 100)  # 32 + 64 offsets, the board's
+            data = (pages / "data/ral-data-0.json").read_text()
+            for name in ("brick_cpu", "servo_channel_fine", "brick_host_io", "clock_control", "pwm_control"):
+                self.assertIn(f'"{name}', data)
+
+
 if __name__ == "__main__":
     try:
+        import peakrdl_html  # noqa: F401
         import peakrdl_ipxact  # noqa: F401
     except ImportError as missing:
         print(f"skipped: {missing}")
