@@ -7,12 +7,15 @@ namespace brick {
 
 Bench smoke_bench();
 Bench bus_timing_bench();
+Bench plc_bench();
 Bench breq_rotary_bench();
 Bench breq_select_bench();
+Bench breq_fixed_bench();
 Bench interrupts_bench();
 Bench watchdog_bench();
 Bench dpram_bench();
 Bench reinit_e3_bench();
+Bench save_restore_bench();
 Bench clock_select_bench();
 Bench clock_faults_bench();
 Bench clock_macro_bench();
@@ -25,5 +28,8 @@ Bench serial_dac_adc_bench();
 Bench port_a_phase_bench();
 Bench host_port_bench();
 Bench isa_timing_bench();
+Bench listing_bench();
+Bench variables_bench();
+Bench status_bench();
 
 }  // namespace brick

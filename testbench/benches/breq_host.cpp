@@ -23,9 +23,18 @@ BreqHost::BreqHost(BenchContext& context, Tick line_time)
     scoreboard_.edge(now, after.get(pin::kBreq) != 0);
   });
   if (context_.machine.outputs().get(pin::kBreq)) scoreboard_.edge(context_.bus.now(), true);
+  judge_ = context_.machine.on_host_bus;
+  context_.machine.on_host_bus = [this](TimeFs time, const BoardInputs& in, const BoardOutputs& out) {
+    if (judge_) judge_(time, in, out);
+    if (strobe_low_ && in.isa_iow_n) strobe_ = time;
+    strobe_low_ = !in.isa_iow_n;
+  };
 }
 
-BreqHost::~BreqHost() { context_.bus.watch({}, nullptr); }
+BreqHost::~BreqHost() {
+  context_.bus.watch({}, nullptr);
+  context_.machine.on_host_bus = judge_;
+}
 
 Reply BreqHost::must(const std::string& command) {
   Reply reply = context_.link.command(command);
@@ -84,8 +93,10 @@ void BreqHost::stop() {
 bool BreqHost::line(const std::string& text) {
   HostLink& link = context_.link;
   if (!link.send(text)) throw HostBusError("the host port takes no character of `" + text + "`; expected: TXDE");
+  const Tick sent = fs_to_tick(strobe_);
   scoreboard_.line_sent(context_.bus.now());
   const Reply reply = link.finish();
+  fall_time_ = scoreboard_.fell_at() >= sent ? scoreboard_.fell_at() - sent : -1;
   if (!reply.complete) throw HostBusError("no reply to the line `" + text + "`; expected: acknowledge");
   if (reply.error) {
     context_.report.fail("line " + text, reply.lines.back() + ", expected: stored");

@@ -2,6 +2,7 @@
 // interrupt controller, and every edge of BREQ at its tick.
 #pragma once
 
+#include <functional>
 #include <random>
 #include <string>
 
@@ -24,11 +25,14 @@ class BreqHost {
   void run();                          // R
   void stop();                         // A; nothing more is taken
   bool line(const std::string& text);  // one program line; false when refused
-  void settle();                       // waits until BREQ shows its final state, and checks it
-  unsigned lines_ahead();              // PR
-  bool full();                         // ??
-  bool signal();                       // SIG bit 1
-  void check();                        // PR, ?? and SIG
+  // T_FALL of the last line (host-bus:5.7): from the rise of the write strobe of its CR to the fall of BREQ. Negative:
+  // it did not fall, because it was low already.
+  Tick fall_time() const { return fall_time_; }
+  void settle();           // waits until BREQ shows its final state, and checks it
+  unsigned lines_ahead();  // PR
+  bool full();             // ??
+  bool signal();           // SIG bit 1
+  void check();            // PR, ?? and SIG
 
   // A host program's loop: waits for the interrupt line, reads and clears the interrupt controller; false at the
   // time-out.
@@ -54,6 +58,10 @@ class BreqHost {
   std::size_t reported_ = 0;
   BreqScoreboard::Counts counted_;
   unsigned interrupts_ = 0;
+  TimeFs strobe_ = 0;  // the last rise of IOW#
+  bool strobe_low_ = false;
+  Tick fall_time_ = -1;
+  std::function<void(TimeFs, const BoardInputs&, const BoardOutputs&)> judge_;  // who sees the host bus beside us
 };
 
 }  // namespace brick

@@ -75,14 +75,13 @@ struct WatchdogLoad {
 };
 
 inline WatchdogLoad watchdog_load(HostLink& link) {
-  constexpr long kEntry = 110;  // interrupt entry and return, which a task does not see
   const auto cycles = [&link](const char* word) {
     const Reply reply = link.command(word);
     return reply.lines.empty() ? 0 : 2 * std::strtol(reply.lines[0].c_str(), nullptr, 10);
   };
-  WatchdogLoad load{cycles("RY$37") + cycles("RX$37") + kEntry, 0};
+  WatchdogLoad load{cycles("RY$37") + cycles("RX$37"), 0};
   for (int i = 0; i < 4; ++i) {  // the shortest: not one that was interrupted
-    const long took = cycles("RX$B") + kEntry;
+    const long took = cycles("RX$B");
     load.real_time = i == 0 ? took : std::min(load.real_time, took);
   }
   return load;

@@ -70,7 +70,6 @@ void BreqScoreboard::line_sent(Tick now) {
   System& s = now_selected();
   line_under_way_ = may_fall_ = true;
   must_fall_ = level_;
-  sent_at_ = now;
   ++s.high;
 }
 
@@ -103,7 +102,6 @@ void BreqScoreboard::edge(Tick now, bool level) {
     may_fall_ = must_fall_ = false;
     pulse_ = true;
     fell_at_ = now;
-    longest_fall_ = std::max(longest_fall_, now - sent_at_);
     stored(now);
     return;
   }

@@ -59,7 +59,7 @@ class BreqScoreboard {
   const Counts& counts() const { return counts_; }
   bool expect_full() const { return systems_[selected_].full.value_or(false); }
   bool level() const { return level_; }
-  Tick longest_fall() const { return longest_fall_; }  // CR to BREQ low
+  Tick fell_at() const { return fell_at_; }  // the last fall for a line
   Tick shortest_pulse() const { return shortest_; }
   Tick longest_pulse() const { return longest_; }
 
@@ -90,8 +90,7 @@ class BreqScoreboard {
   bool may_fall_ = false;        // a line was sent and its fall has not come
   bool must_fall_ = false;       // ... and the pin was high, so it must come
   bool pulse_ = false;           // fell for a line, not yet decided
-  Tick sent_at_ = 0, fell_at_ = 0;
-  Tick longest_fall_ = 0, shortest_ = kNever, longest_ = 0;
+  Tick fell_at_ = 0, shortest_ = kNever, longest_ = 0;
   Counts counts_;
   std::vector<std::string> violations_;
 };
