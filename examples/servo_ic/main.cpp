@@ -58,9 +58,8 @@ int sc_main(int, char*[]) {
   master.socket.bind(ic.registers);
   master.a(a), master.b(b), master.phase(phase);
   ic.ch[0].enc_a(a), ic.ch[0].enc_b(b), ic.phase_o(phase);
-  sc_core::sc_start(sc_core::SC_ZERO_TIME);  // ends the elaboration
   sc_core::sc_trace_file* file = sc_core::sc_create_vcd_trace_file("servo_ic");
-  ic.trace(file);
+  sc_trace(file, ic, "ic");  // all pins, the unbound ones too
   sc_core::sc_start();
   sc_core::sc_close_vcd_trace_file(file);
   return master.passed ? 0 : 1;

@@ -4,15 +4,12 @@
 #include <stdexcept>
 
 #include "systemc/component/client.h"
+#include "systemc/component/error.h"
 
 namespace brick::component {
 
-Pin::Pin(Component& owner, std::string_view name, unsigned width) : owner_(owner), info_(owner.add(*this, name)) {
+Pin::Pin(Component& owner, std::string_view name, unsigned width) : info_(owner.add(*this, name)) {
   if (info_.width != width) throw std::logic_error("width of pin " + info_.name);
-}
-
-std::string pin_trace_name(const Component& owner, const PinInfo& info) {
-  return std::string(owner.name()) + "." + info.name;
 }
 
 Component::Component(const sc_core::sc_module_name& name, TimeBase& time, const std::vector<PinInfo>& table,
@@ -35,12 +32,22 @@ const PinInfo& Component::add(Pin& pin, std::string_view name) {
 
 const std::vector<Pin*>& Component::pins() const { return client_->pins(); }
 
-void Component::trace(sc_core::sc_trace_file* file) const {
-  for (const Pin* pin : pins())
-    if (pin->bound()) pin->trace(file);
+void sc_trace(sc_core::sc_trace_file* file, const Component& component, const std::string& name) {
+  if (sc_core::sc_get_status() != sc_core::SC_ELABORATION)
+    raise_error("/brick/trace", std::string(component.name()) + ": trace it before the simulation begins");
+  component.traces_.push_back({file, name});
 }
 
-void Component::end_of_elaboration() { client_->elaborate(); }
+void Component::before_end_of_elaboration() {
+  for (Pin* pin : pins())
+    if (!traces_.empty()) pin->prepare_trace();
+}
+
+void Component::end_of_elaboration() {
+  client_->elaborate();
+  for (const Trace& trace : traces_)
+    for (const Pin* pin : pins()) pin->trace(trace.file, trace.name + "." + pin->info().name);
+}
 
 namespace {
 bool valid_enables(const tlm::tlm_generic_payload& payload) {

@@ -8,7 +8,7 @@ import unittest
 from tree import TOOLS, Tree
 
 sys.path.insert(0, str(TOOLS))
-from check_package import waveform
+from check_package import pins_of, waveform
 
 MD = ".md"
 
@@ -131,10 +131,11 @@ class Package(Tree):
 class Waveform(Tree):
     """Of examples/servo_ic, in units of 1 ps."""
 
-    def dump(self, period=110_685_000, quarters=40, unit="ps"):
-        lines = [f"$timescale\n     1 {unit}\n$end", "$scope module ic $end", "$var wire    1  aaaaa  ch1_enc_a $end",
-                 "$var wire    1  aaaab  ch1_enc_b $end", "$var wire    1  aaaac  phase_o $end", "0aaaaa", "0aaaab",
-                 "1aaaac"]
+    def dump(self, period=110_685_000, quarters=40, unit="ps", without=""):
+        codes = {"ch1_enc_a": "aaaaa", "ch1_enc_b": "aaaab", "phase_o": "aaaac"}
+        pins = [pin for pin in pins_of("servo_ic") if pin != without]
+        lines = [f"$timescale\n     1 {unit}\n$end", "$scope module ic $end",
+                 *(f"$var wire    1  {codes.get(pin, pin)}  {pin} $end" for pin in pins), "0aaaaa", "0aaaab", "1aaaac"]
         for n in range(quarters):
             lines += [f"#{n * 1_000_000}", f"{int(n % 4 < 2)}{'aaaab' if n % 2 else 'aaaaa'}"]
         for n in range(5):
@@ -147,6 +148,9 @@ class Waveform(Tree):
 
     def test_a_whole_one_passes(self):
         self.assertEqual(self.wrong(), "")
+
+    def test_a_pin_that_is_not_traced_fails_by_name(self):
+        self.assertIn("missing ['ch3_pwm_b_bot'], expected []", self.wrong(without="ch3_pwm_b_bot"))
 
     def test_a_period_that_is_late_by_a_tick_fails(self):
         self.assertIn("ticks of PHASE [13058], expected [13057]", self.wrong(period=110_693_000))

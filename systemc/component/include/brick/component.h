@@ -21,6 +21,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <systemc>
@@ -34,13 +35,18 @@ namespace brick::component {
 
 class Chip;
 class Client;
+class Component;
+
+// All pins as NAME.PIN, each with its width. An output that is not bound gets a signal of its own, and costs what a
+// bound one does; an input that is not shows its idle level. Before the simulation begins, else the error /brick/trace.
+void sc_trace(sc_core::sc_trace_file* file, const Component& component, const std::string& name);
 
 class Component : public sc_core::sc_module {
  public:
   ~Component() override;
 
-  const std::vector<Pin*>& pins() const;           // in the order of the table
-  void trace(sc_core::sc_trace_file* file) const;  // all bound pins, after elaboration: COMPONENT.PIN
+  const std::vector<Pin*>& pins() const;  // in the order of the table
+  friend void sc_trace(sc_core::sc_trace_file* file, const Component& component, const std::string& name);
 
  protected:
   enum class Access { kWords, kBytes };
@@ -73,6 +79,7 @@ class Component : public sc_core::sc_module {
   };
   BusAnswer access(unsigned face, bool write, unsigned address, std::uint32_t value, unsigned lanes);  // waits
   std::optional<std::uint32_t> peek(unsigned face, unsigned address);
+  void before_end_of_elaboration() override;
   void end_of_elaboration() override;
 
  private:
@@ -82,6 +89,11 @@ class Component : public sc_core::sc_module {
   const std::vector<PinInfo>& table_;
   std::vector<RegisterFace> faces_;
   std::unique_ptr<Client> client_;
+  struct Trace {
+    sc_core::sc_trace_file* file;
+    std::string name;
+  };
+  mutable std::vector<Trace> traces_;
 };
 
 }  // namespace brick::component

@@ -1,12 +1,13 @@
 // Ports of a component. A pin may stay unbound: an input then has its idle level, an output costs nothing. A pin of one
 // bit is a port of bool, a wider one of sc_uint; a port is an sc_port with the interface of sc_in or sc_out, which may
-// not stay unbound: bind it alike, trace it by Component::trace(), ask bound() before reading it. Idle levels are 0
-// where the comment of a pin says nothing. A pin that goes both ways is three ports: NAME_i, NAME_o and NAME_oe, high
+// not stay unbound: bind it alike, trace it with its component, ask bound() before reading it. Idle levels are 0 where
+// the comment of a pin says nothing. A pin that goes both ways is three ports: NAME_i, NAME_o and NAME_oe, high
 // while the component drives it; NAME_o is high while it does not.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -43,22 +44,22 @@ class Pin {
   const PinInfo& info() const { return info_; }
   virtual bool bound() const = 0;
   virtual std::uint32_t read() const = 0;
-  virtual void write(std::uint32_t value) = 0;                 // outputs only
-  virtual const sc_core::sc_event& changed() const = 0;        // inputs only
-  virtual void trace(sc_core::sc_trace_file* file) const = 0;  // the signal bound, under the component's and pin's name
+  virtual void write(std::uint32_t value) = 0;           // outputs only
+  virtual const sc_core::sc_event& changed() const = 0;  // inputs only
 
  protected:
   Pin(Component& owner, std::string_view name, unsigned width);
-  const Component& owner_;
 
  private:
+  friend class Component;
+  virtual void prepare_trace() {}  // before the elaboration ends
+  virtual void trace(sc_core::sc_trace_file* file, const std::string& name) const = 0;
+
   const PinInfo& info_;
 };
 
 template <unsigned kWidth>
 using PinValue = std::conditional_t<kWidth == 1, bool, sc_dt::sc_uint<static_cast<int>(kWidth)>>;
-
-std::string pin_trace_name(const Component& owner, const PinInfo& info);
 
 template <unsigned kWidth = 1>
 class Out;
@@ -70,7 +71,8 @@ class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1
   using Outer = sc_core::sc_port_b<sc_core::sc_signal_inout_if<PinValue<kWidth>>>;
 
  public:
-  In(Component& owner, const std::string& name) : Port(name.c_str()), Pin(owner, name, kWidth) {}
+  In(Component& owner, const std::string& name)
+      : Port(name.c_str()), Pin(owner, name, kWidth), idle_(static_cast<PinValue<kWidth>>(info().idle)) {}
   // A signal, or a port of the module around: sc_in, and as with sc_in also sc_out and sc_inout.
   using Port::bind;
   using Port::operator();
@@ -85,9 +87,12 @@ class In : public sc_core::sc_port<sc_core::sc_signal_in_if<PinValue<kWidth>>, 1
   std::uint32_t read() const override { return static_cast<std::uint32_t>(this->operator->()->read()); }
   void write(std::uint32_t) override {}
   const sc_core::sc_event& changed() const override { return this->operator->()->value_changed_event(); }
-  void trace(sc_core::sc_trace_file* file) const override {
-    sc_core::sc_trace(file, this->operator->()->read(), pin_trace_name(owner_, info()));
+
+ private:
+  void trace(sc_core::sc_trace_file* file, const std::string& name) const override {
+    sc_core::sc_trace(file, bound() ? this->operator->()->read() : idle_, name);
   }
+  const PinValue<kWidth> idle_;
 };
 
 template <unsigned kWidth>
@@ -103,9 +108,17 @@ class Out : public sc_core::sc_port<sc_core::sc_signal_inout_if<PinValue<kWidth>
     const_cast<Out&>(*this).operator->()->write(static_cast<PinValue<kWidth>>(value));
   }
   const sc_core::sc_event& changed() const override { return this->operator->()->value_changed_event(); }
-  void trace(sc_core::sc_trace_file* file) const override {
-    sc_core::sc_trace(file, this->operator->()->read(), pin_trace_name(owner_, info()));
+
+ private:
+  void prepare_trace() override {
+    if (this->bind_count() != 0) return;
+    traced_ = std::make_unique<sc_core::sc_signal<PinValue<kWidth>>>((info().name + "_traced").c_str());
+    this->bind(*traced_);
   }
+  void trace(sc_core::sc_trace_file* file, const std::string& name) const override {
+    sc_core::sc_trace(file, this->operator->()->read(), name);
+  }
+  std::unique_ptr<sc_core::sc_signal<PinValue<kWidth>>> traced_;
 };
 
 // NAME0, NAME1, ...
