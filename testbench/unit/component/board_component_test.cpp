@@ -5,6 +5,7 @@
 #include <brick/board.h>
 #include <brick/rtl.h>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/board/model_board.h"
 #include "systemc/component/board_chip.h"
 #include "systemc/component/board_options.h"
@@ -190,6 +191,13 @@ Pins outputs(std::uint32_t fitted, bool motors, const Pins& still) {
   return found;
 }
 
+Pins serial_clocks(std::uint32_t fitted) {
+  Pins clocks;
+  for (const std::string& pin : outputs(fitted, true, {}))
+    if (pin.find("_clk") != std::string::npos) clocks.push_back(pin);
+  return clocks;
+}
+
 void live_on_buses(brick::Board& board, std::uint32_t fitted, Tick end, Tick silent_at) {
   BoardTraffic::Options options;
   options.dense = silent_at == kNever;
@@ -211,6 +219,51 @@ Life motors(Tick ticks, std::size_t least, std::uint32_t fitted = kFitted) {
     MotorTraffic(12, options).run(board, end);
   };
   return {fitted, ticks, live, outputs(fitted, true, {}), least};
+}
+
+// Every motor output of every IC moves: the PWM of all channels, then their DACs and pulses, and so on; with each turn
+// AENA, EQU and DIR turn too.
+void live_on_outputs(brick::Board& board, std::uint32_t fitted, Tick end) {
+  namespace ic = regs::servo_ic;
+  namespace channel = regs::servo_channel;
+  constexpr unsigned kMaxCount = 700;              // 24 bits of an ADC at 48 ticks go into a period of PHASE
+  constexpr Tick kRest = 3 * (2 * kMaxCount + 3);  // three periods of PHASE
+  BoardInputs in;
+  in.fitted = fitted;
+  board.set_inputs(in);
+  start_clocks(board, in);
+  const auto run = [&](Tick ticks) { board.run_until(std::min(end, board.now() + ticks)); };
+  const auto write = [&](std::uint32_t address, bool x, std::uint32_t value) {
+    const auto strobe = [&](bool high, Tick ticks) {
+      in.pa_wr_n = high;
+      board.set_inputs(in);
+      run(ticks);
+    };
+    in.pa_addr = address, in.pa_x = x, in.pa_aa = 2, in.pa_wdata = value;
+    strobe(true, 3);
+    strobe(false, 12);
+    strobe(true, 9);
+  };
+  const auto each_ic = [&](const auto& act) {
+    for (unsigned i = 0; i < kMaxServoIcs; ++i)
+      if ((fitted >> i & 1) != 0) act(regs::kGateIcs[i].base);
+  };
+  using namespace channel::control;
+  const std::uint32_t pwm = kAena.mask() | kEquWrite.mask() | kEquState.mask(),
+                      serial = kAbDac.mask() | kCPfm.mask() | kPfmDirInvert.mask() | kEquWrite.mask();
+  each_ic([&](std::uint32_t base) {
+    write(base + ic::kPwmControl.address, true, ic::pwm_control::kMaxCount.set(1, kMaxCount));
+  });
+  for (bool turn = false; board.now() < end; turn = !turn) {
+    each_ic([&](std::uint32_t base) {
+      for (unsigned first = base; first < base + 8 * kChannels; first += 8) {
+        for (unsigned out = channel::kOutA.address; out <= channel::kOutC.address; ++out)
+          write(first + out, false, turn ? 0x555540 : 100 << 8);  // bits of a DAC, a command of the PWM
+        write(first + channel::kControl.address, true, turn ? serial : pwm);
+      }
+    });
+    run(kRest);
+  }
 }
 
 // The CPU rests for 25 ms, so the watchdog trips (servo-ic:10); a reset ends it.
@@ -252,8 +305,16 @@ TEST(BoardComponent, EachVerilatedBoardAgrees) {
   BRICK_COVERS("CARD-1 CARD-2");
   for (const std::uint32_t fitted : {kFourIcs, kAllIcs}) {
     SCOPED_TRACE(::testing::Message() << "fitted " << fitted);
-    in_own_process([=] { board_agrees(lockstep_engine(5), motors(kTicks / 20, 0, fitted), all); });
-    in_own_process([=] { board_agrees(lockstep_engine(6), buses(kTicks / 20, 0, fitted), no_serial_clocks); });
+    in_own_process([=] {
+      const Life life{fitted, kTicks / 20, live_on_outputs, outputs(fitted, true, {}), 3};
+      board_agrees(lockstep_engine(5), life, all);
+    });
+    in_own_process([=] {
+      Life life = motors(kTicks / 20, 100, fitted);
+      life.moves = serial_clocks(fitted);
+      board_agrees(lockstep_engine(6), life, all);
+    });
+    in_own_process([=] { board_agrees(lockstep_engine(7), buses(kTicks / 10, 3, fitted), no_serial_clocks); });
   }
 }
 TEST(BoardComponent, AgreesPastATripOfTheWatchdog) {
