@@ -77,7 +77,7 @@ TEST_P(PlcProgram, TextsThatNobodyReadsHoldNobodyUp) {
   EXPECT_GT(std::stod(ask("P2")), 100.0);
 }
 
-BRICK_ON_ENGINES(PlcProgram, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(PlcProgram, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
 }  // namespace brick
