@@ -210,7 +210,16 @@ TEST_F(FixedBuffer, StructureOfMotionPrograms) {  // firmware:6.4
                {{"WHILE(P1=1)", "ELSE"}, "ERR009", "ERR009"},
                {{"IF(P1=1)X1 ENDIF"}, "ERR009", ""},
                {{"IF(P1=1)X1", "X2", "ELSE X3"}, "ERR009", ""},
-               {{"IF(P1=1)", "ELSE", "ELSE"}, "ERR009", "ERR009"}};
+               {{"IF(P1=1)", "ELSE", "ELSE"}, "ERR009", "ERR009"},
+               // Behind a loop of one line there is no ELSE, whatever its IF says, but that of a block around it.
+               {{"WHILE(P1=1)IF(P1=2)X1", "ELSE X2"}, "ERR009", ""},
+               {{"WHILE(P1=1)IF(P1=2)X1", "ELSE"}, "ERR009", ""},
+               {{"WHILE(P1=1)IF(P1=2)IF(P1=3)X1", "ELSE X2"}, "ERR009", ""},
+               {{"WHILE(P1=1)WHILE(P1=2)IF(P1=3)X1", "ELSE X2"}, "ERR009", ""},
+               {{"IF(P1=3)X1", "ELSE WHILE(P1=1)IF(P1=2)X1", "ELSE X2"}, "ERR009", ""},
+               {{"IF(P1=3)", "WHILE(P1=1)IF(P1=2)X1", "ELSE", "ENDIF"}, "", ""},
+               {{"IF(P1=2)WHILE(P1=1)X1", "ELSE X2"}, "", ""},
+               {{"IF(P1=2)WHILE(P1=1)IF(P1=3)X1", "ELSE", "X2", "ENDIF"}, "", ""}};
   for (const auto& c : cases) {
     ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
     for (std::size_t i = 0; i < c.lines.size(); ++i)
