@@ -46,12 +46,10 @@ error_t fixed_entry_store(word48_t* words, uint32_t count) {
   return ERR_NONE;
 }
 
-error_t fixed_entry_clear(void) {
-  const error_t error = fixed_program_clear();
-  if (error != ERR_NONE) return error;
+void fixed_entry_clear(void) {
+  fixed_program_clear();
   program_structure_begin(&structure, 0);
   buffer_request_fixed_changed();
-  return ERR_NONE;
 }
 
 error_t fixed_entry_end(void) {

@@ -145,7 +145,7 @@ TEST_F(Listing, TheOpenBufferAndTheRotaryOne) {
 TEST_F(Listing, GatherIsListedInLongWords) {
   EXPECT_EQ(host("LIST GATHER"), "ERR003");
   ASSERT_EQ(host("DEF GAT 3"), "");
-  ASSERT_EQ(host("WX$A001,$123456 WY$A001,$ABCDEF"), "");
+  ASSERT_EQ(host("WX$107FE,$123456 WY$107FE,$ABCDEF"), "");  // its three words end at $010800
   EXPECT_EQ(host_lines("LIST GAT,1,2"), (Lines{"123456ABCDEF", "000000000000"}));
 }
 
