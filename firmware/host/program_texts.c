@@ -14,7 +14,7 @@
 #include "firmware/run/program_output.h"
 #include "firmware/variables/i_variables.h"
 
-enum { LINE_LIMIT = 255, RETURN = 0x0D, ROOM_FOR_TEXT = 2 * TEXT_LONGEST, ROOM_FOR_REPLY = 2048 };
+enum { LINE_LIMIT = LEXER_LINE_LIMIT, RETURN = 0x0D, ROOM_FOR_TEXT = 2 * TEXT_LONGEST, ROOM_FOR_REPLY = 2048 };
 
 /* The command being put together, of each task; I62 = 1: more texts than one. */
 static struct command_text {
