@@ -43,6 +43,24 @@ TEST_F(Tables, DefinitionsListAsTheyAreDefinedAgain) {
   EXPECT_EQ(host("#5LIST COMP DEF #2LIST COMP DEF"), "DEFINE COMP 3,#5,#5,900|DEFINE COMP 3,#7,#2,900");
 }
 
+// User memory is not empty where a table is made, and an entry is the low half of its word.
+TEST_F(Tables, EntriesBeginAsZeroAndFillTheLowHalf) {
+  ASSERT_EQ(host("WX$107FE,-1,-1 WY$107FE,-1,-1 DEF COMP 2,100"), "");
+  EXPECT_EQ(host("LIST COMP RHX$107FE,2 RHY$107FE,2"), "0|0|0 0|0 0");
+  ASSERT_EQ(host("-1 -8388608"), "");
+  EXPECT_EQ(host("RHX$107FE,2 RHY$107FE,2"), "0 0|FFFFFF 800000");
+}
+
+// Only what deletes the table that is filled ends that: not another kind, not another motor, not a refusal.
+TEST_F(Tables, ATableIsFilledUntilItIsDeleted) {
+  for (const std::string text : {"#9DEL TCOMP", "#9DEL BLCOMP", "#8DEL COMP", "#9DEL ROT DEF ROT 5 #9DEL COMP"}) {
+    ASSERT_EQ(host("#9DEF COMP 2,100 P0=3"), "");
+    EXPECT_EQ(host(text), text.find("DEF ROT") != std::string::npos ? "ERR003" : "") << text;
+    ASSERT_EQ(host("7 P0"), "3") << text;
+    ASSERT_EQ(host("DELETE ALL TEMPS #9LIST COMP DEL COMP"), "7|0") << text;
+  }
+}
+
 TEST_F(Tables, ADeletedTableTakesNoConstants) {
   for (const std::string text : {"DEL COMP", "DELETE ALL"}) {
     ASSERT_EQ(host("DEF COMP 4,100 1 2"), "");
