@@ -173,6 +173,14 @@ TEST_F(AbortLatency, IsBelowAMillisecond) {
     board.run_ms(400.0);
     board.send("", 1.0);
   }
+  board.send("SAVE\r", 1.0);
+  board.send(std::string(2050, 'U'), 10.0);  // as many as the queue and a host port hold, while SAVE goes on
+  EXPECT_LE(ms_to_abort(), 1.0) << "behind a full queue";
+  board.run_ms(400.0);
+  board.send("", 1.0);
+  EXPECT_EQ(board.send("\x18I3\r"),
+            "\x18"
+            "2\r\x06");
   run(16, worst_lines());
   board.run_ms(5.0);
   EXPECT_LE(ms_to_abort(), 1.0) << "16 programs";
