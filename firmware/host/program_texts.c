@@ -50,10 +50,17 @@ static void send_text(const struct program_text* t) {
 }
 
 /* A ^X drops what has not been sent. */
-static void forget_flushed(struct text_queue* queues) {
+static void forget_flushed(void) {
   if (flushes == host_port_flushes()) return;
   flushes = host_port_flushes();
-  for (uint32_t task = 0; task < PROGRAM_TASKS; task++) text_queue_empty(&queues[task]);
+  for (uint32_t task = 0; task < PROGRAM_TASKS; task++) text_queue_empty(&send_queues[task]);
+}
+
+/* Room that a ^X has just made is not for what it drops. */
+static bool has_room_for_text(void) {
+  const bool has_room = host_port_room() >= ROOM_FOR_TEXT;
+  forget_flushed();
+  return has_room;
 }
 
 /* COMMAND ---------------------------------------------------------------------------------------------------------- */
@@ -109,10 +116,10 @@ static bool nothing_waits(void) {
 
 void program_texts_pass(void) {
   static struct program_text t;
-  forget_flushed(send_queues);
+  forget_flushed();
   if (nothing_waits()) return;
   for (uint32_t task = 0; task < PROGRAM_TASKS; task++) {
-    while (host_port_room() >= ROOM_FOR_TEXT && text_queue_pop(&send_queues[task], &t)) send_text(&t);
+    while (has_room_for_text() && text_queue_pop(&send_queues[task], &t)) send_text(&t);
     if (may_execute(&command_queues[task]) && text_queue_pop(&command_queues[task], &t))
       command(&command_texts[task], &t);
     if (may_execute(&command_queues[task])) background_wake();

@@ -33,6 +33,7 @@ static uint32_t hold_off(enum fake_task highest) {
   const enum fake_task held = mask;
   if (held == FAKE_BACKGROUND) masked_since = (uint32_t)hal_long_cycles();
   if (highest > mask) mask = highest;
+  if (ignored) fake_interrupts_soon();
   return held;
 }
 

@@ -61,6 +61,7 @@ TEST_P(PlcProgram, SavedOnesStartWithTheController) {
   EXPECT_GT(std::stod(ask("P4")), 0.0);
 }
 
+// ^X comes right behind ^D, while the background looks whether there is room.
 TEST_P(PlcProgram, TextsThatNobodyReadsHoldNobodyUp) {
   start();
   load(1, {"SEND\"a text of a program, sent over and over again\""});

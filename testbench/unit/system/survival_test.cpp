@@ -20,10 +20,12 @@ class SurvivalOn : public Controller {
            ElfFile(BRICK_FIRMWARE).symbol_at(machine().cpu().reg(1));
   }
 
-  // Everything that comes until an ACK, or until nothing has come for `quiet`.
+  // Everything that comes until an ACK, or until nothing has come for `quiet`. Programs may send for
+  // ever, so at most for ten times as long.
   std::string listen(Tick quiet) {
     std::string text;
-    while (const auto c = bus().get_char(quiet)) {
+    const Tick end = machine().now() + 10 * quiet;
+    while (const auto c = machine().now() < end ? bus().get_char(quiet) : std::nullopt) {
       text += static_cast<char>(*c);
       if (*c == kAcknowledge) break;
     }
@@ -46,7 +48,7 @@ class SurvivalOn : public Controller {
   // Whatever I3, I4 and I6 have become.
   void expect_alive() {
     EXPECT_FALSE(tripped());
-    put("\x18");
+    put("\x01\x04\x18");  // programs, PLCs and what they have sent
     while (!listen(ms_to_ticks(50)).empty()) {}
     ASSERT_TRUE(put("CLOSE\rI4=0 I6=1 I3=2\r"));
     while (!listen(ms_to_ticks(50)).empty()) {}
