@@ -142,4 +142,32 @@ TEST_F(Interrupts, StreamWithoutMasksLosesLines) {
   FAIL() << "nothing was found";
 }
 
+// A pointer given while an abort is still to be settled, and the real-time task comes in the middle of it: what is left
+// of the aborted line is skipped in its own program. In the new one that would be its first line.
+TEST_F(Interrupts, APointerGivenBehindAnAbortKeepsItsFirstLine) {
+  constexpr std::uint32_t kSeeds = 200;
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR"), "");
+  for (int i = 0; i < 6; ++i)  // the queue holds five of these texts
+    ASSERT_EQ(host("P2=1SEND\"" + std::string(200, 'x') + "\""), "");
+  ASSERT_EQ(host("CLOSE OPEN PROG 3 CLEAR P3=P3+1 CLOSE"), "");
+  unsigned came = 0;
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    ASSERT_EQ(host("B2R"), "");
+    platform::servo_ticks(9);
+    ASSERT_TRUE(run_is_running(0)) << "it stands in the middle of its last line";
+    fake_interrupts_begin(seed, 4);
+    run_abort(0);
+    ASSERT_EQ(run_point(0, 3.0), ERR_NONE);
+    came += fake_interrupts_counts().taken[FAKE_REAL_TIME];
+    fake_interrupts_end();
+    ASSERT_EQ(host("P3=0 R"), "");
+    platform::servo_ticks(12);
+    ASSERT_FALSE(run_is_running(0));
+    ASSERT_EQ(p_variable_read(3), 1.0) << "seed " << seed;
+    platform::background(8);
+    (void)platform::sent();
+  }
+  EXPECT_GT(came, kSeeds);
+}
+
 }  // namespace

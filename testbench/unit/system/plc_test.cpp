@@ -77,6 +77,20 @@ TEST_P(PlcProgram, TextsThatNobodyReadsHoldNobodyUp) {
   EXPECT_GT(std::stod(ask("P2")), 100.0);
 }
 
+// 8192 values, of which the port holds 4096 characters.
+TEST_P(PlcProgram, LongReplyThatNobodyReadsHoldsNobodyUp) {
+  start();
+  load(1, {"CMDP\"P0..8191\"", "DISABLE PLC 1"});
+  load(2, {"P2=P2+1"});
+  ASSERT_EQ(ask("I5=2 ENABLE PLC 1,2"), "");
+  wait(ms_to_ticks(60));
+  ASSERT_TRUE(bus().put_char(0x18, ms_to_ticks(1)));  // ^X
+  wait(ms_to_ticks(5));
+  link().poll();
+  link().take_unsolicited();
+  EXPECT_GT(std::stod(ask("P2")), 100.0);
+}
+
 BRICK_ON_ENGINES(PlcProgram, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
