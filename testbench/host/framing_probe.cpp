@@ -11,7 +11,12 @@ constexpr std::size_t kDigits = 12;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// In capitals, without spaces, texts in quotation marks and the comment at the end.
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+// In capitals, without spaces, texts in quotation marks, the comment at the end, and the password, which takes all that
+// follows in the line (firmware:5.10/8).
 std::string commands_of(std::string_view line) {
   std::string text;
   bool quoted = false;
@@ -20,6 +25,7 @@ std::string commands_of(std::string_view line) {
     if (quoted || c == '"' || c == ' ' || c == '\t') continue;
     if (c == ';') break;
     text.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    if (ends_with(text, "PASSWORD=")) break;
   }
   return text;
 }

@@ -25,6 +25,23 @@ TEST(FramingProbe, KnowsTheLinesThatMayChangeI3AndI4) {
   for (const char* line : {"$$$", "I16=3 $$$***", " $ $$"}) EXPECT_TRUE(may_restart(line)) << line;
   for (const char* line : {"$$", "CMD\"$$$\"", "P1=$12 ; $$$", "M1->X:$78000,24"})
     EXPECT_FALSE(may_restart(line)) << line;
+  EXPECT_TRUE(may_take_long("save"));
+  EXPECT_TRUE(may_restart("$$$ PASSWORD=x"));
+  EXPECT_TRUE(may_restart("CMD\"a;b\" $$$")) << "a semicolon in a text begins no comment";
+}
+
+// Everything behind PASSWORD= is the password, quotation marks and semicolons too; texts and comments are no commands.
+TEST(FramingProbe, TextsAreNoCommands) {
+  for (const char* before : {"PASSWORD=", "password = x", "I16 PASSWORD=\"", "PASSWORD=\"\"", "PASSWORD=a;b", "SEND\"",
+                             "; ", "P1=1;", "CMD\"a\" DISPLAY 5\"b;", "SEND\"PASSWORD=\";"})
+    for (const char* text : {"$$$", "$$$***", "I3=0", "I(3)=1", "SAVE"}) {
+      const std::string line = std::string(before) + text;
+      EXPECT_FALSE(may_restart(line)) << line;
+      EXPECT_FALSE(may_change_framing(line)) << line;
+      EXPECT_FALSE(may_take_long(line)) << line;
+    }
+  for (const char* line : {"PASSWORD $$$", "SEND\"PASSWORD=\"$$$", "P1=1 $$$ ;PASSWORD="})
+    EXPECT_TRUE(may_restart(line)) << line;
 }
 
 // Every setting answers ^G in its own form; what came before it is not taken for a part of it.

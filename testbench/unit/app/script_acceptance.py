@@ -67,6 +67,10 @@ def dialogue():
     r = play(lines)
     check(r.returncode == 0 and r.stdout.split() == expected, f"{r.stdout.split()}, expected {expected}: {r.stderr}")
     check(r.stderr.count("I16 UUU") == 10 and "stdin:4: `I16 UUU`: ERR003: unknown command" in r.stderr, r.stderr)
+    # What is no command restarts nothing: I6 and I16 stay as they were set.
+    for line in ("PASSWORD=x$$$", 'PASSWORD="$$$***', "P1=1 ; $$$", 'OPEN PLC5 CLEAR SEND"$$$" CLOSE'):
+        r = play(["I16=7 I6=0", line, "UUU", "@expect ERR", "I16", "@expect 7"])
+        check(r.returncode == 0 and r.stdout.split() == ["ERR", "7"], f"{line}: {r.stdout}{r.stderr}")
     r = play(["UUU", "@expect ERR003", "UUU $$$", "I16", "@expect 5"])
     check(r.returncode == 0 and r.stderr.count("\n") == 2 and "stdin:3: " in r.stderr, "expected errors are not told")
 
