@@ -75,6 +75,41 @@ def dialogue():
     check(r.returncode == 0 and r.stderr.count("\n") == 2 and "stdin:3: " in r.stderr, "expected errors are not told")
 
 
+TEXT = "A text of a program"
+
+
+def sending(text, *before):
+    return ["I5=2", "OPEN PLC3 CLEAR", *before, f'SENDP"{text}"', "CLOSE", "ENA PLC3", "@wait 5ms"]
+
+
+def sends_for_ever():
+    """A PLC that SENDs in every scan: no reply is lost, no text torn, in any setting of I3, I4 and I6."""
+    def judge(lines, expected, text=TEXT):
+        r = play(lines)
+        data = [line for line in r.stdout.splitlines() if line != text]
+        check(r.returncode == 0 and data == expected, f"{data}, expected {expected}: {r.stderr}")
+        check(r.stdout.count(text) > 30, "the PLC sends nothing")
+
+    lines, expected = sending(TEXT), []
+    for i3, i4, i6 in ((0, 0, 1), (1, 0, 0), (2, 1, 3), (3, 1, 1), (0, 1, 2), (1, 1, 3), (3, 0, 0), (2, 0, 1)):
+        lines += [f"I16 I3={i3} I4={i4} I6={i6}", "I16 I17", "P1=1", "I16 UUU", "I17"]
+        expected += ["5", "5", "10", "5", "ERR003" if i6 % 2 else "ERR", "10"]
+    judge(lines + ["^A", "^G", "I16\x07"], [*expected, "000000000800", "000000000800", "5"])
+    # The program changes I3; it is there at once behind each start; its text begins like a checksum: U of 000000000800.
+    judge([*sending(TEXT, "I3=0", "I3=2"), *["I16", "I17"] * 10], ["5", "10"] * 10)
+    judge([*sending(TEXT), "SAVE", "I16", "$$$", "I16", "@reset", "I17", "@power", "I16", "I16=7 $$$***", "I16"],
+          ["5", "5", "10", "5", "5"])
+    judge([*sending("U text"), "I3=0", "I4=1", "I4=0", "I16", "I3=1", "I17"], ["5", "10"], "U text")
+    # Texts in the form of the answer: an acknowledge and a tag tell them from it, else nothing does.
+    digits = "12345678ABCD"
+    judge([*sending(digits), "I16 I3=3", "I16", "I64=1", "I16 I3=1", "I16 I3=0", "I17"], ["5", "5", "5", "5", "10"],
+          digits)
+    r = play([*sending(digits), "I16 I3=0", "I17"])
+    check(r.returncode == 1 and r.stdout.splitlines().count("5") == 1, f"exit {r.returncode}: {r.stderr}")
+    check("stdin:7: `I16 I3=0`: I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits" in r.stderr,
+          r.stderr)
+
+
 def bytes_of_all_kinds():
     """What is no text harms neither the terminal nor the JSON; a failure is told in one line."""
     with tempfile.TemporaryDirectory() as folder:
