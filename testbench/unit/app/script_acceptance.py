@@ -165,7 +165,9 @@ I16
         check("1 of 9 lines refused: 1 x ERR003" in r.stderr, r.stderr)
         found = json.loads(pathlib.Path(f"{folder}/x.json").read_text())["exchanges"]
         check(found[-1] == {"place": f"{job}:16", "line": "I16", "reply": ["5"], "error": False}, str(found))
-        for bad, what in (("#include \"none.pmc\"", f"{job}:1: `{folder}/none.pmc` cannot be read; expected"),
+        (pathlib.Path(folder) / "many.pmc").write_text("I16\n" * 2000)
+        for bad, what in (("#include \"many.pmc\"\n" * 501, f"{folder}/many.pmc:1: `I16` is one line too many"),
+                          ("#include \"none.pmc\"", f"{job}:1: `{folder}/none.pmc` cannot be read; expected"),
                           ("#define L " + "X" * 300 + "\nL", f"{job}:2: `L` expands to 300 characters; expected"),
                           ("#include \"job.pmc\"", "expected no file that includes itself"),
                           ("#ifdef A", f"{job}:1: a condition without its end; expected #endif"),
