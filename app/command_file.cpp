@@ -18,7 +18,7 @@ namespace brick {
 
 namespace {
 
-constexpr std::size_t kDeepestInclude = 16, kMostIncludes = 1000, kMostMebibytes = 64;
+constexpr std::size_t kDeepestInclude = 16, kMostIncludes = 1000, kMostMebibytes = 64, kMostLines = 1'000'000;
 constexpr char kEndOfDosText = 0x1A;
 constexpr const char* kSpaces = " \t\r\f\v";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -153,7 +153,11 @@ std::string Reader::without_comments(File& file, std::string_view text) const {
 }
 
 void Reader::keep(const File& file, std::string_view text) {
-  if (!text.empty()) lines_.push_back({fmt::format("{}:{}", file.name, file.line), file.included, std::string(text)});
+  if (text.empty()) return;
+  if (lines_.size() == kMostLines)
+    throw UsageError(fmt::format("{} is one line too many; expected at most {}, those of included files each time",
+                                 beginning_of(text), kMostLines));
+  lines_.push_back({fmt::format("{}:{}", file.name, file.line), file.included, std::string(text)});
 }
 
 void Reader::line(File& file, std::string_view text) {

@@ -114,23 +114,25 @@ void ScriptPlayer::command(const ScriptLine& line) {
       reply.lines.insert(reply.lines.end(), one.lines.begin(), one.lines.end());
       reply.error = reply.error || one.error;
       if (reply.bad_checksum.empty()) reply.bad_checksum = one.bad_checksum;
+      if (reply.doubt.empty()) reply.doubt = one.doubt;
       reply.complete = one.complete;
     }
   }
-  if (!reply.complete) {
+  if (!reply.complete && reply.doubt.empty()) {
     if (link_.bus().tripped())
       fail(line, "no reply: the watchdog has tripped (WDO); expected an answer, see @reset and @power");
     fail(line, reply.raw.empty() ? "no reply; expected an acknowledge or an error from the controller"
                                  : fmt::format("the reply has no end: {}; expected an acknowledge or an error",
                                                beginning_of(reply.raw)));
   }
-  if (!reply.bad_checksum.empty()) fail(line, reply.bad_checksum + " (I4)");
+  if (!reply.bad_checksum.empty() && reply.doubt.empty()) fail(line, reply.bad_checksum + " (I4)");
   if (raw_) {
     keep(line, reply.lines, reply.error);
     if (!reply.raw.empty()) print({visible_bytes(reply.raw)});
   } else {
     answer(line, reply.lines, reply.error);
   }
+  if (!reply.doubt.empty()) fail(line, reply.doubt);
 }
 
 void ScriptPlayer::restart(const ScriptLine& line) {

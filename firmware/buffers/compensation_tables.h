@@ -14,7 +14,7 @@ struct compensation_table {
   uint32_t span;          /* counts of the source motor over which it reaches */
   uint8_t source, target; /* motors, from 0 */
   bool of_desired;        /* position of the source, else the actual one */
-  uint32_t base;          /* word offset in user memory: stays, for nothing below can change. Set by define */
+  uint32_t base;          /* word offset in user memory: stays, for nothing above can change. Set by define */
 };
 
 void compensation_tables_initialize(void);
@@ -22,7 +22,7 @@ void compensation_tables_initialize(void);
 error_t compensation_table_define(enum region_kind kind, uint32_t motor, uint32_t entries,
                                   const struct compensation_table* table);
 error_t compensation_table_delete(enum region_kind kind, uint32_t motor);
-void compensation_tables_delete_all(void); /* and all that lies above */
+void compensation_tables_delete_all(void); /* and all that lies below */
 const struct compensation_table* compensation_table(enum region_kind kind, uint32_t motor); /* 0: there is none */
 int32_t compensation_entry(enum region_kind kind, uint32_t motor, uint32_t index);
 void compensation_set_entry(enum region_kind kind, uint32_t motor, uint32_t index, int32_t entry);

@@ -2,6 +2,12 @@
 
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/program_links.h"
+#include "firmware/language/lexer.h"
+#include "firmware/language/lister.h"
+
+/* A word is listed with so many characters more than it took at most: the 0 of `0.5`, a blank behind `RET`, those
+ * around an inner AND or OR, the decimals of `DISPLAY1,8.0,P1`, brackets in `-(-5)`. */
+enum { LISTED_MORE = 2 };
 
 static struct program_structure structure;
 
@@ -31,11 +37,17 @@ static uint32_t line_end(const word48_t* words, uint32_t first, uint32_t count) 
   return at < count ? at : count;
 }
 
-error_t fixed_entry_store(word48_t* words, uint32_t count) {
+/* A listing is to be downloaded again, so it may be no longer than a line. That takes long to measure. */
+static bool can_be_listed(const word48_t* words, uint32_t count, uint32_t characters) {
+  return characters + LISTED_MORE * count <= LEXER_LINE_LIMIT || lister_length(words, count) <= LEXER_LINE_LIMIT;
+}
+
+error_t fixed_entry_store(word48_t* words, uint32_t count, uint32_t characters) {
   struct program_structure after = structure;
   words[0] |= WORD_START_OF_LINE;
   for (uint32_t at = 0, end; at < count; at = end) {
     end = line_end(words, at, count);
+    if (!can_be_listed(words + at, end - at, characters)) return ERR_DATA;
     const error_t error = program_structure_line(&after, is_motion(), words + at, end - at);
     if (error != ERR_NONE) return error;
   }
@@ -46,12 +58,10 @@ error_t fixed_entry_store(word48_t* words, uint32_t count) {
   return ERR_NONE;
 }
 
-error_t fixed_entry_clear(void) {
-  const error_t error = fixed_program_clear();
-  if (error != ERR_NONE) return error;
+void fixed_entry_clear(void) {
+  fixed_program_clear();
   program_structure_begin(&structure, 0);
   buffer_request_fixed_changed();
-  return ERR_NONE;
 }
 
 error_t fixed_entry_end(void) {

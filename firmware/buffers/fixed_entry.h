@@ -5,10 +5,10 @@
 #include "firmware/buffers/fixed_programs.h"
 
 error_t fixed_entry_begin(enum fixed_kind kind, uint32_t number);
-/* A host line; each of its program lines begins with the mark. Nothing is stored unless all of it is. ERR006 no room,
- * ERR003 while a buffer lies above, ERR009 structure. */
-error_t fixed_entry_store(word48_t* words, uint32_t count);
-error_t fixed_entry_clear(void);
+/* A host line of so many characters; each of its program lines begins with the mark. Nothing is stored unless all of it
+ * is. ERR003 too long to be listed, ERR006 no room, ERR009 structure. */
+error_t fixed_entry_store(word48_t* words, uint32_t count, uint32_t characters);
+void fixed_entry_clear(void);
 error_t fixed_entry_end(void); /* ERR009: a block is still open; the program is closed all the same */
 
 #endif

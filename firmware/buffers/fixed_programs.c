@@ -151,11 +151,10 @@ error_t fixed_program_append(const word48_t* words, uint32_t count) {
   return ERR_NONE;
 }
 
-error_t fixed_program_clear(void) {
+void fixed_program_clear(void) {
   struct fixed_program* program = &fixed.programs[fixed.count - 1u];
-  const error_t error = region_resize_fixed(program->base);
-  if (error == ERR_NONE) program->words = 0;
-  return error;
+  (void)region_resize_fixed(program->base); /* that is less */
+  program->words = 0;
 }
 
 void fixed_program_close(void) {

@@ -46,10 +46,10 @@ void fixed_program_set_linked(const struct fixed_program* program);
 error_t fixed_program_open(enum fixed_kind kind, uint32_t number); /* ERR006: no more programs */
 const struct fixed_program* fixed_program_opened(void);            /* 0: none */
 error_t fixed_program_append(const word48_t* words, uint32_t count);
-error_t fixed_program_clear(void);
+void fixed_program_clear(void);
 void fixed_program_close(void); /* an empty one is gone */
 
-/* Enters a program whose words are in user memory already, above all others. False: it does not fit. */
+/* Enters a program whose words are in user memory already, above all other programs. False: it does not fit. */
 bool fixed_program_restore(enum fixed_kind kind, uint32_t number, uint32_t words);
 
 #endif

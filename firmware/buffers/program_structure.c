@@ -47,7 +47,8 @@ static error_t else_line(struct program_structure* s, bool alone, bool after_one
 
 struct scan {
   bool one_line;       /* a condition or ELSE governs the rest of this line */
-  bool one_line_if;    /* that was an IF */
+  bool condition;      /* a condition does */
+  bool one_line_if;    /* the first of them is an IF: behind a WHILE, what does not hold leads back to it, not on */
   bool after_one_line; /* the line before was one */
 };
 
@@ -70,8 +71,8 @@ static error_t condition(struct program_structure* s, const struct instruction* 
                          struct place place) {
   s->condition_opened = alone;
   if (alone) return scan->one_line ? ERR_STRUCTURE : push(s, in->group == CONDITION_IF ? BLOCK_IF : BLOCK_WHILE, place);
-  scan->one_line = true;
-  scan->one_line_if = in->group == CONDITION_IF;
+  if (!scan->condition) scan->one_line_if = in->group == CONDITION_IF;
+  scan->one_line = scan->condition = true;
   return ERR_NONE;
 }
 
@@ -107,7 +108,7 @@ static error_t statement(struct program_structure* s, const struct instruction* 
 error_t program_structure_line(struct program_structure* structure, bool motion, const word48_t* words,
                                uint32_t count) {
   struct program_structure s = *structure;
-  struct scan scan = {false, false, s.else_may_follow};
+  struct scan scan = {.after_one_line = s.else_may_follow};
   const uint32_t rest = motion ? last_other(words, count) : 0;
   uint32_t from = s.offset;
   if (motion) s.condition_may_follow = s.condition_opened = false;

@@ -1,5 +1,5 @@
-/* Memory manager of the user buffers. Because regions can only be stacked on top, the manager is a list of sizes: the
- * base of a region is the sum of all sizes below it. */
+/* Memory manager of the user buffers. Because a region can only come and go at the lower end of the others, the manager
+ * is a list of sizes: a region lies below the sum of all that come before it. */
 #include "firmware/buffers/regions.h"
 
 #include "firmware/base/dimensions.h"
@@ -10,24 +10,24 @@ enum { OWNERS = MOTORS }; /* no fewer than coordinate systems */
 
 static struct {
   uint32_t words[REGION_KINDS][OWNERS]; /* 0: does not exist. Those for all use index 0 only. Owner: background task */
-  uint32_t fixed;                       /* words of fixed programs, below all others */
-  uint32_t user;                        /* of UBUFFER, above all others */
-  uint32_t open;                        /* of none: kept, because each line stored asks for it */
+  uint32_t fixed;                       /* words of fixed programs, from the lowest on */
+  uint32_t user;                        /* of UBUFFER, the highest */
+  uint32_t open;                        /* of none, between: kept, because each line stored asks for it */
 } regions;
 
 static uint32_t owner_index(enum region_kind kind, uint32_t owner) {
   return kind == REGION_GATHER || kind == REGION_TBUF ? 0 : owner;
 }
 
-static bool any_from(uint32_t lowest) {
-  for (uint32_t kind = lowest; kind < REGION_KINDS; kind++)
+static bool any_from(uint32_t highest) {
+  for (uint32_t kind = highest; kind < REGION_KINDS; kind++)
     for (uint32_t any = 0; any < OWNERS; any++)
       if (regions.words[kind][any] != 0) return true;
   return false;
 }
 
-/* Something lies above: the same kind of a lower-numbered owner, or any kind that comes later. */
-static bool is_covered(enum region_kind kind, uint32_t index) {
+/* Something lies below it: the same kind of a lower-numbered owner, or any kind that comes later. */
+static bool is_held(enum region_kind kind, uint32_t index) {
   for (uint32_t lower = 0; lower < index; lower++)
     if (regions.words[kind][lower] != 0) return true;
   return any_from((uint32_t)kind + 1u);
@@ -49,24 +49,23 @@ uint32_t region_open_words(void) { return regions.open; }
 uint32_t region_words(enum region_kind kind, uint32_t owner) { return regions.words[kind][owner_index(kind, owner)]; }
 
 uint32_t region_base(enum region_kind kind, uint32_t owner) {
-  uint32_t base = regions.fixed;
-  for (uint32_t below = 0; below < (uint32_t)kind; below++)
-    for (uint32_t any = 0; any < OWNERS; any++) base += regions.words[below][any];
-  for (uint32_t higher = owner_index(kind, owner) + 1; higher < OWNERS; higher++) base += regions.words[kind][higher];
+  const uint32_t index = owner_index(kind, owner);
+  uint32_t base = USER_MEMORY_WORDS - regions.user;
+  for (uint32_t before = 0; before < (uint32_t)kind; before++)
+    for (uint32_t any = 0; any < OWNERS; any++) base -= regions.words[before][any];
+  for (uint32_t higher = index; higher < OWNERS; higher++) base -= regions.words[kind][higher];
   return base;
 }
 
 error_t region_resize_fixed(uint32_t words) {
-  if (words == regions.fixed) return ERR_NONE;
   if (words > regions.fixed + regions.open) return ERR_NO_ROOM;
-  if (any_from(0)) return ERR_DATA;
   resize(&regions.fixed, words);
   return ERR_NONE;
 }
 
 error_t region_define(enum region_kind kind, uint32_t owner, uint32_t words) {
   uint32_t index = owner_index(kind, owner);
-  if (words == 0 || regions.words[kind][index] != 0 || is_covered(kind, index)) return ERR_DATA;
+  if (words == 0 || regions.words[kind][index] != 0 || is_held(kind, index)) return ERR_DATA;
   if (words > regions.open) return ERR_NO_ROOM;
   resize(&regions.words[kind][index], words);
   return ERR_NONE;
@@ -79,13 +78,13 @@ error_t region_define_rest(void) {
 
 error_t region_delete(enum region_kind kind, uint32_t owner) {
   uint32_t index = owner_index(kind, owner);
-  if (is_covered(kind, index)) return ERR_DATA;
+  if (is_held(kind, index)) return ERR_DATA;
   resize(&regions.words[kind][index], 0);
   return ERR_NONE;
 }
 
-void regions_delete_from(enum region_kind lowest) {
-  for (uint32_t kind = (uint32_t)lowest; kind < REGION_KINDS; kind++)
+void regions_delete_from(enum region_kind highest) {
+  for (uint32_t kind = (uint32_t)highest; kind < REGION_KINDS; kind++)
     for (uint32_t owner = 0; owner < OWNERS; owner++) resize(&regions.words[kind][owner], 0);
 }
 

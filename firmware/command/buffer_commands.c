@@ -84,7 +84,8 @@ static error_t cmd_clear(struct lexer* lx) {
   if (!program_buffer_open()) return ERR_NEEDS_BUFFER;
   if (open_buffer_kind() != OPEN_FIXED) return clear_rotary(session.cs);
   program_line_abandon();
-  return fixed_entry_clear();
+  fixed_entry_clear();
+  return ERR_NONE;
 }
 
 static error_t cmd_size(struct lexer* lx) {

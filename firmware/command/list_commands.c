@@ -19,8 +19,8 @@
 #include "firmware/variables/i_variables.h"
 
 enum {
-  LINE_WORDS = 300,       /* what is longer can only be damaged */
-  REPLY_CHARACTERS = 780, /* no line is begun behind these: the longest, of `RET` alone, has 600 in long form */
+  LINE_WORDS = 300,        /* what is longer can only be damaged */
+  REPLY_CHARACTERS = 1080, /* no line is begun behind these: the longest has 255, its offset and its end */
   LONG_WORD_DIGITS = 6
 };
 

@@ -19,6 +19,7 @@ static struct {
   bool called;       /* a statement of the line is a call */
   uint32_t where;    /* what was open when words were compiled ahead */
   const char* ahead; /* where that stopped in the text; 0: nothing was */
+  const char* text;  /* of the host line, its beginning */
 } line;
 
 #define TEXT_END ((const char*)UINTPTR_MAX) /* the end of the text itself ends the search */
@@ -58,6 +59,7 @@ void program_line_ahead(const char* text, const char* boundary) {
 }
 
 const char* program_line_begin(const char* text) {
+  line.text = text;
   const char* const ahead = line.ahead;
   line.ahead = 0;
   if (ahead != 0 && line.where == open_where() && line.cs == session.cs) return ahead;
@@ -67,11 +69,18 @@ const char* program_line_begin(const char* text) {
 
 void program_line_abandon(void) { empty(); }
 
+/* Of the whole host line. */
+static uint32_t characters(void) {
+  uint32_t count = 0;
+  while (line.text[count] != '\0') count++;
+  return count;
+}
+
 error_t program_line_commit(void) {
   uint32_t count = line.count;
   empty();
   if (count == 0) return ERR_NONE;
-  return open_buffer_kind() == OPEN_FIXED ? fixed_entry_store(line.words, count)
+  return open_buffer_kind() == OPEN_FIXED ? fixed_entry_store(line.words, count, characters())
                                           : rotary_store(line.cs, line.words, count);
 }
 

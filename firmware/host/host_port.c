@@ -1,6 +1,7 @@
 /* Host port queues. The interrupt owns the head of the receive queue and the tail of the transmit queue, the background
  * the other two; both indices of a queue run freely and are reduced when used. A full receive queue leaves the
- * character in the port, so that the host sees its transmit register occupied and waits. */
+ * character in the port, so that the host sees its transmit register occupied and waits. It would wait with a control
+ * character too: so the servo task takes some all the same, into a reserve. */
 #include "firmware/host/host_port.h"
 
 #include "firmware/hal/hal.h"
@@ -10,7 +11,8 @@
 #include "firmware/variables/i_variables.h"
 #include "rtl/regs/brick_regs.h"
 
-enum { TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500 };
+enum { TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500, PROGRAM_TIMEOUT_MS = 20 };
+enum { RESERVED_AT_ONCE = 2 }; /* what the port holds: the next is the host's newest */
 
 /* ^A ^D ^K ^O ^Q stop things: they act in the real-time task, which is asked for at once, whatever the background is
  * at, and again in their own place. */
@@ -25,6 +27,8 @@ static volatile uint32_t urgent, flushed, discard;
 static volatile uint32_t flushes;             /* ^X so far */
 static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
+static volatile uint32_t reserved;            /* characters that a full queue still takes. Servo task, interrupt */
+static bool of_program;                       /* what is being sent */
 
 /* Where transmit_tail stood when a host that did not read was given up: it is not waited for again until it reads. */
 static uint32_t given_up_at;
@@ -38,10 +42,12 @@ static void enable(bool receive_on, bool transmit_on) {
 
 void host_port_initialize(void) {
   host_port_received_count = host_port_taken_count = transmit_head = transmit_tail = 0;
-  urgent = flushed = flushed_to = flushes = discard = 0;
-  given_up = false;
+  urgent = flushed = flushed_to = flushes = discard = reserved = 0;
+  given_up = of_program = false;
   enable(true, false);
 }
+
+static uint32_t waiting(void) { return host_port_received_count - host_port_taken_count; }
 
 void host_port_character(uint8_t c) {
   if (c == CONTROL_X) {
@@ -78,11 +84,9 @@ bool host_port_next_output(uint8_t* c) {
 void host_port_interrupt(void) {
   const uint32_t status = *hal_x(HI08_X_HSR);
   if ((status & HI08_HSR_HRDF_MASK) != 0u && receiving) {
-    if (host_port_received_count - host_port_taken_count < HOST_PORT_RECEIVE_SIZE) {
-      host_port_character((uint8_t)*hal_x(HI08_X_HORX));
-    } else {
-      enable(false, transmitting);
-    }
+    const bool full = waiting() >= HOST_PORT_RECEIVE_LIMIT;
+    if (!full || reserved != 0u) host_port_character((uint8_t)*hal_x(HI08_X_HORX));
+    if (full && (reserved == 0u || --reserved == 0u)) enable(false, transmitting);
   }
   if ((status & HI08_HSR_HTDE_MASK) != 0u && transmitting) {
     uint8_t c;
@@ -91,9 +95,19 @@ void host_port_interrupt(void) {
   }
 }
 
+void host_port_reserve(void) {
+  if (receiving) return;
+  const uint32_t state = hal_mask_all();
+  if (!receiving && waiting() + RESERVED_AT_ONCE <= HOST_PORT_RECEIVE_SIZE) {
+    reserved = RESERVED_AT_ONCE;
+    enable(true, transmitting);
+  }
+  hal_unmask(state);
+}
+
 uint32_t host_port_room(void) { return TRANSMIT_SIZE - (transmit_head - transmit_tail); }
 uint32_t host_port_flushes(void) { return flushes; }
-bool host_port_waiting(void) { return host_port_taken_count != host_port_received_count; }
+bool host_port_waiting(void) { return waiting() != 0u; }
 
 /* A ^X came, or the queue was full. True: what was taken before is void. `end`: what may be taken now. */
 static __attribute__((noinline)) bool take_up(uint32_t* end) {
@@ -102,8 +116,7 @@ static __attribute__((noinline)) bool take_up(uint32_t* end) {
   *end = host_port_received_count;
   if (flush) host_port_taken_count = flushed_to;
   flushed = 0;
-  if (!receiving && host_port_received_count - host_port_taken_count < HOST_PORT_RECEIVE_SIZE / 2u)
-    enable(true, transmitting);
+  if (!receiving && waiting() < HOST_PORT_RECEIVE_LIMIT / 2u) enable(true, transmitting);
   hal_unmask(state);
   return flush;
 }
@@ -130,16 +143,15 @@ uint32_t host_port_text(const uint8_t** text, bool* void_before) {
 
 void host_port_text_taken(uint32_t count) { host_port_taken_count += count; }
 
-/* False when the host has not read for ROOM_TIMEOUT_MS. */
+/* False when the host has not read for too long. */
 static bool wait_for_room(void) {
-  static const uint32_t never = 0;
   const uint32_t start = hal_cycles();
-  const uint32_t limit = ROOM_TIMEOUT_MS * hal_cycles_per_ms();
   const uint32_t tail = transmit_tail;
   while (transmit_head - transmit_tail >= TRANSMIT_SIZE) {
-    if (transmit_tail == tail && hal_cycles() - start > limit) return false;
-    watchdog_reload();
-    hal_idle(&never);
+    const uint32_t limit = of_program && host_port_waiting() ? PROGRAM_TIMEOUT_MS : ROOM_TIMEOUT_MS;
+    if (transmit_tail == tail && hal_cycles() - start > limit * hal_cycles_per_ms()) return false;
+    host_port_meanwhile();
+    hal_idle(&background_work);
   }
   return true;
 }
@@ -148,6 +160,7 @@ void host_port_send(uint8_t c) {
   if (discard != 0u) return;
   if (transmit_head - transmit_tail >= TRANSMIT_SIZE && !wait_for_room()) {
     discard = 1;
+    if (of_program) return; /* the host's own reply is waited for */
     given_up = true;
     given_up_at = transmit_tail;
     return;
@@ -160,6 +173,8 @@ void host_port_send(uint8_t c) {
   }
   hal_unmask(state);
 }
+
+void host_port_program_sends(bool sends) { of_program = sends; }
 
 void host_port_open_output(void) {
   if (given_up && transmit_tail == given_up_at && host_port_room() == 0u) return;

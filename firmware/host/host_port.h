@@ -2,8 +2,11 @@
 #ifndef FIRMWARE_HOST_HOST_PORT_H
 #define FIRMWARE_HOST_HOST_PORT_H
 
-#define HOST_PORT_RECEIVE_BITS 11                            /* image/trap.S reads this file too */
-#define HOST_PORT_RECEIVE_SIZE (1 << HOST_PORT_RECEIVE_BITS) /* characters */
+/* image/trap.S reads this file too. Characters: with so many a queue is full, and so many fit into it. */
+#define HOST_PORT_LIMIT_BITS 11
+#define HOST_PORT_RECEIVE_LIMIT (1 << HOST_PORT_LIMIT_BITS)
+#define HOST_PORT_RECEIVE_BITS (HOST_PORT_LIMIT_BITS + 2)
+#define HOST_PORT_RECEIVE_SIZE (1 << HOST_PORT_RECEIVE_BITS)
 
 #ifndef __ASSEMBLER__
 #include <stdbool.h>
@@ -17,6 +20,7 @@ extern volatile uint32_t host_port_received_count, host_port_taken_count;
 void host_port_initialize(void);
 void host_port_interrupt(void);         /* image/trap.S, where it has more to do than a character of a line */
 void host_port_character(uint8_t c);    /* a character from the host: interrupt, or a test */
+void host_port_reserve(void);           /* servo task: a full queue takes what the port holds */
 bool host_port_next_output(uint8_t* c); /* the next character for the host: interrupt, or a test */
 
 /* Background: next character received. *flushed: ^X came since the last call, what was taken before is void. */
@@ -29,8 +33,11 @@ uint32_t host_port_room(void);    /* characters that host_port_send takes withou
 uint32_t host_port_flushes(void); /* ^X so far: what waits to be sent is void */
 bool host_port_waiting(void);     /* characters received and not taken */
 void host_port_send(uint8_t c);   /* background: waits for room; gives up after half a second without a reader */
-void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
 uint32_t host_port_urgent(void);  /* real-time task: control characters that may not wait, bit = code; cleared */
+void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
+/* What follows is sent by a program, which gives up sooner when the host has sent something; and no longer. */
+void host_port_program_sends(bool sends);
+extern void (*const host_port_meanwhile)(void); /* what the background does while a reply waits (image/tables.c) */
 
 #endif
 #endif

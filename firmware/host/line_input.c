@@ -14,7 +14,7 @@
 #include "firmware/variables/i_variables.h"
 
 enum {
-  LINE_LIMIT = 255,
+  LINE_LIMIT = LEXER_LINE_LIMIT,
   ROUNDS_A_PASS = 64,
   ACKNOWLEDGE = 0x06,
   BACKSPACE = 0x08,

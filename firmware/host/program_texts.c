@@ -1,7 +1,8 @@
 /* There is one port, which is the active one and the parallel one: SENDS, SENDR and SENDA have nobody to go to, and
  * commands that want their answer there are executed without one. While the host does not read, texts stay in their
  * queues, and a program whose queue is full stays at its statement. Nothing here waits for the host but a reply to
- * COMMANDP of more than 2,048 characters, as long as any reply does. */
+ * COMMANDP of more than 2,048 characters; programs go on meanwhile, and a host that would rather send than read is not
+ * kept waiting (host_port.c). */
 #include "firmware/host/program_texts.h"
 
 #include "firmware/base/error.h"
@@ -14,7 +15,7 @@
 #include "firmware/run/program_output.h"
 #include "firmware/variables/i_variables.h"
 
-enum { LINE_LIMIT = 255, RETURN = 0x0D, ROOM_FOR_TEXT = 2 * TEXT_LONGEST, ROOM_FOR_REPLY = 2048 };
+enum { LINE_LIMIT = LEXER_LINE_LIMIT, RETURN = 0x0D, ROOM_FOR_TEXT = 2 * TEXT_LONGEST, ROOM_FOR_REPLY = 2048 };
 
 /* The command being put together, of each task; I62 = 1: more texts than one. */
 static struct command_text {
@@ -49,10 +50,17 @@ static void send_text(const struct program_text* t) {
 }
 
 /* A ^X drops what has not been sent. */
-static void forget_flushed(struct text_queue* queues) {
+static void forget_flushed(void) {
   if (flushes == host_port_flushes()) return;
   flushes = host_port_flushes();
-  for (uint32_t task = 0; task < PROGRAM_TASKS; task++) text_queue_empty(&queues[task]);
+  for (uint32_t task = 0; task < PROGRAM_TASKS; task++) text_queue_empty(&send_queues[task]);
+}
+
+/* Room that a ^X has just made is not for what it drops. */
+static bool has_room_for_text(void) {
+  const bool has_room = host_port_room() >= ROOM_FOR_TEXT;
+  forget_flushed();
+  return has_room;
 }
 
 /* COMMAND ---------------------------------------------------------------------------------------------------------- */
@@ -78,6 +86,7 @@ static void command(struct command_text* text, const struct program_text* t) {
   error_t error = ERR_NONE;
   if (t->control == 0) add(text, t);
   session_begin_program(t->cs, t->motor);
+  host_port_program_sends(true);
   host_port_open_output();
   reply_to(port == PORT_PARALLEL ? REPLY_TO_PROGRAM : REPLY_TO_NOBODY);
   if (is_return || (t->control == 0 && i_integer(I62_NO_CR_AFTER_SEND) == 0))
@@ -88,6 +97,7 @@ static void command(struct command_text* text, const struct program_text* t) {
   reply_to(is_here(port) ? REPLY_TO_PROGRAM : REPLY_TO_NOBODY);
   if (error != ERR_NONE && host_port_room() >= ROOM_FOR_TEXT) reply_error(error);
   reply_to(REPLY_TO_HOST);
+  host_port_program_sends(false);
   session_end_program();
 }
 
@@ -106,10 +116,10 @@ static bool nothing_waits(void) {
 
 void program_texts_pass(void) {
   static struct program_text t;
-  forget_flushed(send_queues);
+  forget_flushed();
   if (nothing_waits()) return;
   for (uint32_t task = 0; task < PROGRAM_TASKS; task++) {
-    while (host_port_room() >= ROOM_FOR_TEXT && text_queue_pop(&send_queues[task], &t)) send_text(&t);
+    while (has_room_for_text() && text_queue_pop(&send_queues[task], &t)) send_text(&t);
     if (may_execute(&command_queues[task]) && text_queue_pop(&command_queues[task], &t))
       command(&command_texts[task], &t);
     if (may_execute(&command_queues[task])) background_wake();

@@ -17,18 +17,24 @@
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
 
-void background_pass(void) {
-  clock_watch_pass();
-  line_input_pass();
+void background_meanwhile(void) {
   panel_pass();
   /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
   *hal_x(MEMORY_GLOBAL_STATUS) = status_word();
   *hal_y(MEMORY_GLOBAL_STATUS) = motion_global_status2();
-  program_texts_pass();
-  const bool plcs_wait = plc_background_any();
-  if (plcs_wait) plc_background();
+  if (plc_background_any()) {
+    plc_background();
+    background_wake();
+  }
   image_checksum_pass();
-  i_variable_apply_clock_directions(); /* written by a program */
-  if (host_port_waiting() || plcs_wait) background_wake();
   watchdog_reload();
+}
+
+void background_pass(void) {
+  clock_watch_pass();
+  line_input_pass();
+  program_texts_pass();
+  background_meanwhile();
+  i_variable_apply_clock_directions(); /* written by a program */
+  if (host_port_waiting()) background_wake();
 }

@@ -2,6 +2,7 @@
 #ifndef FIRMWARE_IMAGE_BACKGROUND_PASS_H
 #define FIRMWARE_IMAGE_BACKGROUND_PASS_H
 
-void background_pass(void); /* housekeeping and one command line */
+void background_pass(void);      /* one command line, what programs send, and ... */
+void background_meanwhile(void); /* ... the rest, which goes on while a reply waits for the host */
 
 #endif

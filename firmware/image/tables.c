@@ -15,6 +15,7 @@
 #include "firmware/command/session.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
+#include "firmware/image/background_pass.h"
 #include "firmware/image/real_time.h"
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/slice.h"
@@ -29,7 +30,12 @@
 
 void (*const mathematics_pause)(void) = slice_pause;
 
-const struct task_hooks task_hooks = {.servo = servo_update, .real_time = real_time, .phase_period = phase_period};
+static void servo(void) {
+  servo_update();
+  host_port_reserve();
+}
+
+const struct task_hooks task_hooks = {.servo = servo, .real_time = real_time, .phase_period = phase_period};
 
 const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
 
@@ -56,3 +62,5 @@ const struct command_entry* const command_tables[] = {
     list_commands,   plc_commands,    motor_commands,  program_commands,  0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;
+
+void (*const host_port_meanwhile)(void) = background_meanwhile;

@@ -151,7 +151,7 @@ trap_host:
   lw t2, host_port_received_count
   lw t3, host_port_taken_count
   sub t3, t2, t3
-  srli t3, t3, HOST_PORT_RECEIVE_BITS
+  srli t3, t3, HOST_PORT_LIMIT_BITS
   bnez t3, 1f
   lw t1, HOST_CHARACTER(t0)
   andi t1, t1, 0xFF
@@ -159,7 +159,8 @@ trap_host:
   bltu t1, t3, 2f
 3:
   lla t3, host_port_received
-  andi t0, t2, (1 << HOST_PORT_RECEIVE_BITS) - 1
+  slli t0, t2, 32 - HOST_PORT_RECEIVE_BITS
+  srli t0, t0, 32 - HOST_PORT_RECEIVE_BITS
   add t3, t3, t0
   sb t1, 0(t3)
   addi t2, t2, 1

@@ -10,7 +10,10 @@
 
 #define LEXER_CONSTANT_LIMIT 34359738368.0 /* 2^35, firmware:1.1 */
 
-enum { LEXER_DECIMALS = 18 }; /* digits of a number that count; 10^18 fits 63 bits */
+enum {
+  LEXER_DECIMALS = 18,   /* digits of a number that count; 10^18 fits 63 bits */
+  LEXER_LINE_LIMIT = 255 /* characters of a line, firmware:6.1 */
+};
 
 struct lexer {
   const char* at; /* next character not consumed; text is upper case already, NUL-terminated */

@@ -6,6 +6,7 @@
 #include "firmware/language/constant_text.h"
 #include "firmware/language/expression.h"
 #include "firmware/language/expression_text.h"
+#include "firmware/language/lexer.h"
 #include "firmware/language/statement_argument.h"
 
 static struct {
@@ -305,7 +306,7 @@ static void statement(const struct instruction* in, const word48_t* words, uint3
   }
 }
 
-void lister_line(const word48_t* words, uint32_t count, bool long_form, void (*put_text)(char c)) {
+static void line(const word48_t* words, uint32_t count, bool long_form, void (*put_text)(char c)) {
   list.put = put_text;
   list.long_form = long_form;
   list.blank_due = list.in_hexadecimal = false;
@@ -333,4 +334,23 @@ void lister_line(const word48_t* words, uint32_t count, bool long_form, void (*p
     }
     at += taken;
   }
+}
+
+static uint32_t counted;
+
+static void count_character(char c) {
+  (void)c;
+  counted++;
+}
+
+static uint32_t length(const word48_t* words, uint32_t count, bool long_form) {
+  counted = 0;
+  line(words, count, long_form, count_character);
+  return counted;
+}
+
+uint32_t lister_length(const word48_t* words, uint32_t count) { return length(words, count, false); }
+
+void lister_line(const word48_t* words, uint32_t count, bool long_form, void (*put_text)(char c)) {
+  line(words, count, long_form && length(words, count, true) <= LEXER_LINE_LIMIT, put_text);
 }

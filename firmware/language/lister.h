@@ -4,7 +4,9 @@
 
 #include "firmware/language/word.h"
 
-/* One line. `long_form`: keywords in full. Damaged words are shown as `?`. Background task. */
+/* One line. `long_form`: keywords in full, if that is no longer than a line may be. Damaged words are shown as `?`.
+ * Background task. */
 void lister_line(const word48_t* words, uint32_t count, bool long_form, void (*put)(char c));
+uint32_t lister_length(const word48_t* words, uint32_t count); /* characters of the short form */
 
 #endif

@@ -1,5 +1,7 @@
 // The command interpreter: lines and control characters as a host sends them. 0xFF lets three servo cycles pass. After
-// whatever it was, the controller answers.
+// whatever it was, programs can be stopped, and then the controller answers with nothing between.
+#include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "testbench/fuzz/target.h"
@@ -12,6 +14,8 @@ extern "C" {
 #include "firmware/host/line_input.h"
 #include "firmware/image/background_pass.h"
 #include "firmware/image/start.h"
+#include "firmware/run/plc_control.h"
+#include "firmware/run/program_output.h"
 }
 
 namespace {
@@ -49,11 +53,29 @@ void time_passes() {
 }
 
 std::string answer(const char* characters) {
-  passes();
   (void)output();
   for (; *characters != '\0'; ++characters) host_port_character(static_cast<std::uint8_t>(*characters));
   passes();
   return output();
+}
+
+bool command_waits() {
+  return std::any_of(std::begin(command_queues), std::end(command_queues),
+                     [](const text_queue& queue) { return !text_queue_is_empty(&queue); });
+}
+
+// A command that a program has queued may start it again behind ^D. Where one queues the next for ever, $$$*** takes
+// the programs away.
+void stop_programs() {
+  constexpr int kMostQueued = TEXT_QUEUE_BYTES;
+  passes();
+  for (int round = 0; round < kMostQueued; ++round) {
+    const bool may_start = command_waits();
+    (void)answer("\x18\x01\x04");
+    if (plc_enabled() == 0 && !command_waits()) return;
+    require(may_start, "^D leaves a PLC running");
+  }
+  (void)answer("\r$$$***\r");
 }
 
 }  // namespace
@@ -70,8 +92,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (data[i] == '\r') passes();
     if (i % 256 == 255) passes();  // the queue holds 2048
   }
-  (void)answer("\x18");
-  (void)answer("\x01\rCLOSE\rI4=0 I6=1 I3=2\r");
+  stop_programs();
+  (void)answer("\rCLOSE\rI4=0 I6=1 I3=2\r");
   require(answer("VER\r") == "1.947\r\x06", "the controller does not answer");
   return 0;
 }

@@ -66,7 +66,10 @@ void round_trip(std::string text, std::uint32_t kind, bool long_form) {
   const Words words = compile(text, kind);
   if (words.empty()) return;
   const std::string listed = list(words, long_form);
-  if (listed.size() > kLineLimit) return;  // cannot be sent back
+  const std::size_t brief = long_form ? list(words, false).size() : listed.size();
+  require(brief <= text.size() + 2 * words.size(), "a word is listed with more than two characters more");
+  if (brief > kLineLimit) return;  // no fixed program takes it (firmware/buffers/fixed_entry.c)
+  require(listed.size() <= kLineLimit, "the long form is too long");
   if (compile(listed, kind) == words) return;
   std::fprintf(stderr, "%s\n%s\n", text.c_str(), listed.c_str());
   require(false, "the listing is compiled to other words");

@@ -1,17 +1,26 @@
 #include "testbench/host/framing_probe.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <optional>
+#include <string>
 
 namespace brick {
 
 namespace {
 
 constexpr std::size_t kDigits = 12;
+constexpr char kStx = 0x02, kAck = 0x06, kLf = 0x0A, kCr = 0x0D;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// In capitals, without spaces, texts in quotation marks and the comment at the end.
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+// In capitals, without spaces, texts in quotation marks, the comment at the end, and the password, which takes all that
+// follows in the line (firmware:5.10/8).
 std::string commands_of(std::string_view line) {
   std::string text;
   bool quoted = false;
@@ -20,6 +29,7 @@ std::string commands_of(std::string_view line) {
     if (quoted || c == '"' || c == ' ' || c == '\t') continue;
     if (c == ';') break;
     text.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    if (ends_with(text, "PASSWORD=")) break;
   }
   return text;
 }
@@ -35,28 +45,47 @@ bool reaches_3_or_4(const std::string& text, std::size_t at) {
   return assigns && (several ? number <= 4 : (number == 3 || number == 4) && text.compare(end, 1, "=") == 0);
 }
 
-bool is_status(std::string_view text, const Framing& framing) {
-  std::string form = (framing.i3 & 1) != 0 ? "\n" : "";
-  const std::size_t digits = form.size();
-  if (text.size() < digits + kDigits + 1) return false;
-  for (std::size_t i = digits; i < digits + kDigits; ++i) {
-    const char c = text[i];
-    if (!is_digit(c) && (c < 'A' || c > 'F')) return false;
-    form.push_back(c);
+bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
+
+char sum_of(std::string_view bytes) {
+  unsigned total = 0;
+  for (const unsigned char c : bytes) total += c;
+  return static_cast<char>(total);
+}
+
+// The answer that begins at `begin` and whose CR is at `cr`, if it has that form.
+std::optional<FramingAnswer> answer_of_form(std::string_view text, std::size_t begin, std::size_t cr,
+                                            const Framing& framing) {
+  std::string form(text.substr(begin, cr + 1 - begin));
+  if (framing.checksums()) form.push_back(sum_of(form));
+  if (framing.i3 != 0) form.push_back(framing.i3 == 1 ? kLf : kAck);
+  const bool command_sum = framing.i3 != 0 && framing.checksums();  // of a control character: any byte
+  const std::size_t end = begin + form.size() + (command_sum ? 1 : 0);
+  if (end > text.size() || text.substr(begin, form.size()) != form) return std::nullopt;
+  return FramingAnswer{begin, end, framing};
+}
+
+// The line that `text` begins with has a checksum; nothing where it has no end.
+std::optional<bool> has_checksum(std::string_view text) {
+  const std::size_t cr = text.find(kCr);
+  if (cr == std::string_view::npos || cr + 1 == text.size()) return std::nullopt;
+  return text[cr + 1] == sum_of(text.substr(0, cr + 1));
+}
+
+// An acknowledge is none of a text. What looks like a checksum may be the beginning of the next line, and like an
+// acknowledge a checksum: then that line shows which it is.
+std::optional<FramingAnswer> answer_at(std::string_view text, std::size_t begin, std::size_t cr) {
+  const unsigned acknowledged = text[begin] == kLf ? 3 : 2, other = acknowledged - 2;
+  std::array<std::optional<FramingAnswer>, 2> found;
+  for (const unsigned i4 : {0u, 1u}) {
+    found[i4] = answer_of_form(text, begin, cr, {acknowledged, i4});
+    if (!found[i4]) found[i4] = answer_of_form(text, begin, cr, {other, i4});
   }
-  form.push_back('\r');
-  const auto sum = [](std::string_view bytes) {
-    unsigned total = 0;
-    for (const unsigned char c : bytes) total += c;
-    return static_cast<char>(total);
-  };
-  if (framing.checksums()) form.push_back(sum(form));
-  if (framing.i3 != 0) form.push_back(framing.i3 == 1 ? '\n' : '\x06');
-  if (framing.i3 != 0 && framing.checksums()) {  // of a control character: any byte
-    if (text.size() != form.size() + 1) return false;
-    form.push_back(text.back());
-  }
-  return text == form;
+  const auto& [plain, summed] = found;
+  if (!plain || !summed) return plain ? plain : summed;
+  if (plain->framing.i3 == 0 && summed->framing.i3 == 2) return summed;
+  if (const auto next = has_checksum(text.substr(summed->end))) return *next ? summed : plain;
+  return summed->end == text.size() && plain->end != text.size() ? summed : plain;
 }
 
 }  // namespace
@@ -79,30 +108,23 @@ bool may_restart(std::string_view line) { return commands_of(line).find("$$$") !
 
 bool may_take_long(std::string_view line) { return commands_of(line).find("SAVE") != std::string::npos; }
 
-std::optional<FramingAnswer> framing_answer(std::string_view text, std::size_t from) {
-  constexpr std::size_t kLongestForm = kDigits + 5;  // LF, CR, ACK, two checksums
-  if (text.size() > kLongestForm) from = std::max(from, text.size() - kLongestForm);
-  for (std::size_t begin = from; begin + kDigits < text.size(); ++begin)
-    for (const unsigned i3 : {2u, 1u, 3u, 0u})
-      for (const unsigned i4 : {0u, 1u})
-        if (is_status(text.substr(begin), {i3, i4})) return FramingAnswer{begin, {i3, i4}};
-  return std::nullopt;
+bool may_end_answer(std::string_view text) {
+  return text.size() > kDigits && text.back() == kCr &&
+         std::all_of(text.end() - kDigits - 1, text.end() - 1, is_hex_digit);
 }
 
-std::string without_answers(std::string text, std::size_t from, const Framing& framing, unsigned most) {
-  const std::size_t length = kDigits + 1 + (framing.i3 & 1) + (framing.checksums() ? 1 : 0) +
-                             (framing.i3 == 0       ? 0
-                              : framing.checksums() ? 2
-                                                    : 1);
-  for (std::size_t at = from; most > 0 && at + length <= text.size();) {
-    if (!is_status(std::string_view(text).substr(at, length), framing)) {
-      ++at;
-      continue;
-    }
-    text.erase(at, length);
-    --most;
+std::vector<FramingAnswer> framing_answers(std::string_view text, std::size_t from) {
+  std::vector<FramingAnswer> answers;
+  for (std::size_t cr = text.find(kCr, from); cr != std::string_view::npos; cr = text.find(kCr, cr + 1)) {
+    if (!may_end_answer(text.substr(from, cr + 1 - from))) continue;
+    const std::size_t begin = cr - kDigits;
+    const char before = begin > from ? text[begin - 1] : kCr;
+    if (before == kStx) continue;
+    auto answer = before == kLf ? answer_at(text, begin - 1, cr) : std::nullopt;
+    if (!answer) answer = answer_at(text, begin, cr);
+    if (answer) answers.push_back(*answer);
   }
-  return text;
+  return answers;
 }
 
 }  // namespace brick

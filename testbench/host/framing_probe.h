@@ -4,9 +4,8 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
-#include <string>
 #include <string_view>
+#include <vector>
 
 #include "testbench/host/reply_parser.h"
 
@@ -21,12 +20,11 @@ bool may_restart(std::string_view line);             // $$$ or $$$*** anywhere i
 bool may_take_long(std::string_view line);           // SAVE
 
 struct FramingAnswer {
-  std::size_t begin;  // what stands before it belongs to something else
+  std::size_t begin, end;  // what stands around it belongs to something else
   Framing framing;
 };
-// The answer that `text` ends with, looked for from `from` on.
-std::optional<FramingAnswer> framing_answer(std::string_view text, std::size_t from);
-// The text without answers of that form, at most `most` of them, looked for from `from` on.
-std::string without_answers(std::string text, std::size_t from, const Framing& framing, unsigned most);
+// All that looks like an answer from `from` on. What a program sends may look like one too, if it has no tag (I64).
+std::vector<FramingAnswer> framing_answers(std::string_view text, std::size_t from);
+bool may_end_answer(std::string_view text);  // its last character is the CR of one
 
 }  // namespace brick

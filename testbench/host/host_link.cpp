@@ -1,15 +1,28 @@
 #include "testbench/host/host_link.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
-
-#include "testbench/host/framing_probe.h"
 
 namespace brick {
 
 namespace {
 constexpr Tick kConnectQuiet = ns_to_ticks(2'000'000), kAskAgain = ns_to_ticks(100'000'000);
-constexpr std::size_t kMostStray = 1 << 16;  // bytes read without a pause: a program may send for ever
+constexpr Tick kTextPause = ns_to_ticks(1'000'000);  // a line of text that goes on does so sooner
+constexpr std::size_t kMostStray = 1 << 16;          // bytes read without a pause: a program may send for ever
+constexpr unsigned kMostQuestions = 5;               // where answers cannot be told from texts
+constexpr const char* kUnclear =
+    "I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits, as ^G is answered; expected other "
+    "texts, "
+    "or I64=1";
+
+// Where some of the answers from `first` on are acknowledged, the others are texts of programs.
+void drop_texts(std::vector<FramingAnswer>& answers, std::size_t first) {
+  const auto begin = answers.begin() + static_cast<std::ptrdiff_t>(std::min(first, answers.size()));
+  const auto is_text = [](const FramingAnswer& answer) { return answer.framing.i3 < 2; };
+  if (!std::all_of(begin, answers.end(), is_text))
+    answers.erase(std::remove_if(begin, answers.end(), is_text), answers.end());
+}
 }  // namespace
 
 // ---------------------------------------------------------------------------------------------------------- characters
@@ -18,7 +31,7 @@ constexpr std::size_t kMostStray = 1 << 16;  // bytes read without a pause: a pr
 bool HostLink::put(std::uint8_t c, Tick deadline) {
   for (;;) {
     const std::uint8_t status = bus_.port_status();
-    if (status & HostBus::kRxdf) incoming_.push_back(static_cast<char>(bus_.io_read(regs::host_io::kData7)));
+    if (status & HostBus::kRxdf) keep(bus_.io_read(regs::host_io::kData7));
     if (status & HostBus::kTxde) break;
     if (bus_.now() >= deadline || bus_.tripped()) return false;
     bus_.pause_polling();
@@ -29,28 +42,41 @@ bool HostLink::put(std::uint8_t c, Tick deadline) {
 
 bool HostLink::receive(Tick deadline) {
   const auto c = bus_.get_char(std::max<Tick>(0, deadline - bus_.now()));
-  if (c) incoming_.push_back(static_cast<char>(*c));
+  if (c) keep(*c);
   return c.has_value();
+}
+
+void HostLink::keep(std::uint8_t c) {
+  incoming_.push_back(static_cast<char>(c));
+  received_ = bus_.now();
 }
 
 void HostLink::poll() {
   while (incoming_.size() < kMostStray && (bus_.port_status() & HostBus::kRxdf))
-    incoming_.push_back(static_cast<char>(bus_.io_read(regs::host_io::kData7)));
+    keep(bus_.io_read(regs::host_io::kData7));
   look_for_late_checksum();
-  take_stray(incoming_.size());
+  take_stray();
 }
 
-// Text that came without being asked for, up to `end`.
-void HostLink::take_stray(std::size_t end) {
-  for (const char c : incoming_.substr(0, end)) {
-    if (c == '\r') {
-      unsolicited_.push_back(stray_);
-      stray_.clear();
-    } else if (static_cast<unsigned char>(c) >= ' ') {
-      stray_.push_back(c);
-    }
+// Text that came without being asked for: whole lines, and what has ended without a CR. The beginning of a line that is
+// coming stays: its end will stand in the reply.
+void HostLink::take_stray() {
+  const std::size_t checksum = framing_.checksums() ? 1 : 0;
+  std::size_t taken = 0;
+  const auto text_to = [&](std::size_t end) {
+    std::copy_if(incoming_.begin() + static_cast<std::ptrdiff_t>(taken),
+                 incoming_.begin() + static_cast<std::ptrdiff_t>(end), std::back_inserter(stray_),
+                 [](unsigned char c) { return c >= ' '; });
+    taken = end;
+  };
+  for (std::size_t cr = incoming_.find('\r'); cr != std::string::npos && cr + checksum < incoming_.size();
+       cr = incoming_.find('\r', taken)) {
+    text_to(cr);
+    unsolicited_.push_back(std::exchange(stray_, ""));
+    taken = cr + 1 + checksum;
   }
-  incoming_.erase(0, end);
+  if (bus_.now() - received_ > kTextPause) text_to(incoming_.size());
+  incoming_.erase(0, taken);
 }
 
 std::vector<std::string> HostLink::take_unsolicited() { return std::exchange(unsolicited_, {}); }
@@ -64,21 +90,28 @@ bool HostLink::send(const std::string& line, Tick timeout) {
   for (const char c : line)
     if (!put(static_cast<std::uint8_t>(c), deadline)) return false;
   look_for_late_checksum();
-  if (!has_control_characters(line)) take_stray(incoming_.rfind('\r') + 1);
+  if (!has_control_characters(line)) take_stray();
   sent_ = line;
   acknowledged_ = false;
   return put('\r', deadline);
 }
 
+// Ends also where it is never quiet: then programs send all the time, and the end is to be asked for.
 ReplyParser HostLink::collect(ReplyParser parser, Tick timeout) {
   std::size_t taken = 0;
-  Tick deadline = bus_.now() + timeout;
+  Tick deadline = bus_.now() + timeout, busy_since = bus_.now();
+  bool by_quiet = false;
   for (;;) {
     if (taken < incoming_.size()) deadline = bus_.now() + timeout;
-    while (taken < incoming_.size() && !parser.complete()) parser.take(static_cast<std::uint8_t>(incoming_[taken++]));
+    while (taken < incoming_.size() && !parser.complete())
+      taken += parser.take(static_cast<std::uint8_t>(incoming_[taken])) ? 1 : 0;
     if (parser.complete() || taken >= kLongestReply) break;
-    if (receive(parser.ends_by_quiet() ? std::min(deadline, bus_.now() + kQuietTime) : deadline)) continue;
-    if (parser.quiet() || bus_.now() >= deadline || bus_.tripped()) break;
+    const Tick now = bus_.now();
+    if (!std::exchange(by_quiet, parser.ends_by_quiet() || timeout <= kQuietTime) && by_quiet) busy_since = now;
+    if (now - busy_since > (by_quiet ? kRestless : timeout)) break;
+    const bool more = receive(by_quiet ? std::min(deadline, now + kQuietTime) : deadline);
+    if (bus_.now() - now >= kQuietTime) busy_since = bus_.now();
+    if (!more && (parser.quiet() || bus_.now() >= deadline || bus_.tripped())) break;
   }
   incoming_.erase(0, taken);
   return parser;
@@ -91,8 +124,7 @@ Reply HostLink::finish(Tick timeout) {
   const std::uint8_t sum = command_checksum(sent_);
   Reply reply = ends_by_asking ? asked(sum, unlike_others, longest)
                                : confirmed(collect(ReplyParser(framing_, sum), timeout), sum);
-  unsolicited_.insert(unsolicited_.end(), reply.unsolicited.begin(), reply.unsolicited.end());
-  expect_late_checksum(reply, sum);
+  conclude(reply, sum);
   return reply;
 }
 
@@ -111,6 +143,7 @@ Reply HostLink::restarted() {
   if (reply.error) return reply;
   while (!reply.raw.empty() && reply.raw.back() != '\r') reply.raw.pop_back();  // the restart's acknowledge
   incoming_.clear();
+  reply.doubt.clear();
   reply.complete = connect(kBootTime);
   return reply;
 }
@@ -122,7 +155,7 @@ Reply HostLink::control(std::uint8_t c) {
   if (!put(c, bus_.now() + kReplyTime)) return {};
   Reply reply = c == kRepeat ? asked(std::nullopt, true, kSaveTime)
                              : confirmed(collect(ReplyParser(framing_, std::nullopt), kQuietTime), std::nullopt);
-  expect_late_checksum(reply, std::nullopt);
+  conclude(reply, std::nullopt);
   reply.complete = true;  // no answer is an answer to most control characters
   return reply;
 }
@@ -132,37 +165,54 @@ Reply HostLink::control(std::uint8_t c) {
 // `mixed`: I3 and I4 may have changed half-way.
 Reply HostLink::parsed(const std::string& bytes, Checksum command, const Framing& before, bool mixed) const {
   const bool sums = before.checksums() || framing_.checksums() || may_change_framing(sent_);
-  const auto kind = sums ? ReplyParser::Mixed::kWithChecksums : ReplyParser::Mixed::kWithoutChecksums;
-  ReplyParser parser(mixed ? before : framing_, command, mixed ? kind : ReplyParser::Mixed::kNo);
-  for (const char c : bytes) parser.take(static_cast<std::uint8_t>(c));
+  using Mixed = ReplyParser::Mixed;
+  const Mixed kind = framing_.checksums() ? Mixed::kWithChecksums : sums ? Mixed::kOfLines : Mixed::kWithoutChecksums;
+  ReplyParser parser(mixed ? before : framing_, command, mixed ? kind : Mixed::kNo);
+  for (const char c : bytes) {
+    if (!mixed && parser.complete()) break;
+    (void)parser.take(static_cast<std::uint8_t>(c));
+  }
   parser.quiet();
   return parser.reply();
+}
+
+Reply HostLink::taken(Reply reply, const std::string& bytes) {
+  incoming_.insert(0, bytes, reply.raw.size(), std::string::npos);
+  reply.doubt = std::exchange(doubt_, "");
+  return reply;
 }
 
 // The reply is what comes before the answer to ^G.
 Reply HostLink::asked(Checksum command, bool mixed, Tick timeout) {
   const Framing before = framing_;
-  const bool known = ask_framing(timeout);
-  Reply reply = parsed(std::exchange(incoming_, ""), command, before, mixed || !(framing_ == before));
-  reply.complete = known;
+  const auto answered = ask_framing(timeout);
+  const std::string bytes = answered ? *answered : std::exchange(incoming_, "");
+  Reply reply = taken(parsed(bytes, command, before, mixed || !(framing_ == before)), bytes);
+  reply.complete = answered.has_value();
   return reply;
 }
 
-// A reply that looks as if a program had changed I3 or I4: is that so?
+// A reply that looks as if a program had changed I3 or I4, or has no end among what programs send: is that so?
 Reply HostLink::confirmed(const ReplyParser& parser, Checksum command) {
   const Reply& reply = parser.reply();
   const bool lost = !reply.complete && (command || !reply.raw.empty());  // most control characters have no answer
   const bool odd = parser.maybe_checksums() || !reply.bad_checksum.empty();
   if (!(lost || odd) || bus_.tripped() || reply.raw.size() >= kLongestReply) return reply;
   const Framing before = framing_;
-  if (!ask_framing(4 * kQuietTime) || framing_ == before) return reply;
-  const std::string bytes = reply.raw + std::exchange(incoming_, "");
+  incoming_.insert(0, reply.raw);
+  const auto answered = ask_framing(4 * kQuietTime);
+  const std::string bytes = answered ? *answered : std::exchange(incoming_, "");
+  const bool same = framing_ == before;
+  if (same && !lost) return taken(reply, bytes);
   Reply again = parsed(bytes, command, before, false);
-  return again.complete && again.bad_checksum.empty() ? again : parsed(bytes, command, before, true);
+  if (answered && same && framing_.i3 < 2 && !bytes.empty()) again.complete = true;
+  if (same || (again.complete && again.bad_checksum.empty())) return taken(again, bytes);
+  return taken(parsed(bytes, command, before, true), bytes);
 }
 
 // Where a program has set I4, a byte follows the acknowledge of a line without data.
-void HostLink::expect_late_checksum(const Reply& reply, Checksum command) {
+void HostLink::conclude(const Reply& reply, Checksum command) {
+  unsolicited_.insert(unsolicited_.end(), reply.unsolicited.begin(), reply.unsolicited.end());
   acknowledged_ = reply.complete && !reply.error && !framing_.checksums();
   acknowledged_sum_ = command;
 }
@@ -170,29 +220,69 @@ void HostLink::expect_late_checksum(const Reply& reply, Checksum command) {
 void HostLink::look_for_late_checksum() {
   if (incoming_.empty() || !std::exchange(acknowledged_, false)) return;
   const auto byte = static_cast<std::uint8_t>(incoming_[0]);
-  if (byte == acknowledged_sum_.value_or(byte) && ask_framing(kReplyTime) && framing_.checksums())
-    incoming_.erase(0, 1);
+  if (byte != acknowledged_sum_.value_or(byte)) return;
+  if (const auto before = ask_framing(kReplyTime)) incoming_.insert(0, *before, framing_.checksums() ? 1 : 0);
 }
 
-// What comes before the answer stays in incoming_. False when there is none. It is asked again where something else
-// came and where nothing came for long, as the question may have been lost in a restart; of several answers the last
-// counts.
-bool HostLink::ask_framing(Tick timeout) {
+// What came before the answer; what comes behind it stays in incoming_. Nothing: there is none. It is asked again where
+// something else came and where nothing came for long, as the question may have been lost in a restart; of several
+// answers the last counts. Where programs send, an answer is not the last that comes: there it is asked until a
+// question brings one answer. Then those before it have been answered too.
+std::optional<std::string> HostLink::ask_framing(Tick timeout) {
   const Tick deadline = bus_.now() + timeout;
   const std::size_t begin = incoming_.size();
-  while (bus_.now() < deadline && incoming_.size() < kLongestReply && !bus_.tripped()) {
-    if (!put(kAskFraming, deadline)) return false;
+  std::size_t seen = 0;
+  bool fresh = false;
+  doubt_.clear();
+  for (unsigned unclear = 0; incoming_.size() < kLongestReply && !bus_.tripped();) {
+    const Tick again = bus_.now() + kAskAgain, limit = fresh ? again : deadline;
+    if (bus_.now() >= limit || !put(kAskFraming, limit)) break;
     ++unanswered_;
-    if (!receive(std::min(deadline, bus_.now() + kAskAgain))) continue;
-    while (incoming_.size() < kLongestReply && receive(bus_.now() + kQuietTime)) {}
-    if (const auto answer = framing_answer(incoming_, begin)) {
-      framing_ = answer->framing;
-      incoming_ = without_answers(incoming_.substr(0, answer->begin), begin, framing_, unanswered_ - 1);
-      unanswered_ = 0;
-      return true;
+    fresh = false;
+    if (!receive(std::min(limit, again))) continue;
+    const bool quiet = read_answer();
+    auto answers = framing_answers(incoming_, begin);
+    const std::size_t all = answers.size();
+    drop_texts(answers, seen);
+    const bool at_end = quiet && !answers.empty() && answers.back().end == incoming_.size();
+    if (at_end || (seen > 0 && answers.size() == seen + 1)) return take_answer(answers);
+    fresh = all > seen;
+    seen = all;
+    if (!fresh || ++unclear < kMostQuestions) continue;
+    doubt_ = kUnclear;
+    break;
+  }
+  return std::nullopt;
+}
+
+// True when nothing more comes; false where there is always more, but none of it looks like an answer.
+bool HostLink::read_answer() {
+  std::optional<Tick> first, last;
+  while (incoming_.size() < kLongestReply) {
+    if (!receive(bus_.now() + kQuietTime)) return true;
+    if (may_end_answer(incoming_)) {
+      last = bus_.now();
+      if (!first) first = last;
     }
+    if (last && (bus_.now() - *last > kRestless || bus_.now() - *first > kAskAgain)) break;
   }
   return false;
+}
+
+// Of answers to several questions the first ends the reply; texts between them are none of it.
+std::string HostLink::take_answer(const std::vector<FramingAnswer>& answers) {
+  framing_ = answers.back().framing;
+  std::size_t end = incoming_.size();
+  std::string behind;
+  for (auto a = answers.rbegin(); a != answers.rend() && unanswered_ > 0; ++a) {
+    if (!(a->framing == framing_)) continue;
+    --unanswered_;
+    if (a->end < end) behind.insert(0, incoming_, a->end, end - a->end);
+    end = a->begin;
+  }
+  unanswered_ = 0;
+  incoming_.erase(end);
+  return std::exchange(incoming_, behind);
 }
 
 // ------------------------------------------------------------------------------------------------------------- connect
@@ -203,13 +293,17 @@ bool HostLink::try_connect(Tick deadline) {
   for (const char c : std::string("I6=1I3=2I4=0\r"))
     if (!put(static_cast<std::uint8_t>(c), deadline)) return false;
   if (incoming_.empty() && !receive(std::min(deadline, bus_.now() + kReplyTime))) return false;
-  while (bus_.now() < deadline && receive(std::min(deadline, bus_.now() + kConnectQuiet))) {}
+  const Tick begin = bus_.now();
+  bool quiet = false;
+  while (!quiet && bus_.now() < deadline && bus_.now() - begin < kRestless)
+    quiet = !receive(std::min(deadline, bus_.now() + kConnectQuiet));
+  if (!quiet && !ask_framing(std::max<Tick>(1, deadline - bus_.now()))) return false;
   incoming_.clear();
   framing_ = {2, 0};
   if (!send("I3", std::max<Tick>(1, deadline - bus_.now()))) return false;
   const Reply reply = finish(std::min(kReplyTime, std::max<Tick>(1, deadline - bus_.now())));
-  if (!reply.complete || reply.error || reply.lines.size() != 1) return false;
-  return reply.lines[0] == "2" || reply.lines[0] == "I3=2";
+  if (!reply.complete || reply.error || reply.lines.empty()) return false;
+  return reply.lines.back() == "2" || reply.lines.back() == "I3=2";  // behind what programs send
 }
 
 bool HostLink::connect(Tick timeout) {

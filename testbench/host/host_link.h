@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/host/framing_probe.h"
 #include "testbench/host/host_bus.h"
 #include "testbench/host/reply_parser.h"
 
@@ -17,6 +18,7 @@ class HostLink {
   static constexpr Tick kReplyTime = ns_to_ticks(1'000'000'000);  // longest wait for an answer
   static constexpr Tick kSaveTime = ns_to_ticks(10'000'000'000);  // SAVE takes seconds
   static constexpr Tick kQuietTime = ns_to_ticks(5'000'000);      // I3 = 0 and 1: nothing for so long means the end
+  static constexpr Tick kRestless = ns_to_ticks(20'000'000);      // never quiet for so long: programs send all the time
   static constexpr std::size_t kLongestReply = 1 << 20;           // bytes; no reply is longer than that
 
   explicit HostLink(HostBus& bus) : bus_(bus) {}
@@ -29,6 +31,7 @@ class HostLink {
   // next. A line that restarts the controller ($$$, $$$*** anywhere in it) connects again. What I3 and I4 are is looked
   // at after a line that may change them or has control characters, where no end of the reply shows (I3 = 0, or a reply
   // that does not end), and where checksums came that were not expected, or wrong ones: a program may change them too.
+  // The answer to that also ends a reply where programs send texts all the time.
   Reply command(const std::string& line);
   Reply command(const std::string& line, Tick timeout);
 
@@ -52,24 +55,30 @@ class HostLink {
 
   bool put(std::uint8_t c, Tick deadline);
   bool receive(Tick deadline);  // one byte into incoming_
-  void take_stray(std::size_t end);
+  void keep(std::uint8_t c);
+  void take_stray();
   ReplyParser collect(ReplyParser parser, Tick timeout);
   Reply parsed(const std::string& bytes, Checksum command, const Framing& before, bool mixed) const;
+  Reply taken(Reply reply, const std::string& bytes);  // what of `bytes` is none of it stays in incoming_
   Reply asked(Checksum command, bool mixed, Tick timeout);
   Reply confirmed(const ReplyParser& parser, Checksum command);
   Reply restarted();
-  void expect_late_checksum(const Reply& reply, Checksum command);
+  void conclude(const Reply& reply, Checksum command);
   void look_for_late_checksum();
-  bool ask_framing(Tick timeout);
+  std::optional<std::string> ask_framing(Tick timeout);
+  bool read_answer();
+  std::string take_answer(const std::vector<FramingAnswer>& answers);
   bool try_connect(Tick deadline);
 
   HostBus& bus_;
-  Framing framing_;
-  std::string incoming_;  // received while sending, not yet looked at
-  std::string stray_;     // begun line of unsolicited text
+  Framing framing_{2, 0};  // as connect() selects it
+  std::string incoming_;   // received while sending, not yet looked at
+  Tick received_ = 0;      // when the last of it was
+  std::string stray_;      // begun line of unsolicited text
   std::vector<std::string> unsolicited_;
   std::string sent_;           // line that finish() waits for, or that was the last
   unsigned unanswered_ = 0;    // ^G
+  std::string doubt_;          // why its answers say nothing
   bool acknowledged_ = false;  // the last line was, without a checksum
   Checksum acknowledged_sum_;  // which would have been this one
 };

@@ -17,40 +17,58 @@ std::uint8_t command_checksum(std::string_view line) {
   return static_cast<std::uint8_t>(sum);
 }
 
-// True when the byte was one. That of an error is not known to be sent, let alone what it counts.
+// No source says whether an error has a checksum, or of what: its line, with BELL and what else stands before it, or
+// the command.
+bool ReplyParser::may_be_of_error(std::uint8_t byte) const {
+  unsigned line = kCr;
+  for (const unsigned char c : reply_.lines.back()) line += c;
+  for (const int before : {0, +kBell, +kLf, kBell + kLf, kBell + kCr, kBell + kCr + kLf})
+    if (byte == static_cast<std::uint8_t>(line + static_cast<unsigned>(before))) return true;
+  return byte == command_;
+}
+
+// True when the byte was one.
 bool ReplyParser::take_checksum(std::uint8_t byte) {
   const Due due = std::exchange(due_, Due::kNothing);
   if (due == Due::kNothing) return false;
   const std::uint8_t sum = std::exchange(sum_, std::uint8_t{0});
-  const std::uint8_t expected = due == Due::kLine ? sum : due == Due::kCommand ? command_.value_or(byte) : byte;
+  if (due == Due::kError) {
+    reply_.complete = !mixed_;
+    return may_be_of_error(byte);
+  }
+  const std::uint8_t expected = due == Due::kLine ? sum : command_.value_or(byte);
   if (mixed_ && byte != expected) return false;
   if (byte != expected && reply_.bad_checksum.empty()) {
     const std::string whose = due == Due::kLine && !reply_.lines.empty() ? "`" + reply_.lines.back() + "`" : "the line";
     reply_.bad_checksum = fmt::format("the checksum of {} is ${:02X}, expected ${:02X}", whose, byte, expected);
   }
-  if (due != Due::kLine) reply_.complete = !mixed_;
+  if (due == Due::kCommand) reply_.complete = !mixed_;
   return true;
 }
 
 void ReplyParser::end_line() {
   (tagged_ ? reply_.unsolicited : reply_.lines).push_back(line_);
-  if (reply_.error && !tagged_) numbered_ = true;
+  if (reply_.error && !tagged_ && line_.rfind("ERR", 0) == 0) numbered_ = true;  // else a program's text behind BELL
   line_.clear();
   tagged_ = false;
 }
 
-void ReplyParser::take(std::uint8_t byte) {
+bool ReplyParser::take(std::uint8_t byte) {
   const char c = static_cast<char>(byte);
-  reply_.raw.push_back(c);
   if (std::exchange(unexpected_, std::nullopt) == byte) maybe_checksums_ = true;
-  if (take_checksum(byte)) return;
-  if (held_) {
-    take_text(*std::exchange(held_, std::nullopt));
+  const bool behind_error = due_ == Due::kError && !mixed_;
+  const bool is_checksum = take_checksum(byte);
+  if (behind_error && !is_checksum) return false;
+  reply_.raw.push_back(c);
+  if (is_checksum) return true;
+  if (const auto held = std::exchange(held_, std::nullopt)) {
+    if (c != kLf) take_text(*held);  // else it was the checksum, and a program's text begins
   } else if (handshake_ && sums_ && byte == command_.value_or(byte)) {
     held_ = c;
-    return;
+    return true;
   }
   take_text(c);
+  return true;
 }
 
 void ReplyParser::take_text(char c) {
@@ -65,12 +83,16 @@ void ReplyParser::take_text(char c) {
     case kBell:
       if (!line_.empty()) end_line();
       reply_.error = true;
+      sum_ = 0;  // none of the line behind it, which may be a program's
       break;
     case kCr:
-      if (line_.empty() && reply_.error) break;  // I6 = 3: BELL CR ERRnnn CR
+      if (line_.empty() && reply_.error) {  // I6 = 3: BELL CR ERRnnn CR
+        sum_ = 0;
+        break;
+      }
       end_line();
       if (!sums_) unexpected_ = std::exchange(sum_, std::uint8_t{0});
-      if (sums_) due_ = numbered_ ? Due::kError : Due::kLine;
+      if (sums_) due_ = !numbered_ ? Due::kLine : error_sums_ ? Due::kError : Due::kNothing;
       reply_.complete = numbered_ && !sums_;
       break;
     case kLf:

@@ -25,6 +25,7 @@ struct Reply {
   std::vector<std::string> unsolicited;  // lines that a program sent, tagged by <CTRL-B> (I64)
   std::string raw;                       // every byte received
   std::string bad_checksum;              // what was wrong with the first checksum that was, else empty
+  std::string doubt;                     // why it cannot be told what I3 and I4 are now, else empty
   bool error = false;                    // BELL was received
   bool complete = false;                 // false: time-out, or longer than any reply is
 };
@@ -35,16 +36,17 @@ std::uint8_t command_checksum(std::string_view line);
 class ReplyParser {
  public:
   // `mixed`: the line may change I3 and I4 half-way, so that only quiet ends the reply, and bytes are taken for
-  // checksums where they agree with one, if there were any before or after it. `command`: the checksum of the line;
-  // none: any byte will do.
-  enum class Mixed { kNo, kWithoutChecksums, kWithChecksums };
+  // checksums where they agree with one, if there were any before or after it; an error, which is the last, may only
+  // have one where there are any after it. `command`: the checksum of the line; none: any byte will do.
+  enum class Mixed { kNo, kWithoutChecksums, kOfLines, kWithChecksums };
   ReplyParser(Framing framing, std::optional<std::uint8_t> command, Mixed mixed = Mixed::kNo)
       : framing_(framing),
         command_(command),
         mixed_(mixed != Mixed::kNo),
-        sums_(framing.checksums() || mixed == Mixed::kWithChecksums) {}
+        sums_(framing.checksums() || mixed == Mixed::kOfLines || mixed == Mixed::kWithChecksums),
+        error_sums_(sums_ && mixed != Mixed::kOfLines) {}
 
-  void take(std::uint8_t byte);
+  bool take(std::uint8_t byte);                      // false: it is none of this reply, which is complete
   bool complete() const { return reply_.complete; }  // the framing itself says that nothing more comes
 
   // Nothing has come for a while: true when the answer is complete with that. I3 = 0 and 1 have no other end, nor have
@@ -59,6 +61,7 @@ class ReplyParser {
  private:
   enum class Due { kNothing, kLine, kCommand, kError };  // whose checksum may come next
 
+  bool may_be_of_error(std::uint8_t byte) const;
   bool take_checksum(std::uint8_t byte);
   void take_text(char c);
   void end_line();
@@ -66,7 +69,7 @@ class ReplyParser {
 
   Framing framing_;
   std::optional<std::uint8_t> command_;
-  bool mixed_, sums_, maybe_checksums_ = false;
+  bool mixed_, sums_, error_sums_, maybe_checksums_ = false;
   Reply reply_;
   std::string line_;
   std::uint8_t sum_ = 0;  // of the line that is being received, or of the last one

@@ -198,11 +198,12 @@ std::string RandomLines::buffer() {
 
 std::string RandomLines::fixed_buffer() {
   const std::string motion = "PROG" + integer(12), plc = "PLC" + integer(33), part = "," + integer(300) + ",80";
-  return pick({"OPEN " + motion + " CLEAR", "OPEN " + motion, "OPEN " + plc + " CLEAR", "OPEN " + plc,
-               std::string("OPEN FORWARD"), std::string("OPEN INVERSE CLEAR"), "LIST " + motion,
-               "LIST " + motion + part, "LIST " + plc + part, std::string("LIST ROT"), std::string("LIST PC,4"),
-               std::string("LIST FORWARD"), std::string("LIST GATHER,0,9"), "ENABLE " + plc, "DISABLE " + plc,
-               std::string("CLOSE CLEAR")});
+  const std::string background_plc = "PLC" + std::to_string(1 + below(32));
+  return pick({"OPEN " + motion + " CLEAR", "OPEN " + motion, "OPEN " + background_plc + " CLEAR",
+               "OPEN " + background_plc, std::string("OPEN FORWARD"), std::string("OPEN INVERSE CLEAR"),
+               "LIST " + motion, "LIST " + motion + part, "LIST " + plc + part, std::string("LIST ROT"),
+               std::string("LIST PC,4"), std::string("LIST FORWARD"), std::string("LIST GATHER,0,9"), "ENABLE " + plc,
+               "DISABLE " + plc, std::string("CLOSE CLEAR")});
 }
 
 std::string RandomLines::run_control() {
@@ -265,9 +266,21 @@ std::string RandomLines::program_statement() {
   }
 }
 
+// Of lines that are quick: each real-time interrupt waits for its end.
+void RandomLines::plc0() {
+  program_.push_back("CLOSE");
+  program_.push_back("OPEN PLC 0 CLEAR");
+  for (unsigned i = 0, lines = 3 + below(20); i < lines; ++i)
+    program_.push_back(pick({"P" + integer(50) + "=P" + integer(50) + "+1", "IF(P" + integer(50) + ">9)P1=0",
+                             "M" + integer(50) + "=" + constant(), "CMD\"&1R\"", "SEND\"A\"",
+                             pick({"ENA", "DIS", "PAUSE", "RESUME"}) + "PLC" + std::to_string(1 + below(31))}));
+  program_.push_back("CLOSE");
+  program_.push_back("I5=" + integer(4) + " ENA PLC 0");
+}
+
 // Blocks are closed and loops end, nearly always.
 void RandomLines::whole_program() {
-  const std::string number = integer(12), plc = integer(32);
+  const std::string number = integer(12), plc = std::to_string(1 + below(31));
   const unsigned kind = below(4);
   program_.push_back("CLOSE");
   if (!one_in(4))
@@ -305,8 +318,14 @@ void RandomLines::whole_program() {
 }
 
 std::string RandomLines::next() {
-  if (program_.empty() && one_in(40)) whole_program();
-  if (!program_.empty() && !one_in(30)) {
+  if (program_.empty()) {
+    alone_ = one_in(400);
+    if (alone_)
+      plc0();
+    else if (one_in(40))
+      whole_program();
+  }
+  if (!program_.empty() && (alone_ || !one_in(30))) {
     std::string line = program_.front();
     program_.pop_front();
     return line.substr(0, kLineLimit);

@@ -1,7 +1,7 @@
 // Host lines by chance, for tests that nothing a host sends stops the controller: nine tenths from the grammar, one
 // tenth garbage. Left out is what stops the real one too: clock, watchdog and wait-state settings (I19, I37, I40, I52,
-// the clock variables of an IC) and writes to device registers, directly or by an M-variable. Programs are entered
-// whole, run and stopped, PLCs enabled, settings saved and reset.
+// the clock variables of an IC), writes to device registers, directly or by an M-variable, and a PLC 0 that takes long.
+// Programs are entered whole, run and stopped, PLCs enabled, settings saved and reset.
 #pragma once
 
 #include <cstdint>
@@ -36,6 +36,7 @@ class RandomLines {
   std::string buffer();
   std::string fixed_buffer();
   std::string program_statement();
+  void plc0();
   void whole_program();
   std::string run_control();
   std::string grammar();
@@ -43,6 +44,7 @@ class RandomLines {
 
   std::mt19937 random_;
   std::deque<std::string> program_;  // lines of a whole program that are still to come
+  bool alone_ = false;               // nothing comes between them
 };
 
 }  // namespace brick

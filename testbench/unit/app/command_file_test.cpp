@@ -177,6 +177,21 @@ TEST_F(Includes, AreBounded) {
   EXPECT_EQ(error_of("#include \"f8.pmc\"", job), "no error");
 }
 
+// Lines that remain are counted, in each file as often as it is included: 999 times 1001 lines are 999,999.
+TEST_F(Includes, BringAMillionLinesAtMost) {
+  std::string many, includes = "\n";
+  for (int i = 0; i < 1001; ++i) many += "I1\n;\n";
+  for (int i = 0; i < 999; ++i) includes += "#include \"many.pmc\"\n";
+  write("many.pmc", many);
+  std::istringstream most(includes + "@expect 1\n");
+  EXPECT_EQ(read_command_file(most, job).size(), 1'000'000u);
+  EXPECT_EQ(error_of("I1\nI1" + includes, job),
+            folder +
+                "many.pmc:2001: `I1` is one line too many; expected at most 1000000, those of included files each "
+                "time (included at " +
+                job + ":1001)");
+}
+
 // `..` behind a link is the folder above the one that the link leads to; a file is itself under every name.
 TEST_F(Includes, FollowSymbolicLinks) {
   namespace fs = std::filesystem;

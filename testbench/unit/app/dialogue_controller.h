@@ -22,18 +22,24 @@ class DialogueController {
   int restarts = 0;
   std::function<void()> before_line;  // what a program does meanwhile
 
+  // A line that a program sends (firmware:6.2: without acknowledge).
+  std::string data(const std::string& text) const {
+    const std::string line = (i3 % 2 == 1 ? "\n" : "") + text + "\r";
+    return i4 % 2 == 1 ? line + checksum(line) : line;
+  }
+
  private:
   Framing now() const { return {i3, i4}; }
 
-  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 to P4 (25, 50, 3, 22221), $$$; UUU is an error.
+  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 to P4 (25, 50, 3, 22221), P6, $$$; UUU is an error.
   std::string answer(const std::string& line) {
     if (before_line) before_line();
     const Framing before = now();
     std::string bytes;
     std::istringstream in(line);
     for (std::string word; in >> word;) {
-      for (const auto& [name, text] :
-           {std::pair("P1", "25"), std::pair("P2", "50"), std::pair("P3", "3"), std::pair("P4", "22221")})
+      for (const auto& [name, text] : {std::pair("P1", "25"), std::pair("P2", "50"), std::pair("P3", "3"),
+                                       std::pair("P4", "22221"), std::pair("P6", "123456789012")})
         if (word == name) bytes += data(text);
       if (word == "I3") bytes += data(std::to_string(i3));
       if (word.size() == 4 && word[0] == 'I' && word[2] == '=')
@@ -50,11 +56,6 @@ class DialogueController {
     Framing style = acknowledges_by_the_old ? before : now();
     style.i4 = i4;
     return bytes + framed(style, line, {});
-  }
-
-  std::string data(const std::string& text) const {
-    const std::string line = (i3 % 2 == 1 ? "\n" : "") + text + "\r";
-    return i4 % 2 == 1 ? line + checksum(line) : line;
   }
 
   std::string error() const {

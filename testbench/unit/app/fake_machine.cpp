@@ -7,7 +7,7 @@ namespace brick {
 
 struct Machine::Impl {
   FakeMachine fake;
-  Tick now = 0;
+  Tick now = 0, next_text = 0;
   BoardInputs pins, applied;
   BoardOutputs outputs;
   Signals signals;
@@ -60,7 +60,11 @@ void Machine::apply(TimeFs) {
   if (f.records) f.changes.push_back({m.now + 1, m.applied, m.pins});
   for (; !f.later.empty() && f.later.front().first <= m.now; f.later.pop_front())
     f.to_host.insert(f.to_host.end(), f.later.front().second.begin(), f.later.front().second.end());
-  if (f.never_quiet && f.to_host.empty()) f.to_host.push_back('X');
+  if (f.sends && f.to_host.empty() && m.now >= m.next_text) {
+    const std::string text = f.sends();
+    f.to_host.insert(f.to_host.end(), text.begin(), text.end());
+    m.next_text = m.now + f.sends_every;
+  }
   const std::uint32_t offset = m.pins.isa_sa - 0x210, word = m.pins.isa_sa - 0xD0000;
   if (m.applied.isa_ior_n && !m.pins.isa_ior_n) {
     std::uint8_t value = f.io[offset];
@@ -75,7 +79,8 @@ void Machine::apply(TimeFs) {
   if (!m.applied.isa_iow_n && m.pins.isa_iow_n) {
     const auto byte = static_cast<std::uint8_t>(m.pins.isa_sd);
     f.io[offset] = byte;
-    const auto say = [&](const std::string& answer, Tick after = 0) {
+    const auto say = [&](std::string answer, Tick after = 0) {
+      if (f.sends) answer += f.sends();
       if (after == 0 && f.later.empty())
         f.to_host.insert(f.to_host.end(), answer.begin(), answer.end());
       else

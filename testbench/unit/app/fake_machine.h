@@ -23,8 +23,9 @@ struct FakeMachine {
   std::string line;                                           // characters of the host up to CR
   std::function<std::string(const std::string&)> controller;  // line without CR -> bytes of the answer
   std::function<std::string(char)> control;                   // other control characters -> bytes of the answer
-  Tick thinking = 0;         // from a line to its answer; what is asked meanwhile is answered behind it
-  bool never_quiet = false;  // where nothing else is to be said, X
+  Tick thinking = 0;                   // from a line to its answer; what is asked meanwhile is answered behind it
+  std::function<std::string()> sends;  // what a program does, for ever: behind answers and where nothing else is said
+  Tick sends_every = 0;
   std::deque<std::pair<Tick, std::string>> later;  // answers that are being thought of
   std::map<std::uint32_t, std::uint8_t> io;        // other I/O bytes by offset, written and read back
   std::map<std::uint32_t, std::uint16_t> memory;

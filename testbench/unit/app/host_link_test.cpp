@@ -118,18 +118,38 @@ TEST(ReplyParser, WrongChecksumsAreTold) {
   EXPECT_EQ(lf.reply().lines, Lines{});
 }
 
-// No source says whether an error has a checksum, or of what.
+// No source says whether an error has a checksum, or of what: ERR003 CR is $45 + 2 * $52 + 2 * $30 + $33 + $0D = $189,
+// with BELL $190. A byte that cannot be one belongs to what comes next.
 TEST(ReplyParser, ErrorAmongChecksumsEndsWithOrWithoutOne) {
-  auto without = parsed({2, 1},
-                        "\x07"
-                        "ERR003\r");
+  const auto error = [] {
+    return parsed({2, 1},
+                  "\x07"
+                  "ERR003\r",
+                  'u');
+  };
+  auto without = error(), text = error();
   EXPECT_FALSE(without.complete());
   EXPECT_TRUE(without.quiet());
   EXPECT_EQ(without.reply().lines, (Lines{"ERR003"}));
-  EXPECT_TRUE(parsed({2, 1},
-                     "\x07"
-                     "ERR003\rx")
-                  .complete());
+  for (const int sum : {0x89, 0x90, +'u'}) {  // the last: of the command
+    auto with = error();
+    EXPECT_TRUE(with.take(static_cast<std::uint8_t>(sum)));
+    EXPECT_TRUE(with.complete());
+  }
+  EXPECT_FALSE(text.take('T'));
+  EXPECT_TRUE(text.complete());
+  EXPECT_EQ(text.reply().raw.back(), '\r');
+}
+
+// 25 CR is $74, LF 25 CR $7E; X CR is $65, LF X CR $6F.
+TEST(ReplyParser, TextsOfProgramsBehindAReplyHaveChecksumsOfTheirOwn) {
+  auto bell = parsed({0, 1}, "25\r\x74\x07X\r\x65");
+  EXPECT_TRUE(bell.quiet());
+  EXPECT_EQ(bell.reply().lines, (Lines{"25", "X", "ERR"})) << "no number came";
+  EXPECT_EQ(bell.reply().bad_checksum, "");
+  auto lf = parsed({1, 1}, "\n25\r\x7E\nu\nX\r\x6F", 'u');
+  EXPECT_EQ(lf.reply().lines, (Lines{"25", "X"}));
+  EXPECT_EQ(lf.reply().bad_checksum, "");
 }
 
 TEST(ReplyParser, TaggedLinesAreUnsolicited) {
@@ -174,6 +194,18 @@ TEST_F(HostLinkTest, TextBetweenRepliesIsUnsolicited) {
   link.poll();
   EXPECT_EQ(link.take_unsolicited(), (Lines{"ALARM"}));
   EXPECT_TRUE(link.take_unsolicited().empty());
+}
+
+// A text without CR (I62 = 1) is none of the reply, whatever comes next.
+TEST_F(HostLinkTest, TextWithoutEndIsNoneOfTheReply) {
+  fake.controller = [](const std::string&) { return std::string("25\r\x06"); };
+  for (const char c : std::string("ALARM")) fake.to_host.push_back(static_cast<std::uint8_t>(c));
+  link.poll();
+  bus.wait(ns_to_ticks(2'000'000));
+  EXPECT_EQ(link.command("P1").lines, (Lines{"25"}));
+  for (const char c : std::string(" 7\r")) fake.to_host.push_back(static_cast<std::uint8_t>(c));
+  link.poll();
+  EXPECT_EQ(link.take_unsolicited(), (Lines{"ALARM 7"}));
 }
 
 }  // namespace

@@ -67,8 +67,47 @@ def dialogue():
     r = play(lines)
     check(r.returncode == 0 and r.stdout.split() == expected, f"{r.stdout.split()}, expected {expected}: {r.stderr}")
     check(r.stderr.count("I16 UUU") == 10 and "stdin:4: `I16 UUU`: ERR003: unknown command" in r.stderr, r.stderr)
+    # What is no command restarts nothing: I6 and I16 stay as they were set.
+    for line in ("PASSWORD=x$$$", 'PASSWORD="$$$***', "P1=1 ; $$$", 'OPEN PLC5 CLEAR SEND"$$$" CLOSE'):
+        r = play(["I16=7 I6=0", line, "UUU", "@expect ERR", "I16", "@expect 7"])
+        check(r.returncode == 0 and r.stdout.split() == ["ERR", "7"], f"{line}: {r.stdout}{r.stderr}")
     r = play(["UUU", "@expect ERR003", "UUU $$$", "I16", "@expect 5"])
     check(r.returncode == 0 and r.stderr.count("\n") == 2 and "stdin:3: " in r.stderr, "expected errors are not told")
+
+
+TEXT = "A text of a program"
+
+
+def sending(text, *before):
+    return ["I5=2", "OPEN PLC3 CLEAR", *before, f'SENDP"{text}"', "CLOSE", "ENA PLC3", "@wait 5ms"]
+
+
+def sends_for_ever():
+    """A PLC that SENDs in every scan: no reply is lost, no text torn, in any setting of I3, I4 and I6."""
+    def judge(lines, expected, text=TEXT):
+        r = play(lines)
+        data = [line for line in r.stdout.splitlines() if line != text]
+        check(r.returncode == 0 and data == expected, f"{data}, expected {expected}: {r.stderr}")
+        check(r.stdout.count(text) > 30, "the PLC sends nothing")
+
+    lines, expected = sending(TEXT), []
+    for i3, i4, i6 in ((0, 0, 1), (1, 0, 0), (2, 1, 3), (3, 1, 1), (0, 1, 2), (1, 1, 3), (3, 0, 0), (2, 0, 1)):
+        lines += [f"I16 I3={i3} I4={i4} I6={i6}", "I16 I17", "P1=1", "I16 UUU", "I17"]
+        expected += ["5", "5", "10", "5", "ERR003" if i6 % 2 else "ERR", "10"]
+    judge(lines + ["^A", "^G", "I16\x07"], [*expected, "000000000800", "000000000800", "5"])
+    # The program changes I3; it is there at once behind each start; its text begins like a checksum: U of 000000000800.
+    judge([*sending(TEXT, "I3=0", "I3=2"), *["I16", "I17"] * 10], ["5", "10"] * 10)
+    judge([*sending(TEXT), "SAVE", "I16", "$$$", "I16", "@reset", "I17", "@power", "I16", "I16=7 $$$***", "I16"],
+          ["5", "5", "10", "5", "5"])
+    judge([*sending("U text"), "I3=0", "I4=1", "I4=0", "I16", "I3=1", "I17"], ["5", "10"], "U text")
+    # Texts in the form of the answer: an acknowledge and a tag tell them from it, else nothing does.
+    digits = "12345678ABCD"
+    judge([*sending(digits), "I16 I3=3", "I16", "I64=1", "I16 I3=1", "I16 I3=0", "I17"], ["5", "5", "5", "5", "10"],
+          digits)
+    r = play([*sending(digits), "I16 I3=0", "I17"])
+    check(r.returncode == 1 and r.stdout.splitlines().count("5") == 1, f"exit {r.returncode}: {r.stderr}")
+    check("stdin:7: `I16 I3=0`: I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits" in r.stderr,
+          r.stderr)
 
 
 def bytes_of_all_kinds():
@@ -126,7 +165,9 @@ I16
         check("1 of 9 lines refused: 1 x ERR003" in r.stderr, r.stderr)
         found = json.loads(pathlib.Path(f"{folder}/x.json").read_text())["exchanges"]
         check(found[-1] == {"place": f"{job}:16", "line": "I16", "reply": ["5"], "error": False}, str(found))
-        for bad, what in (("#include \"none.pmc\"", f"{job}:1: `{folder}/none.pmc` cannot be read; expected"),
+        (pathlib.Path(folder) / "many.pmc").write_text("I16\n" * 2000)
+        for bad, what in (("#include \"many.pmc\"\n" * 501, f"{folder}/many.pmc:1: `I16` is one line too many"),
+                          ("#include \"none.pmc\"", f"{job}:1: `{folder}/none.pmc` cannot be read; expected"),
                           ("#define L " + "X" * 300 + "\nL", f"{job}:2: `L` expands to 300 characters; expected"),
                           ("#include \"job.pmc\"", "expected no file that includes itself"),
                           ("#ifdef A", f"{job}:1: a condition without its end; expected #endif"),

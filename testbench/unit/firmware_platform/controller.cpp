@@ -26,6 +26,7 @@ Controller::Controller(unsigned fitted, bool client_settings) {
 }
 
 void Controller::start() {
+  hal_interrupts_off();  // as a reset does
   host_port_initialize();
   line_input_initialize();
   ::start(START_SAVED);

@@ -1,13 +1,17 @@
 // Golden exchanges of firmware:13 and the protocol rules of firmware:6, byte for byte.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
 #include "testbench/unit/firmware_platform/framing.h"
 
+#define error_t firmware_error_t  // the C library has a type of this name
 extern "C" {
 #include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
+#include "firmware/run/run_control.h"
 }
 
 namespace brick {
@@ -255,6 +259,81 @@ TEST(HostExchange, ControlAStopsCoordinateSystemsBeyondI68Too) {
   c.line("I68=3");
   EXPECT_EQ(c.send("\x01"), "");
   EXPECT_EQ(c.line("??").substr(5, 1), "0");
+}
+
+// Characters as the port's interrupt takes them, while the background is at something else.
+void put(const std::string& characters) {
+  for (const char c : characters) fake_host_input(static_cast<std::uint8_t>(c));
+  while (fake_host_input_waits() && fake_task_take(FAKE_HOST)) {}
+}
+
+// 256 lines are 2048 characters: a queue is full (host-bus:8.7/2).
+std::string full_queue() {
+  std::string lines;
+  for (int i = 0; i < 256; ++i) lines += "P1=P1+1\r";
+  return lines;
+}
+
+// Two characters wait in the port when it comes: three servo interrupts are 1.3 ms, of which the first takes both.
+TEST(HostExchange, FullQueueLetsControlAActSoon) {
+  Controller c;
+  ASSERT_EQ(c.line("&1 DEF ROT 20"), "");
+  ASSERT_EQ(c.line("B0 R"), "");
+  put(full_queue() + "P2");
+  EXPECT_TRUE(fake_host_input_waits());
+  c.servo(1);
+  put("");
+  EXPECT_FALSE(fake_host_input_waits()) << "the port is free again";
+  fake_host_input(0x01);
+  c.servo(1);
+  put("");
+  EXPECT_TRUE(fake_task_take(FAKE_REAL_TIME)) << "it was asked for";
+  EXPECT_FALSE(run_is_running(0)) << "before the background has done anything";
+  put("=P2+1\r");
+  while (fake_host_input_waits()) {
+    c.send("");
+    put("");
+  }
+  c.send("");
+  EXPECT_EQ(c.line("P1"), "256") << "nothing is lost";
+  EXPECT_EQ(c.line("P2"), "1");
+}
+
+TEST(HostExchange, FullQueueTakesTwoCharactersAServoInterruptInOrder) {
+  Controller c;
+  std::string more;
+  for (int i = 0; i < 400; ++i) more += "P2=P2*3%1000003+" + std::to_string(i) + "\r";
+  put(full_queue() + more);
+  std::uint32_t taken = host_port_received_count - host_port_taken_count;
+  EXPECT_EQ(taken, 2048u);
+  for (; taken + 2 <= 8192; taken += 2) {
+    ASSERT_EQ(host_port_received_count - host_port_taken_count, taken);
+    c.servo(1);
+    put("");
+  }
+  c.servo(3);
+  put("");
+  EXPECT_EQ(host_port_received_count - host_port_taken_count, 8192u) << "the reserve is full, too";
+  while (fake_host_input_waits() || host_port_waiting()) {
+    c.send("");
+    put("");
+  }
+  double expected = 0.0;
+  for (int i = 0; i < 400; ++i) expected = std::fmod(expected * 3.0, 1000003.0) + i;
+  EXPECT_EQ(c.line("P1"), "256");
+  EXPECT_EQ(std::stod(c.line("P2")), expected);
+}
+
+TEST(HostExchange, FullQueueIsEmptiedByControlX) {
+  Controller c;
+  put(full_queue() + "\x18");
+  c.servo(1);
+  put("");
+  EXPECT_EQ(c.send(""), "\x18");
+  put("P2=3\r");
+  EXPECT_EQ(c.send(""), "\x06");
+  EXPECT_EQ(c.line("P1"), "0");
+  EXPECT_EQ(c.line("P2"), "3");
 }
 
 TEST(HostExchange, LineFeedsAndCommentsAreIgnored) {

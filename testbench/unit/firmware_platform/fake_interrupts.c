@@ -6,7 +6,9 @@
 
 #include "firmware/hal/hal.h"
 
-static bool on;
+enum { SOON = 16 };
+
+static bool on, soon;
 static uint32_t random_state, average, left; /* left: accesses until the next */
 static struct fake_interrupt_counts counts;
 static void (*on_take)(enum fake_task task);
@@ -86,7 +88,9 @@ static void access(uintptr_t address, size_t size, bool store) {
   if (hal_real_time_pending() && fake_task_take(FAKE_REAL_TIME)) ++counts.taken[FAKE_REAL_TIME];
   if (--left != 0) return;
   left = 1 + chance(2 * average);
-  const enum fake_task task = some_task();
+  if (soon) hal_request_real_time();
+  const enum fake_task task = soon ? FAKE_REAL_TIME : some_task();
+  soon = false;
   if (size != 8 || !is_static(address) || chance(2) == 0) {
     (void)take(task);
     return;
@@ -107,6 +111,7 @@ void fake_interrupts_begin(uint32_t seed, uint32_t gap) {
   average = gap;
   left = 1 + chance(2 * average);
   torn.halves = NULL;
+  soon = false;
   memset(&counts, 0, sizeof counts);
   fake_hal_slices_leave(true);
   on = true;
@@ -116,6 +121,12 @@ void fake_interrupts_end(void) {
   fake_interrupts_mend();
   on = false;
   fake_hal_slices_leave(false);
+}
+
+void fake_interrupts_soon(void) {
+  if (!on) return;
+  left = 1 + chance(SOON);
+  soon = true;
 }
 
 bool fake_interrupts_are_on(void) { return on; }

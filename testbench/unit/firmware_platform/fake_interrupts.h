@@ -18,6 +18,7 @@ extern "C" {
 /* From now on: an interrupt every `gap` accesses, on average. */
 void fake_interrupts_begin(uint32_t seed, uint32_t gap);
 void fake_interrupts_end(void);
+void fake_interrupts_soon(void); /* a real-time interrupt within some accesses */
 bool fake_interrupts_are_on(void);
 
 struct fake_interrupt_counts {

@@ -33,6 +33,7 @@ static uint32_t hold_off(enum fake_task highest) {
   const enum fake_task held = mask;
   if (held == FAKE_BACKGROUND) masked_since = (uint32_t)hal_long_cycles();
   if (highest > mask) mask = highest;
+  if (ignored) fake_interrupts_soon();
   return held;
 }
 
@@ -86,16 +87,17 @@ const char* fake_host_output(uint32_t* length) {
 
 static bool host_interrupts(void) { return (receives && fake_host_input_waits()) || transmits; }
 
-/* Reading HORX takes the character: known from the words, because nothing else is less than a character. */
+/* Reading HORX takes the character: known from what becomes of it. What is sent is known from the word, because nothing
+ * else is less than a character. */
 static void host_port(void) {
   enum { NOTHING = 1 << 23 };
   const bool had = fake_host_input_waits();
   *hal_x(HI08_X_HSR) = (had ? HI08_HSR_HRDF_MASK : 0u) | HI08_HSR_HTDE_MASK;
   *hal_x(HI08_X_HORX) = input[input_first % INPUT_SIZE];
   *hal_x(HI08_X_HOTX) = NOTHING;
-  const bool takes = had && receives;
+  const uint32_t received = host_port_received_count + host_port_flushes();
   host_port_interrupt();
-  if (takes && receives) ++input_first; /* else the queue was full, and the character stays */
+  if (host_port_received_count + host_port_flushes() != received) ++input_first; /* else the queue is full */
   const uint32_t sent = *hal_x(HI08_X_HOTX);
   if (sent != NOTHING && output_length < sizeof output) output[output_length++] = (char)sent;
 }

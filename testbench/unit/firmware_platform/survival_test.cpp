@@ -90,7 +90,7 @@ TEST(Survival, RotaryWordsThatAHostWroteOver) {
     for (int i = 0; i < 8; ++i) EXPECT_EQ(c.line("P1=P1+0.1*2 X(P2+0.3)"), "");
     EXPECT_EQ(c.line("CLOSE"), "");
     for (unsigned word = 0; word < 60; word += 3)
-      EXPECT_EQ(c.line(format("WX$%X", 0xA000 + word) + format(",$%X", mark)), "");
+      EXPECT_EQ(c.line(format("WX$%X", 0x10800 - 100 + word) + format(",$%X", mark)), "");
     for (int turn = 0; turn < 100; ++turn) {
       EXPECT_EQ(c.line("R"), "");
       c.servo(30);

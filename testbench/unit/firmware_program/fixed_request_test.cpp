@@ -107,8 +107,11 @@ TEST_F(FixedRequest, WithoutRoomItNeverRises) {
   ASSERT_EQ(host("OPEN PROG 1"), "");
   EXPECT_FALSE(breq());
   EXPECT_TRUE(full());
-  EXPECT_EQ(host("X1"), "ERR003");
+  EXPECT_EQ(host("X1"), "");
   EXPECT_FALSE(breq());
+  EXPECT_EQ(host("X1Y2Z3A4B5C6U7V8W9X10"), "ERR006") << "one word more than are open";
+  EXPECT_FALSE(breq());
+  EXPECT_TRUE(full());
 }
 
 // host-bus:5.7: an open fixed buffer owns the pin, then it shows the rotary one again.

@@ -89,11 +89,12 @@ TEST_F(Interrupts, WideValueReadWithoutAMaskIsReadHalf) {
 constexpr unsigned kLines = 400, kTries = 3000;
 
 // Line n of coordinate system s: P(1000 s + P(s)) = n, P(s) = P(s) + 1. Empty when each was executed once and in order.
-std::string stream(std::uint32_t seed) {
+// An interrupt every `gap` accesses.
+std::string stream(std::uint32_t seed, std::uint32_t gap) {
   for (unsigned cs = 2; cs >= 1; --cs)
     if (!host("&" + std::to_string(cs) + "DEF ROT 60 B0").empty()) return "no buffer";
   if (!host("OPEN ROT &2R &1R").empty()) return "does not run";
-  fake_interrupts_begin(seed, 20 + seed % 7 * 40);
+  fake_interrupts_begin(seed, gap);
   for (unsigned n = 0; n < kLines; ++n) {
     const std::string cs = std::to_string(1 + n % 2), next = "P" + cs;
     const std::string line = "P(" + cs + "000+" + next + ")=" + std::to_string(n) + " " + next + "=" + next + "+1";
@@ -122,23 +123,51 @@ TEST_F(Interrupts, StreamedLinesAreExecutedOnceAndInOrder) {
   BRICK_COVERS("BREQ-1");
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     platform::power_up();
-    EXPECT_EQ(stream(seed), "") << "seed " << seed;
+    EXPECT_EQ(stream(seed, 20 + seed % 7 * 40), "") << "seed " << seed;
     const fake_interrupt_counts counts = fake_interrupts_counts();
     EXPECT_GT(counts.taken[FAKE_REAL_TIME], 100u);
     EXPECT_GT(counts.held_off, 20u) << "nothing came while it was masked";
   }
 }
 
-// The same with critical sections that hold nobody off.
+// The same with critical sections that hold nobody off: an interrupt comes soon after each begins.
 TEST_F(Interrupts, StreamWithoutMasksLosesLines) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     platform::power_up();
     fake_tasks_ignore_masks(true);
-    const std::string found = stream(seed);
+    const std::string found = stream(seed, 300);
     fake_interrupts_end();
     if (!found.empty()) return;
   }
   FAIL() << "nothing was found";
+}
+
+// A pointer given while an abort is still to be settled, and the real-time task comes in the middle of it: what is left
+// of the aborted line is skipped in its own program. In the new one that would be its first line.
+TEST_F(Interrupts, APointerGivenBehindAnAbortKeepsItsFirstLine) {
+  constexpr std::uint32_t kSeeds = 200;
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR"), "");
+  for (int i = 0; i < 6; ++i)  // the queue holds five of these texts
+    ASSERT_EQ(host("P2=1SEND\"" + std::string(200, 'x') + "\""), "");
+  ASSERT_EQ(host("CLOSE OPEN PROG 3 CLEAR P3=P3+1 CLOSE"), "");
+  unsigned came = 0;
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    ASSERT_EQ(host("B2R"), "");
+    platform::servo_ticks(9);
+    ASSERT_TRUE(run_is_running(0)) << "it stands in the middle of its last line";
+    fake_interrupts_begin(seed, 4);
+    run_abort(0);
+    ASSERT_EQ(run_point(0, 3.0), ERR_NONE);
+    came += fake_interrupts_counts().taken[FAKE_REAL_TIME];
+    fake_interrupts_end();
+    ASSERT_EQ(host("P3=0 R"), "");
+    platform::servo_ticks(12);
+    ASSERT_FALSE(run_is_running(0));
+    ASSERT_EQ(p_variable_read(3), 1.0) << "seed " << seed;
+    platform::background(8);
+    (void)platform::sent();
+  }
+  EXPECT_GT(came, kSeeds);
 }
 
 }  // namespace

@@ -48,21 +48,71 @@ TEST_F(Listing, NumbersInARowAreARange) {
   EXPECT_EQ(listed("ENA PLC 0..31"), "ENAPLC0..31");
 }
 
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  while (times-- != 0) all += text;
+  return all;
+}
+
+// A host line has 255 characters (firmware:6.1). What is longer in long form is listed in short form, and what is
+// longer in that too is not taken. Each text, and how it is listed in both forms with another of them behind it.
+TEST_F(Listing, ALineIsListedSoThatItGoesBack) {
+  const struct {
+    std::string text, brief, full;
+  } cases[] = {{"RET", "RET ", "RETURN "},     {"LIN", "LIN ", "LINEAR "},
+               {"DWE1", "DWE1", "DWELL1"},     {"X.1", "X0.1", "X0.1"},
+               {"X$1", "X$1 ", "X$1 "},        {"CMD\"A\"", "CMD\"A\"", "COMMAND\"A\""},
+               {"SEND^A", "SEND^A", "SEND^A"}, {"X(--5)", "X(-(-5))", "X(-(-5))"}};
+  for (const auto& c : cases) {
+    const std::size_t blank = c.brief.back() == ' ' ? 1 : 0;  // none at the end of a line
+    for (std::size_t times = 1; times * c.text.size() <= 255; ++times) {
+      const std::string line = repeated(c.text, times);
+      std::string brief = repeated(c.brief, times), full = repeated(c.full, times);
+      brief.resize(brief.size() - blank);
+      full.resize(full.size() - blank);
+      ASSERT_EQ(host("I9=0 OPEN PROG 1 CLEAR"), "");
+      ASSERT_EQ(host(line), brief.size() <= 255 ? "" : "ERR003") << line;
+      ASSERT_EQ(host("CLOSE"), "");
+      ASSERT_EQ(host("LIST PROG 1"), brief.size() <= 255 ? brief : "ERR003") << line;
+      ASSERT_EQ(host("I9=1 LIST PROG 1"), brief.size() > 255 ? "ERR003" : full.size() <= 255 ? full : brief) << line;
+    }
+  }
+}
+
+TEST_F(Listing, EachLineOfAPlcIsMeasuredAlone) {
+  const std::string text = "CMD\"" + std::string(250, 'x') + "\"", many = repeated("P1=.1", 51);
+  ASSERT_EQ(text.size(), 255u);
+  ASSERT_EQ(many.size(), 255u);
+  enter("PLC 1", {text, many});
+  Lines expected(52, "P1=0.1");
+  expected[0] = text;
+  EXPECT_EQ(host_lines("LIST PLC 1"), expected);
+  ASSERT_EQ(host("I9=1"), "");
+  EXPECT_EQ(host_lines("LIST PLC 1"), expected) << "COMMAND would make 259 characters";
+}
+
+// A host that streams lines does not download their listing.
+TEST_F(Listing, RotaryBuffersTakeLinesOfAnyListing) {
+  ASSERT_EQ(host("DEF ROT 200 OPEN ROT"), "");
+  ASSERT_EQ(host(repeated("LIN", 85)), "");
+  EXPECT_EQ(host("LIST").size(), 4u * 85u - 1u);
+}
+
 // Clients take 1,400 characters at a time (firmware:4.8): lines of any length, of what grows most and what does not.
 TEST_F(Listing, APartEndsBefore1400Characters) {
   std::size_t longest = 0;
   for (const std::string text : {"RET", "LIN", "HM1..32", "P1=.1 ", "X1"})
     for (std::size_t size = text.size(); size <= 255; size += 17) {
-      std::string line;
-      while (line.size() + text.size() <= size) line += text;
-      enter("PROG 1", Lines(150, line));
+      const std::string line = repeated(text, size * 3 / 4 / text.size());
+      if (line.empty()) continue;
+      enter("PROG 1", Lines(250, line));
       ASSERT_EQ(host("I9=1"), "");
       const std::string part = host("LIST PROG 1,0");
       longest = std::max(longest, part.size());
-      EXPECT_LT(part.size(), 1400u) << line;
-      EXPECT_GT(part.size(), 700u) << line;
+      EXPECT_LT(part.size(), 1350u) << line;
+      EXPECT_GT(part.size(), 1050u) << line;
     }
-  EXPECT_GT(longest, 1000u);
+  EXPECT_GT(longest, 1250u);
 }
 
 TEST_F(Listing, ConstantsKeepTheirForm) {
@@ -145,7 +195,7 @@ TEST_F(Listing, TheOpenBufferAndTheRotaryOne) {
 TEST_F(Listing, GatherIsListedInLongWords) {
   EXPECT_EQ(host("LIST GATHER"), "ERR003");
   ASSERT_EQ(host("DEF GAT 3"), "");
-  ASSERT_EQ(host("WX$A001,$123456 WY$A001,$ABCDEF"), "");
+  ASSERT_EQ(host("WX$107FE,$123456 WY$107FE,$ABCDEF"), "");  // its three words end at $010800
   EXPECT_EQ(host_lines("LIST GAT,1,2"), (Lines{"123456ABCDEF", "000000000000"}));
 }
 

@@ -69,6 +69,27 @@ TEST_F(MotionProgram, LoopsOfOneLine) {
   EXPECT_EQ(p(5), 1.0);
 }
 
+// An ELSE belongs to the IF with which the line before it begins; a line that begins with WHILE has none, so the ELSE
+// is that of the block.
+TEST_F(MotionProgram, ElseBehindLoopsOfOneLine) {
+  run({"IF(P0=0) WHILE(P1<3) P1=P1+1", "ELSE P2=1", "IF(P0=1) WHILE(P3<3) P3=P3+1", "ELSE P4=1", "IF(P0=0)",
+       "WHILE(P5<3) P5=P5+1 IF(P5<3) P6=P6+1", "ELSE", "P7=1", "ENDIF", "P8=1"});
+  EXPECT_FALSE(error());
+  EXPECT_EQ(p(1), 3.0);
+  EXPECT_EQ(p(2), 0.0) << "the IF was true";
+  EXPECT_EQ(p(3), 0.0);
+  EXPECT_EQ(p(4), 1.0) << "it was not";
+  EXPECT_EQ(p(6), 2.0);
+  EXPECT_EQ(p(7), 0.0) << "the block's IF was true";
+  EXPECT_EQ(p(8), 1.0);
+  for (const char* condition : {"1", "0"}) {  // inside a block, the IF of the line still comes first
+    run({"P9=0 P10=0", "IF(P0=0)", std::string("IF(P0=") + condition + ") WHILE(P9<2) P9=P9+1", "ELSE P10=1", "ENDIF"});
+    EXPECT_FALSE(error());
+    EXPECT_EQ(p(9), condition[0] == '0' ? 2.0 : 0.0);
+    EXPECT_EQ(p(10), condition[0] == '0' ? 0.0 : 1.0);
+  }
+}
+
 TEST_F(MotionProgram, JumpsAndSubroutines) {
   run({"GOTO 30", "N10 P1=P1+1", "IF(P1<3) GOTO 10", "GOSUB 100 P2=P2+1", "CALL 7.025 P3=P3+1", "CALL 7", "GOTO(P9+50)",
        "N30 P9=2", "GOTO 10", "O52 P4=1 RETURN", "P5=1", "N100 P6=P6+1", "GOSUB 200", "RETURN", "N200 P7=P7+1 RET"});

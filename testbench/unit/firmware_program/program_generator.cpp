@@ -248,3 +248,24 @@ std::vector<std::string> ProgramGenerator::program(unsigned statements) {
 }
 
 std::string ProgramGenerator::statement() { return simple_line(); }
+
+// Listed with more characters than it has: no 0 before the point, a short name, no blank.
+std::string ProgramGenerator::growing() {
+  if (number(2) == 0) return std::string(1, "ABCUVWXYZ"[number(9)]) + "." + std::to_string(1 + number(99));
+  for (;;) {
+    const statement_row& row = statement_rows[number(statement_row_count)];
+    if ((row.where & where_ & 0xF) == 0 || row.argument != ARGUMENT_NONE) continue;
+    return row.brief != nullptr ? row.brief : row.name;
+  }
+}
+
+std::string ProgramGenerator::long_line() {
+  const unsigned grows = number(5);  // of four statements
+  std::string line;
+  called_ = false;
+  for (;;) {
+    const std::string next = number(4) < grows ? growing() : simple(line.empty()) + " ";
+    if (line.size() + next.size() > 255) return line;
+    line += next;
+  }
+}

@@ -14,6 +14,7 @@ class ProgramGenerator {
   ProgramGenerator(unsigned seed, std::uint32_t where) : random_(seed), where_(where) {}
   std::vector<std::string> program(unsigned statements);
   std::string statement();                                             // one line
+  std::string long_line();                                             // of as many statements as 255 characters hold
   const std::set<std::string>& produced() const { return produced_; }  // names of the table
 
  private:
@@ -28,6 +29,7 @@ class ProgramGenerator {
   std::string assignment();
   std::string called_letter();
   std::string simple(bool first);
+  std::string growing();
   std::string simple_line();
   void block(unsigned depth, std::vector<std::string>& lines);
   std::string in_brackets(const std::vector<std::string>& letters);

@@ -1,4 +1,6 @@
 // SEND, COMMAND and DISPLAY of programs (firmware:6.7, firmware:7.2), as bytes at the port.
+#include <algorithm>
+
 #include "testbench/unit/firmware_platform/fake_hal.h"
 #include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/platform.h"
@@ -12,6 +14,24 @@ using Lines = std::vector<std::string>;
 
 // A host that does not read: what it would have read waits in the port.
 void nobody_reads() {}
+
+// A host that reads `a_millisecond` characters in each, from the `reads_from`th on that a reply has waited, and sends a
+// line in the fifth.
+struct SlowHost {
+  unsigned reads_from, a_millisecond, waits, waits_of_line;
+  std::string got;
+};
+SlowHost slow_host{};
+
+void host_is_slow() {
+  std::uint8_t c = 0;
+  if (++slow_host.waits == 5)
+    for (const char* sent = "P5=7\r"; *sent != '\0'; ++sent) host_port_character(static_cast<std::uint8_t>(*sent));
+  if (p_variable_read(5) == 0.0 && slow_host.waits > 5) ++slow_host.waits_of_line;
+  if (slow_host.waits < slow_host.reads_from) return;
+  for (unsigned i = 0; i < slow_host.a_millisecond && host_port_next_output(&c); ++i)
+    slow_host.got += static_cast<char>(c);
+}
 
 class ProgramTexts : public FirmwareTest {
  protected:
@@ -226,6 +246,44 @@ TEST_F(ProgramTexts, HostThatDoesNotReadHoldsUpNobodyButWhoSends) {
   all += sent();
   EXPECT_EQ(all.size(), static_cast<std::size_t>(stuck) * 101) << "nothing is lost";
   fake_hal_on_wait(nullptr);
+}
+
+// 8192 values: the port holds 4096 characters of them, and the rest waits for half a second.
+TEST_F(ProgramTexts, HostThatDoesNotReadALongReplyHoldsUpNoProgram) {
+  fake_hal_on_wait(nobody_reads);
+  load(1, {"CMDP\"P0..8191\"", "DISABLE PLC 1"});
+  load(2, {"P2=P2+1"});
+  ASSERT_EQ(host("ENABLE PLC 1,2"), "");
+  background(6);
+  EXPECT_GE(p_variable_read(2), 500.0) << "a scan a millisecond at least";
+  EXPECT_EQ(sent().size(), 4096u);
+}
+
+// What it sends is not kept waiting by what a program has asked for, and its own reply is not lost.
+TEST_F(ProgramTexts, HostThatDoesNotReadALongReplyIsServedSoon) {
+  load(1, {"CMDP\"P0..8191\"", "DISABLE PLC 1"});
+  slow_host = {60, 4096, 0, 0, {}};
+  fake_hal_on_wait(host_is_slow);
+  ASSERT_EQ(host("P5=0 ENABLE PLC 1"), "");
+  background(6);
+  EXPECT_EQ(p_variable_read(5), 7.0);
+  EXPECT_LE(slow_host.waits_of_line, 21u);
+  slow_host.got += sent();
+  EXPECT_EQ(slow_host.got.size(), 4096u + 1u);
+  EXPECT_EQ(slow_host.got.back(), '\x06');
+}
+
+TEST_F(ProgramTexts, HostThatDoesNotReadFastLosesNothing) {
+  load(1, {"CMDP\"P0..8191\"", "DISABLE PLC 1"});
+  for (const unsigned reads_from : {1u, 18u}) {
+    slow_host = {reads_from, 100, 0, 0, {}};
+    fake_hal_on_wait(host_is_slow);
+    ASSERT_EQ(host("P5=0 ENABLE PLC 1"), "");
+    background(6);
+    slow_host.got += sent();
+    EXPECT_EQ(std::count(slow_host.got.begin(), slow_host.got.end(), '\r'), 8192);
+    EXPECT_EQ(slow_host.got.back(), '\x06') << "of its line, behind the reply";
+  }
 }
 
 TEST_F(ProgramTexts, ControlXDropsWhatWaits) {

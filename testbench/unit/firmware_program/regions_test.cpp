@@ -10,7 +10,7 @@ struct Region {
   const char* name;
   region_kind kind;
   std::uint32_t cs;  // or motor
-  int height;  // place in memory, counted from the bottom (firmware:4.2); written here independently of the firmware
+  int place;         // in memory, counted from the top (firmware:4.2); written here independently of the firmware
 };
 
 // COMP 32..1 | TCOMP 32..1 | BLCOMP 32..1 | TBUF | CCBUF 16..1 | LOOKAHEAD 16..1 | ROTARY 16..1 | GATHER
@@ -36,49 +36,65 @@ std::string name_of(const Region& r) { return std::string(r.name) + " &" + std::
 
 class Regions : public FirmwareTest {};
 
-TEST_F(Regions, DefineIsRefusedWhenSomethingLivesAbove) {
+TEST_F(Regions, DefineIsRefusedWhileSomethingLivesBelow) {
   BRICK_COVERS("BIN-2");
   for (const Region& there : all_regions())
     for (const Region& made : all_regions()) {
       regions_initialize();
       ASSERT_EQ(region_define(there.kind, there.cs, 40), ERR_NONE);
-      const error_t expected =
-          made.height > there.height ? ERR_NONE : ERR_DATA;  // the same region again is refused, too
+      const error_t expected = made.place > there.place ? ERR_NONE : ERR_DATA;  // the same region again is refused, too
       EXPECT_EQ(region_define(made.kind, made.cs, 30), expected)
           << name_of(made) << " while " << name_of(there) << " exists";
       EXPECT_EQ(region_open_words(), 26624u - 40u - (expected == ERR_NONE ? 30u : 0u));
     }
 }
 
-TEST_F(Regions, DeleteIsRefusedWhenSomethingLivesAbove) {
+TEST_F(Regions, DeleteIsRefusedWhileSomethingLivesBelow) {
   BRICK_COVERS("BIN-2");
-  for (const Region& lower : all_regions())
-    for (const Region& upper : all_regions()) {
-      if (upper.height <= lower.height) continue;
+  for (const Region& first : all_regions())
+    for (const Region& second : all_regions()) {
+      if (second.place <= first.place) continue;
       regions_initialize();
-      ASSERT_EQ(region_define(lower.kind, lower.cs, 40), ERR_NONE);
-      ASSERT_EQ(region_define(upper.kind, upper.cs, 30), ERR_NONE);
-      EXPECT_EQ(region_delete(lower.kind, lower.cs), ERR_DATA) << name_of(lower) << " below " << name_of(upper);
-      EXPECT_EQ(region_delete(upper.kind, upper.cs), ERR_NONE);
-      EXPECT_EQ(region_delete(lower.kind, lower.cs), ERR_NONE);
+      ASSERT_EQ(region_define(first.kind, first.cs, 40), ERR_NONE);
+      ASSERT_EQ(region_define(second.kind, second.cs, 30), ERR_NONE);
+      EXPECT_EQ(region_delete(first.kind, first.cs), ERR_DATA) << name_of(first) << " above " << name_of(second);
+      EXPECT_EQ(region_delete(second.kind, second.cs), ERR_NONE);
+      EXPECT_EQ(region_delete(first.kind, first.cs), ERR_NONE);
       EXPECT_EQ(region_open_words(), 26624u);
     }
 }
 
-TEST_F(Regions, RegionsAreStackedWithoutGaps) {
-  std::uint32_t base = 0;
-  for (const region_kind kind : {REGION_CCBUF, REGION_LOOKAHEAD, REGION_ROTARY})
-    for (const std::uint32_t cs : {15u, 4u, 0u}) {
-      const std::uint32_t words = 10 + cs;
-      ASSERT_EQ(region_define(kind, cs, words), ERR_NONE);
-      EXPECT_EQ(region_base(kind, cs), base);
-      EXPECT_EQ(region_words(kind, cs), words);
-      base += words;
+TEST_F(Regions, RegionsAreStackedWithoutGapsFromTheTopDown) {
+  std::uint32_t base = 26624 - 100;
+  ASSERT_EQ(region_define_user(100), ERR_NONE);
+  for (const region_kind kind : {REGION_COMP, REGION_BLCOMP, REGION_CCBUF, REGION_LOOKAHEAD, REGION_ROTARY})
+    for (const std::uint32_t owner : {15u, 4u, 0u}) {
+      const std::uint32_t words = 10 + owner;
+      ASSERT_EQ(region_define(kind, owner, words), ERR_NONE);
+      base -= words;
+      EXPECT_EQ(region_base(kind, owner), base);
+      EXPECT_EQ(region_words(kind, owner), words);
     }
+  ASSERT_EQ(region_resize_fixed(50), ERR_NONE);
   ASSERT_EQ(region_define_rest(), ERR_NONE);
-  EXPECT_EQ(region_base(REGION_GATHER, 0), base);
-  EXPECT_EQ(region_words(REGION_GATHER, 0), 26624u - base);
+  EXPECT_EQ(region_base(REGION_GATHER, 0), 50u);
+  EXPECT_EQ(region_words(REGION_GATHER, 0), base - 50);
   EXPECT_EQ(region_open_words(), 0u);
+}
+
+// Programs and regions grow towards each other.
+TEST_F(Regions, FixedProgramsGrowWhateverThereIs) {
+  for (const Region& there : all_regions()) {
+    regions_initialize();
+    ASSERT_EQ(region_define(there.kind, there.cs, 40), ERR_NONE);
+    const std::uint32_t base = region_base(there.kind, there.cs);
+    EXPECT_EQ(region_resize_fixed(26584), ERR_NONE) << name_of(there);
+    EXPECT_EQ(region_open_words(), 0u);
+    EXPECT_EQ(region_resize_fixed(26585), ERR_NO_ROOM) << name_of(there);
+    EXPECT_EQ(region_resize_fixed(7), ERR_NONE) << name_of(there);
+    EXPECT_EQ(region_open_words(), 26577u);
+    EXPECT_EQ(region_base(there.kind, there.cs), base) << name_of(there);
+  }
 }
 
 TEST_F(Regions, NoRoomIsError6AndChangesNothing) {

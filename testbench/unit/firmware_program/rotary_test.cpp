@@ -149,9 +149,9 @@ TEST_F(Rotary, BinaryOpenTakesNoText) {
 TEST_F(Rotary, MemoryHoldsTheLine) {
   ASSERT_EQ(host("&2DEF ROT 10 &1DEF ROT 10 OPEN ROT"), "");
   ASSERT_EQ(host("&1X1000"), "");
-  // &1 lies above &2: first word at $00A000 + 10. X1000 as in host-bus:7.7 with the start-of-line bit.
-  EXPECT_EQ(*hal_x(0xA00A), 0x800000u | (1u << 19) | (6u << 6) | 10u);
-  EXPECT_EQ(*hal_y(0xA00A), 0x7D0000u);
+  // &1 lies below &2: first word at $010800 - 20. X1000 as in host-bus:7.7 with the start-of-line bit.
+  EXPECT_EQ(*hal_x(0x107EC), 0x800000u | (1u << 19) | (6u << 6) | 10u);
+  EXPECT_EQ(*hal_y(0x107EC), 0x7D0000u);
 }
 
 }  // namespace

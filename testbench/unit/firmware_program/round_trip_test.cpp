@@ -94,6 +94,44 @@ TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
     EXPECT_EQ(produced.count(statement_rows[i].name), 1u) << statement_rows[i].name << " was never produced";
 }
 
+// A rotary buffer takes lines whatever their listing, so it tells what that is. A fixed program takes those whose short
+// form has 255 characters at most, and what it lists goes back in both forms.
+TEST_F(RoundTrip, LongLinesGoBackOrAreRefused) {
+  BRICK_COVERS("I9-1");
+  const Kind& kind = kKinds[0];
+  ProgramGenerator generator(5, WHERE_ROTARY);
+  unsigned in_full = 0, in_brief = 0, refused = 0;
+  ASSERT_EQ(host("DEF ROT 1000"), "");
+  for (unsigned i = 0; i < 4 * programs_of_each_kind(); ++i) {
+    const std::string line = generator.long_line();
+    ASSERT_EQ(host("OPEN ROT CLEAR"), "");
+    ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("CLOSE I9=0"), "");
+    const std::string brief = host("LIST ROT"), full = host("I9=1 LIST ROT");
+    EXPECT_LE(brief.size(), line.size() + 2 * rotary_buffers[0].used) << line;
+    ASSERT_EQ(host("OPEN PROG 7 CLEAR"), "");
+    const bool fits = brief.size() <= 255;
+    ASSERT_EQ(host(line), fits ? "" : "ERR003") << line;
+    ASSERT_EQ(host("CLOSE"), "");
+    if (!fits) {
+      ++refused;
+      continue;
+    }
+    const std::vector<word48_t> words = words_of(kind);
+    for (const char* i9 : {"I9=0", "I9=1"}) {
+      ASSERT_EQ(host(i9), "");
+      const std::vector<std::string> listed = list(kind);
+      ASSERT_EQ(listed, (std::vector<std::string>{i9[3] == '1' ? full : brief}));
+      ASSERT_NO_FATAL_FAILURE(enter(kind, listed));
+      ASSERT_EQ(words_of(kind), words) << listed[0];
+    }
+    ++(full == brief ? in_brief : in_full);
+  }
+  EXPECT_GT(in_full, programs_of_each_kind() / 4);
+  EXPECT_GT(in_brief, programs_of_each_kind() / 4);
+  EXPECT_GT(refused, 10u);
+}
+
 // The comparison itself: one word of a program is another, and the listing is no longer downloaded to the words it had.
 TEST_F(RoundTrip, AnotherWordIsNoticed) {
   const Kind& kind = kKinds[0];
@@ -156,8 +194,10 @@ TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
     const std::vector<word48_t> words = words_of(kind);
     const std::vector<std::string> listed = list(kind);
     ASSERT_EQ(host(std::string("OPEN ") + kind.text + " CLEAR"), "");
-    for (const std::string& line : listed)
-      if (line.size() <= 255) (void)host(line);
+    for (const std::string& line : listed) {
+      EXPECT_LE(line.size(), 255u) << line;
+      (void)host(line);
+    }
     (void)host("CLOSE");
     EXPECT_EQ(list(kind), listed) << kind.text;
     EXPECT_EQ(words_of(kind), words) << kind.text << ": what was taken is listed so that it is taken again";

@@ -133,6 +133,20 @@ TEST_F(Survival, QuitStopsBehindTheLineUnderWay) {
   expect_alive();
 }
 
+// The blocks of a called program are read in the real-time task, a line without a pause. Each word of these lines is
+// looked at as often as every other: were it once for each condition, a line would take longer than the task may.
+TEST_F(Survival, CallOfAProgramWithLinesOfConditions) {
+  std::string line;
+  while (line.size() + 7 + 7 <= kLineLimit) line += "IF(1=1)";
+  const std::vector<std::string> program = {"OPEN PROG 2 CLEAR", line + "P1=P1+1", line + "P1=P1+1", "CLOSE",
+                                            "OPEN PROG 1 CLEAR", "CALL2 P2=1",     "CLOSE",          "B1R"};
+  for (const std::string& text : program) accepted(text);
+  board.run_ms(200.0);
+  EXPECT_EQ(ask("P1"), "2");
+  EXPECT_EQ(ask("P2"), "1");
+  expect_alive();
+}
+
 // From the character to the call of run_abort, whatever the controller is at.
 class AbortLatency : public Survival {
  protected:
@@ -159,6 +173,14 @@ TEST_F(AbortLatency, IsBelowAMillisecond) {
     board.run_ms(400.0);
     board.send("", 1.0);
   }
+  board.send("SAVE\r", 1.0);
+  board.send(std::string(2050, 'U'), 10.0);  // as many as the queue and a host port hold, while SAVE goes on
+  EXPECT_LE(ms_to_abort(), 1.0) << "behind a full queue";
+  board.run_ms(400.0);
+  board.send("", 1.0);
+  EXPECT_EQ(board.send("\x18I3\r"),
+            "\x18"
+            "2\r\x06");
   run(16, worst_lines());
   board.run_ms(5.0);
   EXPECT_LE(ms_to_abort(), 1.0) << "16 programs";

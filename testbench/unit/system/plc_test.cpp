@@ -61,6 +61,7 @@ TEST_P(PlcProgram, SavedOnesStartWithTheController) {
   EXPECT_GT(std::stod(ask("P4")), 0.0);
 }
 
+// ^X comes right behind ^D, while the background looks whether there is room.
 TEST_P(PlcProgram, TextsThatNobodyReadsHoldNobodyUp) {
   start();
   load(1, {"SEND\"a text of a program, sent over and over again\""});
@@ -76,7 +77,21 @@ TEST_P(PlcProgram, TextsThatNobodyReadsHoldNobodyUp) {
   EXPECT_GT(std::stod(ask("P2")), 100.0);
 }
 
-BRICK_ON_ENGINES(PlcProgram, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+// 8192 values, of which the port holds 4096 characters.
+TEST_P(PlcProgram, LongReplyThatNobodyReadsHoldsNobodyUp) {
+  start();
+  load(1, {"CMDP\"P0..8191\"", "DISABLE PLC 1"});
+  load(2, {"P2=P2+1"});
+  ASSERT_EQ(ask("I5=2 ENABLE PLC 1,2"), "");
+  wait(ms_to_ticks(60));
+  ASSERT_TRUE(bus().put_char(0x18, ms_to_ticks(1)));  // ^X
+  wait(ms_to_ticks(5));
+  link().poll();
+  link().take_unsolicited();
+  EXPECT_GT(std::stod(ask("P2")), 100.0);
+}
+
+BRICK_ON_ENGINES(PlcProgram, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
 }  // namespace brick

@@ -113,7 +113,7 @@ TEST_P(ReadOut, OfProgramsInParts) {
   }
 }
 
-BRICK_ON_ENGINES(ReadOut, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(ReadOut, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
 }  // namespace brick

@@ -1,5 +1,6 @@
 // Nothing that a host sends stops the controller, on the whole machine: random lines, lines that take longer than the
 // real-time interrupt, and control characters that stop things at once whatever the controller is at.
+#include <algorithm>
 #include <cstdlib>
 
 #include "systemc/cpu/elf_file.h"
@@ -9,6 +10,7 @@
 namespace brick {
 namespace {
 
+constexpr Tick us_to_ticks(std::int64_t us) { return ns_to_ticks(us * 1000); }
 constexpr std::uint8_t kControlA = 0x01, kControlX = 0x18, kAcknowledge = 0x06;
 
 class SurvivalOn : public Controller {
@@ -20,14 +22,27 @@ class SurvivalOn : public Controller {
            ElfFile(BRICK_FIRMWARE).symbol_at(machine().cpu().reg(1));
   }
 
-  // Everything that comes until an ACK, or until nothing has come for `quiet`.
+  // Everything that comes until an ACK or a numbered error, or until nothing has come for `quiet`. Programs may send
+  // for ever, so at most for ten times as long. A look now and then is enough, and quicker than a poll all the time.
   std::string listen(Tick quiet) {
     std::string text;
-    while (const auto c = bus().get_char(quiet)) {
+    const Tick end = machine().now() + 10 * quiet;
+    for (Tick heard = machine().now(); machine().now() < std::min(end, heard + quiet);) {
+      const auto c = bus().get_char(us_to_ticks(10));
+      if (!c) {
+        wait(us_to_ticks(90));
+        continue;
+      }
+      heard = machine().now();
       text += static_cast<char>(*c);
-      if (*c == kAcknowledge) break;
+      if (*c == kAcknowledge || is_error(text)) break;
     }
     return text;
+  }
+
+  static bool is_error(const std::string& text) {  // BELL, ERR and three digits, CR
+    constexpr std::size_t kLength = 8;
+    return text.size() >= kLength && text.back() == '\r' && text.compare(text.size() - kLength, 4, "\aERR") == 0;
   }
 
   // A host that reads nothing while it writes, but when the port is full. False when it is still full after a second
@@ -46,7 +61,7 @@ class SurvivalOn : public Controller {
   // Whatever I3, I4 and I6 have become.
   void expect_alive() {
     EXPECT_FALSE(tripped());
-    put("\x18");
+    put("\x01\x04\x18");  // programs, PLCs and what they have sent
     while (!listen(ms_to_ticks(50)).empty()) {}
     ASSERT_TRUE(put("CLOSE\rI4=0 I6=1 I3=2\r"));
     while (!listen(ms_to_ticks(50)).empty()) {}

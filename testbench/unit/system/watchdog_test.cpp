@@ -86,7 +86,7 @@ TEST_P(WatchdogTrip, ComesAgainAfterEveryResetWithTheSameSavedSettings) {
   EXPECT_EQ(ask("I19"), "7007");
 }
 
-BRICK_ON_ENGINES(WatchdogTrip, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(WatchdogTrip, Engine::kSystemC, Engine::kLockstep);
 
 class WatchdogLoadOf : public WatchdogTrip {};
 
