@@ -79,13 +79,20 @@ void HostLink::take_stray() {
   incoming_.erase(0, taken);
 }
 
+// Where a text has begun, its end is waited for; if none comes it has ended already.
+void HostLink::poll_to_end_of_text() {
+  const Tick limit = bus_.now() + kRestless;
+  for (poll(); !incoming_.empty() && bus_.now() < limit && receive(bus_.now() + 2 * kTextPause); poll()) {}
+  take_stray();
+}
+
 std::vector<std::string> HostLink::take_unsolicited() { return std::exchange(unsolicited_, {}); }
 
 // --------------------------------------------------------------------------------------------------------------- lines
 
 // What has come before the CR answers no line, unless control characters in it asked.
 bool HostLink::send(const std::string& line, Tick timeout) {
-  poll();
+  poll_to_end_of_text();
   const Tick deadline = bus_.now() + timeout;
   for (const char c : line)
     if (!put(static_cast<std::uint8_t>(c), deadline)) return false;
@@ -150,7 +157,7 @@ Reply HostLink::restarted() {
 
 Reply HostLink::control(std::uint8_t c) {
   constexpr std::uint8_t kRepeat = 0x09;
-  poll();
+  poll_to_end_of_text();
   acknowledged_ = false;
   if (!put(c, bus_.now() + kReplyTime)) return {};
   Reply reply = c == kRepeat ? asked(std::nullopt, true, kSaveTime)

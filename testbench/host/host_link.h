@@ -56,6 +56,7 @@ class HostLink {
   bool put(std::uint8_t c, Tick deadline);
   bool receive(Tick deadline);  // one byte into incoming_
   void keep(std::uint8_t c);
+  void poll_to_end_of_text();
   void take_stray();
   ReplyParser collect(ReplyParser parser, Tick timeout);
   Reply parsed(const std::string& bytes, Checksum command, const Framing& before, bool mixed) const;
