@@ -12,9 +12,8 @@ constexpr Tick kTextPause = ns_to_ticks(1'000'000);  // a line of text that goes
 constexpr std::size_t kMostStray = 1 << 16;          // bytes read without a pause: a program may send for ever
 constexpr unsigned kMostQuestions = 5;               // where answers cannot be told from texts
 constexpr const char* kUnclear =
-    "I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits, as ^G is answered; expected other "
-    "texts, "
-    "or I64=1";
+    "I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits, as ^G is answered; "
+    "expected other texts, or I64=1";
 
 // Where some of the answers from `first` on are acknowledged, the others are texts of programs.
 void drop_texts(std::vector<FramingAnswer>& answers, std::size_t first) {
