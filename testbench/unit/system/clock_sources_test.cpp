@@ -178,9 +178,7 @@ TEST_P(ClockSourceFaults, ReInitialisationTakesTheFirstIcThatCanMakeBothClocks) 
       {1u << 17 | 1u << 9 | 1u << 12, 0, 7907},  // servo IC 9 before 4*, 9*
       {1u << kMacroIc1 | 1u << 20, 2, 6907},     // MACRO IC 2, 1 being a MACROGATE
   };
-  unsigned left = GetParam() == Engine::kSystemC ? 5 : 2;  // the RTL of all ICs is slow
   for (const auto& k : cases) {
-    if (left-- == 0) break;
     start_with(k.fitted, k.gate);
     EXPECT_EQ(ask("I19"), std::to_string(k.source)) << std::hex << k.fitted;
     EXPECT_EQ(source(), k.source) << std::hex << k.fitted;
