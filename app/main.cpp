@@ -25,9 +25,9 @@ struct Commands {
   CLI::App app{kAbout, "brick"};
   std::function<int()> chosen;
 
-  RunOptions run_options, exec_options;
+  RunOptions run_options, exec_options, console_options;
   TimingOptions timing_options;
-  std::string bench, script, elf, board, max_instructions = kDefaultInstructions;
+  std::string bench, script, history, elf, board, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
   Commands() {
@@ -58,6 +58,12 @@ struct Commands {
         "@jpan @reset @power "
         "@expect @time.");
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
+
+    auto* console = app.add_subcommand("console", "talks to the started controller: line editing, its control keys");
+    add_run_options(*console, console_options, "systemc");
+    console->add_option("--history", history, "keeps the lines typed in FILE")->type_name("FILE");
+    console->footer("Lines are those of brick exec, @ lines and #include too. ^] or @quit ends (docs/console.md).");
+    console->callback([this] { chosen = [this] { return console_command(console_options, history); }; });
 
     auto* timing = app.add_subcommand(
         "timing", "bus-timing report of a testbench: rules, margins, BREQ and interrupt times, bus load");
