@@ -32,7 +32,7 @@ struct header {
 struct begun {
   uint32_t count, at; /* words of it; index of the next */
   uint32_t line, size, start, generation;
-  struct binary_line checks;
+  struct binary_judge judge;
 };
 
 /* The task that copies owns all of this: the background, or the real-time task while `copying` is false. */
@@ -98,13 +98,13 @@ static enum step fail(struct header* h, uint32_t code) {
 }
 
 static enum step publish(struct header* h, uint32_t cs, struct begun* b) {
-  const enum binary_fault fault = binary_line_end(&b->checks);
+  const enum binary_fault fault = binary_judge_end(&b->judge);
   if (fault != BINARY_GOOD) return fail(h, fault);
   rotary_publish(cs, b->count);
   h->index = b->line = b->at;
   dpram_write(h->offset + DPRAM_ROTARY_PMAC_INDEX, h->index);
   b->count = 0;
-  b->checks = (struct binary_line){0};
+  b->judge = (struct binary_judge){0};
   return STEP_DONE;
 }
 
@@ -117,7 +117,7 @@ static enum step copy(struct header* h, uint32_t cs, struct begun* b) {
   if (begins && b->count != 0 && publish(h, cs, b) == STEP_STOP) return STEP_STOP;
   if (!begins && b->count == 0) return fail(h, BINARY_INCOMPLETE); /* of the line before */
   if (b->count >= rotary_room(cs)) return STEP_BLOCKED;
-  const enum binary_fault fault = binary_line_add(&b->checks, command);
+  const enum binary_fault fault = binary_judge_word(&b->judge, command);
   if (fault != BINARY_GOOD) return fail(h, fault);
   rotary_put(cs, b->count++, command);
   b->at += COMMAND_ITEMS;

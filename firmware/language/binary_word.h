@@ -9,12 +9,12 @@
 enum binary_fault { BINARY_GOOD = 0, BINARY_CODE = 5, BINARY_ARGUMENT = 6, BINARY_INCOMPLETE = 8 };
 
 /* What the commands so far leave open; all zero where a line begins. */
-struct binary_line {
+struct binary_judge {
   bool begun, called, prefixed;
   uint32_t axis; /* of the command before, counted from 1; 0: that was no axis */
 };
 
-enum binary_fault binary_line_add(struct binary_line* line, word48_t word);
-enum binary_fault binary_line_end(const struct binary_line* line);
+enum binary_fault binary_judge_word(struct binary_judge* judge, word48_t word);
+enum binary_fault binary_judge_end(const struct binary_judge* judge);
 
 #endif
