@@ -13,6 +13,7 @@
 #include "firmware/command/session.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
+#include "firmware/host/dpram_ascii.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -94,6 +95,7 @@ void start(enum start_mode mode) {
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();
+  dpram_ascii_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();
