@@ -14,6 +14,7 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/binary_rotary.h"
+#include "firmware/host/dpram_ascii.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -95,6 +96,7 @@ void start(enum start_mode mode) {
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();
+  dpram_ascii_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();
