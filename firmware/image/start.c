@@ -13,6 +13,8 @@
 #include "firmware/command/session.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
+#include "firmware/host/binary_rotary.h"
+#include "firmware/host/dpram_ascii.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -94,10 +96,12 @@ void start(enum start_mode mode) {
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();
+  dpram_ascii_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();
   buffer_request_initialize();
+  binary_rotary_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
   calendar_initialize();

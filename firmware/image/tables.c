@@ -13,6 +13,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/report_commands.h"
 #include "firmware/command/session.h"
+#include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
 #include "firmware/image/background_pass.h"
@@ -53,7 +54,7 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
 
 /* BREQ: the host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may
  * be none. */
-static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session_host_cs(); }
+static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session_selected_cs(); }
 
 uint32_t (*const buffer_request_selected)(void) = selected_cs;
 
@@ -62,5 +63,7 @@ const struct command_entry* const command_tables[] = {
     list_commands,   plc_commands,    motor_commands,  program_commands,  0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;
+
+const struct reply_lines reply_lines = {.put = dpram_responses_put, .end = dpram_responses_end};
 
 void (*const host_port_meanwhile)(void) = background_meanwhile;
