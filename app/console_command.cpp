@@ -2,6 +2,7 @@
 // time goes with the wall's while nobody types.
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -13,7 +14,7 @@
 #include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/line_editor.h"
-#include "app/pace.h"
+#include "app/pacing.h"
 #include "app/refused_lines.h"
 #include "app/script_player.h"
 #include "app/session_end.h"
@@ -31,7 +32,8 @@ constexpr const char* kQuit = "@quit";
 constexpr const char* kWelcome =
     "Control keys are the controller's: ^A aborts, ^P asks for positions, ^X forgets the line. @ lines as in host "
     "scripts. ^] or @quit ends.\n";
-constexpr std::chrono::milliseconds kRepaint{200};
+constexpr std::chrono::milliseconds kRepaint{200}, kNap{10};
+constexpr Tick kPiece = ns_to_ticks(500'000);  // between two looks at the keys
 
 // How often PHASE and SERVO rise.
 class ClockMeter {
@@ -73,11 +75,11 @@ std::string clock_source(Machine& machine) {
 
 // What belongs to a session with somebody at a terminal.
 struct Terminal {
-  explicit Terminal(HostBus& bus) : meter(bus), pace(bus) {}
+  explicit Terminal(HostBus& bus) : meter(bus), pacing(bus.now()) {}
   StatusLine status;
   LineEditor editor{kPrompt};
   ClockMeter meter;
-  Pace pace;
+  Pacing pacing;
   std::chrono::steady_clock::time_point painted;
 };
 
@@ -98,6 +100,8 @@ class Console {
   void tell(const std::string& text);
   void explain();
   void paint();
+  std::chrono::milliseconds wait();  // lets time pass; for how long there is nothing to do then
+  void wait_anew();                  // from now on, whatever a command took
 
   Simulation& simulation_;
   ScriptPlayer player_;
@@ -159,25 +163,29 @@ void Console::paint() {
                                      pins.get(pin::kBreq), pins.get(pin::kWdo) != 0 ? " | WATCHDOG TRIPPED" : ""));
 }
 
+std::chrono::milliseconds Console::wait() {
+  HostBus& bus = simulation_.bus();
+  const Tick due = terminal_->pacing.due(bus.now());
+  bus.advance_to(std::min(due, bus.now() + kPiece));
+  player_.print_unsolicited();
+  return bus.now() < due ? std::chrono::milliseconds(0) : kNap;
+}
+
+void Console::wait_anew() { terminal_->pacing = Pacing(simulation_.bus().now()); }
+
 void Console::talk(const std::string& history) {
   terminal_ = std::make_unique<Terminal>(simulation_.bus());
   LineEditor& editor = terminal_->editor;
-  Pace& pace = terminal_->pace;
   simulation_.show_progress = [this] { paint(); };
   player_.before_output = [&editor] { editor.make_room(); };
-  editor.while_waiting = [this, &pace] {
-    const auto pause = pace.follow();
-    player_.print_unsolicited();
-    return pause;
-  };
-  editor.on_control = [this, &pace](char key) {
+  editor.while_waiting = [this] { return wait(); };
+  editor.on_control = [this](char key) {
     play({'^', static_cast<char>(key + '@')});
-    pace.start();
+    wait_anew();
   };
   if (!history.empty()) editor.load_history(history);
   std::fputs(kWelcome, stdout);
-  pace.start();
-  for (auto line = editor.read(); line && play(*line); line = editor.read()) pace.start();
+  for (auto line = editor.read(); line && play(*line); line = editor.read()) wait_anew();
   if (!history.empty() && !editor.save_history(history))
     tell(fmt::format("--history {}: cannot be written; expected a writable place", history));
 }
