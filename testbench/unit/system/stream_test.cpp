@@ -94,7 +94,8 @@ class StreamOn : public Controller {
 
   void open() {
     if (route_ == Route::kBinary) {
-      rotary_ = {BinaryRotary(bus(), 1), BinaryRotary(bus(), 2)};
+      rotary_.clear();
+      for (unsigned cs = 1; cs <= kSystems; ++cs) rotary_.emplace_back(bus(), cs);
       selected_ = 0;
       open_binary();
       return;
