@@ -14,6 +14,8 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/dpram_ascii.h"
+#include "firmware/host/dpram_motors.h"
+#include "firmware/host/dpram_systems.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -96,6 +98,8 @@ void start(enum start_mode mode) {
   plc_initialize();
   program_texts_initialize();
   dpram_ascii_initialize();
+  dpram_motors_initialize();
+  dpram_systems_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();

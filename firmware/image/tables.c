@@ -13,6 +13,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/report_commands.h"
 #include "firmware/command/session.h"
+#include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
@@ -33,6 +34,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
+  dpram_motors_servo();
   host_port_reserve();
 }
 
