@@ -6,6 +6,7 @@
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
@@ -70,6 +71,7 @@ static void load_user_memory(void) {
   axis_definition_initialize();
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   regions_initialize();
+  gather_initialize();
   fixed_programs_initialize();
   compensation_tables_initialize();
   program_password_initialize();

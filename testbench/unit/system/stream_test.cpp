@@ -148,7 +148,8 @@ class StreamOn : public Controller {
     unsigned blocks = 0;
     while (number_ < count) {
       heeds_ = ++blocks % 2 == 0;
-      const std::string found = block(static_cast<unsigned>(std::min<long>(kBlock, count)), blocks % 7 == 3, Fault::kNone);
+      const std::string found =
+          block(static_cast<unsigned>(std::min<long>(kBlock, count)), blocks % 7 == 3, Fault::kNone);
       ASSERT_FALSE(HasFatalFailure());
       ASSERT_EQ(found, "") << "block " << blocks;
     }
