@@ -87,12 +87,12 @@ class TurboPmac:
 def session(host, port):
     """What a first look at a controller is like."""
     with TurboPmac(host, port) as controller:
-        for line in ("ver", "cid", "i20 i21 i22 i23", "#1?", "#1P", "P1=25 P1 P1*2"):
-            print(f"{line:>16}  {controller.values(line)}")
+        for line in ("ver", "cid", "i20 i21 i22 i23", "#1?", "#1P", "P1=25 P2=50 P1..2"):
+            print(f"{line:>18}  {controller.values(line)}")
         try:
             controller.command("frob")
         except TurboPmacError as error:
-            print(f"{'frob':>16}  {error}")
+            print(f"{'frob':>18}  {error}")
 
 
 if __name__ == "__main__":

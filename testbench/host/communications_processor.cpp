@@ -112,15 +112,16 @@ void CommunicationsProcessor::own(Client id, bool keeps_text) {
 
 // ------------------------------------------------------------------------------------------------------------ requests
 
+// One request of each client; whoever has had the controller's attention comes last.
 bool CommunicationsProcessor::serve() {
   bool some = false;
   auto at = clients_.upper_bound(turn_);
   for (std::size_t n = clients_.size(); n > 0 && waiting_ > 0; --n, ++at) {
     if (at == clients_.end()) at = clients_.begin();
-    while (!at->second.requests.empty() && serve(at->first, at->second)) {
-      some = true;
-      if (dialogue_.busy()) break;  // the others next
-    }
+    if (at->second.requests.empty()) continue;
+    const bool idle = !dialogue_.busy();
+    some = serve(at->first, at->second) || some;
+    if (idle && dialogue_.busy()) turn_ = at->first;
   }
   return some;
 }

@@ -115,7 +115,8 @@ void ControllerAnswer::quiet() {
 
 std::string ControllerAnswer::release() {
   if (choice_ == Choice::kOpen) return "";
-  std::string more = chosen().text.substr(released_);
+  const bool may_be_sum = !ended_ && choice_ == Choice::kSummed && summed_.ends_with_line_feed(true);
+  std::string more = chosen().text.substr(released_, chosen().text.size() - released_ - (may_be_sum ? 1 : 0));
   released_ += more.size();
   return more;
 }

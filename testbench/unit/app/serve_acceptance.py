@@ -3,6 +3,7 @@
 usage: serve_acceptance.py BRICK CASE; each CASE is one test.
 """
 import command
+import served_exchanges
 from command import check
 from served import served
 
@@ -19,6 +20,16 @@ def serve_requests():
             pass
         check(client.get_buffer() == b"603382\r\x06", "GETBUFFER")
         check(not client.ready(), "it has been fetched")
+
+
+# covers: CARD-3
+def serve_exchanges():
+    """The golden exchanges and every command of firmware:11, as `brick exec` plays them."""
+    for name, least in (("golden.txt", 100), ("commands.txt", 100)):
+        with served("--free") as server, server.client() as client:
+            found, compared = served_exchanges.differences(client, name)
+            check(not found, "\n".join(found))
+            check(compared >= least, f"{name}: {compared} compared, expected {least} or more")
 
 
 globals()[command.CASE]()
