@@ -16,7 +16,7 @@ from common import ROOT, files, finish
 
 FIRMWARE = [{f"firmware/{name}"} for name in (
     "hal", "base", "kernel", "variables", "language", "buffers", "motion", "run", "command", "host", "image")]
-CPP = [{"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"}, {"systemc/macro_ic"}, {"systemc/board"},
+CPP = [{"systemc/core", "testbench/clients"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"}, {"systemc/macro_ic"}, {"systemc/board"},
        {"systemc/cosim"}, {"systemc/component"}, {"systemc/machine"}, {"testbench/host", "testbench/plant"},
        {"testbench/checkers"},
        {"testbench/benches"}, {"testbench/benchmark", "app"}]

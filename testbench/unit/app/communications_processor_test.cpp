@@ -1,86 +1,9 @@
-// The communications processor on a machine of pins with a scripted controller behind its host port: requests, who is
-// answered what, and what happens when the controller is slow, silent or talks of itself (ethernet:3 to ethernet:7).
-#include <gtest/gtest.h>
-
-#include "testbench/host/communications_processor.h"
-#include "testbench/unit/app/fake_machine.h"
+// Requests of one client of the communications processor, and what happens when the controller is slow, silent or talks
+// of itself (ethernet:3 to ethernet:7).
+#include "testbench/unit/app/communications_fixture.h"
 
 namespace brick {
 namespace {
-
-using Packet = EthernetPacket;
-using Bytes = std::string;
-using Replies = std::vector<std::pair<unsigned, Bytes>>;
-
-constexpr Tick kMs = ns_to_ticks(1'000'000);
-
-class CommunicationsProcessorTest : public ::testing::Test {
- protected:
-  CommunicationsProcessorTest() {
-    fake().control = [](char c) { return c == 0x18 ? Bytes("\x18") : c == 0x07 ? Bytes("000000000800\r\x06") : ""; };
-    fake().controller = [this](const Bytes& line) { return controller(line); };
-    make({});
-  }
-
-  void make(const CommunicationsProcessor::Options& options) {
-    processor_ = std::make_unique<CommunicationsProcessor>(bus_, options);
-    processor_->on_reply = [this](CommunicationsProcessor::Client client, const Bytes& reply) {
-      replies_.emplace_back(static_cast<unsigned>(client), reply);
-    };
-    ASSERT_TRUE(processor_->start(100 * kMs));
-    lines_.clear();
-  }
-
-  Bytes controller(const Bytes& line) {
-    lines_.push_back(line);
-    if (line == "I63=0") fake().control = nullptr;
-    if (line == "silent") return "";
-    if (line == "bad")
-      return "\x07"
-             "ERR003\r";
-    if (line == "long") return Bytes(3000, 'x') + "\r\x06";
-    if (line.empty() || line[0] == '=') return "\x06";
-    return line + "\r\x06";
-  }
-
-  static FakeMachine& fake() { return FakeMachine::last(); }
-
-  static Packet packet(unsigned request, const Bytes& data = "", unsigned value = 0, unsigned index = 0,
-                       unsigned type = 0x40, unsigned length = 0) {
-    return {static_cast<std::uint8_t>(type),
-            static_cast<std::uint8_t>(request),
-            static_cast<std::uint16_t>(value),
-            static_cast<std::uint16_t>(index),
-            static_cast<std::uint16_t>(data.empty() ? length : data.size()),
-            data};
-  }
-
-  void request(unsigned client, const Packet& one) { processor_->request(client, one); }
-  void run(Tick time = kMs) { processor_->run_until(bus_.now() + time); }
-
-  Replies take() { return std::exchange(replies_, {}); }
-
-  // Of client 1, within `longest`.
-  Bytes ask(const Packet& one, Tick longest = 20'000 * kMs) {
-    request(1, one);
-    for (const Tick end = bus_.now() + longest; replies_.empty() && bus_.now() < end;) run();
-    const Replies found = take();
-    EXPECT_EQ(found.size(), 1u);
-    return found.empty() ? "nothing" : found[0].second;
-  }
-  Bytes response(const Bytes& line) { return ask(packet(Packet::kGetResponse, line)); }
-  Bytes fetch() { return ask(packet(Packet::kGetBuffer, "", 0, 0, 0xC0)); }
-  Bytes ready() { return ask(packet(Packet::kReadReady, "", 0, 0, 0xC0, 2)); }
-
-  Machine machine_{sc_core::sc_gen_unique_name("machine"), MachineConfig{}};
-  HostBus bus_{machine_};
-  std::unique_ptr<CommunicationsProcessor> processor_;
-  Replies replies_;
-  std::vector<Bytes> lines_;
-};
-
-const Bytes kNul(1, '\0');
-using Lines = std::vector<Bytes>;
 
 TEST_F(CommunicationsProcessorTest, GetResponseSendsALineAndGivesItsAnswer) {
   EXPECT_EQ(response("ver"), "ver\r\x06");
@@ -211,145 +134,6 @@ TEST_F(CommunicationsProcessorTest, ChecksumsReachNobody) {
   EXPECT_EQ(ready(), Bytes("\0\0", 2));
 }
 
-// ------------------------------------------------------------------------------------------------------------ several
-
-// ethernet:1/5
-TEST_F(CommunicationsProcessorTest, EachClientIsAnsweredItsOwn) {
-  fake().thinking = 3 * kMs;
-  for (unsigned client = 1; client <= 20; ++client)
-    request(client, packet(Packet::kGetResponse, std::to_string(client)));
-  run(200 * kMs);
-  const Replies found = take();
-  ASSERT_EQ(found.size(), 20u);
-  for (const auto& [client, reply] : found) EXPECT_EQ(reply, std::to_string(client) + "\r\x06");
-}
-
-TEST_F(CommunicationsProcessorTest, OneThatFloodsDoesNotStarveTheOthers) {
-  for (int i = 0; i < 100; ++i) request(1, packet(Packet::kGetResponse, "flood"));
-  request(2, packet(Packet::kGetResponse, "two"));
-  request(3, packet(Packet::kReadReady));
-  run(200 * kMs);
-  const Replies found = take();
-  ASSERT_EQ(found.size(), 102u);
-  for (unsigned client : {2u, 3u}) {
-    const auto at = std::find_if(found.begin(), found.end(), [&](const auto& r) { return r.first == client; });
-    EXPECT_LE(at - found.begin(), 3) << "client " << client;
-  }
-}
-
-TEST_F(CommunicationsProcessorTest, OthersMemoryAndQueriesDoNotWaitForALine) {
-  fake().thinking = 400 * kMs;
-  request(1, packet(Packet::kGetResponse, "slow"));
-  run(10 * kMs);
-  request(2, packet(Packet::kGetMemory, "", 0x1140, 0, 0xC0, 4));
-  request(2, packet(Packet::kReadReady));
-  run(10 * kMs);
-  EXPECT_EQ(take(), (Replies{{2, Bytes(4, '\0')}, {2, Bytes(2, '\0')}}));
-  run(400 * kMs);
-  EXPECT_EQ(take(), (Replies{{1, "slow\r\x06"}}));
-}
-
-// What a client that has gone was to be told is nobody else's.
-TEST_F(CommunicationsProcessorTest, AClientThatGoesLeavesNothingBehind) {
-  fake().thinking = 100 * kMs;
-  request(1, packet(Packet::kGetResponse, "gone"));
-  request(1, packet(Packet::kGetResponse, "never sent"));
-  run(10 * kMs);
-  processor_->close(1);
-  request(2, packet(Packet::kGetResponse, "here"));
-  run(300 * kMs);
-  EXPECT_EQ(take(), (Replies{{2, "here\r\x06"}}));
-  EXPECT_EQ(lines_, (Lines{"gone", "here"}));
-  EXPECT_FALSE(processor_->busy());
-}
-
-// -------------------------------------------------------------------------------------------------- flush and control
-
-// ethernet:6/1
-TEST_F(CommunicationsProcessorTest, FlushWaitsForTheEcho) {
-  EXPECT_EQ(ask(packet(Packet::kSendLine, "old")), "@");
-  const Tick begin = bus_.now();
-  EXPECT_EQ(ask(packet(Packet::kFlush)), "@");
-  EXPECT_LE(bus_.now() - begin, 2 * kMs);
-  EXPECT_EQ(ready(), Bytes("\0\0", 2));
-  EXPECT_EQ(response("I63=0"), "I63=0\r\x06") << "no echo from now on";
-  for (const auto& [value, wait] : {std::pair(0u, 10), std::pair(50u, 50), std::pair(0xF401u, 500)}) {
-    const Tick from = bus_.now();
-    EXPECT_EQ(ask(packet(Packet::kFlush, "", value)), "@");
-    EXPECT_GE(bus_.now() - from, wait * kMs);
-    EXPECT_LE(bus_.now() - from, (wait + 2) * kMs);
-  }
-}
-
-// ethernet:6/2
-TEST_F(CommunicationsProcessorTest, FlushEndsTheClientsOwnAnswerAndNoOthers) {
-  fake().thinking = 100 * kMs;
-  request(1, packet(Packet::kGetResponse, "mine"));
-  request(2, packet(Packet::kGetResponse, "yours"));
-  run(10 * kMs);
-  request(2, packet(Packet::kFlush));
-  request(3, packet(Packet::kFlush));
-  run(50 * kMs);
-  EXPECT_EQ(take(), Replies{});
-  run(400 * kMs);
-  EXPECT_EQ(take().front(), (std::pair<unsigned, Bytes>{1, "mine\r\x06"}));
-  request(1, packet(Packet::kGetResponse, "again"));
-  run(10 * kMs);
-  take();
-  request(1, packet(Packet::kFlush));
-  run(20 * kMs);
-  EXPECT_EQ(take(), (Replies{{1, kNul}, {1, "@"}}));
-}
-
-// ethernet:6/5
-TEST_F(CommunicationsProcessorTest, WhatStopsThingsWaitsForNobody) {
-  std::string seen;
-  fake().control = [&](char c) {
-    seen.push_back(c);
-    return Bytes();
-  };
-  fake().thinking = 400 * kMs;
-  request(1, packet(Packet::kGetResponse, "slow"));
-  run(10 * kMs);
-  request(2, packet(Packet::kSendControl, "", 0x12));  // ^R in its turn
-  request(3, packet(Packet::kSendControl, "", 0x01));
-  request(4, packet(Packet::kControlResponse, "", 0x0B, 0, 0xC0));
-  run(10 * kMs);
-  EXPECT_EQ(seen, "\x01\x0B");
-  EXPECT_EQ(take(), (Replies{{3, "@"}, {4, "\x06"}}));
-  run(500 * kMs);
-  EXPECT_EQ(seen, "\x01\x0B\x12");
-}
-
-TEST_F(CommunicationsProcessorTest, AStopDoesNotComeBeforeTheLineOfTheSameClient) {
-  std::string order;
-  fake().control = [&](char c) {
-    order.push_back(c);
-    return Bytes();
-  };
-  fake().controller = [&](const Bytes& line) {
-    order += line;
-    return "\x06";
-  };
-  request(1, packet(Packet::kSendLine, "#1J+"));
-  run(kMs / 100);
-  request(1, packet(Packet::kSendControl, "", 0x01));
-  run(10 * kMs);
-  EXPECT_EQ(order, "#1J+\x01");
-}
-
-// ethernet:6/3, ethernet:6/4
-TEST_F(CommunicationsProcessorTest, ControlCharactersAndTheirAnswers) {
-  const auto ask_control = [this](unsigned value) { return ask(packet(Packet::kControlResponse, "", value, 0, 0xC0)); };
-  EXPECT_EQ(ask_control(0x07), "000000000800\r");
-  EXPECT_EQ(ask_control(0x0700), "000000000800\r") << "in the high byte";
-  EXPECT_EQ(ask_control(0x12), "\x06");
-  EXPECT_EQ(ask_control('A'), "\x06") << "not sent";
-  EXPECT_EQ(ask(packet(Packet::kSendControl, "", 0x07)), "@");
-  EXPECT_EQ(fetch(), "000000000800\r\x06");
-  EXPECT_EQ(response("ver"), "ver\r\x06");
-}
-
 // ------------------------------------------------------------------------------------------------------- WRITEBUFFER
 
 // ethernet:5
@@ -442,6 +226,24 @@ TEST_F(CommunicationsProcessorTest, TextsOfProgramsGoToTheClientThatHasTalkedLas
   request(2, packet(Packet::kReadReady));
   run();
   EXPECT_EQ(take(), (Replies{{2, Bytes(2, '\0')}}));
+}
+
+// Nobody will answer until the next start.
+TEST_F(CommunicationsProcessorTest, ATrippedWatchdogIsSeenAtOnce) {
+  EXPECT_EQ(response("ver"), "ver\r\x06");
+  fake().thinking = 400 * kMs;
+  request(1, packet(Packet::kGetResponse, "slow"));
+  run(10 * kMs);
+  BoardOutputs tripped = machine_.outputs();
+  tripped.set(pin::kWdo, 1);
+  fake().planned.emplace_back(bus_.now() + 100, tripped);
+  run();
+  run();
+  EXPECT_EQ(take(), (Replies{{1, kNul}}));
+  const Tick begin = bus_.now();
+  EXPECT_EQ(response("ver"), kNul);
+  EXPECT_EQ(ask(packet(Packet::kFlush)), "@");
+  EXPECT_LE(bus_.now() - begin, 3 * kMs);
 }
 
 // Clients that ask for nothing cost no bus cycle.

@@ -108,6 +108,33 @@ def serve_datagrams():
         check(ask(packet(0xBF, b"i16")) == b"5\r\x06", "after what is lost")
 
 
+def serve_mailbox():
+    """Lines through the dual-ported RAM, as a client does that knows only memory (host-bus:6)."""
+    with served("--free") as server, server.client() as client:
+        client.command("I58=1")
+
+        def ask(line):
+            client.write_memory(0x0EA0, line + b"\0")
+            client.request(0xC0, 0xBA, value=0x0E9C, index=1, data=b"\1\0\0\0")
+            lines = []
+            for _ in range(20000):
+                control, length = struct.unpack("<HH", client.read_memory(0x0F40, 4))
+                if control == 0:
+                    continue
+                if control & 0x8000:
+                    lines.append(f"ERR{control & 0xFFF:03X}")
+                elif length > 1:
+                    lines.append(client.read_memory(0x0F44, length - 1).rstrip(b"\0").decode("ascii"))
+                client.write_memory(0x0F40, b"\0\0")
+                if control != 0x0D:
+                    return lines
+            return lines + ["no end"]
+        for line, expected in ((b"VER", ["1.947"]), (b"I16..17", ["5", "10"]), (b"UUU", ["ERR003"])):
+            said = ask(line)
+            check(said == expected, f"{line}: {said}, expected {expected}")
+        check(client.values("ver") == ["1.947"], "and by lines as before")
+
+
 def serve_ends():
     """SIGINT and SIGTERM end it with status 0, the flash file whole and the address kept beside it."""
     with tempfile.TemporaryDirectory() as folder:
