@@ -3,6 +3,7 @@
 #include "firmware/command/list_commands.h"
 
 #include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
@@ -97,6 +98,7 @@ static error_t list_fixed(struct lexer* lx, enum fixed_kind kind, bool numbered)
 static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
   word48_t words[LINE_WORDS];
   if (rotary_buffers[cs].size == 0) return ERR_DATA;
+  rotary_hold(true);
   const struct rotary_lines ahead = rotary_lines_ahead(cs);
   for (uint32_t line = 0, at = 0; line < lines && at < ahead.words; line++) {
     const uint32_t first = at;
@@ -107,12 +109,13 @@ static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
     } while (at - first < LINE_WORDS && at < ahead.words);
     list_line(words, at - first, rotary_offset(cs, ahead.offset, first), with_offset);
   }
+  rotary_hold(false);
   return ERR_NONE;
 }
 
 static error_t list_gather(struct lexer* lx) {
   struct part part;
-  const uint32_t size = region_words(REGION_GATHER, 0), base = region_base(REGION_GATHER, 0);
+  const uint32_t size = gather_stored_words(), base = region_base(REGION_GATHER, 0);
   const error_t error = read_part(lx, &part);
   if (error != ERR_NONE) return error;
   if (part.start >= size) return ERR_DATA;

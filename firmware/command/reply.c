@@ -1,8 +1,9 @@
 /* Replies: framing of data lines by I3, checksums by I4, and numbers as text. Every character goes straight to
- * the port. */
+ * its port. */
 #include "firmware/command/reply.h"
 
 #include "firmware/variables/i_variables.h"
+#include "rtl/regs/dpram_map.h"
 
 enum { TAG = 0x02, BELL = 0x07, LINE_FEED = 0x0A, CARRIAGE_RETURN = 0x0D, DECIMALS = 10 };
 
@@ -32,7 +33,27 @@ static void begin_line(void) {
   if (is_tagged()) send(TAG);
 }
 
+/* What the dual-ported RAM calls a line; 0: it does not go there. */
+static uint32_t line_code(void) {
+  switch (recipient) {
+    case REPLY_TO_DPRAM:
+      return DPRAM_RESPONSE_LINE;
+    case REPLY_TO_DPRAM_PROGRAM:
+      return DPRAM_RESPONSE_COMMAND;
+    case REPLY_TO_DPRAM_TEXT:
+      return DPRAM_RESPONSE_SEND;
+    default:
+      return 0;
+  }
+}
+
 void reply_char(char c) {
+  const uint32_t code = line_code();
+  if (code != 0u) {
+    line_open = true;
+    reply_lines.put(code, (uint8_t)c);
+    return;
+  }
   if (!line_open) begin_line();
   send((uint8_t)c);
 }
@@ -42,6 +63,12 @@ void reply_text(const char* text) {
 }
 
 void reply_end_line(void) {
+  const uint32_t code = line_code();
+  if (code != 0u) {
+    line_open = false;
+    reply_lines.end(code);
+    return;
+  }
   if (!line_open) begin_line();
   send(CARRIAGE_RETURN);
   if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) send(line_sum);
@@ -50,10 +77,33 @@ void reply_end_line(void) {
 
 bool reply_line_is_open(void) { return line_open; }
 
+static void error_text(error_t error) {
+  reply_text("ERR");
+  reply_char((char)('0' + error / 100));
+  reply_char((char)('0' + error / 10 % 10));
+  reply_char((char)('0' + error % 10));
+}
+
+/* The code of a command's error is the number itself. That of a program's command would end the host's own answer: it
+ * is a line. */
+static void report_error_in_lines(error_t error) {
+  if (recipient == REPLY_TO_DPRAM) {
+    const uint32_t number = (uint32_t)error;
+    reply_lines.end(DPRAM_RESPONSE_ERROR | number / 100u << 8 | number / 10u % 10u << 4 | number % 10u);
+    return;
+  }
+  error_text(error);
+  reply_end_line();
+}
+
 /* A program's error is one line by its tag: the CR that I6 = 3 puts behind BELL would end it. */
 void reply_error(error_t error) {
   const int32_t style = i_integer(I6_ERROR_REPORTING);
-  if (recipient == REPLY_TO_PROGRAM && style == 2) return;
+  if ((recipient == REPLY_TO_PROGRAM || recipient == REPLY_TO_DPRAM_PROGRAM) && style == 2) return;
+  if (line_code() != 0u) {
+    report_error_in_lines(error);
+    return;
+  }
   const bool tagged = is_tagged(), numbered = (style & 1) != 0;
   if (!tagged) send(BELL);
   if (!tagged && style == 3) send(CARRIAGE_RETURN);

@@ -1,5 +1,6 @@
 /* Replies to the command line being executed: data lines are framed by I3 and I4 as they are sent, errors by I6. What a
- * program sends, and what its commands answer, is marked by I64 (firmware:6.7). */
+ * program sends, and what its commands answer, is marked by I64 (firmware:6.7). The dual-ported RAM takes whole lines,
+ * each with a code that says what it is, and none of that framing (host-bus:6.6). */
 #ifndef FIRMWARE_COMMAND_REPLY_H
 #define FIRMWARE_COMMAND_REPLY_H
 
@@ -10,8 +11,23 @@
 
 extern void (*const reply_sink)(uint8_t c); /* where characters go: a port (image/tables.c) */
 
-enum reply_to { REPLY_TO_HOST, REPLY_TO_PROGRAM, REPLY_TO_NOBODY };
-void reply_to(enum reply_to whom); /* for whom what follows is: the port is one, the form differs */
+struct reply_lines { /* `code`: a DPRAM_RESPONSE_... */
+  void (*put)(uint32_t code, uint8_t c);
+  void (*end)(uint32_t code);
+};
+extern const struct reply_lines reply_lines; /* the port that takes lines (image/tables.c) */
+
+/* For whom what follows is, which says where it goes and its form: a command's answer, that of a program's command, and
+ * through the dual-ported RAM also its texts. */
+enum reply_to {
+  REPLY_TO_HOST,
+  REPLY_TO_PROGRAM,
+  REPLY_TO_NOBODY,
+  REPLY_TO_DPRAM,
+  REPLY_TO_DPRAM_PROGRAM,
+  REPLY_TO_DPRAM_TEXT
+};
+void reply_to(enum reply_to whom);
 
 void reply_text(const char* text); /* appends to the current data line */
 void reply_char(char c);

@@ -1,12 +1,11 @@
 #include "firmware/command/session.h"
 
-#include <stdatomic.h>
-
 struct session session;
 
-static struct session host;             /* the host's, while a program has its turn */
-static volatile enum session_port port; /* whose turn it is */
+static struct session host, dpram; /* their addresses while it is another's turn */
+static enum session_port port;     /* whose turn it is */
 static enum session_port buffer_owner;
+static volatile uint32_t selected_cs;
 bool session_owns_open_buffer;
 
 static void turn_to(enum session_port next) {
@@ -15,29 +14,38 @@ static void turn_to(enum session_port next) {
 }
 
 void session_initialize(void) {
-  session = (struct session){0, 0, 0};
+  session = host = dpram = (struct session){0, 0, 0};
+  selected_cs = 0;
   buffer_owner = SESSION_HOST;
   turn_to(SESSION_HOST);
 }
 
-/* Higher tasks look at the host's coordinate system: there is one for them at any instant. */
-void session_begin_program(uint32_t cs, uint32_t motor) {
+static void begin(enum session_port next, struct session addresses) {
   host = session;
-  atomic_signal_fence(memory_order_release);
-  turn_to(SESSION_PROGRAM);
-  atomic_signal_fence(memory_order_release);
-  session = (struct session){cs, motor, 0};
+  session = addresses;
+  turn_to(next);
 }
 
-void session_end_program(void) {
+void session_begin_dpram(void) { begin(SESSION_DPRAM, dpram); }
+
+void session_begin_program(uint32_t cs, uint32_t motor) { begin(SESSION_PROGRAM, (struct session){cs, motor, 0}); }
+
+void session_end(void) {
   if (port == SESSION_HOST) return;
+  if (port == SESSION_DPRAM) dpram = session;
   session = host;
-  atomic_signal_fence(memory_order_release);
   turn_to(SESSION_HOST);
 }
 
 bool session_is_program(void) { return port == SESSION_PROGRAM; }
-uint32_t session_host_cs(void) { return port == SESSION_PROGRAM ? host.cs : session.cs; }
+
+bool session_select_cs(void) {
+  if (selected_cs == session.cs) return false;
+  selected_cs = session.cs;
+  return true;
+}
+
+uint32_t session_selected_cs(void) { return selected_cs; }
 
 void session_own_buffer(void) {
   buffer_owner = port;

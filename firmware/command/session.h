@@ -1,13 +1,13 @@
-/* Who gives the command being executed and what they have addressed: `&n`, `#n`, `##n`. The host's addresses are modal;
- * a command that a program gives (COMMAND"..") brings its own and leaves none behind, as from a port of its own.
- * Background task. */
+/* Who gives the command being executed and what they have addressed: `&n`, `#n`, `##n`. The addresses of each port, the
+ * host port and the dual-ported RAM, are modal; a command that a program gives (COMMAND"..") brings its own and leaves
+ * none behind, as from a port of its own. Background task. */
 #ifndef FIRMWARE_COMMAND_SESSION_H
 #define FIRMWARE_COMMAND_SESSION_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum session_port { SESSION_HOST, SESSION_PROGRAM };
+enum session_port { SESSION_HOST, SESSION_DPRAM, SESSION_PROGRAM };
 
 struct session {
   uint32_t cs;          /* coordinate system, 0..15 */
@@ -16,11 +16,15 @@ struct session {
 };
 extern struct session session;
 
-void session_initialize(void);                           /* the host's turn: &1 #1 ##0; nobody has opened a buffer */
-void session_begin_program(uint32_t cs, uint32_t motor); /* a program's turn, until ... */
-void session_end_program(void);                          /* ... this, or a restart that its command has asked for */
+void session_initialize(void);  /* the host port's turn: &1 #1 ##0 of each port; nobody has opened a buffer */
+void session_begin_dpram(void); /* another's turn, until ... */
+void session_begin_program(uint32_t cs, uint32_t motor);
+void session_end(void); /* ... this, or a restart that its command has asked for: the host port's again */
 bool session_is_program(void);
-uint32_t session_host_cs(void); /* coordinate system that the host addresses, whoever's turn it is. Any task */
+
+/* The coordinate system that the host selects for its signals: the last `&n` of either port, whoever's turn it is. */
+bool session_select_cs(void);       /* the one addressed now; false: it was already */
+uint32_t session_selected_cs(void); /* any task */
 
 /* The open buffer takes lines from the port that has opened it, and from no other (firmware:4.1). */
 void session_own_buffer(void);

@@ -183,6 +183,15 @@ void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsi
   set_field(ic, GATE_WORD_CHANNEL, channel, lsb, width, value);
 }
 
+void gate_ic_set_compare_output(unsigned ic, unsigned channel, bool high) {
+  if (!gate_ic_present(ic)) return;
+  volatile uint32_t* const control = hal_x(address_of(ic, GATE_WORD_CHANNEL, channel));
+  const uint32_t state = hal_mask_servo();
+  const uint32_t others = *control & ~SERVO_CHANNEL_CONTROL_EQU_STATE_MASK;
+  *control = others | SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK | (high ? SERVO_CHANNEL_CONTROL_EQU_STATE_MASK : 0u);
+  hal_unmask(state);
+}
+
 void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value) {
   if (!gate_ic_present(ic)) return;
   const uint32_t address = address_of(ic, word, 0);

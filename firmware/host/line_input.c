@@ -9,6 +9,7 @@
 #include "firmware/command/control_characters.h"
 #include "firmware/command/program_line.h"
 #include "firmware/command/reply.h"
+#include "firmware/host/active_port.h"
 #include "firmware/host/host_port.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/variables/i_variables.h"
@@ -69,6 +70,7 @@ static void execute(void) {
   struct text* const line = &texts[current];
   const uint32_t count = length;
   error_t error = ERR_NONE;
+  active_port = PORT_PARALLEL;
   host_port_open_output();
   if (bad_character)
     error = ERR_CHARACTER;
@@ -178,7 +180,11 @@ static bool character(uint8_t c) {
       reply_end_line();
       acknowledge(0, 0);
       break;
+    case CONTROL_SERIAL_ACTIVE:
+      active_port = PORT_SERIAL;
+      break;
     default:
+      active_port = PORT_PARALLEL;
       host_port_open_output();
       if (control_character(c)) acknowledge(0, c);
       break;

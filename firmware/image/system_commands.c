@@ -3,6 +3,7 @@
 
 #include "firmware/buffers/program_password.h"
 #include "firmware/command/session.h"
+#include "firmware/host/dpram_ascii.h"
 #include "firmware/host/line_input.h"
 #include "firmware/image/start.h"
 #include "firmware/run/run_control.h"
@@ -39,7 +40,7 @@ static error_t password(struct lexer* lx) {
     return ERR_DATA;
   }
   if (!lexer_accept(lx, '=')) return ERR_DATA;
-  const char* text = line_input_as_typed(lx->at);
+  const char* text = dpram_ascii_as_typed(line_input_as_typed(lx->at));
   drop_rest_of_line(lx);
   uint32_t length = 0;
   while (text[length] != '\0') ++length;

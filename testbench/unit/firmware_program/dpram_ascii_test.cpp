@@ -1,0 +1,341 @@
+// The ASCII port in the dual-ported RAM (host-bus:6.6, host-bus:8.5) beside the host port.
+#include <random>
+
+#include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_program/dpram_host.h"
+
+extern "C" {
+#include "firmware/host/dpram_ascii.h"
+#include "firmware/variables/pq_variables.h"
+#include "rtl/regs/brick_regs.h"
+}
+
+namespace {
+
+using platform::background;
+using platform::DpramHost;
+using platform::host;
+using platform::sent;
+using Lines = std::vector<std::string>;
+
+class DpramAscii : public FirmwareTest {
+ protected:
+  void SetUp() override {
+    FirmwareTest::SetUp();
+    ASSERT_EQ(host("I3=2 I6=1 I5=2 I58=1"), "");
+    background(1);
+  }
+  // A line as the host port brings it; what comes back on that port.
+  static std::string by_port(const std::string& line) {
+    for (const char c : line + "\r") host_port_character(static_cast<std::uint8_t>(c));
+    background(2);
+    return sent();
+  }
+  // PLC 1 executes the statements once.
+  static void once(Lines lines) {
+    lines.emplace_back("DISABLE PLC 1");
+    ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
+    for (const std::string& line : lines) ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("CLOSE ENABLE PLC 1"), "");
+    background(3 + static_cast<unsigned>(lines.size()));
+  }
+  // What the buffer shows from now on, released line by line: code and text.
+  Lines released() {
+    Lines lines;
+    while (const auto response = ram_host.take(3)) {
+      char code[8];
+      std::snprintf(code, sizeof code, "%04X ", response->code);
+      lines.push_back(code + response->text);
+      EXPECT_EQ(response->count, response->text.size() + 1);
+    }
+    return lines;
+  }
+  static std::vector<bool> compare_output_edges() {
+    const fake_write* log = nullptr;
+    const unsigned count = fake_hal_writes(&log);
+    std::vector<bool> levels;
+    for (unsigned i = 0; i < count; ++i)
+      if (log[i].x && log[i].address == SERVO_IC_0_BASE + SERVO_CHANNEL_X_CONTROL &&
+          (log[i].value & SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK) != 0)
+        levels.push_back((log[i].value & SERVO_CHANNEL_CONTROL_EQU_STATE_MASK) != 0);
+    return levels;
+  }
+
+  platform::NativeDpram ram;
+  DpramHost ram_host{ram};
+};
+
+TEST_F(DpramAscii, AnswersWithLinesThenAcknowledges) {
+  ASSERT_TRUE(ram_host.send("P1=25 P2=50 P1..2"));
+  EXPECT_EQ(released(), (Lines{"000D 25", "000D 50", "0006 "}));
+  ASSERT_TRUE(ram_host.send("P3=1"));
+  EXPECT_EQ(released(), (Lines{"0006 "}));
+  ASSERT_TRUE(ram_host.send(""));
+  EXPECT_EQ(released(), (Lines{"0006 "}));
+}
+
+TEST_F(DpramAscii, AnErrorIsItsNumberInDecimalDigitsBehindTheLinesBeforeIt) {
+  ASSERT_TRUE(ram_host.send("P1=7 P1 UUU P1=8"));
+  EXPECT_EQ(released(), (Lines{"000D 7", "8003 "}));
+  ASSERT_TRUE(ram_host.send("X1000"));
+  EXPECT_EQ(released(), (Lines{"8005 "}));
+  ASSERT_TRUE(ram_host.send("&1R"));
+  EXPECT_EQ(released(), (Lines{"8015 "})) << "no program";
+  EXPECT_EQ(host("P1"), "7");
+}
+
+// I3, I4 and I6 are of the other port.
+TEST_F(DpramAscii, NoFramingAndNoChecksums) {
+  ASSERT_EQ(host("I3=3 I4=1 I6=0 I64=1 P1=5"), "");
+  ASSERT_TRUE(ram_host.send("P1"));
+  EXPECT_EQ(released(), (Lines{"000D 5", "0006 "}));
+  ASSERT_TRUE(ram_host.send("UUU"));
+  EXPECT_EQ(released(), (Lines{"8003 "}));
+}
+
+TEST_F(DpramAscii, LinesOfUpTo255CharactersComeInPieces) {
+  for (const unsigned length : {1U, 2U, 157U, 158U, 159U, 160U, 161U, 254U, 255U}) {
+    std::string line = "P1=" + std::to_string(length % 7);
+    if (length < line.size()) line = "&";
+    line.insert(line.size() > 3 ? 3 : line.size(), std::string(length - line.size(), ' '));
+    ASSERT_EQ(line.size(), length);
+    ASSERT_EQ(host("P1=-1"), "");
+    EXPECT_EQ(ram_host.ask(line), length < 4 ? (length == 1 ? "1" : "1") : "") << length;
+    if (length >= 4) { EXPECT_EQ(host("P1"), std::to_string(length % 7)) << length; }
+  }
+  EXPECT_EQ(ram_host.ask("P1=9" + std::string(252, ' ')), "ERR003") << "256 characters";
+  EXPECT_EQ(host("P1"), "3") << "255 % 7";
+  EXPECT_EQ(ram_host.ask("P1=9" + std::string(2000, ' ')), "ERR003");
+  EXPECT_EQ(ram_host.ask("P1=4"), "");
+}
+
+TEST_F(DpramAscii, QuotesKeepTheirCaseAndCharactersThatAreNoneAreRefused) {
+  EXPECT_EQ(ram_host.ask("p1=4 p1\r\n"), "4") << "CR and LF are not of the line";
+  EXPECT_EQ(ram_host.ask("P1=\x01 5"), "ERR004");
+  EXPECT_EQ(ram_host.ask("P1=\xC4"), "ERR004");
+  EXPECT_EQ(ram_host.ask("PASSWORD=aB c"), "");
+  const char* kept = nullptr;
+  const std::uint32_t length = program_password(&kept);
+  EXPECT_EQ(std::string(kept, length), "aB c");
+}
+
+TEST_F(DpramAscii, AddressesAreOfEachPort) {
+  EXPECT_EQ(ram_host.ask("&3#7##2"), "");
+  EXPECT_EQ(by_port("&#"), "1\r1\r\x06");
+  EXPECT_EQ(by_port("&2"), "\x06");
+  EXPECT_EQ(ram_host.ask("&#"), "3|7");
+  EXPECT_EQ(by_port("&"), "2\r\x06");
+}
+
+// BREQ is that of the last `&n`, from whichever port (host-bus:5.3).
+TEST_F(DpramAscii, TheLastAddressSelectsBreq) {
+  EXPECT_EQ(ram_host.ask("&2DEF ROT 50"), "");
+  EXPECT_EQ(ram_host.ask("OPEN ROT"), "");
+  EXPECT_TRUE(platform::breq()) << "C.S. 2, by the RAM";
+  EXPECT_EQ(by_port("&1"), "\x06");
+  EXPECT_FALSE(platform::breq()) << "C.S. 1, which has no buffer, by the port";
+  EXPECT_EQ(ram_host.ask("&"), "2");
+  EXPECT_FALSE(platform::breq()) << "a question selects nothing";
+  EXPECT_EQ(ram_host.ask("&2"), "");
+  EXPECT_TRUE(platform::breq());
+}
+
+TEST_F(DpramAscii, TheOpenBufferIsThatOfThePortThatHasOpenedIt) {
+  EXPECT_EQ(ram_host.ask("OPEN PROG 5 CLEAR"), "");
+  EXPECT_EQ(ram_host.ask("X10"), "");
+  EXPECT_EQ(by_port("X20"), "\aERR005\r");
+  EXPECT_EQ(by_port("CLOSE"), "\x06") << "of another port";
+  EXPECT_EQ(ram_host.ask("X30"), "");
+  EXPECT_EQ(ram_host.ask("CLOSE"), "");
+  EXPECT_EQ(host("LIST PROG 5"), "X10|X30");
+}
+
+// A line that the host port is in the middle of is not disturbed, compiled ahead or not.
+TEST_F(DpramAscii, ALineOfTheHostPortUnderWayIsKept) {
+  ASSERT_EQ(by_port("&1DEF ROT 100"), "\x06");
+  ASSERT_EQ(by_port("OPEN ROT"), "\x06");
+  for (const char c : std::string("X10 Y2")) host_port_character(static_cast<std::uint8_t>(c));
+  background(1);
+  EXPECT_EQ(ram_host.ask("P1=1 P1"), "1");
+  EXPECT_EQ(by_port("0"), "\x06");
+  EXPECT_EQ(host("LIST ROT"), "X10Y20");
+}
+
+TEST_F(DpramAscii, ControlCharactersActAndAreCleared) {
+  ASSERT_TRUE(ram_host.control(0x10));
+  EXPECT_EQ(released(), (Lines{"000D 0 0 0 0 0 0 0 0", "0006 "}));
+  once({"P1=P1+1", "ENABLE PLC 1"});
+  ASSERT_TRUE(ram_host.control(0x04));
+  EXPECT_EQ(released(), (Lines{})) << "^D answers nothing";
+  EXPECT_EQ(ram_host.ask("P1=6 P1"), "6");
+  ASSERT_TRUE(ram_host.control(0x19));
+  EXPECT_EQ(released(), (Lines{"000D P1=6 P1", "0006 "})) << "^Y";
+}
+
+TEST_F(DpramAscii, ControlXForgetsWhatWaits) {
+  ASSERT_TRUE(ram_host.send("P1..5"));
+  background(3);
+  ASSERT_TRUE(ram_host.control(0x18));
+  EXPECT_EQ(released(), (Lines{"000D 0"})) << "the line that stood there is the host's";
+  EXPECT_EQ(ram_host.ask("P1=3 P1"), "3");
+}
+
+TEST_F(DpramAscii, TextsGoWhereTheyAreSent) {
+  once({"SENDR\"ram\"", "SENDP\"port\"", "SENDS\"serial\"", "SENDA\"auxiliary\""});
+  EXPECT_EQ(sent(), "port\r");
+  EXPECT_EQ(released(), (Lines{"020D ram"}));
+}
+
+TEST_F(DpramAscii, TheActivePortIsTheLastThatHasBroughtACommand) {
+  once({"SEND\"1\""});
+  EXPECT_EQ(sent(), "1\r") << "host port, from the start";
+  EXPECT_EQ(ram_host.ask("P1=1"), "");
+  once({"SEND\"2\""});
+  EXPECT_EQ(sent(), "");
+  EXPECT_EQ(released(), (Lines{"020D 2"}));
+  EXPECT_EQ(by_port("P1=1"), "\x06");
+  once({"SEND\"3\""});
+  EXPECT_EQ(sent(), "3\r");
+  ASSERT_TRUE(ram_host.control(0x1A));
+  once({"SEND\"4\""});
+  EXPECT_EQ(sent(), "") << "the serial port, which is not there";
+  EXPECT_EQ(released(), (Lines{}));
+  EXPECT_EQ(by_port("\x1A"), "\x06") << "the line that ends behind it makes the port active again";
+  once({"SEND\"5\""});
+  EXPECT_EQ(sent(), "5\r");
+}
+
+TEST_F(DpramAscii, CommandsOfProgramsAnswerWhereTheyName) {
+  ASSERT_EQ(host("P1=3 P2=4"), "");
+  once({"CMDR\"P1P2\"", "CMDP\"P2\"", "CMD\"P1\"", "CMDR\"UUU\""});
+  EXPECT_EQ(sent(), "4\r");
+  EXPECT_EQ(released(), (Lines{"010D 3", "010D 4", "010D ERR003"}));
+  EXPECT_EQ(ram_host.ask("P1"), "3");
+  once({"CMD\"UUU\""});
+  EXPECT_EQ(sent(), "");
+  EXPECT_EQ(released(), (Lines{"010D ERR003"})) << "the active port";
+}
+
+// 8,192 answers are more than the other port's queue holds.
+TEST_F(DpramAscii, ALongAnswerArrivesWhole) {
+  ASSERT_TRUE(ram_host.send("P0..8191"));
+  background(2);
+  EXPECT_EQ(by_port("P1=5 P1"), "5\r\x06") << "not held up";
+  const brick::Reply reply = ram_host.finish(DpramHost::kPasses);
+  EXPECT_TRUE(reply.complete);
+  EXPECT_EQ(reply.lines.size(), 8192U);
+}
+
+TEST_F(DpramAscii, AnAnswerThatNoQueueHoldsIsCutAndEndsWithAnError) {
+  std::string line;
+  for (int i = 0; i < 20; ++i) line += "M0..8191->";
+  ASSERT_TRUE(ram_host.send(line));
+  const brick::Reply reply = ram_host.finish(DpramHost::kPasses);
+  EXPECT_TRUE(reply.complete);
+  ASSERT_GT(reply.lines.size(), 8192U);
+  EXPECT_EQ(reply.lines.back(), "ERR006");
+  EXPECT_EQ(ram_host.ask("P1=5 P1"), "5");
+}
+
+// A host that never reads: its next command waits, nobody else.
+TEST_F(DpramAscii, AHostThatDoesNotReadHoldsUpItselfOnly) {
+  ASSERT_TRUE(ram_host.send("P0..999"));
+  background(2);
+  ASSERT_TRUE(ram_host.send("P1=77"));
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(by_port("P2=P2+1"), "\x06");
+  EXPECT_EQ(host("P1 P2"), "0|20");
+  once({"SENDR\"for the ram\"", "SENDP\"for the port\""});
+  EXPECT_EQ(sent(), "") << "the port's text stands behind the other";
+  platform::pass_us(600'000);
+  background(3);
+  EXPECT_EQ(sent(), "for the port\r") << "half a second later the other is dropped";
+  const brick::Reply reply = ram_host.finish(DpramHost::kPasses);
+  EXPECT_EQ(reply.lines.size(), 1000U);
+  EXPECT_TRUE(ram_host.finish(DpramHost::kPasses).complete);
+  EXPECT_EQ(host("P1"), "77");
+  EXPECT_EQ(ram_host.take_unsolicited(), Lines{});
+}
+
+// One rise a line, which falls when the host has released it.
+TEST_F(DpramAscii, I56RaisesEqu1ForEachLine) {
+  ASSERT_EQ(host("I56=1"), "");
+  fake_hal_clear_writes();
+  ASSERT_TRUE(ram_host.send("P1"));
+  background(2);
+  EXPECT_EQ(compare_output_edges(), (std::vector<bool>{true}));
+  background(5);
+  EXPECT_EQ(compare_output_edges(), (std::vector<bool>{true})) << "high until released";
+  EXPECT_EQ(released(), (Lines{"000D 0", "0006 "}));
+  EXPECT_EQ(compare_output_edges(), (std::vector<bool>{true, false, true, false}));
+  ASSERT_EQ(host("I56=0"), "");
+  EXPECT_EQ(ram_host.ask("P1"), "0");
+  EXPECT_EQ(compare_output_edges().size(), 4U);
+}
+
+TEST_F(DpramAscii, AnUltraliteRaisesCtrl0AndLeavesCtrl1) {
+  fake_hal_set_strap(HAL_STRAP_PRODUCT, HAL_PRODUCT_ULTRALITE);
+  ASSERT_EQ(host("I56=1 M1->X:$70012,0,2 M1=2"), "");
+  ASSERT_TRUE(ram_host.send("P1"));
+  background(2);
+  EXPECT_EQ(host("M1"), "3");
+  EXPECT_EQ(released(), (Lines{"000D 0", "0006 "}));
+  EXPECT_EQ(host("M1"), "2");
+}
+
+TEST_F(DpramAscii, IsOffUntilI58AndThenBeginsClean) {
+  ASSERT_EQ(host("I58=0"), "");
+  background(1);
+  ram.write(DPRAM_COMMAND_CONTROL, 1);
+  ram.write(DPRAM_COMMAND_TEXT, 'P' | '1' << 8);
+  ram.write(DPRAM_COMMAND_TEXT + 2, '=' | '1' << 8);
+  ram.write(DPRAM_COMMAND_TEXT + 4, 0);
+  ram.write(DPRAM_CONTROL_CHARACTER, 0x10);
+  ram.write(DPRAM_RESPONSE_CONTROL, 0x1234);
+  background(5);
+  EXPECT_EQ(ram.read(DPRAM_COMMAND_CONTROL), 1U);
+  EXPECT_EQ(ram.read(DPRAM_CONTROL_CHARACTER), 0x10U);
+  EXPECT_EQ(ram.read(DPRAM_RESPONSE_CONTROL), 0x1234U);
+  once({"SENDR\"nobody\""});
+  ASSERT_EQ(host("I58=1"), "");
+  background(1);
+  EXPECT_EQ(ram.read(DPRAM_COMMAND_CONTROL), 0U);
+  EXPECT_EQ(ram.read(DPRAM_CONTROL_CHARACTER), 0U);
+  EXPECT_EQ(ram.read(DPRAM_RESPONSE_CONTROL), 0U);
+  EXPECT_EQ(host("P1"), "0");
+  EXPECT_EQ(released(), (Lines{}));
+  ASSERT_EQ(host("I24=0"), "");
+  background(1);
+  EXPECT_FALSE(dpram_ascii_is_on()) << "no RAM is named";
+}
+
+TEST_F(DpramAscii, ARestartThroughThePortIsAcknowledgedIfItIsOnAfterIt) {
+  ASSERT_EQ(host("SAVE"), "");
+  fake_hal_set_look(100);
+  EXPECT_EQ(ram_host.ask("P1=1 $$$"), "");
+  EXPECT_EQ(ram_host.ask("I58 P1"), "1|0");
+  ASSERT_TRUE(ram_host.send("$$$***"));
+  background(5);
+  EXPECT_FALSE(dpram_ascii_is_on());
+  EXPECT_EQ(host("I58=1"), "");
+  EXPECT_EQ(released(), (Lines{})) << "of what was before";
+}
+
+// Whatever the host writes wherever: nothing traps, the port works afterwards.
+TEST_F(DpramAscii, AnyWordsAreSurvived) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 3000; ++i) {
+    const std::uint32_t offset = DPRAM_COMMAND_CONTROL + 2 * (random() % ((DPRAM_OPEN - DPRAM_COMMAND_CONTROL) / 2));
+    ram.write(offset, static_cast<std::uint16_t>(random()));
+    ram.write(DPRAM_COMMAND_CONTROL, random() % 2);
+    if (random() % 3 == 0) ram.write(DPRAM_RESPONSE_CONTROL, 0);
+    background(1);
+  }
+  ASSERT_TRUE(ram_host.control(0x18));
+  while (ram_host.take(3)) {}
+  platform::reset("$$$***");
+  ASSERT_EQ(host("I58=1"), "");
+  background(1);
+  EXPECT_EQ(ram_host.ask("P1=4 P1"), "4");
+}
+
+}  // namespace
