@@ -1,7 +1,7 @@
 // Binary lines from a host on the bus to the ring of a machine with the real firmware (host-bus:7).
 #include "testbench/host/binary_rotary.h"
 
-#include "rtl/regs/dpram_map.h"
+#include "testbench/benchmark/routes.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -38,6 +38,26 @@ TEST_P(BinaryTransfer, LinesAreStoredListedAndExecuted) {
     wait(ms_to_ticks(15));
     EXPECT_EQ(ask("P1 P5000 PR"), "7|-3|0");
   }
+}
+
+// Into a large ring with the program stopped (host-bus:7.1/2): many times as fast.
+TEST_P(BinaryTransfer, IsFasterThanText) {
+  BRICK_COVERS("BIN-4");
+  const auto speed = [](Route route) { return measure_lines_per_second(route, 4, 24, GetParam(), BRICK_FIRMWARE); };
+  EXPECT_GT(speed(Route::kBinary0), 2 * speed(Route::kHostPort));
+}
+
+// The three reasons apart: characters, parsing, lines of one pass. And what I45 = 1 is for: PLCs do not delay it.
+TEST_P(BinaryTransfer, ReasonsWhyItIsFaster) {
+  BRICK_COVERS("BIN-4 BIN-5");
+  if (GetParam() != Engine::kSystemC) return;
+  const RouteSpeed text = measure_route(Route::kHostPort, 4, 24, GetParam(), BRICK_FIRMWARE);
+  const RouteSpeed binary = measure_route(Route::kBinary0, 4, 24, GetParam(), BRICK_FIRMWARE);
+  EXPECT_LT(2 * binary.bus_us, text.bus_us) << "four commands of 16 bytes in 21 words, for 26 characters";
+  EXPECT_LT(2 * binary.cpu_cycles, text.cpu_cycles);
+  EXPECT_GT(binary.lines_per_second, 1.5 * binary.lines_one_by_one);
+  EXPECT_GT(measure_breq_us(Route::kBinary0, 6, true, BRICK_FIRMWARE).back(), 4000) << "a scan of a PLC";
+  EXPECT_LT(measure_breq_us(Route::kBinary1, 6, true, BRICK_FIRMWARE).back(), 1600) << "a real-time interrupt";
 }
 
 BRICK_ON_ENGINES(BinaryTransfer, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
