@@ -8,11 +8,13 @@
 enum {
   STATUS_REAL_TIME_REENTRY = 1 << 22,
   STATUS_SERVO_ERROR = 1 << 20,
+  STATUS_GATHERING = 1 << 19,      /* follows */
+  STATUS_GATHER_TRIGGER = 1 << 17, /* follows; written 0 it is the trigger */
   STATUS_WATCHDOG = 1 << 15,
   STATUS_FLASH_ERROR = 1 << 10,
   STATUS_REAL_TIME_WARNING = 1 << 9,
   STATUS_CONFIGURATION = 1 << 7,
-  STATUS_NO_PHASE_CLOCK = 1 << 3 /* follows the clocks, as the only one */
+  STATUS_NO_PHASE_CLOCK = 1 << 3 /* follows the clocks */
 };
 
 void status_initialize(void);

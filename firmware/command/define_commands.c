@@ -5,6 +5,7 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/compensation_tables.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
@@ -52,8 +53,9 @@ static error_t define_rotary(struct lexer* lx, uint32_t cs) {
 static error_t define_gather(struct lexer* lx) {
   uint32_t words;
   char c = lexer_peek(lx);
-  if (c < '$' || c > '9') return region_define_rest();
-  return size_argument(lx, &words) != ERR_NONE ? ERR_DATA : region_define(REGION_GATHER, 0, words);
+  if (c < '$' || c > '9') return gather_define(GATHER_ALL_THERE_IS);
+  if (size_argument(lx, &words) != ERR_NONE || words == 0u) return ERR_DATA;
+  return gather_define(words);
 }
 
 static error_t define_tbuf(struct lexer* lx) {
@@ -95,6 +97,7 @@ static error_t delete_rotary(uint32_t cs) {
 static error_t delete_all(bool tables) {
   if (open_buffer_kind() != OPEN_NONE) return ERR_DATA;
   if (run_any_running()) return ERR_PROGRAM_RUNNING;
+  gather_delete_always();
   rotary_delete_all();
   if (tables) compensation_tables_delete_all();
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_forget_rotary(cs);
@@ -110,7 +113,7 @@ static error_t delete_any(struct lexer* lx) {
   if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
     return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_CCBUF, cs);
-  if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return region_delete(REGION_GATHER, cs);
+  if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return gather_delete();
   if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : region_delete(REGION_TBUF, cs);
   return table_delete(lx, &error) ? error : ERR_DATA;
 }

@@ -3,6 +3,7 @@
 #include "firmware/command/list_commands.h"
 
 #include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
@@ -114,7 +115,7 @@ static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
 
 static error_t list_gather(struct lexer* lx) {
   struct part part;
-  const uint32_t size = region_words(REGION_GATHER, 0), base = region_base(REGION_GATHER, 0);
+  const uint32_t size = gather_stored_words(), base = region_base(REGION_GATHER, 0);
   const error_t error = read_part(lx, &part);
   if (error != ERR_NONE) return error;
   if (part.start >= size) return ERR_DATA;

@@ -1,6 +1,4 @@
-/* Motor n's registers stand at $80 * n (firmware:1.10): D:+$08 commanded and D:+$0B actual position in 1/(32 Ixx08)
- * count, D:+$10 compensation, D:+$4C bias, X:+$1D velocity in 1/(32 Ixx09) count a servo cycle. Status
- * words: motion/motor_status.h. */
+/* From the registers of motors (base/memory_map.h, firmware:1.10). Status words: motion/motor_status.h. */
 #include "firmware/command/motor_report.h"
 
 #include "firmware/base/memory_map.h"
@@ -8,8 +6,6 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/variables/i_variables.h"
-
-enum { COMMANDED = 0x08, ACTUAL = 0x0B, COMPENSATION = 0x10, VELOCITY = 0x1D, BIAS = 0x4C };
 
 static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
@@ -38,15 +34,17 @@ void motor_report_status(uint32_t motor) {
 
 void motor_report_position(uint32_t motor) {
   const uint32_t at = base(motor);
-  report_scaled(long_word(at + ACTUAL) + long_word(at + COMPENSATION) + long_word(at + BIAS),
+  report_scaled(long_word(at + MEMORY_MOTOR_ACTUAL) + long_word(at + MEMORY_MOTOR_COMPENSATION) +
+                    long_word(at + MEMORY_MOTOR_BIAS),
                 variable(motor, IXX08_POSITION_SCALE));
 }
 
 void motor_report_velocity(uint32_t motor) {
-  report_scaled(hal_signed(*hal_x(base(motor) + VELOCITY)), variable(motor, IXX09_VELOCITY_SCALE));
+  report_scaled(hal_signed(*hal_x(base(motor) + MEMORY_MOTOR_VELOCITY)), variable(motor, IXX09_VELOCITY_SCALE));
 }
 
 void motor_report_following_error(uint32_t motor) {
   const uint32_t at = base(motor);
-  report_scaled(long_word(at + COMMANDED) - long_word(at + ACTUAL), variable(motor, IXX08_POSITION_SCALE));
+  report_scaled(long_word(at + MEMORY_MOTOR_COMMANDED) - long_word(at + MEMORY_MOTOR_ACTUAL),
+                variable(motor, IXX08_POSITION_SCALE));
 }

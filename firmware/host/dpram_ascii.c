@@ -11,6 +11,7 @@
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/active_port.h"
+#include "firmware/host/dpram_report.h"
 #include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
 #include "firmware/kernel/background.h"
@@ -34,10 +35,7 @@ void dpram_ascii_initialize(void) {
   dpram_responses_initialize();
 }
 
-static bool is_enabled(void) {
-  return i_integer(I58_DPRAM_ASCII) != 0 && (uint32_t)i_integer(I24_DPRAM_BASE) == DPRAM_BASE &&
-         dpram_bytes() > DPRAM_RESPONSE_TEXT + DPRAM_RESPONSE_BYTES;
-}
+static bool is_enabled(void) { return i_integer(I58_DPRAM_ASCII) != 0 && dpram_is_fitted(); }
 
 bool dpram_ascii_is_on(void) { return on; }
 

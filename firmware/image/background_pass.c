@@ -7,6 +7,8 @@
 #include "firmware/hal/hal.h"
 #include "firmware/host/binary_rotary.h"
 #include "firmware/host/dpram_ascii.h"
+#include "firmware/host/dpram_motors.h"
+#include "firmware/host/dpram_systems.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
@@ -38,6 +40,8 @@ void background_pass(void) {
   binary_rotary_pass();
   program_texts_pass();
   dpram_ascii_pass();
+  dpram_motors_pass();
+  dpram_systems_pass();
   background_meanwhile();
   i_variable_apply_clock_directions(); /* written by a program */
   if (host_port_waiting()) background_wake();

@@ -6,6 +6,7 @@
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/fixed_programs.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/program_password.h"
 #include "firmware/buffers/regions.h"
@@ -15,6 +16,8 @@
 #include "firmware/hal/hal.h"
 #include "firmware/host/binary_rotary.h"
 #include "firmware/host/dpram_ascii.h"
+#include "firmware/host/dpram_motors.h"
+#include "firmware/host/dpram_systems.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -69,6 +72,7 @@ static void load_user_memory(void) {
   axis_definition_initialize();
   *hal_y(MEMORY_DPRAM_END) = DPRAM_BASE + hal_strap(HAL_STRAP_DPRAM_WORDS) / 2u;
   regions_initialize();
+  gather_initialize();
   fixed_programs_initialize();
   compensation_tables_initialize();
   program_password_initialize();
@@ -97,6 +101,8 @@ void start(enum start_mode mode) {
   plc_initialize();
   program_texts_initialize();
   dpram_ascii_initialize();
+  dpram_motors_initialize();
+  dpram_systems_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();

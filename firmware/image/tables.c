@@ -2,9 +2,11 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/command/buffer_commands.h"
 #include "firmware/command/calendar_commands.h"
 #include "firmware/command/command.h"
+#include "firmware/command/gather_commands.h"
 #include "firmware/command/list_commands.h"
 #include "firmware/command/memory_commands.h"
 #include "firmware/command/motor_commands.h"
@@ -13,6 +15,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/report_commands.h"
 #include "firmware/command/session.h"
+#include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
@@ -33,6 +36,8 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
+  gather_servo();
+  dpram_motors_servo();
   host_port_reserve();
 }
 
@@ -58,9 +63,17 @@ static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session
 
 uint32_t (*const buffer_request_selected)(void) = selected_cs;
 
-const struct command_entry* const command_tables[] = {
-    report_commands, system_commands, memory_commands, calendar_commands, buffer_commands,
-    list_commands,   plc_commands,    motor_commands,  program_commands,  0};
+const struct command_entry* const command_tables[] = {report_commands,
+                                                      system_commands,
+                                                      memory_commands,
+                                                      calendar_commands,
+                                                      buffer_commands,
+                                                      list_commands,
+                                                      plc_commands,
+                                                      motor_commands,
+                                                      program_commands,
+                                                      gather_commands,
+                                                      0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;
 

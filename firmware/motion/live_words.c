@@ -25,7 +25,6 @@ enum { /* of a coordinate system */
        CS_TIMERS = 0x15,
        CS_STATUS_2 = 0x3F,
        CS_STATUS_1 = 0x40, /* Y: word 3 */
-       CS_TARGETS = 0x41,
        CS_END = MEMORY_CS_WORDS + MEMORY_CS_STRIDE * COORDINATE_SYSTEMS
 };
 
@@ -80,8 +79,8 @@ static double target(const struct coordinate_system* s, uint32_t axis) {
 
 static unsigned cs_word(uint32_t cs, uint32_t offset, uint32_t* x, uint32_t* y) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  if (offset - CS_TARGETS < AXIS_COUNT) {
-    set_float(target(s, offset - CS_TARGETS), x, y);
+  if (offset - MEMORY_CS_TARGETS < AXIS_COUNT) {
+    set_float(target(s, offset - MEMORY_CS_TARGETS), x, y);
     return BOTH;
   }
   switch (offset) {

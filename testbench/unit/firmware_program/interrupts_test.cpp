@@ -221,4 +221,37 @@ TEST_F(Interrupts, APointerGivenBehindAnAbortKeepsItsFirstLine) {
   EXPECT_GT(came, kSeeds);
 }
 
+// A move that `/` holds back is dropped by B and never starts, wherever an interrupt comes: nothing is masked there.
+TEST_F(Interrupts, AMoveThatIsHeldBackNeverStartsBehindB) {
+  constexpr std::uint32_t kSeeds = 300;
+  struct coordinate_system& s = coordinate_systems[0];
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR TM5 TA2 TS0 INC"), "");
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("CLOSE OPEN PROG 3 CLEAR P3=P3+1 CLOSE"), "");
+  unsigned servo = 0, real_time = 0;
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    ASSERT_EQ(host("B2R"), "");
+    platform::servo_ticks(9);
+    ASSERT_EQ(host("/"), "");
+    platform::servo_ticks(30);
+    ASSERT_TRUE(s.next_valid && !s.active && !s.running) << "nothing is held back";
+    const std::uint32_t started = s.started;
+    const double position = s.moves[s.executing ^ 1u].start[AXIS_X];
+    fake_interrupts_begin(seed, 3);
+    ASSERT_EQ(run_point(0, 3.0), ERR_NONE);
+    servo += fake_interrupts_counts().taken[FAKE_SERVO];
+    real_time += fake_interrupts_counts().taken[FAKE_REAL_TIME];
+    fake_interrupts_end();
+    platform::servo_ticks(6);
+    ASSERT_EQ(s.started, started) << "seed " << seed;
+    ASSERT_FALSE(s.active || s.next_valid || s.settling || s.end_block) << "seed " << seed;
+    ASSERT_EQ(s.position[AXIS_X], position) << "seed " << seed;
+    ASSERT_EQ(host("P3=0 R"), "");
+    platform::servo_ticks(6);
+    ASSERT_EQ(p_variable_read(3), 1.0) << "seed " << seed;
+  }
+  EXPECT_GT(servo, kSeeds);
+  EXPECT_GT(real_time, kSeeds / 4);
+}
+
 }  // namespace

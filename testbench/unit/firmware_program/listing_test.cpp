@@ -194,9 +194,13 @@ TEST_F(Listing, TheOpenBufferAndTheRotaryOne) {
 
 TEST_F(Listing, GatherIsListedInLongWords) {
   EXPECT_EQ(host("LIST GATHER"), "ERR003");
+  ASSERT_EQ(host("WX$20,$123456 WY$20,$ABCDEF I5001=$800020 I5050=1 I5049=1"), "");
   ASSERT_EQ(host("DEF GAT 3"), "");
-  ASSERT_EQ(host("WX$107FE,$123456 WY$107FE,$ABCDEF"), "");  // its three words end at $010800
-  EXPECT_EQ(host_lines("LIST GAT,1,2"), (Lines{"123456ABCDEF", "000000000000"}));
+  EXPECT_EQ(host("LIST GATHER"), "ERR003") << "nothing has been gathered";
+  ASSERT_EQ(host("GATHER"), "");
+  platform::servo_ticks(3);
+  ASSERT_EQ(host("WX$107FF,0"), "");  // its three words end at $010800
+  EXPECT_EQ(host_lines("LIST GAT,1,2"), (Lines{"123456ABCDEF", "000000ABCDEF"}));
 }
 
 }  // namespace

@@ -1,0 +1,236 @@
+// Reports in the dual-ported RAM (host-bus:6.4, host-bus:6.5): values against what commands report, handshake, periods.
+#include "testbench/host/dpram_reports.h"
+
+#include <cmath>
+
+#include "testbench/unit/firmware_program/dpram_host.h"
+
+namespace {
+
+using brick::MotorReport;
+using platform::background;
+using platform::host;
+using platform::host_lines;
+using platform::servo_ticks;
+
+constexpr double kPositionScale = 32.0 * 96.0;  // 32 Ixx08, 32 Ixx09
+constexpr int kSettling = 40;                   // passes or servo cycles that the longest set takes
+
+class DpramReportsTest : public FirmwareTest {
+ protected:
+  void SetUp() override {
+    FirmwareTest::SetUp();
+    ASSERT_EQ(host("I3=2 I6=1"), "");
+    reports.clear_handshakes();
+  }
+  bool ready() { return (ram.read(DPRAM_MOTOR_READY) & DPRAM_DATA_READY) != 0; }
+  std::uint32_t servo_count() { return static_cast<std::uint32_t>(std::stoul(host("RX$0"))); }
+
+  platform::NativeDpram ram;
+  brick::DpramReports reports{ram};
+};
+
+// Registers of motor 3 written as its servo loop would; P, V, F and ? report them.
+void move_motor_3() {
+  for (const char* line : {"M1->D:$188", "M2->D:$18B", "M3->D:$190", "M4->D:$1CC", "M5->X:$19D,0,24,S", "#3->100X"})
+    ASSERT_EQ(host(line), "") << line;
+  ASSERT_EQ(host("M1=-8000000000 M2=-9000001000 M3=3072 M4=-614400 M5=-12345 I300=1"), "");
+}
+
+void expect_as_reported(const MotorReport& m) {
+  const auto number = [](const char* command) { return std::stod(host(command)); };
+  EXPECT_NEAR(static_cast<double>(m.position + m.master + m.bias) / kPositionScale, number("#3P"), 1.0 / 64);
+  EXPECT_NEAR(m.velocity / kPositionScale, number("#3V"), 1.0 / 64);
+  EXPECT_NEAR(static_cast<double>(m.following_error) / kPositionScale, number("#3F"), 1.0 / 64);
+  const std::string status = host("#3?");
+  EXPECT_EQ(m.servo_status, std::stoul(status.substr(0, 6), nullptr, 16));
+  EXPECT_EQ(m.status, std::stoul(status.substr(6), nullptr, 16));
+  EXPECT_EQ(m.position, -9000001000);
+  EXPECT_EQ(m.master, 3072);
+  EXPECT_EQ(m.bias, -614400);
+  EXPECT_EQ(m.following_error, 1000001000);
+  EXPECT_EQ(m.output, 0);
+}
+
+TEST_F(DpramReportsTest, MotorsAreWrittenByTheServoTask) {
+  ASSERT_NO_FATAL_FAILURE(move_motor_3());
+  reports.choose_motors(1U << 2);
+  ASSERT_EQ(host("I47=1 I48=1"), "");
+  servo_ticks(1);
+  const auto set = reports.read_motors(0);
+  ASSERT_TRUE(set);
+  expect_as_reported(set->motors[0]);
+  EXPECT_EQ(set->timer, servo_count());
+}
+
+TEST_F(DpramReportsTest, MotorsAreWrittenByTheBackground) {
+  ASSERT_NO_FATAL_FAILURE(move_motor_3());
+  reports.choose_motors(1U << 2);
+  ASSERT_EQ(host("I50=1 I57=1"), "");
+  servo_ticks(3);
+  EXPECT_FALSE(ready());
+  background(1);
+  const auto set = reports.read_motors(0);
+  ASSERT_TRUE(set);
+  expect_as_reported(set->motors[0]);
+}
+
+TEST_F(DpramReportsTest, OnlyMotorsOfTheMaskAreWritten) {
+  for (std::uint32_t offset = DPRAM_MOTOR_BLOCKS; offset < DPRAM_BACKGROUND_COUNT; offset += 2)
+    ram.write(offset, 0xABCD);
+  reports.choose_motors(0x8000'0101);
+  ASSERT_EQ(host("I47=1 I48=1"), "");
+  servo_ticks(kSettling);
+  for (unsigned motor = 0; motor < 32; ++motor) {
+    const bool chosen = motor == 0 || motor == 8 || motor == 31;
+    const std::uint32_t block = DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_STRIDE * motor;
+    for (std::uint32_t at = 0; at < DPRAM_MOTOR_STRIDE; at += 2)
+      EXPECT_EQ(ram.read(block + at) == 0xABCD, !chosen) << motor << " word " << at;
+  }
+}
+
+TEST_F(DpramReportsTest, ThePeriodIsCountedInServoCycles) {
+  reports.choose_motors(1);
+  for (const int period : {1, 2, 7, 255}) {
+    ASSERT_EQ(host("I48=0 I47=" + std::to_string(period)), "");
+    servo_ticks(1);
+    ASSERT_EQ(host("I48=1"), "");
+    servo_ticks(1);
+    const auto first = reports.read_motors(0);
+    servo_ticks(static_cast<unsigned>(period) - 1);
+    const auto same = reports.read_motors(0);
+    servo_ticks(1);
+    const auto second = reports.read_motors(0);
+    ASSERT_TRUE(first && same && second) << period;
+    EXPECT_EQ(same->timer, first->timer) << period;
+    EXPECT_EQ(second->timer, first->timer + static_cast<std::uint32_t>(period));
+  }
+  ASSERT_EQ(host("I47=0"), "");
+  ram.write(DPRAM_MOTOR_READY, 0);
+  servo_ticks(300);
+  EXPECT_FALSE(ready()) << "I47 = 0 is off";
+}
+
+TEST_F(DpramReportsTest, NothingIsWrittenWhileTheHostIsBusy) {
+  ASSERT_EQ(host("M2->D:$8B M2=5"), "");
+  reports.choose_motors(1);
+  ASSERT_EQ(host("I47=1 I48=1"), "");
+  servo_ticks(1);
+  ram.write(DPRAM_MOTOR_HOST_BUSY, DPRAM_HOST_BUSY);
+  ASSERT_EQ(host("M2=6"), "");
+  servo_ticks(5);
+  EXPECT_TRUE(ready()) << "the set that stands there";
+  EXPECT_EQ(reports.fixed_long(DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_POSITION), 5);
+  ram.write(DPRAM_MOTOR_HOST_BUSY, 0);
+  servo_ticks(1);
+  EXPECT_EQ(reports.fixed_long(DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_POSITION), 6);
+}
+
+// 32 motors are written in parts; a host that becomes busy in between finds nothing ready until the set is whole.
+TEST_F(DpramReportsTest, ASetThatHasBegunIsFinishedBeforeItIsReady) {
+  reports.choose_motors(0xFFFF'FFFF);
+  ASSERT_EQ(host("I47=100 I48=1"), "");
+  servo_ticks(2);
+  EXPECT_FALSE(ready());
+  ram.write(DPRAM_MOTOR_HOST_BUSY, DPRAM_HOST_BUSY);
+  servo_ticks(kSettling);
+  EXPECT_TRUE(ready());
+}
+
+TEST_F(DpramReportsTest, TheForegroundWins) {
+  reports.choose_motors(1);
+  ASSERT_EQ(host("I47=3 I48=1 I50=1 I57=1"), "");
+  servo_ticks(1);
+  const std::uint32_t first = ram.read(DPRAM_MOTOR_TIMER);
+  background(10);
+  servo_ticks(2);
+  background(10);
+  EXPECT_EQ(ram.read(DPRAM_MOTOR_TIMER), first);
+  servo_ticks(1);
+  EXPECT_EQ(ram.read(DPRAM_MOTOR_TIMER), first + 3);
+  ASSERT_EQ(host("I48=0"), "");
+  servo_ticks(1);
+  background(2);
+  EXPECT_EQ(ram.read(DPRAM_MOTOR_TIMER), first + 4) << "by the background again";
+}
+
+TEST_F(DpramReportsTest, SystemsShowWhatCommandsReport) {
+  for (const char* line : {"&2DEF ROT 100", "&1DEF ROT 100", "&2B0", "&1B0", "OPEN ROT", "&2F250 X10Y-2.5", "X20",
+                           "X30", "&1TM20 INC A3", "CLOSE", "&2%50", "&2R"})
+    ASSERT_EQ(host(line), "") << line;
+  servo_ticks(200);
+  reports.choose_systems(3);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  background(kSettling);
+  const auto set = reports.read_systems(5);
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->timer, servo_count());
+  const std::string global = host("???");
+  EXPECT_EQ(set->global[0], std::stoul(global.substr(0, 6), nullptr, 16));
+  EXPECT_EQ(set->global[1], std::stoul(global.substr(6), nullptr, 16));
+  for (unsigned cs = 1; cs <= 3; ++cs) {
+    const brick::SystemReport& s = set->systems[cs - 1];
+    const std::string address = "&" + std::to_string(cs), status = host(address + "??");
+    for (unsigned word = 0; word < 3; ++word)
+      EXPECT_EQ(s.status[word], std::stoul(status.substr(6 * word, 6), nullptr, 16)) << cs << " word " << word;
+    EXPECT_NEAR(s.time_base / 3713991.0 * 100, std::stod(host(address + "%")), 0.001) << cs;
+    if (cs != 3) { EXPECT_EQ(s.lines, std::stoul(host(address + "PR"))) << cs; }
+    const unsigned base = 0x2000 + 0x100 * (cs - 1);
+    for (unsigned axis = 0; axis < 9; ++axis) {
+      char read[16];
+      std::snprintf(read, sizeof read, "RL$%X", base + 0x41 + axis);
+      EXPECT_EQ(s.targets[axis], std::stod(host(read))) << cs << " axis " << axis;
+    }
+  }
+  EXPECT_EQ(set->systems[0].feed_rate, 1000.0) << "Isx89: TM20 has not been calculated";
+  EXPECT_EQ(set->systems[1].feed_rate, 250.0);
+  EXPECT_EQ(set->systems[1].targets[6], 10.0);
+  EXPECT_EQ(set->systems[1].targets[7], -2.5);
+  EXPECT_EQ(set->systems[1].time_base_source, 0x2100U) << "I5293";
+  // X10 Y-2.5 at F250 by the second, TS = 50 ms: Tm = |(10, 2.5)| / 250 s, from rest to rest and 100 ms.
+  const double whole = std::hypot(10, 2.5) / 250 * 1000 + 100;
+  EXPECT_LT(set->systems[1].move_ms_left, whole);
+}
+
+// Moves of 1 s with Ta = 100 ms, at 100 %, looked at a known number of servo cycles after their beginning.
+TEST_F(DpramReportsTest, TimesLeftOfTheExecutingMove) {
+  for (const char* line : {"&1DEF ROT 100", "&1B0", "OPEN ROT", "TA0 TS50 TM1000 X10", "CLOSE", "R"})
+    ASSERT_EQ(host(line), "") << line;
+  reports.choose_systems(1);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  const auto left = [this] {
+    background(4);
+    return reports.read_systems(5)->systems[0];
+  };
+  while (left().move_ms_left == 0) servo_ticks(1);
+  const double cycle = 3713991.0 / 8388608.0;  // ms
+  const brick::SystemReport began = left();
+  EXPECT_NEAR(began.move_ms_left, 1100, 1);
+  EXPECT_NEAR(began.acceleration_ms_left, 100, 1);
+  servo_ticks(100);
+  EXPECT_NEAR(left().move_ms_left, 1100 - 100 * cycle, 2);
+  EXPECT_NEAR(left().acceleration_ms_left, 100 - 100 * cycle, 2);
+  servo_ticks(200);
+  EXPECT_EQ(left().acceleration_ms_left, 0U);
+}
+
+TEST_F(DpramReportsTest, MoreSystemsThanThereAreAreSixteen) {
+  ram.write(DPRAM_COMMAND_CONTROL, 0x5A5A);
+  reports.choose_systems(255);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  background(kSettling);
+  EXPECT_NE(ram.read(DPRAM_CS_BLOCKS + 15 * DPRAM_CS_STRIDE + DPRAM_CS_TIME_BASE), 0);
+  EXPECT_EQ(ram.read(DPRAM_COMMAND_CONTROL), 0x5A5A) << "what is behind the sixteenth";
+}
+
+TEST_F(DpramReportsTest, OffWithoutRamOrBase) {
+  reports.choose_motors(1);
+  reports.choose_systems(1);
+  ASSERT_EQ(host("I24=$6C000 I47=1 I48=1 I49=1 I50=1 I57=1"), "");
+  servo_ticks(5);
+  background(kSettling);
+  EXPECT_FALSE(ready());
+  EXPECT_EQ(ram.read(DPRAM_BACKGROUND_READY), 0);
+}
+
+}  // namespace

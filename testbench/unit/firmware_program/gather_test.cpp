@@ -1,0 +1,205 @@
+// Data gathering (firmware:4.3, host-bus:6.8): sources, packing, period, modes of I5000, commands and their errors. The
+// servo counter X:$0 says at which interrupt a sample was taken.
+#include "testbench/unit/firmware_program/dpram_host.h"
+
+namespace {
+
+using platform::host;
+using platform::host_lines;
+using platform::servo_ticks;
+using Lines = std::vector<std::string>;
+
+class Gather : public FirmwareTest {
+ protected:
+  void SetUp() override {
+    FirmwareTest::SetUp();
+    ASSERT_EQ(host("I3=2 I6=1 I9=0"), "");
+  }
+  static unsigned long count() { return std::stoul(host("RX$0")); }
+  static std::string hex(unsigned long word) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%06lX", word);
+    return text;
+  }
+  static bool gathers() { return (std::stoul(host("???").substr(0, 6), nullptr, 16) >> 19 & 1) != 0; }
+  std::uint32_t pointer() { return ram.read(DPRAM_GATHER_POINTER); }
+  std::uint32_t item(unsigned place) { return dpram_read_item(DPRAM_OPEN + 4 * place); }
+
+  platform::NativeDpram ram;
+};
+
+TEST_F(Gather, WordsFillXAndYInTurnInAscendingOrderOfTheSources) {
+  ASSERT_EQ(host("WX$20,$123456 WY$20,$ABCDEF WY$22,$777"), "");
+  ASSERT_EQ(host("I5001=$400000 I5003=$20 I5025=$400020 I5048=$800020 I5049=1"), "");
+  ASSERT_EQ(host("I5050=$5 I5051=$800001 DEF GAT 100"), "");
+  const unsigned long before = count();
+  ASSERT_EQ(host("GATHER"), "");
+  EXPECT_TRUE(gathers());
+  servo_ticks(2);
+  ASSERT_EQ(host("ENDGATHER"), "");
+  EXPECT_FALSE(gathers());
+  servo_ticks(2);
+  // 24, 24 | 24 | 48 bits: three long words a sample.
+  EXPECT_EQ(host_lines("LIST GATHER"), (Lines{hex(before + 1) + "ABCDEF", "123456000000", "123456ABCDEF",
+                                              hex(before + 2) + "ABCDEF", "123456000000", "123456ABCDEF"}));
+  EXPECT_EQ(host_lines("LIST GAT,3,1"), (Lines{hex(before + 2) + "ABCDEF"}));
+  EXPECT_EQ(host("RHX$3120"), "1079C") << "$10800 - 100";
+  EXPECT_EQ(host("RHY$3120"), "107A2");
+}
+
+TEST_F(Gather, EachPeriodIsThatManyServoInterrupts) {
+  for (const unsigned period : {1U, 2U, 10U}) {
+    ASSERT_EQ(host("DEL GAT I5001=$400000 I5050=1 I5049=" + std::to_string(period) + " DEF GAT 50"), "");
+    const unsigned long before = count();
+    ASSERT_EQ(host("GAT"), "");
+    servo_ticks(4 * period);
+    ASSERT_EQ(host("ENDG"), "");
+    Lines samples;
+    for (unsigned i = 0; i < 4; ++i) samples.push_back(hex(before + 1 + i * period) + "000000");
+    EXPECT_EQ(host_lines("LIST GATHER"), samples);
+  }
+}
+
+TEST_F(Gather, APeriodOf0IsOneSampleForEachCommand) {
+  ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=0 DEF GAT 50"), "");
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(host("GATHER"), "");
+    servo_ticks(5);
+    EXPECT_FALSE(gathers());
+  }
+  EXPECT_EQ(host_lines("LIST GATHER").size(), 3U);
+}
+
+TEST_F(Gather, StopsAtTheEndOfTheBufferAndNotBehindIt) {
+  ASSERT_EQ(host("DEF UBUF 10"), "");
+  ASSERT_EQ(host("WX$107F6,$555555 I5001=$800000 I5002=$800000 I5050=3 I5049=1 DEF GAT 5"), "");
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(20);
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host_lines("LIST GATHER").size(), 4U) << "two samples of two: a third does not fit";
+  EXPECT_EQ(host("RHX$107F6"), "555555");
+  ASSERT_EQ(host("ENDGATHER"), "");
+  EXPECT_EQ(host("GATHER"), "ERR003") << "full";
+  ASSERT_EQ(host("DEF GAT"), "") << "again from the beginning";
+  EXPECT_EQ(host("LIST GATHER"), "ERR003");
+  EXPECT_EQ(host("GATHER"), "");
+  servo_ticks(1);
+  EXPECT_EQ(host_lines("LIST GATHER").size(), 2U);
+}
+
+TEST_F(Gather, I5000Of1Wraps) {
+  ASSERT_EQ(host("I5000=1 I5001=$400000 I5050=1 I5049=1 DEF GAT 4"), "");
+  const unsigned long before = count();
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(6);
+  EXPECT_TRUE(gathers());
+  const auto at = [before](unsigned n) { return hex(before + n) + "000000"; };
+  EXPECT_EQ(host_lines("LIST GATHER"), (Lines{at(5), at(6), at(3), at(4)}));
+}
+
+// Items of 32 bits from $060450 on; the pointer is the next one's place.
+TEST_F(Gather, IntoTheDualPortedRamUpToItsEnd) {
+  ASSERT_EQ(host("WX$20,$FEDCBA WY$20,$123456"), "");
+  ASSERT_EQ(host("I5000=2 I5001=$400000 I5002=$800020 I5003=$400020 I5050=$7 I5049=1 DEF GAT 6"), "");
+  EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 6);
+  EXPECT_EQ(pointer(), 0U);
+  EXPECT_EQ(host("SIZE"), "26624") << "no user memory";
+  const unsigned long before = count();
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(1);
+  EXPECT_EQ(pointer(), 4U);
+  EXPECT_EQ(item(0), before + 1);
+  EXPECT_EQ(item(1), 0x00123456U) << "low half first";
+  EXPECT_EQ(item(2), 0xFFFEDCBAU) << "sign-extended";
+  EXPECT_EQ(item(3), 0xFFFEDCBAU);
+  servo_ticks(5);
+  EXPECT_EQ(pointer(), 8U) << "a sample that begins in the buffer is whole";
+  EXPECT_EQ(item(4), before + 2);
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host("GATHER"), "ERR003");
+  EXPECT_EQ(host("LIST GATHER"), "ERR003") << "the host reads it";
+  EXPECT_EQ(host("RHX$3120 RHY$3120"), "60450|60458");
+  ASSERT_EQ(host("DELETE GATHER"), "");
+  EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 0);
+}
+
+TEST_F(Gather, I5000Of3WrapsInTheDualPortedRam) {
+  ASSERT_EQ(host("I5000=3 I5001=$400000 I5050=1 I5049=1 DEF GAT 4"), "");
+  const unsigned long before = count();
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(6);
+  EXPECT_EQ(pointer(), 2U);
+  for (const unsigned n : {5U, 6U, 3U, 4U}) EXPECT_EQ(item((n - 1) % 4), before + n);
+}
+
+// The RAM that is fitted is the limit, whatever is asked for.
+TEST_F(Gather, NoSampleGoesBeyondTheRam) {
+  ASSERT_EQ(host("I5000=2 I5001=$400000 I5002=$800020 I5050=$3 I5049=1"), "");
+  EXPECT_EQ(host("DEF GAT 15281"), "ERR006") << "$63FFF - $060450 + 1 = 15280";
+  ASSERT_EQ(host("DEF GAT"), "");
+  EXPECT_EQ(ram.read(DPRAM_GATHER_SIZE), 15280);
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(5200);
+  EXPECT_EQ(pointer(), 15279U) << "5093 samples of 3; the last item stays free";
+  EXPECT_FALSE(gathers());
+}
+
+TEST_F(Gather, CommandsAndTheirErrors) {
+  ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=1"), "");
+  EXPECT_EQ(host("GATHER"), "ERR003") << "no buffer";
+  EXPECT_EQ(host("DEF GAT 0"), "ERR003");
+  ASSERT_EQ(host("DEF GAT 1000"), "");
+  EXPECT_EQ(host("&1DEF ROT 20"), "ERR003");
+  ASSERT_EQ(host("I5050=0"), "");
+  EXPECT_EQ(host("GATHER"), "ERR003") << "no source";
+  ASSERT_EQ(host("I5050=1 GATHER GATHER"), "");
+  EXPECT_EQ(host("DEF GAT"), "ERR003");
+  EXPECT_EQ(host("DELETE GATHER"), "ERR003");
+  ASSERT_EQ(host("ENDGATHER ENDGATHER DELETE GATHER"), "");
+  ASSERT_EQ(host("DEF GAT GATHER"), "");
+  ASSERT_EQ(host("DELETE ALL TEMPS"), "") << "ends it";
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host("SIZE"), "26624");
+  ASSERT_EQ(host("DEF GAT 50 GATHER"), "");
+  platform::reset();
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host("GATHER"), "ERR003");
+}
+
+// Bit 17 of the first word of ??? waits; a program or host that clears it is the trigger.
+TEST_F(Gather, ATriggerIsAwaited) {
+  ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=1 DEF GAT 50 M1->X:$6,17"), "");
+  ASSERT_EQ(host("GATHER TRIGGER"), "");
+  servo_ticks(5);
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host("M1"), "1");
+  EXPECT_EQ(host("DEF GAT"), "ERR003");
+  const unsigned long before = count();
+  ASSERT_EQ(host("M1=0"), "");
+  servo_ticks(2);
+  EXPECT_TRUE(gathers());
+  ASSERT_EQ(host("ENDGATHER"), "");
+  EXPECT_EQ(host_lines("LIST GATHER"), (Lines{hex(before + 1) + "000000", hex(before + 2) + "000000"}));
+  ASSERT_EQ(host("GATHER TRIG ENDG"), "");
+  EXPECT_EQ(host("M1"), "0");
+}
+
+// What is made when it is read is made for a sample too; what is not there reads 0.
+TEST_F(Gather, LiveWordsAndAddressesOfNothing) {
+  ASSERT_EQ(host("I5001=$402040 I5002=$7FFFF I5003=$40780F I5050=7 I5049=1 DEF GAT 50 GATHER"), "");
+  servo_ticks(1);
+  EXPECT_EQ(host("LIST GATHER").substr(0, 12), host("&1??").substr(0, 6) + "000000");
+}
+
+// 48 sources: the most, in both places.
+TEST_F(Gather, FortyEightSources) {
+  for (int i = 1; i <= 48; ++i) ASSERT_EQ(host("I" + std::to_string(5000 + i) + "=$800000"), "");
+  ASSERT_EQ(host("I5050=$FFFFFF I5051=$FFFFFF I5049=1 DEF GAT 96 GATHER"), "");
+  servo_ticks(3);
+  EXPECT_EQ(host_lines("LIST GATHER").size(), 96U);
+  ASSERT_EQ(host("DEL GAT I5000=2 DEF GAT GATHER"), "");
+  servo_ticks(2);
+  EXPECT_EQ(pointer(), 192U);
+}
+
+}  // namespace
