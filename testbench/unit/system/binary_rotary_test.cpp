@@ -1,6 +1,8 @@
 // Binary lines from a host on the bus to the ring of a machine with the real firmware (host-bus:7).
 #include "testbench/host/binary_rotary.h"
 
+#include <sstream>
+
 #include "testbench/benchmark/routes.h"
 #include "testbench/unit/system/controller.h"
 
@@ -38,6 +40,39 @@ TEST_P(BinaryTransfer, LinesAreStoredListedAndExecuted) {
     wait(ms_to_ticks(15));
     EXPECT_EQ(ask("P1 P5000 PR"), "7|-3|0");
   }
+}
+
+// As a program that feeds a file: as many lines as there is room for, and it goes on where it stopped.
+TEST_P(BinaryTransfer, FileIsFed) {
+  BRICK_COVERS("BIN-3 BIN-6");
+  if (GetParam() != Engine::kSystemC) return;
+  start();
+  ASSERT_EQ(ask("DEF ROT 9 B0 OPEN BIN ROT"), "");
+  BinaryRotary rotary(bus(), 1);
+  EXPECT_EQ(rotary.put("X1"), BinaryResult::kError) << "no size";
+  EXPECT_EQ(rotary.define(0, 5), BinaryResult::kError);
+  EXPECT_EQ(rotary.define(15280 - 10, 12), BinaryResult::kAllocation);
+  ASSERT_EQ(rotary.define(15280 - 12, 12), BinaryResult::kOk) << "the last items of the RAM";
+  rotary.enable();
+  std::istringstream file("X1\n; nothing\nX2\nX3\nX4\nX5\nX6\nX7\nX8\nX9\nX10\nX11\nX12\nX0.3\nX13\n");
+  EXPECT_EQ(rotary.put("X1Y1Z1A1B1"), BinaryResult::kError) << "longer than the buffer";
+  EXPECT_EQ(rotary.feed(file), BinaryResult::kBusy);
+  wait(ms_to_ticks(1));
+  EXPECT_EQ(rotary.feed(file), BinaryResult::kBusy);
+  EXPECT_EQ(rotary.feed(file), BinaryResult::kBusy) << "nothing more fits until the program runs";
+  ASSERT_EQ(ask("TM1 TA0"), "ERR005") << "text";
+  ASSERT_EQ(ask("I5187=0 I5188=0 I5189=1000000 R"), "");
+  BinaryResult result = BinaryResult::kBusy;
+  for (unsigned tries = 0; result == BinaryResult::kBusy && tries < 200; ++tries) {
+    wait(ms_to_ticks(5));
+    result = rotary.feed(file);
+  }
+  EXPECT_EQ(result, BinaryResult::kFloat) << "X0.3";
+  wait(ms_to_ticks(5));
+  EXPECT_EQ(rotary.feed(file), BinaryResult::kEndOfFile);
+  wait(ms_to_ticks(100));
+  EXPECT_TRUE(rotary.empty());
+  EXPECT_EQ(ask("PR"), "0");
 }
 
 // Into a large ring with the program stopped (host-bus:7.1/2): many times as fast.
