@@ -35,6 +35,25 @@ bool is_expect(std::string_view text) {
          (text.size() == kWord.size() || text.find_first_of(kSpaces, kWord.size()) == kWord.size());
 }
 
+// Behind PASSWORD= all up to the line's end is the password (firmware:5.10/8).
+bool ends_in_password(std::string_view text) {
+  constexpr std::string_view kWord = "PASSWORD";
+  if (text.empty() || text.back() != '=') return false;
+  text = trimmed(text.substr(0, text.size() - 1));
+  return text.size() >= kWord.size() &&
+         std::equal(kWord.begin(), kWord.end(), text.end() - kWord.size(),
+                    [](char expected, unsigned char c) { return expected == std::toupper(c); });
+}
+
+std::size_t begin_of_password(std::string_view text) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (!quoted && ends_in_password(text.substr(0, i + 1))) return i + 1;
+  }
+  return text.size();
+}
+
 // An error that begins with its place.
 class PlacedError : public UsageError {
  public:
@@ -147,6 +166,7 @@ std::string Reader::without_comments(File& file, std::string_view text) const {
     } else {
       if (text[i] == '"') quoted = !quoted;
       result.push_back(text[i]);
+      if (!quoted && ends_in_password(result)) return result.append(text.substr(i + 1));
     }
   }
   return result;
@@ -175,7 +195,8 @@ void Reader::line(File& file, std::string_view text) {
   if (const auto found = directive_of(source)) {
     directive(file, *found);
   } else if (file.chosen()) {
-    const std::string expanded = macros_.expand(source);
+    const std::size_t commands = begin_of_password(source);
+    const std::string expanded = macros_.expand(source.substr(0, commands)).append(source.substr(commands));
     if (expanded != source && expanded[0] != '@' && expanded.size() > kControllerLine)
       throw UsageError(fmt::format("{} expands to {} characters; expected at most {}, the controller's line",
                                    beginning_of(source), expanded.size(), kControllerLine));

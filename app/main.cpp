@@ -25,9 +25,10 @@ struct Commands {
   CLI::App app{kAbout, "brick"};
   std::function<int()> chosen;
 
-  RunOptions run_options, exec_options;
+  RunOptions run_options, exec_options, console_options;
+  ServeOptions serve_options;
   TimingOptions timing_options;
-  std::string bench, script, elf, board, max_instructions = kDefaultInstructions;
+  std::string bench, script, history, elf, board, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
   Commands() {
@@ -58,6 +59,25 @@ struct Commands {
         "@jpan @reset @power "
         "@expect @time.");
     exec->callback([this] { chosen = [this] { return exec_command(exec_options, script, raw); }; });
+
+    auto* console = app.add_subcommand("console", "talks to the started controller: line editing, its control keys");
+    add_run_options(*console, console_options, "systemc");
+    console->add_option("--history", history, "keeps the lines typed in FILE")->type_name("FILE");
+    console->footer("Lines are those of brick exec, @ lines and #include too. ^] or @quit ends (docs/console.md).");
+    console->callback([this] { chosen = [this] { return console_command(console_options, history); }; });
+
+    auto* serve = app.add_subcommand(
+        "serve", "a controller behind the Ethernet port of a Brick, for host software of the real one");
+    serve->add_option("--listen", serve_options.listen, "where, TCP and UDP; port 0 takes a free one")
+        ->type_name("HOST:PORT")
+        ->capture_default_str();
+    auto* realtime = serve->add_flag("--realtime", "simulated time follows the clock on the wall, if it can (default)");
+    serve->add_flag("--free", serve_options.free, "simulated time passes only while a client waits, and then freely")
+        ->excludes(realtime);
+    serve->add_flag("--save-takes-long", serve_options.save_takes_long,
+                    "the interface does not wait for the end of SAVE: it answers NUL");
+    add_run_options(*serve, serve_options.run, "systemc");
+    serve->callback([this] { chosen = [this] { return serve_command(serve_options); }; });
 
     auto* timing = app.add_subcommand(
         "timing", "bus-timing report of a testbench: rules, margins, BREQ and interrupt times, bus load");

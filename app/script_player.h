@@ -28,6 +28,7 @@ class ScriptPlayer {
 
   void check(const std::vector<ScriptLine>& script) const;  // names and values of signals; throws UsageError
   void play(const std::vector<ScriptLine>& script);
+  void print_unsolicited();  // what programs have sent
 
   // Is told of each line that the controller refused and no @expect behind it expected: place, line, error, meaning.
   std::function<void(const std::string&)> on_refused;
@@ -52,7 +53,6 @@ class ScriptPlayer {
   void restart(const ScriptLine& line);
   void reconnect(const ScriptLine& line);  // the controller has started anew
   void turn_encoder(const ScriptLine& line);
-  void print_unsolicited();
   [[noreturn]] void fail(const ScriptLine& line, const std::string& text) const;
 
   HostLink& link_;

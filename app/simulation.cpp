@@ -120,11 +120,19 @@ void Simulation::run(const std::function<void()>& host) {
   if (thread.error()) std::rethrow_exception(thread.error());
 }
 
+bool Simulation::go_on() {
+  if (asked_to_stop != SIGINT) return false;
+  asked_to_stop = 0;
+  stop_when_asked();
+  return true;
+}
+
 void Simulation::progress() {
   if (asked_to_stop != 0)
     throw Interrupted(fmt::format("stopped by {} after {:.3f} ms of simulated time",
                                   asked_to_stop == SIGINT ? "SIGINT" : "SIGTERM",
                                   static_cast<double>(machine_->now_fs()) * 1e-12));
+  if (show_progress) return show_progress();
   if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now - last_progress_ < std::chrono::milliseconds(300)) return;

@@ -46,7 +46,10 @@ class Simulation {
   };
   TimingVerdict timing_verdict();
 
+  bool go_on();  // after Interrupted: true when a key asked to stop (SIGINT), which may be asked again
+
   std::function<std::string()> progress_text;  // more for the line that a terminal shows
+  std::function<void()> show_progress;         // instead of that line; often
   void tell(const std::string& line);          // on stderr, beside that line
   void before_output();                        // on stdout, which may be the same terminal
 

@@ -11,7 +11,8 @@ find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
-find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)  # sockets of the debugger's server
+find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)  # sockets of the debugger's server and the Ethernet port
+pkg_check_modules(LIBEDIT REQUIRED IMPORTED_TARGET libedit)  # line editing of brick console
 find_package(ZLIB REQUIRED)  # FST files
 pkg_check_modules(TOMLPP REQUIRED IMPORTED_TARGET tomlplusplus)
 

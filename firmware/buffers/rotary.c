@@ -9,7 +9,10 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 
+static volatile bool held; /* B, looked at by R */
+
 static void reset(struct rotary* ring) {
+  ring->generation++;
   ring->write = ring->read = 0;
   ring->used = ring->lines = 0;
   ring->full = false;
@@ -27,6 +30,7 @@ static void forget(uint32_t cs) {
 
 void rotary_initialize(void) {
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) rotary_buffers[cs] = (struct rotary){0};
+  held = false;
 }
 
 error_t rotary_define(uint32_t cs, uint32_t words) {
@@ -68,14 +72,18 @@ void rotary_clear(uint32_t cs) {
   hal_unmask(state);
 }
 
-error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count) {
+void rotary_hold(bool hold) { held = hold; }
+
+uint32_t rotary_room(uint32_t cs) { return held ? 0 : rotary_buffers[cs].size - rotary_buffers[cs].used; }
+
+void rotary_put(uint32_t cs, uint32_t ahead, word48_t word) {
+  const struct rotary* ring = &rotary_buffers[cs];
+  user_memory_write(ring->base + rotary_offset(cs, ring->write, ahead), word);
+}
+
+void rotary_publish(uint32_t cs, uint32_t count) {
   struct rotary* ring = &rotary_buffers[cs];
-  if (count == 0 || count > ring->size - ring->used) return ERR_NO_ROOM; /* `used` can only fall meanwhile */
-  uint32_t write = ring->write;
-  for (uint32_t i = 0; i < count; i++) {
-    user_memory_write(ring->base + write, i == 0 ? words[0] | WORD_START_OF_LINE : words[i]);
-    if (++write == ring->size) write = 0;
-  }
+  const uint32_t write = rotary_offset(cs, ring->write, count);
   uint32_t state = hal_mask_real_time();
   buffer_request_begin_line(cs);
   ring->write = write;
@@ -83,6 +91,17 @@ error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count) {
   ring->lines++;
   buffer_request_line_stored(cs);
   hal_unmask(state);
+}
+
+error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count) {
+  const struct rotary* ring = &rotary_buffers[cs];
+  if (count == 0 || count > ring->size - ring->used) return ERR_NO_ROOM; /* `used` can only fall meanwhile */
+  uint32_t write = ring->write;
+  for (uint32_t i = 0; i < count; i++) {
+    user_memory_write(ring->base + write, i == 0 ? words[0] | WORD_START_OF_LINE : words[i]);
+    if (++write == ring->size) write = 0;
+  }
+  rotary_publish(cs, count);
   return ERR_NONE;
 }
 

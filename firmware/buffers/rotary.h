@@ -17,6 +17,12 @@ void rotary_clear(uint32_t cs);
 error_t rotary_store(uint32_t cs, const word48_t* words,
                      uint32_t count); /* one line; the first word gets its mark here */
 
+/* The same in parts, by whoever fills binary buffers: words into free space, which only grows, then all at once. */
+uint32_t rotary_room(uint32_t cs); /* free words; none while it is held */
+void rotary_put(uint32_t cs, uint32_t ahead, word48_t word);
+void rotary_publish(uint32_t cs, uint32_t count);
+void rotary_hold(bool held); /* background: nothing is stored while it looks at lines */
+
 /* Background. The lines whose calculation has not begun. They stay where they are, calculated meanwhile or not, until
  * the background stores again. */
 struct rotary_lines {

@@ -79,9 +79,11 @@ static error_t clear_rotary(uint32_t cs) {
   return ERR_NONE;
 }
 
+static bool is_binary_open(void) { return open_buffer_kind() == OPEN_BINARY_ROTARY && session_owns_buffer(); }
+
 static error_t cmd_clear(struct lexer* lx) {
   (void)lx;
-  if (!program_buffer_open()) return ERR_NEEDS_BUFFER;
+  if (!program_buffer_open() && !is_binary_open()) return ERR_NEEDS_BUFFER;
   if (open_buffer_kind() != OPEN_FIXED) return clear_rotary(session.cs);
   program_line_abandon();
   fixed_entry_clear();

@@ -98,6 +98,7 @@ static error_t list_fixed(struct lexer* lx, enum fixed_kind kind, bool numbered)
 static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
   word48_t words[LINE_WORDS];
   if (rotary_buffers[cs].size == 0) return ERR_DATA;
+  rotary_hold(true);
   const struct rotary_lines ahead = rotary_lines_ahead(cs);
   for (uint32_t line = 0, at = 0; line < lines && at < ahead.words; line++) {
     const uint32_t first = at;
@@ -108,6 +109,7 @@ static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
     } while (at - first < LINE_WORDS && at < ahead.words);
     list_line(words, at - first, rotary_offset(cs, ahead.offset, first), with_offset);
   }
+  rotary_hold(false);
   return ERR_NONE;
 }
 

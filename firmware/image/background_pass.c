@@ -5,6 +5,7 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
+#include "firmware/host/binary_rotary.h"
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_systems.h"
@@ -37,6 +38,7 @@ void background_meanwhile(void) {
 void background_pass(void) {
   clock_watch_pass();
   line_input_pass();
+  binary_rotary_pass();
   program_texts_pass();
   dpram_ascii_pass();
   dpram_motors_pass();

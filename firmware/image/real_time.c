@@ -3,6 +3,7 @@
 #include "firmware/image/real_time.h"
 
 #include "firmware/buffers/buffer_request.h"
+#include "firmware/host/binary_rotary.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
 #include "firmware/kernel/tasks.h"
@@ -13,6 +14,7 @@ void real_time(void) {
   line_input_urgent();
   panel_select();
   buffer_request_poll();
+  binary_rotary_real_time();
   calculate_programs();
   if (tasks_real_time_is_periodic()) plc_real_time();
 }

@@ -14,6 +14,7 @@
 #include "firmware/command/session.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
+#include "firmware/host/binary_rotary.h"
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_systems.h"
@@ -108,6 +109,7 @@ void start(enum start_mode mode) {
   rotary_initialize();
   open_buffer_initialize();
   buffer_request_initialize();
+  binary_rotary_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
   calendar_initialize();

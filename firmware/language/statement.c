@@ -153,6 +153,22 @@ struct statement statement_find(struct lexer* lx, uint32_t where) {
 
 bool statement_starts(struct lexer lx) { return statement_find(&lx, 0).kind != STATEMENT_NONE; }
 
+/* A constant of 24 bits stands in the word of its variable, as in a binary rotary buffer (host-bus:7.7). */
+static error_t add_short_assignment(struct word_list* out, uint32_t group, uint32_t synchronous, uint32_t number,
+                                    double value) {
+  struct instruction in = {OP_ASSIGN, group, number & 0x3FFu, value};
+  if (synchronous != SYNCHRONOUS_COUNT) {
+    in.operation = OP_STATEMENT;
+    in.number |= WORD_KEY(4, synchronous + 1u, 0);
+  }
+  if (number > 0x3FFu) {
+    const struct instruction prefix = {OP_PREFIX, 0, number >> 10, 0.0};
+    const error_t error = word_list_add_instruction(out, &prefix);
+    if (error != ERR_NONE) return error;
+  }
+  return word_list_add_instruction(out, &in);
+}
+
 static error_t compile_assignment(struct lexer* lx, uint32_t group, uint32_t where, struct word_list* out) {
   struct instruction in = {OP_ASSIGN_POP, group, 0, 0.0};
   double number;
@@ -171,18 +187,16 @@ static error_t compile_assignment(struct lexer* lx, uint32_t group, uint32_t whe
   struct word_list before = *out;
   error = expression_compile(lx, false, out);
   if (error != ERR_NONE) return error;
+  if (synchronous != SYNCHRONOUS_COUNT && (where & WHERE_MOVES) == 0) return ERR_DATA;
+  const struct instruction constant = word_decode(out->words[before.count]);
+  const bool single = out->count == before.count + 1 && constant.operation == OP_PUSH && constant.group == 0;
+  if (single && !indexed && word_holds_short(constant.value)) {
+    *out = before;
+    return add_short_assignment(out, group, synchronous, in.number, constant.value);
+  }
   if (synchronous != SYNCHRONOUS_COUNT) {
-    if ((where & WHERE_MOVES) == 0) return ERR_DATA;
     in.operation = indexed ? OP_SYNCHRONOUS_INDEXED : OP_SYNCHRONOUS;
     in.group = synchronous;
-    return word_list_add_instruction(out, &in);
-  }
-  struct instruction constant = word_decode(out->words[before.count]);
-  bool single = out->count == before.count + 1 && constant.operation == OP_PUSH && constant.group == 0;
-  if (single && !indexed && in.number < 1024 && word_holds_short(constant.value)) { /* one word holds it all */
-    *out = before;
-    in.operation = OP_ASSIGN;
-    in.value = constant.value;
   }
   return word_list_add_instruction(out, &in);
 }

@@ -50,15 +50,15 @@ static void point(uint32_t cs, uint32_t number, uint32_t offset) {
   hal_unmask(state);
 }
 
+/* Nothing is held off: a system that stands has a calculated move only behind `/`, or one that is being dropped. So the
+ * servo task does not start it before end_block falls, nor then, and settling twice finds the same. */
 error_t run_point(uint32_t cs, double program) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
-  uint32_t state = hal_mask_servo();
-  if (s->next_valid) drop_moves(cs);
+  if (s->next_valid) s->settling = true;
   s->end_block = false;
-  hal_unmask(state);
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
     s->pointer = POINTER_ROTARY;

@@ -11,6 +11,7 @@ Bench plc_bench();
 Bench breq_rotary_bench();
 Bench breq_select_bench();
 Bench breq_fixed_bench();
+Bench binary_rotary_bench();
 Bench interrupts_bench();
 Bench watchdog_bench();
 Bench dpram_bench();

@@ -143,6 +143,8 @@ void program_bits(BenchContext& b) {
   status.check(program("single step, waits for a line", {}, "S", bit(0, 0) | bit(0, 1)));
   status.check(program("move under way", {"X10 F10"}, "R", kRunning | kInPosition));
   status.check(program("dwell", {"DWELL500"}, "R", kRunning | kInPosition | bit(1, 12)));
+  status.check(
+      program("dwell that waits for its turn", {"X10 F10", "DWELL500"}, "R", kRunning | kInPosition | bit(1, 12)));
   Cause end_of_block = program("end of block", {"X10 F10"}, "R", kRunning | kInPosition | bit(1, 14));
   end_of_block.begin.emplace_back("/");
   status.check(end_of_block);
@@ -162,11 +164,13 @@ void program_bits(BenchContext& b) {
   Cause error = program("run-time error", {"CALL30000"}, "R", bit(1, 22));  // there is no such program
   error.end.insert(error.end.begin(), {"R", "wait"});
   status.check(error);
-  status.verdict("programs of a coordinate system, ??", 10);
+  status.verdict("programs of a coordinate system, ??", 11);
   b.expect("#1->1000Y", "");
   Status motor(b, "#1?", 2, {"X$B0", "Y$C0"});
   motor.check(program("dwell of its coordinate system", {"DWELL500"}, "R", bit(0, 15)));
-  motor.verdict("programs, ? of a motor", 1);
+  motor.check(program("move of its coordinate system", {"X10 F10"}, "R", 0));
+  motor.check(program("dwell that waits", {"X10 F10", "DWELL500"}, "R", 0));
+  motor.verdict("programs, ? of a motor", 3);
   b.expect("#1->0", "");
   b.expect("CLOSE", "");
   b.expect("I16=5 I17=10 DELETE ALL TEMPS", "");

@@ -10,7 +10,7 @@ namespace brick {
 
 namespace {
 
-constexpr std::size_t kDigits = 12;
+constexpr std::size_t kWords = 8, kDigits = 12, kAnswer = kWords * (kDigits + 1) - 1;
 constexpr char kStx = 0x02, kAck = 0x06, kLf = 0x0A, kCr = 0x0D;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -47,12 +47,6 @@ bool reaches_3_or_4(const std::string& text, std::size_t at) {
 
 bool is_hex_digit(char c) { return is_digit(c) || (c >= 'A' && c <= 'F'); }
 
-char sum_of(std::string_view bytes) {
-  unsigned total = 0;
-  for (const unsigned char c : bytes) total += c;
-  return static_cast<char>(total);
-}
-
 // The answer that begins at `begin` and whose CR is at `cr`, if it has that form.
 std::optional<FramingAnswer> answer_of_form(std::string_view text, std::size_t begin, std::size_t cr,
                                             const Framing& framing) {
@@ -69,7 +63,9 @@ std::optional<FramingAnswer> answer_of_form(std::string_view text, std::size_t b
 std::optional<bool> has_checksum(std::string_view text) {
   const std::size_t cr = text.find(kCr);
   if (cr == std::string_view::npos || cr + 1 == text.size()) return std::nullopt;
-  return text[cr + 1] == sum_of(text.substr(0, cr + 1));
+  if (text[cr + 1] == sum_of(text.substr(0, cr + 1))) return true;
+  if (may_be_error(text.substr(0, cr + 1))) return has_checksum(text.substr(cr + 1));
+  return false;
 }
 
 // An acknowledge is none of a text. What looks like a checksum may be the beginning of the next line, and like an
@@ -108,16 +104,30 @@ bool may_restart(std::string_view line) { return commands_of(line).find("$$$") !
 
 bool may_take_long(std::string_view line) { return commands_of(line).find("SAVE") != std::string::npos; }
 
+bool may_be_error(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of("\x02\x07\n"), line.size()));
+  return line.substr(0, 3) == "ERR" || line.substr(0, 1) == "\r";
+}
+
+char sum_of(std::string_view bytes) {
+  unsigned total = 0;
+  for (const unsigned char c : bytes) total += c;
+  return static_cast<char>(total);
+}
+
 bool may_end_answer(std::string_view text) {
-  return text.size() > kDigits && text.back() == kCr &&
-         std::all_of(text.end() - kDigits - 1, text.end() - 1, is_hex_digit);
+  if (text.size() <= kAnswer || text.back() != kCr) return false;
+  const std::string_view words = text.substr(text.size() - kAnswer - 1, kAnswer);
+  for (std::size_t i = 0; i < kAnswer; ++i)
+    if (i % (kDigits + 1) == kDigits ? words[i] != ' ' : !is_hex_digit(words[i])) return false;
+  return true;
 }
 
 std::vector<FramingAnswer> framing_answers(std::string_view text, std::size_t from) {
   std::vector<FramingAnswer> answers;
   for (std::size_t cr = text.find(kCr, from); cr != std::string_view::npos; cr = text.find(kCr, cr + 1)) {
     if (!may_end_answer(text.substr(from, cr + 1 - from))) continue;
-    const std::size_t begin = cr - kDigits;
+    const std::size_t begin = cr - kAnswer;
     const char before = begin > from ? text[begin - 1] : kCr;
     if (before == kStx) continue;
     auto answer = before == kLf ? answer_at(text, begin - 1, cr) : std::nullopt;

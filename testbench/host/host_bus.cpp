@@ -44,11 +44,11 @@ std::uint16_t HostBus::dpram_read(std::uint32_t byte_offset) {
   return read_memory(window_address(byte_offset), 3);
 }
 
-void HostBus::dpram_write(std::uint32_t byte_offset, std::uint16_t value) {
-  if (bridge_ != nullptr)
-    pci(PciSpace::kMemory, kPciMemory + byte_offset, true, value, 2);
-  else
-    write_memory(window_address(byte_offset), value, 3);
+void HostBus::dpram_write(std::uint32_t byte_offset, std::uint16_t value, unsigned lanes) {
+  if (bridge_ == nullptr) return write_memory(window_address(byte_offset), value, lanes);
+  const bool high = lanes == 2;
+  pci(PciSpace::kMemory, kPciMemory + byte_offset + (high ? 1 : 0), true, high ? value >> 8u : value,
+      lanes == 3 ? 2 : 1);
 }
 
 // ----------------------------------------------------------------------------------------------------------------- PCI

@@ -31,7 +31,8 @@ class HostBus : public IsaHost {
   std::uint8_t io_read(const regs::Register& byte) { return io_read(byte.address - kIoBase); }
   void io_write(const regs::Register& byte, std::uint8_t value) { io_write(byte.address - kIoBase, value); }
   std::uint16_t dpram_read(std::uint32_t byte_offset);  // even offsets; turns the page of a small window
-  void dpram_write(std::uint32_t byte_offset, std::uint16_t value);
+  // `lanes`: 1 the byte at the offset alone, 2 the one behind it, 3 both.
+  void dpram_write(std::uint32_t byte_offset, std::uint16_t value, unsigned lanes = 3);
   std::uint32_t io_base() const;  // of the card
   std::uint32_t window() const;   // address of the memory window
 

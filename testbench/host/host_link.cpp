@@ -12,8 +12,12 @@ constexpr Tick kTextPause = ns_to_ticks(1'000'000);  // a line of text that goes
 constexpr std::size_t kMostStray = 1 << 16;          // bytes read without a pause: a program may send for ever
 constexpr unsigned kMostQuestions = 5;               // where answers cannot be told from texts
 constexpr const char* kUnclear =
-    "I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits, as ^G is answered; "
+    "I3 and I4 cannot be told: a program sends lines of eight words of 12 hexadecimal digits, as ^B is answered; "
     "expected other texts, or I64=1";
+
+std::size_t questions_in(std::string_view line) {
+  return static_cast<std::size_t>(std::count(line.begin(), line.end(), kAskFraming));
+}
 
 // Where some of the answers from `first` on are acknowledged, the others are texts of programs.
 void drop_texts(std::vector<FramingAnswer>& answers, std::size_t first) {
@@ -60,7 +64,7 @@ void HostLink::poll() {
 // Text that came without being asked for: whole lines, and what has ended without a CR. The beginning of a line that is
 // coming stays: its end will stand in the reply.
 void HostLink::take_stray() {
-  const std::size_t checksum = framing_.checksums() ? 1 : 0;
+  const bool sums = framing_.checksums();
   std::size_t taken = 0;
   const auto text_to = [&](std::size_t end) {
     std::copy_if(incoming_.begin() + static_cast<std::ptrdiff_t>(taken),
@@ -68,11 +72,13 @@ void HostLink::take_stray() {
                  [](unsigned char c) { return c >= ' '; });
     taken = end;
   };
-  for (std::size_t cr = incoming_.find('\r'); cr != std::string::npos && cr + checksum < incoming_.size();
+  for (std::size_t cr = incoming_.find('\r'); cr != std::string::npos && cr + (sums ? 1 : 0) < incoming_.size();
        cr = incoming_.find('\r', taken)) {
+    const std::string_view line = std::string_view(incoming_).substr(taken, cr + 1 - taken);
+    const bool summed = sums && (incoming_[cr + 1] == sum_of(line) || !may_be_error(line));
     text_to(cr);
     unsolicited_.push_back(std::exchange(stray_, ""));
-    taken = cr + 1 + checksum;
+    taken = cr + 1 + (summed ? 1 : 0);
   }
   if (bus_.now() - received_ > kTextPause) text_to(incoming_.size());
   incoming_.erase(0, taken);
@@ -128,7 +134,7 @@ Reply HostLink::finish(Tick timeout) {
   const bool ends_by_asking = unlike_others || framing_.i3 == 0;  // without acknowledge it may not even have begun
   const Tick longest = may_take_long(sent_) ? kSaveTime : kReplyTime;
   const std::uint8_t sum = command_checksum(sent_);
-  Reply reply = ends_by_asking ? asked(sum, unlike_others, longest)
+  Reply reply = ends_by_asking ? asked(sum, unlike_others, longest, questions_in(sent_))
                                : confirmed(collect(ReplyParser(framing_, sum), timeout), sum);
   conclude(reply, sum);
   return reply;
@@ -142,10 +148,10 @@ Reply HostLink::command(const std::string& line, Tick timeout) {
 }
 
 // Data of what stood before the restart, and an error there, which means that it was never reached. However long that
-// takes: what answers ^G has done with the line.
+// takes: what answers ^B has done with the line.
 Reply HostLink::restarted() {
   const Tick longest = may_take_long(sent_) ? kSaveTime : kReplyTime;
-  Reply reply = asked(command_checksum(sent_), true, longest + kBootTime);
+  Reply reply = asked(command_checksum(sent_), true, longest + kBootTime, questions_in(sent_));
   if (reply.error) return reply;
   while (!reply.raw.empty() && reply.raw.back() != '\r') reply.raw.pop_back();  // the restart's acknowledge
   incoming_.clear();
@@ -159,8 +165,9 @@ Reply HostLink::control(std::uint8_t c) {
   poll_to_end_of_text();
   acknowledged_ = false;
   if (!put(c, bus_.now() + kReplyTime)) return {};
-  Reply reply = c == kRepeat ? asked(std::nullopt, true, kSaveTime)
-                             : confirmed(collect(ReplyParser(framing_, std::nullopt), kQuietTime), std::nullopt);
+  const bool is_line = c == kRepeat;
+  Reply reply =
+      asked(std::nullopt, is_line, is_line ? kSaveTime : kReplyTime, questions_in({reinterpret_cast<char*>(&c), 1}));
   conclude(reply, std::nullopt);
   reply.complete = true;  // no answer is an answer to most control characters
   return reply;
@@ -188,10 +195,10 @@ Reply HostLink::taken(Reply reply, const std::string& bytes) {
   return reply;
 }
 
-// The reply is what comes before the answer to ^G.
-Reply HostLink::asked(Checksum command, bool mixed, Tick timeout) {
+// The reply is what comes before the answer to ^B; `own`: the line's own, which are answered first.
+Reply HostLink::asked(Checksum command, bool mixed, Tick timeout, std::size_t own) {
   const Framing before = framing_;
-  const auto answered = ask_framing(timeout);
+  const auto answered = ask_framing(timeout, 0, own);
   const std::string bytes = answered ? *answered : std::exchange(incoming_, "");
   Reply reply = taken(parsed(bytes, command, before, mixed || !(framing_ == before)), bytes);
   reply.complete = answered.has_value();
@@ -206,7 +213,7 @@ Reply HostLink::confirmed(const ReplyParser& parser, Checksum command) {
   if (!(lost || odd) || bus_.tripped() || reply.raw.size() >= kLongestReply) return reply;
   const Framing before = framing_;
   incoming_.insert(0, reply.raw);
-  const auto answered = ask_framing(4 * kQuietTime);
+  const auto answered = ask_framing(4 * kQuietTime, incoming_.size());
   const std::string bytes = answered ? *answered : std::exchange(incoming_, "");
   const bool same = framing_ == before;
   if (same && !lost) return taken(reply, bytes);
@@ -227,16 +234,16 @@ void HostLink::look_for_late_checksum() {
   if (incoming_.empty() || !std::exchange(acknowledged_, false)) return;
   const auto byte = static_cast<std::uint8_t>(incoming_[0]);
   if (byte != acknowledged_sum_.value_or(byte)) return;
-  if (const auto before = ask_framing(kReplyTime)) incoming_.insert(0, *before, framing_.checksums() ? 1 : 0);
+  if (const auto before = ask_framing(kReplyTime, incoming_.size()))
+    incoming_.insert(0, *before, framing_.checksums() ? 1 : 0);
 }
 
 // What came before the answer; what comes behind it stays in incoming_. Nothing: there is none. It is asked again where
-// something else came and where nothing came for long, as the question may have been lost in a restart; of several
-// answers the last counts. Where programs send, an answer is not the last that comes: there it is asked until a
-// question brings one answer. Then those before it have been answered too.
-std::optional<std::string> HostLink::ask_framing(Tick timeout) {
+// something else came and where nothing came for long, as the question may have been lost in a restart; all that were
+// asked are waited for, and the last answer counts. Where programs send, an answer is not the last that comes: there it
+// is asked until a question brings one answer. Then those before it have been answered too.
+std::optional<std::string> HostLink::ask_framing(Tick timeout, std::size_t begin, std::size_t own) {
   const Tick deadline = bus_.now() + timeout;
-  const std::size_t begin = incoming_.size();
   std::size_t seen = 0;
   bool fresh = false;
   doubt_.clear();
@@ -246,11 +253,17 @@ std::optional<std::string> HostLink::ask_framing(Tick timeout) {
     ++unanswered_;
     fresh = false;
     if (!receive(std::min(limit, again))) continue;
-    const bool quiet = read_answer();
-    auto answers = framing_answers(incoming_, begin);
-    const std::size_t all = answers.size();
-    drop_texts(answers, seen);
-    const bool at_end = quiet && !answers.empty() && answers.back().end == incoming_.size();
+    std::vector<FramingAnswer> answers;
+    std::size_t all;
+    bool at_end;
+    do {
+      const bool quiet = read_answer();
+      answers = framing_answers(incoming_, begin);
+      answers.erase(answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(std::min(own, answers.size())));
+      all = answers.size();
+      drop_texts(answers, seen);
+      at_end = quiet && !answers.empty() && answers.back().end == incoming_.size();
+    } while (at_end && answers.size() < unanswered_ && !may_restart(sent_) && receive(bus_.now() + kAskAgain));
     if (at_end || (seen > 0 && answers.size() == seen + 1)) return take_answer(answers);
     fresh = all > seen;
     seen = all;
@@ -303,7 +316,7 @@ bool HostLink::try_connect(Tick deadline) {
   bool quiet = false;
   while (!quiet && bus_.now() < deadline && bus_.now() - begin < kRestless)
     quiet = !receive(std::min(deadline, bus_.now() + kConnectQuiet));
-  if (!quiet && !ask_framing(std::max<Tick>(1, deadline - bus_.now()))) return false;
+  if (!quiet && !ask_framing(std::max<Tick>(1, deadline - bus_.now()), incoming_.size())) return false;
   incoming_.clear();
   framing_ = {2, 0};
   if (!send("I3", std::max<Tick>(1, deadline - bus_.now()))) return false;

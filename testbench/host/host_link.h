@@ -35,7 +35,7 @@ class HostLink {
   Reply command(const std::string& line);
   Reply command(const std::string& line, Tick timeout);
 
-  // Sends one control character without CR; the reply ends at ACK or when nothing comes for kQuietTime.
+  // Sends one control character without CR. Nobody knows whether it is answered: that is asked after it.
   Reply control(std::uint8_t c);
 
   // Sends `line` and CR and returns at once; finish() collects the reply. `send` is false when the port takes no
@@ -61,12 +61,12 @@ class HostLink {
   ReplyParser collect(ReplyParser parser, Tick timeout);
   Reply parsed(const std::string& bytes, Checksum command, const Framing& before, bool mixed) const;
   Reply taken(Reply reply, const std::string& bytes);  // what of `bytes` is none of it stays in incoming_
-  Reply asked(Checksum command, bool mixed, Tick timeout);
+  Reply asked(Checksum command, bool mixed, Tick timeout, std::size_t own);
   Reply confirmed(const ReplyParser& parser, Checksum command);
   Reply restarted();
   void conclude(const Reply& reply, Checksum command);
   void look_for_late_checksum();
-  std::optional<std::string> ask_framing(Tick timeout);
+  std::optional<std::string> ask_framing(Tick timeout, std::size_t begin, std::size_t own = 0);
   bool read_answer();
   std::string take_answer(const std::vector<FramingAnswer>& answers);
   bool try_connect(Tick deadline);
@@ -78,7 +78,7 @@ class HostLink {
   std::string stray_;      // begun line of unsolicited text
   std::vector<std::string> unsolicited_;
   std::string sent_;           // line that finish() waits for, or that was the last
-  unsigned unanswered_ = 0;    // ^G
+  unsigned unanswered_ = 0;    // ^B
   std::string doubt_;          // why its answers say nothing
   bool acknowledged_ = false;  // the last line was, without a checksum
   Checksum acknowledged_sum_;  // which would have been this one

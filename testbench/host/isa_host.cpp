@@ -29,20 +29,20 @@ void IsaHost::step_to(Tick limit, const BoardOutputs& stop_on) {
 void IsaHost::advance_to(Tick tick) {
   for (Tick at = now(); at < tick; at = now()) {
     step_to(std::min(tick, at + kHeartbeat), {});
-    if (heartbeat_) heartbeat_();
+    heartbeat();
   }
 }
 
 void IsaHost::advance_to_stop(Tick limit) {
   step_to(std::min(limit, now() + kHeartbeat), {});
-  if (heartbeat_) heartbeat_();
+  heartbeat();
 }
 
 void IsaHost::wait_change(const PinField& pin, Tick limit) {
   const std::uint32_t value = machine_.outputs().get(pin);
   while (now() < limit && machine_.outputs().get(pin) == value) {
     step_to(std::min(limit, now() + kHeartbeat), select_pins(pin));
-    if (heartbeat_) heartbeat_();
+    heartbeat();
   }
 }
 

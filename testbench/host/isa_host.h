@@ -51,7 +51,10 @@ class IsaHost : public IsaCycles {
   void set_pace(std::function<unsigned()> idle) { pace_ = std::move(idle); }  // periods of the grid before each cycle
   void set_heartbeat(std::function<void()> heartbeat) {
     heartbeat_ = std::move(heartbeat);
-  }  // called often, for progress
+  }                         // called often, for progress
+  void heartbeat() const {  // to be called by whoever lets no time pass for long
+    if (heartbeat_) heartbeat_();
+  }
 
   Machine& machine() { return machine_; }
 

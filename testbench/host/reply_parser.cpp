@@ -32,6 +32,7 @@ bool ReplyParser::take_checksum(std::uint8_t byte) {
   const Due due = std::exchange(due_, Due::kNothing);
   if (due == Due::kNothing) return false;
   const std::uint8_t sum = std::exchange(sum_, std::uint8_t{0});
+  if (due == Due::kProgramError) return byte == sum;
   if (due == Due::kError) {
     reply_.complete = !mixed_;
     return may_be_of_error(byte);
@@ -46,11 +47,15 @@ bool ReplyParser::take_checksum(std::uint8_t byte) {
   return true;
 }
 
-void ReplyParser::end_line() {
+// Ends a line; says whose checksum comes next, if there are any.
+ReplyParser::Due ReplyParser::end_line() {
   (tagged_ ? reply_.unsolicited : reply_.lines).push_back(line_);
-  if (reply_.error && !tagged_ && line_.rfind("ERR", 0) == 0) numbered_ = true;  // else a program's text behind BELL
+  const bool has_number = line_.rfind("ERR", 0) == 0, program_error = tagged_ && (has_number || line_.empty());
+  if (reply_.error && !tagged_ && has_number) numbered_ = true;  // else a program's text behind BELL
   line_.clear();
   tagged_ = false;
+  if (numbered_) return error_sums_ ? Due::kError : Due::kNothing;
+  return program_error ? Due::kProgramError : Due::kLine;
 }
 
 bool ReplyParser::take(std::uint8_t byte) {
@@ -62,7 +67,8 @@ bool ReplyParser::take(std::uint8_t byte) {
   reply_.raw.push_back(c);
   if (is_checksum) return true;
   if (const auto held = std::exchange(held_, std::nullopt)) {
-    if (c != kLf) take_text(*held);  // else it was the checksum, and a program's text begins
+    const bool begins_text = c == kLf || c == kStx || c == kBell;
+    if (!begins_text) take_text(*held);  // else it was the checksum, and a program's text begins, or its error
   } else if (handshake_ && sums_ && byte == command_.value_or(byte)) {
     held_ = c;
     return true;
@@ -76,12 +82,12 @@ void ReplyParser::take_text(char c) {
   sum_ = static_cast<std::uint8_t>(sum_ + static_cast<unsigned char>(c));
   switch (c) {
     case kAck:
-      if (!line_.empty()) end_line();
+      if (!line_.empty()) (void)end_line();
       if (sums_) due_ = Due::kCommand;
       reply_.complete = !sums_;
       break;
     case kBell:
-      if (!line_.empty()) end_line();
+      if (!line_.empty()) (void)end_line();
       reply_.error = true;
       sum_ = 0;  // none of the line behind it, which may be a program's
       break;
@@ -90,9 +96,10 @@ void ReplyParser::take_text(char c) {
         sum_ = 0;
         break;
       }
-      end_line();
-      if (!sums_) unexpected_ = std::exchange(sum_, std::uint8_t{0});
-      if (sums_) due_ = !numbered_ ? Due::kLine : error_sums_ ? Due::kError : Due::kNothing;
+      if (const Due due = end_line(); sums_)
+        due_ = due;
+      else
+        unexpected_ = std::exchange(sum_, std::uint8_t{0});
       reply_.complete = numbered_ && !sums_;
       break;
     case kLf:
@@ -113,7 +120,8 @@ void ReplyParser::take_text(char c) {
 bool ReplyParser::quiet_is_the_end() {
   if (reply_.error || mixed_ || framing_.i3 == 0 || held_) return true;
   if (framing_.i3 != 1 || !framing_.checksums()) return framing_.i3 == 1 && handshake_;
-  if (line_.size() != 1) return false;  // a LF and one character: that should have been the checksum
+  // A LF and one character: that should have been the checksum.
+  if (line_.size() != 1 || sum_ != static_cast<std::uint8_t>(kLf + line_[0])) return false;
   reply_.bad_checksum = fmt::format("the checksum of the line is ${:02X}, expected ${:02X}",
                                     static_cast<unsigned char>(line_[0]), command_.value_or(0));
   line_.clear();
@@ -122,7 +130,7 @@ bool ReplyParser::quiet_is_the_end() {
 
 bool ReplyParser::quiet() {
   if (reply_.complete || !quiet_is_the_end()) return reply_.complete;
-  if (!line_.empty()) end_line();
+  if (!line_.empty()) (void)end_line();
   if (reply_.error && !numbered_) reply_.lines.emplace_back("ERR");  // I6 = 0, 2
   reply_.complete = true;
   return true;

@@ -59,12 +59,13 @@ class ReplyParser {
   bool maybe_checksums() const { return maybe_checksums_; }
 
  private:
-  enum class Due { kNothing, kLine, kCommand, kError };  // whose checksum may come next
+  // Whose checksum may come next. A program's error with its tag (I64) has none on this controller.
+  enum class Due { kNothing, kLine, kCommand, kError, kProgramError };
 
   bool may_be_of_error(std::uint8_t byte) const;
   bool take_checksum(std::uint8_t byte);
   void take_text(char c);
-  void end_line();
+  Due end_line();
   bool quiet_is_the_end();
 
   Framing framing_;

@@ -277,6 +277,16 @@ def bus_timing_lockstep():
     bench_passes("bus-timing", "lockstep", "3")
 
 
+# covers: BIN-1 BIN-3 BIN-5 BIN-6
+def binary_rotary():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
+        bench_passes("binary-rotary", engine, seed)
+
+
+def binary_rotary_lockstep():
+    bench_passes("binary-rotary", "lockstep", "3")
+
+
 def plc():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2")):
         bench_passes("plc", engine, seed)

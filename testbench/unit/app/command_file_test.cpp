@@ -41,6 +41,15 @@ TEST(CommandFile, LeavesCommentsOut) {
   EXPECT_THAT(lines("\xEF\xBB\xBFI16"), ElementsAre("job.pmc:1 I16"));
 }
 
+// It is all up to the line's end, as the controller takes it: no comment, no macro.
+TEST(CommandFile, PasswordsStayAsTheyAre) {
+  EXPECT_THAT(lines("#define X 7\nPASSWORD=a;b\nP1=X Password =a//X/*\t; \n/* a */ PASSWORD=\"X;\nP2=X ; rest\n"),
+              ElementsAre("job.pmc:2 PASSWORD=a;b", "job.pmc:3 P1=7 Password =a//X/* ;", "job.pmc:4 PASSWORD=\"X;",
+                          "job.pmc:5 P2=7"));
+  EXPECT_THAT(lines("#define X 7\nSEND\"PASSWORD=\" P1=X ; rest\nPASSWORD X ;\n; PASSWORD=\n/* PASSWORD= */X// a\n"),
+              ElementsAre("job.pmc:2 SEND\"PASSWORD=\" P1=7", "job.pmc:3 PASSWORD 7", "job.pmc:5 7"));
+}
+
 TEST(CommandFile, MotorsAreNoDirectives) {
   const char* text = "#1->1000X\n#1j+\n#3p\n#\n##1\n#5?\n#4->I\n# 2 J/\n#1HOME\n#defined\n";
   EXPECT_EQ(lines(text).size(), 10u);

@@ -1,5 +1,5 @@
 // A controller behind the port of the fake machine that knows the dialogue alone: I3, I4, I6 as assigned, answers
-// framed as the data sheet says (firmware:6.2, firmware:6.3, firmware:6.5), ^G, and a few commands.
+// framed as the data sheet says (firmware:6.2, firmware:6.3, firmware:6.5), ^B, ^G, and a few commands.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,14 @@ namespace brick {
 
 class DialogueController {
  public:
+  static constexpr const char* kMotorWords =
+      "0123456789AB 850000000000 050000000000 050000000000 050000000000 050000000000 050000000000 050000000000";
+
   explicit DialogueController(FakeMachine& machine) {
     machine.controller = [this](const std::string& line) { return answer(line); };
-    machine.control = [this](char c) { return c == 0x07 ? framed(now(), "", {"0123456789AB"}) : std::string(); };
+    machine.control = [this](char c) {
+      return c == 0x02 ? framed(now(), "", {kMotorWords}) : c == 0x07 ? framed(now(), "", {"0123456789AB"}) : "";
+    };
   }
 
   unsigned i3 = 1, i4 = 0, i6 = 1;
@@ -31,15 +36,17 @@ class DialogueController {
  private:
   Framing now() const { return {i3, i4}; }
 
-  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 to P4 (25, 50, 3, 22221), P6, $$$; UUU is an error.
+  // Commands with spaces between them, I3=n, I4=n, I6=n, I3, P1 to P4 (25, 50, 3, 22221), P6 in the form of ^B's
+  // answer, ??, $$$; UUU is an error.
   std::string answer(const std::string& line) {
     if (before_line) before_line();
     const Framing before = now();
     std::string bytes;
     std::istringstream in(line);
     for (std::string word; in >> word;) {
-      for (const auto& [name, text] : {std::pair("P1", "25"), std::pair("P2", "50"), std::pair("P3", "3"),
-                                       std::pair("P4", "22221"), std::pair("P6", "123456789012")})
+      for (const auto& [name, text] :
+           {std::pair("P1", "25"), std::pair("P2", "50"), std::pair("P3", "3"), std::pair("P4", "22221"),
+            std::pair("P6", kMotorWords), std::pair("?", "123456789012"), std::pair("??", "A80020020000000000")})
         if (word == name) bytes += data(text);
       if (word == "I3") bytes += data(std::to_string(i3));
       if (word.size() == 4 && word[0] == 'I' && word[2] == '=')

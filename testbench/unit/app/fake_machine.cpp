@@ -13,6 +13,14 @@ struct Machine::Impl {
   Signals signals;
   std::vector<BusCycle> cycles;
   Aperture aperture;  // none
+  unsigned icr = 0;
+
+  // HREQ as ICR asks for it; answers are there when they have been thought of.
+  void look_at_port() {
+    for (; !fake.later.empty() && fake.later.front().first <= now; fake.later.pop_front())
+      fake.to_host.insert(fake.to_host.end(), fake.later.front().second.begin(), fake.later.front().second.end());
+    if (icr != 0) outputs.set(pin::kHreq, (icr & 1u) != 0 && !fake.to_host.empty() ? 1u : icr >> 1 & 1u);
+  }
 };
 
 namespace {
@@ -48,8 +56,10 @@ Tick Machine::run_until(Tick limit, const BoardOutputs& stop_on) {
     }
     m.outputs.set(pin::kIsaSdOe, !m.applied.isa_memr_n ? 3 : !m.applied.isa_ior_n ? 1 : 0);
     m.outputs.set(pin::kIsaIochrdy, m.now < m.fake.ready_low_from || m.now >= m.fake.ready_low_to);
+    m.look_at_port();
     if (before.differs(m.outputs, stop_on)) break;
-    if (m.fake.planned.empty() && m.fake.ready_low_from == kNever) m.now = limit;  // nothing moves by itself
+    if (!m.fake.planned.empty() || m.fake.ready_low_from != kNever) continue;
+    m.now = m.fake.later.empty() ? limit : std::clamp(m.fake.later.front().first - 1, m.now, limit);  // else all stands
   }
   return m.now;
 }
@@ -58,14 +68,13 @@ void Machine::apply(TimeFs) {
   Impl& m = *impl_;
   FakeMachine& f = m.fake;
   if (f.records) f.changes.push_back({m.now + 1, m.applied, m.pins});
-  for (; !f.later.empty() && f.later.front().first <= m.now; f.later.pop_front())
-    f.to_host.insert(f.to_host.end(), f.later.front().second.begin(), f.later.front().second.end());
+  m.look_at_port();
   if (f.sends && f.to_host.empty() && m.now >= m.next_text) {
     const std::string text = f.sends();
     f.to_host.insert(f.to_host.end(), text.begin(), text.end());
     m.next_text = m.now + f.sends_every;
   }
-  const std::uint32_t offset = m.pins.isa_sa - 0x210, word = m.pins.isa_sa - 0xD0000;
+  const std::uint32_t offset = m.pins.isa_sa - 0x210, word = (m.pins.isa_sa - 0xD0000) & ~1u;
   if (m.applied.isa_ior_n && !m.pins.isa_ior_n) {
     std::uint8_t value = f.io[offset];
     if (offset == 2) value = static_cast<std::uint8_t>(0x02 | (f.to_host.empty() ? 0 : 1));
@@ -75,10 +84,15 @@ void Machine::apply(TimeFs) {
   if (!m.applied.isa_ior_n && m.pins.isa_ior_n && offset == 7 && !f.to_host.empty()) f.to_host.pop_front();
   if (!m.applied.isa_memr_n && m.pins.isa_memr_n) m.outputs.set(pin::kIsaSd, 0xFFFF);
   if (m.applied.isa_memr_n && !m.pins.isa_memr_n) m.outputs.set(pin::kIsaSd, f.memory[word]);
-  if (!m.applied.isa_memw_n && m.pins.isa_memw_n) f.memory[word] = m.pins.isa_sd;
+  if (!m.applied.isa_memw_n && m.pins.isa_memw_n) {
+    const unsigned lanes = (m.pins.isa_sa % 2 == 0 ? 0x00FFu : 0u) | (m.pins.isa_sbhe_n ? 0u : 0xFF00u);
+    f.memory[word] = static_cast<std::uint16_t>((f.memory[word] & ~lanes) | (m.pins.isa_sd & lanes));
+  }
   if (!m.applied.isa_iow_n && m.pins.isa_iow_n) {
     const auto byte = static_cast<std::uint8_t>(m.pins.isa_sd);
     f.io[offset] = byte;
+    if (offset == 0) m.icr = byte;
+    if (offset == 0 && byte == 0) m.outputs.set(pin::kHreq, 0);
     const auto say = [&](std::string answer, Tick after = 0) {
       if (f.sends) answer += f.sends();
       if (after == 0 && f.later.empty())
@@ -96,6 +110,7 @@ void Machine::apply(TimeFs) {
     }
   }
   m.applied = m.pins;
+  m.look_at_port();
 }
 
 }  // namespace brick

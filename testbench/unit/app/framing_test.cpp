@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "testbench/host/framing_probe.h"
 #include "testbench/host/host_link.h"
 #include "testbench/unit/app/dialogue_controller.h"
 #include "testbench/unit/covers.h"
@@ -14,85 +13,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(FramingProbe, KnowsTheLinesThatMayChangeI3AndI4) {
-  for (const char* line :
-       {"I3=0", "i4 = 1", "P1=2 I3=P1", "I03=1", "I0..9=*", "I2..40=0", "I1,5=2", "I(P1)=2", "I3..4=0", "I3,2=1",
-        "#1J+I3=2", "I16 I3=0 I17", "I3=1;I5=2", "CLOSE I4=1", "A I4=1", "SAVE I3=0"})
-    EXPECT_TRUE(may_change_framing(line)) << line;
-  for (const char* line : {"I3", "I3 I4", "I13=2", "I30=0", "I5..9=*", "I16=3", "P1=I3", "SIN(3)=4", "CMD\"I3=0\"",
-                           "I0..99", "M3->I4", "P3=0 ; I3=0", "", "I", "I(P1)", "I4900..4999=0", "I34=I3"})
-    EXPECT_FALSE(may_change_framing(line)) << line;
-  for (const char* line : {"I33\x08=0", "\x09", "P1\x1F"}) EXPECT_TRUE(has_control_characters(line)) << line;
-  for (const char* line : {"", "P1=2 ; I3", "\xC3\xBC"}) EXPECT_FALSE(has_control_characters(line)) << line;
-  for (const char* line : {"$$$", "I16=3 $$$***", " $ $$"}) EXPECT_TRUE(may_restart(line)) << line;
-  for (const char* line : {"$$", "CMD\"$$$\"", "P1=$12 ; $$$", "M1->X:$78000,24"})
-    EXPECT_FALSE(may_restart(line)) << line;
-  EXPECT_TRUE(may_take_long("save"));
-  EXPECT_TRUE(may_restart("$$$ PASSWORD=x"));
-  EXPECT_TRUE(may_restart("CMD\"a;b\" $$$")) << "a semicolon in a text begins no comment";
-}
-
-// Everything behind PASSWORD= is the password, quotation marks and semicolons too; texts and comments are no commands.
-TEST(FramingProbe, TextsAreNoCommands) {
-  for (const char* before : {"PASSWORD=", "password = x", "I16 PASSWORD=\"", "PASSWORD=\"\"", "PASSWORD=a;b", "SEND\"",
-                             "; ", "P1=1;", "CMD\"a\" DISPLAY 5\"b;", "SEND\"PASSWORD=\";"})
-    for (const char* text : {"$$$", "$$$***", "I3=0", "I(3)=1", "SAVE"}) {
-      const std::string line = std::string(before) + text;
-      EXPECT_FALSE(may_restart(line)) << line;
-      EXPECT_FALSE(may_change_framing(line)) << line;
-      EXPECT_FALSE(may_take_long(line)) << line;
-    }
-  for (const char* line : {"PASSWORD $$$", "SEND\"PASSWORD=\"$$$", "P1=1 $$$ ;PASSWORD="})
-    EXPECT_TRUE(may_restart(line)) << line;
-}
-
-// Every setting answers ^G in its own form; what came before it is not taken for a part of it.
-TEST(FramingProbe, ReadsEverySettingOffAnAnswer) {
-  for (unsigned i3 = 0; i3 <= 3; ++i3)
-    for (unsigned i4 = 0; i4 <= 1; ++i4)
-      for (const std::string before : {"", "25\r", "\n25\r", "\x06", "0123456789AB\r\x06"}) {
-        const std::string answer = framed({i3, i4}, "", {"000000000800"});
-        const auto found = framing_answers(before + answer, before.size());
-        ASSERT_EQ(found.size(), 1u) << i3 << i4;
-        EXPECT_EQ(found[0].begin, before.size());
-        EXPECT_EQ(found[0].end, before.size() + answer.size()) << i3 << i4;
-        EXPECT_TRUE(found[0].framing == (Framing{i3, i4})) << i3 << i4;
-      }
-  EXPECT_TRUE(framing_answers("25\r\x06", 0).empty());
-  EXPECT_TRUE(framing_answers("00000000080\r\x06", 0).empty()) << "eleven digits";
-  EXPECT_TRUE(framing_answers("00000000080\r\x06", 40).empty());
-}
-
-// What follows an answer shows what it is where its own bytes do not: the sum of 000000000800 and its CR is `U`.
-TEST(FramingProbe, ReadsAnAnswerAmongTexts) {
-  const std::string digits = "000000000800\r", lf = "\n" + digits;
-  const std::string text = "UP\r", summed = text + checksum(text), tail = "UP";
-  struct Case {
-    std::string answer, behind;
-    Framing framing;
-  };
-  ASSERT_EQ(checksum(digits), 'U');
-  for (const Case& c : std::vector<Case>{{digits, text + text, {0, 0}},
-                                         {digits, text + tail, {0, 0}},
-                                         {digits + "U", summed + summed, {0, 1}},
-                                         {digits + "\x06", text + tail, {2, 0}},
-                                         {digits + "U\x06\x07", summed + tail, {2, 1}},
-                                         {lf + "\n", "\n" + text + tail, {1, 0}},
-                                         {lf + "\x06", "\n" + text + tail, {3, 0}},
-                                         {lf + checksum(lf) + "\n\x07", "\nUP", {1, 1}},
-                                         {lf + checksum(lf) + "\x06\x07", "\nUP", {3, 1}}}) {
-    const std::string all = text + c.answer + c.behind;
-    const auto found = framing_answers(all, 0);
-    ASSERT_EQ(found.size(), 1u) << c.framing.i3 << c.framing.i4;
-    EXPECT_EQ(all.substr(found[0].begin, found[0].end - found[0].begin), c.answer);
-    EXPECT_TRUE(found[0].framing == c.framing) << c.framing.i3 << c.framing.i4;
-  }
-  EXPECT_TRUE(framing_answers("\x02" + digits + text, 0).empty()) << "a program's, by its tag";
-  const auto three = framing_answers(lf + lf + "\x06\n" + text + lf, 0);  // a text, whose end looks like an acknowledge
-  ASSERT_EQ(three.size(), 3u);
-  EXPECT_TRUE(three[1].framing == (Framing{3, 0}));
-  EXPECT_EQ(three[1].begin, lf.size());
-}
+constexpr const char* kMotorWords = DialogueController::kMotorWords;
 
 class FramingTest : public ::testing::Test {
  protected:
@@ -197,10 +118,75 @@ TEST_F(FramingTest, WaitsForTheErrorOfASlowLine) {
   }
 }
 
+// What `?`, `??` and `???` are answered with, and then a pause: only the answer to ^B ends the reply.
+TEST_F(FramingTest, APauseBehindStatusDigitsIsNoEnd) {
+  FakeMachine& fake = FakeMachine::last();
+  fake.thinking = ns_to_ticks(50'000'000);
+  for (const unsigned i3 : {0u, 1u, 2u, 3u, 0u})
+    for (const std::string digits : {"A80020020000000000", "000000000800"}) {
+      SCOPED_TRACE("I3=" + std::to_string(i3));
+      const std::string change = "I3=" + std::to_string(i3);
+      for (const std::string& line : Lines{change + " P1", "P1"}) {
+        controller.before_line = [&] {
+          const std::string first = controller.data(digits);
+          fake.to_host.insert(fake.to_host.end(), first.begin(), first.end());
+        };
+        EXPECT_EQ(reply(line), (Lines{digits, "25"})) << line;
+        controller.before_line = nullptr;
+        EXPECT_EQ(reply("P2"), (Lines{"50"})) << line;
+      }
+      EXPECT_EQ(link.take_unsolicited(), Lines{});
+    }
+}
+
+// A control character is answered in the background, behind whatever PLCs run there.
+TEST_F(FramingTest, ControlCharactersAreAnsweredLate) {
+  FakeMachine& fake = FakeMachine::last();
+  const auto answer = fake.control;
+  fake.control = [&](char c) {
+    const Tick now = bus.now(), before = fake.later.empty() ? now : std::max(now, fake.later.back().first);
+    fake.later.emplace_back(before + ns_to_ticks(12'000'000), answer(c));
+    return std::string();
+  };
+  for (const unsigned i3 : {0u, 1u, 2u, 3u}) {
+    EXPECT_EQ(reply("I3=" + std::to_string(i3)), Lines{});
+    EXPECT_EQ(link.control(0x07).lines, (Lines{"0123456789AB"})) << i3;
+    EXPECT_EQ(link.control(0x02).lines, (Lines{kMotorWords})) << i3;
+    EXPECT_EQ(link.control(0x01).lines, Lines{}) << i3;
+    EXPECT_EQ(reply("P1"), (Lines{"25"})) << i3;
+  }
+  EXPECT_EQ(link.take_unsolicited(), Lines{});
+}
+
+// A second question is asked a moment before the line is worked off, and answered in the next background pass.
+TEST_F(FramingTest, AnswersToAllQuestionsAreWaitedFor) {
+  FakeMachine& fake = FakeMachine::last();
+  EXPECT_EQ(reply("I3=0"), Lines{});
+  const auto answer = fake.control;
+  int asked = 0;
+  fake.control = [&](char c) {
+    const Tick begin = fake.later.empty() ? bus.now() : fake.later.back().first;
+    fake.later.emplace_back(begin + ns_to_ticks(++asked == 1 ? 1'500'000 : 20'000'000), answer(c));
+    return std::string();
+  };
+  fake.thinking = ns_to_ticks(99'000'000);
+  EXPECT_EQ(reply("P5=1"), Lines{});
+  EXPECT_EQ(asked, 2);
+  fake.control = answer;
+  fake.thinking = 0;
+  EXPECT_EQ(reply("P2"), (Lines{"50"}));
+  EXPECT_EQ(link.take_unsolicited(), Lines{});
+}
+
 // Each control character may be answered by itself; the answer of the line comes behind.
 TEST_F(FramingTest, ControlCharactersInALineDoNotShiftTheReplies) {
   EXPECT_EQ(reply("P1\x07"), (Lines{"0123456789AB", "25"}));
   EXPECT_EQ(reply("P2"), (Lines{"50"}));
+  FakeMachine::last().thinking = ns_to_ticks(40'000'000);
+  EXPECT_EQ(reply("P1\x02"), (Lines{kMotorWords, "25"})) << "the host's own question";
+  EXPECT_EQ(reply("P2\x07"), (Lines{"0123456789AB", "50"}));
+  EXPECT_EQ(reply("\x02\x02P1 I3=0"), (Lines{kMotorWords, kMotorWords, "25"}));
+  EXPECT_EQ(reply("\x02P1 I3=2"), (Lines{kMotorWords, "25"}));
   EXPECT_EQ(reply("\x07UUU\x07"), (Lines{"0123456789AB", "0123456789AB", "ERR003"}));
   EXPECT_EQ(reply("P2"), (Lines{"50"}));
   EXPECT_EQ(link.take_unsolicited(), Lines{});
@@ -252,13 +238,12 @@ TEST_F(SendingTest, AnErrorTakesNothingFromATextWithoutChecksums) {
   EXPECT_EQ(data("I4=0 P1 UUU"), (Lines{"25", "ERR003"}));
 }
 
-// 123456789012 is data in the form of the answer.
 TEST_F(SendingTest, KeepsDataThatLookLikeTheAnswer) {
   send("TEXT");
   for (const unsigned i3 : {2u, 0u, 1u, 3u, 0u, 2u})
-    EXPECT_EQ(data("P6 P1 I3=" + std::to_string(i3) + " P6"), (Lines{"123456789012", "25", "123456789012"})) << i3;
+    EXPECT_EQ(data("P6 P1 I3=" + std::to_string(i3) + " P6"), (Lines{kMotorWords, "25", kMotorWords})) << i3;
   fake.thinking = ns_to_ticks(130'000'000);
-  EXPECT_EQ(data("I3=0 P6 UUU"), (Lines{"123456789012", "ERR003"}));
+  EXPECT_EQ(data("I3=0 P6 UUU"), (Lines{kMotorWords, "ERR003"}));
 }
 
 TEST_F(SendingTest, FindsOutWhenAProgramChangesI3AndI4) {
@@ -272,18 +257,14 @@ TEST_F(SendingTest, FindsOutWhenAProgramChangesI3AndI4) {
 
 // An acknowledge is none of a text; without one nobody can tell.
 TEST_F(SendingTest, SaysWhatCannotBeTold) {
-  send("123456789012");
+  send(kMotorWords);
   EXPECT_EQ(data("P1 I3=3"), (Lines{"25"}));
   EXPECT_EQ(data("P1 I3=2"), (Lines{"25"}));
   const Reply reply = link.command("P1 I3=0");
   EXPECT_FALSE(reply.complete);
   EXPECT_EQ(std::count(reply.lines.begin(), reply.lines.end(), "25"), 1) << "the reply is not lost";
-  EXPECT_NE(reply.doubt.find("a program sends lines of 12 hexadecimal digits"), std::string::npos) << reply.doubt;
-  fake.sends = [this] {
-    return controller.data(
-        "\x02"
-        "123456789012");
-  };
+  EXPECT_NE(reply.doubt.find("a program sends lines of eight words"), std::string::npos) << reply.doubt;
+  fake.sends = [this] { return controller.data(std::string("\x02") + kMotorWords); };
   EXPECT_EQ(data("P1 I3=1"), (Lines{"25"})) << "tagged (I64)";
   EXPECT_EQ(data("P1 I3=0"), (Lines{"25"}));
 }
@@ -325,6 +306,24 @@ TEST_F(SendingTest, NoTextIsLostOrTorn) {
     expect_texts(lines);
   }
   EXPECT_GT(next, 300);
+}
+
+// Where other lines have checksums the errors of programs have none: nothing is taken from the text behind one.
+TEST_F(FramingTest, TextsBehindErrorsOfProgramsAreWhole) {
+  EXPECT_EQ(reply("I4=1"), Lines{});
+  FakeMachine& fake = FakeMachine::last();
+  for (const std::string& text : {std::string("\x02"
+                                              "ERR003\r"),
+                                  controller.data("\x02"
+                                                  "AB"),
+                                  std::string("\x02\r"),
+                                  controller.data("\x02"
+                                                  "ERR"),
+                                  controller.data("CD")})
+    fake.to_host.insert(fake.to_host.end(), text.begin(), text.end());
+  link.poll();
+  EXPECT_EQ(link.take_unsolicited(), (Lines{"ERR003", "AB", "", "ERR", "CD"}));
+  EXPECT_EQ(reply("P1"), (Lines{"25"}));
 }
 
 TEST_F(FramingTest, EndsWhereTheControllerIsNeverQuiet) {

@@ -152,6 +152,45 @@ TEST(ReplyParser, TextsOfProgramsBehindAReplyHaveChecksumsOfTheirOwn) {
   EXPECT_EQ(lf.reply().bad_checksum, "");
 }
 
+// Of programs too, where they are tagged (I64). $02 ERR003 CR is $18B, $02 X CR $67, 25 CR $74.
+TEST(ReplyParser, ErrorsOfProgramsHaveNoChecksum) {
+  for (const std::string number : {"ERR003", ""}) {
+    auto p = parsed({2, 1}, "\x02" + number + "\r\x02X\r\x67" + "25\r\x74\x06u", 'u');
+    EXPECT_TRUE(p.complete());
+    EXPECT_EQ(p.reply().bad_checksum, "");
+    EXPECT_EQ(p.reply().lines, (Lines{"25"}));
+    EXPECT_EQ(p.reply().unsolicited, (Lines{number, "X"}));
+  }
+  auto summed = parsed({2, 1},
+                       "\x02"
+                       "ERR003\r\x8B"
+                       "25\r\x74\x06u",
+                       'u');
+  EXPECT_EQ(summed.reply().lines, (Lines{"25"}));
+  EXPECT_EQ(summed.reply().bad_checksum, "");
+  // With I3 = 1 one without a number begins without LF behind the acknowledge.
+  for (const std::string error : {"\x02\r", "\x07"}) {
+    auto p = parsed({1, 1}, "\nu" + error, 'u');
+    (void)p.quiet();
+    EXPECT_EQ(p.reply().bad_checksum, "");
+    EXPECT_EQ(p.reply().lines, error == "\x07" ? (Lines{"ERR"}) : Lines{}) << "nobody can tell whose it is";
+  }
+}
+
+// ^N and ^X: a byte, and no acknowledge.
+TEST(ReplyParser, AByteWithoutLfIsNoChecksum) {
+  for (const char byte : {'\0', '\x18'}) {
+    ReplyParser p({1, 1}, std::nullopt);
+    EXPECT_TRUE(p.take(static_cast<std::uint8_t>(byte)));
+    (void)p.quiet();
+    EXPECT_EQ(p.reply().bad_checksum, "");
+  }
+  ReplyParser wrong({1, 1}, 'u');
+  for (const char c : {'\n', 'v'}) EXPECT_TRUE(wrong.take(static_cast<std::uint8_t>(c)));
+  EXPECT_TRUE(wrong.quiet());
+  EXPECT_NE(wrong.reply().bad_checksum, "");
+}
+
 TEST(ReplyParser, TaggedLinesAreUnsolicited) {
   const auto p = parsed({2, 0},
                         "\x02"

@@ -57,6 +57,10 @@ def dialogue():
     expected += ["5", "ERR003", "10"] * 2
     lines += ["I16\x07", "@expect 000000000800|5", "I17"]
     expected += ["000000000800", "5", "10"]
+    # Status digits, and then a pause: no end of the reply.
+    cs = "A80020020000000000"  # &1 of a controller that has just started
+    lines += ["I3=0", f"??{slow}??", "I16", f"??{slow}I3=2???", "I17", f"{slow}I16\x02", "I16\x07"]
+    expected += [cs, cs, "5", cs, "000000000800", "10", "850000000000", *["050000000000"] * 7, "5", "000000000800", "5"]
     # A program sets I4, and sets it back.
     lines += ["CLOSE DELETE ALL #1->X &1DEFINE ROT 100 B0 OPEN ROT", "I4=1", "CLOSE R", "@wait 20ms", "I16 I17",
               "P1=22221 P1 P1", "UUU", "OPEN ROT", "I4=0", "CLOSE R", "@wait 20ms", "P1=2", "P1", "I16"]
@@ -73,6 +77,32 @@ def dialogue():
         check(r.returncode == 0 and r.stdout.split() == ["ERR", "7"], f"{line}: {r.stdout}{r.stderr}")
     r = play(["UUU", "@expect ERR003", "UUU $$$", "I16", "@expect 5"])
     check(r.returncode == 0 and r.stderr.count("\n") == 2 and "stdin:3: " in r.stderr, "expected errors are not told")
+
+
+def busy_programs():
+    """PLCs that take longer than the pause that ends a reply, and commands of programs that are refused."""
+    scan = ["I5=2", "OPEN PLC1 CLEAR", *["P1=" + "+".join(["SIN(P1)"] * 30)] * 8, "CLOSE ENABLE PLC1"]
+    lines, expected = [*scan, "@wait 50ms", "@time", "I3=2", "@time"], []
+    for i3 in range(4):
+        lines += [f"I3={i3}", "^G", "I16", "^A^B", "I17 UUU", "^Y"]
+        expected += ["000000000800", "5", " ".join(["850000000000"] + ["050000000000"] * 7), "10", "ERR003", "I17 UUU"]
+    r = play(lines)
+    out = r.stdout.splitlines()
+    check(r.returncode == 0 and out[2:] == expected, f"{out}, expected {expected}: {r.stderr}")
+    before, after = (int(re.fullmatch(r"time=(\d+) ns", line)[1]) for line in out[:2])
+    check(after - before > 5_000_000, "the PLC is over too soon")
+    # Texts and errors with tags (I64), errors without a checksum.
+    lines, expected = ["I64=1 I5=2", 'OPEN PLC1 CLEAR SEND"AB" CMD"UUU" CLOSE', "ENABLE PLC1"], []
+    for i3, i4, i6 in ((0, 1, 1), (1, 1, 0), (2, 1, 3), (3, 1, 1), (1, 1, 2)):
+        lines += [f"I16 I3={i3} I4={i4} I6={i6}", "I16 I17", "P1=1", "I16 UUU", "^N", "I17"]
+        expected += [["5"], ["5", "10"], [], ["5", "ERR003" if i6 % 2 else "ERR"], None, ["10"]]
+    with tempfile.TemporaryDirectory() as folder:
+        results = pathlib.Path(folder) / "results.json"
+        r = play(lines, "--json", results)
+        check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+        replies = [e["reply"] for e in json.loads(results.read_text())["exchanges"]][3:]
+    wrong = [pair for pair in zip(lines[3:], replies, expected, strict=True) if pair[2] not in (pair[1], None)]
+    check(not wrong, f"{wrong}")
 
 
 TEXT = "A text of a program"
@@ -95,19 +125,18 @@ def sends_for_ever():
         lines += [f"I16 I3={i3} I4={i4} I6={i6}", "I16 I17", "P1=1", "I16 UUU", "I17"]
         expected += ["5", "5", "10", "5", "ERR003" if i6 % 2 else "ERR", "10"]
     judge(lines + ["^A", "^G", "I16\x07"], [*expected, "000000000800", "000000000800", "5"])
-    # The program changes I3; it is there at once behind each start; its text begins like a checksum: U of 000000000800.
+    # The program changes I3; it is there at once behind each start.
     judge([*sending(TEXT, "I3=0", "I3=2"), *["I16", "I17"] * 10], ["5", "10"] * 10)
     judge([*sending(TEXT), "SAVE", "I16", "$$$", "I16", "@reset", "I17", "@power", "I16", "I16=7 $$$***", "I16"],
           ["5", "5", "10", "5", "5"])
-    judge([*sending("U text"), "I3=0", "I4=1", "I4=0", "I16", "I3=1", "I17"], ["5", "10"], "U text")
+    judge([*sending(TEXT), "I3=0", "I4=1", "I4=0", "I16", "I3=1", "I17"], ["5", "10"])
     # Texts in the form of the answer: an acknowledge and a tag tell them from it, else nothing does.
-    digits = "12345678ABCD"
+    digits = " ".join(["12345678ABCD"] * 8)
     judge([*sending(digits), "I16 I3=3", "I16", "I64=1", "I16 I3=1", "I16 I3=0", "I17"], ["5", "5", "5", "5", "10"],
           digits)
     r = play([*sending(digits), "I16 I3=0", "I17"])
     check(r.returncode == 1 and r.stdout.splitlines().count("5") == 1, f"exit {r.returncode}: {r.stderr}")
-    check("stdin:7: `I16 I3=0`: I3 and I4 cannot be told: a program sends lines of 12 hexadecimal digits" in r.stderr,
-          r.stderr)
+    check("stdin:7: `I16 I3=0`: I3 and I4 cannot be told: a program sends lines of eight words" in r.stderr, r.stderr)
 
 
 def bytes_of_all_kinds():

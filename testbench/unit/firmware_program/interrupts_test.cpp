@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_program/binary_buffer.h"
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
@@ -86,7 +87,7 @@ TEST_F(Interrupts, WideValueReadWithoutAMaskIsReadHalf) {
 
 // The firmware. ------------------------------------------------------------------------------------------------------
 
-constexpr unsigned kLines = 400, kTries = 3000;
+constexpr unsigned kLines = 400, kBinaryLines = 100, kTries = 3000;
 
 // Line n of coordinate system s: P(1000 s + P(s)) = n, P(s) = P(s) + 1. Empty when each was executed once and in order.
 // An interrupt every `gap` accesses.
@@ -142,6 +143,56 @@ TEST_F(Interrupts, StreamWithoutMasksLosesLines) {
   FAIL() << "nothing was found";
 }
 
+// The same lines as binary ones, with constants only: a program writes them down. Who stores is set by I45, which
+// changes meanwhile when `changes`.
+std::string binary_stream(std::uint32_t seed, std::uint32_t gap, bool foreground, bool changes) {
+  if (!host("OPEN PROG 7 CLEAR P(Q2+P(Q3))=Q1 P(Q3)=P(Q3)+1 CLOSE").empty()) return "no program";
+  platform::BinaryBuffer buffers[2];
+  for (unsigned cs = 2; cs >= 1; --cs) {
+    buffers[cs - 1].cs = cs;
+    buffers[cs - 1].start = 1000 * cs;
+    if (!host("&" + std::to_string(cs) + "DEF ROT 20 B0").empty()) return "no buffer";
+    buffers[cs - 1].set_up();
+  }
+  if (!host(foreground ? "I45=1" : "I45=0").empty() || !host("OPEN BIN ROT &2R &1R").empty()) return "does not run";
+  for (platform::BinaryBuffer& b : buffers) b.put("Q2=" + std::to_string(1000 * b.cs) + "Q3=" + std::to_string(b.cs));
+  fake_interrupts_begin(seed, gap);
+  const auto done = [&](const platform::BinaryBuffer& b) { return b.pmac_index() == b.index; };
+  for (unsigned n = 0; n < kBinaryLines; ++n) {
+    platform::BinaryBuffer& b = buffers[n % 2];
+    const bool change = changes && n % 16 == 0;
+    const auto line =
+        brick::binary_line((change ? "I45=" + std::to_string(n / 16 % 2) : "") + "Q1=" + std::to_string(n) + "CALL7");
+    for (unsigned tries = 0; !b.has_room(line.commands) && tries < kTries; ++tries) platform::background(1);
+    if (!b.has_room(line.commands)) return "held for ever";
+    b.put(line.commands);
+    if (n % 5 == 0) platform::background(1);
+  }
+  for (unsigned tries = 0; !(done(buffers[0]) && done(buffers[1])) && tries < 10 * kTries; ++tries)
+    platform::background(1);
+  for (const char* cs : {"&1", "&2"}) {
+    unsigned tries = 0;
+    while (host(std::string(cs) + "PR") != "0" && ++tries < kTries) {}
+    if (tries == kTries) return std::string(cs) + ": not all are calculated";
+  }
+  fake_interrupts_end();
+  platform::servo_ticks(30);
+  for (unsigned cs = 1; cs <= 2; ++cs) {
+    if (p_variable_read(cs) != kBinaryLines / 2) return "executed: " + std::to_string(p_variable_read(cs));
+    for (unsigned i = 0; i < kBinaryLines / 2; ++i)
+      if (p_variable_read(1000 * cs + i) != 2 * i + cs - 1) return "place " + std::to_string(i) + " is another line";
+  }
+  return host("&1 A &2 A CLOSE DEL ALL TEMPS");
+}
+
+TEST_F(Interrupts, BinaryLinesAreExecutedOnceAndInOrder) {
+  BRICK_COVERS("BIN-3 BIN-5");
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    platform::power_up();
+    EXPECT_EQ(binary_stream(seed, 20 + seed % 3 * 40, seed % 2 != 0, seed > 3), "") << "seed " << seed;
+  }
+}
+
 // A pointer given while an abort is still to be settled, and the real-time task comes in the middle of it: what is left
 // of the aborted line is skipped in its own program. In the new one that would be its first line.
 TEST_F(Interrupts, APointerGivenBehindAnAbortKeepsItsFirstLine) {
@@ -168,6 +219,39 @@ TEST_F(Interrupts, APointerGivenBehindAnAbortKeepsItsFirstLine) {
     (void)platform::sent();
   }
   EXPECT_GT(came, kSeeds);
+}
+
+// A move that `/` holds back is dropped by B and never starts, wherever an interrupt comes: nothing is masked there.
+TEST_F(Interrupts, AMoveThatIsHeldBackNeverStartsBehindB) {
+  constexpr std::uint32_t kSeeds = 300;
+  struct coordinate_system& s = coordinate_systems[0];
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR TM5 TA2 TS0 INC"), "");
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(host("X1"), "");
+  ASSERT_EQ(host("CLOSE OPEN PROG 3 CLEAR P3=P3+1 CLOSE"), "");
+  unsigned servo = 0, real_time = 0;
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    ASSERT_EQ(host("B2R"), "");
+    platform::servo_ticks(9);
+    ASSERT_EQ(host("/"), "");
+    platform::servo_ticks(30);
+    ASSERT_TRUE(s.next_valid && !s.active && !s.running) << "nothing is held back";
+    const std::uint32_t started = s.started;
+    const double position = s.moves[s.executing ^ 1u].start[AXIS_X];
+    fake_interrupts_begin(seed, 3);
+    ASSERT_EQ(run_point(0, 3.0), ERR_NONE);
+    servo += fake_interrupts_counts().taken[FAKE_SERVO];
+    real_time += fake_interrupts_counts().taken[FAKE_REAL_TIME];
+    fake_interrupts_end();
+    platform::servo_ticks(6);
+    ASSERT_EQ(s.started, started) << "seed " << seed;
+    ASSERT_FALSE(s.active || s.next_valid || s.settling || s.end_block) << "seed " << seed;
+    ASSERT_EQ(s.position[AXIS_X], position) << "seed " << seed;
+    ASSERT_EQ(host("P3=0 R"), "");
+    platform::servo_ticks(6);
+    ASSERT_EQ(p_variable_read(3), 1.0) << "seed " << seed;
+  }
+  EXPECT_GT(servo, kSeeds);
+  EXPECT_GT(real_time, kSeeds / 4);
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ TEST_F(LiveWords, DwellShowsInTheMotorsOfTheSystem) {
   platform::servo_ticks(30);
   EXPECT_EQ(m("X:$B0,15"), "1");
   EXPECT_EQ(m("X:$130,15"), "0");
+  EXPECT_EQ(m("X:$1B0,15"), "0") << "in no coordinate system";
   platform::servo_ticks(2000);
   EXPECT_EQ(m("X:$B0,15"), "0");
 }

@@ -1,0 +1,103 @@
+// `brick serve`: a started controller behind the Ethernet port of a Brick (docs/ethernet.md).
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/ethernet_server.h"
+#include "app/simulation.h"
+#include "app/simulation_loop.h"
+#include "systemc/core/usage_error.h"
+#include "testbench/host/communications_processor.h"
+
+namespace brick {
+
+namespace {
+
+// The interface keeps its address in a memory of its own: beside the flash file, if there is one.
+class AddressFile {
+ public:
+  explicit AddressFile(const std::string& flash) : name_(flash.empty() ? "" : flash + ".address") {}
+
+  // Four bytes; "" when there is none.
+  std::string read() const {
+    std::ifstream in(name_);
+    unsigned bytes[4];
+    char dot[3];
+    if (name_.empty() || !in) return "";
+    if (!(in >> bytes[0] >> dot[0] >> bytes[1] >> dot[1] >> bytes[2] >> dot[2] >> bytes[3]))
+      throw UsageError(fmt::format("{}: is no address; expected four numbers with dots between them", name_));
+    std::string address;
+    for (const unsigned byte : bytes) address.push_back(static_cast<char>(byte));
+    return address;
+  }
+
+  void write(const std::string& address) const {
+    if (name_.empty()) return;
+    const auto byte = [&](std::size_t n) { return static_cast<unsigned>(static_cast<unsigned char>(address[n])); };
+    const std::string other = name_ + ".new";
+    std::ofstream(other) << fmt::format("{}.{}.{}.{}\n", byte(0), byte(1), byte(2), byte(3));
+    std::error_code ignored;
+    std::filesystem::rename(other, name_, ignored);
+  }
+
+ private:
+  std::string name_;
+};
+
+}  // namespace
+
+int serve_command(const ServeOptions& options) {
+  const MachineConfig config = machine_config(options.run);
+  const AddressFile address_file(options.run.flash);
+  const std::string address = address_file.read();
+  EthernetServer server(options.listen);
+  Simulation simulation(options.run, config, "serve");
+  CommunicationsProcessor processor(simulation.bus(), {config.board.dpram_words, options.save_takes_long});
+  SimulationLoop loop(simulation.bus(), options.free);
+  if (!address.empty()) processor.set_address(address);
+  processor.on_address = [&](const std::string& bytes) { address_file.write(bytes); };
+  processor.on_reply = [&](EthernetServer::Client client, std::string bytes) {
+    server.reply(client, std::move(bytes));
+  };
+  const auto tell = [&](const std::string& text) { simulation.tell("brick serve: " + text); };
+  server.on_request = [&](EthernetServer::Client client, const EthernetPacket& packet) {
+    loop.post([&processor, client, packet] { processor.request(client, packet); });
+  };
+  server.on_close = [&](EthernetServer::Client client) {
+    loop.post([&processor, client] { processor.close(client); });
+  };
+  server.on_trouble = [&](const std::string& text) { loop.post([&, text] { tell(text); }); };
+  simulation.progress_text = [&] { return fmt::format(", {} of {} clients", server.clients(), server.kMostClients); };
+
+  std::vector<std::string> failures;
+  try {
+    simulation.run([&] {
+      if (!processor.start(HostLink::kBootTime))
+        throw std::runtime_error(
+            "the controller does not answer after power-on; expected an answer within 500 ms, see --jumper E3");
+      std::cout << fmt::format("listening on {}, TCP and UDP", server.place()) << std::endl;
+      server.start();
+      loop.run([&] { return processor.busy(); }, [&](Tick limit) { processor.run_until(limit); });
+    });
+  } catch (const Interrupted& e) { tell(e.what()); } catch (const std::exception& e) {
+    failures.emplace_back(e.what());
+  }
+  server.stop();
+  const Simulation::TimingVerdict timing = simulation.timing_verdict();
+  for (const auto& list : {simulation.machine().take_run_errors(), timing.failures})
+    failures.insert(failures.end(), list.begin(), list.end());
+  for (const std::string& text : failures) tell(text);
+  if (!options.run.json.empty()) {
+    nlohmann::json results = simulation.measures();
+    results["engine"] = options.run.engine;
+    results["board"] = config.board.name;
+    results["passed"] = failures.empty();
+    write_json(options.run.json, results);
+  }
+  return failures.empty() ? 0 : 1;
+}
+
+}  // namespace brick

@@ -1,0 +1,56 @@
+#include "app/simulation_loop.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace brick {
+
+namespace {
+constexpr Tick kPiece = ns_to_ticks(500'000);               // between two looks at what others have posted
+constexpr Tick kLastTick = ns_to_ticks(9'000'000'000'000);  // of what femtoseconds can say
+constexpr std::chrono::milliseconds kLongestSleep{5};       // and at the signals
+}  // namespace
+
+void SimulationLoop::post(std::function<void()> work) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    work_.push_back(std::move(work));
+  }
+  posted_.notify_one();
+}
+
+void SimulationLoop::work() {
+  std::vector<std::function<void()>> work;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    work.swap(work_);
+  }
+  for (const auto& one : work) one();
+}
+
+void SimulationLoop::sleep_until(Pacing::Clock::time_point time) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  posted_.wait_until(lock, std::min(time, Pacing::Clock::now() + kLongestSleep), [this] { return !work_.empty(); });
+  lock.unlock();
+  bus_.heartbeat();
+}
+
+void SimulationLoop::run(const std::function<bool()>& busy, const std::function<void(Tick)>& run_until) {
+  const Tick lead = ns_to_ticks(std::chrono::nanoseconds(Pacing::kLead).count());
+  const Tick nap = ns_to_ticks(std::chrono::nanoseconds(kLongestSleep).count());
+  Pacing pacing(bus_.now());
+  for (;;) {
+    work();
+    const Tick now = bus_.now(), due = free_ ? now : pacing.due(now);
+    const Tick limit = !busy() ? due : free_ ? kLastTick : due + lead;
+    if (now >= kLastTick)
+      throw std::runtime_error("simulated time has come to its end, 2.5 hours; expected a new start before that");
+    if (now < limit)
+      run_until(std::min(limit, now + kPiece));
+    else
+      sleep_until(pacing.when(busy() ? now + 1 - lead : now + nap));
+  }
+}
+
+}  // namespace brick

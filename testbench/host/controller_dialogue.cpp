@@ -1,0 +1,206 @@
+#include "testbench/host/controller_dialogue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "testbench/host/framing_probe.h"
+#include "testbench/host/reply_parser.h"
+
+namespace brick {
+
+namespace {
+constexpr char kClearInput = 0x18;  // ^X, and its echo
+constexpr Tick kClearWait = ns_to_ticks(10'000'000), kAskAgain = ns_to_ticks(20'000'000);
+}  // namespace
+
+bool is_report_control(std::uint8_t c) {
+  return std::string_view("\x02\x03\x06\x07\x10\x16").find(static_cast<char>(c)) != std::string_view::npos;
+}
+
+bool is_answered_control(std::uint8_t c) {
+  return is_report_control(c) || c == 0x09 || c == 0x0D || c == 0x0E || c == 0x19;  // ^I, CR, ^N, ^Y
+}
+
+ControllerDialogue::ControllerDialogue(HostBus& bus) : bus_(bus), port_(bus) {
+  port_.on_character = [this](std::uint8_t c) { received(c); };
+}
+
+// ^G is answered in every setting. What was sent before the firmware reads is lost, so it is asked again.
+bool ControllerDialogue::start(Tick timeout) {
+  port_.open();
+  bool heard = false;
+  port_.on_character = [&](std::uint8_t) { heard = true; };
+  for (const Tick end = bus_.now() + timeout; !heard && bus_.now() < end && !bus_.tripped();) {
+    port_.send(kAskFraming);
+    for (const Tick again = bus_.now() + kAskAgain; !heard && bus_.now() < again;) port_.run_until(again);
+  }
+  while (heard && port_.run_until(bus_.now() + kQuiet)) {}
+  port_.on_character = [this](std::uint8_t c) { received(c); };
+  return heard;
+}
+
+// ---------------------------------------------------------------------------------------------------------------- jobs
+
+void ControllerDialogue::begin(std::deque<Item> items) {
+  items_ = std::move(items);
+  result_ = {};
+  last_ = bus_.now();
+  sent_ = 0;
+}
+
+void ControllerDialogue::begin_lines(const std::vector<std::string>& lines, bool stop_at_error) {
+  std::deque<Item> items;
+  for (const std::string& line : lines) {
+    Item item;
+    for (const char c : line.substr(line.rfind(kClearInput) + 1)) {  // what is before ^X is void
+      if (is_answered_control(static_cast<std::uint8_t>(c)))
+        items.push_back({std::string(1, c), true});
+      else
+        item.bytes.push_back(c);
+    }
+    items.push_back(item);
+  }
+  begin(std::move(items));
+  stop_at_error_ = stop_at_error;
+  clear_wait_ = kClearWait;
+  if (owes_)
+    phase_ = Phase::kClear;
+  else
+    next_item();
+}
+
+void ControllerDialogue::begin_control(std::uint8_t c) {
+  begin({{std::string(1, static_cast<char>(c)), true}});
+  clear_wait_ = kClearWait;
+  if (owes_)
+    phase_ = Phase::kClear;
+  else
+    next_item();
+}
+
+void ControllerDialogue::begin_clear(Tick wait) {
+  begin({});
+  clear_wait_ = wait;
+  phase_ = Phase::kClear;
+}
+
+void ControllerDialogue::abandon() {
+  if (phase_ == Phase::kNone) return;
+  owes_ = result_.lost = true;
+  items_.clear();
+  phase_ = Phase::kNone;
+  changed_ = true;
+}
+
+void ControllerDialogue::next_item() {
+  sent_ = 0;
+  phase_ = items_.empty() ? Phase::kNone : Phase::kSend;
+  changed_ = true;
+  if (!items_.empty()) answer_ = ControllerAnswer(checksum(), had_sums_);
+}
+
+std::uint8_t ControllerDialogue::checksum() const {
+  const Item& item = items_.front();
+  return item.control ? static_cast<std::uint8_t>(item.bytes[0]) : command_checksum(item.bytes);
+}
+
+// ---------------------------------------------------------------------------------------------------------- characters
+
+void ControllerDialogue::put_next() {
+  if (!port_.idle()) return;
+  const bool inside_line = phase_ == Phase::kSend && sent_ > 0;
+  if (!urgent_.empty() && !inside_line) {
+    port_.send(urgent_.front());
+    urgent_.pop_front();
+  } else if (phase_ == Phase::kClear) {
+    if (sent_++ == 0) port_.send(static_cast<std::uint8_t>(kClearInput));
+  } else if (phase_ == Phase::kSend) {
+    const Item& item = items_.front();
+    const std::size_t length = item.bytes.size() + (item.control ? 0 : 1);
+    port_.send(sent_ < item.bytes.size() ? static_cast<std::uint8_t>(item.bytes[sent_]) : '\r');
+    if (++sent_ == length) phase_ = Phase::kAnswer;
+  }
+}
+
+bool ControllerDialogue::step(Tick limit) {
+  changed_ = false;
+  if (busy() && bus_.tripped()) {
+    abandon();
+    return true;
+  }
+  put_next();
+  const Tick end = busy() ? last_ + patience() : limit;
+  if (port_.run_until(std::min(limit, end)))
+    last_ = bus_.now();
+  else if (busy() && bus_.now() >= end)
+    out_of_patience();
+  return changed_;
+}
+
+// An echo or a checksum that comes when nobody waits for it any more.
+bool ControllerDialogue::is_stray(std::uint8_t c) {
+  const std::optional<std::uint8_t> sum = late_sum_;
+  late_sum_.reset();
+  if (phase_ == Phase::kAnswer) return false;
+  if (sum && c == *sum) {
+    had_sums_ = true;
+    return true;
+  }
+  return static_cast<char>(c) == kClearInput;
+}
+
+void ControllerDialogue::received(std::uint8_t c) {
+  if (phase_ == Phase::kClear) {
+    if (static_cast<char>(c) != kClearInput || sent_ == 0) return;
+    owes_ = false;
+    return next_item();
+  }
+  if (is_stray(c)) return;
+  if (phase_ != Phase::kAnswer) {  // nobody has asked for it
+    const char text = static_cast<char>(c);
+    return say(std::string_view(&text, 1));
+  }
+  answer_.take(c);
+  say(answer_.release());
+  if (answer_.ended()) end_item();
+}
+
+void ControllerDialogue::say(std::string_view text) {
+  if (text.empty()) return;
+  changed_ = true;
+  on_text(text);
+}
+
+Tick ControllerDialogue::patience() const {
+  if (phase_ == Phase::kClear) return clear_wait_;
+  const Item& item = items_.front();
+  const bool may_have_ended = answer_.may_have_ended() || (item.control && !answer_.empty());
+  if (phase_ == Phase::kAnswer && may_have_ended) return kQuiet;
+  return may_take_long(item.bytes) ? kSavePatience : kPatience;
+}
+
+void ControllerDialogue::out_of_patience() {
+  if (phase_ == Phase::kClear) {
+    owes_ = false;
+    return next_item();
+  }
+  const bool lost = patience() != kQuiet;
+  answer_.quiet();
+  say(answer_.release());
+  if (lost) return abandon();
+  end_item();
+}
+
+void ControllerDialogue::end_item() {
+  had_sums_ = answer_.had_sums();
+  if (!had_sums_ && !answer_.error()) late_sum_ = checksum();
+  if (!items_.front().control) ++result_.lines;
+  result_.error = answer_.error();
+  result_.error_number = answer_.error_number();
+  items_.pop_front();
+  last_ = bus_.now();
+  if (result_.error && stop_at_error_) items_.clear();
+  next_item();
+}
+
+}  // namespace brick

@@ -1,0 +1,70 @@
+"""`brick serve` for a test: started on a free port, ended with SIGTERM, and what it said checked."""
+import contextlib
+import pathlib
+import re
+import signal
+import socket
+import struct
+import subprocess
+import sys
+
+import command
+from command import check
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "clients"))
+import turbo_pmac
+
+PATIENCE = 60  # seconds of wall time, on a loaded machine
+
+
+class Served:
+    def __init__(self, *options):
+        self.process = subprocess.Popen([command.BRICK, "serve", "--listen", "127.0.0.1:0", *options], text=True,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        line = self.process.stdout.readline()
+        found = re.fullmatch(r"listening on 127\.0\.0\.1:(\d+), TCP and UDP\n", line)
+        if not found:
+            sys.exit(f"FAILED: {line!r} {self.process.stderr.read()}")
+        self.port = int(found[1])
+
+    def client(self):
+        return turbo_pmac.TurboPmac("127.0.0.1", self.port, PATIENCE)
+
+    def socket(self):
+        return socket.create_connection(("127.0.0.1", self.port), PATIENCE)
+
+    def end(self, signal_number=signal.SIGTERM):
+        """What it says on stderr."""
+        self.process.send_signal(signal_number)
+        said = self.process.communicate(timeout=PATIENCE)[1]
+        check(self.process.returncode == 0, f"exit {self.process.returncode}: {said}")
+        return said
+
+
+@contextlib.contextmanager
+def served(*options):
+    server = Served(*options)
+    try:
+        yield server
+        if server.process.poll() is None:
+            server.end()
+    finally:
+        server.process.kill()
+        server.process.wait()
+        server.process.stdout.close()
+        server.process.stderr.close()
+
+
+def packet(request, data=b"", kind=0x40, value=0, index=0, length=None):
+    return struct.pack(">BBHHH", kind, request, value, index, len(data) if length is None else length) + data
+
+
+def exactly(sock, count):
+    """So many bytes, in however many pieces."""
+    text = b""
+    while len(text) < count:
+        more = sock.recv(count - len(text))
+        if not more:
+            break
+        text += more
+    return text
