@@ -9,6 +9,7 @@
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_systems.h"
+#include "firmware/host/dpram_variables.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
@@ -42,6 +43,7 @@ void background_pass(void) {
   dpram_ascii_pass();
   dpram_motors_pass();
   dpram_systems_pass();
+  dpram_variables_pass();
   background_meanwhile();
   i_variable_apply_clock_directions(); /* written by a program */
   if (host_port_waiting()) background_wake();

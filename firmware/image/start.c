@@ -18,6 +18,7 @@
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_systems.h"
+#include "firmware/host/dpram_variables.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -103,6 +104,7 @@ void start(enum start_mode mode) {
   dpram_ascii_initialize();
   dpram_motors_initialize();
   dpram_systems_initialize();
+  dpram_variables_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();

@@ -26,7 +26,7 @@ ControllerDialogue::ControllerDialogue(HostBus& bus) : bus_(bus), port_(bus) {
   port_.on_character = [this](std::uint8_t c) { received(c); };
 }
 
-// ^G is answered in every setting. What was sent before the firmware reads is lost, so it is asked again.
+// ^B is answered in every setting. What was sent before the firmware reads is lost, so it is asked again.
 bool ControllerDialogue::start(Tick timeout) {
   port_.open();
   bool heard = false;

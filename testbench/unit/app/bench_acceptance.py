@@ -45,9 +45,10 @@ def every_board():
                            "isa-timing"},
                "umac-turbo": {"watchdog", "reinit-e3", "pwm", "port-a-phase"},
                "turbo-pmac2-ultralite":
-                    every_bench - {"smoke", "breq-rotary", "breq-fixed", "breq-select", "interrupts", "clock-macro",
-                                   "dpram", "host-port", "isa-timing", "bus-timing", "plc", "listing", "variables",
-                                   "status", "save-restore"}}
+                    every_bench - {"smoke", "binary-rotary", "breq-rotary", "breq-fixed", "breq-select", "interrupts",
+                                   "clock-macro", "dpram", "dpram-ascii", "dpram-reporting", "gather", "host-port",
+                                   "isa-timing", "bus-timing", "plc", "listing", "variables", "status",
+                                   "save-restore"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):
@@ -94,6 +95,21 @@ def breq_fixed():
 def dpram():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("rtl", "2"), ("lockstep", "3")):
         bench_passes("dpram", engine, seed)
+
+
+def dpram_ascii():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
+        bench_passes("dpram-ascii", engine, seed)
+
+
+def dpram_reporting():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
+        bench_passes("dpram-reporting", engine, seed)
+
+
+def gather():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "3")):
+        bench_passes("gather", engine, seed)
 
 
 # covers: I9-1 I9-3

@@ -191,6 +191,25 @@ TEST_F(Gather, LiveWordsAndAddressesOfNothing) {
   EXPECT_EQ(host("LIST GATHER").substr(0, 12), host("&1??").substr(0, 6) + "000000");
 }
 
+// A sample an interrupt, wherever it comes: in order, none lost, both halves of one moment.
+TEST_F(Gather, SamplesAreConsecutiveWhateverIsDoneMeanwhile) {
+  ASSERT_EQ(host("I5001=$400000 I5002=$800000 I5050=3 I5049=1 DEF GAT 4000 GATHER"), "");
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_EQ(host("P1=P1+1"), "");
+    ASSERT_EQ(host("&1%"), "100");
+    platform::background(1);
+    servo_ticks(1);
+  }
+  ASSERT_EQ(host("ENDGATHER"), "");
+  const Lines lines = host_lines("LIST GATHER");
+  ASSERT_GE(lines.size(), 60U);
+  const unsigned long first = std::stoul(lines[0].substr(0, 6), nullptr, 16);
+  for (std::size_t i = 0; i < lines.size(); i += 2) {
+    EXPECT_EQ(lines[i], hex(first + i / 2) + "000000") << i;
+    EXPECT_EQ(lines[i + 1].substr(0, 6), hex(first + i / 2)) << i;
+  }
+}
+
 // 48 sources: the most, in both places.
 TEST_F(Gather, FortyEightSources) {
   for (int i = 1; i <= 48; ++i) ASSERT_EQ(host("I" + std::to_string(5000 + i) + "=$800000"), "");
