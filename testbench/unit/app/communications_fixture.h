@@ -23,7 +23,9 @@ class CommunicationsProcessorTest : public ::testing::Test {
   using Replies = std::vector<std::pair<unsigned, Bytes>>;
 
   CommunicationsProcessorTest() {
-    fake().control = [](char c) { return c == 0x18 ? Bytes("\x18") : c == 0x07 ? Bytes("000000000800\r\x06") : ""; };
+    fake().control = [](char c) {
+      return c == 0x18 ? Bytes("\x18") : c == 0x02 || c == 0x07 ? Bytes("000000000800\r\x06") : "";
+    };
     fake().controller = [this](const Bytes& line) { return controller(line); };
     make({});
   }
