@@ -40,12 +40,14 @@ void SimulationLoop::run(const std::function<bool()>& busy, const std::function<
   const Tick lead = ns_to_ticks(std::chrono::nanoseconds(Pacing::kLead).count());
   const Tick nap = ns_to_ticks(std::chrono::nanoseconds(kLongestSleep).count());
   Pacing pacing(bus_.now());
+  Tick goal = bus_.now();  // of time that passes while nobody waits, in steps of a nap
   for (;;) {
     work();
     const Tick now = bus_.now(), due = free_ ? now : pacing.due(now);
-    const Tick limit = !busy() ? due : free_ ? kLastTick : due + lead;
     if (now >= kLastTick)
       throw std::runtime_error("simulated time has come to its end, 2.5 hours; expected a new start before that");
+    if (due >= now + nap) goal = due;
+    const Tick limit = !busy() ? goal : free_ ? kLastTick : due + lead;
     if (now < limit)
       run_until(std::min(limit, now + kPiece));
     else

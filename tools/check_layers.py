@@ -16,10 +16,10 @@ from common import ROOT, files, finish
 
 FIRMWARE = [{f"firmware/{name}"} for name in (
     "hal", "base", "kernel", "variables", "language", "buffers", "motion", "run", "command", "host", "image")]
-CPP = [{"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"}, {"systemc/macro_ic"}, {"systemc/board"},
-       {"systemc/cosim"}, {"systemc/component"}, {"systemc/machine"}, {"testbench/host", "testbench/plant"},
-       {"testbench/checkers"},
-       {"testbench/benches"}, {"testbench/benchmark", "app"}]
+CPP = [{"testbench/clients"}, {"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"},
+       {"systemc/macro_ic"}, {"systemc/board"}, {"systemc/cosim"}, {"systemc/component"}, {"systemc/machine"},
+       {"testbench/host", "testbench/plant"}, {"testbench/checkers"}, {"testbench/benches"},
+       {"testbench/benchmark", "app"}]
 FREE = ("testbench/unit", "testbench/fuzz")  # may include anything
 # Of what stands in <> only our own folders.
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"|<(?=(?:firmware|systemc|testbench|app)/))([^">]+)[">]', re.M)

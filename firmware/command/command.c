@@ -55,12 +55,25 @@ static error_t address_motor(struct lexer* lx) {
 
 /* Keywords --------------------------------------------------------------------------------------------------------- */
 
+/* P, V and F report: clients write them one behind the other, and variables behind them (`#1?PVF#2?PVFM190`). */
+static bool is_report(const char* at) {
+  return (*at == 'P' && !is_digit(at[1]) && at[1] != '(') || *at == 'V' || *at == 'F';
+}
+
+static bool is_variable(const char* at) {
+  return (*at == 'I' || *at == 'M' || *at == 'P' || *at == 'Q') && (is_digit(at[1]) || at[1] == '(');
+}
+
 /* Commands of one letter stop, start and abort: they must stand alone. `RAPID`, `A10` or `UUU` are something else. */
 static bool stands_alone(const char* at, const char* keyword) {
   static const char lonely[] = "AEFHKPQRSV";
   if (keyword[1] != '\0') return true;
+  if (is_report(at)) {
+    while (is_report(at + 1)) ++at;
+    if (is_variable(at + 1)) return true;
+  }
   for (const char* letter = lonely; *letter != '\0'; ++letter) {
-    if (*letter != keyword[0]) continue;
+    if (*letter != *at) continue;
     const char next = at[1];
     return !is_letter(next) && !is_digit(next) && next != '(' && next != '.';
   }

@@ -76,7 +76,11 @@ std::uint32_t Cpu::csr(unsigned number) const {
 }
 
 Cycle Cpu::cycle() const { return s_->cycle; }
-void Cpu::set_cycle(Cycle c) { s_->cycle = c; }
+void Cpu::set_cycle(Cycle c) {
+  s_->slept += c - s_->cycle;
+  s_->cycle = c;
+}
+Cycle Cpu::slept() const { return s_->slept; }
 std::uint64_t Cpu::instructions() const { return s_->retired; }
 bool Cpu::asleep() const { return s_->sleeping; }
 bool Cpu::access_waits() const { return s_->access_waits; }

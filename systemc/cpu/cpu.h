@@ -71,6 +71,7 @@ class Cpu {
   std::uint32_t csr(unsigned number) const;
   Cycle cycle() const;      // local time
   void set_cycle(Cycle c);  // after sleep
+  Cycle slept() const;      // of them
   std::uint64_t instructions() const;
   bool asleep() const;        // WFI with nothing pending
   bool access_waits() const;  // the instruction at pc has begun its device access (DeviceBus::Result::retry)

@@ -109,6 +109,7 @@ struct Cpu::State {
   Cycle cycle = 0;
   std::uint64_t retired = 0;
   bool sleeping = false;
+  Cycle slept = 0;
 
   bool interrupts_on = false;    // mstatus.MIE
   bool interrupts_were = false;  // mstatus.MPIE

@@ -9,7 +9,8 @@
 namespace brick {
 
 namespace {
-constexpr char kClearInput = 0x18;  // ^X, and its echo
+constexpr std::uint8_t kAskStatus = 0x07;  // ^G
+constexpr char kClearInput = 0x18;         // ^X, and its echo
 constexpr Tick kClearWait = ns_to_ticks(10'000'000), kAskAgain = ns_to_ticks(20'000'000);
 }  // namespace
 
@@ -25,13 +26,13 @@ ControllerDialogue::ControllerDialogue(HostBus& bus) : bus_(bus), port_(bus) {
   port_.on_character = [this](std::uint8_t c) { received(c); };
 }
 
-// ^G is answered in every setting. What was sent before the firmware reads is lost, so it is asked again.
+// ^B is answered in every setting. What was sent before the firmware reads is lost, so it is asked again.
 bool ControllerDialogue::start(Tick timeout) {
   port_.open();
   bool heard = false;
   port_.on_character = [&](std::uint8_t) { heard = true; };
   for (const Tick end = bus_.now() + timeout; !heard && bus_.now() < end && !bus_.tripped();) {
-    port_.send(kAskFraming);
+    port_.send(kAskStatus);
     for (const Tick again = bus_.now() + kAskAgain; !heard && bus_.now() < again;) port_.run_until(again);
   }
   while (heard && port_.run_until(bus_.now() + kQuiet)) {}

@@ -129,10 +129,12 @@ std::vector<FramingAnswer> framing_answers(std::string_view text, std::size_t fr
     if (!may_end_answer(text.substr(from, cr + 1 - from))) continue;
     const std::size_t begin = cr - kAnswer;
     const char before = begin > from ? text[begin - 1] : kCr;
-    if (before == kStx) continue;
+    const bool behind_acknowledge = begin > from + 1 && text[begin - 2] == kAck;
     auto answer = before == kLf ? answer_at(text, begin - 1, cr) : std::nullopt;
     if (!answer) answer = answer_at(text, begin, cr);
-    if (answer) answers.push_back(*answer);
+    if (!answer) continue;
+    const bool is_checksum = behind_acknowledge && answer->framing == Framing{2, 1};
+    if (before != kStx || is_checksum) answers.push_back(*answer);  // else it is a tag
   }
   return answers;
 }

@@ -1,8 +1,19 @@
 #include "testbench/host/host_bus.h"
 
+#include <memory>
+
 #include <fmt/format.h>
 
 namespace brick {
+
+namespace {
+
+struct ExtensionTaker {
+  PciCommand* command;
+  void operator()(tlm::tlm_generic_payload* payload) const { payload->clear_extension(command); }
+};
+
+}  // namespace
 
 HostBus::HostBus(Machine& machine) : IsaHost(machine), bridge_(machine.pci()) {
   if (bridge_ == nullptr) return;
@@ -70,10 +81,11 @@ std::uint32_t HostBus::pci(PciSpace space, std::uint32_t address, bool write, st
   payload.set_data_ptr(data);
   payload.set_data_length(bytes);
   payload.set_streaming_width(bytes);
+  // The payload would free what it still has when a signal ends the run inside the transport.
+  const std::unique_ptr<tlm::tlm_generic_payload, ExtensionTaker> taker(&payload, {&command});
   payload.set_extension(&command);
   sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
   bridge_->transport(payload, delay);
-  payload.clear_extension(&command);
   std::uint32_t result = 0;
   for (unsigned n = 0; n < bytes; ++n) result |= static_cast<std::uint32_t>(data[n]) << 8 * n;
   return result;

@@ -129,11 +129,17 @@ ReplyParser HostLink::collect(ReplyParser parser, Tick timeout) {
   return parser;
 }
 
+// Each control character may be answered with a checksum of its own, and change the line's.
+HostLink::Checksum HostLink::sum_of_sent() const {
+  if (has_control_characters(sent_)) return std::nullopt;
+  return command_checksum(sent_);
+}
+
 Reply HostLink::finish(Tick timeout) {
   const bool unlike_others = may_change_framing(sent_) || has_control_characters(sent_);
   const bool ends_by_asking = unlike_others || framing_.i3 == 0;  // without acknowledge it may not even have begun
   const Tick longest = may_take_long(sent_) ? kSaveTime : kReplyTime;
-  const std::uint8_t sum = command_checksum(sent_);
+  const Checksum sum = sum_of_sent();
   Reply reply = ends_by_asking ? asked(sum, unlike_others, longest, questions_in(sent_))
                                : confirmed(collect(ReplyParser(framing_, sum), timeout), sum);
   conclude(reply, sum);
@@ -151,7 +157,7 @@ Reply HostLink::command(const std::string& line, Tick timeout) {
 // takes: what answers ^B has done with the line.
 Reply HostLink::restarted() {
   const Tick longest = may_take_long(sent_) ? kSaveTime : kReplyTime;
-  Reply reply = asked(command_checksum(sent_), true, longest + kBootTime, questions_in(sent_));
+  Reply reply = asked(sum_of_sent(), true, longest + kBootTime, questions_in(sent_));
   if (reply.error) return reply;
   while (!reply.raw.empty() && reply.raw.back() != '\r') reply.raw.pop_back();  // the restart's acknowledge
   incoming_.clear();

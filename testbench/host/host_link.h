@@ -58,6 +58,7 @@ class HostLink {
   void keep(std::uint8_t c);
   void poll_to_end_of_text();
   void take_stray();
+  Checksum sum_of_sent() const;
   ReplyParser collect(ReplyParser parser, Tick timeout);
   Reply parsed(const std::string& bytes, Checksum command, const Framing& before, bool mixed) const;
   Reply taken(Reply reply, const std::string& bytes);  // what of `bytes` is none of it stays in incoming_

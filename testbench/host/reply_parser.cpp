@@ -38,6 +38,11 @@ bool ReplyParser::take_checksum(std::uint8_t byte) {
     return may_be_of_error(byte);
   }
   const std::uint8_t expected = due == Due::kLine ? sum : command_.value_or(byte);
+  if (mixed_ && due == Due::kCommand && !command_ && !summed_) {
+    handshake_ = true;  // what comes next shows whether it is one
+    return false;
+  }
+  if (due == Due::kLine) summed_ = byte == expected;
   if (mixed_ && byte != expected) return false;
   if (byte != expected && reply_.bad_checksum.empty()) {
     const std::string whose = due == Due::kLine && !reply_.lines.empty() ? "`" + reply_.lines.back() + "`" : "the line";
@@ -50,12 +55,12 @@ bool ReplyParser::take_checksum(std::uint8_t byte) {
 // Ends a line; says whose checksum comes next, if there are any.
 ReplyParser::Due ReplyParser::end_line() {
   (tagged_ ? reply_.unsolicited : reply_.lines).push_back(line_);
-  const bool has_number = line_.rfind("ERR", 0) == 0, program_error = tagged_ && (has_number || line_.empty());
+  const bool has_number = line_.rfind("ERR", 0) == 0, program_error = has_number || line_.empty();
   if (reply_.error && !tagged_ && has_number) numbered_ = true;  // else a program's text behind BELL
   line_.clear();
-  tagged_ = false;
+  if (std::exchange(tagged_, false)) return program_error ? Due::kProgramError : Due::kLine;
   if (numbered_) return error_sums_ ? Due::kError : Due::kNothing;
-  return program_error ? Due::kProgramError : Due::kLine;
+  return Due::kLine;
 }
 
 bool ReplyParser::take(std::uint8_t byte) {
@@ -64,12 +69,16 @@ bool ReplyParser::take(std::uint8_t byte) {
   const bool behind_error = due_ == Due::kError && !mixed_;
   const bool is_checksum = take_checksum(byte);
   if (behind_error && !is_checksum) return false;
+  if (const auto held = std::exchange(held_, std::nullopt)) {
+    handshake_ = false;
+    if (c != kLf && c != kStx && c != kBell && c != kAck) {
+      take_text(*held);  // else it was the checksum, and something new begins: a text of a program, an error
+      return take(byte);
+    }
+  }
   reply_.raw.push_back(c);
   if (is_checksum) return true;
-  if (const auto held = std::exchange(held_, std::nullopt)) {
-    const bool begins_text = c == kLf || c == kStx || c == kBell;
-    if (!begins_text) take_text(*held);  // else it was the checksum, and a program's text begins, or its error
-  } else if (handshake_ && sums_ && byte == command_.value_or(byte)) {
+  if (handshake_ && sums_ && byte == command_.value_or(byte)) {
     held_ = c;
     return true;
   }
@@ -84,7 +93,7 @@ void ReplyParser::take_text(char c) {
     case kAck:
       if (!line_.empty()) (void)end_line();
       if (sums_) due_ = Due::kCommand;
-      reply_.complete = !sums_;
+      reply_.complete = !sums_ && !mixed_;
       break;
     case kBell:
       if (!line_.empty()) (void)end_line();

@@ -78,8 +78,9 @@ class ReplyParser {
   std::optional<std::uint8_t> unexpected_;  // that checksum, behind a line
   bool tagged_ = false;                     // the line began with <CTRL-B>
   bool numbered_ = false;                   // the number of the error has come
-  bool handshake_ = false;                  // I3 = 1: the last thing was a LF
-  std::optional<char> held_;  // what came behind that LF: the command's checksum, or the first character of a line
+  bool summed_ = false;                     // the last data line had a checksum
+  bool handshake_ = false;                  // the last thing was an acknowledge, with or without a checksum
+  std::optional<char> held_;  // what came behind it: the command's checksum, or the first character of a line
 };
 
 }  // namespace brick

@@ -45,9 +45,10 @@ def every_board():
                            "isa-timing"},
                "umac-turbo": {"watchdog", "reinit-e3", "pwm", "port-a-phase"},
                "turbo-pmac2-ultralite":
-                    every_bench - {"smoke", "breq-rotary", "breq-fixed", "breq-select", "interrupts", "clock-macro",
-                                   "dpram", "dpram-ascii", "dpram-reporting", "gather", "host-port", "isa-timing",
-                                   "bus-timing", "plc", "listing", "variables", "status", "save-restore"}}
+                    every_bench - {"smoke", "binary-rotary", "breq-rotary", "breq-fixed", "breq-select", "interrupts",
+                                   "clock-macro", "dpram", "dpram-ascii", "dpram-reporting", "gather", "host-port",
+                                   "isa-timing", "bus-timing", "plc", "listing", "variables", "status",
+                                   "save-restore"}}
     for board in sorted(f.stem for f in BOARDS.glob("*.toml")):
         for bench in json.loads(brick("list", "--json").stdout):
             if bench["board"] == board and bench["name"] not in refused.get(board, set()):

@@ -17,7 +17,9 @@ constexpr Tick kMs = ns_to_ticks(1'000'000);
 class CommunicationsProcessorTest : public ::testing::Test {
  protected:
   CommunicationsProcessorTest() {
-    fake().control = [](char c) { return c == 0x18 ? Bytes("\x18") : c == 0x07 ? Bytes("000000000800\r\x06") : ""; };
+    fake().control = [](char c) {
+      return c == 0x18 ? Bytes("\x18") : c == 0x02 || c == 0x07 ? Bytes("000000000800\r\x06") : "";
+    };
     fake().controller = [this](const Bytes& line) { return controller(line); };
     make({});
   }

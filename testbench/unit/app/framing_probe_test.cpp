@@ -98,6 +98,15 @@ TEST(FramingProbe, ReadsAnAnswerAmongTexts) {
   EXPECT_EQ(three[1].begin, lf.size());
 }
 
+// That of ^B itself is a tag's code: $02.
+TEST(FramingProbe, AChecksumIsNoTag) {
+  const std::string words = kWords + "\r", answer = words + checksum(words) + "\x06\x02";
+  EXPECT_EQ(framing_answers("\x06\x02" + answer + answer, 0).size(), 2u);
+  EXPECT_TRUE(framing_answers("\x06\x02" + words, 0).empty()) << "without checksums";
+  EXPECT_TRUE(framing_answers("\x06u\x02" + words + checksum("\x02" + words), 0).empty());
+  EXPECT_TRUE(framing_answers("25\r\x74\x02" + words + checksum("\x02" + words), 0).empty());
+}
+
 // An answer among them: what follows it shows what it is.
 TEST(FramingProbe, ErrorsOfProgramsSayNothingAboutChecksums) {
   const std::string answer = framed({0, 1}, "", {kWords}), text = framed({0, 1}, "", {"AB"});

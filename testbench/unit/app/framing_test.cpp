@@ -158,6 +158,18 @@ TEST_F(FramingTest, ControlCharactersAreAnsweredLate) {
   EXPECT_EQ(link.take_unsolicited(), Lines{});
 }
 
+// The checksum of ^B is the tag's code, and so is that of a line whose characters add up to $202.
+TEST_F(FramingTest, QuestionsAmongChecksumsAreAnsweredHoweverOftenTheyAreAsked) {
+  FakeMachine::last().thinking = ns_to_ticks(250'000'000);
+  for (const unsigned i3 : {2u, 3u, 1u, 0u}) {
+    EXPECT_EQ(reply("P1 I4=1 I3=" + std::to_string(i3)), (Lines{"25"}));
+    EXPECT_EQ(reply("P2 I4=1"), (Lines{"50"}));
+  }
+  EXPECT_EQ(reply("I3=2"), Lines{});
+  ASSERT_EQ(checksum("I4=1 RRS"), 0x02);
+  EXPECT_EQ(reply("I4=1 RRS"), Lines{});
+}
+
 // A second question is asked a moment before the line is worked off, and answered in the next background pass.
 TEST_F(FramingTest, AnswersToAllQuestionsAreWaitedFor) {
   FakeMachine& fake = FakeMachine::last();

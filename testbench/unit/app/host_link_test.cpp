@@ -177,6 +177,48 @@ TEST(ReplyParser, ErrorsOfProgramsHaveNoChecksum) {
   }
 }
 
+// A control character in the line is answered with a checksum of its own, which may look like BELL or a tag, and the
+// line's is not known: backspaces. 25 CR is $74, LF 25 CR $7E.
+TEST(ReplyParser, AnswersToControlCharactersInALineHaveChecksums) {
+  const auto mixed = [](unsigned i3, unsigned i4, const std::string& bytes) {
+    ReplyParser parser({i3, i4}, std::nullopt, ReplyParser::Mixed::kWithChecksums);
+    for (const char c : bytes) parser.take(static_cast<std::uint8_t>(c));
+    EXPECT_TRUE(parser.quiet());
+    EXPECT_EQ(parser.reply().bad_checksum, "");
+    EXPECT_EQ(parser.reply().raw, bytes);
+    return parser.reply();
+  };
+  for (const std::string sum : {"\x02", "\x07", "\n", "u", "\x06"}) {
+    EXPECT_EQ(mixed(2, 1, "25\r\x74\x06" + sum + "25\r\x74\x06" + sum).lines, (Lines{"25", "25"})) << sum;
+    EXPECT_FALSE(mixed(2, 1, "25\r\x74\x06" + sum).error) << "BELL it is not";
+    EXPECT_TRUE(mixed(2, 1, "25\r\x74\x06" + sum + "\x07").error);
+    EXPECT_EQ(mixed(2, 0, "\x06" + sum).lines, Lines{}) << "from now on";
+    const std::string plain = "25\r\x06", summed = "25\r\x74\x06" + sum;
+    EXPECT_EQ(mixed(2, 0, plain + summed).lines, (Lines{"25", "25"})) << "from now on, with data";
+    if (sum == "\x02" || sum == "\x07" || sum == "\n") continue;  // an acknowledge: a checksum before a text
+    EXPECT_EQ(mixed(2, 0, plain + "\x06" + sum).lines, (Lines{"25"})) << "from now on, without data";
+  }
+  EXPECT_EQ(mixed(1, 1, "\n25\r\x7E\n\x02\x06u").lines, (Lines{"25"})) << "I3 is 0 from now on";
+  ReplyParser unnumbered({2, 0}, std::nullopt, ReplyParser::Mixed::kWithoutChecksums);
+  for (const char c : std::string("25\r\x06\x07")) unnumbered.take(static_cast<std::uint8_t>(c));
+  EXPECT_TRUE(unnumbered.quiet());
+  EXPECT_EQ(unnumbered.reply().lines, (Lines{"25", "ERR"}));
+  const Reply error = mixed(1, 1, "\n25\r\x7E\n\x07\x07");
+  EXPECT_TRUE(error.error);
+  EXPECT_EQ(error.lines, (Lines{"25", "ERR"}));
+}
+
+// Texts among checksums behind an error: those of programs have one. LF, $02, X, CR is $71.
+TEST(ReplyParser, TaggedTextsBehindAnErrorHaveChecksums) {
+  ReplyParser parser({3, 1}, 'u', ReplyParser::Mixed::kWithChecksums);
+  for (const char c : std::string("\x07\nERR003\r\n\x02X\r\x71\n\x02"
+                                  "ERR003\r"))
+    parser.take(static_cast<std::uint8_t>(c));
+  EXPECT_TRUE(parser.quiet());
+  EXPECT_EQ(parser.reply().lines, (Lines{"ERR003"}));
+  EXPECT_EQ(parser.reply().unsolicited, (Lines{"X", "ERR003"}));
+}
+
 // ^N and ^X: a byte, and no acknowledge.
 TEST(ReplyParser, AByteWithoutLfIsNoChecksum) {
   for (const char byte : {'\0', '\x18'}) {

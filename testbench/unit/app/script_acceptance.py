@@ -58,9 +58,13 @@ def dialogue():
     lines += ["I16\x07", "@expect 000000000800|5", "I17"]
     expected += ["000000000800", "5", "10"]
     # Status digits, and then a pause: no end of the reply.
+    motors = ["850000000000", *["050000000000"] * 7]
     cs = "A80020020000000000"  # &1 of a controller that has just started
     lines += ["I3=0", f"??{slow}??", "I16", f"??{slow}I3=2???", "I17", f"{slow}I16\x02", "I16\x07"]
-    expected += [cs, cs, "5", cs, "000000000800", "10", "850000000000", *["050000000000"] * 7, "5", "000000000800", "5"]
+    expected += [cs, cs, "5", cs, "000000000800", "10", *motors, "5", "000000000800", "5"]
+    # Answers to control characters have checksums: ^B and ^G one like a tag and BELL. A backspace changes the line's.
+    lines += ["I4=1", "I16\x02", "I16\x07", "I17Z\x08", f"{slow * 3}I4=1", "I4=0", "I6=0", "UUU\x07", "I6=1", "I17"]
+    expected += [*motors, "5", "000000000800", "5", "10", "000000000800", "ERR", "10"]
     # A program sets I4, and sets it back.
     lines += ["CLOSE DELETE ALL #1->X &1DEFINE ROT 100 B0 OPEN ROT", "I4=1", "CLOSE R", "@wait 20ms", "I16 I17",
               "P1=22221 P1 P1", "UUU", "OPEN ROT", "I4=0", "CLOSE R", "@wait 20ms", "P1=2", "P1", "I16"]

@@ -2,10 +2,20 @@
 
 usage: serve_acceptance.py BRICK CASE; each CASE is one test.
 """
+import os
+import pathlib
+import re
+import signal
+import socket
+import struct
+import subprocess
+import tempfile
+
 import command
+import recording
 import served_exchanges
-from command import check
-from served import served
+from command import brick, check
+from served import PATIENCE, packet, refused, served
 
 
 def serve_requests():
@@ -30,6 +40,131 @@ def serve_exchanges():
             found, compared = served_exchanges.differences(client, name)
             check(not found, "\n".join(found))
             check(compared >= least, f"{name}: {compared} compared, expected {least} or more")
+
+
+def serve_recordings():
+    """Recorded exchanges, byte for byte, on a port that has not been used before."""
+    for name, least in (("manual.txt", 14), ("habits.txt", 20)):
+        with served("--free") as server, server.socket() as sock:
+            count = recording.play(sock, name)
+            check(count >= least, f"{name}: {count} replies, expected {least} or more")
+
+
+def serve_python_client():
+    """A script's work: all variables read out, programs written and read back, jogs, SAVE, reset, a new connection."""
+    lines = ["OPEN PROG 5 CLEAR", "RPD X10Y20", "DWELL 20", "CLOSE", "OPEN PLC 3 CLEAR", "P7=P7+1", "CLOSE"]
+    with tempfile.TemporaryDirectory() as folder, served("--free", "--flash", f"{folder}/flash.bin") as server:
+        with server.client() as client:
+            for name, count in (("I", 8192), ("P", 8192), ("Q", 8192), ("M", 8192)):
+                check(len(client.values(f"{name}0..{count - 1}")) == count, name)
+            check(len(client.values("M0..8191->")) == 8192, "definitions")
+            check(client.write_lines(lines) is None, "download")
+            check(client.values("LIST PROG5") == ["RPD X10Y20", "DWE20"], "upload of a program")
+            check(client.values("LIST PLC3") == ["P7=P7+1"], "upload of a PLC")
+            check(client.write_lines(["P1=1", "P2=", "P3=3"]) == (2, 3), "the line that is refused")
+            for jog in ("#1J+", "#1J-", "#1J=100", "#1J^5", "#1J/"):
+                check(client.command(jog) == "", jog)
+            check(client.values("#1?") == ["850000000000"], "the motor stands")
+            for jog in ("#2J+", "#2HM"):
+                check(refused(client, jog) == "ERR013", f"{jog}: motor 2 is not activated")
+            check(client.control("B").split()[0] == "850000000000", "^B")
+            check(client.command("I16=7 P100=2.5") == "" and client.command("SAVE") == "", "SAVE")
+            check(client.command("I16=9 I3") == "2\r", "I16")
+            check(client.request(0x40, 0xBF, data=b"$$$") in (b"\x06", b"\n"), "$$$ has an answer")
+        with server.client() as client:
+            check(client.values("I16 P100") == ["7", "2.5"], "what was SAVEd, on a new connection")
+            check(client.values("LIST PROG5") == ["RPD X10Y20", "DWE20"], "and the program")
+
+
+def serve_c_driver():
+    """The driver in C: polls and long answers at once."""
+    driver = pathlib.Path(command.BRICK).with_name("poll_driver")
+    with served() as server:
+        r = subprocess.run([driver, str(server.port), "20", "UUU", "P0..2000", "I0..9", "ver", "P1=1"], text=True,
+                           capture_output=True, timeout=PATIENCE, check=False)
+    check(r.returncode == 0, r.stderr)
+    poll = "850000000000|0|0|0|" + "050000000000|0|0|0|" * 7
+    said = r.stdout.splitlines()
+    check(said.count(poll) == 20, f"{said.count(poll)} polls")
+    answers = [line for line in said if line != poll]
+    check(answers == ["!ERR003|", "0|" * 2001, "0|0|1|2|0|0|1|0|2|2|", "1.947|", ""], str(answers)[:500])
+
+
+def serve_datagrams():
+    """The same packets by UDP: one datagram, one reply."""
+    with served("--free") as server, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.settimeout(PATIENCE)
+        sock.connect(("127.0.0.1", server.port))
+
+        def ask(text):
+            sock.send(text)
+            return sock.recv(4096)
+        check(ask(packet(0xBF, b"i6=1 i3=2 ver")) == b"1.947\r\x06", "ver")
+        check(ask(packet(0xB5, b"abcd", value=0x1200)) == b"@", "SETMEM")
+        check(ask(packet(0xB4, kind=0xC0, value=0x1200, length=4)) == b"abcd", "GETMEM")
+        check(ask(packet(0xB0, b"cid")) == b"@" and ask(packet(0xC5, kind=0xC0)) == b"603382\r\x06", "the same client")
+        for bad in (b"", b"x", packet(0xBF, b"ver")[:9], packet(0xD0), packet(0xBF, b"ver", length=1493)):
+            sock.send(bad)  # lost
+        check(ask(packet(0xBF, b"i16")) == b"5\r\x06", "after what is lost")
+
+
+def serve_ends():
+    """SIGINT and SIGTERM end it with status 0, the flash file whole and the address kept beside it."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = f"{folder}/flash.bin"
+        for number, end in enumerate((signal.SIGINT, signal.SIGTERM), 20):
+            with served("--flash", file) as server, server.client() as client:
+                client.command(f"I16={number}")
+                client.command("SAVE")
+                address = struct.pack("4B", 10, 1, 2, number)
+                check(client.request(0x40, 0xE0, data=address) == address, "IPADDRESS")
+                said = server.end(end)
+                check(re.search(rf"stopped by {end.name} after \d+\.\d+ ms", said), said)
+                check(client.socket.recv(1) == b"", "the connection is closed")
+            with served("--free", "--flash", file) as server, server.client() as client:
+                check(client.values("I16") == [str(number)], f"{end.name}: SAVEd")
+                check(client.request(0xC0, 0xE0) == address, f"{end.name}: address")
+        check(sorted(os.listdir(folder)) == ["flash.bin", "flash.bin.address"], os.listdir(folder))
+        (pathlib.Path(folder) / "flash.bin.address").write_text("somewhere\n", encoding="ascii")
+        r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
+        check(r.returncode == 2 and "flash.bin.address: is no address; expected" in r.stderr, r.stderr)
+
+
+def serve_bad_input():
+    """One line that says what was expected, exit status 2; 1 where the controller does not start."""
+    with served("--free") as server:
+        for arguments, what in (
+                (["--listen", "1025"], "--listen 1025: is no place"),
+                (["--listen", "127.0.0.1:65536"], "is no place"),
+                (["--listen", "127.0.0.1:"], "is no place"),
+                (["--listen", ":1025"], "is no place"),
+                (["--listen", "192.0.2.1:0"], "--listen 192.0.2.1:0: "),
+                (["--listen", f"127.0.0.1:{server.port}"], "Address already in use"),
+                (["--free", "--realtime"], "--realtime"),
+                (["--engine", "verilog"], "verilog"),
+                (["--board", "nothing"], "nothing"),
+                (["--flash", "/none/flash.bin"], "/none"),
+        ):
+            r = brick("serve", *arguments)
+            check(r.returncode == 2 and r.stdout == "", f"{arguments}: exit {r.returncode}: {r.stdout}{r.stderr}")
+            check(r.stderr.count("\n") == 1 and what in r.stderr and "expected" in r.stderr, f"{arguments}: {r.stderr}")
+    with tempfile.TemporaryDirectory() as folder:
+        file = f"{folder}/flash.bin"
+        check(command.play(["I17=33 I8=0 I7100=20 I7101=0 I7102=0 I19=7107", "SAVE"], "--flash", file).returncode == 0,
+              "settings that stop the controller")
+        r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
+        check(r.returncode == 1 and "does not answer after power-on; expected" in r.stderr, r.stderr)
+
+
+def serve_engines():
+    """The same bytes from each engine and from boards whose host is at the end of another bus."""
+    for options in (["--engine", "rtl"], ["--engine", "lockstep"], ["--board", "turbo-pmac2-pci-lite"],
+                    ["--board", "pmac-pc"]):
+        with served("--free", *options) as server, server.client() as client:
+            check(client.identity == "1.947", f"{options}: {client.identity}")
+            check(client.write_memory(0x1201, b"hello") == b"@", options)
+            check(client.read_memory(0x1200, 8) == b"\0hello\0\0", options)
+            check(client.values("P1=5 P1 P2") == ["5", "0"], options)
 
 
 globals()[command.CASE]()

@@ -68,3 +68,12 @@ def exactly(sock, count):
             break
         text += more
     return text
+
+
+def refused(client, line):
+    """The error that a line is refused with, "" when it is taken."""
+    try:
+        client.command(line)
+    except turbo_pmac.TurboPmacError as error:
+        return str(error)
+    return ""

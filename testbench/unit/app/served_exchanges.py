@@ -67,10 +67,10 @@ def differences(client, name):
         reply = answer(client, sent)
         if expected is None:
             continue
-        expected = DIFFERS.get(sent, expected)
+        wanted = DIFFERS.get(sent, expected)
         if reply is None:
             reply = client.get_buffer()
         compared += 1
-        if not exchange_file.fits(shown(reply), expected):
-            found.append(f"{name}:{number}: `{sent}` answered {shown(reply)}, expected {expected}")
+        if not exchange_file.fits(shown(reply), wanted):
+            found.append(f"{name}:{number}: `{sent}` answered {shown(reply)}, expected {wanted}")
     return found, compared

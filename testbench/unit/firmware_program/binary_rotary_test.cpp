@@ -110,6 +110,32 @@ TEST_F(BinaryRotary, TheSameTextGivesTheSameWords) {
   EXPECT_GT(refused, 200u);
 }
 
+// host-bus:7.5/11.
+TEST_F(BinaryRotary, LibraryRefusesByItsCodes) {
+  const struct {
+    BinaryResult result;
+    std::vector<const char*> lines;
+  } cases[] = {
+      {BinaryResult::kOk,
+       {"", " ; X1", "x1y2 ; z", "X 8388607 Y-.5", "M1==2 P1023=0.25 p 8191 = 3", "ABS(X,R)", "G1 P5", "X1 I5",
+        "HM1..32", "ENA PLC 0,3..4", "N262143", "X-2147483392", "TM8388607", "FRAX"}},
+      {BinaryResult::kFloat, {"X0.1", "X8388609", "X1.00000001", "P1=0.3", "X.0000000001", "X1234567890"}},
+      {BinaryResult::kConversion, {"X-", "P1=", "X1^", "P1=-"}},
+      {BinaryResult::kIllegal,
+       {"X(P1)", "X$10", "P1=P2", "P(3)=4", "P1=2+3", "IF(P1=2)X1", "GOTO5", "SEND\"A\"", "CMD\"R\"", "P$10=1",
+        "RETURN", "F(Q1)", "M1&=M2"}},
+      {BinaryResult::kRange,
+       {"X2147483648", "X99999999999999999999", "P8192=1", "N262144", "N1.5", "F0", "F-1", "TA-5", "TM8388608", "HM33",
+        "HM0", "DIS PLC 32", "HM5..3"}},
+      {BinaryResult::kSyntax,
+       {"?", "X1 R", "P1", "I5", "I5X1", "OPEN ROT", "&2X1", "ABS(Q)", "FRAX(R)", "X1 P1", "ABS(X", "M1->*"}},
+  };
+  for (const auto& c : cases)
+    for (const char* line : c.lines) EXPECT_EQ(binary_line(line).result, c.result) << line;
+  EXPECT_EQ(binary_line("X1" + std::string(254, ' ')).result, BinaryResult::kSyntax) << "256 characters";
+  EXPECT_TRUE(binary_line(" ; X1").commands.empty());
+}
+
 // Commands by their fields (host-bus:7.7); `first` begins a line.
 BinaryCommand fields(unsigned code1, unsigned code2, unsigned n, int exponent = 0, std::uint32_t fraction = 0) {
   return {code1 << 19 | code2 << 16 | n << 6 | (static_cast<unsigned>(exponent) & 0x3F), fraction & 0xFFFFFF};

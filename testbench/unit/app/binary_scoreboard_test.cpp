@@ -1,0 +1,81 @@
+// The scoreboard of the binary rotary transfer against each of its rules broken.
+#include "testbench/checkers/binary_scoreboard.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace brick {
+namespace {
+
+constexpr Tick kUs = ns_to_ticks(1'000);
+
+// Two lines of &1 with I17 = 2: a pulse, then a fall that stays.
+class Story {
+ public:
+  BinaryScoreboard board;
+  Tick first_low = 2 * kUs;
+  bool second_rises = false, falls_twice = false, in_real_time = false, before_the_index = false;
+  unsigned first_index = 2, ring = 8, second_status = 0;
+  std::string told = "X1";
+
+  std::string run() {
+    board.limits(2);
+    board.defined(0, ring);
+    board.shown(0, true);
+    board.line(0, told, 1, 2);
+    if (!before_the_index) board.advanced(0, 10);
+    fall(100 * kUs, first_low);
+    if (falls_twice) fall(100 * kUs + first_low + 5 * kUs, 2 * kUs);
+    board.pmac_index(0, first_index, in_real_time, 120 * kUs);
+    board.line(0, "X2", 1, 4);
+    board.advanced(0, 130 * kUs);
+    fall(200 * kUs, second_rises ? 2 * kUs : 0);
+    board.pmac_index(0, 4, in_real_time, 220 * kUs);
+    if (second_status != 0) board.status(0, second_status, 230 * kUs);
+    return board.violations().empty() ? "" : board.violations().front();
+  }
+
+ private:
+  void fall(Tick at, Tick low) {
+    board.edge(at, false);
+    if (low != 0) board.edge(at + low, true);
+  }
+};
+
+TEST(BinaryScoreboardTest, TakesWhatIsRight) {
+  Story story;
+  EXPECT_EQ(story.run(), "");
+  EXPECT_EQ(story.board.listing(0), "X1|X2");
+  EXPECT_EQ(story.board.copied(0), 2u);
+  ASSERT_EQ(story.board.delays().size(), 2u);
+  EXPECT_EQ(story.board.delays()[1], 70 * kUs);
+}
+
+TEST(BinaryScoreboardTest, FindsEachRuleBroken) {
+  struct Case {
+    const char* says;
+    std::function<void(Story&)> breaks;
+  };
+  const Case cases[] = {
+      {"PMAC index 4, expected 2", [](Story& s) { s.first_index = 4; }},
+      {"expected none: no line waits", [](Story& s) { s.before_the_index = true; }},
+      {"copied by the real-time task", [](Story& s) { s.in_real_time = true; }},
+      {"2 words in a ring of 1", [](Story& s) { s.ring = 1; }},
+      {"BREQ low for", [](Story& s) { s.first_low = kUs / 2; }},
+      {"BREQ low for", [](Story& s) { s.first_low = 51 * kUs; }},
+      {"BREQ fell 2 times", [](Story& s) { s.falls_twice = true; }},
+      {"BREQ high with 2 lines", [](Story& s) { s.second_rises = true; }},
+      {"error 5, expected 0", [](Story& s) { s.second_status = 0x8005; }},
+      {"busy with 2 of 8 words", [](Story& s) { s.second_status = 0x4000; }},
+      {"status 0003", [](Story& s) { s.second_status = 3; }},
+  };
+  for (const Case& c : cases) {
+    Story story;
+    c.breaks(story);
+    EXPECT_NE(story.run().find(c.says), std::string::npos) << c.says;
+  }
+}
+
+}  // namespace
+}  // namespace brick
