@@ -399,6 +399,26 @@ TEST_F(BinaryRotary, NothingOfABegunLineSurvivesClearOrDelete) {
 }
 
 // LIST ROT looks at words whose place the real-time task would use again.
+// Text goes where the begun line stands: it is copied again from its first command.
+TEST_F(BinaryRotary, TextBetweenTheHalvesOfALineLeavesItWhole) {
+  open("&1 DEF ROT 4");
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("P1=1 P1=2");
+  buffer.put("P2=1 P2=2 P2=3");
+  pass();
+  ASSERT_EQ(buffer.status(), DPRAM_ROTARY_BUSY) << "two commands of the second line stand there";
+  ASSERT_EQ(host("CLOSE OPEN ROT P3=1 CLOSE OPEN BIN ROT"), "");
+  EXPECT_EQ(host("LIST ROT"), "P1=1P1=2|P3=1");
+  ASSERT_EQ(host("B0 R"), "");
+  for (int i = 0; i < 3; ++i) {
+    period();
+    pass();
+  }
+  EXPECT_EQ(host("PR P1..3"), "0|2|3|1");
+  EXPECT_EQ(host("Q"), "");
+}
+
 TEST_F(BinaryRotary, NothingComesInWhileAListingIsMade) {
   open("DEF ROT 30");
   Buffer buffer;
