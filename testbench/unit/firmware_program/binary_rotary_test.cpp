@@ -110,7 +110,7 @@ TEST_F(BinaryRotary, TheSameTextGivesTheSameWords) {
   EXPECT_GT(refused, 200u);
 }
 
-// host-bus:7.5/11.
+// host-bus:7.5/12.
 TEST_F(BinaryRotary, LibraryRefusesByItsCodes) {
   const struct {
     BinaryResult result;
@@ -377,6 +377,25 @@ TEST_F(BinaryRotary, FullRingHoldsTheTransfer) {
   EXPECT_EQ(buffer.status(), 0u);
   platform::real_time();
   EXPECT_EQ(host("P1..7"), "1|2|3|4|5|6|7");
+}
+
+// It would wait for ever.
+TEST_F(BinaryRotary, ALineThatNoEmptyRingHoldsIsAnError) {
+  open("DEF ROT 4");
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("P1=1 P2=2 P3=3 P4=4");
+  buffer.put("P5=1 P6=2 P7=3 P8=4 P9=5");
+  pass();
+  EXPECT_EQ(buffer.status(), kBusy) << "the first one fits";
+  ASSERT_EQ(host("B0 R"), "");
+  for (int i = 0; i < 3; ++i) {
+    period();
+    pass();
+  }
+  EXPECT_EQ(buffer.status(), DPRAM_ROTARY_ERROR | 9U);
+  EXPECT_EQ(buffer.pmac_index(), 8U);
+  EXPECT_EQ(host("PR P4..9"), "0|4|0|0|0|0|0");
 }
 
 TEST_F(BinaryRotary, NothingOfABegunLineSurvivesClearOrDelete) {
