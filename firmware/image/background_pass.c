@@ -19,6 +19,10 @@
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
 
+enum { REPLY_MS = 5 }; /* to the next turn of the rest */
+
+static uint32_t came_by; /* cycle counter at the end of the last */
+
 void background_meanwhile(void) {
   panel_pass();
   /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
@@ -30,6 +34,12 @@ void background_meanwhile(void) {
   }
   image_checksum_pass();
   watchdog_reload();
+  came_by = hal_cycles();
+}
+
+/* A host that reads as fast as lines are made, or a port that takes them all, never makes a reply wait. */
+void background_between_lines(void) {
+  if (hal_cycles() - came_by > REPLY_MS * hal_cycles_per_ms()) background_meanwhile();
 }
 
 void background_pass(void) {

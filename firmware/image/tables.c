@@ -79,3 +79,4 @@ void (*const reply_sink)(uint8_t c) = host_port_send;
 const struct reply_lines reply_lines = {.put = dpram_responses_put, .end = dpram_responses_end};
 
 void (*const host_port_meanwhile)(void) = background_meanwhile;
+void (*const reply_between_lines)(void) = background_between_lines;
