@@ -13,6 +13,7 @@ using Packet = EthernetPacket;
 
 constexpr Tick kFetchPatience = ns_to_ticks(500'000'000);  // of a fetch when there is nothing
 constexpr Tick kFlushWait = ns_to_ticks(10'000'000), kLongestFlush = ns_to_ticks(500'000'000);
+constexpr Tick kTurn = ns_to_ticks(500'000);
 constexpr std::uint32_t kIoBytes = 16;
 constexpr std::uint8_t kClear = 0x18;
 constexpr char kNothing[] = {'\0'}, kExecuted[] = {'\x06'};
@@ -349,9 +350,17 @@ Tick CommunicationsProcessor::next_deadline(Tick limit) const {
   return limit;
 }
 
+// Time for the controller while there are always requests that need none of it, as those for memory: each of them takes
+// time of the bus.
+void CommunicationsProcessor::take_turn() {
+  const Tick end = bus_.now() + kTurn;
+  do { dialogue_.step(end); } while (dialogue_.busy() && bus_.now() < end);
+}
+
 void CommunicationsProcessor::run_until(Tick limit) {
   while (bus_.now() < limit) {
-    while (serve()) {}
+    while (bus_.now() < limit && serve())
+      if (dialogue_.busy()) take_turn();
     const Tick until = next_deadline(limit);
     while (bus_.now() < until && !dialogue_.step(until)) {}
   }

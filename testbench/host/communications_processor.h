@@ -72,6 +72,7 @@ class CommunicationsProcessor {
   std::string memory(const EthernetPacket& packet);
   std::string identity(const EthernetPacket& packet);
   void text(std::string_view text);
+  void take_turn();
   Tick next_deadline(Tick limit) const;
 
   HostBus& bus_;

@@ -119,7 +119,9 @@ void ControllerDialogue::put_next() {
     const Item& item = items_.front();
     const std::size_t length = item.bytes.size() + (item.control ? 0 : 1);
     port_.send(sent_ < item.bytes.size() ? static_cast<std::uint8_t>(item.bytes[sent_]) : '\r');
-    if (++sent_ == length) phase_ = Phase::kAnswer;
+    if (++sent_ < length) return;
+    phase_ = Phase::kAnswer;
+    asked_ = bus_.now();
   }
 }
 
@@ -129,8 +131,15 @@ bool ControllerDialogue::step(Tick limit) {
     abandon();
     return true;
   }
+  if (phase_ == Phase::kAnswer && bus_.now() >= asked_ + kLongestAnswer) {
+    answer_.quiet();
+    say(answer_.release());
+    abandon();
+    return true;
+  }
   put_next();
-  const Tick end = busy() ? last_ + patience() : limit;
+  // What has come while the bus was busy with something else is looked at before patience ends.
+  const Tick end = busy() ? std::max(last_ + patience(), bus_.now() + 1) : limit;
   if (port_.run_until(std::min(limit, end)))
     last_ = bus_.now();
   else if (busy() && bus_.now() >= end)

@@ -19,8 +19,9 @@ bool is_answered_control(std::uint8_t c);  // these, and those that are answered
 
 class ControllerDialogue {
  public:
-  static constexpr Tick kPatience = ns_to_ticks(500'000'000);         // without an answer
-  static constexpr Tick kSavePatience = ns_to_ticks(10'000'000'000);  // of a line that SAVEs
+  static constexpr Tick kPatience = ns_to_ticks(500'000'000);          // without an answer
+  static constexpr Tick kSavePatience = ns_to_ticks(10'000'000'000);   // of a line that SAVEs
+  static constexpr Tick kLongestAnswer = ns_to_ticks(30'000'000'000);  // then it is what programs say, without an end
   static constexpr Tick kQuiet = ns_to_ticks(5'000'000);  // nothing for so long ends an answer that may have ended
 
   explicit ControllerDialogue(HostBus& bus);
@@ -83,6 +84,7 @@ class ControllerDialogue {
   bool stop_at_error_ = false;
   bool changed_ = false;
   Tick clear_wait_ = 0, last_ = 0;  // when the last character came or went
+  Tick asked_ = 0;                  // when the first item had been sent
   bool owes_ = false;               // the controller may still answer an earlier job
   bool had_sums_ = false;
   std::optional<std::uint8_t> late_sum_;  // would follow an acknowledge that seemed to be the end

@@ -41,6 +41,29 @@ TEST_F(CommunicationsProcessorTest, OthersMemoryAndQueriesDoNotWaitForALine) {
   EXPECT_EQ(take(), (Replies{{1, "slow\r\x06"}}));
 }
 
+// Memory takes time of the bus: 16 requests of 64 clients take longer than an answer may pause.
+TEST_F(CommunicationsProcessorTest, RequestsForMemoryWithoutAnEndDoNotStarveLines) {
+  const auto ask_for_memory = [&](unsigned client) {
+    request(client, packet(Packet::kGetMemory, "", 0, 0, 0xC0, 1400));
+  };
+  Lines answers;
+  unsigned floods = 0;
+  processor_->on_reply = [&](CommunicationsProcessor::Client client, const Bytes& reply) {
+    if (client == 1) answers.push_back(reply);
+    if (client == 1 || ++floods > 20'000) return;
+    ask_for_memory(static_cast<unsigned>(client));  // and again
+  };
+  for (unsigned client = 2; client < 66; ++client)
+    for (int i = 0; i < 16; ++i) ask_for_memory(client);
+  request(1, packet(Packet::kGetResponse, "ver"));
+  request(1, packet(Packet::kGetResponse, "bad"));
+  for (int i = 0; i < 1000 && answers.size() < 2; ++i) run();
+  EXPECT_EQ(answers, (Lines{"ver\r\x06",
+                            "\x07"
+                            "ERR003\r"}));
+  EXPECT_LT(floods, 20'000u);
+}
+
 // What a client that has gone was to be told is nobody else's.
 TEST_F(CommunicationsProcessorTest, AClientThatGoesLeavesNothingBehind) {
   fake().thinking = 100 * kMs;
@@ -53,6 +76,23 @@ TEST_F(CommunicationsProcessorTest, AClientThatGoesLeavesNothingBehind) {
   EXPECT_EQ(take(), (Replies{{2, "here\r\x06"}}));
   EXPECT_EQ(lines_, (Lines{"gone", "here"}));
   EXPECT_FALSE(processor_->busy());
+}
+
+// I3 = 0, and a program that never stops sending: nobody knows where an answer ends, and its client has gone.
+TEST_F(CommunicationsProcessorTest, AnAnswerWithoutAnEndIsGivenUp) {
+  fake().controller = [&](const Bytes& line) {
+    lines_.push_back(line);
+    for (int i = 1; i <= 400; ++i) fake().later.emplace_back(bus_.now() + i * 100 * kMs, "A");
+    return Bytes();
+  };
+  request(1, packet(Packet::kSendLine, "P1=1"));
+  run(1000 * kMs);
+  processor_->close(1);
+  request(2, packet(Packet::kGetResponse, "ver"));
+  run(28'000 * kMs);
+  EXPECT_EQ(lines_, (Lines{"P1=1"}));
+  run(2000 * kMs);
+  EXPECT_EQ(lines_, (Lines{"P1=1", "ver"}));
 }
 
 // -------------------------------------------------------------------------------------------------- flush and control
