@@ -19,7 +19,6 @@ using asio::ip::tcp;
 using asio::ip::udp;
 
 constexpr int kAttempts = 16;  // to find a port that both protocols have
-constexpr std::chrono::seconds kBetweenMessages{1};
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
 tcp::endpoint endpoint_of(asio::io_context& io, const std::string& place) {
@@ -43,22 +42,19 @@ std::string text_of(const tcp::endpoint& place) {
   return fmt::format("{}:{}", place.address().is_v6() ? '[' + host + ']' : host, place.port());
 }
 
-// What goes wrong again and again is said once a second.
+// What goes wrong again and again is said the 1st, 10th, 100th ... time: whoever reads that may be slow, or nobody, and
+// a pipe that is full would hold the simulation up.
 class Complaint {
  public:
   std::string text(const std::string& what) {
-    ++count_;
-    const auto now = std::chrono::steady_clock::now();
-    if (said_ && now - last_ < kBetweenMessages) return "";
-    last_ = now;
-    said_ = true;
-    return count_ == 1 ? what : fmt::format("{} ({} so far)", what, count_);
+    if (++count_ < next_) return "";
+    next_ *= kTimes;
+    return count_ == 1 ? what : fmt::format("{} ({} times so far)", what, count_);
   }
 
  private:
-  bool said_ = false;
-  std::size_t count_ = 0;
-  std::chrono::steady_clock::time_point last_;
+  static constexpr std::size_t kTimes = 10;
+  std::size_t count_ = 0, next_ = 1;
 };
 
 }  // namespace

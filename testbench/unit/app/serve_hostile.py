@@ -88,7 +88,7 @@ def serve_crowd():
                     break
         check(reply == VERSION, "the place is free again")
         said = server.end()
-        check("a client is refused: 64 are connected" in said and said.count("\n") < 100, said)
+        check("a client is refused: 64 are connected" in said and said.count("\n") < 10, said)
 
 
 def poll(server, enough, lost, counts):
