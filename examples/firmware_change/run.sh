@@ -16,7 +16,7 @@ bench() { "$brick" run breq-rotary --engine systemc --firmware "$build/turbo.elf
 rm -rf "$build/source"  # a copy, so that the change stays here
 mkdir -p "$build/source/rtl/regs"
 cp -R "$source/firmware" "$build/source/"
-cp "$source/rtl/regs/brick_regs.h" "$build/source/rtl/regs/"
+cp "$source"/rtl/regs/*.h "$build/source/rtl/regs/"
 image >"$build/make.log"
 bench before || { cat "$build/before.log"; echo "the bench fails without the change"; exit 1; }
 tail -n 2 "$build/before.log" | head -n 1

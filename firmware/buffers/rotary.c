@@ -94,8 +94,9 @@ void rotary_publish(uint32_t cs, uint32_t count) {
 }
 
 error_t rotary_store(uint32_t cs, const word48_t* words, uint32_t count) {
-  const struct rotary* ring = &rotary_buffers[cs];
+  struct rotary* ring = &rotary_buffers[cs];
   if (count == 0 || count > ring->size - ring->used) return ERR_NO_ROOM; /* `used` can only fall meanwhile */
+  ring->generation++;
   uint32_t write = ring->write;
   for (uint32_t i = 0; i < count; i++) {
     user_memory_write(ring->base + write, i == 0 ? words[0] | WORD_START_OF_LINE : words[i]);

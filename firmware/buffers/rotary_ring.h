@@ -17,7 +17,7 @@ struct rotary {
   volatile uint32_t lines; /* lines stored and not calculated: PR. Both, under the mask */
   bool requested;          /* opened since it was defined: BREQ takes part (host-bus:5.7, state other than IDLE) */
   volatile bool full;      /* Rotary Buffer Full. Both, under the mask */
-  uint32_t generation;     /* changes when it is emptied: words that were not published are void. Background */
+  uint32_t generation;     /* changes when it is emptied or text is stored: words not published are void. Background */
 };
 
 extern struct rotary rotary_buffers[COORDINATE_SYSTEMS];

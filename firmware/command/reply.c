@@ -65,14 +65,14 @@ void reply_text(const char* text) {
 void reply_end_line(void) {
   const uint32_t code = line_code();
   if (code != 0u) {
-    line_open = false;
     reply_lines.end(code);
-    return;
+  } else {
+    if (!line_open) begin_line();
+    send(CARRIAGE_RETURN);
+    if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) send(line_sum);
   }
-  if (!line_open) begin_line();
-  send(CARRIAGE_RETURN);
-  if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) send(line_sum);
   line_open = false;
+  reply_between_lines();
 }
 
 bool reply_line_is_open(void) { return line_open; }

@@ -18,7 +18,15 @@ enum { END_OF_BUFFER = 0x000800, END_OF_BUFFER_SIGNED = 0xFF0800 }; /* host-bus:
 enum { FOREGROUND_PART = 4 }; /* of the time that the real-time task may calculate */
 
 /* Codes of host-bus:7.5, and those of enum binary_fault. */
-enum fault { FAULT_NONE = 0, FAULT_NO_BUFFER = 1, FAULT_SIZE = 2, FAULT_PLACE = 3, FAULT_INDEX = 4, FAULT_ENABLE = 7 };
+enum fault {
+  FAULT_NONE = 0,
+  FAULT_NO_BUFFER = 1,
+  FAULT_SIZE = 2,
+  FAULT_PLACE = 3,
+  FAULT_INDEX = 4,
+  FAULT_ENABLE = 7,
+  FAULT_LENGTH = 9
+};
 
 /* What there is to do next for a header: go on, nothing, wait for room in the ring, wait for the host. */
 enum step { STEP_DONE, STEP_EMPTY, STEP_BLOCKED, STEP_STOP };
@@ -116,6 +124,7 @@ static enum step copy(struct header* h, uint32_t cs, struct begun* b) {
   if (is_end_of_buffer(command)) return STEP_EMPTY;
   if (begins && b->count != 0 && publish(h, cs, b) == STEP_STOP) return STEP_STOP;
   if (!begins && b->count == 0) return fail(h, BINARY_INCOMPLETE); /* of the line before */
+  if (b->count >= rotary_buffers[cs].size) return fail(h, FAULT_LENGTH);
   if (b->count >= rotary_room(cs)) return STEP_BLOCKED;
   const enum binary_fault fault = binary_judge_word(&b->judge, command);
   if (fault != BINARY_GOOD) return fail(h, fault);

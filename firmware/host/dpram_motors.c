@@ -76,9 +76,10 @@ static int32_t foreground_period(void) {
   return i_integer(I48_DPRAM_FOREGROUND_ENABLE) != 0 ? i_integer(I47_DPRAM_FOREGROUND_PERIOD) : 0;
 }
 
-void dpram_motors_servo(void) {
+bool dpram_motors_servo(void) {
   const int32_t period = foreground_period();
   if (!background_writes && (period != 0 || foreground.report.is_on)) step(&foreground, period);
+  return period != 0 || foreground.report.is_on;
 }
 
 /* The servo task's set may have begun until the flag was set. */

@@ -4,8 +4,10 @@
 #ifndef FIRMWARE_HOST_DPRAM_MOTORS_H
 #define FIRMWARE_HOST_DPRAM_MOTORS_H
 
+#include <stdbool.h>
+
 void dpram_motors_initialize(void);
-void dpram_motors_servo(void); /* servo task */
+bool dpram_motors_servo(void); /* servo task; false: it has nothing to do until I47 or I48 are written */
 void dpram_motors_pass(void);  /* background */
 
 #endif

@@ -27,7 +27,13 @@ static struct {
   uint32_t next, data; /* entry, and the offset of its data */
 } set;
 
-void dpram_variables_initialize(void) { set.size = 0; }
+static bool is_on(void) { return i_integer(I55_DPRAM_VARIABLES) != 0 && dpram_is_fitted(); }
+
+/* What the RAM holds at a start is no order to write. */
+void dpram_variables_initialize(void) {
+  set.size = 0;
+  if (is_on()) dpram_write(DPRAM_WRITE_SIZE, 0);
+}
 
 static struct entry read_entry(uint32_t offset) {
   const uint32_t low = dpram_read(offset), type = dpram_read(offset + DPRAM_WORD_BYTES);
@@ -40,6 +46,8 @@ static struct entry read_entry(uint32_t offset) {
 static bool is_inside(uint32_t offset, uint32_t bytes) { return offset + bytes <= dpram_bytes(); }
 
 static uint32_t mask_of(const struct entry* e) { return (1u << e->width) - 1u; }
+
+static bool is_in_ram(const struct entry* e) { return e->address - DPRAM_BASE < dpram_bytes() / DPRAM_ITEM_BYTES; }
 
 /* To be read ------------------------------------------------------------------------------------------------------- */
 
@@ -55,7 +63,8 @@ static void show(const struct entry* e, uint32_t data) {
     word_read_long(e->address, &x, &y);
     dpram_put_long(data, x, y);
   } else if (e->space == SPACE_DPRAM) {
-    dpram_write_item(data, word_read(false, e->address) | word_read(true, e->address) << 16);
+    const uint32_t low = is_in_ram(e) ? word_read(false, e->address) : 0u;
+    dpram_write_item(data, is_in_ram(e) ? low | word_read(true, e->address) << 16 : 0u);
   } else {
     dpram_write_item(data, value(e));
   }
@@ -107,6 +116,7 @@ static void take(const struct entry* e, uint32_t data) {
   if (e->space == SPACE_LONG) {
     word_write_long(e->address, dpram_read_item(data + DPRAM_ITEM_BYTES), low);
   } else if (e->space == SPACE_DPRAM) {
+    if (!is_in_ram(e)) return;
     word_write(false, e->address, low & DPRAM_WORD_MASK);
     word_write(true, e->address, low >> 16);
   } else {
@@ -130,7 +140,10 @@ static void write_pass(void) {
 }
 
 void dpram_variables_pass(void) {
-  if (i_integer(I55_DPRAM_VARIABLES) == 0 || !dpram_is_fitted()) return;
+  if (!is_on()) {
+    set.size = 0;
+    return;
+  }
   write_pass();
   read_pass();
 }

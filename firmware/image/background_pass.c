@@ -6,10 +6,7 @@
 #include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/binary_rotary.h"
-#include "firmware/host/dpram_ascii.h"
-#include "firmware/host/dpram_motors.h"
-#include "firmware/host/dpram_systems.h"
-#include "firmware/host/dpram_variables.h"
+#include "firmware/host/dpram_functions.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
@@ -22,6 +19,10 @@
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
 
+enum { REPLY_MS = 5 }; /* to the next turn of the rest */
+
+static uint32_t came_by; /* cycle counter at the end of the last */
+
 void background_meanwhile(void) {
   panel_pass();
   /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
@@ -33,6 +34,12 @@ void background_meanwhile(void) {
   }
   image_checksum_pass();
   watchdog_reload();
+  came_by = hal_cycles();
+}
+
+/* A host that reads as fast as lines are made, or a port that takes them all, never makes a reply wait. */
+void background_between_lines(void) {
+  if (hal_cycles() - came_by > REPLY_MS * hal_cycles_per_ms()) background_meanwhile();
 }
 
 void background_pass(void) {
@@ -40,10 +47,7 @@ void background_pass(void) {
   line_input_pass();
   binary_rotary_pass();
   program_texts_pass();
-  dpram_ascii_pass();
-  dpram_motors_pass();
-  dpram_systems_pass();
-  dpram_variables_pass();
+  dpram_functions_pass();
   background_meanwhile();
   i_variable_apply_clock_directions(); /* written by a program */
   if (host_port_waiting()) background_wake();

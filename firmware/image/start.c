@@ -15,10 +15,7 @@
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/binary_rotary.h"
-#include "firmware/host/dpram_ascii.h"
-#include "firmware/host/dpram_motors.h"
-#include "firmware/host/dpram_systems.h"
-#include "firmware/host/dpram_variables.h"
+#include "firmware/host/dpram_functions.h"
 #include "firmware/host/panel.h"
 #include "firmware/host/program_texts.h"
 #include "firmware/image/fault.h"
@@ -101,10 +98,7 @@ void start(enum start_mode mode) {
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();
-  dpram_ascii_initialize();
-  dpram_motors_initialize();
-  dpram_systems_initialize();
-  dpram_variables_initialize();
+  dpram_functions_initialize();
   motor_status_initialize();
   rotary_initialize();
   open_buffer_initialize();

@@ -15,7 +15,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/report_commands.h"
 #include "firmware/command/session.h"
-#include "firmware/host/dpram_motors.h"
+#include "firmware/host/dpram_functions.h"
 #include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
 #include "firmware/host/panel.h"
@@ -37,7 +37,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 static void servo(void) {
   servo_update();
   gather_servo();
-  dpram_motors_servo();
+  dpram_functions_servo();
   host_port_reserve();
 }
 
@@ -51,10 +51,9 @@ static void buffer_request_changed(uint32_t instance) {
 }
 
 const i_effect_t i_effects[I_FIELD_COUNT] = {
-    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
-    [I_FIELD_MOTOR_ACTIVE] = phase_task_motor_changed,
-    [I_FIELD_MOTOR_COMMUTATION] = phase_task_motor_changed,
-    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,      [I_FIELD_DPRAM] = dpram_functions_changed,
+    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,         [I_FIELD_MOTOR_ACTIVE] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_COMMUTATION] = phase_task_motor_changed, [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
 };
 
 /* BREQ: the host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may
@@ -80,3 +79,4 @@ void (*const reply_sink)(uint8_t c) = host_port_send;
 const struct reply_lines reply_lines = {.put = dpram_responses_put, .end = dpram_responses_end};
 
 void (*const host_port_meanwhile)(void) = background_meanwhile;
+void (*const reply_between_lines)(void) = background_between_lines;

@@ -110,7 +110,7 @@ TEST_F(BinaryRotary, TheSameTextGivesTheSameWords) {
   EXPECT_GT(refused, 200u);
 }
 
-// host-bus:7.5/11.
+// host-bus:7.5/12.
 TEST_F(BinaryRotary, LibraryRefusesByItsCodes) {
   const struct {
     BinaryResult result;
@@ -379,6 +379,25 @@ TEST_F(BinaryRotary, FullRingHoldsTheTransfer) {
   EXPECT_EQ(host("P1..7"), "1|2|3|4|5|6|7");
 }
 
+// It would wait for ever.
+TEST_F(BinaryRotary, ALineThatNoEmptyRingHoldsIsAnError) {
+  open("DEF ROT 4");
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("P1=1 P2=2 P3=3 P4=4");
+  buffer.put("P5=1 P6=2 P7=3 P8=4 P9=5");
+  pass();
+  EXPECT_EQ(buffer.status(), kBusy) << "the first one fits";
+  ASSERT_EQ(host("B0 R"), "");
+  for (int i = 0; i < 3; ++i) {
+    period();
+    pass();
+  }
+  EXPECT_EQ(buffer.status(), DPRAM_ROTARY_ERROR | 9U);
+  EXPECT_EQ(buffer.pmac_index(), 8U);
+  EXPECT_EQ(host("PR P4..9"), "0|4|0|0|0|0|0");
+}
+
 TEST_F(BinaryRotary, NothingOfABegunLineSurvivesClearOrDelete) {
   for (const char* commands :
        {"CLEAR", "CLOSE DEL ROT DEF ROT 5 OPEN BIN ROT", "CLOSE DEL ALL TEMPS DEF ROT 7 OPEN BIN ROT"}) {
@@ -399,6 +418,26 @@ TEST_F(BinaryRotary, NothingOfABegunLineSurvivesClearOrDelete) {
 }
 
 // LIST ROT looks at words whose place the real-time task would use again.
+// Text goes where the begun line stands: it is copied again from its first command.
+TEST_F(BinaryRotary, TextBetweenTheHalvesOfALineLeavesItWhole) {
+  open("&1 DEF ROT 4");
+  Buffer buffer;
+  buffer.set_up();
+  buffer.put("P1=1 P1=2");
+  buffer.put("P2=1 P2=2 P2=3");
+  pass();
+  ASSERT_EQ(buffer.status(), DPRAM_ROTARY_BUSY) << "two commands of the second line stand there";
+  ASSERT_EQ(host("CLOSE OPEN ROT P3=1 CLOSE OPEN BIN ROT"), "");
+  EXPECT_EQ(host("LIST ROT"), "P1=1P1=2|P3=1");
+  ASSERT_EQ(host("B0 R"), "");
+  for (int i = 0; i < 3; ++i) {
+    period();
+    pass();
+  }
+  EXPECT_EQ(host("PR P1..3"), "0|2|3|1");
+  EXPECT_EQ(host("Q"), "");
+}
+
 TEST_F(BinaryRotary, NothingComesInWhileAListingIsMade) {
   open("DEF ROT 30");
   Buffer buffer;

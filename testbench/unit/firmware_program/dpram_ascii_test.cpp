@@ -320,6 +320,24 @@ TEST_F(DpramAscii, ARestartThroughThePortIsAcknowledgedIfItIsOnAfterIt) {
   EXPECT_EQ(released(), (Lines{})) << "of what was before";
 }
 
+// Such a reply waits for nobody, and takes longer than the watchdog allows a background pass.
+TEST_F(DpramAscii, PlcsAndTheWatchdogGoOnInALongReply) {
+  ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
+  ASSERT_EQ(host("P200=P200+1"), "");
+  ASSERT_EQ(host("CLOSE P200=0 ENABLE PLC 1"), "");
+  fake_hal_set_look(hal_cycles_per_ms());
+  ASSERT_TRUE(ram_host.send("P200=0 P0..99"));
+  background(1);
+  EXPECT_GT(p_variable_read(200), 10) << "through the RAM";
+  fake_hal_set_look(0);
+  while (ram_host.take(3)) {}
+  fake_hal_set_look(hal_cycles_per_ms());
+  for (const char c : std::string("P200=0 P0..99\r")) host_port_character(static_cast<std::uint8_t>(c));
+  background(1);
+  fake_hal_set_look(0);
+  EXPECT_GT(p_variable_read(200), 10) << "by the port";
+}
+
 // Whatever the host writes wherever: nothing traps, the port works afterwards.
 TEST_F(DpramAscii, AnyWordsAreSurvived) {
   std::mt19937 random(7);

@@ -147,6 +147,57 @@ TEST_F(DpramVariables, OffWithI55OrWithoutASize) {
   EXPECT_EQ(host("RY$20"), "9") << "of I55 = 1 with the size 1 that waited, not of 33";
 }
 
+// The RAM keeps its content over a reset, and holds anything after power-on.
+TEST_F(DpramVariables, NothingIsWrittenByAStart) {
+  ASSERT_EQ(host("SAVE WY$A000,5"), "");
+  write_entry(0, 0x6001, kLong, 0x000801, 0x400000);
+  ram.write(DPRAM_WRITE_START, kWrite);
+  ram.write(DPRAM_WRITE_SIZE, 1);
+  platform::reset("$$$");
+  background(2);
+  EXPECT_EQ(host("I55 P1"), "1|0");
+  EXPECT_EQ(ram.read(DPRAM_WRITE_SIZE), 0);
+  platform::reset("$$$***");
+  ram.write(DPRAM_WRITE_SIZE, 7);
+  platform::reset("$$$***");
+  EXPECT_EQ(ram.read(DPRAM_WRITE_SIZE), 7) << "with I55 = 0 the word is the user's";
+}
+
+TEST_F(DpramVariables, ItemsOfTheRamAreNowhereElse) {
+  ASSERT_EQ(host("WX$20,$ABCDEF WY$20,$ABCDEF"), "");
+  write_entry(0, 0x20, kDpram, 0x12345678);
+  write_entry(1, 0x60500, kDpram, 0x12345678);
+  write(2);
+  background(1);
+  EXPECT_EQ(host("RHX$20"), "ABCDEF");
+  EXPECT_EQ(host("RHY$20"), "ABCDEF");
+  EXPECT_EQ(dpram_read_item(4 * 0x500), 0x12345678U);
+  entry(place(kRead, 0), 0x20, kDpram);
+  entry(place(kRead, 1), 0x60500, kDpram);
+  begin(2);
+  background(1);
+  ASSERT_TRUE(ready());
+  EXPECT_EQ(data(2, 0), 0U);
+  EXPECT_EQ(data(2, 1), 0x12345678U);
+}
+
+// What was read before I55 went off is not of the set that is ready after it.
+TEST_F(DpramVariables, ASetThatWasLeftBeginsAnew) {
+  for (unsigned i = 0; i < 20; ++i) entry(place(kRead, i), 0xA000, kY);
+  ASSERT_EQ(host("WY$A000,1"), "");
+  begin(20);
+  background(1);
+  ASSERT_FALSE(ready());
+  ASSERT_EQ(host("I55=0"), "");
+  background(1);
+  ASSERT_FALSE(ready()) << "nothing goes on while it is off";
+  ASSERT_EQ(host("WY$A000,2"), "");
+  ASSERT_EQ(host("I55=1"), "");
+  background(3);
+  ASSERT_TRUE(ready());
+  for (unsigned i = 0; i < 20; ++i) EXPECT_EQ(data(20, i), 2U) << i;
+}
+
 // The last list and the last data that the RAM holds, and the first that it does not.
 TEST_F(DpramVariables, ListsEndWithTheRam) {
   const auto show_at = [this](unsigned start) {

@@ -27,7 +27,7 @@ Story tell(Engine engine, std::uint64_t seed) {
   }
   bus.dpram_write(0x100, 0x5AA5);
   story.replies += std::to_string(bus.dpram_read(0x100)) + ' ' + std::to_string(machine.now());
-  story.unwritten = bus.dpram_read(0x1050);
+  story.unwritten = bus.dpram_read(0x2000);
   EXPECT_TRUE(machine.take_run_errors().empty());
   return story;
 }
