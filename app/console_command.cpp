@@ -1,13 +1,16 @@
 // `brick console`: an interactive terminal to the controller. What is typed goes the way of a host script; simulated
 // time goes with the wall's while nobody types.
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -85,18 +88,20 @@ struct Terminal {
 
 class Console {
  public:
-  explicit Console(Simulation& simulation) : simulation_(simulation), player_(simulation.link(), std::cout, false) {}
+  Console(Simulation& simulation, std::string history)
+      : simulation_(simulation), player_(simulation.link(), std::cout, false), history_(std::move(history)) {}
   ~Console() { leave(); }
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  void talk(const std::string& history);  // with somebody at a terminal
-  void listen();                          // to lines from a pipe
-  void leave();                           // the terminal is as it was
+  void talk();    // with somebody at a terminal
+  void listen();  // to lines from a pipe
+  void leave();   // the terminal is as it was, the lines typed are kept
   const ScriptPlayer& player() const { return player_; }
 
  private:
   bool play(const std::string& line);  // false: it ends the session
+  bool next_line(std::string& line);   // of the pipe; false: there is none
   void tell(const std::string& text);
   void explain();
   void paint();
@@ -105,12 +110,16 @@ class Console {
 
   Simulation& simulation_;
   ScriptPlayer player_;
+  const std::string history_;  // its file
+  std::string came_;           // through the pipe
   std::unique_ptr<Terminal> terminal_;
   std::size_t explained_ = 0;  // exchanges
 };
 
 void Console::leave() {
   simulation_.show_progress = nullptr;
+  if (terminal_ && !history_.empty() && !terminal_->editor.save_history(history_))
+    tell(fmt::format("--history {}: cannot be written; expected a writable place", history_));
   player_.before_output = nullptr;
   terminal_.reset();
 }
@@ -147,8 +156,31 @@ bool Console::play(const std::string& line) {
   return true;
 }
 
+// While none comes the signals are looked at.
+bool Console::next_line(std::string& line) {
+  for (std::size_t looked = 0;;) {
+    if (const std::size_t end = came_.find('\n', looked); end != std::string::npos) {
+      line = came_.substr(0, end);
+      came_.erase(0, end + 1);
+      return true;
+    }
+    pollfd pipe{STDIN_FILENO, POLLIN, 0};
+    while (poll(&pipe, 1, static_cast<int>(kNap.count())) <= 0) simulation_.bus().heartbeat();
+    std::array<char, 4096> piece;
+    looked = came_.size();
+    const ssize_t count = ::read(STDIN_FILENO, piece.data(), piece.size());
+    if (count > 0) {
+      came_.append(piece.data(), static_cast<std::size_t>(count));
+      continue;
+    }
+    line = std::exchange(came_, "");
+    return !line.empty();
+  }
+}
+
 void Console::listen() {
-  for (std::string line; std::getline(std::cin, line) && play(line);) {}
+  if (isatty(STDIN_FILENO) == 1) simulation_.show_progress = [] {};  // it would stand in what is typed
+  for (std::string line; next_line(line) && play(line);) {}
 }
 
 void Console::paint() {
@@ -173,7 +205,7 @@ std::chrono::milliseconds Console::wait() {
 
 void Console::wait_anew() { terminal_->pacing = Pacing(simulation_.bus().now()); }
 
-void Console::talk(const std::string& history) {
+void Console::talk() {
   terminal_ = std::make_unique<Terminal>(simulation_.bus());
   LineEditor& editor = terminal_->editor;
   simulation_.show_progress = [this] { paint(); };
@@ -183,11 +215,9 @@ void Console::talk(const std::string& history) {
     play({'^', static_cast<char>(key + '@')});
     wait_anew();
   };
-  if (!history.empty()) editor.load_history(history);
+  if (!history_.empty()) editor.load_history(history_);
   std::fputs(kWelcome, stdout);
   for (auto line = editor.read(); line && play(*line); line = editor.read()) wait_anew();
-  if (!history.empty() && !editor.save_history(history))
-    tell(fmt::format("--history {}: cannot be written; expected a writable place", history));
 }
 
 }  // namespace
@@ -195,14 +225,17 @@ void Console::talk(const std::string& history) {
 int console_command(const RunOptions& options, const std::string& history) {
   const MachineConfig config = machine_config(options);
   if (!history.empty()) need_folder("--history", history);
+  if (!LineEditor::may_be_history(history))
+    throw UsageError(
+        fmt::format("--history {}: is no history; expected a file that brick console has written", history));
   Simulation simulation(options, config, "console");
-  Console console(simulation);
+  Console console(simulation, history);
   std::string failure;
   try {
     simulation.run([&] {
       connect_at_start(simulation);
-      if (isatty(STDIN_FILENO) == 1)
-        console.talk(history);
+      if (isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1)
+        console.talk();
       else
         console.listen();
     });

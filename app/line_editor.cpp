@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -18,6 +19,7 @@ namespace brick {
 namespace {
 constexpr int kHistoryLines = 1000;
 constexpr unsigned char kBell = 0x07, kFirstOther = 0x80;
+constexpr std::string_view kHistoryMark = "_HiStOrY_V2_";  // libedit's, first line of the file
 constexpr std::string_view kOfController = "ABCDEFGKLNOPQRSTUVWXYZ";
 }  // namespace
 
@@ -130,6 +132,12 @@ void LineEditor::make_room() {
   if (!impl_->reading || std::exchange(impl_->cleared, true)) return;
   std::fputs("\r\033[J", stdout);
   std::fflush(stdout);
+}
+
+bool LineEditor::may_be_history(const std::string& file) {
+  std::ifstream in(file);
+  std::string first;
+  return !std::getline(in, first) || first == kHistoryMark;
 }
 
 void LineEditor::load_history(const std::string& file) {

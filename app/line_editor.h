@@ -20,8 +20,9 @@ class LineEditor {
   std::optional<std::string> read();  // nothing at ^], or when the terminal is gone
   void make_room();                   // whoever prints: before it, where a line is being typed
 
-  void load_history(const std::string& file);        // if there is one
-  bool save_history(const std::string& file) const;  // false: it cannot be written
+  static bool may_be_history(const std::string& file);  // it is one, or there is none yet
+  void load_history(const std::string& file);           // if there is one
+  bool save_history(const std::string& file) const;     // false: it cannot be written
 
   // Is called again and again until a key is pressed, which it looks for in the time between.
   std::function<std::chrono::milliseconds()> while_waiting;

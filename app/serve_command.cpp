@@ -1,4 +1,5 @@
 // `brick serve`: a started controller behind the Ethernet port of a Brick (docs/ethernet.md).
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -27,8 +28,10 @@ class AddressFile {
     unsigned bytes[4];
     char dot[3];
     if (name_.empty() || !in) return "";
-    if (!(in >> bytes[0] >> dot[0] >> bytes[1] >> dot[1] >> bytes[2] >> dot[2] >> bytes[3]))
-      throw UsageError(fmt::format("{}: is no address; expected four numbers with dots between them", name_));
+    in >> bytes[0] >> dot[0] >> bytes[1] >> dot[1] >> bytes[2] >> dot[2] >> bytes[3];
+    const auto is_byte = [](unsigned byte) { return byte <= UINT8_MAX; };
+    if (!in || !std::all_of(bytes, bytes + 4, is_byte) || std::count(dot, dot + 3, '.') != 3)
+      throw UsageError(fmt::format("{}: is no address; expected four numbers up to 255 with dots between them", name_));
     std::string address;
     for (const unsigned byte : bytes) address.push_back(static_cast<char>(byte));
     return address;
@@ -38,9 +41,11 @@ class AddressFile {
     if (name_.empty()) return;
     const auto byte = [&](std::size_t n) { return static_cast<unsigned>(static_cast<unsigned char>(address[n])); };
     const std::string other = name_ + ".new";
-    std::ofstream(other) << fmt::format("{}.{}.{}.{}\n", byte(0), byte(1), byte(2), byte(3));
+    std::ofstream out(other);
+    out << fmt::format("{}.{}.{}.{}\n", byte(0), byte(1), byte(2), byte(3));
+    out.close();
     std::error_code ignored;
-    std::filesystem::rename(other, name_, ignored);
+    if (out) std::filesystem::rename(other, name_, ignored);  // else the old one stays
   }
 
  private:

@@ -45,7 +45,7 @@ void stop_when_asked() {
   struct sigaction action {};
   action.sa_handler = [](int signal) { asked_to_stop = signal; };
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction now {};
     if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;  // as of nohup
     sigaction(signal, &action, nullptr);
@@ -130,7 +130,9 @@ bool Simulation::go_on() {
 void Simulation::progress() {
   if (asked_to_stop != 0)
     throw Interrupted(fmt::format("stopped by {} after {:.3f} ms of simulated time",
-                                  asked_to_stop == SIGINT ? "SIGINT" : "SIGTERM",
+                                  asked_to_stop == SIGINT    ? "SIGINT"
+                                  : asked_to_stop == SIGTERM ? "SIGTERM"
+                                                             : "SIGHUP",
                                   static_cast<double>(machine_->now_fs()) * 1e-12));
   if (show_progress) return show_progress();
   if (!terminal_) return;

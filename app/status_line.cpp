@@ -38,7 +38,7 @@ void StatusLine::reserve() {
   const winsize size = terminal_size();
   rows_ = size.ws_row;
   columns_ = size.ws_col;
-  if (rows_ >= kLeastRows) write(fmt::format("\n\033[A\0337\033[1;{}r\0338", rows_ - 1));
+  write(rows_ >= kLeastRows ? fmt::format("\n\033[A\0337\033[1;{}r\0338", rows_ - 1) : "\0337\033[r\0338");
 }
 
 StatusLine::~StatusLine() {

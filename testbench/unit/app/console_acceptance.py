@@ -12,6 +12,7 @@ import re
 import select
 import signal
 import struct
+import subprocess
 import sys
 import tempfile
 import termios
@@ -30,13 +31,15 @@ LEFT, UP, LEAVE = "\033[D", "\033[A", "\x1d"
 class Terminal:
     """A session at a terminal of 24 rows."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, stdout=None):
         self.seen, self.looked, self.status = "", 0, ""
         self.child, self.fd = pty.fork()
         if self.child == 0:
             os.environ["TERM"] = "xterm"
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
             signal.signal(signal.SIGINT, signal.SIG_DFL)
+            if stdout is not None:
+                os.dup2(stdout, 1)
             os.execv(COMMAND, [COMMAND, "console", *arguments])
 
     def read(self, seconds):
@@ -156,20 +159,67 @@ def terminal():
 
 
 def ended_by_signal():
-    """The flash file is whole, the terminal as it was."""
+    """The flash file is whole, the terminal as it was, the lines are kept; so when the terminal is gone."""
     with tempfile.TemporaryDirectory() as folder:
-        flash = pathlib.Path(folder) / "flash"
+        flash, history = pathlib.Path(folder) / "flash", pathlib.Path(folder) / "history"
+        for value, end in enumerate((signal.SIGTERM, signal.SIGHUP), 7):
+            t = Terminal("--flash", str(flash), "--history", str(history))
+            t.expect("> ")
+            t.type(f"I16={value} SAVE\r")
+            t.expect(r"SAVE\r+\n")
+            t.expect("> ")
+            os.kill(t.child, end)
+            t.expect(f"brick console: stopped by {end.name}")
+            check(t.end() == 1, "exit status")
+            check("\033[r" in t.seen, "all rows scroll again")
+            r = brick("exec", "--flash", str(flash), "-", script=f"I16\n@expect {value}\n")
+            check(r.returncode == 0, r.stderr)
+            check(history.read_text().count("SAVE") == value - 6, history.read_text())
         t = Terminal("--flash", str(flash))
         t.expect("> ")
-        t.type("I16=7 SAVE\r")
+        t.type("I16=9 SAVE\r")
         t.expect(r"SAVE\r+\n")
         t.expect("> ")
-        os.kill(t.child, signal.SIGTERM)
-        t.expect("brick console: stopped by SIGTERM")
-        check(t.end() == 1, "exit status")
-        check("\033[r" in t.seen, "all rows scroll again")
-        r = brick("exec", "--flash", str(flash), "-", script="I16\n@expect 7\n")
+        os.close(t.fd)
+        os.waitpid(t.child, 0)
+        r = brick("exec", "--flash", str(flash), "-", script="I16\n@expect 9\n")
         check(r.returncode == 0, r.stderr)
+    with subprocess.Popen([COMMAND, "console"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as p:
+        p.stdin.write("I16\n")
+        p.stdin.flush()
+        p.stdout.readline()
+        p.terminate()  # while it waits for the next line
+        try:
+            status = p.wait(LONGEST)
+        finally:
+            p.kill()
+        check(status == 1 and "stopped by SIGTERM" in p.stderr.read(), f"exit {status}")
+
+
+def odd_terminals():
+    """A window that becomes too low for the status line; a history that is somebody else's file; replies to a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "notes"
+        file.write_text("my notes\n", encoding="ascii")
+        r = brick("console", "--history", str(file), script="")
+        check(r.returncode == 2 and "is no history; expected" in r.stderr, r.stderr)
+        check(file.read_text(encoding="ascii") == "my notes\n", "it is as it was")
+        t = Terminal()
+        t.expect("> ")
+        t.expect_status("BREQ 0")
+        fcntl.ioctl(t.fd, termios.TIOCSWINSZ, struct.pack("HHHH", 1, COLUMNS, 0, 0))
+        t.expect(r"\033\[r")
+        t.type("P1\r")
+        t.expect(r"P1\r+\n0\r")
+        t.type(LEAVE)
+        check(t.end() == 0, "exit status")
+        replies = pathlib.Path(folder) / "replies"
+        with replies.open("wb") as out:
+            t = Terminal(stdout=out.fileno())
+            t.type("I16\n\x04")  # ^D of the terminal: the end of a file
+            check(t.end() == 0, "exit status")
+        check(replies.read_text(encoding="ascii") == "5\n", replies.read_text(encoding="ascii"))
 
 
 globals()[command.CASE]()

@@ -152,9 +152,10 @@ def serve_ends():
                 check(client.values("I16") == [str(number)], f"{end.name}: SAVEd")
                 check(client.request(0xC0, 0xE0) == address, f"{end.name}: address")
         check(sorted(os.listdir(folder)) == ["flash.bin", "flash.bin.address"], os.listdir(folder))
-        (pathlib.Path(folder) / "flash.bin.address").write_text("somewhere\n", encoding="ascii")
-        r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
-        check(r.returncode == 2 and "flash.bin.address: is no address; expected" in r.stderr, r.stderr)
+        for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n"):
+            (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")
+            r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
+            check(r.returncode == 2 and "flash.bin.address: is no address; expected" in r.stderr, f"{bad}: {r.stderr}")
 
 
 def serve_bad_input():
