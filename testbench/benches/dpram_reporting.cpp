@@ -16,6 +16,7 @@ namespace {
 
 constexpr Tick kMillisecond = ns_to_ticks(1'000'000);
 constexpr unsigned kMotors = 8;
+constexpr unsigned kSlow = 100;  // periods of the bus before each cycle
 
 class ReportingBench {
  public:
@@ -94,6 +95,7 @@ void ReportingBench::motors_in_motion(const std::string& on, const std::string& 
   std::int64_t before = 0;
   std::uint32_t timer = 0;
   unsigned changes = 0;
+  if (b_.negative) b_.bus.set_pace([this] { return pick(kSlow); });  // in a block whose end is of another age
   for (int i = 0; i < 250; ++i) {
     b_.bus.wait(pick(30'000));
     const auto set = reports_.read_motors(20 * kMillisecond);
@@ -110,6 +112,7 @@ void ReportingBench::motors_in_motion(const std::string& on, const std::string& 
     before = m.position;
     timer = set->timer;
   }
+  b_.bus.set_pace(nullptr);
   b_.expect(off + " DISABLE PLC 0", "");
   b_.report.step(name, compared, 1000, fmt::format("250 sets at random phases, {} of them new", changes));
   b_.report.step(std::string(name) + ": sets that were new", changes >= 30, std::to_string(changes));

@@ -2,6 +2,7 @@
 // job is answered, when it has ended, and what the controller says of itself in between.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -37,7 +38,10 @@ class ControllerDialogue {
   void abandon();               // what is still to come is cleared away before the next job
   bool busy() const { return phase_ != Phase::kNone; }
 
-  void send_at_once(std::uint8_t c) { urgent_.push_back(c); }  // whatever job there is, but not inside a line
+  // Whatever job there is, but not inside a line; once for all requests that come before it is sent.
+  void send_at_once(std::uint8_t c) {
+    if (std::find(urgent_.begin(), urgent_.end(), c) == urgent_.end()) urgent_.push_back(c);
+  }
   bool sends_at_once() const { return !urgent_.empty(); }
 
   // To the next character or the end of a job, at most to tick `limit`. True when there is text, or a job has ended.

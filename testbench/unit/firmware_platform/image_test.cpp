@@ -53,14 +53,15 @@ TEST_F(Image, ChecksumsCountEveryByteOfALineInEachFraming) {
   });
 }
 
-TEST_F(Image, IdleSecondCostsLessThanTwoMillionInstructions) {
+TEST_F(Image, IdleSecondCostsLessThan2200000Instructions) {
   board.send("I6=1 I3=2\r");
   board.send("CHECKSUM\r");  // else the background would add the image up in this second
   const std::uint64_t instructions = board.instructions(), accesses = board.device_accesses();
   board.run_ms(1000.0);
-  EXPECT_LT(board.instructions() - instructions, 2'000'000u);
-  // Nothing but watchdog strobes goes to a device: one a real-time interrupt, 2258.7 / 3 a second.
-  EXPECT_NEAR(static_cast<double>(board.device_accesses() - accesses), 752.9, 3.0);
+  EXPECT_LT(board.instructions() - instructions, 2'200'000u);
+  // Nothing but a watchdog strobe and a look at the header of a binary buffer goes to a device in each real-time
+  // interrupt, of which there are 2258.7 / 3 a second.
+  EXPECT_NEAR(static_cast<double>(board.device_accesses() - accesses), 2 * 752.9, 6.0);
   RecordProperty("instructions", static_cast<int>(board.instructions() - instructions));
 }
 
