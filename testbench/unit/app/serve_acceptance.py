@@ -2,6 +2,7 @@
 
 usage: serve_acceptance.py BRICK CASE; each CASE is one test.
 """
+import itertools
 import os
 import pathlib
 import re
@@ -50,6 +51,24 @@ def serve_recordings():
             check(count >= least, f"{name}: {count} replies, expected {least} or more")
 
 
+def gather(client):
+    """The servo counter into the dual-ported RAM at each servo interrupt, read from there; then in user memory."""
+    for line in ("I5000=2 I5001=$400000 I5050=1 I5051=0 I5049=1", "DEFINE GATHER 20", "GATHER"):
+        check(client.command(line) == "", line)
+    while client.values("???")[0][1] == "8":  # bit 19; with --free time passes only while somebody asks
+        pass
+    size, place = struct.unpack("<HH", client.read_memory(0x113C, 4))
+    samples = struct.unpack("<20i", client.read_memory(0x1140, 80))
+    check((size, place) == (20, 20), f"size {size}, pointer {place}")
+    check(all(b == a + 1 for a, b in itertools.pairwise(samples)), f"{samples}")
+    for line in ("DELETE GATHER I5000=0", "DEFINE GATHER 10", "GATHER"):
+        check(client.command(line) == "", line)
+    while client.values("???")[0][1] == "8":
+        pass
+    check(len(client.values("LIST GATHER")) == 10, "samples in user memory")
+    check(client.command("ENDGATHER DELETE GATHER") == "", "DELETE GATHER")
+
+
 def serve_python_client():
     """A script's work: all variables read out, programs written and read back, jogs, SAVE, reset, a new connection."""
     lines = ["OPEN PROG 5 CLEAR", "RPD X10Y20", "DWELL 20", "CLOSE", "OPEN PLC 3 CLEAR", "P7=P7+1", "CLOSE"]
@@ -68,6 +87,7 @@ def serve_python_client():
             for jog in ("#2J+", "#2HM"):
                 check(refused(client, jog) == "ERR013", f"{jog}: motor 2 is not activated")
             check(client.control("B").split()[0] == "850000000000", "^B")
+            gather(client)
             check(client.command("I16=7 P100=2.5") == "" and client.command("SAVE") == "", "SAVE")
             check(client.command("I16=9 I3") == "2\r", "I16")
             check(client.request(0x40, 0xBF, data=b"$$$") in (b"\x06", b"\n"), "$$$ has an answer")
