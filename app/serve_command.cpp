@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/ethernet_server.h"
 #include "app/simulation.h"
@@ -99,7 +100,9 @@ int serve_command(const ServeOptions& options) {
     nlohmann::json results = simulation.measures();
     results["engine"] = options.run.engine;
     results["board"] = config.board.name;
+    results["seed"] = config.seed;
     results["passed"] = failures.empty();
+    if (!failures.empty()) results["failure"] = utf8_text(failures.front());
     write_json(options.run.json, results);
   }
   return failures.empty() ? 0 : 1;

@@ -3,8 +3,10 @@
 usage: serve_acceptance.py BRICK CASE; each CASE is one test.
 """
 import itertools
+import json
 import os
 import pathlib
+import pty
 import re
 import signal
 import socket
@@ -15,6 +17,7 @@ import tempfile
 import command
 import recording
 import served_exchanges
+import turbo_pmac
 from command import brick, check
 from served import PATIENCE, packet, refused, served
 
@@ -176,6 +179,28 @@ def serve_ends():
             (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")
             r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
             check(r.returncode == 2 and "flash.bin.address: is no address; expected" in r.stderr, f"{bad}: {r.stderr}")
+
+
+def serve_terminal():
+    """On a terminal a line shows time and clients; results and waveform are written at the end."""
+    with tempfile.TemporaryDirectory() as folder:
+        results, wave = pathlib.Path(folder) / "results.json", pathlib.Path(folder) / "wave.vcd"
+        screen, errors = pty.openpty()
+        server = subprocess.Popen([command.BRICK, "serve", "--listen", "127.0.0.1:0", "--json", str(results), "--wave",
+                                   str(wave), "--wave-to", "1ms"], stdout=subprocess.PIPE, stderr=errors, text=True)
+        os.close(errors)
+        port = int(re.search(r":(\d+),", server.stdout.readline())[1])
+        shown = ""
+        with turbo_pmac.TurboPmac("127.0.0.1", port) as client:
+            check(client.values("I16") == ["5"], "an answer")
+            while "1 of 64 clients" not in shown:
+                shown += os.read(screen, 4096).decode()
+        check(re.search(r"serve: \d+\.\d ms simulated, \d+\.\d M ticks/s, 1 of 64 clients", shown), shown)
+        server.send_signal(signal.SIGTERM)
+        check(server.wait(PATIENCE) == 0, "exit status")
+        report = json.loads(results.read_text(encoding="utf-8"))
+        check(report["passed"] and report["seed"] == 1 and report["simulated_ns"] > 0, str(report))
+        check("$var" in wave.read_text(encoding="utf-8"), "waveform")
 
 
 def serve_bad_input():
