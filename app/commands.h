@@ -2,12 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "app/bench.h"
 #include "app/options.h"
 
 namespace brick {
 
-int list_command(bool json);
+// The benches that a command may run come from `main`: they stand above `app`.
+int list_command(const std::vector<Bench>& benches, bool json);
 int boards_command(const std::string& name_or_file, bool json);  // "": all boards of the boards folder
 int exec_command(const RunOptions& options, const std::string& script, bool raw);
 int console_command(const RunOptions& options, const std::string& history);  // history: file, "" = none
@@ -24,6 +27,6 @@ struct TimingOptions {
   std::string wavedrom;
   bool sweep = false;
 };
-int timing_command(const TimingOptions& options);
+int timing_command(const std::vector<Bench>& benches, const TimingOptions& options);
 
 }  // namespace brick

@@ -5,13 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "testbench/benches/bench.h"
 
 namespace brick {
 
-int list_command(bool json) {
+int list_command(const std::vector<Bench>& benches, bool json) {
   nlohmann::json list = nlohmann::json::array();
-  for (const Bench& bench : all_benches()) {
+  for (const Bench& bench : benches) {
     if (json)
       list.push_back({{"name", bench.name},
                       {"description", bench.description},

@@ -1,5 +1,6 @@
-// The `brick` command: parses the line and calls the command. Exit status: 0 passed, 1 failed, 2 bad usage or bad input
-// with one line on stderr (docs/command.md).
+// The `brick` command: parses the line and calls the command, with the benches from the room of the tests, which no
+// other file of this folder knows. Exit status: 0 passed, 1 failed, 2 bad usage or bad input with one line on stderr
+// (docs/command.md).
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "app/cpu_command.h"
 #include "app/run_bench.h"
 #include "systemc/core/usage_error.h"
+#include "testbench/benches/benches.h"
 
 namespace brick {
 namespace {
@@ -37,7 +39,7 @@ struct Commands {
     app.set_version_flag("--version", std::string("brick ") + BRICK_VERSION);
     auto* list = app.add_subcommand("list", "benches with one line each");
     list->add_flag("--json", list_json, "as JSON");
-    list->callback([this] { chosen = [this] { return list_command(list_json); }; });
+    list->callback([this] { chosen = [this] { return list_command(all_benches(), list_json); }; });
 
     auto* run = app.add_subcommand("run", "runs a testbench: steps, verdict, simulated and wall time");
     run->add_option("BENCH", bench, "name of the bench, see brick list")->required();
@@ -45,7 +47,7 @@ struct Commands {
     run->add_flag("--negative", negative, "negative control: a deliberate fault, with which the bench must fail");
     run->callback([this, run] {
       if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
-      chosen = [this] { return run_bench(run_options, bench, negative); };
+      chosen = [this] { return run_bench(all_benches(), run_options, bench, negative); };
     });
 
     auto* exec =
@@ -91,7 +93,7 @@ struct Commands {
         ->type_name("FILE");
     timing->callback([this, timing] {
       if (timing->count("--board") == 0 && !timing_options.sweep) timing_options.run.board.clear();
-      chosen = [this] { return timing_command(timing_options); };
+      chosen = [this] { return timing_command(all_benches(), timing_options); };
     });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");

@@ -8,16 +8,15 @@
 #include "app/simulation.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/cosim/engines.h"
-#include "testbench/benches/bench.h"
 
 namespace brick {
 
 namespace {
 
-const Bench& need_bench(const std::string& name) {
-  if (const Bench* bench = find_bench(name)) return *bench;
+const Bench& need_bench(const std::vector<Bench>& benches, const std::string& name) {
+  if (const Bench* bench = find_bench(benches, name)) return *bench;
   std::vector<std::string> names;
-  for (const Bench& bench : all_benches()) names.push_back(bench.name);
+  for (const Bench& bench : benches) names.push_back(bench.name);
   throw UsageError(fmt::format("{}: no such bench; expected {}", name, fmt::join(names, " or ")));
 }
 
@@ -30,8 +29,9 @@ nlohmann::json steps_json(const BenchReport& report) {
 
 }  // namespace
 
-int run_bench(const RunOptions& given, const std::string& name, bool negative, const RunExtras& extras) {
-  const Bench& bench = need_bench(name);
+int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const std::string& name, bool negative,
+              const RunExtras& extras) {
+  const Bench& bench = need_bench(benches, name);
   RunOptions options = given;
   if (options.board.empty()) options.board = bench.board;
   MachineConfig config = machine_config(options);

@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "app/bench.h"
 #include "app/options.h"
 
 namespace brick {
@@ -19,7 +21,8 @@ struct RunExtras {
   std::function<void(Simulation&, nlohmann::json&)> after;  // the verdict is printed; may add to the results
 };
 
-// Exit status. Throws UsageError.
-int run_bench(const RunOptions& options, const std::string& bench, bool negative, const RunExtras& extras = {});
+// The one of `benches` with that name; exit status. Throws UsageError.
+int run_bench(const std::vector<Bench>& benches, const RunOptions& options, const std::string& name, bool negative,
+              const RunExtras& extras = {});
 
 }  // namespace brick

@@ -53,7 +53,7 @@ int sweep_command(const TimingOptions& options) {
 
 }  // namespace
 
-int timing_command(const TimingOptions& options) {
+int timing_command(const std::vector<Bench>& benches, const TimingOptions& options) {
   if (options.sweep && options.bench.empty()) return sweep_command(options);
   if (options.sweep)
     throw UsageError(fmt::format("{}: --sweep drives the bus itself; expected no bench", options.bench));
@@ -84,7 +84,7 @@ int timing_command(const TimingOptions& options) {
     }
     profile.reset();
   };
-  return run_bench(options.run, options.bench, false, extras);
+  return run_bench(benches, options.run, options.bench, false, extras);
 }
 
 }  // namespace brick

@@ -3,8 +3,8 @@
 
 A file includes only its own folder and folders below it, and includes make no circle; in the firmware a header and
 its source count as one for that. There a function is declared in the header of the file that defines it, and so is a
-variable; a const table that joins layers may stand in firmware/image instead. testbench/unit and testbench/fuzz may
-include anything.
+variable; a const table that joins layers may stand in firmware/image instead. testbench/unit, testbench/fuzz
+and app/main.cpp, which hands the benches to the commands, may include anything.
 """
 
 import argparse
@@ -18,9 +18,9 @@ FIRMWARE = [{f"firmware/{name}"} for name in (
     "hal", "base", "kernel", "variables", "language", "buffers", "motion", "run", "command", "host", "image")]
 CPP = [{"testbench/clients"}, {"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"},
        {"systemc/macro_ic"}, {"systemc/board"}, {"systemc/cosim"}, {"systemc/component"}, {"systemc/machine"},
-       {"testbench/host", "testbench/plant"}, {"testbench/checkers"}, {"testbench/benches"},
-       {"testbench/benchmark", "app"}]
-FREE = ("testbench/unit", "testbench/fuzz")  # may include anything
+       {"testbench/host", "testbench/plant"}, {"testbench/checkers"}, {"app"},
+       {"testbench/benches"}, {"testbench/benchmark"}]
+FREE = ("testbench/unit", "testbench/fuzz", "app/main.cpp")  # may include anything
 # Of what stands in <> only our own folders.
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"|<(?=(?:firmware|systemc|testbench|app)/))([^">]+)[">]', re.M)
 # Firmware sources are written by clang-format: what stands in column 0 is a declaration or a definition.

@@ -1,9 +1,12 @@
-// The benches, one function each; bench.cpp puts them into the list.
+// The benches, one function each, and the list of them.
 #pragma once
 
-#include "testbench/benches/bench.h"
+#include "app/bench.h"
 
 namespace brick {
+
+// Every bench there is, in the order of `brick list`.
+const std::vector<Bench>& all_benches();
 
 Bench smoke_bench();
 Bench bus_timing_bench();

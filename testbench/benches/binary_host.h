@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/benches/bench.h"
+#include "app/bench.h"
 #include "testbench/checkers/binary_scoreboard.h"
 #include "testbench/host/binary_rotary.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "testbench/benches/bench.h"
+#include "app/bench.h"
 #include "testbench/checkers/breq_scoreboard.h"
 
 namespace brick {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/benches/bench.h"
+#include "app/bench.h"
 #include "testbench/checkers/clock_checker.h"
 
 namespace brick {

@@ -12,9 +12,9 @@
 
 #include <fmt/format.h>
 
+#include "app/bench.h"
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/machine/board_family.h"
-#include "testbench/benches/bench.h"
 
 namespace brick {
 

@@ -3,7 +3,7 @@
 // machine working.
 #pragma once
 
-#include "testbench/benches/bench.h"
+#include "app/bench.h"
 
 namespace brick {
 

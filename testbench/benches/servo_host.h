@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "app/bench.h"
 #include "rtl/regs/brick_regs.hpp"
-#include "testbench/benches/bench.h"
 
 namespace brick {
 

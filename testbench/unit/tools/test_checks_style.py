@@ -118,6 +118,13 @@ class Layers(Tree):
         self.write("systemc/host/dpram.h", '#include "systemc/cpu/cpu.h"\n')
         self.check(1, "systemc/host/dpram.h: includes systemc/cpu/cpu.h")
 
+    def test_only_main_knows_the_benches(self):
+        self.write("app/main.cpp", '#include "testbench/benches/benches.h"\n')
+        self.write("testbench/benches/smoke.cpp", '#include "app/bench.h"\n')
+        self.check(0, "layers: clean")
+        self.write("app/run_bench.cpp", '#include "testbench/benches/benches.h"\n')
+        self.check(1, "app/run_bench.cpp: includes testbench/benches/benches.h, which is not below app")
+
     def test_a_folder_without_a_layer_fails(self):
         self.write("firmware/drivers/led.h", "")
         self.check(1, "folder firmware/drivers has no layer")

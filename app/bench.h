@@ -1,5 +1,6 @@
-// A testbench: a named host program with steps and a verdict. Each has a negative control, a deliberately wrong rule or
-// a seeded bug with which a named step must fail, so that its verdict means something.
+// What a testbench is to the commands that run it: a named host program with steps and a verdict. Each has a negative
+// control, a deliberately wrong rule or a seeded bug with which a named step must fail, so that its verdict means
+// something. The benches themselves (testbench/benches) stand above the commands; `main` hands them in.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 #include <vector>
 
 #include "systemc/machine/machine.h"
-#include "testbench/benches/comparison.h"
+#include "testbench/checkers/comparison.h"
 #include "testbench/checkers/timing_book.h"
 #include "testbench/host/host_bus.h"
 #include "testbench/host/host_link.h"
@@ -88,9 +89,7 @@ struct Bench {
   bool firmware = true;                 // false: no CPU runs, the bench drives Port A itself
 };
 
-// Every bench there is, in the order of `brick list`.
-const std::vector<Bench>& all_benches();
-const Bench* find_bench(const std::string& name);
+const Bench* find_bench(const std::vector<Bench>& benches, const std::string& name);  // nullptr: none of that name
 
 template <class T>
 bool BenchReport::equal(const std::string& name, const T& measured, const T& expected) {

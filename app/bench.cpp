@@ -1,4 +1,5 @@
-#include "testbench/benches/bench.h"
+// Steps of a bench as they are printed, and what every bench asks of the controller.
+#include "app/bench.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,8 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "testbench/benches/benches.h"
 
 namespace brick {
 
@@ -81,24 +80,8 @@ BenchNeed without_8259(const BenchNeed& need) {
           [met = need.met](const BoardConfig& b) { return met(b) && !b.pic_8259; }};
 }
 
-const std::vector<Bench>& all_benches() {
-  static const std::vector<Bench> benches{
-      smoke_bench(),          breq_rotary_bench(),   breq_select_bench(),
-      breq_fixed_bench(),     binary_rotary_bench(), interrupts_bench(),
-      dpram_bench(),          dpram_ascii_bench(),   dpram_reporting_bench(),
-      gather_bench(),         watchdog_bench(),      reinit_e3_bench(),
-      save_restore_bench(),   clock_select_bench(),  clock_faults_bench(),
-      clock_macro_bench(),    encoder_bench(),       capture_compare_bench(),
-      flags_bench(),          pwm_bench(),           pfm_bench(),
-      serial_dac_adc_bench(), host_port_bench(),     isa_timing_bench(),
-      port_a_phase_bench(),   bus_timing_bench(),    listing_bench(),
-      variables_bench(),      status_bench(),        plc_bench(),
-  };
-  return benches;
-}
-
-const Bench* find_bench(const std::string& name) {
-  for (const Bench& bench : all_benches())
+const Bench* find_bench(const std::vector<Bench>& benches, const std::string& name) {
+  for (const Bench& bench : benches)
     if (bench.name == name) return &bench;
   return nullptr;
 }
