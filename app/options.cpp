@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "app/paths.h"
 #include "app/time_text.h"

@@ -6,11 +6,14 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "systemc/core/ticks.h"
 #include "systemc/machine/machine.h"
+
+namespace CLI {
+class App;
+}
 
 namespace brick {
 

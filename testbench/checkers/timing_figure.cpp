@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "testbench/checkers/timing_port_a.h"
 #include "testbench/checkers/timing_report.h"
