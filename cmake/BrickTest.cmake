@@ -9,18 +9,16 @@ function(brick_sanitize target)
   target_link_options(${target} PUBLIC ${BRICK_SANITIZER_LINK_FLAGS})
 endfunction()
 
-# A file of nothing owns the precompiled headers of one set of flags.
+# A file of nothing owns the precompiled headers of one set of flags (cmake/Headers.cmake).
 function(brick_add_test_headers name)
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/${name}.cpp CONTENT "")
-  add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/${name}.cpp)
-  target_link_libraries(${name} PRIVATE GTest::gtest GTest::gmock fmt::fmt)
-  target_compile_options(${name} PRIVATE ${BRICK_WARNINGS} $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(${name} PRIVATE <fmt/format.h> <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <cstdint>
-    <fstream> <functional> <map> <memory> <random> <sstream> <string> <vector>)
+  brick_add_headers(${name} <gmock/gmock.h> <gtest/gtest.h> <fstream> <random> ${ARGN})
+  target_link_libraries(${name} PRIVATE GTest::gtest GTest::gmock)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
-brick_add_test_headers(brick_test_headers)
+brick_add_test_headers(brick_test_headers <systemc>)
 brick_add_test_headers(brick_sanitized_test_headers)
 brick_sanitize(brick_sanitized_test_headers)
+target_compile_options(brick_sanitized_test_headers PRIVATE -O0)
 
 function(brick_test_code target)
   cmake_parse_arguments(T "SANITIZED" "" "" ${ARGN})
@@ -28,7 +26,7 @@ function(brick_test_code target)
   target_link_libraries(${target} PRIVATE GTest::gtest GTest::gmock fmt::fmt)
   if(T_SANITIZED)
     brick_sanitize(${target})
-    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)  # instrumented code makes g++ 12 warn in <regex>
+    target_compile_options(${target} PRIVATE -O0)  # what is tested stands in libraries, at -O1
     target_precompile_headers(${target} REUSE_FROM brick_sanitized_test_headers)
   else()
     target_precompile_headers(${target} REUSE_FROM brick_test_headers)
