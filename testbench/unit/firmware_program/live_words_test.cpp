@@ -149,7 +149,45 @@ TEST_F(LiveWords, TimeBase) {
   platform::servo_ticks(3);
   EXPECT_EQ(m("X:$2002,24,S"), std::to_string(3713991 - 3000));
   EXPECT_EQ(host("RX$2100 RX$2102"), "3713991|3713991");
-  EXPECT_EQ(host("WX$2000,5 RX$2000"), "1856996") << "set by % only";
+}
+
+// firmware:1.10/9: the commanded one is written by programs that override the feed rate, in units of I10.
+TEST_F(LiveWords, CommandedTimeBaseIsWritten) {
+  ASSERT_EQ(host("I5194=1000 I5294=2000 M1->X:$2000,24,S M2->X:$2100,24,S"), "");
+  EXPECT_EQ(host("M1=3711991 M2=3715991 M1 M2"), "3711991|3715991");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2002 RX$2102"), "3712991|3715991") << "slewed at Isx94";
+  platform::servo_ticks(2);
+  EXPECT_EQ(host("RX$2002 RX$2102 RX$2202"), "3711991|3715991|3713991");
+  ASSERT_EQ(host("I5194=8388607 WX$2000,0"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2002 &1%"), "0|0");
+  ASSERT_EQ(host("WX$2000,$7FFFFF"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2000 RX$2002"), "8388607|8388607") << "2^23 - 1 of 3713991: 225.87 %";
+  ASSERT_EQ(host("WX$2000,$800000"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2000 RX$2002"), "0|0") << "below 0";
+  EXPECT_EQ(host("WX$2002,5 RX$2002"), "0") << "the present one follows";
+  EXPECT_EQ(host("WX$2000,$123456 M3->X:$2000,4,8 M3=$FF RHX$2000"), "123FF6") << "a part of the word";
+  EXPECT_EQ(host("WY$2000,7 RY$2000 RHX$2000"), "7|123FF6") << "an ordinary word";
+  EXPECT_EQ(host("WX$2F00,2000000 RX$2F00 RX$2000"), "2000000|1196022") << "that of system 16";
+}
+
+// While H holds a system its word is kept for the end of the hold, as what % commands is.
+TEST_F(LiveWords, CommandedTimeBaseOfAHeldSystemWaitsForItsEnd) {
+  ASSERT_EQ(host("&1 I5194=8388607 I5195=8388607 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("TM1000 X10"), "");
+  ASSERT_EQ(host("CLOSE R"), "");
+  platform::servo_ticks(10);
+  ASSERT_EQ(host("H"), "");
+  platform::servo_ticks(1);
+  ASSERT_EQ(host("WX$2000,1000000"), "");
+  platform::servo_ticks(3);
+  EXPECT_EQ(host("RX$2000 RX$2002"), "1000000|0");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2002"), "1000000");
 }
 
 TEST_F(LiveWords, TimersAreReadAndSet) {
