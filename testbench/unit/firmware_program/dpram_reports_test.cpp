@@ -232,7 +232,7 @@ TEST_F(DpramReportsTest, TheTimerIsTheLowestBitsOfTheServoCounterInTwoWords) {
   }
 }
 
-// The items of a block by their numbers in host-bus:6.4/2, each from a word of its own value: low half first,
+// The items of a block by their numbers in host-bus:6.4, each from a word of its own value: low half first,
 // sign-extended.
 TEST_F(DpramReportsTest, EachItemOfAMotorsBlockIsItsSource) {
   ASSERT_EQ(host("&3#5->1000X I500=1"), "");
@@ -250,7 +250,7 @@ TEST_F(DpramReportsTest, EachItemOfAMotorsBlockIsItsSource) {
   EXPECT_EQ(host("#5?"), "850000278000") << "items 3 and 4";
 }
 
-// host-bus:6.5/3 and 6.5/4 likewise: every place of the global part, and the items of a system that moves.
+// host-bus:6.5 likewise: every place of the global part, and the items of a system that moves.
 TEST_F(DpramReportsTest, EachItemOfTheBackgroundDataIsItsSource) {
   platform::fit_panel();
   *hal_y(JPAN_Y_INPUTS) = 0xA5C3;

@@ -87,6 +87,17 @@ TEST_F(Gather, StopsAtTheEndOfTheBufferAndNotBehindIt) {
   EXPECT_EQ(host_lines("LIST GATHER").size(), 2U);
 }
 
+// Half a long word at its end is a whole one: three words of 24 bits take two.
+TEST_F(Gather, ASampleThatEndsWithHalfAWordDoesNotGoBehindTheBuffer) {
+  ASSERT_EQ(host("DEF UBUF 10"), "");
+  ASSERT_EQ(host("WX$107F6,$555555 I5001=$400000 I5002=$400000 I5003=$400000 I5050=7 I5049=1 DEF GAT 5"), "");
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(20);
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host_lines("LIST GATHER").size(), 4U);
+  EXPECT_EQ(host("RHX$107F6"), "555555");
+}
+
 TEST_F(Gather, I5000Of1Wraps) {
   ASSERT_EQ(host("I5000=1 I5001=$400000 I5050=1 I5049=1 DEF GAT 4"), "");
   const unsigned long before = count();

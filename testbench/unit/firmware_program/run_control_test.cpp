@@ -292,6 +292,21 @@ TEST_F(RunControl, AxisDefinitions) {
   EXPECT_EQ(host("UNDEFINE ALL &1#2->"), "0");
 }
 
+// firmware:4.10/1, firmware:5.10/3
+TEST_F(RunControl, AnInactiveMotorHoldsItsSystemAndARunningOneHoldsSave) {
+  open();
+  ASSERT_EQ(host("DWELL60000"), "");
+  ASSERT_EQ(host("CLOSE &1#3->X I300=0"), "");
+  EXPECT_EQ(host("R"), "ERR013");
+  EXPECT_EQ(host("S"), "ERR013");
+  EXPECT_EQ(host("&2#3->X"), "ERR003") << "of &1";
+  EXPECT_EQ(host("SAVE"), "");
+  ASSERT_EQ(host("I300=1"), "");
+  EXPECT_EQ(host("&1R"), "");
+  EXPECT_EQ(host("SAVE"), "ERR001");
+  EXPECT_EQ(host("&2SAVE"), "ERR001") << "whoever runs";
+}
+
 // firmware:5.10/4: whoever has addressed what, a system that runs keeps its definitions.
 TEST_F(RunControl, UndefineAllIsRefusedWhileASystemThatLosesDefinitionsRuns) {
   ASSERT_EQ(host("I300=1"), "");
