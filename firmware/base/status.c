@@ -16,8 +16,7 @@ void status_show(uint32_t bits, bool on) {
 void status_set(uint32_t bits) { status_show(bits, true); }
 
 void status_clear(uint32_t bits) {
-  status_show(bits & (STATUS_REAL_TIME_REENTRY | STATUS_SERVO_ERROR | STATUS_GATHER_TRIGGER | STATUS_REAL_TIME_WARNING),
-              false);
+  status_show(bits & (STATUS_REAL_TIME_REENTRY | STATUS_SERVO_ERROR | STATUS_REAL_TIME_WARNING), false);
 }
 
 uint32_t status_word(void) { return status; }

@@ -8,8 +8,7 @@
 enum {
   STATUS_REAL_TIME_REENTRY = 1 << 22,
   STATUS_SERVO_ERROR = 1 << 20,
-  STATUS_GATHERING = 1 << 19,      /* follows */
-  STATUS_GATHER_TRIGGER = 1 << 17, /* follows; written 0 it is the trigger */
+  STATUS_GATHERING = 1 << 19, /* follows */
   STATUS_WATCHDOG = 1 << 15,
   STATUS_FLASH_ERROR = 1 << 10,
   STATUS_REAL_TIME_WARNING = 1 << 9,

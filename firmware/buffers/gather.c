@@ -10,12 +10,11 @@
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/hal/hal.h"
-#include "firmware/variables/i_variables.h"
+#include "firmware/variables/dpram_use.h"
 #include "firmware/variables/words.h"
 
 enum { SOURCES = 48, MASK_BITS = 24, MODE_WRAPS = 1, MODE_DPRAM = 2, ADDRESS = 0x7FFFF };
 enum { SOURCE_SHIFT = 22, SOURCE_Y = 0, SOURCE_X = 1 }; /* 2 and 3: both, fixed and floating point */
-enum gather_state { GATHER_OFF, GATHER_AWAITS_TRIGGER, GATHER_ON };
 
 static struct {
   bool defined, in_dpram;
@@ -29,15 +28,14 @@ static uint32_t sources[SOURCES], source_count, sample_size;
 static uint32_t period; /* servo cycles; 0: once */
 static bool wraps;
 
-static volatile enum gather_state state; /* B; S takes it on */
-static uint32_t next;                    /* address in the buffer. S, B while nothing is gathered */
-static uint32_t left;                    /* servo cycles to the next sample. S */
-static bool was_full;                    /* since the buffer was begun it has wrapped. S */
+static volatile bool gathers; /* B; S ends it */
+static uint32_t next;         /* address in the buffer. S, B while nothing is gathered */
+static uint32_t left;         /* servo cycles to the next sample. S */
+static bool was_full;         /* since the buffer was begun it has wrapped. S */
 
-static void show_state(enum gather_state to) {
-  state = to;
-  status_show(STATUS_GATHERING, to == GATHER_ON);
-  status_show(STATUS_GATHER_TRIGGER, to == GATHER_AWAITS_TRIGGER);
+static void show(bool on) {
+  gathers = on;
+  status_show(STATUS_GATHERING, on);
 }
 
 static void show_pointer(void) {
@@ -48,7 +46,7 @@ static void show_pointer(void) {
 
 void gather_initialize(void) {
   buffer.defined = false;
-  show_state(GATHER_OFF);
+  show(false);
 }
 
 /* The buffer ------------------------------------------------------------------------------------------------------- */
@@ -60,9 +58,8 @@ static void begin_buffer(void) {
 }
 
 static error_t define_in_dpram(uint32_t words) {
-  const uint32_t bytes = dpram_bytes();
-  if ((uint32_t)i_integer(I24_DPRAM_BASE) != DPRAM_BASE || bytes <= DPRAM_OPEN) return ERR_DATA;
-  const uint32_t there_is = (bytes - DPRAM_OPEN) / DPRAM_ITEM_BYTES;
+  if (!dpram_is_used()) return ERR_DATA;
+  const uint32_t there_is = (dpram_bytes() - DPRAM_OPEN) / DPRAM_ITEM_BYTES;
   if (words > there_is) return ERR_NO_ROOM;
   buffer.size = words == GATHER_ALL_THERE_IS ? there_is : words;
   buffer.first = DPRAM_OPEN_ADDRESS;
@@ -79,7 +76,7 @@ static error_t define_in_memory(uint32_t words) {
 }
 
 error_t gather_define(uint32_t words) {
-  if (state != GATHER_OFF) return ERR_DATA;
+  if (gathers) return ERR_DATA;
   if (!buffer.defined) {
     const bool in_dpram = (i_integer(I5000_GATHER_MODE) & MODE_DPRAM) != 0;
     const error_t error = in_dpram ? define_in_dpram(words) : define_in_memory(words);
@@ -98,7 +95,7 @@ void gather_delete_always(void) {
 }
 
 error_t gather_delete(void) {
-  if (state != GATHER_OFF) return ERR_DATA;
+  if (gathers) return ERR_DATA;
   gather_delete_always();
   return region_delete(REGION_GATHER, 0);
 }
@@ -134,36 +131,38 @@ static uint32_t size_of_sample(void) {
   return half ? words + 1u : words;
 }
 
+static bool is_chosen(uint32_t source) {
+  const uint32_t mask = (uint32_t)i_integer(I5050_GATHER_MASKS + source / MASK_BITS);
+  return (mask >> source % MASK_BITS & 1u) != 0u;
+}
+
 static void look_up_sources(void) {
   source_count = 0;
-  for (uint32_t i = 0; i < SOURCES; ++i) {
-    const uint32_t mask = (uint32_t)i_integer(I5050_GATHER_MASKS + i / MASK_BITS);
-    if ((mask >> i % MASK_BITS & 1u) != 0u) sources[source_count++] = (uint32_t)i_integer(I5001_GATHER_SOURCES + i);
-  }
+  for (uint32_t i = 0; i < SOURCES; ++i)
+    if (is_chosen(i)) sources[source_count++] = (uint32_t)i_integer(I5001_GATHER_SOURCES + i);
   sample_size = size_of_sample();
 }
 
 /* From where the next sample goes. */
 static bool has_room(void) { return next < buffer.size && next + sample_size <= buffer.end; }
 
-error_t gather_begin(bool by_trigger) {
-  if (state == GATHER_ON) return ERR_NONE;
+error_t gather_begin(void) {
+  if (gathers) return ERR_NONE;
   if (!buffer.defined) return ERR_DATA;
-  gather_end(); /* a trigger that was awaited */
   look_up_sources();
   wraps = (i_integer(I5000_GATHER_MODE) & MODE_WRAPS) != 0;
   period = (uint32_t)i_integer(I5049_GATHER_PERIOD);
   left = 0;
   if (source_count == 0u || !has_room()) return ERR_DATA;
   const uint32_t held = hal_mask_servo();
-  show_state(by_trigger ? GATHER_AWAITS_TRIGGER : GATHER_ON);
+  show(true);
   hal_unmask(held);
   return ERR_NONE;
 }
 
 void gather_end(void) {
   const uint32_t held = hal_mask_servo();
-  show_state(GATHER_OFF);
+  show(false);
   hal_unmask(held);
 }
 
@@ -232,19 +231,35 @@ static __attribute__((noinline)) void take_sample(void) {
     was_full = true;
   }
   show_pointer();
-  if (period == 0u || !has_room()) show_state(GATHER_OFF);
+  if (period == 0u || !has_room()) show(false);
 }
 
 void gather_servo(void) {
-  if (state == GATHER_OFF) return;
-  if (state == GATHER_AWAITS_TRIGGER) {
-    if ((status_word() & STATUS_GATHER_TRIGGER) != 0u) return;
-    show_state(GATHER_ON);
-  }
+  if (!gathers) return;
   if (left != 0u) {
     --left;
     return;
   }
   left = period == 0u ? 0u : period - 1u;
   take_sample();
+}
+
+/* The sources as they are now ------------------------------------------------------------------------------------- */
+
+static void put_bytes(void (*put)(uint8_t byte), uint32_t word) {
+  for (int shift = 16; shift >= 0; shift -= 8) put((uint8_t)(word >> shift));
+}
+
+void gather_report_sources(void (*put)(uint8_t byte)) {
+  for (uint32_t i = 0; i < SOURCES; ++i) {
+    if (!is_chosen(i)) continue;
+    const uint32_t source = (uint32_t)i_integer(I5001_GATHER_SOURCES + i);
+    if (!is_long(source)) {
+      put_bytes(put, read_one(source));
+      continue;
+    }
+    const struct pair word = read_both(source);
+    put_bytes(put, word.x);
+    put_bytes(put, word.y);
+  }
 }

@@ -15,9 +15,10 @@ void gather_initialize(void);
 error_t gather_define(uint32_t words); /* again: the buffer there is, from its beginning. ERR003 while it gathers */
 error_t gather_delete(void);           /* ERR003 while it gathers */
 void gather_delete_always(void);       /* the memory manager takes its words away */
-error_t gather_begin(bool by_trigger); /* ERR003 without a buffer, without room, without a source */
+error_t gather_begin(void);            /* ERR003 without a buffer, without room, without a source */
 void gather_end(void);
 uint32_t gather_stored_words(void); /* long words in user memory that can be listed; 0 in the other */
 void gather_servo(void);            /* servo task */
+void gather_report_sources(void (*put)(uint8_t byte)); /* ^E: 24 bits in three bytes, the highest first; X before Y */
 
 #endif

@@ -107,10 +107,16 @@ error_t axis_definition_command(struct lexer* lx) {
   return ERR_NONE;
 }
 
+static bool any_running_has_motors(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (run_is_running(cs) && axis_definition_motors(cs) != 0) return true;
+  return false;
+}
+
 error_t axis_undefine_command(struct lexer* lx) {
   static const struct axis_definition NONE = {0};
-  bool all = lexer_keyword(lx, "ALL");
-  if (run_is_running(session.cs)) return ERR_PROGRAM_RUNNING;
+  const bool all = lexer_keyword(lx, "ALL");
+  if (all ? any_running_has_motors() : run_is_running(session.cs)) return ERR_PROGRAM_RUNNING;
   for (uint32_t motor = 0; motor < MOTORS; motor++)
     if (all || axis_definitions[motor].cs == session.cs) axis_define(motor, &NONE);
   return ERR_NONE;

@@ -65,7 +65,7 @@ static error_t cmd_open(struct lexer* lx) {
 
 /* A line entered so far is stored first: CLOSE at its end belongs to it. */
 static error_t cmd_close(struct lexer* lx) {
-  if (!lexer_keyword(lx, "ALL") && !session_owns_buffer()) return ERR_NONE; /* another port has opened it */
+  if (!lexer_keyword(lx, "ALL") && !session_may_close_buffer()) return ERR_NONE; /* another port has opened it */
   const error_t stored = program_line_commit();
   const error_t closed = open_buffer_close();
   return stored != ERR_NONE ? stored : closed;

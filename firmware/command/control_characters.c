@@ -4,6 +4,7 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/base/status.h"
+#include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/command/command.h"
 #include "firmware/command/motor_report.h"
@@ -19,6 +20,7 @@ enum {
   MOTOR_STATUS = 0x02,
   CS_STATUS = 0x03,
   DISABLE_PLCS = 0x04,
+  GATHER_SOURCES = 0x05,
   FOLLOWING_ERRORS = 0x06,
   GLOBAL_STATUS = 0x07,
   KILL_ALL = 0x0B,
@@ -99,6 +101,10 @@ bool control_character(uint8_t c) {
       return true;
     case VELOCITIES:
       report_motors(motor_report_velocity);
+      return true;
+    case GATHER_SOURCES:
+      gather_report_sources(reply_byte);
+      if (reply_line_is_open()) reply_end_line(); /* at the port that takes lines */
       return true;
     case CS_STATUS:
       report_cs_status();

@@ -4,7 +4,7 @@
 
 static error_t cmd_gather(struct lexer* lx) {
   const bool by_trigger = lexer_keyword(lx, "TRIGGER") || lexer_keyword(lx, "TRIG");
-  return gather_begin(by_trigger);
+  return by_trigger ? ERR_DATA : gather_begin(); /* its trigger is machine input 2, which no board brings to the CPU */
 }
 
 static error_t cmd_end_gather(struct lexer* lx) {

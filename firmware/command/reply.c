@@ -47,13 +47,21 @@ static uint32_t line_code(void) {
   }
 }
 
-void reply_char(char c) {
+/* False: no port of lines. */
+static bool put_to_lines(uint8_t c) {
   const uint32_t code = line_code();
-  if (code != 0u) {
-    line_open = true;
-    reply_lines.put(code, (uint8_t)c);
-    return;
-  }
+  if (code == 0u) return false;
+  line_open = true;
+  reply_lines.put(code, c);
+  return true;
+}
+
+void reply_byte(uint8_t byte) {
+  if (!put_to_lines(byte)) send(byte);
+}
+
+void reply_char(char c) {
+  if (put_to_lines((uint8_t)c)) return;
   if (!line_open) begin_line();
   send((uint8_t)c);
 }

@@ -33,6 +33,7 @@ void reply_to(enum reply_to whom);
 
 void reply_text(const char* text); /* appends to the current data line */
 void reply_char(char c);
+void reply_byte(uint8_t byte); /* binary: no framing around it, but for the port that takes lines */
 void reply_integer(int64_t value);
 void reply_hex(uint32_t value, unsigned digits); /* upper case; digits 0 = minimal */
 void reply_number(double value);                 /* up to 10 decimals, trailing zeros removed (firmware:1.6) */

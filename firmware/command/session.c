@@ -1,5 +1,7 @@
 #include "firmware/command/session.h"
 
+#include "firmware/variables/dpram_use.h"
+
 struct session session;
 
 static struct session host, dpram; /* their addresses while it is another's turn */
@@ -46,6 +48,11 @@ bool session_select_cs(void) {
 }
 
 uint32_t session_selected_cs(void) { return selected_cs; }
+
+bool session_may_close_buffer(void) {
+  const bool owner_is_off = buffer_owner == SESSION_DPRAM && !(i_integer(I58_DPRAM_ASCII) != 0 && dpram_is_used());
+  return session_owns_open_buffer || owner_is_off;
+}
 
 void session_own_buffer(void) {
   buffer_owner = port;

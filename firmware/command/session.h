@@ -30,5 +30,6 @@ uint32_t session_selected_cs(void); /* any task */
 void session_own_buffer(void);
 extern bool session_owns_open_buffer; /* whose turn it is: read for each statement, in the time to BREQ */
 static inline bool session_owns_buffer(void) { return session_owns_open_buffer; }
+bool session_may_close_buffer(void); /* it does, or the port that has opened it is off */
 
 #endif

@@ -11,12 +11,11 @@
 #include "firmware/command/session.h"
 #include "firmware/hal/hal.h"
 #include "firmware/host/active_port.h"
-#include "firmware/host/dpram_report.h"
 #include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/slice.h"
-#include "firmware/variables/i_variables.h"
+#include "firmware/variables/dpram_use.h"
 
 enum { LINE_LIMIT = LEXER_LINE_LIMIT, PIECE = DPRAM_COMMAND_BYTES - 1, COMMAND_WAITS = 1, AWAKE_MS = 2 };
 enum { LAST_LINE = 0x19, FLUSH = 0x18 };
@@ -35,7 +34,7 @@ void dpram_ascii_initialize(void) {
   dpram_responses_initialize();
 }
 
-static bool is_enabled(void) { return i_integer(I58_DPRAM_ASCII) != 0 && dpram_is_fitted(); }
+static bool is_enabled(void) { return i_integer(I58_DPRAM_ASCII) != 0 && dpram_is_used(); }
 
 bool dpram_ascii_is_on(void) { return on; }
 

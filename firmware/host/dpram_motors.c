@@ -21,8 +21,8 @@ static struct motor_set {
 static volatile bool background_writes; /* the servo task leaves the blocks alone until its set is whole */
 
 void dpram_motors_initialize(void) {
-  dpram_report_off(&foreground.report);
-  dpram_report_off(&background.report);
+  dpram_report_initialize(&foreground.report);
+  dpram_report_initialize(&background.report);
   background_writes = false;
 }
 

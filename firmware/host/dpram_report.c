@@ -2,16 +2,19 @@
 
 #include "firmware/base/dpram.h"
 #include "firmware/kernel/tasks.h"
-#include "firmware/variables/i_variables.h"
+#include "firmware/variables/dpram_use.h"
 
-bool dpram_is_fitted(void) { return (uint32_t)i_integer(I24_DPRAM_BASE) == DPRAM_BASE && dpram_bytes() != 0u; }
+static uint32_t ready_offset(const struct dpram_report* report) { return report->timer + DPRAM_WORD_BYTES; }
 
-void dpram_report_off(struct dpram_report* report) {
+void dpram_report_initialize(struct dpram_report* report) {
   report->is_on = report->writes = false;
   report->ready = 0;
 }
 
-static uint32_t ready_offset(const struct dpram_report* report) { return report->timer + DPRAM_WORD_BYTES; }
+void dpram_report_off(struct dpram_report* report) {
+  if (dpram_is_used()) dpram_write(ready_offset(report), report->ready & DPRAM_TIMER_HIGH);
+  dpram_report_initialize(report);
+}
 
 /* False while the host reads: what is ready stays ready. */
 static bool begin(struct dpram_report* report, uint32_t now) {
@@ -27,7 +30,7 @@ static bool begin(struct dpram_report* report, uint32_t now) {
 
 bool dpram_report_is_due(struct dpram_report* report, int32_t period) {
   const uint32_t now = tasks_servo_count();
-  if (period == 0 || !dpram_is_fitted()) {
+  if (period == 0 || !dpram_is_used()) {
     if (report->is_on) dpram_report_off(report);
     return false;
   }

@@ -14,8 +14,8 @@ struct dpram_report {
   bool is_on, writes;         /* a set is under way */
 };
 
-bool dpram_is_fitted(void); /* and I24 names it */
-void dpram_report_off(struct dpram_report* report);
+void dpram_report_initialize(struct dpram_report* report); /* a start: what the RAM holds is left */
+void dpram_report_off(struct dpram_report* report);        /* nothing is ready any more */
 /* True when a set is to be begun or is under way. `period`: servo cycles from one to the next; 0: none. */
 bool dpram_report_is_due(struct dpram_report* report, int32_t period);
 void dpram_report_end(struct dpram_report* report); /* the set is whole */

@@ -73,11 +73,11 @@ void dpram_responses_end(uint32_t code) {
 bool dpram_responses_are_read(void) { return head - tail < FEW_BYTES; }
 bool dpram_responses_take_text(void) { return dpram_responses_are_read() || host_given_up; }
 
-/* EQU1 of servo IC 0, or CTRL0 on an Ultralite: the line of I56. */
+/* The line of I56: EQU1 of servo IC 0, or CTRL0 on an Ultralite and a UMAC, which cannot have that IC. */
 static void set_line(bool high) {
   if (line_is_high == high) return;
   line_is_high = high;
-  if ((hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_ULTRALITE) == 0u) {
+  if ((hal_strap(HAL_STRAP_PRODUCT) & (HAL_PRODUCT_ULTRALITE | HAL_PRODUCT_UMAC)) == 0u) {
     gate_ic_set_compare_output(0, 0, high);
     return;
   }

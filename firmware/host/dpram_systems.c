@@ -21,7 +21,7 @@ enum { COUNT_MASK = 0xFF };
 static struct dpram_report report = {.busy = DPRAM_BACKGROUND_HOST_BUSY, .timer = DPRAM_BACKGROUND_TIMER};
 static uint32_t next, count; /* coordinate systems of the set */
 
-void dpram_systems_initialize(void) { dpram_report_off(&report); }
+void dpram_systems_initialize(void) { dpram_report_initialize(&report); }
 
 static void write_global(void) {
   const bool has_panel = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;
@@ -55,7 +55,7 @@ static uint32_t milliseconds(int64_t time) { return (uint32_t)(time >> TRAJECTOR
 static void write_system(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t block = DPRAM_CS_BLOCKS + DPRAM_CS_STRIDE * cs;
-  const struct float48 rate = float48_pack(cs_variable(cs, ISX89_FEEDRATE));
+  const struct float48 rate = float48_pack(cs_real(cs, ISX89_FEEDRATE));
   dpram_put_long(block + DPRAM_CS_FEED_RATE, rate.x, rate.y);
   dpram_put_word(block + DPRAM_CS_TIME_BASE, (uint32_t)s->increment);
   dpram_put_word(block + DPRAM_CS_TIME_BASE_SOURCE, (uint32_t)i_integer(i_cs(cs, ISX93_TIME_BASE_ADDRESS)));

@@ -9,7 +9,7 @@
 #include "firmware/host/dpram_report.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/tasks.h"
-#include "firmware/variables/i_variables.h"
+#include "firmware/variables/dpram_use.h"
 #include "firmware/variables/words.h"
 
 enum { READ_ENTRY_BYTES = 4, LONG_BYTES = 8, ENTRIES_AT_ONCE = 16, WORD_BITS = 24 };
@@ -27,7 +27,7 @@ static struct {
   uint32_t next, data; /* entry, and the offset of its data */
 } set;
 
-static bool is_on(void) { return i_integer(I55_DPRAM_VARIABLES) != 0 && dpram_is_fitted(); }
+static bool is_on(void) { return i_integer(I55_DPRAM_VARIABLES) != 0 && dpram_is_used(); }
 
 /* What the RAM holds at a start is no order to write. */
 void dpram_variables_initialize(void) {

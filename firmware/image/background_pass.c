@@ -17,6 +17,7 @@
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/run/plc.h"
+#include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
 
 enum { REPLY_MS = 5 }; /* to the next turn of the rest */
@@ -49,6 +50,6 @@ void background_pass(void) {
   program_texts_pass();
   dpram_functions_pass();
   background_meanwhile();
-  i_variable_apply_clock_directions(); /* written by a program */
+  i_hardware_apply_clock_directions(); /* written by a program */
   if (host_port_waiting()) background_wake();
 }

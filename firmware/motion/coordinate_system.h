@@ -106,5 +106,6 @@ void cs_set_axis_mode(struct coordinate_system* s, enum operation operation,
                       uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
 
 static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }
+static inline double cs_real(uint32_t cs, enum i_real_name isxnn) { return i_variable_read(i_cs_real(cs, isxnn)); }
 
 #endif

@@ -9,6 +9,7 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/motor_status.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/variables/i_variables.h"
 
 enum { /* of a motor */
@@ -119,13 +120,21 @@ static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
 
 void live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { (void)make(address, x, y); }
 
-/* The timers can be set, global status bits that stay can be cleared; the others belong to the firmware. */
+/* The word as it would stand there; a number below 0 stops the trajectory as 0 does. */
+static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t word) {
+  const int32_t value = hal_signed(word);
+  if (offset == CS_COMMANDED_TIME_BASE) time_base_command(cs, value < 0 ? 0 : value);
+  if (offset == CS_TIMERS) i_timer_write(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u), value);
+}
+
+/* The commanded time base and the timers can be set, global status bits that stay can be cleared; the others belong to
+ * the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   uint32_t present[2] = {0, 0};
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
   if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
-  if (address >= MEMORY_CS_WORDS && address % MEMORY_CS_STRIDE == CS_TIMERS)
-    i_timer_write(i_cs((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, ISX11_TIMERS) + (x ? 0u : 1u),
-                  hal_signed((present[x] & ~mask) | bits));
+  const uint32_t in_systems = address - MEMORY_CS_WORDS;
+  if (in_systems < MEMORY_CS_STRIDE * COORDINATE_SYSTEMS)
+    write_cs(in_systems / MEMORY_CS_STRIDE, in_systems % MEMORY_CS_STRIDE, x, (present[x] & ~mask) | bits);
   return true;
 }

@@ -26,7 +26,7 @@ enum {
   M2_PHASE_REFERENCE_ERROR = 8
 };
 
-enum { CODE_KINEMATIC = 5, ESA_FIRST = 3300, ESA_BLOCK = 50, COMMUTATED = 1, Y_SOURCE = 2, TWO_BITS = 3 };
+enum { CODE_KINEMATIC = 5, COMMUTATED = 1, Y_SOURCE = 2, TWO_BITS = 3 };
 
 static uint32_t without_reference; /* bit per motor that was commutated at the start: `$` finds no reference */
 static uint32_t homed;             /* bit per motor; background */
@@ -53,7 +53,7 @@ static bool dwells(uint32_t motor) {
 static uint32_t status1(uint32_t motor) {
   const uint32_t commutation = variable(motor, IXX01_COMMUTATION_ENABLE);
   return bit(variable(motor, IXX00_ACTIVATED) != 0u, M1_ACTIVATED) |
-         bit(i_integer(ESA_FIRST + ESA_BLOCK * motor) != 0, M1_EXTENDED_ALGORITHM) | bit(true, M1_OPEN_LOOP) |
+         bit(i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) != 0, M1_EXTENDED_ALGORITHM) | bit(true, M1_OPEN_LOOP) |
          bit(variable(motor, IXX34_INTEGRATION_MODE) != 0u, M1_INTEGRATION_MODE) | bit(dwells(motor), M1_DWELL) |
          (variable(motor, IXX59_USER_SERVO_ENABLE) & TWO_BITS) << M1_USER_SERVO |
          bit((commutation & Y_SOURCE) != 0u, M1_ALTERNATE_SOURCE) | bit((commutation & COMMUTATED) != 0u, M1_PHASED) |

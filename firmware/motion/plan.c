@@ -22,8 +22,8 @@ static struct move* next_move(struct coordinate_system* s) { return &s->moves[s-
 /* Tm in ms of a feed-specified move of the axes in `moving`. */
 static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT],
                         uint32_t moving) {
-  double unit = cs_variable(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_variable(cs, ISX89_FEEDRATE);
-  double limit = cs_variable(cs, ISX98_FEEDRATE_LIMIT), alternate = cs_variable(cs, ISX86_ALTERNATE_FEEDRATE);
+  double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_real(cs, ISX89_FEEDRATE);
+  double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT), alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
   if (limit > 0.0 && feed > limit) feed = limit;
@@ -93,7 +93,7 @@ void plan_line(uint32_t cs) {
     if (m->delta[axis] != 0.0) moving |= 1u << axis;
     slice_pause();
   }
-  set_times(cs, m, s->time_mode ? cs_variable(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta, moving));
+  set_times(cs, m, s->time_mode ? cs_real(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta, moving));
   finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0, moving);
 }
 

@@ -7,9 +7,9 @@
 #include "firmware/run/synchronous.h"
 
 static void set_rate(uint32_t cs, uint32_t rate, double value) {
-  static const enum i_name VARIABLE[] = {ISX89_FEEDRATE, ISX89_FEEDRATE, ISX87_ACCELERATION_TIME,
-                                         ISX88_S_CURVE_TIME}; /* F, TM, TA, TS */
-  i_variable_write(i_cs(cs, VARIABLE[rate]), value);
+  static const uint8_t VARIABLE[] = {ISX89_FEEDRATE, ISX89_FEEDRATE, ISX87_ACCELERATION_TIME,
+                                     ISX88_S_CURVE_TIME}; /* F, TM, TA, TS */
+  i_variable_write(i_cs(cs, 0) + VARIABLE[rate], value);
   if (rate == RATE_F) coordinate_systems[cs].time_mode = false;
   if (rate == RATE_TM) coordinate_systems[cs].time_mode = true;
 }

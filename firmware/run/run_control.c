@@ -8,6 +8,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
@@ -23,20 +24,12 @@ static void drop_moves(uint32_t cs) {
   calculate_forget(cs);
 }
 
-/* The time base goes to `target` at `rate` a servo cycle. Servo and real-time tasks held off. */
-static void slew_to(uint32_t cs, int32_t target, enum i_name rate) {
-  struct coordinate_system* s = &coordinate_systems[cs];
-  s->increment_slew = i_integer(i_cs(cs, rate));
-  s->increment_target = target;
-  cs_busy |= 1u << cs;
-}
-
 static void release_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!s->held) return;
   uint32_t state = hal_mask_servo();
   s->held = false;
-  slew_to(cs, s->increment_command, ISX95_FEED_HOLD_SLEW);
+  time_base_slew(cs, s->increment_command, ISX95_FEED_HOLD_SLEW);
   hal_unmask(state);
 }
 
@@ -135,7 +128,7 @@ void run_hold(uint32_t cs) {
   uint32_t state = hal_mask_servo();
   if (!s->held && (s->running || s->active)) {
     s->held = true;
-    slew_to(cs, 0, ISX95_FEED_HOLD_SLEW);
+    time_base_slew(cs, 0, ISX95_FEED_HOLD_SLEW);
   }
   hal_unmask(state);
 }
@@ -165,10 +158,9 @@ error_t run_set_time_base(uint32_t cs, double percent) {
   if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
   const int32_t full = i_integer(I10_SERVO_PERIOD);
   const int32_t command = (int32_t)((double)full * percent / 100.0 + 0.5);
-  uint32_t state = hal_mask_servo();
+  const uint32_t state = hal_mask_servo();
   s->increment_full = full;
-  s->increment_command = command;
-  if (!s->held) slew_to(cs, command, ISX94_TIME_BASE_SLEW);
+  time_base_command(cs, command);
   hal_unmask(state);
   return ERR_NONE;
 }

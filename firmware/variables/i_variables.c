@@ -1,4 +1,4 @@
-/* I-variables: values, range reduction, the lock of I41 and the hardware fields behind them.
+/* I-variables: values, the lock of I41, what is saved. Ranges are those of the table (i_table.c).
  * Written by the background and real-time tasks; a double is two stores, so the real-time task is held off meanwhile.
  */
 #include "firmware/variables/i_variables.h"
@@ -7,24 +7,23 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/clock_watch.h"
 #include "firmware/kernel/tasks.h"
-#include "firmware/kernel/watchdog.h"
 #include "firmware/variables/i_defaults.h"
+#include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_table.h"
 
 #define TIMER_LOWEST (-8388608)
+enum { CONFIGURATION_COUNT = I4909_CPU_IDENTIFICATION + 1 - I_BASE_SYSTEM }; /* the others are 0 */
 
 static double value_of[VARIABLE_COUNT];
 static int32_t integer_of[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
-static uint32_t timer_start[16][2];        /* servo count when Isx11, Isx12 were written */
-static uint32_t directions_pending;        /* bit per IC: direction written, not yet in the IC */
+static uint32_t timer_start[COORDINATE_SYSTEMS][ISX11_TIMERS_COUNT]; /* servo count when Isx11, Isx12 were written */
 
 /* Reading ---------------------------------------------------------------------------------------------------------- */
 
 static bool is_timer(uint32_t number) {
-  const uint32_t inside = number % 100u;
-  return number >= 5111u && number < 6700u && (inside == 11u || inside == 12u);
+  const uint32_t of_systems = number - I_CS_FIRST; /* asked for by every task: mostly no division */
+  return of_systems < I_CS_BLOCK * COORDINATE_SYSTEMS && of_systems % I_CS_BLOCK - ISX11_TIMERS < ISX11_TIMERS_COUNT;
 }
 
 static uint32_t* timer_began(uint32_t number) {
@@ -41,11 +40,7 @@ static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
   return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
 }
 
-int32_t i_integer(uint32_t number) {
-  if (number - I_CS_FIRST >= 1600u || !is_timer(number))
-    return integer_of[number]; /* asked for by every task: mostly no division */
-  return timer_read(number);
-}
+int32_t i_integer(uint32_t number) { return is_timer(number) ? timer_read(number) : integer_of[number]; }
 
 double i_variable_read(uint32_t number) {
   if (number >= VARIABLE_COUNT) return 0.0;
@@ -61,95 +56,6 @@ i_format_t i_variable_format(uint32_t number) {
   return i_table_entry(place)->hex != 0u && !i_of_absent_ic(place) ? I_FORMAT_HEX : I_FORMAT_DECIMAL;
 }
 
-/* Hardware and kernel ---------------------------------------------------------------------------------------------- */
-
-#define FIELD(mask) \
-  __builtin_ctz(mask), __builtin_popcount(mask) /* lsb and width of a field, or of several that are one variable */
-#define CHANNEL_FIELD(name) SERVO_CHANNEL_CONTROL_##name##_MASK
-#define CLOCK_FIELD(name) SERVO_IC_CLOCK_CONTROL_##name##_MASK /* the same in MACRO ICs */
-
-/* Control-word fields of I7mn0..I7mn9, servo-ic:2.5. */
-static const struct {
-  uint8_t lsb, width;
-} channel_fields[10] = {
-    {FIELD(CHANNEL_FIELD(DECODE))},
-    {FIELD(CHANNEL_FIELD(COMPARE_CHANNEL))},
-    {FIELD(CHANNEL_FIELD(CAPTURE_SOURCE) | CHANNEL_FIELD(INDEX_INVERT) | CHANNEL_FIELD(FLAG_INVERT))},
-    {FIELD(CHANNEL_FIELD(FLAG_SELECT))},
-    {FIELD(CHANNEL_FIELD(GATED_INDEX))},
-    {FIELD(CHANNEL_FIELD(GATE_STATE) | CHANNEL_FIELD(INDEX_DEMUX))},
-    {FIELD(CHANNEL_FIELD(AB_DAC) | CHANNEL_FIELD(C_PFM))},
-    {FIELD(CHANNEL_FIELD(AB_INVERT) | CHANNEL_FIELD(C_INVERT))},
-    {FIELD(CHANNEL_FIELD(PFM_DIR_INVERT))},
-    {FIELD(CHANNEL_FIELD(HARDWARE_1T))},
-};
-
-static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t value) {
-  const unsigned ic = place.instance;
-  switch (entry->field) {
-    case I_FIELD_IC_MAX_PHASE:
-      gate_ic_set_field(ic, GATE_WORD_PWM, FIELD(SERVO_IC_PWM_CONTROL_MAX_COUNT_MASK), value);
-      break;
-    case I_FIELD_IC_PHASE_DIVIDER:
-      gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_DIVIDER)), value);
-      break;
-    case I_FIELD_IC_SERVO_DIVIDER:
-      gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(SERVO_DIVIDER)), value);
-      break;
-    case I_FIELD_IC_HARDWARE_CLOCKS:
-      gate_ic_set_field(ic, GATE_WORD_CLOCK,
-                        FIELD(CLOCK_FIELD(SCLK_DIVIDER) | CLOCK_FIELD(PFM_DIVIDER) | CLOCK_FIELD(DAC_DIVIDER) |
-                              CLOCK_FIELD(ADC_DIVIDER)),
-                        value);
-      break;
-    case I_FIELD_IC_DEAD_TIME:
-      gate_ic_set_field(ic, GATE_WORD_PWM, FIELD(SERVO_IC_PWM_CONTROL_DEADTIME_MASK), value);
-      break;
-    case I_FIELD_IC_DAC_STROBE:
-      gate_ic_set_word(ic, GATE_WORD_DAC_STROBE, value);
-      break;
-    case I_FIELD_IC_ADC_STROBE:
-      gate_ic_set_word(ic, GATE_WORD_ADC_STROBE, value);
-      break;
-    case I_FIELD_IC_RING_CONTROL:
-      gate_ic_set_word(ic, GATE_WORD_RING_CONTROL, value);
-      break;
-    case I_FIELD_IC_NODE_ACTIVATION:
-      gate_ic_set_word(ic, GATE_WORD_NODE_ACTIVATION, value);
-      break;
-    case I_FIELD_IC_CHANNEL:
-      gate_ic_set_channel_field(ic, place.channel, channel_fields[place.offset].lsb, channel_fields[place.offset].width,
-                                value);
-      break;
-    default:
-      break;
-  }
-}
-
-static void write_kernel(const struct i_entry* entry, uint32_t value) {
-  if (entry->field == I_FIELD_REAL_TIME_PERIOD) tasks_set_real_time_period(value);
-  if (entry->field == I_FIELD_WATCHDOG_RELOAD) watchdog_set_reload(value);
-}
-
-/* Two ICs must never drive PHASE and SERVO together: every input first, the output when none drives any more. */
-void i_variable_apply_clock_directions(void) {
-  if (directions_pending == 0u) return;
-  const uint32_t state = hal_mask_real_time();
-  const uint32_t pending = directions_pending;
-  directions_pending = 0;
-  hal_unmask(state);
-  for (unsigned output = 0; output < 2u; ++output) {
-    if (output != 0u) gate_ic_await_release();
-    for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
-      const uint32_t direction = (uint32_t)integer_of[gate_ic_direction_variable(ic)];
-      if (((pending >> ic) & 1u) != 0u && (direction != gate_ic_direction_inputs(ic)) == (output != 0u))
-        gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_EXTERNAL) | CLOCK_FIELD(SERVO_EXTERNAL)),
-                          direction);
-    }
-  }
-  clock_watch_changed();
-}
-
 /* Writing ---------------------------------------------------------------------------------------------------------- */
 
 static void store(uint32_t number, double value) {
@@ -161,23 +67,6 @@ static void store(uint32_t number, double value) {
   hal_unmask(state);
 }
 
-/* Limited-range integers never fail: the bits above the range are dropped. */
-static int32_t reduce(const struct i_entry* entry, uint32_t value) {
-  const uint32_t bits = value & ((1u << entry->bits) - 1u);
-  if (entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u)
-    return (int32_t)(bits | ~((1u << entry->bits) - 1u));
-  return (int32_t)bits;
-}
-
-static bool locked(uint32_t number) {
-  const uint32_t locks = (uint32_t)integer_of[I41_VARIABLE_LOCK];
-  if (locks == 0u) return false;
-  if (number >= 100u && number < 4900u) return (locks & 1u) != 0u;
-  if (number >= 5100u && number < 6700u) return (locks & 2u) != 0u;
-  if (number >= 6800u && number < 8000u) return (locks & 4u) != 0u;
-  return number >= 8000u && (locks & 8u) != 0u;
-}
-
 void i_timer_write(uint32_t number, int32_t value) {
   const uint32_t state = hal_mask_real_time();
   store(number, value);
@@ -185,45 +74,30 @@ void i_timer_write(uint32_t number, int32_t value) {
   hal_unmask(state);
 }
 
+/* I19 takes numbers of direction variables only; channel 1 has its own counter only. */
+static bool is_refused(struct i_place place, const struct i_entry* entry, uint32_t value) {
+  if (entry->field == I_FIELD_CLOCK_SOURCE) return gate_ic_of_direction(value) == GATE_IC_COUNT;
+  return entry->field == I_FIELD_IC_CHANNEL && place.channel == 0u && place.offset == I7MN1_COMPARE_CHANNEL;
+}
+
 void i_variable_write(uint32_t number, double value) {
-  if (number >= VARIABLE_COUNT || locked(number)) return;
+  if (number >= VARIABLE_COUNT) return;
   const struct i_place place = i_table_place(number);
   const struct i_entry* entry = i_table_entry(place);
-  if (entry->kind == I_KIND_R) return;
-  if (i_of_absent_ic(place)) return;
-  if (entry->kind == I_KIND_F) {
-    store(number, value);
-    return;
-  }
-  const int32_t whole = reduce(entry, (uint32_t)math_nearest(value));
+  if (entry->kind == I_KIND_R || i_of_absent_ic(place)) return;
+  if ((i_table_lock(place.group) & (uint32_t)integer_of[I41_VARIABLE_LOCK]) != 0u) return;
+  double taken = i_table_value(entry, value);
+  if (is_refused(place, entry, entry->kind == I_KIND_F ? 0u : (uint32_t)(int32_t)taken)) return;
+  if (entry->field == I_FIELD_IC_CLOCK_DIRECTION)
+    taken = (int32_t)taken & (int32_t)gate_ic_direction_inputs(place.instance);
   const uint32_t state = hal_mask_real_time();
-  switch (entry->field) {
-    case I_FIELD_CLOCK_SOURCE:
-      if (gate_ic_of_direction((uint32_t)whole) == GATE_IC_COUNT)
-        break; /* I19 takes numbers of direction variables only */
-      store(number, whole);
-      break;
-    case I_FIELD_TIMER:
-      i_timer_write(number, whole);
-      break;
-    case I_FIELD_IC_CLOCK_DIRECTION:
-      store(number, whole & (int32_t)gate_ic_direction_inputs(place.instance));
-      directions_pending |= 1u << place.instance;
-      break;
-    case I_FIELD_IC_CHANNEL:
-      if (place.channel == 0u && place.offset == 1u) break; /* channel 1 has its own counter only: reads 1 */
-      store(number, whole);
-      write_ic(place, entry, (uint32_t)whole);
-      break;
-    default:
-      store(number, whole);
-      if (i_of_gate_ic(place)) write_ic(place, entry, (uint32_t)whole);
-      write_kernel(entry, (uint32_t)whole);
-      break;
-  }
+  if (entry->field == I_FIELD_TIMER)
+    i_timer_write(number, (int32_t)taken);
+  else
+    store(number, taken);
+  i_hardware_write(place, entry, (uint32_t)integer_of[number]);
   hal_unmask(state);
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
-  if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) clock_watch_changed();
 }
 
 void i_variable_set_open_memory_end(uint32_t address) { store(I4908_OPEN_MEMORY_END, address); }
@@ -264,25 +138,25 @@ static void clear_all(void) {
   i_table_initialize();
   __builtin_memset(value_of, 0, sizeof value_of);
   __builtin_memset(integer_of, 0, sizeof integer_of);
-  directions_pending = 0;
+  i_hardware_initialize();
 }
 
 static void ic_defaults(uint32_t ics, uint32_t source) {
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
     if (gate_ic_present(ic) && ((ics >> ic) & 1u) != 0u)
-      defaults(gate_ic_direction_variable(ic) - I7M07_CLOCK_DIRECTION, 50, source);
+      defaults(gate_ic_direction_variable(ic) - I7M07_CLOCK_DIRECTION, I_IC_BLOCK, source);
 }
 
 void i_variable_initialize(void) {
   const uint32_t source = i_default_clock_source();
   clear_all();
-  defaults(0, 100, source);
-  repeat(100, 31, source);
-  defaults(4900, 10, source);
-  defaults(I5061_ADC_RING, 16, source);
-  repeat(5100, 15, source);
+  defaults(I_BASE_GLOBAL, I_MOTOR_BLOCK, source);
+  repeat(i_motor(1, 0), MOTORS - 1, source);
+  defaults(I_BASE_SYSTEM, CONFIGURATION_COUNT, source);
+  defaults(I5061_ADC_RING, I5061_ADC_RING_COUNT, source);
+  repeat(I_CS_FIRST, COORDINATE_SYSTEMS - 1, source);
   ic_defaults(~0u, source);
-  defaults(8000, 72, source); /* at most 18 servo ICs of four channels */
+  defaults(I_BASE_TABLE, GATE_IC_MACRO * GATE_IC_CHANNELS, source); /* a line each channel of the servo ICs */
 }
 
 i_kept_t i_variable_kept(uint32_t number) {
@@ -297,7 +171,7 @@ bool i_variable_is_early(uint32_t number) {
 
 void i_variable_begin_restore(uint32_t saved_ics) {
   clear_all();
-  defaults(4900, 10, 0);
+  defaults(I_BASE_SYSTEM, CONFIGURATION_COUNT, 0);
   ic_defaults(~saved_ics, 0);
 }
 
@@ -312,28 +186,30 @@ static const struct i_entry* row_to_restore(uint32_t number) {
 void i_variable_restore_integer(uint32_t number, int32_t value) {
   const struct i_entry* entry = row_to_restore(number);
   if (entry->kind != I_KIND_U && entry->kind != I_KIND_S) return;
-  integer_of[number] = reduce(entry, (uint32_t)value);
-  value_of[number] = integer_of[number];
+  value_of[number] = i_table_value(entry, value);
+  integer_of[number] = (int32_t)value_of[number];
 }
 
 void i_variable_restore_float(uint32_t number, double value) {
-  if (row_to_restore(number)->kind == I_KIND_F && math_is_finite(value)) store(number, value);
+  const struct i_entry* entry = row_to_restore(number);
+  if (entry->kind == I_KIND_F && math_is_finite(value)) store(number, i_table_value(entry, value));
 }
 
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */
-void i_variable_write_hardware(void) {
-  tasks_set_real_time_period((uint32_t)i_integer(I8_REAL_TIME_PERIOD));
-  watchdog_set_reload((uint32_t)i_integer(I40_WATCHDOG_RELOAD));
-  gate_ic_release_clocks();
-  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
-    if (!gate_ic_present(ic)) continue;
-    const uint32_t direction = gate_ic_direction_variable(ic);
-    store(direction, i_clock_direction(ic, (uint32_t)integer_of[I19_CLOCK_SOURCE]));
-    directions_pending |= 1u << ic;
-    for (uint32_t number = direction - I7M07_CLOCK_DIRECTION; number < direction + 43u; ++number) {
-      const struct i_place place = i_table_place(number);
-      if (!i_of_absent_ic(place)) write_ic(place, i_table_entry(place), (uint32_t)integer_of[number]);
-    }
+static void write_ic(unsigned ic) {
+  const uint32_t direction = gate_ic_direction_variable(ic), first = direction - I7M07_CLOCK_DIRECTION;
+  store(direction, i_clock_direction(ic, (uint32_t)integer_of[I19_CLOCK_SOURCE]));
+  for (uint32_t number = first; number < first + I_IC_BLOCK; ++number) {
+    const struct i_place place = i_table_place(number);
+    if (!i_of_absent_ic(place)) i_hardware_write(place, i_table_entry(place), (uint32_t)integer_of[number]);
   }
-  i_variable_apply_clock_directions();
+}
+
+void i_variable_write_hardware(void) {
+  for (uint32_t number = I_BASE_GLOBAL; number < I_MOTOR_BLOCK; ++number)
+    i_hardware_write(i_table_place(number), i_table_row(number), (uint32_t)integer_of[number]);
+  gate_ic_release_clocks();
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
+    if (gate_ic_present(ic)) write_ic(ic);
+  i_hardware_apply_clock_directions();
 }

@@ -11,20 +11,16 @@
 
 double i_variable_read(uint32_t number); /* 0..8191 */
 void i_variable_write(uint32_t number,
-                      double value); /* reduces to the range, honours I41, writes the hardware field behind it */
+                      double value); /* within the range of the table, honours I41, writes what stands behind it */
 void i_timer_write(uint32_t number, int32_t value);    /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
 double i_variable_default(uint32_t number);            /* what `I{number}=*` assigns */
 void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
-int32_t i_integer(uint32_t number);                    /* fast read of an integer I-variable, any task */
+int32_t i_integer(uint32_t number); /* fast read of an integer, any task; of a real it would have the whole part only */
 
 /* What a write of an I-variable does in higher layers, by enum i_field of the table; image/tables.c fills it in. Called
  * after the value is stored, without it where the entry is null. `instance`: motor, coordinate system or IC. */
 typedef void (*i_effect_t)(uint32_t instance);
 extern const i_effect_t i_effects[];
-
-/* Clock directions (I7m07, I7m57, I6807...) written since the last call go to the ICs: inputs first, then the output.
- */
-void i_variable_apply_clock_directions(void);
 
 /* Start-up: all I-variables to their defaults; I19, I20..I23 and I4900.. from the ICs found. Hardware is not written.
  */

@@ -20,7 +20,7 @@ constexpr BoardFamily kFamilies[] = {
     {"turbo-pmac2", kServo0To9 | kMacro0, "servo ICs 0 to 9 and MACRO IC 0", false, false, 0, "TURBO2", false, false},
     {"turbo-pmac2-ultralite", kMacros, "MACRO ICs 0 to 3", false, false, kProductUltralite, "TURBOU", true, false},
     {"umac-turbo", kRack | kMacros, "servo ICs 2 to 9, 2* to 9* and MACRO ICs 0 to 3", false, false, kProductUmac,
-     "TURBO2", false, false},
+     "TURBO2", true, false},
     {"turbo-pmac", kServo0To9, "servo ICs 0 to 9", true, false, kProductTurboPmac1, "TURBO1", false, true},
     {"geo-pmac", 0x1, "servo IC 0", false, true, 0, "TURBO2", false, false},
     {"any", kServo0To9 | kRack | kMacros, "every IC", true, true, 0, "TURBO2", true, true},

@@ -43,7 +43,6 @@ class GatherBench {
   void memory(unsigned period);
   void ring(unsigned period);
   void ends();
-  void trigger();
 
   BenchContext& b_;
   BusDpram ram_;
@@ -127,21 +126,6 @@ void GatherBench::ends() {
   b_.expect("DELETE GATHER", "");
 }
 
-void GatherBench::trigger() {
-  begin(2, 1, "30");
-  b_.expect("M1->X:$6,17 M2->X:$6,19", "");
-  b_.expect("GATHER TRIGGER", "");
-  b_.bus.wait(5 * kMillisecond);
-  b_.expect("M1 M2", "1|0");
-  b_.report.equal("pointer before the trigger", int{ram_.read(DPRAM_GATHER_POINTER)}, 0);
-  b_.expect("M1=0", "");
-  b_.bus.wait(1 * kMillisecond);
-  b_.expect("M2", "1");
-  b_.expect("DEFINE GATHER", "ERR003");
-  b_.expect("DELETE GATHER", "ERR003");
-  b_.expect("ENDGATHER", "");
-}
-
 void GatherBench::run() {
   b_.expect("M3->D:$20 I8=0 I5=2", "");
   b_.expect("OPEN PLC 0 CLEAR", "");
@@ -152,14 +136,13 @@ void GatherBench::run() {
   ring(1);
   ring(2 + pick(3));
   ends();
-  trigger();
 }
 
 }  // namespace
 
 Bench gather_bench() {
   return {"gather",
-          "gathering into user memory and the dual-ported RAM: rate, order, halves, ends, trigger",
+          "gathering into user memory and the dual-ported RAM: rate, order, halves, ends",
           {"the bench is told that I5049 is one higher than it is", "user memory, I5049=1",
            "servo interrupts since the last: 1, expected 2"},
           [](BenchContext& b) { GatherBench(b).run(); },

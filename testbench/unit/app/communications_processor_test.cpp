@@ -151,6 +151,60 @@ TEST_F(CommunicationsProcessorTest, WriteBufferStopsAtTheFirstLineThatIsRefused)
   EXPECT_EQ(ready(), Bytes("\0\0", 2)) << "answers are dropped";
 }
 
+// Line number in two bytes, low one first; error number; 80. Lines that cost one byte and their NUL: 700 fit.
+TEST_F(CommunicationsProcessorTest, WriteBufferTellsEachFieldOfItsAnswer) {
+  Bytes error = "001";
+  fake().controller = [&](const Bytes& line) {
+    if (line == "silent") return Bytes();
+    return line == "bad" ? "\x07"
+                           "ERR" +
+                               error + "\r"
+                         : Bytes("\x06");
+  };
+  const auto write_behind = [this](std::size_t good, const Bytes& last) {
+    Bytes lines;
+    for (std::size_t n = 0; n < good; ++n) lines += Bytes("=\0", 2);
+    return ask(packet(Packet::kWriteBuffer, lines + last));
+  };
+  const std::pair<std::size_t, Bytes> numbers[] = {{0, Bytes("\x01\0", 2)},     {1, Bytes("\x02\0", 2)},
+                                                   {254, Bytes("\xFF\0", 2)},   {255, Bytes("\0\x01", 2)},
+                                                   {256, Bytes("\x01\x01", 2)}, {700, Bytes("\xBD\x02", 2)}};
+  for (const auto& [good, number] : numbers) {
+    EXPECT_EQ(write_behind(good, "bad"), number + Bytes("\x01\x80", 2)) << good;
+    EXPECT_EQ(ask(packet(Packet::kWriteError)), number + Bytes("\x01\x80", 2)) << good;
+    EXPECT_EQ(write_behind(good, "silent"), number + Bytes("\0\x80", 2)) << good;
+  }
+  for (const auto& [text, code] : {std::pair("003", '\x03'), std::pair("018", '\x12'), std::pair("255", '\xFF')}) {
+    error = text;
+    EXPECT_EQ(write_behind(2, "bad"), Bytes("\x03\0", 2) + code + '\x80') << text;
+  }
+  EXPECT_EQ(write_behind(700, "="), Bytes(4, '\0'));
+  EXPECT_EQ(ask(packet(Packet::kWriteError)), Bytes(4, '\0')) << "of the last one";
+}
+
+// ethernet:6/3: reports are ^B ^C ^F ^G ^P ^V; each other character is sent as well, and only acknowledged.
+TEST_F(CommunicationsProcessorTest, ControlResponseGivesTheAnswerOfEachReport) {
+  Bytes seen;
+  const Bytes reports = "\x02\x03\x06\x07\x10\x16", answered = "\x09\x0E\x19";
+  const auto answer = [](char c) { return "answer " + std::to_string(int{c}) + "\r"; };
+  fake().control = [&](char c) {
+    seen.push_back(c);
+    if (c == 0x18) return Bytes("\x18");
+    return (reports + answered).find(c) != Bytes::npos ? answer(c) + "\x06" : Bytes();
+  };
+  for (char c = 1; c < 0x20; ++c) {
+    if (c == '\r') continue;  // ends a line
+    for (const unsigned place : {0u, 8u}) {
+      seen.clear();
+      const Bytes reply = ask(packet(Packet::kControlResponse, "", static_cast<unsigned>(c) << place, 0, 0xC0));
+      EXPECT_EQ(reply, reports.find(c) != Bytes::npos ? answer(c) : "\x06") << int{c};
+      run(10 * kMs);
+      EXPECT_EQ(seen, Bytes(1, c)) << int{c};
+      EXPECT_EQ(ready(), Bytes("\0\0", 2)) << "nothing is left of " << int{c};
+    }
+  }
+}
+
 // ------------------------------------------------------------------------------------------------- memory and the rest
 
 // ethernet:7

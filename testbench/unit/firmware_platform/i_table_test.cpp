@@ -77,6 +77,8 @@ const std::vector<Rule> kSystem = {
     {94, 95, 'u', 23, 1644}, {96, 98, 'f', 0, 0},  {99, 99, 'f', 0, 32763.0 / 32768.0},
 };
 
+const std::vector<Rule> kExtendedServo = {{0, 0, 'u', 1, 0}, {1, 49, 'f', 0, 0}};
+
 // Ranges of those whose factory values depend on motor, system or board.
 const std::vector<Rule> kFound = {{20, 24, 'u', 24, 0}};
 const std::vector<Rule> kMotorFound = {
@@ -152,7 +154,7 @@ TEST(ITable, DefaultsAreThoseOfTheDataSheet) {
   check(0, kGlobal);
   for (unsigned motor = 1; motor <= 32; ++motor) check(100 * motor, kMotor);
   for (unsigned system = 0; system < 16; ++system) check(5100 + 100 * system, kSystem);
-  check(3300, {{0, 1599, 'f', 0, 0}});
+  for (unsigned motor = 0; motor < 32; ++motor) check(3300 + 50 * motor, kExtendedServo);
   check(5000, kGather);
   for (const unsigned ic : {7000u, 7100u}) {
     check(ic, kIc);
@@ -201,7 +203,7 @@ TEST(ITable, IntegersWrapAtTheRangesOfTheDataSheet) {
     all(5100 + 100 * system, kSystem);
     all(5100 + 100 * system, kSystemFound);
   }
-  all(3300, {{0, 1599, 'f', 0, 0}});
+  for (unsigned motor = 0; motor < 32; ++motor) all(3300 + 50 * motor, kExtendedServo);
   all(5000, kGather);
   all(7100, kIc);
   all(7100, kChannel2);
@@ -222,7 +224,7 @@ TEST(ITable, NoRowIsWithoutARule) {
   for (const auto& rules : {kGlobal, kFound}) mark(0, rules);
   for (const auto& rules : {kMotor, kMotorFound}) mark(100, rules);
   for (const auto& rules : {kSystem, kSystemFound}) mark(5100, rules);
-  mark(3300, {{0, 49, 'f', 0, 0}});
+  mark(3300, kExtendedServo);
   mark(5000, kGather);
   for (const auto& rules : {kIc, kChannel2}) mark(7000, rules);
   for (const auto& rules : {kIc, kMacroChannel2}) mark(6800, rules);

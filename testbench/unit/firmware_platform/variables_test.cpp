@@ -71,6 +71,35 @@ TEST(IVariables, SignedOnesWrap) {
   EXPECT_EQ(c.line("I129=-32768 I129"), "-32768");
 }
 
+// firmware:1.2/1, firmware:1.2/5: 36 bits of mantissa, sign and leading bit among them. 1 + 2^-34 has 35 significant
+// bits, 1 + 2^-35 one more: it is rounded up to the former, 1 + 2^-36 down to 1.
+TEST(IVariables, RealsHaveTheBitsOfA48BitFloat) {
+  Controller c;
+  for (const unsigned number : {113u, 117u, 3301u, 3349u, 5189u, 6699u}) {
+    const std::string n = "I" + std::to_string(number);
+    EXPECT_EQ(c.line(n + "=1/3 P1=1/3 P2=" + n + "-P1 P2"), "0") << n;
+    i_variable_write(number, 1 + std::ldexp(1, -34));
+    EXPECT_EQ(i_variable_read(number), 1 + std::ldexp(1, -34)) << n;
+    i_variable_write(number, 1 + std::ldexp(1, -35));
+    EXPECT_EQ(i_variable_read(number), 1 + std::ldexp(1, -34)) << n;
+    i_variable_write(number, 1 + std::ldexp(1, -36));
+    EXPECT_EQ(i_variable_read(number), 1) << n;
+    i_variable_write(number, -0.015625);
+    EXPECT_EQ(i_variable_read(number), -0.015625) << n;
+    i_variable_write(number, INFINITY);
+    EXPECT_TRUE(std::isfinite(i_variable_read(number))) << n;
+  }
+  i_variable_restore_float(117, 1 + std::ldexp(1, -36));
+  EXPECT_EQ(i_variable_read(117), 1) << "what a store holds";
+}
+
+// Whether motor n uses the extended algorithm is a switch, firmware:5.2/20; its polynomials are reals.
+TEST(IVariables, TheSwitchOfTheExtendedServoIsOneBit) {
+  Controller c;
+  EXPECT_EQ(c.line("I3300 #1?"), "0|850000000000");
+  EXPECT_EQ(c.line("I3300=3 I3300 #1? I3300=2 I3300 I3301=0.5 I3301 #1?"), "1|950000000000|0|0.5|850000000000");
+}
+
 TEST(IVariables, NumbersHaveNoFractionUnlessComputed) {
   Controller c;
   c.line("P1=4 P2=6");

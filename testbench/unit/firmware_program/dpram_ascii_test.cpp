@@ -150,6 +150,24 @@ TEST_F(DpramAscii, TheOpenBufferIsThatOfThePortThatHasOpenedIt) {
   EXPECT_EQ(host("LIST PROG 5"), "X10|X30");
 }
 
+// A port that is off can close nothing any more: others may (host-bus:6.6/8).
+TEST_F(DpramAscii, TheBufferOfAPortThatIsOffIsClosedByAnyCloseAndTakesNoText) {
+  for (const char* off : {"I58=0", "I24=0"}) {
+    EXPECT_EQ(ram_host.ask("OPEN PROG 5 CLEAR"), "");
+    EXPECT_EQ(ram_host.ask("X10"), "");
+    EXPECT_EQ(by_port("CLOSE OPEN PROG 6"), "\aERR007\r") << "while the port is on it is its own";
+    EXPECT_EQ(by_port(off), "\x06");
+    EXPECT_EQ(by_port("X20"), "\aERR005\r") << off;
+    EXPECT_EQ(by_port("CLOSE"), "\x06") << off;
+    EXPECT_EQ(by_port("OPEN PROG 6 CLEAR CLOSE"), "\x06") << off;
+    EXPECT_EQ(host("LIST PROG 5"), "X10") << off;
+    ASSERT_EQ(host("I58=1 I24=*"), "");
+    background(1);
+  }
+  EXPECT_EQ(ram_host.ask("OPEN PROG 5 CLEAR"), "");
+  EXPECT_EQ(by_port("I58=0 CLOSE OPEN PROG 6 CLOSE"), "\x06") << "at once, in one line";
+}
+
 // A line that the host port is in the middle of is not disturbed, compiled ahead or not.
 TEST_F(DpramAscii, ALineOfTheHostPortUnderWayIsKept) {
   ASSERT_EQ(by_port("&1DEF ROT 100"), "\x06");
@@ -170,6 +188,9 @@ TEST_F(DpramAscii, ControlCharactersActAndAreCleared) {
   EXPECT_EQ(ram_host.ask("P1=6 P1"), "6");
   ASSERT_TRUE(ram_host.control(0x19));
   EXPECT_EQ(released(), (Lines{"000D P1=6 P1", "0006 "})) << "^Y";
+  ASSERT_EQ(host("WX$20,$414243 WY$20,$444546 I5001=$800020 I5002=$20 I5050=3"), "");
+  ASSERT_TRUE(ram_host.control(0x05));
+  EXPECT_EQ(released(), (Lines{"000D ABCDEFDEF", "0006 "})) << "^E";
 }
 
 TEST_F(DpramAscii, ControlXForgetsWhatWaits) {
@@ -272,14 +293,18 @@ TEST_F(DpramAscii, I56RaisesEqu1ForEachLine) {
   EXPECT_EQ(compare_output_edges().size(), 4U);
 }
 
-TEST_F(DpramAscii, AnUltraliteRaisesCtrl0AndLeavesCtrl1) {
-  fake_hal_set_strap(HAL_STRAP_PRODUCT, HAL_PRODUCT_ULTRALITE);
-  ASSERT_EQ(host("I56=1 M1->X:$70012,0,2 M1=2"), "");
-  ASSERT_TRUE(ram_host.send("P1"));
-  background(2);
-  EXPECT_EQ(host("M1"), "3");
-  EXPECT_EQ(released(), (Lines{"000D 0", "0006 "}));
-  EXPECT_EQ(host("M1"), "2");
+TEST_F(DpramAscii, AnUltraliteAndAUmacRaiseCtrl0AndLeaveCtrl1) {
+  for (const unsigned product : {HAL_PRODUCT_ULTRALITE, HAL_PRODUCT_UMAC}) {
+    fake_hal_set_strap(HAL_STRAP_PRODUCT, product);
+    ASSERT_EQ(host("I56=1 M1->X:$70012,0,2 M1=2"), "");
+    fake_hal_clear_writes();
+    ASSERT_TRUE(ram_host.send("P1"));
+    background(2);
+    EXPECT_EQ(host("M1"), "3") << product;
+    EXPECT_EQ(released(), (Lines{"000D 0", "0006 "}));
+    EXPECT_EQ(host("M1"), "2") << product;
+    EXPECT_TRUE(compare_output_edges().empty()) << product;
+  }
 }
 
 TEST_F(DpramAscii, IsOffUntilI58AndThenBeginsClean) {

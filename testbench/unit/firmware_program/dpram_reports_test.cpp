@@ -3,7 +3,12 @@
 
 #include <cmath>
 
+#include "testbench/unit/firmware_platform/fake_hal.h"
 #include "testbench/unit/firmware_program/dpram_host.h"
+
+extern "C" {
+#include "firmware/host/dpram_report.h"
+}
 
 namespace {
 
@@ -212,6 +217,125 @@ TEST_F(DpramReportsTest, TimesLeftOfTheExecutingMove) {
   EXPECT_NEAR(left().acceleration_ms_left, 100 - 100 * cycle, 2);
   servo_ticks(200);
   EXPECT_EQ(left().acceleration_ms_left, 0U);
+}
+
+// host-bus:6.2/3: bits 15..0 and 23..16 of the servo counter, and bit 15 of the second word.
+TEST_F(DpramReportsTest, TheTimerIsTheLowestBitsOfTheServoCounterInTwoWords) {
+  for (const std::uint32_t began :
+       {0u, 1u, 0x8000u, 0xFFFFu, 0x10000u, 0x20001u, 0x810000u, 0xA5C396u, 0x5A3C69u, 0xFFFFFFu, 0x12345678u}) {
+    dpram_report report{DPRAM_BACKGROUND_HOST_BUSY, DPRAM_BACKGROUND_TIMER, 0, began, true, true};
+    ram.write(DPRAM_BACKGROUND_TIMER, 0x5555);
+    ram.write(DPRAM_BACKGROUND_READY, 0x5555);
+    dpram_report_end(&report);
+    EXPECT_EQ(ram.read(DPRAM_BACKGROUND_TIMER), began % 0x10000) << began;
+    EXPECT_EQ(ram.read(DPRAM_BACKGROUND_READY), 0x8000 + began / 0x10000 % 0x100) << began;
+  }
+}
+
+// The items of a block by their numbers in host-bus:6.4, each from a word of its own value: low half first,
+// sign-extended.
+TEST_F(DpramReportsTest, EachItemOfAMotorsBlockIsItsSource) {
+  ASSERT_EQ(host("&3#5->1000X I500=1"), "");
+  ASSERT_EQ(host("WX$288,$123456 WY$288,$789ABC WX$28B,$0F0E0D WY$28B,$8C0B0A WX$290,$111111 WY$290,$922222"), "");
+  ASSERT_EQ(host("WX$29D,$FEDCBA WX$2CC,$800001 WY$2CC,$700002"), "");
+  const std::uint32_t block = DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_STRIDE * 4;
+  for (unsigned n = 0; n < DPRAM_MOTOR_STRIDE; n += 2) ram.write(block + n, 0x5555);
+  reports.choose_motors(1U << 4);
+  ASSERT_EQ(host("I47=1 I48=1"), "");
+  servo_ticks(1);
+  // $123456789ABC - $0F0E0D8C0B0A = $032648EC8FB2
+  const std::vector<std::uint32_t> items = {0xFFEC8FB2, 0x00032648, 0,          0xFF850000, 0x00278000, 0x00700002,
+                                            0xFF800001, 0xFFFEDCBA, 0xFF922222, 0x00111111, 0xFF8C0B0A, 0x000F0E0D};
+  for (unsigned n = 0; n < items.size(); ++n) EXPECT_EQ(reports.item(block + 4 * n), items[n]) << "item " << n;
+  EXPECT_EQ(host("#5?"), "850000278000") << "items 3 and 4";
+}
+
+// host-bus:6.5 likewise: every place of the global part, and the items of a system that moves.
+TEST_F(DpramReportsTest, EachItemOfTheBackgroundDataIsItsSource) {
+  platform::fit_panel();
+  *hal_y(JPAN_Y_INPUTS) = 0xA5C3;
+  for (const char* line : {"&2DEF ROT 100 B0 I5294=8388607 I5293=$812345", "OPEN ROT", "TA100 TS0 F250",
+                           "TM1000 A1B2C3U4V5W6X7Y8Z9", "TM1000 INC X1", "X2", "X3", "X4", "CLOSE", "%60 R"})
+    ASSERT_EQ(host(line), "") << line;
+  platform::panel(0xA5C3 ^ JPAN_INPUTS_RESET);
+  for (std::uint32_t at = DPRAM_PANEL_PORT; at < DPRAM_CS_BLOCKS + 2 * DPRAM_CS_STRIDE; at += 2) ram.write(at, 0x5555);
+  servo_ticks(20);
+  reports.choose_systems(2);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  background(kSettling);
+  ASSERT_TRUE(reports.read_systems(5));
+  EXPECT_EQ(reports.item(0x67C), 0xA5C3U) << "inputs of JPAN";
+  EXPECT_EQ(reports.item(0x680), 0U) << "machine port";
+  EXPECT_EQ(reports.item(0x684), 0U) << "thumbwheel port";
+  const auto word = [](const std::string& text, unsigned n) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::stoul(text.substr(6 * n, 6), nullptr, 16) << 8) >>
+                                      8);
+  };
+  const std::string global = host("???"), status = host("&2??");
+  EXPECT_EQ(reports.item(0x688), word(global, 0));
+  EXPECT_EQ(reports.item(0x68C), word(global, 1));
+  for (std::uint32_t at = 0x690; at < 0x69C; at += 2) EXPECT_EQ(ram.read(at), 0x5555) << "spare " << at;
+  const std::uint32_t block = 0x69C + 128;
+  EXPECT_EQ(reports.float_long(block), 1000.0) << "items 0, 1: TM";
+  EXPECT_EQ(reports.item(block + 4 * 2), 2228395U) << "60 % of 3713991 is 2228394.6";
+  EXPECT_EQ(reports.item(block + 4 * 3), 0xFF812345U) << "I5293";
+  EXPECT_EQ(reports.item(block + 4 * 4), word(status, 2));
+  EXPECT_EQ(reports.item(block + 4 * 5), word(status, 0));
+  for (unsigned axis = 0; axis < 9; ++axis) EXPECT_EQ(reports.float_long(block + 4 * (6 + 2 * axis)), axis + 1.0);
+  EXPECT_EQ(reports.item(block + 4 * 24), word(status, 1));
+  EXPECT_NE(word(status, 0), word(status, 1));
+  EXPECT_EQ(host("&2PR"), std::to_string(reports.item(block + 4 * 25)));
+  EXPECT_GT(reports.item(block + 4 * 25), 0U);
+  // 1000 ms and 100 ms to stop, less at most 20 servo cycles of 0.6 x 0.443 ms.
+  EXPECT_LE(reports.item(block + 4 * 26), 1100U);
+  EXPECT_GE(reports.item(block + 4 * 26), 1100U - 6);
+  EXPECT_LE(reports.item(block + 4 * 27), 100U);
+  EXPECT_GE(reports.item(block + 4 * 27), 100U - 6);
+  EXPECT_EQ(host("&2PE"), "P0:" + std::to_string(reports.item(block + 4 * 28)));
+  EXPECT_GT(reports.item(block + 4 * 28), 0U);
+  for (std::uint32_t at = block + 4 * 29; at < block + 128; at += 2) EXPECT_EQ(ram.read(at), 0x5555) << "spare " << at;
+}
+
+TEST_F(DpramReportsTest, ABoardWithoutAPanelShowsNoInputs) {
+  *hal_y(JPAN_Y_INPUTS) = 0xA5C3;
+  ram.write(DPRAM_PANEL_PORT, 0x5555);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  background(kSettling);
+  EXPECT_EQ(reports.item(DPRAM_PANEL_PORT), 0U);
+}
+
+// host-bus:6.4/4: a report that is off has nothing ready, and takes no more away.
+TEST_F(DpramReportsTest, NothingIsReadyOfAReportThatIsOff) {
+  reports.choose_motors(1);
+  reports.choose_systems(1);
+  const auto turn = [](const char* line) {
+    ASSERT_EQ(host(line), "");
+    servo_ticks(3);
+    background(kSettling);
+  };
+  const auto systems_ready = [this] { return (ram.read(DPRAM_BACKGROUND_READY) & DPRAM_DATA_READY) != 0; };
+  turn("I47=1 I50=1 I48=1");
+  EXPECT_TRUE(ready());
+  for (const char* off : {"I48=0", "I47=0"}) {
+    turn(off);
+    EXPECT_FALSE(ready()) << off;
+    turn("I47=1 I48=1");
+    EXPECT_TRUE(ready());
+  }
+  turn("I48=0 I57=1 I49=1");
+  EXPECT_TRUE(ready()) << "that of the background";
+  EXPECT_TRUE(systems_ready());
+  turn("I57=0");
+  EXPECT_FALSE(ready());
+  EXPECT_TRUE(systems_ready());
+  turn("I48=1 I49=0");
+  EXPECT_TRUE(ready());
+  EXPECT_FALSE(systems_ready());
+  turn("I48=0");
+  ram.write(DPRAM_MOTOR_READY, DPRAM_DATA_READY);
+  ram.write(DPRAM_BACKGROUND_READY, DPRAM_DATA_READY);
+  turn("P1=1");
+  EXPECT_TRUE(ready() && systems_ready()) << "what is off writes nothing";
 }
 
 TEST_F(DpramReportsTest, MoreSystemsThanThereAreAreSixteen) {

@@ -179,4 +179,11 @@ TEST_F(Expression, LexerTakesTheNumbersOfTheLanguage) {
   EXPECT_EQ(lexer_integer(&whole, &n), ERR_DATA);
 }
 
+// firmware:1.7/4: x of ATAN2(y) is Q0 of the addressed system.
+TEST_F(Expression, ArcTangentOfTwoTakesQ0OfItsSystem) {
+  EXPECT_EQ(platform::host("&1 Q0=-1"), "");
+  EXPECT_EQ(platform::host("&2 Q0=1 P1=ATAN2(1)"), "");
+  EXPECT_EQ(platform::host("&1 P2=ATAN2(1) P1..2"), "45|135");
+}
+
 }  // namespace

@@ -87,6 +87,17 @@ TEST_F(Gather, StopsAtTheEndOfTheBufferAndNotBehindIt) {
   EXPECT_EQ(host_lines("LIST GATHER").size(), 2U);
 }
 
+// Half a long word at its end is a whole one: three words of 24 bits take two.
+TEST_F(Gather, ASampleThatEndsWithHalfAWordDoesNotGoBehindTheBuffer) {
+  ASSERT_EQ(host("DEF UBUF 10"), "");
+  ASSERT_EQ(host("WX$107F6,$555555 I5001=$400000 I5002=$400000 I5003=$400000 I5050=7 I5049=1 DEF GAT 5"), "");
+  ASSERT_EQ(host("GATHER"), "");
+  servo_ticks(20);
+  EXPECT_FALSE(gathers());
+  EXPECT_EQ(host_lines("LIST GATHER").size(), 4U);
+  EXPECT_EQ(host("RHX$107F6"), "555555");
+}
+
 TEST_F(Gather, I5000Of1Wraps) {
   ASSERT_EQ(host("I5000=1 I5001=$400000 I5050=1 I5049=1 DEF GAT 4"), "");
   const unsigned long before = count();
@@ -166,22 +177,40 @@ TEST_F(Gather, CommandsAndTheirErrors) {
   EXPECT_EQ(host("GATHER"), "ERR003");
 }
 
-// Bit 17 of the first word of ??? waits; a program or host that clears it is the trigger.
-TEST_F(Gather, ATriggerIsAwaited) {
-  ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=1 DEF GAT 50 M1->X:$6,17"), "");
-  ASSERT_EQ(host("GATHER TRIGGER"), "");
+// host-bus:6.8/8: no board brings machine input 2 to the CPU, so nothing could ever begin.
+TEST_F(Gather, ThereIsNoTriggerToWaitFor) {
+  ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=1 DEF GAT 50"), "");
+  for (const char* line : {"GATHER TRIGGER", "GAT TRIG", "GATHERTRIGGER"}) EXPECT_EQ(host(line), "ERR003") << line;
   servo_ticks(5);
   EXPECT_FALSE(gathers());
-  EXPECT_EQ(host("M1"), "1");
-  EXPECT_EQ(host("DEF GAT"), "ERR003");
-  const unsigned long before = count();
-  ASSERT_EQ(host("M1=0"), "");
-  servo_ticks(2);
+  EXPECT_EQ(host("??? RHY$3120"), "000000000800|" + host("RHX$3120"));
+  EXPECT_EQ(host("GATHER"), "");
   EXPECT_TRUE(gathers());
-  ASSERT_EQ(host("ENDGATHER"), "");
-  EXPECT_EQ(host_lines("LIST GATHER"), (Lines{hex(before + 1) + "000000", hex(before + 2) + "000000"}));
-  ASSERT_EQ(host("GATHER TRIG ENDG"), "");
-  EXPECT_EQ(host("M1"), "0");
+}
+
+// firmware:5.9/5: three bytes a word of 24 bits, the highest first, X before Y; in the order of the sources, whether
+// something is gathered or not, and as I5050 and I5051 are now.
+TEST_F(Gather, ControlEReportsTheSourcesInBinary) {
+  const auto control_e = [] {
+    host_port_character(0x05);
+    platform::background(1);
+    return platform::sent();
+  };
+  EXPECT_EQ(control_e(), "\x06") << "none is chosen";
+  ASSERT_EQ(host("WX$20,$123456 WY$20,$ABCDEF WX$21,$818283 WY$21,$000D06"), "");
+  ASSERT_EQ(host("I5001=$20 I5002=$400020 I5003=$400021 I5025=$800021 I5048=$C00020"), "");
+  ASSERT_EQ(host("I5050=$5"), "");
+  const std::string y20 = "\xAB\xCD\xEF", x20 = "\x12\x34\x56", x21 = "\x81\x82\x83",
+                    y21 = std::string("\0\x0D\x06", 3);
+  EXPECT_EQ(control_e(), y20 + x21 + "\x06");
+  ASSERT_EQ(host("I5050=$2 I5051=$800001"), "");
+  EXPECT_EQ(control_e(), x20 + x21 + y21 + x20 + y20 + "\x06");
+  ASSERT_EQ(host("I3=0"), "");
+  EXPECT_EQ(control_e(), x20 + x21 + y21 + x20 + y20) << "no handshake";
+  ASSERT_EQ(host("I3=2 I5049=1 DEF GAT 50 GATHER I5050=$1 I5051=0"), "");
+  servo_ticks(1);
+  EXPECT_EQ(control_e(), y20 + "\x06");
+  EXPECT_EQ(host_lines("LIST GATHER")[0], "123456000000") << "what is gathered is as it was at GATHER";
 }
 
 // What is made when it is read is made for a sample too; what is not there reads 0.

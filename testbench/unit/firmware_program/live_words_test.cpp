@@ -149,7 +149,45 @@ TEST_F(LiveWords, TimeBase) {
   platform::servo_ticks(3);
   EXPECT_EQ(m("X:$2002,24,S"), std::to_string(3713991 - 3000));
   EXPECT_EQ(host("RX$2100 RX$2102"), "3713991|3713991");
-  EXPECT_EQ(host("WX$2000,5 RX$2000"), "1856996") << "set by % only";
+}
+
+// firmware:1.10/9: the commanded one is written by programs that override the feed rate, in units of I10.
+TEST_F(LiveWords, CommandedTimeBaseIsWritten) {
+  ASSERT_EQ(host("I5194=1000 I5294=2000 M1->X:$2000,24,S M2->X:$2100,24,S"), "");
+  EXPECT_EQ(host("M1=3711991 M2=3715991 M1 M2"), "3711991|3715991");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2002 RX$2102"), "3712991|3715991") << "slewed at Isx94";
+  platform::servo_ticks(2);
+  EXPECT_EQ(host("RX$2002 RX$2102 RX$2202"), "3711991|3715991|3713991");
+  ASSERT_EQ(host("I5194=8388607 WX$2000,0"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2002 &1%"), "0|0");
+  ASSERT_EQ(host("WX$2000,$7FFFFF"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2000 RX$2002"), "8388607|8388607") << "2^23 - 1 of 3713991: 225.87 %";
+  ASSERT_EQ(host("WX$2000,$800000"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2000 RX$2002"), "0|0") << "below 0";
+  EXPECT_EQ(host("WX$2002,5 RX$2002"), "0") << "the present one follows";
+  EXPECT_EQ(host("WX$2000,$123456 M3->X:$2000,4,8 M3=$FF RHX$2000"), "123FF6") << "a part of the word";
+  EXPECT_EQ(host("WY$2000,7 RY$2000 RHX$2000"), "7|123FF6") << "an ordinary word";
+  EXPECT_EQ(host("WX$2F00,2000000 RX$2F00 RX$2000"), "2000000|1196022") << "that of system 16";
+}
+
+// While H holds a system its word is kept for the end of the hold, as what % commands is.
+TEST_F(LiveWords, CommandedTimeBaseOfAHeldSystemWaitsForItsEnd) {
+  ASSERT_EQ(host("&1 I5194=8388607 I5195=8388607 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("TM1000 X10"), "");
+  ASSERT_EQ(host("CLOSE R"), "");
+  platform::servo_ticks(10);
+  ASSERT_EQ(host("H"), "");
+  platform::servo_ticks(1);
+  ASSERT_EQ(host("WX$2000,1000000"), "");
+  platform::servo_ticks(3);
+  EXPECT_EQ(host("RX$2000 RX$2002"), "1000000|0");
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("RX$2002"), "1000000");
 }
 
 TEST_F(LiveWords, TimersAreReadAndSet) {
@@ -184,6 +222,70 @@ TEST_F(LiveWords, GlobalStatus) {
   EXPECT_EQ(host("M1=0 ???"), "000600000800") << "what stays can be cleared, bit by bit";
   EXPECT_EQ(host("WX$6,0 WY$6,0 ???"), "000400000800") << "the cause of the other is still there";
   EXPECT_EQ(host("WX$6,$FFFFFF ???"), "000400000800");
+}
+
+// firmware:5.4, firmware:5.5: what is calculated and waits counts as what executes does, and is shown as such.
+TEST_F(LiveWords, StatusTellsBlendedMovesAndThoseThatWait) {
+  ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT M1->X:$2040,2 M2->Y:$203F,12 M3->Y:$203F,17"), "");
+  for (const char* line : {"TM200 TA100 TS0 X1", "X2", "DWELL500", "X3", "X4", "X5", "CLOSE", "R"})
+    ASSERT_EQ(host(line), "") << line;
+  platform::servo_ticks(30);
+  EXPECT_EQ(host("M1..3"), "0|0|0") << "X1 from rest, X2 waits";
+  platform::servo_ticks(470);  // 200 ms are 452 cycles
+  EXPECT_EQ(host("M1..3"), "1|1|0") << "X2 blended, DWELL waits";
+  platform::servo_ticks(700);  // X2 ends 500 ms after the start, 1129 cycles
+  EXPECT_EQ(host("M1..3"), "0|1|0") << "DWELL";
+  platform::servo_ticks(1200);
+  ASSERT_EQ(host("/"), "");
+  platform::servo_ticks(2000);
+  EXPECT_EQ(host("PR M1..3"), "1|0|0|0") << "X3 has ended, X4 waits for R";
+}
+
+TEST_F(LiveWords, AProgramThatHasEndedAsksForNothing) {
+  for (const char* line : {"OPEN PROG 1 CLEAR", "TM10 TA0 TS0 X1", "CLOSE", "&1B1R"}) ASSERT_EQ(host(line), "") << line;
+  platform::servo_ticks(6);
+  EXPECT_EQ(host("??").substr(0, 6), "A80039") << "runs, continuous, moves by time";
+  platform::servo_ticks(200);
+  EXPECT_EQ(host("??").substr(0, 6), "A80028") << "moves by time";
+}
+
+// firmware:5.9: eight motors by the last ##n, each report its own word.
+TEST_F(LiveWords, EightMotorsAreThoseOfTheGroup) {
+  const auto control = [](char c) {
+    host_port_character(static_cast<std::uint8_t>(c));
+    platform::background(1);
+    return platform::sent();
+  };
+  ASSERT_EQ(host("I3=2 M1->D:$8B M2->D:$48B M3->X:$9D,0,24,S M4->X:$49D,0,24,S M5->D:$88 M6->D:$488"), "");
+  ASSERT_EQ(host("M1=3072*5 M2=3072*6 M3=3072*7 M4=3072*8 M5=3072*14 M6=3072*18 I900=1"), "");
+  const std::string others = " 0 0 0 0 0 0 0\r\x06", idle = " 050000000000";
+  EXPECT_EQ(control(0x10), "5" + others);
+  EXPECT_EQ(control(0x16), "7" + others);
+  EXPECT_EQ(control(0x06), "9" + others);
+  EXPECT_EQ(control(0x02).substr(0, 25), "850000000000" + idle);
+  ASSERT_EQ(host("##1"), "");
+  EXPECT_EQ(control(0x10), "6" + others);
+  EXPECT_EQ(control(0x16), "8" + others);
+  EXPECT_EQ(control(0x06), "12" + others);
+  EXPECT_EQ(control(0x02).substr(0, 25), "850000000000" + idle);
+  ASSERT_EQ(host("##3"), "");
+  EXPECT_EQ(control(0x10), "0" + others);
+}
+
+// firmware:4.10/5, firmware:4.10/7: % slews at Isx94, a hold and its end at Isx95.
+TEST_F(LiveWords, AHoldAndItsEndSlewAtIsx95) {
+  ASSERT_EQ(host("&1 I5194=1000 I5195=2000 DEF ROT 100 B0 OPEN ROT"), "");
+  for (const char* line : {"TM60000 X10", "CLOSE", "R"}) ASSERT_EQ(host(line), "") << line;
+  platform::servo_ticks(10);
+  ASSERT_EQ(host("H"), "");
+  platform::servo_ticks(5);
+  EXPECT_EQ(host("RX$2002"), std::to_string(3713991 - 5 * 2000));
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(3);
+  EXPECT_EQ(host("RX$2002"), std::to_string(3713991 - 2 * 2000));
+  ASSERT_EQ(host("%50"), "");
+  platform::servo_ticks(2);
+  EXPECT_EQ(host("RX$2002"), std::to_string(3713991 - 2 * 2000 - 2 * 1000));
 }
 
 }  // namespace

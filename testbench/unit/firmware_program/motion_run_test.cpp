@@ -293,4 +293,20 @@ TEST_F(MotionProgram, ControlsPlcs) {
   EXPECT_EQ(plc_enabled() >> 3 & 3u, 1u);
 }
 
+// firmware:7.2/1: fifteen calls in each other, and not one more.
+TEST_F(MotionProgram, FifteenCallsStandInEachOther) {
+  for (int n = 1; n <= 16; ++n)
+    store(n, {"P1=" + std::to_string(n), n < 16 ? "CALL" + std::to_string(n + 1) : "P2=P2+1"});
+  ASSERT_EQ(host("B1R"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(p(2), 1.0);
+  EXPECT_EQ(host("??").substr(6, 1), "0") << "no run-time error";
+  store(16, {"P1=16 CALL17"});
+  store(17, {"P1=17"});
+  ASSERT_EQ(host("B1R"), "");
+  platform::servo_ticks(60);
+  EXPECT_EQ(p(1), 16.0);
+  EXPECT_EQ(host("??").substr(6, 1), "4") << "run-time error, bit 22";
+}
+
 }  // namespace

@@ -82,6 +82,12 @@ TEST_F(MoveTiming, AxesOutsideTheVector) {
   EXPECT_EQ(run(), ticks_of(800.0 + 10.0));
 }
 
+TEST_F(MoveTiming, AxesOutsideTheVectorAloneGoByIsx86) {
+  ASSERT_EQ(host("CLOSE I5186=20 OPEN ROT"), "");
+  lines({"TA10 TS0 F100 A16 B-8"});  // 16 at 20 a second
+  EXPECT_EQ(run(), ticks_of(800.0 + 10.0));
+}
+
 TEST_F(MoveTiming, MoveIsNotShorterThanItsAcceleration) {
   lines({"TM10 TA80 TS0 X1"});
   EXPECT_EQ(run(), ticks_of(80.0 + 80.0));
@@ -120,6 +126,11 @@ TEST_F(MoveTiming, RapidIsNotBlended) {
   lines({"TM100 TA40 TS0 RAPID X10", "X20"});
   EXPECT_EQ(run(), 2 * ticks_of(140.0));
   EXPECT_EQ(motion_cs_status(0, 1) & 0x13u, 0x02u);  // mode bits 4, 1, 0
+}
+
+TEST_F(MoveTiming, NothingBlendsWithARapidMoveBeforeIt) {
+  lines({"TM100 TA40 TS0 RAPID X10", "LINEAR X20"});
+  EXPECT_EQ(run(), 2 * ticks_of(140.0));
 }
 
 TEST_F(MoveTiming, DelayBlendsLikeAMove) {
@@ -190,6 +201,16 @@ TEST_F(MoveTiming, NewI10CountsWithPercent100) {
   ASSERT_EQ(host("%100"), "");
   platform::servo_ticks(1);
   EXPECT_EQ(cs().increment, 4000000);
+}
+
+// firmware:4.10/7: % takes over I10, for its report and for DWELL too.
+TEST_F(MoveTiming, NewI10IsWhole100PercentAndTheTimeOfADwell) {
+  lines({"DWELL100"});
+  ASSERT_EQ(host("CLOSE I10=7427982 I5194=8388607"), "");  // twice the default
+  ASSERT_EQ(host("%100"), "");
+  platform::servo_ticks(1);
+  EXPECT_EQ(host("%"), "100");
+  EXPECT_EQ(run(), ticks_of(50.0));
 }
 
 TEST_F(MoveTiming, OneMoveIsCalculatedAhead) {

@@ -81,6 +81,18 @@ TEST_F(ProgramTexts, FormOfTheLineFollowsI3I4I62AndI64) {
   EXPECT_EQ(once({"SEND\"AB\""}), std::string("AB\r") + static_cast<char>('A' + 'B' + '\r'));
 }
 
+// firmware:6.7/1: the tag is of what programs send; the host's own answers and errors have none.
+TEST_F(ProgramTexts, TheHostsOwnAnswersHaveNoTag) {
+  const auto bytes = [](const std::string& line) {
+    for (const char c : line + "\r") host_port_character(static_cast<std::uint8_t>(c));
+    background(2);
+    return sent();
+  };
+  ASSERT_EQ(bytes("I64=1"), "\x06");
+  EXPECT_EQ(bytes("P1=5 P1"), "5\r\x06");
+  EXPECT_EQ(bytes("UUU"), "\aERR003\r");
+}
+
 TEST_F(ProgramTexts, LetterSendsItsControlCharacterAlone) {
   ASSERT_EQ(host("I64=1"), "");
   EXPECT_EQ(once({"SEND^G", "SEND^A", "SEND^@"}), std::string("\x07\x01\x00", 3));

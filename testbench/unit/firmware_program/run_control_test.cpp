@@ -292,4 +292,36 @@ TEST_F(RunControl, AxisDefinitions) {
   EXPECT_EQ(host("UNDEFINE ALL &1#2->"), "0");
 }
 
+// firmware:4.10/1, firmware:5.10/3
+TEST_F(RunControl, AnInactiveMotorHoldsItsSystemAndARunningOneHoldsSave) {
+  open();
+  ASSERT_EQ(host("DWELL60000"), "");
+  ASSERT_EQ(host("CLOSE &1#3->X I300=0"), "");
+  EXPECT_EQ(host("R"), "ERR013");
+  EXPECT_EQ(host("S"), "ERR013");
+  EXPECT_EQ(host("&2#3->X"), "ERR003") << "of &1";
+  EXPECT_EQ(host("SAVE"), "");
+  ASSERT_EQ(host("I300=1"), "");
+  EXPECT_EQ(host("&1R"), "");
+  EXPECT_EQ(host("SAVE"), "ERR001");
+  EXPECT_EQ(host("&2SAVE"), "ERR001") << "whoever runs";
+}
+
+// firmware:5.10/4: whoever has addressed what, a system that runs keeps its definitions.
+TEST_F(RunControl, UndefineAllIsRefusedWhileASystemThatLosesDefinitionsRuns) {
+  ASSERT_EQ(host("I300=1"), "");
+  ASSERT_EQ(host("&1#1->5X &3#3->7X DEF ROT 50 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("DWELL60000"), "");
+  ASSERT_EQ(host("CLOSE &3R &1"), "");
+  EXPECT_EQ(host("UNDEFINE ALL"), "ERR001") << "&1 is addressed, &3 runs";
+  EXPECT_EQ(host("&1#1-> &3#3->"), "5X|7X");
+  EXPECT_EQ(host("&3UNDEFINE"), "ERR001");
+  EXPECT_EQ(host("&1UNDEFINE #1->"), "0") << "its own";
+  ASSERT_EQ(host("&3A"), "");
+  platform::servo_ticks(6);
+  EXPECT_EQ(host("&2#2->3X &3UNDEFINE"), "");
+  ASSERT_EQ(host("&3R"), "");
+  EXPECT_EQ(host("UNDEFINE ALL &2#2->"), "0") << "&3 runs and has nothing to lose";
+}
+
 }  // namespace

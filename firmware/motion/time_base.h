@@ -1,0 +1,14 @@
+/* The time base of a coordinate system: what its trajectory time grows by at each servo cycle, 100 % being I10. `%`, a
+ * host or program that writes its word of memory, and the hold of H command it; the servo task slews it there. */
+#ifndef FIRMWARE_MOTION_TIME_BASE_H
+#define FIRMWARE_MOTION_TIME_BASE_H
+
+#include <stdint.h>
+
+#include "firmware/variables/i_variables.h"
+
+void time_base_slew(uint32_t cs, int32_t target, enum i_name rate); /* servo and real-time tasks held off */
+/* From the next servo cycle on, at Isx94; while H holds the system it is kept for its end. */
+void time_base_command(uint32_t cs, int32_t command);
+
+#endif
