@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kSpaces = " \t";
 
 bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_hex_digit(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
 bool starts_name(char c) { return in_word(c) && std::isdigit(static_cast<unsigned char>(c)) == 0; }
 
 std::string_view trimmed(std::string_view text) {
@@ -107,16 +108,34 @@ std::string Macros::expand(std::string_view line) const {
   return expand(line, work);
 }
 
-std::string Macros::expand(std::string_view text, Work& work) const {
+// `$Base0A`: the longest name before hexadecimal digits. What is a constant as it stands (`$FACE`) is one.
+Macros::Found Macros::find_before_digits(std::string_view word) const {
+  if (std::all_of(word.begin(), word.end(), is_hex_digit)) return macros_.end();
+  for (std::size_t digits = 1; digits <= kMostDigits && digits < word.size(); ++digits) {
+    if (!is_hex_digit(word[word.size() - digits])) break;
+    const Found found = macros_.find(word.substr(0, word.size() - digits));
+    if (found != macros_.end() && !found->second.parameters) return found;
+  }
+  return macros_.end();
+}
+
+// `behind_dollar`: what the text is put behind ends with `$`.
+std::string Macros::expand(std::string_view text, Work& work, bool behind_dollar) const {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
     const std::string_view word = piece(text, at);
     at += word.size();
-    const auto macro = starts_name(word[0]) ? macros_.find(word) : macros_.end();
+    const bool dollar = result.empty() ? behind_dollar : result.back() == '$';
+    Found macro = starts_name(word[0]) ? macros_.find(word) : macros_.end();
+    std::string_view digits;
+    if (macro == macros_.end() && dollar && starts_name(word[0])) {
+      macro = find_before_digits(word);
+      if (macro != macros_.end()) digits = word.substr(macro->first.size());
+    }
     if (macro == macros_.end())
       result += word;
     else
-      result += replacement(macro->first, macro->second, text, at, work);
+      result += replacement(macro->first, macro->second, text, at, work, dollar).append(digits);
     if (!work.names.empty() && result.size() > kLongest)
       throw UsageError(
           fmt::format("macro {} expands to more than {} characters; expected less: the controller's "
@@ -128,7 +147,7 @@ std::string Macros::expand(std::string_view text, Work& work) const {
 
 // Of the macro whose name ends at `at`; its arguments, if it has any, are taken from there.
 std::string Macros::replacement(std::string_view name, const Macro& macro, std::string_view text, std::size_t& at,
-                                Work& work) const {
+                                Work& work, bool behind_dollar) const {
   if (std::find(work.names.begin(), work.names.end(), name) != work.names.end())
     throw UsageError(fmt::format("macro {} expands to itself ({}); expected a text without it", beginning_of(name),
                                  cut_text(fmt::format("{}, {}", fmt::join(work.names, ", "), name))));
@@ -151,7 +170,7 @@ std::string Macros::replacement(std::string_view name, const Macro& macro, std::
     }
   }
   work.names.push_back(name);
-  std::string result = expand(body, work);
+  std::string result = expand(body, work, behind_dollar);
   work.names.pop_back();
   return result;
 }

@@ -74,8 +74,8 @@ static void report(const struct axis_definition* d) {
 }
 
 static bool is_query(struct lexer* lx) {
-  char c = lexer_peek(lx);
-  return c == '\0' || c == '#' || c == '&';
+  const char c = lexer_peek(lx);
+  return c == '\0' || c == '#' || c == '&' || c == ',';
 }
 
 error_t axis_definition_command(struct lexer* lx) {

@@ -151,10 +151,15 @@ static error_t one_command(struct lexer* lx) {
   return keyword(lx);
 }
 
+/* A comma behind a query divides it from the next command (`&2#4->,`), behind anything else it is an error. */
 error_t command_line(const char* line) {
   struct lexer lx = {program_line_begin(line)};
   error_t error = ERR_NONE;
-  while (error == ERR_NONE && lexer_peek(&lx) != '\0') error = one_command(&lx);
+  while (error == ERR_NONE && lexer_peek(&lx) != '\0') {
+    const uint32_t reported = reply_line_count();
+    error = one_command(&lx);
+    if (reply_line_count() != reported) (void)lexer_accept(&lx, ',');
+  }
   if (error == ERR_NONE)
     error = program_line_commit();
   else

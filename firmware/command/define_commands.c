@@ -5,12 +5,14 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/compensation_tables.h"
+#include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/gather.h"
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/rotary.h"
 #include "firmware/command/session.h"
 #include "firmware/command/table_commands.h"
+#include "firmware/language/statement_list.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/run/run_control.h"
 
@@ -106,6 +108,7 @@ static error_t delete_all(bool tables) {
 
 static error_t delete_any(struct lexer* lx) {
   uint32_t cs = session.cs;
+  uint32_t plcs;
   bool running = run_is_running(cs);
   error_t error;
   if (lexer_keyword(lx, "ALL")) return delete_all(!lexer_keyword(lx, "TEMPS") && !lexer_keyword(lx, "TEMP"));
@@ -115,6 +118,8 @@ static error_t delete_any(struct lexer* lx) {
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_CCBUF, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return gather_delete();
   if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : region_delete(REGION_TBUF, cs);
+  if (lexer_keyword(lx, "TRACE")) return ERR_NONE; /* there is none of these two: files take them away all the same */
+  if (lexer_keyword(lx, "PLCC")) return statement_number_list(lx, 0, FIXED_PLC_COUNT - 1, &plcs);
   return table_delete(lx, &error) ? error : ERR_DATA;
 }
 

@@ -1,4 +1,5 @@
-/* Direct access to PMAC words (firmware:1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. */
+/* Direct access to PMAC words (firmware:1.9): RX RY RL RD, RHX ..., WX WY WL WD, with address, count or values. A
+ * hexadecimal constant for L or D is the word itself, not its value: what RHL shows can be written back. */
 #include "firmware/command/memory_commands.h"
 
 #include "firmware/base/float48.h"
@@ -11,7 +12,7 @@
 
 typedef enum { FORM_X, FORM_Y, FORM_L, FORM_D } form_t;
 
-enum { COUNT_LIMIT = 64 };
+enum { COUNT_LIMIT = 64, LONG_DIGITS = 12 };
 
 static void report_word(form_t form, bool hex, uint32_t address) {
   if (form == FORM_X || form == FORM_Y) {
@@ -76,17 +77,41 @@ static error_t read_words(struct lexer* lx, form_t form, bool hex) {
   return ERR_NONE;
 }
 
+/* In an expression the constant is a number as anywhere. */
+static bool goes_on(struct lexer lx) {
+  static const char operators[] = "+-|^*/%&";
+  const char next = lexer_peek(&lx);
+  for (const char* c = operators; *c != '\0'; ++c)
+    if (*c == next) return true;
+  return false;
+}
+
+static error_t write_one(struct lexer* lx, form_t form, uint32_t address) {
+  double value;
+  uint64_t word;
+  if (lexer_peek(lx) == '$' && (form == FORM_L || form == FORM_D)) {
+    struct lexer after = *lx;
+    if (!lexer_hexadecimal(&after, LONG_DIGITS, &word)) return ERR_DATA;
+    if (!goes_on(after)) {
+      *lx = after;
+      word_write_long(address, (uint32_t)(word >> 24), (uint32_t)word & HAL_WORD_MASK);
+      return ERR_NONE;
+    }
+  }
+  const error_t error = expression_evaluate(lx, session.cs, &value);
+  if (error == ERR_NONE) write_word(form, address, value);
+  return error;
+}
+
 static error_t write_words(struct lexer* lx, form_t form) {
   uint32_t address;
   error_t error = read_address(lx, &address);
   if (error != ERR_NONE) return error;
   if (lexer_peek(lx) != ',') return ERR_DATA;
   while (lexer_accept(lx, ',')) {
-    double value;
-    error = expression_evaluate(lx, session.cs, &value);
-    if (error != ERR_NONE) return error;
     if (address > HAL_WORD_MASK) return ERR_DATA;
-    write_word(form, address++, value);
+    error = write_one(lx, form, address++);
+    if (error != ERR_NONE) return error;
   }
   return ERR_NONE;
 }

@@ -11,6 +11,7 @@ static enum reply_to recipient;
 
 static bool line_open;
 static uint8_t line_sum;
+static uint32_t line_count;
 
 static void send(uint8_t c) {
   if (recipient == REPLY_TO_NOBODY) return;
@@ -80,8 +81,11 @@ void reply_end_line(void) {
     if ((i_integer(I4_COMMUNICATIONS_INTEGRITY) & 1) != 0) send(line_sum);
   }
   line_open = false;
+  line_count++;
   reply_between_lines();
 }
+
+uint32_t reply_line_count(void) { return line_count; }
 
 bool reply_line_is_open(void) { return line_open; }
 

@@ -39,8 +39,6 @@ static enum binary_fault value(const struct command* c, uint32_t argument) {
       return in_range(is_bare(c));
     case ARGUMENT_RATE:
       return in_range(!is_negative(c));
-    case ARGUMENT_FEED:
-      return in_range(!is_negative(c) && c->fraction != 0);
     case ARGUMENT_TIME:
       return in_range(!is_negative(c) && c->exponent <= TIME_BITS);
     case ARGUMENT_LABEL:

@@ -51,6 +51,13 @@ static bool hex_number(struct lexer* lx, double* value) {
   return true;
 }
 
+bool lexer_hexadecimal(struct lexer* lx, unsigned most, uint64_t* value) {
+  if (!lexer_accept(lx, '$')) return false;
+  unsigned digits = 0;
+  for (*value = 0; hex_digit(*lx->at) >= 0; lx->at++, digits++) *value = *value << 4 | (uint64_t)hex_digit(*lx->at);
+  return digits != 0 && digits <= most;
+}
+
 /* The first digits, nine of them at most that count: they fit into 32 bits. Nothing more follows: it is the number. */
 static bool short_integer(const char** at, uint32_t* low, unsigned* digits) {
   const char* text = *at;

@@ -39,7 +39,9 @@ bool lexer_value_starts(struct lexer lx);                 /* a constant with or 
 double lexer_decimal(uint64_t digits, unsigned decimals); /* what these digits, `decimals` of them behind the point,
                                                               are read as; up to LEXER_DECIMALS */
 bool lexer_number(struct lexer* lx, double* value);       /* unsigned decimal or $hex constant; false: not a number */
-error_t lexer_constant(struct lexer* lx, double* value);  /* optional sign and number; ERR_DATA outside +-2^35 */
-error_t lexer_integer(struct lexer* lx, int32_t* value);  /* constant without fraction */
+/* `$` and one to `most` hexadecimal digits, up to 16. */
+bool lexer_hexadecimal(struct lexer* lx, unsigned most, uint64_t* value);
+error_t lexer_constant(struct lexer* lx, double* value); /* optional sign and number; ERR_DATA outside +-2^35 */
+error_t lexer_integer(struct lexer* lx, int32_t* value); /* constant without fraction */
 
 #endif

@@ -193,16 +193,16 @@ static void letters(uint32_t mask) {
   put(')');
 }
 
+static void address_part(char letter, uint32_t part) {
+  if (part == 0) return;
+  put(letter);
+  if ((part & ADDRESS_VARIABLE) != 0) put('P');
+  integer_text(part & (ADDRESS_VARIABLE - 1u), put);
+}
+
 static void address(uint32_t number) {
-  const uint32_t motor = number & 0xFFu, cs = number >> 8 & 0xFFu;
-  if (motor != 0) {
-    put('#');
-    integer_text(motor, put);
-  }
-  if (cs != 0) {
-    put('&');
-    integer_text(cs, put);
-  }
+  address_part('#', statement_address_motor(number));
+  address_part('&', statement_address_cs(number));
 }
 
 static void item_list(const struct instruction* in) {

@@ -19,8 +19,6 @@ static bool is_in_range(const struct statement_row* row, double value) {
   switch (row->argument) {
     case ARGUMENT_RATE:
       return value >= 0.0;
-    case ARGUMENT_FEED:
-      return value > 0.0;
     case ARGUMENT_TIME:
       return value >= 0.0 && value <= 8388607.0;
     case ARGUMENT_LABEL:
@@ -150,12 +148,37 @@ static error_t integer(struct lexer* lx, int32_t first, int32_t last, uint32_t* 
   return ERR_NONE;
 }
 
+/* Numbers alone lie in a byte each, as in the programs that older images have saved. */
+enum { ADDRESS_BYTE = 0xFF, ADDRESS_BYTES = 8, ADDRESS_PART = 0x3FFF, ADDRESS_PARTS = 14 };
+#define ADDRESS_WIDE (1u << 31)
+
+uint32_t statement_address(uint32_t motor, uint32_t cs) {
+  return motor < ADDRESS_VARIABLE && cs < ADDRESS_VARIABLE ? motor | cs << ADDRESS_BYTES
+                                                           : motor | cs << ADDRESS_PARTS | ADDRESS_WIDE;
+}
+
+uint32_t statement_address_motor(uint32_t number) {
+  return number & ((number & ADDRESS_WIDE) != 0 ? ADDRESS_PART : ADDRESS_BYTE);
+}
+
+uint32_t statement_address_cs(uint32_t number) {
+  return (number & ADDRESS_WIDE) != 0 ? number >> ADDRESS_PARTS & ADDRESS_PART : number >> ADDRESS_BYTES & ADDRESS_BYTE;
+}
+
+/* One part of ADDRESS: its number, or the P-variable that holds it when the statement is executed. */
+static error_t address_part(struct lexer* lx, int32_t last, uint32_t* part) {
+  if (!lexer_accept(lx, 'P')) return integer(lx, 1, last, part);
+  const error_t error = integer(lx, 0, VARIABLE_COUNT - 1, part);
+  *part |= ADDRESS_VARIABLE;
+  return error;
+}
+
 static error_t address(struct lexer* lx, uint32_t* number) {
   uint32_t motor = 0, cs = 0;
   error_t error = ERR_NONE;
-  if (lexer_accept(lx, '#')) error = integer(lx, 1, MOTORS, &motor);
-  if (error == ERR_NONE && lexer_accept(lx, '&')) error = integer(lx, 1, COORDINATE_SYSTEMS, &cs);
-  *number = motor | cs << 8;
+  if (lexer_accept(lx, '#')) error = address_part(lx, MOTORS, &motor);
+  if (error == ERR_NONE && lexer_accept(lx, '&')) error = address_part(lx, COORDINATE_SYSTEMS, &cs);
+  *number = statement_address(motor, cs);
   return *number == 0 ? ERR_DATA : error;
 }
 

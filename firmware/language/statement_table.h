@@ -11,7 +11,6 @@ enum statement_argument {
   ARGUMENT_NONE,
   ARGUMENT_VALUE, /* a constant, or an expression in brackets */
   ARGUMENT_RATE,  /* the same; a constant is not negative */
-  ARGUMENT_FEED,  /* nor 0 */
   ARGUMENT_TIME,  /* nor longer than 8,388,607 ms */
   ARGUMENT_CODE,  /* a value that neither `->` nor a range follows: M1->, M1..5 are on-line commands */
   ARGUMENT_AXIS,
@@ -22,7 +21,7 @@ enum statement_argument {
   ARGUMENT_LETTERS,   /* (A,B) */
   ARGUMENT_MOTORS,    /* 1,3..5 */
   ARGUMENT_PLCS,
-  ARGUMENT_ADDRESS, /* #1&2 */
+  ARGUMENT_ADDRESS, /* #1&2, #P400 */
   ARGUMENT_TEXT,    /* "text" or ^letter */
   ARGUMENT_DISPLAY  /* [column]"text" or column,width.decimals,variable */
 };

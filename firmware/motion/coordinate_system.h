@@ -52,6 +52,19 @@ struct move {
   struct program_trace line; /* PE */
 };
 
+/* Why a program was stopped (firmware:7.10): the numbers that clients read in Y:+$14. */
+enum run_time_error {
+  RUN_TIME_NONE,
+  RUN_TIME_STATEMENT,   /* cannot be executed: not built, or no statement */
+  RUN_TIME_PROGRAM,     /* a program that is called is not there */
+  RUN_TIME_LABEL,       /* nor a label */
+  RUN_TIME_DEPTH,       /* CALL_DEPTH calls in each other, and one more */
+  RUN_TIME_BLOCK,       /* IF, WHILE and their ends do not fit together, or too many loops in one line */
+  RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
+  RUN_TIME_READ,        /* READ where nothing has been called */
+  RUN_TIME_FEEDRATE     /* a move goes by a feedrate that is not above 0 */
+};
+
 struct coordinate_system {
   /* program pointer and requests */
   enum program_pointer pointer; /* B */
@@ -61,8 +74,8 @@ struct coordinate_system {
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
   volatile bool end_block;      /* `/`: S starts no further move */
-  volatile bool settling; /* moves are dropped: set by B or R, S stands still; R finds the position and clears it */
-  bool run_time_error;    /* R */
+  volatile bool settling;    /* moves are dropped: set by B or R, S stands still; R finds the position and clears it */
+  enum run_time_error error; /* R; B clears it when the program is started */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
   uint32_t incremental, feedrate_axes; /* axis masks */
   bool vector_absolute, time_mode;

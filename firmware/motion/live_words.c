@@ -23,6 +23,7 @@ enum { /* of a motor */
 enum { /* of a coordinate system */
        CS_COMMANDED_TIME_BASE = 0x00,
        CS_TIME_BASE = 0x02,
+       CS_ERROR = 0x14, /* Y */
        CS_TIMERS = 0x15,
        CS_STATUS_2 = 0x3F,
        CS_STATUS_1 = 0x40, /* Y: word 3 */
@@ -91,6 +92,9 @@ static unsigned cs_word(uint32_t cs, uint32_t offset, uint32_t* x, uint32_t* y) 
     case CS_TIME_BASE:
       *x = (uint32_t)s->increment;
       return HALF_X;
+    case CS_ERROR:
+      *y = (uint32_t)s->error;
+      return HALF_Y;
     case CS_TIMERS:
       *x = (uint32_t)i_integer(i_cs(cs, ISX11_TIMERS));
       *y = (uint32_t)i_integer(i_cs(cs, ISX11_TIMERS) + 1u);

@@ -53,7 +53,7 @@ uint32_t motion_cs_status(uint32_t cs, unsigned word) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (word == 0) return status1(s);
   if (word != 1) return 0; /* word 3 is about lookahead and motors */
-  return bit(s->run_time_error, S2_RUN_TIME_ERROR) | bit(!s->active && !s->next_valid, S2_IN_POSITION) |
+  return bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(!s->active && !s->next_valid, S2_IN_POSITION) |
          bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
          bit(s->mode == MODE_RAPID, S2_RAPID);
 }

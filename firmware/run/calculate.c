@@ -46,7 +46,10 @@ static void stop_with_error(uint32_t cs) {
   else
     executor_back(&p->x);
   p->under_way = false;
-  s->run_time_error = s->quit = true; /* behind the last pause: R there would forget them */
+  /* Behind the last pause: R there would forget both. */
+  s->error = p->x.error != RUN_TIME_NONE ? p->x.error : RUN_TIME_STATEMENT;
+  s->quit = true;
+  p->x.error = RUN_TIME_NONE;
 }
 
 /* The program has ended: it stands at its top again, and stops when its moves are over. */

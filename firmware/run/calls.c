@@ -1,6 +1,7 @@
 #include "firmware/run/calls.h"
 
 #include "firmware/base/mathematics.h"
+#include "firmware/buffers/fixed_programs.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/language/statement_argument.h"
 #include "firmware/language/statement_key.h"
@@ -57,16 +58,20 @@ static bool split_code(const struct instruction* in, uint32_t* program, uint32_t
 
 static bool is_code(const struct instruction* in) { return in->number >= KEY_G && in->number <= KEY_D; }
 
-static enum executed not_found(enum reader_result found) {
-  return found == READER_LATER ? EXECUTED_LATER : EXECUTED_ERROR;
+/* A program that was read to its end has no such label. */
+static enum executed not_found(struct motion_program* p, uint32_t program, enum reader_result found) {
+  if (found == READER_LATER) return EXECUTED_LATER;
+  if (found == READER_END) return executor_fail(&p->x, RUN_TIME_LABEL);
+  return executor_fail(&p->x, fixed_program_find(FIXED_PROG, program) != 0 ? RUN_TIME_BLOCK : RUN_TIME_PROGRAM);
 }
 
 /* The statement is passed when its target is known: an error leaves the program at it. */
 static enum executed call(struct motion_program* p, uint32_t program, uint32_t label) {
   uint32_t offset;
-  if (p->depth == CALL_DEPTH || program == 0) return EXECUTED_ERROR;
+  if (p->depth == CALL_DEPTH) return executor_fail(&p->x, RUN_TIME_DEPTH);
+  if (program == 0) return executor_fail(&p->x, RUN_TIME_PROGRAM);
   const enum reader_result found = calls_find(program, label, &offset);
-  if (found != READER_WORD) return not_found(found);
+  if (found != READER_WORD) return not_found(p, program, found);
   (void)executor_pass(&p->x);
   p->callers[p->depth++] = p->x.at;
   reader_fixed(&p->x.at.reader, FIXED_PROG, program, offset);
@@ -88,9 +93,10 @@ static bool within(const struct motion_program* p, double value, uint32_t* label
 
 static enum executed jump(struct motion_program* p, double value) {
   uint32_t label, offset;
-  if (!within(p, value, &label)) return EXECUTED_ERROR;
-  const enum reader_result found = calls_find(p->x.at.reader.number, label, &offset);
-  return found == READER_WORD ? executor_jump(&p->x, offset) : not_found(found);
+  const uint32_t program = p->x.at.reader.number;
+  if (!within(p, value, &label)) return executor_fail(&p->x, RUN_TIME_LABEL);
+  const enum reader_result found = calls_find(program, label, &offset);
+  return found == READER_WORD ? executor_jump(&p->x, offset) : not_found(p, program, found);
 }
 
 /* Letter that a value of a calling line belongs to, 0 for A; 26: none. */
@@ -117,7 +123,7 @@ static uint32_t letter_of(const struct instruction* in) {
 static enum executed read(struct motion_program* p, uint32_t letters) {
   struct instruction in;
   uint32_t found = 0;
-  if (p->depth == 0) return EXECUTED_ERROR;
+  if (p->depth == 0) return executor_fail(&p->x, RUN_TIME_READ);
   const enum executed passed = executor_pass(&p->x);
   p->reader = p->x.at;
   p->x.at = p->callers[p->depth - 1u];
@@ -146,7 +152,8 @@ enum executed calls_execute(struct motion_program* p, const struct instruction* 
   uint32_t program, label;
   if (in->operation == OP_LIST && in->group == KEY_READ) return read(p, in->number);
   if (in->operation != OP_STATEMENT && in->operation != OP_STATEMENT_POP) return EXECUTED_STATEMENT;
-  if (is_code(in)) return split_code(in, &program, &label) ? call(p, program, label) : EXECUTED_ERROR;
+  if (is_code(in))
+    return split_code(in, &program, &label) ? call(p, program, label) : executor_fail(&p->x, RUN_TIME_PROGRAM);
   switch (in->number) {
     case KEY_N:
     case KEY_O:
@@ -157,9 +164,11 @@ enum executed calls_execute(struct motion_program* p, const struct instruction* 
     case KEY_GOTO:
       return jump(p, in->value);
     case KEY_GOSUB:
-      return within(p, in->value, &label) ? call(p, p->x.at.reader.number, label) : EXECUTED_ERROR;
+      return within(p, in->value, &label) ? call(p, p->x.at.reader.number, label)
+                                          : executor_fail(&p->x, RUN_TIME_LABEL);
     case KEY_CALL:
-      return calls_split(in->value, &program, &label) ? call(p, program, label) : EXECUTED_ERROR;
+      return calls_split(in->value, &program, &label) ? call(p, program, label)
+                                                      : executor_fail(&p->x, RUN_TIME_PROGRAM);
     default:
       return EXECUTED_STATEMENT;
   }

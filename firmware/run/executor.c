@@ -10,6 +10,7 @@ void executor_begin(struct executor* x, uint32_t cs) {
   x->cs = cs;
   x->prefix = x->evaluator.depth = 0;
   x->condition.open = false;
+  x->error = RUN_TIME_NONE;
 }
 
 enum executed executor_end_line(struct executor* x) {
@@ -82,7 +83,7 @@ static bool is_key(struct executor* x, uint32_t key) {
 static enum executed decide_line(struct executor* x, bool is_true) {
   if (is_true) {
     if (x->condition.kind != CONDITION_WHILE) return EXECUTED_WORD;
-    if (x->at.loop_count == ONE_LINE_LOOPS) return EXECUTED_ERROR;
+    if (x->at.loop_count == ONE_LINE_LOOPS) return executor_fail(x, RUN_TIME_BLOCK);
     x->at.loops[x->at.loop_count++] = (uint16_t)x->at.statement;
     return EXECUTED_WORD;
   }
@@ -102,7 +103,7 @@ static enum executed decide(struct executor* x, bool is_true) {
   x->at.in_line = true;
   if (!reader_advance(&x->at.reader, 1)) return decide_line(x, is_true);
   if (is_true) return executor_end_line(x);
-  return target == LINK_NONE ? EXECUTED_ERROR : executor_jump(x, target);
+  return target == LINK_NONE ? executor_fail(x, RUN_TIME_BLOCK) : executor_jump(x, target);
 }
 
 /* AND binds tighter than OR, between brackets as inside of them. */
@@ -118,7 +119,7 @@ static enum executed condition(struct executor* x, const struct instruction* in)
     x->condition.inner_all = term;
   } else {
     const bool continues = in->group == CONDITION_AND || in->group == CONDITION_OR;
-    if (continues != x->condition.open) return EXECUTED_ERROR;
+    if (continues != x->condition.open) return executor_fail(x, RUN_TIME_BLOCK);
     if (!continues) x->condition.kind = in->group;
     if (in->group != CONDITION_AND) {
       x->condition.any = continues && (x->condition.any || x->condition.all);
@@ -141,7 +142,8 @@ static enum executed condition(struct executor* x, const struct instruction* in)
 /* Met behind what its IF governs, so nothing of it is executed. */
 static enum executed skip_else(struct executor* x) {
   const uint32_t target = reader_link(&x->at.reader, x->at.reader.offset);
-  if (reader_advance(&x->at.reader, 1)) return target == LINK_NONE ? EXECUTED_ERROR : executor_jump(x, target);
+  if (reader_advance(&x->at.reader, 1))
+    return target == LINK_NONE ? executor_fail(x, RUN_TIME_BLOCK) : executor_jump(x, target);
   reader_skip_line(&x->at.reader);
   return executor_end_line(x);
 }
@@ -156,7 +158,7 @@ static enum executed statement(struct executor* x, const struct instruction* in)
       return end_statement(x, 1);
     case KEY_ENDWHILE:
       target = reader_link(&x->at.reader, x->at.reader.offset);
-      return target == LINK_NONE ? EXECUTED_ERROR : executor_jump(x, target - 1u);
+      return target == LINK_NONE ? executor_fail(x, RUN_TIME_BLOCK) : executor_jump(x, target - 1u);
     case KEY_RETURN:
       return EXECUTED_END;
     default:

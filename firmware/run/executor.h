@@ -9,13 +9,14 @@
  *                                          Do it, then executor_pass(&x) gives EXECUTED_WORD or EXECUTED_LINE
  *     case EXECUTED_LATER:                 nothing can be read now: again at the next interrupt or pass
  *     case EXECUTED_END:                   RETURN or the end of a fixed program. Not consumed: it comes again
- *     case EXECUTED_ERROR:                 no such word, or the program's structure is damaged
+ *     case EXECUTED_ERROR:                 no such word, or the program's structure is damaged: x.error
  *
  * Used in the real-time task within a slice (pauses between the words it skips), or in the background. */
 #ifndef FIRMWARE_RUN_EXECUTOR_H
 #define FIRMWARE_RUN_EXECUTOR_H
 
 #include "firmware/language/evaluator.h"
+#include "firmware/motion/coordinate_system.h"
 #include "firmware/run/program_reader.h"
 
 enum { ONE_LINE_LOOPS = 8 }; /* WHILEs in one line, each governing the rest of it */
@@ -44,7 +45,13 @@ struct executor {
     bool open;     /* AND(..) or OR(..) may follow */
     bool inner_any, inner_all, any, all;
   } condition;
+  enum run_time_error error; /* with EXECUTED_ERROR: the cause, where it is not the statement itself */
 };
+
+static inline enum executed executor_fail(struct executor* x, enum run_time_error error) {
+  x->error = error;
+  return EXECUTED_ERROR;
+}
 
 void executor_begin(struct executor* x, uint32_t cs); /* at.reader is the caller's */
 enum executed executor_step(struct executor* x, struct instruction* in);

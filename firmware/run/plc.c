@@ -2,12 +2,15 @@
  * text has no room, a pause. A PLC that cannot go on is disabled. */
 #include "firmware/run/plc.h"
 
+#include "firmware/base/dimensions.h"
 #include "firmware/buffers/fixed_programs.h"
 #include "firmware/buffers/program_links.h"
+#include "firmware/language/statement_argument.h"
 #include "firmware/language/statement_key.h"
 #include "firmware/run/plc_control.h"
 #include "firmware/run/shared_statements.h"
 #include "firmware/variables/i_variables.h"
+#include "firmware/variables/pq_variables.h"
 
 enum { I5_REAL_TIME = 1, I5_BACKGROUND = 2 };
 
@@ -37,11 +40,16 @@ void plc_initialize(void) {
   plc_control_initialize();
 }
 
-/* ADDRESS #n &n, of which either may be missing. */
+/* The one that a part of ADDRESS names, from 0; `present` where it names none that there is. */
+static uint32_t addressed(uint32_t part, uint32_t count, uint32_t present) {
+  double number = part;
+  if ((part & ADDRESS_VARIABLE) != 0) number = p_variable_read(part & (ADDRESS_VARIABLE - 1u));
+  return number >= 1.0 && number < (double)count + 1.0 ? (uint32_t)number - 1u : present;
+}
+
 static void address(struct plc* plc, uint32_t number) {
-  const uint32_t motor = number & 0xFFu, cs = (number >> 8) & 0xFFu;
-  if (motor != 0) plc->caller.motor = motor - 1u;
-  if (cs != 0) plc->caller.cs = plc->x.cs = cs - 1u;
+  plc->caller.motor = addressed(statement_address_motor(number), MOTORS, plc->caller.motor);
+  plc->caller.cs = plc->x.cs = addressed(statement_address_cs(number), COORDINATE_SYSTEMS, plc->caller.cs);
 }
 
 static enum program_output statement(struct plc* plc, const struct instruction* in) {

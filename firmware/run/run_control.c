@@ -103,7 +103,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->end_block = s->quit = false;
   s->stepping = single_step;
   s->continuous = !single_step;
-  s->run_time_error = false;
+  s->error = RUN_TIME_NONE;
   s->running = true;
   cs_busy |= 1u << cs;
   hal_unmask(state);

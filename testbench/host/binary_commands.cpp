@@ -148,8 +148,6 @@ class Converter {
     switch (argument) {
       case Argument::kNotNegative:
         return !number.negative;
-      case Argument::kPositive:
-        return !number.negative && number.fraction != 0;
       case Argument::kTime:
         return !number.negative && number.exponent <= kTimeBits;
       case Argument::kLabel:

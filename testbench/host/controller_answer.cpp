@@ -1,132 +1,66 @@
 #include "testbench/host/controller_answer.h"
 
-#include <utility>
+#include <string_view>
 
 namespace brick {
 
 namespace {
-constexpr std::uint8_t kAcknowledge = 0x06, kBell = 0x07, kLineFeed = 0x0A, kReturn = 0x0D;
+
 constexpr unsigned kCertain = 3;  // so many checksums are not right by chance
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
 }  // namespace
-
-// ------------------------------------------------------------------------------------------------------------- reading
-
-void ControllerAnswer::Reading::take(std::uint8_t c) {
-  switch (place) {
-    case Place::kText:
-      return take_text(c);
-    case Place::kError:
-      return take_error(c);
-    case Place::kLineSum:
-      return take_sum(c, std::exchange(line_sum, std::uint8_t{0}), Place::kText);
-    case Place::kCommandSum:
-      return take_sum(c, command_sum, Place::kEnd);
-    case Place::kEnd:
-      wrong = true;
-      text.push_back(static_cast<char>(c));
-  }
-}
-
-void ControllerAnswer::Reading::take_text(std::uint8_t c) {
-  text.push_back(static_cast<char>(c));
-  line_sum = static_cast<std::uint8_t>(line_sum + c);
-  if (c == kAcknowledge) {
-    place = sums ? Place::kCommandSum : Place::kEnd;
-  } else if (c == kBell) {
-    error = true;
-    error_text.clear();
-    place = Place::kError;
-  } else if (c == kReturn) {
-    if (sums)
-      place = Place::kLineSum;
-    else
-      line_sum = 0;
-  }
-}
-
-// BEL alone, or with ERRnnn and CR behind it, before which CR or LF may stand (I6, I3). An error has no checksum.
-void ControllerAnswer::Reading::take_error(std::uint8_t c) {
-  if (error_text.empty() && c != kReturn && c != kLineFeed && c != 'E') {
-    place = Place::kText;
-    line_sum = 0;
-    return take_text(c);
-  }
-  text.push_back(static_cast<char>(c));
-  if (c > ' ')
-    error_text.push_back(static_cast<char>(c));
-  else if (c == kReturn && !error_text.empty())
-    place = Place::kEnd;
-}
-
-void ControllerAnswer::Reading::take_sum(std::uint8_t c, std::uint8_t expected, Place next) {
-  place = next;
-  if (c == expected) {
-    ++right_sums;
-    return;
-  }
-  wrong = true;
-  text.push_back(static_cast<char>(c));
-}
-
-bool ControllerAnswer::Reading::ends_with_line_feed(bool sum_behind) const {
-  const std::size_t behind = sum_behind ? 1 : 0;
-  if (text.size() <= behind || text[text.size() - 1 - behind] != '\n') return false;
-  return !sum_behind || static_cast<std::uint8_t>(text.back()) == command_sum;
-}
-
-// -------------------------------------------------------------------------------------------------------------- answer
 
 void ControllerAnswer::take(std::uint8_t c) {
   empty_ = false;
-  if (choice_ != Choice::kSummed) plain_.take(c);
-  if (choice_ != Choice::kPlain) summed_.take(c);
+  if (choice_ != Choice::kSummed) (void)plain_.take(c);
+  if (choice_ != Choice::kPlain) (void)summed_.take(c);
   if (choice_ == Choice::kOpen) decide();
 }
 
 void ControllerAnswer::decide() {
-  const bool over = plain_.place == Place::kEnd, summed_over = summed_.place == Place::kEnd;
-  if (summed_.wrong)
+  const unsigned right = summed_.right_checksums();
+  if (summed_.misread())
     choice_ = Choice::kPlain;
-  else if (plain_.wrong || summed_.right_sums >= kCertain || (summed_over && summed_.right_sums > 0))
+  else if (plain_.misread() || right >= kCertain || (summed_.complete() && right > 0))
     choice_ = Choice::kSummed;
-  else if (over && (summed_over || (summed_.right_sums == 0 && !expects_sums_)))
+  else if (plain_.complete() && (summed_.complete() || (right == 0 && !expects_sums_)))
     choice_ = Choice::kPlain;
 }
 
-bool ControllerAnswer::ended() const { return ended_ || (choice_ != Choice::kOpen && chosen().place == Place::kEnd); }
+bool ControllerAnswer::ended() const { return ended_ || (choice_ != Choice::kOpen && chosen().complete()); }
+
+bool ControllerAnswer::ends_with_checksum(const ReplyParser& parser) const {
+  const char end[] = {'\n', static_cast<char>(command_sum_)};
+  return ends_with(parser.text(), {end, sizeof end});
+}
 
 bool ControllerAnswer::may_have_ended() const {
-  const Reading& reading = chosen();
-  return reading.place == Place::kEnd || (reading.place == Place::kError && reading.error_text.empty()) ||
-         reading.ends_with_line_feed(false) || reading.ends_with_line_feed(true);
+  const ReplyParser& parser = chosen();
+  return parser.complete() || parser.bare_error() || ends_with(parser.text(), "\n") || ends_with_checksum(parser);
 }
 
 void ControllerAnswer::quiet() {
   if (ended()) return;
   ended_ = true;
-  if (choice_ != Choice::kPlain && summed_.ends_with_line_feed(true)) {  // the end with I3 = 1
-    summed_.text.pop_back();
-    ++summed_.right_sums;
-  } else if (plain_.place == Place::kEnd && choice_ == Choice::kOpen) {
-    choice_ = Choice::kPlain;
+  const bool sum = choice_ != Choice::kPlain && ends_with_checksum(summed_);
+  if (choice_ == Choice::kOpen) {
+    const bool sums = sum || (summed_.right_checksums() > 0 && !plain_.complete());
+    choice_ = sums ? Choice::kSummed : Choice::kPlain;
   }
-  if (choice_ == Choice::kOpen) choice_ = summed_.right_sums > 0 ? Choice::kSummed : Choice::kPlain;
+  drops_last_ = sum;
 }
 
 std::string ControllerAnswer::release() {
   if (choice_ == Choice::kOpen) return "";
-  const bool may_be_sum = !ended_ && choice_ == Choice::kSummed && summed_.ends_with_line_feed(true);
-  std::string more = chosen().text.substr(released_, chosen().text.size() - released_ - (may_be_sum ? 1 : 0));
+  const bool may_be_sum = !ended_ && choice_ == Choice::kSummed && ends_with_checksum(summed_);
+  const std::string& text = chosen().text();
+  std::string more = text.substr(released_, text.size() - released_ - (may_be_sum || drops_last_ ? 1 : 0));
   released_ += more.size();
   return more;
-}
-
-unsigned ControllerAnswer::error_number() const {
-  const std::string& text = chosen().error_text;
-  unsigned number = 0;
-  for (std::size_t i = 3; text.compare(0, 3, "ERR") == 0 && i < text.size(); ++i)
-    number = number * 10 + static_cast<unsigned>(text[i] - '0');
-  return number;
 }
 
 }  // namespace brick

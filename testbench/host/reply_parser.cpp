@@ -32,7 +32,10 @@ bool ReplyParser::take_checksum(std::uint8_t byte) {
   const Due due = std::exchange(due_, Due::kNothing);
   if (due == Due::kNothing) return false;
   const std::uint8_t sum = std::exchange(sum_, std::uint8_t{0});
-  if (due == Due::kProgramError) return byte == sum;
+  if (due == Due::kProgramError) {
+    if (byte == sum) ++right_;
+    return byte == sum;
+  }
   if (due == Due::kError) {
     reply_.complete = !mixed_;
     return may_be_of_error(byte);
@@ -44,6 +47,12 @@ bool ReplyParser::take_checksum(std::uint8_t byte) {
   }
   if (due == Due::kLine) summed_ = byte == expected;
   if (mixed_ && byte != expected) return false;
+  if (byte == expected) {
+    ++right_;
+  } else {
+    misread_ = true;
+    text_.push_back(static_cast<char>(byte));
+  }
   if (byte != expected && reply_.bad_checksum.empty()) {
     const std::string whose = due == Due::kLine && !reply_.lines.empty() ? "`" + reply_.lines.back() + "`" : "the line";
     reply_.bad_checksum = fmt::format("the checksum of {} is ${:02X}, expected ${:02X}", whose, byte, expected);
@@ -65,6 +74,11 @@ ReplyParser::Due ReplyParser::end_line() {
 
 bool ReplyParser::take(std::uint8_t byte) {
   const char c = static_cast<char>(byte);
+  if (reply_.complete && !mixed_) {
+    misread_ = true;
+    text_.push_back(c);
+    return false;
+  }
   if (std::exchange(unexpected_, std::nullopt) == byte) maybe_checksums_ = true;
   const bool behind_error = due_ == Due::kError && !mixed_;
   const bool is_checksum = take_checksum(byte);
@@ -88,6 +102,7 @@ bool ReplyParser::take(std::uint8_t byte) {
 
 void ReplyParser::take_text(char c) {
   handshake_ = false;
+  text_.push_back(c);
   sum_ = static_cast<std::uint8_t>(sum_ + static_cast<unsigned char>(c));
   switch (c) {
     case kAck:
@@ -109,7 +124,7 @@ void ReplyParser::take_text(char c) {
         due_ = due;
       else
         unexpected_ = std::exchange(sum_, std::uint8_t{0});
-      reply_.complete = numbered_ && !sums_;
+      reply_.complete = numbered_ && error_ends_;
       break;
     case kLf:
       sum_ = static_cast<std::uint8_t>(kLf);
@@ -124,6 +139,16 @@ void ReplyParser::take_text(char c) {
     default:
       line_.push_back(c);
   }
+}
+
+unsigned ReplyParser::error_number() const {
+  constexpr std::size_t kBegin = 3;  // behind ERR
+  unsigned number = 0;
+  if (!numbered_) return number;
+  const std::string& text = reply_.lines.back();
+  for (std::size_t i = kBegin; i < text.size() && text[i] >= '0' && text[i] <= '9'; ++i)
+    number = number * 10 + static_cast<unsigned>(text[i] - '0');
+  return number;
 }
 
 bool ReplyParser::quiet_is_the_end() {

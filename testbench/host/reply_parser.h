@@ -44,7 +44,17 @@ class ReplyParser {
         command_(command),
         mixed_(mixed != Mixed::kNo),
         sums_(framing.checksums() || mixed == Mixed::kOfLines || mixed == Mixed::kWithChecksums),
-        error_sums_(sums_ && mixed != Mixed::kOfLines) {}
+        error_sums_(sums_ && mixed != Mixed::kOfLines),
+        error_ends_(!sums_) {}
+
+  // Of an answer whose I3 nobody knows, on this controller, whose errors have no checksum: whoever reads it finds the
+  // end that I3 = 0 and 1 have in text(), and by misread() that there are no checksums, or that there are.
+  static ReplyParser any_framing(bool checksums, std::uint8_t command) {
+    ReplyParser parser({2, checksums ? 1u : 0u}, command);
+    parser.error_sums_ = false;
+    parser.error_ends_ = true;
+    return parser;
+  }
 
   bool take(std::uint8_t byte);                      // false: it is none of this reply, which is complete
   bool complete() const { return reply_.complete; }  // the framing itself says that nothing more comes
@@ -55,6 +65,13 @@ class ReplyParser {
   bool ends_by_quiet() const { return mixed_ || framing_.i3 < 2 || reply_.error; }
 
   const Reply& reply() const { return reply_; }
+  // All that came but for right checksums; what a complete reply is followed by, too.
+  const std::string& text() const { return text_; }
+  unsigned right_checksums() const { return right_; }
+  bool misread() const { return misread_; }  // a checksum was wrong, or something followed a complete reply
+  bool bare_error() const { return reply_.error && !numbered_ && line_.empty(); }  // I6 = 0, 2, if no more comes
+  unsigned error_number() const;                                                   // 0: none has come
+
   // Where no checksums are expected: behind a data line came what would be its checksum, as data may also happen to be.
   bool maybe_checksums() const { return maybe_checksums_; }
 
@@ -70,8 +87,11 @@ class ReplyParser {
 
   Framing framing_;
   std::optional<std::uint8_t> command_;
-  bool mixed_, sums_, error_sums_, maybe_checksums_ = false;
+  bool mixed_, sums_, error_sums_, error_ends_, maybe_checksums_ = false;
   Reply reply_;
+  std::string text_;
+  unsigned right_ = 0;
+  bool misread_ = false;
   std::string line_;
   std::uint8_t sum_ = 0;  // of the line that is being received, or of the last one
   Due due_ = Due::kNothing;

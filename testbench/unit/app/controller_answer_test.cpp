@@ -76,6 +76,18 @@ TEST(ControllerAnswer, AChecksumThatLooksLikeAnAcknowledge) {
   EXPECT_EQ(heard(line + "\x06\x06" + checksum("P1"), "P1", false).text, line + "\x06");
 }
 
+// firmware:6.7: what a program sends has a checksum as any line, its errors with their tag have none.
+TEST(ControllerAnswer, ErrorsOfProgramsBetweenLinesHaveNoChecksum) {
+  const Bytes error =
+                  "\x02"
+                  "ERR003\r",
+              text = "\x02Hello\r", line = "25\r";
+  const Heard found =
+      heard(error + line + checksum(line) + text + checksum(text) + "\x06" + checksum("P1"), "P1", true);
+  EXPECT_EQ(found.text, error + line + text + "\x06");
+  EXPECT_TRUE(found.sums && found.ended_by_itself);
+}
+
 // A checksum that comes when nobody waits for it is the dialogue's: here the end is the acknowledge.
 TEST(ControllerAnswer, AnAcknowledgeAloneIsTheEndUnlessThereWereChecksums) {
   ControllerAnswer answer(command_checksum("J/"), false), next(command_checksum("J/"), true);

@@ -421,6 +421,27 @@ TEST(Memory, IsReadAndWrittenInEveryForm) {
   EXPECT_EQ(c.line("WL$10F0,0.75,-1 RL$10F0,2 RHL$10F0,2"), "0.75 -1|6000000007FF 8000000007FF");
 }
 
+// firmware:1.9/3: a hexadecimal constant for L and D is the word itself, so that what RHL shows goes back as it is; in
+// an expression, and for X and Y, it is a number.
+TEST(Memory, HexadecimalConstantsAreWholeWords) {
+  Controller c;
+  EXPECT_EQ(c.line("WL:$10F0,$400000000800 RHL$10F0 RL$10F0"), "400000000800|1") << "0.5 x 2^(2048 - 2047)";
+  EXPECT_EQ(c.line("WL$10F0,$6000000007FF,-1,$FFFFFFFFFFFF RHL$10F0,3"), "6000000007FF 8000000007FF FFFFFFFFFFFF");
+  EXPECT_EQ(c.line("WD:$10F0,$123456789ABC,$0,$800000000000 RHD$10F0,3"), "123456789ABC 000000000000 800000000000");
+  EXPECT_EQ(c.line("RX$10F0,3 RHY$10F0"), "1193046 0 -8388608|789ABC");
+  EXPECT_EQ(c.line("WD$10F0,$A RD$10F0 WL$10F1,$A RHL$10F1"), "10|00000000000A") << "leading digits are 0";
+  EXPECT_EQ(c.line("WD$10F0,$10+1,-$10 RD$10F0,2"), "17 -16");
+  EXPECT_EQ(c.line("WL$10F0,$10+1,$FF/2 RL$10F0,2"), "17 127.5");
+  EXPECT_EQ(c.line("WD$10F0,17 WL$10F1,16 RD$10F0 RL$10F1"), "17|16") << "decimal ones are values";
+  EXPECT_EQ(c.line("WX$10F0,$123456789 RHX$10F0"), "456789") << "modulo 2^24, as any value";
+  for (const char* form : {"L", "D"})
+    for (const char* constant : {"$0123456789ABC", "$1234567890ABCDEF01", "$", "$G", "$-1"}) {
+      ASSERT_EQ(c.line("WD$10F0,5"), "");
+      EXPECT_EQ(c.line("W" + std::string(form) + "$10F0," + constant), "ERR003") << constant;
+      EXPECT_EQ(c.line("RD$10F0"), "5") << constant;
+    }
+}
+
 TEST(Memory, AddressesAndCountsAreChecked) {
   Controller c;
   EXPECT_EQ(

@@ -146,9 +146,10 @@ TEST_F(FixedBuffer, StatementsBelongToTheirKindOfProgram) {
                 {"ADDRESS#1", "X", "N262144", "N-1", "READ(N)", "HOME0", "HOME1..33", "ENABLE PLC 32", "DWELL-1",
                  "TM8388608", "X1:", "IF(P1)", "CALL", "CIRCLE5", "P1==2"}},
                {"OPEN PLC 1",
-                {"IF(P1=1)", "OR(P2=2)", "ELSE", "ENDIF", "ADR#1&2", "ADR&3", "DISPLAY 3,8.2,P1", "M1=2", "RET"},
-                {"X1", "A10", "LINEAR", "DWELL5", "GOTO5", "CALL5", "WHILE(P1=1)WAIT", "M1==2", "ADR#33", "ADR",
-                 "DISP80\"A\"", "DISP1,17.2,P1", "READ(X)"}},
+                {"IF(P1=1)", "OR(P2=2)", "ELSE", "ENDIF", "ADR#1&2", "ADR&3", "ADR#P400", "ADR&P8191",
+                 "DISPLAY 3,8.2,P1", "M1=2", "RET"},
+                {"X1", "A10", "LINEAR", "DWELL5", "GOTO5", "CALL5", "WHILE(P1=1)WAIT", "M1==2", "ADR#33", "ADR#P8192",
+                 "ADR&P(1)", "ADR#P", "ADR#P-1", "ADR#Q1", "ADR", "DISP80\"A\"", "DISP1,17.2,P1", "READ(X)"}},
                {"OPEN INVERSE", {"P1=Q7", "IF(P1>2)", "ENDIF", "RETURN"}, {"X1", "SEND\"A\"", "GOTO5", "ENABLE PLC1"}}};
   for (const auto& c : cases) {
     ASSERT_EQ(host(c.open), "");

@@ -42,6 +42,12 @@ TEST_F(Listing, PlcsAreListedOneStatementALine) {  // as recorded: firmware:4.8
             (Lines{"IF(P1=1)", "AND(M2=0)", "CMD\"#1K\"", "DISPLC3,4", "ELSE", "WHILE(M1=0)", "ENDW", "ENDI", "RET"}));
 }
 
+TEST_F(Listing, AddressesAreListedAsTheyAreEntered) {
+  const Lines lines = {"ADR#32", "ADR&16", "ADR#1&2", "ADR#P0", "ADR&P8191", "ADR#P400&P401", "ADR#7&P3", "ADR#P3&7"};
+  enter("PLC 5", lines);
+  EXPECT_EQ(host_lines("LIST PLC 5"), lines);
+}
+
 TEST_F(Listing, NumbersInARowAreARange) {
   EXPECT_EQ(listed("HM1..32"), "HM1..32");
   EXPECT_EQ(listed("HM1,2,4,5,6,8,31,32"), "HM1,2,4..6,8,31,32");

@@ -210,6 +210,25 @@ TEST_F(Plc, MotorAndSystemAreAddressedByEachForItself) {
   EXPECT_EQ(q_variable_read(0, 1), 2.0) << "&1 again";
 }
 
+// firmware:7.2/3: the P-variable's value when the statement is executed; one that names nothing changes nothing.
+TEST_F(Plc, AddressesAreTakenFromVariables) {
+  load(1, {"ADDRESS&P401", "Q1=Q1+1", "P401=P401+1"});
+  load(2, {"ADR#P400&P401", "CMDP\"#\"", "DISABLE PLC 2"});
+  ASSERT_EQ(host("I3=2 P401=2 I5=2 ENABLE PLC 1"), "");
+  background(3);
+  ASSERT_EQ(host("DISABLE PLC 1"), "");
+  for (unsigned cs = 1; cs <= 6; ++cs) EXPECT_EQ(q_variable_read(cs - 1, 1), cs >= 2 && cs <= 4 ? 1.0 : 0.0) << cs;
+  const auto motor_of = [](const std::string& value) {
+    EXPECT_EQ(host("P400=" + value + " ENABLE PLC 2"), "");
+    background(3);
+    return platform::sent();
+  };
+  EXPECT_EQ(motor_of("32"), "32\r");
+  EXPECT_EQ(motor_of("1"), "1\r");
+  for (const char* none : {"0", "33", "0.9", "-1", "1000000000"}) EXPECT_EQ(motor_of(none), "1\r") << none;
+  EXPECT_EQ(motor_of("3.99"), "3\r") << "the whole part";
+}
+
 TEST_F(Plc, WhatIsEnabledAfterOpenCloseSaveAndReset) {
   load(1, {"P1=P1+1"});
   load(2, {"P2=P2+1"});

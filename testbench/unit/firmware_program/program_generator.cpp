@@ -103,7 +103,6 @@ std::string ProgramGenerator::argument(const statement_row& row) {
       return text;
     case ARGUMENT_RATE:
       return value(false);
-    case ARGUMENT_FEED:
     case ARGUMENT_TIME:
       return std::to_string(1 + number(8388607)) + (number(2) == 0 ? ".5" : "");
     case ARGUMENT_LABEL:
@@ -120,8 +119,8 @@ std::string ProgramGenerator::argument(const statement_row& row) {
     case ARGUMENT_PLCS:
       return numbers(0, 31);
     case ARGUMENT_ADDRESS:
-      if (number(2) == 0) text = "#" + std::to_string(1 + number(32));
-      if (text.empty() || number(2) == 0) text += "&" + std::to_string(1 + number(16));
+      if (number(2) == 0) text = "#" + address(32);
+      if (text.empty() || number(2) == 0) text += "&" + address(16);
       return text;
     case ARGUMENT_TEXT:
       if (number(4) == 0) return std::string("^") + "@ABKZ[_"[number(7)];
@@ -139,6 +138,11 @@ std::string ProgramGenerator::argument(const statement_row& row) {
   for (unsigned i = 0, count = number(20); i < count; ++i)
     text += characters[number(static_cast<unsigned>(characters.size()))];
   return text + "\"";
+}
+
+// A number, or a P-variable.
+std::string ProgramGenerator::address(unsigned count) {
+  return number(2) == 0 ? "P" + std::to_string(number(8192)) : std::to_string(1 + number(count));
 }
 
 std::string ProgramGenerator::name(const statement_row& row) {

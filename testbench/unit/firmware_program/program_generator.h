@@ -26,6 +26,7 @@ class ProgramGenerator {
   std::string condition();
   std::string argument(const statement_row& row);
   std::string name(const statement_row& row);
+  std::string address(unsigned count);
   std::string assignment();
   std::string called_letter();
   std::string simple(bool first);

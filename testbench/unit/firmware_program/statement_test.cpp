@@ -74,7 +74,7 @@ TEST_F(Statement, AnErrorStoresNothingOfTheLine) {
   EXPECT_EQ(platform::host("X1 Y34359738369"), "ERR003");  // beyond 2^35
   EXPECT_EQ(platform::host("TM8388608"), "ERR003");
   EXPECT_EQ(platform::host("DWELL-1"), "ERR003");
-  EXPECT_EQ(platform::host("F0"), "ERR003");
+  EXPECT_EQ(platform::host("F-1"), "ERR003");
   EXPECT_EQ(platform::host("P1==2"), "ERR003");  // M only
   EXPECT_EQ(platform::host("HOME33"), "ERR003");
   EXPECT_EQ(platform::host("N262144"), "ERR003");

@@ -1,0 +1,67 @@
+// The number that says why a program was stopped (firmware:7.10), by its cause; it goes with bit 22 of word 2.
+#include "testbench/unit/firmware_program/motion_program.h"
+
+namespace {
+
+using motion_program::MotionProgram;
+using platform::host;
+using Lines = std::vector<std::string>;
+
+class RunTimeErrors : public MotionProgram {
+ protected:
+  static std::string number(unsigned cs = 1) { return host("RY$" + std::string(cs == 1 ? "2014" : "2114")); }
+};
+
+std::string repeated(const std::string& text, unsigned times) {
+  std::string all;
+  while (times-- != 0) all += text;
+  return all;
+}
+
+TEST_F(RunTimeErrors, EachCauseHasItsNumber) {
+  store(7, {"P7=1"});
+  store(8, {"CALL8"});
+  ASSERT_EQ(host("OPEN PROG 9 CLEAR"), "");
+  ASSERT_EQ(host("IF(P1=0)"), "");
+  ASSERT_EQ(host("CLOSE"), "ERR009") << "closed all the same";
+  const struct {
+    const char* number;
+    Lines lines;
+  } causes[] = {
+      {"1", {"CIRCLE1 X1Y1R5"}}, {"1", {"PVT100"}},   {"2", {"CALL99"}},
+      {"2", {"CALL99.5"}},       {"2", {"G1"}},       {"2", {"CALL(-1)"}},
+      {"2", {"CALL(40000)"}},    {"3", {"GOTO5"}},    {"3", {"GOSUB5"}},
+      {"3", {"CALL7.5"}},        {"3", {"GOTO(-1)"}}, {"3", {"GOSUB(300000)"}},
+      {"4", {"CALL8"}},          {"5", {"CALL9"}},    {"6", {repeated("M1==1", 33), "X1"}},
+      {"7", {"READ(X)"}},
+  };
+  ASSERT_EQ(host("M1->*"), "");
+  for (const auto& cause : causes) {
+    SCOPED_TRACE(cause.lines[0]);
+    store(1, {"P5=7"});
+    ASSERT_EQ(host("B1R"), "");
+    ASSERT_TRUE(finish());
+    EXPECT_EQ(number(), "0") << "no error of this run, whatever the one before had";
+    run(cause.lines);
+    EXPECT_TRUE(error());
+    EXPECT_EQ(number(), cause.number);
+    EXPECT_EQ(number(2), "0") << "the other system has none";
+    ASSERT_EQ(host("WY$2014,99"), "");
+    EXPECT_EQ(number(), cause.number) << "a host cannot write it";
+  }
+}
+
+TEST_F(RunTimeErrors, ItIsThatOfTheSystemAndGoesWithTheNextStart) {
+  store(1, {"CALL99"});
+  ASSERT_EQ(host("&2B1R"), "");
+  platform::servo_ticks(9);
+  EXPECT_EQ(number(2), "2");
+  EXPECT_EQ(number(1), "0");
+  EXPECT_EQ(host("&2Q RY$2114"), "2") << "it stays until the program is started again";
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR DWELL100 CLOSE &2B2"), "");
+  EXPECT_EQ(number(2), "2");
+  ASSERT_EQ(host("R"), "");
+  EXPECT_EQ(number(2), "0");
+}
+
+}  // namespace
