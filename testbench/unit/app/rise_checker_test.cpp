@@ -5,8 +5,6 @@
 
 #include <functional>
 
-#include "testbench/unit/covers.h"
-
 namespace brick {
 namespace {
 
@@ -28,7 +26,6 @@ struct Story {
 };
 
 TEST(RiseChecker, TakesARiseWithinTheInterruptOfTheLine) {
-  BRICK_COVERS("BREQ-4");
   EXPECT_EQ(Story{}.run(), "");
   Story story;
   story.rise = 3 * kPeriod + kInterrupt - 1;
