@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Figures and claims that stand in two places say the same: how long a SAVE takes, how fast an idle machine is, how many
-misreadings were planted, how many files are proved, what is claimed and what the plan calls open."""
+"""Figures and claims that stand in two places say the same: how long a SAVE takes, how fast an idle machine is, how
+many misreadings were planted, how many files are proved, what is claimed and what the plan calls open."""
 
 import argparse
 import pathlib

@@ -206,8 +206,8 @@ def read_results(root):
 
 
 def result_on(engine, test, results):
-    """What a test showed on an engine, None where it does not run. A test without any result counts on every engine that
-    it may run on; one without an engine is no proof of any, but its failure is one against all."""
+    """What a test showed on an engine, None where it does not run. A test without any result counts on every engine
+    that it may run on; one without an engine is no proof of any, but its failure is one against all."""
     shown = results.get(test.name)
     if shown is None:
         return "no result" if not test.engines or engine in test.engines else None
@@ -279,7 +279,8 @@ def cmake_names(root):
     for file in files(root, ["testbench"], {".txt"}):
         text = (root / file).read_text()
         prefixes.update({str(file.parent): m[1] for m in re.finditer(r"add_test\(NAME (\w+)\.\$\{\w+\}", text)})
-        suites.update({m[2]: m[1] for m in re.finditer(r"add_test\(NAME (\S+) COMMAND \S+ --gtest_filter=(\w+)\.\*", text)})
+        whole = re.finditer(r"add_test\(NAME (\S+) COMMAND \S+ --gtest_filter=(\w+)\.\*", text)
+        suites.update({m[2]: m[1] for m in whole})
     return prefixes, suites
 
 
