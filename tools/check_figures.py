@@ -8,7 +8,7 @@ import re
 
 from common import ROOT, finish
 
-WORDS = "no one two three four five six seven eight nine ten eleven twelve".split()
+WORDS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
 # (what, (page, pattern), ...): the first group of each, of the same text.
 PAIRS = (
     ("a SAVE as it comes", ("docs/save.md", r"SAVE of a controller as it comes \| (\d+) ms"),
