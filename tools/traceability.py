@@ -15,7 +15,8 @@ of the test suite showed of each of these tests, on each engine.
                does not exist, and when docs/traceability.md is not what --write would write
   --write      writes docs/traceability.md
   --results F  takes the results of a run from `ctest --output-junit F` into docs/test-results.json and writes the page;
-               fails when a claimed ID has no passed test on one of its engines, or a failed one
+               fails when a test that names an ID has no result, and when a claimed ID is not passed on one of its
+               engines: one of the tests that name it has failed there or has no result, or none runs there
 """
 
 import argparse
@@ -204,11 +205,21 @@ def read_results(root):
     return json.loads(path.read_text()) if path.exists() else {"run": "none yet", "tests": {}}
 
 
+def result_on(engine, test, results):
+    """What a test showed on an engine, None where it does not run. A test without any result counts on every engine
+    that it may run on; one without an engine is no proof of any, but its failure is one against all."""
+    shown = results.get(test.name)
+    if shown is None:
+        return "no result" if not test.engines or engine in test.engines else None
+    return "failed" if shown.get(NO_ENGINE) == "failed" else shown.get(engine)
+
+
 def row_results(engines, tests, results):
-    """What the tests of a row showed on each of its engines."""
+    """What the tests of a row showed on each of its engines: passed where each that runs there has."""
     for engine in engines.split():
-        shown = {results.get(test.name, {}).get(engine) for test in tests}
-        yield engine, "failed" if "failed" in shown else "passed" if "passed" in shown else "no result"
+        shown = {result_on(engine, test, results) for test in tests}
+        worst = next((each for each in ("failed", "no result", "passed") if each in shown), "no result")
+        yield engine, worst
 
 
 def test_cell(test, results):
@@ -230,7 +241,8 @@ def page(requirements, claimed, tests, design, results):
         "L lock-step, F firmware on the CPU model.",
         "*Claimed* means: the project says that it meets the requirement on all its engines, and the test suite fails",
         "if no test names it. *Partly* means: tests name it, but it is not met in full yet.",
-        "Behind a test stand the engines that it passed on; a checker that works on lists made by hand has none.",
+        "Behind a test stand the engines that it passed on; a checker that works on lists made by hand has none. A",
+        "requirement has passed on an engine when every test that names it and runs there has.",
         "`docs/design-files.txt` says which files a requirement is made of.", "",
         f"Results: {results['run']}.",
         f"{len(claimed)} of {len(requirements)} claimed, {len(by_id)} named by at least one test.", "",
@@ -261,22 +273,39 @@ def plain_name(name):
     return (found[1], RUN_ON[found[2]]) if found else (name, None)
 
 
+def cmake_names(root):
+    """({folder: what the names of its Python cases begin with}, {suite: entry that runs all of it}), from add_test."""
+    prefixes, suites = {}, {}
+    for file in files(root, ["testbench"], {".txt"}):
+        text = (root / file).read_text()
+        prefixes.update({str(file.parent): m[1] for m in re.finditer(r"add_test\(NAME (\w+)\.\$\{\w+\}", text)})
+        whole = re.finditer(r"add_test\(NAME (\S+) COMMAND \S+ --gtest_filter=(\w+)\.\*", text)
+        suites.update({m[2]: m[1] for m in whole})
+    return prefixes, suites
+
+
 def results_of(root, tests, junit):
     """{test: {engine: passed or failed}}, an engine counts as passed when every run of the test on it passed."""
-    runs = collections.defaultdict(list)
+    runs, entries = collections.defaultdict(list), {}
     for case in xml.etree.ElementTree.parse(junit).getroot().iter("testcase"):
         name, engine = plain_name(case.get("name"))
         runs[name].append((engine, case.get("status")))
+        entries[case.get("name")] = (engine, case.get("status"))
+    prefixes, suites = cmake_names(root)
     acceptance = root / "testbench/unit/app/bench_acceptance.py"
     cases = acceptance.read_text() if acceptance.exists() else ""
     found = {}
     for test in tests:
         bench = test.name.startswith("bench ")
         name = test.name.removeprefix("bench ").replace("-", "_")
-        name = f"brick.{name}" if bench or test.file.endswith(".py") else name
+        if bench or test.file.endswith(".py"):
+            name = f"{'brick' if bench else prefixes.get(str(pathlib.Path(test.file).parent), 'brick')}.{name}"
+        runs_of = [entries[name]] if name in entries and name not in runs else runs[name]
+        if not runs_of and name.split(".")[0] in suites:
+            runs_of = [run for entry, run in entries.items() if entry == suites[name.split(".")[0]]]
         default = python_engines(cases, name.removeprefix("brick.")) if bench else test.engines
         shown = collections.defaultdict(set)
-        for engine, status in runs[name]:
+        for engine, status in runs_of:
             engines = {engine} if engine else set(default)
             if WITH_FIRMWARE.search(test.file):
                 engines.add("F")
@@ -307,6 +336,8 @@ def main():
     if options.results:
         taken = {"run": named_run(root), "tests": results_of(root, tests, options.results)}
         (root / RESULTS).write_text(json.dumps(taken, indent=1) + "\n")
+        problems += [f"{test.file}: {test.name} names {' '.join(test.ids)}: no result" for test in tests
+                     if test.name not in taken["tests"]]
         for name in claimed:
             found = [test for test in tests if name in test.ids]
             shown = row_results(requirements[name][0], found, taken["tests"])

@@ -105,7 +105,9 @@ bool BinaryHost::send(unsigned cs, const std::vector<std::string>& lines) {
 void BinaryHost::settle() {
   const Tick limit = context_.bus.now() + kPatience;
   while (!scoreboard_.all_copied() && context_.bus.now() < limit) context_.bus.wait(ns_to_ticks(20'000));
+  if (!scoreboard_.all_copied()) context_.report.fail("lines are copied", "some wait after 200 ms, expected none");
   context_.bus.wait(kSettled);
+  scoreboard_.settled(context_.bus.now());
 }
 
 std::string BinaryHost::random_line() {

@@ -57,7 +57,8 @@ void GatherBench::begin(unsigned mode, unsigned period, const std::string& size)
   b_.expect("DEFINE GATHER " + size, "");
 }
 
-// The counter goes on by the period, the halves are alike and never go back.
+// The counter goes on by the period, the halves are alike, and go on by the period too: PLC 0 runs once a servo
+// interrupt.
 void GatherBench::judge(const std::string& name, const std::vector<Sample>& samples, unsigned period, unsigned least) {
   const unsigned told = b_.negative ? period + 1 : period;
   Comparison compared;
@@ -66,7 +67,8 @@ void GatherBench::judge(const std::string& name, const std::vector<Sample>& samp
     if (i == 0) continue;
     compared.equal(fmt::format("sample {}, servo interrupts since the last", i),
                    samples[i].count - samples[i - 1].count, told);
-    compared.within(fmt::format("sample {}, value", i), samples[i].low, samples[i - 1].low, 0xFFFFFF);
+    compared.equal(fmt::format("sample {}, scans of the PLC since the last", i), samples[i].low - samples[i - 1].low,
+                   period);
   }
   b_.report.step(name, compared, 3 * least - 2, fmt::format("{} samples", samples.size()));
 }

@@ -12,8 +12,10 @@ namespace {
 
 constexpr Tick kMillisecond = kPwmClockHz / 1000;
 constexpr unsigned kClear = 8, kMask = 10, kEdgeLevel = 11;
-// From the command's end to the write: two edges of the synchroniser, the next clk_ref, one more (docs/host-bus.md).
-constexpr Tick kWriteLatency = 2 + 2 * kTicksPerRef;
+// When a write takes place whose command ends at this tick: two edges of the synchroniser, the next clk_ref that sees
+// the end, one more (docs/host-bus.md).
+constexpr Tick write_tick(Tick end) { return ((end + 2) / kTicksPerRef + 2) * kTicksPerRef; }
+static_assert(write_tick(0) == 6 && write_tick(1) == 9 && write_tick(2) == 9 && write_tick(3) == 9);
 constexpr Tick kSigAfter = 2 * kTicksPerRef, kIrqAfter = 3 * kTicksPerRef;  // a pin that moves at an edge of clk_ref
 constexpr Tick kIrqLow = 4 * kTicksPerRef;
 
@@ -31,7 +33,7 @@ class Interrupts : public InterruptHost {
   Interrupts& operator=(const Interrupts&) = delete;
 
   void run() {
-    calibrate();
+    writes_take_place();
     for (unsigned n = 0; n < kFixed.size(); ++n) fixed_line(n);
     for (const unsigned source : sources()) chosen_lines(source);
     alignments();
@@ -76,9 +78,9 @@ class Interrupts : public InterruptHost {
   }
 
   // When a write takes place after its command has ended, for each phase to clk_ref: seen at the mask's pins.
-  void calibrate() {
+  void writes_take_place() {
     set(0, 0);
-    bool good = true;
+    Comparison same;
     for (Tick phase = 0; phase < kTicksPerRef; ++phase) {
       const Tick end = (b.bus.now() / kTicksPerRef + 40) * kTicksPerRef + phase;
       std::vector<std::pair<Tick, Edit>> edits;
@@ -86,12 +88,9 @@ class Interrupts : public InterruptHost {
       play(std::move(edits));
       b.bus.wait(60);
       const Tick at = moved(pin::kPicMsk, end);
-      good = good && at > end && at - end <= kWriteLatency && at % kTicksPerRef == 0;
-      written_after_[static_cast<std::size_t>(phase)] = at - end;
+      same.equal(fmt::format("ticks after a command that ends at phase {}", phase), at - end, write_tick(end) - end);
     }
-    b.report.step("writes take place", good,
-                  fmt::format("{}, {}, {} ticks after the command at the phases of clk_ref", written_after_[0],
-                              written_after_[1], written_after_[2]));
+    b.report.step("writes take place", same, kTicksPerRef, "6, 8, 7 ticks after the command at the phases of clk_ref");
   }
 
   // IR0 to IR4.
@@ -197,7 +196,7 @@ class Interrupts : public InterruptHost {
       play(std::move(edits));
       b.bus.advance_to(rise + 60);
       const Tick sampled = (rise / kTicksPerRef + 1) * kTicksPerRef, detected = sampled + 2 * kTicksPerRef;
-      const Tick written = end + written_after_[static_cast<std::size_t>(end % kTicksPerRef)];
+      const Tick written = write_tick(end);
       const bool keeps = detected >= written;
       ++(keeps ? kept : cleared);
       same.equal(fmt::format("rise at {}, clear at {}: IST", detected - rise, written - rise), out(pin::kPicIst),
@@ -231,7 +230,7 @@ class Interrupts : public InterruptHost {
       play(std::move(edits));
       b.bus.advance_to(rise + 60);
       const Tick detected = (rise / kTicksPerRef + 3) * kTicksPerRef;
-      const Tick written = end + written_after_[static_cast<std::size_t>(end % kTicksPerRef)];
+      const Tick written = write_tick(end);
       left += detected == written ? 1 : 0;
       judge(fmt::format("rise at {}", detected - written), written,
             detected < written ? -1 : std::max(detected, written + kIrqLow));
@@ -246,7 +245,7 @@ class Interrupts : public InterruptHost {
       add_write(edits, end, kClear, 0);
       play(std::move(edits));
       b.bus.advance_to(end + 60);
-      const Tick written = end + written_after_[static_cast<std::size_t>(phase)];
+      const Tick written = write_tick(end);
       judge("a level stays", written, written + kIrqLow);
       drive(kSourceMi1, false);
     }
@@ -286,8 +285,7 @@ class Interrupts : public InterruptHost {
       const unsigned offset = pick(3) == 0 ? kEdgeLevel : pick(2) == 0 ? kMask : kClear;
       const auto value = static_cast<std::uint8_t>(pick(8) << 5);
       add_write(edits, end, offset, value);
-      writes.push_back({end + written_after_[static_cast<std::size_t>(end % kTicksPerRef)],
-                        {offset == kMask, offset == kEdgeLevel, offset == kClear, value}});
+      writes.push_back({write_tick(end), {offset == kMask, offset == kEdgeLevel, offset == kClear, value}});
     }
     for (Tick t = begin + 50; t < end; t += 1 + pick(60)) {
       const unsigned line = pick(3);
@@ -337,7 +335,6 @@ class Interrupts : public InterruptHost {
     b.machine.take_run_errors();  // the board's own source of the clocks is told of
   }
 
-  std::array<Tick, kTicksPerRef> written_after_{};
   std::vector<Change> changes_;
 };
 

@@ -12,7 +12,8 @@ constexpr Tick kMillisecond = kPwmClockHz / 1000;
 
 constexpr std::uint64_t bit(unsigned word, unsigned number) { return std::uint64_t{1} << (24 * (1 - word) + number); }
 
-// `changes`: bits of the first two words that are not as before while the cause acts.
+// `changes`: bits of the first two words that are not as before while the cause acts; the third word has none that
+// change with these causes.
 struct Cause {
   std::string name;
   std::vector<std::string> begin, end;
@@ -25,10 +26,12 @@ class Status {
       : b_(b), query_(std::move(query)), words_(words), addresses_(std::move(addresses)) {}
 
   void check(const Cause& cause, bool left_out = false) {
-    const std::uint64_t before = read();
+    const Words before = read();
     if (!left_out) commands(cause.begin);
-    compared_.equal(cause.name, text(read()), text(before ^ cause.changes));
-    compared_.equal(cause.name + " at its addresses", at_addresses(), text(read()));
+    const Words meanwhile = read();
+    const std::string expected = text({before.two ^ cause.changes, before.third});
+    compared_.equal(cause.name, text(meanwhile), expected);
+    compared_.equal(cause.name + " at its addresses", at_addresses(), expected);
     commands(cause.end);
     compared_.equal(cause.name + ", ended", text(read()), text(before));
   }
@@ -45,16 +48,19 @@ class Status {
         compared_.equal(line, b_.ask(line), "");
     }
   }
-  std::uint64_t read() {
+  struct Words {
+    std::uint64_t two = 0;
+    std::string third;
+  };
+  Words read() {
     const std::string answer = b_.ask(query_);
     if (answer.size() != 6 * words_ || answer.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
       compared_.equal(query_, answer, fmt::format("{} hexadecimal digits", 6 * words_));
-      return 0;
+      return {};
     }
-    third_ = answer.substr(12);
-    return std::stoull(answer.substr(0, 12), nullptr, 16);
+    return {std::stoull(answer.substr(0, 12), nullptr, 16), answer.substr(12)};
   }
-  std::string text(std::uint64_t value) const { return fmt::format("{:012X}{}", value, third_); }
+  static std::string text(const Words& words) { return fmt::format("{:012X}{}", words.two, words.third); }
   std::string at_addresses() {
     std::string all;
     for (const std::string& address : addresses_) {
@@ -68,7 +74,6 @@ class Status {
   std::string query_;
   unsigned words_;
   std::vector<std::string> addresses_;
-  std::string third_;
   Comparison compared_;
 };
 
@@ -191,27 +196,54 @@ void global_bits(BenchContext& b) {
   b.expect("DELETE ALL TEMPS", "");
 }
 
+// What ^B, ^C, ^F, ^G, ^P and ^V say of motors 9 to 16 and of all systems, from words that are written for it. Ixx08
+// and Ixx09 are 96, so a register of 3,072 is one count (firmware:1.10/8, firmware:5.1).
 void control_characters(BenchContext& b) {
+  constexpr int kMotors = 8, kFirst = 9, kSystems = 16, kCount = 32 * 96;
   Comparison compared;
-  b.expect("&3INC(V) I1200=1 #12HMZ ##1", "");
-  const auto joined = [&b](const char* form, unsigned first, unsigned count) {
-    std::string all;
-    for (unsigned i = first; i < first + count; ++i)
-      all += (i == first ? "" : " ") + b.ask(fmt::format(fmt::runtime(form), i));
-    return all;
+  std::string statuses, positions, errors, velocities, systems;
+  const auto number = [](double value) {
+    std::string text = fmt::format("{:.5f}", value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
   };
+  const auto say = [&](const std::string& line) { compared.equal(line, b.ask(line), ""); };
+  for (int i = 0; i < kMotors; ++i) {
+    const int motor = kFirst + i, at = 0x80 * motor, sign = i % 2 == 0 ? 1 : -1;
+    const std::string space = i == 0 ? "" : " ";
+    say(fmt::format("M8..11->* M8->D:${:X} M9->D:${:X} M10->X:${:X},0,24,S", at + 0x08, at + 0x0B, at + 0x1D));
+    say(fmt::format("M8={} M9={} M10={}", sign * (motor + 5) * kCount, sign * (motor * kCount + kCount / 2),
+                    sign * (motor + 100) * kCount + kCount / 4));
+    if (motor % 3 == 0) say(fmt::format("I{}00=1 #{}HMZ", motor, motor));
+    statuses += space + (motor % 3 == 0 ? "850000000400" : "050000000000");
+    positions += space + number(sign * (motor + 0.5));
+    errors += space + number(sign * 4.5);
+    velocities += space + number(sign * (motor + 100) + 0.25);
+  }
+  for (int cs = 1; cs <= kSystems; ++cs) {
+    if (cs % 4 == 3) say(fmt::format("&{}INC(V)", cs));
+    systems += (cs == 1 ? "" : " ") + std::string(cs % 4 == 3 ? "A84020" : "A80020") + "020000000000";
+  }
+  say("I68=15 ##1");
   const auto line = [&b](std::uint8_t c) {
     const Reply reply = b.link.control(c);
     return reply.lines.empty() ? "nothing" : reply.lines.front();
   };
-  compared.equal("^B", line(0x02), joined("#{}?", 9, 8));
-  compared.equal("^C", line(0x03), joined("&{}??", 1, 16));
-  compared.equal("^G", line(0x07), b.ask("???"));
-  compared.equal("^P", line(0x10), joined("#{}P", 9, 8));
-  compared.equal("^F", line(0x06), joined("#{}F", 9, 8));
-  compared.equal("^V", line(0x16), joined("#{}V", 9, 8));
-  b.expect("&3ABS(V) I1200=0 ##0", "");
-  b.report.step("control characters", compared, 6, "^B ^C ^F ^G ^P ^V say what the queries say");
+  const bool ultralite = b.board.fitted >> 18 != 0 && (b.board.fitted & 0x3FFFF) == 0,
+             umac = b.board.family == "umac-turbo";
+  const std::uint64_t global = bit(1, 11) | (ultralite ? bit(1, 23) : 0) | (umac ? bit(1, 16) : 0);
+  compared.equal("^B", line(0x02), statuses);
+  compared.equal("^C", line(0x03), systems);
+  compared.equal("^G", line(0x07), fmt::format("{:012X}", global));
+  compared.equal("^P", line(0x10), positions);
+  compared.equal("^F", line(0x06), errors);
+  compared.equal("^V", line(0x16), velocities);
+  for (int motor = kFirst; motor < kFirst + kMotors; ++motor)
+    if (motor % 3 == 0) say(fmt::format("#{}HM I{}00=0", motor, motor));
+  for (int cs = 3; cs <= kSystems; cs += 4) say(fmt::format("&{}ABS(V)", cs));
+  say("M8..11->* ##0");
+  b.report.step("control characters", compared, 6, "^B ^C ^F ^G ^P ^V say what was written for them");
 }
 
 void errors(BenchContext& b) {

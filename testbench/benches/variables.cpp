@@ -260,8 +260,10 @@ void bits(BenchContext& b, Store& store) {
 }
 
 void refusals(BenchContext& b) {
-  b.expect("I4900=5 I4900..4901=7", "");  // read-only: taken and without effect
-  b.report.step("I4900 is kept", b.ask("I4900") != "$5", b.ask("I4900"));
+  // Read-only: taken and without effect. They say what is fitted (firmware:2.2), which is 5 or 7 on no board.
+  const unsigned fitted = b.board.fitted, servo_ics = (fitted & 0x3FF) | (fitted >> 10 & 0xFF) << 12;
+  b.expect("I4900=5 I4900..4902=7", "");
+  b.expect("I4900..4902", fmt::format("${0:X}|${0:X}|${1:X}", servo_ics, fitted >> 18));
   for (const char* line : {"I8192", "P8192=1", "P5..4", "I5,0", "M(-1)", "P1.5", "Q8192", "I100..8192=*"})
     b.expect(line, "ERR003");
   b.expect("P1=7 P8192=3 P1=8", "ERR003");

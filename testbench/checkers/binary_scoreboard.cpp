@@ -60,6 +60,7 @@ void BinaryScoreboard::pmac_index(unsigned cs, unsigned index, bool in_real_time
     if (falls_ != (was_ready ? 1u : 0u))
       violate(now, fmt::format("&{} line {}: BREQ fell {} times", cs + 1, s.copied, falls_));
     if (was_ready) delays_.push_back(fell_at_ - line.written);
+    counts_.stays_low += was_ready && s.copied >= i17_ ? 1 : 0;
     falls_ = 0;
   }
   s.waiting.pop_front();
@@ -94,6 +95,14 @@ void BinaryScoreboard::shown(unsigned cs, bool level) {
   fell_at_ = rose_at_ = -1;
   const bool expected = systems_[cs].copied < i17_;
   if (level != expected) violate(0, fmt::format("&{} shown: BREQ {}, expected {}", cs + 1, level, expected));
+}
+
+void BinaryScoreboard::settled(Tick now) {
+  const System& s = systems_[selected_];
+  const bool expected = s.copied < i17_;
+  if (judged_ && level_ != expected)
+    violate(now, fmt::format("&{} settled with {} lines: BREQ {:d}, expected {:d}", selected_ + 1, s.copied, level_,
+                             expected));
 }
 
 void BinaryScoreboard::edge(Tick now, bool level) {

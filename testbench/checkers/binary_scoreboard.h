@@ -30,6 +30,7 @@ class BinaryScoreboard {
   void closed();                        // what was not copied is forgotten
   void unjudged() { judged_ = false; }  // a command moves BREQ; until ...
   void shown(unsigned cs, bool level);  // ... it shows this system
+  void settled(Tick now);               // nothing came for T_PULSE: the pin shows Full of what has been copied
 
   // What is seen.
   void pmac_index(unsigned cs, unsigned index, bool in_real_time, Tick now);

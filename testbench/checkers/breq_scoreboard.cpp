@@ -1,6 +1,7 @@
 #include "testbench/checkers/breq_scoreboard.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -93,12 +94,16 @@ void BreqScoreboard::edge(Tick now, bool level) {
   System& s = now_selected();
   level_ = level;
   last_edge_ = now;
+  const Tick rose_at = std::exchange(rose_at_, level ? now : -1);
   if (reselect_) return;  // judged by settled()
   if (!level) {
     if (!may_fall_) {
       violate(now, "BREQ falls although no program line came; expected: high");
       return;
     }
+    if (rose_at >= 0 && now - rose_at < kShortestHigh)
+      violate(now, fmt::format("BREQ was high for {:.3f} us; expected: 1 us or more between two pulses",
+                               microseconds(now - rose_at)));
     may_fall_ = must_fall_ = false;
     pulse_ = true;
     fell_at_ = now;
@@ -126,6 +131,7 @@ void BreqScoreboard::edge(Tick now, bool level) {
     return;
   }
   ++counts_.raised_by_execution;  // rule 4
+  raised_at_ = now;
   if (!s.running) violate(now, "BREQ rises although no line is being executed; expected: low while Full is 1");
   if (i16_ == 0 || lowest(s, now) > i16_ - 1)
     violate(now, fmt::format("BREQ rises with {} or more lines ahead; expected: fewer than I16={} (rule 4)",

@@ -19,6 +19,7 @@ class BreqScoreboard {
   static constexpr unsigned kSystems = 16;
   static constexpr Tick kLongestPulse = ns_to_ticks(50'000);  // T_PULSE
   static constexpr Tick kShortestPulse = ns_to_ticks(1'000);
+  static constexpr Tick kShortestHigh = ns_to_ticks(1'000);  // host-bus:5.7/7
   static constexpr Tick kSettled = ns_to_ticks(60'000);  // after this the pin shows the final state of the last command
 
   // `line_time`: the shortest time between two lines being taken for execution (one real-time interrupt).
@@ -59,7 +60,8 @@ class BreqScoreboard {
   const Counts& counts() const { return counts_; }
   bool expect_full() const { return systems_[selected_].full.value_or(false); }
   bool level() const { return level_; }
-  Tick fell_at() const { return fell_at_; }  // the last fall for a line
+  Tick fell_at() const { return fell_at_; }      // the last fall for a line
+  Tick raised_at() const { return raised_at_; }  // the last rise by execution
   Tick shortest_pulse() const { return shortest_; }
   Tick longest_pulse() const { return longest_; }
 
@@ -90,7 +92,7 @@ class BreqScoreboard {
   bool may_fall_ = false;        // a line was sent and its fall has not come
   bool must_fall_ = false;       // ... and the pin was high, so it must come
   bool pulse_ = false;           // fell for a line, not yet decided
-  Tick fell_at_ = 0, shortest_ = kNever, longest_ = 0;
+  Tick fell_at_ = 0, raised_at_ = 0, rose_at_ = -1, shortest_ = kNever, longest_ = 0;
   Counts counts_;
   std::vector<std::string> violations_;
 };

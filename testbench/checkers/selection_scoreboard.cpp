@@ -17,6 +17,8 @@ void SelectionScoreboard::begin(Tick now, Tick limit) {
   start_ = last_ = now;
   limit_ = limit;
   edges_ = 0;
+  phases_.clear();
+  real_times_.clear();
 }
 
 void SelectionScoreboard::violate(Tick now, const std::string& text) {
@@ -38,9 +40,12 @@ void SelectionScoreboard::settled(Tick now, bool breq, bool sig) {
   // while it writes.
   constexpr Tick kRecognised = ns_to_ticks(2000);
   const bool expect = expected(), by_host = limit_ == kHostLimit;
-  const bool calculated = by_host && calculation_ > 0;
-  const bool interrupted = by_host && (calculated || (phase_ <= last_ && phase_ >= start_ - kRecognised));
-  const Tick allowed = limit_ + (interrupted ? kTasks + calculation_ : 0);
+  const auto came = [&](const std::vector<Tick>& ticks, Tick before) {
+    return std::any_of(ticks.begin(), ticks.end(), [&](Tick t) { return t <= last_ && t >= start_ - before; });
+  };
+  const bool calculated = by_host && calculation_ > 0 && came(real_times_, 0);
+  const bool interrupted = by_host && (calculated || came(phases_, kRecognised));
+  const Tick allowed = limit_ + (interrupted ? kTasks : 0) + (calculated ? calculation_ : 0);
   const unsigned changes = level_ != expect ? 1 : 0;
   if (breq != expect || edges_ != changes)
     violate(now, fmt::format("BREQ={:d} after {} edges, expected {:d} after {}", breq, edges_, expect, changes));
@@ -51,6 +56,7 @@ void SelectionScoreboard::settled(Tick now, bool breq, bool sig) {
     Tick& longest = interrupted ? longest_interrupted_ : by_host ? longest_host_ : longest_panel_;
     longest = std::max(longest, last_ - start_ - (by_host ? 0 : real_time_));
     interrupted_ += interrupted ? 1 : 0;
+    undisturbed_ += by_host && !interrupted ? 1 : 0;
   }
   ++counts_.causes;
   const unsigned cs = selected();

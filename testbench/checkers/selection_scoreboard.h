@@ -31,7 +31,8 @@ class SelectionScoreboard {
   void panel(unsigned number, Tick now) { begin(now, real_time_ + kPanelBase), number_ = number; }
   void nothing(Tick now) { begin(now, 0); }
   void executed(Tick now) { start_ = now; }
-  void phase_fell(Tick now) { phase_ = now; }  // phase, servo, real-time task may interrupt the command
+  void phase_fell(Tick now) { phases_.push_back(now); }           // phase and servo task may interrupt the command
+  void real_time_began(Tick now) { real_times_.push_back(now); }  // or a slice of it goes on
   void real_time_period(Tick period) { real_time_ = period; }
   void calculation(Tick longest) { calculation_ = longest; }  // of a real-time task, where programs run
   Tick limit() const { return limit_ + kTasks + calculation_; }
@@ -50,6 +51,7 @@ class SelectionScoreboard {
   Tick longest_host() const { return longest_host_; }  // of those that no task interrupted
   Tick longest_interrupted() const { return longest_interrupted_; }
   unsigned interrupted() const { return interrupted_; }  // edges that show their longest time
+  unsigned undisturbed() const { return undisturbed_; }  // edges judged by T_CS itself
   Tick longest_panel() const { return longest_panel_; }  // beyond the real-time interrupt's period
   struct Counts {
     unsigned causes = 0, edges = 0, idle = 0, ready = 0, full = 0, none = 0;
@@ -71,9 +73,9 @@ class SelectionScoreboard {
   bool level_ = false;  // of the pin at the last settled()
   unsigned edges_ = 0;  // since then
   Tick start_ = 0, limit_ = 0, last_ = 0, real_time_ = 0;
-  Tick phase_ = 0;  // its last fall
+  std::vector<Tick> phases_, real_times_;  // since the cause
   Tick calculation_ = 0, longest_host_ = 0, longest_interrupted_ = 0, longest_panel_ = -kPanelBase;
-  unsigned interrupted_ = 0;
+  unsigned interrupted_ = 0, undisturbed_ = 0;
   Counts counts_;
   std::vector<std::string> violations_;
 };

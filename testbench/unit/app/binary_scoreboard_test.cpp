@@ -15,7 +15,7 @@ class Story {
  public:
   BinaryScoreboard board;
   Tick first_low = 2 * kUs;
-  bool second_rises = false, falls_twice = false, in_real_time = false, before_the_index = false;
+  bool second_rises = false, falls_twice = false, in_real_time = false, before_the_index = false, only_one = false;
   unsigned first_index = 2, ring = 8, second_status = 0;
   std::string told = "X1";
 
@@ -28,11 +28,16 @@ class Story {
     fall(100 * kUs, first_low);
     if (falls_twice) fall(100 * kUs + first_low + 5 * kUs, 2 * kUs);
     board.pmac_index(0, first_index, in_real_time, 120 * kUs);
+    if (only_one) {
+      board.settled(180 * kUs);
+      return board.violations().empty() ? "" : board.violations().front();
+    }
     board.line(0, "X2", 1, 4);
     board.advanced(0, 130 * kUs);
     fall(200 * kUs, second_rises ? 2 * kUs : 0);
     board.pmac_index(0, 4, in_real_time, 220 * kUs);
     if (second_status != 0) board.status(0, second_status, 230 * kUs);
+    board.settled(300 * kUs);
     return board.violations().empty() ? "" : board.violations().front();
   }
 
@@ -50,6 +55,8 @@ TEST(BinaryScoreboardTest, TakesWhatIsRight) {
   EXPECT_EQ(story.board.copied(0), 2u);
   ASSERT_EQ(story.board.delays().size(), 2u);
   EXPECT_EQ(story.board.delays()[1], 70 * kUs);
+  EXPECT_EQ(story.board.counts().pulses, 1u);
+  EXPECT_EQ(story.board.counts().stays_low, 1u) << "the line that takes L to I17";
 }
 
 TEST(BinaryScoreboardTest, FindsEachRuleBroken) {
@@ -66,6 +73,7 @@ TEST(BinaryScoreboardTest, FindsEachRuleBroken) {
       {"BREQ low for", [](Story& s) { s.first_low = 51 * kUs; }},
       {"BREQ fell 2 times", [](Story& s) { s.falls_twice = true; }},
       {"BREQ high with 2 lines", [](Story& s) { s.second_rises = true; }},
+      {"settled with 1 lines: BREQ 0, expected 1", [](Story& s) { s.first_low = 0, s.only_one = true; }},
       {"error 5, expected 0", [](Story& s) { s.second_status = 0x8005; }},
       {"busy with 2 of 8 words", [](Story& s) { s.second_status = 0x4000; }},
       {"status 0003", [](Story& s) { s.second_status = 3; }},

@@ -71,6 +71,16 @@ TEST_F(BreqScoreboardTest, LineWithoutPulseIsFound) {
   EXPECT_NE(first().find("rule 1"), std::string::npos) << first();
 }
 
+TEST_F(BreqScoreboardTest, TooShortBetweenTwoPulsesIsFound) {
+  start(5, 10);
+  board.line_sent(now += kUs);
+  board.edge(now += 20 * kUs, false);
+  board.edge(now += 2 * kUs, true);
+  board.line_sent(now);
+  board.edge(now += kUs / 2, false);
+  EXPECT_NE(first().find("BREQ was high for 0.5"), std::string::npos) << first();
+}
+
 TEST_F(BreqScoreboardTest, ExecutionRaisesBelowI16) {
   start(5, 10);
   for (unsigned n = 1; n <= 10; ++n) line(n == 10);

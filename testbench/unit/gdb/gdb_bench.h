@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -41,7 +42,10 @@ class GdbBench : public ::testing::Test {
     server = std::make_unique<GdbServer>(cpu, static_cast<std::uint16_t>(0));
     runner = std::thread([this] {
       try {
-        while (!done) server->run(cpu.cycle() + 1000);
+        while (!done) {
+          server->run(cpu.cycle() + 1000);
+          executed = cpu.instructions();
+        }
       } catch (const GdbKilled&) { killed = true; }
       ended = true;
     });
@@ -97,8 +101,16 @@ class GdbBench : public ::testing::Test {
     return text;
   }
 
+  // Until the program runs, as its own thread says; false after ten seconds.
+  bool runs_beyond(std::uint64_t instructions) const {
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (executed <= instructions && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
+    return executed > instructions;
+  }
+
   Cpu cpu;
   std::unique_ptr<GdbServer> server;
+  std::atomic<std::uint64_t> executed{0};  // instructions, when the server last came back
   std::atomic<bool> done{false}, killed{false}, ended{false};
   std::thread runner;
   asio::io_context io;

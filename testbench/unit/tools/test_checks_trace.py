@@ -84,6 +84,41 @@ class Traceability(Tree):
         self.assertIn("R passed<br>S failed", page)
         self.assertIn("Breq.FallsOnALine (failed: S)", page)
 
+    def test_a_test_without_a_result_fails_beside_one_that_passed(self):
+        self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "IsGone"))
+        done, page = self.results(("Breq.FallsOnALine/Rtl", "run"), ("Breq.FallsOnALine/Model", "run"))
+        self.expect(done, 1, "testbench/unit/b_test.cpp: Breq.IsGone names BREQ-1: no result")
+        self.expect(done, 1, "BREQ-1 is claimed on R: no result")
+        self.assertIn("R no result<br>S no result", page)
+
+    def test_a_failed_checker_without_an_engine_fails_every_engine(self):
+        self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "Checker"))
+        done, _ = self.results(("Breq.FallsOnALine/Rtl", "run"), ("Breq.FallsOnALine/Model", "run"),
+                               ("Breq.Checker", "run"))
+        self.expect(done, 0, "clean")
+        done, _ = self.results(("Breq.FallsOnALine/Rtl", "run"), ("Breq.FallsOnALine/Model", "run"),
+                               ("Breq.Checker", "fail"))
+        self.expect(done, 1, "BREQ-1 is claimed on R: failed")
+
+    def test_names_of_ctest_are_found(self):
+        """Cases of a folder's own name, cases that end in an engine, suites that one entry runs."""
+        self.write("testbench/unit/app/CMakeLists.txt", "foreach(case a)\nadd_test(NAME brick.${case} COMMAND x)\n")
+        self.write("testbench/unit/app/bench_acceptance.py", "# covers: BREQ-1\ndef a_lockstep():\n    pass\n")
+        self.write("testbench/unit/timing/CMakeLists.txt", "add_test(NAME timing.${case} COMMAND x)\n")
+        self.write("testbench/unit/timing/timing_acceptance.py", "# covers: BREQ-1\ndef bad_access():\n    pass\n")
+        self.write("testbench/unit/firmware_program/CMakeLists.txt",
+                   "add_test(NAME interrupts.planted COMMAND unit_p --gtest_filter=Stream.*\n")
+        self.write("testbench/unit/firmware_program/s_test.cpp", TEST_FILE.replace("Breq, Falls", "Stream, Falls"))
+        both = (("Breq.FallsOnALine/Rtl", "run"), ("Breq.FallsOnALine/Model", "run"))
+        done, page = self.results(*both, ("brick.a_lockstep", "run"), ("timing.bad_access", "run"),
+                                  ("interrupts.planted", "run"))
+        self.expect(done, 0, "clean")
+        for cell in ("a_lockstep (L F)", "bad_access (S F)", "Stream.FallsOnALine (F)"):
+            self.assertIn(cell, page)
+        done, _ = self.results(*both, ("brick.a_lockstep", "fail"), ("brick.bad_access", "run"))
+        for missing in ("bad_access", "Stream.FallsOnALine"):
+            self.expect(done, 1, f"{missing} names BREQ-1: no result")
+
     def test_a_requirement_without_a_design_file_of_its_engine_fails(self):
         self.write("docs/design-files.txt", "breq = rtl/*/breq.sv\nBREQ-1: breq\n")
         self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-1 applies to engine S, but has no file of it")

@@ -1,0 +1,52 @@
+"""Negative controls of the figures that stand twice: each is changed in one of its places."""
+
+from tree import Tree, run
+
+PAGES = {
+    "docs/save.md": "| SAVE of a controller as it comes | 37 ms |\n",
+    "docs/watchdog.md": "| SAVE | one long pass (37 ms); more |\n",
+    "docs/cosim.md": "idle firmware 110 simulated s/s\n",
+    "README.md": "idle firmware: 110 simulated seconds a second\n",
+    "docs/rules.md": "5 misreadings\n| a | b | planted 3 |\n| c | d | planted 2, read |\n",
+    "docs/verification-plan.md": "| fixed (I18-2) | x |\n- modules: other modules than the one of [proofs].\n",
+    "docs/claimed.txt": "I18-2\n",
+    "testbench/formal/a.sv": "",
+}
+
+
+class Figures(Tree):
+    def setUp(self):
+        super().setUp()
+        for path, text in PAGES.items():
+            self.write(path, text)
+
+    def broken(self, path, old, new, says):
+        self.assertIn(old, PAGES[path])
+        self.write(path, PAGES[path].replace(old, new))
+        self.expect(self.run_tool("check_figures.py"), 1, says)
+
+    def test_figures_that_agree_pass(self):
+        self.expect(self.run_tool("check_figures.py"), 0, "clean")
+
+    def test_a_save_of_two_lengths_fails(self):
+        self.broken("docs/watchdog.md", "37", "26", "docs/save.md says 37, docs/watchdog.md says 26")
+
+    def test_two_idle_speeds_fail(self):
+        self.broken("README.md", "110", "60", "docs/cosim.md says 110, README.md says 60")
+
+    def test_a_figure_that_is_gone_fails(self):
+        self.broken("README.md", "idle firmware", "idle", "README.md: 0 places like")
+
+    def test_a_wrong_sum_of_misreadings_fails(self):
+        self.broken("docs/rules.md", "5 misreadings", "4 misreadings", "its rows add up to 5")
+
+    def test_a_wrong_number_of_proofs_fails(self):
+        self.write("testbench/formal/b.sv", "")
+        self.expect(self.run_tool("check_figures.py"), 1, "the one of proofs, but testbench/formal has two")
+
+    def test_an_open_row_of_a_claim_fails(self):
+        self.broken("docs/verification-plan.md", "| x |", "| **open** |", "I18-2 is a gap here")
+
+
+if __name__ == "__main__":
+    run()

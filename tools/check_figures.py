@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Figures and claims that stand in two places say the same: how long a SAVE takes, how fast an idle machine is, how
+many misreadings were planted, how many files are proved, what is claimed and what the plan calls open."""
+
+import argparse
+import pathlib
+import re
+
+from common import ROOT, finish
+
+WORDS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
+# (what, (page, pattern), ...): the first group of each, of the same text.
+PAIRS = (
+    ("a SAVE as it comes", ("docs/save.md", r"SAVE of a controller as it comes \| (\d+) ms"),
+     ("docs/watchdog.md", r"\| SAVE \| one long pass \((\d+) ms\)")),
+    ("speed of an idle machine", ("docs/cosim.md", r"idle firmware (\d+) simulated s/s"),
+     ("README.md", r"idle firmware: (\d+) simulated\s+seconds a second")),
+)
+
+
+def figure(root, page, pattern, problems):
+    path = root / page
+    found = re.findall(pattern, path.read_text() if path.exists() else "")
+    if len(found) != 1:
+        problems.append(f"{page}: {len(found)} places like /{pattern}/, expected one")
+    return found[0] if len(found) == 1 else None
+
+
+def check(root):
+    problems = []
+    for what, *places in PAIRS:
+        shown = {page: figure(root, page, pattern, problems) for page, pattern in places}
+        if len(set(shown.values())) > 1:
+            problems.append(f"{what}: " + ", ".join(f"{page} says {value}" for page, value in shown.items()))
+
+    rules = (root / "docs/rules.md").read_text()
+    planted = sum(int(n) for n in re.findall(r"\| planted (\d+)", rules))
+    claimed = figure(root, "docs/rules.md", r"(\d+) misreadings", problems)
+    if claimed is not None and int(claimed) != planted:
+        problems.append(f"docs/rules.md: {claimed} misreadings, but its rows add up to {planted}")
+
+    proved = len(list((root / "testbench/formal").glob("*.sv")))
+    word = figure(root, "docs/verification-plan.md", r"other modules than the (\w+) of \[proofs\]", problems)
+    if word is not None and word != WORDS[proved]:
+        problems.append(f"docs/verification-plan.md: the {word} of proofs, but testbench/formal has {WORDS[proved]}")
+
+    ids = {line.strip() for line in (root / "docs/claimed.txt").read_text().splitlines()}
+    for number, line in enumerate((root / "docs/verification-plan.md").read_text().splitlines(), 1):
+        gap = line.startswith("- ") or "**open**" in line
+        problems += [f"docs/verification-plan.md:{number}: {name} is a gap here, but docs/claimed.txt claims it"
+                     for name in re.findall(r"\(([A-Z0-9]+-\d+)\)", line) if gap and name in ids]
+    return problems
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
+    finish("figures that stand twice", check(parser.parse_args().root))
+
+
+if __name__ == "__main__":
+    main()
