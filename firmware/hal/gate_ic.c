@@ -98,14 +98,17 @@ static void reset_channels(unsigned ic) {
     *hal_x(address_of(ic, GATE_WORD_CHANNEL, channel)) = shadow[ic].channel[channel];
 }
 
+/* Of every place, found or not: a fault may come while ICs are looked for. The amplifiers go first. */
 void gate_ic_outputs_off(void) {
   static const uint32_t outputs[] = {SERVO_CHANNEL_Y_OUT_A, SERVO_CHANNEL_Y_OUT_B, SERVO_CHANNEL_Y_OUT_C};
-  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
-    if (gate_ic_present(ic)) reset_channels(ic);
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) reset_channels(ic);
   for (unsigned ic = 0; ic < GATE_IC_MACRO; ++ic)
-    for (unsigned channel = 0; gate_ic_present(ic) && channel < GATE_IC_CHANNELS; ++channel)
+    for (unsigned channel = 0; channel < GATE_IC_CHANNELS; ++channel) {
+      *hal_x(address_of(ic, GATE_WORD_CHANNEL, channel)) =
+          shadow[ic].channel[channel] | SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK;
       for (unsigned i = 0; i < sizeof outputs / sizeof outputs[0]; ++i)
         *hal_y(gate_ic_base(ic) + SERVO_CHANNEL_STRIDE * channel + outputs[i]) = 0;
+    }
 }
 
 /* A released clock pin is driven on until both clocks are high: one and a half phase periods at most (docs/clock.md).

@@ -46,7 +46,8 @@ void gate_ic_release_clocks(void);
 
 /* Waits until no IC drives a clock pin any more whose direction has been made an input. */
 void gate_ic_await_release(void);
-void gate_ic_outputs_off(void); /* amplifier enables and commands of all channels; nothing else runs any more */
+/* Amplifier enables, EQU and commands of all channels; nothing else runs any more. */
+void gate_ic_outputs_off(void);
 void gate_ic_set_word(unsigned ic, gate_word_t word, uint32_t value);
 
 #endif

@@ -3,6 +3,7 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
+#include "rtl/regs/brick_regs.h"
 
 /* Neither cleared nor initialised by crt0.S: what power-on leaves there has no two words that belong together. */
 #define MARK 0x46415554u
@@ -25,6 +26,7 @@ bool fault_take(uint32_t cause, uint32_t pc, uint32_t address) {
   record.pc = pc;
   record.address = address;
   gate_ic_outputs_off();
+  *hal_x(BOARD_LATCHES_X_CONTROL_OUTPUTS) = 0;
   return true;
 }
 

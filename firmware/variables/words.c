@@ -6,16 +6,13 @@
 #include "firmware/variables/phase_period.h"
 #include "rtl/regs/brick_regs.h"
 
-#define MAIN_MEMORY_END 0x040000u
-#define LATCHES_END 0x070100u
-#define GATE_ICS_END 0x07C000u
 #define PHASE_PERIOD 0xFFFF8Cu
 
 bool word_exists(bool x, uint32_t address) {
-  if (address < MAIN_MEMORY_END) return true;
+  if (address - MAIN_MEMORY_BASE < MAIN_MEMORY_SIZE) return true;
   if (address - DPRAM_BASE < DPRAM_SIZE) return hal_strap(HAL_STRAP_DPRAM_WORDS) > 2u * (address - DPRAM_BASE);
-  if (address >= SERVO_IC_0_BASE) return address < GATE_ICS_END;
-  return x && address >= BOARD_LATCHES_BASE && address < LATCHES_END;
+  if (address - GATE_ICS_BASE < GATE_ICS_SIZE) return true;
+  return x && address >= BOARD_LATCHES_BASE && address - LATCHES_BASE < LATCHES_SIZE;
 }
 
 static volatile uint32_t* place(bool x, uint32_t address) { return x ? hal_x(address) : hal_y(address); }

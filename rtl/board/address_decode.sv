@@ -19,9 +19,13 @@ module address_decode (
   output logic [21:0]      sel_ic_o
 );
 
+  // Lowest bits of the address that a region has the choice of.
+  localparam int GateBits  = $clog2(brick_regs_pkg::GateIcsSize);
+  localparam int LatchBits = $clog2(brick_regs_pkg::LatchesSize);
+
   logic gate, latch;
-  assign gate  = ~int_i & aa_i[1] & (addr_i[18:14] == 5'b11110);
-  assign latch = ~int_i & (aa_i == 4'h0) & (addr_i[18:8] == 11'h700);
+  assign gate  = ~int_i & aa_i[1] & (addr_i[18:GateBits] == brick_regs_pkg::GateIcsBase[18:GateBits]);
+  assign latch = ~int_i & (aa_i == 4'h0) & (addr_i[18:LatchBits] == brick_regs_pkg::LatchesBase[18:LatchBits]);
 
   // Servo ICs 0, 1: $000, $100 of the first 4 KiB word page; 2..9: $200, $300 of pages 0..3; the starred ones $20
   // above. MACRO ICs: $400 of pages 0..3, 64 words each.

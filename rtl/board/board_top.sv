@@ -369,14 +369,17 @@ module board_top #(
     .rxdf_o        (port_rxdf_o)
   );
 
+  // A trip turns the control outputs off, as all others; the reset that ends it clears the latch.
   logic [3:0] signals_rdata;
+  logic [1:0] ctrl_latch;
+  assign ctrl_o = ctrl_latch & {2{~wd_tripped_o}};
   host_signals u_host_signals (
     .clk_ref_i, .rst_ni,
     .wr_i      (bus_we & sel_signals),
     .ctrl_wr_i (bus_we & sel_ctrl),
     .wdata_i   (bus_wdata[3:0]),
     .rdata_o   (signals_rdata),
-    .ctrl_o,
+    .ctrl_o    (ctrl_latch),
     .ipos_o, .breq_o, .eror_o, .f1er_o
   );
 

@@ -155,10 +155,23 @@ module isa_slave (
   end
 
   // ---------------------------------------------------------------- the cycle
-  logic        active_q;          // from the start to the end; a reset leaves it on, with no target
-  logic        fresh_q, load_q;   // the clock after the start; RAM data has still to come
-  logic        drive_q, shown_q;  // data of a read is on the bus, was there with the command still low
-  logic        finish_q;          // the clock after the end
+  //          command low          I/O read             command still low
+  //   Idle ───────────────► Start ─────────────► Show ──────────────────► Shown ──┐
+  //                           ├─ read of the RAM ─► Fetch ─ data ─► Show          │ command gone
+  //                           └─ any other ──────► Hold                           ▼
+  //   Idle ◄── one clock ── Done from any other, DoneShown from Shown ◄───────────┘
+  typedef enum logic [2:0] {
+    Idle,      // no command
+    Start,     // the clock after the one that found a command low
+    Fetch,     // data of the RAM has still to come
+    Show,      // data is on the bus since this clock
+    Shown,     // data was on the bus with the command still low
+    Hold,      // nothing to do until the command goes: a write, one of others, a spoilt one, one of before a reset
+    Done,      // the clock after the end
+    DoneShown  // the same of a read whose data was shown
+  } cycle_e;
+  cycle_e      cycle_d, cycle_q;
+  logic        active, finish, drive;
   logic [3:0]  kind_q, target_q;
   logic [1:0]  lanes_q, be_q, page_q;
   logic [14:0] mem_addr_q;
@@ -168,11 +181,37 @@ module isa_slave (
   logic [7:0]  io_rdata;
   logic [15:0] sd_q, wdata_q;     // read data; write data, for who works on clk_ref
 
-  assign start    = ~active_q & (cmd2_q != 4'h0);
-  assign ends     = active_q & (cmd2_q == 4'h0) & ~resetdrv_q[1];
-  assign spoilt   = active_q & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
-  assign io_load  = fresh_q & kind_q[Ior] & (target_q[Port] | target_q[Pic] | target_q[Other]);
-  assign mem_load = load_q & ~mem_busy_i;
+  assign finish   = (cycle_q == Done) | (cycle_q == DoneShown);
+  assign active   = (cycle_q != Idle) & ~finish;
+  assign drive    = (cycle_q == Show) | (cycle_q == Shown);
+  assign start    = ~active & (cmd2_q != 4'h0);
+  assign ends     = active & (cmd2_q == 4'h0) & ~resetdrv_q[1];
+  assign spoilt   = active & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
+  assign io_load  = (cycle_q == Start) & kind_q[Ior] & (target_q[Port] | target_q[Pic] | target_q[Other]);
+  assign mem_load = (cycle_q == Fetch) & ~mem_busy_i;
+
+  always_comb begin
+    cycle_d = cycle_q;
+    case (cycle_q)
+      Idle, Done, DoneShown: begin
+        if (start) cycle_d = Start;
+        else       cycle_d = Idle;
+      end
+      Start: begin
+        if (io_load)                               cycle_d = Show;
+        else if (kind_q[Memr] && target_q[Memory]) cycle_d = Fetch;
+        else                                       cycle_d = Hold;
+      end
+      Fetch: if (mem_load) cycle_d = Show;
+      Show:  cycle_d = Shown;
+      default: ;
+    endcase
+    if (ends) begin
+      if (cycle_q == Shown) cycle_d = DoneShown;
+      else                  cycle_d = Done;
+    end
+    if (spoilt || resetdrv_q[1]) cycle_d = Hold;
+  end
 
   always_comb begin
     io_rdata = 8'hFF;
@@ -183,12 +222,7 @@ module isa_slave (
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      active_q   <= 1'b1;
-      fresh_q    <= 1'b0;
-      load_q     <= 1'b0;
-      drive_q    <= 1'b0;
-      shown_q    <= 1'b0;
-      finish_q   <= 1'b0;
+      cycle_q    <= Hold;
       kind_q     <= 4'h0;
       target_q   <= 4'h0;
       lanes_q    <= 2'b00;
@@ -200,11 +234,8 @@ module isa_slave (
       sd_q       <= 16'hFFFF;
       wdata_q    <= 16'h0;
     end else begin
-      fresh_q  <= start;
-      finish_q <= ends;
-      shown_q  <= ~start & (shown_q | (drive_q & ~ends & ~spoilt));
+      cycle_q <= cycle_d;
       if (start) begin
-        active_q   <= 1'b1;
         kind_q     <= cmd2_q;
         target_q   <= decoded;
         lanes_q    <= (decoded[Memory] & ~byte8) ? {~sbhe_nq, ~sa_q[0]} : 2'b01;
@@ -213,27 +244,16 @@ module isa_slave (
         mem_addr_q <= {window_flat_q ? sa_q[15:14] : page_q, sa_q[13:1]};
         io_addr_q  <= sa_q[3:0];
       end else if (ends) begin
-        active_q <= 1'b0;
-        wdata_q  <= sd_low_q;
+        wdata_q <= sd_low_q;
       end
-      if (fresh_q) load_q <= kind_q[Memr] & target_q[Memory];
-      else if (mem_load) load_q <= 1'b0;
       if (io_load) sd_q <= {8'hFF, io_rdata};
       else if (mem_load) sd_q <= byte8_q ? {mem_rdata_i[15:8], mem_rdata_i[15:8]} : mem_rdata_i;
-      if (io_load | mem_load) drive_q <= 1'b1;
-      if (ends | spoilt) begin
-        drive_q <= 1'b0;
-        load_q  <= 1'b0;
-      end
       if (spoilt) target_q <= 4'h0;
-      if (finish_q & kind_q[Iow] & target_q[Other] & ~window_flat_q &
+      if (finish & kind_q[Iow] & target_q[Other] & ~window_flat_q &
           (io_addr_q == brick_regs_pkg::HostIoPageAddr[3:0])) begin
         page_q <= wdata_q[brick_regs_pkg::HostIoPagePageLsb +: brick_regs_pkg::HostIoPagePageWidth];
       end
-      if (resetdrv_q[1]) begin  // as after the reset
-        active_q <= 1'b1;
-        drive_q  <= 1'b0;
-        load_q   <= 1'b0;
+      if (resetdrv_q[1]) begin
         target_q <= 4'h0;
         page_q   <= 2'b00;
       end
@@ -242,21 +262,22 @@ module isa_slave (
 
   // ---------------------------------------------------------------- towards the blocks
   assign hp_sel_o     = target_q[Port];
-  assign hp_rd_o      = target_q[Port] & fresh_q & kind_q[Ior];
-  assign hp_rd_done_o = target_q[Port] & finish_q & shown_q;
-  assign hp_wr_o      = target_q[Port] & finish_q & kind_q[Iow];
+  assign hp_rd_o      = target_q[Port] & (cycle_q == Start) & kind_q[Ior];
+  assign hp_rd_done_o = target_q[Port] & (cycle_q == DoneShown);
+  assign hp_wr_o      = target_q[Port] & finish & kind_q[Iow];
   assign hp_addr_o    = io_addr_q[2:0];
   assign hp_wdata_o   = wdata_q[7:0];
 
   assign pic_sel_o     = target_q[Pic];
-  assign pic_rd_o      = target_q[Pic] & fresh_q & kind_q[Ior] & (cmd2_q == kind_q);  // command still there, alone
-  assign pic_wr_o      = target_q[Pic] & finish_q & kind_q[Iow];
+  assign pic_rd_o      = target_q[Pic] & (cycle_q == Start) & kind_q[Ior] &
+                         (cmd2_q == kind_q);  // command still there, alone
+  assign pic_wr_o      = target_q[Pic] & finish & kind_q[Iow];
   assign pic_addr_o    = io_addr_q[1:0];
   assign pic_wdata_o   = wdata_q[7:0];
 
-  assign mem_sel_o   = target_q[Memory] & active_q;
+  assign mem_sel_o   = target_q[Memory] & active;
   assign mem_rd_o    = kind_q[Memr];
-  assign mem_wr_o    = target_q[Memory] & finish_q & kind_q[Memw];
+  assign mem_wr_o    = target_q[Memory] & finish & kind_q[Memw];
   assign mem_addr_o  = mem_addr_q;
   assign mem_be_o    = be_q;
   assign mem_wdata_o = byte8_q ? {wdata_q[7:0], wdata_q[7:0]} : wdata_q;
@@ -265,7 +286,7 @@ module isa_slave (
   logic read_low;
   assign read_low = ((kind_q[Ior] & ~isa_ior_ni) | (kind_q[Memr] & ~isa_memr_ni)) & isa_iow_ni & isa_memw_ni;
   assign isa_sd_o       = sd_q;
-  assign isa_sd_oe_o    = lanes_q & {2{drive_q & read_low}};
+  assign isa_sd_oe_o    = lanes_q & {2{drive & read_low}};
   assign isa_iochrdy_o  = ~mem_busy_i;
   assign isa_memcs16_no = ~la_hit_q[0];
 

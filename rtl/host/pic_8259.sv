@@ -25,7 +25,12 @@ module pic_8259 (
 
   // What the next write to address 1 is.
   localparam logic [1:0] StepReady = 2'd0, StepIcw2 = 2'd1, StepIcw3 = 2'd2, StepIcw4 = 2'd3;
-  localparam logic [2:0] DefaultLevel = 3'd7;  // of a request that has gone, and the lowest after ICW1
+  // Of a request that has gone, and the lowest after ICW1.
+  localparam logic [2:0] DefaultLevel = brick_regs_pkg::Pic8259PollReset[2:0];
+  // Addresses: several words share the first two.
+  localparam logic [1:0] Command     = brick_regs_pkg::Pic8259Icw1Addr[1:0];
+  localparam logic [1:0] Second      = brick_regs_pkg::Pic8259Ocw1Addr[1:0];
+  localparam logic [1:0] Acknowledge = brick_regs_pkg::Pic8259VectorAddr[1:0];
 
   (* async_reg = "true" *) logic [7:0] line1_q, line2_q;
   logic [7:0] armed_d, armed_q;  // the line has been low since its last acknowledge
@@ -62,19 +67,19 @@ module pic_8259 (
   // ---------------------------------------------------------------- accesses
   logic rd_poll, ack, icw1, ocw2, ocw3, second;
   assign rd_poll = rd_i & poll_q & ~addr_i[1];
-  assign ack     = pending & (rd_poll | (rd_i & (addr_i == 2'd2)));
-  assign icw1    = wr_i & (addr_i == 2'd0) & wdata_i[4];
-  assign ocw2    = wr_i & (addr_i == 2'd0) & (wdata_i[4:3] == 2'b00);
-  assign ocw3    = wr_i & (addr_i == 2'd0) & (wdata_i[4:3] == 2'b01);
-  assign second  = wr_i & (addr_i == 2'd1);
+  assign ack     = pending & (rd_poll | (rd_i & (addr_i == Acknowledge)));
+  assign icw1    = wr_i & (addr_i == Command) & wdata_i[brick_regs_pkg::Pic8259Icw1Icw1Lsb];
+  assign ocw3    = wr_i & (addr_i == Command) & ~icw1 & wdata_i[brick_regs_pkg::Pic8259Ocw3Ocw3Lsb];
+  assign ocw2    = wr_i & (addr_i == Command) & ~icw1 & ~ocw3;
+  assign second  = wr_i & (addr_i == Second);
 
   // OCW2: rotate, specific level, end of interrupt.
   logic       ocw2_turn, ocw2_specific, ocw2_end;
   logic [2:0] ocw2_level;
-  assign ocw2_turn     = wdata_i[7];
-  assign ocw2_specific = wdata_i[6];
-  assign ocw2_end      = wdata_i[5];
-  assign ocw2_level    = ocw2_specific ? wdata_i[2:0] : level_serviced;
+  assign ocw2_turn     = wdata_i[brick_regs_pkg::Pic8259Ocw2RotateLsb];
+  assign ocw2_specific = wdata_i[brick_regs_pkg::Pic8259Ocw2SlLsb];
+  assign ocw2_end      = wdata_i[brick_regs_pkg::Pic8259Ocw2EoiLsb];
+  assign ocw2_level    = ocw2_specific ? wdata_i[brick_regs_pkg::Pic8259Ocw2IrLsb +: 3] : level_serviced;
 
   always_comb begin
     isr_d    = isr_q;
@@ -112,12 +117,12 @@ module pic_8259 (
     if (second) begin
       unique case (step_q)
         StepIcw2: begin
-          vector_d = wdata_i[7:3];
+          vector_d = wdata_i[brick_regs_pkg::Pic8259Icw2VectorLsb +: 5];
           step_d   = icw3_q ? StepIcw3 : (icw4_q ? StepIcw4 : StepReady);
         end
         StepIcw3: step_d = icw4_q ? StepIcw4 : StepReady;
         StepIcw4: begin
-          aeoi_d = wdata_i[1];
+          aeoi_d = wdata_i[brick_regs_pkg::Pic8259Icw4AeoiLsb];
           step_d = StepReady;
         end
         default: imr_d = wdata_i;
@@ -131,16 +136,16 @@ module pic_8259 (
   end
 
   always_comb begin
-    level_d    = icw1 ? wdata_i[3] : level_q;
-    icw3_d     = icw1 ? ~wdata_i[1] : icw3_q;
-    icw4_d     = icw1 ? wdata_i[0] : icw4_q;
+    level_d    = icw1 ? wdata_i[brick_regs_pkg::Pic8259Icw1LtimLsb] : level_q;
+    icw3_d     = icw1 ? ~wdata_i[brick_regs_pkg::Pic8259Icw1SnglLsb] : icw3_q;
+    icw4_d     = icw1 ? wdata_i[brick_regs_pkg::Pic8259Icw1Ic4Lsb] : icw4_q;
     special_d  = special_q;
     read_isr_d = read_isr_q;
     poll_d     = poll_q & ~rd_poll;
     if (ocw3) begin
-      if (wdata_i[6]) special_d = wdata_i[5];
-      if (wdata_i[1]) read_isr_d = wdata_i[0];
-      poll_d = wdata_i[2];
+      if (wdata_i[brick_regs_pkg::Pic8259Ocw3EsmmLsb]) special_d = wdata_i[brick_regs_pkg::Pic8259Ocw3SmmLsb];
+      if (wdata_i[brick_regs_pkg::Pic8259Ocw3RrLsb])   read_isr_d = wdata_i[brick_regs_pkg::Pic8259Ocw3RisLsb];
+      poll_d = wdata_i[brick_regs_pkg::Pic8259Ocw3PollLsb];
     end
     if (icw1) begin
       special_d  = 1'b0;
@@ -155,7 +160,7 @@ module pic_8259 (
       line2_q    <= 8'h00;
       armed_q    <= 8'h00;
       isr_q      <= 8'h00;
-      imr_q      <= 8'hFF;
+      imr_q      <= brick_regs_pkg::Pic8259Ocw1Reset;
       lowest_q   <= DefaultLevel;
       vector_q   <= 5'h00;
       step_q     <= StepReady;
@@ -188,12 +193,21 @@ module pic_8259 (
   end
 
   always_comb begin
+    rdata_o = 8'h00;
     unique case (addr_i)
-      2'd0:    rdata_o = poll_q ? {pending, 4'h0, level_ack} : (read_isr_q ? isr_q : irr);
-      2'd1:    rdata_o = poll_q ? {pending, 4'h0, level_ack} : imr_q;
-      2'd2:    rdata_o = {vector_q, level_ack};
+      Command: rdata_o = read_isr_q ? isr_q : irr;
+      Second:  rdata_o = imr_q;
+      Acknowledge: begin
+        rdata_o[brick_regs_pkg::Pic8259VectorBaseLsb +: 5] = vector_q;
+        rdata_o[brick_regs_pkg::Pic8259VectorIrLsb +: 3]   = level_ack;
+      end
       default: rdata_o = 8'hFF;
     endcase
+    if (poll_q && !addr_i[1]) begin
+      rdata_o                                       = 8'h00;
+      rdata_o[brick_regs_pkg::Pic8259PollPendingLsb] = pending;
+      rdata_o[brick_regs_pkg::Pic8259PollIrLsb +: 3] = level_ack;
+    end
   end
 
   assign irr_o   = irr;

@@ -6,9 +6,25 @@
 #ifndef RTL_REGS_BRICK_REGS_H
 #define RTL_REGS_BRICK_REGS_H
 
+/* Main memory */
+#define MAIN_MEMORY_BASE 0x000000u
+#define MAIN_MEMORY_SIZE 0x40000u /* addresses */
+
 /* Dual-ported RAM */
 #define DPRAM_BASE 0x060000u
 #define DPRAM_SIZE 0x4000u /* addresses */
+
+/* Latches */
+#define LATCHES_BASE 0x070000u
+#define LATCHES_SIZE 0x100u /* addresses */
+
+/* Gate ICs */
+#define GATE_ICS_BASE 0x078000u
+#define GATE_ICS_SIZE 0x4000u /* addresses */
+
+/* On-chip peripherals */
+#define ON_CHIP_BASE 0xFFFF80u
+#define ON_CHIP_SIZE 0x80u /* addresses */
 
 /* Window of the dual-ported RAM */
 #define DPRAM_WINDOW_BASE 0x0D0000u
@@ -200,7 +216,7 @@ enum clock_source {
 #define SERVO_CHANNEL_STATUS_ENCODER_LOSS_SHIFT 7u
 #define SERVO_CHANNEL_STATUS_ENCODER_LOSS_MASK 0x000080u /* Encoder loss, latched; write 0 to clear */
 #define SERVO_CHANNEL_STATUS_ENCODER_ERROR_SHIFT 8u
-#define SERVO_CHANNEL_STATUS_ENCODER_ERROR_MASK 0x000100u /* Illegal AB transition, latched; write the bit to clear */
+#define SERVO_CHANNEL_STATUS_ENCODER_ERROR_MASK 0x000100u /* Illegal AB transition, latched; any write clears it */
 #define SERVO_CHANNEL_STATUS_EQU_SHIFT 9u
 #define SERVO_CHANNEL_STATUS_EQU_MASK 0x000200u /* Compare output EQU */
 #define SERVO_CHANNEL_STATUS_CAPTURED_GATED_INDEX_SHIFT 10u
@@ -553,5 +569,69 @@ enum clock_source {
 #define HOST_IO_PAGE_WRITTEN 0x03u
 #define HOST_IO_PAGE_PAGE_SHIFT 0u
 #define HOST_IO_PAGE_PAGE_MASK 0x03u /* Which 16 KiB of the dual-ported RAM the window shows */
+
+/* 8259 interrupt controller. In place of +8 to +11 where an 8259 is fitted. Bits 1, 0 of an offset: the address; above: a number. */
+#define PIC_8259_ICW1 0x00u /* ICW1, written with bit 4 = 1 */
+#define PIC_8259_ICW1_RESET 0x00u
+#define PIC_8259_ICW1_WRITTEN 0x1Bu
+#define PIC_8259_ICW1_IC4_SHIFT 0u
+#define PIC_8259_ICW1_IC4_MASK 0x01u /* ICW4 will be written */
+#define PIC_8259_ICW1_SNGL_SHIFT 1u
+#define PIC_8259_ICW1_SNGL_MASK 0x02u /* No ICW3 will be written */
+#define PIC_8259_ICW1_LTIM_SHIFT 3u
+#define PIC_8259_ICW1_LTIM_MASK 0x08u /* Lines: 0 edge, 1 level */
+#define PIC_8259_ICW1_ICW1_SHIFT 4u
+#define PIC_8259_ICW1_ICW1_MASK 0x10u /* 1: this is ICW1 */
+#define PIC_8259_ICW2 0x01u /* ICW2, first write after ICW1 */
+#define PIC_8259_ICW2_RESET 0x00u
+#define PIC_8259_ICW2_WRITTEN 0xF8u
+#define PIC_8259_ICW2_VECTOR_SHIFT 3u
+#define PIC_8259_ICW2_VECTOR_MASK 0xF8u /* Bits 7..3 of the vectors */
+#define PIC_8259_VECTOR 0x02u /* Vector: the acknowledge cycle */
+#define PIC_8259_VECTOR_RESET 0x07u
+#define PIC_8259_VECTOR_IR_SHIFT 0u
+#define PIC_8259_VECTOR_IR_MASK 0x07u /* Level that is acknowledged */
+#define PIC_8259_VECTOR_BASE_SHIFT 3u
+#define PIC_8259_VECTOR_BASE_MASK 0xF8u /* As ICW2 has them */
+#define PIC_8259_OCW2 0x04u /* OCW2, written with bits 4 and 3 = 00 */
+#define PIC_8259_OCW2_RESET 0x00u
+#define PIC_8259_OCW2_WRITTEN 0xE7u
+#define PIC_8259_OCW2_IR_SHIFT 0u
+#define PIC_8259_OCW2_IR_MASK 0x07u /* Level that is named */
+#define PIC_8259_OCW2_EOI_SHIFT 5u
+#define PIC_8259_OCW2_EOI_MASK 0x20u /* End of interrupt */
+#define PIC_8259_OCW2_SL_SHIFT 6u
+#define PIC_8259_OCW2_SL_MASK 0x40u /* 1 = the level named, 0 = the highest in service */
+#define PIC_8259_OCW2_ROTATE_SHIFT 7u
+#define PIC_8259_OCW2_ROTATE_MASK 0x80u /* Rotate: that level becomes the lowest */
+#define PIC_8259_ICW4 0x05u /* ICW4, last of the initialisation */
+#define PIC_8259_ICW4_RESET 0x00u
+#define PIC_8259_ICW4_WRITTEN 0x02u
+#define PIC_8259_ICW4_AEOI_SHIFT 1u
+#define PIC_8259_ICW4_AEOI_MASK 0x02u /* Automatic end of interrupt */
+#define PIC_8259_OCW3 0x08u /* OCW3, written with bits 4 and 3 = 01 */
+#define PIC_8259_OCW3_RESET 0x00u
+#define PIC_8259_OCW3_WRITTEN 0x6Fu
+#define PIC_8259_OCW3_RIS_SHIFT 0u
+#define PIC_8259_OCW3_RIS_MASK 0x01u /* 1 = reads give ISR, 0 = IRR */
+#define PIC_8259_OCW3_RR_SHIFT 1u
+#define PIC_8259_OCW3_RR_MASK 0x02u /* RIS is taken */
+#define PIC_8259_OCW3_POLL_SHIFT 2u
+#define PIC_8259_OCW3_POLL_MASK 0x04u /* Poll command: the next read gives the poll byte */
+#define PIC_8259_OCW3_OCW3_SHIFT 3u
+#define PIC_8259_OCW3_OCW3_MASK 0x08u /* 1: this is OCW3 */
+#define PIC_8259_OCW3_SMM_SHIFT 5u
+#define PIC_8259_OCW3_SMM_MASK 0x20u /* Special mask mode */
+#define PIC_8259_OCW3_ESMM_SHIFT 6u
+#define PIC_8259_OCW3_ESMM_MASK 0x40u /* SMM is taken */
+#define PIC_8259_OCW1 0x09u /* OCW1, mask (IMR), at all other times */
+#define PIC_8259_OCW1_RESET 0xFFu
+#define PIC_8259_OCW1_WRITTEN 0xFFu
+#define PIC_8259_POLL 0x0Cu /* Poll byte */
+#define PIC_8259_POLL_RESET 0x07u
+#define PIC_8259_POLL_IR_SHIFT 0u
+#define PIC_8259_POLL_IR_MASK 0x07u /* Level of the request */
+#define PIC_8259_POLL_PENDING_SHIFT 7u
+#define PIC_8259_POLL_PENDING_MASK 0x80u /* There is a request */
 
 #endif

@@ -33,8 +33,16 @@ struct GateIc {
   unsigned direction_variable;
 };
 
+constexpr std::uint32_t kMainMemoryBase = 0x0;  // Main memory
+constexpr std::uint32_t kMainMemorySize = 0x40000;  // addresses
 constexpr std::uint32_t kDpramBase = 0x60000;  // Dual-ported RAM
 constexpr std::uint32_t kDpramSize = 0x4000;  // addresses
+constexpr std::uint32_t kLatchesBase = 0x70000;  // Latches
+constexpr std::uint32_t kLatchesSize = 0x100;  // addresses
+constexpr std::uint32_t kGateIcsBase = 0x78000;  // Gate ICs
+constexpr std::uint32_t kGateIcsSize = 0x4000;  // addresses
+constexpr std::uint32_t kOnChipBase = 0xFFFF80;  // On-chip peripherals
+constexpr std::uint32_t kOnChipSize = 0x80;  // addresses
 constexpr std::uint32_t kDpramWindowBase = 0xD0000;  // Window of the dual-ported RAM
 constexpr std::uint32_t kDpramWindowSize = 0x10000;  // bytes
 
@@ -404,5 +412,50 @@ namespace page {
 constexpr Field kPage{0, 2, "page"};
 }  // namespace page
 }  // namespace host_io
+
+namespace pic_8259 {  // 8259 interrupt controller
+constexpr Register kIcw1{'B', 0x0, 0x0, 0x1B, "icw1"};
+constexpr Register kIcw2{'B', 0x1, 0x0, 0xF8, "icw2"};
+constexpr Register kVector{'B', 0x2, 0x7, 0x0, "vector"};
+constexpr Register kOcw2{'B', 0x4, 0x0, 0xE7, "ocw2"};
+constexpr Register kIcw4{'B', 0x5, 0x0, 0x2, "icw4"};
+constexpr Register kOcw3{'B', 0x8, 0x0, 0x6F, "ocw3"};
+constexpr Register kOcw1{'B', 0x9, 0xFF, 0xFF, "ocw1"};
+constexpr Register kPoll{'B', 0xC, 0x7, 0x0, "poll"};
+namespace icw1 {
+constexpr Field kIc4{0, 1, "ic4"};
+constexpr Field kSngl{1, 1, "sngl"};
+constexpr Field kLtim{3, 1, "ltim"};
+constexpr Field kIcw1{4, 1, "icw1"};
+}  // namespace icw1
+namespace icw2 {
+constexpr Field kVector{3, 5, "vector"};
+}  // namespace icw2
+namespace vector {
+constexpr Field kIr{0, 3, "ir"};
+constexpr Field kBase{3, 5, "base"};
+}  // namespace vector
+namespace ocw2 {
+constexpr Field kIr{0, 3, "ir"};
+constexpr Field kEoi{5, 1, "eoi"};
+constexpr Field kSl{6, 1, "sl"};
+constexpr Field kRotate{7, 1, "rotate"};
+}  // namespace ocw2
+namespace icw4 {
+constexpr Field kAeoi{1, 1, "aeoi"};
+}  // namespace icw4
+namespace ocw3 {
+constexpr Field kRis{0, 1, "ris"};
+constexpr Field kRr{1, 1, "rr"};
+constexpr Field kPoll{2, 1, "poll"};
+constexpr Field kOcw3{3, 1, "ocw3"};
+constexpr Field kSmm{5, 1, "smm"};
+constexpr Field kEsmm{6, 1, "esmm"};
+}  // namespace ocw3
+namespace poll {
+constexpr Field kIr{0, 3, "ir"};
+constexpr Field kPending{7, 1, "pending"};
+}  // namespace poll
+}  // namespace pic_8259
 
 }  // namespace brick::regs

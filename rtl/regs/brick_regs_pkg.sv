@@ -5,9 +5,25 @@
 
 package brick_regs_pkg;
 
+  // Main memory
+  localparam logic [23:0] MainMemoryBase = 24'h0;
+  localparam int MainMemorySize = 262144;
+
   // Dual-ported RAM
   localparam logic [23:0] DpramBase = 24'h60000;
   localparam int DpramSize = 16384;
+
+  // Latches
+  localparam logic [23:0] LatchesBase = 24'h70000;
+  localparam int LatchesSize = 256;
+
+  // Gate ICs
+  localparam logic [23:0] GateIcsBase = 24'h78000;
+  localparam int GateIcsSize = 16384;
+
+  // On-chip peripherals
+  localparam logic [23:0] OnChipBase = 24'hFFFF80;
+  localparam int OnChipSize = 128;
 
   // Window of the dual-ported RAM
   localparam logic [19:0] DpramWindowBase = 20'hD0000;
@@ -445,6 +461,55 @@ package brick_regs_pkg;
   localparam logic [7:0] HostIoPageWritten = 8'h03;
   localparam int HostIoPagePageLsb = 0;
   localparam int HostIoPagePageWidth = 2;
+
+  // 8259 interrupt controller
+  localparam logic [23:0] Pic8259Icw1Addr = 24'h000000;
+  localparam logic [7:0] Pic8259Icw1Reset = 8'h00;
+  localparam logic [7:0] Pic8259Icw1Written = 8'h1B;
+  localparam int Pic8259Icw1Ic4Lsb = 0;
+  localparam int Pic8259Icw1SnglLsb = 1;
+  localparam int Pic8259Icw1LtimLsb = 3;
+  localparam int Pic8259Icw1Icw1Lsb = 4;
+  localparam logic [23:0] Pic8259Icw2Addr = 24'h000001;
+  localparam logic [7:0] Pic8259Icw2Reset = 8'h00;
+  localparam logic [7:0] Pic8259Icw2Written = 8'hF8;
+  localparam int Pic8259Icw2VectorLsb = 3;
+  localparam int Pic8259Icw2VectorWidth = 5;
+  localparam logic [23:0] Pic8259VectorAddr = 24'h000002;
+  localparam logic [7:0] Pic8259VectorReset = 8'h07;
+  localparam int Pic8259VectorIrLsb = 0;
+  localparam int Pic8259VectorIrWidth = 3;
+  localparam int Pic8259VectorBaseLsb = 3;
+  localparam int Pic8259VectorBaseWidth = 5;
+  localparam logic [23:0] Pic8259Ocw2Addr = 24'h000004;
+  localparam logic [7:0] Pic8259Ocw2Reset = 8'h00;
+  localparam logic [7:0] Pic8259Ocw2Written = 8'hE7;
+  localparam int Pic8259Ocw2IrLsb = 0;
+  localparam int Pic8259Ocw2IrWidth = 3;
+  localparam int Pic8259Ocw2EoiLsb = 5;
+  localparam int Pic8259Ocw2SlLsb = 6;
+  localparam int Pic8259Ocw2RotateLsb = 7;
+  localparam logic [23:0] Pic8259Icw4Addr = 24'h000005;
+  localparam logic [7:0] Pic8259Icw4Reset = 8'h00;
+  localparam logic [7:0] Pic8259Icw4Written = 8'h02;
+  localparam int Pic8259Icw4AeoiLsb = 1;
+  localparam logic [23:0] Pic8259Ocw3Addr = 24'h000008;
+  localparam logic [7:0] Pic8259Ocw3Reset = 8'h00;
+  localparam logic [7:0] Pic8259Ocw3Written = 8'h6F;
+  localparam int Pic8259Ocw3RisLsb = 0;
+  localparam int Pic8259Ocw3RrLsb = 1;
+  localparam int Pic8259Ocw3PollLsb = 2;
+  localparam int Pic8259Ocw3Ocw3Lsb = 3;
+  localparam int Pic8259Ocw3SmmLsb = 5;
+  localparam int Pic8259Ocw3EsmmLsb = 6;
+  localparam logic [23:0] Pic8259Ocw1Addr = 24'h000009;
+  localparam logic [7:0] Pic8259Ocw1Reset = 8'hFF;
+  localparam logic [7:0] Pic8259Ocw1Written = 8'hFF;
+  localparam logic [23:0] Pic8259PollAddr = 24'h00000C;
+  localparam logic [7:0] Pic8259PollReset = 8'h07;
+  localparam int Pic8259PollIrLsb = 0;
+  localparam int Pic8259PollIrWidth = 3;
+  localparam int Pic8259PollPendingLsb = 7;
 endpackage : brick_regs_pkg
 
 `default_nettype wire

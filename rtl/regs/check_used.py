@@ -23,6 +23,7 @@ FOLDERS = {
     "jpan": ("rtl/board", "systemc/board"),
     "hi08": ("rtl/host", "systemc/host"),
     "host_io": ("rtl/host", "systemc/host"),
+    "pic_8259": ("rtl/host", "systemc/host"),
     "cpu_bus": ("systemc/cpu",),
 }
 CODES = ("rtl", "systemc")

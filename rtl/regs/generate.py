@@ -214,7 +214,8 @@ def markdown_block(block):
             where = f"{reg.space}:+${reg.address:02X}" if block.relative else f"{reg.space}:${reg.address:06X}"
             reset = f"${reg.reset:06X}"
         else:
-            where, reset = f"0x{block.base:X} + {reg.address - block.base}", f"0x{reg.reset:02X}"
+            base = "" if block.relative else f"0x{block.base:X} "
+            where, reset = f"{base}+ {reg.address - block.base}", f"0x{reg.reset:02X}"
         yield f"| {where} | `{reg.name}` | {reset} | {reg.title}{'. ' + reg.desc if reg.desc else ''} |"
     yield from ("", "| register | bits | field | access | reset | |", "|---|---|---|---|---|---|")
     for reg in block.registers:

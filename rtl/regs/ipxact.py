@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 COMPONENTS = {
     "servo_ic": ("servo_ic", "servo_channel", "servo_channel_fine"),
     "macro_ic": ("macro_ic",),
-    "board": ("brick_cpu", "brick_host_io", "brick_host_memory"),
+    "board": ("brick_cpu", "brick_host_io", "pic_8259", "brick_host_memory"),
 }
 
 

@@ -112,17 +112,19 @@ class Maps:
         self.blocks, self.ics, self.memories, self.codes = [], [], [], []
         self.compiler = compiler = RDLCompiler()
         compiler.compile_file(str(HERE / "brick.rdl"))
-        for top in ("brick_cpu", "brick_host_io", "brick_host_memory"):
+        for top in ("brick_cpu", "brick_cpu_regions", "brick_host_io", "brick_host_memory"):
             root = compiler.elaborate(top).top
             for node in root.children(unroll=True):
                 if isinstance(node, MemNode):
-                    self._add_memory(node, words=top == "brick_cpu")
+                    self._add_memory(node, words=top.startswith("brick_cpu"))
                 elif isinstance(node, AddrmapNode) and node.get_property("ic_name") is None:
                     self._add_block(node)
                 elif isinstance(node, AddrmapNode):
                     self._add_ic(node, compiler)
             if root.get_property("codes") is not None:
                 self._add_codes(type(root.get_property("codes")))
+        self._add_block(compiler.elaborate("pic_8259").top, "pic_8259")  # an alternative to registers of host_io
+        self.memories.sort(key=lambda memory: (not memory.words, memory.base))
         self.ics.sort(key=lambda ic: ic.fitted)
         sources = next(codes for codes in self.codes if codes.name == "clock_source")
         sources.list[:0] = [Code(ic.name, ic.fitted, f"{ic.kind.split('_')[0].capitalize()} IC {ic.number}")

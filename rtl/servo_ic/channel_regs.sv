@@ -13,7 +13,7 @@ module channel_regs (
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
   output logic [23:0]      rdata_o,       // 0 when not selected
-  input  wire logic        trip_i,        // outputs ignore writes
+  input  wire logic        trip_i,        // commands and what says which level is off ignore writes
   // written words
   output logic [23:0]      control_o,
   output logic [23:0]      out_a_o,
@@ -62,8 +62,13 @@ module channel_regs (
   localparam logic [3:0] CompareIncrement = {1'b1, brick_regs_pkg::ServoChannelCompareIncrementAddr[2:0]};
   localparam logic [3:0] CompareB         = {1'b1, brick_regs_pkg::ServoChannelCompareBAddr[2:0]};
   localparam int         EquWrite         = brick_regs_pkg::ServoChannelControlEquWriteLsb;
+  // Bits of the control word that say what the output pins are and which level is off.
+  localparam logic [23:0] OutputBits = 24'd1 << brick_regs_pkg::ServoChannelControlAbInvertLsb |
+                                       24'd1 << brick_regs_pkg::ServoChannelControlCInvertLsb |
+                                       24'd1 << brick_regs_pkg::ServoChannelControlAbDacLsb |
+                                       24'd1 << brick_regs_pkg::ServoChannelControlCPfmLsb;
 
-  logic [23:0] control_q, out_a_q, out_b_q, out_c_q;
+  logic [23:0] control_q, out_a_q, out_b_q, out_c_q, control_kept;
   logic        error_q, loss_q, fine, we_status, we_control;
   assign fine = control_q[brick_regs_pkg::ServoChannelControlHardware1tLsb];
 
@@ -88,6 +93,8 @@ module channel_regs (
     end
   end
 
+  assign control_kept = trip_i ? OutputBits : 24'd0;
+
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       control_q <= brick_regs_pkg::ServoChannelControlReset;
@@ -97,7 +104,7 @@ module channel_regs (
       error_q   <= 1'b0;
       loss_q    <= 1'b0;
     end else begin
-      if (we_control)               control_q           <= wdata_i;
+      if (we_control)               control_q           <= (control_q & control_kept) | (wdata_i & ~control_kept);
       else if (control_q[EquWrite]) control_q[EquWrite] <= 1'b0;  // falls back by itself
       if (we_i && !trip_i) begin
         if ({x_i, addr_i} == OutA) out_a_q <= wdata_i;

@@ -167,7 +167,8 @@ module servo_channel (
     .command_a_i(out_a[23:8]), .command_b_i(out_b[23:8]), .command_c_i(out_c[23:8]),
     .switch_o(pwm)
   );
-  // A pair that is not a PWM output rests low; a trip turns both switches off, whatever their polarity.
+  // A pair that is not a PWM output rests low; a trip turns both switches off, whatever their polarity: the bits that
+  // say so keep their value meanwhile.
   always_comb begin
     pwm_on  = 6'd0;
     pwm_inv = 6'd0;

@@ -41,7 +41,7 @@ module servo_ic (
 
   servo_ic_regs u_regs (
     .clk_ref_i, .rst_ni,
-    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .rdata_o(ic_rdata),
+    .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .trip_i, .rdata_o(ic_rdata),
     .clock_dividers_o(clock_dividers), .phase_ext_o(phase_ext), .servo_ext_o(servo_ext),
     .phase_div_o(phase_div), .servo_div_o(servo_div), .dac_strobe_o(dac_strobe), .adc_strobe_o(adc_strobe),
     .deadtime_o(deadtime), .max_count_o(max_count)

@@ -1,6 +1,7 @@
 // The four registers that serve a whole servo IC, in the X word at offset 4 of each channel: clock control ($04), DAC
 // strobe ($0C), ADC strobe ($14), PWM control ($1C). Clock clk_ref_i, asynchronous reset. Reset values: both clock
-// directions are inputs, so no two ICs can drive the clocks before firmware has chosen a source. servo-ic:2.6.
+// directions are inputs, so no two ICs can drive the clocks before firmware has chosen a source. The ADC strobe
+// commands amplifiers: a trip of the watchdog holds it. servo-ic:2.6, servo-ic:10/10.
 `default_nettype none
 
 module servo_ic_regs (
@@ -11,6 +12,7 @@ module servo_ic_regs (
   input  wire logic [4:0]  addr_i,
   input  wire logic        we_i,
   input  wire logic [23:0] wdata_i,
+  input  wire logic        trip_i,            // the watchdog has tripped
   output logic [23:0]      rdata_o,           // 0 when not selected
   output logic [11:0]      clock_dividers_o,  // I7m03, as in the clock control word
   output logic             phase_ext_o,
@@ -40,7 +42,7 @@ module servo_ic_regs (
       case (addr_i)
         ClockControl: clock_q      <= wdata_i & brick_regs_pkg::ServoIcClockControlWritten;
         DacStrobe:    dac_strobe_q <= wdata_i;
-        AdcStrobe:    adc_strobe_q <= wdata_i;
+        AdcStrobe:    if (!trip_i) adc_strobe_q <= wdata_i;
         PwmControl:   pwm_q        <= wdata_i & brick_regs_pkg::ServoIcPwmControlWritten;
         default: ;
       endcase

@@ -29,15 +29,15 @@ class AddressDecode : public sc_core::sc_module {
       return s;
     }
     const std::uint32_t a = w.addr;
-    if (w.aa == 0 && (a >> 8) == 0x700) {
+    if (w.aa == 0 && a - regs::kLatchesBase < regs::kLatchesSize) {
       s.any = true;
       s.signals = w.x && a == regs::board_latches::kHostSignals.address;
       s.strobe = w.x && a == regs::board_latches::kWatchdogStrobe.address;
       s.ctrl = w.x && a == regs::board_latches::kControlOutputs.address;
-    } else if ((w.aa & 2) != 0 && (a >> 14) == 0x1E) {
+    } else if ((w.aa & 2) != 0 && a - regs::kGateIcsBase < regs::kGateIcsSize) {
       s.any = true;
       s.panel = jpan && !w.x && a == regs::jpan::kInputs.address;
-      const int ic = gate_ic(a & 0x3FFF);
+      const int ic = gate_ic(a - regs::kGateIcsBase);
       if (ic >= 0 && (fitted >> ic & 1) != 0) s.ic = ic;
     }
     return s;

@@ -176,7 +176,7 @@ void BoardTop::select() {
 std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.internal) return host_port_.dsp_rdata();
   if (select_.signals) return host_signals_.rdata();
-  if (select_.ctrl) return host_signals_.ctrl();
+  if (select_.ctrl) return ctrl();
   if (select_.panel) return panel_port_.rdata();
   if (select_.ic < 0) return 0;
   return gate_ics_.read(static_cast<unsigned>(select_.ic), bus_sync_.where().x, bus_sync_.where().addr, t);

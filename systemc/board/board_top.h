@@ -179,6 +179,8 @@ class BoardTop : public sc_core::sc_module, public Board {
   class Wires;
   BoardOutputs pins(Parts changed) const;
   void set_port_a_pins(BoardOutputs& o) const;
+  // A trip turns the control outputs off; the reset that ends it clears the latch.
+  std::uint32_t ctrl() const { return watchdog_.trip() ? 0u : host_signals_.ctrl(); }
   std::uint32_t selected_lines() const;  // IR5, IR6, IR7 of the interrupt controller
 
   bool show_pins();                       // updates outputs_ after an edge; true when a selected pin changed

@@ -190,8 +190,8 @@ std::uint32_t BoardTop::selected_lines() const {
   const std::uint32_t fitted_equ = ((straps_.fitted & 1) != 0 ? 0x0Fu : 0u) | ((straps_.fitted & 2) != 0 ? 0xF0u : 0u);
   const auto at = [](bool level, unsigned source) { return (level ? 1u : 0u) << source; };
   const std::uint32_t sources =  // by the digits of line_select
-      (gate_ics_.equ() & fitted_equ) << 1 | at(watchdog_.trip(), 9) | std::uint32_t{host_signals_.ctrl()} << 10 |
-      at(inputs_.mi1, 12) | at(inputs_.mi2, 13) | at(inputs_.axexp0, 14) | at(inputs_.axexp1, 15);
+      (gate_ics_.equ() & fitted_equ) << 1 | at(watchdog_.trip(), 9) | ctrl() << 10 | at(inputs_.mi1, 12) |
+      at(inputs_.mi2, 13) | at(inputs_.axexp0, 14) | at(inputs_.axexp1, 15);
   std::uint32_t lines = 0;
   for (unsigned line = 0; line < 3; ++line) lines |= (sources >> (straps_.line_select >> 4 * line & 0xF) & 1) << line;
   return lines;
@@ -235,8 +235,10 @@ BoardOutputs BoardTop::pins(Parts changed) const {
     o.set(pin::kIpos, host_signals_.ipos());
     o.set(pin::kEror, host_signals_.eror());
     o.set(pin::kF1er, host_signals_.f1er());
-    o.set(pin::kCtrl0, host_signals_.ctrl() & 1);
-    o.set(pin::kCtrl1, host_signals_.ctrl() >> 1);
+  }
+  if (from(kHostSignals, kWatchdog)) {
+    o.set(pin::kCtrl0, ctrl() & 1);
+    o.set(pin::kCtrl1, ctrl() >> 1);
   }
   if (from(kWatchdog)) {
     o.set(pin::kWdo, watchdog_.trip());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/component/board_buses.h"
 #include "systemc/component/board_words.h"
 #include "systemc/component/error.h"
@@ -138,7 +139,7 @@ class BoardChip final : public Chip {
   }
   // The word of the dual-ported RAM at this byte address, if it is one: of Port A, or of a window without pages.
   std::optional<unsigned> dpram_index(unsigned face, unsigned address) const {
-    constexpr unsigned kPortABytes = 8 * 0x60000, kWords = 32768;
+    constexpr unsigned kPortABytes = 8 * regs::kDpramBase, kWords = 2 * regs::kDpramSize;
     const BoardInputs& in = buses_.inputs();
     if (face == kIsaFace && ((address & kIsaMemory) == 0 || !in.window_flat)) return {};
     const unsigned first =

@@ -16,21 +16,20 @@ constexpr unsigned kOnChipWaitStates = 7;
 
 // Regions of docs/architecture.md that lie on Port A; the first three of each area select.
 struct Region {
-  std::uint32_t first, last;
+  std::uint32_t base, size;
   unsigned area;
 };
 constexpr Region kRegions[] = {
-    {0x060000, 0x063FFF, 2},             // DPRAM
-    {0x070000, 0x0700FF, kDefaultArea},  // latches
-    {0x078000, 0x07BFFF, 1},             // gate ICs
+    {regs::kDpramBase, regs::kDpramSize, 2},
+    {regs::kLatchesBase, regs::kLatchesSize, kDefaultArea},
+    {regs::kGateIcsBase, regs::kGateIcsSize, 1},
 };
-constexpr std::uint32_t kOnChipFirst = 0xFFFF80, kOnChipLast = 0xFFFFFF;
 constexpr std::uint32_t kOnChipAddressPins = 0x3F;
 
-bool is_on_chip(std::uint32_t address, bool x) { return x && address >= kOnChipFirst && address <= kOnChipLast; }
+bool is_on_chip(std::uint32_t address, bool x) { return x && address - regs::kOnChipBase < regs::kOnChipSize; }
 const Region* region_of(std::uint32_t address) {
   const auto region = std::find_if(std::begin(kRegions), std::end(kRegions),
-                                   [&](const Region& r) { return address >= r.first && address <= r.last; });
+                                   [&](const Region& r) { return address - r.base < r.size; });
   return region == std::end(kRegions) ? nullptr : region;
 }
 

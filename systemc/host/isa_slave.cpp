@@ -8,7 +8,8 @@ namespace brick {
 
 // The first edge at which an output moves. MEMCS16# moves with clk_pwm, all others with clk_ref.
 Tick IsaSlave::next_event() const {
-  if (isa_sd_oe() != oe_shown_ || (fresh_ && pic_sel())) return now_ + 1;  // pic_rd goes with the command
+  if (isa_sd_oe() != oe_shown_ || (cycle_ == Cycle::kStart && pic_sel()))
+    return now_ + 1;  // pic_rd goes with the command
   const unsigned commands = command_pins();
   const std::uint8_t la = la_pins();
   const Tick next = la != la1_ || la != la2_ || la_hit(la) == isa_memcs16_n() ? next_memcs16() : kNever;
@@ -38,7 +39,7 @@ void IsaSlave::advance(Tick t) {
       break;
     }
     pwm_edges(edge - 1 - now_, still);
-    if (ref_acts(cmd2_) || (drive_ && !shown_)) cycle_edge();
+    if (ref_acts(cmd2_) || cycle_ == Cycle::kShow) cycle_edge();
     pwm_edges(1, still);
     if (!still) sample();
     now_ = edge;
@@ -51,7 +52,7 @@ void IsaSlave::advance(Tick t) {
 // No edge does anything while these and the rest stand.
 bool IsaSlave::commands_settled() const {
   const std::uint8_t commands = command_pins();
-  return commands == cmd1_ && commands == cmd2_ && (shown_ || !drive_) && !ref_acts(commands);
+  return commands == cmd1_ && commands == cmd2_ && cycle_ != Cycle::kShow && !ref_acts(commands);
 }
 
 // What comes in has passed all stages, but for the commands.
@@ -64,9 +65,9 @@ bool IsaSlave::stages_still() const {
 
 // The cycle moves on at a clk_ref edge that sees these commands.
 bool IsaSlave::ref_acts(unsigned command) const {
-  if (fresh_ || finish_ || (load_ && !in.mem_busy)) return true;
-  if (host_reset() && (!active_ || drive_ || load_ || target_ != 0 || page_ != 0)) return true;
-  if (!active_) return command != 0;
+  if (cycle_ == Cycle::kStart || finished() || fetched()) return true;
+  if (host_reset() && (cycle_ != Cycle::kHold || target_ != 0 || page_ != 0)) return true;
+  if (cycle_ == Cycle::kIdle) return command != 0;
   return (command == 0 && !host_reset()) || (spoilt(command) && target_ != 0);
 }
 
@@ -74,8 +75,8 @@ bool IsaSlave::ref_acts(unsigned command) const {
 // then it is what takes the data from the bus.
 bool IsaSlave::ref_shows(unsigned command) const {
   if (!ref_acts(command)) return false;
-  const bool ends = active_ ? command == 0 && !fresh_ && !load_ : command == 0;
-  return !ends || host_reset() || end_shows() || (drive_ && command_pins() != 0);
+  const bool ends = command == 0 && cycle_ != Cycle::kStart && cycle_ != Cycle::kFetch;
+  return !ends || host_reset() || end_shows() || (drives() && command_pins() != 0);
 }
 
 // --------------------------------------------------------------------------------------------------------------- edges
@@ -120,28 +121,35 @@ void IsaSlave::sample() {
 
 void IsaSlave::cycle_edge() {
   const bool reset = host_reset();
-  const bool begins = !active_ && cmd2_ != 0, ends = active_ && cmd2_ == 0 && !reset, spoils = spoilt(cmd2_);
-  const bool io_load = fresh_ && (kind_ & kIor) && (target_ & (kPort | kPic | kOther));
-  const bool mem_load = load_ && !in.mem_busy;
-  const bool turns_page = finish_ && (kind_ & kIow) && (target_ & kOther) && addresses_page();
+  const bool begins = !active() && cmd2_ != 0, ends = active() && cmd2_ == 0 && !reset;
+  const bool io_load = cycle_ == Cycle::kStart && (kind_ & kIor) && (target_ & (kPort | kPic | kOther));
+  const bool mem_load = fetched();
+  const bool turns_page = finished() && (kind_ & kIow) && (target_ & kOther) && addresses_page();
 
-  shown_ = !begins && (shown_ || (drive_ && !ends && !spoils));
+  const Cycle next = next_cycle(io_load, mem_load);
   if (io_load) sd_ = static_cast<std::uint16_t>(0xFF00 | io_read());
   if (mem_load && !io_load) sd_ = byte8_ ? static_cast<std::uint16_t>((in.mem_rdata >> 8) * 0x101) : in.mem_rdata;
-  load_ = fresh_ ? (kind_ & kMemr) && (target_ & kMemory) : load_ && !mem_load;
-  drive_ = drive_ || io_load || mem_load;
-  if (ends || spoils) drive_ = load_ = false;
-  if (spoils) target_ = 0;
-  fresh_ = begins;
-  finish_ = ends;
-  active_ = begins || (active_ && !ends);
+  if (spoilt(cmd2_)) target_ = 0;
+  cycle_ = next;
   if (begins) begin();
   if (turns_page) page_ = static_cast<std::uint8_t>(regs::host_io::page::kPage.get(wdata_));
   if (ends) wdata_ = sd_low_;
-  if (reset) {
-    active_ = true;
-    drive_ = load_ = false;
-    target_ = page_ = 0;
+  if (reset) target_ = page_ = 0;
+}
+
+IsaSlave::Cycle IsaSlave::next_cycle(bool io_load, bool mem_load) const {
+  if (host_reset()) return Cycle::kHold;  // as after the reset
+  if (!active()) return cmd2_ != 0 ? Cycle::kStart : Cycle::kIdle;
+  if (cmd2_ == 0) return cycle_ == Cycle::kShown ? Cycle::kDoneShown : Cycle::kDone;
+  if (spoilt(cmd2_)) return Cycle::kHold;
+  if (io_load || mem_load) return Cycle::kShow;
+  switch (cycle_) {
+    case Cycle::kStart:
+      return (kind_ & kMemr) && (target_ & kMemory) ? Cycle::kFetch : Cycle::kHold;
+    case Cycle::kShow:
+      return Cycle::kShown;
+    default:
+      return cycle_;
   }
 }
 
@@ -187,8 +195,8 @@ void IsaSlave::reset(Tick t) {
   sbhe_n_ = true;
   resetdrv_ = 0;
   straps_ = IsaStraps::none();
-  active_ = true;
-  fresh_ = load_ = drive_ = shown_ = finish_ = byte8_ = false;
+  cycle_ = Cycle::kHold;
+  byte8_ = false;
   kind_ = target_ = lanes_ = be_ = page_ = io_addr_ = 0;
   mem_addr_ = 0;
   sd_ = 0xFFFF;

@@ -22,7 +22,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
 
   // Host bus
   std::uint16_t isa_sd() const { return sd_; }
-  std::uint8_t isa_sd_oe() const { return drive_ && read_low() ? lanes_ : 0; }
+  std::uint8_t isa_sd_oe() const { return drives() && read_low() ? lanes_ : 0; }
   bool isa_iochrdy() const { return !in.mem_busy; }
   bool isa_memcs16_n() const { return (la_hits_ & 1) == 0; }
   bool host_reset() const { return (resetdrv_ & 2) != 0; }
@@ -31,21 +31,21 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   bool mem_target() const { return (target_ & kMemory) != 0; }
   // Host port
   bool hp_sel() const { return target_ & kPort; }
-  bool hp_rd() const { return hp_sel() && fresh_ && (kind_ & kIor); }
-  bool hp_rd_done() const { return hp_sel() && finish_ && shown_; }
-  bool hp_wr() const { return hp_sel() && finish_ && (kind_ & kIow); }
+  bool hp_rd() const { return hp_sel() && cycle_ == Cycle::kStart && (kind_ & kIor); }
+  bool hp_rd_done() const { return hp_sel() && cycle_ == Cycle::kDoneShown; }
+  bool hp_wr() const { return hp_sel() && finished() && (kind_ & kIow); }
   std::uint8_t hp_addr() const { return io_addr_ & 7; }
   std::uint8_t hp_wdata() const { return wdata_ & 0xFF; }
   // Interrupt controller
   bool pic_sel() const { return target_ & kPic; }
-  bool pic_rd() const { return pic_sel() && fresh_ && (kind_ & kIor) && cmd2_ == kind_; }
-  bool pic_wr() const { return pic_sel() && finish_ && (kind_ & kIow); }
+  bool pic_rd() const { return pic_sel() && cycle_ == Cycle::kStart && (kind_ & kIor) && cmd2_ == kind_; }
+  bool pic_wr() const { return pic_sel() && finished() && (kind_ & kIow); }
   std::uint8_t pic_addr() const { return io_addr_ & 3; }
   std::uint8_t pic_wdata() const { return wdata_ & 0xFF; }
   // Dual-ported RAM
-  bool mem_sel() const { return (target_ & kMemory) && active_; }
+  bool mem_sel() const { return (target_ & kMemory) && active(); }
   bool mem_rd() const { return kind_ & kMemr; }
-  bool mem_wr() const { return (target_ & kMemory) && finish_ && (kind_ & kMemw); }
+  bool mem_wr() const { return (target_ & kMemory) && finished() && (kind_ & kMemw); }
   std::uint16_t mem_addr() const { return mem_addr_; }
   std::uint8_t mem_be() const { return be_; }
   std::uint16_t mem_wdata() const { return byte8_ ? static_cast<std::uint16_t>((wdata_ & 0xFF) * 0x101) : wdata_; }
@@ -63,6 +63,21 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   static constexpr std::uint8_t kAllHits = 15, kSecondHit = 2, kOldestHit = 8;  // of la_hits_
   static constexpr std::uint32_t kSa = 0x1FFFF;                                 // what of SA the cycle needs
   enum Target : std::uint8_t { kPort = 1, kPic = 2, kOther = 4, kMemory = 8 };
+  enum class Cycle : std::uint8_t {
+    kIdle,   // no command
+    kStart,  // the clock after the one that found a command low
+    kFetch,  // data of the RAM has still to come
+    kShow,   // data is on the bus since this clock
+    kShown,  // data was on the bus with the command still low
+    kHold,   // nothing to do until the command goes: a write, a cycle of others, a spoilt one, one from before a reset
+    kDone,   // the clock after the end
+    kDoneShown  // the same of a read whose data was shown
+  };
+
+  bool finished() const { return cycle_ == Cycle::kDone || cycle_ == Cycle::kDoneShown; }
+  bool active() const { return cycle_ != Cycle::kIdle && !finished(); }
+  bool drives() const { return cycle_ == Cycle::kShow || cycle_ == Cycle::kShown; }
+  bool fetched() const { return cycle_ == Cycle::kFetch && !in.mem_busy; }  // the coming edge takes the RAM's data
 
   static bool writes(unsigned commands) { return (commands & (kIow | kMemw)) != 0; }
   std::uint8_t command_pins() const {
@@ -78,7 +93,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   bool read_low() const {
     return (((kind_ & kIor) && !in.isa_ior_n) || ((kind_ & kMemr) && !in.isa_memr_n)) && in.isa_iow_n && in.isa_memw_n;
   }
-  bool spoilt(unsigned command) const { return active_ && (command & ~kind_ & kAll) != 0; }
+  bool spoilt(unsigned command) const { return active() && (command & ~kind_ & kAll) != 0; }
   bool addresses_page() const { return !straps_.window_flat && io_addr_ == regs::host_io::kPage.address % 16; }
   std::uint8_t decode() const;
   std::uint8_t io_read() const;
@@ -93,6 +108,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   void pwm_edges(Tick count, bool still);
   void sample();
   void cycle_edge();
+  Cycle next_cycle(bool io_load, bool mem_load) const;
   void begin();
 
   Tick now_ = 0;
@@ -106,7 +122,8 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   std::uint8_t resetdrv_ = 0;
   IsaStraps straps_ = IsaStraps::none();
   // the cycle
-  bool active_ = true, fresh_ = false, load_ = false, drive_ = false, shown_ = false, finish_ = false, byte8_ = false;
+  Cycle cycle_ = Cycle::kHold;
+  bool byte8_ = false;
   std::uint8_t kind_ = 0, target_ = 0, lanes_ = 0, be_ = 0, page_ = 0, io_addr_ = 0;
   std::uint16_t mem_addr_ = 0, sd_ = 0xFFFF;
   std::uint8_t oe_shown_ = 0;  // after the last edge

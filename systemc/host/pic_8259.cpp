@@ -2,6 +2,13 @@
 
 namespace brick {
 
+namespace words = regs::pic_8259;
+
+static_assert(((words::kOcw2.address ^ words::kIcw1.address) & 3) == 0 &&
+              ((words::kOcw3.address ^ words::kIcw1.address) & 3) == 0);
+static_assert(((words::kIcw2.address ^ words::kOcw1.address) & 3) == 0 &&
+              ((words::kIcw4.address ^ words::kOcw1.address) & 3) == 0);
+
 unsigned Pic8259::rank(std::uint8_t bits) const {
   for (unsigned r = 0; r < 8; ++r)
     if ((bits >> level_of(r) & 1) != 0) return r;
@@ -11,8 +18,9 @@ unsigned Pic8259::rank(std::uint8_t bits) const {
 std::uint8_t Pic8259::rdata() const {
   if (in.addr > kAcknowledge) return 0xFF;
   const unsigned acked = acknowledged();
-  if (in.addr == kAcknowledge) return static_cast<std::uint8_t>(vector_ | acked);
-  if (poll_) return static_cast<std::uint8_t>((pending() ? 0x80 : 0) | acked);
+  if (in.addr == kAcknowledge)
+    return static_cast<std::uint8_t>(words::vector::kBase.at(vector_) | words::vector::kIr.at(acked));
+  if (poll_) return static_cast<std::uint8_t>(words::poll::kPending.at(pending()) | words::poll::kIr.at(acked));
   return in.addr == kMask ? imr_ : read_isr_ ? isr_ : irr();
 }
 
@@ -43,17 +51,18 @@ void Pic8259::acknowledge() {
 }
 
 void Pic8259::write_command() {
-  if ((in.wdata & 0x10) != 0) return write_icw1();
-  if ((in.wdata & 0x08) == 0) return write_ocw2();
-  if ((in.wdata & 0x40) != 0) special_ = (in.wdata & 0x20) != 0;  // OCW3
-  if ((in.wdata & 0x02) != 0) read_isr_ = (in.wdata & 0x01) != 0;
-  poll_ = (in.wdata & 0x04) != 0;
+  using namespace words::ocw3;
+  if (words::icw1::kIcw1.is_set(in.wdata)) return write_icw1();
+  if (!kOcw3.is_set(in.wdata)) return write_ocw2();
+  if (kEsmm.is_set(in.wdata)) special_ = kSmm.is_set(in.wdata);
+  if (kRr.is_set(in.wdata)) read_isr_ = kRis.is_set(in.wdata);
+  poll_ = kPoll.is_set(in.wdata);
 }
 
 void Pic8259::write_icw1() {
-  level_ = (in.wdata & 0x08) != 0;
-  icw3_ = (in.wdata & 0x02) == 0;
-  icw4_ = (in.wdata & 0x01) != 0;
+  level_ = words::icw1::kLtim.is_set(in.wdata);
+  icw3_ = !words::icw1::kSngl.is_set(in.wdata);
+  icw4_ = words::icw1::kIc4.is_set(in.wdata);
   armed_ = isr_ = imr_ = 0;
   lowest_ = kDefaultLevel;
   turn_ = aeoi_ = special_ = read_isr_ = poll_ = false;
@@ -61,9 +70,10 @@ void Pic8259::write_icw1() {
 }
 
 void Pic8259::write_ocw2() {
-  const bool turn = (in.wdata & 0x80) != 0, specific = (in.wdata & 0x40) != 0, end = (in.wdata & 0x20) != 0;
+  using namespace words::ocw2;
+  const bool turn = kRotate.is_set(in.wdata), specific = kSl.is_set(in.wdata), end = kEoi.is_set(in.wdata);
   const unsigned highest = rank(serviced());
-  const unsigned level = specific ? in.wdata & 7u : level_of(highest);
+  const unsigned level = specific ? kIr.get(in.wdata) : level_of(highest);
   if (end) {
     if (!specific && highest == 8) return;
     isr_ &= static_cast<std::uint8_t>(~(1u << level));
@@ -81,14 +91,14 @@ void Pic8259::write_second() {
       imr_ = in.wdata;
       break;
     case Step::kIcw2:
-      vector_ = in.wdata & 0xF8;
+      vector_ = static_cast<std::uint8_t>(words::icw2::kVector.get(in.wdata));
       step_ = icw3_ ? Step::kIcw3 : icw4_ ? Step::kIcw4 : Step::kReady;
       break;
     case Step::kIcw3:
       step_ = icw4_ ? Step::kIcw4 : Step::kReady;
       break;
     case Step::kIcw4:
-      aeoi_ = (in.wdata & 0x02) != 0;
+      aeoi_ = words::icw4::kAeoi.is_set(in.wdata);
       step_ = Step::kReady;
       break;
   }
@@ -96,7 +106,7 @@ void Pic8259::write_second() {
 
 void Pic8259::reset_registers() {
   line1_ = line2_ = armed_ = isr_ = vector_ = 0;
-  imr_ = 0xFF;
+  imr_ = words::kOcw1.reset;
   lowest_ = kDefaultLevel;
   step_ = Step::kReady;
   icw3_ = icw4_ = level_ = aeoi_ = turn_ = special_ = read_isr_ = poll_ = false;

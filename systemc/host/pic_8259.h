@@ -5,6 +5,7 @@
 
 #include <systemc>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/host/inputs.h"
 #include "systemc/host/ref_clocked_block.h"
 
@@ -27,8 +28,13 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
 
  private:
   enum class Step : std::uint8_t { kReady, kIcw2, kIcw3, kIcw4 };  // what the next write to address 1 is
-  enum Address : unsigned { kCommand = 0, kMask = 1, kAcknowledge = 2 };
-  static constexpr unsigned kDefaultLevel = 7;  // of a request that has gone, and the lowest after ICW1
+  enum Address : unsigned {                                        // several words share the first two
+    kCommand = regs::pic_8259::kIcw1.address & 3,
+    kMask = regs::pic_8259::kOcw1.address & 3,
+    kAcknowledge = regs::pic_8259::kVector.address & 3
+  };
+  static constexpr unsigned kDefaultLevel = regs::pic_8259::poll::kIr.get(
+      regs::pic_8259::kPoll.reset);  // of a request that has gone, and the lowest after ICW1
 
   bool idle() const override;
   void step() override;
@@ -50,7 +56,7 @@ class Pic8259 final : public sc_core::sc_module, public RefClockedBlock {
 
   std::uint8_t line1_ = 0, line2_ = 0;
   std::uint8_t armed_ = 0;  // the line has been low since its last acknowledge
-  std::uint8_t isr_ = 0, imr_ = 0xFF, vector_ = 0;
+  std::uint8_t isr_ = 0, imr_ = regs::pic_8259::kOcw1.reset, vector_ = 0;
   unsigned lowest_ = kDefaultLevel;
   Step step_ = Step::kReady;
   bool icw3_ = false, icw4_ = false;  // will be written

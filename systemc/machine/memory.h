@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "rtl/regs/brick_regs.hpp"
 #include "systemc/cpu/cpu.h"
 #include "systemc/machine/flash_file.h"
 
@@ -16,7 +17,7 @@ class MachineMemory {
   static constexpr std::uint32_t kRam = 0x2000'0000, kRamBytes = 2u << 20;
   static constexpr std::uint32_t kFlash = 0x3000'0000, kFlashBytes = 1u << 20;
   static constexpr std::uint32_t kStraps = 0x3FFF'F000, kStrapsBytes = 4096;
-  static constexpr std::uint32_t kMain = 0xC000'0000, kMainBytes = 8 * 0x40000;  // X and Y words $000000..$03FFFF
+  static constexpr std::uint32_t kMain = 0xC000'0000, kMainBytes = 8 * regs::kMainMemorySize;  // X and Y words
 
   // Maps everything; reads `flash_file` or makes it. Throws std::runtime_error with one clear line.
   MachineMemory(Cpu& cpu, std::string flash_file);

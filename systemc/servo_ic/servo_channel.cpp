@@ -27,6 +27,10 @@ constexpr bool in_order() {
 }
 static_assert(std::size(kInputs) == kChannelPins && in_order());
 
+// What the output pins are and which level is off: a trip holds them.
+constexpr std::uint32_t kOutputBits = channel_control::kAbInvert.mask() | channel_control::kCInvert.mask() |
+                                      channel_control::kAbDac.mask() | channel_control::kCPfm.mask();
+
 }  // namespace
 
 void ServoChannel::reset(Tick t) {
@@ -88,6 +92,7 @@ std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) c
 
 void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint32_t value, bool trip) {
   settle_ = 0;
+  const std::uint32_t held = trip ? kOutputBits : 0;
   switch (word(x, offset)) {
     case word(words::kTimer1):
       if (fine()) compare_.set_b_fraction(value);
@@ -113,7 +118,7 @@ void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint
       break;
     case word(words::kControl):
       subcount_.advance(now, fine());
-      control_ = value & ~channel_control::kEquWrite.mask();
+      control_ = (control_ & held) | (value & ~held & ~channel_control::kEquWrite.mask());
       if (channel_control::kEquWrite.is_set(value)) {
         equ_write_until_ = next_ref_edge(now);
         compare_.set_equ(channel_control::kEquState.is_set(value));

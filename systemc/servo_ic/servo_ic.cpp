@@ -16,7 +16,7 @@ void ServoIc::reset(Tick t) {
 }
 
 void ServoIc::write(bool x, unsigned offset, std::uint32_t value) {
-  regs_.write(x, offset, value);
+  regs_.write(x, offset, value, channels_.in.trip);
   channels_.write(x, offset, value);
   apply_registers();
 }

@@ -24,9 +24,10 @@ class ServoIcRegs : public sc_core::sc_module {
     const unsigned i = place(x, offset);
     return i == kRegister.size() ? 0 : word_[i];
   }
-  void write(bool x, unsigned offset, std::uint32_t value) {
+  // After a trip of the watchdog the ADC strobe stays: it commands amplifiers.
+  void write(bool x, unsigned offset, std::uint32_t value, bool trip) {
     const unsigned i = place(x, offset);
-    if (i != kRegister.size()) word_[i] = value & kRegister[i].written;
+    if (i != kRegister.size() && !(trip && i == kAdcStrobe)) word_[i] = value & kRegister[i].written;
   }
 
   bool phase_ext() const {

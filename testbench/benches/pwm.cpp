@@ -21,6 +21,9 @@ constexpr std::array<const MotorField*, kPhases> kBottom{&motor_pin::kPwmABot, &
                                                          &motor_pin::kPwmCBot};
 constexpr std::array<unsigned, kPhases> kVariable{2, 4, 7};  // M102, M104, M107
 constexpr std::array<regs::Register, kPhases> kOut{word::kOutA, word::kOutB, word::kOutC};
+// A turn takes what was written before it, and the turns that are seen are late by kPwmDelay (servo-ic:5.1/5,
+// servo-ic:5.11/4).
+constexpr Tick kBeforeTurn = kPwmDelay + 1;
 constexpr Tick kNear = 8;  // of a turn to the edge of PHASE, servo-ic:5.1/6
 enum Switches : unsigned { kOff = 0, kUpper = 1, kLower = 2, kShort = 3 };
 
@@ -104,7 +107,7 @@ void Pwm::command(const std::vector<std::pair<unsigned, int>>& values) {
   for (const auto& [phase, value] : values) {
     const Tick at = host_.written(phase / kPhases, kOut[phase % kPhases]);
     if (at < 0) report_.fail(name(phase), "the command never came to its word");
-    commands_[phase].push_back({at, value});
+    commands_[phase].push_back({at + kBeforeTurn, value});
   }
 }
 
@@ -159,27 +162,17 @@ bool Pwm::find_triangle() {
   return true;
 }
 
-// A write beside a turn may count from this one or from the next.
 Comparison Pwm::differences(unsigned places) {
   const Tick to = host_.now();
   Comparison same;
   for (unsigned p = 0; p < phases() && place(p) < places; ++p) {
     const auto seen = levels(p);
     const Tick from = bottom_[place(p)] + 1 + rule_.dead;
-    std::string first;
-    bool good = false;
-    for (const Tick shift : {0, 9}) {
-      auto commands = commands_[p];
-      for (auto& c : commands) c.tick += shift;
-      auto changes = place(p) == 0 ? changes_ : std::vector<PwmChange>{};
-      for (auto& c : changes) c.tick += shift;
-      const auto turns = pwm_turns(bottom_[place(p)], limit_then_[place(p)], to, changes);
-      const std::string difference = pwm_difference(seen, pwm_switches(turns, commands, rule_), from, to);
-      if (first.empty()) first = difference;
-      good = good || difference.empty();
-    }
+    const auto turns =
+        pwm_turns(bottom_[place(p)], limit_then_[place(p)], to, place(p) == 0 ? changes_ : std::vector<PwmChange>{});
+    const std::string difference = pwm_difference(seen, pwm_switches(turns, commands_[p], rule_), from, to);
     const auto edges = std::count_if(seen.begin(), seen.end(), [from](const PwmLevel& l) { return l.tick > from; });
-    same.judged(name(p), good ? "" : first, static_cast<unsigned>(edges));
+    same.judged(name(p), difference, static_cast<unsigned>(edges));
   }
   return same;
 }
@@ -310,7 +303,7 @@ void Pwm::new_limits() {
   for (unsigned i = 0; i < 4; ++i) {
     limit_[0] = 3500 + host_.pick(3500);
     host_.say({fmt::format("I7000={}", limit_[0])});
-    changes_.push_back({host_.written(0, regs::servo_ic::kPwmControl), limit_[0]});
+    changes_.push_back({host_.written(0, regs::servo_ic::kPwmControl) + kBeforeTurn, limit_[0]});
     list += fmt::format("{}{}", i == 0 ? "" : ", ", limit_[0]);
     host_.wait(period(0) + host_.pick(static_cast<unsigned>(period(0))));
   }

@@ -15,10 +15,10 @@
 //   - armed_d[level_ack] = 1'b0
 //   + armed_d[level_ack] = 1'b1
 // fault R5: a spurious acknowledge puts IR7 in service (rtl/host/pic_8259.sv)
-//   - pending & (rd_poll | (rd_i & (addr_i == 2'd2)))
+//   - pending & (rd_poll | (rd_i & (addr_i == Acknowledge)))
 //   + rd_poll | (rd_i & (addr_i == 2'd2))
 // fault R6: an end without a level ends the one that asks (rtl/host/pic_8259.sv)
-//   - wdata_i[2:0] : level_serviced
+//   - wdata_i[brick_regs_pkg::Pic8259Ocw2IrLsb +: 3] : level_serviced
 //   + wdata_i[2:0] : level_request
 // fault R8: an automatic end leaves its level in service (rtl/host/pic_8259.sv)
 //   - if (!aeoi_q) isr_d

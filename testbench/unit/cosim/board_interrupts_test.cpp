@@ -116,6 +116,36 @@ TEST_P(BoardInterrupts, ControlOutputsAreALatchOfTheirOwn) {
   EXPECT_EQ(rig.read(true, kControlOutputs), 3u) << "an X word";
 }
 
+// servo-ic:10/10: low with the trip, whatever is written; a reset ends it, and nothing is left of what they were.
+TEST_P(BoardInterrupts, ControlOutputsAreLowFromTripToReset) {
+  rig.run(6);
+  for (const unsigned value : {3u, 1u, 2u}) {
+    rig.write(true, kControlOutputs, value);
+    rig.in.pwr_good = false;
+    rig.apply();
+    rig.edge(pin::kWdTripped, 1, 20);
+    EXPECT_EQ(rig.get(pin::kWdTripped), 1u);
+    EXPECT_EQ(rig.get(pin::kCtrl0) + rig.get(pin::kCtrl1), 0u) << "at the tick of the trip";
+    EXPECT_EQ(rig.read(true, kControlOutputs), 0u);
+    for (const unsigned written : {1u, 2u, 3u}) {
+      rig.write(true, kControlOutputs, written);
+      EXPECT_EQ(rig.get(pin::kCtrl0) + rig.get(pin::kCtrl1), 0u) << written;
+      EXPECT_EQ(rig.read(true, kControlOutputs), 0u) << written;
+    }
+    rig.in.pwr_good = true;
+    rig.in.rst_n = false;
+    rig.apply();
+    rig.run(30);
+    rig.in.rst_n = true;
+    rig.apply();
+    rig.run(30);
+    EXPECT_EQ(rig.get(pin::kWdTripped), 0u);
+    EXPECT_EQ(rig.get(pin::kCtrl0) + rig.get(pin::kCtrl1), 0u);
+    rig.write(true, kControlOutputs, value);
+    EXPECT_EQ(rig.read(true, kControlOutputs), value);
+  }
+}
+
 // host-bus:3.5/1: one line, high while any enabled line interrupts.
 TEST_P(BoardInterrupts, LineToThePcIsActiveHigh) {
   rig.run(6);

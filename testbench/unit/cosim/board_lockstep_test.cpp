@@ -122,6 +122,25 @@ TEST_P(BoardLockstep, IsEqualAtEveryTickOverLongPausesAndATripOfTheWatchdog) {
   play(ics(), seed(), options, 4'000'000, &Least::sparse);
 }
 
+// 5 V fails, and both sides go on: writes of the control outputs among them (servo-ic:10/10).
+TEST_P(BoardLockstep, IsEqualAtEveryTickAfterTripsWithWritesBehindThem) {
+  constexpr unsigned kTrips = 10;
+  BoardTraffic::Options options;
+  options.ics = ics();
+  options.reset_one_in = 0;
+  options.fail_every = 200;
+  auto board = make_lockstep_board(make_rtl_board(ics()), make_model_board(ics()));
+  unsigned trips = 0, high = 0;
+  board->on_change = [&](Tick, const BoardOutputs& before, const BoardOutputs& after) {
+    trips += after.get(pin::kWdTripped) & ~before.get(pin::kWdTripped);
+    high += after.get(pin::kWdTripped) != 0 && (after.get(pin::kCtrl0) | after.get(pin::kCtrl1)) != 0;
+  };
+  BoardTraffic traffic(static_cast<std::uint64_t>(seed()), options);
+  for (Tick end = 50'000; trips < kTrips; end += 50'000) ASSERT_NO_THROW(traffic.run(*board, end));
+  EXPECT_EQ(high, 0u) << "a control output is high after a trip";
+  EXPECT_GE(traffic.seen().writes_tripped, 10 * (kTrips - 1));
+}
+
 std::string name_of(const ::testing::TestParamInfo<BoardLockstep::ParamType>& info) {
   return (std::get<0>(info.param) == kTwoIcs ? "TwoIcs" : "FiveIcs") + std::to_string(std::get<1>(info.param));
 }

@@ -8,7 +8,8 @@
 namespace brick {
 
 namespace {
-constexpr Tick kShortestLegal = 9;     // ticks of a strobe, host-bus:2.5: 78.7 ns
+constexpr Tick kShortestLegal = 9;  // ticks of a strobe, host-bus:2.5: 78.7 ns
+constexpr unsigned kTrippedAccesses = 60;
 constexpr Tick kTripTime = 3'000'000;  // without a strobe the watchdog trips after 25 ms = 2949120 ticks
 }  // namespace
 
@@ -64,6 +65,7 @@ void BoardTraffic::change() {
     in_reset_ = !in_reset_;
     seen_.reset_in_cycle += in_reset_ && (!inputs_.pa_rd_n || !inputs_.pa_wr_n);
     inputs_.rst_n = !in_reset_;
+    if (in_reset_) inputs_.pwr_good = true;
     reset_at_ = in_reset_ ? now + 1 + pick(40) : kNever;
     driver_ = one_of_ics();
   }
@@ -211,6 +213,13 @@ void BoardTraffic::cpu_step() {
       choose_cpu_address();
       if (pick(4) == 0) inputs_.jpan = static_cast<std::uint16_t>(pick(0x10000));
       cpu_.write = pick(2) != 0;
+      if (tripped_accesses_ % 5 == 1) {
+        inputs_.pa_addr = regs::board_latches::kControlOutputs.address;
+        inputs_.pa_x = cpu_.write = true;
+        inputs_.pa_int = false;
+        inputs_.pa_aa = 0;
+        ++seen_.writes_tripped;
+      }
       cpu_.dpram_accesses += inputs_.pa_aa == 4 && inputs_.pa_addr - regs::kDpramBase < regs::kDpramSize;
       ++cpu_.accesses;
       cpu_.at += hurries_ ? pick(2) : step;
@@ -248,6 +257,7 @@ void BoardTraffic::cpu_step() {
       cpu_.step = 0;
       if (!hurries_) cpu_.at += 1 + pick(12);
       pause();
+      if (options_.fail_every != 0) fail_or_recover();
       if (options_.reset_one_in != 0 && pick(options_.reset_one_in) == 0 && reset_at_ == kNever)
         reset_at_ = cpu_.at + pick(20);
       if (cpu_.at >= options_.silent_at && reset_at_ == kNever) {
@@ -257,6 +267,15 @@ void BoardTraffic::cpu_step() {
       }
       break;
   }
+}
+
+// The watchdog trips while everything goes on.
+void BoardTraffic::fail_or_recover() {
+  if (tripped_accesses_ > 0 && --tripped_accesses_ == 0 && reset_at_ == kNever) reset_at_ = cpu_.at + 1 + pick(20);
+  if (in_reset_) tripped_accesses_ = 0;
+  if (cpu_.accesses % options_.fail_every != 0 || reset_at_ != kNever) return;
+  inputs_.pwr_good = false;
+  tripped_accesses_ = kTrippedAccesses;
 }
 
 void BoardTraffic::choose_host_address() {

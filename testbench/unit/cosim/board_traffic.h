@@ -22,6 +22,9 @@ class BoardTraffic {
     bool dense = true;            // without long pauses of everybody
     std::uint32_t ics = 0x3;      // that take part, as in BoardInputs::fitted
     Tick silent_at = kNever;      // Port A rests from there until the watchdog has tripped, and a reset follows
+    // Accesses of the CPU between two failures of 5 V, each followed by 60 more, every fifth a write of the control
+    // outputs, and a reset; 0 = none.
+    unsigned fail_every = 0;
   };
   explicit BoardTraffic(std::uint64_t seed) : BoardTraffic(seed, Options{}) {}
   BoardTraffic(std::uint64_t seed, Options options);
@@ -33,7 +36,8 @@ class BoardTraffic {
 
   // What was made, on both buses, and how often what.
   struct Seen {
-    unsigned too_short = 0, back_to_back = 0, both_strobes = 0, address_moved = 0, reset_in_cycle = 0;
+    unsigned too_short = 0, back_to_back = 0, both_strobes = 0, address_moved = 0, reset_in_cycle = 0,
+             writes_tripped = 0;
   };
   const Seen& seen() const { return seen_; }
   unsigned accesses() const { return cpu_.accesses + host_.accesses; }
@@ -56,6 +60,7 @@ class BoardTraffic {
   void outside_step();
   void pause();
   void choose_cpu_address();
+  void fail_or_recover();
   void choose_clock_address();
   std::uint32_t choose_cpu_data();
   std::uint32_t choose_clock_data(bool drives);
@@ -70,7 +75,8 @@ class BoardTraffic {
   unsigned driver_ = 0;        // of the clocks, mostly
   Tick outside_at_ = 0, reset_at_ = kNever;
   bool in_reset_ = true;
-  bool hurries_ = false;  // the CPU's next cycle follows at once
+  bool hurries_ = false;           // the CPU's next cycle follows at once
+  unsigned tripped_accesses_ = 0;  // still to be made before the reset
   Seen seen_;
 };
 

@@ -89,6 +89,13 @@ class Seen {
   std::array<MotorOutputs, kMaxServoIcs> moved_{};
 };
 
+MotorTrafficOptions five_volts_fail(std::uint32_t ics) {
+  MotorTrafficOptions options{ics};
+  options.reset_one_in = 0;
+  options.fail_every = 300;
+  return options;
+}
+
 class MotorLockstep : public ::testing::TestWithParam<Life> {};
 
 TEST_P(MotorLockstep, IsEqualAtEveryTickUnderRandomLife) {
@@ -99,17 +106,23 @@ TEST_P(MotorLockstep, IsEqualAtEveryTickUnderRandomLife) {
   const Tick end = static_cast<Tick>(from_environment("BRICK_MOTOR_TICKS", static_cast<std::uint64_t>(life.ticks)));
   const std::uint64_t seed = from_environment("BRICK_MOTOR_SEED", 1);
   const Seen seen(*board);
-  ASSERT_NO_THROW(MotorTraffic(seed, life.options).run(*board, end, 65'536)) << "seed " << seed;
+  MotorTraffic traffic(seed, life.options);
+  ASSERT_NO_THROW(traffic.run(*board, end, 65'536)) << "seed " << seed;
   EXPECT_EQ(board->now(), end);
   EXPECT_THAT(seen.lacks(ics), ::testing::IsEmpty());
   EXPECT_NE(seen.sources & ics & (life.options.macro_drives ? ~kServoIcMask : kServoIcMask), 0u);
   if (life.options.silent_at != kNever) { EXPECT_NE(seen.trips, 0u); }
+  if (life.options.fail_every != 0) {  // by construction a trip has 12 writes of a control word behind it
+    EXPECT_GE(seen.trips, 2u);
+    EXPECT_GE(traffic.writes_tripped(), 12 * (seen.trips - 1));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Lives, MotorLockstep,
                          ::testing::Values(Life{"OneIc", {0x1}, 400'000}, Life{"TwoIcs", {kTwoIcs}, 400'000},
                                            Life{"TwoIcsRarely", {kTwoIcs, 3'000, 400}, 2'400'000},
                                            Life{"TwoIcsLeftAlone", left_alone(kTwoIcs), 6'000'000},
+                                           Life{"TwoIcsFiveVoltsFail", five_volts_fail(kTwoIcs), 1'200'000},
                                            Life{"AllIcs", {kAllIcs}, 120'000},
                                            Life{"AllIcsByMacro", by_macro(kAllIcs), 120'000}),
                          [](const auto& life) { return std::string(life.param.name); });

@@ -12,6 +12,7 @@ namespace {
 // X and Y words of a channel, and the words of a whole IC (docs/registers.md).
 constexpr unsigned kOutA = 2, kCapture = 3, kGlobal = 4, kControl = 5, kIncrement = 6, kCompare = 7;
 constexpr unsigned kDacStrobe = 0x0C, kAdcStrobe = 0x14, kPwm = 0x1C;
+constexpr unsigned kTrippedAccesses = 60;
 constexpr Tick kTripTime = 3'000'000;           // without a strobe the watchdog trips after 25 ms = 2949120 ticks
 constexpr std::uint32_t kOwnClocks = 0x3008D2;  // as after a reset, PHASE and SERVO driven
 constexpr std::uint32_t kInputs = 0x3000;       // in the clock word: PHASE and SERVO are inputs
@@ -45,6 +46,7 @@ void MotorTraffic::run(Board& board, Tick end, Tick batch) {
     if (target == end) break;
     if (reset_at_ == target) {
       inputs_.rst_n = !inputs_.rst_n;
+      if (!inputs_.rst_n) inputs_.pwr_good = true;
       started_ = 0;
       reset_at_ = inputs_.rst_n ? kNever : target + 1 + below(60);
     }
@@ -86,7 +88,13 @@ void MotorTraffic::move(Channel& c, std::uint16_t& pins) {
 void MotorTraffic::bus_step() {
   switch (bus_step_++) {
     case 0:
-      if (!start_access()) choose_access();
+      ++accesses_;
+      if (tripped_accesses_ % 5 == 1) {
+        control(ics_[below(static_cast<std::uint32_t>(ics_.size()))], below(kChannels), one_in(2));
+        ++writes_tripped_;
+      } else if (!start_access()) {
+        choose_access();
+      }
       bus_at_ += 3 + below(4);
       break;
     case 1:
@@ -101,6 +109,7 @@ void MotorTraffic::bus_step() {
       if (one_in(2)) inputs_.pa_aa = 0;
       bus_step_ = 0;
       bus_at_ += started_ < 6 * ics_.size() ? 1 : 1 + up_to(one_in(10) ? 20'000 : options_.bus_pause);
+      if (options_.fail_every != 0) fail_or_recover();
       if (reset_at_ != kNever) break;
       if (options_.reset_one_in != 0 && one_in(options_.reset_one_in)) {
         reset_at_ = bus_at_ + below(20);
@@ -111,6 +120,14 @@ void MotorTraffic::bus_step() {
       }
       break;
   }
+}
+
+// The watchdog trips while everything goes on.
+void MotorTraffic::fail_or_recover() {
+  if (tripped_accesses_ > 0 && --tripped_accesses_ == 0 && reset_at_ == kNever) reset_at_ = bus_at_ + 1 + below(20);
+  if (accesses_ % options_.fail_every != 0 || reset_at_ != kNever) return;
+  inputs_.pwr_good = false;
+  tripped_accesses_ = kTrippedAccesses;
 }
 
 // After a reset the clocks come first and every channel is put to use, so that there is something to see.

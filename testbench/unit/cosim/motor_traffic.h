@@ -21,6 +21,9 @@ struct MotorTrafficOptions {
       2000;  // accesses between two resets, on average, ten times that between two trips of the watchdog; 0 = neither
   bool macro_drives = false;  // the first MACRO IC drives the clocks
   Tick silent_at = kNever;    // Port A rests from there until the watchdog has tripped, and a reset follows
+  // Accesses between two failures of 5 V, each followed by 60 more, every fifth a write of a channel's control word,
+  // and a reset; 0 = none.
+  unsigned fail_every = 0;
 };
 
 class MotorTraffic {
@@ -29,6 +32,7 @@ class MotorTraffic {
 
   // Lives on the board until its tick `end`, in calls of at most `batch` ticks.
   void run(Board& board, Tick end, Tick batch = kNever);
+  unsigned writes_tripped() const { return writes_tripped_; }  // of control words
 
  private:
   struct Channel {
@@ -51,6 +55,7 @@ class MotorTraffic {
   void pins_step(Ic& ic, Board& board);
   void move(Channel& c, std::uint16_t& pins);
   void bus_step();
+  void fail_or_recover();
   bool start_access();  // false when everything has been started
   void choose_access();
   void choose_macro_access();
@@ -70,6 +75,7 @@ class MotorTraffic {
   BoardInputs inputs_;
   Tick bus_at_, reset_at_;
   unsigned bus_step_ = 0, started_ = 0;
+  unsigned accesses_ = 0, writes_tripped_ = 0, tripped_accesses_ = 0;  // the last: still to be made before the reset
   bool writing_ = false;
 };
 

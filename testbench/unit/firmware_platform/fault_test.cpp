@@ -2,7 +2,9 @@
 // are planted: a program of the test in unused RAM, to which the CPU is sent.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstring>
+#include <vector>
 
 #include "rtl/regs/brick_regs.h"
 #include "testbench/unit/covers.h"
@@ -68,6 +70,65 @@ TEST_F(Fault, TurnsOutputsOffAndRestartsAndTells) {
   board.reset();
   EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
   EXPECT_EQ(ask("RY$70"), std::to_string(count)) << "the reset line keeps it";
+}
+
+// All 22 ICs, every channel with its amplifier enabled, EQU high and a command in each output: when the restart's first
+// instruction is reached all have been turned off, not by what the start writes later. One IC is not there.
+TEST(FaultOfAllIcs, TurnsOffEveryOutputBeforeTheRestart) {
+  constexpr std::uint32_t kBases[] = GATE_IC_BASES;
+  constexpr unsigned kMissing = 5, kServoIcs = 18;
+  constexpr std::uint32_t kOn = SERVO_CHANNEL_CONTROL_AENA_MASK, kCommand = 0x123400;
+  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3FFFFF & ~(1u << kMissing)};
+  ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  const auto write = [&](char space, std::uint32_t address, std::uint32_t value) {
+    char line[40];
+    std::snprintf(line, sizeof line, "W%c$%X,$%X\r", space, address, value);
+    ASSERT_EQ(board.send(line), "\x06") << line;
+  };
+  struct Word {
+    bool x;
+    std::uint32_t address;
+  };
+  std::vector<Word> controls, commands;
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
+    for (std::uint32_t channel = 0; channel < (ic < kServoIcs ? 4u : 2u); ++channel) {
+      const std::uint32_t base = kBases[ic] + 8 * channel;
+      controls.push_back({true, base + (ic < kServoIcs ? SERVO_CHANNEL_X_CONTROL : MACRO_IC_X_SUPPLEMENTARY_1)});
+      if (ic == kMissing) controls.pop_back();
+      if (ic == kMissing || ic >= kServoIcs) continue;
+      for (const std::uint32_t out : {SERVO_CHANNEL_Y_OUT_A, SERVO_CHANNEL_Y_OUT_B, SERVO_CHANNEL_Y_OUT_C})
+        commands.push_back({false, base + out});
+    }
+  ASSERT_EQ(controls.size(), 17u * 4 + 4 * 2);
+  for (const Word& w : controls) write('X', w.address, kOn);
+  for (const Word& w : commands) write('Y', w.address, kCommand);
+  write('X', BOARD_LATCHES_X_CONTROL_OUTPUTS, 3);
+  for (const Word& w : controls) ASSERT_EQ(board.word(w.x, w.address), kOn) << std::hex << w.address;
+  for (const Word& w : commands) ASSERT_EQ(board.word(w.x, w.address), kCommand) << std::hex << w.address;
+
+  std::memcpy(board.cpu().memory(kPlace, 4), &kFaults[0].instruction, 4);
+  board.cpu().invalidate_code();
+  board.cpu().set_reg(kA1, kNothing);
+  board.cpu().set_pc(kPlace);
+  const std::uint32_t start = ElfFile(BRICK_FIRMWARE_ELF).entry();
+  bool judged = false;
+  board.on_instruction = [&] {
+    if (judged || board.cpu().pc() != start) return;
+    judged = true;
+    for (const Word& w : controls) {
+      const std::uint32_t word = board.word(w.x, w.address);
+      EXPECT_EQ(word & (SERVO_CHANNEL_CONTROL_AENA_MASK | SERVO_CHANNEL_CONTROL_EQU_STATE_MASK), 0u)
+          << std::hex << w.address;
+      const bool servo = (w.address & 7) == SERVO_CHANNEL_X_CONTROL && (w.address & 0x400) == 0;
+      if (servo) {
+        EXPECT_NE(word & SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK, 0u) << "EQU is made low, " << std::hex << w.address;
+      }
+    }
+    for (const Word& w : commands) EXPECT_EQ(board.word(w.x, w.address), 0u) << std::hex << w.address;
+    EXPECT_EQ(board.word(true, BOARD_LATCHES_X_CONTROL_OUTPUTS), 0u);
+  };
+  board.run_ms(5.0);
+  EXPECT_TRUE(judged);
 }
 
 TEST_F(Fault, AgainWhileItStartsLeavesTheRestToTheWatchdog) {

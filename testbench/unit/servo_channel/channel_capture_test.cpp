@@ -211,32 +211,5 @@ TEST_F(ChannelTest, ChannelOneDrivesTheComparesOfTheOthers) {
   EXPECT_FALSE(equ(4)) << "own counter";
 }
 
-TEST_F(ChannelTest, FineCompareTogglesBetweenCounts) {
-  const std::uint32_t word = kX4 | kFine;
-  control(1, word | kCounterReset);
-  control(1, word);
-  steps(1, 4, true, 1000 * kSclk);
-  rig_.write(1, words::kCompareA, 4);
-  rig_.write(1, words::kTimer2, 1024);
-  rig_.write(1, words::kCompareB, 4);
-  rig_.write(1, words::kTimer1, 3072);
-  EXPECT_EQ(fine2::kCompareA.get(rig_.peek(1, words::kTimer2)), 1024u);
-  EXPECT_EQ(fine1::kCompareB.get(rig_.peek(1, words::kTimer1)), 3072u);
-  // The fourth cell has been passed by now; do the next one with compares of its own.
-  rig_.write(1, words::kCompareA, 5);
-  rig_.write(1, words::kCompareB, 5);
-  const bool before{equ(1)};
-  step(1, true, 0);
-  Tick rise = 0, fall = 0;
-  const Tick start = rig_.now();
-  while (rig_.now() < start + 1000 * kSclk) {
-    rig_.tick();
-    if (rise == 0 && bool{equ(1)} != before) rise = rig_.now();
-    if (rise != 0 && fall == 0 && bool{equ(1)} == before) fall = rig_.now();
-  }
-  EXPECT_NEAR(static_cast<double>(fall - rise), 500.0 * kSclk, 1.0 * kSclk);
-  EXPECT_NEAR(static_cast<double>(rise - start), 250.0 * kSclk, 6.0 * kSclk) << "filter delay and rounding";
-}
-
 }  // namespace
 }  // namespace brick

@@ -20,7 +20,7 @@ std::unique_ptr<Board> make_board(const std::string& engine) {
 
 // Where a signal of the channels is on the board.
 struct Place {
-  enum Kind { kPin, kAdcA, kAdcB, kMotor, kBoard, kNowhere } kind = kNowhere;
+  enum Kind { kPin, kAdcA, kAdcB, kPowerFails, kMotor, kBoard, kNowhere } kind = kNowhere;
   unsigned channel = 0, bit = 0;
   const MotorField* motor = nullptr;
   const PinField* board = nullptr;
@@ -29,6 +29,7 @@ struct Place {
 Place place_of(const std::string& name) {
   if (name == pin::kPhase.name) return {Place::kBoard, 0, 0, nullptr, &pin::kPhase};
   if (name == pin::kServo.name) return {Place::kBoard, 0, 0, nullptr, &pin::kServo};
+  if (name == pin::kWdTripped.name) return {Place::kPowerFails};  // trips it at the third reference edge
   const bool of_channel = name.rfind("ch", 0) == 0;
   const unsigned channel = of_channel ? static_cast<unsigned>(name[2] - '1') : 0;
   const std::string plain = of_channel ? name.substr(4) : name;
@@ -82,6 +83,8 @@ class BoardDevice : public Device {
       set(motor_.pins[place.channel], place.bit);
     } else if (place.kind == Place::kAdcA || place.kind == Place::kAdcB) {
       set(place.kind == Place::kAdcA ? motor_.adc_a : motor_.adc_b, place.channel);
+    } else if (place.kind == Place::kPowerFails) {
+      in_.pwr_good = value == 0;
     } else {
       throw DeviceError(fmt::format("{} is no input of the board", signals_[signal].name));
     }

@@ -1,0 +1,200 @@
+// Compare with hardware 1/T to the SCLK period: up and down, A and B with fractions of their own, over many cells, and
+// what is no motion and so must not turn EQU (servo-ic:5.7, servo-ic:5.10/9, servo-ic:5.10/11). Where the position is
+// comes from the rule's formula; when a count was, from channel 2, which compares channel 1's counter without 1/T and
+// turns its EQU at each count.
+#include <algorithm>
+
+#include "testbench/unit/servo_channel/channel_fixture.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kCounterMask = 0xFFFFFF, kWord = kX4 | kFine;
+
+struct Place {
+  int cell;
+  unsigned fraction;
+};
+std::int64_t position(const Place& p) { return std::int64_t{p.cell} * 4096 + p.fraction; }
+
+// What the two compares do while the position moves one way, as the SCLK edges find it.
+class Compares {
+ public:
+  Compares(bool up, Place a, Place b, int increment) : up_(up), a_(a), b_(b), step_(up ? increment : -increment) {}
+  // True when EQU turns: a compare is left when the position found is beyond it and the one before was not.
+  bool find(std::int64_t found) {
+    const bool of_a = left(a_, found), of_b = left(b_, found);
+    last_ = found;
+    if (of_a) b_.cell += step_;
+    if (of_b) a_.cell += step_;
+    turns += of_a != of_b;
+    return of_a != of_b;
+  }
+  void start(std::int64_t found) { last_ = found; }
+  int turns = 0;
+
+ private:
+  bool left(const Place& p, std::int64_t found) const {
+    return up_ ? last_ <= position(p) && position(p) < found : found < position(p) && position(p) <= last_;
+  }
+  bool up_;
+  Place a_, b_;
+  int step_;
+  std::int64_t last_ = 0;
+};
+
+class ChannelFineCompareTest : public ChannelTest {
+ protected:
+  // Channel 1 at cell 0 with 1/T, channel 2 turns its EQU with each of its counts: pulses of one count every two.
+  void start(bool up) {
+    control(1, kWord | kCounterReset);
+    control(2, kFromChannel1);
+    rig_.write(2, words::kCompareA, 0);
+    rig_.write(2, words::kCompareB, up ? kCounterMask : 1);
+    rig_.write(2, words::kCompareIncrement, 2);
+    control(1, kWord);
+  }
+  void place(unsigned channel, const Place& a, const Place& b, int increment) {
+    rig_.write(channel, words::kCompareA, static_cast<std::uint32_t>(a.cell) & kCounterMask);
+    rig_.write(channel, words::kTimer2, a.fraction);
+    rig_.write(channel, words::kCompareB, static_cast<std::uint32_t>(b.cell) & kCounterMask);
+    rig_.write(channel, words::kTimer1, b.fraction);
+    rig_.write(channel, words::kCompareIncrement, static_cast<std::uint32_t>(increment));
+    EXPECT_EQ(fine2::kCompareA.get(rig_.peek(channel, words::kTimer2)), a.fraction);
+    EXPECT_EQ(fine1::kCompareB.get(rig_.peek(channel, words::kTimer1)), b.fraction);
+  }
+
+  // A count every `t1` SCLK periods. The first two have no T1 of that length behind them.
+  void run(bool up, int cells, int t1, const Place& a, const Place& b, int increment) {
+    constexpr int kFirst = 3;
+    const std::string what = (up ? "up, T1 " : "down, T1 ") + std::to_string(t1) + ", fractions " +
+                             std::to_string(a.fraction) + " " + std::to_string(b.fraction);
+    start(up);
+    place(1, a, b, increment);
+    Compares compares(up, a, b, increment);
+    const Tick count_period = t1 * kSclk;
+    bool level{equ(1)}, seen{equ(2)};
+    int counts = 0;
+    Tick count = 0;
+    for (int i = 0; i < cells; ++i) {
+      step(1, up, 0);
+      for (Tick t = 0; t < count_period; ++t) {
+        rig_.tick();
+        const bool counted = bool{equ(2)} != seen;
+        if (counted && ++counts > kFirst) { ASSERT_EQ(rig_.now() - count, count_period) << what; }
+        // An edge of SCLK finds the position before it: `since` periods after a count.
+        const bool edge = counted || (counts > 0 && (rig_.now() - count) % kSclk == 0);
+        if (edge && counts >= kFirst) {
+          const int since = static_cast<int>((rig_.now() - count) / kSclk) - 1, cell = counted ? counts - 1 : counts;
+          const auto e = static_cast<unsigned>(std::min(4095, 4096 * since / t1));
+          const std::int64_t found = position({up ? cell : -cell, up ? e : 4095 - e});
+          if (counts == kFirst && counted)
+            compares.start(found);
+          else if (compares.find(found))
+            level = !level;
+        }
+        if (counted) {
+          seen = !seen;
+          count = rig_.now();
+        }
+        ASSERT_EQ(bool{equ(1)}, level) << what << ", " << counts << " counts and " << (rig_.now() - count) / kSclk
+                                       << " SCLK periods";
+      }
+    }
+    EXPECT_GE(compares.turns, 2 * ((cells - 8) / increment)) << what;
+  }
+};
+
+// Fractions that are reached when e is exact, 26 reference edges after a count or later (servo-ic:5.7/3), and the last
+// of a cell, which the next count leaves. The pulses begin in one cell and end in the same or the next but one.
+TEST_F(ChannelFineCompareTest, EachCompareIsLeftAtTheSclkEdgeThatFindsThePositionBeyondIt) {
+  constexpr int kIncrement = 8, kCells = 20;
+  struct Row {
+    unsigned begins, ends;  // 1/4096 count on the way through the cell
+    int width;
+  };
+  for (const int t1 : {64, 101})
+    for (const Row& row : {Row{600, 1024, 0}, Row{1024, 3333, 0}, Row{2047, 4095, 0}, Row{4095, 700, 2},
+                           Row{3000, 1500, 2}, Row{2048, 2048, 2}})
+      for (const bool up : {true, false}) {
+        const auto fraction = [up](unsigned f) { return up ? f : 4095 - f; };
+        const int way = up ? 1 : -1;
+        run(up, kCells, t1, {5 * way, fraction(row.begins)}, {(5 + row.width - kIncrement) * way, fraction(row.ends)},
+            kIncrement);
+        if (HasFatalFailure()) return;
+      }
+}
+
+// Channel 2 stands at its own position and looks at channel 1's instead, and back: a compare lies between the two, or
+// on one of them. Nothing has moved, so nothing is left.
+TEST_F(ChannelFineCompareTest, AChangeOfTheSourceLeavesNothing) {
+  for (const bool up : {true, false}) {
+    const int way = up ? 1 : -1;
+    control(1, kWord | kCounterReset);
+    control(2, kWord | kCounterReset);
+    control(1, kWord);
+    control(2, kWord);
+    steps(1, 24, up);
+    steps(2, 4, up);
+    rig_.ticks(40 * kSclk);  // until both fractions have reached their end
+    for (const int cell : {4, 10, 24})
+      for (const bool of_a : {true, false}) {
+        const Place between{cell * way, 2000}, far{100 * way, 0};
+        const Place &a = of_a ? between : far, &b = of_a ? far : between;
+        place(2, a, b, 5);
+        for (int change = 0; change < 4; ++change) {
+          const bool before{equ(2)};
+          control(2, kWord | (change % 2 == 0 ? kFromChannel1 : 0));
+          for (Tick t = 0; t < 8 * kSclk; ++t) {
+            rig_.tick();
+            ASSERT_EQ(bool{equ(2)}, before) << "cell " << cell << ", change " << change;
+          }
+          EXPECT_EQ(rig_.peek(2, words::kCompareA), static_cast<std::uint32_t>(a.cell) & kCounterMask);
+          EXPECT_EQ(rig_.peek(2, words::kCompareB), static_cast<std::uint32_t>(b.cell) & kCounterMask);
+        }
+      }
+  }
+}
+
+// And the first motion after the change is seen, from where the new source stands.
+TEST_F(ChannelFineCompareTest, TheNewSourceIsFollowedFromWhereItStands) {
+  control(1, kWord | kCounterReset);
+  control(2, kWord | kCounterReset);
+  control(1, kWord);
+  control(2, kWord);
+  steps(1, 24, true);
+  rig_.ticks(40 * kSclk);
+  place(2, {24, 4095}, {10, 0}, 3);
+  const bool before{equ(2)};
+  control(2, kWord | kFromChannel1);
+  rig_.ticks(2 * kSclk);
+  step(1, true);
+  EXPECT_NE(bool{equ(2)}, before) << "24 to 25";
+  EXPECT_EQ(rig_.peek(2, words::kCompareB), 13u);
+}
+
+// The counter has moved on since 1/T was last on; then it is held at 0. Neither is a motion that the compare between
+// the two places sees.
+TEST_F(ChannelFineCompareTest, TurningHardware1TOnOrHoldingTheCounterLeavesNothing) {
+  for (const bool up : {true, false}) {
+    const int way = up ? 1 : -1;
+    for (const int cell : {9, 12, 15}) {
+      control(1, kX4 | kCounterReset);
+      control(1, kWord);
+      steps(1, 12, up);
+      place(1, {100 * way, 2000}, {101 * way, 0}, 0);
+      control(1, kX4);
+      steps(1, 6, up);
+      rig_.write(1, words::kCompareA, static_cast<std::uint32_t>(cell * way) & kCounterMask);
+      const bool before{equ(1)};
+      for (const std::uint32_t word : {kWord, kX4, kWord, kWord | kCounterReset, kWord, kWord | kCounterReset, kX4}) {
+        control(1, word);
+        rig_.ticks(8 * kSclk);
+        EXPECT_EQ(bool{equ(1)}, before) << "control " << std::hex << word << std::dec << ", cell " << cell * way;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace brick
