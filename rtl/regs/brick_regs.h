@@ -200,7 +200,7 @@ enum clock_source {
 #define SERVO_CHANNEL_STATUS_ENCODER_LOSS_SHIFT 7u
 #define SERVO_CHANNEL_STATUS_ENCODER_LOSS_MASK 0x000080u /* Encoder loss, latched; write 0 to clear */
 #define SERVO_CHANNEL_STATUS_ENCODER_ERROR_SHIFT 8u
-#define SERVO_CHANNEL_STATUS_ENCODER_ERROR_MASK 0x000100u /* Illegal AB transition, latched; write the bit to clear */
+#define SERVO_CHANNEL_STATUS_ENCODER_ERROR_MASK 0x000100u /* Illegal AB transition, latched; any write clears it */
 #define SERVO_CHANNEL_STATUS_EQU_SHIFT 9u
 #define SERVO_CHANNEL_STATUS_EQU_MASK 0x000200u /* Compare output EQU */
 #define SERVO_CHANNEL_STATUS_CAPTURED_GATED_INDEX_SHIFT 10u
