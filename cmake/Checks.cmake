@@ -22,6 +22,7 @@ brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml say
 brick_add_check(format.clang tools/check_format.py clang)
 brick_add_check(format.lines tools/check_format.py lines)
 brick_add_check(lint.commits tools/check_commits.py)  # a commit that changes code says why
+brick_add_check(pins.fresh rtl/pins/generate.py --check)  # what is made of the rows of pins, and board_top's ports
 brick_add_check(docs.links tools/check_links.py)
 brick_add_check(docs.figures tools/check_figures.py)
 brick_add_check(docs.citations tools/check_citations.py)  # of the data sheet: each leads to a section, a rule

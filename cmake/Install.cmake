@@ -23,7 +23,7 @@ endforeach()
 # What a design of others takes: RTL with its lists, cores and register maps; the firmware's sources; examples. None of
 # it is built, so `cmake --install DIR --component brick_sources` needs no build.
 install(DIRECTORY rtl DESTINATION ${BRICK_DATA_DIR} COMPONENT brick_sources
-  FILES_MATCHING REGEX "\\.(sv|f|core|vlt|rdl|xml|h|hpp)$" PATTERN __pycache__ EXCLUDE)
+  FILES_MATCHING REGEX "\\.(sv|f|core|vlt|rdl|pins|xml|h|hpp)$" PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY firmware DESTINATION ${BRICK_DATA_DIR} COMPONENT brick_sources
   FILES_MATCHING REGEX "\\.(c|h|S|ld|def)$")
 install(DIRECTORY examples DESTINATION ${BRICK_DATA_DIR} COMPONENT brick_sources USE_SOURCE_PERMISSIONS

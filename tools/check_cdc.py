@@ -2,12 +2,13 @@
 """Checks that nothing asynchronous feeds logic: check_cdc.py [--root ROOT].
 
 Walks from each input pin of board_top, and from each flip-flop that a strobe clocks, through the logic to the
-flip-flops of clk_pwm_i and clk_ref_i. Allowed ends are:
-  the first flip-flop of a synchroniser: it and its only load, the second one, carry the attribute async_reg
-    (rtl/common/sync2.sv); nothing but a wire in front of it, or what a jumper selects (SELECTED);
-  a register in SAMPLED: what it takes stands still when it counts, each with its reason;
-  a flip-flop that an input of STROBES clocks, or that an input of RESETS resets; an output in THROUGH.
-An entry that nothing needs is a problem too, so the tables say what is. Exit status 0, 1: problems, 77: no Yosys.
+flip-flops of clk_pwm_i and clk_ref_i. What is allowed stands pin by pin in rtl/pins/board.pins, `sampled`:
+  synchroniser: its first flip-flop; it and its only load, the second one, carry the attribute async_reg
+    (rtl/common/sync2.sv); nothing but a wire in front of it, or what a jumper selects (selected);
+  a register that takes it for a reason: what it takes stands still when it counts;
+  a flip-flop that it clocks, or resets; an output that it goes through to.
+A row that says more than the RTL does is a problem too, so the rows say what is. Exit status 0, 1: problems, 77: no
+Yosys.
 """
 
 import argparse
@@ -23,48 +24,14 @@ import tempfile
 from common import ROOT, finish, skip
 from lint_rtl import SIMULATION_ONLY, rtl_files
 
+sys.path.append(str(ROOT / "rtl/pins"))
+from rows import Table
+
 TOP = "board_top"
 CLOCKS = {"clk_pwm_i", "clk_ref_i"}
-BUS = "stands from before the fall of the strobe to its end; it counts when that has come through two flip-flops"
-ISA = "stands around the command strobe, which has come through two flip-flops when it counts"
-STRAP = "a jumper or a kind of board: it does not move while power is on"
-# input, registers that sample it, reason
-SAMPLED = [
-    ("pa_addr_i", "u_bus_sync.where_q", BUS),
-    ("pa_x_i", "u_bus_sync.where_q", BUS),
-    ("pa_aa_i", "u_bus_sync.where_q", BUS),
-    ("pa_int_i", "u_bus_sync.where_q", BUS),
-    ("pa_wdata_i", "u_bus_sync.wdata_q", BUS),
-    ("pa_aa_i", "u_bus_strobes.*", "stands before the strobe falls, which clocks it"),
-    ("pa_int_i", "u_bus_strobes.*", "stands before the strobe falls, which clocks it"),
-    ("pa_addr_i", "u_dpram.pins_q", BUS),
-    ("pa_x_i", "u_dpram.pins_q", BUS),
-    ("pa_aa_i", "u_dpram.sel_q", BUS),
-    ("pa_int_i", "u_dpram.sel_q", BUS),
-    ("pa_wdata_i", "u_dpram.wdata_q", BUS),
-    ("isa_sa_i", "u_isa_slave.sa_q", ISA),
-    ("isa_aen_i", "u_isa_slave.aen_q", ISA),
-    ("isa_sbhe_ni", "u_isa_slave.sbhe_nq", ISA),
-    ("io_base_i", "u_isa_slave.io_base_q", STRAP),
-    ("io_decode16_i", "u_isa_slave.io_decode16_q", STRAP),
-    ("window_i", "u_isa_slave.window_q", STRAP),
-    ("window_flat_i", "u_isa_slave.window_flat_q", STRAP),
-    ("slot8_i", "u_isa_slave.slot8_q", STRAP),
-    ("fitted_i", "fitted_q", STRAP),
-    ("dpram_small_i", "dpram_small_q", STRAP),
-    ("jpan_fitted_i", "jpan_fitted_q", STRAP),
-    ("ext_clock_i", "ext_clock_q", STRAP),
-    ("line_select_i", "line_select_q", STRAP),
-    ("pic_8259_i", "pic_8259_q", STRAP),
-    ("motor_i", "*.u_adc_[ab].*", "changes with the fall of ADC_CLK, is taken at its rise"),
-]
-# Inputs that reach their synchroniser through a multiplexer that only a jumper moves.
-SELECTED = {"mi1_i", "mi2_i", "axexp0_i", "axexp1_i", "isa_la_i", "isa_sa_i"}
-# Strobes clock and hold flip-flops; they and the reset act without a clock.
-STROBES = {"pa_rd_ni": "u_*_strobes.rd_q", "pa_wr_ni": "u_*_strobes.wr_q"}
-RESETS = {"rst_pin_ni", "pa_rd_ni"}
-# Outputs that follow a strobe or an address without a clock.
-THROUGH = {"pa_ta_n_o", "pa_data_o", "pa_data_oe_o", "isa_sd_oe_o"}
+# Only what no row has: the motor side, whose width depends on the ICs that are built.
+MOTOR = "changes with the fall of ADC_CLK, is taken at its rise"
+MOTOR_SAMPLED = [("motor_i", "*.u_adc_[ab].*", MOTOR)]
 
 FLIP_FLOPS = ("$dff", "$adff", "$dffe", "$adffe", "$sdff", "$sdffe", "$aldff", "$dffsr")
 
@@ -74,13 +41,45 @@ def netlist(root):
     sources = " ".join(str(f) for f in packages + modules if f.stem not in SIMULATION_ONLY)
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "netlist.json"
-        script = (f"read_verilog -sv {sources}; chparam -set ServoIcMask 18'h00001 {TOP}; hierarchy -check -top {TOP}; "
+        script = (f"read_verilog -sv {sources}; chparam -set ServoIcMask 18'h00001 "
+                  f"-set MacroIcMask 4'h1 {TOP}; hierarchy -check -top {TOP}; "
                   f"proc; flatten; opt_clean; write_json {out}")
         done = subprocess.run(["yosys", "-q", "-p", script], cwd=root, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:
             sys.exit(done.stdout[-2000:])
         return next(m for m in json.loads(out.read_text())["modules"].values() if "top" in m["attributes"])
+
+
+class Rules:
+    """What the rows allow, by port."""
+
+    def __init__(self, root):
+        self.sampled, self.clocks = list(MOTOR_SAMPLED), []
+        self.synchronised, self.selected, self.resets, self.through = {"motor_i"}, set(), set(), set()
+        board = Table("board", root / "rtl/pins")
+        sets = {"synchroniser": self.synchronised, "selected": self.selected, "resets": self.resets,
+                "through": self.through}
+        for pin in board.pins:
+            for kind, registers in pin.sampled:
+                if kind in sets:
+                    sets[kind].add(pin.rtl)
+                elif kind == "clocks":
+                    self.clocks += [(pin.rtl, pattern) for pattern in registers]
+                else:
+                    reason = board.settings[f"reason {kind}"]
+                    self.sampled += [(pin.rtl, pattern, reason) for pattern in registers]
+
+    def row(self, rows, name, end):
+        """The rows that allow this end of this port."""
+        return [row for row in rows if row[0] == name and fnmatch.fnmatch(end, row[1])]
+
+    def all(self):
+        """Each as check() notes what was needed."""
+        for kind, names in (("synchroniser", self.synchronised), ("selected", self.selected),
+                            ("resets", self.resets), ("through", self.through)):
+            yield from ((kind, name) for name in names)
+        yield from [*self.sampled, *self.clocks]
 
 
 class Walk:
@@ -151,7 +150,7 @@ class Walk:
                 second[0][0] == "data" and second[0][2] == clock and second[0][1] in self.marked)
 
 
-def check(module):
+def check(module, rules):
     walk, used, problems = Walk(module), set(), set()
     sources = [(name, bit) for name, bits in walk.inputs.items() if name not in CLOCKS for bit in bits]
     sources += [(walk.names[q], q) for q in walk.foreign]
@@ -159,28 +158,28 @@ def check(module):
         strobed = bit in walk.foreign
         for kind, target, clock in walk.ends(bit):
             end = target if isinstance(target, str) else walk.names[target]
+            selected = name in rules.selected
             if kind == "output":
-                allowed = end in THROUGH
-                used.add(end)
+                needs = [("through", end)] if end in rules.through else []
             elif kind == "strobed" and strobed:
-                allowed = True  # a toggle turns itself over
+                continue  # a toggle turns itself over
             elif kind == "CLK":
-                allowed = fnmatch.fnmatch(end, STROBES.get(name, ""))
-                used.add(name)
+                needs = rules.row(rules.clocks, name, end)
             elif kind in ("ARST", "ALOAD"):
-                allowed = name in RESETS
-                used.add(name)
-            elif kind == "data" and walk.synchroniser(bit, name in SELECTED, target, clock):
-                allowed = True
-                used.update({"synchroniser", name})
+                needs = [("resets", name)] if name in rules.resets else []
+            elif kind == "data" and walk.synchroniser(bit, selected, target, clock):
+                if strobed:
+                    continue
+                needs = [("selected", name)] if selected else \
+                    [("synchroniser", name)] if name in rules.synchronised else []
             else:
-                rows = [row for row in SAMPLED if fnmatch.fnmatch(name, row[0]) and fnmatch.fnmatch(end, row[1])]
-                allowed = bool(rows)
-                used.update(rows)
-            if not allowed:
-                problems.add(f"{name} reaches {end} ({kind.lower()}); expected a synchroniser, rtl/common/sync2.sv")
-    wanted = [*SAMPLED, *SELECTED, *STROBES, *RESETS, *THROUGH, "synchroniser"]
-    problems |= {f"{row}: tools/check_cdc.py allows it, nothing needs it" for row in wanted if row not in used}
+                needs = rules.row(rules.sampled, name, end)
+            used.update(needs)
+            if not needs:
+                problems.add(f"{name} reaches {end} ({kind.lower()}); expected a synchroniser, rtl/common/sync2.sv, or "
+                             "what rtl/pins/board.pins says of it")
+    problems |= {f"{' '.join(row[:2])}: rtl/pins/board.pins allows it, nothing needs it"
+                 for row in rules.all() if row not in used}
     return len(sources), sorted(problems)
 
 
@@ -190,7 +189,7 @@ def main():
     options = parser.parse_args()
     if shutil.which("yosys") is None:
         skip("yosys is not installed")
-    number, problems = check(netlist(options.root))
+    number, problems = check(netlist(options.root), Rules(options.root))
     finish(f"{number} asynchronous bits", problems)
 
 

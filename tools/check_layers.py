@@ -3,8 +3,8 @@
 
 A file includes only its own folder and folders below it, and includes make no circle; in the firmware a header and
 its source count as one for that. There a function is declared in the header of the file that defines it, and so is a
-variable; a const table that joins layers may stand in firmware/image instead. testbench/unit, testbench/fuzz
-and app/main.cpp, which hands the benches to the commands, may include anything.
+variable; a const table that joins layers may stand in firmware/image instead. Blocks of components do not include each
+other. testbench/unit, testbench/fuzz and app/main.cpp, which hands the benches to the commands, may include anything.
 """
 
 import argparse
@@ -21,6 +21,9 @@ CPP = [{"testbench/clients"}, {"systemc/core"}, {"systemc/cpu", "systemc/servo_i
        {"testbench/host", "testbench/plant"}, {"testbench/checkers"}, {"app"},
        {"testbench/benches"}, {"testbench/benchmark"}]
 FREE = ("testbench/unit", "testbench/fuzz", "app/main.cpp")  # may include anything
+# A component's block is a folder of its own; who may look into which others.
+BLOCKS = "systemc/component/"
+INTO = {"board": {"servo_ic"}, "model_engine.cpp": {"board"}, "rtl_engine.cpp": {"board"}}
 # Of what stands in <> only our own folders.
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"|<(?=(?:firmware|systemc|testbench|app)/))([^">]+)[">]', re.M)
 # Firmware sources are written by clang-format: what stands in column 0 is a declaration or a definition.
@@ -63,11 +66,27 @@ def upward(layers, sources):
             continue
         for name in INCLUDE.findall(text):
             other = folder(name)
-            if other == own or "/" not in name or name.startswith("rtl/regs/"):
+            if other == own or "/" not in name or name.startswith(("rtl/regs/", "rtl/pins/")):
                 continue
             if rank(layers, other) is None or rank(layers, other) >= rank(layers, own):
                 problems.append(f"{path}: includes {name}, which is not below {own}")
     return problems
+
+
+def block(path):
+    """Of a file of the components: its block, or its own name if it is shared."""
+    return path.removeprefix(BLOCKS).split("/")[0]
+
+
+def sideways(sources):
+    """Blocks of components that include each other, or are included by what they share."""
+    blocks = {block(path) for path in sources if path.startswith(BLOCKS) and path.count("/") > BLOCKS.count("/")}
+    blocks.discard("include")
+    for path, text in sources.items():
+        for name in INCLUDE.findall(text) if path.startswith(BLOCKS) else []:
+            other = block(name) if name.startswith(BLOCKS) else ""
+            if other in blocks and other != block(path) and other not in INTO.get(block(path), ()):
+                yield f"{path}: includes {name}, another component's block"
 
 
 def unit_of(path):
@@ -127,7 +146,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     sources = read(parser.parse_args().root)
-    finish("layers", upward(FIRMWARE, sources) + upward(CPP, sources) + circles(sources) + declarations(sources))
+    finish("layers", upward(FIRMWARE, sources) + upward(CPP, sources) + [*sideways(sources)] + circles(sources) +
+           declarations(sources))
 
 
 main()

@@ -1,8 +1,8 @@
-// Simulation wrapper of the board: its pins packed into words, inputs in the layout of systemc/cosim/drive.h, outputs
-// in that of systemc/core/board_pins.h, the motor side in that of motor_pins.h. Arrays of words, because a simulator
-// then writes only the words that may have moved. start_seed_i, read once when the simulation begins, gives the
-// dual-ported RAM its content (systemc/core/start_value.h). seeded_bug_i is the negative control of every comparison:
-// the SERVO pin's SeededBugEdge-th falling edge since reset comes one tick late.
+// Simulation wrapper of the board: its pins packed into words as rtl/pins/board.pins places them (generate.py writes
+// the parts between the marks), the motor side as systemc/core/motor_pins.h has it. Arrays of words, because a
+// simulator then writes only the words that may have moved. start_seed_i, read once when the simulation begins, gives
+// the dual-ported RAM its content (systemc/core/start_value.h). seeded_bug_i is the negative control of every
+// comparison: the SERVO pin's SeededBugEdge-th falling edge since reset comes one tick late.
 `default_nettype none
 
 module board_sim #(
@@ -46,94 +46,123 @@ module board_sim #(
     end
   end
 
+  // rows of rtl/pins/board.pins: nets
   logic [23:0] pa_data;
-  logic        pa_data_oe, pa_ta_n, irq_host;
+  logic        pa_ta_n;
+  logic        irq_host;
+  logic        phase;
+  logic        servo;
+  logic        breq;
+  logic        ipos;
+  logic        eror;
+  logic        f1er;
   logic [15:0] isa_sd;
+  logic        isa_iochrdy;
+  logic        isa_memcs16_n;
+  logic        isa_irq;
+  logic        hreq;
+  logic        wdo;
+  logic        wd_tripped;
+  logic        busy_host;
+  logic        busy_cpu;
+  logic [4:0]  phase_source;
+  logic        source_conflict;
+  logic [7:0]  pic_ist;
+  logic [7:0]  pic_sig;
+  logic [7:0]  pic_msk;
+  logic [7:0]  pic_elr;
   logic [1:0]  isa_sd_oe;
-  logic        isa_iochrdy, isa_memcs16_n, isa_irq, port_txde, port_rxdf;
-  logic        phase, servo, breq, ipos, eror, f1er, hreq, wdo, wd_tripped, busy_host, busy_cpu, conflict, relay, led;
-  logic [4:0]  source;
-  logic [7:0]  ist, sig, msk, elr;
-  logic        brld_n, erld_n, f1ld_n, ipld_n;
+  logic        port_txde;
+  logic        port_rxdf;
+  logic        pa_data_oe;
+  logic        brld_n;
+  logic        erld_n;
+  logic        f1ld_n;
+  logic        ipld_n;
   logic [1:0]  ctrl;
+  logic        wd_relay;
+  logic        wd_led;
+  // end of rows
 
   board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
     .clk_pwm_i, .clk_ref_i,
-    .rst_pin_ni        (rst_ni),
-    .pa_addr_i         (inputs_i[0][18:0]),
-    .pa_aa_i           (inputs_i[0][22:19]),
-    .pa_x_i            (inputs_i[0][23]),
-    .pa_int_i          (inputs_i[0][24]),
-    .pa_rd_ni          (inputs_i[0][25]),
-    .pa_wr_ni          (inputs_i[0][26]),
-    .pa_wdata_i        (inputs_i[1][23:0]),
-    .pa_data_o         (pa_data),
-    .pa_data_oe_o      (pa_data_oe),
-    .pa_ta_n_o         (pa_ta_n),
-    .irq_host_o        (irq_host),
-    .isa_la_i          (inputs_i[6][6:0]),
-    .isa_sa_i          (inputs_i[2][19:0]),
-    .isa_ior_ni        (inputs_i[2][20]),
-    .isa_iow_ni        (inputs_i[2][21]),
-    .isa_memr_ni       (inputs_i[2][22]),
-    .isa_memw_ni       (inputs_i[2][23]),
-    .isa_aen_i         (inputs_i[2][24]),
-    .isa_sbhe_ni       (inputs_i[2][25]),
-    .isa_resetdrv_i    (inputs_i[6][7]),
-    .isa_sd_i          (inputs_i[3][15:0]),
-    .isa_sd_o          (isa_sd),
-    .isa_sd_oe_o       (isa_sd_oe),
-    .isa_iochrdy_o     (isa_iochrdy),
-    .isa_memcs16_n_o   (isa_memcs16_n),
-    .isa_irq_o         (isa_irq),
-    .jpan_i            (inputs_i[3][31:16]),
-    .fitted_i          (inputs_i[4][21:0]),
-    .macro_gate_i      (inputs_i[4][25:22]),
-    .dpram_small_i     (inputs_i[4][26]),
-    .jpan_fitted_i     (inputs_i[4][27]),
-    .ext_clock_i       (inputs_i[4][28]),
-    .ext_phase_i       (inputs_i[4][29]),
-    .ext_servo_i       (inputs_i[4][30]),
-    .pwr_good_i        (inputs_i[7][0]),
-    .line_select_i     (inputs_i[5][11:0]),
-    .io_base_i         (inputs_i[6][15:8]),
-    .window_i          (inputs_i[6][25:16]),
-    .io_decode16_i     (inputs_i[6][26]),
-    .window_flat_i     (inputs_i[6][27]),
-    .slot8_i           (inputs_i[6][28]),
-    .mi1_i             (inputs_i[5][12]),
-    .mi2_i             (inputs_i[5][13]),
-    .axexp0_i          (inputs_i[5][14]),
-    .axexp1_i          (inputs_i[5][15]),
-    .pic_8259_i        (inputs_i[5][16]),
-    .motor_i           (motor_in),
-    .motor_o           (motor_out),
-    .phase_o           (phase),
-    .servo_o           (servo),
-    .breq_o            (breq),
-    .ipos_o            (ipos),
-    .eror_o            (eror),
-    .f1er_o            (f1er),
-    .hreq_o            (hreq),
-    .port_txde_o       (port_txde),
-    .port_rxdf_o       (port_rxdf),
-    .wdo_o             (wdo),
-    .wd_tripped_o      (wd_tripped),
-    .wd_relay_o        (relay),
-    .wd_led_o          (led),
-    .busy_host_o       (busy_host),
-    .busy_cpu_o        (busy_cpu),
-    .phase_source_o    (source),
-    .source_conflict_o (conflict),
-    .brld_n_o          (brld_n),
-    .erld_n_o          (erld_n),
-    .f1ld_n_o          (f1ld_n),
-    .ipld_n_o          (ipld_n),
-    .ctrl_o            (ctrl),
-    .pic_ist_o         (ist),
-    .pic_sig_o         (sig),
-    .pic_msk_o         (msk),
-    .pic_elr_o         (elr)
+    .rst_pin_ni         (rst_ni),
+    // rows of rtl/pins/board.pins: ports
+    .pa_addr_i          (inputs_i[0][18:0]),
+    .pa_x_i             (inputs_i[0][23]),
+    .pa_aa_i            (inputs_i[0][22:19]),
+    .pa_int_i           (inputs_i[0][24]),
+    .pa_rd_ni           (inputs_i[0][25]),
+    .pa_wr_ni           (inputs_i[0][26]),
+    .pa_wdata_i         (inputs_i[1][23:0]),
+    .isa_la_i           (inputs_i[6][6:0]),
+    .isa_sa_i           (inputs_i[2][19:0]),
+    .isa_sbhe_ni        (inputs_i[2][25]),
+    .isa_sd_i           (inputs_i[3][15:0]),
+    .isa_ior_ni         (inputs_i[2][20]),
+    .isa_iow_ni         (inputs_i[2][21]),
+    .isa_memr_ni        (inputs_i[2][22]),
+    .isa_memw_ni        (inputs_i[2][23]),
+    .isa_aen_i          (inputs_i[2][24]),
+    .isa_resetdrv_i     (inputs_i[6][7]),
+    .io_base_i          (inputs_i[6][15:8]),
+    .io_decode16_i      (inputs_i[6][26]),
+    .window_i           (inputs_i[6][25:16]),
+    .window_flat_i      (inputs_i[6][27]),
+    .slot8_i            (inputs_i[6][28]),
+    .fitted_i           (inputs_i[4][21:0]),
+    .macro_gate_i       (inputs_i[4][25:22]),
+    .dpram_small_i      (inputs_i[4][26]),
+    .jpan_fitted_i      (inputs_i[4][27]),
+    .line_select_i      (inputs_i[5][11:0]),
+    .ext_clock_i        (inputs_i[4][28]),
+    .pic_8259_i         (inputs_i[5][16]),
+    .jpan_i             (inputs_i[3][31:16]),
+    .ext_phase_i        (inputs_i[4][29]),
+    .ext_servo_i        (inputs_i[4][30]),
+    .mi1_i              (inputs_i[5][12]),
+    .mi2_i              (inputs_i[5][13]),
+    .axexp0_i           (inputs_i[5][14]),
+    .axexp1_i           (inputs_i[5][15]),
+    .pwr_good_i         (inputs_i[7][0]),
+    .pa_data_o          (pa_data),
+    .pa_ta_n_o          (pa_ta_n),
+    .irq_host_o         (irq_host),
+    .phase_o            (phase),
+    .servo_o            (servo),
+    .breq_o             (breq),
+    .ipos_o             (ipos),
+    .eror_o             (eror),
+    .f1er_o             (f1er),
+    .isa_sd_o           (isa_sd),
+    .isa_iochrdy_o      (isa_iochrdy),
+    .isa_memcs16_n_o    (isa_memcs16_n),
+    .isa_irq_o          (isa_irq),
+    .hreq_o             (hreq),
+    .wdo_o              (wdo),
+    .wd_tripped_o       (wd_tripped),
+    .busy_host_o        (busy_host),
+    .busy_cpu_o         (busy_cpu),
+    .phase_source_o     (phase_source),
+    .source_conflict_o  (source_conflict),
+    .pic_ist_o          (pic_ist),
+    .pic_sig_o          (pic_sig),
+    .pic_msk_o          (pic_msk),
+    .pic_elr_o          (pic_elr),
+    .isa_sd_oe_o        (isa_sd_oe),
+    .port_txde_o        (port_txde),
+    .port_rxdf_o        (port_rxdf),
+    .pa_data_oe_o       (pa_data_oe),
+    .brld_n_o           (brld_n),
+    .erld_n_o           (erld_n),
+    .f1ld_n_o           (f1ld_n),
+    .ipld_n_o           (ipld_n),
+    .ctrl_o             (ctrl),
+    .wd_relay_o         (wd_relay),
+    .wd_led_o           (wd_led),
+    // end of rows
+    .motor_i            (motor_in),
+    .motor_o            (motor_out)
   );
 
   function automatic logic [15:0] start_word(input logic [31:0] seed, input logic [31:0] index);
@@ -171,14 +200,16 @@ module board_sim #(
     end
   end
 
+  // rows of rtl/pins/board.pins: words
   assign pins_o[0] = {f1er, eror, ipos, breq, servo | late, phase, irq_host, pa_ta_n, pa_data};
-  assign pins_o[1] = {2'b00, conflict, source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq, isa_memcs16_n,
-                      isa_iochrdy, isa_sd};
-  assign pins_o[2] = {elr, msk, sig, ist};
-  assign pins_o[3][7:0]   = {7'h0, pa_data_oe};
-  assign pins_o[3][15:8]  = {4'h0, port_rxdf, port_txde, isa_sd_oe};
-  assign pins_o[3][23:16] = {2'b00, ctrl, ipld_n, f1ld_n, erld_n, brld_n};
-  assign pins_o[3][31:24] = {6'h0, led, relay};
+  assign pins_o[1] = {2'h0, source_conflict, phase_source, busy_cpu, busy_host, wd_tripped, wdo, hreq, isa_irq,
+                      isa_memcs16_n, isa_iochrdy, isa_sd};
+  assign pins_o[2] = {pic_elr, pic_msk, pic_sig, pic_ist};
+  assign pins_o[3][7:0] = {7'h0, pa_data_oe};
+  assign pins_o[3][15:8] = {4'h0, port_rxdf, port_txde, isa_sd_oe};
+  assign pins_o[3][23:16] = {2'h0, ctrl[1], ctrl[0], ipld_n, f1ld_n, erld_n, brld_n};
+  assign pins_o[3][31:24] = {6'h0, wd_led, wd_relay};
+  // end of rows
 
 endmodule : board_sim
 

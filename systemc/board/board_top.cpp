@@ -103,7 +103,7 @@ void BoardTop::reset_all(Tick t) {
   each_block(kEveryBlock, [t](Part, ModelBlock& block) { block.reset(t); });
   gate_ics_.reset(t);
   bus_read_.reset();
-  take_straps(kNoStraps, t);
+  take_straps(Straps::none(), t);
   touched_ = kEveryBlock;
   connect(kEverything);
   schedule(kEveryBlock);

@@ -205,10 +205,9 @@ class BoardTop : public sc_core::sc_module, public Board {
   GateIcs gate_ics_;
 
   BoardInputs inputs_;
-  static constexpr Straps kNoStraps{0, 0, false, false, 0, false, false};
-  Straps straps_ = kNoStraps;  // as taken over on clk_ref
-  AddressSelect select_;       // of the address in bus_sync, while a strobe is shown
-  bool strobe_wired_ = false;  // and the blocks of the buses have it
+  Straps straps_ = Straps::none();  // as taken over on clk_ref
+  AddressSelect select_;            // of the address in bus_sync, while a strobe is shown
+  bool strobe_wired_ = false;       // and the blocks of the buses have it
   // The board is in reset up to reset_end_, kNever while the pin is low: rtl/common/reset_sync.sv. From the first edge
   // of clk_ref that sees the pin high it is one period of clk_ref and two edges of clk_pwm.
   static constexpr Tick kResetRelease = kTicksPerRef + 2;

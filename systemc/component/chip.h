@@ -14,6 +14,19 @@ namespace brick::component {
 
 using PinWords = std::vector<std::uint32_t>;
 
+// Where the words have a pin, or a row of pins.
+struct PinPlace {
+  unsigned word, lsb, width;
+  constexpr std::uint32_t mask() const { return width >= 32 ? ~0u : (1u << width) - 1; }
+  std::uint32_t of(const PinWords& words) const { return words[word] >> lsb & mask(); }
+  bool is_set(const PinWords& words) const { return of(words) != 0; }
+  constexpr std::uint32_t at(std::uint32_t value) const { return (value & mask()) << lsb; }  // alone, at its place
+  template <class Port>
+  void drive(Port& port, const PinWords& words) const {
+    port = static_cast<Port>(of(words));
+  }
+};
+
 // An access to a register face, as an initiator asks for it.
 struct Cycle {
   bool write = false;
@@ -80,6 +93,5 @@ inline bool differ(const PinWords& a, const PinWords& b, const PinWords& select)
     if (((a[i] ^ b[i]) & select[i]) != 0) return true;
   return false;
 }
-inline bool bit(const PinWords& words, unsigned word, unsigned lsb) { return (words[word] >> lsb & 1) != 0; }
 
 }  // namespace brick::component

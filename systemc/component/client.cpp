@@ -77,7 +77,7 @@ void Client::input_changed(const Pin& pin) {
 }
 
 void Client::touch() {
-  if (touched_) return;
+  if (touched_ && !scheduler_.has_left()) return;
   touched_ = true;
   scheduler_.touched();
 }
@@ -92,9 +92,10 @@ void Client::show(Tick tick) {
 void Client::take(Tick tick) {
   catch_up(tick);
   if (inputs_differ_) chip_->set_inputs(inputs_);
+  inputs_differ_ = false;
   do begin_cycles();
   while (end_cycles());  // some need no edge
-  inputs_differ_ = touched_ = false;
+  touched_ = later_access();
   foresee();
 }
 
@@ -126,6 +127,7 @@ class Client::Request {
   Request& operator=(const Request&) = delete;
 
   const Cycle& cycle() const { return cycle_; }
+  const sc_core::sc_time& time() const { return time_; }
   void end(const Answer& answer, const sc_core::sc_time& until) {
     answer_ = answer;
     until_ = until;
@@ -146,12 +148,20 @@ class Client::Request {
   sc_core::sc_time until_;  // a bus ends between two edges
 };
 
+// One came after the instant that is settled: it is of the next.
+bool Client::later_access() const {
+  return std::any_of(faces_.begin(), faces_.end(), [this](const auto& face) {
+    return !face->waiting.empty() && face->waiting.front()->time() > scheduler_.settled();
+  });
+}
+
 void Client::begin_cycles() {
   for (unsigned i = 0; i < faces_.size(); ++i) {
     Face& face = *faces_[i];
     if (face.abandoned) chip_->abandon(i);
     face.abandoned = false;
     if (face.under_way != nullptr || face.waiting.empty()) continue;
+    if (face.waiting.front()->time() > scheduler_.settled()) continue;
     face.under_way = face.waiting.front();
     face.waiting.pop_front();
     Cycle cycle = face.under_way->cycle();

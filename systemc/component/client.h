@@ -60,6 +60,7 @@ class Client {
   void deliver(bool all);
   void begin_cycles();
   bool end_cycles();  // one has ended
+  bool later_access() const;
 
   const std::shared_ptr<Scheduler> shared_;
   Scheduler& scheduler_;

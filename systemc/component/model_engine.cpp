@@ -1,7 +1,7 @@
 #include <brick/engine.h>
 
 #include "systemc/board/model_board.h"
-#include "systemc/component/board_chip.h"
+#include "systemc/component/board/board_chip.h"
 #include "systemc/component/model_chips.h"
 
 namespace brick::component {

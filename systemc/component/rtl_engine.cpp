@@ -9,8 +9,8 @@
 #include <brick/watchdog.h>
 
 #include "systemc/board/model_board.h"
-#include "systemc/component/board_chip.h"
-#include "systemc/component/board_options.h"
+#include "systemc/component/board/board_chip.h"
+#include "systemc/component/board/board_options.h"
 #include "systemc/component/lockstep_chip.h"
 #include "systemc/component/model_chips.h"
 #include "systemc/component/rtl_chips.h"

@@ -17,7 +17,8 @@ const TimeBase* the_one = nullptr;  // of this simulation
 // The end of time: 2.5 hours, which 64 bits of femtoseconds hold.
 constexpr TimeFs kLastFs = 9'000'000 * (kFsPerNs * 1'000'000);
 constexpr Tick kLastTick = fs_to_tick(kLastFs) - 1;
-constexpr unsigned kMostDeltas = 100'000;  // of one instant; no design needs so many
+constexpr unsigned kMostDeltas = 100'000;  // of one instant with changes of pins; no design needs so many
+constexpr unsigned kAsked = 16;            // delta cycles in which an instant is asked for its end before it is left
 [[noreturn]] void out_of_time() { raise_error("/brick/time", "beyond 2.5 hours after the epoch, or before it"); }
 }  // namespace
 
@@ -37,8 +38,9 @@ Scheduler::Units Scheduler::instant_of(Tick edge) const { return instant_at(tick
 sc_time Scheduler::instant_at(TimeFs time) const {
   return sc_time::from_value(epoch_ + static_cast<Units>(time / unit_) + 1);
 }
+sc_time Scheduler::settled() const { return left_ == kNoTime ? sc_core::sc_time_stamp() : sc_time::from_value(left_); }
 TimeFs Scheduler::time() const {
-  const Units now = sc_core::sc_time_stamp().value();
+  const Units now = settled().value();
   return now <= epoch_ ? 0 : static_cast<TimeFs>(now - epoch_) * unit_;
 }
 
@@ -83,6 +85,7 @@ void Scheduler::step() {
   if (!started_) start();
   const sc_time now = sc_core::sc_time_stamp();
   const Tick tick = tick_at(now);
+  if (left_ != kNoTime && left_ < now.value()) settle_left(now);
   for (Client* client : clients_) {
     if (client->due() <= tick) client->show(tick);
     touched_ = touched_ || client->touched();  // the next cycle waits for the one that has ended
@@ -90,6 +93,7 @@ void Scheduler::step() {
   // An input may still change in a later delta cycle of this instant, by our own outputs too: the last one counts. If
   // all foresee their outputs and nobody is touched, there is nothing to wait for: a touch wakes us again.
   if ((touched_ || !eager_.empty()) && instant_goes_on()) return;
+  left_ = kNoTime;
   Tick next = kNever;
   for (Client* client : clients_) {
     if (touched_ && client->touched()) client->take(tick);
@@ -111,19 +115,40 @@ void Scheduler::step() {
     sleep_until(wake);
 }
 
-// Something is pending in this instant: true, and the next delta cycle asks again.
+// Something is pending in this instant: true, and we are woken in its next delta cycle, or when it is over.
 bool Scheduler::instant_goes_on() {
+  const Units now = sc_core::sc_time_stamp().value();
+  if (counted_ != now) deltas_ = 0;
+  counted_ = now;
   if (!sc_core::sc_pending_activity_at_current_time()) {
     deltas_ = 0;
     return false;
   }
-  if (++deltas_ > kMostDeltas)
-    raise_error("/brick/instant",
-                "no end of this instant after " + std::to_string(kMostDeltas) +
-                    " delta cycles: components wait for the last one. Does a process wait for it too, "
-                    "or do signals go round in a circle?");
-  changed_.notify(sc_core::SC_ZERO_TIME);
+  if (delta_ != sc_core::sc_delta_count()) ++deltas_;
+  delta_ = sc_core::sc_delta_count();
+  if (deltas_ > kMostDeltas)
+    raise_error("/brick/instant", "no end of this instant after " + std::to_string(kMostDeltas) +
+                                      " delta cycles in which pins of components change: do signals go round in a "
+                                      "circle?");
+  if (deltas_ <= kAsked) {
+    changed_.notify(sc_core::SC_ZERO_TIME);
+  } else {
+    left_ = now;
+    sleep_until(now + 1);
+  }
   return true;
+}
+
+// The instant that was left has ended: no pin has changed since, but an access may have come in this one.
+void Scheduler::settle_left(const sc_time& now) {
+  const Tick then = tick_at(sc_time::from_value(left_));
+  touched_ = false;
+  for (Client* client : clients_) {
+    if (client->touched()) client->take(then);
+    touched_ = touched_ || client->touched();
+  }
+  left_ = kNoTime;
+  if (!eager_.empty() && tick_at(now) > then) run_ahead(then, tick_at(now));
 }
 
 void Scheduler::sleep_until(Units wake) {

@@ -2,7 +2,9 @@
 // A component that foresees its outputs is woken for their next change. The others execute edges ahead of kernel time:
 // in one go when there is one, in turn when there are several, so that none passes an edge at which another changes.
 // All ports are written here, so that a signal has one driver. Outputs change in the first delta cycle of their
-// instant, inputs are taken in its last, when nothing is pending in it any more.
+// instant, inputs are taken in its last, when nothing is pending in it any more. To ask for that in each delta cycle is
+// pending itself: a process that waits for the last one in the same way would never see it. So an instant that goes on
+// is left to the others after some delta cycles, and settled, as it then was, at the kernel's next unit of time.
 #pragma once
 
 #include <array>
@@ -27,10 +29,12 @@ class Scheduler : public std::enable_shared_from_this<Scheduler> {
   sc_core::sc_time instant_at(TimeFs time) const;  // in which what has this true time acts
   TimeFs time() const;                             // what has this true time or a later one acts after this instant
   Tick tick() const { return tick_at(sc_core::sc_time_stamp()); }
+  sc_core::sc_time settled() const;  // the instant whose inputs and accesses are taken: that before, if it was left
 
   void add(Client& client) { clients_.push_back(&client); }
   void remove(Client& client);
   void touched();  // by each client once until it is taken: an input has changed or an access has come
+  bool has_left() const { return left_ != kNoTime; }  // each time then: nobody else counts the delta cycles
 
   void spawn();                     // the process
   void stop() { stopped_ = true; }  // the time base is gone
@@ -42,6 +46,7 @@ class Scheduler : public std::enable_shared_from_this<Scheduler> {
   void step();
   void start();
   bool instant_goes_on();
+  void settle_left(const sc_core::sc_time& now);
   void sleep_until(Units wake);
   void cancel_timers();
   Units instant_of(Tick edge) const;
@@ -59,7 +64,10 @@ class Scheduler : public std::enable_shared_from_this<Scheduler> {
   static constexpr Units kNoTime = ~Units{};
   std::array<Timer, 2> timers_;
   sc_core::sc_event changed_;
-  unsigned deltas_ = 0;  // that this instant has gone on for
+  Units left_ = kNoTime;     // the instant that is left to the others
+  Units counted_ = 0;        // the instant of deltas_
+  unsigned deltas_ = 0;      // of it, that have been looked at
+  std::uint64_t delta_ = 0;  // the last one of them
   bool started_ = false, stopped_ = false, touched_ = true;
 };
 

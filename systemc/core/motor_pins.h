@@ -1,25 +1,19 @@
 // The motor side of a servo IC: the pins of its four channels, as every engine shows them. The packed words are the
 // same in the Verilated RTL (rtl/board/board_sim.sv), the SystemC model and lock-step. As with the board's pins,
-// outputs change only at a clock edge and inputs are sampled by the first clock edge after they were applied.
-// docs/servo_channel.md.
+// outputs change only at a clock edge and inputs are sampled by the first clock edge after they were applied. A pin is
+// a row of rtl/pins/servo_ic.pins. docs/servo_channel.md.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
+
+#include "rtl/pins/motor_pins.hpp"
 
 namespace brick {
 
 constexpr unsigned kMaxServoIcs = 18;  // that can be addressed: 0..9, then 2*..9*; index as in BoardInputs::fitted
 constexpr unsigned kChannels = 4;      // of a servo IC
-
-// Input pins of a channel, bits as in status word bits 23..12.
-enum ChannelPin : unsigned { kEncA, kEncB, kEncC, kFault, kHmfl, kPlim, kMlim, kUser, kW, kV, kU, kT, kChannelPins };
-constexpr std::array<std::string_view, kChannelPins> kChannelPinNames{
-    "enc_a", "enc_b", "enc_c", "fault", "hmfl", "plim", "mlim", "user", "w", "v", "u", "t"};
-// Nothing connected: T, U, V, W, USER and B are pulled up, the others show 0 (servo-ic:5.15/6).
-constexpr std::uint16_t kIdleChannelPins = 1u << kT | 1u << kU | 1u << kV | 1u << kW | 1u << kUser | 1u << kEncB;
 
 struct MotorInputs {
   std::array<std::uint16_t, kChannels> pins{kIdleChannelPins, kIdleChannelPins, kIdleChannelPins, kIdleChannelPins};
@@ -33,28 +27,6 @@ struct MotorInputs {
 // Output pins, packed. Word 0 changes on clk_pwm, word 1 on clk_ref and, by a serial clock of divider 0, on clk_pwm
 // too; words 2..5 on clk_ref only. These are no pins: the counters of channels 1..4, shown so that a difference is
 // found where it arises.
-constexpr unsigned kMotorOutputWords = 6;
-
-// A field that every channel has: channel n (0..3) has it at lsb + n * stride, or in word + n when the stride is 0.
-struct MotorField {
-  std::string_view name;  // of the signal, after "servo_icI.chN."
-  unsigned word, lsb, width, stride;
-  bool shared = false;  // one pin of the IC, shown under each of its channels
-};
-
-namespace motor_pin {
-constexpr MotorField kPwmATop{"pwm_a_top", 0, 0, 1, 6}, kPwmABot{"pwm_a_bot", 0, 1, 1, 6},
-    kPwmBTop{"pwm_b_top", 0, 2, 1, 6}, kPwmBBot{"pwm_b_bot", 0, 3, 1, 6}, kPwmCTop{"pwm_c_top", 0, 4, 1, 6},
-    kPwmCBot{"pwm_c_bot", 0, 5, 1, 6}, kPfmPulse{"pfm_pulse", 0, 24, 1, 1}, kPfmDir{"pfm_dir", 0, 28, 1, 1},
-    kDac{"dac", 1, 0, 1, 1},  // serial data of OUT A
-    kDacB{"dac_b", 1, 4, 1, 1}, kAena{"aena", 1, 8, 1, 1}, kEqu{"equ", 1, 12, 1, 1},
-    kDacClk{"dac_clk", 1, 16, 1, 0, true}, kDacStrobe{"dac_strobe", 1, 17, 1, 0, true},
-    kAdcClk{"adc_clk", 1, 18, 1, 0, true}, kAdcStrobe{"adc_strobe", 1, 19, 1, 0, true}, kCount{"count", 2, 0, 24, 0};
-inline constexpr std::array kAll{kPwmATop,  kPwmABot,   kPwmBTop, kPwmBBot,   kPwmCTop, kPwmCBot,
-                                 kPfmPulse, kPfmDir,    kDac,     kDacB,      kAena,    kEqu,
-                                 kDacClk,   kDacStrobe, kAdcClk,  kAdcStrobe, kCount};
-}  // namespace motor_pin
-
 struct MotorOutputs {
   std::array<std::uint32_t, kMotorOutputWords> w{};
 

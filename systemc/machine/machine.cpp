@@ -35,7 +35,7 @@ std::unique_ptr<Board> wired(const MachineConfig& c, std::unique_ptr<Board> boar
 Straps straps(const BoardConfig& board) {
   Straps s;
   s.fitted = board.fitted;
-  s.macro_gate = board.macro_gate;
+  s.macro_gate = static_cast<std::uint8_t>(board.macro_gate);
   s.dpram_small = board.dpram_words < 32768;
   s.jpan_fitted = board.jpan;
   s.line_select = static_cast<std::uint16_t>(board.line_select);

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "rtl/pins/board_inputs.hpp"
 #include "systemc/cpu/cpu.h"
 
 namespace brick {
@@ -25,23 +26,12 @@ MachineSignals::MachineSignals(Signals& signals) : signals_(signals) {
   for (const PinField& f : pin::kAll)
     pin_.push_back(signals.add(std::string(f.name), f.width, f.hex ? Radix::kHex : Radix::kBinary));
   source_ = signals.add("clock.source", 13, Radix::kDecimal);
-  la_ = signals.add("host.isa.la", 7, Radix::kHex);
-  sa_ = signals.add("host.isa.sa", 20, Radix::kHex);
-  sbhe_n_ = signals.add("host.isa.sbhe_n", 1, Radix::kBinary, 1);
-  sd_ = signals.add("host.isa.sd", 16, Radix::kHex);
-  ior_n_ = signals.add("host.isa.ior_n", 1, Radix::kBinary, 1);
-  iow_n_ = signals.add("host.isa.iow_n", 1, Radix::kBinary, 1);
-  memr_n_ = signals.add("host.isa.memr_n", 1, Radix::kBinary, 1);
-  memw_n_ = signals.add("host.isa.memw_n", 1, Radix::kBinary, 1);
-  aen_ = signals.add("host.isa.aen", 1, Radix::kBinary);
-  resetdrv_ = signals.add("host.isa.resetdrv", 1, Radix::kBinary);
-  jpan_ = signals.add("host.jpan", 16, Radix::kHex, 0xFFFF);
-  init_n_ = signals.add("host.init_n", 1, Radix::kBinary, 1);
-  mi1_ = signals.add("host.mi1", 1, Radix::kBinary);
-  mi2_ = signals.add("host.mi2", 1, Radix::kBinary);
-  axexp0_ = signals.add("host.axexp0", 1, Radix::kBinary);
-  axexp1_ = signals.add("host.axexp1", 1, Radix::kBinary);
-  pwr_good_ = signals.add("watchdog.pwr_good", 1, Radix::kBinary, 1);
+  static constexpr HostInputs kIdle;
+  const auto add = [&](const auto& f) {
+    in_.push_back(signals.add(std::string(f.name), f.width, f.hex ? Radix::kHex : Radix::kBinary, kIdle.*f.pin));
+    if (f.name == "host.isa.sd") sd_ = in_.back();
+  };
+  std::apply([&](const auto&... f) { (add(f), ...); }, kInputSignals);
   pc_ = signals.add("cpu.pc", 32, Radix::kHex);
   task_ = signals.add("cpu.task", 2, Radix::kDecimal);
   symbol_ = signals.add("cpu.symbol", 1, Radix::kText);
@@ -63,22 +53,12 @@ void MachineSignals::outputs(TimeFs time, const BoardOutputs& before, const Boar
 }
 
 void MachineSignals::inputs(TimeFs time, const HostInputs& in, const BoardOutputs& board) {
-  signals_.set(la_, time, in.isa_la);
-  signals_.set(sa_, time, in.isa_sa);
-  signals_.set(sbhe_n_, time, in.isa_sbhe_n);
-  signals_.set(ior_n_, time, in.isa_ior_n);
-  signals_.set(iow_n_, time, in.isa_iow_n);
-  signals_.set(memr_n_, time, in.isa_memr_n);
-  signals_.set(memw_n_, time, in.isa_memw_n);
-  signals_.set(aen_, time, in.isa_aen);
-  signals_.set(resetdrv_, time, in.isa_resetdrv);
-  signals_.set(jpan_, time, in.jpan);
-  signals_.set(init_n_, time, in.jpan_init_n);
-  signals_.set(mi1_, time, in.mi1);
-  signals_.set(mi2_, time, in.mi2);
-  signals_.set(axexp0_, time, in.axexp0);
-  signals_.set(axexp1_, time, in.axexp1);
-  signals_.set(pwr_good_, time, in.pwr_good);
+  auto id = in_.begin();
+  const auto show = [&](const auto& f) {
+    if (*id != sd_) signals_.set(*id, time, in.*f.pin);  // SD is everybody's: data_bus()
+    ++id;
+  };
+  std::apply([&](const auto&... f) { (show(f), ...); }, kInputSignals);
   host_reads_ = !in.isa_ior_n || !in.isa_memr_n;
   host_data_ = in.isa_sd;
   data_bus(time, board);

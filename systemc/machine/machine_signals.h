@@ -30,8 +30,8 @@ class MachineSignals {
 
   Signals& signals_;
   std::vector<Signals::Id> pin_;  // as pin::kAll
-  Signals::Id source_, la_, sa_, sbhe_n_, sd_, ior_n_, iow_n_, memr_n_, memw_n_, aen_, resetdrv_, jpan_, init_n_, mi1_,
-      mi2_, axexp0_, axexp1_, pwr_good_, pc_, task_, symbol_;
+  std::vector<Signals::Id> in_;   // as kInputSignals
+  Signals::Id source_, sd_ = 0, pc_, task_, symbol_;
   bool host_reads_ = false;
   std::uint16_t host_data_ = 0;
   std::vector<unsigned> interrupted_;  // tasks that wait for the present one

@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "systemc/board/model_board.h"
-#include "systemc/component/board_words.h"
+#include "systemc/component/board/board_words.h"
 #include "systemc/component/chip.h"
 #include "systemc/cosim/engines.h"
 #include "systemc/servo_ic/servo_ic.h"

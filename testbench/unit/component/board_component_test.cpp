@@ -7,9 +7,9 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/board/model_board.h"
-#include "systemc/component/board_chip.h"
-#include "systemc/component/board_options.h"
-#include "systemc/component/board_words.h"
+#include "systemc/component/board/board_chip.h"
+#include "systemc/component/board/board_options.h"
+#include "systemc/component/board/board_words.h"
 #include "systemc/cosim/drive.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/rig.h"

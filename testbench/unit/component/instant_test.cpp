@@ -9,6 +9,7 @@
 #include <chrono>
 #include <thread>
 
+#include "testbench/unit/component/initiator.h"
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/covers.h"
 
@@ -40,28 +41,105 @@ std::string error_of(const std::function<void()>& run) {
   return "";
 }
 
-// An input changes, and a process goes on for some delta cycles: for ever when `deltas` is 0, as the components do that
-// wait for it.
-std::string waits_for_the_end(bool rtl, unsigned deltas) {
+// An input changes, and a process goes on for some delta cycles.
+std::string goes_on(bool rtl, unsigned deltas) {
   Bench bench(rtl);
   sc_core::sc_spawn([&] {
     sc_core::wait(100, SC_NS);
     bench.line = true;
-    sc_core::wait(SC_ZERO_TIME);
-    if (deltas == 0)
-      while (sc_core::sc_pending_activity_at_current_time()) sc_core::wait(SC_ZERO_TIME);
     for (unsigned i = 0; i < deltas; ++i) sc_core::wait(SC_ZERO_TIME);
   });
   return error_of([] { sc_core::sc_start(1, SC_US); });
 }
 
-TEST(Instant, ThatDoesNotEndIsAnError) {
+// The line turns over in each delta cycle.
+std::string goes_round(bool rtl, unsigned turns) {
+  Bench bench(rtl);
+  sc_core::sc_spawn_options circle;
+  circle.spawn_method();
+  circle.dont_initialize();
+  circle.set_sensitivity(&bench.line.value_changed_event());
+  sc_core::sc_spawn([&] { bench.line = turns-- > 1 ? !bench.line.read() : bench.line.read(); }, "circle", &circle);
+  sc_core::sc_spawn([&] {
+    sc_core::wait(100, SC_NS);
+    bench.line = true;
+  });
+  return error_of([] { sc_core::sc_start(1, SC_US); });
+}
+
+TEST(Instant, WhosePinsDoNotComeToRestIsAnError) {
   BRICK_COVERS("CARD-1");
   for (const bool rtl : {false, true}) {
-    in_own_process([rtl] { EXPECT_EQ(waits_for_the_end(rtl, 0), "/brick/instant"); });
-    in_own_process([rtl] { EXPECT_EQ(waits_for_the_end(rtl, 99'000), "") << "long is not for ever"; });
-    in_own_process([rtl] { EXPECT_EQ(waits_for_the_end(rtl, 101'000), "/brick/instant") << "the bound"; });
+    in_own_process([rtl] { EXPECT_EQ(goes_on(rtl, 101'000), "") << "other processes"; });
+    in_own_process([rtl] { EXPECT_EQ(goes_round(rtl, 99'000), "") << "long is not for ever"; });
+    in_own_process([rtl] { EXPECT_EQ(goes_round(rtl, 101'000), "/brick/instant") << "the bound"; });
   }
+}
+
+// At 100 ns a line rises, a register is read, and a process asks in each delta cycle, as the components do, whether
+// anything is pending in this instant; then it sets the line anew.
+struct Polled {
+  unsigned asked = 0;
+  sc_core::sc_time end, answered;
+  std::uint32_t signals = 0;  // of the lines, some time later
+};
+enum class Asks { kNobody, kThread, kMethod };
+
+Polled polled(bool rtl, Asks who, bool line_after) {
+  Bench bench(rtl);
+  Polled seen;
+  Initiator initiator("initiator", [&](Initiator& i) {
+    const auto read = [&i] { EXPECT_EQ(i.send(i.payload(tlm::TLM_READ_COMMAND, 1, 1)), tlm::TLM_OK_RESPONSE); };
+    sc_core::wait(100, SC_NS);
+    read();
+    seen.answered = sc_core::sc_time_stamp();
+    sc_core::wait(1, SC_US);
+    read();
+    seen.signals = i.data & 0xFF;
+  });
+  initiator.socket.bind(bench.pic.registers);
+  const auto over = [&seen] {
+    ++seen.asked;
+    return !sc_core::sc_pending_activity_at_current_time();
+  };
+  const auto ended = [&] {
+    seen.end = sc_core::sc_time_stamp();
+    bench.line = line_after;
+  };
+  sc_core::sc_event ask;
+  sc_core::sc_spawn_options method;
+  method.spawn_method();
+  method.dont_initialize();
+  method.set_sensitivity(&ask);
+  sc_core::sc_spawn([&] { over() ? ended() : ask.notify(SC_ZERO_TIME); }, "method", &method);
+  sc_core::sc_spawn([&] {
+    sc_core::wait(100, SC_NS);
+    bench.line = true;
+    sc_core::wait(SC_ZERO_TIME);
+    if (who == Asks::kMethod) return ask.notify(SC_ZERO_TIME);
+    while (who == Asks::kThread && !over()) sc_core::wait(SC_ZERO_TIME);
+    ended();
+  });
+  EXPECT_EQ(error_of([] { sc_core::sc_start(10, SC_US); }), "");
+  return seen;
+}
+
+TEST(Instant, EndsForAProcessThatAsksForItToo) {
+  BRICK_COVERS("CARD-1");
+  for (const bool rtl : {false, true})
+    for (const bool line_after : {false, true})
+      for (const Asks who : {Asks::kNobody, Asks::kThread, Asks::kMethod}) {
+        SCOPED_TRACE(::testing::Message() << "rtl " << rtl << ", line " << line_after << ", " << static_cast<int>(who));
+        in_own_process([=] {
+          const Polled seen = polled(rtl, who, line_after);
+          EXPECT_EQ(seen.end, sc_core::sc_time(100, SC_NS));
+          EXPECT_EQ(seen.asked > 0, who != Asks::kNobody);
+          EXPECT_LE(seen.asked, 100u);
+          // edge 12 is the first of clk_ref after 100 ns, at 12 x 78125/9216 ns = 101.72526 ns
+          EXPECT_EQ(seen.answered, sc_core::sc_time(101726, sc_core::SC_PS));
+          EXPECT_EQ(seen.signals, line_after ? 1u : 0u) << "the last level of the instant";
+        });
+      }
 }
 
 // sc_main() changes a pin and settles it by delta cycles, twice in one instant.

@@ -9,7 +9,7 @@
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
 
-#include "systemc/component/interrupt_controller_words.h"
+#include "systemc/component/interrupt_controller/interrupt_controller_words.h"
 #include "systemc/component/lockstep_chip.h"
 #include "systemc/component/model_chips.h"
 #include "systemc/component/rtl_chips.h"
@@ -291,7 +291,7 @@ TEST(LockstepChip, SaysWhereTheEnginesDiffer) {
     const auto chip = lockstep_chip("interrupt_controller", rtl_interrupt_controller(1),
                                     std::make_unique<Distorted>(model_interrupt_controller(), 1234),
                                     InterruptController::pin_table());
-    chip->set_inputs({1u << interrupt_controller_words::kRstN});
+    chip->set_inputs({interrupt_controller_words::kRstN.at(1)});
     chip->run_until(1233);
     std::string message;
     try {

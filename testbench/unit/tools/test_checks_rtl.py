@@ -112,6 +112,14 @@ class ClockCrossings(Tree):
         self.plant("rtl/board/bus_sync.sv", "rd2_q ^ rd3_q", "rd1_q ^ rd3_q")
         self.expect(self.run_tool("check_cdc.py"), 1, "u_bus_strobes.rd_q reaches u_bus_sync.rd1_q (data)")
 
+    def test_a_row_of_a_pin_that_the_rtl_does_not_follow_fails(self):
+        self.plant("rtl/pins/board.pins", "| strap fitted_q |", "| strap fitted_d |")
+        self.plant("rtl/pins/board.pins", "| 4.29 | 1 | synchroniser |", "| 4.29 | 1 | |")
+        done = self.run_tool("check_cdc.py")
+        self.expect(done, 1, "fitted_i reaches fitted_q (data)")
+        self.expect(done, 1, "fitted_i fitted_d: rtl/pins/board.pins allows it, nothing needs it")
+        self.expect(done, 1, "ext_phase_i reaches u_clock_select.u_phase_sync.sync1_q (data)")
+
 
 if __name__ == "__main__":
     run()

@@ -125,6 +125,18 @@ class Layers(Tree):
         self.write("app/run_bench.cpp", '#include "testbench/benches/benches.h"\n')
         self.check(1, "app/run_bench.cpp: includes testbench/benches/benches.h, which is not below app")
 
+    def test_blocks_of_components_do_not_include_each_other(self):
+        self.write("systemc/component/dpram/dpram_cycle.h", '#include "systemc/component/chip.h"\n')
+        self.write("systemc/component/board/board_words.h", '#include "systemc/component/servo_ic/servo_ic_words.h"\n')
+        self.write("systemc/component/servo_ic/servo_ic_words.h", "")
+        self.write("systemc/component/chip.h", "")
+        self.check(0, "layers: clean")
+        self.write("systemc/component/servo_ic/servo_ic_words.h", '#include "systemc/component/dpram/dpram_cycle.h"\n')
+        self.check(1, "servo_ic_words.h: includes systemc/component/dpram/dpram_cycle.h, another component's block")
+        self.write("systemc/component/servo_ic/servo_ic_words.h", "")
+        self.write("systemc/component/chip.h", '#include "systemc/component/servo_ic/servo_ic_words.h"\n')
+        self.check(1, "chip.h: includes systemc/component/servo_ic/servo_ic_words.h, another component's block")
+
     def test_a_folder_without_a_layer_fails(self):
         self.write("firmware/drivers/led.h", "")
         self.check(1, "folder firmware/drivers has no layer")

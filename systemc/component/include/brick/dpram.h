@@ -6,6 +6,7 @@
 #include <tlm_utils/simple_target_socket.h>
 
 #include <brick/component.h>
+#include <brick/pins/dpram.h>
 
 namespace brick::component {
 
@@ -17,7 +18,7 @@ struct DpramOptions {
 // k, its X word at 4 k + 2, the low byte of a word first. Two accesses of one word, at least one a write: the later one
 // waits for the end of the other (BUSY). Beyond the fitted size words read 0 and take no write. A reset keeps the
 // content. Debug transport reads the content, as many bytes as are asked for and there.
-class Dpram final : public Component {
+class Dpram final : public Component, public DpramPins {
  public:
   Dpram(const sc_core::sc_module_name& name, TimeBase& time, const DpramOptions& options = {},
         const Engine& engine = model_engine());
@@ -27,10 +28,6 @@ class Dpram final : public Component {
   tlm_utils::simple_target_socket_optional<Dpram> host;
   // One word of 16 bits an access, on clk_pwm: six edges for a read and five for a write, and BUSY (/TA) on top.
   tlm_utils::simple_target_socket_optional<Dpram> cpu;
-
-  In<> rst_n;                 // reset, asynchronous, idle 1; outputs follow with the next edge
-  In<> small;                 // strap: only the first 8192 words are fitted
-  Out<> busy_host, busy_cpu;  // the host waits for the CPU; the CPU waits for the host
 
   static const std::vector<PinInfo>& pin_table();
 };

@@ -5,10 +5,11 @@
 #include <tlm_utils/simple_target_socket.h>
 
 #include <brick/component.h>
+#include <brick/pins/host_port.h>
 
 namespace brick::component {
 
-class HostPort final : public Component {
+class HostPort final : public Component, public HostPortPins {
  public:
   HostPort(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine = model_engine());
 
@@ -17,11 +18,6 @@ class HostPort final : public Component {
   tlm_utils::simple_target_socket_optional<HostPort> host;
   // The CPU's words X:$FFFFC2..X:$FFFFC7 (host-bus:3.2): word n at byte 4 n, 24 bits in the low bits of 4 bytes.
   tlm_utils::simple_target_socket_optional<HostPort> cpu;
-
-  In<> rst_n;        // reset, asynchronous, idle 1; outputs follow with the next edge
-  In<> resetdrv;     // RESETDRV of the host bus, on clk_ref: empties both ways and resets the host's registers
-  Out<> hreq, irq;   // request to the host, interrupt of the CPU
-  Out<> txde, rxdf;  // TX is empty, RX holds a word
 
   static const std::vector<PinInfo>& pin_table();
 };

@@ -6,20 +6,16 @@
 #include <tlm_utils/simple_target_socket.h>
 
 #include <brick/component.h>
+#include <brick/pins/interrupt_controller.h>
 
 namespace brick::component {
 
-class InterruptController final : public Component {
+class InterruptController final : public Component, public InterruptControllerPins {
  public:
   InterruptController(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine = model_engine());
 
   // Four bytes (host-bus:4.1): 0 status, a write clears; 1 signal; 2 mask, 1 = enabled; 3 edge (0) or level (1).
   tlm_utils::simple_target_socket_optional<InterruptController> registers;
-
-  In<> rst_n;              // reset, asynchronous, idle 1; outputs follow with the next edge
-  In<> resetdrv;           // RESETDRV of the host bus, on clk_ref: clears mask, mode and latches
-  std::array<In<>, 8> ir;  // IR0..IR7, active high
-  Out<> irq;               // interrupt of the host (host-bus:4.1)
 
   static const std::vector<PinInfo>& pin_table();
 };

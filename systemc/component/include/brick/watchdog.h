@@ -4,19 +4,16 @@
 #include <tlm_utils/simple_target_socket.h>
 
 #include <brick/component.h>
+#include <brick/pins/watchdog.h>
 
 namespace brick::component {
 
-class Watchdog final : public Component {
+class Watchdog final : public Component, public WatchdogPins {
  public:
   Watchdog(const sc_core::sc_module_name& name, TimeBase& time, const Engine& engine = model_engine());
 
   // One word of 4 bytes (X:$070011): each write is a strobe, whatever is written; reads 0.
   tlm_utils::simple_target_socket_optional<Watchdog> registers;
-
-  In<> rst_n;            // reset, asynchronous, idle 1; outputs follow with the next edge
-  In<> servo, pwr_good;  // SERVO; the 5 V supply is good; both idle 1
-  Out<> trip, relay;     // latched trip; relay, energised from reset to trip
 
   static const std::vector<PinInfo>& pin_table();
 };
