@@ -154,12 +154,16 @@ static void calculate_round(void) {
   uint32_t looked = interrupts, mask = systems();
   for (bool any = true; any;) {
     any = false;
+    synchronous_assign();
     for (uint32_t cs = 0, left = mask; left != 0; cs++, left >>= 1) {
       if ((left & 1u) == 0) continue;
       calculated = cs;
       const bool done = turn(cs);
       calculated = COORDINATE_SYSTEMS;
-      if (done) slice_pause();
+      if (done) {
+        slice_pause();
+        synchronous_assign(); /* of moves that have started since: they wait for one word at most */
+      }
       any |= done;
     }
     if (looked == interrupts) continue;
@@ -183,7 +187,6 @@ void calculate_forget(uint32_t cs) {
 
 void calculate_programs(void) {
   interrupts++;
-  synchronous_assign();
   if (stands(calculated)) return;
   slice_run(tasks_real_time_slice());
 }
