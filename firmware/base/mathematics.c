@@ -7,6 +7,10 @@
 #define HALF_PI_LOW 6.07710050650619224932e-11
 #define LN2_HIGH 0.693147180369123816490
 #define LN2_LOW 1.90821492927058770002e-10
+#define EXP_LARGEST                                                                                \
+  709.782712893384 /* of the largest and the smallest double that is not denormal, rounded inwards \
+                    */
+#define EXP_SMALLEST -708.396418532264
 
 union bits {
   double value;
@@ -112,9 +116,10 @@ double math_divide(double a, double b) {
 
 double math_modulo(double a, double b) {
   if (b == 0.0) return 0.0;
-  if (b > 0.0) return a - b * math_floor(a / b);
-  double n = -b, shifted = a + n;
-  return shifted - 2.0 * n * math_floor(shifted / (2.0 * n)) - n;
+  const double n = math_absolute(b), width = b > 0.0 ? n : 2.0 * n, from = b > 0.0 ? a : a + n;
+  const double rest = from - width * math_floor(from / width);
+  /* Rounding can give the upper end, and anything when the quotient has no fraction any more. */
+  return (rest >= 0.0 && rest < width ? rest : 0.0) - (b > 0.0 ? 0.0 : n);
 }
 
 double math_square_root(double x) {
@@ -157,6 +162,7 @@ static double cosine_series(double x) {
 /* Reduces to [-pi/4, pi/4] radians and returns the quadrant. Degrees are reduced before the conversion, so SIN(180) is
  * exactly 0. */
 static unsigned quadrant(double x, int degrees, double* reduced) {
+  if (math_absolute(x) > MATH_LARGEST) x = 0.0; /* hardly anything of the angle is left */
   double turns = math_floor(degrees ? x / 90.0 + 0.5 : x / (PI / 2.0) + 0.5);
   *reduced = degrees ? (x - turns * 90.0) * (PI / 180.0) : (x - turns * HALF_PI_HIGH) - turns * HALF_PI_LOW;
   return (unsigned)(math_to_integer(turns) & 3);
@@ -238,8 +244,8 @@ double math_logarithm(double x) {
 }
 
 double math_exponential(double x) {
-  if (x > 88.0) x = 88.0; /* far above the report limit of 2^47, far below overflow */
-  if (x < -700.0) return 0.0;
+  if (x > EXP_LARGEST) x = EXP_LARGEST;
+  if (x < EXP_SMALLEST) return 0.0;
   double k = math_floor(x / (LN2_HIGH + LN2_LOW) + 0.5);
   double r = (x - k * LN2_HIGH) - k * LN2_LOW, sum = 1.0;
   for (int i = 14; i >= 1; i--) {

@@ -12,6 +12,7 @@ enum {
   MEMORY_TASK_DURATIONS = 0x000037,      /* Y: servo task, X: phase task, in half CPU cycles */
   MEMORY_DPRAM_END = 0x00003F,           /* Y: address after the dual-ported RAM, tells its size */
   MEMORY_FAULT = 0x000070,               /* three long words: image/fault.h */
+  MEMORY_STACKS = 0x000073,              /* X, Y: kernel/stack_watch.h */
   MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
   MEMORY_MOTOR_COMMANDED = 0x08,         /* D: and actual position, compensation, bias: 1/(32 Ixx08) count */
   MEMORY_MOTOR_ACTUAL = 0x0B,

@@ -15,13 +15,14 @@
 #include "firmware/variables/i_variables.h"
 
 static struct {
-  bool high;         /* level of the pin. All tasks, under the mask */
-  uint32_t changed;  /* cycle count at its last change */
-  int32_t on, off;   /* I16 and I17 at the last look. All tasks, under the mask */
-  int32_t fixed;     /* I18. As those */
-  uint32_t selected; /* coordinate system shown at the last look. As those */
-  bool fixed_open;   /* Background, under the mask */
-  bool fixed_full;   /* of the open fixed buffer. As the limits */
+  bool high;        /* level of the pin. All tasks, under the mask */
+  uint32_t changed; /* cycle count at its last change */
+  int32_t on, off;  /* I16 and I17 at the last look. All tasks, under the mask */
+  int32_t fixed;    /* I18. As those */
+  uint32_t host;    /* coordinate system that the host selects. As those */
+  uint32_t panel;   /* and the panel. As those */
+  bool fixed_open;  /* Background, under the mask */
+  bool fixed_full;  /* of the open fixed buffer. As the limits */
 } request;
 
 static void drive(bool high) {
@@ -40,7 +41,10 @@ static bool is_ready(uint32_t cs) {
   return ring->size != 0 && ring->requested && !ring->full;
 }
 
-static bool is_wanted(void) { return request.fixed_open ? !request.fixed_full : is_ready(buffer_request_selected()); }
+/* None: COORDINATE_SYSTEMS or above. */
+static uint32_t selected(void) { return request.panel == PANEL_IS_OFF ? request.host : request.panel; }
+
+static bool is_wanted(void) { return request.fixed_open ? !request.fixed_full : is_ready(selected()); }
 
 /* `open`: region_open_words, which looks at every region, before tasks are held off. */
 static void decide_fixed(uint32_t open) { request.fixed_full = (int32_t)open <= request.fixed; }
@@ -56,10 +60,11 @@ void buffer_request_initialize(void) {
   request.on = i_integer(I16_ROTARY_REQUEST_ON);
   request.off = i_integer(I17_ROTARY_REQUEST_OFF);
   request.fixed = i_integer(I18_FIXED_BUFFER_WARNING);
-  request.selected = buffer_request_selected();
+  request.host = 0;
+  request.panel = PANEL_IS_OFF;
 }
 
-static bool is_shown(uint32_t cs) { return !request.fixed_open && cs == buffer_request_selected(); }
+static bool is_shown(uint32_t cs) { return !request.fixed_open && cs == selected(); }
 
 void buffer_request_begin_line(uint32_t cs) {
   if (!is_shown(cs)) return;
@@ -144,23 +149,26 @@ void buffer_request_evaluate(void) {
   request.off = off;
   request.fixed = i_integer(I18_FIXED_BUFFER_WARNING);
   decide_fixed(words);
-  request.selected = buffer_request_selected();
   for (uint32_t cs = 0; changed && cs < COORDINATE_SYSTEMS; cs++)
     if (rotary_buffers[cs].requested) limits_changed(&rotary_buffers[cs]);
   show();
   hal_unmask(state);
 }
 
-/* The pin follows within 10 us: no more than that. Limits that have changed too are found by the poll. */
-void buffer_request_selection(void) {
-  uint32_t state = hal_mask_real_time();
-  request.selected = buffer_request_selected();
+/* No more than that. Limits that have changed too are found by the poll. */
+static void select(uint32_t* by, uint32_t cs) {
+  if (*by == cs) return;
+  const uint32_t state = hal_mask_real_time();
+  *by = cs;
   show();
   hal_unmask(state);
 }
 
+void buffer_request_host_selects(uint32_t cs) { select(&request.host, cs); }
+void buffer_request_panel_selects(uint32_t cs) { select(&request.panel, cs); }
+
 void buffer_request_poll(void) {
-  if (request.selected != buffer_request_selected() || request.on != i_integer(I16_ROTARY_REQUEST_ON) ||
-      request.off != i_integer(I17_ROTARY_REQUEST_OFF) || request.fixed != i_integer(I18_FIXED_BUFFER_WARNING))
+  if (request.on != i_integer(I16_ROTARY_REQUEST_ON) || request.off != i_integer(I17_ROTARY_REQUEST_OFF) ||
+      request.fixed != i_integer(I18_FIXED_BUFFER_WARNING))
     buffer_request_evaluate();
 }

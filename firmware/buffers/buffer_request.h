@@ -11,10 +11,12 @@ enum {
   BREQ_HIGH_US = 1   /* least high time between two pulses, so that the interrupt controller sees each edge */
 };
 
-/* The coordinate system that drives the pin; COORDINATE_SYSTEMS: none. Hosts and panels select it: image/tables.c. */
-extern uint32_t (*const buffer_request_selected)(void);
-
-void buffer_request_initialize(void);
+void buffer_request_initialize(void); /* before anybody selects: &1, without a panel */
+/* Who selects the coordinate system that drives the pin says so when it changes: the host by `&n`, and a control panel,
+ * which goes before it while it is active. The pin follows within 10 us. */
+enum { PANEL_IS_OFF = 0xFF };
+void buffer_request_host_selects(uint32_t cs);  /* background */
+void buffer_request_panel_selects(uint32_t cs); /* COORDINATE_SYSTEMS: none. Background, real-time task */
 void buffer_request_begin_line(uint32_t cs); /* background, real-time task masked: pin low before the line is counted */
 void buffer_request_line_stored(uint32_t cs);     /* same section, line counted: Full decided, pulse timed, pin final */
 void buffer_request_line_calculated(uint32_t cs); /* real-time task, line no longer counted */
@@ -26,8 +28,7 @@ void buffer_request_fixed_changed(void);     /* CLEAR: other open memory */
 void buffer_request_fixed_line_stored(void); /* pin low, then Full decided by I18, and high again unless full */
 void buffer_request_fixed_closed(void);
 bool buffer_request_fixed_full(void); /* Fixed Buffer Full; 1 while none is open */
-void buffer_request_evaluate(void);   /* addressed C.S., I16, I17 or I18 changed: pin shows what it has to */
-void buffer_request_selection(void);  /* another coordinate system is addressed. Background */
-void buffer_request_poll(void);       /* real-time task, first: notices changes of I16 to I18 and of the selection */
+void buffer_request_evaluate(void);   /* I16, I17, I18 or open memory changed: pin shows what it has to */
+void buffer_request_poll(void);       /* real-time task, first: notices changes of I16 to I18 */
 
 #endif

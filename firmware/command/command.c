@@ -43,7 +43,7 @@ static error_t address(struct lexer* lx, uint32_t first, uint32_t count, uint32_
 static error_t address_cs(struct lexer* lx) {
   const bool selects = is_digit(lexer_peek(lx)) && !session_is_program();
   const error_t error = address(lx, 1, (uint32_t)i_integer(I68_ACTIVE_COORDINATE_SYSTEMS) + 1u, &session.cs);
-  if (selects && error == ERR_NONE && session_select_cs()) buffer_request_selection();
+  if (selects && error == ERR_NONE) buffer_request_host_selects(session.cs);
   if (slice_hurry != 0u) slice_hurry_over(); /* the pin has moved */
   return error;
 }

@@ -7,7 +7,6 @@ struct session session;
 static struct session host, dpram; /* their addresses while it is another's turn */
 static enum session_port port;     /* whose turn it is */
 static enum session_port buffer_owner;
-static volatile uint32_t selected_cs;
 bool session_owns_open_buffer;
 
 static void turn_to(enum session_port next) {
@@ -17,7 +16,6 @@ static void turn_to(enum session_port next) {
 
 void session_initialize(void) {
   session = host = dpram = (struct session){0, 0, 0};
-  selected_cs = 0;
   buffer_owner = SESSION_HOST;
   turn_to(SESSION_HOST);
 }
@@ -40,14 +38,6 @@ void session_end(void) {
 }
 
 bool session_is_program(void) { return port == SESSION_PROGRAM; }
-
-bool session_select_cs(void) {
-  if (selected_cs == session.cs) return false;
-  selected_cs = session.cs;
-  return true;
-}
-
-uint32_t session_selected_cs(void) { return selected_cs; }
 
 bool session_may_close_buffer(void) {
   const bool owner_is_off = buffer_owner == SESSION_DPRAM && !(i_integer(I58_DPRAM_ASCII) != 0 && dpram_is_used());

@@ -22,10 +22,6 @@ void session_begin_program(uint32_t cs, uint32_t motor);
 void session_end(void); /* ... this, or a restart that its command has asked for: the host port's again */
 bool session_is_program(void);
 
-/* The coordinate system that the host selects for its signals: the last `&n` of either port, whoever's turn it is. */
-bool session_select_cs(void);       /* the one addressed now; false: it was already */
-uint32_t session_selected_cs(void); /* any task */
-
 /* The open buffer takes lines from the port that has opened it, and from no other (firmware:4.1). */
 void session_own_buffer(void);
 extern bool session_owns_open_buffer; /* whose turn it is: read for each statement, in the time to BREQ */

@@ -1,6 +1,7 @@
 /* The hardware behind hal.h on the modelled board: machine-mode CSRs, straps, flash and the bus-control latches. */
 #include "firmware/hal/hal.h"
 
+#include "firmware/hal/stacks.h"
 #include "rtl/regs/brick_regs.h"
 
 /* mie and mip bits, docs/architecture.md "Interrupts". */
@@ -121,7 +122,7 @@ void hal_clear_words(uint32_t first, uint32_t count) {
   for (; at < end; at += 8) at[0] = at[1] = at[2] = at[3] = at[4] = at[5] = at[6] = at[7] = 0;
 }
 
-enum { SIDE_STACK_WORDS = 2048, FRAME_WORDS = 16 }; /* FRAME: of exchange_stacks */
+enum { FRAME_WORDS = 16 }; /* of exchange_stacks */
 
 /* A call that comes back when the other side makes it: what a C function keeps goes to the present stack, whose pointer
  * is exchanged with *other. */
@@ -140,7 +141,6 @@ static __attribute__((naked, noipa)) void exchange_stacks(uint32_t** other __att
       "addi sp, sp, 64\n ret");
 }
 
-static uint32_t side_stack[SIDE_STACK_WORDS] __attribute__((aligned(16)));
 static uint32_t* other_stack; /* stack pointer of the side that does not run */
 static void (*side_task)(void);
 
@@ -152,8 +152,10 @@ static _Noreturn void side_main(void) {
 }
 
 void hal_side_begin(void (*task)(void)) {
+  uint32_t words;
+  const volatile uint32_t* bottom = hal_stack(STACK_SLICES, &words);
   side_task = task;
-  other_stack = side_stack + SIDE_STACK_WORDS - FRAME_WORDS;
+  other_stack = (uint32_t*)(uintptr_t)bottom + words - FRAME_WORDS;
   *other_stack = (uint32_t)&side_main; /* the return address */
 }
 

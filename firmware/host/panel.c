@@ -4,6 +4,7 @@
 #include "firmware/host/panel.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/buffers/buffer_request.h"
 #include "firmware/hal/hal.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
@@ -21,13 +22,7 @@ static uint32_t read_low(void) {
 
 static uint32_t number(uint32_t inputs) { return (inputs & JPAN_INPUTS_FPD_MASK) >> JPAN_INPUTS_FPD_SHIFT; }
 
-void panel_initialize(void) {
-  fitted = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;
-  low = fitted ? read_low() : 0u;
-  selection = number(low);
-}
-
-bool panel_active(void) { return fitted && ((uint32_t)i_integer(I2_CONTROL_PANEL_DISABLE) & 1u) == 0u; }
+static bool is_active(void) { return fitted && ((uint32_t)i_integer(I2_CONTROL_PANEL_DISABLE) & 1u) == 0u; }
 
 /* Groups 2 and 3 of I59 are further motors, not further systems. */
 static uint32_t selected(uint32_t n) {
@@ -35,11 +30,23 @@ static uint32_t selected(uint32_t n) {
   return n - 1u + SELECTABLE * ((uint32_t)i_integer(I59_CONTROL_PANEL_GROUP) & 1u);
 }
 
-void panel_select(void) {
-  if (fitted) selection = number(read_low());
+uint32_t panel_cs(void) { return selected(selection); }
+
+/* What the panel has selected goes before the host's selection while I2 lets it. */
+void panel_changed(void) { buffer_request_panel_selects(is_active() ? panel_cs() : PANEL_IS_OFF); }
+
+void panel_initialize(void) {
+  fitted = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;
+  low = fitted ? read_low() : 0u;
+  selection = number(low);
+  panel_changed();
 }
 
-uint32_t panel_cs(void) { return selected(selection); }
+void panel_select(void) {
+  if (!fitted) return;
+  selection = number(read_low());
+  panel_changed();
+}
 
 static void choose_group(uint32_t pulled) {
   static const uint32_t inputs[] = {JPAN_INPUTS_HOME_MASK, JPAN_INPUTS_PREJOG_MASK, JPAN_INPUTS_START_MASK,
@@ -67,7 +74,7 @@ void panel_pass(void) {
   const uint32_t now = read_low();
   const uint32_t pulled = now & ~low;
   low = now;
-  if (pulled == 0u || !panel_active()) return;
+  if (pulled == 0u || !is_active()) return;
   if (number(now) == 0u)
     choose_group(pulled);
   else if (selected(number(now)) != COORDINATE_SYSTEMS)

@@ -14,6 +14,7 @@
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/clock_watch.h"
 #include "firmware/kernel/image_checksum.h"
+#include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/run/plc.h"
@@ -34,6 +35,7 @@ void background_meanwhile(void) {
     background_wake();
   }
   image_checksum_pass();
+  stack_watch_pass();
   watchdog_reload();
   came_by = hal_cycles();
 }

@@ -1,5 +1,7 @@
 /* Reset entry of the image: stack, global pointer, trap vector, initialised data from the code region, zeroed data,
- * image_main. */
+ * marks in both stacks, image_main. */
+#include "firmware/hal/stacks.h"
+
   .option push
   .option arch, +zicsr
   .section .init, "ax"
@@ -37,7 +39,22 @@ _start:
   addi a1, a1, 16
   j 3b
 4:
+  li t0, STACK_MARK             /* of 16 bytes each as well */
+  la a1, __side_stack_bottom
+  la a2, __side_stack_top
+  call 6f
+  la a1, __stack_bottom
+  la a2, __stack_top
+  call 6f
   call image_main
 5:
   j 5b
+6:
+  sw t0, 0(a1)
+  sw t0, 4(a1)
+  sw t0, 8(a1)
+  sw t0, 12(a1)
+  addi a1, a1, 16
+  bltu a1, a2, 6b
+  ret
   .option pop

@@ -6,6 +6,7 @@
 #include "firmware/host/binary_rotary.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
+#include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
@@ -17,4 +18,5 @@ void real_time(void) {
   binary_rotary_real_time();
   calculate_programs();
   if (tasks_real_time_is_periodic()) plc_real_time();
+  stack_watch_check();
 }

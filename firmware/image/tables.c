@@ -14,7 +14,6 @@
 #include "firmware/command/program_commands.h"
 #include "firmware/command/reply.h"
 #include "firmware/command/report_commands.h"
-#include "firmware/command/session.h"
 #include "firmware/host/dpram_functions.h"
 #include "firmware/host/dpram_responses.h"
 #include "firmware/host/host_port.h"
@@ -47,6 +46,7 @@ const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_
 
 static void buffer_request_changed(uint32_t instance) {
   (void)instance;
+  panel_changed();
   buffer_request_evaluate();
 }
 
@@ -55,12 +55,6 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_DPRAM_BASE] = dpram_functions_changed,         [I_FIELD_MOTOR_ACTIVE] = phase_task_motor_changed,
     [I_FIELD_MOTOR_COMMUTATION] = phase_task_motor_changed, [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
 };
-
-/* BREQ: the host-addressed coordinate system; on a board with JPAN and I2 = 0 the one that the panel selects, which may
- * be none. */
-static uint32_t selected_cs(void) { return panel_active() ? panel_cs() : session_selected_cs(); }
-
-uint32_t (*const buffer_request_selected)(void) = selected_cs;
 
 const struct command_entry* const command_tables[] = {report_commands,
                                                       system_commands,

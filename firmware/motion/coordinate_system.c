@@ -2,6 +2,7 @@
 #include "firmware/motion/coordinate_system.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/hal/hal.h"
 #include "firmware/variables/i_variables.h"
 
 struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
@@ -22,12 +23,15 @@ void coordinate_systems_forget_programs(void) {
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) coordinate_systems[cs].pointer = POINTER_NONE;
 }
 
+/* Program and host may change different axes at the same time: neither loses what the other has set. */
 void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask) {
   if (operation == OP_FRAX) {
     s->feedrate_axes = mask & AXIS_ALL;
     return;
   }
-  bool incremental = operation == OP_INC;
+  const bool incremental = operation == OP_INC;
+  const uint32_t state = hal_mask_real_time();
   s->incremental = incremental ? s->incremental | (mask & AXIS_ALL) : s->incremental & ~mask;
   if (mask & AXIS_VECTOR) s->vector_absolute = !incremental;
+  hal_unmask(state);
 }

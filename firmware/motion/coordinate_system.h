@@ -96,7 +96,8 @@ struct coordinate_system {
   volatile bool active;      /* S: moves[executing] is under way */
   volatile bool next_valid;  /* R sets when complete, S clears when it starts it */
   volatile uint32_t started; /* S: moves so far, counted as `planned` */
-  bool blend_decided;        /* S: the next move came before the executing one began to stop */
+  bool blend_decided;        /* S: the next move came before the executing one began to stop, and no `/` since */
+  int64_t stop_length;       /* S: of the velocity change to rest about the corner, for want of a blend */
   int64_t elapsed;           /* S: trajectory time since the executing move began to change velocity */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
@@ -115,8 +116,8 @@ extern volatile uint32_t cs_busy;
 
 void coordinate_systems_initialize(void);      /* power-up, $$$ and $$$***: idle, at 0, without axes */
 void coordinate_systems_forget_programs(void); /* none points to a program any more: R needs a new B */
-void cs_set_axis_mode(struct coordinate_system* s, enum operation operation,
-                      uint32_t mask); /* OP_ABS, OP_INC, OP_FRAX */
+/* OP_ABS, OP_INC, OP_FRAX. Background and real-time task. */
+void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask);
 
 static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }
 static inline double cs_real(uint32_t cs, enum i_real_name isxnn) { return i_variable_read(i_cs_real(cs, isxnn)); }

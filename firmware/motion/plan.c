@@ -19,13 +19,16 @@ static double larger(double a, double b) { return a > b ? a : b; }
 
 static struct move* next_move(struct coordinate_system* s) { return &s->moves[s->executing ^ 1u]; }
 
-/* Tm in ms of a feed-specified move of the axes in `moving`. */
-static double feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT],
-                        uint32_t moving) {
+/* Tm in ms of a feed-specified move of the axes in `moving`. False: it goes by a feedrate, and that is none. */
+static bool feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT], uint32_t moving,
+                      double* time) {
   double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_real(cs, ISX89_FEEDRATE);
   double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT), alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
+  const bool follows = !(alternate > 0.0); /* what is no feedrate axis */
+  *time = 0.0;
+  if (moving == 0) return true;
   if (limit > 0.0 && feed > limit) feed = limit;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     if (((moving >> axis) & 1u) == 0) continue;
@@ -38,12 +41,17 @@ static double feed_time(uint32_t cs, const struct coordinate_system* s, const do
     single = math_absolute(delta[axis]);
     square += delta[axis] * delta[axis];
   }
-  if (axes == 0) return other == 0.0 ? 0.0 : math_divide(other, alternate > 0.0 ? alternate : feed) * unit;
+  if (!(unit > 0.0) || (!(feed > 0.0) && (axes != 0 || follows))) return false;
+  if (axes == 0) {
+    *time = other / (follows ? feed : alternate) * unit;
+    return true;
+  }
   double length = axes == 1 ? single : math_square_root(square);
   slice_pause();
-  double time = math_divide(length, feed) * unit;
+  *time = length / feed * unit;
   slice_pause();
-  return alternate > 0.0 ? larger(time, other / alternate * unit) : time;
+  if (!follows) *time = larger(*time, other / alternate * unit);
+  return true;
 }
 
 /* Acceleration and the least move time that it allows; both 0: 0.5 ms. */
@@ -80,10 +88,11 @@ static void finish(uint32_t cs, struct move* m, bool blends, uint32_t moving) {
   cs_busy |= 1u << cs;
 }
 
-void plan_line(uint32_t cs) {
+bool plan_line(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct move* m = next_move(s);
   uint32_t moving = 0;
+  double time;
   slice_pause();
   m->kind = MOVE_LINEAR;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
@@ -93,8 +102,13 @@ void plan_line(uint32_t cs) {
     if (m->delta[axis] != 0.0) moving |= 1u << axis;
     slice_pause();
   }
-  set_times(cs, m, s->time_mode ? cs_real(cs, ISX89_FEEDRATE) : feed_time(cs, s, m->delta, moving));
+  if (s->time_mode)
+    time = cs_real(cs, ISX89_FEEDRATE);
+  else if (!feed_time(cs, s, m->delta, moving, &time))
+    return false;
+  set_times(cs, m, time);
   finish(cs, m, s->mode == MODE_LINEAR && cs_variable(cs, ISX92_BLEND_DISABLE) == 0.0, moving);
+  return true;
 }
 
 /* DWELL stops blending and is timed by the servo clock alone; DELAY is a move of no distance. */

@@ -2,9 +2,11 @@
 #ifndef FIRMWARE_MOTION_PLAN_H
 #define FIRMWARE_MOTION_PLAN_H
 
+#include <stdbool.h>
+
 #include "firmware/language/word.h"
 
-void plan_line(uint32_t cs);                                      /* to the pending axis targets */
+bool plan_line(uint32_t cs); /* to the pending axis targets; false: it would need a feedrate, and that is not above 0 */
 void plan_wait(uint32_t cs, enum rate kind, double milliseconds); /* RATE_DWELL, RATE_DELAY */
 
 #endif

@@ -33,7 +33,7 @@ void cs_present_position(const struct coordinate_system* s, double position[AXIS
       position[axis] = s->next_valid ? next->start[axis] : s->position[axis];
     return;
   }
-  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->acceleration, half = in / 2.0;
+  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)s->stop_length, half = in / 2.0;
   double time = (double)m->time, stop = t - (half + time - out / 2.0);
   double begun = rise(t, in, s_part(m, in)), ended = s->blend_decided ? 0.0 : rise(stop, out, s_part(m, out));
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {

@@ -27,6 +27,7 @@ static void begin(struct coordinate_system* s, int64_t elapsed, int64_t blend_in
   s->elapsed = elapsed;
   s->active = true;
   s->blend_decided = false;
+  s->stop_length = m->acceleration;
   s->started++;
   s->next_valid = false; /* the real-time task sees room for another move */
 }
@@ -35,13 +36,19 @@ static void begin_from_rest(struct coordinate_system* s) {
   if (s->next_valid && !s->end_block) begin(s, 0, s->moves[s->executing ^ 1u].acceleration, false);
 }
 
-/* The next move joins if it was there before this one began to stop; a blend that should have begun earlier is
- * shortened. */
-static bool try_blend(struct coordinate_system* s, int64_t corner, int64_t stop_begins) {
+/* The next move joins if it was there before this one began to stop, and R has taken back a `/` by then; a blend that
+ * should have begun earlier is shortened. A `/` that comes behind that, while a shorter blend is still to begin, stops
+ * the move in what is left of it: at its corner as ever, and never within less than that blend. */
+static bool try_blend(struct coordinate_system* s, int64_t corner) {
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
-  bool possible = s->next_valid && !s->end_block && next->joins;
-  if (possible && s->elapsed - s->increment < stop_begins) s->blend_decided = true;
-  if (!possible || !s->blend_decided) return false;
+  const bool possible = s->next_valid && !s->end_block && next->joins;
+  if (s->elapsed - s->increment < corner - s->stop_length / 2) {
+    s->blend_decided = possible;
+  } else if (s->blend_decided && !possible) {
+    s->blend_decided = false;
+    s->stop_length = s->elapsed < corner ? 2 * (corner - s->elapsed) : 0;
+  }
+  if (!s->blend_decided) return false;
   int64_t half = next->acceleration / 2;
   int64_t longest = m->time - m->blend_in / 2; /* a blend cannot begin before this move's own has ended */
   if (half > longest) half = longest;
@@ -58,8 +65,8 @@ static bool try_blend(struct coordinate_system* s, int64_t corner, int64_t stop_
 static void update_linear(struct coordinate_system* s) {
   const struct move* m = &s->moves[s->executing];
   int64_t corner = m->blend_in / 2 + m->time;
-  if (try_blend(s, corner, corner - m->acceleration / 2)) return;
-  if (s->elapsed < corner + m->acceleration / 2) return;
+  if (try_blend(s, corner)) return;
+  if (s->elapsed < corner + s->stop_length / 2) return;
   s->active = false;
   begin_from_rest(s);
 }

@@ -29,7 +29,7 @@ static bool stands(uint32_t cs) {
   return cs < COORDINATE_SYSTEMS && !motion_programs[cs].x.at.reader.rotary && (fixed_programs_generation() & 1u) != 0;
 }
 
-/* The line of a rotary buffer goes, a fixed program stays at the statement. */
+/* The line of a rotary buffer goes, as far as it has not yet; a fixed program stays at the statement. */
 static void stop_with_error(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
@@ -37,7 +37,7 @@ static void stop_with_error(uint32_t cs) {
   if (called && p->callers[0].reader.rotary) {
     p->x.at = p->callers[0];
     p->depth = 0;
-  } else if (p->x.at.reader.rotary) {
+  } else if (p->x.at.reader.rotary && p->x.at.begun) {
     (void)rotary_consume(cs, 1);
   }
   s->pending_axes = 0;
@@ -98,10 +98,11 @@ static bool calculate_word(uint32_t cs) {
   }
   if (executed == EXECUTED_LINE) p->lines++;
   p->under_way = executed == EXECUTED_WORD;
-  if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0)
-    motion_plan_line(cs);
-  else if (executed == EXECUTED_END && !calls_return(p))
+  if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {
+    if (motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
+  } else if (executed == EXECUTED_END && !calls_return(p)) {
     end(cs);
+  }
   if (s->planned != moves) planned(cs);
   if (executed == EXECUTED_ERROR) stop_with_error(cs);
   return executed != EXECUTED_ERROR;
@@ -153,13 +154,17 @@ static uint32_t systems(void) {
 static void calculate_round(void) {
   uint32_t looked = interrupts, mask = systems();
   for (bool any = true; any;) {
+    synchronous_assign();
     any = false;
     for (uint32_t cs = 0, left = mask; left != 0; cs++, left >>= 1) {
       if ((left & 1u) == 0) continue;
       calculated = cs;
       const bool done = turn(cs);
       calculated = COORDINATE_SYSTEMS;
-      if (done) slice_pause();
+      if (done) {
+        slice_pause();
+        synchronous_assign(); /* of moves that have started since: they wait for one word at most */
+      }
       any |= done;
     }
     if (looked == interrupts) continue;
@@ -183,7 +188,6 @@ void calculate_forget(uint32_t cs) {
 
 void calculate_programs(void) {
   interrupts++;
-  synchronous_assign();
   if (stands(calculated)) return;
   slice_run(tasks_real_time_slice());
 }

@@ -14,15 +14,21 @@ static void set_rate(uint32_t cs, uint32_t rate, double value) {
   if (rate == RATE_TM) coordinate_systems[cs].time_mode = true;
 }
 
-static void set_axis(struct coordinate_system* s, uint32_t axis, double value) {
+static void set_axis(uint32_t cs, uint32_t axis, double value) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct motion_program* p = &motion_programs[cs];
+  if (s->pending_axes == 0) p->axes = p->x.at.statement;
   bool incremental = (s->incremental >> axis) & 1u;
   s->pending[axis] = incremental ? s->position[axis] + value : value;
   s->pending_axes |= 1u << axis;
 }
 
-void motion_plan_line(uint32_t cs) {
+enum executed motion_plan_line(uint32_t cs) {
+  struct motion_program* p = &motion_programs[cs];
   motion_program_trace(cs, &coordinate_systems[cs].line);
-  plan_line(cs);
+  if (plan_line(cs)) return EXECUTED_WORD;
+  p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again */
+  return executor_fail(&p->x, RUN_TIME_FEEDRATE);
 }
 
 static bool is_rate(const struct instruction* in) { return in->operation == OP_RATE || in->operation == OP_RATE_POP; }
@@ -105,16 +111,13 @@ static bool is_mode(struct coordinate_system* s, const struct instruction* in) {
 enum executed motion_statement(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
-  if (s->pending_axes != 0 && comes_after_axes(in)) {
-    motion_plan_line(cs);
-    return EXECUTED_WORD;
-  }
+  if (s->pending_axes != 0 && comes_after_axes(in)) return motion_plan_line(cs);
   if (is_mode(s, in) || is_stop(cs, in)) return executor_pass(&p->x);
   switch (in->operation) {
     case OP_AXIS:
     case OP_AXIS_POP:
       if (in->number >= AXIS_COUNT) return EXECUTED_ERROR;
-      set_axis(s, in->number, in->value);
+      set_axis(cs, in->number, in->value);
       return executor_pass(&p->x);
     case OP_RATE:
     case OP_RATE_POP:

@@ -8,6 +8,7 @@
 /* `in` as EXECUTED_STATEMENT gives it. WORD, LINE: done, or a move has been planned (next_valid) and it is met again.
  * LATER: nothing more at this interrupt. ERROR: it cannot be executed. */
 enum executed motion_statement(uint32_t cs, const struct instruction* in);
-void motion_plan_line(uint32_t cs); /* the axes of the line so far are a move */
+/* The axes of the line so far are a move. WORD, or ERROR: it goes by a feedrate that is none. */
+enum executed motion_plan_line(uint32_t cs);
 
 #endif

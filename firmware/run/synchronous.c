@@ -1,37 +1,42 @@
 #include "firmware/run/synchronous.h"
 
 #include "firmware/base/mathematics.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/variables/m_variables.h"
 
+struct assignment {
+  uint32_t move; /* counted as coordinate_system.started */
+  uint16_t number;
+  uint8_t action; /* enum synchronous */
+  double value;
+};
+
 static struct {
-  struct {
-    uint32_t move; /* counted as coordinate_system.started */
-    uint16_t number;
-    uint8_t action; /* enum synchronous */
-    double value;
-  } waiting[SYNCHRONOUS_QUEUE];
-  uint32_t count;
+  struct assignment waiting[SYNCHRONOUS_QUEUE]; /* a ring */
+  uint32_t first, count;
 } queues[COORDINATE_SYSTEMS];
 
 static uint32_t filled; /* a bit a queue that is not empty */
 
 void synchronous_initialize(void) {
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) queues[cs].count = 0;
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) queues[cs].first = queues[cs].count = 0;
   filled = 0;
+}
+
+static struct assignment* waiting(uint32_t cs, uint32_t ahead) {
+  return &queues[cs].waiting[(queues[cs].first + ahead) % SYNCHRONOUS_QUEUE];
 }
 
 bool synchronous_is_short(const struct instruction* in) {
   return in->operation == OP_STATEMENT && in->number >= WORD_KEY(4, 1, 0) && in->number < WORD_KEY(4, 5, 0);
 }
 
-bool synchronous_waiting(uint32_t cs) { return queues[cs].count != 0; }
-
 enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
   struct motion_program* p = &motion_programs[cs];
   const struct evaluator* ev = &p->x.evaluator;
   uint32_t number = in->number, action = in->group;
   if (queues[cs].count == SYNCHRONOUS_QUEUE)
-    return queues[cs].waiting[0].move == coordinate_systems[cs].planned + 1u
+    return waiting(cs, 0)->move == coordinate_systems[cs].planned + 1u
                ? executor_fail(&p->x, RUN_TIME_SYNCHRONOUS)
                : EXECUTED_LATER;
   if (in->operation == OP_SYNCHRONOUS_INDEXED) {
@@ -41,49 +46,51 @@ enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
     number = (in->number & 0x3FFu) + p->x.prefix;
     action = (in->number >> 10 & 7u) - 1u;
   }
-  const uint32_t i = queues[cs].count++;
-  queues[cs].waiting[i].move = coordinate_systems[cs].planned + 1u;
-  queues[cs].waiting[i].number = (uint16_t)(number % VARIABLE_COUNT);
-  queues[cs].waiting[i].action = (uint8_t)action;
-  queues[cs].waiting[i].value = in->value;
+  struct assignment* a = waiting(cs, queues[cs].count++);
+  a->move = coordinate_systems[cs].planned + 1u;
+  a->number = (uint16_t)(number % VARIABLE_COUNT);
+  a->action = (uint8_t)action;
+  a->value = in->value;
   filled |= 1u << cs;
   return executor_pass(&p->x);
 }
 
-static void assign(uint32_t number, uint32_t action, double value) {
-  const int64_t operand = math_to_integer(value);
-  if (action == SYNCHRONOUS_SET) {
-    m_variable_write(number, value);
+static void assign(const struct assignment* a) {
+  const int64_t operand = math_to_integer(a->value);
+  if (a->action == SYNCHRONOUS_SET) {
+    m_variable_write(a->number, a->value);
     return;
   }
-  const int64_t old = math_to_integer(m_variable_read(number));
-  const int64_t both = action == SYNCHRONOUS_AND  ? old & operand
-                       : action == SYNCHRONOUS_OR ? old | operand
-                                                  : old ^ operand;
-  m_variable_write(number, (double)both);
+  const int64_t old = math_to_integer(m_variable_read(a->number));
+  const int64_t both = a->action == SYNCHRONOUS_AND  ? old & operand
+                       : a->action == SYNCHRONOUS_OR ? old | operand
+                                                     : old ^ operand;
+  m_variable_write(a->number, (double)both);
 }
 
-/* Nothing is left that could start: the last ones are made too. */
-static bool is_over(const struct coordinate_system* s) { return !s->running && !s->active && !s->next_valid; }
-
-static void assign_started(uint32_t cs) {
+/* Its move has started, or nothing is left that could start: the last ones are made too. */
+static bool is_due(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  uint32_t made = 0;
-  while (made < queues[cs].count && (is_over(s) || (int32_t)(s->started - queues[cs].waiting[made].move) >= 0)) {
-    assign(queues[cs].waiting[made].number, queues[cs].waiting[made].action, queues[cs].waiting[made].value);
-    made++;
-  }
-  for (uint32_t i = made; made != 0 && i < queues[cs].count; i++) queues[cs].waiting[i - made] = queues[cs].waiting[i];
-  queues[cs].count -= made;
-  if (queues[cs].count == 0) filled &= ~(1u << cs);
+  if (queues[cs].count == 0) return false;
+  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 || (!s->running && !s->active && !s->next_valid);
+}
+
+static void remove_first(uint32_t cs) {
+  queues[cs].first = (queues[cs].first + 1u) % SYNCHRONOUS_QUEUE;
+  if (--queues[cs].count == 0) filled &= ~(1u << cs);
 }
 
 void synchronous_assign(void) {
   for (uint32_t cs = 0, left = filled; left != 0; cs++, left >>= 1)
-    if ((left & 1u) != 0) assign_started(cs);
+    while ((left & 1u) != 0 && is_due(cs)) {
+      const struct assignment made = *waiting(cs, 0);
+      remove_first(cs);
+      assign(&made);
+      slice_pause(); /* an abort that comes here empties the queue */
+    }
 }
 
 void synchronous_forget(uint32_t cs) {
-  queues[cs].count = 0;
+  queues[cs].first = queues[cs].count = 0;
   filled &= ~(1u << cs);
 }

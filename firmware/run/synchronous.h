@@ -1,5 +1,5 @@
 /* Synchronous assignments M1==, M1&=, M1|=, M1^=: calculated in their place, made when the next move starts. A queue
- * for each coordinate system. Real-time task. */
+ * for each coordinate system. Real-time task, in slices: all of them at once would take longer than one. */
 #ifndef FIRMWARE_RUN_SYNCHRONOUS_H
 #define FIRMWARE_RUN_SYNCHRONOUS_H
 
@@ -11,8 +11,7 @@ void synchronous_initialize(void);
 bool synchronous_is_short(const struct instruction* in); /* with a constant, in the form of the binary rotary buffer */
 /* LATER: no room until the next move starts. ERROR: no room for that many before one move. */
 enum executed synchronous_add(uint32_t cs, const struct instruction* in);
-void synchronous_assign(void);        /* real-time task, first: those whose move has started since */
+void synchronous_assign(void);        /* those whose move has started since; pauses behind each */
 void synchronous_forget(uint32_t cs); /* an abort */
-bool synchronous_waiting(uint32_t cs);
 
 #endif

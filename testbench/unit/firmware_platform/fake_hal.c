@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "firmware/hal/hal.h"
+#include "firmware/hal/stacks.h"
 #include "firmware/kernel/tasks.h"
 #include "rtl/regs/brick_regs.h"
 #include "testbench/unit/firmware_platform/fake_tasks.h"
@@ -19,6 +20,10 @@ static uint64_t cycles;
 static unsigned breq_edges, writes, strobes;
 static struct fake_edge edges[EDGES];
 static struct fake_write write_log[LOG_LENGTH];
+
+/* The firmware runs on other stacks here: these stay as they were filled, but for what a test writes. */
+static uint32_t stacks[STACK_COUNT][FAKE_STACK_WORDS];
+static unsigned stack_faults;
 
 static uint32_t* last;           /* word handed out by the latest call */
 static struct fake_write before; /* and what it held then */
@@ -86,6 +91,8 @@ void fake_hal_power_on(uint32_t ics) {
   look = LOOK_CYCLES;
   nothing = HAL_WORD_MASK;
   last = NULL;
+  for (unsigned i = 0; i < FAKE_STACK_WORDS; ++i) stacks[STACK_MAIN][i] = stacks[STACK_SLICES][i] = STACK_MARK;
+  stack_faults = 0;
   fake_tasks_power_on();
 }
 
@@ -141,6 +148,19 @@ const uint32_t* hal_image(uint32_t* words) {
   *words = FAKE_IMAGE_WORDS;
   return image;
 }
+const volatile uint32_t* hal_stack(enum stack stack, uint32_t* words) {
+  *words = FAKE_STACK_WORDS;
+  return stacks[stack];
+}
+bool hal_stack_guards_hold(void) {
+  for (unsigned i = 0; i < STACK_GUARD_WORDS; ++i)
+    if (stacks[STACK_MAIN][i] != STACK_MARK || stacks[STACK_SLICES][i] != STACK_MARK) return false;
+  return true;
+}
+void hal_stack_fault(void) { ++stack_faults; }
+unsigned fake_hal_stack_faults(void) { return stack_faults; }
+uint32_t* fake_hal_stack(unsigned stack) { return stacks[stack]; }
+
 void hal_delay_us(uint32_t us) { cycles += us * CYCLES_PER_US; }
 void hal_await_us(uint32_t start, uint32_t us) {
   const uint32_t passed = (uint32_t)cycles - start, wanted = us * CYCLES_PER_US;

@@ -9,6 +9,7 @@
 #include "rtl/regs/brick_regs.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/image_board.h"
+#include "testbench/unit/firmware_platform/stack_room.h"
 
 namespace brick {
 namespace {
@@ -129,6 +130,37 @@ TEST(FaultOfAllIcs, TurnsOffEveryOutputBeforeTheRestart) {
   };
   board.run_ms(5.0);
   EXPECT_TRUE(judged);
+}
+
+// A word of a guard is written: found by the next real-time task. Cause 3 is the breakpoint instruction, which the
+// image has for that alone.
+TEST_F(Fault, AStackThatHasUsedItsGuardIsOne) {
+  const ElfFile elf(BRICK_FIRMWARE_ELF);
+  unsigned count = 0;
+  for (const char* bottom : {"__stack_bottom", "__side_stack_bottom"}) {
+    SCOPED_TRACE(bottom);
+    ASSERT_EQ(board.send("P1=5 WX$78005,$4000 WY$78002,1000\r"), "\x06");
+    std::memset(board.cpu().memory(elf.symbol(bottom).value(), 4), 0, 4);
+    board.run_ms(2.0);
+    EXPECT_EQ(board.word(false, 0x78002), 0u) << "outputs off";
+    board.run_ms(30.0);
+    EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+    EXPECT_EQ(ask("P1"), "0");
+    EXPECT_EQ(board.word(true, kFault), 3u);
+    EXPECT_EQ(board.word(false, kFault), ++count);
+  }
+}
+
+// Below the stack of slices there is no memory.
+TEST_F(Fault, BelowTheStackOfSlicesIsOneAtOnce) {
+  const ElfFile elf(BRICK_FIRMWARE_ELF);
+  ASSERT_EQ(elf.symbol("__side_stack_bottom").value(), 0x20000000u);
+  plant(kFaults[1]);
+  board.cpu().set_reg(kA1, 0x1FFFFFFC);
+  board.run_ms(31.0);
+  EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+  EXPECT_EQ(board.word(true, kFault), 7u);
+  EXPECT_EQ(long_word(kFault + 2), 0x1FFFFFFCu);
 }
 
 TEST_F(Fault, AgainWhileItStartsLeavesTheRestToTheWatchdog) {

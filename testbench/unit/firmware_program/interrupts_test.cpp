@@ -87,6 +87,7 @@ TEST_F(Interrupts, WideValueReadWithoutAMaskIsReadHalf) {
 
 // The firmware. ------------------------------------------------------------------------------------------------------
 
+constexpr std::uint32_t kX = 1u << AXIS_X, kY = 1u << AXIS_Y;
 constexpr unsigned kLines = 400, kBinaryLines = 100, kTries = 3000;
 
 // Line n of coordinate system s: P(1000 s + P(s)) = n, P(s) = P(s) + 1. Empty when each was executed once and in order.
@@ -191,6 +192,29 @@ TEST_F(Interrupts, BinaryLinesAreExecutedOnceAndInOrder) {
     platform::power_up();
     EXPECT_EQ(binary_stream(seed, 20 + seed % 3 * 40, seed % 2 != 0, seed > 3), "") << "seed " << seed;
   }
+}
+
+// The host makes X incremental, a program Y, at the same time. Both are afterwards.
+bool both_are_incremental(std::uint32_t seed) {
+  EXPECT_EQ(host("ABS B2R"), "");
+  fake_interrupts_begin(seed, 3);
+  for (unsigned i = 0; i < 30; ++i) cs_set_axis_mode(&coordinate_systems[0], i % 2 == 0 ? OP_ABS : OP_INC, kX);
+  fake_interrupts_end();
+  platform::servo_ticks(6);
+  return coordinate_systems[0].incremental == (kX | kY);
+}
+
+TEST_F(Interrupts, AxisModesOfHostAndProgramAreBothKept) {
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR INC(Y) CLOSE"), "");
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) ASSERT_TRUE(both_are_incremental(seed)) << "seed " << seed;
+}
+
+TEST_F(Interrupts, AxisModesWithoutMasksAreLost) {
+  ASSERT_EQ(host("OPEN PROG 2 CLEAR INC(Y) CLOSE"), "");
+  fake_tasks_ignore_masks(true);
+  for (std::uint32_t seed = 1; seed <= 200; ++seed)
+    if (!both_are_incremental(seed)) return;
+  FAIL() << "nothing was found";
 }
 
 // A pointer given while an abort is still to be settled, and the real-time task comes in the middle of it: what is left

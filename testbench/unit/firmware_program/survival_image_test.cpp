@@ -8,6 +8,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/image_board.h"
+#include "testbench/unit/firmware_platform/stack_room.h"
 
 namespace brick {
 namespace {
@@ -56,7 +57,9 @@ class Survival : public ::testing::Test {
     EXPECT_EQ(std::stoul(ask("???").substr(0, 6), nullptr, 16) & 0x400200u, 0u)
         << "real-time task too long: bits 22 and 9";  // bit 20: this board gives a line faster than any host bus
     RecordProperty("strobe_gap_us", static_cast<int>(board.longest_strobe_gap_ms() * 1000.0));
+    expect_stack_room(board.cpu(), elf);
   }
+  const ElfFile elf{BRICK_FIRMWARE_ELF};
   ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
 };
 
@@ -96,6 +99,59 @@ TEST_F(Survival, SixteenSystemsOfTheLongestLines) {
   for (const std::string& line : worst_lines()) ASSERT_LE(line.size(), kLineLimit);
   run(16, worst_lines());
   finish(16, 10000.0);
+  expect_alive();
+}
+
+// All that is deep at once: the longest functions in each other in sixteen programs, in PLCs of both tasks and in lines
+// of the host, bracket in bracket, calls in calls, and what interrupts them. The image shows what is left.
+TEST_F(Survival, StacksKeepRoomUnderAllThatIsDeep) {
+  const std::string nested = worst_lines()[1];
+  const std::string brackets = "P9=" + std::string(125, '(') + "7" + std::string(125, ')');
+  for (unsigned n = 2; n <= 15; ++n) {
+    accepted("OPEN PROG " + std::to_string(n) + " CLEAR");
+    accepted(nested);
+    accepted(n < 15 ? "CALL" + std::to_string(n + 1) : "RET");
+    accepted("CLOSE");
+  }
+  accepted("OPEN PLC 0 CLEAR P8=ATAN2(.5) CLOSE");  // short: it makes whole scans in the real-time task
+  accepted("OPEN PLC 1 CLEAR");
+  accepted(nested);
+  accepted(brackets);
+  accepted("CLOSE");
+  std::vector<std::string> lines = worst_lines();
+  lines.emplace_back("CALL2");
+  run(16, lines);
+  accepted("I100,32,100=1 I101,32,100=1 I5=3 I47=1 I48=1 I57=0 ENABLE PLC 0,1");
+  for (int i = 0; i < 5; ++i)
+    for (const std::string& line : {nested, brackets, std::string("P1..99"), std::string("LIST PLC 1")})
+      (void)ask(line);
+  accepted("DISABLE PLC 0,1");
+  board.run_ms(1000.0);
+  board.send("\x01", 5.0);
+  (void)ask("SAVE");
+  board.run_ms(3500.0);
+  const StackRoom main = stack_room(board.cpu(), elf, "stack"), side = stack_room(board.cpu(), elf, "side_stack");
+  EXPECT_EQ(ask("RX$73"), std::to_string(main.unused));
+  EXPECT_EQ(ask("RY$73"), std::to_string(side.unused));
+  expect_stack_room(board.cpu(), elf);
+}
+
+// 512 assignments for moves that start in the same servo interrupt take some slices. All are made, and no real-time
+// task is late for it.
+TEST_F(Survival, SynchronousAssignmentsOfSixteenSystemsAtOnce) {
+  BRICK_COVERS("WDT-1");
+  accepted("I8=0 M1->X:$10F0,0,24 OPEN PROG 1 CLEAR TM200 TA10 TS0 X1");
+  for (int i = 0; i < 4; ++i) accepted(longest("", "M1==P1", " ").substr(0, 7 * 8));
+  accepted("X2");
+  accepted("CLOSE");
+  for (unsigned cs = 1; cs <= 16; ++cs) accepted("&" + std::to_string(cs) + "B1R");
+  accepted("P1=7");
+  board.run_ms(1000.0);
+  EXPECT_EQ(std::stoul(ask("???").substr(0, 6), nullptr, 16) & 0x400200u, 0u) << "real-time task too long";
+  for (unsigned cs = 1; cs <= 16; ++cs) {
+    const unsigned long status = std::stoul(ask("&" + std::to_string(cs) + "??").substr(0, 6), nullptr, 16);
+    EXPECT_EQ(status & 1u, 0u) << "&" << cs << " has not ended";
+  }
   expect_alive();
 }
 
@@ -153,16 +209,13 @@ class AbortLatency : public Survival {
   double ms_to_abort() {
     double began = board.now_ms(), found = -1.0;
     board.cpu().on_flow = [this, &found](std::uint32_t pc, Cycle) {
-      if (found < 0.0 && elf_.symbol_at(pc) == "run_abort") found = board.now_ms();
+      if (found < 0.0 && elf.symbol_at(pc) == "run_abort") found = board.now_ms();
     };
     board.send("\x01", 2.0);
     board.cpu().on_flow = nullptr;
     EXPECT_GE(found, 0.0) << "no abort within 2 ms";
     return found - began;
   }
-
- private:
-  ElfFile elf_{BRICK_FIRMWARE_ELF};
 };
 
 TEST_F(AbortLatency, IsBelowAMillisecond) {

@@ -58,6 +58,27 @@ TEST_P(ClockFrequencies, DirectionVariablesOfOneLineMoveTheSource) {
   EXPECT_EQ(ask("VERSION"), "1.947");
 }
 
+// Nobody types I10: whatever it and the clocks were, a re-initialisation leaves both so that they agree. 8388608 / kHz
+// of a period of T ticks is 8388608 T / 117964.8 = 640 T / 9.
+TEST_P(ClockFrequencies, FactoryServoPeriodIsTheMeasuredOne) {
+  BRICK_COVERS("CLK-4");
+  const auto agrees = [this](const std::string& when) {
+    SCOPED_TRACE(when);
+    const auto servo = falling_edges(pin::kServo, 3, ms_to_ticks(20));
+    ASSERT_EQ(servo.size(), 3u);
+    const Tick period = servo[2] - servo[1];
+    EXPECT_EQ(period, servo[1] - servo[0]);
+    EXPECT_NEAR(std::stod(ask("I10")), 640.0 * static_cast<double>(period) / 9.0, 1.0);
+  };
+  start();
+  agrees("as it comes");
+  ask("I7000=2948 I7001=1 I7002=1 I10=5");
+  link().command("$$$***");
+  ASSERT_TRUE(link().connect(machine().now() + ms_to_ticks(100)));
+  wait(ms_to_ticks(2));
+  agrees("after other clocks");
+}
+
 BRICK_ON_ENGINES(ClockFrequencies, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace

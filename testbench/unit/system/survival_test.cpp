@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "systemc/cpu/elf_file.h"
+#include "testbench/unit/firmware_platform/stack_room.h"
 #include "testbench/unit/random_lines.h"
 #include "testbench/unit/system/controller.h"
 
@@ -69,6 +70,7 @@ class SurvivalOn : public Controller {
     EXPECT_EQ(ask("VER"), "1.947");
     EXPECT_EQ(ask("RHX$70"), "0") << "a trap is no survival";
     EXPECT_EQ(ask("RY$70"), "0");
+    expect_stack_room(machine().cpu(), ElfFile(BRICK_FIRMWARE));
   }
 };
 
