@@ -30,6 +30,7 @@ function(brick_test_code target)
     target_precompile_headers(${target} REUSE_FROM brick_sanitized_test_headers)
   else()
     target_precompile_headers(${target} REUSE_FROM brick_test_headers)
+    target_link_libraries(${target} PRIVATE brick_systemc)  # its headers are among them
   endif()
 endfunction()
 
