@@ -188,12 +188,12 @@ nlohmann::json Simulation::measures() const {
   const double wall = seconds_ > 0 ? seconds_ : 1e-9;
   const Aperture::Counts& moves = machine_->aperture().counts();
   return {{"aperture",
-           {{"fs", machine_->aperture().width()},
+           {{"fs", static_cast<std::int64_t>(machine_->aperture().width())},
             {"moves", moves.moves},
             {"early", moves.early},
             {"late", moves.late},
             {"split", moves.split}}},
-          {"simulated_ns", machine_->now_fs() / kFsPerNs},
+          {"simulated_ns", fs_to_ns(machine_->now_fs())},
           {"ticks", machine_->now()},
           {"wall_seconds", seconds_},
           {"ticks_per_second", static_cast<double>(machine_->now()) / wall},

@@ -283,7 +283,7 @@ std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); 
 void Machine::attach_debugger(GdbServer* debugger) {
   impl_->debugger = debugger;
   if (debugger == nullptr) return;
-  debugger->on_time = [this] { return std::to_string(impl_->cpu_time() / kFsPerNs) + " ns"; };
+  debugger->on_time = [this] { return std::to_string(fs_to_ns(impl_->cpu_time())) + " ns"; };
 }
 
 void Machine::attach_bus_master(BusMaster* master) {

@@ -114,7 +114,7 @@ struct Machine::Impl {
   std::vector<BusCycle> bus_cycles;
   ClockDrivers clock_drivers;
   std::vector<std::string> run_errors;
-  std::optional<std::int64_t> kernel_offset;  // kernel time at the machine's tick 0, in units of its resolution
+  std::optional<TimeFs> kernel_offset;  // kernel time at the machine's tick 0
 };
 
 }  // namespace brick
