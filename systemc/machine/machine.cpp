@@ -126,6 +126,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     if (owner.on_task) owner.on_task(time);
     if (tracing_cpu) named.pc(time, pc, elf.get());
   };
+  memory.on_saved = [this] { keep_flash(); };
   static_cast<Straps&>(host_inputs) = straps(config.board);
   static_cast<IsaStraps&>(host_inputs) = isa_straps(config.board);
   static_cast<HostInputs&>(inputs) = host_inputs;
@@ -133,10 +134,16 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
   power_on();
 }
 
-Machine::Impl::~Impl() {
+Machine::Impl::~Impl() { keep_flash(); }
+
+// Whoever cannot write the file is told at once, and the run fails; the controller goes on.
+void Machine::Impl::keep_flash() {
   try {
     memory.save_flash();
-  } catch (const std::exception& e) { std::fprintf(stderr, "%s\n", e.what()); }
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    run_errors.emplace_back(e.what());
+  }
 }
 
 void Machine::Impl::power_on() {
@@ -320,7 +327,7 @@ Signals& Machine::signals() {
 }
 
 void Machine::power_cycle() {
-  impl_->memory.save_flash();
+  impl_->keep_flash();
   impl_->power_on();
 }
 

@@ -65,6 +65,7 @@ struct Machine::Impl {
   void apply_host_inputs(TimeFs time);
   void host_bus_moved(TimeFs time);
   void see_init();
+  void keep_flash();
 
   // run.cpp: the run-ahead rule
   Tick run_until(Tick limit, const BoardOutputs& stop_on);

@@ -159,7 +159,8 @@ def serve_mailbox():
 
 
 def serve_ends():
-    """SIGINT and SIGTERM end it with status 0, the flash file whole and the address kept beside it."""
+    """SIGINT and SIGTERM end it with status 0 and the address kept beside the flash file; SAVE has written that, so
+    that SIGKILL takes nothing away."""
     with tempfile.TemporaryDirectory() as folder:
         file = f"{folder}/flash.bin"
         for number, end in enumerate((signal.SIGINT, signal.SIGTERM), 20):
@@ -174,6 +175,12 @@ def serve_ends():
             with served("--free", "--flash", file) as server, server.client() as client:
                 check(client.values("I16") == [str(number)], f"{end.name}: SAVEd")
                 check(client.request(0xC0, 0xE0) == address, f"{end.name}: address")
+        with served("--flash", file) as server, server.client() as client:
+            check(client.command("I16=30") == "" and client.command("SAVE") == "", "SAVE")
+            server.process.kill()
+            server.process.wait()
+        with served("--free", "--flash", file) as server, server.client() as client:
+            check(client.values("I16") == ["30"], "SIGKILL: SAVEd")
         check(sorted(os.listdir(folder)) == ["flash.bin", "flash.bin.address"], os.listdir(folder))
         for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n"):
             (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")
