@@ -96,7 +96,8 @@ int serve_command(const ServeOptions& options) {
   const Simulation::TimingVerdict timing = simulation.timing_verdict();
   for (const auto& list : {simulation.machine().take_run_errors(), timing.failures})
     failures.insert(failures.end(), list.begin(), list.end());
-  for (const std::string& text : failures) tell(text);
+  for (const auto* list : {&std::as_const(failures), &timing.waived, &timing.unused})
+    for (const std::string& text : *list) tell(text);
   if (!options.run.json.empty()) {
     nlohmann::json results = simulation.measures();
     results["engine"] = options.run.engine;

@@ -65,6 +65,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     : title_(std::move(title)),
       machine_(make_machine(config)),
       timing_(std::make_unique<TimingBook>(*machine_)),
+      forced_bcr_(options.bcr),
       waivers_(options.waive ? TimingWaivers(*options.waive) : TimingWaivers()),
       bus_(*machine_),
       link_(bus_),
@@ -181,6 +182,11 @@ Simulation::TimingVerdict Simulation::timing_verdict() {
   }
   if (more > 0) verdict.failures.push_back(fmt::format("bus timing: {} more, see brick timing --json", more));
   verdict.unused = waivers_.unused();
+  if (forced_bcr_ && !machine_->forced_bcr_acted())
+    verdict.unused.push_back(fmt::format(
+        "--bcr {}: has never acted, because BCR and PCTL stand as a reset leaves them; expected a program that sets "
+        "another CPU clock or other wait states of a device",
+        *forced_bcr_));
   return verdict;
 }
 

@@ -276,6 +276,7 @@ TimeFs Machine::cpu_period() const {
   const CpuClock& clock = impl_->port_a.clock();
   return tick_to_fs(CpuClock::kTicksPerMultiplier) / clock.multiplier();
 }
+bool Machine::forced_bcr_acted() const { return impl_->port_a.forced_wait_states_acted(); }
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
 void Machine::apply_motor_inputs() { impl_->motors.apply(); }

@@ -162,6 +162,7 @@ class Machine : public sc_core::sc_module {
   std::function<void(TimeFs, const BoardInputs&, const BoardOutputs&)> on_host_bus;
 
   TimeFs cpu_period() const;  // of the CPU clock as it stands
+  bool forced_bcr_acted() const;
 
  private:
   struct Impl;
