@@ -1,14 +1,27 @@
 #include "app/ethernet_connection.h"
 
+#include <netinet/tcp.h>
+
 #include <string_view>
 #include <utility>
 
 namespace brick {
 
+namespace {
+// A client whose machine is switched off says nothing: without these its place would be taken for ever.
+using KeepAliveIdle = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
+using KeepAliveInterval = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>;
+using KeepAliveCount = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPCNT>;
+}  // namespace
+
 EthernetConnection::EthernetConnection(asio::ip::tcp::socket socket, std::size_t most_requests)
     : socket_(std::move(socket)), most_requests_(most_requests) {
   asio::error_code ignored;
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+  socket_.set_option(asio::socket_base::keep_alive(true), ignored);
+  socket_.set_option(KeepAliveIdle(static_cast<int>(kIdle.count())), ignored);
+  socket_.set_option(KeepAliveInterval(static_cast<int>(kAskAgain.count())), ignored);
+  socket_.set_option(KeepAliveCount(kTimesAsked), ignored);
 }
 
 // Only where nothing waits to be sent and all that was read is being worked at.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -15,6 +16,10 @@ namespace brick {
 
 class EthernetConnection : public std::enable_shared_from_this<EthernetConnection> {
  public:
+  // A client that says nothing is asked whether it is still there; one that does not answer is gone.
+  static constexpr std::chrono::seconds kIdle{60}, kAskAgain{10};
+  static constexpr int kTimesAsked = 6;
+
   EthernetConnection(asio::ip::tcp::socket socket, std::size_t most_requests);
 
   std::function<void(const EthernetPacket&)> on_request;

@@ -43,7 +43,7 @@ MachineConfig machine_config(const RunOptions& options);
 
 struct WaveWindow {
   TimeFs from = 0;
-  TimeFs to = INT64_MAX;
+  TimeFs to = kForever;
 };
 WaveWindow wave_window(const RunOptions& options);
 TraceGroups trace_groups(const RunOptions& options);  // throws UsageError

@@ -1,5 +1,7 @@
 #include "app/pacing.h"
 
+#include <algorithm>
+
 namespace brick {
 
 namespace {
@@ -15,7 +17,16 @@ Tick Pacing::due(Tick now, Clock::time_point wall) {
 }
 
 Pacing::Clock::time_point Pacing::when(Tick tick) const {
-  return begin_ + std::chrono::nanoseconds(tick_to_fs(tick - first_) / kFsPerNs);
+  return begin_ + std::chrono::nanoseconds(fs_to_ns(tick_to_fs(tick - first_)));
+}
+
+// Over some ten milliseconds of the wall, so that one look of the kernel at something else is no slow engine.
+void Pacing::ran(Tick ticks, Clock::duration wall) {
+  constexpr double kLately = 0.05;
+  const double seconds = std::chrono::duration<double>(wall).count();
+  const double simulated = static_cast<double>(ticks) / static_cast<double>(kPwmClockHz);
+  const double now = seconds > simulated ? simulated / seconds : 1;
+  speed_ += (now - speed_) * std::min(1.0, seconds / kLately);
 }
 
 }  // namespace brick

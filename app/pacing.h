@@ -21,9 +21,15 @@ class Pacing {
   Tick due(Tick now, Clock::time_point wall);
   Clock::time_point when(Tick tick) const;  // `tick` is due
 
+  // So much time has passed without a pause, and took so long.
+  void ran(Tick ticks, Clock::duration wall);
+  // Of simulated time for one of the wall's, lately; 1 when it is kept up with.
+  double speed() const { return speed_; }
+
  private:
   Clock::time_point begin_;
   Tick first_;  // was due then
+  double speed_ = 1;
 };
 
 }  // namespace brick

@@ -24,7 +24,7 @@ const Bench& need_bench(const std::vector<Bench>& benches, const std::string& na
 nlohmann::json steps_json(const BenchReport& report) {
   nlohmann::json list = nlohmann::json::array();
   for (const BenchStep& s : report.steps())
-    list.push_back({{"ns", tick_to_fs(s.at) / kFsPerNs}, {"name", s.name}, {"passed", s.passed}, {"detail", s.detail}});
+    list.push_back({{"ns", fs_to_ns(tick_to_fs(s.at))}, {"name", s.name}, {"passed", s.passed}, {"detail", s.detail}});
   return list;
 }
 

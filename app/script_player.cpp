@@ -252,7 +252,7 @@ void ScriptPlayer::play_line(const ScriptLine& line) {
       break;
     }
     case Kind::kTime:
-      print({fmt::format("time={} ns", machine.now_fs() / kFsPerNs)});
+      print({fmt::format("time={} ns", fs_to_ns(machine.now_fs()))});
       break;
   }
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -87,6 +88,7 @@ int serve_command(const ServeOptions& options) {
             "the controller does not answer after power-on; expected an answer within 500 ms, see --jumper E3");
       std::cout << fmt::format("listening on {}, TCP and UDP", server.place()) << std::endl;
       server.start();
+      loop.on_speed = [&](double speed) { processor.set_speed(speed); };
       loop.run([&] { return processor.busy(); }, [&](Tick limit) { processor.run_until(limit); });
     });
   } catch (const Interrupted& e) { tell(e.what()); } catch (const std::exception& e) {
@@ -96,7 +98,8 @@ int serve_command(const ServeOptions& options) {
   const Simulation::TimingVerdict timing = simulation.timing_verdict();
   for (const auto& list : {simulation.machine().take_run_errors(), timing.failures})
     failures.insert(failures.end(), list.begin(), list.end());
-  for (const std::string& text : failures) tell(text);
+  for (const auto* list : {&std::as_const(failures), &timing.waived, &timing.unused})
+    for (const std::string& text : *list) tell(text);
   if (!options.run.json.empty()) {
     nlohmann::json results = simulation.measures();
     results["engine"] = options.run.engine;

@@ -65,6 +65,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     : title_(std::move(title)),
       machine_(make_machine(config)),
       timing_(std::make_unique<TimingBook>(*machine_)),
+      forced_bcr_(options.bcr),
       waivers_(options.waive ? TimingWaivers(*options.waive) : TimingWaivers()),
       bus_(*machine_),
       link_(bus_),
@@ -181,6 +182,11 @@ Simulation::TimingVerdict Simulation::timing_verdict() {
   }
   if (more > 0) verdict.failures.push_back(fmt::format("bus timing: {} more, see brick timing --json", more));
   verdict.unused = waivers_.unused();
+  if (forced_bcr_ && !machine_->forced_bcr_acted())
+    verdict.unused.push_back(fmt::format(
+        "--bcr {}: has never acted, because BCR and PCTL stand as a reset leaves them; expected a program that sets "
+        "another CPU clock or other wait states of a device",
+        *forced_bcr_));
   return verdict;
 }
 
@@ -188,12 +194,12 @@ nlohmann::json Simulation::measures() const {
   const double wall = seconds_ > 0 ? seconds_ : 1e-9;
   const Aperture::Counts& moves = machine_->aperture().counts();
   return {{"aperture",
-           {{"fs", machine_->aperture().width()},
+           {{"fs", static_cast<std::int64_t>(machine_->aperture().width())},
             {"moves", moves.moves},
             {"early", moves.early},
             {"late", moves.late},
             {"split", moves.split}}},
-          {"simulated_ns", machine_->now_fs() / kFsPerNs},
+          {"simulated_ns", fs_to_ns(machine_->now_fs())},
           {"ticks", machine_->now()},
           {"wall_seconds", seconds_},
           {"ticks_per_second", static_cast<double>(machine_->now()) / wall},

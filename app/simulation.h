@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -40,7 +41,8 @@ class Simulation {
   HostLink& link() { return link_; }
   TimingBook& timing() { return *timing_; }
 
-  // What broke a rule of the buses, one line each: what fails the run, what a waiver excuses, waivers not needed.
+  // What broke a rule of the buses, one line each: what fails the run, what a waiver excuses, waivers not needed and
+  // wait states that were forced on nobody.
   struct TimingVerdict {
     std::vector<std::string> failures, waived, unused;
   };
@@ -67,6 +69,7 @@ class Simulation {
   std::unique_ptr<Machine> machine_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;
+  const std::optional<std::string> forced_bcr_;
   TimingWaivers waivers_;
   HostBus bus_;
   HostLink link_;

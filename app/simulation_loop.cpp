@@ -1,15 +1,13 @@
 #include "app/simulation_loop.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 namespace brick {
 
 namespace {
-constexpr Tick kPiece = ns_to_ticks(500'000);               // between two looks at what others have posted
-constexpr Tick kLastTick = ns_to_ticks(9'000'000'000'000);  // of what femtoseconds can say
-constexpr std::chrono::milliseconds kLongestSleep{5};       // and at the signals
+constexpr Tick kPiece = ns_to_ticks(500'000);          // between two looks at what others have posted
+constexpr std::chrono::milliseconds kLongestSleep{5};  // and at the signals
 }  // namespace
 
 void SimulationLoop::post(std::function<void()> work) {
@@ -44,13 +42,14 @@ void SimulationLoop::run(const std::function<bool()>& busy, const std::function<
   for (;;) {
     work();
     const Tick now = bus_.now(), due = free_ ? now : pacing.due(now);
-    if (now >= kLastTick)
-      throw std::runtime_error("simulated time has come to its end, 2.5 hours; expected a new start before that");
     if (due >= now + nap) goal = due;
-    const Tick limit = !busy() ? goal : free_ ? kLastTick : due + lead;
-    if (now < limit)
+    const Tick limit = !busy() ? goal : free_ ? kNever : due + lead;
+    if (now < limit) {
+      if (on_speed) on_speed(free_ ? 1 : pacing.speed());
+      const Pacing::Clock::time_point begin = Pacing::Clock::now();
       run_until(std::min(limit, now + kPiece));
-    else
+      pacing.ran(bus_.now() - now, Pacing::Clock::now() - begin);
+    } else
       sleep_until(pacing.when(busy() ? now + 1 - lead : now + nap));
   }
 }

@@ -22,7 +22,9 @@ class SimulationLoop {
 
   // On the simulation's thread, until an exception ends it (SIGINT and SIGTERM come as one, app/simulation.h).
   // `busy`: somebody waits for something, so time may run ahead of the wall a little. `run_until`: lets time pass.
-  // Throws std::runtime_error when simulated time comes to its end (systemc/core/ticks.h).
+  // Told before each piece of time: how much of it passes for one of the wall's, at most 1; always 1 when `free`.
+  std::function<void(double)> on_speed;
+
   [[noreturn]] void run(const std::function<bool()>& busy, const std::function<void(Tick)>& run_until);
 
  private:

@@ -11,7 +11,7 @@ TimeFs parse_time(const std::string& text) {
   const auto bad = [&] {
     return UsageError(beginning_of(text) + " is no time; expected a number with ns, us, ms or s, for example 10ms");
   };
-  constexpr TimeFs kLongest = 9'000'000'000'000'000'000;  // 2.5 hours
+  constexpr TimeFs kLongest = 1'000'000'000 * TimeFs{1'000'000'000'000'000};  // 31 years
   std::size_t at = 0;
   __int128 digits = 0;
   unsigned decimals = 0, count = 0;
@@ -35,8 +35,8 @@ TimeFs parse_time(const std::string& text) {
   if (count == 0 || femtoseconds == 0) throw bad();
   __int128 value = digits * femtoseconds;
   for (; decimals > 0; --decimals) value /= 10;
-  if (value > kLongest) throw UsageError(beginning_of(text) + " is too long a time; expected at most 9000s");
-  return static_cast<TimeFs>(value);
+  if (value > kLongest) throw UsageError(beginning_of(text) + " is too long a time; expected at most 1000000000s");
+  return value;
 }
 
 }  // namespace brick

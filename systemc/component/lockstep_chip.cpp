@@ -114,7 +114,7 @@ class LockstepChip final : public Chip {
   [[noreturn]] void report(Tick tick, const std::string& differences) const {
     const TimeFs time = tick_to_fs(tick);
     std::ostringstream text;
-    text << name_ << ": RTL and SystemC model differ at tick " << tick << " (" << time / kFsPerNs << " ns)"
+    text << name_ << ": RTL and SystemC model differ at tick " << tick << " (" << fs_to_ns(time) << " ns)"
          << differences;
     raise_error("/brick/lockstep", text.str());
   }

@@ -14,24 +14,24 @@ namespace {
 using sc_core::sc_time;
 const TimeBase* the_one = nullptr;  // of this simulation
 
-// The end of time: 2.5 hours, which 64 bits of femtoseconds hold.
-constexpr TimeFs kLastFs = 9'000'000 * (kFsPerNs * 1'000'000);
-constexpr Tick kLastTick = fs_to_tick(kLastFs) - 1;
 constexpr unsigned kMostDeltas = 100'000;  // of one instant with changes of pins; no design needs so many
 constexpr unsigned kAsked = 16;            // delta cycles in which an instant is asked for its end before it is left
-[[noreturn]] void out_of_time() { raise_error("/brick/time", "beyond 2.5 hours after the epoch, or before it"); }
+[[noreturn]] void out_of_time() {
+  raise_error("/brick/time", "beyond the end of the kernel's time, or before the epoch");
+}
 }  // namespace
 
 Scheduler::Scheduler(const TimeOptions& options)
     : epoch_(options.epoch.value()),
       grid_(std::max<Units>(options.grid.value(), 1)),
-      unit_(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15)) {
+      unit_(std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15)),
+      last_tick_(fs_to_tick((kLastTime - epoch_) * unit_) - 1) {
   if (unit_ > kFsPerNs)
     raise_error("/brick/resolution", "the kernel's time resolution is coarser than 1 ns: edges would fall together");
 }
 
 sc_time Scheduler::time_of(Tick edge) const {
-  if (edge < 0 || edge > kLastTick) out_of_time();
+  if (edge < 0 || edge > last_tick_) out_of_time();
   return sc_time::from_value(instant_of(edge));
 }
 Scheduler::Units Scheduler::instant_of(Tick edge) const { return instant_at(tick_to_fs(edge)).value(); }
@@ -47,7 +47,7 @@ TimeFs Scheduler::time() const {
 // The last edge whose true time is before `instant`.
 Tick Scheduler::tick_at(const sc_time& instant) const {
   if (instant.value() <= epoch_) return 0;
-  if (instant.value() - epoch_ > static_cast<Units>(kLastFs / unit_)) out_of_time();
+  if (instant.value() > kLastTime) out_of_time();
   return fs_to_tick(static_cast<TimeFs>(instant.value() - epoch_) * unit_) - 1;
 }
 
@@ -100,16 +100,16 @@ void Scheduler::step() {
     next = std::min(next, client->due());
   }
   touched_ = false;
-  Units wake = next == kNever ? kNoTime : instant_of(std::min(next, kLastTick + 1));
+  Units wake = next > last_tick_ ? kNoTime : instant_of(next);
   if (!eager_.empty()) {
     cancel_timers();  // they are not what we run up to
-    const Units grid = (now.value() / grid_ + 1) * grid_;
+    const Units since = now.value() % grid_, grid = now.value() + std::min(grid_ - since, kLastTime - now.value());
     const sc_time pending = sc_core::sc_time_to_pending_activity();  // nothing can change before that
-    wake = std::min({wake, grid, now.value() + std::min(pending.value(), kNoTime - now.value())});
+    wake = std::min({wake, grid, now.value() + std::min(pending.value(), kLastTime - now.value())});
     const Tick changed = run_ahead(tick, tick_at(sc_time::from_value(wake)));
     if (changed != kNever) wake = time_of(changed).value();
   }
-  if (wake == kNoTime)
+  if (wake == kNoTime || wake == now.value())  // the kernel's time ends
     cancel_timers();
   else
     sleep_until(wake);

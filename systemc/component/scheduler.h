@@ -42,6 +42,7 @@ class Scheduler : public std::enable_shared_from_this<Scheduler> {
 
  private:
   using Units = sc_core::sc_time::value_type;  // of the kernel's time
+  static constexpr Units kNoTime = ~Units{}, kLastTime = kNoTime - 1;
 
   void step();
   void start();
@@ -53,7 +54,8 @@ class Scheduler : public std::enable_shared_from_this<Scheduler> {
   Tick run_ahead(Tick from, Tick limit);
 
   Units epoch_, grid_;
-  TimeFs unit_;  // of the kernel's resolution
+  TimeFs unit_;     // of the kernel's resolution
+  Tick last_tick_;  // that the kernel's time reaches
   std::vector<Client*> clients_, eager_;
   // A timer that has been put off leaves a dead entry in the kernel's queue until its time. So a wake-up before the one
   // that is pending gets the second timer, and one that turns out too early is let come.
@@ -61,7 +63,6 @@ class Scheduler : public std::enable_shared_from_this<Scheduler> {
     sc_core::sc_event event;
     Units at = kNoTime;
   };
-  static constexpr Units kNoTime = ~Units{};
   std::array<Timer, 2> timers_;
   sc_core::sc_event changed_;
   Units left_ = kNoTime;     // the instant that is left to the others

@@ -30,7 +30,8 @@ class CpuClock {
   Origin origin(Cycle cycle) const {
     const std::int64_t offset = 4 * kTicksPerMultiplier * (cycle - cycle_);
     const Tick tick = edge_ + offset / parts();
-    return {tick / detail::kBlockTicks * detail::kBlockFs, tick % detail::kBlockTicks * parts() + offset % parts()};
+    return {static_cast<TimeFs>(tick / detail::kBlockTicks) * detail::kBlockFs,
+            tick % detail::kBlockTicks * parts() + offset % parts()};
   }
   // Time of the instant `quarters` quarter cycles after it, at most 30000 of them, rounded down to a femtosecond.
   // Multiplied by the reciprocal of the divisor: the product is below 2^49 and the divisor below 2^15, so that is

@@ -22,7 +22,7 @@ class TraceWriter {
 
   // Opens FILE.vcd or FILE.fst for the window [from, to] (values at `from` are dumped first). Throws std::runtime_error
   // with one clear line when the ending is neither, or the file cannot be written.
-  static std::unique_ptr<TraceWriter> open(const std::string& file, TimeFs from = 0, TimeFs to = INT64_MAX);
+  static std::unique_ptr<TraceWriter> open(const std::string& file, TimeFs from = 0, TimeFs to = kForever);
 };
 
 }  // namespace brick

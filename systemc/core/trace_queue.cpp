@@ -99,7 +99,7 @@ void TraceQueue::write_one(const Record& r) {
 void TraceQueue::open_window() {
   if (window_) return;
   window_ = true;
-  last_ps_ = from_ / kFsPerPs;
+  last_ps_ = to_ps(from_);
   write_time(last_ps_, true);
   for (Signals::Id id = 0; id < declared_.size(); ++id)
     if (declared_[id].known) write_declared(id);
@@ -113,7 +113,7 @@ void TraceQueue::write_declared(Signals::Id id) {
 }
 
 void TraceQueue::advance(TimeFs time) {
-  const std::int64_t ps = time / kFsPerPs;
+  const std::int64_t ps = to_ps(time);
   if (ps <= last_ps_) return;  // same time unit
   last_ps_ = ps;
   write_time(ps, false);
@@ -122,7 +122,7 @@ void TraceQueue::advance(TimeFs time) {
 void TraceQueue::close() {
   if (closed_) return;
   closed_ = true;
-  write_until(INT64_MAX);
+  write_until(kForever);
   const TimeFs end = std::min(complete_, to_);
   if (end >= from_) {
     open_window();

@@ -2,6 +2,7 @@
 // that do not change, and the tree of scopes. A format only writes: header, time, value.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <unordered_map>
@@ -12,6 +13,8 @@
 namespace brick {
 
 constexpr TimeFs kFsPerPs = 1000;  // the time unit of both formats
+// Neither has more than 64 bits for a time, and viewers take them for signed: what comes after 106 days is left out.
+constexpr TimeFs kLastTraced = INT64_MAX * kFsPerPs;
 
 // Signals as a tree: the parts of a name between its dots are scopes.
 struct TraceScope {
@@ -21,7 +24,7 @@ struct TraceScope {
 
 class TraceQueue : public TraceWriter {
  public:
-  TraceQueue(TimeFs from, TimeFs to) : from_(from), to_(to) {}
+  TraceQueue(TimeFs from, TimeFs to) : from_(from), to_(std::min(to, kLastTraced)) {}
 
   void declare(Signals::Id id, const Signals::Info& info, Signals::Id of) override;
   void record(Signals::Id id, TimeFs time, std::uint64_t value) override;
@@ -58,6 +61,7 @@ class TraceQueue : public TraceWriter {
   void open_window();
   void write_declared(Signals::Id id);
   void advance(TimeFs time);
+  static std::int64_t to_ps(TimeFs time) { return static_cast<std::int64_t>(time / kFsPerPs); }
 
   const TimeFs from_, to_;
   std::vector<Declared> declared_;

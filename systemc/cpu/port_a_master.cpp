@@ -55,12 +55,17 @@ void PortAMaster::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   show(PortALine::kWrN, now, 1);
 }
 
+bool PortAMaster::forces_wait_states() const {
+  using namespace regs::cpu_bus::bcr;
+  constexpr std::uint32_t kDevices = kBa1w.mask() | kBa2w.mask() | kBdfw.mask();
+  const bool set_up = ((bcr_ ^ regs::cpu_bus::kBcr.reset) & kDevices) != 0 || pctl_ != regs::cpu_bus::kPctl.reset;
+  return forced_bcr_ && set_up;
+}
+
 unsigned PortAMaster::wait_states(unsigned area) const {
   using namespace regs::cpu_bus::bcr;
   constexpr regs::Field kFields[] = {kBa0w, kBa1w, kBa2w, kBdfw};
-  constexpr std::uint32_t kDevices = kBa1w.mask() | kBa2w.mask() | kBdfw.mask();
-  const bool set_up = ((bcr_ ^ regs::cpu_bus::kBcr.reset) & kDevices) != 0 || pctl_ != regs::cpu_bus::kPctl.reset;
-  return kFields[area].get(forced_bcr_ && set_up ? *forced_bcr_ : bcr_);
+  return kFields[area].get(forces_wait_states() ? *forced_bcr_ : bcr_);
 }
 
 bool PortAMaster::maps(std::uint32_t address, bool x) {
@@ -79,6 +84,7 @@ void PortAMaster::begin(const PortAAccess& access) {
   cycle_.multiplier = clock_.multiplier();
   // The on-chip peripherals keep their own pace when the core gets faster than 8 x 9.83 MHz.
   cycle_.wait_states = cycle_.on_chip ? std::max(kOnChipWaitStates, clock_.multiplier() - 1) : wait_states(area);
+  if (forced_bcr_ && !cycle_.on_chip) forced_acted_ = forced_acted_ || forces_wait_states();
   if (cycle_.write) cycle_.data = access.data & kWordMask;
   shape_ = port_a_shape(cycle_.wait_states, cycle_.write);
   start_ = std::max(access.start, next_start_);

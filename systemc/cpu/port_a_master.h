@@ -70,7 +70,8 @@ class PortAMaster {
   // Wait states of all areas as in BCR, whatever the program writes there. They act when it has left what a reset gives
   // it: another CPU clock, or other wait states of a device; until then it may not know yet what clock it will have.
   void force_wait_states(std::uint32_t bcr) { forced_bcr_ = bcr; }
-  void set_watch(PortAWatch* watch) { watch_ = watch; }  // not owned; nullptr = none
+  bool forced_wait_states_acted() const { return forced_acted_; }  // in a cycle at least
+  void set_watch(PortAWatch* watch) { watch_ = watch; }            // not owned; nullptr = none
   // Of what a read takes from a bus that moves, and of whether a moving /TA is seen: the same on every engine.
   void seed(std::uint64_t seed) { random_ = seed; }
   // Of the next cycle: a moving /TA is taken as it stands after its move, or before; none: by the seed.
@@ -118,6 +119,7 @@ class PortAMaster {
   void move_bus(PortAPins& pins) const;  // of a step at which lines move together
   void half_step(PortAPins& pins);
   bool end_strobe();
+  bool forces_wait_states() const;
   TimeFs time_of(Step step) const;
   void see(TimeFs time, const BoardOutputs& board);
   std::size_t seen_at(TimeFs time) const;
@@ -131,6 +133,7 @@ class PortAMaster {
   CpuClock clock_;
   std::uint32_t bcr_ = 0, pctl_ = 0;
   std::optional<std::uint32_t> forced_bcr_;
+  bool forced_acted_ = false;
   std::optional<bool> moving_ta_;
   PortAWatch* watch_ = nullptr;
   PortALevels levels_;

@@ -126,6 +126,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     if (owner.on_task) owner.on_task(time);
     if (tracing_cpu) named.pc(time, pc, elf.get());
   };
+  memory.on_saved = [this] { keep_flash(); };
   static_cast<Straps&>(host_inputs) = straps(config.board);
   static_cast<IsaStraps&>(host_inputs) = isa_straps(config.board);
   static_cast<HostInputs&>(inputs) = host_inputs;
@@ -133,10 +134,16 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
   power_on();
 }
 
-Machine::Impl::~Impl() {
+Machine::Impl::~Impl() { keep_flash(); }
+
+// Whoever cannot write the file is told at once, and the run fails; the controller goes on.
+void Machine::Impl::keep_flash() {
   try {
     memory.save_flash();
-  } catch (const std::exception& e) { std::fprintf(stderr, "%s\n", e.what()); }
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    run_errors.emplace_back(e.what());
+  }
 }
 
 void Machine::Impl::power_on() {
@@ -269,6 +276,7 @@ TimeFs Machine::cpu_period() const {
   const CpuClock& clock = impl_->port_a.clock();
   return tick_to_fs(CpuClock::kTicksPerMultiplier) / clock.multiplier();
 }
+bool Machine::forced_bcr_acted() const { return impl_->port_a.forced_wait_states_acted(); }
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
 void Machine::apply_motor_inputs() { impl_->motors.apply(); }
@@ -283,7 +291,7 @@ std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); 
 void Machine::attach_debugger(GdbServer* debugger) {
   impl_->debugger = debugger;
   if (debugger == nullptr) return;
-  debugger->on_time = [this] { return std::to_string(impl_->cpu_time() / kFsPerNs) + " ns"; };
+  debugger->on_time = [this] { return std::to_string(fs_to_ns(impl_->cpu_time())) + " ns"; };
 }
 
 void Machine::attach_bus_master(BusMaster* master) {
@@ -320,7 +328,7 @@ Signals& Machine::signals() {
 }
 
 void Machine::power_cycle() {
-  impl_->memory.save_flash();
+  impl_->keep_flash();
   impl_->power_on();
 }
 

@@ -143,8 +143,9 @@ class Machine : public sc_core::sc_module {
   };
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
 
-  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md). A caller that
-  // provokes it on purpose takes the list; `brick run` and `brick exec` fail when something is left in it.
+  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md), a flash file
+  // that cannot be written. A caller that provokes it on purpose takes the list; `brick run` and `brick exec` fail when
+  // something is left in it.
   const std::vector<std::string>& run_errors() const;
   std::vector<std::string> take_run_errors();
 
@@ -161,6 +162,7 @@ class Machine : public sc_core::sc_module {
   std::function<void(TimeFs, const BoardInputs&, const BoardOutputs&)> on_host_bus;
 
   TimeFs cpu_period() const;  // of the CPU clock as it stands
+  bool forced_bcr_acted() const;
 
  private:
   struct Impl;

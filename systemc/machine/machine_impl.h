@@ -65,6 +65,7 @@ struct Machine::Impl {
   void apply_host_inputs(TimeFs time);
   void host_bus_moved(TimeFs time);
   void see_init();
+  void keep_flash();
 
   // run.cpp: the run-ahead rule
   Tick run_until(Tick limit, const BoardOutputs& stop_on);
@@ -114,7 +115,7 @@ struct Machine::Impl {
   std::vector<BusCycle> bus_cycles;
   ClockDrivers clock_drivers;
   std::vector<std::string> run_errors;
-  std::optional<std::int64_t> kernel_offset;  // kernel time at the machine's tick 0, in units of its resolution
+  std::optional<TimeFs> kernel_offset;  // kernel time at the machine's tick 0
 };
 
 }  // namespace brick

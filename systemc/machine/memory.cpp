@@ -18,6 +18,11 @@ MachineMemory::MachineMemory(Cpu& cpu, std::string flash_file) : cpu_(cpu), flas
   cpu_.map(kStraps, kStrapsBytes, {true, false, 0});
   cpu_.map(kMain, kMainBytes, {false, true, 0});
   flash_file_.load(cpu_.memory(kFlash, kFlashBytes), kFlashBytes);
+  for (const std::uint32_t state : kSlotStates) cpu_.watch_store(state);
+  cpu_.on_store_watch = [this](std::uint32_t, std::uint32_t value) {
+    if (value == kOutdated && on_saved) on_saved();
+    return false;
+  };
 }
 
 void MachineMemory::save_flash() const { flash_file_.save(cpu_.memory(kFlash, kFlashBytes), kFlashBytes); }

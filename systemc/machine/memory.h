@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "rtl/regs/brick_regs.hpp"
@@ -28,8 +29,13 @@ class MachineMemory {
 
   void randomize(std::uint64_t seed);  // RAM content after power-on
   void save_flash() const;             // to the file, if there is one; throws std::runtime_error
+  // Called when a SAVE is complete: its last write says that the image before it is outdated (docs/save.md).
+  std::function<void()> on_saved;
 
  private:
+  // The firmware's store: two slots, of each the first word is its state.
+  static constexpr std::uint32_t kSlotStates[] = {kFlash, kFlash + kFlashBytes / 2}, kOutdated = 0;
+
   Cpu& cpu_;
   FlashFile flash_file_;
 };

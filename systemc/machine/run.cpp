@@ -3,6 +3,7 @@
 // Results do not depend on how far each step goes, only speed does.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "systemc/machine/machine_impl.h"
@@ -156,18 +157,18 @@ bool Machine::Impl::deliver_due() {
   return true;
 }
 
-// Inside a SystemC process the kernel's time follows the board's.
+// Inside a SystemC process the kernel's time follows the board's as far as its 64 bits go, 213 days of picoseconds;
+// then it stands still, which no part of the machine sees.
 void Machine::Impl::keep_kernel_time(Tick from) {
   const auto process = sc_core::sc_get_current_process_handle();
   if (!process.valid() || process.proc_kind() != sc_core::SC_THREAD_PROC_) return;
-  static const double kUnitsPerFs = 1e-15 / sc_core::sc_get_time_resolution().to_seconds();
-  const auto units = [](TimeFs t) {
-    return static_cast<std::int64_t>(std::llround(static_cast<double>(t) * kUnitsPerFs));
-  };
-  const auto kernel = static_cast<std::int64_t>(sc_core::sc_time_stamp().value());
-  if (!kernel_offset) kernel_offset = kernel - units(tick_to_fs(from));
-  const std::int64_t target = *kernel_offset + units(tick_to_fs(board->now()));
-  if (target > kernel) sc_core::wait(sc_core::sc_time::from_value(static_cast<std::uint64_t>(target - kernel)));
+  using Units = sc_core::sc_time::value_type;
+  static const TimeFs kUnit = std::llround(sc_core::sc_get_time_resolution().to_seconds() * 1e15);
+  constexpr TimeFs kLast = std::numeric_limits<Units>::max() - 1;
+  const TimeFs kernel = sc_core::sc_time_stamp().value();
+  if (!kernel_offset) kernel_offset = kernel * kUnit - tick_to_fs(from);
+  const TimeFs target = std::min(kLast, (*kernel_offset + tick_to_fs(board->now()) + kUnit / 2) / kUnit);
+  if (target > kernel) sc_core::wait(sc_core::sc_time::from_value(static_cast<Units>(target - kernel)));
 }
 
 }  // namespace brick

@@ -86,8 +86,8 @@ class PinWatch final : public PortAWatch {
   PinCycle cycle_;
   bool ended_ = false, data_moved_ = false;  // since the strobe fell; since it rose
   PortALevels cpu_;
-  TimeFs address_time_ = 0, data_time_ = 0;                             // of their last moves
-  static constexpr TimeFs kReset = std::numeric_limits<TimeFs>::max();  // lets go of D without /RD
+  TimeFs address_time_ = 0, data_time_ = 0;   // of their last moves
+  static constexpr TimeFs kReset = kForever;  // lets go of D without /RD
   TimeFs rd_high_ = kReset;
   bool drives_outside_ = false;
   Driving cpu_drives_, board_drives_;

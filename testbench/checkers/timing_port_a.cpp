@@ -188,7 +188,7 @@ void PortATiming::read(const PinCycle& c, const Limits& rows) {
   enter(k105, rows, c.data_valid - c.strobe_low);
   enter(k106, rows, c.data_held - c.strobe_high);
   const TimeFs margin =
-      std::min(*rows.row[k104] - (c.data_valid - c.start), c.data_lost ? c.data_held - c.strobe_high : INT64_MAX);
+      std::min(*rows.row[k104] - (c.data_valid - c.start), c.data_lost ? c.data_held - c.strobe_high : kForever);
   if (margin < worst_margin_) {
     worst_margin_ = margin;
     worst_read_ = c;
@@ -236,7 +236,7 @@ void PortATiming::forget() {
   last_write_.reset();
   ta_moves_ = {};
   worst_read_.reset();
-  worst_margin_ = INT64_MAX;
+  worst_margin_ = kForever;
 }
 
 }  // namespace brick

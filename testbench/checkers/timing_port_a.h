@@ -105,7 +105,7 @@ class PortATiming {
   std::optional<PinCycle> last_read_, last_write_;
   TaMoves ta_moves_;
   std::optional<PinCycle> worst_read_;
-  TimeFs worst_margin_ = INT64_MAX;
+  TimeFs worst_margin_ = kForever;
   unsigned region_ = 0;  // of the cycle in hand
   TimingPlace place_;
 };

@@ -42,7 +42,7 @@ struct TimingPlace {
 // One rule in one region.
 struct TimingRow {
   std::uint64_t evaluations = 0, violations = 0;
-  TimeFs margin = INT64_MAX;  // the least one; below zero is a violation
+  TimeFs margin = kForever;  // the least one; below zero is a violation
   TimeFs required = 0, measured = 0;
   TimingPlace where;  // of the least margin
 };

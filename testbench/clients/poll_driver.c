@@ -149,8 +149,17 @@ static void serve(struct port* port, short events) {
   }
 }
 
+static const char kHelp[] =
+    "usage: poll_driver PORT POLLS LINE...\n"
+    "Polls eight axes of the controller at 127.0.0.1:PORT POLLS times, and reads out the answers to LINE...\n"
+    "beside that. Prints each poll and each answer.\n";
+
 int main(int argc, char** argv) {
-  if (argc < 3) fail("expected PORT POLLS LINE...");
+  if (argc > 1 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
+    fputs(kHelp, stdout);
+    return 0;
+  }
+  if (argc < 3) fail("expected PORT POLLS LINE..., see --help");
   struct port ports[2] = {{.left = atoi(argv[2]), .replied = poll_set_up}, {.lines = argv + 3, .replied = flushed}};
   for (int i = 0; i < 2; ++i) open_port(&ports[i], (uint16_t)atoi(argv[1]));
   ports[0].working = true;

@@ -1,9 +1,9 @@
 """A host program's own class for the controller's Ethernet port, in the idiom of scripts and laboratory software: one
 socket, one request, one reply; the header packed by hand, a command's length in its last byte.
 """
+import argparse
 import socket
 import struct
-import sys
 
 ACK, BELL = b"\x06", b"\x07"
 LONGEST = 1400
@@ -96,5 +96,9 @@ def session(host, port):
 
 
 if __name__ == "__main__":
-    place = (sys.argv + ["127.0.0.1:1025"])[1].rsplit(":", 1)
-    session(place[0], int(place[1]))
+    parser = argparse.ArgumentParser(description="A client's session with a controller that `brick serve` listens for.")
+    parser.add_argument("place", nargs="?", default="127.0.0.1:1025", metavar="HOST:PORT", help="(%(default)s)")
+    host, colon, port = parser.parse_args().place.rpartition(":")
+    if not (colon and host and port.isdigit() and int(port) < 65536):
+        parser.error(f"{host}{colon}{port}: is no place; expected HOST:PORT, for example 127.0.0.1:1025")
+    session(host, int(port))

@@ -64,8 +64,13 @@ std::string echo(const Packet& packet) { return std::string(1, static_cast<char>
 }  // namespace
 
 CommunicationsProcessor::CommunicationsProcessor(HostBus& bus, const Options& options)
-    : bus_(bus), options_(options), dialogue_(bus), dpram_(bus, options.dpram_words) {
+    : bus_(bus), options_(options), dialogue_(bus), dpram_(bus, options.dpram_words), fetch_patience_(kFetchPatience) {
   dialogue_.on_text = [this](std::string_view more) { text(more); };
+}
+
+void CommunicationsProcessor::set_speed(double speed) {
+  fetch_patience_ =
+      std::max(ControllerDialogue::kQuiet, static_cast<Tick>(speed * static_cast<double>(kFetchPatience)));
 }
 
 // ------------------------------------------------------------------------------------------------------------- clients
@@ -268,7 +273,7 @@ bool CommunicationsProcessor::fetch(Client id, State& client, bool whole_answer)
   }
   if (!text) {
     if (is_under_way(id)) return false;
-    const Tick patience = client.output.empty() ? kFetchPatience : ControllerDialogue::kQuiet;
+    const Tick patience = client.output.empty() ? fetch_patience_ : ControllerDialogue::kQuiet;
     if (!answering && bus_.now() < client.since + patience) return false;
     text = client.output.take(Packet::kMostReply);
   }
@@ -345,7 +350,7 @@ std::string CommunicationsProcessor::identity(const EthernetPacket& packet) {
 Tick CommunicationsProcessor::next_deadline(Tick limit) const {
   for (const auto& [id, client] : clients_)
     if (!client.requests.empty())
-      for (const Tick patience : {ControllerDialogue::kQuiet, kFetchPatience})
+      for (const Tick patience : {ControllerDialogue::kQuiet, fetch_patience_})
         if (client.since + patience > bus_.now()) limit = std::min(limit, client.since + patience);
   return limit;
 }

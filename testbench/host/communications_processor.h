@@ -37,6 +37,10 @@ class CommunicationsProcessor {
   void close(Client client);  // nothing is replied to it any more
   std::function<void(Client, std::string)> on_reply;
 
+  // Simulated time for one of the time of clients, at most 1. A fetch for which there is nothing waits half a second of
+  // theirs, because nothing but time can answer it; a controller has its own for an answer.
+  void set_speed(double speed);
+
   bool busy() const { return waiting_ > 0 || dialogue_.busy() || dialogue_.sends_at_once(); }
   void run_until(Tick limit);
 
@@ -81,6 +85,7 @@ class CommunicationsProcessor {
   DpramBytes dpram_;
   std::map<Client, State> clients_;
   std::size_t waiting_ = 0;  // requests
+  Tick fetch_patience_;      // of a fetch when there is nothing
   Client owner_ = 0;         // of the job under way, or of the last one
   bool keeps_text_ = true;   // of that job
   std::string control_text_;

@@ -9,8 +9,10 @@
 namespace brick {
 
 namespace {
-constexpr std::uint8_t kAskStatus = 0x07;  // ^G
-constexpr char kClearInput = 0x18;         // ^X, and its echo
+constexpr std::uint8_t kAskStatus = 0x07;            // ^G
+constexpr char kClearInput = 0x18;                   // ^X, and its echo
+constexpr std::uint8_t kAskMark = 0x0E, kMark = 0;   // ^N behind an empty line: the sum of nothing
+constexpr Tick kMarkQuiet = ns_to_ticks(1'000'000);  // nothing for so long behind a NUL: it was no checksum
 constexpr Tick kClearWait = ns_to_ticks(10'000'000), kAskAgain = ns_to_ticks(20'000'000);
 }  // namespace
 
@@ -90,6 +92,7 @@ void ControllerDialogue::abandon() {
   owes_ = result_.lost = true;
   items_.clear();
   phase_ = Phase::kNone;
+  mark_ = Mark::kNone;
   changed_ = true;
 }
 
@@ -122,6 +125,9 @@ void ControllerDialogue::put_next() {
     if (++sent_ < length) return;
     phase_ = Phase::kAnswer;
     asked_ = bus_.now();
+  } else if (mark_ == Mark::kWanted) {
+    port_.send(kAskMark);
+    mark_ = Mark::kSent;
   }
 }
 
@@ -140,15 +146,20 @@ bool ControllerDialogue::step(Tick limit) {
   put_next();
   // What has come while the bus was busy with something else is looked at before patience ends.
   const Tick end = busy() ? std::max(last_ + patience(), bus_.now() + 1) : limit;
-  if (port_.run_until(std::min(limit, end)))
-    last_ = bus_.now();
-  else if (busy() && bus_.now() >= end)
+  const bool mark_goes = mark_ == Mark::kSent && !port_.idle();
+  if (port_.run_until(std::min(limit, end))) {
+    if (!mark_goes || !port_.idle()) last_ = bus_.now();  // a question is no sign of life
+  } else if (busy() && bus_.now() >= end)
     out_of_patience();
   return changed_;
 }
 
-// An echo or a checksum that comes when nobody waits for it any more.
+// A mark, an echo or a checksum that comes when nobody waits for it any more.
 bool ControllerDialogue::is_stray(std::uint8_t c) {
+  if (late_mark_ && c == kMark) {
+    late_mark_ = false;
+    return true;
+  }
   const std::optional<std::uint8_t> sum = late_sum_;
   late_sum_.reset();
   if (phase_ == Phase::kAnswer) return false;
@@ -162,7 +173,7 @@ bool ControllerDialogue::is_stray(std::uint8_t c) {
 void ControllerDialogue::received(std::uint8_t c) {
   if (phase_ == Phase::kClear) {
     if (static_cast<char>(c) != kClearInput || sent_ == 0) return;
-    owes_ = false;
+    owes_ = late_mark_ = false;
     return next_item();
   }
   if (is_stray(c)) return;
@@ -170,7 +181,14 @@ void ControllerDialogue::received(std::uint8_t c) {
     const char text = static_cast<char>(c);
     return say(std::string_view(&text, 1));
   }
-  answer_.take(c);
+  if (mark_ == Mark::kSeen) {  // it was a checksum
+    answer_.take(kMark);
+    mark_ = Mark::kSent;
+  }
+  if (mark_ == Mark::kSent && c == kMark)
+    mark_ = Mark::kSeen;
+  else
+    answer_.take(c);
   say(answer_.release());
   if (answer_.ended()) end_item();
 }
@@ -181,20 +199,32 @@ void ControllerDialogue::say(std::string_view text) {
   on_text(text);
 }
 
+bool ControllerDialogue::may_have_ended() const {
+  return phase_ == Phase::kAnswer &&
+         (mark_ == Mark::kSeen || answer_.may_have_ended() || (items_.front().control && !answer_.empty()));
+}
+
+bool ControllerDialogue::wants_mark() const {
+  return phase_ == Phase::kAnswer && mark_ == Mark::kNone && !items_.front().control;
+}
+
 Tick ControllerDialogue::patience() const {
   if (phase_ == Phase::kClear) return clear_wait_;
-  const Item& item = items_.front();
-  const bool may_have_ended = answer_.may_have_ended() || (item.control && !answer_.empty());
-  if (phase_ == Phase::kAnswer && may_have_ended) return kQuiet;
-  return may_take_long(item.bytes) ? kSavePatience : kPatience;
+  if (may_have_ended()) return mark_ == Mark::kSeen ? kMarkQuiet : kQuiet;
+  if (wants_mark()) return unacknowledged_ ? 0 : kQuiet;
+  return may_take_long(items_.front().bytes) ? kSavePatience : kPatience;
 }
 
 void ControllerDialogue::out_of_patience() {
   if (phase_ == Phase::kClear) {
-    owes_ = false;
+    owes_ = late_mark_ = false;
     return next_item();
   }
-  const bool lost = patience() != kQuiet;
+  const bool lost = !may_have_ended();
+  if (lost && wants_mark()) {
+    mark_ = Mark::kWanted;
+    return;
+  }
   answer_.quiet();
   say(answer_.release());
   if (lost) return abandon();
@@ -202,8 +232,12 @@ void ControllerDialogue::out_of_patience() {
 }
 
 void ControllerDialogue::end_item() {
+  const bool by_mark = mark_ == Mark::kSeen;
+  if (!answer_.error()) unacknowledged_ = by_mark;
+  late_mark_ = mark_ == Mark::kSent;
+  mark_ = Mark::kNone;
   had_sums_ = answer_.had_sums();
-  if (!had_sums_ && !answer_.error()) late_sum_ = checksum();
+  if (!had_sums_ && !answer_.error() && !by_mark) late_sum_ = checksum();
   if (!items_.front().control) ++result_.lines;
   result_.error = answer_.error();
   result_.error_number = answer_.error_number();

@@ -61,6 +61,9 @@ class ControllerDialogue {
 
  private:
   enum class Phase { kNone, kClear, kSend, kAnswer };
+  // ^N behind a line that nothing acknowledges (I3 = 0). Its answer is a lone NUL, whatever I3 and I4 are, and comes
+  // when the line has been carried out. No other NUL is ever sent but as a checksum, behind which more follows.
+  enum class Mark { kNone, kWanted, kSent, kSeen };
   struct Item {
     std::string bytes;
     bool control = false;  // a character by itself
@@ -72,6 +75,8 @@ class ControllerDialogue {
   void put_next();
   void received(std::uint8_t c);
   bool is_stray(std::uint8_t c);
+  bool may_have_ended() const;
+  bool wants_mark() const;
   void say(std::string_view text);
   Tick patience() const;
   void out_of_patience();
@@ -91,6 +96,9 @@ class ControllerDialogue {
   Tick asked_ = 0;                  // when the first item had been sent
   bool owes_ = false;               // the controller may still answer an earlier job
   bool had_sums_ = false;
+  Mark mark_ = Mark::kNone;
+  bool late_mark_ = false;                // the item before has ended, its mark is still to come
+  bool unacknowledged_ = false;           // the item before was; this one will be, too
   std::optional<std::uint8_t> late_sum_;  // would follow an acknowledge that seemed to be the end
 };
 

@@ -50,18 +50,18 @@ bool may_begin(char c) {
 void PacketReader::take(std::string_view piece) {
   if (!broken_.empty()) return;
   skip_to_header();  // of the piece before
-  tail_ = false;
+  same_piece_ = false;
   bytes_.erase(0, at_);
   at_ = 0;
   bytes_ += piece;
 }
 
-// A client sends a buffer of zeros behind a header without data. Anywhere else nothing that follows can be trusted.
+// A client sends a buffer of zeros behind a header without data, which the network may cut anywhere. Anywhere else
+// nothing that follows can be trusted.
 void PacketReader::skip_to_header() {
-  if (tail_)
-    while (waiting() > 0 && !may_begin(bytes_[at_])) ++at_;
-  else if (waiting() > 0 && !may_begin(bytes_[at_]))
-    at_ = bytes_.size();
+  const auto is_tail = [this](char c) { return bare_ && (c == '\0' || (same_piece_ && !may_begin(c))); };
+  while (waiting() > 0 && is_tail(bytes_[at_])) ++at_;
+  if (waiting() > 0 && !may_begin(bytes_[at_])) at_ = bytes_.size();
 }
 
 std::optional<EthernetPacket> PacketReader::next() {
@@ -86,7 +86,7 @@ std::optional<EthernetPacket> PacketReader::next() {
   if (waiting() < size) return std::nullopt;
   packet.data = bytes_.substr(at_ + EthernetPacket::kHeader, size - EthernetPacket::kHeader);
   at_ += size;
-  tail_ = !with_data;
+  bare_ = same_piece_ = !with_data;
   return packet;
 }
 

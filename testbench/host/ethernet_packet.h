@@ -55,8 +55,9 @@ class PacketReader {
   void skip_to_header();
 
   std::string bytes_;
-  std::size_t at_ = 0;  // of the next packet
-  bool tail_ = false;   // behind a packet without data, of the same piece
+  std::size_t at_ = 0;       // of the next packet
+  bool bare_ = false;        // behind a packet without data
+  bool same_piece_ = false;  // as its header came in
   std::string broken_;
 };
 

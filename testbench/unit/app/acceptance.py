@@ -89,12 +89,11 @@ def flash():
 
 
 def flash_signals():
-    """SIGINT and SIGTERM end a run and keep what was SAVEd; one that is killed leaves the file as it was."""
+    """What was SAVEd is in the file, whichever signal ends the run, and in each command that runs a controller."""
     with tempfile.TemporaryDirectory() as folder:
         file, link = f"{folder}/flash.bin", f"{folder}/link.bin"
         os.symlink(file, link)
-        for number, (name, keeps) in enumerate((("SIGINT", True), ("SIGTERM", True), ("SIGKILL", False)), 20):
-            before = play(["I16"], "--flash", link).stdout.split()
+        for number, (name, status) in enumerate((("SIGINT", 1), ("SIGTERM", 1), ("SIGKILL", -9)), 20):
             with subprocess.Popen([command.BRICK, "exec", "-", "--flash", link], text=True, stdin=subprocess.PIPE,
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
                 run.stdin.write(f"I16={number}\nSAVE\nVERSION\n@wait 1000s\n")
@@ -103,12 +102,27 @@ def flash_signals():
                 run.send_signal(getattr(signal, name))
                 said, code = run.stderr.read(), run.wait(60)
             after = play(["I16"], "--flash", link).stdout.split()
-            check(after == ([str(number)] if keeps else before), f"{name}: I16 {after}, before it {before}")
-            if keeps:
-                check(code == 1 and f"stopped by {name}" in said, f"{name}: status {code}, {said}")
+            check(after == [str(number)], f"{name}: I16 {after}")
+            check(code == status and (code < 0 or f"stopped by {name}" in said), f"{name}: status {code}, {said}")
             check(os.path.islink(link) and os.path.getsize(file) == 1 << 20, f"{name}: a link stays one")
             left = sorted(os.listdir(folder))
             check(left == ["flash.bin", "link.bin"], f"{name}: {left}")
+        with subprocess.Popen([command.BRICK, "console", "--flash", link], text=True, stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+            run.stdin.write("I16=30\nSAVE\nVERSION\n")
+            run.stdin.flush()
+            while "1.947" not in run.stdout.readline():
+                check(run.poll() is None, "console ends")
+            run.kill()
+        after = play(["I16"], "--flash", link).stdout.split()
+        check(after == ["30"], f"console, SIGKILL: I16 {after}")
+        untouched = pathlib.Path(file).read_bytes()
+        with subprocess.Popen([command.BRICK, "run", "save-restore", "--flash", link], text=True,
+                              stdout=subprocess.PIPE) as run:
+            while pathlib.Path(file).read_bytes() == untouched:
+                check(run.poll() is None, "save-restore ends before it has SAVEd")
+            run.kill()
+        check(os.path.getsize(file) == 1 << 20, "run, SIGKILL: the file is whole")
 
 
 def boards():

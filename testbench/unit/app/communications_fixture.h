@@ -71,7 +71,7 @@ class CommunicationsProcessorTest : public ::testing::Test {
   // Of client 1, within `longest`.
   Bytes ask(const Packet& one, Tick longest = 20'000 * kMs) {
     request(1, one);
-    for (const Tick end = bus_.now() + longest; replies_.empty() && bus_.now() < end;) run();
+    for (const Tick end = bus_.now() + longest; replies_.empty() && bus_.now() < end;) run(step_);
     const Replies found = take();
     EXPECT_EQ(found.size(), 1u);
     return found.empty() ? "nothing" : found[0].second;
@@ -86,6 +86,7 @@ class CommunicationsProcessorTest : public ::testing::Test {
   HostBus bus_{machine_};
   std::unique_ptr<CommunicationsProcessor> processor_;
   Replies replies_;
+  Tick step_ = kMs;  // of ask()
   std::vector<Bytes> lines_;
 };
 

@@ -84,6 +84,14 @@ TEST(EthernetPackets, ZerosBehindARequestWithoutDataAreDropped) {
   EXPECT_EQ(packets_of({control + zeros, kVersion}).size(), 2u);
   EXPECT_EQ(packets_of({control + zeros + kVersion}).size(), 2u) << "in the same segment";
   EXPECT_EQ(packets_of({control + zeros.substr(700), zeros, kVersion}).size(), 2u) << "in two";
+  EXPECT_EQ(packets_of({control, zeros + kVersion}).size(), 2u) << "in the next one, with the next request";
+  EXPECT_EQ(packets_of({control + zeros.substr(700), zeros.substr(700) + control + zeros, kVersion}).size(), 3u);
+  for (std::size_t cut = 1; cut < control.size() + zeros.size(); ++cut) {
+    const Bytes all = control + zeros + kVersion;
+    ASSERT_EQ(packets_of({all.substr(0, cut), all.substr(cut)}).size(), 2u) << "cut at byte " << cut;
+  }
+  EXPECT_EQ(packets_of({control, "x" + kVersion, kVersion}).size(), 2u) << "nothing but zeros";
+  EXPECT_EQ(packets_of({kVersion, zeros + kVersion, kVersion}).size(), 2u) << "behind data";
 }
 
 // ethernet:2/4

@@ -12,7 +12,9 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
+import time
 
 import command
 import recording
@@ -159,7 +161,8 @@ def serve_mailbox():
 
 
 def serve_ends():
-    """SIGINT and SIGTERM end it with status 0, the flash file whole and the address kept beside it."""
+    """SIGINT and SIGTERM end it with status 0 and the address kept beside the flash file; SAVE has written that, so
+    that SIGKILL takes nothing away."""
     with tempfile.TemporaryDirectory() as folder:
         file = f"{folder}/flash.bin"
         for number, end in enumerate((signal.SIGINT, signal.SIGTERM), 20):
@@ -174,11 +177,40 @@ def serve_ends():
             with served("--free", "--flash", file) as server, server.client() as client:
                 check(client.values("I16") == [str(number)], f"{end.name}: SAVEd")
                 check(client.request(0xC0, 0xE0) == address, f"{end.name}: address")
+        with served("--flash", file) as server, server.client() as client:
+            check(client.command("I16=30") == "" and client.command("SAVE") == "", "SAVE")
+            server.process.kill()
+            server.process.wait()
+        with served("--free", "--flash", file) as server, server.client() as client:
+            check(client.values("I16") == ["30"], "SIGKILL: SAVEd")
         check(sorted(os.listdir(folder)) == ["flash.bin", "flash.bin.address"], os.listdir(folder))
         for bad in ("somewhere\n", "", "999.1.2.3\n", "1,2,3,4\n", "-1.2.3.4\n"):
             (pathlib.Path(folder) / "flash.bin.address").write_text(bad, encoding="ascii")
             r = brick("serve", "--listen", "127.0.0.1:0", "--flash", file)
             check(r.returncode == 2 and "flash.bin.address: is no address; expected" in r.stderr, f"{bad}: {r.stderr}")
+
+
+def serve_without_acknowledge():
+    """With I3=0 nothing says that a line has been read, and still nobody waits for half a second."""
+    with served("--free") as server, server.client() as client, server.client() as other:
+        def ask(line, who=client):
+            return who.request(0x40, 0xBF, data=line)
+
+        def servo_cycles():
+            return int(ask(b"M1").strip(b"\r\x06"))
+        check(ask(b"M1->X:$0,0,24 P1=5") == b"\x06", "I3=2")
+        check(ask(b"I3=0") in (b"\0", b"\x06"), "I3=0")
+        begin = servo_cycles()
+        for number in range(20):
+            check(ask(b"P1=%d" % number) == b"\0", "nothing is answered")
+            check(ask(b"P1", other) == b"%d\r" % number, "a value")
+        check(ask(b"frob") == b"\x07ERR003\r", "an error")
+        check(client.request(0x40, 0xC6, data=b"P1=7\0P2=8") == bytes(4), "two lines are taken")
+        check(ask(b"P1..2", other) == b"7\r8\r", "both")
+        took = (servo_cycles() - begin) % (1 << 24) / 2258.5
+        check(took < 0.2, f"45 lines take {took:.3f} s, one 0.5 s when it is waited for")
+        check(ask(b"I3=2") in (b"\0", b"\x06") and ask(b"P1") == b"7\r\x06", "and as before")
+        check(not client.ready() and not other.ready(), "nothing is left over")
 
 
 def serve_terminal():
@@ -201,6 +233,40 @@ def serve_terminal():
         report = json.loads(results.read_text(encoding="utf-8"))
         check(report["passed"] and report["seed"] == 1 and report["simulated_ns"] > 0, str(report))
         check("$var" in wave.read_text(encoding="utf-8"), "waveform")
+
+
+def serve_contention():
+    """Two ICs drive the clocks, an event at each tick: who fetches nothing waits for half a second all the same."""
+    with served() as server:
+        with server.client() as client:
+            check(client.command("I7100=0") == "" and client.command("I7107=0") == "", "both drive")
+            check(client.get_buffer() == b"\0", "nothing waits; from now on it is known how slow it is")
+            began = used = time.monotonic()
+            check(client.get_buffer() == b"\0", "nothing waits")
+            used = time.monotonic() - began
+            check(used < 3, f"a fetch of nothing takes {used:.1f} s")
+            check(client.values("P1") == ["0"], "and the controller answers")
+        server.process.send_signal(signal.SIGTERM)
+        began = time.monotonic()
+        said = server.process.communicate(timeout=PATIENCE)[1]
+        check(time.monotonic() - began < 3 and server.process.returncode == 1, f"ends at once: {said}")
+        check("clock contention" in said, said)
+
+
+def serve_clients_help():
+    """The clients say how they are used, and what is wrong with a place."""
+    clients = pathlib.Path(turbo_pmac.__file__).parent
+    python = [sys.executable, str(clients / "turbo_pmac.py")]
+    driver = [str(pathlib.Path(command.BRICK).with_name("poll_driver"))]
+    for program, word in ((python, "HOST:PORT"), (driver, "PORT POLLS LINE")):
+        for option in ("--help", "-h"):
+            r = subprocess.run([*program, option], text=True, capture_output=True, timeout=PATIENCE, check=False)
+            check(r.returncode == 0 and r.stderr == "" and word in r.stdout, f"{program} {option}: {r}")
+    for arguments in (["1025"], ["127.0.0.1:"], ["127.0.0.1:66000"], [":1025"], ["127.0.0.1:x"]):
+        r = subprocess.run([*python, *arguments], text=True, capture_output=True, timeout=PATIENCE, check=False)
+        check(r.returncode == 2 and "expected HOST:PORT" in r.stderr, f"{arguments}: {r}")
+    r = subprocess.run(driver, text=True, capture_output=True, timeout=PATIENCE, check=False)
+    check(r.returncode == 1 and "expected PORT POLLS LINE" in r.stderr, str(r))
 
 
 def serve_bad_input():

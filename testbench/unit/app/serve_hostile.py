@@ -13,7 +13,7 @@ import time
 import command
 import misbehaving
 from command import check
-from served import exactly, packet, served
+from served import exactly, packet, refused, served
 
 VERSION = b"1.947\r\x06"
 
@@ -124,6 +124,36 @@ def serve_soak():
         print(f"{seconds:.0f} s: {len(counts)} polls, {len(lost)} lost, {grown} KiB more")
         check(counts and not lost, f"{len(lost)} answers are not what they should be")
         check(grown <= 1024, f"{grown} KiB more")
+
+
+def look_around(server):
+    """What a client finds that connects anew: the same, however long the controller has been running."""
+    with server.client() as client, server.socket() as other:
+        found = [client.values(line) for line in ("ver", "#1?PVF", "??", "I0..99", "P1..3", "M1->X:$0,0,24 I3")]
+        found.append(client.command("P1=P1+1 P1=P1-1"))
+        found.append(client.write_memory(0x1200, b"hello") + client.read_memory(0x1200, 8))
+        found += [client.control("B"), refused(client, "frob"), client.flush(), ask_version(other)]
+        begin, again = int(client.values("M1")[0]), int(client.values("M1")[0])
+        check(0 < (again - begin) % (1 << 24) < 100, f"the servo counter goes on: {begin}, {again}")
+    return found
+
+
+def serve_days():
+    """A client at 0, 2.6, 24 and 48 hours of simulated time, as fast as the engine goes: --hours 48."""
+    hours = float(sys.argv[4]) if sys.argv[3:4] == ["--hours"] else 0.01
+    begin = time.monotonic()
+    with served("--free") as server, server.client() as clock:
+        passed, seen = 0, []  # half seconds: what a fetch waits for when there is nothing
+        for stop in [at for at in (0, 2.6, 24, 48) if at < hours] + [hours]:
+            while passed < stop * 7200:
+                check(clock.get_buffer() == b"\0", "nothing waits")
+                passed += 1
+                if passed % 7200 == 0:
+                    wall = time.monotonic() - begin
+                    print(f"{passed // 7200} h after {wall:.0f} s, {memory(server)} KiB", flush=True)
+            seen.append(look_around(server))
+            print(f"a client at {stop} h: {'as before' if seen[-1] == seen[0] else seen[-1]}", flush=True)
+            check(seen[-1] == seen[0], f"at {stop} h: {seen[-1]}, before {seen[0]}")
 
 
 globals()[command.CASE]()

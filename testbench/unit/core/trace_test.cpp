@@ -58,9 +58,30 @@ class Trace : public ::testing::Test {
   }
 };
 
+// Femtoseconds beyond 64 bits; what a viewer's picoseconds could not hold is left out, and the rest is whole.
+TEST_F(Trace, GoesOnForMonths) {
+  constexpr TimeFs kFs63 = TimeFs{1} << 63, kPs63 = kFs63 * 1000;
+  const std::string text = vcd(0, kForever, [&](TraceWriter& w) {
+    signals.set(addr, kFs63 - kPs, 1);
+    signals.set(addr, kFs63, 2);
+    signals.set(addr, 2 * kFs63, 3);
+    signals.set(addr, kPs63 - kPs, 4);
+    signals.set(addr, kPs63 + kPs, 5);
+    signals.set(addr, 2 * kPs63 + kPs, 6);
+    w.flush_until(2 * kPs63 + 2 * kPs);
+  });
+  const auto has = [&](const std::string& part) { return text.find(part) != std::string::npos; };
+  EXPECT_TRUE(has("#9223372036854774\nb0001")) << text;
+  EXPECT_TRUE(has("#9223372036854775\nb0010")) << text;
+  EXPECT_TRUE(has("#18446744073709551\nb0011")) << text;
+  EXPECT_TRUE(has("#9223372036854775807\nb0100")) << text;
+  EXPECT_FALSE(has("b0101")) << text;
+  EXPECT_FALSE(has("b0110")) << text;
+}
+
 TEST_F(Trace, VcdHasTopScopeAndOneScopeADot) {
   BRICK_COVERS("CARD-4");
-  const std::string text = vcd(0, INT64_MAX, [](TraceWriter&) {});
+  const std::string text = vcd(0, kForever, [](TraceWriter&) {});
   EXPECT_THAT(text, ::testing::HasSubstr("$timescale 1 ps $end\n"));
   EXPECT_THAT(text, ::testing::HasSubstr("$scope module brick $end\n"
                                          "$scope module bus $end\n"
@@ -76,7 +97,7 @@ TEST_F(Trace, VcdHasTopScopeAndOneScopeADot) {
 
 TEST_F(Trace, RecordsOfSourcesThatRunAheadComeOutInOrder) {
   BRICK_COVERS("CARD-4");
-  const std::string text = vcd(0, INT64_MAX, [&](TraceWriter& w) {
+  const std::string text = vcd(0, kForever, [&](TraceWriter& w) {
     signals.set(addr, 30 * kPs, 0xA);  // one source is ahead
     signals.set(rd_n, 20 * kPs, 0);
     w.flush_until(25 * kPs);
@@ -91,7 +112,7 @@ TEST_F(Trace, RecordsOfSourcesThatRunAheadComeOutInOrder) {
 }
 
 TEST_F(Trace, ManyLotsStayInOrder) {
-  const std::string text = vcd(0, INT64_MAX, [&](TraceWriter& w) {
+  const std::string text = vcd(0, kForever, [&](TraceWriter& w) {
     for (int i = 1; i <= 100'000; ++i) {
       signals.set(addr, (2 * i + 9) * kPs, static_cast<std::uint64_t>(i & 15));  // up to 9 ps ahead
       signals.set(rd_n, 2 * i * kPs, static_cast<std::uint64_t>(i & 1));

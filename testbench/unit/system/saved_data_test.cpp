@@ -53,6 +53,31 @@ TEST_P(SavedDataFile, SurvivesResetPowerAndTheNextRun) {
   EXPECT_EQ(status() & kFlashError, 0u);
 }
 
+// While the machine runs: whoever kills it then finds all of it.
+TEST_P(SavedDataFile, IsWrittenWholeAtEachSave) {
+  start_with_file();
+  for (const char* line : {"I17=21 P5=1.5", "I17=22 P8191=3", "I17=23"}) {
+    ask(line);
+    EXPECT_EQ(ask("SAVE"), "");
+    std::ifstream in(file(), std::ios::binary);
+    const std::string kept{std::istreambuf_iterator<char>(in), {}};
+    const std::uint8_t* store = machine().cpu().memory(0x30000000, 1 << 20);
+    EXPECT_EQ(kept, std::string(reinterpret_cast<const char*>(store), 1 << 20)) << line;
+  }
+}
+
+TEST_P(SavedDataFile, AFileThatCannotBeWrittenFailsTheRunAndStopsNothing) {
+  start_with_file();
+  std::filesystem::remove(file());
+  std::filesystem::create_directory(file());  // in its place
+  ask("I17=21");
+  EXPECT_EQ(ask("SAVE"), "") << "the controller has done its part";
+  EXPECT_EQ(ask("I17"), "21");
+  const auto errors = machine().take_run_errors();
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_THAT(errors[0], ::testing::HasSubstr("flash file " + file().string() + ": cannot be written"));
+}
+
 TEST_P(SavedDataFile, ADamagedFileIsReportedAndDefaultsAreUsed) {
   start_with_file();
   ask("I17=21");

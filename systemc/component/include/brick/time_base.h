@@ -39,7 +39,7 @@ class TimeBase : public sc_core::sc_module {
   explicit TimeBase(const sc_core::sc_module_name& name, const TimeOptions& options = TimeOptions{});
   ~TimeBase() override;
 
-  // Edges and instants more than 2.5 hours after the epoch are the error /brick/time, also for a component that acts.
+  // Edges before the epoch or beyond the end of the kernel's time (213 days of picoseconds) are the error /brick/time.
   sc_core::sc_time time_of(Tick edge) const;            // instant in which the outputs of this edge change
   Tick tick_at(const sc_core::sc_time& instant) const;  // last edge that has happened at this instant; 0: none yet
 

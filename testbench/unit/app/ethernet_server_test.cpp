@@ -1,0 +1,139 @@
+// The sockets of the Ethernet port: whom of the senders of datagrams it forgets, and what it does about a client that
+// has been switched off (ethernet:1/8, ethernet:1/10).
+#include <gtest/gtest.h>
+
+#include <netinet/tcp.h>
+
+#include <asio.hpp>
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <vector>
+
+#include "app/ethernet_connection.h"
+#include "app/ethernet_server.h"
+
+namespace brick {
+namespace {
+
+using asio::ip::tcp;
+using asio::ip::udp;
+using Client = EthernetServer::Client;
+
+class SendersOfDatagrams : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kMost = EthernetServer::kMostClients;
+
+  SendersOfDatagrams() {
+    server_.on_request = [this](Client client, const EthernetPacket&) {
+      if (replies_) server_.reply(client, "ok");
+      const std::lock_guard<std::mutex> lock(mutex_);
+      asked_.push_back(client);
+      heard_.notify_one();
+    };
+    server_.on_close = [this](Client client) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      forgotten_.push_back(client);
+    };
+    server_.start();
+    const std::string place = server_.place();
+    to_ = udp::endpoint(asio::ip::address_v4::loopback(),
+                        static_cast<std::uint16_t>(std::stoul(place.substr(place.rfind(':') + 1))));
+    for (std::size_t n = 0; n < kMost + 2; ++n) senders_.emplace_back(io_, udp::endpoint(udp::v4(), 0));
+  }
+  ~SendersOfDatagrams() override { server_.stop(); }
+
+  void send(std::size_t sender) { senders_[sender].send_to(asio::buffer("\xC0\xC2\0\0\0\0\0\2", 8), to_); }
+  // As which client the server takes it.
+  Client ask(std::size_t sender) {
+    send(sender);
+    std::unique_lock<std::mutex> lock(mutex_);
+    heard_.wait(lock, [this] { return !asked_.empty(); });
+    const Client client = asked_.back();
+    asked_.clear();
+    lock.unlock();
+    char reply[4];
+    if (replies_) senders_[sender].receive(asio::buffer(reply));
+    return client;
+  }
+  std::vector<Client> forgotten() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return forgotten_;
+  }
+
+  EthernetServer server_{"127.0.0.1:0"};
+  asio::io_context io_;
+  udp::endpoint to_;
+  std::vector<udp::socket> senders_;
+  std::mutex mutex_;
+  std::condition_variable heard_;
+  std::vector<Client> asked_, forgotten_;
+  std::atomic<bool> replies_{true};
+};
+
+// ethernet:1/8
+TEST_F(SendersOfDatagrams, TheOneNotHeardOfForLongestGivesItsPlace) {
+  std::vector<Client> clients;
+  for (std::size_t n = 0; n < kMost; ++n) clients.push_back(ask(n));
+  EXPECT_EQ(forgotten(), std::vector<Client>{}) << "there is room for as many";
+  for (const std::size_t n : {0, 2, 1}) EXPECT_EQ(ask(n), clients[n]) << "each is known";
+  ask(kMost);  // 3 to 63, 0, 2, 1 in the order of their last words
+  EXPECT_EQ(forgotten(), std::vector<Client>{clients[3]});
+  ask(kMost + 1);
+  EXPECT_EQ(forgotten(), (std::vector<Client>{clients[3], clients[4]}));
+  for (const std::size_t n : {0, 1, 2, 5, 63}) EXPECT_EQ(ask(n), clients[n]) << n << " keeps its place";
+  const Client again = ask(3);
+  EXPECT_GT(again, clients.back()) << "who was forgotten is a new one";
+  EXPECT_EQ(forgotten(), (std::vector<Client>{clients[3], clients[4], clients[6]}));
+}
+
+// One whose request is under way is waited for, however long ago it came; of too many the last is lost.
+TEST_F(SendersOfDatagrams, WhoeverIsWaitedForKeepsItsPlace) {
+  replies_ = false;
+  const Client waits = ask(0);
+  replies_ = true;
+  std::vector<Client> clients{waits};
+  for (std::size_t n = 1; n < kMost; ++n) clients.push_back(ask(n));
+  ask(kMost);
+  EXPECT_EQ(forgotten(), std::vector<Client>{clients[1]});
+  replies_ = false;
+  for (std::size_t n = 2; n <= kMost; ++n) ask(n);
+  send(1);  // all 64 are waited for: lost
+  EXPECT_EQ(ask(0), waits) << "nobody else was heard";
+  EXPECT_EQ(forgotten(), std::vector<Client>{clients[1]});
+}
+
+// 16 requests of one may wait; one more is lost.
+TEST_F(SendersOfDatagrams, ADatagramTooManyIsLost) {
+  replies_ = false;
+  const Client first = ask(0);
+  for (std::size_t n = 1; n < EthernetServer::kMostRequests; ++n) EXPECT_EQ(ask(0), first);
+  send(0);
+  EXPECT_NE(ask(1), first);
+}
+
+// ethernet:1/10
+TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
+  asio::io_context io;
+  tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0));
+  tcp::socket client(io), socket(io);
+  client.connect(acceptor.local_endpoint());
+  acceptor.accept(socket);
+  const int descriptor = socket.native_handle();
+  const auto option = [descriptor](int level, int name) {
+    int value = -1;
+    socklen_t size = sizeof value;
+    EXPECT_EQ(::getsockopt(descriptor, level, name, &value, &size), 0);
+    return value;
+  };
+  const auto connection = std::make_shared<EthernetConnection>(std::move(socket), 16);
+  EXPECT_EQ(option(SOL_SOCKET, SO_KEEPALIVE), 1);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPIDLE), 60);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPINTVL), 10);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPCNT), 6);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_NODELAY), 1);
+}
+
+}  // namespace
+}  // namespace brick
