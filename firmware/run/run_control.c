@@ -158,10 +158,8 @@ error_t run_set_time_base(uint32_t cs, double percent) {
   if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
   const int32_t full = i_integer(I10_SERVO_PERIOD);
   const int32_t command = (int32_t)((double)full * percent / 100.0 + 0.5);
-  const uint32_t state = hal_mask_servo();
-  s->increment_full = full;
+  s->increment_full = full; /* a word: DWELL takes it at once, the time base with the command */
   time_base_command(cs, command);
-  hal_unmask(state);
   return ERR_NONE;
 }
 
