@@ -11,14 +11,20 @@ static double rise(double t, double length, double s) {
   if (t > length / 2.0) return t - length / 2.0 + rise(length - t, length, s);
   double slope = 1.0 / (length - s);
   slice_pause();
-  if (t < s) return slope * t * t * t / (6.0 * s);
-  double straight = t - s;
-  return slope * (s * s / 6.0 + s * straight / 2.0 + straight * straight / 2.0);
+  if (t < s) {
+    double cube = slope * t * t * t;
+    slice_pause();
+    return cube / (6.0 * s);
+  }
+  double straight = t - s, begun = s * s / 6.0;
+  slice_pause();
+  return slope * (begun + s * straight / 2.0 + straight * straight / 2.0);
 }
 
 static double s_part(const struct move* m, double length) {
   if (m->acceleration == 0) return 0.0;
   double s = (double)m->s_curve * length / (double)m->acceleration;
+  slice_pause();
   return s > length / 2.0 ? length / 2.0 : s;
 }
 
@@ -35,10 +41,14 @@ void cs_present_position(const struct coordinate_system* s, double position[AXIS
   }
   double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)s->stop_length, half = in / 2.0;
   double time = (double)m->time, stop = t - (half + time - out / 2.0);
-  double begun = rise(t, in, s_part(m, in)), ended = s->blend_decided ? 0.0 : rise(stop, out, s_part(m, out));
+  slice_pause();
+  double begun = rise(t, in, s_part(m, in));
+  slice_pause();
+  double ended = s->blend_decided ? 0.0 : rise(stop, out, s_part(m, out));
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     slice_pause();
     double before = m->blended ? velocity(m->delta_before[axis], (double)m->time_before) : 0.0;
+    slice_pause();
     double now = m->kind == MOVE_LINEAR ? velocity(m->delta[axis], time) : 0.0;
     position[axis] = m->start[axis];
     if (before == 0.0 && now == 0.0) continue;

@@ -5,8 +5,8 @@
 
 namespace brick {
 
-// Lines of one to eight axes with constants, under two loads: judged by the longest and the median time of all. Lines
-// with expressions, and such of 255 characters, are measured and not judged.
+// Lines of one to eight axes with constants, under three loads, such with expressions and such of 255 characters: each
+// line's time less the tasks that interrupted, and the own times of those tasks.
 void measure_fall_times(BenchContext& b, BreqHost& host);
 
 }  // namespace brick

@@ -29,11 +29,17 @@ BreqHost::BreqHost(BenchContext& context, Tick line_time)
     if (strobe_low_ && in.isa_iow_n) strobe_ = time;
     strobe_low_ = !in.isa_iow_n;
   };
+  profile_ = context_.machine.on_task;
+  context_.machine.on_task = [this](TimeFs time) {
+    if (profile_) profile_(time);
+    tasks_.changed(time, context_.machine.task());
+  };
 }
 
 BreqHost::~BreqHost() {
   context_.bus.watch({}, nullptr);
   context_.machine.on_host_bus = judge_;
+  context_.machine.on_task = profile_;
 }
 
 Reply BreqHost::must(const std::string& command) {
@@ -92,11 +98,14 @@ void BreqHost::stop() {
 
 bool BreqHost::line(const std::string& text) {
   HostLink& link = context_.link;
+  tasks_.forget_changes();
   if (!link.send(text)) throw HostBusError("the host port takes no character of `" + text + "`; expected: TXDE");
-  const Tick sent = fs_to_tick(strobe_);
+  const TimeFs sent = strobe_;
   scoreboard_.line_sent(context_.bus.now());
   const Reply reply = link.finish();
-  fall_time_ = scoreboard_.fell_at() >= sent ? scoreboard_.fell_at() - sent : -1;
+  fall_time_.reset();
+  if (const TimeFs fell = tick_to_fs(scoreboard_.fell_at()); fell > sent)
+    fall_time_ = {fell - sent, fell - sent - tasks_.above_background(sent, fell)};
   if (!reply.complete) throw HostBusError("no reply to the line `" + text + "`; expected: acknowledge");
   if (reply.error) {
     context_.report.fail("line " + text, reply.lines.back() + ", expected: stored");

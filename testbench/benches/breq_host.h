@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "app/bench.h"
 #include "testbench/checkers/breq_scoreboard.h"
+#include "testbench/checkers/task_times.h"
 
 namespace brick {
 
@@ -25,9 +27,13 @@ class BreqHost {
   void run();                          // R
   void stop();                         // A; nothing more is taken
   bool line(const std::string& text);  // one program line; false when refused
-  // T_FALL of the last line (host-bus:5.7): from the rise of the write strobe of its CR to the fall of BREQ. Negative:
-  // it did not fall, because it was low already.
-  Tick fall_time() const { return fall_time_; }
+  // T_FALL of the last line (host-bus:5.7/5): from the rise of the write strobe of its CR to the fall of BREQ; net of
+  // the tasks that came between. None: it did not fall, because it was low already.
+  struct FallTime {
+    TimeFs whole, net;
+  };
+  std::optional<FallTime> fall_time() const { return fall_time_; }
+  TaskTimes& tasks() { return tasks_; }
   void settle();           // waits until BREQ shows its final state, and checks it
   unsigned lines_ahead();  // PR
   bool full();             // ??
@@ -60,8 +66,10 @@ class BreqHost {
   unsigned interrupts_ = 0;
   TimeFs strobe_ = 0;  // the last rise of IOW#
   bool strobe_low_ = false;
-  Tick fall_time_ = -1;
+  std::optional<FallTime> fall_time_;
+  TaskTimes tasks_;
   std::function<void(TimeFs, const BoardInputs&, const BoardOutputs&)> judge_;  // who sees the host bus beside us
+  std::function<void(TimeFs)> profile_;                                         // and the tasks
 };
 
 }  // namespace brick

@@ -181,8 +181,14 @@ class BreqSelect {
 
   void by_host(const std::string& step, unsigned i2_value, unsigned times) {
     const bool moves = i2_value != 0 || !b_.board.jpan;
-    for (unsigned i = 0; i < times; ++i) address(moves && i < kSystems ? i : pick(kSystems));
-    verdict(step, times, moves ? times / 5 : 0);
+    const auto next = [&](unsigned i) {
+      if (!moves) return pick(kSystems);
+      if (i < kSystems) return i;
+      for (;;)  // from one with room to one without, or back: an edge of BREQ
+        if (const unsigned cs = pick(kSystems); (states_[cs] == Buffer::kReady) == (i % 2 == 0)) return cs;
+    };
+    for (unsigned i = 0; i < times; ++i) address(next(i));
+    verdict(step, times, moves ? times - kSystems - 1 : 0);
   }
 
   // One of the systems that the panel can name in group 0, but C.S. 1.

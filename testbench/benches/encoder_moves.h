@@ -22,6 +22,7 @@ class EncoderMoves {
     bool up = host_.pick(2) != 0;
     const Tick sclk = host_.period();
     for (unsigned i = 0; i < steps; ++i) {
+      if (i == steps / 2) holds.push_back({pins = jump(mode, pins), 4 * sclk});  // one that no filter takes away
       if (host_.pick(6) == 0) {  // a pulse on one line, shorter than two samples or not
         const unsigned line = 1u << host_.pick(3);
         holds.push_back({static_cast<std::uint16_t>(pins ^ line), 1 + host_.pick(static_cast<unsigned>(2 * sclk))});
@@ -45,6 +46,12 @@ class EncoderMoves {
   }
 
  private:
+  // Where no step leads: both lines of a wheel, or no state of the hall lines.
+  static std::uint16_t jump(unsigned mode, std::uint16_t pins) {
+    if (mode != 11 && mode != 15) return pins ^ (kA | kB);
+    return static_cast<std::uint16_t>(pins & ~(kA | kB | kC));
+  }
+
   // One step of a wheel: mostly on, sometimes back, sometimes a jump.
   std::uint16_t next_pins(unsigned mode, std::uint16_t pins, bool& up) {
     static constexpr std::array<unsigned, 4> kWheel{0, kA, kA | kB, kB};

@@ -126,7 +126,7 @@ void EncoderBench::fraction() {
   host_.assign(6, std::vector<unsigned>(host_.channels(), 0));
   set_modes(std::vector<unsigned>(host_.channels(), 3));
   host_.assign(9, std::vector<unsigned>(host_.channels(), 1));
-  constexpr unsigned kEven = 40;
+  constexpr unsigned kEven = 80;  // 76 of them take 3.8 ms or more: eight servo periods, one read or more in each
   const long spacing = (6000 + host_.pick(6000)) / static_cast<long>(host_.period());
   const Tick start = host_.now() + 100;
   for (unsigned i = 0; i < host_.channels(); ++i)

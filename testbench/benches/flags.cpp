@@ -106,7 +106,7 @@ class FlagsBench {
   void spikes() {
     for (const unsigned length : {1u, 2u, 3u}) {
       const Tick start = host_.now() + 50, p = host_.period();
-      constexpr unsigned kPulses = 1500;
+      constexpr unsigned kPulses = 4000;  // every third read or more is one of a pulse
       std::vector<std::uint16_t> base;
       for (unsigned i = 0; i < host_.channels(); ++i) {
         base.push_back(static_cast<std::uint16_t>(host_.pick(kAllPins + 1u)));

@@ -12,9 +12,9 @@
 namespace brick {
 namespace {
 
-constexpr unsigned kPrograms = 2, kStatements = 10;                // of each kind
-constexpr unsigned kLeastKindsOfStatements = 25, kMostRounds = 5;  // what chance has left out comes in another round
-constexpr std::size_t kLongestPart = 1400;                         // characters that clients take at a time
+constexpr unsigned kPrograms = 2, kStatements = 10;                  // of each kind
+constexpr unsigned kLeastKindsOfStatements = 25, kMostRounds = 100;  // until chance has left nothing out
+constexpr std::size_t kLongestPart = 1400;                           // characters that clients take at a time
 
 struct Kind {
   const char* name;

@@ -235,8 +235,12 @@ void Pfm::round(unsigned number, unsigned width, unsigned other) {
   begin();
   for (unsigned set = 0; set < 3; ++set) {
     std::vector<int> values;
+    // The first makes a pulse every 56 PFM_CLK or more often, so that each channel has edges.
+    const auto often = [this] {
+      return (host_.pick(2) == 0 ? 1 : -1) * static_cast<int>(300'000 + host_.pick(700'000));
+    };
     for (unsigned i = 0; i < host_.channels(); ++i)
-      values.push_back(i % kChannels == 0 ? slow_command() : random_command());
+      values.push_back(i % kChannels == 0 ? slow_command() : set == 0 ? often() : random_command());
     command(values);
     host_.wait(kSetStands + host_.pick(kSetStands));
   }

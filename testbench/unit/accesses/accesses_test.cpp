@@ -11,6 +11,7 @@
 #include "testbench/unit/accesses/access_host.h"
 #include "testbench/unit/accesses/bus_activity.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -82,7 +83,7 @@ TEST(Accesses, AHundredThousandInLockstepBreakNoRuleAndLeaveNoLineAtRest) {
   BusActivity activity;
   Made made;
   for (std::uint64_t seed = 0; made.all < least; ++seed)
-    ASSERT_NO_THROW(live(Engine::kLockstep, seed, kLife, {}, activity, made)) << "seed " << seed;
+    ASSERT_NO_THROW(live(Engine::kLockstep, random_seed(seed), kLife, {}, activity, made)) << "seed " << seed;
   EXPECT_THAT(activity.violations(), ::testing::IsEmpty());
   EXPECT_THAT(activity.lacks(made.all), ::testing::IsEmpty());
   for (const auto& [kind, times] : made.by_kind) EXPECT_GE(times, made.all / 100) << kind;

@@ -7,6 +7,7 @@
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/clocks/board_rig.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -56,7 +57,7 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
     both([&](BoardRig& rig) { rig.write(x, address, value); });
   }
 
-  std::mt19937_64 random{GetParam()};
+  std::mt19937_64 random{random_seed(GetParam())};
   BoardRig lazy{make_model_board(kThree), kThree}, eager{make_model_board(kThree), kThree};
 };
 

@@ -1,6 +1,7 @@
 #include "testbench/unit/component/dpram_sides.h"
 
 #include "systemc/core/start_value.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick::component {
 
@@ -120,7 +121,7 @@ std::optional<std::uint32_t> DpramSides::cpu_after() {
 Traffic dpram_traffic(std::uint32_t seed, Tick ticks) {
   Traffic traffic;
   traffic.end = edge_time(ticks);
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed(seed));
   const auto below = [&random](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   std::map<std::string, std::uint32_t> level{{"rst_n", 1}};
   const auto turn = [&](Picoseconds time, const std::string& pin) {

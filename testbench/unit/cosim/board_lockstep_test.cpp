@@ -11,6 +11,7 @@
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/cosim/distorted_board.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -157,7 +158,7 @@ TEST(BoardLockstepAccesses, AHundredThousandLeaveNoDifference) {
   unsigned long made = 0;
   for (std::uint64_t seed = 100; made < least; ++seed) {
     auto board = make_lockstep_board(make_rtl_board(kTwoIcs), make_model_board(kTwoIcs));
-    BoardTraffic traffic(seed);
+    BoardTraffic traffic(random_seed(seed));
     ASSERT_NO_THROW(traffic.run(*board, 1'000'000)) << "seed " << seed;
     made += traffic.accesses();
   }

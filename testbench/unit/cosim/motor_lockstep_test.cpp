@@ -1,6 +1,6 @@
 // Both engines under random life on the motor side, every pin and counter compared at every tick. What moved is
 // counted, so that no pin can rest and be equal. A long run: BRICK_MOTOR_TICKS=1000000000 bin/unit_cosim
-// --gtest_filter='*MotorLockstep*OneIc' (seed: BRICK_MOTOR_SEED).
+// --gtest_filter='*MotorLockstep*OneIc' (seed: BRICK_RANDOM_SEED).
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -11,6 +11,7 @@
 #include "testbench/unit/cosim/distorted_board.h"
 #include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -104,7 +105,7 @@ TEST_P(MotorLockstep, IsEqualAtEveryTickUnderRandomLife) {
   const std::uint32_t ics = life.options.ics;
   auto board = make_lockstep_board(make_rtl_board(ics), make_model_board(ics));
   const Tick end = static_cast<Tick>(from_environment("BRICK_MOTOR_TICKS", static_cast<std::uint64_t>(life.ticks)));
-  const std::uint64_t seed = from_environment("BRICK_MOTOR_SEED", 1);
+  const std::uint64_t seed = random_seed(1);
   const Seen seen(*board);
   MotorTraffic traffic(seed, life.options);
   ASSERT_NO_THROW(traffic.run(*board, end, 65'536)) << "seed " << seed;

@@ -6,6 +6,7 @@
 
 #include "testbench/unit/cosim/machine_rig.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -22,7 +23,7 @@ class Host {
   Host(MachineRig& rig, std::vector<std::string>& lines, Tick cut) : rig_(rig), lines_(lines), cut_(cut) {}
 
   void play() {
-    std::mt19937_64 random(5);
+    std::mt19937_64 random(random_seed(5));
     wait(5000);
     rig_.set_y(0x100, 1);  // the background counts and uses the bus
     while (rig_.machine.now() < kEnd) {

@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -131,7 +132,7 @@ TEST_F(BufferRequest, HysteresisBetweenThePoints) {
 TEST_F(BufferRequest, AgreesWithTheScoreboardOverRandomTraffic) {
   BRICK_COVERS("BREQ-1 BREQ-2 BREQ-3 BREQ-4 I17-1");
   const int settings[][2] = {{5, 10}, {5, 5}, {0, 0}, {0, 1}, {1, 1}, {3, 4}, {0, 10}, {8, 3}, {1, 100}, {5, 0}};
-  std::mt19937 random(5);
+  std::mt19937 random(brick::random_seed(5));
   for (const auto& setting : settings) {
     platform::power_up();
     limits(setting[0], setting[1]);

@@ -8,6 +8,7 @@ extern "C" {
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/variables/pq_variables.h"
 #include "rtl/regs/brick_regs.h"
+#include "testbench/unit/random_seed.h"
 }
 
 namespace {
@@ -365,7 +366,7 @@ TEST_F(DpramAscii, PlcsAndTheWatchdogGoOnInALongReply) {
 
 // Whatever the host writes wherever: nothing traps, the port works afterwards.
 TEST_F(DpramAscii, AnyWordsAreSurvived) {
-  std::mt19937 random(7);
+  std::mt19937 random(brick::random_seed(7));
   for (int i = 0; i < 3000; ++i) {
     const std::uint32_t offset = DPRAM_COMMAND_CONTROL + 2 * (random() % ((DPRAM_OPEN - DPRAM_COMMAND_CONTROL) / 2));
     ram.write(offset, static_cast<std::uint16_t>(random()));

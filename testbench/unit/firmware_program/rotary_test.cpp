@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ TEST_F(Rotary, FullRingRefusesTheLineAndKeepsTheRest) {
 
 TEST_F(Rotary, RandomTrafficComesOutInOrderAndComplete) {
   define(17);
-  std::mt19937 random(11);
+  std::mt19937 random(brick::random_seed(11));
   std::deque<std::vector<word48_t>> model;  // lines as they should be in the ring
   unsigned used = 0, stored = 0, refused = 0;
   for (int step = 0; step < 20000; ++step) {

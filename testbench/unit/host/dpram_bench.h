@@ -6,6 +6,7 @@
 #include "systemc/host/dpram.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/host/lockstep.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 
@@ -86,7 +87,7 @@ class DpramBench {
 
   // Strobes and commands of random length on a few cells, so that they meet.
   void random_run(unsigned seed, int ticks, unsigned cells) {
-    std::mt19937 random(seed);
+    std::mt19937 random(random_seed(seed));
     both.lazy = seed % 2;
     int cpu_left = 3, host_left = 3;
     for (int i = 0; i < ticks && both.difference().empty(); ++i) {

@@ -6,6 +6,7 @@
 #include "systemc/host/host_port.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/host/lockstep.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 
@@ -77,7 +78,7 @@ class HostPortTest : public ::testing::Test {
   unsigned hsr() { return cpu_peek(kHsr) & 0x1F; }
 
   void random_run(unsigned seed, int ticks) {
-    std::mt19937 random(seed);
+    std::mt19937 random(random_seed(seed));
     both_.lazy = seed % 2;
     for (int i = 0; i < ticks && both_.difference().empty(); ++i) {
       if (both_.now() % kTicksPerRef == 0) {

@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/host/lockstep.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -37,7 +38,7 @@ class InterruptControllerTest : public ::testing::Test {
   }
   // Random writes and lines; level changes are rare enough for latches to be seen, common enough to meet clears.
   void random_run(unsigned seed, int ticks) {
-    std::mt19937 random(seed);
+    std::mt19937 random(random_seed(seed));
     both_.lazy = seed % 2;
     for (int i = 0; i < ticks && both_.difference().empty(); ++i) {
       if (random() % 7 == 0) both_.in.line ^= static_cast<std::uint8_t>(1u << random() % 8);

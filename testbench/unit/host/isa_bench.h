@@ -8,6 +8,7 @@
 #include "systemc/host/isa_slave.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/host/lockstep.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 
@@ -118,7 +119,7 @@ class IsaBench {
   }
 
   void random_run(unsigned seed, int ticks) {
-    std::mt19937 random(seed);
+    std::mt19937 random(random_seed(seed));
     both.lazy = seed % 2;
     int left = 5;
     bool low = false;

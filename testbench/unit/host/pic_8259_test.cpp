@@ -9,6 +9,7 @@
 
 #include "testbench/checkers/reference_8259.h"
 #include "testbench/unit/host/lockstep.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -316,7 +317,7 @@ TEST_F(Pic8259Clocks, EdgeThatMeetsIcw1IsKept) {
 
 TEST_F(Pic8259Clocks, RandomLinesReadsAndWritesAgree) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    std::mt19937 random(seed);
+    std::mt19937 random(random_seed(seed));
     both.lazy = seed % 2;
     for (int i = 0; i < 3000 && both.difference().empty(); ++i) {
       if (random() % 5 == 0) both.in.line ^= static_cast<std::uint8_t>(1u << random() % 8);

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/servo_channel/channels_rig.h"
 
 namespace brick {
@@ -204,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Large jumps of the model alone end where single ticks end.
 TEST(ServoChannelModel, JumpsAndSingleTicksEndInTheSameState) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    std::mt19937 random(seed);
+    std::mt19937 random(random_seed(seed));
     const auto value = [&](std::uint32_t limit) {
       return std::uniform_int_distribution<std::uint32_t>(0, limit)(random);
     };

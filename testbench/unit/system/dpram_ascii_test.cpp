@@ -3,6 +3,7 @@
 
 #include "rtl/regs/dpram_map.h"
 #include "testbench/host/dpram_port.h"
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -36,7 +37,7 @@ class DpramAsciiOn : public Controller {
 // Both ports have a line under way at random distances; each gets its own answer from its own addresses.
 TEST_P(DpramAsciiOn, BothPortsAtOnce) {
   ASSERT_NO_FATAL_FAILURE(open());
-  std::mt19937 random(3);
+  std::mt19937 random(random_seed(3));
   ASSERT_EQ(ask("&1#1"), "");
   ASSERT_EQ(ask_ram("&5#9"), "");
   const int rounds = GetParam() == Engine::kSystemC ? 60 : 12;

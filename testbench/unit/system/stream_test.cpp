@@ -7,6 +7,7 @@
 
 #include "testbench/host/binary_rotary.h"
 #include "testbench/host/dpram_port.h"
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -211,7 +212,7 @@ class StreamOn : public Controller {
 
   Route route_ = Route::kAscii;
   std::vector<BinaryRotary> rotary_;
-  std::mt19937 random_{1};
+  std::mt19937 random_{random_seed(1)};
   std::unique_ptr<BusDpram> ram_;
   bool by_ram_ = false;
   bool heeds_ = false;

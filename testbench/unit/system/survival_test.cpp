@@ -6,6 +6,7 @@
 #include "systemc/cpu/elf_file.h"
 #include "testbench/unit/firmware_platform/stack_room.h"
 #include "testbench/unit/random_lines.h"
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -74,14 +75,13 @@ class SurvivalOn : public Controller {
   }
 };
 
-// In the default settings (even seeds), or in others by chance. BRICK_RANDOM_LINES: lines of each seed;
-// BRICK_RANDOM_SEED: this one alone.
+// In the default settings (even seeds), or in others by chance. BRICK_RANDOM_LINES: lines of each seed.
 TEST_P(SurvivalOn, RandomLines) {
   const char* wanted = std::getenv("BRICK_RANDOM_LINES");
   const long lines = wanted != nullptr ? std::strtol(wanted, nullptr, 10) : 2500;
   long answered = 0, errors = 0, counted = 0;  // in the default settings: others may turn the acknowledge off
   std::vector<unsigned> seeds = {11, 12, 13, 14};
-  if (const char* seed = std::getenv("BRICK_RANDOM_SEED")) seeds = {static_cast<unsigned>(std::atoi(seed))};
+  for (unsigned& seed : seeds) seed = random_seed(seed);
   for (const unsigned seed : seeds) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     start();
