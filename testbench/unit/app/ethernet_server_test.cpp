@@ -7,6 +7,7 @@
 #include <asio.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <vector>
@@ -30,6 +31,7 @@ class SendersOfDatagrams : public ::testing::Test {
       if (replies_) server_.reply(client, "ok");
       const std::lock_guard<std::mutex> lock(mutex_);
       asked_.push_back(client);
+      ++requests_;
       heard_.notify_one();
     };
     server_.on_close = [this](Client client) {
@@ -49,7 +51,10 @@ class SendersOfDatagrams : public ::testing::Test {
   Client ask(std::size_t sender) {
     send(sender);
     std::unique_lock<std::mutex> lock(mutex_);
-    heard_.wait(lock, [this] { return !asked_.empty(); });
+    if (!heard_.wait_for(lock, std::chrono::seconds(20), [this] { return !asked_.empty(); })) {
+      ADD_FAILURE() << "a datagram of sender " << sender << " is lost";
+      return 0;
+    }
     const Client client = asked_.back();
     asked_.clear();
     lock.unlock();
@@ -69,6 +74,7 @@ class SendersOfDatagrams : public ::testing::Test {
   std::mutex mutex_;
   std::condition_variable heard_;
   std::vector<Client> asked_, forgotten_;
+  std::size_t requests_ = 0;
   std::atomic<bool> replies_{true};
 };
 
@@ -111,6 +117,8 @@ TEST_F(SendersOfDatagrams, ADatagramTooManyIsLost) {
   for (std::size_t n = 1; n < EthernetServer::kMostRequests; ++n) EXPECT_EQ(ask(0), first);
   send(0);
   EXPECT_NE(ask(1), first);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  EXPECT_EQ(requests_, EthernetServer::kMostRequests + 1);
 }
 
 // ethernet:1/10

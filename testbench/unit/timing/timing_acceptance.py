@@ -66,6 +66,9 @@ def bad_waivers():
                       ["timing", "--sweep", "--wavedrom", "x.json"], ["timing", "--sweep", "--gdb", "0"]):
         r = brick(*arguments)
         check(r.returncode == 2 and r.stderr.count("\n") == 1 and "expected" in r.stderr, f"{arguments}: {r.stderr}")
+    r = brick("run", "port-a-phase", "--bcr", "1FFC7F")  # cycles in the CPU's place, as a reset leaves the bus
+    check(r.returncode == 0 and "--bcr 1FFC7F: has never acted" in r.stderr and r.stderr.count("\n") == 1, r.stderr)
+    check("never acted" not in play(["VERSION"], "--bcr", "1FFFFF").stderr, "the firmware sets up its bus")
 
 
 def report():
