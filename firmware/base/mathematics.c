@@ -7,9 +7,8 @@
 #define HALF_PI_LOW 6.07710050650619224932e-11
 #define LN2_HIGH 0.693147180369123816490
 #define LN2_LOW 1.90821492927058770002e-10
-#define EXP_LARGEST                                                                                \
-  709.782712893384 /* of the largest and the smallest double that is not denormal, rounded inwards \
-                    */
+/* Logarithms of the largest double, and of the smallest that is not denormal, rounded inwards. */
+#define EXP_LARGEST 709.782712893384
 #define EXP_SMALLEST -708.396418532264
 
 union bits {

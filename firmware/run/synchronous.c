@@ -36,9 +36,8 @@ enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
   const struct evaluator* ev = &p->x.evaluator;
   uint32_t number = in->number, action = in->group;
   if (queues[cs].count == SYNCHRONOUS_QUEUE)
-    return waiting(cs, 0)->move == coordinate_systems[cs].planned + 1u
-               ? executor_fail(&p->x, RUN_TIME_SYNCHRONOUS)
-               : EXECUTED_LATER;
+    return waiting(cs, 0)->move == coordinate_systems[cs].planned + 1u ? executor_fail(&p->x, RUN_TIME_SYNCHRONOUS)
+                                                                       : EXECUTED_LATER;
   if (in->operation == OP_SYNCHRONOUS_INDEXED) {
     if (ev->depth < 2) return EXECUTED_ERROR;
     number = variable_index(ev->stack[ev->depth - 2u]);

@@ -1,5 +1,5 @@
-// A move that goes by a feedrate of 0 or below (firmware:7.5/11, firmware:7.10/8): a run-time error when it is planned, whoever has set
-// it; moves that need none are made.
+// A move that goes by a feedrate of 0 or below (firmware:7.5/11, firmware:7.10/8): a run-time error when it is planned,
+// whoever has set it; moves that need none are made.
 #include "testbench/unit/firmware_program/motion_program.h"
 
 namespace {
