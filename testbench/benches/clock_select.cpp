@@ -16,8 +16,9 @@ namespace brick {
 namespace {
 
 constexpr Tick kMillisecond = kPwmClockHz / 1000;
-constexpr Tick kRestart =
-    7 * kMillisecond;  // $$$ writes every register of every IC (22) between the inputs and the output
+// $$$ writes every register of every IC between the inputs and the output; longer without an edge and the watchdog
+// trips (servo-ic:10/4).
+constexpr Tick kRestart = 25 * kMillisecond;
 constexpr Tick kSync = kNetDelay + kPinDelay;  // a follower acts so much later than the IC that drives the net
 
 class SelectBench {
