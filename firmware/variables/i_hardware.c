@@ -40,9 +40,11 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
   switch (entry->field) {
     case I_FIELD_IC_MAX_PHASE:
       gate_ic_set_field(ic, GATE_WORD_PWM, FIELD(SERVO_IC_PWM_CONTROL_MAX_COUNT_MASK), value);
+      clock_watch_changed();
       break;
     case I_FIELD_IC_PHASE_DIVIDER:
       gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(PHASE_DIVIDER)), value);
+      clock_watch_changed();
       break;
     case I_FIELD_IC_SERVO_DIVIDER:
       gate_ic_set_field(ic, GATE_WORD_CLOCK, FIELD(CLOCK_FIELD(SERVO_DIVIDER)), value);
@@ -82,8 +84,7 @@ static void write_ic(struct i_place place, const struct i_entry* entry, uint32_t
 }
 
 void i_hardware_write(struct i_place place, const struct i_entry* entry, uint32_t value) {
-  if (i_of_gate_ic(place)) write_ic(place, entry, value);
-  if (entry->field == I_FIELD_IC_MAX_PHASE || entry->field == I_FIELD_IC_PHASE_DIVIDER) clock_watch_changed();
+  if (i_of_gate_ic(place)) return write_ic(place, entry, value);
   if (entry->field == I_FIELD_REAL_TIME_PERIOD) tasks_set_real_time_period(value);
   if (entry->field == I_FIELD_WATCHDOG_RELOAD) watchdog_set_reload(value);
 }

@@ -27,6 +27,7 @@ enum {
   I_ESA_BLOCK = 50,
   I_CS_FIRST = 5100,
   I_CS_BLOCK = 100,
+  I_SERVO_FIRST = 7000,
   I_IC_BLOCK = 50
 };
 

@@ -30,58 +30,65 @@ void i_table_initialize(void) {
     for (unsigned i = 0; i < entries[row].count; ++i) row_of[entries[row].group][entries[row].first + i] = (uint8_t)row;
 }
 
-static struct i_place in_servo_ic(uint32_t number) {
-  struct i_place place = {I_GROUP_SERVO, 0, 0, 0};
-  const uint32_t m = (number - 7000u) / 100u;
-  const uint32_t inside = number % 50u;
-  if (number % 100u < 50u)
-    place.instance = m;
-  else
-    place.instance = m >= 2u ? m - 2u + GATE_IC_STARRED : GATE_IC_COUNT; /* there is no IC 0* or 1* */
-  if (inside >= 10u) {
-    place.group = I_GROUP_CHANNEL;
-    place.channel = inside / 10u - 1u;
+/* The start and each assignment ask for a place, and a division takes longer than all the rest: one for each quotient,
+ * none for remainders. */
+static struct i_place in_servo_ic(uint32_t inside_all) {
+  const uint32_t block = inside_all / I_IC_BLOCK, m = block / 2u;
+  struct i_place place = {I_GROUP_SERVO, inside_all - block * I_IC_BLOCK, m, 0};
+  if (block % 2u != 0u) place.instance = m >= 2u ? m - 2u + GATE_IC_STARRED : GATE_IC_COUNT; /* there is no 0* or 1* */
+  if (place.offset >= 10u) {
+    const uint32_t channel = place.offset / 10u;
+    place = (struct i_place){I_GROUP_CHANNEL, place.offset - 10u * channel, place.instance, channel - 1u};
   }
-  place.offset = inside % 10u;
   return place;
 }
 
-static struct i_place in_macro_ic(uint32_t number) {
-  struct i_place place = {I_GROUP_MACRO, number % 50u, GATE_IC_MACRO + (number - 6800u) / 50u, 0};
+/* A group of `block` numbers to each motor, coordinate system or IC, of which the first has the number `first`. */
+static inline struct i_place in_blocks(i_group_t group, uint32_t inside, uint32_t block, uint32_t first) {
+  const uint32_t instance = inside / block;
+  return (struct i_place){group, inside - instance * block, instance + first, 0};
+}
+
+static struct i_place in_macro_ic(uint32_t inside_all) {
+  struct i_place place = in_blocks(I_GROUP_MACRO, inside_all, I_IC_BLOCK, GATE_IC_MACRO);
   if (place.offset >= 10u && place.offset < 30u) {
     place.group = I_GROUP_SUPPLEMENTARY;
-    place.channel = place.offset / 10u - 1u;
-    place.offset %= 10u;
+    place.channel = place.offset >= 20u ? 1u : 0u;
+    place.offset -= place.channel != 0u ? 20u : 10u;
   }
   return place;
 }
 
-/* Where the groups stand: `block` numbers to each motor, coordinate system or IC. What is in no group is reserved, as a
- * number of GATHER without a row is. */
-static const struct span {
-  uint16_t end, first;
-  uint8_t group, block, instance; /* of the first block */
-} spans[] = {
-    {100, 0, I_GROUP_GLOBAL, 100, 0},
-    {3300, I_MOTOR_BLOCK, I_GROUP_MOTOR, I_MOTOR_BLOCK, 1},
-    {4900, I_ESA_FIRST, I_GROUP_ESA, I_ESA_BLOCK, 0},
-    {5000, I_BASE_SYSTEM, I_GROUP_SYSTEM, 100, 0},
-    {I_CS_FIRST, I_BASE_GATHER, I_GROUP_GATHER, 100, 0},
-    {6700, I_CS_FIRST, I_GROUP_CS, I_CS_BLOCK, 0},
-    {I_BASE_MACRO, 6700, I_GROUP_GATHER, 0, 0},
-    {7000, I_BASE_MACRO, I_GROUP_MACRO, 0, 0},
-    {I_BASE_TABLE, 7000, I_GROUP_SERVO, 0, 0},
-    {VARIABLE_COUNT, I_BASE_TABLE, I_GROUP_TABLE, WIDEST_GROUP, 0},
-};
-
+/* What is in no group is reserved, as a number of GATHER without a row is. */
 struct i_place i_table_place(uint32_t number) {
-  const struct span* span = spans;
-  while (number >= span->end && span != &spans[sizeof spans / sizeof spans[0] - 1u]) ++span;
-  if (span->group == I_GROUP_MACRO) return in_macro_ic(number);
-  if (span->group == I_GROUP_SERVO) return in_servo_ic(number);
-  if (span->block == 0u) return (struct i_place){I_GROUP_GATHER, RESERVED, 0, 0};
-  const uint32_t inside = number - span->first;
-  return (struct i_place){span->group, inside % span->block, inside / span->block + span->instance, 0};
+  if (number < I_MOTOR_BLOCK) return (struct i_place){I_GROUP_GLOBAL, number, 0, 0};
+  if (number >= I_BASE_TABLE) return (struct i_place){I_GROUP_TABLE, number - I_BASE_TABLE, 0, 0};
+  if (number >= I_SERVO_FIRST) return in_servo_ic(number - I_SERVO_FIRST);
+  if (number >= I_BASE_MACRO) return in_macro_ic(number - I_BASE_MACRO);
+  if (number < I_ESA_FIRST) return in_blocks(I_GROUP_MOTOR, number - I_MOTOR_BLOCK, I_MOTOR_BLOCK, 1);
+  if (number < I_BASE_SYSTEM) return in_blocks(I_GROUP_ESA, number - I_ESA_FIRST, I_ESA_BLOCK, 0);
+  if (number < I_BASE_GATHER) return (struct i_place){I_GROUP_SYSTEM, number - I_BASE_SYSTEM, 0, 0};
+  if (number < I_CS_FIRST) return (struct i_place){I_GROUP_GATHER, number - I_BASE_GATHER, 0, 0};
+  if (number < I_CS_FIRST + COORDINATE_SYSTEMS * I_CS_BLOCK)
+    return in_blocks(I_GROUP_CS, number - I_CS_FIRST, I_CS_BLOCK, 0);
+  return (struct i_place){I_GROUP_GATHER, RESERVED, 0, 0};
+}
+
+struct i_place i_table_next_of_ic(struct i_place place) {
+  ++place.offset;
+  if (place.offset != 10u) return place;
+  switch (place.group) {
+    case I_GROUP_SERVO:
+      return (struct i_place){I_GROUP_CHANNEL, 0, place.instance, 0};
+    case I_GROUP_MACRO:
+      return (struct i_place){I_GROUP_SUPPLEMENTARY, 0, place.instance, 0};
+    case I_GROUP_SUPPLEMENTARY:
+      if (place.channel != 0u) return (struct i_place){I_GROUP_MACRO, 30, place.instance, 0};
+      break;
+    default:
+      break;
+  }
+  return (struct i_place){place.group, 0, place.instance, place.channel + 1u};
 }
 
 const struct i_entry* i_table_entry(struct i_place place) { return &entries[row_of[place.group][place.offset]]; }
@@ -95,7 +102,7 @@ uint32_t i_table_lock(i_group_t group) {
   return LOCKS[group];
 }
 
-static int32_t reduce(const struct i_entry* entry, uint32_t value) {
+int32_t i_table_integer(const struct i_entry* entry, uint32_t value) {
   const uint32_t mask = (1u << entry->bits) - 1u, bits = value & mask;
   const bool negative = entry->kind == I_KIND_S && (bits >> (entry->bits - 1u)) != 0u;
   return (int32_t)(negative ? bits | ~mask : bits);
@@ -103,5 +110,5 @@ static int32_t reduce(const struct i_entry* entry, uint32_t value) {
 
 double i_table_value(const struct i_entry* entry, double value) {
   if (entry->kind == I_KIND_F) return float48_unpack(float48_pack(value));
-  return reduce(entry, (uint32_t)math_nearest(value));
+  return i_table_integer(entry, (uint32_t)math_nearest(value));
 }

@@ -71,11 +71,14 @@ struct i_place {
 
 void i_table_initialize(void);
 struct i_place i_table_place(uint32_t number);
+struct i_place i_table_next_of_ic(struct i_place place); /* of the next number of the same IC, without a division */
 const struct i_entry* i_table_entry(struct i_place place);
 const struct i_entry* i_table_row(uint32_t number); /* both at once */
 uint32_t i_table_lock(i_group_t group);             /* the bit of I41 that locks it; 0: none does */
 /* What a variable of the row has when `value` is assigned (firmware:1.5): integers never fail, the bits above the range
  * are dropped; a real has the 36 bits that a 48-bit float holds. */
 double i_table_value(const struct i_entry* entry, double value);
+int32_t i_table_integer(const struct i_entry* entry,
+                        uint32_t value); /* the same of an integer, without floating point */
 
 #endif

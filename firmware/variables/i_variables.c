@@ -179,15 +179,15 @@ void i_variable_begin_restore(uint32_t saved_ics) {
 static const struct i_entry* row_to_restore(uint32_t number) {
   static const struct i_entry none = {.kind = I_KIND_R};
   if (number >= VARIABLE_COUNT) return &none;
-  if (number >= I_BASE_MACRO && i_of_absent_ic(i_table_place(number))) return &none;
-  return i_table_row(number);
+  const struct i_place place = i_table_place(number);
+  return i_of_absent_ic(place) ? &none : i_table_entry(place);
 }
 
 void i_variable_restore_integer(uint32_t number, int32_t value) {
   const struct i_entry* entry = row_to_restore(number);
   if (entry->kind != I_KIND_U && entry->kind != I_KIND_S) return;
-  value_of[number] = i_table_value(entry, value);
-  integer_of[number] = (int32_t)value_of[number];
+  integer_of[number] = i_table_integer(entry, (uint32_t)value);
+  value_of[number] = integer_of[number];
 }
 
 void i_variable_restore_float(uint32_t number, double value) {
@@ -199,9 +199,11 @@ void i_variable_restore_float(uint32_t number, double value) {
 static void write_ic(unsigned ic) {
   const uint32_t direction = gate_ic_direction_variable(ic), first = direction - I7M07_CLOCK_DIRECTION;
   store(direction, i_clock_direction(ic, (uint32_t)integer_of[I19_CLOCK_SOURCE]));
-  for (uint32_t number = first; number < first + I_IC_BLOCK; ++number) {
-    const struct i_place place = i_table_place(number);
-    if (!i_of_absent_ic(place)) i_hardware_write(place, i_table_entry(place), (uint32_t)integer_of[number]);
+  struct i_place place = i_table_place(first);
+  for (uint32_t number = first; number < first + I_IC_BLOCK; ++number, place = i_table_next_of_ic(place)) {
+    const struct i_entry* entry = i_table_entry(place);
+    if (entry->field != I_FIELD_NONE && !i_of_absent_ic(place))
+      i_hardware_write(place, entry, (uint32_t)integer_of[number]);
   }
 }
 
