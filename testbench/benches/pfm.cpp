@@ -52,7 +52,7 @@ class Pfm {
   void end(const std::string& what, unsigned least_alone);
   std::string count_difference(unsigned channel) const;
   int random_command();
-  int slow_command();
+  int slow_command(bool up);
 
   OutputHost host_;
   std::vector<PfmScoreboard> boards_;
@@ -222,10 +222,10 @@ int Pfm::random_command() {
   }
 }
 
-// 280 to 560 clocks from pulse to pulse: more than the longest pulse, 255, and at the slowest clock, 48 ticks, one
-// pulse or more in the time that a set of commands stands.
-constexpr Tick kSetStands = 30'000;
-int Pfm::slow_command() { return (host_.pick(2) == 0 ? 1 : -1) * static_cast<int>(30'000 + host_.pick(29'900)); }
+// 280 to 560 clocks from pulse to pulse, as long as the direction stays: more than the longest pulse, 255, and in the
+// clocks that three sets of commands stand, 600 or more, at least one.
+constexpr unsigned kSets = 3, kClocksOfASet = 200;
+int Pfm::slow_command(bool up) { return (up ? 1 : -1) * static_cast<int>(30'000 + host_.pick(29'900)); }
 
 void Pfm::round(unsigned number, unsigned width, unsigned other) {
   std::vector<Inversion> inversions;
@@ -233,16 +233,18 @@ void Pfm::round(unsigned number, unsigned width, unsigned other) {
   invert(inversions);
   configure({2 + host_.pick(3), 2 + host_.pick(5)}, {width, other});
   begin();
-  for (unsigned set = 0; set < 3; ++set) {
+  const bool up = host_.pick(2) == 0;
+  const auto stands = static_cast<unsigned>(kClocksOfASet * std::max(rule_[0].clock, rule_[1].clock));
+  for (unsigned set = 0; set < kSets; ++set) {
     std::vector<int> values;
     // The first makes a pulse every 56 PFM_CLK or more often, so that each channel has edges.
     const auto often = [this] {
       return (host_.pick(2) == 0 ? 1 : -1) * static_cast<int>(300'000 + host_.pick(700'000));
     };
     for (unsigned i = 0; i < host_.channels(); ++i)
-      values.push_back(i % kChannels == 0 ? slow_command() : set == 0 ? often() : random_command());
+      values.push_back(i % kChannels == 0 ? slow_command(up) : set == 0 ? often() : random_command());
     command(values);
-    host_.wait(kSetStands + host_.pick(kSetStands));
+    host_.wait(stands + host_.pick(stands));
   }
   end(fmt::format("round {}: PFM_CLK every {} and {} ticks, I7004={} I7104={}", number, rule_[0].clock, rule_[1].clock,
                   rule_[0].width, rule_[1].width),
