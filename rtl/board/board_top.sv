@@ -369,12 +369,14 @@ module board_top #(
     .rxdf_o        (port_rxdf_o)
   );
 
-  // A trip turns the control outputs off, as all others; the reset that ends it clears the latch.
+  // A trip turns the control outputs off at once, as all others; a clock later their latch is empty, so that nothing
+  // comes back with the reset.
   logic [3:0] signals_rdata;
   logic [1:0] ctrl_latch;
   assign ctrl_o = ctrl_latch & {2{~wd_tripped_o}};
   host_signals u_host_signals (
     .clk_ref_i, .rst_ni,
+    .trip_i    (wd_tripped_o),
     .wr_i      (bus_we & sel_signals),
     .ctrl_wr_i (bus_we & sel_ctrl),
     .wdata_i   (bus_wdata[3:0]),

@@ -171,7 +171,8 @@ module isa_slave (
     DoneShown  // the same of a read whose data was shown
   } cycle_e;
   cycle_e      cycle_d, cycle_q;
-  logic        active, finish, drive;
+  logic        active, finish;
+  logic        drive_q;            // Show or Shown: a flip-flop of its own, because it leads to pads
   logic [3:0]  kind_q, target_q;
   logic [1:0]  lanes_q, be_q, page_q;
   logic [14:0] mem_addr_q;
@@ -183,7 +184,6 @@ module isa_slave (
 
   assign finish   = (cycle_q == Done) | (cycle_q == DoneShown);
   assign active   = (cycle_q != Idle) & ~finish;
-  assign drive    = (cycle_q == Show) | (cycle_q == Shown);
   assign start    = ~active & (cmd2_q != 4'h0);
   assign ends     = active & (cmd2_q == 4'h0) & ~resetdrv_q[1];
   assign spoilt   = active & ((cmd2_q & ~kind_q) != 4'h0);  // a second command
@@ -223,6 +223,7 @@ module isa_slave (
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       cycle_q    <= Hold;
+      drive_q    <= 1'b0;
       kind_q     <= 4'h0;
       target_q   <= 4'h0;
       lanes_q    <= 2'b00;
@@ -235,6 +236,7 @@ module isa_slave (
       wdata_q    <= 16'h0;
     end else begin
       cycle_q <= cycle_d;
+      drive_q <= (cycle_d == Show) | (cycle_d == Shown);
       if (start) begin
         kind_q     <= cmd2_q;
         target_q   <= decoded;
@@ -286,7 +288,7 @@ module isa_slave (
   logic read_low;
   assign read_low = ((kind_q[Ior] & ~isa_ior_ni) | (kind_q[Memr] & ~isa_memr_ni)) & isa_iow_ni & isa_memw_ni;
   assign isa_sd_o       = sd_q;
-  assign isa_sd_oe_o    = lanes_q & {2{drive & read_low}};
+  assign isa_sd_oe_o    = lanes_q & {2{drive_q & read_low}};
   assign isa_iochrdy_o  = ~mem_busy_i;
   assign isa_memcs16_no = ~la_hit_q[0];
 

@@ -163,8 +163,8 @@ constexpr PinField kBrldN{"host.brld_n", 3, 16, 1, false};  // lamp of BREQ on t
 constexpr PinField kErldN{"host.erld_n", 3, 17, 1, false};  // lamp of EROR on the control panel, 0 = lit
 constexpr PinField kF1ldN{"host.f1ld_n", 3, 18, 1, false};  // lamp of F1ER on the control panel, 0 = lit
 constexpr PinField kIpldN{"host.ipld_n", 3, 19, 1, false};  // lamp of IPOS on the control panel, 0 = lit
-constexpr PinField kCtrl0{"host.ctrl0", 3, 20, 1, false};  // control output 0, X:$070012, written by user programs
-constexpr PinField kCtrl1{"host.ctrl1", 3, 21, 1, false};  // control output 1, X:$070012, written by user programs
+constexpr PinField kCtrl0{"host.ctrl0", 3, 20, 1, false};  // control output 0, X:$070012; 0 from a trip of the watchdog to the reset
+constexpr PinField kCtrl1{"host.ctrl1", 3, 21, 1, false};  // control output 1, X:$070012; 0 from a trip of the watchdog to the reset
 constexpr PinField kWdRelay{"watchdog.relay", 3, 24, 1, false};  // 1 = energised: from reset to trip (servo-ic:10/12)
 constexpr PinField kWdLed{"watchdog.led", 3, 25, 1, false};  // 1 = the red lamp is on: tripped
 inline constexpr std::array kAll{

@@ -87,7 +87,11 @@ void BoardTop::connect_clocks(Parts& changed) {
     Wires watchdog(*this, kWatchdog, watchdog_, changed);
     watchdog(watchdog_.pwr_good, inputs_.pwr_good);
   }
-  if ((changed & parts(kWatchdog)) != 0) gate_ics_.set_trip(watchdog_.trip(), now_);
+  if ((changed & parts(kWatchdog)) != 0) {
+    gate_ics_.set_trip(watchdog_.trip(), now_);
+    Wires latch(*this, kHostSignals, host_signals_, changed);
+    latch(host_signals_.in.trip, watchdog_.trip());
+  }
 }
 
 void BoardTop::connect_host_port(Parts& changed) {

@@ -31,11 +31,15 @@ class HostSignals final : public sc_core::sc_module, public RefClockedBlock {
   static constexpr std::uint8_t kCtrlWritten = regs::board_latches::kControlOutputs.written;
 
   bool idle() const override {
-    return (!in.wr || (in.wdata & kWritten) == latch_) && (!in.ctrl_wr || (in.wdata & kCtrlWritten) == ctrl_);
+    return (!in.wr || (in.wdata & kWritten) == latch_) &&
+           (in.trip ? ctrl_ == 0 : !in.ctrl_wr || (in.wdata & kCtrlWritten) == ctrl_);
   }
   void step() override {
     if (in.wr) latch_ = in.wdata & kWritten;
-    if (in.ctrl_wr) ctrl_ = in.wdata & kCtrlWritten;
+    if (in.trip)
+      ctrl_ = 0;
+    else if (in.ctrl_wr)
+      ctrl_ = in.wdata & kCtrlWritten;
   }
   void reset_registers() override { latch_ = ctrl_ = 0; }
 

@@ -31,6 +31,7 @@ struct HostSignalsInputs {
   bool wr = false;
   bool ctrl_wr = false;
   std::uint8_t wdata = 0;  // 4 bits
+  bool trip = false;       // of the watchdog
 };
 
 struct HostPortInputs {

@@ -79,8 +79,8 @@ const std::vector<PinInfo>& board_rows() {
       {"erld_n", PinDirection::kOut, 3, 17, 1, 0x0, "host-bus:5.6", "lamp of EROR on the control panel, 0 = lit"},
       {"f1ld_n", PinDirection::kOut, 3, 18, 1, 0x0, "host-bus:5.6", "lamp of F1ER on the control panel, 0 = lit"},
       {"ipld_n", PinDirection::kOut, 3, 19, 1, 0x0, "host-bus:5.6", "lamp of IPOS on the control panel, 0 = lit"},
-      {"ctrl0", PinDirection::kOut, 3, 20, 1, 0x0, "host-bus:4.2", "control output 0, X:$070012, written by user programs"},
-      {"ctrl1", PinDirection::kOut, 3, 21, 1, 0x0, "host-bus:4.2", "control output 1, X:$070012, written by user programs"},
+      {"ctrl0", PinDirection::kOut, 3, 20, 1, 0x0, "host-bus:4.2", "control output 0, X:$070012; 0 from a trip of the watchdog to the reset"},
+      {"ctrl1", PinDirection::kOut, 3, 21, 1, 0x0, "host-bus:4.2", "control output 1, X:$070012; 0 from a trip of the watchdog to the reset"},
       {"wd_relay", PinDirection::kOut, 3, 24, 1, 0x0, "servo-ic:10", "1 = energised: from reset to trip (servo-ic:10/12)"},
       {"wd_led", PinDirection::kOut, 3, 25, 1, 0x0, "servo-ic:10", "1 = the red lamp is on: tripped"},
   };

@@ -19,18 +19,19 @@ class HostSignalsModel final : public ModelChip {
   }
 
  private:
-  void drive(const PinWords&) override {}
+  void drive(const PinWords& in) override { latches_.in.trip = kTrip.is_set(in); }
   bool reset_low(const PinWords& in) const override { return !kRstN.is_set(in); }
   Tick next_event() const override { return latches_.next_event(); }
   void block_advance(Tick t) override { latches_.advance(t); }
   void block_reset(Tick t) override { latches_.reset(t); }
   void before(unsigned, const Face& face) override {
     const Cycle& c = face.cycle;
-    latches_.in = {c.write && c.address == kSignalsByte, c.write && c.address == kControlByte,
-                   static_cast<std::uint8_t>(c.value & 0xF)};
+    latches_.in.wr = c.write && c.address == kSignalsByte;
+    latches_.in.ctrl_wr = c.write && c.address == kControlByte;
+    latches_.in.wdata = static_cast<std::uint8_t>(c.value & 0xF);
   }
   bool after(unsigned, Face&) override {
-    latches_.in = {};
+    latches_.in.wr = latches_.in.ctrl_wr = false;
     return true;
   }
   void show(PinWords& words) const override {

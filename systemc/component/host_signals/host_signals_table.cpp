@@ -8,6 +8,7 @@ namespace brick::component {
 const std::vector<PinInfo>& HostSignals::pin_table() {
   static const std::vector<PinInfo> table{
       {"rst_n", PinDirection::kIn, 0, 0, 1, 0x1, "host-bus:4.3", "reset, asynchronous, active low"},
+      {"trip", PinDirection::kIn, 0, 1, 1, 0x0, "servo-ic:10", "of the watchdog: CTRL0 and CTRL1 are 0 until the reset"},
       {"ipos", PinDirection::kOut, 0, 0, 1, 0x0, "host-bus:4.3", "in position"},
       {"breq", PinDirection::kOut, 0, 1, 1, 0x0, "host-bus:5.7", "buffer request"},
       {"eror", PinDirection::kOut, 0, 2, 1, 0x0, "host-bus:4.3", "fatal following error"},
@@ -20,6 +21,7 @@ const std::vector<PinInfo>& HostSignals::pin_table() {
 
 HostSignalsPins::HostSignalsPins(Component& owner, const std::string& prefix)
     : rst_n(owner, prefix + "rst_n"),
+      trip(owner, prefix + "trip"),
       ipos(owner, prefix + "ipos"),
       breq(owner, prefix + "breq"),
       eror(owner, prefix + "eror"),

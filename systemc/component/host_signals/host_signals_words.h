@@ -9,6 +9,7 @@
 namespace brick::component::host_signals_words {
 
 constexpr PinPlace kRstN{0, 0, 1};
+constexpr PinPlace kTrip{0, 1, 1};
 constexpr PinPlace kIpos{0, 0, 1};
 constexpr PinPlace kBreq{0, 1, 1};
 constexpr PinPlace kEror{0, 2, 1};
@@ -22,6 +23,7 @@ struct PortMap {
   template <class V>
   static void drive(V& v, const PinWords& in) {
     kRstN.drive(v.rst_ni, in);
+    kTrip.drive(v.trip_i, in);
   }
   template <class V>
   static void sample(const V& v, PinWords& out) {

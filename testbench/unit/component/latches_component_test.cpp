@@ -65,14 +65,17 @@ class HostSignalsBlock final : public StrobedBlock<brick::HostSignals> {
   }
 
  private:
-  void set_pin(const std::string&, std::uint32_t) override {}
+  void set_pin(const std::string& pin, std::uint32_t value) override {
+    if (pin == "trip") inner_.in.trip = value != 0;
+  }
   unsigned levels() const override {
     return inner_.ipos() | inner_.breq() << 1 | inner_.eror() << 2 | inner_.f1er() << 3 | inner_.ctrl() << 4;
   }
   void strobe(const Access& access) override {
-    inner_.in = {access.address == 0, access.address == 4, static_cast<std::uint8_t>(access.value & 0xF)};
+    inner_.in = {access.address == 0, access.address == 4, static_cast<std::uint8_t>(access.value & 0xF),
+                 inner_.in.trip};
     inner_.advance(now_);
-    inner_.in = {};
+    inner_.in.wr = inner_.in.ctrl_wr = false;
   }
 };
 
@@ -121,6 +124,11 @@ Traffic host_signals_traffic(std::uint32_t seed) {
   Random random(seed);
   for (Picoseconds now = 0; now < traffic.end; now = traffic.pins.back().time)
     pulse(traffic, random.after(now, 1'000'000'000), "rst_n", 1 + random.below(60'000));
+  bool trip = false;
+  for (Picoseconds at = random.after(0, 300'000'000); at < traffic.end; at = random.after(at, 300'000'000))
+    traffic.pins.push_back({at, "trip", trip = !trip});
+  std::stable_sort(traffic.pins.begin(), traffic.pins.end(),
+                   [](const PinChange& a, const PinChange& b) { return a.time < b.time; });
   for (Picoseconds now = 0; now < traffic.end; now += traffic.accesses.back().idle + 3 * 8'500)
     traffic.accesses.push_back({random.below(1'500'000), random.below(2) == 0,
                                 4 * static_cast<std::uint32_t>(random.below(2)),

@@ -16,12 +16,12 @@ class HostSignalsTest : public ::testing::Test {
                                                {"breq", m.breq()},   {"eror", m.eror()}, {"f1er", m.f1er()}};
                               }};
   void write(unsigned value) {
-    both_.in = {true, false, static_cast<std::uint8_t>(value)};
+    both_.in = {true, false, static_cast<std::uint8_t>(value), both_.in.trip};
     both_.ref();
     both_.in.wr = false;
   }
   void write_ctrl(unsigned value) {
-    both_.in = {false, true, static_cast<std::uint8_t>(value)};
+    both_.in = {false, true, static_cast<std::uint8_t>(value), both_.in.trip};
     both_.ref();
     both_.in.ctrl_wr = false;
   }
@@ -56,6 +56,30 @@ TEST_F(HostSignalsTest, ControlOutputsAndHostSignalsDoNotTouchEachOther) {
   }
   both_.reset();
   EXPECT_EQ(both_.get("ctrl"), 0u);
+  EXPECT_LOCKSTEP(both_);
+}
+
+// servo-ic:10/10: a trip empties CTRL0 and CTRL1, a write at its edge too, and no write counts until the reset.
+TEST_F(HostSignalsTest, ATripEmptiesTheControlOutputsUntilTheReset) {
+  for (unsigned value = 1; value < 4; ++value) {
+    write(9);
+    write_ctrl(value);
+    ASSERT_EQ(both_.get("ctrl"), value);
+    both_.in.trip = true;
+    write_ctrl(value);
+    EXPECT_EQ(both_.get("ctrl"), 0u) << "a write at the edge of the trip";
+    for (unsigned written = 0; written < 4; ++written) {
+      write_ctrl(written);
+      EXPECT_EQ(both_.get("ctrl"), 0u);
+    }
+    write(6);
+    EXPECT_EQ(both_.get("rdata"), 6u) << "the host signals go on";
+    both_.in.trip = false;  // as the reset that ends a trip does
+    both_.reset();
+    EXPECT_EQ(both_.get("ctrl"), 0u);
+    write_ctrl(value);
+    EXPECT_EQ(both_.get("ctrl"), value);
+  }
   EXPECT_LOCKSTEP(both_);
 }
 

@@ -54,6 +54,7 @@ void drive(Vhost_signals& v, const HostSignalsInputs& in) {
   v.wr_i = in.wr;
   v.ctrl_wr_i = in.ctrl_wr;
   v.wdata_i = in.wdata & 0xF;
+  v.trip_i = in.trip;
 }
 Outputs sample(const Vhost_signals& v) {
   return {{"rdata", v.rdata_o}, {"ctrl", v.ctrl_o}, {"ipos", v.ipos_o},

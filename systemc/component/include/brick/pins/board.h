@@ -78,8 +78,8 @@ struct BoardPins {
   Out<> erld_n;  // lamp of EROR on the control panel, 0 = lit (host-bus:5.6)
   Out<> f1ld_n;  // lamp of F1ER on the control panel, 0 = lit (host-bus:5.6)
   Out<> ipld_n;  // lamp of IPOS on the control panel, 0 = lit (host-bus:5.6)
-  Out<> ctrl0;  // control output 0, X:$070012, written by user programs (host-bus:4.2)
-  Out<> ctrl1;  // control output 1, X:$070012, written by user programs (host-bus:4.2)
+  Out<> ctrl0;  // control output 0, X:$070012; 0 from a trip of the watchdog to the reset (host-bus:4.2)
+  Out<> ctrl1;  // control output 1, X:$070012; 0 from a trip of the watchdog to the reset (host-bus:4.2)
   Out<> wd_relay;  // 1 = energised: from reset to trip (servo-ic:10/12)
   Out<> wd_led;  // 1 = the red lamp is on: tripped (servo-ic:10)
 };

@@ -13,6 +13,7 @@ namespace brick::component {
 struct HostSignalsPins {
   HostSignalsPins(Component& owner, const std::string& prefix);
   In<> rst_n;  // reset, asynchronous, active low (host-bus:4.3); idle 1
+  In<> trip;  // of the watchdog: CTRL0 and CTRL1 are 0 until the reset (servo-ic:10)
   Out<> ipos;  // in position (host-bus:4.3)
   Out<> breq;  // buffer request (host-bus:5.7)
   Out<> eror;  // fatal following error (host-bus:4.3)
