@@ -109,7 +109,7 @@ void Scheduler::step() {
     const Tick changed = run_ahead(tick, tick_at(sc_time::from_value(wake)));
     if (changed != kNever) wake = time_of(changed).value();
   }
-  if (wake == kNoTime || wake == now.value())  // the kernel's time ends
+  if (wake == kNoTime || now.value() == kLastTime)  // the kernel's time ends
     cancel_timers();
   else
     sleep_until(wake);

@@ -161,7 +161,8 @@ TEST(TimeText, IsExact) {
   EXPECT_EQ(parse_time("0.5ns"), 500'000);
   EXPECT_EQ(parse_time("10ms"), 10'000'000'000'000);
   EXPECT_EQ(parse_time("1.25s"), 1'250'000'000'000'000);
-  for (const char* bad : {"", "ms", "10", "10 ms", "-1ms", "1.2.3ms", "10m", "1e3s", "99999s"})
+  EXPECT_EQ(parse_time("1000000000s"), 1'000'000'000 * TimeFs{1'000'000'000'000'000}) << "31 years, the longest";
+  for (const char* bad : {"", "ms", "10", "10 ms", "-1ms", "1.2.3ms", "10m", "1e3s", "1000000001s"})
     EXPECT_THROW(parse_time(bad), UsageError) << bad;
 }
 

@@ -155,7 +155,7 @@ TEST(Time, GoesAsFarAsTheKernels) {
       EXPECT_EQ(time.time_of(t).value(), edge_time(t));
       for (const int off : {-1, 0, 1}) {
         EXPECT_EQ(time.tick_at(sc_time::from_value(edge_time(t) + off)), off < 0 ? t - 1 : t) << off;
-        EXPECT_EQ(time.tick_at(sc_time::from_value(edge_time(t + 1000) + off)), off < 0 ? t + 999 : t + 1000) << off;
+        EXPECT_EQ(time.tick_at(sc_time::from_value(edge_time(t + 100) + off)), off < 0 ? t + 99 : t + 100) << off;
       }
       sc_core::sc_start(sc_time::from_value(instant - sc_core::sc_time_stamp().value()));
       line = !line;

@@ -17,6 +17,8 @@ except ImportError as missing:
     sys.exit(77)
 
 IPXACT = {"ipxact": "http://www.accellera.org/XMLSchema/IPXACT/1685-2014"}
+# What the CPU reaches outside the board's registers and memories: regions of its bus that hold other blocks.
+REGIONS = ("main_memory", "latches", "gate_ics", "on_chip")
 ACCESS = {"r": "read-only", "w": "write-only", "rw": "read-write", "r, w1c": "read-write"}
 
 
@@ -58,10 +60,12 @@ def wanted(maps, name):
     if name == "board":
         placed = [(block.name, block, 0) for block in maps.blocks if not block.relative]
         placed += [(ic.name, blocks[ic.kind], ic.base) for ic in maps.ics]
+        placed.append(("pic_8259", blocks["pic_8259"], 0))  # a map of its own: its words share addresses
     registers = {(title, register.name): (byte(block, register, base), {
         f.name: (f.lsb, f.width, ACCESS[f.access], f.reset) for f in register.fields})
         for title, block, base in placed for register in block.registers}
-    memories = {m.name: (8 * m.base, 8 * m.size) if m.words else (m.base, m.size) for m in maps.memories}
+    memories = {m.name: (8 * m.base, 8 * m.size) if m.words else (m.base, m.size) for m in maps.memories
+                if m.name not in REGIONS}
     return registers, memories if name == "board" else {}
 
 

@@ -54,9 +54,9 @@ class Lists(Tree):
         self.expect(self.tool("--check"))
 
     def test_a_file_too_many_or_in_the_wrong_place_fails(self):
-        self.plant("rtl/watchdog.f", "board/watchdog.sv", "host/pic_8259.sv\nboard/watchdog.sv")
+        self.plant("rtl/watchdog.f", "board/watchdog.sv", "host/host_interrupt.sv\nboard/watchdog.sv")
         self.plant("rtl/dpram.f", "host/dpram_memory.sv\nhost/dpram.sv", "host/dpram.sv\nhost/dpram_memory.sv")
-        self.expect(self.tool("--check"), "rtl/watchdog.f: has host/pic_8259.sv, which nothing in it needs",
+        self.expect(self.tool("--check"), "rtl/watchdog.f: has host/host_interrupt.sv, which nothing in it needs",
                     "rtl/dpram.f: host/dpram.sv stands where host/dpram_memory.sv must")
         self.expect(self.tool("--elaborate", "watchdog"), "rtl/watchdog.f, verilator: %Warning-MULTITOP")
 
