@@ -33,7 +33,12 @@ static uint32_t selected(uint32_t n) {
 uint32_t panel_cs(void) { return selected(selection); }
 
 /* What the panel has selected goes before the host's selection while I2 lets it. */
-void panel_changed(void) { buffer_request_panel_selects(is_active() ? panel_cs() : PANEL_IS_OFF); }
+void panel_changed(void) {
+  const uint32_t state =
+      hal_mask_real_time(); /* a selection of the real-time task in between must not be overwritten */
+  buffer_request_panel_selects(is_active() ? panel_cs() : PANEL_IS_OFF);
+  hal_unmask(state);
+}
 
 void panel_initialize(void) {
   fitted = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_JPAN) != 0u;

@@ -93,6 +93,8 @@ void start(enum start_mode mode) {
   check_saved();
   load_user_memory();
   session_initialize();
+  rotary_initialize();
+  open_buffer_initialize(); /* the selections show what these have cleared */
   buffer_request_initialize();
   panel_initialize();
   coordinate_systems_initialize();
@@ -101,8 +103,6 @@ void start(enum start_mode mode) {
   program_texts_initialize();
   dpram_functions_initialize();
   motor_status_initialize();
-  rotary_initialize();
-  open_buffer_initialize();
   binary_rotary_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));

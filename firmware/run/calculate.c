@@ -34,6 +34,9 @@ static void stop_with_error(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   const bool called = p->depth != 0;
+  /* Taken before the first pause: an abort there must not leave it to the next error. */
+  const enum run_time_error cause = p->x.error != RUN_TIME_NONE ? p->x.error : RUN_TIME_STATEMENT;
+  p->x.error = RUN_TIME_NONE;
   if (called && p->callers[0].reader.rotary) {
     p->x.at = p->callers[0];
     p->depth = 0;
@@ -47,9 +50,8 @@ static void stop_with_error(uint32_t cs) {
     executor_back(&p->x);
   p->under_way = false;
   /* Behind the last pause: R there would forget both. */
-  s->error = p->x.error != RUN_TIME_NONE ? p->x.error : RUN_TIME_STATEMENT;
+  s->error = cause;
   s->quit = true;
-  p->x.error = RUN_TIME_NONE;
 }
 
 /* The program has ended: it stands at its top again, and stops when its moves are over. */

@@ -219,6 +219,23 @@ TEST_F(DpramReportsTest, TimesLeftOfTheExecutingMove) {
   EXPECT_EQ(left().acceleration_ms_left, 0U);
 }
 
+// The slope about the corner is TA200; a late end stops in what is left of it in front of the corner, twice.
+TEST_F(DpramReportsTest, TimeLeftOfAMoveThatEndsLateIsThatOfItsShorterStop) {
+  for (const char* line : {"&1DEF ROT 100", "&1B0", "OPEN ROT", "TA200 TS0 TM1000 X100", "TA20 X200", "CLOSE", "R"})
+    ASSERT_EQ(host(line), "") << line;
+  reports.choose_systems(1);
+  ASSERT_EQ(host("I50=1 I49=1"), "");
+  const auto left = [this] {
+    background(4);
+    return reports.read_systems(5)->systems[0].move_ms_left;
+  };
+  while (left() == 0) servo_ticks(1);
+  while (left() > 150) servo_ticks(1);  // 50 ms in front of the corner, half of TA behind it
+  ASSERT_EQ(host("/"), "");
+  servo_ticks(2);
+  EXPECT_NEAR(left(), 100, 4);
+}
+
 // host-bus:6.2/3: bits 15..0 and 23..16 of the servo counter, and bit 15 of the second word.
 TEST_F(DpramReportsTest, TheTimerIsTheLowestBitsOfTheServoCounterInTwoWords) {
   for (const std::uint32_t began :

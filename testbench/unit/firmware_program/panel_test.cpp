@@ -209,6 +209,19 @@ TEST_F(Panel, SelectionIsThereFromTheStart) {
   EXPECT_EQ(panel_cs(), 2u);
 }
 
+// The ring of before the start is gone, whoever selects its system: there is nothing to be filled.
+TEST_F(Panel, BufferOfBeforeTheStartAsksForNothing) {
+  BRICK_COVERS("BREQ-6");
+  platform::fit_panel();
+  for (const char* line : {"I2=0", "SAVE"}) ASSERT_EQ(platform::host(line), "") << line;
+  panel(fpd(1));
+  for (const char* line : {"&1DEF ROT 100", "&1B0", "OPEN ROT"}) ASSERT_EQ(platform::host(line), "") << line;
+  ASSERT_TRUE(platform::breq());
+  platform::reset("$$$");
+  ASSERT_EQ(panel_cs(), 0u);
+  EXPECT_FALSE(platform::breq());
+}
+
 TEST_F(Panel, InputsThatAreLowAtStartAskForNothing) {
   platform::fit_panel();
   panel(kStart);
