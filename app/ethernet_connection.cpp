@@ -12,6 +12,7 @@ namespace {
 using KeepAliveIdle = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
 using KeepAliveInterval = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>;
 using KeepAliveCount = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPCNT>;
+using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;  // ms, of what is not taken
 }  // namespace
 
 EthernetConnection::EthernetConnection(asio::ip::tcp::socket socket, std::size_t most_requests)
@@ -22,6 +23,9 @@ EthernetConnection::EthernetConnection(asio::ip::tcp::socket socket, std::size_t
   socket_.set_option(KeepAliveIdle(static_cast<int>(kIdle.count())), ignored);
   socket_.set_option(KeepAliveInterval(static_cast<int>(kAskAgain.count())), ignored);
   socket_.set_option(KeepAliveCount(kTimesAsked), ignored);
+  // One that is switched off while a reply is on its way to it is not asked, the reply is sent again.
+  const std::chrono::milliseconds longest = kIdle + kTimesAsked * kAskAgain;
+  socket_.set_option(UserTimeout(static_cast<int>(longest.count())), ignored);
 }
 
 // Only where nothing waits to be sent and all that was read is being worked at.

@@ -140,6 +140,7 @@ TEST(EthernetConnections, AClientThatSaysNothingIsAskedWhetherItIsThere) {
   EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPIDLE), 60);
   EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPINTVL), 10);
   EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPCNT), 6);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 120'000) << "ms, of a reply that it does not take";
   EXPECT_EQ(option(IPPROTO_TCP, TCP_NODELAY), 1);
 }
 
