@@ -14,6 +14,7 @@ extern "C" {
 
 namespace {
 
+using platform::breq;
 using platform::host;
 
 class Interrupts : public FirmwareTest {
@@ -266,6 +267,54 @@ TEST_F(Interrupts, PartsOfALiveWordWithoutMasksAreLost) {
     unsigned lost = 0, written = 0;
     for (std::uint32_t seed = 1; seed <= 10 && lost == 0; ++seed) lost = high_bytes_lost(address, seed, written);
     EXPECT_GT(lost, 0u) << std::hex << address;
+  }
+}
+
+// What follows a write of I2, while the panel selects in turn a system whose buffer is full and one with room: the pin
+// shows what is selected, at once and not with the next real-time task only.
+void turn_panel(fake_task task) {
+  static bool second;
+  if (task != FAKE_REAL_TIME) return;
+  second = !second;
+  platform::pull_panel(second ? 2u << 8 : 1u << 8);
+}
+
+unsigned selections_lost(std::uint32_t seed, unsigned& made) {
+  unsigned lost = 0;
+  fake_interrupts_begin(seed, 10);
+  fake_interrupts_on_take(turn_panel);
+  for (unsigned i = 0; i < 600; ++i) {
+    panel_changed();
+    const std::uint32_t state = hal_mask_real_time();
+    lost += breq() != (panel_cs() == 1u) ? 1u : 0u;
+    hal_unmask(state);
+  }
+  made = fake_interrupts_counts().taken[FAKE_REAL_TIME];
+  fake_interrupts_on_take(nullptr);
+  fake_interrupts_end();
+  return lost;
+}
+
+class InterruptsOfThePanel : public Interrupts {
+ protected:
+  void SetUp() override {
+    FirmwareTest::SetUp();
+    platform::fit_panel();
+    for (const char* line : {"I16=1 I17=2", "&2DEF ROT 50", "&1DEF ROT 50 OPEN ROT", "P1=1", "P1=1"})
+      ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("CLOSE"), "");
+    platform::panel(2u << 8);
+    ASSERT_TRUE(breq()) << "room";
+    platform::panel(1u << 8);
+    ASSERT_FALSE(breq()) << "full";
+  }
+};
+
+TEST_F(InterruptsOfThePanel, PinShowsTheSelectionWhenI2IsWritten) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    unsigned made = 0;
+    EXPECT_EQ(selections_lost(seed, made), 0u) << "seed " << seed;
+    EXPECT_GT(made, 100u);
   }
 }
 
