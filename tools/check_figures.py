@@ -26,6 +26,13 @@ def figure(root, page, pattern, problems):
     return found[0] if len(found) == 1 else None
 
 
+def ids_in_brackets(line):
+    """`(SSI-1, SSI-2)` and `(LA-1 to LA-5)`: every one."""
+    for text in re.findall(r"\(((?:[A-Z0-9]+-\d+|, | and | to )+)\)", line):
+        for group, first, last in re.findall(r"([A-Z0-9]+)-(\d+)(?: to \1-(\d+))?", text):
+            yield from (f"{group}-{number}" for number in range(int(first), int(last or first) + 1))
+
+
 def check(root):
     problems = []
     for what, *places in PAIRS:
@@ -48,7 +55,7 @@ def check(root):
     for number, line in enumerate((root / "docs/verification-plan.md").read_text().splitlines(), 1):
         gap = line.startswith("- ") or "**open**" in line
         problems += [f"docs/verification-plan.md:{number}: {name} is a gap here, but docs/claimed.txt claims it"
-                     for name in re.findall(r"\(([A-Z0-9]+-\d+)\)", line) if gap and name in ids]
+                     for name in ids_in_brackets(line) if gap and name in ids]
     return problems
 
 
