@@ -5,6 +5,7 @@ from tree import Tree, run
 PAGES = {
     "docs/save.md": "| SAVE of a controller as it comes | 37 ms |\n",
     "docs/watchdog.md": "| SAVE | one long pass (37 ms); more |\n",
+    "docs/datasheet/firmware.md": "37 ms and more; a power cut\nacknowledged when it is done, 37 ms and more\n",
     "docs/cosim.md": "idle firmware 110 simulated s/s\n",
     "README.md": "idle firmware: 110 simulated seconds a second\n",
     "docs/rules.md": "5 misreadings\n| a | b | planted 3 |\n| c | d | planted 2, read |\n",
@@ -30,6 +31,10 @@ class Figures(Tree):
 
     def test_a_save_of_two_lengths_fails(self):
         self.broken("docs/watchdog.md", "37", "26", "docs/save.md says 37, docs/watchdog.md says 26")
+
+    def test_a_save_of_another_length_in_the_data_sheet_fails(self):
+        for old in ("37 ms and more; a", "done, 37 ms"):
+            self.broken("docs/datasheet/firmware.md", old, old.replace("37", "26"), "firmware.md says 26")
 
     def test_two_idle_speeds_fail(self):
         self.broken("README.md", "110", "60", "docs/cosim.md says 110, README.md says 60")
