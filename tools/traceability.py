@@ -13,7 +13,7 @@ of the test suite showed of each of these tests, on each engine.
   (no option)  fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a traced ID without design
                files for each of its engines, on a test that docs/verification-plan.md names and that does not exist,
                and when docs/traceability.md is not what --write would write. In each run of the suite
-  --check      the same, and fails on the committed results as --results does. A run cannot ask for that: its own results
+  --check      the same, and fails on the committed results as --results does. No run asks for that: its own results
                come behind it
   --write      writes docs/traceability.md
   --results F  takes the results of a run from `ctest --output-junit F` into docs/test-results.json and writes the page;
