@@ -192,6 +192,7 @@ void measure_fall_times(BenchContext& b, BreqHost& host) {
     }
     measured.tasks(load);
   }
+  host.must("I100,32,100=* I101,32,100=* I183,32,100=*");
   measured.verdict();
   host.verdict("lines while T_FALL was measured", {runs * kLines, runs * kLines / 2, 0, 0, 0});
 }
