@@ -34,7 +34,8 @@ class Figures(Tree):
 
     def test_a_save_of_another_length_in_the_data_sheet_fails(self):
         for old in ("37 ms and more; a", "done, 37 ms"):
-            self.broken("docs/datasheet/firmware.md", old, old.replace("37", "26"), "firmware.md says 26")
+            new = old.replace("37", "26")
+            self.broken("docs/datasheet/firmware.md", old, new, "docs/datasheet/firmware.md says 26")
 
     def test_two_idle_speeds_fail(self):
         self.broken("README.md", "110", "60", "docs/cosim.md says 110, README.md says 60")
