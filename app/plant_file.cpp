@@ -25,7 +25,7 @@ using plant::EncoderParameters;
 using plant::Incident;
 using plant::kUnitsPerCount;
 
-const std::vector<std::string> kKeys{"title", "seed", "dac_bits", "axis", "incident"};
+const std::vector<std::string> kKeys{"title", "seed", "step", "dac_bits", "axis", "incident"};
 const std::vector<std::string> kAxisKeys{"axes",    "drive",      "start",       "load", "encoder", "motor", "amplifier",
                                          "stepper", "plus_limit", "minus_limit", "home", "noise"};
 const std::vector<std::string> kEncoderKeys{"lines", "index_at",    "index_width", "wiring",     "halls",
@@ -123,6 +123,7 @@ class Reader {
     parameters.seed = seed;
     if (file_.has("title")) file_.text("title");
     read_whole(file_, "seed", 0, INT64_MAX, parameters.seed);
+    read_time(file_, "step", 1, parameters.step);
     read_whole(file_, "dac_bits", 16, 18, parameters.dac_bits);
     if (parameters.dac_bits == 17) file_.fail(file_.need("dac_bits"), "dac_bits", "16 or 18");
     for (const toml::node& item : file_.array("axis")) read_axes(item, parameters);

@@ -80,7 +80,10 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
       link_(bus_),
       terminal_(isatty(STDERR_FILENO) == 1),
       prints_to_terminal_(isatty(STDOUT_FILENO) == 1) {
-  if (plant_) machine_->attach(*plant_);
+  if (plant_) {
+    machine_->attach(*plant_);
+    plant_signals_ = std::make_unique<PlantSignals>(*machine_, *plant_);
+  }
   bus_.set_heartbeat([this] { progress(); });
   waivers_.check(timing_->ledgers());
   timing_->on_violation = [this](const TimingLedger& ledger, const TimingViolation& violation) {

@@ -59,6 +59,11 @@ class GateIcs {
   void set_interrupting(std::uint32_t equ, Tick now);
   MotorOutputs motor_outputs(unsigned ic, Tick now) const;
   void watch(unsigned ic, const MotorOutputs& select, Tick now);
+  // The serial streams of a servo IC, as SerialWords; nullptr: it is not built.
+  const ServoChannels* channels(unsigned ic, Tick now) const {
+    return ic < kServoIcs && has(ic) ? (catch_up(ic, now), &servo_ic_[ic]->channels()) : nullptr;
+  }
+  void send_adc(unsigned ic, const ConverterWords& words, Tick now);
   // Watched ICs whose outputs may have changed since the last call.
   std::uint32_t take_changes() {
     const std::uint32_t ics = looked_ & watched_;

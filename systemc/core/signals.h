@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -18,7 +19,19 @@ namespace brick {
 
 class TraceWriter;  // systemc/core/trace.h
 
-enum class Radix { kBinary, kHex, kDecimal, kSigned, kText };
+enum class Radix { kBinary, kHex, kDecimal, kSigned, kText, kReal };
+
+// A kReal signal is 64 bits wide, those of the number.
+inline std::uint64_t bits_of(double number) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof bits);
+  return bits;
+}
+inline double real_of(std::uint64_t bits) {
+  double number;
+  std::memcpy(&number, &bits, sizeof number);
+  return number;
+}
 
 class Signals {
  public:

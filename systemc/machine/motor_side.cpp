@@ -20,6 +20,11 @@ MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
       for (unsigned p = 0; p < kChannelPins; ++p)
         ic.pin[n][p] = signals.add(scope + std::string(kChannelPinNames[p]), 1, Radix::kBinary, idle.pins[n] >> p & 1);
       ic.adc[n] = {signals.add(scope + "adc_a", 1, Radix::kBinary), signals.add(scope + "adc_b", 1, Radix::kBinary)};
+      for (const bool b : {false, true})
+        signals.ask(ic.adc[n][b ? 1 : 0], [this, i, n, b] {
+          const unsigned lines = words_ != nullptr ? words_->adc_lines(i, b) : b ? inputs_[i].adc_b : inputs_[i].adc_a;
+          return lines >> n & 1;
+        });
       for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
         const MotorField& field = motor_pin::kAll[f];
         if (field.shared && n > 0) {
@@ -44,10 +49,12 @@ void MotorSide::apply() {
   const TimeFs time = tick_to_fs(board_.now());
   for (const Ic& ic : ics_) {
     const MotorInputs& in = inputs_[ic.index];
-    if (in == applied_[ic.index]) continue;
+    const MotorInputs before = applied_[ic.index];
+    if (in == before) continue;
     applied_[ic.index] = in;
     board_.set_motor_inputs(ic.index, in);
     for (unsigned n = 0; n < kChannels; ++n) {
+      if (in.pins[n] == before.pins[n] && in.adc_a == before.adc_a && in.adc_b == before.adc_b) continue;
       for (unsigned p = 0; p < kChannelPins; ++p) signals_.set(ic.pin[n][p], time, in.pins[n] >> p & 1);
       signals_.set(ic.adc[n][0], time, in.adc_a >> n & 1);
       signals_.set(ic.adc[n][1], time, in.adc_b >> n & 1);
@@ -57,6 +64,8 @@ void MotorSide::apply() {
 
 void MotorSide::attach(MotorPeer& peer) {
   peers_.push_back({&peer, false});
+  words_ = words();
+  peer.begin(words_);
   watch();
   for (const Ic& ic : ics_) {
     if ((peer.ics() >> ic.index & 1) == 0) continue;
@@ -82,7 +91,7 @@ void MotorSide::watch() {
     MotorOutputs stops = select_[ic.index], watched = traced_[ic.index];
     for (const Peer& p : peers_) {
       stops |= p.peer->stops(ic.index);
-      if ((p.peer->ics() >> ic.index & 1) != 0) watched = kAllMotorOutputs;
+      if ((p.peer->ics() >> ic.index & 1) != 0) watched |= p.peer->watched(ic.index);
     }
     watched |= stops;
     board_.watch_motor(ic.index, watched);
@@ -93,6 +102,10 @@ void MotorSide::watch() {
 // The waveform wants other outputs than before: from here on it has them.
 void MotorSide::take_groups() {
   attachments_ = signals_.attachments();
+  if (words_ != words()) {
+    words_ = words();
+    for (Peer& p : peers_) p.peer->begin(words_);
+  }
   for (Ic& ic : ics_) {
     MotorOutputs& traced = traced_[ic.index];
     traced = {};

@@ -22,6 +22,11 @@ class MotorSide {
 
   void attach(MotorPeer& peer);
   void detach(MotorPeer& peer);
+  std::uint16_t driven(unsigned ic, unsigned channel) const {  // input pins that peers drive, bits as ChannelPin
+    unsigned pins = 0;
+    for (const Peer& p : peers_) pins |= p.peer->drives(ic, channel);
+    return static_cast<std::uint16_t>(pins);
+  }
   void stop_on(unsigned ic,
                const MotorOutputs& select);  // take_stop() tells of such an edge; an empty selection ends it
 
@@ -45,6 +50,7 @@ class MotorSide {
   void step_peers();
   void watch();
   void take_groups();
+  SerialWords* words() const { return signals_.traced() ? nullptr : board_.serial_words(); }  // a waveform has pins
 
   struct Shown {  // an output in the waveform
     unsigned word;
@@ -73,6 +79,7 @@ class MotorSide {
   MotorInputPins inputs_, applied_;
   std::array<MotorOutputs, kMaxServoIcs> select_{};  // of the user
   std::array<MotorOutputs, kMaxServoIcs> traced_{};  // of the waveform
+  SerialWords* words_ = nullptr;                     // that the peers have
   unsigned attachments_ = 0;                         // as traced_ knows them
   bool stopped_ = false;
 };

@@ -157,9 +157,24 @@ void ServoChannel::sample_adc(unsigned bit, unsigned count, bool a, bool b) {
   adc_[1].sample(bit, count, b);
 }
 
+void ServoChannel::sample_adc_stream(unsigned bit, unsigned count, std::uint32_t a, std::uint32_t b) {
+  adc_[0].sample_stream(bit, count, a);
+  adc_[1].sample_stream(bit, count, b);
+}
+
 void ServoChannel::load_dac(bool trip) {
-  dac_[0].load(trip ? 0 : out_[0]);
-  dac_[1].load(trip ? 0 : out_[1]);
+  for (unsigned i = 0; i < 2; ++i) {
+    dac_[i].load(trip ? 0 : out_[i]);
+    dac_line_[i] = {dac_line_[i].present, dac_stream(i)};
+  }
+}
+
+void ServoChannel::change_dac_lines(unsigned unclocked) {
+  const std::uint32_t to_go = (1u << unclocked) - 1;
+  for (unsigned i = 0; i < 2; ++i) {
+    std::uint32_t& line = dac_line_[i].present;
+    line = (line & ~to_go) | (dac_stream(i) & to_go);
+  }
 }
 
 void ServoChannel::load_pwm() {

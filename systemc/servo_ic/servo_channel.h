@@ -39,7 +39,10 @@ class ServoChannel {
   void latch_phase();
   void latch_servo(Tick edge);
   void sample_adc(unsigned bit, unsigned count, bool a, bool b);
+  void sample_adc_stream(unsigned bit, unsigned count, std::uint32_t a, std::uint32_t b);
   void load_dac(bool trip);
+  // What the control word says of the DAC lines has changed: it is so for the last `unclocked` bits of the stream.
+  void change_dac_lines(unsigned unclocked);
   void load_pwm();
   void run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime) const;
   bool advance_pfm(std::int64_t periods, bool trip, unsigned width) {  // true when a pulse begins with the last of them
@@ -100,6 +103,11 @@ class ServoChannel {
   bool dac_b(unsigned left) const {
     return is(channel_control::kAbDac) && dac_[1].data(left) != is(channel_control::kAbInvert);
   }
+  // The last 24 bits of a DAC line that were clocked; `unclocked` bits of the present stream were not.
+  std::uint32_t dac_line(unsigned output, unsigned unclocked) const {
+    const DacLine& line = dac_line_[output];
+    return static_cast<std::uint32_t>((std::uint64_t{line.before} << 24 | line.present) >> unclocked) & 0xFFFFFF;
+  }
   bool aena(bool trip) const { return is(channel_control::kAena) && !trip; }
   bool equ(bool trip) const { return compare_.equ() && !trip; }
 
@@ -108,6 +116,13 @@ class ServoChannel {
   // it, and the latest user of those.
   static constexpr unsigned kSettled = 12;
 
+  struct DacLine {  // what is sent on it: the stream before and the present one
+    std::uint32_t before = 0, present = 0;
+  };
+  std::uint32_t dac_stream(unsigned output) const {
+    if (!is(channel_control::kAbDac)) return 0;
+    return dac_[output].stream() ^ (is(channel_control::kAbInvert) ? 0xFFFFFF : 0);
+  }
   bool is(const regs::Field& field) const { return field.is_set(control_); }
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool fine() const { return is(channel_control::kHardware1t); }
@@ -133,6 +148,7 @@ class ServoChannel {
   std::array<ChannelPwm, 3> marked_;
   ChannelPfm pfm_;
   std::array<ChannelDac, 2> dac_;
+  std::array<DacLine, 2> dac_line_;
   std::array<ChannelAdc, 2> adc_;
 };
 
