@@ -25,7 +25,8 @@ double command(const Plant& plant, const Axis& axis, Tick) { return plant.dac(ax
 
 }  // namespace
 
-PlantSignals::PlantSignals(Machine& machine, const Plant& plant) : machine_(machine), plant_(plant) {
+PlantSignals::PlantSignals(Machine& machine, const Plant& plant)
+    : machine_(machine), signals_(machine.signals()), plant_(plant) {
   for (std::size_t i = 0; i < plant.axes(); ++i) {
     const Axis& axis = plant.axis(i);
     add("position", i, position);
@@ -43,23 +44,22 @@ void PlantSignals::add(const std::string& name, std::size_t axis,
                        double (*value)(const Plant& plant, const Axis& axis, Tick now)) {
   const Axis& of = plant_.axis(axis);
   const std::string scope = fmt::format("plant.axis{}.", motor_number(machine_.fitted(), of.ic(), of.channel()));
-  const Signals::Id id = machine_.signals().add(scope + name, 64, Radix::kReal, bits_of(value(plant_, of, 0)));
-  machine_.signals().ask(id, [this, axis, value] { return bits_of(value(plant_, plant_.axis(axis), machine_.now())); });
+  const Signals::Id id = signals_.add(scope + name, 64, Radix::kReal, bits_of(value(plant_, of, 0)));
+  signals_.ask(
+      id, [this, axis, value] { return bits_of(value(plant_, plant_.axis(axis), machine_.now())); }, true);
   shown_.push_back({id, axis, value});
 }
 
 Tick PlantSignals::next_event() const {
-  const Signals& signals = machine_.signals();
-  if (!signals.traced()) return kNever;
-  const bool any = std::any_of(shown_.begin(), shown_.end(), [&](const Shown& s) { return signals.traced(s.id); });
+  if (!signals_.traced()) return kNever;
+  const bool any = std::any_of(shown_.begin(), shown_.end(), [this](const Shown& s) { return signals_.traced(s.id); });
   return any ? last_ + kPeriod : kNever;
 }
 
 bool PlantSignals::step(Tick now, MotorInputPins&) {
   last_ = now - now % kPeriod;
-  Signals& signals = machine_.signals();
   for (const Shown& s : shown_)
-    if (signals.traced(s.id)) signals.set(s.id, tick_to_fs(now), bits_of(s.value(plant_, plant_.axis(s.axis), now)));
+    if (signals_.traced(s.id)) signals_.set(s.id, tick_to_fs(now), bits_of(s.value(plant_, plant_.axis(s.axis), now)));
   return false;
 }
 

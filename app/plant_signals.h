@@ -1,5 +1,5 @@
-// What a plant does, as named signals: `plant.axis1.position` and so on (docs/signals.md), numbers with a fraction. They
-// are sampled while a waveform wants them; otherwise they cost nothing.
+// What a plant does, as named signals: `plant.axis1.position` and so on (docs/signals.md), numbers with a fraction.
+// They are sampled while a waveform wants them; otherwise they cost nothing.
 #pragma once
 
 #include <array>
@@ -31,6 +31,7 @@ class PlantSignals : public MotorPeer {
            double (*value)(const plant::Plant& plant, const plant::Axis& axis, Tick now));
 
   Machine& machine_;
+  Signals& signals_;
   const plant::Plant& plant_;
   std::vector<Shown> shown_;
   Tick last_ = -kPeriod;  // sample

@@ -57,8 +57,8 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
       } else if (line.kind == Kind::kEncoder) {
         const MotorPlace place = *motor_place(machine.fitted(), line.motor);
         if ((machine.driven_motor_inputs(place.ic, place.channel) >> kEncA & 1) != 0)
-          throw UsageError(fmt::format("the plant turns the encoder of motor {}; expected one without an axis",
-                                       line.motor));
+          throw UsageError(
+              fmt::format("the plant turns the encoder of motor {}; expected one without an axis", line.motor));
       }
     } catch (const UsageError& e) { throw line.wrong(e.what()); }
   }

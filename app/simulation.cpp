@@ -63,8 +63,7 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
 
 std::unique_ptr<plant::Plant> make_plant(const RunOptions& options, const MachineConfig& config) {
   if (options.plant == "none") return nullptr;
-  return std::make_unique<plant::Plant>(
-      read_plant_file(plant_path(options.plant), config.board.fitted, config.seed));
+  return std::make_unique<plant::Plant>(read_plant_file(plant_path(options.plant), config.board.fitted, config.seed));
 }
 
 }  // namespace

@@ -36,7 +36,10 @@ class FstWriter : public TraceQueue {
       const std::string range = !text && !real && info.width > 1 ? " [" + std::to_string(info.width - 1) + ":0]" : "";
       fstHandle& handle = handles_[declared()[id].of];
       const fstHandle made =
-          fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : real ? FST_VT_VCD_REAL : FST_VT_VCD_WIRE,
+          fstWriterCreateVar(context_.get(),
+                             text   ? FST_VT_GEN_STRING
+                             : real ? FST_VT_VCD_REAL
+                                    : FST_VT_VCD_WIRE,
                              FST_VD_IMPLICIT, text ? 0 : info.width, (signal + range).c_str(), handle);
       if (handle == 0) handle = made;
     }

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
-#include "systemc/core/serial_words.h"
 #include "systemc/core/ticks.h"
 
 namespace brick {
@@ -19,9 +19,9 @@ class MotorPeer {
 
   virtual std::uint32_t ics() const = 0;  // servo ICs whose outputs it wants to see, bit i; constant
 
-  // It is attached, or the engine offers something else than before: `words` in place of the edges of the serial
-  // clocks, or nullptr.
-  virtual void begin(SerialWords* words) { (void)words; }
+  // It is attached, or the engine offers something else than before: `digest` in place of edges, or nullptr.
+  // changed() with equal outputs follows.
+  virtual void begin(MotorDigest* digest) { (void)digest; }
 
   // Those of their outputs whose changes it wants to be told; constant after begin().
   virtual MotorOutputs watched(unsigned ic) const {

@@ -22,7 +22,9 @@ MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
       ic.adc[n] = {signals.add(scope + "adc_a", 1, Radix::kBinary), signals.add(scope + "adc_b", 1, Radix::kBinary)};
       for (const bool b : {false, true})
         signals.ask(ic.adc[n][b ? 1 : 0], [this, i, n, b] {
-          const unsigned lines = words_ != nullptr ? words_->adc_lines(i, b) : b ? inputs_[i].adc_b : inputs_[i].adc_a;
+          const unsigned lines = digest_ != nullptr ? digest_->adc_lines(i, b)
+                                 : b                ? inputs_[i].adc_b
+                                                    : inputs_[i].adc_a;
           return lines >> n & 1;
         });
       for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
@@ -63,10 +65,14 @@ void MotorSide::apply() {
 }
 
 void MotorSide::attach(MotorPeer& peer) {
-  peers_.push_back({&peer, false});
-  words_ = words();
-  peer.begin(words_);
+  peers_.push_back({&peer, {}, false});
+  digest_ = digest();
+  peer.begin(digest_);
   watch();
+  show_present(peer);
+}
+
+void MotorSide::show_present(MotorPeer& peer) {
   for (const Ic& ic : ics_) {
     if ((peer.ics() >> ic.index & 1) == 0) continue;
     const MotorOutputs present = board_.motor_outputs(ic.index);
@@ -89,8 +95,9 @@ void MotorSide::stop_on(unsigned ic, const MotorOutputs& select) {
 void MotorSide::watch() {
   for (const Ic& ic : ics_) {
     MotorOutputs stops = select_[ic.index], watched = traced_[ic.index];
-    for (const Peer& p : peers_) {
-      stops |= p.peer->stops(ic.index);
+    for (Peer& p : peers_) {
+      p.stops[ic.index] = p.peer->stops(ic.index);
+      stops |= p.stops[ic.index];
       if ((p.peer->ics() >> ic.index & 1) != 0) watched |= p.peer->watched(ic.index);
     }
     watched |= stops;
@@ -102,9 +109,10 @@ void MotorSide::watch() {
 // The waveform wants other outputs than before: from here on it has them.
 void MotorSide::take_groups() {
   attachments_ = signals_.attachments();
-  if (words_ != words()) {
-    words_ = words();
-    for (Peer& p : peers_) p.peer->begin(words_);
+  const bool other = digest_ != digest();
+  if (other) {
+    digest_ = digest();
+    for (Peer& p : peers_) p.peer->begin(digest_);
   }
   for (Ic& ic : ics_) {
     MotorOutputs& traced = traced_[ic.index];
@@ -130,6 +138,8 @@ void MotorSide::take_groups() {
     for (std::uint32_t& word : inverse.w) word = ~word;
     show(tick_to_fs(board_.now()), ic.index, inverse, present);
   }
+  for (Peer& p : peers_)
+    if (other) show_present(*p.peer);
 }
 
 void MotorSide::step_peers() {
@@ -149,7 +159,7 @@ void MotorSide::changed(Tick tick, unsigned ic, const MotorOutputs& before, cons
   for (Peer& p : peers_) {
     if ((p.peer->ics() >> ic & 1) == 0) continue;
     p.peer->changed(tick, ic, before, after);
-    p.stopped = p.stopped || before.differs(after, p.peer->stops(ic));
+    p.stopped = p.stopped || before.differs(after, p.stops[ic]);
   }
   stopped_ = stopped_ || before.differs(after, select_[ic]);
 }

@@ -50,7 +50,8 @@ class MotorSide {
   void step_peers();
   void watch();
   void take_groups();
-  SerialWords* words() const { return signals_.traced() ? nullptr : board_.serial_words(); }  // a waveform has pins
+  void show_present(MotorPeer& peer);
+  MotorDigest* digest() const { return signals_.traced() ? nullptr : board_.motor_digest(); }  // a waveform has pins
 
   struct Shown {  // an output in the waveform
     unsigned word;
@@ -67,6 +68,7 @@ class MotorSide {
   };
   struct Peer {
     MotorPeer* peer;
+    std::array<MotorOutputs, kMaxServoIcs> stops;
     bool stopped;
   };
 
@@ -79,7 +81,7 @@ class MotorSide {
   MotorInputPins inputs_, applied_;
   std::array<MotorOutputs, kMaxServoIcs> select_{};  // of the user
   std::array<MotorOutputs, kMaxServoIcs> traced_{};  // of the waveform
-  SerialWords* words_ = nullptr;                     // that the peers have
+  MotorDigest* digest_ = nullptr;                    // that the peers have
   unsigned attachments_ = 0;                         // as traced_ knows them
   bool stopped_ = false;
 };

@@ -36,10 +36,17 @@ constexpr std::uint32_t kOutputBits = channel_control::kAbInvert.mask() | channe
 void ServoChannel::reset(Tick t) {
   ChannelInput input = input_;
   input.reset(t);
+  settle_pwm_times(t, false);
+  const auto pwm = pwm_;
+  const auto settled = pwm_settled_;
+  const PwmTimes times = pwm_times_;
   *this = ServoChannel{};
   input_ = input;
   subcount_.reset(t);
-  for (ChannelPwm& pwm : pwm_) pwm.reset(t);
+  pwm_ = pwm;
+  pwm_settled_ = settled;
+  pwm_times_ = times;
+  for (ChannelPwm& one : pwm_) one.reset(t);
 }
 
 std::uint32_t ServoChannel::status(bool trip) const {
@@ -190,6 +197,21 @@ Tick ServoChannel::next_pwm_event(Tick now, TriangleLine line) const {
   for (unsigned i = 0; i < 3; ++i)
     if (shows_pwm(i)) next = std::min(next, pwm_[i].next_event(now, line));
   return next;
+}
+
+// With inverted outputs both switches of a phase are on in its dead time, and while a trip turns it off.
+void ServoChannel::settle_pwm_times(Tick now, bool trip) const {
+  for (unsigned i = 0; i < 3; ++i) {
+    const Tick balance = pwm_[i].balance(now);
+    const std::uint64_t dead_times = pwm_[i].dead_times();
+    const Tick more = balance - pwm_settled_[i].balance;
+    const std::uint64_t more_dead_times = dead_times - pwm_settled_[i].dead_times;
+    pwm_settled_[i] = {balance, dead_times};
+    if (!shows_pwm(i) || trip) continue;
+    const bool inverted = is(i == 2 ? channel_control::kCInvert : channel_control::kAbInvert);
+    pwm_times_.balance[i] += inverted ? -more : more;
+    pwm_times_.shorts += inverted ? more_dead_times : 0;
+  }
 }
 
 unsigned ServoChannel::pwm(bool trip) const {

@@ -8,6 +8,7 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
+#include "systemc/core/motor_digest.h"
 #include "systemc/servo_ic/channel_capture.h"
 #include "systemc/servo_ic/channel_compare.h"
 #include "systemc/servo_ic/channel_counter.h"
@@ -84,16 +85,25 @@ class ServoChannel {
   std::uint32_t edges_to_equ() const { return compare_.edges_to_hit(counter_.counter(), fine()); }
 
   // The PWM, as it was at mark(), `by` ticks later.
-  void mark() { marked_ = pwm_; }
+  void mark(Tick now) {
+    for (ChannelPwm& pwm : pwm_) pwm.balance(now);
+    marked_ = pwm_;
+  }
   bool repeats(Tick by) const {
     return std::equal(pwm_.begin(), pwm_.end(), marked_.begin(),
                       [by](const ChannelPwm& a, const ChannelPwm& b) { return a.repeats(b, by); });
   }
-  void jump(Tick by) {
-    for (ChannelPwm& pwm : pwm_) pwm.jump(by);
+  void jump(Tick now, Tick by, Tick periods) {
+    for (unsigned i = 0; i < 3; ++i) pwm_[i].jump(now, by, marked_[i], periods);
   }
 
   // Pins
+  // Before the control word or `trip` changes, after the edges up to `now`: what the PWM has done was done with these.
+  void settle_pwm_times(Tick now, bool trip) const;
+  PwmTimes pwm_times(Tick now, bool trip) const {
+    settle_pwm_times(now, trip);
+    return pwm_times_;
+  }
   unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
   bool pulse() const { return is(channel_control::kCPfm) && pfm_.pulse() != is(channel_control::kCInvert); }
   bool dir() const { return is(channel_control::kCPfm) && pfm_.down() != is(channel_control::kPfmDirInvert); }
@@ -146,6 +156,12 @@ class ServoChannel {
   ChannelCompare compare_;
   mutable std::array<ChannelPwm, 3> pwm_;  // executed when somebody looks at it
   std::array<ChannelPwm, 3> marked_;
+  mutable PwmTimes pwm_times_;  // of the pins
+  struct PwmSettled {           // of the switches, when that was brought up to date
+    Tick balance = 0;
+    std::uint64_t dead_times = 0;
+  };
+  mutable std::array<PwmSettled, 3> pwm_settled_;
   ChannelPfm pfm_;
   std::array<ChannelDac, 2> dac_;
   std::array<DacLine, 2> dac_line_;

@@ -17,8 +17,10 @@ void ServoChannels::reset(Tick t) {
 
 void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
   ServoChannel& channel = channel_[offset >> 3];
+  const bool control = x && (offset & 7) == regs::servo_channel::kControl.address;
+  if (control) settle_pwm_times();
   channel.write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
-  if (x && (offset & 7) == regs::servo_channel::kControl.address) channel.change_dac_lines(dac_.unclocked(now_));
+  if (control) channel.change_dac_lines(dac_.unclocked(now_));
 }
 
 void ServoChannels::advance(Tick t) {
@@ -131,7 +133,7 @@ ConverterWords ServoChannels::dac_lines() const {
   return lines;
 }
 
-SerialWords::AdcStream ServoChannels::adc_stream() const {
+MotorDigest::AdcStream ServoChannels::adc_stream() const {
   return {kSerialBits * adc_streams_ - adc_.left(), adc_.word(), adc_.left() == kSerialBits, adc_.end(divider(kAdc))};
 }
 
@@ -198,7 +200,7 @@ Tick ServoChannels::next_equ_of(const ServoChannel& channel) const {
 void ServoChannels::mark() {
   catch_up_pwm();
   marked_ = now_;
-  for (ServoChannel& channel : channel_) channel.mark();
+  for (ServoChannel& channel : channel_) channel.mark(now_);
 }
 
 // Dividers, timers, encoders and PFM take no notice of the clocks: a jump executes them. The clocks latch and start
@@ -216,7 +218,7 @@ bool ServoChannels::repeats() const {
 void ServoChannels::jump(Tick by) {
   catch_up_pwm();
   pwm_now_ += by;
-  for (ServoChannel& channel : channel_) channel.jump(by);
+  for (ServoChannel& channel : channel_) channel.jump(now_, by, by / (now_ - marked_));
   run_ref(now_ + by, false);
   now_ += by;
 }

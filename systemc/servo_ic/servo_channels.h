@@ -11,8 +11,8 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
-#include "systemc/core/serial_words.h"
 #include "systemc/servo_ic/channel_clocks.h"
 #include "systemc/servo_ic/servo_channel.h"
 
@@ -41,6 +41,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     in.adc_b = b;
   }
   void set_trip(bool trip) {
+    if (trip != in.trip) settle_pwm_times();
     if (trip && !in.trip) dac_.ask(next_ref_edge(now_) + kTicksPerRef);  // it is seen, then it asks
     in.trip = trip;
   }
@@ -88,11 +89,15 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
 
   MotorOutputs motor_outputs() const;
 
-  // As SerialWords, after the last executed edge.
+  // As MotorDigest, after the last executed edge.
   ConverterWords dac_lines() const;
-  SerialWords::AdcStream adc_stream() const;
+  MotorDigest::AdcStream adc_stream() const;
   void send_adc(const ConverterWords& words);
   unsigned adc_lines(bool b) const;
+  PwmTimes pwm_times(unsigned channel) const {
+    catch_up_pwm();
+    return channel_[channel].pwm_times(now_, in.trip);
+  }
 
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
   Tick next_event() const override { return next_event(kAllMotorOutputs); }
@@ -127,6 +132,10 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   unsigned divider(const regs::Field& clock) const { return clock.get(in.clock_control); }
   std::uint32_t sent_in_stream(unsigned line) const;
   void catch_up_pwm() const;
+  void settle_pwm_times() const {
+    catch_up_pwm();
+    for (const ServoChannel& channel : channel_) channel.settle_pwm_times(now_, in.trip);
+  }
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
 
@@ -136,7 +145,8 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   }
 
   static constexpr std::uint32_t kPwmPins = 0xFFFFFF;  // of word 0 of the outputs
-  static constexpr std::uint32_t kDacData = 0xFF, kEquPins = 0xF000, kDacPins = 0x30000, kAdcPins = 0xC0000, kDacClk = 0x10000,
+  static constexpr std::uint32_t kDacData = 0xFF, kEquPins = 0xF000, kDacPins = 0x30000, kAdcPins = 0xC0000,
+                                 kDacClk = 0x10000,
                                  kAdcClk = 0x40000;  // of word 1
   static constexpr regs::Field kSclk = regs::servo_ic::clock_control::kSclkDivider,
                                kPfm = regs::servo_ic::clock_control::kPfmDivider,

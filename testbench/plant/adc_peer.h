@@ -7,8 +7,8 @@
 #include <array>
 #include <cstdint>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
-#include "systemc/core/serial_words.h"
 #include "systemc/core/ticks.h"
 
 namespace brick::plant {
@@ -47,10 +47,10 @@ class AdcPeer {
   }
 
   // What it must see: the strobe alone where the engine says what it carries (started()).
-  static MotorOutputs watched(bool words) {
+  static MotorOutputs watched(bool digest) {
     MotorOutputs watched;
     watched.set(motor_pin::kAdcStrobe, 0, 1);
-    if (!words) watched.set(motor_pin::kAdcClk, 0, 1);
+    if (!digest) watched.set(motor_pin::kAdcClk, 0, 1);
     return watched;
   }
   static bool starts(const MotorOutputs& before, const MotorOutputs& after) {
@@ -58,7 +58,7 @@ class AdcPeer {
   }
   // The strobe has risen in this stream: whether a conversion has begun. A command that it carries is a new one at
   // command_end(); a strobe word that begins with 0 carries none.
-  bool started(const SerialWords::AdcStream& stream) {
+  bool started(const MotorDigest::AdcStream& stream) {
     if (stream.clocks - started_ < kStreamBits) return false;
     started_ = stream.clocks;
     if (stream.first) {

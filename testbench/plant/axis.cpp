@@ -29,12 +29,12 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
 }
 
-MotorOutputs Axis::watched() const {
+MotorOutputs Axis::watched(bool digest) const {
   MotorOutputs watched = stops();
   if (!has_amplifier()) return watched;
   watched.set(motor_pin::kAena, par_.channel, 1);
   if (par_.drive == Drive::kStepper) watched.set(motor_pin::kPfmDir, par_.channel, 1);
-  if (has_pwm())
+  if (has_pwm() && !digest)
     for (const MotorField& pin : {motor_pin::kPwmATop, motor_pin::kPwmABot, motor_pin::kPwmBTop, motor_pin::kPwmBBot,
                                   motor_pin::kPwmCTop, motor_pin::kPwmCBot})
       watched.set(pin, par_.channel, 1);
@@ -47,7 +47,7 @@ MotorOutputs Axis::stops() const {
   return stops;
 }
 
-void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
+void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest) {
   const unsigned n = par_.channel;
   amplifier_.enable(after.get(motor_pin::kAena, n) != 0);
   const auto pwm = [n](const MotorOutputs& o) { return o.w[0] >> (motor_pin::kPwmATop.stride * n) & 0x3F; };
@@ -57,7 +57,7 @@ void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& af
     stepper_.begin(pulse, down);
     return;
   }
-  if (has_pwm() && pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
+  if (has_pwm() && !digest && pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
   if (par_.drive == Drive::kStepper && stepper_.changed(tick, pulse, down, amplifier_.on())) wake();
 }
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
-#include "systemc/core/serial_words.h"
 
 namespace brick::plant {
 
@@ -19,10 +19,10 @@ class DacPeer {
   }
 
   // What it must see: the strobe alone where the engine says what was on the lines (latch()).
-  static MotorOutputs watched(bool words) {
+  static MotorOutputs watched(bool digest) {
     MotorOutputs watched;
     watched.set(motor_pin::kDacStrobe, 0, 1);
-    if (words) return watched;
+    if (digest) return watched;
     watched.set(motor_pin::kDacClk, 0, 1);
     for (unsigned n = 0; n < kChannels; ++n) {
       watched.set(motor_pin::kDac, n, 1);

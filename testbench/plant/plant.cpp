@@ -36,8 +36,8 @@ std::uint32_t Plant::ics() const {
   return ics;
 }
 
-void Plant::begin(SerialWords* words) {
-  words_ = words;
+void Plant::begin(MotorDigest* digest) {
+  digest_ = digest;
   next_ = 0;
 }
 
@@ -50,11 +50,11 @@ std::uint16_t Plant::drives(unsigned ic, unsigned channel) const {
 MotorOutputs Plant::watched(unsigned ic) const {
   MotorOutputs watched;
   for (const auto& axis : axes_)
-    if (axis->ic() == ic) watched |= axis->watched();
+    if (axis->ic() == ic) watched |= axis->watched(digest_ != nullptr);
   const auto found = converters_.find(ic);
   if (found == converters_.end()) return watched;
-  if (found->second.uses_dac) watched |= DacPeer::watched(words_ != nullptr);
-  if (found->second.uses_adc) watched |= AdcPeer::watched(words_ != nullptr);
+  if (found->second.uses_dac) watched |= DacPeer::watched(digest_ != nullptr);
+  if (found->second.uses_adc) watched |= AdcPeer::watched(digest_ != nullptr);
   return watched;
 }
 
@@ -63,20 +63,22 @@ MotorOutputs Plant::stops(unsigned ic) const {
   for (const auto& axis : axes_)
     if (axis->ic() == ic) stops |= axis->stops();
   const auto found = converters_.find(ic);
-  if (words_ == nullptr && found != converters_.end() && found->second.uses_adc) stops |= AdcPeer::watched(false);
+  if (digest_ == nullptr && found != converters_.end() && found->second.uses_adc) stops |= AdcPeer::watched(false);
   return stops;
 }
 
 void Plant::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
   const auto found = converters_.find(ic);
   if (found == converters_.end()) return;
-  if (words_ != nullptr)
-    serial_words(ic, found->second, before, after);
+  if (digest_ != nullptr)
+    serial_digest(ic, found->second, before, after);
   else
     serial_pins(tick, ic, found->second, before, after);
   for (const auto& axis : axes_) {
     if (axis->ic() != ic || !axis->has_amplifier()) continue;
-    axis->changed(tick, before, after);
+    axis->changed(tick, before, after, digest_ != nullptr);
+    if (before == after && digest_ != nullptr && axis->has_pwm())
+      axis->begin_pwm(tick, digest_->pwm_times(ic, axis->channel()));
     next_ = std::min(next_, axis->next_event());
   }
 }
@@ -89,12 +91,12 @@ void Plant::serial_pins(Tick tick, unsigned ic, Converters& converters, const Mo
   if (event.start) start_conversion(ic, converters.adc);
 }
 
-void Plant::serial_words(unsigned ic, Converters& converters, const MotorOutputs& before, const MotorOutputs& after) {
-  if (converters.uses_dac && DacPeer::latches(before, after)) converters.dac.latch(words_->dac_lines(ic));
-  if (!converters.uses_adc || !AdcPeer::starts(before, after) || !converters.adc.started(words_->adc_stream(ic)))
+void Plant::serial_digest(unsigned ic, Converters& converters, const MotorOutputs& before, const MotorOutputs& after) {
+  if (converters.uses_dac && DacPeer::latches(before, after)) converters.dac.latch(digest_->dac_lines(ic));
+  if (!converters.uses_adc || !AdcPeer::starts(before, after) || !converters.adc.started(digest_->adc_stream(ic)))
     return;
   start_conversion(ic, converters.adc);
-  words_->send_adc(ic, converters.adc.words());
+  digest_->send_adc(ic, converters.adc.words());
   next_ = std::min(next_, converters.adc.command_end());
 }
 
@@ -121,13 +123,16 @@ bool Plant::step(Tick now, MotorInputPins& inputs) {
   bool edited = false;
   next_ = happened_ < incidents_.size() ? incidents_[happened_].at : kNever;
   for (const auto& axis : axes_) {
-    if (axis->next_event() <= now)
+    if (axis->next_event() <= now) {
+      if (digest_ != nullptr && axis->integrates(now))
+        axis->add_pwm(now, digest_->pwm_times(axis->ic(), axis->channel()));
       edited = axis->step(now, converters_.at(axis->ic()).dac.volts(axis->channel()), inputs[axis->ic()]) || edited;
+    }
     next_ = std::min(next_, axis->next_event());
   }
   for (const auto& [ic, converters] : converters_) {
     next_ = std::min(next_, converters.adc.command_end());
-    if (words_ == nullptr && converters.uses_adc) edited = show_adc(ic, converters, inputs[ic]) || edited;
+    if (digest_ == nullptr && converters.uses_adc) edited = show_adc(ic, converters, inputs[ic]) || edited;
   }
   return edited;
 }

@@ -50,7 +50,7 @@ class Plant : public MotorPeer {
   const AdcPeer& adc(unsigned ic) const { return converters_.at(ic).adc; }
 
   std::uint32_t ics() const override;
-  void begin(SerialWords* words) override;
+  void begin(MotorDigest* digest) override;
   MotorOutputs watched(unsigned ic) const override;
   std::uint16_t drives(unsigned ic, unsigned channel) const override;
   MotorOutputs stops(unsigned ic) const override;
@@ -68,7 +68,7 @@ class Plant : public MotorPeer {
   };
   void serial_pins(Tick tick, unsigned ic, Converters& converters, const MotorOutputs& before,
                    const MotorOutputs& after);
-  void serial_words(unsigned ic, Converters& converters, const MotorOutputs& before, const MotorOutputs& after);
+  void serial_digest(unsigned ic, Converters& converters, const MotorOutputs& before, const MotorOutputs& after);
   void start_conversion(unsigned ic, AdcPeer& adc);
   void command(unsigned ic, const AdcPeer& adc);
   bool show_adc(unsigned ic, const Converters& converters, MotorInputs& inputs) const;
@@ -76,7 +76,7 @@ class Plant : public MotorPeer {
   std::map<unsigned, Converters> converters_;  // by IC
   std::vector<Incident> incidents_;            // in order of time
   std::size_t happened_ = 0;                   // of them
-  SerialWords* words_ = nullptr;
+  MotorDigest* digest_ = nullptr;
   Tick next_ = 0;
 };
 

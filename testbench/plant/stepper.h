@@ -18,7 +18,8 @@ struct StepperParameters {
 
 class Stepper {
  public:
-  explicit Stepper(const StepperParameters& parameters, std::int64_t position = 0) : par_(parameters), zero_(position) {}
+  explicit Stepper(const StepperParameters& parameters, std::int64_t position = 0)
+      : par_(parameters), zero_(position) {}
 
   // Levels from which it starts; without it both low.
   void begin(bool pulse, bool down) {

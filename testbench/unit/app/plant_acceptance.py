@@ -50,7 +50,7 @@ def plant_torque():
     check(angle * counts - 1 < position < (angle + speed * late) * counts + 1,
           f"{position} counts, expected {angle * counts} and at most {late} s more")
     check(abs(velocity * 1000 / counts / speed - 1) < 0.05, f"{velocity} counts/ms, expected {speed * counts / 1000}")
-    for count, place in zip(values(outputs[0], "servo_ic0.ch1.count"), (position, later)):
+    for count, place in zip(values(outputs[0], "servo_ic0.ch1.count"), (position, later), strict=True):
         check(abs(count - math.floor(place)) <= 1, f"counter {count} at position {place}")
     check(later > position + 10, "it stops at once")
 
@@ -83,10 +83,10 @@ def plant_load():
         check(r.returncode == 0 and r.stdout == "6\n", f"{r.returncode} {r.stdout} {r.stderr}")
         file.write_text("P1=5\nNONSENSE\nP1=7\n")
         r = play(["P1"], "--load", str(file))
-        check(r.returncode == 1 and r.stdout == "" and f"{file}:2: NONSENSE: ERR003" in r.stderr,
+        check(r.returncode == 1 and r.stdout == "" and f"{file}:2: `NONSENSE`: ERR003" in r.stderr,
               f"{r.returncode} {r.stdout} {r.stderr}")
         r = brick("run", "smoke", "--engine", "systemc", "--load", str(file))
-        check(r.returncode == 1 and "FAIL" in r.stdout and f"{file}:2: NONSENSE" in r.stdout, r.stdout)
+        check(r.returncode == 1 and "FAIL" in r.stdout and f"{file}:2: `NONSENSE`" in r.stdout, r.stdout)
         r = play(["P1"], "--load", f"{folder}/none.pmc")
         check(r.returncode == 2 and r.stderr == f"brick exec: --load {folder}/none.pmc: cannot be read; expected a "
               "command file\n", r.stderr)
@@ -107,7 +107,7 @@ def plant_none():
     check(first.returncode == 0 and "ch1.count=5" in first.stdout, first.stdout + first.stderr)
     check(first.stdout == second.stdout, second.stdout + second.stderr)
     r = play(["@signal plant.axis1.position"])
-    check(r.returncode == 2 and "no signal plant.axis1.position" in r.stderr, r.stderr)
+    check(r.returncode == 2 and "no signal `plant.axis1.position`" in r.stderr, r.stderr)
 
 
 def plant_mistakes():
@@ -173,7 +173,7 @@ def plant_wave():
     script = [*BY_HAND, "M114=1 M102=3280", "@wait 20ms", "@signal plant.axis1.position", "@time"]
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "x.vcd")
-        r = play(script, "--plant", "dac8", "--wave", str(file), "--trace", "plant.*")
+        r = play(script, "--plant", "dac8", "--load", "dac8", "--wave", str(file), "--trace", "plant.*")
         check(r.returncode == 0, r.stderr)
         text = file.read_text()
         code = re.search(r"\$var real 64 (\S+) position \$end", text.split("axis1")[1])[1]
@@ -182,7 +182,7 @@ def plant_wave():
         check(curve == sorted(curve), "the position goes back")
         end, = values(r.stdout, "plant.axis1.position")
         check(0 <= end - curve[-1] < 30, f"the curve ends at {curve[-1]}, @signal says {end}")
-        plain = play(script, "--plant", "dac8")
+        plain = play(script, "--plant", "dac8", "--load", "dac8")
         check(plain.stdout == r.stdout, "a waveform changes the run")
 
 

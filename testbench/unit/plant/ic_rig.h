@@ -11,14 +11,15 @@ namespace brick::plant {
 namespace servo_channel = regs::servo_channel;
 namespace servo_ic = regs::servo_ic;
 
-class IcRig : public PlantRig, private SerialWords {
+class IcRig : public PlantRig, private MotorDigest {
  public:
   static constexpr unsigned kMaxCount = 1500;
   static constexpr Tick kPhase = 2 * kMaxCount + 3;
 
-  // `words`: the peer has the serial streams as words, else it sees the edges of their clocks.
-  explicit IcRig(MotorPeer& peer, bool words = false) : PlantRig(peer) {
-    peer.begin(words ? this : nullptr);
+  // `digest`: the peer has one, else it sees every edge.
+  explicit IcRig(MotorPeer& peer, bool digest = false) : PlantRig(peer) {
+    peer.begin(digest ? this : nullptr);
+    peer.changed(0, 0, {}, {});
     ic_.reset(0);
     using namespace servo_ic;
     write(0, kPwmControl, pwm_control::kMaxCount.set(0, kMaxCount));  // no dead time, PFM pulses of one PFM_CLK
@@ -65,6 +66,7 @@ class IcRig : public PlantRig, private SerialWords {
   AdcStream adc_stream(unsigned) override { return ic_.channels().adc_stream(); }
   void send_adc(unsigned, const ConverterWords& words) override { ic_.send_adc(words); }
   unsigned adc_lines(unsigned, bool b) override { return ic_.channels().adc_lines(b); }
+  PwmTimes pwm_times(unsigned, unsigned channel) override { return ic_.channels().pwm_times(channel); }
 
   ServoIc ic_{sc_core::sc_gen_unique_name("ic")};
   MotorOutputs outputs_, seen_;

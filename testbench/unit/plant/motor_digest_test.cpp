@@ -1,5 +1,5 @@
-// Serial streams as words: what an engine says of them at once is what their pins show bit by bit. Both runs must have
-// the same DAC values, conversions, commands and pins at every tick.
+// The digest: what an engine says of serial streams and PWM at once is what the pins show edge by edge. Both runs must
+// have the same DAC values, conversions, commands, positions and pins at every tick.
 #include <set>
 
 #include "testbench/unit/plant/ic_rig.h"
@@ -64,7 +64,10 @@ std::vector<Sample> samples(const Scene& scene, bool words) {
     }
     rig.run(IcRig::kPhase - rig.now() % IcRig::kPhase + scene.change);
     for (unsigned n = 0; n < kChannels; ++n)
-      rig.write(n, kControl, kMode ^ (i % 2 == 0 ? control::kAbInvert.mask() : i % 3 == 0 ? control::kAbDac.mask() : 0));
+      rig.write(n, kControl,
+                kMode ^ (i % 2 == 0   ? control::kAbInvert.mask()
+                         : i % 3 == 0 ? control::kAbDac.mask()
+                                      : 0));
     rig.run(IcRig::kPhase);
   }
   return seen;
@@ -84,7 +87,7 @@ void expect_equal(const Scene& scene, std::size_t least_dac, std::size_t least_a
   EXPECT_GE(adc.size(), least_adc) << "too little was measured to compare";
 }
 
-TEST(SerialWords, AreWhatThePinsShowAtEveryBitRate) {
+TEST(MotorDigest, AreWhatThePinsShowAtEveryBitRate) {
   for (unsigned n = 0; n <= 4; ++n) {
     Scene scene;
     scene.clocks = n << 9 | n << 6 | 0x12;
@@ -93,7 +96,7 @@ TEST(SerialWords, AreWhatThePinsShowAtEveryBitRate) {
 }
 
 // The lines change in the middle of a stream: each tick of a bit (24 of them) and of its neighbours.
-TEST(SerialWords, AreWhatThePinsShowWhenTheOutputModeChanges) {
+TEST(MotorDigest, AreWhatThePinsShowWhenTheOutputModeChanges) {
   for (Tick change = 0; change < 60; change += 3) {
     Scene scene;
     scene.change = change;
@@ -104,7 +107,7 @@ TEST(SerialWords, AreWhatThePinsShowWhenTheOutputModeChanges) {
   for (fast.change = 0; fast.change < 12; ++fast.change) expect_equal(fast, 40, 40);
 }
 
-TEST(SerialWords, AreWhatThePinsShowWithOtherStrobes) {
+TEST(MotorDigest, AreWhatThePinsShowWithOtherStrobes) {
   Scene sixteen;
   sixteen.dac_strobe = 0x7FFF00;
   sixteen.dac_bits = 16;
@@ -119,7 +122,7 @@ TEST(SerialWords, AreWhatThePinsShowWithOtherStrobes) {
 }
 
 // $F8CDFE + $010000 n clears the faults of channel n + 1: FAULT falls with the last bit of the word.
-TEST(SerialWords, CommandsComeWithTheirLastBit) {
+TEST(MotorDigest, CommandsComeWithTheirLastBit) {
   for (unsigned n = 0; n < 2; ++n) {
     Scene scene;
     scene.adc_strobe = 0xF8CDFE + 0x010000 * n;
@@ -129,6 +132,60 @@ TEST(SerialWords, CommandsComeWithTheirLastBit) {
       falls += (seen[t - 1].pins[n] >> kFault & 1) != 0 && (seen[t].pins[n] >> kFault & 1) == 0 ? 1 : 0;
     EXPECT_GE(falls, 1u) << "the fault was never cleared";
     expect_equal(scene, 40, 40);
+  }
+}
+
+// A three-phase and a brush motor at PWM outputs whose commands, modes and polarity change: currents and positions.
+std::vector<double> motions(bool digest, Tick change, unsigned deadtime) {
+  PlantParameters parameters;
+  for (const unsigned n : {0u, 1u}) {
+    AxisParameters axis;
+    axis.channel = n;
+    axis.drive = n == 0 ? Drive::kThreePhase : Drive::kBrush;
+    axis.motor.inertia = 1e-6;
+    axis.motor.viscous = 1e-5;
+    parameters.axes.push_back(axis);
+  }
+  Plant plant(parameters);
+  IcRig rig(plant, digest);
+  std::vector<double> seen;
+  rig.on_edge = [&](Tick t) {
+    if (t % 64 != 0) return;
+    const Plant& same = plant;
+    for (const unsigned n : {0u, 1u}) {
+      seen.push_back(static_cast<double>(same.axis(n).position(t)));
+      seen.push_back(same.axis(n).motor().current_a());
+      seen.push_back(same.axis(n).motor().current_b());
+      seen.push_back(static_cast<double>(rig.inputs[0].pins[n]));
+    }
+  };
+  rig.write(0, servo_ic::kPwmControl, IcRig::kMaxCount << 8 | deadtime);
+  constexpr std::uint32_t kOn = control::kAena.mask() | 3u;
+  for (const unsigned n : {0u, 1u}) rig.write(n, kControl, kOn);
+  for (unsigned i = 0; i < 12; ++i) {
+    for (const unsigned n : {0u, 1u}) {
+      rig.write(n, kOutA, (0x10000u + 800 - 130 * i) << 8 & 0xFFFFFF);
+      rig.write(n, kOutB, (0x10000u - 1700 + 290 * i) << 8 & 0xFFFFFF);  // beyond the triangle at first
+      rig.write(n, kOutC, (0x10000u + 100 * n + 55 * i) << 8 & 0xFFFFFF);
+    }
+    rig.run(IcRig::kPhase + change);
+    if (i == 4) rig.write(0, kControl, kOn | control::kCPfm.mask());
+    if (i == 5) rig.write(0, kControl, kOn);
+    if (i == 6) rig.write(1, kControl, kOn | control::kAbDac.mask());
+    if (i == 7) rig.write(1, kControl, kOn);
+    if (i == 10) rig.write(1, kControl, kOn | control::kAbInvert.mask());
+    rig.run(IcRig::kPhase);
+  }
+  return seen;
+}
+
+TEST(MotorDigest, TimesOfThePwmAreWhatThePinsShow) {
+  for (const unsigned deadtime : {0u, 1u, 15u}) {
+    for (Tick change = 0; change < 1600; change += 397) {
+      const auto pins = motions(false, change, deadtime), digest = motions(true, change, deadtime);
+      ASSERT_EQ(pins, digest) << "dead time " << deadtime << ", change " << change;
+      EXPECT_GE(std::set<double>(pins.begin(), pins.end()).size(), 200u) << "too little has moved to compare";
+    }
   }
 }
 
