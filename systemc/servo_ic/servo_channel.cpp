@@ -98,9 +98,11 @@ std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) c
 }
 
 void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint32_t value, bool trip) {
-  settle_ = 0;
+  const unsigned code = word(x, offset);
+  if (code != word(words::kOutA) && code != word(words::kOutB) && code != word(words::kOutC))
+    settle_ = 0;  // what is counted of an output are its pulses, which say so themselves
   const std::uint32_t held = trip ? kOutputBits : 0;
-  switch (word(x, offset)) {
+  switch (code) {
     case word(words::kTimer1):
       if (fine()) compare_.set_b_fraction(value);
       break;
