@@ -13,11 +13,13 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/options.h"
+#include "app/plant_signals.h"
 #include "app/timing_waivers.h"
 #include "systemc/core/trace.h"
 #include "systemc/cpu/gdb_server.h"
 #include "systemc/machine/machine.h"
 #include "testbench/host/host_link.h"
+#include "testbench/plant/plant.h"
 
 namespace brick {
 
@@ -39,6 +41,7 @@ class Simulation {
   Machine& machine() { return *machine_; }
   HostBus& bus() { return bus_; }
   HostLink& link() { return link_; }
+  plant::Plant* plant() { return plant_.get(); }  // of --plant; nullptr: none
   TimingBook& timing() { return *timing_; }
 
   // What broke a rule of the buses, one line each: what fails the run, what a waiver excuses, waivers not needed and
@@ -66,7 +69,9 @@ class Simulation {
   double wall_seconds() const;
 
   std::string title_;
+  std::unique_ptr<plant::Plant> plant_;  // outlives the machine, which calls it
   std::unique_ptr<Machine> machine_;
+  std::unique_ptr<PlantSignals> plant_signals_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;
   const std::optional<std::string> forced_bcr_;

@@ -14,42 +14,51 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
       grids_(encoder_.grids()),
       noise_(parameters.noise, Random(seed, 2 * (kChannels * parameters.ic + parameters.channel))),
       adc_random_(seed, 2 * (kChannels * parameters.ic + parameters.channel) + 1),
-      motor_(parameters.motor, encoder_.units_per_revolution()),
+      motor_(parameters.motor, encoder_.units_per_revolution(), parameters.start * kUnitsPerCount),
       amplifier_(parameters.amplifier),
-      stepper_(parameters.stepper) {
+      stepper_(parameters.stepper, parameters.start * kUnitsPerCount),
+      motion_{0, 1, parameters.start * kUnitsPerCount, parameters.start * kUnitsPerCount},
+      goal_(parameters.start * kUnitsPerCount) {
   if (par_.ic >= kMaxServoIcs || par_.channel >= kChannels) throw std::invalid_argument("axis: no such channel");
   if (step_ < 1 || par_.stepper.move_time < 1) throw std::invalid_argument("axis: a time below one tick");
   if ((switches_.mask() & owned_) != 0) throw std::invalid_argument("axis: a switch on a pin of the encoder");
   owned_ = static_cast<std::uint16_t>(owned_ | switches_.mask() | (has_amplifier() ? 1u << kFault : 0));
   if (par_.noise.every != 0 && (par_.noise.pins & ~unsigned{owned_}) != 0)
     throw std::invalid_argument("axis: noise on a pin of others");
+  motor_.set_load(par_.load);
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
+}
+
+MotorOutputs Axis::watched(bool digest) const {
+  MotorOutputs watched = stops();
+  if (!has_amplifier()) return watched;
+  watched.set(motor_pin::kAena, par_.channel, 1);
+  if (par_.drive == Drive::kStepper) watched.set(motor_pin::kPfmDir, par_.channel, 1);
+  if (has_pwm() && !digest)
+    for (const MotorField& pin : {motor_pin::kPwmATop, motor_pin::kPwmABot, motor_pin::kPwmBTop, motor_pin::kPwmBBot,
+                                  motor_pin::kPwmCTop, motor_pin::kPwmCBot})
+      watched.set(pin, par_.channel, 1);
+  return watched;
 }
 
 MotorOutputs Axis::stops() const {
   MotorOutputs stops;
   if (par_.drive == Drive::kStepper) stops.set(motor_pin::kPfmPulse, par_.channel, 1);
-  if (has_adc()) {
-    stops.set(motor_pin::kAdcClk, par_.channel, 1);
-    stops.set(motor_pin::kAdcStrobe, par_.channel, 1);
-  }
   return stops;
 }
 
-void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
-  amplifier_.enable(after.get(motor_pin::kAena, par_.channel) != 0);
-  const auto pwm = [this](const MotorOutputs& o) {
-    return o.w[0] >> (motor_pin::kPwmATop.stride * par_.channel) & 0x3F;
-  };
+void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest) {
   const unsigned n = par_.channel;
+  amplifier_.enable(after.get(motor_pin::kAena, n) != 0);
+  const auto pwm = [n](const MotorOutputs& o) { return o.w[0] >> (motor_pin::kPwmATop.stride * n) & 0x3F; };
   const bool pulse = after.get(motor_pin::kPfmPulse, n) != 0, down = after.get(motor_pin::kPfmDir, n) != 0;
   if (before == after) {  // just attached
-    meter_.begin(tick, pwm(after));
+    if (has_pwm()) meter_.begin(tick, pwm(after));
     stepper_.begin(pulse, down);
     return;
   }
-  if (pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
-  if (par_.drive == Drive::kStepper) stepper_.changed(tick, pulse, down, amplifier_.on());
+  if (has_pwm() && !digest && pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
+  if (par_.drive == Drive::kStepper && stepper_.changed(tick, pulse, down, amplifier_.on())) wake();
 }
 
 bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {
@@ -84,11 +93,11 @@ void Axis::move(Tick now, double dac_volts) {
   }
   if (!started_) {
     started_ = true;
-    motion_ = {now - step_, now, 0, 0};
+    motion_ = {now - step_, now, motion_.p1, motion_.p1};
   }
   if (now < motion_.t1) return;
-  const auto phases = meter_.take(now);
-  if (meter_.take_short() && par_.drive != Drive::kTorque) amplifier_.trip(Amplifier::Fault::kShortedBus);
+  const auto phases = has_pwm() ? meter_.take(now) : std::array<double, PwmMeter::kPhases>{};
+  if (has_pwm() && meter_.take_short()) amplifier_.trip(Amplifier::Fault::kShortedBus);
   while (now >= motion_.t1) integrate(dac_volts, phases);
 }
 
@@ -127,6 +136,12 @@ std::uint32_t Axis::adc_word(bool b) {
   const double amps = b ? motor_.current_b() : motor_.current_a();
   const std::int64_t noise = adc_random_.noise(par_.amplifier.adc_noise);
   return amplifier_.adc_word(amps, noise, b ? 0 : static_cast<unsigned>(amplifier_.fault()));
+}
+
+double Axis::velocity(Tick now) const {
+  if (now >= motion_.t1 && !has_motor()) return 0;
+  return static_cast<double>(motion_.p1 - motion_.p0) / static_cast<double>(kUnitsPerCount) *
+         static_cast<double>(kPwmClockHz) / static_cast<double>(motion_.t1 - motion_.t0);
 }
 
 void Axis::turn(std::int64_t counts, Tick duration) {

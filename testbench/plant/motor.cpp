@@ -10,8 +10,8 @@ constexpr double kTwoPi = 6.283185307179586, kSqrt3 = 1.7320508075688772;
 
 }  // namespace
 
-Motor::Motor(const MotorParameters& parameters, std::int64_t units_per_revolution)
-    : par_(parameters), revolution_(units_per_revolution) {
+Motor::Motor(const MotorParameters& parameters, std::int64_t units_per_revolution, std::int64_t position)
+    : par_(parameters), revolution_(units_per_revolution), position_(position) {
   if (!(par_.inertia > 0) || !(par_.inductance > 0) || par_.viscous < 0 || par_.coulomb < 0)
     throw std::invalid_argument("motor: inertia and inductance must be positive, friction not negative");
 }
@@ -21,6 +21,7 @@ double Motor::current_b() const { return three_phase_ ? -alpha_ / 2 + beta_ * kS
 // Coulomb friction opposes motion and at most stops it: what it could take away in this step is taken from the speed
 // that the other torques give. A rotor at rest so stays until they exceed it.
 void Motor::turn(double dt, double torque) {
+  torque_ = torque;
   double speed = speed_ + dt / par_.inertia * (torque - load_ - par_.viscous * speed_);
   const double brake = dt / par_.inertia * par_.coulomb;
   if (std::fabs(speed) <= brake)

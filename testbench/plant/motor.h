@@ -21,7 +21,7 @@ struct MotorParameters {
 
 class Motor {
  public:
-  Motor(const MotorParameters& parameters, std::int64_t units_per_revolution);
+  Motor(const MotorParameters& parameters, std::int64_t units_per_revolution, std::int64_t position = 0);
 
   // One step of `dt` seconds with the current given, or with voltages at the terminals (three-phase: against the star
   // point of the supply; the motor's own star point is not connected).
@@ -38,13 +38,14 @@ class Motor {
   std::int64_t position() const { return position_; }  // encoder units
   double current_a() const { return alpha_; }
   double current_b() const;
+  double torque() const { return torque_; }  // N m, that of the current
 
  private:
   void turn(double dt, double torque);
 
   MotorParameters par_;
   std::int64_t revolution_;
-  double load_ = 0, speed_ = 0, rest_ = 0;
+  double load_ = 0, speed_ = 0, rest_ = 0, torque_ = 0;
   std::int64_t position_ = 0;
   double alpha_ = 0, beta_ = 0;  // currents; alpha_ alone when there is one winding
   bool three_phase_ = false;

@@ -18,17 +18,19 @@ struct StepperParameters {
 
 class Stepper {
  public:
-  explicit Stepper(const StepperParameters& parameters) : par_(parameters) {}
+  explicit Stepper(const StepperParameters& parameters, std::int64_t position = 0)
+      : par_(parameters), zero_(position) {}
 
   // Levels from which it starts; without it both low.
   void begin(bool pulse, bool down) {
     pulse_ = pulse;
     down_ = down;
   }
-  // Levels of the pins after an edge.
-  void changed(Tick tick, bool pulse, bool down, bool enabled) {
+  // Levels of the pins after an edge. True when the rotor has somewhere else to go.
+  bool changed(Tick tick, bool pulse, bool down, bool enabled) {
     if (down != down_) dir_edge_ = tick;
     down_ = down;
+    const std::int64_t before = steps_;
     if (pulse && !pulse_) {
       if (tick - dir_edge_ < par_.dir_setup) ++violations_;
       pulse_edge_ = tick;
@@ -37,6 +39,7 @@ class Stepper {
       ++violations_;
     }
     pulse_ = pulse;
+    return steps_ != before;
   }
 
   std::int64_t steps() const { return steps_; }
@@ -44,12 +47,13 @@ class Stepper {
 
   // Where the rotor goes from `now` on; `present` is the motion until now.
   Motion motion(Tick now, const Motion& present) const {
-    const std::int64_t goal = steps_ * par_.units_per_step;
+    const std::int64_t goal = zero_ + steps_ * par_.units_per_step;
     return goal == present.p1 ? present : Motion{now, now + par_.move_time, present.at(now), goal};
   }
 
  private:
   StepperParameters par_;
+  std::int64_t zero_;  // position without a step
   std::int64_t steps_ = 0;
   std::uint64_t violations_ = 0;
   bool pulse_ = false, down_ = false;
