@@ -1,0 +1,51 @@
+/* The 32 motors as the servo task has them: state of the loop, positions, and what was resolved from variables when
+ * those were written. Index 0 is motor 1. Formats: motion/fixed_point.h.
+ *
+ * Owners: S servo task; V who writes I-variables (background and real-time task, the servo task held off); C who
+ * changes the state of the loop (motion/motor_state.h, the servo task held off). */
+#ifndef FIRMWARE_MOTION_MOTOR_H
+#define FIRMWARE_MOTION_MOTOR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/base/dimensions.h"
+
+enum motor_loop { LOOP_KILLED, LOOP_OPEN, LOOP_CLOSED };
+
+/* Who says where the motor shall be. */
+enum motor_path {
+  PATH_STANDS, /* it keeps its trajectory position */
+  PATH_OWN,    /* its own ring: jogs, homing, RAPID, ramps (motion/jog.h) */
+  PATH_SYSTEM  /* the ring of its coordinate system (motion/coordinate_system.h) */
+};
+
+struct motor {
+  volatile enum motor_loop loop; /* C */
+  volatile enum motor_path path; /* who plans, servo task held off; S when a path has ended */
+  /* positions, S */
+  int64_t trajectory;   /* by its path */
+  int64_t commanded;    /* net desired position: with following, compensation, backlash; D:+$08 */
+  int64_t actual;       /* D:+$0B */
+  int64_t master;       /* position of the master that it follows, D:+$0D */
+  int64_t compensation; /* D:+$10 */
+  int64_t bias;         /* D:+$4C: not part of the loop; axis offsets and the like */
+  int32_t desired_step; /* net desired position, less that of the last servo interrupt: 0 is "desired velocity zero" */
+  int32_t velocity;     /* X:+$1D, raw velocity */
+  /* outputs, S */
+  int32_t open_output; /* C: of a loop that is open, output */
+  int32_t output;      /* what the loop commands, before bias and commutation: output */
+  /* variables, V */
+  int32_t position_scale; /* Ixx08, at least 1 here */
+  int32_t velocity_scale; /* Ixx09 */
+  uint32_t cs;            /* coordinate system whose time base it moves by */
+};
+
+extern struct motor motors[MOTORS];
+extern volatile uint32_t motors_active; /* V: bit n-1: Ixx00 of motor n */
+
+/* 1/(32 Ixx08) counts of `counts`; rounded to nearest. Floating point. */
+int64_t motor_position_of(uint32_t motor, double counts);
+double motor_counts_of(uint32_t motor, int64_t position);
+
+#endif
