@@ -20,6 +20,22 @@ enum motor_path {
   PATH_SYSTEM  /* the ring of its coordinate system (motion/coordinate_system.h) */
 };
 
+/* What the status words tell (motion/motor_status.h), each by its own owner, any task. */
+struct motor_status_flags {
+  /* jogs and homing */
+  volatile bool timed_move;   /* a move of known length, not a jog that goes on or a search before its trigger */
+  volatile bool aborting;     /* the ramp of an abort, Ixx15 */
+  volatile bool home_search;  /* until its trigger */
+  volatile bool trigger_move; /* one that has not found its trigger */
+  volatile bool home_complete;
+  /* phasing */
+  volatile bool reference_missing; /* commutated, and no phase reference: the loop may not be closed */
+  volatile bool phasing;           /* a search or read is under way */
+  /* protection; the first five stay until the loop is closed again */
+  volatile bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit;
+  volatile bool warning_error, positive_limit, negative_limit, in_position;
+};
+
 struct motor {
   volatile enum motor_loop loop; /* C */
   volatile enum motor_path path; /* who plans, servo task held off; S when a path has ended */
@@ -28,7 +44,7 @@ struct motor {
   int64_t commanded;    /* net desired position: with following, compensation, backlash; D:+$08 */
   int64_t actual;       /* D:+$0B */
   int64_t master;       /* position of the master that it follows, D:+$0D */
-  int64_t compensation; /* D:+$10 */
+  int64_t compensation; /* of the measured position, by tables and backlash: commanded has it subtracted; D:+$10 */
   int64_t bias;         /* D:+$4C: not part of the loop; axis offsets and the like */
   int32_t desired_step; /* net desired position, less that of the last servo interrupt: 0 is "desired velocity zero" */
   int32_t velocity;     /* X:+$1D, raw velocity */
@@ -39,6 +55,7 @@ struct motor {
   int32_t position_scale; /* Ixx08, at least 1 here */
   int32_t velocity_scale; /* Ixx09 */
   uint32_t cs;            /* coordinate system whose time base it moves by */
+  struct motor_status_flags status;
 };
 
 extern struct motor motors[MOTORS];

@@ -1,0 +1,18 @@
+/* Following error, limits, faults, overload, in position (motion:1.4, motion:9.4): looked at in the background. */
+#ifndef FIRMWARE_MOTION_PROTECTION_H
+#define FIRMWARE_MOTION_PROTECTION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What a trip needs of higher layers; image/tables.c fills it in. */
+struct protection_hooks {
+  void (*abort)(uint32_t cs); /* the program of a coordinate system and all its motors */
+};
+extern const struct protection_hooks protection_hooks;
+
+void protection_motor_changed(uint32_t motor); /* 1..32 */
+void protection_servo(uint32_t motor);         /* 0..31, servo task: overload, in position of the foreground */
+void protection_pass(void);                    /* background: all motors */
+
+#endif
