@@ -8,7 +8,7 @@
  * the fraction. */
 void piece_set_time(struct piece* piece, int64_t time) {
   if (time < 1) time = 1;
-  piece->time = time;
+  piece->time = piece->end = time;
   piece->shift = (uint32_t)__builtin_clzll((uint64_t)time) - 1u;
   const double normal = math_scale((double)time, (int)piece->shift - 62); /* [1, 2) */
   piece->inverse = (uint64_t)math_to_integer(math_scale(1.0 / normal, 61)) << 2u;
@@ -37,6 +37,15 @@ void piece_ring_take_back(struct piece_ring* ring, uint32_t number) {
   if (number - ring->executing <= ring->added - ring->executing) ring->added = number;
 }
 
+bool piece_ring_replace(struct piece_ring* ring, uint32_t number, int64_t end, uint32_t count) {
+  const int32_t ahead = (int32_t)(number - ring->executing);
+  if (ahead < 0 || (ahead == 0 && ring->elapsed >= end) || (int32_t)(ring->added - number) <= 0) return false;
+  for (uint32_t i = number + 1u; i != ring->added; i++) piece_ring_at(ring, i)->end = 0;
+  piece_ring_at(ring, number)->end = end;
+  ring->added += count;
+  return true;
+}
+
 void piece_ring_clear(struct piece_ring* ring) {
   ring->executing = ring->added;
   ring->elapsed = 0;
@@ -47,8 +56,8 @@ bool piece_ring_advance(struct piece_ring* ring, int64_t increment) {
   if (piece_ring_is_empty(ring)) return false;
   int64_t elapsed = ring->elapsed + increment;
   const struct piece* piece = piece_ring_at(ring, ring->executing);
-  while (elapsed >= piece->time) { /* no more than there are pieces */
-    elapsed -= piece->time;
+  while (elapsed >= piece->end) { /* no more than there are pieces */
+    elapsed -= piece->end;
     ring->executing++;
     if (piece_ring_is_empty(ring)) {
       ring->elapsed = 0;

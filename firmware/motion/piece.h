@@ -22,6 +22,7 @@ struct cubic {
 
 struct piece {
   int64_t time;     /* trajectory time, above 0 */
+  int64_t end;      /* when the next one follows: `time`; below it: cut short, 0: passed over */
   uint64_t inverse; /* piece_set_time makes both */
   uint32_t shift;
   uint32_t motors; /* slots of the ring that have a cubic in it; the others stand */
@@ -56,6 +57,9 @@ void piece_set_time(struct piece* piece, int64_t time); /* 1 to 2^47; uses float
 void piece_ring_add(struct piece_ring* ring);
 /* Servo task held off: the pieces from `number` on are forgotten, which must not be the executing one or older. */
 void piece_ring_take_back(struct piece_ring* ring, uint32_t number);
+/* The same while an older one executes: piece `number` is left after `end`, those behind it are passed over, and `count`
+ * filled ones behind them follow. False, with nothing changed: the servo task is beyond that end already. */
+bool piece_ring_replace(struct piece_ring* ring, uint32_t number, int64_t end, uint32_t count);
 void piece_ring_clear(struct piece_ring* ring); /* servo task held off */
 
 /* Servo task. On by `increment` of trajectory time, into the next pieces if need be; false: the ring has run empty, and

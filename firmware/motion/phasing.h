@@ -1,0 +1,14 @@
+/* Which motors have a phase reference: status word 2, bits 8 and 9. Motors are numbered from 0 here. A loop of a motor
+ * whose reference is missing cannot be closed. How one is found: motion/phase_search.h. */
+#ifndef FIRMWARE_MOTION_PHASING_H
+#define FIRMWARE_MOTION_PHASING_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+void phasing_initialize(void);            /* power-up, $$$ and $$$***, after the I-variables */
+bool phasing_is_missing(uint32_t motor);  /* bit 8. Any task */
+bool phasing_is_searched(uint32_t motor); /* bit 9. Any task */
+void phasing_set_missing(uint32_t motor, bool missing);
+
+#endif
