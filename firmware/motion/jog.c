@@ -15,9 +15,9 @@
 #include "firmware/motion/own_path.h"
 #include "firmware/variables/i_variables.h"
 
-#define FASTEST 2147483648.0      /* 1/(32 Ixx08) counts a ms */
+#define FASTEST 2147483648.0 /* 1/(32 Ixx08) counts a ms */
 #define LONGEST_CHANGE_MS 8388608.0
-#define STANDS_STILL 0.5          /* a speed below this is what roundings have left */
+#define STANDS_STILL 0.5 /* a speed below this is what roundings have left */
 
 enum { SERVO_CYCLES_TO_PLAN = 4, SERVO_CYCLES_GIVEN_UP = 1024 };
 
@@ -70,7 +70,9 @@ static int32_t rate_of(uint32_t motor, bool by_program) {
 
 static double units(uint32_t motor) { return (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale; }
 
-static double real(uint32_t motor, enum i_real_name ixxnn) { return i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + ixxnn); }
+static double real(uint32_t motor, enum i_real_name ixxnn) {
+  return i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + ixxnn);
+}
 
 static struct motion make(uint32_t motor, enum aim aim, double speed) {
   const double scale = units(motor), fast = speed * scale;

@@ -71,8 +71,7 @@ static struct speed_plan plan_forward(const struct speed_limits* l, double from,
   /* Too near to change the speed and back: it is kept until it is time to stop. */
   if (from > 0.0) {
     const double stop = change_distance(l, from, 0.0);
-    if (from >= top || distance < stop + from * l->shortest)
-      return (struct speed_plan){from, (distance - stop) / from};
+    if (from >= top || distance < stop + from * l->shortest) return (struct speed_plan){from, (distance - stop) / from};
   }
   return (struct speed_plan){peak_speed(l, from, distance), 0.0};
 }
