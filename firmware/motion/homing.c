@@ -15,7 +15,8 @@ bool homing_begin(uint32_t motor, bool by_program) {
 
 void homing_here(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  jog_count_from(motor, motors[motor].trajectory);
+  const struct motor* m = &motors[motor];
+  jog_count_from(motor, m->loop == LOOP_CLOSED ? m->trajectory : m->actual);
   motors[motor].status.home_complete = true;
   hal_unmask(state);
 }

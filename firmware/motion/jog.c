@@ -227,6 +227,15 @@ void jog_set_position_before(uint32_t motor, int64_t position) {
   hal_unmask(state);
 }
 
+void jog_make_whole(uint32_t motor) {
+  const double whole = (double)math_nearest(motor_counts_of(motor, jog_commanded(motor)));
+  const int64_t position = motor_position_of(motor, whole);
+  const uint32_t state = hal_mask_servo();
+  if (motors[motor].loop == LOOP_CLOSED && motors[motor].path == PATH_STANDS && !jog_is_moving(motor))
+    motors[motor].trajectory = position;
+  hal_unmask(state);
+}
+
 void jog_count_from(uint32_t motor, int64_t position) {
   struct jog* j = &jogs[motor];
   desired_position_shift(motor, -position);

@@ -38,6 +38,7 @@ bool jog_is_homing(uint32_t motor); /* searches for home: software limits do not
 int64_t jog_position_before(uint32_t motor);
 void jog_set_position_before(uint32_t motor, int64_t position);
 int64_t jog_commanded(uint32_t motor); /* trajectory position now, of one moment */
+void jog_make_whole(uint32_t motor);   /* J!: a motor that stands is commanded to the nearest whole count */
 int64_t jog_actual(uint32_t motor);
 /* All positions are counted from the present `position`. Servo task held off, or in it. */
 void jog_count_from(uint32_t motor, int64_t position);
