@@ -19,7 +19,7 @@
 #define LONGEST_CHANGE_MS 8388608.0
 #define STANDS_STILL 0.5 /* a speed below this is what roundings have left */
 
-enum { SERVO_CYCLES_TO_PLAN = 4, SERVO_CYCLES_GIVEN_UP = 1024 };
+enum { SERVO_CYCLES_TO_PLAN = 2, SERVO_CYCLES_GIVEN_UP = 1024 };
 
 enum aim { AIM_SPEED, AIM_REST, AIM_TARGET, AIM_RAMP };
 
