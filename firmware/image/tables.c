@@ -23,7 +23,6 @@
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
-#include "firmware/motion/commutation.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_task.h"
@@ -54,7 +53,7 @@ static void buffer_request_changed(uint32_t instance) {
 
 /* What servo and phase task calculate with, in integers. Motor 1..32. */
 static void motor_changed(uint32_t motor) {
-  commutation_motor_changed(motor);
+  phase_task_motor_changed(motor);
   motor_variables_changed(motor);
 }
 
@@ -68,9 +67,9 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,
     [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
     [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
-    [I_FIELD_MOTOR_PHASE] = commutation_motor_changed,
+    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
     [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
-    [I_FIELD_MOTOR_CURRENT] = commutation_motor_changed,
+    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed,
     [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
