@@ -25,6 +25,7 @@ enum {
   MEMORY_CS_TARGETS = 0x41,          /* L: of A, B, C, U, V, W, X, Y, Z */
   MEMORY_PLC_STATUS = 0x003100,      /* Y: one word a PLC (run/plc_control.h) */
   MEMORY_GATHER_POINTERS = 0x003120, /* X: address of the buffer, Y: of what is gathered next */
+  MEMORY_CONVERSION = 0x003501, /* X: results of the encoder conversion table, a line each; Y: its lines, I8000 on */
   MEMORY_M_DEFINITIONS = 0x004000,
   MEMORY_P_VARIABLES = 0x006000,
   MEMORY_Q_VARIABLES = 0x008000,

@@ -20,20 +20,13 @@ enum motor_path {
   PATH_SYSTEM  /* the ring of its coordinate system (motion/coordinate_system.h) */
 };
 
-/* What the status words tell (motion/motor_status.h), each by its own owner, any task. */
-struct motor_status_flags {
-  /* jogs and homing */
-  volatile bool timed_move;   /* a move of known length, not a jog that goes on or a search before its trigger */
-  volatile bool aborting;     /* the ramp of an abort, Ixx15 */
-  volatile bool home_search;  /* until its trigger */
-  volatile bool trigger_move; /* one that has not found its trigger */
-  volatile bool home_complete;
-  /* phasing */
-  volatile bool reference_missing; /* commutated, and no phase reference: the loop may not be closed */
-  volatile bool phasing;           /* a search or read is under way */
-  /* protection; the first five stay until the loop is closed again */
-  volatile bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit;
-  volatile bool warning_error, positive_limit, negative_limit, in_position;
+/* What protection has found (motion/protection.h), for the status words. The first five stay until the loop is closed
+ * or opened again. */
+struct motor_findings {
+  bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit;
+  bool warning_error, in_position;
+  volatile bool positive_limit, negative_limit; /* an input, or the software limit of that side */
+  volatile bool foreground_in_position;         /* S */
 };
 
 struct motor {
@@ -55,7 +48,7 @@ struct motor {
   int32_t position_scale; /* Ixx08, at least 1 here */
   int32_t velocity_scale; /* Ixx09 */
   uint32_t cs;            /* coordinate system whose time base it moves by */
-  struct motor_status_flags status;
+  struct motor_findings found; /* B, but for what is S */
 };
 
 extern struct motor motors[MOTORS];
