@@ -37,6 +37,9 @@ typedef enum {
   I_FIELD_MOTOR_FLAGS,
   I_FIELD_MOTOR_FLAG_MODE,
   I_FIELD_MOTOR_PHASE,
+  I_FIELD_MOTOR_SERVO,   /* the servo task calculates with it */
+  I_FIELD_MOTOR_CURRENT, /* the phase task does */
+  I_FIELD_MOTOR_BOTH,
   I_FIELD_CONFIGURATION,
   I_FIELD_TIMER,
   I_FIELD_TIME_BASE,
