@@ -17,7 +17,8 @@ enum {
   MEMORY_MOTOR_COMMANDED = 0x08,         /* D: and actual position, compensation, bias: 1/(32 Ixx08) count */
   MEMORY_MOTOR_ACTUAL = 0x0B,
   MEMORY_MOTOR_COMPENSATION = 0x10,
-  MEMORY_MOTOR_VELOCITY = 0x1D, /* X: 1/(32 Ixx09) count a servo cycle */
+  MEMORY_MOTOR_VELOCITY = 0x1D,      /* X: 1/(32 Ixx09) count a servo cycle */
+  MEMORY_MOTOR_FILTER_OUTPUT = 0x3F, /* X: what the servo loop commands, 24 bits */
   MEMORY_MOTOR_BIAS = 0x4C,
   MEMORY_DISPLAY = 0x001080,  /* Y: one character a word (run/display.h) */
   MEMORY_CS_WORDS = 0x002000, /* registers of coordinate system 1, the others each CS_STRIDE on */

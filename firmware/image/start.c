@@ -28,6 +28,7 @@
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor_status.h"
+#include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
@@ -102,6 +103,7 @@ void start(enum start_mode mode) {
   plc_initialize();
   program_texts_initialize();
   dpram_functions_initialize();
+  motor_variables_initialize();
   motor_status_initialize();
   binary_rotary_initialize();
   hal_watchdog_strobe();

@@ -24,7 +24,9 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/commutation.h"
+#include "firmware/motion/conversion_table.h"
 #include "firmware/motion/live_words.h"
+#include "firmware/motion/motor_servo.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/servo_update.h"
@@ -36,7 +38,9 @@
 void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
+  conversion_table_servo();
   servo_update();
+  motors_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();
@@ -59,19 +63,13 @@ static void motor_changed(uint32_t motor) {
 }
 
 const i_effect_t i_effects[I_FIELD_COUNT] = {
-    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
-    [I_FIELD_DPRAM] = dpram_functions_changed,
-    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,
-    [I_FIELD_MOTOR_ACTIVE] = motor_changed,
-    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,
-    [I_FIELD_MOTOR_OUTPUT] = motor_changed,
-    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,
-    [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
-    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
-    [I_FIELD_MOTOR_PHASE] = commutation_motor_changed,
-    [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
-    [I_FIELD_MOTOR_CURRENT] = commutation_motor_changed,
-    [I_FIELD_MOTOR_BOTH] = motor_changed,
+    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,   [I_FIELD_DPRAM] = dpram_functions_changed,
+    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,      [I_FIELD_MOTOR_ACTIVE] = motor_changed,
+    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,         [I_FIELD_MOTOR_OUTPUT] = motor_changed,
+    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,  [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
+    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,           [I_FIELD_MOTOR_PHASE] = commutation_motor_changed,
+    [I_FIELD_CONVERSION] = conversion_table_changed,     [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
+    [I_FIELD_MOTOR_CURRENT] = commutation_motor_changed, [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
 const struct command_entry* const command_tables[] = {report_commands,

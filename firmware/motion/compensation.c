@@ -6,17 +6,19 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/base/mathematics.h"
+#include "firmware/base/memory_map.h"
 #include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
 
 enum { PART_OF_COUNT = 16, NONE = 0xFF };
 
 struct table {
-  const volatile uint32_t* entries; /* Y words, 2 apart, entry 1 first */
-  uint64_t turns;                   /* 2^64 / span */
+  uint64_t turns;  /* 2^64 / span */
+  uint32_t before; /* address of the word before entry 1 */
   uint32_t count;
   int32_t unit; /* position units of the target in a unit of an entry */
   uint8_t source, next;
@@ -35,17 +37,15 @@ static void take(enum region_kind kind, uint32_t motor) {
   const struct compensation_table* table = compensation_table(kind, motor);
   if (table == 0 || i_integer(I51_COMPENSATION_TABLES) == 0) return;
   const uint32_t span = table->span;
-  tables[kind][motor] =
-      (struct table){.entries = hal_y(MEMORY_BUFFERS + table->base),
-                     .turns = turns_of(span, table->source),
-                     .count = region_words(kind, motor),
-                     .unit = kind == REGION_TCOMP ? 1
-                                                  : motors[table->target].position_scale *
-                                                        (POSITION_SUBCOUNT / PART_OF_COUNT),
-                     .source = table->source,
-                     .next = first[kind][table->target],
-                     .of_desired = table->of_desired,
-                     .wraps = i_integer(I30_COMPENSATION_TABLE_WRAP) != 0};
+  tables[kind][motor] = (struct table){
+      .before = MEMORY_BUFFERS + table->base - 1u,
+      .turns = turns_of(span, table->source),
+      .count = region_words(kind, motor),
+      .unit = kind == REGION_TCOMP ? 1 : motors[table->target].position_scale * (POSITION_SUBCOUNT / PART_OF_COUNT),
+      .source = table->source,
+      .next = first[kind][table->target],
+      .of_desired = table->of_desired,
+      .wraps = i_integer(I30_COMPENSATION_TABLE_WRAP) != 0};
   first[kind][table->target] = (uint8_t)motor;
 }
 
@@ -61,7 +61,7 @@ void compensation_changed(void) {
 /* Entry number 0 is the position 0 and its value 0, or that of the last entry when the table wraps. */
 static int32_t entry(const struct table* t, uint32_t number) {
   if (number == 0u && !t->wraps) return 0;
-  return hal_signed(t->entries[2u * ((number == 0u ? t->count : number) - 1u)]);
+  return hal_signed(*hal_y(t->before + (number == 0u ? t->count : number)));
 }
 
 static int64_t value_of(const struct table* t) {

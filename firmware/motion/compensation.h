@@ -8,8 +8,8 @@
 void compensation_changed(void); /* tables came or went, or Ixx08 or I51 was written. Background, real-time task */
 
 /* Servo task, motor 0..31, the target. */
-int64_t compensation_position(uint32_t motor); /* position: sum of its COMP tables */
-int64_t compensation_backlash(uint32_t motor); /* position: of its BLCOMP tables */
+int64_t compensation_position(uint32_t motor);               /* position: sum of its COMP tables */
+int64_t compensation_backlash(uint32_t motor);               /* position: of its BLCOMP tables */
 int64_t compensation_torque(uint32_t motor, int64_t output); /* to be added to `output` */
 
 #endif

@@ -17,7 +17,7 @@ static struct path {
   const volatile uint32_t* master; /* word of Ixx05 */
   bool follows;
   int32_t master_scale;
-  uint32_t share;                                      /* 2^32 (1 - Ixx40); 0: no filter */
+  uint32_t share;                                       /* 2^32 (1 - Ixx40); 0: no filter */
   int64_t backlash, backlash_rate, backlash_hysteresis; /* position; rate a servo interrupt */
   /* S */
   uint32_t master_reading;

@@ -45,9 +45,9 @@ struct motor {
   int32_t open_output; /* C: of a loop that is open, output */
   int32_t output;      /* what the loop commands, before bias and commutation: output */
   /* variables, V */
-  int32_t position_scale; /* Ixx08, at least 1 here */
-  int32_t velocity_scale; /* Ixx09 */
-  uint32_t cs;            /* coordinate system whose time base it moves by */
+  int32_t position_scale;      /* Ixx08, at least 1 here */
+  int32_t velocity_scale;      /* Ixx09 */
+  uint32_t cs;                 /* coordinate system whose time base it moves by */
   struct motor_findings found; /* B, but for what is S */
 };
 

@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-void notch_motor_changed(uint32_t motor); /* 1..32, servo task held off */
-void notch_restart(uint32_t motor);       /* 0..31, servo task held off: as if it had been at rest */
+void notch_motor_changed(uint32_t motor);      /* 1..32, servo task held off */
+void notch_restart(uint32_t motor);            /* 0..31, servo task held off: as if it had been at rest */
 int64_t notch(uint32_t motor, int64_t output); /* 0..31, servo task */
 
 #endif

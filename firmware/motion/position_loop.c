@@ -16,11 +16,11 @@
 #include "firmware/variables/words.h"
 
 enum { FINER = 7, INTEGRAL_BITS = 23, GAIN_BITS = 16, DEADBAND_BITS = 4, PART_OF_COUNT = 16 };
-enum { INTEGRATES_VELOCITY = 2 };             /* Ixx96 */
-#define ERROR_MOST (INT64_C(1) << 39)         /* and integral */
-#define SUM_MOST (ERROR_MOST << FINER)        /* FINER */
-#define INTEGRAND_MOST (INT64_C(1) << 39)     /* FINER */
-#define STEP_MOST (INT64_C(1) << 36)          /* and deadband */
+enum { INTEGRATES_VELOCITY = 2 };         /* Ixx96 */
+#define ERROR_MOST (INT64_C(1) << 39)     /* and integral */
+#define SUM_MOST (ERROR_MOST << FINER)    /* FINER */
+#define INTEGRAND_MOST (INT64_C(1) << 39) /* FINER */
+#define STEP_MOST (INT64_C(1) << 36)      /* and deadband */
 #define WORD_MOST 0x7FFFFF
 
 static struct loop {
@@ -195,7 +195,8 @@ void position_loop_servo(uint32_t motor) {
   publish(m, l);
 }
 
-/* What live words show ---------------------------------------------------------------------------------------------- */
+/* What live words show ----------------------------------------------------------------------------------------------
+ */
 
 static int64_t of_one_moment(const int64_t* value) {
   const uint32_t state = hal_mask_servo();
