@@ -28,6 +28,8 @@ struct table {
 static struct table tables[COMPENSATION_KINDS][MOTORS];
 static uint8_t first[COMPENSATION_KINDS][MOTORS]; /* of a target's tables, NONE: it has none */
 
+uint32_t compensation_of_position, compensation_of_torque; /* the first: COMP */
+
 static uint64_t turns_of(uint32_t span, uint32_t source) {
   const double units = (double)span * POSITION_SUBCOUNT * (double)motors[source].position_scale;
   return units < 2.0 ? 0u : (uint64_t)math_to_integer(math_scale(1.0 / units, 61)) << 3;
@@ -47,12 +49,15 @@ static void take(enum region_kind kind, uint32_t motor) {
       .of_desired = table->of_desired,
       .wraps = i_integer(I30_COMPENSATION_TABLE_WRAP) != 0};
   first[kind][table->target] = (uint8_t)motor;
+  if (kind == REGION_COMP) compensation_of_position |= 1u << table->target;
+  if (kind == REGION_TCOMP) compensation_of_torque |= 1u << table->target;
 }
 
 /* The servo task is held off meanwhile: few tables are ever defined. */
 void compensation_changed(void) {
   const uint32_t state = hal_mask_servo();
   __builtin_memset(first, NONE, sizeof first);
+  compensation_of_position = compensation_of_torque = 0;
   for (uint32_t kind = 0; kind < COMPENSATION_KINDS; ++kind)
     for (uint32_t motor = 0; motor < MOTORS; ++motor) take((enum region_kind)kind, motor);
   hal_unmask(state);
@@ -84,7 +89,7 @@ int64_t compensation_backlash(uint32_t motor) { return sum(REGION_BLCOMP, motor)
 
 /* With the sign of the output: it makes it larger or smaller. */
 int64_t compensation_torque(uint32_t motor, int64_t output) {
-  if (first[REGION_TCOMP][motor] == NONE || output == 0) return 0;
+  if (output == 0) return 0;
   const int64_t torque = sum(REGION_TCOMP, motor);
   return output > 0 ? torque : -torque;
 }

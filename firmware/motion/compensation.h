@@ -7,6 +7,9 @@
 
 void compensation_changed(void); /* tables came or went, or Ixx08 or I51 was written. Background, real-time task */
 
+/* Bit n: motor n is the target of such tables. */
+extern uint32_t compensation_of_position, compensation_of_torque;
+
 /* Servo task, motor 0..31, the target. */
 int64_t compensation_position(uint32_t motor);               /* position: sum of its COMP tables */
 int64_t compensation_backlash(uint32_t motor);               /* position: of its BLCOMP tables */

@@ -118,7 +118,8 @@ void desired_position_servo(uint32_t motor) {
   struct path* p = &paths[motor];
   if (m->loop != LOOP_CLOSED) return; /* the loop keeps it where the motor is */
   if (p->follows) follow(m, p);
-  m->compensation = -compensation_position(motor);
+  m->compensation = 0;
+  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor);
   if (p->backlash_rate != 0) m->compensation -= backlash(motor, m, p);
   int64_t wanted = m->trajectory + m->master - m->compensation;
   if (p->share != 0u) wanted = filtered(m, p, wanted);

@@ -14,10 +14,11 @@ enum { COEFFICIENTS = 4, COEFFICIENT_BITS = 30, FINER = 8 };
 enum { N1, N2, D1, D2 };
 
 static struct filter {
-  bool used;                         /* V */
   int32_t coefficient[COEFFICIENTS]; /* V */
   int64_t past[COEFFICIENTS];        /* S: inputs, the last and the one before, then outputs, FINER */
 } filters[MOTORS];
+
+uint32_t notches_used; /* V */
 
 static int32_t coefficient_of(double value) {
   const int64_t fixed = math_to_integer(math_scale(value, COEFFICIENT_BITS) + 0.5);
@@ -31,13 +32,14 @@ void notch_restart(uint32_t motor) {
 
 void notch_motor_changed(uint32_t motor) {
   struct filter* f = &filters[motor - 1u];
-  const bool was_used = f->used;
-  f->used = false;
+  const bool was_used = notch_is_used(motor - 1u);
+  uint32_t used = 0;
   for (uint32_t i = 0; i < COEFFICIENTS; ++i) {
     const double value = i_variable_read(I_MOTOR_BLOCK * motor + (uint32_t)IXX36_NOTCH_FILTER + i);
     f->coefficient[i] = value == 0.0 ? 0 : coefficient_of(value);
-    if (f->coefficient[i] != 0) f->used = true;
+    if (f->coefficient[i] != 0) used = 1u << (motor - 1u);
   }
+  notches_used = (notches_used & ~(1u << (motor - 1u))) | used;
   if (!was_used) notch_restart(motor - 1u);
 }
 
@@ -55,7 +57,6 @@ static int64_t clamp(int64_t value) {
 
 int64_t notch(uint32_t motor, int64_t output) {
   struct filter* f = &filters[motor];
-  if (!f->used) return output;
   const int64_t in = clamp(output * (1 << FINER));
   const int64_t out = clamp(in + part(f->past[N1], f->coefficient[N1]) + part(f->past[N2], f->coefficient[N2]) -
                             part(f->past[D1], f->coefficient[D1]) - part(f->past[D2], f->coefficient[D2]));

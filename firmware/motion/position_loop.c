@@ -32,6 +32,8 @@ static struct loop {
   int64_t error_most, deadband, integral_most; /* position; the last with its fraction */
   int32_t friction, output_most;               /* output */
   bool only_at_rest, integrates_velocity;
+  bool simple;              /* no deadband, position error integrated */
+  int32_t small_error_most; /* error_most, if it has no more than 32 bits */
   /* S */
   uint32_t left; /* servo interrupts to the next closure */
   uint32_t position_reading, velocity_reading;
@@ -100,6 +102,8 @@ void position_loop_motor_changed(uint32_t motor) {
   l->friction = variable(motor, IXX68_FRICTION_FEEDFORWARD) << OUTPUT_FRACTION_BITS;
   l->output_most = variable(motor, IXX69_OUTPUT_LIMIT) << OUTPUT_FRACTION_BITS;
   l->integrates_velocity = (variable(motor, IXX96_OUTPUT_MODE) & INTEGRATES_VELOCITY) != 0;
+  l->simple = l->deadband_gain == 0 && !l->integrates_velocity;
+  l->small_error_most = l->error_most < INT32_MAX ? (int32_t)l->error_most : INT32_MAX;
   notch_motor_changed(motor);
   hal_unmask(state);
 }
@@ -136,32 +140,67 @@ static void integrate(struct loop* l, int64_t error, int64_t rest) {
   l->remainder = sum & ((1 << FINER) - 1);
 }
 
-/* Output, wider than any limit. */
-static int64_t pid(const struct motor* m, struct loop* l, int64_t step) {
+static bool integrates(const struct loop* l, bool moves) {
+  return l->integral_gain != 0 && !l->saturated && !(moves && l->only_at_rest);
+}
+
+/* 2^-7 position units times Ixx30; output, wider than any limit. */
+static int64_t with_gain(const struct loop* l, int64_t sum) {
+  const int32_t whole = (int32_t)(sum >> FINER);
+  const int32_t finer = ((int32_t)sum & ((1 << FINER) - 1)) * l->proportional >> FINER;
+  if (whole == sum >> FINER) return ((int64_t)whole * l->proportional + finer) >> GAIN_BITS;
+  return ((clamp(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> GAIN_BITS;
+}
+
+/* Numbers of any size, and the deadband. */
+static __attribute__((noinline)) int64_t pid_of_large(const struct motor* m, struct loop* l, int64_t step) {
   const int64_t limited = clamp(m->commanded - m->actual, l->error_most);
   int64_t error = limited * (1 << FINER);
   if (l->deadband_gain != 0) error += l->deadband_gain * clamp(limited, l->deadband) * (1 << (FINER - DEADBAND_BITS));
   const int64_t rest = l->velocity_forward * step - (int64_t)l->derivative * m->velocity;
-  if (l->integral_gain != 0 && !l->saturated && (step == 0 || !l->only_at_rest)) integrate(l, error, rest);
+  if (integrates(l, step != 0)) integrate(l, error, rest);
   l->integral = clamp(l->integral, l->integral_most);
   int64_t sum = error + rest + (l->integral >> (INTEGRAL_BITS - FINER));
   if (l->acceleration_forward != 0) sum += l->acceleration_forward * clamp(step - l->step, STEP_MOST);
-  sum = clamp(sum, SUM_MOST);
-  const int64_t finer = ((sum & ((1 << FINER) - 1)) * l->proportional) >> FINER;
-  return ((sum >> FINER) * l->proportional + finer) >> GAIN_BITS;
+  return with_gain(l, sum);
+}
+
+static bool is_small(int64_t value) { return value == (int32_t)value; }
+
+/* The same in half the time for numbers of 32 bits, which nearly all are. */
+static int64_t pid(const struct motor* m, struct loop* l, int64_t long_step) {
+  const int64_t difference = m->commanded - m->actual, change = long_step - l->step;
+  if (!l->simple || !is_small(difference) || !is_small(long_step) || !is_small(change))
+    return pid_of_large(m, l, long_step);
+  const int32_t step = (int32_t)long_step, most = l->small_error_most;
+  int32_t error = (int32_t)difference;
+  if (error > most) error = most;
+  if (error < -most) error = -most;
+  if (integrates(l, step != 0)) l->integral += (int64_t)l->integral_gain * error;
+  if (l->integral != 0) l->integral = clamp(l->integral, l->integral_most);
+  int64_t sum =
+      (int64_t)error * (1 << FINER) - (int64_t)l->derivative * m->velocity + (l->integral >> (INTEGRAL_BITS - FINER));
+  if (step != 0) sum += (int64_t)l->velocity_forward * step;
+  if (change != 0) sum += (int64_t)l->acceleration_forward * (int32_t)change;
+  return with_gain(l, sum);
 }
 
 /* 24 bits of a number that may have more. */
 static int32_t word_of(int64_t output) { return (int32_t)clamp(output, WORD_MOST); }
 
+static int32_t clipped(int64_t output, int32_t most) {
+  if (output > most) return most;
+  return output < -most ? -most : (int32_t)output;
+}
+
 static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
   const int64_t step = clamp(m->commanded - l->commanded, STEP_MOST);
   int64_t output = pid(m, l, step);
   l->filtered = word_of(output);
-  output = notch(motor, output);
+  output = notch_is_used(motor) ? notch(motor, output) : output;
   if (step != 0) output += step > 0 ? l->friction : -l->friction;
-  output += compensation_torque(motor, output);
-  m->output = (int32_t)clamp(output, l->output_most);
+  if ((compensation_of_torque >> motor & 1u) != 0u) output += compensation_torque(motor, output);
+  m->output = clipped(output, l->output_most);
   l->saturated = m->output == l->output_most || m->output == -l->output_most;
   l->commanded = m->commanded;
   l->step = step;
