@@ -56,7 +56,7 @@ void convert_armed(const struct conversion_entry* entry) {
     state->previous = *entry->source[CAPTURED] << TIME_BASE_BITS;
   }
   const uint32_t now = with_time(entry, *entry->source[POSITION], TIME_BASE_BITS);
-  *entry->result = (uint32_t)(2 * entry->parameter[1] * hal_signed(now - state->previous)) & HAL_WORD_MASK;
+  *entry->result = (uint32_t)(2 * entry->parameter[1]) * (uint32_t)hal_signed(now - state->previous) & HAL_WORD_MASK;
   *entry->first_result = now & HAL_WORD_MASK;
   state->previous = now;
 }

@@ -1,5 +1,4 @@
-/* Coefficients have 30 fraction bits, what is kept of inputs and outputs 8 more than an output: poles up to 0.95
- * multiply an error by 400. */
+/* Coefficients have 30 fraction bits. */
 #include "firmware/motion/notch.h"
 
 #include <stdbool.h>
@@ -8,14 +7,14 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/variables/i_variables.h"
 
-enum { COEFFICIENTS = 4, COEFFICIENT_BITS = 30, FINER = 8 };
+enum { COEFFICIENTS = 4, COEFFICIENT_BITS = 30 };
 #define STATE_MOST (INT64_C(1) << 54)
 
 enum { N1, N2, D1, D2 };
 
 static struct filter {
   int32_t coefficient[COEFFICIENTS]; /* V */
-  int64_t past[COEFFICIENTS];        /* S: inputs, the last and the one before, then outputs, FINER */
+  int64_t past[COEFFICIENTS];        /* S: inputs, the last and the one before, then outputs */
 } filters[MOTORS];
 
 uint32_t notches_used; /* V */
@@ -57,12 +56,12 @@ static int64_t clamp(int64_t value) {
 
 int64_t notch(uint32_t motor, int64_t output) {
   struct filter* f = &filters[motor];
-  const int64_t in = clamp(output * (1 << FINER));
+  const int64_t in = clamp(output);
   const int64_t out = clamp(in + part(f->past[N1], f->coefficient[N1]) + part(f->past[N2], f->coefficient[N2]) -
                             part(f->past[D1], f->coefficient[D1]) - part(f->past[D2], f->coefficient[D2]));
   f->past[N2] = f->past[N1];
   f->past[N1] = in;
   f->past[D2] = f->past[D1];
   f->past[D1] = out;
-  return out >> FINER;
+  return out;
 }

@@ -144,12 +144,12 @@ static bool integrates(const struct loop* l, bool moves) {
   return l->integral_gain != 0 && !l->saturated && !(moves && l->only_at_rest);
 }
 
-/* 2^-7 position units times Ixx30; output, wider than any limit. */
+/* 2^-7 position units times Ixx30; output, wider than any limit, with NOTCH_FINER more bits. */
 static int64_t with_gain(const struct loop* l, int64_t sum) {
   const int32_t whole = (int32_t)(sum >> FINER);
   const int32_t finer = ((int32_t)sum & ((1 << FINER) - 1)) * l->proportional >> FINER;
-  if (whole == sum >> FINER) return ((int64_t)whole * l->proportional + finer) >> GAIN_BITS;
-  return ((clamp(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> GAIN_BITS;
+  if (whole == sum >> FINER) return ((int64_t)whole * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
+  return ((clamp(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
 }
 
 /* Numbers of any size, and the deadband. */
@@ -195,9 +195,10 @@ static int32_t clipped(int64_t output, int32_t most) {
 
 static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
   const int64_t step = clamp(m->commanded - l->commanded, STEP_MOST);
-  int64_t output = pid(m, l, step);
+  const int64_t finer = pid(m, l, step);
+  int64_t output = finer >> NOTCH_FINER;
   l->filtered = word_of(output);
-  output = notch_is_used(motor) ? notch(motor, output) : output;
+  if (notch_is_used(motor)) output = notch(motor, finer) >> NOTCH_FINER;
   if (step != 0) output += step > 0 ? l->friction : -l->friction;
   if ((compensation_of_torque >> motor & 1u) != 0u) output += compensation_torque(motor, output);
   m->output = clipped(output, l->output_most);
