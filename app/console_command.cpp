@@ -21,6 +21,7 @@
 #include "app/refused_lines.h"
 #include "app/script_player.h"
 #include "app/session_end.h"
+#include "app/set_up.h"
 #include "app/signal_watch.h"
 #include "app/simulation.h"
 #include "app/status_line.h"
@@ -228,12 +229,15 @@ int console_command(const RunOptions& options, const std::string& history) {
   if (!LineEditor::may_be_history(history))
     throw UsageError(
         fmt::format("--history {}: is no history; expected a file that brick console has written", history));
+  const SetUp set_up(options);
   Simulation simulation(options, config, "console");
+  set_up.check(simulation);
   Console console(simulation, history);
   std::string failure;
   try {
     simulation.run([&] {
       connect_at_start(simulation);
+      set_up.send(simulation);
       if (isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1)
         console.talk();
       else

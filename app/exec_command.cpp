@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/script_player.h"
 #include "app/session_end.h"
+#include "app/set_up.h"
 #include "app/simulation.h"
 #include "systemc/core/usage_error.h"
 
@@ -32,8 +33,10 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   const std::string name = file == "-" ? "stdin" : file;
   const MachineConfig config = machine_config(options);
   const auto script = open_script(file, name);
+  const SetUp set_up(options);
   Simulation simulation(options, config, "exec");
   ScriptPlayer player(simulation.link(), std::cout, raw);
+  set_up.check(simulation);
   player.check(script);
   const auto tell = [&simulation](const std::string& text) { simulation.tell("brick exec: " + text); };
   player.on_refused = tell;
@@ -45,6 +48,7 @@ int exec_command(const RunOptions& options, const std::string& file, bool raw) {
   try {
     simulation.run([&] {
       connect_at_start(simulation);
+      set_up.send(simulation);
       player.play(script);
     });
   } catch (const std::exception& e) {  // the script, the engines or the bus: bad input was found before

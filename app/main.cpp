@@ -44,6 +44,7 @@ struct Commands {
     auto* run = app.add_subcommand("run", "runs a testbench: steps, verdict, simulated and wall time");
     run->add_option("BENCH", bench, "name of the bench, see brick list")->required();
     add_run_options(*run, run_options, "lockstep");
+    add_plant_options(*run, run_options);
     run->add_flag("--negative", negative, "negative control: a deliberate fault, with which the bench must fail");
     run->callback([this, run] {
       if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
@@ -54,6 +55,7 @@ struct Commands {
         app.add_subcommand("exec", "sends a command file or host script to the started controller, prints the replies");
     exec->add_option("FILE", script, "command file or host script, - = standard input")->required();
     add_run_options(*exec, exec_options, "systemc");
+    add_plant_options(*exec, exec_options);
     exec->add_flag("--raw", raw, "print every byte sent by the controller, control bytes as <06>");
     exec->footer(
         "The file holds the controller's command lines, comments, #include #define #ifdef (docs/scripts.md) and @wait "
@@ -64,6 +66,7 @@ struct Commands {
 
     auto* console = app.add_subcommand("console", "talks to the started controller: line editing, its control keys");
     add_run_options(*console, console_options, "systemc");
+    add_plant_options(*console, console_options);
     console->add_option("--history", history, "keeps the lines typed in FILE")->type_name("FILE");
     console->footer("Lines are those of brick exec, @ lines and #include too. ^] or @quit ends (docs/console.md).");
     console->callback([this] { chosen = [this] { return console_command(console_options, history); }; });
@@ -79,6 +82,7 @@ struct Commands {
     serve->add_flag("--save-takes-long", serve_options.save_takes_long,
                     "the interface does not wait for the end of SAVE: it answers NUL");
     add_run_options(*serve, serve_options.run, "systemc");
+    add_plant_options(*serve, serve_options.run);
     serve->callback([this] { chosen = [this] { return serve_command(serve_options); }; });
 
     auto* timing = app.add_subcommand(

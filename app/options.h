@@ -25,6 +25,8 @@ struct RunOptions {
   std::string wave_from, wave_to;
   std::vector<std::string> trace;  // patterns, separated by commas
   std::string seed = "1";
+  std::string plant = "none";
+  std::string load;  // "" = nothing is sent first
   std::vector<std::string> jumpers;
   std::string flash;
   std::string json;
@@ -37,6 +39,9 @@ struct RunOptions {
 
 // Adds --engine, --board and so on to a command. `engine` is the default.
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& engine);
+
+// Adds --plant and --load to a command whose controller may have motors.
+void add_plant_options(CLI::App& command, RunOptions& options);
 
 // Checks everything that can be checked without running; throws UsageError with one line.
 MachineConfig machine_config(const RunOptions& options);

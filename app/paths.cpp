@@ -21,6 +21,15 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+std::vector<std::string> names_in(const fs::path& folder, const std::string& ending) {
+  std::vector<std::string> names;
+  std::error_code none;  // a folder that is not there has no names
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ending) names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 }  // namespace
 
 std::string default_firmware() {
@@ -37,13 +46,7 @@ std::string boards_folder() {
   return folder.string();
 }
 
-std::vector<std::string> board_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(boards_folder()))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> board_names() { return names_in(boards_folder(), ".toml"); }
 
 std::string board_path(const std::string& name_or_file, const std::string& option) {
   if (ends_with(name_or_file, ".toml")) return name_or_file;
@@ -52,6 +55,26 @@ std::string board_path(const std::string& name_or_file, const std::string& optio
     throw UsageError(
         fmt::format("{} {}: no such board; expected {} or FILE.toml", option, name_or_file, fmt::join(names, ", ")));
   return (fs::path(boards_folder()) / (name_or_file + ".toml")).string();
+}
+
+std::vector<std::string> plant_names() { return names_in(share_folder() / "plants", ".toml"); }
+
+std::string plant_path(const std::string& name_or_file) {
+  if (ends_with(name_or_file, ".toml")) return name_or_file;
+  const auto names = plant_names();
+  if (std::find(names.begin(), names.end(), name_or_file) == names.end())
+    throw UsageError(fmt::format("--plant {}: no such plant; expected none, {} or FILE.toml", name_or_file,
+                                 fmt::join(names, ", ")));
+  return (share_folder() / "plants" / (name_or_file + ".toml")).string();
+}
+
+std::string setup_path(const std::string& name_or_file) {
+  if (name_or_file.find_first_of("./") != std::string::npos) return name_or_file;
+  const auto names = names_in(share_folder() / "setups", ".pmc");
+  if (std::find(names.begin(), names.end(), name_or_file) == names.end())
+    throw UsageError(fmt::format("--load {}: no such set-up; expected {} or a file such as ./{}.pmc", name_or_file,
+                                 fmt::join(names, ", "), name_or_file));
+  return (share_folder() / "setups" / (name_or_file + ".pmc")).string();
 }
 
 }  // namespace brick

@@ -6,6 +6,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "app/script_player.h"
+#include "app/set_up.h"
 #include "app/simulation.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/cosim/engines.h"
@@ -41,7 +43,12 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
                                  bench.need.what, config.board.name, bench.board));
   if (!bench.firmware) config.firmware.clear();
   if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
+  const SetUp set_up(options);
+  if (!set_up.empty() && !bench.firmware)
+    throw UsageError(fmt::format("--load {}: nobody takes it, because no firmware runs in {}; expected no --load",
+                                 options.load, bench.name));
   Simulation simulation(options, config, bench.name);
+  set_up.check(simulation);
   if (extras.before) extras.before(simulation);
   std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}\n", bench.name, bench.description, options.engine,
                            config.board.name, config.seed,
@@ -55,6 +62,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
         report.step("controller answers", up,
                     up ? "I3=2 I6=1 I4=0" : "nothing, expected an acknowledge within 500 ms of power-on");
         if (!up) return;
+        set_up.send(simulation);
       }
       BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
                            config.board,          config.seed,      negative,          simulation.timing(),
@@ -63,6 +71,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
     report.fail("host", e.what());
+  } catch (const ScriptFailure& e) { report.fail("set-up is taken", e.what());
   } catch (const GdbKilled& e) { report.fail("debugger", e.what()); } catch (const Interrupted& e) {
     report.fail("run to its end", e.what());
   }

@@ -11,6 +11,8 @@
 #include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/ethernet_server.h"
+#include "app/session_end.h"
+#include "app/set_up.h"
 #include "app/simulation.h"
 #include "app/simulation_loop.h"
 #include "systemc/core/usage_error.h"
@@ -61,8 +63,10 @@ int serve_command(const ServeOptions& options) {
   const MachineConfig config = machine_config(options.run);
   const AddressFile address_file(options.run.flash);
   const std::string address = address_file.read();
+  const SetUp set_up(options.run);
   EthernetServer server(options.listen);
   Simulation simulation(options.run, config, "serve");
+  set_up.check(simulation);
   CommunicationsProcessor processor(simulation.bus(), {config.board.dpram_words, options.save_takes_long});
   SimulationLoop loop(simulation.bus(), options.free);
   if (!address.empty()) processor.set_address(address);
@@ -83,6 +87,10 @@ int serve_command(const ServeOptions& options) {
   std::vector<std::string> failures;
   try {
     simulation.run([&] {
+      if (!set_up.empty()) {
+        connect_at_start(simulation);
+        set_up.send(simulation);
+      }
       if (!processor.start(HostLink::kBootTime))
         throw std::runtime_error(
             "the controller does not answer after power-on; expected an answer within 500 ms, see --jumper E3");

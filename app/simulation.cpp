@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/byte_text.h"
+#include "app/paths.h"
+#include "app/plant_file.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -59,10 +61,17 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
   } catch (const std::exception& e) { throw UsageError(e.what()); }
 }
 
+std::unique_ptr<plant::Plant> make_plant(const RunOptions& options, const MachineConfig& config) {
+  if (options.plant == "none") return nullptr;
+  return std::make_unique<plant::Plant>(
+      read_plant_file(plant_path(options.plant), config.board.fitted, config.seed));
+}
+
 }  // namespace
 
 Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title)
     : title_(std::move(title)),
+      plant_(make_plant(options, config)),
       machine_(make_machine(config)),
       timing_(std::make_unique<TimingBook>(*machine_)),
       forced_bcr_(options.bcr),
@@ -71,6 +80,7 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
       link_(bus_),
       terminal_(isatty(STDERR_FILENO) == 1),
       prints_to_terminal_(isatty(STDOUT_FILENO) == 1) {
+  if (plant_) machine_->attach(*plant_);
   bus_.set_heartbeat([this] { progress(); });
   waivers_.check(timing_->ledgers());
   timing_->on_violation = [this](const TimingLedger& ledger, const TimingViolation& violation) {

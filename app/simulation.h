@@ -18,6 +18,7 @@
 #include "systemc/cpu/gdb_server.h"
 #include "systemc/machine/machine.h"
 #include "testbench/host/host_link.h"
+#include "testbench/plant/plant.h"
 
 namespace brick {
 
@@ -39,6 +40,7 @@ class Simulation {
   Machine& machine() { return *machine_; }
   HostBus& bus() { return bus_; }
   HostLink& link() { return link_; }
+  plant::Plant* plant() { return plant_.get(); }  // of --plant; nullptr: none
   TimingBook& timing() { return *timing_; }
 
   // What broke a rule of the buses, one line each: what fails the run, what a waiver excuses, waivers not needed and
@@ -66,6 +68,7 @@ class Simulation {
   double wall_seconds() const;
 
   std::string title_;
+  std::unique_ptr<plant::Plant> plant_;  // outlives the machine, which calls it
   std::unique_ptr<Machine> machine_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;

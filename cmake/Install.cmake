@@ -1,5 +1,5 @@
-# cmake --install build/release --prefix DIR: bin/brick, and in share/brick what it reads: firmware image, boards, wave
-# views.
+# cmake --install build/release --prefix DIR: bin/brick, and in share/brick what it reads: firmware image, boards, plants,
+# set-ups, wave views.
 include(GNUInstallDirs)
 set(BRICK_DATA_DIR ${CMAKE_INSTALL_DATADIR}/brick)
 if(TARGET brick)
@@ -9,6 +9,8 @@ if(TARGET firmware_turbo)
   install(FILES ${CMAKE_BINARY_DIR}/bin/turbo.elf DESTINATION ${BRICK_DATA_DIR})
 endif()
 install(DIRECTORY boards DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.toml)
+install(DIRECTORY examples/plants examples/setups DESTINATION ${BRICK_DATA_DIR}
+  FILES_MATCHING PATTERN *.toml PATTERN *.pmc)
 install(DIRECTORY waves DESTINATION ${BRICK_DATA_DIR} FILES_MATCHING PATTERN *.gtkw PATTERN out EXCLUDE)
 # What README and headers point to.
 foreach(component Unspecified package)

@@ -30,6 +30,7 @@
 #include "firmware/motion/motor_status.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/sine_table.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
@@ -110,6 +111,7 @@ void start(enum start_mode mode) {
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
   calendar_initialize();
   tasks_initialize();
+  sine_table_initialize();
   phase_task_initialize();
   hal_interrupts_on();
   clock_watch_start();

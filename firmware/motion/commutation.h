@@ -22,7 +22,4 @@ struct motor_current {
 };
 struct motor_current commutation_current(uint32_t motor);
 
-/* Effect of each variable that the phase task uses. Motor 1..32. */
-void commutation_motor_changed(uint32_t motor);
-
 #endif

@@ -57,8 +57,8 @@ void piece_set_time(struct piece* piece, int64_t time); /* 1 to 2^47; uses float
 void piece_ring_add(struct piece_ring* ring);
 /* Servo task held off: the pieces from `number` on are forgotten, which must not be the executing one or older. */
 void piece_ring_take_back(struct piece_ring* ring, uint32_t number);
-/* The same while an older one executes: piece `number` is left after `end`, those behind it are passed over, and `count`
- * filled ones behind them follow. False, with nothing changed: the servo task is beyond that end already. */
+/* The same while an older one executes: piece `number` is left after `end`, those behind it are passed over, and
+ * `count` filled ones behind them follow. False, with nothing changed: the servo task is beyond that end already. */
 bool piece_ring_replace(struct piece_ring* ring, uint32_t number, int64_t end, uint32_t count);
 void piece_ring_clear(struct piece_ring* ring); /* servo task held off */
 

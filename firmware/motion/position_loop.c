@@ -16,11 +16,11 @@
 #include "firmware/variables/words.h"
 
 enum { FINER = 7, INTEGRAL_BITS = 23, GAIN_BITS = 16, DEADBAND_BITS = 4, PART_OF_COUNT = 16 };
-enum { INTEGRATES_VELOCITY = 2 };         /* Ixx96 */
-#define ERROR_MOST (INT64_C(1) << 39)     /* and integral */
-#define SUM_MOST (ERROR_MOST << FINER)    /* FINER */
-#define INTEGRAND_MOST (INT64_C(1) << 39) /* FINER */
-#define STEP_MOST (INT64_C(1) << 36)      /* and deadband */
+enum { INTEGRATES_VELOCITY = 2 };      /* Ixx96 */
+#define ERROR_MOST (INT64_C(1) << 39)  /* and integral */
+#define SUM_MOST (ERROR_MOST << FINER) /* FINER */
+#define PRODUCT_MOST (INT64_C(1) << 62)
+#define STEP_MOST (INT64_C(1) << 36) /* and deadband */
 #define WORD_MOST 0x7FFFFF
 
 static struct loop {
@@ -30,6 +30,7 @@ static struct loop {
   uint32_t extension;                                                                         /* Ixx60 */
   int32_t proportional, derivative, velocity_forward, acceleration_forward, integral_gain, deadband_gain;
   int64_t error_most, deadband, integral_most; /* position; the last with its fraction */
+  int64_t integrand_most;                      /* FINER: times Ixx33 it is still a number */
   int32_t friction, output_most;               /* output */
   bool only_at_rest, integrates_velocity;
   bool simple;              /* no deadband, position error integrated */
@@ -93,6 +94,7 @@ void position_loop_motor_changed(uint32_t motor) {
   l->derivative = variable(motor, IXX31_DERIVATIVE_GAIN);
   l->velocity_forward = variable(motor, IXX32_VELOCITY_FEEDFORWARD);
   l->integral_gain = variable(motor, IXX33_INTEGRAL_GAIN);
+  l->integrand_most = PRODUCT_MOST / (l->integral_gain > 0 ? l->integral_gain : 1);
   l->only_at_rest = variable(motor, IXX34_INTEGRATION_MODE) != 0;
   l->acceleration_forward = variable(motor, IXX35_ACCELERATION_FEEDFORWARD);
   l->integral_most = position_of(motor, variable(motor, IXX63_INTEGRATION_LIMIT), ERROR_MOST) << INTEGRAL_BITS;
@@ -134,7 +136,7 @@ static void measure(struct motor* m, struct loop* l) {
 
 /* FINER. */
 static void integrate(struct loop* l, int64_t error, int64_t rest) {
-  const int64_t integrand = clamp(l->integrates_velocity ? rest + error : error, INTEGRAND_MOST);
+  const int64_t integrand = clamp(l->integrates_velocity ? rest + error : error, l->integrand_most);
   const int64_t sum = l->integral_gain * integrand + l->remainder;
   l->integral += sum >> FINER;
   l->remainder = sum & ((1 << FINER) - 1);

@@ -83,6 +83,13 @@ std::int64_t TomlTable::integer(const std::string& key, std::int64_t low, std::i
   return *value;
 }
 
+double TomlTable::real(const std::string& key, double low, double high, const std::string& expected) const {
+  const toml::node& node = need(key);
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value || !(*value >= low && *value <= high)) fail(node, key, expected);
+  return *value;
+}
+
 const toml::array& TomlTable::array(const std::string& key) const {
   const toml::array* list = need(key).as_array();
   if (list == nullptr) fail(need(key), key, "a list in brackets");

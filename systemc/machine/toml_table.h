@@ -24,6 +24,7 @@ class TomlTable {
   std::string text_in(const std::string& key, const toml::node& item) const;  // an item of the list `key`
   bool flag(const std::string& key) const;                                    // false where it is missing
   std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high, const std::string& expected) const;
+  double real(const std::string& key, double low, double high, const std::string& expected) const;  // an integer too
   const toml::array& array(const std::string& key) const;
   // The table `key`, or an item of the list `key`, with the keys that it may have.
   TomlTable table(const std::string& key, const toml::node& item, const std::vector<std::string>& known) const;

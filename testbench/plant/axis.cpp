@@ -14,15 +14,18 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
       grids_(encoder_.grids()),
       noise_(parameters.noise, Random(seed, 2 * (kChannels * parameters.ic + parameters.channel))),
       adc_random_(seed, 2 * (kChannels * parameters.ic + parameters.channel) + 1),
-      motor_(parameters.motor, encoder_.units_per_revolution()),
+      motor_(parameters.motor, encoder_.units_per_revolution(), parameters.start * kUnitsPerCount),
       amplifier_(parameters.amplifier),
-      stepper_(parameters.stepper) {
+      stepper_(parameters.stepper, parameters.start * kUnitsPerCount),
+      motion_{0, 1, parameters.start * kUnitsPerCount, parameters.start * kUnitsPerCount},
+      goal_(parameters.start * kUnitsPerCount) {
   if (par_.ic >= kMaxServoIcs || par_.channel >= kChannels) throw std::invalid_argument("axis: no such channel");
   if (step_ < 1 || par_.stepper.move_time < 1) throw std::invalid_argument("axis: a time below one tick");
   if ((switches_.mask() & owned_) != 0) throw std::invalid_argument("axis: a switch on a pin of the encoder");
   owned_ = static_cast<std::uint16_t>(owned_ | switches_.mask() | (has_amplifier() ? 1u << kFault : 0));
   if (par_.noise.every != 0 && (par_.noise.pins & ~unsigned{owned_}) != 0)
     throw std::invalid_argument("axis: noise on a pin of others");
+  motor_.set_load(par_.load);
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
 }
 
@@ -84,7 +87,7 @@ void Axis::move(Tick now, double dac_volts) {
   }
   if (!started_) {
     started_ = true;
-    motion_ = {now - step_, now, 0, 0};
+    motion_ = {now - step_, now, motion_.p1, motion_.p1};
   }
   if (now < motion_.t1) return;
   const auto phases = meter_.take(now);

@@ -30,6 +30,8 @@ struct AxisParameters {
   StepperParameters stepper;
   std::vector<Switch> switches;
   NoiseParameters noise;
+  std::int64_t start = 0;  // counts, where it stands at power-on
+  double load = 0;         // N m, as set_load()
 };
 
 class Axis {

@@ -10,8 +10,8 @@ constexpr double kTwoPi = 6.283185307179586, kSqrt3 = 1.7320508075688772;
 
 }  // namespace
 
-Motor::Motor(const MotorParameters& parameters, std::int64_t units_per_revolution)
-    : par_(parameters), revolution_(units_per_revolution) {
+Motor::Motor(const MotorParameters& parameters, std::int64_t units_per_revolution, std::int64_t position)
+    : par_(parameters), revolution_(units_per_revolution), position_(position) {
   if (!(par_.inertia > 0) || !(par_.inductance > 0) || par_.viscous < 0 || par_.coulomb < 0)
     throw std::invalid_argument("motor: inertia and inductance must be positive, friction not negative");
 }

@@ -21,7 +21,7 @@ struct MotorParameters {
 
 class Motor {
  public:
-  Motor(const MotorParameters& parameters, std::int64_t units_per_revolution);
+  Motor(const MotorParameters& parameters, std::int64_t units_per_revolution, std::int64_t position = 0);
 
   // One step of `dt` seconds with the current given, or with voltages at the terminals (three-phase: against the star
   // point of the supply; the motor's own star point is not connected).

@@ -5,7 +5,7 @@
 
 namespace brick::plant {
 
-Plant::Plant(const PlantParameters& parameters) {
+Plant::Plant(const PlantParameters& parameters) : incidents_(parameters.incidents) {
   for (const AxisParameters& p : parameters.axes) {
     for (const auto& other : axes_)
       if (other->ic() == p.ic && other->channel() == p.channel)
@@ -13,6 +13,16 @@ Plant::Plant(const PlantParameters& parameters) {
     axes_.push_back(std::make_unique<Axis>(p, parameters.seed, parameters.step));
     converters_.try_emplace(p.ic, Converters{DacPeer(parameters.dac_bits), AdcPeer(parameters.adc_header)});
   }
+  std::stable_sort(incidents_.begin(), incidents_.end(),
+                   [](const Incident& a, const Incident& b) { return a.at < b.at; });
+}
+
+void Plant::happen(const Incident& incident) {
+  Axis& axis = *axes_.at(incident.axis);
+  if (incident.trip) axis.trip(*incident.trip);
+  if (incident.cut) axis.cut(*incident.cut);
+  if (incident.load) axis.set_load(*incident.load);
+  if (incident.turn != 0) axis.turn(incident.turn, incident.turn_time);
 }
 
 std::uint32_t Plant::ics() const {
@@ -33,7 +43,7 @@ MotorOutputs Plant::stops(unsigned ic) const {
 }
 
 Tick Plant::next_event() const {
-  Tick next = kNever;
+  Tick next = happened_ < incidents_.size() ? incidents_[happened_].at : kNever;
   for (const auto& axis : axes_) next = std::min(next, axis->next_event());
   return next;
 }
@@ -55,6 +65,7 @@ void Plant::changed(Tick tick, unsigned ic, const MotorOutputs& before, const Mo
 }
 
 bool Plant::step(Tick now, MotorInputPins& inputs) {
+  while (happened_ < incidents_.size() && incidents_[happened_].at <= now) happen(incidents_[happened_++]);
   bool edited = false;
   for (const auto& axis : axes_) {
     MotorInputs& in = inputs[axis->ic()];

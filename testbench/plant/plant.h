@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "systemc/machine/motor_peer.h"
@@ -15,12 +16,24 @@
 
 namespace brick::plant {
 
+// What happens to an axis at a time, whatever the controller does.
+struct Incident {
+  Tick at = 0;
+  std::size_t axis = 0;  // in PlantParameters::axes
+  std::optional<Amplifier::Fault> trip;
+  std::optional<std::uint16_t> cut;  // wires that are cut from then on, all others whole
+  std::optional<double> load;        // N m
+  std::int64_t turn = 0;             // kHand: counts, evenly within `turn_time`
+  Tick turn_time = 1;
+};
+
 struct PlantParameters {
   std::uint64_t seed = 1;
   Tick step = 1152;  // of the motors' equations: 1/102400 s
   unsigned dac_bits = 18;
   unsigned adc_header = 4;
   std::vector<AxisParameters> axes;
+  std::vector<Incident> incidents;
 };
 
 class Plant : public MotorPeer {
@@ -38,12 +51,16 @@ class Plant : public MotorPeer {
   bool step(Tick now, MotorInputPins& inputs) override;
 
  private:
+  void happen(const Incident& incident);
+
   struct Converters {
     DacPeer dac;
     AdcPeer adc;
   };
   std::vector<std::unique_ptr<Axis>> axes_;
   std::map<unsigned, Converters> converters_;  // by IC
+  std::vector<Incident> incidents_;            // in order of time
+  std::size_t happened_ = 0;                   // of them
 };
 
 }  // namespace brick::plant

@@ -18,7 +18,7 @@ struct StepperParameters {
 
 class Stepper {
  public:
-  explicit Stepper(const StepperParameters& parameters) : par_(parameters) {}
+  explicit Stepper(const StepperParameters& parameters, std::int64_t position = 0) : par_(parameters), zero_(position) {}
 
   // Levels from which it starts; without it both low.
   void begin(bool pulse, bool down) {
@@ -44,12 +44,13 @@ class Stepper {
 
   // Where the rotor goes from `now` on; `present` is the motion until now.
   Motion motion(Tick now, const Motion& present) const {
-    const std::int64_t goal = steps_ * par_.units_per_step;
+    const std::int64_t goal = zero_ + steps_ * par_.units_per_step;
     return goal == present.p1 ? present : Motion{now, now + par_.move_time, present.at(now), goal};
   }
 
  private:
   StepperParameters par_;
+  std::int64_t zero_;  // position without a step
   std::int64_t steps_ = 0;
   std::uint64_t violations_ = 0;
   bool pulse_ = false, down_ = false;
