@@ -16,6 +16,7 @@ enum {
   MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
   MEMORY_MOTOR_COMMANDED = 0x08,         /* D: and actual position, compensation, bias: 1/(32 Ixx08) count */
   MEMORY_MOTOR_ACTUAL = 0x0B,
+  MEMORY_MOTOR_MASTER = 0x0D,
   MEMORY_MOTOR_COMPENSATION = 0x10,
   MEMORY_MOTOR_VELOCITY = 0x1D,      /* X: 1/(32 Ixx09) count a servo cycle */
   MEMORY_MOTOR_FILTER_OUTPUT = 0x3F, /* X: what the servo loop commands, 24 bits */

@@ -28,7 +28,9 @@
 #include "firmware/motion/motor_servo.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
+#include "firmware/run/run_control.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/phase_period.h"
@@ -49,6 +51,8 @@ const struct task_hooks task_hooks = {.servo = servo, .real_time = real_time, .p
 
 const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
 
+const struct protection_hooks protection_hooks = {.abort = run_abort};
+
 static void buffer_request_changed(uint32_t instance) {
   (void)instance;
   panel_changed();
@@ -62,20 +66,13 @@ static void motor_changed(uint32_t motor) {
 }
 
 const i_effect_t i_effects[I_FIELD_COUNT] = {
-    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
-    [I_FIELD_DPRAM] = dpram_functions_changed,
-    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,
-    [I_FIELD_MOTOR_ACTIVE] = motor_changed,
-    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,
-    [I_FIELD_MOTOR_OUTPUT] = motor_changed,
-    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,
-    [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
-    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
-    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
-    [I_FIELD_CONVERSION] = conversion_table_changed,
-    [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
-    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed,
-    [I_FIELD_MOTOR_BOTH] = motor_changed,
+    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,  [I_FIELD_DPRAM] = dpram_functions_changed,
+    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,     [I_FIELD_MOTOR_ACTIVE] = motor_changed,
+    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,        [I_FIELD_MOTOR_OUTPUT] = motor_changed,
+    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed, [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
+    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,          [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_CONVERSION] = conversion_table_changed,    [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
+    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed, [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
 const struct command_entry* const command_tables[] = {report_commands,

@@ -1,7 +1,8 @@
 /* Entries that read an encoder channel of a servo IC: counter, fraction of a count by time or by the IC, triggered time
  * base (motion:2, servo-ic:2.2 to servo-ic:2.4). The IC latches all of it at the servo clock. */
+#include "firmware/motion/conversion_encoder.h"
+
 #include "firmware/hal/hal.h"
-#include "firmware/motion/conversion_entry.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { POSITION, BETWEEN, SINCE, STATUS, CAPTURED };

@@ -29,23 +29,4 @@ struct conversion_entry {
   int32_t parameter[CONVERSION_LONGEST]; /* the others, [1] is line 2 */
 };
 
-/* Sources by method: encoders X:+2, Y:+0, Y:+1, X:+0 and X:+3 of the channel; words Y and what follows; filters X. */
-void convert_software_1t(const struct conversion_entry* entry); /* $0 */
-void convert_hardware_1t(const struct conversion_entry* entry); /* $C, bit 19 */
-void convert_counter(const struct conversion_entry* entry);     /* $C */
-void convert_sub_count(const struct conversion_entry* entry);   /* $8 */
-void convert_frozen(const struct conversion_entry* entry);      /* $9 */
-void convert_armed(const struct conversion_entry* entry);       /* $B, and $A when the trigger has come */
-
-void convert_analog(const struct conversion_entry* entry);            /* $1 */
-void convert_analog_integrated(const struct conversion_entry* entry); /* $5 */
-void convert_parallel(const struct conversion_entry* entry);          /* $2 and $6 */
-void convert_parallel_limited(const struct conversion_entry* entry);  /* $3 and $7 */
-
-void convert_time_base(const struct conversion_entry* entry);   /* $4 */
-void convert_exponential(const struct conversion_entry* entry); /* $D */
-void convert_tracking(const struct conversion_entry* entry);    /* $D, bit 19 */
-void convert_sum(const struct conversion_entry* entry);         /* $E */
-void convert_nothing(const struct conversion_entry* entry);     /* $F */
-
 #endif

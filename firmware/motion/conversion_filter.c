@@ -1,6 +1,7 @@
 /* Entries made of other words: time base, filters, sums (motion:2). */
+#include "firmware/motion/conversion_filter.h"
+
 #include "firmware/hal/hal.h"
-#include "firmware/motion/conversion_entry.h"
 
 enum { GAIN_BITS = 23, OUT_BITS = 8 };
 #define INTEGRAL_MOST (INT64_C(1) << 54)

@@ -4,8 +4,10 @@
 
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/background.h"
+#include "firmware/motion/conversion_encoder.h"
 #include "firmware/motion/conversion_entry.h"
+#include "firmware/motion/conversion_filter.h"
+#include "firmware/motion/conversion_word.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 #include "rtl/regs/brick_regs.h"

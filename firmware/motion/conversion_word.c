@@ -1,6 +1,7 @@
 /* Entries that read words as they stand: ADC registers and parallel words (motion:2). */
+#include "firmware/motion/conversion_word.h"
+
 #include "firmware/hal/hal.h"
-#include "firmware/motion/conversion_entry.h"
 
 enum { ADC_SHIFT = 3, ADC_BITS = 0xFFFF00 };
 

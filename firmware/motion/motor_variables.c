@@ -46,6 +46,7 @@ void motor_variables_initialize(void) {
   motors_active = 0;
   __builtin_memset(motors, 0, sizeof motors);
   conversion_table_initialize();
+  protection_initialize();
   compensation_changed();
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) motor_variables_changed(motor);
 }
