@@ -23,6 +23,7 @@
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
+#include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/motor_servo.h"
@@ -65,14 +66,27 @@ static void motor_changed(uint32_t motor) {
   motor_variables_changed(motor);
 }
 
+static void compensation_tables_changed(uint32_t instance) {
+  (void)instance;
+  compensation_changed();
+}
+
 const i_effect_t i_effects[I_FIELD_COUNT] = {
-    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,  [I_FIELD_DPRAM] = dpram_functions_changed,
-    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,     [I_FIELD_MOTOR_ACTIVE] = motor_changed,
-    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,        [I_FIELD_MOTOR_OUTPUT] = motor_changed,
-    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed, [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
-    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,          [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
-    [I_FIELD_CONVERSION] = conversion_table_changed,    [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
-    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed, [I_FIELD_MOTOR_BOTH] = motor_changed,
+    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
+    [I_FIELD_DPRAM] = dpram_functions_changed,
+    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,
+    [I_FIELD_MOTOR_ACTIVE] = motor_changed,
+    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,
+    [I_FIELD_MOTOR_OUTPUT] = motor_changed,
+    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,
+    [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
+    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
+    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_COMPENSATION] = compensation_tables_changed,
+    [I_FIELD_CONVERSION] = conversion_table_changed,
+    [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
+    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
 const struct command_entry* const command_tables[] = {report_commands,

@@ -68,6 +68,15 @@ void desired_position_take_actual(uint32_t motor) {
   p->fraction = 0;
 }
 
+void desired_position_shift(uint32_t motor, int64_t by) {
+  struct motor* m = &motors[motor];
+  m->trajectory += by;
+  m->commanded += by;
+  m->closed_at += by;
+  m->actual += by;
+  paths[motor].turning += by;
+}
+
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
 /* A motor in a limit follows out of it only. */

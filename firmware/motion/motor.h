@@ -20,6 +20,15 @@ enum motor_path {
   PATH_SYSTEM  /* the ring of its coordinate system (motion/coordinate_system.h) */
 };
 
+/* What jogs and homing tell the status words (motion/motor_status.h). */
+struct motor_status_flags {
+  volatile bool timed_move;   /* a move of known length, not a jog that goes on or a search before its trigger */
+  volatile bool aborting;     /* the ramp of an abort, Ixx15 */
+  volatile bool home_search;  /* for any trigger, until it has come */
+  volatile bool trigger_move; /* one that has not found its trigger */
+  volatile bool home_complete;
+};
+
 /* What protection has found (motion/protection.h), for the status words. The first five stay until the loop is closed
  * or opened again. */
 struct motor_findings {
@@ -35,6 +44,7 @@ struct motor {
   /* positions, S */
   int64_t trajectory;   /* by its path */
   int64_t commanded;    /* net desired position: with following, compensation, backlash; D:+$08 */
+  int64_t closed_at;    /* commanded at the last closure of the loop */
   int64_t actual;       /* D:+$0B */
   int64_t master;       /* position of the master that it follows, D:+$0D */
   int64_t compensation; /* of the measured position, by tables and backlash: commanded has it subtracted; D:+$10 */
@@ -45,10 +55,11 @@ struct motor {
   int32_t open_output; /* C: of a loop that is open, output */
   int32_t output;      /* what the loop commands, before bias and commutation: output */
   /* variables, V */
-  int32_t position_scale;      /* Ixx08, at least 1 here */
-  int32_t velocity_scale;      /* Ixx09 */
-  uint32_t cs;                 /* coordinate system whose time base it moves by */
-  struct motor_findings found; /* B, but for what is S */
+  int32_t position_scale;           /* Ixx08, at least 1 here */
+  int32_t velocity_scale;           /* Ixx09 */
+  uint32_t cs;                      /* coordinate system whose time base it moves by */
+  struct motor_status_flags status; /* jogs, S or who asks for one, the servo task held off */
+  struct motor_findings found;      /* B, but for what is S */
 };
 
 extern struct motor motors[MOTORS];

@@ -6,7 +6,6 @@
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/desired_position.h"
-#include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/phasing.h"
 #include "firmware/variables/i_variables.h"
@@ -63,7 +62,7 @@ static bool dwells(uint32_t motor) {
 /* A move of a program is timed, and so is one of a jog whose end is known. */
 static bool is_timed(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
-  return jog_is_timed(motor) || (motors[motor].path == PATH_SYSTEM && coordinate_systems[d->cs].active);
+  return motors[motor].status.timed_move || (motors[motor].path == PATH_SYSTEM && coordinate_systems[d->cs].active);
 }
 
 static uint32_t of_variables(uint32_t motor) {
@@ -85,7 +84,7 @@ static uint32_t status1(uint32_t motor) {
          bit(m->found.positive_limit, M1_POSITIVE_LIMIT) | bit(m->loop != LOOP_KILLED, M1_AMPLIFIER_ENABLED) |
          bit(!closed, M1_OPEN_LOOP) | bit(is_timed(motor), M1_MOVE_TIMER) | bit(dwells(motor), M1_DWELL) |
          bit(closed && m->desired_step == 0, M1_DESIRED_VELOCITY_ZERO) |
-         bit(jog_is_aborting(motor), M1_ABORT_DECELERATION) | bit(jog_is_searching(motor), M1_SEARCH);
+         bit(motors[motor].status.aborting, M1_ABORT_DECELERATION) | bit(motors[motor].status.home_search, M1_SEARCH);
 }
 
 /* 1 to 3: A, B, C; 4: U, V, W; 5: by inverse kinematics; 7: X, Y, Z. */
@@ -104,9 +103,9 @@ static uint32_t status2(uint32_t motor) {
   const uint32_t word =
       bit(m->loop != LOOP_KILLED, M2_AMPLIFIER_ENABLED) |
       bit(found->foreground_in_position && i_integer(I13_FOREGROUND_IN_POSITION) != 0, M2_FOREGROUND_IN_POSITION) |
-      bit(found->on_limit, M2_STOPPED_ON_LIMIT) | bit(jog_is_homed(motor), M2_HOME_COMPLETE) |
+      bit(found->on_limit, M2_STOPPED_ON_LIMIT) | bit(motors[motor].status.home_complete, M2_HOME_COMPLETE) |
       bit(phasing_is_searched(motor), M2_PHASING) | bit(phasing_is_missing(motor), M2_PHASE_REFERENCE_ERROR) |
-      bit(jog_trigger_missed(motor), M2_TRIGGER_MOVE) | bit(found->integrated_error, M2_INTEGRATED_ERROR) |
+      bit(motors[motor].status.trigger_move, M2_TRIGGER_MOVE) | bit(found->integrated_error, M2_INTEGRATED_ERROR) |
       bit(found->integrated_current, M2_OVERLOAD) |
       bit(desired_position_backlash_is_down(motor), M2_BACKLASH_DIRECTION) |
       bit(found->amplifier_fault, M2_AMPLIFIER_FAULT) | bit(found->fatal_error, M2_FATAL_ERROR) |
@@ -114,8 +113,5 @@ static uint32_t status2(uint32_t motor) {
   if (!d->assigned) return word;
   return word | d->cs << M2_COORDINATE_SYSTEM | axis_code(d) << M2_AXIS | bit(true, M2_ASSIGNED);
 }
-
-void motor_status_initialize(void) { phasing_initialize(); }
-void motor_status_show_home(uint32_t motor, bool complete) { jog_set_homed(motor, complete); }
 
 uint32_t motor_status(uint32_t motor, unsigned word) { return word == 0u ? status1(motor) : status2(motor); }

@@ -14,9 +14,10 @@
 
 static void take_scales(uint32_t motor) {
   struct motor* m = &motors[motor - 1u];
-  const int32_t position = i_integer(i_motor(motor, IXX08_POSITION_SCALE));
+  const int32_t position = i_integer(i_motor(motor, IXX08_POSITION_SCALE)), before = m->position_scale;
   m->position_scale = position > 0 ? position : 1;
   m->velocity_scale = i_integer(i_motor(motor, IXX09_VELOCITY_SCALE));
+  if (before != 0 && m->position_scale != before) compensation_changed(); /* its unit */
 }
 
 /* A motor that is no longer activated is killed first: nobody would do it afterwards. */

@@ -38,9 +38,9 @@ static struct loop {
   /* S */
   uint32_t left; /* servo interrupts to the next closure */
   uint32_t position_reading, velocity_reading;
-  int64_t commanded, step; /* at the last closure, and how far it had gone since the one before */
-  int64_t integral;        /* position, with INTEGRAL_BITS of fraction */
-  int64_t remainder;       /* what it has not counted yet, 2^-7 of its unit */
+  int64_t step;      /* how far the commanded position had gone at the last closure */
+  int64_t integral;  /* position, with INTEGRAL_BITS of fraction */
+  int64_t remainder; /* what it has not counted yet, 2^-7 of its unit */
   bool saturated;
   int32_t filtered; /* PID alone, as a word: X:+$2E */
 } loops[MOTORS];
@@ -112,7 +112,7 @@ void position_loop_motor_changed(uint32_t motor) {
 
 void position_loop_restart(uint32_t motor) {
   struct loop* l = &loops[motor];
-  l->commanded = motors[motor].commanded;
+  motors[motor].closed_at = motors[motor].commanded;
   l->step = l->integral = l->remainder = 0;
   l->saturated = false;
   notch_restart(motor);
@@ -196,7 +196,7 @@ static int32_t clipped(int64_t output, int32_t most) {
 }
 
 static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
-  const int64_t step = clamp(m->commanded - l->commanded, STEP_MOST);
+  const int64_t step = clamp(m->commanded - m->closed_at, STEP_MOST);
   const int64_t finer = pid(m, l, step);
   int64_t output = finer >> NOTCH_FINER;
   l->filtered = word_of(output);
@@ -205,7 +205,7 @@ static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
   if ((compensation_of_torque >> motor & 1u) != 0u) output += compensation_torque(motor, output);
   m->output = clipped(output, l->output_most);
   l->saturated = m->output == l->output_most || m->output == -l->output_most;
-  l->commanded = m->commanded;
+  m->closed_at = m->commanded;
   l->step = step;
 }
 

@@ -139,7 +139,7 @@ static void check_limit(uint32_t motor, const struct view* view, int direction) 
     found->positive_limit = input || beyond;
   else
     found->negative_limit = input || beyond;
-  if (!(input || beyond) || !goes(view, direction) || jog_is_aborting(motor)) return;
+  if (!(input || beyond) || !goes(view, direction) || motors[motor].status.aborting) return;
   found->on_limit = true;
   if (input && g->limit_kills && has_software && !beyond)
     motor_kill(motor);
@@ -149,7 +149,8 @@ static void check_limit(uint32_t motor, const struct view* view, int direction) 
 
 static void check_limits(uint32_t motor, const struct view* view) {
   struct motor_findings* found = &motors[motor].found;
-  if (found->on_limit && view->desired_step != 0 && !jog_is_aborting(motor)) found->on_limit = false; /* it goes away */
+  if (found->on_limit && view->desired_step != 0 && !motors[motor].status.aborting)
+    found->on_limit = false; /* it goes away */
   check_limit(motor, view, 1);
   check_limit(motor, view, -1);
 }
