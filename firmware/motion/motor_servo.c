@@ -10,7 +10,7 @@
 #include "firmware/motion/protection.h"
 
 static void motor_servo(uint32_t motor) {
-  if (motors[motor].path == PATH_OWN) jog_servo(motor);
+  jog_servo(motor);
   desired_position_servo(motor);
   position_loop_servo(motor);
   protection_servo(motor);
