@@ -68,7 +68,7 @@ class Model {
 
 class PositionLoop : public ::testing::Test {
  protected:
-  PositionLoop() { c_.line("I100=1 I8000=0 I103=$10F0 I104=$10F1 I167=8388607"); }
+  PositionLoop() { c_.line("I100=1 I8000=0 I103=$10F0 I104=$10F1 I167=8388607 I124=$800001"); }
 
   void variable(unsigned number, double value) {
     char text[64];
