@@ -79,7 +79,7 @@ static error_t check_motors(uint32_t cs) {
     if (!d->assigned || d->cs != cs) continue;
     inactive |= i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0;
     open |= motors[motor].loop != LOOP_CLOSED;
-    limits |= motors[motor].status.positive_limit && motors[motor].status.negative_limit;
+    limits |= motors[motor].found.positive_limit && motors[motor].found.negative_limit;
     moving |= jog_is_moving(motor);
   }
   if (inactive) return ERR_NOT_ACTIVATED;
