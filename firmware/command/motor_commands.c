@@ -1,4 +1,4 @@
-/* Commands of single motors (firmware:9.4, datasheet/motion.md section 4): jogs, homing, open loop, kill, phase and
+/* Commands of single motors (motion:4.2 to motion:4.5): jogs, homing, open loop, kill, phase and
  * position references. What moves a motor closes its loop first, where it is. */
 #include "firmware/command/motor_commands.h"
 

@@ -10,5 +10,4 @@ void desired_position_take_actual(uint32_t motor) { motors[motor].trajectory = m
 void desired_position_shift(uint32_t motor, int64_t by) {
   motors[motor].trajectory += by;
   motors[motor].commanded += by;
-  motors[motor].actual += by;
 }

@@ -13,6 +13,7 @@
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/own_path.h"
+#include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
 #define FASTEST 2147483648.0 /* 1/(32 Ixx08) counts a ms */
@@ -206,9 +207,14 @@ int64_t jog_commanded(uint32_t motor) {
   return position;
 }
 
+/* The trajectory position that has the motor at `actual`. */
+static int64_t trajectory_at(uint32_t motor, int64_t actual) {
+  return actual - motors[motor].master + motors[motor].compensation;
+}
+
 int64_t jog_actual(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = motors[motor].actual;
+  const int64_t position = trajectory_at(motor, motors[motor].actual);
   hal_unmask(state);
   return position;
 }
@@ -239,6 +245,7 @@ void jog_make_whole(uint32_t motor) {
 void jog_count_from(uint32_t motor, int64_t position) {
   struct jog* j = &jogs[motor];
   desired_position_shift(motor, -position);
+  position_loop_shift(motor, -position);
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
   j->requests++; /* what is being planned is about the old positions */
   j->away = false;
@@ -285,7 +292,7 @@ static void found(uint32_t motor, int64_t position) {
   status->home_search = status->trigger_move = false;
   then.aim = AIM_TARGET;
   then.searches = false;
-  then.target = position + then.beyond;
+  then.target = trajectory_at(motor, position) + then.beyond;
   if (homes) {
     jog_count_from(motor, then.target);
     then.target = 0;

@@ -1,4 +1,4 @@
-/* `$*` (motion:3.5, motion:9.7/17): the position of a motor that nobody has moved yet, 0 or that of an absolute sensor
+/* `$*` (motion:4.4): the position of a motor that nobody has moved yet, 0 or that of an absolute sensor
  * (Ixx10, Ixx95). */
 #ifndef FIRMWARE_MOTION_POWER_ON_POSITION_H
 #define FIRMWARE_MOTION_POWER_ON_POSITION_H

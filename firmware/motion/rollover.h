@@ -1,4 +1,4 @@
-/* Rotary axes (motion:4.6): a turn of A, B or C is Ixx27 counts, and an absolute move of a program goes to its target
+/* Rotary axes (motion:4.4/4): a turn of A, B or C is Ixx27 counts, and an absolute move of a program goes to its target
  * within one. Jogs and reported positions know nothing of it. Floating point. */
 #ifndef FIRMWARE_MOTION_ROLLOVER_H
 #define FIRMWARE_MOTION_ROLLOVER_H
