@@ -53,7 +53,7 @@ static int64_t captured_position(uint32_t motor, const struct capture* c) {
 }
 
 static bool came(uint32_t motor, const struct capture* c) {
-  if (c->on_error) return motors[motor].status.warning_error;
+  if (c->on_error) return motors[motor].found.warning_error;
   return c->status != 0 && (*c->status & CAPTURED) != 0u;
 }
 

@@ -10,7 +10,6 @@
 #include "firmware/motion/servo_update.h"
 
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/jog.h"
 
 static void slew_time_base(struct coordinate_system* s) {
   int32_t present = s->increment, target = s->increment_target, slew = s->increment_slew;
@@ -95,7 +94,6 @@ static __attribute__((noinline)) void update(struct coordinate_system* s) {
 }
 
 void servo_update(void) {
-  for (uint32_t motor = 0; motor < MOTORS; motor++) jog_servo(motor);
   uint32_t left = cs_busy;
   for (uint32_t cs = 0; left != 0; cs++, left >>= 1) {
     if ((left & 1u) == 0) continue;
