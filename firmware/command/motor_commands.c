@@ -93,15 +93,13 @@ static error_t jog_distance(struct lexer* lx, enum jog_from from, bool becomes_b
   return ERR_NONE;
 }
 
-static error_t jog_plus(struct lexer* lx) {
-  (void)lx;
-  return motor_jog(session.motor, MOTOR_JOG_PLUS);
+/* Without end: no trigger can be added. */
+static error_t jog_endless(struct lexer* lx, enum motor_jog how) {
+  return lexer_peek(lx) == '^' ? ERR_DATA : motor_jog(session.motor, how);
 }
 
-static error_t jog_minus(struct lexer* lx) {
-  (void)lx;
-  return motor_jog(session.motor, MOTOR_JOG_MINUS);
-}
+static error_t jog_plus(struct lexer* lx) { return jog_endless(lx, MOTOR_JOG_PLUS); }
+static error_t jog_minus(struct lexer* lx) { return jog_endless(lx, MOTOR_JOG_MINUS); }
 
 static error_t jog_rest(struct lexer* lx) {
   (void)lx;
