@@ -1,6 +1,7 @@
 #include "firmware/motion/system_path.h"
 
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 
 static void slew_time_base(struct coordinate_system* s) {
@@ -48,7 +49,15 @@ static void begin_move(struct coordinate_system* s, uint32_t first, uint32_t num
     if (piece_ring_at(&s->ring, i)->move == move) s->elapsed += piece_ring_at(&s->ring, i)->end;
 }
 
+static bool goes_alone(const struct move* m) {
+  if (m->kind != MOVE_OWN) return false;
+  for (uint32_t motor = 0, left = m->own; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && jog_is_moving(motor)) return true;
+  return false;
+}
+
 static void advance(struct coordinate_system* s) {
+  if (goes_alone(&s->moves[s->executing])) return;
   const bool dwells = s->moves[s->executing].kind == MOVE_DWELL; /* real time: the time base does not count */
   const int32_t increment = dwells ? s->increment_full : s->increment;
   const uint32_t first = s->ring.executing;

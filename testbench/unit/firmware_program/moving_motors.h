@@ -85,7 +85,8 @@ class MovingMotors : public FirmwareTest {
   }
   static double at(unsigned motor) { return static_cast<double>(motors[motor - 1].trajectory) / kUnit; }
   // From the interrupt that begins the first move: `look` at each, with the ms since then, until the program has ended.
-  static double run(const std::function<void(double)>& look = [](double) {}, const std::string& start = "&1B1R") {
+  static double run(
+      const std::function<void(double)>& look = [](double) {}, const std::string& start = "&1B1R") {
     EXPECT_EQ(host(start), "");
     for (int i = 0; i < 1000 && !cs().active; ++i) platform::servo_ticks(1);
     EXPECT_TRUE(cs().active);
