@@ -17,6 +17,7 @@
 #include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
@@ -34,6 +35,7 @@ void background_meanwhile(void) {
     plc_background();
     background_wake();
   }
+  phasing_pass();
   image_checksum_pass();
   stack_watch_pass();
   watchdog_reload();

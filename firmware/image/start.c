@@ -28,7 +28,9 @@
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor_status.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/motion/sine_table.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
@@ -110,9 +112,12 @@ void start(enum start_mode mode) {
   calendar_initialize();
   tasks_initialize();
   sine_table_initialize();
+  phasing_initialize();
+  phasing_search_initialize();
   phase_task_initialize();
   hal_interrupts_on();
   clock_watch_start();
+  phasing_power_on();
   background_wake();
 }
 

@@ -25,6 +25,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/motor_variables.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/servo_update.h"
 #include "firmware/variables/i_table.h"
@@ -36,6 +37,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
+  phasing_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();
