@@ -27,6 +27,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
@@ -101,6 +102,7 @@ void start(enum start_mode mode) {
   buffer_request_initialize();
   panel_initialize();
   coordinate_systems_initialize();
+  jog_initialize();
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();

@@ -9,5 +9,7 @@ void desired_position_tables_changed(void);          /* compensation tables came
 void desired_position_servo(uint32_t motor);         /* 0..31, servo task: trajectory -> commanded, desired_step */
 /* 0..31, servo task held off: the trajectory is set so that the motor is commanded to be where it is. */
 void desired_position_take_actual(uint32_t motor);
+/* 0..31, servo task held off, or in it: positions are counted from elsewhere, all of the loop are `by` more. */
+void desired_position_shift(uint32_t motor, int64_t by);
 
 #endif

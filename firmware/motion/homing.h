@@ -6,8 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-bool homing_begin(uint32_t motor);   /* HM: at Ixx23 to the trigger, then to Ixx26 behind it; false: loop not closed */
-void homing_here(uint32_t motor);    /* HMZ: the commanded position is 0 */
-bool homing_is_over(uint32_t motor); /* for who waits: nothing moves it any more, found or not (jog_is_homed) */
+bool homing_begin(uint32_t motor, bool by_program); /* HM: at Ixx23 to the trigger, then to Ixx26 behind it */
+void homing_here(uint32_t motor);                   /* HMZ: the commanded position is 0 */
 
 #endif

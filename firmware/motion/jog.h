@@ -19,30 +19,29 @@ bool jog_to(uint32_t motor, int64_t target);                      /* J= */
 bool jog_until(uint32_t motor, int64_t target, int64_t distance); /* ^d: to `target`, or `distance` behind a trigger */
 bool jog_rapid(uint32_t motor, int64_t target, double speed);     /* counts a ms */
 bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance);
-/* Search at `velocity` (counts a ms, with sign) for a trigger. Where it is, less `offset`, becomes position 0, at once,
- * and the motor goes there. */
-bool jog_home(uint32_t motor, double velocity, int64_t offset);
-/* To rest at a constant deceleration (counts a ms^2), without Ixx92: from a jog, or off the path of the system. */
+/* Search at `velocity` (counts a ms, with sign) for a trigger. Where it is, and `offset` further, becomes position 0 at
+ * once, and the motor goes there. */
+bool jog_home(uint32_t motor, double velocity, int64_t offset, bool by_program);
+/* To rest at a constant deceleration (counts a ms^2), without Ixx92. A motor of a coordinate system leaves its path for
+ * that, which has to go on until then: PATH_OWN. */
 bool jog_stop_at(uint32_t motor, double deceleration);
 
 /* At once, servo task held off. */
 void jog_drop(uint32_t motor);          /* nothing moves it any more: killed, open loop, stopped on the spot */
 void jog_program_takes(uint32_t motor); /* a program moves it from now on: PATH_SYSTEM */
 
-/* Any task. */
-bool jog_is_moving(uint32_t motor);      /* on its way, or about to be */
-bool jog_is_timed(uint32_t motor);       /* on its way to an end that is known: "move timer active" */
-bool jog_is_searching(uint32_t motor);   /* for a trigger */
-bool jog_is_homing(uint32_t motor);      /* the same, for home: software limits do not count */
-bool jog_is_aborting(uint32_t motor);    /* jog_stop_at is under way */
-bool jog_trigger_missed(uint32_t motor); /* the last move until a trigger has not found it, or not yet */
-bool jog_is_homed(uint32_t motor);       /* trigger found, or HMZ, since the last search began */
-void jog_set_homed(uint32_t motor, bool homed);
+/* Any task. More of it stands in the motor's status flags (motion/motor.h). */
+bool jog_is_moving(uint32_t motor); /* on its way, or about to be */
+bool jog_is_homing(uint32_t motor); /* searches for home: software limits do not count */
 
 /* Where the motor was before it was jogged: the end of what a program or a homing search has moved, or `J==`. */
 int64_t jog_position_before(uint32_t motor);
 void jog_set_position_before(uint32_t motor, int64_t position);
 int64_t jog_commanded(uint32_t motor); /* trajectory position now, of one moment */
+void jog_make_whole(uint32_t motor);   /* J!: a motor that stands is commanded to the nearest whole count */
+int64_t jog_actual(uint32_t motor);
+/* All positions are counted from the present `position`. Servo task held off, or in it. */
+void jog_count_from(uint32_t motor, int64_t position);
 
 void jog_servo(uint32_t motor); /* S: the trajectory of a motor on PATH_OWN, and what it searches */
 bool jog_plan(void);            /* R, in slices: plans one request; false: there is none */

@@ -12,6 +12,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
 #include "firmware/motion/position.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
@@ -157,7 +158,7 @@ static void calculate_round(void) {
   uint32_t looked = interrupts, mask = systems();
   for (bool any = true; any;) {
     synchronous_assign();
-    any = false;
+    any = jog_plan();
     for (uint32_t cs = 0, left = mask; left != 0; cs++, left >>= 1) {
       if ((left & 1u) == 0) continue;
       calculated = cs;
