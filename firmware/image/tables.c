@@ -10,6 +10,7 @@
 #include "firmware/command/list_commands.h"
 #include "firmware/command/memory_commands.h"
 #include "firmware/command/motor_commands.h"
+#include "firmware/command/phase_commands.h"
 #include "firmware/command/plc_commands.h"
 #include "firmware/command/program_commands.h"
 #include "firmware/command/reply.h"
@@ -83,6 +84,7 @@ const struct command_entry* const command_tables[] = {report_commands,
                                                       list_commands,
                                                       plc_commands,
                                                       motor_commands,
+                                                      phase_commands,
                                                       program_commands,
                                                       gather_commands,
                                                       0};

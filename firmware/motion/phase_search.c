@@ -242,4 +242,7 @@ void phasing_power_on(void) {
   }
 }
 
-void phasing_set_here(uint32_t motor) { set_position(motor, variable(motor, IXX75_PHASE_OFFSET)); }
+void phasing_set_here(uint32_t of) {
+  for (uint32_t motor = 0; of != 0u; ++motor, of >>= 1)
+    if ((of & 1u) != 0u) set_position(motor, variable(motor, IXX75_PHASE_OFFSET));
+}

@@ -57,15 +57,29 @@ TEST_F(Phasing, StaysMissingWithoutAWayToFindIt) {
 TEST_F(Phasing, SetphaseTakesIxx75AtOnce) {
   set("I171=1000 I175=300");
   stand_at(-77);
-  phasing_set_here(0);
+  phasing_set_here(1);
   phase();
   EXPECT_EQ(x_word(kPosition), 300);
   set("I175=900");
-  phasing_set_here(0);
+  phasing_set_here(1);
   phase();
   EXPECT_EQ(x_word(kPosition), -100);
+  set("I201=1 I271=1000 I275=77 I301=1 I371=1000 I375=78 I401=1 I471=1000 I475=79");
+  EXPECT_EQ(c_.line("SETPHASE1,3..4"), "");
+  phase();
+  EXPECT_EQ(x_word(kPosition + 0x80), 0);
+  EXPECT_EQ(x_word(kPosition + 0x100), 78);
+  EXPECT_EQ(x_word(kPosition + 0x180), 79);
+  EXPECT_EQ(c_.line("SETPHASE33"), "ERR003");
+  EXPECT_EQ(c_.line("SETPHASE"), "ERR003");
+  set("OPEN PLC 1 CLEAR SETPHASE2 DISABLE PLC 1 CLOSE I5=3 ENABLE PLC 1");
+  EXPECT_EQ(c_.line("LIST PLC 1"), "SETPHASE2|DISPLC1");
+  c_.servo(20);
+  set("");
+  phase();
+  EXPECT_EQ(x_word(kPosition + 0x80), 77);
   set("I171=16000000 I175=12000000");
-  phasing_set_here(0);
+  phasing_set_here(1);
   phase();
   EXPECT_EQ(x_word(kPosition), -4000000);
 }
