@@ -144,6 +144,9 @@ TEST_F(Commutation, TheTableOfIxx55IsUsed) {
   command(1000);
   phase();
   EXPECT_EQ(a(), 500);
+  set("I155=$8123");  // the address is a multiple of $800
+  phase();
+  EXPECT_EQ(a(), 500);
   set("I155=$7FFFFF");  // no memory there: the table of all
   phase();
   EXPECT_NEAR(a(), -1000 * table_sine(77), 0.02);

@@ -121,7 +121,7 @@ TEST_F(Halls, ImpossibleStatesAreRefused) {
 }
 
 TEST_F(Phasing, ParallelWordTimesIxx70PlusIxx75) {
-  set("I170=4 I171=4096 I175=50 I181=$10F1 I191=$0C0000");  // 12 bits of Y
+  set("I170=4 I171=5000 I175=50 I181=$10F1 I191=$0C0000");  // 12 bits of Y
   set_y(0x10F1, 0xABC123);
   (void)phasing_begin(0);
   phase();
@@ -130,13 +130,13 @@ TEST_F(Phasing, ParallelWordTimesIxx70PlusIxx75) {
   set_x(0x10F1, 1000007);
   (void)phasing_begin(0);
   phase();
-  EXPECT_EQ(x_word(kPosition), (1000007 * 4 + 50) % 4096 - 4096);
+  EXPECT_EQ(x_word(kPosition), (1000007 * 4 + 50) % 5000);
   set("I191=$1E0000 I170=1");  // 30 bits: six of the next word
   set_y(0x10F1, 5);
   set_y(0x10F2, 0x41);
   (void)phasing_begin(0);
   phase();
-  EXPECT_EQ(x_word(kPosition), 5 + 50) << "2^24 is a multiple of 4096";
+  EXPECT_EQ(x_word(kPosition), (16777216 + 5 + 50) % 5000);
 }
 
 // The motor of --plant servo8: 48 V, 10 A, 1 ohm, 1 mH, four pole pairs, 4000 counts, and the gains of its set-up.
