@@ -29,7 +29,6 @@
 
 enum { PHASE_POSITION = 0x34, READING = 0x32 };          /* registers */
 enum { AT_POWER_ON = 1, STEPPER = 2, NOT_ABSOLUTE = 4 }; /* Ixx80 */
-enum { COMMUTATED = 1 };                                 /* Ixx01 */
 enum { GUESSES = 2, PARTS_OF_GUESS = 2, STEPPER_PARTS = 2, STEPPER_UNIT = 256 };
 enum { LEAST_COUNTS = 3 };                        /* that a guess must have moved */
 enum { LEAST_OF_STEP = 4 };                       /* a quarter of the way between the phases */
@@ -227,7 +226,7 @@ static bool begin_search(uint32_t motor) {
 }
 
 bool phasing_begin(uint32_t motor) {
-  if (((uint32_t)variable(motor, IXX01_COMMUTATION_ENABLE) & COMMUTATED) == 0u) return motor_close(motor);
+  if (!phasing_is_needed(motor)) return motor_close(motor);
   if (phasing_is_searched(motor)) return true;
   if (phase_absolute_is_set(motor)) return begin_absolute(motor);
   return begin_search(motor);

@@ -7,10 +7,11 @@
 
 void phasing_search_initialize(void); /* start-up, before interrupts: nothing is searched */
 
-/* `$` of a commutated motor: reads the absolute sensor of Ixx81 and closes the loop, or opens the loop (motor_open) and
- * begins a search; then the loop is closed when that has succeeded (phasing_pass), the motor is killed when it has
- * failed. False: there is no way to find a reference (Ixx74 = 0, a format of Ixx91 that is not read), or the motor may
- * not be enabled. Then status word 2 bit 8 stays as it is. Background, real-time task. */
+/* `$`: closes the loop of a motor that needs no reference. Else it reads the absolute sensor of Ixx81 and closes the
+ * loop, or opens the loop (motor_open) and begins a search; then the loop is closed when that has succeeded
+ * (phasing_pass), the motor is killed when it has failed. False: there is no way to find a reference (Ixx74 = 0, a
+ * format of Ixx91 that is not read), or the motor may not be enabled. Then status word 2 bit 8 stays as it is.
+ * Background, real-time task. */
 bool phasing_begin(uint32_t motor);
 void phasing_power_on(void); /* background, interrupts on: motors with Ixx80 bit 0 = 1 */
 void phasing_servo(void);    /* servo task, before the motors: a step of each search */

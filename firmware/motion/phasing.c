@@ -19,6 +19,7 @@ static void put(volatile uint32_t* bits, uint32_t motor, bool value) {
 
 static bool has(uint32_t bits, uint32_t motor) { return ((bits >> motor) & 1u) != 0u; }
 
+bool phasing_is_needed(uint32_t motor) { return has(synchronous_of, motor); }
 bool phasing_is_missing(uint32_t motor) { return has(missing_of, motor); }
 bool phasing_is_searched(uint32_t motor) { return has(searched_of, motor); }
 uint32_t phasing_searched(void) { return searched_of; }
