@@ -84,6 +84,11 @@ static void take_sources(struct loop* l, uint32_t motor) {
   l->result = hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT);
 }
 
+void position_loop_initialize(void) {
+  __builtin_memset(loops, 0, sizeof loops);
+  notch_initialize();
+}
+
 void position_loop_motor_changed(uint32_t motor) {
   struct loop* l = &loops[motor - 1u];
   const uint32_t state = hal_mask_servo();
