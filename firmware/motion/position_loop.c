@@ -15,6 +15,7 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
+enum { FORGETS = 2 };
 enum { FINER = 7, INTEGRAL_BITS = 23, GAIN_BITS = 16, DEADBAND_BITS = 4, PART_OF_COUNT = 16 };
 enum { INTEGRATES_VELOCITY = 2 };      /* Ixx96 */
 #define ERROR_MOST (INT64_C(1) << 39)  /* and integral */
@@ -38,6 +39,7 @@ static struct loop {
   /* S */
   uint32_t left; /* servo interrupts to the next closure */
   uint32_t position_reading, velocity_reading;
+  uint32_t forgets;  /* movements that are none */
   int64_t step;      /* how far the commanded position had gone at the last closure */
   int64_t integral;  /* position, with INTEGRAL_BITS of fraction */
   int64_t remainder; /* what it has not counted yet, 2^-7 of its unit */
@@ -133,7 +135,10 @@ static int32_t saturated(int64_t value) {
 /* The words of the table wrap; positions are the sums of their movement. */
 static void measure(struct motor* m, struct loop* l) {
   const uint32_t position = *l->position_source, velocity = *l->velocity_source;
-  m->actual += (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
+  if (l->forgets != 0u)
+    l->forgets--;
+  else
+    m->actual += (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
   m->velocity = saturated((int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale);
   l->position_reading = position;
   l->velocity_reading = velocity;
@@ -255,6 +260,8 @@ static int64_t of_one_moment(const int64_t* value) {
   return copy;
 }
 
+uint32_t position_loop_reading(uint32_t motor) { return loops[motor].position_reading; }
+void position_loop_forget_movement(uint32_t motor) { loops[motor].forgets = FORGETS; }
 int32_t position_loop_filtered(uint32_t motor) { return loops[motor].filtered; }
 int64_t position_loop_integral(uint32_t motor) { return of_one_moment(&loops[motor].integral) >> INTEGRAL_BITS; }
 int64_t position_loop_step(uint32_t motor) { return of_one_moment(&loops[motor].step); }
