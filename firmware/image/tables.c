@@ -26,7 +26,6 @@
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/live_words.h"
-#include "firmware/motion/motor_servo.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/protection.h"
@@ -40,9 +39,7 @@
 void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
-  conversion_table_servo();
   servo_update();
-  motors_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();

@@ -185,7 +185,7 @@ TEST_F(Protection, InPositionAfterItsScans) {
 }
 
 TEST_F(Protection, SignalsOfTheSelectedSystem) {
-  c_.line("I211=0 I212=160 &1");
+  c_.line("&1 I211=0 I212=160");
   close_all();
   c_.line("");
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_IPOS);
