@@ -126,10 +126,7 @@ TEST_F(JogProfile, RandomMovesAndNewTargetsOnTheWayStayWithinASixteenthOfACount)
       const bool steady = unit(random) < 0.1;
       const Motion motion =
           steady ? jog_model::at_speed(l, from, way < 0 ? -l.ixx22 : l.ixx22) : jog_model::to_target(l, from, target);
-      if (steady)
-        ASSERT_TRUE(jog_continuous(0, way < 0 ? -1 : 1));
-      else
-        ASSERT_TRUE(jog_to(0, units(target)));
+      ASSERT_TRUE(steady ? jog_continuous(0, way < 0 ? -1 : 1) : jog_to(0, units(target)));
       const unsigned steps = 10 + random() % 40;
       follow(before, elapsed, motion, ixx92, steps, result);
       if (HasFatalFailure()) {
@@ -181,7 +178,7 @@ TEST_F(JogProfile, RampStopsAtOneDeceleration) {
   std::vector<double> positions;
   while (jog_is_moving(0)) {
     positions.push_back(step());
-    if (positions.size() == 5) EXPECT_TRUE(motors[0].status.aborting);
+    if (positions.size() == 5) { EXPECT_TRUE(motors[0].status.aborting); }
   }
   EXPECT_FALSE(motors[0].status.aborting);
   const double begins = (position() - at.position - 20 * 20 / (2 * 0.5)) / 20;  // ms after the request
@@ -239,7 +236,9 @@ TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {
 TEST_F(Jog, RequestsInARowDoNotHoldOffThoseBefore) {
   set({0.25, 0, 50, 20}, 10);
   for (int i = 0; i < 400; ++i) {
-    if (i % 10 == 0) ASSERT_TRUE(jog_to(0, units(1000 + i)));  // every 4.4 ms
+    if (i % 10 == 0) {  // every 4.4 ms
+      ASSERT_TRUE(jog_to(0, units(1000 + i)));
+    }
     step();
   }
   EXPECT_GT(position(), 100) << "each begins anew at the speed that the last had come to";
@@ -260,7 +259,7 @@ TEST_F(Jog, PlanningThatTakesTooLongBeginsLaterWithoutAJump) {
   };
   for (int i = 0; i < 300; ++i) {
     servo();
-    if (i == 100) ASSERT_TRUE(jog_to(0, 0));
+    if (i == 100) { ASSERT_TRUE(jog_to(0, 0)); }
     const std::function<void()> between = servo;
     if (i % 3 == 0) platform::real_time_in_slices(between);
   }
