@@ -54,6 +54,20 @@ TEST_F(Phasing, StaysMissingWithoutAWayToFindIt) {
   EXPECT_FALSE(phasing_is_searched(0));
 }
 
+// A program that knows the angle by itself writes the phase position and clears the bit: M171 and M148 of the usual
+// set.
+TEST_F(Phasing, AUserWhoHasSetThePositionClearsTheError) {
+  set("M148->Y:$C0,8 M171->X:$B4,0,24,S M171=123 M148=0");
+  EXPECT_FALSE(phasing_is_missing(0));
+  EXPECT_EQ(c_.line("M148 M171"), "0|123");
+  EXPECT_TRUE(motor_close(0));
+  set("M148=1");
+  EXPECT_TRUE(phasing_is_missing(0));
+  EXPECT_EQ(c_.line("#1??").substr(9, 1), "1");
+  set("M5->Y:$C0,10 M5=0");  // another bit of the word
+  EXPECT_TRUE(phasing_is_missing(0));
+}
+
 TEST_F(Phasing, SetphaseTakesIxx75AtOnce) {
   set("I171=1000 I175=300");
   stand_at(-77);
