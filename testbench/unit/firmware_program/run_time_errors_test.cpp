@@ -28,11 +28,11 @@ TEST_F(RunTimeErrors, EachCauseHasItsNumber) {
     const char* number;
     Lines lines;
   } causes[] = {
-      {"1", {"CIRCLE1 X1Y1R5"}}, {"1", {"PVT100"}},   {"2", {"CALL99"}},
-      {"2", {"CALL99.5"}},       {"2", {"G1"}},       {"2", {"CALL(-1)"}},
-      {"2", {"CALL(40000)"}},    {"3", {"GOTO5"}},    {"3", {"GOSUB5"}},
-      {"3", {"CALL7.5"}},        {"3", {"GOTO(-1)"}}, {"3", {"GOSUB(300000)"}},
-      {"4", {"CALL8"}},          {"5", {"CALL9"}},    {"6", {repeated("M1==1", 33), "X1"}},
+      {"1", {"CC1 X1Y1"}},    {"1", {"X1R5"}},     {"2", {"CALL99"}},
+      {"2", {"CALL99.5"}},    {"2", {"G1"}},       {"2", {"CALL(-1)"}},
+      {"2", {"CALL(40000)"}}, {"3", {"GOTO5"}},    {"3", {"GOSUB5"}},
+      {"3", {"CALL7.5"}},     {"3", {"GOTO(-1)"}}, {"3", {"GOSUB(300000)"}},
+      {"4", {"CALL8"}},       {"5", {"CALL9"}},    {"6", {repeated("M1==1", 33), "X1"}},
       {"7", {"READ(X)"}},
   };
   ASSERT_EQ(host("M1->*"), "");

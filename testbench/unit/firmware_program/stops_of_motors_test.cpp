@@ -88,7 +88,7 @@ TEST_F(StopsOfMotors, HoldAndRateKeepThePath) {
     ASSERT_EQ(host(stop), "");
     for (int i = 0; i < 1000; ++i) {
       platform::servo_ticks(1);
-      ASSERT_NEAR(at(1), 4 * at(2), 8 / kUnit);
+      ASSERT_NEAR(at(1), 4 * at(2), 12 / kUnit);
     }
     EXPECT_TRUE(rests());
     EXPECT_GT(at(1), 500.0);
@@ -100,7 +100,7 @@ TEST_F(StopsOfMotors, HoldAndRateKeepThePath) {
     ASSERT_EQ(host("%50 R"), "");
     for (int i = 0; i < 3000 && run_is_running(0); ++i) {
       platform::servo_ticks(1);
-      ASSERT_NEAR(at(1), 4 * at(2), 8 / kUnit);
+      ASSERT_NEAR(at(1), 4 * at(2), 12 / kUnit);
     }
     EXPECT_EQ(motors[0].trajectory, position(4000));
     EXPECT_EQ(host("%100"), "");
