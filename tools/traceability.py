@@ -10,9 +10,11 @@ A test names its requirements in one of these ways:
 docs/design-files.txt says of which files a requirement is made; docs/test-results.json holds what the last whole run
 of the test suite showed of each of these tests, on each engine.
 
-  --check      (default) fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a traced ID
-               without design files for each of its engines, on a test that docs/verification-plan.md names and that
-               does not exist, and when docs/traceability.md is not what --write would write
+  (no option)  fails on an unknown ID, on a claimed ID (docs/claimed.txt) without a test, on a traced ID without design
+               files for each of its engines, on a test that docs/verification-plan.md names and that does not exist,
+               and when docs/traceability.md is not what --write would write. In each run of the suite
+  --check      the same, and fails on the committed results as --results does. No run asks for that: its own results
+               come behind it
   --write      writes docs/traceability.md
   --results F  takes the results of a run from `ctest --output-junit F` into docs/test-results.json and writes the page;
                fails when a test that names an ID has no result, and when a claimed ID is not passed on one of its
@@ -317,6 +319,17 @@ def results_of(root, tests, junit):
     return dict(sorted(found.items()))
 
 
+def result_problems(requirements, claimed, tests, results):
+    """A test without a result, and a claim that is not passed on one of its engines."""
+    problems = [f"{test.file}: {test.name} names {' '.join(test.ids)}: no result" for test in tests
+                if test.name not in results]
+    for name in claimed:
+        found = [test for test in tests if name in test.ids]
+        problems += [f"{name} is claimed on {engine}: {result}"
+                     for engine, result in row_results(requirements[name][0], found, results) if result != "passed"]
+    return problems
+
+
 def named_run(root):
     done = subprocess.run(["git", "rev-parse", "--short=10", "HEAD"], cwd=root, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL)
@@ -336,14 +349,11 @@ def main():
     if options.results:
         taken = {"run": named_run(root), "tests": results_of(root, tests, options.results)}
         (root / RESULTS).write_text(json.dumps(taken, indent=1) + "\n")
-        problems += [f"{test.file}: {test.name} names {' '.join(test.ids)}: no result" for test in tests
-                     if test.name not in taken["tests"]]
-        for name in claimed:
-            found = [test for test in tests if name in test.ids]
-            shown = row_results(requirements[name][0], found, taken["tests"])
-            problems += [f"{name} is claimed on {engine}: {result}" for engine, result in shown if result != "passed"]
+        problems += result_problems(requirements, claimed, tests, taken["tests"])
     else:
         problems += problems_in(requirements, claimed, tests, design) + plan_problems(root)
+    if options.check and not problems:  # a claim of no requirement has no engines
+        problems += result_problems(requirements, claimed, tests, read_results(root)["tests"])
     text = page(requirements, claimed, tests, design, read_results(root))
     if options.write or options.results:
         (root / PAGE).write_text(text)
