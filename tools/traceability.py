@@ -43,16 +43,15 @@ RUN_ON = {"rtl": "R", "systemc": "S", "model": "S", "lockstep": "L", "both": "L"
 FILES_RUN_ON = (
     (r"unit/(firmware_\w+|cpu)/", "F"),
     (r"unit/app/|benches/", "S F"),
-    (r"unit/host/tlm_", "S"),
     (r"unit/host/", "R S L"),
     (r"lockstep_test|unit/cosim/motor_pins|unit/cosim/board", "L"),
-    (r"unit/cosim/(quiet|run_length|run_ahead)", "R S L"),
-    (r"unit/cosim/(machine|port_a)", "S F"),
-    (r"unit/board_model/", "S"),
+    (r"unit/cosim/(quiet|run_length)|unit/machine/run_ahead", "R S L"),
+    (r"unit/machine/(machine|port_a)", "S F"),
+    (r"unit/board/(clock_follower|lazy_ics|motor_pins)", "S"),
 )
 NO_ENGINE = "passed"  # what the page shows of such a test
 # The image runs there, on each engine.
-WITH_FIRMWARE = re.compile(r"unit/system/(?!clock_checker|watchdog_scoreboard)|unit/app/|benches/")
+WITH_FIRMWARE = re.compile(r"unit/system/(?!watchdog_scoreboard)|unit/app/|benches/")
 
 
 def read_requirements(root):
