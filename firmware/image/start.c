@@ -33,6 +33,7 @@
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/phasing.h"
 #include "firmware/motion/sine_table.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
@@ -102,6 +103,7 @@ void start(enum start_mode mode) {
   buffer_request_initialize();
   panel_initialize();
   coordinate_systems_initialize();
+  time_base_initialize();
   motor_variables_initialize();
   jog_initialize();
   phasing_initialize();

@@ -122,19 +122,20 @@ struct coordinate_system {
   bool vector_absolute, time_mode;
   enum mode mode;
   bool unblended; /* at the start of the program: Isx92 */
-  bool may_join; /* the last calculated move can blend with one after it */
+  bool may_join;  /* the last calculated move can blend with one after it */
   /* calculation, R */
   double position[AXIS_COUNT]; /* end of the last calculated move */
   /* of the last calculated move, and its Tm: a velocity is divided when it is needed */
   double last_delta[AXIS_COUNT];
   int64_t last_time;
+  double carry[AXIS_COUNT];   /* what incremental moves have lost by rounding of the position: none adds up */
   double pending[AXIS_COUNT]; /* targets of the line being calculated */
   uint32_t pending_axes;
   double pending_velocity[AXIS_COUNT], pending_trigger[AXIS_COUNT]; /* behind `:` and `^`: units a Isx90, units */
   uint32_t pending_velocities, pending_triggers;
-  bool was_matched;   /* since the last MOVE_OWN */
-  bool first;         /* no move of this run has been placed yet */
-  bool sets_position; /* the line is that of PSET */
+  bool was_matched;          /* since the last MOVE_OWN */
+  bool first;                /* no move of this run has been placed yet */
+  bool sets_position;        /* the line is that of PSET */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
   /* moves: moves[executing] is the one that executes or has been last, the other one is the next */
@@ -154,9 +155,11 @@ struct coordinate_system {
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */
   volatile int32_t increment_slew;   /* B */
-  int32_t increment_full;            /* B: I10, taken over by %100 */
-  int32_t increment_command;         /* B: target without the hold of H */
-  bool held;                         /* B: H */
+  /* B: the word that Isx93 points to, which has the target instead; null: its own commanded time base */
+  const volatile uint32_t* volatile time_base_source;
+  int32_t increment_full;    /* B: I10, taken over by %100 */
+  int32_t increment_command; /* B: target without the hold of H */
+  bool held;                 /* B: H */
 };
 
 extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];

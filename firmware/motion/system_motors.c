@@ -7,6 +7,7 @@
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/rollover.h"
 #include "firmware/variables/i_variables.h"
 
 enum { AXES_OF_A_MOTOR = 3 };
@@ -63,6 +64,19 @@ double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
     slice_pause();
   }
   return sum;
+}
+
+/* The first motor that carries it alone tells the turn. */
+double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  for (uint32_t motor = 0, left = axis <= AXIS_C ? s->motors : 0u; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0 || maps[motor].count != 1u || maps[motor].axis[0] != axis) continue;
+    if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
+    const double scale = axis_definitions[motor].scale[axis];
+    slice_pause();
+    return rollover_target(motor, s->position[axis] * scale, target * scale, target < 0.0) / scale;
+  }
+  return target;
 }
 
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]) {

@@ -20,6 +20,8 @@ extern struct motor_move motor_moves[2][MOTORS];
 
 void system_motors_resolve(uint32_t cs); /* its motors, scales and offsets; background too */
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
+/* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */
+double system_motors_turn(uint32_t cs, uint32_t axis, double target);
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]);
 double system_motor_counts(uint32_t motor, int64_t distance);
 /* Of distances behind a trigger those of its axes in `axes`; false: it has none of them. */

@@ -22,9 +22,19 @@ static void set_rate(uint32_t cs, uint32_t rate, double value) {
 static void set_axis(uint32_t cs, uint32_t axis, double value) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
-  if (s->pending_axes == 0) p->axes = p->x.at.statement;
+  if (s->pending_axes == 0) {
+    p->axes = p->x.at.statement;
+    p->axes_loops = p->x.at.loop_count;
+  }
   const bool incremental = !s->sets_position && ((s->incremental >> axis) & 1u) != 0;
-  s->pending[axis] = incremental ? s->position[axis] + value : value;
+  if (incremental) {
+    const double way = value + s->carry[axis];
+    s->pending[axis] = s->position[axis] + way;
+    s->carry[axis] = way - (s->pending[axis] - s->position[axis]);
+  } else {
+    s->pending[axis] = s->sets_position ? value : system_motors_turn(cs, axis, value);
+    s->carry[axis] = 0.0;
+  }
   s->pending_axes |= 1u << axis;
 }
 
@@ -44,7 +54,8 @@ enum executed motion_plan_line(uint32_t cs) {
   }
   motion_program_trace(cs, &coordinate_systems[cs].line);
   if (plan_line(cs)) return EXECUTED_WORD;
-  p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again */
+  p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again, in the loops of its line */
+  p->x.at.loop_count = p->axes_loops;
   return executor_fail(&p->x, RUN_TIME_FEEDRATE);
 }
 

@@ -63,7 +63,7 @@ TEST_F(Phasing, AUserWhoHasSetThePositionClearsTheError) {
   EXPECT_TRUE(motor_close(0));
   set("M148=1");
   EXPECT_TRUE(phasing_is_missing(0));
-  EXPECT_EQ(c_.line("#1??").substr(9, 1), "1");
+  EXPECT_EQ(c_.line("#1?").substr(9, 1), "1");
   set("M5->Y:$C0,10 M5=0");  // another bit of the word
   EXPECT_TRUE(phasing_is_missing(0));
 }
