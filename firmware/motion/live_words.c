@@ -152,6 +152,8 @@ static void write_time_base(uint32_t cs, uint32_t mask, uint32_t bits) {
 /* What a write leaves of the word is read in one piece with it: programs of the real-time task write there too. */
 static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
   if (offset == CS_COMMANDED_TIME_BASE) write_time_base(cs, mask, bits);
+  if (offset == CS_STATUS_1 && x && (mask & S1_CONTINUOUS_BIT) != 0u)
+    coordinate_systems[cs].unblended = (bits & S1_CONTINUOUS_BIT) == 0u;
   if (offset == CS_TIMERS) write_timer(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u), mask, bits);
 }
 

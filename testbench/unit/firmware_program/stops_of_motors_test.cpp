@@ -241,6 +241,63 @@ TEST_F(StopsOfMotors, RapidMovesGoByMotors) {
   }
 }
 
+// Without a trigger a move until one ends at its target; the speed is Ixx16 with Ixx90 = 1.
+TEST_F(StopsOfMotors, RapidUntilATriggerThatDoesNotCome) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I122=20 I116=40 I190=1 I119=1 I120=20 I121=0 I192=1"), "");
+  store({"RAPID X4^0.5", "P1=1"});
+  const double end = run();
+  EXPECT_NEAR(end, 100 + 40, 12.0) << "4000 counts at 40 a ms, 40 ms by Ixx19";
+  EXPECT_EQ(motors[0].trajectory, position(4000));
+  EXPECT_EQ(cs().position[AXIS_X], 4.0);
+  EXPECT_EQ(p_variable_read(1), 1.0);
+}
+
+// Isx93: the word in X of another address is the target of the time base, slewed at Isx94; H stops it, %0 does not.
+TEST_F(StopsOfMotors, ExternalTimeBaseMovesThePath) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5194=8388607 I5195=8388607 WX$10F0,1856995 I5193=$10F0"), "");
+  store({"TM100 TA20 TS0 X2"});
+  EXPECT_NEAR(run(), 240, 2 * kTickMs) << "half the rate";
+  ASSERT_EQ(host("%0 WX$10F0,$FFFFFF"), "");  // -1
+  store({"TM100 TA20 TS0 X5"});
+  begin("B1R");
+  ticks(50);
+  EXPECT_EQ(motors[0].trajectory, position(2000)) << "backwards is a stop";
+  ASSERT_EQ(host("WX$10F0,3713991"), "");
+  ticks(60);
+  const std::int64_t running = motors[0].trajectory;
+  EXPECT_GT(running, position(2500)) << "whatever % is";
+  ASSERT_EQ(host("H"), "");
+  ticks(10);
+  EXPECT_LT(motors[0].trajectory, running + position(100));
+  ASSERT_EQ(host("%100 R"), "");
+  ticks(150);
+  EXPECT_EQ(motors[0].trajectory, position(5000));
+  ASSERT_EQ(host("I5294=8388607 I5293=$2000"), "");  // &2 goes by what &1 is told
+  ASSERT_EQ(host("WX$2000,1000000"), "");
+  ticks(5);
+  EXPECT_EQ(host("&2 RX$2102"), "1000000");
+}
+
+// motion:4.6: 36000, 100A: A270 is -9000 counts; incremental moves know no turn.
+TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
+  fit({"100A"});
+  ASSERT_EQ(host("I127=36000"), "");
+  store({"TM100 TA20 TS0 A270", "DWELL5", "A360", "DWELL5", "INC A350"});
+  std::vector<std::int64_t> stops;
+  bool dwelt = false;
+  run([&](double) {
+    const bool dwells = cs().active && cs().moves[cs().executing].kind == MOVE_DWELL;
+    if (dwells && !dwelt) stops.push_back(motors[0].trajectory);
+    dwelt = dwells;
+  });
+  ASSERT_EQ(stops.size(), 2u);
+  EXPECT_EQ(stops[0], position(-9000));
+  EXPECT_EQ(stops[1], 0);
+  EXPECT_EQ(motors[0].trajectory, position(35000));
+}
+
 TEST_F(StopsOfMotors, PsetMovesTheOriginOfAxes) {
   fit({"1000X", "10Y"});
   store({"TM100 TA20 TS0 X3 Y2", "PSET X1", "P1=1", "X2"});
@@ -260,6 +317,30 @@ TEST_F(StopsOfMotors, HomezMakesItZero) {
   ASSERT_EQ(host("B2R"), "");
   platform::servo_ticks(9);
   EXPECT_EQ(host("RY$2014"), "1") << "its loop is not closed";
+}
+
+// motion:4.2: read at the start; the program may turn it round by bit 4 of status word 1.
+TEST_F(StopsOfMotors, BlendingIsTurnedOffAtTheStart) {
+  fit({"1000X"});
+  const Lines moves = {"TM100 TA40 TS0 X1", "X2"};
+  ASSERT_EQ(host("I5192=1 M1->X:$2040,4"), "");
+  store(moves);
+  EXPECT_NEAR(run([](double) { EXPECT_EQ(host("M1"), "0"); }), 280, 2 * kTickMs);
+  store({"M1=1 TM100 TA40 TS0 X1", "X0"});
+  unsigned others = 0;
+  EXPECT_NEAR(run([&](double) { others += host("M1") != "1" ? 1 : 0; }), 240, 2 * kTickMs);
+  EXPECT_EQ(others, 0u);
+}
+
+// Each line adds what a double cannot hold beside its position; none of it is lost.
+TEST_F(StopsOfMotors, IncrementsFarFromZeroAddUp) {
+  fit({"1000X"});
+  store({"TM1 TA0 TS0 X1000000000.25", "INC P1=0 I8=0", "WHILE(P1<3000)", "X0.001 P1=P1+1", "ENDWHILE"});
+  ASSERT_EQ(host("I116=1E12"), "ERR003");
+  ASSERT_EQ(host("I116=30000000000 I117=30000000000 I108=1"), "");
+  motors[0].position_scale = 1;
+  run();
+  EXPECT_NEAR(static_cast<double>(motors[0].trajectory - std::int64_t{1000000000250} * 32), 3000.0 * 32, 1.0);
 }
 
 // Assignments come with the first piece of their move.
