@@ -245,7 +245,8 @@ void jog_count_from(uint32_t motor, int64_t position) {
   struct jog* j = &jogs[motor];
   desired_position_shift(motor, -position);
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
-  j->requests++; /* what is being planned is about the old positions */
+  j->request.target -= position; /* a place: it stays where it is */
+  j->requests++;                 /* what is being planned is about the old positions */
   j->away = false;
 }
 
