@@ -14,6 +14,7 @@
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/power_on_position.h"
 #include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
@@ -178,13 +179,12 @@ static error_t open_loop(struct lexer* lx) {
   return ERR_NONE;
 }
 
-/* $: the phase reference. $*: the position too. */
+/* $: the phase reference. $*: the position. */
 static error_t refer(uint32_t motor, bool position) {
   error_t error = may_move(motor);
   if (error != ERR_NONE) return error;
   if (jog_is_moving(motor)) return ERR_PHASING;
-  if (!position) return ERR_NONE;
-  return power_on_position_read(motor) ? ERR_NONE : ERR_PHASING;
+  return (position ? power_on_position_read(motor) : phasing_begin(motor)) ? ERR_NONE : ERR_PHASING;
 }
 
 static error_t reference(struct lexer* lx) { return refer(session.motor, lexer_accept(lx, '*')); }

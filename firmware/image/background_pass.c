@@ -18,6 +18,7 @@
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/protection.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_hardware.h"
@@ -37,6 +38,7 @@ void background_meanwhile(void) {
     plc_background();
     background_wake();
   }
+  phasing_pass();
   image_checksum_pass();
   stack_watch_pass();
   watchdog_reload();

@@ -29,6 +29,7 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor_variables.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/phasing.h"
 #include "firmware/motion/sine_table.h"
@@ -114,9 +115,11 @@ void start(enum start_mode mode) {
   calendar_initialize();
   tasks_initialize();
   sine_table_initialize();
+  phasing_search_initialize();
   phase_task_initialize();
   hal_interrupts_on();
   clock_watch_start();
+  phasing_power_on();
   background_wake();
 }
 

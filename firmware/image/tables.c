@@ -10,6 +10,7 @@
 #include "firmware/command/list_commands.h"
 #include "firmware/command/memory_commands.h"
 #include "firmware/command/motor_commands.h"
+#include "firmware/command/phase_commands.h"
 #include "firmware/command/plc_commands.h"
 #include "firmware/command/program_commands.h"
 #include "firmware/command/reply.h"
@@ -27,6 +28,7 @@
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/motor_variables.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
@@ -40,6 +42,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
+  phasing_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();
@@ -94,6 +97,7 @@ const struct command_entry* const command_tables[] = {report_commands,
                                                       list_commands,
                                                       plc_commands,
                                                       motor_commands,
+                                                      phase_commands,
                                                       program_commands,
                                                       gather_commands,
                                                       0};

@@ -1,5 +1,6 @@
 /* The position of the source is taken modulo the table's span without a division: times 2^64/span it is a 64-bit number
- * of turns, whose upper half times the number of entries is the entry, and the fraction between it and the next. */
+ * of turns, whose upper half times the number of entries is the entry, and the fraction between it and the next. A
+ * position is the middle of its unit, so that what the factor is rounded by does not put it into the turn before. */
 #include "firmware/motion/compensation.h"
 
 #include <stdbool.h>
@@ -17,8 +18,8 @@
 enum { PART_OF_COUNT = 16, NONE = 0xFF };
 
 struct table {
-  uint64_t turns;  /* 2^64 / span */
-  uint32_t before; /* address of the word before entry 1 */
+  uint64_t half_turns; /* 2^63 / span */
+  uint32_t before;     /* address of the word before entry 1 */
   uint32_t count;
   int32_t unit; /* position units of the target in a unit of an entry */
   uint8_t source, next;
@@ -30,9 +31,9 @@ static uint8_t first[COMPENSATION_KINDS][MOTORS]; /* of a target's tables, NONE:
 
 uint32_t compensation_of_position, compensation_of_torque; /* the first: COMP */
 
-static uint64_t turns_of(uint32_t span, uint32_t source) {
+static uint64_t half_turns_of(uint32_t span, uint32_t source) {
   const double units = (double)span * POSITION_SUBCOUNT * (double)motors[source].position_scale;
-  return units < 2.0 ? 0u : (uint64_t)math_to_integer(math_scale(1.0 / units, 61)) << 3;
+  return units < 2.0 ? 0u : (uint64_t)math_to_integer(math_scale(1.0 / units, 62)) << 1;
 }
 
 static void take(enum region_kind kind, uint32_t motor) {
@@ -41,7 +42,7 @@ static void take(enum region_kind kind, uint32_t motor) {
   const uint32_t span = table->span;
   tables[kind][motor] = (struct table){
       .before = MEMORY_BUFFERS + table->base - 1u,
-      .turns = turns_of(span, table->source),
+      .half_turns = half_turns_of(span, table->source),
       .count = region_words(kind, motor),
       .unit = kind == REGION_TCOMP ? 1 : motors[table->target].position_scale * (POSITION_SUBCOUNT / PART_OF_COUNT),
       .source = table->source,
@@ -71,7 +72,7 @@ static int32_t entry(const struct table* t, uint32_t number) {
 
 static int64_t value_of(const struct table* t) {
   const int64_t position = t->of_desired ? motors[t->source].commanded : motors[t->source].actual;
-  const uint64_t turn = (uint64_t)position * t->turns, place = (turn >> 32) * t->count;
+  const uint64_t turn = (2u * (uint64_t)position + 1u) * t->half_turns, place = (turn >> 32) * t->count;
   const uint32_t number = (uint32_t)(place >> 32), fraction = (uint32_t)place;
   const int64_t from = (int64_t)entry(t, number) * t->unit, to = (int64_t)entry(t, number + 1u) * t->unit;
   return from + fixed_part(to - from, fraction);

@@ -39,6 +39,8 @@ static uint32_t share_of(double gain) {
   return share < 1 ? 1u : (uint32_t)share;
 }
 
+void desired_position_initialize(void) { __builtin_memset(paths, 0, sizeof paths); }
+
 void desired_position_motor_changed(uint32_t motor) {
   static const volatile uint32_t zero;
   struct path* p = &paths[motor - 1u];

@@ -35,6 +35,8 @@ static void write_enable(volatile uint32_t* control, bool enabled) {
   *control = enabled ? others | SERVO_CHANNEL_CONTROL_AENA_MASK : others;
 }
 
+void motor_flags_initialize(void) { __builtin_memset(flags, 0, sizeof flags); }
+
 void motor_flags_motor_changed(uint32_t motor) {
   struct flags* f = &flags[motor - 1u];
   const uint32_t mode = (uint32_t)i_integer(i_motor(motor, IXX24_FLAG_MODE));

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+void motor_flags_initialize(void);              /* start-up, before variables are taken over */
 void motor_flags_motor_changed(uint32_t motor); /* 1..32 */
 
 void motor_flags_enable(uint32_t motor, bool enabled); /* AENA, unless Ixx24 says that it is not used. Servo task held

@@ -29,6 +29,11 @@ static volatile uint32_t* word_of(bool x, uint32_t address) {
   return x ? hal_x(address) : hal_y(address);
 }
 
+/* What the registers hold is not known: each is written once. */
+void motor_output_initialize(void) {
+  for (uint32_t motor = 0; motor < MOTORS; ++motor) outputs[motor] = (struct output){.written = INT32_MIN};
+}
+
 void motor_output_motor_changed(uint32_t motor) {
   struct output* o = &outputs[motor - 1u];
   const uint32_t mode = (uint32_t)variable(motor, IXX01_COMMUTATION_ENABLE);

@@ -47,6 +47,10 @@ void motor_variables_initialize(void) {
   motors_active = 0;
   __builtin_memset(motors, 0, sizeof motors);
   conversion_table_initialize();
+  desired_position_initialize();
+  position_loop_initialize();
+  motor_output_initialize();
+  motor_flags_initialize();
   protection_initialize();
   compensation_changed();
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) motor_variables_changed(motor);

@@ -25,6 +25,11 @@ static int32_t coefficient_of(double value) {
   return fixed < INT32_MIN ? INT32_MIN : (int32_t)fixed;
 }
 
+void notch_initialize(void) {
+  __builtin_memset(filters, 0, sizeof filters);
+  notches_used = 0;
+}
+
 void notch_restart(uint32_t motor) {
   for (uint32_t i = 0; i < COEFFICIENTS; ++i) filters[motor].past[i] = 0;
 }

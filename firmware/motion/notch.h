@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+void notch_initialize(void);
 void notch_motor_changed(uint32_t motor); /* 1..32, servo task held off */
 void notch_restart(uint32_t motor);       /* 0..31, servo task held off: as if it had been at rest */
 /* 0..31, servo task: outputs with NOTCH_FINER more bits, for poles up to 0.95 multiply an error by 400. */

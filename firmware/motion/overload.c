@@ -17,6 +17,11 @@ static struct overload {
 
 uint32_t overload_watched;
 
+void overload_initialize(void) {
+  __builtin_memset(overloads, 0, sizeof overloads);
+  overload_watched = 0;
+}
+
 void overload_motor_changed(uint32_t motor) {
   struct overload* o = &overloads[motor - 1u];
   const uint32_t bit = 1u << (motor - 1u);

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+void overload_initialize(void);              /* start-up, before variables are taken over */
 void overload_motor_changed(uint32_t motor); /* 1..32 */
 void overload_servo(uint32_t motor);         /* 0..31, servo task */
 bool overload_is_too_much(uint32_t motor);   /* 0..31: the sum is above Ixx58 */

@@ -86,6 +86,11 @@ static void take_sources(struct loop* l, uint32_t motor) {
   l->result = hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT);
 }
 
+void position_loop_initialize(void) {
+  __builtin_memset(loops, 0, sizeof loops);
+  notch_initialize();
+}
+
 void position_loop_motor_changed(uint32_t motor) {
   struct loop* l = &loops[motor - 1u];
   const uint32_t state = hal_mask_servo();
@@ -223,13 +228,8 @@ static void publish(const struct motor* m, const struct loop* l) {
   *l->result = (uint32_t)m->output & HAL_WORD_MASK;
 }
 
-void position_loop_servo(uint32_t motor) {
-  struct motor* m = &motors[motor];
-  struct loop* l = &loops[motor];
-  if (l->left != 0u) {
-    l->left--;
-    return;
-  }
+/* Not in line: the compiler keeps both addresses in registers then. */
+static __attribute__((noinline)) void run(uint32_t motor, struct motor* m, struct loop* l) {
   l->left = l->extension;
   measure(m, l);
   if (m->loop == LOOP_CLOSED) {
@@ -240,6 +240,14 @@ void position_loop_servo(uint32_t motor) {
     l->integral = l->step = 0; /* shown so while it is open */
   }
   publish(m, l);
+}
+
+void position_loop_servo(uint32_t motor) {
+  struct loop* l = &loops[motor];
+  if (l->left == 0u)
+    run(motor, &motors[motor], l);
+  else
+    l->left--;
 }
 
 /* What live words show ----------------------------------------------------------------------------------------------

@@ -30,6 +30,8 @@ static volatile bool foreground; /* I13, as the last pass has seen it */
 static uint32_t shown;           /* B: signals that are on */
 
 void protection_initialize(void) {
+  __builtin_memset(guards, 0, sizeof guards);
+  overload_initialize();
   foreground = false;
   shown = 0;
 }

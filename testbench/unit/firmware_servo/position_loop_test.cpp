@@ -163,7 +163,8 @@ TEST_F(PositionLoop, EqualsTheModelOverRandomMotion) {
       cycle(last, position, velocity);
       const double difference = std::abs(output_ - expected_);
       worst = std::max(worst, difference);
-      ASSERT_LE(difference, 1.0) << "set " << set << " cycle " << n << ": " << output_ << " for " << expected_ << c_.line("I108 I109 I130..135 I136..139 I163..165 I167..169 I196");
+      ASSERT_LE(difference, 1.0) << "set " << set << " cycle " << n << ": " << output_ << " for " << expected_
+                                 << c_.line("I108 I109 I130..135 I136..139 I163..165 I167..169 I196");
       (std::abs(output_) == i(69) ? clipped : inside)++;
     }
   }
