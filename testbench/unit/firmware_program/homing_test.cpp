@@ -238,7 +238,7 @@ TEST_F(Homing, ASearchThatIsStoppedEndsWithoutHome) {
       ASSERT_FALSE(control_character(1));
     else
       ASSERT_EQ(host(stop), "");
-    run(300);
+    run(900);
     EXPECT_FALSE(jog_is_homing(0)) << stop;
     EXPECT_FALSE(motors[0].status.home_search) << stop;
     EXPECT_FALSE(motors[0].status.home_complete) << stop;
