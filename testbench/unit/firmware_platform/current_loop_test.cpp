@@ -159,6 +159,28 @@ TEST_F(CurrentLoop, OutputsAreClippedAtThePwmScale) {
   EXPECT_NEAR(pwm(2), 0, kPwmScale * 0.001);
 }
 
+// Under the sanitizers: largest gains, largest biases, currents and commands that jump from end to end.
+TEST_F(CurrentLoop, NothingOverflowsAtTheEndsOfAllRanges) {
+  std::mt19937 random(7);
+  const auto one_of = [&random](std::initializer_list<int> values) { return values.begin()[random() % values.size()]; };
+  for (int round = 0; round < 40; ++round) {
+    const int gain = one_of({-9, 9});
+    gains(gain, one_of({-9, 9}), one_of({-9, 9}));
+    set("I124=" + std::to_string(one_of({1, 0x401})) + " I172=" + std::to_string(random() % 2048));
+    set("I129=" + std::to_string(one_of({-32768, 32767})) + " I179=" + std::to_string(one_of({-32768, 32767})));
+    set("I177=" + std::to_string(one_of({-32768, 32767})) + " I166=32767");
+    enable();
+    for (int i = 0; i < 300; ++i) {
+      set_y(kAdcA, one_of({-8388608, 8388607}));
+      set_y(kAdcB, one_of({-8388608, 8388607}));
+      stand_at(static_cast<std::int32_t>(random() % 2048) - 1024);
+      command(one_of({-32767, 32767}));
+      phase(random() % 3);
+      for (unsigned n = 0; n < 3; ++n) ASSERT_LE(std::fabs(pwm(n)), 32767.01);
+    }
+  }
+}
+
 TEST_F(CurrentLoop, MaskTakesTheStatusBitsAway) {
   gains(0, 0.1, 0);
   set("I184=$FFFC00");
