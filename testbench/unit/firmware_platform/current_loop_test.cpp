@@ -214,7 +214,7 @@ TEST_F(CurrentLoop, ABrushMotorHasOneCurrent) {
 // Closed through the windings of the plant's motor: 24 V on each side, 10 A full scale, 1 ohm, 1 mH.
 class ClosedCurrentLoop : public CurrentLoop {
  protected:
-  static constexpr double kHalfBus = 24, kFullAmps = 10;
+  static constexpr double kHalfBus = 24, kFullAmps = 10, kPhaseHz = 9034.6;
   static constexpr unsigned kSteps = 10;  // of the motor in a phase period
 
   void SetUp() override {
@@ -222,14 +222,17 @@ class ClosedCurrentLoop : public CurrentLoop {
     parameters_.inertia = 1e9;  // does not turn
     set("I184=$FFFC00 I124=1");
   }
-  void run(plant::Motor& motor, unsigned interrupts, double frequency = 9035.7) {
+  void run(plant::Motor& motor, unsigned interrupts) {
+    run(motor, interrupts, [&](double dt) { motor.drive_three_phase(dt, volts(0), volts(1), volts(2)); });
+  }
+  template <typename Drive>
+  void run(plant::Motor& motor, unsigned interrupts, Drive drive) {
     for (unsigned i = 0; i < interrupts; ++i) {
       const auto word = [](double amps) { return std::clamp(std::floor(amps / kFullAmps * 8192), -8192.0, 8191.0); };
       set_y(kAdcA, static_cast<std::int64_t>(word(motor.current_a())) * 1024);
       set_y(kAdcB, static_cast<std::int64_t>(word(motor.current_b())) * 1024);
       phase();
-      for (unsigned step = 0; step < kSteps; ++step)
-        motor.drive_three_phase(1 / frequency / kSteps, volts(0), volts(1), volts(2));
+      for (unsigned step = 0; step < kSteps; ++step) drive(1 / kPhaseHz / kSteps);
     }
   }
   double volts(unsigned n) { return pwm(n) / kPwmScale * kHalfBus; }
@@ -279,6 +282,19 @@ TEST_F(ClosedCurrentLoop, BackGainDampsLikeResistance) {
   command(8192);
   run(motor, 120);
   EXPECT_NEAR(seen_q(), 0.25, 0.002);
+}
+
+// One winding between A and B: ADC B shows the current of A with the other sign.
+TEST_F(ClosedCurrentLoop, CurrentOfABrushMotorFollowsTheCommand) {
+  gains(0.02, 0.1, 0);
+  set("I196=1 I170=0 I172=1536 I124=$401");
+  plant::Motor motor(parameters_, 65536 * 4000);
+  enable();
+  stand_at(0);
+  command(6554);
+  run(motor, 100, [&](double dt) { motor.drive_brush(dt, volts(0) - volts(1)); });
+  EXPECT_NEAR(seen_q(), 0.2, 0.002);
+  EXPECT_NEAR(motor.current_a(), -2, 0.02) << "Iq is Ib";
 }
 
 // Negative control: with the other value of the pair the same windings and converters are positive feedback.
