@@ -74,7 +74,7 @@ TEST_F(RunTimeErrors, AnAbortWithinOneLeavesNothingToTheNext) {
     ASSERT_EQ(host("DEF ROT 100 B0 OPEN ROT"), "");
     ASSERT_EQ(host("CALL99 P1=1 P2=2 P3=3 P4=4"), "");
     const std::uint32_t next = rotary_buffers[0].used;
-    ASSERT_EQ(host("CIRCLE1 X1Y1R5"), "");
+    ASSERT_EQ(host("CC1 X1Y1R5"), "");
     const std::uint32_t words = rotary_buffers[0].used;
     ASSERT_EQ(host("CLOSE R"), "");
     fake_hal_on_pause([] {});
