@@ -84,7 +84,7 @@ struct move {
   struct program_trace line; /* PE */
 };
 
-/* Where a system stands between moves that do not blend (motion:4.2). */
+/* Where a system stands between moves that do not blend (motion:5.3). */
 enum corner_stop { CORNER_NONE, CORNER_IN_POSITION, CORNER_DWELL };
 
 /* Why a program was stopped (firmware:7.10): the numbers that clients read in Y:+$14. */

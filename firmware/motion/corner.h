@@ -1,4 +1,4 @@
-/* Corners at which moves do not blend (motion:4.2): which are too sharp for it (Isx83), and what passes between the
+/* Corners at which moves do not blend (motion:5.3): which are too sharp for it (Isx83), and what passes between the
  * stop and the next move: motors come into position (Isx81), a pause (Isx82, Isx85). Real-time task. */
 #ifndef FIRMWARE_MOTION_CORNER_H
 #define FIRMWARE_MOTION_CORNER_H

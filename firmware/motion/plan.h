@@ -1,4 +1,4 @@
-/* Planning of moves (motion:4, docs/moves.md): a line of axes becomes the move of its system that is not executing.
+/* Planning of moves (motion:5, docs/moves.md): a line of axes becomes the move of its system that is not executing.
  * Real-time task, in slices. */
 #ifndef FIRMWARE_MOTION_PLAN_H
 #define FIRMWARE_MOTION_PLAN_H

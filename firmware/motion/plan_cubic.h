@@ -1,4 +1,4 @@
-/* PVT and SPLINE moves (motion:4.5): one cubic from way point to way point. Real-time task, in slices. */
+/* PVT and SPLINE moves (motion:5.4): one cubic from way point to way point. Real-time task, in slices. */
 #ifndef FIRMWARE_MOTION_PLAN_CUBIC_H
 #define FIRMWARE_MOTION_PLAN_CUBIC_H
 

@@ -1,4 +1,4 @@
-/* LINEAR moves (firmware:7.5, motion:4.2), and what waits. */
+/* LINEAR moves (firmware:7.5, motion:5.2), and what waits. */
 #include "firmware/motion/plan_linear.h"
 
 #include "firmware/base/mathematics.h"

@@ -1,4 +1,4 @@
-/* Moves on which each motor goes for itself (motion:4.6), at the rate of the system: RAPID, and HOME in a program. They
+/* Moves on which each motor goes for itself (motion:5.5), at the rate of the system: RAPID, and HOME in a program. They
  * begin and end at rest. Real-time task, in slices. */
 #ifndef FIRMWARE_MOTION_PLAN_OWN_H
 #define FIRMWARE_MOTION_PLAN_OWN_H

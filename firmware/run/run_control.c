@@ -160,7 +160,7 @@ void run_hold(uint32_t cs) {
   hal_unmask(state);
 }
 
-/* With motors and without segmentation it is Q (motion:4.7). */
+/* With motors and without segmentation it is Q (motion:5.6). */
 void run_end_block(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!s->running) return;

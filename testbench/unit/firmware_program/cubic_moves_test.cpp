@@ -1,5 +1,9 @@
-// PVT and SPLINE moves of motors (motion:4.5) against their formulas: Hermite cubics, uniform cubic B-splines.
+// PVT and SPLINE moves of motors (motion:5.4) against their formulas: Hermite cubics, uniform cubic B-splines.
 #include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/system_path.h"
+}
 
 namespace {
 
@@ -89,6 +93,27 @@ TEST_F(CubicMoves, PvtThatEndsInMotionIsStopped) {
     EXPECT_LT(at(1), 1000.0 + 20.0 * 20.0 / 2.0 + 20.0 * 15.0);
     EXPECT_EQ(host("RY$2014"), ends ? "0" : "9");
   }
+}
+
+// Without the real-time task it goes on at its last velocity.
+TEST_F(CubicMoves, PvtRunsOnUntilItIsStopped) {
+  fit({"1000X"});
+  store({"PVT100 X1:20", "WHILE(P1=0) WAIT"});
+  ASSERT_EQ(host("B1R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  double t = 0.0;
+  for (; t < 250.0; t += kTickMs) {
+    ASSERT_NEAR(at(1), t < 100 ? pvt(0, 0, 1000, 20, 100, t) : 1000 + 20 * (t - 100), 3 / kUnit) << t;
+    system_path_servo();
+  }
+}
+
+// Another mode takes the place of what it would run on for.
+TEST_F(CubicMoves, LinearMoveBehindPvtInMotion) {
+  fit({"1000X"});
+  store({"PVT100 X1:2", "LINEAR TM100 TA20 TS0 X3"});
+  EXPECT_NEAR(run(), 100 + 120, 2 * kTickMs);
+  EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
 }
 
 // The control points of a sequence stand twice at its ends: a zero-distance segment before and behind it.

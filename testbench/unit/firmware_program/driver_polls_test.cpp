@@ -106,7 +106,8 @@ TEST_F(DriverPolls, StatusPositionsAndVariablesInOneLine) {
                                   {"##", "0"}};
   play(fast, "");
   play(fast, " ");
-  // Feedrate axes X, Y, Z and the arc vector (A80020); nothing runs, but motors whose loops are open are not in position.
+  // Feedrate axes X, Y, Z and the arc vector (A80020); nothing runs, but motors whose loops are open are not in
+  // position.
   const std::vector<Poll> slow = {{"&1??", "A80020000000000000"},
                                   {"&2??", "A80020000000000000"},
                                   {"&3??", "A80020000000000000"},

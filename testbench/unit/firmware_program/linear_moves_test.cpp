@@ -1,4 +1,4 @@
-// LINEAR moves of motors (motion:4.2): where they are at each servo interrupt, blending, limits, exact ends.
+// LINEAR moves of motors (motion:5.2): where they are at each servo interrupt, blending, limits, exact ends.
 #include "testbench/unit/firmware_program/moving_motors.h"
 
 extern "C" {
@@ -131,7 +131,7 @@ struct Extremes {
   }
 };
 
-// motion:4.2, its checks: 10,000 counts a unit, F10, TA200 TS0, Ixx17 = 0.25.
+// motion:5.2, its checks: 10,000 counts a unit, F10, TA200 TS0, Ixx17 = 0.25.
 TEST_F(LinearMoves, AccelerationLimitStretchesTheCorner) {
   struct Case {
     const char *first, *second;
@@ -152,6 +152,30 @@ TEST_F(LinearMoves, AccelerationLimitStretchesTheCorner) {
       profiles.push_back(changes_of({{c.by1[i], c.time, begin, 0}, {c.by2[i], c.time, c.corner, 0}}, end));
     follow(profiles, 6.0);
   }
+}
+
+// Of several motors the one that needs longest tells, wherever it stands.
+TEST_F(LinearMoves, TheSlowestMotorTellsTheLengthOfACorner) {
+  for (const bool first : {true, false}) {
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    ASSERT_EQ(host("I117=0.25 I217=0.25"), "");
+    store({"TM1000 TA20 TS0", first ? "X20 Y10" : "X10 Y20", "X0 Y0"});  // 20 and 10 counts a ms, then back
+    const double stop = 20 / 0.25, corner = 40 / 0.25;
+    const auto profile = [&](double by) { return changes_of({{by, 1000, stop, 0}, {-by, 1000, corner, 0}}, stop); };
+    follow({profile(first ? 20000 : 10000), profile(first ? 10000 : 20000)}, 6.0);
+  }
+}
+
+// A blend begins behind the change before it and ends before the one behind it.
+TEST_F(LinearMoves, BlendsStayWithinTheirMoves) {
+  fit({"1000X"});
+  store({"TM20 TA10 TS0 X0.2", "TM300 TA200 X2", "TM20 TA20 X2.1"});
+  follow({changes_of({{200, 20, 10, 0}, {1800, 300, 30, 0}, {100, 20, 20, 0}}, 20)});
+  platform::power_up();
+  fit({"1000X"});
+  store({"TM300 TA20 TS0 X3", "TM30 TA40 X3.1"});  // 40 ms at least: its stop leaves 20 of them
+  follow({changes_of({{3000, 300, 20, 0}, {100, 40, 40, 0}}, 40)});
 }
 
 // Ixx16 makes the move longer, for all motors.
@@ -193,6 +217,26 @@ TEST_F(LinearMoves, LimitsHoldInAnySequence) {
     EXPECT_GT(x.velocity, 10.0);
     EXPECT_GT(x.acceleration, 0.19);
   }
+}
+
+// What takes the place of pieces comes too late once the servo task is beyond it.
+TEST(PieceRing, PiecesAreReplacedUntilTheyAreOver) {
+  static cubic cubics[PIECES];
+  static piece_ring ring;
+  piece_ring_initialize(&ring, cubics, 1);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    piece_set_time(piece_ring_at(&ring, i), 100);
+    if (i < 2) piece_ring_add(&ring);
+  }
+  ASSERT_TRUE(piece_ring_advance(&ring, 60));
+  EXPECT_FALSE(piece_ring_replace(&ring, 0, 50, 1)) << "10 beyond";
+  EXPECT_FALSE(piece_ring_replace(&ring, 2, 50, 1)) << "has not been added";
+  EXPECT_TRUE(piece_ring_replace(&ring, 0, 70, 1));
+  ASSERT_TRUE(piece_ring_advance(&ring, 30));
+  EXPECT_EQ(ring.executing, 2u) << "the second is passed over";
+  EXPECT_EQ(ring.elapsed, 20);
+  EXPECT_FALSE(piece_ring_replace(&ring, 0, 90, 0)) << "over";
+  EXPECT_FALSE(piece_ring_advance(&ring, 80));
 }
 
 // firmware:1.10: the trajectory word is what the servo loop is asked to follow.

@@ -1,5 +1,5 @@
 // Motors of &1 that a program moves, with closed loops that nothing is behind: where the servo task has each at every
-// servo interrupt, and the profile that motion:4.2 asks for, in doubles, as a sum of changes of velocity.
+// servo interrupt, and the profile that motion:5.2 asks for, in doubles, as a sum of changes of velocity.
 #pragma once
 
 #include <cmath>

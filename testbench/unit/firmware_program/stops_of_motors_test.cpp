@@ -1,5 +1,5 @@
-// Starts and stops of programs with motors: R, S, Q, A, H, / and \ as motion:4.7 has them, corners without blending
-// (motion:4.2), RAPID, PSET, HOMEZ, where axes are after jogs.
+// Starts and stops of programs with motors: R, S, Q, A, H, / and \ as motion:5.6 has them, corners without blending
+// (motion:5.2), RAPID, PSET, HOMEZ, where axes are after jogs.
 #include "testbench/unit/firmware_program/moving_motors.h"
 
 extern "C" {
@@ -136,7 +136,7 @@ TEST_F(StopsOfMotors, AbortRampsEachMotor) {
   EXPECT_NEAR(static_cast<double>(motors[1].trajectory - y2), -1000 * kUnit, 1.0);
 }
 
-// motion:9.7/18. Motors of two axes each; the way back from motors to axes.
+// motion:5.1/4. Motors of two axes each; the way back from motors to axes.
 TEST_F(StopsOfMotors, RunBeginsWhereJogsHaveLeftTheMotors) {
   fit({"100X+50Y+10", "-20X+400Y", "7B-3"});
   store({"TM100 TA20 TS0 X2 Y1 B1"});
@@ -218,7 +218,7 @@ TEST_F(StopsOfMotors, MotorsComeIntoPositionWithinIsx81) {
   }
 }
 
-// motion:4.6: with Isx79 = 0 all take as long as the slowest; speeds by Ixx90.
+// motion:5.5: with Isx79 = 0 all take as long as the slowest; speeds by Ixx90.
 TEST_F(StopsOfMotors, RapidMovesGoByMotors) {
   fit({"1000X", "1000Y"});
   ASSERT_EQ(host("I122=20 I222=10 I119=1 I219=1 I120=20 I220=20 I121=0 I221=0 I192=1 I292=1"), "");
@@ -280,7 +280,7 @@ TEST_F(StopsOfMotors, ExternalTimeBaseMovesThePath) {
   EXPECT_EQ(host("&2 RX$2102"), "1000000");
 }
 
-// motion:4.6: 36000, 100A: A270 is -9000 counts; incremental moves know no turn.
+// motion:5.5: 36000, 100A: A270 is -9000 counts; incremental moves know no turn.
 TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
   fit({"100A"});
   ASSERT_EQ(host("I127=36000"), "");
@@ -319,7 +319,7 @@ TEST_F(StopsOfMotors, HomezMakesItZero) {
   EXPECT_EQ(host("RY$2014"), "1") << "its loop is not closed";
 }
 
-// motion:4.2: read at the start; the program may turn it round by bit 4 of status word 1.
+// motion:5.2: read at the start; the program may turn it round by bit 4 of status word 1.
 TEST_F(StopsOfMotors, BlendingIsTurnedOffAtTheStart) {
   fit({"1000X"});
   const Lines moves = {"TM100 TA40 TS0 X1", "X2"};
