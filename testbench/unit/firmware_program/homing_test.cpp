@@ -358,6 +358,15 @@ TEST_F(Homing, SensorsOfIxx95) {
   }
 }
 
+TEST_F(Homing, SensorsAreReadAtEachStart) {
+  ASSERT_EQ(host("I110=$10E0 I195=$180000 I126=0 I210=$10E0 I295=$180000 I280=4"), "");
+  ASSERT_EQ(host("SAVE"), "");
+  platform::reset();
+  EXPECT_EQ(host("#1P"), "0");
+  EXPECT_TRUE(motors[0].status.home_complete);
+  EXPECT_FALSE(motors[1].status.home_complete) << "Ixx80 bit 2";
+}
+
 TEST_F(Homing, WhileItMovesNoReferenceIsTaken) {
   begin(0);
   ASSERT_EQ(host("#1J+"), "");
