@@ -10,6 +10,8 @@ extern "C" {
 #include "firmware/command/control_characters.h"
 #include "firmware/motion/homing.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/jog_plan.h"
+#include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/motor_status.h"

@@ -7,6 +7,8 @@
 
 extern "C" {
 #include "firmware/motion/jog.h"
+#include "firmware/motion/jog_plan.h"
+#include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
 }
