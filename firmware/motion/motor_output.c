@@ -47,6 +47,8 @@ void motor_output_motor_changed(uint32_t motor) {
 void motor_output_servo(uint32_t motor) {
   const struct motor* m = &motors[motor];
   struct output* o = &outputs[motor];
+  FIXED_IN_REGISTER(m);
+  FIXED_IN_REGISTER(o);
   if (o->commutated) {
     commutation_command(motor, m->output);
     return;
