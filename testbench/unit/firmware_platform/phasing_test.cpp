@@ -134,6 +134,18 @@ TEST_F(Halls, ImpossibleStatesAreRefused) {
   }
 }
 
+TEST_F(Halls, AreReadAtPowerOnIfIxx80SaysSo) {
+  for (const int mode : {0, 1, 5}) {
+    set("I171=3600 I181=$78000 I191=$800000 I124=$120001 I180=" + std::to_string(mode) + " SAVE");
+    set_x(0x78000, 6 << 20);
+    c_.restart();
+    EXPECT_EQ(phasing_is_missing(0), mode != 1) << mode;
+    EXPECT_EQ(motors[0].loop, mode == 1 ? LOOP_CLOSED : LOOP_KILLED) << mode;
+    phase();
+    if (mode == 1) { EXPECT_EQ(x_word(kPosition), 1500); }
+  }
+}
+
 TEST_F(Phasing, ParallelWordTimesIxx70PlusIxx75) {
   set("I170=4 I171=5000 I175=50 I181=$10F1 I191=$0C0000");  // 12 bits of Y
   set_y(0x10F1, 0xABC123);
@@ -265,6 +277,36 @@ TEST_F(PhaseSearch, AKillEndsTheSearchWithoutAReference) {
   EXPECT_FALSE(phasing_is_searched(0));
   EXPECT_TRUE(phasing_is_missing(0));
   for (unsigned n = 0; n < 3; ++n) EXPECT_EQ(y_word(kOutput + n), 0);
+}
+
+TEST_F(PhaseSearch, ALimitEndsTheSearchWithoutAReference) {
+  set("I125=$78000");
+  plant::Motor motor = motor_at(100);
+  ASSERT_TRUE(phasing_begin(0));
+  run(motor, 10);
+  set("");
+  EXPECT_TRUE(phasing_is_searched(0));
+  set_x(0x78000, 1 << 17);
+  set("");
+  run(motor, 1);
+  EXPECT_FALSE(phasing_is_searched(0));
+  EXPECT_TRUE(phasing_is_missing(0));
+  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+}
+
+TEST_F(PhaseSearch, IsMadeByACommand) {
+  plant::Motor motor = motor_at(250);
+  set_x(0x78001, counts(motor));
+  phase(2);
+  EXPECT_EQ(c_.line("#1J/"), "ERR018");
+  EXPECT_EQ(c_.line("#1$"), "");
+  EXPECT_EQ(c_.line("#1?").substr(9, 1), "3") << "bits 9 and 8 of the second word";
+  EXPECT_EQ(c_.line("#1J/"), "ERR018");
+  run(motor, 40);
+  EXPECT_EQ(c_.line("#1?").substr(9, 1), "0");
+  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+  set("#1K I174=0");
+  EXPECT_EQ(c_.line("#1$"), "ERR018") << "no search is made";
 }
 
 // For users of sine outputs with Ixx72 above 1024 the sign of Ixx73 is the other one, as the manuals have it.
