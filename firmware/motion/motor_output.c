@@ -25,7 +25,7 @@ static struct output {
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
 
 static volatile uint32_t* word_of(bool x, uint32_t address) {
-  if (!word_exists(x, address)) return 0;
+  if (address == 0u || !word_exists(x, address)) return 0;
   return x ? hal_x(address) : hal_y(address);
 }
 

@@ -1,6 +1,6 @@
 #include "firmware/motion/protection.h"
 
-#include "firmware/base/mathematics.h"
+#include "firmware/base/status.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
@@ -200,6 +200,7 @@ static void not_closed(uint32_t motor) {
 
 static void check(uint32_t motor) {
   const struct view view = look(motor);
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) motor_kill(motor); /* no clock: nothing is controlled */
   if (view.loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))

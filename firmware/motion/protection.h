@@ -1,4 +1,4 @@
-/* Following error, limits, faults, overload, in position (motion:1.4, motion:9.4): looked at in the background. */
+/* Following error, limits, faults, overload, in position (motion:6): looked at in the background. */
 #ifndef FIRMWARE_MOTION_PROTECTION_H
 #define FIRMWARE_MOTION_PROTECTION_H
 
