@@ -33,6 +33,7 @@ static struct loop {
   int64_t integrand_most;                      /* FINER: times Ixx33 it is still a number */
   int32_t friction, output_most;               /* output */
   bool only_at_rest, integrates_velocity;
+  bool one_source;          /* velocity is that of the position, in the same unit */
   bool simple;              /* no deadband, no notch, position error integrated */
   int32_t small_error_most; /* error_most, if it has no more than 32 bits */
   /* S */
@@ -86,7 +87,10 @@ void position_loop_initialize(void) {
 void position_loop_motor_changed(uint32_t motor) {
   struct loop* l = &loops[motor - 1u];
   const uint32_t state = hal_mask_servo();
+  if (l->one_source) l->velocity_reading = l->position_reading;
   take_sources(l, motor);
+  l->one_source = l->position_source == l->velocity_source &&
+                  motors[motor - 1u].position_scale == motors[motor - 1u].velocity_scale;
   l->extension = (uint32_t)variable(motor, IXX60_SERVO_CYCLE_EXTENSION);
   if (l->left > l->extension) l->left = l->extension;
   l->proportional = variable(motor, IXX30_PROPORTIONAL_GAIN);
@@ -128,14 +132,20 @@ static int32_t saturated(int64_t value) {
 
 /* The words of the table wrap; positions are the sums of their movement. */
 static void measure(struct motor* m, struct loop* l) {
-  const uint32_t position = *l->position_source, velocity = *l->velocity_source;
+  const uint32_t position = *l->position_source;
+  const int64_t moved = (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
+  l->position_reading = position;
   if (l->forgets != 0u)
     l->forgets--;
   else
-    m->actual += (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
-  m->velocity = saturated((int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale);
-  l->position_reading = position;
-  l->velocity_reading = velocity;
+    m->actual += moved;
+  int64_t speed = moved;
+  if (!l->one_source) {
+    const uint32_t velocity = *l->velocity_source;
+    speed = (int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale;
+    l->velocity_reading = velocity;
+  }
+  m->velocity = is_small(speed) ? (int32_t)speed : saturated(speed);
 }
 
 /* FINER. */
