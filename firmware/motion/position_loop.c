@@ -279,6 +279,11 @@ static int64_t of_one_moment(const int64_t* value) {
 }
 
 uint32_t position_loop_reading(uint32_t motor) { return loops[motor].position_reading; }
+int64_t position_loop_measured(uint32_t motor) {
+  const struct loop* l = &loops[motor];
+  const int64_t movement = hal_signed(*l->position_source - l->position_reading);
+  return motors[motor].actual + movement * motors[motor].position_scale;
+}
 void position_loop_forget_movement(uint32_t motor) { loops[motor].forgets = FORGETS; }
 int32_t position_loop_filtered(uint32_t motor) {
   return (int32_t)clamp(of_one_moment(&loops[motor].filtered) >> NOTCH_FINER, WORD_MOST);
