@@ -71,10 +71,9 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
     report.fail("host", e.what());
-  } catch (const ScriptFailure& e) { report.fail("set-up is taken", e.what());
-  } catch (const GdbKilled& e) { report.fail("debugger", e.what()); } catch (const Interrupted& e) {
-    report.fail("run to its end", e.what());
-  }
+  } catch (const ScriptFailure& e) { report.fail("set-up is taken", e.what()); } catch (const GdbKilled& e) {
+    report.fail("debugger", e.what());
+  } catch (const Interrupted& e) { report.fail("run to its end", e.what()); }
   for (const std::string& error : simulation.machine().take_run_errors()) {
     report.fail("no error of the machine", error);
     std::cerr << "brick " << extras.command << ": " << error << '\n';
