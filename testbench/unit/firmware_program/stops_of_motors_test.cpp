@@ -184,6 +184,7 @@ TEST_F(StopsOfMotors, CornersThatAreTooSharpDoNotBlend) {
       {"I5183=0.5", "X2 Y0.1", -1},                   // about 6 degrees
       {"I5183=0.5", "X1 Y1", 0},                      // 90 degrees: cosine 0
       {"I5183=-0.5", "X1 Y1", -1},                    // not that sharp
+      {"I5183=0.5", "X11 Y30", 0},                    // 72 degrees: cosine 0.32
       {"I5183=-0.5", "X0", 0},                        // 180 degrees
       {"I5183=0.5 I5182=40 I5185=0.1", "X1 Y1", 40},  // dwells
       {"I5183=0.5 I5182=40 I5185=-0.1", "X1 Y1", 0},  // not at this corner
@@ -284,7 +285,7 @@ TEST_F(StopsOfMotors, ExternalTimeBaseMovesThePath) {
 TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
   fit({"100A"});
   ASSERT_EQ(host("I127=36000"), "");
-  store({"TM100 TA20 TS0 A270", "DWELL5", "A360", "DWELL5", "INC A350"});
+  store({"TM100 TA20 TS0 A270", "DWELL5", "A170", "DWELL5", "INC A350"});
   std::vector<std::int64_t> stops;
   bool dwelt = false;
   run([&](double) {
@@ -294,8 +295,8 @@ TEST_F(StopsOfMotors, RotaryAxesGoTheShortestWay) {
   });
   ASSERT_EQ(stops.size(), 2u);
   EXPECT_EQ(stops[0], position(-9000));
-  EXPECT_EQ(stops[1], 0);
-  EXPECT_EQ(motors[0].trajectory, position(35000));
+  EXPECT_EQ(stops[1], position(-19000)) << "from -90";
+  EXPECT_EQ(motors[0].trajectory, position(16000));
 }
 
 TEST_F(StopsOfMotors, PsetMovesTheOriginOfAxes) {
