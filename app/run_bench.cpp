@@ -66,7 +66,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
       }
       BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
                            config.board,          config.seed,      negative,          simulation.timing(),
-                           config.bcr.has_value()};
+                           config.bcr.has_value(), simulation.plant()};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
