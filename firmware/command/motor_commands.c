@@ -1,4 +1,4 @@
-/* Commands of single motors (firmware:9.4, datasheet/motion.md section 4): jogs, homing, open loop, kill, phase and
+/* Commands of single motors (motion:4.2 to motion:4.5): jogs, homing, open loop, kill, phase and
  * position references. What moves a motor closes its loop first, where it is. */
 #include "firmware/command/motor_commands.h"
 
@@ -14,6 +14,9 @@
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
+#include "firmware/motion/phase_search.h"
+#include "firmware/motion/power_on_position.h"
+#include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
@@ -91,15 +94,13 @@ static error_t jog_distance(struct lexer* lx, enum jog_from from, bool becomes_b
   return ERR_NONE;
 }
 
-static error_t jog_plus(struct lexer* lx) {
-  (void)lx;
-  return motor_jog(session.motor, MOTOR_JOG_PLUS);
+/* Without end: no trigger can be added. */
+static error_t jog_endless(struct lexer* lx, enum motor_jog how) {
+  return lexer_peek(lx) == '^' ? ERR_DATA : motor_jog(session.motor, how);
 }
 
-static error_t jog_minus(struct lexer* lx) {
-  (void)lx;
-  return motor_jog(session.motor, MOTOR_JOG_MINUS);
-}
+static error_t jog_plus(struct lexer* lx) { return jog_endless(lx, MOTOR_JOG_PLUS); }
+static error_t jog_minus(struct lexer* lx) { return jog_endless(lx, MOTOR_JOG_MINUS); }
 
 static error_t jog_rest(struct lexer* lx) {
   (void)lx;
@@ -161,13 +162,6 @@ static error_t cmd_kill(struct lexer* lx) {
   return error;
 }
 
-void motor_stop_now(uint32_t motor) {
-  const uint32_t state = hal_mask_servo();
-  jog_drop(motor);
-  motor_kill(motor);
-  hal_unmask(state);
-}
-
 /* O{per cent}; with a motion buffer open it is a label. */
 static error_t open_loop(struct lexer* lx) {
   double output;
@@ -185,16 +179,21 @@ static error_t open_loop(struct lexer* lx) {
   return ERR_NONE;
 }
 
-static error_t reference(struct lexer* lx) { /* $, $* */
-  (void)lexer_accept(lx, '*');
-  return may_move(session.motor);
+/* $: the phase reference. $*: the position. */
+static error_t refer(uint32_t motor, bool position) {
+  error_t error = may_move(motor);
+  if (error != ERR_NONE) return error;
+  if (jog_is_moving(motor)) return ERR_PHASING;
+  return (position ? power_on_position_read(motor) : phasing_begin(motor)) ? ERR_NONE : ERR_PHASING;
 }
 
+static error_t reference(struct lexer* lx) { return refer(session.motor, lexer_accept(lx, '*')); }
+
 static error_t reference_all(struct lexer* lx) { /* $$, $$* */
-  (void)lexer_accept(lx, '*');
+  const bool position = lexer_accept(lx, '*');
   for (uint32_t motor = 0; motor < MOTORS; ++motor) {
     const struct axis_definition* d = &axis_definitions[motor];
-    const error_t error = d->assigned && d->cs == session.cs ? may_move(motor) : ERR_NONE;
+    const error_t error = d->assigned && d->cs == session.cs ? refer(motor, position) : ERR_NONE;
     if (error != ERR_NONE) return error;
   }
   return ERR_NONE;

@@ -9,7 +9,6 @@
 /* What the control panel asks for too, of a motor 0..31. Closes its loop. */
 enum motor_jog { MOTOR_JOG_PLUS, MOTOR_JOG_MINUS, MOTOR_JOG_STOP, MOTOR_JOG_BACK, MOTOR_HOME };
 error_t motor_jog(uint32_t motor, enum motor_jog how);
-void motor_stop_now(uint32_t motor); /* K, ^K: its amplifier too, whatever program runs */
 
 extern const struct command_entry motor_commands[];
 

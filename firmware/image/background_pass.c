@@ -16,7 +16,10 @@
 #include "firmware/kernel/image_checksum.h"
 #include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/motion/conversion_table.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/motion/phase_search.h"
+#include "firmware/motion/protection.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
@@ -26,6 +29,7 @@ enum { REPLY_MS = 5 }; /* to the next turn of the rest */
 static uint32_t came_by; /* cycle counter at the end of the last */
 
 void background_meanwhile(void) {
+  protection_pass();
   panel_pass();
   /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
   *hal_x(MEMORY_GLOBAL_STATUS) = status_word();
@@ -34,6 +38,7 @@ void background_meanwhile(void) {
     plc_background();
     background_wake();
   }
+  phasing_pass();
   image_checksum_pass();
   stack_watch_pass();
   watchdog_reload();
@@ -47,6 +52,7 @@ void background_between_lines(void) {
 
 void background_pass(void) {
   clock_watch_pass();
+  conversion_table_pass();
   line_input_pass();
   binary_rotary_pass();
   program_texts_pass();

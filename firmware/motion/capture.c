@@ -2,6 +2,7 @@
 
 #include "firmware/hal/hal.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
@@ -27,7 +28,6 @@ struct capture capture_make(uint32_t motor) {
   const uint32_t mode = (uint32_t)i_integer(i_motor(motor + 1u, IXX97_CAPTURE_MODE));
   const uint32_t flag_mode = (uint32_t)i_integer(i_motor(motor + 1u, IXX24_FLAG_MODE));
   struct capture c = {.on_error = (mode & MODE_ERROR) != 0u, .in_software = mode != 0u};
-  c.feedback = word(true, (uint32_t)i_integer(i_motor(motor + 1u, IXX03_FEEDBACK_ADDRESS)));
   c.status = word(true, flags);
   c.position = word(true, flags + POSITION_REGISTER);
   c.fraction = word(false, flags);
@@ -36,11 +36,8 @@ struct capture capture_make(uint32_t motor) {
   return c;
 }
 
-static uint32_t feedback_of(const struct capture* c) { return c->feedback != 0 ? *c->feedback : 0u; }
-
-void capture_arm(struct capture* c) {
+void capture_arm(const struct capture* c) {
   if (c->position != 0) (void)*c->position;
-  c->last = feedback_of(c);
 }
 
 /* The table's result is a count with bits below it; so becomes what was captured, and the actual position is left by
@@ -50,19 +47,18 @@ static int64_t captured_position(uint32_t motor, const struct capture* c) {
   if (c->in_software || c->position == 0) return m->actual;
   const uint32_t fraction = c->with_fraction && c->fraction != 0 ? *c->fraction >> FRACTION_SHIFT : 0u; /* of 4096 */
   const uint32_t whole = *c->position << c->count_bits;
-  const int32_t beyond = hal_signed((c->last - whole) & HAL_WORD_MASK);
+  const int32_t beyond = hal_signed((position_loop_reading(motor) - whole) & HAL_WORD_MASK);
   const int64_t below = ((int64_t)fraction * m->position_scale) >> (FRACTION_SHIFT - c->count_bits);
   return m->actual - (int64_t)beyond * m->position_scale + below;
 }
 
 static bool came(uint32_t motor, const struct capture* c) {
-  if (c->on_error) return motors[motor].status.warning_error;
+  if (c->on_error) return motors[motor].found.warning_error;
   return c->status != 0 && (*c->status & CAPTURED) != 0u;
 }
 
-bool capture_servo(uint32_t motor, struct capture* c, int64_t* position) {
-  const bool found = came(motor, c);
-  if (found) *position = captured_position(motor, c);
-  c->last = feedback_of(c);
-  return found;
+bool capture_servo(uint32_t motor, const struct capture* c, int64_t* position) {
+  if (!came(motor, c)) return false;
+  *position = captured_position(motor, c);
+  return true;
 }

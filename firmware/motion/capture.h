@@ -9,16 +9,14 @@
 
 struct capture {
   volatile uint32_t *status, *position, *fraction; /* of the channel; null: there is none */
-  volatile uint32_t* feedback;                     /* result of the conversion table */
   bool on_error, in_software, with_fraction;
   uint32_t count_bits; /* of the table result below a count of the hardware */
-  uint32_t last;       /* S: the result of the last servo interrupt, which the actual position is made of */
 };
 
 /* Registers and modes of a motor (0..31) as its variables have them. Background and real-time task. */
 struct capture capture_make(uint32_t motor);
-void capture_arm(struct capture* capture); /* S: what was captured before does not count */
-/* S, each servo interrupt after that, before the actual position is: whether the trigger came, and where. */
-bool capture_servo(uint32_t motor, struct capture* capture, int64_t* position);
+void capture_arm(const struct capture* capture); /* S: what was captured before does not count */
+/* S: whether the trigger came, and the actual position then. */
+bool capture_servo(uint32_t motor, const struct capture* capture, int64_t* position);
 
 #endif

@@ -34,7 +34,7 @@ static void set_long_step(struct phase_motor* p, int64_t step) {
 void commutation_command(uint32_t motor, int32_t output) {
   struct phase_motor* p = &phase_motors[motor];
   const struct phase_settings* s = &p->settings;
-  if (!p->enabled || p->held) return;
+  if (!p->enabled || p->searched) return;
   p->d.command = s->magnetisation;
   if (s->micro_stepping) {
     const int64_t step = (int64_t)output * s->multiplier;
@@ -51,7 +51,7 @@ void commutation_enable(uint32_t motor, bool enabled) {
   struct phase_motor* p = &phase_motors[motor];
   const uint32_t state = hal_mask_all();
   p->enabled = enabled;
-  p->held = false;
+  p->held = p->searched = false;
   p->advance = 0;
   p->step = 0;
   p->step_parts = 0;

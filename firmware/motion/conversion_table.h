@@ -10,7 +10,6 @@ void conversion_table_initialize(void);               /* start-up, after the I-v
 void conversion_table_changed(uint32_t instance);     /* a line was written. Background, real-time task */
 void conversion_table_servo(void);                    /* servo task: every entry once */
 void conversion_table_pass(void);                     /* background: lines that the servo task changed */
-bool conversion_table_is_result(uint32_t address);    /* X:address is what an entry that is built makes */
-bool conversion_table_is_not_built(uint32_t address); /* ... or one of method $F, which stays 0 */
+bool conversion_table_is_not_built(uint32_t address); /* X:address is the result of a method $F, which stays 0 */
 
 #endif

@@ -1,7 +1,9 @@
-/* State of the 16 coordinate systems. Axes are virtual: a coordinate system runs without motors, its positions are kept
- * here. Times of the trajectory are in trajectory units, 2^-23 ms, the unit of I10, so that the servo task adds and
- * compares integers only. Owners: B background, R real-time task, S servo task. B changes what R or S own only while
- * they are held off. */
+/* State of the 16 coordinate systems. What a program moves are axes: their positions are kept here, those of motors
+ * follow from the axis definitions (motion/system_motors.h). A system without motors runs all the same, its axes are
+ * virtual then. Motion is a ring of pieces (motion/piece.h), which the servo task goes through; moves are what pieces
+ * belong to, for programs, hosts and status words. Times of the trajectory are in trajectory units, 2^-23 ms, the unit
+ * of I10, so that the servo task adds and compares integers only. Owners: B background, R real-time task, S servo task.
+ * B changes what R or S own only while they are held off. */
 #ifndef FIRMWARE_MOTION_COORDINATE_SYSTEM_H
 #define FIRMWARE_MOTION_COORDINATE_SYSTEM_H
 
@@ -10,13 +12,13 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/language/word.h"
+#include "firmware/motion/piece.h"
 #include "firmware/variables/i_variables.h"
 
 #define TRAJECTORY_LONGEST_MS 8388607.0
 
 enum {
   TRAJECTORY_FRACTION_BITS = 23,
-  VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
   MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware:7.5) */
   CALCULATED_LINES_LIMIT = 32 /* lines without a move that one real-time interrupt works off for a coordinate system */
 };
@@ -36,15 +38,24 @@ enum program_pointer { POINTER_NONE, POINTER_ROTARY, POINTER_FIXED };
 
 enum move_kind { MOVE_LINEAR, MOVE_DWELL };
 
-/* One calculated move. Written by R while it is not the executing one; S adds how it began. */
+/* One calculated move. R writes it while it is not the executing one, and its stop until that begins.
+ *
+ *   velocity   _____________              A move changes velocity during its first `blend_in` units, its corner lies in
+ *            /:             \:            the middle of that; the next corner is `time` later. The next move, if it is
+ *           / :              :\______     there in time, begins half its own acceleration time before that corner,
+ *    ______/  :              :            else the velocity falls to zero during `stop_length` around the corner. From
+ *          |<>|blend_in/2    corner + Tm  rest to rest a move so takes Tm + Ta. */
 struct move {
   enum move_kind kind;
-  int64_t time;             /* Tm, or the length of the DWELL */
-  int64_t acceleration;     /* Ta, even */
-  int64_t s_curve;          /* TS */
-  bool joins;               /* may blend with the move before it */
-  int64_t blend_in;         /* S: length of the velocity change at its start */
-  bool blended;             /* S: began at the velocity of the move before */
+  int64_t time;         /* Tm, or the length of the DWELL */
+  int64_t acceleration; /* Ta, even */
+  int64_t s_curve;      /* TS */
+  bool joins;           /* may blend with the move before it */
+  int64_t blend_in;     /* length of the velocity change at its start */
+  int64_t stop_length;  /* of that to rest about its end, for want of a blend; even */
+  bool blended;         /* begins at the velocity of the move before */
+  uint32_t straight;    /* number of its last piece of constant velocity, and when in the move that begins */
+  int64_t straight_begin;
   double start[AXIS_COUNT]; /* corner at which it begins */
   double delta[AXIS_COUNT];
   double delta_before[AXIS_COUNT]; /* of the move before, and its Tm */
@@ -73,8 +84,12 @@ struct coordinate_system {
   bool continuous;              /* B: R, not S */
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
-  volatile bool end_block;      /* `/`: S starts no further move */
-  volatile bool settling;    /* moves are dropped: set by B or R, S stands still; R finds the position and clears it */
+  volatile bool end_block;      /* `/`: no further move is started */
+  /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
+   * it */
+  volatile bool settling;
+  bool matching;             /* B at the start of a program, R clears: axes are to be where motors are */
+  bool must_return;          /* B: stopped where a start goes on, so motors that were jogged meanwhile must be back */
   enum run_time_error error; /* R; B clears it when the program is started */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
   uint32_t incremental, feedrate_axes; /* axis masks */
@@ -90,15 +105,16 @@ struct coordinate_system {
   uint32_t pending_axes;
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
-  /* moves: moves[executing] belongs to S, the other one is the next */
+  /* moves: moves[executing] is the one that executes or has been last, the other one is the next */
   struct move moves[2];
-  volatile uint32_t executing;
-  volatile bool active;      /* S: moves[executing] is under way */
-  volatile bool next_valid;  /* R sets when complete, S clears when it starts it */
-  volatile uint32_t started; /* S: moves so far, counted as `planned` */
-  bool blend_decided;        /* S: the next move came before the executing one began to stop, and no `/` since */
-  int64_t stop_length;       /* S: of the velocity change to rest about the corner, for want of a blend */
-  int64_t elapsed;           /* S: trajectory time since the executing move began to change velocity */
+  volatile uint32_t executing; /* S */
+  volatile bool active;        /* S: moves[executing] is under way */
+  volatile bool next_valid;    /* R sets when it is calculated, S clears when it starts it */
+  bool placed;                 /* R, S: the next one is in the ring; until then it does not start */
+  volatile uint32_t started;   /* S: moves so far, counted as `planned` */
+  uint32_t motors;             /* R, at the start of a program: those that its axes move; 0: the axes are virtual */
+  struct piece_ring ring;      /* piece.move is the number of the move, as `planned` counts */
+  int64_t elapsed;             /* S: trajectory time since the executing move began to change velocity */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */

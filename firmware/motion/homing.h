@@ -1,4 +1,4 @@
-/* Home of a motor: the search, `HMZ`, and the absolute position at power-on (datasheet/motion.md, section 4). Loops are
+/* Home of a motor: the search, `HMZ`, and the absolute position at power-on (motion:4.3). Loops are
  * closed by who calls. Background and real-time task. */
 #ifndef FIRMWARE_MOTION_HOMING_H
 #define FIRMWARE_MOTION_HOMING_H

@@ -206,9 +206,14 @@ int64_t jog_commanded(uint32_t motor) {
   return position;
 }
 
+/* The trajectory position that has the motor at `actual`. */
+static int64_t trajectory_at(uint32_t motor, int64_t actual) {
+  return actual - motors[motor].master + motors[motor].compensation;
+}
+
 int64_t jog_actual(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = motors[motor].actual;
+  const int64_t position = trajectory_at(motor, motors[motor].actual);
   hal_unmask(state);
   return position;
 }
@@ -285,7 +290,7 @@ static void found(uint32_t motor, int64_t position) {
   status->home_search = status->trigger_move = false;
   then.aim = AIM_TARGET;
   then.searches = false;
-  then.target = position + then.beyond;
+  then.target = trajectory_at(motor, position) + then.beyond;
   if (homes) {
     jog_count_from(motor, then.target);
     then.target = 0;

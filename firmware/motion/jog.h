@@ -1,4 +1,4 @@
-/* Motions of single motors beside any program (datasheet/motion.md, section 4): jogs, the parts of a homing search,
+/* Motions of single motors beside any program (motion:4.2 to motion:4.5): jogs, the parts of a homing search,
  * RAPID moves and ramps to rest after an abort. Who wants one leaves a request, whatever task it is; the real-time task
  * plans it, in slices, and hands pieces to the servo task, which goes over to them Ixx92 after the request. Until then
  * the old motion goes on, a motion of the coordinate system too. A request takes the place of one that has not begun.
@@ -39,7 +39,7 @@ int64_t jog_position_before(uint32_t motor);
 void jog_set_position_before(uint32_t motor, int64_t position);
 int64_t jog_commanded(uint32_t motor); /* trajectory position now, of one moment */
 void jog_make_whole(uint32_t motor);   /* J!: a motor that stands is commanded to the nearest whole count */
-int64_t jog_actual(uint32_t motor);
+int64_t jog_actual(uint32_t motor);    /* the trajectory position that has it where it is */
 /* All positions are counted from the present `position`. Servo task held off, or in it. */
 void jog_count_from(uint32_t motor, int64_t position);
 

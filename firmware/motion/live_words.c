@@ -6,13 +6,15 @@
 #include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/conversion_entry.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/motor_status.h"
+#include "firmware/motion/servo_words.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/variables/i_variables.h"
 
-enum { /* of a motor */
+enum { /* of a motor; those of the servo loop: motion/servo_words.h */
        MOTOR_STATUS_1 = 0x30,
        MOTOR_STATUS_2 = 0x40,
        MOTOR_SCALES = 0x4F, /* X, U, A, B, C; Y, V; Z, W */
@@ -58,7 +60,7 @@ static unsigned motor_word(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
     *y = motor_status(motor, 1);
     return HALF_Y;
   }
-  if (offset < MOTOR_SCALES || offset > MOTOR_OFFSET) return 0;
+  if (offset < MOTOR_SCALES || offset > MOTOR_OFFSET) return servo_word_read(motor, offset, x, y);
   set_float(offset == MOTOR_OFFSET ? axis_definitions[motor].offset : axis_scale(motor, offset - MOTOR_SCALES), x, y);
   return BOTH;
 }
@@ -116,6 +118,10 @@ static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
     return motor_word(address / MEMORY_MOTOR_WORDS - 1u, address % MEMORY_MOTOR_WORDS, x, y);
   if (address - MEMORY_CS_WORDS < CS_END - MEMORY_CS_WORDS)
     return cs_word((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, address % MEMORY_CS_STRIDE, x, y);
+  if (address - MEMORY_CONVERSION < CONVERSION_LINES) {
+    *y = (uint32_t)i_integer(I8000_CONVERSION_TABLE + (address - MEMORY_CONVERSION));
+    return HALF_Y;
+  }
   if (address != MEMORY_GLOBAL_STATUS) return 0;
   *x = status_word();
   *y = motion_global_status2();
@@ -140,5 +146,9 @@ bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   const uint32_t in_systems = address - MEMORY_CS_WORDS;
   if (in_systems < MEMORY_CS_STRIDE * COORDINATE_SYSTEMS)
     write_cs(in_systems / MEMORY_CS_STRIDE, in_systems % MEMORY_CS_STRIDE, x, (present[x] & ~mask) | bits);
+  const uint32_t in_motors = address - MEMORY_MOTOR_WORDS, line = address - MEMORY_CONVERSION;
+  if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS)
+    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, (present[x] & ~mask) | bits);
+  if (line < CONVERSION_LINES) i_variable_write(I8000_CONVERSION_TABLE + line, (present[0] & ~mask) | bits);
   return true;
 }

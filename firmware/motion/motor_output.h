@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+void motor_output_initialize(void);              /* start-up, before variables are taken over */
 void motor_output_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void motor_output_servo(uint32_t motor);         /* 0..31, servo task */
 

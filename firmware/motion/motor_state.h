@@ -10,7 +10,8 @@
  * activated, the clocks are missing, it has no phase reference or its feedback is not built. */
 bool motor_close(uint32_t motor);
 bool motor_may_close(uint32_t motor);            /* what motor_close would say */
-void motor_open(uint32_t motor, int32_t output); /* enables, with a fixed output (motion/fixed_point.h) */
+bool motor_may_enable(uint32_t motor);           /* activated, and no clock is missing */
+bool motor_open(uint32_t motor, int32_t output); /* enables, with a fixed output (motion/fixed_point.h) */
 void motor_kill(uint32_t motor);                 /* disables, output to its bias */
 
 #endif

@@ -49,6 +49,7 @@ struct phase_motor {
   struct phase_settings settings;
   struct phase_axis q, d;
   volatile bool enabled;        /* C */
+  volatile bool searched;       /* C: its phase reference is; the servo loop commands nothing */
   volatile bool held;           /* S, C: by a phase search: the angle is `advance` */
   volatile uint32_t advance;    /* S: angle, added to that of the phase position */
   volatile int32_t step;        /* S: what the phase position moves by itself each time: whole units, ... */

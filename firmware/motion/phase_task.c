@@ -17,6 +17,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/current_loop.h"
 #include "firmware/motion/phase_motor.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/motion/sine_output.h"
 #include "firmware/variables/i_variables.h"
 
@@ -111,6 +112,7 @@ void phase_task_motor_changed(uint32_t motor) {
   else if ((phase_task_work & bit) != 0u)
     stop_motor(bit);
   hal_unmask(state);
+  phasing_motor_changed(motor);
 }
 
 void phase_task_initialize(void) {

@@ -39,7 +39,7 @@ void piece_ring_take_back(struct piece_ring* ring, uint32_t number) {
 
 bool piece_ring_replace(struct piece_ring* ring, uint32_t number, int64_t end, uint32_t count) {
   const int32_t ahead = (int32_t)(number - ring->executing);
-  if (ahead < 0 || (ahead == 0 && ring->elapsed >= end) || (int32_t)(ring->added - number) <= 0) return false;
+  if (ahead < 0 || (ahead == 0 && ring->elapsed > end) || (int32_t)(ring->added - number) <= 0) return false;
   for (uint32_t i = number + 1u; i != ring->added; i++) piece_ring_at(ring, i)->end = 0;
   piece_ring_at(ring, number)->end = end;
   ring->added += count;

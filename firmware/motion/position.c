@@ -32,19 +32,19 @@ static double s_part(const struct move* m, double length) {
 static double velocity(double delta, double time) { return delta == 0.0 ? 0.0 : delta / time; }
 
 void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]) {
-  const struct move* m = &s->moves[s->executing];
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  const bool goes_on = s->next_valid && s->placed && next->blended;
   if (!s->active) {
-    const struct move* next = &s->moves[s->executing ^ 1u];
     for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
       position[axis] = s->next_valid ? next->start[axis] : s->position[axis];
     return;
   }
-  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)s->stop_length, half = in / 2.0;
+  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->stop_length, half = in / 2.0;
   double time = (double)m->time, stop = t - (half + time - out / 2.0);
   slice_pause();
   double begun = rise(t, in, s_part(m, in));
   slice_pause();
-  double ended = s->blend_decided ? 0.0 : rise(stop, out, s_part(m, out));
+  double ended = goes_on ? 0.0 : rise(stop, out, s_part(m, out));
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     slice_pause();
     double before = m->blended ? velocity(m->delta_before[axis], (double)m->time_before) : 0.0;

@@ -11,8 +11,10 @@ struct protection_hooks {
 };
 extern const struct protection_hooks protection_hooks;
 
-void protection_motor_changed(uint32_t motor); /* 1..32 */
+void protection_initialize(void);
+void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void protection_servo(uint32_t motor);         /* 0..31, servo task: overload, in position of the foreground */
 void protection_pass(void);                    /* background: all motors */
+bool protection_all_in_position(uint32_t cs);  /* those of a coordinate system; false: it has none */
 
 #endif

@@ -1,4 +1,4 @@
-/* Speeds of a motor that moves on its own (datasheet/motion.md, section 4). Its speed changes along an S: the
+/* Speeds of a motor that moves on its own (motion:4.1). Its speed changes along an S: the
  * acceleration rises linearly for `s_curve`, stays, and falls again, and the whole takes
  *
  *     Ta(change) = max(Ixx20, 2 Ixx21, change / Ixx19 + Ixx21)

@@ -5,15 +5,16 @@
  * and inside the planning of a move. */
 #include "firmware/run/calculate.h"
 
-#include <stdatomic.h>
-
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/place.h"
 #include "firmware/motion/position.h"
+#include "firmware/motion/system_motors.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
 #include "firmware/run/motion_statement.h"
@@ -111,34 +112,42 @@ static bool calculate_word(uint32_t cs) {
   return executed != EXECUTED_ERROR;
 }
 
-/* After an abort: the axes are where the stopped trajectory has them, what is left of a begun line is lost. The servo
- * task looks at nothing else while `settling`, so it falls last. */
-static void settle(uint32_t cs) {
+/* After an abort: the axes are where the stopped trajectory has them, what is left of a begun line is lost. Motors have
+ * left the path by then, each on a ramp of its own. The servo task looks at nothing else while `settling`, so it falls
+ * last. */
+static bool settle(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   double position[AXIS_COUNT];
+  if (system_motors_leave(cs)) return false;
   cs_present_position(s, position);
   motion_program_drop_line(&motion_programs[cs]);
   synchronous_forget(cs);
-  s->active = s->next_valid = s->blend_decided = s->may_join = false;
   s->pending_axes = 0;
-  s->planned = s->started;
+  s->may_join = false;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     s->position[axis] = position[axis];
     s->last_delta[axis] = 0.0;
   }
-  atomic_signal_fence(memory_order_release);
+  const uint32_t state = hal_mask_servo();
+  piece_ring_clear(&s->ring);
+  s->active = s->next_valid = s->placed = false;
+  s->planned = s->started;
   s->settling = false;
+  hal_unmask(state);
+  return true;
 }
 
 /* False: there is nothing to do for it at this interrupt. */
 static bool turn(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (stands(cs)) return false;
-  if (s->settling) {
-    settle(cs);
+  if (s->settling) return settle(cs);
+  if (!s->running) return false;
+  if (s->matching) {
+    system_motors_begin(cs);
     return true;
   }
-  if (!s->running) return false;
+  if (move_place(cs)) return true;
   if ((s->quit || s->end_block) && !motion_programs[cs].under_way) {
     if (s->active || (s->next_valid && !s->end_block)) return false; /* what is calculated is still to be executed */
     s->running = s->quit = s->stepping = false; /* end_block keeps a calculated move from starting until R */

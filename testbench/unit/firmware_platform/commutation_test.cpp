@@ -138,10 +138,13 @@ TEST_F(Commutation, MicroStepsTurnByTheOutputAndNotByTheEncoder) {
 
 TEST_F(Commutation, TheTableOfIxx55IsUsed) {
   set("I155=$8000 I171=2048");  // $B800, in the buffers
-  for (std::uint32_t k = 0; k < 2048; ++k) set_x(0xB800 + k, 0), set_y(0xB800 + k, -4194304);
+  for (std::uint32_t k = 0; k < 2048; ++k) set_x(0xB800 + k, 0), set_y(0xB800 + k, k == 77 ? -4194304 : 0);
   enable();
   stand_at(77);
   command(1000);
+  phase();
+  EXPECT_EQ(a(), 500);
+  set("I155=$8123");  // the address is a multiple of $800
   phase();
   EXPECT_EQ(a(), 500);
   set("I155=$7FFFFF");  // no memory there: the table of all

@@ -112,6 +112,22 @@ TEST_F(CurrentLoop, TheSumStopsAtFullVoltageAndComesBackAtOnce) {
   EXPECT_LT(x_word(kIntegrators), 0);
 }
 
+// Vq = -4 * 1 * -0.3 - ... is at its end, and the sum goes the other way.
+TEST_F(CurrentLoop, TheSumFallsWhileTheVoltageIsAtItsUpperEnd) {
+  gains(0.01, 0, 1);
+  set("I172=1536");
+  for (const int sign : {1, -1}) {
+    enable(false);
+    enable();
+    stand_at(0);
+    measure(0, sign * -0.3);  // Iq = Ib cos(0)
+    command(sign * -0.4 * 32768);
+    phase(10);
+    EXPECT_NEAR(pwm(1), sign * kPwmScale, 1);  // B = -Vq sin(270)
+    EXPECT_NEAR(x_word(kIntegrators) / 1048576.0, sign * 10 * 8 * 0.01 * -0.1, 1e-3);
+  }
+}
+
 TEST_F(CurrentLoop, AKilledMotorPutsOutNothingAndForgetsItsSum) {
   gains(0.01, 0.1, 0);
   enable();

@@ -39,7 +39,7 @@ class DpramReportsTest : public FirmwareTest {
 void move_motor_3() {
   for (const char* line : {"M1->D:$188", "M2->D:$18B", "M3->D:$190", "M4->D:$1CC", "M5->X:$19D,0,24,S", "#3->100X"})
     ASSERT_EQ(host(line), "") << line;
-  ASSERT_EQ(host("M1=-8000000000 M2=-9000001000 M3=3072 M4=-614400 M5=-12345 I300=1"), "");
+  ASSERT_EQ(host("M1=-8000000000 M2=-9000001000 M3=3072 M4=-614400 M5=-12345 I300=0"), "");
 }
 
 void expect_as_reported(const MotorReport& m) {

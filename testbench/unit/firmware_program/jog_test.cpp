@@ -126,10 +126,7 @@ TEST_F(JogProfile, RandomMovesAndNewTargetsOnTheWayStayWithinASixteenthOfACount)
       const bool steady = unit(random) < 0.1;
       const Motion motion =
           steady ? jog_model::at_speed(l, from, way < 0 ? -l.ixx22 : l.ixx22) : jog_model::to_target(l, from, target);
-      if (steady)
-        ASSERT_TRUE(jog_continuous(0, way < 0 ? -1 : 1));
-      else
-        ASSERT_TRUE(jog_to(0, units(target)));
+      ASSERT_TRUE(steady ? jog_continuous(0, way < 0 ? -1 : 1) : jog_to(0, units(target)));
       const unsigned steps = 10 + random() % 40;
       follow(before, elapsed, motion, ixx92, steps, result);
       if (HasFatalFailure()) {
@@ -148,6 +145,142 @@ TEST_F(JogProfile, RandomMovesAndNewTargetsOnTheWayStayWithinASixteenthOfACount)
   }
   EXPECT_GT(result.moving, 100000u);
   RecordProperty("worst_counts", std::to_string(result.worst));
+}
+
+TEST_F(JogProfile, EndlessJogKeepsItsSpeedForHours) {
+  const Limits l{1, 0, 10, 1.0 / 3};
+  set(l, 10);
+  increment(INT32_MAX / 2);  // 128 ms
+  ASSERT_TRUE(jog_continuous(0, -1));
+  Followed result;
+  follow(Motion({0, 0}), 0, jog_model::at_speed(l, {0, 0}, -l.ixx22), 3 * step_ms(), 200000, result);
+  EXPECT_LT(position(), -8.5e6);
+}
+
+TEST_F(JogProfile, LongMoveAtASmallSpeedStaysWithinASixteenthOfACount) {
+  const Limits l{1, 0, 10, 0.7};
+  set(l, 400);
+  increment(INT32_MAX / 2);
+  ASSERT_TRUE(jog_to(0, units(1000000.25)));
+  Followed result;
+  follow(Motion({0, 0}), 0, jog_model::to_target(l, {0, 0}, 1000000.25), 400, 12000, result);
+  EXPECT_EQ(motors[0].trajectory, units(1000000.25));
+  EXPECT_FALSE(jog_is_moving(0));
+}
+
+TEST_F(JogProfile, RampStopsAtOneDeceleration) {
+  const Limits l{0.25, 0, 50, 20};
+  set(l, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 1000; ++i) step();
+  const State at{position(), 20};
+  ASSERT_TRUE(jog_stop_at(0, 0.5));
+  std::vector<double> positions;
+  while (jog_is_moving(0)) {
+    positions.push_back(step());
+    if (positions.size() == 5) { EXPECT_TRUE(motors[0].status.aborting); }
+  }
+  EXPECT_FALSE(motors[0].status.aborting);
+  const double begins = (position() - at.position - 20 * 20 / (2 * 0.5)) / 20;  // ms after the request
+  EXPECT_GE(begins, 0);
+  EXPECT_LE(begins, 3.01 * step_ms()) << "Ixx92 does not count";
+  Motion ramp({at.position + 20 * begins, 20});
+  ramp.ramp(0.5);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double now = static_cast<double>(i + 1) * step_ms(), t = now - begins;
+    ASSERT_NEAR(positions[i], t < 0 ? at.position + 20 * now : ramp.at(t).position, kTolerance) << i;
+  }
+  EXPECT_GT(positions.size(), 90u) << "40 ms";
+}
+
+TEST_F(JogProfile, RampAtZeroPercentStopsOnTheSpot) {
+  set({0.25, 0, 50, 20}, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 1000; ++i) step();
+  increment(0);
+  step();
+  const std::int64_t before = motors[0].trajectory;
+  ASSERT_TRUE(jog_stop_at(0, 0.5));
+  step();
+  EXPECT_FALSE(jog_is_moving(0));
+  EXPECT_EQ(motors[0].trajectory, before);
+}
+
+TEST_F(Jog, TimeIsThatOfTheCoordinateSystem) {
+  set({0.25, 0, 50, 20}, 10);
+  platform::set_i(122, 10);
+  increment(platform::kDefaultI10 / 2);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 2000; ++i) step();
+  const double before = position();
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_NEAR(position() - before, 100 * platform::kDefaultI10 / 2 / kTimeUnits * 10, kTolerance) << "50 %";
+}
+
+TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {
+  set({0.25, 0, 50, 20}, 10);
+  for (const bool by_program : {false, true}) {
+    ASSERT_TRUE(by_program ? jog_rapid(0, units(1e6), 20) : jog_continuous(0, 1));
+    for (int i = 0; i < 1000; ++i) step();
+    coordinate_systems[0].held = true;
+    coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;
+    step();
+    const double before = position();
+    for (int i = 0; i < 100; ++i) step();
+    EXPECT_NEAR(position() - before, by_program ? 0 : 100 * platform::kDefaultI10 / kTimeUnits * 20, kTolerance);
+    coordinate_systems[0].held = false;
+    increment(platform::kDefaultI10);
+  }
+}
+
+TEST_F(Jog, RequestsInARowDoNotHoldOffThoseBefore) {
+  set({0.25, 0, 50, 20}, 10);
+  for (int i = 0; i < 400; ++i) {
+    if (i % 10 == 0) {  // every 4.4 ms
+      ASSERT_TRUE(jog_to(0, units(1000 + i)));
+    }
+    step();
+  }
+  EXPECT_GT(position(), 100) << "each begins anew at the speed that the last had come to";
+  for (int i = 0; i < 2000 && jog_is_moving(0); ++i) step();
+  EXPECT_EQ(motors[0].trajectory, units(1390));
+}
+
+TEST_F(Jog, PlanningThatTakesTooLongBeginsLaterWithoutAJump) {
+  set({0.25, 0, 50, 20}, 1);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  unsigned interrupts = 0;
+  double last = 0, largest = 0;
+  const auto servo = [&] {
+    jog_servo(0);
+    ++interrupts;
+    largest = std::max(largest, std::abs(position() - last));
+    last = position();
+  };
+  for (int i = 0; i < 300; ++i) {
+    servo();
+    if (i == 100) { ASSERT_TRUE(jog_to(0, 0)); }
+    const std::function<void()> between = servo;
+    if (i % 3 == 0) platform::real_time_in_slices(between);
+  }
+  EXPECT_GT(interrupts, 500u) << "most of them while it is planned";
+  for (int i = 0; i < 5000 && jog_is_moving(0); ++i) {
+    servo();
+    platform::real_time();
+  }
+  EXPECT_EQ(motors[0].trajectory, 0);
+  EXPECT_LT(largest, 20 * step_ms() * 1.01) << "never faster than Ixx22";
+}
+
+TEST_F(Jog, KilledMotorStandsAndTakesNoRequest) {
+  set({0.25, 0, 50, 20}, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 300; ++i) step();
+  motors[0].loop = LOOP_KILLED;
+  const double before = step();
+  EXPECT_FALSE(jog_is_moving(0));
+  EXPECT_FALSE(jog_to(0, 0));
+  EXPECT_EQ(step(), before);
 }
 
 }  // namespace

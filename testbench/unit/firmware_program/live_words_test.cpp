@@ -8,6 +8,10 @@
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
+#include "firmware/motion/motor.h"
+}
+
+extern "C" {
 #include "firmware/base/status.h"
 }
 
@@ -129,6 +133,7 @@ TEST_F(LiveWords, AMoveThatWaitsIsNoTarget) {
 
 TEST_F(LiveWords, DwellShowsInTheMotorsOfTheSystem) {
   host("&1#1->X &2#2->X");
+  motors[0].loop = LOOP_CLOSED;
   ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
   ASSERT_EQ(host("DWELL500"), "");
   ASSERT_EQ(host("CLOSE R"), "");
