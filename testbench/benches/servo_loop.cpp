@@ -43,6 +43,7 @@ class ServoLoop {
 void ServoLoop::choose_gains() {
   LoopGains g;
   g.p = 112450, g.d = 2900, g.vff = 2972, g.i = 37000, g.aff = 16320, g.limit = 32767;
+  g.friction = 16;  // 5e-4 of 1 N m
   gains_.assign(host_.motors(), g);
   if (host_.motors() < 4) return;
   LoopGains& notch = gains_[1];

@@ -1,6 +1,7 @@
 #include "testbench/checkers/velocity_profile.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace brick {
 
