@@ -108,9 +108,8 @@ std::string Macros::expand(std::string_view line) const {
   return expand(line, work);
 }
 
-// `$Base0A`: the longest name before hexadecimal digits. What is a constant as it stands (`$FACE`) is one.
+// `$Base0A`: the longest name before hexadecimal digits, also where both are hexadecimal.
 Macros::Found Macros::find_before_digits(std::string_view word) const {
-  if (std::all_of(word.begin(), word.end(), is_hex_digit)) return macros_.end();
   for (std::size_t digits = 1; digits <= kMostDigits && digits < word.size(); ++digits) {
     if (!is_hex_digit(word[word.size() - digits])) break;
     const Found found = macros_.find(word.substr(0, word.size() - digits));

@@ -18,7 +18,7 @@ import shutil
 import subprocess
 import sys
 
-from common import ROOT, skip
+from common import ROOT, as_of, skip
 from lint_rtl import SIMULATION_ONLY, rtl_files
 
 TOPS = {"board_top": {"ServoIcMask": "18'h00003", "MacroIcMask": "4'h0"}, "macro_ic": {}}
@@ -155,7 +155,7 @@ def page(generic, fpga, version):
         "Gates: two-input gates, inverters and multiplexers. LUT: LUT4 of a Lattice ECP5, a carry cell counts as two.",
         "Block RAM: DP16KD of an ECP5, 16 kbit each; an ECP5-85 has 208.",
         "The same sources give the same figures; a change anywhere can move the LUTs of other modules by some percent.",
-        "Synthesis only, no placing and routing.",
+        f"Synthesis only, no placing and routing. Measured {as_of(ROOT)}.",
         "",
         "| module | | gates | flip-flops | memory bits | ECP5 LUT | ECP5 flip-flops | block RAM |",
         "|---|---|---|---|---|---|---|---|",

@@ -6,7 +6,7 @@ flip-flops of clk_pwm_i and clk_ref_i. What is allowed stands pin by pin in rtl/
   synchroniser: its first flip-flop; it and its only load, the second one, carry the attribute async_reg
     (rtl/common/sync2.sv); nothing but a wire in front of it, or what a jumper selects (selected);
   a register that takes it for a reason: what it takes stands still when it counts;
-  a flip-flop that it clocks, or resets; an output that it goes through to.
+  a flip-flop that it clocks, or resets; an output whose row says that it follows it.
 A row that says more than the RTL does is a problem too, so the rows say what is. Exit status 0, 1: problems, 77: no
 Yosys.
 """
@@ -55,31 +55,32 @@ class Rules:
     """What the rows allow, by port."""
 
     def __init__(self, root):
-        self.sampled, self.clocks = list(MOTOR_SAMPLED), []
-        self.synchronised, self.selected, self.resets, self.through = {"motor_i"}, set(), set(), set()
+        self.sampled, self.clocks, self.through = list(MOTOR_SAMPLED), [], []
+        self.synchronised, self.selected, self.resets = {"motor_i"}, set(), set()
         board = Table("board", root / "rtl/pins")
-        sets = {"synchroniser": self.synchronised, "selected": self.selected, "resets": self.resets,
-                "through": self.through}
+        sets = {"synchroniser": self.synchronised, "selected": self.selected, "resets": self.resets}
         for pin in board.pins:
             for kind, registers in pin.sampled:
                 if kind in sets:
                     sets[kind].add(pin.rtl)
                 elif kind == "clocks":
                     self.clocks += [(pin.rtl, pattern) for pattern in registers]
+                elif kind == "through":
+                    self.through += [(pin.rtl, pattern) for pattern in registers]
                 else:
                     reason = board.settings[f"reason {kind}"]
                     self.sampled += [(pin.rtl, pattern, reason) for pattern in registers]
 
     def row(self, rows, name, end):
-        """The rows that allow this end of this port."""
+        """The rows that allow this end of this port, or of an output this source."""
         return [row for row in rows if row[0] == name and fnmatch.fnmatch(end, row[1])]
 
     def all(self):
         """Each as check() notes what was needed."""
         for kind, names in (("synchroniser", self.synchronised), ("selected", self.selected),
-                            ("resets", self.resets), ("through", self.through)):
+                            ("resets", self.resets)):
             yield from ((kind, name) for name in names)
-        yield from [*self.sampled, *self.clocks]
+        yield from [*self.sampled, *self.clocks, *self.through]
 
 
 class Walk:
@@ -160,7 +161,7 @@ def check(module, rules):
             end = target if isinstance(target, str) else walk.names[target]
             selected = name in rules.selected
             if kind == "output":
-                needs = [("through", end)] if end in rules.through else []
+                needs = rules.row(rules.through, end, name)
             elif kind == "strobed" and strobed:
                 continue  # a toggle turns itself over
             elif kind == "CLK":

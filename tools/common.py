@@ -1,5 +1,6 @@
 """What the scripts in this folder share: where the tree is, which files are sources, how a check reports."""
 
+import datetime
 import pathlib
 import subprocess
 import sys
@@ -31,6 +32,13 @@ def tracked(root):
         found = [path.relative_to(root) for path in root.rglob("*")]
         found = [path for path in found if not products & set(path.parts[:2])]
     return sorted(path for path in found if (root / path).is_file() and not (root / path).is_symlink())
+
+
+def as_of(root):
+    """For a page of measured figures: which commit they stand for. A change that is not committed is not seen."""
+    head = [*GIT, "-C", root, "rev-parse", "--short=10", "HEAD"]
+    commit = subprocess.run(head, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
+    return f"at commit {commit}, {datetime.date.today().isoformat()}"
 
 
 def skip(reason):

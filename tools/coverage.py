@@ -3,14 +3,18 @@
 
 C++ and C: lines run at least once, a row a folder, from gcov (BUILD/**/*.gcda). RTL: lines run at least once and bits
 that rose and fell, a row a module, from the counters of the Verilated models (BUILD/rtl/*.dat, files of each life of
-a model; a point counts as often as in the life that reached it most). BUILD/missed.txt lists what was not reached. The
-table goes to the standard output, with --write to docs/coverage.md as well; TEXT says there which tests ran.
+a model; a point counts as often as in the life that reached it most); beside them the lines of its SystemC model.
+BUILD/missed.txt lists what was not reached. The page goes to the standard output, with --write to docs/coverage.md as
+well; TEXT says there which tests ran.
+
+Every module, model and folder of the tree has a row, whether a test reached it or not:
+coverage.py --check   the page has them all, and no others
+coverage.py --rows    gives the page those that it lacks, as "not in this run", and takes away those that are gone
 """
 
 import argparse
 import collections
 import concurrent.futures
-import datetime
 import json
 import os
 import pathlib
@@ -20,15 +24,36 @@ import sys
 import textwrap
 import xml.etree.ElementTree
 
-from common import ROOT
+from common import ROOT, as_of, files, finish
 
 PAGE, PLAN = "docs/coverage.md", "docs/verification-plan.md"
 OURS = re.compile(r"(app|systemc|firmware|testbench/(?:benches|checkers|host|plant))/")
+MODELS = ("systemc/board", "systemc/host", "systemc/macro_ic", "systemc/servo_ic")
+NOT_RUN, NO_COUNTER = "not in this run", "no test reached, or nothing to count"
+HEADS = {"modules": "| module or model | lines of the RTL | bits | lines of the model |\n|---|---|---|---|\n",
+         "folders": "| folder | lines |\n|---|---|\n"}
 Reached = collections.namedtuple("Reached", "reached all")
 
 
-def percent(pair):
-    return f"{pair.reached} of {pair.all} ({100 * pair.reached / pair.all:.1f} %)" if pair.all else ""
+def modules(root):
+    """{folder/name: (file of the RTL or None, files of the model)} of every module and every model of the tree."""
+    rtl = {path.stem: path for path in files(root, ["rtl"], {".sv"})
+           if re.search(rf"^module {path.stem}\b", (root / path).read_text(), re.M)}
+    models = collections.defaultdict(list)
+    for path in files(root, ["systemc"], {".h", ".cpp"}):
+        if path.parts[1] != "component" and (path.stem in rtl or str(path.parent) in MODELS):
+            models[path.stem].append(str(path))
+    found = {}
+    for name in {*rtl, *models}:
+        folder = rtl[name].parent.name if name in rtl else pathlib.Path(models[name][0]).parent.name
+        found[f"{folder}/{name}"] = str(rtl[name]) if name in rtl else None, models[name]
+    return dict(sorted(found.items()))
+
+
+def folders(root):
+    """Every folder with C or C++ of ours."""
+    sources = files(root, ["app", "firmware", "systemc", "testbench"], {".c", ".h", ".cpp"})
+    return sorted({str(path.parent) for path in sources if OURS.match(str(path))})
 
 
 def gcov_lines(build):
@@ -52,11 +77,11 @@ def gcov_lines(build):
     return lines
 
 
-def rtl_points(files):
+def rtl_points(data_files):
     """{(kind, file, line, what): times} of our RTL; kind is line, branch or toggle, times the most of any instance in
     any life: the sum over lives would take a bit that rose in each and never fell for one that did both."""
     most = {}
-    for data in files:
+    for data in data_files:
         for text in data.read_text().splitlines():
             if text.startswith("C '"):
                 key, times = text.rsplit(" ", 1)
@@ -72,54 +97,119 @@ def rtl_points(files):
     return points
 
 
-def cpp_rows(lines):
-    folders = collections.defaultdict(lambda: [0, 0])
+def enough(kind):
+    """How often a point was reached that counts: a bit that changed twice rose and fell."""
+    return 2 if kind == "toggle" else 1
+
+
+def reached(times, least=1):
+    """Reached of a list of times."""
+    return Reached(sum(time >= least for time in times), len(times))
+
+
+def total(cells):
+    cells = [cell for cell in cells if cell]
+    return Reached(sum(cell.reached for cell in cells), sum(cell.all for cell in cells))
+
+
+def module_rows(root, lines, points):
+    """{folder/name: (lines of the RTL, bits, lines of the model)}, None where there is no such file."""
+    of_file, lines_of, bits_of = (collections.defaultdict(list) for _ in range(3))
     for (file, _), times in lines.items():
-        folder = folders[str(pathlib.Path(file).parent)]
-        folder[0] += times > 0
-        folder[1] += 1
-    return {folder: Reached(*pair) for folder, pair in sorted(folders.items())}
-
-
-def rtl_rows(points):
-    """{module: (lines, bits)}; a bit that changed twice rose and fell."""
-    modules = collections.defaultdict(lambda: [[0, 0], [0, 0]])
+        of_file[file].append(times)
     for (kind, file, _, _), times in points.items():
-        pair = modules[file][kind == "toggle"]
-        pair[0] += times >= (2 if kind == "toggle" else 1)
-        pair[1] += 1
-    return {file: (Reached(*lines), Reached(*bits)) for file, (lines, bits) in sorted(modules.items())}
+        (bits_of if kind == "toggle" else lines_of)[file].append(times)
+    return {label: (reached(lines_of[rtl]) if rtl else None, reached(bits_of[rtl], enough("toggle")) if rtl else None,
+                    reached([times for file in model for times in of_file[file]]) if model else None)
+            for label, (rtl, model) in modules(root).items()}
 
 
-def total(pairs):
-    pairs = list(pairs)
-    return Reached(sum(p.reached for p in pairs), sum(p.all for p in pairs))
+def folder_rows(root, lines):
+    found = {folder: [] for folder in folders(root)}
+    for (file, _), times in lines.items():
+        found.setdefault(str(pathlib.Path(file).parent), []).append(times)
+    return {folder: (reached(times),) for folder, times in sorted(found.items())}
 
 
-def page(tests, cpp, rtl):
-    command = ["git", "rev-parse", "--short=10", "HEAD"]
-    commit = subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE).stdout.strip()
-    today = datetime.date.today().isoformat()
-    ran = textwrap.wrap(f"What the tests reached, by `./dev coverage` at commit {commit}, {today}: {tests}.", 120)
-    lines = ["<!-- Generated by tools/coverage.py (./dev coverage). Do not edit. -->", "# Coverage", "",
-             *ran, "",
-             "The figures say what no test runs. They do not say that what is run is checked: for that are the",
-             f"negative controls and planted misreadings ([verification plan]({PLAN.removeprefix('docs/')})).", "",
-             "## RTL", "",
-             "Lines and branches that ran at least once in any instance, of the board with two servo ICs or of a",
-             "module alone; bits that rose and fell in one instance of a module that is tested alone. A row without",
-             "bits has no counters of them: those of a whole servo IC are 16 MB of generated C++. Most tests of a",
-             "channel run in one: the bits of `channel_*` and `servo_channel` are those that the tests of its long",
-             "counters reach (`timer_bits_test.cpp`), not what all tests do.", "",
-             "| module | lines | bits |", "|---|---|---|"]
-    lines += [f"| `{file}` | {percent(ran)} | {percent(bits)} |" for file, (ran, bits) in rtl.items()]
-    all_lines, bits = (total(column) for column in zip(*rtl.values(), strict=True))
-    lines += [f"| all | {percent(all_lines)} | {percent(bits)} |", "",
-              "## C++ and C", "", "Lines that ran at least once; the firmware as compiled for the build machine.", "",
-              "| folder | lines |", "|---|---|"]
-    lines += [f"| `{folder}` | {percent(pair)} |" for folder, pair in cpp.items()]
-    lines += [f"| all | {percent(total(cpp.values()))} |", ""]
-    return "\n".join(lines)
+def shown(cell, kind):
+    if cell is None:
+        return ""
+    if cell.all:
+        return f"{cell.reached} of {cell.all} ({100 * cell.reached / cell.all:.1f} %)"
+    return "" if kind == "bits" else NO_COUNTER
+
+
+def texts(rows):
+    """The rows with their cells as the page shows them, and their sum."""
+    sums = tuple(total(column) for column in zip(*rows.values(), strict=True))
+    kinds = ("lines", "bits", "lines")
+    return {label: [shown(*cell) for cell in zip(cells, kinds, strict=False)]
+            for label, cells in [*rows.items(), ("all", sums)]}
+
+
+def table(name, rows):
+    """The rows of texts as a table, the last one is the sum."""
+    lines = [f"| {label if label == 'all' else f'`{label}`'} | {' | '.join(cells)} |" for label, cells in rows.items()]
+    return HEADS[name] + "\n".join(lines) + "\n"
+
+
+def page(tests, of_modules, of_folders):
+    ran = textwrap.fill(f"What the tests reached, by `./dev coverage`, {as_of(ROOT)}: {tests}.", 120)
+    return f"""<!-- Generated by tools/coverage.py (./dev coverage). Do not edit. -->
+# Coverage
+
+{ran}
+
+Every module and model has a row (`docs.coverage`); the figures are those of that commit. They say what no test runs.
+They do not say that what is run is checked: for that are the negative controls and planted misreadings
+([verification plan]({PLAN.removeprefix('docs/')})).
+
+## RTL and models
+
+Lines and branches of the RTL that ran at least once in any instance, of the board with two servo ICs or of a module
+alone; bits that rose and fell in one instance of a module that is tested alone; lines of the SystemC model. A row
+without bits has no counters of them: those of a whole servo IC are 16 MB of generated C++. Most tests of a channel run
+in one: the bits of `channel_*` and `servo_channel` are those that the tests of its long counters reach
+(`timer_bits_test.cpp`), not what all tests do. A module that is wires alone has nothing to count.
+
+{table("modules", of_modules)}
+## C++ and C
+
+Lines that ran at least once; the firmware as compiled for the build machine. Of other programs' sources no test ran
+here.
+
+{table("folders", of_folders)}"""
+
+
+def rows_of(text, name):
+    """{label: cells} of a table of the page."""
+    body = text.partition(HEADS[name])[2].partition("\n\n")[0]
+    found = [[cell.strip() for cell in line.strip("|").split(" |")] for line in body.splitlines()]
+    return {cells[0].strip(" `"): cells[1:] for cells in found}
+
+
+def expected(root):
+    return {"modules": modules(root), "folders": folders(root)}
+
+
+def check(root):
+    text, problems = (root / PAGE).read_text(), []
+    for name, labels in expected(root).items():
+        have = rows_of(text, name).keys() - {"all"}
+        problems += [f"{PAGE}: no row of {label}: ./dev coverage, or tools/coverage.py --rows, gives it one"
+                     for label in labels if label not in have]
+        problems += [f"{PAGE}: a row of {label}, which is not in the tree" for label in sorted(have - {*labels})]
+    finish(f"coverage, {len(modules(root))} modules and models", problems)
+
+
+def align(root):
+    """--rows: the page with the rows of the tree."""
+    text = (root / PAGE).read_text()
+    for name, labels in expected(root).items():
+        have = rows_of(text, name)
+        rows = {label: have.get(label) or [NOT_RUN] + [""] * (len(have["all"]) - 1) for label in [*labels, "all"]}
+        text = text.replace(table(name, have), table(name, rows))
+    (root / PAGE).write_text(text)
 
 
 def passed(results):
@@ -133,26 +223,34 @@ def passed(results):
 def missed(lines, points):
     never = [f"{file}:{number}" for (file, number), times in sorted(lines.items()) if times == 0]
     never += [f"{file}:{line}: {kind} {what.strip()}" for (kind, file, line, what), times in sorted(points.items())
-              if times < (2 if kind == "toggle" else 1)]
+              if times < enough(kind)]
     return "\n".join(never) + "\n"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--tests", default="")
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--rows", action="store_true")
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     options = parser.parse_args()
+    if options.check or options.rows:
+        return (check if options.check else align)(options.root)
+    if options.build is None:
+        parser.error("expected the folder of a coverage build, --check or --rows")
     data = sorted((options.build / "rtl").glob("*.dat"))
     if not data:
         sys.exit(f"coverage.py: {options.build}/rtl holds no .dat; expected the counters of a run (./dev coverage)")
     lines, points = gcov_lines(options.build), rtl_points(data)
     tests = ", ".join(filter(None, [passed(options.build / "tests.xml"), options.tests]))
-    text = page(tests, cpp_rows(lines), rtl_rows(points))
+    text = page(tests, texts(module_rows(ROOT, lines, points)), texts(folder_rows(ROOT, lines)))
     (options.build / "missed.txt").write_text(missed(lines, points))
     print(text)
     if options.write:
         (ROOT / PAGE).write_text(text)
+    return None
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ import subprocess
 import sys
 import time
 
-from common import ROOT, files, finish, skip
+from common import ROOT, as_of, files, finish, skip
 from lint_rtl import SIMULATION_ONLY, rtl_files
 
 TOP = "brick_ecp5"
@@ -107,7 +107,8 @@ def tables(reports):
                             for r in (row, best))
         lines.append(f"| {source} | {target} | {slowest} | {fastest} | {goal} | {row.delay:.2f} | "
                      f"{row.logic:.2f} | {row.routing:.2f} | `{row.start}` to `{row.end}` |")
-    lines += ["", f"Speed grade {SPEED}; of {len(reports)} seeds of the placer. Delays are those of the slowest.", ""]
+    lines += ["", f"Speed grade {SPEED}; of {len(reports)} seeds of the placer. Delays are those of the slowest. "
+              f"Measured {as_of(ROOT)}.", ""]
     return "\n".join(lines)
 
 

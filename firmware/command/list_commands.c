@@ -41,11 +41,11 @@ static void put(char c) {
 static error_t read_part(struct lexer* lx, struct part* part) {
   int32_t number;
   *part = (struct part){false, 0, USER_MEMORY_WORDS};
-  if (!lexer_accept(lx, ',')) return ERR_NONE;
+  if (!lexer_further(lx)) return ERR_NONE;
   if (lexer_integer(lx, &number) != ERR_NONE || number < 0) return ERR_DATA;
   part->is_part = true;
   part->start = (uint32_t)number;
-  if (!lexer_accept(lx, ',')) return ERR_NONE;
+  if (!lexer_further(lx)) return ERR_NONE;
   if (lexer_integer(lx, &number) != ERR_NONE || number < 0) return ERR_DATA;
   part->length = (uint32_t)number;
   return ERR_NONE;
@@ -110,6 +110,7 @@ static error_t list_ring(uint32_t cs, uint32_t lines, bool with_offset) {
     list_line(words, at - first, rotary_offset(cs, ahead.offset, first), with_offset);
   }
   rotary_hold(false);
+  if (ahead.words == 0) reply_no_line();
   return ERR_NONE;
 }
 
@@ -135,8 +136,7 @@ static error_t list_pointer(struct lexer* lx, bool executing) {
   const struct coordinate_system* s = &coordinate_systems[session.cs];
   struct program_trace trace;
   int32_t count = 1;
-  if (lexer_accept(lx, ',') && lexer_peek(lx) != '\0' && (lexer_integer(lx, &count) != ERR_NONE || count < 1))
-    return ERR_DATA;
+  if (lexer_further(lx) && (lexer_integer(lx, &count) != ERR_NONE || count < 1)) return ERR_DATA;
   if (executing)
     run_executing(session.cs, &trace);
   else

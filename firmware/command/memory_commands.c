@@ -66,7 +66,7 @@ static error_t read_words(struct lexer* lx, form_t form, bool hex) {
   uint32_t address;
   int32_t count = 1;
   error_t error = read_address(lx, &address);
-  if (error == ERR_NONE && lexer_accept(lx, ',')) error = lexer_integer(lx, &count);
+  if (error == ERR_NONE && lexer_further(lx)) error = lexer_integer(lx, &count);
   if (error != ERR_NONE) return error;
   if (count < 1 || count > COUNT_LIMIT || address + (uint32_t)count > HAL_WORD_MASK + 1u) return ERR_DATA;
   for (uint32_t i = 0; i < (uint32_t)count; ++i) {

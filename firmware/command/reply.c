@@ -85,6 +85,8 @@ void reply_end_line(void) {
   reply_between_lines();
 }
 
+void reply_no_line(void) { line_count++; }
+
 uint32_t reply_line_count(void) { return line_count; }
 
 bool reply_line_is_open(void) { return line_open; }

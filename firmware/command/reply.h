@@ -39,7 +39,8 @@ void reply_hex(uint32_t value, unsigned digits); /* upper case; digits 0 = minim
 void reply_number(double value);                 /* up to 10 decimals, trailing zeros removed (firmware:1.6) */
 bool reply_line_is_open(void);
 void reply_end_line(void);       /* ends the data line */
-uint32_t reply_line_count(void); /* data lines so far, of any recipient; wraps */
+void reply_no_line(void);        /* a query that has none to show */
+uint32_t reply_line_count(void); /* data lines so far, of any recipient, and queries without; wraps */
 void reply_error(error_t error);
 
 #endif

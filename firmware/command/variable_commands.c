@@ -43,9 +43,9 @@ static error_t read_range(struct lexer* lx, struct range* range) {
     if (error != ERR_NONE) return error;
     if (last < range->first) return ERR_DATA;
     range->count = last - range->first + 1u;
-  } else if (lexer_accept(lx, ',')) {
+  } else if (lexer_further(lx)) {
     error = read_number(lx, VARIABLE_COUNT + 1u, &range->count);
-    if (error == ERR_NONE && lexer_accept(lx, ',')) error = read_number(lx, VARIABLE_COUNT, &range->step);
+    if (error == ERR_NONE && lexer_further(lx)) error = read_number(lx, VARIABLE_COUNT, &range->step);
     if (error != ERR_NONE) return error;
     if (range->count == 0u || range->step == 0u || range->first + (range->count - 1u) * range->step >= VARIABLE_COUNT)
       return ERR_DATA;

@@ -111,8 +111,8 @@ void gate_ic_outputs_off(void) {
     }
 }
 
-/* A released clock pin is driven on until both clocks are high: one and a half phase periods at most (docs/clock.md).
- */
+/* A released clock pin is driven on until both clocks are high: one and a half phase periods at most
+ * (docs/clock_select.md). */
 static uint32_t release_began, release_us;
 
 static uint32_t release_left(void) {

@@ -38,6 +38,13 @@ bool lexer_value_starts(struct lexer lx) {
   return is_digit(c) || (c == '.' && is_digit(lx.at[1])) || (c == '$' && hex_digit(lx.at[1]) >= 0);
 }
 
+bool lexer_further(struct lexer* lx) {
+  struct lexer after = *lx;
+  if (!lexer_accept(&after, ',') || !lexer_value_starts(after)) return false;
+  *lx = after;
+  return true;
+}
+
 static bool hex_number(struct lexer* lx, double* value) {
   const char* text = lx->at + 1;
   uint64_t sum = 0;

@@ -36,6 +36,7 @@ static inline bool lexer_accept(struct lexer* lx, char c) {
 bool lexer_keyword(struct lexer* lx, const char* word);   /* consumes `word` (upper case) if it is next */
 bool lexer_is_hexadecimal(struct lexer lx);               /* `$` behind an optional sign */
 bool lexer_value_starts(struct lexer lx);                 /* a constant with or without sign, or a bracket */
+bool lexer_further(struct lexer* lx);                     /* consumes a comma that a value follows (firmware:1.1/7) */
 double lexer_decimal(uint64_t digits, unsigned decimals); /* what these digits, `decimals` of them behind the point,
                                                               are read as; up to LEXER_DECIMALS */
 bool lexer_number(struct lexer* lx, double* value);       /* unsigned decimal or $hex constant; false: not a number */

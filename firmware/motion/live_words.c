@@ -10,6 +10,7 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/motor_status.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/motion/servo_words.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/variables/i_variables.h"
@@ -17,7 +18,8 @@
 enum { /* of a motor; those of the servo loop: motion/servo_words.h */
        MOTOR_STATUS_1 = 0x30,
        MOTOR_STATUS_2 = 0x40,
-       MOTOR_SCALES = 0x4F, /* X, U, A, B, C; Y, V; Z, W */
+       MOTOR_STATUS_PHASE_REFERENCE = 8, /* a bit of it */
+       MOTOR_SCALES = 0x4F,              /* X, U, A, B, C; Y, V; Z, W */
        MOTOR_OFFSET = 0x52,
        MOTORS_END = MEMORY_MOTOR_WORDS * (MOTORS + 1)
 };
@@ -130,25 +132,48 @@ static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
 
 void live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { (void)make(address, x, y); }
 
-/* The word as it would stand there; a number below 0 stops the trajectory as 0 does. */
-static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t word) {
-  const int32_t value = hal_signed(word);
-  if (offset == CS_COMMANDED_TIME_BASE) time_base_command(cs, value < 0 ? 0 : value);
-  if (offset == CS_TIMERS) i_timer_write(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u), value);
+static void write_timer(uint32_t number, uint32_t mask, uint32_t bits) {
+  uint32_t word = bits;
+  const uint32_t state = hal_mask_real_time();
+  if (mask != HAL_WORD_MASK) word |= (uint32_t)i_integer(number) & ~mask;
+  i_timer_write(number, hal_signed(word));
+  hal_unmask(state);
 }
 
-/* The commanded time base and the timers can be set, global status bits that stay can be cleared; the others belong to
- * the firmware. */
+/* A number below 0 stops the trajectory as 0 does. */
+static void write_time_base(uint32_t cs, uint32_t mask, uint32_t bits) {
+  const uint32_t state = hal_mask_real_time();
+  const int32_t value = hal_signed(((uint32_t)coordinate_systems[cs].increment_command & ~mask) | bits);
+  time_base_command(cs, value < 0 ? 0 : value);
+  hal_unmask(state);
+}
+
+/* What a write leaves of the word is read in one piece with it: programs of the real-time task write there too. */
+static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
+  if (offset == CS_COMMANDED_TIME_BASE) write_time_base(cs, mask, bits);
+  if (offset == CS_TIMERS) write_timer(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u), mask, bits);
+}
+
+/* A user who has set the phase position clears the phase reference error. */
+static void write_reference(uint32_t motor, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
+  const uint32_t bit = 1u << MOTOR_STATUS_PHASE_REFERENCE;
+  if (offset == MOTOR_STATUS_2 && !x && (mask & bit) != 0u) phasing_set_missing(motor, (bits & bit) != 0u);
+}
+
+/* The commanded time base, the timers and the phase reference error can be set, global status bits that stay can be
+ * cleared; the others belong to the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   uint32_t present[2] = {0, 0};
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
   if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
   const uint32_t in_systems = address - MEMORY_CS_WORDS;
   if (in_systems < MEMORY_CS_STRIDE * COORDINATE_SYSTEMS)
-    write_cs(in_systems / MEMORY_CS_STRIDE, in_systems % MEMORY_CS_STRIDE, x, (present[x] & ~mask) | bits);
+    write_cs(in_systems / MEMORY_CS_STRIDE, in_systems % MEMORY_CS_STRIDE, x, mask, bits);
   const uint32_t in_motors = address - MEMORY_MOTOR_WORDS, line = address - MEMORY_CONVERSION;
-  if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS)
+  if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS) {
+    write_reference(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
     servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, (present[x] & ~mask) | bits);
+  }
   if (line < CONVERSION_LINES) i_variable_write(I8000_CONVERSION_TABLE + line, (present[0] & ~mask) | bits);
   return true;
 }

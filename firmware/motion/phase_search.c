@@ -172,10 +172,12 @@ static void finish(uint32_t motor, struct search* s) {
   if (!found || !motor_close(motor)) motor_kill(motor);
 }
 
-/* Who changes the state of the loop ends a search (commutation_enable). */
-static void look_for_an_end(struct search* s, const struct phase_motor* p) {
+/* Who changes the state of the loop ends a search (commutation_enable); a limit ends it. */
+static void look_for_an_end(uint32_t motor, struct search* s) {
+  const struct motor_findings* found = &motors[motor].found;
+  const bool limit = found->positive_limit || found->negative_limit;
   const uint32_t state = hal_mask_servo();
-  if (s->kind != SEARCH_NONE && !p->searched) {
+  if (s->kind != SEARCH_NONE && (limit || !phase_motors[motor].searched)) {
     s->kind = SEARCH_NONE;
     s->result = RESULT_FAILED;
   }
@@ -185,7 +187,7 @@ static void look_for_an_end(struct search* s, const struct phase_motor* p) {
 void phasing_pass(void) {
   for (uint32_t motor = 0; motor < MOTORS; ++motor) {
     if (!phasing_is_searched(motor)) continue;
-    look_for_an_end(&searches[motor], &phase_motors[motor]);
+    look_for_an_end(motor, &searches[motor]);
     if (searches[motor].result != RESULT_NONE) finish(motor, &searches[motor]);
   }
 }

@@ -13,10 +13,14 @@ void executor_begin(struct executor* x, uint32_t cs) {
   x->error = RUN_TIME_NONE;
 }
 
-enum executed executor_end_line(struct executor* x) {
+static void begin_line(struct executor* x) {
   x->at.in_line = x->at.begun = false;
   x->prefix = x->evaluator.depth = 0;
   x->condition.open = false;
+}
+
+enum executed executor_end_line(struct executor* x) {
+  begin_line(x);
   if (x->at.loop_count == 0) return EXECUTED_LINE;
   x->at.reader.offset = x->at.loops[--x->at.loop_count];
   x->jumps_back++;
@@ -31,9 +35,8 @@ enum executed executor_jump(struct executor* x, uint32_t offset) {
 }
 
 void executor_back(struct executor* x) {
-  x->at.loop_count = 0;
   x->at.reader.offset = x->at.statement;
-  (void)executor_end_line(x);
+  begin_line(x);
 }
 
 void executor_skip_line(struct executor* x) {

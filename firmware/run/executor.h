@@ -58,7 +58,8 @@ enum executed executor_step(struct executor* x, struct instruction* in);
 enum executed executor_pass(struct executor* x);
 enum executed executor_jump(struct executor* x, uint32_t offset); /* EXECUTED_LINE */
 enum executed executor_end_line(struct executor* x); /* a line's end that was reached by other means than a step */
-void executor_back(struct executor* x); /* fixed program: to the begin of the statement, which has not been executed */
+void executor_back(struct executor* x); /* fixed program: to the begin of the statement, which has not been executed;
+                                           the loops of its line go on */
 void executor_skip_line(struct executor* x);                                 /* what is left of a begun line is lost */
 bool executor_text_word(struct executor* x, uint32_t index, word48_t* word); /* raw word behind OP_TEXT */
 bool executor_next(struct executor* x, struct instruction* in); /* what the next value is for, without executing it */

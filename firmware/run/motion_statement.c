@@ -17,7 +17,10 @@ static void set_rate(uint32_t cs, uint32_t rate, double value) {
 static void set_axis(uint32_t cs, uint32_t axis, double value) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
-  if (s->pending_axes == 0) p->axes = p->x.at.statement;
+  if (s->pending_axes == 0) {
+    p->axes = p->x.at.statement;
+    p->axes_loops = p->x.at.loop_count;
+  }
   bool incremental = (s->incremental >> axis) & 1u;
   s->pending[axis] = incremental ? s->position[axis] + value : value;
   s->pending_axes |= 1u << axis;
@@ -27,7 +30,8 @@ enum executed motion_plan_line(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   motion_program_trace(cs, &coordinate_systems[cs].line);
   if (plan_line(cs)) return EXECUTED_WORD;
-  p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again */
+  p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again, in the loops of its line */
+  p->x.at.loop_count = p->axes_loops;
   return executor_fail(&p->x, RUN_TIME_FEEDRATE);
 }
 

@@ -1,7 +1,7 @@
 // Read data of the register regions towards Port A: one sample a read, taken at the edge rd_i and held, so that no word
 // is torn and none moves while the CPU looks. The pins are driven only while /RD is low and this read's sample stands;
 // the enable goes off with /RD, without a clock, and stays off for the on-chip page, which has no pins. Asynchronous
-// reset. docs/port-a.md.
+// reset. docs/port_a.md.
 `default_nettype none
 
 module bus_read (

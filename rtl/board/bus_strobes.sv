@@ -1,7 +1,7 @@
 // Port A strobes as events: each fall of /RD and of /WR turns a flip-flop over, clocked by the strobe itself, so that
 // the strobe may be high for less than a period of whoever synchronises the level to a clock of his own. With sel_i 0
 // the cycle is somebody else's and nothing turns over: selects stand before the strobe falls (rows 101 and 115).
-// Asynchronous reset. docs/port-a.md, host-bus:2.6.
+// Asynchronous reset. docs/port_a.md, host-bus:2.6.
 `default_nettype none
 
 module bus_strobes (

@@ -2,7 +2,7 @@
 // clk_ref_i; a third finds the edge. we_o, rd_o: the one edge at which a write is made, at which a read takes its
 // sample and has its side effects, the third after the fall. Address and data are sampled freely; those that stand here
 // then were sampled an edge before, when the strobe had been low for a period, and are stable. Asynchronous reset.
-// docs/port-a.md.
+// docs/port_a.md.
 `default_nettype none
 
 module bus_sync (

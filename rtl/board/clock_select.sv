@@ -2,7 +2,7 @@
 // high; with jumper E1 (ext_clock_i) both come from outside. The conflict flag rises when drivers of one net have
 // disagreed for more than 2 clk, and stays until there is one driver again. The choice is registered on clk_ref_i.
 // External clocks pass a synchroniser on clk_pwm_i; the nets leave through flip-flops, a clk later than the IC's level.
-// Asynchronous reset. docs/clock.md.
+// Asynchronous reset. docs/clock_select.md.
 `default_nettype none
 
 module clock_select (

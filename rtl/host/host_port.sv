@@ -4,7 +4,7 @@
 // Byte +7 is the one that launches TX and frees RX. A move takes one clock and sets full and empty flags together. HPCR
 // and HBAR are stored and read back: the board wires the port for good. HSR shows the host's command number in bits
 // 14..8 and takes the command when bit 2 is written 1, because the CPU has no vector fetch of its own. Clock clk_ref_i,
-// asynchronous reset. docs/host-bus.md.
+// asynchronous reset. docs/host_port.md.
 `default_nettype none
 
 module host_port (

@@ -1,7 +1,7 @@
 // Latch of the four signals that the firmware gives to the host: bit 0 IPOS, 1 BREQ, 2 EROR, 3 F1ER (X:$070010), and
 // of the outputs CTRL0 and CTRL1, bits 0 and 1 of a word of their own (X:$070012), so that a user program that writes
 // them cannot meet the firmware. Low after reset; CTRL0 and CTRL1 also from a trip of the watchdog to the reset. Clock
-// clk_ref_i, asynchronous reset. docs/host-bus.md.
+// clk_ref_i, asynchronous reset. docs/host_signals.md.
 `default_nettype none
 
 module host_signals (

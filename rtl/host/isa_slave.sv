@@ -5,7 +5,7 @@
 // the last clk_pwm edge that saw the command low, and side effects of reads follow one edge later. Two commands at
 // once, or one that was low at a reset, do nothing. The data bus is driven in a read of ours alone and let go with the
 // command, without a clock. IOCHRDY and MEMCS16# are open collector: 0 pulls, 1 lets go. Asynchronous reset; RESETDRV
-// resets what stands behind this bus (host_reset_o). docs/host-bus.md.
+// resets what stands behind this bus (host_reset_o). docs/isa_slave.md.
 `default_nettype none
 
 module isa_slave (

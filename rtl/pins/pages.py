@@ -166,7 +166,8 @@ def way(board, kind, registers):
         return f"by {', '.join(f'`{name}`' for name in registers)} ({kind})"
     return {"synchroniser": "synchroniser", "selected": "synchroniser behind a jumper's multiplexer",
             "clocks": f"clocks {', '.join(f'`{name}`' for name in registers)}",
-            "resets": "acts without a clock", "through": "follows without a clock"}[kind]
+            "resets": "acts without a clock",
+            "through": f"follows {', '.join(f'`{name}`' for name in registers)} without a clock"}[kind]
 
 
 def link(page, place=""):

@@ -1,7 +1,7 @@
 // Clock chain of a servo IC: triangle counter (MaxPhase), phase divider, servo divider, PHASE and SERVO outputs, and
 // the re-alignment to an external phase clock. A pin changes its direction without a short pulse: it is released while
 // both clocks are high, and taken with a rising edge of the own clock while the net is high. Clock clk_pwm_i (117.9648
-// MHz), asynchronous reset. docs/clock.md, servo-ic:5.1.
+// MHz), asynchronous reset. docs/clock_gen.md, servo-ic:5.1.
 //
 // The triangle is kept as a ramp: ramp = up ? cnt : ~cnt, which counts up in both directions from -(I+1) to I+1 (I =
 // I7m00). So a turnaround is ramp == I+1, half way is ramp == -1. Both and the window around the turnaround are

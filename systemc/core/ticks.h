@@ -14,7 +14,6 @@ using TimeFs = __int128;    // femtoseconds, since power-on or between two insta
 constexpr std::int64_t kPwmClockHz = 117'964'800;  // servo-ic:3
 constexpr Tick kTicksPerRef = 3;                   // clk_ref (39.3216 MHz) rises on every third tick
 constexpr Tick kNever = INT64_MAX / 4;
-constexpr TimeFs kForever = static_cast<TimeFs>(INT64_MAX) << 32;  // later than any tick's
 
 namespace detail {
 // 144 ticks are exactly this many femtoseconds; working in such blocks keeps every product below in 64 bits.
@@ -57,6 +56,9 @@ constexpr Tick fs_to_tick_floor(TimeFs time) {
   const auto [whole, rest] = detail::blocks(time);
   return whole * detail::kBlockTicks + ((rest + 1) * detail::kBlockTicks - 1) / detail::kBlockFs;
 }
+
+constexpr TimeFs kForever = tick_to_fs(INT64_MAX);  // the last edge there is a number for: beyond it none converts
+static_assert(fs_to_tick(kForever) == INT64_MAX && fs_to_tick_floor(kForever) == INT64_MAX);
 
 constexpr TimeFs kFsPerNs = 1'000'000;
 constexpr Tick ns_to_ticks(std::int64_t ns) { return fs_to_tick(ns * kFsPerNs); }

@@ -1,5 +1,5 @@
 // Port A bus master: turns one device access of a CPU into one bus cycle with the edges of the DSP563xx, in
-// femtoseconds (docs/port-a.md). It also holds the two on-chip registers that shape the cycles: BCR (wait states) and
+// femtoseconds (docs/port_a.md). It also holds the two on-chip registers that shape the cycles: BCR (wait states) and
 // PCTL (CPU clock). A cycle spans many clock edges at which others act: whoever advances the board moves it along. It
 // knows no SystemC; the socket of our CPU is in port_a.h, that of the board's component in systemc/component.
 #pragma once

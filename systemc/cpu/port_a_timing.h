@@ -1,5 +1,5 @@
 // The shape of a Port A cycle in quarters of a CPU clock, from the formulas of the DSP563xx (host-bus:2.2) without
-// their guard bands: what the pins do at the latest or earliest is the guard band away. docs/port-a.md draws it.
+// their guard bands: what the pins do at the latest or earliest is the guard band away. docs/port_a.md draws it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Model of rtl/host/host_port.sv, the HI08: eight bytes for the host, six words for the CPU, a word of buffering on
 // either side of each way. The names of the registers are those of rtl/regs/host_io.rdl and board.rdl.
-// docs/host-bus.md.
+// docs/host_port.md.
 #pragma once
 
 #include <cstdint>

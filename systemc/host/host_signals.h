@@ -1,5 +1,5 @@
 // Model of rtl/host/host_signals.sv: the latches of IPOS, BREQ, EROR and F1ER, and of CTRL0 and CTRL1.
-// docs/host-bus.md.
+// docs/host_signals.md.
 #pragma once
 
 #include <cstdint>

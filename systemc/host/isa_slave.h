@@ -1,6 +1,6 @@
 // Model of rtl/host/isa_slave.sv: synchronises the ISA commands, decodes them and drives the host port, the interrupt
 // controller and the dual-ported RAM. Its pipelines run behind: only edges that others can see are events.
-// docs/host-bus.md.
+// docs/isa_slave.md.
 #pragma once
 
 #include <cstdint>

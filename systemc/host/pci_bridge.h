@@ -1,7 +1,7 @@
 // The bridge chip of a PCI board as a TLM-2.0 target: a DWORD or a part of one a transaction, turned into cycles on the
 // local bus, which is the board's ISA pins (host-bus:3.6). Each payload says by its extension which space it is for.
 // BAR0: 16 bytes of I/O; BAR1: the window of the dual-ported RAM, not prefetchable. INTA# is low while the board's IRQ
-// is high. The pins of PCI itself are not modelled. docs/host-bus.md.
+// is high. The pins of PCI itself are not modelled. docs/pci_bridge.md.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Who drives PHASE and SERVO: follows the direction bits that the CPU writes into the gate ICs, so that a contention on
-// the nets (pin clock.conflict, docs/clock.md) can be told with the names of the ICs and of their variables.
+// the nets (pin clock.conflict, docs/clock_select.md) can be told with the names of the ICs and of their variables.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 #include "systemc/machine/flash_file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,8 +10,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -28,10 +31,44 @@ constexpr mode_t kPermissions = 0666;  // less the user's mask
        fmt::format("cannot be written: {}; expected a file in a folder that can be written to", std::strerror(errno)));
 }
 
+// Where the file is written. A link stays one: what it names is replaced, also where that is not there yet.
+std::string place(const std::filesystem::path& file) {
+  std::error_code none;
+  const auto real = std::filesystem::canonical(file, none);
+  if (!none) return real;
+  const auto named = std::filesystem::read_symlink(file, none);
+  return none ? file : file.parent_path() / named;
+}
+
+constexpr const char* kNew = ".new-";  // and the process that writes it
+
+// Of a process that is no more: nobody finishes it.
+bool is_left_behind(const std::string& name, const std::string& file) {
+  if (name.compare(0, file.size(), file) != 0) return false;
+  const std::string process = name.substr(file.size());
+  constexpr std::size_t kLongest = 10;  // digits of a process
+  if (process.empty() || process.size() > kLongest || process[0] == '0' ||
+      process.find_first_not_of("0123456789") != std::string::npos)
+    return false;
+  const long long number = std::stoll(process);
+  return number <= std::numeric_limits<pid_t>::max() && ::kill(static_cast<pid_t>(number), 0) != 0 && errno == ESRCH;
+}
+
+void remove_what_is_left(const std::string& file) {
+  const std::filesystem::path beside = place(file);
+  const std::string begin = beside.filename().string() + kNew;
+  std::error_code none;  // whoever may not look or remove here is told by what follows
+  std::vector<std::filesystem::path> left;
+  const auto folder = beside.has_parent_path() ? beside.parent_path() : std::filesystem::path(".");
+  for (std::filesystem::directory_iterator at(folder, none), end; !none && at != end; at.increment(none))
+    if (is_left_behind(at->path().filename().string(), begin)) left.push_back(at->path());
+  for (const auto& path : left) std::filesystem::remove(path, none);
+}
+
 // The new content, until it gets the file's name; gone if it does not.
 class NewFile {
  public:
-  explicit NewFile(const std::string& file) : file_(file), name_(fmt::format("{}.new-{}", place(file), ::getpid())) {
+  explicit NewFile(const std::string& file) : file_(file), name_(fmt::format("{}{}{}", place(file), kNew, ::getpid())) {
     fd_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions);
     if (fd_ < 0) fail_to_write(file_);
     struct stat old {};
@@ -61,15 +98,6 @@ class NewFile {
   }
 
  private:
-  // A link stays one: what it names is replaced, also where that is not there yet.
-  static std::string place(const std::filesystem::path& file) {
-    std::error_code none;
-    const auto real = std::filesystem::canonical(file, none);
-    if (!none) return real;
-    const auto named = std::filesystem::read_symlink(file, none);
-    return none ? file : file.parent_path() / named;
-  }
-
   std::string file_, name_;
   int fd_ = -1;
 };
@@ -78,6 +106,7 @@ class NewFile {
 
 void FlashFile::load(std::uint8_t* data, std::size_t bytes) const {
   if (file_.empty()) return;
+  remove_what_is_left(file_);
   std::error_code error;
   const bool exists = std::filesystem::exists(file_, error);
   if (error) fail(file_, "cannot be read: " + error.message());

@@ -1,5 +1,5 @@
 // The file that keeps the flash store between runs. It is replaced as a whole, by a rename: whoever is killed while it
-// is written leaves the old content or the new, and a file beside it.
+// is written leaves the old content or the new, and a file beside it, FILE.new-PROCESS, which the next run takes away.
 #pragma once
 
 #include <cstddef>

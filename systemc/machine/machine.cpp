@@ -1,6 +1,7 @@
 // The whole controller: its parts, how they are joined, reset and power. The run-ahead rule is in run.cpp.
 #include "systemc/machine/machine.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
@@ -136,13 +137,15 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
 
 Machine::Impl::~Impl() { keep_flash(); }
 
-// Whoever cannot write the file is told at once, and the run fails; the controller goes on.
+// Whoever cannot write the file is told at once, and the run fails; the controller goes on. A run may last for days:
+// the same failure at each SAVE is kept once.
 void Machine::Impl::keep_flash() {
   try {
     memory.save_flash();
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
-    run_errors.emplace_back(e.what());
+    if (std::find(run_errors.begin(), run_errors.end(), e.what()) == run_errors.end())
+      run_errors.emplace_back(e.what());
   }
 }
 

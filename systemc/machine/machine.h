@@ -143,9 +143,9 @@ class Machine : public sc_core::sc_module {
   };
   const std::vector<BusCycle>& last_bus_cycles() const;  // the last 16 or more
 
-  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock.md), a flash file
-  // that cannot be written. A caller that provokes it on purpose takes the list; `brick run` and `brick exec` fail when
-  // something is left in it.
+  // What no sound set-up does, one line each, oldest first: two sources of the clocks (docs/clock_select.md), a flash
+  // file that cannot be written. A caller that provokes it on purpose takes the list; `brick run` and `brick exec` fail
+  // when something is left in it.
   const std::vector<std::string>& run_errors() const;
   std::vector<std::string> take_run_errors();
 

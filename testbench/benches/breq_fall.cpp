@@ -7,14 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "testbench/checkers/fall_limits.h"
+
 namespace brick {
 namespace {
 
-// host-bus:5.7/5
-constexpr TimeFs kMicrosecond = 1000 * kFsPerNs;
-constexpr TimeFs kWorst = 50 * kMicrosecond, kMedian = 24 * kMicrosecond;  // of lines of axes with constants
-constexpr TimeFs kCharacter = 6 * kMicrosecond;                            // of other lines, beside kWorst
-constexpr std::uint64_t kPhaseCycles = 4'400, kServoCycles = 8'000;
+constexpr TimeFs kMicrosecond = FallLimits::kMicrosecond;
 constexpr Tick kServo = 4 * (2 * 6527 + 3);  // default servo period
 constexpr unsigned kLines = 40;
 constexpr Tick kPause = ns_to_ticks(450'000);  // up to a servo period: lines come at any time of the tasks
@@ -26,11 +24,11 @@ struct Load {
   bool judged;  // by T_FALL
 };
 // A new move each servo interrupt, so that moves are planned all the time; blended moves at the factory settings of the
-// tasks; and the longest phase task there is, for that task's limit: T_FALL is without commutated motors.
+// tasks; and the longest phase task there is room for, for that task's limit: T_FALL is without commutated motors.
 constexpr Load kLoads[] = {
     {"I8=0, moves of 0.5 ms", "I8=0 I5187=0 I5188=0 I5189=1000000", 0, true},
     {"I8=2, moves of 4 ms", "I8=2 I5187=4 I5188=0 I5189=1000000", 2, true},
-    {"32 motors commutated", "I183,32,100=$78001 I101,32,100=1 I100,32,100=1", 2, false},
+    {"eight current loops", "I182,8,100=$78006 I183,8,100=$78001 I101,8,100=1 I100,8,100=1", 2, false},
 };
 
 double microseconds(TimeFs t) { return static_cast<double>(t) / static_cast<double>(kMicrosecond); }
@@ -67,31 +65,12 @@ std::string longest(BreqHost& host) {
   return line + ")";
 }
 
-// A line's T_FALL and what it may be.
-struct Fall {
-  BreqHost::FallTime time;
-  TimeFs most;
-};
-
-TimeFs median(const std::vector<Fall>& falls) {
-  std::vector<TimeFs> net;
-  for (const Fall& f : falls) net.push_back(f.time.net);
-  std::sort(net.begin(), net.end());
-  return net[net.size() / 2];
-}
-
-// The nearest to its limit, or beyond it.
-const Fall& worst(const std::vector<Fall>& falls) {
-  return *std::max_element(falls.begin(), falls.end(),
-                           [](const Fall& a, const Fall& b) { return a.time.net - a.most < b.time.net - b.most; });
-}
-
 std::string text(const std::vector<Fall>& falls) {
-  const auto whole = std::max_element(falls.begin(), falls.end(),
-                                      [](const Fall& a, const Fall& b) { return a.time.whole < b.time.whole; });
+  const auto whole =
+      std::max_element(falls.begin(), falls.end(), [](const Fall& a, const Fall& b) { return a.whole < b.whole; });
   return fmt::format("{} lines net: {:.2f} us at the median, {:.2f} us at worst of {:.0f}; with the tasks {:.2f} us",
-                     falls.size(), microseconds(median(falls)), microseconds(worst(falls).time.net),
-                     microseconds(worst(falls).most), microseconds(whole->time.whole));
+                     falls.size(), microseconds(FallLimits::median(falls)), microseconds(FallLimits::worst(falls).net),
+                     microseconds(FallLimits::worst(falls).most), microseconds(whole->whole));
 }
 
 class Measurement {
@@ -110,8 +89,8 @@ class Measurement {
       b_.bus.wait(host_.random(kPause));
       const std::string sent = line();
       host_.line(sent);
-      if (host_.fall_time())
-        falls.push_back({*host_.fall_time(), kWorst + (of_axes ? 0 : static_cast<TimeFs>(sent.size()) * kCharacter)});
+      if (const auto time = host_.fall_time())
+        falls.push_back({time->whole, time->net, FallLimits::of_line(of_axes, sent.size())});
     }
     host_.stop();
     return falls;
@@ -119,8 +98,8 @@ class Measurement {
 
   // BREQ was high, so each line took it low.
   void step(const std::string& name, const std::vector<Fall>& falls, bool judged = true) {
-    const bool all = falls.size() == kLines, in_time = all && worst(falls).time.net <= worst(falls).most;
-    b_.report.step("T_FALL, " + name, all && (in_time || !judged),
+    const bool all = falls.size() == kLines;
+    b_.report.step("T_FALL, " + name, judged ? FallLimits::keeps(falls, kLines) : all,
                    !all ? fmt::format("{} lines, expected {}", falls.size(), kLines)
                         : text(falls) + (judged ? "" : "; not judged"));
   }
@@ -138,13 +117,14 @@ class Measurement {
       const char* name;
       unsigned task;
       std::uint64_t most;
-    } limits[] = {{"phase", TaskTimes::kPhase, kPhaseCycles},
-                  {"servo", TaskTimes::kServo, kServoCycles},
+    } limits[] = {{"phase", TaskTimes::kPhase, FallLimits::kPhaseCycles},
+                  {"servo", TaskTimes::kServo, FallLimits::kServoCycles},
                   {"real-time", TaskTimes::kRealTime, cycles(slice)}};
     for (const auto& l : limits) {
       const TaskTimes::Runs runs = host_.tasks().runs(l.task);
       b_.report.step(
-          fmt::format("{} task, {}", l.name, load.name), runs.count > 0 && cycles(runs.longest) <= l.most,
+          fmt::format("{} task, {}", l.name, load.name),
+          FallLimits::keeps_cycles(runs.count, cycles(runs.longest), l.most),
           fmt::format("{} cycles of its own at most, of {}; {} times", cycles(runs.longest), l.most, runs.count));
     }
     host_.tasks().forget_runs();
@@ -152,10 +132,10 @@ class Measurement {
 
   void verdict() {
     const bool some = !all_.empty();
-    const bool good = some && median(all_) <= kMedian && worst(all_).time.net <= kWorst;
+    const bool good = FallLimits::keeps(all_, all_.size()) && FallLimits::keeps_median(all_);
     b_.report.step("T_FALL, lines of up to eight axes with constants", good,
                    some ? fmt::format("{}; {} {:.0f} and {:.0f} us", text(all_), good ? "limits" : "expected",
-                                      microseconds(kMedian), microseconds(kWorst))
+                                      microseconds(FallLimits::kMedian), microseconds(FallLimits::kWorst))
                         : "none seen");
   }
 
@@ -192,6 +172,7 @@ void measure_fall_times(BenchContext& b, BreqHost& host) {
     }
     measured.tasks(load);
   }
+  host.must("I100,32,100=* I101,32,100=* I183,32,100=*");
   measured.verdict();
   host.verdict("lines while T_FALL was measured", {runs * kLines, runs * kLines / 2, 0, 0, 0});
 }

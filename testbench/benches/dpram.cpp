@@ -4,6 +4,7 @@
 // ties and torn 32-bit items are counted and have a minimum. Firmware and host meet by chance; what must have been
 // there is made by the last steps: accesses of the CPU at an even pace, and one of the host at every tick of their
 // period.
+#include <functional>
 #include <random>
 
 #include <fmt/format.h>
@@ -22,14 +23,17 @@ constexpr unsigned kPlaces = 4;
 
 class Sides {
  public:
-  explicit Sides(BenchContext& b) : b_(b), random_(b.seed * 104729 + 1) {
+  explicit Sides(BenchContext& b) : b_(b), random_(b.seed * 104729 + 1), before_(b.machine.on_bus_cycle) {
     b.bus.watch(select_pins(pin::kBusyHost, pin::kBusyCpu),
                 [this](Tick t, const BoardOutputs& before, const BoardOutputs& after) { edge(t, before, after); });
-    b.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
+    b.machine.on_bus_cycle = [this](const PortACycle& c) {
+      if (before_) before_(c);
+      cycle(c);
+    };
   }
   ~Sides() {
     b_.bus.watch({}, nullptr);
-    b_.machine.on_bus_cycle = nullptr;
+    b_.machine.on_bus_cycle = before_;
   }
   Sides(const Sides&) = delete;
   Sides& operator=(const Sides&) = delete;
@@ -89,6 +93,7 @@ class Sides {
 
   BenchContext& b_;
   std::mt19937_64 random_;
+  std::function<void(const PortACycle&)> before_;  // who looks at the cycles beside us
   Met met_;
   std::uint16_t value_ = 0;
   unsigned lies_ = 0;

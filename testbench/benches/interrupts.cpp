@@ -13,7 +13,7 @@ namespace {
 constexpr Tick kMillisecond = kPwmClockHz / 1000;
 constexpr unsigned kClear = 8, kMask = 10, kEdgeLevel = 11;
 // When a write takes place whose command ends at this tick: two edges of the synchroniser, the next clk_ref that sees
-// the end, one more (docs/host-bus.md).
+// the end, one more (docs/isa_slave.md).
 constexpr Tick write_tick(Tick end) { return ((end + 2) / kTicksPerRef + 2) * kTicksPerRef; }
 static_assert(write_tick(0) == 6 && write_tick(1) == 9 && write_tick(2) == 9 && write_tick(3) == 9);
 constexpr Tick kSigAfter = 2 * kTicksPerRef, kIrqAfter = 3 * kTicksPerRef;  // a pin that moves at an edge of clk_ref

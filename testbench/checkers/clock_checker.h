@@ -1,7 +1,7 @@
-// Checker of the PHASE and SERVO nets (servo-ic:5.1/3 to servo-ic:5.1/9, servo-ic:7.2/5; docs/clock.md). It is told
-// what the host programs and sees every edge of the two nets and of clock.conflict; it knows nothing of the engines. In
-// steady state each edge must come at its very tick. While the host writes dividers or moves the source the rules of
-// taking over allow a little more, see `change` and `move`.
+// Checker of the PHASE and SERVO nets (servo-ic:5.1/3 to servo-ic:5.1/9, servo-ic:7.2/5; docs/clock_select.md). It is
+// told what the host programs and sees every edge of the two nets and of clock.conflict; it knows nothing of the
+// engines. In steady state each edge must come at its very tick. While the host writes dividers or moves the source the
+// rules of taking over allow a little more, see `change` and `move`.
 #pragma once
 
 #include <cstdint>

@@ -35,7 +35,7 @@ TEST(Macros, ReplaceWholeWords) {
   EXPECT_EQ(expanded({}, "#1->1000X \"open"), "#1->1000X \"open");
 }
 
-// `$NAME` with hexadecimal digits behind it: the longest name, and no digits that are a constant as they stand.
+// `$NAME` with hexadecimal digits behind it: the longest name.
 TEST(Macros, HexadecimalDigitsMayFollowANameBehindADollarSign) {
   EXPECT_EQ(expanded({"VarAdr 300"}, "M40->L:$VarAdr0A M41->Y:$VarAdr00,0,24"), "M40->L:$3000A M41->Y:$30000,0,24");
   EXPECT_EQ(expanded({"Var 1", "VarAdr 300", "VarAdr0 7"}, "$Var2 $VarAdr2 $VarAdr0A $VarAdr0"), "$12 $3002 $7A $7");
@@ -44,12 +44,19 @@ TEST(Macros, HexadecimalDigitsMayFollowANameBehindADollarSign) {
   EXPECT_EQ(expanded({"VarAdr 300"}, "VarAdr0A #VarAdr1 $ VarAdr0A"), "VarAdr0A #VarAdr1 $ VarAdr0A")
       << "elsewhere a name is a whole word";
   EXPECT_EQ(expanded({"VarAdr 300"}, "$VarAdr0AX $VarAdr_0 $VarAdrZ"), "$VarAdr0AX $VarAdr_0 $VarAdrZ") << "no digits";
-  EXPECT_EQ(expanded({"A 5", "FA 6"}, "$FACE $A0 $A $FA"), "$FACE $A0 $5 $6") << "$FACE is a constant";
   EXPECT_EQ(expanded({"A 5", "Z 1"}, "$ZA"), "$1A") << "the digits are no name";
   EXPECT_EQ(expanded({"F(a) a"}, "$F2 $F(2)"), "$F2 $2") << "arguments belong to a whole word";
   EXPECT_EQ(expanded({"Z 1"}, "$Z" + std::string(12, '0')), "$1" + std::string(12, '0'));
   EXPECT_EQ(expanded({"Z 1"}, "$Z" + std::string(13, '0')), "$Z" + std::string(13, '0')) << "longer than any constant";
   EXPECT_THAT(error_of({"LoopX LoopX0"}, "$LoopX"), HasSubstr("expands to itself"));
+}
+
+// Whoever defines a name that is a hexadecimal number means the name: behind `$` too, and with digits behind it.
+TEST(Macros, ANameOfHexadecimalDigitsIsANameBehindADollarSignToo) {
+  EXPECT_EQ(expanded({"FACE 7"}, "$FACE $FACE0 $FACES FACE0"), "$7 $70 $FACES FACE0");
+  EXPECT_EQ(expanded({"FA 6", "FAC 7"}, "$FACE $FAE $FAC"), "$7E $6E $7") << "the longest name";
+  EXPECT_EQ(expanded({"A 5"}, "$FACE $0A $A0 WX$10,$A"), "$FACE $0A $50 WX$10,$5") << "no name stands right behind it";
+  EXPECT_EQ(expanded({}, "$FACE $A0"), "$FACE $A0");
 }
 
 TEST(Macros, TakeArguments) {

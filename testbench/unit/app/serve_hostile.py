@@ -137,27 +137,58 @@ def look_around(server):
         found.append(client.command("P1=P1+1 P1=P1-1"))
         found.append(client.write_memory(0x1200, b"hello") + client.read_memory(0x1200, 8))
         found += [client.control("B"), refused(client, "frob"), client.flush(), ask_version(other)]
-        begin, again = int(client.values("M1")[0]), int(client.values("M1")[0])
-        check(0 < (again - begin) % (1 << 24) < 100, f"the servo counter goes on: {begin}, {again}")
+        clock = ServoClock(client)
+        check(0 < clock.servo_interrupts() < 100, "the servo counter goes on")
     return found
+
+
+class ServoClock:
+    """Simulated time by the controller's own count of servo interrupts, X:$0: 24 bits, so it is to be asked more often
+    than every two hours."""
+    HOUR = 3600 * 117_964_800 / (4 * (2 * 6527 + 3))  # servo interrupts, of I7000 = 6527, I7001 = 0, I7002 = 3
+
+    def __init__(self, client):
+        self.client, self.last, self.count = client, self.read(client), 0
+
+    @staticmethod
+    def read(client):
+        client.command("M1->X:$0,0,24")
+        return int(client.values("M1")[0])
+
+    def servo_interrupts(self):
+        """Since the beginning."""
+        now = self.read(self.client)
+        self.count, self.last = self.count + (now - self.last) % (1 << 24), now
+        return self.count
+
+    def hours(self):
+        return self.servo_interrupts() / self.HOUR
 
 
 def serve_days():
     """A client at 0, 2.6, 24 and 48 hours of simulated time, as fast as the engine goes: --hours 48."""
     hours = float(sys.argv[4]) if sys.argv[3:4] == ["--hours"] else 0.01
     begin = time.monotonic()
-    with served("--free") as server, server.client() as clock:
-        passed, seen = 0, []  # half seconds: what a fetch waits for when there is nothing
+    with served("--free") as server, server.client() as client:
+        clock, fetches, seen, told = ServoClock(client), 0, [], 0
         for stop in [at for at in (0, 2.6, 24, 48) if at < hours] + [hours]:
-            while passed < stop * 7200:
-                check(clock.get_buffer() == b"\0", "nothing waits")
-                passed += 1
-                if passed % 7200 == 0:
+            passed = clock.hours()
+            while passed < stop:
+                for _ in range(10):  # half a second is what a fetch waits for when there is nothing
+                    check(client.get_buffer() == b"\0", "nothing waits")
+                    fetches += 1
+                passed = clock.hours()
+                # A minute more: what look_around does.
+                check(fetches / 7200 <= passed < 2 * fetches / 7200 + 1 / 60, f"{fetches} fetches took {passed} h")
+                if passed >= told + 1:
+                    told = int(passed)
                     wall = time.monotonic() - begin
-                    print(f"{passed // 7200} h after {wall:.0f} s, {memory(server)} KiB", flush=True)
+                    print(f"{told} h after {wall:.0f} s, {memory(server)} KiB", flush=True)
             seen.append(look_around(server))
-            print(f"a client at {stop} h: {'as before' if seen[-1] == seen[0] else seen[-1]}", flush=True)
+            print(f"a client at {passed:.3f} h of servo interrupts: "
+                  f"{'as before' if seen[-1] == seen[0] else seen[-1]}", flush=True)
             check(seen[-1] == seen[0], f"at {stop} h: {seen[-1]}, before {seen[0]}")
+        check(clock.hours() >= hours, f"{clock.hours()} h, expected {hours}")
 
 
 globals()[command.CASE]()

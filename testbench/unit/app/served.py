@@ -1,7 +1,9 @@
 """`brick serve` for a test: started on a free port, ended with SIGTERM, and what it said checked."""
 import contextlib
+import os
 import pathlib
 import re
+import resource
 import signal
 import socket
 import struct
@@ -33,11 +35,23 @@ class Served:
     def socket(self):
         return socket.create_connection(("127.0.0.1", self.port), PATIENCE)
 
-    def end(self, signal_number=signal.SIGTERM):
-        """What it says on stderr."""
+    def processor_seconds(self):
+        """Used so far: unlike the wall's, not stretched by what else the machine does."""
+        status = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text(encoding="ascii")
+        user, system = status.rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+    def end(self, signal_number=signal.SIGTERM, status=0):
+        """What it says on stderr, in 1.5 s of the processor."""
+        def of_children():
+            used = resource.getrusage(resource.RUSAGE_CHILDREN)
+            return used.ru_utime + used.ru_stime
+        others, until_then = of_children(), self.processor_seconds()
         self.process.send_signal(signal_number)
         said = self.process.communicate(timeout=PATIENCE)[1]
-        check(self.process.returncode == 0, f"exit {self.process.returncode}: {said}")
+        check(self.process.returncode == status, f"exit {self.process.returncode}: {said}")
+        used = of_children() - others - until_then
+        check(used <= 1.5, f"the end takes {used:.1f} s of the processor")
         return said
 
 

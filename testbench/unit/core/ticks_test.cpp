@@ -50,6 +50,14 @@ TEST(Ticks, ConversionIsExactForAllTimes) {
   }
 }
 
+// What stands for "never" is compared with ticks too, so it has one: the last, behind every other.
+TEST(Ticks, ForeverHasATick) {
+  EXPECT_EQ(fs_to_tick(kForever), INT64_MAX);
+  EXPECT_EQ(fs_to_tick_floor(kForever), INT64_MAX);
+  EXPECT_EQ(fs_to_tick_floor(kForever - 1), INT64_MAX - 1);
+  EXPECT_GT(fs_to_tick_floor(kForever), kNever);
+}
+
 TEST(Ticks, ATimeBeforePowerOnIsRoundedTheSameWay) {
   EXPECT_EQ(fs_to_tick(-1), 0);
   EXPECT_EQ(fs_to_tick(-1'220'703'125), -144);

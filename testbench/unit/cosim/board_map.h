@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/board/board_rig.h"
 #include "testbench/unit/covers.h"
 
 namespace brick {

@@ -5,7 +5,7 @@
 namespace brick {
 namespace {
 
-// docs/port-a.md: the word of a read and its side effect are of one edge, the third of clk_ref that sees /RD low. HRDF
+// docs/port_a.md: the word of a read and its side effect are of one edge, the third of clk_ref that sees /RD low. HRDF
 // falls when HORX has been read. On the on-chip page no pin is driven.
 TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsSample) {
   on_chip_write(0xFFFFC2, 1);  // HRIE
@@ -34,7 +34,7 @@ TEST_P(BoardMap, ReadOfTheHostPortTakesTheWordAtItsSample) {
   }
 }
 
-// docs/port-a.md: the board drives the bus from the sample on and no longer than /RD is low.
+// docs/port_a.md: the board drives the bus from the sample on and no longer than /RD is low.
 // host-bus:6.9/8: the third edge of clk_pwm after the strobe has the word.
 TEST_P(BoardMap, DataPinsAreDrivenFromTheWordOfTheRamToTheEndOfTheRead) {
   rig.write(true, 0x060000, 0x1234);

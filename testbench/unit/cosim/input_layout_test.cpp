@@ -10,7 +10,7 @@
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/cosim/drive.h"
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/clocks/board_rig.h"
+#include "testbench/unit/board/board_rig.h"
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/cosim/distorted_board.h"
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "systemc/cosim/engines.h"
-#include "testbench/unit/clocks/board_rig.h"
-#include "testbench/unit/clocks/clock_words.h"
+#include "testbench/unit/board/board_rig.h"
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/servo_ic/clock_words.h"
 
 namespace brick {
 namespace {

@@ -15,7 +15,7 @@ namespace brick {
 namespace {
 
 constexpr std::uint32_t kPlace = 0x200F0000, kNothing = 0x50000000;
-constexpr unsigned kA1 = 11;
+constexpr unsigned kSp = 2, kA1 = 11;
 constexpr std::uint32_t kControl = SERVO_IC_0_BASE + SERVO_CHANNEL_X_CONTROL, kFault = 0x70;
 
 struct Planted {
@@ -151,16 +151,34 @@ TEST_F(Fault, AStackThatHasUsedItsGuardIsOne) {
   }
 }
 
-// Below the stack of slices there is no memory.
+// Below the stack of slices there is no memory. With the stack pointer there nothing can be kept: neither what is
+// stored through it nor what an interrupt would save; the fault has another stack.
 TEST_F(Fault, BelowTheStackOfSlicesIsOneAtOnce) {
   const ElfFile elf(BRICK_FIRMWARE_ELF);
-  ASSERT_EQ(elf.symbol("__side_stack_bottom").value(), 0x20000000u);
-  plant(kFaults[1]);
-  board.cpu().set_reg(kA1, 0x1FFFFFFC);
-  board.run_ms(31.0);
-  EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
-  EXPECT_EQ(board.word(true, kFault), 7u);
-  EXPECT_EQ(long_word(kFault + 2), 0x1FFFFFFCu);
+  const std::uint32_t bottom = elf.symbol("__side_stack_bottom").value();
+  ASSERT_EQ(bottom, 0x20000000u);
+  const struct {
+    Planted planted;
+    std::uint32_t sp;
+    unsigned below; /* the access, at most */
+  } cases[] = {{{"sw a0,0(sp)", 0x00A12023, 7, bottom - 4}, bottom - 4, 4},
+               {{"j . until an interrupt saves registers", 0x0000006F, 7, 0}, bottom, 80}};
+  unsigned count = 0;
+  for (const auto& [planted, sp, below] : cases) {
+    SCOPED_TRACE(planted.name);
+    ASSERT_EQ(board.send("P1=5 WX$78005,$4000 WY$78002,1000\r"), "\x06");
+    plant(planted);
+    board.cpu().set_reg(kSp, sp);
+    board.run_ms(1.0);
+    EXPECT_EQ(board.word(false, 0x78002), 0u) << "outputs off";
+    board.run_ms(30.0);
+    EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+    EXPECT_EQ(ask("P1"), "0") << "a restart";
+    EXPECT_EQ(board.word(true, kFault), planted.cause);
+    EXPECT_EQ(board.word(false, kFault), ++count);
+    EXPECT_LT(long_word(kFault + 2), bottom);
+    EXPECT_GE(long_word(kFault + 2), bottom - below);
+  }
 }
 
 TEST_F(Fault, AgainWhileItStartsLeavesTheRestToTheWatchdog) {

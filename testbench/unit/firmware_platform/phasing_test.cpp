@@ -54,6 +54,20 @@ TEST_F(Phasing, StaysMissingWithoutAWayToFindIt) {
   EXPECT_FALSE(phasing_is_searched(0));
 }
 
+// A program that knows the angle by itself writes the phase position and clears the bit: M171 and M148 of the usual
+// set.
+TEST_F(Phasing, AUserWhoHasSetThePositionClearsTheError) {
+  set("M148->Y:$C0,8 M171->X:$B4,0,24,S M171=123 M148=0");
+  EXPECT_FALSE(phasing_is_missing(0));
+  EXPECT_EQ(c_.line("M148 M171"), "0|123");
+  EXPECT_TRUE(motor_close(0));
+  set("M148=1");
+  EXPECT_TRUE(phasing_is_missing(0));
+  EXPECT_EQ(c_.line("#1?").substr(9, 1), "1");
+  set("M5->Y:$C0,10 M5=0");  // another bit of the word
+  EXPECT_TRUE(phasing_is_missing(0));
+}
+
 TEST_F(Phasing, SetphaseTakesIxx75AtOnce) {
   set("I171=1000 I175=300");
   stand_at(-77);
@@ -117,6 +131,18 @@ TEST_F(Halls, ImpossibleStatesAreRefused) {
     set_x(0x10F1, static_cast<std::int64_t>(uvw) << 20);
     EXPECT_FALSE(phasing_begin(0));
     EXPECT_TRUE(phasing_is_missing(0));
+  }
+}
+
+TEST_F(Halls, AreReadAtPowerOnIfIxx80SaysSo) {
+  for (const int mode : {0, 1, 5}) {
+    set("I171=3600 I181=$78000 I191=$800000 I124=$120001 I180=" + std::to_string(mode) + " SAVE");
+    set_x(0x78000, 6 << 20);
+    c_.restart();
+    EXPECT_EQ(phasing_is_missing(0), mode != 1) << mode;
+    EXPECT_EQ(motors[0].loop, mode == 1 ? LOOP_CLOSED : LOOP_KILLED) << mode;
+    phase();
+    if (mode == 1) { EXPECT_EQ(x_word(kPosition), 1500); }
   }
 }
 
@@ -251,6 +277,36 @@ TEST_F(PhaseSearch, AKillEndsTheSearchWithoutAReference) {
   EXPECT_FALSE(phasing_is_searched(0));
   EXPECT_TRUE(phasing_is_missing(0));
   for (unsigned n = 0; n < 3; ++n) EXPECT_EQ(y_word(kOutput + n), 0);
+}
+
+TEST_F(PhaseSearch, ALimitEndsTheSearchWithoutAReference) {
+  set("I125=$78000");
+  plant::Motor motor = motor_at(100);
+  ASSERT_TRUE(phasing_begin(0));
+  run(motor, 10);
+  set("");
+  EXPECT_TRUE(phasing_is_searched(0));
+  set_x(0x78000, 1 << 17);
+  set("");
+  run(motor, 1);
+  EXPECT_FALSE(phasing_is_searched(0));
+  EXPECT_TRUE(phasing_is_missing(0));
+  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+}
+
+TEST_F(PhaseSearch, IsMadeByACommand) {
+  plant::Motor motor = motor_at(250);
+  set_x(0x78001, counts(motor));
+  phase(2);
+  EXPECT_EQ(c_.line("#1J/"), "ERR018");
+  EXPECT_EQ(c_.line("#1$"), "");
+  EXPECT_EQ(c_.line("#1?").substr(9, 1), "3") << "bits 9 and 8 of the second word";
+  EXPECT_EQ(c_.line("#1J/"), "ERR018");
+  run(motor, 40);
+  EXPECT_EQ(c_.line("#1?").substr(9, 1), "0");
+  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+  set("#1K I174=0");
+  EXPECT_EQ(c_.line("#1$"), "ERR018") << "no search is made";
 }
 
 // For users of sine outputs with Ixx72 above 1024 the sign of Ixx73 is the other one, as the manuals have it.

@@ -54,7 +54,34 @@ TEST_F(DriverPolls, CommasDivideOtherQueriesToo) {
 TEST_F(DriverPolls, OtherCommasAreErrors) {
   for (const char* line : {",", ",CID", "CID,,", "P1=5,", "P1=5,CID", "&2,", "#3,CID", "&1#1->,,", "CID,P1=5,"})
     EXPECT_EQ(host_lines(line).back(), "ERR003") << line;
-  EXPECT_EQ(host("I5213,"), "ERR003") << "there it begins the count";
+}
+
+// Behind these a number is a count or a start (firmware:1.1/7); anything else is the next command.
+TEST_F(DriverPolls, CommasThatNoNumberFollowsDivideQueriesThatTakeOne) {
+  ASSERT_EQ(host("I5213..5215=7 P1=1 P2=2 P3=3 P5=5 WX$10,4,6"), "");
+  EXPECT_EQ(host_lines("P1,CID"), (Lines{"1", "603382"}));
+  EXPECT_EQ(host_lines("P1,P2 , P3,"), (Lines{"1", "2", "3"}));
+  EXPECT_EQ(host_lines("P1,3,CID"), (Lines{"1", "2", "3", "603382"})) << "three of them";
+  EXPECT_EQ(host_lines("P1,2,2,P2,"), (Lines{"1", "3", "2"})) << "two, each second";
+  EXPECT_EQ(host_lines("P1..2,P5"), (Lines{"1", "2", "5"}));
+  EXPECT_EQ(host_lines("P1,(P2),P5"), (Lines{"1", "2", "5"})) << "a computed count";
+  EXPECT_EQ(host_lines("I5213,&1#1->,I68,"), (Lines{"7", "1000X", "2"}));
+  EXPECT_EQ(host_lines("RX$10,CID,RX$10,2,RX$10,$2,#1P"), (Lines{"4", "603382", "4 6", "4 6", "0"}));
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR P1=1 X1"), "");
+  ASSERT_EQ(host("P2=2"), "");
+  ASSERT_EQ(host("CLOSE B1"), "");
+  EXPECT_EQ(host_lines("LIST PC,CID"), (Lines{"0:P1=1X1", "603382"}));
+  EXPECT_EQ(host_lines("LIST PC,2,P5"), (Lines{"0:P1=1X1", "2:P2=2", "5"}));
+  EXPECT_EQ(host_lines("LIST PROG 1,P5"), (Lines{"P1=1X1", "P2=2", "5"}));
+  EXPECT_EQ(host_lines("LIST PROG 1,2,P5"), (Lines{"2:P2=2", "5"}));
+  ASSERT_EQ(host("DEF ROT 50 B0"), "");
+  EXPECT_EQ(host_lines("LIST PC,P5"), (Lines{"5"})) << "a buffer without a line";
+}
+
+TEST_F(DriverPolls, NumbersThatAreNoCountAreStillErrors) {
+  for (const char* line : {"P1,-5", "P1,.5", "P1,0", "P1,8192", "P1,3,-1", "RX$10,0", "RX$10,-1", "RX$10,65",
+                           "LIST PC,0", "LIST PC,-1", "LIST PROG 1,-1", "P1,=5", "P1,,CID"})
+    EXPECT_EQ(host_lines(line).back(), "ERR003") << line;
 }
 
 // Status, positions, PLCs and settings of all motors and systems, as a driver polls them several times a second.

@@ -76,6 +76,33 @@ TEST_F(Feedrate, ErrorAtTheEndOfALineKeepsItsAxesToo) {
   EXPECT_EQ(p(1), 1.0);
 }
 
+// The loop that a line begins with goes on, from the pass in which the move had no feedrate.
+TEST_F(Feedrate, ALoopOfOneLineGoesOnWithTheMove) {
+  const struct {
+    const char* line;
+    double x, y, passes;
+  } loops[] = {
+      {"WHILE(P2<3) P2=P2+1 X1 Y2", 3, 6, 3},                       // found at the end of the line
+      {"WHILE(P2<3) P2=P2+1 X1 DWELL1 Y2", 3, 6, 3},                // and within it
+      {"WHILE(P2<3) P2=P2+1 WHILE(P3<P2) P3=P3+1 X1 Y2", 3, 6, 3},  // a loop in a loop
+      {"X1 WHILE(P2<3) P2=P2+1 Y1", 1, 2, 3},                       // X stands before it: all is met again
+  };
+  for (const auto& loop : loops) {
+    SCOPED_TRACE(loop.line);
+    platform::power_up();
+    run({"INC TA10TS0 F0", loop.line, "P1=1"});
+    ASSERT_TRUE(error());
+    EXPECT_EQ(p(1), 0.0);
+    ASSERT_EQ(host("I5189=1000 R"), "");
+    ASSERT_TRUE(finish());
+    EXPECT_FALSE(error());
+    EXPECT_EQ(p(1), 1.0) << "what stands behind the loop";
+    EXPECT_EQ(p(2), loop.passes);
+    EXPECT_EQ(x(), loop.x);
+    EXPECT_EQ(y(), loop.y);
+  }
+}
+
 TEST_F(Feedrate, OfARotaryBufferTheLineGoesAndTheNextIsKept) {
   for (const char* line : {"X1", "X1Y(P1)", "X1 DWELL5", "X1DWELL(P1)", "G7X1"}) {
     platform::power_up();

@@ -8,11 +8,13 @@
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
+#include "firmware/variables/words.h"
 #include "testbench/unit/firmware_program/published.h"
 }
 
 namespace {
 
+using platform::breq;
 using platform::host;
 
 class Interrupts : public FirmwareTest {
@@ -215,6 +217,105 @@ TEST_F(Interrupts, AxisModesWithoutMasksAreLost) {
   for (std::uint32_t seed = 1; seed <= 200; ++seed)
     if (!both_are_incremental(seed)) return;
   FAIL() << "nothing was found";
+}
+
+// The host sets the low byte of a word that is made when it is read, a program of the real-time task the high one. What
+// either writes last stays: interrupts are not looked at between the two of a write in parts.
+std::uint32_t shared_word;
+unsigned parts_written;
+
+void write_high_byte(fake_task task) {
+  if (task != FAKE_REAL_TIME) return;
+  parts_written = parts_written % 0x70 + 1;
+  word_write_part(true, shared_word, 0xFF0000, parts_written << 16);
+}
+
+// Tries after which the high byte was not the one written last.
+unsigned high_bytes_lost(std::uint32_t address, std::uint32_t seed, unsigned& written) {
+  unsigned lost = 0;
+  shared_word = address;
+  parts_written = 0;
+  word_write(true, address, 0);
+  fake_interrupts_begin(seed, 15);
+  fake_interrupts_on_take(write_high_byte);
+  for (unsigned i = 0; i < 100; ++i) {
+    word_write_part(true, address, 0xFF, 0x80);  // a timer counts down, but not as far as to borrow
+    const std::uint32_t state = hal_mask_real_time();
+    lost += word_read(true, address) >> 16 != parts_written ? 1u : 0u;
+    hal_unmask(state);
+  }
+  written = fake_interrupts_counts().taken[FAKE_REAL_TIME];
+  fake_interrupts_on_take(nullptr);
+  fake_interrupts_end();
+  return lost;
+}
+
+constexpr std::uint32_t kTimeBase = 0x2000, kTimer = 0x2015;
+
+TEST_F(Interrupts, PartsOfALiveWordAreBothKept) {
+  for (const std::uint32_t address : {kTimeBase, kTimer})
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      unsigned written = 0;
+      EXPECT_EQ(high_bytes_lost(address, seed, written), 0u) << std::hex << address << ", seed " << seed;
+      EXPECT_GT(written, 20u);
+    }
+}
+
+TEST_F(Interrupts, PartsOfALiveWordWithoutMasksAreLost) {
+  fake_tasks_ignore_masks(true);
+  for (const std::uint32_t address : {kTimeBase, kTimer}) {
+    unsigned lost = 0, written = 0;
+    for (std::uint32_t seed = 1; seed <= 10 && lost == 0; ++seed) lost = high_bytes_lost(address, seed, written);
+    EXPECT_GT(lost, 0u) << std::hex << address;
+  }
+}
+
+// What follows a write of I2, while the panel selects in turn a system whose buffer is full and one with room: the pin
+// shows what is selected, at once and not with the next real-time task only.
+void turn_panel(fake_task task) {
+  static bool second;
+  if (task != FAKE_REAL_TIME) return;
+  second = !second;
+  platform::pull_panel(second ? 2u << 8 : 1u << 8);
+}
+
+unsigned selections_lost(std::uint32_t seed, unsigned& made) {
+  unsigned lost = 0;
+  fake_interrupts_begin(seed, 10);
+  fake_interrupts_on_take(turn_panel);
+  for (unsigned i = 0; i < 600; ++i) {
+    panel_changed();
+    const std::uint32_t state = hal_mask_real_time();
+    lost += breq() != (panel_cs() == 1u) ? 1u : 0u;
+    hal_unmask(state);
+  }
+  made = fake_interrupts_counts().taken[FAKE_REAL_TIME];
+  fake_interrupts_on_take(nullptr);
+  fake_interrupts_end();
+  return lost;
+}
+
+class InterruptsOfThePanel : public Interrupts {
+ protected:
+  void SetUp() override {
+    FirmwareTest::SetUp();
+    platform::fit_panel();
+    for (const char* line : {"I16=1 I17=2", "&2DEF ROT 50", "&1DEF ROT 50 OPEN ROT", "P1=1", "P1=1"})
+      ASSERT_EQ(host(line), "") << line;
+    ASSERT_EQ(host("CLOSE"), "");
+    platform::panel(2u << 8);
+    ASSERT_TRUE(breq()) << "room";
+    platform::panel(1u << 8);
+    ASSERT_FALSE(breq()) << "full";
+  }
+};
+
+TEST_F(InterruptsOfThePanel, PinShowsTheSelectionWhenI2IsWritten) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    unsigned made = 0;
+    EXPECT_EQ(selections_lost(seed, made), 0u) << "seed " << seed;
+    EXPECT_GT(made, 100u);
+  }
 }
 
 // A pointer given while an abort is still to be settled, and the real-time task comes in the middle of it: what is left

@@ -130,6 +130,16 @@ TEST_F(Regions, DeleteAllTempsRemovesEverything) {
   }
 }
 
+// firmware:4.3/15: command files delete them before they load what is theirs.
+TEST_F(Regions, WhatThereIsNoBufferOfIsDeletedAllTheSame) {
+  ASSERT_EQ(platform::host("OPEN PLC 3 CLEAR P1=1 CLOSE &1DEF ROT 100"), "");
+  const std::string size = platform::host("SIZE");
+  EXPECT_EQ(platform::host("DELETE TRACE DELETE PLCC 3 DEL TRACE"), "");
+  EXPECT_EQ(platform::host("SIZE"), size);
+  EXPECT_EQ(platform::host("LIST PLC 3"), "P1=1") << "a compiled one is another";
+  EXPECT_EQ(platform::host("DELETE PLCC 32"), "ERR003") << "there are 32 of them, from 0";
+}
+
 TEST_F(Regions, ArgumentsAreChecked) {
   for (const char* text : {"DEF ROT", "DEF ROT 0", "DEF ROT -5", "DEF ROT 1.5", "DEF LOOK 10", "DEF LOOK 0,5",
                            "DEF CCBUF", "DEF UNKNOWN 5", "DEL UNKNOWN", "DEF GAT 0"})

@@ -1,4 +1,5 @@
 // The number that says why a program was stopped (firmware:7.10), by its cause; it goes with bit 22 of word 2.
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/motion_program.h"
 
 namespace {
@@ -62,6 +63,37 @@ TEST_F(RunTimeErrors, ItIsThatOfTheSystemAndGoesWithTheNextStart) {
   EXPECT_EQ(number(2), "2");
   ASSERT_EQ(host("R"), "");
   EXPECT_EQ(number(2), "0");
+}
+
+// What is left of the line in error is skipped in slices, and an abort comes between two of them: it forgets the cause,
+// the next error has its own.
+TEST_F(RunTimeErrors, AnAbortWithinOneLeavesNothingToTheNext) {
+  unsigned within = 0;
+  for (unsigned slices = 1; slices <= 12; ++slices) {
+    platform::power_up();
+    ASSERT_EQ(host("DEF ROT 100 B0 OPEN ROT"), "");
+    ASSERT_EQ(host("CALL99 P1=1 P2=2 P3=3 P4=4"), "");
+    const std::uint32_t next = rotary_buffers[0].used;
+    ASSERT_EQ(host("CIRCLE1 X1Y1R5"), "");
+    const std::uint32_t words = rotary_buffers[0].used;
+    ASSERT_EQ(host("CLOSE R"), "");
+    fake_hal_on_pause([] {});
+    fake_hal_slices_leave(true);
+    for (unsigned i = 0; i < slices; ++i) fake_task_run_real_time();
+    const std::uint32_t left = rotary_buffers[0].used;
+    if (left > words - next && left < words - 1 && fake_hal_slice_is_left() && !error()) ++within;
+    EXPECT_EQ(host("A"), "");
+    fake_hal_slices_leave(false);
+    fake_hal_on_pause(nullptr);
+    for (unsigned i = 0; i < 2 && host("PR") != "0"; ++i) {
+      platform::real_time();
+      ASSERT_EQ(host("R"), "");
+      platform::servo_ticks(9);
+    }
+    EXPECT_TRUE(error());
+    EXPECT_EQ(number(), "1") << "behind " << slices << " slices";
+  }
+  EXPECT_GT(within, 1u) << "no abort fell among the words that are skipped";
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "systemc/macro_ic/macro_ic.h"
-#include "testbench/unit/clocks/servo_ic_rig.h"
 #include "testbench/unit/macro_ic/rtl_macro_ic.h"
+#include "testbench/unit/servo_ic/servo_ic_rig.h"
 
 namespace brick {
 

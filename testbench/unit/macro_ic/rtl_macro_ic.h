@@ -1,7 +1,7 @@
 // The Verilated MACRO IC.
 #pragma once
 
-#include "testbench/unit/clocks/rtl_ic.h"
+#include "testbench/unit/servo_ic/rtl_ic.h"
 
 namespace brick {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "systemc/servo_ic/servo_ic.h"
-#include "testbench/unit/clocks/rtl_servo_ic.h"
+#include "testbench/unit/servo_ic/rtl_servo_ic.h"
 
 namespace brick {
 

@@ -35,8 +35,8 @@ class ClockSources : public Controller {
   std::uint64_t source() { return machine().signals().value(*machine().signals().find("clock.source")); }
   bool conflict() { return machine().outputs().get(pin::kSourceConflict) != 0; }
 
-  // Hand-over of the clock pins (docs/clock.md), bounds in phase periods of the IC: one to be an input drives on until
-  // both clocks are high; a new source takes PHASE with a rise, the end of its second period at the latest.
+  // Hand-over of the clock pins (docs/clock_select.md), bounds in phase periods of the IC: one to be an input drives on
+  // until both clocks are high; a new source takes PHASE with a rise, the end of its second period at the latest.
   void await_release(Tick phase) { wait(phase + (phase + 1) / 2); }
   void await_take(Tick phase) { wait(2 * phase); }
 

@@ -71,10 +71,10 @@ TEST_P(SavedDataFile, AFileThatCannotBeWrittenFailsTheRunAndStopsNothing) {
   std::filesystem::remove(file());
   std::filesystem::create_directory(file());  // in its place
   ask("I17=21");
-  EXPECT_EQ(ask("SAVE"), "") << "the controller has done its part";
+  for (int again = 0; again < 3; ++again) EXPECT_EQ(ask("SAVE"), "") << "the controller has done its part";
   EXPECT_EQ(ask("I17"), "21");
   const auto errors = machine().take_run_errors();
-  ASSERT_EQ(errors.size(), 1u);
+  ASSERT_EQ(errors.size(), 1u) << "the same each time";
   EXPECT_THAT(errors[0], ::testing::HasSubstr("flash file " + file().string() + ": cannot be written"));
 }
 

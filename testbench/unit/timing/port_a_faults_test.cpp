@@ -1,6 +1,6 @@
 // A bus master that drives wrong, on a real board: each wrong edge is found by the rule that forbids it, from the lines
 // alone. The cycles are those of a gate IC with seven wait states at I52 = 7, TC = 12.7157 ns, edges on quarters of TC
-// as docs/port-a.md draws them: read, write, write, read, read, at once after each other.
+// as docs/port_a.md draws them: read, write, write, read, read, at once after each other.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -5,11 +5,12 @@ from tree import Tree, run
 PAGES = {
     "docs/save.md": "| SAVE of a controller as it comes | 37 ms |\n",
     "docs/watchdog.md": "| SAVE | one long pass (37 ms); more |\n",
+    "docs/datasheet/firmware.md": "37 ms and more; a power cut\nacknowledged when it is done, 37 ms and more\n",
     "docs/cosim.md": "idle firmware 110 simulated s/s\n",
     "README.md": "idle firmware: 110 simulated seconds a second\n",
     "docs/rules.md": "5 misreadings\n| a | b | planted 3 |\n| c | d | planted 2, read |\n",
     "docs/verification-plan.md": "| fixed (I18-2) | x |\n- modules: other modules than the one of [proofs].\n",
-    "docs/claimed.txt": "I18-2\n",
+    "docs/claimed.txt": "I18-2\nSSI-2\nLA-3\n",
     "testbench/formal/a.sv": "",
 }
 
@@ -31,6 +32,11 @@ class Figures(Tree):
     def test_a_save_of_two_lengths_fails(self):
         self.broken("docs/watchdog.md", "37", "26", "docs/save.md says 37, docs/watchdog.md says 26")
 
+    def test_a_save_of_another_length_in_the_data_sheet_fails(self):
+        for old in ("37 ms and more; a", "done, 37 ms"):
+            new = old.replace("37", "26")
+            self.broken("docs/datasheet/firmware.md", old, new, "docs/datasheet/firmware.md says 26")
+
     def test_two_idle_speeds_fail(self):
         self.broken("README.md", "110", "60", "docs/cosim.md says 110, README.md says 60")
 
@@ -46,6 +52,16 @@ class Figures(Tree):
 
     def test_an_open_row_of_a_claim_fails(self):
         self.broken("docs/verification-plan.md", "| x |", "| **open** |", "I18-2 is a gap here")
+
+    def test_each_id_of_an_open_row_counts(self):
+        for ids, name in (("SSI-1, SSI-2", "SSI-2"), ("LA-1 to LA-5", "LA-3"), ("LA-3 and LA-7", "LA-3")):
+            self.broken("docs/verification-plan.md", "| fixed (I18-2) | x |", f"| fixed ({ids}) | **open** |",
+                        f"{name} is a gap here")
+
+    def test_claims_beside_the_ids_of_an_open_row_are_none(self):
+        self.write("docs/verification-plan.md", PAGES["docs/verification-plan.md"] +
+                   "| fixed (SSI-1, SSI-3) LA-3 | **open** |\n- gaps (LA-4 to LA-6)\n")
+        self.expect(self.run_tool("check_figures.py"), 0, "clean")
 
 
 if __name__ == "__main__":

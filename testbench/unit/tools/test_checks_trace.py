@@ -21,35 +21,35 @@ class Traceability(Tree):
         self.run_tool("traceability.py", "--write")
 
     def test_a_claim_with_a_test_passes(self):
-        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
+        self.expect(self.run_tool("traceability.py"), 0, "clean")
 
     def test_a_claim_without_a_test_fails(self):
         self.write("docs/claimed.txt", "BREQ-1\nBREQ-2\n")
         self.run_tool("traceability.py", "--write")
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-2 is claimed, but no test names it")
+        self.expect(self.run_tool("traceability.py"), 1, "BREQ-2 is claimed, but no test names it")
 
     def test_a_claim_whose_test_is_commented_out_fails(self):
         self.write("testbench/unit/a_test.cpp", TEST_FILE.replace("  BRICK_COVERS", "  // BRICK_COVERS"))
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-1 is claimed, but no test names it")
+        self.expect(self.run_tool("traceability.py"), 1, "BREQ-1 is claimed, but no test names it")
 
     def test_an_unknown_id_fails(self):
         self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("BREQ-1", "BREQ-99"))
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-99")
+        self.expect(self.run_tool("traceability.py"), 1, "BREQ-99")
 
     def test_a_claim_of_no_requirement_fails(self):
         self.write("docs/claimed.txt", "BREQ-1\nBREQ-77\n")
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "'BREQ-77' is no requirement")
+        self.expect(self.run_tool("traceability.py"), 1, "'BREQ-77' is no requirement")
 
     def test_a_stale_page_fails(self):
         self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "FallsAgain"))
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "stale")
+        self.expect(self.run_tool("traceability.py"), 1, "stale")
 
     def test_a_plan_that_names_no_existing_test_fails(self):
         self.write("docs/verification-plan.md", "| a line | `Breq.FallsOnALine`, `Breq.*` |\n")
-        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
+        self.expect(self.run_tool("traceability.py"), 0, "clean")
         self.write("docs/verification-plan.md", "| a line | `Breq.Falls`, `brick.wave` |\n")
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "there is no test Breq.Falls")
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "there is no test brick.wave")
+        self.expect(self.run_tool("traceability.py"), 1, "there is no test Breq.Falls")
+        self.expect(self.run_tool("traceability.py"), 1, "there is no test brick.wave")
 
     def test_benches_and_ctest_entries_count(self):
         self.write("testbench/benches/b.cpp", '// covers: BREQ-2\nBench breq_rotary_bench() {\n')
@@ -60,7 +60,7 @@ class Traceability(Tree):
 
     def test_covers_above_no_test_fails(self):
         self.write("testbench/CMakeLists.txt", "# covers: BREQ-2\nset(x 1)\n")
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "no test below it")
+        self.expect(self.run_tool("traceability.py"), 1, "no test below it")
 
     def results(self, *runs):
         cases = "".join(f'<testcase name="{name}" status="{status}"/>' for name, status in runs)
@@ -72,9 +72,10 @@ class Traceability(Tree):
         done, page = self.results(("Breq.FallsOnALine/Rtl  # GetParam() = rtl", "run"),
                                   ("Breq.FallsOnALine/SystemC", "run"))
         self.expect(done, 0, "clean")
+        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
         self.assertIn("| claimed | R passed<br>S passed | `rtl/host/breq.sv`<br>`systemc/breq.h` | "
                       "Breq.FallsOnALine (R S) |", page)
-        self.expect(self.run_tool("traceability.py", "--check"), 0, "clean")
+        self.expect(self.run_tool("traceability.py"), 0, "clean")
 
     def test_a_claim_that_failed_or_was_not_tried_on_one_engine_fails(self):
         done, page = self.results(("Breq.FallsOnALine/Rtl", "run"))
@@ -90,6 +91,15 @@ class Traceability(Tree):
         self.expect(done, 1, "testbench/unit/b_test.cpp: Breq.IsGone names BREQ-1: no result")
         self.expect(done, 1, "BREQ-1 is claimed on R: no result")
         self.assertIn("R no result<br>S no result", page)
+
+    def test_a_committed_page_without_a_result_fails_when_it_is_asked_for(self):
+        self.expect(self.run_tool("traceability.py"), 0, "clean")
+        done = self.run_tool("traceability.py", "--check")
+        self.expect(done, 1, "testbench/unit/a_test.cpp: Breq.FallsOnALine names BREQ-1: no result")
+        self.expect(done, 1, "BREQ-1 is claimed on R: no result")
+        self.results(("Breq.FallsOnALine/Rtl", "run"), ("Breq.FallsOnALine/Model", "fail"))
+        self.expect(self.run_tool("traceability.py"), 0, "clean")
+        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-1 is claimed on S: failed")
 
     def test_a_failed_checker_without_an_engine_fails_every_engine(self):
         self.write("testbench/unit/b_test.cpp", TEST_FILE.replace("FallsOnALine", "Checker"))
@@ -121,11 +131,11 @@ class Traceability(Tree):
 
     def test_a_requirement_without_a_design_file_of_its_engine_fails(self):
         self.write("docs/design-files.txt", "breq = rtl/*/breq.sv\nBREQ-1: breq\n")
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "BREQ-1 applies to engine S, but has no file of it")
+        self.expect(self.run_tool("traceability.py"), 1, "BREQ-1 applies to engine S, but has no file of it")
 
     def test_a_design_file_that_is_gone_fails(self):
         (self.root / "rtl/host/breq.sv").unlink()
-        self.expect(self.run_tool("traceability.py", "--check"), 1, "no file rtl/*/breq.sv")
+        self.expect(self.run_tool("traceability.py"), 1, "no file rtl/*/breq.sv")
 
 
 class SkippedTests(Tree):

@@ -3,7 +3,7 @@
 // drives Port A. docs/architecture.md, data sheets host-bus and servo-ic.
 //
 // Each of the two buses is driven by the pins or by its sockets, whose accesses are cycles with real edges on those
-// pins inside: docs/port-a.md, host-bus:3.4. A bus of which a socket and an input pin is bound is an error
+// pins inside: docs/port_a.md, host-bus:3.4. A bus of which a socket and an input pin is bound is an error
 // /brick/two_masters at the end of the elaboration; its output pins show its cycles either way.
 //  - The annotated delay is waited for, then the bus: its first clock after the call, the end of its cycle, as long as
 //    /TA or IOCHRDY stretch that. An access returns with the delay 0 as the cycle's address is let go; its time and its

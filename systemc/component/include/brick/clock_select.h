@@ -1,4 +1,5 @@
-// Clock selection: the PHASE and SERVO nets of up to 22 ICs, or of clocks from outside. docs/clock.md, servo-ic:7.
+// Clock selection: the PHASE and SERVO nets of up to 22 ICs, or of clocks from outside. docs/clock_select.md,
+// servo-ic:7.
 #pragma once
 
 #include <array>

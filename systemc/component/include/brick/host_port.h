@@ -1,5 +1,5 @@
 // Host port (HI08): eight bytes for the host, six words for the CPU, a word of buffering on either side of each way.
-// docs/host-bus.md, host-bus:3.2.
+// docs/host_port.md, host-bus:3.2.
 #pragma once
 
 #include <tlm_utils/simple_target_socket.h>

@@ -1,4 +1,4 @@
-// Host signals: the latches of IPOS, BREQ, EROR, F1ER and of the control outputs. docs/host-bus.md, host-bus:4.3.
+// Host signals: the latches of IPOS, BREQ, EROR, F1ER and of the control outputs. docs/host_signals.md, host-bus:4.3.
 #pragma once
 
 #include <tlm_utils/simple_target_socket.h>
