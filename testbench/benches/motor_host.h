@@ -58,7 +58,7 @@ class MotorHost : public ServoHost, public MotorPeer {
   // Samples since record(). settle() goes on until no motor's commanded position has moved for `still` ms.
   void record();
   const std::vector<Sample>& samples(unsigned motor) const { return samples_.at(motor - 1); }
-  bool settle(double at_most_ms, double still_ms = 8);
+  bool settle(double at_most_ms, double still_ms = 5);
   const std::vector<Enable>& enables(unsigned motor) const { return enables_.at(motor - 1); }
   std::optional<std::uint32_t> captured(unsigned motor) const { return captured_.at(motor - 1); }  // read since record()
   Tick disabled_at(unsigned motor, Tick after) const;  // first fall of AENA at or after, -1: none
