@@ -159,6 +159,28 @@ TEST_F(CurrentLoop, OutputsAreClippedAtThePwmScale) {
   EXPECT_NEAR(pwm(2), 0, kPwmScale * 0.001);
 }
 
+// Under the sanitizers: largest gains, largest biases, currents and commands that jump from end to end.
+TEST_F(CurrentLoop, NothingOverflowsAtTheEndsOfAllRanges) {
+  std::mt19937 random(7);
+  const auto one_of = [&random](std::initializer_list<int> values) { return values.begin()[random() % values.size()]; };
+  for (int round = 0; round < 40; ++round) {
+    const int gain = one_of({-9, 9});
+    gains(gain, one_of({-9, 9}), one_of({-9, 9}));
+    set("I124=" + std::to_string(one_of({1, 0x401})) + " I172=" + std::to_string(one_of({0, 512, 1024, 1365})));
+    set("I129=" + std::to_string(one_of({-32768, 32767})) + " I179=" + std::to_string(one_of({-32768, 32767})));
+    set("I177=" + std::to_string(one_of({-32768, 32767})) + " I166=32767");
+    enable();
+    for (int i = 0; i < 300; ++i) {
+      set_y(kAdcA, one_of({-8388608, 8388607}));
+      set_y(kAdcB, one_of({-8388608, 8388607}));
+      stand_at(one_of({-1024, -512, 0, 512}));
+      command(one_of({-32767, 32767}));
+      phase(random() % 3);
+      for (unsigned n = 0; n < 3; ++n) ASSERT_LE(std::fabs(pwm(n)), 32767.01);
+    }
+  }
+}
+
 TEST_F(CurrentLoop, MaskTakesTheStatusBitsAway) {
   gains(0, 0.1, 0);
   set("I184=$FFFC00");
@@ -192,7 +214,7 @@ TEST_F(CurrentLoop, ABrushMotorHasOneCurrent) {
 // Closed through the windings of the plant's motor: 24 V on each side, 10 A full scale, 1 ohm, 1 mH.
 class ClosedCurrentLoop : public CurrentLoop {
  protected:
-  static constexpr double kHalfBus = 24, kFullAmps = 10;
+  static constexpr double kHalfBus = 24, kFullAmps = 10, kPhaseHz = 9034.6;
   static constexpr unsigned kSteps = 10;  // of the motor in a phase period
 
   void SetUp() override {
@@ -200,14 +222,17 @@ class ClosedCurrentLoop : public CurrentLoop {
     parameters_.inertia = 1e9;  // does not turn
     set("I184=$FFFC00 I124=1");
   }
-  void run(plant::Motor& motor, unsigned interrupts, double frequency = 9035.7) {
+  void run(plant::Motor& motor, unsigned interrupts) {
+    run(motor, interrupts, [&](double dt) { motor.drive_three_phase(dt, volts(0), volts(1), volts(2)); });
+  }
+  template <typename Drive>
+  void run(plant::Motor& motor, unsigned interrupts, Drive drive) {
     for (unsigned i = 0; i < interrupts; ++i) {
       const auto word = [](double amps) { return std::clamp(std::floor(amps / kFullAmps * 8192), -8192.0, 8191.0); };
       set_y(kAdcA, static_cast<std::int64_t>(word(motor.current_a())) * 1024);
       set_y(kAdcB, static_cast<std::int64_t>(word(motor.current_b())) * 1024);
       phase();
-      for (unsigned step = 0; step < kSteps; ++step)
-        motor.drive_three_phase(1 / frequency / kSteps, volts(0), volts(1), volts(2));
+      for (unsigned step = 0; step < kSteps; ++step) drive(1 / kPhaseHz / kSteps);
     }
   }
   double volts(unsigned n) { return pwm(n) / kPwmScale * kHalfBus; }
@@ -257,6 +282,19 @@ TEST_F(ClosedCurrentLoop, BackGainDampsLikeResistance) {
   command(8192);
   run(motor, 120);
   EXPECT_NEAR(seen_q(), 0.25, 0.002);
+}
+
+// One winding between A and B: ADC B shows the current of A with the other sign.
+TEST_F(ClosedCurrentLoop, CurrentOfABrushMotorFollowsTheCommand) {
+  gains(0.02, 0.1, 0);
+  set("I196=1 I170=0 I172=1536 I124=$401");
+  plant::Motor motor(parameters_, 65536 * 4000);
+  enable();
+  stand_at(0);
+  command(6554);
+  run(motor, 100, [&](double dt) { motor.drive_brush(dt, volts(0) - volts(1)); });
+  EXPECT_NEAR(seen_q(), 0.2, 0.002);
+  EXPECT_NEAR(motor.current_a(), -2, 0.02) << "Iq is Ib";
 }
 
 // Negative control: with the other value of the pair the same windings and converters are positive feedback.
