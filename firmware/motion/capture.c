@@ -44,7 +44,7 @@ void capture_arm(const struct capture* c) {
  * the difference. 24 bits wrap: the capture is less than 2^18 counts away. */
 static int64_t captured_position(uint32_t motor, const struct capture* c) {
   const struct motor* m = &motors[motor];
-  if (c->in_software || c->position == 0) return m->actual;
+  if (c->in_software || c->position == 0) return position_loop_measured(motor);
   const uint32_t fraction = c->with_fraction && c->fraction != 0 ? *c->fraction >> FRACTION_SHIFT : 0u; /* of 4096 */
   const uint32_t whole = *c->position << c->count_bits;
   const int32_t beyond = hal_signed((position_loop_reading(motor) - whole) & HAL_WORD_MASK);

@@ -36,18 +36,18 @@ struct motion {
 };
 
 struct jog {
-  struct motion request, next, now; /* any task, with the servo task held off; R; S */
-  volatile uint32_t requests;       /* so far, whatever makes R plan anew */
-  int64_t request_begins;           /* earliest clock */
-  int64_t delay;                    /* Ixx92, of the last request */
-  volatile bool ready;              /* R: `next` and its path are complete; S: it is on it */
+  int64_t clock;       /* S */
+  int32_t rate;        /* S: trajectory time a servo cycle */
+  volatile bool ready; /* R: `next` and its path are complete; S: it is on it */
+  uint32_t current;    /* S: of the paths */
   int64_t next_begins;
-  int64_t clock; /* S */
-  int32_t rate;  /* S: trajectory time a servo cycle */
-  bool away;     /* from `before`, by jogs. Requests, servo task held off; S */
-  int64_t before;
-  uint32_t current; /* S: of the paths */
+  struct motion now, next, request; /* S; R; any task, with the servo task held off */
   struct own_path paths[2];
+  volatile uint32_t requests; /* so far, whatever makes R plan anew */
+  int64_t request_begins;     /* earliest clock */
+  int64_t delay;              /* Ixx92, of the last request */
+  bool away;                  /* from `before`, by jogs. Requests, servo task held off; S */
+  int64_t before;
 };
 
 static struct jog jogs[MOTORS];
@@ -245,7 +245,8 @@ void jog_count_from(uint32_t motor, int64_t position) {
   struct jog* j = &jogs[motor];
   desired_position_shift(motor, -position);
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
-  j->requests++; /* what is being planned is about the old positions */
+  j->request.target -= position; /* a place: it stays where it is */
+  j->requests++;                 /* what is being planned is about the old positions */
   j->away = false;
 }
 
@@ -255,12 +256,6 @@ void jog_count_from(uint32_t motor, int64_t position) {
 static int32_t approach(int32_t present, int32_t target, int32_t slew) {
   if (present < target) return target - present > slew ? present + slew : target;
   return present - target > slew ? present - slew : target;
-}
-
-static int32_t present_rate(uint32_t motor) {
-  const struct jog* j = &jogs[motor];
-  const int32_t target = rate_of(motor, j->now.by_program);
-  return approach(j->rate, target < 0 ? 0 : target, coordinate_systems[motors[motor].cs].increment_slew);
 }
 
 static bool searches_without_end(const struct motion* motion) { return motion->aim == AIM_SPEED; }
@@ -310,32 +305,39 @@ static void over(uint32_t motor) {
   if (!j->ready && (asked & bit(motor)) == 0u) busy &= ~bit(motor);
 }
 
-/* Whether a new path has begun: `elapsed` of it is over. */
-static bool begins(struct jog* j, int64_t* elapsed) {
-  *elapsed = j->clock - j->next_begins;
-  return j->ready && *elapsed >= 0;
+/* What only few interrupts have to do stands apart: the rest is quicker without. */
+static __attribute__((noinline)) void search(uint32_t motor) {
+  int64_t position;
+  if (capture_servo(motor, &jogs[motor].now.capture, &position)) found(motor, position);
+}
+
+static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
+  const int32_t slew = coordinate_systems[motors[motor].cs].increment_slew;
+  return approach(jogs[motor].rate, target < 0 ? 0 : target, slew);
+}
+
+static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
+  const int64_t since = jogs[motor].clock - jogs[motor].next_begins;
+  if (since < 0) return false;
+  change_over(motor);
+  *elapsed = since;
+  return true;
 }
 
 static __attribute__((noinline)) void move(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
-  int64_t position, elapsed;
+  const int32_t target = rate_of(motor, j->now.by_program);
   if (m->loop != LOOP_CLOSED) {
     jog_drop(motor);
     return;
   }
-  const int32_t rate = present_rate(motor);
-  j->rate = rate;
-  j->clock += rate;
-  if (begins(j, &elapsed))
-    change_over(motor);
-  else if (m->path == PATH_OWN)
-    elapsed = rate;
-  else
-    return; /* it stands, or a program moves it still */
-  const bool goes_on = own_path_advance(&j->paths[j->current], elapsed);
-  m->trajectory = own_path_position(&j->paths[j->current]);
-  if (j->now.searches && capture_servo(motor, &j->now.capture, &position)) found(motor, position);
+  if (j->rate != target) j->rate = other_rate(motor, target);
+  int64_t elapsed = j->rate;
+  j->clock += elapsed;
+  if (!(j->ready && begins(motor, &elapsed)) && m->path != PATH_OWN) return; /* a program moves it still, or nobody */
+  const bool goes_on = own_path_advance(&j->paths[j->current], elapsed, &m->trajectory);
+  if (j->now.searches) search(motor);
   if (!goes_on) over(motor);
 }
 

@@ -11,22 +11,30 @@ enum { TIME_FRACTION_BITS = 23, STAY_TIME_BITS = 36 }; /* a part of a stay lasts
 static int64_t nearest(double value) { return math_to_integer(value + 0.5); }
 
 void own_path_begin(struct own_path* path, int64_t start) {
-  piece_ring_initialize(&path->ring, path->cubics, 1);
+  path->elapsed = path->shift = 0;
+  path->executing = path->count = 0;
   path->repeats = path->carry = path->carried = 0;
   path->start = path->end = start;
-  path->shift = 0;
   path->exact = 0.0;
+}
+
+static void set_time(struct own_piece* piece, int64_t time) {
+  piece->time = time < 1 ? 1 : time;
+  piece->shift = __builtin_clzll((uint64_t)piece->time) - 32;
+  const double normal = math_scale((double)piece->time, piece->shift - 32); /* [0.5, 1) */
+  slice_pause();
+  const int64_t inverse = math_to_integer(math_scale(1.0 / normal, 31));
+  piece->inverse = inverse > (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)inverse;
 }
 
 /* From the end so far: speed at its start, acceleration there and the constant change of that. What each end is rounded
  * by does not add up. */
 static void add(struct own_path* path, double time, double speed, double acceleration, double jerk) {
-  const uint32_t number = path->ring.added;
-  struct piece* piece = piece_ring_at(&path->ring, number);
-  struct cubic* cubic = piece_ring_cubic(&path->ring, number, 0);
+  struct own_piece* piece = &path->pieces[path->count++];
+  struct cubic* cubic = &piece->cubic;
   slice_pause();
-  piece_set_time(piece, nearest(math_scale(time, TIME_FRACTION_BITS)));
-  piece->motors = 1;
+  set_time(piece, nearest(math_scale(time, TIME_FRACTION_BITS)));
+  piece->straight = acceleration == 0.0 && jerk == 0.0;
   slice_pause();
   const double linear = speed * time, square = acceleration * time * time / 2.0;
   slice_pause();
@@ -35,11 +43,10 @@ static void add(struct own_path* path, double time, double speed, double acceler
   slice_pause();
   const int64_t end = path->start + nearest(path->exact);
   cubic->start = path->end;
-  cubic->linear = nearest(linear);
   cubic->square = nearest(square);
-  cubic->cube = end - cubic->start - cubic->linear - cubic->square;
+  cubic->cube = nearest(cube);
+  cubic->linear = end - cubic->start - cubic->square - cubic->cube;
   path->end = end;
-  piece_ring_add(&path->ring);
 }
 
 void own_path_change(struct own_path* path, const struct speed_limits* l, double from, double to) {
@@ -64,19 +71,16 @@ void own_path_ramp(struct own_path* path, double from, double time) {
 
 /* One part of a stay of many. */
 static void add_repeated(struct own_path* path, double speed, uint32_t repeats) {
-  const uint32_t number = path->ring.added;
-  struct piece* piece = piece_ring_at(&path->ring, number);
-  struct cubic* cubic = piece_ring_cubic(&path->ring, number, 0);
+  path->repeated = path->count++;
+  path->repeats = repeats;
+  struct own_piece* piece = &path->pieces[path->repeated];
   slice_pause();
   const double distance = speed * STAY_MS;
-  piece_set_time(piece, INT64_C(1) << STAY_TIME_BITS);
-  piece->motors = 1;
+  set_time(piece, INT64_C(1) << STAY_TIME_BITS);
+  piece->straight = true;
   slice_pause();
-  *cubic = (struct cubic){.start = path->end, .linear = math_to_integer(distance)};
-  path->carry = (uint32_t)math_to_integer((distance - (double)cubic->linear) * CARRY_ONE);
-  path->repeated = number;
-  path->repeats = repeats;
-  piece_ring_add(&path->ring);
+  piece->cubic = (struct cubic){.start = path->end, .linear = math_to_integer(distance)};
+  path->carry = (uint32_t)math_to_integer((distance - (double)piece->cubic.linear) * CARRY_ONE);
 }
 
 void own_path_stay(struct own_path* path, double speed, double time) {
@@ -85,7 +89,7 @@ void own_path_stay(struct own_path* path, double speed, double time) {
   const uint32_t whole = (uint32_t)math_to_integer(time / STAY_MS);
   if (whole > 0u) {
     add_repeated(path, speed, whole - 1u);
-    const struct cubic* cubic = piece_ring_cubic(&path->ring, path->repeated, 0);
+    const struct cubic* cubic = &path->pieces[path->repeated].cubic;
     path->end += cubic->linear * (int64_t)whole + (int64_t)(((uint64_t)path->carry * whole) >> 32);
     slice_pause();
     path->exact += speed * STAY_MS * (double)whole;
@@ -98,32 +102,62 @@ void own_path_stay(struct own_path* path, double speed, double time) {
 void own_path_stay_for_ever(struct own_path* path, double speed) { add_repeated(path, speed, OWN_PATH_ENDLESS); }
 
 void own_path_end_at(struct own_path* path, int64_t end) {
-  if (piece_ring_is_empty(&path->ring)) return;
-  piece_ring_cubic(&path->ring, path->ring.added - 1u, 0)->cube += end - path->end;
+  if (path->count == 0u) return;
+  path->pieces[path->count - 1u].cubic.linear += end - path->end;
   path->end = end;
 }
 
-static void repeat(struct own_path* path, int64_t increment) {
-  struct piece_ring* ring = &path->ring;
-  const int64_t time = piece_ring_at(ring, path->repeated)->time;
-  if (ring->elapsed + increment < time) return;
-  struct cubic* cubic = piece_ring_cubic(ring, path->repeated, 0);
+/* The piece under way once more, after `elapsed`. */
+static void repeat(struct own_path* path, int64_t* elapsed) {
+  struct own_piece* piece = &path->pieces[path->repeated];
   const uint64_t carried = (uint64_t)path->carried + path->carry;
   path->carried = (uint32_t)carried;
-  cubic->start += cubic->linear + (int64_t)(carried >> 32);
-  ring->elapsed -= time; /* below 0 until it is advanced */
+  piece->cubic.start += piece->cubic.linear + (int64_t)(carried >> 32);
+  *elapsed -= piece->time;
   if (path->repeats != OWN_PATH_ENDLESS) path->repeats--;
 }
 
-bool own_path_advance(struct own_path* path, int64_t increment) {
-  if (path->repeats != 0u && path->ring.executing == path->repeated) repeat(path, increment);
-  return piece_ring_advance(&path->ring, increment);
+/* False: there is none any more. */
+static __attribute__((noinline)) bool next_piece(struct own_path* path, int64_t* elapsed) {
+  while (path->executing != path->count) {
+    const int64_t time = path->pieces[path->executing].time;
+    if (*elapsed < time) return true;
+    if (path->repeats != 0u && path->executing == path->repeated) {
+      repeat(path, elapsed);
+    } else {
+      *elapsed -= time;
+      path->executing++;
+    }
+  }
+  return false;
 }
 
-int64_t own_path_position(const struct own_path* path) {
-  const struct piece_ring* ring = &path->ring;
-  if (piece_ring_is_empty(ring)) return path->end + path->shift;
-  return cubic_at(&path->cubics[ring->executing % PIECES], ring->fraction) + path->shift;
+static uint32_t fraction_of(const struct own_piece* piece, int64_t elapsed) {
+  const uint32_t part = (uint32_t)(piece->shift < 0 ? elapsed >> -piece->shift : elapsed << piece->shift);
+  const uint64_t fraction = (uint64_t)part * piece->inverse >> 31;
+  return fraction > UINT32_MAX ? UINT32_MAX : (uint32_t)fraction;
+}
+
+bool own_path_advance(struct own_path* path, int64_t increment, int64_t* position) {
+  int64_t elapsed = path->elapsed + increment;
+  const struct own_piece* piece = &path->pieces[path->executing];
+  if (path->executing == path->count || elapsed >= piece->time) {
+    if (!next_piece(path, &elapsed)) {
+      *position = path->end + path->shift;
+      return false;
+    }
+    piece = &path->pieces[path->executing];
+  }
+  path->elapsed = elapsed;
+  const uint32_t fraction = fraction_of(piece, elapsed);
+  const struct cubic* cubic = &piece->cubic;
+  const int64_t at = piece->straight ? cubic->start + fixed_part(cubic->linear, fraction) : cubic_at(cubic, fraction);
+  *position = at + path->shift;
+  return true;
+}
+
+struct own_path_place own_path_stands(int64_t position) {
+  return (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1};
 }
 
 /* The stay, `elapsed` after its present part began. False: it is over by then. */
@@ -133,29 +167,24 @@ static bool stays(const struct own_path* path, int64_t* elapsed, struct own_path
     *elapsed -= ((int64_t)path->repeats + 1) << STAY_TIME_BITS;
     return false;
   }
-  place->cubic = path->cubics[path->repeated % PIECES];
+  place->cubic = path->pieces[path->repeated].cubic;
   place->cubic.start += place->cubic.linear * parts;
   place->time = INT64_C(1) << STAY_TIME_BITS;
   place->elapsed = *elapsed - (parts << STAY_TIME_BITS);
   return true;
 }
 
-struct own_path_place own_path_stands(int64_t position) {
-  return (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1};
-}
-
 static struct own_path_place find(const struct own_path* path, int64_t ahead) {
-  const struct piece_ring* ring = &path->ring;
   struct own_path_place place = own_path_stands(path->end);
-  int64_t elapsed = ring->elapsed + ahead;
-  for (uint32_t number = ring->executing; number != ring->added; number++) {
+  int64_t elapsed = path->elapsed + ahead;
+  for (uint32_t number = path->executing; number != path->count; number++) {
+    const struct own_piece* piece = &path->pieces[number];
     if (path->repeats != 0u && number == path->repeated) {
       if (stays(path, &elapsed, &place)) return place;
       continue;
     }
-    const int64_t time = ring->pieces[number % PIECES].time;
-    if (elapsed < time) return (struct own_path_place){path->cubics[number % PIECES], time, elapsed};
-    elapsed -= time;
+    if (elapsed < piece->time) return (struct own_path_place){piece->cubic, piece->time, elapsed};
+    elapsed -= piece->time;
   }
   return place;
 }

@@ -261,6 +261,11 @@ static int64_t of_one_moment(const int64_t* value) {
 }
 
 uint32_t position_loop_reading(uint32_t motor) { return loops[motor].position_reading; }
+int64_t position_loop_measured(uint32_t motor) {
+  const struct loop* l = &loops[motor];
+  const int64_t movement = hal_signed(*l->position_source - l->position_reading);
+  return motors[motor].actual + movement * motors[motor].position_scale;
+}
 void position_loop_forget_movement(uint32_t motor) { loops[motor].forgets = FORGETS; }
 int32_t position_loop_filtered(uint32_t motor) { return loops[motor].filtered; }
 int64_t position_loop_integral(uint32_t motor) { return of_one_moment(&loops[motor].integral) >> INTEGRAL_BITS; }

@@ -15,6 +15,7 @@ void position_loop_forget_movement(uint32_t motor);
 
 /* 0..31, any task: what registers and protection show, and captures go by. */
 uint32_t position_loop_reading(uint32_t motor); /* word of Ixx03 that the actual position was last made of */
+int64_t position_loop_measured(uint32_t motor); /* the actual position with the movement since then; S */
 int32_t position_loop_filtered(uint32_t motor); /* output of the PID before the notch, 24 bits */
 int64_t position_loop_integral(uint32_t motor); /* position */
 int64_t position_loop_step(uint32_t motor);     /* how far the desired position went at the last closure */

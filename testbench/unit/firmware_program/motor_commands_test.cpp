@@ -7,6 +7,7 @@
 extern "C" {
 #include "firmware/base/float48.h"
 #include "firmware/base/status.h"
+#include "firmware/command/control_characters.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
@@ -112,8 +113,7 @@ TEST_F(MotorCommands, EndlessJogsGoUntilTheyAreStopped) {
 }
 
 TEST_F(MotorCommands, Errors) {
-  for (const char* line :
-       {"#1J", "J=X", "J:", "J^", "J=1^", "J+^5", "J==", "J:99999999999", "O101", "O-100.5"})
+  for (const char* line : {"#1J", "J=X", "J:", "J^", "J=1^", "J+^5", "J==", "J:99999999999", "O101", "O-100.5"})
     EXPECT_EQ(host(line), "ERR003") << line;
   EXPECT_EQ(motors[0].loop, LOOP_KILLED) << "nothing was closed for what is wrong";
   for (const char* line :
@@ -156,6 +156,84 @@ TEST_F(MotorCommands, OpenLoopEndsAJog) {
   run(500);
   ASSERT_EQ(host("K"), "");
   EXPECT_FALSE(jog_is_moving(0));
+}
+
+double step_of(unsigned motor) {
+  const std::int64_t before = motors[motor].trajectory;
+  platform::servo_ticks(1);
+  return static_cast<double>(motors[motor].trajectory - before) / kUnits;
+}
+
+class MotorStops : public MotorCommands {
+ protected:
+  // #1 of &1, #2 of none jog; #3 is open, #4 killed, both of &1.
+  void SetUp() override {
+    MotorCommands::SetUp();
+    ASSERT_EQ(host("&1#1->X #3->Y #4->Z I200=1 I300=1 I400=1 I219=1 I220=0 I221=10 I222=20 I292=2 I115=.5 I215=.5"),
+              "");
+    ASSERT_EQ(host("#3O1 #1J+ #2J-"), "");
+    run(200);
+    ASSERT_GT(step_of(0), 8);
+    ASSERT_LT(step_of(1), -8);
+  }
+  static constexpr double kMs = platform::kDefaultI10 / 8388608.0;
+};
+
+TEST_F(MotorStops, AbortRampsAtIxx15AndClosesLoops) {
+  const double before = commanded();
+  ASSERT_EQ(host("&1A"), "");
+  run(150);
+  EXPECT_EQ(step_of(0), 0);
+  EXPECT_NEAR(commanded() - before, 20 * 20 / (2 * .5), 20 * 5.5 * kMs) << "and a little until it begins";
+  EXPECT_LT(step_of(1), -8) << "of no coordinate system";
+  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+  EXPECT_EQ(motors[2].loop, LOOP_CLOSED);
+  EXPECT_EQ(motors[3].loop, LOOP_CLOSED);
+}
+
+TEST_F(MotorStops, I36SparesKilledMotorsAndEEnablesThem) {
+  ASSERT_EQ(host("I36=1 &1A"), "");
+  run(150);
+  EXPECT_EQ(motors[2].loop, LOOP_CLOSED) << "enabled, in open loop";
+  EXPECT_EQ(motors[3].loop, LOOP_KILLED);
+  ASSERT_EQ(host("&1E"), "");
+  EXPECT_EQ(motors[3].loop, LOOP_CLOSED);
+}
+
+TEST_F(MotorStops, ControlAAbortsMotorsOfNoSystemToo) {
+  ASSERT_FALSE(control_character(0x01));
+  run(150);
+  for (const unsigned motor : {0u, 1u, 2u, 3u}) {
+    EXPECT_EQ(step_of(motor), 0) << motor;
+    EXPECT_EQ(motors[motor].loop, LOOP_CLOSED) << motor;
+  }
+  EXPECT_EQ(motors[4].loop, LOOP_KILLED) << "not activated";
+}
+
+TEST_F(MotorStops, ControlKKillsAll) {
+  ASSERT_EQ(host("#3J/"), "");
+  ASSERT_FALSE(control_character(0x0B));
+  for (const unsigned motor : {0u, 1u, 2u, 3u}) {
+    EXPECT_EQ(motors[motor].loop, LOOP_KILLED) << motor;
+    EXPECT_FALSE(jog_is_moving(motor)) << motor;
+  }
+}
+
+TEST_F(MotorStops, ControlOHoldsNoJog) {
+  ASSERT_FALSE(control_character(0x0F));
+  run(3000);
+  EXPECT_NEAR(step_of(0), 20 * kMs, 1.0 / 16);
+}
+
+TEST_F(MotorStops, AMotorInALineOfAPlcIsJogged) {
+  for (const char* line : {"I5=2", "OPEN PLC 3 CLEAR", "CMD\"#1J/#2J/\"", "DISABLE PLC 3", "CLOSE", "ENABLE PLC 3"})
+    ASSERT_EQ(host(line), "") << line;
+  for (int i = 0; i < 300; ++i) {
+    run(1);
+    platform::background(1);
+  }
+  EXPECT_EQ(step_of(0), 0);
+  EXPECT_EQ(step_of(1), 0);
 }
 
 }  // namespace
