@@ -64,17 +64,16 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
         if (!up) return;
         set_up.send(simulation);
       }
-      BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
-                           config.board,          config.seed,      negative,          simulation.timing(),
+      BenchContext context{simulation.machine(),   simulation.bus(),  simulation.link(), report,
+                           config.board,           config.seed,       negative,          simulation.timing(),
                            config.bcr.has_value(), simulation.plant()};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {
     report.fail("host", e.what());
-  } catch (const ScriptFailure& e) { report.fail("set-up is taken", e.what());
-  } catch (const GdbKilled& e) { report.fail("debugger", e.what()); } catch (const Interrupted& e) {
-    report.fail("run to its end", e.what());
-  }
+  } catch (const ScriptFailure& e) { report.fail("set-up is taken", e.what()); } catch (const GdbKilled& e) {
+    report.fail("debugger", e.what());
+  } catch (const Interrupted& e) { report.fail("run to its end", e.what()); }
   for (const std::string& error : simulation.machine().take_run_errors()) {
     report.fail("no error of the machine", error);
     std::cerr << "brick " << extras.command << ": " << error << '\n';

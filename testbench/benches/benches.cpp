@@ -16,7 +16,8 @@ const std::vector<Bench>& all_benches() {
       port_a_phase_bench(),   bus_timing_bench(),    listing_bench(),
       variables_bench(),      status_bench(),        plc_bench(),
       servo_loop_bench(),     jog_home_bench(),      motion_bench(),
-      limits_bench(),
+      limits_bench(),         commutation_bench(),   time_base_bench(),
+      follow_bench(),
   };
   return benches;
 }

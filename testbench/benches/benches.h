@@ -42,5 +42,8 @@ Bench servo_loop_bench();
 Bench jog_home_bench();
 Bench motion_bench();
 Bench limits_bench();
+Bench commutation_bench();
+Bench time_base_bench();
+Bench follow_bench();
 
 }  // namespace brick

@@ -68,8 +68,7 @@ void JogHome::jogs() {
   const double ways[] = {900, 90, 500, -3};
   host_.record();
   std::string line;
-  for (unsigned motor = 1; motor <= host_.motors(); ++motor)
-    line += fmt::format("#{}{} ", motor, kLines[motor - 1]);
+  for (unsigned motor = 1; motor <= host_.motors(); ++motor) line += fmt::format("#{}{} ", motor, kLines[motor - 1]);
   const Tick sent = host_.now();
   host_.expect(line, "");
   const Tick taken = host_.now();
@@ -116,31 +115,36 @@ void JogHome::on_the_way() {
   {
     const JogLimits l = limits_[0];
     report_fit(report(), "#1J+: profile",
-               host_.fit(1, [&](double p) { return profile(jog_to_speed(p, 0, l.speed, l)); }, 15), 30);
-    report_fit(report(), "#1J/: profile",
-               host_.fit(1, [&](double p) { return profile(jog_to_speed(p, l.speed, 0, l)); }, l.time_for(l.speed),
-                         turn, l.speed),
-               20);
+               host_.fit(
+                   1, [&](double p) { return profile(jog_to_speed(p, 0, l.speed, l)); }, 15),
+               30);
+    report_fit(
+        report(), "#1J/: profile",
+        host_.fit(
+            1, [&](double p) { return profile(jog_to_speed(p, l.speed, 0, l)); }, l.time_for(l.speed), turn, l.speed),
+        20);
   }
   {
     const JogLimits l = limits_[1];
     report_fit(report(), "#2J- while it jogs up: profile",
-               host_.fit(2, [&](double p) { return profile(jog_to_speed(p, l.speed, -l.speed, l)); },
-                         l.time_for(2 * l.speed), turn, l.speed),
+               host_.fit(
+                   2, [&](double p) { return profile(jog_to_speed(p, l.speed, -l.speed, l)); }, l.time_for(2 * l.speed),
+                   turn, l.speed),
                40);
   }
   {
     const JogLimits l = limits_[2];
     report_fit(report(), "#3J= on the way at full speed: profile as if it had been told at once",
-               host_.fit(3, [&](double p) { return profile(jog_profile(p, 1300, l)); },
-                         jog_profile(start3, 1300, l).end()),
+               host_.fit(
+                   3, [&](double p) { return profile(jog_profile(p, 1300, l)); }, jog_profile(start3, 1300, l).end()),
                100);
     target(3, "#3J=1300 on the way", 1300);
   }
   {
     const JogLimits l = limits_[3];
     report_fit(report(), "#4J=*: profile",
-               host_.fit(4, [&](double p) { return profile(jog_profile(p, 140, l)); }, jog_profile(start4, 140, l).end()),
+               host_.fit(
+                   4, [&](double p) { return profile(jog_profile(p, 140, l)); }, jog_profile(start4, 140, l).end()),
                30);
     target(4, "#4J=, back to where the jogs began", before_jogs_);
   }

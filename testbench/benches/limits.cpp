@@ -1,6 +1,6 @@
 // limits: what stops motors by itself: end switches, software limits, following error, amplifier fault, I2T, and the
-// host's ^K. Judged by the times of motion:9.4 at the amplifier enable pin and in the commanded position, by the ramp of
-// Ixx15, and by the status bits of firmware:5.2 and firmware:5.3.
+// host's ^K. Judged by the times of motion:9.4 at the amplifier enable pin and in the commanded position, by the ramp
+// of Ixx15, and by the status bits of firmware:5.2 and firmware:5.3.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -12,9 +12,9 @@
 namespace brick {
 namespace {
 
-constexpr std::int64_t kEnd = 500;                    // counts where switches open, both ways
-constexpr double kReaction = 2;                       // ms, motion:9.4/10
-constexpr double kSpeed = 32, kAbort = 4;             // Ixx22; Ixx15
+constexpr std::int64_t kEnd = 500;         // counts where switches open, both ways
+constexpr double kReaction = 2;            // ms, motion:9.4/10
+constexpr double kSpeed = 32, kAbort = 4;  // Ixx22; Ixx15
 constexpr std::uint16_t kQuadrature = 1u << kEncA | 1u << kEncB;
 
 class Limits {
@@ -76,7 +76,7 @@ void Limits::stopped(unsigned motor, const std::string& name, double direction) 
         p.add({0, time, 0, -direction * kSpeed});
         return [p](double t) { return p.position(t); };
       },
-      time, from, direction * kSpeed);
+      time, from, direction* kSpeed);
   const double late = fit.begin - static_cast<double>(passed - s.begin()) * host_.period();
   report().step(name + ": reaction", late <= kReaction,
                 fmt::format("{:.2f} ms after the limit was passed, expected up to {}", late, kReaction));
@@ -99,9 +99,10 @@ void Limits::ends() {
   bit(3, 1, 22, "negative end limit");
   enabled("motors in their limits stay on", {1, 2, 3, 4});
   const auto& s = host_.samples(4);
-  report().step("Ixx24 bit 17: end switch is ignored",
-                s.size() > 2 && std::fabs((s.back().commanded - s[s.size() - 2].commanded) / host_.period() - kSpeed) < 0.01,
-                "goes on at 32 counts/ms");
+  report().step(
+      "Ixx24 bit 17: end switch is ignored",
+      s.size() > 2 && std::fabs((s.back().commanded - s[s.size() - 2].commanded) / host_.period() - kSpeed) < 0.01,
+      "goes on at 32 counts/ms");
   host_.expect("#4J/", "");
   host_.settle(60);
   host_.record();
@@ -146,9 +147,8 @@ void Limits::following_error() {
   bit(1, 2, 1, "warning following error");
   host_.wait_ms(10);
   const auto& s = host_.samples(1);
-  const auto over = std::find_if(s.begin(), s.end(), [](const MotorHost::Sample& x) {
-    return std::fabs(x.commanded - x.actual) > 300;
-  });
+  const auto over = std::find_if(s.begin(), s.end(),
+                                 [](const MotorHost::Sample& x) { return std::fabs(x.commanded - x.actual) > 300; });
   killed(1, "following error", over == s.end() ? -1 : over->tick);
   const bool early = over != s.end() && host_.disabled_at(1, s.front().tick) < over->tick;
   report().step("following error: not before Ixx11", !early, "");
@@ -175,10 +175,10 @@ void Limits::integrated_current() {
   }
   // It may have begun a few cycles before record().
   const Tick off = host_.disabled_at(2, 0);
-  report().step("I2T: AENA of motor 2", cause >= 0 && off >= 0 && std::fabs(ms(off - cause)) <= kReaction + 1,
-                cause < 0 ? fmt::format("the sum came to {:.2f} only, output {}", sum, host_.samples(2).back().output)
-                          : fmt::format("{:.2f} ms after the sum passed Ixx58, expected up to {}", ms(off - cause),
-                                        kReaction));
+  report().step(
+      "I2T: AENA of motor 2", cause >= 0 && off >= 0 && std::fabs(ms(off - cause)) <= kReaction + 1,
+      cause < 0 ? fmt::format("the sum came to {:.2f} only, output {}", sum, host_.samples(2).back().output)
+                : fmt::format("{:.2f} ms after the sum passed Ixx58, expected up to {}", ms(off - cause), kReaction));
   bit(2, 2, 5, "I2T fault");
   bit(2, 2, 3, "amplifier fault");
   host_.axis(2).set_load(0);
@@ -229,12 +229,12 @@ void Limits::run() {
 }  // namespace
 
 Bench limits_bench() {
-  return {"limits",
-          "end switches, software limits, following error, I2T, amplifier fault, ^K: reaction, ramp, status",
-          {"the scoreboard is told that Ixx15 is half of what it is", "positive end switch: ramp of Ixx15",
-           "counts off"},
-          [](BenchContext& b) { Limits(b).run(); },
-          kAServoIc};
+  return {
+      "limits",
+      "end switches, software limits, following error, I2T, amplifier fault, ^K: reaction, ramp, status",
+      {"the scoreboard is told that Ixx15 is half of what it is", "positive end switch: ramp of Ixx15", "counts off"},
+      [](BenchContext& b) { Limits(b).run(); },
+      kAServoIc};
 }
 
 }  // namespace brick

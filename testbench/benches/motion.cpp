@@ -1,6 +1,6 @@
-// motion: programs of unsegmented moves, blended or not, each in a coordinate system with two motors, as many at once as
-// the board has motors for. Judged at each servo interrupt by the formulas of motion:4.2, motion:4.5 and motion:4.6 in
-// double precision (testbench/checkers/program_profile.h), and at each stop by the exact sum of the moves.
+// motion: programs of unsegmented moves, blended or not, each in a coordinate system with two motors, as many at once
+// as the board has motors for. Judged at each servo interrupt by the formulas of motion:4.2, motion:4.5 and motion:4.6
+// in double precision (testbench/checkers/program_profile.h), and at each stop by the exact sum of the moves.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Path = MotorHost::Path;
 
-struct Course {  // of one motor
+struct Course {                           // of one motor
   std::function<Path(double from)> make;  // empty: only its end is judged
   double duration, way;
 };
@@ -28,8 +28,8 @@ struct Case {
 
 template <class Make>
 Course course(const Make& make, double way) {
-  return {[make](double from) -> Path { return [p = make(from)](double t) { return p.position(t); }; },
-          make(0.0).end(), way};
+  return {[make](double from) -> Path { return [p = make(from)](double t) { return p.position(t); }; }, make(0.0).end(),
+          way};
 }
 Course linear(const std::vector<LinearMove>& moves, const std::vector<double>& corners, double rounding) {
   double way = 0;
@@ -65,7 +65,8 @@ std::vector<Case> cases(double rounding) {
        {"LINEAR INC TA12 TS5 TM20", "X4 Y2", "TM15 X-2 Y1.5", "X1.5 Y-1"},
        linear({{400, 20}, {-200, 15}, {150, 15}}, {12, 12, 12, 12}, rounding),
        linear({{200, 20}, {150, 15}, {-100, 15}}, {12, 12, 12, 12}, rounding),
-       200, 10},
+       200,
+       10},
       {"LINEAR, one move",
        {"LINEAR INC TA15 TS0 TM20", "X-3 Y5"},
        linear({{-300, 20}}, {15, 15}, 0),
@@ -79,7 +80,8 @@ std::vector<Case> cases(double rounding) {
        {"LINEAR INC TA5 TS0 TM30", "X3 Y3", "X-3 Y3"},
        linear({{300, 30}, {-300, 30}}, {10, 20, 10}, 0),
        linear({{300, 30}, {300, 30}}, {10, 20, 10}, 0),
-       200, 1},
+       200,
+       1},
       {"LINEAR, time stretched by Ixx16",
        {"LINEAR INC TA5 TS0 TM25", "X4 Y2"},
        linear({{400, 50}}, {5, 5}, 0),
@@ -127,8 +129,7 @@ void MotionBench::load(unsigned system, const Case& c) {
 
 void MotionBench::judge(unsigned motor, const std::string& name, const Course& course) {
   const auto& s = host_.samples(motor);
-  report_fit(report(), fmt::format("{}, motor {}: path", name, motor),
-             host_.fit(motor, course.make, course.duration),
+  report_fit(report(), fmt::format("{}, motor {}: path", name, motor), host_.fit(motor, course.make, course.duration),
              static_cast<std::size_t>(course.duration / host_.period()) - 2);
   report().equal(fmt::format("{}, motor {}: way in units of 1/3072 count", name, motor),
                  std::llround((s.back().commanded - s.front().commanded) * MotorHost::kUnits),

@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint32_t kMainMemory = 0xC0000000;  // docs/architecture.md, memory map
 constexpr unsigned kServoTask = 2;                 // number in cpu.task, docs/signals.md
 constexpr std::uint32_t kCommanded = 0x08, kActual = 0x0B;
-constexpr double kJitter = 2.5;  // position units that a second difference at constant velocity may have
+constexpr double kJitter = 2.5;       // position units that a second difference at constant velocity may have
 constexpr double kLongestStart = 40;  // ms from a command to the first move, at most
-constexpr double kAfter = 2;     // ms of rest behind a path that are compared, too
+constexpr double kAfter = 2;          // ms of rest behind a path that are compared, too
 
 std::int64_t long_word(std::uint32_t high, std::uint32_t low) {
   return static_cast<std::int64_t>((static_cast<std::uint64_t>(high) << 24 | low) << 16) >> 16;
@@ -145,9 +145,8 @@ void MotorHost::record() {
 bool MotorHost::settle(double at_most_ms, double still_ms) {
   const auto still = static_cast<std::size_t>(still_ms / period_);
   const auto rests = [still](const std::vector<Sample>& s) {
-    return s.size() > still && std::all_of(s.end() - static_cast<std::ptrdiff_t>(still), s.end(), [&s](const Sample& x) {
-             return x.commanded == s.back().commanded;
-           });
+    return s.size() > still && std::all_of(s.end() - static_cast<std::ptrdiff_t>(still), s.end(),
+                                           [&s](const Sample& x) { return x.commanded == s.back().commanded; });
   };
   const auto moved = [this] {
     for (unsigned motor = 1; motor <= motors_; ++motor)
@@ -185,8 +184,19 @@ void MotorHost::set_up() {
     at(4, fmt::format("${:X}", 0x3501 + i));
     at(24, "$800001");
     at(25, fmt::format("${:X}", address(i, word::kStatus)));
-    for (const auto& [k, value] : {std::pair{15u, 4}, {16u, 200}, {17u, 4}, {19u, 4}, {21u, 5}, {22u, 32}, {28u, 160},
-                                   {30u, 112450}, {31u, 2900}, {32u, 2972}, {33u, 37000}, {35u, 16320}, {69u, 32767}})
+    for (const auto& [k, value] : {std::pair{15u, 4},
+                                   {16u, 200},
+                                   {17u, 4},
+                                   {19u, 4},
+                                   {21u, 5},
+                                   {22u, 32},
+                                   {28u, 160},
+                                   {30u, 112450},
+                                   {31u, 2900},
+                                   {32u, 2972},
+                                   {33u, 37000},
+                                   {35u, 16320},
+                                   {69u, 32767}})
       at(k, std::to_string(value));
     at(0, "1");
   }
@@ -242,10 +252,11 @@ MotorHost::Fit MotorHost::fit(unsigned motor, const std::function<Path(double)>&
 
 void report_fit(BenchReport& report, const std::string& name, const MotorHost::Fit& fit, std::size_t least) {
   report.step(name, fit.worst <= 1.0 / 16 && fit.moving >= least,
-              fit.worst > 1e8 ? "never moved"
-                              : fmt::format("{:.4f} counts off at {:.1f} ms, expected up to 0.0625; {} servo interrupts, "
-                                            "expected {} or more",
-                                            fit.worst, fit.at, fit.moving, least));
+              fit.worst > 1e8
+                  ? "never moved"
+                  : fmt::format("{:.4f} counts off at {:.1f} ms, expected up to 0.0625; {} servo interrupts, "
+                                "expected {} or more",
+                                fit.worst, fit.at, fit.moving, least));
 }
 
 }  // namespace brick

@@ -50,8 +50,8 @@ class MotorHost : public ServoHost, public MotorPeer {
 
   // Motors are numbered from 1. `Ixx11=32000` for each motor: variables(11, 32000).
   void variables(unsigned k, double value);
-  void set_up();           // channels, conversion table, gains and limits of these motors
-  void close_all();        // J/ to each
+  void set_up();                             // channels, conversion table, gains and limits of these motors
+  void close_all();                          // J/ to each
   double period() const { return period_; }  // of a servo cycle in ms, as I10 has it
   void wait_ms(double ms) { wait(ns_to_ticks(static_cast<std::uint64_t>(ms * 1e6))); }
 
@@ -60,7 +60,9 @@ class MotorHost : public ServoHost, public MotorPeer {
   const std::vector<Sample>& samples(unsigned motor) const { return samples_.at(motor - 1); }
   bool settle(double at_most_ms, double still_ms = 5);
   const std::vector<Enable>& enables(unsigned motor) const { return enables_.at(motor - 1); }
-  std::optional<std::uint32_t> captured(unsigned motor) const { return captured_.at(motor - 1); }  // read since record()
+  std::optional<std::uint32_t> captured(unsigned motor) const {
+    return captured_.at(motor - 1);
+  }                                                    // read since record()
   Tick disabled_at(unsigned motor, Tick after) const;  // first fall of AENA at or after, -1: none
 
   // Words of the motor that are not sampled, straight out of the memory.

@@ -63,10 +63,23 @@ void ServoLoop::choose_gains() {
 void ServoLoop::tell_gains(unsigned motor) {
   const LoopGains& g = gains_.at(motor - 1);
   std::vector<std::string> words;
-  for (const auto& [k, value] :
-       {std::pair{29u, g.bias}, {30u, g.p}, {31u, g.d}, {32u, g.vff}, {33u, g.i}, {34u, g.integrate_at_rest ? 1.0 : 0.0},
-        {35u, g.aff}, {36u, g.notch[0]}, {37u, g.notch[1]}, {38u, g.notch[2]}, {39u, g.notch[3]}, {63u, g.limit_i},
-        {64u, g.deadband_gain}, {65u, g.deadband}, {67u, g.limit_e}, {68u, g.friction}, {69u, g.limit}})
+  for (const auto& [k, value] : {std::pair{29u, g.bias},
+                                 {30u, g.p},
+                                 {31u, g.d},
+                                 {32u, g.vff},
+                                 {33u, g.i},
+                                 {34u, g.integrate_at_rest ? 1.0 : 0.0},
+                                 {35u, g.aff},
+                                 {36u, g.notch[0]},
+                                 {37u, g.notch[1]},
+                                 {38u, g.notch[2]},
+                                 {39u, g.notch[3]},
+                                 {63u, g.limit_i},
+                                 {64u, g.deadband_gain},
+                                 {65u, g.deadband},
+                                 {67u, g.limit_e},
+                                 {68u, g.friction},
+                                 {69u, g.limit}})
     words.push_back(fmt::format("I{}={:.12g}", 100 * motor + k, value));
   if (motor != 1) words.push_back(fmt::format("I{}11=0", motor));  // no matter how far the odd ones fall behind
   host_.say(words);
@@ -98,9 +111,10 @@ void ServoLoop::judge_errors() {
     if (step != 0) moving = std::max(moving, error), ++moved;
     if (s.size() - i < 10) resting = std::max(resting, error);
   }
-  report().step("reference motor at 32 counts/ms: following error", moved > 100 && moving <= kMoving && fastest > 31.9,
-                fmt::format("{:.2f} counts at most on the way, expected up to {}; {:.2f} counts/ms, {} servo interrupts",
-                            moving, kMoving, fastest, moved));
+  report().step(
+      "reference motor at 32 counts/ms: following error", moved > 100 && moving <= kMoving && fastest > 31.9,
+      fmt::format("{:.2f} counts at most on the way, expected up to {}; {:.2f} counts/ms, {} servo interrupts", moving,
+                  kMoving, fastest, moved));
   report().step("reference motor at rest: following error", s.size() > 10 && resting <= kResting,
                 fmt::format("{:.2f} counts, expected up to {}", resting, kResting));
   Comparison exact;

@@ -7,13 +7,13 @@
 namespace brick {
 
 struct LoopGains {
-  double position_scale = 96, velocity_scale = 96;         // Ixx08, Ixx09
-  double p = 2000, d = 1280, vff = 1280, i = 0, aff = 0;   // Ixx30, 31, 32, 33, 35
-  bool integrate_at_rest = true;                           // Ixx34
-  double limit_i = 4194304, limit_e = 4194304;             // Ixx63, Ixx67, 1/16 count
-  double deadband_gain = 0, deadband = 16;                 // Ixx64; Ixx65, 1/16 count
-  double friction = 0, bias = 0, limit = 20480;            // Ixx68, Ixx29, Ixx69
-  std::array<double, 4> notch{};                           // N1 N2 D1 D2, Ixx36 to 39
+  double position_scale = 96, velocity_scale = 96;        // Ixx08, Ixx09
+  double p = 2000, d = 1280, vff = 1280, i = 0, aff = 0;  // Ixx30, 31, 32, 33, 35
+  bool integrate_at_rest = true;                          // Ixx34
+  double limit_i = 4194304, limit_e = 4194304;            // Ixx63, Ixx67, 1/16 count
+  double deadband_gain = 0, deadband = 16;                // Ixx64; Ixx65, 1/16 count
+  double friction = 0, bias = 0, limit = 20480;           // Ixx68, Ixx29, Ixx69
+  std::array<double, 4> notch{};                          // N1 N2 D1 D2, Ixx36 to 39
 };
 
 class PositionLoopModel {
