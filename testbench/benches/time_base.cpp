@@ -67,7 +67,7 @@ void TimeBase::constant(double percent) {
   const auto make = [rate](double from) -> MotorHost::Path {
     return [p = linear_profile(from, {{200, 10}}, {10, 10}, 2), rate](double t) { return p.position(t * rate); };
   };
-  report_fit(report(), fmt::format("%{}: path", percent), host_.fit(1, make, 20 / rate), 25);
+  report_fit(report(), fmt::format("%{}: path", percent), host_.fit(1, make, 20 / rate), 20);
   way(fmt::format("%{}", percent), 200);
 }
 
@@ -80,7 +80,7 @@ void TimeBase::slewed() {
   host_.say({fmt::format("I5194={}", kSlew)});
   host_.record();
   host_.expect("&1B1R", "");
-  host_.wait_ms(14);
+  host_.wait_ms(17);
   const std::size_t before = host_.last(1);
   host_.expect("&1%50", "");
   host_.settle(250);
