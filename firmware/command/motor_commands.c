@@ -9,6 +9,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/language/statement.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/homing.h"
 #include "firmware/motion/jog.h"
@@ -29,12 +30,21 @@ static error_t is_free(uint32_t motor) {
   return d->assigned && run_is_running(d->cs) ? ERR_PROGRAM_RUNNING : ERR_NONE;
 }
 
-/* Whether the motor may be moved, or enabled for that. */
-static error_t may_move(uint32_t motor) {
+/* It may be jogged away from where a hold has stopped it. */
+static bool is_held(uint32_t motor) {
+  const struct coordinate_system* s = &coordinate_systems[axis_definitions[motor].cs];
+  return s->held && s->increment == 0;
+}
+
+static error_t may_enable(uint32_t motor, bool free) {
   if (i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0) return ERR_NOT_ACTIVATED;
-  if (is_free(motor) != ERR_NONE) return ERR_PROGRAM_RUNNING;
+  if (!free) return ERR_PROGRAM_RUNNING;
   return status_motors_may_enable() ? ERR_NONE : ERR_PHASING;
 }
+
+/* Whether the motor may be moved, or enabled for that. */
+static error_t may_move(uint32_t motor) { return may_enable(motor, is_free(motor) == ERR_NONE); }
+static error_t may_jog(uint32_t motor) { return may_enable(motor, is_free(motor) == ERR_NONE || is_held(motor)); }
 
 /* `HOME1`, `OR(...)`: program text that begins with the `length` characters of a command. */
 static error_t program_text(const struct lexer* lx, uint32_t length) {
@@ -42,9 +52,8 @@ static error_t program_text(const struct lexer* lx, uint32_t length) {
   return statement_starts(word) ? ERR_NEEDS_BUFFER : ERR_DATA;
 }
 
-/* Closed, or why not. */
-static error_t close_loop(uint32_t motor) {
-  error_t error = may_move(motor);
+/* Closed, unless `error` says why not. */
+static error_t close_loop(uint32_t motor, error_t error) {
   if (error != ERR_NONE || motors[motor].loop == LOOP_CLOSED) return error;
   const uint32_t state = hal_mask_servo();
   jog_drop(motor);
@@ -83,7 +92,7 @@ static error_t jog_distance(struct lexer* lx, enum jog_from from, bool becomes_b
   if (error != ERR_NONE) return error;
   const bool until = lexer_accept(lx, '^');
   if (until) error = lexer_constant(lx, &beyond);
-  if (error == ERR_NONE) error = close_loop(motor);
+  if (error == ERR_NONE) error = close_loop(motor, may_jog(motor));
   if (error != ERR_NONE) return error;
   const int64_t target = target_of(motor, from, distance);
   if (becomes_before) jog_set_position_before(motor, target);
@@ -118,13 +127,13 @@ static error_t jog_by_actual(struct lexer* lx) { return jog_distance(lx, FROM_AC
 /* J!: a whole number of counts, of a motor that stands. */
 static error_t jog_whole(struct lexer* lx) {
   (void)lx;
-  const error_t error = may_move(session.motor);
+  const error_t error = may_jog(session.motor);
   if (error == ERR_NONE) jog_make_whole(session.motor);
   return error;
 }
 
 error_t motor_jog(uint32_t motor, enum motor_jog how) {
-  const error_t error = close_loop(motor);
+  const error_t error = close_loop(motor, how == MOTOR_HOME ? may_move(motor) : may_jog(motor));
   if (error != ERR_NONE) return error;
   if (how == MOTOR_JOG_STOP)
     (void)jog_stop(motor);

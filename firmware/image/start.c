@@ -32,6 +32,7 @@
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/phasing.h"
+#include "firmware/motion/power_on_position.h"
 #include "firmware/motion/sine_table.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
@@ -105,6 +106,7 @@ void start(enum start_mode mode) {
   motor_variables_initialize();
   jog_initialize();
   phasing_initialize();
+  power_on_positions_initialize();
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();

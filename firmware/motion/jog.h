@@ -40,10 +40,9 @@ void jog_set_position_before(uint32_t motor, int64_t position);
 int64_t jog_commanded(uint32_t motor); /* trajectory position now, of one moment */
 void jog_make_whole(uint32_t motor);   /* J!: a motor that stands is commanded to the nearest whole count */
 int64_t jog_actual(uint32_t motor);    /* the trajectory position that has it where it is */
+/* The trajectory position that has the motor at `actual`. Servo task held off, or in it. */
+int64_t jog_trajectory_at(uint32_t motor, int64_t actual);
 /* All positions are counted from the present `position`. Servo task held off, or in it. */
 void jog_count_from(uint32_t motor, int64_t position);
-
-void jog_servo(uint32_t motor); /* S: the trajectory of a motor on PATH_OWN, and what it searches */
-bool jog_plan(void);            /* R, in slices: plans one request; false: there is none */
 
 #endif

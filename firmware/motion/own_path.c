@@ -38,7 +38,10 @@ static void add(struct own_path* path, double time, double speed, double acceler
   slice_pause();
   const double linear = speed * time, square = acceleration * time * time / 2.0;
   slice_pause();
-  const double cube = jerk * time * time * time / 6.0;
+  const double volume = jerk * time * time * time;
+  slice_pause();
+  const double cube = volume / 6.0;
+  slice_pause();
   path->exact += linear + square + cube;
   slice_pause();
   const int64_t end = path->start + nearest(path->exact);
@@ -53,7 +56,9 @@ void own_path_change(struct own_path* path, const struct speed_limits* l, double
   const double time = speed_change_time(l, from, to), s = l->s_curve, level = time - 2.0 * s;
   if (time <= 0.0) return;
   slice_pause();
-  const double acceleration = (to - from) / (time - s), gained = acceleration * s / 2.0;
+  const double acceleration = (to - from) / (time - s);
+  slice_pause();
+  const double gained = acceleration * s / 2.0;
   slice_pause();
   if (s > 0.0) {
     const double jerk = acceleration / s;
@@ -202,9 +207,14 @@ struct own_path_state own_path_state(const struct own_path_place* place) {
   const double time = (double)place->time, part = (double)place->elapsed / time;
   slice_pause();
   const double square = (double)c->square, cube = (double)c->cube;
-  const double moved = part * ((double)c->linear + part * (square + part * cube));
   slice_pause();
-  const double slope = (double)c->linear + part * (2.0 * square + part * 3.0 * cube);
+  const double bend = part * (square + part * cube);
+  slice_pause();
+  const double moved = part * ((double)c->linear + bend);
+  slice_pause();
+  const double turn = part * (2.0 * square + part * 3.0 * cube);
+  slice_pause();
+  const double slope = (double)c->linear + turn;
   slice_pause();
   return (struct own_path_state){(double)c->start + moved, slope / math_scale(time, -TIME_FRACTION_BITS)};
 }

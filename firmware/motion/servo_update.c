@@ -6,7 +6,7 @@
 
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/desired_position.h"
-#include "firmware/motion/jog.h"
+#include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_output.h"
 #include "firmware/motion/position_loop.h"

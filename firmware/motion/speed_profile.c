@@ -57,9 +57,13 @@ static double peak_speed(const struct speed_limits* l, double from, double dista
     rest -= from * from * half;
   }
   slice_pause();
-  const double root = math_square_root(larger(linear * linear - 4.0 * square * rest, 0.0));
+  const double inside = linear * linear - 4.0 * square * rest;
   slice_pause();
-  return -2.0 * rest / (linear + root);
+  const double root = math_square_root(larger(inside, 0.0));
+  slice_pause();
+  const double below = linear + root;
+  slice_pause();
+  return -2.0 * rest / below;
 }
 
 /* `distance` beyond where it would stop, `from` upwards or downwards, `top` above 0. */

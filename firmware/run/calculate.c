@@ -11,7 +11,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/jog.h"
+#include "firmware/motion/jog_plan.h"
 #include "firmware/motion/place.h"
 #include "firmware/motion/position.h"
 #include "firmware/motion/system_motors.h"

@@ -334,10 +334,14 @@ TEST(ITable, IndicesAreCheckedWhereTheyEnter) {
   for (const char* letter : {"I", "P", "Q", "M"})
     for (const char* rest : {"8192",   "(P3)", "(P4)",     "0..8192",    "8191..0", "(P2)..(P3)",     "8190,3",
                              "0,8193", "0,0",  "1,8191,2", "4294967296", "(1/0)",   "(P4*8191)",      "99999999999",
-                             "1..",    "1,",   "1,2,",     "16,4,0",     "16,1,0",  "16,4,(P3-8192)", "16,4,(P1/2)"}) {
+                             "1..",    "1,-1", "1,2,-1",   "16,4,0",     "16,1,0",  "16,4,(P3-8192)", "16,4,(P1/2)"}) {
       EXPECT_EQ(c.line(std::string(letter) + rest), "ERR003") << letter << rest;
       EXPECT_EQ(c.line(std::string(letter) + rest + "=1"), "ERR003") << letter << rest;
     }
+  // A comma with no value behind it divides (firmware:1.1/7), but not from an assignment.
+  EXPECT_EQ(c.line("P1, P1,2,"), "1|1|8191");
+  EXPECT_EQ(c.line("P1,=5"), "1|ERR003");
+  EXPECT_EQ(c.line("P1"), "1");
   // Inside an expression a computed number wraps (docs/variables.md): 8192 is 0, -1 is 8191.
   EXPECT_EQ(c.line("P0=77 P8191=78 P10=P(P3) P11=P(P4) P10 P11"), "77|78");
   std::string infinite = "34359738368";  // EXP is 2^47 at most: its 24th power is at the end of a double's range

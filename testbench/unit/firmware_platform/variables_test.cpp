@@ -452,7 +452,7 @@ TEST(Memory, AddressesAndCountsAreChecked) {
       }());
   for (const char* form : {"X", "Y", "L", "D"})
     for (const char* rest : {"$1000000", "-1", "$FFFFFF,2", "$FFFFC1,64", "0,0", "0,65", "0,-1", "0,1.5", "1.5", "",
-                             ":", "$10F0,", "4294967296", "34359738369"})
+                             ":", "$10F0,-1", "4294967296", "34359738369"})
       for (const char* command : {"R", "RH"}) EXPECT_EQ(c.line(std::string(command) + form + rest), "ERR003") << rest;
   for (const char* form : {"X", "Y", "L", "D"})
     for (const char* rest : {"$1000000,1", "-1,1", "$FFFFFF,1,2", "$10F0", "$10F0,", "1.5,1", "$10F0,1,"})

@@ -10,6 +10,8 @@ extern "C" {
 #include "firmware/command/control_characters.h"
 #include "firmware/motion/homing.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/jog_plan.h"
+#include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/motor_status.h"
@@ -356,6 +358,15 @@ TEST_F(Homing, SensorsOfIxx95) {
     ASSERT_EQ(host("I195=" + std::to_string(wrong)), "");
     EXPECT_EQ(host("#1$*"), "ERR018") << wrong;
   }
+}
+
+TEST_F(Homing, SensorsAreReadAtEachStart) {
+  ASSERT_EQ(host("I110=$10E0 I195=$180000 I126=0 I210=$10E0 I295=$180000 I280=4"), "");
+  ASSERT_EQ(host("SAVE"), "");
+  platform::reset();
+  EXPECT_EQ(host("#1P"), "0");
+  EXPECT_TRUE(motors[0].status.home_complete);
+  EXPECT_FALSE(motors[1].status.home_complete) << "Ixx80 bit 2";
 }
 
 TEST_F(Homing, WhileItMovesNoReferenceIsTaken) {

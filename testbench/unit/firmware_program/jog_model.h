@@ -1,4 +1,4 @@
-// The motion of a jogging motor in double precision, from datasheet/motion.md section 4 alone: counts and milliseconds.
+// The motion of a jogging motor in double precision, from motion:4.1 and motion:4.2 alone: counts and milliseconds.
 #pragma once
 
 #include <algorithm>

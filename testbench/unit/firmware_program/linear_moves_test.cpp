@@ -12,12 +12,9 @@ TEST_F(LinearMoves, OneMoveFollowsItsProfile) {
     const char* rates;
     double time, acceleration, s;
   };
-  const Case cases[] = {{"TM100 TA40 TS0", 100, 40, 0},
-                        {"TM100 TA40 TS10", 100, 40, 10},
-                        {"TM100 TA40 TS20", 100, 40, 20},
-                        {"TM100 TA0 TS30", 100, 60, 30},
-                        {"TM10 TA80 TS5", 80, 80, 5},
-                        {"F100 TA20 TS0", 30, 20, 0}};
+  const Case cases[] = {{"TM100 TA40 TS0", 100, 40, 0},   {"TM100 TA40 TS10", 100, 40, 10},
+                        {"TM100 TA40 TS20", 100, 40, 20}, {"TM100 TA0 TS30", 100, 60, 30},
+                        {"TM10 TA80 TS5", 80, 80, 5},     {"F100 TA20 TS0", 30, 20, 0}};
   for (const Case& c : cases) {
     SCOPED_TRACE(c.rates);
     platform::power_up();
@@ -106,7 +103,8 @@ struct Extremes {
     last.push_back(position);
     const std::size_t n = last.size();
     if (n < 9) return;
-    const double time = 4 * kTickMs, now = (last[n - 1] - last[n - 5]) / time, before = (last[n - 5] - last[n - 9]) / time;
+    const double time = 4 * kTickMs, now = (last[n - 1] - last[n - 5]) / time,
+                 before = (last[n - 5] - last[n - 9]) / time;
     velocity = std::max(velocity, std::abs(now));
     acceleration = std::max(acceleration, std::abs(now - before) / time);
   }

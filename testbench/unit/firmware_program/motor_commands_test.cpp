@@ -128,6 +128,16 @@ TEST_F(MotorCommands, AMotorOfARunningProgramIsThePrograms) {
   coordinate_systems[0].running = true;
   for (const char* line : {"#1J+", "J/", "J=1", "HM", "HMZ", "K", "O1", "$", "$*"})
     EXPECT_EQ(host(line), "ERR001") << line;
+  coordinate_systems[0].held = true;
+  EXPECT_EQ(host("J=1"), "ERR001") << "not at rest yet";
+  coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;
+  for (const char* line : {"HM", "HMZ", "K", "O1", "$", "$*"}) EXPECT_EQ(host(line), "ERR001") << line;
+  ASSERT_EQ(host("J=25"), "") << "jogged away from where it is held";
+  settle();
+  EXPECT_EQ(commanded(), 25);
+  ASSERT_EQ(host("J="), "");
+  settle();
+  EXPECT_EQ(commanded(), 0);
   coordinate_systems[0].running = false;
 }
 
