@@ -61,6 +61,7 @@ void compensation_changed(void) {
   compensation_of_position = compensation_of_torque = 0;
   for (uint32_t kind = 0; kind < COMPENSATION_KINDS; ++kind)
     for (uint32_t motor = 0; motor < MOTORS; ++motor) take((enum region_kind)kind, motor);
+  for (uint32_t motor = 0; motor < MOTORS; ++motor) motors[motor].compensation = 0; /* made anew, if there is one */
   hal_unmask(state);
 }
 

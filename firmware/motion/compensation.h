@@ -1,4 +1,4 @@
-/* Compensation tables at work (datasheet/motion.md, section 1): COMP and BLCOMP change the desired position, TCOMP the
+/* Compensation tables at work (motion:1.4): COMP and BLCOMP change the desired position, TCOMP the
  * output of the servo loop, by where a source motor is. On while I51 = 1. */
 #ifndef FIRMWARE_MOTION_COMPENSATION_H
 #define FIRMWARE_MOTION_COMPENSATION_H

@@ -15,7 +15,7 @@ static const uint32_t TURNED = 1u << 23, DOWN = 1u, CAPTURE = SERVO_CHANNEL_STAT
 static uint32_t with_time(const struct conversion_entry* entry, uint32_t position, unsigned bits) {
   const uint32_t counts = (position >> 1) << bits;
   const uint32_t between = *entry->source[BETWEEN], since = *entry->source[SINCE];
-  if (since > between || between >= TURNED || between == 0u) return counts;
+  if (since > between || between - 1u >= TURNED - 1u) return counts; /* turned, or no time */
   const uint32_t all = (1u << bits) - 1u, part = since == between ? all : (since << bits) / between;
   return (position & DOWN) != 0u ? counts - part : counts + part;
 }

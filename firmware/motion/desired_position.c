@@ -27,6 +27,8 @@ static struct path {
   bool down;         /* direction of the last movement */
 } paths[MOTORS];
 
+static uint32_t with_something; /* bit n: motor n follows, or has a filter or backlash. V */
+
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
 
 static int64_t position_of(uint32_t motor, int32_t sixteenths) {
@@ -57,6 +59,11 @@ void desired_position_motor_changed(uint32_t motor) {
   p->backlash = position_of(motor, variable(motor, IXX86_BACKLASH_SIZE));
   p->backlash_rate = position_of(motor, variable(motor, IXX85_BACKLASH_RATE));
   p->backlash_hysteresis = position_of(motor, variable(motor, IXX87_BACKLASH_HYSTERESIS));
+  const uint32_t bit = 1u << (motor - 1u);
+  with_something &= ~bit;
+  if (follows || share != 0u || p->backlash_rate != 0) with_something |= bit;
+  if (p->backlash_rate == 0) motors[motor - 1u].compensation += p->taken_up;
+  if (p->backlash_rate == 0) p->taken_up = 0;
   hal_unmask(state);
 }
 
@@ -124,10 +131,7 @@ static int32_t saturated(int64_t value) {
   return value < INT32_MIN ? INT32_MIN : (int32_t)value;
 }
 
-void desired_position_servo(uint32_t motor) {
-  struct motor* m = &motors[motor];
-  struct path* p = &paths[motor];
-  if (m->loop != LOOP_CLOSED) return; /* the loop keeps it where the motor is */
+static __attribute__((noinline)) void with_extras(uint32_t motor, struct motor* m, struct path* p) {
   if (p->follows) follow(m, p);
   m->compensation = 0;
   if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor);
@@ -136,6 +140,16 @@ void desired_position_servo(uint32_t motor) {
   if (p->share != 0u) wanted = filtered(m, p, wanted);
   m->desired_step = saturated(wanted - m->commanded);
   m->commanded = wanted;
+}
+
+void desired_position_servo(uint32_t motor) {
+  struct motor* m = &motors[motor];
+  FIXED_IN_REGISTER(m);
+  if (m->loop != LOOP_CLOSED) return; /* the loop keeps it where the motor is */
+  if (((with_something | compensation_of_position) >> motor & 1u) != 0u) return with_extras(motor, m, &paths[motor]);
+  const int64_t wanted = m->trajectory + m->master - m->compensation, step = wanted - m->commanded;
+  m->commanded = wanted;
+  m->desired_step = step == (int32_t)step ? (int32_t)step : step > 0 ? INT32_MAX : INT32_MIN;
 }
 
 bool desired_position_backlash_is_down(uint32_t motor) { return paths[motor].down; }

@@ -22,6 +22,10 @@
 enum { POSITION_SUBCOUNT = 32, OUTPUT_FRACTION_BITS = 8 };
 enum { CURRENT_FRACTION_BITS = 28, VOLTAGE_FRACTION_BITS = 23, CURRENT_GAIN_FRACTION_BITS = 27 };
 
+/* An address that the compiler keeps in a register: it would work out that of an element anew at every use, which costs
+ * the servo task a tenth of its time. */
+#define FIXED_IN_REGISTER(address) __asm__("" : "+r"(address))
+
 /* Upper 64 of the 128 bits. */
 static inline uint64_t fixed_multiply_high(uint64_t a, uint64_t b) {
   const uint64_t al = (uint32_t)a, ah = a >> 32, bl = (uint32_t)b, bh = b >> 32;

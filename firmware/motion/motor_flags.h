@@ -1,6 +1,6 @@
-/* Flags of a motor (0..31): amplifier enable and fault, overtravel limits (motion:1.4, motion:9.4, Ixx24, Ixx25, Ixx42,
- * Ixx43). Pointers are resolved when one of these is written. Flags over MACRO are not built: nothing is driven, and no
- * flag is set. */
+/* Flags of a motor (0..31): amplifier enable and fault, overtravel limits (motion:1.5, motion:6.2, motion:6.3), as
+ * Ixx24, Ixx25, Ixx42 and Ixx43 say. Pointers are resolved when one of these is written. Flags over MACRO are not
+ * built: nothing is driven, and no flag is set. */
 #ifndef FIRMWARE_MOTION_MOTOR_FLAGS_H
 #define FIRMWARE_MOTION_MOTOR_FLAGS_H
 

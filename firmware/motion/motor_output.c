@@ -25,7 +25,7 @@ static struct output {
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
 
 static volatile uint32_t* word_of(bool x, uint32_t address) {
-  if (!word_exists(x, address)) return 0;
+  if (address == 0u || !word_exists(x, address)) return 0;
   return x ? hal_x(address) : hal_y(address);
 }
 
@@ -47,6 +47,8 @@ void motor_output_motor_changed(uint32_t motor) {
 void motor_output_servo(uint32_t motor) {
   const struct motor* m = &motors[motor];
   struct output* o = &outputs[motor];
+  FIXED_IN_REGISTER(m);
+  FIXED_IN_REGISTER(o);
   if (o->commutated) {
     commutation_command(motor, m->output);
     return;

@@ -53,7 +53,9 @@ bool motor_open(uint32_t motor, int32_t output) {
   return true;
 }
 
+/* Whatever there is of it, a search for a phase reference too. */
 void motor_kill(uint32_t motor) {
+  if (!is_activated(motor)) return;
   const uint32_t state = hal_mask_servo();
   motor_flags_enable(motor, false);
   motors[motor].loop = LOOP_KILLED;

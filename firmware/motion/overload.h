@@ -1,4 +1,4 @@
-/* Integrated overload of a motor, I2T (motion:1.4): current above the continuous limit Ixx57, summed up to Ixx58. */
+/* Integrated overload of a motor, I2T (motion:6.3): current above the continuous limit Ixx57, summed up to Ixx58. */
 #ifndef FIRMWARE_MOTION_OVERLOAD_H
 #define FIRMWARE_MOTION_OVERLOAD_H
 

@@ -27,14 +27,14 @@ enum { INTEGRATES_VELOCITY = 2 };      /* Ixx96 */
 static struct loop {
   /* V */
   const volatile uint32_t *position_source, *velocity_source;
-  volatile uint32_t *position_x, *position_y, *commanded_x, *commanded_y, *velocity, *result; /* published words */
-  uint32_t extension;                                                                         /* Ixx60 */
+  uint32_t extension; /* Ixx60 */
   int32_t proportional, derivative, velocity_forward, acceleration_forward, integral_gain, deadband_gain;
   int64_t error_most, deadband, integral_most; /* position; the last with its fraction */
   int64_t integrand_most;                      /* FINER: times Ixx33 it is still a number */
   int32_t friction, output_most;               /* output */
   bool only_at_rest, integrates_velocity;
-  bool simple;              /* no deadband, position error integrated */
+  bool one_source;          /* velocity is that of the position, in the same unit */
+  bool simple;              /* no deadband, no notch, position error integrated */
   int32_t small_error_most; /* error_most, if it has no more than 32 bits */
   /* S */
   uint32_t left; /* servo interrupts to the next closure */
@@ -44,7 +44,7 @@ static struct loop {
   int64_t integral;  /* position, with INTEGRAL_BITS of fraction */
   int64_t remainder; /* what it has not counted yet, 2^-7 of its unit */
   bool saturated;
-  int32_t filtered; /* PID alone, as a word: X:+$2E */
+  int64_t filtered; /* PID alone, NOTCH_FINER */
 } loops[MOTORS];
 
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
@@ -77,13 +77,6 @@ static void take_sources(struct loop* l, uint32_t motor) {
   if (velocity != l->velocity_source) l->velocity_reading = *velocity;
   l->position_source = position;
   l->velocity_source = velocity;
-  const uint32_t words = MEMORY_MOTOR_WORDS * motor;
-  l->position_x = hal_x(words + MEMORY_MOTOR_ACTUAL);
-  l->position_y = hal_y(words + MEMORY_MOTOR_ACTUAL);
-  l->commanded_x = hal_x(words + MEMORY_MOTOR_COMMANDED);
-  l->commanded_y = hal_y(words + MEMORY_MOTOR_COMMANDED);
-  l->velocity = hal_x(words + MEMORY_MOTOR_VELOCITY);
-  l->result = hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT);
 }
 
 void position_loop_initialize(void) {
@@ -94,7 +87,10 @@ void position_loop_initialize(void) {
 void position_loop_motor_changed(uint32_t motor) {
   struct loop* l = &loops[motor - 1u];
   const uint32_t state = hal_mask_servo();
+  if (l->one_source) l->velocity_reading = l->position_reading;
   take_sources(l, motor);
+  l->one_source = l->position_source == l->velocity_source &&
+                  motors[motor - 1u].position_scale == motors[motor - 1u].velocity_scale;
   l->extension = (uint32_t)variable(motor, IXX60_SERVO_CYCLE_EXTENSION);
   if (l->left > l->extension) l->left = l->extension;
   l->proportional = variable(motor, IXX30_PROPORTIONAL_GAIN);
@@ -111,9 +107,9 @@ void position_loop_motor_changed(uint32_t motor) {
   l->friction = variable(motor, IXX68_FRICTION_FEEDFORWARD) << OUTPUT_FRACTION_BITS;
   l->output_most = variable(motor, IXX69_OUTPUT_LIMIT) << OUTPUT_FRACTION_BITS;
   l->integrates_velocity = (variable(motor, IXX96_OUTPUT_MODE) & INTEGRATES_VELOCITY) != 0;
-  l->simple = l->deadband_gain == 0 && !l->integrates_velocity;
   l->small_error_most = l->error_most < INT32_MAX ? (int32_t)l->error_most : INT32_MAX;
   notch_motor_changed(motor);
+  l->simple = l->deadband_gain == 0 && !l->integrates_velocity && !notch_is_used(motor - 1u);
   hal_unmask(state);
 }
 
@@ -127,6 +123,8 @@ void position_loop_restart(uint32_t motor) {
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
+static bool is_small(int64_t value) { return value == (int32_t)value; }
+
 static int32_t saturated(int64_t value) {
   if (value > INT32_MAX) return INT32_MAX;
   return value < INT32_MIN ? INT32_MIN : (int32_t)value;
@@ -134,14 +132,20 @@ static int32_t saturated(int64_t value) {
 
 /* The words of the table wrap; positions are the sums of their movement. */
 static void measure(struct motor* m, struct loop* l) {
-  const uint32_t position = *l->position_source, velocity = *l->velocity_source;
+  const uint32_t position = *l->position_source;
+  const int64_t moved = (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
+  l->position_reading = position;
   if (l->forgets != 0u)
     l->forgets--;
   else
-    m->actual += (int64_t)hal_signed(position - l->position_reading) * m->position_scale;
-  m->velocity = saturated((int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale);
-  l->position_reading = position;
-  l->velocity_reading = velocity;
+    m->actual += moved;
+  int64_t speed = moved;
+  if (!l->one_source) {
+    const uint32_t velocity = *l->velocity_source;
+    speed = (int64_t)hal_signed(velocity - l->velocity_reading) * m->velocity_scale;
+    l->velocity_reading = velocity;
+  }
+  m->velocity = is_small(speed) ? (int32_t)speed : saturated(speed);
 }
 
 /* FINER. */
@@ -164,8 +168,16 @@ static int64_t with_gain(const struct loop* l, int64_t sum) {
   return ((clamp(sum, SUM_MOST) >> FINER) * l->proportional + finer) >> (GAIN_BITS - NOTCH_FINER);
 }
 
-/* Numbers of any size, and the deadband. */
-static __attribute__((noinline)) int64_t pid_of_large(const struct motor* m, struct loop* l, int64_t step) {
+/* What a clip leaves of an output, and whether it had to. */
+static void put_out(struct motor* m, struct loop* l, int64_t output) {
+  const int32_t most = l->output_most;
+  const int32_t clipped = output > most ? most : output < -most ? -most : (int32_t)output;
+  m->output = clipped;
+  l->saturated = clipped == most || clipped == -most;
+}
+
+/* Numbers of any size, the deadband, the integral of the velocity's error. */
+static int64_t pid(const struct motor* m, struct loop* l, int64_t step) {
   const int64_t limited = clamp(m->commanded - m->actual, l->error_most);
   int64_t error = limited * (1 << FINER);
   if (l->deadband_gain != 0) error += l->deadband_gain * clamp(limited, l->deadband) * (1 << (FINER - DEADBAND_BITS));
@@ -177,61 +189,57 @@ static __attribute__((noinline)) int64_t pid_of_large(const struct motor* m, str
   return with_gain(l, sum);
 }
 
-static bool is_small(int64_t value) { return value == (int32_t)value; }
+static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
+  const int64_t step = clamp(m->commanded - m->closed_at, STEP_MOST), finer = pid(m, l, step);
+  int64_t output = (notch_is_used(motor) ? notch(motor, finer) : finer) >> NOTCH_FINER;
+  if (step != 0) output += step > 0 ? l->friction : -l->friction;
+  if ((compensation_of_torque >> motor & 1u) != 0u) output += compensation_torque(motor, output);
+  put_out(m, l, output);
+  l->filtered = finer;
+  m->closed_at = m->commanded;
+  l->step = step;
+}
 
-/* The same in half the time for numbers of 32 bits, which nearly all are. */
-static int64_t pid(const struct motor* m, struct loop* l, int64_t long_step) {
-  const int64_t difference = m->commanded - m->actual, change = long_step - l->step;
-  if (!l->simple || !is_small(difference) || !is_small(long_step) || !is_small(change))
-    return pid_of_large(m, l, long_step);
+/* The same in half the time, for numbers of 32 bits and what most motors use. False: nothing has been done. */
+static inline bool close_simple_loop(uint32_t motor, struct motor* m, struct loop* l) {
+  const int64_t difference = m->commanded - m->actual, long_step = m->commanded - m->closed_at;
+  const int64_t change = long_step - l->step;
+  if (!l->simple || !is_small(difference) || !is_small(long_step) || !is_small(change) ||
+      (compensation_of_torque >> motor & 1u) != 0u)
+    return false;
   const int32_t step = (int32_t)long_step, most = l->small_error_most;
   int32_t error = (int32_t)difference;
   if (error > most) error = most;
   if (error < -most) error = -most;
   if (integrates(l, step != 0)) l->integral += (int64_t)l->integral_gain * error;
-  if (l->integral != 0) l->integral = clamp(l->integral, l->integral_most);
-  int64_t sum =
-      (int64_t)error * (1 << FINER) - (int64_t)l->derivative * m->velocity + (l->integral >> (INTEGRAL_BITS - FINER));
+  int64_t sum = (int64_t)error * (1 << FINER) - (int64_t)l->derivative * m->velocity;
+  if (l->integral != 0) {
+    l->integral = clamp(l->integral, l->integral_most);
+    sum += l->integral >> (INTEGRAL_BITS - FINER);
+  }
   if (step != 0) sum += (int64_t)l->velocity_forward * step;
   if (change != 0) sum += (int64_t)l->acceleration_forward * (int32_t)change;
-  return with_gain(l, sum);
-}
-
-/* 24 bits of a number that may have more. */
-static int32_t word_of(int64_t output) { return (int32_t)clamp(output, WORD_MOST); }
-
-static int32_t clipped(int64_t output, int32_t most) {
-  if (output > most) return most;
-  return output < -most ? -most : (int32_t)output;
-}
-
-static void close_loop(uint32_t motor, struct motor* m, struct loop* l) {
-  const int64_t step = clamp(m->commanded - m->closed_at, STEP_MOST);
-  const int64_t finer = pid(m, l, step);
+  const int64_t finer = with_gain(l, sum);
   int64_t output = finer >> NOTCH_FINER;
-  l->filtered = word_of(output);
-  if (notch_is_used(motor)) output = notch(motor, finer) >> NOTCH_FINER;
   if (step != 0) output += step > 0 ? l->friction : -l->friction;
-  if ((compensation_of_torque >> motor & 1u) != 0u) output += compensation_torque(motor, output);
-  m->output = clipped(output, l->output_most);
-  l->saturated = m->output == l->output_most || m->output == -l->output_most;
+  put_out(m, l, output);
+  l->filtered = finer;
   m->closed_at = m->commanded;
   l->step = step;
+  return true;
 }
 
-static void publish(const struct motor* m, const struct loop* l) {
-  *l->commanded_x = (uint32_t)(m->commanded >> 24) & HAL_WORD_MASK;
-  *l->commanded_y = (uint32_t)m->commanded & HAL_WORD_MASK;
-  *l->position_x = (uint32_t)(m->actual >> 24) & HAL_WORD_MASK;
-  *l->position_y = (uint32_t)m->actual & HAL_WORD_MASK;
-  *l->velocity = (uint32_t)m->velocity & HAL_WORD_MASK;
-  *l->result = (uint32_t)m->output & HAL_WORD_MASK;
+static inline void publish(uint32_t motor, const struct motor* m) {
+  const uint32_t words = MEMORY_MOTOR_WORDS * (motor + 1u);
+  *hal_x(words + MEMORY_MOTOR_COMMANDED) = (uint32_t)(m->commanded >> 24) & HAL_WORD_MASK;
+  *hal_y(words + MEMORY_MOTOR_COMMANDED) = (uint32_t)m->commanded & HAL_WORD_MASK;
+  *hal_x(words + MEMORY_MOTOR_ACTUAL) = (uint32_t)(m->actual >> 24) & HAL_WORD_MASK;
+  *hal_y(words + MEMORY_MOTOR_ACTUAL) = (uint32_t)m->actual & HAL_WORD_MASK;
+  *hal_x(words + MEMORY_MOTOR_VELOCITY) = (uint32_t)m->velocity & HAL_WORD_MASK;
+  *hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT) = (uint32_t)m->output & HAL_WORD_MASK;
 }
 
-/* Not in line: the compiler keeps both addresses in registers then. */
-static __attribute__((noinline)) void run(uint32_t motor, struct motor* m, struct loop* l) {
-  l->left = l->extension;
-  measure(m, l);
+static __attribute__((noinline)) void run_other(uint32_t motor, struct motor* m, struct loop* l) {
   if (m->loop == LOOP_CLOSED) {
     close_loop(motor, m, l);
   } else {
@@ -239,15 +247,25 @@ static __attribute__((noinline)) void run(uint32_t motor, struct motor* m, struc
     m->output = m->loop == LOOP_OPEN ? m->open_output : 0;
     l->integral = l->step = 0; /* shown so while it is open */
   }
-  publish(m, l);
+  publish(motor, m);
 }
 
+/* The call is the last thing, so that what does not need it saves no registers. */
 void position_loop_servo(uint32_t motor) {
+  struct motor* m = &motors[motor];
   struct loop* l = &loops[motor];
-  if (l->left == 0u)
-    run(motor, &motors[motor], l);
-  else
+  FIXED_IN_REGISTER(m);
+  FIXED_IN_REGISTER(l);
+  if (l->left != 0u) {
     l->left--;
+    return;
+  }
+  l->left = l->extension;
+  measure(m, l);
+  if (m->loop == LOOP_CLOSED && close_simple_loop(motor, m, l))
+    publish(motor, m);
+  else
+    run_other(motor, m, l);
 }
 
 /* What live words show ----------------------------------------------------------------------------------------------
@@ -267,7 +285,9 @@ int64_t position_loop_measured(uint32_t motor) {
   return motors[motor].actual + movement * motors[motor].position_scale;
 }
 void position_loop_forget_movement(uint32_t motor) { loops[motor].forgets = FORGETS; }
-int32_t position_loop_filtered(uint32_t motor) { return loops[motor].filtered; }
+int32_t position_loop_filtered(uint32_t motor) {
+  return (int32_t)clamp(of_one_moment(&loops[motor].filtered) >> NOTCH_FINER, WORD_MOST);
+}
 int64_t position_loop_integral(uint32_t motor) { return of_one_moment(&loops[motor].integral) >> INTEGRAL_BITS; }
 int64_t position_loop_step(uint32_t motor) { return of_one_moment(&loops[motor].step); }
 bool position_loop_is_limited(uint32_t motor) {

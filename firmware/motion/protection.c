@@ -1,6 +1,6 @@
 #include "firmware/motion/protection.h"
 
-#include "firmware/base/mathematics.h"
+#include "firmware/base/status.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
@@ -26,6 +26,8 @@ static struct guard {
   enum others others;
 } guards[MOTORS];
 
+volatile uint32_t protection_watched;
+
 static volatile bool foreground; /* I13, as the last pass has seen it */
 static uint32_t shown;           /* B: signals that are on */
 
@@ -33,6 +35,7 @@ void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
   foreground = false;
+  protection_watched = 0;
   shown = 0;
 }
 
@@ -65,6 +68,7 @@ void protection_motor_changed(uint32_t motor) {
   g->limit_kills = (mode & LIMIT_KILLS) != 0u;
   g->others = (enum others)(mode >> OTHERS_SHIFT & 3u);
   overload_motor_changed(motor);
+  protection_watched |= overload_watched;
 }
 
 /* What there is to see ----------------------------------------------------------------------------------------------
@@ -196,6 +200,7 @@ static void not_closed(uint32_t motor) {
 
 static void check(uint32_t motor) {
   const struct view view = look(motor);
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) motor_kill(motor); /* no clock: nothing is controlled */
   if (view.loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
@@ -235,6 +240,7 @@ static void show_signals(void) {
 
 void protection_pass(void) {
   foreground = i_integer(I13_FOREGROUND_IN_POSITION) != 0;
+  protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)
     if ((left & 1u) != 0u) check(motor);
@@ -243,7 +249,7 @@ void protection_pass(void) {
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
 
-void protection_servo(uint32_t motor) {
+void protection_look(uint32_t motor) {
   if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
   if (!foreground) return;
   const struct motor* m = &motors[motor];

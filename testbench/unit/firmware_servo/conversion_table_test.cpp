@@ -215,6 +215,18 @@ TEST_F(ConversionTable, ExponentialFilter) {
   }
 }
 
+// Tf = 1000: nothing is lost on the way, however slow it is.
+TEST_F(ConversionTable, ASlowFilterArrives) {
+  c_.line("I8000=$D010F0 I8001=8388607 I8002=8380 I8003=0");
+  conversion_table_servo();
+  x(kFree, 100);
+  for (int i = 0; i < 20000; ++i) conversion_table_servo();
+  EXPECT_GE(signed_result(2), 99);
+  x(kFree, -100);
+  for (int i = 0; i < 20000; ++i) conversion_table_servo();
+  EXPECT_LE(signed_result(2), -99);
+}
+
 TEST_F(ConversionTable, TrackingFilter) {
   c_.line("I8000=$D810F0 I8001=100000 I8002=2097152 I8003=0 I8004=262144 I8005=0");
   conversion_table_servo();

@@ -1,4 +1,4 @@
-// Net desired position (motion:1.2) and compensation tables (datasheet/motion.md, section 1), natively.
+// Net desired position (motion:1.2) and compensation tables (motion:1.4), natively.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -261,6 +261,26 @@ TEST_F(PositionLoop, SourcesRollOver) {
   EXPECT_EQ(motors[0].velocity, 32 * 96);
 }
 
+// One word for position and velocity is read once; then Ixx04 or Ixx09 become others, and nothing jumps.
+TEST_F(PositionLoop, VelocityOfTheSameWord) {
+  c_.line("I104=$10F0");
+  close(0, 0);
+  const auto velocity_after = [this](std::int64_t position) {
+    at(position, 5000);
+    position_loop_servo(0);
+    return motors[0].velocity;
+  };
+  velocity_after(0);
+  EXPECT_EQ(velocity_after(7), 7 * 96);
+  EXPECT_EQ(velocity_after(9), 2 * 96);
+  c_.line("I109=48");
+  EXPECT_EQ(velocity_after(10), 48);
+  c_.line("I109=96");
+  EXPECT_EQ(velocity_after(14), 4 * 96);
+  c_.line("I104=$10F1");
+  EXPECT_EQ(velocity_after(15), 0);
+}
+
 TEST_F(PositionLoop, OpenLoopPutsOutWhatItIsTold) {
   ASSERT_TRUE(motor_open(0, 1234 << 8));
   position_loop_servo(0);

@@ -1,4 +1,4 @@
-// Trips, limits, in position and status words, natively: motion:1.4, motion:9.4, firmware:5.2, firmware:5.3. The flag
+// Trips, limits, in position and status words, natively: motion:6, firmware:5.2, firmware:5.3. The flag
 // words stand in the fake servo IC.
 #include <gtest/gtest.h>
 
@@ -257,7 +257,7 @@ TEST_F(Protection, IntegratedError) {
   EXPECT_EQ(loop(1), LOOP_KILLED);
 }
 
-// motion:1.4: Ixx69 = 32767, Ixx57 = 10589 for 60 s at 2250 Hz is Ixx58 = 120,894.
+// motion:6.3: Ixx69 = 32767, Ixx57 = 10589 for 60 s at 2250 Hz is Ixx58 = 120,894.
 TEST_F(Protection, OverloadTripsAfterItsTime) {
   c_.line("I157=10589 I158=120894 I169=32767 I111=0 I124=$C00001");
   ASSERT_TRUE(motor_open(0, 32767 << 8));
