@@ -1,6 +1,6 @@
 // jog-home: jogs and homing searches of motors with speeds and accelerations of their own. Judged at each servo
-// interrupt by the profiles of motion:4.6 in double precision (testbench/checkers/jog_profile.h), at the end by the
-// exact target, and after homing by where the motor stands against what the channel captured.
+// interrupt by the profiles of motion:4.1 and motion:4.2 in double precision (testbench/checkers/jog_profile.h), at the
+// end by the exact target, and after homing by where the motor stands against what the channel captured.
 #include <fmt/format.h>
 
 #include "testbench/benches/benches.h"

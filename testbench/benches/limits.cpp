@@ -1,5 +1,5 @@
 // limits: what stops motors by itself: end switches, software limits, following error, amplifier fault, I2T, and the
-// host's ^K. Judged by the times of motion:9.4 at the amplifier enable pin and in the commanded position, by the ramp
+// host's ^K. Judged by the times of motion:6 at the amplifier enable pin and in the commanded position, by the ramp
 // of Ixx15, and by the status bits of firmware:5.2 and firmware:5.3.
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace brick {
 namespace {
 
 constexpr std::int64_t kEnd = 500;         // counts where switches open, both ways
-constexpr double kReaction = 2;            // ms, motion:9.4/10
+constexpr double kReaction = 2;            // ms, motion:6
 constexpr double kSpeed = 32, kAbort = 4;  // Ixx22; Ixx15
 constexpr std::uint16_t kQuadrature = 1u << kEncA | 1u << kEncB;
 

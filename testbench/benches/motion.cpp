@@ -1,6 +1,7 @@
 // motion: programs of unsegmented moves, blended or not, each in a coordinate system with two motors, as many at once
-// as the board has motors for. Judged at each servo interrupt by the formulas of motion:4.2, motion:4.5 and motion:4.6
-// in double precision (testbench/checkers/program_profile.h), and at each stop by the exact sum of the moves.
+// as the board has motors for. Judged at each servo interrupt by the formulas of firmware:7.5, firmware:7.6 and
+// firmware:7.8 in double precision (testbench/checkers/program_profile.h), and at each stop by the exact sum of the
+// moves.
 #include <algorithm>
 
 #include <fmt/format.h>

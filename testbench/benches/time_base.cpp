@@ -1,6 +1,6 @@
 // time-base: programs that run slower than told, slow down, stop and go on, or follow a shaft turned by a hand. The
-// path stays the one of motion:4.2 in program time; how program time goes on with each servo interrupt is judged by
-// motion:4.1 (I10 x % / 100, slewed by Isx94) and, from outside, by the counts of the shaft (motion:2, method $4).
+// path stays the one of firmware:7.5 in program time; how program time goes on with each servo interrupt is judged by
+// firmware:2.1 (I10 x % / 100, slewed by Isx94) and, from outside, by the counts of the shaft (motion:2.2, method $4).
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// The path of a jog as the sheet has it (motion:4.6): Ta(v) = max(Ixx20, 2 Ixx21, v / Ixx19 + Ixx21), of which Ixx21
-// at each end is rounded; a move too short for its speed has the speed v with v Ta(v) = distance.
+// The path of a jog as the sheet has it (motion:4.1, motion:4.2): Ta(v) = max(Ixx20, 2 Ixx21, v / Ixx19 + Ixx21), of
+// which Ixx21 at each end is rounded; a move too short for its speed has the speed v with v Ta(v) = distance.
 #pragma once
 
 #include "testbench/checkers/velocity_profile.h"

@@ -1,6 +1,6 @@
-// Paths of unsegmented moves in programs as the sheet has them. LINEAR (motion:4.2): each move has its mean velocity,
-// and where one meets the next, or rest, the velocity changes over Ta around the corner. PVT and SPLINE1 (motion:4.5):
-// a cubic a move. Counts and milliseconds, one axis.
+// Paths of unsegmented moves in programs as the sheet has them. LINEAR (firmware:7.5): each move has its mean velocity,
+// and where one meets the next, or rest, the velocity changes over Ta around the corner. PVT and SPLINE1
+// (firmware:7.8): a cubic a move. Counts and milliseconds, one axis.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Motion along one axis as a sum of changes of velocity, each an acceleration that rises, stands and falls in straight
-// lines (motion:4.2, motion:4.6). Jogs and LINEAR moves, blended or not, are lists of such changes; where two overlap
+// lines (firmware:7.5, motion:4.1). Jogs and LINEAR moves, blended or not, are lists of such changes; where two overlap
 // they add. Counts and milliseconds, double precision.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The paths that the benches of motion expect, against numbers that the sheet prints (motion:4.2, motion:4.6) and
+// The paths that the benches of motion expect, against numbers that the sheet prints (firmware:7.5, motion:4.1) and
 // arithmetic.
 #include <cmath>
 
