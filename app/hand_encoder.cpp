@@ -36,4 +36,8 @@ std::optional<MotorPlace> motor_place(std::uint32_t fitted, unsigned motor) {
   return std::nullopt;
 }
 
+unsigned motor_number(std::uint32_t fitted, unsigned ic, unsigned channel) {
+  return kChannels * static_cast<unsigned>(__builtin_popcount(fitted & ((1u << ic) - 1))) + channel + 1;
+}
+
 }  // namespace brick

@@ -35,5 +35,6 @@ struct MotorPlace {
   unsigned ic, channel;
 };
 std::optional<MotorPlace> motor_place(std::uint32_t fitted, unsigned motor);
+unsigned motor_number(std::uint32_t fitted, unsigned ic, unsigned channel);  // of a channel that is fitted
 
 }  // namespace brick

@@ -91,13 +91,13 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
 
 void add_plant_options(CLI::App& command, RunOptions& o) {
   command
-      .add_option("--plant", o.plant,
-                  "motors at the pins: dac8, servo8, stepper8, none, or FILE.toml (docs/plant.md)")
+      .add_option("--plant", o.plant, "motors at the pins: dac8, servo8, stepper8, none, or FILE.toml (docs/plant.md)")
       ->type_name("NAME|FILE")
       ->capture_default_str();
   command
-      .add_option("--load", o.load,
-                  "sends a command file before anything else: dac8, servo8, stepper8 (set-ups for these plants), or FILE")
+      .add_option(
+          "--load", o.load,
+          "sends a command file before anything else: dac8, servo8, stepper8 (set-ups for these plants), or FILE")
       ->type_name("NAME|FILE");
 }
 

@@ -63,8 +63,8 @@ std::string plant_path(const std::string& name_or_file) {
   if (ends_with(name_or_file, ".toml")) return name_or_file;
   const auto names = plant_names();
   if (std::find(names.begin(), names.end(), name_or_file) == names.end())
-    throw UsageError(fmt::format("--plant {}: no such plant; expected none, {} or FILE.toml", name_or_file,
-                                 fmt::join(names, ", ")));
+    throw UsageError(
+        fmt::format("--plant {}: no such plant; expected none, {} or FILE.toml", name_or_file, fmt::join(names, ", ")));
   return (share_folder() / "plants" / (name_or_file + ".toml")).string();
 }
 

@@ -25,11 +25,11 @@ using plant::EncoderParameters;
 using plant::Incident;
 using plant::kUnitsPerCount;
 
-const std::vector<std::string> kKeys{"title", "seed", "dac_bits", "axis", "incident"};
-const std::vector<std::string> kAxisKeys{"axes",    "drive",      "start",       "load", "encoder", "motor", "amplifier",
-                                         "stepper", "plus_limit", "minus_limit", "home", "noise"};
-const std::vector<std::string> kEncoderKeys{"lines", "index_at",    "index_width", "wiring",     "halls",
-                                            "hall_offset", "b_late", "a_long",      "dark_lines", "joint_lines"};
+const std::vector<std::string> kKeys{"title", "seed", "step", "dac_bits", "axis", "incident"};
+const std::vector<std::string> kAxisKeys{"axes",      "drive",   "start",      "load",        "encoder", "motor",
+                                         "amplifier", "stepper", "plus_limit", "minus_limit", "home",    "noise"};
+const std::vector<std::string> kEncoderKeys{"lines",       "index_at", "index_width", "wiring",     "halls",
+                                            "hall_offset", "b_late",   "a_long",      "dark_lines", "joint_lines"};
 const std::vector<std::string> kMotorKeys{"inertia",    "viscous",    "coulomb",   "torque_constant",
                                           "resistance", "inductance", "pole_pairs"};
 const std::vector<std::string> kAmplifierKeys{"bus_volts", "full_scale_amps", "trip_amps", "fault_level",
@@ -57,8 +57,8 @@ const Names<EncoderParameters::Wiring> kWirings{{"none", EncoderParameters::Wiri
                                                 {"complements", EncoderParameters::Wiring::kComplements},
                                                 {"halls-on-abc", EncoderParameters::Wiring::kHallsOnAbc}};
 const Names<Amplifier::Fault> kCauses{
-    {"over-current", Amplifier::Fault::kOverCurrent}, {"shorted-bus", Amplifier::Fault::kShortedBus},
-    {"under-voltage", Amplifier::Fault::kUnderVoltage}, {"over-voltage", Amplifier::Fault::kOverVoltage},
+    {"over-current", Amplifier::Fault::kOverCurrent},         {"shorted-bus", Amplifier::Fault::kShortedBus},
+    {"under-voltage", Amplifier::Fault::kUnderVoltage},       {"over-voltage", Amplifier::Fault::kOverVoltage},
     {"over-temperature", Amplifier::Fault::kOverTemperature}, {"i2t", Amplifier::Fault::kI2t}};
 
 template <class T>
@@ -123,6 +123,7 @@ class Reader {
     parameters.seed = seed;
     if (file_.has("title")) file_.text("title");
     read_whole(file_, "seed", 0, INT64_MAX, parameters.seed);
+    read_time(file_, "step", 1, parameters.step);
     read_whole(file_, "dac_bits", 16, 18, parameters.dac_bits);
     if (parameters.dac_bits == 17) file_.fail(file_.need("dac_bits"), "dac_bits", "16 or 18");
     for (const toml::node& item : file_.array("axis")) read_axes(item, parameters);
@@ -191,7 +192,9 @@ class Reader {
     }
     try {
       plant::Axis(axis, 0, parameters.step);
-    } catch (const std::exception& e) { t.fail(t.need("axes"), "axes", fmt::format("an axis that can be: {}", e.what())); }
+    } catch (const std::exception& e) {
+      t.fail(t.need("axes"), "axes", fmt::format("an axis that can be: {}", e.what()));
+    }
   }
 
   static void read_motor(const TomlTable& t, plant::MotorParameters& m) {
@@ -213,7 +216,8 @@ class Reader {
     read_counts(t, "hall_offset", 4e6, e.hall_offset);
     read_counts(t, "b_late", 0.999, e.b_late);
     read_counts(t, "a_long", 0.999, e.a_long);
-    for (const auto& [key, lines] : {std::pair{"dark_lines", &e.dark_lines}, std::pair{"joint_lines", &e.joint_lines}}) {
+    for (const auto& [key, lines] :
+         {std::pair{"dark_lines", &e.dark_lines}, std::pair{"joint_lines", &e.joint_lines}}) {
       if (!t.has(key)) continue;
       for (const toml::node& item : t.array(key)) {
         const auto line = item.value_exact<std::int64_t>();

@@ -1,5 +1,5 @@
-// What `--plant` stands at the motor side: the axes of a TOML file (docs/plant.md). Every mistake is a UsageError of one
-// line: file, line, key, what was found, what was expected.
+// What `--plant` stands at the motor side: the axes of a TOML file (docs/plant.md). Every mistake is a UsageError of
+// one line: file, line, key, what was found, what was expected.
 #pragma once
 
 #include <cstdint>

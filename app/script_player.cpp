@@ -41,7 +41,10 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         const auto id = find_signal(signals, line.name);
         if (line.kind == Kind::kUntil) signal_value_text(signals, id, line.value);
       } else if (line.kind == Kind::kInput) {
-        if (!find_connector_pin(signals, line.name)) find_channel_pin(signals, line.name);
+        if (find_connector_pin(signals, line.name)) continue;
+        const ChannelPinPlace pin = find_channel_pin(signals, line.name);
+        if ((machine.driven_motor_inputs(pin.ic, pin.channel) >> pin.pin & 1) != 0)
+          throw UsageError(fmt::format("{} is driven by the plant; expected a pin that is free", line.name));
       } else if (line.kind == Kind::kJpan && !machine.inputs().jpan_fitted) {
         throw UsageError(
             "this board has no control panel port; expected a board with JPAN, for example --board turbo-pmac-pci");
@@ -51,6 +54,11 @@ void ScriptPlayer::check(const std::vector<ScriptLine>& script) const {
         unsigned motors = 0;
         while (motor_place(machine.fitted(), motors + 1)) ++motors;
         throw UsageError(fmt::format("no encoder of motor {} on this board; expected 1 to {}", line.motor, motors));
+      } else if (line.kind == Kind::kEncoder) {
+        const MotorPlace place = *motor_place(machine.fitted(), line.motor);
+        if ((machine.driven_motor_inputs(place.ic, place.channel) >> kEncA & 1) != 0)
+          throw UsageError(
+              fmt::format("the plant turns the encoder of motor {}; expected one without an axis", line.motor));
       }
     } catch (const UsageError& e) { throw line.wrong(e.what()); }
   }

@@ -22,6 +22,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 std::string shown(const Signals::Info& info, std::uint64_t value) {
   if (info.radix == Radix::kHex) return fmt::format("${:0{}X}", value, (info.width + 3) / 4);
+  if (info.radix == Radix::kReal) return fmt::format("{:.6g}", real_of(value));
   if (info.radix == Radix::kSigned) {
     const std::uint64_t sign = std::uint64_t{1} << (info.width - 1);
     return std::to_string(static_cast<std::int64_t>(value ^ sign) - static_cast<std::int64_t>(sign));
@@ -86,6 +87,8 @@ std::string signal_text(const Signals& signals, Signals::Id id) {
 std::string signal_value_text(const Signals& signals, Signals::Id id, const std::string& value) {
   const Signals::Info& info = signals.info(id);
   if (info.radix == Radix::kText) return value;
+  if (info.radix == Radix::kReal)
+    throw UsageError(fmt::format("{} is never exactly a number; expected a signal of whole numbers", info.name));
   if (info.radix == Radix::kSigned && value.size() > 1 && value[0] == '-') {
     const std::uint64_t lowest = std::uint64_t{1} << (info.width - 1);
     try {

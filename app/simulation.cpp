@@ -63,8 +63,7 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
 
 std::unique_ptr<plant::Plant> make_plant(const RunOptions& options, const MachineConfig& config) {
   if (options.plant == "none") return nullptr;
-  return std::make_unique<plant::Plant>(
-      read_plant_file(plant_path(options.plant), config.board.fitted, config.seed));
+  return std::make_unique<plant::Plant>(read_plant_file(plant_path(options.plant), config.board.fitted, config.seed));
 }
 
 }  // namespace
@@ -80,7 +79,10 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
       link_(bus_),
       terminal_(isatty(STDERR_FILENO) == 1),
       prints_to_terminal_(isatty(STDOUT_FILENO) == 1) {
-  if (plant_) machine_->attach(*plant_);
+  if (plant_) {
+    machine_->attach(*plant_);
+    plant_signals_ = std::make_unique<PlantSignals>(*machine_, *plant_);
+  }
   bus_.set_heartbeat([this] { progress(); });
   waivers_.check(timing_->ledgers());
   timing_->on_violation = [this](const TimingLedger& ledger, const TimingViolation& violation) {

@@ -13,6 +13,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/options.h"
+#include "app/plant_signals.h"
 #include "app/timing_waivers.h"
 #include "systemc/core/trace.h"
 #include "systemc/cpu/gdb_server.h"
@@ -70,6 +71,7 @@ class Simulation {
   std::string title_;
   std::unique_ptr<plant::Plant> plant_;  // outlives the machine, which calls it
   std::unique_ptr<Machine> machine_;
+  std::unique_ptr<PlantSignals> plant_signals_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;
   const std::optional<std::string> forced_bcr_;

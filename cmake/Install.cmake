@@ -1,5 +1,5 @@
-# cmake --install build/release --prefix DIR: bin/brick, and in share/brick what it reads: firmware image, boards, plants,
-# set-ups, wave views.
+# cmake --install build/release --prefix DIR: bin/brick, and in share/brick what it reads: firmware image, boards,
+# plants, set-ups, wave views.
 include(GNUInstallDirs)
 set(BRICK_DATA_DIR ${CMAKE_INSTALL_DATADIR}/brick)
 if(TARGET brick)

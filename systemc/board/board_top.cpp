@@ -221,6 +221,7 @@ Tick BoardTop::run_until(Tick limit, const BoardOutputs& stop_on) {
   stop_on_ = stop_on;
   while (now_ < limit) {
     if (held()) {
+      if (!in_reset_) gate_ics_.end(now_);
       now_ = in_reset_ ? std::min(limit, reset_end_) : now_ + 1;
       in_reset_ = true;
       reset_all(now_);

@@ -34,7 +34,7 @@
 
 namespace brick {
 
-class BoardTop : public sc_core::sc_module, public Board {
+class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
  public:
   explicit BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics = 0x3, std::uint64_t seed = 0);
 
@@ -53,6 +53,8 @@ class BoardTop : public sc_core::sc_module, public Board {
     if (ic < kMaxServoIcs) stop_on_motor_[ic] = select;
   }
 
+  MotorDigest* motor_digest() override { return this; }
+
   // Blocks behind the pins, for SystemC users and tests; the ICs stand at now().
   ServoIc* servo_ic(unsigned index) { return gate_ics_.servo_ic(index, now_); }
   MacroIc* macro_ic(unsigned index) { return gate_ics_.macro_ic(index, now_); }
@@ -61,6 +63,25 @@ class BoardTop : public sc_core::sc_module, public Board {
   HostPort& host_port() { return host_port_; }
 
  private:
+  ConverterWords dac_lines(unsigned ic) override {
+    const ServoChannels* channels = gate_ics_.channels(ic, now_);
+    return channels != nullptr ? channels->dac_lines() : ConverterWords{};
+  }
+  AdcStream adc_stream(unsigned ic) override {
+    const ServoChannels* channels = gate_ics_.channels(ic, now_);
+    return channels != nullptr ? channels->adc_stream() : AdcStream{};
+  }
+  void send_adc(unsigned ic, const ConverterWords& words) override { gate_ics_.send_adc(ic, words, now_); }
+  unsigned adc_lines(unsigned ic, bool b) override {
+    const ServoChannels* channels = gate_ics_.channels(ic, now_);
+    return channels != nullptr ? channels->adc_lines(b) : 0;
+  }
+
+  PwmTimes pwm_times(unsigned ic, unsigned channel) override {
+    const ServoChannels* channels = gate_ics_.channels(ic, now_);
+    return channels != nullptr ? channels->pwm_times(channel) : PwmTimes{};
+  }
+
   // What may change: the blocks of the buses, which all have a next event, then what else feeds them.
   enum Part : unsigned {
     kBusSync,

@@ -144,6 +144,12 @@ void GateIcs::set_motor_inputs(unsigned ic, const MotorInputs& inputs, Tick now)
   look(ic, now);
 }
 
+void GateIcs::send_adc(unsigned ic, const ConverterWords& words, Tick now) {
+  if (ic >= kServoIcs || !has(ic)) return;
+  catch_up(ic, now);
+  servo_ic_[ic]->send_adc(words);  // no output shows it
+}
+
 MotorOutputs GateIcs::motor_outputs(unsigned ic, Tick now) const {
   if (ic >= kServoIcs || !has(ic)) return {};
   catch_up(ic, now);

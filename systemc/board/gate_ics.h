@@ -32,6 +32,7 @@ class GateIcs {
   }
 
   void reset(Tick t);
+  void end(Tick now) { catch_up_all(now); }  // a reset comes: what the ICs have done up to now is told
 
   // What the board's pins or an interrupt line show can change at this tick at the earliest.
   Tick next_event() const { return next_clock_ < next_look_ ? next_clock_ : next_look_; }
@@ -59,6 +60,11 @@ class GateIcs {
   void set_interrupting(std::uint32_t equ, Tick now);
   MotorOutputs motor_outputs(unsigned ic, Tick now) const;
   void watch(unsigned ic, const MotorOutputs& select, Tick now);
+  // The serial streams of a servo IC, as MotorDigest; nullptr: it is not built.
+  const ServoChannels* channels(unsigned ic, Tick now) const {
+    return ic < kServoIcs && has(ic) ? (catch_up(ic, now), &servo_ic_[ic]->channels()) : nullptr;
+  }
+  void send_adc(unsigned ic, const ConverterWords& words, Tick now);
   // Watched ICs whose outputs may have changed since the last call.
   std::uint32_t take_changes() {
     const std::uint32_t ics = looked_ & watched_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "systemc/core/board_pins.h"
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
 #include "systemc/core/ticks.h"
 
@@ -69,6 +70,8 @@ class Board {
   }
   // run_until() also ends after an edge at which an output selected here changes; it must be watched.
   virtual void stop_on_motor(unsigned ic, const MotorOutputs& select) { (void)ic, (void)select; }
+  // Of the motor side, or nullptr: this engine has pins alone.
+  virtual MotorDigest* motor_digest() { return nullptr; }
   std::function<void(Tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after)> on_motor_change;
 };
 

@@ -20,6 +20,7 @@ Signals::Id Signals::declare(const std::string& name, unsigned width, Radix radi
   value_.push_back(0);
   source_.emplace_back();
   traced_.push_back(false);
+  sampled_.push_back(false);
   return id;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -18,7 +19,19 @@ namespace brick {
 
 class TraceWriter;  // systemc/core/trace.h
 
-enum class Radix { kBinary, kHex, kDecimal, kSigned, kText };
+enum class Radix { kBinary, kHex, kDecimal, kSigned, kText, kReal };
+
+// A kReal signal is 64 bits wide, those of the number.
+inline std::uint64_t bits_of(double number) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof bits);
+  return bits;
+}
+inline double real_of(std::uint64_t bits) {
+  double number;
+  std::memcpy(&number, &bits, sizeof number);
+  return number;
+}
 
 class Signals {
  public:
@@ -35,8 +48,12 @@ class Signals {
   }
   void set_text(Id id, TimeFs time, const std::string& text);
 
-  // The value is not followed while the waveform does not want it: whoever wants it asks `source`.
-  void ask(Id id, std::function<std::uint64_t()> source) { source_[id] = std::move(source); }
+  // The value is not followed while the waveform does not want it: whoever wants it asks `source`. One that the
+  // waveform has samples of is asked for even then.
+  void ask(Id id, std::function<std::uint64_t()> source, bool sampled = false) {
+    source_[id] = std::move(source);
+    sampled_[id] = sampled;
+  }
 
   struct Info {
     std::string name;
@@ -47,7 +64,7 @@ class Signals {
   std::size_t size() const { return info_.size(); }
   std::uint64_t value(Id id) const {
     id = same_as_[id];
-    return !traced_[id] && source_[id] ? source_[id]() : value_[id];
+    return (!traced_[id] || sampled_[id]) && source_[id] ? source_[id]() : value_[id];
   }
   const std::string& text(Id id) const { return text_.at(id); }
   std::optional<Id> find(std::string_view name) const;  // accepts a leading "brick."
@@ -73,7 +90,7 @@ class Signals {
   std::map<std::string, Id, std::less<>> by_name_;
   TraceWriter* trace_ = nullptr;
   TraceGroups groups_;
-  std::vector<char> traced_;
+  std::vector<char> traced_, sampled_;
   unsigned attachments_ = 0;
 };
 

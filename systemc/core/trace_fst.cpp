@@ -32,12 +32,15 @@ class FstWriter : public TraceQueue {
     fstWriterSetScope(context_.get(), FST_ST_VCD_MODULE, name.c_str(), nullptr);
     for (const auto& [signal, id] : scope.signals) {
       const Signals::Info& info = declared()[id].info;
-      const bool text = info.radix == Radix::kText;
-      const std::string range = !text && info.width > 1 ? " [" + std::to_string(info.width - 1) + ":0]" : "";
+      const bool text = info.radix == Radix::kText, real = info.radix == Radix::kReal;
+      const std::string range = !text && !real && info.width > 1 ? " [" + std::to_string(info.width - 1) + ":0]" : "";
       fstHandle& handle = handles_[declared()[id].of];
       const fstHandle made =
-          fstWriterCreateVar(context_.get(), text ? FST_VT_GEN_STRING : FST_VT_VCD_WIRE, FST_VD_IMPLICIT,
-                             text ? 0 : info.width, (signal + range).c_str(), handle);
+          fstWriterCreateVar(context_.get(),
+                             text   ? FST_VT_GEN_STRING
+                             : real ? FST_VT_VCD_REAL
+                                    : FST_VT_VCD_WIRE,
+                             FST_VD_IMPLICIT, text ? 0 : info.width, (signal + range).c_str(), handle);
       if (handle == 0) handle = made;
     }
     for (const auto& [child, sub] : scope.scopes) write_scope(child, sub);
@@ -48,6 +51,10 @@ class FstWriter : public TraceQueue {
   }
   void write_value(Signals::Id id, std::uint64_t value) override {
     const unsigned width = declared()[id].info.width;
+    if (declared()[id].info.radix == Radix::kReal) {
+      fstWriterEmitValueChange(context_.get(), handles_[id], &value);  // takes the bits of a number
+      return;
+    }
     char bits[64];
     for (unsigned i = 0; i < width; ++i) bits[i] = static_cast<char>('0' + ((value >> (width - 1 - i)) & 1));
     fstWriterEmitValueChange(context_.get(), handles_[id], bits);

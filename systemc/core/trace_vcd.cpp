@@ -64,6 +64,8 @@ class VcdWriter : public TraceQueue {
       const std::string& code = codes_[declared()[id].of];
       if (info.radix == Radix::kText)
         out_ += fmt::format("$var string 1 {} {} $end\n", code, signal);
+      else if (info.radix == Radix::kReal)
+        out_ += fmt::format("$var real 64 {} {} $end\n", code, signal);
       else if (info.width == 1)
         out_ += fmt::format("$var wire 1 {} {} $end\n", code, signal);
       else
@@ -83,6 +85,10 @@ class VcdWriter : public TraceQueue {
   }
   void write_value(Signals::Id id, std::uint64_t value) override {
     const unsigned width = declared()[id].info.width;
+    if (declared()[id].info.radix == Radix::kReal) {
+      out_ += fmt::format("r{} {}\n", real_of(value), codes_[id]);
+      return;
+    }
     char line[1 + 64 + 1 + kCode + 1];
     char* end = line;
     if (width > 1) *end++ = 'b';

@@ -282,6 +282,9 @@ TimeFs Machine::cpu_period() const {
 bool Machine::forced_bcr_acted() const { return impl_->port_a.forced_wait_states_acted(); }
 std::uint32_t Machine::fitted() const { return impl_->config.board.fitted; }
 MotorInputPins& Machine::motor_inputs() { return impl_->motors.inputs(); }
+std::uint16_t Machine::driven_motor_inputs(unsigned ic, unsigned channel) const {
+  return impl_->motors.driven(ic, channel);
+}
 void Machine::apply_motor_inputs() { impl_->motors.apply(); }
 MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->motor_outputs(ic); }
 void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }

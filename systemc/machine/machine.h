@@ -110,6 +110,7 @@ class Machine : public sc_core::sc_module {
   // run_until().
   MotorInputPins& motor_inputs();
   void apply_motor_inputs();
+  std::uint16_t driven_motor_inputs(unsigned ic, unsigned channel) const;  // by peers, bits as ChannelPin
   MotorOutputs motor_outputs(unsigned ic) const;
   void stop_on_motor(unsigned ic, const MotorOutputs& select);  // until called again; an empty selection ends it
   void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
 #include "systemc/core/ticks.h"
 
@@ -18,10 +19,26 @@ class MotorPeer {
 
   virtual std::uint32_t ics() const = 0;  // servo ICs whose outputs it wants to see, bit i; constant
 
-  // Outputs after whose change step() is called at once; constant.
+  // It is attached, or the engine offers something else than before: `digest` in place of edges, or nullptr.
+  // changed() with equal outputs follows.
+  virtual void begin(MotorDigest* digest) { (void)digest; }
+
+  // Those of their outputs whose changes it wants to be told; constant after begin().
+  virtual MotorOutputs watched(unsigned ic) const {
+    (void)ic;
+    return kAllMotorOutputs;
+  }
+
+  // Outputs after whose change step() is called at once; constant after begin().
   virtual MotorOutputs stops(unsigned ic) const {
     (void)ic;
     return {};
+  }
+
+  // Input pins of a channel that it drives, bits as ChannelPin; constant. Nobody else should.
+  virtual std::uint16_t drives(unsigned ic, unsigned channel) const {
+    (void)ic, (void)channel;
+    return 0;
   }
 
   // Tick at which step() is to be called next, after now(); kNever: only after a stop.

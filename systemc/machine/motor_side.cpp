@@ -20,6 +20,13 @@ MotorSide::MotorSide(Board& board, Signals& signals, std::uint32_t fitted)
       for (unsigned p = 0; p < kChannelPins; ++p)
         ic.pin[n][p] = signals.add(scope + std::string(kChannelPinNames[p]), 1, Radix::kBinary, idle.pins[n] >> p & 1);
       ic.adc[n] = {signals.add(scope + "adc_a", 1, Radix::kBinary), signals.add(scope + "adc_b", 1, Radix::kBinary)};
+      for (const bool b : {false, true})
+        signals.ask(ic.adc[n][b ? 1 : 0], [this, i, n, b] {
+          const unsigned lines = digest_ != nullptr ? digest_->adc_lines(i, b)
+                                 : b                ? inputs_[i].adc_b
+                                                    : inputs_[i].adc_a;
+          return lines >> n & 1;
+        });
       for (std::size_t f = 0; f < motor_pin::kAll.size(); ++f) {
         const MotorField& field = motor_pin::kAll[f];
         if (field.shared && n > 0) {
@@ -44,10 +51,12 @@ void MotorSide::apply() {
   const TimeFs time = tick_to_fs(board_.now());
   for (const Ic& ic : ics_) {
     const MotorInputs& in = inputs_[ic.index];
-    if (in == applied_[ic.index]) continue;
+    const MotorInputs before = applied_[ic.index];
+    if (in == before) continue;
     applied_[ic.index] = in;
     board_.set_motor_inputs(ic.index, in);
     for (unsigned n = 0; n < kChannels; ++n) {
+      if (in.pins[n] == before.pins[n] && in.adc_a == before.adc_a && in.adc_b == before.adc_b) continue;
       for (unsigned p = 0; p < kChannelPins; ++p) signals_.set(ic.pin[n][p], time, in.pins[n] >> p & 1);
       signals_.set(ic.adc[n][0], time, in.adc_a >> n & 1);
       signals_.set(ic.adc[n][1], time, in.adc_b >> n & 1);
@@ -56,8 +65,14 @@ void MotorSide::apply() {
 }
 
 void MotorSide::attach(MotorPeer& peer) {
-  peers_.push_back({&peer, false});
+  peers_.push_back({&peer, {}, false});
+  digest_ = digest();
+  peer.begin(digest_);
   watch();
+  show_present(peer);
+}
+
+void MotorSide::show_present(MotorPeer& peer) {
   for (const Ic& ic : ics_) {
     if ((peer.ics() >> ic.index & 1) == 0) continue;
     const MotorOutputs present = board_.motor_outputs(ic.index);
@@ -80,9 +95,10 @@ void MotorSide::stop_on(unsigned ic, const MotorOutputs& select) {
 void MotorSide::watch() {
   for (const Ic& ic : ics_) {
     MotorOutputs stops = select_[ic.index], watched = traced_[ic.index];
-    for (const Peer& p : peers_) {
-      stops |= p.peer->stops(ic.index);
-      if ((p.peer->ics() >> ic.index & 1) != 0) watched = kAllMotorOutputs;
+    for (Peer& p : peers_) {
+      p.stops[ic.index] = p.peer->stops(ic.index);
+      stops |= p.stops[ic.index];
+      if ((p.peer->ics() >> ic.index & 1) != 0) watched |= p.peer->watched(ic.index);
     }
     watched |= stops;
     board_.watch_motor(ic.index, watched);
@@ -93,6 +109,11 @@ void MotorSide::watch() {
 // The waveform wants other outputs than before: from here on it has them.
 void MotorSide::take_groups() {
   attachments_ = signals_.attachments();
+  const bool other = digest_ != digest();
+  if (other) {
+    digest_ = digest();
+    for (Peer& p : peers_) p.peer->begin(digest_);
+  }
   for (Ic& ic : ics_) {
     MotorOutputs& traced = traced_[ic.index];
     traced = {};
@@ -117,6 +138,8 @@ void MotorSide::take_groups() {
     for (std::uint32_t& word : inverse.w) word = ~word;
     show(tick_to_fs(board_.now()), ic.index, inverse, present);
   }
+  for (Peer& p : peers_)
+    if (other) show_present(*p.peer);
 }
 
 void MotorSide::step_peers() {
@@ -136,7 +159,7 @@ void MotorSide::changed(Tick tick, unsigned ic, const MotorOutputs& before, cons
   for (Peer& p : peers_) {
     if ((p.peer->ics() >> ic & 1) == 0) continue;
     p.peer->changed(tick, ic, before, after);
-    p.stopped = p.stopped || before.differs(after, p.peer->stops(ic));
+    p.stopped = p.stopped || before.differs(after, p.stops[ic]);
   }
   stopped_ = stopped_ || before.differs(after, select_[ic]);
 }

@@ -22,6 +22,11 @@ class MotorSide {
 
   void attach(MotorPeer& peer);
   void detach(MotorPeer& peer);
+  std::uint16_t driven(unsigned ic, unsigned channel) const {  // input pins that peers drive, bits as ChannelPin
+    unsigned pins = 0;
+    for (const Peer& p : peers_) pins |= p.peer->drives(ic, channel);
+    return static_cast<std::uint16_t>(pins);
+  }
   void stop_on(unsigned ic,
                const MotorOutputs& select);  // take_stop() tells of such an edge; an empty selection ends it
 
@@ -45,6 +50,8 @@ class MotorSide {
   void step_peers();
   void watch();
   void take_groups();
+  void show_present(MotorPeer& peer);
+  MotorDigest* digest() const { return signals_.traced() ? nullptr : board_.motor_digest(); }  // a waveform has pins
 
   struct Shown {  // an output in the waveform
     unsigned word;
@@ -61,6 +68,7 @@ class MotorSide {
   };
   struct Peer {
     MotorPeer* peer;
+    std::array<MotorOutputs, kMaxServoIcs> stops;
     bool stopped;
   };
 
@@ -73,6 +81,7 @@ class MotorSide {
   MotorInputPins inputs_, applied_;
   std::array<MotorOutputs, kMaxServoIcs> select_{};  // of the user
   std::array<MotorOutputs, kMaxServoIcs> traced_{};  // of the waveform
+  MotorDigest* digest_ = nullptr;                    // that the peers have
   unsigned attachments_ = 0;                         // as traced_ knows them
   bool stopped_ = false;
 };

@@ -111,6 +111,13 @@ class ChannelStrobe {
 
   bool idle() const { return left_ == 0 && !pending_ && asked_ == kNever; }
   unsigned left() const { return left_; }  // bits to go, the present one included
+  std::uint32_t word() const { return word_; }
+  Tick end(unsigned n) const { return divider_.after(left_, n); }  // of the last bit, while there are some to go
+  // Bits whose rising edge of the clock is not before `now`.
+  unsigned unclocked(Tick now) const {
+    if (left_ == 0) return 0;
+    return left_ - ((divider_.fast() ? now % kTicksPerRef == 2 : now > divider_.mid()) ? 1 : 0);
+  }
   bool strobe() const { return word_ >> (left_ != 0 ? left_ - 1 : 0) & 1; }
   bool clk(Tick now) const { return left_ != 0 && (divider_.fast() ? now % kTicksPerRef != 0 : now >= divider_.mid()); }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
@@ -21,8 +22,13 @@ struct TriangleLine {
 class ChannelPwm {
  public:
   void reset(Tick t) {
+    account(t);
+    const ChannelPwm old = *this;
     *this = ChannelPwm{};
     on_at_ = t + kWaitReset;
+    since_ = t;
+    balance_ = old.balance_;
+    dead_times_ = old.dead_times_;
   }
   void load(int command) { command_ = command; }
 
@@ -48,10 +54,23 @@ class ChannelPwm {
     return command_ == o.command_ && raw_ == o.raw_ && last_ == o.last_ && on_ == o.on_ &&
            on_at_ == later(o.on_at_, by) && follow_at_ == later(o.follow_at_, by);
   }
-  void jump(Tick by) {
+  // `periods` times what has come to pass since it was `o`, in `by` ticks from `now` on.
+  void jump(Tick now, Tick by, const ChannelPwm& o, Tick periods) {
+    account(now);
+    balance_ += periods * (balance_ - o.balance_);
+    dead_times_ += static_cast<std::uint64_t>(periods) * (dead_times_ - o.dead_times_);
+    since_ = now + by;
     on_at_ = later(on_at_, by);
     follow_at_ = later(follow_at_, by);
   }
+
+  // After the edge `now`, the last executed: how long the upper switch has been on, less how long the lower one has,
+  // and the dead times begun so far.
+  Tick balance(Tick now) {
+    account(now);
+    return balance_;
+  }
+  std::uint64_t dead_times() const { return dead_times_; }
 
   bool top() const { return on_ && last_; }
   bool bot() const { return on_ && !last_; }
@@ -74,6 +93,8 @@ class ChannelPwm {
   }
   void follow(unsigned deadtime) {
     settle(follow_at_ - 1);
+    account(follow_at_);
+    if (deadtime != 0) ++dead_times_;
     last_ = !last_;
     on_ = deadtime == 0;
     on_at_ = on_ ? kNever : follow_at_ + kDeadtimeUnit * static_cast<Tick>(deadtime);
@@ -81,8 +102,14 @@ class ChannelPwm {
   }
   void settle(Tick t) {
     if (on_at_ > t) return;
+    account(on_at_);
     on_ = true;
     on_at_ = kNever;
+  }
+
+  void account(Tick t) {
+    if (on_) balance_ += last_ ? t - since_ : since_ - t;
+    since_ = t;
   }
 
   static Tick later(Tick edge, Tick by) { return edge == kNever ? kNever : edge + by; }
@@ -96,6 +123,8 @@ class ChannelPwm {
   bool on_ = false;                  // one of the two switches is on
   Tick follow_at_ = kNever;          // edge at which they take the comparison
   Tick on_at_ = kWaitReset;
+  Tick balance_ = 0, since_ = 0;  // accounted up to `since`
+  std::uint64_t dead_times_ = 0;
 };
 
 }  // namespace brick

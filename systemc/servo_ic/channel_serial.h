@@ -11,6 +11,7 @@ namespace brick {
 class ChannelDac {
  public:
   void load(std::uint32_t command) { word_ = command >> 6 & 0x3FFFF; }
+  std::uint32_t stream() const { return word_ << 6; }  // all 24 bits
   // `left`: bits of the 24 to go, the present one included; six 0s follow the command.
   bool data(unsigned left) const { return left >= 7 && (word_ >> (left - 7) & 1) != 0; }
 
@@ -29,6 +30,10 @@ class BasicChannelAdc {
     if (first >= end) return;
     const unsigned n = end - first;
     word_ = (word_ << n | (data ? (1u << n) - 1 : 0)) & 0x3FFFF;
+  }
+  // The same where each bit has its level: that of number 0 is bit 23 of `stream`.
+  void sample_stream(unsigned bit, unsigned count, std::uint32_t stream) {
+    for (unsigned i = bit; i < bit + count; ++i) sample(i, 1, (stream << i & 0x800000) != 0);
   }
   void transfer() { value_ = word_; }
   std::uint32_t value() const { return kValue.at(value_); }  // the word; those of ADC A and ADC B are alike

@@ -36,10 +36,17 @@ constexpr std::uint32_t kOutputBits = channel_control::kAbInvert.mask() | channe
 void ServoChannel::reset(Tick t) {
   ChannelInput input = input_;
   input.reset(t);
+  settle_pwm_times(t, false);
+  const auto pwm = pwm_;
+  const auto settled = pwm_settled_;
+  const PwmTimes times = pwm_times_;
   *this = ServoChannel{};
   input_ = input;
   subcount_.reset(t);
-  for (ChannelPwm& pwm : pwm_) pwm.reset(t);
+  pwm_ = pwm;
+  pwm_settled_ = settled;
+  pwm_times_ = times;
+  for (ChannelPwm& one : pwm_) one.reset(t);
 }
 
 std::uint32_t ServoChannel::status(bool trip) const {
@@ -91,9 +98,11 @@ std::uint32_t ServoChannel::read(Tick now, bool x, unsigned offset, bool trip) c
 }
 
 void ServoChannel::write(Tick now, bool sclk, bool x, unsigned offset, std::uint32_t value, bool trip) {
-  settle_ = 0;
+  const unsigned code = word(x, offset);
+  if (code != word(words::kOutA) && code != word(words::kOutB) && code != word(words::kOutC))
+    settle_ = 0;  // what is counted of an output are its pulses, which say so themselves
   const std::uint32_t held = trip ? kOutputBits : 0;
-  switch (word(x, offset)) {
+  switch (code) {
     case word(words::kTimer1):
       if (fine()) compare_.set_b_fraction(value);
       break;
@@ -157,9 +166,24 @@ void ServoChannel::sample_adc(unsigned bit, unsigned count, bool a, bool b) {
   adc_[1].sample(bit, count, b);
 }
 
+void ServoChannel::sample_adc_stream(unsigned bit, unsigned count, std::uint32_t a, std::uint32_t b) {
+  adc_[0].sample_stream(bit, count, a);
+  adc_[1].sample_stream(bit, count, b);
+}
+
 void ServoChannel::load_dac(bool trip) {
-  dac_[0].load(trip ? 0 : out_[0]);
-  dac_[1].load(trip ? 0 : out_[1]);
+  for (unsigned i = 0; i < 2; ++i) {
+    dac_[i].load(trip ? 0 : out_[i]);
+    dac_line_[i] = {dac_line_[i].present, dac_stream(i)};
+  }
+}
+
+void ServoChannel::change_dac_lines(unsigned unclocked) {
+  const std::uint32_t to_go = (1u << unclocked) - 1;
+  for (unsigned i = 0; i < 2; ++i) {
+    std::uint32_t& line = dac_line_[i].present;
+    line = (line & ~to_go) | (dac_stream(i) & to_go);
+  }
 }
 
 void ServoChannel::load_pwm() {
@@ -175,6 +199,21 @@ Tick ServoChannel::next_pwm_event(Tick now, TriangleLine line) const {
   for (unsigned i = 0; i < 3; ++i)
     if (shows_pwm(i)) next = std::min(next, pwm_[i].next_event(now, line));
   return next;
+}
+
+// With inverted outputs both switches of a phase are on in its dead time, and while a trip turns it off.
+void ServoChannel::settle_pwm_times(Tick now, bool trip) const {
+  for (unsigned i = 0; i < 3; ++i) {
+    const Tick balance = pwm_[i].balance(now);
+    const std::uint64_t dead_times = pwm_[i].dead_times();
+    const Tick more = balance - pwm_settled_[i].balance;
+    const std::uint64_t more_dead_times = dead_times - pwm_settled_[i].dead_times;
+    pwm_settled_[i] = {balance, dead_times};
+    if (!shows_pwm(i) || trip) continue;
+    const bool inverted = is(i == 2 ? channel_control::kCInvert : channel_control::kAbInvert);
+    pwm_times_.balance[i] += inverted ? -more : more;
+    pwm_times_.shorts += inverted ? more_dead_times : 0;
+  }
 }
 
 unsigned ServoChannel::pwm(bool trip) const {

@@ -8,6 +8,7 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
+#include "systemc/core/motor_digest.h"
 #include "systemc/servo_ic/channel_capture.h"
 #include "systemc/servo_ic/channel_compare.h"
 #include "systemc/servo_ic/channel_counter.h"
@@ -39,7 +40,10 @@ class ServoChannel {
   void latch_phase();
   void latch_servo(Tick edge);
   void sample_adc(unsigned bit, unsigned count, bool a, bool b);
+  void sample_adc_stream(unsigned bit, unsigned count, std::uint32_t a, std::uint32_t b);
   void load_dac(bool trip);
+  // What the control word says of the DAC lines has changed: it is so for the last `unclocked` bits of the stream.
+  void change_dac_lines(unsigned unclocked);
   void load_pwm();
   void run_pwm(Tick now, Tick t, TriangleLine line, unsigned deadtime) const;
   bool advance_pfm(std::int64_t periods, bool trip, unsigned width) {  // true when a pulse begins with the last of them
@@ -81,16 +85,25 @@ class ServoChannel {
   std::uint32_t edges_to_equ() const { return compare_.edges_to_hit(counter_.counter(), fine()); }
 
   // The PWM, as it was at mark(), `by` ticks later.
-  void mark() { marked_ = pwm_; }
+  void mark(Tick now) {
+    for (ChannelPwm& pwm : pwm_) pwm.balance(now);
+    marked_ = pwm_;
+  }
   bool repeats(Tick by) const {
     return std::equal(pwm_.begin(), pwm_.end(), marked_.begin(),
                       [by](const ChannelPwm& a, const ChannelPwm& b) { return a.repeats(b, by); });
   }
-  void jump(Tick by) {
-    for (ChannelPwm& pwm : pwm_) pwm.jump(by);
+  void jump(Tick now, Tick by, Tick periods) {
+    for (unsigned i = 0; i < 3; ++i) pwm_[i].jump(now, by, marked_[i], periods);
   }
 
   // Pins
+  // Before the control word or `trip` changes, after the edges up to `now`: what the PWM has done was done with these.
+  void settle_pwm_times(Tick now, bool trip) const;
+  PwmTimes pwm_times(Tick now, bool trip) const {
+    settle_pwm_times(now, trip);
+    return pwm_times_;
+  }
   unsigned pwm(bool trip) const;  // C bottom, C top, B bottom, B top, A bottom, A top from bit 5 down
   bool pulse() const { return is(channel_control::kCPfm) && pfm_.pulse() != is(channel_control::kCInvert); }
   bool dir() const { return is(channel_control::kCPfm) && pfm_.down() != is(channel_control::kPfmDirInvert); }
@@ -100,6 +113,11 @@ class ServoChannel {
   bool dac_b(unsigned left) const {
     return is(channel_control::kAbDac) && dac_[1].data(left) != is(channel_control::kAbInvert);
   }
+  // The last 24 bits of a DAC line that were clocked; `unclocked` bits of the present stream were not.
+  std::uint32_t dac_line(unsigned output, unsigned unclocked) const {
+    const DacLine& line = dac_line_[output];
+    return static_cast<std::uint32_t>((std::uint64_t{line.before} << 24 | line.present) >> unclocked) & 0xFFFFFF;
+  }
   bool aena(bool trip) const { return is(channel_control::kAena) && !trip; }
   bool equ(bool trip) const { return compare_.equ() && !trip; }
 
@@ -108,6 +126,13 @@ class ServoChannel {
   // it, and the latest user of those.
   static constexpr unsigned kSettled = 12;
 
+  struct DacLine {  // what is sent on it: the stream before and the present one
+    std::uint32_t before = 0, present = 0;
+  };
+  std::uint32_t dac_stream(unsigned output) const {
+    if (!is(channel_control::kAbDac)) return 0;
+    return dac_[output].stream() ^ (is(channel_control::kAbInvert) ? 0xFFFFFF : 0);
+  }
   bool is(const regs::Field& field) const { return field.is_set(control_); }
   std::uint32_t decode() const { return channel_control::kDecode.get(control_); }
   bool fine() const { return is(channel_control::kHardware1t); }
@@ -131,8 +156,15 @@ class ServoChannel {
   ChannelCompare compare_;
   mutable std::array<ChannelPwm, 3> pwm_;  // executed when somebody looks at it
   std::array<ChannelPwm, 3> marked_;
+  mutable PwmTimes pwm_times_;  // of the pins
+  struct PwmSettled {           // of the switches, when that was brought up to date
+    Tick balance = 0;
+    std::uint64_t dead_times = 0;
+  };
+  mutable std::array<PwmSettled, 3> pwm_settled_;
   ChannelPfm pfm_;
   std::array<ChannelDac, 2> dac_;
+  std::array<DacLine, 2> dac_line_;
   std::array<ChannelAdc, 2> adc_;
 };
 

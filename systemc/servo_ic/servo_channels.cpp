@@ -16,7 +16,11 @@ void ServoChannels::reset(Tick t) {
 }
 
 void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
-  channel_[offset >> 3].write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
+  ServoChannel& channel = channel_[offset >> 3];
+  const bool control = x && (offset & 7) == regs::servo_channel::kControl.address;
+  if (control) settle_pwm_times();
+  channel.write(now_, sclk_.start() == now_, x, offset & 7, value, in.trip);
+  if (control) channel.change_dac_lines(dac_.unclocked(now_));
 }
 
 void ServoChannels::advance(Tick t) {
@@ -62,8 +66,17 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
       },
       [](unsigned, unsigned) {});
   adc_.advance(
-      t, phase_rise, divider(kAdc), in.adc_strobe, [] {},
+      t, phase_rise, divider(kAdc), in.adc_strobe,
+      [this] {
+        ++adc_streams_;
+        sent_from_ = std::max(sent_from_, 0) - static_cast<int>(kSerialBits);
+      },
       [this](unsigned bit, unsigned count) {
+        if (sends_) {
+          for (unsigned i = 0; i < kChannels; ++i)
+            channel_[i].sample_adc_stream(bit, count, sent_in_stream(i), sent_in_stream(kChannels + i));
+          return;
+        }
         for (unsigned i = 0; i < kChannels; ++i)
           channel_[i].sample_adc(bit, count, (in.adc_a >> i & 1) != 0, (in.adc_b >> i & 1) != 0);
       });
@@ -113,6 +126,37 @@ void ServoChannels::run_sclk(Tick t) {
   }
 }
 
+ConverterWords ServoChannels::dac_lines() const {
+  ConverterWords lines;
+  const unsigned unclocked = dac_.unclocked(now_);
+  for (unsigned i = 0; i < lines.size(); ++i) lines[i] = channel_[i % kChannels].dac_line(i / kChannels, unclocked);
+  return lines;
+}
+
+MotorDigest::AdcStream ServoChannels::adc_stream() const {
+  return {kSerialBits * adc_streams_ - adc_.left(), adc_.word(), adc_.left() == kSerialBits, adc_.end(divider(kAdc))};
+}
+
+void ServoChannels::send_adc(const ConverterWords& words) {
+  sends_ = true;
+  sent_ = words;
+  sent_from_ = static_cast<int>(kSerialBits - adc_.left());
+}
+
+// Where it stands in the present stream, of which bit 23 is the first.
+std::uint32_t ServoChannels::sent_in_stream(unsigned line) const {
+  if (sent_from_ >= 0) return sent_[line] >> sent_from_;
+  return -sent_from_ < static_cast<int>(kSerialBits) ? sent_[line] << -sent_from_ : 0;
+}
+
+unsigned ServoChannels::adc_lines(bool b) const {
+  if (!sends_) return b ? in.adc_b : in.adc_a;
+  unsigned lines = 0;
+  for (unsigned i = 0; i < kChannels && adc_.left() != 0; ++i)
+    lines |= (sent_in_stream((b ? kChannels : 0) + i) >> (adc_.left() - 1) & 1) << i;
+  return lines;
+}
+
 Tick ServoChannels::next_event(const MotorOutputs& select) const {
   const Tick ref = next_ref_edge(now_);
   Tick next = kNever;
@@ -121,14 +165,16 @@ Tick ServoChannels::next_event(const MotorOutputs& select) const {
   if (dac) next = dac_.next_event(now_, divider(kDac), (select.w[1] & kDacClk) != 0, has_dac_data(select));
   if (adc) next = std::min(next, adc_.next_event(now_, divider(kAdc), (select.w[1] & kAdcClk) != 0, false));
   if ((dac || adc) && phase_rises_ != in.phase_rises) next = std::min(next, ref);
+  const bool position = has_position(select), pfm_pins = has_pfm(select);
   for (const ServoChannel& channel : channel_) {
-    if (!channel.quiet(now_)) next = std::min(next, ref);
-    if (!channel.settled()) next = std::min(next, sclk_.next());
+    if (position && !channel.quiet(now_)) next = std::min(next, ref);
+    if (position && !channel.settled()) next = std::min(next, sclk_.next());
+    if (!in.trip && has_pwm(select)) next = std::min(next, channel.next_pwm_event(now_, in.line));
+    if (!position && !pfm_pins) continue;
     const ChannelPfm::Inputs pfm = channel.pfm_inputs(in.trip, in.deadtime);
     const std::int64_t periods = channel.pfm().periods_to_change(pfm);
     if (periods != kNever) next = std::min(next, pfm_.after(periods, divider(kPfm)));
     if (!pfm.run && channel.pfm().pulse()) next = std::min(next, ref);
-    if (!in.trip && has_pwm(select)) next = std::min(next, channel.next_pwm_event(now_, in.line));
   }
   return next;
 }
@@ -154,7 +200,7 @@ Tick ServoChannels::next_equ_of(const ServoChannel& channel) const {
 void ServoChannels::mark() {
   catch_up_pwm();
   marked_ = now_;
-  for (ServoChannel& channel : channel_) channel.mark();
+  for (ServoChannel& channel : channel_) channel.mark(now_);
 }
 
 // Dividers, timers, encoders and PFM take no notice of the clocks: a jump executes them. The clocks latch and start
@@ -172,7 +218,7 @@ bool ServoChannels::repeats() const {
 void ServoChannels::jump(Tick by) {
   catch_up_pwm();
   pwm_now_ += by;
-  for (ServoChannel& channel : channel_) channel.jump(by);
+  for (ServoChannel& channel : channel_) channel.jump(now_, by, by / (now_ - marked_));
   run_ref(now_ + by, false);
   now_ += by;
 }

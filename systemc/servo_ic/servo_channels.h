@@ -11,6 +11,7 @@
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/core/model_block.h"
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
 #include "systemc/servo_ic/channel_clocks.h"
 #include "systemc/servo_ic/servo_channel.h"
@@ -34,7 +35,13 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     std::uint8_t adc_a = 0, adc_b = 0;  // bit n-1: channel n
   };
   Inputs in;
+  void set_adc(std::uint8_t a, std::uint8_t b) {  // a level that moves ends what send_adc() has given
+    sends_ = sends_ && a == in.adc_a && b == in.adc_b;
+    in.adc_a = a;
+    in.adc_b = b;
+  }
   void set_trip(bool trip) {
+    if (trip != in.trip) settle_pwm_times();
     if (trip && !in.trip) dac_.ask(next_ref_edge(now_) + kTicksPerRef);  // it is seen, then it asks
     in.trip = trip;
   }
@@ -82,6 +89,16 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
 
   MotorOutputs motor_outputs() const;
 
+  // As MotorDigest, after the last executed edge.
+  ConverterWords dac_lines() const;
+  MotorDigest::AdcStream adc_stream() const;
+  void send_adc(const ConverterWords& words);
+  unsigned adc_lines(bool b) const;
+  PwmTimes pwm_times(unsigned channel) const {
+    catch_up_pwm();
+    return channel_[channel].pwm_times(now_, in.trip);
+  }
+
   // The triangle is taken as the endless line `in.line`; the owner knows where it ends.
   Tick next_event() const override { return next_event(kAllMotorOutputs); }
   Tick next_event(const MotorOutputs& select) const;      // of the outputs selected
@@ -113,12 +130,23 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     return bits;
   }
   unsigned divider(const regs::Field& clock) const { return clock.get(in.clock_control); }
+  std::uint32_t sent_in_stream(unsigned line) const;
   void catch_up_pwm() const;
+  void settle_pwm_times() const {
+    catch_up_pwm();
+    for (const ServoChannel& channel : channel_) channel.settle_pwm_times(now_, in.trip);
+  }
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
 
+  static bool has_pfm(const MotorOutputs& select) { return (select.w[0] & ~kPwmPins) != 0; }
+  static bool has_position(const MotorOutputs& select) {
+    return ((select.w[1] & kEquPins) | select.w[2] | select.w[3] | select.w[4] | select.w[5]) != 0;
+  }
+
   static constexpr std::uint32_t kPwmPins = 0xFFFFFF;  // of word 0 of the outputs
-  static constexpr std::uint32_t kDacData = 0xFF, kDacPins = 0x30000, kAdcPins = 0xC0000, kDacClk = 0x10000,
+  static constexpr std::uint32_t kDacData = 0xFF, kEquPins = 0xF000, kDacPins = 0x30000, kAdcPins = 0xC0000,
+                                 kDacClk = 0x10000,
                                  kAdcClk = 0x40000;  // of word 1
   static constexpr regs::Field kSclk = regs::servo_ic::clock_control::kSclkDivider,
                                kPfm = regs::servo_ic::clock_control::kPfmDivider,
@@ -127,6 +155,11 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   std::array<ServoChannel, kChannels> channel_;
   ChannelDivider sclk_, pfm_;
   ChannelStrobe dac_, adc_;
+  std::int64_t adc_streams_ = 0;  // begun so far
+  // What send_adc() has given, if it has; its first bit is this one of the present stream.
+  bool sends_ = false;
+  ConverterWords sent_{};
+  int sent_from_ = 0;
   bool phase_rises_ = false, phase_falls_ = false, servo_falls_ = false;  // at the last edge of clk_ref
   Tick phase_rise_ = 0;                                                   // edge that took the last one
   Tick marked_ = 0;

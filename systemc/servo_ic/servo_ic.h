@@ -29,13 +29,13 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
   void set_channel_pins(unsigned channel, unsigned pins) { channels_.set_pins(channel, pins); }
   void set_motor_inputs(const MotorInputs& inputs) {
     for (unsigned i = 0; i < kChannels; ++i) channels_.set_pins(i, inputs.pins[i]);
-    channels_.in.adc_a = inputs.adc_a;
-    channels_.in.adc_b = inputs.adc_b;
+    channels_.set_adc(inputs.adc_a, inputs.adc_b);
   }
   MotorOutputs motor_outputs() const { return channels_.motor_outputs(); }
   unsigned equ() const { return channels_.equ(); }  // bit n-1 for channel n
   void set_trip(bool trip) { channels_.set_trip(trip); }
   const ServoChannels& channels() const { return channels_; }
+  void send_adc(const ConverterWords& words) { channels_.send_adc(words); }  // in place of the pins
 
   // Clock pins; the inputs are seen by the edges to come.
   void set_pins(bool phase, bool servo) override {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
 #include "systemc/core/ticks.h"
 
@@ -14,7 +15,7 @@ namespace brick::plant {
 
 class AdcPeer {
  public:
-  static constexpr unsigned kStreamBits = 24, kValueBits = 18;
+  static constexpr unsigned kStreamBits = kSerialBits, kValueBits = 18;
 
   explicit AdcPeer(unsigned header = 4) : header_(header) {}
 
@@ -45,6 +46,38 @@ class AdcPeer {
     return event;
   }
 
+  // What it must see: the strobe alone where the engine says what it carries (started()).
+  static MotorOutputs watched(bool digest) {
+    MotorOutputs watched;
+    watched.set(motor_pin::kAdcStrobe, 0, 1);
+    if (!digest) watched.set(motor_pin::kAdcClk, 0, 1);
+    return watched;
+  }
+  static bool starts(const MotorOutputs& before, const MotorOutputs& after) {
+    return before.get(motor_pin::kAdcStrobe, 0) == 0 && after.get(motor_pin::kAdcStrobe, 0) != 0;
+  }
+  // The strobe has risen in this stream: whether a conversion has begun. A command that it carries is a new one at
+  // command_end(); a strobe word that begins with 0 carries none.
+  bool started(const MotorDigest::AdcStream& stream) {
+    if (stream.clocks - started_ < kStreamBits) return false;
+    started_ = stream.clocks;
+    if (stream.first) {
+      next_command_ = stream.strobe;
+      command_end_ = stream.end;
+    }
+    return true;
+  }
+  Tick command_end() const { return command_end_; }  // kNever: none is under way
+  void take_command() {
+    command_ = next_command_;
+    command_end_ = kNever;
+  }
+  ConverterWords words() const {  // as send_adc() wants them
+    ConverterWords words;
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = word_[i] << (kStreamBits - kValueBits - header_);
+    return words;
+  }
+
   // `channel` 0..3; ADC B when `b`; 18 bits.
   void set_word(unsigned channel, bool b, std::uint32_t word) { word_.at(b ? kChannels + channel : channel) = word; }
 
@@ -66,7 +99,10 @@ class AdcPeer {
   unsigned bit_ = kStreamBits;  // on the lines now
   std::uint32_t shift_ = 0, command_ = 0;
   Tick clk_edge_ = -kNever;
-  std::array<std::uint32_t, 2 * kChannels> word_{};
+  std::int64_t started_ = -std::int64_t{kStreamBits};  // falling clocks at the start of the last conversion
+  std::uint32_t next_command_ = 0;
+  Tick command_end_ = kNever;
+  ConverterWords word_{};
 };
 
 }  // namespace brick::plant

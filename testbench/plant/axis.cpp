@@ -29,30 +29,36 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
 }
 
+MotorOutputs Axis::watched(bool digest) const {
+  MotorOutputs watched = stops();
+  if (!has_amplifier()) return watched;
+  watched.set(motor_pin::kAena, par_.channel, 1);
+  if (par_.drive == Drive::kStepper) watched.set(motor_pin::kPfmDir, par_.channel, 1);
+  if (has_pwm() && !digest)
+    for (const MotorField& pin : {motor_pin::kPwmATop, motor_pin::kPwmABot, motor_pin::kPwmBTop, motor_pin::kPwmBBot,
+                                  motor_pin::kPwmCTop, motor_pin::kPwmCBot})
+      watched.set(pin, par_.channel, 1);
+  return watched;
+}
+
 MotorOutputs Axis::stops() const {
   MotorOutputs stops;
   if (par_.drive == Drive::kStepper) stops.set(motor_pin::kPfmPulse, par_.channel, 1);
-  if (has_adc()) {
-    stops.set(motor_pin::kAdcClk, par_.channel, 1);
-    stops.set(motor_pin::kAdcStrobe, par_.channel, 1);
-  }
   return stops;
 }
 
-void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after) {
-  amplifier_.enable(after.get(motor_pin::kAena, par_.channel) != 0);
-  const auto pwm = [this](const MotorOutputs& o) {
-    return o.w[0] >> (motor_pin::kPwmATop.stride * par_.channel) & 0x3F;
-  };
+void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest) {
   const unsigned n = par_.channel;
+  amplifier_.enable(after.get(motor_pin::kAena, n) != 0);
+  const auto pwm = [n](const MotorOutputs& o) { return o.w[0] >> (motor_pin::kPwmATop.stride * n) & 0x3F; };
   const bool pulse = after.get(motor_pin::kPfmPulse, n) != 0, down = after.get(motor_pin::kPfmDir, n) != 0;
   if (before == after) {  // just attached
-    meter_.begin(tick, pwm(after));
+    if (has_pwm()) meter_.begin(tick, pwm(after));
     stepper_.begin(pulse, down);
     return;
   }
-  if (pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
-  if (par_.drive == Drive::kStepper) stepper_.changed(tick, pulse, down, amplifier_.on());
+  if (has_pwm() && !digest && pwm(before) != pwm(after)) meter_.changed(tick, pwm(after));
+  if (par_.drive == Drive::kStepper && stepper_.changed(tick, pulse, down, amplifier_.on())) wake();
 }
 
 bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {
@@ -90,8 +96,8 @@ void Axis::move(Tick now, double dac_volts) {
     motion_ = {now - step_, now, motion_.p1, motion_.p1};
   }
   if (now < motion_.t1) return;
-  const auto phases = meter_.take(now);
-  if (meter_.take_short() && par_.drive != Drive::kTorque) amplifier_.trip(Amplifier::Fault::kShortedBus);
+  const auto phases = has_pwm() ? meter_.take(now) : std::array<double, PwmMeter::kPhases>{};
+  if (has_pwm() && meter_.take_short()) amplifier_.trip(Amplifier::Fault::kShortedBus);
   while (now >= motion_.t1) integrate(dac_volts, phases);
 }
 
@@ -130,6 +136,12 @@ std::uint32_t Axis::adc_word(bool b) {
   const double amps = b ? motor_.current_b() : motor_.current_a();
   const std::int64_t noise = adc_random_.noise(par_.amplifier.adc_noise);
   return amplifier_.adc_word(amps, noise, b ? 0 : static_cast<unsigned>(amplifier_.fault()));
+}
+
+double Axis::velocity(Tick now) const {
+  if (now >= motion_.t1 && !has_motor()) return 0;
+  return static_cast<double>(motion_.p1 - motion_.p0) / static_cast<double>(kUnitsPerCount) *
+         static_cast<double>(kPwmClockHz) / static_cast<double>(motion_.t1 - motion_.t0);
 }
 
 void Axis::turn(std::int64_t counts, Tick duration) {

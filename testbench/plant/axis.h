@@ -40,12 +40,18 @@ class Axis {
 
   unsigned ic() const { return par_.ic; }
   unsigned channel() const { return par_.channel; }
+  std::uint16_t drives() const { return owned_; }  // input pins, bits as ChannelPin
+  bool has_pwm() const { return par_.drive == Drive::kBrush || par_.drive == Drive::kThreePhase; }
   bool has_amplifier() const { return par_.drive != Drive::kHand; }
   bool has_adc() const { return has_motor() && par_.amplifier.adc; }
 
   // The plant's side, as MotorPeer.
+  MotorOutputs watched(bool digest) const;  // but for the converters, which axes share
+  bool integrates(Tick now) const { return has_pwm() && now >= motion_.t1; }
+  void begin_pwm(Tick tick, const PwmTimes& times) { meter_.begin(tick, times); }
+  void add_pwm(Tick now, const PwmTimes& times) { meter_.add(now, times); }  // before such a step(), with a digest
   MotorOutputs stops() const;
-  void changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after);
+  void changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest);
   bool step(Tick now, double dac_volts, MotorInputs& inputs);
   Tick next_event() const { return next_; }
   std::uint32_t adc_word(bool b);  // at the start of a conversion
@@ -58,12 +64,14 @@ class Axis {
   void set_load(double torque) { motor_.set_load(torque); }
   std::int64_t position(Tick now) const { return motion_.at(now); }  // units, kUnitsPerCount
   std::int64_t counts(Tick now) const { return detail::floor_div(position(now), kUnitsPerCount); }
+  double velocity(Tick now) const;  // counts/s
+  Drive drive() const { return par_.drive; }
+  bool has_motor() const { return par_.drive != Drive::kHand && par_.drive != Drive::kStepper; }
   const Amplifier& amplifier() const { return amplifier_; }
   const Motor& motor() const { return motor_; }
   const Stepper& stepper() const { return stepper_; }
 
  private:
-  bool has_motor() const { return par_.drive != Drive::kHand && par_.drive != Drive::kStepper; }
   void wake() { next_ = 0; }
   void move(Tick now, double dac_volts);
   void integrate(double dac_volts, const std::array<double, PwmMeter::kPhases>& phases);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/motor_pins.h"
 
 namespace brick::plant {
@@ -17,6 +18,26 @@ class DacPeer {
     if (bits != 16 && bits != 18) throw std::invalid_argument("DAC: 16 or 18 bits");
   }
 
+  // What it must see: the strobe alone where the engine says what was on the lines (latch()).
+  static MotorOutputs watched(bool digest) {
+    MotorOutputs watched;
+    watched.set(motor_pin::kDacStrobe, 0, 1);
+    if (digest) return watched;
+    watched.set(motor_pin::kDacClk, 0, 1);
+    for (unsigned n = 0; n < kChannels; ++n) {
+      watched.set(motor_pin::kDac, n, 1);
+      watched.set(motor_pin::kDacB, n, 1);
+    }
+    return watched;
+  }
+  static bool latches(const MotorOutputs& before, const MotorOutputs& after) {
+    return rises(motor_pin::kDacStrobe, after, before);
+  }
+  void latch(const ConverterWords& lines) {
+    shift_ = lines;
+    latch();
+  }
+
   void changed(const MotorOutputs& before, const MotorOutputs& after) {
     if (before.w[1] == after.w[1]) return;
     if (rises(motor_pin::kDacClk, before, after)) {
@@ -25,10 +46,7 @@ class DacPeer {
         shift_[kChannels + n] = shift_[kChannels + n] << 1 | after.get(motor_pin::kDacB, n);
       }
     }
-    if (rises(motor_pin::kDacStrobe, after, before)) {
-      for (std::size_t i = 0; i < shift_.size(); ++i) value_[i] = sign_extended(shift_[i]);
-      ++updates_;
-    }
+    if (latches(before, after)) latch();
   }
 
   // `channel` 0..3; DAC B when `b`.
@@ -37,6 +55,10 @@ class DacPeer {
   std::uint64_t updates() const { return updates_; }
 
  private:
+  void latch() {
+    for (std::size_t i = 0; i < shift_.size(); ++i) value_[i] = sign_extended(shift_[i]);
+    ++updates_;
+  }
   static bool rises(const MotorField& f, const MotorOutputs& before, const MotorOutputs& after) {
     return before.get(f, 0) == 0 && after.get(f, 0) != 0;
   }
@@ -46,7 +68,7 @@ class DacPeer {
   }
 
   unsigned bits_;
-  std::array<std::uint32_t, 2 * kChannels> shift_{};
+  ConverterWords shift_{};
   std::array<std::int32_t, 2 * kChannels> value_{};
   std::uint64_t updates_ = 0;
 };

@@ -14,7 +14,10 @@ std::vector<bool> set_of(const std::vector<unsigned>& members, unsigned size) {
   return set;
 }
 
-std::int64_t modulo(std::int64_t a, std::int64_t b) { return a - detail::floor_div(a, b) * b; }
+std::int64_t modulo(std::int64_t a, std::int64_t b) {
+  const std::int64_t rest = a % b;
+  return rest < 0 ? rest + b : rest;
+}
 
 }  // namespace
 
@@ -35,6 +38,11 @@ Encoder::Encoder(const EncoderParameters& parameters)
 
   if (halls) grids_.push_back({par_.hall_offset, revolution_, 6 * std::int64_t{par_.pole_pairs}});
   if (par_.wiring == Wiring::kHallsOnAbc) return;
+  whole_counts_ = par_.b_late == 0 && par_.a_long == 0;
+  if (whole_counts_) {  // every edge is the begin of a count
+    grids_.push_back({0, kU1, 1});
+    return;
+  }
   for (std::int64_t edge : {kU1, 3 * kU1 + par_.a_long, 2 * kU1 + par_.b_late, 4 * kU1 + par_.b_late})
     grids_.push_back({edge, kCycle, 1});
   const std::int64_t index = kU1 * par_.index_at;

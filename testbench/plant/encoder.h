@@ -51,6 +51,7 @@ class Encoder {
   std::int64_t revolution_;
   std::vector<bool> dark_, joint_;
   std::vector<PositionGrid> grids_;
+  bool whole_counts_ = false;  // no edge is off its count
   std::uint16_t cut_ = 0;
 };
 

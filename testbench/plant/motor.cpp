@@ -21,6 +21,7 @@ double Motor::current_b() const { return three_phase_ ? -alpha_ / 2 + beta_ * kS
 // Coulomb friction opposes motion and at most stops it: what it could take away in this step is taken from the speed
 // that the other torques give. A rotor at rest so stays until they exceed it.
 void Motor::turn(double dt, double torque) {
+  torque_ = torque;
   double speed = speed_ + dt / par_.inertia * (torque - load_ - par_.viscous * speed_);
   const double brake = dt / par_.inertia * par_.coulomb;
   if (std::fabs(speed) <= brake)

@@ -38,13 +38,14 @@ class Motor {
   std::int64_t position() const { return position_; }  // encoder units
   double current_a() const { return alpha_; }
   double current_b() const;
+  double torque() const { return torque_; }  // N m, that of the current
 
  private:
   void turn(double dt, double torque);
 
   MotorParameters par_;
   std::int64_t revolution_;
-  double load_ = 0, speed_ = 0, rest_ = 0;
+  double load_ = 0, speed_ = 0, rest_ = 0, torque_ = 0;
   std::int64_t position_ = 0;
   double alpha_ = 0, beta_ = 0;  // currents; alpha_ alone when there is one winding
   bool three_phase_ = false;

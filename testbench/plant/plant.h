@@ -40,13 +40,21 @@ class Plant : public MotorPeer {
  public:
   explicit Plant(const PlantParameters& parameters);
 
-  Axis& axis(std::size_t index) { return *axes_.at(index); }
+  Axis& axis(std::size_t index) {
+    next_ = 0;  // whoever has it may change it
+    return *axes_.at(index);
+  }
+  const Axis& axis(std::size_t index) const { return *axes_.at(index); }
+  std::size_t axes() const { return axes_.size(); }
   const DacPeer& dac(unsigned ic) const { return converters_.at(ic).dac; }
   const AdcPeer& adc(unsigned ic) const { return converters_.at(ic).adc; }
 
   std::uint32_t ics() const override;
+  void begin(MotorDigest* digest) override;
+  MotorOutputs watched(unsigned ic) const override;
+  std::uint16_t drives(unsigned ic, unsigned channel) const override;
   MotorOutputs stops(unsigned ic) const override;
-  Tick next_event() const override;
+  Tick next_event() const override { return next_; }
   void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) override;
   bool step(Tick now, MotorInputPins& inputs) override;
 
@@ -56,11 +64,20 @@ class Plant : public MotorPeer {
   struct Converters {
     DacPeer dac;
     AdcPeer adc;
+    bool uses_dac = false, uses_adc = false;
   };
+  void serial_pins(Tick tick, unsigned ic, Converters& converters, const MotorOutputs& before,
+                   const MotorOutputs& after);
+  void serial_digest(unsigned ic, Converters& converters, const MotorOutputs& before, const MotorOutputs& after);
+  void start_conversion(unsigned ic, AdcPeer& adc);
+  void command(unsigned ic, const AdcPeer& adc);
+  bool show_adc(unsigned ic, const Converters& converters, MotorInputs& inputs) const;
   std::vector<std::unique_ptr<Axis>> axes_;
   std::map<unsigned, Converters> converters_;  // by IC
   std::vector<Incident> incidents_;            // in order of time
   std::size_t happened_ = 0;                   // of them
+  MotorDigest* digest_ = nullptr;
+  Tick next_ = 0;
 };
 
 }  // namespace brick::plant

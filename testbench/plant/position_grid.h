@@ -14,10 +14,8 @@ namespace brick::plant {
 struct PositionGrid {
   std::int64_t offset, num, den;
 
-  std::int64_t index(std::int64_t p) const {
-    return detail::floor_div(detail::Wide{p - offset} * den, num);
-  }  // of the last line <= p
-  std::int64_t line(std::int64_t k) const { return offset + detail::ceil_div(detail::Wide{k} * num, den); }
+  std::int64_t index(std::int64_t p) const { return detail::scaled_down(p - offset, den, num); }  // of the last <= p
+  std::int64_t line(std::int64_t k) const { return offset + detail::scaled_up(k, num, den); }
 };
 
 // The line that a motion from `p` passes first: the next above, or the last at or below (passed when the position is

@@ -5,13 +5,14 @@
 #include <array>
 #include <cstdint>
 
+#include "systemc/core/motor_digest.h"
 #include "systemc/core/ticks.h"
 
 namespace brick::plant {
 
 class PwmMeter {
  public:
-  static constexpr unsigned kPhases = 3;
+  static constexpr unsigned kPhases = PwmTimes::kPhases;
 
   // The pins from which it starts, also once more; without it all low at tick 0.
   void begin(Tick tick, unsigned pins) {
@@ -25,6 +26,19 @@ class PwmMeter {
     settle(tick);
     pins_ = pins;
     for (unsigned i = 0; i < kPhases; ++i) both_on_ = both_on_ || (pins >> (2 * i) & 3) == 3;
+  }
+
+  // The same from sums that somebody else keeps, in place of changed(): those from which it starts, and those up to
+  // now, after which take() and take_short() say what has been since the last ones.
+  void begin(Tick tick, const PwmTimes& times) {
+    begin(tick, 0u);
+    times_ = times;
+  }
+  void add(Tick now, const PwmTimes& times) {
+    for (unsigned i = 0; i < kPhases; ++i) sum_[i] += times.balance[i] - times_.balance[i];
+    both_on_ = both_on_ || times.shorts != times_.shorts;
+    times_ = times;
+    at_ = now;
   }
 
   // Average of each phase since the last call, -1 .. 1.
@@ -55,6 +69,7 @@ class PwmMeter {
   }
 
   std::array<Tick, kPhases> sum_{};
+  PwmTimes times_;
   Tick at_ = 0, from_ = 0;
   unsigned pins_ = 0;
   bool both_on_ = false;

@@ -18,17 +18,19 @@ struct StepperParameters {
 
 class Stepper {
  public:
-  explicit Stepper(const StepperParameters& parameters, std::int64_t position = 0) : par_(parameters), zero_(position) {}
+  explicit Stepper(const StepperParameters& parameters, std::int64_t position = 0)
+      : par_(parameters), zero_(position) {}
 
   // Levels from which it starts; without it both low.
   void begin(bool pulse, bool down) {
     pulse_ = pulse;
     down_ = down;
   }
-  // Levels of the pins after an edge.
-  void changed(Tick tick, bool pulse, bool down, bool enabled) {
+  // Levels of the pins after an edge. True when the rotor has somewhere else to go.
+  bool changed(Tick tick, bool pulse, bool down, bool enabled) {
     if (down != down_) dir_edge_ = tick;
     down_ = down;
+    const std::int64_t before = steps_;
     if (pulse && !pulse_) {
       if (tick - dir_edge_ < par_.dir_setup) ++violations_;
       pulse_edge_ = tick;
@@ -37,6 +39,7 @@ class Stepper {
       ++violations_;
     }
     pulse_ = pulse;
+    return steps_ != before;
   }
 
   std::int64_t steps() const { return steps_; }

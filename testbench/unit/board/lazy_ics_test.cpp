@@ -25,6 +25,16 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
     }
     for (const auto base : kServoIcBase)
       for (unsigned word = 0; word < 64; ++word) all.push_back(rig.read(word < 32, base + word % 32));
+    MotorDigest& digest = *rig.board().motor_digest();
+    for (unsigned ic = 0; ic < 3; ++ic) {
+      for (unsigned channel = 0; channel < kChannels; ++channel) {
+        const PwmTimes times = digest.pwm_times(ic, channel);
+        for (const Tick balance : times.balance) all.push_back(static_cast<std::uint32_t>(balance));
+        all.push_back(static_cast<std::uint32_t>(times.shorts));
+      }
+      const ConverterWords lines = digest.dac_lines(ic);
+      all.insert(all.end(), lines.begin(), lines.end());
+    }
     return all;
   }
   void compare() {
@@ -33,6 +43,9 @@ class LazyIcs : public ::testing::TestWithParam<std::uint64_t> {
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (i < 18)
         ASSERT_EQ(a[i], b[i]) << "IC " << i / 6 << " word " << i % 6 << " of the pins before tick " << lazy.now();
+      else if (i >= 18 + 3 * 64)
+        ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18 - 3 * 64) / 24 << " word " << (i - 18 - 3 * 64) % 24
+                              << " of the digest at tick " << lazy.now();
       else
         ASSERT_EQ(a[i], b[i]) << "IC " << (i - 18) / 64 << " register " << (i - 18) % 64 << " before tick "
                               << lazy.now();

@@ -174,6 +174,37 @@ TEST_F(Trace, FstHoldsTheSameAsVcd) {
   std::remove(converted.c_str());
 }
 
+TEST_F(Trace, NumbersWithAFractionAreRealVariables) {
+  const Signals::Id position = signals.add("plant.axis1.position", 64, Radix::kReal, bits_of(-0.5));
+  const auto run = [&](TraceWriter& w) {
+    signals.set(position, 20 * kPs, bits_of(1.25));
+    signals.set(position, 30 * kPs, bits_of(-3e-7));
+    w.flush_until(40 * kPs);
+  };
+  const std::string text = vcd(0, 60 * kPs, run);
+  EXPECT_THAT(text, ::testing::HasSubstr("$var real 64 $ position $end\n"));
+  EXPECT_THAT(body(text), ::testing::HasSubstr("r-0.5 $\n"));
+  EXPECT_THAT(body(text), ::testing::HasSubstr("#20\nr1.25 $\n#30\nr-3e-07 $\n"));
+
+  if (std::system("fst2vcd --help >/dev/null 2>&1") == 127 << 8) GTEST_SKIP() << "fst2vcd is not installed";
+  const std::string file = path(".fst"), converted = path(".out");
+  {
+    auto writer = TraceWriter::open(file, 0, 60 * kPs);
+    signals.attach(writer.get());
+    signals.set(position, 50 * kPs, bits_of(7.75));
+    writer->flush_until(60 * kPs);
+    writer->close();
+    signals.attach(nullptr);
+  }
+  ASSERT_EQ(std::system(("fst2vcd -f " + file + " -o " + converted).c_str()), 0);
+  const std::string fst = read(converted);
+  EXPECT_THAT(fst, ::testing::ContainsRegex("real [0-9]+ . position"));
+  EXPECT_THAT(fst, ::testing::ContainsRegex("r-0.0000003|r-3e-07"));
+  EXPECT_THAT(fst, ::testing::ContainsRegex("#50\nr7.75 .\n"));
+  std::remove(file.c_str());
+  std::remove(converted.c_str());
+}
+
 TEST(TraceOpen, SaysWhatIsWrongWithTheFileName) {
   EXPECT_THROW(
       {

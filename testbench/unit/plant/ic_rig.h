@@ -11,12 +11,15 @@ namespace brick::plant {
 namespace servo_channel = regs::servo_channel;
 namespace servo_ic = regs::servo_ic;
 
-class IcRig : public PlantRig {
+class IcRig : public PlantRig, private MotorDigest {
  public:
   static constexpr unsigned kMaxCount = 1500;
   static constexpr Tick kPhase = 2 * kMaxCount + 3;
 
-  explicit IcRig(MotorPeer& peer) : PlantRig(peer) {
+  // `digest`: the peer has one, else it sees every edge.
+  explicit IcRig(MotorPeer& peer, bool digest = false) : PlantRig(peer) {
+    peer.begin(digest ? this : nullptr);
+    peer.changed(0, 0, {}, {});
     ic_.reset(0);
     using namespace servo_ic;
     write(0, kPwmControl, pwm_control::kMaxCount.set(0, kMaxCount));  // no dead time, PFM pulses of one PFM_CLK
@@ -51,15 +54,22 @@ class IcRig : public PlantRig {
     ic_.advance(now_);
     if (strobe_) strobe_();
     strobe_ = nullptr;
-    const MotorOutputs before = outputs_;
     outputs_ = ic_.motor_outputs();
-    if (outputs_ == before) return;
-    peer_.changed(now_, 0, before, outputs_);
-    stopped_ = stopped_ || before.differs(outputs_, peer_.stops(0));
+    const MotorOutputs before = seen_;
+    seen_ = outputs_ & peer_.watched(0);
+    if (seen_ == before) return;
+    peer_.changed(now_, 0, before, seen_);
+    stopped_ = stopped_ || before.differs(seen_, peer_.stops(0));
   }
 
+  ConverterWords dac_lines(unsigned) override { return ic_.channels().dac_lines(); }
+  AdcStream adc_stream(unsigned) override { return ic_.channels().adc_stream(); }
+  void send_adc(unsigned, const ConverterWords& words) override { ic_.send_adc(words); }
+  unsigned adc_lines(unsigned, bool b) override { return ic_.channels().adc_lines(b); }
+  PwmTimes pwm_times(unsigned, unsigned channel) override { return ic_.channels().pwm_times(channel); }
+
   ServoIc ic_{sc_core::sc_gen_unique_name("ic")};
-  MotorOutputs outputs_;
+  MotorOutputs outputs_, seen_;
   std::function<void()> strobe_;
 };
 

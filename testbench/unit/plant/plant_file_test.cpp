@@ -181,11 +181,10 @@ load = 1
 }
 
 TEST(PlantFile, PlantsOfTheTree) {
-  for (const auto& [name, drive] : {std::pair{"dac8", plant::Drive::kTorque},
-                                    std::pair{"servo8", plant::Drive::kThreePhase},
-                                    std::pair{"stepper8", plant::Drive::kStepper}}) {
-    const auto plant =
-        read_plant_file(std::string(BRICK_SOURCE_DIR "/examples/plants/") + name + ".toml", kTwoIcs, 1);
+  for (const auto& [name, drive] :
+       {std::pair{"dac8", plant::Drive::kTorque}, std::pair{"servo8", plant::Drive::kThreePhase},
+        std::pair{"stepper8", plant::Drive::kStepper}}) {
+    const auto plant = read_plant_file(std::string(BRICK_SOURCE_DIR "/examples/plants/") + name + ".toml", kTwoIcs, 1);
     EXPECT_EQ(plant.axes.size(), 8u) << name;
     for (const auto& axis : plant.axes) {
       EXPECT_EQ(axis.drive, drive) << name;
@@ -220,31 +219,29 @@ TEST(PlantFile, EveryMistakeHasItsLine) {
   EXPECT_EQ(error_of(axis_with("") + axis_with("")),
             ":5: axes: found \"1-2\"; expected each motor once: motor 1 has an axis already");
   EXPECT_EQ(error_of(axis_with("motor = 1\n")), ":4: motor: found 1; expected a table");
-  EXPECT_EQ(error_of(axis_with("motor = { inertia = 0 }\n")),
-            ":4: inertia: found 0; expected kg m2, 1e-9 or more");
-  EXPECT_EQ(error_of(axis_with("motor = { inertia = nan }\n")),
-            ":4: inertia: found nan; expected kg m2, 1e-9 or more");
+  EXPECT_EQ(error_of(axis_with("motor = { inertia = 0 }\n")), ":4: inertia: found 0; expected kg m2, 1e-9 or more");
+  EXPECT_EQ(error_of(axis_with("motor = { inertia = nan }\n")), ":4: inertia: found nan; expected kg m2, 1e-9 or more");
   EXPECT_EQ(error_of(axis_with("motor = { viscous = \"1\" }\n")),
             ":4: viscous: found \"1\"; expected N m s, 0 or more");
   EXPECT_EQ(error_of(axis_with("motor = { pole_pairs = 0 }\n")),
             ":4: pole_pairs: found 0; expected an integer, 1 to 1000");
   EXPECT_EQ(error_of(axis_with("amplifier = { adc = 1 }\n")), ":4: adc: found 1; expected true or false");
-  EXPECT_EQ(error_of(axis_with("stepper = { move_time = 5 }\n")),
-            ":4: move_time: found 5; expected a time in quotes of a tick (8.5 ns) or more and up to an hour, for example "
-            "\"2us\"");
-  EXPECT_EQ(error_of(axis_with("stepper = { move_time = \"5 parsec\" }\n")),
-            ":4: move_time: found \"5 parsec\"; expected a time in quotes of a tick (8.5 ns) or more and up to an hour, "
-            "for example \"2us\"");
-  EXPECT_EQ(error_of(axis_with("encoder = { lines = 0 }\n")),
-            ":4: lines: found 0; expected an integer, 1 to 1000000");
+  EXPECT_EQ(
+      error_of(axis_with("stepper = { move_time = 5 }\n")),
+      ":4: move_time: found 5; expected a time in quotes of a tick (8.5 ns) or more and up to an hour, for example "
+      "\"2us\"");
+  EXPECT_EQ(
+      error_of(axis_with("stepper = { move_time = \"5 parsec\" }\n")),
+      ":4: move_time: found \"5 parsec\"; expected a time in quotes of a tick (8.5 ns) or more and up to an hour, "
+      "for example \"2us\"");
+  EXPECT_EQ(error_of(axis_with("encoder = { lines = 0 }\n")), ":4: lines: found 0; expected an integer, 1 to 1000000");
   EXPECT_EQ(error_of(axis_with("encoder = { lines = 10, dark_lines = [10] }\n")),
             ":4: dark_lines: found 10; expected lines 0 to 9");
   EXPECT_EQ(error_of(axis_with("encoder = { wiring = \"loose\" }\n")),
             ":4: wiring: found \"loose\"; expected one of none, halls, complements, halls-on-abc");
   EXPECT_EQ(error_of(axis_with("home = { from = 5, to = 5 }\n")), ":4: to: found 5; expected a place above `from`");
   EXPECT_EQ(error_of(axis_with("home = { from = 5 }\n")), ":4: key to is missing; expected to = ...");
-  EXPECT_EQ(error_of(axis_with("noise = { shortest = \"1us\" }\n")),
-            ":4: key every is missing; expected every = ...");
+  EXPECT_EQ(error_of(axis_with("noise = { shortest = \"1us\" }\n")), ":4: key every is missing; expected every = ...");
   EXPECT_EQ(error_of(axis_with("noise = { every = \"1ms\", pins = [\"enc_x\"] }\n")).substr(0, 60),
             ":4: pins: found \"enc_x\"; expected pins in quotes, of enc_a, ");
   EXPECT_EQ(error_of(axis_with("noise = { every = \"1ms\", pins = [\"fault\"] }\n")),
@@ -254,16 +251,18 @@ TEST(PlantFile, EveryMistakeHasItsLine) {
 TEST(PlantFile, MistakesOfIncidents) {
   EXPECT_EQ(error_of(axis_with("[[incident]]\naxes = 1\ntrip = \"i2t\"\n")),
             ":4: key at is missing; expected at = ...");
-  EXPECT_EQ(error_of(axis_with("[[incident]]\nat = \"1ms\"\naxes = 1\n")).find("expected one of trip, cut, load, turn") !=
-                std::string::npos,
-            true);
+  EXPECT_EQ(
+      error_of(axis_with("[[incident]]\nat = \"1ms\"\naxes = 1\n")).find("expected one of trip, cut, load, turn") !=
+          std::string::npos,
+      true);
   EXPECT_EQ(error_of(axis_with("[[incident]]\nat = \"1ms\"\naxes = 3\nload = 1\n")),
             ":6: axes: found 3; expected motors that have an [[axis]]: motor 3 has none");
   EXPECT_EQ(error_of(axis_with("[[incident]]\nat = \"1ms\"\naxes = 1\nturn = 4\n")),
             ":4: key within is missing; expected within = ...");
-  EXPECT_EQ(error_of("[[axis]]\naxes = 1\ndrive = \"stepper\"\n[[incident]]\nat = \"1ms\"\naxes = 1\nturn = 4\nwithin = "
-                     "\"1ms\"\n"),
-            ":7: turn: found 4; expected an axis with drive = \"hand\": motor 1 has another");
+  EXPECT_EQ(
+      error_of("[[axis]]\naxes = 1\ndrive = \"stepper\"\n[[incident]]\nat = \"1ms\"\naxes = 1\nturn = 4\nwithin = "
+               "\"1ms\"\n"),
+      ":7: turn: found 4; expected an axis with drive = \"hand\": motor 1 has another");
   EXPECT_EQ(error_of(axis_with("[[incident]]\nat = \"1ms\"\naxes = 1\ntrip = \"boredom\"\n")).substr(0, 44),
             ":7: trip: found \"boredom\"; expected one of o");
 }
@@ -273,9 +272,7 @@ TEST(PlantFile, AFileThatIsNone) {
   try {
     read_plant_file("/nowhere/x.toml", kTwoIcs, 1);
     FAIL() << "expected an error";
-  } catch (const UsageError& e) {
-    EXPECT_STREQ(e.what(), "/nowhere/x.toml: cannot be read; expected a plant in TOML");
-  }
+  } catch (const UsageError& e) { EXPECT_STREQ(e.what(), "/nowhere/x.toml: cannot be read; expected a plant in TOML"); }
 }
 
 }  // namespace

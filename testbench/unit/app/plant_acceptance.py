@@ -1,0 +1,189 @@
+"""Motors at the pins of the built command: --plant, --load, the plant's signals (docs/plant.md).
+
+usage: plant_acceptance.py BRICK CASE; each CASE is one test.
+"""
+
+import math
+import pathlib
+import re
+import tempfile
+
+import command
+from command import brick, check, play
+
+# Motor 1 by hand: the amplifier is enabled and its DAC written, whatever the firmware thinks of motors.
+BY_HAND = ["I100=0", "M102->Y:$078002,8,16,S", "M114->X:$078005,14"]
+ONE_MOTOR = """
+[[axis]]
+axes = 1
+drive = "torque"
+motor = { inertia = 1e-5, viscous = 1e-4, coulomb = 5e-4, torque_constant = 0.1 }
+amplifier = { full_scale_amps = 10 }
+"""
+
+
+def values(text, name):
+    return [float(v) for v in re.findall(rf"^{re.escape(name)}=(\S+)$", text, re.M)]
+
+
+def plant_torque():
+    """A constant torque turns the motor as the formula says, the counter follows, all engines agree at each line."""
+    script = [*BY_HAND, "M114=1", "M102=328", "@time", "@wait 20ms", "@time", "@signal plant.axis1.position",
+              "@signal plant.axis1.velocity", "@signal servo_ic0.ch1.count", "M102=0 M114=0", "@wait 3ms",
+              "@signal plant.axis1.position", "@signal servo_ic0.ch1.count"]
+    outputs = []
+    for engine in ("systemc", "rtl", "lockstep"):
+        r = play(script, "--plant", "dac8", "--load", "dac8", "--engine", engine)
+        check(r.returncode == 0, f"{engine}: exit {r.returncode}: {r.stderr}")
+        outputs.append(r.stdout)
+    check(len(set(outputs)) == 1, "the engines differ:\n" + "\n".join(outputs))
+    begin, end = (int(t) * 1e-9 for t in re.findall(r"^time=(\d+) ns$", outputs[0], re.M))
+    # J w' = T - Tc - B w: 328/32768 of 10 V are 0.01001 N m
+    drive, friction, viscous, inertia = 328 / 32768, 5e-4, 1e-4, 1e-5
+    tau, final, t = inertia / viscous, (drive - friction) / viscous, end - begin
+    speed = final * (1 - math.exp(-t / tau))  # rad/s
+    angle = final * (t - tau * (1 - math.exp(-t / tau)))
+    counts = 4000 / (2 * math.pi)
+    position, later = values(outputs[0], "plant.axis1.position")
+    velocity, = values(outputs[0], "plant.axis1.velocity")
+    late = 0.25e-3  # the command is taken by a phase clock, and the answer to it takes time
+    check(angle * counts - 1 < position < (angle + speed * late) * counts + 1,
+          f"{position} counts, expected {angle * counts} and at most {late} s more")
+    check(abs(velocity * 1000 / counts / speed - 1) < 0.05, f"{velocity} counts/ms, expected {speed * counts / 1000}")
+    for count, place in zip(values(outputs[0], "servo_ic0.ch1.count"), (position, later), strict=True):
+        check(abs(count - math.floor(place)) <= 1, f"counter {count} at position {place}")
+    check(later > position + 10, "it stops at once")
+
+
+def plant_steps():
+    """Each pulse is a step of the motor and, with the encoder read back, a count."""
+    r = play(["I100=0 I7010=3 I7016=3", "M104->Y:$078004,8,16,S", "M114->X:$078005,14", "M114=1 M104=-200", "@wait 5ms",
+              "M104=0", "@wait 1ms", "@signal plant.axis1.position", "@signal servo_ic0.ch1.count", "M104=200",
+              "@wait 20ms", "M104=0", "@wait 1ms", "@signal plant.axis1.position", "@signal servo_ic0.ch1.count"],
+             "--plant", "stepper8")
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    first, second = values(r.stdout, "plant.axis1.position")
+    check(-190 < first < -140, f"{first} steps, expected 5 ms of 30 a ms and what the command takes")
+    check(second - first > 590, f"{second - first} steps, expected 20 ms of 30 a ms or more")
+    check(values(r.stdout, "servo_ic0.ch1.count") == [first, second], r.stdout)
+
+
+def plant_set_ups():
+    """Each ready set-up is taken whole by the controller, with its plant."""
+    for name in ("dac8", "servo8", "stepper8"):
+        r = play(["I800 &1#8->", "@wait 5ms", "@signal plant.axis8.position"], "--plant", name, "--load", name)
+        check(r.returncode == 0 and r.stdout.startswith("1\n1000V\n"), f"{name}: {r.returncode} {r.stdout} {r.stderr}")
+
+
+def plant_load():
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "up.pmc")
+        file.write_text("P1=5 ; one\nP2=P1+1\n")
+        r = play(["P2"], "--load", str(file))
+        check(r.returncode == 0 and r.stdout == "6\n", f"{r.returncode} {r.stdout} {r.stderr}")
+        file.write_text("P1=5\nNONSENSE\nP1=7\n")
+        r = play(["P1"], "--load", str(file))
+        check(r.returncode == 1 and r.stdout == "" and f"{file}:2: `NONSENSE`: ERR003" in r.stderr,
+              f"{r.returncode} {r.stdout} {r.stderr}")
+        r = brick("run", "smoke", "--engine", "systemc", "--load", str(file))
+        check(r.returncode == 1 and "FAIL" in r.stdout and f"{file}:2: `NONSENSE`" in r.stdout, r.stdout)
+        r = play(["P1"], "--load", f"{folder}/none.pmc")
+        check(r.returncode == 2 and r.stderr == f"brick exec: --load {folder}/none.pmc: cannot be read; expected a "
+              "command file\n", r.stderr)
+        file.write_text("@signal nowhere\n")
+        r = play(["P1"], "--load", str(file))
+        check(r.returncode == 2 and f"{file}:1:" in r.stderr, r.stderr)
+    r = play(["P1"], "--load", "dac9")
+    check(r.returncode == 2 and "--load dac9: no such set-up; expected dac8, servo8, stepper8 or a file" in r.stderr,
+          r.stderr)
+
+
+def plant_none():
+    """Without a plant, and with the plant `none`, nothing is different: replies, their times, signals."""
+    lines = ["VERSION", "@time", "M102->Y:$078002,8,16,S M114->X:$078005,14", "M114=1 M102=9999", "@wait 5ms", "@time",
+             "@signal servo_ic0.ch1.count", "@signal servo_ic0.ch1.fault", "@encoder 1 5", "@time",
+             "@signal servo_ic0.ch1.count"]
+    first, second = play(lines), play(lines, "--plant", "none")
+    check(first.returncode == 0 and "ch1.count=5" in first.stdout, first.stdout + first.stderr)
+    check(first.stdout == second.stdout, second.stdout + second.stderr)
+    r = play(["@signal plant.axis1.position"])
+    check(r.returncode == 2 and "no signal `plant.axis1.position`" in r.stderr, r.stderr)
+
+
+def plant_mistakes():
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "p.toml")
+        file.write_text(ONE_MOTOR)
+        for line, message in (("@encoder 1 5", "the plant turns the encoder of motor 1"),
+                              ("@input servo_ic0.ch1.enc_b=1", "enc_b is driven by the plant"),
+                              ("@until plant.axis1.position=3 1ms", "is never exactly a number")):
+            r = play([line], "--plant", str(file))
+            check(r.returncode == 2 and message in r.stderr, f"{line}: {r.stderr}")
+        r = play(["@encoder 2 5", "@input servo_ic0.ch1.plim=1", "@signal servo_ic0.ch2.count"], "--plant", str(file))
+        check(r.returncode == 0 and r.stdout.endswith("count=5\n"), r.stdout + r.stderr)
+        file.write_text(ONE_MOTOR.replace("inertia = 1e-5", "inertia = 0"))
+        for arguments in (("exec", "-"), ("console",), ("serve", "--listen", "127.0.0.1:0"), ("run", "smoke")):
+            r = brick(*arguments, "--plant", str(file), script="")
+            check(r.returncode == 2 and r.stderr ==
+                  f"brick {arguments[0]}: {file}:5: inertia: found 0; expected kg m2, 1e-9 or more\n", r.stderr)
+    r = play(["VERSION"], "--plant", "dac9")
+    check(r.returncode == 2 and "--plant dac9: no such plant; expected none, dac8, servo8, stepper8 or FILE.toml" in
+          r.stderr, r.stderr)
+    r = play(["VERSION"], "--plant", "dac8", "--board", "geobrick-lv-4")
+    check(r.returncode == 2 and "expected motors 1 to 4: the board has no more" in r.stderr, r.stderr)
+
+
+def plant_incidents():
+    """What the file says happens, happens then: a fault, a cut wire, a hand."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "p.toml")
+        file.write_text(ONE_MOTOR + """
+[[axis]]
+axes = 2
+drive = "hand"
+encoder = { wiring = "complements" }
+[[incident]]
+at = "60ms"
+axes = 1
+trip = "over-temperature"
+[[incident]]
+at = "60ms"
+axes = 2
+turn = 1000
+within = "10ms"
+[[incident]]
+at = "80ms"
+axes = 2
+cut = ["enc_a", "u"]
+""")
+        names = ["servo_ic0.ch1.fault", "plant.axis2.position", "servo_ic0.ch2.u"]
+        script = ["@until servo_ic0.ch1.fault=1 70ms", "@time", *(f"@signal {n}" for n in names), "@wait 15ms",
+                  *(f"@signal {n}" for n in names), "@wait 20ms", *(f"@signal {n}" for n in names)]
+        r = play(script, "--plant", str(file))
+        check(r.returncode == 0, r.stdout + r.stderr)
+        at = int(re.search(r"time=(\d+)", r.stdout)[1])
+        check(60_000_000 <= at < 60_001_000, f"FAULT rose at {at} ns, expected 60 ms")
+        check(values(r.stdout, names[0]) == [1, 1, 1], r.stdout)
+        check(values(r.stdout, names[1])[1:] == [1000, 1000], r.stdout)
+        check(values(r.stdout, names[2])[1:] == [0, 1], r.stdout)  # count 1000: A is low; cut: pulled up
+
+
+def plant_wave():
+    """Positions and speeds are real variables of the waveform, the same in both formats and as @signal says."""
+    script = [*BY_HAND, "M114=1 M102=3280", "@wait 20ms", "@signal plant.axis1.position", "@time"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "x.vcd")
+        r = play(script, "--plant", "dac8", "--load", "dac8", "--wave", str(file), "--trace", "plant.*")
+        check(r.returncode == 0, r.stderr)
+        text = file.read_text()
+        code = re.search(r"\$var real 64 (\S+) position \$end", text.split("axis1")[1])[1]
+        curve = [float(v) for v in re.findall(rf"^r(\S+) {re.escape(code)}$", text, re.M)]
+        check(len(curve) > 150, f"{len(curve)} samples, expected 12.8 a ms of motion")
+        check(curve == sorted(curve), "the position goes back")
+        end, = values(r.stdout, "plant.axis1.position")
+        check(0 <= end - curve[-1] < 30, f"the curve ends at {curve[-1]}, @signal says {end}")
+        plain = play(script, "--plant", "dac8", "--load", "dac8")
+        check(plain.stdout == r.stdout, "a waveform changes the run")
+
+
+globals()[command.CASE]()
