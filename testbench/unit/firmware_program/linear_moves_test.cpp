@@ -219,6 +219,20 @@ TEST_F(LinearMoves, LimitsHoldInAnySequence) {
   }
 }
 
+// Virtual axes: a blend that should have begun already lasts as long before the corner as behind it.
+TEST_F(LinearMoves, ALateBlendOfVirtualAxesIsShort) {
+  ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("TM100 TA20 TS0 X1"), "");
+  ASSERT_EQ(host("R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(90.0));
+  ASSERT_EQ(host("TA100 X3"), "");  // at its best from 60 to 160 ms; now until 130 at the latest
+  platform::servo_ticks(ticks_of(140.0) - ticks_of(90.0));
+  ASSERT_EQ(host("A"), "");
+  platform::real_time();
+  EXPECT_NEAR(cs().position[AXIS_X], 1 + (ticks_of(140.0) * kTickMs - 110.0) * 2 / 100, 1e-6);
+}
+
 // What takes the place of pieces comes too late once the servo task is beyond it.
 TEST(PieceRing, PiecesAreReplacedUntilTheyAreOver) {
   static cubic cubics[PIECES];
