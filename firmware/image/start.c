@@ -34,6 +34,7 @@
 #include "firmware/motion/phasing.h"
 #include "firmware/motion/power_on_position.h"
 #include "firmware/motion/sine_table.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
@@ -103,6 +104,7 @@ void start(enum start_mode mode) {
   buffer_request_initialize();
   panel_initialize();
   coordinate_systems_initialize();
+  time_base_initialize();
   motor_variables_initialize();
   jog_initialize();
   phasing_initialize();

@@ -32,6 +32,7 @@
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
@@ -72,6 +73,7 @@ static void compensation_tables_changed(uint32_t instance) {
 }
 
 const i_effect_t i_effects[I_FIELD_COUNT] = {
+    [I_FIELD_TIME_BASE] = time_base_source_changed,
     [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
     [I_FIELD_DPRAM] = dpram_functions_changed,
     [I_FIELD_DPRAM_BASE] = dpram_functions_changed,
@@ -89,18 +91,9 @@ const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
-const struct command_entry* const command_tables[] = {report_commands,
-                                                      system_commands,
-                                                      memory_commands,
-                                                      calendar_commands,
-                                                      buffer_commands,
-                                                      list_commands,
-                                                      plc_commands,
-                                                      motor_commands,
-                                                      phase_commands,
-                                                      program_commands,
-                                                      gather_commands,
-                                                      0};
+const struct command_entry* const command_tables[] = {
+    report_commands, system_commands, memory_commands, calendar_commands, buffer_commands, list_commands,
+    plc_commands,    motor_commands,  phase_commands,  program_commands,  gather_commands, 0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;
 

@@ -7,6 +7,7 @@
 
 struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 volatile uint32_t cs_busy;
+uint32_t cs_interrupts;
 
 /* A motor belongs to one system at a time: all rings have their cubics here, each those of its motors. */
 static struct cubic cubics[PIECES * MOTORS];

@@ -36,7 +36,20 @@ struct program_trace {
 
 enum program_pointer { POINTER_NONE, POINTER_ROTARY, POINTER_FIXED };
 
-enum move_kind { MOVE_LINEAR, MOVE_DWELL };
+enum move_kind {
+  MOVE_LINEAR,
+  MOVE_DWELL,
+  MOVE_OWN, /* motors go for themselves: RAPID, HOME */
+  MOVE_PVT,
+  MOVE_SPLINE
+};
+
+enum { KNOTS = 4 };
+
+/* Where the axes are, and their velocities a ms, between two cubics. */
+struct knot {
+  double position[AXIS_COUNT], velocity[AXIS_COUNT];
+};
 
 /* One calculated move. R writes it while it is not the executing one, and its stop until that begins.
  *
@@ -60,8 +73,19 @@ struct move {
   double delta[AXIS_COUNT];
   double delta_before[AXIS_COUNT]; /* of the move before, and its Tm */
   int64_t time_before;
+  /* PVT, SPLINE: cubics from knot to knot. The first is the move; what is behind it is left for the next move */
+  uint32_t knot_count;
+  int64_t knot_time[KNOTS - 1];
+  struct knot knots[KNOTS];
+  bool overruns;             /* it ends in motion: without a next one it runs on, to be stopped */
+  uint32_t own;              /* OWN: the motors */
+  bool homes;                /* they search for home */
+  bool is_sharp, has_dwell;  /* not blended: for its corner; Isx82 counts */
   struct program_trace line; /* PE */
 };
+
+/* Where a system stands between moves that do not blend (motion:5.3). */
+enum corner_stop { CORNER_NONE, CORNER_IN_POSITION, CORNER_DWELL };
 
 /* Why a program was stopped (firmware:7.10): the numbers that clients read in Y:+$14. */
 enum run_time_error {
@@ -73,7 +97,9 @@ enum run_time_error {
   RUN_TIME_BLOCK,       /* IF, WHILE and their ends do not fit together, or too many loops in one line */
   RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
   RUN_TIME_READ,        /* READ where nothing has been called */
-  RUN_TIME_FEEDRATE     /* a move goes by a feedrate that is not above 0 */
+  RUN_TIME_FEEDRATE,    /* a move goes by a feedrate that is not above 0 */
+  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time */
+  RUN_TIME_IN_POSITION  /* motors are not in position within Isx81 */
 };
 
 struct coordinate_system {
@@ -95,14 +121,21 @@ struct coordinate_system {
   uint32_t incremental, feedrate_axes; /* axis masks */
   bool vector_absolute, time_mode;
   enum mode mode;
-  bool may_join; /* the last calculated move can blend with one after it */
+  bool unblended; /* at the start of the program: Isx92 */
+  bool may_join;  /* the last calculated move can blend with one after it */
   /* calculation, R */
   double position[AXIS_COUNT]; /* end of the last calculated move */
   /* of the last calculated move, and its Tm: a velocity is divided when it is needed */
   double last_delta[AXIS_COUNT];
   int64_t last_time;
+  double carry[AXIS_COUNT];   /* what incremental moves have lost by rounding of the position: none adds up */
   double pending[AXIS_COUNT]; /* targets of the line being calculated */
   uint32_t pending_axes;
+  double pending_velocity[AXIS_COUNT], pending_trigger[AXIS_COUNT]; /* behind `:` and `^`: units a Isx90, units */
+  uint32_t pending_velocities, pending_triggers;
+  bool was_matched;          /* since the last MOVE_OWN */
+  bool first;                /* no move of this run has been placed yet */
+  bool sets_position;        /* the line is that of PSET */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
   /* moves: moves[executing] is the one that executes or has been last, the other one is the next */
@@ -115,13 +148,18 @@ struct coordinate_system {
   uint32_t motors;             /* R, at the start of a program: those that its axes move; 0: the axes are virtual */
   struct piece_ring ring;      /* piece.move is the number of the move, as `planned` counts */
   int64_t elapsed;             /* S: trajectory time since the executing move began to change velocity */
+  enum corner_stop corner;     /* R */
+  uint32_t corner_began;       /* R: real-time interrupt */
+  enum run_time_error failure; /* R: found while a move waited to be placed */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */
   volatile int32_t increment_slew;   /* B */
-  int32_t increment_full;            /* B: I10, taken over by %100 */
-  int32_t increment_command;         /* B: target without the hold of H */
-  bool held;                         /* B: H */
+  /* B: the word that Isx93 points to, which has the target instead; null: its own commanded time base */
+  const volatile uint32_t* volatile time_base_source;
+  int32_t increment_full;    /* B: I10, taken over by %100 */
+  int32_t increment_command; /* B: target without the hold of H */
+  bool held;                 /* B: H */
 };
 
 extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
@@ -129,11 +167,18 @@ extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 /* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off.
  * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
+extern uint32_t cs_interrupts; /* R: real-time interrupts so far */
 
 void coordinate_systems_initialize(void);      /* power-up, $$$ and $$$***: idle, at 0, without axes */
 void coordinate_systems_forget_programs(void); /* none points to a program any more: R needs a new B */
 /* OP_ABS, OP_INC, OP_FRAX. Background and real-time task. */
 void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask);
+
+/* The calculated move goes on with the executing one: it blends with it, or is of the same sequence. */
+static inline bool move_continues(const struct coordinate_system* s) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  return s->active && next->joins && m->kind == next->kind;
+}
 
 static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }
 static inline double cs_real(uint32_t cs, enum i_real_name isxnn) { return i_variable_read(i_cs_real(cs, isxnn)); }

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The calculated move, if there is one that is not placed. False: there is none, or it has to wait: for `/`, or for
- * room. Real-time task, in slices; of virtual axes the background too. */
+/* The calculated move, if there is one that is not placed. False: there is none, or it has to wait: for `/`, for the
+ * end of the one before, or for room. Real-time task, in slices; of virtual axes the background too. */
 bool move_place(uint32_t cs);
 /* Of virtual axes, servo task held off: the next move is out of the ring again if it has not begun, and the executing
  * one stops at its corner, in what is left of it if its own stop should have begun. */

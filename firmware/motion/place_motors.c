@@ -210,6 +210,18 @@ static bool blend(struct move* next, uint32_t number) {
   return false;
 }
 
+/* Behind the last piece; behind a PVT move that ends in motion, which something else follows, in place of what would
+ * have been its stop. */
+static void append(struct coordinate_system* s) {
+  const struct move* m = &s->moves[s->executing];
+  const uint32_t state = hal_mask_servo();
+  const bool cuts = s->active && m->kind == MOVE_PVT && m->overruns;
+  if (!cuts || !piece_ring_replace(&s->ring, m->straight, m->time, making.added))
+    for (uint32_t i = 0; i < making.added; i++) piece_ring_add(&s->ring);
+  s->placed = true;
+  hal_unmask(state);
+}
+
 static void from_rest(struct move* next, uint32_t number) {
   struct coordinate_system* s = making.s;
   making.before = 0;
@@ -217,18 +229,54 @@ static void from_rest(struct move* next, uint32_t number) {
   begin_at(0, 0);
   next->blended = false;
   next->blend_in = next->stop_length;
-  if (next->kind == MOVE_DWELL) {
-    next->straight = s->ring.added;
-    begin_piece(next->time, 0, number);
-  } else {
+  if (next->kind == MOVE_LINEAR) {
     add_change(0, making.after, next->blend_in, next->s_curve, number);
     next->straight = s->ring.added + making.added;
     add_rest(next, number);
+  } else { /* time passes, or motors go for themselves */
+    next->straight = s->ring.added;
+    begin_piece(next->time, 0, number);
+  }
+  append(s);
+}
+
+/* With the way D: v0 T u + (3 D - (2 v0 + v1) T) u^2 + ((v0 + v1) T - 2 D) u^3. */
+static void add_knots(uint32_t motor, const struct knot* first, const struct knot* second, double time) {
+  const double from = system_motor_at(motor, first->position), to = system_motor_at(motor, second->position);
+  slice_pause();
+  const double v0 = system_motor_velocity_at(motor, first->velocity) * time;
+  slice_pause();
+  const double v1 = system_motor_velocity_at(motor, second->velocity) * time, way = to - from;
+  slice_pause();
+  add_cubic(motor, to, 3.0 * way - v0 - v0 - v1, v0 + v1 - way - way);
+}
+
+/* False: the sequence that it goes on with has ended meanwhile. */
+static bool place_cubic(struct move* next, uint32_t number) {
+  struct coordinate_system* s = making.s;
+  const struct move* m = &s->moves[s->executing];
+  const bool continues = move_continues(s);
+  making.added = 0;
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    making.reached[motor] = math_nearest(system_motor_at(motor, next->knots[0].position));
+    slice_pause();
+  }
+  next->straight = s->ring.added;
+  for (uint32_t i = 0; i + 1u < next->knot_count; i++) {
+    begin_piece(next->knot_time[i], s->motors, number);
+    for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+      if ((left & 1u) != 0) add_knots(motor, &next->knots[i], &next->knots[i + 1u], milliseconds(next->knot_time[i]));
+  }
+  next->blended = continues;
+  if (!continues) {
+    append(s);
+    return true;
   }
   const uint32_t state = hal_mask_servo();
-  for (uint32_t i = 0; i < making.added; i++) piece_ring_add(&s->ring);
-  s->placed = true;
+  s->placed = piece_ring_replace(&s->ring, m->straight, m->knot_time[0], making.added);
   hal_unmask(state);
+  return s->placed;
 }
 
 bool move_place_motors(uint32_t cs) {
@@ -238,7 +286,8 @@ bool move_place_motors(uint32_t cs) {
   if (piece_ring_room(&s->ring) < MOST_PIECES) return false;
   making.s = s;
   making.after = motor_moves[index];
-  if (next->kind == MOVE_LINEAR && next->joins && s->active && blend(next, number)) return true;
+  if (next->kind == MOVE_PVT || next->kind == MOVE_SPLINE) return place_cubic(next, number);
+  if (next->kind == MOVE_LINEAR && move_continues(s) && blend(next, number)) return true;
   from_rest(next, number);
   return true;
 }

@@ -5,6 +5,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-bool move_place_motors(uint32_t cs); /* false: no room now */
+bool move_place_motors(uint32_t cs); /* false: no room now, or too late for what it goes on with */
 
 #endif

@@ -7,6 +7,7 @@
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/rollover.h"
 #include "firmware/variables/i_variables.h"
 
 enum { AXES_OF_A_MOTOR = 3 };
@@ -63,6 +64,45 @@ double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
     slice_pause();
   }
   return sum;
+}
+
+/* The first motor that carries it alone tells the turn. */
+double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  for (uint32_t motor = 0, left = axis <= AXIS_C ? s->motors : 0u; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0 || maps[motor].count != 1u || maps[motor].axis[0] != axis) continue;
+    if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
+    const double scale = axis_definitions[motor].scale[axis];
+    slice_pause();
+    return rollover_target(motor, s->position[axis] * scale, target * scale, target < 0.0) / scale;
+  }
+  return target;
+}
+
+double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]) {
+  double sum = 0.0;
+  for (uint32_t i = 0; i < maps[motor].count; i++) {
+    const double of_axis = velocity[maps[motor].axis[i]];
+    if (of_axis != 0.0) sum += maps[motor].scale[i] * of_axis;
+    slice_pause();
+  }
+  return sum;
+}
+
+double system_motor_counts(uint32_t motor, int64_t distance) { return (double)distance / maps[motor].unit; }
+
+bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AXIS_COUNT], int64_t* behind) {
+  double sum = 0.0;
+  bool any = false;
+  for (uint32_t i = 0; i < maps[motor].count; i++) {
+    const uint32_t axis = maps[motor].axis[i];
+    if (((axes >> axis) & 1u) == 0) continue;
+    any = true;
+    sum += maps[motor].scale[i] * distance[axis];
+    slice_pause();
+  }
+  *behind = math_nearest(sum);
+  return any;
 }
 
 static double limit(uint32_t motor, enum i_real_name ixxnn) {
@@ -162,6 +202,7 @@ void system_motors_begin(uint32_t cs) {
   system_motors_match(cs);
   system_motors_take(cs);
   coordinate_systems[cs].matching = false;
+  coordinate_systems[cs].was_matched = true;
 }
 
 bool system_motors_leave(uint32_t cs) {
@@ -177,4 +218,26 @@ bool system_motors_are_away(uint32_t cs) {
     if ((left & 1u) != 0 && motors[motor].trajectory != motors[motor].of_system) away = true;
   hal_unmask(state);
   return away;
+}
+
+void system_motors_ramp(uint32_t cs) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++)
+    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs)
+      (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
+}
+
+void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  double now[AXIS_COUNT];
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+    now[axis] = ((axes >> axis) & 1u) != 0 ? position[axis] : s->position[axis];
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    const int64_t shift = math_nearest(system_motor_at(motor, now) - system_motor_at(motor, s->position));
+    slice_pause();
+    const uint32_t state = hal_mask_servo();
+    motors[motor].bias += shift;
+    hal_unmask(state);
+  }
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) s->position[axis] = now[axis];
 }

@@ -1,10 +1,19 @@
 #include "firmware/motion/system_path.h"
 
+#include "firmware/hal/hal.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 
+/* An external time base that runs backwards stops the trajectory. A hold stops it too, whatever the time base is. */
+static int32_t target_of(const struct coordinate_system* s) {
+  if (s->time_base_source == 0 || s->held) return s->increment_target;
+  const int32_t external = hal_signed(*s->time_base_source);
+  return external < 0 ? 0 : external;
+}
+
 static void slew_time_base(struct coordinate_system* s) {
-  int32_t present = s->increment, target = s->increment_target, slew = s->increment_slew;
+  int32_t present = s->increment, target = target_of(s), slew = s->increment_slew;
   if (present < target)
     s->increment = target - present > slew ? present + slew : target;
   else if (present > target)
@@ -48,7 +57,15 @@ static void begin_move(struct coordinate_system* s, uint32_t first, uint32_t num
     if (piece_ring_at(&s->ring, i)->move == move) s->elapsed += piece_ring_at(&s->ring, i)->end;
 }
 
+static bool goes_alone(const struct move* m) {
+  if (m->kind != MOVE_OWN) return false;
+  for (uint32_t motor = 0, left = m->own; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && jog_is_moving(motor)) return true;
+  return false;
+}
+
 static void advance(struct coordinate_system* s) {
+  if (goes_alone(&s->moves[s->executing])) return;
   const bool dwells = s->moves[s->executing].kind == MOVE_DWELL; /* real time: the time base does not count */
   const int32_t increment = dwells ? s->increment_full : s->increment;
   const uint32_t first = s->ring.executing;
@@ -77,6 +94,7 @@ void system_path_servo(void) {
     if ((left & 1u) == 0) continue;
     struct coordinate_system* s = &coordinate_systems[cs];
     update(s);
-    if (!s->active && piece_ring_is_empty(&s->ring) && s->increment == s->increment_target) cs_busy &= ~(1u << cs);
+    const bool stands = !s->active && piece_ring_is_empty(&s->ring);
+    if (stands && s->time_base_source == 0 && s->increment == s->increment_target) cs_busy &= ~(1u << cs);
   }
 }

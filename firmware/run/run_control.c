@@ -118,7 +118,12 @@ error_t run_start(uint32_t cs, bool single_step) {
   }
   if (!s->running) system_motors_resolve(cs);
   uint32_t state = hal_mask_servo();
-  if (!s->running) s->matching = s->motors != 0;
+  if (!s->running) {
+    s->matching = s->motors != 0;
+    s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
+    s->first = true;
+    if (!s->next_valid) s->may_join = false;
+  }
   s->end_block = s->quit = false;
   s->stepping = single_step;
   s->continuous = !single_step;
@@ -135,16 +140,9 @@ void run_quit(uint32_t cs) {
   if (s->running) s->quit = s->must_return = true;
 }
 
-/* Motors whose loops are closed leave the path and ramp to rest at Ixx15. */
-static void ramp_down(uint32_t cs) {
-  for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs)
-      (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
-}
-
 void run_abort(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  ramp_down(cs);
+  system_motors_ramp(cs);
   uint32_t state = hal_mask_servo();
   drop_moves(cs);
   s->running = s->quit = s->end_block = s->stepping = s->continuous = s->matching = s->must_return = false;
@@ -162,7 +160,7 @@ void run_hold(uint32_t cs) {
   hal_unmask(state);
 }
 
-/* With motors and without segmentation it is Q (motion:4.7). */
+/* With motors and without segmentation it is Q (motion:5.6). */
 void run_end_block(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (!s->running) return;

@@ -1,5 +1,11 @@
-// LINEAR moves of motors (motion:4.2): where they are at each servo interrupt, blending, limits, exact ends.
+// LINEAR moves of motors (motion:5.2): where they are at each servo interrupt, blending, limits, exact ends.
 #include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/place.h"
+#include "firmware/motion/plan.h"
+#include "firmware/motion/system_path.h"
+}
 
 namespace {
 
@@ -85,12 +91,27 @@ TEST_F(LinearMoves, EndsAreExact) {
   EXPECT_EQ(stops, 10u);
 }
 
+// Planned and executed without the program around them, which would take most of the time.
 TEST_F(LinearMoves, AMillionIncrementalMovesOfWholeCountsDriftByNothing) {
   fit({"1000X", "Y"});
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
+  ASSERT_EQ(host("TM0.5 TA0 TS0 WHILE(P1=0) WAIT"), "");
+  ASSERT_EQ(host("CLOSE B1R"), "");
+  platform::servo_ticks(9);
   constexpr int kMoves = 1000000;
-  ASSERT_EQ(host("I8=0"), "");  // real-time interrupts as often as servo interrupts
-  store({"TM0 TA0 TS0 INC P1=0", "WHILE(P1<" + std::to_string(kMoves) + ")", "X0.001 Y3 P1=P1+1", "ENDWHILE"});
-  run();
+  coordinate_system& s = cs();
+  for (int i = 0; i < kMoves; ++i) {
+    s.pending[AXIS_X] = s.position[AXIS_X] + 0.001;
+    s.pending[AXIS_Y] = s.position[AXIS_Y] + 3;
+    s.pending_axes = 1u << AXIS_X | 1u << AXIS_Y;
+    ASSERT_TRUE(plan_line(0));
+    ASSERT_TRUE(move_place(0));
+    for (int tick = 0; s.next_valid; ++tick) {
+      ASSERT_LT(tick, 5);
+      system_path_servo();
+    }
+  }
+  while (s.active) system_path_servo();
   EXPECT_EQ(motors[0].trajectory, std::int64_t{kMoves} * 3072);
   EXPECT_EQ(motors[1].trajectory, std::int64_t{kMoves} * 3 * 3072);
 }
@@ -110,7 +131,7 @@ struct Extremes {
   }
 };
 
-// motion:4.2, its checks: 10,000 counts a unit, F10, TA200 TS0, Ixx17 = 0.25.
+// motion:5.2, its checks: 10,000 counts a unit, F10, TA200 TS0, Ixx17 = 0.25.
 TEST_F(LinearMoves, AccelerationLimitStretchesTheCorner) {
   struct Case {
     const char *first, *second;
@@ -131,6 +152,30 @@ TEST_F(LinearMoves, AccelerationLimitStretchesTheCorner) {
       profiles.push_back(changes_of({{c.by1[i], c.time, begin, 0}, {c.by2[i], c.time, c.corner, 0}}, end));
     follow(profiles, 6.0);
   }
+}
+
+// Of several motors the one that needs longest tells, wherever it stands.
+TEST_F(LinearMoves, TheSlowestMotorTellsTheLengthOfACorner) {
+  for (const bool first : {true, false}) {
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    ASSERT_EQ(host("I117=0.25 I217=0.25"), "");
+    store({"TM1000 TA20 TS0", first ? "X20 Y10" : "X10 Y20", "X0 Y0"});  // 20 and 10 counts a ms, then back
+    const double stop = 20 / 0.25, corner = 40 / 0.25;
+    const auto profile = [&](double by) { return changes_of({{by, 1000, stop, 0}, {-by, 1000, corner, 0}}, stop); };
+    follow({profile(first ? 20000 : 10000), profile(first ? 10000 : 20000)}, 6.0);
+  }
+}
+
+// A blend begins behind the change before it and ends before the one behind it.
+TEST_F(LinearMoves, BlendsStayWithinTheirMoves) {
+  fit({"1000X"});
+  store({"TM20 TA10 TS0 X0.2", "TM300 TA200 X2", "TM20 TA20 X2.1"});
+  follow({changes_of({{200, 20, 10, 0}, {1800, 300, 30, 0}, {100, 20, 20, 0}}, 20)});
+  platform::power_up();
+  fit({"1000X"});
+  store({"TM300 TA20 TS0 X3", "TM30 TA40 X3.1"});  // 40 ms at least: its stop leaves 20 of them
+  follow({changes_of({{3000, 300, 20, 0}, {100, 40, 40, 0}}, 40)});
 }
 
 // Ixx16 makes the move longer, for all motors.
@@ -172,6 +217,40 @@ TEST_F(LinearMoves, LimitsHoldInAnySequence) {
     EXPECT_GT(x.velocity, 10.0);
     EXPECT_GT(x.acceleration, 0.19);
   }
+}
+
+// Virtual axes: a blend that should have begun already lasts as long before the corner as behind it.
+TEST_F(LinearMoves, ALateBlendOfVirtualAxesIsShort) {
+  ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("TM100 TA20 TS0 X1"), "");
+  ASSERT_EQ(host("R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(90.0));
+  ASSERT_EQ(host("TA100 X3"), "");  // at its best from 60 to 160 ms; now until 130 at the latest
+  platform::servo_ticks(ticks_of(140.0) - ticks_of(90.0));
+  ASSERT_EQ(host("A"), "");
+  platform::real_time();
+  EXPECT_NEAR(cs().position[AXIS_X], 1 + (ticks_of(140.0) * kTickMs - 110.0) * 2 / 100, 1e-6);
+}
+
+// What takes the place of pieces comes too late once the servo task is beyond it.
+TEST(PieceRing, PiecesAreReplacedUntilTheyAreOver) {
+  static cubic cubics[PIECES];
+  static piece_ring ring;
+  piece_ring_initialize(&ring, cubics, 1);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    piece_set_time(piece_ring_at(&ring, i), 100);
+    if (i < 2) piece_ring_add(&ring);
+  }
+  ASSERT_TRUE(piece_ring_advance(&ring, 60));
+  EXPECT_FALSE(piece_ring_replace(&ring, 0, 50, 1)) << "10 beyond";
+  EXPECT_FALSE(piece_ring_replace(&ring, 2, 50, 1)) << "has not been added";
+  EXPECT_TRUE(piece_ring_replace(&ring, 0, 70, 1));
+  ASSERT_TRUE(piece_ring_advance(&ring, 30));
+  EXPECT_EQ(ring.executing, 2u) << "the second is passed over";
+  EXPECT_EQ(ring.elapsed, 20);
+  EXPECT_FALSE(piece_ring_replace(&ring, 0, 90, 0)) << "over";
+  EXPECT_FALSE(piece_ring_advance(&ring, 80));
 }
 
 // firmware:1.10: the trajectory word is what the servo loop is asked to follow.

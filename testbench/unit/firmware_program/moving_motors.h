@@ -1,5 +1,5 @@
 // Motors of &1 that a program moves, with closed loops that nothing is behind: where the servo task has each at every
-// servo interrupt, and the profile that motion:4.2 asks for, in doubles, as a sum of changes of velocity.
+// servo interrupt, and the profile that motion:5.2 asks for, in doubles, as a sum of changes of velocity.
 #pragma once
 
 #include <cmath>
@@ -85,7 +85,8 @@ class MovingMotors : public FirmwareTest {
   }
   static double at(unsigned motor) { return static_cast<double>(motors[motor - 1].trajectory) / kUnit; }
   // From the interrupt that begins the first move: `look` at each, with the ms since then, until the program has ended.
-  static double run(const std::function<void(double)>& look = [](double) {}, const std::string& start = "&1B1R") {
+  static double run(
+      const std::function<void(double)>& look = [](double) {}, const std::string& start = "&1B1R") {
     EXPECT_EQ(host(start), "");
     for (int i = 0; i < 1000 && !cs().active; ++i) platform::servo_ticks(1);
     EXPECT_TRUE(cs().active);
