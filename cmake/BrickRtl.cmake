@@ -33,7 +33,33 @@ function(brick_verilate library)
   endforeach()
   verilate(${library} TOP_MODULE ${V_TOP} PREFIX ${V_PREFIX} SOURCES ${sources}
     VERILATOR_ARGS -O3 --x-assign fast --x-initial unique ${V_ARGS} ${BRICK_RTL_ARGS}
-    OPT_FAST ${BRICK_RTL_OPT} OPT_SLOW ${BRICK_RTL_SLOW_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
+    OPT_GLOBAL ${BRICK_RTL_OPT})
+  brick_join_verilated(${library} ${V_PREFIX})
+endfunction()
+
+# A model is some ten files, most of them short, which all read the same headers: two thirds of the compiler's work. So
+# they are compiled as two: what runs at each evaluation, and what runs once.
+function(brick_join_verilated library prefix)
+  get_target_property(files ${library} SOURCES)
+  list(FILTER files INCLUDE REGEX "/${prefix}\\.dir/.*\\.cpp$")
+  set_source_files_properties(${files} PROPERTIES HEADER_FILE_ONLY ON)  # still what Verilator's command makes
+  set(fast ${files})
+  set(slow ${files})
+  list(FILTER fast EXCLUDE REGEX "__(Slow|Syms)\\.cpp$")
+  list(FILTER slow INCLUDE REGEX "__(Slow|Syms)\\.cpp$")
+  foreach(part fast slow)
+    set(text "")
+    foreach(file ${${part}})
+      file(RELATIVE_PATH file ${CMAKE_CURRENT_BINARY_DIR} ${file})
+      string(APPEND text "#include \"${file}\"\n")
+    endforeach()
+    set(joined ${CMAKE_CURRENT_BINARY_DIR}/${prefix}_${part}.cpp)
+    file(CONFIGURE OUTPUT ${joined} CONTENT "${text}" @ONLY)
+    target_sources(${library} PRIVATE ${joined})
+    set(${part}_file ${joined})
+  endforeach()
+  set_source_files_properties(${fast_file} PROPERTIES COMPILE_OPTIONS "${BRICK_RTL_OPT}")
+  set_source_files_properties(${slow_file} PROPERTIES COMPILE_OPTIONS "${BRICK_RTL_SLOW_OPT}")
 endfunction()
 
 # brick_add_rtl_shell(macro_ic_rtl SOURCES rtl_macro_ic.cpp LIBRARIES brick_core): a library of shells

@@ -12,17 +12,21 @@ if(CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
 endif()
 set(BRICK_WARNINGS -Wall -Wextra -Werror -Wshadow -Wno-unused-parameter)
-# How Verilated code is compiled. Its speed decides the speed of a release; elsewhere a short build counts more. Under
-# the sanitizers it stays uninstrumented: it is generated, and what is hunted are errors in our own code.
+# How Verilated code is compiled, and how what runs once of it: its set-up and its initial values, half of the code. The
+# speed of the rest decides the speed of a release; elsewhere a short build counts more. Under the sanitizers it stays
+# uninstrumented: it is generated, and what is hunted are errors in our own code.
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT BRICK_SANITIZE AND NOT BRICK_COVERAGE)
-  set(BRICK_RTL_OPT -O3)  # verilate(... OPT_FAST ${BRICK_RTL_OPT} OPT_GLOBAL ${BRICK_RTL_OPT})
+  set(BRICK_RTL_OPT -O3)
+  set(BRICK_RTL_SLOW_OPT -O1)
 elseif(BRICK_SANITIZE)
   set(BRICK_RTL_OPT -O1 -fno-sanitize=all)
+  set(BRICK_RTL_SLOW_OPT -O0 -fno-sanitize=all)
 elseif(BRICK_COVERAGE)
   set(BRICK_RTL_OPT -O1 -fno-profile-arcs -fno-test-coverage)  # it counts by itself, in lines of the RTL
-  set(BRICK_RTL_SLOW_OPT -O0 -fno-profile-arcs -fno-test-coverage)  # what runs once; most of the code here
+  set(BRICK_RTL_SLOW_OPT -O0 -fno-profile-arcs -fno-test-coverage)  # most of the code here
 else()
   set(BRICK_RTL_OPT -O1)
+  set(BRICK_RTL_SLOW_OPT -O0)
 endif()
 set(BRICK_RTL_ARGS "")  # verilate(... VERILATOR_ARGS ... ${BRICK_RTL_ARGS})
 set(BRICK_RTL_BITS "")  # of small modules: brick_add_rtl_module(... ARGS ${BRICK_RTL_BITS})

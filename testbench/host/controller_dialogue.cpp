@@ -10,6 +10,7 @@ namespace brick {
 
 namespace {
 constexpr std::uint8_t kAskStatus = 0x07;            // ^G
+constexpr char kSources = 0x05;                      // ^E
 constexpr char kClearInput = 0x18;                   // ^X, and its echo
 constexpr std::uint8_t kAskMark = 0x0E, kMark = 0;   // ^N behind an empty line: the sum of nothing
 constexpr Tick kMarkQuiet = ns_to_ticks(1'000'000);  // nothing for so long behind a NUL: it was no checksum
@@ -21,7 +22,7 @@ bool is_report_control(std::uint8_t c) {
 }
 
 bool is_answered_control(std::uint8_t c) {
-  return is_report_control(c) || c == 0x09 || c == 0x0D || c == 0x0E || c == 0x19;  // ^I, CR, ^N, ^Y
+  return is_report_control(c) || c == kSources || c == 0x09 || c == 0x0D || c == 0x0E || c == 0x19;  // ^I, CR, ^N, ^Y
 }
 
 ControllerDialogue::ControllerDialogue(HostBus& bus) : bus_(bus), port_(bus) {
@@ -98,6 +99,7 @@ void ControllerDialogue::abandon() {
 
 void ControllerDialogue::next_item() {
   sent_ = 0;
+  heard_ = false;
   phase_ = items_.empty() ? Phase::kNone : Phase::kSend;
   changed_ = true;
   if (!items_.empty()) answer_ = ControllerAnswer(checksum(), had_sums_);
@@ -181,6 +183,11 @@ void ControllerDialogue::received(std::uint8_t c) {
     const char text = static_cast<char>(c);
     return say(std::string_view(&text, 1));
   }
+  if (is_binary()) {
+    heard_ = true;
+    const char byte = static_cast<char>(c);
+    return say(std::string_view(&byte, 1));
+  }
   if (mark_ == Mark::kSeen) {  // it was a checksum
     answer_.take(kMark);
     mark_ = Mark::kSent;
@@ -199,9 +206,14 @@ void ControllerDialogue::say(std::string_view text) {
   on_text(text);
 }
 
+// Any byte of its answer may be what ends others, so silence alone ends it (firmware:5.9/5).
+bool ControllerDialogue::is_binary() const {
+  return !items_.empty() && items_.front().control && items_.front().bytes[0] == kSources;
+}
+
 bool ControllerDialogue::may_have_ended() const {
   return phase_ == Phase::kAnswer &&
-         (mark_ == Mark::kSeen || answer_.may_have_ended() || (items_.front().control && !answer_.empty()));
+         (heard_ || mark_ == Mark::kSeen || answer_.may_have_ended() || (items_.front().control && !answer_.empty()));
 }
 
 bool ControllerDialogue::wants_mark() const {
@@ -236,8 +248,10 @@ void ControllerDialogue::end_item() {
   if (!answer_.error()) unacknowledged_ = by_mark;
   late_mark_ = mark_ == Mark::kSent;
   mark_ = Mark::kNone;
-  had_sums_ = answer_.had_sums();
-  if (!had_sums_ && !answer_.error() && !by_mark) late_sum_ = checksum();
+  if (!is_binary()) {
+    had_sums_ = answer_.had_sums();
+    if (!had_sums_ && !answer_.error() && !by_mark) late_sum_ = checksum();
+  }
   if (!items_.front().control) ++result_.lines;
   result_.error = answer_.error();
   result_.error_number = answer_.error_number();

@@ -75,6 +75,7 @@ class ControllerDialogue {
   void put_next();
   void received(std::uint8_t c);
   bool is_stray(std::uint8_t c);
+  bool is_binary() const;  // the answer to the first item is
   bool may_have_ended() const;
   bool wants_mark() const;
   void say(std::string_view text);
@@ -96,6 +97,7 @@ class ControllerDialogue {
   Tick asked_ = 0;                  // when the first item had been sent
   bool owes_ = false;               // the controller may still answer an earlier job
   bool had_sums_ = false;
+  bool heard_ = false;  // something of a binary answer
   Mark mark_ = Mark::kNone;
   bool late_mark_ = false;                // the item before has ended, its mark is still to come
   bool unacknowledged_ = false;           // the item before was; this one will be, too

@@ -31,6 +31,13 @@ def noise(port, chance):
         sock.sendall(bytes(chance.choice((0x40, 0xC0, chance.randrange(256))) for _ in range(chance.randrange(4000))))
 
 
+def lines(port, chance):
+    """Requests in order, but lines of any bytes, control characters among them."""
+    with connected(port) as sock:
+        text = bytes(chance.randrange(256) for _ in range(chance.choice((2, 30, 255, 256, 1400))))
+        sock.sendall(packet(chance.choice((0xB0, 0xBF, 0xC6)), text))
+
+
 def half(port, chance):
     """Gone at any byte of a packet."""
     with connected(port) as sock:
@@ -72,7 +79,7 @@ def datagrams(port, chance):
             sock.sendto(text, ("127.0.0.1", port))
 
 
-MISDEEDS = (lies, noise, half, slow, flood, reset, datagrams)
+MISDEEDS = (lies, noise, lines, half, slow, flood, reset, datagrams)
 
 
 def misbehave(port, seed, enough):

@@ -117,6 +117,25 @@ TEST_F(CommunicationsProcessorTest, AnErrorWithoutANumberEndsBySilence) {
   EXPECT_LE(bus_.now() - begin, 10 * kMs);
 }
 
+// firmware:5.9/5: three bytes a word, any of them may be an acknowledge, CR or NUL, and an acknowledge. By itself or in
+// another's line, the next line is answered with its own.
+TEST_F(CommunicationsProcessorTest, GatherSourcesAreBinaryAndTheirOwn) {
+  const Bytes words("\x06\r\0\x05\x07\xff", 6);
+  for (const Bytes& sources : {words, Bytes()}) {
+    fake().control = [&](char c) { return c == 0x05 ? sources + "\x06" : c == 0x18 ? Bytes("\x18") : Bytes(); };
+    EXPECT_EQ(ask(packet(Packet::kSendControl, "", 0x05)), "\x40");
+    Bytes fetched;
+    while (fetched.size() <= sources.size()) fetched += fetch();
+    EXPECT_EQ(fetched, sources + "\x06") << "in pieces, which end at what may be an acknowledge";
+    EXPECT_EQ(ask(packet(Packet::kControlResponse, "", 0x05, 0, 0xC0)), "\x06");
+    EXPECT_EQ(response("P1"), "P1\r\x06");
+    request(2, packet(Packet::kSendLine, "\xe0\x05"));
+    run();
+    EXPECT_EQ(take(), (Replies{{2, "\x40"}}));
+    EXPECT_EQ(response("P2"), "P2\r\x06");
+  }
+}
+
 // ethernet:4/3: the controller's checksums, the one behind a lone acknowledge too, which comes when nobody waits.
 TEST_F(CommunicationsProcessorTest, ChecksumsReachNobody) {
   bool sums = false;
@@ -185,7 +204,7 @@ TEST_F(CommunicationsProcessorTest, WriteBufferTellsEachFieldOfItsAnswer) {
 // ethernet:6/3: reports are ^B ^C ^F ^G ^P ^V; each other character is sent as well, and only acknowledged.
 TEST_F(CommunicationsProcessorTest, ControlResponseGivesTheAnswerOfEachReport) {
   Bytes seen;
-  const Bytes reports = "\x02\x03\x06\x07\x10\x16", answered = "\x09\x0E\x19";
+  const Bytes reports = "\x02\x03\x06\x07\x10\x16", answered = "\x05\x09\x0E\x19";
   const auto answer = [](char c) { return "answer " + std::to_string(int{c}) + "\r"; };
   fake().control = [&](char c) {
     seen.push_back(c);

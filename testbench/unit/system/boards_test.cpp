@@ -60,7 +60,7 @@ TEST_P(Boards, EachBoardStartsAndHasTheRightClockSource) {
   }
 }
 
-BRICK_ON_ENGINES(Boards, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(Boards, Engine::kSystemC, Engine::kLockstep);
 
 TEST(BoardList, TheTestAboveKnowsEveryBoardFile) {
   std::vector<std::string> files, known;

@@ -79,7 +79,7 @@ TEST_P(ClockFrequencies, FactoryServoPeriodIsTheMeasuredOne) {
   agrees("after other clocks");
 }
 
-BRICK_ON_ENGINES(ClockFrequencies, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(ClockFrequencies, Engine::kSystemC, Engine::kLockstep);
 
 }  // namespace
 }  // namespace brick

@@ -161,7 +161,7 @@ TEST_P(ClockSourceBoards, EveryLegalI19SuppliesTheBoardAfterSaveAndReset) {
   }
 }
 
-BRICK_ON_ENGINES(ClockSourceBoards, Engine::kRtl, Engine::kSystemC, Engine::kLockstep);
+BRICK_ON_ENGINES(ClockSourceBoards, Engine::kSystemC, Engine::kLockstep);
 
 class ClockSourceFaults : public ClockSources {};
 
