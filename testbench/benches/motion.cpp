@@ -73,14 +73,14 @@ std::vector<Case> cases(double rounding) {
        linear({{-300, 20}}, {15, 15}, 0),
        linear({{500, 20}}, {15, 15}, 0)},
       {"LINEAR, DELAY between",
-       {"LINEAR INC TA10 TS2 TM20", "X2 Y-2", "DELAY15", "X-2 Y1"},
-       linear({{200, 20}, {0, 15}, {-200, 20}}, {10, 10, 10, 10}, 2),
-       linear({{-200, 20}, {0, 15}, {100, 20}}, {10, 10, 10, 10}, 2)},
+       {"LINEAR INC TA10 TS2 TM20", "X2 Y-2", "DELAY12", "X-2 Y1"},
+       linear({{200, 20}, {0, 12}, {-200, 20}}, {10, 10, 10, 10}, 2),
+       linear({{-200, 20}, {0, 12}, {100, 20}}, {10, 10, 10, 10}, 2)},
       // The change of velocity at each corner takes as long as Ixx17 = 1 asks for, for all motors.
       {"LINEAR, corner of 90 degrees stretched by Ixx17",
-       {"LINEAR INC TA5 TS0 TM30", "X3 Y3", "X-3 Y3"},
-       linear({{300, 30}, {-300, 30}}, {10, 20, 10}, 0),
-       linear({{300, 30}, {300, 30}}, {10, 20, 10}, 0),
+       {"LINEAR INC TA5 TS0 TM24", "X2.4 Y2.4", "X-2.4 Y2.4"},
+       linear({{240, 24}, {-240, 24}}, {10, 20, 10}, 0),
+       linear({{240, 24}, {240, 24}}, {10, 20, 10}, 0),
        200,
        1},
       {"LINEAR, time stretched by Ixx16",
@@ -158,7 +158,7 @@ void MotionBench::run() {
     }
     host_.record();
     host_.expect(line, "");
-    if (!host_.settle(250)) report().fail(line, "still moving after 250 ms");
+    if (!host_.settle(250, 4)) report().fail(line, "still moving after 250 ms");
     for (unsigned s = 1; s <= count; ++s) {
       judge(2 * s - 1, all[first + s - 1].name, all[first + s - 1].x);
       judge(2 * s, all[first + s - 1].name, all[first + s - 1].y);

@@ -62,7 +62,7 @@ void TimeBase::constant(double percent) {
   host_.expect(fmt::format("&1%{}", percent), "");
   host_.record();
   host_.expect("&1B1R", "");
-  host_.settle(150);
+  host_.settle(150, 4);
   const double rate = percent / 100 * (host_.bench().negative ? 1.01 : 1);
   const auto make = [rate](double from) -> MotorHost::Path {
     return [p = linear_profile(from, {{200, 10}}, {10, 10}, 2), rate](double t) { return p.position(t * rate); };
@@ -83,7 +83,7 @@ void TimeBase::slewed() {
   host_.wait_ms(17);
   const std::size_t before = host_.last(1);
   host_.expect("&1%50", "");
-  host_.settle(250);
+  host_.settle(250, 4);
   const auto& s = host_.samples(1);
   const auto begins = host_.departs(1, before - 3);
   Comparison compared;
@@ -115,7 +115,7 @@ void TimeBase::held() {
   report().step("H: stands on the way", stood > 10 && stood < 290 && s.back().commanded == s[s.size() - 5].commanded,
                 fmt::format("{:.1f} of 300 counts", stood));
   host_.expect("&1R", "");
-  host_.settle(150);
+  host_.settle(150, 4);
   way("H and R", 303);
 }
 
@@ -138,13 +138,13 @@ void TimeBase::from_a_shaft() {
   load(300, 15);
   host_.record();
   host_.expect("&1B1R", "");
-  host_.wait_ms(10);
+  host_.wait_ms(6);
   report().step("shaft at rest: no program time goes by",
                 host_.samples(1).back().commanded == host_.samples(1).front().commanded, "");
   host_.axis(2).turn(400, static_cast<Tick>(400 / 25.0 * kTicksPerMs));  // 78 %
   host_.wait_ms(17);
   host_.axis(2).turn(500, static_cast<Tick>(500 / 45.0 * kTicksPerMs));
-  host_.settle(100);
+  host_.settle(100, 4);
   // The path over the counts of the shaft. Where it began is the one thing that is not known.
   const auto& s = host_.samples(1);
   const auto& shaft = host_.samples(2);
@@ -179,7 +179,7 @@ void TimeBase::run() {
   host_.expect("#1J/", "");
   host_.wait_ms(5);
   constant(100);
-  constant(60);
+  constant(75);
   constant(200);
   slewed();
   held();
