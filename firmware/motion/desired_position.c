@@ -3,6 +3,7 @@
 #include <stdbool.h>
 
 #include "firmware/base/mathematics.h"
+#include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/fixed_point.h"
@@ -94,7 +95,11 @@ static void follow(struct motor* m, struct path* p) {
   const int64_t step = (int64_t)hal_signed(reading - p->master_reading) * p->master_scale;
   p->master_reading = reading;
   if ((step > 0 && m->found.positive_limit) || (step < 0 && m->found.negative_limit)) return;
+  if (step == 0) return;
   m->master += step;
+  const uint32_t word = MEMORY_MOTOR_WORDS * ((uint32_t)(m - motors) + 1u) + MEMORY_MOTOR_MASTER;
+  *hal_x(word) = (uint32_t)(m->master >> 24) & HAL_WORD_MASK; /* for who looks at memory from outside */
+  *hal_y(word) = (uint32_t)m->master & HAL_WORD_MASK;
 }
 
 /* The direction turns when the trajectory has come back by more than Ixx87. */

@@ -41,6 +41,22 @@ static void leave_position(uint32_t motor) {
   j->away = true;
 }
 
+/* Who stops a motor asks again and again while it moves: that must not put the ramp off. */
+static bool stops_already(uint32_t motor) {
+  const struct jog* j = &jogs[motor];
+  const bool waits = j->ready || (jogs_asked & jog_bit(motor)) != 0u;
+  return waits ? j->request.aim == AIM_RAMP : motors[motor].path == PATH_OWN && j->now.aim == AIM_RAMP;
+}
+
+/* Further into a limit that the motor stands in: the command is taken and moves nothing. */
+static bool goes_into_limit(uint32_t motor, const struct jog_motion* request) {
+  const struct motor* m = &motors[motor];
+  if (request->homes || (request->aim != AIM_SPEED && request->aim != AIM_TARGET)) return false;
+  const bool up = request->aim == AIM_SPEED ? request->speed > 0.0 : request->target > m->trajectory;
+  const bool down = request->aim == AIM_SPEED ? request->speed < 0.0 : request->target < m->trajectory;
+  return (up && m->found.positive_limit) || (down && m->found.negative_limit);
+}
+
 static bool ask(uint32_t motor, const struct jog_motion* request) {
   const int64_t delay = (int64_t)i_integer(i_motor(motor + 1u, IXX92_JOG_CALCULATION_TIME)) << TRAJECTORY_FRACTION_BITS;
   const uint32_t state = hal_mask_servo();
@@ -48,7 +64,12 @@ static bool ask(uint32_t motor, const struct jog_motion* request) {
   if (closed) {
     jogs[motor].delay = request->aim == AIM_RAMP ? 0 : delay;
     if (!request->by_program && !request->homes && request->aim != AIM_RAMP) leave_position(motor);
-    jog_post(motor, request);
+    if (request->aim != AIM_RAMP) {
+      if (!goes_into_limit(motor, request)) jog_post(motor, request);
+    } else if (!stops_already(motor)) {
+      jog_post(motor, request);
+      hal_request_real_time(); /* what stops a motor does not wait for its turn */
+    }
   }
   hal_unmask(state);
   return closed;

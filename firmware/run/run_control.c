@@ -18,7 +18,7 @@
 #include "firmware/run/motion_program.h"
 #include "firmware/variables/i_variables.h"
 
-#define LARGEST_PERCENT 225.0
+#define LARGEST_INCREMENT 8388607.0 /* the word of the commanded time base */
 
 /* The executing and the calculated move are dropped where the axes are now. That takes long to find out: the trajectory
  * stops here, the calculation does the rest before anything else for this system. Servo and real-time tasks held off.
@@ -192,8 +192,8 @@ double run_time_base(uint32_t cs) {
 
 error_t run_set_time_base(uint32_t cs, double percent) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
   const int32_t full = i_integer(I10_SERVO_PERIOD);
+  if (percent < 0.0 || (double)full * percent > LARGEST_INCREMENT * 100.0) return ERR_DATA;
   const int32_t command = (int32_t)((double)full * percent / 100.0 + 0.5);
   s->increment_full = full; /* a word: DWELL takes it at once, the time base with the command */
   time_base_command(cs, command);
