@@ -150,7 +150,7 @@ def main():
     parser.add_argument("--compiler", default="c++")
     options = parser.parse_args()
     source = ROOT / "examples" if options.build else options.examples
-    wanted = [path.name for path in source.iterdir() if path.is_dir()] if source else []
+    wanted = [path.parent.name for path in source.glob("*/CMakeLists.txt")] if source else []
     with tempfile.TemporaryDirectory() as name:
         prefix, places = (options.prefix or pathlib.Path(name)).resolve(), {str(ROOT)}
         if options.build:

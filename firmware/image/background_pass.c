@@ -19,7 +19,6 @@
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/phase_search.h"
-#include "firmware/motion/protection.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
@@ -29,7 +28,6 @@ enum { REPLY_MS = 5 }; /* to the next turn of the rest */
 static uint32_t came_by; /* cycle counter at the end of the last */
 
 void background_meanwhile(void) {
-  protection_pass();
   panel_pass();
   /* For who looks at memory from outside: users are shown the words as they are (motion/live_words.c). */
   *hal_x(MEMORY_GLOBAL_STATUS) = status_word();
@@ -52,11 +50,11 @@ void background_between_lines(void) {
 
 void background_pass(void) {
   clock_watch_pass();
-  conversion_table_pass();
   line_input_pass();
   binary_rotary_pass();
   program_texts_pass();
   dpram_functions_pass();
+  conversion_table_pass();
   background_meanwhile();
   i_hardware_apply_clock_directions(); /* written by a program */
   if (host_port_waiting()) background_wake();

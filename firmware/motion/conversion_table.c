@@ -18,6 +18,7 @@ enum { PARALLEL_MOST_BITS = 24, PARALLEL_LEAST = 0x2F, SHIFTED = 5 };
 
 struct table {
   uint32_t count;
+  bool armed; /* an entry waits for its trigger */
   struct conversion_entry entries[CONVERSION_LINES];
 };
 
@@ -131,10 +132,12 @@ static bool is_as_before(const struct conversion_entry* e, const struct table* b
 
 static void make(struct table* table) {
   table->count = 0;
+  table->armed = false;
   for (uint32_t line = 0; line < CONVERSION_LINES && line_word(line) != 0u;) {
     const uint32_t lines = lines_of(line);
     if (line + lines > CONVERSION_LINES) break;
-    make_entry(&table->entries[table->count++], line, lines);
+    make_entry(&table->entries[table->count], line, lines);
+    table->armed = table->armed || table->entries[table->count++].method == METHOD_ARMED;
     line += lines;
   }
 }
@@ -173,6 +176,7 @@ void conversion_table_servo(void) {
 
 /* A time base that has had its trigger shows it in its line. */
 void conversion_table_pass(void) {
+  if (!present->armed) return;
   for (uint32_t i = 0; i < present->count; ++i) {
     const struct conversion_entry* e = &present->entries[i];
     if (e->method != METHOD_ARMED || !e->state->runs) continue;

@@ -24,6 +24,7 @@
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/phase_absolute.h"
 #include "firmware/motion/phase_motor.h"
+#include "firmware/motion/phase_task.h"
 #include "firmware/motion/phasing.h"
 #include "firmware/variables/i_variables.h"
 
@@ -185,7 +186,8 @@ static void look_for_an_end(uint32_t motor, struct search* s) {
 }
 
 void phasing_pass(void) {
-  for (uint32_t motor = 0; motor < MOTORS; ++motor) {
+  for (uint32_t left = phase_task_work; left != 0u; left &= left - 1u) { /* those that are commutated */
+    const uint32_t motor = (uint32_t)__builtin_ctz(left);
     if (!phasing_is_searched(motor)) continue;
     look_for_an_end(motor, &searches[motor]);
     if (searches[motor].result != RESULT_NONE) finish(motor, &searches[motor]);

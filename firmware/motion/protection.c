@@ -210,9 +210,11 @@ static void check(uint32_t motor) {
 
 /* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
 static bool any(uint32_t cs, bool fatal) {
-  for (uint32_t motor = 0; motor < MOTORS; ++motor)
-    if (is_of_system(motor, cs) && (fatal ? motors[motor].found.fatal_error : motors[motor].found.warning_error))
-      return true;
+  for (uint32_t left = motors_active; left != 0u; left &= left - 1u) {
+    const uint32_t motor = (uint32_t)__builtin_ctz(left);
+    const struct motor_findings* found = &motors[motor].found;
+    if ((fatal ? found->fatal_error : found->warning_error) && is_of_system(motor, cs)) return true;
+  }
   return false;
 }
 

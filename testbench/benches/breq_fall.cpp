@@ -28,7 +28,7 @@ struct Load {
 constexpr Load kLoads[] = {
     {"I8=0, moves of 0.5 ms", "I8=0 I5187=0 I5188=0 I5189=1000000", 0, true},
     {"I8=2, moves of 4 ms", "I8=2 I5187=4 I5188=0 I5189=1000000", 2, true},
-    {"eight current loops", "I182,8,100=$78006 I183,8,100=$78001 I101,8,100=1 I100,8,100=1", 2, false},
+    {"four current loops", "I182,4,100=$78006 I183,4,100=$78001 I101,4,100=1 I100,4,100=1", 2, false},
 };
 
 double microseconds(TimeFs t) { return static_cast<double>(t) / static_cast<double>(kMicrosecond); }
