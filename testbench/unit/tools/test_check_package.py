@@ -106,7 +106,7 @@ class Package(Tree):
 
     def test_an_example_that_is_not_installed_fails(self):
         for name in ("servo_ic", "cocotb_servo_channel", "firmware_change"):
-            (self.root / "wanted" / name).mkdir(parents=True)
+            self.write(f"wanted/{name}/CMakeLists.txt", "")
         self.check(1, "share/brick/examples: not installed: cocotb_servo_channel, firmware_change",
                    "servo_ic.vcd was not written", options=["--examples", self.root / "wanted"])
 
