@@ -17,6 +17,10 @@
 
 namespace brick {
 
+namespace plant {
+class Plant;
+}
+
 struct BenchStep {
   Tick at = 0;
   std::string name;
@@ -55,6 +59,7 @@ struct BenchContext {
   bool negative;
   TimingBook& timing;  // what judges the buses of this run
   bool forced_wait_states;
+  plant::Plant* plant;  // of --plant; nullptr: none
 
   std::string ask(const std::string& line) const;            // data lines joined by '|'
   std::vector<long> numbers(const std::string& line) const;  // data lines as numbers

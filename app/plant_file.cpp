@@ -244,7 +244,7 @@ class Reader {
     read_time(t, "dir_setup", 0, s.dir_setup);
   }
 
-  // A limit switch is open, which reads 1, beyond its place (docs/plant.md).
+  // A limit switch is open, which reads 1, beyond its place (motion:6.2/1).
   static void read_switches(const TomlTable& t, AxisParameters& axis) {
     std::int64_t place = 0;
     if (t.has("plus_limit")) {

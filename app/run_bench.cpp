@@ -64,9 +64,9 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
         if (!up) return;
         set_up.send(simulation);
       }
-      BenchContext context{simulation.machine(),  simulation.bus(), simulation.link(), report,
-                           config.board,          config.seed,      negative,          simulation.timing(),
-                           config.bcr.has_value()};
+      BenchContext context{simulation.machine(),   simulation.bus(),  simulation.link(), report,
+                           config.board,           config.seed,       negative,          simulation.timing(),
+                           config.bcr.has_value(), simulation.plant()};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

@@ -16,15 +16,19 @@ enum {
   MEMORY_MOTOR_WORDS = 0x000080,         /* registers of motor n (1..32) begin at n times this */
   MEMORY_MOTOR_COMMANDED = 0x08,         /* D: and actual position, compensation, bias: 1/(32 Ixx08) count */
   MEMORY_MOTOR_ACTUAL = 0x0B,
+  MEMORY_MOTOR_MASTER = 0x0D,
   MEMORY_MOTOR_COMPENSATION = 0x10,
-  MEMORY_MOTOR_VELOCITY = 0x1D, /* X: 1/(32 Ixx09) count a servo cycle */
+  MEMORY_MOTOR_VELOCITY = 0x1D,      /* X: 1/(32 Ixx09) count a servo cycle */
+  MEMORY_MOTOR_FILTER_OUTPUT = 0x3F, /* X: what the servo loop commands, 24 bits */
   MEMORY_MOTOR_BIAS = 0x4C,
+  MEMORY_MOTOR_JOG = 0x57,    /* L: position or distance of J=*, J:*, J^* in counts */
   MEMORY_DISPLAY = 0x001080,  /* Y: one character a word (run/display.h) */
   MEMORY_CS_WORDS = 0x002000, /* registers of coordinate system 1, the others each CS_STRIDE on */
   MEMORY_CS_STRIDE = 0x100,
   MEMORY_CS_TARGETS = 0x41,          /* L: of A, B, C, U, V, W, X, Y, Z */
   MEMORY_PLC_STATUS = 0x003100,      /* Y: one word a PLC (run/plc_control.h) */
   MEMORY_GATHER_POINTERS = 0x003120, /* X: address of the buffer, Y: of what is gathered next */
+  MEMORY_CONVERSION = 0x003501, /* X: results of the encoder conversion table, a line each; Y: its lines, I8000 on */
   MEMORY_M_DEFINITIONS = 0x004000,
   MEMORY_P_VARIABLES = 0x006000,
   MEMORY_Q_VARIABLES = 0x008000,

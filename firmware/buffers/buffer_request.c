@@ -41,10 +41,9 @@ static bool is_ready(uint32_t cs) {
   return ring->size != 0 && ring->requested && !ring->full;
 }
 
-/* None: COORDINATE_SYSTEMS or above. */
-static uint32_t selected(void) { return request.panel == PANEL_IS_OFF ? request.host : request.panel; }
+uint32_t buffer_request_selected(void) { return request.panel == PANEL_IS_OFF ? request.host : request.panel; }
 
-static bool is_wanted(void) { return request.fixed_open ? !request.fixed_full : is_ready(selected()); }
+static bool is_wanted(void) { return request.fixed_open ? !request.fixed_full : is_ready(buffer_request_selected()); }
 
 /* `open`: region_open_words, which looks at every region, before tasks are held off. */
 static void decide_fixed(uint32_t open) { request.fixed_full = (int32_t)open <= request.fixed; }
@@ -64,7 +63,7 @@ void buffer_request_initialize(void) {
   request.panel = PANEL_IS_OFF;
 }
 
-static bool is_shown(uint32_t cs) { return !request.fixed_open && cs == selected(); }
+static bool is_shown(uint32_t cs) { return !request.fixed_open && cs == buffer_request_selected(); }
 
 void buffer_request_begin_line(uint32_t cs) {
   if (!is_shown(cs)) return;

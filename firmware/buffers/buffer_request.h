@@ -16,6 +16,7 @@ void buffer_request_initialize(void); /* before anybody selects: &1, without a p
  * which goes before it while it is active. The pin follows within 10 us. */
 enum { PANEL_IS_OFF = 0xFF };
 void buffer_request_host_selects(uint32_t cs);  /* background */
+uint32_t buffer_request_selected(void);         /* by panel or host; none: COORDINATE_SYSTEMS or above. Any task */
 void buffer_request_panel_selects(uint32_t cs); /* COORDINATE_SYSTEMS: none. Background, real-time task */
 void buffer_request_begin_line(uint32_t cs); /* background, real-time task masked: pin low before the line is counted */
 void buffer_request_line_stored(uint32_t cs);     /* same section, line counted: Full decided, pulse timed, pin final */

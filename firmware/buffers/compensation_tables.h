@@ -1,5 +1,5 @@
-/* Compensation tables of the motors (firmware:4.2, firmware:4.3/12): COMP position, TCOMP torque, BLCOMP backlash. A
- * table is kept, listed and saved; no motor moves here, so nothing is compensated. Background task. */
+/* Compensation tables of the motors (firmware:4.2, firmware:4.3/12): COMP position, TCOMP torque, BLCOMP backlash. Here
+ * they are kept, listed and saved; motion/compensation.h puts them to work. Background task. */
 #ifndef FIRMWARE_BUFFERS_COMPENSATION_TABLES_H
 #define FIRMWARE_BUFFERS_COMPENSATION_TABLES_H
 

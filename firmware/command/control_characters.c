@@ -11,6 +11,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/run/motor_stops.h"
 #include "firmware/run/plc_control.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
@@ -66,8 +67,10 @@ static void all(void (*action)(uint32_t cs)) {
 bool control_character(uint8_t c) {
   switch (c) {
     case ABORT_ALL:
+      motors_abort_all();
+      return false;
     case KILL_ALL:
-      all(run_abort);
+      motors_kill_all();
       return false;
     case HOLD_ALL:
       all(run_hold);

@@ -14,6 +14,7 @@
 #include "firmware/command/table_commands.h"
 #include "firmware/language/statement_list.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/compensation.h"
 #include "firmware/run/run_control.h"
 
 static error_t size_argument(struct lexer* lx, uint32_t* size) {
@@ -102,6 +103,7 @@ static error_t delete_all(bool tables) {
   gather_delete_always();
   rotary_delete_all();
   if (tables) compensation_tables_delete_all();
+  compensation_changed();
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_forget_rotary(cs);
   return ERR_NONE;
 }

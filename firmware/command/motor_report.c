@@ -6,15 +6,15 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/variables/i_variables.h"
+#include "firmware/variables/words.h"
 
 static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
 
 static int64_t long_word(uint32_t address) {
-  const uint32_t state = hal_mask_servo();
-  const int64_t value = ((int64_t)hal_signed(*hal_x(address)) * 16777216) + (int64_t)(*hal_y(address) & HAL_WORD_MASK);
-  hal_unmask(state);
-  return value;
+  uint32_t x = 0, y = 0;
+  word_read_long(address, &x, &y);
+  return (int64_t)hal_signed(x) * 16777216 + (int64_t)y;
 }
 
 /* Text of `value` / (32 * scale), in steps of 1/32 count. */

@@ -10,6 +10,7 @@
 #include "firmware/language/statement.h"
 #include "firmware/language/statement_list.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
 
 static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
@@ -76,13 +77,12 @@ static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
 }
 
 static error_t cmd_quit(struct lexer* lx) { return control(lx, run_quit); }
-static error_t cmd_abort(struct lexer* lx) { return control(lx, run_abort); }
+static error_t cmd_abort(struct lexer* lx) { return control(lx, motors_abort); }
 static error_t cmd_hold(struct lexer* lx) { return control(lx, run_hold); }
 
-/* E: no loop can be closed, so there is nothing to do; without clocks it is refused as it would be. */
-static error_t cmd_enable(struct lexer* lx) {
-  (void)lx;
-  return status_motors_may_enable() ? ERR_NONE : ERR_PHASING;
+static error_t cmd_enable(struct lexer* lx) { /* E */
+  if (!status_motors_may_enable()) return ERR_PHASING;
+  return control(lx, motors_enable);
 }
 
 /* `\`: no move is segmented, so it is the hold of H. `>` goes on after it. */

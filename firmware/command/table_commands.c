@@ -7,6 +7,7 @@
 #include "firmware/command/reply.h"
 #include "firmware/command/session.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/motion/compensation.h"
 #include "firmware/run/run_control.h"
 
 static const char* const names[COMPENSATION_KINDS] = {"COMP", "TCOMP", "BLCOMP"};
@@ -58,6 +59,7 @@ static error_t define(struct lexer* lx, enum region_kind kind) {
   error_t error = may_change();
   if (error == ERR_NONE) error = compensation_table_define(kind, motor, entries, &table);
   if (error == ERR_NONE) compensation_fill(kind, motor);
+  compensation_changed();
   return error;
 }
 
@@ -73,6 +75,7 @@ bool table_delete(struct lexer* lx, error_t* error) {
   if (!named(lx, &kind)) return false;
   *error = may_change();
   if (*error == ERR_NONE) *error = compensation_table_delete(kind, session.motor);
+  compensation_changed();
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/host/dpram_report.h"
 #include "firmware/kernel/background.h"
+#include "firmware/motion/motor.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/variables/i_variables.h"
 
@@ -36,17 +37,24 @@ static struct long_word read_long(uint32_t address) {
 
 static int64_t value(struct long_word word) { return (int64_t)hal_signed(word.x) * 16777216 + (int64_t)word.y; }
 
+static struct long_word split(int64_t position) {
+  return (struct long_word){(uint32_t)(position >> 24) & HAL_WORD_MASK, (uint32_t)position & HAL_WORD_MASK};
+}
+
+/* Positions of the loop from its words, which stay when a motor is not activated. */
 static void write_motor(uint32_t motor) {
   const uint32_t words = MEMORY_MOTOR_WORDS * (motor + 1u), block = DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_STRIDE * motor;
+  const struct motor* m = &motors[motor];
   const uint32_t state = hal_mask_servo();
   const struct long_word commanded = read_long(words + MEMORY_MOTOR_COMMANDED);
-  const struct long_word actual = read_long(words + MEMORY_MOTOR_ACTUAL), bias = read_long(words + MEMORY_MOTOR_BIAS);
-  const struct long_word master = read_long(words + MEMORY_MOTOR_COMPENSATION);
+  const struct long_word actual = read_long(words + MEMORY_MOTOR_ACTUAL), bias = split(m->bias);
+  const struct long_word master = split(m->compensation);
   const uint32_t velocity = *hal_x(words + MEMORY_MOTOR_VELOCITY);
+  const int32_t output = m->output;
   hal_unmask(state);
   const uint64_t error = (uint64_t)(value(commanded) - value(actual));
   dpram_put_long(block + DPRAM_MOTOR_FOLLOWING_ERROR, (uint32_t)(error >> 24), (uint32_t)error);
-  dpram_put_word(block + DPRAM_MOTOR_OUTPUT, 0); /* no loop is closed */
+  dpram_put_word(block + DPRAM_MOTOR_OUTPUT, (uint32_t)output & HAL_WORD_MASK);
   dpram_put_word(block + DPRAM_MOTOR_SERVO_STATUS, motor_status(motor, 0));
   dpram_put_word(block + DPRAM_MOTOR_STATUS, motor_status(motor, 1));
   dpram_put_long(block + DPRAM_MOTOR_BIAS, bias.x, bias.y);

@@ -43,7 +43,7 @@ static struct times times_left(const struct coordinate_system* s) {
   if (s->active) {
     const struct move* m = &s->moves[s->executing];
     const bool moves = m->kind == MOVE_LINEAR;
-    left.move = (moves ? m->blend_in / 2 + m->time + s->stop_length / 2 : m->time) - s->elapsed;
+    left.move = (moves ? m->blend_in / 2 + m->time + m->stop_length / 2 : m->time) - s->elapsed;
     if (moves && m->blend_in > s->elapsed) left.acceleration = m->blend_in - s->elapsed;
   }
   hal_unmask(state);

@@ -16,7 +16,9 @@
 #include "firmware/kernel/image_checksum.h"
 #include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/motion/conversion_table.h"
 #include "firmware/motion/motion_status.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
@@ -34,6 +36,7 @@ void background_meanwhile(void) {
     plc_background();
     background_wake();
   }
+  phasing_pass();
   image_checksum_pass();
   stack_watch_pass();
   watchdog_reload();
@@ -51,6 +54,7 @@ void background_pass(void) {
   binary_rotary_pass();
   program_texts_pass();
   dpram_functions_pass();
+  conversion_table_pass();
   background_meanwhile();
   i_hardware_apply_clock_directions(); /* written by a program */
   if (host_port_waiting()) background_wake();

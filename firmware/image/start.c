@@ -27,8 +27,14 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/motor_status.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/motor_variables.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/phasing.h"
+#include "firmware/motion/power_on_position.h"
+#include "firmware/motion/sine_table.h"
+#include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
@@ -98,19 +104,26 @@ void start(enum start_mode mode) {
   buffer_request_initialize();
   panel_initialize();
   coordinate_systems_initialize();
+  time_base_initialize();
+  motor_variables_initialize();
+  jog_initialize();
+  phasing_initialize();
+  power_on_positions_initialize();
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();
   dpram_functions_initialize();
-  motor_status_initialize();
   binary_rotary_initialize();
   hal_watchdog_strobe();
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
   calendar_initialize();
   tasks_initialize();
+  sine_table_initialize();
+  phasing_search_initialize();
   phase_task_initialize();
   hal_interrupts_on();
   clock_watch_start();
+  phasing_power_on();
   background_wake();
 }
 

@@ -10,6 +10,7 @@
 #include "firmware/command/list_commands.h"
 #include "firmware/command/memory_commands.h"
 #include "firmware/command/motor_commands.h"
+#include "firmware/command/phase_commands.h"
 #include "firmware/command/plc_commands.h"
 #include "firmware/command/program_commands.h"
 #include "firmware/command/reply.h"
@@ -23,9 +24,16 @@
 #include "firmware/image/system_commands.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
+#include "firmware/motion/compensation.h"
+#include "firmware/motion/conversion_table.h"
 #include "firmware/motion/live_words.h"
+#include "firmware/motion/motor_variables.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
+#include "firmware/motion/time_base.h"
+#include "firmware/run/run_control.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/phase_period.h"
@@ -35,6 +43,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
+  phasing_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();
@@ -44,29 +53,47 @@ const struct task_hooks task_hooks = {.servo = servo, .real_time = real_time, .p
 
 const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
 
+const struct protection_hooks protection_hooks = {.abort = run_abort};
+
 static void buffer_request_changed(uint32_t instance) {
   (void)instance;
   panel_changed();
   buffer_request_evaluate();
 }
 
+/* What servo and phase task calculate with, in integers. Motor 1..32. */
+static void motor_changed(uint32_t motor) {
+  phase_task_motor_changed(motor);
+  motor_variables_changed(motor);
+}
+
+static void compensation_tables_changed(uint32_t instance) {
+  (void)instance;
+  compensation_changed();
+}
+
 const i_effect_t i_effects[I_FIELD_COUNT] = {
-    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,      [I_FIELD_DPRAM] = dpram_functions_changed,
-    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,         [I_FIELD_MOTOR_ACTIVE] = phase_task_motor_changed,
-    [I_FIELD_MOTOR_COMMUTATION] = phase_task_motor_changed, [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_TIME_BASE] = time_base_source_changed,
+    [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
+    [I_FIELD_DPRAM] = dpram_functions_changed,
+    [I_FIELD_DPRAM_BASE] = dpram_functions_changed,
+    [I_FIELD_MOTOR_ACTIVE] = motor_changed,
+    [I_FIELD_MOTOR_COMMUTATION] = motor_changed,
+    [I_FIELD_MOTOR_OUTPUT] = motor_changed,
+    [I_FIELD_MOTOR_FEEDBACK] = motor_variables_changed,
+    [I_FIELD_MOTOR_FLAGS] = motor_variables_changed,
+    [I_FIELD_MOTOR_FLAG_MODE] = motor_changed,
+    [I_FIELD_MOTOR_PHASE] = phase_task_motor_changed,
+    [I_FIELD_COMPENSATION] = compensation_tables_changed,
+    [I_FIELD_CONVERSION] = conversion_table_changed,
+    [I_FIELD_MOTOR_SERVO] = motor_variables_changed,
+    [I_FIELD_MOTOR_CURRENT] = phase_task_motor_changed,
+    [I_FIELD_MOTOR_BOTH] = motor_changed,
 };
 
-const struct command_entry* const command_tables[] = {report_commands,
-                                                      system_commands,
-                                                      memory_commands,
-                                                      calendar_commands,
-                                                      buffer_commands,
-                                                      list_commands,
-                                                      plc_commands,
-                                                      motor_commands,
-                                                      program_commands,
-                                                      gather_commands,
-                                                      0};
+const struct command_entry* const command_tables[] = {
+    report_commands, system_commands, memory_commands, calendar_commands, buffer_commands, list_commands,
+    plc_commands,    motor_commands,  phase_commands,  program_commands,  gather_commands, 0};
 
 void (*const reply_sink)(uint8_t c) = host_port_send;
 

@@ -24,7 +24,8 @@ enum {
 
 enum rate { RATE_F, RATE_TM, RATE_TA, RATE_TS, RATE_DWELL, RATE_DELAY, RATE_COUNT };
 
-enum mode { MODE_LINEAR, MODE_RAPID };
+/* In the order of their codes; OP_MODE is of the first two, the others are OP_STATEMENT. */
+enum mode { MODE_LINEAR, MODE_RAPID, MODE_CIRCLE1, MODE_CIRCLE2, MODE_SPLINE1, MODE_SPLINE2, MODE_PVT };
 
 enum variable_class { VARIABLE_M, VARIABLE_P, VARIABLE_Q, VARIABLE_I, VARIABLE_CLASSES };
 

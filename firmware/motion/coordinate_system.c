@@ -7,12 +7,17 @@
 
 struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 volatile uint32_t cs_busy;
+uint32_t cs_interrupts;
+
+/* A motor belongs to one system at a time: all rings have their cubics here, each those of its motors. */
+static struct cubic cubics[PIECES * MOTORS];
 
 void coordinate_systems_initialize(void) {
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
     struct coordinate_system* s = &coordinate_systems[cs];
     *s = (struct coordinate_system){0};
     s->feedrate_axes = AXIS_XYZ;
+    piece_ring_initialize(&s->ring, cubics, MOTORS);
     s->increment_full = s->increment_command = i_integer(I10_SERVO_PERIOD);
     s->increment = s->increment_target = s->increment_full;
   }

@@ -1,7 +1,9 @@
-/* State of the 16 coordinate systems. Axes are virtual: a coordinate system runs without motors, its positions are kept
- * here. Times of the trajectory are in trajectory units, 2^-23 ms, the unit of I10, so that the servo task adds and
- * compares integers only. Owners: B background, R real-time task, S servo task. B changes what R or S own only while
- * they are held off. */
+/* State of the 16 coordinate systems. What a program moves are axes: their positions are kept here, those of motors
+ * follow from the axis definitions (motion/system_motors.h). A system without motors runs all the same, its axes are
+ * virtual then. Motion is a ring of pieces (motion/piece.h), which the servo task goes through; moves are what pieces
+ * belong to, for programs, hosts and status words. Times of the trajectory are in trajectory units, 2^-23 ms, the unit
+ * of I10, so that the servo task adds and compares integers only. Owners: B background, R real-time task, S servo task.
+ * B changes what R or S own only while they are held off. */
 #ifndef FIRMWARE_MOTION_COORDINATE_SYSTEM_H
 #define FIRMWARE_MOTION_COORDINATE_SYSTEM_H
 
@@ -10,13 +12,13 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/language/word.h"
+#include "firmware/motion/piece.h"
 #include "firmware/variables/i_variables.h"
 
 #define TRAJECTORY_LONGEST_MS 8388607.0
 
 enum {
   TRAJECTORY_FRACTION_BITS = 23,
-  VIRTUAL_AXES = 1,             /* R and S do not ask for motors: 1 until motors can be assigned and closed */
   MOVE_MINIMUM_UNITS = 4194304, /* 0.5 ms, least move time when TA and TS are both 0 (firmware:7.5) */
   CALCULATED_LINES_LIMIT = 32 /* lines without a move that one real-time interrupt works off for a coordinate system */
 };
@@ -34,23 +36,56 @@ struct program_trace {
 
 enum program_pointer { POINTER_NONE, POINTER_ROTARY, POINTER_FIXED };
 
-enum move_kind { MOVE_LINEAR, MOVE_DWELL };
+enum move_kind {
+  MOVE_LINEAR,
+  MOVE_DWELL,
+  MOVE_OWN, /* motors go for themselves: RAPID, HOME */
+  MOVE_PVT,
+  MOVE_SPLINE
+};
 
-/* One calculated move. Written by R while it is not the executing one; S adds how it began. */
+enum { KNOTS = 4 };
+
+/* Where the axes are, and their velocities a ms, between two cubics. */
+struct knot {
+  double position[AXIS_COUNT], velocity[AXIS_COUNT];
+};
+
+/* One calculated move. R writes it while it is not the executing one, and its stop until that begins.
+ *
+ *   velocity   _____________              A move changes velocity during its first `blend_in` units, its corner lies in
+ *            /:             \:            the middle of that; the next corner is `time` later. The next move, if it is
+ *           / :              :\______     there in time, begins half its own acceleration time before that corner,
+ *    ______/  :              :            else the velocity falls to zero during `stop_length` around the corner. From
+ *          |<>|blend_in/2    corner + Tm  rest to rest a move so takes Tm + Ta. */
 struct move {
   enum move_kind kind;
-  int64_t time;             /* Tm, or the length of the DWELL */
-  int64_t acceleration;     /* Ta, even */
-  int64_t s_curve;          /* TS */
-  bool joins;               /* may blend with the move before it */
-  int64_t blend_in;         /* S: length of the velocity change at its start */
-  bool blended;             /* S: began at the velocity of the move before */
+  int64_t time;         /* Tm, or the length of the DWELL */
+  int64_t acceleration; /* Ta, even */
+  int64_t s_curve;      /* TS */
+  bool joins;           /* may blend with the move before it */
+  int64_t blend_in;     /* length of the velocity change at its start */
+  int64_t stop_length;  /* of that to rest about its end, for want of a blend; even */
+  bool blended;         /* begins at the velocity of the move before */
+  uint32_t straight;    /* number of its last piece of constant velocity, and when in the move that begins */
+  int64_t straight_begin;
   double start[AXIS_COUNT]; /* corner at which it begins */
   double delta[AXIS_COUNT];
   double delta_before[AXIS_COUNT]; /* of the move before, and its Tm */
   int64_t time_before;
+  /* PVT, SPLINE: cubics from knot to knot. The first is the move; what is behind it is left for the next move */
+  uint32_t knot_count;
+  int64_t knot_time[KNOTS - 1];
+  struct knot knots[KNOTS];
+  bool overruns;             /* it ends in motion: without a next one it runs on, to be stopped */
+  uint32_t own;              /* OWN: the motors */
+  bool homes;                /* they search for home */
+  bool is_sharp, has_dwell;  /* not blended: for its corner; Isx82 counts */
   struct program_trace line; /* PE */
 };
+
+/* Where a system stands between moves that do not blend (motion:5.3). */
+enum corner_stop { CORNER_NONE, CORNER_IN_POSITION, CORNER_DWELL };
 
 /* Why a program was stopped (firmware:7.10): the numbers that clients read in Y:+$14. */
 enum run_time_error {
@@ -62,7 +97,9 @@ enum run_time_error {
   RUN_TIME_BLOCK,       /* IF, WHILE and their ends do not fit together, or too many loops in one line */
   RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
   RUN_TIME_READ,        /* READ where nothing has been called */
-  RUN_TIME_FEEDRATE     /* a move goes by a feedrate that is not above 0 */
+  RUN_TIME_FEEDRATE,    /* a move goes by a feedrate that is not above 0 */
+  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time */
+  RUN_TIME_IN_POSITION  /* motors are not in position within Isx81 */
 };
 
 struct coordinate_system {
@@ -73,39 +110,56 @@ struct coordinate_system {
   bool continuous;              /* B: R, not S */
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
-  volatile bool end_block;      /* `/`: S starts no further move */
-  volatile bool settling;    /* moves are dropped: set by B or R, S stands still; R finds the position and clears it */
+  volatile bool end_block;      /* `/`: no further move is started */
+  /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
+   * it */
+  volatile bool settling;
+  bool matching;             /* B at the start of a program, R clears: axes are to be where motors are */
+  bool must_return;          /* B: stopped where a start goes on, so motors that were jogged meanwhile must be back */
   enum run_time_error error; /* R; B clears it when the program is started */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
   uint32_t incremental, feedrate_axes; /* axis masks */
   bool vector_absolute, time_mode;
   enum mode mode;
-  bool may_join; /* the last calculated move can blend with one after it */
+  bool unblended; /* at the start of the program: Isx92 */
+  bool may_join;  /* the last calculated move can blend with one after it */
   /* calculation, R */
   double position[AXIS_COUNT]; /* end of the last calculated move */
   /* of the last calculated move, and its Tm: a velocity is divided when it is needed */
   double last_delta[AXIS_COUNT];
   int64_t last_time;
+  double carry[AXIS_COUNT];   /* what incremental moves have lost by rounding of the position: none adds up */
   double pending[AXIS_COUNT]; /* targets of the line being calculated */
   uint32_t pending_axes;
+  double pending_velocity[AXIS_COUNT], pending_trigger[AXIS_COUNT]; /* behind `:` and `^`: units a Isx90, units */
+  uint32_t pending_velocities, pending_triggers;
+  bool was_matched;          /* since the last MOVE_OWN */
+  bool first;                /* no move of this run has been placed yet */
+  bool sets_position;        /* the line is that of PSET */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
-  /* moves: moves[executing] belongs to S, the other one is the next */
+  /* moves: moves[executing] is the one that executes or has been last, the other one is the next */
   struct move moves[2];
-  volatile uint32_t executing;
-  volatile bool active;      /* S: moves[executing] is under way */
-  volatile bool next_valid;  /* R sets when complete, S clears when it starts it */
-  volatile uint32_t started; /* S: moves so far, counted as `planned` */
-  bool blend_decided;        /* S: the next move came before the executing one began to stop, and no `/` since */
-  int64_t stop_length;       /* S: of the velocity change to rest about the corner, for want of a blend */
-  int64_t elapsed;           /* S: trajectory time since the executing move began to change velocity */
+  volatile uint32_t executing; /* S */
+  volatile bool active;        /* S: moves[executing] is under way */
+  volatile bool next_valid;    /* R sets when it is calculated, S clears when it starts it */
+  bool placed;                 /* R, S: the next one is in the ring; until then it does not start */
+  volatile uint32_t started;   /* S: moves so far, counted as `planned` */
+  uint32_t motors;             /* R, at the start of a program: those that its axes move; 0: the axes are virtual */
+  struct piece_ring ring;      /* piece.move is the number of the move, as `planned` counts */
+  int64_t elapsed;             /* S: trajectory time since the executing move began to change velocity */
+  enum corner_stop corner;     /* R */
+  uint32_t corner_began;       /* R: real-time interrupt */
+  enum run_time_error failure; /* R: found while a move waited to be placed */
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */
   volatile int32_t increment_slew;   /* B */
-  int32_t increment_full;            /* B: I10, taken over by %100 */
-  int32_t increment_command;         /* B: target without the hold of H */
-  bool held;                         /* B: H */
+  /* B: the word that Isx93 points to, which has the target instead; null: its own commanded time base */
+  const volatile uint32_t* volatile time_base_source;
+  int32_t increment_full;    /* B: I10, taken over by %100 */
+  int32_t increment_command; /* B: target without the hold of H */
+  bool held;                 /* B: H */
 };
 
 extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
@@ -113,11 +167,18 @@ extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 /* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off.
  * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
+extern uint32_t cs_interrupts; /* R: real-time interrupts so far */
 
 void coordinate_systems_initialize(void);      /* power-up, $$$ and $$$***: idle, at 0, without axes */
 void coordinate_systems_forget_programs(void); /* none points to a program any more: R needs a new B */
 /* OP_ABS, OP_INC, OP_FRAX. Background and real-time task. */
 void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uint32_t mask);
+
+/* The calculated move goes on with the executing one: it blends with it, or is of the same sequence. */
+static inline bool move_continues(const struct coordinate_system* s) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  return s->active && next->joins && m->kind == next->kind;
+}
 
 static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }
 static inline double cs_real(uint32_t cs, enum i_real_name isxnn) { return i_variable_read(i_cs_real(cs, isxnn)); }

@@ -6,16 +6,20 @@
 #include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/conversion_entry.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/motor_status.h"
+#include "firmware/motion/phasing.h"
+#include "firmware/motion/servo_words.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/variables/i_variables.h"
 
-enum { /* of a motor */
+enum { /* of a motor; those of the servo loop: motion/servo_words.h */
        MOTOR_STATUS_1 = 0x30,
        MOTOR_STATUS_2 = 0x40,
-       MOTOR_SCALES = 0x4F, /* X, U, A, B, C; Y, V; Z, W */
+       MOTOR_STATUS_PHASE_REFERENCE = 8, /* a bit of it */
+       MOTOR_SCALES = 0x4F,              /* X, U, A, B, C; Y, V; Z, W */
        MOTOR_OFFSET = 0x52,
        MOTORS_END = MEMORY_MOTOR_WORDS * (MOTORS + 1)
 };
@@ -27,6 +31,7 @@ enum { /* of a coordinate system */
        CS_TIMERS = 0x15,
        CS_STATUS_2 = 0x3F,
        CS_STATUS_1 = 0x40, /* Y: word 3 */
+       S1_CONTINUOUS_BIT = 1 << 4,
        CS_END = MEMORY_CS_WORDS + MEMORY_CS_STRIDE * COORDINATE_SYSTEMS
 };
 
@@ -58,7 +63,7 @@ static unsigned motor_word(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
     *y = motor_status(motor, 1);
     return HALF_Y;
   }
-  if (offset < MOTOR_SCALES || offset > MOTOR_OFFSET) return 0;
+  if (offset < MOTOR_SCALES || offset > MOTOR_OFFSET) return servo_word_read(motor, offset, x, y);
   set_float(offset == MOTOR_OFFSET ? axis_definitions[motor].offset : axis_scale(motor, offset - MOTOR_SCALES), x, y);
   return BOTH;
 }
@@ -116,6 +121,10 @@ static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
     return motor_word(address / MEMORY_MOTOR_WORDS - 1u, address % MEMORY_MOTOR_WORDS, x, y);
   if (address - MEMORY_CS_WORDS < CS_END - MEMORY_CS_WORDS)
     return cs_word((address - MEMORY_CS_WORDS) / MEMORY_CS_STRIDE, address % MEMORY_CS_STRIDE, x, y);
+  if (address - MEMORY_CONVERSION < CONVERSION_LINES) {
+    *y = (uint32_t)i_integer(I8000_CONVERSION_TABLE + (address - MEMORY_CONVERSION));
+    return HALF_Y;
+  }
   if (address != MEMORY_GLOBAL_STATUS) return 0;
   *x = status_word();
   *y = motion_global_status2();
@@ -143,11 +152,19 @@ static void write_time_base(uint32_t cs, uint32_t mask, uint32_t bits) {
 /* What a write leaves of the word is read in one piece with it: programs of the real-time task write there too. */
 static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
   if (offset == CS_COMMANDED_TIME_BASE) write_time_base(cs, mask, bits);
+  if (offset == CS_STATUS_1 && x && (mask & S1_CONTINUOUS_BIT) != 0u)
+    coordinate_systems[cs].unblended = (bits & S1_CONTINUOUS_BIT) == 0u;
   if (offset == CS_TIMERS) write_timer(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u), mask, bits);
 }
 
-/* The commanded time base and the timers can be set, global status bits that stay can be cleared; the others belong to
- * the firmware. */
+/* A user who has set the phase position clears the phase reference error. */
+static void write_reference(uint32_t motor, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
+  const uint32_t bit = 1u << MOTOR_STATUS_PHASE_REFERENCE;
+  if (offset == MOTOR_STATUS_2 && !x && (mask & bit) != 0u) phasing_set_missing(motor, (bits & bit) != 0u);
+}
+
+/* The commanded time base, blending (bit 4 of status word 1), the timers and the phase reference error can be set,
+ * global status bits that stay can be cleared; the others belong to the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   uint32_t present[2] = {0, 0};
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
@@ -155,5 +172,11 @@ bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   const uint32_t in_systems = address - MEMORY_CS_WORDS;
   if (in_systems < MEMORY_CS_STRIDE * COORDINATE_SYSTEMS)
     write_cs(in_systems / MEMORY_CS_STRIDE, in_systems % MEMORY_CS_STRIDE, x, mask, bits);
+  const uint32_t in_motors = address - MEMORY_MOTOR_WORDS, line = address - MEMORY_CONVERSION;
+  if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS) {
+    write_reference(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
+    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, (present[x] & ~mask) | bits);
+  }
+  if (line < CONVERSION_LINES) i_variable_write(I8000_CONVERSION_TABLE + line, (present[0] & ~mask) | bits);
   return true;
 }

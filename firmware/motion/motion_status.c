@@ -5,7 +5,10 @@
 #include "firmware/buffers/open_buffer.h"
 #include "firmware/buffers/rotary_ring.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/protection.h"
 
 enum {
   S1_VECTOR_INCREMENTAL = 5,
@@ -16,11 +19,15 @@ enum {
   S1_RUNNING = 0,
   S1_AXIS_A = 6,
   S2_RUN_TIME_ERROR = 22,
+  S2_AMPLIFIER_FAULT = 20,
+  S2_FATAL_ERROR = 19,
+  S2_WARNING_ERROR = 18,
   S2_IN_POSITION = 17,
   S2_ROTARY_FULL = 16,
   S2_END_BLOCK = 14,
   S2_DWELL = 12,
-  S2_RAPID = 1,
+  S3_SHARP_CORNER = 6,
+  S3_CORNER_DWELL = 5,
   G2_ULTRALITE = 23,
   G2_BINARY_ROTARY_OPEN = 20,
   G2_MOTION_OPEN = 19,
@@ -30,12 +37,16 @@ enum {
   G2_FIXED_FULL = 11
 };
 
+/* Bits 4, 1, 0 of word 2, by mode. */
+static const uint8_t MODES[] = {0x00, 0x02, 0x01, 0x03, 0x11, 0x11, 0x12};
+
 static uint32_t bit(bool value, unsigned position) { return value ? 1u << position : 0u; }
 
 static uint32_t status1(const struct coordinate_system* s) {
-  uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) | bit(s->running && s->continuous, S1_CONTINUOUS) |
-                  bit(s->time_mode, S1_TIME_MODE) | bit(s->active && s->moves[s->executing].blended, S1_BLENDING) |
-                  bit(s->stepping, S1_STEP) | bit(s->running, S1_RUNNING);
+  uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) |
+                  bit(s->running && s->continuous && !s->unblended, S1_CONTINUOUS) | bit(s->time_mode, S1_TIME_MODE) |
+                  bit(s->active && s->moves[s->executing].blended, S1_BLENDING) | bit(s->stepping, S1_STEP) |
+                  bit(s->running, S1_RUNNING);
   for (uint32_t axis = 0; axis < AXIS_COUNT;
        axis++) { /* A lowest, Z highest: incremental, then feedrate axis above it */
     word |= bit((s->incremental >> axis) & 1u, S1_AXIS_A + 2 * axis);
@@ -49,13 +60,38 @@ static bool has_dwell(const struct coordinate_system* s) {
          (s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_DWELL);
 }
 
+/* Nothing of a program is under way or waits, and motors, if there are any, are where they shall be. */
+static bool is_in_position(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  if (s->active || s->next_valid) return false;
+  return axis_definition_motors(cs) == 0u || protection_all_in_position(cs);
+}
+
+static uint32_t faults(uint32_t cs) {
+  uint32_t word = 0;
+  for (uint32_t motor = 0; motor < MOTORS; motor++) {
+    const struct axis_definition* d = &axis_definitions[motor];
+    const struct motor_findings* found = &motors[motor].found;
+    if (d->assigned && d->cs == cs)
+      word |= bit(found->amplifier_fault, S2_AMPLIFIER_FAULT) | bit(found->fatal_error, S2_FATAL_ERROR) |
+              bit(found->warning_error, S2_WARNING_ERROR);
+  }
+  return word;
+}
+
+/* A stop at a corner that is too sharp to blend, and its pause; the rest of word 3 is about lookahead. */
+static uint32_t status3(const struct coordinate_system* s) {
+  const bool stops = s->corner != CORNER_NONE && s->moves[s->executing ^ 1u].is_sharp;
+  return bit(stops, S3_SHARP_CORNER) | bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL);
+}
+
 uint32_t motion_cs_status(uint32_t cs, unsigned word) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (word == 0) return status1(s);
-  if (word != 1) return 0; /* word 3 is about lookahead and motors */
-  return bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(!s->active && !s->next_valid, S2_IN_POSITION) |
+  if (word == 2) return status3(s);
+  return bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(is_in_position(cs), S2_IN_POSITION) |
          bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
-         bit(s->mode == MODE_RAPID, S2_RAPID);
+         faults(cs) | MODES[s->mode];
 }
 
 uint32_t motion_global_status2(void) {

@@ -1,18 +1,28 @@
-/* Made from I-variables and axis definitions when somebody asks: no loop is closed, so no other bit has a cause. */
+/* Made from variables, axis definitions and what each module knows of a motor when somebody asks. */
 #include "firmware/motion/motor_status.h"
 
 #include <stdbool.h>
 
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/desired_position.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
   M1_ACTIVATED = 23,
+  M1_NEGATIVE_LIMIT = 22,
+  M1_POSITIVE_LIMIT = 21,
   M1_EXTENDED_ALGORITHM = 20,
+  M1_AMPLIFIER_ENABLED = 19,
   M1_OPEN_LOOP = 18,
+  M1_MOVE_TIMER = 17,
   M1_INTEGRATION_MODE = 16,
   M1_DWELL = 15,
+  M1_DESIRED_VELOCITY_ZERO = 13,
+  M1_ABORT_DECELERATION = 12,
+  M1_SEARCH = 10,    /* for a trigger */
   M1_USER_SERVO = 8, /* and user phase */
   M1_ALTERNATE_SOURCE = 7,
   M1_PHASED = 6,
@@ -22,27 +32,26 @@ enum {
   M2_COORDINATE_SYSTEM = 20,
   M2_AXIS = 16,
   M2_ASSIGNED = 15,
+  M2_AMPLIFIER_ENABLED = 14,
+  M2_FOREGROUND_IN_POSITION = 13,
+  M2_STOPPED_ON_LIMIT = 11,
   M2_HOME_COMPLETE = 10,
-  M2_PHASE_REFERENCE_ERROR = 8
+  M2_PHASING = 9,
+  M2_PHASE_REFERENCE_ERROR = 8,
+  M2_TRIGGER_MOVE = 7,
+  M2_INTEGRATED_ERROR = 6,
+  M2_OVERLOAD = 5,
+  M2_BACKLASH_DIRECTION = 4,
+  M2_AMPLIFIER_FAULT = 3,
+  M2_FATAL_ERROR = 2,
+  M2_WARNING_ERROR = 1,
+  M2_IN_POSITION = 0
 };
 
 enum { CODE_KINEMATIC = 5, COMMUTATED = 1, Y_SOURCE = 2, TWO_BITS = 3 };
 
-static uint32_t without_reference; /* bit per motor that was commutated at the start: `$` finds no reference */
-static uint32_t homed;             /* bit per motor; background */
-
 static uint32_t variable(uint32_t motor, enum i_name ixxnn) { return (uint32_t)i_integer(i_motor(motor + 1u, ixxnn)); }
 static uint32_t bit(bool value, unsigned position) { return value ? 1u << position : 0u; }
-
-void motor_status_initialize(void) {
-  without_reference = homed = 0;
-  for (uint32_t motor = 0; motor < MOTORS; ++motor)
-    without_reference |= bit((variable(motor, IXX01_COMMUTATION_ENABLE) & COMMUTATED) != 0u, motor);
-}
-
-void motor_status_show_home(uint32_t motor, bool complete) {
-  homed = complete ? homed | 1u << motor : homed & ~(1u << motor);
-}
 
 static bool dwells(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
@@ -50,16 +59,32 @@ static bool dwells(uint32_t motor) {
   return d->assigned && s->active && s->moves[s->executing].kind == MOVE_DWELL;
 }
 
-static uint32_t status1(uint32_t motor) {
+/* A move of a program is timed, and so is one of a jog whose end is known. */
+static bool is_timed(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  return motors[motor].status.timed_move || (motors[motor].path == PATH_SYSTEM && coordinate_systems[d->cs].active);
+}
+
+static uint32_t of_variables(uint32_t motor) {
   const uint32_t commutation = variable(motor, IXX01_COMMUTATION_ENABLE);
   return bit(variable(motor, IXX00_ACTIVATED) != 0u, M1_ACTIVATED) |
-         bit(i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) != 0, M1_EXTENDED_ALGORITHM) | bit(true, M1_OPEN_LOOP) |
-         bit(variable(motor, IXX34_INTEGRATION_MODE) != 0u, M1_INTEGRATION_MODE) | bit(dwells(motor), M1_DWELL) |
+         bit(i_integer(i_esa(motor + 1u, IYY00_EXTENDED_SERVO)) != 0, M1_EXTENDED_ALGORITHM) |
+         bit(variable(motor, IXX34_INTEGRATION_MODE) != 0u, M1_INTEGRATION_MODE) |
          (variable(motor, IXX59_USER_SERVO_ENABLE) & TWO_BITS) << M1_USER_SERVO |
          bit((commutation & Y_SOURCE) != 0u, M1_ALTERNATE_SOURCE) | bit((commutation & COMMUTATED) != 0u, M1_PHASED) |
          (variable(motor, IXX06_FOLLOWING_MODE) & TWO_BITS) << M1_FOLLOWING |
          (variable(motor, IXX97_CAPTURE_MODE) & TWO_BITS) << M1_CAPTURE_MODE |
          (variable(motor, IXX96_OUTPUT_MODE) & TWO_BITS) << M1_OUTPUT_MODE;
+}
+
+static uint32_t status1(uint32_t motor) {
+  const struct motor* m = &motors[motor];
+  const bool closed = m->loop == LOOP_CLOSED;
+  return of_variables(motor) | bit(m->found.negative_limit, M1_NEGATIVE_LIMIT) |
+         bit(m->found.positive_limit, M1_POSITIVE_LIMIT) | bit(m->loop != LOOP_KILLED, M1_AMPLIFIER_ENABLED) |
+         bit(!closed, M1_OPEN_LOOP) | bit(is_timed(motor), M1_MOVE_TIMER) | bit(dwells(motor), M1_DWELL) |
+         bit(closed && m->desired_step == 0, M1_DESIRED_VELOCITY_ZERO) |
+         bit(motors[motor].status.aborting, M1_ABORT_DECELERATION) | bit(motors[motor].status.home_search, M1_SEARCH);
 }
 
 /* 1 to 3: A, B, C; 4: U, V, W; 5: by inverse kinematics; 7: X, Y, Z. */
@@ -73,8 +98,18 @@ static uint32_t axis_code(const struct axis_definition* d) {
 
 static uint32_t status2(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
-  const uint32_t word = bit(((without_reference >> motor) & 1u) != 0u, M2_PHASE_REFERENCE_ERROR) |
-                        bit(((homed >> motor) & 1u) != 0u, M2_HOME_COMPLETE);
+  const struct motor* m = &motors[motor];
+  const struct motor_findings* found = &m->found;
+  const uint32_t word =
+      bit(m->loop != LOOP_KILLED, M2_AMPLIFIER_ENABLED) |
+      bit(found->foreground_in_position && i_integer(I13_FOREGROUND_IN_POSITION) != 0, M2_FOREGROUND_IN_POSITION) |
+      bit(found->on_limit, M2_STOPPED_ON_LIMIT) | bit(motors[motor].status.home_complete, M2_HOME_COMPLETE) |
+      bit(phasing_is_searched(motor), M2_PHASING) | bit(phasing_is_missing(motor), M2_PHASE_REFERENCE_ERROR) |
+      bit(motors[motor].status.trigger_move, M2_TRIGGER_MOVE) | bit(found->integrated_error, M2_INTEGRATED_ERROR) |
+      bit(found->integrated_current, M2_OVERLOAD) |
+      bit(desired_position_backlash_is_down(motor), M2_BACKLASH_DIRECTION) |
+      bit(found->amplifier_fault, M2_AMPLIFIER_FAULT) | bit(found->fatal_error, M2_FATAL_ERROR) |
+      bit(found->warning_error, M2_WARNING_ERROR) | bit(found->in_position, M2_IN_POSITION);
   if (!d->assigned) return word;
   return word | d->cs << M2_COORDINATE_SYSTEM | axis_code(d) << M2_AXIS | bit(true, M2_ASSIGNED);
 }

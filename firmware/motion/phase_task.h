@@ -1,4 +1,4 @@
-/* The phase task: phase positions of commutated motors. */
+/* The phase task: commutation and current loops. */
 #ifndef FIRMWARE_MOTION_PHASE_TASK_H
 #define FIRMWARE_MOTION_PHASE_TASK_H
 
@@ -8,7 +8,7 @@ void phase_task_initialize(void);         /* from the motor variables, with inte
 void phase_task_interrupt(void);          /* handler, called by image/trap.S when phase_task_work is not 0 */
 extern volatile uint32_t phase_task_work; /* bit n-1: motor n is commutated */
 
-/* Ixx00, Ixx01 or Ixx83 of motor 1..32 was written. Background and real-time tasks. */
+/* A variable that the phase task uses was written, of motor 1..32. Background and real-time tasks. */
 void phase_task_motor_changed(uint32_t motor);
 
 #endif

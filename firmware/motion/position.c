@@ -2,6 +2,7 @@
  * time. Used when a program is aborted: the trajectory stands still meanwhile. */
 #include "firmware/motion/position.h"
 
+#include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 
 /* Distance covered while the velocity rises from 0 to 1 during `length` with S-parts of `s` at both ends, after `t`. */
@@ -31,30 +32,58 @@ static double s_part(const struct move* m, double length) {
 /* Most axes stand still in most moves: nothing is calculated for them. */
 static double velocity(double delta, double time) { return delta == 0.0 ? 0.0 : delta / time; }
 
-void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]) {
-  const struct move* m = &s->moves[s->executing];
-  if (!s->active) {
-    const struct move* next = &s->moves[s->executing ^ 1u];
-    for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
-      position[axis] = s->next_valid ? next->start[axis] : s->position[axis];
-    return;
+/* Of PVT and SPLINE moves. */
+static void on_cubics(const struct move* m, int64_t elapsed, double position[AXIS_COUNT]) {
+  uint32_t i = 0;
+  while (i + 2u < m->knot_count && elapsed > m->knot_time[i]) elapsed -= m->knot_time[i++];
+  const struct knot *first = &m->knots[i], *second = &m->knots[i + 1u];
+  const double time = math_scale((double)m->knot_time[i], -TRAJECTORY_FRACTION_BITS);
+  const double u = elapsed < m->knot_time[i] ? (double)elapsed / (double)m->knot_time[i] : 1.0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    const double way = second->position[axis] - first->position[axis];
+    position[axis] = first->position[axis];
+    if (way == 0.0 && first->velocity[axis] == 0.0 && second->velocity[axis] == 0.0) continue;
+    const double v0 = first->velocity[axis] * time, v1 = second->velocity[axis] * time;
+    slice_pause();
+    const double cube = (v0 + v1 - way - way) * u;
+    slice_pause();
+    position[axis] += (v0 + (3.0 * way - v0 - v0 - v1 + cube) * u) * u;
+    slice_pause();
   }
-  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)s->stop_length, half = in / 2.0;
+}
+
+static void on_line(const struct coordinate_system* s, double position[AXIS_COUNT]) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  const bool goes_on = s->next_valid && s->placed && next->blended;
+  double t = (double)s->elapsed, in = (double)m->blend_in, out = (double)m->stop_length, half = in / 2.0;
   double time = (double)m->time, stop = t - (half + time - out / 2.0);
   slice_pause();
   double begun = rise(t, in, s_part(m, in));
   slice_pause();
-  double ended = s->blend_decided ? 0.0 : rise(stop, out, s_part(m, out));
+  double ended = goes_on ? 0.0 : rise(stop, out, s_part(m, out));
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     slice_pause();
     double before = m->blended ? velocity(m->delta_before[axis], (double)m->time_before) : 0.0;
     slice_pause();
-    double now = m->kind == MOVE_LINEAR ? velocity(m->delta[axis], time) : 0.0;
+    double now = velocity(m->delta[axis], time);
     position[axis] = m->start[axis];
     if (before == 0.0 && now == 0.0) continue;
     slice_pause();
     double x = m->start[axis] + before * (t - half) + (now - before) * begun;
     slice_pause();
     position[axis] = x - now * ended;
+  }
+}
+
+void cs_present_position(const struct coordinate_system* s, double position[AXIS_COUNT]) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  const double* stands = m->start; /* while it waits, or motors go for themselves */
+  if (!s->active) stands = s->next_valid ? next->start : s->position;
+  if (s->active && m->kind == MOVE_LINEAR) {
+    on_line(s, position);
+  } else if (s->active && (m->kind == MOVE_PVT || m->kind == MOVE_SPLINE)) {
+    on_cubics(m, s->elapsed, position);
+  } else {
+    for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = stands[axis];
   }
 }

@@ -10,5 +10,7 @@
 void time_base_slew(uint32_t cs, int32_t target, enum i_name rate); /* servo and real-time tasks held off */
 /* From the next servo cycle on, at Isx94; while H holds the system it is kept for its end. */
 void time_base_command(uint32_t cs, int32_t command);
+void time_base_initialize(void);            /* start-up: Isx93 of all */
+void time_base_source_changed(uint32_t cs); /* Isx93 has been written */
 
 #endif

@@ -5,14 +5,16 @@
  * and inside the planning of a move. */
 #include "firmware/run/calculate.h"
 
-#include <stdatomic.h>
-
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/rotary.h"
+#include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog_plan.h"
+#include "firmware/motion/place.h"
 #include "firmware/motion/position.h"
+#include "firmware/motion/system_motors.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
 #include "firmware/run/motion_statement.h"
@@ -22,7 +24,6 @@ enum { JUMPS_BACK_LIMIT = 2 }; /* without a move, at one real-time interrupt (fi
 
 /* The system that is at its turn; none: COORDINATE_SYSTEMS. R, and B with R held off. */
 static uint32_t calculated = COORDINATE_SYSTEMS;
-static uint32_t interrupts; /* R: real-time interrupts so far */
 
 /* While programs are being moved in memory, what executes one of them stands still. */
 static bool stands(uint32_t cs) {
@@ -68,13 +69,15 @@ static void planned(uint32_t cs) {
   if (s->stepping && !p->in_block) s->quit = true;
 }
 
+static bool waits_for(enum move_kind kind) { return kind == MOVE_DWELL || kind == MOVE_OWN; }
+
 /* What has to wait for a later interrupt: a move to be started, or the limits of this one. */
 static bool is_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
-  if (s->next_valid || (s->active && s->moves[s->executing].kind == MOVE_DWELL)) return true;
-  if (p->interrupt != interrupts) {
-    p->interrupt = interrupts;
+  if (s->next_valid || (s->active && waits_for(s->moves[s->executing].kind))) return true;
+  if (p->interrupt != cs_interrupts) {
+    p->interrupt = cs_interrupts;
     p->lines = 0;
     p->jumps_begin = p->x.jumps_back;
   }
@@ -102,42 +105,85 @@ static bool calculate_word(uint32_t cs) {
   p->under_way = executed == EXECUTED_WORD;
   if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {
     if (motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
+  } else if (executed == EXECUTED_LINE) {
+    s->sets_position = false; /* PSET without axes */
   } else if (executed == EXECUTED_END && !calls_return(p)) {
     end(cs);
   }
-  if (s->planned != moves) planned(cs);
+  if (s->planned != moves) {
+    planned(cs);
+    if (s->motors == 0) (void)move_place(cs); /* that of motors takes its time: it is the next turn */
+  }
   if (executed == EXECUTED_ERROR) stop_with_error(cs);
   return executed != EXECUTED_ERROR;
 }
 
-/* After an abort: the axes are where the stopped trajectory has them, what is left of a begun line is lost. The servo
- * task looks at nothing else while `settling`, so it falls last. */
-static void settle(uint32_t cs) {
+/* After an abort: the axes are where the stopped trajectory has them, what is left of a begun line is lost. Motors have
+ * left the path by then, each on a ramp of its own. The servo task looks at nothing else while `settling`, so it falls
+ * last. */
+static bool settle(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   double position[AXIS_COUNT];
+  if (system_motors_leave(cs)) return false;
   cs_present_position(s, position);
   motion_program_drop_line(&motion_programs[cs]);
   synchronous_forget(cs);
-  s->active = s->next_valid = s->blend_decided = s->may_join = false;
-  s->pending_axes = 0;
-  s->planned = s->started;
+  s->pending_axes = s->pending_triggers = s->pending_velocities = 0;
+  s->may_join = s->sets_position = false;
+  s->corner = CORNER_NONE;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     s->position[axis] = position[axis];
     s->last_delta[axis] = 0.0;
   }
-  atomic_signal_fence(memory_order_release);
+  const uint32_t state = hal_mask_servo();
+  piece_ring_clear(&s->ring);
+  s->active = s->next_valid = s->placed = false;
+  s->planned = s->started;
   s->settling = false;
+  hal_unmask(state);
+  return true;
+}
+
+/* What is calculated is dropped, motors ramp to rest. */
+static void fail(uint32_t cs, enum run_time_error cause) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  system_motors_ramp(cs);
+  s->failure = RUN_TIME_NONE;
+  s->error = cause;
+  s->running = s->quit = s->stepping = false;
+  s->settling = true;
+}
+
+/* A PVT move that ends in motion runs on. Behind the last one of a program that is no error, it ends so. */
+static bool runs_on(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const struct move* m = &s->moves[s->executing];
+  const uint32_t state = hal_mask_servo();
+  const bool over = s->active && m->kind == MOVE_PVT && m->overruns && !s->placed && s->elapsed > m->time;
+  hal_unmask(state);
+  if (s->motors == 0 || !over) return false;
+  fail(cs, s->quit && !s->next_valid ? RUN_TIME_NONE : RUN_TIME_LATE);
+  return true;
+}
+
+/* Behind moves on which motors went for themselves the axes are where those are. */
+static bool has_gone_alone(const struct coordinate_system* s) {
+  return s->moves[s->executing].kind == MOVE_OWN && !s->active && s->started == s->planned && !s->was_matched;
 }
 
 /* False: there is nothing to do for it at this interrupt. */
 static bool turn(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (stands(cs)) return false;
-  if (s->settling) {
-    settle(cs);
+  if (s->settling) return settle(cs);
+  if (!s->running) return false;
+  if (s->matching || has_gone_alone(s)) {
+    system_motors_begin(cs);
     return true;
   }
-  if (!s->running) return false;
+  if (s->failure != RUN_TIME_NONE) fail(cs, s->failure);
+  if (runs_on(cs)) return true;
+  if (move_place(cs)) return true;
   if ((s->quit || s->end_block) && !motion_programs[cs].under_way) {
     if (s->active || (s->next_valid && !s->end_block)) return false; /* what is calculated is still to be executed */
     s->running = s->quit = s->stepping = false; /* end_block keeps a calculated move from starting until R */
@@ -154,10 +200,10 @@ static uint32_t systems(void) {
 }
 
 static void calculate_round(void) {
-  uint32_t looked = interrupts, mask = systems();
+  uint32_t looked = cs_interrupts, mask = systems();
   for (bool any = true; any;) {
     synchronous_assign();
-    any = false;
+    any = jog_plan();
     for (uint32_t cs = 0, left = mask; left != 0; cs++, left >>= 1) {
       if ((left & 1u) == 0) continue;
       calculated = cs;
@@ -169,8 +215,8 @@ static void calculate_round(void) {
       }
       any |= done;
     }
-    if (looked == interrupts) continue;
-    looked = interrupts; /* the background has run */
+    if (looked == cs_interrupts) continue;
+    looked = cs_interrupts; /* the background has run */
     mask = systems();
   }
 }
@@ -189,7 +235,7 @@ void calculate_forget(uint32_t cs) {
 }
 
 void calculate_programs(void) {
-  interrupts++;
+  cs_interrupts++;
   if (stands(calculated)) return;
   slice_run(tasks_real_time_slice());
 }

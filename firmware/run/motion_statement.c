@@ -1,7 +1,12 @@
 #include "firmware/run/motion_statement.h"
 
 #include "firmware/language/statement_key.h"
+#include "firmware/motion/homing.h"
+#include "firmware/motion/motor.h"
 #include "firmware/motion/plan.h"
+#include "firmware/motion/plan_linear.h"
+#include "firmware/motion/plan_own.h"
+#include "firmware/motion/system_motors.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/shared_statements.h"
 #include "firmware/run/synchronous.h"
@@ -21,13 +26,32 @@ static void set_axis(uint32_t cs, uint32_t axis, double value) {
     p->axes = p->x.at.statement;
     p->axes_loops = p->x.at.loop_count;
   }
-  bool incremental = (s->incremental >> axis) & 1u;
-  s->pending[axis] = incremental ? s->position[axis] + value : value;
+  const bool incremental = !s->sets_position && ((s->incremental >> axis) & 1u) != 0;
+  if (incremental) {
+    const double way = value + s->carry[axis];
+    s->pending[axis] = s->position[axis] + way;
+    s->carry[axis] = way - (s->pending[axis] - s->position[axis]);
+  } else {
+    s->pending[axis] = s->sets_position ? value : system_motors_turn(cs, axis, value);
+    s->carry[axis] = 0.0;
+  }
   s->pending_axes |= 1u << axis;
+}
+
+/* The axes of a PSET line: nothing moves. */
+static void set_position(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  system_motors_set_position(cs, s->pending_axes, s->pending);
+  s->pending_axes = 0;
+  s->sets_position = s->may_join = false;
 }
 
 enum executed motion_plan_line(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
+  if (coordinate_systems[cs].sets_position) {
+    set_position(cs);
+    return EXECUTED_WORD;
+  }
   motion_program_trace(cs, &coordinate_systems[cs].line);
   if (plan_line(cs)) return EXECUTED_WORD;
   p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again, in the loops of its line */
@@ -41,10 +65,13 @@ static bool is_key(const struct instruction* in, uint32_t key) {
   return in->operation == OP_STATEMENT && in->number == key;
 }
 
+static bool is_list(const struct instruction* in, uint32_t key) { return in->operation == OP_LIST && in->group == key; }
+
 /* The axes before it on its line move first; then it is met again. */
 static bool comes_after_axes(const struct instruction* in) {
   return (is_rate(in) && in->number >= RATE_DWELL) || calls_is_call(in) || is_key(in, KEY_STOP) ||
-         is_key(in, KEY_BLOCKSTART) || is_key(in, KEY_BLOCKSTOP) || is_key(in, KEY_WAIT);
+         is_key(in, KEY_BLOCKSTART) || is_key(in, KEY_BLOCKSTOP) || is_key(in, KEY_WAIT) || is_key(in, KEY_PSET) ||
+         is_list(in, KEY_HOME) || is_list(in, KEY_HOMEZ);
 }
 
 /* Those of PLCs too. What commands address is &1 #1, whoever executes (firmware:7.2). */
@@ -97,6 +124,76 @@ static bool is_stop(uint32_t cs, const struct instruction* in) {
   return true;
 }
 
+/* Whether number is one of `count` from `first` on. */
+static bool is_among(const struct instruction* in, uint32_t first, uint32_t count) {
+  return (in->operation == OP_STATEMENT || in->operation == OP_STATEMENT_POP) && in->number - first < count;
+}
+
+/* Behind an axis, by the mode that knows it. STATEMENT: it is something else. */
+static enum executed behind_axis(uint32_t cs, const struct instruction* in) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct motion_program* p = &motion_programs[cs];
+  if (is_among(in, KEY_ARC_VECTOR, 4)) {
+    return s->mode == MODE_CIRCLE1 || s->mode == MODE_CIRCLE2 ? executor_pass(&p->x) : EXECUTED_ERROR;
+  }
+  if (is_among(in, KEY_TRIGGER, AXIS_COUNT)) {
+    if (s->mode != MODE_RAPID || s->motors == 0) return EXECUTED_ERROR;
+    s->pending_trigger[in->number - KEY_TRIGGER] = in->value;
+    s->pending_triggers |= 1u << (in->number - KEY_TRIGGER);
+    return executor_pass(&p->x);
+  }
+  if (is_among(in, KEY_VELOCITY, AXIS_COUNT)) {
+    if (s->mode != MODE_PVT) return EXECUTED_ERROR;
+    s->pending_velocity[in->number - KEY_VELOCITY] = in->value;
+    s->pending_velocities |= 1u << (in->number - KEY_VELOCITY);
+    return executor_pass(&p->x);
+  }
+  return EXECUTED_STATEMENT;
+}
+
+/* CIRCLE1 to PVT. Arcs need segments, which are not built; without them they are straight. STATEMENT: something else.
+ */
+static enum executed other_mode(uint32_t cs, const struct instruction* in) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t mode = in->number - KEY_MODE;
+  if (!is_among(in, KEY_MODE + MODE_CIRCLE1, MODE_PVT - MODE_CIRCLE1 + 1)) return EXECUTED_STATEMENT;
+  if (mode <= MODE_CIRCLE2 && i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) return EXECUTED_ERROR;
+  s->mode = (enum mode)mode;
+  if (mode == MODE_PVT) set_rate(cs, i_integer(I42_PVT_TIME_SOURCE) != 0 ? RATE_TA : RATE_TM, in->value);
+  return executor_pass(&motion_programs[cs].x);
+}
+
+static bool closed(uint32_t mask) {
+  for (uint32_t motor = 0; mask != 0; motor++, mask >>= 1)
+    if ((mask & 1u) != 0 && motors[motor].loop != LOOP_CLOSED) return false;
+  return true;
+}
+
+/* What is made at rest waits for the moves before it. STATEMENT: it is something else. */
+static enum executed at_rest(uint32_t cs, const struct instruction* in) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const bool sets = is_key(in, KEY_PSET);
+  if (!sets && !is_list(in, KEY_HOMEZ)) return EXECUTED_STATEMENT;
+  s->may_join = false;
+  if (s->active || s->next_valid) return EXECUTED_LATER;
+  if (sets) {
+    s->sets_position = true;
+    return executor_pass(&motion_programs[cs].x);
+  }
+  if (!closed(in->number)) return EXECUTED_ERROR;
+  for (uint32_t motor = 0, left = in->number; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) homing_here(motor);
+  s->matching = s->motors != 0;
+  return executor_pass(&motion_programs[cs].x);
+}
+
+static enum executed home(uint32_t cs, const struct instruction* in) {
+  if (!closed(in->number)) return EXECUTED_ERROR;
+  motion_program_trace(cs, &coordinate_systems[cs].line);
+  plan_home(cs, in->number);
+  return executor_pass(&motion_programs[cs].x);
+}
+
 static bool is_mode(struct coordinate_system* s, const struct instruction* in) {
   switch (in->operation) {
     case OP_MODE:
@@ -117,6 +214,11 @@ enum executed motion_statement(uint32_t cs, const struct instruction* in) {
   struct motion_program* p = &motion_programs[cs];
   if (s->pending_axes != 0 && comes_after_axes(in)) return motion_plan_line(cs);
   if (is_mode(s, in) || is_stop(cs, in)) return executor_pass(&p->x);
+  enum executed executed = behind_axis(cs, in);
+  if (executed == EXECUTED_STATEMENT) executed = other_mode(cs, in);
+  if (executed == EXECUTED_STATEMENT) executed = at_rest(cs, in);
+  if (executed != EXECUTED_STATEMENT) return executed;
+  if (is_list(in, KEY_HOME)) return home(cs, in);
   switch (in->operation) {
     case OP_AXIS:
     case OP_AXIS_POP:
@@ -133,6 +235,6 @@ enum executed motion_statement(uint32_t cs, const struct instruction* in) {
       break;
   }
   if (synchronous_is_short(in)) return synchronous_add(cs, in);
-  const enum executed executed = calls_execute(p, in);
+  executed = calls_execute(p, in);
   return executed == EXECUTED_STATEMENT ? shared(p, in) : executed;
 }

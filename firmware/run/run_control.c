@@ -8,13 +8,17 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/place.h"
+#include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
 #include "firmware/variables/i_variables.h"
 
-#define LARGEST_PERCENT 225.0
+#define LARGEST_INCREMENT 8388607.0 /* the word of the commanded time base */
 
 /* The executing and the calculated move are dropped where the axes are now. That takes long to find out: the trajectory
  * stops here, the calculation does the rest before anything else for this system. Servo and real-time tasks held off.
@@ -51,7 +55,7 @@ error_t run_point(uint32_t cs, double program) {
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
   if (s->next_valid) s->settling = true;
-  s->end_block = false;
+  s->end_block = s->must_return = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
     s->pointer = POINTER_ROTARY;
@@ -66,12 +70,24 @@ error_t run_point(uint32_t cs, double program) {
   return ERR_NONE;
 }
 
-static bool has_inactive_motor(uint32_t cs) {
+/* ERR013, ERR012, ERR010, ERR011 and ERR017 of the motors; a system without any runs with virtual axes. */
+static error_t check_motors(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  bool inactive = false, open = false, limits = false, moving = false;
   for (uint32_t motor = 0; motor < MOTORS; motor++) {
     const struct axis_definition* d = &axis_definitions[motor];
-    if (d->assigned && d->cs == cs && i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0) return true;
+    if (!d->assigned || d->cs != cs) continue;
+    inactive |= i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0;
+    open |= motors[motor].loop != LOOP_CLOSED;
+    limits |= motors[motor].found.positive_limit && motors[motor].found.negative_limit;
+    moving |= jog_is_moving(motor);
   }
-  return false;
+  if (inactive) return ERR_NOT_ACTIVATED;
+  if (open) return ERR_OPEN_LOOP;
+  if (limits) return ERR_BOTH_LIMITS;
+  if (s->running && !s->held) return ERR_NONE; /* what moves is the program's */
+  if (moving || (s->settling && s->motors != 0)) return ERR_MOVE_IN_PROGRESS;
+  return s->must_return && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
 }
 
 /* None runs while an open buffer may change it; a PLC changes none. */
@@ -89,17 +105,25 @@ static error_t check_program(uint32_t cs) {
 
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (!VIRTUAL_AXES) return ERR_NO_MOTORS;
-  if (has_inactive_motor(cs)) return ERR_NOT_ACTIVATED;
-  const error_t error = check_program(cs);
+  error_t error = check_motors(cs);
+  if (error == ERR_NONE) error = check_program(cs);
   if (error != ERR_NONE) return error;
+  if (s->running && s->held) system_motors_take(cs);
+  s->must_return = false;
   release_hold(cs);
   if (s->running && single_step) {     /* a step request ends continuous running behind the calculated moves */
     if (s->continuous) s->quit = true; /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
     return ERR_NONE;
   }
+  if (!s->running) system_motors_resolve(cs);
   uint32_t state = hal_mask_servo();
+  if (!s->running) {
+    s->matching = s->motors != 0;
+    s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
+    s->first = true;
+    if (!s->next_valid) s->may_join = false;
+  }
   s->end_block = s->quit = false;
   s->stepping = single_step;
   s->continuous = !single_step;
@@ -107,18 +131,21 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->running = true;
   cs_busy |= 1u << cs;
   hal_unmask(state);
+  if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
   return ERR_NONE;
 }
 
 void run_quit(uint32_t cs) {
-  if (coordinate_systems[cs].running) coordinate_systems[cs].quit = true;
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (s->running) s->quit = s->must_return = true;
 }
 
 void run_abort(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
+  system_motors_ramp(cs);
   uint32_t state = hal_mask_servo();
   drop_moves(cs);
-  s->running = s->quit = s->end_block = s->stepping = s->continuous = false;
+  s->running = s->quit = s->end_block = s->stepping = s->continuous = s->matching = s->must_return = false;
   hal_unmask(state);
   release_hold(cs);
 }
@@ -127,14 +154,24 @@ void run_hold(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   uint32_t state = hal_mask_servo();
   if (!s->held && (s->running || s->active)) {
-    s->held = true;
+    s->held = s->must_return = true;
     time_base_slew(cs, 0, ISX95_FEED_HOLD_SLEW);
   }
   hal_unmask(state);
 }
 
+/* With motors and without segmentation it is Q (motion:5.6). */
 void run_end_block(uint32_t cs) {
-  if (coordinate_systems[cs].running) coordinate_systems[cs].end_block = true;
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (!s->running) return;
+  if (s->motors != 0) {
+    run_quit(cs);
+    return;
+  }
+  const uint32_t state = hal_mask_servo();
+  s->end_block = true;
+  move_take_back(cs);
+  hal_unmask(state);
 }
 
 void run_calculating(uint32_t cs, struct program_trace* trace) { motion_program_next(cs, trace); }
@@ -155,8 +192,8 @@ double run_time_base(uint32_t cs) {
 
 error_t run_set_time_base(uint32_t cs, double percent) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (percent < 0.0 || percent > LARGEST_PERCENT) return ERR_DATA;
   const int32_t full = i_integer(I10_SERVO_PERIOD);
+  if (percent < 0.0 || (double)full * percent > LARGEST_INCREMENT * 100.0) return ERR_DATA;
   const int32_t command = (int32_t)((double)full * percent / 100.0 + 0.5);
   s->increment_full = full; /* a word: DWELL takes it at once, the time base with the command */
   time_base_command(cs, command);

@@ -2,6 +2,7 @@
 
 #include "firmware/language/statement_argument.h"
 #include "firmware/language/statement_key.h"
+#include "firmware/motion/phase_search.h"
 #include "firmware/run/plc_control.h"
 
 enum { LONGEST_TEXT_WORDS = (TEXT_LENGTH + WORD_TEXT_CHARACTERS - 1) / WORD_TEXT_CHARACTERS };
@@ -23,6 +24,9 @@ static enum program_output list(struct executor* x, const struct instruction* in
       return OUTPUT_DONE;
     case KEY_ENABLE_PLCC: /* compiled PLCs cannot be loaded */
     case KEY_DISABLE_PLCC:
+      return OUTPUT_DONE;
+    case KEY_SETPHASE:
+      phasing_set_here(in->number);
       return OUTPUT_DONE;
     case DISPLAY_VALUE:
       if (!evaluator_pop(&x->evaluator, &value)) return OUTPUT_ILLEGAL;

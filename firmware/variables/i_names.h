@@ -64,6 +64,10 @@ static inline uint32_t i_motor(uint32_t motor, enum i_name name) { /* motor 1..3
   return I_MOTOR_BLOCK * motor + (uint32_t)name;
 }
 
+static inline uint32_t i_motor_real(uint32_t motor, enum i_real_name name) { /* motor 1..32 */
+  return I_MOTOR_BLOCK * motor + (uint32_t)name;
+}
+
 static inline uint32_t i_esa(uint32_t motor, enum i_name name) { /* Iyy00: motor 1..32 */
   return I_ESA_FIRST + I_ESA_BLOCK * (motor - 1u) + (uint32_t)name;
 }

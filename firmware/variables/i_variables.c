@@ -129,7 +129,8 @@ static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
     __builtin_memcpy(&integer_of[block], &integer_of[first], 100u * sizeof integer_of[0]);
   }
   for (uint32_t offset = 0; offset < 100u; ++offset) {
-    if (i_table_entry(i_table_place(first + offset))->field == I_FIELD_NONE) continue;
+    const uint32_t field = i_table_entry(i_table_place(first + offset))->field;
+    if (field == I_FIELD_NONE || (field >= I_FIELD_MOTOR_SERVO && field <= I_FIELD_MOTOR_BOTH)) continue;
     for (uint32_t block = 1; block <= copies; ++block) defaults(first + offset + 100u * block, 1, source);
   }
 }

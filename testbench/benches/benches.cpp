@@ -15,6 +15,9 @@ const std::vector<Bench>& all_benches() {
       serial_dac_adc_bench(), host_port_bench(),     isa_timing_bench(),
       port_a_phase_bench(),   bus_timing_bench(),    listing_bench(),
       variables_bench(),      status_bench(),        plc_bench(),
+      servo_loop_bench(),     jog_home_bench(),      motion_bench(),
+      limits_bench(),         commutation_bench(),   time_base_bench(),
+      follow_bench(),
   };
   return benches;
 }

@@ -38,5 +38,12 @@ Bench isa_timing_bench();
 Bench listing_bench();
 Bench variables_bench();
 Bench status_bench();
+Bench servo_loop_bench();
+Bench jog_home_bench();
+Bench motion_bench();
+Bench limits_bench();
+Bench commutation_bench();
+Bench time_base_bench();
+Bench follow_bench();
 
 }  // namespace brick

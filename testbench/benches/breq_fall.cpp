@@ -24,11 +24,11 @@ struct Load {
   bool judged;  // by T_FALL
 };
 // A new move each servo interrupt, so that moves are planned all the time; blended moves at the factory settings of the
-// tasks; and the longest phase task there is, for that task's limit: T_FALL is without commutated motors.
+// tasks; and the longest phase task there is room for, for that task's limit: T_FALL is without commutated motors.
 constexpr Load kLoads[] = {
     {"I8=0, moves of 0.5 ms", "I8=0 I5187=0 I5188=0 I5189=1000000", 0, true},
     {"I8=2, moves of 4 ms", "I8=2 I5187=4 I5188=0 I5189=1000000", 2, true},
-    {"32 motors commutated", "I183,32,100=$78001 I101,32,100=1 I100,32,100=1", 2, false},
+    {"four current loops", "I182,4,100=$78006 I183,4,100=$78001 I101,4,100=1 I100,4,100=1", 2, false},
 };
 
 double microseconds(TimeFs t) { return static_cast<double>(t) / static_cast<double>(kMicrosecond); }

@@ -40,8 +40,8 @@ class ReportingBench {
 
 std::string number(double value) { return fmt::format("{:.10g}", value); }
 
-// P, V, F and ? of each motor, from registers that are written by M-variables as a servo loop would. Positions are
-// reported to 1/32 count.
+// P, V, F and ? of each motor, from registers that are written by M-variables as a servo loop would: of motors that are
+// not activated, since a loop writes its own. Positions are reported to 1/32 count.
 void ReportingBench::motors(const std::string& on, const std::string& off) {
   const std::uint32_t mask = 1U << pick(kMotors) | 1U << pick(kMotors) | 1U << pick(kMotors);
   for (unsigned motor = 0; motor < kMotors; ++motor) {
@@ -50,9 +50,9 @@ void ReportingBench::motors(const std::string& on, const std::string& off) {
     b_.ask(fmt::format("M{}->D:${:X}", 20 + motor, at + 0x0B));
     b_.ask(fmt::format("M{}->D:${:X}", 30 + motor, at + 0x4C));
     b_.ask(fmt::format("M{}->X:${:X},0,24,S", 40 + motor, at + 0x1D));
-    b_.ask(fmt::format("M{}={} M{}={} M{}={} M{}={} I{}00={}", 10 + motor, some_position(), 20 + motor, some_position(),
-                       30 + motor, some_position(), 40 + motor, static_cast<int>(pick(1U << 24)) - (1 << 23), motor + 1,
-                       pick(2)));
+    b_.ask(fmt::format("I{}00=0 M{}={} M{}={} M{}={} M{}={}", motor + 1, 10 + motor, some_position(), 20 + motor,
+                       some_position(), 30 + motor, some_position(), 40 + motor,
+                       static_cast<int>(pick(1U << 24)) - (1 << 23)));
   }
   reports_.choose_motors(mask);
   b_.expect(on, "");

@@ -299,7 +299,70 @@ def plc_lockstep():
     bench_passes("plc", "lockstep", "3")
 
 
+def servo_loop():
+    for seed in ("1", "2", "3"):
+        bench_passes("servo-loop", "systemc", seed)
+
+
+def servo_loop_lockstep():
+    bench_passes("servo-loop", "lockstep", "4")
+
+
+def jog_home():
+    for seed in ("1", "2", "3"):
+        bench_passes("jog-home", "systemc", seed)
+
+
+def jog_home_lockstep():
+    bench_passes("jog-home", "lockstep", "5")
+
+
+def motion():
+    for seed in ("1", "2", "3"):
+        bench_passes("motion", "systemc", seed)
+
+
+def motion_lockstep():
+    bench_passes("motion", "lockstep", "6")
+
+
+def limits():
+    for seed in ("1", "2", "3"):
+        bench_passes("limits", "systemc", seed)
+
+
+def limits_lockstep():
+    bench_passes("limits", "lockstep", "7")
+
+
+def commutation_bench():
+    for seed in ("1", "2", "3"):
+        bench_passes("commutation", "systemc", seed)
+
+
+def commutation_bench_lockstep():
+    bench_passes("commutation", "lockstep", "8")
+
+
+def time_base():
+    for seed in ("1", "2", "3"):
+        bench_passes("time-base", "systemc", seed)
+
+
+def time_base_lockstep():
+    bench_passes("time-base", "lockstep", "9")
+
+
+def follow():
+    for seed in ("1", "2", "3"):
+        bench_passes("follow", "systemc", seed)
+
+
+def follow_lockstep():
+    bench_passes("follow", "lockstep", "10")
+
+
 if CASE.endswith("_negative"):
-    fails_its_negative_control(CASE.removesuffix("_negative").replace("_", "-"))
+    fails_its_negative_control(CASE.removesuffix("_negative").removesuffix("_bench").replace("_", "-"))
 else:
     globals()[CASE]()

@@ -35,11 +35,11 @@ class DpramReportsTest : public FirmwareTest {
   brick::DpramReports reports{ram};
 };
 
-// Registers of motor 3 written as its servo loop would; P, V, F and ? report them.
+// Registers of motor 3 written as its servo loop would if it were activated; P, V, F and ? report them.
 void move_motor_3() {
   for (const char* line : {"M1->D:$188", "M2->D:$18B", "M3->D:$190", "M4->D:$1CC", "M5->X:$19D,0,24,S", "#3->100X"})
     ASSERT_EQ(host(line), "") << line;
-  ASSERT_EQ(host("M1=-8000000000 M2=-9000001000 M3=3072 M4=-614400 M5=-12345 I300=1"), "");
+  ASSERT_EQ(host("M1=-8000000000 M2=-9000001000 M3=3072 M4=-614400 M5=-12345 I300=0"), "");
 }
 
 void expect_as_reported(const MotorReport& m) {
@@ -117,7 +117,7 @@ TEST_F(DpramReportsTest, ThePeriodIsCountedInServoCycles) {
 }
 
 TEST_F(DpramReportsTest, NothingIsWrittenWhileTheHostIsBusy) {
-  ASSERT_EQ(host("M2->D:$8B M2=5"), "");
+  ASSERT_EQ(host("I100=0 M2->D:$8B M2=5"), "");
   reports.choose_motors(1);
   ASSERT_EQ(host("I47=1 I48=1"), "");
   servo_ticks(1);
@@ -252,7 +252,7 @@ TEST_F(DpramReportsTest, TheTimerIsTheLowestBitsOfTheServoCounterInTwoWords) {
 // The items of a block by their numbers in host-bus:6.4, each from a word of its own value: low half first,
 // sign-extended.
 TEST_F(DpramReportsTest, EachItemOfAMotorsBlockIsItsSource) {
-  ASSERT_EQ(host("&3#5->1000X I500=1"), "");
+  ASSERT_EQ(host("&3#5->1000X I500=0"), "");
   ASSERT_EQ(host("WX$288,$123456 WY$288,$789ABC WX$28B,$0F0E0D WY$28B,$8C0B0A WX$290,$111111 WY$290,$922222"), "");
   ASSERT_EQ(host("WX$29D,$FEDCBA WX$2CC,$800001 WY$2CC,$700002"), "");
   const std::uint32_t block = DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_STRIDE * 4;
@@ -261,24 +261,24 @@ TEST_F(DpramReportsTest, EachItemOfAMotorsBlockIsItsSource) {
   ASSERT_EQ(host("I47=1 I48=1"), "");
   servo_ticks(1);
   // $123456789ABC - $0F0E0D8C0B0A = $032648EC8FB2
-  const std::vector<std::uint32_t> items = {0xFFEC8FB2, 0x00032648, 0,          0xFF850000, 0x00278000, 0x00700002,
+  const std::vector<std::uint32_t> items = {0xFFEC8FB2, 0x00032648, 0,          0x00050000, 0x00278000, 0x00700002,
                                             0xFF800001, 0xFFFEDCBA, 0xFF922222, 0x00111111, 0xFF8C0B0A, 0x000F0E0D};
   for (unsigned n = 0; n < items.size(); ++n) EXPECT_EQ(reports.item(block + 4 * n), items[n]) << "item " << n;
-  EXPECT_EQ(host("#5?"), "850000278000") << "items 3 and 4";
+  EXPECT_EQ(host("#5?"), "050000278000") << "items 3 and 4";
 }
 
 // host-bus:6.5 likewise: every place of the global part, and the items of a system that moves.
 TEST_F(DpramReportsTest, EachItemOfTheBackgroundDataIsItsSource) {
   platform::fit_panel();
   *hal_y(JPAN_Y_INPUTS) = 0xA5C3;
-  for (const char* line : {"&2DEF ROT 100 B0 I5294=8388607 I5293=$812345", "OPEN ROT", "TA100 TS0 F250",
-                           "TM1000 A1B2C3U4V5W6X7Y8Z9", "TM1000 INC X1", "X2", "X3", "X4", "CLOSE", "%60 R"})
+  for (const char* line : {"&2DEF ROT 100 B0 I5294=8388607", "OPEN ROT", "TA100 TS0 F250", "TM1000 A1B2C3U4V5W6X7Y8Z9",
+                           "TM1000 INC X1", "X2", "X3", "X4", "CLOSE", "%60 R"})
     ASSERT_EQ(host(line), "") << line;
   platform::panel(0xA5C3 ^ JPAN_INPUTS_RESET);
   for (std::uint32_t at = DPRAM_PANEL_PORT; at < DPRAM_CS_BLOCKS + 2 * DPRAM_CS_STRIDE; at += 2) ram.write(at, 0x5555);
   servo_ticks(20);
   reports.choose_systems(2);
-  ASSERT_EQ(host("I50=1 I49=1"), "");
+  ASSERT_EQ(host("I50=1 I49=1 I5293=$812345"), "");  // from the next servo interrupt on there is no time base
   background(kSettling);
   ASSERT_TRUE(reports.read_systems(5));
   EXPECT_EQ(reports.item(0x67C), 0xA5C3U) << "inputs of JPAN";

@@ -106,10 +106,11 @@ TEST_F(DriverPolls, StatusPositionsAndVariablesInOneLine) {
                                   {"##", "0"}};
   play(fast, "");
   play(fast, " ");
-  // Feedrate axes X, Y, Z and the arc vector (A80020), in position (bit 17); nothing runs.
-  const std::vector<Poll> slow = {{"&1??", "A80020020000000000"},
-                                  {"&2??", "A80020020000000000"},
-                                  {"&3??", "A80020020000000000"},
+  // Feedrate axes X, Y, Z and the arc vector (A80020); nothing runs, but motors whose loops are open are not in
+  // position.
+  const std::vector<Poll> slow = {{"&1??", "A80020000000000000"},
+                                  {"&2??", "A80020000000000000"},
+                                  {"&3??", "A80020000000000000"},
                                   {"&2Q81", "12.5"},
                                   {"Q82", "-3"},
                                   {"&1%", "100"},

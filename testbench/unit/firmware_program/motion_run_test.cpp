@@ -103,7 +103,7 @@ TEST_F(MotionProgram, MoreSynchronousAssignmentsThanFitAreARunTimeError) {
 TEST_F(MotionProgram, WhatCannotBeExecutedIsARunTimeError) {
   store(8, {"CALL 8"});
   for (const char* line : {"GOTO 5", "GOSUB 5", "CALL 9", "CALL 1.00005", "CALL 8", "CALL(0-1)", "CALL 0.5",
-                           "GOTO(0-3)", "G1", "READ(X)", "SPLINE1", "CIRCLE1", "PVT100", "HOME1", "PSET X1"}) {
+                           "GOTO(0-3)", "G1", "READ(X)", "CC1", "X1:5", "X1^5", "HOME1", "ADIS1", "TSEL1"}) {
     run({"P1=1", std::string("P2=1 ") + line, "P1=2"});
     EXPECT_TRUE(error()) << line;
     EXPECT_EQ(p(1), 1.0) << line;

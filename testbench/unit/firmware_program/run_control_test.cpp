@@ -5,6 +5,10 @@
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
 
+extern "C" {
+#include "firmware/motion/motor.h"
+}
+
 namespace {
 
 using platform::host;
@@ -302,6 +306,8 @@ TEST_F(RunControl, AnInactiveMotorHoldsItsSystemAndARunningOneHoldsSave) {
   EXPECT_EQ(host("&2#3->X"), "ERR003") << "of &1";
   EXPECT_EQ(host("SAVE"), "");
   ASSERT_EQ(host("I300=1"), "");
+  EXPECT_EQ(host("&1R"), "ERR012") << "its loop is open";
+  motors[2].loop = LOOP_CLOSED;
   EXPECT_EQ(host("&1R"), "");
   EXPECT_EQ(host("SAVE"), "ERR001");
   EXPECT_EQ(host("&2SAVE"), "ERR001") << "whoever runs";
@@ -310,6 +316,7 @@ TEST_F(RunControl, AnInactiveMotorHoldsItsSystemAndARunningOneHoldsSave) {
 // firmware:5.10/4: whoever has addressed what, a system that runs keeps its definitions.
 TEST_F(RunControl, UndefineAllIsRefusedWhileASystemThatLosesDefinitionsRuns) {
   ASSERT_EQ(host("I300=1"), "");
+  motors[2].loop = LOOP_CLOSED;
   ASSERT_EQ(host("&1#1->5X &3#3->7X DEF ROT 50 B0 OPEN ROT"), "");
   ASSERT_EQ(host("DWELL60000"), "");
   ASSERT_EQ(host("CLOSE &3R &1"), "");

@@ -29,11 +29,11 @@ TEST_F(RunTimeErrors, EachCauseHasItsNumber) {
     const char* number;
     Lines lines;
   } causes[] = {
-      {"1", {"CIRCLE1 X1Y1R5"}}, {"1", {"PVT100"}},   {"2", {"CALL99"}},
-      {"2", {"CALL99.5"}},       {"2", {"G1"}},       {"2", {"CALL(-1)"}},
-      {"2", {"CALL(40000)"}},    {"3", {"GOTO5"}},    {"3", {"GOSUB5"}},
-      {"3", {"CALL7.5"}},        {"3", {"GOTO(-1)"}}, {"3", {"GOSUB(300000)"}},
-      {"4", {"CALL8"}},          {"5", {"CALL9"}},    {"6", {repeated("M1==1", 33), "X1"}},
+      {"1", {"CC1 X1Y1"}},    {"1", {"X1R5"}},     {"2", {"CALL99"}},
+      {"2", {"CALL99.5"}},    {"2", {"G1"}},       {"2", {"CALL(-1)"}},
+      {"2", {"CALL(40000)"}}, {"3", {"GOTO5"}},    {"3", {"GOSUB5"}},
+      {"3", {"CALL7.5"}},     {"3", {"GOTO(-1)"}}, {"3", {"GOSUB(300000)"}},
+      {"4", {"CALL8"}},       {"5", {"CALL9"}},    {"6", {repeated("M1==1", 33), "X1"}},
       {"7", {"READ(X)"}},
   };
   ASSERT_EQ(host("M1->*"), "");
@@ -74,7 +74,7 @@ TEST_F(RunTimeErrors, AnAbortWithinOneLeavesNothingToTheNext) {
     ASSERT_EQ(host("DEF ROT 100 B0 OPEN ROT"), "");
     ASSERT_EQ(host("CALL99 P1=1 P2=2 P3=3 P4=4"), "");
     const std::uint32_t next = rotary_buffers[0].used;
-    ASSERT_EQ(host("CIRCLE1 X1Y1R5"), "");
+    ASSERT_EQ(host("CC1 X1Y1R5"), "");
     const std::uint32_t words = rotary_buffers[0].used;
     ASSERT_EQ(host("CLOSE R"), "");
     fake_hal_on_pause([] {});

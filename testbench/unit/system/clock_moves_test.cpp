@@ -19,7 +19,7 @@ TEST_P(ClockMoves, OneLineMakesEveryIcTheSourceInBothOrders) {
   std::ostringstream out;
   BenchReport report(out, machine());
   TimingBook timing(machine());
-  BenchContext bench{machine(), bus(), link(), report, config.board, 1, false, timing, false};
+  BenchContext bench{machine(), bus(), link(), report, config.board, 1, false, timing, false, nullptr};
   {
     ClockHost host(bench);
     for (unsigned ic = 0; ic < kClockIcs; ++ic) host.program(ic, {2600 + 100 * ic, ic % 3, 2 + ic % 3});

@@ -1,0 +1,97 @@
+/* The position of the source is taken modulo the table's span without a division: times 2^64/span it is a 64-bit number
+ * of turns, whose upper half times the number of entries is the entry, and the fraction between it and the next. A
+ * position is the middle of its unit, so that what the factor is rounded by does not put it into the turn before. */
+#include "firmware/motion/compensation.h"
+
+#include <stdbool.h>
+
+#include "firmware/base/dimensions.h"
+#include "firmware/base/mathematics.h"
+#include "firmware/base/memory_map.h"
+#include "firmware/buffers/compensation_tables.h"
+#include "firmware/buffers/regions.h"
+#include "firmware/hal/hal.h"
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/motor.h"
+#include "firmware/variables/i_variables.h"
+
+enum { PART_OF_COUNT = 16, NONE = 0xFF };
+
+struct table {
+  uint64_t half_turns; /* 2^63 / span */
+  uint32_t before;     /* address of the word before entry 1 */
+  uint32_t count;
+  int32_t unit; /* position units of the target in a unit of an entry */
+  uint8_t source, next;
+  bool of_desired, wraps;
+};
+
+static struct table tables[COMPENSATION_KINDS][MOTORS];
+static uint8_t first[COMPENSATION_KINDS][MOTORS]; /* of a target's tables, NONE: it has none */
+
+uint32_t compensation_of_position, compensation_of_torque; /* the first: COMP */
+
+static uint64_t half_turns_of(uint32_t span, uint32_t source) {
+  const double units = (double)span * POSITION_SUBCOUNT * (double)motors[source].position_scale;
+  return units < 2.0 ? 0u : (uint64_t)math_to_integer(math_scale(1.0 / units, 62)) << 1;
+}
+
+static void take(enum region_kind kind, uint32_t motor) {
+  const struct compensation_table* table = compensation_table(kind, motor);
+  if (table == 0 || i_integer(I51_COMPENSATION_TABLES) == 0) return;
+  const uint32_t span = table->span;
+  tables[kind][motor] = (struct table){
+      .before = MEMORY_BUFFERS + table->base - 1u,
+      .half_turns = half_turns_of(span, table->source),
+      .count = region_words(kind, motor),
+      .unit = kind == REGION_TCOMP ? 1 : motors[table->target].position_scale * (POSITION_SUBCOUNT / PART_OF_COUNT),
+      .source = table->source,
+      .next = first[kind][table->target],
+      .of_desired = table->of_desired,
+      .wraps = i_integer(I30_COMPENSATION_TABLE_WRAP) != 0};
+  first[kind][table->target] = (uint8_t)motor;
+  if (kind == REGION_COMP) compensation_of_position |= 1u << table->target;
+  if (kind == REGION_TCOMP) compensation_of_torque |= 1u << table->target;
+}
+
+/* The servo task is held off meanwhile: few tables are ever defined. */
+void compensation_changed(void) {
+  const uint32_t state = hal_mask_servo();
+  __builtin_memset(first, NONE, sizeof first);
+  compensation_of_position = compensation_of_torque = 0;
+  for (uint32_t kind = 0; kind < COMPENSATION_KINDS; ++kind)
+    for (uint32_t motor = 0; motor < MOTORS; ++motor) take((enum region_kind)kind, motor);
+  for (uint32_t motor = 0; motor < MOTORS; ++motor) motors[motor].compensation = 0; /* made anew, if there is one */
+  hal_unmask(state);
+}
+
+/* Entry number 0 is the position 0 and its value 0, or that of the last entry when the table wraps. */
+static int32_t entry(const struct table* t, uint32_t number) {
+  if (number == 0u && !t->wraps) return 0;
+  return hal_signed(*hal_y(t->before + (number == 0u ? t->count : number)));
+}
+
+static int64_t value_of(const struct table* t) {
+  const int64_t position = t->of_desired ? motors[t->source].commanded : motors[t->source].actual;
+  const uint64_t turn = (2u * (uint64_t)position + 1u) * t->half_turns, place = (turn >> 32) * t->count;
+  const uint32_t number = (uint32_t)(place >> 32), fraction = (uint32_t)place;
+  const int64_t from = (int64_t)entry(t, number) * t->unit, to = (int64_t)entry(t, number + 1u) * t->unit;
+  return from + fixed_part(to - from, fraction);
+}
+
+static int64_t sum(enum region_kind kind, uint32_t motor) {
+  int64_t all = 0;
+  for (uint32_t i = first[kind][motor], left = MOTORS; i != NONE && left != 0u; i = tables[kind][i].next, --left)
+    all += value_of(&tables[kind][i]);
+  return all;
+}
+
+int64_t compensation_position(uint32_t motor) { return sum(REGION_COMP, motor); }
+int64_t compensation_backlash(uint32_t motor) { return sum(REGION_BLCOMP, motor); }
+
+/* With the sign of the output: it makes it larger or smaller. */
+int64_t compensation_torque(uint32_t motor, int64_t output) {
+  if (output == 0) return 0;
+  const int64_t torque = sum(REGION_TCOMP, motor);
+  return output > 0 ? torque : -torque;
+}

@@ -1,0 +1,32 @@
+/* One entry of the encoder conversion table, ready for the servo task: what it reads, where its result goes and what it
+ * remembers from one servo interrupt to the next. Results are 24-bit words that wrap, 1/32 count. */
+#ifndef FIRMWARE_MOTION_CONVERSION_ENTRY_H
+#define FIRMWARE_MOTION_CONVERSION_ENTRY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { CONVERSION_LINES = 192, CONVERSION_LONGEST = 5, CONVERSION_SOURCES = 5 };
+
+struct conversion_state {
+  bool fresh; /* nothing remembered yet */
+  bool runs;  /* a triggered time base that has had its trigger */
+  uint32_t previous;
+  int32_t out;       /* of a filter: 2^-8 of the result's unit */
+  int64_t remainder; /* what `out` has lost in rounding, 2^-23 of its unit */
+  int64_t integral;
+};
+
+struct conversion_entry {
+  void (*convert)(const struct conversion_entry* entry);
+  const volatile uint32_t* source[CONVERSION_SOURCES];
+  volatile uint32_t *first_result, *result; /* X of its first and of its last line */
+  struct conversion_state* state;
+  bool flag; /* bit 19 of the first line */
+  uint8_t line, method;
+  uint8_t shift, width, least;           /* of a parallel word: of its result, then where it stands in 48 bits */
+  uint32_t setup;                        /* the first line */
+  int32_t parameter[CONVERSION_LONGEST]; /* the others, [1] is line 2 */
+};
+
+#endif

@@ -1,0 +1,13 @@
+/* Corners at which moves do not blend (motion:5.3): which are too sharp for it (Isx83), and what passes between the
+ * stop and the next move: motors come into position (Isx81), a pause (Isx82, Isx85). Real-time task. */
+#ifndef FIRMWARE_MOTION_CORNER_H
+#define FIRMWARE_MOTION_CORNER_H
+
+#include <stdbool.h>
+
+#include "firmware/motion/coordinate_system.h"
+
+void corner_plan(uint32_t cs, struct move* m); /* of a LINEAR move, its deltas known; in slices */
+bool corner_waits(uint32_t cs);                /* before the calculated move, which does not blend */
+
+#endif

@@ -1,0 +1,160 @@
+#include "firmware/motion/desired_position.h"
+
+#include <stdbool.h>
+
+#include "firmware/base/mathematics.h"
+#include "firmware/base/memory_map.h"
+#include "firmware/hal/hal.h"
+#include "firmware/motion/compensation.h"
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/motor.h"
+#include "firmware/variables/i_variables.h"
+#include "firmware/variables/words.h"
+
+enum { FOLLOWS = 1, PART_OF_COUNT = 16 };
+
+static struct path {
+  /* V */
+  const volatile uint32_t* master; /* word of Ixx05 */
+  bool follows;
+  int32_t master_scale;
+  uint32_t share;                                       /* 2^32 (1 - Ixx40); 0: no filter */
+  int64_t backlash, backlash_rate, backlash_hysteresis; /* position; rate a servo interrupt */
+  /* S */
+  uint32_t master_reading;
+  uint32_t fraction; /* of the filtered position, 2^-32 */
+  int64_t turning;   /* how far the trajectory has come in its direction */
+  int64_t taken_up;  /* backlash at present */
+  bool down;         /* direction of the last movement */
+} paths[MOTORS];
+
+static uint32_t with_something; /* bit n: motor n follows, or has a filter or backlash. V */
+
+static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
+
+static int64_t position_of(uint32_t motor, int32_t sixteenths) {
+  return (int64_t)sixteenths * (POSITION_SUBCOUNT / PART_OF_COUNT) * motors[motor - 1u].position_scale;
+}
+
+static uint32_t share_of(double gain) {
+  if (!(gain > 0.0)) return 0;
+  const int64_t share = math_to_integer(math_scale(1.0 - gain, 32));
+  return share < 1 ? 1u : (uint32_t)share;
+}
+
+void desired_position_initialize(void) { __builtin_memset(paths, 0, sizeof paths); }
+
+void desired_position_motor_changed(uint32_t motor) {
+  static const volatile uint32_t zero;
+  struct path* p = &paths[motor - 1u];
+  const uint32_t address = (uint32_t)variable(motor, IXX05_MASTER_ADDRESS);
+  const uint32_t share = share_of(i_variable_read(I_MOTOR_BLOCK * motor + (uint32_t)IXX40_DESIRED_POSITION_FILTER));
+  const bool follows = ((uint32_t)variable(motor, IXX06_FOLLOWING_MODE) & FOLLOWS) != 0u;
+  const uint32_t state = hal_mask_servo();
+  const volatile uint32_t* master = word_exists(true, address) ? hal_x(address) : &zero;
+  if (master != p->master || (follows && !p->follows)) p->master_reading = *master; /* no movement until now */
+  p->master = master;
+  p->follows = follows;
+  p->master_scale = variable(motor, IXX07_MASTER_SCALE);
+  p->share = share;
+  p->backlash = position_of(motor, variable(motor, IXX86_BACKLASH_SIZE));
+  p->backlash_rate = position_of(motor, variable(motor, IXX85_BACKLASH_RATE));
+  p->backlash_hysteresis = position_of(motor, variable(motor, IXX87_BACKLASH_HYSTERESIS));
+  const uint32_t bit = 1u << (motor - 1u);
+  with_something &= ~bit;
+  if (follows || share != 0u || p->backlash_rate != 0) with_something |= bit;
+  if (p->backlash_rate == 0) motors[motor - 1u].compensation += p->taken_up;
+  if (p->backlash_rate == 0) p->taken_up = 0;
+  hal_unmask(state);
+}
+
+void desired_position_take_actual(uint32_t motor) {
+  struct motor* m = &motors[motor];
+  struct path* p = &paths[motor];
+  m->commanded = m->actual;
+  m->desired_step = 0;
+  m->trajectory = m->actual - m->master + m->compensation;
+  p->turning = m->trajectory;
+  p->fraction = 0;
+}
+
+void desired_position_shift(uint32_t motor, int64_t by) {
+  struct motor* m = &motors[motor];
+  m->trajectory += by;
+  m->commanded += by;
+  m->closed_at += by;
+  m->actual += by;
+  paths[motor].turning += by;
+}
+
+/* Servo task ------------------------------------------------------------------------------------------------------- */
+
+/* A motor in a limit follows out of it only. */
+static void follow(struct motor* m, struct path* p) {
+  const uint32_t reading = *p->master;
+  const int64_t step = (int64_t)hal_signed(reading - p->master_reading) * p->master_scale;
+  p->master_reading = reading;
+  if ((step > 0 && m->found.positive_limit) || (step < 0 && m->found.negative_limit)) return;
+  if (step == 0) return;
+  m->master += step;
+  const uint32_t word = MEMORY_MOTOR_WORDS * ((uint32_t)(m - motors) + 1u) + MEMORY_MOTOR_MASTER;
+  *hal_x(word) = (uint32_t)(m->master >> 24) & HAL_WORD_MASK; /* for who looks at memory from outside */
+  *hal_y(word) = (uint32_t)m->master & HAL_WORD_MASK;
+}
+
+/* The direction turns when the trajectory has come back by more than Ixx87. */
+static int64_t backlash(uint32_t motor, const struct motor* m, struct path* p) {
+  const int64_t position = m->trajectory + m->master;
+  const int64_t forward = p->down ? p->turning - position : position - p->turning;
+  if (forward >= 0) {
+    p->turning = position;
+  } else if (forward < -p->backlash_hysteresis) {
+    p->down = !p->down;
+    p->turning = position;
+  }
+  const int64_t wanted = p->down ? -(p->backlash + compensation_backlash(motor)) : 0, left = wanted - p->taken_up;
+  if (left > p->backlash_rate)
+    p->taken_up += p->backlash_rate;
+  else if (left < -p->backlash_rate)
+    p->taken_up -= p->backlash_rate;
+  else
+    p->taken_up = wanted;
+  return p->taken_up;
+}
+
+/* Part `share` of the way to `wanted`, with what is left over kept: it arrives exactly. */
+static int64_t filtered(const struct motor* m, struct path* p, int64_t wanted) {
+  const int64_t way = wanted - m->commanded;
+  const uint64_t low = (uint64_t)(uint32_t)way * p->share;
+  const uint64_t fraction = (uint64_t)p->fraction + (uint32_t)low;
+  p->fraction = way == 0 ? 0u : (uint32_t)fraction;
+  return m->commanded + (way >> 32) * (int64_t)p->share + (int64_t)(low >> 32) + (int64_t)(fraction >> 32);
+}
+
+static int32_t saturated(int64_t value) {
+  if (value > INT32_MAX) return INT32_MAX;
+  return value < INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+static __attribute__((noinline)) void with_extras(uint32_t motor, struct motor* m, struct path* p) {
+  if (p->follows) follow(m, p);
+  m->compensation = 0;
+  if ((compensation_of_position >> motor & 1u) != 0u) m->compensation = -compensation_position(motor);
+  if (p->backlash_rate != 0) m->compensation -= backlash(motor, m, p);
+  int64_t wanted = m->trajectory + m->master - m->compensation;
+  if (p->share != 0u) wanted = filtered(m, p, wanted);
+  m->desired_step = saturated(wanted - m->commanded);
+  m->commanded = wanted;
+}
+
+void desired_position_servo(uint32_t motor) {
+  struct motor* m = &motors[motor];
+  FIXED_IN_REGISTER(m);
+  if (m->loop != LOOP_CLOSED) return; /* the loop keeps it where the motor is */
+  if (((with_something | compensation_of_position) >> motor & 1u) != 0u) return with_extras(motor, m, &paths[motor]);
+  const int64_t wanted = m->trajectory + m->master - m->compensation, step = wanted - m->commanded;
+  m->commanded = wanted;
+  m->desired_step = step == (int32_t)step ? (int32_t)step : step > 0 ? INT32_MAX : INT32_MIN;
+}
+
+bool desired_position_backlash_is_down(uint32_t motor) { return paths[motor].down; }

@@ -1,0 +1,18 @@
+/* Net desired position (motion:1.2): trajectory, master that is followed, compensation, backlash, filter. */
+#ifndef FIRMWARE_MOTION_DESIRED_POSITION_H
+#define FIRMWARE_MOTION_DESIRED_POSITION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+void desired_position_initialize(void);              /* start-up, before variables are taken over */
+void desired_position_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
+void desired_position_servo(uint32_t motor);         /* 0..31, servo task: trajectory -> commanded, desired_step */
+/* 0..31, servo task held off: the trajectory is set so that the motor is commanded to be where it is. */
+void desired_position_take_actual(uint32_t motor);
+/* 0..31, servo task held off, or in it: positions are counted from elsewhere, trajectory and commanded are `by` more.
+ */
+void desired_position_shift(uint32_t motor, int64_t by);
+bool desired_position_backlash_is_down(uint32_t motor); /* status word 2, bit 4 */
+
+#endif

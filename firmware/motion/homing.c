@@ -1,0 +1,22 @@
+#include "firmware/motion/homing.h"
+
+#include "firmware/hal/hal.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/motor.h"
+#include "firmware/variables/i_variables.h"
+
+#define OFFSET_UNITS 16.0 /* of Ixx26 in a count */
+
+bool homing_begin(uint32_t motor, bool by_program) {
+  const double velocity = i_variable_read((uint32_t)IXX22_JOG_SPEED + I_MOTOR_BLOCK * (motor + 1u) + 1u);
+  const double offset = i_variable_read(i_motor(motor + 1u, IXX26_HOME_OFFSET)) / OFFSET_UNITS;
+  return jog_home(motor, velocity, motor_position_of(motor, offset), by_program);
+}
+
+void homing_here(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
+  const struct motor* m = &motors[motor];
+  jog_count_from(motor, m->loop == LOOP_CLOSED ? m->trajectory : m->actual);
+  motors[motor].status.home_complete = true;
+  hal_unmask(state);
+}

@@ -1,0 +1,122 @@
+/* A request does not hold off an earlier one that is planned already and only waits for its Ixx92; a ramp does. */
+#include "firmware/motion/jog_plan.h"
+
+#include "firmware/base/mathematics.h"
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/jog_state.h"
+#include "firmware/motion/motor.h"
+
+#define LONGEST_CHANGE_MS 8388608.0
+#define STANDS_STILL 0.5 /* a speed below this is what roundings have left */
+
+enum { SERVO_CYCLES_TO_PLAN = 2, SERVO_CYCLES_GIVEN_UP = 1024 };
+
+/* What planning begins with, of one moment. */
+struct beginning {
+  uint32_t requests;
+  struct jog_motion motion;
+  int64_t begins;
+  struct own_path_place place;
+};
+
+enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
+
+/* Servo task held off. */
+static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
+  struct jog* j = &jogs[motor];
+  const struct motor* m = &motors[motor];
+  if ((jogs_asked & jog_bit(motor)) == 0u) return LOOK_NOTHING;
+  if (m->loop != LOOP_CLOSED || (j->request.aim == AIM_RAMP && j->rate == 0)) {
+    jog_drop(motor);
+    return LOOK_NOTHING;
+  }
+  if (j->ready && j->request.aim != AIM_RAMP) return LOOK_LATER;
+  j->ready = false;
+  b->requests = j->requests;
+  b->motion = j->request;
+  b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
+  if (b->begins < j->request_begins) b->begins = j->request_begins;
+  b->place = m->path == PATH_OWN ? own_path_place(&j->paths[j->current], b->begins - j->clock)
+                                 : own_path_stands(m->trajectory);
+  return LOOK_PLAN;
+}
+
+/* A piece of servo time's distance as a speed, of a motor that its system moves; else 0. */
+static double system_speed(uint32_t motor) {
+  const struct motor* m = &motors[motor];
+  const int32_t increment = coordinate_systems[m->cs].increment;
+  if (m->path != PATH_SYSTEM || increment <= 0) return 0.0;
+  slice_pause();
+  return (double)m->desired_step / math_scale((double)increment, -TRAJECTORY_FRACTION_BITS);
+}
+
+static void to_target(struct own_path* path, struct jog_motion* m, double speed) {
+  slice_pause();
+  const double distance = (double)(m->target - path->start);
+  const struct speed_plan plan = speed_plan_to(&m->limits, speed, distance, math_absolute(m->speed));
+  own_path_change(path, &m->limits, speed, plan.speed);
+  own_path_stay(path, plan.speed, plan.cruise);
+  own_path_change(path, &m->limits, plan.speed, 0.0);
+  own_path_end_at(path, m->target);
+}
+
+static void build(struct own_path* path, struct jog_motion* m, struct own_path_state from) {
+  if (math_absolute(from.speed) < STANDS_STILL) from.speed = 0.0;
+  slice_pause();
+  own_path_begin(path, math_to_integer(from.position + 0.5));
+  const double fastest = math_absolute(from.speed) + math_absolute(m->speed), least = fastest / LONGEST_CHANGE_MS;
+  slice_pause();
+  if (!(m->limits.acceleration > least)) m->limits.acceleration = least;
+  if (m->aim == AIM_TARGET && m->speed != 0.0) {
+    to_target(path, m, from.speed);
+  } else if (m->aim == AIM_RAMP) {
+    const double time = math_divide(math_absolute(from.speed), m->deceleration);
+    own_path_ramp(path, from.speed, time > 0.0 && time < LONGEST_CHANGE_MS ? time : 0.0);
+  } else {
+    const double speed = m->aim == AIM_SPEED ? m->speed : 0.0;
+    own_path_change(path, &m->limits, from.speed, speed);
+    if (speed != 0.0) own_path_stay_for_ever(path, speed);
+  }
+}
+
+/* Servo task held off. False: the moment it was planned for is over, or something else is asked for. */
+static bool hand_over(uint32_t motor, struct beginning* b) {
+  struct jog* j = &jogs[motor];
+  if (j->requests != b->requests || j->clock > b->begins) return false;
+  j->next = b->motion;
+  j->next_begins = b->begins;
+  j->ready = true;
+  jogs_asked &= ~jog_bit(motor);
+  return true;
+}
+
+/* Planned for a moment so near that it may be over too soon, then for later ones. */
+static bool plan(uint32_t motor) {
+  struct beginning b;
+  for (uint32_t cycles = SERVO_CYCLES_TO_PLAN; cycles <= SERVO_CYCLES_GIVEN_UP; cycles *= 4u) {
+    uint32_t state = hal_mask_servo();
+    const enum look to_do = look(motor, cycles, &b);
+    hal_unmask(state);
+    if (to_do != LOOK_PLAN) return false;
+    slice_pause();
+    struct own_path_state from = own_path_state(&b.place);
+    if (motors[motor].path == PATH_SYSTEM) from.speed = system_speed(motor);
+    struct own_path* path = &jogs[motor].paths[jogs[motor].current ^ 1u];
+    build(path, &b.motion, from);
+    slice_pause();
+    state = hal_mask_servo();
+    const bool done = hand_over(motor, &b);
+    hal_unmask(state);
+    if (done) return true;
+  }
+  return true;
+}
+
+bool jog_plan(void) {
+  bool any = false;
+  for (uint32_t left = jogs_asked; left != 0u; left &= left - 1u) any |= plan((uint32_t)__builtin_ctz(left));
+  return any;
+}

@@ -1,0 +1,102 @@
+/* Time is that of the motor's coordinate system, counted while there is something to do. */
+#include "firmware/motion/jog_servo.h"
+
+#include <stdbool.h>
+
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/jog_state.h"
+#include "firmware/motion/motor.h"
+
+/* Onto another time base no faster than the system itself may change: what is not held follows it at once. */
+static int32_t approach(int32_t present, int32_t target, int32_t slew) {
+  if (present < target) return target - present > slew ? present + slew : target;
+  return present - target > slew ? present - slew : target;
+}
+
+static bool searches_without_end(const struct jog_motion* motion) { return motion->aim == AIM_SPEED; }
+
+/* The new path begins where the old one is: planned for this moment, a ramp off the path of a system about. */
+static void change_over(uint32_t motor) {
+  struct jog* j = &jogs[motor];
+  struct motor* m = &motors[motor];
+  struct own_path* path = &j->paths[j->current ^ 1u];
+  if (j->next.aim == AIM_RAMP && m->path == PATH_SYSTEM) path->shift = m->trajectory - path->start;
+  j->current ^= 1u;
+  j->now = j->next;
+  j->ready = false;
+  m->path = PATH_OWN;
+  m->status.timed_move = !searches_without_end(&j->now);
+  m->status.aborting = j->now.aim == AIM_RAMP;
+  m->status.home_search = j->now.searches;
+  if (j->now.searches) capture_arm(&j->now.capture);
+}
+
+static void found(uint32_t motor, int64_t position) {
+  struct jog* j = &jogs[motor];
+  struct motor_status_flags* status = &motors[motor].status;
+  const bool homes = j->now.homes;
+  struct jog_motion then = j->now;
+  j->now.searches = false;
+  status->home_search = status->trigger_move = false;
+  then.aim = AIM_TARGET;
+  then.searches = false;
+  then.target = jog_trajectory_at(motor, position) + then.beyond;
+  if (homes) {
+    jog_count_from(motor, then.target);
+    then.target = 0;
+    status->home_complete = true;
+  }
+  if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) return; /* something else has been asked for */
+  then.homes = false;
+  jog_post(motor, &then);
+}
+
+static void over(uint32_t motor) {
+  struct jog* j = &jogs[motor];
+  struct motor_status_flags* status = &motors[motor].status;
+  motors[motor].path = PATH_STANDS;
+  status->timed_move = status->aborting = status->home_search = false;
+  j->now = (struct jog_motion){.aim = AIM_REST, .by_program = j->now.by_program};
+  if (!j->ready && (jogs_asked & jog_bit(motor)) == 0u) jogs_busy &= ~jog_bit(motor);
+}
+
+/* What only few interrupts have to do stands apart: the rest is quicker without. */
+static __attribute__((noinline)) void search(uint32_t motor) {
+  int64_t position;
+  if (capture_servo(motor, &jogs[motor].now.capture, &position)) found(motor, position);
+}
+
+static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
+  const int32_t slew = coordinate_systems[motors[motor].cs].increment_slew;
+  return approach(jogs[motor].rate, target < 0 ? 0 : target, slew);
+}
+
+static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
+  const int64_t since = jogs[motor].clock - jogs[motor].next_begins;
+  if (since < 0) return false;
+  change_over(motor);
+  *elapsed = since;
+  return true;
+}
+
+static __attribute__((noinline)) void move(uint32_t motor) {
+  struct jog* j = &jogs[motor];
+  struct motor* m = &motors[motor];
+  const int32_t target = jog_rate_of(motor, j->now.by_program);
+  if (m->loop != LOOP_CLOSED) {
+    jog_drop(motor);
+    return;
+  }
+  if (j->rate != target) j->rate = other_rate(motor, target);
+  int64_t elapsed = j->rate;
+  j->clock += elapsed;
+  if (!(j->ready && begins(motor, &elapsed)) && m->path != PATH_OWN) return; /* a program moves it still, or nobody */
+  const bool goes_on = own_path_advance(&j->paths[j->current], elapsed, &m->trajectory);
+  if (j->now.searches) search(motor);
+  if (!goes_on) over(motor);
+}
+
+void jog_servo(uint32_t motor) {
+  if ((jogs_busy & jog_bit(motor)) != 0u) move(motor);
+}

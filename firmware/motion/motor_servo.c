@@ -1,0 +1,23 @@
+#include "firmware/motion/motor_servo.h"
+
+#include <stdint.h>
+
+#include "firmware/motion/desired_position.h"
+#include "firmware/motion/jog_servo.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/motor_output.h"
+#include "firmware/motion/position_loop.h"
+#include "firmware/motion/protection.h"
+
+static void motor_servo(uint32_t motor) {
+  jog_servo(motor);
+  desired_position_servo(motor);
+  position_loop_servo(motor);
+  protection_servo(motor);
+  motor_output_servo(motor);
+}
+
+void motors_servo(void) {
+  for (uint32_t motor = 0, left = motors_active; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) motor_servo(motor);
+}

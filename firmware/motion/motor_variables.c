@@ -1,0 +1,57 @@
+#include "firmware/motion/motor_variables.h"
+
+#include "firmware/hal/hal.h"
+#include "firmware/motion/compensation.h"
+#include "firmware/motion/conversion_table.h"
+#include "firmware/motion/desired_position.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/motor_flags.h"
+#include "firmware/motion/motor_output.h"
+#include "firmware/motion/motor_state.h"
+#include "firmware/motion/position_loop.h"
+#include "firmware/motion/protection.h"
+#include "firmware/variables/i_variables.h"
+
+static void take_scales(uint32_t motor) {
+  struct motor* m = &motors[motor - 1u];
+  const int32_t position = i_integer(i_motor(motor, IXX08_POSITION_SCALE)), before = m->position_scale;
+  m->position_scale = position > 0 ? position : 1;
+  m->velocity_scale = i_integer(i_motor(motor, IXX09_VELOCITY_SCALE));
+  if (before != 0 && m->position_scale != before) compensation_changed(); /* its unit */
+}
+
+/* A motor that is no longer activated is killed first: nobody would do it afterwards. */
+static void take_activated(uint32_t motor) {
+  const uint32_t bit = 1u << (motor - 1u);
+  if (i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0) {
+    motors_active |= bit;
+  } else if ((motors_active & bit) != 0u) {
+    motor_kill(motor - 1u);
+    motors_active &= ~bit;
+  }
+}
+
+void motor_variables_changed(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
+  take_scales(motor);
+  desired_position_motor_changed(motor);
+  position_loop_motor_changed(motor);
+  motor_output_motor_changed(motor);
+  motor_flags_motor_changed(motor);
+  protection_motor_changed(motor);
+  take_activated(motor);
+  hal_unmask(state);
+}
+
+void motor_variables_initialize(void) {
+  motors_active = 0;
+  __builtin_memset(motors, 0, sizeof motors);
+  conversion_table_initialize();
+  desired_position_initialize();
+  position_loop_initialize();
+  motor_output_initialize();
+  motor_flags_initialize();
+  protection_initialize();
+  compensation_changed();
+  for (uint32_t motor = 1; motor <= MOTORS; ++motor) motor_variables_changed(motor);
+}

@@ -1,0 +1,220 @@
+#include "firmware/motion/own_path.h"
+
+#include "firmware/base/mathematics.h"
+#include "firmware/kernel/slice.h"
+
+enum { TIME_FRACTION_BITS = 23, STAY_TIME_BITS = 36 }; /* a part of a stay lasts 2^36 units, 8192 ms */
+
+#define STAY_MS 8192.0
+#define CARRY_ONE 4294967296.0
+
+static int64_t nearest(double value) { return math_to_integer(value + 0.5); }
+
+void own_path_begin(struct own_path* path, int64_t start) {
+  path->elapsed = path->shift = 0;
+  path->executing = path->count = 0;
+  path->repeats = path->carry = path->carried = 0;
+  path->start = path->end = start;
+  path->exact = 0.0;
+}
+
+static void set_time(struct own_piece* piece, int64_t time) {
+  piece->time = time < 1 ? 1 : time;
+  piece->shift = __builtin_clzll((uint64_t)piece->time) - 32;
+  const double normal = math_scale((double)piece->time, piece->shift - 32); /* [0.5, 1) */
+  slice_pause();
+  const int64_t inverse = math_to_integer(math_scale(1.0 / normal, 31));
+  piece->inverse = inverse > (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)inverse;
+}
+
+/* From the end so far: speed at its start, acceleration there and the constant change of that. What each end is rounded
+ * by does not add up. */
+static void add(struct own_path* path, double time, double speed, double acceleration, double jerk) {
+  struct own_piece* piece = &path->pieces[path->count++];
+  struct cubic* cubic = &piece->cubic;
+  slice_pause();
+  set_time(piece, nearest(math_scale(time, TIME_FRACTION_BITS)));
+  piece->straight = acceleration == 0.0 && jerk == 0.0;
+  slice_pause();
+  const double linear = speed * time, square = acceleration * time * time / 2.0;
+  slice_pause();
+  const double volume = jerk * time * time * time;
+  slice_pause();
+  const double cube = volume / 6.0;
+  slice_pause();
+  path->exact += linear + square + cube;
+  slice_pause();
+  const int64_t end = path->start + nearest(path->exact);
+  cubic->start = path->end;
+  cubic->square = nearest(square);
+  cubic->cube = nearest(cube);
+  cubic->linear = end - cubic->start - cubic->square - cubic->cube;
+  path->end = end;
+}
+
+void own_path_change(struct own_path* path, const struct speed_limits* l, double from, double to) {
+  const double time = speed_change_time(l, from, to), s = l->s_curve, level = time - 2.0 * s;
+  if (time <= 0.0) return;
+  slice_pause();
+  const double acceleration = (to - from) / (time - s);
+  slice_pause();
+  const double gained = acceleration * s / 2.0;
+  slice_pause();
+  if (s > 0.0) {
+    const double jerk = acceleration / s;
+    add(path, s, from, 0.0, jerk);
+    if (level > 0.0) add(path, level, from + gained, acceleration, 0.0);
+    add(path, s, to - gained, acceleration, -jerk);
+  } else {
+    add(path, time, from, acceleration, 0.0);
+  }
+}
+
+void own_path_ramp(struct own_path* path, double from, double time) {
+  if (time > 0.0) add(path, time, from, -from / time, 0.0);
+}
+
+/* One part of a stay of many. */
+static void add_repeated(struct own_path* path, double speed, uint32_t repeats) {
+  path->repeated = path->count++;
+  path->repeats = repeats;
+  struct own_piece* piece = &path->pieces[path->repeated];
+  slice_pause();
+  const double distance = speed * STAY_MS;
+  set_time(piece, INT64_C(1) << STAY_TIME_BITS);
+  piece->straight = true;
+  slice_pause();
+  piece->cubic = (struct cubic){.start = path->end, .linear = math_to_integer(distance)};
+  path->carry = (uint32_t)math_to_integer((distance - (double)piece->cubic.linear) * CARRY_ONE);
+}
+
+void own_path_stay(struct own_path* path, double speed, double time) {
+  if (!(time > 0.0)) return;
+  slice_pause();
+  const uint32_t whole = (uint32_t)math_to_integer(time / STAY_MS);
+  if (whole > 0u) {
+    add_repeated(path, speed, whole - 1u);
+    const struct cubic* cubic = &path->pieces[path->repeated].cubic;
+    path->end += cubic->linear * (int64_t)whole + (int64_t)(((uint64_t)path->carry * whole) >> 32);
+    slice_pause();
+    path->exact += speed * STAY_MS * (double)whole;
+  }
+  slice_pause();
+  const double rest = time - STAY_MS * (double)whole;
+  if (rest > 0.0) add(path, rest, speed, 0.0, 0.0);
+}
+
+void own_path_stay_for_ever(struct own_path* path, double speed) { add_repeated(path, speed, OWN_PATH_ENDLESS); }
+
+void own_path_end_at(struct own_path* path, int64_t end) {
+  if (path->count == 0u) return;
+  path->pieces[path->count - 1u].cubic.linear += end - path->end;
+  path->end = end;
+}
+
+/* The piece under way once more, after `elapsed`. */
+static void repeat(struct own_path* path, int64_t* elapsed) {
+  struct own_piece* piece = &path->pieces[path->repeated];
+  const uint64_t carried = (uint64_t)path->carried + path->carry;
+  path->carried = (uint32_t)carried;
+  piece->cubic.start += piece->cubic.linear + (int64_t)(carried >> 32);
+  *elapsed -= piece->time;
+  if (path->repeats != OWN_PATH_ENDLESS) path->repeats--;
+}
+
+/* False: there is none any more. */
+static __attribute__((noinline)) bool next_piece(struct own_path* path, int64_t* elapsed) {
+  while (path->executing != path->count) {
+    const int64_t time = path->pieces[path->executing].time;
+    if (*elapsed < time) return true;
+    if (path->repeats != 0u && path->executing == path->repeated) {
+      repeat(path, elapsed);
+    } else {
+      *elapsed -= time;
+      path->executing++;
+    }
+  }
+  return false;
+}
+
+static uint32_t fraction_of(const struct own_piece* piece, int64_t elapsed) {
+  const uint32_t part = (uint32_t)(piece->shift < 0 ? elapsed >> -piece->shift : elapsed << piece->shift);
+  const uint64_t fraction = (uint64_t)part * piece->inverse >> 31;
+  return fraction > UINT32_MAX ? UINT32_MAX : (uint32_t)fraction;
+}
+
+bool own_path_advance(struct own_path* path, int64_t increment, int64_t* position) {
+  int64_t elapsed = path->elapsed + increment;
+  const struct own_piece* piece = &path->pieces[path->executing];
+  if (path->executing == path->count || elapsed >= piece->time) {
+    if (!next_piece(path, &elapsed)) {
+      *position = path->end + path->shift;
+      return false;
+    }
+    piece = &path->pieces[path->executing];
+  }
+  path->elapsed = elapsed;
+  const uint32_t fraction = fraction_of(piece, elapsed);
+  const struct cubic* cubic = &piece->cubic;
+  const int64_t at = piece->straight ? cubic->start + fixed_part(cubic->linear, fraction) : cubic_at(cubic, fraction);
+  *position = at + path->shift;
+  return true;
+}
+
+struct own_path_place own_path_stands(int64_t position) {
+  return (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1};
+}
+
+/* The stay, `elapsed` after its present part began. False: it is over by then. */
+static bool stays(const struct own_path* path, int64_t* elapsed, struct own_path_place* place) {
+  const int64_t parts = *elapsed >> STAY_TIME_BITS;
+  if (path->repeats != OWN_PATH_ENDLESS && parts > (int64_t)path->repeats) {
+    *elapsed -= ((int64_t)path->repeats + 1) << STAY_TIME_BITS;
+    return false;
+  }
+  place->cubic = path->pieces[path->repeated].cubic;
+  place->cubic.start += place->cubic.linear * parts;
+  place->time = INT64_C(1) << STAY_TIME_BITS;
+  place->elapsed = *elapsed - (parts << STAY_TIME_BITS);
+  return true;
+}
+
+static struct own_path_place find(const struct own_path* path, int64_t ahead) {
+  struct own_path_place place = own_path_stands(path->end);
+  int64_t elapsed = path->elapsed + ahead;
+  for (uint32_t number = path->executing; number != path->count; number++) {
+    const struct own_piece* piece = &path->pieces[number];
+    if (path->repeats != 0u && number == path->repeated) {
+      if (stays(path, &elapsed, &place)) return place;
+      continue;
+    }
+    if (elapsed < piece->time) return (struct own_path_place){piece->cubic, piece->time, elapsed};
+    elapsed -= piece->time;
+  }
+  return place;
+}
+
+struct own_path_place own_path_place(const struct own_path* path, int64_t ahead) {
+  struct own_path_place place = find(path, ahead);
+  place.cubic.start += path->shift;
+  return place;
+}
+
+struct own_path_state own_path_state(const struct own_path_place* place) {
+  const struct cubic* c = &place->cubic;
+  if (place->elapsed >= place->time) return (struct own_path_state){(double)cubic_end(c), 0.0};
+  slice_pause();
+  const double time = (double)place->time, part = (double)place->elapsed / time;
+  slice_pause();
+  const double square = (double)c->square, cube = (double)c->cube;
+  slice_pause();
+  const double bend = part * (square + part * cube);
+  slice_pause();
+  const double moved = part * ((double)c->linear + bend);
+  slice_pause();
+  const double turn = part * (2.0 * square + part * 3.0 * cube);
+  slice_pause();
+  const double slope = (double)c->linear + turn;
+  slice_pause();
+  return (struct own_path_state){(double)c->start + moved, slope / math_scale(time, -TIME_FRACTION_BITS)};
+}

@@ -1,0 +1,80 @@
+#include "firmware/motion/piece.h"
+
+#include <stdatomic.h>
+
+#include "firmware/base/mathematics.h"
+
+/* inverse = 2^125 / (time << shift), with time << shift in [2^62, 2^63): as many bits as a double has, far more than
+ * the fraction. */
+void piece_set_time(struct piece* piece, int64_t time) {
+  if (time < 1) time = 1;
+  piece->time = piece->end = time;
+  piece->shift = (uint32_t)__builtin_clzll((uint64_t)time) - 1u;
+  const double normal = math_scale((double)time, (int)piece->shift - 62); /* [1, 2) */
+  piece->inverse = (uint64_t)math_to_integer(math_scale(1.0 / normal, 61)) << 2u;
+}
+
+static uint32_t fraction_of(const struct piece* piece, int64_t elapsed) {
+  if (elapsed >= piece->time) return UINT32_MAX;
+  const uint64_t part = fixed_multiply_high((uint64_t)elapsed << piece->shift, piece->inverse) >> 29;
+  return part > UINT32_MAX ? UINT32_MAX : (uint32_t)part;
+}
+
+void piece_ring_initialize(struct piece_ring* ring, struct cubic* cubics, uint32_t width) {
+  ring->cubics = cubics;
+  ring->width = width;
+  ring->executing = ring->added = 0;
+  ring->elapsed = 0;
+  ring->fraction = 0;
+}
+
+void piece_ring_add(struct piece_ring* ring) {
+  atomic_signal_fence(memory_order_release);
+  ring->added++;
+}
+
+void piece_ring_take_back(struct piece_ring* ring, uint32_t number) {
+  if (number - ring->executing <= ring->added - ring->executing) ring->added = number;
+}
+
+bool piece_ring_replace(struct piece_ring* ring, uint32_t number, int64_t end, uint32_t count) {
+  const int32_t ahead = (int32_t)(number - ring->executing);
+  if (ahead < 0 || (ahead == 0 && ring->elapsed > end) || (int32_t)(ring->added - number) <= 0) return false;
+  for (uint32_t i = number + 1u; i != ring->added; i++) piece_ring_at(ring, i)->end = 0;
+  piece_ring_at(ring, number)->end = end;
+  ring->added += count;
+  return true;
+}
+
+void piece_ring_clear(struct piece_ring* ring) {
+  ring->executing = ring->added;
+  ring->elapsed = 0;
+  ring->fraction = 0;
+}
+
+bool piece_ring_advance(struct piece_ring* ring, int64_t increment) {
+  if (piece_ring_is_empty(ring)) return false;
+  int64_t elapsed = ring->elapsed + increment;
+  const struct piece* piece = piece_ring_at(ring, ring->executing);
+  while (elapsed >= piece->end) { /* no more than there are pieces */
+    elapsed -= piece->end;
+    ring->executing++;
+    if (piece_ring_is_empty(ring)) {
+      ring->elapsed = 0;
+      ring->fraction = 0;
+      return false;
+    }
+    piece = piece_ring_at(ring, ring->executing);
+  }
+  ring->elapsed = elapsed;
+  ring->fraction = fraction_of(piece, elapsed);
+  return true;
+}
+
+int64_t cubic_at(const struct cubic* cubic, uint32_t fraction) {
+  const int64_t square = cubic->square + fixed_part(cubic->cube, fraction);
+  const int64_t linear = cubic->linear + fixed_part(square, fraction);
+  return cubic->start + fixed_part(linear, fraction);
+}
+
+int64_t cubic_end(const struct cubic* cubic) { return cubic->start + cubic->linear + cubic->square + cubic->cube; }

@@ -1,0 +1,260 @@
+#include "firmware/motion/protection.h"
+
+#include "firmware/base/status.h"
+#include "firmware/buffers/buffer_request.h"
+#include "firmware/hal/hal.h"
+#include "firmware/motion/axis_definition.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/motor_flags.h"
+#include "firmware/motion/motor_state.h"
+#include "firmware/motion/overload.h"
+#include "firmware/motion/position_loop.h"
+#include "firmware/variables/i_variables.h"
+
+enum { PART_OF_COUNT = 16, LIMIT_KILLS = 1 << 8, OTHERS_SHIFT = 21 }; /* bits of Ixx24 */
+enum others { OTHERS_ALL, OTHERS_OF_SYSTEM, OTHERS_NONE };
+
+static struct guard {
+  int64_t fatal_error, warning_error, in_position; /* position; V. INT64_MAX: not looked at */
+  int64_t positive_limit, negative_limit;          /* of software, the same */
+  uint32_t scans_wanted;                           /* Ixx88 + 1 */
+  uint32_t scans;                                  /* B: in position one after the other */
+  bool integral_trips, limit_kills;
+  enum others others;
+} guards[MOTORS];
+
+volatile uint32_t protection_watched;
+
+static volatile bool foreground; /* I13, as the last pass has seen it */
+static uint32_t shown;           /* B: signals that are on */
+
+void protection_initialize(void) {
+  __builtin_memset(guards, 0, sizeof guards);
+  overload_initialize();
+  foreground = false;
+  protection_watched = 0;
+  shown = 0;
+}
+
+static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
+
+/* Variables -------------------------------------------------------------------------------------------------------- */
+
+static int64_t band_of(uint32_t motor, enum i_name ixxnn) {
+  const int32_t sixteenths = variable(motor, ixxnn);
+  return (int64_t)sixteenths * (POSITION_SUBCOUNT / PART_OF_COUNT) * motors[motor - 1u].position_scale;
+}
+
+static int64_t unless_zero(int64_t value, int64_t off) { return value == 0 ? off : value; }
+
+static int64_t limit_of(uint32_t motor, uint32_t side, int64_t off) {
+  const double counts = i_variable_read(I_MOTOR_BLOCK * motor + (uint32_t)IXX13_SOFTWARE_LIMITS + side);
+  return counts == 0.0 ? off : motor_position_of(motor - 1u, counts);
+}
+
+void protection_motor_changed(uint32_t motor) {
+  struct guard* g = &guards[motor - 1u];
+  const uint32_t mode = (uint32_t)variable(motor, IXX24_FLAG_MODE);
+  g->fatal_error = unless_zero(band_of(motor, IXX11_FATAL_ERROR_LIMIT), INT64_MAX);
+  g->warning_error = unless_zero(band_of(motor, IXX12_WARNING_ERROR_LIMIT), INT64_MAX);
+  g->in_position = band_of(motor, IXX28_IN_POSITION_BAND);
+  g->positive_limit = limit_of(motor, 0, INT64_MAX);
+  g->negative_limit = limit_of(motor, 1, INT64_MIN);
+  g->scans_wanted = (uint32_t)variable(motor, IXX88_IN_POSITION_SCANS) + 1u;
+  g->integral_trips = variable(motor, IXX63_INTEGRATION_LIMIT) < 0;
+  g->limit_kills = (mode & LIMIT_KILLS) != 0u;
+  g->others = (enum others)(mode >> OTHERS_SHIFT & 3u);
+  overload_motor_changed(motor);
+  protection_watched |= overload_watched;
+}
+
+/* What there is to see ----------------------------------------------------------------------------------------------
+ */
+
+struct view { /* of one moment */
+  int64_t actual, error;
+  int32_t velocity, desired_step, open_output;
+  enum motor_loop loop;
+};
+
+static struct view look(uint32_t motor) {
+  const struct motor* m = &motors[motor];
+  const uint32_t state = hal_mask_servo();
+  const struct view view = {m->actual, m->commanded - m->actual, m->velocity, m->desired_step, m->open_output, m->loop};
+  hal_unmask(state);
+  return view;
+}
+
+static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
+
+/* On its way by a jog or by a program, a DWELL too. */
+static bool is_moved(uint32_t motor) {
+  if (jog_is_moving(motor)) return true;
+  return motors[motor].path == PATH_SYSTEM && coordinate_systems[axis_definitions[motor].cs].active;
+}
+
+static bool is_in_position(uint32_t motor, int64_t error, int32_t desired_step) {
+  return desired_step == 0 && magnitude(error) < guards[motor].in_position && !is_moved(motor);
+}
+
+/* What is done about it -------------------------------------------------------------------------------------------- */
+
+static bool is_of_system(uint32_t motor, uint32_t cs) {
+  return axis_definitions[motor].assigned && axis_definitions[motor].cs == cs;
+}
+
+/* The motor is killed and others as Ixx24 says; the program of its coordinate system is aborted. */
+static void trip(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  const enum others others = guards[motor].others;
+  motor_kill(motor);
+  for (uint32_t other = 0; other < MOTORS; ++other)
+    if (others == OTHERS_ALL || (others == OTHERS_OF_SYSTEM && d->assigned && is_of_system(other, d->cs)))
+      motor_kill(other);
+  if (d->assigned) protection_hooks.abort(d->cs);
+}
+
+/* A motor that a program moves takes its coordinate system with it. An open loop is closed. */
+static void stop(uint32_t motor) {
+  if (motors[motor].path == PATH_SYSTEM && axis_definitions[motor].assigned)
+    protection_hooks.abort(axis_definitions[motor].cs);
+  else if (motor_close(motor))
+    (void)jog_stop_at(motor, i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + (uint32_t)IXX15_ABORT_DECELERATION));
+  else
+    motor_kill(motor);
+}
+
+/* What it moves, or would move with the loop open. */
+static bool goes(const struct view* view, int direction) {
+  const int32_t by = view->loop == LOOP_CLOSED ? view->desired_step : view->velocity;
+  return direction > 0 ? by > 0 : by < 0;
+}
+
+static void check_limit(uint32_t motor, const struct view* view, int direction) {
+  struct guard* g = &guards[motor];
+  struct motor_findings* found = &motors[motor].found;
+  const bool up = direction > 0;
+  const bool input = up ? motor_flags_positive_limit(motor) : motor_flags_negative_limit(motor);
+  const bool has_software = up ? g->positive_limit != INT64_MAX : g->negative_limit != INT64_MIN;
+  const bool beyond =
+      !jog_is_homing(motor) && (up ? view->actual >= g->positive_limit : view->actual <= g->negative_limit);
+  if (up)
+    found->positive_limit = input || beyond;
+  else
+    found->negative_limit = input || beyond;
+  if (!(input || beyond) || !goes(view, direction) || motors[motor].status.aborting) return;
+  found->on_limit = true;
+  if (input && g->limit_kills && has_software && !beyond)
+    motor_kill(motor);
+  else
+    stop(motor);
+}
+
+static void check_limits(uint32_t motor, const struct view* view) {
+  struct motor_findings* found = &motors[motor].found;
+  if (found->on_limit && view->desired_step != 0 && !motors[motor].status.aborting)
+    found->on_limit = false; /* it goes away */
+  check_limit(motor, view, 1);
+  check_limit(motor, view, -1);
+}
+
+/* True: the loop is not closed any more. */
+static bool check_fault(uint32_t motor) {
+  const bool overload = overload_is_too_much(motor);
+  if (!overload && !motor_flags_fault(motor)) return false;
+  trip(motor);
+  motors[motor].found.amplifier_fault = true;
+  motors[motor].found.integrated_current = overload;
+  return true;
+}
+
+static bool check_error(uint32_t motor, const struct view* view) {
+  const struct guard* g = &guards[motor];
+  struct motor_findings* found = &motors[motor].found;
+  const int64_t error = magnitude(view->error);
+  const bool integral = g->integral_trips && position_loop_is_limited(motor);
+  found->warning_error = error > g->warning_error;
+  if (error <= g->fatal_error && !integral) return false;
+  trip(motor);
+  found->fatal_error = true;
+  found->integrated_error = integral;
+  return true;
+}
+
+static void check_in_position(uint32_t motor, const struct view* view) {
+  struct guard* g = &guards[motor];
+  if (!is_in_position(motor, view->error, view->desired_step))
+    g->scans = 0;
+  else if (g->scans < g->scans_wanted)
+    g->scans++;
+  motors[motor].found.in_position = g->scans >= g->scans_wanted;
+}
+
+static void not_closed(uint32_t motor) {
+  guards[motor].scans = 0;
+  motors[motor].found.in_position = motors[motor].found.warning_error = false;
+}
+
+static void check(uint32_t motor) {
+  const struct view view = look(motor);
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) motor_kill(motor); /* no clock: nothing is controlled */
+  if (view.loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
+  check_limits(motor, &view);
+  if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
+    return not_closed(motor);
+  check_in_position(motor, &view);
+}
+
+/* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
+static bool any(uint32_t cs, bool fatal) {
+  for (uint32_t left = motors_active; left != 0u; left &= left - 1u) {
+    const uint32_t motor = (uint32_t)__builtin_ctz(left);
+    const struct motor_findings* found = &motors[motor].found;
+    if ((fatal ? found->fatal_error : found->warning_error) && is_of_system(motor, cs)) return true;
+  }
+  return false;
+}
+
+bool protection_all_in_position(uint32_t cs) {
+  bool has_motors = false;
+  for (uint32_t motor = 0; motor < MOTORS; ++motor) {
+    if (!is_of_system(motor, cs)) continue;
+    has_motors = true;
+    if (!motors[motor].found.in_position) return false;
+  }
+  return has_motors;
+}
+
+static void show_signals(void) {
+  const uint32_t cs = buffer_request_selected();
+  uint32_t on = 0;
+  if (cs < COORDINATE_SYSTEMS) {
+    if (protection_all_in_position(cs)) on |= HAL_SIGNAL_IPOS;
+    if (any(cs, true)) on |= HAL_SIGNAL_EROR;
+    if (any(cs, false)) on |= HAL_SIGNAL_F1ER;
+  }
+  if (on != shown) hal_host_signals(on, shown & ~on);
+  shown = on;
+}
+
+void protection_pass(void) {
+  foreground = i_integer(I13_FOREGROUND_IN_POSITION) != 0;
+  protection_watched = foreground ? UINT32_MAX : overload_watched;
+  uint32_t left = motors_active;
+  for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)
+    if ((left & 1u) != 0u) check(motor);
+  show_signals();
+}
+
+/* Servo task ------------------------------------------------------------------------------------------------------- */
+
+void protection_look(uint32_t motor) {
+  if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
+  if (!foreground) return;
+  const struct motor* m = &motors[motor];
+  motors[motor].found.foreground_in_position =
+      m->loop == LOOP_CLOSED && is_in_position(motor, m->commanded - m->actual, m->desired_step);
+}

@@ -1,0 +1,25 @@
+/* Following error, limits, faults, overload, in position (motion:6): looked at in the background. */
+#ifndef FIRMWARE_MOTION_PROTECTION_H
+#define FIRMWARE_MOTION_PROTECTION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What a trip needs of higher layers; image/tables.c fills it in. */
+struct protection_hooks {
+  void (*abort)(uint32_t cs); /* the program of a coordinate system and all its motors */
+};
+extern const struct protection_hooks protection_hooks;
+
+void protection_initialize(void);
+void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
+void protection_pass(void);                    /* background: all motors */
+bool protection_all_in_position(uint32_t cs);  /* those of a coordinate system; false: it has none */
+
+extern volatile uint32_t protection_watched; /* bit n: the servo task looks at motor n */
+void protection_look(uint32_t motor);
+static inline void protection_servo(uint32_t motor) { /* 0..31: overload, in position of the foreground */
+  if ((protection_watched >> motor & 1u) != 0u) protection_look(motor);
+}
+
+#endif

@@ -1,0 +1,26 @@
+#include "firmware/motion/rollover.h"
+
+#include "firmware/base/mathematics.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/variables/i_variables.h"
+
+#define BAND_UNITS 16.0 /* of Ixx28 in a count */
+
+/* Up to half a turn either way. */
+static double shortest(double way, double turn) {
+  slice_pause();
+  const double part = math_modulo(way, turn);
+  return part > turn / 2.0 ? part - turn : part;
+}
+
+double rollover_target(uint32_t motor, double from, double to, bool negative) {
+  const double turn = i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + (uint32_t)IXX27_ROLLOVER);
+  if (turn == 0.0) return to;
+  if (turn > 0.0) return from + shortest(to - from, turn);
+  const double place = math_absolute(to);
+  slice_pause();
+  const double near = math_absolute(shortest(place - from, -turn));
+  if (near * BAND_UNITS < i_variable_read(i_motor(motor + 1u, IXX28_IN_POSITION_BAND))) return from;
+  slice_pause();
+  return negative ? from - math_modulo(from - place, -turn) : from + math_modulo(place - from, -turn);
+}

@@ -1,0 +1,108 @@
+#include "firmware/motion/servo_words.h"
+
+#include "firmware/base/memory_map.h"
+#include "firmware/hal/hal.h"
+#include "firmware/motion/commutation.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/position_loop.h"
+#include "firmware/variables/i_variables.h"
+
+enum { PREVIOUS_STEP = 0x07, INTEGRAL = 0x1E, PID_RESULT = 0x2E, CURRENT = 0x39 };
+enum { HALF_X = 1, HALF_Y = 2, BOTH = 3, LONG_X_SHIFT = 24, OUTPUT_LIMIT_SHIFT = 8 };
+
+/* Variables that are words of the loop. */
+static const struct alias {
+  uint8_t offset, half, variable;
+} ALIASES[] = {
+    {0x09, HALF_Y, IXX08_POSITION_SCALE},
+    {0x1C, HALF_Y, IXX09_VELOCITY_SCALE},
+    {0x19, HALF_Y, IXX30_PROPORTIONAL_GAIN},
+    {0x12, HALF_X, IXX31_DERIVATIVE_GAIN},
+    {0x0F, HALF_X, IXX32_VELOCITY_FEEDFORWARD},
+    {0x1F, HALF_X, IXX33_INTEGRAL_GAIN},
+    {0x13, HALF_Y, IXX35_ACCELERATION_FEEDFORWARD},
+    {0x1F, HALF_Y, IXX63_INTEGRATION_LIMIT},
+    {0x2E, HALF_Y, IXX69_OUTPUT_LIMIT},
+    {0x0F, HALF_Y, IXX60_SERVO_CYCLE_EXTENSION},
+};
+enum { ALIAS_COUNT = sizeof ALIASES / sizeof ALIASES[0] };
+
+static int shift_of(const struct alias* alias) {
+  return alias->variable == IXX69_OUTPUT_LIMIT ? OUTPUT_LIMIT_SHIFT : 0;
+}
+
+static uint32_t number_of(uint32_t motor, const struct alias* alias) {
+  return I_MOTOR_BLOCK * (motor + 1u) + alias->variable;
+}
+
+static int64_t* position_of(uint32_t motor, uint32_t offset) {
+  switch (offset) {
+    case MEMORY_MOTOR_MASTER:
+      return &motors[motor].master;
+    case MEMORY_MOTOR_COMPENSATION:
+      return &motors[motor].compensation;
+    case MEMORY_MOTOR_BIAS:
+      return &motors[motor].bias;
+    default:
+      return 0;
+  }
+}
+
+static unsigned put_long(int64_t value, uint32_t* x, uint32_t* y) {
+  *x = (uint32_t)(value >> LONG_X_SHIFT) & HAL_WORD_MASK;
+  *y = (uint32_t)value & HAL_WORD_MASK;
+  return BOTH;
+}
+
+static unsigned read_position(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
+  const int64_t* position = position_of(motor, offset);
+  if (position == 0) return 0;
+  const uint32_t state = hal_mask_servo();
+  const int64_t value = *position;
+  hal_unmask(state);
+  return put_long(value, x, y);
+}
+
+static unsigned read_state(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
+  switch (offset) {
+    case PREVIOUS_STEP:
+      return put_long(position_loop_step(motor), x, y);
+    case INTEGRAL:
+      return put_long(position_loop_integral(motor), x, y);
+    case PID_RESULT:
+      *x = (uint32_t)position_loop_filtered(motor) & HAL_WORD_MASK;
+      return HALF_X;
+    case CURRENT:
+      *x = (uint32_t)commutation_current(motor).q & HAL_WORD_MASK;
+      *y = (uint32_t)commutation_current(motor).d & HAL_WORD_MASK;
+      return BOTH;
+    default:
+      return read_position(motor, offset, x, y);
+  }
+}
+
+unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
+  unsigned made = 0;
+  for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias) {
+    if (alias->offset != offset) continue;
+    *(alias->half == HALF_X ? x : y) = (uint32_t)i_integer(number_of(motor, alias)) << shift_of(alias) & HAL_WORD_MASK;
+    made |= alias->half;
+  }
+  return made | read_state(motor, offset, x, y);
+}
+
+static void write_position(int64_t* position, bool x, uint32_t word) {
+  const uint32_t state = hal_mask_servo();
+  const int64_t low = (int64_t)((uint64_t)*position & HAL_WORD_MASK);
+  *position =
+      x ? ((int64_t)hal_signed(word) * (1 << LONG_X_SHIFT)) + low : *position - low + (int64_t)(word & HAL_WORD_MASK);
+  hal_unmask(state);
+}
+
+void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t word) {
+  for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias)
+    if (alias->offset == offset && (alias->half == HALF_X) == x)
+      i_variable_write(number_of(motor, alias), hal_signed(word) >> shift_of(alias));
+  int64_t* position = position_of(motor, offset);
+  if (position != 0) write_position(position, x, word);
+}

@@ -1,0 +1,14 @@
+/* Registers of the servo loop in the words of a motor (motion:1.3, firmware:1.10): variables that stand there too,
+ * positions that belong to the servo task. Called for words that motion/live_words.h makes. */
+#ifndef FIRMWARE_MOTION_SERVO_WORDS_H
+#define FIRMWARE_MOTION_SERVO_WORDS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Motor 0..31, offset in its words. Which halves were made, bit 0 X, bit 1 Y; 0: an ordinary word. */
+unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y);
+/* One that was made: the variable is assigned, a position set, anything else stays. */
+void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t word);
+
+#endif

@@ -1,0 +1,22 @@
+/* A = Id cos(th) - Iq sin(th) + Ixx29, B = Id cos(th + phi) - Iq sin(th + phi) + Ixx79, phi = Ixx72. */
+#include "firmware/motion/sine_output.h"
+
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/phase_table.h"
+
+enum { LARGEST = (1 << 23) - 1, ROUND_BITS = CURRENT_FRACTION_BITS - 1 - 23 };
+
+static uint32_t word(int32_t q, int32_t d, struct phase_sines at, int32_t bias) {
+  const int32_t sum = fixed_high(d, at.cosine) - fixed_high(q, at.sine); /* 2^-27 */
+  int32_t output = ((sum + (1 << (ROUND_BITS - 1))) >> ROUND_BITS) + bias;
+  if (output > LARGEST) output = LARGEST;
+  if (output < -LARGEST) output = -LARGEST;
+  return (uint32_t)output & HAL_WORD_MASK;
+}
+
+void sine_output(struct phase_motor* m, uint32_t angle) {
+  const struct phase_settings* s = &m->settings;
+  const int32_t q = m->q.command, d = m->d.command;
+  *s->output[0] = word(q, d, phase_sines(s, angle), s->bias[0]);
+  *s->output[1] = word(q, d, phase_sines(s, angle + s->second), s->bias[1]);
+}

@@ -1,0 +1,243 @@
+#include "firmware/motion/system_motors.h"
+
+#include "firmware/base/mathematics.h"
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/motion/axis_definition.h"
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/jog.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/rollover.h"
+#include "firmware/variables/i_variables.h"
+
+enum { AXES_OF_A_MOTOR = 3 };
+
+#define LEAST_PIVOT 1e-9 /* of the largest scale: below it a motor says nothing new about the axes */
+
+struct motor_move motor_moves[2][MOTORS];
+
+/* How axes make a motor's position. */
+static struct {
+  uint32_t count;
+  uint8_t axis[AXES_OF_A_MOTOR];
+  double scale[AXES_OF_A_MOTOR]; /* position a user unit */
+  double offset, unit;           /* `unit`: position a count */
+} maps[MOTORS];
+
+static void resolve(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  maps[motor].unit = (double)(POSITION_SUBCOUNT * motors[motor].position_scale);
+  maps[motor].offset = d->offset * maps[motor].unit;
+  maps[motor].count = 0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT && maps[motor].count < AXES_OF_A_MOTOR; axis++) {
+    if (d->scale[axis] == 0.0) continue;
+    const uint32_t i = maps[motor].count++;
+    maps[motor].axis[i] = (uint8_t)axis;
+    maps[motor].scale[i] = d->scale[axis] * maps[motor].unit;
+    slice_pause();
+  }
+}
+
+void system_motors_resolve(uint32_t cs) {
+  uint32_t mask = 0;
+  for (uint32_t motor = 0; motor < MOTORS; motor++) {
+    const struct axis_definition* d = &axis_definitions[motor];
+    if (!d->assigned || d->cs != cs || d->kinematic) continue;
+    mask |= 1u << motor;
+    resolve(motor);
+    slice_pause();
+  }
+  coordinate_systems[cs].motors = mask;
+}
+
+static double bias(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
+  const int64_t value = motors[motor].bias;
+  hal_unmask(state);
+  return (double)value;
+}
+
+double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
+  double sum = maps[motor].offset - bias(motor);
+  for (uint32_t i = 0; i < maps[motor].count; i++) {
+    sum += maps[motor].scale[i] * position[maps[motor].axis[i]];
+    slice_pause();
+  }
+  return sum;
+}
+
+/* The first motor that carries it alone tells the turn. */
+double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  for (uint32_t motor = 0, left = axis <= AXIS_C ? s->motors : 0u; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0 || maps[motor].count != 1u || maps[motor].axis[0] != axis) continue;
+    if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
+    const double scale = axis_definitions[motor].scale[axis];
+    slice_pause();
+    return rollover_target(motor, s->position[axis] * scale, target * scale, target < 0.0) / scale;
+  }
+  return target;
+}
+
+double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]) {
+  double sum = 0.0;
+  for (uint32_t i = 0; i < maps[motor].count; i++) {
+    const double of_axis = velocity[maps[motor].axis[i]];
+    if (of_axis != 0.0) sum += maps[motor].scale[i] * of_axis;
+    slice_pause();
+  }
+  return sum;
+}
+
+double system_motor_counts(uint32_t motor, int64_t distance) { return (double)distance / maps[motor].unit; }
+
+bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AXIS_COUNT], int64_t* behind) {
+  double sum = 0.0;
+  bool any = false;
+  for (uint32_t i = 0; i < maps[motor].count; i++) {
+    const uint32_t axis = maps[motor].axis[i];
+    if (((axes >> axis) & 1u) == 0) continue;
+    any = true;
+    sum += maps[motor].scale[i] * distance[axis];
+    slice_pause();
+  }
+  *behind = math_nearest(sum);
+  return any;
+}
+
+static double limit(uint32_t motor, enum i_real_name ixxnn) {
+  const double value = i_variable_read(i_motor_real(motor + 1u, ixxnn));
+  return value > 0.0 ? value * maps[motor].unit : 0.0;
+}
+
+double system_motor_velocity(uint32_t motor) { return limit(motor, IXX16_VELOCITY_LIMIT); }
+double system_motor_acceleration(uint32_t motor) { return limit(motor, IXX17_ACCELERATION_LIMIT); }
+
+/* Where the motor is without its offset: the sum of its axes times their scales. */
+static int64_t commanded(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
+  const int64_t position = motors[motor].trajectory;
+  hal_unmask(state);
+  return position;
+}
+
+static bool agrees(uint32_t motor, const double position[AXIS_COUNT]) {
+  return math_nearest(system_motor_at(motor, position)) == commanded(motor);
+}
+
+/* Equations of motors in the axes, each reduced by those before it, for Gaussian elimination. */
+struct equations {
+  uint32_t count;
+  uint32_t pivot[AXIS_COUNT];
+  double row[AXIS_COUNT][AXIS_COUNT + 1]; /* the sum last */
+};
+
+static void add_equation(struct equations* e, uint32_t motor) {
+  double row[AXIS_COUNT + 1] = {0}, largest = 0.0;
+  if (e->count == AXIS_COUNT) return;
+  for (uint32_t i = 0; i < maps[motor].count; i++) {
+    row[maps[motor].axis[i]] = maps[motor].scale[i];
+    if (math_absolute(maps[motor].scale[i]) > largest) largest = math_absolute(maps[motor].scale[i]);
+  }
+  row[AXIS_COUNT] = (double)commanded(motor) + bias(motor) - maps[motor].offset;
+  for (uint32_t k = 0; k < e->count; k++) {
+    const double factor = row[e->pivot[k]];
+    if (factor == 0.0) continue;
+    for (uint32_t column = 0; column <= AXIS_COUNT; column++) {
+      if (e->row[k][column] != 0.0) row[column] -= factor * e->row[k][column];
+      slice_pause();
+    }
+    row[e->pivot[k]] = 0.0;
+  }
+  uint32_t pivot = 0;
+  for (uint32_t axis = 1; axis < AXIS_COUNT; axis++)
+    if (math_absolute(row[axis]) > math_absolute(row[pivot])) pivot = axis;
+  slice_pause();
+  if (!(math_absolute(row[pivot]) > largest * LEAST_PIVOT)) return;
+  const double by = row[pivot];
+  for (uint32_t column = 0; column <= AXIS_COUNT; column++) {
+    e->row[e->count][column] = row[column] == 0.0 ? 0.0 : row[column] / by;
+    slice_pause();
+  }
+  e->pivot[e->count++] = pivot;
+}
+
+/* An axis that no motor tells stays where it is. */
+static void solve(const struct equations* e, double position[AXIS_COUNT]) {
+  for (uint32_t k = e->count; k-- > 0;) {
+    double value = e->row[k][AXIS_COUNT];
+    for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+      if (axis == e->pivot[k] || e->row[k][axis] == 0.0) continue;
+      value -= e->row[k][axis] * position[axis];
+      slice_pause();
+    }
+    position[e->pivot[k]] = value;
+  }
+}
+
+void system_motors_match(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  static struct equations e;
+  bool all = true;
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && !agrees(motor, s->position)) all = false;
+  if (all) return;
+  e.count = 0;
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) add_equation(&e, motor);
+  solve(&e, s->position);
+}
+
+void system_motors_take(uint32_t cs) {
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    if (motors[motor].path != PATH_SYSTEM) jog_program_takes(motor);
+    motors[motor].of_system = motors[motor].trajectory;
+  }
+  hal_unmask(state);
+}
+
+void system_motors_begin(uint32_t cs) {
+  system_motors_match(cs);
+  system_motors_take(cs);
+  coordinate_systems[cs].matching = false;
+  coordinate_systems[cs].was_matched = true;
+}
+
+bool system_motors_leave(uint32_t cs) {
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && motors[motor].path == PATH_SYSTEM && jog_is_moving(motor)) return true;
+  return false;
+}
+
+bool system_motors_are_away(uint32_t cs) {
+  bool away = false;
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && motors[motor].trajectory != motors[motor].of_system) away = true;
+  hal_unmask(state);
+  return away;
+}
+
+void system_motors_ramp(uint32_t cs) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++)
+    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs)
+      (void)jog_stop_at(motor, i_variable_read(i_motor_real(motor + 1u, IXX15_ABORT_DECELERATION)));
+}
+
+void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  double now[AXIS_COUNT];
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
+    now[axis] = ((axes >> axis) & 1u) != 0 ? position[axis] : s->position[axis];
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    const int64_t shift = math_nearest(system_motor_at(motor, now) - system_motor_at(motor, s->position));
+    slice_pause();
+    const uint32_t state = hal_mask_servo();
+    motors[motor].bias += shift;
+    hal_unmask(state);
+  }
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) s->position[axis] = now[axis];
+}

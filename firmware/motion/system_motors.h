@@ -1,0 +1,43 @@
+/* The motors of a coordinate system, for whoever plans its moves: where axes put them, what the planned moves ask of
+ * them, and the way back from motors to axes. Positions are those of motion/fixed_point.h, as doubles before they are
+ * rounded. Real-time task, in slices; it is resolved at the start of a program, which holds definitions as they are. */
+#ifndef FIRMWARE_MOTION_SYSTEM_MOTORS_H
+#define FIRMWARE_MOTION_SYSTEM_MOTORS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/base/dimensions.h"
+#include "firmware/motion/coordinate_system.h"
+
+/* What a move asks of a motor: the corners at which it begins and ends, the velocity between them a ms. */
+struct motor_move {
+  double from, to, velocity;
+};
+
+/* As coordinate_system.moves: [0] and [1] belong to the moves of the same number. */
+extern struct motor_move motor_moves[2][MOTORS];
+
+void system_motors_resolve(uint32_t cs); /* its motors, scales and offsets; background too */
+double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
+/* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */
+double system_motors_turn(uint32_t cs, uint32_t axis, double target);
+double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]);
+double system_motor_counts(uint32_t motor, int64_t distance);
+/* Of distances behind a trigger those of its axes in `axes`; false: it has none of them. */
+bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AXIS_COUNT], int64_t* behind);
+void system_motors_match(uint32_t cs);    /* axes are where motors are commanded to be; exact if they were */
+void system_motors_begin(uint32_t cs);    /* the same, and the program moves them from now on */
+bool system_motors_leave(uint32_t cs);    /* after an abort: some are still on its path, about to leave it */
+bool system_motors_are_away(uint32_t cs); /* not where the program has left them */
+void system_motors_take(uint32_t cs);     /* the program goes on with them: they have been jogged and are back */
+
+void system_motors_ramp(uint32_t cs); /* an abort: those of closed loops leave its path, to rest at Ixx15. Any task */
+/* PSET, at rest: the axes in `axes` are at `position` from now on, by the bias of the motors. */
+void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]);
+
+/* Limits of a motor for moves, position a ms and ms^2; 0: none. */
+double system_motor_velocity(uint32_t motor);     /* Ixx16 */
+double system_motor_acceleration(uint32_t motor); /* Ixx17 */
+
+#endif

@@ -1,0 +1,156 @@
+// Angle, sine outputs, phase advance, slip and micro-steps natively, against motion:3.2 and motion:3.3 in double
+// precision.
+#include <cmath>
+#include <random>
+
+#include "testbench/unit/firmware_platform/commutation_rig.h"
+
+namespace brick {
+namespace {
+
+class Commutation : public CommutationRig {
+ protected:
+  double a() { return y_word(kOutput) / 256.0; }
+  double b() { return y_word(kOutput + 1) / 256.0; }
+};
+
+// The table's own cosine: 2048 entries, the one at or below the angle.
+double table_cosine(std::int64_t index) { return std::cos(2 * kPi * static_cast<double>(index & 2047) / 2048); }
+double table_sine(std::int64_t index) { return std::sin(2 * kPi * static_cast<double>(index & 2047) / 2048); }
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+TEST_F(Commutation, SineTableIsThatOfTheDataSheet) {
+  const auto word = [](double value) { return std::min(8388607.0, std::floor(value * kFull + 0.5)); };
+  for (std::uint32_t k = 0; k < 2048; ++k) {
+    ASSERT_NEAR(x_word(0x3800 + k), word(table_cosine(k)), k == 1024 ? 0 : 1) << "cosine " << k;
+    ASSERT_NEAR(y_word(0x3800 + k), word(table_sine(k)), k == 1536 ? 0 : 1) << "sine " << k;
+  }
+  EXPECT_EQ(x_word(0x3800 + 512), 0);
+  EXPECT_EQ(y_word(0x3800), 0);
+  EXPECT_EQ(x_word(0x3800 + 256), 5931642);  // 2^23 / sqrt(2) = 5931641.6
+}
+
+TEST_F(Commutation, SineOutputsAreThoseOfTheDataSheet) {
+  std::mt19937 random(3);
+  const auto pick = [&random](int first, int last) { return std::uniform_int_distribution<int>(first, last)(random); };
+  for (int round = 0; round < 60; ++round) {
+    const int cycle = round % 10 == 0 ? 1 << pick(4, 18) : pick(20, 260000), phi = pick(0, 2047);
+    const int id = pick(-9000, 9000), bias_a = pick(-3000, 3000), bias_b = pick(-3000, 3000);
+    set("I171=" + std::to_string(cycle) + " I172=" + std::to_string(phi) + " I177=" + std::to_string(id));
+    set("I129=" + std::to_string(bias_a) + " I179=" + std::to_string(bias_b));
+    enable();
+    for (int i = 0; i < 50; ++i) {
+      const int position = pick(-(cycle / 2), cycle - cycle / 2 - 1), iq = pick(-20000, 20000);
+      const std::int64_t index = floor_div(2048ll * position, cycle);
+      stand_at(position);
+      command(iq);
+      phase();
+      ASSERT_NEAR(a(), id * table_cosine(index) - iq * table_sine(index) + bias_a, 0.02)
+          << "I171=" << cycle << " position " << position;
+      ASSERT_NEAR(b(), id * table_cosine(index + phi) - iq * table_sine(index + phi) + bias_b, 0.02)
+          << "I172=" << phi << " position " << position;
+    }
+  }
+}
+
+TEST_F(Commutation, OutputsAreClippedAtTheirWords) {
+  set("I172=512 I129=32767 I179=-32768");
+  enable();
+  stand_at(-250);  // -90 degrees: A = +Iq, B = -Iq sin(0) = 0
+  command(20000);
+  phase();
+  EXPECT_EQ(y_word(kOutput), 8388607);
+  EXPECT_EQ(y_word(kOutput + 1), -32768 * 256 + 1);
+  stand_at(0);  // B = -Iq
+  phase();
+  EXPECT_EQ(y_word(kOutput + 1), -8388607);
+}
+
+TEST_F(Commutation, BiasStaysOnTheOutputsOfAKilledMotor) {
+  set("I129=100 I179=-200 I177=5000");
+  stand_at(137);
+  enable();
+  command(3000);
+  phase();
+  EXPECT_GT(std::fabs(a() - 100), 500);
+  enable(false);
+  command(3000);
+  phase();
+  EXPECT_EQ(a(), 100);
+  EXPECT_EQ(b(), -200);
+}
+
+// motion:3.2: 5 degrees at a velocity of 1,391,616 units is an Ixx56 of 0.0000204.
+TEST_F(Commutation, AdvanceTurnsTheAngleWithTheVelocity) {
+  set("I171=36000 I156=0.0000204");
+  enable();
+  for (const int sign : {1, -1}) {
+    motors[0].velocity = sign * 1391616;
+    stand_at(3000);
+    command(-10000);
+    phase();
+    const double degrees = 30 + sign * 5;
+    EXPECT_NEAR(a(), 10000 * std::sin(degrees * kPi / 180), 10000 * 2 * kPi / 2048) << sign;
+  }
+  motors[0].velocity = 0;
+  command(-10000);
+  phase();
+  EXPECT_NEAR(a(), 5000, 10000 * 2 * kPi / 2048);
+}
+
+// A rotor with the time constant Tr, Ixx78 = T / Tr: slip in radians an update is Ixx78 Iq / Id.
+TEST_F(Commutation, SlipTurnsTheFieldOfAnInductionMotor) {
+  set("I171=100000 I177=2500 I178=0.0004");
+  enable();
+  stand_at(0);
+  command(5000);
+  phase(1000);
+  const double units = 1000 * 0.0004 * 5000 / 2500 / (2 * kPi) * 100000;  // 12732.4
+  EXPECT_NEAR(x_word(kPosition), units, 1.5);
+  command(-5000);
+  phase(2000);
+  EXPECT_NEAR(x_word(kPosition), -units, 2.5);
+  command(0);
+  phase(100);
+  EXPECT_NEAR(x_word(kPosition), -units, 2.5);
+}
+
+TEST_F(Commutation, MicroStepsTurnByTheOutputAndNotByTheEncoder) {
+  set("I196=1 I170=4 I171=65536 I177=8000 I172=512");
+  enable();
+  stand_at(0);
+  command(10.25);
+  for (int i = 1; i <= 1000; ++i) {
+    set_x(kSource, 7 * i);
+    phase();
+    const std::int64_t position = i * 41ll, index = floor_div(2048 * position, 65536);
+    ASSERT_NEAR(a(), 8000 * table_cosine(index), 0.02) << i;
+    ASSERT_NEAR(b(), 8000 * table_cosine(index + 512), 0.02) << i;
+  }
+  command(-10.25);
+  phase(1500);
+  EXPECT_EQ(x_word(kPosition), -20500);
+  command(0.25);  // a whole unit each update
+  phase(100);
+  EXPECT_EQ(x_word(kPosition), -20400);
+}
+
+TEST_F(Commutation, TheTableOfIxx55IsUsed) {
+  set("I155=$8000 I171=2048");  // $B800, in the buffers
+  for (std::uint32_t k = 0; k < 2048; ++k) set_x(0xB800 + k, 0), set_y(0xB800 + k, k == 77 ? -4194304 : 0);
+  enable();
+  stand_at(77);
+  command(1000);
+  phase();
+  EXPECT_EQ(a(), 500);
+  set("I155=$8123");  // the address is a multiple of $800
+  phase();
+  EXPECT_EQ(a(), 500);
+  set("I155=$7FFFFF");  // no memory there: the table of all
+  phase();
+  EXPECT_NEAR(a(), -1000 * table_sine(77), 0.02);
+}
+
+}  // namespace
+}  // namespace brick

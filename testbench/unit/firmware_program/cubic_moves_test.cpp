@@ -1,0 +1,214 @@
+// PVT and SPLINE moves of motors (motion:5.4) against their formulas: Hermite cubics, uniform cubic B-splines.
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/system_path.h"
+}
+
+namespace {
+
+using namespace moving_motors;
+
+class CubicMoves : public MovingMotors {
+ protected:
+  // Motor 1 is where `at_time` has it, in counts; at least so many looks.
+  static double compare(const std::function<double(double)>& at_time, unsigned least, double tolerance = 3.0) {
+    unsigned looks = 0, failures = 0;
+    const double end = run([&](double t) {
+      ++looks;
+      const double error = (at(1) - at_time(t)) * kUnit;
+      if (std::abs(error) > tolerance && failures++ < 3)
+        ADD_FAILURE() << "at " << t << " ms it is " << at(1) << ", " << error << " units off";
+    });
+    EXPECT_GT(looks, least);
+    return end;
+  }
+};
+
+// p = p0 + v0 T u + (3 D - (2 v0 + v1) T) u^2 + ((v0 + v1) T - 2 D) u^3
+double pvt(double p0, double v0, double p1, double v1, double time, double t) {
+  const double u = std::min(t / time, 1.0), d = p1 - p0;
+  return p0 + v0 * time * u + (3 * d - (2 * v0 + v1) * time) * u * u + ((v0 + v1) * time - 2 * d) * u * u * u;
+}
+
+TEST_F(CubicMoves, PvtFollowsItsCubics) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5190=60000"), "");  // velocities a minute
+  store({"PVT100", "X2:1800", "PVT250 X7:-600", "X6.5:0", "PVT60.25 X6"});
+  const double minute = 1000.0 / 60000.0;  // counts a ms
+  const double end = compare(
+      [&](double t) {
+        if (t < 100) return pvt(0, 0, 2000, 1800 * minute, 100, t);
+        if (t < 350) return pvt(2000, 1800 * minute, 7000, -600 * minute, 250, t - 100);
+        if (t < 600) return pvt(7000, -600 * minute, 6500, 0, 250, t - 350);
+        return pvt(6500, 0, 6000, 0, 60.25, t - 600);
+      },
+      1400);
+  EXPECT_NEAR(end, 660.25, kTickMs);
+  EXPECT_EQ(motors[0].trajectory, 6000 * 3072);
+  EXPECT_EQ(host("I5189"), "60.25");
+}
+
+TEST_F(CubicMoves, PvtTimeIsTheAccelerationTimeWithI42) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I42=1"), "");
+  store({"PVT80", "X1:10", "X2"});
+  const double end =
+      compare([](double t) { return t < 80 ? pvt(0, 0, 1000, 10, 80, t) : pvt(1000, 10, 2000, 0, 80, t - 80); }, 300);
+  EXPECT_NEAR(end, 160, kTickMs);
+  EXPECT_EQ(host("I5187"), "80");
+}
+
+// Motors of two axes, from rest behind a LINEAR move, and a LINEAR move behind it.
+TEST_F(CubicMoves, PvtBetweenLinearMoves) {
+  fit({"600X+800Y"});
+  store({"TM50 TA20 TS0 X1 Y1", "PVT100 X2 Y1:5", "X3:0 Y2:0", "LINEAR TM50 X0 Y0"});
+  const double end = run();
+  EXPECT_NEAR(end, 70 + 200 + 70, 3 * kTickMs) << "each begins with an interrupt";
+  EXPECT_EQ(motors[0].trajectory, 0);
+}
+
+// A PVT move that ends in motion and has no next one is stopped, with an error; at the end of a program without one.
+TEST_F(CubicMoves, PvtThatEndsInMotionIsStopped) {
+  for (const bool ends : {false, true}) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I115=1 &1 DEF ROT 100 B0 OPEN ROT"), "");
+    ASSERT_EQ(host("PVT100 X1:20"), "");  // 20 counts a ms
+    ASSERT_EQ(host("R"), "");
+    platform::servo_ticks(30);
+    if (ends) { ASSERT_EQ(host("Q"), ""); }
+    double last = at(1), fastest_change = 0.0, velocity = 0.0;
+    for (int i = 0; i < 600; ++i) {
+      platform::servo_ticks(1);
+      const double now = (at(1) - last) / kTickMs;
+      if (i > 250) fastest_change = std::max(fastest_change, std::abs(now - velocity) / kTickMs);
+      velocity = now;
+      last = at(1);
+    }
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(velocity, 0.0);
+    EXPECT_LE(fastest_change, 1.2) << "Ixx15, no jump to rest";
+    EXPECT_GT(at(1), 1000.0 + 20.0 * 20.0 / 2.0) << "the ramp begins behind the move";
+    EXPECT_LT(at(1), 1000.0 + 20.0 * 20.0 / 2.0 + 20.0 * 15.0);
+    EXPECT_EQ(host("RY$2014"), ends ? "0" : "9");
+  }
+}
+
+// Without the real-time task it goes on at its last velocity.
+TEST_F(CubicMoves, PvtRunsOnUntilItIsStopped) {
+  fit({"1000X"});
+  store({"PVT100 X1:20", "WHILE(P1=0) WAIT"});
+  ASSERT_EQ(host("B1R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  double t = 0.0;
+  for (; t < 250.0; t += kTickMs) {
+    ASSERT_NEAR(at(1), t < 100 ? pvt(0, 0, 1000, 20, 100, t) : 1000 + 20 * (t - 100), 3 / kUnit) << t;
+    system_path_servo();
+  }
+}
+
+// Another mode takes the place of what it would run on for.
+TEST_F(CubicMoves, LinearMoveBehindPvtInMotion) {
+  fit({"1000X"});
+  store({"PVT100 X1:2", "LINEAR TM100 TA20 TS0 X3"});
+  EXPECT_NEAR(run(), 100 + 120, 2 * kTickMs);
+  EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
+}
+
+// The control points of a sequence stand twice at its ends: a zero-distance segment before and behind it.
+double b_spline(const std::vector<double>& points, double time, double t) {
+  const auto point = [&](int i) {
+    return points[static_cast<std::size_t>(std::clamp(i, 0, static_cast<int>(points.size()) - 1))];
+  };
+  const int segment = static_cast<int>(std::floor(t / time));  // the first one is the one that was added
+  const double u = t / time - segment, v = 1 - u;
+  const int i = segment - 1;
+  return (v * v * v * point(i - 1) + (3 * u * u * u - 6 * u * u + 4) * point(i) +
+          (-3 * u * u * u + 3 * u * u + 3 * u + 1) * point(i + 1) + u * u * u * point(i + 2)) /
+         6;
+}
+
+TEST_F(CubicMoves, SplineIsAUniformBSpline) {
+  fit({"1000X"});
+  store({"SPLINE1 TM40", "X1", "X3", "X2.5", "X2.5", "X-4", "X-3"});
+  const std::vector<double> points = {0, 1000, 3000, 2500, 2500, -4000, -3000};
+  const double end = compare([&](double t) { return b_spline(points, 40, t); }, 600);
+  EXPECT_NEAR(end, 8 * 40, kTickMs) << "six segments and two that are added";
+  EXPECT_EQ(motors[0].trajectory, -3000 * 3072);
+}
+
+TEST_F(CubicMoves, SplineOfOnePoint) {
+  fit({"1000X"});
+  store({"SPLINE1 TM50 X1"});
+  const double end = compare([&](double t) { return b_spline({0, 1000}, 50, t); }, 300);
+  EXPECT_NEAR(end, 150, kTickMs);
+}
+
+// Another time: SPLINE1 stops and begins anew, SPLINE2 goes on.
+TEST_F(CubicMoves, AnotherTimeEndsASequenceOfSpline1) {
+  fit({"1000X"});
+  store({"SPLINE1 TM40 X1", "X2", "TM60 X3", "X5"});
+  const double end = compare(
+      [&](double t) {
+        return t < 160 ? b_spline({0, 1000, 2000}, 40, t)
+                       : b_spline({2000, 3000, 5000}, 60, t - std::ceil(160 / kTickMs) * kTickMs);
+      },
+      800);
+  EXPECT_NEAR(end, 160 + 240, 2 * kTickMs);
+}
+
+TEST_F(CubicMoves, Spline2GoesOnWithAnotherTime) {
+  fit({"1000X"});
+  store({"SPLINE2 TM40 X1", "X2", "TM60 X4", "X6"});
+  double last = 0.0, least = 1e9;
+  const double end = run([&](double t) {
+    if (t > 60 && t < 200) least = std::min(least, (at(1) - last) / kTickMs);
+    last = at(1);
+  });
+  EXPECT_NEAR(end, 40 + 40 + 40 + 60 + 60 + 60, kTickMs);
+  EXPECT_GT(least, 15.0) << "no stop between them";
+  EXPECT_EQ(motors[0].trajectory, 6000 * 3072);
+}
+
+// A point that comes when the sequence is ending begins a new one.
+TEST_F(CubicMoves, SplinePointThatComesLate) {
+  fit({"1000X"});
+  ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("SPLINE1 TM50 X1"), "");
+  ASSERT_EQ(host("R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(70));  // the first segment is over
+  ASSERT_EQ(host("X2"), "");
+  unsigned ticks = ticks_of(70);
+  for (; cs().active; ++ticks) {
+    const double t = ticks * kTickMs, begin = ticks_of(150) * kTickMs;
+    const double expected = t < 150 ? b_spline({0, 1000}, 50, t) : b_spline({1000, 2000}, 50, t - begin);
+    ASSERT_NEAR(at(1), expected, 3 / kUnit) << t;
+    platform::servo_ticks(1);
+  }
+  EXPECT_EQ(motors[0].trajectory, 2000 * 3072);
+  EXPECT_EQ(ticks, 2 * ticks_of(150));
+}
+
+// Virtual axes: an abort finds them on the curve.
+TEST_F(CubicMoves, AbortOfVirtualAxesIsOnTheCurve) {
+  store({"SPLINE1 TM40", "X1", "X3", "X2.5", "PVT100 X5:10", "X7"});
+  const std::vector<double> points = {0, 1, 3, 2.5};
+  for (const double when : {30.0, 95.0, 130.0, 190.0, 260.0, 380.0}) {
+    platform::power_up();
+    store({"SPLINE1 TM40", "X1", "X3", "X2.5", "PVT100 X5:10", "X7"});
+    ASSERT_EQ(host("B1R"), "");
+    for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+    platform::servo_ticks(ticks_of(when));
+    ASSERT_EQ(host("A"), "");
+    platform::real_time();
+    const double t = ticks_of(when) * kTickMs, begin = ticks_of(200) * kTickMs;
+    const double expected = t < begin         ? b_spline(points, 40, t)
+                            : t < begin + 100 ? pvt(2.5, 0, 5, 0.01, 100, t - begin)
+                                              : pvt(5, 0.01, 7, 0, 100, t - begin - 100);
+    EXPECT_NEAR(cs().position[AXIS_X], expected, 1e-9) << when;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,288 @@
+// Jogs as the servo task moves along them, against motions integrated in double precision (motion:4.1, motion:4.2):
+// within 1/16 count at each servo interrupt, exact at the end.
+#include <random>
+
+#include "testbench/unit/firmware_program/jog_model.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/motion/jog.h"
+#include "firmware/motion/jog_plan.h"
+#include "firmware/motion/jog_servo.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/motor_state.h"
+}
+
+namespace {
+
+using jog_model::Limits;
+using jog_model::Motion;
+using jog_model::State;
+
+constexpr double kUnits = 32 * 96;        // of a count: 32 Ixx08
+constexpr double kTimeUnits = 8388608.0;  // of a ms
+constexpr double kTolerance = 1.0 / 16;
+
+class Jog : public FirmwareTest {
+ protected:
+  void SetUp() override {
+    FirmwareTest::SetUp();
+    ASSERT_EQ(platform::host("I100=1"), "");
+    motors[0].position_scale = 96;
+    motors[0].loop = LOOP_CLOSED;
+    motors[0].trajectory = 0;
+    increment(platform::kDefaultI10);
+  }
+
+  static void increment(std::int32_t units) {
+    coordinate_systems[0].increment = coordinate_systems[0].increment_target = units;
+    coordinate_systems[0].increment_command = coordinate_systems[0].increment_full = units;
+    coordinate_systems[0].increment_slew = INT32_MAX;
+  }
+
+  static void set(const Limits& l, unsigned ixx92) {
+    platform::set_i(119, l.ixx19);
+    platform::set_i(120, l.ixx20);
+    platform::set_i(121, l.ixx21);
+    platform::set_i(122, l.ixx22);
+    platform::set_i(192, ixx92);
+  }
+
+  // One servo interrupt, the real-time task behind it.
+  static double step() {
+    jog_servo(0);
+    while (jog_plan()) {}
+    return position();
+  }
+  static double position() { return static_cast<double>(motors[0].trajectory) / kUnits; }
+  static double step_ms() { return coordinate_systems[0].increment / kTimeUnits; }
+  static std::int64_t units(double counts) { return std::llround(counts * kUnits); }
+};
+
+// Follows `motion`, which begins `delay` ms from now, for `steps` servo interrupts; before that `before` goes on.
+struct Followed {
+  double worst = 0;
+  unsigned moving = 0;
+};
+
+class JogProfile : public Jog {
+ protected:
+  static void follow(const Motion& before, double before_elapsed, const Motion& motion, double delay, unsigned steps,
+                     Followed& result) {
+    for (unsigned i = 1; i <= steps; ++i) {
+      const double now = i * step_ms(), t = now - delay;
+      const double expected = t < 0 ? before.at(before_elapsed + now).position : motion.at(t).position;
+      const double is = step();
+      result.worst = std::max(result.worst, std::abs(is - expected));
+      result.moving += std::abs(motion.at(t).speed) > 0;
+      ASSERT_NEAR(is, expected, kTolerance) << "interrupt " << i << ", " << t << " ms into the motion";
+    }
+  }
+
+  static Limits random_limits(std::mt19937& random) {
+    std::uniform_real_distribution<> log(-3, 0), speed(-1, 2);
+    std::uniform_int_distribution<> pick(0, 3), time(0, 400), s(0, 150);
+    Limits l{std::pow(10, log(random)), 0, 0, std::pow(10, speed(random))};
+    if (pick(random) != 0) l.ixx21 = s(random);
+    if (pick(random) == 0) l.ixx20 = time(random);
+    return l;
+  }
+};
+
+TEST_F(JogProfile, CheckOfTheDataSheetTakes200And400Ms) {
+  const Limits l{0.25, 100, 0, 50};
+  EXPECT_DOUBLE_EQ(jog_model::change_time(l, 50), 200);
+  EXPECT_DOUBLE_EQ(jog_model::change_time(l, 100), 400);
+  set(l, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  const Motion rest({0, 0}), up = jog_model::at_speed(l, {0, 0}, 50);
+  Followed result;
+  follow(rest, 0, up, 10, 1000, result);
+  const double elapsed = 1000 * step_ms() - 10;
+  ASSERT_TRUE(jog_continuous(0, -1));
+  const Motion down = jog_model::at_speed(l, up.at(elapsed + 10), -50);
+  EXPECT_DOUBLE_EQ(down.time(), 400);
+  follow(up, elapsed, down, 10, 2000, result);
+  EXPECT_GT(result.moving, 2500u);
+}
+
+TEST_F(JogProfile, RandomMovesAndNewTargetsOnTheWayStayWithinASixteenthOfACount) {
+  std::mt19937 random(22);
+  std::uniform_real_distribution<> unit(0, 1), duration(-1, 4.3);
+  Followed result;
+  unsigned moves = 0;
+  State at{0, 0};
+  while (moves < 10000) {
+    const Limits l = random_limits(random);
+    const Motion rest({at.position, 0});
+    Motion before = rest;
+    double elapsed = 0;
+    for (unsigned turn = 0; turn < 1 + random() % 3; ++turn, ++moves) {
+      const double way = (unit(random) < 0.5 ? -1 : 1) * l.ixx22 * std::pow(10, duration(random));
+      const double target = std::round((at.position + way) * 32) / 32;
+      const double ms = std::min((std::abs(way) / l.ixx22 + 2 * jog_model::change_time(l, l.ixx22)) / 40, 200.0);
+      increment(static_cast<std::int32_t>(ms * kTimeUnits));
+      const unsigned ixx92 = 1 + static_cast<unsigned>(3 * ms) + random() % 20;  // planning takes two interrupts
+      set(l, ixx92);
+      const State from = before.at(elapsed + ixx92);
+      const bool steady = unit(random) < 0.1;
+      const Motion motion =
+          steady ? jog_model::at_speed(l, from, way < 0 ? -l.ixx22 : l.ixx22) : jog_model::to_target(l, from, target);
+      ASSERT_TRUE(steady ? jog_continuous(0, way < 0 ? -1 : 1) : jog_to(0, units(target)));
+      const unsigned steps = 10 + random() % 40;
+      follow(before, elapsed, motion, ixx92, steps, result);
+      if (HasFatalFailure()) {
+        FAIL() << "move " << moves << " from " << from.position << " at " << from.speed << " to " << target
+               << ", Ixx19 to 22: " << l.ixx19 << " " << l.ixx20 << " " << l.ixx21 << " " << l.ixx22;
+      }
+      elapsed = steps * step_ms() - ixx92;
+      before = motion;
+      if (elapsed < 0) break;
+    }
+    ASSERT_TRUE(jog_to(0, units(at.position)));
+    increment(2000000000);
+    for (unsigned i = 0; i < 100000 && jog_is_moving(0); ++i) step();
+    ASSERT_EQ(motors[0].trajectory, units(at.position)) << "exact at the end";
+    ASSERT_FALSE(jog_is_moving(0));
+  }
+  EXPECT_GT(result.moving, 100000u);
+  RecordProperty("worst_counts", std::to_string(result.worst));
+}
+
+TEST_F(JogProfile, EndlessJogKeepsItsSpeedForHours) {
+  const Limits l{1, 0, 10, 0.1234567};
+  set(l, 10);
+  increment(INT32_MAX / 2);  // 128 ms
+  ASSERT_TRUE(jog_continuous(0, -1));
+  Followed result;
+  follow(Motion({0, 0}), 0, jog_model::at_speed(l, {0, 0}, -l.ixx22), 3 * step_ms(), 200000, result);
+  EXPECT_LT(position(), -3e6);
+}
+
+TEST_F(JogProfile, LongMoveAtASmallSpeedStaysWithinASixteenthOfACount) {
+  const Limits l{1, 0, 10, 0.7};
+  set(l, 400);
+  increment(INT32_MAX / 2);
+  ASSERT_TRUE(jog_to(0, units(1000000.25)));
+  Followed result;
+  follow(Motion({0, 0}), 0, jog_model::to_target(l, {0, 0}, 1000000.25), 400, 12000, result);
+  EXPECT_EQ(motors[0].trajectory, units(1000000.25));
+  EXPECT_FALSE(jog_is_moving(0));
+}
+
+TEST_F(JogProfile, RampStopsAtOneDeceleration) {
+  const Limits l{0.25, 0, 50, 20};
+  set(l, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 1000; ++i) step();
+  const State at{position(), 20};
+  ASSERT_TRUE(jog_stop_at(0, 0.5));
+  std::vector<double> positions;
+  while (jog_is_moving(0)) {
+    positions.push_back(step());
+    if (positions.size() == 5) { EXPECT_TRUE(motors[0].status.aborting); }
+  }
+  EXPECT_FALSE(motors[0].status.aborting);
+  const double begins = (position() - at.position - 20 * 20 / (2 * 0.5)) / 20;  // ms after the request
+  EXPECT_GE(begins, 0);
+  EXPECT_LE(begins, 3.01 * step_ms()) << "Ixx92 does not count";
+  Motion ramp({at.position + 20 * begins, 20});
+  ramp.ramp(0.5);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double now = static_cast<double>(i + 1) * step_ms(), t = now - begins;
+    ASSERT_NEAR(positions[i], t < 0 ? at.position + 20 * now : ramp.at(t).position, kTolerance) << i;
+  }
+  EXPECT_GT(positions.size(), 90u) << "40 ms";
+}
+
+TEST_F(JogProfile, RampAtZeroPercentStopsOnTheSpot) {
+  set({0.25, 0, 50, 20}, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 1000; ++i) step();
+  increment(0);
+  step();
+  const std::int64_t before = motors[0].trajectory;
+  ASSERT_TRUE(jog_stop_at(0, 0.5));
+  step();
+  EXPECT_FALSE(jog_is_moving(0));
+  EXPECT_EQ(motors[0].trajectory, before);
+}
+
+TEST_F(Jog, TimeIsThatOfTheCoordinateSystem) {
+  set({0.25, 0, 50, 20}, 10);
+  platform::set_i(122, 10);
+  increment(platform::kDefaultI10 / 2);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 2000; ++i) step();
+  const double before = position();
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_NEAR(position() - before, 100 * platform::kDefaultI10 / 2 / kTimeUnits * 10, kTolerance) << "50 %";
+}
+
+TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {
+  set({0.25, 0, 50, 20}, 10);
+  for (const bool by_program : {false, true}) {
+    ASSERT_TRUE(by_program ? jog_rapid(0, units(1e6), 20) : jog_continuous(0, 1));
+    for (int i = 0; i < 1000; ++i) step();
+    coordinate_systems[0].held = true;
+    coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;
+    step();
+    const double before = position();
+    for (int i = 0; i < 100; ++i) step();
+    EXPECT_NEAR(position() - before, by_program ? 0 : 100 * platform::kDefaultI10 / kTimeUnits * 20, kTolerance);
+    coordinate_systems[0].held = false;
+    increment(platform::kDefaultI10);
+  }
+}
+
+TEST_F(Jog, RequestsInARowDoNotHoldOffThoseBefore) {
+  set({0.25, 0, 50, 20}, 10);
+  for (int i = 0; i < 400; ++i) {
+    if (i % 10 == 0) {  // every 4.4 ms
+      ASSERT_TRUE(jog_to(0, units(1000 + i)));
+    }
+    step();
+  }
+  EXPECT_GT(position(), 100) << "each begins anew at the speed that the last had come to";
+  for (int i = 0; i < 2000 && jog_is_moving(0); ++i) step();
+  EXPECT_EQ(motors[0].trajectory, units(1390));
+}
+
+TEST_F(Jog, PlanningThatTakesTooLongBeginsLaterWithoutAJump) {
+  set({0.25, 0, 50, 20}, 1);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  unsigned interrupts = 0;
+  double last = 0, largest = 0;
+  const auto servo = [&] {
+    jog_servo(0);
+    ++interrupts;
+    largest = std::max(largest, std::abs(position() - last));
+    last = position();
+  };
+  for (int i = 0; i < 300; ++i) {
+    servo();
+    if (i == 100) { ASSERT_TRUE(jog_to(0, 0)); }
+    const std::function<void()> between = servo;
+    if (i % 3 == 0) platform::real_time_in_slices(between);
+  }
+  EXPECT_GT(interrupts, 500u) << "most of them while it is planned";
+  for (int i = 0; i < 5000 && jog_is_moving(0); ++i) {
+    servo();
+    platform::real_time();
+  }
+  EXPECT_EQ(motors[0].trajectory, 0);
+  EXPECT_LT(largest, 20 * step_ms() * 1.01) << "never faster than Ixx22";
+}
+
+TEST_F(Jog, KilledMotorStandsAndTakesNoRequest) {
+  set({0.25, 0, 50, 20}, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 300; ++i) step();
+  motors[0].loop = LOOP_KILLED;
+  const double before = step();
+  EXPECT_FALSE(jog_is_moving(0));
+  EXPECT_FALSE(jog_to(0, 0));
+  EXPECT_EQ(step(), before);
+}
+
+}  // namespace

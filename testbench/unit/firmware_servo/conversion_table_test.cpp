@@ -1,0 +1,333 @@
+// The encoder conversion table against motion:2: its check vectors, and every method worked out from its row.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "testbench/unit/firmware_platform/controller.h"
+
+extern "C" {
+#include "firmware/hal/hal.h"
+#include "firmware/motion/conversion_table.h"
+}
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kTable = 0x3501, kChannel = 0x78000, kFree = 0x10F0;
+constexpr std::uint32_t kDown = 1, kTurned = 0x800000, kCaptured = 0x800;
+
+class ConversionTable : public ::testing::Test {
+ protected:
+  void table(const std::string& lines) {
+    c_.line("I8000..8191=0");
+    std::string text;
+    std::size_t begin = 0;
+    for (int number = 8000; begin < lines.size(); ++number) {
+      const std::size_t end = std::min(lines.find(' ', begin), lines.size());
+      text += "I" + std::to_string(number) + "=$" + lines.substr(begin, end - begin) + " ";
+      begin = end + 1;
+    }
+    EXPECT_EQ(c_.line(text), "");
+  }
+  static std::uint32_t result(std::uint32_t line) { return *hal_x(kTable + line) & HAL_WORD_MASK; }
+  static std::int32_t signed_result(std::uint32_t line) { return hal_signed(result(line)); }
+  static void x(std::uint32_t address, std::int64_t value) {
+    *hal_x(address) = static_cast<std::uint32_t>(value) & HAL_WORD_MASK;
+  }
+  static void y(std::uint32_t address, std::int64_t value) {
+    *hal_y(address) = static_cast<std::uint32_t>(value) & HAL_WORD_MASK;
+  }
+  static void channel(std::int64_t counts, bool down, std::uint32_t between, std::uint32_t since) {
+    x(kChannel + 2, counts * 2 + (down ? kDown : 0));
+    y(kChannel, between);
+    y(kChannel + 1, since);
+  }
+  static std::int32_t once(std::uint32_t line) {
+    conversion_table_servo();
+    return signed_result(line);
+  }
+
+  Controller c_;
+};
+
+TEST_F(ConversionTable, DefaultsFollowTheChannels) {
+  EXPECT_EQ(c_.line("I8000 I8007 I8008 I103 I104 I803"), "$78000|$78118|$0|$3501|$3501|$3508");
+  x(0x78118 + 2, 2 * 5);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(7), 5 * 32);
+}
+
+// Counter*32 and the part of a count that time tells, on the way that the counter moves.
+TEST_F(ConversionTable, SoftwareTime) {
+  table("078000");
+  channel(100, false, 640, 0);
+  EXPECT_EQ(once(0), 3200);
+  channel(100, false, 640, 320);
+  EXPECT_EQ(once(0), 3216);
+  channel(100, false, 640, 639);
+  EXPECT_EQ(once(0), 3231);
+  channel(100, false, 640, 640);
+  EXPECT_EQ(once(0), 3231) << "below 1";
+  channel(100, false, 640, 641);
+  EXPECT_EQ(once(0), 3200) << "slower than before: nothing is known";
+  channel(100, true, 640, 320);
+  EXPECT_EQ(once(0), 3184);
+  channel(-1, true, 640, 320);
+  EXPECT_EQ(once(0), -48);
+  channel(100, true, 640 | kTurned, 320);
+  EXPECT_EQ(once(0), 3200) << "turned round";
+  channel(100, false, 0, 0);
+  EXPECT_EQ(once(0), 3200);
+  channel(100, false, 0x7FFFFF, 0x400000);
+  EXPECT_EQ(once(0), 3216);
+}
+
+TEST_F(ConversionTable, CountersWithAndWithoutTheFractionOfTheIC) {
+  table("C78000 CF8000 878000");
+  channel(-7, true, 0, 0);
+  y(kChannel + 1, 0xABC000);
+  x(kChannel, 0x5FFFFF);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(0), -7 * 32);
+  EXPECT_EQ(signed_result(1), -7 * 32 + (0xABC >> 7));
+  EXPECT_EQ(signed_result(2), -7 * 32 + (0x5FFFFF >> 19));
+}
+
+TEST_F(ConversionTable, AnalogWordsHaveTheirLowestBitIn5) {
+  table("178005 1F8005");
+  y(kChannel + 5, 0x8000FF);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(0), -32768 * 32);
+  EXPECT_EQ(signed_result(1), 32768 * 32);
+  y(kChannel + 5, 0x000100);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(0), 32);
+  EXPECT_EQ(signed_result(1), 32);
+}
+
+// Bias of 5 converter bits: 1280.
+TEST_F(ConversionTable, IntegratedAnalogWords) {
+  c_.line("I8000=$578005 I8001=1280 I8002=$5F8005 I8003=1280 I8004=0");
+  y(kChannel + 5, 7 << 8);
+  EXPECT_EQ(once(1), 2 * 32);
+  EXPECT_EQ(signed_result(3), 2 * 32);
+  EXPECT_EQ(once(1), 4 * 32);
+  y(kChannel + 5, 1 << 8);
+  EXPECT_EQ(once(1), 0);
+  EXPECT_EQ(signed_result(3), 4 * 32) << "not below 0 after the bias";
+}
+
+TEST_F(ConversionTable, ParallelWordsRollOver) {
+  table("2010F0 00C004 2810F0 00C004 6010F0 00C014");  // 12 bits from bit 4; from bit 20 on into X
+  y(kFree, 0xFFF0);
+  x(kFree, 0x0000FF);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(1), 0xFFF * 32);
+  EXPECT_EQ(signed_result(3), 0xFFF);
+  EXPECT_EQ(signed_result(5), 0xFF0 * 32);
+  y(kFree, 0xF0002F);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(1), (0xFFF + 3) * 32) << "2 is 3 behind 4095";
+  EXPECT_EQ(signed_result(3), 0xFFF + 3);
+  EXPECT_EQ(signed_result(5), 0xFFF * 32);
+}
+
+// The next word is the upper half for $2 and $3.
+TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
+  table("2810F0 018010");
+  y(kFree, 0xAB0000);
+  y(kFree + 1, 0x00CDEF);
+  EXPECT_EQ(once(1), hal_signed(0xCDEFAB));
+  table("2810F0 018000");
+  EXPECT_EQ(once(1), hal_signed(0xAB0000)) << "24 bits from 0";
+  table("2810F0 001080");
+  EXPECT_EQ(once(1), 0) << "bits that are not there";
+}
+
+TEST_F(ConversionTable, ALimitedStepCatchesUp) {
+  table("3810F0 010000 00000A 7810F0 010000 00000A");
+  conversion_table_servo();
+  y(kFree, 25);
+  EXPECT_EQ(once(2), 10);
+  EXPECT_EQ(signed_result(5), 10);
+  EXPECT_EQ(once(2), 20);
+  EXPECT_EQ(once(2), 25);
+  y(kFree, 0xFFF0);  // 16 back and 25: 41 down
+  EXPECT_EQ(once(2), 15);
+  for (int i = 0; i < 4; ++i) conversion_table_servo();
+  EXPECT_EQ(signed_result(2), -16);
+}
+
+// RTIF 256: SF = 2^17/256 = 512, so 256 ct/ms of 1/32 ct, a ms in a servo interrupt, are 2^23.
+TEST_F(ConversionTable, TimeBase) {
+  table("4010F0 000200");
+  x(kFree, 1000);
+  EXPECT_EQ(once(1), 0);
+  EXPECT_EQ(signed_result(0), 1000);
+  x(kFree, 1000 + 256 * 32 / 4);
+  EXPECT_EQ(once(1), (1 << 23) / 4);
+  x(kFree, 1000);
+  EXPECT_EQ(once(1), -(1 << 23) / 4);
+}
+
+TEST_F(ConversionTable, TriggeredTimeBase) {
+  table("978000 000004");
+  c_.line("I8000=$9F8000 I8001=16");
+  channel(50, false, 0, 0);
+  EXPECT_EQ(once(1), 0);
+  c_.line("I8000=$BF8000");
+  x(kChannel, 0);
+  x(kChannel + 3, 60);
+  channel(70, false, 0, 0);
+  EXPECT_EQ(once(1), 0) << "waits for the capture";
+  x(kChannel, kCaptured);
+  EXPECT_EQ(once(1), 512 * 16 * (70 - 60)) << "from the captured position";
+  EXPECT_EQ(signed_result(0), 70 * 256);
+  channel(72, false, 640, 320);
+  EXPECT_EQ(once(1), 512 * 16 * 2 + 256 * 16);
+  EXPECT_EQ(c_.line("I8000"), "$AF8000");
+  x(kChannel, 0);
+  channel(73, false, 640, 320);
+  EXPECT_EQ(once(1), 512 * 16) << "goes on when its line has changed";
+  c_.line("I8000=$9F8000");
+  EXPECT_EQ(once(1), 0);
+}
+
+// Tf = 7: K = 2^23/8 = 1048576.
+TEST_F(ConversionTable, ExponentialFilter) {
+  c_.line("I8000=$D010F0 I8001=4000 I8002=1048576 I8003=0");
+  conversion_table_servo();
+  x(kFree, 1000);
+  double out = 0;
+  for (int i = 0; i < 100; ++i) {
+    out += (1000 - out) / 8;
+    EXPECT_NEAR(once(2), out - 0.5, 0.52) << i;
+  }
+  EXPECT_GE(signed_result(2), 999);
+  x(kFree, 9000);  // in steps of 4000
+  double in = 1000;
+  for (int i = 0; i < 30; ++i) {
+    in = std::min(in + 4000, 9000.0);
+    out += (in - out) / 8;
+    EXPECT_NEAR(once(2), out - 0.5, 0.52) << i;
+  }
+}
+
+// Tf = 1000: nothing is lost on the way, however slow it is.
+TEST_F(ConversionTable, ASlowFilterArrives) {
+  c_.line("I8000=$D010F0 I8001=8388607 I8002=8380 I8003=0");
+  conversion_table_servo();
+  x(kFree, 100);
+  for (int i = 0; i < 20000; ++i) conversion_table_servo();
+  EXPECT_GE(signed_result(2), 99);
+  x(kFree, -100);
+  for (int i = 0; i < 20000; ++i) conversion_table_servo();
+  EXPECT_LE(signed_result(2), -99);
+}
+
+TEST_F(ConversionTable, TrackingFilter) {
+  c_.line("I8000=$D810F0 I8001=100000 I8002=2097152 I8003=0 I8004=262144 I8005=0");
+  conversion_table_servo();
+  double out = 0, integral = 0;
+  for (int i = 1; i < 200; ++i) {
+    x(kFree, 50 * i);
+    const double error = 50 * i - out;
+    integral += error / 32;
+    out += error / 4 + integral;
+    EXPECT_NEAR(once(4), out - 0.5, 0.6) << i;
+  }
+  EXPECT_NEAR(out, 50 * 200, 1) << "at constant speed it is where the source will be next";
+}
+
+// $E00100 = L0+L1; $E20100 = L0-L1; $E50013 = -L19 (here -L1: $E50001).
+TEST_F(ConversionTable, SumsAndDifferences) {
+  table("2810F0 018000 2810F1 018000 E00301 E20301 E50003 E80301 E50013");
+  y(kFree, 100);
+  y(kFree + 1, 7);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(4), 107);
+  EXPECT_EQ(signed_result(5), 93);
+  EXPECT_EQ(signed_result(6), -7);
+  EXPECT_EQ(signed_result(7), 107);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(7), 214) << "integrated";
+  x(kTable + 19, 55);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(8), -55);
+}
+
+// The table goes on behind each entry as its method says, and ends at a first line of 0.
+TEST_F(ConversionTable, EntriesHaveTheirLines) {
+  struct {
+    const char* lines;
+    unsigned length;
+  } const entries[] = {{"078000", 1},
+                       {"178005", 1},
+                       {"2010F0 018000", 2},
+                       {"3010F0 018000 000001", 3},
+                       {"4010F0 000001", 2},
+                       {"578005 000000", 2},
+                       {"6010F0 018000", 2},
+                       {"7010F0 018000 000001", 3},
+                       {"878000", 1},
+                       {"9F8000 000001", 2},
+                       {"AF8000 000001", 2},
+                       {"BF8000 000001", 2},
+                       {"C78000", 1},
+                       {"D010F0 000001 000001", 3},
+                       {"D810F0 000001 000001 000000 000001", 5},
+                       {"E00000", 1},
+                       {"F78000 000000 000000", 3},
+                       {"F78000 100000 000000 000000 000000", 5},
+                       {"F78000 200000", 2},
+                       {"F78000 300000 000000", 3},
+                       {"F78000 400000 000000 000000", 4}};
+  for (const auto& entry : entries) {
+    table(std::string(entry.lines) + " 2810F4 018000");
+    x(kTable + entry.length + 1, 1);
+    y(kFree + 4, 4711);
+    EXPECT_EQ(once(entry.length + 1), 4711) << entry.lines;
+    table(std::string(entry.lines) + " 000000 2810F4 018000");
+    x(kTable + entry.length + 2, 1);
+    EXPECT_EQ(once(entry.length + 2), 1) << entry.lines;
+  }
+}
+
+TEST_F(ConversionTable, ExtendedMethodsStayZeroAndAreKnown) {
+  table("F78000 000000 000000");
+  x(kTable + 2, 5);
+  EXPECT_EQ(once(2), 0);
+  EXPECT_TRUE(conversion_table_is_not_built(kTable + 2));
+  EXPECT_FALSE(conversion_table_is_not_built(kTable));
+}
+
+TEST_F(ConversionTable, AnEntryThatIsCutOffIsNone) {
+  c_.line("I8000..8190=$C78000 I8191=$278000");
+  channel(3, false, 0, 0);
+  x(kTable + 191, 9);
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(190), 96);
+  EXPECT_EQ(signed_result(191), 9);
+}
+
+TEST_F(ConversionTable, OtherLinesDoNotDisturbAnEntry) {
+  table("2810F0 018000 D010F0 7FFFFF 100000 4010F0 000001");
+  y(kFree, 5);
+  x(kFree, 100000);
+  conversion_table_servo();
+  y(kFree, 6);
+  x(kFree, 200000);
+  conversion_table_servo();
+  const std::int32_t filtered = signed_result(4);
+  c_.line("I8007=$E00101");
+  conversion_table_servo();
+  EXPECT_EQ(signed_result(1), 6);
+  EXPECT_GT(signed_result(4), filtered);
+  EXPECT_EQ(signed_result(6), 0);
+  EXPECT_EQ(signed_result(7), 12);
+}
+
+}  // namespace
+}  // namespace brick

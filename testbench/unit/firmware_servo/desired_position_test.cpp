@@ -1,0 +1,188 @@
+// Net desired position (motion:1.2) and compensation tables (motion:1.4), natively.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "testbench/unit/firmware_platform/controller.h"
+
+extern "C" {
+#include "firmware/hal/hal.h"
+#include "firmware/motion/desired_position.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/motor_state.h"
+#include "firmware/motion/position_loop.h"
+}
+
+namespace brick {
+namespace {
+
+constexpr std::int64_t kCount = 32 * 96;
+
+class DesiredPosition : public ::testing::Test {
+ protected:
+  DesiredPosition() {
+    c_.line(
+        "I8000=0 I103=$10F0 I104=$10F0 I124=$800001 I111=0 I203=$10F1 I204=$10F1 I224=$800001 I211=0 I100=1 I200=1");
+    position_loop_servo(0);
+    position_loop_servo(1);
+  }
+  void close() {
+    ASSERT_TRUE(motor_close(0));
+    ASSERT_TRUE(motor_close(1));
+  }
+  static double desired(double trajectory, unsigned motor = 0) {
+    motors[motor].trajectory = std::llround(trajectory * kCount);
+    desired_position_servo(motor);
+    return static_cast<double>(motors[motor].commanded) / kCount;
+  }
+  static void master(double counts) {
+    *hal_x(0x10F5) = static_cast<std::uint32_t>(std::lround(counts * 32)) & HAL_WORD_MASK;
+  }
+
+  Controller c_;
+};
+
+TEST_F(DesiredPosition, IsTheTrajectory) {
+  close();
+  EXPECT_EQ(desired(7), 7);
+  EXPECT_EQ(motors[0].desired_step, 7 * kCount);
+  EXPECT_EQ(desired(7), 7);
+  EXPECT_EQ(motors[0].desired_step, 0);
+}
+
+// Ixx07/Ixx08 counts a count of the master.
+TEST_F(DesiredPosition, FollowsAMaster) {
+  master(1000);
+  c_.line("I105=$10F5 I107=-48 I106=1");
+  close();
+  EXPECT_EQ(desired(5), 5) << "where the master was is no movement";
+  master(1010);
+  EXPECT_EQ(desired(5), 0);
+  c_.line("I106=0");
+  master(2000);
+  EXPECT_EQ(desired(5), 0);
+  c_.line("I106=1");
+  EXPECT_EQ(desired(5), 0) << "nor is what it did meanwhile";
+  master(2001);
+  EXPECT_EQ(desired(5), -0.5);
+  master(262144 - 1);  // of 24 bits at 1/32 count
+  desired(5);
+  const double before = desired(5);
+  master(-262144);
+  EXPECT_EQ(desired(5), before - 0.5) << "rolls over";
+}
+
+TEST_F(DesiredPosition, AMotorInALimitFollowsOutOfItOnly) {
+  c_.line("I105=$10F5 I107=96 I106=1");
+  close();
+  motors[0].found.positive_limit = true;
+  master(10);
+  EXPECT_EQ(desired(0), 0);
+  master(4);
+  EXPECT_EQ(desired(0), -6);
+}
+
+// y = K y + (1-K) x, and exact in the end.
+TEST_F(DesiredPosition, Filter) {
+  c_.line("I140=0.819");
+  close();
+  double y = 0;
+  for (int n = 0; n < 50; ++n) {
+    y = 0.819 * y + (1 - 0.819) * 1000;
+    EXPECT_NEAR(desired(1000), y, 0.001) << n;
+  }
+  c_.line("I140=0.999");
+  for (int n = 0; n < 40000; ++n) desired(1000);
+  EXPECT_EQ(desired(1000), 1000);
+  for (int n = 0; n < 40000; ++n) desired(-3);
+  EXPECT_EQ(desired(-3), -3);
+}
+
+// Entries are sixteenths of a count at the end of each of four parts of 1000 counts; between them it is a line.
+TEST_F(DesiredPosition, PositionTables) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  close();
+  const auto at = [this](double source) {
+    desired(source, 1);
+    return desired(0);
+  };
+  EXPECT_EQ(at(250), 0) << "I51=0";
+  c_.line("I51=1");
+  struct {
+    double source, value;
+  } const points[] = {{0, 0},    {125, 5},  {250, 10},  {375, 2.5}, {500, -5},   {750, 3},
+                      {1125, 5}, {1000, 0}, {-750, 10}, {-500, -5}, {100000, 0}, {100250, 10}};
+  for (const auto& p : points) EXPECT_NEAR(at(p.source), p.value, 0.005) << p.source;
+  EXPECT_NEAR(at(999), 3 + (1 - 3) * 0.996, 0.01);
+  c_.line("I30=1");
+  EXPECT_NEAR(at(0), 1, 0.005) << "the last entry";
+  EXPECT_NEAR(at(125), 5.5, 0.005);
+  EXPECT_NEAR(static_cast<double>(motors[0].compensation) / kCount, -5.5, 0.005);
+  c_.line("#1 DELETE COMP");
+  EXPECT_EQ(at(125), 0);
+}
+
+TEST_F(DesiredPosition, TorqueTables) {
+  ASSERT_EQ(c_.line("#1 DEFINE TCOMP 2,1000"), "");
+  ASSERT_EQ(c_.line("25600 51200"), "");
+  c_.line("I51=1 I130=10000 I131=0 I132=0 I133=0");
+  close();
+  *hal_x(0x10F0) = 500 * 32;
+  const double bits = 100 * 10000 * 96 / 524288.0;
+  desired(600);
+  position_loop_servo(0);
+  EXPECT_NEAR(motors[0].output / 256.0, bits + 100, 0.1);
+  desired(400);
+  position_loop_servo(0);
+  EXPECT_NEAR(motors[0].output / 256.0, -bits - 100, 0.1);
+}
+
+// Ixx85 a servo interrupt, when the direction has turned by more than Ixx87.
+TEST_F(DesiredPosition, Backlash) {
+  c_.line("I185=16 I186=80 I187=64");
+  close();
+  EXPECT_EQ(desired(100), 100);
+  EXPECT_EQ(desired(96), 96) << "4 counts back are hysteresis";
+  EXPECT_FALSE(desired_position_backlash_is_down(0));
+  EXPECT_EQ(desired(95), 94);
+  EXPECT_TRUE(desired_position_backlash_is_down(0));
+  for (const double left : {93, 92, 91, 90, 90}) EXPECT_EQ(desired(95), left);
+  EXPECT_EQ(desired(99), 94);
+  EXPECT_EQ(desired(99.5), 95.5);
+  EXPECT_EQ(desired(99.5), 96.5);
+  c_.line("I185=8388607");
+  EXPECT_EQ(desired(99.5), 99.5) << "at once";
+}
+
+TEST_F(DesiredPosition, BacklashTables) {
+  ASSERT_EQ(c_.line("#1 DEFINE BLCOMP 2,1000"), "");
+  ASSERT_EQ(c_.line("16 48"), "");
+  c_.line("I51=1 I185=8388607 I186=80 I187=0");
+  close();
+  EXPECT_EQ(desired(500), 500);
+  *hal_x(0x10F0) = 500 * 32;
+  position_loop_servo(0);
+  EXPECT_NEAR(desired(499), 499 - 5 - 1, 0.01);
+}
+
+TEST_F(DesiredPosition, ACountedPositionMovesNothing) {
+  c_.line("I130=2000 I131=0");
+  close();
+  for (int n = 0; n < 3; ++n) {
+    desired(10);
+    position_loop_servo(0);
+  }
+  const std::int32_t output = motors[0].output;
+  desired_position_shift(0, 1000 * kCount);
+  EXPECT_EQ(desired(1010), 1010);
+  EXPECT_EQ(motors[0].desired_step, 0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].output, output);
+  EXPECT_EQ(position_loop_step(0), 0);
+}
+
+}  // namespace
+}  // namespace brick

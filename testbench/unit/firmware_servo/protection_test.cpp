@@ -1,0 +1,316 @@
+// Trips, limits, in position and status words, natively: motion:6, firmware:5.2, firmware:5.3. The flag
+// words stand in the fake servo IC.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "testbench/unit/firmware_platform/controller.h"
+
+extern "C" {
+#include "firmware/hal/hal.h"
+#include "firmware/motion/conversion_table.h"
+#include "firmware/motion/motor.h"
+#include "firmware/motion/motor_state.h"
+#include "firmware/motion/protection.h"
+}
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kSource = 0x10F0, kFlags = 0x78000, kControl = 0x78005, kEnable = 1u << 14;
+constexpr std::uint32_t kFault = 1u << 15, kPositive = 1u << 17, kNegative = 1u << 18;
+constexpr int kFine = 32 * 96;  // position units of a count
+
+class Protection : public ::testing::Test {
+ protected:
+  Protection() {
+    // Motors 1, 2 and 5 on words that the test writes; 1 and 2 in coordinate system 1, 5 in none.
+    c_.line("I8000=0 I103=$10F0 I104=$10F0 I203=$10F1 I204=$10F1 I503=$10F4 I504=$10F4");
+    c_.line("I124,3,100=$800001 I424=$800001 I524=$800001 I100=1 I200=1 I500=1 &1#1->X #2->Y");
+    servo();
+  }
+  void servo(unsigned interrupts = 1) { c_.servo(interrupts); }
+  static void counts(unsigned motor, double counts) {
+    *hal_x(kSource + motor - 1) = static_cast<std::uint32_t>(std::lround(counts * 32)) & HAL_WORD_MASK;
+  }
+  static void flags(unsigned motor, std::uint32_t bits) { *hal_x(flag_word(motor)) = bits; }
+  static std::uint32_t flag_word(unsigned motor) { return kFlags + 0x100 * ((motor - 1) / 4) + 8 * ((motor - 1) % 4); }
+  static bool enabled(unsigned motor) { return (*hal_x(flag_word(motor) + 5) & kEnable) != 0; }
+  static motor_loop loop(unsigned motor) { return motors[motor - 1].loop; }
+  bool status1(unsigned motor, int bit) { return (word(motor, 0) >> bit & 1) != 0; }
+  bool status2(unsigned motor, int bit) { return (word(motor, 6) >> bit & 1) != 0; }
+  unsigned long word(unsigned motor, unsigned from) {
+    c_.line("");  // a pass of protection before the answer
+    return std::stoul(c_.line("#" + std::to_string(motor) + "?").substr(from, 6), nullptr, 16);
+  }
+  void close_all() {
+    for (const unsigned motor : {1u, 2u, 5u}) ASSERT_TRUE(motor_close(motor - 1));
+    servo();
+  }
+
+  Controller c_;
+};
+
+TEST_F(Protection, ClosingEnables) {
+  EXPECT_FALSE(enabled(1));
+  EXPECT_EQ(c_.line("#1?"), "850000078000");
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_TRUE(enabled(1));
+  EXPECT_FALSE(enabled(2));
+  servo();
+  c_.line("");
+  // activated, enabled, integration mode, desired velocity 0; assigned X, enabled, in position
+  EXPECT_EQ(c_.line("#1?"), "89200007C001");
+  motor_kill(0);
+  EXPECT_FALSE(enabled(1));
+  EXPECT_EQ(c_.line("#1?"), "850000078000");
+}
+
+TEST_F(Protection, WhatMayNotClose) {
+  EXPECT_FALSE(motor_close(2)) << "I300=0";
+  c_.line("I8000=$F00000 I8001=$200000 I103=$3502");
+  EXPECT_FALSE(motor_close(0)) << "method $F";
+  c_.line("I8000=0 I103=$10F0");
+  EXPECT_TRUE(motor_close(0));
+}
+
+TEST_F(Protection, EnableGoesWithItsFlagWord) {
+  ASSERT_TRUE(motor_close(0));
+  c_.line("I142=$78008");
+  EXPECT_FALSE(enabled(1));
+  EXPECT_TRUE(enabled(2));
+  c_.line("I142=0 I124=$810001");
+  EXPECT_FALSE(enabled(1)) << "bit 16: not used";
+  EXPECT_FALSE(enabled(2));
+  c_.line("I124=$840001");
+  EXPECT_FALSE(enabled(1)) << "bit 18: over MACRO";
+  c_.line("I124=$800001");
+  EXPECT_TRUE(enabled(1));
+  c_.line("I100=0");
+  EXPECT_FALSE(enabled(1));
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+}
+
+// I111 and I112 are sixteenths of a count; 0 is off.
+TEST_F(Protection, FollowingErrorWarnsAndTrips) {
+  close_all();
+  c_.line("I111=1600 I112=160");
+  counts(1, -10);
+  servo();
+  EXPECT_FALSE(status2(1, 1));
+  counts(1, -10.0625);
+  servo();
+  EXPECT_TRUE(status2(1, 1));
+  EXPECT_FALSE(status2(1, 0)) << "not in position";
+  counts(1, 0);
+  servo();
+  EXPECT_FALSE(status2(1, 1)) << "the warning follows";
+  counts(1, 100);
+  servo();
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
+  counts(1, 100.0625);
+  servo();
+  c_.line("");
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+  EXPECT_FALSE(enabled(1));
+  EXPECT_TRUE(status2(1, 2));
+  c_.line("I111=0");
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_FALSE(status2(1, 2)) << "closed again";
+  counts(1, 9999);
+  servo();
+  c_.line("");
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
+}
+
+// Ixx24 bits 22 and 21: all motors, this coordinate system, this motor.
+TEST_F(Protection, OthersAreKilledAsIxx24Says) {
+  struct {
+    const char* mode;
+    bool second, fifth;
+  } const cases[] = {{"$800001", true, true}, {"$A00001", true, false}, {"$C00001", false, false}};
+  for (const auto& one : cases) {
+    c_.line(std::string("I124=") + one.mode);
+    counts(1, 0);
+    servo();
+    close_all();
+    counts(1, 3000);
+    servo();
+    c_.line("");
+    EXPECT_EQ(loop(1), LOOP_KILLED) << one.mode;
+    EXPECT_EQ(loop(2) == LOOP_KILLED, one.second) << one.mode;
+    EXPECT_EQ(loop(5) == LOOP_KILLED, one.fifth) << one.mode;
+  }
+}
+
+TEST_F(Protection, AmplifierFault) {
+  ASSERT_TRUE(motor_close(0));
+  servo();
+  flags(1, kFault);
+  EXPECT_TRUE(status2(1, 3));
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+  flags(1, 0);
+  EXPECT_TRUE(status2(1, 3)) << "stays until it is enabled";
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_FALSE(status2(1, 3));
+  c_.line("I124=$000001");
+  EXPECT_EQ(loop(1), LOOP_KILLED) << "bit 23 = 0: a low input is a fault";
+  c_.line("I124=$100001");
+  ASSERT_TRUE(motor_close(0));
+  flags(1, kFault);
+  c_.line("");
+  EXPECT_EQ(loop(1), LOOP_CLOSED) << "bit 20: not looked at";
+}
+
+TEST_F(Protection, InPositionAfterItsScans) {
+  c_.line("I188=3 I128=160");
+  ASSERT_TRUE(motor_close(0));
+  servo();
+  protection_pass();
+  unsigned scans = 1;
+  for (; scans < 100 && !motors[0].found.in_position; ++scans) protection_pass();
+  EXPECT_EQ(scans, 4u);
+  counts(1, 9.96875);
+  servo();
+  EXPECT_TRUE(status2(1, 0));
+  counts(1, 10);
+  servo();
+  EXPECT_FALSE(status2(1, 0));
+  counts(1, 0);
+  servo();
+  protection_pass();
+  EXPECT_FALSE(motors[0].found.in_position);
+}
+
+TEST_F(Protection, SignalsOfTheSelectedSystem) {
+  c_.line("&1 I211=0 I212=160");
+  close_all();
+  c_.line("");
+  EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_IPOS);
+  counts(2, 50);
+  servo();
+  c_.line("");
+  EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_F1ER);
+  c_.line("I211=160");
+  EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_EROR);
+  c_.line("&2");
+  EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), 0u);
+}
+
+// 1 = the switch is open: stop in that direction.
+TEST_F(Protection, LimitsShowAndStop) {
+  c_.line("I111=0 I122=32 I120=0 I121=0 I119=10 I115=1 I192=1");
+  c_.line("#1J+");
+  servo(200);
+  const std::int64_t speed = motors[0].desired_step;
+  EXPECT_GT(speed, 0);
+  flags(1, kPositive);
+  EXPECT_TRUE(status1(1, 21));
+  EXPECT_FALSE(status1(1, 22));
+  servo(10);
+  EXPECT_TRUE(status1(1, 12)) << "abort deceleration";
+  for (int n = 0; n < 300; ++n) {
+    counts(1, static_cast<double>(motors[0].commanded) / kFine);
+    servo();
+    c_.line("");
+  }
+  EXPECT_EQ(motors[0].desired_step, 0);
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
+  EXPECT_TRUE(status2(1, 11));
+  flags(1, 0);
+  EXPECT_FALSE(status1(1, 21));
+}
+
+TEST_F(Protection, LimitsMayBeIgnored) {
+  c_.line("I124=$820001");
+  flags(1, kPositive | kNegative);
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_FALSE(status1(1, 21));
+  EXPECT_FALSE(status1(1, 22));
+  c_.line("I124=$800001");
+  EXPECT_TRUE(status1(1, 21));
+  EXPECT_TRUE(status1(1, 22));
+}
+
+TEST_F(Protection, SoftwareLimits) {
+  c_.line("I113=100 I114=-50 I111=0");
+  ASSERT_TRUE(motor_close(0));
+  const double at[] = {99.9, 100, 0, -49.9, -50};
+  const bool up[] = {false, true, false, false, false}, down[] = {false, false, false, false, true};
+  for (int i = 0; i < 5; ++i) {
+    counts(1, at[i]);
+    servo();
+    EXPECT_EQ(status1(1, 21), up[i]) << at[i];
+    EXPECT_EQ(status1(1, 22), down[i]) << at[i];
+  }
+}
+
+// Ixx63 < 0: the integral at its limit is a fatal error, bits 2 and 6.
+TEST_F(Protection, IntegratedError) {
+  c_.line("I130=1000 I131=0 I133=8000000 I134=0 I163=-1600 I111=0 I169=32767");
+  ASSERT_TRUE(motor_close(0));
+  counts(1, -1);
+  servo(150);
+  EXPECT_EQ(word(1, 6) & 0x44u, 0x44u);
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+}
+
+// motion:6.3: Ixx69 = 32767, Ixx57 = 10589 for 60 s at 2250 Hz is Ixx58 = 120,894.
+TEST_F(Protection, OverloadTripsAfterItsTime) {
+  c_.line("I157=10589 I158=120894 I169=32767 I111=0 I124=$C00001");
+  ASSERT_TRUE(motor_open(0, 32767 << 8));
+  const auto trips_after = [this](unsigned most) {
+    for (unsigned n = 0; n <= most; ++n) {
+      servo();
+      if (n % 50 == 0) protection_pass();
+      if (loop(1) == LOOP_KILLED) return n;
+    }
+    return most + 1;
+  };
+  EXPECT_NEAR(trips_after(140000), 60 * 2250, 60);
+  EXPECT_EQ(word(1, 6) & 0x2Cu, 0x28u) << "amplifier fault by overload";
+  // Linear: (32767 - 16384)/32768 a cycle.
+  c_.line("I157=-16384 I158=0");
+  c_.line("I158=500");
+  ASSERT_TRUE(motor_open(0, -32767 * 256));
+  EXPECT_NEAR(trips_after(2000), 500 * 32768.0 / (32767 - 16384), 51);
+}
+
+TEST_F(Protection, AFollowingErrorIsReported) {
+  c_.line("I111=0");
+  ASSERT_TRUE(motor_close(0));
+  counts(1, -12.5);
+  servo();
+  EXPECT_EQ(c_.line("#1F"), "12.5");
+  EXPECT_EQ(c_.line("#1P"), "-12.5");
+  EXPECT_EQ(c_.line("#1V"), "-12.5");
+  servo();
+  EXPECT_EQ(c_.line("#1V"), "0");
+}
+
+// motion:1.3: the words of the loop are the variables.
+TEST_F(Protection, WordsOfTheLoopAreItsVariables) {
+  struct {
+    const char *read, *write, *variable;
+  } const words[] = {{"RY$89", "WY$89,", "I108"}, {"RY$9C", "WY$9C,", "I109"}, {"RY$99", "WY$99,", "I130"},
+                     {"RX$92", "WX$92,", "I131"}, {"RX$8F", "WX$8F,", "I132"}, {"RX$9F", "WX$9F,", "I133"},
+                     {"RY$93", "WY$93,", "I135"}, {"RY$9F", "WY$9F,", "I163"}, {"RY$8F", "WY$8F,", "I160"}};
+  for (const auto& w : words) {
+    c_.line(std::string(w.variable) + "=77");
+    EXPECT_EQ(c_.line(w.read), "77") << w.read;
+    c_.line(std::string(w.write) + "99");
+    EXPECT_EQ(c_.line(w.variable), "99") << w.write;
+  }
+  c_.line("I169=1000");
+  EXPECT_EQ(c_.line("RY$AE"), "256000");
+  c_.line("WY$AE,512000");
+  EXPECT_EQ(c_.line("I169"), "2000");
+  c_.line("I8000=$78000 WY$3502,$78008");
+  EXPECT_EQ(c_.line("RHY$3501 I8001"), "78000|$78008");
+  conversion_table_servo();
+}
+
+}  // namespace
+}  // namespace brick
