@@ -58,7 +58,7 @@ static unsigned read_position(uint32_t motor, uint32_t offset, uint32_t* x, uint
   const int64_t* position = position_of(motor, offset);
   if (position == 0) return 0;
   const uint32_t state = hal_mask_servo();
-  const int64_t value = *position;
+  const int64_t value = *position - (offset == MEMORY_MOTOR_MASTER ? motors[motor].held_back : 0);
   hal_unmask(state);
   return put_long(value, x, y);
 }
