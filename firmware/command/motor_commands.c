@@ -171,6 +171,12 @@ static error_t cmd_kill(struct lexer* lx) {
   return error;
 }
 
+/* Which way an output would turn it is not known; what was found of a killed motor is old. */
+static bool stands_in_limit(uint32_t motor) {
+  const struct motor* m = &motors[motor];
+  return m->loop != LOOP_KILLED && (m->found.positive_limit || m->found.negative_limit);
+}
+
 /* O{per cent}; with a motion buffer open it is a label. */
 static error_t open_loop(struct lexer* lx) {
   double output;
@@ -179,6 +185,7 @@ static error_t open_loop(struct lexer* lx) {
   if (error != ERR_NONE) return error;
   if (output < -LARGEST_OUTPUT || output > LARGEST_OUTPUT) return ERR_DATA;
   error = may_move(session.motor);
+  if (error == ERR_NONE && stands_in_limit(session.motor)) error = ERR_BOTH_LIMITS;
   if (error != ERR_NONE) return error;
   const double limit = i_variable_read(i_motor(session.motor + 1u, IXX69_OUTPUT_LIMIT));
   const uint32_t state = hal_mask_servo();
