@@ -11,6 +11,7 @@
 extern "C" {
 #include "firmware/base/crc32.h"
 #include "firmware/image/flash_store.h"
+#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {
@@ -90,7 +91,7 @@ class FlashStore : public ::testing::Test {
     return found();
   }
 
-  std::mt19937 random_{1};
+  std::mt19937 random_{random_seed(1)};
 };
 
 TEST_F(FlashStore, CrcIsThatOfEthernet) {

@@ -16,6 +16,7 @@ extern "C" {
 #include "firmware/hal/hal.h"
 #include "firmware/run/plc_control.h"
 #include "firmware/run/program_output.h"
+#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {
@@ -137,7 +138,7 @@ TEST(Survival, RandomLinesStayInsideEveryTable) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     SCOPED_TRACE(seed);
     Controller c;
-    RandomLines random(seed);
+    RandomLines random(random_seed(seed));
     for (long i = 0; i < lines; ++i) {
       const std::string line = random.next();
       SCOPED_TRACE(line);
