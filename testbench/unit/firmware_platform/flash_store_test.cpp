@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/base/crc32.h"
 #include "firmware/image/flash_store.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {

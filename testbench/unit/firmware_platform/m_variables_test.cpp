@@ -9,11 +9,11 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/hal/hal.h"
 #include "firmware/variables/m_variables.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {

@@ -10,13 +10,13 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/base/crc32.h"
 #include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
 #include "firmware/image/flash_store.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {

@@ -10,13 +10,13 @@
 #include "testbench/unit/firmware_platform/controller.h"
 #include "testbench/unit/firmware_platform/framing.h"
 #include "testbench/unit/random_lines.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/buffers/rotary_ring.h"
 #include "firmware/hal/hal.h"
 #include "firmware/run/plc_control.h"
 #include "firmware/run/program_output.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {
