@@ -27,6 +27,7 @@
  */
 static void drop_moves(uint32_t cs) {
   coordinate_systems[cs].settling = true;
+  cs_awake |= 1u << cs;
   calculate_forget(cs);
 }
 
@@ -56,7 +57,10 @@ error_t run_point(uint32_t cs, double program) {
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
-  if (s->next_valid || paths[cs].count != 0) s->settling = true;
+  if (s->next_valid || paths[cs].count != 0) {
+    s->settling = true;
+    cs_awake |= 1u << cs;
+  }
   s->end_block = s->must_return = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -132,6 +136,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;
   s->running = true;
+  cs_awake |= 1u << cs;
   cs_busy |= 1u << cs;
   hal_unmask(state);
   if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
