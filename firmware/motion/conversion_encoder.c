@@ -43,7 +43,6 @@ void convert_sub_count(const struct conversion_entry* entry) {
 /* Reading the captured position arms the trigger. */
 void convert_frozen(const struct conversion_entry* entry) {
   (void)*entry->source[CAPTURED];
-  entry->state->runs = false;
   *entry->result = 0;
 }
 

@@ -295,6 +295,34 @@ TEST_F(PositionLoop, VelocityOfTheSameWord) {
   EXPECT_EQ(velocity_after(15), 0);
 }
 
+// Where another source stands is no movement.
+TEST_F(PositionLoop, AnotherSourceIsNoMovement) {
+  close(1000, 1000);
+  position_loop_servo(0);
+  at(1000, 5000);
+  position_loop_servo(0);
+  const std::int64_t before = motors[0].actual;
+  c_.line("I103=$10F1 I104=$10F0");
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, before);
+  EXPECT_EQ(motors[0].velocity, 0);
+  at(1000, 5032);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+}
+
+// A smaller Ixx60 acts at once, a loop that waits for its turn does not wait for the old one.
+TEST_F(PositionLoop, ASmallerExtensionActsAtOnce) {
+  c_.line("I160=255");
+  close(0, 0);
+  position_loop_servo(0);
+  at(32, 32);
+  c_.line("I160=1");
+  position_loop_servo(0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, 32 * 96);
+}
+
 TEST_F(PositionLoop, OpenLoopPutsOutWhatItIsTold) {
   ASSERT_TRUE(motor_open(0, 1234 << 8));
   position_loop_servo(0);
