@@ -30,7 +30,6 @@ void convert_sub_count(const struct conversion_entry* entry) {
 /* Reading the captured position arms the trigger. */
 void convert_frozen(const struct conversion_entry* entry) {
   (void)*entry->source[ENCODER_CAPTURED];
-  entry->state->runs = false;
   *entry->result = 0;
 }
 
