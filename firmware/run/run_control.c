@@ -86,7 +86,7 @@ static error_t check_motors(uint32_t cs) {
     inactive |= i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0;
     open |= motors[motor].loop != LOOP_CLOSED;
     limits |= motors[motor].found.positive_limit && motors[motor].found.negative_limit;
-    moving |= jog_is_moving(motor);
+    moving |= jog_is_moving(motor) && !(s->running && jog_is_of_program(motor));
   }
   if (inactive) return ERR_NOT_ACTIVATED;
   if (open) return ERR_OPEN_LOOP;
@@ -117,8 +117,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (s->running && s->held) system_motors_take(cs);
   s->must_return = false;
   release_hold(cs);
-  if (s->running && single_step) {     /* a step request ends continuous running behind the calculated moves */
-    if (s->continuous) s->quit = true; /* while a step waits for its move, one more changes nothing */
+  if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
+    if (s->continuous) s->quit = s->must_return = true; /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
     return ERR_NONE;
   }
