@@ -18,7 +18,7 @@ static int64_t long_word(uint32_t address) {
 }
 
 /* Text of `value` / (32 * scale), in steps of 1/32 count. */
-static void report_scaled(int64_t value, int32_t scale) {
+static void report_scaled(int64_t value, int64_t scale) {
   if (value == 0 || scale == 0) {
     reply_integer(0);
     return;
@@ -39,8 +39,11 @@ void motor_report_position(uint32_t motor) {
                 variable(motor, IXX08_POSITION_SCALE));
 }
 
+/* The word is that of a closure of the loop, every Ixx60 + 1 servo interrupts. */
 void motor_report_velocity(uint32_t motor) {
-  report_scaled(hal_signed(*hal_x(base(motor) + MEMORY_MOTOR_VELOCITY)), variable(motor, IXX09_VELOCITY_SCALE));
+  const int64_t interrupts = variable(motor, IXX60_SERVO_CYCLE_EXTENSION) + 1;
+  report_scaled(hal_signed(*hal_x(base(motor) + MEMORY_MOTOR_VELOCITY)),
+                interrupts * variable(motor, IXX09_VELOCITY_SCALE));
 }
 
 void motor_report_following_error(uint32_t motor) {

@@ -136,8 +136,9 @@ static void make(struct table* table) {
   for (uint32_t line = 0; line < CONVERSION_LINES && line_word(line) != 0u;) {
     const uint32_t lines = lines_of(line);
     if (line + lines > CONVERSION_LINES) break;
-    make_entry(&table->entries[table->count], line, lines);
-    table->armed = table->armed || table->entries[table->count++].method == METHOD_ARMED;
+    struct conversion_entry* entry = &table->entries[table->count++];
+    make_entry(entry, line, lines);
+    if (entry->method == METHOD_ARMED) table->armed = true;
     line += lines;
   }
 }

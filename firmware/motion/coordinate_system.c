@@ -17,6 +17,7 @@ void coordinate_systems_initialize(void) {
     struct coordinate_system* s = &coordinate_systems[cs];
     *s = (struct coordinate_system){0};
     s->feedrate_axes = AXIS_XYZ;
+    s->normal[2] = -1.0;
     piece_ring_initialize(&s->ring, cubics, MOTORS);
     s->increment_full = s->increment_command = i_integer(I10_SERVO_PERIOD);
     s->increment = s->increment_target = s->increment_full;

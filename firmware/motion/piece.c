@@ -8,6 +8,7 @@
  * the fraction. */
 void piece_set_time(struct piece* piece, int64_t time) {
   if (time < 1) time = 1;
+  piece->continues = false;
   piece->time = piece->end = time;
   piece->shift = (uint32_t)__builtin_clzll((uint64_t)time) - 1u;
   const double normal = math_scale((double)time, (int)piece->shift - 62); /* [1, 2) */

@@ -27,6 +27,7 @@ struct piece {
   uint32_t shift;
   uint32_t motors; /* slots of the ring that have a cubic in it; the others stand */
   uint32_t move;   /* which move of its coordinate system it belongs to, counted by who plans */
+  bool continues;  /* of a sequence of such moves that is one for the servo task: not its first piece */
 };
 
 struct piece_ring {

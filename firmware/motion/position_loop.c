@@ -245,7 +245,7 @@ static __attribute__((noinline)) void run_other(uint32_t motor, struct motor* m,
   } else {
     desired_position_take_actual(motor);
     m->output = m->loop == LOOP_OPEN ? m->open_output : 0;
-    l->integral = l->step = 0; /* shown so while it is open */
+    l->integral = l->step = l->filtered = 0; /* shown so while it is open */
   }
   publish(motor, m);
 }

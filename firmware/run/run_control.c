@@ -11,6 +11,8 @@
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/place.h"
+#include "firmware/motion/path.h"
+#include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
@@ -54,7 +56,7 @@ error_t run_point(uint32_t cs, double program) {
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
-  if (s->next_valid) s->settling = true;
+  if (s->next_valid || paths[cs].count != 0) s->settling = true;
   s->end_block = s->must_return = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -125,6 +127,7 @@ error_t run_start(uint32_t cs, bool single_step) {
     if (!s->next_valid) s->may_join = false;
   }
   s->end_block = s->quit = false;
+  segment_go_on(cs);
   s->stepping = single_step;
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;
@@ -137,7 +140,9 @@ error_t run_start(uint32_t cs, bool single_step) {
 
 void run_quit(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (s->running) s->quit = s->must_return = true;
+  if (!s->running) return;
+  segment_stop(cs);
+  s->quit = s->must_return = true;
 }
 
 void run_abort(uint32_t cs) {
@@ -180,7 +185,10 @@ void run_executing(uint32_t cs, struct program_trace* trace) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t state = hal_mask_servo();
   const bool active = s->active;
-  if (active) *trace = s->moves[s->executing].line;
+  if (active && s->moves[s->executing].kind == MOVE_SEGMENTS)
+    segment_line(cs, trace);
+  else if (active)
+    *trace = s->moves[s->executing].line;
   hal_unmask(state);
   if (!active) motion_program_next(cs, trace);
 }

@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/path.h"
 #include "firmware/variables/m_variables.h"
 
 struct assignment {
@@ -71,7 +72,7 @@ static void assign(const struct assignment* a) {
 static bool is_due(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (queues[cs].count == 0) return false;
-  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 || (!s->running && !s->active && !s->next_valid);
+  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 || (!s->running && !s->active && !s->next_valid && paths[cs].count == 0);
 }
 
 static void remove_first(uint32_t cs) {

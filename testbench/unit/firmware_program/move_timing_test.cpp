@@ -176,15 +176,17 @@ TEST_F(MoveTiming, TimeBaseSlewsAtIsx94) {
   EXPECT_EQ(cs().increment, platform::kDefaultI10 - 100 * 1644);
 }
 
-// `%` followed by a sign is no report with something behind it, and a refused value leaves the time base alone.
-TEST_F(MoveTiming, TimeBaseTakesNoSignAndNothingAbove225) {
+// `%` followed by a sign is no report with something behind it, and a refused value leaves the time base alone. The
+// limit is that of a signed word: (2^23 - 1) / I10 is 225.8649 %.
+TEST_F(MoveTiming, TimeBaseTakesNoSignAndNothingBeyondItsWord) {
   ASSERT_EQ(host("CLOSE I5194=8388607"), "");
   ASSERT_EQ(host("%225"), "");
   platform::servo_ticks(1);
   EXPECT_EQ(cs().increment, (platform::kDefaultI10 * 9 + 2) / 4);
+  ASSERT_EQ(host("%225.8649"), "");
   ASSERT_EQ(host("%100"), "");
   platform::servo_ticks(1);
-  for (const char* refused : {"%-1", "%+1", "%-0", "% -1", "%-", "%-.5", "%225.1", "%1000"}) {
+  for (const char* refused : {"%-1", "%+1", "%-0", "% -1", "%-", "%-.5", "%225.87", "%1000"}) {
     EXPECT_EQ(host(refused), "ERR003") << refused;
     platform::servo_ticks(1);
     EXPECT_EQ(cs().increment, platform::kDefaultI10) << refused;

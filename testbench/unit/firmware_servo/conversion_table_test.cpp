@@ -119,6 +119,20 @@ TEST_F(ConversionTable, IntegratedAnalogWords) {
   EXPECT_EQ(signed_result(3), 4 * 32) << "not below 0 after the bias";
 }
 
+// The bias has 1/256 of a converter bit: (7 - 5 - 1/256) bits of 32, eight times, less 2^-3 at most.
+TEST_F(ConversionTable, IntegratedAnalogWordsLoseNothing) {
+  c_.line("I8000=$578005 I8001=1281 I8002=$5F8005 I8003=1281 I8004=0");
+  y(kChannel + 5, 7 << 8);
+  for (int n = 1; n <= 16; ++n) {
+    EXPECT_EQ(once(1), 511 * n / 8) << n;
+    EXPECT_EQ(signed_result(3), 511 * n / 8) << n;
+  }
+  c_.line("I8001=$FFFB00 I8003=$FFFB00");  // -5 bits; a new line begins at 0
+  y(kChannel + 5, -(7 << 8));
+  EXPECT_EQ(once(1), (-7 + 5) * 32);
+  EXPECT_EQ(signed_result(3), (65536 - 7 + 5) * 32);
+}
+
 TEST_F(ConversionTable, ParallelWordsRollOver) {
   table("2010F0 00C004 2810F0 00C004 6010F0 00C014");  // 12 bits from bit 4; from bit 20 on into X
   y(kFree, 0xFFF0);
@@ -160,6 +174,30 @@ TEST_F(ConversionTable, ALimitedStepCatchesUp) {
   EXPECT_EQ(signed_result(2), -16);
 }
 
+// A change has no sign: $FFFFFF is more than any source can move.
+TEST_F(ConversionTable, TheMostChangeIsAMagnitude) {
+  table("3810F0 018000 FFFFFF D010F0 FFFFFF 400000");
+  conversion_table_servo();
+  EXPECT_EQ(once(2), 0);
+  EXPECT_EQ(signed_result(5), 0);
+  y(kFree, 5000000);
+  x(kFree, 5000000);
+  EXPECT_EQ(once(2), 5000000);
+  EXPECT_EQ(signed_result(5), 2500000);
+  EXPECT_EQ(once(2), 5000000);
+  EXPECT_EQ(signed_result(5), 3750000);
+}
+
+// Tf = 0: K = 2^23, the result is the source.
+TEST_F(ConversionTable, AFilterWithoutATimeFollowsAtOnce) {
+  table("D010F0 7FFFFF 800000");
+  conversion_table_servo();
+  for (const int value : {100, -100, 8000000}) {
+    x(kFree, value);
+    EXPECT_EQ(once(2), value);
+  }
+}
+
 // RTIF 256: SF = 2^17/256 = 512, so 256 ct/ms of 1/32 ct, a ms in a servo interrupt, are 2^23.
 TEST_F(ConversionTable, TimeBase) {
   table("4010F0 000200");
@@ -187,7 +225,8 @@ TEST_F(ConversionTable, TriggeredTimeBase) {
   EXPECT_EQ(signed_result(0), 70 * 256);
   channel(72, false, 640, 320);
   EXPECT_EQ(once(1), 512 * 16 * 2 + 256 * 16);
-  EXPECT_EQ(c_.line("I8000"), "$AF8000");
+  c_.line("");
+  EXPECT_EQ(c_.line("I8000"), "$AF8000") << "within a background pass";
   x(kChannel, 0);
   channel(73, false, 640, 320);
   EXPECT_EQ(once(1), 512 * 16) << "goes on when its line has changed";

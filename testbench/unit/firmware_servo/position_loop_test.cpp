@@ -227,6 +227,8 @@ TEST_F(PositionLoop, AnOpenLoopHasNoIntegral) {
   motor_kill(0);
   position_loop_servo(0);
   EXPECT_EQ(position_loop_integral(0), 0);
+  EXPECT_EQ(position_loop_filtered(0), 0);
+  EXPECT_EQ(c_.line("RX$AE"), "0");
   EXPECT_EQ(motors[0].output, 0);
   EXPECT_EQ(motors[0].commanded, motors[0].actual) << "a killed motor has no following error";
 }
@@ -249,6 +251,18 @@ TEST_F(PositionLoop, ExtensionSlowsTheLoopOnly) {
     EXPECT_EQ(motors[0].desired_step, 32 * 96) << "the trajectory goes on every interrupt";
   }
   EXPECT_EQ(closures, 10);
+}
+
+// The raw word is that of a closure; V stays that of a servo interrupt.
+TEST_F(PositionLoop, ReportedVelocityKnowsNoExtension) {
+  c_.line("I160=3");
+  close(0, 0);
+  for (int n = 1; n <= 40; ++n) {
+    at(n * 32 * 5, n * 32 * 5);
+    position_loop_servo(0);
+  }
+  EXPECT_EQ(c_.line("RX$9D"), std::to_string(4 * 5 * 32 * 96));
+  EXPECT_EQ(c_.line("#1V"), "5");
 }
 
 TEST_F(PositionLoop, SourcesRollOver) {
