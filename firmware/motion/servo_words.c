@@ -4,6 +4,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/commutation.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/motor_target.h"
 #include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
@@ -76,6 +77,8 @@ static unsigned read_state(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
       *x = (uint32_t)commutation_current(motor).q & HAL_WORD_MASK;
       *y = (uint32_t)commutation_current(motor).d & HAL_WORD_MASK;
       return BOTH;
+    case MEMORY_MOTOR_TARGET:
+      return put_long(motor_target(motor), x, y);
     default:
       return read_position(motor, offset, x, y);
   }
