@@ -4,6 +4,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/corner.h"
+#include "firmware/motion/lookahead.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/motion/segment_piece.h"
@@ -26,6 +27,8 @@ struct sequence {
   bool runs;
   bool handed; /* the servo task has its first pieces */
   bool ends;   /* it is known where: behind `joined` moves of the queue */
+  bool looks;  /* its segments go through the lookahead buffer */
+  bool made;   /* all its points are */
   bool closed; /* no further move joins: one of another kind waits for its place */
   bool stops;  /* segment_stop: at the end of the move that is under way. B sets */
   uint32_t joined;
@@ -101,21 +104,25 @@ static void hand_over(uint32_t cs) {
   cs_busy |= 1u << cs;
 }
 
-/* Between the last four control points. */
-static void add_piece(uint32_t cs) {
+/* Between four control points: the last ones, or those of a segment of the lookahead buffer. */
+static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   const uint32_t number = s->ring.added + q->unhanded;
   struct piece* piece = piece_ring_at(&s->ring, number);
   *piece = q->timed;
+  if (from != 0 && from->time != q->period) piece_set_time(piece, from->time);
+  piece->warp = from == 0 ? 0 : from->warp;
   piece->motors = 0;
-  piece->move = q->numbers[0];
+  piece->move = from == 0 ? q->numbers[0] : from->number;
   piece->continues = q->handed || q->unhanded != 0;
-  piece_lines[cs][number % PIECES] = q->lines[0];
+  piece_lines[cs][number % PIECES] = from == 0 ? q->lines[0] : from->line;
   slice_pause();
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const struct cubic c = segment_cubic(control[motor]);
+    int64_t points[SPLINE_POINTS];
+    if (from != 0) lookahead_points(cs, from->segment, motor, points);
+    const struct cubic c = segment_cubic(from != 0 ? points : control[motor]);
     if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
     *piece_ring_cubic(&s->ring, number, motor) = c;
     slice_pause();
@@ -142,6 +149,21 @@ static uint32_t most_ahead(const struct sequence* q) {
   const uint32_t most =
       short_ahead(q) + 2u + (uint32_t)(((int64_t)(AHEAD_MS - SHORT_MS) << TRAJECTORY_FRACTION_BITS) / q->period);
   return most < PIECES - LEFT_OF_RING ? most : PIECES - LEFT_OF_RING;
+}
+
+static void look_at_point(uint32_t cs) {
+  const struct sequence* q = &sequences[cs];
+  int64_t point[MOTORS];
+  for (uint32_t motor = 0; motor < MOTORS; motor++) point[motor] = control[motor][SPLINE_POINTS - 1];
+  lookahead_add(cs, point, q->numbers[1], &q->lines[1]);
+}
+
+/* A control point has been added. */
+static void use_point(uint32_t cs) {
+  if (sequences[cs].looks)
+    look_at_point(cs);
+  else
+    add_piece(cs, 0);
 }
 
 /* False: what is before it has to come first. */
@@ -180,6 +202,9 @@ static bool begin(uint32_t cs) {
   q->joined = 1;
   q->unhanded = 0;
   q->points = LAST_POINTS;
+  q->looks = lookahead_begin(cs, (uint32_t)(period > 0 ? period : 1));
+  for (uint32_t i = 0; q->looks && i + 1u < SPLINE_POINTS; i++) look_at_point(cs);
+  q->made = false;
   q->runs = true;
   return true;
 }
@@ -219,7 +244,8 @@ static enum decision decide(uint32_t cs, double time, bool alone) {
   if (time <= path_corner(p, q->joined - 1u) + m->change / 2.0) return GOES_ON;
   if (is_last(cs) || s->quit || !s->running || !s->may_join) return ENDS;
   slice_pause();
-  if (!alone || ahead_of(s) + q->unhanded > short_ahead(q)) return WAITS;
+  const uint32_t left = q->looks ? lookahead_left(cs) : 0u;
+  if (!alone || ahead_of(s) + q->unhanded + left > short_ahead(q)) return WAITS;
   const double stop = path_corner(p, q->joined);
   return time <= stop + stop - path_ends(p, q->joined) ? GOES_ON : ENDS;
 }
@@ -252,10 +278,11 @@ static void make_end(uint32_t cs) {
   struct path* p = &paths[cs];
   add_points(cs, path_of(p, q->joined - 1u)->end);
   set_move(cs, q->joined - 1u);
-  add_piece(cs);
+  use_point(cs);
   if (--q->points != 0) return;
   for (; q->joined != 0; q->joined--) (void)path_pop(p);
-  q->runs = false;
+  q->made = true;
+  if (q->looks) lookahead_close(cs);
 }
 
 static void make_point(uint32_t cs, double time) {
@@ -268,7 +295,7 @@ static void make_point(uint32_t cs, double time) {
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
   set_move(cs, ahead);
   q->time = time;
-  add_piece(cs);
+  use_point(cs);
 }
 
 /* With a stop asked for, moves that have not begun at the last point are not part of it. */
@@ -282,15 +309,9 @@ static bool is_dry(const struct coordinate_system* s, const struct sequence* q) 
   return q->handed && !s->next_valid && !s->active && piece_ring_is_empty(&s->ring);
 }
 
-bool segment_work(uint32_t cs, bool alone) {
-  struct coordinate_system* s = &coordinate_systems[cs];
+/* The next point of the path. False: it waits for a further move. */
+static bool make_next(uint32_t cs, bool alone) {
   struct sequence* q = &sequences[cs];
-  if (!q->runs) return paths[cs].count != 0 && begin(cs);
-  if (is_dry(s, q)) {
-    s->failure = RUN_TIME_LATE;
-    return false;
-  }
-  if (ahead_of(s) + q->unhanded >= most_ahead(q)) return false;
   leave_out(cs);
   join(cs);
   double time = next_time(cs);
@@ -304,6 +325,57 @@ bool segment_work(uint32_t cs, bool alone) {
     make_end(cs);
   else
     make_point(cs, time);
-  if (q->handed || !q->runs || q->unhanded > short_ahead(q)) hand_over(cs);
   return true;
+}
+
+static bool work_at_once(uint32_t cs, bool alone) {
+  struct sequence* q = &sequences[cs];
+  if (!make_next(cs, alone)) return false;
+  if (q->handed || q->made || q->unhanded > short_ahead(q)) hand_over(cs);
+  q->runs = !q->made;
+  return true;
+}
+
+static bool release(uint32_t cs, bool hurry) {
+  struct sequence* q = &sequences[cs];
+  struct lookahead_piece piece;
+  if (!lookahead_release(cs, hurry, &piece)) return false;
+  add_piece(cs, &piece);
+  const bool over = q->made && lookahead_left(cs) == 0u;
+  if (q->handed || over || q->unhanded > short_ahead(q)) hand_over(cs);
+  q->runs = !over;
+  return true;
+}
+
+/* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
+static bool work_ahead(uint32_t cs, bool alone) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  const uint32_t ahead = ahead_of(s) + q->unhanded;
+  const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
+  if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;
+  if (!q->made && !lookahead_is_full(cs)) {
+    if (make_next(cs, alone)) return true;
+    if (!alone) return false;
+    /* what is known will not be more for now */
+    if (!q->handed && lookahead_sweep(cs, true)) return true;
+    if (!q->handed && room && release(cs, true)) return true;
+  }
+  if (!q->handed && q->unhanded != 0) {
+    hand_over(cs);
+    return true;
+  }
+  return false;
+}
+
+bool segment_work(uint32_t cs, bool alone) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  if (!q->runs) return paths[cs].count != 0 && begin(cs);
+  if (q->looks) return work_ahead(cs, alone);
+  if (is_dry(s, q)) {
+    s->failure = RUN_TIME_LATE;
+    return false;
+  }
+  return ahead_of(s) + q->unhanded < most_ahead(q) && work_at_once(cs, alone);
 }
