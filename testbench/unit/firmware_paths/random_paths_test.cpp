@@ -201,7 +201,9 @@ TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
     while (end > begin && samples[0][end] == samples[0][end - 1]) --end;
     const double time = static_cast<double>(end - begin + 2) * kTickMs;
     worst = std::max(worst, time / (best.time() + 2 * kTickMs));
-    EXPECT_LE(time, 1.10 * best.time() + 2 * kTickMs) << "optimum " << best.time();
+    EXPECT_LE(time, 1.10 * best.time() + 2 * kTickMs)
+        << "optimum " << best.time() << ", Isx20 " << p.lookahead << ", longest stop " << best.longest_stop()
+        << ", Isx13 " << p.period << ", TA " << p.ta;
   }
   std::printf("%d paths, slowest %.3f of the optimum\n", judged, worst);
 }
