@@ -50,6 +50,7 @@ static bool is_free(const struct look* l, uint32_t knot) {
 
 static void begin_sweep(struct look* l, uint32_t from) {
   l->sweeping = true;
+  l->rates_back = l->backward;
   l->sweep = l->sweep_end = from;
   *rate_at(l, from) = is_free(l, from) ? cap_at(l, from) : 0;
 }
@@ -276,16 +277,16 @@ void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece) {
   l->front = piece->first == QUARTERS ? piece->segment + 1u : piece->segment;
   l->quarter = piece->first % QUARTERS;
   l->rate = piece->rate;
+  l->backward = piece->first > piece->last;
   if (l->state == LOOK_STANDS) l->state = LOOK_STOPS;
 }
 
 void lookahead_do(uint32_t cs, enum lookahead_order order) {
   struct look* l = &looks[cs];
-  const bool backward = order == LOOKAHEAD_BACKWARD || order == LOOKAHEAD_ONE_BACKWARD;
   l->next = order == LOOKAHEAD_STOP ? LOOKAHEAD_NONE : order;
   if (l->state == LOOK_STANDS) return;
-  const bool as_it_goes = order == (l->backward ? LOOKAHEAD_BACKWARD : LOOKAHEAD_FORWARD) && backward == l->backward;
-  if (!as_it_goes || l->single) {
+  const bool goes_on = order == (l->backward ? LOOKAHEAD_BACKWARD : LOOKAHEAD_FORWARD);
+  if (!goes_on || l->single || l->rates_back != l->backward) {
     l->state = LOOK_STOPS;
     return;
   }

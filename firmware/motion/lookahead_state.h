@@ -34,6 +34,7 @@ struct look {
   uint32_t sweep, sweep_end; /* the last knot that it has done; where it began */
   uint32_t swept;            /* the end of the last sweep */
   uint32_t good;             /* knots up to this one do not depend on where that stopped */
+  bool rates_back;           /* the rates of the records are those for the way back */
   bool swept_back;           /* the knots behind have been swept for the way back */
 };
 
