@@ -17,6 +17,7 @@
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/power_on_position.h"
+#include "firmware/motion/segment.h"
 #include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
@@ -33,7 +34,7 @@ static error_t is_free(uint32_t motor) {
 /* It may be jogged away from where a hold has stopped it on the path; a move of its own goes on then. */
 static bool is_held(uint32_t motor) {
   const struct coordinate_system* s = &coordinate_systems[axis_definitions[motor].cs];
-  return s->held && s->increment == 0 && !jog_is_of_program(motor);
+  return (s->held && s->increment == 0 && !jog_is_of_program(motor)) || segment_stands(axis_definitions[motor].cs);
 }
 
 static error_t may_enable(uint32_t motor, bool free) {
