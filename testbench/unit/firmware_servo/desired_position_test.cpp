@@ -102,6 +102,23 @@ TEST_F(DesiredPosition, AMasterThatMovesWhileTheLoopIsOpenIsNotCaughtUpWith) {
   EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), 0);
 }
 
+// Ixx06 = 3, offset mode: replies do not show what the master has moved.
+TEST_F(DesiredPosition, RepliesInOffsetModeAreWithoutTheMaster) {
+  c_.line("I105=$10F5 I107=96 I106=3");
+  close();
+  c_.line("#1J/");
+  master(10);
+  EXPECT_EQ(desired(3), 13);
+  *hal_x(0x10F0) = 13 * 32;
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("#1P"), "3");
+  EXPECT_EQ(c_.line("#1F"), "0");
+  c_.line("I106=1");
+  EXPECT_EQ(c_.line("#1P"), "13");
+  c_.line("I106=2");
+  EXPECT_EQ(c_.line("#1P"), "3");
+}
+
 TEST_F(DesiredPosition, AMotorInALimitFollowsOutOfItOnly) {
   c_.line("I105=$10F5 I107=96 I106=1");
   close();

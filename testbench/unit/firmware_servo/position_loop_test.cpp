@@ -309,6 +309,51 @@ TEST_F(PositionLoop, WordsOfTheLoop) {
   EXPECT_EQ(word("RX$8B"), -1);
   EXPECT_EQ(word("RY$8B"), -5 * 32 * 96);
   EXPECT_EQ(word("RX$9D"), -5 * 32 * 96);
+  cycle(6000 * 32 * 96, 5999 * 32, 0);
+  EXPECT_EQ(word("RX$88"), 1);
+  EXPECT_EQ(word("RY$88"), 6000 * 32 * 96 - 16777216);
+  EXPECT_EQ(word("RX$8B"), 1);
+  EXPECT_EQ(word("RY$8B"), 5999 * 32 * 96 - 16777216);
+}
+
+// What the notch is given may be far beyond a word, which shows its end.
+TEST_F(PositionLoop, TheWordOfThePidHasAnEnd) {
+  c_.line("I130=8388607 I131=0 I132=0 I133=0");
+  close(0, 0);
+  cycle(5000 * 32 * 96, 0, 0);
+  EXPECT_EQ(c_.line("RX$AE"), "8388607");
+  cycle(-5000 * 32 * 96, 0, 0);
+  EXPECT_EQ(c_.line("RX$AE"), "-8388607");
+}
+
+// A counter that is cleared is no movement: in the interrupt after that and in the next.
+TEST_F(PositionLoop, MovementThatIsForgotten) {
+  close(0, 0);
+  position_loop_forget_movement(0);
+  const std::int64_t before = motors[0].actual;
+  at(1000, 1000);
+  position_loop_servo(0);
+  at(1100, 1100);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, before);
+  at(1132, 1132);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+}
+
+// A filter that is switched on while the loop runs has no past.
+TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
+  c_.line("I130=2000 I131=0 I132=0 I133=0 I138=0.5");
+  close(0, 0);
+  for (int n = 0; n < 5; ++n) cycle(100 * 32 * 96, 0, 0);
+  c_.line("I138=0");
+  cycle(100 * 32 * 96, 0, 0);
+  c_.line("I136=0.5");
+  cycle(100 * 32 * 96, 0, 0);
+  const double pid = 100 * 2000 * 96 / 524288.0;
+  EXPECT_NEAR(output_, pid, 0.01);
+  cycle(100 * 32 * 96, 0, 0);
+  EXPECT_NEAR(output_, pid * 1.5, 0.01);
 }
 
 // D:$8D, D:$90 and D:$CC are set by writes of either half.
