@@ -87,7 +87,7 @@ void desired_position_take_actual(uint32_t motor) {
   m->held_back = 0;
   if (p->follows) p->master_reading = *p->master;
   m->trajectory = m->actual - m->master + m->compensation;
-  p->turning = m->trajectory;
+  p->turning = m->trajectory + m->master;
   p->fraction = 0;
 }
 
