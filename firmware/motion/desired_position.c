@@ -88,7 +88,6 @@ void desired_position_take_actual(uint32_t motor) {
   if (p->follows) p->master_reading = *p->master;
   m->trajectory = m->actual - m->master + m->compensation;
   p->turning = m->trajectory + m->master;
-  p->fraction = 0;
 }
 
 void desired_position_shift(uint32_t motor, int64_t by) {

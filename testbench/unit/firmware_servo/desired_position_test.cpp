@@ -194,6 +194,13 @@ TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsInTheMasterPosition) {
   EXPECT_EQ(motors[0].commanded, motors[0].actual);
   EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), static_cast<double>(motors[0].actual) / kCount)
       << "a loop that is opened forgets what it had not reached";
+  EXPECT_EQ(word().second, std::to_string(35 * kCount)) << "and its master position is what it was";
+  const double there = static_cast<double>(motors[0].trajectory) / kCount;
+  EXPECT_EQ(desired(there + 50), 55);
+  EXPECT_EQ(word().second, std::to_string(-5 * kCount));
+  c_.line("I124=$800001");
+  EXPECT_EQ(word().second, std::to_string(35 * kCount)) << "off: nothing is held back";
+  EXPECT_EQ(desired(there + 50), 95);
   c_.line("I167=0");
   actual(0);
   motors[0].master = 0;
@@ -259,6 +266,49 @@ TEST_F(DesiredPosition, ALoopIsClosedWhereTheMotorIsInSpiteOfTables) {
   EXPECT_EQ(motors[0].desired_step, 0);
 }
 
+// motion:1.4/4: two tables of one target.
+TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
+  ASSERT_EQ(c_.line("#2 DEFINE COMP 2,#1D,#1,2000"), "");
+  ASSERT_EQ(c_.line("32 32"), "");
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  close();
+  desired(250, 1);
+  EXPECT_NEAR(desired(0), 10, 0.005);
+  EXPECT_NEAR(desired(1000), 1010 + 10 * 2 / 1000.0, 0.005) << "the other by where motor 1 was, 10 counts";
+  EXPECT_NEAR(desired(1000), 1010 + 2, 0.005);
+}
+
+// Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
+TEST_F(DesiredPosition, TablesGoByTheScalesOfBothMotors) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1 I108=24 I208=192");
+  close();
+  const auto at = [](double source) {
+    motors[1].trajectory = std::llround(source * 32 * 192);
+    desired_position_servo(1);
+    motors[0].trajectory = 0;
+    desired_position_servo(0);
+    return static_cast<double>(motors[0].commanded) / (32 * 24);
+  };
+  EXPECT_NEAR(at(250), 10, 0.01);
+  EXPECT_NEAR(at(625), -1, 0.01);
+  EXPECT_NEAR(at(-750), 10, 0.01);
+}
+
+// D:$90 of a motor without tables is the user's: actual position + D:$90 is what is reported.
+TEST_F(DesiredPosition, ACompensationThatIsWrittenIsTakenOff) {
+  close();
+  EXPECT_EQ(desired(5), 5);
+  c_.line("WY$90," + std::to_string(3 * kCount));
+  EXPECT_EQ(desired(5), 2);
+  *hal_x(0x10F0) = 2 * 32;
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("#1P"), "5");
+}
+
 TEST_F(DesiredPosition, TorqueTables) {
   ASSERT_EQ(c_.line("#1 DEFINE TCOMP 2,1000"), "");
   ASSERT_EQ(c_.line("25600 51200"), "");
@@ -272,6 +322,14 @@ TEST_F(DesiredPosition, TorqueTables) {
   desired(400);
   position_loop_servo(0);
   EXPECT_NEAR(motors[0].output / 256.0, -bits - 100, 0.1);
+  desired(500);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].output, 0) << "no sign, no torque";
+  c_.line("#2 DEFINE TCOMP 2,1000");
+  c_.line("256 256");
+  desired(600);
+  position_loop_servo(0);
+  EXPECT_NEAR(motors[0].output / 256.0, bits + 100, 0.1) << "of another motor";
 }
 
 // Ixx85 a background pass, when the direction has turned by more than Ixx87.

@@ -504,6 +504,10 @@ TEST_F(PositionLoop, BiasIsAddedToTheWord) {
   cycle(1000 * 32 * 96, 0, 0);
   motor_output_servo(0);
   EXPECT_EQ(hal_signed(*hal_y(kDac)), 0x7FFFFF);
+  c_.line("I129=-32768");
+  cycle(-1000 * 32 * 96, 0, 0);
+  motor_output_servo(0);
+  EXPECT_EQ(hal_signed(*hal_y(kDac)), -0x7FFFFF);
 }
 
 TEST_F(PositionLoop, AKilledMotorLeavesItsRegisterToTheUser) {
