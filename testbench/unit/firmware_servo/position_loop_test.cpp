@@ -510,6 +510,15 @@ TEST_F(PositionLoop, BiasIsAddedToTheWord) {
   EXPECT_EQ(hal_signed(*hal_y(kDac)), -0x7FFFFF);
 }
 
+// What the registers hold at a start is not known.
+TEST_F(PositionLoop, AStartPutsTheBiasOut) {
+  c_.line("I129=0 SAVE");
+  *hal_y(kDac) = 0x123400;
+  c_.restart();
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+}
+
 TEST_F(PositionLoop, AKilledMotorLeavesItsRegisterToTheUser) {
   motor_output_servo(0);
   c_.line("WY$78002,$123400");
