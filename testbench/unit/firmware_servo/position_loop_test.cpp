@@ -356,6 +356,22 @@ TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
   EXPECT_NEAR(output_, pid * 1.5, 0.01);
 }
 
+// Two halves of a word are two variables, with their signs.
+TEST_F(PositionLoop, HalvesOfAWordAreVariablesOfTheirOwn) {
+  c_.line("I132=11 I160=2 I133=13 I163=-14");
+  c_.line("WX$8F,-21");
+  EXPECT_EQ(c_.line("I132 I160"), "-21|2");
+  c_.line("WY$8F,3");
+  EXPECT_EQ(c_.line("I132 I160"), "-21|3");
+  c_.line("WY$9F,-24");
+  EXPECT_EQ(c_.line("I133 I163"), "13|-24");
+  c_.line("WX$9F,23");
+  EXPECT_EQ(c_.line("I133 I163"), "23|-24");
+  EXPECT_EQ(c_.line("RX$8F RY$8F RX$9F RY$9F"), "-21|3|23|-24");
+  c_.line("WX$AE,5");
+  EXPECT_EQ(c_.line("RX$AE"), "0") << "the firmware's";
+}
+
 // D:$8D, D:$90 and D:$CC are set by writes of either half.
 TEST_F(PositionLoop, PositionsThatMayBeWritten) {
   std::int64_t* const positions[] = {&motors[0].master, &motors[0].compensation, &motors[0].bias};
@@ -476,6 +492,28 @@ TEST_F(PositionLoop, ASmallerExtensionActsAtOnce) {
   position_loop_servo(0);
   position_loop_servo(0);
   EXPECT_EQ(motors[0].actual, 32 * 96);
+}
+
+// From a word of a converter over table, master, desired position and loop to the output.
+TEST_F(PositionLoop, OneServoInterruptLeadsFromSourceToOutput) {
+  c_.line("I8000=$2810F2 I8001=$18000 I8002=0 I105=$3502 I107=96 I106=1 I111=0 I130=2000 I131=0 I132=0 I133=0");
+  *hal_y(0x10F2) = 0;
+  close(0, 0);
+  c_.servo(2);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+  *hal_y(0x10F2) = 100 * 32;
+  c_.servo(1);
+  EXPECT_NEAR(hal_signed(*hal_y(kDac)) / 256.0, 100 * 2000 * 96 / 524288.0, 0.01);
+}
+
+TEST_F(PositionLoop, AScaleOf0CountsAs1) {
+  c_.line("I108=0");
+  at(0, 0);
+  position_loop_servo(0);
+  const std::int64_t before = motors[0].actual;
+  at(320, 0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 320);
 }
 
 TEST_F(PositionLoop, OpenLoopPutsOutWhatItIsTold) {
