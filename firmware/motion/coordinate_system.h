@@ -163,7 +163,8 @@ struct coordinate_system {
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */
-  volatile int32_t increment_slew;   /* B */
+  volatile int32_t increment_slew;   /* B; S when the target of a hold's end has been reached */
+  volatile int32_t increment_usual;  /* B: Isx94, what is slewed by then */
   /* B: the word that Isx93 points to, which has the target instead; null: its own commanded time base */
   const volatile uint32_t* volatile time_base_source;
   int32_t increment_full;    /* B: I10, taken over by %100 */

@@ -39,9 +39,9 @@ static struct loop {
   /* S */
   uint32_t left; /* servo interrupts to the next closure */
   uint32_t position_reading, velocity_reading;
-  uint32_t forgets;  /* movements that are none */
-  int64_t step;      /* how far the commanded position had gone at the last closure */
-  int64_t integral;  /* position, with INTEGRAL_BITS of fraction */
+  uint32_t forgets; /* movements that are none */
+  int64_t step;     /* how far the commanded position had gone at the last closure */
+  int64_t integral; /* position, with INTEGRAL_BITS of fraction */
   bool saturated;
   int64_t filtered; /* PID alone, NOTCH_FINER */
 } loops[MOTORS];

@@ -122,6 +122,7 @@ TEST_F(Halls, StatesAreThoseOfTheDataSheet) {
     EXPECT_NEAR(degrees("$C00000", down[sector]), 60 * sector + 30, 0.1);
     // 11/64 of a cycle are 61.9 degrees: the list begins one sector later.
     EXPECT_NEAR(degrees("$8B0000", up[sector]), std::fmod(60 * sector + 30 + 61.875, 360), 0.1);
+    EXPECT_NEAR(degrees("$CB0000", down[sector]), std::fmod(60 * sector + 30 + 61.875, 360), 0.1);
     EXPECT_NEAR(degrees("$AB0000", up[sector]), std::fmod(60 * sector + 30 + 43 * 5.625, 360), 0.1);
   }
 }
