@@ -141,7 +141,7 @@ error_t motor_jog(uint32_t motor, enum motor_jog how) {
   else if (how == MOTOR_JOG_BACK)
     (void)jog_to(motor, jog_position_before(motor));
   else if (how == MOTOR_HOME)
-    (void)homing_begin(motor, false);
+    (void)homing_begin(motor, 0);
   else
     (void)jog_continuous(motor, how == MOTOR_JOG_PLUS ? 1 : -1);
   return ERR_NONE;

@@ -222,7 +222,7 @@ TEST_F(Jog, TimeIsThatOfTheCoordinateSystem) {
 TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {
   set({0.25, 0, 50, 20}, 10);
   for (const bool by_program : {false, true}) {
-    ASSERT_TRUE(by_program ? jog_rapid(0, units(1e6), 20) : jog_continuous(0, 1));
+    ASSERT_TRUE(by_program ? jog_rapid(0, units(1e6), 20, 1) : jog_continuous(0, 1));
     for (int i = 0; i < 1000; ++i) step();
     coordinate_systems[0].held = true;
     coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;

@@ -2,6 +2,8 @@
 // rate, positions before a jog, motors that stand beside their axes, HOME and triggers in programs.
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+
 extern "C" {
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor_state.h"
@@ -317,6 +319,34 @@ TEST_F(ProgramsAndJogs, RotaryAxisOfANegativeScale) {
   store({"TM100 TA20 TS0 A270"});
   run();
   EXPECT_EQ(motors[0].trajectory, position(9000));
+}
+
+// motion:5.5/1: however long it takes to plan them.
+TEST_F(ProgramsAndJogs, MotorsOfARapidMoveBeginTogether) {
+  fit({"1000X", "1000Y", "1000Z", "1000A"});
+  for (unsigned motor = 1; motor <= 4; ++motor) quick(motor);
+  ASSERT_EQ(host("I392=20"), "");
+  store({"RAPID X4 Y3 Z2 A1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  std::vector<unsigned> began(4);
+  unsigned tick = 0, pauses = 0, asked = 0;
+  const auto servo = [&] {
+    fake_task_run_servo();
+    ++tick;
+    if (asked == 0 && jog_is_moving(3)) asked = tick;
+    for (unsigned i = 0; i < 4; ++i)
+      if (began[i] == 0 && motors[i].trajectory != 0) began[i] = tick;
+  };
+  for (int i = 0; i < 100; ++i) {
+    servo();
+    platform::real_time_in_slices([&] {
+      if (++pauses % 10 == 0) servo();
+    });
+  }
+  EXPECT_NEAR(began[0], asked + 20 / kTickMs, 8) << "the longest Ixx92";
+  for (unsigned i = 1; i < 4; ++i) EXPECT_EQ(began[i], began[0]) << i;
+  end();
+  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(motors[i].trajectory, position(4000 - 1000.0 * i));
 }
 
 // Commands of a program jog what belongs to none, or to another system.
