@@ -30,12 +30,13 @@ static struct guard {
 volatile uint32_t protection_watched;
 
 static volatile bool foreground; /* I13, as the last pass has seen it */
+static volatile bool stands;     /* B */
 static uint32_t shown;           /* B: signals that are on */
 
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
-  foreground = false;
+  foreground = stands = false;
   protection_watched = 0;
   shown = 0;
 }
@@ -288,7 +289,10 @@ static void show_signals(void) {
   shown = on;
 }
 
+void protection_stand(bool still) { stands = still; }
+
 void protection_pass(void) {
+  if (stands) return;
   foreground = i_integer(I13_FOREGROUND_IN_POSITION) != 0;
   protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
