@@ -249,7 +249,7 @@ static void not_closed(uint32_t motor) {
 
 static void check(uint32_t motor) {
   const struct view view = look(motor);
-  if (!status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
   if (motors[motor].loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
