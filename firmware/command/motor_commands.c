@@ -56,11 +56,7 @@ static error_t program_text(const struct lexer* lx, uint32_t length) {
 /* Closed, unless `error` says why not. */
 static error_t close_loop(uint32_t motor, error_t error) {
   if (error != ERR_NONE || motors[motor].loop == LOOP_CLOSED) return error;
-  const uint32_t state = hal_mask_servo();
-  jog_drop(motor);
-  if (!motor_close(motor)) error = ERR_PHASING;
-  hal_unmask(state);
-  return error;
+  return motor_close(motor) ? ERR_NONE : ERR_PHASING;
 }
 
 static bool line_goes_on(struct lexer* lx) {
@@ -168,7 +164,7 @@ static error_t cmd_hmz(struct lexer* lx) { return home_here(lx, sizeof "HMZ" - 1
 static error_t cmd_kill(struct lexer* lx) {
   (void)lx;
   const error_t error = is_free(session.motor);
-  if (error == ERR_NONE) motor_stop_now(session.motor);
+  if (error == ERR_NONE) motor_kill(session.motor);
   return error;
 }
 
