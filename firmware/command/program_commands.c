@@ -85,7 +85,7 @@ static error_t cmd_enable(struct lexer* lx) { /* E */
   return control(lx, motors_enable);
 }
 
-/* `\`: no move is segmented, so it is the hold of H. `>` goes on after it. */
+/* `\` and `<`: no move is segmented, so they are the hold of H. `>` is R. */
 static error_t cmd_program_hold(struct lexer* lx) {
   (void)lx;
   run_hold(session.cs);
@@ -94,7 +94,7 @@ static error_t cmd_program_hold(struct lexer* lx) {
 
 static error_t cmd_resume_forward(struct lexer* lx) {
   (void)lx;
-  return coordinate_systems[session.cs].held ? run_start(session.cs, false) : ERR_NONE;
+  return run_start(session.cs, false);
 }
 
 static error_t cmd_end_block(struct lexer* lx) {
@@ -165,6 +165,7 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"S", cmd_step},
                                                  {"/", cmd_end_block},
                                                  {"\\", cmd_program_hold},
+                                                 {"<", cmd_program_hold},
                                                  {">", cmd_resume_forward},
                                                  {"%", cmd_time_base},
                                                  {0, 0}};

@@ -29,12 +29,13 @@ struct motor_status_flags {
   volatile bool home_complete;
 };
 
-/* What protection has found (motion/protection.h), for the status words. The first five stay until the loop is closed
- * or opened again. */
+/* What protection has found (motion/protection.h), for the status words. The first four stay until the loop is closed
+ * or opened again, the next two until the motor moves on. */
 struct motor_findings {
-  bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit;
+  bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit, on_desired_limit;
   bool warning_error, in_position;
-  volatile bool positive_limit, negative_limit; /* an input, or the software limit of that side */
+  volatile bool positive_limit, negative_limit;     /* an input, or the software limit of that side */
+  volatile bool positive_desired, negative_desired; /* the commanded position is beyond that of the desired one */
   volatile bool foreground_in_position;         /* S */
 };
 

@@ -46,6 +46,10 @@ static void follow(struct coordinate_system* s) {
 /* From rest a move begins with the interrupt: what the one before has left of it is lost. */
 static void begin_move(struct coordinate_system* s, uint32_t first, uint32_t number) {
   const uint32_t move = piece_ring_at(&s->ring, number)->move;
+  if (piece_ring_at(&s->ring, number)->continues) {
+    s->started = move;
+    return;
+  }
   s->executing ^= 1u;
   s->started = move;
   s->next_valid = s->placed = false; /* the real-time task sees room for another move */
@@ -56,6 +60,13 @@ static void begin_move(struct coordinate_system* s, uint32_t first, uint32_t num
   s->elapsed = s->ring.elapsed;
   for (uint32_t i = first; i != number; i++) /* those of it that are over already */
     if (piece_ring_at(&s->ring, i)->move == move) s->elapsed += piece_ring_at(&s->ring, i)->end;
+}
+
+/* The first piece of a sequence that has been passed over within this interrupt. */
+static void begin_passed(struct coordinate_system* s, uint32_t first, uint32_t number) {
+  for (uint32_t i = first; i != number; i++)
+    if (!piece_ring_at(&s->ring, i)->continues && piece_ring_at(&s->ring, i)->move != s->started)
+      begin_move(s, first, i);
 }
 
 static bool goes_alone(const struct move* m) {
@@ -74,6 +85,7 @@ static void advance(struct coordinate_system* s) {
   s->active = piece_ring_advance(&s->ring, increment);
   if (s->ring.executing != first) end_pieces(s, first);
   const uint32_t number = s->active ? s->ring.executing : s->ring.executing - 1u;
+  if (piece_ring_at(&s->ring, number)->continues) begin_passed(s, first, number);
   if (piece_ring_at(&s->ring, number)->move != s->started) begin_move(s, first, number);
   if (s->active) follow(s);
 }

@@ -11,6 +11,8 @@
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/place.h"
+#include "firmware/motion/path.h"
+#include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
@@ -25,6 +27,7 @@
  */
 static void drop_moves(uint32_t cs) {
   coordinate_systems[cs].settling = true;
+  cs_awake |= 1u << cs;
   calculate_forget(cs);
 }
 
@@ -54,7 +57,10 @@ error_t run_point(uint32_t cs, double program) {
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
-  if (s->next_valid) s->settling = true;
+  if (s->next_valid || paths[cs].count != 0) {
+    s->settling = true;
+    cs_awake |= 1u << cs;
+  }
   s->end_block = s->must_return = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -80,7 +86,7 @@ static error_t check_motors(uint32_t cs) {
     inactive |= i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0;
     open |= motors[motor].loop != LOOP_CLOSED;
     limits |= motors[motor].found.positive_limit && motors[motor].found.negative_limit;
-    moving |= jog_is_moving(motor);
+    moving |= jog_is_moving(motor) && !(s->running && jog_is_of_program(motor));
   }
   if (inactive) return ERR_NOT_ACTIVATED;
   if (open) return ERR_OPEN_LOOP;
@@ -111,8 +117,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (s->running && s->held) system_motors_take(cs);
   s->must_return = false;
   release_hold(cs);
-  if (s->running && single_step) {     /* a step request ends continuous running behind the calculated moves */
-    if (s->continuous) s->quit = true; /* while a step waits for its move, one more changes nothing */
+  if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
+    if (s->continuous) s->quit = s->must_return = true; /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
     return ERR_NONE;
   }
@@ -125,10 +131,12 @@ error_t run_start(uint32_t cs, bool single_step) {
     if (!s->next_valid) s->may_join = false;
   }
   s->end_block = s->quit = false;
+  segment_go_on(cs);
   s->stepping = single_step;
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;
   s->running = true;
+  cs_awake |= 1u << cs;
   cs_busy |= 1u << cs;
   hal_unmask(state);
   if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
@@ -137,7 +145,9 @@ error_t run_start(uint32_t cs, bool single_step) {
 
 void run_quit(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (s->running) s->quit = s->must_return = true;
+  if (!s->running) return;
+  segment_stop(cs);
+  s->quit = s->must_return = true;
 }
 
 void run_abort(uint32_t cs) {
@@ -180,7 +190,10 @@ void run_executing(uint32_t cs, struct program_trace* trace) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t state = hal_mask_servo();
   const bool active = s->active;
-  if (active) *trace = s->moves[s->executing].line;
+  if (active && s->moves[s->executing].kind == MOVE_SEGMENTS)
+    segment_line(cs, trace);
+  else if (active)
+    *trace = s->moves[s->executing].line;
   hal_unmask(state);
   if (!active) motion_program_next(cs, trace);
 }
