@@ -262,6 +262,7 @@ TEST_F(PhaseSearch, StepperPullsTheRotorToTheFirstPhase) {
     plant::Motor motor = motor_at(start);
     set_x(0x78001, counts(motor));
     phase(2);
+    stand_at(1234);  // means nothing
     ASSERT_TRUE(phasing_begin(0));
     run(motor, 2 * 512);
     EXPECT_TRUE(phasing_is_searched(0)) << "two parts of 256 Ixx74 servo cycles";
