@@ -351,6 +351,8 @@ TEST_F(DesiredPosition, Backlash) {
   EXPECT_EQ(desired(99.5), 96.5);
   c_.line("I185=8388607");
   EXPECT_EQ(desired(99.5), 99.5) << "at once";
+  EXPECT_EQ(desired(95), 90);
+  EXPECT_EQ(desired(99.25), 99.25) << "hysteresis is counted from where it has turned";
 }
 
 TEST_F(DesiredPosition, BacklashWaitsForTheBackground) {

@@ -87,6 +87,23 @@ TEST_F(PositionLoop, ProportionalGain) {
   EXPECT_NEAR(output_, -100 * 2000 * 96 / 524288.0, 1 / 256.0);
 }
 
+// Errors and steps of more than 32 bits: Ixx67 and the ends of the output hold, and the sign is right.
+TEST_F(PositionLoop, FarAwayTheSignIsRight) {
+  c_.line("I130=10 I131=0 I132=0 I133=0 I167=1600");
+  close(0, 0);
+  for (const double counts : {1e6, -1e6, 2e6, -3e6, 1e9, -1e12}) {
+    cycle(std::llround(counts * 32 * 96), 0, 0);
+    EXPECT_NEAR(output_, (counts > 0 ? 100 : -100) * 10 * 96 / 524288.0, 1 / 256.0) << counts;
+    motors[0].closed_at = motors[0].commanded;
+  }
+  c_.line("I132=32767");
+  cycle(0, 0, 0);
+  cycle(std::llround(1e6 * 32 * 96), 0, 0);
+  EXPECT_EQ(output_, ixx(69)) << "velocity feedforward of a step";
+  cycle(std::llround(-1e6 * 32 * 96), 0, 0);
+  EXPECT_EQ(output_, -ixx(69));
+}
+
 // Ixx63 is 16 times the integral's equivalent in counts; 0 takes it away; Ixx33 = 0 keeps what there is.
 TEST_F(PositionLoop, IntegrationLimit) {
   c_.line("I130=10000 I131=0 I132=0 I133=8388607 I134=0 I163=1600 I167=160");
