@@ -321,6 +321,22 @@ TEST_F(ProgramsAndJogs, RotaryAxisOfANegativeScale) {
   EXPECT_EQ(motors[0].trajectory, position(9000));
 }
 
+// A RAPID move begins when the move before it has ended.
+TEST_F(ProgramsAndJogs, ARapidMoveWaitsForTheMoveBefore) {
+  fit({"1000X"});
+  quick();
+  store({"TM100 TA20 TS0 X1", "RAPID X2"});
+  const auto first = changes_of({{1000, 100, 20, 0}}, 20);
+  double worst = 0, begins = 0;
+  run([&](double t) {
+    if (t < 120) worst = std::max(worst, std::abs(at(1) - way(first, t)));
+    if (motors[0].trajectory == position(1000)) begins = t;
+  });
+  EXPECT_LT(worst * kUnit, 3.0);
+  EXPECT_GE(begins, 120.0);
+  EXPECT_EQ(motors[0].trajectory, position(2000));
+}
+
 // motion:5.5/1: however long it takes to plan them.
 TEST_F(ProgramsAndJogs, MotorsOfARapidMoveBeginTogether) {
   fit({"1000X", "1000Y", "1000Z", "1000A"});
