@@ -31,10 +31,11 @@ static error_t is_free(uint32_t motor) {
   return d->assigned && run_is_running(d->cs) ? ERR_PROGRAM_RUNNING : ERR_NONE;
 }
 
-/* It may be jogged away from where a hold has stopped it. */
+/* It may be jogged away from where a hold has stopped it on the path; a move of its own goes on then. */
 static bool is_held(uint32_t motor) {
   const struct coordinate_system* s = &coordinate_systems[axis_definitions[motor].cs];
-  return (s->held && s->increment == 0) || segment_stands(axis_definitions[motor].cs);
+  if (segment_stands(axis_definitions[motor].cs)) return true;
+  return s->held && s->increment == 0 && !jog_is_of_program(motor);
 }
 
 static error_t may_enable(uint32_t motor, bool free) {
@@ -172,6 +173,12 @@ static error_t cmd_kill(struct lexer* lx) {
   return error;
 }
 
+/* Which way an output would turn it is not known; what was found of a killed motor is old. */
+static bool stands_in_limit(uint32_t motor) {
+  const struct motor* m = &motors[motor];
+  return m->loop != LOOP_KILLED && (m->found.positive_limit || m->found.negative_limit);
+}
+
 /* O{per cent}; with a motion buffer open it is a label. */
 static error_t open_loop(struct lexer* lx) {
   double output;
@@ -180,6 +187,7 @@ static error_t open_loop(struct lexer* lx) {
   if (error != ERR_NONE) return error;
   if (output < -LARGEST_OUTPUT || output > LARGEST_OUTPUT) return ERR_DATA;
   error = may_move(session.motor);
+  if (error == ERR_NONE && stands_in_limit(session.motor)) error = ERR_BOTH_LIMITS;
   if (error != ERR_NONE) return error;
   const double limit = i_variable_read(i_motor(session.motor + 1u, IXX69_OUTPUT_LIMIT));
   const uint32_t state = hal_mask_servo();

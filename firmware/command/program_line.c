@@ -19,6 +19,7 @@ static struct {
   bool called;       /* a statement of the line is a call */
   uint32_t where;    /* what was open when words were compiled ahead */
   const char* ahead; /* where that stopped in the text; 0: nothing was */
+  const char* from;  /* where it began */
   const char* text;  /* of the host line, its beginning */
 } line;
 
@@ -51,18 +52,20 @@ void program_line_ahead(const char* text, const char* boundary) {
   if (!takes_axes(where)) return;
   if (line.ahead == 0) {
     empty();
-    line.ahead = text;
+    line.ahead = line.from = text;
     line.where = where;
     line.cs = session.cs;
   }
   line.count += axis_constants(&line.ahead, boundary, line.words + line.count, LINE_WORDS - line.count);
 }
 
+/* What was compiled ahead is of the line that comes, not of a control character's command inside it (^U): that forgets
+ * it, and the rest of the line begins anew. */
 const char* program_line_begin(const char* text) {
   line.text = text;
   const char* const ahead = line.ahead;
   line.ahead = 0;
-  if (ahead != 0 && line.where == open_where() && line.cs == session.cs) return ahead;
+  if (ahead != 0 && line.from == text && line.where == open_where() && line.cs == session.cs) return ahead;
   empty();
   return text;
 }

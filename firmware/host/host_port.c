@@ -23,7 +23,8 @@ volatile uint32_t host_port_received_count, host_port_taken_count;
 
 static uint8_t transmit[TRANSMIT_SIZE];
 static volatile uint32_t transmit_head, transmit_tail;
-static volatile uint32_t urgent, flushed, discard;
+static volatile uint32_t flushed, discard;
+volatile uint32_t host_port_urgent_codes;
 static volatile uint32_t flushes;             /* ^X so far */
 static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
@@ -42,7 +43,7 @@ static void enable(bool receive_on, bool transmit_on) {
 
 void host_port_initialize(void) {
   host_port_received_count = host_port_taken_count = transmit_head = transmit_tail = 0;
-  urgent = flushed = flushed_to = flushes = discard = reserved = 0;
+  host_port_urgent_codes = flushed = flushed_to = flushes = discard = reserved = 0;
   given_up = of_program = false;
   enable(true, false);
 }
@@ -68,7 +69,7 @@ void host_port_character(uint8_t c) {
   slice_hurry = 1;
   if (c >= ' ') return;
   if (((URGENT >> c) & 1u) != 0u) {
-    urgent |= 1u << c;
+    host_port_urgent_codes |= 1u << c;
     hal_request_real_time();
   }
   background_wake();
@@ -183,10 +184,9 @@ void host_port_open_output(void) {
 }
 
 uint32_t host_port_urgent(void) {
-  if (urgent == 0u) return 0;
   const uint32_t state = hal_mask_all();
-  const uint32_t codes = urgent;
-  urgent = 0;
+  const uint32_t codes = host_port_urgent_codes;
+  host_port_urgent_codes = 0;
   hal_unmask(state);
   return codes;
 }

@@ -33,7 +33,9 @@ uint32_t host_port_room(void);    /* characters that host_port_send takes withou
 uint32_t host_port_flushes(void); /* ^X so far: what waits to be sent is void */
 bool host_port_waiting(void);     /* characters received and not taken */
 void host_port_send(uint8_t c);   /* background: waits for room; gives up after half a second without a reader */
-uint32_t host_port_urgent(void);  /* real-time task: control characters that may not wait, bit = code; cleared */
+/* Control characters that may not wait, bit = code. Real-time task: the second clears them. */
+extern volatile uint32_t host_port_urgent_codes;
+uint32_t host_port_urgent(void);
 void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
 /* What follows is sent by a program, which gives up sooner when the host has sent something; and no longer. */
 void host_port_program_sends(bool sends);

@@ -17,6 +17,7 @@
 #include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/conversion_table.h"
+#include "firmware/motion/desired_position.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/run/plc.h"
@@ -36,6 +37,7 @@ void background_meanwhile(void) {
     plc_background();
     background_wake();
   }
+  desired_position_pass();
   phasing_pass();
   image_checksum_pass();
   stack_watch_pass();

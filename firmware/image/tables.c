@@ -30,6 +30,7 @@
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
 #include "firmware/motion/time_base.h"
@@ -43,7 +44,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
-  phasing_servo();
+  if (phasing_searched != 0u) phasing_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();

@@ -136,8 +136,9 @@ static void make(struct table* table) {
   for (uint32_t line = 0; line < CONVERSION_LINES && line_word(line) != 0u;) {
     const uint32_t lines = lines_of(line);
     if (line + lines > CONVERSION_LINES) break;
-    make_entry(&table->entries[table->count], line, lines);
-    table->armed = table->armed || table->entries[table->count++].method == METHOD_ARMED;
+    struct conversion_entry* entry = &table->entries[table->count++];
+    make_entry(entry, line, lines);
+    if (entry->method == METHOD_ARMED) table->armed = true;
     line += lines;
   }
 }
@@ -171,7 +172,13 @@ void conversion_table_initialize(void) {
 
 void conversion_table_servo(void) {
   const struct table* table = present;
-  for (uint32_t i = 0; i < table->count; ++i) table->entries[i].convert(&table->entries[i]);
+  const struct conversion_entry *e = table->entries, *end = e + table->count;
+  for (; e != end; ++e) {
+    if (e->convert == convert_software_1t) /* nearly all are: no call */
+      conversion_software_1t(e);
+    else
+      e->convert(e);
+  }
 }
 
 /* A time base that has had its trigger shows it in its line. */

@@ -176,6 +176,8 @@ extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 /* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off.
  * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
+/* One bit a coordinate system that runs or settles. B and R set it behind either, R alone clears it. */
+extern volatile uint32_t cs_awake;
 extern uint32_t cs_interrupts; /* R: real-time interrupts so far */
 
 void coordinate_systems_initialize(void);      /* power-up, $$$ and $$$***: idle, at 0, without axes */

@@ -13,7 +13,7 @@
 
 void jog_initialize(void) {
   jogs_busy = jogs_asked = 0;
-  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){0};
+  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){.away = true};
 }
 
 static double units(uint32_t motor) { return (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale; }
@@ -54,7 +54,8 @@ static bool goes_into_limit(uint32_t motor, const struct jog_motion* request) {
   if (request->homes || (request->aim != AIM_SPEED && request->aim != AIM_TARGET)) return false;
   const bool up = request->aim == AIM_SPEED ? request->speed > 0.0 : request->target > m->trajectory;
   const bool down = request->aim == AIM_SPEED ? request->speed < 0.0 : request->target < m->trajectory;
-  return (up && m->found.positive_limit) || (down && m->found.negative_limit);
+  return (up && (m->found.positive_limit || m->found.positive_desired)) ||
+         (down && (m->found.negative_limit || m->found.negative_desired));
 }
 
 static bool ask(uint32_t motor, const struct jog_motion* request) {
@@ -123,6 +124,7 @@ bool jog_home(uint32_t motor, double velocity, int64_t offset, bool by_program) 
 
 bool jog_stop_at(uint32_t motor, double deceleration) {
   struct jog_motion request = make(motor, AIM_RAMP, 0.0);
+  request.by_program = motors[motor].path == PATH_SYSTEM; /* at the rate of the path that it leaves, held or not */
   request.deceleration = deceleration * units(motor);
   return ask(motor, &request);
 }
@@ -140,6 +142,7 @@ static void nothing_moves(uint32_t motor) {
 
 void jog_drop(uint32_t motor) {
   nothing_moves(motor);
+  leave_position(motor);
   motors[motor].path = PATH_STANDS;
 }
 
@@ -152,6 +155,12 @@ void jog_program_takes(uint32_t motor) {
 /* Where it stands ------------------------------------------------------------------------------------------------- */
 
 bool jog_is_moving(uint32_t motor) { return (jogs_busy & jog_bit(motor)) != 0u; }
+
+bool jog_is_of_program(uint32_t motor) {
+  const struct jog* j = &jogs[motor];
+  return jog_is_moving(motor) && (j->now.by_program || j->request.by_program);
+}
+
 bool jog_is_homing(uint32_t motor) { return jogs[motor].now.homes && jogs[motor].now.searches; }
 
 int64_t jog_commanded(uint32_t motor) {
@@ -190,8 +199,11 @@ void jog_make_whole(uint32_t motor) {
   const double whole = (double)math_nearest(motor_counts_of(motor, jog_commanded(motor)));
   const int64_t position = motor_position_of(motor, whole);
   const uint32_t state = hal_mask_servo();
-  if (motors[motor].loop == LOOP_CLOSED && motors[motor].path == PATH_STANDS && !jog_is_moving(motor))
+  if (motors[motor].loop == LOOP_CLOSED && motors[motor].path != PATH_OWN && !jog_is_moving(motor)) {
+    leave_position(motor);
+    motors[motor].path = PATH_STANDS;
     motors[motor].trajectory = position;
+  }
   hal_unmask(state);
 }
 
@@ -201,5 +213,7 @@ void jog_count_from(uint32_t motor, int64_t position) {
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */
-  j->away = false;
+  motors[motor].of_system -= position;
+  j->before = motors[motor].trajectory;
+  j->away = true;
 }

@@ -31,10 +31,12 @@ void jog_drop(uint32_t motor);          /* nothing moves it any more: killed, op
 void jog_program_takes(uint32_t motor); /* a program moves it from now on: PATH_SYSTEM */
 
 /* Any task. More of it stands in the motor's status flags (motion/motor.h). */
-bool jog_is_moving(uint32_t motor); /* on its way, or about to be */
+bool jog_is_moving(uint32_t motor);     /* on its way, or about to be */
+bool jog_is_of_program(uint32_t motor); /* so, and a program waits for it, held or not */
 bool jog_is_homing(uint32_t motor); /* searches for home: software limits do not count */
 
-/* Where the motor was before it was jogged: the end of what a program or a homing search has moved, or `J==`. */
+/* Where the motor was before it was jogged, killed or opened: the end of what a program or a homing search has moved,
+ * or `J==`. */
 int64_t jog_position_before(uint32_t motor);
 void jog_set_position_before(uint32_t motor, int64_t position);
 int64_t jog_commanded(uint32_t motor); /* trajectory position now, of one moment */

@@ -24,6 +24,22 @@ struct beginning {
 
 enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
 
+/* Where a program has it `ahead` from now, in its piece: a ramp that begins beyond it begins at its last speed. While
+ * time stands so does the motor. Servo task held off. */
+static struct own_path_place place_of_program(uint32_t motor, int64_t ahead) {
+  const struct motor* m = &motors[motor];
+  struct coordinate_system* s = &coordinate_systems[m->cs];
+  struct piece_ring* ring = &s->ring;
+  if (m->path == PATH_SYSTEM && s->active && s->increment > 0 && !piece_ring_is_empty(ring)) {
+    const struct piece* piece = piece_ring_at(ring, ring->executing);
+    const int64_t at = ring->elapsed + ahead;
+    if ((piece->motors >> motor & 1u) != 0u)
+      return (struct own_path_place){*piece_ring_cubic(ring, ring->executing, motor), piece->time,
+                                     at < piece->end ? at : piece->end - 1};
+  }
+  return own_path_stands(m->trajectory);
+}
+
 /* Servo task held off. */
 static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   struct jog* j = &jogs[motor];
@@ -40,17 +56,8 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
   if (b->begins < j->request_begins) b->begins = j->request_begins;
   b->place = m->path == PATH_OWN ? own_path_place(&j->paths[j->current], b->begins - j->clock)
-                                 : own_path_stands(m->trajectory);
+                                 : place_of_program(motor, b->begins - j->clock);
   return LOOK_PLAN;
-}
-
-/* A piece of servo time's distance as a speed, of a motor that its system moves; else 0. */
-static double system_speed(uint32_t motor) {
-  const struct motor* m = &motors[motor];
-  const int32_t increment = coordinate_systems[m->cs].increment;
-  if (m->path != PATH_SYSTEM || increment <= 0) return 0.0;
-  slice_pause();
-  return (double)m->desired_step / math_scale((double)increment, -TRAJECTORY_FRACTION_BITS);
 }
 
 static void to_target(struct own_path* path, struct jog_motion* m, double speed) {
@@ -102,8 +109,7 @@ static bool plan(uint32_t motor) {
     hal_unmask(state);
     if (to_do != LOOK_PLAN) return false;
     slice_pause();
-    struct own_path_state from = own_path_state(&b.place);
-    if (motors[motor].path == PATH_SYSTEM) from.speed = system_speed(motor);
+    const struct own_path_state from = own_path_state(&b.place);
     struct own_path* path = &jogs[motor].paths[jogs[motor].current ^ 1u];
     build(path, &b.motion, from);
     slice_pause();

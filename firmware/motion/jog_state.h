@@ -38,7 +38,7 @@ struct jog {
   volatile uint32_t requests; /* so far, whatever makes R plan anew */
   int64_t request_begins;     /* earliest clock */
   int64_t delay;              /* Ixx92, of the last request */
-  bool away;                  /* from `before`, by jogs. Q, S */
+  bool away;                  /* from `before`, by anything but a program. Q, S */
   int64_t before;
 };
 

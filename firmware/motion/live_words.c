@@ -73,7 +73,7 @@ static unsigned motor_word(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
 static double target(const struct coordinate_system* s, uint32_t axis) {
   const uint32_t state = hal_mask_servo();
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
-  const bool moves = s->active && m->kind == MOVE_LINEAR;
+  const bool moves = s->active && m->kind != MOVE_DWELL;
   const double delta = m->delta[axis];
   double start = s->position[axis];
   if (s->active)

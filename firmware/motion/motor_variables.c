@@ -10,6 +10,7 @@
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/position_loop.h"
 #include "firmware/motion/protection.h"
+#include "firmware/motion/servo_words.h"
 #include "firmware/variables/i_variables.h"
 
 static void take_scales(uint32_t motor) {
@@ -39,6 +40,7 @@ void motor_variables_changed(uint32_t motor) {
   motor_output_motor_changed(motor);
   motor_flags_motor_changed(motor);
   protection_motor_changed(motor);
+  servo_words_motor_changed(motor);
   take_activated(motor);
   hal_unmask(state);
 }

@@ -42,7 +42,6 @@ static struct loop {
   uint32_t forgets;  /* movements that are none */
   int64_t step;      /* how far the commanded position had gone at the last closure */
   int64_t integral;  /* position, with INTEGRAL_BITS of fraction */
-  int64_t remainder; /* what it has not counted yet, 2^-7 of its unit */
   bool saturated;
   int64_t filtered; /* PID alone, NOTCH_FINER */
 } loops[MOTORS];
@@ -116,7 +115,7 @@ void position_loop_motor_changed(uint32_t motor) {
 void position_loop_restart(uint32_t motor) {
   struct loop* l = &loops[motor];
   motors[motor].closed_at = motors[motor].commanded;
-  l->step = l->integral = l->remainder = 0;
+  l->step = l->integral = 0;
   l->saturated = false;
   notch_restart(motor);
 }
@@ -151,9 +150,7 @@ static void measure(struct motor* m, struct loop* l) {
 /* FINER. */
 static void integrate(struct loop* l, int64_t error, int64_t rest) {
   const int64_t integrand = clamp(l->integrates_velocity ? rest + error : error, l->integrand_most);
-  const int64_t sum = l->integral_gain * integrand + l->remainder;
-  l->integral += sum >> FINER;
-  l->remainder = sum & ((1 << FINER) - 1);
+  l->integral += l->integral_gain * integrand >> FINER;
 }
 
 static bool integrates(const struct loop* l, bool moves) {
@@ -245,7 +242,7 @@ static __attribute__((noinline)) void run_other(uint32_t motor, struct motor* m,
   } else {
     desired_position_take_actual(motor);
     m->output = m->loop == LOOP_OPEN ? m->open_output : 0;
-    l->integral = l->step = 0; /* shown so while it is open */
+    l->integral = l->step = l->filtered = 0; /* shown so while it is open */
   }
   publish(motor, m);
 }

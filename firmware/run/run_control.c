@@ -27,6 +27,7 @@
  */
 static void drop_moves(uint32_t cs) {
   coordinate_systems[cs].settling = true;
+  cs_awake |= 1u << cs;
   calculate_forget(cs);
 }
 
@@ -56,7 +57,10 @@ error_t run_point(uint32_t cs, double program) {
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
-  if (s->next_valid || paths[cs].count != 0) s->settling = true;
+  if (s->next_valid || paths[cs].count != 0) {
+    s->settling = true;
+    cs_awake |= 1u << cs;
+  }
   s->end_block = s->must_return = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -82,7 +86,7 @@ static error_t check_motors(uint32_t cs) {
     inactive |= i_integer(i_motor(motor + 1u, IXX00_ACTIVATED)) == 0;
     open |= motors[motor].loop != LOOP_CLOSED;
     limits |= motors[motor].found.positive_limit && motors[motor].found.negative_limit;
-    moving |= jog_is_moving(motor);
+    moving |= jog_is_moving(motor) && !(s->running && jog_is_of_program(motor));
   }
   if (inactive) return ERR_NOT_ACTIVATED;
   if (open) return ERR_OPEN_LOOP;
@@ -114,8 +118,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
   release_hold(cs);
-  if (s->running && single_step) {     /* a step request ends continuous running behind the calculated moves */
-    if (s->continuous) s->quit = true; /* while a step waits for its move, one more changes nothing */
+  if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
+    if (s->continuous) s->quit = s->must_return = true; /* while a step waits for its move, one more changes nothing */
     s->continuous = false;
     return ERR_NONE;
   }
@@ -133,6 +137,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;
   s->running = true;
+  cs_awake |= 1u << cs;
   cs_busy |= 1u << cs;
   hal_unmask(state);
   if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
@@ -189,9 +194,8 @@ static error_t go(uint32_t cs, enum lookahead_order order) {
 }
 
 error_t run_forward(uint32_t cs) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  if (s->running && segment_looks(cs)) return go(cs, LOOKAHEAD_FORWARD);
-  return s->held ? run_start(cs, false) : ERR_NONE;
+  if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_FORWARD);
+  return run_start(cs, false);
 }
 
 error_t run_back(uint32_t cs) {

@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/phasing.h"
+#include "firmware/motion/protection.h"
 }
 
 namespace brick {
@@ -284,10 +285,11 @@ TEST_F(PhaseSearch, ALimitEndsTheSearchWithoutAReference) {
   plant::Motor motor = motor_at(100);
   ASSERT_TRUE(phasing_begin(0));
   run(motor, 10);
-  set("");
+  protection_pass();
+  run(motor, 1);
   EXPECT_TRUE(phasing_is_searched(0));
   set_x(0x78000, 1 << 17);
-  set("");
+  protection_pass();
   run(motor, 1);
   EXPECT_FALSE(phasing_is_searched(0));
   EXPECT_TRUE(phasing_is_missing(0));

@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -63,7 +64,7 @@ TEST_F(Expression, ConstantsAreKeptExactly) {
 }
 
 TEST_F(Expression, FunctionsInDegreesAndRadians) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(brick::random_seed(7));
   std::uniform_real_distribution<double> angle(-1000.0, 1000.0), unit(-1.0, 1.0), positive(1e-6, 1e6),
       small(-20.0, 20.0);
   for (int i = 0; i < 500; ++i) {

@@ -23,7 +23,7 @@ class MotorCommands : public FirmwareTest {
  protected:
   void SetUp() override {
     FirmwareTest::SetUp();
-    ASSERT_EQ(host("I100=1 I119=1 I120=0 I121=10 I122=20 I192=2 I116=32"), "");
+    ASSERT_EQ(host("I100=1 I119=1 I120=0 I121=10 I122=20 I192=2 I116=32 I111=0 I112=0"), "");
     run(3);
   }
   static void run(unsigned cycles) { platform::servo_ticks(cycles); }
@@ -181,7 +181,7 @@ class MotorStops : public MotorCommands {
     MotorCommands::SetUp();
     ASSERT_EQ(host("&1#1->X #3->Y #4->Z I200=1 I300=1 I400=1 I219=1 I220=0 I221=10 I222=20 I292=2 I115=.5 I215=.5"),
               "");
-    ASSERT_EQ(host("#3O1 #1J+ #2J-"), "");
+    ASSERT_EQ(host("I211=0 I311=0 I411=0 #3O1 #1J+ #2J-"), "");
     run(200);
     ASSERT_GT(step_of(0), 8);
     ASSERT_LT(step_of(1), -8);

@@ -77,15 +77,26 @@ TEST_F(MoveTiming, AxesOutsideTheVector) {
   lines({"TA10 TS0 F100 A30 C-50"});  // no feedrate axis: the longest distance / F
   EXPECT_EQ(run(), ticks_of(500.0 + 10.0));
   platform::power_up();
-  ASSERT_EQ(host("I5186=20 DEF ROT 50 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("I5186=20 I5113=10 DEF ROT 50 B0 OPEN ROT"), "");
   lines({"TA10 TS0 F100 X50 A16"});  // X alone 500 ms, A at Isx86 = 20: 800 ms
   EXPECT_EQ(run(), ticks_of(800.0 + 10.0));
 }
 
 TEST_F(MoveTiming, AxesOutsideTheVectorAloneGoByIsx86) {
-  ASSERT_EQ(host("CLOSE I5186=20 OPEN ROT"), "");
+  ASSERT_EQ(host("CLOSE I5186=20 I5113=10 OPEN ROT"), "");
   lines({"TA10 TS0 F100 A16 B-8"});  // 16 at 20 a second
   EXPECT_EQ(run(), ticks_of(800.0 + 10.0));
+}
+
+// motion:5.2/7
+TEST_F(MoveTiming, Isx86IsOfSegmentedMovesOnly) {
+  ASSERT_EQ(host("CLOSE I5186=20 OPEN ROT"), "");
+  lines({"TA10 TS0 F100 X50 A16"});
+  EXPECT_EQ(run(), ticks_of(500.0 + 10.0));
+  platform::power_up();
+  ASSERT_EQ(host("I5186=20 DEF ROT 50 B0 OPEN ROT"), "");
+  lines({"TA10 TS0 F100 A16"});
+  EXPECT_EQ(run(), ticks_of(160.0 + 10.0));
 }
 
 TEST_F(MoveTiming, MoveIsNotShorterThanItsAcceleration) {
@@ -176,15 +187,17 @@ TEST_F(MoveTiming, TimeBaseSlewsAtIsx94) {
   EXPECT_EQ(cs().increment, platform::kDefaultI10 - 100 * 1644);
 }
 
-// `%` followed by a sign is no report with something behind it, and a refused value leaves the time base alone.
-TEST_F(MoveTiming, TimeBaseTakesNoSignAndNothingAbove225) {
+// `%` followed by a sign is no report with something behind it, and a refused value leaves the time base alone. The
+// limit is that of a signed word: (2^23 - 1) / I10 is 225.8649 %.
+TEST_F(MoveTiming, TimeBaseTakesNoSignAndNothingBeyondItsWord) {
   ASSERT_EQ(host("CLOSE I5194=8388607"), "");
   ASSERT_EQ(host("%225"), "");
   platform::servo_ticks(1);
   EXPECT_EQ(cs().increment, (platform::kDefaultI10 * 9 + 2) / 4);
+  ASSERT_EQ(host("%225.8649"), "");
   ASSERT_EQ(host("%100"), "");
   platform::servo_ticks(1);
-  for (const char* refused : {"%-1", "%+1", "%-0", "% -1", "%-", "%-.5", "%225.1", "%1000"}) {
+  for (const char* refused : {"%-1", "%+1", "%-0", "% -1", "%-", "%-.5", "%225.87", "%1000"}) {
     EXPECT_EQ(host(refused), "ERR003") << refused;
     platform::servo_ticks(1);
     EXPECT_EQ(cs().increment, platform::kDefaultI10) << refused;

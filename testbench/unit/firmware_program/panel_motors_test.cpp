@@ -22,7 +22,8 @@ class PanelMotors : public FirmwareTest {
     platform::fit_panel();
     for (const unsigned motor : {1u, 3u, 18u}) {
       const std::string i = "I" + std::to_string(motor);
-      ASSERT_EQ(host(i + "00=1 " + i + "19=1 " + i + "21=10 " + i + "22=20 " + i + "23=-10 " + i + "92=2"), "");
+      ASSERT_EQ(
+          host(i + "00=1 " + i + "19=1 " + i + "21=10 " + i + "22=20 " + i + "11=0 " + i + "23=-10 " + i + "92=2"), "");
     }
   }
   // Position less that of 100 servo interrupts ago, counts.

@@ -8,6 +8,7 @@
 #include "testbench/unit/firmware_platform/fake_tasks.h"
 
 extern "C" {
+#include "firmware/hal/gate_ic.h"
 #include "firmware/image/background_pass.h"
 #include "firmware/image/start.h"
 #include "rtl/regs/brick_regs.h"
@@ -24,8 +25,16 @@ std::string output() {
 
 }  // namespace
 
+// Nothing is connected: fault inputs are pulled up (servo-ic:5.15/6), which is no fault for Ixx24 bit 23 = 0.
+void no_amplifiers() {
+  for (unsigned ic = 0; ic < 2; ++ic)
+    for (std::uint32_t channel = 0; channel < GATE_IC_CHANNELS; ++channel)
+      *hal_x(gate_ic_base(ic) + 8 * channel) |= SERVO_CHANNEL_STATUS_FAULT_MASK;
+}
+
 void power_up() {
   fake_hal_power_on(0x3);
+  no_amplifiers();
   start(START_SAVED);
   output();
   fake_hal_set_look(0);

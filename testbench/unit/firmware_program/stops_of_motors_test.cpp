@@ -36,7 +36,7 @@ TEST_F(StopsOfMotors, RunAsksForMotorsThatMayMove) {
   motors[1].loop = LOOP_CLOSED;
   motors[1].found.positive_limit = motors[1].found.negative_limit = true;
   EXPECT_EQ(host("R"), "ERR010");
-  motors[1].found.negative_limit = false;
+  motors[1].found.positive_limit = motors[1].found.negative_limit = false;
   ASSERT_TRUE(jog_to(1, position(500)));
   EXPECT_EQ(host("R"), "ERR011") << "a jog is under way";
   ticks(400);
@@ -207,11 +207,10 @@ TEST_F(StopsOfMotors, MotorsComeIntoPositionWithinIsx81) {
     fit({"1000X"});
     ASSERT_EQ(host("I5181=60 I5192=1"), "");
     store({"TM100 TA40 TS0 X1", "X2"});
-    motors[0].found.in_position = false;
     begin();
     ticks(180);
     EXPECT_EQ(motors[0].trajectory, position(1000)) << "it waits";
-    motors[0].found.in_position = comes;
+    if (comes) { ASSERT_EQ(host("I128=8388607"), "") << "a band that reaches the motor, which stands at 0"; }
     ticks(300);
     EXPECT_FALSE(run_is_running(0));
     EXPECT_EQ(motors[0].trajectory, position(comes ? 2000 : 1000));

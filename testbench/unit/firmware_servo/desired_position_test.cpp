@@ -74,6 +74,51 @@ TEST_F(DesiredPosition, FollowsAMaster) {
   EXPECT_EQ(desired(5), before - 0.5) << "rolls over";
 }
 
+// A motor that is switched on begins where it is, whatever its master has done meanwhile.
+TEST_F(DesiredPosition, AMasterThatMovesWhileTheLoopIsOpenIsNotCaughtUpWith) {
+  c_.line("I105=$10F5 I107=96 I106=1");
+  const auto servo_tasks = [] {
+    desired_position_servo(0);
+    position_loop_servo(0);
+  };
+  master(1000);
+  servo_tasks();
+  close();
+  EXPECT_EQ(desired(0), 0);
+  master(1002);
+  EXPECT_EQ(desired(0), 2);
+  motor_kill(0);
+  master(1500);
+  servo_tasks();
+  close();
+  const double there = static_cast<double>(motors[0].trajectory) / kCount;
+  EXPECT_EQ(desired(there), 0) << "the motor has not turned";
+  master(1501);
+  EXPECT_EQ(desired(there), 1);
+  ASSERT_TRUE(motor_open(0, 0));
+  master(1600);
+  servo_tasks();
+  close();
+  EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), 0);
+}
+
+// Ixx06 = 3, offset mode: replies do not show what the master has moved.
+TEST_F(DesiredPosition, RepliesInOffsetModeAreWithoutTheMaster) {
+  c_.line("I105=$10F5 I107=96 I106=3");
+  close();
+  c_.line("#1J/");
+  master(10);
+  EXPECT_EQ(desired(3), 13);
+  *hal_x(0x10F0) = 13 * 32;
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("#1P"), "3");
+  EXPECT_EQ(c_.line("#1F"), "0");
+  c_.line("I106=1");
+  EXPECT_EQ(c_.line("#1P"), "13");
+  c_.line("I106=2");
+  EXPECT_EQ(c_.line("#1P"), "3");
+}
+
 TEST_F(DesiredPosition, AMotorInALimitFollowsOutOfItOnly) {
   c_.line("I105=$10F5 I107=96 I106=1");
   close();
@@ -98,6 +143,54 @@ TEST_F(DesiredPosition, Filter) {
   EXPECT_EQ(desired(1000), 1000);
   for (int n = 0; n < 40000; ++n) desired(-3);
   EXPECT_EQ(desired(-3), -3);
+}
+
+// Ixx24 bit 13: what Ixx67 cuts of the error is taken off the master position and comes back when the motor does.
+TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsInTheMasterPosition) {
+  c_.line("I167=160");
+  close();
+  EXPECT_EQ(desired(50), 50) << "bit 13 = 0: the error stays";
+  EXPECT_EQ(desired(0), 0);
+  c_.line("I124=$802001");
+  const auto actual = [](double counts) { motors[0].actual = std::llround(counts * kCount); };
+  const auto word = [this] { return std::pair<std::string, std::string>(c_.line("RX$8D"), c_.line("RY$8D")); };
+  EXPECT_EQ(desired(7), 7) << "within 10 counts";
+  EXPECT_EQ(word(), std::make_pair(std::string("0"), std::string("0")));
+  EXPECT_EQ(desired(50), 10);
+  EXPECT_EQ(motors[0].desired_step, 3 * kCount);
+  EXPECT_EQ(word().second, std::to_string(-40 * kCount)) << "40 counts less";
+  EXPECT_EQ(hal_signed(*hal_y(0x8D)), -40 * kCount) << "in memory too";
+  actual(25);
+  EXPECT_EQ(desired(50), 35);
+  actual(45);
+  EXPECT_EQ(desired(50), 50) << "all of it has come back";
+  EXPECT_EQ(word().second, "0");
+  EXPECT_EQ(desired(0), 35) << "the other way";
+  EXPECT_EQ(word().second, std::to_string(35 * kCount));
+  motor_kill(0);
+  position_loop_servo(0);
+  close();
+  EXPECT_EQ(motors[0].commanded, motors[0].actual);
+  EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), static_cast<double>(motors[0].actual) / kCount)
+      << "a loop that is opened forgets what it had not reached";
+  c_.line("I167=0");
+  actual(0);
+  motors[0].master = 0;
+  EXPECT_EQ(desired(50), 50) << "a velocity loop has no error to cut";
+}
+
+TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsBehindTheFilterToo) {
+  c_.line("I167=160 I124=$802001 I140=0.5");
+  close();
+  EXPECT_EQ(desired(16), 8);
+  EXPECT_EQ(desired(16), 10) << "12 by the filter";
+  EXPECT_EQ(desired(16), 10) << "13";
+  motors[0].actual = 100 * kCount;
+  EXPECT_EQ(desired(100), 90) << "55";
+  motors[0].actual = 50 * kCount;
+  EXPECT_EQ(desired(100), 60) << "95";
+  motors[0].actual = 75 * kCount;
+  EXPECT_EQ(desired(100), 80);
 }
 
 // Entries are sixteenths of a count at the end of each of four parts of 1000 counts; between them it is a line.
@@ -140,10 +233,14 @@ TEST_F(DesiredPosition, TorqueTables) {
   EXPECT_NEAR(motors[0].output / 256.0, -bits - 100, 0.1);
 }
 
-// Ixx85 a servo interrupt, when the direction has turned by more than Ixx87.
+// Ixx85 a background pass, when the direction has turned by more than Ixx87.
 TEST_F(DesiredPosition, Backlash) {
   c_.line("I185=16 I186=80 I187=64");
   close();
+  const auto desired = [](double trajectory) {
+    desired_position_pass();
+    return DesiredPosition::desired(trajectory);
+  };
   EXPECT_EQ(desired(100), 100);
   EXPECT_EQ(desired(96), 96) << "4 counts back are hysteresis";
   EXPECT_FALSE(desired_position_backlash_is_down(0));
@@ -157,6 +254,21 @@ TEST_F(DesiredPosition, Backlash) {
   EXPECT_EQ(desired(99.5), 99.5) << "at once";
 }
 
+TEST_F(DesiredPosition, BacklashWaitsForTheBackground) {
+  c_.line("I185=16 I186=80 I187=0");
+  close();
+  c_.line("");
+  EXPECT_EQ(desired(100), 100);
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(desired(99), 99 - 0) << "no pass yet";
+  c_.line("");
+  EXPECT_EQ(desired(99), 98);
+  EXPECT_EQ(desired(99), 98);
+  c_.line("");
+  EXPECT_EQ(desired(99), 97);
+  c_.line("I186=0");
+  EXPECT_EQ(desired(99), 98) << "it goes as it comes";
+}
+
 TEST_F(DesiredPosition, BacklashTables) {
   ASSERT_EQ(c_.line("#1 DEFINE BLCOMP 2,1000"), "");
   ASSERT_EQ(c_.line("16 48"), "");
@@ -165,6 +277,7 @@ TEST_F(DesiredPosition, BacklashTables) {
   EXPECT_EQ(desired(500), 500);
   *hal_x(0x10F0) = 500 * 32;
   position_loop_servo(0);
+  desired_position_pass();
   EXPECT_NEAR(desired(499), 499 - 5 - 1, 0.01);
 }
 

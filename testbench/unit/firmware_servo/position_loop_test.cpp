@@ -12,6 +12,7 @@
 
 extern "C" {
 #include "firmware/hal/hal.h"
+#include "firmware/motion/conversion_table.h"
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_output.h"
@@ -222,13 +223,169 @@ TEST_F(PositionLoop, Ixx34IntegratesAtRestOnly) {
 TEST_F(PositionLoop, AnOpenLoopHasNoIntegral) {
   c_.line("I130=2000 I133=100000 I134=0");
   close(0, 0);
-  for (int n = 0; n < 10; ++n) cycle(32 * 96, 0, 0);
+  for (int n = 0; n < 10; ++n) cycle(32 * 96 * n, 0, 0);
   EXPECT_NE(position_loop_integral(0), 0);
+  EXPECT_NE(position_loop_step(0), 0);
+  EXPECT_NE(c_.line("RX$AE"), "0");
   motor_kill(0);
   position_loop_servo(0);
   EXPECT_EQ(position_loop_integral(0), 0);
+  EXPECT_EQ(position_loop_step(0), 0);
+  EXPECT_EQ(position_loop_filtered(0), 0);
+  EXPECT_EQ(c_.line("RX$AE"), "0");
   EXPECT_EQ(motors[0].output, 0);
   EXPECT_EQ(motors[0].commanded, motors[0].actual) << "a killed motor has no following error";
+}
+
+// Killed and closed between two servo interrupts: nothing of before is left, the notch's past neither.
+TEST_F(PositionLoop, ALoopThatIsClosedAgainAtOnceBeginsAnew) {
+  c_.line("I130=2000 I131=0 I132=128 I133=8388607 I134=0 I135=12800 I136=-1.5 I137=0.9 I138=-0.5 I139=0.25");
+  close(0, 0);
+  for (int n = 1; n <= 20; ++n) cycle(50 * n * 32 * 96, 0, 0);
+  EXPECT_NE(position_loop_integral(0), 0);
+  EXPECT_NE(position_loop_step(0), 0);
+  motor_kill(0);
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_EQ(position_loop_integral(0), 0);
+  EXPECT_EQ(position_loop_step(0), 0);
+  model_.start(0, 0);
+  for (int n = 1; n <= 5; ++n) {
+    cycle(10 * n * 32 * 96, 0, 0);
+    EXPECT_NEAR(output_, expected_, 0.05) << n;
+  }
+}
+
+// Under the sanitizers: gains, scales and limits at their ends, positions that jump from end to end.
+TEST_F(PositionLoop, NothingOverflowsAtTheEndsOfAllRanges) {
+  Pick pick;
+  const auto one_of = [&pick](std::initializer_list<double> v) { return v.begin()[pick.whole(0, v.size() - 1)]; };
+  for (int set = 0; set < 60; ++set) {
+    motor_kill(0);
+    for (const unsigned scale : {8u, 9u}) variable(scale, one_of({1, 96, 8388607}));
+    for (const unsigned gain : {30u, 31u, 32u, 35u}) variable(gain, one_of({-8388608, 0, 8388607}));
+    variable(33, one_of({0, 8388607}));
+    variable(34, one_of({0, 1}));
+    for (const unsigned k : {36u, 37u, 38u, 39u}) variable(k, set % 2 == 0 ? 0 : one_of({-2, 0, 1.9999997}));
+    variable(63, one_of({-8388608, 0, 8388607}));
+    variable(64, one_of({-32768, 0, 32767}));
+    for (const unsigned k : {65u, 67u}) variable(k, one_of({0, 8388607}));
+    for (const unsigned k : {68u, 69u}) variable(k, one_of({0, 32767}));
+    variable(96, one_of({0, 2}));
+    close(0, 0);
+    for (int n = 0; n < 100; ++n) {
+      motors[0].trajectory = static_cast<std::int64_t>(one_of({-1, 0, 1})) * (INT64_C(1) << pick.whole(0, 61));
+      at(pick.whole(-8388608, 8388607), pick.whole(-8388608, 8388607));
+      desired_position_servo(0);
+      position_loop_servo(0);
+      motor_output_servo(0);
+      ASSERT_LE(std::abs(motors[0].output), i(69) * 256);
+    }
+  }
+}
+
+// motion:1.3: what the loop shows, in units of 1/(32 Ixx08) count and in bits of 24.
+TEST_F(PositionLoop, WordsOfTheLoop) {
+  c_.line("I130=4000 I131=0 I132=0 I133=131072 I134=0 I168=100 I137=0.5");
+  close(0, 0);
+  cycle(-10 * 32 * 96, 0, 0);
+  cycle(-12 * 32 * 96, 0, 0);
+  const auto word = [this](const char* command) { return std::stol(c_.line(command)); };
+  const long integral = -22 * 32 * 96 / 64;  // Ixx33 / 2^23 = 1/64
+  EXPECT_EQ(word("RX$9E"), -1);
+  EXPECT_EQ(word("RY$9E"), integral);
+  EXPECT_EQ(word("RX$87"), -1);
+  EXPECT_EQ(word("RY$87"), -2 * 32 * 96);
+  const double pid = (-12 - 22 / 64.0) * 4000 * 96 / 524288;  // bits of 16
+  EXPECT_NEAR(word("RX$AE") / 256.0, pid, 0.01);
+  const double before = -10 * (1 + 1 / 64.0) * 4000 * 96 / 524288;
+  EXPECT_EQ(word("RX$BF"), motors[0].output);
+  EXPECT_NEAR(word("RX$BF") / 256.0, pid - 100, 0.01) << "N2 is two closures back";
+  cycle(-12 * 32 * 96, 0, 0);
+  EXPECT_NEAR(word("RX$BF") / 256.0, (-12 - 34 / 64.0) * 4000 * 96 / 524288 + 0.5 * before, 0.01);
+  EXPECT_EQ(word("RX$88"), -1);
+  EXPECT_EQ(word("RY$88"), -12 * 32 * 96);
+  at(-5 * 32, -5 * 32);
+  position_loop_servo(0);
+  EXPECT_EQ(word("RX$8B"), -1);
+  EXPECT_EQ(word("RY$8B"), -5 * 32 * 96);
+  EXPECT_EQ(word("RX$9D"), -5 * 32 * 96);
+  cycle(6000 * 32 * 96, 5999 * 32, 0);
+  EXPECT_EQ(word("RX$88"), 1);
+  EXPECT_EQ(word("RY$88"), 6000 * 32 * 96 - 16777216);
+  EXPECT_EQ(word("RX$8B"), 1);
+  EXPECT_EQ(word("RY$8B"), 5999 * 32 * 96 - 16777216);
+}
+
+// What the notch is given may be far beyond a word, which shows its end.
+TEST_F(PositionLoop, TheWordOfThePidHasAnEnd) {
+  c_.line("I130=8388607 I131=0 I132=0 I133=0");
+  close(0, 0);
+  cycle(5000 * 32 * 96, 0, 0);
+  EXPECT_EQ(c_.line("RX$AE"), "8388607");
+  cycle(-5000 * 32 * 96, 0, 0);
+  EXPECT_EQ(c_.line("RX$AE"), "-8388607");
+}
+
+// A counter that is cleared is no movement: in the interrupt after that and in the next.
+TEST_F(PositionLoop, MovementThatIsForgotten) {
+  close(0, 0);
+  position_loop_forget_movement(0);
+  const std::int64_t before = motors[0].actual;
+  at(1000, 1000);
+  position_loop_servo(0);
+  at(1100, 1100);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, before);
+  at(1132, 1132);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+}
+
+// A filter that is switched on while the loop runs has no past.
+TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
+  c_.line("I130=2000 I131=0 I132=0 I133=0 I138=0.5");
+  close(0, 0);
+  for (int n = 0; n < 5; ++n) cycle(100 * 32 * 96, 0, 0);
+  c_.line("I138=0");
+  cycle(100 * 32 * 96, 0, 0);
+  c_.line("I136=0.5");
+  cycle(100 * 32 * 96, 0, 0);
+  const double pid = 100 * 2000 * 96 / 524288.0;
+  EXPECT_NEAR(output_, pid, 0.01);
+  cycle(100 * 32 * 96, 0, 0);
+  EXPECT_NEAR(output_, pid * 1.5, 0.01);
+}
+
+// D:$8D, D:$90 and D:$CC are set by writes of either half.
+TEST_F(PositionLoop, PositionsThatMayBeWritten) {
+  std::int64_t* const positions[] = {&motors[0].master, &motors[0].compensation, &motors[0].bias};
+  const char* const addresses[] = {"$8D", "$90", "$CC"};
+  for (int k = 0; k < 3; ++k) {
+    const std::string at = addresses[k];
+    c_.line("WX" + at + ",-2");
+    c_.line("WY" + at + ",5");
+    EXPECT_EQ(*positions[k], -2 * 16777216 + 5) << at;
+    EXPECT_EQ(c_.line("RX" + at), "-2") << at;
+    EXPECT_EQ(c_.line("RY" + at), "5") << at;
+    c_.line("WY" + at + ",-1");
+    EXPECT_EQ(*positions[k], -2 * 16777216 + 16777215) << at;
+    c_.line("WX" + at + ",1");
+    EXPECT_EQ(*positions[k], 2 * 16777216 - 1) << at;
+  }
+}
+
+// motion:2: up to 2^18 bits of a parallel word an interrupt, 24 bits that go round, and no count is lost.
+TEST_F(PositionLoop, AParallelWordMayMoveByTwoTo18) {
+  c_.line("I8000=$2010F2 I8001=$18000 I103=$3502 I104=$3502 I8002=0");
+  conversion_table_servo();
+  position_loop_servo(0);
+  const std::int64_t begin = motors[0].actual;
+  for (std::int64_t n = 1; n <= 1000; ++n) {
+    *hal_y(0x10F2) = static_cast<std::uint32_t>(n * 262143) & HAL_WORD_MASK;
+    conversion_table_servo();
+    position_loop_servo(0);
+  }
+  EXPECT_EQ(motors[0].actual - begin, 1000 * 262143ll * 32 * 96);
 }
 
 // Every Ixx60+1 interrupts; velocities are those of a closure.
@@ -249,6 +406,18 @@ TEST_F(PositionLoop, ExtensionSlowsTheLoopOnly) {
     EXPECT_EQ(motors[0].desired_step, 32 * 96) << "the trajectory goes on every interrupt";
   }
   EXPECT_EQ(closures, 10);
+}
+
+// The raw word is that of a closure; V stays that of a servo interrupt.
+TEST_F(PositionLoop, ReportedVelocityKnowsNoExtension) {
+  c_.line("I160=3");
+  close(0, 0);
+  for (int n = 1; n <= 40; ++n) {
+    at(n * 32 * 5, n * 32 * 5);
+    position_loop_servo(0);
+  }
+  EXPECT_EQ(c_.line("RX$9D"), std::to_string(4 * 5 * 32 * 96));
+  EXPECT_EQ(c_.line("#1V"), "5");
 }
 
 TEST_F(PositionLoop, SourcesRollOver) {
@@ -281,11 +450,44 @@ TEST_F(PositionLoop, VelocityOfTheSameWord) {
   EXPECT_EQ(velocity_after(15), 0);
 }
 
+// Where another source stands is no movement.
+TEST_F(PositionLoop, AnotherSourceIsNoMovement) {
+  close(1000, 1000);
+  position_loop_servo(0);
+  at(1000, 5000);
+  position_loop_servo(0);
+  const std::int64_t before = motors[0].actual;
+  c_.line("I103=$10F1 I104=$10F0");
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, before);
+  EXPECT_EQ(motors[0].velocity, 0);
+  at(1000, 5032);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+}
+
+// A smaller Ixx60 acts at once, a loop that waits for its turn does not wait for the old one.
+TEST_F(PositionLoop, ASmallerExtensionActsAtOnce) {
+  c_.line("I160=255");
+  close(0, 0);
+  position_loop_servo(0);
+  at(32, 32);
+  c_.line("I160=1");
+  position_loop_servo(0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, 32 * 96);
+}
+
 TEST_F(PositionLoop, OpenLoopPutsOutWhatItIsTold) {
   ASSERT_TRUE(motor_open(0, 1234 << 8));
   position_loop_servo(0);
   motor_output_servo(0);
   EXPECT_EQ(*hal_y(kDac), 1234u << 8);
+  motor_kill(0);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+  position_loop_servo(0);
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 0u) << "nor later";
 }
 
 // The bias is added after the clip, and stays on the output of a killed motor.
