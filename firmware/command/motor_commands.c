@@ -34,7 +34,8 @@ static error_t is_free(uint32_t motor) {
 /* It may be jogged away from where a hold has stopped it on the path; a move of its own goes on then. */
 static bool is_held(uint32_t motor) {
   const struct coordinate_system* s = &coordinate_systems[axis_definitions[motor].cs];
-  return (s->held && s->increment == 0 && !jog_is_of_program(motor)) || segment_stands(axis_definitions[motor].cs);
+  if (segment_stands(axis_definitions[motor].cs)) return true;
+  return s->held && s->increment == 0 && !jog_is_of_program(motor);
 }
 
 static error_t may_enable(uint32_t motor, bool free) {

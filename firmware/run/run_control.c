@@ -194,9 +194,8 @@ static error_t go(uint32_t cs, enum lookahead_order order) {
 }
 
 error_t run_forward(uint32_t cs) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  if (s->running && segment_looks(cs)) return go(cs, LOOKAHEAD_FORWARD);
-  return s->held ? run_start(cs, false) : ERR_NONE;
+  if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_FORWARD);
+  return run_start(cs, false);
 }
 
 error_t run_back(uint32_t cs) {
