@@ -27,6 +27,23 @@ static const struct alias {
 };
 enum { ALIAS_COUNT = sizeof ALIASES / sizeof ALIASES[0] };
 
+/* Gathering reads words at each servo interrupt: those that are none of these have no use for the list. */
+static bool is_alias(uint32_t offset) {
+  switch (offset) {
+    case 0x09:
+    case 0x0F:
+    case 0x12:
+    case 0x13:
+    case 0x19:
+    case 0x1C:
+    case 0x1F:
+    case 0x2E:
+      return true;
+    default:
+      return false;
+  }
+}
+
 static int shift_of(const struct alias* alias) {
   return alias->variable == IXX69_OUTPUT_LIMIT ? OUTPUT_LIMIT_SHIFT : 0;
 }
@@ -83,6 +100,7 @@ static unsigned read_state(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
 
 unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
   unsigned made = 0;
+  if (!is_alias(offset)) return read_state(motor, offset, x, y);
   for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias) {
     if (alias->offset != offset) continue;
     *(alias->half == HALF_X ? x : y) = (uint32_t)i_integer(number_of(motor, alias)) << shift_of(alias) & HAL_WORD_MASK;
