@@ -113,9 +113,19 @@ void TaskLoad::set_up() {
     at(81, fmt::format("${:X}", host_.address(motor - 1, word::kStatus)));
     at(91, "$800000");
     at(84, "$FFFC00");
-    for (const auto& [k, value] : {std::pair{70u, 4.0}, {71u, 4000.0}, {72u, 1365.0}, {61u, 0.011}, {62u, 0.2},
-                                   {66u, 7180.0}, {30u, 20000.0}, {31u, 1000.0}, {69u, 8000.0}, {57u, 10000.0},
-                                   {58u, 20000.0}, {11u, 0.0}, {12u, 0.0}})
+    for (const auto& [k, value] : {std::pair{70u, 4.0},
+                                   {71u, 4000.0},
+                                   {72u, 1365.0},
+                                   {61u, 0.011},
+                                   {62u, 0.2},
+                                   {66u, 7180.0},
+                                   {30u, 20000.0},
+                                   {31u, 1000.0},
+                                   {69u, 8000.0},
+                                   {57u, 10000.0},
+                                   {58u, 20000.0},
+                                   {11u, 0.0},
+                                   {12u, 0.0}})
       at(k, fmt::format("{}", value));
     at(0, "1");
   }
@@ -150,10 +160,11 @@ void TaskLoad::moved(const std::string& name) {
 }
 
 void TaskLoad::own_times(const std::string& name, double ms, std::uint64_t phase, std::uint64_t servo) {
+  const double servo_ms = std::strtod(b_.ask("I10").c_str(), nullptr) / 8'388'608;
   Watch watch(b_);
   host_.wait_ms(ms);
   const auto cycles = [this](TimeFs t) { return static_cast<std::uint64_t>(t / b_.machine.cpu_period()); };
-  const double slice = 3 * b_.numbers("I10").at(0) / 8'388'608.0 * 1e12 / 2;  // fs: half of a real-time period, I8 = 2
+  const double slice = 3 * servo_ms * 1e12 / 2;  // fs: half of a real-time period, I8 = 2
   const struct {
     const char* name;
     unsigned task;
@@ -163,10 +174,9 @@ void TaskLoad::own_times(const std::string& name, double ms, std::uint64_t phase
                 {"real-time", TaskTimes::kRealTime, cycles(static_cast<TimeFs>(slice))}};
   for (const auto& l : limits) {
     const TaskTimes::Runs runs = watch.tasks.runs(l.task);
-    b_.report.step(fmt::format("{} task, {}", l.name, name),
-                   FallLimits::keeps_cycles(runs.count, cycles(runs.longest), l.most),
-                   fmt::format("{} cycles of its own at most, of {}; {} times", cycles(runs.longest), l.most,
-                               runs.count));
+    b_.report.step(
+        fmt::format("{} task, {}", l.name, name), FallLimits::keeps_cycles(runs.count, cycles(runs.longest), l.most),
+        fmt::format("{} cycles of its own at most, of {}; {} times", cycles(runs.longest), l.most, runs.count));
   }
 }
 
@@ -200,7 +210,7 @@ void TaskLoad::brick_clocks() {
   for (const char* line : {"I7000=1473 I7100=1473 I7001=3 I7002=1 I7101=3 I7102=1", "I7003=1746 I7103=1746 I10=1677653",
                            "I52=24", "SAVE", "$$$"})
     b_.ask(line);
-  b_.report.equal<long>("I52 after $$$", b_.numbers("I52").at(0), 24);
+  host_.expect("I52", "24");
 }
 
 void TaskLoad::run() {
