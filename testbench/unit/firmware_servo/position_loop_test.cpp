@@ -201,7 +201,7 @@ TEST_F(PositionLoop, NothingOverflowsAtTheEndsOfAllRanges) {
   }
 }
 
-// A filter that is switched on while the loop runs has no past.
+// A filter that is switched on while the loop runs has no past, and then keeps it.
 TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
   c_.line("I130=2000 I131=0 I132=0 I133=0 I138=0.5");
   close(0, 0);
@@ -214,6 +214,9 @@ TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
   EXPECT_NEAR(output_, pid, 0.01);
   cycle(100 * 32 * 96, 0, 0);
   EXPECT_NEAR(output_, pid * 1.5, 0.01);
+  c_.line("I131=0 I167=8388607");
+  cycle(100 * 32 * 96, 0, 0);
+  EXPECT_NEAR(output_, pid * 1.5, 0.01) << "other variables leave its past alone";
 }
 
 }  // namespace
