@@ -3,7 +3,7 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/kernel/slice.h"
 
-enum { BOUNDS_A_MOTOR = 5, PAUSE_BOUNDS = 8, SEARCHES = 12 };
+enum { BOUNDS_A_MOTOR = 6, PAUSE_BOUNDS = 8, SEARCHES = 14 };
 
 #define BOUND_ONE (INT64_C(1) << (RATE_BITS + BEND_BITS))
 
@@ -29,9 +29,11 @@ void limits_add(const struct limits_motor* m, uint32_t quarters) {
   const int32_t n0 = m->pace[0] * 2 / h, n2 = m->pace[1] * 2 / h, n1 = n0 + a0 / 4;
   const int32_t b[3][2] = {{a0 - n0, n0}, {a1 / 2 - n1, a0 / 2 + n1}, {-n2, a1 + n2}};
   add(b[0][0], b[0][1]);
-  add((b[0][0] + b[1][0]) / 2, (b[0][1] + b[1][1]) / 2);
-  add((b[0][0] + b[2][0]) / 4 + b[1][0] / 2, (b[0][1] + b[2][1]) / 4 + b[1][1] / 2);
-  add((b[1][0] + b[2][0]) / 2, (b[1][1] + b[2][1]) / 2);
+  for (int32_t i = 0; i < 4; i++) {
+    const int32_t f0 = (4 - i) * (3 - i), f1 = i * (3 - i) + (i + 1) * (4 - i), f2 = i * (i + 1);
+    add((int32_t)(((int64_t)f0 * b[0][0] + (int64_t)f1 * b[1][0] + (int64_t)f2 * b[2][0]) / 16),
+        (int32_t)(((int64_t)f0 * b[0][1] + (int64_t)f1 * b[1][1] + (int64_t)f2 * b[2][1]) / 16));
+  }
   add(b[2][0], b[2][1]);
   slice_pause();
 }

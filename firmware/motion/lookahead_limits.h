@@ -4,8 +4,9 @@
  *
  *   q(u) = (x'' w + x' w' / 2) / T^2      x'' linear, x' quadratic in u: q is quadratic in u, and linear in w0 and w1
  *
- * The five values b0, (b0+b1)/2, (b0+2 b1+b2)/4, (b1+b2)/2, b2 made of its Bernstein coefficients bound q from outside:
- * each asks |c0 w0 + c1 w1| <= 1 for all motors. Integers; one part at a time. Real-time task, in slices. */
+ * The four values b0, (b0+b1)/2, (b1+b2)/2, b2 made of its Bernstein coefficients, with their mean in the middle, are
+ * those of its two halves and bound q from outside: each asks |c0 w0 + c1 w1| <= 1 for all motors. Integers; one part
+ * at a time. Real-time task, in slices. */
 #ifndef FIRMWARE_MOTION_LOOKAHEAD_LIMITS_H
 #define FIRMWARE_MOTION_LOOKAHEAD_LIMITS_H
 

@@ -30,12 +30,13 @@ static struct guard {
 volatile uint32_t protection_watched;
 
 static volatile bool foreground; /* I13, as the last pass has seen it */
+static volatile bool stands;     /* B */
 static uint32_t shown;           /* B: signals that are on */
 
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
-  foreground = false;
+  foreground = stands = false;
   protection_watched = 0;
   shown = 0;
 }
@@ -249,7 +250,7 @@ static void not_closed(uint32_t motor) {
 static void check(uint32_t motor) {
   if (motors[motor].loop == LOOP_KILLED) return not_closed(motor); /* the usual way of motors that nobody uses */
   const struct view view = look(motor);
-  if (!status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
   if (motors[motor].loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
@@ -292,7 +293,10 @@ static void show_signals(void) {
   shown = on;
 }
 
+void protection_stand(bool still) { stands = still; }
+
 void protection_pass(void) {
+  if (stands) return;
   foreground = i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0;
   protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;

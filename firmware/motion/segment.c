@@ -25,12 +25,13 @@ enum {
 /* The sequence that is being made. Owner: R, but for what is marked. */
 struct sequence {
   bool runs;
-  bool handed; /* the servo task has its first pieces */
-  bool ends;   /* it is known where: behind `joined` moves of the queue */
-  bool looks;  /* its segments go through the lookahead buffer */
-  bool made;   /* all its points are */
-  bool closed; /* no further move joins: one of another kind waits for its place */
-  bool stops;  /* segment_stop: at the end of the move that is under way. B sets */
+  bool handed;                         /* the servo task has its first pieces */
+  bool ends;                           /* it is known where: behind `joined` moves of the queue */
+  bool looks;                          /* its segments go through the lookahead buffer */
+  bool made;                           /* all its points are */
+  volatile enum lookahead_order order; /* B; R takes it */
+  bool closed;                         /* no further move joins: one of another kind waits for its place */
+  bool stops;                          /* segment_stop: at the end of the move that is under way. B sets */
   uint32_t joined;
   uint32_t points;    /* that are still to be made behind its end */
   uint32_t unhanded;  /* pieces behind those that the servo task has */
@@ -49,6 +50,7 @@ static struct sequence sequences[COORDINATE_SYSTEMS];
 static int64_t control[MOTORS][SPLINE_POINTS];
 /* Of the pieces of the rings. */
 static struct path_line piece_lines[COORDINATE_SYSTEMS][PIECES];
+static struct lookahead_piece looked[COORDINATE_SYSTEMS][PIECES];
 
 static uint32_t ahead_of(const struct coordinate_system* s) { return s->ring.added - s->ring.executing; }
 
@@ -60,6 +62,18 @@ bool segment_gives_way(uint32_t cs) {
   if (!sequences[cs].runs || sequences[cs].handed) return true;
   sequences[cs].closed = true;
   return false;
+}
+
+bool segment_looks(uint32_t cs) { return sequences[cs].runs && sequences[cs].looks; }
+
+void segment_order(uint32_t cs, enum lookahead_order order) {
+  if (segment_looks(cs)) sequences[cs].order = order;
+}
+
+bool segment_stands(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return segment_looks(cs) && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) && !s->active &&
+         !s->next_valid && piece_ring_is_empty(&s->ring);
 }
 
 void segment_stop(uint32_t cs) {
@@ -112,7 +126,12 @@ static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
   struct piece* piece = piece_ring_at(&s->ring, number);
   *piece = q->timed;
   if (from != 0 && from->time != q->period) piece_set_time(piece, from->time);
-  piece->warp = from == 0 ? 0 : from->warp;
+  if (from != 0) {
+    piece->warp = from->warp;
+    piece->from = (uint8_t)from->first;
+    piece->to = (uint8_t)from->last;
+    looked[cs][number % PIECES] = *from;
+  }
   piece->motors = 0;
   piece->move = from == 0 ? q->numbers[0] : from->number;
   piece->continues = q->handed || q->unhanded != 0;
@@ -199,6 +218,7 @@ static bool begin(uint32_t cs) {
   set_move(cs, 0);
   set_move(cs, 0);
   q->handed = q->ends = q->closed = false;
+  q->order = LOOKAHEAD_NONE;
   q->joined = 1;
   q->unhanded = 0;
   q->points = LAST_POINTS;
@@ -341,16 +361,40 @@ static bool release(uint32_t cs, bool hurry) {
   struct lookahead_piece piece;
   if (!lookahead_release(cs, hurry, &piece)) return false;
   add_piece(cs, &piece);
-  const bool over = q->made && lookahead_left(cs) == 0u;
-  if (q->handed || over || q->unhanded > short_ahead(q)) hand_over(cs);
+  const bool over = q->made && lookahead_is_over(cs);
+  if (q->handed || over || lookahead_stands(cs) || q->unhanded > short_ahead(q)) hand_over(cs);
   q->runs = !over;
   return true;
+}
+
+/* Pieces that the servo task does not come to within SHORT_MS are not made after all. */
+static void take_back(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const int64_t least = (int64_t)SHORT_MS << TRAJECTORY_FRACTION_BITS;
+  const uint32_t state = hal_mask_servo();
+  uint32_t number = s->ring.executing;
+  for (int64_t time = -s->ring.elapsed; number != s->ring.added && time < least; number++)
+    time += piece_ring_at(&s->ring, number)->time;
+  const bool any = number != s->ring.added || sequences[cs].unhanded != 0;
+  piece_ring_take_back(&s->ring, number);
+  hal_unmask(state);
+  sequences[cs].unhanded = 0;
+  if (any) lookahead_take_back(cs, &looked[cs][number % PIECES]);
+}
+
+static void obey(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  const enum lookahead_order order = q->order;
+  q->order = LOOKAHEAD_NONE;
+  take_back(cs);
+  lookahead_do(cs, order);
 }
 
 /* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
 static bool work_ahead(uint32_t cs, bool alone) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
+  if (q->order != LOOKAHEAD_NONE) obey(cs);
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
   if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;

@@ -362,6 +362,15 @@ def follow_lockstep():
     bench_passes("follow", "lockstep", "10")
 
 
+def task_load():
+    for seed in ("1", "2", "3"):
+        bench_passes("task-load", "systemc", seed)
+
+
+def task_load_lockstep():
+    bench_passes("task-load", "lockstep", "11")
+
+
 if CASE.endswith("_negative"):
     fails_its_negative_control(CASE.removesuffix("_negative").removesuffix("_bench").replace("_", "-"))
 else:
