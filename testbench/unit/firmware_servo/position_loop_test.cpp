@@ -94,7 +94,8 @@ TEST_F(PositionLoop, FarAwayTheSignIsRight) {
   for (const double counts : {1e6, -1e6, 2e6, -3e6, 1e9, -1e12}) {
     cycle(std::llround(counts * 32 * 96), 0, 0);
     EXPECT_NEAR(output_, (counts > 0 ? 100 : -100) * 10 * 96 / 524288.0, 1 / 256.0) << counts;
-    motors[0].closed_at = motors[0].commanded;
+    cycle(std::llround(counts * 32 * 96), 0, 0);
+    EXPECT_NEAR(output_, (counts > 0 ? 100 : -100) * 10 * 96 / 524288.0, 1 / 256.0) << counts << " and stays";
   }
   c_.line("I132=32767");
   cycle(0, 0, 0);
@@ -200,7 +201,7 @@ TEST_F(PositionLoop, NothingOverflowsAtTheEndsOfAllRanges) {
   }
 }
 
-// A filter that is switched on while the loop runs has no past.
+// A filter that is switched on while the loop runs has no past, and then keeps it.
 TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
   c_.line("I130=2000 I131=0 I132=0 I133=0 I138=0.5");
   close(0, 0);
@@ -213,6 +214,9 @@ TEST_F(PositionLoop, ANotchThatIsSwitchedOnBeginsAtRest) {
   EXPECT_NEAR(output_, pid, 0.01);
   cycle(100 * 32 * 96, 0, 0);
   EXPECT_NEAR(output_, pid * 1.5, 0.01);
+  c_.line("I131=0 I167=8388607");
+  cycle(100 * 32 * 96, 0, 0);
+  EXPECT_NEAR(output_, pid * 1.5, 0.01) << "other variables leave its past alone";
 }
 
 }  // namespace
