@@ -132,8 +132,10 @@ TEST_F(MotionLimits, AnInputKillsInFrontOfTheSoftwareLimit) {
     const char* limits;
     std::uint32_t input;
     bool kills;
-  } cases[] = {{"I113=100000 I114=0", kPositive, true},   {"I113=0 I114=-100000", kPositive, false},
-               {"I113=500 I114=0", kPositive, false},     {"I113=0 I114=-100000", kNegative, true},
+  } cases[] = {{"I113=100000 I114=0", kPositive, true},
+               {"I113=0 I114=-100000", kPositive, false},
+               {"I113=500 I114=0", kPositive, false},
+               {"I113=0 I114=-100000", kNegative, true},
                {"I113=100000 I114=0", kNegative, false}};
   for (const auto& one : cases) {
     flags(1, 0);

@@ -1,5 +1,5 @@
-// Motors 1, 2 and 5 of a controller natively, on position words and flag words that the test writes; 1 and 2 are X and Y
-// of coordinate system 1, 5 is in none.
+// Motors 1, 2 and 5 of a controller natively, on position words and flag words that the test writes; 1 and 2 are X and
+// Y of coordinate system 1, 5 is in none.
 #pragma once
 
 #include <gtest/gtest.h>

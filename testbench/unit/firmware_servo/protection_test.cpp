@@ -9,7 +9,6 @@
 extern "C" {
 #include "firmware/base/status.h"
 #include "firmware/motion/conversion_table.h"
-
 }
 
 namespace brick {
