@@ -27,7 +27,7 @@ TEST_F(MotionLimits, ASoftwareLimitStopsAJogByIxx15) {
   c_.line("I113=1000 I514=-1000");
   c_.line("#1J+ #5J-");
   double passed = 0;
-  while (at(1) < 1000) follow(1);
+  follow_until([] { return at(1) >= 1000; });
   passed = at(1);
   follow(3);
   EXPECT_TRUE(status1(1, 12)) << "abort deceleration";
@@ -272,7 +272,7 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
   EXPECT_EQ(at(1), stands) << "not further";
   c_.line("#1J-");
   double passed = 0;
-  while (at(1) > -950) follow(1);
+  follow_until([] { return at(1) <= -950; });
   passed = at(1);
   follow(6);
   EXPECT_TRUE(status1(1, 12));
@@ -296,7 +296,7 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
 TEST_F(MotionLimits, TheDesiredPositionOfAProgramHasLimits) {
   c_.line("I224=$808001 I213=600");
   run({"TM1000 TA20 TS0 X20000 Y20000", "P1=1"});
-  while (at(2) < 600) follow(1);
+  follow_until([] { return at(2) >= 600; });
   follow(8);
   EXPECT_FALSE(runs());
   EXPECT_TRUE(status1(1, 12) && status1(2, 12));
