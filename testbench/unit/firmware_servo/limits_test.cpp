@@ -260,13 +260,14 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
   follow(200);
   EXPECT_EQ(at(1), 1000);
   EXPECT_FALSE(status1(1, 12) || status2(1, 12) || status2(1, 11));
-  c_.line("#1J=1001");
+  c_.line("I122=5 #1J=1050");
   follow(300);
   EXPECT_TRUE(status2(1, 12)) << "stopped on a desired limit";
   EXPECT_FALSE(status2(1, 11) || status1(1, 21));
   EXPECT_EQ(std::stoul(c_.line("&1??").substr(12), nullptr, 16) & 2u, 2u);
   const double stands = at(1);
-  EXPECT_NEAR(stands, 1001, 1);
+  expect_ramp(1000, stands, 5);
+  c_.line("I122=32");
   c_.line("#1J+");
   follow(50);
   EXPECT_EQ(at(1), stands) << "not further";
@@ -284,6 +285,12 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
   EXPECT_EQ(at(1), 0);
   EXPECT_FALSE(status2(1, 12));
   EXPECT_EQ(std::stoul(c_.line("&1??").substr(12), nullptr, 16), 0u);
+  // The commanded position counts: the motor itself is held.
+  c_.line("I122=5 #1J=1050");
+  servo(600);
+  EXPECT_TRUE(status2(1, 12));
+  c_.line("I122=32 #1J=0");
+  servo(300);
   // Without bit 15, and of a side whose software limit is off, there is none.
   c_.line("I124=$800001 #1J=-1000");
   follow(400);

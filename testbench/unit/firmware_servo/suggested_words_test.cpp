@@ -59,6 +59,37 @@ TEST_F(SuggestedWords, OfAJog) {
   EXPECT_EQ(c_.line("M133 M138 M139"), "0|1|0");
 }
 
+// motion:1.3/4: with I60 = 15 and I61 = 8 over 256 interrupts, with 1 and 5 over 32; homing does not disturb it.
+TEST_F(SuggestedWords, OfTheAveragedVelocity) {
+  c_.line("M174->D:$EF I119=1000");
+  close_all();
+  c_.line("#1J+");
+  const double step = 32 * 3713991.0 / 8388608;
+  follow(600);
+  EXPECT_NEAR(counts_of(174), step, 1.0 / 64);
+  c_.line("#1J/");
+  follow(100);
+  EXPECT_GT(counts_of(174), step / 2) << "156 of 256 interrupts were at full speed";
+  EXPECT_LT(counts_of(174), step * 0.8);
+  follow(200);
+  EXPECT_EQ(m(174), 0);
+  c_.line("I60=1 I61=5 #1J-");
+  follow(60);
+  EXPECT_NEAR(counts_of(174), -step, 1.0 / 64);
+  c_.line("#1J/");
+  follow(60);
+  EXPECT_EQ(m(174), 0);
+  // The encoder goes on through an assignment of home.
+  c_.line("#1K");
+  double place = at(1);
+  for (int n = 0; n < 100; ++n) {
+    if (n == 60) { EXPECT_EQ(c_.line("#1HMZ"), ""); }
+    counts(1, place += 3);
+    servo();
+    if (n > 40) { ASSERT_NEAR(counts_of(174), 3, 1.0 / 64) << n; }
+  }
+}
+
 TEST_F(SuggestedWords, OfAProgram) {
   run({"TM400 TA50 TS0 X5000 Y-2500", "DWELL100", "RAPID X1000 Y0", "LINEAR TM100000 X9000", "DWELL5"});
   follow(50);
@@ -67,7 +98,7 @@ TEST_F(SuggestedWords, OfAProgram) {
   EXPECT_EQ(counts_of(263), -2500);
   EXPECT_EQ(c_.line("M5147 M5148 M5141"), "5000|-2500|0") << "targets of axes";
   follow(1100);  // 450 ms are 1017 interrupts
-  EXPECT_EQ(c_.line("M5180 M5187 M135 M133"), "1|0|1|1") << "DWELL: desired velocity 0, not in position";
+  EXPECT_EQ(c_.line("M5180 M5187 M140 M135 M133"), "1|0|0|1|1") << "DWELL: desired velocity 0, not in position";
   EXPECT_EQ(counts_of(163), 5000);
   follow(120);
   EXPECT_EQ(c_.line("M5147 M5148"), "1000|0") << "RAPID";
