@@ -2,6 +2,7 @@
 
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/commutation.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_target.h"
@@ -96,6 +97,8 @@ static unsigned read_state(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
       return BOTH;
     case MEMORY_MOTOR_TARGET:
       return put_long(motor_target(motor), x, y);
+    case MEMORY_MOTOR_AVERAGE_VELOCITY:
+      return put_long(average_velocity(motor), x, y);
     default:
       return read_position(motor, offset, x, y);
   }
