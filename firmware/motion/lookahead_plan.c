@@ -7,6 +7,7 @@
 #include "firmware/motion/lookahead_state.h"
 
 enum { QUARTERS = 4 };
+enum { SLOWEST = 64 }; /* a w that is no more than the rounding of sums: 0 */
 
 /* Of a part of a segment, in quarters of it: the motors at its ends. */
 static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
@@ -31,8 +32,8 @@ static void load(const struct look* l, uint32_t segment) { load_part(l, segment,
 
 /* Of w at a knot: the velocities in the segments at both sides. */
 static int32_t cap_at(const struct look* l, uint32_t knot) {
-  const int32_t behind = knot == look_oldest(l) ? RATE_FULL : lookahead_record(&l->buffer, knot - 1u)->cap;
-  const int32_t ahead = knot == look_end(l) ? RATE_FULL : lookahead_record(&l->buffer, knot)->cap;
+  const int32_t behind = knot == look_oldest(l) ? RATE_FULL : lookahead_at(&l->buffer, knot - 1u)->cap;
+  const int32_t ahead = knot == look_end(l) ? RATE_FULL : lookahead_at(&l->buffer, knot)->cap;
   return behind < ahead ? behind : ahead;
 }
 
@@ -41,7 +42,7 @@ static int32_t cap_at(const struct look* l, uint32_t knot) {
 /* The part of the window in which a sweep does not see its own end. */
 static uint32_t spare(const struct look* l) { return l->length / 4u != 0 ? l->length / 4u : 1u; }
 
-static int32_t* rate_at(const struct look* l, uint32_t knot) { return &lookahead_record(&l->buffer, knot)->rate; }
+static int32_t* rate_at(const struct look* l, uint32_t knot) { return &lookahead_at(&l->buffer, knot)->rate; }
 
 /* At its first knot, and at its last, a sequence stands whatever w is. */
 static bool is_free(const struct look* l, uint32_t knot) {
@@ -138,8 +139,8 @@ static void hand(struct look* l, uint32_t segment, uint32_t first, uint32_t last
                  struct lookahead_piece* piece) {
   *piece = (struct lookahead_piece){.segment = segment, .first = first, .last = last, .rate = l->rate};
   set_time(l, l->rate, to, piece);
-  piece->number = lookahead_record(&l->buffer, segment + 2u)->number;
-  piece->line = lookahead_record(&l->buffer, segment + 2u)->line;
+  piece->number = lookahead_at(&l->buffer, segment + 2u)->number;
+  piece->line = lookahead_at(&l->buffer, segment + 2u)->line;
   l->begun = true;
   l->rate = to;
   l->front = last == QUARTERS ? segment + 1u : segment;
@@ -176,15 +177,16 @@ static void stand(struct look* l) {
 /* As soon as it can: within the next part, at a quarter of it, or as slow as can be at its end. */
 static bool stop(struct look* l, struct lookahead_piece* piece) {
   struct next_part p;
-  if (l->rate == 0 || !find_part(l, &p)) {
+  if (l->rate < SLOWEST || !find_part(l, &p)) {
     stand(l);
     return false;
   }
-  const int32_t cap = lookahead_record(&l->buffer, p.segment)->cap;
+  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
   for (uint32_t i = 1; i <= QUARTERS; i++) {
     const uint32_t last = l->backward ? p.first - i : p.first + i;
     load_next(l, &p, last);
-    const int32_t least = limits_least(far_end(l), l->rate, cap);
+    int32_t least = limits_least(far_end(l), l->rate, cap);
+    if (least >= 0 && least < SLOWEST) least = 0;
     const bool over = last == p.last;
     if (least != 0 && !over) continue;
     hand(l, p.segment, p.first, last, least >= 0 ? least : l->rate < cap ? l->rate : cap, piece);
@@ -213,7 +215,7 @@ static bool single(struct look* l, struct lookahead_piece* piece) {
     stand(l);
     return true;
   }
-  const int32_t cap = lookahead_record(&l->buffer, p.segment)->cap;
+  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
   load_next(l, &p, middle);
   int32_t most = limits_most(far_end(l), 0, cap);
   load_part(l, p.segment, l->backward ? p.last : middle, l->backward ? middle : p.last);
