@@ -300,5 +300,5 @@ bool lookahead_stands(uint32_t cs) { return looks[cs].state == LOOK_STANDS && lo
 bool lookahead_goes_back(uint32_t cs) { return looks[cs].backward; }
 bool lookahead_is_over(uint32_t cs) {
   const struct look* l = &looks[cs];
-  return l->closed && !l->backward && l->front == look_end(l) && l->quarter == 0;
+  return l->closed && l->state == LOOK_GOES && !l->backward && l->front == look_end(l) && l->quarter == 0;
 }

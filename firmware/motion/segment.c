@@ -64,15 +64,25 @@ bool segment_gives_way(uint32_t cs) {
   return false;
 }
 
-bool segment_looks(uint32_t cs) { return sequences[cs].runs && sequences[cs].looks; }
+/* While the last pieces of a sequence are executed too, as long as nothing is placed behind them. */
+bool segment_looks(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool ends = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS && !s->next_valid;
+  return sequences[cs].looks && (sequences[cs].runs || ends);
+}
 
 void segment_order(uint32_t cs, enum lookahead_order order) {
-  if (segment_looks(cs)) sequences[cs].order = order;
+  const uint32_t state = hal_mask_real_time();
+  if (segment_looks(cs)) {
+    sequences[cs].runs = true;
+    sequences[cs].order = order;
+  }
+  hal_unmask(state);
 }
 
 bool segment_stands(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  return segment_looks(cs) && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) && !s->active &&
+  return sequences[cs].runs && sequences[cs].looks && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) && !s->active &&
          !s->next_valid && piece_ring_is_empty(&s->ring);
 }
 
@@ -83,7 +93,7 @@ void segment_stop(uint32_t cs) {
 void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
 
 void segment_forget(uint32_t cs) {
-  sequences[cs].runs = sequences[cs].stops = false;
+  sequences[cs].runs = sequences[cs].looks = sequences[cs].stops = false;
   paths[cs].count = 0;
 }
 
@@ -395,6 +405,11 @@ static bool work_ahead(uint32_t cs, bool alone) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   if (q->order != LOOKAHEAD_NONE) obey(cs);
+  if (q->made && lookahead_is_over(cs)) {
+    hand_over(cs);
+    q->runs = false;
+    return true;
+  }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
   if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;
