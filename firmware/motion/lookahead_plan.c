@@ -288,7 +288,10 @@ void lookahead_do(uint32_t cs, enum lookahead_order order) {
   l->next = order == LOOKAHEAD_STOP ? LOOKAHEAD_NONE : order;
   if (l->state == LOOK_STANDS) return;
   const bool goes_on = order == (l->backward ? LOOKAHEAD_BACKWARD : LOOKAHEAD_FORWARD);
-  if (!goes_on || l->single || l->rates_back != l->backward) {
+  struct next_part p;
+  const bool valid =
+      l->rates_back == l->backward && find_part(l, &p) && (l->backward ? p.knot <= l->valid : p.knot >= l->valid);
+  if (!goes_on || l->single || !valid) {
     l->state = LOOK_STOPS;
     return;
   }

@@ -34,7 +34,8 @@ struct look {
   uint32_t sweep, sweep_end; /* the last knot that it has done; where it began */
   uint32_t swept;            /* the end of the last sweep */
   uint32_t good;             /* knots up to this one do not depend on where that stopped */
-  bool rates_back;           /* the rates of the records are those for the way back */
+  bool rates_back;           /* the rates of the records are those for the way back, */
+  uint32_t valid;            /* from this knot on in that direction */
   bool swept_back;           /* the knots behind have been swept for the way back */
 };
 
@@ -52,6 +53,7 @@ static inline uint32_t look_oldest(const struct look* l) {
 static inline void look_forget_sweeps(struct look* l) {
   l->sweeping = l->swept_back = false;
   l->swept = l->good = l->front;
+  l->valid = l->backward ? l->front : l->front + (l->begun ? 1u : 0u);
 }
 
 #endif
