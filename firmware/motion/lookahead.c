@@ -65,8 +65,8 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
   l->limits = wanted > 1u;
-  l->closed = l->begun = l->backward = l->single = false;
-  l->added = l->front = l->quarter = 0;
+  l->closed = l->begun = l->backward = l->single = l->was_single = false;
+  l->added = l->front = l->part = 0;
   l->rate = RATE_FULL;
   l->state = LOOK_GOES;
   l->next = LOOKAHEAD_NONE;

@@ -35,20 +35,20 @@ static int32_t mean(int32_t b0, int32_t b1, int32_t b2, const int8_t part[3]) {
   return (b0 >> 3) * part[0] + (b1 >> 3) * part[1] + (b2 >> 3) * part[2];
 }
 
-void limits_add(const struct limits_motor* m, uint32_t quarters) {
-  static const int8_t parts[4][3] = {{6, 2, 0}, {3, 4, 1}, {1, 4, 3}, {0, 2, 6}};
+void limits_add(const struct limits_motor* m, uint32_t parts) {
+  static const int8_t of[4][3] = {{6, 2, 0}, {3, 4, 1}, {1, 4, 3}, {0, 2, 6}};
   /* x' in the part's own time, halved: its Bernstein coefficients */
   const int32_t a0 = m->bend[0], a1 = m->bend[1];
   int32_t n0 = m->pace[0] / 2, n2 = m->pace[1] / 2;
-  if (quarters != 4u) {
-    n0 = m->pace[0] * 2 / (int32_t)quarters;
-    n2 = m->pace[1] * 2 / (int32_t)quarters;
+  if (parts != 16u) {
+    n0 = m->pace[0] / (int32_t)parts * 8;
+    n2 = m->pace[1] / (int32_t)parts * 8;
   }
   const int32_t n1 = n0 + a0 / 4;
   const int32_t first[3] = {a0 - n0, a1 / 2 - n1, -n2}, second[3] = {n0, a0 / 2 + n1, a1 + n2};
   add(first[0], second[0]);
   for (uint32_t i = 0; i < 4u; i++)
-    add(mean(first[0], first[1], first[2], parts[i]), mean(second[0], second[1], second[2], parts[i]));
+    add(mean(first[0], first[1], first[2], of[i]), mean(second[0], second[1], second[2], of[i]));
   add(first[2], second[2]);
   slice_pause();
 }

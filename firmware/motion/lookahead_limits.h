@@ -24,7 +24,7 @@ struct limits_motor {
 };
 
 void limits_begin(void);
-void limits_add(const struct limits_motor* m, uint32_t quarters); /* a part of 1 to 4 quarters of a segment */
+void limits_add(const struct limits_motor* m, uint32_t parts); /* of 1 to 16 sixteenths of a segment */
 /* The largest and the smallest w at one end, at most `most`, when it is `w` at the other. Below 0: there is none. */
 int32_t limits_most(enum limits_end end, int32_t w, int32_t most);
 int32_t limits_least(enum limits_end end, int32_t w, int32_t most);

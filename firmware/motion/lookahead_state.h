@@ -22,12 +22,13 @@ struct look {
   double period;
   uint32_t added; /* points so far */
   /* the front: what is before it, in the direction of motion, has been handed over */
-  uint32_t front, quarter; /* so many quarters into the segment of this number, forwards */
-  int32_t rate;            /* w there */
-  bool begun;              /* something has been handed over */
+  uint32_t front, part; /* so many sixteenths into the segment of this number, forwards */
+  int32_t rate;         /* w there */
+  bool begun;           /* something has been handed over */
   enum look_state state;
   bool backward;
   enum lookahead_order next; /* once it stands */
+  bool was_single;           /* the last order was that */
   bool single;               /* to the next knot only */
   /* sweep */
   bool sweeping;

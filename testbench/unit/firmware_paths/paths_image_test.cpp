@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -39,18 +38,17 @@ class PathsImage : public ::testing::Test {
     accepted("LINEAR X.9 Y.2 Z(SIN(P1*10)) A-1 B.3 C.1 U1 V-.5");
     accepted("CIRCLE1 X1 Y1 I1 J0 Z-.3 A1 B-.3 C-.1 U-1 V.5 P1=P1+1");
     accepted("ENDWHILE CLOSE");
-    std::uint64_t spent = 0, last = 0; std::map<std::uint32_t, std::uint64_t> histogram;
+    std::uint64_t spent = 0, last = 0;
     board.on_instruction = [&] {
       const std::uint64_t now = board.cpu().cycle();
       const std::uint32_t sp = board.cpu().reg(2) - kSideStack;
-      if (sp < kSideStackBytes) { spent += now - last; histogram[board.cpu().pc()] += now - last; }
+      if (sp < kSideStackBytes) spent += now - last;
       last = now;
     };
     accepted("B1R");
     for (int i = 0; i < 400 && value("P1") < moves; ++i) board.run_ms(50);
     for (int i = 0; i < 400 && (std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0; ++i) board.run_ms(20);
     board.on_instruction = nullptr;
-    { FILE* f = fopen("/tmp/w7/prof.txt", "w"); for (auto& [pc, c] : histogram) fprintf(f, "%x %llu\n", pc, (unsigned long long)c); fclose(f); }
     EXPECT_EQ(value("P1"), moves);
     const double segments = (moves * 2 * 40.0 + 10) / 5;
     return static_cast<double>(spent) / segments;
