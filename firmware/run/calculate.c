@@ -232,7 +232,10 @@ static void calculate_round(void) {
 
 void calculate_initialize(void) {
   calculated = COORDINATE_SYSTEMS;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) motion_program_point(cs, true, 0, 0);
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
+    motion_program_point(cs, true, 0, 0);
+    segment_forget(cs);
+  }
   synchronous_initialize();
   slice_initialize(calculate_round);
 }

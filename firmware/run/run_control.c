@@ -206,6 +206,29 @@ error_t run_back(uint32_t cs) {
   return ERR_NONE;
 }
 
+/* 4 `\\`, 6 `>`, 7 `<`, 14 and 15 a segment forwards and backwards. */
+void run_by_state(uint32_t cs) {
+  switch (i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE))) {
+    case 4:
+      run_stop_on_path(cs);
+      break;
+    case 6:
+      (void)run_forward(cs);
+      break;
+    case 7:
+      (void)run_back(cs);
+      break;
+    case 14:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_FORWARD);
+      break;
+    case 15:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_BACKWARD);
+      break;
+    default:
+      break;
+  }
+}
+
 /* With motors and without segmentation it is Q (motion:5.6). */
 void run_end_block(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
