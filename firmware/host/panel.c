@@ -15,8 +15,8 @@
 enum { SELECTABLE = 8 };
 
 static bool fitted;
-static uint32_t low;                /* inputs that are pulled low, as 1, at the last pass. Background */
-static uint32_t jogging = MOTORS;   /* motor that JOG+ or JOG- moves, and which of them. Background */
+static uint32_t low;              /* inputs that are pulled low, as 1, at the last pass. Background */
+static uint32_t jogging = MOTORS; /* motor that JOG+ or JOG- moves, and which of them. Background */
 static uint32_t jogged_by;
 static volatile uint32_t selection; /* number that FPDn/ give. Real-time task */
 

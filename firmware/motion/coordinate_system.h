@@ -114,6 +114,7 @@ struct coordinate_system {
   bool continuous;              /* B: R, not S */
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
+  bool ended;                   /* R: the end of the program was reached since its start, `quit` is that */
   volatile bool end_block;      /* `/`: no further move is started */
   /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
    * it */

@@ -5,6 +5,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
@@ -97,6 +98,7 @@ void desired_position_shift(uint32_t motor, int64_t by) {
   m->closed_at += by;
   m->actual += by;
   paths[motor].turning += by;
+  average_velocity_shift(motor, by);
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */

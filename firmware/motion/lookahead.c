@@ -65,8 +65,8 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
   l->limits = wanted > 1u;
-  l->closed = l->begun = l->backward = l->single = false;
-  l->added = l->front = l->quarter = 0;
+  l->closed = l->begun = l->backward = l->single = l->was_single = false;
+  l->added = l->front = l->part = 0;
   l->rate = RATE_FULL;
   l->state = LOOK_GOES;
   l->next = LOOKAHEAD_NONE;
@@ -125,7 +125,7 @@ static void set_limits(struct look* l, uint32_t at, uint32_t motor, uint32_t slo
   if (magnitude(before + first) / 2 > most) most = magnitude(before + first) / 2;
   if (magnitude(first + second) / 2 > most) most = magnitude(first + second) / 2;
   slice_pause();
-  struct lookahead_record* segment = lookahead_record(&l->buffer, at - 3u);
+  struct lookahead_record* segment = lookahead_at(&l->buffer, at - 3u);
   const int32_t cap = cap_of(scales[motor].fastest, most);
   if (cap < segment->cap) segment->cap = cap;
   slice_pause();
@@ -134,7 +134,7 @@ static void set_limits(struct look* l, uint32_t at, uint32_t motor, uint32_t slo
 void lookahead_add(uint32_t cs, const int64_t point[], uint32_t number, const struct path_line* line) {
   struct look* l = &looks[cs];
   const uint32_t at = l->added;
-  struct lookahead_record* record = lookahead_record(&l->buffer, at);
+  struct lookahead_record* record = lookahead_at(&l->buffer, at);
   record->rate = 0;
   record->cap = RATE_FULL;
   record->number = number;

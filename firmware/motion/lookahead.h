@@ -28,7 +28,7 @@ enum lookahead_order {
   LOOKAHEAD_ONE_BACKWARD
 };
 
-/* A piece for the servo task: from one quarter of a segment to another, backwards too. */
+/* A piece for the servo task: from one sixteenth of a segment to another, backwards too. */
 struct lookahead_piece {
   uint32_t segment, first, last;
   int32_t rate; /* w at its begin */
@@ -55,8 +55,8 @@ bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing w
 void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
 void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */
 bool lookahead_stands(uint32_t cs);                         /* or will, behind what is handed over */
-bool lookahead_goes_back(uint32_t cs);
-bool lookahead_is_over(uint32_t cs); /* all of the sequence is handed over */
+uint32_t lookahead_state(uint32_t cs, bool moves);          /* for Isx21 */
+bool lookahead_is_over(uint32_t cs);                        /* all of the sequence is handed over */
 void lookahead_points(uint32_t cs, uint32_t segment, uint32_t motor, int64_t points[SPLINE_POINTS]);
 
 #endif

@@ -6,9 +6,11 @@
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 
-enum { QUARTERS = 4 };
+enum { SQUARE_PARTS = 2 * PIECE_PARTS * PIECE_PARTS };
+enum { STOP_PARTS = PIECE_PARTS / 4 }; /* a stop is at a quarter of a segment */
+enum { SLOWEST = 64 };                 /* a w that is no more than the rounding of sums: 0 */
 
-/* Of a part of a segment, in quarters of it: the motors at its ends. */
+/* Of a part of a segment, in sixteenths of it: the motors at its ends. */
 static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
   const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
                                *next = lookahead_motors(&l->buffer, segment + 1u);
@@ -18,21 +20,20 @@ static void load_part(const struct look* l, uint32_t segment, uint32_t first, ui
     struct limits_motor m = {{at[slot].pace, next[slot].pace}, {a0, next[slot].bend}};
     for (uint32_t i = 0; i < 2u; i++) {
       const int32_t s = (int32_t)(i == 0 ? first : last);
-      if (s % QUARTERS == 0) continue;
-      m.bend[i] = a0 + turn / QUARTERS * s;
-      m.pace[i] = at[slot].pace + a0 / QUARTERS * s + turn / 32 * s * s;
+      if (s % PIECE_PARTS == 0) continue;
+      m.bend[i] = a0 + (int32_t)((int64_t)turn * s / PIECE_PARTS);
+      m.pace[i] = at[slot].pace + (int32_t)(((int64_t)a0 * 2 * PIECE_PARTS + (int64_t)turn * s) * s / SQUARE_PARTS);
     }
-    if (first == QUARTERS) continue;
     limits_add(&m, last - first);
   }
 }
 
-static void load(const struct look* l, uint32_t segment) { load_part(l, segment, 0, QUARTERS); }
+static void load(const struct look* l, uint32_t segment) { load_part(l, segment, 0, PIECE_PARTS); }
 
 /* Of w at a knot: the velocities in the segments at both sides. */
 static int32_t cap_at(const struct look* l, uint32_t knot) {
-  const int32_t behind = knot == look_oldest(l) ? RATE_FULL : lookahead_record(&l->buffer, knot - 1u)->cap;
-  const int32_t ahead = knot == look_end(l) ? RATE_FULL : lookahead_record(&l->buffer, knot)->cap;
+  const int32_t behind = knot == look_oldest(l) ? RATE_FULL : lookahead_at(&l->buffer, knot - 1u)->cap;
+  const int32_t ahead = knot == look_end(l) ? RATE_FULL : lookahead_at(&l->buffer, knot)->cap;
   return behind < ahead ? behind : ahead;
 }
 
@@ -41,7 +42,7 @@ static int32_t cap_at(const struct look* l, uint32_t knot) {
 /* The part of the window in which a sweep does not see its own end. */
 static uint32_t spare(const struct look* l) { return l->length / 4u != 0 ? l->length / 4u : 1u; }
 
-static int32_t* rate_at(const struct look* l, uint32_t knot) { return &lookahead_record(&l->buffer, knot)->rate; }
+static int32_t* rate_at(const struct look* l, uint32_t knot) { return &lookahead_at(&l->buffer, knot)->rate; }
 
 /* At its first knot, and at its last, a sequence stands whatever w is. */
 static bool is_free(const struct look* l, uint32_t knot) {
@@ -64,7 +65,7 @@ static void end_sweep(struct look* l) {
 }
 
 static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
-  const bool at_free = l->quarter == 0 && is_free(l, l->front); /* there it may begin with any w */
+  const bool at_free = l->part == 0 && is_free(l, l->front); /* there it may begin with any w */
   const uint32_t end = look_end(l), last = at_free ? l->front : l->front + 1u;
   if (end <= l->front) return false;
   if (!l->sweeping) {
@@ -89,7 +90,7 @@ static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
 
 /* For the way back: from the oldest knot to the front, all of it, before it begins. */
 static bool sweep_back(struct look* l) {
-  const uint32_t oldest = look_oldest(l), last = l->front + (l->quarter != 0 ? 1u : 0u);
+  const uint32_t oldest = look_oldest(l), last = l->front + (l->part != 0 ? 1u : 0u);
   if (l->swept_back) return false;
   if (!l->sweeping) {
     begin_sweep(l, oldest);
@@ -117,15 +118,15 @@ bool lookahead_sweep(uint32_t cs, bool hurry) {
 
 /* 2 T / (root w0 + root w1); the share of its time and that of the way differ by warp u (1 - u). */
 static void set_time(const struct look* l, int32_t from, int32_t to, struct lookahead_piece* piece) {
-  const uint32_t quarters = piece->last > piece->first ? piece->last - piece->first : piece->first - piece->last;
+  const uint32_t parts = piece->last > piece->first ? piece->last - piece->first : piece->first - piece->last;
   piece->warp = 0;
-  piece->time = ((int64_t)(uint32_t)l->period << TRAJECTORY_FRACTION_BITS) * quarters / QUARTERS;
+  piece->time = ((int64_t)(uint32_t)l->period << TRAJECTORY_FRACTION_BITS) * parts / PIECE_PARTS;
   if (from == RATE_FULL && to == RATE_FULL) return;
   const double first = math_square_root((double)from), second = to == from ? first : math_square_root((double)to);
   slice_pause();
   const double sum = first + second;
   slice_pause();
-  const double time = (double)quarters / 2.0 * l->period / sum * (double)(1 << (RATE_BITS / 2));
+  const double time = (double)parts / 8.0 * l->period / sum * (double)(1 << (RATE_BITS / 2));
   slice_pause();
   piece->time = math_to_integer(
       math_scale(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, TRAJECTORY_FRACTION_BITS));
@@ -133,32 +134,32 @@ static void set_time(const struct look* l, int32_t from, int32_t to, struct look
   if (from != to) piece->warp = (int32_t)math_to_integer((first - second) / sum * (double)PIECE_WARP_ONE);
 }
 
-/* To `last` quarters of a segment, with w there. */
+/* To `last` sixteenths of a segment, with w there. */
 static void hand(struct look* l, uint32_t segment, uint32_t first, uint32_t last, int32_t to,
                  struct lookahead_piece* piece) {
   *piece = (struct lookahead_piece){.segment = segment, .first = first, .last = last, .rate = l->rate};
   set_time(l, l->rate, to, piece);
-  piece->number = lookahead_record(&l->buffer, segment + 2u)->number;
-  piece->line = lookahead_record(&l->buffer, segment + 2u)->line;
+  piece->number = lookahead_at(&l->buffer, segment + 2u)->number;
+  piece->line = lookahead_at(&l->buffer, segment + 2u)->line;
   l->begun = true;
   l->rate = to;
-  l->front = last == QUARTERS ? segment + 1u : segment;
-  l->quarter = last % QUARTERS;
+  l->front = last == PIECE_PARTS ? segment + 1u : segment;
+  l->part = last % PIECE_PARTS;
 }
 
 /* Ahead of the front, in its direction. False: there is none. */
 struct next_part {
-  uint32_t segment, first, last; /* quarters */
+  uint32_t segment, first, last; /* sixteenths */
   uint32_t knot;                 /* behind it */
 };
 static bool find_part(const struct look* l, struct next_part* p) {
   if (!l->backward) {
-    *p = (struct next_part){l->front, l->quarter, QUARTERS, l->front + 1u};
+    *p = (struct next_part){l->front, l->part, PIECE_PARTS, l->front + 1u};
     return l->front < look_end(l);
   }
-  const uint32_t segment = l->quarter != 0 ? l->front : l->front - 1u;
-  *p = (struct next_part){segment, l->quarter != 0 ? l->quarter : QUARTERS, 0, segment};
-  return l->quarter != 0 || l->front > look_oldest(l);
+  const uint32_t segment = l->part != 0 ? l->front : l->front - 1u;
+  *p = (struct next_part){segment, l->part != 0 ? l->part : PIECE_PARTS, 0, segment};
+  return l->part != 0 || l->front > look_oldest(l);
 }
 
 static void load_next(const struct look* l, const struct next_part* p, uint32_t last) {
@@ -176,15 +177,16 @@ static void stand(struct look* l) {
 /* As soon as it can: within the next part, at a quarter of it, or as slow as can be at its end. */
 static bool stop(struct look* l, struct lookahead_piece* piece) {
   struct next_part p;
-  if (l->rate == 0 || !find_part(l, &p)) {
+  if (l->rate < SLOWEST || !find_part(l, &p)) {
     stand(l);
     return false;
   }
-  const int32_t cap = lookahead_record(&l->buffer, p.segment)->cap;
-  for (uint32_t i = 1; i <= QUARTERS; i++) {
+  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
+  for (uint32_t i = STOP_PARTS; i <= PIECE_PARTS; i += STOP_PARTS) {
     const uint32_t last = l->backward ? p.first - i : p.first + i;
     load_next(l, &p, last);
-    const int32_t least = limits_least(far_end(l), l->rate, cap);
+    int32_t least = limits_least(far_end(l), l->rate, cap);
+    if (least >= 0 && least < SLOWEST) least = 0;
     const bool over = last == p.last;
     if (least != 0 && !over) continue;
     hand(l, p.segment, p.first, last, least >= 0 ? least : l->rate < cap ? l->rate : cap, piece);
@@ -206,14 +208,8 @@ static bool single(struct look* l, struct lookahead_piece* piece) {
     stand(l);
     return true;
   }
-  const uint32_t middle = l->backward ? p.first / 2u : p.first + (QUARTERS - p.first + 1u) / 2u;
-  if (middle == p.first || middle == p.last) { /* a quarter: as slow as the least rate that there is */
-    hand(l, p.segment, p.first, p.last, 1, piece);
-    l->rate = 0;
-    stand(l);
-    return true;
-  }
-  const int32_t cap = lookahead_record(&l->buffer, p.segment)->cap;
+  const uint32_t middle = (p.first + p.last) / 2u;
+  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
   load_next(l, &p, middle);
   int32_t most = limits_most(far_end(l), 0, cap);
   load_part(l, p.segment, l->backward ? p.last : middle, l->backward ? middle : p.last);
@@ -240,8 +236,7 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
   }
   if (l->single) return single(l, piece);
   if (!may_go_on(l, hurry)) return false;
-  if (l->limits && is_free(l, l->front) && l->quarter == 0 && (!l->begun || l->rate == 0))
-    l->rate = *rate_at(l, l->front);
+  if (l->limits && is_free(l, l->front) && l->part == 0 && (!l->begun || l->rate == 0)) l->rate = *rate_at(l, l->front);
   int32_t to = RATE_FULL;
   if (l->limits) {
     load_next(l, &p, p.last);
@@ -262,7 +257,7 @@ bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
     const enum lookahead_order order = l->next;
     l->next = LOOKAHEAD_NONE;
     l->backward = order == LOOKAHEAD_BACKWARD || order == LOOKAHEAD_ONE_BACKWARD;
-    l->single = order == LOOKAHEAD_ONE_FORWARD || order == LOOKAHEAD_ONE_BACKWARD;
+    l->single = l->was_single = order == LOOKAHEAD_ONE_FORWARD || order == LOOKAHEAD_ONE_BACKWARD;
     l->state = LOOK_GOES;
     look_forget_sweeps(l);
   }
@@ -274,8 +269,8 @@ bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
 
 void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece) {
   struct look* l = &looks[cs];
-  l->front = piece->first == QUARTERS ? piece->segment + 1u : piece->segment;
-  l->quarter = piece->first % QUARTERS;
+  l->front = piece->first == PIECE_PARTS ? piece->segment + 1u : piece->segment;
+  l->part = piece->first % PIECE_PARTS;
   l->rate = piece->rate;
   l->backward = piece->first > piece->last;
   if (l->state == LOOK_STANDS) l->state = LOOK_STOPS;
@@ -286,7 +281,10 @@ void lookahead_do(uint32_t cs, enum lookahead_order order) {
   l->next = order == LOOKAHEAD_STOP ? LOOKAHEAD_NONE : order;
   if (l->state == LOOK_STANDS) return;
   const bool goes_on = order == (l->backward ? LOOKAHEAD_BACKWARD : LOOKAHEAD_FORWARD);
-  if (!goes_on || l->single || l->rates_back != l->backward) {
+  struct next_part p;
+  const bool valid =
+      l->rates_back == l->backward && find_part(l, &p) && (l->backward ? p.knot <= l->valid : p.knot >= l->valid);
+  if (!goes_on || l->single || !valid) {
     l->state = LOOK_STOPS;
     return;
   }
@@ -295,8 +293,14 @@ void lookahead_do(uint32_t cs, enum lookahead_order order) {
 }
 
 bool lookahead_stands(uint32_t cs) { return looks[cs].state == LOOK_STANDS && looks[cs].next == LOOKAHEAD_NONE; }
-bool lookahead_goes_back(uint32_t cs) { return looks[cs].backward; }
+
+uint32_t lookahead_state(uint32_t cs, bool moves) {
+  const struct look* l = &looks[cs];
+  const uint32_t direction = l->backward ? 1u : 0u;
+  return (moves ? 2u | direction : 0u) | (l->was_single ? 8u | 2u | direction : 0u);
+}
+
 bool lookahead_is_over(uint32_t cs) {
   const struct look* l = &looks[cs];
-  return l->closed && !l->backward && l->front == look_end(l) && l->quarter == 0;
+  return l->closed && l->state == LOOK_GOES && !l->backward && l->front == look_end(l) && l->part == 0;
 }

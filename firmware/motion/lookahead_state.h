@@ -22,19 +22,21 @@ struct look {
   double period;
   uint32_t added; /* points so far */
   /* the front: what is before it, in the direction of motion, has been handed over */
-  uint32_t front, quarter; /* so many quarters into the segment of this number, forwards */
-  int32_t rate;            /* w there */
-  bool begun;              /* something has been handed over */
+  uint32_t front, part; /* so many sixteenths into the segment of this number, forwards */
+  int32_t rate;         /* w there */
+  bool begun;           /* something has been handed over */
   enum look_state state;
   bool backward;
   enum lookahead_order next; /* once it stands */
+  bool was_single;           /* the last order was that */
   bool single;               /* to the next knot only */
   /* sweep */
   bool sweeping;
   uint32_t sweep, sweep_end; /* the last knot that it has done; where it began */
   uint32_t swept;            /* the end of the last sweep */
   uint32_t good;             /* knots up to this one do not depend on where that stopped */
-  bool rates_back;           /* the rates of the records are those for the way back */
+  bool rates_back;           /* the rates of the records are those for the way back, */
+  uint32_t valid;            /* from this knot on in that direction */
   bool swept_back;           /* the knots behind have been swept for the way back */
 };
 
@@ -52,6 +54,7 @@ static inline uint32_t look_oldest(const struct look* l) {
 static inline void look_forget_sweeps(struct look* l) {
   l->sweeping = l->swept_back = false;
   l->swept = l->good = l->front;
+  l->valid = l->backward ? l->front : l->front + (l->begun ? 1u : 0u);
 }
 
 #endif

@@ -36,7 +36,7 @@ struct motor_findings {
   bool warning_error, in_position;
   volatile bool positive_limit, negative_limit;     /* an input, or the software limit of that side */
   volatile bool positive_desired, negative_desired; /* the commanded position is beyond that of the desired one */
-  volatile bool foreground_in_position;         /* S */
+  volatile bool foreground_in_position;             /* S */
 };
 
 struct motor {

@@ -1,6 +1,7 @@
 #include "firmware/motion/motor_variables.h"
 
 #include "firmware/base/rework.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/desired_position.h"
@@ -66,6 +67,7 @@ void motor_variables_initialize(void) {
   motor_output_initialize();
   motor_flags_initialize();
   protection_initialize();
+  average_velocity_initialize();
   compensation_initialize();
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) motor_variables_changed(motor);
 }

@@ -11,7 +11,7 @@ void piece_set_time(struct piece* piece, int64_t time) {
   piece->continues = false;
   piece->warp = 0;
   piece->from = 0;
-  piece->to = PIECE_QUARTERS;
+  piece->to = PIECE_PARTS;
   piece->time = piece->end = time;
   piece->shift = (uint32_t)__builtin_clzll((uint64_t)time) - 1u;
   const double normal = math_scale((double)time, (int)piece->shift - 62); /* [1, 2) */
@@ -30,7 +30,7 @@ static uint32_t clamped(int64_t fraction) {
 
 static uint32_t between(const struct piece* piece, uint32_t part) {
   const int64_t way = ((int64_t)piece->to - piece->from) * (int64_t)part;
-  return clamped(((int64_t)piece->from << 30) + (way >> 2));
+  return clamped(((int64_t)piece->from << 28) + (way >> 4));
 }
 
 static uint32_t warped(int32_t warp, uint32_t part) {
@@ -87,13 +87,13 @@ bool piece_ring_advance(struct piece_ring* ring, int64_t increment) {
   ring->elapsed = elapsed;
   ring->fraction = fraction_of(piece, elapsed);
   if (piece->warp != 0) ring->fraction = warped(piece->warp, ring->fraction);
-  if (piece->from != 0 || piece->to != PIECE_QUARTERS) ring->fraction = between(piece, ring->fraction);
+  if (piece->from != 0 || piece->to != PIECE_PARTS) ring->fraction = between(piece, ring->fraction);
   return true;
 }
 
 int64_t piece_end(const struct piece* piece, const struct cubic* cubic) {
-  if (piece->to == PIECE_QUARTERS) return cubic_end(cubic);
-  return cubic_at(cubic, (uint32_t)piece->to << 30);
+  if (piece->to == PIECE_PARTS) return cubic_end(cubic);
+  return cubic_at(cubic, (uint32_t)piece->to << 28);
 }
 
 int64_t cubic_at(const struct cubic* cubic, uint32_t fraction) {

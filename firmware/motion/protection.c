@@ -130,7 +130,8 @@ static void trip(uint32_t motor) {
   motor_kill(motor);
   for (uint32_t other = 0; other < MOTORS; ++other) {
     if (others != OTHERS_ALL && !(others == OTHERS_OF_SYSTEM && d->assigned && is_of_system(other, d->cs))) continue;
-    if (motors[other].loop != LOOP_KILLED && axis_definitions[other].assigned) systems |= 1u << axis_definitions[other].cs;
+    if (motors[other].loop != LOOP_KILLED && axis_definitions[other].assigned)
+      systems |= 1u << axis_definitions[other].cs;
     motor_kill(other);
   }
   for (uint32_t cs = 0; systems != 0u; ++cs, systems >>= 1)
@@ -189,8 +190,8 @@ static void check_limit(uint32_t motor, const struct view* view, int direction) 
 static void check_desired(uint32_t motor, const struct view* view, int direction) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
-  const bool beyond = !jog_is_homing(motor) && (direction > 0 ? view->commanded > g->positive_desired
-                                                              : view->commanded < g->negative_desired);
+  const bool beyond = !jog_is_homing(motor) &&
+                      (direction > 0 ? view->commanded > g->positive_desired : view->commanded < g->negative_desired);
   if (direction > 0)
     found->positive_desired = beyond;
   else

@@ -12,8 +12,7 @@
 #include "firmware/variables/i_variables.h"
 
 enum {
-  ISX15 = 1, /* behind Isx14 */
-  ISX16 = 2,
+  ISX16 = 1,        /* behind Isx15 */
   LEFT_OF_RING = 4, /* pieces of the ring that are for whatever follows */
   LAST_POINTS = 3,  /* the first and the last point of a sequence stand so often */
   SHORT_MS = 12,    /* of segments ahead of the servo task: what has no next move by then comes to its end */
@@ -37,6 +36,7 @@ struct sequence {
   uint32_t unhanded;  /* pieces behind those that the servo task has */
   int64_t period;     /* Isx13 */
   double step;        /* program time of a segment: Isx13 with the override */
+  double override;    /* as it is now; 1: none */
   double time;        /* of the last point */
   struct piece timed; /* a piece of that period */
   uint32_t under_way; /* moves of the queue that have begun at the last point, less one */
@@ -64,16 +64,26 @@ bool segment_gives_way(uint32_t cs) {
   return false;
 }
 
-bool segment_looks(uint32_t cs) { return sequences[cs].runs && sequences[cs].looks; }
+/* While the last pieces of a sequence are executed too, as long as nothing is placed behind them. */
+bool segment_looks(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool ends = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS && !s->next_valid;
+  return sequences[cs].looks && (sequences[cs].runs || ends);
+}
 
 void segment_order(uint32_t cs, enum lookahead_order order) {
-  if (segment_looks(cs)) sequences[cs].order = order;
+  const uint32_t state = hal_mask_real_time();
+  if (segment_looks(cs)) {
+    sequences[cs].runs = true;
+    sequences[cs].order = order;
+  }
+  hal_unmask(state);
 }
 
 bool segment_stands(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
-  return segment_looks(cs) && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) && !s->active &&
-         !s->next_valid && piece_ring_is_empty(&s->ring);
+  return sequences[cs].runs && sequences[cs].looks && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) &&
+         !s->active && !s->next_valid && piece_ring_is_empty(&s->ring);
 }
 
 void segment_stop(uint32_t cs) {
@@ -83,7 +93,7 @@ void segment_stop(uint32_t cs) {
 void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
 
 void segment_forget(uint32_t cs) {
-  sequences[cs].runs = sequences[cs].stops = false;
+  sequences[cs].runs = sequences[cs].looks = sequences[cs].stops = false;
   paths[cs].count = 0;
 }
 
@@ -204,6 +214,7 @@ static bool begin(uint32_t cs) {
   const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
   q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
   q->step = plan_milliseconds(q->period);
+  q->override = 1.0;
   slice_pause();
   piece_set_time(&q->timed, q->period);
   q->timed.continues = false;
@@ -232,9 +243,16 @@ static bool begin(uint32_t cs) {
 /* Program time to the next point: by the override, which goes to its new value by Isx16 a segment. */
 static double next_time(uint32_t cs) {
   struct sequence* q = &sequences[cs];
-  const double override = i_variable_read(i_cs(cs, ISX14_END_OF_MOVE_ANTICIPATION) + ISX15);
-  (void) override;
-  return q->time + q->step;
+  const double given = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE));
+  const double wanted = given < -1.0 ? 0.0 : given > 1.0 ? 2.0 : given + 1.0;
+  slice_pause();
+  if (q->override != wanted) {
+    const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
+    const bool at_once = !(change > 0.0) || math_absolute(wanted - q->override) <= change;
+    q->override = at_once ? wanted : wanted > q->override ? q->override + change : q->override - change;
+  }
+  slice_pause();
+  return q->time + (q->override == 1.0 ? q->step : q->step * q->override);
 }
 
 /* Moves of the queue that belong to the sequence, each joined to the one before it no earlier than the last point. */
@@ -390,11 +408,24 @@ static void obey(uint32_t cs) {
   lookahead_do(cs, order);
 }
 
+/* Isx21: 2 it moves on the path, 1 backwards, 8 a segment only. */
+static void show(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = lookahead_state(cs, s->active), shown = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE));
+  if (shown != state) i_variable_set_lookahead_state(cs, state);
+}
+
 /* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
 static bool work_ahead(uint32_t cs, bool alone) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   if (q->order != LOOKAHEAD_NONE) obey(cs);
+  show(cs);
+  if (q->made && lookahead_is_over(cs)) {
+    hand_over(cs);
+    q->runs = false;
+    return true;
+  }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
   if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;

@@ -129,9 +129,11 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->matching = s->motors != 0;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
+    s->ended = false;
     if (!s->next_valid) s->may_join = false;
   }
-  s->end_block = s->quit = false;
+  s->end_block = false;
+  s->quit = s->ended; /* it stands at its top again, for another start */
   segment_go_on(cs);
   s->stepping = single_step;
   s->continuous = !single_step;
@@ -202,6 +204,29 @@ error_t run_back(uint32_t cs) {
   if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_BACKWARD);
   run_hold(cs);
   return ERR_NONE;
+}
+
+/* 4 `\\`, 6 `>`, 7 `<`, 14 and 15 a segment forwards and backwards. */
+void run_by_state(uint32_t cs) {
+  switch (i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE))) {
+    case 4:
+      run_stop_on_path(cs);
+      break;
+    case 6:
+      (void)run_forward(cs);
+      break;
+    case 7:
+      (void)run_back(cs);
+      break;
+    case 14:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_FORWARD);
+      break;
+    case 15:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_BACKWARD);
+      break;
+    default:
+      break;
+  }
 }
 
 /* With motors and without segmentation it is Q (motion:5.6). */

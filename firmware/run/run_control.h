@@ -15,6 +15,7 @@ void run_quit(uint32_t cs);                       /* Q: what is calculated is fi
 void run_abort(uint32_t cs);                      /* A: calculated moves are lost, unread lines are kept */
 void run_hold(uint32_t cs);                       /* H: the time base goes to 0 at Isx95 */
 void run_stop_on_path(uint32_t cs);               /* `\`: as fast as the limits allow; outside of lookahead as H */
+void run_by_state(uint32_t cs);                   /* an order by Isx21; any task that writes variables */
 error_t run_forward(uint32_t cs);                 /* `>`: outside of lookahead as R */
 error_t run_back(uint32_t cs);                    /* `<`: outside of lookahead as H */
 void run_end_block(uint32_t cs);                  /* `/`: stop at the end of the executing move */

@@ -286,6 +286,9 @@ TEST_F(StopsOfMotors, ExternalTimeBaseMovesThePath) {
   ASSERT_EQ(host("WX$10F0,2000000"), "");
   ticks(5);
   EXPECT_EQ(host("RX$2002"), "2000000");
+  ASSERT_EQ(host("I5294=8388607 I5293=$2002"), "");  // what &1 goes by
+  ticks(5);
+  EXPECT_EQ(host("&2 RX$2102"), "2000000");
   ASSERT_EQ(host("I5294=8388607 I5293=$2000"), "");  // &2 goes by what &1 is told
   ASSERT_EQ(host("WX$2000,1000000"), "");
   ticks(5);

@@ -11,13 +11,16 @@ class SuggestedWords : public ProtectionRig {
  protected:
   SuggestedWords() {
     for (const char* definition :
-         {"M128->X:$B0,22", "M130->Y:$C0,11", "M131->X:$B0,22", "M132->X:$B0,21", "M133->X:$B0,13", "M135->X:$B0,15",
-          "M137->X:$B0,17", "M138->X:$B0,18", "M139->Y:$C0,14", "M140->Y:$C0,0,1", "M141->Y:$C0,1", "M142->Y:$C0,2",
-          "M143->Y:$C0,3", "M145->Y:$C0,10", "M147->Y:$C0,5", "M148->Y:$C0,8", "M149->Y:$C0,9", "M161->D:$88",
-          "M162->D:$8B", "M163->D:$C7", "M164->D:$CC", "M166->X:$9D,0,24,S", "M167->D:$8D", "M168->X:$BF,8,16,S",
-          "M169->D:$90", "M173->Y:$CE,0,24,S", "M263->D:$147", "M5180->X:$2040,0", "M5182->Y:$203F,22",
-          "M5187->Y:$203F,17", "M5188->Y:$203F,18", "M5189->Y:$203F,19", "M5190->Y:$203F,20", "M5197->X:$2000,0,24,S",
-          "M5198->X:$2002,0,24,S", "M5141->L:$2041", "M5147->L:$2047", "M5148->L:$2048"})
+         {"M128->X:$B0,22",    "M130->Y:$C0,11",        "M131->X:$B0,22",        "M132->X:$B0,21",
+          "M133->X:$B0,13",    "M135->X:$B0,15",        "M137->X:$B0,17",        "M138->X:$B0,18",
+          "M139->Y:$C0,14",    "M140->Y:$C0,0,1",       "M141->Y:$C0,1",         "M142->Y:$C0,2",
+          "M143->Y:$C0,3",     "M145->Y:$C0,10",        "M147->Y:$C0,5",         "M148->Y:$C0,8",
+          "M149->Y:$C0,9",     "M161->D:$88",           "M162->D:$8B",           "M163->D:$C7",
+          "M164->D:$CC",       "M166->X:$9D,0,24,S",    "M167->D:$8D",           "M168->X:$BF,8,16,S",
+          "M169->D:$90",       "M173->Y:$CE,0,24,S",    "M263->D:$147",          "M5180->X:$2040,0",
+          "M5182->Y:$203F,22", "M5187->Y:$203F,17",     "M5188->Y:$203F,18",     "M5189->Y:$203F,19",
+          "M5190->Y:$203F,20", "M5197->X:$2000,0,24,S", "M5198->X:$2002,0,24,S", "M5141->L:$2041",
+          "M5147->L:$2047",    "M5148->L:$2048"})
       EXPECT_EQ(c_.line(definition), "") << definition;
     c_.line("I215=1 I216=200 I217=1 I219=10 I220=0 I221=0 I292=1");
     c_.line("I111=0 I115=1 I119=10 I120=0 I121=0 I122=32 I192=1 I116=200 I117=1");
@@ -56,6 +59,37 @@ TEST_F(SuggestedWords, OfAJog) {
   EXPECT_EQ(c_.line("M133 M138 M139"), "0|1|0");
 }
 
+// motion:1.3/4: with I60 = 15 and I61 = 8 over 256 interrupts, with 1 and 5 over 32; homing does not disturb it.
+TEST_F(SuggestedWords, OfTheAveragedVelocity) {
+  c_.line("M174->D:$EF I119=1000");
+  close_all();
+  c_.line("#1J+");
+  const double step = 32 * 3713991.0 / 8388608;
+  follow(600);
+  EXPECT_NEAR(counts_of(174), step, 1.0 / 64);
+  c_.line("#1J/");
+  follow(100);
+  EXPECT_GT(counts_of(174), step / 2) << "156 of 256 interrupts were at full speed";
+  EXPECT_LT(counts_of(174), step * 0.8);
+  follow(200);
+  EXPECT_EQ(m(174), 0);
+  c_.line("I60=1 I61=5 #1J-");
+  follow(60);
+  EXPECT_NEAR(counts_of(174), -step, 1.0 / 64);
+  c_.line("#1J/");
+  follow(60);
+  EXPECT_EQ(m(174), 0);
+  // The encoder goes on through an assignment of home.
+  c_.line("#1K");
+  double place = at(1);
+  for (int n = 0; n < 100; ++n) {
+    if (n == 60) { EXPECT_EQ(c_.line("#1HMZ"), ""); }
+    counts(1, place += 3);
+    servo();
+    if (n > 40) { ASSERT_NEAR(counts_of(174), 3, 1.0 / 64) << n; }
+  }
+}
+
 TEST_F(SuggestedWords, OfAProgram) {
   run({"TM400 TA50 TS0 X5000 Y-2500", "DWELL100", "RAPID X1000 Y0", "LINEAR TM100000 X9000", "DWELL5"});
   follow(50);
@@ -64,7 +98,7 @@ TEST_F(SuggestedWords, OfAProgram) {
   EXPECT_EQ(counts_of(263), -2500);
   EXPECT_EQ(c_.line("M5147 M5148 M5141"), "5000|-2500|0") << "targets of axes";
   follow(1100);  // 450 ms are 1017 interrupts
-  EXPECT_EQ(c_.line("M5180 M5187 M135 M133"), "1|0|1|1") << "DWELL: desired velocity 0, not in position";
+  EXPECT_EQ(c_.line("M5180 M5187 M140 M135 M133"), "1|0|0|1|1") << "DWELL: desired velocity 0, not in position";
   EXPECT_EQ(counts_of(163), 5000);
   follow(120);
   EXPECT_EQ(c_.line("M5147 M5148"), "1000|0") << "RAPID";
