@@ -219,6 +219,7 @@ void jog_count_from(uint32_t motor, int64_t position) {
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */
   motors[motor].of_system -= position;
-  j->before = motors[motor].trajectory;
+  j->before =
+      motors[motor].loop == LOOP_CLOSED ? motors[motor].trajectory : jog_trajectory_at(motor, motors[motor].actual);
   j->away = true;
 }

@@ -84,6 +84,24 @@ TEST_F(HoldsAndAborts, AnAbortForgetsTheWayBackAndTheHold) {
   }
 }
 
+// Behind `/` as behind Q; B begins anew from where the motors are.
+TEST_F(HoldsAndAborts, AnotherStartNeedsNoWayBack) {
+  store({"INC TM100 TA20 TS0 X1", "X1", "X1", "X1"});
+  for (const char* stop : {"Q", "/"}) {
+    begin();
+    ticks(30);
+    ASSERT_EQ(host(stop), "");
+    ticks(300);
+    ASSERT_EQ(host("#1J:50"), "") << stop;
+    ticks(200);
+    EXPECT_EQ(host("R"), "ERR017") << stop;
+    const std::int64_t from = motors[0].trajectory;
+    begin();
+    ticks(500);
+    EXPECT_EQ(motors[0].trajectory, from + position(4000)) << stop;
+  }
+}
+
 // The move that they wait for does not come.
 TEST_F(HoldsAndAborts, AnAbortForgetsAssignmentsThatWait) {
   ASSERT_EQ(host("M1->X:$10F0,0,24 M1=0"), "");

@@ -70,6 +70,10 @@ TEST_F(MotorCommands, StarTakesTheDistanceOfTheRegister) {
   jog("J:*", -155.5);
   jog("J^*", -77.75);
   jog("J=100", 100);
+  ASSERT_EQ(host("I200=1 I211=0 I219=1 I220=0 I221=10 I222=20 I292=2 M1->L:$157 M1=42"), "");
+  ASSERT_EQ(host("#2J=*"), "");
+  run(500);
+  EXPECT_EQ(motors[1].trajectory, 42 * 3072) << "each motor has its own";
 }
 
 TEST_F(MotorCommands, JEqualsGoesBackToWhereItWasBeforeItJogged) {
@@ -206,8 +210,26 @@ TEST_F(MotorStops, I36SparesKilledMotorsAndEEnablesThem) {
   run(150);
   EXPECT_EQ(motors[2].loop, LOOP_CLOSED) << "enabled, in open loop";
   EXPECT_EQ(motors[3].loop, LOOP_KILLED);
-  ASSERT_EQ(host("&1E"), "");
+  ASSERT_EQ(host("#2K &1E"), "");
   EXPECT_EQ(motors[3].loop, LOOP_CLOSED);
+  EXPECT_EQ(motors[1].loop, LOOP_KILLED) << "of no coordinate system";
+}
+
+TEST_F(MotorStops, ReferencesOfASystemAreThoseOfItsMotors) {
+  ASSERT_EQ(host("#1J/#2J/#3K"), "");
+  run(300);
+  ASSERT_NE(motors[0].trajectory, 0);
+  const std::int64_t second = motors[1].trajectory;
+  ASSERT_EQ(host("&1$$*"), "");
+  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+  EXPECT_EQ(motors[0].actual, 0);
+  EXPECT_EQ(motors[1].loop, LOOP_CLOSED) << "of no coordinate system";
+  EXPECT_EQ(motors[1].trajectory, second);
+  jog("#1J=", 0);
+  ASSERT_EQ(host("#1J/"), "");
+  run(10);
+  ASSERT_EQ(host("&1$$"), "") << "nothing to search for";
+  EXPECT_EQ(motors[1].loop, LOOP_CLOSED);
 }
 
 TEST_F(MotorStops, ControlAAbortsMotorsOfNoSystemToo) {
