@@ -62,9 +62,11 @@ static error_t close_loop(uint32_t motor, error_t error) {
   return error;
 }
 
+/* No distance follows: the end, an address, a report, or behind a blank the word of another command. `J=P1` is none. */
 static bool line_goes_on(struct lexer* lx) {
+  const bool blank = *lx->at == ' ';
   const char c = lexer_peek(lx);
-  return c == '\0' || c == '#' || c == '&';
+  return c == '\0' || c == '#' || c == '&' || c == '?' || (blank && c >= 'A' && c <= 'Z');
 }
 
 /* Counts; `*`: what stands in L:+$57 of the motor's registers. */
@@ -171,6 +173,13 @@ static error_t cmd_kill(struct lexer* lx) {
   return error;
 }
 
+/* Further into a limit that stopped it: an open loop would be closed again at once. */
+static bool pushes_into_limit(uint32_t motor, double output) {
+  const struct motor* m = &motors[motor];
+  if (m->loop != LOOP_CLOSED) return false; /* nobody looks at limits of a killed one */
+  return (output > 0.0 && m->found.positive_limit) || (output < 0.0 && m->found.negative_limit);
+}
+
 /* O{per cent}; with a motion buffer open it is a label. */
 static error_t open_loop(struct lexer* lx) {
   double output;
@@ -179,6 +188,7 @@ static error_t open_loop(struct lexer* lx) {
   if (error != ERR_NONE) return error;
   if (output < -LARGEST_OUTPUT || output > LARGEST_OUTPUT) return ERR_DATA;
   error = may_move(session.motor);
+  if (error == ERR_NONE && pushes_into_limit(session.motor, output)) error = ERR_DATA;
   if (error != ERR_NONE) return error;
   const double limit = i_variable_read(i_motor(session.motor + 1u, IXX69_OUTPUT_LIMIT));
   const uint32_t state = hal_mask_servo();

@@ -123,6 +123,36 @@ TEST_F(HoldsAndAborts, RunGoesWithOneLimit) {
   EXPECT_EQ(host("R"), "ERR010");
 }
 
+TEST_F(HoldsAndAborts, ARapidMoveUntilATriggerIsHeld) {
+  ASSERT_EQ(host("I125=$78000 I124=$120001"), "");
+  store({"RAPID X10^0.5"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("H"), "");
+  ticks(50);
+  const std::int64_t held = motors[0].trajectory;
+  ticks(20);
+  EXPECT_EQ(motors[0].trajectory, held);
+  ASSERT_EQ(host("R"), "");
+  ticks(700);
+  EXPECT_EQ(motors[0].trajectory, position(10000));
+}
+
+// Where a program has left a motor is where it came to rest, when it was aborted.
+TEST_F(HoldsAndAborts, JEqualsBehindAnAbortedRapidMove) {
+  store({"RAPID X10"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("A"), "");
+  ticks(100);
+  const std::int64_t left = motors[0].trajectory;
+  ASSERT_EQ(host("#1J:50"), "");
+  ticks(200);
+  ASSERT_EQ(host("J="), "");
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, left);
+}
+
 // Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes, too.
 TEST_F(HoldsAndAborts, JogsGoOutOfALimitOnly) {
   ASSERT_EQ(host("I113=1000 I123=10 #1J/"), "");

@@ -62,6 +62,14 @@ TEST_F(MotorCommands, EachFormGoesWhereItSays) {
   jog("J^10", 10);  // the encoder stands at 0
 }
 
+// The trajectory is what jogs go by (motion:1.2/4): from where it is means less the master, and what is taken off.
+TEST_F(MotorCommands, FromWhereItIsLeavesMasterAndCompensationOut) {
+  jog("#1J/", 0);
+  motors[0].master = static_cast<std::int64_t>(1000 * kUnits);
+  motors[0].compensation = static_cast<std::int64_t>(30 * kUnits);
+  jog("J^10", 10 - 1000 + 30);  // the encoder stands at 0
+}
+
 TEST_F(MotorCommands, StarTakesTheDistanceOfTheRegister) {
   const float48 word = float48_pack(-77.75);
   *hal_x(0xD7) = word.x;
@@ -84,6 +92,10 @@ TEST_F(MotorCommands, JEqualsGoesBackToWhereItWasBeforeItJogged) {
   jog("J==300", 300);
   jog("J=500", 500);
   jog("J=", 300);
+  ASSERT_EQ(host("J=500"), "");
+  jog("#1J= P1=7", 300);
+  EXPECT_EQ(host("P1"), "7") << "another command behind it";
+  EXPECT_EQ(host("J=P1"), "ERR003") << "no distance";
   ASSERT_EQ(host("HMZ"), "");
   EXPECT_EQ(commanded(), 0);
   jog("J=50", 50);
@@ -147,7 +159,7 @@ TEST_F(MotorCommands, AMotorOfARunningProgramIsThePrograms) {
 
 TEST_F(MotorCommands, WithoutClocksNoneIsEnabled) {
   status_set(STATUS_NO_PHASE_CLOCK);
-  for (const char* line : {"#1J+", "J/", "J=1", "HM", "O1"}) EXPECT_EQ(host(line), "ERR018") << line;
+  for (const char* line : {"#1J+", "J/", "J=1", "HM", "O1", "&1E"}) EXPECT_EQ(host(line), "ERR018") << line;
   EXPECT_EQ(motors[0].loop, LOOP_KILLED);
 }
 
@@ -159,6 +171,20 @@ TEST_F(MotorCommands, OpenLoopTakesPerCentOfIxx69) {
   EXPECT_EQ(motors[0].open_output, -2500 * 256);
   ASSERT_EQ(host("J/"), "");
   EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+}
+
+// motion:6.2/3
+TEST_F(MotorCommands, OpenLoopDoesNotPushIntoALimit) {
+  ASSERT_EQ(host("#1J/"), "");
+  motors[0].found.positive_limit = true;
+  EXPECT_EQ(host("O5"), "ERR003");
+  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+  ASSERT_EQ(host("O-5"), "");
+  ASSERT_EQ(host("J/"), "");
+  motors[0].found.positive_limit = false;
+  motors[0].found.negative_limit = true;
+  EXPECT_EQ(host("O-5"), "ERR003");
+  EXPECT_EQ(host("O0"), "");
 }
 
 TEST_F(MotorCommands, OpenLoopEndsAJog) {
