@@ -153,6 +153,27 @@ TEST_F(HoldsAndAborts, JEqualsBehindAnAbortedRapidMove) {
   EXPECT_EQ(motors[0].trajectory, left);
 }
 
+// motion:5.6/5
+TEST_F(HoldsAndAborts, StepsByLine) {
+  ASSERT_EQ(host("I5153=1 P1=0 P2=0 P3=0"), "");
+  store({"P1=1", "P2=1 TM50 TA20 TS0 X1", "BLOCKSTART", "P3=1", "X2", "BLOCKSTOP"});
+  ASSERT_EQ(host("&1B1"), "");
+  const auto at_end = [](unsigned p) { return p_variable_read(p); };
+  for (const double end : {0.0, 1000.0, 2000.0}) {
+    ASSERT_EQ(host("S"), "");
+    ticks(150);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(motors[0].trajectory, position(end));
+    EXPECT_EQ(at_end(1), 1.0);
+    EXPECT_EQ(at_end(2), end > 0 ? 1.0 : 0.0);
+    EXPECT_EQ(at_end(3), end > 1000 ? 1.0 : 0.0);
+  }
+  ASSERT_EQ(host("I5153=0 P1=0 &1B1S"), "");
+  ticks(150);
+  EXPECT_EQ(at_end(1), 1.0);
+  EXPECT_EQ(motors[0].trajectory, position(1000)) << "to the next move";
+}
+
 // Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes, too.
 TEST_F(HoldsAndAborts, JogsGoOutOfALimitOnly) {
   ASSERT_EQ(host("I113=1000 I123=10 #1J/"), "");
