@@ -55,11 +55,7 @@ static error_t program_text(const struct lexer* lx, uint32_t length) {
 /* Closed, unless `error` says why not. */
 static error_t close_loop(uint32_t motor, error_t error) {
   if (error != ERR_NONE || motors[motor].loop == LOOP_CLOSED) return error;
-  const uint32_t state = hal_mask_servo();
-  jog_drop(motor);
-  if (!motor_close(motor)) error = ERR_PHASING;
-  hal_unmask(state);
-  return error;
+  return motor_close(motor) ? ERR_NONE : ERR_PHASING;
 }
 
 /* No distance follows: the end, an address, a report, or behind a blank the word of another command. `J=P1` is none. */

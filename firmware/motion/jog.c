@@ -13,7 +13,7 @@
 
 void jog_initialize(void) {
   jogs_busy = jogs_asked = 0;
-  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){.away = true};
+  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){0};
 }
 
 static double units(uint32_t motor) { return (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale; }
