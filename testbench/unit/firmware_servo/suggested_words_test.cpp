@@ -33,10 +33,10 @@ class SuggestedWords : public ProtectionRig {
 TEST_F(SuggestedWords, OfAJog) {
   close_all();
   follow(6);
-  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137"), "1|1|0|1|0");
+  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137 M5187"), "1|1|0|1|0|1");
   c_.line("#1J=2500");
   follow(60);
-  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137"), "0|0|0|1|1");
+  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137 M5187"), "0|0|0|1|1|0");
   EXPECT_EQ(counts_of(163), 2500) << "target";
   EXPECT_EQ(counts_of(161), at(1));
   // The test has it where it was commanded to be an interrupt ago: 32 counts/ms for 0.4427 ms.
@@ -51,8 +51,14 @@ TEST_F(SuggestedWords, OfAJog) {
   EXPECT_EQ(c_.line("M140 M133 M137"), "1|1|0");
   EXPECT_EQ(counts_of(161), 2500);
   EXPECT_EQ(counts_of(163), 2500);
+  c_.line("M144->Y:$C0,7 M136->X:$B0,10 #1J=4000^100");
+  follow(10);
+  EXPECT_EQ(c_.line("M144 M136 M137"), "1|1|1") << "until a trigger";
+  follow(300);
+  EXPECT_EQ(c_.line("M144 M136"), "1|0") << "which has not come";
   c_.line("#1J-");
   follow(30);
+  EXPECT_EQ(c_.line("M144"), "0");
   EXPECT_EQ(m(137), 0) << "no end is known";
   EXPECT_EQ(counts_of(163), at(1));
   c_.line("#1K");
@@ -123,6 +129,10 @@ TEST_F(SuggestedWords, OfSplinesAndPvt) {
     run(program);
     follow(800);
     EXPECT_EQ(c_.line("M5147 M5148"), "3000|100") << mode;
+    if (mode == "PVT200") {
+      EXPECT_LT(at(1), 2900);
+      EXPECT_EQ(counts_of(163), 3000);
+    }
     follow(2000);
     EXPECT_EQ(counts_of(163), 3000) << mode;
     c_.line("#1K #2K");
@@ -130,6 +140,18 @@ TEST_F(SuggestedWords, OfSplinesAndPvt) {
     counts(2, 0);
     servo(3);
   }
+}
+
+// Down with backlash, up without.
+TEST_F(SuggestedWords, OfBacklash) {
+  c_.line("M144->Y:$C0,4 I185=16 I186=160 I187=16");
+  ASSERT_TRUE(motor_close(0));
+  c_.line("#1J=-100");
+  follow(60);
+  EXPECT_EQ(c_.line("M144"), "1");
+  c_.line("#1J=100");
+  follow(60);
+  EXPECT_EQ(c_.line("M144"), "0");
 }
 
 TEST_F(SuggestedWords, OfFaults) {
