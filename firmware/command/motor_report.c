@@ -8,6 +8,8 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
+enum { FOLLOWING_OFFSET = 2 }; /* Ixx06 */
+
 static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
 
@@ -32,11 +34,14 @@ void motor_report_status(uint32_t motor) {
   reply_hex(motor_status(motor, 1), 6);
 }
 
+/* In offset mode the position that commands count from goes with the master, and so does what is reported. */
 void motor_report_position(uint32_t motor) {
   const uint32_t at = base(motor);
-  report_scaled(long_word(at + MEMORY_MOTOR_ACTUAL) + long_word(at + MEMORY_MOTOR_COMPENSATION) +
-                    long_word(at + MEMORY_MOTOR_BIAS),
-                variable(motor, IXX08_POSITION_SCALE));
+  int64_t position = long_word(at + MEMORY_MOTOR_ACTUAL) + long_word(at + MEMORY_MOTOR_COMPENSATION) +
+                     long_word(at + MEMORY_MOTOR_BIAS);
+  if (((uint32_t)variable(motor, IXX06_FOLLOWING_MODE) & FOLLOWING_OFFSET) != 0u)
+    position -= long_word(at + MEMORY_MOTOR_MASTER);
+  report_scaled(position, variable(motor, IXX08_POSITION_SCALE));
 }
 
 /* The word is that of a closure of the loop, every Ixx60 + 1 servo interrupts. */

@@ -10,6 +10,7 @@
 
 enum { CONVERSION_LINES = 192, CONVERSION_LONGEST = 5, CONVERSION_SOURCES = 5 };
 
+/* All zero but for what conversion_table.c says, when an entry begins. */
 struct conversion_state {
   bool fresh; /* nothing remembered yet */
   bool runs;  /* a triggered time base that has had its trigger */

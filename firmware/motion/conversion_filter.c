@@ -27,7 +27,6 @@ static int32_t behind(const struct conversion_entry* entry) {
     state->fresh = false;
     state->previous = now;
     state->out = (int32_t)(now << OUT_BITS);
-    state->remainder = state->integral = 0;
   }
   int32_t step = hal_signed(now - state->previous);
   if (step > most) step = most;
@@ -67,8 +66,7 @@ void convert_sum(const struct conversion_entry* entry) {
   uint32_t sum = (setup & NEGATE_FIRST) != 0u ? 0u - first : first;
   if ((setup & NO_SECOND) == 0u) sum += (setup & NEGATE_SECOND) != 0u ? 0u - second : second;
   if (entry->flag) {
-    if (!entry->state->fresh) sum += entry->state->previous;
-    entry->state->fresh = false;
+    sum += entry->state->previous;
     entry->state->previous = sum;
   }
   *entry->result = sum & HAL_WORD_MASK;

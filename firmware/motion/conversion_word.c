@@ -18,8 +18,6 @@ void convert_analog(const struct conversion_entry* entry) {
 void convert_analog_integrated(const struct conversion_entry* entry) {
   int32_t value = analog(entry) - entry->parameter[1];
   if (entry->flag && value < 0) value = 0;
-  if (entry->state->fresh) entry->state->previous = 0;
-  entry->state->fresh = false;
   entry->state->previous += (uint32_t)value; /* with the bits that the result has not */
   *entry->result = entry->state->previous >> ADC_SHIFT & HAL_WORD_MASK;
 }

@@ -6,7 +6,7 @@
 #include "firmware/variables/i_variables.h"
 
 struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
-volatile uint32_t cs_busy;
+volatile uint32_t cs_busy, cs_awake;
 uint32_t cs_interrupts;
 
 /* A motor belongs to one system at a time: all rings have their cubics here, each those of its motors. */
@@ -22,7 +22,7 @@ void coordinate_systems_initialize(void) {
     s->increment_full = s->increment_command = i_integer(I10_SERVO_PERIOD);
     s->increment = s->increment_target = s->increment_full;
   }
-  cs_busy = 0;
+  cs_busy = cs_awake = 0;
 }
 
 void coordinate_systems_forget_programs(void) {

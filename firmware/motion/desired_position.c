@@ -88,8 +88,7 @@ void desired_position_take_actual(uint32_t motor) {
   m->held_back = 0;
   if (p->follows) p->master_reading = *p->master;
   m->trajectory = m->actual - m->master + m->compensation;
-  p->turning = m->trajectory;
-  p->fraction = 0;
+  p->turning = m->trajectory + m->master;
 }
 
 void desired_position_shift(uint32_t motor, int64_t by) {

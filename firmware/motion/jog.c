@@ -13,7 +13,7 @@
 
 void jog_initialize(void) {
   jogs_busy = jogs_asked = 0;
-  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){0};
+  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){.away = true};
 }
 
 static double units(uint32_t motor) { return (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale; }
@@ -86,44 +86,51 @@ bool jog_stop(uint32_t motor) {
   return ask(motor, &request);
 }
 
-static bool go(uint32_t motor, int64_t target, double speed, bool by_program) {
+/* `together`: of a program, which moves these. */
+static bool go(uint32_t motor, int64_t target, double speed, uint32_t together) {
   struct jog_motion request = make(motor, AIM_TARGET, speed);
   request.target = target;
-  request.by_program = by_program;
+  request.by_program = together != 0u;
+  request.together = together;
   return ask(motor, &request);
 }
 
-static bool go_until(uint32_t motor, int64_t target, double speed, int64_t distance, bool by_program) {
+static bool go_until(uint32_t motor, int64_t target, double speed, int64_t distance, uint32_t together) {
   struct jog_motion request = make(motor, AIM_TARGET, speed);
   request.target = target;
-  request.by_program = by_program;
+  request.by_program = together != 0u;
+  request.together = together;
   request.searches = true;
   request.beyond = distance;
   return ask(motor, &request);
 }
 
-bool jog_to(uint32_t motor, int64_t target) { return go(motor, target, jog_speed(motor), false); }
+bool jog_to(uint32_t motor, int64_t target) { return go(motor, target, jog_speed(motor), 0); }
 
 bool jog_until(uint32_t motor, int64_t target, int64_t distance) {
-  return go_until(motor, target, jog_speed(motor), distance, false);
+  return go_until(motor, target, jog_speed(motor), distance, 0);
 }
 
-bool jog_rapid(uint32_t motor, int64_t target, double speed) { return go(motor, target, speed, true); }
-
-bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance) {
-  return go_until(motor, target, speed, distance, true);
+bool jog_rapid(uint32_t motor, int64_t target, double speed, uint32_t together) {
+  return go(motor, target, speed, together);
 }
 
-bool jog_home(uint32_t motor, double velocity, int64_t offset, bool by_program) {
+bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance, uint32_t together) {
+  return go_until(motor, target, speed, distance, together);
+}
+
+bool jog_home(uint32_t motor, double velocity, int64_t offset, uint32_t together) {
   struct jog_motion request = make(motor, AIM_SPEED, velocity);
   request.searches = request.homes = true;
   request.beyond = offset;
-  request.by_program = by_program;
+  request.by_program = together != 0u;
+  request.together = together;
   return ask(motor, &request);
 }
 
 bool jog_stop_at(uint32_t motor, double deceleration) {
   struct jog_motion request = make(motor, AIM_RAMP, 0.0);
+  request.by_program = motors[motor].path == PATH_SYSTEM; /* at the rate of the path that it leaves, held or not */
   request.deceleration = deceleration * units(motor);
   return ask(motor, &request);
 }
@@ -141,6 +148,7 @@ static void nothing_moves(uint32_t motor) {
 
 void jog_drop(uint32_t motor) {
   nothing_moves(motor);
+  leave_position(motor);
   motors[motor].path = PATH_STANDS;
 }
 
@@ -153,6 +161,12 @@ void jog_program_takes(uint32_t motor) {
 /* Where it stands ------------------------------------------------------------------------------------------------- */
 
 bool jog_is_moving(uint32_t motor) { return (jogs_busy & jog_bit(motor)) != 0u; }
+
+bool jog_is_of_program(uint32_t motor) {
+  const struct jog* j = &jogs[motor];
+  return jog_is_moving(motor) && (j->now.by_program || j->request.by_program);
+}
+
 bool jog_is_homing(uint32_t motor) { return jogs[motor].now.homes && jogs[motor].now.searches; }
 
 int64_t jog_commanded(uint32_t motor) {
@@ -191,8 +205,11 @@ void jog_make_whole(uint32_t motor) {
   const double whole = (double)math_nearest(motor_counts_of(motor, jog_commanded(motor)));
   const int64_t position = motor_position_of(motor, whole);
   const uint32_t state = hal_mask_servo();
-  if (motors[motor].loop == LOOP_CLOSED && motors[motor].path == PATH_STANDS && !jog_is_moving(motor))
+  if (motors[motor].loop == LOOP_CLOSED && motors[motor].path != PATH_OWN && !jog_is_moving(motor)) {
+    leave_position(motor);
+    motors[motor].path = PATH_STANDS;
     motors[motor].trajectory = position;
+  }
   hal_unmask(state);
 }
 
@@ -202,5 +219,7 @@ void jog_count_from(uint32_t motor, int64_t position) {
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */
-  j->away = false;
+  motors[motor].of_system -= position;
+  j->before = motors[motor].trajectory;
+  j->away = true;
 }

@@ -22,7 +22,25 @@ struct beginning {
   struct own_path_place place;
 };
 
+static uint32_t waiting; /* motors whose path is ready and begins with others that are not; servo task held off */
+
 enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
+
+/* Where a program has it `ahead` from now, in its piece: a ramp that begins beyond it begins at its last speed. While
+ * time stands so does the motor. Servo task held off. */
+static struct own_path_place place_of_program(uint32_t motor, int64_t ahead) {
+  const struct motor* m = &motors[motor];
+  struct coordinate_system* s = &coordinate_systems[m->cs];
+  struct piece_ring* ring = &s->ring;
+  if (m->path == PATH_SYSTEM && s->active && s->increment > 0 && !piece_ring_is_empty(ring)) {
+    const struct piece* piece = piece_ring_at(ring, ring->executing);
+    const int64_t at = ring->elapsed + ahead;
+    if ((piece->motors >> motor & 1u) != 0u)
+      return (struct own_path_place){*piece_ring_cubic(ring, ring->executing, motor), piece->time,
+                                     at < piece->end ? at : piece->end - 1};
+  }
+  return own_path_stands(m->trajectory);
+}
 
 /* Servo task held off. */
 static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
@@ -40,17 +58,8 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
   if (b->begins < j->request_begins) b->begins = j->request_begins;
   b->place = m->path == PATH_OWN ? own_path_place(&j->paths[j->current], b->begins - j->clock)
-                                 : own_path_stands(m->trajectory);
+                                 : place_of_program(motor, b->begins - j->clock);
   return LOOK_PLAN;
-}
-
-/* A piece of servo time's distance as a speed, of a motor that its system moves; else 0. */
-static double system_speed(uint32_t motor) {
-  const struct motor* m = &motors[motor];
-  const int32_t increment = coordinate_systems[m->cs].increment;
-  if (m->path != PATH_SYSTEM || increment <= 0) return 0.0;
-  slice_pause();
-  return (double)m->desired_step / math_scale((double)increment, -TRAJECTORY_FRACTION_BITS);
 }
 
 static void to_target(struct own_path* path, struct jog_motion* m, double speed) {
@@ -82,15 +91,42 @@ static void build(struct own_path* path, struct jog_motion* m, struct own_path_s
   }
 }
 
-/* Servo task held off. False: the moment it was planned for is over, or something else is asked for. */
+/* Servo task held off. False: the moment it was planned for is over, or something else is asked for. What begins
+ * together stands until then, whenever that is. */
 static bool hand_over(uint32_t motor, struct beginning* b) {
   struct jog* j = &jogs[motor];
-  if (j->requests != b->requests || j->clock > b->begins) return false;
+  const bool alone = b->motion.together == 0u;
+  if (j->requests != b->requests || (alone && j->clock > b->begins)) return false;
   j->next = b->motion;
-  j->next_begins = b->begins;
+  j->next_begins = alone ? b->begins : INT64_MAX;
   j->ready = true;
   jogs_asked &= ~jog_bit(motor);
+  if (!alone) waiting |= jog_bit(motor);
   return true;
+}
+
+/* The last of them is planned: they begin when Ixx92 has passed for all. */
+static void begin_together(uint32_t motors_of_it) {
+  int64_t longest = 0;
+  for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
+    const struct jog* j = &jogs[__builtin_ctz(left)];
+    if (j->request_begins - j->clock > longest) longest = j->request_begins - j->clock;
+  }
+  for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
+    struct jog* j = &jogs[__builtin_ctz(left)];
+    if (j->ready && j->next.together != 0u) j->next_begins = j->clock + longest; /* else something else is asked for */
+  }
+  waiting &= ~motors_of_it;
+}
+
+static void begin_waiting(void) {
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t left = waiting; left != 0u;) {
+    const uint32_t first = left & -left, together = jogs[__builtin_ctz(left)].next.together | first;
+    if ((together & jogs_asked) == 0u) begin_together(together & waiting);
+    left &= ~together;
+  }
+  hal_unmask(state);
 }
 
 /* Planned for a moment so near that it may be over too soon, then for later ones. */
@@ -102,8 +138,7 @@ static bool plan(uint32_t motor) {
     hal_unmask(state);
     if (to_do != LOOK_PLAN) return false;
     slice_pause();
-    struct own_path_state from = own_path_state(&b.place);
-    if (motors[motor].path == PATH_SYSTEM) from.speed = system_speed(motor);
+    const struct own_path_state from = own_path_state(&b.place);
     struct own_path* path = &jogs[motor].paths[jogs[motor].current ^ 1u];
     build(path, &b.motion, from);
     slice_pause();
@@ -118,5 +153,6 @@ static bool plan(uint32_t motor) {
 bool jog_plan(void) {
   bool any = false;
   for (uint32_t left = jogs_asked; left != 0u; left &= left - 1u) any |= plan((uint32_t)__builtin_ctz(left));
+  if (waiting != 0u) begin_waiting();
   return any;
 }

@@ -41,10 +41,11 @@ static void found(uint32_t motor, int64_t position) {
   status->home_search = status->trigger_move = false;
   then.aim = AIM_TARGET;
   then.searches = false;
+  then.together = 0;
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
     jog_count_from(motor, then.target);
-    then.target = 0;
+    j->before = then.target = 0;
     status->home_complete = true;
   }
   if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) return; /* something else has been asked for */

@@ -19,6 +19,7 @@ struct jog_motion {
   enum jog_aim aim;
   bool searches, homes; /* for a trigger; which becomes home */
   bool by_program;      /* held with its coordinate system */
+  uint32_t together;    /* motors that begin at the same interrupt, at rest until then; 0: it alone */
   double speed;         /* of AIM_SPEED with sign */
   double deceleration;  /* of AIM_RAMP */
   int64_t target;
@@ -38,7 +39,7 @@ struct jog {
   volatile uint32_t requests; /* so far, whatever makes R plan anew */
   int64_t request_begins;     /* earliest clock */
   int64_t delay;              /* Ixx92, of the last request */
-  bool away;                  /* from `before`, by jogs. Q, S */
+  bool away;                  /* from `before`, by anything but a program. Q, S */
   int64_t before;
 };
 

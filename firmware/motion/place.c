@@ -7,6 +7,7 @@
 #include "firmware/motion/plan_cubic.h"
 #include "firmware/motion/plan_own.h"
 #include "firmware/motion/segment.h"
+#include "firmware/motion/system_motors.h"
 
 static int64_t corner(const struct move* m) { return m->blend_in / 2 + m->time; }
 
@@ -104,7 +105,9 @@ bool move_place(uint32_t cs) {
   if (!s->next_valid || s->placed || s->end_block || corner_waits(cs) || !begins_alone(cs)) return false;
   if (is_late(s)) plan_spline_anew(cs);
   if (s->motors != 0) {
+    const enum move_kind kind = s->moves[s->executing ^ 1u].kind;
     if (!move_place_motors(cs)) return false;
+    if (kind != MOVE_DWELL) system_motors_come_along(cs);
   } else {
     const uint32_t state = hal_mask_servo();
     if (s->next_valid && !s->placed && !s->end_block && !s->settling) place_virtual(s);

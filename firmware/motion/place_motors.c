@@ -240,9 +240,9 @@ static void from_rest(struct move* next, uint32_t number) {
   append(s);
 }
 
-/* With the way D: v0 T u + (3 D - (2 v0 + v1) T) u^2 + ((v0 + v1) T - 2 D) u^3. */
-static void add_knots(uint32_t motor, const struct knot* first, const struct knot* second, double time) {
-  const double from = system_motor_at(motor, first->position), to = system_motor_at(motor, second->position);
+/* With the way D from where it is: v0 T u + (3 D - (2 v0 + v1) T) u^2 + ((v0 + v1) T - 2 D) u^3. */
+static void add_knots(uint32_t motor, double from, const struct knot* first, const struct knot* second, double time) {
+  const double to = system_motor_at(motor, second->position);
   slice_pause();
   const double v0 = system_motor_velocity_at(motor, first->velocity) * time;
   slice_pause();
@@ -259,14 +259,19 @@ static bool place_cubic(struct move* next, uint32_t number) {
   making.added = 0;
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    making.reached[motor] = math_nearest(system_motor_at(motor, next->knots[0].position));
+    making.reached[motor] = math_nearest(system_motor_from(motor, next->knots[0].position));
     slice_pause();
   }
   next->straight = s->ring.added;
   for (uint32_t i = 0; i + 1u < next->knot_count; i++) {
     begin_piece(next->knot_time[i], s->motors, number);
-    for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
-      if ((left & 1u) != 0) add_knots(motor, &next->knots[i], &next->knots[i + 1u], milliseconds(next->knot_time[i]));
+    for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+      if ((left & 1u) == 0) continue;
+      const struct knot* first = &next->knots[i];
+      const double from = i == 0 ? system_motor_from(motor, first->position) : system_motor_at(motor, first->position);
+      slice_pause();
+      add_knots(motor, from, first, first + 1, milliseconds(next->knot_time[i]));
+    }
   }
   next->blended = continues;
   if (!continues) {

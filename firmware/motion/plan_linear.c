@@ -11,9 +11,10 @@
 bool plan_feed_time(uint32_t cs, const double delta[AXIS_COUNT], uint32_t moving, double fastest, double* time) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_real(cs, ISX89_FEEDRATE);
-  double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT), alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
+  double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT), alternate = 0.0;
   double square = 0.0, other = 0.0, single = 0.0;
   uint32_t axes = 0;
+  if (i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) alternate = cs_real(cs, ISX86_ALTERNATE_FEEDRATE);
   const bool follows = !(alternate > 0.0); /* what is no feedrate axis */
   *time = 0.0;
   if (moving == 0) return true;
@@ -55,7 +56,7 @@ static struct limits motor_limits(uint32_t cs, const double target[AXIS_COUNT]) 
   struct limits found = {0.0, 0.0};
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    moves[motor].from = system_motor_at(motor, s->position);
+    moves[motor].from = system_motor_from(motor, s->position);
     moves[motor].to = system_motor_at(motor, target);
     slice_pause();
     const double distance = math_absolute(moves[motor].to - moves[motor].from);

@@ -30,7 +30,7 @@ static uint32_t set_goals(uint32_t cs, const double target[AXIS_COUNT], double* 
   *longest = 0.0;
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t from = math_nearest(system_motor_at(motor, s->position));
+    const int64_t from = math_nearest(system_motor_from(motor, s->position));
     goals[motor].target = math_nearest(system_motor_at(motor, target));
     slice_pause();
     goals[motor].searches = system_motor_behind(motor, s->pending_triggers, s->pending_trigger, &goals[motor].beyond);
@@ -52,7 +52,7 @@ static void stretch(uint32_t cs, uint32_t moving, double longest) {
   if (i_integer(i_cs(cs, ISX79_RAPID_CALCULATION)) != 0 || !(longest > 0.0)) return;
   for (uint32_t motor = 0, left = moving; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t from = math_nearest(system_motor_at(motor, s->position));
+    const int64_t from = math_nearest(system_motor_from(motor, s->position));
     slice_pause();
     const double way = math_absolute(system_motor_counts(motor, goals[motor].target - from));
     slice_pause();
@@ -84,11 +84,11 @@ void plan_home(uint32_t cs, uint32_t motors_to_home) {
 /* One whose loop has been opened meanwhile does not go: what opened it ends the program too. */
 static void begin(const struct move* m, uint32_t motor) {
   if (m->homes)
-    (void)homing_begin(motor, true);
+    (void)homing_begin(motor, m->own);
   else if (goals[motor].searches)
-    (void)jog_rapid_until(motor, goals[motor].target, goals[motor].speed, goals[motor].beyond);
+    (void)jog_rapid_until(motor, goals[motor].target, goals[motor].speed, goals[motor].beyond, m->own);
   else
-    (void)jog_rapid(motor, goals[motor].target, goals[motor].speed);
+    (void)jog_rapid(motor, goals[motor].target, goals[motor].speed, m->own);
 }
 
 void plan_own_begin(uint32_t cs) {

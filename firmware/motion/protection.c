@@ -249,6 +249,7 @@ static void not_closed(uint32_t motor) {
 }
 
 static void check(uint32_t motor) {
+  if (motors[motor].loop == LOOP_KILLED) return not_closed(motor); /* the usual way of motors that nobody uses */
   const struct view view = look(motor);
   if (view.loop != LOOP_KILLED && !status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
   if (motors[motor].loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
@@ -258,33 +259,36 @@ static void check(uint32_t motor) {
   check_in_position(motor, &view);
 }
 
-/* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
-static bool any(uint32_t cs, bool fatal) {
-  for (uint32_t left = motors_active; left != 0u; left &= left - 1u) {
-    const uint32_t motor = (uint32_t)__builtin_ctz(left);
+/* What a coordinate system's motors have in common. */
+struct findings {
+  bool in_position, fatal, warning; /* of all, of one, of one */
+};
+
+static struct findings findings_of(uint32_t cs) {
+  const uint32_t of = axis_motors[cs];
+  struct findings all = {.in_position = of != 0u};
+  for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
+    if ((left & 1u) == 0u) continue;
     const struct motor_findings* found = &motors[motor].found;
-    if ((fatal ? found->fatal_error : found->warning_error) && is_of_system(motor, cs)) return true;
+    all.in_position &= found->in_position;
+    if ((motors_active >> motor & 1u) == 0u) continue;
+    all.fatal |= found->fatal_error;
+    all.warning |= found->warning_error;
   }
-  return false;
+  return all;
 }
 
-bool protection_all_in_position(uint32_t cs) {
-  bool has_motors = false;
-  for (uint32_t motor = 0; motor < MOTORS; ++motor) {
-    if (!is_of_system(motor, cs)) continue;
-    has_motors = true;
-    if (!motors[motor].found.in_position) return false;
-  }
-  return has_motors;
-}
+bool protection_all_in_position(uint32_t cs) { return findings_of(cs).in_position; }
 
+/* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
 static void show_signals(void) {
   const uint32_t cs = buffer_request_selected();
   uint32_t on = 0;
   if (cs < COORDINATE_SYSTEMS) {
-    if (protection_all_in_position(cs)) on |= HAL_SIGNAL_IPOS;
-    if (any(cs, true)) on |= HAL_SIGNAL_EROR;
-    if (any(cs, false)) on |= HAL_SIGNAL_F1ER;
+    const struct findings all = findings_of(cs);
+    if (all.in_position) on |= HAL_SIGNAL_IPOS;
+    if (all.fatal) on |= HAL_SIGNAL_EROR;
+    if (all.warning) on |= HAL_SIGNAL_F1ER;
   }
   if (on != shown) hal_host_signals(on, shown & ~on);
   shown = on;
@@ -294,7 +298,7 @@ void protection_stand(bool still) { stands = still; }
 
 void protection_pass(void) {
   if (stands) return;
-  foreground = i_integer(I13_FOREGROUND_IN_POSITION) != 0;
+  foreground = i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0;
   protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)

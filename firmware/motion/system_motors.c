@@ -16,6 +16,9 @@ enum { AXES_OF_A_MOTOR = 3 };
 
 struct motor_move motor_moves[2][MOTORS];
 
+/* What a motor stands beside where its axes have it, at the start of a program. */
+static double aside[MOTORS];
+
 /* How axes make a motor's position. */
 static struct {
   uint32_t count;
@@ -66,13 +69,22 @@ double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
   return sum;
 }
 
+double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]) {
+  return system_motor_at(motor, position) + aside[motor];
+}
+
+void system_motors_come_along(uint32_t cs) {
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) aside[motor] = 0.0;
+}
+
 /* The first motor that carries it alone tells the turn. */
 double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   for (uint32_t motor = 0, left = axis <= AXIS_C ? s->motors : 0u; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0 || maps[motor].count != 1u || maps[motor].axis[0] != axis) continue;
     if (i_variable_read(i_motor_real(motor + 1u, IXX27_ROLLOVER)) == 0.0) return target;
-    const double scale = axis_definitions[motor].scale[axis];
+    const double scale = math_absolute(axis_definitions[motor].scale[axis]); /* directions are those of the axis */
     slice_pause();
     return rollover_target(motor, s->position[axis] * scale, target * scale, target < 0.0) / scale;
   }
@@ -121,8 +133,8 @@ static int64_t commanded(uint32_t motor) {
   return position;
 }
 
-static bool agrees(uint32_t motor, const double position[AXIS_COUNT]) {
-  return math_nearest(system_motor_at(motor, position)) == commanded(motor);
+static int64_t beside(uint32_t motor, const double position[AXIS_COUNT]) {
+  return commanded(motor) - math_nearest(system_motor_at(motor, position));
 }
 
 /* Equations of motors in the axes, each reduced by those before it, for Gaussian elimination. */
@@ -179,20 +191,23 @@ void system_motors_match(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   static struct equations e;
   bool all = true;
+  system_motors_come_along(cs);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0 && !agrees(motor, s->position)) all = false;
+    if ((left & 1u) != 0 && beside(motor, s->position) != 0) all = false;
   if (all) return;
   e.count = 0;
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) add_equation(&e, motor);
   solve(&e, s->position);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) aside[motor] = (double)beside(motor, s->position);
 }
 
 void system_motors_take(uint32_t cs) {
   const uint32_t state = hal_mask_servo();
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    if (motors[motor].path != PATH_SYSTEM) jog_program_takes(motor);
+    if ((left & 1u) == 0 || jog_is_of_program(motor)) continue;
+    jog_program_takes(motor);
     motors[motor].of_system = motors[motor].trajectory;
   }
   hal_unmask(state);
@@ -215,7 +230,8 @@ bool system_motors_are_away(uint32_t cs) {
   bool away = false;
   const uint32_t state = hal_mask_servo();
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0 && motors[motor].trajectory != motors[motor].of_system) away = true;
+    if ((left & 1u) != 0 && !jog_is_of_program(motor) && motors[motor].trajectory != motors[motor].of_system)
+      away = true;
   hal_unmask(state);
   return away;
 }

@@ -20,6 +20,10 @@ extern struct motor_move motor_moves[2][MOTORS];
 
 void system_motors_resolve(uint32_t cs); /* its motors, scales and offsets; background too */
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
+/* The same where a move begins: the first of a program takes motors along that stand beside their axes, because others
+ * tell where those are. Once it is placed they do not. */
+double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]);
+void system_motors_come_along(uint32_t cs);
 /* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */
 double system_motors_turn(uint32_t cs, uint32_t axis, double target);
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]);

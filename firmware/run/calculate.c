@@ -12,6 +12,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog_plan.h"
+#include "firmware/motion/jog_state.h"
 #include "firmware/motion/place.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/position.h"
@@ -60,7 +61,7 @@ static void stop_with_error(uint32_t cs) {
 /* The program has ended: it stands at its top again, and stops when its moves are over. */
 static void end(uint32_t cs) {
   motion_program_restart(cs);
-  coordinate_systems[cs].quit = true;
+  coordinate_systems[cs].quit = coordinate_systems[cs].ended = true;
 }
 
 static void planned(uint32_t cs) {
@@ -201,10 +202,10 @@ static bool turn(uint32_t cs) {
 }
 
 static uint32_t systems(void) {
-  uint32_t mask = 0;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
-    if (coordinate_systems[cs].running || coordinate_systems[cs].settling) mask |= 1u << cs;
-  return mask;
+  for (uint32_t cs = 0, left = cs_awake; left != 0; cs++, left >>= 1)
+    if ((left & 1u) != 0 && !coordinate_systems[cs].running && !coordinate_systems[cs].settling)
+      cs_awake &= ~(1u << cs);
+  return cs_awake;
 }
 
 static void calculate_round(void) {
@@ -231,7 +232,10 @@ static void calculate_round(void) {
 
 void calculate_initialize(void) {
   calculated = COORDINATE_SYSTEMS;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) motion_program_point(cs, true, 0, 0);
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
+    motion_program_point(cs, true, 0, 0);
+    segment_forget(cs);
+  }
   synchronous_initialize();
   slice_initialize(calculate_round);
 }
@@ -245,5 +249,9 @@ void calculate_forget(uint32_t cs) {
 void calculate_programs(void) {
   cs_interrupts++;
   if (stands(calculated)) return;
-  slice_run(tasks_real_time_slice());
+  if (!slice_is_under_way() && systems() == 0 && jogs_asked == 0 && !synchronous_waits()) {
+    slice_skip();
+    return;
+  }
+  slice_run(tasks_real_time_left()); /* what checks of motors and the like have left */
 }

@@ -80,6 +80,8 @@ static void remove_first(uint32_t cs) {
   if (--queues[cs].count == 0) filled &= ~(1u << cs);
 }
 
+bool synchronous_waits(void) { return filled != 0; }
+
 void synchronous_assign(void) {
   for (uint32_t cs = 0, left = filled; left != 0; cs++, left >>= 1)
     while ((left & 1u) != 0 && is_due(cs)) {

@@ -2,6 +2,7 @@
 // it takes from the formulas of motion:5.2 and of circles.
 #include <set>
 
+#include "testbench/unit/firmware_paths/spline_path.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
 
 extern "C" {
@@ -12,33 +13,9 @@ extern "C" {
 namespace {
 
 using namespace moving_motors;
+using spline_path::Spline;
 
 constexpr double kPi = 3.14159265358979323846;
-
-// Control points every `period` ms of a path of `time` ms, the first and the last three times.
-class Spline {
- public:
-  Spline(const std::function<double(double)>& path, double time, double period) : period_(period) {
-    const int intervals = static_cast<int>(std::ceil(time / period - 1e-9));
-    points_.assign(3, path(0));
-    for (int i = 1; i < intervals; ++i) points_.push_back(path(i * period));
-    points_.insert(points_.end(), 3, path(time));
-  }
-  double length() const { return period_ * static_cast<double>(points_.size() - 3); }
-  double at(double t) const {
-    if (t >= length()) return points_.back();
-    const auto i = static_cast<std::size_t>(t / period_);
-    const double u = t / period_ - static_cast<double>(i), v = 1 - u;
-    const double* p = &points_[i];
-    return (v * v * v * p[0] + (3 * u * u * u - 6 * u * u + 4) * p[1] + (3 * v * v * v - 6 * v * v + 4) * p[2] +
-            u * u * u * p[3]) /
-           6;
-  }
-
- private:
-  double period_;
-  std::vector<double> points_;
-};
 
 class Segments : public MovingMotors {
  protected:

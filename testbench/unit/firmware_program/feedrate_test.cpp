@@ -31,7 +31,7 @@ TEST_F(Feedrate, NoneIsAnErrorOfTheMoveThatNeedsIt) {
 }
 
 TEST_F(Feedrate, IsNotNeededByOtherMoves) {
-  ASSERT_EQ(host("I5186=20"), "");
+  ASSERT_EQ(host("I5186=20 I5113=10"), "");
   run({"TA10TS0 F0", "DELAY5 DWELL5", "X0", "A1", "TM20", "X3", "INC Y0 ABS", "P1=1"});
   EXPECT_FALSE(error()) << "no distance, an axis that goes by Isx86, by time";
   EXPECT_EQ(p(1), 1.0);
@@ -40,7 +40,7 @@ TEST_F(Feedrate, IsNotNeededByOtherMoves) {
 }
 
 TEST_F(Feedrate, AnAxisWithItsOwnMakesTheOthersNeedItAllTheSame) {
-  ASSERT_EQ(host("I5186=20"), "");
+  ASSERT_EQ(host("I5186=20 I5113=10"), "");
   run({"TA10TS0 F0", "A1X1"});
   EXPECT_TRUE(error());
   EXPECT_EQ(a(), 0.0) << "all axes of a line move, or none";

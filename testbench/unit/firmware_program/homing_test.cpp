@@ -312,6 +312,11 @@ TEST_F(Homing, HmzZeroesTheCommandedPositionOfAMovingMotorToo) {
   tick();
   EXPECT_NEAR(commanded(), speed, 1.0 / 16) << "it goes on";
   ASSERT_EQ(host("J=0"), "");
+  for (int i = 0; i < 400; ++i) {
+    const double last = commanded();
+    tick();
+    ASSERT_LE(std::abs(commanded() - last), speed + 1.0 / 16) << "without a jump";
+  }
   settle();
   EXPECT_EQ(place(), before);
 }

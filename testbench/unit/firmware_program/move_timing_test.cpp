@@ -77,15 +77,26 @@ TEST_F(MoveTiming, AxesOutsideTheVector) {
   lines({"TA10 TS0 F100 A30 C-50"});  // no feedrate axis: the longest distance / F
   EXPECT_EQ(run(), ticks_of(500.0 + 10.0));
   platform::power_up();
-  ASSERT_EQ(host("I5186=20 DEF ROT 50 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("I5186=20 I5113=10 DEF ROT 50 B0 OPEN ROT"), "");
   lines({"TA10 TS0 F100 X50 A16"});  // X alone 500 ms, A at Isx86 = 20: 800 ms
   EXPECT_EQ(run(), ticks_of(800.0 + 10.0));
 }
 
 TEST_F(MoveTiming, AxesOutsideTheVectorAloneGoByIsx86) {
-  ASSERT_EQ(host("CLOSE I5186=20 OPEN ROT"), "");
+  ASSERT_EQ(host("CLOSE I5186=20 I5113=10 OPEN ROT"), "");
   lines({"TA10 TS0 F100 A16 B-8"});  // 16 at 20 a second
   EXPECT_EQ(run(), ticks_of(800.0 + 10.0));
+}
+
+// motion:5.2/7
+TEST_F(MoveTiming, Isx86IsOfSegmentedMovesOnly) {
+  ASSERT_EQ(host("CLOSE I5186=20 OPEN ROT"), "");
+  lines({"TA10 TS0 F100 X50 A16"});
+  EXPECT_EQ(run(), ticks_of(500.0 + 10.0));
+  platform::power_up();
+  ASSERT_EQ(host("I5186=20 DEF ROT 50 B0 OPEN ROT"), "");
+  lines({"TA10 TS0 F100 A16"});
+  EXPECT_EQ(run(), ticks_of(160.0 + 10.0));
 }
 
 TEST_F(MoveTiming, MoveIsNotShorterThanItsAcceleration) {
@@ -141,6 +152,11 @@ TEST_F(MoveTiming, DelayBlendsLikeAMove) {
 TEST_F(MoveTiming, DwellStopsBlending) {
   lines({"TM100 TA40 TS0 X10", "DWELL25"});
   EXPECT_EQ(run(), ticks_of(140.0) + ticks_of(25.0));
+}
+
+TEST_F(MoveTiming, ATimeBelowZeroIsNone) {
+  lines({"TM100 TA40 TS0 X10", "DWELL(0-25)", "DELAY(0-25)", "X20"});
+  EXPECT_NEAR(run(), ticks_of(140.0) + ticks_of(40.0 + 100.0 + 40.0), 2) << "DELAY takes TA";
 }
 
 TEST_F(MoveTiming, NothingIsCalculatedDuringADwell) {

@@ -156,6 +156,15 @@ TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
   EXPECT_EQ(once(1), hal_signed(0xCDEFAB));
   table("2810F0 018000");
   EXPECT_EQ(once(1), hal_signed(0xAB0000)) << "24 bits from 0";
+  y(kFree + 1, 0xCDEF01);
+  table("2810F0 00C00D");
+  EXPECT_EQ(once(1), 0xAB0000 >> 13 | 0x800) << "the last of 12 bits is the first of the next word";
+  table("2810F0 00801C");
+  EXPECT_EQ(once(1), 0xF0) << "8 bits from bit 4 of the next word";
+  x(kFree, 0x654321);
+  table("6810F0 00C01C 7810F0 00C01C FFFFFF");
+  EXPECT_EQ(once(1), 0x432);
+  EXPECT_EQ(signed_result(4), 0x432) << "of X, for $7 too";
   table("2810F0 001080");
   EXPECT_EQ(once(1), 0) << "bits that are not there";
 }
@@ -198,6 +207,29 @@ TEST_F(ConversionTable, AFilterWithoutATimeFollowsAtOnce) {
   }
 }
 
+// What the motor follows counts down as it counts up.
+TEST_F(ConversionTable, AFilterLimitsStepsBothWays) {
+  table("D010F0 000064 7FFFFF");
+  conversion_table_servo();
+  x(kFree, 350);
+  for (const int value : {100, 200, 300, 350, 350}) EXPECT_NEAR(once(2), value, 1);
+  x(kFree, 0);
+  for (const int value : {250, 150, 50, 0, 0}) EXPECT_NEAR(once(2), value, 1);
+}
+
+// Largest gains and steps, for long: it goes round, and nothing overflows (sanitizers).
+TEST_F(ConversionTable, ATrackingFilterIsBounded) {
+  table("D810F0 FFFFFF FFFFFF 000000 FFFFFF");
+  for (int n = 0; n < 2000; ++n) {
+    x(kFree, n % 3 * 8388607);
+    conversion_table_servo();
+  }
+  table("D810F0 7FFFFF 100000 000000 7FFFFF");
+  conversion_table_servo();
+  x(kFree, 8388607);
+  for (int n = 0; n < 2000; ++n) conversion_table_servo();
+}
+
 // RTIF 256: SF = 2^17/256 = 512, so 256 ct/ms of 1/32 ct, a ms in a servo interrupt, are 2^23.
 TEST_F(ConversionTable, TimeBase) {
   table("4010F0 000200");
@@ -232,6 +264,28 @@ TEST_F(ConversionTable, TriggeredTimeBase) {
   EXPECT_EQ(once(1), 512 * 16) << "goes on when its line has changed";
   c_.line("I8000=$9F8000");
   EXPECT_EQ(once(1), 0);
+  channel(-90, false, 0, 0);
+  c_.line("I8000=$AF8000");
+  EXPECT_EQ(once(1), 0) << "told to run: from where the counter is";
+  channel(-95, false, 0, 0);
+  EXPECT_EQ(once(1), -512 * 16 * 5);
+  EXPECT_EQ(signed_result(0), -95 * 256);
+  c_.line("I8000=$BF8000");
+  EXPECT_EQ(once(1), 0) << "armed anew";
+}
+
+// Entries behind one that waits for its trigger are worked out, and each of several shows that it has had it.
+TEST_F(ConversionTable, SeveralTriggeredTimeBases) {
+  table("BF8000 000010 BF8008 000020 2810F0 018000");
+  x(kChannel, 0);
+  x(kChannel + 8, 0);
+  y(kFree, 4711);
+  EXPECT_EQ(once(5), 4711);
+  x(kChannel, kCaptured);
+  x(kChannel + 8, kCaptured);
+  conversion_table_servo();
+  for (int n = 0; n < 3; ++n) c_.line("");
+  EXPECT_EQ(c_.line("I8000 I8002"), "$AF8000|$AF8008");
 }
 
 // Tf = 7: K = 2^23/8 = 1048576.
@@ -295,6 +349,9 @@ TEST_F(ConversionTable, SumsAndDifferences) {
   x(kTable + 19, 55);
   conversion_table_servo();
   EXPECT_EQ(signed_result(8), -55);
+  table("E4C8C8");  // line 200
+  x(kTable + 200, 55);
+  EXPECT_EQ(once(0), 0) << "there is no such line";
 }
 
 // The table goes on behind each entry as its method says, and ends at a first line of 0.
@@ -340,15 +397,19 @@ TEST_F(ConversionTable, ExtendedMethodsStayZeroAndAreKnown) {
   EXPECT_EQ(once(2), 0);
   EXPECT_TRUE(conversion_table_is_not_built(kTable + 2));
   EXPECT_FALSE(conversion_table_is_not_built(kTable));
+  table("F78000 000000 000000 C78000");
+  EXPECT_FALSE(conversion_table_is_not_built(kTable + 3)) << "a method that is built";
 }
 
 TEST_F(ConversionTable, AnEntryThatIsCutOffIsNone) {
   c_.line("I8000..8190=$C78000 I8191=$278000");
   channel(3, false, 0, 0);
   x(kTable + 191, 9);
+  x(kTable + 192, 9);
   conversion_table_servo();
   EXPECT_EQ(signed_result(190), 96);
   EXPECT_EQ(signed_result(191), 9);
+  EXPECT_EQ(signed_result(192), 9) << "what is behind the table";
 }
 
 TEST_F(ConversionTable, OtherLinesDoNotDisturbAnEntry) {
