@@ -191,7 +191,7 @@ TEST_F(SuggestedWords, DpramReportsTellOfMotion) {
     return static_cast<std::int64_t>((item(offset + 4) & 0xFFFFFF) << 24 | (item(offset) & 0xFFFFFF));
   };
   c_.line("WY$6001C,$FF WX$6001C,0 WY$6019D,1 WX$6019D,0 I48=1 I47=1 I49=1 I50=1");
-  run({"TM400 TA50 TS0 X5000 Y2500", "RAPID X9000 Y0"});
+  run({"TM400 TA50 TS0 X5000 Y2500", "X5100", "RAPID X9000 Y0"});
   follow(500);
   EXPECT_EQ(long_of(0x74 + 40), motors[0].actual);
   EXPECT_EQ(long_of(0x74), motors[0].commanded - motors[0].actual) << "following error";
@@ -201,7 +201,7 @@ TEST_F(SuggestedWords, DpramReportsTellOfMotion) {
   const unsigned long status = std::stoul(c_.line("#1?").substr(0, 6), nullptr, 16);
   EXPECT_EQ(item(0x74 + 12) & 0xFFFFFF, status);
   EXPECT_NEAR(static_cast<double>(item(0x69C + 104)), 450 - 500 * 3713991.0 / 8388608, 3) << "ms left";
-  follow(600);
+  follow(1500);
   EXPECT_GT(motors[0].desired_step, 0) << "RAPID";
   for (int passes = 0; passes < 4; ++passes) c_.line("");
   EXPECT_EQ(item(0x69C + 104), 0u) << "not known";
