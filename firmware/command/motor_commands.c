@@ -17,6 +17,7 @@
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/power_on_position.h"
+#include "firmware/motion/segment.h"
 #include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
@@ -33,6 +34,7 @@ static error_t is_free(uint32_t motor) {
 /* It may be jogged away from where a hold has stopped it on the path; a move of its own goes on then. */
 static bool is_held(uint32_t motor) {
   const struct coordinate_system* s = &coordinate_systems[axis_definitions[motor].cs];
+  if (segment_stands(axis_definitions[motor].cs)) return true;
   return s->held && s->increment == 0 && !jog_is_of_program(motor);
 }
 
@@ -55,11 +57,7 @@ static error_t program_text(const struct lexer* lx, uint32_t length) {
 /* Closed, unless `error` says why not. */
 static error_t close_loop(uint32_t motor, error_t error) {
   if (error != ERR_NONE || motors[motor].loop == LOOP_CLOSED) return error;
-  const uint32_t state = hal_mask_servo();
-  jog_drop(motor);
-  if (!motor_close(motor)) error = ERR_PHASING;
-  hal_unmask(state);
-  return error;
+  return motor_close(motor) ? ERR_NONE : ERR_PHASING;
 }
 
 static bool line_goes_on(struct lexer* lx) {
@@ -140,7 +138,7 @@ error_t motor_jog(uint32_t motor, enum motor_jog how) {
   else if (how == MOTOR_JOG_BACK)
     (void)jog_to(motor, jog_position_before(motor));
   else if (how == MOTOR_HOME)
-    (void)homing_begin(motor, false);
+    (void)homing_begin(motor, 0);
   else
     (void)jog_continuous(motor, how == MOTOR_JOG_PLUS ? 1 : -1);
   return ERR_NONE;
@@ -167,7 +165,7 @@ static error_t cmd_hmz(struct lexer* lx) { return home_here(lx, sizeof "HMZ" - 1
 static error_t cmd_kill(struct lexer* lx) {
   (void)lx;
   const error_t error = is_free(session.motor);
-  if (error == ERR_NONE) motor_stop_now(session.motor);
+  if (error == ERR_NONE) motor_kill(session.motor);
   return error;
 }
 

@@ -19,10 +19,20 @@
 #include "firmware/motion/path.h"
 #include "firmware/motion/segment_piece.h"
 
-/* A piece for the servo task. */
+enum lookahead_order {
+  LOOKAHEAD_NONE,
+  LOOKAHEAD_STOP,
+  LOOKAHEAD_FORWARD,
+  LOOKAHEAD_BACKWARD,
+  LOOKAHEAD_ONE_FORWARD, /* a segment */
+  LOOKAHEAD_ONE_BACKWARD
+};
+
+/* A piece for the servo task: from one sixteenth of a segment to another, backwards too. */
 struct lookahead_piece {
-  uint32_t segment;
-  int64_t time; /* trajectory time; with `period` it is gone through evenly */
+  uint32_t segment, first, last;
+  int32_t rate; /* w at its begin */
+  int64_t time; /* trajectory time */
   int32_t warp; /* as piece.warp */
   uint32_t number;
   struct path_line line;
@@ -41,6 +51,12 @@ void lookahead_close(uint32_t cs); /* the points so far are all */
 /* `hurry`: the servo task runs short. False: there is none yet. */
 bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece);
 bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing was to be done */
+/* The servo task has not begun `piece` and what came behind it, and will not: the front is there again. */
+void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
+void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */
+bool lookahead_stands(uint32_t cs);                         /* or will, behind what is handed over */
+uint32_t lookahead_state(uint32_t cs, bool moves);          /* for Isx21 */
+bool lookahead_is_over(uint32_t cs);                        /* all of the sequence is handed over */
 void lookahead_points(uint32_t cs, uint32_t segment, uint32_t motor, int64_t points[SPLINE_POINTS]);
 
 #endif

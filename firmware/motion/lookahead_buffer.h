@@ -28,7 +28,7 @@ struct lookahead_buffer {
 /* The buffer of a system with so many motors; no records: there is none. */
 void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_buffer* buffer);
 
-static inline struct lookahead_record* lookahead_record(const struct lookahead_buffer* b, uint32_t number) {
+static inline struct lookahead_record* lookahead_at(const struct lookahead_buffer* b, uint32_t number) {
   return (struct lookahead_record*)&b->words[(number % b->records) * b->stride];
 }
 static inline struct lookahead_motor* lookahead_motors(const struct lookahead_buffer* b, uint32_t number) {

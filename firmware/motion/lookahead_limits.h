@@ -4,15 +4,15 @@
  *
  *   q(u) = (x'' w + x' w' / 2) / T^2      x'' linear, x' quadratic in u: q is quadratic in u, and linear in w0 and w1
  *
- * The five values b0, (b0+b1)/2, (b0+2 b1+b2)/4, (b1+b2)/2, b2 made of its Bernstein coefficients bound q from outside:
- * each asks |c0 w0 + c1 w1| <= 1 for all motors. Integers; one part at a time. Real-time task, in slices. */
+ * Its values at both ends and the middle Bernstein coefficients of its four quarters bound q from outside: each asks
+ * |c0 w0 + c1 w1| <= 1 for all motors. Integers; one part at a time. Real-time task, in slices. */
 #ifndef FIRMWARE_MOTION_LOOKAHEAD_LIMITS_H
 #define FIRMWARE_MOTION_LOOKAHEAD_LIMITS_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { RATE_BITS = 30, BEND_BITS = 12 }; /* w: 2^30 is 1. x'/(A T^2), x''/(A T^2): 2^12 is 1, within +-2^15 */
+enum { RATE_BITS = 30, BEND_BITS = 14 }; /* w: 2^30 is 1. x'/(A T^2), x''/(A T^2): 2^14 is 1, within +-2^13 */
 
 #define RATE_FULL (1 << RATE_BITS)
 #define BEND_MOST (INT32_C(1) << 27)
@@ -24,7 +24,7 @@ struct limits_motor {
 };
 
 void limits_begin(void);
-void limits_add(const struct limits_motor* m, uint32_t quarters); /* a part of 1 to 4 quarters of a segment */
+void limits_add(const struct limits_motor* m, uint32_t parts); /* of 1 to 16 sixteenths of a segment */
 /* The largest and the smallest w at one end, at most `most`, when it is `w` at the other. Below 0: there is none. */
 int32_t limits_most(enum limits_end end, int32_t w, int32_t most);
 int32_t limits_least(enum limits_end end, int32_t w, int32_t most);

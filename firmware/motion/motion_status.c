@@ -9,6 +9,7 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/protection.h"
+#include "firmware/variables/i_variables.h"
 
 enum {
   S1_VECTOR_INCREMENTAL = 5,
@@ -28,6 +29,8 @@ enum {
   S2_DWELL = 12,
   S3_SHARP_CORNER = 6,
   S3_CORNER_DWELL = 5,
+  S3_RADIUS_ERROR = 3,
+  S3_LOOKAHEAD_STATE = 8,
   S3_DESIRED_LIMIT = 1,
   G2_ULTRALITE = 23,
   G2_BINARY_ROTARY_OPEN = 20,
@@ -87,13 +90,14 @@ static bool is_on_desired_limit(uint32_t cs) {
   return false;
 }
 
-/* A stop at a corner that is too sharp to blend, and its pause, and one at the limit of a desired position; the rest of
- * word 3 is about lookahead. */
+/* A stop at a corner that is too sharp to blend, and its pause, and one at the limit of a desired position; Isx21
+ * (motion:7.5). */
 static uint32_t status3(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const bool stops = s->corner != CORNER_NONE && s->moves[s->executing ^ 1u].is_sharp;
-  return bit(stops, S3_SHARP_CORNER) | bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) |
-         bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT);
+  const uint32_t state = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE)) << S3_LOOKAHEAD_STATE;
+  return state | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
+         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) | bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT);
 }
 
 uint32_t motion_cs_status(uint32_t cs, unsigned word) {

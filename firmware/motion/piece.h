@@ -12,6 +12,7 @@
 
 #include "firmware/motion/fixed_point.h"
 
+enum { PIECE_PARTS = 16 };
 enum { PIECES = 32 };              /* of a ring; a power of two */
 enum { PIECE_WARP_ONE = 1 << 30 }; /* the largest `warp` */
 
@@ -26,6 +27,7 @@ struct piece {
   int64_t end;      /* when the next one follows: `time`; below it: cut short, 0: passed over */
   uint64_t inverse; /* piece_set_time makes both */
   uint32_t shift;
+  uint8_t from, to; /* sixteenths of the cubics; `from` is above `to` when they are gone through backwards */
   int32_t warp; /* after the part p of its time the part u = p + warp p (1 - p) of its way: the rate changes evenly */
   uint32_t motors; /* slots of the ring that have a cubic in it; the others stand */
   uint32_t move;   /* which move of its coordinate system it belongs to, counted by who plans */
@@ -68,6 +70,8 @@ void piece_ring_clear(struct piece_ring* ring); /* servo task held off */
 /* Servo task. On by `increment` of trajectory time, into the next pieces if need be; false: the ring has run empty, and
  * what is beyond the end is lost. */
 bool piece_ring_advance(struct piece_ring* ring, int64_t increment);
+
+int64_t piece_end(const struct piece* piece, const struct cubic* cubic); /* where it ends */
 
 int64_t cubic_at(const struct cubic* cubic, uint32_t fraction);
 int64_t cubic_end(const struct cubic* cubic);

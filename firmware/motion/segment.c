@@ -12,8 +12,7 @@
 #include "firmware/variables/i_variables.h"
 
 enum {
-  ISX15 = 1, /* behind Isx14 */
-  ISX16 = 2,
+  ISX16 = 1,        /* behind Isx15 */
   LEFT_OF_RING = 4, /* pieces of the ring that are for whatever follows */
   LAST_POINTS = 3,  /* the first and the last point of a sequence stand so often */
   SHORT_MS = 12,    /* of segments ahead of the servo task: what has no next move by then comes to its end */
@@ -25,17 +24,19 @@ enum {
 /* The sequence that is being made. Owner: R, but for what is marked. */
 struct sequence {
   bool runs;
-  bool handed; /* the servo task has its first pieces */
-  bool ends;   /* it is known where: behind `joined` moves of the queue */
-  bool looks;  /* its segments go through the lookahead buffer */
-  bool made;   /* all its points are */
-  bool closed; /* no further move joins: one of another kind waits for its place */
-  bool stops;  /* segment_stop: at the end of the move that is under way. B sets */
+  bool handed;                         /* the servo task has its first pieces */
+  bool ends;                           /* it is known where: behind `joined` moves of the queue */
+  bool looks;                          /* its segments go through the lookahead buffer */
+  bool made;                           /* all its points are */
+  volatile enum lookahead_order order; /* B; R takes it */
+  bool closed;                         /* no further move joins: one of another kind waits for its place */
+  bool stops;                          /* segment_stop: at the end of the move that is under way. B sets */
   uint32_t joined;
   uint32_t points;    /* that are still to be made behind its end */
   uint32_t unhanded;  /* pieces behind those that the servo task has */
   int64_t period;     /* Isx13 */
   double step;        /* program time of a segment: Isx13 with the override */
+  double override;    /* as it is now; 1: none */
   double time;        /* of the last point */
   struct piece timed; /* a piece of that period */
   uint32_t under_way; /* moves of the queue that have begun at the last point, less one */
@@ -49,6 +50,7 @@ static struct sequence sequences[COORDINATE_SYSTEMS];
 static int64_t control[MOTORS][SPLINE_POINTS];
 /* Of the pieces of the rings. */
 static struct path_line piece_lines[COORDINATE_SYSTEMS][PIECES];
+static struct lookahead_piece looked[COORDINATE_SYSTEMS][PIECES];
 
 static uint32_t ahead_of(const struct coordinate_system* s) { return s->ring.added - s->ring.executing; }
 
@@ -62,6 +64,28 @@ bool segment_gives_way(uint32_t cs) {
   return false;
 }
 
+/* While the last pieces of a sequence are executed too, as long as nothing is placed behind them. */
+bool segment_looks(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool ends = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS && !s->next_valid;
+  return sequences[cs].looks && (sequences[cs].runs || ends);
+}
+
+void segment_order(uint32_t cs, enum lookahead_order order) {
+  const uint32_t state = hal_mask_real_time();
+  if (segment_looks(cs)) {
+    sequences[cs].runs = true;
+    sequences[cs].order = order;
+  }
+  hal_unmask(state);
+}
+
+bool segment_stands(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return sequences[cs].runs && sequences[cs].looks && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) &&
+         !s->active && !s->next_valid && piece_ring_is_empty(&s->ring);
+}
+
 void segment_stop(uint32_t cs) {
   if (segment_is_busy(cs)) sequences[cs].stops = true;
 }
@@ -69,7 +93,7 @@ void segment_stop(uint32_t cs) {
 void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
 
 void segment_forget(uint32_t cs) {
-  sequences[cs].runs = sequences[cs].stops = false;
+  sequences[cs].runs = sequences[cs].looks = sequences[cs].stops = false;
   paths[cs].count = 0;
 }
 
@@ -112,7 +136,12 @@ static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
   struct piece* piece = piece_ring_at(&s->ring, number);
   *piece = q->timed;
   if (from != 0 && from->time != q->period) piece_set_time(piece, from->time);
-  piece->warp = from == 0 ? 0 : from->warp;
+  if (from != 0) {
+    piece->warp = from->warp;
+    piece->from = (uint8_t)from->first;
+    piece->to = (uint8_t)from->last;
+    looked[cs][number % PIECES] = *from;
+  }
   piece->motors = 0;
   piece->move = from == 0 ? q->numbers[0] : from->number;
   piece->continues = q->handed || q->unhanded != 0;
@@ -185,6 +214,7 @@ static bool begin(uint32_t cs) {
   const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
   q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
   q->step = plan_milliseconds(q->period);
+  q->override = 1.0;
   slice_pause();
   piece_set_time(&q->timed, q->period);
   q->timed.continues = false;
@@ -199,6 +229,7 @@ static bool begin(uint32_t cs) {
   set_move(cs, 0);
   set_move(cs, 0);
   q->handed = q->ends = q->closed = false;
+  q->order = LOOKAHEAD_NONE;
   q->joined = 1;
   q->unhanded = 0;
   q->points = LAST_POINTS;
@@ -212,9 +243,16 @@ static bool begin(uint32_t cs) {
 /* Program time to the next point: by the override, which goes to its new value by Isx16 a segment. */
 static double next_time(uint32_t cs) {
   struct sequence* q = &sequences[cs];
-  const double override = i_variable_read(i_cs(cs, ISX14_END_OF_MOVE_ANTICIPATION) + ISX15);
-  (void) override;
-  return q->time + q->step;
+  const double given = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE));
+  const double wanted = given < -1.0 ? 0.0 : given > 1.0 ? 2.0 : given + 1.0;
+  slice_pause();
+  if (q->override != wanted) {
+    const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
+    const bool at_once = !(change > 0.0) || math_absolute(wanted - q->override) <= change;
+    q->override = at_once ? wanted : wanted > q->override ? q->override + change : q->override - change;
+  }
+  slice_pause();
+  return q->time + (q->override == 1.0 ? q->step : q->step * q->override);
 }
 
 /* Moves of the queue that belong to the sequence, each joined to the one before it no earlier than the last point. */
@@ -341,16 +379,53 @@ static bool release(uint32_t cs, bool hurry) {
   struct lookahead_piece piece;
   if (!lookahead_release(cs, hurry, &piece)) return false;
   add_piece(cs, &piece);
-  const bool over = q->made && lookahead_left(cs) == 0u;
-  if (q->handed || over || q->unhanded > short_ahead(q)) hand_over(cs);
+  const bool over = q->made && lookahead_is_over(cs);
+  if (q->handed || over || lookahead_stands(cs) || q->unhanded > short_ahead(q)) hand_over(cs);
   q->runs = !over;
   return true;
+}
+
+/* Pieces that the servo task does not come to within SHORT_MS are not made after all. */
+static void take_back(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const int64_t least = (int64_t)SHORT_MS << TRAJECTORY_FRACTION_BITS;
+  const uint32_t state = hal_mask_servo();
+  uint32_t number = s->ring.executing;
+  for (int64_t time = -s->ring.elapsed; number != s->ring.added && time < least; number++)
+    time += piece_ring_at(&s->ring, number)->time;
+  const bool any = number != s->ring.added || sequences[cs].unhanded != 0;
+  piece_ring_take_back(&s->ring, number);
+  hal_unmask(state);
+  sequences[cs].unhanded = 0;
+  if (any) lookahead_take_back(cs, &looked[cs][number % PIECES]);
+}
+
+static void obey(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  const enum lookahead_order order = q->order;
+  q->order = LOOKAHEAD_NONE;
+  take_back(cs);
+  lookahead_do(cs, order);
+}
+
+/* Isx21: 2 it moves on the path, 1 backwards, 8 a segment only. */
+static void show(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = lookahead_state(cs, s->active), shown = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE));
+  if (shown != state) i_variable_set_lookahead_state(cs, state);
 }
 
 /* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
 static bool work_ahead(uint32_t cs, bool alone) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
+  if (q->order != LOOKAHEAD_NONE) obey(cs);
+  show(cs);
+  if (q->made && lookahead_is_over(cs)) {
+    hand_over(cs);
+    q->runs = false;
+    return true;
+  }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
   if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;

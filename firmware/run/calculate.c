@@ -61,7 +61,7 @@ static void stop_with_error(uint32_t cs) {
 /* The program has ended: it stands at its top again, and stops when its moves are over. */
 static void end(uint32_t cs) {
   motion_program_restart(cs);
-  coordinate_systems[cs].quit = true;
+  coordinate_systems[cs].quit = coordinate_systems[cs].ended = true;
 }
 
 static void planned(uint32_t cs) {
@@ -232,7 +232,10 @@ static void calculate_round(void) {
 
 void calculate_initialize(void) {
   calculated = COORDINATE_SYSTEMS;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) motion_program_point(cs, true, 0, 0);
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
+    motion_program_point(cs, true, 0, 0);
+    segment_forget(cs);
+  }
   synchronous_initialize();
   slice_initialize(calculate_round);
 }

@@ -10,8 +10,8 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
-#include "firmware/motion/place.h"
 #include "firmware/motion/path.h"
+#include "firmware/motion/place.h"
 #include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
@@ -91,7 +91,7 @@ static error_t check_motors(uint32_t cs) {
   if (inactive) return ERR_NOT_ACTIVATED;
   if (open) return ERR_OPEN_LOOP;
   if (limits) return ERR_BOTH_LIMITS;
-  if (s->running && !s->held) return ERR_NONE; /* what moves is the program's */
+  if (s->running && !s->held && !segment_stands(cs)) return ERR_NONE; /* what moves is the program's */
   if (moving || (s->settling && s->motors != 0)) return ERR_MOVE_IN_PROGRESS;
   return s->must_return && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
 }
@@ -114,7 +114,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   error_t error = check_motors(cs);
   if (error == ERR_NONE) error = check_program(cs);
   if (error != ERR_NONE) return error;
-  if (s->running && s->held) system_motors_take(cs);
+  if (s->running && (s->held || segment_stands(cs))) system_motors_take(cs);
+  if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
   release_hold(cs);
   if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
@@ -128,9 +129,11 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->matching = s->motors != 0;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
+    s->ended = false;
     if (!s->next_valid) s->may_join = false;
   }
-  s->end_block = s->quit = false;
+  s->end_block = false;
+  s->quit = s->ended; /* it stands at its top again, for another start */
   segment_go_on(cs);
   s->stepping = single_step;
   s->continuous = !single_step;
@@ -168,6 +171,62 @@ void run_hold(uint32_t cs) {
     time_base_slew(cs, 0, ISX95_FEED_HOLD_SLEW);
   }
   hal_unmask(state);
+}
+
+void run_stop_on_path(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (!s->running || s->held || !segment_looks(cs)) {
+    run_hold(cs);
+    return;
+  }
+  segment_order(cs, LOOKAHEAD_STOP);
+  s->must_return = true;
+}
+
+/* In the direction of an order: motors are back on the path. */
+static error_t go(uint32_t cs, enum lookahead_order order) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const error_t error = check_motors(cs);
+  if (error != ERR_NONE) return error;
+  if (s->held || segment_stands(cs)) system_motors_take(cs);
+  s->must_return = false;
+  release_hold(cs);
+  segment_order(cs, order);
+  return ERR_NONE;
+}
+
+error_t run_forward(uint32_t cs) {
+  if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_FORWARD);
+  return run_start(cs, false);
+}
+
+error_t run_back(uint32_t cs) {
+  if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_BACKWARD);
+  run_hold(cs);
+  return ERR_NONE;
+}
+
+/* 4 `\\`, 6 `>`, 7 `<`, 14 and 15 a segment forwards and backwards. */
+void run_by_state(uint32_t cs) {
+  switch (i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE))) {
+    case 4:
+      run_stop_on_path(cs);
+      break;
+    case 6:
+      (void)run_forward(cs);
+      break;
+    case 7:
+      (void)run_back(cs);
+      break;
+    case 14:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_FORWARD);
+      break;
+    case 15:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_BACKWARD);
+      break;
+    default:
+      break;
+  }
 }
 
 /* With motors and without segmentation it is Q (motion:5.6). */

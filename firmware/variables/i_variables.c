@@ -16,7 +16,7 @@
 enum { CONFIGURATION_COUNT = I4909_CPU_IDENTIFICATION + 1 - I_BASE_SYSTEM }; /* the others are 0 */
 
 static double value_of[VARIABLE_COUNT];
-int32_t i_integers[VARIABLE_COUNT];         /* the same, for tasks that must not use floating point */
+int32_t i_integers[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
 static uint32_t timer_start[COORDINATE_SYSTEMS][ISX11_TIMERS_COUNT]; /* servo count when Isx11, Isx12 were written */
 
 /* Reading ---------------------------------------------------------------------------------------------------------- */
@@ -99,6 +99,8 @@ void i_variable_write(uint32_t number, double value) {
   hal_unmask(state);
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
 }
+
+void i_variable_set_lookahead_state(uint32_t cs, uint32_t state) { store(i_cs(cs, ISX21_LOOKAHEAD_STATE), state); }
 
 void i_variable_set_open_memory_end(uint32_t address) { store(I4908_OPEN_MEMORY_END, address); }
 

@@ -28,7 +28,7 @@ class Solver {
   // Longest stop from the optimum, in segments.
   int longest_stop() const {
     int longest = 0;
-    for (int k = 0; k + 1 < knots_; k += 4) {
+    for (int k = 0; k + 1 < knots_; ++k) {
       double w = w_[k];
       int at = k;
       for (; at + 1 < knots_ && w > 0; ++at) w = least(at, w);

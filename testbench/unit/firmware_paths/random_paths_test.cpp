@@ -100,7 +100,8 @@ class RandomPaths : public MovingMotors {
     ASSERT_EQ(plan_line(0), RUN_TIME_NONE);
   }
   // Every motor at each servo interrupt, until all is done.
-  static std::vector<std::vector<std::int64_t>> execute(const RandomPath& p) {
+  static std::vector<std::vector<std::int64_t>> execute(
+      const RandomPath& p, const std::function<void(unsigned)>& order = [](unsigned) {}) {
     std::vector<std::vector<std::int64_t>> samples(p.motor_count);
     coordinate_system& s = cs();
     std::size_t move = 0;
@@ -116,6 +117,7 @@ class RandomPaths : public MovingMotors {
           any = any || segment_work(0, true);
         }
       }
+      order(tick);
       system_path_servo();
       for (unsigned i = 0; i < p.motor_count; ++i) samples[i].push_back(motors[i].trajectory);
       if (tick > 3 && move == p.times.size() && !s.active && !segment_is_busy(0)) return samples;
@@ -161,14 +163,47 @@ class RandomPaths : public MovingMotors {
       for (int i = 0; i < 50; ++i) (splines[0].at((low + high) / 2) < x ? low : high) = (low + high) / 2;
       for (std::size_t i = 1; i < splines.size(); ++i) {
         const double slope = std::abs(splines[i].at(low + 0.01) - splines[i].at(std::max(0.0, low - 0.01))) /
-                             std::max(1e-3, splines[0].at(low + 0.01) - splines[0].at(std::max(0.0, low - 0.01)));
+                             std::max(1e-6, splines[0].at(low + 0.01) - splines[0].at(std::max(0.0, low - 0.01)));
         ASSERT_NEAR(static_cast<double>(samples[i][n]) / kUnit, splines[i].at(low), 1.0 / 16 + slope * 3 / kUnit)
             << "#" << i + 1 << " at " << low << " ms of the program, interrupt " << n;
       }
-      low = std::max(0.0, low - 1e-3);
+      low = 0;  // it may go back
     }
   }
 };
+
+// Quick stops, the way back and forward again at any time: limits hold, the path is the same, the end is the end.
+TEST_F(RandomPaths, StopsAndReversalsKeepThePathAndTheLimits) {
+  const char* wanted = std::getenv("BRICK_RANDOM_PATHS");
+  const int count = wanted != nullptr ? std::atoi(wanted) : 60;
+  const char* first = std::getenv("BRICK_RANDOM_PATHS_FIRST");
+  const int begin = first != nullptr ? std::atoi(first) : 1;
+  unsigned turned = 0;
+  for (int seed = begin; seed < begin + count && !HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const RandomPath p = random_path(random);
+    prepare(p);
+    unsigned next = 20 + random() % 200, orders = 1 + random() % 8;
+    const auto samples = execute(p, [&](unsigned tick) {
+      if (tick != next) return;
+      next = tick + 1 + random() % 400;
+      static const char* kOrders[] = {"&1\\", "&1<", "&1>", "&1R"};
+      const std::string order = orders > 0 ? kOrders[random() % 4] : "&1>";
+      if (orders > 0) --orders;
+      ASSERT_EQ(host(order), "") << order;
+    });
+    for (unsigned i = 0; i < p.motor_count; ++i) {
+      double sum = 0;
+      for (const double w : p.ways[i]) sum += w;
+      ASSERT_EQ(samples[i].back(), static_cast<std::int64_t>(std::llround(sum * kUnit)));
+    }
+    for (std::size_t n = 1; n < samples[0].size(); ++n) turned += samples[0][n] < samples[0][n - 1];
+    expect_limits(p, samples);
+    expect_path(splines(p), samples);
+  }
+  EXPECT_GT(turned, 100u) << "nothing has gone back";
+}
 
 TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
   const char* wanted = std::getenv("BRICK_RANDOM_PATHS");
@@ -201,7 +236,9 @@ TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
     while (end > begin && samples[0][end] == samples[0][end - 1]) --end;
     const double time = static_cast<double>(end - begin + 2) * kTickMs;
     worst = std::max(worst, time / (best.time() + 2 * kTickMs));
-    EXPECT_LE(time, 1.10 * best.time() + 2 * kTickMs) << "optimum " << best.time();
+    EXPECT_LE(time, 1.10 * best.time() + 2 * kTickMs)
+        << "optimum " << best.time() << ", Isx20 " << p.lookahead << ", longest stop " << best.longest_stop()
+        << ", Isx13 " << p.period << ", TA " << p.ta;
   }
   std::printf("%d paths, slowest %.3f of the optimum\n", judged, worst);
 }

@@ -9,7 +9,6 @@
 extern "C" {
 #include "firmware/base/status.h"
 #include "firmware/motion/conversion_table.h"
-
 }
 
 namespace brick {
@@ -49,7 +48,11 @@ TEST_F(Protection, EnableGoesWithItsFlagWord) {
   EXPECT_FALSE(enabled(1)) << "bit 16: not used";
   EXPECT_FALSE(enabled(2));
   c_.line("I124=$840001");
-  EXPECT_FALSE(enabled(1)) << "bit 18: over MACRO";
+  EXPECT_FALSE(enabled(1)) << "bits 19, 18 = 01: capture and amplifier flags over MACRO";
+  c_.line("I124=$8C0001");
+  EXPECT_TRUE(enabled(1)) << "11: capture flags only";
+  c_.line("I124=$880001");
+  EXPECT_FALSE(enabled(1)) << "10: amplifier flags";
   c_.line("I124=$800001");
   EXPECT_TRUE(enabled(1));
   c_.line("I100=0");
@@ -222,6 +225,35 @@ TEST_F(Protection, InPositionAfterItsScans) {
   servo();
   protection_pass();
   EXPECT_FALSE(motors[0].found.in_position);
+}
+
+// A motor that follows a master is on its way, however near it is: desired velocity 0 is asked for.
+TEST_F(Protection, InPositionNeedsACommandedStandstill) {
+  c_.line("I128=160 I105=$10F6 I107=96");
+  ASSERT_TRUE(motor_close(0));
+  c_.line("I106=1");
+  follow(6);
+  EXPECT_TRUE(status2(1, 0) && status1(1, 13));
+  for (std::uint32_t n = 1; n < 20; ++n) {
+    *hal_x(0x10F6) = 32 * n;
+    follow(1);
+  }
+  EXPECT_NEAR(at(1), 19, 1);
+  EXPECT_FALSE(status2(1, 0) || status1(1, 13));
+  follow(6);
+  EXPECT_TRUE(status2(1, 0) && status1(1, 13));
+}
+
+// Nor is one whose jog waits for its Ixx92 in position: who polls would take it for done.
+TEST_F(Protection, AJogThatWaitsIsNotInPosition) {
+  c_.line("I192=100 I111=0");
+  ASSERT_TRUE(motor_close(0));
+  follow(6);
+  ASSERT_TRUE(status2(1, 0));
+  c_.line("#1J=500");
+  follow(6);
+  EXPECT_EQ(motors[0].desired_step, 0);
+  EXPECT_FALSE(status2(1, 0));
 }
 
 TEST_F(Protection, SignalsOfTheSelectedSystem) {
