@@ -237,12 +237,25 @@ static inline void publish(uint32_t motor, const struct motor* m) {
   *hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT) = (uint32_t)m->output & HAL_WORD_MASK;
 }
 
+/* Of a killed motor commanded and actual position are the same, and there are 32. */
+static __attribute__((noinline)) void run_killed(uint32_t motor, struct motor* m, struct loop* l) {
+  desired_position_take_actual(motor);
+  m->output = 0;
+  l->integral = l->step = l->filtered = 0; /* shown so while it is open */
+  const uint32_t words = MEMORY_MOTOR_WORDS * (motor + 1u);
+  const uint32_t low = (uint32_t)m->actual & HAL_WORD_MASK, high = (uint32_t)(m->actual >> 24) & HAL_WORD_MASK;
+  *hal_x(words + MEMORY_MOTOR_COMMANDED) = *hal_x(words + MEMORY_MOTOR_ACTUAL) = high;
+  *hal_y(words + MEMORY_MOTOR_COMMANDED) = *hal_y(words + MEMORY_MOTOR_ACTUAL) = low;
+  *hal_x(words + MEMORY_MOTOR_VELOCITY) = (uint32_t)m->velocity & HAL_WORD_MASK;
+  *hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT) = 0;
+}
+
 static __attribute__((noinline)) void run_other(uint32_t motor, struct motor* m, struct loop* l) {
   if (m->loop == LOOP_CLOSED) {
     close_loop(motor, m, l);
   } else {
     desired_position_take_actual(motor);
-    m->output = m->loop == LOOP_OPEN ? m->open_output : 0;
+    m->output = m->open_output;
     l->integral = l->step = l->filtered = 0; /* shown so while it is open */
   }
   publish(motor, m);
@@ -262,6 +275,8 @@ void position_loop_servo(uint32_t motor) {
   measure(m, l);
   if (m->loop == LOOP_CLOSED && close_simple_loop(motor, m, l))
     publish(motor, m);
+  else if (m->loop == LOOP_KILLED)
+    run_killed(motor, m, l);
   else
     run_other(motor, m, l);
 }

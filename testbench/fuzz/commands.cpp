@@ -62,7 +62,7 @@ std::string answer(const char* characters) {
 
 // Eight motors whose loops are closed jog for ever, whatever comes then; their encoders stand still.
 void move_motors() {
-  (void)answer("I192,8,100=0 I111,8,100=0 I124,8,100=$120001 I100,8,100=1\r");
+  (void)answer("I3=2\rI192,8,100=0 I111,8,100=0 I124,8,100=$120001 I100,8,100=1\r");
   for (const char* line : {"#1J+#2J-#3J+#4J-\r", "#5J+#6J-#7J+#8J-\r"})
     require(answer(line) == "\x06", "the motors do not jog");
   time_passes();

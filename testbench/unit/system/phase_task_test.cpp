@@ -204,7 +204,7 @@ TEST_P(PhaseTask, DurationIsMeasuredAndBelowThePeriod) {
   const int period = kPeriod * 8 / 12 / 2;  // CPU at 8 x 9.8304 MHz; half cycles
   EXPECT_EQ(number("RX$FFFF8C"), period);
   const int without = number("RX$37");
-  EXPECT_EQ(without, 14);
+  EXPECT_EQ(without, 16);
   ask("I101=1");
   wait(2 * kPeriod);
   const int one = number("RX$37");

@@ -50,13 +50,26 @@ class SurvivalOn : public Controller {
   // Sent as lines, whatever comes back: random lines may have changed I3.
   void set_up_motors() {
     for (unsigned i = 0; i < kMotors; ++i) {
-      const unsigned x = 100 * (i + 1), c = 7010 + 100 * (i / 4) + 10 * (i % 4),
-                     at = 0x78000 + 0x100 * (i / 4) + 8 * (i % 4);
-      char line[200];
-      std::snprintf(line, sizeof line,
-                    "I%u=3 I%u=3 I%u=$%X I%u=$820001 I%u=0 I%u=112450 I%u=2900 I%u=2972 I%u=32767 I%u=0 I%u=0 I%u=1\r",
-                    c, c + 6, x + 2, at + 2, x + 24, x + 11, x + 30, x + 31, x + 32, x + 69, x + 92, x + 1, x);
-      ASSERT_TRUE(put(line));
+      const unsigned channel = 7010 + 100 * (i / 4) + 10 * (i % 4), at = 0x78000 + 0x100 * (i / 4) + 8 * (i % 4);
+      std::string line = "I" + std::to_string(channel) + "=3 I" + std::to_string(channel + 6) + "=3";
+      const auto set = [&](unsigned k, unsigned value) {
+        line += " I" + std::to_string(100 * (i + 1) + k) + "=" + std::to_string(value);
+      };
+      for (const auto& [k, value] : {std::pair{2u, at + 2},
+                                     {24u, 0x820001u},
+                                     {11u, 0u},
+                                     {19u, 4u},
+                                     {20u, 0u},
+                                     {21u, 0u},
+                                     {30u, 112450u},
+                                     {31u, 2900u},
+                                     {32u, 2972u},
+                                     {69u, 32767u},
+                                     {92u, 0u},
+                                     {1u, 0u},
+                                     {0u, 1u}})
+        set(k, value);
+      ASSERT_TRUE(put(line + "\r"));
       listen(ms_to_ticks(3));
     }
   }
@@ -67,7 +80,8 @@ class SurvivalOn : public Controller {
     std::string line = "%100 ";
     for (unsigned i = 1; i <= kMotors; ++i) line += "#" + std::to_string(i) + (up ? "J+" : "J-");
     if (!put(line + "\r")) return false;
-    listen(ms_to_ticks(20));
+    listen(ms_to_ticks(3));
+    wait(ms_to_ticks(10));
     for (unsigned i = 0; i < kMotors; ++i)
       if (plant_->axis(i).counts(machine().now()) == before[i]) return false;
     return true;
