@@ -35,7 +35,14 @@ TEST_F(Protection, WhatMayNotClose) {
   EXPECT_FALSE(motor_close(2)) << "I300=0";
   c_.line("I8000=$F00000 I8001=$200000 I103=$3502");
   EXPECT_FALSE(motor_close(0)) << "method $F";
-  c_.line("I8000=0 I103=$10F0");
+  c_.line("I103=$10F0 I104=$3502");
+  EXPECT_FALSE(motor_close(0)) << "that of the velocity";
+  c_.line("I8000=0 I104=$10F0");
+  EXPECT_TRUE(motor_close(0));
+  motor_kill(0);
+  c_.line("I101=1 M148->Y:$C0,8 M148=1");
+  EXPECT_FALSE(motor_close(0)) << "no phase reference";
+  c_.line("M148=0");
   EXPECT_TRUE(motor_close(0));
 }
 
@@ -57,6 +64,27 @@ TEST_F(Protection, EnableGoesWithItsFlagWord) {
   EXPECT_TRUE(enabled(1));
   c_.line("I100=0");
   EXPECT_FALSE(enabled(1));
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+}
+
+// The compare output would be written again by bit 11, so it is not written back.
+TEST_F(Protection, EnableLeavesOtherBitsOfItsWord) {
+  *hal_x(kControl) = 0x1800;
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_EQ(*hal_x(kControl), 0x1000u | kEnable);
+  motor_kill(0);
+  EXPECT_EQ(*hal_x(kControl), 0x1000u);
+}
+
+// SAVE: motion:6.
+TEST_F(Protection, ChecksStandWhileTheyAreToldTo) {
+  ASSERT_TRUE(motor_close(0));
+  protection_stand(true);
+  flags(1, kFault);
+  servo(6);
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
+  protection_stand(false);
+  servo(3);
   EXPECT_EQ(loop(1), LOOP_KILLED);
 }
 
@@ -202,9 +230,11 @@ TEST_F(Protection, AmplifierFault) {
   EXPECT_EQ(loop(1), LOOP_KILLED) << "bit 23 = 0: a low input is a fault";
   c_.line("I124=$100001");
   ASSERT_TRUE(motor_close(0));
-  flags(1, kFault);
-  protection_pass();
-  EXPECT_EQ(loop(1), LOOP_CLOSED) << "bit 20: not looked at";
+  for (const std::uint32_t level : {0u, kFault}) {
+    flags(1, level);
+    protection_pass();
+    EXPECT_EQ(loop(1), LOOP_CLOSED) << "bit 20: not looked at";
+  }
 }
 
 TEST_F(Protection, InPositionAfterItsScans) {
@@ -348,6 +378,8 @@ TEST_F(Protection, OverloadTripsAfterItsTime) {
   // Linear: (32767 - 16384)/32768 a cycle.
   c_.line("I157=-16384 I158=0");
   c_.line("I158=500");
+  ASSERT_TRUE(motor_open(0, 0));
+  servo(400);  // what stays below the continuous current is no credit
   ASSERT_TRUE(motor_open(0, -32767 * 256));
   EXPECT_NEAR(trips_after(2000), 500 * 32768.0 / (32767 - 16384), 51);
 }

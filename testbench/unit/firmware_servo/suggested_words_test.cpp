@@ -33,10 +33,10 @@ class SuggestedWords : public ProtectionRig {
 TEST_F(SuggestedWords, OfAJog) {
   close_all();
   follow(6);
-  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137"), "1|1|0|1|0");
+  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137 M5187"), "1|1|0|1|0|1");
   c_.line("#1J=2500");
   follow(60);
-  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137"), "0|0|0|1|1");
+  EXPECT_EQ(c_.line("M140 M133 M138 M139 M137 M5187"), "0|0|0|1|1|0");
   EXPECT_EQ(counts_of(163), 2500) << "target";
   EXPECT_EQ(counts_of(161), at(1));
   // The test has it where it was commanded to be an interrupt ago: 32 counts/ms for 0.4427 ms.
@@ -51,8 +51,14 @@ TEST_F(SuggestedWords, OfAJog) {
   EXPECT_EQ(c_.line("M140 M133 M137"), "1|1|0");
   EXPECT_EQ(counts_of(161), 2500);
   EXPECT_EQ(counts_of(163), 2500);
+  c_.line("M144->Y:$C0,7 M136->X:$B0,10 #1J=4000^100");
+  follow(10);
+  EXPECT_EQ(c_.line("M144 M136 M137"), "1|1|1") << "until a trigger";
+  follow(300);
+  EXPECT_EQ(c_.line("M144 M136"), "1|0") << "which has not come";
   c_.line("#1J-");
   follow(30);
+  EXPECT_EQ(c_.line("M144"), "0");
   EXPECT_EQ(m(137), 0) << "no end is known";
   EXPECT_EQ(counts_of(163), at(1));
   c_.line("#1K");
@@ -123,6 +129,10 @@ TEST_F(SuggestedWords, OfSplinesAndPvt) {
     run(program);
     follow(800);
     EXPECT_EQ(c_.line("M5147 M5148"), "3000|100") << mode;
+    if (mode == "PVT200") {
+      EXPECT_LT(at(1), 2900);
+      EXPECT_EQ(counts_of(163), 3000);
+    }
     follow(2000);
     EXPECT_EQ(counts_of(163), 3000) << mode;
     c_.line("#1K #2K");
@@ -130,6 +140,18 @@ TEST_F(SuggestedWords, OfSplinesAndPvt) {
     counts(2, 0);
     servo(3);
   }
+}
+
+// Down with backlash, up without.
+TEST_F(SuggestedWords, OfBacklash) {
+  c_.line("M144->Y:$C0,4 I185=16 I186=160 I187=16");
+  ASSERT_TRUE(motor_close(0));
+  c_.line("#1J=-100");
+  follow(60);
+  EXPECT_EQ(c_.line("M144"), "1");
+  c_.line("#1J=100");
+  follow(60);
+  EXPECT_EQ(c_.line("M144"), "0");
 }
 
 TEST_F(SuggestedWords, OfFaults) {
@@ -169,7 +191,7 @@ TEST_F(SuggestedWords, DpramReportsTellOfMotion) {
     return static_cast<std::int64_t>((item(offset + 4) & 0xFFFFFF) << 24 | (item(offset) & 0xFFFFFF));
   };
   c_.line("WY$6001C,$FF WX$6001C,0 WY$6019D,1 WX$6019D,0 I48=1 I47=1 I49=1 I50=1");
-  run({"TM400 TA50 TS0 X5000 Y2500", "RAPID X9000 Y0"});
+  run({"TM400 TA50 TS0 X5000 Y2500", "X5100", "RAPID X9000 Y0"});
   follow(500);
   EXPECT_EQ(long_of(0x74 + 40), motors[0].actual);
   EXPECT_EQ(long_of(0x74), motors[0].commanded - motors[0].actual) << "following error";
@@ -179,7 +201,7 @@ TEST_F(SuggestedWords, DpramReportsTellOfMotion) {
   const unsigned long status = std::stoul(c_.line("#1?").substr(0, 6), nullptr, 16);
   EXPECT_EQ(item(0x74 + 12) & 0xFFFFFF, status);
   EXPECT_NEAR(static_cast<double>(item(0x69C + 104)), 450 - 500 * 3713991.0 / 8388608, 3) << "ms left";
-  follow(600);
+  follow(1500);
   EXPECT_GT(motors[0].desired_step, 0) << "RAPID";
   for (int passes = 0; passes < 4; ++passes) c_.line("");
   EXPECT_EQ(item(0x69C + 104), 0u) << "not known";

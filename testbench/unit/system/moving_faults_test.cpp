@@ -179,6 +179,26 @@ TEST_P(MovingFaults, TheWatchdogTakesThemAway) {
   EXPECT_EQ(machine().outputs().get(pin::kWdTripped), 1u);
 }
 
+// Lines of the interrupt controller that hosts wait for: in position, following error of a motor of the system.
+TEST_P(MovingFaults, SignalsOfMotorsAreAtThePins) {
+  begin();
+  const auto pins = [this] {
+    const BoardOutputs& out = machine().outputs();
+    return std::to_string(out.get(pin::kIpos)) + std::to_string(out.get(pin::kF1er)) +
+           std::to_string(out.get(pin::kEror));
+  };
+  EXPECT_EQ(pins(), "100");
+  jog();
+  EXPECT_EQ(pins(), "000");
+  constexpr std::uint16_t kQuadrature = 1u << kEncA | 1u << kEncB;
+  plant_->axis(0).cut(kQuadrature);
+  wait(ms_to_ticks(40));  // 32 counts/ms: beyond 1000 counts, not yet 2000
+  EXPECT_EQ(pins(), "010");
+  wait(ms_to_ticks(40));
+  EXPECT_EQ(pins(), "001") << "tripped";
+  EXPECT_TRUE(all_off());
+}
+
 // Loops go on; what is to be found is found when it is over.
 TEST_P(MovingFaults, SaveMovesOnAndChecksStand) {
   begin();
