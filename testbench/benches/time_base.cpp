@@ -46,7 +46,7 @@ void TimeBase::load(double distance, double time, bool more) {
   host_.expect(fmt::format("LINEAR INC TA10 TS2 TM{}", time), "");
   host_.expect(fmt::format("X{}", distance), "");
   if (more) host_.expect("TM10", "");
-  for (unsigned i = 0; more && i < 3; ++i) host_.expect("X1", "");
+  for (unsigned i = 0; more && i < 2; ++i) host_.expect("X1", "");
   host_.expect("CLOSE", "");
 }
 
@@ -116,7 +116,7 @@ void TimeBase::held() {
                 fmt::format("{:.1f} of 300 counts", stood));
   host_.expect("&1R", "");
   host_.settle(150, 4);
-  way("H and R", 303);
+  way("H and R", 302);
 }
 
 // 2^23 / I10 x 100 % = 225.865 % is the most.

@@ -32,6 +32,11 @@ def controller(lines):
     return r.stdout.split()
 
 
+def forget(motors):
+    """Lines with which motors lose the reference that the set-up has given them."""
+    return [f"#{m}K I{m}01=0 I{m}01=1" for m in motors]
+
+
 def wrong_by(position, counts):
     """Degrees of an electrical cycle; 4 of them in 4000 counts, all motors stand at the angle 0 at first."""
     return ((position - 4 * counts) * 360 / 4000 + 180) % 360 - 180
@@ -39,7 +44,7 @@ def wrong_by(position, counts):
 
 def commutation_guesses():
     """$$ finds all eight; then each jogs a revolution and is where it shall be."""
-    lines = ["M60->X:$37,0,24"] + [f"M{m}->X:${0x80 * m + 0x34:X},0,24,S" for m in MOTORS]
+    lines = forget(MOTORS) + ["M60->X:$37,0,24"] + [f"M{m}->X:${0x80 * m + 0x34:X},0,24,S" for m in MOTORS]
     lines += [f"#{m}?" for m in MOTORS] + ["&1$$", "@wait 60ms"] + [f"#{m}?" for m in MOTORS]
     lines += [f"#{m}PM{m}" for m in MOTORS] + [f"#{m}J=4000" for m in MOTORS] + ["@wait 40ms", "M60", "@wait 260ms"]
     lines += [f"#{m}?#{m}P" for m in MOTORS]
@@ -58,8 +63,8 @@ def commutation_guesses():
 
 def commutation_stepper():
     """The other search, and halls; a motor that has a good reference goes where it shall."""
-    found = controller(["I180=2 I174=2 I173=4000", "I281=$78008 I291=$BB0000", "#2$", "#2?", "RX$134", "#1$",
-                        "@wait 500ms", "#1?", "#1J:1000", "#2J:1000", "#1?", "@wait 200ms", "#1?", "#2?", "#2P"])
+    found = controller([*forget((1, 2)), "I180=2 I174=2 I173=4000", "I281=$78008 I291=$BB0000", "#2$", "#2?", "RX$134",
+                        "#1$", "@wait 500ms", "#1?", "#1J:1000", "#2J=1000", "#1?", "@wait 200ms", "#1?", "#2?", "#2P"])
     check(found[0] == in_position(2)[:-1] + "0" or found[0] == in_position(2), f"halls: {found[0]}")
     # 011 is the sector around 0 degrees of this plant: -30 degrees are 58.7/64 of a cycle.
     check(abs(wrong_by(int(found[1]), 0)) <= 30 + 360 / 64, f"halls: {found[1]}")
