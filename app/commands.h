@@ -28,5 +28,14 @@ struct TimingOptions {
   bool sweep = false;
 };
 int timing_command(const std::vector<Bench>& benches, const TimingOptions& options);
+struct PlotOptions {
+  std::string file, beside;         // records; the second one "" = none
+  std::string output;               // "" = beside `file`, as SVG
+  std::string columns, path;        // names or globs with blanks between; two of them make a path
+  std::string from, to;             // "" = all
+  std::string title;                // "" = the file's name
+  std::vector<std::string> limits;  // KIND=VALUE
+};
+int plot_command(const PlotOptions& options);
 
 }  // namespace brick

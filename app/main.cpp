@@ -30,6 +30,7 @@ struct Commands {
   RunOptions run_options, exec_options, console_options;
   ServeOptions serve_options;
   TimingOptions timing_options;
+  PlotOptions plot_options;
   std::string bench, script, history, elf, board, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
@@ -99,6 +100,26 @@ struct Commands {
       if (timing->count("--board") == 0 && !timing_options.sweep) timing_options.run.board.clear();
       chosen = [this] { return timing_command(all_benches(), timing_options); };
     });
+
+    auto* plot = app.add_subcommand("plot", "draws a record (--record) as SVG or PNG: series over time, or a path");
+    plot->add_option("FILE", plot_options.file, "record, FILE.csv")->required();
+    plot->add_option("--output,-o", plot_options.output, "picture, FILE.svg or FILE.png (default: the record's, .svg)")
+        ->type_name("FILE");
+    auto* of = plot->add_option("--of", plot_options.columns,
+                                "columns, names or globs with blanks between (default: all), a panel for each kind")
+                   ->type_name("COLUMNS");
+    plot->add_option("--xy", plot_options.path, "two columns: a path instead, its speed as colour")
+        ->type_name("COLUMNS")
+        ->excludes(of);
+    plot->add_option("--beside", plot_options.beside, "a second record in the same panels, dotted")->type_name("FILE");
+    plot->add_option("--from", plot_options.from, "first time, for example 10ms");
+    plot->add_option("--to", plot_options.to, "last time");
+    plot->add_option("--limit", plot_options.limits, "a line at plus and minus, for example velocity=32; repeatable")
+        ->type_name("KIND=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    plot->add_option("--title", plot_options.title, "above the picture (default: the record's name)");
+    plot->callback([this] { chosen = [this] { return plot_command(plot_options); }; });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");
     boards->add_option("BOARD", board, "NAME or FILE.toml: all about this one (default: a table of all)");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/paths.h"
+#include "app/recorder.h"
 #include "app/time_text.h"
 #include "systemc/core/usage_error.h"
 #include "systemc/machine/board_file.h"
@@ -99,6 +100,13 @@ void add_plant_options(CLI::App& command, RunOptions& o) {
           "--load", o.load,
           "sends a command file before anything else: dac8, servo8, stepper8 (set-ups for these plants), or FILE")
       ->type_name("NAME|FILE");
+  command.add_option("--record", o.record, "write a row of numbers each servo interrupt to FILE.csv (docs/record.md)")
+      ->type_name("FILE");
+  command
+      .add_option("--record-of", o.record_of,
+                  "the columns, with blanks between: signals, motorN.commanded and the like, M definitions (default: "
+                  "commanded, actual, error of each motor, BREQ)")
+      ->type_name("COLUMNS");
 }
 
 std::uint64_t parse_count(const std::string& option, const std::string& text) {
@@ -159,6 +167,12 @@ MachineConfig machine_config(const RunOptions& o) {
   if (!o.flash.empty()) need_folder("--flash", o.flash);
   if (!o.json.empty()) need_folder("--json", o.json);
   if (!o.gdb.empty()) gdb_port(o);
+  if (o.record.empty() && !o.record_of.empty())
+    throw UsageError("--record-of needs a file; expected --record FILE.csv");
+  if (!o.record.empty()) {
+    Recorder::check_name(o.record);
+    need_folder("--record", o.record);
+  }
   wave_window(o);
   trace_groups(o);
   return config;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/byte_text.h"
+#include "app/hand_encoder.h"
 #include "app/paths.h"
 #include "app/plant_file.h"
 #include "systemc/core/usage_error.h"
@@ -89,6 +90,8 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     if (debugger_ && waivers_.reason(ledger, violation).empty()) debugger_->bus_error(timing_->text(ledger, violation));
   };
   if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
+  if (!options.record.empty())
+    recorder_ = std::make_unique<Recorder>(*machine_, options.record, options.record_of, usual_columns());
   if (options.wave.empty()) return;
   wave_ = options.wave;
   const WaveWindow window = wave_window(options);
@@ -114,6 +117,18 @@ void Simulation::wait_for_debugger(std::uint16_t port) {
   machine_->attach_debugger(debugger_.get());
 }
 
+// Of each motor of the plant, else of the first eight.
+std::string Simulation::usual_columns() const {
+  std::string columns;
+  const std::size_t motors = plant_ ? plant_->axes() : 8;
+  for (std::size_t i = 0; i < motors; ++i) {
+    const auto number =
+        plant_ ? motor_number(machine_->fitted(), plant_->axis(i).ic(), plant_->axis(i).channel()) : i + 1;
+    columns += fmt::format("motor{0}.commanded motor{0}.actual motor{0}.error ", number);
+  }
+  return columns + "host.breq";
+}
+
 Simulation::~Simulation() {
   clear_progress();
   if (machine_) machine_->signals().attach(nullptr);
@@ -130,6 +145,7 @@ void Simulation::run(const std::function<void()>& host) {
     machine_->signals().attach(nullptr);
     trace_->close();
   }
+  if (recorder_) recorder_->close();
   clear_progress();
   if (thread.error()) std::rethrow_exception(thread.error());
 }

@@ -14,6 +14,7 @@
 
 #include "app/options.h"
 #include "app/plant_signals.h"
+#include "app/recorder.h"
 #include "app/timing_waivers.h"
 #include "systemc/core/trace.h"
 #include "systemc/cpu/gdb_server.h"
@@ -64,6 +65,7 @@ class Simulation {
 
  private:
   void wait_for_debugger(std::uint16_t port);
+  std::string usual_columns() const;  // of --record
   void progress();
   void clear_progress();
   double wall_seconds() const;
@@ -74,6 +76,7 @@ class Simulation {
   std::unique_ptr<PlantSignals> plant_signals_;
   std::unique_ptr<GdbServer> debugger_;
   std::unique_ptr<TimingBook> timing_;
+  std::unique_ptr<Recorder> recorder_;  // ends before timing_, whose callbacks it calls on
   const std::optional<std::string> forced_bcr_;
   TimingWaivers waivers_;
   HostBus bus_;

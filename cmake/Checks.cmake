@@ -16,6 +16,7 @@ if(NOT BRICK_COVERAGE)  # coverage counters belong to an instance: nothing is sh
 endif()
 brick_add_check(lint.memory tools/area.py --memory)  # the dual-ported RAM is block RAM, not flip-flops
 brick_add_check(lint.layers tools/check_layers.py)           # who may include whom, firmware and C++
+brick_add_check(lint.names tools/check_names.py)             # a block's model, page, tests and proof have its name
 brick_add_check(lint.cdc tools/check_cdc.py)                # nothing asynchronous feeds logic
 brick_add_check(lint.fpga tools/fpga.py --check)            # fpga/brick_ecp5.sv between real pads elaborates
 brick_add_check(lint.python tools/lint_python.py)  # ruff, as pyproject.toml says

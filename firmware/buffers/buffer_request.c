@@ -5,7 +5,7 @@
  *   I16, I17 changed as for a calculated line if Full is 1, as for an opened buffer if it is 0
  * While a fixed buffer is open, the pin is its own: a line takes it low for T_PULSE, then Full = 1 and low if no more
  * than I18 words are open, else Full = 0 and high.
- * The whole pulse runs with the real-time task held off: it lasts 2 us, and no calculation can stretch or cut it. */
+ * The whole pulse runs with all tasks held off: it lasts 2 us, and nothing that motors take can stretch or cut it. */
 #include "firmware/buffers/buffer_request.h"
 
 #include "firmware/base/dimensions.h"
@@ -117,7 +117,7 @@ void buffer_request_fixed_closed(void) { fixed_shown(false); }
 
 void buffer_request_fixed_line_stored(void) {
   const uint32_t words = region_open_words();
-  uint32_t state = hal_mask_real_time();
+  uint32_t state = hal_mask_all();
   keep_high_time();
   drive(false);
   decide_fixed(words);
@@ -167,7 +167,7 @@ void buffer_request_host_selects(uint32_t cs) { select(&request.host, cs); }
 void buffer_request_panel_selects(uint32_t cs) { select(&request.panel, cs); }
 
 void buffer_request_poll(void) {
-  if (request.on != i_integer(I16_ROTARY_REQUEST_ON) || request.off != i_integer(I17_ROTARY_REQUEST_OFF) ||
-      request.fixed != i_integer(I18_FIXED_BUFFER_WARNING))
+  if (request.on != i_plain_integer(I16_ROTARY_REQUEST_ON) || request.off != i_plain_integer(I17_ROTARY_REQUEST_OFF) ||
+      request.fixed != i_plain_integer(I18_FIXED_BUFFER_WARNING))
     buffer_request_evaluate();
 }

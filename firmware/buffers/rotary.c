@@ -84,7 +84,7 @@ void rotary_put(uint32_t cs, uint32_t ahead, word48_t word) {
 void rotary_publish(uint32_t cs, uint32_t count) {
   struct rotary* ring = &rotary_buffers[cs];
   const uint32_t write = rotary_offset(cs, ring->write, count);
-  uint32_t state = hal_mask_real_time();
+  uint32_t state = hal_mask_all(); /* servo and phase task of eight motors together are longer than the pulse may be */
   buffer_request_begin_line(cs);
   ring->write = write;
   ring->used += count;

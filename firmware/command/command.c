@@ -130,16 +130,12 @@ static error_t constant(struct lexer* lx) {
 static error_t one_command(struct lexer* lx) {
   error_t error;
   const char first = lexer_peek(lx);
-  if (first == '&') { /* no statement begins so: the pin is waiting (host-bus:5.7, T_CS) */
+  if (first == '&' || first == '#') { /* no statement begins so: the pin is waiting (host-bus:5.7, T_CS) */
     ++lx->at;
-    return address_cs(lx);
+    return first == '&' ? address_cs(lx) : address_motor(lx);
   }
   if (program_statement(lx, &error)) return error;
   if (slice_hurry != 0u) slice_hurry_over(); /* a command may take long, and BREQ does not wait for it */
-  if (first == '#') {
-    ++lx->at;
-    return address_motor(lx);
-  }
   if (starts_constant(lx->at)) return constant(lx);
   struct lexer after = *lx;
   ++after.at;

@@ -17,6 +17,7 @@
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/power_on_position.h"
+#include "firmware/motion/segment.h"
 #include "firmware/run/motor_stops.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_variables.h"
@@ -33,6 +34,7 @@ static error_t is_free(uint32_t motor) {
 /* It may be jogged away from where a hold has stopped it on the path; a move of its own goes on then. */
 static bool is_held(uint32_t motor) {
   const struct coordinate_system* s = &coordinate_systems[axis_definitions[motor].cs];
+  if (segment_stands(axis_definitions[motor].cs)) return true;
   return s->held && s->increment == 0 && !jog_is_of_program(motor);
 }
 
@@ -165,15 +167,14 @@ static error_t cmd_hmz(struct lexer* lx) { return home_here(lx, sizeof "HMZ" - 1
 static error_t cmd_kill(struct lexer* lx) {
   (void)lx;
   const error_t error = is_free(session.motor);
-  if (error == ERR_NONE) motor_stop_now(session.motor);
+  if (error == ERR_NONE) motor_kill(session.motor);
   return error;
 }
 
-/* Further into a limit that stopped it: an open loop would be closed again at once. */
-static bool pushes_into_limit(uint32_t motor, double output) {
+/* Which way an output would turn it is not known; what was found of a killed motor is old. */
+static bool stands_in_limit(uint32_t motor) {
   const struct motor* m = &motors[motor];
-  if (m->loop != LOOP_CLOSED) return false; /* nobody looks at limits of a killed one */
-  return (output > 0.0 && m->found.positive_limit) || (output < 0.0 && m->found.negative_limit);
+  return m->loop != LOOP_KILLED && (m->found.positive_limit || m->found.negative_limit);
 }
 
 /* O{per cent}; with a motion buffer open it is a label. */
@@ -184,7 +185,7 @@ static error_t open_loop(struct lexer* lx) {
   if (error != ERR_NONE) return error;
   if (output < -LARGEST_OUTPUT || output > LARGEST_OUTPUT) return ERR_DATA;
   error = may_move(session.motor);
-  if (error == ERR_NONE && pushes_into_limit(session.motor, output)) error = ERR_DATA;
+  if (error == ERR_NONE && stands_in_limit(session.motor)) error = ERR_BOTH_LIMITS;
   if (error != ERR_NONE) return error;
   const double limit = i_variable_read(i_motor(session.motor + 1u, IXX69_OUTPUT_LIMIT));
   const uint32_t state = hal_mask_servo();

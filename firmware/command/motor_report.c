@@ -8,6 +8,8 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
+enum { FOLLOWING_OFFSET = 2 }; /* Ixx06 */
+
 static uint32_t base(uint32_t motor) { return MEMORY_MOTOR_WORDS * (motor + 1u); }
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor + 1u, ixxnn)); }
 
@@ -18,7 +20,7 @@ static int64_t long_word(uint32_t address) {
 }
 
 /* Text of `value` / (32 * scale), in steps of 1/32 count. */
-static void report_scaled(int64_t value, int32_t scale) {
+static void report_scaled(int64_t value, int64_t scale) {
   if (value == 0 || scale == 0) {
     reply_integer(0);
     return;
@@ -32,15 +34,21 @@ void motor_report_status(uint32_t motor) {
   reply_hex(motor_status(motor, 1), 6);
 }
 
+/* In offset mode the position that commands count from goes with the master, and so does what is reported. */
 void motor_report_position(uint32_t motor) {
   const uint32_t at = base(motor);
-  report_scaled(long_word(at + MEMORY_MOTOR_ACTUAL) + long_word(at + MEMORY_MOTOR_COMPENSATION) +
-                    long_word(at + MEMORY_MOTOR_BIAS),
-                variable(motor, IXX08_POSITION_SCALE));
+  int64_t position = long_word(at + MEMORY_MOTOR_ACTUAL) + long_word(at + MEMORY_MOTOR_COMPENSATION) +
+                     long_word(at + MEMORY_MOTOR_BIAS);
+  if (((uint32_t)variable(motor, IXX06_FOLLOWING_MODE) & FOLLOWING_OFFSET) != 0u)
+    position -= long_word(at + MEMORY_MOTOR_MASTER);
+  report_scaled(position, variable(motor, IXX08_POSITION_SCALE));
 }
 
+/* The word is that of a closure of the loop, every Ixx60 + 1 servo interrupts. */
 void motor_report_velocity(uint32_t motor) {
-  report_scaled(hal_signed(*hal_x(base(motor) + MEMORY_MOTOR_VELOCITY)), variable(motor, IXX09_VELOCITY_SCALE));
+  const int64_t interrupts = variable(motor, IXX60_SERVO_CYCLE_EXTENSION) + 1;
+  report_scaled(hal_signed(*hal_x(base(motor) + MEMORY_MOTOR_VELOCITY)),
+                interrupts * variable(motor, IXX09_VELOCITY_SCALE));
 }
 
 void motor_report_following_error(uint32_t motor) {

@@ -85,16 +85,20 @@ static error_t cmd_enable(struct lexer* lx) { /* E */
   return control(lx, motors_enable);
 }
 
-/* `\` and `<`: no move is segmented, so they are the hold of H. `>` is R. */
 static error_t cmd_program_hold(struct lexer* lx) {
   (void)lx;
-  run_hold(session.cs);
+  run_stop_on_path(session.cs);
   return ERR_NONE;
 }
 
 static error_t cmd_resume_forward(struct lexer* lx) {
   (void)lx;
-  return run_start(session.cs, false);
+  return run_forward(session.cs);
+}
+
+static error_t cmd_resume_back(struct lexer* lx) {
+  (void)lx;
+  return run_back(session.cs);
 }
 
 static error_t cmd_end_block(struct lexer* lx) {
@@ -165,7 +169,7 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"S", cmd_step},
                                                  {"/", cmd_end_block},
                                                  {"\\", cmd_program_hold},
-                                                 {"<", cmd_program_hold},
                                                  {">", cmd_resume_forward},
+                                                 {"<", cmd_resume_back},
                                                  {"%", cmd_time_base},
                                                  {0, 0}};

@@ -19,10 +19,9 @@ static struct {
   bool called;       /* a statement of the line is a call */
   uint32_t where;    /* what was open when words were compiled ahead */
   const char* ahead; /* where that stopped in the text; 0: nothing was */
+  const char* from;  /* where it began */
   const char* text;  /* of the host line, its beginning */
 } line;
-
-#define TEXT_END ((const char*)UINTPTR_MAX) /* the end of the text itself ends the search */
 
 /* Kind of the open program for the statement table; 0: nothing takes text of this port. */
 static uint32_t open_where(void) {
@@ -51,18 +50,20 @@ void program_line_ahead(const char* text, const char* boundary) {
   if (!takes_axes(where)) return;
   if (line.ahead == 0) {
     empty();
-    line.ahead = text;
+    line.ahead = line.from = text;
     line.where = where;
     line.cs = session.cs;
   }
   line.count += axis_constants(&line.ahead, boundary, line.words + line.count, LINE_WORDS - line.count);
 }
 
+/* What was compiled ahead is of the line that comes, not of a control character's command inside it (^U): that forgets
+ * it, and the rest of the line begins anew. */
 const char* program_line_begin(const char* text) {
   line.text = text;
   const char* const ahead = line.ahead;
   line.ahead = 0;
-  if (ahead != 0 && line.where == open_where() && line.cs == session.cs) return ahead;
+  if (ahead != 0 && line.from == text && line.where == open_where() && line.cs == session.cs) return ahead;
   empty();
   return text;
 }
@@ -97,7 +98,7 @@ bool program_statement(struct lexer* lx, error_t* error) {
   uint32_t where = open_where();
   if (where == 0) return false;
   if (takes_axes(where) && (line.count == 0 || line.cs == session.cs)) {
-    const uint32_t made = axis_constants(&lx->at, TEXT_END, line.words + line.count, LINE_WORDS - line.count);
+    const uint32_t made = axis_constants(&lx->at, 0, line.words + line.count, LINE_WORDS - line.count);
     line.cs = session.cs;
     line.count += made;
     *error = ERR_NONE;

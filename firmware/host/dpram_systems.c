@@ -32,7 +32,8 @@ static void write_global(void) {
   dpram_put_word(DPRAM_GLOBAL_STATUS + DPRAM_ITEM_BYTES, motion_global_status2());
 }
 
-/* Of the executing move: until it has ended, and until it has reached its velocity. */
+/* Of the executing move: until it has ended, and until it has reached its velocity. That motors which go for themselves
+ * have left (RAPID, HOME) is not known: 0. */
 struct times {
   int64_t move, acceleration;
 };
@@ -44,6 +45,7 @@ static struct times times_left(const struct coordinate_system* s) {
     const struct move* m = &s->moves[s->executing];
     const bool moves = m->kind == MOVE_LINEAR;
     left.move = (moves ? m->blend_in / 2 + m->time + m->stop_length / 2 : m->time) - s->elapsed;
+    if (left.move < 0) left.move = 0;
     if (moves && m->blend_in > s->elapsed) left.acceleration = m->blend_in - s->elapsed;
   }
   hal_unmask(state);

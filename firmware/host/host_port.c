@@ -8,10 +8,12 @@
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
 #include "rtl/regs/brick_regs.h"
 
 enum { TRANSMIT_SIZE = 4096, CONTROL_X = 0x18, ROOM_TIMEOUT_MS = 500, PROGRAM_TIMEOUT_MS = 20 };
+enum { UNLIMITED = INT32_MAX }; /* characters that are granted while no motor is enabled */
 enum { RESERVED_AT_ONCE = 2 }; /* what the port holds: the next is the host's newest */
 
 /* ^A ^D ^K ^O ^Q stop things: they act in the real-time task, which is asked for at once, whatever the background is
@@ -20,10 +22,13 @@ enum { RESERVED_AT_ONCE = 2 }; /* what the port holds: the next is the host's ne
 
 uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
 volatile uint32_t host_port_received_count, host_port_taken_count;
+volatile int32_t host_port_granted;
+volatile uint32_t host_port_held, host_port_enables;
 
 static uint8_t transmit[TRANSMIT_SIZE];
 static volatile uint32_t transmit_head, transmit_tail;
-static volatile uint32_t urgent, flushed, discard;
+static volatile uint32_t flushed, discard;
+volatile uint32_t host_port_urgent_codes;
 static volatile uint32_t flushes;             /* ^X so far */
 static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
@@ -37,12 +42,33 @@ static bool given_up;
 static void enable(bool receive_on, bool transmit_on) {
   receiving = receive_on;
   transmitting = transmit_on;
-  hal_host_interrupts(receive_on, transmit_on);
+  host_port_enables = (receive_on ? HI08_HCR_HRIE_MASK : 0u) | (transmit_on ? HI08_HCR_HTIE_MASK : 0u);
+  if (host_port_held == 0u) hal_host_interrupts(receive_on, transmit_on);
+}
+
+/* What was granted has been used. A host that never pauses takes no phase or servo interrupt away (motion:1.6): until
+ * the next phase interrupt its characters wait in the port. Without an enabled motor there is no end. */
+static bool is_held(void) {
+  if (motors_enabled == 0u) {
+    host_port_granted = UNLIMITED;
+    return false;
+  }
+  host_port_held = 1;
+  hal_host_interrupts(false, false);
+  return true;
+}
+
+/* Nobody grants any more: the last motor has been killed, or there is no phase clock. */
+static void release(void) {
+  host_port_held = 0;
+  hal_host_interrupts(receiving, transmitting);
 }
 
 void host_port_initialize(void) {
+  host_port_granted = UNLIMITED;
+  host_port_held = 0;
   host_port_received_count = host_port_taken_count = transmit_head = transmit_tail = 0;
-  urgent = flushed = flushed_to = flushes = discard = reserved = 0;
+  host_port_urgent_codes = flushed = flushed_to = flushes = discard = reserved = 0;
   given_up = of_program = false;
   enable(true, false);
 }
@@ -68,7 +94,7 @@ void host_port_character(uint8_t c) {
   slice_hurry = 1;
   if (c >= ' ') return;
   if (((URGENT >> c) & 1u) != 0u) {
-    urgent |= 1u << c;
+    host_port_urgent_codes |= 1u << c;
     hal_request_real_time();
   }
   background_wake();
@@ -82,22 +108,28 @@ bool host_port_next_output(uint8_t* c) {
 }
 
 void host_port_interrupt(void) {
+  if (host_port_granted <= 0 && is_held()) return;
   const uint32_t status = *hal_x(HI08_X_HSR);
   if ((status & HI08_HSR_HRDF_MASK) != 0u && receiving) {
     const bool full = waiting() >= HOST_PORT_RECEIVE_LIMIT;
-    if (!full || reserved != 0u) host_port_character((uint8_t)*hal_x(HI08_X_HORX));
+    if (!full || reserved != 0u) {
+      --host_port_granted;
+      host_port_character((uint8_t)*hal_x(HI08_X_HORX));
+    }
     if (full && (reserved == 0u || --reserved == 0u)) enable(false, transmitting);
   }
   if ((status & HI08_HSR_HTDE_MASK) != 0u && transmitting) {
     uint8_t c;
+    --host_port_granted;
     if (host_port_next_output(&c)) *hal_x(HI08_X_HOTX) = c;
     if (transmit_tail == transmit_head) enable(receiving, false);
   }
 }
 
 void host_port_reserve(void) {
-  if (receiving) return;
+  if (receiving && host_port_held == 0u) return;
   const uint32_t state = hal_mask_all();
+  if (host_port_held != 0u && motors_enabled == 0u) release();
   if (!receiving && waiting() + RESERVED_AT_ONCE <= HOST_PORT_RECEIVE_SIZE) {
     reserved = RESERVED_AT_ONCE;
     enable(true, transmitting);
@@ -183,10 +215,9 @@ void host_port_open_output(void) {
 }
 
 uint32_t host_port_urgent(void) {
-  if (urgent == 0u) return 0;
   const uint32_t state = hal_mask_all();
-  const uint32_t codes = urgent;
-  urgent = 0;
+  const uint32_t codes = host_port_urgent_codes;
+  host_port_urgent_codes = 0;
   hal_unmask(state);
   return codes;
 }

@@ -7,6 +7,7 @@
 #define HOST_PORT_RECEIVE_LIMIT (1 << HOST_PORT_LIMIT_BITS)
 #define HOST_PORT_RECEIVE_BITS (HOST_PORT_LIMIT_BITS + 2)
 #define HOST_PORT_RECEIVE_SIZE (1 << HOST_PORT_RECEIVE_BITS)
+#define HOST_PORT_PACE 8 /* characters in a phase period, both ways together, while a motor is enabled */
 
 #ifndef __ASSEMBLER__
 #include <stdbool.h>
@@ -16,6 +17,11 @@
  * when used. */
 extern uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
 extern volatile uint32_t host_port_received_count, host_port_taken_count;
+
+/* While a motor is enabled the phase interrupt grants HOST_PORT_PACE characters; when they have been taken or sent the
+ * port is held, its interrupts off, until the next one puts host_port_enables into HCR. Interrupts. */
+extern volatile int32_t host_port_granted;
+extern volatile uint32_t host_port_held, host_port_enables;
 
 void host_port_initialize(void);
 void host_port_interrupt(void);         /* image/trap.S, where it has more to do than a character of a line */
@@ -33,7 +39,9 @@ uint32_t host_port_room(void);    /* characters that host_port_send takes withou
 uint32_t host_port_flushes(void); /* ^X so far: what waits to be sent is void */
 bool host_port_waiting(void);     /* characters received and not taken */
 void host_port_send(uint8_t c);   /* background: waits for room; gives up after half a second without a reader */
-uint32_t host_port_urgent(void);  /* real-time task: control characters that may not wait, bit = code; cleared */
+/* Control characters that may not wait, bit = code. Real-time task: the second clears them. */
+extern volatile uint32_t host_port_urgent_codes;
+uint32_t host_port_urgent(void);
 void host_port_open_output(void); /* a new reply: output is sent again after a flush or a host that did not read */
 /* What follows is sent by a program, which gives up sooner when the host has sent something; and no longer. */
 void host_port_program_sends(bool sends);

@@ -4,6 +4,7 @@
 
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/host/binary_rotary.h"
+#include "firmware/host/host_port.h"
 #include "firmware/host/line_input.h"
 #include "firmware/host/panel.h"
 #include "firmware/kernel/stack_watch.h"
@@ -13,7 +14,7 @@
 #include "firmware/run/plc.h"
 
 void real_time(void) {
-  line_input_urgent();
+  if (host_port_urgent_codes != 0u) line_input_urgent();
   panel_select();
   buffer_request_poll();
   binary_rotary_real_time();

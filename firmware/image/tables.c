@@ -30,6 +30,7 @@
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/phase_task.h"
+#include "firmware/motion/phasing.h"
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
 #include "firmware/motion/time_base.h"
@@ -43,7 +44,7 @@ void (*const mathematics_pause)(void) = slice_pause;
 
 static void servo(void) {
   servo_update();
-  phasing_servo();
+  if (phasing_searched != 0u) phasing_servo();
   gather_servo();
   dpram_functions_servo();
   host_port_reserve();
@@ -73,7 +74,9 @@ static void compensation_tables_changed(uint32_t instance) {
 }
 
 const i_effect_t i_effects[I_FIELD_COUNT] = {
+    [I_FIELD_LOOKAHEAD] = run_by_state,
     [I_FIELD_TIME_BASE] = time_base_source_changed,
+    [I_FIELD_TIME_BASE_SLEW] = time_base_slew_changed,
     [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
     [I_FIELD_DPRAM] = dpram_functions_changed,
     [I_FIELD_DPRAM_BASE] = dpram_functions_changed,

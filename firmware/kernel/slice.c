@@ -20,15 +20,24 @@ static bool inside;
 static uint32_t began, length, round_began;
 static volatile bool gave_way; /* the last slice, before its time was over. R, read by B */
 
-static bool works; /* the round, or the last one, came to a pause: there is something to do */
+static bool works;      /* the round, or the last one, came to a pause: there is something to do */
+static bool under_way; /* a round that has begun and has not ended */
 
 static void make_round(void) {
   round_began = hal_cycles();
+  under_way = true;
   works = false;
   work_of_slices();
+  under_way = false;
 }
 
-void slice_restart(void) { hal_side_begin(make_round); }
+void slice_restart(void) {
+  under_way = false;
+  hal_side_begin(make_round);
+}
+
+bool slice_is_under_way(void) { return under_way; }
+void slice_skip(void) { works = gave_way = false; }
 
 void slice_initialize(void (*work)(void)) {
   work_of_slices = work;

@@ -4,10 +4,13 @@
 #ifndef FIRMWARE_KERNEL_SLICE_H
 #define FIRMWARE_KERNEL_SLICE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 void slice_initialize(void (*work)(void)); /* `work` makes one round; what was under way is forgotten */
 void slice_restart(void);                  /* the same work; real-time task held off, or that task outside of it */
+bool slice_is_under_way(void);             /* real-time task: a round was left before its end */
+void slice_skip(void);                     /* real-time task: none is, and a new one would do nothing */
 void slice_run(uint32_t cycles);           /* real-time task: a slice, until its time is over or a round is made */
 /* Not 0: the background is at a line of the host, from its first character to BREQ. A slice gives way to it after a
  * little work of its own, unless its round has lasted too long already. The host port's interrupt sets it. */

@@ -24,6 +24,7 @@ static uint32_t real_time_prescaler;       /* S */
 static volatile bool real_time_due;        /* S sets, R clears: not one that a control character asked for */
 static volatile bool real_time_active;     /* R: one that was due */
 static volatile bool real_time_late;       /* S sets, R clears: due again before it was done */
+static uint32_t real_time_began;           /* R, cycle counter */
 static uint32_t real_time_spent;           /* R, cycles since one was due */
 static uint32_t servo_began;               /* S, cycle counter */
 static volatile uint32_t servo_period;     /* S, cycles between the last two */
@@ -48,6 +49,11 @@ uint32_t tasks_real_time_slice(void) {
   if (period > longest) return longest; /* no overflow below: I8 is 255 at most */
   const uint32_t half = period * (real_time_period + 1u) / 2u;
   return half < longest ? half : longest;
+}
+
+uint32_t tasks_real_time_left(void) {
+  const uint32_t slice = tasks_real_time_slice(), spent = hal_cycles() - real_time_began;
+  return spent < slice ? slice - spent : 0u;
 }
 
 /* In half CPU cycles, with the interrupts above it: clients take those out again (docs/firmware.md, Task load). */
@@ -100,6 +106,7 @@ static void judge_real_time(void) {
 void tasks_real_time_interrupt(void) {
   const uint32_t began = hal_cycles();
   const bool due = real_time_due;
+  real_time_began = began;
   real_time_active = due;
   if (due) real_time_due = false; /* else the servo task may just have asked */
   task_hooks.real_time();

@@ -66,7 +66,7 @@ bool lexer_hexadecimal(struct lexer* lx, unsigned most, uint64_t* value) {
 }
 
 /* The first digits, nine of them at most that count: they fit into 32 bits. Nothing more follows: it is the number. */
-static bool short_integer(const char** at, uint32_t* low, unsigned* digits) {
+static inline bool short_integer(const char** at, uint32_t* low, unsigned* digits) {
   const char* text = *at;
   *low = 0;
   *digits = 0;
@@ -141,6 +141,11 @@ error_t lexer_constant(struct lexer* lx, double* value) {
 error_t lexer_integer(struct lexer* lx, int32_t* value) {
   if (is_digit(lexer_peek(lx))) {
     const char* text = lx->at;
+    if (!is_digit(text[1]) && text[1] != '.') {
+      *value = *text - '0';
+      ++lx->at;
+      return ERR_NONE;
+    }
     uint32_t low;
     unsigned digits;
     if (short_integer(&text, &low, &digits)) {

@@ -18,6 +18,7 @@ enum statement_key {
   KEY_ENDIF = WORD_KEY(2, 0, 22),
   KEY_ENDWHILE = WORD_KEY(2, 0, 23),
   KEY_PSET = WORD_KEY(2, 0, 26),
+  KEY_NORMAL = WORD_KEY(2, 0, 27),
   KEY_G = WORD_KEY(8, 0, 0),
   KEY_M = WORD_KEY(8, 0, 1),
   KEY_T = WORD_KEY(8, 0, 2),

@@ -18,6 +18,7 @@ struct axis_definition {
 /* Background; part of the SAVE image. Programs read them too (motion/live_words.c), in the real-time task, so that it
  * is held off while one changes. */
 extern struct axis_definition axis_definitions[MOTORS];
+extern uint32_t axis_motors[COORDINATE_SYSTEMS]; /* bit n-1: motor n is assigned to it. As those */
 
 void axis_definition_initialize(void); /* none: SAVEd definitions are put back by the start-up */
 void axis_define(uint32_t motor, const struct axis_definition* definition);

@@ -1,5 +1,6 @@
 #include "firmware/motion/capture.h"
 
+#include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/position_loop.h"
@@ -46,8 +47,9 @@ static int64_t captured_position(uint32_t motor, const struct capture* c) {
   const struct motor* m = &motors[motor];
   if (c->in_software || c->position == 0) return position_loop_measured(motor);
   const uint32_t fraction = c->with_fraction && c->fraction != 0 ? *c->fraction >> FRACTION_SHIFT : 0u; /* of 4096 */
-  const uint32_t whole = *c->position << c->count_bits;
+  const uint32_t counter = *c->position, whole = counter << c->count_bits;
   const int32_t beyond = hal_signed((position_loop_reading(motor) - whole) & HAL_WORD_MASK);
+  *hal_y(MEMORY_MOTOR_WORDS * (motor + 1u) + MEMORY_MOTOR_CAPTURE) = counter & HAL_WORD_MASK;
   const int64_t below = ((int64_t)fraction * m->position_scale) >> (FRACTION_SHIFT - c->count_bits);
   return m->actual - (int64_t)beyond * m->position_scale + below;
 }

@@ -6,8 +6,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/hal/hal.h"
+
 enum { CONVERSION_LINES = 192, CONVERSION_LONGEST = 5, CONVERSION_SOURCES = 5 };
 
+/* All zero but for what conversion_table.c says, when an entry begins. */
 struct conversion_state {
   bool fresh; /* nothing remembered yet */
   bool runs;  /* a triggered time base that has had its trigger */
@@ -28,5 +31,10 @@ struct conversion_entry {
   uint32_t setup;                        /* the first line */
   int32_t parameter[CONVERSION_LONGEST]; /* the others, [1] is line 2 */
 };
+
+/* A line that has no sign: the most that a source may change, the gain of a filter. */
+static inline int32_t conversion_magnitude(const struct conversion_entry* entry, uint32_t line) {
+  return (int32_t)((uint32_t)entry->parameter[line] & HAL_WORD_MASK);
+}
 
 #endif

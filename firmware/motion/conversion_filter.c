@@ -22,12 +22,11 @@ void convert_time_base(const struct conversion_entry* entry) {
 static int32_t behind(const struct conversion_entry* entry) {
   struct conversion_state* state = entry->state;
   const uint32_t now = *entry->source[0];
-  const int32_t most = entry->parameter[1];
+  const int32_t most = conversion_magnitude(entry, 1);
   if (state->fresh) {
     state->fresh = false;
     state->previous = now;
     state->out = (int32_t)(now << OUT_BITS);
-    state->remainder = state->integral = 0;
   }
   int32_t step = hal_signed(now - state->previous);
   if (step > most) step = most;
@@ -46,18 +45,18 @@ static void move(const struct conversion_entry* entry, int64_t change) {
 }
 
 void convert_exponential(const struct conversion_entry* entry) {
-  move(entry, (int64_t)behind(entry) * entry->parameter[2]);
+  move(entry, (int64_t)behind(entry) * conversion_magnitude(entry, 2));
 }
 
 /* Lines: most change, proportional gain, none, integral gain. */
 void convert_tracking(const struct conversion_entry* entry) {
   struct conversion_state* state = entry->state;
   const int32_t error = behind(entry);
-  int64_t integral = state->integral + (int64_t)error * entry->parameter[4];
+  int64_t integral = state->integral + (int64_t)error * conversion_magnitude(entry, 4);
   if (integral > INTEGRAL_MOST) integral = INTEGRAL_MOST;
   if (integral < -INTEGRAL_MOST) integral = -INTEGRAL_MOST;
   state->integral = integral;
-  move(entry, (int64_t)error * entry->parameter[2] + integral);
+  move(entry, (int64_t)error * conversion_magnitude(entry, 2) + integral);
 }
 
 /* Bits of the first line: first and second line number, then what is done with them. */
@@ -67,8 +66,7 @@ void convert_sum(const struct conversion_entry* entry) {
   uint32_t sum = (setup & NEGATE_FIRST) != 0u ? 0u - first : first;
   if ((setup & NO_SECOND) == 0u) sum += (setup & NEGATE_SECOND) != 0u ? 0u - second : second;
   if (entry->flag) {
-    if (!entry->state->fresh) sum += entry->state->previous;
-    entry->state->fresh = false;
+    sum += entry->state->previous;
     entry->state->previous = sum;
   }
   *entry->result = sum & HAL_WORD_MASK;

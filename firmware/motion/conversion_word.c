@@ -18,10 +18,8 @@ void convert_analog(const struct conversion_entry* entry) {
 void convert_analog_integrated(const struct conversion_entry* entry) {
   int32_t value = analog(entry) - entry->parameter[1];
   if (entry->flag && value < 0) value = 0;
-  if (entry->state->fresh) entry->state->previous = 0;
-  entry->state->fresh = false;
-  entry->state->previous += (uint32_t)(value >> ADC_SHIFT);
-  *entry->result = entry->state->previous & HAL_WORD_MASK;
+  entry->state->previous += (uint32_t)value; /* with the bits that the result has not */
+  *entry->result = entry->state->previous >> ADC_SHIFT & HAL_WORD_MASK;
 }
 
 /* A number of 48 bits, source[1] being the upper half; it is read only where the bits reach into it. */
@@ -59,4 +57,4 @@ static void follow(const struct conversion_entry* entry, int32_t most) {
 }
 
 void convert_parallel(const struct conversion_entry* entry) { follow(entry, INT32_MAX); }
-void convert_parallel_limited(const struct conversion_entry* entry) { follow(entry, entry->parameter[2]); }
+void convert_parallel_limited(const struct conversion_entry* entry) { follow(entry, conversion_magnitude(entry, 2)); }

@@ -6,7 +6,7 @@
 #include "firmware/variables/i_variables.h"
 
 struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
-volatile uint32_t cs_busy;
+volatile uint32_t cs_busy, cs_awake;
 uint32_t cs_interrupts;
 
 /* A motor belongs to one system at a time: all rings have their cubics here, each those of its motors. */
@@ -17,11 +17,12 @@ void coordinate_systems_initialize(void) {
     struct coordinate_system* s = &coordinate_systems[cs];
     *s = (struct coordinate_system){0};
     s->feedrate_axes = AXIS_XYZ;
+    s->normal[2] = -1.0;
     piece_ring_initialize(&s->ring, cubics, MOTORS);
     s->increment_full = s->increment_command = i_integer(I10_SERVO_PERIOD);
     s->increment = s->increment_target = s->increment_full;
   }
-  cs_busy = 0;
+  cs_busy = cs_awake = 0;
 }
 
 void coordinate_systems_forget_programs(void) {

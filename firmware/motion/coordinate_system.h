@@ -41,7 +41,8 @@ enum move_kind {
   MOVE_DWELL,
   MOVE_OWN, /* motors go for themselves: RAPID, HOME */
   MOVE_PVT,
-  MOVE_SPLINE
+  MOVE_SPLINE,
+  MOVE_SEGMENTS /* a sequence of LINEAR and CIRCLE moves (motion/segment.h) */
 };
 
 enum { KNOTS = 4 };
@@ -98,9 +99,12 @@ enum run_time_error {
   RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
   RUN_TIME_READ,        /* READ where nothing has been called */
   RUN_TIME_FEEDRATE,    /* a move goes by a feedrate that is not above 0 */
-  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time */
-  RUN_TIME_IN_POSITION  /* motors are not in position within Isx81 */
+  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time, or a path no next segment */
+  RUN_TIME_IN_POSITION, /* motors are not in position within Isx81 */
+  RUN_TIME_RADIUS       /* there is no arc through the ends of a CIRCLE move */
 };
+
+enum { ARC_VECTORS = 4, ARC_RADIUS_BIT = 8 }; /* I, J, K, R */
 
 struct coordinate_system {
   /* program pointer and requests */
@@ -134,9 +138,14 @@ struct coordinate_system {
   uint32_t pending_axes;
   double pending_velocity[AXIS_COUNT], pending_trigger[AXIS_COUNT]; /* behind `:` and `^`: units a Isx90, units */
   uint32_t pending_velocities, pending_triggers;
+  double pending_vector[ARC_VECTORS]; /* I, J, K, R of a CIRCLE line */
+  uint32_t pending_vectors;
+  double normal[3];           /* of the plane of arcs */
+  bool sets_normal;           /* I, J, K are those of NORMAL, until the line ends or an axis comes */
   bool was_matched;          /* since the last MOVE_OWN */
   bool first;                /* no move of this run has been placed yet */
   bool sets_position;        /* the line is that of PSET */
+  bool by_segments;          /* the line's path is made of segments */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
   /* moves: moves[executing] is the one that executes or has been last, the other one is the next */
@@ -155,7 +164,8 @@ struct coordinate_system {
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */
-  volatile int32_t increment_slew;   /* B */
+  volatile int32_t increment_slew;   /* B; S when the target of a hold's end has been reached */
+  volatile int32_t increment_usual;  /* B: Isx94, what is slewed by then */
   /* B: the word that Isx93 points to, which has the target instead; null: its own commanded time base */
   const volatile uint32_t* volatile time_base_source;
   int32_t increment_full;    /* B: I10, taken over by %100 */
@@ -168,6 +178,8 @@ extern struct coordinate_system coordinate_systems[COORDINATE_SYSTEMS];
 /* One bit a coordinate system that the servo task has work for. S clears, R sets; B sets only while both are held off.
  * A clear that is lost to R costs one more look, nothing else. */
 extern volatile uint32_t cs_busy;
+/* One bit a coordinate system that runs or settles. B and R set it behind either, R alone clears it. */
+extern volatile uint32_t cs_awake;
 extern uint32_t cs_interrupts; /* R: real-time interrupts so far */
 
 void coordinate_systems_initialize(void);      /* power-up, $$$ and $$$***: idle, at 0, without axes */

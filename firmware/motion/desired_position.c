@@ -5,13 +5,14 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
-enum { FOLLOWS = 1, PART_OF_COUNT = 16 };
+enum { FOLLOWS = 1, PART_OF_COUNT = 16, ERROR_SATURATES = 1 << 13 /* Ixx24 */ };
 
 static struct path {
   /* V */
@@ -19,7 +20,8 @@ static struct path {
   bool follows;
   int32_t master_scale;
   uint32_t share;                                       /* 2^32 (1 - Ixx40); 0: no filter */
-  int64_t backlash, backlash_rate, backlash_hysteresis; /* position; rate a servo interrupt */
+  int64_t backlash, backlash_rate, backlash_hysteresis; /* position; rate a background pass */
+  int64_t error_most;                                   /* Ixx67 where what is beyond it is held back; else 0 */
   /* S */
   uint32_t master_reading;
   uint32_t fraction; /* of the filtered position, 2^-32 */
@@ -28,7 +30,8 @@ static struct path {
   bool down;         /* direction of the last movement */
 } paths[MOTORS];
 
-static uint32_t with_something; /* bit n: motor n follows, or has a filter or backlash. V */
+static uint32_t with_something;        /* bit n: motor n follows, holds back, or has a filter or backlash. V */
+static volatile uint32_t backlash_due; /* bit n: that of motor n may move. B sets all, S clears */
 
 static int32_t variable(uint32_t motor, enum i_name ixxnn) { return i_integer(i_motor(motor, ixxnn)); }
 
@@ -42,7 +45,12 @@ static uint32_t share_of(double gain) {
   return share < 1 ? 1u : (uint32_t)share;
 }
 
-void desired_position_initialize(void) { __builtin_memset(paths, 0, sizeof paths); }
+void desired_position_initialize(void) {
+  __builtin_memset(paths, 0, sizeof paths);
+  backlash_due = 0;
+}
+
+void desired_position_pass(void) { backlash_due = UINT32_MAX; }
 
 void desired_position_motor_changed(uint32_t motor) {
   static const volatile uint32_t zero;
@@ -60,9 +68,12 @@ void desired_position_motor_changed(uint32_t motor) {
   p->backlash = position_of(motor, variable(motor, IXX86_BACKLASH_SIZE));
   p->backlash_rate = position_of(motor, variable(motor, IXX85_BACKLASH_RATE));
   p->backlash_hysteresis = position_of(motor, variable(motor, IXX87_BACKLASH_HYSTERESIS));
+  const bool saturates = ((uint32_t)variable(motor, IXX24_FLAG_MODE) & ERROR_SATURATES) != 0u;
+  p->error_most = saturates ? position_of(motor, variable(motor, IXX67_POSITION_ERROR_LIMIT)) : 0;
+  if (p->error_most == 0) motors[motor - 1u].held_back = 0;
   const uint32_t bit = 1u << (motor - 1u);
   with_something &= ~bit;
-  if (follows || share != 0u || p->backlash_rate != 0) with_something |= bit;
+  if (follows || share != 0u || p->backlash_rate != 0 || p->error_most != 0) with_something |= bit;
   if (p->backlash_rate == 0) motors[motor - 1u].compensation += p->taken_up;
   if (p->backlash_rate == 0) p->taken_up = 0;
   hal_unmask(state);
@@ -73,9 +84,11 @@ void desired_position_take_actual(uint32_t motor) {
   struct path* p = &paths[motor];
   m->commanded = m->actual;
   m->desired_step = 0;
+  m->master -= m->held_back;
+  m->held_back = 0;
+  if (p->follows) p->master_reading = *p->master;
   m->trajectory = m->actual - m->master + m->compensation;
-  p->turning = m->trajectory;
-  p->fraction = 0;
+  p->turning = m->trajectory + m->master;
 }
 
 void desired_position_shift(uint32_t motor, int64_t by) {
@@ -85,6 +98,7 @@ void desired_position_shift(uint32_t motor, int64_t by) {
   m->closed_at += by;
   m->actual += by;
   paths[motor].turning += by;
+  average_velocity_shift(motor, by);
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */
@@ -95,11 +109,22 @@ static void follow(struct motor* m, struct path* p) {
   const int64_t step = (int64_t)hal_signed(reading - p->master_reading) * p->master_scale;
   p->master_reading = reading;
   if ((step > 0 && m->found.positive_limit) || (step < 0 && m->found.negative_limit)) return;
-  if (step == 0) return;
   m->master += step;
-  const uint32_t word = MEMORY_MOTOR_WORDS * ((uint32_t)(m - motors) + 1u) + MEMORY_MOTOR_MASTER;
-  *hal_x(word) = (uint32_t)(m->master >> 24) & HAL_WORD_MASK; /* for who looks at memory from outside */
-  *hal_y(word) = (uint32_t)m->master & HAL_WORD_MASK;
+}
+
+/* For who looks at memory from outside. */
+static void publish_master(uint32_t motor, const struct motor* m) {
+  const uint32_t word = MEMORY_MOTOR_WORDS * (motor + 1u) + MEMORY_MOTOR_MASTER;
+  const int64_t position = m->master - m->held_back;
+  *hal_x(word) = (uint32_t)(position >> 24) & HAL_WORD_MASK;
+  *hal_y(word) = (uint32_t)position & HAL_WORD_MASK;
+}
+
+/* How far `wanted` is beyond the error that the loop sees. */
+static int64_t held_back(const struct motor* m, const struct path* p, int64_t wanted) {
+  const int64_t error = wanted - m->actual, most = p->error_most;
+  if (error > most) return error - most;
+  return error < -most ? error + most : 0;
 }
 
 /* The direction turns when the trajectory has come back by more than Ixx87. */
@@ -112,6 +137,9 @@ static int64_t backlash(uint32_t motor, const struct motor* m, struct path* p) {
     p->down = !p->down;
     p->turning = position;
   }
+  const uint32_t bit = 1u << motor;
+  if ((backlash_due & bit) == 0u) return p->taken_up;
+  backlash_due &= ~bit;
   const int64_t wanted = p->down ? -(p->backlash + compensation_backlash(motor)) : 0, left = wanted - p->taken_up;
   if (left > p->backlash_rate)
     p->taken_up += p->backlash_rate;
@@ -143,6 +171,9 @@ static __attribute__((noinline)) void with_extras(uint32_t motor, struct motor* 
   if (p->backlash_rate != 0) m->compensation -= backlash(motor, m, p);
   int64_t wanted = m->trajectory + m->master - m->compensation;
   if (p->share != 0u) wanted = filtered(m, p, wanted);
+  if (p->error_most != 0) m->held_back = held_back(m, p, wanted);
+  wanted -= m->held_back;
+  if (p->follows || p->error_most != 0) publish_master(motor, m);
   m->desired_step = saturated(wanted - m->commanded);
   m->commanded = wanted;
 }

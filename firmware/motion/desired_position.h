@@ -8,6 +8,7 @@
 void desired_position_initialize(void);              /* start-up, before variables are taken over */
 void desired_position_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void desired_position_servo(uint32_t motor);         /* 0..31, servo task: trajectory -> commanded, desired_step */
+void desired_position_pass(void);                    /* background: backlash may move on by Ixx85 */
 /* 0..31, servo task held off: the trajectory is set so that the motor is commanded to be where it is. */
 void desired_position_take_actual(uint32_t motor);
 /* 0..31, servo task held off, or in it: positions are counted from elsewhere, trajectory and commanded are `by` more.

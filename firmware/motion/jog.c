@@ -54,7 +54,8 @@ static bool goes_into_limit(uint32_t motor, const struct jog_motion* request) {
   if (request->homes || (request->aim != AIM_SPEED && request->aim != AIM_TARGET)) return false;
   const bool up = request->aim == AIM_SPEED ? request->speed > 0.0 : request->target > m->trajectory;
   const bool down = request->aim == AIM_SPEED ? request->speed < 0.0 : request->target < m->trajectory;
-  return (up && m->found.positive_limit) || (down && m->found.negative_limit);
+  return (up && (m->found.positive_limit || m->found.positive_desired)) ||
+         (down && (m->found.negative_limit || m->found.negative_desired));
 }
 
 static bool ask(uint32_t motor, const struct jog_motion* request) {

@@ -73,7 +73,7 @@ static unsigned motor_word(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
 static double target(const struct coordinate_system* s, uint32_t axis) {
   const uint32_t state = hal_mask_servo();
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
-  const bool moves = s->active && m->kind == MOVE_LINEAR;
+  const bool moves = s->active && m->kind != MOVE_DWELL;
   const double delta = m->delta[axis];
   double start = s->position[axis];
   if (s->active)
@@ -131,7 +131,7 @@ static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
   return BOTH;
 }
 
-void live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { (void)make(address, x, y); }
+bool live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { return make(address, x, y) != 0u; }
 
 static void write_timer(uint32_t number, uint32_t mask, uint32_t bits) {
   uint32_t word = bits;

@@ -9,6 +9,7 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/protection.h"
+#include "firmware/variables/i_variables.h"
 
 enum {
   S1_VECTOR_INCREMENTAL = 5,
@@ -28,6 +29,9 @@ enum {
   S2_DWELL = 12,
   S3_SHARP_CORNER = 6,
   S3_CORNER_DWELL = 5,
+  S3_RADIUS_ERROR = 3,
+  S3_LOOKAHEAD_STATE = 8,
+  S3_DESIRED_LIMIT = 1,
   G2_ULTRALITE = 23,
   G2_BINARY_ROTARY_OPEN = 20,
   G2_MOTION_OPEN = 19,
@@ -79,16 +83,27 @@ static uint32_t faults(uint32_t cs) {
   return word;
 }
 
-/* A stop at a corner that is too sharp to blend, and its pause; the rest of word 3 is about lookahead. */
-static uint32_t status3(const struct coordinate_system* s) {
+static bool is_on_desired_limit(uint32_t cs) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++)
+    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs && motors[motor].found.on_desired_limit)
+      return true;
+  return false;
+}
+
+/* A stop at a corner that is too sharp to blend, and its pause, and one at the limit of a desired position; Isx21
+ * (motion:7.5). */
+static uint32_t status3(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
   const bool stops = s->corner != CORNER_NONE && s->moves[s->executing ^ 1u].is_sharp;
-  return bit(stops, S3_SHARP_CORNER) | bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL);
+  const uint32_t state = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE)) << S3_LOOKAHEAD_STATE;
+  return state | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
+         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) | bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT);
 }
 
 uint32_t motion_cs_status(uint32_t cs, unsigned word) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (word == 0) return status1(s);
-  if (word == 2) return status3(s);
+  if (word == 2) return status3(cs);
   return bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(is_in_position(cs), S2_IN_POSITION) |
          bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
          faults(cs) | MODES[s->mode];

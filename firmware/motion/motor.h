@@ -29,13 +29,14 @@ struct motor_status_flags {
   volatile bool home_complete;
 };
 
-/* What protection has found (motion/protection.h), for the status words. The first five stay until the loop is closed
- * or opened again. */
+/* What protection has found (motion/protection.h), for the status words. The first four stay until the loop is closed
+ * or opened again, the next two until the motor moves on. */
 struct motor_findings {
-  bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit;
+  bool fatal_error, integrated_error, integrated_current, amplifier_fault, on_limit, on_desired_limit;
   bool warning_error, in_position;
-  volatile bool positive_limit, negative_limit; /* an input, or the software limit of that side */
-  volatile bool foreground_in_position;         /* S */
+  volatile bool positive_limit, negative_limit;     /* an input, or the software limit of that side */
+  volatile bool positive_desired, negative_desired; /* the commanded position is beyond that of the desired one */
+  volatile bool foreground_in_position;             /* S */
 };
 
 struct motor {
@@ -47,6 +48,7 @@ struct motor {
   int64_t closed_at;    /* commanded at the last closure of the loop */
   int64_t actual;       /* D:+$0B */
   int64_t master;       /* position of the master that it follows, D:+$0D */
+  int64_t held_back;    /* of the master: following error beyond Ixx67, with Ixx24 bit 13; D:+$0D is without it */
   int64_t compensation; /* of the measured position, by tables and backlash: commanded has it subtracted; D:+$10 */
   int64_t bias;         /* D:+$4C: not part of the loop; axis offsets and the like */
   int32_t desired_step; /* net desired position, less that of the last servo interrupt: 0 is "desired velocity zero" */
@@ -64,7 +66,8 @@ struct motor {
 };
 
 extern struct motor motors[MOTORS];
-extern volatile uint32_t motors_active; /* V: bit n-1: Ixx00 of motor n */
+extern volatile uint32_t motors_active;  /* V: bit n-1: Ixx00 of motor n */
+extern volatile uint32_t motors_enabled; /* C: bit n-1: motor n is not killed */
 
 /* 1/(32 Ixx08) counts of `counts`; rounded to nearest. Floating point. */
 int64_t motor_position_of(uint32_t motor, double counts);

@@ -8,6 +8,7 @@
 #include "firmware/variables/i_variables.h"
 
 enum { SUM_BITS = 30, LINEAR_BITS = 15, ROUND = 1 << (OUTPUT_FRACTION_BITS - 1) };
+enum { MOST_BITS = 18 }; /* of a vector of measured currents: each up to four times full scale */
 
 static struct overload {
   int32_t continuous; /* Ixx57, V */
@@ -33,21 +34,21 @@ void overload_motor_changed(uint32_t motor) {
   hal_unmask(state);
 }
 
-static uint32_t square_root(uint32_t square) {
+static uint32_t square_root(uint64_t square) {
   uint32_t root = 0;
-  for (uint32_t bit = 1u << 15; bit != 0u; bit >>= 1)
-    if ((root | bit) * (root | bit) <= square) root |= bit;
+  for (uint32_t bit = 1u << (MOST_BITS - 1); bit != 0u; bit >>= 1)
+    if ((uint64_t)(root | bit) * (root | bit) <= square) root |= bit;
   return root;
 }
 
-static uint32_t square(int32_t output) {
-  const int32_t current = (output + ROUND) >> OUTPUT_FRACTION_BITS;
-  return (uint32_t)(current * current);
+static uint64_t square(int32_t output) {
+  const int64_t current = (output + ROUND) >> OUTPUT_FRACTION_BITS;
+  return (uint64_t)(current * current);
 }
 
 void overload_servo(uint32_t motor) {
   struct overload* o = &overloads[motor];
-  uint32_t current; /* squared */
+  uint64_t current; /* squared */
   if (commutation_is_used(motor)) {
     const struct motor_current now = commutation_current(motor);
     current = square(now.q) + square(now.d);

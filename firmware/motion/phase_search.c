@@ -145,7 +145,7 @@ static void search_servo(uint32_t motor) {
 }
 
 void phasing_servo(void) {
-  for (uint32_t motor = 0, left = phasing_searched(); left != 0u; ++motor, left >>= 1)
+  for (uint32_t motor = 0, left = phasing_searched; left != 0u; ++motor, left >>= 1)
     if ((left & 1u) != 0u) search_servo(motor);
 }
 

@@ -24,7 +24,7 @@
 enum { READING = 0x32, PHASE_POSITION = 0x34 };
 enum { COMMUTATED = 1 };         /* Ixx01 */
 enum { FRACTION_BITS = 24 };     /* of the phase position */
-enum { SHORT_PATH_CYCLES = 28 }; /* of image/trap.S without work, with entry and return */
+enum { SHORT_PATH_CYCLES = 32 }; /* of image/trap.S without work, with entry and return */
 enum { TRAP_CYCLES = 92 };       /* of its entry and return with work, as far as the stamp does not count them */
 
 volatile uint32_t phase_task_work;
@@ -75,7 +75,7 @@ static inline void commutate(struct phase_motor* m, uint32_t words) {
 
 /* A smaller I7 acts at once: the count may be beyond it already. */
 void phase_task_interrupt(void) {
-  if (++prescaler <= (uint32_t)i_integer(I7_PHASE_CYCLE_EXTENSION)) return;
+  if (++prescaler <= (uint32_t)i_plain_integer(I7_PHASE_CYCLE_EXTENSION)) return;
   prescaler = 0;
   struct phase_motor* m = phase_motors;
   uint32_t words = MEMORY_MOTOR_WORDS;

@@ -9,7 +9,8 @@
 enum { COMMUTATED = 1, ALTERNATE_MODE = 1 }; /* Ixx01, Ixx96 */
 
 /* Bit n-1 of motor n. Background and real-time task, which is held off meanwhile. */
-static volatile uint32_t synchronous_of, missing_of, searched_of;
+static volatile uint32_t synchronous_of, missing_of;
+volatile uint32_t phasing_searched;
 
 static void put(volatile uint32_t* bits, uint32_t motor, bool value) {
   const uint32_t state = hal_mask_real_time();
@@ -21,10 +22,9 @@ static bool has(uint32_t bits, uint32_t motor) { return ((bits >> motor) & 1u) !
 
 bool phasing_is_needed(uint32_t motor) { return has(synchronous_of, motor); }
 bool phasing_is_missing(uint32_t motor) { return has(missing_of, motor); }
-bool phasing_is_searched(uint32_t motor) { return has(searched_of, motor); }
-uint32_t phasing_searched(void) { return searched_of; }
+bool phasing_is_searched(uint32_t motor) { return has(phasing_searched, motor); }
 void phasing_set_missing(uint32_t motor, bool missing) { put(&missing_of, motor, missing); }
-void phasing_set_searched(uint32_t motor, bool searched) { put(&searched_of, motor, searched); }
+void phasing_set_searched(uint32_t motor, bool searched) { put(&phasing_searched, motor, searched); }
 
 static bool is_synchronous(uint32_t motor) { /* 1..32 */
   return ((uint32_t)i_integer(i_motor(motor, IXX01_COMMUTATION_ENABLE)) & COMMUTATED) != 0u &&
@@ -43,6 +43,6 @@ void phasing_motor_changed(uint32_t motor) {
 }
 
 void phasing_initialize(void) {
-  synchronous_of = missing_of = searched_of = 0;
+  synchronous_of = missing_of = phasing_searched = 0;
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) phasing_motor_changed(motor);
 }

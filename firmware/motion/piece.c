@@ -8,6 +8,10 @@
  * the fraction. */
 void piece_set_time(struct piece* piece, int64_t time) {
   if (time < 1) time = 1;
+  piece->continues = false;
+  piece->warp = 0;
+  piece->from = 0;
+  piece->to = PIECE_PARTS;
   piece->time = piece->end = time;
   piece->shift = (uint32_t)__builtin_clzll((uint64_t)time) - 1u;
   const double normal = math_scale((double)time, (int)piece->shift - 62); /* [1, 2) */
@@ -18,6 +22,20 @@ static uint32_t fraction_of(const struct piece* piece, int64_t elapsed) {
   if (elapsed >= piece->time) return UINT32_MAX;
   const uint64_t part = fixed_multiply_high((uint64_t)elapsed << piece->shift, piece->inverse) >> 29;
   return part > UINT32_MAX ? UINT32_MAX : (uint32_t)part;
+}
+
+static uint32_t clamped(int64_t fraction) {
+  return fraction < 0 ? 0u : fraction > (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)fraction;
+}
+
+static uint32_t between(const struct piece* piece, uint32_t part) {
+  const int64_t way = ((int64_t)piece->to - piece->from) * (int64_t)part;
+  return clamped(((int64_t)piece->from << 28) + (way >> 4));
+}
+
+static uint32_t warped(int32_t warp, uint32_t part) {
+  const uint32_t bulge = (uint32_t)(((uint64_t)part * ~part) >> 32);
+  return clamped((int64_t)part + (((int64_t)bulge * warp) >> 30));
 }
 
 void piece_ring_initialize(struct piece_ring* ring, struct cubic* cubics, uint32_t width) {
@@ -68,7 +86,14 @@ bool piece_ring_advance(struct piece_ring* ring, int64_t increment) {
   }
   ring->elapsed = elapsed;
   ring->fraction = fraction_of(piece, elapsed);
+  if (piece->warp != 0) ring->fraction = warped(piece->warp, ring->fraction);
+  if (piece->from != 0 || piece->to != PIECE_PARTS) ring->fraction = between(piece, ring->fraction);
   return true;
+}
+
+int64_t piece_end(const struct piece* piece, const struct cubic* cubic) {
+  if (piece->to == PIECE_PARTS) return cubic_end(cubic);
+  return cubic_at(cubic, (uint32_t)piece->to << 28);
 }
 
 int64_t cubic_at(const struct cubic* cubic, uint32_t fraction) {

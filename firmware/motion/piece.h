@@ -12,7 +12,9 @@
 
 #include "firmware/motion/fixed_point.h"
 
-enum { PIECES = 32 }; /* of a ring; a power of two */
+enum { PIECE_PARTS = 16 };
+enum { PIECES = 32 };              /* of a ring; a power of two */
+enum { PIECE_WARP_ONE = 1 << 30 }; /* the largest `warp` */
 
 /* Position at the part u of its time: start + linear u + square u^2 + cube u^3, positions of motion/fixed_point.h. The
  * end, start + linear + square + cube, is exact. */
@@ -25,8 +27,11 @@ struct piece {
   int64_t end;      /* when the next one follows: `time`; below it: cut short, 0: passed over */
   uint64_t inverse; /* piece_set_time makes both */
   uint32_t shift;
+  uint8_t from, to; /* sixteenths of the cubics; `from` is above `to` when they are gone through backwards */
+  int32_t warp; /* after the part p of its time the part u = p + warp p (1 - p) of its way: the rate changes evenly */
   uint32_t motors; /* slots of the ring that have a cubic in it; the others stand */
   uint32_t move;   /* which move of its coordinate system it belongs to, counted by who plans */
+  bool continues;  /* of a sequence of such moves that is one for the servo task: not its first piece */
 };
 
 struct piece_ring {
@@ -65,6 +70,8 @@ void piece_ring_clear(struct piece_ring* ring); /* servo task held off */
 /* Servo task. On by `increment` of trajectory time, into the next pieces if need be; false: the ring has run empty, and
  * what is beyond the end is lost. */
 bool piece_ring_advance(struct piece_ring* ring, int64_t increment);
+
+int64_t piece_end(const struct piece* piece, const struct cubic* cubic); /* where it ends */
 
 int64_t cubic_at(const struct cubic* cubic, uint32_t fraction);
 int64_t cubic_end(const struct cubic* cubic);

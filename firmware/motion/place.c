@@ -6,6 +6,7 @@
 #include "firmware/motion/place_motors.h"
 #include "firmware/motion/plan_cubic.h"
 #include "firmware/motion/plan_own.h"
+#include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 
 static int64_t corner(const struct move* m) { return m->blend_in / 2 + m->time; }
@@ -100,6 +101,7 @@ static bool begins_alone(uint32_t cs) {
 
 bool move_place(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
+  if (segment_is_under_way(cs)) return false;
   if (!s->next_valid || s->placed || s->end_block || corner_waits(cs) || !begins_alone(cs)) return false;
   if (is_late(s)) plan_spline_anew(cs);
   if (s->motors != 0) {

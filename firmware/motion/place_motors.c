@@ -286,7 +286,7 @@ static bool place_cubic(struct move* next, uint32_t number) {
 
 bool move_place_motors(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  const uint32_t index = s->executing ^ 1u, number = s->started + 1u;
+  const uint32_t index = s->executing ^ 1u, number = s->planned;
   struct move* next = &s->moves[index];
   if (piece_ring_room(&s->ring) < MOST_PIECES) return false;
   making.s = s;

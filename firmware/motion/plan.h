@@ -3,10 +3,11 @@
 #ifndef FIRMWARE_MOTION_PLAN_H
 #define FIRMWARE_MOTION_PLAN_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
-/* To the pending axis targets, as the mode has it; false: it would need a feedrate, and that is not above 0. */
-bool plan_line(uint32_t cs);
+#include "firmware/motion/coordinate_system.h"
+
+/* To the pending axis targets, as the mode has it. NONE, or why it cannot be: then nothing of it is planned. */
+enum run_time_error plan_line(uint32_t cs);
 
 #endif

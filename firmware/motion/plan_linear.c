@@ -8,9 +8,8 @@
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
-/* Tm in ms of a feed-specified move of the axes in `moving`. False: it goes by a feedrate, and that is none. */
-static bool feed_time(uint32_t cs, const struct coordinate_system* s, const double delta[AXIS_COUNT], uint32_t moving,
-                      double* time) {
+bool plan_feed_time(uint32_t cs, const double delta[AXIS_COUNT], uint32_t moving, double fastest, double* time) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
   double unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT), feed = cs_real(cs, ISX89_FEEDRATE);
   double limit = cs_real(cs, ISX98_FEEDRATE_LIMIT), alternate = 0.0;
   double square = 0.0, other = 0.0, single = 0.0;
@@ -20,6 +19,7 @@ static bool feed_time(uint32_t cs, const struct coordinate_system* s, const doub
   *time = 0.0;
   if (moving == 0) return true;
   if (limit > 0.0 && feed > limit) feed = limit;
+  if (fastest > 0.0 && feed > fastest) feed = fastest;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     if (((moving >> axis) & 1u) == 0) continue;
     slice_pause();
@@ -121,7 +121,7 @@ bool plan_linear(uint32_t cs) {
   const uint32_t moving = plan_targets(cs, m, target);
   if (s->time_mode)
     time = cs_real(cs, ISX89_FEEDRATE);
-  else if (!feed_time(cs, s, m->delta, moving, &time))
+  else if (!plan_feed_time(cs, m->delta, moving, 0.0, &time))
     return false;
   const struct limits limits = motor_limits(cs, target);
   set_times(cs, m, time, &limits);

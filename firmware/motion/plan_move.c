@@ -47,7 +47,7 @@ void plan_finish(uint32_t cs, struct move* m, bool blends, const double target[A
     m->start[axis] = s->position[axis];
     s->position[axis] = target[axis];
   }
-  s->pending_axes = s->pending_triggers = s->pending_velocities = 0;
+  s->pending_axes = s->pending_triggers = s->pending_velocities = s->pending_vectors = 0;
   s->may_join = blends;
   s->was_matched = false;
   s->planned++;

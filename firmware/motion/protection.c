@@ -14,12 +14,13 @@
 #include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
-enum { PART_OF_COUNT = 16, LIMIT_KILLS = 1 << 8, OTHERS_SHIFT = 21 }; /* bits of Ixx24 */
+enum { PART_OF_COUNT = 16, LIMIT_KILLS = 1 << 8, DESIRED_LIMITS = 1 << 15, OTHERS_SHIFT = 21 }; /* bits of Ixx24 */
 enum others { OTHERS_ALL, OTHERS_OF_SYSTEM, OTHERS_NONE };
 
 static struct guard {
   int64_t fatal_error, warning_error, in_position; /* position; V. INT64_MAX: not looked at */
-  int64_t positive_limit, negative_limit;          /* of software, the same */
+  int64_t positive_limit, negative_limit;          /* of software, the same; */
+  int64_t positive_desired, negative_desired;      /* of the desired position */
   uint32_t scans_wanted;                           /* Ixx88 + 1 */
   uint32_t scans;                                  /* B: in position one after the other */
   bool integral_trips, limit_kills;
@@ -29,12 +30,13 @@ static struct guard {
 volatile uint32_t protection_watched;
 
 static volatile bool foreground; /* I13, as the last pass has seen it */
+static volatile bool stands;     /* B */
 static uint32_t shown;           /* B: signals that are on */
 
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
-  foreground = false;
+  foreground = stands = false;
   protection_watched = 0;
   shown = 0;
 }
@@ -55,6 +57,9 @@ static int64_t limit_of(uint32_t motor, uint32_t side, int64_t off) {
   return counts == 0.0 ? off : motor_position_of(motor - 1u, counts);
 }
 
+/* Nearer by Ixx41 than a limit that is on. */
+static int64_t nearer(int64_t limit, int64_t off, int64_t by) { return limit == off ? off : limit - by; }
+
 void protection_motor_changed(uint32_t motor) {
   struct guard* g = &guards[motor - 1u];
   const uint32_t mode = (uint32_t)variable(motor, IXX24_FLAG_MODE);
@@ -63,6 +68,10 @@ void protection_motor_changed(uint32_t motor) {
   g->in_position = band_of(motor, IXX28_IN_POSITION_BAND);
   g->positive_limit = limit_of(motor, 0, INT64_MAX);
   g->negative_limit = limit_of(motor, 1, INT64_MIN);
+  const bool desired = (mode & DESIRED_LIMITS) != 0u;
+  const int64_t band = desired ? motor_position_of(motor - 1u, variable(motor, IXX41_DESIRED_POSITION_LIMIT)) : 0;
+  g->positive_desired = desired ? nearer(g->positive_limit, INT64_MAX, band) : INT64_MAX;
+  g->negative_desired = desired ? nearer(g->negative_limit, INT64_MIN, -band) : INT64_MIN;
   g->scans_wanted = (uint32_t)variable(motor, IXX88_IN_POSITION_SCANS) + 1u;
   g->integral_trips = variable(motor, IXX63_INTEGRATION_LIMIT) < 0;
   g->limit_kills = (mode & LIMIT_KILLS) != 0u;
@@ -71,11 +80,10 @@ void protection_motor_changed(uint32_t motor) {
   protection_watched |= overload_watched;
 }
 
-/* What there is to see ----------------------------------------------------------------------------------------------
- */
+/* What there is to see --------------------------------------------------------------------------------------------- */
 
 struct view { /* of one moment */
-  int64_t actual, error;
+  int64_t actual, commanded;
   int32_t velocity, desired_step, open_output;
   enum motor_loop loop;
 };
@@ -83,7 +91,7 @@ struct view { /* of one moment */
 static struct view look(uint32_t motor) {
   const struct motor* m = &motors[motor];
   const uint32_t state = hal_mask_servo();
-  const struct view view = {m->actual, m->commanded - m->actual, m->velocity, m->desired_step, m->open_output, m->loop};
+  const struct view view = {m->actual, m->commanded, m->velocity, m->desired_step, m->open_output, m->loop};
   hal_unmask(state);
   return view;
 }
@@ -106,25 +114,47 @@ static bool is_of_system(uint32_t motor, uint32_t cs) {
   return axis_definitions[motor].assigned && axis_definitions[motor].cs == cs;
 }
 
-/* The motor is killed and others as Ixx24 says; the program of its coordinate system is aborted. */
+/* A program whose motor is dead does not run on. */
+static void kill(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  const bool was_on = motors[motor].loop != LOOP_KILLED;
+  motor_kill(motor);
+  if (was_on && d->assigned) protection_hooks.abort(d->cs);
+}
+
+/* The motor is killed and others as Ixx24 says. All enables fall before programs are looked for. */
 static void trip(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
   const enum others others = guards[motor].others;
+  uint32_t systems = d->assigned ? 1u << d->cs : 0u;
   motor_kill(motor);
-  for (uint32_t other = 0; other < MOTORS; ++other)
-    if (others == OTHERS_ALL || (others == OTHERS_OF_SYSTEM && d->assigned && is_of_system(other, d->cs)))
-      motor_kill(other);
-  if (d->assigned) protection_hooks.abort(d->cs);
+  for (uint32_t other = 0; other < MOTORS; ++other) {
+    if (others != OTHERS_ALL && !(others == OTHERS_OF_SYSTEM && d->assigned && is_of_system(other, d->cs))) continue;
+    if (motors[other].loop != LOOP_KILLED && axis_definitions[other].assigned)
+      systems |= 1u << axis_definitions[other].cs;
+    motor_kill(other);
+  }
+  for (uint32_t cs = 0; systems != 0u; ++cs, systems >>= 1)
+    if ((systems & 1u) != 0u) protection_hooks.abort(cs);
+}
+
+/* A program moves it: on the path, or by itself (RAPID, HOME). */
+static bool is_of_program(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  if (!d->assigned) return false;
+  const struct coordinate_system* s = &coordinate_systems[d->cs];
+  const struct move* m = &s->moves[s->executing];
+  return motors[motor].path == PATH_SYSTEM || (s->active && m->kind == MOVE_OWN && (m->own >> motor & 1u) != 0u);
 }
 
 /* A motor that a program moves takes its coordinate system with it. An open loop is closed. */
 static void stop(uint32_t motor) {
-  if (motors[motor].path == PATH_SYSTEM && axis_definitions[motor].assigned)
+  if (is_of_program(motor))
     protection_hooks.abort(axis_definitions[motor].cs);
   else if (motor_close(motor))
     (void)jog_stop_at(motor, i_variable_read(I_MOTOR_BLOCK * (motor + 1u) + (uint32_t)IXX15_ABORT_DECELERATION));
   else
-    motor_kill(motor);
+    kill(motor);
 }
 
 /* What it moves, or would move with the loop open. */
@@ -133,32 +163,52 @@ static bool goes(const struct view* view, int direction) {
   return direction > 0 ? by > 0 : by < 0;
 }
 
+/* Overtravel input and software limit. */
 static void check_limit(uint32_t motor, const struct view* view, int direction) {
-  struct guard* g = &guards[motor];
+  const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
   const bool up = direction > 0;
   const bool input = up ? motor_flags_positive_limit(motor) : motor_flags_negative_limit(motor);
   const bool has_software = up ? g->positive_limit != INT64_MAX : g->negative_limit != INT64_MIN;
   const bool beyond =
       !jog_is_homing(motor) && (up ? view->actual >= g->positive_limit : view->actual <= g->negative_limit);
+  const bool limited = input || beyond, kills = input && g->limit_kills && has_software && !beyond;
+  if (limited && goes(view, direction) && (kills || !motors[motor].status.aborting)) {
+    if (kills)
+      kill(motor);
+    else
+      stop(motor);
+    found->on_limit = true; /* an open loop that was closed has forgotten what was found */
+  }
   if (up)
-    found->positive_limit = input || beyond;
+    found->positive_limit = limited;
   else
-    found->negative_limit = input || beyond;
-  if (!(input || beyond) || !goes(view, direction) || motors[motor].status.aborting) return;
-  found->on_limit = true;
-  if (input && g->limit_kills && has_software && !beyond)
-    motor_kill(motor);
+    found->negative_limit = limited;
+}
+
+/* Of the desired position, Ixx24 bit 15. */
+static void check_desired(uint32_t motor, const struct view* view, int direction) {
+  const struct guard* g = &guards[motor];
+  struct motor_findings* found = &motors[motor].found;
+  const bool beyond = !jog_is_homing(motor) &&
+                      (direction > 0 ? view->commanded > g->positive_desired : view->commanded < g->negative_desired);
+  if (direction > 0)
+    found->positive_desired = beyond;
   else
-    stop(motor);
+    found->negative_desired = beyond;
+  if (!beyond || !goes(view, direction) || motors[motor].status.aborting) return;
+  found->on_desired_limit = true;
+  stop(motor);
 }
 
 static void check_limits(uint32_t motor, const struct view* view) {
   struct motor_findings* found = &motors[motor].found;
-  if (found->on_limit && view->desired_step != 0 && !motors[motor].status.aborting)
-    found->on_limit = false; /* it goes away */
-  check_limit(motor, view, 1);
-  check_limit(motor, view, -1);
+  if (view->desired_step != 0 && !motors[motor].status.aborting)
+    found->on_limit = found->on_desired_limit = false; /* it goes away */
+  for (int direction = -1; direction <= 1; direction += 2) {
+    if (view->loop == LOOP_CLOSED) check_desired(motor, view, direction);
+    check_limit(motor, view, direction);
+  }
 }
 
 /* True: the loop is not closed any more. */
@@ -174,7 +224,7 @@ static bool check_fault(uint32_t motor) {
 static bool check_error(uint32_t motor, const struct view* view) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
-  const int64_t error = magnitude(view->error);
+  const int64_t error = magnitude(view->commanded - view->actual);
   const bool integral = g->integral_trips && position_loop_is_limited(motor);
   found->warning_error = error > g->warning_error;
   if (error <= g->fatal_error && !integral) return false;
@@ -186,7 +236,7 @@ static bool check_error(uint32_t motor, const struct view* view) {
 
 static void check_in_position(uint32_t motor, const struct view* view) {
   struct guard* g = &guards[motor];
-  if (!is_in_position(motor, view->error, view->desired_step))
+  if (!is_in_position(motor, view->commanded - view->actual, view->desired_step))
     g->scans = 0;
   else if (g->scans < g->scans_wanted)
     g->scans++;
@@ -199,49 +249,56 @@ static void not_closed(uint32_t motor) {
 }
 
 static void check(uint32_t motor) {
+  if (motors[motor].loop == LOOP_KILLED) return not_closed(motor); /* the usual way of motors that nobody uses */
   const struct view view = look(motor);
-  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) motor_kill(motor); /* no clock: nothing is controlled */
-  if (view.loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
+  if (motors[motor].loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
     return not_closed(motor);
   check_in_position(motor, &view);
 }
 
-/* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
-static bool any(uint32_t cs, bool fatal) {
-  for (uint32_t left = motors_active; left != 0u; left &= left - 1u) {
-    const uint32_t motor = (uint32_t)__builtin_ctz(left);
+/* What a coordinate system's motors have in common. */
+struct findings {
+  bool in_position, fatal, warning; /* of all, of one, of one */
+};
+
+static struct findings findings_of(uint32_t cs) {
+  const uint32_t of = axis_motors[cs];
+  struct findings all = {.in_position = of != 0u};
+  for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
+    if ((left & 1u) == 0u) continue;
     const struct motor_findings* found = &motors[motor].found;
-    if ((fatal ? found->fatal_error : found->warning_error) && is_of_system(motor, cs)) return true;
+    all.in_position &= found->in_position;
+    if ((motors_active >> motor & 1u) == 0u) continue;
+    all.fatal |= found->fatal_error;
+    all.warning |= found->warning_error;
   }
-  return false;
+  return all;
 }
 
-bool protection_all_in_position(uint32_t cs) {
-  bool has_motors = false;
-  for (uint32_t motor = 0; motor < MOTORS; ++motor) {
-    if (!is_of_system(motor, cs)) continue;
-    has_motors = true;
-    if (!motors[motor].found.in_position) return false;
-  }
-  return has_motors;
-}
+bool protection_all_in_position(uint32_t cs) { return findings_of(cs).in_position; }
 
+/* The coordinate system that the host or the panel has selected is shown on the lines of the interrupt controller. */
 static void show_signals(void) {
   const uint32_t cs = buffer_request_selected();
   uint32_t on = 0;
   if (cs < COORDINATE_SYSTEMS) {
-    if (protection_all_in_position(cs)) on |= HAL_SIGNAL_IPOS;
-    if (any(cs, true)) on |= HAL_SIGNAL_EROR;
-    if (any(cs, false)) on |= HAL_SIGNAL_F1ER;
+    const struct findings all = findings_of(cs);
+    if (all.in_position) on |= HAL_SIGNAL_IPOS;
+    if (all.fatal) on |= HAL_SIGNAL_EROR;
+    if (all.warning) on |= HAL_SIGNAL_F1ER;
   }
   if (on != shown) hal_host_signals(on, shown & ~on);
   shown = on;
 }
 
+void protection_stand(bool still) { stands = still; }
+
 void protection_pass(void) {
-  foreground = i_integer(I13_FOREGROUND_IN_POSITION) != 0;
+  if (stands) return;
+  foreground = i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0;
   protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)

@@ -4,7 +4,9 @@
 
 #include <stdint.h>
 
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/conversion_table.h"
+#include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
@@ -23,7 +25,8 @@ static void motor_servo(uint32_t motor) {
 
 void servo_update(void) {
   conversion_table_servo();
-  system_path_servo();
+  if (cs_busy != 0) system_path_servo();
   for (uint32_t motor = 0, left = motors_active; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) motor_servo(motor);
+  average_velocity_servo();
 }

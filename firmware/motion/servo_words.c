@@ -2,8 +2,10 @@
 
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/commutation.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/motor_target.h"
 #include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
@@ -26,6 +28,23 @@ static const struct alias {
     {0x0F, HALF_Y, IXX60_SERVO_CYCLE_EXTENSION},
 };
 enum { ALIAS_COUNT = sizeof ALIASES / sizeof ALIASES[0] };
+
+/* Gathering reads words at each servo interrupt: those that are none of these have no use for the list. */
+static bool is_alias(uint32_t offset) {
+  switch (offset) {
+    case 0x09:
+    case 0x0F:
+    case 0x12:
+    case 0x13:
+    case 0x19:
+    case 0x1C:
+    case 0x1F:
+    case 0x2E:
+      return true;
+    default:
+      return false;
+  }
+}
 
 static int shift_of(const struct alias* alias) {
   return alias->variable == IXX69_OUTPUT_LIMIT ? OUTPUT_LIMIT_SHIFT : 0;
@@ -58,7 +77,7 @@ static unsigned read_position(uint32_t motor, uint32_t offset, uint32_t* x, uint
   const int64_t* position = position_of(motor, offset);
   if (position == 0) return 0;
   const uint32_t state = hal_mask_servo();
-  const int64_t value = *position;
+  const int64_t value = *position - (offset == MEMORY_MOTOR_MASTER ? motors[motor].held_back : 0);
   hal_unmask(state);
   return put_long(value, x, y);
 }
@@ -76,19 +95,31 @@ static unsigned read_state(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
       *x = (uint32_t)commutation_current(motor).q & HAL_WORD_MASK;
       *y = (uint32_t)commutation_current(motor).d & HAL_WORD_MASK;
       return BOTH;
+    case MEMORY_MOTOR_TARGET:
+      return put_long(motor_target(motor), x, y);
+    case MEMORY_MOTOR_AVERAGE_VELOCITY:
+      return put_long(average_velocity(motor), x, y);
     default:
       return read_position(motor, offset, x, y);
   }
 }
 
+static unsigned aliases_at(uint32_t offset) {
+  unsigned halves = 0;
+  for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias)
+    if (alias->offset == offset) halves |= alias->half;
+  return halves;
+}
+
+void servo_words_motor_changed(uint32_t motor) {
+  const uint32_t words = MEMORY_MOTOR_WORDS * motor;
+  for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias)
+    *(alias->half == HALF_X ? hal_x(words + alias->offset) : hal_y(words + alias->offset)) =
+        (uint32_t)i_integer(number_of(motor - 1u, alias)) << shift_of(alias) & HAL_WORD_MASK;
+}
+
 unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
-  unsigned made = 0;
-  for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias) {
-    if (alias->offset != offset) continue;
-    *(alias->half == HALF_X ? x : y) = (uint32_t)i_integer(number_of(motor, alias)) << shift_of(alias) & HAL_WORD_MASK;
-    made |= alias->half;
-  }
-  return made | read_state(motor, offset, x, y);
+  return (is_alias(offset) ? aliases_at(offset) : 0u) | read_state(motor, offset, x, y);
 }
 
 static void write_position(int64_t* position, bool x, uint32_t word) {

@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Background, real-time task: the variables of motor 1..32 into their words. */
+void servo_words_motor_changed(uint32_t motor);
+
 /* Motor 0..31, offset in its words. Which halves were made, bit 0 X, bit 1 Y; 0: an ordinary word. */
 unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y);
 /* One that was made: the variable is assigned, a position set, anything else stays. */

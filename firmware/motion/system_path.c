@@ -18,6 +18,7 @@ static void slew_time_base(struct coordinate_system* s) {
     s->increment = target - present > slew ? present + slew : target;
   else if (present > target)
     s->increment = present - target > slew ? present - slew : target;
+  if (s->increment == target && !s->held) s->increment_slew = s->increment_usual; /* a hold's end went at another */
 }
 
 static void go_to(uint32_t motor, int64_t position) {
@@ -32,7 +33,7 @@ static void end_pieces(struct coordinate_system* s, uint32_t first) {
     const struct piece* piece = piece_ring_at(&s->ring, number);
     if (piece->end != piece->time) continue;
     for (uint32_t motor = 0, left = piece->motors; left != 0; motor++, left >>= 1)
-      if ((left & 1u) != 0) go_to(motor, cubic_end(piece_ring_cubic(&s->ring, number, motor)));
+      if ((left & 1u) != 0) go_to(motor, piece_end(piece, piece_ring_cubic(&s->ring, number, motor)));
   }
 }
 
@@ -45,6 +46,10 @@ static void follow(struct coordinate_system* s) {
 /* From rest a move begins with the interrupt: what the one before has left of it is lost. */
 static void begin_move(struct coordinate_system* s, uint32_t first, uint32_t number) {
   const uint32_t move = piece_ring_at(&s->ring, number)->move;
+  if (piece_ring_at(&s->ring, number)->continues) { /* on the way back none starts again */
+    if ((int32_t)(move - s->started) > 0) s->started = move;
+    return;
+  }
   s->executing ^= 1u;
   s->started = move;
   s->next_valid = s->placed = false; /* the real-time task sees room for another move */
@@ -55,6 +60,13 @@ static void begin_move(struct coordinate_system* s, uint32_t first, uint32_t num
   s->elapsed = s->ring.elapsed;
   for (uint32_t i = first; i != number; i++) /* those of it that are over already */
     if (piece_ring_at(&s->ring, i)->move == move) s->elapsed += piece_ring_at(&s->ring, i)->end;
+}
+
+/* The first piece of a sequence that has been passed over within this interrupt. */
+static void begin_passed(struct coordinate_system* s, uint32_t first, uint32_t number) {
+  for (uint32_t i = first; i != number; i++)
+    if (!piece_ring_at(&s->ring, i)->continues && piece_ring_at(&s->ring, i)->move != s->started)
+      begin_move(s, first, i);
 }
 
 static bool goes_alone(const struct move* m) {
@@ -73,6 +85,7 @@ static void advance(struct coordinate_system* s) {
   s->active = piece_ring_advance(&s->ring, increment);
   if (s->ring.executing != first) end_pieces(s, first);
   const uint32_t number = s->active ? s->ring.executing : s->ring.executing - 1u;
+  if (piece_ring_at(&s->ring, number)->continues) begin_passed(s, first, number);
   if (piece_ring_at(&s->ring, number)->move != s->started) begin_move(s, first, number);
   if (s->active) follow(s);
 }

@@ -12,8 +12,11 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog_plan.h"
+#include "firmware/motion/jog_state.h"
 #include "firmware/motion/place.h"
+#include "firmware/motion/path.h"
 #include "firmware/motion/position.h"
+#include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/motion_program.h"
@@ -84,6 +87,7 @@ static bool is_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (s->next_valid || (s->active && waits_for(s->moves[s->executing].kind))) return true;
+  if (path_is_full(cs) || (paths[cs].count != 0 && !segment_is_under_way(cs))) return true;
   if (p->interrupt != cs_interrupts) {
     p->interrupt = cs_interrupts;
     p->lines = 0;
@@ -110,11 +114,13 @@ static bool calculate_word(uint32_t cs) {
     return false;
   }
   if (executed == EXECUTED_LINE) line_ends(cs);
+  if (executed == EXECUTED_LINE || executed == EXECUTED_END) s->sets_normal = false;
   p->under_way = executed == EXECUTED_WORD;
   if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {
     if (motion_plan_line(cs) == EXECUTED_ERROR) executed = EXECUTED_ERROR;
   } else if (executed == EXECUTED_LINE) {
     s->sets_position = false; /* PSET without axes */
+    s->pending_vectors = 0;
   } else if (executed == EXECUTED_END && !calls_return(p)) {
     end(cs);
   }
@@ -134,10 +140,11 @@ static bool settle(uint32_t cs) {
   double position[AXIS_COUNT];
   if (system_motors_leave(cs)) return false;
   cs_present_position(s, position);
+  segment_start_of(cs, position);
   motion_program_drop_line(&motion_programs[cs]);
   synchronous_forget(cs);
-  s->pending_axes = s->pending_triggers = s->pending_velocities = 0;
-  s->may_join = s->sets_position = false;
+  s->pending_axes = s->pending_triggers = s->pending_velocities = s->pending_vectors = 0;
+  s->may_join = s->sets_position = s->sets_normal = false;
   s->corner = CORNER_NONE;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     s->position[axis] = position[axis];
@@ -145,6 +152,7 @@ static bool settle(uint32_t cs) {
   }
   const uint32_t state = hal_mask_servo();
   piece_ring_clear(&s->ring);
+  segment_forget(cs);
   s->active = s->next_valid = s->placed = false;
   s->planned = s->started;
   s->settling = false;
@@ -191,20 +199,21 @@ static bool turn(uint32_t cs) {
   }
   if (s->failure != RUN_TIME_NONE) fail(cs, s->failure);
   if (runs_on(cs)) return true;
-  if (move_place(cs)) return true;
+  if (move_place(cs) || segment_work(cs, false)) return true;
   if ((s->quit || s->end_block) && !motion_programs[cs].under_way) {
+    if (segment_is_busy(cs)) return segment_work(cs, true);
     if (s->active || (s->next_valid && !s->end_block)) return false; /* what is calculated is still to be executed */
     s->running = s->quit = s->stepping = false; /* end_block keeps a calculated move from starting until R */
     return false;
   }
-  return !is_ahead(cs) && calculate_word(cs);
+  return (!is_ahead(cs) && calculate_word(cs)) || segment_work(cs, true);
 }
 
 static uint32_t systems(void) {
-  uint32_t mask = 0;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
-    if (coordinate_systems[cs].running || coordinate_systems[cs].settling) mask |= 1u << cs;
-  return mask;
+  for (uint32_t cs = 0, left = cs_awake; left != 0; cs++, left >>= 1)
+    if ((left & 1u) != 0 && !coordinate_systems[cs].running && !coordinate_systems[cs].settling)
+      cs_awake &= ~(1u << cs);
+  return cs_awake;
 }
 
 static void calculate_round(void) {
@@ -231,7 +240,10 @@ static void calculate_round(void) {
 
 void calculate_initialize(void) {
   calculated = COORDINATE_SYSTEMS;
-  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) motion_program_point(cs, true, 0, 0);
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {
+    motion_program_point(cs, true, 0, 0);
+    segment_forget(cs);
+  }
   synchronous_initialize();
   slice_initialize(calculate_round);
 }
@@ -245,5 +257,9 @@ void calculate_forget(uint32_t cs) {
 void calculate_programs(void) {
   cs_interrupts++;
   if (stands(calculated)) return;
-  slice_run(tasks_real_time_slice());
+  if (!slice_is_under_way() && systems() == 0 && jogs_asked == 0 && !synchronous_waits()) {
+    slice_skip();
+    return;
+  }
+  slice_run(tasks_real_time_left()); /* what checks of motors and the like have left */
 }

@@ -7,6 +7,8 @@
 #include "firmware/motion/plan.h"
 #include "firmware/motion/plan_linear.h"
 #include "firmware/motion/plan_own.h"
+#include "firmware/motion/plan_path.h"
+#include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/run/calls.h"
 #include "firmware/run/shared_statements.h"
@@ -24,6 +26,7 @@ static void set_axis(uint32_t cs, uint32_t axis, double value) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (s->pending_axes == 0) {
+    s->by_segments = plan_by_segments(cs);
     p->axes = p->x.at.statement;
     p->axes_loops = p->x.at.loop_count;
   }
@@ -54,10 +57,11 @@ enum executed motion_plan_line(uint32_t cs) {
     return EXECUTED_WORD;
   }
   motion_program_trace(cs, &coordinate_systems[cs].line);
-  if (plan_line(cs)) return EXECUTED_WORD;
+  const enum run_time_error error = plan_line(cs);
+  if (error == RUN_TIME_NONE) return EXECUTED_WORD;
   p->x.at.statement = p->axes; /* a fixed program stays there: all of the move is met again, in the loops of its line */
   p->x.at.loop_count = p->axes_loops;
-  return executor_fail(&p->x, RUN_TIME_FEEDRATE);
+  return executor_fail(&p->x, error);
 }
 
 static bool is_rate(const struct instruction* in) { return in->operation == OP_RATE || in->operation == OP_RATE_POP; }
@@ -95,7 +99,10 @@ static enum executed rate(uint32_t cs, const struct instruction* in) {
     return executor_pass(&p->x);
   }
   motion_program_trace(cs, &coordinate_systems[cs].line);
-  plan_wait(cs, (enum rate)in->number, in->value);
+  if (in->number == RATE_DELAY && plan_by_segments(cs))
+    plan_path_delay(cs, in->value);
+  else
+    plan_wait(cs, (enum rate)in->number, in->value);
   return executor_pass(&p->x);
 }
 
@@ -130,13 +137,34 @@ static bool is_among(const struct instruction* in, uint32_t first, uint32_t coun
   return (in->operation == OP_STATEMENT || in->operation == OP_STATEMENT_POP) && in->number - first < count;
 }
 
+/* I, J, K of NORMAL, which are 0 if they are not given; of a CIRCLE line, or its R. */
+static enum executed arc_vector(uint32_t cs, uint32_t which, double value) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct motion_program* p = &motion_programs[cs];
+  if (s->sets_normal && which < ARC_VECTORS - 1) {
+    s->normal[which] = value;
+    return executor_pass(&p->x);
+  }
+  if (s->mode != MODE_CIRCLE1 && s->mode != MODE_CIRCLE2) return EXECUTED_ERROR;
+  s->pending_vector[which] = value;
+  s->pending_vectors |= 1u << which;
+  return executor_pass(&p->x);
+}
+
+/* STATEMENT: something else. */
+static enum executed begin_normal(uint32_t cs, const struct instruction* in) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (!is_key(in, KEY_NORMAL)) return EXECUTED_STATEMENT;
+  s->normal[0] = s->normal[1] = s->normal[2] = 0.0;
+  s->sets_normal = true;
+  return executor_pass(&motion_programs[cs].x);
+}
+
 /* Behind an axis, by the mode that knows it. STATEMENT: it is something else. */
 static enum executed behind_axis(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
-  if (is_among(in, KEY_ARC_VECTOR, 4)) {
-    return s->mode == MODE_CIRCLE1 || s->mode == MODE_CIRCLE2 ? executor_pass(&p->x) : EXECUTED_ERROR;
-  }
+  if (is_among(in, KEY_ARC_VECTOR, ARC_VECTORS)) return arc_vector(cs, in->number - KEY_ARC_VECTOR, in->value);
   if (is_among(in, KEY_TRIGGER, AXIS_COUNT)) {
     if (s->mode != MODE_RAPID || s->motors == 0) return EXECUTED_ERROR;
     s->pending_trigger[in->number - KEY_TRIGGER] = in->value;
@@ -152,13 +180,11 @@ static enum executed behind_axis(uint32_t cs, const struct instruction* in) {
   return EXECUTED_STATEMENT;
 }
 
-/* CIRCLE1 to PVT. Arcs need segments, which are not built; without them they are straight. STATEMENT: something else.
- */
+/* CIRCLE1 to PVT. STATEMENT: something else. */
 static enum executed other_mode(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t mode = in->number - KEY_MODE;
   if (!is_among(in, KEY_MODE + MODE_CIRCLE1, MODE_PVT - MODE_CIRCLE1 + 1)) return EXECUTED_STATEMENT;
-  if (mode <= MODE_CIRCLE2 && i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0) return EXECUTED_ERROR;
   s->mode = (enum mode)mode;
   if (mode == MODE_PVT) set_rate(cs, i_integer(I42_PVT_TIME_SOURCE) != 0 ? RATE_TA : RATE_TM, in->value);
   return executor_pass(&motion_programs[cs].x);
@@ -185,7 +211,7 @@ static enum executed at_rest(uint32_t cs, const struct instruction* in) {
   const bool sets = is_key(in, KEY_PSET);
   if (!sets && !is_list(in, KEY_HOMEZ)) return EXECUTED_STATEMENT;
   s->may_join = false;
-  if (s->active || s->next_valid) return EXECUTED_LATER;
+  if (s->active || s->next_valid || segment_is_busy(cs)) return EXECUTED_LATER;
   if (sets) {
     s->sets_position = true;
     return executor_pass(&motion_programs[cs].x);
@@ -202,6 +228,17 @@ static enum executed home(uint32_t cs, const struct instruction* in) {
   motion_program_trace(cs, &coordinate_systems[cs].line);
   plan_home(cs, in->number);
   return executor_pass(&motion_programs[cs].x);
+}
+
+/* What is no part of a path made of segments needs the place of the next move. */
+static bool waits_for_place(uint32_t cs, const struct instruction* in) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool axis = in->operation == OP_AXIS || in->operation == OP_AXIS_POP;
+  const bool moves = axis && s->pending_axes == 0 && !s->sets_position && !plan_by_segments(cs);
+  const bool waits = is_rate(in) && (in->number == RATE_DWELL || (in->number == RATE_DELAY && !plan_by_segments(cs)));
+  const bool mode = in->operation == OP_MODE || is_among(in, KEY_MODE, MODE_PVT + 1);
+  if (!moves && !waits && !is_list(in, KEY_HOME) && !(mode && s->pending_axes != 0)) return false;
+  return !segment_gives_way(cs);
 }
 
 static bool is_mode(struct coordinate_system* s, const struct instruction* in) {
@@ -223,9 +260,11 @@ enum executed motion_statement(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (s->pending_axes != 0 && comes_after_axes(in)) return motion_plan_line(cs);
+  if (waits_for_place(cs, in)) return EXECUTED_LATER;
   if (is_mode(s, in) || is_stop(cs, in)) return executor_pass(&p->x);
   enum executed executed = behind_axis(cs, in);
   if (executed == EXECUTED_STATEMENT) executed = other_mode(cs, in);
+  if (executed == EXECUTED_STATEMENT) executed = begin_normal(cs, in);
   if (executed == EXECUTED_STATEMENT) executed = at_rest(cs, in);
   if (executed != EXECUTED_STATEMENT) return executed;
   if (is_list(in, KEY_HOME)) return home(cs, in);
@@ -233,6 +272,7 @@ enum executed motion_statement(uint32_t cs, const struct instruction* in) {
     case OP_AXIS:
     case OP_AXIS_POP:
       if (in->number >= AXIS_COUNT) return EXECUTED_ERROR;
+      s->sets_normal = false;
       set_axis(cs, in->number, in->value);
       return executor_pass(&p->x);
     case OP_RATE:

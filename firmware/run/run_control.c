@@ -10,7 +10,9 @@
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/path.h"
 #include "firmware/motion/place.h"
+#include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
@@ -25,6 +27,7 @@
  */
 static void drop_moves(uint32_t cs) {
   coordinate_systems[cs].settling = true;
+  cs_awake |= 1u << cs;
   calculate_forget(cs);
 }
 
@@ -54,7 +57,10 @@ error_t run_point(uint32_t cs, double program) {
   if (s->running) return ERR_PROGRAM_RUNNING;
   uint32_t number, label, offset = 0;
   if (!calls_split(program, &number, &label)) return ERR_DATA;
-  if (s->next_valid) s->settling = true;
+  if (s->next_valid || paths[cs].count != 0) {
+    s->settling = true;
+    cs_awake |= 1u << cs;
+  }
   s->end_block = s->must_return = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
@@ -85,7 +91,7 @@ static error_t check_motors(uint32_t cs) {
   if (inactive) return ERR_NOT_ACTIVATED;
   if (open) return ERR_OPEN_LOOP;
   if (limits) return ERR_BOTH_LIMITS;
-  if (s->running && !s->held) return ERR_NONE; /* what moves is the program's */
+  if (s->running && !s->held && !segment_stands(cs)) return ERR_NONE; /* what moves is the program's */
   if (moving || (s->settling && s->motors != 0)) return ERR_MOVE_IN_PROGRESS;
   return s->must_return && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
 }
@@ -108,7 +114,8 @@ error_t run_start(uint32_t cs, bool single_step) {
   error_t error = check_motors(cs);
   if (error == ERR_NONE) error = check_program(cs);
   if (error != ERR_NONE) return error;
-  if (s->running && s->held) system_motors_take(cs);
+  if (s->running && (s->held || segment_stands(cs))) system_motors_take(cs);
+  if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
   s->must_return = false;
   release_hold(cs);
   if (s->running && single_step) { /* a step request ends continuous running behind the calculated moves */
@@ -127,10 +134,12 @@ error_t run_start(uint32_t cs, bool single_step) {
   }
   s->end_block = false;
   s->quit = s->ended; /* it stands at its top again, for another start */
+  segment_go_on(cs);
   s->stepping = single_step;
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;
   s->running = true;
+  cs_awake |= 1u << cs;
   cs_busy |= 1u << cs;
   hal_unmask(state);
   if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
@@ -139,7 +148,9 @@ error_t run_start(uint32_t cs, bool single_step) {
 
 void run_quit(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  if (s->running) s->quit = s->must_return = true;
+  if (!s->running) return;
+  segment_stop(cs);
+  s->quit = s->must_return = true;
 }
 
 void run_abort(uint32_t cs) {
@@ -162,6 +173,62 @@ void run_hold(uint32_t cs) {
   hal_unmask(state);
 }
 
+void run_stop_on_path(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (!s->running || s->held || !segment_looks(cs)) {
+    run_hold(cs);
+    return;
+  }
+  segment_order(cs, LOOKAHEAD_STOP);
+  s->must_return = true;
+}
+
+/* In the direction of an order: motors are back on the path. */
+static error_t go(uint32_t cs, enum lookahead_order order) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const error_t error = check_motors(cs);
+  if (error != ERR_NONE) return error;
+  if (s->held || segment_stands(cs)) system_motors_take(cs);
+  s->must_return = false;
+  release_hold(cs);
+  segment_order(cs, order);
+  return ERR_NONE;
+}
+
+error_t run_forward(uint32_t cs) {
+  if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_FORWARD);
+  return run_start(cs, false);
+}
+
+error_t run_back(uint32_t cs) {
+  if (coordinate_systems[cs].running && segment_looks(cs)) return go(cs, LOOKAHEAD_BACKWARD);
+  run_hold(cs);
+  return ERR_NONE;
+}
+
+/* 4 `\\`, 6 `>`, 7 `<`, 14 and 15 a segment forwards and backwards. */
+void run_by_state(uint32_t cs) {
+  switch (i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE))) {
+    case 4:
+      run_stop_on_path(cs);
+      break;
+    case 6:
+      (void)run_forward(cs);
+      break;
+    case 7:
+      (void)run_back(cs);
+      break;
+    case 14:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_FORWARD);
+      break;
+    case 15:
+      if (segment_looks(cs)) (void)go(cs, LOOKAHEAD_ONE_BACKWARD);
+      break;
+    default:
+      break;
+  }
+}
+
 /* With motors and without segmentation it is Q (motion:5.6). */
 void run_end_block(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -182,7 +249,10 @@ void run_executing(uint32_t cs, struct program_trace* trace) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t state = hal_mask_servo();
   const bool active = s->active;
-  if (active) *trace = s->moves[s->executing].line;
+  if (active && s->moves[s->executing].kind == MOVE_SEGMENTS)
+    segment_line(cs, trace);
+  else if (active)
+    *trace = s->moves[s->executing].line;
   hal_unmask(state);
   if (!active) motion_program_next(cs, trace);
 }

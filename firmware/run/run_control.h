@@ -14,6 +14,10 @@ error_t run_start(uint32_t cs, bool single_step); /* R, S: ERR015 no valid progr
 void run_quit(uint32_t cs);                       /* Q: what is calculated is finished, then the program stops */
 void run_abort(uint32_t cs);                      /* A: calculated moves are lost, unread lines are kept */
 void run_hold(uint32_t cs);                       /* H: the time base goes to 0 at Isx95 */
+void run_stop_on_path(uint32_t cs);               /* `\`: as fast as the limits allow; outside of lookahead as H */
+void run_by_state(uint32_t cs);                   /* an order by Isx21; any task that writes variables */
+error_t run_forward(uint32_t cs);                 /* `>`: outside of lookahead as R */
+error_t run_back(uint32_t cs);                    /* `<`: outside of lookahead as H */
 void run_end_block(uint32_t cs);                  /* `/`: stop at the end of the executing move */
 void run_calculating(uint32_t cs, struct program_trace* trace); /* PC: the line to be calculated next */
 void run_executing(uint32_t cs, struct program_trace* trace);   /* PE: that of the move that executes, else as PC */

@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/path.h"
 #include "firmware/variables/m_variables.h"
 
 struct assignment {
@@ -71,13 +72,15 @@ static void assign(const struct assignment* a) {
 static bool is_due(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (queues[cs].count == 0) return false;
-  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 || (!s->running && !s->active && !s->next_valid);
+  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 || (!s->running && !s->active && !s->next_valid && paths[cs].count == 0);
 }
 
 static void remove_first(uint32_t cs) {
   queues[cs].first = (queues[cs].first + 1u) % SYNCHRONOUS_QUEUE;
   if (--queues[cs].count == 0) filled &= ~(1u << cs);
 }
+
+bool synchronous_waits(void) { return filled != 0; }
 
 void synchronous_assign(void) {
   for (uint32_t cs = 0, left = filled; left != 0; cs++, left >>= 1)

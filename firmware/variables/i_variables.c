@@ -16,7 +16,7 @@
 enum { CONFIGURATION_COUNT = I4909_CPU_IDENTIFICATION + 1 - I_BASE_SYSTEM }; /* the others are 0 */
 
 static double value_of[VARIABLE_COUNT];
-static int32_t integer_of[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
+int32_t i_integers[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
 static uint32_t timer_start[COORDINATE_SYSTEMS][ISX11_TIMERS_COUNT]; /* servo count when Isx11, Isx12 were written */
 
 /* Reading ---------------------------------------------------------------------------------------------------------- */
@@ -35,12 +35,12 @@ static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
   const uint32_t* began = timer_began(number);
   const uint32_t state = hal_mask_real_time();
   const uint32_t elapsed = tasks_servo_count() - *began;
-  const int64_t left = (int64_t)integer_of[number] - (int64_t)elapsed;
+  const int64_t left = (int64_t)i_integers[number] - (int64_t)elapsed;
   hal_unmask(state);
   return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
 }
 
-int32_t i_integer(uint32_t number) { return is_timer(number) ? timer_read(number) : integer_of[number]; }
+int32_t i_integer(uint32_t number) { return is_timer(number) ? timer_read(number) : i_integers[number]; }
 
 double i_variable_read(uint32_t number) {
   if (number >= VARIABLE_COUNT) return 0.0;
@@ -63,7 +63,7 @@ static void store(uint32_t number, double value) {
   if (value < 2147483647.0) whole = value > -2147483648.0 ? (int32_t)value : INT32_MIN;
   const uint32_t state = hal_mask_real_time();
   value_of[number] = value;
-  integer_of[number] = whole;
+  i_integers[number] = whole;
   hal_unmask(state);
 }
 
@@ -85,7 +85,7 @@ void i_variable_write(uint32_t number, double value) {
   const struct i_place place = i_table_place(number);
   const struct i_entry* entry = i_table_entry(place);
   if (entry->kind == I_KIND_R || i_of_absent_ic(place)) return;
-  if ((i_table_lock(place.group) & (uint32_t)integer_of[I41_VARIABLE_LOCK]) != 0u) return;
+  if ((i_table_lock(place.group) & (uint32_t)i_integers[I41_VARIABLE_LOCK]) != 0u) return;
   double taken = i_table_value(entry, value);
   if (is_refused(place, entry, entry->kind == I_KIND_F ? 0u : (uint32_t)(int32_t)taken)) return;
   if (entry->field == I_FIELD_IC_CLOCK_DIRECTION)
@@ -95,10 +95,12 @@ void i_variable_write(uint32_t number, double value) {
     i_timer_write(number, (int32_t)taken);
   else
     store(number, taken);
-  i_hardware_write(place, entry, (uint32_t)integer_of[number]);
+  i_hardware_write(place, entry, (uint32_t)i_integers[number]);
   hal_unmask(state);
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
 }
+
+void i_variable_set_lookahead_state(uint32_t cs, uint32_t state) { store(i_cs(cs, ISX21_LOOKAHEAD_STATE), state); }
 
 void i_variable_set_open_memory_end(uint32_t address) { store(I4908_OPEN_MEMORY_END, address); }
 
@@ -107,7 +109,7 @@ void i_variable_set_open_memory_end(uint32_t address) { store(I4908_OPEN_MEMORY_
 double i_variable_default(uint32_t number) {
   const struct i_place place = i_table_place(number);
   const uint32_t source =
-      number == I19_CLOCK_SOURCE ? i_default_clock_source() : (uint32_t)integer_of[I19_CLOCK_SOURCE];
+      number == I19_CLOCK_SOURCE ? i_default_clock_source() : (uint32_t)i_integers[I19_CLOCK_SOURCE];
   return i_default_value(place, i_table_entry(place), source);
 }
 
@@ -126,7 +128,7 @@ static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
   defaults(first, 100, source);
   for (uint32_t block = first + 100u; block < first + 100u * (copies + 1u); block += 100u) {
     __builtin_memcpy(&value_of[block], &value_of[first], 100u * sizeof value_of[0]);
-    __builtin_memcpy(&integer_of[block], &integer_of[first], 100u * sizeof integer_of[0]);
+    __builtin_memcpy(&i_integers[block], &i_integers[first], 100u * sizeof i_integers[0]);
   }
   for (uint32_t offset = 0; offset < 100u; ++offset) {
     const uint32_t field = i_table_entry(i_table_place(first + offset))->field;
@@ -138,7 +140,7 @@ static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
 static void clear_all(void) {
   i_table_initialize();
   __builtin_memset(value_of, 0, sizeof value_of);
-  __builtin_memset(integer_of, 0, sizeof integer_of);
+  __builtin_memset(i_integers, 0, sizeof i_integers);
   i_hardware_initialize();
 }
 
@@ -187,8 +189,8 @@ static const struct i_entry* row_to_restore(uint32_t number) {
 void i_variable_restore_integer(uint32_t number, int32_t value) {
   const struct i_entry* entry = row_to_restore(number);
   if (entry->kind != I_KIND_U && entry->kind != I_KIND_S) return;
-  integer_of[number] = i_table_integer(entry, (uint32_t)value);
-  value_of[number] = integer_of[number];
+  i_integers[number] = i_table_integer(entry, (uint32_t)value);
+  value_of[number] = i_integers[number];
 }
 
 void i_variable_restore_float(uint32_t number, double value) {
@@ -199,18 +201,18 @@ void i_variable_restore_float(uint32_t number, double value) {
 /* I19 rules at start: its IC drives the clocks, whatever the direction variables were saved as. */
 static void write_ic(unsigned ic) {
   const uint32_t direction = gate_ic_direction_variable(ic), first = direction - I7M07_CLOCK_DIRECTION;
-  store(direction, i_clock_direction(ic, (uint32_t)integer_of[I19_CLOCK_SOURCE]));
+  store(direction, i_clock_direction(ic, (uint32_t)i_integers[I19_CLOCK_SOURCE]));
   struct i_place place = i_table_place(first);
   for (uint32_t number = first; number < first + I_IC_BLOCK; ++number, place = i_table_next_of_ic(place)) {
     const struct i_entry* entry = i_table_entry(place);
     if (entry->field != I_FIELD_NONE && !i_of_absent_ic(place))
-      i_hardware_write(place, entry, (uint32_t)integer_of[number]);
+      i_hardware_write(place, entry, (uint32_t)i_integers[number]);
   }
 }
 
 void i_variable_write_hardware(void) {
   for (uint32_t number = I_BASE_GLOBAL; number < I_MOTOR_BLOCK; ++number)
-    i_hardware_write(i_table_place(number), i_table_row(number), (uint32_t)integer_of[number]);
+    i_hardware_write(i_table_place(number), i_table_row(number), (uint32_t)i_integers[number]);
   gate_ic_release_clocks();
   for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
     if (gate_ic_present(ic)) write_ic(ic);

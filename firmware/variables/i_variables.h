@@ -15,6 +15,10 @@ void i_variable_write(uint32_t number,
 void i_timer_write(uint32_t number, int32_t value);    /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
 double i_variable_default(uint32_t number);            /* what `I{number}=*` assigns */
 void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
+extern int32_t i_integers[];
+/* The same of one that is no timer (Isx11, Isx12), for what runs at each interrupt. */
+static inline int32_t i_plain_integer(uint32_t number) { return i_integers[number]; }
+void i_variable_set_lookahead_state(uint32_t cs, uint32_t state); /* Isx21, as it is: no order */
 int32_t i_integer(uint32_t number); /* fast read of an integer, any task; of a real it would have the whole part only */
 
 /* What a write of an I-variable does in higher layers, by enum i_field of the table; image/tables.c fills it in. Called

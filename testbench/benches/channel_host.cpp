@@ -67,7 +67,10 @@ ChannelHost::~ChannelHost() {
   bench().machine.detach(player_);
 }
 
+// What the host has asked for is read in the background; the tasks above it look at channels of their own accord.
 void ChannelHost::cycle(const PortACycle& c) {
+  constexpr unsigned kBackground = 0;  // cpu.task
+  if (bench().machine.task() != kBackground) return;
   if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
   const Tick sample = bus_edge(c.strobe_low), before = sample - 1 - kTicksPerRef;  // what falls there is latched
   const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), before);

@@ -16,6 +16,7 @@ namespace {
 constexpr unsigned kGuess = 1, kHalls = 2, kWrong = 3, kBrush = 4;  // motors
 constexpr double kLoad = 0.2, kTorquePerAmp = 0.1;                  // N m; N m / A
 constexpr unsigned kPwm = 7180;                                     // Ixx66
+constexpr double kSearch = 2000, kFullAmps = 10, kTripAmps = 15;    // Ixx73
 
 class Commutation {
  public:
@@ -27,6 +28,8 @@ class Commutation {
   BenchReport& report() { return host_.report(); }
   void set_up(unsigned motor);
   void reference(unsigned motor, const std::string& name, double degrees);
+  double amps(unsigned motor);
+  double mean_amps(unsigned motor);
   void field(unsigned motor, const std::string& name, double degrees);
   void jog(const std::vector<unsigned>& motors);
   void wrong_angle();
@@ -42,8 +45,8 @@ std::vector<plant::AxisParameters> Commutation::axes() {
   a.motor.coulomb = 5e-4;
   a.motor.torque_constant = kTorquePerAmp;
   a.amplifier.bus_volts = 48;
-  a.amplifier.full_scale_amps = 10;
-  a.amplifier.trip_amps = 15;
+  a.amplifier.full_scale_amps = kFullAmps;
+  a.amplifier.trip_amps = kTripAmps;
   a.encoder.wiring = plant::EncoderParameters::Wiring::kHalls;
   a.encoder.pole_pairs = a.motor.pole_pairs;
   // Ixx91 = $800000: state 011 is 0 to 60 degrees of 1000 counts.
@@ -70,7 +73,7 @@ void Commutation::set_up(unsigned motor) {
   for (const auto& [k, value] : {std::pair{70u, 4.0},
                                  {71u, 4000.0},
                                  {72u, wrong ? 683.0 : 1365.0},
-                                 {73u, 2000.0},
+                                 {73u, kSearch},
                                  {74u, 8.0},
                                  {77u, 0.0},
                                  {80u, 0.0},
@@ -98,12 +101,29 @@ void Commutation::set_up(unsigned motor) {
   host_.say(words);
 }
 
+// Amplitude of the phase currents.
+double Commutation::amps(unsigned motor) {
+  const plant::Motor& m = host_.axis(motor).motor();
+  const double a = m.current_a();
+  return std::hypot(a, (a + 2 * m.current_b()) / std::sqrt(3.0));
+}
+
+// Over twelve phase periods, at times that drift through them: the PWM has a ripple of a twentieth.
+double Commutation::mean_amps(unsigned motor) {
+  constexpr unsigned kTimes = 100;
+  double sum = 0;
+  for (unsigned i = 0; i < kTimes; ++i) {
+    host_.wait_ms(0.013);
+    sum += amps(motor);
+  }
+  return sum / kTimes;
+}
+
 // The current that holds the load, against what it would take with the field at a right angle.
 void Commutation::field(unsigned motor, const std::string& name, double degrees) {
   host_.axis(motor).set_load(kLoad);
   host_.wait_ms(40);
-  const plant::Motor& m = host_.axis(motor).motor();
-  const double a = m.current_a(), beta = (a + 2 * m.current_b()) / std::sqrt(3.0), amps = std::hypot(a, beta);
+  const double amps = mean_amps(motor);
   const double least = kLoad / kTorquePerAmp, most = (least + 0.01) / std::cos(degrees * M_PI / 180);
   host_.axis(motor).set_load(0);
   host_.expect(fmt::format("#{0}K #{0}J/", motor), "");  // the integrator begins anew
@@ -154,20 +174,30 @@ void Commutation::jog(const std::vector<unsigned>& motors) {
   }
 }
 
-// The current feeds itself back: the search or the loop has to end it.
+// The current feeds itself back: far above what the search commands, until the amplifier's fault ends it.
 void Commutation::wrong_angle() {
+  double most = 0;
+  const auto watch = [this, &most](double ms) {
+    for (double waited = 0; waited < ms; waited += 0.1) {
+      host_.wait_ms(0.1);
+      most = std::max(most, amps(kWrong));
+    }
+  };
   host_.record();
   host_.ask(fmt::format("#{}$", kWrong));
-  host_.wait_ms(25);
+  watch(25);
   host_.ask(fmt::format("#{}J/", kWrong));
   host_.ask(fmt::format("#{}J:50", kWrong));
-  host_.wait_ms(25);
+  watch(20);
   const auto& e = host_.enables(kWrong);
   const bool was_on = std::any_of(e.begin(), e.end(), [](const auto& x) { return x.on; });
   report().step("wrong Ixx72 trips", was_on && host_.pin(motor_pin::kAena, kWrong - 1) == 0,
                 was_on ? "amplifier off" : "the amplifier was never enabled");
-  const bool told = host_.status_bit(kWrong, 2, 3) || host_.status_bit(kWrong, 2, 2) || host_.status_bit(kWrong, 2, 8);
-  report().step("wrong Ixx72: cause in ?", told, host_.status(kWrong));
+  const double commanded = kSearch / 32768 * kFullAmps / std::cos(M_PI / 6);
+  report().step("wrong Ixx72: the current runs away", most > kTripAmps / 2,
+                fmt::format("{:.1f} A, {:.1f} A were commanded, expected {} or more", most, commanded, kTripAmps / 2));
+  report().equal("wrong Ixx72: amplifier fault in ?", host_.status_bit(kWrong, 2, 3), true);
+  report().equal("wrong Ixx72: phase reference error in ?", host_.status_bit(kWrong, 2, 8), true);
 }
 
 void Commutation::run() {

@@ -90,14 +90,15 @@ void motor_bits(BenchContext& b) {
       variable("user phase", "I159", 2, 0, 9),
       variable("user servo", "I159", 1, 0, 8),
       variable("alternate source", "I101", 2, 0, 7),
-      variable("phased", "I101", 1, 0, 6),
+      // what becomes a synchronous motor has no phase reference (motion:3.5/1)
+      {"phased", {"I101=1"}, {"I101=0"}, bit(0, 6) | bit(1, 8)},
       variable("offset mode", "I106", 2, 0, 5),
       variable("following", "I106", 1, 0, 4),
       variable("error trigger", "I197", 2, 0, 3),
       variable("software capture", "I197", 1, 0, 2),
       variable("integrator in the velocity loop", "I196", 2, 0, 1),
       variable("alternate output", "I196", 1, 0, 0),
-      {"home complete", {"#1HMZ"}, {"#1HM"}, bit(1, 10)},
+      {"home complete", {"#1HMZ"}, {"#1HM#1K"}, bit(1, 10)},
       {"axis A of C.S. 1", {"&1#1->A"}, {"#1->0"}, bit(1, 15) | bit(1, 16)},
       {"axis B of C.S. 2", {"&2#1->5B"}, {"#1->0"}, bit(1, 15) | bit(1, 17) | bit(1, 20)},
       {"axis C of C.S. 16", {"&16#1->C+1"}, {"#1->0"}, bit(1, 15) | 3 * bit(1, 16) | 15 * bit(1, 20)},
@@ -170,14 +171,19 @@ void program_bits(BenchContext& b) {
   error.end.insert(error.end.begin(), {"R", "wait"});
   status.check(error);
   status.verdict("programs of a coordinate system, ??", 11);
-  b.expect("#1->1000Y", "");
-  Status motor(b, "#1?", 2, {"X$B0", "Y$C0"});
-  motor.check(program("dwell of its coordinate system", {"DWELL500"}, "R", bit(0, 15)));
-  motor.check(program("move of its coordinate system", {"X10 F10"}, "R", 0));
-  motor.check(program("dwell that waits", {"X10 F10", "DWELL500"}, "R", 0));
-  motor.verdict("programs, ? of a motor", 3);
-  b.expect("#1->0", "");
   b.expect("CLOSE", "");
+  b.expect("#1->1000Y #1J/", "");  // at 0.1 counts a ms it stays in position
+  b.expect("OPEN ROTARY", "");
+  b.machine.run_until(b.machine.now() + 15 * kMillisecond);  // Ixx92, and it is in position
+  Status motor(b, "#1?", 2, {"X$B0", "Y$C0"});
+  constexpr std::uint64_t kTimed = bit(0, 17) | bit(1, 0), kMoves = bit(0, 13);  // so not in position (motion:6.5/1)
+  motor.check(program("dwell of its coordinate system", {"DWELL500"}, "R", kTimed | bit(0, 15)));
+  motor.check(program("its move", {"Y10 F0.1"}, "R", kTimed | kMoves));
+  motor.check(program("move of an axis without it", {"X10 F10"}, "R", kTimed));
+  motor.check(program("dwell that waits", {"Y10 F0.1", "DWELL500"}, "R", kTimed | kMoves));
+  motor.verdict("programs, ? of a motor", 4);
+  b.expect("CLOSE", "");
+  b.expect("#1K #1->0", "");
   b.expect("I16=5 I17=10 DELETE ALL TEMPS", "");
 }
 
@@ -216,10 +222,11 @@ void control_characters(BenchContext& b) {
     say(fmt::format("M8={} M9={} M10={}", sign * (motor + 5) * kCount, sign * (motor * kCount + kCount / 2),
                     sign * (motor + 100) * kCount + kCount / 4));
     if (motor % 3 == 0) say(fmt::format("I{}00=1 #{}HMZ", motor, motor));
-    statuses += space + (motor % 3 == 0 ? "850000000400" : "050000000000");
-    positions += space + number(sign * (motor + 0.5));
-    errors += space + number(sign * 4.5);
-    velocities += space + number(sign * (motor + 100) + 0.25);
+    const bool activated = motor % 3 == 0;  // then the words are the loop's (motion:1.3/2): it stands where it was homed
+    statuses += space + (activated ? "850000000400" : "050000000000");
+    positions += space + number(activated ? 0 : sign * (motor + 0.5));
+    errors += space + number(activated ? 0 : sign * 4.5);
+    velocities += space + number(activated ? 0 : sign * (motor + 100) + 0.25);
   }
   for (int cs = 1; cs <= kSystems; ++cs) {
     if (cs % 4 == 3) say(fmt::format("&{}INC(V)", cs));
@@ -292,12 +299,16 @@ void errors(BenchContext& b) {
 }
 
 void run(BenchContext& b) {
+  // Whatever stands at the flags of motor 1 is no fault and no limit: what a cause closes stays closed.
+  const std::string mode = b.ask("I124");
+  b.expect("I124=I124|$120000", "");
   motor_bits(b);
   axis_bits(b);
   program_bits(b);
   global_bits(b);
   control_characters(b);
   errors(b);
+  b.expect("I124=" + mode, "");
   b.report.equal<std::string>("problems in ???", b.problems(), "none");
 }
 

@@ -15,6 +15,11 @@ AccessHost::AccessHost(Machine& machine, AccessCpu& cpu, std::uint64_t seed, boo
   bus_.set_pace([this] { return pick(3) == 0 ? pick(4'000'000'000) : pick(8'500'000); });  // femtoseconds
   times();
   bus_.wait(kInReset);
+  // A reset comes by chance once in some hundred steps: behind a cycle of either kind each life has one anyhow.
+  io();
+  reset_drive();
+  if (memory_) memory_word();
+  reset_drive();
 }
 
 void AccessHost::times() {

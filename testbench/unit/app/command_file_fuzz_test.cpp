@@ -11,6 +11,7 @@
 #include "testbench/fuzz/target.h"
 #include "testbench/host/framing_probe.h"
 #include "testbench/host/reply_parser.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -38,7 +39,7 @@ TEST(CommandFileFuzz, EndsInOrderOrWithAnErrorThatSaysWhatWasExpected) {
                                         "@pic MSK=",   "@jpan FPD=",  "^A",
                                         "^",           "$",           "=",
                                         "I16",         "A B A(A,B) ", "#define A B B\n#define B A\n"};
-  std::mt19937 random(12);
+  std::mt19937 random(random_seed(12));
   unsigned read = 0, refused = 0;
   for (int i = 0; i < 20'000; ++i) {
     const std::string text = random_text(random, kPieces, 60);
@@ -66,7 +67,7 @@ TEST(ReplyFuzz, EndsWhateverTheControllerSends) {
                                         "ERR",
                                         "t",
                                         "u"};
-  std::mt19937 random(13);
+  std::mt19937 random(random_seed(13));
   unsigned complete = 0, asked = 0;
   for (int i = 0; i < 50'000; ++i) {
     const Framing framing{static_cast<unsigned>(random() % 4), static_cast<unsigned>(random() % 2)};

@@ -186,4 +186,87 @@ def plant_wave():
         check(plain.stdout == r.stdout, "a waveform changes the run")
 
 
+PLACES = [1000 * motor if motor < 5 else -1000 * (motor - 4) for motor in range(1, 9)]
+
+
+def moves(name, index):
+    """Each motor of a ready plant jogs to a place of its own, and home: to the index where count `index` of a
+    revolution is 0 from then on (docs/plant.md)."""
+    def of_all(text):
+        return "".join(f"#{motor}{text}" for motor in range(1, 9))
+    jogs = "".join(f"#{motor}J={place}" for motor, place in enumerate(PLACES, 1))
+    names = [f"plant.axis{motor}.position" for motor in range(1, 9)]
+    # Jogs at 32 counts/ms; home at 10 counts/ms, from place n x 1000 up to the next index.
+    r = play([of_all("J/"), "@wait 50ms", jogs, "@wait 400ms", of_all("?PF"), *(f"@signal {n}" for n in names),
+              of_all("HM"), "@wait 800ms", of_all("?PF"), *(f"@signal {n}" for n in names)],
+             "--plant", name, "--load", name)
+    check(r.returncode == 0, f"{r.stdout}{r.stderr}")
+    answers = [line for line in r.stdout.splitlines() if "=" not in line]
+    stood = [float(line.partition("=")[2]) for line in r.stdout.splitlines() if "=" in line]
+    check(len(answers) == 48 and len(stood) == 16, r.stdout)
+    for part, places, at in ((0, PLACES, PLACES), (24, [0] * 8, [math.ceil(p / 4000) * 4000 + index for p in PLACES])):
+        for motor in range(8):
+            status, place, error = answers[part + 3 * motor:part + 3 * motor + 3]
+            bits = int(status, 16)
+            what = f"{name}, motor {motor + 1}: {status} {place} {error}, plant {stood[(part and 8) + motor]}"
+            check(bits & 1 and bits >> 43 & 1 and not bits >> 42 & 1, f"closed and in position: {what}")
+            check(bits >> 10 & 1 == (part != 0), f"home complete: {what}")
+            check(abs(float(place) - places[motor]) <= 2 and abs(float(error)) <= 2, what)
+            check(abs(stood[(part and 8) + motor] - at[motor]) <= 3, f"expected at {at[motor]}: {what}")
+
+
+def plant_moves_dac8():
+    moves("dac8", 2)
+
+
+def plant_moves_servo8():
+    moves("servo8", 2)
+
+
+def plant_moves_stepper8():
+    moves("stepper8", 2)
+
+
+def plant_moves_none():
+    """Nothing is connected: a motor that is sent away stays, and trips by its following error, 2000 counts."""
+    r = play(["#1J/", "@wait 50ms", "#1J:1500", "@wait 200ms", "#1?PF", "#1J:1500", "@wait 200ms", "#1?P", "#1HM",
+              "@wait 400ms", "#1?"], "--plant", "none", "--load", "dac8")
+    check(r.returncode == 0, f"{r.stdout}{r.stderr}")
+    said = r.stdout.splitlines()
+    check(said[1:3] == ["0", "1500"] and int(said[0], 16) & 6 == 2, f"warned, on, not in position: {said}")
+    check(int(said[3], 16) >> 42 & 1 and int(said[3], 16) & 4 and said[4] == "0", f"tripped: {said}")
+    check(int(said[5], 16) & 0x404 == 4, f"no home, tripped again: {said}")
+
+
+def plant_first_minute():
+    """The README's first minute, as printed: two commands, and a motor has moved, to be seen in the waveform's view."""
+    tree = command.BOARDS.parent
+    text = (tree / "README.md").read_text(encoding="utf-8")
+    lines = re.search(r"first minute.*?```sh\n(.*?)```", text, re.S)[1].splitlines()
+    first, second = (line.split("#")[0].split() for line in lines)
+    check(first[:3] == ["./dev", "brick", "exec"] and second[0] == "gtkwave", str(lines))
+    wave, view = first[first.index("--wave") + 1], second[second.index("-a") + 1]
+    check(second[-1] == wave, f"{wave} is written, {second[-1]} shown")
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, pathlib.Path(wave).name)
+        arguments = [str(file) if a == wave else str(tree / a) if "/" in a else a for a in first[2:]]
+        r = brick(*arguments)
+        check(r.returncode == 0, r.stderr)
+        shown = re.search(r"`(\d+)` after `#1J:4000`,\s+`(\d+)` after `#1J:-2000`", text)
+        said = r.stdout.split()
+        check((said[0], said[-1]) == shown.groups() and abs(float(said[1])) <= 1, f"{said}, README: {shown[0]}")
+        names, scopes = set(), []
+        for scope, name in re.findall(r"^\$(?:scope \w+ (\S+)|upscope|var \S+ \d+ \S+ (\S+)).*\$end$", file.read_text(),
+                                      re.M):
+            if scope:
+                scopes.append(scope)
+            elif name:
+                names.add(".".join([*scopes, name]))
+            else:
+                scopes.pop()
+        wanted = [line for line in (tree / view).read_text(encoding="ascii").splitlines() if line.startswith("brick.")]
+        missing = [name for name in wanted if name.split("[")[0] not in names]
+        check(len(wanted) >= 4 and not missing, f"{view}: {missing} not in the waveform")
+
+
 globals()[command.CASE]()

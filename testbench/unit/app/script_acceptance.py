@@ -66,7 +66,7 @@ def dialogue():
     lines += ["I4=1", "I16\x02", "I16\x07", "I17Z\x08", f"{slow * 3}I4=1", "I4=0", "I6=0", "UUU\x07", "I6=1", "I17"]
     expected += [*motors, "5", "000000000800", "5", "10", "000000000800", "ERR", "10"]
     # A program sets I4, and sets it back.
-    lines += ["CLOSE DELETE ALL #1->X &1DEFINE ROT 100 B0 OPEN ROT", "I4=1", "CLOSE R", "@wait 20ms", "I16 I17",
+    lines += ["CLOSE DELETE ALL &1DEFINE ROT 100 B0 OPEN ROT", "I4=1", "CLOSE R", "@wait 20ms", "I16 I17",
               "P1=22221 P1 P1", "UUU", "OPEN ROT", "I4=0", "CLOSE R", "@wait 20ms", "P1=2", "P1", "I16"]
     expected += ["5", "10", "22221", "22221", "ERR003", "2", "5"]
     for line in ("$$$", "I16=7 $$$", "I3=0 $$$***", "I16=7 I4=1 $$$***", "I3=1 SAVE", "I3=0", "SAVE"):
@@ -85,8 +85,9 @@ def dialogue():
 
 def busy_programs():
     """PLCs that take longer than the pause that ends a reply, and commands of programs that are refused."""
+    # ^A closes loops that are open unless I36 is 1.
     scan = ["I5=2", "OPEN PLC1 CLEAR", *["P1=" + "+".join(["SIN(P1)"] * 30)] * 8, "CLOSE ENABLE PLC1"]
-    lines, expected = [*scan, "@wait 50ms", "@time", "I3=2", "@time"], []
+    lines, expected = ["I36=1", *scan, "@wait 50ms", "@time", "I3=2", "@time"], []
     for i3 in range(4):
         lines += [f"I3={i3}", "^G", "I16", "^A^B", "I17 UUU", "^Y"]
         expected += ["000000000800", "5", " ".join(["850000000000"] + ["050000000000"] * 7), "10", "ERR003", "I17 UUU"]

@@ -7,6 +7,10 @@
 #include "testbench/plant/motor.h"
 #include "testbench/unit/firmware_platform/commutation_rig.h"
 
+extern "C" {
+#include "firmware/motion/overload.h"
+}
+
 namespace brick {
 namespace {
 
@@ -209,6 +213,67 @@ TEST_F(CurrentLoop, ABrushMotorHasOneCurrent) {
   EXPECT_EQ(pwm(0), 0);  // Vd is 0, sin(0) is 0
   EXPECT_NE(pwm(1), 0);
   EXPECT_NEAR(seen_q(), -0.3, 1e-3);  // Ib cos(0) - Ia cos(270)
+}
+
+// motion:6.3: I is the vector sum of what is measured. Both converters at their ends and 120 degrees apart make 1.732
+// of full scale, whose square has 33 bits, wherever the rotor stands.
+TEST_F(CurrentLoop, OverloadCountsCurrentsBeyondFullScale) {
+  set("I157=0 I158=100 I178=0.001");
+  enable();
+  measure(32767.0 / 32768, 32767.0 / 32768);
+  const auto trips_after = [this] {
+    set("I158=0");
+    set("I158=100");
+    unsigned n = 0;
+    for (; n < 10000 && !overload_is_too_much(0); ++n) overload_servo(0);
+    return n;
+  };
+  for (const int position : {0, 256, 512, -256}) {
+    stand_at(position);
+    phase();
+    EXPECT_EQ(trips_after(), 34u) << "100 / 3 servo interrupts at " << position;
+  }
+  set("I157=-1");
+  EXPECT_EQ(trips_after(), 58u) << "100 / 1.732";
+  measure(-0.5, 0.5);  // A - B of two phases: 0.5 / cos(30 degrees) x 0.866
+  phase();
+  set("I157=0");
+  EXPECT_EQ(trips_after(), 401u) << "0.25 a servo interrupt";
+  set("I182=0 I177=3000");  // without a current loop what is commanded
+  enable();
+  command(4000);
+  set("I157=3000");
+  EXPECT_EQ(trips_after(), 6711u) << "(5000^2 - 3000^2) / 32768^2 = 0.0149 a servo interrupt";
+}
+
+// The sum is not below 0, so rest is not saved up, and not above twice Ixx58, so that it is forgotten in time. Outputs
+// are rounded to 16 bits.
+TEST_F(CurrentLoop, OverloadIsBetweenNothingAndTwiceItsMost) {
+  set("I182=0 I157=16384 I158=100 I177=0");
+  enable();
+  const auto until = [](bool too_much) {
+    unsigned n = 0;
+    for (; n < 10000 && overload_is_too_much(0) != too_much; ++n) overload_servo(0);
+    return n;
+  };
+  command(0);
+  for (int n = 0; n < 1000; ++n) overload_servo(0);
+  command(32767);
+  EXPECT_EQ(until(true), 134u) << "0.75 a servo interrupt";
+  for (int n = 0; n < 5000; ++n) overload_servo(0);
+  command(0);
+  EXPECT_EQ(until(false), 400u) << "100 of 0.25";
+  set("I157=32766 I158=0");
+  set("I158=1");
+  command(32766.4);
+  EXPECT_EQ(until(true), 10000u);
+  command(32766.6);
+  EXPECT_EQ(until(true), 10000u);
+  EXPECT_EQ(until(true), 6385u) << "2^30 / (32767^2 - 32766^2) = 16385";
+  set("I157=0 I158=0");
+  set("I158=100");
+  command(16384);
+  EXPECT_EQ(until(true), 401u) << "Ixx57 = 0: all of it counts";
 }
 
 // Closed through the windings of the plant's motor: 24 V on each side, 10 A full scale, 1 ohm, 1 mH.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/base/crc32.h"
@@ -90,7 +91,7 @@ class FlashStore : public ::testing::Test {
     return found();
   }
 
-  std::mt19937 random_{1};
+  std::mt19937 random_{random_seed(1)};
 };
 
 TEST_F(FlashStore, CrcIsThatOfEthernet) {

@@ -9,6 +9,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/hal/hal.h"
@@ -105,7 +106,7 @@ TEST(MDefinitions, WordsThatAUserWroteAreSafe) {
   EXPECT_EQ(c.line("M1->X:$4001 M1=$B00000 M1->"), "*");
   EXPECT_EQ(c.line("M1->X:$10F0,4,4 WX$4001,$F00000 M1-> M1"), "*|4336") << "Y:$4001 holds $10F0";
   EXPECT_EQ(c.line("M1=7 M1 RX$4001"), "7|0");
-  std::mt19937 random(20);
+  std::mt19937 random(random_seed(20));
   unsigned pointers = 0;
   std::map<std::string, unsigned> multiplexed;  // by the name of the form
   for (unsigned i = 0; i < 20000; ++i) {

@@ -10,6 +10,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/base/crc32.h"
@@ -37,7 +38,7 @@ struct Content {
 };
 
 Content random_content(unsigned seed, unsigned size) {
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed(seed));
   const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
   Content content;
   content.expect("I3 I6", "2|1");
@@ -153,6 +154,15 @@ TEST(SavedContent, AllOfItComesBack) {
   }
 }
 
+// firmware:8.5/2: a timer that was saved would begin at the start, where nobody has set it.
+TEST(SavedContent, TimersAreNotKept) {
+  Controller c;
+  c.line("I5111=8000000 I5213=77 SAVE");
+  restart(c);
+  EXPECT_LE(std::stol(c.line("I5111")), 0) << "it runs on, downwards";
+  EXPECT_EQ(c.line("I5213"), "77");
+}
+
 TEST(SavedContent, FloatsAreKeptToTheLastBit) {
   Controller c;
   c.line("I122=1/3 I123=-12345678.875 P7=1/3 Q9=-1/7 I8000=$FFFFFF");
@@ -206,7 +216,7 @@ TEST(SavedContent, PowerCutAtAnyWordLeavesAllOfTheOldOrAllOfTheNew) {
 }
 
 TEST(SavedContent, PowerCutInASaveOfFullMemoryLeavesOldOrNew) {
-  std::mt19937 random(3);
+  std::mt19937 random(random_seed(3));
   Controller c;
   std::string line;
   for (int i = 0; i < 64; ++i) line += "X" + std::to_string(i);
@@ -239,7 +249,7 @@ TEST(SavedContent, PowerCutInASaveOfFullMemoryLeavesOldOrNew) {
 
 // Every word of a real image at the level of the store, every 97th with a start-up.
 TEST(SavedContent, AFlippedWordIsReportedAndDefaultsAreTaken) {
-  std::mt19937 random(4);
+  std::mt19937 random(random_seed(4));
   Controller c;
   c.line("&1#1->3X I17=21 P1=5");
   c.line("OPEN PROG 1 X1 Y2 CLOSE PASSWORD=pass");
@@ -341,7 +351,7 @@ TEST(SavedContent, WordsBehindTheVariablesAreLeftOut) {
 
 // Whatever stands behind a good checksum: the start-up ends, and the controller answers.
 TEST(SavedContent, AnythingBehindAGoodChecksumHarmsNothing) {
-  std::mt19937 random(5);
+  std::mt19937 random(random_seed(5));
   Controller c;
   for (unsigned i = 0; i < 40; ++i) {
     c.line("$$$***");

@@ -10,6 +10,7 @@
 #include "testbench/unit/firmware_platform/controller.h"
 #include "testbench/unit/firmware_platform/framing.h"
 #include "testbench/unit/random_lines.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/buffers/rotary_ring.h"
@@ -137,7 +138,7 @@ TEST(Survival, RandomLinesStayInsideEveryTable) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     SCOPED_TRACE(seed);
     Controller c;
-    RandomLines random(seed);
+    RandomLines random(random_seed(seed));
     for (long i = 0; i < lines; ++i) {
       const std::string line = random.next();
       SCOPED_TRACE(line);

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -48,7 +49,7 @@ TEST(AxisConstant, EveryShortConstantIsTheGeneralOne) {
 }
 
 TEST(AxisConstant, LongConstantsRoundAsTheGeneralOnes) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(brick::random_seed(7));
   for (int i = 0; i < 300000; ++i) {
     const auto digits = random() % 1'000'000'000u >> random() % 20;
     const unsigned decimals = random() % 5;

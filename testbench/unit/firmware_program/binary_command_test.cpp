@@ -1,6 +1,7 @@
 // Text to commands by the host library, and what of commands the firmware takes: words of the ASCII route, or codes.
 // codes.
 #include "testbench/unit/firmware_program/binary_fixture.h"
+#include "testbench/unit/random_seed.h"
 
 namespace binary_rotary {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 // route, what it refuses is what binary lines cannot say.
 TEST_F(BinaryRotary, TheSameTextGivesTheSameWords) {
   BRICK_COVERS("BIN-3");
-  ProgramGenerator generator(3, WHERE_ROTARY);
+  ProgramGenerator generator(brick::random_seed(3), WHERE_ROTARY);
   ASSERT_EQ(host("&2 DEF ROT 600 &1 DEF ROT 600"), "");
   Buffer buffer;
   buffer.size = 1024;

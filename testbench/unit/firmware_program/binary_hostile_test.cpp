@@ -1,5 +1,6 @@
 // The binary rotary transfer with a host that writes whatever it likes, at any time.
 #include "testbench/unit/firmware_program/binary_fixture.h"
+#include "testbench/unit/random_seed.h"
 
 namespace binary_rotary {
 namespace {
@@ -115,7 +116,7 @@ TEST_F(BinaryRotary, NothingAHostWritesDoesHarm) {
     SetUp();
     for (std::uint32_t i = 0; i < USER_MEMORY_WORDS; ++i) user_memory_write(i, kMark);
     open("&2 DEF ROT 9 &1 DEF ROT 30");
-    HostileHost hostile(seed);
+    HostileHost hostile(brick::random_seed(seed));
     for (unsigned i = 0; i < steps; ++i) {
       hostile.step();
       for (unsigned cs = 1; cs <= 2; ++cs) {

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "testbench/unit/firmware_program/dpram_host.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -219,7 +220,7 @@ TEST_F(DpramVariables, ListsEndWithTheRam) {
 }
 
 TEST_F(DpramVariables, AnyListIsSurvived) {
-  std::mt19937 random(3);
+  std::mt19937 random(brick::random_seed(3));
   for (int i = 0; i < 2000; ++i) {
     for (int n = 0; n < 20; ++n) ram.write(DPRAM_OPEN + 2 * (random() % 0x500), static_cast<std::uint16_t>(random()));
     ram.write(DPRAM_READ_CONTROL, static_cast<std::uint16_t>(random()));

@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -63,7 +64,7 @@ TEST_F(Expression, ConstantsAreKeptExactly) {
 }
 
 TEST_F(Expression, FunctionsInDegreesAndRadians) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(brick::random_seed(7));
   std::uniform_real_distribution<double> angle(-1000.0, 1000.0), unit(-1.0, 1.0), positive(1e-6, 1e6),
       small(-20.0, 20.0);
   for (int i = 0; i < 500; ++i) {
@@ -150,6 +151,18 @@ TEST_F(Expression, StopsBehindACompleteValue) {
   ASSERT_EQ(expression_evaluate(&lx, 0, &result), ERR_NONE);
   EXPECT_EQ(result, 6.0);
   EXPECT_EQ(lexer_peek(&lx), 'I');
+}
+
+// firmware:1.1/4: the limit itself is a constant, in either sign.
+TEST_F(Expression, ConstantsHaveALimitInEitherSign) {
+  for (const char* sign : {"", "-"}) {
+    const std::string s = sign;
+    EXPECT_EQ(platform::host("P1=" + s + "34359738368 P1=P1/1024 P1"), s + "33554432");
+    EXPECT_EQ(platform::host("P1=" + s + "34359738369"), "ERR003");
+    EXPECT_EQ(platform::host("#1->" + s + "34359738368X #1->"), s + "34359738368X");
+    EXPECT_EQ(platform::host("#1->" + s + "34359738369X"), "ERR003");
+    EXPECT_EQ(platform::host("#1->X" + std::string(s.empty() ? "+" : s) + "34359738369"), "ERR003");
+  }
 }
 
 TEST_F(Expression, LexerTakesTheNumbersOfTheLanguage) {

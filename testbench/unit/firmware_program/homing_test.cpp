@@ -115,6 +115,8 @@ TEST_F(Homing, ZeroIsTheCapturedCountAtAnySpeedUpTo100CountsAMs) {
     EXPECT_TRUE(motors[0].status.home_complete);
     EXPECT_EQ(motors[0].trajectory, 0);
     EXPECT_EQ(place(), std::floor(at) + offset) << velocity << " counts a ms, trigger at " << at;
+    EXPECT_EQ(*hal_y(0xCE), static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(at))) & kWord)
+        << "what users read of it";
   }
 }
 

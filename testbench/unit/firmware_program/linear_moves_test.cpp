@@ -104,7 +104,7 @@ TEST_F(LinearMoves, AMillionIncrementalMovesOfWholeCountsDriftByNothing) {
     s.pending[AXIS_X] = s.position[AXIS_X] + 0.001;
     s.pending[AXIS_Y] = s.position[AXIS_Y] + 3;
     s.pending_axes = 1u << AXIS_X | 1u << AXIS_Y;
-    ASSERT_TRUE(plan_line(0));
+    ASSERT_EQ(plan_line(0), RUN_TIME_NONE);
     ASSERT_TRUE(move_place(0));
     for (int tick = 0; s.next_valid; ++tick) {
       ASSERT_LT(tick, 5);

@@ -132,7 +132,7 @@ TEST_F(LiveWords, AMoveThatWaitsIsNoTarget) {
 }
 
 TEST_F(LiveWords, DwellShowsInTheMotorsOfTheSystem) {
-  host("&1#1->X &2#2->X");
+  host("&1#1->X &2#2->X I124=$100001");
   motors[0].loop = LOOP_CLOSED;
   ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
   ASSERT_EQ(host("DWELL500"), "");

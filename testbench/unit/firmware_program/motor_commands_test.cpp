@@ -174,17 +174,17 @@ TEST_F(MotorCommands, OpenLoopTakesPerCentOfIxx69) {
 }
 
 // motion:6.2/3
-TEST_F(MotorCommands, OpenLoopDoesNotPushIntoALimit) {
+TEST_F(MotorCommands, InALimitNoLoopIsOpened) {
   ASSERT_EQ(host("#1J/"), "");
-  motors[0].found.positive_limit = true;
-  EXPECT_EQ(host("O5"), "ERR003");
-  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
-  ASSERT_EQ(host("O-5"), "");
-  ASSERT_EQ(host("J/"), "");
-  motors[0].found.positive_limit = false;
-  motors[0].found.negative_limit = true;
-  EXPECT_EQ(host("O-5"), "ERR003");
-  EXPECT_EQ(host("O0"), "");
+  for (const bool up : {true, false}) {
+    auto& limit = up ? motors[0].found.positive_limit : motors[0].found.negative_limit;
+    limit = true;
+    EXPECT_EQ(host("O5"), "ERR010");
+    EXPECT_EQ(host("O-5"), "ERR010");
+    EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+    limit = false;
+  }
+  ASSERT_EQ(host("O5"), "");
 }
 
 TEST_F(MotorCommands, OpenLoopEndsAJog) {

@@ -6,6 +6,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/program_generator.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -75,7 +76,7 @@ TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
   for (const Kind& kind : kKinds)
     for (unsigned seed = 0; seed < programs_of_each_kind(); ++seed) {
       SCOPED_TRACE(std::string(kind.text) + " seed " + std::to_string(seed));
-      ProgramGenerator generator(seed, kind.where);
+      ProgramGenerator generator(brick::random_seed(seed), kind.where);
       const std::vector<std::string> program = generator.program(12);
       ASSERT_EQ(host("I9=" + std::to_string(seed % 4)), "");
       ASSERT_NO_FATAL_FAILURE(enter(kind, program));
@@ -99,7 +100,7 @@ TEST_F(RoundTrip, AListingIsDownloadedToTheSameWords) {
 TEST_F(RoundTrip, LongLinesGoBackOrAreRefused) {
   BRICK_COVERS("I9-1");
   const Kind& kind = kKinds[0];
-  ProgramGenerator generator(5, WHERE_ROTARY);
+  ProgramGenerator generator(brick::random_seed(5), WHERE_ROTARY);
   unsigned in_full = 0, in_brief = 0, refused = 0;
   ASSERT_EQ(host("DEF ROT 1000"), "");
   for (unsigned i = 0; i < 4 * programs_of_each_kind(); ++i) {
@@ -175,10 +176,10 @@ bool is_word_of_reset_or_memory(const std::string& line) {  // they change what 
 
 TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
   unsigned stored = 0, refused = 0;
-  std::mt19937 random(7);
+  std::mt19937 random(brick::random_seed(7));
   ASSERT_EQ(host("OPEN PROG 1 X1 Y2 CLOSE"), "");
   for (const Kind& kind : kKinds) {
-    ProgramGenerator generator(99, kind.where);
+    ProgramGenerator generator(brick::random_seed(99), kind.where);
     ASSERT_EQ(host(std::string("OPEN ") + kind.text), "");
     for (unsigned i = 0; i < 20 * programs_of_each_kind(); ++i) {
       const std::string line = spoil(generator.statement(), random);
@@ -209,7 +210,7 @@ TEST_F(RoundTrip, HostileLinesStayInTheirBuffer) {
 
 // What a host writes over a program with WX and WY is listed as something, and nothing else happens.
 TEST_F(RoundTrip, DamagedWordsAreListed) {
-  std::mt19937_64 random(3);
+  std::mt19937_64 random(brick::random_seed(3));
   ASSERT_EQ(host("OPEN PLC 1 CLEAR"), "");
   for (int i = 0; i < 50; ++i) ASSERT_EQ(host("P1=1 IF(P1=$10) CMD\"ABCDEFG\" ENDIF"), "");
   ASSERT_EQ(host("CLOSE"), "");

@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -137,7 +138,7 @@ TEST_F(Tables, ProgramsAreChangedWhileTablesAndRingsAreThere) {
 TEST_F(Tables, RandomSequencesFollowTheMemoryOrder) {
   BRICK_COVERS("BIN-2 I18-3");
   static const char* const kinds[] = {"COMP", "TCOMP", "BLCOMP", "TBUF", "CCBUF", "LOOKAHEAD", "ROTARY", "GATHER"};
-  std::mt19937 random(20);
+  std::mt19937 random(brick::random_seed(20));
   const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
   std::map<unsigned, unsigned> there;  // place to words; place 0: programs
   unsigned refused = 0, made = 0, full = 0;

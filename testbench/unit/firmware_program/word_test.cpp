@@ -4,6 +4,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 namespace {
 
@@ -39,7 +40,7 @@ TEST(ProgramWord, StartOfLineBitChangesNothingElse) {
 }
 
 TEST(ProgramWord, ValuesRoundToThirtyThreeBits) {
-  std::mt19937_64 random(3);
+  std::mt19937_64 random(brick::random_seed(3));
   std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
   std::uniform_int_distribution<int> exponent(-20, 35);
   for (int i = 0; i < 2000; ++i) {

@@ -119,6 +119,20 @@ TEST_F(ConversionTable, IntegratedAnalogWords) {
   EXPECT_EQ(signed_result(3), 4 * 32) << "not below 0 after the bias";
 }
 
+// The bias has 1/256 of a converter bit: (7 - 5 - 1/256) bits of 32, eight times, less 2^-3 at most.
+TEST_F(ConversionTable, IntegratedAnalogWordsLoseNothing) {
+  c_.line("I8000=$578005 I8001=1281 I8002=$5F8005 I8003=1281 I8004=0");
+  y(kChannel + 5, 7 << 8);
+  for (int n = 1; n <= 16; ++n) {
+    EXPECT_EQ(once(1), 511 * n / 8) << n;
+    EXPECT_EQ(signed_result(3), 511 * n / 8) << n;
+  }
+  c_.line("I8001=$FFFB00 I8003=$FFFB00");  // -5 bits; a new line begins at 0
+  y(kChannel + 5, -(7 << 8));
+  EXPECT_EQ(once(1), (-7 + 5) * 32);
+  EXPECT_EQ(signed_result(3), (65536 - 7 + 5) * 32);
+}
+
 TEST_F(ConversionTable, ParallelWordsRollOver) {
   table("2010F0 00C004 2810F0 00C004 6010F0 00C014");  // 12 bits from bit 4; from bit 20 on into X
   y(kFree, 0xFFF0);
@@ -142,6 +156,15 @@ TEST_F(ConversionTable, ParallelWordsReachIntoTheNextAddress) {
   EXPECT_EQ(once(1), hal_signed(0xCDEFAB));
   table("2810F0 018000");
   EXPECT_EQ(once(1), hal_signed(0xAB0000)) << "24 bits from 0";
+  y(kFree + 1, 0xCDEF01);
+  table("2810F0 00C00D");
+  EXPECT_EQ(once(1), 0xAB0000 >> 13 | 0x800) << "the last of 12 bits is the first of the next word";
+  table("2810F0 00801C");
+  EXPECT_EQ(once(1), 0xF0) << "8 bits from bit 4 of the next word";
+  x(kFree, 0x654321);
+  table("6810F0 00C01C 7810F0 00C01C FFFFFF");
+  EXPECT_EQ(once(1), 0x432);
+  EXPECT_EQ(signed_result(4), 0x432) << "of X, for $7 too";
   table("2810F0 001080");
   EXPECT_EQ(once(1), 0) << "bits that are not there";
 }
@@ -158,6 +181,53 @@ TEST_F(ConversionTable, ALimitedStepCatchesUp) {
   EXPECT_EQ(once(2), 15);
   for (int i = 0; i < 4; ++i) conversion_table_servo();
   EXPECT_EQ(signed_result(2), -16);
+}
+
+// A change has no sign: $FFFFFF is more than any source can move.
+TEST_F(ConversionTable, TheMostChangeIsAMagnitude) {
+  table("3810F0 018000 FFFFFF D010F0 FFFFFF 400000");
+  conversion_table_servo();
+  EXPECT_EQ(once(2), 0);
+  EXPECT_EQ(signed_result(5), 0);
+  y(kFree, 5000000);
+  x(kFree, 5000000);
+  EXPECT_EQ(once(2), 5000000);
+  EXPECT_EQ(signed_result(5), 2500000);
+  EXPECT_EQ(once(2), 5000000);
+  EXPECT_EQ(signed_result(5), 3750000);
+}
+
+// Tf = 0: K = 2^23, the result is the source.
+TEST_F(ConversionTable, AFilterWithoutATimeFollowsAtOnce) {
+  table("D010F0 7FFFFF 800000");
+  conversion_table_servo();
+  for (const int value : {100, -100, 8000000}) {
+    x(kFree, value);
+    EXPECT_EQ(once(2), value);
+  }
+}
+
+// What the motor follows counts down as it counts up.
+TEST_F(ConversionTable, AFilterLimitsStepsBothWays) {
+  table("D010F0 000064 7FFFFF");
+  conversion_table_servo();
+  x(kFree, 350);
+  for (const int value : {100, 200, 300, 350, 350}) EXPECT_NEAR(once(2), value, 1);
+  x(kFree, 0);
+  for (const int value : {250, 150, 50, 0, 0}) EXPECT_NEAR(once(2), value, 1);
+}
+
+// Largest gains and steps, for long: it goes round, and nothing overflows (sanitizers).
+TEST_F(ConversionTable, ATrackingFilterIsBounded) {
+  table("D810F0 FFFFFF FFFFFF 000000 FFFFFF");
+  for (int n = 0; n < 2000; ++n) {
+    x(kFree, n % 3 * 8388607);
+    conversion_table_servo();
+  }
+  table("D810F0 7FFFFF 100000 000000 7FFFFF");
+  conversion_table_servo();
+  x(kFree, 8388607);
+  for (int n = 0; n < 2000; ++n) conversion_table_servo();
 }
 
 // RTIF 256: SF = 2^17/256 = 512, so 256 ct/ms of 1/32 ct, a ms in a servo interrupt, are 2^23.
@@ -187,12 +257,35 @@ TEST_F(ConversionTable, TriggeredTimeBase) {
   EXPECT_EQ(signed_result(0), 70 * 256);
   channel(72, false, 640, 320);
   EXPECT_EQ(once(1), 512 * 16 * 2 + 256 * 16);
-  EXPECT_EQ(c_.line("I8000"), "$AF8000");
+  c_.line("");
+  EXPECT_EQ(c_.line("I8000"), "$AF8000") << "within a background pass";
   x(kChannel, 0);
   channel(73, false, 640, 320);
   EXPECT_EQ(once(1), 512 * 16) << "goes on when its line has changed";
   c_.line("I8000=$9F8000");
   EXPECT_EQ(once(1), 0);
+  channel(-90, false, 0, 0);
+  c_.line("I8000=$AF8000");
+  EXPECT_EQ(once(1), 0) << "told to run: from where the counter is";
+  channel(-95, false, 0, 0);
+  EXPECT_EQ(once(1), -512 * 16 * 5);
+  EXPECT_EQ(signed_result(0), -95 * 256);
+  c_.line("I8000=$BF8000");
+  EXPECT_EQ(once(1), 0) << "armed anew";
+}
+
+// Entries behind one that waits for its trigger are worked out, and each of several shows that it has had it.
+TEST_F(ConversionTable, SeveralTriggeredTimeBases) {
+  table("BF8000 000010 BF8008 000020 2810F0 018000");
+  x(kChannel, 0);
+  x(kChannel + 8, 0);
+  y(kFree, 4711);
+  EXPECT_EQ(once(5), 4711);
+  x(kChannel, kCaptured);
+  x(kChannel + 8, kCaptured);
+  conversion_table_servo();
+  for (int n = 0; n < 3; ++n) c_.line("");
+  EXPECT_EQ(c_.line("I8000 I8002"), "$AF8000|$AF8008");
 }
 
 // Tf = 7: K = 2^23/8 = 1048576.
@@ -256,6 +349,9 @@ TEST_F(ConversionTable, SumsAndDifferences) {
   x(kTable + 19, 55);
   conversion_table_servo();
   EXPECT_EQ(signed_result(8), -55);
+  table("E4C8C8");  // line 200
+  x(kTable + 200, 55);
+  EXPECT_EQ(once(0), 0) << "there is no such line";
 }
 
 // The table goes on behind each entry as its method says, and ends at a first line of 0.
@@ -301,15 +397,19 @@ TEST_F(ConversionTable, ExtendedMethodsStayZeroAndAreKnown) {
   EXPECT_EQ(once(2), 0);
   EXPECT_TRUE(conversion_table_is_not_built(kTable + 2));
   EXPECT_FALSE(conversion_table_is_not_built(kTable));
+  table("F78000 000000 000000 C78000");
+  EXPECT_FALSE(conversion_table_is_not_built(kTable + 3)) << "a method that is built";
 }
 
 TEST_F(ConversionTable, AnEntryThatIsCutOffIsNone) {
   c_.line("I8000..8190=$C78000 I8191=$278000");
   channel(3, false, 0, 0);
   x(kTable + 191, 9);
+  x(kTable + 192, 9);
   conversion_table_servo();
   EXPECT_EQ(signed_result(190), 96);
   EXPECT_EQ(signed_result(191), 9);
+  EXPECT_EQ(signed_result(192), 9) << "what is behind the table";
 }
 
 TEST_F(ConversionTable, OtherLinesDoNotDisturbAnEntry) {

@@ -74,6 +74,63 @@ TEST_F(DesiredPosition, FollowsAMaster) {
   EXPECT_EQ(desired(5), before - 0.5) << "rolls over";
 }
 
+// A motor that is switched on begins where it is, whatever its master has done meanwhile.
+TEST_F(DesiredPosition, AMasterThatMovesWhileTheLoopIsOpenIsNotCaughtUpWith) {
+  c_.line("I105=$10F5 I107=96 I106=1");
+  const auto servo_tasks = [] {
+    desired_position_servo(0);
+    position_loop_servo(0);
+  };
+  master(1000);
+  servo_tasks();
+  close();
+  EXPECT_EQ(desired(0), 0);
+  master(1002);
+  EXPECT_EQ(desired(0), 2);
+  motor_kill(0);
+  master(1500);
+  servo_tasks();
+  close();
+  const double there = static_cast<double>(motors[0].trajectory) / kCount;
+  EXPECT_EQ(desired(there), 0) << "the motor has not turned";
+  master(1501);
+  EXPECT_EQ(desired(there), 1);
+  ASSERT_TRUE(motor_open(0, 0));
+  master(1600);
+  servo_tasks();
+  close();
+  EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), 0);
+}
+
+TEST_F(DesiredPosition, AnotherMasterBeginsWhereItStands) {
+  c_.line("I105=$10F5 I107=96 I106=1");
+  close();
+  master(10);
+  EXPECT_EQ(desired(0), 10);
+  *hal_x(0x10F6) = 500 * 32;
+  c_.line("I105=$10F6");
+  EXPECT_EQ(desired(0), 10);
+  *hal_x(0x10F6) = 501 * 32;
+  EXPECT_EQ(desired(0), 11);
+}
+
+// Ixx06 = 3, offset mode: replies do not show what the master has moved.
+TEST_F(DesiredPosition, RepliesInOffsetModeAreWithoutTheMaster) {
+  c_.line("I105=$10F5 I107=96 I106=3");
+  close();
+  c_.line("#1J/");
+  master(10);
+  EXPECT_EQ(desired(3), 13);
+  *hal_x(0x10F0) = 13 * 32;
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("#1P"), "3");
+  EXPECT_EQ(c_.line("#1F"), "0");
+  c_.line("I106=1");
+  EXPECT_EQ(c_.line("#1P"), "13");
+  c_.line("I106=2");
+  EXPECT_EQ(c_.line("#1P"), "3");
+}
+
 TEST_F(DesiredPosition, AMotorInALimitFollowsOutOfItOnly) {
   c_.line("I105=$10F5 I107=96 I106=1");
   close();
@@ -82,6 +139,12 @@ TEST_F(DesiredPosition, AMotorInALimitFollowsOutOfItOnly) {
   EXPECT_EQ(desired(0), 0);
   master(4);
   EXPECT_EQ(desired(0), -6);
+  motors[0].found.positive_limit = false;
+  motors[0].found.negative_limit = true;
+  master(-10);
+  EXPECT_EQ(desired(0), -6);
+  master(-7);
+  EXPECT_EQ(desired(0), -3);
 }
 
 // y = K y + (1-K) x, and exact in the end.
@@ -98,6 +161,64 @@ TEST_F(DesiredPosition, Filter) {
   EXPECT_EQ(desired(1000), 1000);
   for (int n = 0; n < 40000; ++n) desired(-3);
   EXPECT_EQ(desired(-3), -3);
+  c_.line("I140=1");
+  for (int n = 0; n < 100; ++n) desired(1000);
+  EXPECT_NEAR(desired(1000), -3, 0.01) << "K = 1 stays";
+}
+
+// Ixx24 bit 13: what Ixx67 cuts of the error is taken off the master position and comes back when the motor does.
+TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsInTheMasterPosition) {
+  c_.line("I167=160");
+  close();
+  EXPECT_EQ(desired(50), 50) << "bit 13 = 0: the error stays";
+  EXPECT_EQ(desired(0), 0);
+  c_.line("I124=$802001");
+  const auto actual = [](double counts) { motors[0].actual = std::llround(counts * kCount); };
+  const auto word = [this] { return std::pair<std::string, std::string>(c_.line("RX$8D"), c_.line("RY$8D")); };
+  EXPECT_EQ(desired(7), 7) << "within 10 counts";
+  EXPECT_EQ(word(), std::make_pair(std::string("0"), std::string("0")));
+  EXPECT_EQ(desired(50), 10);
+  EXPECT_EQ(motors[0].desired_step, 3 * kCount);
+  EXPECT_EQ(word().second, std::to_string(-40 * kCount)) << "40 counts less";
+  EXPECT_EQ(hal_signed(*hal_y(0x8D)), -40 * kCount) << "in memory too";
+  actual(25);
+  EXPECT_EQ(desired(50), 35);
+  actual(45);
+  EXPECT_EQ(desired(50), 50) << "all of it has come back";
+  EXPECT_EQ(word().second, "0");
+  EXPECT_EQ(desired(0), 35) << "the other way";
+  EXPECT_EQ(word().second, std::to_string(35 * kCount));
+  motor_kill(0);
+  position_loop_servo(0);
+  close();
+  EXPECT_EQ(motors[0].commanded, motors[0].actual);
+  EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), static_cast<double>(motors[0].actual) / kCount)
+      << "a loop that is opened forgets what it had not reached";
+  EXPECT_EQ(word().second, std::to_string(35 * kCount)) << "and its master position is what it was";
+  const double there = static_cast<double>(motors[0].trajectory) / kCount;
+  EXPECT_EQ(desired(there + 50), 55);
+  EXPECT_EQ(word().second, std::to_string(-5 * kCount));
+  c_.line("I124=$800001");
+  EXPECT_EQ(word().second, std::to_string(35 * kCount)) << "off: nothing is held back";
+  EXPECT_EQ(desired(there + 50), 95);
+  c_.line("I167=0");
+  actual(0);
+  motors[0].master = 0;
+  EXPECT_EQ(desired(50), 50) << "a velocity loop has no error to cut";
+}
+
+TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsBehindTheFilterToo) {
+  c_.line("I167=160 I124=$802001 I140=0.5");
+  close();
+  EXPECT_EQ(desired(16), 8);
+  EXPECT_EQ(desired(16), 10) << "12 by the filter";
+  EXPECT_EQ(desired(16), 10) << "13";
+  motors[0].actual = 100 * kCount;
+  EXPECT_EQ(desired(100), 90) << "55";
+  motors[0].actual = 50 * kCount;
+  EXPECT_EQ(desired(100), 60) << "95";
+  motors[0].actual = 75 * kCount;
+  EXPECT_EQ(desired(100), 80);
 }
 
 // Entries are sixteenths of a count at the end of each of four parts of 1000 counts; between them it is a line.
@@ -125,6 +246,69 @@ TEST_F(DesiredPosition, PositionTables) {
   EXPECT_EQ(at(125), 0);
 }
 
+// The loop is closed where the motor stands, tables or not.
+TEST_F(DesiredPosition, ALoopIsClosedWhereTheMotorIsInSpiteOfTables) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  close();
+  *hal_x(0x10F1) = 250 * 32;
+  desired(0, 1);
+  position_loop_servo(1);
+  EXPECT_NEAR(desired(0), 10, 0.005);
+  *hal_x(0x10F0) = 300 * 32;
+  position_loop_servo(0);
+  motor_kill(0);
+  position_loop_servo(0);
+  close();
+  EXPECT_EQ(motors[0].commanded, 300 * kCount);
+  EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), 300);
+  EXPECT_EQ(motors[0].desired_step, 0);
+}
+
+// motion:1.4/4: two tables of one target.
+TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
+  ASSERT_EQ(c_.line("#2 DEFINE COMP 2,#1D,#1,2000"), "");
+  ASSERT_EQ(c_.line("32 32"), "");
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  close();
+  desired(250, 1);
+  EXPECT_NEAR(desired(0), 10, 0.005);
+  EXPECT_NEAR(desired(1000), 1010 + 10 * 2 / 1000.0, 0.005) << "the other by where motor 1 was, 10 counts";
+  EXPECT_NEAR(desired(1000), 1010 + 2, 0.005);
+}
+
+// Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
+TEST_F(DesiredPosition, TablesGoByTheScalesOfBothMotors) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1 I108=24 I208=192");
+  close();
+  const auto at = [](double source) {
+    motors[1].trajectory = std::llround(source * 32 * 192);
+    desired_position_servo(1);
+    motors[0].trajectory = 0;
+    desired_position_servo(0);
+    return static_cast<double>(motors[0].commanded) / (32 * 24);
+  };
+  EXPECT_NEAR(at(250), 10, 0.01);
+  EXPECT_NEAR(at(625), -1, 0.01);
+  EXPECT_NEAR(at(-750), 10, 0.01);
+}
+
+// D:$90 of a motor without tables is the user's: actual position + D:$90 is what is reported.
+TEST_F(DesiredPosition, ACompensationThatIsWrittenIsTakenOff) {
+  close();
+  EXPECT_EQ(desired(5), 5);
+  c_.line("WY$90," + std::to_string(3 * kCount));
+  EXPECT_EQ(desired(5), 2);
+  *hal_x(0x10F0) = 2 * 32;
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("#1P"), "5");
+}
+
 TEST_F(DesiredPosition, TorqueTables) {
   ASSERT_EQ(c_.line("#1 DEFINE TCOMP 2,1000"), "");
   ASSERT_EQ(c_.line("25600 51200"), "");
@@ -138,12 +322,24 @@ TEST_F(DesiredPosition, TorqueTables) {
   desired(400);
   position_loop_servo(0);
   EXPECT_NEAR(motors[0].output / 256.0, -bits - 100, 0.1);
+  desired(500);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].output, 0) << "no sign, no torque";
+  c_.line("#2 DEFINE TCOMP 2,1000");
+  c_.line("256 256");
+  desired(600);
+  position_loop_servo(0);
+  EXPECT_NEAR(motors[0].output / 256.0, bits + 100, 0.1) << "of another motor";
 }
 
-// Ixx85 a servo interrupt, when the direction has turned by more than Ixx87.
+// Ixx85 a background pass, when the direction has turned by more than Ixx87.
 TEST_F(DesiredPosition, Backlash) {
   c_.line("I185=16 I186=80 I187=64");
   close();
+  const auto desired = [](double trajectory) {
+    desired_position_pass();
+    return DesiredPosition::desired(trajectory);
+  };
   EXPECT_EQ(desired(100), 100);
   EXPECT_EQ(desired(96), 96) << "4 counts back are hysteresis";
   EXPECT_FALSE(desired_position_backlash_is_down(0));
@@ -155,6 +351,62 @@ TEST_F(DesiredPosition, Backlash) {
   EXPECT_EQ(desired(99.5), 96.5);
   c_.line("I185=8388607");
   EXPECT_EQ(desired(99.5), 99.5) << "at once";
+  EXPECT_EQ(desired(95), 90);
+  EXPECT_EQ(desired(99.25), 99.25) << "hysteresis is counted from where it has turned";
+}
+
+TEST_F(DesiredPosition, BacklashWaitsForTheBackground) {
+  c_.line("I185=16 I186=80 I187=0");
+  close();
+  c_.line("");
+  EXPECT_EQ(desired(100), 100);
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(desired(99), 99 - 0) << "no pass yet";
+  c_.line("");
+  EXPECT_EQ(desired(99), 98);
+  EXPECT_EQ(desired(99), 98);
+  c_.line("");
+  EXPECT_EQ(desired(99), 97);
+  c_.line("I186=0");
+  EXPECT_EQ(desired(99), 98) << "it goes as it comes";
+  c_.line("I185=0");
+  EXPECT_EQ(desired(99), 99) << "off: at once";
+  EXPECT_EQ(motors[0].compensation, 0);
+  EXPECT_EQ(desired(98), 98);
+  c_.line("I185=16 I186=80");
+  EXPECT_EQ(desired(98), 97) << "downwards it begins anew";
+}
+
+// A loop that is closed has moved nowhere yet, whatever its master has done before.
+TEST_F(DesiredPosition, BacklashBeginsWhereTheLoopIsClosed) {
+  c_.line("I185=8388607 I186=80 I187=64 I105=$10F5 I107=96 I106=1");
+  for (const double counts : {-300.0, 300.0, -300.0}) {
+    close();
+    master(counts);
+    const double there = static_cast<double>(motors[0].trajectory) / kCount;
+    (void)desired(there);
+    (void)desired(there + (counts < 0 ? 10 : -10));  // the last movement is the other way
+    motor_kill(0);
+    *hal_x(0x10F0) = static_cast<std::uint32_t>(-2 * counts * 32) & HAL_WORD_MASK;  // turned by hand meanwhile
+    position_loop_servo(0);
+    close();
+    const bool down = desired_position_backlash_is_down(0);
+    desired_position_pass();
+    (void)desired(static_cast<double>(motors[0].trajectory) / kCount);
+    EXPECT_EQ(desired_position_backlash_is_down(0), down) << counts;
+  }
+}
+
+// Positions are counted from elsewhere: no movement.
+TEST_F(DesiredPosition, BacklashKnowsNothingOfAnotherZero) {
+  c_.line("I185=8388607 I186=80 I187=64");
+  close();
+  for (const double by : {-1000.0, 1000.0}) {
+    const double there = static_cast<double>(motors[0].trajectory) / kCount;
+    desired_position_shift(0, std::llround(by * kCount));
+    desired_position_pass();
+    EXPECT_EQ(desired(there + by), there + by);
+    EXPECT_FALSE(desired_position_backlash_is_down(0));
+  }
 }
 
 TEST_F(DesiredPosition, BacklashTables) {
@@ -165,6 +417,7 @@ TEST_F(DesiredPosition, BacklashTables) {
   EXPECT_EQ(desired(500), 500);
   *hal_x(0x10F0) = 500 * 32;
   position_loop_servo(0);
+  desired_position_pass();
   EXPECT_NEAR(desired(499), 499 - 5 - 1, 0.01);
 }
 

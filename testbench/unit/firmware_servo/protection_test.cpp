@@ -2,56 +2,19 @@
 // words stand in the fake servo IC.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
 #include <string>
 
-#include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/firmware_servo/protection_rig.h"
 
 extern "C" {
-#include "firmware/hal/hal.h"
+#include "firmware/base/status.h"
 #include "firmware/motion/conversion_table.h"
-#include "firmware/motion/motor.h"
-#include "firmware/motion/motor_state.h"
-#include "firmware/motion/protection.h"
 }
 
 namespace brick {
 namespace {
 
-constexpr std::uint32_t kSource = 0x10F0, kFlags = 0x78000, kControl = 0x78005, kEnable = 1u << 14;
-constexpr std::uint32_t kFault = 1u << 15, kPositive = 1u << 17, kNegative = 1u << 18;
-constexpr int kFine = 32 * 96;  // position units of a count
-
-class Protection : public ::testing::Test {
- protected:
-  Protection() {
-    // Motors 1, 2 and 5 on words that the test writes; 1 and 2 in coordinate system 1, 5 in none.
-    c_.line("I8000=0 I103=$10F0 I104=$10F0 I203=$10F1 I204=$10F1 I503=$10F4 I504=$10F4");
-    c_.line("I124,3,100=$800001 I424=$800001 I524=$800001 I100=1 I200=1 I500=1 &1#1->X #2->Y");
-    servo();
-  }
-  void servo(unsigned interrupts = 1) { c_.servo(interrupts); }
-  static void counts(unsigned motor, double counts) {
-    *hal_x(kSource + motor - 1) = static_cast<std::uint32_t>(std::lround(counts * 32)) & HAL_WORD_MASK;
-  }
-  static void flags(unsigned motor, std::uint32_t bits) { *hal_x(flag_word(motor)) = bits; }
-  static std::uint32_t flag_word(unsigned motor) { return kFlags + 0x100 * ((motor - 1) / 4) + 8 * ((motor - 1) % 4); }
-  static bool enabled(unsigned motor) { return (*hal_x(flag_word(motor) + 5) & kEnable) != 0; }
-  static motor_loop loop(unsigned motor) { return motors[motor - 1].loop; }
-  bool status1(unsigned motor, int bit) { return (word(motor, 0) >> bit & 1) != 0; }
-  bool status2(unsigned motor, int bit) { return (word(motor, 6) >> bit & 1) != 0; }
-  unsigned long word(unsigned motor, unsigned from) {
-    c_.line("");  // a pass of protection before the answer
-    return std::stoul(c_.line("#" + std::to_string(motor) + "?").substr(from, 6), nullptr, 16);
-  }
-  void close_all() {
-    for (const unsigned motor : {1u, 2u, 5u}) ASSERT_TRUE(motor_close(motor - 1));
-    servo();
-  }
-
-  Controller c_;
-};
+using Protection = ProtectionRig;
 
 TEST_F(Protection, ClosingEnables) {
   EXPECT_FALSE(enabled(1));
@@ -60,7 +23,7 @@ TEST_F(Protection, ClosingEnables) {
   EXPECT_TRUE(enabled(1));
   EXPECT_FALSE(enabled(2));
   servo();
-  c_.line("");
+  protection_pass();
   // activated, enabled, integration mode, desired velocity 0; assigned X, enabled, in position
   EXPECT_EQ(c_.line("#1?"), "89200007C001");
   motor_kill(0);
@@ -85,7 +48,11 @@ TEST_F(Protection, EnableGoesWithItsFlagWord) {
   EXPECT_FALSE(enabled(1)) << "bit 16: not used";
   EXPECT_FALSE(enabled(2));
   c_.line("I124=$840001");
-  EXPECT_FALSE(enabled(1)) << "bit 18: over MACRO";
+  EXPECT_FALSE(enabled(1)) << "bits 19, 18 = 01: capture and amplifier flags over MACRO";
+  c_.line("I124=$8C0001");
+  EXPECT_TRUE(enabled(1)) << "11: capture flags only";
+  c_.line("I124=$880001");
+  EXPECT_FALSE(enabled(1)) << "10: amplifier flags";
   c_.line("I124=$800001");
   EXPECT_TRUE(enabled(1));
   c_.line("I100=0");
@@ -112,7 +79,7 @@ TEST_F(Protection, FollowingErrorWarnsAndTrips) {
   EXPECT_EQ(loop(1), LOOP_CLOSED);
   counts(1, 100.0625);
   servo();
-  c_.line("");
+  protection_pass();
   EXPECT_EQ(loop(1), LOOP_KILLED);
   EXPECT_FALSE(enabled(1));
   EXPECT_TRUE(status2(1, 2));
@@ -121,7 +88,7 @@ TEST_F(Protection, FollowingErrorWarnsAndTrips) {
   EXPECT_FALSE(status2(1, 2)) << "closed again";
   counts(1, 9999);
   servo();
-  c_.line("");
+  protection_pass();
   EXPECT_EQ(loop(1), LOOP_CLOSED);
 }
 
@@ -138,11 +105,86 @@ TEST_F(Protection, OthersAreKilledAsIxx24Says) {
     close_all();
     counts(1, 3000);
     servo();
-    c_.line("");
+    protection_pass();
     EXPECT_EQ(loop(1), LOOP_KILLED) << one.mode;
     EXPECT_EQ(loop(2) == LOOP_KILLED, one.second) << one.mode;
     EXPECT_EQ(loop(5) == LOOP_KILLED, one.fifth) << one.mode;
   }
+}
+
+// A program of a motor that is killed ends, in other coordinate systems too; one whose motors stay on is aborted with
+// them on.
+TEST_F(Protection, ProgramsOfKilledMotorsAreAborted) {
+  struct {
+    const char* mode;
+    bool second_on, other_runs;
+  } const cases[] = {{"$800001", false, false}, {"$A00001", false, true}, {"$C00001", true, true}};
+  for (const auto& one : cases) {
+    ASSERT_EQ(c_.line(std::string("I124=") + one.mode + " I111=1600 I211=0 I511=0 I216=9999 I516=9999"), "");
+    ASSERT_EQ(c_.line("&2#5->X #1K #2K #5K"), "");
+    for (const unsigned motor : {1u, 2u, 5u}) counts(motor, 0);
+    servo(3);
+    run({"INC TM1000 TA20 TS0 X0 Y5000", "Y5000"});
+    ASSERT_EQ(c_.line("&2B1R"), "") << "Y of &2 is virtual";
+    follow(30);
+    ASSERT_TRUE(runs(1) && runs(2));
+    counts(1, 101);
+    servo(3);
+    EXPECT_EQ(loop(1), LOOP_KILLED);
+    EXPECT_FALSE(runs(1)) << one.mode;
+    EXPECT_EQ(runs(2), one.other_runs) << one.mode;
+    EXPECT_EQ(loop(2) == LOOP_CLOSED, one.second_on) << one.mode;
+    EXPECT_EQ(loop(5) == LOOP_CLOSED, one.other_runs) << one.mode;
+    EXPECT_FALSE(status2(2, 2) || status2(5, 2)) << "they have not tripped";
+    c_.line("&2A");
+    follow(100);
+  }
+}
+
+// motion:6.5, rule 2: with I13 = 1 at each servo interrupt, without passes.
+TEST_F(Protection, ForegroundInPosition) {
+  c_.line("I128=160 I188=255");
+  ASSERT_TRUE(motor_close(0));
+  servo(3);
+  EXPECT_FALSE(status2(1, 13));
+  c_.line("I13=1");
+  servo(3);
+  EXPECT_TRUE(status2(1, 13));
+  EXPECT_FALSE(status2(1, 0));
+  counts(1, 10);
+  servo(1);
+  EXPECT_FALSE(status2(1, 13));
+  counts(1, 9.9);
+  servo(1);
+  EXPECT_TRUE(status2(1, 13));
+  motor_kill(0);
+  servo(1);
+  EXPECT_FALSE(status2(1, 13));
+  ASSERT_TRUE(motor_close(0));
+  servo(1);
+  EXPECT_TRUE(status2(1, 13));
+  c_.line("I13=0");
+  EXPECT_FALSE(status2(1, 13));
+}
+
+TEST_F(Protection, NothingIsControlledWithoutClocks) {
+  run({"TM1000 X100"});
+  servo(6);
+  ASSERT_TRUE(runs());
+  flags(1, kFault);  // what is read is worth nothing either
+  status_show(STATUS_NO_PHASE_CLOCK, true);
+  protection_pass();
+  for (const unsigned motor : {1u, 2u, 5u}) {
+    EXPECT_EQ(loop(motor), LOOP_KILLED);
+    EXPECT_FALSE(enabled(motor));
+    EXPECT_FALSE(status2(motor, 3));
+  }
+  EXPECT_FALSE(runs());
+  EXPECT_EQ(c_.line("#1J/"), "ERR018");
+  status_show(STATUS_NO_PHASE_CLOCK, false);
+  flags(1, 0);
+  EXPECT_EQ(c_.line("#1J/"), "");
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
 }
 
 TEST_F(Protection, AmplifierFault) {
@@ -156,11 +198,12 @@ TEST_F(Protection, AmplifierFault) {
   ASSERT_TRUE(motor_close(0));
   EXPECT_FALSE(status2(1, 3));
   c_.line("I124=$000001");
+  protection_pass();
   EXPECT_EQ(loop(1), LOOP_KILLED) << "bit 23 = 0: a low input is a fault";
   c_.line("I124=$100001");
   ASSERT_TRUE(motor_close(0));
   flags(1, kFault);
-  c_.line("");
+  protection_pass();
   EXPECT_EQ(loop(1), LOOP_CLOSED) << "bit 20: not looked at";
 }
 
@@ -184,18 +227,49 @@ TEST_F(Protection, InPositionAfterItsScans) {
   EXPECT_FALSE(motors[0].found.in_position);
 }
 
+// A motor that follows a master is on its way, however near it is: desired velocity 0 is asked for.
+TEST_F(Protection, InPositionNeedsACommandedStandstill) {
+  c_.line("I128=160 I105=$10F6 I107=96");
+  ASSERT_TRUE(motor_close(0));
+  c_.line("I106=1");
+  follow(6);
+  EXPECT_TRUE(status2(1, 0) && status1(1, 13));
+  for (std::uint32_t n = 1; n < 20; ++n) {
+    *hal_x(0x10F6) = 32 * n;
+    follow(1);
+  }
+  EXPECT_NEAR(at(1), 19, 1);
+  EXPECT_FALSE(status2(1, 0) || status1(1, 13));
+  follow(6);
+  EXPECT_TRUE(status2(1, 0) && status1(1, 13));
+}
+
+// Nor is one whose jog waits for its Ixx92 in position: who polls would take it for done.
+TEST_F(Protection, AJogThatWaitsIsNotInPosition) {
+  c_.line("I192=100 I111=0");
+  ASSERT_TRUE(motor_close(0));
+  follow(6);
+  ASSERT_TRUE(status2(1, 0));
+  c_.line("#1J=500");
+  follow(6);
+  EXPECT_EQ(motors[0].desired_step, 0);
+  EXPECT_FALSE(status2(1, 0));
+}
+
 TEST_F(Protection, SignalsOfTheSelectedSystem) {
   c_.line("&1 I211=0 I212=160");
   close_all();
-  c_.line("");
+  protection_pass();
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_IPOS);
   counts(2, 50);
   servo();
-  c_.line("");
+  protection_pass();
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_F1ER);
   c_.line("I211=160");
+  protection_pass();
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), HAL_SIGNAL_EROR);
   c_.line("&2");
+  protection_pass();
   EXPECT_EQ(fake_hal_signals() & (HAL_SIGNAL_IPOS | HAL_SIGNAL_F1ER | HAL_SIGNAL_EROR), 0u);
 }
 
@@ -214,7 +288,7 @@ TEST_F(Protection, LimitsShowAndStop) {
   for (int n = 0; n < 300; ++n) {
     counts(1, static_cast<double>(motors[0].commanded) / kFine);
     servo();
-    c_.line("");
+    protection_pass();
   }
   EXPECT_EQ(motors[0].desired_step, 0);
   EXPECT_EQ(loop(1), LOOP_CLOSED);

@@ -81,6 +81,47 @@ class PythonLint(Tree):
         self.expect(self.run_tool("lint_python.py"), 1, "E501")
 
 
+class Names(Tree):
+    """A block whose model, page, tests, proof or component is not where its name says."""
+
+    def setUp(self):
+        super().setUp()
+        for file in ["rtl/watchdog.core", "rtl/regs.core", "rtl/board/watchdog.sv", "systemc/board/watchdog.h",
+                     "docs/watchdog.md", "testbench/unit/board/watchdog_edges_test.cpp",
+                     "testbench/formal/watchdog.sv", "systemc/component/watchdog/pins.h"]:
+            self.write(file, "")
+
+    def check(self, status, text):
+        self.expect(self.run_tool("check_names.py"), status, text)
+
+    def test_a_block_under_one_name_passes(self):
+        self.check(0, "names of blocks: clean")
+
+    def test_what_is_missing_under_the_name_is_named(self):
+        for file, text in [("systemc/board/watchdog.h", "expected its model at systemc/board/watchdog.h"),
+                           ("docs/watchdog.md", "watchdog: expected its page at docs/watchdog.md"),
+                           ("testbench/unit/board/watchdog_edges_test.cpp", "watchdog: expected tests at")]:
+            with self.subTest(file):
+                (self.root / file).unlink()
+                self.check(1, text)
+                self.write(file, "")
+
+    def test_a_folder_of_tests_is_enough(self):
+        (self.root / "testbench/unit/board/watchdog_edges_test.cpp").unlink()
+        self.write("testbench/unit/watchdog/edges_test.cpp", "")
+        self.check(0, "clean")
+
+    def test_a_core_without_its_module_fails(self):
+        self.write("rtl/dog.core", "")
+        self.check(1, "rtl/dog.core: no module dog")
+
+    def test_a_proof_and_a_component_without_a_module_fail(self):
+        self.write("testbench/formal/dog.sv", "")
+        self.write("systemc/component/dog/pins.h", "")
+        self.check(1, "testbench/formal/dog.sv: no module has this name")
+        self.check(1, "systemc/component/dog: no module has this name")
+
+
 class Layers(Tree):
     """Both trees, small: an include upward, a circle, a declaration away from its definition."""
 

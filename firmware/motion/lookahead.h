@@ -1,0 +1,62 @@
+/* Lookahead (motion:7.3, motion:7.4): segments are kept in the buffer of DEFINE LOOKAHEAD before they are handed to the
+ * servo task, and the square w of the rate at which each knot between two of them is passed is chosen so that no motor
+ * exceeds Ixx16 and Ixx17.
+ *
+ *   oldest            front                              end: the last knot that is known
+ *     |  executed       |  w at the front is fixed         |  w = 0, unless the sequence ends there
+ *     +--+--+--+--+--+--+--+--+--+--+--+--+--+--+--+--+--+-+
+ *                       |-->  forward: the largest w       |
+ *                              that the sweep allows    <--|  sweep: the largest w from which it can stop
+ *
+ * A sweep goes back from the end to the front. It is made when the front has come to where the last one was still
+ * about its own end, a quarter of Isx20 on. Real-time task, in slices. */
+#ifndef FIRMWARE_MOTION_LOOKAHEAD_H
+#define FIRMWARE_MOTION_LOOKAHEAD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/motion/path.h"
+#include "firmware/motion/segment_piece.h"
+
+enum lookahead_order {
+  LOOKAHEAD_NONE,
+  LOOKAHEAD_STOP,
+  LOOKAHEAD_FORWARD,
+  LOOKAHEAD_BACKWARD,
+  LOOKAHEAD_ONE_FORWARD, /* a segment */
+  LOOKAHEAD_ONE_BACKWARD
+};
+
+/* A piece for the servo task: from one sixteenth of a segment to another, backwards too. */
+struct lookahead_piece {
+  uint32_t segment, first, last;
+  int32_t rate; /* w at its begin */
+  int64_t time; /* trajectory time */
+  int32_t warp; /* as piece.warp */
+  uint32_t number;
+  struct path_line line;
+};
+
+/* DEFINE, DELETE: background. How many segments of a system with so many motors are there room for. */
+uint32_t lookahead_capacity(uint32_t cs, uint32_t motor_count);
+
+/* A sequence of segments of `period` ms begins: whether it is looked ahead. */
+bool lookahead_begin(uint32_t cs, uint32_t period);
+bool lookahead_is_full(uint32_t cs);
+uint32_t lookahead_left(uint32_t cs); /* segments that are not handed over */
+/* The next control point: of the motors by number; move and line at it. */
+void lookahead_add(uint32_t cs, const int64_t point[], uint32_t number, const struct path_line* line);
+void lookahead_close(uint32_t cs); /* the points so far are all */
+/* `hurry`: the servo task runs short. False: there is none yet. */
+bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece);
+bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing was to be done */
+/* The servo task has not begun `piece` and what came behind it, and will not: the front is there again. */
+void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
+void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */
+bool lookahead_stands(uint32_t cs);                         /* or will, behind what is handed over */
+uint32_t lookahead_state(uint32_t cs, bool moves);          /* for Isx21 */
+bool lookahead_is_over(uint32_t cs);                        /* all of the sequence is handed over */
+void lookahead_points(uint32_t cs, uint32_t segment, uint32_t motor, int64_t points[SPLINE_POINTS]);
+
+#endif

@@ -1,0 +1,38 @@
+/* Records of the lookahead buffer: a control point of each motor, what the limits ask at the knot of the same number,
+ * and the rate there. The words of DEFINE LOOKAHEAD are counted in user memory, 2 x + 4 a record for x motors; what is
+ * in them stands in memory that no user can write. */
+#ifndef FIRMWARE_MOTION_LOOKAHEAD_BUFFER_H
+#define FIRMWARE_MOTION_LOOKAHEAD_BUFFER_H
+
+#include <stdint.h>
+
+#include "firmware/motion/path.h"
+
+struct lookahead_motor { /* 2 words */
+  int64_t point;
+  int32_t pace, bend; /* at the knot: motion/lookahead_limits.h */
+};
+
+struct lookahead_record { /* 4 words, and the motors */
+  int32_t rate;           /* w at the knot: that can stop, or once it is handed over the one taken */
+  int32_t cap;            /* of w in the segment behind the knot, by the velocities */
+  uint32_t number;        /* of the move at the control point */
+  struct path_line line;
+};
+
+struct lookahead_buffer {
+  uint64_t* words;
+  uint32_t stride, records;
+};
+
+/* The buffer of a system with so many motors; no records: there is none. */
+void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_buffer* buffer);
+
+static inline struct lookahead_record* lookahead_at(const struct lookahead_buffer* b, uint32_t number) {
+  return (struct lookahead_record*)&b->words[(number % b->records) * b->stride];
+}
+static inline struct lookahead_motor* lookahead_motors(const struct lookahead_buffer* b, uint32_t number) {
+  return (struct lookahead_motor*)&b->words[(number % b->records) * b->stride + 4u];
+}
+
+#endif

@@ -1,0 +1,306 @@
+/* Rates of segments: sweeps, what is handed over next, stops and the way back (motion:7.4, motion:7.5). */
+#include "firmware/base/mathematics.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/lookahead.h"
+#include "firmware/motion/lookahead_limits.h"
+#include "firmware/motion/lookahead_state.h"
+
+enum { SQUARE_PARTS = 2 * PIECE_PARTS * PIECE_PARTS };
+enum { STOP_PARTS = PIECE_PARTS / 4 }; /* a stop is at a quarter of a segment */
+enum { SLOWEST = 64 };                 /* a w that is no more than the rounding of sums: 0 */
+
+/* Of a part of a segment, in sixteenths of it: the motors at its ends. */
+static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
+  const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
+                               *next = lookahead_motors(&l->buffer, segment + 1u);
+  limits_begin();
+  for (uint32_t slot = 0, left = l->motors; left != 0; left &= left - 1u, slot++) {
+    const int32_t a0 = at[slot].bend, turn = next[slot].bend - a0;
+    struct limits_motor m = {{at[slot].pace, next[slot].pace}, {a0, next[slot].bend}};
+    for (uint32_t i = 0; i < 2u; i++) {
+      const int32_t s = (int32_t)(i == 0 ? first : last);
+      if (s % PIECE_PARTS == 0) continue;
+      m.bend[i] = a0 + (int32_t)((int64_t)turn * s / PIECE_PARTS);
+      m.pace[i] = at[slot].pace + (int32_t)(((int64_t)a0 * 2 * PIECE_PARTS + (int64_t)turn * s) * s / SQUARE_PARTS);
+    }
+    limits_add(&m, last - first);
+  }
+}
+
+static void load(const struct look* l, uint32_t segment) { load_part(l, segment, 0, PIECE_PARTS); }
+
+/* Of w at a knot: the velocities in the segments at both sides. */
+static int32_t cap_at(const struct look* l, uint32_t knot) {
+  const int32_t behind = knot == look_oldest(l) ? RATE_FULL : lookahead_at(&l->buffer, knot - 1u)->cap;
+  const int32_t ahead = knot == look_end(l) ? RATE_FULL : lookahead_at(&l->buffer, knot)->cap;
+  return behind < ahead ? behind : ahead;
+}
+
+/* Sweeps ----------------------------------------------------------------------------------------------------------- */
+
+/* The part of the window in which a sweep does not see its own end. */
+static uint32_t spare(const struct look* l) { return l->length / 4u != 0 ? l->length / 4u : 1u; }
+
+static int32_t* rate_at(const struct look* l, uint32_t knot) { return &lookahead_at(&l->buffer, knot)->rate; }
+
+/* At its first knot, and at its last, a sequence stands whatever w is. */
+static bool is_free(const struct look* l, uint32_t knot) {
+  return knot == 0 ? look_oldest(l) == 0 : l->closed && knot == look_end(l);
+}
+
+static void begin_sweep(struct look* l, uint32_t from) {
+  l->sweeping = true;
+  l->rates_back = l->backward;
+  l->sweep = l->sweep_end = from;
+  *rate_at(l, from) = is_free(l, from) ? cap_at(l, from) : 0;
+}
+
+static void end_sweep(struct look* l) {
+  l->sweeping = false;
+  l->swept = l->sweep_end;
+  const uint32_t doubtful = l->length - spare(l);
+  const bool whole = l->closed && l->swept == look_end(l);
+  l->good = whole ? l->swept : l->swept > doubtful ? l->swept - doubtful : 0u;
+}
+
+static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
+  const bool at_free = l->part == 0 && is_free(l, l->front); /* there it may begin with any w */
+  const uint32_t end = look_end(l), last = at_free ? l->front : l->front + 1u;
+  if (end <= l->front) return false;
+  if (!l->sweeping) {
+    const bool due = end - l->swept >= spare(l) && (lookahead_is_full(cs) || hurry);
+    const bool closes = l->closed && l->good < end;
+    if (!due && !closes && !(hurry && end > l->swept)) return false;
+    begin_sweep(l, end);
+    return true;
+  }
+  if (l->sweep <= last) {
+    end_sweep(l);
+    return true;
+  }
+  const uint32_t knot = l->sweep - 1u;
+  load(l, knot);
+  const int32_t rate = limits_reach(LIMITS_FIRST, *rate_at(l, l->sweep), cap_at(l, knot));
+  l->sweep = knot;
+  if (rate == *rate_at(l, knot) && knot < l->swept) l->sweep = last; /* from here on all is as it was */
+  *rate_at(l, knot) = rate;
+  return true;
+}
+
+/* For the way back: from the oldest knot to the front, all of it, before it begins. */
+static bool sweep_back(struct look* l) {
+  const uint32_t oldest = look_oldest(l), last = l->front + (l->part != 0 ? 1u : 0u);
+  if (l->swept_back) return false;
+  if (!l->sweeping) {
+    begin_sweep(l, oldest);
+    return true;
+  }
+  if (l->sweep >= last) {
+    l->sweeping = false;
+    l->swept_back = true;
+    return true;
+  }
+  load(l, l->sweep);
+  const uint32_t knot = l->sweep + 1u;
+  *rate_at(l, knot) = limits_reach(LIMITS_SECOND, *rate_at(l, l->sweep), cap_at(l, knot));
+  l->sweep = knot;
+  return true;
+}
+
+bool lookahead_sweep(uint32_t cs, bool hurry) {
+  struct look* l = &looks[cs];
+  if (!l->limits || l->state != LOOK_GOES) return false;
+  return l->backward ? sweep_back(l) : sweep_forward(cs, l, hurry);
+}
+
+/* Pieces ----------------------------------------------------------------------------------------------------------- */
+
+/* 2 T / (root w0 + root w1); the share of its time and that of the way differ by warp u (1 - u). */
+static void set_time(const struct look* l, int32_t from, int32_t to, struct lookahead_piece* piece) {
+  const uint32_t parts = piece->last > piece->first ? piece->last - piece->first : piece->first - piece->last;
+  piece->warp = 0;
+  piece->time = ((int64_t)(uint32_t)l->period << TRAJECTORY_FRACTION_BITS) * parts / PIECE_PARTS;
+  if (from == RATE_FULL && to == RATE_FULL) return;
+  const double first = math_square_root((double)from), second = to == from ? first : math_square_root((double)to);
+  slice_pause();
+  const double sum = first + second;
+  slice_pause();
+  const double time = (double)parts / 8.0 * l->period / sum * (double)(1 << (RATE_BITS / 2));
+  slice_pause();
+  piece->time = math_to_integer(
+      math_scale(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, TRAJECTORY_FRACTION_BITS));
+  slice_pause();
+  if (from != to) piece->warp = (int32_t)math_to_integer((first - second) / sum * (double)PIECE_WARP_ONE);
+}
+
+/* To `last` sixteenths of a segment, with w there. */
+static void hand(struct look* l, uint32_t segment, uint32_t first, uint32_t last, int32_t to,
+                 struct lookahead_piece* piece) {
+  *piece = (struct lookahead_piece){.segment = segment, .first = first, .last = last, .rate = l->rate};
+  set_time(l, l->rate, to, piece);
+  piece->number = lookahead_at(&l->buffer, segment + 2u)->number;
+  piece->line = lookahead_at(&l->buffer, segment + 2u)->line;
+  l->begun = true;
+  l->rate = to;
+  l->front = last == PIECE_PARTS ? segment + 1u : segment;
+  l->part = last % PIECE_PARTS;
+}
+
+/* Ahead of the front, in its direction. False: there is none. */
+struct next_part {
+  uint32_t segment, first, last; /* sixteenths */
+  uint32_t knot;                 /* behind it */
+};
+static bool find_part(const struct look* l, struct next_part* p) {
+  if (!l->backward) {
+    *p = (struct next_part){l->front, l->part, PIECE_PARTS, l->front + 1u};
+    return l->front < look_end(l);
+  }
+  const uint32_t segment = l->part != 0 ? l->front : l->front - 1u;
+  *p = (struct next_part){segment, l->part != 0 ? l->part : PIECE_PARTS, 0, segment};
+  return l->part != 0 || l->front > look_oldest(l);
+}
+
+static void load_next(const struct look* l, const struct next_part* p, uint32_t last) {
+  load_part(l, p->segment, p->first < last ? p->first : last, p->first < last ? last : p->first);
+}
+
+static enum limits_end far_end(const struct look* l) { return l->backward ? LIMITS_FIRST : LIMITS_SECOND; }
+
+static void stand(struct look* l) {
+  l->state = LOOK_STANDS;
+  l->single = false;
+  l->rate = 0;
+}
+
+/* As soon as it can: within the next part, at a quarter of it, or as slow as can be at its end. */
+static bool stop(struct look* l, struct lookahead_piece* piece) {
+  struct next_part p;
+  if (l->rate < SLOWEST || !find_part(l, &p)) {
+    stand(l);
+    return false;
+  }
+  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
+  for (uint32_t i = STOP_PARTS; i <= PIECE_PARTS; i += STOP_PARTS) {
+    const uint32_t last = l->backward ? p.first - i : p.first + i;
+    load_next(l, &p, last);
+    int32_t least = limits_least(far_end(l), l->rate, cap);
+    if (least >= 0 && least < SLOWEST) least = 0;
+    const bool over = last == p.last;
+    if (least != 0 && !over) continue;
+    hand(l, p.segment, p.first, last, least >= 0 ? least : l->rate < cap ? l->rate : cap, piece);
+    if (l->rate == 0) stand(l);
+    return true;
+  }
+  return false;
+}
+
+/* From rest to the next knot and to rest again, in two parts. */
+static bool single(struct look* l, struct lookahead_piece* piece) {
+  struct next_part p;
+  if (!find_part(l, &p)) {
+    stand(l);
+    return false;
+  }
+  if (l->rate != 0) { /* the second part */
+    hand(l, p.segment, p.first, p.last, 0, piece);
+    stand(l);
+    return true;
+  }
+  const uint32_t middle = (p.first + p.last) / 2u;
+  const int32_t cap = lookahead_at(&l->buffer, p.segment)->cap;
+  load_next(l, &p, middle);
+  int32_t most = limits_most(far_end(l), 0, cap);
+  load_part(l, p.segment, l->backward ? p.last : middle, l->backward ? middle : p.last);
+  const int32_t down = limits_most(l->backward ? LIMITS_SECOND : LIMITS_FIRST, 0, cap);
+  if (down < most) most = down;
+  hand(l, p.segment, p.first, middle, most > 0 ? most : 1, piece);
+  return true;
+}
+
+/* Whether the front may go on: what the sweep says of the next knot is not about its own end, or time runs short. */
+static bool may_go_on(const struct look* l, bool hurry) {
+  if (!l->limits) return true;
+  if (l->backward) return l->swept_back;
+  if (l->front + 1u <= l->good) return true;
+  if (!hurry || l->front + 1u > l->swept) return false;
+  return !l->sweeping || *rate_at(l, l->front + 1u) != 0;
+}
+
+static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
+  struct next_part p;
+  if (!find_part(l, &p)) {
+    if (l->backward) stand(l);
+    return false;
+  }
+  if (l->single) return single(l, piece);
+  if (!may_go_on(l, hurry)) return false;
+  if (l->limits && is_free(l, l->front) && l->part == 0 && (!l->begun || l->rate == 0)) l->rate = *rate_at(l, l->front);
+  int32_t to = RATE_FULL;
+  if (l->limits) {
+    load_next(l, &p, p.last);
+    to = limits_most(far_end(l), l->rate, *rate_at(l, p.knot));
+    if (to < 0) to = *rate_at(l, p.knot);
+    if (to == 0 && l->rate == 0) {
+      if (!l->backward) return false; /* for want of what comes behind it */
+      return single(l, piece);
+    }
+  }
+  hand(l, p.segment, p.first, p.last, to, piece);
+  return true;
+}
+
+bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
+  struct look* l = &looks[cs];
+  if (l->state == LOOK_STANDS && l->next != LOOKAHEAD_NONE) {
+    const enum lookahead_order order = l->next;
+    l->next = LOOKAHEAD_NONE;
+    l->backward = order == LOOKAHEAD_BACKWARD || order == LOOKAHEAD_ONE_BACKWARD;
+    l->single = l->was_single = order == LOOKAHEAD_ONE_FORWARD || order == LOOKAHEAD_ONE_BACKWARD;
+    l->state = LOOK_GOES;
+    look_forget_sweeps(l);
+  }
+  if (l->state == LOOK_STANDS) return false;
+  return l->state == LOOK_STOPS ? stop(l, piece) : go(l, hurry, piece);
+}
+
+/* Orders ----------------------------------------------------------------------------------------------------------- */
+
+void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece) {
+  struct look* l = &looks[cs];
+  l->front = piece->first == PIECE_PARTS ? piece->segment + 1u : piece->segment;
+  l->part = piece->first % PIECE_PARTS;
+  l->rate = piece->rate;
+  l->backward = piece->first > piece->last;
+  if (l->state == LOOK_STANDS) l->state = LOOK_STOPS;
+}
+
+void lookahead_do(uint32_t cs, enum lookahead_order order) {
+  struct look* l = &looks[cs];
+  l->next = order == LOOKAHEAD_STOP ? LOOKAHEAD_NONE : order;
+  if (l->state == LOOK_STANDS) return;
+  const bool goes_on = order == (l->backward ? LOOKAHEAD_BACKWARD : LOOKAHEAD_FORWARD);
+  struct next_part p;
+  const bool valid =
+      l->rates_back == l->backward && find_part(l, &p) && (l->backward ? p.knot <= l->valid : p.knot >= l->valid);
+  if (!goes_on || l->single || !valid) {
+    l->state = LOOK_STOPS;
+    return;
+  }
+  l->next = LOOKAHEAD_NONE;
+  l->state = LOOK_GOES;
+}
+
+bool lookahead_stands(uint32_t cs) { return looks[cs].state == LOOK_STANDS && looks[cs].next == LOOKAHEAD_NONE; }
+
+uint32_t lookahead_state(uint32_t cs, bool moves) {
+  const struct look* l = &looks[cs];
+  const uint32_t direction = l->backward ? 1u : 0u;
+  return (moves ? 2u | direction : 0u) | (l->was_single ? 8u | 2u | direction : 0u);
+}
+
+bool lookahead_is_over(uint32_t cs) {
+  const struct look* l = &looks[cs];
+  return l->closed && l->state == LOOK_GOES && !l->backward && l->front == look_end(l) && l->part == 0;
+}

@@ -1,0 +1,68 @@
+/* Moves of a system whose paths are made of segments (motion:7.1): LINEAR, CIRCLE and DELAY with Isx13 above 0, in the
+ * order of the program, and where their trajectory is at a time. A queue of those that are calculated and not over yet;
+ * the first one that does not join ends a sequence of moves that blend.
+ *
+ *   progress of a move                 Each move goes along its own way: its progress rises from 0 to its time, with a
+ *        _/|        /                  change of velocity at its corner and one at the next corner. In a blend two
+ * moves
+ *      _/  |      _/                   are under way, and what they have made adds up. A straight one so has the
+ *   __/____|____ /                     velocities of motion:5.2, an arc stays on its circle.
+ *
+ * Times are ms of the program, counted from the corner at which the first move of the queue begins. */
+#ifndef FIRMWARE_MOTION_PATH_H
+#define FIRMWARE_MOTION_PATH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/motion/circle.h"
+#include "firmware/motion/coordinate_system.h"
+
+enum { PATH_MOVES = 4 };
+
+/* A line of a program and, if that has been called, the line from which everything began. */
+struct path_line {
+  struct program_place first, last;
+  bool called;
+};
+
+struct path_move {
+  bool joins;          /* blends with the one before it */
+  bool sharp, dwells;  /* if not: for its corner; Isx82 counts */
+  bool is_arc;         /* X, Y, Z go by `circle`, their deltas are those of its ends */
+  double time, change; /* Tm; length of the change of velocity at its beginning */
+  double acceleration, s_curve;
+  double start[AXIS_COUNT], delta[AXIS_COUNT], end[AXIS_COUNT];
+  struct circle circle;
+  uint32_t number; /* as coordinate_system.planned counts */
+  struct path_line line;
+};
+
+struct path {
+  struct path_move moves[PATH_MOVES];
+  uint32_t first, count;
+};
+
+/* Owner: R; the background while that is held off. */
+extern struct path paths[COORDINATE_SYSTEMS];
+
+static inline struct path_move* path_of(struct path* p, uint32_t ahead) {
+  return &p->moves[(p->first + ahead) % PATH_MOVES];
+}
+static inline bool path_is_full(uint32_t cs) { return paths[cs].count == PATH_MOVES; }
+
+/* How far it goes: moves from the first one that belong together, and whether the last of them comes to rest. */
+struct path_reach {
+  uint32_t count;
+  bool stops;
+};
+
+/* A move that joins is blended no earlier than `now`: what is before that has been used already. */
+void path_blend(struct path* p, uint32_t ahead, double now);
+double path_begins(struct path* p, uint32_t ahead); /* its change of velocity */
+double path_ends(struct path* p, uint32_t count);   /* behind the stop of the last of `count` moves */
+double path_corner(struct path* p, uint32_t ahead);
+void path_at(struct path* p, struct path_reach reach, double time, double position[AXIS_COUNT]);
+double path_pop(struct path* p); /* the first one is over; what to take off times */
+
+#endif

@@ -1,0 +1,152 @@
+#include "firmware/motion/plan_path.h"
+
+#include "firmware/base/mathematics.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/motion/circle.h"
+#include "firmware/motion/corner.h"
+#include "firmware/motion/path.h"
+#include "firmware/motion/plan_linear.h"
+#include "firmware/motion/plan_move.h"
+#include "firmware/variables/i_variables.h"
+
+enum { ISX97 = 1 }; /* behind Isx96 */
+
+#define LEAST_MS 0.5 /* of a move without acceleration time */
+
+/* The move under way, and its direction at its ends for the corner rules. One: there is one planner. */
+static struct path_move planning;
+static struct move corner_move;
+static double last_direction[AXIS_COUNT];
+
+/* Axes that are virtual have no path. */
+bool plan_by_segments(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  if (s->motors == 0 || i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) == 0) return false;
+  return s->mode == MODE_LINEAR || s->mode == MODE_CIRCLE1 || s->mode == MODE_CIRCLE2;
+}
+
+static enum circle_kind find_circle(uint32_t cs, struct path_move* m) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  static struct circle_line line;
+  for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
+    line.start[i] = s->position[AXIS_X + i];
+    line.end[i] = m->end[AXIS_X + i];
+    line.vector[i] = s->pending_vector[i];
+    line.normal[i] = s->normal[i];
+  }
+  line.vectors = s->pending_vectors & (ARC_RADIUS_BIT - 1u);
+  line.absolute = s->vector_absolute;
+  line.by_radius = (s->pending_vectors & ARC_RADIUS_BIT) != 0;
+  line.radius = s->pending_vector[CIRCLE_AXES];
+  line.counter = s->mode == MODE_CIRCLE2;
+  line.most = cs_real(cs, ISX96_ARC_LIMITS);
+  line.least = i_variable_read(i_cs_real(cs, ISX96_ARC_LIMITS) + ISX97);
+  return circle_of(&line, &m->circle);
+}
+
+/* The length of an arc counts as the way of one feedrate axis of X, Y, Z. */
+static uint32_t arc_ways(const struct coordinate_system* s, const struct path_move* m, uint32_t moving,
+                         double way[AXIS_COUNT]) {
+  const double length = circle_length(&m->circle);
+  bool counted = false;
+  for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
+    const uint32_t axis = AXIS_X + i, bit = 1u << axis;
+    way[axis] = m->circle.along[i];
+    moving &= ~bit;
+    if (!counted && ((s->feedrate_axes & bit) != 0 || ((s->feedrate_axes & AXIS_XYZ) == 0 && i == 0))) {
+      way[axis] = way[axis] == 0.0 ? length : math_square_root(length * length + way[axis] * way[axis]);
+      counted = true;
+    }
+    if (way[axis] != 0.0) moving |= bit;
+    slice_pause();
+  }
+  return moving;
+}
+
+static bool feed_time(uint32_t cs, const struct path_move* m, uint32_t moving, double* time) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const double centripetal = cs_real(cs, ISX78_CENTRIPETAL_LIMIT);
+  double way[AXIS_COUNT], fastest = 0.0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) way[axis] = m->delta[axis];
+  if (m->is_arc) {
+    moving = arc_ways(s, m, moving, way);
+    if (centripetal > 0.0) fastest = math_square_root(centripetal * circle_least_radius(&m->circle));
+  }
+  slice_pause();
+  return plan_feed_time(cs, way, moving, fastest, time);
+}
+
+static void set_times(uint32_t cs, struct path_move* m, double time) {
+  m->s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
+  m->acceleration = m->change = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), m->s_curve + m->s_curve);
+  slice_pause();
+  time = plan_larger(time, m->acceleration > 0.0 ? m->acceleration : LEAST_MS);
+  m->time = time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS;
+}
+
+/* Directions at its ends. */
+static void set_corner(uint32_t cs, struct path_move* m) {
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) corner_move.delta[axis] = last_direction[axis] = m->delta[axis];
+  if (m->is_arc) {
+    circle_direction(&m->circle, 0.0, &corner_move.delta[AXIS_X]);
+    circle_direction(&m->circle, 1.0, &last_direction[AXIS_X]);
+  }
+  corner_move.is_sharp = false;
+  corner_move.has_dwell = true;
+  corner_plan(cs, &corner_move);
+  m->sharp = corner_move.is_sharp;
+  m->dwells = corner_move.has_dwell;
+}
+
+static void push(uint32_t cs, const struct path_move* m) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct path* p = &paths[cs];
+  const bool blends = !s->unblended;
+  struct path_move* in = path_of(p, p->count);
+  *in = *m;
+  in->joins = blends && s->may_join;
+  in->line = (struct path_line){s->line.places[0], s->line.places[s->line.depth], s->line.depth != 0};
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    in->start[axis] = s->position[axis];
+    s->last_delta[axis] = last_direction[axis];
+    s->position[axis] = m->end[axis];
+  }
+  s->pending_axes = s->pending_triggers = s->pending_velocities = s->pending_vectors = 0;
+  s->may_join = blends;
+  s->was_matched = false;
+  in->number = ++s->planned;
+  p->count++;
+}
+
+enum run_time_error plan_path(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct path_move* m = &planning;
+  double time;
+  const uint32_t moving = plan_targets(cs, &corner_move, m->end);
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) m->delta[axis] = corner_move.delta[axis];
+  const enum circle_kind kind = s->mode == MODE_LINEAR ? CIRCLE_STRAIGHT : find_circle(cs, m);
+  if (kind == CIRCLE_IMPOSSIBLE) return RUN_TIME_RADIUS;
+  m->is_arc = kind == CIRCLE_ARC;
+  if (s->time_mode)
+    time = cs_real(cs, ISX89_FEEDRATE);
+  else if (!feed_time(cs, m, moving, &time))
+    return RUN_TIME_FEEDRATE;
+  set_times(cs, m, time);
+  set_corner(cs, m);
+  slice_pause();
+  push(cs, m);
+  return RUN_TIME_NONE;
+}
+
+void plan_path_delay(uint32_t cs, double milliseconds) {
+  struct path_move* m = &planning;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    m->delta[axis] = last_direction[axis] = 0.0;
+    m->end[axis] = coordinate_systems[cs].position[axis];
+  }
+  m->is_arc = m->sharp = false;
+  m->dwells = true;
+  set_times(cs, m, milliseconds);
+  slice_pause();
+  push(cs, m);
+}

@@ -1,0 +1,457 @@
+#include "firmware/motion/segment.h"
+
+#include "firmware/base/mathematics.h"
+#include "firmware/hal/hal.h"
+#include "firmware/kernel/slice.h"
+#include "firmware/motion/corner.h"
+#include "firmware/motion/lookahead.h"
+#include "firmware/motion/path.h"
+#include "firmware/motion/plan_move.h"
+#include "firmware/motion/segment_piece.h"
+#include "firmware/motion/system_motors.h"
+#include "firmware/variables/i_variables.h"
+
+enum {
+  ISX16 = 1,        /* behind Isx15 */
+  LEFT_OF_RING = 4, /* pieces of the ring that are for whatever follows */
+  LAST_POINTS = 3,  /* the first and the last point of a sequence stand so often */
+  SHORT_MS = 12,    /* of segments ahead of the servo task: what has no next move by then comes to its end */
+  AHEAD_MS = 24     /* more than so much is not made */
+};
+
+#define TIME_TOLERANCE 1e-6 /* ms by which a point may be before the end and still be it */
+
+/* The sequence that is being made. Owner: R, but for what is marked. */
+struct sequence {
+  bool runs;
+  bool handed;                         /* the servo task has its first pieces */
+  bool ends;                           /* it is known where: behind `joined` moves of the queue */
+  bool looks;                          /* its segments go through the lookahead buffer */
+  bool made;                           /* all its points are */
+  volatile enum lookahead_order order; /* B; R takes it */
+  bool closed;                         /* no further move joins: one of another kind waits for its place */
+  bool stops;                          /* segment_stop: at the end of the move that is under way. B sets */
+  uint32_t joined;
+  uint32_t points;    /* that are still to be made behind its end */
+  uint32_t unhanded;  /* pieces behind those that the servo task has */
+  int64_t period;     /* Isx13 */
+  double step;        /* program time of a segment: Isx13 with the override */
+  double override;    /* as it is now; 1: none */
+  double time;        /* of the last point */
+  struct piece timed; /* a piece of that period */
+  uint32_t under_way; /* moves of the queue that have begun at the last point, less one */
+  /* number and line of the move at the last two points */
+  uint32_t numbers[2];
+  struct path_line lines[2];
+};
+
+static struct sequence sequences[COORDINATE_SYSTEMS];
+/* The last control points of a motor, which belongs to one system. */
+static int64_t control[MOTORS][SPLINE_POINTS];
+/* Of the pieces of the rings. */
+static struct path_line piece_lines[COORDINATE_SYSTEMS][PIECES];
+static struct lookahead_piece looked[COORDINATE_SYSTEMS][PIECES];
+
+static uint32_t ahead_of(const struct coordinate_system* s) { return s->ring.added - s->ring.executing; }
+
+bool segment_is_busy(uint32_t cs) { return sequences[cs].runs || (paths[cs].count != 0 && !sequences[cs].stops); }
+
+bool segment_is_under_way(uint32_t cs) { return sequences[cs].runs; }
+
+bool segment_gives_way(uint32_t cs) {
+  if (!sequences[cs].runs || sequences[cs].handed) return true;
+  sequences[cs].closed = true;
+  return false;
+}
+
+/* While the last pieces of a sequence are executed too, as long as nothing is placed behind them. */
+bool segment_looks(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool ends = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS && !s->next_valid;
+  return sequences[cs].looks && (sequences[cs].runs || ends);
+}
+
+void segment_order(uint32_t cs, enum lookahead_order order) {
+  const uint32_t state = hal_mask_real_time();
+  if (segment_looks(cs)) {
+    sequences[cs].runs = true;
+    sequences[cs].order = order;
+  }
+  hal_unmask(state);
+}
+
+bool segment_stands(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return sequences[cs].runs && sequences[cs].looks && sequences[cs].order == LOOKAHEAD_NONE && lookahead_stands(cs) &&
+         !s->active && !s->next_valid && piece_ring_is_empty(&s->ring);
+}
+
+void segment_stop(uint32_t cs) {
+  if (segment_is_busy(cs)) sequences[cs].stops = true;
+}
+
+void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
+
+void segment_forget(uint32_t cs) {
+  sequences[cs].runs = sequences[cs].looks = sequences[cs].stops = false;
+  paths[cs].count = 0;
+}
+
+void segment_start_of(uint32_t cs, double position[AXIS_COUNT]) {
+  if (paths[cs].count == 0) return;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = path_of(&paths[cs], 0)->start[axis];
+}
+
+void segment_line(uint32_t cs, struct program_trace* trace) {
+  const struct path_line* line = &piece_lines[cs][coordinate_systems[cs].ring.executing % PIECES];
+  trace->depth = line->called ? 1u : 0u;
+  trace->places[0] = line->first;
+  trace->places[trace->depth] = line->last;
+}
+
+/* A motor's next control point; the older ones move up. */
+static void add_point(uint32_t motor, int64_t at) {
+  int64_t* points = control[motor];
+  for (uint32_t i = 0; i + 1u < SPLINE_POINTS; i++) points[i] = points[i + 1u];
+  points[SPLINE_POINTS - 1] = at;
+}
+
+static void hand_over(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  const uint32_t state = hal_mask_servo();
+  if (!q->handed) s->next_valid = s->placed = true;
+  for (; q->unhanded != 0; q->unhanded--) piece_ring_add(&s->ring);
+  hal_unmask(state);
+  q->handed = true;
+  s->first = false;
+  cs_busy |= 1u << cs;
+}
+
+/* Between four control points: the last ones, or those of a segment of the lookahead buffer. */
+static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  const uint32_t number = s->ring.added + q->unhanded;
+  struct piece* piece = piece_ring_at(&s->ring, number);
+  *piece = q->timed;
+  if (from != 0 && from->time != q->period) piece_set_time(piece, from->time);
+  if (from != 0) {
+    piece->warp = from->warp;
+    piece->from = (uint8_t)from->first;
+    piece->to = (uint8_t)from->last;
+    looked[cs][number % PIECES] = *from;
+  }
+  piece->motors = 0;
+  piece->move = from == 0 ? q->numbers[0] : from->number;
+  piece->continues = q->handed || q->unhanded != 0;
+  piece_lines[cs][number % PIECES] = from == 0 ? q->lines[0] : from->line;
+  slice_pause();
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    int64_t points[SPLINE_POINTS];
+    if (from != 0) lookahead_points(cs, from->segment, motor, points);
+    const struct cubic c = segment_cubic(from != 0 ? points : control[motor]);
+    if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
+    *piece_ring_cubic(&s->ring, number, motor) = c;
+    slice_pause();
+  }
+  q->unhanded++;
+}
+
+/* Move `ahead` of the queue is the one at the last point. */
+static void set_move(uint32_t cs, uint32_t ahead) {
+  struct sequence* q = &sequences[cs];
+  const struct path_move* m = path_of(&paths[cs], ahead);
+  q->under_way = ahead;
+  q->numbers[0] = q->numbers[1];
+  q->lines[0] = q->lines[1];
+  q->numbers[1] = m->number;
+  q->lines[1] = m->line;
+}
+
+static uint32_t short_ahead(const struct sequence* q) {
+  return 1u + (uint32_t)(((int64_t)SHORT_MS << TRAJECTORY_FRACTION_BITS) / q->period);
+}
+
+static uint32_t most_ahead(const struct sequence* q) {
+  const uint32_t most =
+      short_ahead(q) + 2u + (uint32_t)(((int64_t)(AHEAD_MS - SHORT_MS) << TRAJECTORY_FRACTION_BITS) / q->period);
+  return most < PIECES - LEFT_OF_RING ? most : PIECES - LEFT_OF_RING;
+}
+
+static void look_at_point(uint32_t cs) {
+  const struct sequence* q = &sequences[cs];
+  int64_t point[MOTORS];
+  for (uint32_t motor = 0; motor < MOTORS; motor++) point[motor] = control[motor][SPLINE_POINTS - 1];
+  lookahead_add(cs, point, q->numbers[1], &q->lines[1]);
+}
+
+/* A control point has been added. */
+static void use_point(uint32_t cs) {
+  if (sequences[cs].looks)
+    look_at_point(cs);
+  else
+    add_piece(cs, 0);
+}
+
+/* False: what is before it has to come first. */
+static bool begin(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  const struct path_move* m = path_of(&paths[cs], 0);
+  if (s->next_valid || q->stops) return false;
+  struct move* slot = plan_begin(cs, MOVE_SEGMENTS);
+  slot->joins = slot->blended = slot->overruns = false;
+  slot->is_sharp = m->sharp;
+  slot->has_dwell = m->dwells;
+  slot->time = slot->blend_in = 0;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    slot->start[axis] = m->start[axis];
+    slot->delta[axis] = m->delta[axis];
+  }
+  if (corner_waits(cs)) return false;
+  const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
+  q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
+  q->step = plan_milliseconds(q->period);
+  q->override = 1.0;
+  slice_pause();
+  piece_set_time(&q->timed, q->period);
+  q->timed.continues = false;
+  slice_pause();
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    const int64_t at = math_nearest(system_motor_from(motor, m->start));
+    for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = at;
+    slice_pause();
+  }
+  system_motors_come_along(cs);
+  q->time = path_begins(&paths[cs], 0);
+  set_move(cs, 0);
+  set_move(cs, 0);
+  q->handed = q->ends = q->closed = false;
+  q->order = LOOKAHEAD_NONE;
+  q->joined = 1;
+  q->unhanded = 0;
+  q->points = LAST_POINTS;
+  q->looks = lookahead_begin(cs, (uint32_t)(period > 0 ? period : 1));
+  for (uint32_t i = 0; q->looks && i + 1u < SPLINE_POINTS; i++) look_at_point(cs);
+  q->made = false;
+  q->runs = true;
+  return true;
+}
+
+/* Program time to the next point: by the override, which goes to its new value by Isx16 a segment. */
+static double next_time(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  const double given = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE));
+  const double wanted = given < -1.0 ? 0.0 : given > 1.0 ? 2.0 : given + 1.0;
+  slice_pause();
+  if (q->override != wanted) {
+    const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
+    const bool at_once = !(change > 0.0) || math_absolute(wanted - q->override) <= change;
+    q->override = at_once ? wanted : wanted > q->override ? q->override + change : q->override - change;
+  }
+  slice_pause();
+  return q->time + (q->override == 1.0 ? q->step : q->step * q->override);
+}
+
+/* Moves of the queue that belong to the sequence, each joined to the one before it no earlier than the last point. */
+static void join(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  struct path* p = &paths[cs];
+  while (!q->ends && !q->stops && q->joined < p->count && path_of(p, q->joined)->joins)
+    path_blend(p, q->joined++, q->time);
+}
+
+/* No move can join any more. */
+static bool is_last(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const struct sequence* q = &sequences[cs];
+  if (q->closed || q->stops || q->joined < paths[cs].count) return true;
+  return q->handed && s->next_valid && s->moves[s->executing ^ 1u].kind != MOVE_SEGMENTS;
+}
+
+enum decision { GOES_ON, ENDS, WAITS };
+
+/* What the point at `time` needs is known, the sequence ends, or a next move may still change it. */
+static enum decision decide(uint32_t cs, double time, bool alone) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  struct path* p = &paths[cs];
+  const struct path_move* m = path_of(p, q->joined - 1u);
+  if (time <= path_corner(p, q->joined - 1u) + m->change / 2.0) return GOES_ON;
+  if (is_last(cs) || s->quit || !s->running || !s->may_join) return ENDS;
+  slice_pause();
+  const uint32_t left = q->looks ? lookahead_left(cs) : 0u;
+  if (!alone || ahead_of(s) + q->unhanded + left > short_ahead(q)) return WAITS;
+  const double stop = path_corner(p, q->joined);
+  return time <= stop + stop - path_ends(p, q->joined) ? GOES_ON : ENDS;
+}
+
+/* Moves that are over before the point at `time`. */
+static void drop_moves(uint32_t cs, double* time) {
+  struct sequence* q = &sequences[cs];
+  struct path* p = &paths[cs];
+  while (q->joined > 1u && *time >= path_corner(p, 1) + path_of(p, 1)->change / 2.0) {
+    slice_pause();
+    const double over = path_pop(p);
+    *time -= over;
+    q->time -= over;
+    q->joined--;
+    if (q->under_way != 0) q->under_way--;
+  }
+}
+
+static void add_points(uint32_t cs, const double position[AXIS_COUNT]) {
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    add_point(motor, math_nearest(system_motor_at(motor, position)));
+    slice_pause();
+  }
+}
+
+/* The last point of a sequence, once more each time. */
+static void make_end(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  struct path* p = &paths[cs];
+  add_points(cs, path_of(p, q->joined - 1u)->end);
+  set_move(cs, q->joined - 1u);
+  use_point(cs);
+  if (--q->points != 0) return;
+  for (; q->joined != 0; q->joined--) (void)path_pop(p);
+  q->made = true;
+  if (q->looks) lookahead_close(cs);
+}
+
+static void make_point(uint32_t cs, double time) {
+  struct sequence* q = &sequences[cs];
+  struct path* p = &paths[cs];
+  double position[AXIS_COUNT];
+  path_at(p, (struct path_reach){q->joined, q->ends}, time, position);
+  add_points(cs, position);
+  uint32_t ahead = 0;
+  while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
+  set_move(cs, ahead);
+  q->time = time;
+  use_point(cs);
+}
+
+/* With a stop asked for, moves that have not begun at the last point are not part of it. */
+static void leave_out(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  if (q->stops && !q->ends && q->joined > q->under_way + 1u) q->joined = q->under_way + 1u;
+}
+
+/* The servo task has come to the end of what there is. */
+static bool is_dry(const struct coordinate_system* s, const struct sequence* q) {
+  return q->handed && !s->next_valid && !s->active && piece_ring_is_empty(&s->ring);
+}
+
+/* The next point of the path. False: it waits for a further move. */
+static bool make_next(uint32_t cs, bool alone) {
+  struct sequence* q = &sequences[cs];
+  leave_out(cs);
+  join(cs);
+  double time = next_time(cs);
+  drop_moves(cs, &time);
+  if (!q->ends) {
+    const enum decision decision = decide(cs, time, alone);
+    if (decision == WAITS) return false;
+    q->ends = decision == ENDS;
+  }
+  if (q->ends && time > path_ends(&paths[cs], q->joined) - TIME_TOLERANCE)
+    make_end(cs);
+  else
+    make_point(cs, time);
+  return true;
+}
+
+static bool work_at_once(uint32_t cs, bool alone) {
+  struct sequence* q = &sequences[cs];
+  if (!make_next(cs, alone)) return false;
+  if (q->handed || q->made || q->unhanded > short_ahead(q)) hand_over(cs);
+  q->runs = !q->made;
+  return true;
+}
+
+static bool release(uint32_t cs, bool hurry) {
+  struct sequence* q = &sequences[cs];
+  struct lookahead_piece piece;
+  if (!lookahead_release(cs, hurry, &piece)) return false;
+  add_piece(cs, &piece);
+  const bool over = q->made && lookahead_is_over(cs);
+  if (q->handed || over || lookahead_stands(cs) || q->unhanded > short_ahead(q)) hand_over(cs);
+  q->runs = !over;
+  return true;
+}
+
+/* Pieces that the servo task does not come to within SHORT_MS are not made after all. */
+static void take_back(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const int64_t least = (int64_t)SHORT_MS << TRAJECTORY_FRACTION_BITS;
+  const uint32_t state = hal_mask_servo();
+  uint32_t number = s->ring.executing;
+  for (int64_t time = -s->ring.elapsed; number != s->ring.added && time < least; number++)
+    time += piece_ring_at(&s->ring, number)->time;
+  const bool any = number != s->ring.added || sequences[cs].unhanded != 0;
+  piece_ring_take_back(&s->ring, number);
+  hal_unmask(state);
+  sequences[cs].unhanded = 0;
+  if (any) lookahead_take_back(cs, &looked[cs][number % PIECES]);
+}
+
+static void obey(uint32_t cs) {
+  struct sequence* q = &sequences[cs];
+  const enum lookahead_order order = q->order;
+  q->order = LOOKAHEAD_NONE;
+  take_back(cs);
+  lookahead_do(cs, order);
+}
+
+/* Isx21: 2 it moves on the path, 1 backwards, 8 a segment only. */
+static void show(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = lookahead_state(cs, s->active), shown = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE));
+  if (shown != state) i_variable_set_lookahead_state(cs, state);
+}
+
+/* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
+static bool work_ahead(uint32_t cs, bool alone) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  if (q->order != LOOKAHEAD_NONE) obey(cs);
+  show(cs);
+  if (q->made && lookahead_is_over(cs)) {
+    hand_over(cs);
+    q->runs = false;
+    return true;
+  }
+  const uint32_t ahead = ahead_of(s) + q->unhanded;
+  const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
+  if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;
+  if (!q->made && !lookahead_is_full(cs)) {
+    if (make_next(cs, alone)) return true;
+    if (!alone) return false;
+    /* what is known will not be more for now */
+    if (!q->handed && lookahead_sweep(cs, true)) return true;
+    if (!q->handed && room && release(cs, true)) return true;
+  }
+  if (!q->handed && q->unhanded != 0) {
+    hand_over(cs);
+    return true;
+  }
+  return false;
+}
+
+bool segment_work(uint32_t cs, bool alone) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  struct sequence* q = &sequences[cs];
+  if (!q->runs) return paths[cs].count != 0 && begin(cs);
+  if (q->looks) return work_ahead(cs, alone);
+  if (is_dry(s, q)) {
+    s->failure = RUN_TIME_LATE;
+    return false;
+  }
+  return ahead_of(s) + q->unhanded < most_ahead(q) && work_at_once(cs, alone);
+}

@@ -1,0 +1,120 @@
+"""Records of the built command and their pictures: --record, brick plot (docs/record.md).
+
+usage: record_acceptance.py BRICK CASE; each CASE is one test.
+"""
+
+import csv
+import pathlib
+import tempfile
+
+import command
+from command import brick, check, play
+
+MOVE = ["#1J/", "@wait 30ms", "#1J:2000", "@wait 200ms", "#1P"]
+DAC8 = ("--plant", "dac8", "--load", "dac8")
+
+
+def recorded(folder, script, *options, of=None, name="r.csv"):
+    file = pathlib.Path(folder, name)
+    r = play(script, "--record", str(file), *(("--record-of", of) if of else ()), *options)
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    with file.open(newline="") as lines:
+        names, *rows = csv.reader(lines)
+    return r, names, [[float(v) for v in row] for row in rows], file
+
+
+def record_move():
+    """A jog of 2000 counts at 32 counts/ms and 1 count/ms^2, as examples/setups/dac8.pmc has Ixx19 to Ixx22."""
+    of = "motor1.* plant.axis1.position host.breq here=D:$8B/3072 X:$BF,8,16,S"
+    with tempfile.TemporaryDirectory() as folder:
+        _, names, rows, _ = recorded(folder, MOVE, *DAC8, of=of)
+        check(names == ["time_ms", "motor1.commanded", "motor1.actual", "motor1.error", "motor1.velocity",
+                        "motor1.acceleration", "motor1.output", "plant.axis1.position", "host.breq", "here",
+                        "X:$BF,8,16,S"], names)
+        at = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+        check(len(rows) > 500, f"{len(rows)} rows")
+        steps = [b - a for a, b in zip(at["time_ms"], at["time_ms"][1:], strict=False)]
+        steps = steps[len(steps) // 2:]  # the clocks are set at the start
+        period = 4 * (2 * 6527 + 3) / 117964.8  # I7000 = 6527, I7001 = 0, I7002 = 3
+        check(all(abs(s - period) < 1e-5 for s in steps), f"{min(steps)} to {max(steps)} ms, expected {period}")
+        check(at["motor1.commanded"][-1] == 2000, at["motor1.commanded"][-1])
+        check(abs(max(at["motor1.velocity"]) - 32) < 0.01, max(at["motor1.velocity"]))
+        check(abs(max(at["motor1.acceleration"]) - 1) < 0.01, max(at["motor1.acceleration"]))
+        check(abs(min(at["motor1.acceleration"]) + 1) < 0.01, min(at["motor1.acceleration"]))
+        check(max(abs(a - b) for a, b in zip(at["here"], at["motor1.actual"], strict=True)) < 1e-6, "D:$8B")
+        check(all(abs(c - a - e) < 1e-6 for c, a, e in
+                  zip(at["motor1.commanded"], at["motor1.actual"], at["motor1.error"], strict=True)), "error")
+        check(max(abs(a - p) for a, p in zip(at["motor1.actual"], at["plant.axis1.position"], strict=True)) < 16,
+              "the plant stands elsewhere")  # 32 counts/ms, a servo period old
+        check(all(abs(o - w) < 1 for o, w in
+                  zip(at["motor1.output"], at["X:$BF,8,16,S"], strict=True)), "output")
+        check(max(at["X:$BF,8,16,S"]) > 300 and min(at["X:$BF,8,16,S"]) < -300, "the output does nothing")
+
+
+def record_changes_nothing():
+    """Replies, their times and the waveform are those of a run without a record."""
+    script = [*MOVE, "@time", "@signal plant.axis1.position"]
+    with tempfile.TemporaryDirectory() as folder:
+        waves = [pathlib.Path(folder, f"{i}.vcd") for i in range(2)]
+        with_it, names, rows, _ = recorded(folder, script, *DAC8, "--wave", str(waves[0]), "--wave-from", "100ms",
+                                           "--trace", "host.*,dac,plant.*")
+        without = play(script, *DAC8, "--wave", str(waves[1]), "--wave-from", "100ms", "--trace", "host.*,dac,plant.*")
+        check(with_it.stdout == without.stdout, with_it.stdout + without.stdout)
+        bodies = [wave.read_text().split("$enddefinitions")[1] for wave in waves]
+        check(len(bodies[0]) > 10000 and bodies[0] == bodies[1], "the waveforms differ")
+        check(len(names) == 8 * 3 + 2 and len(rows) > 500, names)
+
+
+def record_mistakes():
+    with tempfile.TemporaryDirectory() as folder:
+        file = str(pathlib.Path(folder, "r.csv"))
+        for options, text in (
+                (("--record", "r.txt"), "--record r.txt: unknown kind of file; expected FILE.csv"),
+                (("--record", "/no/such/r.csv"), "--record /no/such/r.csv: no such folder /no/such"),
+                (("--record-of", "motor1.error"), "--record-of needs a file; expected --record FILE.csv"),
+                (("--record", file, "--record-of", "motor33.error"), "no such signal or number; expected"),
+                (("--record", file, "--record-of", "X:$40000"), "$40000 is above 262143"),
+                (("--record", file, "--record-of", "X:$BF,20,8"), "bits 20 and 8 on"),
+                (("--record", file, "--record-of", "X:$BF,0,8,T"), "`T` is neither S nor U"),
+                (("--record", file, "--record-of", "D:$88/0"), "`0` is no divisor"),
+                (("--record", file, "--record-of", "a=b"), "no word of the main memory behind `=`"),
+                (("--record", file, "--record-of", " ; "), "nothing; expected")):
+            r = play(["I10"], *options)
+            check(r.returncode == 2 and text in r.stderr and r.stderr.count("\n") == 1, f"{options}: {r.stderr}")
+
+
+def plot():
+    """The pictures hold what was asked for, where it belongs."""
+    with tempfile.TemporaryDirectory() as folder:
+        _, _, _, file = recorded(folder, MOVE, *DAC8, of="motor1.* motor2.commanded host.breq X:$BF,8,16,S")
+        slow = recorded(folder, ["I122=16", *MOVE], *DAC8, of="motor1.*", name="slow.csv")[3]
+        r = brick("plot", str(file), "--limit", "velocity=32")
+        svg = file.with_suffix(".svg")
+        check(r.returncode == 0 and r.stdout == f"{svg}\n", r.stdout + r.stderr)
+        text = svg.read_text()
+        for wanted in ("position, counts", "velocity, counts/ms", "motor2.commanded", "X:$BF,8,16,S", ">breq<", ">ms<"):
+            check(wanted in text, f"no `{wanted}` in the picture")
+        r = brick("plot", str(file), "--of", "motor1.velocity", "--beside", str(slow), "-o", str(svg))
+        text = svg.read_text()
+        check(r.returncode == 0 and "slow motor1.velocity" in text and "r motor1.velocity" in text, r.stderr)
+        check("position, counts" not in text, "more than was asked for")
+        again = svg.read_bytes()
+        brick("plot", str(file), "--of", "motor1.velocity", "--beside", str(slow), "-o", str(svg))
+        check(svg.read_bytes() == again, "the same picture twice differs")
+        png = pathlib.Path(folder, "path.png")
+        r = brick("plot", str(file), "--xy", "motor1.commanded motor1.error", "-o", str(png), "--from", "50ms")
+        check(r.returncode == 0 and png.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n", r.stderr)
+        for options, wanted in (((str(file), "-o", "a.pdf"), "unknown kind of picture"),
+                                ((str(file), "--of", "motor3.error"), "no column `motor3.error`"),
+                                ((str(file), "--limit", "speed=3"), "nothing of that kind is drawn"),
+                                ((str(file), "--limit", "velocity"), "is no limit"),
+                                ((str(file), "--xy", "motor1.*"), "are 6 columns; expected two"),
+                                ((str(file), "--from", "now"), "--from"),
+                                ((folder,), "cannot be read"),
+                                ((__file__,), "expected a record, whose first line begins with time_ms"),
+                                (("none.csv",), "cannot be read; expected a record")):
+            r = brick("plot", *options)
+            check(r.returncode == 2 and wanted in r.stderr, f"{options}: {r.returncode} {r.stderr}")
+
+
+globals()[command.CASE]()

@@ -1,0 +1,246 @@
+// Lookahead over random paths (motion:7.4): limits held on what is executed, time against an optimum that the test
+// finds itself, the path as it is written. BRICK_RANDOM_PATHS: how many.
+#include <cstdlib>
+#include <random>
+
+#include "testbench/unit/firmware_paths/optimum.h"
+#include "testbench/unit/firmware_paths/spline_path.h"
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/path.h"
+#include "firmware/motion/plan.h"
+#include "firmware/motion/segment.h"
+#include "firmware/motion/system_motors.h"
+#include "firmware/motion/system_path.h"
+}
+
+namespace {
+
+using namespace moving_motors;
+using spline_path::Spline;
+
+// Motor 1 goes evenly with the time of the program, without limits: where it is tells where on the path the others must
+// be.
+struct RandomPath {
+  unsigned motor_count;
+  int period, lookahead;
+  double ta, ts;
+  std::vector<double> times;              // ms of each move
+  std::vector<std::vector<double>> ways;  // of each motor, counts
+  std::vector<double> velocity, acceleration;
+  std::vector<double> scale;
+};
+
+RandomPath random_path(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  const auto pick = [&](const std::vector<int>& from) { return from[random() % from.size()]; };
+  RandomPath p;
+  p.motor_count = 2 + random() % 7;
+  p.period = pick({2, 5, 10, 20});
+  p.ts = pick({0, 0, 2, 10});
+  p.ta = std::max<double>(pick({0, 5, 20, 50}), 2 * p.ts);
+  p.lookahead = pick({2, 10, 40, 200});
+  const double segments = uniform(20, 120);
+  const int kind = pick({0, 1, 2});  // short moves, long ones, both
+  p.ways.resize(p.motor_count);
+  p.velocity.push_back(0), p.acceleration.push_back(0);
+  for (unsigned i = 1; i < p.motor_count; ++i) {
+    p.velocity.push_back(std::exp(uniform(std::log(5), std::log(500))));
+    p.acceleration.push_back(p.velocity.back() / std::exp(uniform(std::log(10), std::log(400))));
+  }
+  double sum = 0;
+  while (sum < segments * p.period) {
+    const bool is_short = kind == 0 || (kind == 2 && random() % 2 == 0);
+    double time = is_short ? uniform(1, 4) * p.period : uniform(4, 40) * p.period;
+    time = std::max({std::floor(time * 8) / 8, p.ta, 0.5});
+    p.times.push_back(time);
+    sum += time;
+    p.ways[0].push_back(8 * time);
+    for (unsigned i = 1; i < p.motor_count; ++i) {
+      const double most = p.velocity[i] * time * std::exp(uniform(-3, 0.7));
+      p.ways[i].push_back(random() % 4 == 0 ? 0 : std::floor(uniform(-most, most)));
+    }
+  }
+  return p;
+}
+
+class RandomPaths : public MovingMotors {
+ protected:
+  static void prepare(const RandomPath& p) {
+    Lines definitions;
+    const char* axes = "XYZABCUV";
+    for (unsigned i = 0; i < p.motor_count; ++i) definitions.push_back(std::string(1, axes[i]));
+    platform::power_up();
+    fit(definitions);
+    for (unsigned i = 0; i < p.motor_count; ++i) {
+      platform::set_i(100 * (i + 1) + 16, p.velocity[i]);
+      platform::set_i(100 * (i + 1) + 17, p.acceleration[i]);
+    }
+    platform::set_i(5113, p.period), platform::set_i(5120, p.lookahead);
+    platform::set_i(5187, p.ta), platform::set_i(5188, p.ts);
+    ASSERT_EQ(host("&1 DEFINE LOOKAHEAD " + std::to_string(p.lookahead + 20) + ",0"), "");
+    store({"TM10 WHILE(P1=0) WAIT"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(9);
+    cs().time_mode = true;
+  }
+  static void plan(const RandomPath& p, std::size_t move) {
+    static const int kAxes[] = {AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C, AXIS_U, AXIS_V};
+    coordinate_system& s = cs();
+    for (unsigned i = 0; i < p.motor_count; ++i) {
+      s.pending[kAxes[i]] = s.position[kAxes[i]] + p.ways[i][move];
+      s.pending_axes |= 1u << kAxes[i];
+    }
+    s.by_segments = true;
+    platform::set_i(5189, p.times[move]);
+    if (move == 0) s.may_join = false;
+    ASSERT_EQ(plan_line(0), RUN_TIME_NONE);
+  }
+  // Every motor at each servo interrupt, until all is done.
+  static std::vector<std::vector<std::int64_t>> execute(
+      const RandomPath& p, const std::function<void(unsigned)>& order = [](unsigned) {}) {
+    std::vector<std::vector<std::int64_t>> samples(p.motor_count);
+    coordinate_system& s = cs();
+    std::size_t move = 0;
+    for (unsigned tick = 0; tick < 200000; ++tick) {
+      if (tick % 3 == 0) {
+        for (bool any = true; any;) {
+          any = segment_work(0, false);
+          if (!any && move < p.times.size() && !path_is_full(0) && !s.next_valid) {
+            plan(p, move++);
+            any = true;
+          }
+          if (move == p.times.size()) s.may_join = false;
+          any = any || segment_work(0, true);
+        }
+      }
+      order(tick);
+      system_path_servo();
+      for (unsigned i = 0; i < p.motor_count; ++i) samples[i].push_back(motors[i].trajectory);
+      if (tick > 3 && move == p.times.size() && !s.active && !segment_is_busy(0)) return samples;
+    }
+    ADD_FAILURE() << "it does not end";
+    return samples;
+  }
+  static std::vector<Spline> splines(const RandomPath& p) {
+    double length = p.ta;
+    for (const double time : p.times) length += time;
+    std::vector<Spline> found;
+    for (unsigned i = 0; i < p.motor_count; ++i) {
+      std::vector<Move> moves;
+      for (std::size_t k = 0; k < p.times.size(); ++k)
+        moves.push_back({p.ways[i][k], p.times[k], std::max(p.ta, 1e-9), p.ts});
+      const auto changes = changes_of(moves, std::max(p.ta, 1e-9));
+      found.emplace_back([&](double t) { return way(changes, t); }, length, p.period);
+    }
+    return found;
+  }
+  static void expect_limits(const RandomPath& p, const std::vector<std::vector<std::int64_t>>& samples) {
+    for (unsigned i = 1; i < p.motor_count; ++i) {
+      const auto& x = samples[i];
+      const double v = p.velocity[i] * kUnit * kTickMs * 1.005 + 2, a = p.acceleration[i] * kUnit;
+      const auto k = static_cast<std::size_t>(std::ceil(std::sqrt(400 / a) / kTickMs));
+      const double span = static_cast<double>(k) * kTickMs, bend = 1.02 * a * span * span + 4;
+      double fastest = 0, sharpest = 0;
+      for (std::size_t n = 1; n < x.size(); ++n) {
+        fastest = std::max(fastest, std::abs(static_cast<double>(x[n] - x[n - 1])));
+        if (n >= 2 * k)
+          sharpest = std::max(sharpest, std::abs(static_cast<double>(x[n] - 2 * x[n - k] + x[n - 2 * k])));
+      }
+      EXPECT_LE(fastest, v) << "#" << i + 1 << " Ixx16";
+      EXPECT_LE(sharpest, bend) << "#" << i + 1 << " Ixx17";
+    }
+  }
+  static void expect_path(const std::vector<Spline>& splines, const std::vector<std::vector<std::int64_t>>& samples) {
+    double low = 0;
+    const double length = splines[0].length();
+    for (std::size_t n = 0; n < samples[0].size(); n += 7) {
+      const double x = static_cast<double>(samples[0][n]) / kUnit;
+      double high = length;
+      for (int i = 0; i < 50; ++i) (splines[0].at((low + high) / 2) < x ? low : high) = (low + high) / 2;
+      for (std::size_t i = 1; i < splines.size(); ++i) {
+        const double slope = std::abs(splines[i].at(low + 0.01) - splines[i].at(std::max(0.0, low - 0.01))) /
+                             std::max(1e-6, splines[0].at(low + 0.01) - splines[0].at(std::max(0.0, low - 0.01)));
+        ASSERT_NEAR(static_cast<double>(samples[i][n]) / kUnit, splines[i].at(low), 1.0 / 16 + slope * 3 / kUnit)
+            << "#" << i + 1 << " at " << low << " ms of the program, interrupt " << n;
+      }
+      low = 0;  // it may go back
+    }
+  }
+};
+
+// Quick stops, the way back and forward again at any time: limits hold, the path is the same, the end is the end.
+TEST_F(RandomPaths, StopsAndReversalsKeepThePathAndTheLimits) {
+  const char* wanted = std::getenv("BRICK_RANDOM_PATHS");
+  const int count = wanted != nullptr ? std::atoi(wanted) : 60;
+  const char* first = std::getenv("BRICK_RANDOM_PATHS_FIRST");
+  const int begin = first != nullptr ? std::atoi(first) : 1;
+  unsigned turned = 0;
+  for (int seed = begin; seed < begin + count && !HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const RandomPath p = random_path(random);
+    prepare(p);
+    unsigned next = 20 + random() % 200, orders = 1 + random() % 8;
+    const auto samples = execute(p, [&](unsigned tick) {
+      if (tick != next) return;
+      next = tick + 1 + random() % 400;
+      static const char* kOrders[] = {"&1\\", "&1<", "&1>", "&1R"};
+      const std::string order = orders > 0 ? kOrders[random() % 4] : "&1>";
+      if (orders > 0) --orders;
+      ASSERT_EQ(host(order), "") << order;
+    });
+    for (unsigned i = 0; i < p.motor_count; ++i) {
+      double sum = 0;
+      for (const double w : p.ways[i]) sum += w;
+      ASSERT_EQ(samples[i].back(), static_cast<std::int64_t>(std::llround(sum * kUnit)));
+    }
+    for (std::size_t n = 1; n < samples[0].size(); ++n) turned += samples[0][n] < samples[0][n - 1];
+    expect_limits(p, samples);
+    expect_path(splines(p), samples);
+  }
+  EXPECT_GT(turned, 100u) << "nothing has gone back";
+}
+
+TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
+  const char* wanted = std::getenv("BRICK_RANDOM_PATHS");
+  const int count = wanted != nullptr ? std::atoi(wanted) : 100;
+  const char* first = std::getenv("BRICK_RANDOM_PATHS_FIRST");
+  int judged = 0;
+  double worst = 0;
+  for (int seed = first != nullptr ? std::atoi(first) : 1; count > 0 && judged < count && !HasFailure(); ++seed) {
+    ++judged;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const RandomPath p = random_path(random);
+    prepare(p);
+    const auto samples = execute(p);
+    for (unsigned i = 0; i < p.motor_count; ++i) {
+      double sum = 0;
+      for (const double w : p.ways[i]) sum += w;
+      ASSERT_EQ(samples[i].back(), static_cast<std::int64_t>(std::llround(sum * kUnit)));
+    }
+    expect_limits(p, samples);
+    const auto paths = splines(p);
+    expect_path(paths, samples);
+    std::vector<optimum::Motor> limited;
+    for (unsigned i = 0; i < p.motor_count; ++i)
+      limited.push_back({paths[i].points(), p.velocity[i], p.acceleration[i]});
+    const optimum::Solver best(limited, p.period);
+    if (best.longest_stop() * 4 > p.lookahead * 3) continue;
+    std::size_t begin = 0, end = samples[0].size() - 1;
+    while (begin < end && samples[0][begin] == samples[0][0]) ++begin;
+    while (end > begin && samples[0][end] == samples[0][end - 1]) --end;
+    const double time = static_cast<double>(end - begin + 2) * kTickMs;
+    worst = std::max(worst, time / (best.time() + 2 * kTickMs));
+    EXPECT_LE(time, 1.10 * best.time() + 2 * kTickMs)
+        << "optimum " << best.time() << ", Isx20 " << p.lookahead << ", longest stop " << best.longest_stop()
+        << ", Isx13 " << p.period << ", TA " << p.ta;
+  }
+  std::printf("%d paths, slowest %.3f of the optimum\n", judged, worst);
+}
+
+}  // namespace

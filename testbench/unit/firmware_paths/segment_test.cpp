@@ -1,0 +1,220 @@
+// Segments (motion:7.1) at each servo interrupt against a B-spline that the test evaluates in doubles, of points that
+// it takes from the formulas of motion:5.2 and of circles.
+#include <set>
+
+#include "testbench/unit/firmware_paths/spline_path.h"
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/path.h"
+#include "firmware/motion/segment.h"
+}
+
+namespace {
+
+using namespace moving_motors;
+using spline_path::Spline;
+
+constexpr double kPi = 3.14159265358979323846;
+
+class Segments : public MovingMotors {
+ protected:
+  static double follow(const std::vector<Spline>& motors, double tolerance = 4.0) {
+    double worst = 0.0;
+    const double end = run([&](double t) {
+      for (unsigned i = 0; i < motors.size(); ++i) {
+        const double error = (at(i + 1) - motors[i].at(t)) * kUnit;
+        if (std::abs(error) > std::max(worst, tolerance))
+          ADD_FAILURE() << "#" << i + 1 << " at " << t << " ms is " << at(i + 1) << ", " << error << " units off";
+        worst = std::max(worst, std::abs(error));
+      }
+    });
+    return end;
+  }
+};
+
+TEST_F(Segments, OneMoveIsTheSplineOfItsPoints) {
+  for (const int isx13 : {1, 7, 10, 100, 255}) {
+    SCOPED_TRACE(isx13);
+    platform::power_up();
+    fit({"1000X", "-2.5X"});
+    ASSERT_EQ(host("I5113=" + std::to_string(isx13)), "");
+    store({"TM100 TA40 TS10", "X3"});
+    const auto changes = changes_of({{3000, 100, 40, 10}}, 40);
+    const Spline x([&](double t) { return way(changes, t); }, 140, isx13);
+    const Spline second([&](double t) { return -2.5e-3 * way(changes, t); }, 140, isx13);
+    const double end = follow({x, second});
+    EXPECT_NEAR(end, x.length(), kTickMs);
+    EXPECT_NEAR(end, std::ceil(140.0 / isx13) * isx13 + 2 * isx13, kTickMs) << "2 Isx13 longer than motion:5.2 says";
+    EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
+    EXPECT_EQ(motors[1].trajectory, -7.5 * 3072);
+  }
+}
+
+TEST_F(Segments, BlendedMovesKeepTheirTrajectory) {
+  fit({"1000X", "500Y", "8660X-5000Y"});
+  ASSERT_EQ(host("I5113=5"), "");
+  store({"TM100 TA40 TS10 X1", "TA80 X2 Y1", "TA20 TS5 Y3", "TM150 TA60 TS30 X-1 Y3", "DELAY70", "TA10 TS0 X0 Y0"});
+  const double dx[] = {1, 1, 0, -3, 0, 1}, dy[] = {0, 1, 2, 0, 0, -3};
+  const double time[] = {100, 100, 100, 150, 70, 150}, ta[] = {40, 80, 20, 60, 60, 10}, ts[] = {10, 10, 5, 30, 30, 0};
+  std::vector<Move> moves[3];
+  for (unsigned i = 0; i < 6; ++i) {
+    moves[0].push_back({1000 * dx[i], time[i], ta[i], ts[i]});
+    moves[1].push_back({500 * dy[i], time[i], ta[i], ts[i]});
+    moves[2].push_back({8660 * dx[i] - 5000 * dy[i], time[i], ta[i], ts[i]});
+  }
+  std::vector<Spline> splines;
+  const double length = 20 + 100 + 100 + 100 + 150 + 70 + 150 + 5;
+  for (const auto& m : moves) {
+    const auto changes = changes_of(m, 10);
+    splines.emplace_back([=](double t) { return way(changes, t); }, length, 5);
+  }
+  EXPECT_NEAR(follow(splines), length + 10, kTickMs);
+  for (unsigned motor = 0; motor < 3; ++motor) EXPECT_EQ(motors[motor].trajectory, 0);
+}
+
+// A line, half a circle and a helix that blend: what each has of its own way adds up.
+TEST_F(Segments, ArcsBlendWithLines) {
+  fit({"1000X", "1000Y", "100Z"});
+  ASSERT_EQ(host("I5113=8"), "");
+  store({"F100 TA100 TS20 INC", "X10", "CIRCLE2 X0 Y20 I0 J10", "CIRCLE1 X10 Y10 Z5 R10", "LINEAR Y4 TM200"});
+  ASSERT_EQ(host("I5190=1000"), "");
+  const double t0 = 100, t1 = kPi * 10 / 100 * 1000, t2 = std::hypot(kPi / 2 * 10, 5) / 100 * 1000, t3 = 40;
+  const double times[] = {t0, t1, t2, std::max(t3, 200.0)};
+  double corners[5] = {50};
+  for (int i = 0; i < 4; ++i) corners[i + 1] = corners[i] + times[i];
+  const auto progress = [&](int i, double t) {  // of move i, 0..1
+    return (risen(t - corners[i] + 50, 100, 20) - risen(t - corners[i + 1] + 50, 100, 20)) / times[i];
+  };
+  const auto x = [&](double t) {
+    return 10 * progress(0, t) + 10 * std::sin(kPi * progress(1, t)) + 10 * (1 - std::cos(kPi / 2 * progress(2, t)));
+  };
+  const auto y = [&](double t) {
+    return 10 * (1 - std::cos(kPi * progress(1, t))) + 10 * std::sin(kPi / 2 * progress(2, t)) + 4 * progress(3, t);
+  };
+  const auto z = [&](double t) { return 5 * progress(2, t); };
+  const double length = corners[4] + 50;
+  const auto scaled = [](auto axis, double by) { return [=](double t) { return by * axis(t); }; };
+  follow({Spline(scaled(x, 1000), length, 8), Spline(scaled(y, 1000), length, 8), Spline(scaled(z, 100), length, 8)});
+  EXPECT_EQ(motors[0].trajectory, 20000 * 3072);
+  EXPECT_EQ(motors[1].trajectory, 34000 * 3072);
+  EXPECT_EQ(motors[2].trajectory, 500 * 3072);
+}
+
+// 5000 mm/min on a radius of 50 mm, points every 10 ms: V^2 T^2 / (6 R) = 2.3 um (motion:7.1/4).
+TEST_F(Segments, InsideAnArcThePublishedErrorIsMet) {
+  fit({"1000X", "1000Y"});  // um
+  ASSERT_EQ(host("I5113=10 I5190=60000"), "");
+  store({"F5000 TA50 TS0", "CIRCLE1 X0 Y0 I50 J0"});
+  const double v = 5000.0 / 60, expected = std::pow(v * 0.01, 2) / (6 * 50) * 1000;
+  EXPECT_NEAR(expected, 2.3, 0.02);
+  double least = 1e9, most = 0;
+  run([&](double t) {
+    if (t < 200 || t > 3500) return;  // 3770 ms of constant speed
+    const double inside = 50000 - std::hypot(at(1) - 50000, at(2));
+    least = std::min(least, inside);
+    most = std::max(most, inside);
+  });
+  EXPECT_NEAR(most, expected, 0.02 * expected);
+  EXPECT_NEAR(least, expected, 0.02 * expected);
+  EXPECT_EQ(motors[0].trajectory, 0);
+  EXPECT_EQ(motors[1].trajectory, 0);
+}
+
+TEST_F(Segments, ShortBlocksAreSkippedOver) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=10"), "");
+  Lines lines = {"TM1 TA0 TS0"};
+  std::vector<Move> moves;
+  for (int i = 1; i <= 60; ++i) {
+    lines.push_back("X" + std::to_string(i * i));
+    moves.push_back({1000.0 * (i * i - (i - 1) * (i - 1)), 1, 1e-9, 0});
+  }
+  store(lines);
+  const auto changes = changes_of(moves, 1e-9);
+  EXPECT_NEAR(follow({Spline([&](double t) { return way(changes, t); }, 60, 10)}), 80, kTickMs);
+  EXPECT_EQ(motors[0].trajectory, 3600000LL * 3072);
+}
+
+TEST_F(Segments, StopsBetweenSequencesAreExact) {
+  fit({"1000X", "333.25Y"});
+  ASSERT_EQ(host("I5113=4"), "");
+  store({"TM20 TA8 TS2", "X1 Y1", "X2", "DWELL5 X5 Y3", "RAPID X7", "LINEAR X9 Y-1", "I5113=0 X8", "Y7"});
+  std::set<std::int64_t> passed;
+  run([&](double) { passed.insert(motors[0].trajectory); });
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  EXPECT_EQ(motors[0].trajectory, 8000 * 3072);
+  EXPECT_EQ(motors[1].trajectory, 7 * 1023744);
+  for (const int x : {2, 5, 7, 9}) EXPECT_EQ(passed.count(x * 3072000LL), 1u) << x;
+}
+
+TEST_F(Segments, ARadiusThatCannotBeEndsTheProgramAtItsStart) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5196=0.01"), "");
+  store({"TM20 TA10 TS0", "X1", "CIRCLE1 X4 R1"});
+  run();
+  EXPECT_EQ(cs().error, RUN_TIME_RADIUS);
+  EXPECT_EQ(motors[0].trajectory, 1000 * 3072);
+}
+
+// Isx78: F at most the root of Isx78 R.
+TEST_F(Segments, CentripetalLimit) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5178=40"), "");
+  store({"F1000 TA0 TS0", "CIRCLE1 X0 Y0 I10 J0"});
+  EXPECT_NEAR(run(), std::ceil(2 * kPi * 10 / 20 * 200) * 5 + 10, kTickMs);  // sqrt(40 x 10) = 20 a s
+}
+
+// Q and `/`: the end of the executing move; R goes on with the next.
+TEST_F(Segments, QuitStopsAtTheEndOfTheExecutingMove) {
+  for (const char* command : {"&1Q", "&1/"}) {
+    SCOPED_TRACE(command);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5"), "");
+    store({"TM100 TA20 TS0", "X1", "X2", "X3", "X4"});
+    bool asked = false;
+    run([&](double t) {
+      if (t <= 150 || asked) return;
+      EXPECT_EQ(host(command), "");
+      asked = true;
+    });
+    EXPECT_EQ(motors[0].trajectory, 2000 * 3072);
+    run([](double) {}, "&1R");
+    EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+  }
+}
+
+TEST_F(Segments, AnAbortForgetsThem) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5 I115=1"), "");
+  store({"TM100 TA20 TS0", "X1", "X2", "X3", "X4"});
+  bool asked = false;
+  run([&](double t) {
+    if (t <= 150 || asked) return;
+    EXPECT_EQ(host("&1A"), "");
+    asked = true;
+  });
+  platform::servo_ticks(300);
+  EXPECT_LT(motors[0].trajectory, 3000 * 3072);
+  EXPECT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(3000);
+  EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+}
+
+TEST_F(Segments, SynchronousAssignmentsComeWithTheirMove) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5 M1->*"), "");
+  store({"TM100 TA20 TS0 M1=0", "M1==1 X1", "M1==2 X2", "X3", "M1==4"});
+  std::vector<double> times(5, -1);
+  run([&](double t) {
+    const auto value = static_cast<unsigned>(m_variable_read(1));
+    if (value < 5 && times[value] < 0) times[value] = t;
+  });
+  EXPECT_LE(times[1], 3 * kTickMs);
+  EXPECT_NEAR(times[2], 100, 10);  // the blend begins there
+  platform::servo_ticks(3);
+  EXPECT_EQ(m_variable_read(1), 4) << "behind the last move";
+}
+
+}  // namespace
