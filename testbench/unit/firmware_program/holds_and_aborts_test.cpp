@@ -153,6 +153,29 @@ TEST_F(HoldsAndAborts, JEqualsBehindAnAbortedRapidMove) {
   EXPECT_EQ(motors[0].trajectory, left);
 }
 
+// motion:4.2/12 behind a program, motion:4.2/11 behind a search.
+TEST_F(HoldsAndAborts, JEqualsBehindJEqualsEqualsAndHome) {
+  store({"TM50 TA20 TS0 X1"});
+  run();
+  for (const char* line : {"#1J==300", "J:50", "J="}) {
+    ASSERT_EQ(host(line), "");
+    ticks(200);
+  }
+  EXPECT_EQ(motors[0].trajectory, position(300));
+  ASSERT_EQ(host("I123=20 I126=0 I125=$78000 I124=$120001 HM"), "");
+  ticks(100);
+  *hal_x(0x78003) = 0xFFFFFF;  // at -1, the motor has gone on
+  *hal_x(0x78000) |= 1u << 11;
+  ticks(200);
+  ASSERT_FALSE(jog_is_moving(0));
+  EXPECT_EQ(motors[0].trajectory, 0);
+  ASSERT_EQ(host("J:50"), "");
+  ticks(200);
+  ASSERT_EQ(host("J="), "");
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, 0);
+}
+
 // motion:5.6/5
 TEST_F(HoldsAndAborts, StepsByLine) {
   ASSERT_EQ(host("I5153=1 P1=0 P2=0 P3=0"), "");
