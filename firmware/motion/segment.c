@@ -222,10 +222,11 @@ static bool begin(uint32_t cs) {
   slice_pause();
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t at = math_nearest(system_motor_at(motor, m->start));
+    const int64_t at = math_nearest(system_motor_from(motor, m->start));
     for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = at;
     slice_pause();
   }
+  system_motors_come_along(cs);
   q->time = path_begins(&paths[cs], 0);
   set_move(cs, 0);
   set_move(cs, 0);

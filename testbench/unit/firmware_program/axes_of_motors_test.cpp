@@ -87,6 +87,22 @@ TEST_F(AxesOfMotors, AMotorThatStandsNeedsNoWayBack) {
   EXPECT_EQ(motors[0].trajectory, position(3000));
 }
 
+// In segments as without them: it comes along within two of them.
+TEST_F(AxesOfMotors, AMotorBesideItsAxisDoesNotJumpInSegments) {
+  fit({"1000X", "1000X"});
+  ASSERT_EQ(host("I5113=10"), "");
+  motors[1].trajectory = position(250);
+  store({"LINEAR TM100 TA20 TS0 X1", "X2"});
+  double last = at(2), fastest = 0.0;
+  run([&](double) {
+    fastest = std::max(fastest, std::abs(at(2) - last) / kTickMs);
+    last = at(2);
+  });
+  EXPECT_LT(fastest, 25.0) << "250 counts in 2 x 10 ms, and 10 a ms";
+  EXPECT_EQ(motors[0].trajectory, position(2000));
+  EXPECT_EQ(motors[1].trajectory, position(2000));
+}
+
 TEST_F(AxesOfMotors, MotorsOfInverseKinematicsAreNotMoved) {
   fit({"1000X"});
   ASSERT_EQ(host("I200=1 #2->I"), "");

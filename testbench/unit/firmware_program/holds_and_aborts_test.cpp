@@ -9,6 +9,8 @@ namespace {
 
 using namespace moving_motors;
 
+double place() { return static_cast<double>(motors[0].trajectory) / kUnit; }
+
 class HoldsAndAborts : public MovingMotors {
  protected:
   void SetUp() override {
@@ -151,6 +153,77 @@ TEST_F(HoldsAndAborts, JEqualsBehindAnAbortedRapidMove) {
   ASSERT_EQ(host("J="), "");
   ticks(200);
   EXPECT_EQ(motors[0].trajectory, left);
+}
+
+// Largest change of velocity (counts a ms) from one servo interrupt to the next, over some ms.
+double largest_change(double ms, double velocity) {
+  double largest = 0.0, last = place();
+  for (unsigned i = 0; i < ticks_of(ms); ++i) {
+    platform::servo_ticks(1);
+    const double now = (place() - last) / kTickMs;
+    largest = std::max(largest, std::abs(now - velocity));
+    velocity = now;
+    last = place();
+  }
+  return largest;
+}
+
+// A ramp does not wait for a jog that is planned and waits for its Ixx92.
+TEST_F(HoldsAndAborts, AnAbortComesBeforeAJogThatWaits) {
+  ASSERT_EQ(host("#1J+"), "");
+  ticks(100);
+  ASSERT_EQ(host("I192=200 J-"), "");
+  ticks(10);
+  ASSERT_EQ(host("A"), "");
+  ticks(30);
+  const std::int64_t stands = motors[0].trajectory;
+  ticks(300);
+  EXPECT_EQ(motors[0].trajectory, stands) << "20 counts a ms at Ixx15 = 1, and no jog behind it";
+}
+
+// A ramp begins at the velocity that the motor has when it begins, while that changes too.
+TEST_F(HoldsAndAborts, AnAbortInAnAccelerationDoesNotChangeTheVelocity) {
+  store({"TM400 TA40 TS0 X8"});  // 0.5 counts a ms^2
+  begin();
+  ticks(25);
+  ASSERT_EQ(host("A"), "");
+  const double last = place();
+  platform::servo_ticks(1);
+  EXPECT_LT(largest_change(60, (place() - last) / kTickMs), 1.6 * kTickMs) << "Ixx15 and half a count a ms^2";
+}
+
+// A motor that a hold has stopped in the middle of its move begins a jog at rest.
+TEST_F(HoldsAndAborts, AJogFromAHoldBeginsAtRest) {
+  store({"TM400 TA20 TS0 X4"});
+  begin();
+  ticks(200);
+  ASSERT_EQ(host("H"), "");
+  ticks(50);
+  ASSERT_EQ(host("#1J:100"), "");
+  EXPECT_LT(largest_change(60, 0.0), 1.1 * kTickMs) << "Ixx19";
+}
+
+// motion:4.2/12 behind a program, motion:4.2/11 behind a search.
+TEST_F(HoldsAndAborts, JEqualsBehindJEqualsEqualsAndHome) {
+  store({"TM50 TA20 TS0 X1"});
+  run();
+  for (const char* line : {"#1J==300", "J:50", "J="}) {
+    ASSERT_EQ(host(line), "");
+    ticks(200);
+  }
+  EXPECT_EQ(motors[0].trajectory, position(300));
+  ASSERT_EQ(host("I123=20 I126=0 I125=$78000 I124=$120001 HM"), "");
+  ticks(100);
+  *hal_x(0x78003) = 0xFFFFFF;  // at -1, the motor has gone on
+  *hal_x(0x78000) |= 1u << 11;
+  ticks(200);
+  ASSERT_FALSE(jog_is_moving(0));
+  EXPECT_EQ(motors[0].trajectory, 0);
+  ASSERT_EQ(host("J:50"), "");
+  ticks(200);
+  ASSERT_EQ(host("J="), "");
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, 0);
 }
 
 // motion:5.6/5

@@ -324,6 +324,31 @@ TEST_F(Jog, PlanningThatTakesTooLongBeginsLaterWithoutAJump) {
   EXPECT_LT(largest, 20 * step_ms() * 1.01) << "never faster than Ixx22";
 }
 
+// Positions that are counted from elsewhere while a motion is planned: it is planned again.
+TEST_F(Jog, CountedFromElsewhereWhileItIsPlanned) {
+  set({0.25, 0, 50, 20}, 1);
+  for (int when = 1; when < 60; ++when) {
+    motors[0].trajectory = 0;
+    ASSERT_TRUE(jog_to(0, units(1000)));
+    int pauses = 0;
+    double last = 0, largest = 0;
+    for (int i = 0; i < 2000 && jog_is_moving(0); ++i) {
+      jog_servo(0);
+      largest = std::max(largest, std::abs(position() - last));
+      last = position();
+      platform::real_time_in_slices([&] {
+        if (++pauses != when) return;
+        const std::uint32_t state = hal_mask_servo();
+        jog_count_from(0, units(100));
+        hal_unmask(state);
+        last -= 100;
+      });
+    }
+    ASSERT_EQ(motors[0].trajectory, units(900)) << when;
+    ASSERT_LT(largest, 20 * step_ms() * 1.01) << when << ": without a jump";
+  }
+}
+
 TEST_F(Jog, KilledMotorStandsAndTakesNoRequest) {
   set({0.25, 0, 50, 20}, 10);
   ASSERT_TRUE(jog_continuous(0, 1));

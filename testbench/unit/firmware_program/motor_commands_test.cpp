@@ -174,16 +174,17 @@ TEST_F(MotorCommands, OpenLoopTakesPerCentOfIxx69) {
 }
 
 // motion:6.2/3
-TEST_F(MotorCommands, ALoopThatIsOnInALimitIsNotOpened) {
+TEST_F(MotorCommands, InALimitNoLoopIsOpened) {
   ASSERT_EQ(host("#1J/"), "");
-  motors[0].found.positive_limit = true;
-  for (const char* output : {"O5", "O-5", "O0"}) EXPECT_EQ(host(output), "ERR010") << output;
-  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
-  motors[0].found.positive_limit = false;
-  motors[0].found.negative_limit = true;
-  EXPECT_EQ(host("O-5"), "ERR010");
-  motors[0].found.negative_limit = false;
-  EXPECT_EQ(host("O-5"), "");
+  for (const bool up : {true, false}) {
+    auto& limit = up ? motors[0].found.positive_limit : motors[0].found.negative_limit;
+    limit = true;
+    EXPECT_EQ(host("O5"), "ERR010");
+    EXPECT_EQ(host("O-5"), "ERR010");
+    EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+    limit = false;
+  }
+  ASSERT_EQ(host("O5"), "");
 }
 
 TEST_F(MotorCommands, OpenLoopEndsAJog) {
