@@ -60,9 +60,11 @@ static error_t close_loop(uint32_t motor, error_t error) {
   return motor_close(motor) ? ERR_NONE : ERR_PHASING;
 }
 
+/* No distance follows: the end, an address, a report, or behind a blank the word of another command. `J=P1` is none. */
 static bool line_goes_on(struct lexer* lx) {
+  const bool blank = *lx->at == ' ';
   const char c = lexer_peek(lx);
-  return c == '\0' || c == '#' || c == '&';
+  return c == '\0' || c == '#' || c == '&' || c == '?' || (blank && c >= 'A' && c <= 'Z');
 }
 
 /* Counts; `*`: what stands in L:+$57 of the motor's registers. */

@@ -113,8 +113,9 @@ trap_phase:
   sw t0, tasks_phase_stamp, t1
   lw t1, motors_enabled
   beqz t1, 2f
-  li t0, HOST_PORT_PACE
-  sw t0, host_port_granted, t1
+  sw zero, host_port_granted, t1
+  li t0, 1
+  sw t0, host_port_renewed, t1
   lw t1, host_port_held
   bnez t1, 3f
 2:
@@ -163,10 +164,6 @@ trap_host:
   andi t1, t1, HI08_HSR_HRDF_MASK
   beqz t1, 1f
   lw t2, host_port_received_count
-  lw t3, host_port_taken_count
-  sub t3, t2, t3
-  srli t3, t3, HOST_PORT_LIMIT_BITS
-  bnez t3, 1f
   lw t3, host_port_granted
   blez t3, 1f
   lw t1, HOST_CHARACTER(t0)

@@ -13,7 +13,7 @@
 
 void jog_initialize(void) {
   jogs_busy = jogs_asked = 0;
-  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){.away = true};
+  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){0};
 }
 
 static double units(uint32_t motor) { return (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale; }
@@ -220,6 +220,7 @@ void jog_count_from(uint32_t motor, int64_t position) {
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */
   motors[motor].of_system -= position;
-  j->before = motors[motor].trajectory;
+  j->before =
+      motors[motor].loop == LOOP_CLOSED ? motors[motor].trajectory : jog_trajectory_at(motor, motors[motor].actual);
   j->away = true;
 }

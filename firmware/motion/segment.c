@@ -23,6 +23,7 @@ enum {
 
 /* The sequence that is being made. Owner: R, but for what is marked. */
 struct sequence {
+  bool late; /* the next move has not come in time: the last one goes straight on, to its stop at most */
   bool runs;
   bool handed;                         /* the servo task has its first pieces */
   bool ends;                           /* it is known where: behind `joined` moves of the queue */
@@ -228,7 +229,7 @@ static bool begin(uint32_t cs) {
   q->time = path_begins(&paths[cs], 0);
   set_move(cs, 0);
   set_move(cs, 0);
-  q->handed = q->ends = q->closed = false;
+  q->handed = q->ends = q->closed = q->late = false;
   q->order = LOOKAHEAD_NONE;
   q->joined = 1;
   q->unhanded = 0;
@@ -240,27 +241,34 @@ static bool begin(uint32_t cs) {
   return true;
 }
 
-/* Program time to the next point: by the override, which goes to its new value by Isx16 a segment. */
-static double next_time(uint32_t cs) {
-  struct sequence* q = &sequences[cs];
+/* As Isx15 has it for the next segment: it goes to a new value by Isx16 a segment. */
+static double override_of(uint32_t cs) {
+  const struct sequence* q = &sequences[cs];
   const double given = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE));
   const double wanted = given < -1.0 ? 0.0 : given > 1.0 ? 2.0 : given + 1.0;
   slice_pause();
-  if (q->override != wanted) {
-    const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
-    const bool at_once = !(change > 0.0) || math_absolute(wanted - q->override) <= change;
-    q->override = at_once ? wanted : wanted > q->override ? q->override + change : q->override - change;
-  }
+  if (q->override == wanted) return wanted;
+  const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
   slice_pause();
-  return q->time + (q->override == 1.0 ? q->step : q->step * q->override);
+  if (!(change > 0.0) || math_absolute(wanted - q->override) <= change) return wanted;
+  return wanted > q->override ? q->override + change : q->override - change;
+}
+
+/* Program time of the next point. */
+static double next_time(uint32_t cs) {
+  const struct sequence* q = &sequences[cs];
+  const double override = override_of(cs);
+  return q->time + (override == 1.0 ? q->step : q->step * override);
 }
 
 /* Moves of the queue that belong to the sequence, each joined to the one before it no earlier than the last point. */
 static void join(uint32_t cs) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  while (!q->ends && !q->stops && q->joined < p->count && path_of(p, q->joined)->joins)
+  while (!q->ends && !q->stops && q->joined < p->count && path_of(p, q->joined)->joins) {
     path_blend(p, q->joined++, q->time);
+    q->late = false;
+  }
 }
 
 /* No move can join any more. */
@@ -274,7 +282,7 @@ static bool is_last(uint32_t cs) {
 enum decision { GOES_ON, ENDS, WAITS };
 
 /* What the point at `time` needs is known, the sequence ends, or a next move may still change it. */
-static enum decision decide(uint32_t cs, double time, bool alone) {
+static enum decision decide(uint32_t cs, double time, bool starving) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
@@ -282,10 +290,11 @@ static enum decision decide(uint32_t cs, double time, bool alone) {
   if (time <= path_corner(p, q->joined - 1u) + m->change / 2.0) return GOES_ON;
   if (is_last(cs) || s->quit || !s->running || !s->may_join) return ENDS;
   slice_pause();
-  const uint32_t left = q->looks ? lookahead_left(cs) : 0u;
-  if (!alone || ahead_of(s) + q->unhanded + left > short_ahead(q)) return WAITS;
+  if (starving) q->late = true;
+  if (!q->late) return WAITS;
   const double stop = path_corner(p, q->joined);
-  return time <= stop + stop - path_ends(p, q->joined) ? GOES_ON : ENDS;
+  if (time <= stop + stop - path_ends(p, q->joined)) return GOES_ON;
+  return starving ? ENDS : WAITS;
 }
 
 /* Moves that are over before the point at `time`. */
@@ -333,6 +342,7 @@ static void make_point(uint32_t cs, double time) {
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
   set_move(cs, ahead);
   q->time = time;
+  q->override = override_of(cs);
   use_point(cs);
 }
 
@@ -348,14 +358,14 @@ static bool is_dry(const struct coordinate_system* s, const struct sequence* q) 
 }
 
 /* The next point of the path. False: it waits for a further move. */
-static bool make_next(uint32_t cs, bool alone) {
+static bool make_next(uint32_t cs, bool starving) {
   struct sequence* q = &sequences[cs];
   leave_out(cs);
   join(cs);
   double time = next_time(cs);
   drop_moves(cs, &time);
   if (!q->ends) {
-    const enum decision decision = decide(cs, time, alone);
+    const enum decision decision = decide(cs, time, starving);
     if (decision == WAITS) return false;
     q->ends = decision == ENDS;
   }
@@ -368,7 +378,7 @@ static bool make_next(uint32_t cs, bool alone) {
 
 static bool work_at_once(uint32_t cs, bool alone) {
   struct sequence* q = &sequences[cs];
-  if (!make_next(cs, alone)) return false;
+  if (!make_next(cs, alone && ahead_of(&coordinate_systems[cs]) + q->unhanded <= short_ahead(q))) return false;
   if (q->handed || q->made || q->unhanded > short_ahead(q)) hand_over(cs);
   q->runs = !q->made;
   return true;
@@ -428,9 +438,13 @@ static bool work_ahead(uint32_t cs, bool alone) {
   }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
-  if ((room && release(cs, hurry)) || lookahead_sweep(cs, hurry)) return true;
-  if (!q->made && !lookahead_is_full(cs)) {
-    if (make_next(cs, alone)) return true;
+  const bool grows = !q->made && !lookahead_is_full(cs);
+  if ((room && release(cs, false)) || lookahead_sweep(cs, false)) return true;
+  /* what has no next line in time comes to its end, before it has to stop where nothing more is known */
+  if (hurry && grows && alone && decide(cs, next_time(cs), false) == WAITS) return make_next(cs, true);
+  if (hurry && ((room && release(cs, true)) || lookahead_sweep(cs, true))) return true;
+  if (grows) {
+    if (make_next(cs, false)) return true;
     if (!alone) return false;
     /* what is known will not be more for now */
     if (!q->handed && lookahead_sweep(cs, true)) return true;

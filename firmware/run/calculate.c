@@ -72,6 +72,14 @@ static void planned(uint32_t cs) {
   if (s->stepping && !p->in_block) s->quit = true;
 }
 
+/* Isx53 bit 0: a step ends behind each line, a block is one. */
+static void line_ends(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  motion_programs[cs].lines++;
+  if (!s->stepping || motion_programs[cs].in_block) return;
+  if (((uint32_t)i_integer(i_cs(cs, ISX53_STEP_MODE)) & 1u) != 0u) s->quit = true;
+}
+
 static bool waits_for(enum move_kind kind) { return kind == MOVE_DWELL || kind == MOVE_OWN; }
 
 /* What has to wait for a later interrupt: a move to be started, or the limits of this one. */
@@ -105,7 +113,7 @@ static bool calculate_word(uint32_t cs) {
     if (of_motion && s->pending_axes == 0) p->under_way = false; /* it may wait for ever: a stop does not */
     return false;
   }
-  if (executed == EXECUTED_LINE) p->lines++;
+  if (executed == EXECUTED_LINE) line_ends(cs);
   if (executed == EXECUTED_LINE || executed == EXECUTED_END) s->sets_normal = false;
   p->under_way = executed == EXECUTED_WORD;
   if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {

@@ -93,7 +93,7 @@ static error_t check_motors(uint32_t cs) {
   if (limits) return ERR_BOTH_LIMITS;
   if (s->running && !s->held && !segment_stands(cs)) return ERR_NONE; /* what moves is the program's */
   if (moving || (s->settling && s->motors != 0)) return ERR_MOVE_IN_PROGRESS;
-  return s->must_return && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
+  return (s->must_return || segment_stands(cs)) && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
 }
 
 /* None runs while an open buffer may change it; a PLC changes none. */

@@ -124,11 +124,11 @@ TEST_F(Lookahead, BackToTheBeginOfTheSequence) {
   EXPECT_EQ(host("I5121"), "0");
   EXPECT_EQ(m_variable_read(1), 7);
   ASSERT_EQ(host("#1J:100"), "");
-  platform::servo_ticks(500);
+  platform::servo_ticks(1000);
   EXPECT_EQ(host("&1>"), "ERR017");
   EXPECT_EQ(host("&1R"), "ERR017");
   ASSERT_EQ(host("#1J="), "");
-  platform::servo_ticks(500);
+  platform::servo_ticks(1000);
   ASSERT_EQ(host("&1>"), "");
   platform::servo_ticks(5000);
   EXPECT_EQ(motors[0].trajectory, 15000 * 3072);

@@ -47,7 +47,8 @@ class PathsImage : public ::testing::Test {
     };
     accepted("B1R");
     for (int i = 0; i < 400 && value("P1") < moves; ++i) board.run_ms(50);
-    for (int i = 0; i < 400 && (std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0; ++i) board.run_ms(20);
+    for (int i = 0; i < 400 && (std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0; ++i)
+      board.run_ms(20);
     board.on_instruction = nullptr;
     EXPECT_EQ(value("P1"), moves);
     const double segments = (moves * 2 * 40.0 + 10) / 5;

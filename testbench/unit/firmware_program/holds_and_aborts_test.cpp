@@ -84,6 +84,24 @@ TEST_F(HoldsAndAborts, AnAbortForgetsTheWayBackAndTheHold) {
   }
 }
 
+// Behind `/` as behind Q; B begins anew from where the motors are.
+TEST_F(HoldsAndAborts, AnotherStartNeedsNoWayBack) {
+  store({"INC TM100 TA20 TS0 X1", "X1", "X1", "X1"});
+  for (const char* stop : {"Q", "/"}) {
+    begin();
+    ticks(30);
+    ASSERT_EQ(host(stop), "");
+    ticks(300);
+    ASSERT_EQ(host("#1J:50"), "") << stop;
+    ticks(200);
+    EXPECT_EQ(host("R"), "ERR017") << stop;
+    const std::int64_t from = motors[0].trajectory;
+    begin();
+    ticks(500);
+    EXPECT_EQ(motors[0].trajectory, from + position(4000)) << stop;
+  }
+}
+
 // The move that they wait for does not come.
 TEST_F(HoldsAndAborts, AnAbortForgetsAssignmentsThatWait) {
   ASSERT_EQ(host("M1->X:$10F0,0,24 M1=0"), "");
@@ -103,6 +121,57 @@ TEST_F(HoldsAndAborts, RunGoesWithOneLimit) {
   EXPECT_EQ(host("&1B1R"), "ERR011") << "the jog";
   motors[0].found.negative_limit = true;
   EXPECT_EQ(host("R"), "ERR010");
+}
+
+TEST_F(HoldsAndAborts, ARapidMoveUntilATriggerIsHeld) {
+  ASSERT_EQ(host("I125=$78000 I124=$120001"), "");
+  store({"RAPID X10^0.5"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("H"), "");
+  ticks(50);
+  const std::int64_t held = motors[0].trajectory;
+  ticks(20);
+  EXPECT_EQ(motors[0].trajectory, held);
+  ASSERT_EQ(host("R"), "");
+  ticks(700);
+  EXPECT_EQ(motors[0].trajectory, position(10000));
+}
+
+// Where a program has left a motor is where it came to rest, when it was aborted.
+TEST_F(HoldsAndAborts, JEqualsBehindAnAbortedRapidMove) {
+  store({"RAPID X10"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("A"), "");
+  ticks(100);
+  const std::int64_t left = motors[0].trajectory;
+  ASSERT_EQ(host("#1J:50"), "");
+  ticks(200);
+  ASSERT_EQ(host("J="), "");
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, left);
+}
+
+// motion:5.6/5
+TEST_F(HoldsAndAborts, StepsByLine) {
+  ASSERT_EQ(host("I5153=1 P1=0 P2=0 P3=0"), "");
+  store({"P1=1", "P2=1 TM50 TA20 TS0 X1", "BLOCKSTART", "P3=1", "X2", "BLOCKSTOP"});
+  ASSERT_EQ(host("&1B1"), "");
+  const auto at_end = [](unsigned p) { return p_variable_read(p); };
+  for (const double end : {0.0, 1000.0, 2000.0}) {
+    ASSERT_EQ(host("S"), "");
+    ticks(150);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(motors[0].trajectory, position(end));
+    EXPECT_EQ(at_end(1), 1.0);
+    EXPECT_EQ(at_end(2), end > 0 ? 1.0 : 0.0);
+    EXPECT_EQ(at_end(3), end > 1000 ? 1.0 : 0.0);
+  }
+  ASSERT_EQ(host("I5153=0 P1=0 &1B1S"), "");
+  ticks(150);
+  EXPECT_EQ(at_end(1), 1.0);
+  EXPECT_EQ(motors[0].trajectory, position(1000)) << "to the next move";
 }
 
 // Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes, too.

@@ -226,6 +226,25 @@ TEST_F(JogProfile, RampStopsAtOneDeceleration) {
   EXPECT_GT(positions.size(), 90u) << "40 ms";
 }
 
+// Protection asks again in each of its passes: the ramp that is under way, or about to be, goes on.
+TEST_F(JogProfile, ARampThatIsAskedForAgainGoesOn) {
+  set({0.25, 0, 50, 20}, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 1000; ++i) step();
+  const double before = position();
+  unsigned steps = 0;
+  for (; steps < 500 && jog_is_moving(0); ++steps) {
+    ASSERT_TRUE(jog_stop_at(0, 0.5));
+    EXPECT_TRUE(hal_real_time_pending() || steps > 0) << "it does not wait for its turn";
+    const double last = position();
+    jog_servo(0);
+    if (last == position() && steps > 10) break;
+    while (jog_plan()) {}
+  }
+  EXPECT_NEAR(steps, 20 / 0.5 / step_ms(), 8);
+  EXPECT_NEAR(position() - before, 20 * 20 / 0.5 / 2, 20 * 4 * step_ms());
+}
+
 TEST_F(JogProfile, RampAtZeroPercentStopsOnTheSpot) {
   set({0.25, 0, 50, 20}, 10);
   ASSERT_TRUE(jog_continuous(0, 1));
