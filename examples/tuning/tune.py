@@ -5,6 +5,7 @@ Plays tuning.pmc with `brick exec` (BRICK in the environment, or on the PATH), w
 FOLDER (default: beside this file) and prints what they say about the loop. --check writes nothing; exit status 1 when
 the moves in FOLDER's tables are not within a count of those that the controller gathers today.
 """
+import itertools
 import os
 import pathlib
 import shutil
@@ -54,7 +55,7 @@ def read(file):
 
 def are_alike(first, second):
     """The moves: what stands before them is as long as the commands happened to take."""
-    pairs = list(zip(from_step(first), from_step(second)))
+    pairs = list(zip(from_step(first), from_step(second), strict=False))
     return len(pairs) > 150 and all(abs(a[1] - b[1]) <= 1 and abs(a[2] - b[2]) <= 1 for a, b in pairs)
 
 
@@ -78,7 +79,7 @@ def of_step(rows):
 def of_parabola(rows):
     rows = from_step(rows)
     errors = [c - a for _, c, a, _ in rows]
-    speeds = [(after[1] - before[1]) / SERVO_MS for before, after in zip(rows, rows[1:])]
+    speeds = [(after[1] - before[1]) / SERVO_MS for before, after in itertools.pairwise(rows)]
     return {"size": rows[-1][1], "speed": max(speeds), "error": max(abs(e) for e in errors), "at rest": abs(errors[-1])}
 
 

@@ -251,13 +251,15 @@ static void not_closed(uint32_t motor) {
 static void check(uint32_t motor) {
   if (motors[motor].loop == LOOP_KILLED) return not_closed(motor); /* the usual way of motors that nobody uses */
   const struct view view = look(motor);
-  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
+  if (!status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
   if (motors[motor].loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
     return not_closed(motor);
   check_in_position(motor, &view);
 }
+
+bool protection_in_position(uint32_t motor) { return motors[motor].found.in_position && !jog_is_moving(motor); }
 
 /* What a coordinate system's motors have in common. */
 struct findings {
@@ -270,7 +272,7 @@ static struct findings findings_of(uint32_t cs) {
   for (uint32_t motor = 0, left = of; left != 0u; ++motor, left >>= 1) {
     if ((left & 1u) == 0u) continue;
     const struct motor_findings* found = &motors[motor].found;
-    all.in_position &= found->in_position;
+    all.in_position &= protection_in_position(motor);
     if ((motors_active >> motor & 1u) == 0u) continue;
     all.fatal |= found->fatal_error;
     all.warning |= found->warning_error;

@@ -16,7 +16,9 @@ void protection_initialize(void);
 void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void protection_pass(void);                    /* real-time task: all motors */
 void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
-bool protection_all_in_position(uint32_t cs);  /* those of a coordinate system; false: it has none */
+/* As found, and not jogged since: who asks at once behind a command would take it for done. */
+bool protection_in_position(uint32_t motor);  /* 0..31 */
+bool protection_all_in_position(uint32_t cs); /* those of a coordinate system; false: it has none */
 
 extern volatile uint32_t protection_watched; /* bit n: the servo task looks at motor n */
 void protection_look(uint32_t motor);

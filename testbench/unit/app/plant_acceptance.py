@@ -28,8 +28,10 @@ def values(text, name):
 
 def plant_torque():
     """A constant torque turns the motor as the formula says, the counter follows, all engines agree at each line."""
-    script = [*BY_HAND, "M114=1", "M102=328", "@time", "@wait 20ms", "@time", "@signal plant.axis1.position",
-              "@signal plant.axis1.velocity", "@signal servo_ic0.ch1.count", "M102=0 M114=0", "@wait 3ms",
+    script = [*BY_HAND, "I200=0 M202->Y:$07800A,8,16,S M214->X:$07800D,14", "M214=1 M202=-656", "M114=1", "M102=328",
+              "@time", "@wait 20ms", "@time", "@signal plant.axis1.position",
+              "@signal plant.axis1.velocity", *(f"@signal plant.axis{n}.{what}" for n in (1, 2)
+              for what in ("torque", "current_a", "command")), "@signal servo_ic0.ch1.count", "M102=0 M114=0 M202=0 M214=0", "@wait 3ms",
               "@signal plant.axis1.position", "@signal servo_ic0.ch1.count"]
     outputs = []
     for engine in ("systemc", "rtl", "lockstep"):
@@ -46,6 +48,10 @@ def plant_torque():
     counts = 4000 / (2 * math.pi)
     position, later = values(outputs[0], "plant.axis1.position")
     velocity, = values(outputs[0], "plant.axis1.velocity")
+    for axis, bits in ((1, 328), (2, -656)):  # of 32768: 10 V, 10 A, 1 N m; 18 bits are latched
+        for what, whole in (("command", 10), ("current_a", 10), ("torque", 1)):
+            shown, = values(outputs[0], f"plant.axis{axis}.{what}")
+            check(abs(shown - bits / 32768 * whole) < 1e-4 * whole, f"{what} of axis {axis} is {shown}")
     late = 0.25e-3  # the command is taken by a phase clock, and the answer to it takes time
     check(angle * counts - 1 < position < (angle + speed * late) * counts + 1,
           f"{position} counts, expected {angle * counts} and at most {late} s more")

@@ -277,10 +277,13 @@ TEST_F(Protection, InPositionNeedsACommandedStandstill) {
 // Nor is one whose jog waits for its Ixx92 in position: who polls would take it for done.
 TEST_F(Protection, AJogThatWaitsIsNotInPosition) {
   c_.line("I192=100 I111=0");
-  ASSERT_TRUE(motor_close(0));
+  close_all();
   follow(6);
   ASSERT_TRUE(status2(1, 0));
-  c_.line("#1J=500");
+  const auto system = [this] { return std::stoul(c_.line("&1??").substr(6, 6), nullptr, 16) >> 17 & 1; };
+  EXPECT_EQ(system(), 1u);
+  EXPECT_EQ(c_.line("#1J=500 #1?").back(), '0') << "not even at once";
+  EXPECT_EQ(system(), 0u) << "nor is its coordinate system";
   follow(6);
   EXPECT_EQ(motors[0].desired_step, 0);
   EXPECT_FALSE(status2(1, 0));

@@ -1,4 +1,4 @@
-"""examples/tuning, from an installed tree: its tables are what the controller gathers, and what the formulas ask for."""
+"""examples/tuning, from an installed tree: its tables are what the controller gathers and what formulas ask for."""
 
 import importlib.util
 import math
@@ -12,8 +12,9 @@ from installed import Installed, main
 
 class Tuning(Installed):
     def run_example(self, *arguments):
-        return subprocess.run([sys.executable, self.data / "examples/tuning/tune.py", *arguments], text=True, timeout=120,
-                              env={**os.environ, "BRICK": f"{self.build}/bin/brick"}, capture_output=True)
+        program = self.data / "examples/tuning/tune.py"
+        return subprocess.run([sys.executable, program, *arguments], text=True, timeout=120, capture_output=True,
+                              env={**os.environ, "BRICK": f"{self.build}/bin/brick"})
 
     def table(self, name):
         lines = (self.data / "examples/tuning" / name).read_text().splitlines()

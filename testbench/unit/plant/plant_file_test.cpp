@@ -196,6 +196,29 @@ TEST(PlantFile, PlantsOfTheTree) {
 // A good axis with more lines behind it.
 std::string axis_with(const std::string& lines) { return "[[axis]]\naxes = \"1-2\"\ndrive = \"hand\"\n" + lines; }
 
+// Currents can be read where the drive is one whose loops the controller closes; noise is as long as its shortest.
+TEST(PlantFile, DefaultsThatOtherKeysMake) {
+  for (const auto& [drive, adc] :
+       {std::pair{"torque", false}, {"stepper", false}, {"hand", false}, {"brush", true}, {"three-phase", true}}) {
+    const auto plant = plant_of(std::string("[[axis]]\naxes = 1\ndrive = \"") + drive + "\"\n");
+    EXPECT_EQ(plant.axes.at(0).amplifier.adc, adc) << drive;
+  }
+  const auto plant = plant_of(
+      "[[axis]]\naxes = 1\ndrive = \"hand\"\nnoise = { every = \"1ms\", shortest = \"40us\", pins = [\"enc_a\"] }\n");
+  EXPECT_EQ(plant.axes.at(0).noise.longest, plant.axes.at(0).noise.shortest);
+  EXPECT_GT(plant.axes.at(0).noise.longest, 4000);
+}
+
+// Each of an incident's motors by its place among the axes, in the order of the file.
+TEST(PlantFile, IncidentsFindTheirAxes) {
+  const auto plant = plant_of(
+      "[[axis]]\naxes = \"5,2\"\ndrive = \"torque\"\n[[axis]]\naxes = 1\ndrive = \"torque\"\n"
+      "[[incident]]\nat = \"1ms\"\naxes = \"1-2\"\nload = 1\n");
+  ASSERT_EQ(plant.incidents.size(), 2u);
+  EXPECT_EQ(plant.incidents[0].axis, 2u) << "motor 1 is the third axis";
+  EXPECT_EQ(plant.incidents[1].axis, 1u) << "motor 2";
+}
+
 TEST(PlantFile, EveryMistakeHasItsLine) {
   EXPECT_EQ(error_of("title = \"T\"\n"), ": key axis is missing; expected axis = ...");
   EXPECT_EQ(error_of("axis = []\n"), ":1: axis: found []; expected one [[axis]] at least");
@@ -265,6 +288,11 @@ TEST(PlantFile, MistakesOfIncidents) {
       ":7: turn: found 4; expected an axis with drive = \"hand\": motor 1 has another");
   EXPECT_EQ(error_of(axis_with("[[incident]]\nat = \"1ms\"\naxes = 1\ntrip = \"boredom\"\n")).substr(0, 44),
             ":7: trip: found \"boredom\"; expected one of o");
+}
+
+TEST(PlantFile, ConvertersHave16Or18Bits) {
+  EXPECT_EQ(error_of("dac_bits = 17\n[[axis]]\naxes = 1\ndrive = \"torque\"\n"),
+            ":1: dac_bits: found 17; expected 16 or 18");
 }
 
 TEST(PlantFile, AFileThatIsNone) {
