@@ -1,5 +1,6 @@
 # brick_add_test(NAME unit_ticks SOURCES a.cpp LIBRARIES brick_core): a GoogleTest executable, one ctest entry a test,
 # label `unit`. SANITIZED: under the address and undefined-behaviour sanitizers in every build, whatever the preset.
+# TOGETHER [ALONE a.cpp ...]: brick_together(), names that are local to a file differ in all the others.
 # brick_sanitize(TARGET): the same for a library; what links it is sanitized too.
 # brick_test_code(TARGET): how code that only tests use is compiled. It is most of the compiler's work and little of the
 # processor's later on, so it is optimised less, and the headers that nearly all of it includes are compiled once.
@@ -37,7 +38,7 @@ function(brick_test_code target)
 endfunction()
 
 function(brick_add_test)
-  cmake_parse_arguments(T "SANITIZED" "NAME;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(T "SANITIZED;TOGETHER" "NAME;TIMEOUT" "SOURCES;LIBRARIES;ALONE" ${ARGN})
   if(NOT T_TIMEOUT)
     set(T_TIMEOUT 300)
     if(BRICK_COVERAGE)
@@ -50,6 +51,9 @@ function(brick_add_test)
   endif()
   add_executable(${T_NAME} ${T_SOURCES})
   brick_test_code(${T_NAME} ${sanitized})
+  if(T_TOGETHER)
+    brick_together(${T_NAME} ALONE ${T_ALONE})
+  endif()
   target_link_libraries(${T_NAME} PRIVATE ${T_LIBRARIES} GTest::gtest_main)
   gtest_discover_tests(${T_NAME} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${T_TIMEOUT} LABELS unit
                        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})

@@ -17,3 +17,16 @@ function(brick_precompiled)
     target_precompile_headers(${target} REUSE_FROM brick_headers)
   endforeach()
 endfunction()
+
+# brick_together(TARGET [ALONE source...]): eight sources are one for the compiler, because what they all instantiate
+# and inline is half of its work. Names that are local to a file must differ then, in all but those that stay alone. Not
+# for debugging, where one source is built again and again, nor for coverage; tools/tidy.py takes them apart.
+set(BRICK_TOGETHER OFF)
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT BRICK_COVERAGE)
+  set(BRICK_TOGETHER ON)
+endif()
+function(brick_together target)
+  cmake_parse_arguments(T "" "" "ALONE" ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${BRICK_TOGETHER} UNITY_BUILD_BATCH_SIZE 8)
+  set_source_files_properties(${T_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

@@ -10,6 +10,7 @@ import argparse
 import concurrent.futures
 import json
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -37,10 +38,20 @@ def arguments_for_clang(command):
     return kept
 
 
+def one_by_one(entry):
+    """The entries of the sources that one of several includes (brick_together() in cmake/Headers.cmake)."""
+    file = pathlib.Path(entry["file"])
+    if file.parent.name != "Unity":
+        return [entry]
+    sources = re.findall(r'^#include "(.+)"$', file.read_text(), re.M)
+    return [{**entry, "file": source, "command": entry["command"].replace(str(file), source)} for source in sources]
+
+
 def our_commands(build):
     """[command] of our sources, as a compilation database has them; the first where a source is compiled twice."""
     found = {}
-    for entry in json.loads((build / "compile_commands.json").read_text()):
+    database = json.loads((build / "compile_commands.json").read_text())
+    for entry in [single for several in database for single in one_by_one(several)]:
         file = pathlib.Path(entry["file"])
         if file.is_relative_to(ROOT) and file.relative_to(ROOT).parts[0] in FOLDERS and entry["file"] not in found:
             found[entry["file"]] = {"directory": entry["directory"], "file": entry["file"],

@@ -1,6 +1,6 @@
 // How fast the engines are: a table on stdout. Each ratio compares runs that were made in turn, in the same minute, and
 // every number is the median of five, because the machine under us is never quiet.
-//   brick_benchmark FIRMWARE.elf [--quick] [PART...], PART one of boards, cpu, machine, bus
+//   brick_benchmark FIRMWARE.elf [--quick] [PART...], PART one of boards, cpu, machine, bus, moving
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -135,7 +135,7 @@ void cpu(std::uint64_t instructions) {
 }  // namespace brick
 
 int main(int argc, char** argv) {
-  const std::set<std::string> known{"boards", "cpu", "machine", "bus"};
+  const std::set<std::string> known{"boards", "cpu", "machine", "bus", "moving"};
   std::set<std::string> parts;
   bool quick = false, usage = argc < 2;
   for (int i = 2; i < argc; ++i) {
@@ -148,7 +148,7 @@ int main(int argc, char** argv) {
       usage = true;
   }
   if (usage) {
-    fmt::print(stderr, "usage: brick_benchmark FIRMWARE.elf [--quick] [boards|cpu|machine|bus ...]\n");
+    fmt::print(stderr, "usage: brick_benchmark FIRMWARE.elf [--quick] [boards|cpu|machine|bus|moving ...]\n");
     return 2;
   }
   if (parts.empty()) parts = known;
@@ -166,6 +166,11 @@ int main(int argc, char** argv) {
       brick::measure_machine(brick::Engine::kLockstep, "lock-step", argv[1], quick ? 0.01 : 0.05, waves);
     }
     if (parts.count("bus") != 0) brick::measure_bus(argv[1], quick ? 0.05 : 0.5);
+    if (parts.count("moving") != 0) {
+      const double simulated = quick ? 0.1 : 0.5;
+      brick::measure_moving("dac8", "eight DAC axes at 32 counts/ms", argv[1], simulated, 2, 0.02);
+      brick::measure_moving("servo8", "eight PWM axes with current loops", argv[1], simulated, 1, 0.01);
+    }
   } catch (const std::exception& e) {
     fmt::print(stderr, "brick_benchmark: {}\n", e.what());
     return 2;

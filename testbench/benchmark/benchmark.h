@@ -37,4 +37,9 @@ void measure_machine(Engine engine, const std::string& name, const std::string& 
 // The SystemC engine where every tick counts: host and CPU use their buses without a pause.
 void measure_bus(const std::string& firmware, double simulated);
 
+// The SystemC engine with the plant and set-up examples/.../NAME, eight motors jogging; `goal` in simulated seconds a
+// second and as a part of the idle speed.
+void measure_moving(const std::string& name, const std::string& what, const std::string& firmware, double simulated,
+                    double goal, double goal_ratio);
+
 }  // namespace brick
