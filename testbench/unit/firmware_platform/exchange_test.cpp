@@ -364,6 +364,7 @@ TEST(HostExchange, EightBitCharactersAreIllegal) {
   EXPECT_EQ(c.send("P1=\x80\r"),
             "\x07"
             "ERR004\r");
+  EXPECT_EQ(c.line("P1=" + std::string(253, '0') + "\xC4"), "ERR004") << "also behind the 255th";
   EXPECT_EQ(c.send("\x7F\r"),  // seven bits, and no command
             "\x07"
             "ERR003\r");

@@ -3,7 +3,9 @@
 // nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
@@ -171,6 +173,26 @@ TEST(SavedContent, FloatsAreKeptToTheLastBit) {
   restart(c);
   EXPECT_EQ(c.line("I122 I123 P7 Q9 I8000"), before);
   EXPECT_EQ(c.line("I122=I122-1/3 I122"), "0") << "no digit of it is lost";
+}
+
+// A checksum that is right says nothing of who wrote the words.
+TEST(SavedContent, ARealThatIsNoNumberIsPassedOver) {
+  Controller c;
+  for (const std::uint32_t high : {0x7FF80000u, 0x7FF00000u, 0xFFF00000u}) {  // no number, infinite, minus infinite
+    c.line("I123=-12345678.875 SAVE");
+    const double saved = -12345678.875;
+    std::uint32_t words[2];
+    std::memcpy(words, &saved, sizeof words);
+    const Slot slot = whole_slot();
+    std::uint32_t* const at = std::search(slot.words, slot.words + slot.size, words, words + 2);
+    ASSERT_NE(at, slot.words + slot.size);
+    at[0] = 0;
+    at[1] = high;
+    seal(slot);
+    restart(c);
+    EXPECT_FALSE(flash_error());
+    EXPECT_EQ(c.line("I123"), "0") << "as one that SAVE has not kept, " << std::hex << high;
+  }
 }
 
 // Each word of the small images that a controller with little in it makes; a start-up after each 13th, and after each

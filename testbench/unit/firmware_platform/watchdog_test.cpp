@@ -9,6 +9,7 @@
 
 extern "C" {
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/background.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/kernel/watchdog.h"
 }
@@ -48,6 +49,16 @@ TEST_F(WatchdogTask, StrobesDownToZeroAndNotBelow) {
   c_.line("I40=10");
   EXPECT_EQ(strobes(3), 3u) << "a background that comes back is forgiven";
   EXPECT_EQ(hal_signed(*hal_x(kCounter)), -5) << "and remembered";
+}
+
+// A background that sleeps until the next real-time interrupt is woken in time to reload.
+TEST_F(WatchdogTask, WakesTheBackgroundAtHalfOfItsCount) {
+  c_.line("I40=10");
+  background_work = 0;
+  for (int i = 0; i < 4; ++i) watchdog_count();
+  EXPECT_EQ(background_work, 0u) << "6 of 10 are left";
+  watchdog_count();
+  EXPECT_NE(background_work, 0u);
 }
 
 // Where both words end, the hardware having tripped an hour ago.

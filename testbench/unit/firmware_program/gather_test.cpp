@@ -47,6 +47,18 @@ TEST_F(Gather, WordsFillXAndYInTurnInAscendingOrderOfTheSources) {
   EXPECT_EQ(host("RHY$3120"), "107A2");
 }
 
+// The period is from sample to sample, not to the one that an ended gathering would have taken.
+TEST_F(Gather, GoesOnWithTheNextInterrupt) {
+  ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=10 DEF GAT 50"), "");
+  const unsigned long before = count();
+  ASSERT_EQ(host("GAT"), "");
+  servo_ticks(3);
+  ASSERT_EQ(host("ENDG GAT"), "");
+  servo_ticks(1);
+  ASSERT_EQ(host("ENDG"), "");
+  EXPECT_EQ(host_lines("LIST GATHER"), (Lines{hex(before + 1) + "000000", hex(before + 4) + "000000"}));
+}
+
 TEST_F(Gather, EachPeriodIsThatManyServoInterrupts) {
   for (const unsigned period : {1U, 2U, 10U}) {
     ASSERT_EQ(host("DEL GAT I5001=$400000 I5050=1 I5049=" + std::to_string(period) + " DEF GAT 50"), "");

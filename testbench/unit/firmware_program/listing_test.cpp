@@ -196,6 +196,7 @@ TEST_F(Listing, TheOpenBufferAndTheRotaryOne) {
   EXPECT_EQ(host_lines("LIST ROT"), (Lines{"X1Y(P1)", "F5"}));
   EXPECT_EQ(host("LIST PC"), "0:X1Y(P1)");
   EXPECT_EQ(host_lines("LIST PC,5"), (Lines{"0:X1Y(P1)", "3:F5"}));
+  for (const char* wrong : {"LIST PC,0", "LIST PC,-1", "LIST PC,1.5"}) EXPECT_EQ(host(wrong), "ERR003") << wrong;
 }
 
 TEST_F(Listing, GatherIsListedInLongWords) {

@@ -289,6 +289,8 @@ TEST_F(RunControl, AxisDefinitions) {
   EXPECT_EQ(host("&2#1->X"), "ERR003");  // golden exchange 27
   EXPECT_EQ(host("&2#1->"), "0");
   EXPECT_EQ(host("&1#1->100X+20A"), "ERR003") << "two groups of axes";
+  EXPECT_EQ(host("#1->10X+5X"), "ERR003") << "one axis twice";
+  EXPECT_EQ(host("#1->"), "1000X") << "as it was";
   EXPECT_EQ(host("#1->0"), "");
   EXPECT_EQ(host("#1->"), "0");
   EXPECT_EQ(host("&2#1->X"), "");
