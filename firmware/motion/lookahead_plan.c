@@ -1,8 +1,8 @@
-/* Rates of segments: sweeps, what is handed over next, stops and the way back (motion:7.4, motion:7.5). */
+#include "firmware/motion/lookahead_plan.h"
+
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/lookahead.h"
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 
