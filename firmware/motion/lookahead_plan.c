@@ -81,9 +81,14 @@ static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
   }
   const uint32_t knot = l->sweep - 1u;
   load(l, knot);
-  const int32_t rate = limits_reach(LIMITS_FIRST, *rate_at(l, l->sweep), cap_at(l, knot));
+  int32_t rate = limits_reach(LIMITS_FIRST, *rate_at(l, l->sweep), cap_at(l, knot));
   l->sweep = knot;
-  if (rate == *rate_at(l, knot) && knot < l->swept) l->sweep = last; /* from here on all is as it was */
+  /* What was possible still is, though the search has not come so near to it this time: something before it may count on
+   * it. From where nothing is new on all is as it was. */
+  if (knot < l->swept && rate <= *rate_at(l, knot)) {
+    rate = *rate_at(l, knot);
+    l->sweep = last;
+  }
   *rate_at(l, knot) = rate;
   return true;
 }
