@@ -9,7 +9,7 @@
 #define LN2_LOW 1.90821492927058770002e-10
 /* Logarithms of the largest double, and of the smallest that is not denormal, rounded inwards. */
 #define EXP_LARGEST 709.782712893384
-#define EXP_SMALLEST -708.396418532264
+#define EXP_SMALLEST (-708.396418532264)
 
 union bits {
   double value;

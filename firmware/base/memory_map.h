@@ -20,12 +20,13 @@ enum {
   MEMORY_MOTOR_COMPENSATION = 0x10,
   MEMORY_MOTOR_VELOCITY = 0x1D,      /* X: 1/(32 Ixx09) count a servo cycle */
   MEMORY_MOTOR_FILTER_OUTPUT = 0x3F, /* X: what the servo loop commands, 24 bits */
-  MEMORY_MOTOR_TARGET = 0x47, /* D: end of the present motion */
+  MEMORY_MOTOR_TARGET = 0x47,        /* D: end of the present motion */
   MEMORY_MOTOR_BIAS = 0x4C,
-  MEMORY_MOTOR_CAPTURE = 0x4E, /* Y: counter at the last trigger */
-  MEMORY_MOTOR_JOG = 0x57,    /* L: position or distance of J=*, J:*, J^* in counts */
-  MEMORY_DISPLAY = 0x001080,  /* Y: one character a word (run/display.h) */
-  MEMORY_CS_WORDS = 0x002000, /* registers of coordinate system 1, the others each CS_STRIDE on */
+  MEMORY_MOTOR_CAPTURE = 0x4E,          /* Y: counter at the last trigger */
+  MEMORY_MOTOR_JOG = 0x57,              /* L: position or distance of J=*, J:*, J^* in counts */
+  MEMORY_MOTOR_AVERAGE_VELOCITY = 0x6F, /* D: 1/(32 Ixx09) count a servo cycle */
+  MEMORY_DISPLAY = 0x001080,            /* Y: one character a word (run/display.h) */
+  MEMORY_CS_WORDS = 0x002000,           /* registers of coordinate system 1, the others each CS_STRIDE on */
   MEMORY_CS_STRIDE = 0x100,
   MEMORY_CS_TARGETS = 0x41,          /* L: of A, B, C, U, V, W, X, Y, Z */
   MEMORY_PLC_STATUS = 0x003100,      /* Y: one word a PLC (run/plc_control.h) */

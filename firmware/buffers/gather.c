@@ -25,6 +25,7 @@ static struct {
 
 /* B, while the servo task is held off or nothing is gathered. */
 static uint32_t sources[SOURCES], source_count, sample_size;
+static bool is_plain[SOURCES]; /* read where it stands: no time is lost in the servo task */
 static uint32_t period; /* servo cycles; 0: once */
 static bool wraps;
 
@@ -139,7 +140,11 @@ static bool is_chosen(uint32_t source) {
 static void look_up_sources(void) {
   source_count = 0;
   for (uint32_t i = 0; i < SOURCES; ++i)
-    if (is_chosen(i)) sources[source_count++] = (uint32_t)i_integer(I5001_GATHER_SOURCES + i);
+    if (is_chosen(i)) {
+      const uint32_t source = (uint32_t)i_integer(I5001_GATHER_SOURCES + i);
+      is_plain[source_count] = word_is_plain(source & ADDRESS);
+      sources[source_count++] = source;
+    }
   sample_size = size_of_sample();
 }
 
@@ -172,13 +177,19 @@ struct pair {
   uint32_t x, y;
 };
 
-static struct pair read_both(uint32_t source) {
+static struct pair read_both(uint32_t source, bool plain) {
+  const uint32_t address = source & ADDRESS;
   struct pair word;
-  word_read_long(source & ADDRESS, &word.x, &word.y);
+  if (plain) return (struct pair){*hal_x(address), *hal_y(address)};
+  word_read_long(address, &word.x, &word.y);
   return word;
 }
 
-static uint32_t read_one(uint32_t source) { return word_read(source >> SOURCE_SHIFT == SOURCE_X, source & ADDRESS); }
+static uint32_t read_one(uint32_t source, bool plain) {
+  const uint32_t address = source & ADDRESS;
+  const bool x = source >> SOURCE_SHIFT == SOURCE_X;
+  return plain ? *(x ? hal_x(address) : hal_y(address)) : word_read(x, address);
+}
 
 static uint32_t put_item(uint32_t at, uint32_t word) {
   dpram_write_item(dpram_open_offset(at), (uint32_t)hal_signed(word));
@@ -188,10 +199,10 @@ static uint32_t put_item(uint32_t at, uint32_t word) {
 static uint32_t sample_to_dpram(uint32_t at) {
   for (uint32_t i = 0; i < source_count; ++i) {
     if (!is_long(sources[i])) {
-      at = put_item(at, read_one(sources[i]));
+      at = put_item(at, read_one(sources[i], is_plain[i]));
       continue;
     }
-    const struct pair word = read_both(sources[i]);
+    const struct pair word = read_both(sources[i], is_plain[i]);
     at = put_item(at, word.y);
     at = put_item(at, word.x);
   }
@@ -211,13 +222,13 @@ static uint32_t sample_to_memory(uint32_t at) {
     if (is_long(sources[i])) {
       if (half) at = put_long(at, begun);
       half = false;
-      at = put_long(at, read_both(sources[i]));
+      at = put_long(at, read_both(sources[i], is_plain[i]));
     } else if (half) {
-      begun.y = read_one(sources[i]);
+      begun.y = read_one(sources[i], is_plain[i]);
       at = put_long(at, begun);
       half = false;
     } else {
-      begun = (struct pair){read_one(sources[i]), 0};
+      begun = (struct pair){read_one(sources[i], is_plain[i]), 0};
       half = true;
     }
   }
@@ -255,10 +266,10 @@ void gather_report_sources(void (*put)(uint8_t byte)) {
     if (!is_chosen(i)) continue;
     const uint32_t source = (uint32_t)i_integer(I5001_GATHER_SOURCES + i);
     if (!is_long(source)) {
-      put_bytes(put, read_one(source));
+      put_bytes(put, read_one(source, false));
       continue;
     }
-    const struct pair word = read_both(source);
+    const struct pair word = read_both(source, false);
     put_bytes(put, word.x);
     put_bytes(put, word.y);
   }

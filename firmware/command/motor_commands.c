@@ -57,16 +57,14 @@ static error_t program_text(const struct lexer* lx, uint32_t length) {
 /* Closed, unless `error` says why not. */
 static error_t close_loop(uint32_t motor, error_t error) {
   if (error != ERR_NONE || motors[motor].loop == LOOP_CLOSED) return error;
-  const uint32_t state = hal_mask_servo();
-  jog_drop(motor);
-  if (!motor_close(motor)) error = ERR_PHASING;
-  hal_unmask(state);
-  return error;
+  return motor_close(motor) ? ERR_NONE : ERR_PHASING;
 }
 
+/* No distance follows: the end, an address, a report, or behind a blank the word of another command. `J=P1` is none. */
 static bool line_goes_on(struct lexer* lx) {
+  const bool blank = *lx->at == ' ';
   const char c = lexer_peek(lx);
-  return c == '\0' || c == '#' || c == '&';
+  return c == '\0' || c == '#' || c == '&' || c == '?' || (blank && c >= 'A' && c <= 'Z');
 }
 
 /* Counts; `*`: what stands in L:+$57 of the motor's registers. */
@@ -142,7 +140,7 @@ error_t motor_jog(uint32_t motor, enum motor_jog how) {
   else if (how == MOTOR_JOG_BACK)
     (void)jog_to(motor, jog_position_before(motor));
   else if (how == MOTOR_HOME)
-    (void)homing_begin(motor, false);
+    (void)homing_begin(motor, 0);
   else
     (void)jog_continuous(motor, how == MOTOR_JOG_PLUS ? 1 : -1);
   return ERR_NONE;
@@ -169,7 +167,7 @@ static error_t cmd_hmz(struct lexer* lx) { return home_here(lx, sizeof "HMZ" - 1
 static error_t cmd_kill(struct lexer* lx) {
   (void)lx;
   const error_t error = is_free(session.motor);
-  if (error == ERR_NONE) motor_stop_now(session.motor);
+  if (error == ERR_NONE) motor_kill(session.motor);
   return error;
 }
 

@@ -23,8 +23,6 @@ static struct {
   const char* text;  /* of the host line, its beginning */
 } line;
 
-#define TEXT_END ((const char*)UINTPTR_MAX) /* the end of the text itself ends the search */
-
 /* Kind of the open program for the statement table; 0: nothing takes text of this port. */
 static uint32_t open_where(void) {
   static const uint8_t fixed[FIXED_KINDS] = {WHERE_PROG, WHERE_PLC, WHERE_KINEMATIC, WHERE_KINEMATIC};
@@ -100,7 +98,7 @@ bool program_statement(struct lexer* lx, error_t* error) {
   uint32_t where = open_where();
   if (where == 0) return false;
   if (takes_axes(where) && (line.count == 0 || line.cs == session.cs)) {
-    const uint32_t made = axis_constants(&lx->at, TEXT_END, line.words + line.count, LINE_WORDS - line.count);
+    const uint32_t made = axis_constants(&lx->at, 0, line.words + line.count, LINE_WORDS - line.count);
     line.cs = session.cs;
     line.count += made;
     *error = ERR_NONE;

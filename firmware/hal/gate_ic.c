@@ -186,6 +186,17 @@ void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsi
   set_field(ic, GATE_WORD_CHANNEL, channel, lsb, width, value);
 }
 
+/* The bit stands in no shadow, so no field write could take it back. */
+void gate_ic_zero_counter(unsigned ic, unsigned channel) {
+  if (!gate_ic_present(ic)) return;
+  const uint32_t address = address_of(ic, GATE_WORD_CHANNEL, channel), state = hal_mask_servo();
+  const uint32_t others =
+      *hal_x(address) & ~(SERVO_CHANNEL_CONTROL_COUNTER_RESET_MASK | SERVO_CHANNEL_CONTROL_EQU_WRITE_MASK);
+  *hal_x(address) = others | SERVO_CHANNEL_CONTROL_COUNTER_RESET_MASK;
+  *hal_x(address) = others;
+  hal_unmask(state);
+}
+
 void gate_ic_set_compare_output(unsigned ic, unsigned channel, bool high) {
   if (!gate_ic_present(ic)) return;
   volatile uint32_t* const control = hal_x(address_of(ic, GATE_WORD_CHANNEL, channel));

@@ -38,6 +38,8 @@ typedef enum {
 void gate_ic_set_field(unsigned ic, gate_word_t word, unsigned lsb, unsigned width, uint32_t value);
 void gate_ic_set_channel_field(unsigned ic, unsigned channel, unsigned lsb, unsigned width,
                                uint32_t value); /* channel 0..3; 0..1 of a MACRO IC */
+/* The encoder counter of a channel of a servo IC counts from 0. */
+void gate_ic_zero_counter(unsigned ic, unsigned channel);
 /* EQU of a channel of a servo IC, as if its compare registers had been met. */
 void gate_ic_set_compare_output(unsigned ic, unsigned channel, bool high);
 /* A start without a reset of the ICs finds the clocks running: their source lets go before its variables are written.

@@ -8,6 +8,7 @@
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/kernel/watchdog.h"
+#include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
 #include "rtl/regs/brick_regs.h"
 
@@ -20,6 +21,8 @@ enum { RESERVED_AT_ONCE = 2 }; /* what the port holds: the next is the host's ne
 
 uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
 volatile uint32_t host_port_received_count, host_port_taken_count;
+volatile int32_t host_port_granted;
+volatile uint32_t host_port_renewed, host_port_held, host_port_enables;
 
 static uint8_t transmit[TRANSMIT_SIZE];
 static volatile uint32_t transmit_head, transmit_tail;
@@ -29,7 +32,9 @@ static volatile uint32_t flushes;             /* ^X so far */
 static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
 static volatile uint32_t reserved;            /* characters that a full queue still takes. Servo task, interrupt */
+static uint32_t spare;    /* of a phase period with a queue that is nearly full: looked at one by one. Interrupt */
 static bool of_program;                       /* what is being sent */
+static uint32_t spare; /* of a phase period with a queue that is nearly full: looked at one by one. Interrupt */
 
 /* Where transmit_tail stood when a host that did not read was given up: it is not waited for again until it reads. */
 static uint32_t given_up_at;
@@ -38,17 +43,48 @@ static bool given_up;
 static void enable(bool receive_on, bool transmit_on) {
   receiving = receive_on;
   transmitting = transmit_on;
-  hal_host_interrupts(receive_on, transmit_on);
+  host_port_enables = (receive_on ? HI08_HCR_HRIE_MASK : 0u) | (transmit_on ? HI08_HCR_HTIE_MASK : 0u);
+  if (host_port_held == 0u) hal_host_interrupts(receive_on, transmit_on);
+}
+
+static uint32_t waiting(void) { return host_port_received_count - host_port_taken_count; }
+
+/* What was granted has been used. A host that never pauses takes no phase or servo interrupt away (motion:1.6): while a
+ * motor is enabled the others wait in the port for the next phase interrupt. False: they do. */
+static bool renew(void) {
+  const int32_t room = HOST_PORT_RECEIVE_LIMIT - (int32_t)waiting();
+  if (motors_enabled == 0u) {
+    host_port_granted = room;
+    return true;
+  }
+  if (spare == 0u && host_port_renewed == 0u) {
+    host_port_held = 1;
+    hal_host_interrupts(false, false);
+    return false;
+  }
+  if (spare == 0u) {
+    host_port_renewed = 0;
+    host_port_granted = room >= HOST_PORT_PACE ? HOST_PORT_PACE : 0;
+    spare = room >= HOST_PORT_PACE ? 0u : HOST_PORT_PACE;
+  }
+  if (spare != 0u) --spare;
+  return true;
+}
+
+/* Nobody grants any more: the last motor has been killed, or there is no phase clock. */
+static void release(void) {
+  host_port_held = 0;
+  hal_host_interrupts(receiving, transmitting);
 }
 
 void host_port_initialize(void) {
+  host_port_granted = 0;
+  host_port_held = host_port_renewed = spare = 0;
   host_port_received_count = host_port_taken_count = transmit_head = transmit_tail = 0;
   host_port_urgent_codes = flushed = flushed_to = flushes = discard = reserved = 0;
   given_up = of_program = false;
   enable(true, false);
 }
-
-static uint32_t waiting(void) { return host_port_received_count - host_port_taken_count; }
 
 void host_port_character(uint8_t c) {
   if (c == CONTROL_X) {
@@ -82,23 +118,29 @@ bool host_port_next_output(uint8_t* c) {
   return true;
 }
 
+/* A character. Where there is one more the interrupt comes again. */
 void host_port_interrupt(void) {
+  if (host_port_granted <= 0 && !renew()) return;
   const uint32_t status = *hal_x(HI08_X_HSR);
   if ((status & HI08_HSR_HRDF_MASK) != 0u && receiving) {
     const bool full = waiting() >= HOST_PORT_RECEIVE_LIMIT;
-    if (!full || reserved != 0u) host_port_character((uint8_t)*hal_x(HI08_X_HORX));
+    if (!full || reserved != 0u) {
+      --host_port_granted;
+      host_port_character((uint8_t)*hal_x(HI08_X_HORX));
+    }
     if (full && (reserved == 0u || --reserved == 0u)) enable(false, transmitting);
-  }
-  if ((status & HI08_HSR_HTDE_MASK) != 0u && transmitting) {
+  } else if ((status & HI08_HSR_HTDE_MASK) != 0u && transmitting) {
     uint8_t c;
+    --host_port_granted;
     if (host_port_next_output(&c)) *hal_x(HI08_X_HOTX) = c;
     if (transmit_tail == transmit_head) enable(receiving, false);
   }
 }
 
 void host_port_reserve(void) {
-  if (receiving) return;
+  if (receiving && host_port_held == 0u) return;
   const uint32_t state = hal_mask_all();
+  if (host_port_held != 0u && motors_enabled == 0u) release();
   if (!receiving && waiting() + RESERVED_AT_ONCE <= HOST_PORT_RECEIVE_SIZE) {
     reserved = RESERVED_AT_ONCE;
     enable(true, transmitting);

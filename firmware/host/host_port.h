@@ -7,6 +7,7 @@
 #define HOST_PORT_RECEIVE_LIMIT (1 << HOST_PORT_LIMIT_BITS)
 #define HOST_PORT_RECEIVE_BITS (HOST_PORT_LIMIT_BITS + 2)
 #define HOST_PORT_RECEIVE_SIZE (1 << HOST_PORT_RECEIVE_BITS)
+#define HOST_PORT_PACE 8 /* characters in a phase period, both ways together, while a motor is enabled */
 
 #ifndef __ASSEMBLER__
 #include <stdbool.h>
@@ -16,6 +17,12 @@
  * when used. */
 extern uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
 extern volatile uint32_t host_port_received_count, host_port_taken_count;
+
+/* Characters that are taken without another look: as many as the queue has room for. While a motor is enabled each phase
+ * interrupt takes that back and renews the right to HOST_PORT_PACE; when they have been taken or sent the port is held,
+ * its interrupts off, until the next one puts host_port_enables into HCR. Interrupts. */
+extern volatile int32_t host_port_granted;
+extern volatile uint32_t host_port_renewed, host_port_held, host_port_enables;
 
 void host_port_initialize(void);
 void host_port_interrupt(void);         /* image/trap.S, where it has more to do than a character of a line */

@@ -105,9 +105,10 @@ static char upper_case(char c) {
   return !quoted && c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
 }
 
-/* A character that does not just go to the line at `at`; false: a control character. */
-static __attribute__((noinline)) bool add_special(char c, uint32_t at) {
+/* False: a control character. */
+static bool add_one(char c) {
   if ((uint8_t)c < ' ') return false;
+  const uint32_t at = length++;
   if (at >= LINE_LIMIT) {
     if ((uint8_t)c > 0x7Fu) bad_character = true;
     return true;
@@ -118,24 +119,32 @@ static __attribute__((noinline)) bool add_special(char c, uint32_t at) {
   return true;
 }
 
+static __attribute__((noinline)) uint32_t add_others(const uint8_t* from, uint32_t count) {
+  uint32_t taken = 0;
+  while (taken != count && add_one((char)from[taken])) ++taken;
+  return taken;
+}
+
 /* Takes characters up to a control character; returns their number. Runs for each character in the time to BREQ: those
- * that stay as they are go the shortest way. */
+ * that stay as they are go the shortest way, without a call, and the last letter is looked for from the end. */
 static uint32_t add(const uint8_t* from, uint32_t count) {
   const uint8_t *const begin = from, *const end = from + count;
   struct text* const text = &texts[current];
-  uint32_t at = length;
-  for (; from != end; ++from, ++at) {
+  if (length + count > LINE_LIMIT) return add_others(from, count);
+  for (char* to = text->sent + length; from != end; ++from, ++to) {
     const uint32_t c = *from;
-    if (c - ' ' >= 'a' - ' ' || c == '"' || at >= LINE_LIMIT) {
-      if (!add_special((char)c, at)) break;
-      continue;
-    }
-    text->sent[at] = (char)c;
-    text->upper[at] = (char)c;
-    if (c - 'A' <= 'Z' - 'A') letter = at;
+    if (c - ' ' >= 'a' - ' ' || c == '"') break;
+    to[0] = (char)c;
+    to[sizeof text->sent] = (char)c; /* text->upper */
   }
-  length = at;
-  return (uint32_t)(from - begin);
+  const uint32_t taken = (uint32_t)(from - begin);
+  for (const uint8_t* at = from; at != begin; --at) {
+    if ((uint32_t)at[-1] - 'A' > 'Z' - 'A') continue;
+    letter = length + (uint32_t)(at - begin) - 1u;
+    break;
+  }
+  length += taken;
+  return from == end ? taken : taken + add_others(from, count - taken);
 }
 
 static void backspace(void) {

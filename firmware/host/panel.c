@@ -15,8 +15,9 @@
 enum { SELECTABLE = 8 };
 
 static bool fitted;
-static uint32_t low;                /* inputs that are pulled low, as 1, at the last pass. Background */
-static uint32_t jogging = MOTORS;   /* motor that JOG+ or JOG- moves. Background */
+static uint32_t low;              /* inputs that are pulled low, as 1, at the last pass. Background */
+static uint32_t jogging = MOTORS; /* motor that JOG+ or JOG- moves, and which of them. Background */
+static uint32_t jogged_by;
 static volatile uint32_t selection; /* number that FPDn/ give. Real-time task */
 
 static uint32_t read_low(void) {
@@ -86,12 +87,14 @@ static void stop_jogging(void) {
 /* What it is not allowed to do it does not: there is nobody to tell. */
 static void act_on_motor(uint32_t motor, uint32_t now, uint32_t pulled) {
   const uint32_t jogs = JPAN_INPUTS_JOG_MINUS_MASK | JPAN_INPUTS_JOG_PLUS_MASK;
-  if ((now & jogs) == 0u || jogging != motor) stop_jogging();
+  if ((now & jogged_by) == 0u || jogging != motor) stop_jogging(); /* the other one may be low still */
   if ((pulled & JPAN_INPUTS_PREJOG_MASK) != 0u) (void)motor_jog(motor, MOTOR_JOG_BACK);
   if ((pulled & JPAN_INPUTS_HOME_MASK) != 0u) (void)motor_jog(motor, MOTOR_HOME);
   if ((pulled & jogs) == 0u || (now & jogs) == jogs) return; /* both at once: neither */
   const bool plus = (pulled & JPAN_INPUTS_JOG_PLUS_MASK) != 0u;
-  if (motor_jog(motor, plus ? MOTOR_JOG_PLUS : MOTOR_JOG_MINUS) == ERR_NONE) jogging = motor;
+  if (motor_jog(motor, plus ? MOTOR_JOG_PLUS : MOTOR_JOG_MINUS) != ERR_NONE) return;
+  jogging = motor;
+  jogged_by = pulled & jogs;
 }
 
 static void act_on_selection(uint32_t n, uint32_t now, uint32_t pulled) {

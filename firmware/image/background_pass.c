@@ -14,6 +14,7 @@
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/clock_watch.h"
 #include "firmware/kernel/image_checksum.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/kernel/stack_watch.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/conversion_table.h"
@@ -24,7 +25,7 @@
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
 
-enum { REPLY_MS = 5 }; /* to the next turn of the rest */
+enum { REPLY_MS = 5, LINE_MS = 2 }; /* to the next turn of the rest: between lines of replies, while a line comes */
 
 static uint32_t came_by; /* cycle counter at the end of the last */
 
@@ -45,14 +46,17 @@ void background_meanwhile(void) {
   came_by = hal_cycles();
 }
 
+static bool came_by_within(uint32_t ms) { return hal_cycles() - came_by <= ms * hal_cycles_per_ms(); }
+
 /* A host that reads as fast as lines are made, or a port that takes them all, never makes a reply wait. */
 void background_between_lines(void) {
-  if (hal_cycles() - came_by > REPLY_MS * hal_cycles_per_ms()) background_meanwhile();
+  if (!came_by_within(REPLY_MS)) background_meanwhile();
 }
 
 void background_pass(void) {
   clock_watch_pass();
   line_input_pass();
+  if (slice_hurry != 0u && came_by_within(LINE_MS)) return; /* a line is on its way: its end begins the next pass */
   binary_rotary_pass();
   program_texts_pass();
   dpram_functions_pass();

@@ -33,6 +33,7 @@
 #include "firmware/motion/phase_task.h"
 #include "firmware/motion/phasing.h"
 #include "firmware/motion/power_on_position.h"
+#include "firmware/motion/protection.h"
 #include "firmware/motion/sine_table.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
@@ -127,4 +128,9 @@ void start(enum start_mode mode) {
   background_wake();
 }
 
-void start_save(void) { saved_data_write(initial_ics); }
+/* Motors move on meanwhile; what protects them waits until it is over, as users know it (motion:6). */
+void start_save(void) {
+  protection_stand(true);
+  saved_data_write(initial_ics);
+  protection_stand(false);
+}

@@ -76,6 +76,7 @@ static void compensation_tables_changed(uint32_t instance) {
 const i_effect_t i_effects[I_FIELD_COUNT] = {
     [I_FIELD_LOOKAHEAD] = run_by_state,
     [I_FIELD_TIME_BASE] = time_base_source_changed,
+    [I_FIELD_TIME_BASE_SLEW] = time_base_slew_changed,
     [I_FIELD_BUFFER_REQUEST] = buffer_request_changed,
     [I_FIELD_DPRAM] = dpram_functions_changed,
     [I_FIELD_DPRAM_BASE] = dpram_functions_changed,

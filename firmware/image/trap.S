@@ -16,6 +16,7 @@
   .equ FRAME, 80
 
   .equ HOST_REGISTERS, 0xC0000000 + 8 * (HI08_X_HSR) /* hal_x without its last 4 */
+  .equ HOST_CONTROL, 4 + 8 * ((HI08_X_HCR) - (HI08_X_HSR))
   .equ HOST_STATUS, 4
   .equ HOST_CHARACTER, 4 + 8 * ((HI08_X_HORX) - (HI08_X_HSR))
 
@@ -110,6 +111,14 @@ trap_phase:
   csrc mip, t0
   csrr t0, mcycle
   sw t0, tasks_phase_stamp, t1
+  lw t1, motors_enabled
+  beqz t1, 2f
+  sw zero, host_port_granted, t1
+  li t0, 1
+  sw t0, host_port_renewed, t1
+  lw t1, host_port_held
+  bnez t1, 3f
+2:
   lw t1, phase_task_work
   bnez t1, 1f
   lw t0, 0(sp)
@@ -121,6 +130,12 @@ trap_phase:
   lw t1, 4(sp)
   addi sp, sp, 16
   j trap_phase_work
+3:                              /* characters have been waiting for this */
+  sw zero, host_port_held, t1
+  lw t0, host_port_enables
+  li t1, HOST_REGISTERS
+  sw t0, HOST_CONTROL(t1)
+  j 2b
 
   task trap_phase_work, 0, HOST, phase_task_interrupt
   task trap_servo, SERVO, HOST | PHASE, tasks_servo_interrupt
@@ -149,11 +164,11 @@ trap_host:
   andi t1, t1, HI08_HSR_HRDF_MASK
   beqz t1, 1f
   lw t2, host_port_received_count
-  lw t3, host_port_taken_count
-  sub t3, t2, t3
-  srli t3, t3, HOST_PORT_LIMIT_BITS
-  bnez t3, 1f
+  lw t3, host_port_granted
+  blez t3, 1f
   lw t1, HOST_CHARACTER(t0)
+  addi t3, t3, -1
+  sw t3, host_port_granted, t0
   andi t1, t1, 0xFF
   li t3, ' '
   bltu t1, t3, 2f

@@ -72,9 +72,9 @@ static inline bool scan(const char** at, uint32_t* digits, uint32_t* decimals) {
 
 uint32_t axis_constants(const char** at, const char* boundary, word48_t* words, uint32_t most) {
   uint32_t count = 0, digits, decimals;
-  while (*at < boundary && count < most) {
+  while (count < most) {
     const char* text = skip_blanks(*at);
-    if (text >= boundary) break; /* what stands there may still come */
+    if (boundary != 0 && text >= boundary) break; /* what stands there may still come */
     const uint32_t letter = (uint32_t)(uint8_t)*text - 'A';
     if (letter >= 26u || AXIS_OF[letter] == 0u) break;
     text = skip_blanks(text + 1);

@@ -7,7 +7,8 @@
 
 /* Compiles such statements from *at on, as statement_compile does, until it is at `boundary` or behind it, `most` words
  * are made, or something else stands there, as a constant that takes floating-point arithmetic. Returns the number of
- * words; *at is behind the last statement. `boundary`: a character that is part of no number, or beyond the text. */
+ * words; *at is behind the last statement. `boundary`: a character that is part of no number, or
+ * beyond the text; 0: none, the text ends with NUL. */
 uint32_t axis_constants(const char** at, const char* boundary, word48_t* words, uint32_t most);
 
 #endif

@@ -8,6 +8,7 @@
 #include "firmware/base/dimensions.h"
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
+#include "firmware/base/rework.h"
 #include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/hal/hal.h"
@@ -26,8 +27,13 @@ struct table {
   bool of_desired, wraps;
 };
 
-static struct table tables[COMPENSATION_KINDS][MOTORS];
-static uint8_t first[COMPENSATION_KINDS][MOTORS]; /* of a target's tables, NONE: it has none */
+static struct set {
+  struct table tables[COMPENSATION_KINDS][MOTORS];
+  uint8_t first[COMPENSATION_KINDS][MOTORS]; /* of a target's tables, NONE: it has none */
+  uint32_t of_position, of_torque;           /* as the masks of the header */
+} sets[2];
+static const struct set* present; /* the servo task's */
+static struct rework rework;
 
 uint32_t compensation_of_position, compensation_of_torque; /* the first: COMP */
 
@@ -36,33 +42,47 @@ static uint64_t half_turns_of(uint32_t span, uint32_t source) {
   return units < 2.0 ? 0u : (uint64_t)math_to_integer(math_scale(1.0 / units, 62)) << 1;
 }
 
-static void take(enum region_kind kind, uint32_t motor) {
+static void take(struct set* set, enum region_kind kind, uint32_t motor) {
   const struct compensation_table* table = compensation_table(kind, motor);
   if (table == 0 || i_integer(I51_COMPENSATION_TABLES) == 0) return;
   const uint32_t span = table->span;
-  tables[kind][motor] = (struct table){
+  set->tables[kind][motor] = (struct table){
       .before = MEMORY_BUFFERS + table->base - 1u,
       .half_turns = half_turns_of(span, table->source),
       .count = region_words(kind, motor),
       .unit = kind == REGION_TCOMP ? 1 : motors[table->target].position_scale * (POSITION_SUBCOUNT / PART_OF_COUNT),
       .source = table->source,
-      .next = first[kind][table->target],
+      .next = set->first[kind][table->target],
       .of_desired = table->of_desired,
       .wraps = i_integer(I30_COMPENSATION_TABLE_WRAP) != 0};
-  first[kind][table->target] = (uint8_t)motor;
-  if (kind == REGION_COMP) compensation_of_position |= 1u << table->target;
-  if (kind == REGION_TCOMP) compensation_of_torque |= 1u << table->target;
+  set->first[kind][table->target] = (uint8_t)motor;
+  if (kind == REGION_COMP) set->of_position |= 1u << table->target;
+  if (kind == REGION_TCOMP) set->of_torque |= 1u << table->target;
 }
 
-/* The servo task is held off meanwhile: few tables are ever defined. */
-void compensation_changed(void) {
-  const uint32_t state = hal_mask_servo();
-  __builtin_memset(first, NONE, sizeof first);
-  compensation_of_position = compensation_of_torque = 0;
+static void change(void) {
+  struct set* set = present == &sets[0] ? &sets[1] : &sets[0];
+  __builtin_memset(set->first, NONE, sizeof set->first);
+  set->of_position = set->of_torque = 0;
   for (uint32_t kind = 0; kind < COMPENSATION_KINDS; ++kind)
-    for (uint32_t motor = 0; motor < MOTORS; ++motor) take((enum region_kind)kind, motor);
+    for (uint32_t motor = 0; motor < MOTORS; ++motor) take(set, (enum region_kind)kind, motor);
+  const uint32_t state = hal_mask_servo();
+  present = set;
+  compensation_of_position = set->of_position;
+  compensation_of_torque = set->of_torque;
   for (uint32_t motor = 0; motor < MOTORS; ++motor) motors[motor].compensation = 0; /* made anew, if there is one */
   hal_unmask(state);
+}
+
+void compensation_initialize(void) {
+  rework = (struct rework){.under_way = false};
+  change();
+}
+
+void compensation_changed(void) {
+  if (!rework_begin(&rework, 1)) return;
+  do change();
+  while (rework_end(&rework) != 0u);
 }
 
 /* Entry number 0 is the position 0 and its value 0, or that of the last entry when the table wraps. */
@@ -81,8 +101,9 @@ static int64_t value_of(const struct table* t) {
 
 static int64_t sum(enum region_kind kind, uint32_t motor) {
   int64_t all = 0;
-  for (uint32_t i = first[kind][motor], left = MOTORS; i != NONE && left != 0u; i = tables[kind][i].next, --left)
-    all += value_of(&tables[kind][i]);
+  const struct table* tables = present->tables[kind];
+  for (uint32_t i = present->first[kind][motor], left = MOTORS; i != NONE && left != 0u; i = tables[i].next, --left)
+    all += value_of(&tables[i]);
   return all;
 }
 

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+void compensation_initialize(void);
 void compensation_changed(void); /* tables came or went, or Ixx08 or I51 was written. Background, real-time task */
 
 /* Bit n: motor n is the target of such tables. */

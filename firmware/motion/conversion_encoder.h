@@ -19,8 +19,7 @@ static inline uint32_t conversion_with_time(const struct conversion_entry* entry
 }
 
 static inline void conversion_software_1t(const struct conversion_entry* entry) {
-  *entry->result =
-      conversion_with_time(entry, *entry->source[ENCODER_POSITION], CONVERSION_FRACTION) & HAL_WORD_MASK;
+  *entry->result = conversion_with_time(entry, *entry->source[ENCODER_POSITION], CONVERSION_FRACTION) & HAL_WORD_MASK;
 }
 
 void convert_software_1t(const struct conversion_entry* entry); /* $0 */

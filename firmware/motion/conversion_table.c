@@ -3,6 +3,7 @@
 #include "firmware/motion/conversion_table.h"
 
 #include "firmware/base/memory_map.h"
+#include "firmware/base/rework.h"
 #include "firmware/hal/hal.h"
 #include "firmware/motion/conversion_encoder.h"
 #include "firmware/motion/conversion_entry.h"
@@ -23,6 +24,7 @@ struct table {
 };
 
 static struct table tables[2];
+static struct rework rework;
 static struct table* volatile present;                   /* the servo task's */
 static struct conversion_state states[CONVERSION_LINES]; /* by first line. S */
 static const volatile uint32_t zero;                     /* where there is no word */
@@ -149,10 +151,8 @@ static void begin(struct conversion_entry* e) {
   if (e->state->runs) e->state->previous = *e->source[0] >> 1 << 8;
 }
 
-void conversion_table_changed(uint32_t instance) {
-  (void)instance;
+static void change(void) {
   static bool new_entry[CONVERSION_LINES];
-  const uint32_t planning = hal_mask_real_time();
   struct table *before = present, *table = before == &tables[0] ? &tables[1] : &tables[0];
   make(table);
   for (uint32_t i = 0; i < table->count; ++i) new_entry[i] = !is_as_before(&table->entries[i], before);
@@ -161,10 +161,17 @@ void conversion_table_changed(uint32_t instance) {
     if (new_entry[i]) begin(&table->entries[i]);
   present = table;
   hal_unmask(state);
-  hal_unmask(planning);
+}
+
+void conversion_table_changed(uint32_t instance) {
+  (void)instance;
+  if (!rework_begin(&rework, 1)) return;
+  do change();
+  while (rework_end(&rework) != 0u);
 }
 
 void conversion_table_initialize(void) {
+  rework = (struct rework){.under_way = false};
   tables[0].count = tables[1].count = 0;
   present = &tables[0];
   conversion_table_changed(0);

@@ -114,6 +114,7 @@ struct coordinate_system {
   bool continuous;              /* B: R, not S */
   bool stepping;                /* B sets, R clears when the step's move is calculated */
   volatile bool quit;           /* Q, or the end of a step: calculate no more */
+  bool ended;                   /* R: the end of the program was reached since its start, `quit` is that */
   volatile bool end_block;      /* `/`: no further move is started */
   /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
    * it */
@@ -163,7 +164,8 @@ struct coordinate_system {
   /* time base: trajectory units a servo cycle */
   volatile int32_t increment;        /* S */
   volatile int32_t increment_target; /* B */
-  volatile int32_t increment_slew;   /* B */
+  volatile int32_t increment_slew;   /* B; S when the target of a hold's end has been reached */
+  volatile int32_t increment_usual;  /* B: Isx94, what is slewed by then */
   /* B: the word that Isx93 points to, which has the target instead; null: its own commanded time base */
   const volatile uint32_t* volatile time_base_source;
   int32_t increment_full;    /* B: I10, taken over by %100 */

@@ -5,6 +5,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/motor.h"
@@ -87,8 +88,7 @@ void desired_position_take_actual(uint32_t motor) {
   m->held_back = 0;
   if (p->follows) p->master_reading = *p->master;
   m->trajectory = m->actual - m->master + m->compensation;
-  p->turning = m->trajectory;
-  p->fraction = 0;
+  p->turning = m->trajectory + m->master;
 }
 
 void desired_position_shift(uint32_t motor, int64_t by) {
@@ -98,6 +98,7 @@ void desired_position_shift(uint32_t motor, int64_t by) {
   m->closed_at += by;
   m->actual += by;
   paths[motor].turning += by;
+  average_velocity_shift(motor, by);
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */

@@ -7,10 +7,10 @@
 
 #define OFFSET_UNITS 16.0 /* of Ixx26 in a count */
 
-bool homing_begin(uint32_t motor, bool by_program) {
+bool homing_begin(uint32_t motor, uint32_t together) {
   const double velocity = i_variable_read((uint32_t)IXX22_JOG_SPEED + I_MOTOR_BLOCK * (motor + 1u) + 1u);
   const double offset = i_variable_read(i_motor(motor + 1u, IXX26_HOME_OFFSET)) / OFFSET_UNITS;
-  return jog_home(motor, velocity, motor_position_of(motor, offset), by_program);
+  return jog_home(motor, velocity, motor_position_of(motor, offset), together);
 }
 
 void homing_here(uint32_t motor) {

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-bool homing_begin(uint32_t motor, bool by_program); /* HM: at Ixx23 to the trigger, then to Ixx26 behind it */
-void homing_here(uint32_t motor);                   /* HMZ: the commanded position is 0 */
+bool homing_begin(uint32_t motor, uint32_t together); /* HM: at Ixx23 to the trigger, then to Ixx26 behind it */
+void homing_here(uint32_t motor);                     /* HMZ: the commanded position is 0 */
 
 #endif

@@ -13,7 +13,7 @@
 
 void jog_initialize(void) {
   jogs_busy = jogs_asked = 0;
-  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){.away = true};
+  for (uint32_t motor = 0; motor < MOTORS; motor++) jogs[motor] = (struct jog){0};
 }
 
 static double units(uint32_t motor) { return (double)POSITION_SUBCOUNT * (double)motors[motor].position_scale; }
@@ -86,39 +86,45 @@ bool jog_stop(uint32_t motor) {
   return ask(motor, &request);
 }
 
-static bool go(uint32_t motor, int64_t target, double speed, bool by_program) {
+/* `together`: of a program, which moves these. */
+static bool go(uint32_t motor, int64_t target, double speed, uint32_t together) {
   struct jog_motion request = make(motor, AIM_TARGET, speed);
   request.target = target;
-  request.by_program = by_program;
+  request.by_program = together != 0u;
+  request.together = together;
   return ask(motor, &request);
 }
 
-static bool go_until(uint32_t motor, int64_t target, double speed, int64_t distance, bool by_program) {
+static bool go_until(uint32_t motor, int64_t target, double speed, int64_t distance, uint32_t together) {
   struct jog_motion request = make(motor, AIM_TARGET, speed);
   request.target = target;
-  request.by_program = by_program;
+  request.by_program = together != 0u;
+  request.together = together;
   request.searches = true;
   request.beyond = distance;
   return ask(motor, &request);
 }
 
-bool jog_to(uint32_t motor, int64_t target) { return go(motor, target, jog_speed(motor), false); }
+bool jog_to(uint32_t motor, int64_t target) { return go(motor, target, jog_speed(motor), 0); }
 
 bool jog_until(uint32_t motor, int64_t target, int64_t distance) {
-  return go_until(motor, target, jog_speed(motor), distance, false);
+  return go_until(motor, target, jog_speed(motor), distance, 0);
 }
 
-bool jog_rapid(uint32_t motor, int64_t target, double speed) { return go(motor, target, speed, true); }
-
-bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance) {
-  return go_until(motor, target, speed, distance, true);
+bool jog_rapid(uint32_t motor, int64_t target, double speed, uint32_t together) {
+  return go(motor, target, speed, together);
 }
 
-bool jog_home(uint32_t motor, double velocity, int64_t offset, bool by_program) {
+bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance, uint32_t together) {
+  return go_until(motor, target, speed, distance, together);
+}
+
+bool jog_home(uint32_t motor, double velocity, int64_t offset, uint32_t together) {
   struct jog_motion request = make(motor, AIM_SPEED, velocity);
   request.searches = request.homes = true;
   request.beyond = offset;
-  request.by_program = by_program;
+  request.by_program = together != 0u;
+  request.together = together;
   return ask(motor, &request);
 }
 
@@ -214,6 +220,7 @@ void jog_count_from(uint32_t motor, int64_t position) {
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */
   motors[motor].of_system -= position;
-  j->before = motors[motor].trajectory;
+  j->before =
+      motors[motor].loop == LOOP_CLOSED ? motors[motor].trajectory : jog_trajectory_at(motor, motors[motor].actual);
   j->away = true;
 }

@@ -17,11 +17,12 @@ bool jog_continuous(uint32_t motor, int direction);               /* J+, J-: Ixx
 bool jog_stop(uint32_t motor);                                    /* J/ */
 bool jog_to(uint32_t motor, int64_t target);                      /* J= */
 bool jog_until(uint32_t motor, int64_t target, int64_t distance); /* ^d: to `target`, or `distance` behind a trigger */
-bool jog_rapid(uint32_t motor, int64_t target, double speed);     /* counts a ms */
-bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance);
+/* Those of a program, at rest: the motors in `together` begin at the same servo interrupt. Speed in counts a ms. */
+bool jog_rapid(uint32_t motor, int64_t target, double speed, uint32_t together);
+bool jog_rapid_until(uint32_t motor, int64_t target, double speed, int64_t distance, uint32_t together);
 /* Search at `velocity` (counts a ms, with sign) for a trigger. Where it is, and `offset` further, becomes position 0 at
  * once, and the motor goes there. */
-bool jog_home(uint32_t motor, double velocity, int64_t offset, bool by_program);
+bool jog_home(uint32_t motor, double velocity, int64_t offset, uint32_t together); /* as for RAPID; 0: of none */
 /* To rest at a constant deceleration (counts a ms^2), without Ixx92. A motor of a coordinate system leaves its path for
  * that, which has to go on until then: PATH_OWN. */
 bool jog_stop_at(uint32_t motor, double deceleration);
@@ -33,7 +34,7 @@ void jog_program_takes(uint32_t motor); /* a program moves it from now on: PATH_
 /* Any task. More of it stands in the motor's status flags (motion/motor.h). */
 bool jog_is_moving(uint32_t motor);     /* on its way, or about to be */
 bool jog_is_of_program(uint32_t motor); /* so, and a program waits for it, held or not */
-bool jog_is_homing(uint32_t motor); /* searches for home: software limits do not count */
+bool jog_is_homing(uint32_t motor);     /* searches for home: software limits do not count */
 
 /* Where the motor was before it was jogged, killed or opened: the end of what a program or a homing search has moved,
  * or `J==`. */

@@ -22,6 +22,8 @@ struct beginning {
   struct own_path_place place;
 };
 
+static uint32_t waiting; /* motors whose path is ready and begins with others that are not; servo task held off */
+
 enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
 
 /* Where a program has it `ahead` from now, in its piece: a ramp that begins beyond it begins at its last speed. While
@@ -89,15 +91,42 @@ static void build(struct own_path* path, struct jog_motion* m, struct own_path_s
   }
 }
 
-/* Servo task held off. False: the moment it was planned for is over, or something else is asked for. */
+/* Servo task held off. False: the moment it was planned for is over, or something else is asked for. What begins
+ * together stands until then, whenever that is. */
 static bool hand_over(uint32_t motor, struct beginning* b) {
   struct jog* j = &jogs[motor];
-  if (j->requests != b->requests || j->clock > b->begins) return false;
+  const bool alone = b->motion.together == 0u;
+  if (j->requests != b->requests || (alone && j->clock > b->begins)) return false;
   j->next = b->motion;
-  j->next_begins = b->begins;
+  j->next_begins = alone ? b->begins : INT64_MAX;
   j->ready = true;
   jogs_asked &= ~jog_bit(motor);
+  if (!alone) waiting |= jog_bit(motor);
   return true;
+}
+
+/* The last of them is planned: they begin when Ixx92 has passed for all. */
+static void begin_together(uint32_t motors_of_it) {
+  int64_t longest = 0;
+  for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
+    const struct jog* j = &jogs[__builtin_ctz(left)];
+    if (j->request_begins - j->clock > longest) longest = j->request_begins - j->clock;
+  }
+  for (uint32_t left = motors_of_it; left != 0u; left &= left - 1u) {
+    struct jog* j = &jogs[__builtin_ctz(left)];
+    if (j->ready && j->next.together != 0u) j->next_begins = j->clock + longest; /* else something else is asked for */
+  }
+  waiting &= ~motors_of_it;
+}
+
+static void begin_waiting(void) {
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t left = waiting; left != 0u;) {
+    const uint32_t first = left & -left, together = jogs[__builtin_ctz(left)].next.together | first;
+    if ((together & jogs_asked) == 0u) begin_together(together & waiting);
+    left &= ~together;
+  }
+  hal_unmask(state);
 }
 
 /* Planned for a moment so near that it may be over too soon, then for later ones. */
@@ -124,5 +153,6 @@ static bool plan(uint32_t motor) {
 bool jog_plan(void) {
   bool any = false;
   for (uint32_t left = jogs_asked; left != 0u; left &= left - 1u) any |= plan((uint32_t)__builtin_ctz(left));
+  if (waiting != 0u) begin_waiting();
   return any;
 }

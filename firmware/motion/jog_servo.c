@@ -41,6 +41,7 @@ static void found(uint32_t motor, int64_t position) {
   status->home_search = status->trigger_move = false;
   then.aim = AIM_TARGET;
   then.searches = false;
+  then.together = 0;
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
     jog_count_from(motor, then.target);

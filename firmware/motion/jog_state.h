@@ -19,6 +19,7 @@ struct jog_motion {
   enum jog_aim aim;
   bool searches, homes; /* for a trigger; which becomes home */
   bool by_program;      /* held with its coordinate system */
+  uint32_t together;    /* motors that begin at the same interrupt, at rest until then; 0: it alone */
   double speed;         /* of AIM_SPEED with sign */
   double deceleration;  /* of AIM_RAMP */
   int64_t target;

@@ -131,7 +131,7 @@ static unsigned make(uint32_t address, uint32_t* x, uint32_t* y) {
   return BOTH;
 }
 
-void live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { (void)make(address, x, y); }
+bool live_word_read(uint32_t address, uint32_t* x, uint32_t* y) { return make(address, x, y) != 0u; }
 
 static void write_timer(uint32_t number, uint32_t mask, uint32_t bits) {
   uint32_t word = bits;

@@ -36,7 +36,7 @@ struct motor_findings {
   bool warning_error, in_position;
   volatile bool positive_limit, negative_limit;     /* an input, or the software limit of that side */
   volatile bool positive_desired, negative_desired; /* the commanded position is beyond that of the desired one */
-  volatile bool foreground_in_position;         /* S */
+  volatile bool foreground_in_position;             /* S */
 };
 
 struct motor {
@@ -66,7 +66,8 @@ struct motor {
 };
 
 extern struct motor motors[MOTORS];
-extern volatile uint32_t motors_active; /* V: bit n-1: Ixx00 of motor n */
+extern volatile uint32_t motors_active;  /* V: bit n-1: Ixx00 of motor n */
+extern volatile uint32_t motors_enabled; /* C: bit n-1: motor n is not killed */
 
 /* 1/(32 Ixx08) counts of `counts`; rounded to nearest. Floating point. */
 int64_t motor_position_of(uint32_t motor, double counts);

@@ -29,6 +29,7 @@ static void enable(uint32_t motor, enum motor_loop loop) {
   motors[motor].found = (struct motor_findings){.warning_error = false};
   jog_drop(motor);
   motors[motor].loop = loop;
+  motors_enabled |= 1u << motor;
   commutation_enable(motor, true);
   motor_flags_enable(motor, true);
 }
@@ -59,6 +60,7 @@ void motor_kill(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
   motor_flags_enable(motor, false);
   motors[motor].loop = LOOP_KILLED;
+  motors_enabled &= ~(1u << motor);
   motors[motor].output = 0;
   motors[motor].found.in_position = false;
   commutation_enable(motor, false);

@@ -105,8 +105,8 @@ static uint32_t status2(uint32_t motor) {
       bit(m->loop != LOOP_KILLED, M2_AMPLIFIER_ENABLED) |
       bit(found->foreground_in_position && i_integer(I13_FOREGROUND_IN_POSITION) != 0, M2_FOREGROUND_IN_POSITION) |
       bit(found->on_desired_limit, M2_STOPPED_ON_DESIRED_LIMIT) | bit(found->on_limit, M2_STOPPED_ON_LIMIT) |
-      bit(motors[motor].status.home_complete, M2_HOME_COMPLETE) |
-      bit(phasing_is_searched(motor), M2_PHASING) | bit(phasing_is_missing(motor), M2_PHASE_REFERENCE_ERROR) |
+      bit(motors[motor].status.home_complete, M2_HOME_COMPLETE) | bit(phasing_is_searched(motor), M2_PHASING) |
+      bit(phasing_is_missing(motor), M2_PHASE_REFERENCE_ERROR) |
       bit(motors[motor].status.trigger_move, M2_TRIGGER_MOVE) | bit(found->integrated_error, M2_INTEGRATED_ERROR) |
       bit(found->integrated_current, M2_OVERLOAD) |
       bit(desired_position_backlash_is_down(motor), M2_BACKLASH_DIRECTION) |

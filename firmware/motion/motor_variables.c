@@ -1,6 +1,7 @@
 #include "firmware/motion/motor_variables.h"
 
-#include "firmware/hal/hal.h"
+#include "firmware/base/rework.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/desired_position.h"
@@ -12,6 +13,8 @@
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_words.h"
 #include "firmware/variables/i_variables.h"
+
+static struct rework rework; /* bit n-1: motor n */
 
 static void take_scales(uint32_t motor) {
   struct motor* m = &motors[motor - 1u];
@@ -32,8 +35,8 @@ static void take_activated(uint32_t motor) {
   }
 }
 
-void motor_variables_changed(uint32_t motor) {
-  const uint32_t state = hal_mask_servo();
+/* Each module holds the servo task off while it changes what that works with. */
+static void change(uint32_t motor) {
   take_scales(motor);
   desired_position_motor_changed(motor);
   position_loop_motor_changed(motor);
@@ -42,10 +45,20 @@ void motor_variables_changed(uint32_t motor) {
   protection_motor_changed(motor);
   servo_words_motor_changed(motor);
   take_activated(motor);
-  hal_unmask(state);
+}
+
+void motor_variables_changed(uint32_t motor) {
+  uint32_t left = 1u << (motor - 1u);
+  if (!rework_begin(&rework, left)) return;
+  do {
+    for (uint32_t each = 1; each <= MOTORS; ++each)
+      if ((left >> (each - 1u) & 1u) != 0u) change(each);
+    left = rework_end(&rework);
+  } while (left != 0u);
 }
 
 void motor_variables_initialize(void) {
+  rework = (struct rework){.under_way = false};
   motors_active = 0;
   __builtin_memset(motors, 0, sizeof motors);
   conversion_table_initialize();
@@ -54,6 +67,7 @@ void motor_variables_initialize(void) {
   motor_output_initialize();
   motor_flags_initialize();
   protection_initialize();
-  compensation_changed();
+  average_velocity_initialize();
+  compensation_initialize();
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) motor_variables_changed(motor);
 }

@@ -5,6 +5,7 @@
 
 #include "firmware/base/dimensions.h"
 #include "firmware/base/mathematics.h"
+#include "firmware/hal/hal.h"
 #include "firmware/variables/i_variables.h"
 
 enum { COEFFICIENTS = 4, COEFFICIENT_BITS = 30 };
@@ -37,14 +38,18 @@ void notch_restart(uint32_t motor) {
 void notch_motor_changed(uint32_t motor) {
   struct filter* f = &filters[motor - 1u];
   const bool was_used = notch_is_used(motor - 1u);
+  int32_t coefficient[COEFFICIENTS];
   uint32_t used = 0;
   for (uint32_t i = 0; i < COEFFICIENTS; ++i) {
     const double value = i_variable_read(I_MOTOR_BLOCK * motor + (uint32_t)IXX36_NOTCH_FILTER + i);
-    f->coefficient[i] = value == 0.0 ? 0 : coefficient_of(value);
-    if (f->coefficient[i] != 0) used = 1u << (motor - 1u);
+    coefficient[i] = value == 0.0 ? 0 : coefficient_of(value);
+    if (coefficient[i] != 0) used = 1u << (motor - 1u);
   }
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t i = 0; i < COEFFICIENTS; ++i) f->coefficient[i] = coefficient[i];
   notches_used = (notches_used & ~(1u << (motor - 1u))) | used;
   if (!was_used) notch_restart(motor - 1u);
+  hal_unmask(state);
 }
 
 /* value * coefficient, for |value| up to STATE_MOST. */

@@ -24,7 +24,7 @@
 enum { READING = 0x32, PHASE_POSITION = 0x34 };
 enum { COMMUTATED = 1 };         /* Ixx01 */
 enum { FRACTION_BITS = 24 };     /* of the phase position */
-enum { SHORT_PATH_CYCLES = 28 }; /* of image/trap.S without work, with entry and return */
+enum { SHORT_PATH_CYCLES = 32 }; /* of image/trap.S without work, with entry and return */
 enum { TRAP_CYCLES = 92 };       /* of its entry and return with work, as far as the stamp does not count them */
 
 volatile uint32_t phase_task_work;

@@ -84,11 +84,11 @@ void plan_home(uint32_t cs, uint32_t motors_to_home) {
 /* One whose loop has been opened meanwhile does not go: what opened it ends the program too. */
 static void begin(const struct move* m, uint32_t motor) {
   if (m->homes)
-    (void)homing_begin(motor, true);
+    (void)homing_begin(motor, m->own);
   else if (goals[motor].searches)
-    (void)jog_rapid_until(motor, goals[motor].target, goals[motor].speed, goals[motor].beyond);
+    (void)jog_rapid_until(motor, goals[motor].target, goals[motor].speed, goals[motor].beyond, m->own);
   else
-    (void)jog_rapid(motor, goals[motor].target, goals[motor].speed);
+    (void)jog_rapid(motor, goals[motor].target, goals[motor].speed, m->own);
 }
 
 void plan_own_begin(uint32_t cs) {

@@ -4,6 +4,7 @@
 #include "firmware/motion/position_loop.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
@@ -25,7 +26,7 @@ enum { INTEGRATES_VELOCITY = 2 };      /* Ixx96 */
 #define WORD_MOST 0x7FFFFF
 
 static struct loop {
-  /* V */
+  /* V, up to `left` */
   const volatile uint32_t *position_source, *velocity_source;
   uint32_t extension; /* Ixx60 */
   int32_t proportional, derivative, velocity_forward, acceleration_forward, integral_gain, deadband_gain;
@@ -39,9 +40,9 @@ static struct loop {
   /* S */
   uint32_t left; /* servo interrupts to the next closure */
   uint32_t position_reading, velocity_reading;
-  uint32_t forgets;  /* movements that are none */
-  int64_t step;      /* how far the commanded position had gone at the last closure */
-  int64_t integral;  /* position, with INTEGRAL_BITS of fraction */
+  uint32_t forgets; /* movements that are none */
+  int64_t step;     /* how far the commanded position had gone at the last closure */
+  int64_t integral; /* position, with INTEGRAL_BITS of fraction */
   bool saturated;
   int64_t filtered; /* PID alone, NOTCH_FINER */
 } loops[MOTORS];
@@ -69,46 +70,46 @@ static int64_t position_of(uint32_t motor, int32_t sixteenths, int64_t most) {
   return smaller(magnitude * (POSITION_SUBCOUNT / PART_OF_COUNT) * variable(motor, IXX08_POSITION_SCALE), most);
 }
 
-static void take_sources(struct loop* l, uint32_t motor) {
-  const volatile uint32_t* position = source_of(motor, IXX03_FEEDBACK_ADDRESS);
-  const volatile uint32_t* velocity = source_of(motor, IXX03_FEEDBACK_ADDRESS + 1u);
-  if (position != l->position_source) l->position_reading = *position; /* where it stands now is no movement */
-  if (velocity != l->velocity_source) l->velocity_reading = *velocity;
-  l->position_source = position;
-  l->velocity_source = velocity;
-}
-
 void position_loop_initialize(void) {
   __builtin_memset(loops, 0, sizeof loops);
   notch_initialize();
 }
 
-void position_loop_motor_changed(uint32_t motor) {
-  struct loop* l = &loops[motor - 1u];
-  const uint32_t state = hal_mask_servo();
+/* Where a source stands now is no movement. */
+static void put(struct loop* l, const struct loop* next) {
   if (l->one_source) l->velocity_reading = l->position_reading;
-  take_sources(l, motor);
-  l->one_source = l->position_source == l->velocity_source &&
-                  motors[motor - 1u].position_scale == motors[motor - 1u].velocity_scale;
-  l->extension = (uint32_t)variable(motor, IXX60_SERVO_CYCLE_EXTENSION);
-  if (l->left > l->extension) l->left = l->extension;
-  l->proportional = variable(motor, IXX30_PROPORTIONAL_GAIN);
-  l->derivative = variable(motor, IXX31_DERIVATIVE_GAIN);
-  l->velocity_forward = variable(motor, IXX32_VELOCITY_FEEDFORWARD);
-  l->integral_gain = variable(motor, IXX33_INTEGRAL_GAIN);
-  l->integrand_most = PRODUCT_MOST / (l->integral_gain > 0 ? l->integral_gain : 1);
-  l->only_at_rest = variable(motor, IXX34_INTEGRATION_MODE) != 0;
-  l->acceleration_forward = variable(motor, IXX35_ACCELERATION_FEEDFORWARD);
-  l->integral_most = position_of(motor, variable(motor, IXX63_INTEGRATION_LIMIT), ERROR_MOST) << INTEGRAL_BITS;
-  l->deadband_gain = variable(motor, IXX64_DEADBAND_GAIN);
-  l->deadband = position_of(motor, variable(motor, IXX65_DEADBAND_SIZE), STEP_MOST);
-  l->error_most = position_of(motor, variable(motor, IXX67_POSITION_ERROR_LIMIT), ERROR_MOST);
-  l->friction = variable(motor, IXX68_FRICTION_FEEDFORWARD) << OUTPUT_FRACTION_BITS;
-  l->output_most = variable(motor, IXX69_OUTPUT_LIMIT) << OUTPUT_FRACTION_BITS;
-  l->integrates_velocity = (variable(motor, IXX96_OUTPUT_MODE) & INTEGRATES_VELOCITY) != 0;
-  l->small_error_most = l->error_most < INT32_MAX ? (int32_t)l->error_most : INT32_MAX;
+  if (next->position_source != l->position_source) l->position_reading = *next->position_source;
+  if (next->velocity_source != l->velocity_source) l->velocity_reading = *next->velocity_source;
+  if (l->left > next->extension) l->left = next->extension;
+  __builtin_memcpy(l, next, offsetof(struct loop, left));
+}
+
+void position_loop_motor_changed(uint32_t motor) {
+  static struct loop n; /* motion/motor_variables.c makes one after the other */
   notch_motor_changed(motor);
-  l->simple = l->deadband_gain == 0 && !l->integrates_velocity && !notch_is_used(motor - 1u);
+  n.position_source = source_of(motor, IXX03_FEEDBACK_ADDRESS);
+  n.velocity_source = source_of(motor, IXX03_FEEDBACK_ADDRESS + 1u);
+  n.one_source =
+      n.position_source == n.velocity_source && motors[motor - 1u].position_scale == motors[motor - 1u].velocity_scale;
+  n.extension = (uint32_t)variable(motor, IXX60_SERVO_CYCLE_EXTENSION);
+  n.proportional = variable(motor, IXX30_PROPORTIONAL_GAIN);
+  n.derivative = variable(motor, IXX31_DERIVATIVE_GAIN);
+  n.velocity_forward = variable(motor, IXX32_VELOCITY_FEEDFORWARD);
+  n.integral_gain = variable(motor, IXX33_INTEGRAL_GAIN);
+  n.integrand_most = PRODUCT_MOST / (n.integral_gain > 0 ? n.integral_gain : 1);
+  n.only_at_rest = variable(motor, IXX34_INTEGRATION_MODE) != 0;
+  n.acceleration_forward = variable(motor, IXX35_ACCELERATION_FEEDFORWARD);
+  n.integral_most = position_of(motor, variable(motor, IXX63_INTEGRATION_LIMIT), ERROR_MOST) << INTEGRAL_BITS;
+  n.deadband_gain = variable(motor, IXX64_DEADBAND_GAIN);
+  n.deadband = position_of(motor, variable(motor, IXX65_DEADBAND_SIZE), STEP_MOST);
+  n.error_most = position_of(motor, variable(motor, IXX67_POSITION_ERROR_LIMIT), ERROR_MOST);
+  n.friction = variable(motor, IXX68_FRICTION_FEEDFORWARD) << OUTPUT_FRACTION_BITS;
+  n.output_most = variable(motor, IXX69_OUTPUT_LIMIT) << OUTPUT_FRACTION_BITS;
+  n.integrates_velocity = (variable(motor, IXX96_OUTPUT_MODE) & INTEGRATES_VELOCITY) != 0;
+  n.small_error_most = n.error_most < INT32_MAX ? (int32_t)n.error_most : INT32_MAX;
+  n.simple = n.deadband_gain == 0 && !n.integrates_velocity && !notch_is_used(motor - 1u);
+  const uint32_t state = hal_mask_servo();
+  put(&loops[motor - 1u], &n);
   hal_unmask(state);
 }
 

@@ -23,7 +23,6 @@ enum {
   SOFTWARE_CAPTURE = 1,       /* Ixx97 */
   COMMUTATED = 1,             /* Ixx01 */
   NOT_AT_POWER_ON = 4,        /* Ixx80 */
-  COUNTER_RESET_BIT = 10,     /* channel control */
   CHANNEL_WORDS = 8
 };
 
@@ -58,8 +57,7 @@ static void zero_counter(uint32_t motor) {
   for (unsigned ic = 0; ic < GATE_IC_MACRO; ic++) {
     const uint32_t offset = address - gate_ic_base(ic);
     if (!gate_ic_present(ic) || offset >= CHANNEL_WORDS * GATE_IC_CHANNELS) continue;
-    gate_ic_set_channel_field(ic, offset / CHANNEL_WORDS, COUNTER_RESET_BIT, 1, 1);
-    gate_ic_set_channel_field(ic, offset / CHANNEL_WORDS, COUNTER_RESET_BIT, 1, 0);
+    gate_ic_zero_counter(ic, offset / CHANNEL_WORDS);
   }
 }
 

@@ -30,12 +30,13 @@ static struct guard {
 volatile uint32_t protection_watched;
 
 static volatile bool foreground; /* I13, as the last pass has seen it */
+static volatile bool stands;     /* B */
 static uint32_t shown;           /* B: signals that are on */
 
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
-  foreground = false;
+  foreground = stands = false;
   protection_watched = 0;
   shown = 0;
 }
@@ -129,7 +130,8 @@ static void trip(uint32_t motor) {
   motor_kill(motor);
   for (uint32_t other = 0; other < MOTORS; ++other) {
     if (others != OTHERS_ALL && !(others == OTHERS_OF_SYSTEM && d->assigned && is_of_system(other, d->cs))) continue;
-    if (motors[other].loop != LOOP_KILLED && axis_definitions[other].assigned) systems |= 1u << axis_definitions[other].cs;
+    if (motors[other].loop != LOOP_KILLED && axis_definitions[other].assigned)
+      systems |= 1u << axis_definitions[other].cs;
     motor_kill(other);
   }
   for (uint32_t cs = 0; systems != 0u; ++cs, systems >>= 1)
@@ -188,8 +190,8 @@ static void check_limit(uint32_t motor, const struct view* view, int direction) 
 static void check_desired(uint32_t motor, const struct view* view, int direction) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
-  const bool beyond = !jog_is_homing(motor) && (direction > 0 ? view->commanded > g->positive_desired
-                                                              : view->commanded < g->negative_desired);
+  const bool beyond = !jog_is_homing(motor) &&
+                      (direction > 0 ? view->commanded > g->positive_desired : view->commanded < g->negative_desired);
   if (direction > 0)
     found->positive_desired = beyond;
   else
@@ -249,7 +251,7 @@ static void not_closed(uint32_t motor) {
 static void check(uint32_t motor) {
   if (motors[motor].loop == LOOP_KILLED) return not_closed(motor); /* the usual way of motors that nobody uses */
   const struct view view = look(motor);
-  if (!status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
+  if (view.loop != LOOP_KILLED && !status_motors_may_enable()) kill(motor); /* no clock: nothing is controlled */
   if (motors[motor].loop == LOOP_KILLED || check_fault(motor)) return not_closed(motor);
   check_limits(motor, &view);
   if (view.loop != LOOP_CLOSED || motors[motor].loop != LOOP_CLOSED || check_error(motor, &view))
@@ -292,7 +294,10 @@ static void show_signals(void) {
   shown = on;
 }
 
+void protection_stand(bool still) { stands = still; }
+
 void protection_pass(void) {
+  if (stands) return;
   foreground = i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0;
   protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;

@@ -1,4 +1,5 @@
-/* Following error, limits, faults, overload, in position (motion:6): looked at in the background. */
+/* Following error, limits, faults, overload, in position (motion:6): looked at in each real-time interrupt that is due,
+ * before programs are calculated, so that nothing a host or a PLC asks for comes before it. */
 #ifndef FIRMWARE_MOTION_PROTECTION_H
 #define FIRMWARE_MOTION_PROTECTION_H
 
@@ -13,7 +14,8 @@ extern const struct protection_hooks protection_hooks;
 
 void protection_initialize(void);
 void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
-void protection_pass(void);                    /* background: all motors */
+void protection_pass(void);                    /* real-time task: all motors */
+void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
 bool protection_all_in_position(uint32_t cs);  /* those of a coordinate system; false: it has none */
 
 extern volatile uint32_t protection_watched; /* bit n: the servo task looks at motor n */

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/conversion_table.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/desired_position.h"
@@ -27,4 +28,5 @@ void servo_update(void) {
   if (cs_busy != 0) system_path_servo();
   for (uint32_t motor = 0, left = motors_active; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) motor_servo(motor);
+  average_velocity_servo();
 }

@@ -2,6 +2,7 @@
 
 #include "firmware/base/memory_map.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/commutation.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_target.h"
@@ -27,6 +28,23 @@ static const struct alias {
     {0x0F, HALF_Y, IXX60_SERVO_CYCLE_EXTENSION},
 };
 enum { ALIAS_COUNT = sizeof ALIASES / sizeof ALIASES[0] };
+
+/* Gathering reads words at each servo interrupt: those that are none of these have no use for the list. */
+static bool is_alias(uint32_t offset) {
+  switch (offset) {
+    case 0x09:
+    case 0x0F:
+    case 0x12:
+    case 0x13:
+    case 0x19:
+    case 0x1C:
+    case 0x1F:
+    case 0x2E:
+      return true;
+    default:
+      return false;
+  }
+}
 
 static int shift_of(const struct alias* alias) {
   return alias->variable == IXX69_OUTPUT_LIMIT ? OUTPUT_LIMIT_SHIFT : 0;
@@ -79,6 +97,8 @@ static unsigned read_state(uint32_t motor, uint32_t offset, uint32_t* x, uint32_
       return BOTH;
     case MEMORY_MOTOR_TARGET:
       return put_long(motor_target(motor), x, y);
+    case MEMORY_MOTOR_AVERAGE_VELOCITY:
+      return put_long(average_velocity(motor), x, y);
     default:
       return read_position(motor, offset, x, y);
   }
@@ -99,7 +119,7 @@ void servo_words_motor_changed(uint32_t motor) {
 }
 
 unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
-  return aliases_at(offset) | read_state(motor, offset, x, y);
+  return (is_alias(offset) ? aliases_at(offset) : 0u) | read_state(motor, offset, x, y);
 }
 
 static void write_position(int64_t* position, bool x, uint32_t word) {

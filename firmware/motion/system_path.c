@@ -18,6 +18,7 @@ static void slew_time_base(struct coordinate_system* s) {
     s->increment = target - present > slew ? present + slew : target;
   else if (present > target)
     s->increment = present - target > slew ? present - slew : target;
+  if (s->increment == target && !s->held) s->increment_slew = s->increment_usual; /* a hold's end went at another */
 }
 
 static void go_to(uint32_t motor, int64_t position) {

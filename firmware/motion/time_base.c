@@ -38,8 +38,16 @@ void time_base_source_changed(uint32_t cs) {
   const uint32_t address = (uint32_t)i_integer(i_cs(cs, ISX93_TIME_BASE_ADDRESS));
   const uint32_t state = hal_mask_servo();
   s->time_base_source = source(cs, address);
-  s->increment_slew = i_integer(i_cs(cs, ISX94_TIME_BASE_SLEW));
   cs_busy |= 1u << cs;
+  hal_unmask(state);
+  time_base_slew_changed(cs);
+}
+
+void time_base_slew_changed(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_servo();
+  s->increment_usual = i_integer(i_cs(cs, ISX94_TIME_BASE_SLEW));
+  if (!s->held) s->increment_slew = s->increment_usual;
   hal_unmask(state);
 }
 

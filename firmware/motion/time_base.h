@@ -12,5 +12,6 @@ void time_base_slew(uint32_t cs, int32_t target, enum i_name rate); /* servo and
 void time_base_command(uint32_t cs, int32_t command);
 void time_base_initialize(void);            /* start-up: Isx93 of all */
 void time_base_source_changed(uint32_t cs); /* Isx93 has been written */
+void time_base_slew_changed(uint32_t cs);   /* Isx94 has been written: it acts at once, but for a hold */
 
 #endif

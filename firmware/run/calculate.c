@@ -61,7 +61,7 @@ static void stop_with_error(uint32_t cs) {
 /* The program has ended: it stands at its top again, and stops when its moves are over. */
 static void end(uint32_t cs) {
   motion_program_restart(cs);
-  coordinate_systems[cs].quit = true;
+  coordinate_systems[cs].quit = coordinate_systems[cs].ended = true;
 }
 
 static void planned(uint32_t cs) {
@@ -70,6 +70,14 @@ static void planned(uint32_t cs) {
   p->under_way = false;
   p->jumps_begin = p->x.jumps_back;
   if (s->stepping && !p->in_block) s->quit = true;
+}
+
+/* Isx53 bit 0: a step ends behind each line, a block is one. */
+static void line_ends(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  motion_programs[cs].lines++;
+  if (!s->stepping || motion_programs[cs].in_block) return;
+  if (((uint32_t)i_integer(i_cs(cs, ISX53_STEP_MODE)) & 1u) != 0u) s->quit = true;
 }
 
 static bool waits_for(enum move_kind kind) { return kind == MOVE_DWELL || kind == MOVE_OWN; }
@@ -105,7 +113,7 @@ static bool calculate_word(uint32_t cs) {
     if (of_motion && s->pending_axes == 0) p->under_way = false; /* it may wait for ever: a stop does not */
     return false;
   }
-  if (executed == EXECUTED_LINE) p->lines++;
+  if (executed == EXECUTED_LINE) line_ends(cs);
   if (executed == EXECUTED_LINE || executed == EXECUTED_END) s->sets_normal = false;
   p->under_way = executed == EXECUTED_WORD;
   if ((executed == EXECUTED_LINE || executed == EXECUTED_END) && s->pending_axes != 0) {

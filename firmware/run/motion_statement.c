@@ -1,6 +1,7 @@
 #include "firmware/run/motion_statement.h"
 
 #include "firmware/language/statement_key.h"
+#include "firmware/motion/axis_definition.h"
 #include "firmware/motion/homing.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/plan.h"
@@ -195,6 +196,15 @@ static bool closed(uint32_t mask) {
   return true;
 }
 
+/* What the program of another system moves is that one's. */
+static bool may_home(uint32_t cs, uint32_t mask) {
+  for (uint32_t motor = 0; mask != 0; motor++, mask >>= 1) {
+    const struct axis_definition* d = &axis_definitions[motor];
+    if ((mask & 1u) != 0 && d->assigned && d->cs != cs && coordinate_systems[d->cs].running) return false;
+  }
+  return true;
+}
+
 /* What is made at rest waits for the moves before it. STATEMENT: it is something else. */
 static enum executed at_rest(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -206,7 +216,7 @@ static enum executed at_rest(uint32_t cs, const struct instruction* in) {
     s->sets_position = true;
     return executor_pass(&motion_programs[cs].x);
   }
-  if (!closed(in->number)) return EXECUTED_ERROR;
+  if (!may_home(cs, in->number)) return EXECUTED_ERROR;
   for (uint32_t motor = 0, left = in->number; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) homing_here(motor);
   s->matching = s->motors != 0;
@@ -214,7 +224,7 @@ static enum executed at_rest(uint32_t cs, const struct instruction* in) {
 }
 
 static enum executed home(uint32_t cs, const struct instruction* in) {
-  if (!closed(in->number)) return EXECUTED_ERROR;
+  if (!may_home(cs, in->number) || !closed(in->number)) return EXECUTED_ERROR;
   motion_program_trace(cs, &coordinate_systems[cs].line);
   plan_home(cs, in->number);
   return executor_pass(&motion_programs[cs].x);

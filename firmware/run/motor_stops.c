@@ -3,7 +3,6 @@
 #include <stdbool.h>
 
 #include "firmware/base/dimensions.h"
-#include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor.h"
@@ -49,16 +48,9 @@ void motors_abort_all(void) {
   }
 }
 
-void motor_stop_now(uint32_t motor) {
-  const uint32_t state = hal_mask_servo();
-  jog_drop(motor);
-  motor_kill(motor);
-  hal_unmask(state);
-}
-
 /* Outputs first. */
 void motors_kill_all(void) {
   for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if (is_active(motor)) motor_stop_now(motor);
+    if (is_active(motor)) motor_kill(motor);
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) run_abort(cs);
 }

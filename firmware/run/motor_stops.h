@@ -9,6 +9,5 @@ void motors_abort(uint32_t cs);  /* A: ramps to rest; loops that are open are cl
 void motors_enable(uint32_t cs); /* E: loops are closed, where motors are */
 void motors_abort_all(void);     /* ^A: motors of no coordinate system too */
 void motors_kill_all(void);      /* ^K */
-void motor_stop_now(uint32_t motor); /* K: its amplifier too */
 
 #endif

@@ -129,9 +129,11 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->matching = s->motors != 0;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
+    s->ended = false;
     if (!s->next_valid) s->may_join = false;
   }
-  s->end_block = s->quit = false;
+  s->end_block = false;
+  s->quit = s->ended; /* it stands at its top again, for another start */
   segment_go_on(cs);
   s->stepping = single_step;
   s->continuous = !single_step;

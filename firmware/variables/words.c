@@ -15,6 +15,12 @@ bool word_exists(bool x, uint32_t address) {
   return x && address >= BOARD_LATCHES_BASE && address - LATCHES_BASE < LATCHES_SIZE;
 }
 
+bool word_is_plain(uint32_t address) {
+  uint32_t x, y;
+  if (address - MAIN_MEMORY_BASE >= MAIN_MEMORY_SIZE) return false;
+  return address >= word_hooks.end || !word_hooks.read(address, &x, &y);
+}
+
 static volatile uint32_t* place(bool x, uint32_t address) { return x ? hal_x(address) : hal_y(address); }
 
 void word_read_long(uint32_t address, uint32_t* x, uint32_t* y) {
@@ -24,7 +30,7 @@ void word_read_long(uint32_t address, uint32_t* x, uint32_t* y) {
   *y = y_exists ? *hal_y(address) : 0u;
   hal_unmask(state);
   if (address == PHASE_PERIOD) *x = phase_period() / 2u;
-  if (address < word_hooks.end) word_hooks.read(address, x, y);
+  if (address < word_hooks.end) (void)word_hooks.read(address, x, y);
   *x &= HAL_WORD_MASK;
   *y &= HAL_WORD_MASK;
 }

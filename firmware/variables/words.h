@@ -10,12 +10,13 @@
  * they are called: what they take from other tasks they fetch under a mask of their own. */
 struct word_hooks {
   uint32_t end;
-  void (*read)(uint32_t address, uint32_t* x, uint32_t* y);              /* replaces the halves that it makes */
+  bool (*read)(uint32_t address, uint32_t* x, uint32_t* y);              /* replaces the halves that it makes, if any */
   bool (*write)(bool x, uint32_t address, uint32_t mask, uint32_t bits); /* false: an ordinary word */
 };
 extern const struct word_hooks word_hooks;
 
 bool word_exists(bool x, uint32_t address);
+bool word_is_plain(uint32_t address); /* of main memory, and nobody makes it: it may be read where it stands */
 uint32_t word_read(bool x, uint32_t address);                                 /* 24 bits */
 void word_read_long(uint32_t address, uint32_t* x, uint32_t* y);              /* both of one moment */
 void word_write(bool x, uint32_t address, uint32_t value);                    /* the low 24 bits are stored */

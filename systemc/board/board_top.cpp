@@ -203,7 +203,8 @@ bool BoardTop::show_motors() {
   bool stop = false;
   for (std::uint32_t ics = gate_ics_.take_changes(); ics != 0; ics &= ics - 1) {
     const auto ic = static_cast<unsigned>(__builtin_ctz(ics));
-    const MotorOutputs before = motor_outputs_[ic], after = motor_outputs(ic) & watched_motor_[ic];
+    const MotorOutputs before = motor_outputs_[ic];
+    const MotorOutputs after = gate_ics_.motor_outputs(ic, now_, watched_motor_[ic]) & watched_motor_[ic];
     if (after == before) continue;
     motor_outputs_[ic] = after;
     if (on_motor_change) on_motor_change(now_, ic, before, after);

@@ -150,10 +150,10 @@ void GateIcs::send_adc(unsigned ic, const ConverterWords& words, Tick now) {
   servo_ic_[ic]->send_adc(words);  // no output shows it
 }
 
-MotorOutputs GateIcs::motor_outputs(unsigned ic, Tick now) const {
+MotorOutputs GateIcs::motor_outputs(unsigned ic, Tick now, const MotorOutputs& select) const {
   if (ic >= kServoIcs || !has(ic)) return {};
   catch_up(ic, now);
-  return servo_ic_[ic]->motor_outputs();
+  return servo_ic_[ic]->motor_outputs(select);
 }
 
 void GateIcs::watch(unsigned ic, const MotorOutputs& select, Tick now) {

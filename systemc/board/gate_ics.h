@@ -58,7 +58,7 @@ class GateIcs {
   // Of the eight EQU outputs that can interrupt, bits 3..0 servo IC 0, 7..4 servo IC 1, those that do.
   std::uint32_t equ() const { return equ_; }
   void set_interrupting(std::uint32_t equ, Tick now);
-  MotorOutputs motor_outputs(unsigned ic, Tick now) const;
+  MotorOutputs motor_outputs(unsigned ic, Tick now, const MotorOutputs& select = kAllMotorOutputs) const;
   void watch(unsigned ic, const MotorOutputs& select, Tick now);
   // The serial streams of a servo IC, as MotorDigest; nullptr: it is not built.
   const ServoChannels* channels(unsigned ic, Tick now) const {

@@ -49,8 +49,20 @@ void Dpram::advance(Tick t) {
   now_ = t;
 }
 
-// Nothing of them but their way through the stages, which is four edges long.
+// Nothing of them but their way through the stages, which is four edges long: not selected, a strobe is done as it
+// arrives.
 void Dpram::let_others_pass(Tick count) {
+  if (count >= 4 && !rd_.waits && !wr_.waits) {
+    const auto arrive = [](Strobe& s, bool toggle, bool strobe_n) {
+      s.toggle1 = s.toggle2 = s.done = toggle;
+      s.low1 = s.low2 = !strobe_n;
+    };
+    arrive(rd_, in.rd_toggle, in.cpu_rd_n);
+    arrive(wr_, in.wr_toggle, in.cpu_wr_n);
+    rd_.acknowledged = rd_.done;
+    pins_ = pin_cell();
+    return;
+  }
   for (Tick n = std::min<Tick>(count, 4); n > 0; --n) {
     cpu_edge(false);
     cpu_pins();

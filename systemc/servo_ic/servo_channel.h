@@ -68,9 +68,8 @@ class ServoChannel {
   }                                                                  // settled
   ChannelPosition sclk(Tick edge, const ChannelPosition* channel1);  // returns its own position before the edge
 
-  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const {
-    return {is(channel_control::kCPfm) && !trip, out_[2], width};
-  }
+  ChannelPfm::Inputs pfm_inputs(bool trip, unsigned width) const { return {runs_pfm(trip), out_[2], width}; }
+  bool runs_pfm(bool trip) const { return is(channel_control::kCPfm) && !trip; }
   const ChannelPfm& pfm() const { return pfm_; }
   bool hold() const { return is(channel_control::kCounterReset); }
   bool shows_pwm(unsigned output) const { return !is(output == 2 ? channel_control::kCPfm : channel_control::kAbDac); }
@@ -122,9 +121,12 @@ class ServoChannel {
   bool equ(bool trip) const { return compare_.equ() && !trip; }
 
  private:
-  // SCLK edges after the last outside influence until nothing moves any more: three of the filter, the memories behind
-  // it, and the latest user of those.
-  static constexpr unsigned kSettled = 12;
+  // SCLK edges after the last outside influence until nothing moves any more. A pin that has just moved is a sample at
+  // the second, the filter's level behind the third; the fourth counts, shifts the index and sees an edge of a flag;
+  // the fifth captures by the index that was shifted, finds the loss of two samples and shows the compare the new
+  // position, from which the sixth has not moved. One more is to spare; after a reset the sixth is the first of all
+  // that acts.
+  static constexpr unsigned kSettled = 7;
 
   struct DacLine {  // what is sent on it: the stream before and the present one
     std::uint32_t before = 0, present = 0;

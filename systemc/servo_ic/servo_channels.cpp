@@ -34,8 +34,10 @@ void ServoChannels::advance(Tick t) {
 
   // An edge of PHASE or SERVO acts at the next edge of clk_ref; all latches take what was there before it.
   const Tick edge = next_ref_edge(now_);
-  if (edge <= t) {
-    const bool phase_rise = in.phase_rises != phase_rises_;
+  const bool phase_rise = in.phase_rises != phase_rises_;
+  if (edge <= t && !phase_rise && in.phase_falls == phase_falls_ && in.servo_falls == servo_falls_) {
+    run_ref(t, false);
+  } else if (edge <= t) {
     if (in.phase_falls != phase_falls_)
       for (ServoChannel& channel : channel_) channel.latch_phase();
     if (in.servo_falls != servo_falls_)
@@ -84,7 +86,7 @@ void ServoChannels::run_ref(Tick t, bool phase_rise) {
   bool pfm = false;
   for (ServoChannel& channel : channel_) {
     if (channel.hold()) channel.hold_counter();
-    const bool run = channel.pfm_inputs(in.trip, in.deadtime).run;
+    const bool run = channel.runs_pfm(in.trip);
     if (!run) channel.stop_pfm();
     pfm = pfm || run;
   }
@@ -223,9 +225,9 @@ void ServoChannels::jump(Tick by) {
   now_ += by;
 }
 
-MotorOutputs ServoChannels::motor_outputs() const {
+MotorOutputs ServoChannels::motor_outputs(const MotorOutputs& select) const {
   MotorOutputs o;
-  o.w[0] = dir() << 28 | pulse() << 24 | pwm();
+  o.w[0] = dir() << 28 | pulse() << 24 | (has_pwm(select) ? pwm() : 0);
   o.w[1] = dac_a() | dac_b() << 4 | aena() << 8 | equ() << 12 | (dac_clk() ? 1u : 0u) << 16 |
            (dac_strobe() ? 1u : 0u) << 17 | (adc_clk() ? 1u : 0u) << 18 | (adc_strobe() ? 1u : 0u) << 19;
   for (unsigned i = 0; i < kChannels; ++i) o.w[2 + i] = channel_[i].counter();

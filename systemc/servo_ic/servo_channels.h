@@ -87,7 +87,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   bool adc_clk() const { return adc_.clk(now_); }
   bool adc_strobe() const { return adc_.strobe(); }
 
-  MotorOutputs motor_outputs() const;
+  MotorOutputs motor_outputs(const MotorOutputs& select = kAllMotorOutputs) const;  // of the others anything
 
   // As MotorDigest, after the last executed edge.
   ConverterWords dac_lines() const;

@@ -31,7 +31,9 @@ class ServoIc : public sc_core::sc_module, public ClockFollower {
     for (unsigned i = 0; i < kChannels; ++i) channels_.set_pins(i, inputs.pins[i]);
     channels_.set_adc(inputs.adc_a, inputs.adc_b);
   }
-  MotorOutputs motor_outputs() const { return channels_.motor_outputs(); }
+  MotorOutputs motor_outputs(const MotorOutputs& select = kAllMotorOutputs) const {
+    return channels_.motor_outputs(select);
+  }
   unsigned equ() const { return channels_.equ(); }  // bit n-1 for channel n
   void set_trip(bool trip) { channels_.set_trip(trip); }
   const ServoChannels& channels() const { return channels_; }

@@ -45,5 +45,6 @@ Bench limits_bench();
 Bench commutation_bench();
 Bench time_base_bench();
 Bench follow_bench();
+Bench task_load_bench();
 
 }  // namespace brick

@@ -1,6 +1,11 @@
 #include "testbench/benches/breq_host.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+
+#include "rtl/regs/brick_regs.hpp"
+#include "systemc/cpu/port_a.h"
 
 namespace brick {
 
@@ -29,6 +34,12 @@ BreqHost::BreqHost(BenchContext& context, Tick line_time)
     if (strobe_low_ && in.isa_iow_n) strobe_ = time;
     strobe_low_ = !in.isa_iow_n;
   };
+  cycle_ = context_.machine.on_bus_cycle;
+  context_.machine.on_bus_cycle = [this](const PortACycle& c) {
+    if (cycle_) cycle_(c);
+    if (c.on_chip && !c.write && c.x && c.address == regs::hi08::kHorx.address && (c.data & 0xFF) == '\r')
+      taken_ = c.strobe_high;
+  };
   profile_ = context_.machine.on_task;
   context_.machine.on_task = [this](TimeFs time) {
     if (profile_) profile_(time);
@@ -39,6 +50,7 @@ BreqHost::BreqHost(BenchContext& context, Tick line_time)
 BreqHost::~BreqHost() {
   context_.bus.watch({}, nullptr);
   context_.machine.on_host_bus = judge_;
+  context_.machine.on_bus_cycle = cycle_;
   context_.machine.on_task = profile_;
 }
 
@@ -100,9 +112,10 @@ bool BreqHost::line(const std::string& text) {
   HostLink& link = context_.link;
   tasks_.forget_changes();
   if (!link.send(text)) throw HostBusError("the host port takes no character of `" + text + "`; expected: TXDE");
-  const TimeFs sent = strobe_;
+  const TimeFs strobe = strobe_;
   scoreboard_.line_sent(context_.bus.now());
   const Reply reply = link.finish();
+  const TimeFs sent = from_port_ ? std::max(strobe, taken_) : strobe;
   fall_time_.reset();
   if (const TimeFs fell = tick_to_fs(scoreboard_.fell_at()); fell > sent)
     fall_time_ = {fell - sent, fell - sent - tasks_.above_background(sent, fell)};

@@ -27,12 +27,14 @@ class BreqHost {
   void run();                          // R
   void stop();                         // A; nothing more is taken
   bool line(const std::string& text);  // one program line; false when refused
-  // T_FALL of the last line (host-bus:5.7/5): from the rise of the write strobe of its CR to the fall of BREQ; net of
-  // the tasks that came between. None: it did not fall, because it was low already.
+  // T_FALL of the last line (host-bus:5.7/5): from the rise of the write strobe of its CR, or from the moment the
+  // controller takes that out of the port, to the fall of BREQ; net of the tasks that came between. None: it did not
+  // fall, because it was low already.
   struct FallTime {
     TimeFs whole, net;
   };
   std::optional<FallTime> fall_time() const { return fall_time_; }
+  void measure_from_port(bool from_port) { from_port_ = from_port; }
   TaskTimes& tasks() { return tasks_; }
   void settle();           // waits until BREQ shows its final state, and checks it
   unsigned lines_ahead();  // PR
@@ -65,11 +67,13 @@ class BreqHost {
   BreqScoreboard::Counts counted_;
   unsigned interrupts_ = 0;
   TimeFs strobe_ = 0;  // the last rise of IOW#
-  bool strobe_low_ = false;
+  TimeFs taken_ = 0;   // the last CR, out of the port
+  bool strobe_low_ = false, from_port_ = false;
   std::optional<FallTime> fall_time_;
   TaskTimes tasks_;
   std::function<void(TimeFs, const BoardInputs&, const BoardOutputs&)> judge_;  // who sees the host bus beside us
   std::function<void(TimeFs)> profile_;                                         // and the tasks
+  std::function<void(const PortACycle&)> cycle_;                                // and the CPU's bus
 };
 
 }  // namespace brick

@@ -188,7 +188,7 @@ void Commutation::wrong_angle() {
   watch(25);
   host_.ask(fmt::format("#{}J/", kWrong));
   host_.ask(fmt::format("#{}J:50", kWrong));
-  watch(25);
+  watch(20);
   const auto& e = host_.enables(kWrong);
   const bool was_on = std::any_of(e.begin(), e.end(), [](const auto& x) { return x.on; });
   report().step("wrong Ixx72 trips", was_on && host_.pin(motor_pin::kAena, kWrong - 1) == 0,

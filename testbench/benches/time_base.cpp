@@ -45,7 +45,7 @@ void TimeBase::load(double distance, double time, bool more) {
   host_.expect("OPEN PROG 1 CLEAR", "");
   host_.expect(fmt::format("LINEAR INC TA10 TS2 TM{}", time), "");
   host_.expect(fmt::format("X{}", distance), "");
-  if (more) host_.expect("TM12", "");
+  if (more) host_.expect("TM10", "");
   for (unsigned i = 0; more && i < 3; ++i) host_.expect("X1", "");
   host_.expect("CLOSE", "");
 }

@@ -145,17 +145,14 @@ std::optional<TimeFs> PortATiming::needed(Rule rule, Region region) {
 
 TimeFs PortATiming::quarters(std::int64_t count, unsigned multiplier) { return floor_quarters(count, multiplier); }
 
-PortATiming::Limits PortATiming::limits(const PinCycle& c, unsigned stretched) {
-  const auto fill = [&] {
-    Limits all;
-    for (unsigned r = 0; r <= k119; ++r)
-      all.row[r] = required(static_cast<Rule>(r), {c.multiplier, c.wait_states, stretched});
+const PortATiming::Limits& PortATiming::limits(const PortAConditions& at) {
+  const auto fill = [&at](Limits& all) -> const Limits& {
+    for (unsigned r = 0; r <= k119; ++r) all.row[r] = required(static_cast<Rule>(r), at);
     return all;
   };
-  if (stretched != 0) return fill();
-  auto& known = cache_[c.multiplier * kWaitStates + c.wait_states];
-  if (!known) known = fill();
-  return *known;
+  if (at.stretched != 0) return fill(stretched_);
+  auto& known = cache_[at.multiplier * kWaitStates + at.wait_states];
+  return known ? *known : fill(known.emplace());
 }
 
 void PortATiming::cycle(const PinCycle& c) {
@@ -164,11 +161,14 @@ void PortATiming::cycle(const PinCycle& c) {
   place_.wait_states = c.wait_states;
   place_.i52 = c.multiplier - 1;
   // The CPU keeps what /TA asked for; the data have until the strobe ended.
-  Limits rows = limits(c, c.asked);
+  const Limits* asked = &limits({c.multiplier, c.wait_states, c.asked});
   if (c.stretched != c.asked) {
-    const Limits data = limits(c, c.stretched);
-    for (const Rule rule : {k104, k105}) rows.row[rule] = data.row[rule];
+    mixed_ = *asked;
+    const Limits& data = limits({c.multiplier, c.wait_states, c.stretched});
+    for (const Rule rule : {k104, k105}) mixed_.row[rule] = data.row[rule];
+    asked = &mixed_;
   }
+  const Limits& rows = *asked;
   enter(k100, rows, c.end - c.start);
   c.write ? write(c, rows) : read(c, rows);
   if (c.wait_states > 0) acknowledge(c, rows);
@@ -226,8 +226,8 @@ void PortATiming::acknowledge(const PinCycle& c, const Limits& rows) {
 }
 
 void PortATiming::between(Rule rule, const PinCycle& first, const PinCycle& c, TimeFs measured) {
-  PortAConditions at{std::max(first.multiplier, c.multiplier), std::min(first.wait_states, c.wait_states), 0};
-  if (const auto time = required(rule, at)) ledger_.enter(rule, region_, *time, measured, place_);
+  enter(rule, limits({std::max(first.multiplier, c.multiplier), std::min(first.wait_states, c.wait_states), 0}),
+        measured);
 }
 
 void PortATiming::forget() {

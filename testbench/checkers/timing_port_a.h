@@ -86,7 +86,7 @@ class PortATiming {
   struct Limits {
     std::array<std::optional<TimeFs>, k119 + 1> row;
   };
-  Limits limits(const PinCycle& c, unsigned stretched);
+  const Limits& limits(const PortAConditions& at);  // until the next call
   void read(const PinCycle& c, const Limits& limits);
   void write(const PinCycle& c, const Limits& limits);
   void acknowledge(const PinCycle& c, const Limits& limits);
@@ -102,6 +102,7 @@ class PortATiming {
 
   TimingLedger ledger_;
   std::vector<std::optional<Limits>> cache_;  // by CPU clock and wait states, without /TA
+  Limits stretched_, mixed_;                  // by the cycle with /TA that is judged
   std::optional<PinCycle> last_read_, last_write_;
   TaMoves ta_moves_;
   std::optional<PinCycle> worst_read_;

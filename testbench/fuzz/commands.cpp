@@ -1,5 +1,6 @@
-// The command interpreter: lines and control characters as a host sends them. 0xFF lets three servo cycles pass. After
-// whatever it was, programs can be stopped, and then the controller answers with nothing between.
+// The command interpreter: lines and control characters as a host sends them. 0xFF lets three servo cycles pass. Inputs
+// of an odd length come while eight motors move. After whatever it was, programs can be stopped, and then the
+// controller answers with nothing between.
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -59,6 +60,15 @@ std::string answer(const char* characters) {
   return output();
 }
 
+// Eight motors whose loops are closed jog for ever, whatever comes then; their encoders stand still.
+void move_motors() {
+  (void)answer("I192,8,100=0 I111,8,100=0 I124,8,100=$120001 I100,8,100=1\r");
+  for (const char* line : {"#1J+#2J-#3J+#4J-\r", "#5J+#6J-#7J+#8J-\r"})
+    require(answer(line) == "\x06", "the motors do not jog");
+  time_passes();
+  time_passes();
+}
+
 bool command_waits() {
   return std::any_of(std::begin(command_queues), std::end(command_queues),
                      [](const text_queue& queue) { return !text_queue_is_empty(&queue); });
@@ -83,6 +93,7 @@ void stop_programs() {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size > kLongest) return 0;
   begin();
+  if (size % 2 == 1) move_motors();
   for (std::size_t i = 0; i < size; ++i) {
     if (data[i] == kTimePasses) {
       time_passes();

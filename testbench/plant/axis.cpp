@@ -65,7 +65,8 @@ bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {
   move(now, dac_volts);
 
   const Tick seen = now + 1;
-  unsigned pins = this->pins(motion_.at(seen));
+  const std::uint16_t present = this->pins(motion_.at(seen));
+  unsigned pins = present;
   if (has_amplifier()) pins |= static_cast<unsigned>(amplifier_.fault_pin()) << kFault;
   pins ^= noise_.mask(seen);
   std::uint16_t& shown = inputs.pins[par_.channel];
@@ -73,7 +74,7 @@ bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {
   const bool differs = edited != shown;
   shown = edited;
 
-  next_ = std::min(next_pin_change(seen), noise_.next_change(seen)) - 1;
+  next_ = std::min(next_pin_change(seen, present), noise_.next_change(seen)) - 1;
   if (has_motor()) next_ = std::min(next_, motion_.t1);
   return differs;
 }
@@ -122,9 +123,8 @@ std::uint16_t Axis::pins(std::int64_t position) const {
   return static_cast<std::uint16_t>(encoder_.pins(position) | switches_.pins(position));
 }
 
-// The first edge after t that sees other pins, as far as the motion is known.
-Tick Axis::next_pin_change(Tick t) const {
-  const std::uint16_t present = pins(motion_.at(t));
+// The first edge after t that sees other pins than those at t, as far as the motion is known.
+Tick Axis::next_pin_change(Tick t, std::uint16_t present) const {
   for (;;) {
     const Tick change = motion_.crosses(next_line(grids_, motion_.at(t), motion_.up()));
     if (change == kNever || pins(motion_.at(change)) != present) return change;

@@ -76,7 +76,7 @@ class Axis {
   void move(Tick now, double dac_volts);
   void integrate(double dac_volts, const std::array<double, PwmMeter::kPhases>& phases);
   std::uint16_t pins(std::int64_t position) const;
-  Tick next_pin_change(Tick t) const;
+  Tick next_pin_change(Tick t, std::uint16_t present) const;
 
   AxisParameters par_;
   Tick step_;

@@ -362,6 +362,11 @@ def follow_lockstep():
     bench_passes("follow", "lockstep", "10")
 
 
+def task_load():
+    for seed in ("1", "2"):
+        bench_passes("task-load", "systemc", seed)
+
+
 if CASE.endswith("_negative"):
     fails_its_negative_control(CASE.removesuffix("_negative").removesuffix("_bench").replace("_", "-"))
 else:

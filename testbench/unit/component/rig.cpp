@@ -1,6 +1,9 @@
 #include "testbench/unit/component/rig.h"
 
 #include <fmt/format.h>
+#include <sysc/kernel/sc_dynamic_processes.h>
+
+#include <utility>
 
 namespace brick::component {
 namespace {
@@ -28,6 +31,37 @@ std::string first_difference(const char* what, const List& component, const List
 }
 
 }  // namespace
+
+// Here and not in the header, because the signals of 32 widths are seconds of the compiler's time.
+void Rig::connect(Pin& pin) { connect(pin, std::make_integer_sequence<unsigned, 32>()); }
+
+template <unsigned... kWidth>
+void Rig::connect(Pin& pin, std::integer_sequence<unsigned, kWidth...>) {
+  (connect_width<kWidth + 1>(pin), ...);
+}
+
+template <unsigned kWidth>
+void Rig::connect_width(Pin& pin) {
+  const PinInfo& info = pin.info();
+  if (info.width != kWidth) return;
+  using Value = PinValue<kWidth>;
+  auto signal = std::make_shared<sc_core::sc_signal<Value>>(("s_" + info.name).c_str(), static_cast<Value>(info.idle));
+  if (info.direction == PinDirection::kIn) {
+    dynamic_cast<In<kWidth>&>(pin).bind(*signal);
+    writes_[info.name] = [s = signal.get()](std::uint32_t value) { s->write(static_cast<Value>(value)); };
+  } else {
+    dynamic_cast<Out<kWidth>&>(pin).bind(*signal);
+    sc_core::sc_spawn_options process;
+    process.spawn_method();
+    process.dont_initialize();
+    process.set_sensitivity(&signal->value_changed_event());
+    sc_core::sc_spawn(
+        [this, name = info.name, s = signal.get()] { changed(name, static_cast<std::uint32_t>(s->read())); },
+        ("see_" + info.name).c_str(), &process);
+  }
+  if constexpr (kWidth == 1) bits_[info.name] = signal.get();
+  signals_.push_back(std::move(signal));
+}
 
 std::string difference(Seen component, Seen block, Picoseconds end, const Binds& binds) {
   for (Seen* seen : {&component, &block}) {

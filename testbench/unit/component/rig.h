@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <sysc/kernel/sc_dynamic_processes.h>
 
 #include <brick/component.h>
 #include <brick/rtl.h>
@@ -33,11 +32,8 @@ class Rig : public sc_core::sc_module {
         traffic_(traffic),
         first_("first", traffic.accesses, width, quantum, seen.answers, seen.annotated),
         second_("second", traffic.others, other_width, quantum, seen.others, seen.annotated) {
-    for (Pin* pin : component.pins()) {
-      const PinInfo& info = pin->info();
-      if (!binds(info.name)) continue;
-      connect(*pin, std::make_integer_sequence<unsigned, 32>());
-    }
+    for (Pin* pin : component.pins())
+      if (binds(pin->info().name)) connect(*pin);
     SC_HAS_PROCESS(Rig);
     SC_THREAD(drive);
   }
@@ -48,34 +44,11 @@ class Rig : public sc_core::sc_module {
   sc_core::sc_signal<bool>& signal(const std::string& pin) { return *bits_.at(pin); }
 
  private:
-  // A signal of the pin's type, whatever its width.
+  void connect(Pin& pin);  // to a signal of its type, whatever its width
   template <unsigned... kWidth>
-  void connect(Pin& pin, std::integer_sequence<unsigned, kWidth...>) {
-    (connect_width<kWidth + 1>(pin), ...);
-  }
+  void connect(Pin& pin, std::integer_sequence<unsigned, kWidth...>);
   template <unsigned kWidth>
-  void connect_width(Pin& pin) {
-    const PinInfo& info = pin.info();
-    if (info.width != kWidth) return;
-    using Value = PinValue<kWidth>;
-    auto signal =
-        std::make_shared<sc_core::sc_signal<Value>>(("s_" + info.name).c_str(), static_cast<Value>(info.idle));
-    if (info.direction == PinDirection::kIn) {
-      dynamic_cast<In<kWidth>&>(pin).bind(*signal);
-      writes_[info.name] = [s = signal.get()](std::uint32_t value) { s->write(static_cast<Value>(value)); };
-    } else {
-      dynamic_cast<Out<kWidth>&>(pin).bind(*signal);
-      sc_core::sc_spawn_options process;
-      process.spawn_method();
-      process.dont_initialize();
-      process.set_sensitivity(&signal->value_changed_event());
-      sc_core::sc_spawn(
-          [this, name = info.name, s = signal.get()] { changed(name, static_cast<std::uint32_t>(s->read())); },
-          ("see_" + info.name).c_str(), &process);
-    }
-    if constexpr (kWidth == 1) bits_[info.name] = signal.get();
-    signals_.push_back(std::move(signal));
-  }
+  void connect_width(Pin& pin);
 
   static sc_core::sc_time time(Picoseconds ps) { return sc_core::sc_time::from_value(ps); }
   void changed(const std::string& name, std::uint32_t level) {

@@ -54,6 +54,14 @@ TEST_F(Commutation, SineOutputsAreThoseOfTheDataSheet) {
   }
 }
 
+// motion:3.6: without a current loop X:+$39 and Y:+$39 show what is commanded.
+TEST_F(Commutation, CurrentsAreShownAsTheyAreCommanded) {
+  set("I177=-300");
+  enable();
+  command(1000.5);
+  EXPECT_EQ(c_.line("RX$B9 RY$B9"), std::to_string(1000 * 256 + 128) + "|" + std::to_string(-300 * 256));
+}
+
 TEST_F(Commutation, OutputsAreClippedAtTheirWords) {
   set("I172=512 I129=32767 I179=-32768");
   enable();
@@ -134,6 +142,61 @@ TEST_F(Commutation, MicroStepsTurnByTheOutputAndNotByTheEncoder) {
   command(0.25);  // a whole unit each update
   phase(100);
   EXPECT_EQ(x_word(kPosition), -20400);
+}
+
+TEST_F(Commutation, PartsOfMicroStepsAddUp) {
+  set("I196=1 I170=1 I171=65536 I177=8000 I172=512");
+  enable();
+  stand_at(0);
+  command(0.25);
+  phase(8);
+  EXPECT_EQ(x_word(kPosition), 2);
+  command(0.75);
+  phase(8);
+  EXPECT_EQ(x_word(kPosition), 8);
+  command(-0.75);
+  phase(8);
+  EXPECT_EQ(x_word(kPosition), 2);
+  set("I170=255 I171=16777215");  // more than 2^22 an update is none
+  stand_at(0);
+  command(32767);
+  phase(1);
+  EXPECT_EQ(x_word(kPosition), 1 << 22);
+  command(-32767);
+  phase(1);
+  EXPECT_EQ(x_word(kPosition), 0);
+}
+
+// A killed motor does not slip on, one that is enabled begins without advance; Ixx77 and modes act at the next servo
+// interrupt.
+TEST_F(Commutation, EnablingBeginsAnew) {
+  set("I171=100000 I177=2500 I178=0.0004 I156=0.001 I172=512");
+  enable();
+  stand_at(0);
+  motors[0].velocity = 500000;  // 500 of 2048
+  command(5000);
+  phase(1);
+  enable(false);
+  const std::int32_t stood = x_word(kPosition);
+  phase(100);
+  EXPECT_EQ(x_word(kPosition), stood);
+  enable();
+  stand_at(0);
+  phase(100);
+  EXPECT_EQ(x_word(kPosition), 0);
+  EXPECT_NEAR(a(), 2500, 0.02) << "Id cos(0)";
+  EXPECT_NEAR(b(), 0, 0.02) << "Id cos(90)";
+  motors[0].velocity = 0;
+  set("I177=1000 I178=0 I156=0");
+  command(300);
+  phase();
+  EXPECT_NEAR(a(), 1000, 0.02);
+  EXPECT_NEAR(b(), -300, 0.02);
+  set("I196=1 I170=0");  // micro-steps: the output is no torque
+  command(300);
+  phase();
+  EXPECT_NEAR(a(), 1000, 0.02);
+  EXPECT_NEAR(b(), 0, 0.02);
 }
 
 TEST_F(Commutation, TheTableOfIxx55IsUsed) {

@@ -246,6 +246,36 @@ TEST_F(CurrentLoop, OverloadCountsCurrentsBeyondFullScale) {
   EXPECT_EQ(trips_after(), 6711u) << "(5000^2 - 3000^2) / 32768^2 = 0.0149 a servo interrupt";
 }
 
+// The sum is not below 0, so rest is not saved up, and not above twice Ixx58, so that it is forgotten in time. Outputs
+// are rounded to 16 bits.
+TEST_F(CurrentLoop, OverloadIsBetweenNothingAndTwiceItsMost) {
+  set("I182=0 I157=16384 I158=100 I177=0");
+  enable();
+  const auto until = [](bool too_much) {
+    unsigned n = 0;
+    for (; n < 10000 && overload_is_too_much(0) != too_much; ++n) overload_servo(0);
+    return n;
+  };
+  command(0);
+  for (int n = 0; n < 1000; ++n) overload_servo(0);
+  command(32767);
+  EXPECT_EQ(until(true), 134u) << "0.75 a servo interrupt";
+  for (int n = 0; n < 5000; ++n) overload_servo(0);
+  command(0);
+  EXPECT_EQ(until(false), 400u) << "100 of 0.25";
+  set("I157=32766 I158=0");
+  set("I158=1");
+  command(32766.4);
+  EXPECT_EQ(until(true), 10000u);
+  command(32766.6);
+  EXPECT_EQ(until(true), 10000u);
+  EXPECT_EQ(until(true), 6385u) << "2^30 / (32767^2 - 32766^2) = 16385";
+  set("I157=0 I158=0");
+  set("I158=100");
+  command(16384);
+  EXPECT_EQ(until(true), 401u) << "Ixx57 = 0: all of it counts";
+}
+
 // Closed through the windings of the plant's motor: 24 V on each side, 10 A full scale, 1 ohm, 1 mH.
 class ClosedCurrentLoop : public CurrentLoop {
  protected:

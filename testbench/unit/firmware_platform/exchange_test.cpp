@@ -242,6 +242,7 @@ TEST(HostExchange, BackspaceTakesTheLastCharacter) {
       "P1=12\x08"
       "3\r");
   EXPECT_EQ(c.line("P1"), "13");
+  EXPECT_EQ(c.send("p1=4 \"\x08p1\r"), "4\r\x06") << "a quote that is taken back quotes nothing";
 }
 
 TEST(HostExchange, ControlCharactersActInsideALine) {

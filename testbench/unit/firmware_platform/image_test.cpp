@@ -46,6 +46,7 @@ TEST_F(Image, ChecksumsCountEveryByteOfALineInEachFraming) {
     while (!(more = board.send("", 2.0)).empty()) reply += more;  // send() ends at an ACK, which a checksum follows
     return reply;
   };
+  board.run_ms(20.0);  // it is up by then
   for_each_framing([&exchange](Framing framing, const std::string& set_up, const std::string& command,
                                const std::vector<std::string>& data) {
     exchange(set_up);
@@ -53,15 +54,17 @@ TEST_F(Image, ChecksumsCountEveryByteOfALineInEachFraming) {
   });
 }
 
-TEST_F(Image, IdleSecondCostsLessThan2200000Instructions) {
+// Each of the 2258.7 servo interrupts works out the eight entries of the default conversion table, from three words of
+// a channel each (motion:2.2/1): 45 instructions an entry beside the 2,200,000 of all else.
+TEST_F(Image, IdleSecondCostsLessThan3000000Instructions) {
   board.send("I6=1 I3=2\r");
   board.send("CHECKSUM\r");  // else the background would add the image up in this second
   const std::uint64_t instructions = board.instructions(), accesses = board.device_accesses();
   board.run_ms(1000.0);
-  EXPECT_LT(board.instructions() - instructions, 2'200'000u);
-  // Nothing but a watchdog strobe and a look at the header of a binary buffer goes to a device in each real-time
-  // interrupt, of which there are 2258.7 / 3 a second.
-  EXPECT_NEAR(static_cast<double>(board.device_accesses() - accesses), 2 * 752.9, 6.0);
+  EXPECT_LT(board.instructions() - instructions, 3'000'000u);
+  // Beside the table nothing but a watchdog strobe and a look at the header of a binary buffer goes to a device in each
+  // real-time interrupt, of which there are 2258.7 / 3 a second.
+  EXPECT_NEAR(static_cast<double>(board.device_accesses() - accesses), 2 * 752.9 + 8 * 3 * 2258.7, 6.0 + 8 * 3);
   RecordProperty("instructions", static_cast<int>(board.instructions() - instructions));
 }
 
@@ -132,9 +135,9 @@ TEST_F(Image, NoAlignmentOfTheClocksToTheStartUpIsAServoError) {
   }
 }
 
-// Phase tasks of all motors at 9 kHz: dearer, but every other task keeps its rate.
+// All motors commutated every other phase interrupt of 9 kHz: dear, but every other task keeps its rate.
 TEST_F(Image, AllMotorsCommutatedLeaveTimeForTheOtherTasks) {
-  board.send("I6=1 I3=2\r");
+  board.send("I6=1 I3=2 I7=1\r");
   for (int motor = 1; motor <= 32; ++motor) {
     const std::string first = "I" + std::to_string(motor) + "0";
     board.send(first + "0=1 " + first + "1=1 " + first.substr(0, first.size() - 1) + "71=3\r");
@@ -145,7 +148,7 @@ TEST_F(Image, AllMotorsCommutatedLeaveTimeForTheOtherTasks) {
   EXPECT_LT(board.longest_strobe_gap_ms(), 15.0);
   const std::uint32_t duration = board.word(true, 0x37);  // X:$37, half cycles
   EXPECT_GT(duration, 32u * 10u);
-  EXPECT_LT(duration, 8705u / 2u / 2u) << "half of the phase period";
+  EXPECT_LT(duration, 8705u / 2u * 3u / 4u) << "three quarters of a phase period, every other";
   RecordProperty("half_cycles", static_cast<int>(duration));
   EXPECT_EQ(board.send("I101..3201=0 ???\r"), "000000000800\r\x06");
 }

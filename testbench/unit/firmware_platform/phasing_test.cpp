@@ -47,6 +47,9 @@ TEST_F(Phasing, StaysMissingWithoutAWayToFindIt) {
   EXPECT_FALSE(phasing_begin(0));  // Ixx74 = 0
   set("I174=8 I173=2000 I171=0");
   EXPECT_FALSE(phasing_begin(0)) << "without a cycle there is no angle";
+  set("I181=$10F1 I191=$800000");
+  set_x(0x10F1, 3 << 20);
+  EXPECT_FALSE(phasing_begin(0)) << "nor with a sensor";
   set("I171=1000 I181=$10F1 I191=$730000");
   EXPECT_FALSE(phasing_begin(0)) << "a format that is not read";
   set("I191=$400007");
@@ -122,6 +125,7 @@ TEST_F(Halls, StatesAreThoseOfTheDataSheet) {
     EXPECT_NEAR(degrees("$C00000", down[sector]), 60 * sector + 30, 0.1);
     // 11/64 of a cycle are 61.9 degrees: the list begins one sector later.
     EXPECT_NEAR(degrees("$8B0000", up[sector]), std::fmod(60 * sector + 30 + 61.875, 360), 0.1);
+    EXPECT_NEAR(degrees("$CB0000", down[sector]), std::fmod(60 * sector + 30 + 61.875, 360), 0.1);
     EXPECT_NEAR(degrees("$AB0000", up[sector]), std::fmod(60 * sector + 30 + 43 * 5.625, 360), 0.1);
   }
 }
@@ -258,6 +262,7 @@ TEST_F(PhaseSearch, StepperPullsTheRotorToTheFirstPhase) {
     plant::Motor motor = motor_at(start);
     set_x(0x78001, counts(motor));
     phase(2);
+    stand_at(1234);  // means nothing
     ASSERT_TRUE(phasing_begin(0));
     run(motor, 2 * 512);
     EXPECT_TRUE(phasing_is_searched(0)) << "two parts of 256 Ixx74 servo cycles";
@@ -265,6 +270,32 @@ TEST_F(PhaseSearch, StepperPullsTheRotorToTheFirstPhase) {
     EXPECT_FALSE(phasing_is_missing(0)) << start;
     EXPECT_LT(std::fabs(wrong_by(motor)), 4) << start;
     motor_kill(0);
+  }
+}
+
+// A quarter of the way between the phases, 683 of 2048: 333 units of 4000, 83.4 counts of Ixx70 = 4.
+TEST_F(PhaseSearch, StepperWantsAQuarterOfTheWay) {
+  set("I180=2 I174=1 I173=8000");
+  for (const int moved : {83, 84, -83, -84}) {
+    const auto servo = [this](unsigned interrupts) {
+      for (unsigned n = 0; n < interrupts; ++n) {
+        phase(kPhasesOfServo);
+        c_.servo(1);
+        phasing_pass();
+      }
+    };
+    set_x(0x78001, 0);
+    phase(2);
+    ASSERT_TRUE(phasing_begin(0));
+    servo(200);
+    set_x(0x78001, 3000);  // the first part may move as it likes
+    servo(100);
+    set_x(0x78001, 3000 + moved);
+    servo(300);
+    EXPECT_FALSE(phasing_is_searched(0));
+    EXPECT_EQ(phasing_is_missing(0), std::abs(moved) < 84) << moved;
+    motor_kill(0);
+    phasing_pass();
   }
 }
 

@@ -154,6 +154,15 @@ TEST(SavedContent, AllOfItComesBack) {
   }
 }
 
+// firmware:8.5/2: a timer that was saved would begin at the start, where nobody has set it.
+TEST(SavedContent, TimersAreNotKept) {
+  Controller c;
+  c.line("I5111=8000000 I5213=77 SAVE");
+  restart(c);
+  EXPECT_LE(std::stol(c.line("I5111")), 0) << "it runs on, downwards";
+  EXPECT_EQ(c.line("I5213"), "77");
+}
+
 TEST(SavedContent, FloatsAreKeptToTheLastBit) {
   Controller c;
   c.line("I122=1/3 I123=-12345678.875 P7=1/3 Q9=-1/7 I8000=$FFFFFF");

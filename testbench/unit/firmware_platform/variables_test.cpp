@@ -13,6 +13,8 @@ extern "C" {
 #include "firmware/base/float48.h"
 #include "firmware/base/status.h"
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/clock_watch.h"
+#include "firmware/kernel/tasks.h"
 #include "firmware/variables/i_variables.h"
 }
 
@@ -117,6 +119,8 @@ TEST(IVariables, RunsAndStepsOfNumbers) {
   EXPECT_EQ(c.line("P1=3 I(P1*100+120)=7 I420"), "7");
   EXPECT_EQ(c.line("I420=* I420"), "0");
   EXPECT_EQ(c.line("I8190..8192"), "ERR003");
+  for (const char* wrong : {"P5,3,0=1", "P5,0,1=1", "P5,0", "P5,3,0"}) EXPECT_EQ(c.line(wrong), "ERR003") << wrong;
+  EXPECT_EQ(c.line("P5"), "0");
 }
 
 TEST(IVariables, ValuesAreReadInHexOrDecimalWhateverI9) {
@@ -383,6 +387,15 @@ TEST(QVariables, ShareThePoolByI68) {
   c.line("&2Q4095=9");
   EXPECT_EQ(c.line("RL$9FFF"), "9");
   EXPECT_EQ(c.line("Q4096=1 Q4096"), "0");
+  for (const auto& [i68, each] :
+       {std::pair{0, 8192}, {2, 2048}, {3, 2048}, {4, 1024}, {7, 1024}, {8, 512}, {14, 512}}) {
+    const int cs = std::min(i68, 2), last = each - 1, at = 0x8000 + cs * each + last;
+    c.line("I68=" + std::to_string(i68));
+    c.line("&" + std::to_string(cs + 1));
+    c.line("Q" + std::to_string(last) + "=" + std::to_string(i68 + 20));
+    EXPECT_EQ(c.line("RL" + std::to_string(at)), std::to_string(i68 + 20)) << "I68=" << i68;
+    if (each < 8192) { EXPECT_EQ(c.line("Q" + std::to_string(each) + "=1 Q" + std::to_string(each)), "0") << i68; }
+  }
 }
 
 TEST(MVariables, PointAtPartsOfWords) {
@@ -480,6 +493,33 @@ TEST(PhaseClock, MissingOneIsReportedAndTasksGoOn) {
   fake_hal_stop_clocks(false);
   (void)hal_cycles();
   EXPECT_EQ(c.line("???"), "000000000800");
+}
+
+// Half the CPU cycles from one to the next: (2 I7m00 + 3)(I7m01 + 1) periods of 117.9648 MHz, 8 CPU cycles in 12.
+TEST(PhaseClock, PeriodIsThatOfBothDividersOfItsSource) {
+  Controller c;
+  EXPECT_EQ(c.line("RX$FFFF8C"), std::to_string(13057 * 8 / 12 / 2));
+  c.line("I7001=3");
+  EXPECT_EQ(c.line("RX$FFFF8C"), std::to_string(13057 * 4 * 8 / 12 / 2));
+  c.line("I7000=3000 I7101=15");
+  EXPECT_EQ(c.line("RX$FFFF8C"), std::to_string(6003 * 4 * 8 / 12 / 2)) << "servo IC 1 drives nothing";
+}
+
+// firmware:8.4/5: at the nominal rate from the loss on, whatever time had passed before.
+TEST(PhaseClock, TasksWithoutOneAreNoMoreThanItsPeriodsAllow) {
+  Controller c;
+  const std::uint32_t phase = 13057 * 8 / 12, servo = 4 * phase;
+  const auto wait = [](std::uint32_t cycles) {
+    for (const std::uint32_t begin = hal_cycles(); hal_cycles() - begin < cycles;) {}
+  };
+  wait(1000 * servo);
+  fake_hal_stop_clocks(true);
+  wait(11 * phase);
+  clock_watch_poll();
+  const std::uint32_t before = tasks_servo_count();
+  for (const std::uint32_t begin = hal_cycles(); hal_cycles() - begin < 100 * servo;) clock_watch_poll();
+  EXPECT_NEAR(static_cast<double>(tasks_servo_count() - before), 100.0, 1.0);
+  fake_hal_stop_clocks(false);
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 extern "C" {
 #include "firmware/hal/hal.h"
+#include "firmware/kernel/tasks.h"
+#include "firmware/kernel/watchdog.h"
 }
 
 namespace brick {
@@ -46,6 +48,27 @@ TEST_F(WatchdogTask, StrobesDownToZeroAndNotBelow) {
   c_.line("I40=10");
   EXPECT_EQ(strobes(3), 3u) << "a background that comes back is forgiven";
   EXPECT_EQ(hal_signed(*hal_x(kCounter)), -5) << "and remembered";
+}
+
+// Where both words end, the hardware having tripped an hour ago.
+TEST_F(WatchdogTask, CountsDownToTheLowestWordAndStays) {
+  for (int i = 0; i < (1 << 23) + 5000; ++i) watchdog_count();
+  EXPECT_EQ(counter(), -8388607);
+  EXPECT_EQ(hal_signed(*hal_x(kCounter)), -8388607);
+}
+
+// Programs may calculate for half a period of the real-time task, but no longer than 5 ms: nothing strobes meanwhile.
+TEST_F(WatchdogTask, SlicesEndLongBeforeTheHardwareTrips) {
+  c_.line("I8=0");
+  c_.servo(1);
+  for (const std::uint32_t begin = hal_cycles(); hal_cycles() - begin < hal_cycles_per_ms() / 2;) {}
+  c_.servo(1);
+  const std::uint32_t half = tasks_real_time_slice();
+  EXPECT_NEAR(half, hal_cycles_per_ms() / 4, hal_cycles_per_ms() / 100);
+  c_.line("I8=9");
+  EXPECT_NEAR(tasks_real_time_slice(), 10 * half, 10);
+  c_.line("I8=255");
+  EXPECT_EQ(tasks_real_time_slice(), 5 * hal_cycles_per_ms());
 }
 
 // A real-time task every 256 servo cycles of 0.5 ms would strobe every 128 ms. The servo task does within each, when

@@ -178,6 +178,18 @@ TEST_F(BufferRequest, ZeroPointsKeepItLowUntilTheyChange) {
   EXPECT_FALSE(full_bit(0));
 }
 
+TEST_F(BufferRequest, ABufferThatWasNotOpenedIsNotFullByAChangedPoint) {
+  limits(5, 10);
+  ASSERT_EQ(host("DEF ROT 50"), "");
+  for (const char* line : {"I17=0", "I16=3", "I17=10"}) {
+    ASSERT_EQ(host(line), "");
+    EXPECT_FALSE(full_bit(0)) << line;
+    EXPECT_FALSE(breq());
+  }
+  open("&1");
+  EXPECT_TRUE(breq());
+}
+
 TEST_F(BufferRequest, AChangedPointThatNobodyReportedIsNoticedByTheRealTimeTask) {
   open();
   store(8);

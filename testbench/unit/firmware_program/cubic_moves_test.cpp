@@ -171,6 +171,56 @@ TEST_F(CubicMoves, Spline2GoesOnWithAnotherTime) {
   EXPECT_EQ(motors[0].trajectory, 6000 * 3072);
 }
 
+// Way points, velocities over the times before and behind them, cubics between: motion:5.4/4 for times that change.
+TEST_F(CubicMoves, Spline2FollowsItsCubics) {
+  fit({"1000X"});
+  store({"SPLINE2 TM40 X1", "X3", "TM70 X2.5", "TM30 X4", "X4.5"});
+  const std::vector<double> x = {0, 0, 1000, 3000, 2500, 4000, 4500, 4500}, time = {40, 40, 40, 70, 30, 30, 30};
+  std::vector<double> place = {0}, velocity = {0}, length = {40};  // time[n] is the way from x[n] to x[n + 1]
+  for (std::size_t n = 1; n + 1 < x.size(); ++n) {
+    place.push_back((x[n - 1] + 4 * x[n] + x[n + 1]) / 6);
+    velocity.push_back((x[n + 1] - x[n - 1]) / (time[n - 1] + time[n]));
+    length.push_back(time[n]);
+  }
+  place.push_back(x.back());
+  velocity.push_back(0);
+  const double end = compare(
+      [&](double t) {
+        std::size_t i = 0;
+        while (i + 1 < length.size() && t >= length[i]) t -= length[i++];
+        return pvt(place[i], velocity[i], place[i + 1], velocity[i + 1], length[i], t);
+      },
+      500);
+  EXPECT_NEAR(end, 40 + 40 + 40 + 70 + 30 + 30 + 30, kTickMs);
+}
+
+// motion:5.4/1: quarters of a us, half a ms to 4095.9998 ms.
+TEST_F(CubicMoves, TimesAreQuartersOfAMicrosecond) {
+  for (const auto& [text, ms] : {std::pair{"PVT5000", 4095.99975}, {"PVT100.00045", 100.0005}, {"PVT0.1", 0.5}}) {
+    platform::power_up();
+    store({std::string(text) + " X1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+    EXPECT_EQ(cs().moves[cs().executing].time, std::llround(ms * 8388608.0)) << text;
+  }
+}
+
+// Behind an abort there is nothing to go on with.
+TEST_F(CubicMoves, PvtBehindAnAbortBeginsAtRest) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I115=10"), "");
+  store({"PVT100 X1:20", "X3:20", "X5:0"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(150));
+  ASSERT_EQ(host("A"), "");
+  platform::servo_ticks(ticks_of(50));
+  const double from = at(1);
+  store({"PVT80 INC X1"}, 2);
+  double worst = 0;
+  run([&](double t) { worst = std::max(worst, std::abs(at(1) - pvt(from, 0, from + 1000, 0, 80, t))); }, "&1B2R");
+  EXPECT_LT(worst * kUnit, 6.0);
+}
+
 // A point that comes when the sequence is ending begins a new one.
 TEST_F(CubicMoves, SplinePointThatComesLate) {
   fit({"1000X"});

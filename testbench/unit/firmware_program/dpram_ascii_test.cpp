@@ -3,12 +3,12 @@
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
 #include "testbench/unit/firmware_program/dpram_host.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/host/dpram_ascii.h"
 #include "firmware/variables/pq_variables.h"
 #include "rtl/regs/brick_regs.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace {
@@ -110,6 +110,15 @@ TEST_F(DpramAscii, LinesOfUpTo255CharactersComeInPieces) {
   EXPECT_EQ(ram_host.ask("P1=4"), "");
 }
 
+// 32 Q-variables of 12 digits with a blank between them: 415 characters. 1 is a half times 2^1.
+TEST_F(DpramAscii, AnAnswerOfMoreThan255CharactersComesInPieces) {
+  std::string text = "400000000800";
+  for (unsigned i = 1; i < 32; ++i) text += " 400000000800";
+  ASSERT_EQ(text.size(), 415u);
+  ASSERT_TRUE(ram_host.send("&1Q0..31=1 RHL$8000,32"));
+  EXPECT_EQ(released(), (Lines{"000D " + text.substr(0, 255), "000D " + text.substr(255), "0006 "}));
+}
+
 TEST_F(DpramAscii, QuotesKeepTheirCaseAndCharactersThatAreNoneAreRefused) {
   EXPECT_EQ(ram_host.ask("p1=4 p1\r\n"), "4") << "CR and LF are not of the line";
   EXPECT_EQ(ram_host.ask("P1=\x01 5"), "ERR004");
@@ -200,6 +209,18 @@ TEST_F(DpramAscii, ControlXForgetsWhatWaits) {
   ASSERT_TRUE(ram_host.control(0x18));
   EXPECT_EQ(released(), (Lines{"000D 0"})) << "the line that stood there is the host's";
   EXPECT_EQ(ram_host.ask("P1=3 P1"), "3");
+}
+
+TEST_F(DpramAscii, ControlXForgetsThePieceThatHasCome) {
+  const std::string piece = "P1=7" + std::string(155, ' ');
+  ASSERT_EQ(piece.size(), 159u);
+  for (std::uint32_t i = 0; i < 160; i += 2)
+    ram.write(DPRAM_COMMAND_TEXT + i, static_cast<std::uint16_t>(piece[i] | (i < 158 ? piece[i + 1] : ' ') << 8));
+  ram.write(DPRAM_COMMAND_CONTROL, 1);
+  background(2);
+  ASSERT_EQ(ram.read(DPRAM_COMMAND_CONTROL), 0u) << "taken, and the rest is waited for";
+  ASSERT_TRUE(ram_host.control(0x18));
+  EXPECT_EQ(ram_host.ask("P2=3 P1..2"), "0|3");
 }
 
 TEST_F(DpramAscii, TextsGoWhereTheyAreSent) {

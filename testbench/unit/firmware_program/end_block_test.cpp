@@ -85,6 +85,21 @@ TEST_F(EndBlock, RunBeforeTheBeginOfTheStopBlendsAsIfNothingHadBeen) {
   EXPECT_EQ(ticks, static_cast<unsigned>(std::ceil((2 * kTm + 100.0) / kTickMs)));
 }
 
+// A move that does not blend is taken out whole.
+TEST_F(EndBlock, BeforeAMoveThatDoesNotBlendNothingOfItIsLeft) {
+  ASSERT_EQ(host("I5192=1"), "");
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR TM300 TS0 TA100 X100"), "");
+  ASSERT_EQ(host("X200"), "");
+  ASSERT_EQ(host("CLOSE B1R"), "");
+  for (int i = 0; i < 100 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(tick_at(100.0));
+  ASSERT_EQ(host("/"), "");
+  unsigned ticks = tick_at(100.0);
+  for (; cs().active && ticks < 5000; ++ticks) platform::servo_ticks(1);
+  EXPECT_NEAR(ticks, (kTm + 100.0) / kTickMs, 1.0) << "its own stop, no change of velocity behind it";
+  EXPECT_EQ(x(), 100.0);
+}
+
 struct Stop {
   double largest_acceleration, rest;
 };

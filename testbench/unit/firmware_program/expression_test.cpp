@@ -153,6 +153,18 @@ TEST_F(Expression, StopsBehindACompleteValue) {
   EXPECT_EQ(lexer_peek(&lx), 'I');
 }
 
+// firmware:1.1/4: the limit itself is a constant, in either sign.
+TEST_F(Expression, ConstantsHaveALimitInEitherSign) {
+  for (const char* sign : {"", "-"}) {
+    const std::string s = sign;
+    EXPECT_EQ(platform::host("P1=" + s + "34359738368 P1=P1/1024 P1"), s + "33554432");
+    EXPECT_EQ(platform::host("P1=" + s + "34359738369"), "ERR003");
+    EXPECT_EQ(platform::host("#1->" + s + "34359738368X #1->"), s + "34359738368X");
+    EXPECT_EQ(platform::host("#1->" + s + "34359738369X"), "ERR003");
+    EXPECT_EQ(platform::host("#1->X" + std::string(s.empty() ? "+" : s) + "34359738369"), "ERR003");
+  }
+}
+
 TEST_F(Expression, LexerTakesTheNumbersOfTheLanguage) {
   struct {
     const char* text;

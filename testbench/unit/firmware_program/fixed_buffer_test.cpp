@@ -114,6 +114,14 @@ TEST_F(FixedBuffer, ThereAre224MotionPrograms) {
   EXPECT_EQ(host("OPEN PLC 1 P1=1 CLOSE"), "");
 }
 
+// Every second one is emptied, the others are closed without a line.
+TEST_F(FixedBuffer, EmptyProgramsTakeNoPlace) {
+  for (int i = 1; i <= 300; ++i)
+    ASSERT_EQ(host("OPEN PROG " + std::to_string(i) + (i % 2 == 0 ? " X1 CLEAR" : "") + " CLOSE"), "") << i;
+  ASSERT_EQ(host("OPEN PROG 1 X1 CLOSE"), "");
+  EXPECT_EQ(host("LIST PROG 1"), "X1");
+}
+
 TEST_F(FixedBuffer, StatementsBelongToTheirKindOfProgram) {
   const struct {
     const char* open;

@@ -115,6 +115,8 @@ TEST_F(Homing, ZeroIsTheCapturedCountAtAnySpeedUpTo100CountsAMs) {
     EXPECT_TRUE(motors[0].status.home_complete);
     EXPECT_EQ(motors[0].trajectory, 0);
     EXPECT_EQ(place(), std::floor(at) + offset) << velocity << " counts a ms, trigger at " << at;
+    EXPECT_EQ(*hal_y(0xCE), static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(at))) & kWord)
+        << "what users read of it";
   }
 }
 
@@ -310,6 +312,11 @@ TEST_F(Homing, HmzZeroesTheCommandedPositionOfAMovingMotorToo) {
   tick();
   EXPECT_NEAR(commanded(), speed, 1.0 / 16) << "it goes on";
   ASSERT_EQ(host("J=0"), "");
+  for (int i = 0; i < 400; ++i) {
+    const double last = commanded();
+    tick();
+    ASSERT_LE(std::abs(commanded() - last), speed + 1.0 / 16) << "without a jump";
+  }
   settle();
   EXPECT_EQ(place(), before);
 }

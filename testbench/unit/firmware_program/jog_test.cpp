@@ -170,6 +170,37 @@ TEST_F(JogProfile, LongMoveAtASmallSpeedStaysWithinASixteenthOfACount) {
   EXPECT_FALSE(jog_is_moving(0));
 }
 
+// motion:4.1/3
+TEST_F(JogProfile, NoChangeTakesLongerThan2To23Ms) {
+  const Limits l{1e-12, 0, 400, 20};
+  set(l, 10);
+  increment(INT32_MAX / 2);  // 128 ms
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (unsigned i = 0; i < 65536 + 100; ++i) step();
+  const double before = position();
+  step();
+  EXPECT_NEAR(position() - before, 20 * step_ms(), kTolerance);
+  // Symmetric: half of the last speed on the average.
+  const double since = 65536.0 * step_ms() + 101 * step_ms() - 3 * step_ms();
+  EXPECT_NEAR(position(), 20.0 * 8388608.0 / 2 + 20 * (since - 8388608.0), 20 * step_ms());
+}
+
+// Faster ones would not fit into a word.
+TEST_F(JogProfile, SpeedsEndAt2To31UnitsAMs) {
+  for (const double sign : {1.0, -1.0}) {
+    platform::set_i(119, 1e20);
+    platform::set_i(120, 1);
+    platform::set_i(121, 0);
+    platform::set_i(192, 1);
+    ASSERT_TRUE(jog_home(0, sign * 1e20, 0, 0));
+    for (int i = 0; i < 20; ++i) step();
+    const double before = position();
+    step();
+    EXPECT_NEAR(position() - before, sign * 2147483648.0 / kUnits * step_ms(), 1.0);
+    jog_drop(0);
+  }
+}
+
 TEST_F(JogProfile, RampStopsAtOneDeceleration) {
   const Limits l{0.25, 0, 50, 20};
   set(l, 10);
@@ -193,6 +224,25 @@ TEST_F(JogProfile, RampStopsAtOneDeceleration) {
     ASSERT_NEAR(positions[i], t < 0 ? at.position + 20 * now : ramp.at(t).position, kTolerance) << i;
   }
   EXPECT_GT(positions.size(), 90u) << "40 ms";
+}
+
+// Protection asks again in each of its passes: the ramp that is under way, or about to be, goes on.
+TEST_F(JogProfile, ARampThatIsAskedForAgainGoesOn) {
+  set({0.25, 0, 50, 20}, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 1000; ++i) step();
+  const double before = position();
+  unsigned steps = 0;
+  for (; steps < 500 && jog_is_moving(0); ++steps) {
+    ASSERT_TRUE(jog_stop_at(0, 0.5));
+    EXPECT_TRUE(hal_real_time_pending() || steps > 0) << "it does not wait for its turn";
+    const double last = position();
+    jog_servo(0);
+    if (last == position() && steps > 10) break;
+    while (jog_plan()) {}
+  }
+  EXPECT_NEAR(steps, 20 / 0.5 / step_ms(), 8);
+  EXPECT_NEAR(position() - before, 20 * 20 / 0.5 / 2, 20 * 4 * step_ms());
 }
 
 TEST_F(JogProfile, RampAtZeroPercentStopsOnTheSpot) {
@@ -222,7 +272,7 @@ TEST_F(Jog, TimeIsThatOfTheCoordinateSystem) {
 TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {
   set({0.25, 0, 50, 20}, 10);
   for (const bool by_program : {false, true}) {
-    ASSERT_TRUE(by_program ? jog_rapid(0, units(1e6), 20) : jog_continuous(0, 1));
+    ASSERT_TRUE(by_program ? jog_rapid(0, units(1e6), 20, 1) : jog_continuous(0, 1));
     for (int i = 0; i < 1000; ++i) step();
     coordinate_systems[0].held = true;
     coordinate_systems[0].increment = coordinate_systems[0].increment_target = 0;

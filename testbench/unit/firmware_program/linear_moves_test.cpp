@@ -167,11 +167,23 @@ TEST_F(LinearMoves, TheSlowestMotorTellsTheLengthOfACorner) {
   }
 }
 
+// With an S-part: 40 / 0.25 + 20 in all at the corner, 20 / 0.25 + 20 at the ends.
+TEST_F(LinearMoves, AnSPartLengthensAStretchedCorner) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I117=0.25"), "");
+  store({"TM1000 TA60 TS20 X20", "X0"});
+  follow({changes_of({{20000, 1000, 100, 20}, {-20000, 1000, 180, 20}}, 100)}, 6.0);
+}
+
 // A blend begins behind the change before it and ends before the one behind it.
 TEST_F(LinearMoves, BlendsStayWithinTheirMoves) {
   fit({"1000X"});
   store({"TM20 TA10 TS0 X0.2", "TM300 TA200 X2", "TM20 TA20 X2.1"});
   follow({changes_of({{200, 20, 10, 0}, {1800, 300, 30, 0}, {100, 20, 20, 0}}, 20)});
+  platform::power_up();
+  fit({"1000X"});
+  store({"TM20 TA10 TS0 X0.2", "TM300 TA200 TS50 X2"});  // an S keeps its quarter
+  follow({{{5, 10, 0, 10}, {25, 30, 7.5, 6 - 10}, {325, 200, 50, -6}}});
   platform::power_up();
   fit({"1000X"});
   store({"TM300 TA20 TS0 X3", "TM30 TA40 X3.1"});  // 40 ms at least: its stop leaves 20 of them
@@ -231,6 +243,46 @@ TEST_F(LinearMoves, ALateBlendOfVirtualAxesIsShort) {
   ASSERT_EQ(host("A"), "");
   platform::real_time();
   EXPECT_NEAR(cs().position[AXIS_X], 1 + (ticks_of(140.0) * kTickMs - 110.0) * 2 / 100, 1e-6);
+}
+
+// Virtual axes: neither does a blend begin before the change at the beginning of its move has ended.
+TEST_F(LinearMoves, ABlendOfVirtualAxesStaysWithinItsMoves) {
+  store({"TM20 TA20 TS0 X1", "TM100 TA200 X3", "WHILE(P1=0) WAIT"});
+  ASSERT_EQ(host("&1B1R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(35.0));
+  ASSERT_EQ(host("A"), "");
+  platform::real_time();
+  // 1/20 a ms from 20 ms on, then to 1/100 until 40 ms, 20 ms about the corner at 30 ms.
+  const double t = ticks_of(35.0) * kTickMs - 20.0, change = (0.01 - 0.05) / 20.0;
+  EXPECT_NEAR(cs().position[AXIS_X], 0.5 + 0.05 * t + change * t * t / 2.0, 1e-6);
+}
+
+// While one is planned the servo task goes on: what comes too late is planned again, for later.
+TEST_F(LinearMoves, ABlendThatIsPlannedTooLateIsPlannedAgain) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("&1 DEF ROT 100 B0 OPEN ROT"), "");
+  ASSERT_EQ(host("TM200 TA40 TS0 X1 Y1"), "");
+  ASSERT_EQ(host("R"), "");
+  for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(196.0));
+  ASSERT_EQ(host("X2 Y2"), "");  // its blend would begin at 200 ms, the stop too
+  unsigned pauses = 0, interrupts = 0;
+  double slowest = 100.0, last = at(1);
+  const auto servo = [&] {
+    system_path_servo();
+    if (++interrupts < ticks_of(100.0)) slowest = std::min(slowest, (at(1) - last) / kTickMs);
+    last = at(1);
+  };
+  for (int i = 0; i < 400; ++i) {
+    servo();
+    platform::real_time_in_slices([&] {
+      if (++pauses % 16 == 0) servo();
+    });
+    if (cs().placed && pauses < 1000) { EXPECT_TRUE(cs().moves[cs().executing ^ 1u].blended); }
+  }
+  EXPECT_GT(interrupts, ticks_of(100.0));
+  EXPECT_NEAR(slowest, 5.0, 0.01) << "no stop";
 }
 
 // What takes the place of pieces comes too late once the servo task is beyond it.

@@ -131,6 +131,8 @@ TEST(Mask, LongestSectionThatHoldsATaskOff) {
   ImageBoard board(BRICK_FIRMWARE_ELF, 0x3);
   ASSERT_EQ(board.send("I6=1 I3=2\r"), "\x06");
   MaskWatch watch(board, BRICK_FIRMWARE_ELF);
+  EXPECT_EQ(board.send("I111=0 I112=0 I124=$120001 I192=1 #1J/\r", 30.0), "\x06") << "a motor that nothing turns";
+  board.run_ms(10.0);
   for (const char* line : {"&1DEF ROT 2000 B0", "#1->100X+20.5Y-0.25Z+7", "OPEN ROT", "TM20000 X7", "CLOSE", "R"})
     EXPECT_EQ(board.send(std::string(line) + "\r", 30.0), "\x06") << line;
   board.run_ms(30.0);

@@ -62,6 +62,14 @@ TEST_F(MotorCommands, EachFormGoesWhereItSays) {
   jog("J^10", 10);  // the encoder stands at 0
 }
 
+// The trajectory is what jogs go by (motion:1.2/4): from where it is means less the master, and what is taken off.
+TEST_F(MotorCommands, FromWhereItIsLeavesMasterAndCompensationOut) {
+  jog("#1J/", 0);
+  motors[0].master = static_cast<std::int64_t>(1000 * kUnits);
+  motors[0].compensation = static_cast<std::int64_t>(30 * kUnits);
+  jog("J^10", 10 - 1000 + 30);  // the encoder stands at 0
+}
+
 TEST_F(MotorCommands, StarTakesTheDistanceOfTheRegister) {
   const float48 word = float48_pack(-77.75);
   *hal_x(0xD7) = word.x;
@@ -70,6 +78,10 @@ TEST_F(MotorCommands, StarTakesTheDistanceOfTheRegister) {
   jog("J:*", -155.5);
   jog("J^*", -77.75);
   jog("J=100", 100);
+  ASSERT_EQ(host("I200=1 I211=0 I219=1 I220=0 I221=10 I222=20 I292=2 M1->L:$157 M1=42"), "");
+  ASSERT_EQ(host("#2J=*"), "");
+  run(500);
+  EXPECT_EQ(motors[1].trajectory, 42 * 3072) << "each motor has its own";
 }
 
 TEST_F(MotorCommands, JEqualsGoesBackToWhereItWasBeforeItJogged) {
@@ -80,6 +92,10 @@ TEST_F(MotorCommands, JEqualsGoesBackToWhereItWasBeforeItJogged) {
   jog("J==300", 300);
   jog("J=500", 500);
   jog("J=", 300);
+  ASSERT_EQ(host("J=500"), "");
+  jog("#1J= P1=7", 300);
+  EXPECT_EQ(host("P1"), "7") << "another command behind it";
+  EXPECT_EQ(host("J=P1"), "ERR003") << "no distance";
   ASSERT_EQ(host("HMZ"), "");
   EXPECT_EQ(commanded(), 0);
   jog("J=50", 50);
@@ -143,7 +159,7 @@ TEST_F(MotorCommands, AMotorOfARunningProgramIsThePrograms) {
 
 TEST_F(MotorCommands, WithoutClocksNoneIsEnabled) {
   status_set(STATUS_NO_PHASE_CLOCK);
-  for (const char* line : {"#1J+", "J/", "J=1", "HM", "O1"}) EXPECT_EQ(host(line), "ERR018") << line;
+  for (const char* line : {"#1J+", "J/", "J=1", "HM", "O1", "&1E"}) EXPECT_EQ(host(line), "ERR018") << line;
   EXPECT_EQ(motors[0].loop, LOOP_KILLED);
 }
 
@@ -155,6 +171,19 @@ TEST_F(MotorCommands, OpenLoopTakesPerCentOfIxx69) {
   EXPECT_EQ(motors[0].open_output, -2500 * 256);
   ASSERT_EQ(host("J/"), "");
   EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+}
+
+// motion:6.2/3
+TEST_F(MotorCommands, ALoopThatIsOnInALimitIsNotOpened) {
+  ASSERT_EQ(host("#1J/"), "");
+  motors[0].found.positive_limit = true;
+  for (const char* output : {"O5", "O-5", "O0"}) EXPECT_EQ(host(output), "ERR010") << output;
+  EXPECT_EQ(motors[0].loop, LOOP_CLOSED);
+  motors[0].found.positive_limit = false;
+  motors[0].found.negative_limit = true;
+  EXPECT_EQ(host("O-5"), "ERR010");
+  motors[0].found.negative_limit = false;
+  EXPECT_EQ(host("O-5"), "");
 }
 
 TEST_F(MotorCommands, OpenLoopEndsAJog) {
@@ -206,8 +235,26 @@ TEST_F(MotorStops, I36SparesKilledMotorsAndEEnablesThem) {
   run(150);
   EXPECT_EQ(motors[2].loop, LOOP_CLOSED) << "enabled, in open loop";
   EXPECT_EQ(motors[3].loop, LOOP_KILLED);
-  ASSERT_EQ(host("&1E"), "");
+  ASSERT_EQ(host("#2K &1E"), "");
   EXPECT_EQ(motors[3].loop, LOOP_CLOSED);
+  EXPECT_EQ(motors[1].loop, LOOP_KILLED) << "of no coordinate system";
+}
+
+TEST_F(MotorStops, ReferencesOfASystemAreThoseOfItsMotors) {
+  ASSERT_EQ(host("#1J/#2J/#3K"), "");
+  run(300);
+  ASSERT_NE(motors[0].trajectory, 0);
+  const std::int64_t second = motors[1].trajectory;
+  ASSERT_EQ(host("&1$$*"), "");
+  EXPECT_EQ(motors[0].loop, LOOP_KILLED);
+  EXPECT_EQ(motors[0].actual, 0);
+  EXPECT_EQ(motors[1].loop, LOOP_CLOSED) << "of no coordinate system";
+  EXPECT_EQ(motors[1].trajectory, second);
+  jog("#1J=", 0);
+  ASSERT_EQ(host("#1J/"), "");
+  run(10);
+  ASSERT_EQ(host("&1$$"), "") << "nothing to search for";
+  EXPECT_EQ(motors[1].loop, LOOP_CLOSED);
 }
 
 TEST_F(MotorStops, ControlAAbortsMotorsOfNoSystemToo) {

@@ -154,6 +154,11 @@ TEST_F(MoveTiming, DwellStopsBlending) {
   EXPECT_EQ(run(), ticks_of(140.0) + ticks_of(25.0));
 }
 
+TEST_F(MoveTiming, ATimeBelowZeroIsNone) {
+  lines({"TM100 TA40 TS0 X10", "DWELL(0-25)", "DELAY(0-25)", "X20"});
+  EXPECT_NEAR(run(), ticks_of(140.0) + ticks_of(40.0 + 100.0 + 40.0), 2) << "DELAY takes TA";
+}
+
 TEST_F(MoveTiming, NothingIsCalculatedDuringADwell) {
   lines({"DWELL25", "X10", "X20"});
   ASSERT_EQ(host("R"), "");

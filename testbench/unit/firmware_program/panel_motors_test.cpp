@@ -48,6 +48,20 @@ TEST_F(PanelMotors, JogInputsMoveTheSelectedMotorWhileTheyAreLow) {
   }
 }
 
+// Not the one that is still low, and that one has to go low for it.
+TEST_F(PanelMotors, TheInputThatMovesAMotorStopsIt) {
+  panel(fpd(3) | kJogPlus);
+  panel(fpd(3) | kJogPlus | kJogMinus);
+  panel(fpd(3) | kJogMinus);
+  EXPECT_EQ(way(3), 0);
+  panel(fpd(3));
+  panel(fpd(3) | kJogMinus);
+  EXPECT_LT(way(3), -800);
+  panel(fpd(3) | kJogPlus | kJogMinus);
+  panel(fpd(3) | kJogPlus);
+  EXPECT_EQ(way(3), 0);
+}
+
 TEST_F(PanelMotors, AnotherSelectionStopsTheMotorThatJogs) {
   panel(fpd(1) | kJogPlus);
   EXPECT_GT(way(1), 800);

@@ -151,6 +151,12 @@ TEST_F(Panel, WithNothingSelectedFourInputsSetI59) {
   }
   panel(kHold | kStop);
   EXPECT_EQ(i_integer(59), 0);
+  for (const std::uint32_t n : {9u, 15u}) {
+    panel(fpd(n));
+    panel(fpd(n) | kPrejog);
+    EXPECT_EQ(i_integer(59), 0) << n << " selects nothing and is not 0 either";
+  }
+  panel(0);
   ASSERT_EQ(host("I2=1"), "");
   panel(kStart);
   EXPECT_EQ(i_integer(59), 0) << "the inputs are free for other use";
@@ -181,6 +187,10 @@ TEST_F(Panel, StartStepHoldAndStopActOnTheSelectedSystem) {
   panel(fpd(2) | kStart | kStop);
   EXPECT_FALSE(run_is_running(1));
   platform::servo_ticks(3);
+  panel(fpd(2));
+  panel(fpd(2) | kStart | kStop);
+  EXPECT_FALSE(run_is_running(1)) << "both at once: STOP wins";
+  panel(fpd(2));
   panel(fpd(2) | kStep);
   EXPECT_TRUE(s.stepping);
 }

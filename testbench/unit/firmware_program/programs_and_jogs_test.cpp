@@ -2,6 +2,8 @@
 // rate, positions before a jog, motors that stand beside their axes, HOME and triggers in programs.
 #include "testbench/unit/firmware_program/moving_motors.h"
 
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+
 extern "C" {
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor_state.h"
@@ -317,6 +319,50 @@ TEST_F(ProgramsAndJogs, RotaryAxisOfANegativeScale) {
   store({"TM100 TA20 TS0 A270"});
   run();
   EXPECT_EQ(motors[0].trajectory, position(9000));
+}
+
+// A RAPID move begins when the move before it has ended.
+TEST_F(ProgramsAndJogs, ARapidMoveWaitsForTheMoveBefore) {
+  fit({"1000X"});
+  quick();
+  store({"TM100 TA20 TS0 X1", "RAPID X2"});
+  const auto first = changes_of({{1000, 100, 20, 0}}, 20);
+  double worst = 0, begins = 0;
+  run([&](double t) {
+    if (t < 120) worst = std::max(worst, std::abs(at(1) - way(first, t)));
+    if (motors[0].trajectory == position(1000)) begins = t;
+  });
+  EXPECT_LT(worst * kUnit, 3.0);
+  EXPECT_GE(begins, 120.0);
+  EXPECT_EQ(motors[0].trajectory, position(2000));
+}
+
+// motion:5.5/1: however long it takes to plan them.
+TEST_F(ProgramsAndJogs, MotorsOfARapidMoveBeginTogether) {
+  fit({"1000X", "1000Y", "1000Z", "1000A"});
+  for (unsigned motor = 1; motor <= 4; ++motor) quick(motor);
+  ASSERT_EQ(host("I392=20"), "");
+  store({"RAPID X4 Y3 Z2 A1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  std::vector<unsigned> began(4);
+  unsigned tick = 0, pauses = 0, asked = 0;
+  const auto servo = [&] {
+    fake_task_run_servo();
+    ++tick;
+    if (asked == 0 && jog_is_moving(3)) asked = tick;
+    for (unsigned i = 0; i < 4; ++i)
+      if (began[i] == 0 && motors[i].trajectory != 0) began[i] = tick;
+  };
+  for (int i = 0; i < 100; ++i) {
+    servo();
+    platform::real_time_in_slices([&] {
+      if (++pauses % 10 == 0) servo();
+    });
+  }
+  EXPECT_NEAR(began[0], asked + 20 / kTickMs, 8) << "the longest Ixx92";
+  for (unsigned i = 1; i < 4; ++i) EXPECT_EQ(began[i], began[0]) << i;
+  end();
+  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(motors[i].trajectory, position(4000 - 1000.0 * i));
 }
 
 // Commands of a program jog what belongs to none, or to another system.

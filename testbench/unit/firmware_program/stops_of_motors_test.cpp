@@ -188,11 +188,13 @@ TEST_F(StopsOfMotors, CornersThatAreTooSharpDoNotBlend) {
       {"I5183=-0.5", "X0", 0},                        // 180 degrees
       {"I5183=0.5 I5182=40 I5185=0.1", "X1 Y1", 40},  // dwells
       {"I5183=0.5 I5182=40 I5185=-0.1", "X1 Y1", 0},  // not at this corner
+      {"I5183=0.5", "X1 Z1", 0},                      // Z counts, A does not
+      {"I5183=0.5", "X2 A5", -1},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(std::string(c.rules) + " " + c.second);
     platform::power_up();
-    fit({"1000X", "1000Y"});
+    fit({"1000X", "1000Y", "1000Z", "1000A"});
     ASSERT_EQ(host(c.rules), "");
     store({"TM100 TA40 TS0 X1", c.second});
     const double end = run();
@@ -211,6 +213,9 @@ TEST_F(StopsOfMotors, MotorsComeIntoPositionWithinIsx81) {
     ticks(180);
     EXPECT_EQ(motors[0].trajectory, position(1000)) << "it waits";
     if (comes) { ASSERT_EQ(host("I128=8388607"), "") << "a band that reaches the motor, which stands at 0"; }
+    double waited = 180.0;
+    for (; !comes && run_is_running(0) && waited < 500.0; waited += kTickMs) platform::servo_ticks(1);
+    EXPECT_NEAR(waited, comes ? 180.0 : 140.0 + 60 * 3 * kTickMs, 5 * kTickMs) << "60 real-time interrupts";
     ticks(300);
     EXPECT_FALSE(run_is_running(0));
     EXPECT_EQ(motors[0].trajectory, position(comes ? 2000 : 1000));
@@ -274,6 +279,16 @@ TEST_F(StopsOfMotors, ExternalTimeBaseMovesThePath) {
   ASSERT_EQ(host("%100 R"), "");
   ticks(150);
   EXPECT_EQ(motors[0].trajectory, position(5000));
+  ASSERT_EQ(host("WX$10F0,1000000"), "");  // nothing moves: time goes by it all the same
+  ticks(5);
+  EXPECT_EQ(host("RX$2002"), "1000000");
+  ticks(5);
+  ASSERT_EQ(host("WX$10F0,2000000"), "");
+  ticks(5);
+  EXPECT_EQ(host("RX$2002"), "2000000");
+  ASSERT_EQ(host("I5294=8388607 I5293=$2002"), "");  // what &1 goes by
+  ticks(5);
+  EXPECT_EQ(host("&2 RX$2102"), "2000000");
   ASSERT_EQ(host("I5294=8388607 I5293=$2000"), "");  // &2 goes by what &1 is told
   ASSERT_EQ(host("WX$2000,1000000"), "");
   ticks(5);

@@ -102,6 +102,18 @@ TEST_F(DesiredPosition, AMasterThatMovesWhileTheLoopIsOpenIsNotCaughtUpWith) {
   EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), 0);
 }
 
+TEST_F(DesiredPosition, AnotherMasterBeginsWhereItStands) {
+  c_.line("I105=$10F5 I107=96 I106=1");
+  close();
+  master(10);
+  EXPECT_EQ(desired(0), 10);
+  *hal_x(0x10F6) = 500 * 32;
+  c_.line("I105=$10F6");
+  EXPECT_EQ(desired(0), 10);
+  *hal_x(0x10F6) = 501 * 32;
+  EXPECT_EQ(desired(0), 11);
+}
+
 // Ixx06 = 3, offset mode: replies do not show what the master has moved.
 TEST_F(DesiredPosition, RepliesInOffsetModeAreWithoutTheMaster) {
   c_.line("I105=$10F5 I107=96 I106=3");
@@ -127,6 +139,12 @@ TEST_F(DesiredPosition, AMotorInALimitFollowsOutOfItOnly) {
   EXPECT_EQ(desired(0), 0);
   master(4);
   EXPECT_EQ(desired(0), -6);
+  motors[0].found.positive_limit = false;
+  motors[0].found.negative_limit = true;
+  master(-10);
+  EXPECT_EQ(desired(0), -6);
+  master(-7);
+  EXPECT_EQ(desired(0), -3);
 }
 
 // y = K y + (1-K) x, and exact in the end.
@@ -143,6 +161,9 @@ TEST_F(DesiredPosition, Filter) {
   EXPECT_EQ(desired(1000), 1000);
   for (int n = 0; n < 40000; ++n) desired(-3);
   EXPECT_EQ(desired(-3), -3);
+  c_.line("I140=1");
+  for (int n = 0; n < 100; ++n) desired(1000);
+  EXPECT_NEAR(desired(1000), -3, 0.01) << "K = 1 stays";
 }
 
 // Ixx24 bit 13: what Ixx67 cuts of the error is taken off the master position and comes back when the motor does.
@@ -173,6 +194,13 @@ TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsInTheMasterPosition) {
   EXPECT_EQ(motors[0].commanded, motors[0].actual);
   EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), static_cast<double>(motors[0].actual) / kCount)
       << "a loop that is opened forgets what it had not reached";
+  EXPECT_EQ(word().second, std::to_string(35 * kCount)) << "and its master position is what it was";
+  const double there = static_cast<double>(motors[0].trajectory) / kCount;
+  EXPECT_EQ(desired(there + 50), 55);
+  EXPECT_EQ(word().second, std::to_string(-5 * kCount));
+  c_.line("I124=$800001");
+  EXPECT_EQ(word().second, std::to_string(35 * kCount)) << "off: nothing is held back";
+  EXPECT_EQ(desired(there + 50), 95);
   c_.line("I167=0");
   actual(0);
   motors[0].master = 0;
@@ -218,6 +246,69 @@ TEST_F(DesiredPosition, PositionTables) {
   EXPECT_EQ(at(125), 0);
 }
 
+// The loop is closed where the motor stands, tables or not.
+TEST_F(DesiredPosition, ALoopIsClosedWhereTheMotorIsInSpiteOfTables) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  close();
+  *hal_x(0x10F1) = 250 * 32;
+  desired(0, 1);
+  position_loop_servo(1);
+  EXPECT_NEAR(desired(0), 10, 0.005);
+  *hal_x(0x10F0) = 300 * 32;
+  position_loop_servo(0);
+  motor_kill(0);
+  position_loop_servo(0);
+  close();
+  EXPECT_EQ(motors[0].commanded, 300 * kCount);
+  EXPECT_EQ(desired(static_cast<double>(motors[0].trajectory) / kCount), 300);
+  EXPECT_EQ(motors[0].desired_step, 0);
+}
+
+// motion:1.4/4: two tables of one target.
+TEST_F(DesiredPosition, TablesOfOneTargetAddUp) {
+  ASSERT_EQ(c_.line("#2 DEFINE COMP 2,#1D,#1,2000"), "");
+  ASSERT_EQ(c_.line("32 32"), "");
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1");
+  close();
+  desired(250, 1);
+  EXPECT_NEAR(desired(0), 10, 0.005);
+  EXPECT_NEAR(desired(1000), 1010 + 10 * 2 / 1000.0, 0.005) << "the other by where motor 1 was, 10 counts";
+  EXPECT_NEAR(desired(1000), 1010 + 2, 0.005);
+}
+
+// Entries are of the target's counts, the span of the source's; Ixx08 of either may change.
+TEST_F(DesiredPosition, TablesGoByTheScalesOfBothMotors) {
+  ASSERT_EQ(c_.line("#1 DEFINE COMP 4,#2D,#1,1000"), "");
+  ASSERT_EQ(c_.line("160 -80 48 16"), "");
+  c_.line("I51=1 I108=24 I208=192");
+  close();
+  const auto at = [](double source) {
+    motors[1].trajectory = std::llround(source * 32 * 192);
+    desired_position_servo(1);
+    motors[0].trajectory = 0;
+    desired_position_servo(0);
+    return static_cast<double>(motors[0].commanded) / (32 * 24);
+  };
+  EXPECT_NEAR(at(250), 10, 0.01);
+  EXPECT_NEAR(at(625), -1, 0.01);
+  EXPECT_NEAR(at(-750), 10, 0.01);
+}
+
+// D:$90 of a motor without tables is the user's: actual position + D:$90 is what is reported.
+TEST_F(DesiredPosition, ACompensationThatIsWrittenIsTakenOff) {
+  close();
+  EXPECT_EQ(desired(5), 5);
+  c_.line("WY$90," + std::to_string(3 * kCount));
+  EXPECT_EQ(desired(5), 2);
+  *hal_x(0x10F0) = 2 * 32;
+  position_loop_servo(0);
+  EXPECT_EQ(c_.line("#1P"), "5");
+}
+
 TEST_F(DesiredPosition, TorqueTables) {
   ASSERT_EQ(c_.line("#1 DEFINE TCOMP 2,1000"), "");
   ASSERT_EQ(c_.line("25600 51200"), "");
@@ -231,6 +322,14 @@ TEST_F(DesiredPosition, TorqueTables) {
   desired(400);
   position_loop_servo(0);
   EXPECT_NEAR(motors[0].output / 256.0, -bits - 100, 0.1);
+  desired(500);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].output, 0) << "no sign, no torque";
+  c_.line("#2 DEFINE TCOMP 2,1000");
+  c_.line("256 256");
+  desired(600);
+  position_loop_servo(0);
+  EXPECT_NEAR(motors[0].output / 256.0, bits + 100, 0.1) << "of another motor";
 }
 
 // Ixx85 a background pass, when the direction has turned by more than Ixx87.
@@ -252,6 +351,8 @@ TEST_F(DesiredPosition, Backlash) {
   EXPECT_EQ(desired(99.5), 96.5);
   c_.line("I185=8388607");
   EXPECT_EQ(desired(99.5), 99.5) << "at once";
+  EXPECT_EQ(desired(95), 90);
+  EXPECT_EQ(desired(99.25), 99.25) << "hysteresis is counted from where it has turned";
 }
 
 TEST_F(DesiredPosition, BacklashWaitsForTheBackground) {
@@ -267,6 +368,45 @@ TEST_F(DesiredPosition, BacklashWaitsForTheBackground) {
   EXPECT_EQ(desired(99), 97);
   c_.line("I186=0");
   EXPECT_EQ(desired(99), 98) << "it goes as it comes";
+  c_.line("I185=0");
+  EXPECT_EQ(desired(99), 99) << "off: at once";
+  EXPECT_EQ(motors[0].compensation, 0);
+  EXPECT_EQ(desired(98), 98);
+  c_.line("I185=16 I186=80");
+  EXPECT_EQ(desired(98), 97) << "downwards it begins anew";
+}
+
+// A loop that is closed has moved nowhere yet, whatever its master has done before.
+TEST_F(DesiredPosition, BacklashBeginsWhereTheLoopIsClosed) {
+  c_.line("I185=8388607 I186=80 I187=64 I105=$10F5 I107=96 I106=1");
+  for (const double counts : {-300.0, 300.0, -300.0}) {
+    close();
+    master(counts);
+    const double there = static_cast<double>(motors[0].trajectory) / kCount;
+    (void)desired(there);
+    (void)desired(there + (counts < 0 ? 10 : -10));  // the last movement is the other way
+    motor_kill(0);
+    *hal_x(0x10F0) = static_cast<std::uint32_t>(-2 * counts * 32) & HAL_WORD_MASK;  // turned by hand meanwhile
+    position_loop_servo(0);
+    close();
+    const bool down = desired_position_backlash_is_down(0);
+    desired_position_pass();
+    (void)desired(static_cast<double>(motors[0].trajectory) / kCount);
+    EXPECT_EQ(desired_position_backlash_is_down(0), down) << counts;
+  }
+}
+
+// Positions are counted from elsewhere: no movement.
+TEST_F(DesiredPosition, BacklashKnowsNothingOfAnotherZero) {
+  c_.line("I185=8388607 I186=80 I187=64");
+  close();
+  for (const double by : {-1000.0, 1000.0}) {
+    const double there = static_cast<double>(motors[0].trajectory) / kCount;
+    desired_position_shift(0, std::llround(by * kCount));
+    desired_position_pass();
+    EXPECT_EQ(desired(there + by), there + by);
+    EXPECT_FALSE(desired_position_backlash_is_down(0));
+  }
 }
 
 TEST_F(DesiredPosition, BacklashTables) {

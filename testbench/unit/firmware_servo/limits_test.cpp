@@ -27,7 +27,7 @@ TEST_F(MotionLimits, ASoftwareLimitStopsAJogByIxx15) {
   c_.line("I113=1000 I514=-1000");
   c_.line("#1J+ #5J-");
   double passed = 0;
-  while (at(1) < 1000) follow(1);
+  follow_until([] { return at(1) >= 1000; });
   passed = at(1);
   follow(3);
   EXPECT_TRUE(status1(1, 12)) << "abort deceleration";
@@ -132,8 +132,10 @@ TEST_F(MotionLimits, AnInputKillsInFrontOfTheSoftwareLimit) {
     const char* limits;
     std::uint32_t input;
     bool kills;
-  } cases[] = {{"I113=100000 I114=0", kPositive, true},   {"I113=0 I114=-100000", kPositive, false},
-               {"I113=500 I114=0", kPositive, false},     {"I113=0 I114=-100000", kNegative, true},
+  } cases[] = {{"I113=100000 I114=0", kPositive, true},
+               {"I113=0 I114=-100000", kPositive, false},
+               {"I113=500 I114=0", kPositive, false},
+               {"I113=0 I114=-100000", kNegative, true},
                {"I113=100000 I114=0", kNegative, false}};
   for (const auto& one : cases) {
     flags(1, 0);
@@ -258,19 +260,20 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
   follow(200);
   EXPECT_EQ(at(1), 1000);
   EXPECT_FALSE(status1(1, 12) || status2(1, 12) || status2(1, 11));
-  c_.line("#1J=1001");
+  c_.line("I122=5 #1J=1050");
   follow(300);
   EXPECT_TRUE(status2(1, 12)) << "stopped on a desired limit";
   EXPECT_FALSE(status2(1, 11) || status1(1, 21));
   EXPECT_EQ(std::stoul(c_.line("&1??").substr(12), nullptr, 16) & 2u, 2u);
   const double stands = at(1);
-  EXPECT_NEAR(stands, 1001, 1);
+  expect_ramp(1000, stands, 5);
+  c_.line("I122=32");
   c_.line("#1J+");
   follow(50);
   EXPECT_EQ(at(1), stands) << "not further";
   c_.line("#1J-");
   double passed = 0;
-  while (at(1) > -950) follow(1);
+  follow_until([] { return at(1) <= -950; });
   passed = at(1);
   follow(6);
   EXPECT_TRUE(status1(1, 12));
@@ -282,6 +285,12 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
   EXPECT_EQ(at(1), 0);
   EXPECT_FALSE(status2(1, 12));
   EXPECT_EQ(std::stoul(c_.line("&1??").substr(12), nullptr, 16), 0u);
+  // The commanded position counts: the motor itself is held.
+  c_.line("I122=5 #1J=1050");
+  servo(600);
+  EXPECT_TRUE(status2(1, 12));
+  c_.line("I122=32 #1J=0");
+  servo(300);
   // Without bit 15, and of a side whose software limit is off, there is none.
   c_.line("I124=$800001 #1J=-1000");
   follow(400);
@@ -294,7 +303,7 @@ TEST_F(MotionLimits, TheDesiredPositionHasLimits) {
 TEST_F(MotionLimits, TheDesiredPositionOfAProgramHasLimits) {
   c_.line("I224=$808001 I213=600");
   run({"TM1000 TA20 TS0 X20000 Y20000", "P1=1"});
-  while (at(2) < 600) follow(1);
+  follow_until([] { return at(2) >= 600; });
   follow(8);
   EXPECT_FALSE(runs());
   EXPECT_TRUE(status1(1, 12) && status1(2, 12));

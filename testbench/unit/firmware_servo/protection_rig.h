@@ -1,11 +1,12 @@
-// Motors 1, 2 and 5 of a controller natively, on position words and flag words that the test writes; 1 and 2 are X and Y
-// of coordinate system 1, 5 is in none.
+// Motors 1, 2 and 5 of a controller natively, on position words and flag words that the test writes; 1 and 2 are X and
+// Y of coordinate system 1, 5 is in none.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,10 @@ class ProtectionRig : public ::testing::Test {
         if (loop(motor) == LOOP_CLOSED) counts(motor, at(motor));
       servo();
     }
+  }
+  void follow_until(const std::function<bool()>& there) {
+    for (unsigned n = 0; n < 5000 && !there(); ++n) follow(1);
+    ASSERT_TRUE(there());
   }
   static double at(unsigned motor) { return static_cast<double>(motors[motor - 1].commanded) / kFine; }
   // Runs `lines` as PROG 1 of &1, motors closed.

@@ -9,7 +9,6 @@
 extern "C" {
 #include "firmware/base/status.h"
 #include "firmware/motion/conversion_table.h"
-
 }
 
 namespace brick {
@@ -36,7 +35,14 @@ TEST_F(Protection, WhatMayNotClose) {
   EXPECT_FALSE(motor_close(2)) << "I300=0";
   c_.line("I8000=$F00000 I8001=$200000 I103=$3502");
   EXPECT_FALSE(motor_close(0)) << "method $F";
-  c_.line("I8000=0 I103=$10F0");
+  c_.line("I103=$10F0 I104=$3502");
+  EXPECT_FALSE(motor_close(0)) << "that of the velocity";
+  c_.line("I8000=0 I104=$10F0");
+  EXPECT_TRUE(motor_close(0));
+  motor_kill(0);
+  c_.line("I101=1 M148->Y:$C0,8 M148=1");
+  EXPECT_FALSE(motor_close(0)) << "no phase reference";
+  c_.line("M148=0");
   EXPECT_TRUE(motor_close(0));
 }
 
@@ -49,11 +55,36 @@ TEST_F(Protection, EnableGoesWithItsFlagWord) {
   EXPECT_FALSE(enabled(1)) << "bit 16: not used";
   EXPECT_FALSE(enabled(2));
   c_.line("I124=$840001");
-  EXPECT_FALSE(enabled(1)) << "bit 18: over MACRO";
+  EXPECT_FALSE(enabled(1)) << "bits 19, 18 = 01: capture and amplifier flags over MACRO";
+  c_.line("I124=$8C0001");
+  EXPECT_TRUE(enabled(1)) << "11: capture flags only";
+  c_.line("I124=$880001");
+  EXPECT_FALSE(enabled(1)) << "10: amplifier flags";
   c_.line("I124=$800001");
   EXPECT_TRUE(enabled(1));
   c_.line("I100=0");
   EXPECT_FALSE(enabled(1));
+  EXPECT_EQ(loop(1), LOOP_KILLED);
+}
+
+// The compare output would be written again by bit 11, so it is not written back.
+TEST_F(Protection, EnableLeavesOtherBitsOfItsWord) {
+  *hal_x(kControl) = 0x1800;
+  ASSERT_TRUE(motor_close(0));
+  EXPECT_EQ(*hal_x(kControl), 0x1000u | kEnable);
+  motor_kill(0);
+  EXPECT_EQ(*hal_x(kControl), 0x1000u);
+}
+
+// SAVE: motion:6.
+TEST_F(Protection, ChecksStandWhileTheyAreToldTo) {
+  ASSERT_TRUE(motor_close(0));
+  protection_stand(true);
+  flags(1, kFault);
+  servo(6);
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
+  protection_stand(false);
+  servo(3);
   EXPECT_EQ(loop(1), LOOP_KILLED);
 }
 
@@ -199,9 +230,11 @@ TEST_F(Protection, AmplifierFault) {
   EXPECT_EQ(loop(1), LOOP_KILLED) << "bit 23 = 0: a low input is a fault";
   c_.line("I124=$100001");
   ASSERT_TRUE(motor_close(0));
-  flags(1, kFault);
-  protection_pass();
-  EXPECT_EQ(loop(1), LOOP_CLOSED) << "bit 20: not looked at";
+  for (const std::uint32_t level : {0u, kFault}) {
+    flags(1, level);
+    protection_pass();
+    EXPECT_EQ(loop(1), LOOP_CLOSED) << "bit 20: not looked at";
+  }
 }
 
 TEST_F(Protection, InPositionAfterItsScans) {
@@ -222,6 +255,35 @@ TEST_F(Protection, InPositionAfterItsScans) {
   servo();
   protection_pass();
   EXPECT_FALSE(motors[0].found.in_position);
+}
+
+// A motor that follows a master is on its way, however near it is: desired velocity 0 is asked for.
+TEST_F(Protection, InPositionNeedsACommandedStandstill) {
+  c_.line("I128=160 I105=$10F6 I107=96");
+  ASSERT_TRUE(motor_close(0));
+  c_.line("I106=1");
+  follow(6);
+  EXPECT_TRUE(status2(1, 0) && status1(1, 13));
+  for (std::uint32_t n = 1; n < 20; ++n) {
+    *hal_x(0x10F6) = 32 * n;
+    follow(1);
+  }
+  EXPECT_NEAR(at(1), 19, 1);
+  EXPECT_FALSE(status2(1, 0) || status1(1, 13));
+  follow(6);
+  EXPECT_TRUE(status2(1, 0) && status1(1, 13));
+}
+
+// Nor is one whose jog waits for its Ixx92 in position: who polls would take it for done.
+TEST_F(Protection, AJogThatWaitsIsNotInPosition) {
+  c_.line("I192=100 I111=0");
+  ASSERT_TRUE(motor_close(0));
+  follow(6);
+  ASSERT_TRUE(status2(1, 0));
+  c_.line("#1J=500");
+  follow(6);
+  EXPECT_EQ(motors[0].desired_step, 0);
+  EXPECT_FALSE(status2(1, 0));
 }
 
 TEST_F(Protection, SignalsOfTheSelectedSystem) {
@@ -316,6 +378,8 @@ TEST_F(Protection, OverloadTripsAfterItsTime) {
   // Linear: (32767 - 16384)/32768 a cycle.
   c_.line("I157=-16384 I158=0");
   c_.line("I158=500");
+  ASSERT_TRUE(motor_open(0, 0));
+  servo(400);  // what stays below the continuous current is no credit
   ASSERT_TRUE(motor_open(0, -32767 * 256));
   EXPECT_NEAR(trips_after(2000), 500 * 32768.0 / (32767 - 16384), 51);
 }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "systemc/cpu/elf_file.h"
+#include "testbench/plant/plant.h"
 #include "testbench/unit/firmware_platform/stack_room.h"
 #include "testbench/unit/random_lines.h"
 #include "testbench/unit/random_seed.h"
@@ -17,6 +18,61 @@ constexpr std::uint8_t kControlA = 0x01, kControlX = 0x18, kAcknowledge = 0x06;
 
 class SurvivalOn : public Controller {
  protected:
+  static constexpr unsigned kMotors = 8;
+
+  void TearDown() override { start_over(); }
+  void start_over() {
+    if (plant_ != nullptr) machine().detach(*plant_);
+    plant_.reset();
+    finish();
+  }
+
+  // Eight motors at DACs, closed; they move when they are told to.
+  void start_with_motors() {
+    start_over();
+    start();
+    plant::PlantParameters parameters;
+    for (unsigned i = 0; i < kMotors; ++i) {
+      plant::AxisParameters axis;
+      axis.drive = plant::Drive::kTorque;
+      axis.ic = i / 4;
+      axis.channel = i % 4;
+      axis.motor.inertia = 1e-5;
+      axis.motor.torque_constant = 0.1;
+      axis.amplifier.full_scale_amps = 10;
+      axis.amplifier.adc = false;
+      parameters.axes.push_back(axis);
+    }
+    plant_ = std::make_unique<plant::Plant>(parameters);
+    machine().attach(*plant_);
+    set_up_motors();
+  }
+  // Sent as lines, whatever comes back: random lines may have changed I3.
+  void set_up_motors() {
+    for (unsigned i = 0; i < kMotors; ++i) {
+      const unsigned x = 100 * (i + 1), c = 7010 + 100 * (i / 4) + 10 * (i % 4),
+                     at = 0x78000 + 0x100 * (i / 4) + 8 * (i % 4);
+      char line[200];
+      std::snprintf(line, sizeof line,
+                    "I%u=3 I%u=3 I%u=$%X I%u=$820001 I%u=0 I%u=112450 I%u=2900 I%u=2972 I%u=32767 I%u=0 I%u=0 I%u=1\r",
+                    c, c + 6, x + 2, at + 2, x + 24, x + 11, x + 30, x + 31, x + 32, x + 69, x + 92, x + 1, x);
+      ASSERT_TRUE(put(line));
+      listen(ms_to_ticks(3));
+    }
+  }
+  // Up and down in turn. True: all have moved within some milliseconds.
+  bool jog_all(bool up) {
+    std::vector<std::int64_t> before;
+    for (unsigned i = 0; i < kMotors; ++i) before.push_back(plant_->axis(i).counts(machine().now()));
+    std::string line = "%100 ";
+    for (unsigned i = 1; i <= kMotors; ++i) line += "#" + std::to_string(i) + (up ? "J+" : "J-");
+    if (!put(line + "\r")) return false;
+    listen(ms_to_ticks(20));
+    for (unsigned i = 0; i < kMotors; ++i)
+      if (plant_->axis(i).counts(machine().now()) == before[i]) return false;
+    return true;
+  }
+
   bool tripped() { return machine().outputs().get(pin::kWdTripped) != 0; }
 
   std::string where() {
@@ -73,6 +129,12 @@ class SurvivalOn : public Controller {
     EXPECT_EQ(ask("RY$70"), "0");
     expect_stack_room(machine().cpu(), ElfFile(BRICK_FIRMWARE));
   }
+
+  void arc_sines();
+  void control_a(bool moving);
+
+ private:
+  std::unique_ptr<plant::Plant> plant_;
 };
 
 // In the default settings (even seeds), or in others by chance. BRICK_RANDOM_LINES: lines of each seed.
@@ -107,10 +169,34 @@ TEST_P(SurvivalOn, RandomLines) {
   EXPECT_LE(errors, answered * 3 / 4) << "hardly anything is understood";
 }
 
+// The same while eight motors move: what a line has stopped is set up and jogs again.
+TEST_P(SurvivalOn, RandomLinesWhileEightMotorsMove) {
+  constexpr long kLines = 1200, kBetween = 40;
+  long moved = 0, looks = 0;
+  for (const unsigned seed : {random_seed(21), random_seed(22)}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    start_with_motors();
+    RandomLines random(seed);
+    for (long i = 0; i < kLines; ++i) {
+      if (i % kBetween == 0) {
+        put("\x01\x04\rCLOSE\r");
+        listen(ms_to_ticks(3));
+        set_up_motors();
+        ++looks;
+        moved += jog_all(i / kBetween % 2 == 0) ? 1 : 0;
+      }
+      const std::string line = random.next();
+      ASSERT_TRUE(put(line + "\r")) << "line " << i << " is not taken: " << line << ", " << where();
+      listen(ms_to_ticks(3));
+      ASSERT_FALSE(tripped()) << "line " << i << ": " << line;
+    }
+    expect_alive();
+  }
+  EXPECT_GE(moved, looks / 2) << "of " << looks;
+}
+
 // 28 ASIN(.5) in a line, eight times; the sum is 840 degrees.
-TEST_P(SurvivalOn, EightLinesOfTwentyEightArcSines) {
-  BRICK_COVERS("WDT-1");
-  start();
+void SurvivalOn::arc_sines() {
   std::string line = "P1=ASIN(.5)";
   for (int i = 1; i < 28; ++i) line += "+ASIN(.5)";
   ASSERT_EQ(ask("&1DEF ROT 1500 B0"), "");
@@ -125,11 +211,28 @@ TEST_P(SurvivalOn, EightLinesOfTwentyEightArcSines) {
   expect_alive();
 }
 
+TEST_P(SurvivalOn, EightLinesOfTwentyEightArcSines) {
+  BRICK_COVERS("WDT-1");
+  start();
+  arc_sines();
+}
+
+TEST_P(SurvivalOn, EightLinesOfTwentyEightArcSinesWhileEightMotorsMove) {
+  start_with_motors();
+  ASSERT_TRUE(jog_all(true));
+  arc_sines();
+}
+
 // The program counts in the dual-ported RAM, where a host sees it without asking. The reply to P0..8191 is never read,
 // so the background stands; ^A acts nevertheless, and nothing is counted later than 1 ms after it.
-TEST_P(SurvivalOn, ControlAStopsAProgramWhileAReplyIsNotRead) {
+void SurvivalOn::control_a(bool moving) {
   for (const bool abort : {true, false}) {
-    start();
+    if (moving) {
+      start_with_motors();
+      ASSERT_TRUE(jog_all(true));
+    } else {
+      start();
+    }
     ASSERT_EQ(ask("M1->DP:$060000 I17=1000 &1DEF ROT 1500 B0"), "");
     ASSERT_EQ(ask("OPEN ROT"), "");
     for (int i = 0; i < 150; ++i) ASSERT_EQ(ask("M1=M1+1 DWELL1"), "");
@@ -151,6 +254,9 @@ TEST_P(SurvivalOn, ControlAStopsAProgramWhileAReplyIsNotRead) {
     EXPECT_LT(then, 150u);
   }
 }
+
+TEST_P(SurvivalOn, ControlAStopsAProgramWhileAReplyIsNotRead) { control_a(false); }
+TEST_P(SurvivalOn, ControlAStopsAProgramWhileAReplyIsNotReadAndEightMotorsMove) { control_a(true); }
 
 BRICK_ON_ENGINES(SurvivalOn, Engine::kSystemC);
 

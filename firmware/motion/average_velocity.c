@@ -1,0 +1,46 @@
+/* The way of sixteen samples, I60 + 1 servo interrupts apart, divided by 2^I61: with 15 and 8 that of 256 interrupts as
+ * a mean of one. */
+#include "firmware/motion/average_velocity.h"
+
+#include "firmware/hal/hal.h"
+#include "firmware/motion/motor.h"
+#include "firmware/variables/i_variables.h"
+
+enum { SAMPLES = 16, LARGEST_SHIFT = 62 };
+
+static struct { int64_t at[SAMPLES], way; } averages[MOTORS];
+static uint32_t next, left;
+
+void average_velocity_initialize(void) {
+  __builtin_memset(averages, 0, sizeof averages);
+  next = left = 0;
+}
+
+void average_velocity_servo(void) {
+  if (left != 0u) {
+    left--;
+    return;
+  }
+  left = (uint32_t)i_integer(I60_FILTER_SAMPLE_SPACING);
+  for (uint32_t motor = 0, active = motors_active; active != 0u; ++motor, active >>= 1) {
+    if ((active & 1u) == 0u) continue;
+    const int64_t actual = motors[motor].actual;
+    averages[motor].way = actual - averages[motor].at[next];
+    averages[motor].at[next] = actual;
+  }
+  next = (next + 1u) % SAMPLES;
+}
+
+void average_velocity_shift(uint32_t motor, int64_t by) {
+  for (uint32_t i = 0; i < SAMPLES; ++i) averages[motor].at[i] += by;
+}
+
+int64_t average_velocity(uint32_t motor) {
+  const uint32_t shift = (uint32_t)i_integer(I61_FILTER_SHIFT);
+  const uint32_t state = hal_mask_servo();
+  const int64_t way = averages[motor].way;
+  hal_unmask(state);
+  const struct motor* m = &motors[motor];
+  const int64_t mean = way >> (shift < LARGEST_SHIFT ? shift : LARGEST_SHIFT);
+  return m->velocity_scale == m->position_scale ? mean : mean * m->velocity_scale / m->position_scale;
+}

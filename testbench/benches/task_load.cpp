@@ -1,0 +1,245 @@
+// task-load: what the controller's tasks may cost with eight motors that it commutates, all moving, and a host that
+// never pauses (motion:1.6). Own times of each run of a task, which are its length less what interrupted it; interrupts
+// taken against the falls of PHASE and SERVO; characters of the host port in each phase period. At the factory clocks
+// and at a Brick's, with I52 = 24.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "rtl/regs/brick_regs.hpp"
+#include "systemc/cpu/port_a.h"
+#include "testbench/benches/benches.h"
+#include "testbench/benches/motor_host.h"
+#include "testbench/checkers/fall_limits.h"
+#include "testbench/checkers/task_times.h"
+
+namespace brick {
+namespace {
+
+constexpr unsigned kPace = 8;  // characters in a phase period while a motor is enabled
+constexpr std::uint64_t kGatheringServo = 10'000, kBrickPhase = 6'000, kBrickServo = 10'000;
+
+// What the CPU does from now on, until it goes.
+class Watch {
+ public:
+  explicit Watch(BenchContext& b) : b_(b), task_(b.machine.on_task), cycle_(b.machine.on_bus_cycle) {
+    b_.machine.on_task = [this](TimeFs time) {
+      if (task_) task_(time);
+      const unsigned task = b_.machine.task(), before = std::exchange(last_, task);
+      tasks.changed(time, task);
+      if (task == TaskTimes::kPhase && before != task) phase_began();
+      if (task == TaskTimes::kServo && before < task) ++servo;
+    };
+    b_.machine.on_bus_cycle = [this](const PortACycle& c) {
+      if (cycle_) cycle_(c);
+      const bool port = c.on_chip && c.x && (c.address == (c.write ? regs::hi08::kHotx : regs::hi08::kHorx).address);
+      if (port) ++characters_, ++all_characters;
+    };
+    b_.bus.watch(select_pins(pin::kPhase, pin::kServo), [this](Tick, const BoardOutputs& was, const BoardOutputs& is) {
+      phase_falls += was.get(pin::kPhase) != 0 && is.get(pin::kPhase) == 0 ? 1 : 0;
+      servo_falls += was.get(pin::kServo) != 0 && is.get(pin::kServo) == 0 ? 1 : 0;
+    });
+  }
+  ~Watch() {
+    b_.bus.watch({}, nullptr);
+    b_.machine.on_task = task_;
+    b_.machine.on_bus_cycle = cycle_;
+  }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+  TaskTimes tasks;
+  unsigned phase = 0, servo = 0, phase_falls = 0, servo_falls = 0, most_characters = 0, all_characters = 0;
+
+ private:
+  void phase_began() {
+    ++phase;
+    most_characters = std::max(most_characters, std::exchange(characters_, 0));
+  }
+
+  BenchContext& b_;
+  std::function<void(TimeFs)> task_;
+  std::function<void(const PortACycle&)> cycle_;
+  unsigned last_ = 0, characters_ = 0;
+};
+
+class TaskLoad {
+ public:
+  explicit TaskLoad(BenchContext& b) : b_(b), host_(b, axes()) {}
+  void run();
+
+ private:
+  static std::vector<plant::AxisParameters> axes();
+  void set_up();
+  void start();
+  void own_times(const std::string& name, double ms, std::uint64_t phase, std::uint64_t servo);
+  void moved(const std::string& name);
+  void never_pausing_host(double ms);
+  void brick_clocks();
+
+  BenchContext& b_;
+  MotorHost host_;
+};
+
+std::vector<plant::AxisParameters> TaskLoad::axes() {
+  plant::AxisParameters a;
+  a.drive = plant::Drive::kThreePhase;
+  a.motor.inertia = 1e-5;
+  a.motor.viscous = 1e-4;
+  a.motor.torque_constant = 0.1;
+  a.amplifier.bus_volts = 48;
+  a.amplifier.full_scale_amps = 10;
+  a.amplifier.trip_amps = 15;
+  a.encoder.wiring = plant::EncoderParameters::Wiring::kHalls;
+  a.encoder.pole_pairs = a.motor.pole_pairs;
+  a.encoder.hall_offset = -1000 * plant::kUnitsPerCount / 6;  // Ixx91 = $800000: state 011 is 0 to 60 degrees
+  return std::vector<plant::AxisParameters>(8, a);
+}
+
+// As examples/setups/servo8.pmc, with gains that are low enough for both clocks and protection that nobody tests here.
+void TaskLoad::set_up() {
+  host_.set_up();
+  std::vector<std::string> words;
+  for (unsigned motor = 1; motor <= host_.motors(); ++motor) {
+    const auto at = [&](unsigned k, const std::string& value) {
+      words.push_back(fmt::format("I{}={}", 100 * motor + k, value));
+    };
+    words.push_back(fmt::format("I{}=0", host_.i_channel(motor - 1, 6)));
+    at(0, "0");
+    at(1, "1");
+    at(24, "$C20400");
+    at(82, fmt::format("${:X}", host_.address(motor - 1, word::kAdcB)));
+    at(83, fmt::format("${:X}", host_.address(motor - 1, word::kPhasePosition)));
+    at(81, fmt::format("${:X}", host_.address(motor - 1, word::kStatus)));
+    at(91, "$800000");
+    at(84, "$FFFC00");
+    for (const auto& [k, value] : {std::pair{70u, 4.0},
+                                   {71u, 4000.0},
+                                   {72u, 1365.0},
+                                   {61u, 0.011},
+                                   {62u, 0.2},
+                                   {66u, 7180.0},
+                                   {30u, 20000.0},
+                                   {31u, 1000.0},
+                                   {69u, 8000.0},
+                                   {57u, 10000.0},
+                                   {58u, 20000.0},
+                                   {11u, 0.0},
+                                   {12u, 0.0}})
+      at(k, fmt::format("{}", value));
+    at(0, "1");
+  }
+  host_.say(words);
+  // A limit that does not hold would be found: the loops of 24 motors more, killed as they are.
+  if (b_.negative) host_.expect("I900,24,100=1", "");
+  host_.expect("&1 #1->1000X #2->1000Y #3->1000Z #4->1000A #5->1000B #6->1000C #7->1000U #8->1000V", "");
+  host_.expect("OPEN PROG 1 CLEAR LINEAR INC TA4 TS1 TM8", "");
+  for (const char* way : {"0.08", "-0.05", "0.06", "-0.09"})
+    host_.expect(fmt::format("X{0}Y{0}Z{0}A{0}B{0}C{0}U{0}V{0}", way), "");
+  host_.expect("CLOSE", "");
+}
+
+// All closed and moving, in a program that ends only with the bench.
+void TaskLoad::start() {
+  for (unsigned motor = 1; motor <= host_.motors(); ++motor) host_.expect(fmt::format("#{}$", motor), "");
+  host_.wait_ms(13);  // Ixx92
+  host_.record();
+  host_.expect("&1B1R", "");
+}
+
+void TaskLoad::moved(const std::string& name) {
+  unsigned least = ~0u;
+  for (unsigned motor = 1; motor <= host_.motors(); ++motor) {
+    const auto& s = host_.samples(motor);
+    unsigned moving = 0;
+    for (std::size_t i = 1; i < s.size(); ++i)
+      moving += s[i].enabled && s[i].commanded != s[i - 1].commanded && s[i].output != s[i - 1].output ? 1 : 0;
+    least = std::min(least, moving);
+  }
+  b_.report.step("eight motors moving, " + name, least >= 15, fmt::format("in {} servo interrupts or more", least));
+}
+
+void TaskLoad::own_times(const std::string& name, double ms, std::uint64_t phase, std::uint64_t servo) {
+  const double servo_ms = std::strtod(b_.ask("I10").c_str(), nullptr) / 8'388'608;
+  Watch watch(b_);
+  host_.wait_ms(ms);
+  const auto cycles = [this](TimeFs t) { return static_cast<std::uint64_t>(t / b_.machine.cpu_period()); };
+  const double slice = 3 * servo_ms * 1e12 / 2;  // fs: half of a real-time period, I8 = 2
+  const struct {
+    const char* name;
+    unsigned task;
+    std::uint64_t most;
+  } limits[] = {{"phase", TaskTimes::kPhase, phase},
+                {"servo", TaskTimes::kServo, servo},
+                {"real-time", TaskTimes::kRealTime, cycles(static_cast<TimeFs>(slice))}};
+  for (const auto& l : limits) {
+    const TaskTimes::Runs runs = watch.tasks.runs(l.task);
+    b_.report.step(
+        fmt::format("{} task, {}", l.name, name), FallLimits::keeps_cycles(runs.count, cycles(runs.longest), l.most),
+        fmt::format("{} cycles of its own at most, of {}; {} times", cycles(runs.longest), l.most, runs.count));
+  }
+}
+
+// It writes whenever there is room and reads whatever there is. Half of its lines are answered at length.
+void TaskLoad::never_pausing_host(double ms) {
+  static const std::string lines = "#1?P#2?P#3?P\rP1=1 P2=2 P3=3 P4=4 P5=5\r??\r";
+  Watch watch(b_);
+  const Tick end = b_.bus.now() + ns_to_ticks(static_cast<std::uint64_t>(ms * 1e6));
+  for (std::size_t i = 0; b_.bus.now() < end;) {
+    if (b_.bus.put_char(static_cast<std::uint8_t>(lines[i % lines.size()]), 0)) ++i;
+    (void)b_.bus.get_char(0);
+  }
+  const auto near = [](unsigned a, unsigned b) { return a + 1 >= b && a <= b + 1; };  // one is under way
+  b_.report.step("a host that never pauses: phase interrupts", watch.phase > 50 && near(watch.phase, watch.phase_falls),
+                 fmt::format("{} for {} falls of PHASE", watch.phase, watch.phase_falls));
+  b_.report.step("a host that never pauses: servo interrupts", watch.servo > 10 && near(watch.servo, watch.servo_falls),
+                 fmt::format("{} for {} falls of SERVO", watch.servo, watch.servo_falls));
+  const unsigned busy = watch.all_characters / std::max(watch.phase, 1u);
+  b_.report.step("characters in a phase period", watch.most_characters <= kPace && busy >= kPace / 2,
+                 fmt::format("{} at most, {} on the whole in {}; expected {} at most", watch.most_characters,
+                             watch.all_characters, watch.phase, kPace));
+  b_.bus.put_char(0x18, ns_to_ticks(1'000'000));  // ^X: what it has not read
+  while (b_.bus.get_char(ns_to_ticks(2'000'000))) {}
+  b_.report.step("the controller answers", b_.link.connect(ns_to_ticks(50'000'000)), "I3=2 I6=1 I4=0");
+}
+
+// servo-ic:11.2; I52 counts from the start on.
+void TaskLoad::brick_clocks() {
+  host_.expect("&1A", "");
+  b_.link.control(0x0B);  // ^K
+  for (const char* line : {"I7000=1473 I7100=1473 I7001=3 I7002=1 I7101=3 I7102=1", "I7003=1746 I7103=1746 I10=1677653",
+                           "I52=24", "SAVE", "$$$"})
+    b_.ask(line);
+  host_.expect("I52", "24");
+}
+
+void TaskLoad::run() {
+  if (host_.motors() < 8) return b_.report.fail("eight channels", std::to_string(host_.motors()));
+  set_up();
+  start();
+  own_times("eight axes", 12, FallLimits::kPhaseCycles, FallLimits::kServoCycles);
+  host_.expect("DELETE GATHER I5000=0 I5049=1 I5050=$FF", "");
+  for (unsigned i = 0; i < 8; ++i) host_.expect(fmt::format("I{}=${:X}", 5001 + i, 0x800088 + 0x80 * i), "");
+  host_.expect("DEFINE GATHER 4000", "");
+  host_.expect("GATHER I48=1", "");
+  own_times("eight gathered words and I48", 12, FallLimits::kPhaseCycles, kGatheringServo);
+  host_.expect("ENDGATHER I48=0", "");
+  never_pausing_host(10);
+  moved("factory clocks");
+  brick_clocks();
+  start();
+  own_times("Brick clocks, I52=24", 10, kBrickPhase, kBrickServo);
+  moved("Brick clocks");
+}
+
+}  // namespace
+
+Bench task_load_bench() {
+  return {"task-load",
+          "eight commutated motors, gathering, a host that never pauses: own times of the tasks, no interrupt lost",
+          {"24 motors more are activated", "servo task, eight axes", "cycles of its own at most, of 8000"},
+          [](BenchContext& b) { TaskLoad(b).run(); },
+          kServoIcs01};
+}
+
+}  // namespace brick

@@ -1,0 +1,204 @@
+// What H, Q and A leave behind for R, jogs and assignments that wait (motion:5.6).
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/jog.h"
+}
+
+namespace {
+
+using namespace moving_motors;
+
+class HoldsAndAborts : public MovingMotors {
+ protected:
+  void SetUp() override {
+    MovingMotors::SetUp();
+    fit({"1000X"});
+    ASSERT_EQ(host("I119=1 I120=20 I121=0 I122=20 I192=1 I115=1 I5195=200000 I5194=200000"), "");
+  }
+  static void ticks(double ms) { platform::servo_ticks(ticks_of(ms)); }
+  static std::int64_t position(double counts) { return std::llround(counts * kUnit); }
+  static void begin(const std::string& start = "&1B1R") {
+    ASSERT_EQ(host(start), "");
+    for (int i = 0; i < 200 && !cs().active; ++i) platform::servo_ticks(1);
+    ASSERT_TRUE(cs().active);
+  }
+};
+
+TEST_F(HoldsAndAborts, AMotorJoggedAwayFromAHoldAndBackGoesOn) {
+  store({"TM400 TA20 TS0 X1"});
+  begin();
+  ticks(200);
+  ASSERT_EQ(host("H"), "");
+  ticks(50);
+  const std::int64_t held = motors[0].trajectory;
+  ASSERT_EQ(host("#1J:100"), "");
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, held + position(100));
+  EXPECT_EQ(host("R"), "ERR017");
+  ASSERT_EQ(host("J="), "");
+  ticks(10);
+  EXPECT_EQ(host("R"), "ERR011") << "on its way back";
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, held);
+  ASSERT_EQ(host("R"), "");
+  ticks(400);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(motors[0].trajectory, position(1000));
+}
+
+// A program whose last move executes has ended already: R does not begin it anew.
+TEST_F(HoldsAndAborts, RunInTheLastMoveDoesNotRepeatTheProgram) {
+  store({"INC TM200 TA20 TS0 X1", "X1"});
+  for (const char* again : {"R", "H", "S"}) {
+    begin();
+    ticks(250);
+    const std::int64_t from = motors[0].trajectory;
+    ASSERT_EQ(host(again), "");
+    ticks(20);
+    ASSERT_EQ(host("R"), "");
+    ticks(700);
+    EXPECT_FALSE(run_is_running(0)) << again;
+    EXPECT_LT(motors[0].trajectory - from, position(1000)) << again;
+    EXPECT_EQ(motors[0].trajectory % position(2000), 0) << again;
+  }
+}
+
+TEST_F(HoldsAndAborts, AnAbortForgetsTheWayBackAndTheHold) {
+  store({"INC TM400 TA20 TS0 X1"});
+  for (const char* stop : {"H", "Q"}) {
+    begin();
+    ticks(200);
+    ASSERT_EQ(host(stop), "");
+    ticks(50);
+    ASSERT_EQ(host("A"), "");
+    ticks(100);
+    EXPECT_FALSE(cs().held) << stop;
+    EXPECT_EQ(host("%"), "100") << stop;
+    ASSERT_EQ(host("#1J:100"), "");
+    ticks(200);
+    const std::int64_t from = motors[0].trajectory;
+    begin();
+    ticks(500);
+    EXPECT_EQ(motors[0].trajectory, from + position(1000)) << stop;
+  }
+}
+
+// Behind `/` as behind Q; B begins anew from where the motors are.
+TEST_F(HoldsAndAborts, AnotherStartNeedsNoWayBack) {
+  store({"INC TM100 TA20 TS0 X1", "X1", "X1", "X1"});
+  for (const char* stop : {"Q", "/"}) {
+    begin();
+    ticks(30);
+    ASSERT_EQ(host(stop), "");
+    ticks(300);
+    ASSERT_EQ(host("#1J:50"), "") << stop;
+    ticks(200);
+    EXPECT_EQ(host("R"), "ERR017") << stop;
+    const std::int64_t from = motors[0].trajectory;
+    begin();
+    ticks(500);
+    EXPECT_EQ(motors[0].trajectory, from + position(4000)) << stop;
+  }
+}
+
+// The move that they wait for does not come.
+TEST_F(HoldsAndAborts, AnAbortForgetsAssignmentsThatWait) {
+  ASSERT_EQ(host("M1->X:$10F0,0,24 M1=0"), "");
+  store({"TM200 TA20 TS0 X1", "M1==5 X2"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("A"), "");
+  ticks(300);
+  EXPECT_EQ(host("M1"), "0");
+}
+
+// motion:5.1/3: both limits, not one of them.
+TEST_F(HoldsAndAborts, RunGoesWithOneLimit) {
+  store({"X1"});
+  ASSERT_TRUE(jog_to(0, position(-500)));
+  motors[0].found.positive_limit = true;
+  EXPECT_EQ(host("&1B1R"), "ERR011") << "the jog";
+  motors[0].found.negative_limit = true;
+  EXPECT_EQ(host("R"), "ERR010");
+}
+
+TEST_F(HoldsAndAborts, ARapidMoveUntilATriggerIsHeld) {
+  ASSERT_EQ(host("I125=$78000 I124=$120001"), "");
+  store({"RAPID X10^0.5"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("H"), "");
+  ticks(50);
+  const std::int64_t held = motors[0].trajectory;
+  ticks(20);
+  EXPECT_EQ(motors[0].trajectory, held);
+  ASSERT_EQ(host("R"), "");
+  ticks(700);
+  EXPECT_EQ(motors[0].trajectory, position(10000));
+}
+
+// Where a program has left a motor is where it came to rest, when it was aborted.
+TEST_F(HoldsAndAborts, JEqualsBehindAnAbortedRapidMove) {
+  store({"RAPID X10"});
+  begin();
+  ticks(100);
+  ASSERT_EQ(host("A"), "");
+  ticks(100);
+  const std::int64_t left = motors[0].trajectory;
+  ASSERT_EQ(host("#1J:50"), "");
+  ticks(200);
+  ASSERT_EQ(host("J="), "");
+  ticks(200);
+  EXPECT_EQ(motors[0].trajectory, left);
+}
+
+// motion:5.6/5
+TEST_F(HoldsAndAborts, StepsByLine) {
+  ASSERT_EQ(host("I5153=1 P1=0 P2=0 P3=0"), "");
+  store({"P1=1", "P2=1 TM50 TA20 TS0 X1", "BLOCKSTART", "P3=1", "X2", "BLOCKSTOP"});
+  ASSERT_EQ(host("&1B1"), "");
+  const auto at_end = [](unsigned p) { return p_variable_read(p); };
+  for (const double end : {0.0, 1000.0, 2000.0}) {
+    ASSERT_EQ(host("S"), "");
+    ticks(150);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(motors[0].trajectory, position(end));
+    EXPECT_EQ(at_end(1), 1.0);
+    EXPECT_EQ(at_end(2), end > 0 ? 1.0 : 0.0);
+    EXPECT_EQ(at_end(3), end > 1000 ? 1.0 : 0.0);
+  }
+  ASSERT_EQ(host("I5153=0 P1=0 &1B1S"), "");
+  ticks(150);
+  EXPECT_EQ(at_end(1), 1.0);
+  EXPECT_EQ(motors[0].trajectory, position(1000)) << "to the next move";
+}
+
+// Into a limit that the motor stands in no jog goes, out of it each (motion:6.2/3); a search for home goes, too.
+TEST_F(HoldsAndAborts, JogsGoOutOfALimitOnly) {
+  ASSERT_EQ(host("I113=1000 I123=10 #1J/"), "");
+  ticks(10);
+  motors[0].trajectory = motors[0].commanded = position(50);
+  for (const bool up : {true, false}) {
+    auto& limit = up ? motors[0].found.positive_limit : motors[0].found.negative_limit;
+    for (const char* line : {"J+", "J=100", "J:50", "J-", "J=0", "J:-50"}) {
+      limit = true;
+      ASSERT_EQ(host(line), "") << line;
+      const bool goes_up = line[1] == '+' || std::string(line) == "J=100" || std::string(line) == "J:50";
+      EXPECT_EQ(jog_is_moving(0), goes_up != up) << line << (up ? ", above" : ", below");
+      limit = false;
+      const std::uint32_t state = hal_mask_servo();
+      jog_drop(0);
+      hal_unmask(state);
+    }
+    limit = true;
+    ASSERT_EQ(host(up ? "I123=10 HM" : "I123=-10 HM"), "");
+    EXPECT_TRUE(jog_is_moving(0));
+    limit = false;
+    ASSERT_EQ(host("J/"), "");
+    ticks(200);
+    motors[0].trajectory = position(50);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,55 @@
+// `$*` (motion:4.4/1): whose counter is cleared, what becomes of a bias.
+#include "testbench/unit/covers.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/motion/motor.h"
+}
+
+namespace {
+
+using platform::host;
+
+constexpr std::uint32_t kControl = 0x78005, kCounterReset = 1u << 10;
+
+class PowerOnPosition : public FirmwareTest {
+ protected:
+  // Values that the channel's control word has had meanwhile.
+  static bool resets(const std::string& line) {
+    fake_hal_clear_writes();
+    EXPECT_EQ(host(line), "") << line;
+    const fake_write* log = nullptr;
+    const unsigned count = fake_hal_writes(&log);
+    bool any = false;
+    for (unsigned i = 0; i < count; ++i)
+      any |= log[i].x && log[i].address == kControl && (log[i].value & kCounterReset) != 0;
+    EXPECT_EQ(*hal_x(kControl) & kCounterReset, 0u) << "and it counts again";
+    return any;
+  }
+};
+
+TEST_F(PowerOnPosition, ClearsTheCounterOfItsChannel) {
+  ASSERT_EQ(host("I100=1 I125=$78000 I124=$120001"), "");
+  EXPECT_TRUE(resets("#1$*"));
+  ASSERT_EQ(host("I197=1"), "");
+  EXPECT_FALSE(resets("#1$*")) << "captures in software";
+  ASSERT_EQ(host("I197=2"), "");
+  EXPECT_TRUE(resets("#1$*"));
+  ASSERT_EQ(host("I197=0 I124=$160001"), "");
+  EXPECT_FALSE(resets("#1$*")) << "flags over the ring";
+  ASSERT_EQ(host("I124=$120001 I125=$78008"), "");
+  EXPECT_FALSE(resets("#1$*")) << "another channel's";
+  ASSERT_EQ(host("I125=$78000 I101=1"), "");
+  EXPECT_FALSE(resets("#1$*")) << "it counts the phase, too";
+}
+
+TEST_F(PowerOnPosition, ClearsTheBias) {
+  ASSERT_EQ(host("I100=1"), "");
+  motors[0].bias = 12345;
+  ASSERT_EQ(host("#1$*"), "");
+  EXPECT_EQ(motors[0].bias, 0);
+  EXPECT_EQ(host("#1P"), "0");
+}
+
+}  // namespace

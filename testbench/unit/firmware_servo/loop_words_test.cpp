@@ -1,0 +1,292 @@
+// What goes into the servo loop and comes out of it, natively: sources and Ixx60, the words of motion:1.3, outputs of
+// motion:1.5.
+#include "testbench/unit/firmware_servo/position_loop_rig.h"
+
+extern "C" {
+#include "firmware/motion/conversion_table.h"
+}
+
+namespace brick {
+namespace {
+
+using LoopWords = PositionLoopRig;
+
+// motion:1.3: what the loop shows, in units of 1/(32 Ixx08) count and in bits of 24.
+TEST_F(LoopWords, WordsOfTheLoop) {
+  c_.line("I130=4000 I131=0 I132=0 I133=131072 I134=0 I168=100 I137=0.5");
+  close(0, 0);
+  cycle(-10 * 32 * 96, 0, 0);
+  cycle(-12 * 32 * 96, 0, 0);
+  const auto word = [this](const char* command) { return std::stol(c_.line(command)); };
+  const long integral = -22 * 32 * 96 / 64;  // Ixx33 / 2^23 = 1/64
+  EXPECT_EQ(word("RX$9E"), -1);
+  EXPECT_EQ(word("RY$9E"), integral);
+  EXPECT_EQ(word("RX$87"), -1);
+  EXPECT_EQ(word("RY$87"), -2 * 32 * 96);
+  const double pid = (-12 - 22 / 64.0) * 4000 * 96 / 524288;  // bits of 16
+  EXPECT_NEAR(word("RX$AE") / 256.0, pid, 0.01);
+  const double before = -10 * (1 + 1 / 64.0) * 4000 * 96 / 524288;
+  EXPECT_EQ(word("RX$BF"), motors[0].output);
+  EXPECT_NEAR(word("RX$BF") / 256.0, pid - 100, 0.01) << "N2 is two closures back";
+  cycle(-12 * 32 * 96, 0, 0);
+  EXPECT_NEAR(word("RX$BF") / 256.0, (-12 - 34 / 64.0) * 4000 * 96 / 524288 + 0.5 * before, 0.01);
+  EXPECT_EQ(word("RX$88"), -1);
+  EXPECT_EQ(word("RY$88"), -12 * 32 * 96);
+  at(-5 * 32, -5 * 32);
+  position_loop_servo(0);
+  EXPECT_EQ(word("RX$8B"), -1);
+  EXPECT_EQ(word("RY$8B"), -5 * 32 * 96);
+  EXPECT_EQ(word("RX$9D"), -5 * 32 * 96);
+  cycle(6000 * 32 * 96, 5999 * 32, 0);
+  EXPECT_EQ(word("RX$88"), 1);
+  EXPECT_EQ(word("RY$88"), 6000 * 32 * 96 - 16777216);
+  EXPECT_EQ(word("RX$8B"), 1);
+  EXPECT_EQ(word("RY$8B"), 5999 * 32 * 96 - 16777216);
+}
+
+// What the notch is given may be far beyond a word, which shows its end.
+TEST_F(LoopWords, TheWordOfThePidHasAnEnd) {
+  c_.line("I130=8388607 I131=0 I132=0 I133=0");
+  close(0, 0);
+  cycle(5000 * 32 * 96, 0, 0);
+  EXPECT_EQ(c_.line("RX$AE"), "8388607");
+  cycle(-5000 * 32 * 96, 0, 0);
+  EXPECT_EQ(c_.line("RX$AE"), "-8388607");
+}
+
+// A counter that is cleared is no movement: in the interrupt after that and in the next.
+TEST_F(LoopWords, MovementThatIsForgotten) {
+  close(0, 0);
+  position_loop_forget_movement(0);
+  const std::int64_t before = motors[0].actual;
+  at(1000, 1000);
+  position_loop_servo(0);
+  at(1100, 1100);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, before);
+  at(1132, 1132);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+}
+
+// Two halves of a word are two variables, with their signs.
+TEST_F(LoopWords, HalvesOfAWordAreVariablesOfTheirOwn) {
+  c_.line("I132=11 I160=2 I133=13 I163=-14");
+  c_.line("WX$8F,-21");
+  EXPECT_EQ(c_.line("I132 I160"), "-21|2");
+  c_.line("WY$8F,3");
+  EXPECT_EQ(c_.line("I132 I160"), "-21|3");
+  c_.line("WY$9F,-24");
+  EXPECT_EQ(c_.line("I133 I163"), "13|-24");
+  c_.line("WX$9F,23");
+  EXPECT_EQ(c_.line("I133 I163"), "23|-24");
+  EXPECT_EQ(c_.line("RX$8F RY$8F RX$9F RY$9F"), "-21|3|23|-24");
+  c_.line("WX$AE,5");
+  EXPECT_EQ(c_.line("RX$AE"), "0") << "the firmware's";
+}
+
+// D:$8D, D:$90 and D:$CC are set by writes of either half.
+TEST_F(LoopWords, PositionsThatMayBeWritten) {
+  std::int64_t* const positions[] = {&motors[0].master, &motors[0].compensation, &motors[0].bias};
+  const char* const addresses[] = {"$8D", "$90", "$CC"};
+  for (int k = 0; k < 3; ++k) {
+    const std::string at = addresses[k];
+    c_.line("WX" + at + ",-2");
+    c_.line("WY" + at + ",5");
+    EXPECT_EQ(*positions[k], -2 * 16777216 + 5) << at;
+    EXPECT_EQ(c_.line("RX" + at), "-2") << at;
+    EXPECT_EQ(c_.line("RY" + at), "5") << at;
+    c_.line("WY" + at + ",-1");
+    EXPECT_EQ(*positions[k], -2 * 16777216 + 16777215) << at;
+    c_.line("WX" + at + ",1");
+    EXPECT_EQ(*positions[k], 2 * 16777216 - 1) << at;
+  }
+}
+
+// motion:2: up to 2^18 bits of a parallel word an interrupt, 24 bits that go round, and no count is lost.
+TEST_F(LoopWords, AParallelWordMayMoveByTwoTo18) {
+  c_.line("I8000=$2010F2 I8001=$18000 I103=$3502 I104=$3502 I8002=0");
+  conversion_table_servo();
+  position_loop_servo(0);
+  const std::int64_t begin = motors[0].actual;
+  for (std::int64_t n = 1; n <= 1000; ++n) {
+    *hal_y(0x10F2) = static_cast<std::uint32_t>(n * 262143) & HAL_WORD_MASK;
+    conversion_table_servo();
+    position_loop_servo(0);
+  }
+  EXPECT_EQ(motors[0].actual - begin, 1000 * 262143ll * 32 * 96);
+}
+
+// Every Ixx60+1 interrupts; velocities are those of a closure.
+TEST_F(LoopWords, ExtensionSlowsTheLoopOnly) {
+  c_.line("I160=3 I130=2000 I131=1280 I132=0");
+  close(0, 0);
+  int closures = 0;
+  for (int n = 1; n <= 40; ++n) {
+    const std::int64_t before = motors[0].actual;
+    at(n * 32, n * 32);
+    motors[0].trajectory = n * 32 * 96;
+    desired_position_servo(0);
+    position_loop_servo(0);
+    if (motors[0].actual != before) {
+      closures++;
+      if (closures > 1) { EXPECT_EQ(motors[0].velocity, 4 * 32 * 96); }
+    }
+    EXPECT_EQ(motors[0].desired_step, 32 * 96) << "the trajectory goes on every interrupt";
+  }
+  EXPECT_EQ(closures, 10);
+}
+
+// The raw word is that of a closure; V stays that of a servo interrupt.
+TEST_F(LoopWords, ReportedVelocityKnowsNoExtension) {
+  c_.line("I160=3");
+  close(0, 0);
+  for (int n = 1; n <= 40; ++n) {
+    at(n * 32 * 5, n * 32 * 5);
+    position_loop_servo(0);
+  }
+  EXPECT_EQ(c_.line("RX$9D"), std::to_string(4 * 5 * 32 * 96));
+  EXPECT_EQ(c_.line("#1V"), "5");
+}
+
+TEST_F(LoopWords, SourcesRollOver) {
+  close(0x7FFFF0, 0x7FFFF0);
+  position_loop_servo(0);
+  const std::int64_t before = motors[0].actual;
+  at(-0x7FFFF0, -0x7FFFF0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+  EXPECT_EQ(motors[0].velocity, 32 * 96);
+}
+
+// One word for position and velocity is read once; then Ixx04 or Ixx09 become others, and nothing jumps.
+TEST_F(LoopWords, VelocityOfTheSameWord) {
+  c_.line("I104=$10F0");
+  close(0, 0);
+  const auto velocity_after = [this](std::int64_t position) {
+    at(position, 5000);
+    position_loop_servo(0);
+    return motors[0].velocity;
+  };
+  velocity_after(0);
+  EXPECT_EQ(velocity_after(7), 7 * 96);
+  EXPECT_EQ(velocity_after(9), 2 * 96);
+  c_.line("I109=48");
+  EXPECT_EQ(velocity_after(10), 48);
+  c_.line("I109=96");
+  EXPECT_EQ(velocity_after(14), 4 * 96);
+  c_.line("I104=$10F1");
+  EXPECT_EQ(velocity_after(15), 0);
+}
+
+// Where another source stands is no movement.
+TEST_F(LoopWords, AnotherSourceIsNoMovement) {
+  close(1000, 1000);
+  position_loop_servo(0);
+  at(1000, 5000);
+  position_loop_servo(0);
+  const std::int64_t before = motors[0].actual;
+  c_.line("I103=$10F1 I104=$10F0");
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, before);
+  EXPECT_EQ(motors[0].velocity, 0);
+  at(1000, 5032);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 32 * 96);
+}
+
+// A smaller Ixx60 acts at once, a loop that waits for its turn does not wait for the old one.
+TEST_F(LoopWords, ASmallerExtensionActsAtOnce) {
+  c_.line("I160=255");
+  close(0, 0);
+  position_loop_servo(0);
+  at(32, 32);
+  c_.line("I160=1");
+  position_loop_servo(0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual, 32 * 96);
+}
+
+// From a word of a converter over table, master, desired position and loop to the output.
+TEST_F(LoopWords, OneServoInterruptLeadsFromSourceToOutput) {
+  c_.line("I8000=$2810F2 I8001=$18000 I8002=0 I105=$3502 I107=96 I106=1 I111=0 I130=2000 I131=0 I132=0 I133=0");
+  *hal_y(0x10F2) = 0;
+  close(0, 0);
+  c_.servo(2);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+  *hal_y(0x10F2) = 100 * 32;
+  c_.servo(1);
+  EXPECT_NEAR(hal_signed(*hal_y(kDac)) / 256.0, 100 * 2000 * 96 / 524288.0, 0.01);
+}
+
+TEST_F(LoopWords, AScaleOf0CountsAs1) {
+  c_.line("I108=0");
+  at(0, 0);
+  position_loop_servo(0);
+  const std::int64_t before = motors[0].actual;
+  at(320, 0);
+  position_loop_servo(0);
+  EXPECT_EQ(motors[0].actual - before, 320);
+}
+
+TEST_F(LoopWords, OpenLoopPutsOutWhatItIsTold) {
+  ASSERT_TRUE(motor_open(0, 1234 << 8));
+  position_loop_servo(0);
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 1234u << 8);
+  motor_kill(0);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+  position_loop_servo(0);
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 0u) << "nor later";
+}
+
+// The bias is added after the clip, and stays on the output of a killed motor.
+TEST_F(LoopWords, BiasIsAddedToTheWord) {
+  c_.line("I129=-300 I169=1000 I130=100000");
+  close(0, 0);
+  cycle(1000 * 32 * 96, 0, 0);
+  motor_output_servo(0);
+  EXPECT_EQ(hal_signed(*hal_y(kDac)), (1000 - 300) * 256);
+  motor_kill(0);
+  EXPECT_EQ(hal_signed(*hal_y(kDac)), -300 * 256);
+  c_.line("I129=32767 I169=32767");
+  close(0, 0);
+  cycle(1000 * 32 * 96, 0, 0);
+  motor_output_servo(0);
+  EXPECT_EQ(hal_signed(*hal_y(kDac)), 0x7FFFFF);
+  c_.line("I129=-32768");
+  cycle(-1000 * 32 * 96, 0, 0);
+  motor_output_servo(0);
+  EXPECT_EQ(hal_signed(*hal_y(kDac)), -0x7FFFFF);
+}
+
+// What the registers hold at a start is not known.
+TEST_F(LoopWords, AStartPutsTheBiasOut) {
+  c_.line("I129=0 SAVE");
+  *hal_y(kDac) = 0x123400;
+  c_.restart();
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+}
+
+TEST_F(LoopWords, AKilledMotorLeavesItsRegisterToTheUser) {
+  motor_output_servo(0);
+  c_.line("WY$78002,$123400");
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 0x123400u);
+  ASSERT_TRUE(motor_open(0, 0));
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_y(kDac), 0u);
+}
+
+TEST_F(LoopWords, TheWordGoesToXForIxx01Of2) {
+  c_.line("I101=2 I102=$10F8");
+  ASSERT_TRUE(motor_open(0, 77 << 8));
+  position_loop_servo(0);
+  motor_output_servo(0);
+  EXPECT_EQ(*hal_x(0x10F8), 77u << 8);
+}
+
+}  // namespace
+}  // namespace brick
