@@ -140,8 +140,8 @@ struct coordinate_system {
   uint32_t pending_velocities, pending_triggers;
   double pending_vector[ARC_VECTORS]; /* I, J, K, R of a CIRCLE line */
   uint32_t pending_vectors;
-  double normal[3];           /* of the plane of arcs */
-  bool sets_normal;           /* I, J, K are those of NORMAL, until the line ends or an axis comes */
+  double normal[3];          /* of the plane of arcs */
+  bool sets_normal;          /* I, J, K are those of NORMAL, until the line ends or an axis comes */
   bool was_matched;          /* since the last MOVE_OWN */
   bool first;                /* no move of this run has been placed yet */
   bool sets_position;        /* the line is that of PSET */

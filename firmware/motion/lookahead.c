@@ -13,8 +13,6 @@ enum {
   SCALE_BITS = 30 /* of the mantissa of a motor's scale */
 };
 
-struct look looks[COORDINATE_SYSTEMS];
-
 /* Of a motor: x' and x'' as limits_motor has them are differences of points times mantissa / 2^shift; the largest
  * difference that Ixx16 allows. 0: no limit. */
 static struct {

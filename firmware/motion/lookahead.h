@@ -16,17 +16,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/motion/lookahead_order.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/segment_piece.h"
-
-enum lookahead_order {
-  LOOKAHEAD_NONE,
-  LOOKAHEAD_STOP,
-  LOOKAHEAD_FORWARD,
-  LOOKAHEAD_BACKWARD,
-  LOOKAHEAD_ONE_FORWARD, /* a segment */
-  LOOKAHEAD_ONE_BACKWARD
-};
 
 /* A piece for the servo task: from one sixteenth of a segment to another, backwards too. */
 struct lookahead_piece {
@@ -48,15 +40,6 @@ uint32_t lookahead_left(uint32_t cs); /* segments that are not handed over */
 /* The next control point: of the motors by number; move and line at it. */
 void lookahead_add(uint32_t cs, const int64_t point[], uint32_t number, const struct path_line* line);
 void lookahead_close(uint32_t cs); /* the points so far are all */
-/* `hurry`: the servo task runs short. False: there is none yet. */
-bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece);
-bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing was to be done */
-/* The servo task has not begun `piece` and what came behind it, and will not: the front is there again. */
-void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
-void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */
-bool lookahead_stands(uint32_t cs);                         /* or will, behind what is handed over */
-uint32_t lookahead_state(uint32_t cs, bool moves);          /* for Isx21 */
-bool lookahead_is_over(uint32_t cs);                        /* all of the sequence is handed over */
 void lookahead_points(uint32_t cs, uint32_t segment, uint32_t motor, int64_t points[SPLINE_POINTS]);
 
 #endif

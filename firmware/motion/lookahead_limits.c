@@ -5,8 +5,8 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/fixed_point.h"
 
-enum { BOUNDS_A_MOTOR = 6, PAUSE_BOUNDS = 24, SEARCHES = 6 };
-enum { NEAR_ENOUGH = 6 }; /* 2^-6 of a w */
+enum { BOUNDS_A_MOTOR = 6, PAUSE_BOUNDS = 24, SEARCHES = 3 };
+enum { NEAR_ENOUGH = 4 }; /* 2^-4 of a w */
 
 /* Products are kept to 32 bits: 1 is 2^12 then, and sums are up to two less. A sweep keeps so much inside of the bounds
  * that rounding leaves a way for what is chosen by it. */
@@ -102,12 +102,14 @@ static bool pass(enum limits_end end, int32_t w, struct room* r) {
   return true;
 }
 
-/* What has been narrowed is looked at again by the bounds that came before. */
+/* What has been narrowed on the way is looked at again by the bounds that came before. The one that was the narrowest
+ * last comes first, and mostly is so again. */
 static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
   struct room r = {.most = most};
   bool possible = likely >= count || narrow(end, likely, w, &r);
+  const int32_t begun = r.most;
   possible = possible && pass(end, w, &r);
-  if (possible && r.narrowed) possible = pass(end, w, &r);
+  if (possible && r.most != begun) possible = pass(end, w, &r);
   if (!possible) r.most = -1;
   slice_pause();
   return r;

@@ -1,8 +1,8 @@
-/* Rates of segments: sweeps, what is handed over next, stops and the way back (motion:7.4, motion:7.5). */
+#include "firmware/motion/lookahead_plan.h"
+
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
-#include "firmware/motion/lookahead.h"
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 
@@ -81,9 +81,14 @@ static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
   }
   const uint32_t knot = l->sweep - 1u;
   load(l, knot);
-  const int32_t rate = limits_reach(LIMITS_FIRST, *rate_at(l, l->sweep), cap_at(l, knot));
+  int32_t rate = limits_reach(LIMITS_FIRST, *rate_at(l, l->sweep), cap_at(l, knot));
   l->sweep = knot;
-  if (rate == *rate_at(l, knot) && knot < l->swept) l->sweep = last; /* from here on all is as it was */
+  /* What was possible still is, though the search has not come so near to it this time: something before it may count
+   * on it. From where nothing is new on all is as it was. */
+  if (knot < l->swept && rate <= *rate_at(l, knot)) {
+    rate = *rate_at(l, knot);
+    l->sweep = last;
+  }
   *rate_at(l, knot) = rate;
   return true;
 }
@@ -116,22 +121,37 @@ bool lookahead_sweep(uint32_t cs, bool hurry) {
 
 /* Pieces ----------------------------------------------------------------------------------------------------------- */
 
+enum { ROOT_ONE = 1 << 30 };
+
+/* Root of a w, 2^30 for 1: a bit after the other. */
+static uint32_t root(int32_t w) {
+  uint64_t left = (uint64_t)(uint32_t)w << RATE_BITS, found = 0;
+  for (uint64_t bit = UINT64_C(1) << 60; bit != 0; bit >>= 2) {
+    const bool fits = left >= found + bit;
+    if (fits) left -= found + bit;
+    found = fits ? (found >> 1) + bit : found >> 1;
+  }
+  slice_pause();
+  return (uint32_t)found;
+}
+
 /* 2 T / (root w0 + root w1); the share of its time and that of the way differ by warp u (1 - u). */
 static void set_time(const struct look* l, int32_t from, int32_t to, struct lookahead_piece* piece) {
   const uint32_t parts = piece->last > piece->first ? piece->last - piece->first : piece->first - piece->last;
   piece->warp = 0;
   piece->time = ((int64_t)(uint32_t)l->period << TRAJECTORY_FRACTION_BITS) * parts / PIECE_PARTS;
   if (from == RATE_FULL && to == RATE_FULL) return;
-  const double first = math_square_root((double)from), second = to == from ? first : math_square_root((double)to);
+  const uint32_t first = root(from), second = to == from ? first : root(to);
   slice_pause();
-  const double sum = first + second;
+  const double inverse = 1.0 / ((double)first + (double)second);
   slice_pause();
-  const double time = (double)parts / 8.0 * l->period / sum * (double)(1 << (RATE_BITS / 2));
+  const double time = (double)parts / 8.0 * l->period * inverse * (double)ROOT_ONE;
   slice_pause();
   piece->time = math_to_integer(
       math_scale(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, TRAJECTORY_FRACTION_BITS));
   slice_pause();
-  if (from != to) piece->warp = (int32_t)math_to_integer((first - second) / sum * (double)PIECE_WARP_ONE);
+  if (from != to)
+    piece->warp = (int32_t)math_to_integer(((double)first - (double)second) * inverse * (double)PIECE_WARP_ONE);
 }
 
 /* To `last` sixteenths of a segment, with w there. */

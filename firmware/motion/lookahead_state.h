@@ -6,8 +6,9 @@
 #include <stdint.h>
 
 #include "firmware/base/dimensions.h"
-#include "firmware/motion/lookahead.h"
 #include "firmware/motion/lookahead_buffer.h"
+#include "firmware/motion/lookahead_order.h"
+#include "firmware/motion/segment_piece.h"
 
 enum { LOOKAHEAD_KEPT = 8 }; /* records behind the front that are not written over */
 

@@ -4,7 +4,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/corner.h"
-#include "firmware/motion/lookahead.h"
+#include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/motion/segment_piece.h"

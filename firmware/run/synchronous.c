@@ -72,7 +72,8 @@ static void assign(const struct assignment* a) {
 static bool is_due(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (queues[cs].count == 0) return false;
-  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 || (!s->running && !s->active && !s->next_valid && paths[cs].count == 0);
+  return (int32_t)(s->started - waiting(cs, 0)->move) >= 0 ||
+         (!s->running && !s->active && !s->next_valid && paths[cs].count == 0);
 }
 
 static void remove_first(uint32_t cs) {

@@ -64,6 +64,30 @@ TEST_F(Lookahead, CornersAreSlowedDown) {
   RecordProperty("ms", static_cast<int>(end));
 }
 
+// LA-5: 400 counts/ms, 1 count/ms^2, 5 ms: StopTime / 2 = 200 ms are 40 segments, 4/3 of them 54. Half as many hold the
+// limits too and are slower.
+TEST_F(Lookahead, SizingOfTheExample) {
+  double times[2], fastest[2];
+  for (int i = 0; i < 2; ++i) {
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    ASSERT_EQ(host("I5113=5 I116=400 I117=1 I216=400 I217=1 I5120=" + std::string(i == 0 ? "54" : "27")), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 80,0"), "");
+    store({"F400 TA10 TS0", "X300", "Y300"});
+    const auto found = extremes(2, &times[i]);
+    for (const auto& motor : found) EXPECT_LE(motor.acceleration, 1.02);
+    fastest[i] = found[0].velocity;
+    EXPECT_LE(fastest[i], 400 * 1.005);
+    EXPECT_EQ(motors[0].trajectory, 300000 * 3072LL);
+    EXPECT_EQ(motors[1].trajectory, 300000 * 3072LL);
+  }
+  EXPECT_GT(fastest[0], 399);
+  // Each side: 300,000 counts at 400 and half of the change of speed at each end, at the corner both together.
+  EXPECT_LE(times[0], 1.1 * 2 * (750 + 400));
+  EXPECT_GT(times[1], times[0] + 100);
+  EXPECT_LT(fastest[1], 350) << "27 segments of 5 ms stop from sqrt(2 x 27 x 5 x v)";
+}
+
 // A segment at a time by Isx21: 14 and 15 are shown as 10 and 11, each stops at the next knot.
 TEST_F(Lookahead, SingleSegments) {
   fit({"1000X"});

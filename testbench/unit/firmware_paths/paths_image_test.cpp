@@ -59,7 +59,12 @@ class PathsImage : public ::testing::Test {
 
 TEST_F(PathsImage, ASegmentOfEightAxes) {
   const double cycles = cycles_a_segment(54, 40);
+  RecordProperty("cycles", std::to_string(cycles));
   std::printf("%.0f cycles a segment\n", cycles);
+  EXPECT_EQ(value("RY$2014"), 0) << "a run-time error: the servo task came to the end of the segments";
+  accepted("M1->D:$88 M2->D:$108");
+  EXPECT_EQ(value("M1") / 3072, 40 * 1900);
+  EXPECT_EQ(value("M2") / 3072, 40 * 1200);
 }
 
 }  // namespace

@@ -73,6 +73,15 @@ TEST_F(Segments, BlendedMovesKeepTheirTrajectory) {
   for (unsigned motor = 0; motor < 3; ++motor) EXPECT_EQ(motors[motor].trajectory, 0);
 }
 
+// A change of velocity that is longer than what the move before has left of its own: that much of it.
+TEST_F(Segments, ABlendHasTheRoomOfTheMoveBefore) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5"), "");
+  store({"TM50 TA50 TS0", "X1", "TA100 X2"});
+  const std::vector<Change> changes = {{25, 50, 0, 20}, {75, 50, 0, 10 - 20}, {175, 100, 0, -10}};
+  follow({Spline([&](double t) { return way(changes, t); }, 225, 5)});
+}
+
 // A line, half a circle and a helix that blend: what each has of its own way adds up.
 TEST_F(Segments, ArcsBlendWithLines) {
   fit({"1000X", "1000Y", "100Z"});

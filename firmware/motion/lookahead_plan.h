@@ -1,0 +1,21 @@
+/* Rates of segments: sweeps, what is handed over next, stops and the way back (motion:7.4, motion:7.5). Real-time task,
+ * in slices. */
+#ifndef FIRMWARE_MOTION_LOOKAHEAD_PLAN_H
+#define FIRMWARE_MOTION_LOOKAHEAD_PLAN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/motion/lookahead.h"
+
+/* `hurry`: the servo task runs short. False: there is none yet. */
+bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece);
+bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing was to be done */
+/* The servo task has not begun `piece` and what came behind it, and will not: the front is there again. */
+void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
+void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */
+bool lookahead_stands(uint32_t cs);                         /* or will, behind what is handed over */
+uint32_t lookahead_state(uint32_t cs, bool moves);          /* for Isx21 */
+bool lookahead_is_over(uint32_t cs);                        /* all of the sequence is handed over */
+
+#endif

@@ -1,0 +1,3 @@
+#include "firmware/motion/lookahead_state.h"
+
+struct look looks[COORDINATE_SYSTEMS];
