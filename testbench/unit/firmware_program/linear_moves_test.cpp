@@ -265,8 +265,8 @@ TEST_F(LinearMoves, ABlendThatIsPlannedTooLateIsPlannedAgain) {
   ASSERT_EQ(host("TM200 TA40 TS0 X1 Y1"), "");
   ASSERT_EQ(host("R"), "");
   for (int i = 0; i < 20 && !cs().active; ++i) platform::servo_ticks(1);
-  platform::servo_ticks(ticks_of(196.0));
-  ASSERT_EQ(host("X2 Y2"), "");  // its blend would begin at 200 ms, the stop too
+  platform::servo_ticks(ticks_of(168.0));
+  ASSERT_EQ(host("TA100 X2 Y2"), "");  // its blend would begin at 170 ms, the stop at 200
   unsigned pauses = 0, interrupts = 0;
   double slowest = 100.0, last = at(1);
   const auto servo = [&] {
@@ -277,7 +277,7 @@ TEST_F(LinearMoves, ABlendThatIsPlannedTooLateIsPlannedAgain) {
   for (int i = 0; i < 400; ++i) {
     servo();
     platform::real_time_in_slices([&] {
-      if (++pauses % 16 == 0) servo();
+      if (++pauses % 6 == 0) servo();
     });
     if (cs().placed && pauses < 1000) { EXPECT_TRUE(cs().moves[cs().executing ^ 1u].blended); }
   }
