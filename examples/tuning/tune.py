@@ -3,7 +3,8 @@
 
 Plays tuning.pmc with `brick exec` (BRICK in the environment, or on the PATH), writes step.csv and parabola.csv to
 FOLDER (default: beside this file) and prints what they say about the loop. --check writes nothing; exit status 1 when
-the moves in FOLDER's tables are not within a count of those that the controller gathers today.
+the moves in FOLDER's tables are not those that the controller gathers today, within one count commanded and three
+actual: where friction lets go depends on the instant.
 """
 import itertools
 import os
@@ -56,7 +57,7 @@ def read(file):
 def are_alike(first, second):
     """The moves: what stands before them is as long as the commands happened to take."""
     pairs = list(zip(from_step(first), from_step(second), strict=False))
-    return len(pairs) > 150 and all(abs(a[1] - b[1]) <= 1 and abs(a[2] - b[2]) <= 1 for a, b in pairs)
+    return len(pairs) > 150 and all(abs(a[1] - b[1]) <= 1 and abs(a[2] - b[2]) <= 3 for a, b in pairs)
 
 
 def from_step(rows):
