@@ -26,7 +26,7 @@ static struct {
 /* B, while the servo task is held off or nothing is gathered. */
 static uint32_t sources[SOURCES], source_count, sample_size;
 static bool is_plain[SOURCES]; /* read where it stands: no time is lost in the servo task */
-static uint32_t period; /* servo cycles; 0: once */
+static uint32_t period;        /* servo cycles; 0: once */
 static bool wraps;
 
 static volatile bool gathers; /* B; S ends it */

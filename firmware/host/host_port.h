@@ -18,9 +18,9 @@
 extern uint8_t host_port_received[HOST_PORT_RECEIVE_SIZE];
 extern volatile uint32_t host_port_received_count, host_port_taken_count;
 
-/* Characters that are taken without another look: as many as the queue has room for. While a motor is enabled each phase
- * interrupt takes that back and renews the right to HOST_PORT_PACE; when they have been taken or sent the port is held,
- * its interrupts off, until the next one puts host_port_enables into HCR. Interrupts. */
+/* Characters that are taken without another look: as many as the queue has room for. While a motor is enabled each
+ * phase interrupt takes that back and renews the right to HOST_PORT_PACE; when they have been taken or sent the port is
+ * held, its interrupts off, until the next one puts host_port_enables into HCR. Interrupts. */
 extern volatile int32_t host_port_granted;
 extern volatile uint32_t host_port_renewed, host_port_held, host_port_enables;
 

@@ -1,5 +1,5 @@
-/* One real-time interrupt: what stops things, what the panel selects and how BREQ stands come before the checks of motors
- * and the calculation of lines; PLC 0 is the last. */
+/* One real-time interrupt: what stops things, what the panel selects and how BREQ stands come before the checks of
+ * motors and the calculation of lines; PLC 0 is the last. */
 #include "firmware/image/real_time.h"
 
 #include "firmware/buffers/buffer_request.h"

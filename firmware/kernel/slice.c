@@ -20,7 +20,7 @@ static bool inside;
 static uint32_t began, length, round_began;
 static volatile bool gave_way; /* the last slice, before its time was over. R, read by B */
 
-static bool works;      /* the round, or the last one, came to a pause: there is something to do */
+static bool works;     /* the round, or the last one, came to a pause: there is something to do */
 static bool under_way; /* a round that has begun and has not ended */
 
 static void make_round(void) {

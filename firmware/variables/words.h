@@ -16,8 +16,8 @@ struct word_hooks {
 extern const struct word_hooks word_hooks;
 
 bool word_exists(bool x, uint32_t address);
-bool word_is_plain(uint32_t address); /* of main memory, and nobody makes it: it may be read where it stands */
-uint32_t word_read(bool x, uint32_t address);                                 /* 24 bits */
+bool word_is_plain(uint32_t address);         /* of main memory, and nobody makes it: it may be read where it stands */
+uint32_t word_read(bool x, uint32_t address); /* 24 bits */
 void word_read_long(uint32_t address, uint32_t* x, uint32_t* y);              /* both of one moment */
 void word_write(bool x, uint32_t address, uint32_t value);                    /* the low 24 bits are stored */
 void word_write_long(uint32_t address, uint32_t x, uint32_t y);               /* both at one moment */

@@ -222,7 +222,8 @@ void control_characters(BenchContext& b) {
     say(fmt::format("M8={} M9={} M10={}", sign * (motor + 5) * kCount, sign * (motor * kCount + kCount / 2),
                     sign * (motor + 100) * kCount + kCount / 4));
     if (motor % 3 == 0) say(fmt::format("I{}00=1 #{}HMZ", motor, motor));
-    const bool activated = motor % 3 == 0;  // then the words are the loop's (motion:1.3/2): it stands where it was homed
+    const bool activated =
+        motor % 3 == 0;  // then the words are the loop's (motion:1.3/2): it stands where it was homed
     statuses += space + (activated ? "850000000400" : "050000000000");
     positions += space + number(activated ? 0 : sign * (motor + 0.5));
     errors += space + number(activated ? 0 : sign * 4.5);

@@ -122,7 +122,9 @@ TEST_F(Survival, StacksKeepRoomUnderAllThatIsDeep) {
   std::vector<std::string> lines = worst_lines();
   lines.emplace_back("CALL2");
   run(16, lines);
-  accepted("I100,32,100=1 I101,32,100=1 I5=3 I47=1 I48=1 I57=0 ENABLE PLC 0,1");
+  // Eight motors: what the times of the tasks are for (motion:1.6). 32 leave the background too little for half a
+  // second.
+  accepted("I100,8,100=1 I101,8,100=1 I5=3 I47=1 I48=1 I57=0 ENABLE PLC 0,1");
   for (int i = 0; i < 5; ++i)
     for (const std::string& line : {nested, brackets, std::string("P1..99"), std::string("LIST PLC 1")})
       (void)ask(line);
