@@ -56,10 +56,10 @@ void background_between_lines(void) {
 void background_pass(void) {
   clock_watch_pass();
   line_input_pass();
+  dpram_functions_pass();
   if (slice_hurry != 0u && came_by_within(LINE_MS)) return; /* a line is on its way: its end begins the next pass */
   binary_rotary_pass();
   program_texts_pass();
-  dpram_functions_pass();
   conversion_table_pass();
   background_meanwhile();
   i_hardware_apply_clock_directions(); /* written by a program */
