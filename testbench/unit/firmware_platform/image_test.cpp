@@ -55,7 +55,7 @@ TEST_F(Image, ChecksumsCountEveryByteOfALineInEachFraming) {
 }
 
 // Each of the 2258.7 servo interrupts works out the eight entries of the default conversion table, from three words of
-// a channel each (motion:2.2/1): 45 instructions an entry beside the 2,200,000 of all else.
+// a channel each (motion:2.2, method $0): 45 instructions an entry beside the 2,200,000 of all else.
 TEST_F(Image, IdleSecondCostsLessThan3000000Instructions) {
   board.send("I6=1 I3=2\r");
   board.send("CHECKSUM\r");  // else the background would add the image up in this second
