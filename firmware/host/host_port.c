@@ -32,7 +32,6 @@ static volatile uint32_t flushes;             /* ^X so far */
 static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
 static volatile uint32_t reserved;            /* characters that a full queue still takes. Servo task, interrupt */
-static uint32_t spare;  /* of a phase period with a queue that is nearly full: looked at one by one. Interrupt */
 static bool of_program; /* what is being sent */
 static uint32_t spare;  /* of a phase period with a queue that is nearly full: looked at one by one. Interrupt */
 
@@ -184,7 +183,13 @@ uint32_t host_port_text(const uint8_t** text, bool* void_before) {
   return stored < room ? stored : room;
 }
 
-void host_port_text_taken(uint32_t count) { host_port_taken_count += count; }
+void host_port_text_taken(uint32_t count) {
+  host_port_taken_count += count;
+  if (receiving || waiting() >= HOST_PORT_RECEIVE_LIMIT / 2u) return;
+  const uint32_t state = hal_mask_all(); /* the queue was full; nobody may come to look at it again */
+  if (!receiving) enable(true, transmitting);
+  hal_unmask(state);
+}
 
 /* False when the host has not read for too long. */
 static bool wait_for_room(void) {
