@@ -118,18 +118,14 @@ static void make_entry(struct conversion_entry* e, uint32_t line, uint32_t lines
   make_sources(e);
 }
 
-/* Whether `e` goes on with what it remembers: the digit that the servo task changes does not count. */
-static bool is_as_before(const struct conversion_entry* e, const struct table* before) {
-  for (uint32_t i = 0; i < before->count; ++i) {
-    const struct conversion_entry* b = &before->entries[i];
-    if (b->line != e->line) continue;
-    const bool triggered = b->method == METHOD_ARMED && e->method == METHOD_RUNNING;
-    if (b->setup != e->setup && !(triggered && ((b->setup ^ e->setup) & ~(uint32_t)METHOD) == 0u)) return false;
-    for (uint32_t k = 1; k < CONVERSION_LONGEST; ++k)
-      if (b->parameter[k] != e->parameter[k]) return false;
-    return true;
-  }
-  return false;
+/* Whether `e`, of the same line as `b`, goes on with what that remembers: the digit that the servo task changes does
+ * not count. */
+static bool is_as_before(const struct conversion_entry* e, const struct conversion_entry* b) {
+  const bool triggered = b->method == METHOD_ARMED && e->method == METHOD_RUNNING;
+  if (b->setup != e->setup && !(triggered && ((b->setup ^ e->setup) & ~(uint32_t)METHOD) == 0u)) return false;
+  for (uint32_t k = 1; k < CONVERSION_LONGEST; ++k)
+    if (b->parameter[k] != e->parameter[k]) return false;
+  return true;
 }
 
 static void make(struct table* table) {
@@ -155,7 +151,12 @@ static void change(void) {
   static bool new_entry[CONVERSION_LINES];
   struct table *before = present, *table = before == &tables[0] ? &tables[1] : &tables[0];
   make(table);
-  for (uint32_t i = 0; i < table->count; ++i) new_entry[i] = !is_as_before(&table->entries[i], before);
+  const struct conversion_entry *b = before->entries, *end = b + before->count; /* both by line */
+  for (uint32_t i = 0; i < table->count; ++i) {
+    const struct conversion_entry* e = &table->entries[i];
+    while (b != end && b->line < e->line) ++b;
+    new_entry[i] = b == end || b->line != e->line || !is_as_before(e, b);
+  }
   const uint32_t state = hal_mask_servo();
   for (uint32_t i = 0; i < table->count; ++i)
     if (new_entry[i]) begin(&table->entries[i]);

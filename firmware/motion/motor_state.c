@@ -9,6 +9,7 @@
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_flags.h"
 #include "firmware/motion/motor_output.h"
+#include "firmware/motion/notch.h"
 #include "firmware/motion/phasing.h"
 #include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
@@ -24,9 +25,14 @@ bool motor_may_close(uint32_t motor) {
          !conversion_table_is_not_built((uint32_t)i_integer(first + 1u));
 }
 
-/* Faults are forgotten; those that last are found again by the next pass of protection. */
-static void enable(uint32_t motor, enum motor_loop loop) {
+/* Faults are forgotten; those that last are found again by the next pass of protection. The servo task looks at none of
+ * it while the loop is not closed. */
+static void forget(uint32_t motor) {
   motors[motor].found = (struct motor_findings){.warning_error = false};
+  notch_restart(motor);
+}
+
+static void enable(uint32_t motor, enum motor_loop loop) {
   jog_drop(motor);
   motors[motor].loop = loop;
   motors_enabled |= 1u << motor;
@@ -37,6 +43,7 @@ static void enable(uint32_t motor, enum motor_loop loop) {
 bool motor_close(uint32_t motor) {
   if (motors[motor].loop == LOOP_CLOSED) return true;
   if (!motor_may_close(motor)) return false;
+  forget(motor);
   const uint32_t state = hal_mask_servo();
   desired_position_take_actual(motor);
   position_loop_restart(motor);
@@ -47,6 +54,7 @@ bool motor_close(uint32_t motor) {
 
 bool motor_open(uint32_t motor, int32_t output) {
   if (!motor_may_enable(motor)) return false;
+  if (motors[motor].loop != LOOP_OPEN) forget(motor);
   const uint32_t state = hal_mask_servo();
   motors[motor].open_output = output;
   if (motors[motor].loop != LOOP_OPEN) enable(motor, LOOP_OPEN);

@@ -35,15 +35,18 @@ static void take_activated(uint32_t motor) {
   }
 }
 
-/* Each module holds the servo task off while it changes what that works with. */
+/* Each module holds the servo task off while it changes what that works with. What only a motor that is activated needs
+ * is made when it is. */
 static void change(uint32_t motor) {
   take_scales(motor);
+  servo_words_motor_changed(motor);
+  const bool activated = i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0;
+  if (!activated && (motors_active >> (motor - 1u) & 1u) == 0u) return;
   desired_position_motor_changed(motor);
   position_loop_motor_changed(motor);
   motor_output_motor_changed(motor);
   motor_flags_motor_changed(motor);
   protection_motor_changed(motor);
-  servo_words_motor_changed(motor);
   take_activated(motor);
 }
 
@@ -59,7 +62,7 @@ void motor_variables_changed(uint32_t motor) {
 
 void motor_variables_initialize(void) {
   rework = (struct rework){.under_way = false};
-  motors_active = 0;
+  motors_active = motors_enabled = 0;
   __builtin_memset(motors, 0, sizeof motors);
   conversion_table_initialize();
   desired_position_initialize();

@@ -118,7 +118,6 @@ void position_loop_restart(uint32_t motor) {
   motors[motor].closed_at = motors[motor].commanded;
   l->step = l->integral = 0;
   l->saturated = false;
-  notch_restart(motor);
 }
 
 /* Servo task ------------------------------------------------------------------------------------------------------- */

@@ -98,6 +98,7 @@ class BreqSelect {
     std::shuffle(states.begin() + 8, states.end(), random_);
     b_.ask("DELETE GATHER");
     b_.ask("I68=15 I16=1 I17=2 I8=0 I7002=0 I6802=0");
+    b_.ask("I8008=0");  // 32 entries of the conversion table alone take longer than T_CS (host-bus:5.7/9)
     for (unsigned cs = kSystems; cs-- > 0;)
       if (states[cs] != Buffer::kIdle) b_.ask(fmt::format("&{}DEFINE ROTARY 20", cs + 1));
     b_.ask("OPEN ROTARY");

@@ -266,7 +266,8 @@ TEST(HostExchange, ControlAStopsCoordinateSystemsBeyondI68Too) {
 // Characters as the port's interrupt takes them, while the background is at something else.
 void put(const std::string& characters) {
   for (const char c : characters) fake_host_input(static_cast<std::uint8_t>(c));
-  while (fake_host_input_waits() && fake_task_take(FAKE_HOST)) {}
+  while (fake_host_input_waits() &&
+         (fake_task_take(FAKE_HOST) || (host_port_held != 0 && fake_task_take(FAKE_PHASE)))) {}
 }
 
 // 256 lines are 2048 characters: a queue is full (host-bus:8.7/2).

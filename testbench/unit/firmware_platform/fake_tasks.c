@@ -10,6 +10,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/host/host_port.h"
 #include "firmware/kernel/tasks.h"
+#include "firmware/motion/motor.h"
 #include "firmware/motion/phase_task.h"
 #include "rtl/regs/brick_regs.h"
 #include "testbench/unit/firmware_platform/fake_hal.h"
@@ -102,6 +103,16 @@ static void host_port(void) {
   if (sent != NOTHING && output_length < sizeof output) output[output_length++] = (char)sent;
 }
 
+/* What image/trap.S does in each phase interrupt (motion:1.6). */
+static void renew_pace(void) {
+  if (motors_enabled == 0u) return;
+  host_port_granted = 0;
+  host_port_renewed = 1;
+  if (host_port_held == 0u) return;
+  host_port_held = 0;
+  hal_host_interrupts((host_port_enables & HI08_HCR_HRIE_MASK) != 0u, (host_port_enables & HI08_HCR_HTIE_MASK) != 0u);
+}
+
 static void (*on_wait)(void);
 
 void fake_hal_on_wait(void (*action)(void)) { on_wait = action; }
@@ -134,6 +145,7 @@ static void run(enum fake_task task) {
       break;
     case FAKE_PHASE:
       tasks_phase_stamp = (uint32_t)hal_long_cycles();
+      renew_pace();
       if (phase_task_work != 0u) phase_task_interrupt();
       break;
     default:

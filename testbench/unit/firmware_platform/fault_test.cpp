@@ -36,6 +36,11 @@ class Fault : public ::testing::Test {
     board.cpu().set_reg(kA1, kNothing);
     board.cpu().set_pc(kPlace);
   }
+  bool phase_may_come() {
+    constexpr unsigned kMstatus = 0x300, kMie = 0x304, kEnabled = 3;
+    const auto is_on = [this](unsigned csr, unsigned bit) { return (board.cpu().csr(csr) >> bit & 1) != 0; };
+    return is_on(kMstatus, kEnabled) && is_on(kMie, kIrqPhase);
+  }
   std::string ask(const std::string& line) {
     const std::string reply = board.send(line + "\r");
     return reply.substr(0, reply.find('\r'));
@@ -167,6 +172,7 @@ TEST_F(Fault, BelowTheStackOfSlicesIsOneAtOnce) {
   for (const auto& [planted, sp, below] : cases) {
     SCOPED_TRACE(planted.name);
     ASSERT_EQ(board.send("P1=5 WX$78005,$4000 WY$78002,1000\r"), "\x06");
+    while (!phase_may_come()) board.run_ms(0.0005);
     plant(planted);
     board.cpu().set_reg(kSp, sp);
     board.run_ms(1.0);

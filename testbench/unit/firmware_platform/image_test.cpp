@@ -150,7 +150,7 @@ TEST_F(Image, AllMotorsCommutatedLeaveTimeForTheOtherTasks) {
   EXPECT_GT(duration, 32u * 10u);
   EXPECT_LT(duration, 8705u / 2u * 3u / 4u) << "three quarters of a phase period, every other";
   RecordProperty("half_cycles", static_cast<int>(duration));
-  EXPECT_EQ(board.send("I101..3201=0 ???\r"), "000000000800\r\x06");
+  EXPECT_EQ(board.send("I101..3201=0 ???\r", 1000.0), "000000000800\r\x06");
 }
 
 TEST_F(Image, LongReportsArriveComplete) {

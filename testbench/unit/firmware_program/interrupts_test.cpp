@@ -134,18 +134,6 @@ TEST_F(Interrupts, StreamedLinesAreExecutedOnceAndInOrder) {
   }
 }
 
-// The same with critical sections that hold nobody off: an interrupt comes soon after each begins.
-TEST_F(Interrupts, StreamWithoutMasksLosesLines) {
-  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    platform::power_up();
-    fake_tasks_ignore_masks(true);
-    const std::string found = stream(seed, 300);
-    fake_interrupts_end();
-    if (!found.empty()) return;
-  }
-  FAIL() << "nothing was found";
-}
-
 // The same lines as binary ones, with constants only: a program writes them down. Who stores is set by I45, which
 // changes meanwhile when `changes`.
 std::string binary_stream(std::uint32_t seed, std::uint32_t gap, bool foreground, bool changes) {
