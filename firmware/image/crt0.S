@@ -30,15 +30,14 @@ _start:
 2:
   la a1, __bss_start
   la a2, __bss_end
-3:                              /* the linker script rounds .bss to 16 bytes */
-  bgeu a1, a2, 4f
-  sw zero, 0(a1)
-  sw zero, 4(a1)
-  sw zero, 8(a1)
-  sw zero, 12(a1)
-  addi a1, a1, 16
-  j 3b
+  j 4f
+3:                              /* the linker script rounds .bss to 64 bytes */
+  .irp word, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15
+  sw zero, 4*\word(a1)
+  .endr
+  addi a1, a1, 64
 4:
+  bltu a1, a2, 3b
   li t0, STACK_MARK             /* of 16 bytes each as well */
   la a1, __side_stack_bottom
   la a2, __side_stack_top

@@ -10,7 +10,7 @@ volatile uint32_t cs_busy, cs_awake;
 uint32_t cs_interrupts;
 
 /* A motor belongs to one system at a time: all rings have their cubics here, each those of its motors. */
-static struct cubic cubics[PIECES * MOTORS];
+static struct cubic cubics[PIECES * MOTORS] __attribute__((section(".noinit"))); /* written with its piece */
 
 void coordinate_systems_initialize(void) {
   for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++) {

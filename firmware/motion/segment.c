@@ -51,7 +51,7 @@ static struct sequence sequences[COORDINATE_SYSTEMS];
 static int64_t control[MOTORS][SPLINE_POINTS];
 /* Of the pieces of the rings. */
 static struct path_line piece_lines[COORDINATE_SYSTEMS][PIECES];
-static struct lookahead_piece looked[COORDINATE_SYSTEMS][PIECES];
+static struct lookahead_piece looked[COORDINATE_SYSTEMS][PIECES] __attribute__((section(".noinit")));
 
 static uint32_t ahead_of(const struct coordinate_system* s) { return s->ring.added - s->ring.executing; }
 

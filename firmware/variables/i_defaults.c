@@ -128,6 +128,11 @@ static double configuration(uint32_t offset) {
   }
 }
 
+bool i_default_is_of_instance(uint32_t field) {
+  return (field >= I_FIELD_MOTOR_ACTIVE && field <= I_FIELD_MOTOR_PHASE) || field == I_FIELD_TIME_BASE ||
+         field == I_FIELD_IC_CLOCK_DIRECTION || field == I_FIELD_IC_RING_CONTROL;
+}
+
 double i_default_value(struct i_place place, const struct i_entry* entry, uint32_t clock_source) {
   if (i_of_absent_ic(place)) return 0.0;
   switch (entry->field) {

@@ -15,8 +15,10 @@
 #define TIMER_LOWEST (-8388608)
 enum { CONFIGURATION_COUNT = I4909_CPU_IDENTIFICATION + 1 - I_BASE_SYSTEM }; /* the others are 0 */
 
-static double value_of[VARIABLE_COUNT];
-int32_t i_integers[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
+/* clear_all is the first to write them: crt0.S need not. */
+static double value_of[VARIABLE_COUNT] __attribute__((section(".noinit")));
+int32_t i_integers[VARIABLE_COUNT]
+    __attribute__((section(".noinit"))); /* the same, for tasks that must not use floating point */
 static uint32_t timer_start[COORDINATE_SYSTEMS][ISX11_TIMERS_COUNT]; /* servo count when Isx11, Isx12 were written */
 
 /* Reading ---------------------------------------------------------------------------------------------------------- */
@@ -122,17 +124,18 @@ static void defaults(uint32_t first, uint32_t count, uint32_t source) {
   }
 }
 
+static void copy(uint32_t from, uint32_t to, uint32_t count) {
+  __builtin_memcpy(&value_of[to], &value_of[from], count * sizeof value_of[0]);
+  __builtin_memcpy(&i_integers[to], &i_integers[from], count * sizeof i_integers[0]);
+}
+
 /* `copies` more blocks of 100 after the one at `first`: the same, except where the default depends on the motor or
  * coordinate system. Looking every row up for each would double the start-up time. */
 static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
   defaults(first, 100, source);
-  for (uint32_t block = first + 100u; block < first + 100u * (copies + 1u); block += 100u) {
-    __builtin_memcpy(&value_of[block], &value_of[first], 100u * sizeof value_of[0]);
-    __builtin_memcpy(&i_integers[block], &i_integers[first], 100u * sizeof i_integers[0]);
-  }
+  for (uint32_t block = first + 100u; block < first + 100u * (copies + 1u); block += 100u) copy(first, block, 100);
   for (uint32_t offset = 0; offset < 100u; ++offset) {
-    const uint32_t field = i_table_entry(i_table_place(first + offset))->field;
-    if (field == I_FIELD_NONE || (field >= I_FIELD_MOTOR_SERVO && field <= I_FIELD_MOTOR_BOTH)) continue;
+    if (!i_default_is_of_instance(i_table_row(first + offset)->field)) continue;
     for (uint32_t block = 1; block <= copies; ++block) defaults(first + offset + 100u * block, 1, source);
   }
 }
@@ -144,10 +147,21 @@ static void clear_all(void) {
   i_hardware_initialize();
 }
 
+/* Servo ICs have the defaults of the first one that is there, but for what is each one's own. */
 static void ic_defaults(uint32_t ics, uint32_t source) {
-  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic)
-    if (gate_ic_present(ic) && ((ics >> ic) & 1u) != 0u)
-      defaults(gate_ic_direction_variable(ic) - I7M07_CLOCK_DIRECTION, I_IC_BLOCK, source);
+  uint32_t like = 0;
+  for (unsigned ic = 0; ic < GATE_IC_COUNT; ++ic) {
+    if (!gate_ic_present(ic) || ((ics >> ic) & 1u) == 0u) continue;
+    const uint32_t first = gate_ic_direction_variable(ic) - I7M07_CLOCK_DIRECTION;
+    if (ic >= GATE_IC_MACRO || like == 0u) {
+      defaults(first, I_IC_BLOCK, source);
+      if (ic < GATE_IC_MACRO) like = first;
+      continue;
+    }
+    copy(like, first, I_IC_BLOCK);
+    for (uint32_t offset = 0; offset < 10u; ++offset) /* the channels' are all the same */
+      if (i_default_is_of_instance(i_table_row(first + offset)->field)) defaults(first + offset, 1, source);
+  }
 }
 
 void i_variable_initialize(void) {
@@ -183,7 +197,8 @@ static const struct i_entry* row_to_restore(uint32_t number) {
   static const struct i_entry none = {.kind = I_KIND_R};
   if (number >= VARIABLE_COUNT) return &none;
   const struct i_place place = i_table_place(number);
-  return i_of_absent_ic(place) ? &none : i_table_entry(place);
+  const bool of_ic = number >= I_BASE_MACRO && number < I_BASE_TABLE; /* only those are asked: a start has 2,000 */
+  return of_ic && i_of_absent_ic(place) ? &none : i_table_entry(place);
 }
 
 void i_variable_restore_integer(uint32_t number, int32_t value) {
