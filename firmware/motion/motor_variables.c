@@ -35,13 +35,10 @@ static void take_activated(uint32_t motor) {
   }
 }
 
-/* Each module holds the servo task off while it changes what that works with. What only a motor that is activated needs
- * is made when it is. */
+/* Each module holds the servo task off while it changes what that works with. */
 static void change(uint32_t motor) {
   take_scales(motor);
   servo_words_motor_changed(motor);
-  const bool activated = i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0;
-  if (!activated && (motors_active >> (motor - 1u) & 1u) == 0u) return;
   desired_position_motor_changed(motor);
   position_loop_motor_changed(motor);
   motor_output_motor_changed(motor);
@@ -72,5 +69,13 @@ void motor_variables_initialize(void) {
   protection_initialize();
   average_velocity_initialize();
   compensation_initialize();
-  for (uint32_t motor = 1; motor <= MOTORS; ++motor) motor_variables_changed(motor);
+  for (uint32_t motor = 1; motor <= MOTORS; ++motor) {
+    if (i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0) {
+      motor_variables_changed(motor);
+    } else { /* the first variable that is written makes the rest: a start has 25 ms */
+      take_scales(motor);
+      servo_words_motor_changed(motor);
+      position_loop_begin(motor);
+    }
+  }
 }

@@ -84,6 +84,14 @@ static void put(struct loop* l, const struct loop* next) {
   __builtin_memcpy(l, next, offsetof(struct loop, left));
 }
 
+void position_loop_begin(uint32_t motor) {
+  struct loop* l = &loops[motor - 1u];
+  l->position_source = source_of(motor, IXX03_FEEDBACK_ADDRESS);
+  l->velocity_source = source_of(motor, IXX03_FEEDBACK_ADDRESS + 1u);
+  l->position_reading = *l->position_source;
+  l->velocity_reading = *l->velocity_source;
+}
+
 void position_loop_motor_changed(uint32_t motor) {
   static struct loop n; /* motion/motor_variables.c makes one after the other */
   notch_motor_changed(motor);

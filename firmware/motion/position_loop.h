@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 void position_loop_initialize(void);              /* start-up, before variables are taken over */
+void position_loop_begin(uint32_t motor);         /* 1..32, a start: its position counts from here, activated or not */
 void position_loop_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void position_loop_servo(uint32_t motor);         /* 0..31, servo task: commanded -> actual, velocity, output */
 void position_loop_restart(uint32_t motor);       /* 0..31, servo task held off: no integral, no history */
