@@ -32,8 +32,8 @@ static volatile uint32_t flushes;             /* ^X so far */
 static volatile uint32_t flushed_to;          /* host_port_received_count at the last ^X: what came before is void */
 static volatile bool receiving, transmitting; /* as in HCR */
 static volatile uint32_t reserved;            /* characters that a full queue still takes. Servo task, interrupt */
-static bool of_program; /* what is being sent */
-static uint32_t spare;  /* of a phase period with a queue that is nearly full: looked at one by one. Interrupt */
+static bool of_program;                       /* what is being sent */
+static uint32_t spare; /* of a phase period with a queue that is nearly full: looked at one by one. Interrupt */
 
 /* Where transmit_tail stood when a host that did not read was given up: it is not waited for again until it reads. */
 static uint32_t given_up_at;
