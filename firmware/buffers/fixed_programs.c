@@ -17,7 +17,7 @@ static struct {
   volatile uint32_t generation;
 } fixed;
 
-uint16_t fixed_program_links[USER_MEMORY_WORDS] __attribute__((section(".noinit"))); /* written with the program */
+uint16_t fixed_program_links[USER_MEMORY_WORDS];
 
 static void begin_change(void) {
   fixed.generation++;

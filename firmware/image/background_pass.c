@@ -21,6 +21,7 @@
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/motion_status.h"
 #include "firmware/motion/phase_search.h"
+#include "firmware/motion/sine_table.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
@@ -40,6 +41,7 @@ void background_meanwhile(void) {
   }
   desired_position_pass();
   phasing_pass();
+  sine_table_pass();
   image_checksum_pass();
   stack_watch_pass();
   watchdog_reload();

@@ -119,9 +119,12 @@ void start(enum start_mode mode) {
   bus_setup((uint32_t)i_integer(I52_CPU_FREQUENCY), (uint32_t)i_integer(I37_ADDITIONAL_WAIT_STATES));
   calendar_initialize();
   tasks_initialize();
-  sine_table_initialize();
   phasing_search_initialize();
   phase_task_initialize();
+  if (phase_task_work != 0u)
+    sine_table_initialize();
+  else
+    sine_table_later(); /* nobody commutates yet, and a start has 25 ms */
   hal_interrupts_on();
   clock_watch_start();
   phasing_power_on();

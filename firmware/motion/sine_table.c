@@ -2,6 +2,8 @@
  * bits the error after 512 steps is below 2^-40. */
 #include "firmware/motion/sine_table.h"
 
+#include <stdbool.h>
+
 #include "firmware/hal/hal.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/variables/words.h"
@@ -27,7 +29,16 @@ static void put(uint32_t entry, int32_t cosine, int32_t sine) {
 /* -1 can be had, where +1 cannot. */
 static int32_t negative(int32_t word) { return word == LARGEST ? -word - 1 : -word; }
 
+static bool wanted; /* B */
+
+void sine_table_later(void) { wanted = true; }
+
+void sine_table_pass(void) {
+  if (wanted) sine_table_initialize();
+}
+
 void sine_table_initialize(void) {
+  wanted = false;
   int32_t cosine[QUARTER + 1];
   uint64_t before = ONE, present = COSINE_OF_STEP;
   cosine[0] = rounded(ONE);

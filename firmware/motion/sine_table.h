@@ -8,6 +8,8 @@
 enum { SINE_BITS = 11, SINE_ENTRIES = 1 << SINE_BITS };
 
 void sine_table_initialize(void); /* start-up, after user memory has been cleared */
+void sine_table_later(void);      /* a start: in the first pass of the background instead */
+void sine_table_pass(void);
 
 /* First address of the table of a motor whose Ixx55 is `offset`: a multiple of 2048. Where there is no memory for one,
  * the table of all. */

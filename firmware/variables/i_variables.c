@@ -15,10 +15,8 @@
 #define TIMER_LOWEST (-8388608)
 enum { CONFIGURATION_COUNT = I4909_CPU_IDENTIFICATION + 1 - I_BASE_SYSTEM }; /* the others are 0 */
 
-/* clear_all is the first to write them: crt0.S need not. */
-static double value_of[VARIABLE_COUNT] __attribute__((section(".noinit")));
-int32_t i_integers[VARIABLE_COUNT]
-    __attribute__((section(".noinit"))); /* the same, for tasks that must not use floating point */
+static double value_of[VARIABLE_COUNT];
+int32_t i_integers[VARIABLE_COUNT]; /* the same, for tasks that must not use floating point */
 static uint32_t timer_start[COORDINATE_SYSTEMS][ISX11_TIMERS_COUNT]; /* servo count when Isx11, Isx12 were written */
 
 /* Reading ---------------------------------------------------------------------------------------------------------- */
