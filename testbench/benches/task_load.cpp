@@ -206,10 +206,12 @@ void TaskLoad::never_pausing_host(double ms) {
 // servo-ic:11.2; I52 counts from the start on.
 void TaskLoad::brick_clocks() {
   host_.expect("&1A", "");
-  b_.link.control(0x0B);  // ^K
-  for (const char* line : {"I7000=1473 I7100=1473 I7001=3 I7002=1 I7101=3 I7102=1", "I7003=1746 I7103=1746 I10=1677653",
-                           "I52=24", "SAVE", "$$$"})
+  b_.link.control(0x0B);  // ^K; dividers first: 40 kHz would leave the CPU nothing
+  for (const char* line :
+       {"I7001=3 I7101=3 I7002=1 I7102=1 I7000=1473 I7100=1473", "I7003=1746 I7103=1746 I10=1677653", "I52=24", "SAVE"})
     b_.ask(line);
+  b_.link.command("$$$");
+  if (!b_.link.connect(HostLink::kBootTime)) b_.report.fail("controller answers", "nothing after $$$");
   host_.expect("I52", "24");
 }
 
