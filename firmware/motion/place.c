@@ -11,9 +11,15 @@
 
 static int64_t corner(const struct move* m) { return m->blend_in / 2 + m->time; }
 
-/* Nobody asks where in it the axes are: it has its time alone. */
+/* Nobody asks where in it the axes are: it has its time alone. What divides by that time stays as it was. */
 static void add_time(struct piece_ring* ring, int64_t time, uint32_t move) {
-  *piece_ring_at(ring, ring->added) = (struct piece){.time = time, .end = time, .move = move};
+  struct piece* piece = piece_ring_at(ring, ring->added);
+  piece->time = piece->end = time;
+  piece->move = move;
+  piece->motors = 0;
+  piece->warp = 0;
+  piece->from = piece->to = 0;
+  piece->continues = false;
   piece_ring_add(ring);
 }
 
