@@ -41,7 +41,8 @@ def every_board():
     one_servo_ic = {"watchdog", "reinit-e3", "clock-select", "clock-faults", "clock-macro", "port-a-phase", "task-load"}
     every_bench = {b["name"] for b in json.loads(brick("list", "--json").stdout)}
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
-               "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase", "task-load"}, "geobrick-lv-8": {"clock-macro"},
+               "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase", "task-load"},
+               "geobrick-lv-8": {"clock-macro"},
                "turbo-pmac-pci": {"clock-macro"},
                "pmac-pc": {"clock-macro", "breq-rotary", "breq-fixed", "breq-select", "watchdog", "capture-compare",
                            "isa-timing"},
