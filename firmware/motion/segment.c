@@ -220,6 +220,7 @@ static bool begin(uint32_t cs) {
   piece_set_time(&q->timed, q->period);
   q->timed.continues = false;
   slice_pause();
+  system_motors_solve(cs, m->start);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     const int64_t at = math_nearest(system_motor_from(motor, m->start));
@@ -313,6 +314,7 @@ static void drop_moves(uint32_t cs, double* time) {
 }
 
 static void add_points(uint32_t cs, const double position[AXIS_COUNT]) {
+  system_motors_solve(cs, position);
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     add_point(motor, math_nearest(system_motor_at(motor, position)));
