@@ -69,6 +69,8 @@ static void planned(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   p->under_way = false;
   p->jumps_begin = p->x.jumps_back;
+  if (p->asks_time) synchronous_move_time(cs);
+  p->asks_time = false;
   if (s->stepping && !p->in_block) s->quit = true;
 }
 
@@ -106,7 +108,13 @@ static bool calculate_word(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   const uint32_t moves = s->planned;
   struct instruction in;
+  if (calls_prelude_is_due(p) && s->pending_axes == 0) {
+    const enum executed called = calls_prelude_call(p);
+    if (called == EXECUTED_ERROR) stop_with_error(cs);
+    return called == EXECUTED_LINE;
+  }
   enum executed executed = executor_step(&p->x, &in);
+  calls_note_label(p, executed, &in);
   const bool of_motion = executed == EXECUTED_STATEMENT;
   if (of_motion) executed = motion_statement(cs, &in);
   if (executed == EXECUTED_LATER) {
