@@ -6,6 +6,7 @@
 #include "firmware/motion/corner.h"
 #include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/path.h"
+#include "firmware/motion/path_motors.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/motion/segment_piece.h"
 #include "firmware/motion/system_motors.h"
@@ -19,7 +20,8 @@ enum {
   AHEAD_MS = 24     /* more than so much is not made */
 };
 
-#define TIME_TOLERANCE 1e-6 /* ms by which a point may be before the end and still be it */
+#define TIME_TOLERANCE 4295     /* 1e-6 ms, by which a point may be before the end and still be it */
+#define OVERRIDE_ONE (1u << 30) /* Isx15 = 0 */
 
 /* The sequence that is being made. Owner: R, but for what is marked. */
 struct sequence {
@@ -36,9 +38,8 @@ struct sequence {
   uint32_t points;    /* that are still to be made behind its end */
   uint32_t unhanded;  /* pieces behind those that the servo task has */
   int64_t period;     /* Isx13 */
-  double step;        /* program time of a segment: Isx13 with the override */
-  double override;    /* as it is now; 1: none */
-  double time;        /* of the last point */
+  uint32_t override;  /* as it is now */
+  int64_t time;       /* of the last point, as path.h has it */
   struct piece timed; /* a piece of that period */
   uint32_t under_way; /* moves of the queue that have begun at the last point, less one */
   /* number and line of the move at the last two points */
@@ -214,16 +215,16 @@ static bool begin(uint32_t cs) {
   if (corner_waits(cs)) return false;
   const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
   q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
-  q->step = plan_milliseconds(q->period);
-  q->override = 1.0;
+  q->override = OVERRIDE_ONE;
   slice_pause();
   piece_set_time(&q->timed, q->period);
   q->timed.continues = false;
   slice_pause();
+  path_motors_begin(cs);
+  path_motors_look(cs, &(struct path_point){.count = 0});
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t at = math_nearest(system_motor_from(motor, m->start));
-    for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = at;
+    for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = path_motor_at(motor);
     slice_pause();
   }
   system_motors_come_along(cs);
@@ -242,24 +243,33 @@ static bool begin(uint32_t cs) {
   return true;
 }
 
+/* Isx15 and what it asks of the rate, 0 to 2. */
+static uint32_t override_given(double isx15) {
+  if (isx15 == 0.0) return OVERRIDE_ONE;
+  const double wanted = isx15 < -1.0 ? 0.0 : isx15 > 1.0 ? 2.0 : isx15 + 1.0;
+  slice_pause();
+  return (uint32_t)math_to_integer(wanted * (double)OVERRIDE_ONE);
+}
+
 /* As Isx15 has it for the next segment: it goes to a new value by Isx16 a segment. */
-static double override_of(uint32_t cs) {
-  const struct sequence* q = &sequences[cs];
-  const double given = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE));
-  const double wanted = given < -1.0 ? 0.0 : given > 1.0 ? 2.0 : given + 1.0;
+static uint32_t override_of(uint32_t cs) {
+  const uint32_t present = sequences[cs].override;
+  const uint32_t wanted = override_given(i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE)));
+  if (present == wanted) return wanted;
+  const double isx16 = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
+  const bool at_once = !(isx16 > 0.0) || isx16 >= 2.0;
   slice_pause();
-  if (q->override == wanted) return wanted;
-  const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
-  slice_pause();
-  if (!(change > 0.0) || math_absolute(wanted - q->override) <= change) return wanted;
-  return wanted > q->override ? q->override + change : q->override - change;
+  const uint32_t change = at_once ? 2u * OVERRIDE_ONE : (uint32_t)math_to_integer(isx16 * (double)OVERRIDE_ONE);
+  if (wanted > present) return wanted - present <= change ? wanted : present + change;
+  return present - wanted <= change ? wanted : present - change;
 }
 
 /* Program time of the next point. */
-static double next_time(uint32_t cs) {
+static int64_t next_time(uint32_t cs) {
   const struct sequence* q = &sequences[cs];
-  const double override = override_of(cs);
-  return q->time + (override == 1.0 ? q->step : q->step * override);
+  const uint32_t override = override_of(cs);
+  const int64_t step = q->period << (PATH_TIME_BITS - TRAJECTORY_FRACTION_BITS);
+  return q->time + (override == OVERRIDE_ONE ? step : fixed_share(step, (int64_t) override << 31) * 2);
 }
 
 /* Moves of the queue that belong to the sequence, each joined to the one before it no earlier than the last point. */
@@ -267,6 +277,7 @@ static void join(uint32_t cs) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
   while (!q->ends && !q->stops && q->joined < p->count && path_of(p, q->joined)->joins) {
+    path_motors_join(cs, q->joined);
     path_blend(p, q->joined++, q->time);
     q->late = false;
   }
@@ -283,28 +294,28 @@ static bool is_last(uint32_t cs) {
 enum decision { GOES_ON, ENDS, WAITS };
 
 /* What the point at `time` needs is known, the sequence ends, or a next move may still change it. */
-static enum decision decide(uint32_t cs, double time, bool starving) {
+static enum decision decide(uint32_t cs, int64_t time, bool starving) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
   const struct path_move* m = path_of(p, q->joined - 1u);
-  if (time <= path_corner(p, q->joined - 1u) + m->change / 2.0) return GOES_ON;
+  if (time <= path_corner(p, q->joined - 1u) + m->change / 2) return GOES_ON;
   if (is_last(cs) || s->quit || !s->running || !s->may_join) return ENDS;
   slice_pause();
   if (starving) q->late = true;
   if (!q->late) return WAITS;
-  const double stop = path_corner(p, q->joined);
+  const int64_t stop = path_corner(p, q->joined);
   if (time <= stop + stop - path_ends(p, q->joined)) return GOES_ON;
   return starving ? ENDS : WAITS;
 }
 
 /* Moves that are over before the point at `time`. */
-static void drop_moves(uint32_t cs, double* time) {
+static void drop_moves(uint32_t cs, int64_t* time) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  while (q->joined > 1u && *time >= path_corner(p, 1) + path_of(p, 1)->change / 2.0) {
-    slice_pause();
-    const double over = path_pop(p);
+  while (q->joined > 1u && *time >= path_corner(p, 1) + path_of(p, 1)->change / 2) {
+    path_motors_pop(cs);
+    const int64_t over = path_pop(p);
     *time -= over;
     q->time -= over;
     q->joined--;
@@ -312,11 +323,13 @@ static void drop_moves(uint32_t cs, double* time) {
   }
 }
 
-static void add_points(uint32_t cs, const double position[AXIS_COUNT]) {
+/* The control point of every motor at a place of the path. */
+static void add_points(uint32_t cs, const struct path_point* point) {
+  path_motors_look(cs, point);
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    add_point(motor, math_nearest(system_motor_at(motor, position)));
-    slice_pause();
+    add_point(motor, path_motor_at(motor));
+    if ((motor & 1u) != 0) slice_pause();
   }
 }
 
@@ -324,7 +337,9 @@ static void add_points(uint32_t cs, const double position[AXIS_COUNT]) {
 static void make_end(uint32_t cs) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  add_points(cs, path_of(p, q->joined - 1u)->end);
+  struct path_point end;
+  path_at_end(q->joined, &end);
+  add_points(cs, &end);
   set_move(cs, q->joined - 1u);
   use_point(cs);
   if (--q->points != 0) return;
@@ -333,12 +348,12 @@ static void make_end(uint32_t cs) {
   if (q->looks) lookahead_close(cs);
 }
 
-static void make_point(uint32_t cs, double time) {
+static void make_point(uint32_t cs, int64_t time) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  double position[AXIS_COUNT];
-  path_at(p, (struct path_reach){q->joined, q->ends}, time, position);
-  add_points(cs, position);
+  struct path_point point;
+  path_at(p, (struct path_reach){q->joined, q->ends}, time, &point);
+  add_points(cs, &point);
   uint32_t ahead = 0;
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
   set_move(cs, ahead);
@@ -363,7 +378,7 @@ static bool make_next(uint32_t cs, bool starving) {
   struct sequence* q = &sequences[cs];
   leave_out(cs);
   join(cs);
-  double time = next_time(cs);
+  int64_t time = next_time(cs);
   drop_moves(cs, &time);
   if (!q->ends) {
     const enum decision decision = decide(cs, time, starving);
