@@ -35,13 +35,14 @@ struct sequence {
   bool closed;                         /* no further move joins: one of another kind waits for its place */
   bool stops;                          /* segment_stop: at the end of the move that is under way. B sets */
   uint32_t joined;
-  uint32_t points;    /* that are still to be made behind its end */
-  uint32_t unhanded;  /* pieces behind those that the servo task has */
-  int64_t period;     /* Isx13 */
-  uint32_t override;  /* as it is now */
-  int64_t time;       /* of the last point, as path.h has it */
-  struct piece timed; /* a piece of that period */
-  uint32_t under_way; /* moves of the queue that have begun at the last point, less one */
+  uint32_t points;      /* that are still to be made behind its end */
+  uint32_t unhanded;    /* pieces behind those that the servo task has */
+  int64_t period;       /* Isx13 */
+  uint32_t least, most; /* pieces ahead of the servo task: what is SHORT_MS, and all that are made */
+  uint32_t override;    /* as it is now */
+  int64_t time;         /* of the last point, as path.h has it */
+  struct piece timed;   /* a piece of that period */
+  uint32_t under_way;   /* moves of the queue that have begun at the last point, less one */
   /* number and line of the move at the last two points */
   uint32_t numbers[2];
   struct path_line lines[2];
@@ -131,6 +132,23 @@ static void hand_over(uint32_t cs) {
 }
 
 /* Between four control points: the last ones, or those of a segment of the lookahead buffer. */
+static void set_cubics(uint32_t cs, uint32_t number, struct piece* piece, const struct lookahead_piece* from) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const struct lookahead_motor* at[SPLINE_POINTS];
+  piece->motors = 0;
+  if (from != 0) lookahead_points(cs, from->segment, at);
+  for (uint32_t motor = 0, slot = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    int64_t points[SPLINE_POINTS];
+    for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = from != 0 ? at[i][slot].point : control[motor][i];
+    const struct cubic c = segment_cubic(points);
+    if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
+    *piece_ring_cubic(&s->ring, number, motor) = c;
+    slot++;
+    if ((slot & 1u) == 0) slice_pause();
+  }
+}
+
 static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
@@ -144,20 +162,11 @@ static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
     piece->to = (uint8_t)from->last;
     looked[cs][number % PIECES] = *from;
   }
-  piece->motors = 0;
   piece->move = from == 0 ? q->numbers[0] : from->number;
   piece->continues = q->handed || q->unhanded != 0;
   piece_lines[cs][number % PIECES] = from == 0 ? q->lines[0] : from->line;
   slice_pause();
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    int64_t points[SPLINE_POINTS];
-    if (from != 0) lookahead_points(cs, from->segment, motor, points);
-    const struct cubic c = segment_cubic(from != 0 ? points : control[motor]);
-    if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
-    *piece_ring_cubic(&s->ring, number, motor) = c;
-    slice_pause();
-  }
+  set_cubics(cs, number, piece, from);
   q->unhanded++;
 }
 
@@ -172,21 +181,15 @@ static void set_move(uint32_t cs, uint32_t ahead) {
   q->lines[1] = m->line;
 }
 
-static uint32_t short_ahead(const struct sequence* q) {
-  return 1u + (uint32_t)(((int64_t)SHORT_MS << TRAJECTORY_FRACTION_BITS) / q->period);
-}
-
-static uint32_t most_ahead(const struct sequence* q) {
-  const uint32_t most =
-      short_ahead(q) + 2u + (uint32_t)(((int64_t)(AHEAD_MS - SHORT_MS) << TRAJECTORY_FRACTION_BITS) / q->period);
-  return most < PIECES - LEFT_OF_RING ? most : PIECES - LEFT_OF_RING;
+static void set_ahead(struct sequence* q, uint32_t period) {
+  q->least = 1u + SHORT_MS / period;
+  q->most = q->least + 2u + (AHEAD_MS - SHORT_MS) / period;
+  if (q->most > PIECES - LEFT_OF_RING) q->most = PIECES - LEFT_OF_RING;
 }
 
 static void look_at_point(uint32_t cs) {
   const struct sequence* q = &sequences[cs];
-  int64_t point[MOTORS];
-  for (uint32_t motor = 0; motor < MOTORS; motor++) point[motor] = control[motor][SPLINE_POINTS - 1];
-  lookahead_add(cs, point, q->numbers[1], &q->lines[1]);
+  lookahead_add(cs, (const int64_t(*)[SPLINE_POINTS])control, q->numbers[1], &q->lines[1]);
 }
 
 /* A control point has been added. */
@@ -215,6 +218,7 @@ static bool begin(uint32_t cs) {
   if (corner_waits(cs)) return false;
   const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
   q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
+  set_ahead(q, (uint32_t)(period > 0 ? period : 1));
   q->override = OVERRIDE_ONE;
   slice_pause();
   piece_set_time(&q->timed, q->period);
@@ -394,8 +398,8 @@ static bool make_next(uint32_t cs, bool starving) {
 
 static bool work_at_once(uint32_t cs, bool alone) {
   struct sequence* q = &sequences[cs];
-  if (!make_next(cs, alone && ahead_of(&coordinate_systems[cs]) + q->unhanded <= short_ahead(q))) return false;
-  if (q->handed || q->made || q->unhanded > short_ahead(q)) hand_over(cs);
+  if (!make_next(cs, alone && ahead_of(&coordinate_systems[cs]) + q->unhanded <= q->least)) return false;
+  if (q->handed || q->made || q->unhanded > q->least) hand_over(cs);
   q->runs = !q->made;
   return true;
 }
@@ -406,7 +410,7 @@ static bool release(uint32_t cs, bool hurry) {
   if (!lookahead_release(cs, hurry, &piece)) return false;
   add_piece(cs, &piece);
   const bool over = q->made && lookahead_is_over(cs);
-  if (q->handed || over || lookahead_stands(cs) || q->unhanded > short_ahead(q)) hand_over(cs);
+  if (q->handed || over || lookahead_stands(cs) || q->unhanded > q->least) hand_over(cs);
   q->runs = !over;
   return true;
 }
@@ -453,7 +457,7 @@ static bool work_ahead(uint32_t cs, bool alone) {
     return true;
   }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
-  const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
+  const bool room = ahead < q->most, hurry = q->handed && ahead <= q->least;
   const bool grows = !q->made && !lookahead_is_full(cs);
   if ((room && release(cs, false)) || lookahead_sweep(cs, false)) return true;
   /* what has no next line in time comes to its end, before it has to stop where nothing more is known */
@@ -482,5 +486,5 @@ bool segment_work(uint32_t cs, bool alone) {
     s->failure = RUN_TIME_LATE;
     return false;
   }
-  return ahead_of(s) + q->unhanded < most_ahead(q) && work_at_once(cs, alone);
+  return ahead_of(s) + q->unhanded < q->most && work_at_once(cs, alone);
 }
