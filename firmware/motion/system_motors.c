@@ -63,8 +63,10 @@ static double bias(uint32_t motor) {
   return (double)value;
 }
 
+double system_motor_solved(uint32_t motor) { return kinematics_at(motor) - bias(motor); }
+
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
-  if (maps[motor].by_program) return kinematics_at(motor) - bias(motor);
+  if (maps[motor].by_program) return system_motor_solved(motor);
   double sum = maps[motor].offset - bias(motor);
   for (uint32_t i = 0; i < maps[motor].count; i++) {
     sum += maps[motor].scale[i] * position[maps[motor].axis[i]];

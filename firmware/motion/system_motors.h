@@ -23,6 +23,7 @@ void system_motors_resolve(uint32_t cs); /* its motors, scales and offsets; back
  * that an inverse program moves have it executed. That can fail: coordinate_system.failure, the position counts for
  * nothing then. */
 void system_motors_solve(uint32_t cs, const double position[AXIS_COUNT]);
+double system_motor_solved(uint32_t motor); /* behind it, of one that an inverse program moves */
 void system_motors_solve_knot(uint32_t cs, const struct knot* knot, bool is_pvt);
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
 /* The same where a move begins: the first of a program takes motors along that stand beside their axes, because others

@@ -65,7 +65,7 @@ static double time_of(uint32_t cs) {
   const struct move* m = &s->moves[s->executing ^ 1u];
   if (paths[cs].count != 0) {
     const struct path_move* last = path_of(&paths[cs], paths[cs].count - 1u);
-    return last->time + last->acceleration;
+    return math_scale((double)(last->time + last->acceleration), -PATH_TIME_BITS);
   }
   return m->kind == MOVE_OWN ? 0.0 : plan_milliseconds(m->time + m->acceleration);
 }
