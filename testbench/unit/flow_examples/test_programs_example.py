@@ -13,7 +13,9 @@ FOLDER = "examples/programs"
 class Programs(Installed):
     def run_program(self, name, plant="stage"):
         folder, brick = self.data / FOLDER, pathlib.Path(self.build, "bin/brick")
-        there = [plant, "--load", plant] if plant == "dac8" else [folder / f"{plant}.toml", "--load", folder / "stage.pmc"]
+        there = [plant, "--load", plant]
+        if plant != "dac8":
+            there = [folder / f"{plant}.toml", "--load", folder / "stage.pmc"]
         command = ([sys.executable, folder / name] if name.endswith(".py") else
                    [brick, "exec", "--plant", *there, folder / name])
         return subprocess.run(command, text=True, timeout=120, capture_output=True, check=False,
