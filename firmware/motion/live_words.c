@@ -150,11 +150,12 @@ static void write_time_base(uint32_t cs, uint32_t mask, uint32_t bits) {
   hal_unmask(state);
 }
 
-/* How a kinematic program says that there is no such place; the program that runs is stopped (motion:8.1/8). */
+/* How a kinematic program says that there is no such place; the program that runs is stopped (motion:8.1/8);
+ * without one it means nothing. */
 static void run_time_error_by_user(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t state = hal_mask_real_time();
-  if ((s->running || s->matching) && s->failure == RUN_TIME_NONE) s->failure = RUN_TIME_BY_USER;
+  if (s->failure == RUN_TIME_NONE) s->failure = RUN_TIME_BY_USER;
   hal_unmask(state);
 }
 

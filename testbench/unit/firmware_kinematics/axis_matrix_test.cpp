@@ -239,6 +239,18 @@ TEST_F(AxisMatrix, WhatCannotBeIsARunTimeError) {
   }
 }
 
+// What lies beside TBUF is none of it, whatever it looks like.
+TEST_F(AxisMatrix, WordsBesideTbufAreNoMatrix) {
+  ASSERT_EQ(host("DELETE TBUF"), "");
+  ASSERT_EQ(host("DEFINE UBUFFER 24"), "");
+  ASSERT_EQ(host("DEFINE TBUF 4"), "");
+  ASSERT_EQ(host("WL:$107E8,1,0,0,0,1,0,0,0,1,7,7,7"), "");  // the first of its words
+  store({"TSEL5 X1"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(100);
+  EXPECT_EQ(cs().error, RUN_TIME_STATEMENT);
+}
+
 // One that leads nowhere leaves the one before.
 TEST_F(AxisMatrix, ASingularOneIsNotTaken) {
   store(with({"TSEL1 AROT40", "AROT100"}));

@@ -53,6 +53,25 @@ TEST_F(KinematicStops, InTheMiddleOfAPath) {
   EXPECT_GT(std::abs(at(1) - from), 500) << "it was on its way";
 }
 
+// From its speed to rest at Ixx15.
+TEST_F(KinematicStops, MotorsRamp) {
+  fit_arm();
+  Lines late = arm::inverse();
+  late.insert(late.end(), {"IF(P5>40)", "P1=1/0", "ENDIF"});
+  program("INVERSE", late);
+  ASSERT_EQ(host("I5113=10 I115=0.5 I215=0.5"), "");
+  store({"TM400 TA100 TS0", "X300 Y-200"});
+  ASSERT_EQ(host("&1B1R"), "");
+  for (int i = 0; i < 3000 && run_is_running(0); ++i) platform::servo_ticks(1);
+  EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
+  const double from = at(1);
+  platform::servo_ticks(1);
+  const double speed = std::abs(at(1) - from) / kTickMs;
+  EXPECT_GT(speed, 20);
+  platform::servo_ticks(2000);
+  EXPECT_NEAR(std::abs(at(1) - from), speed * speed / (2 * 0.5), 2 * speed * kTickMs + 1);
+}
+
 TEST_F(KinematicStops, AForwardProgramThatNeverEnds) {
   fit_arm();
   program("FORWARD", {"WHILE(1=1)", "Q7=1", "ENDWHILE"});
