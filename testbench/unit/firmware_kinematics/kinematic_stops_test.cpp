@@ -126,6 +126,7 @@ TEST_F(KinematicStops, AHostThatSetsTheErrorBit) {
   store({"TM400 TA100 TS0", "X300 Y-200"});
   ASSERT_EQ(host("&1B1R"), "");
   platform::servo_ticks(300);
+  EXPECT_TRUE(run_is_running(0)) << "what was set before the start means nothing";
   ASSERT_EQ(host("M5182=1"), "");
   platform::servo_ticks(3);
   EXPECT_FALSE(run_is_running(0));
