@@ -28,10 +28,8 @@ static struct {
 } scales[MOTORS];
 
 /* Room for segments behind the three points that it takes besides. */
-uint32_t lookahead_capacity(uint32_t cs, uint32_t motor_count) {
-  struct lookahead_buffer buffer;
-  lookahead_buffer_open(cs, motor_count, &buffer);
-  return buffer.records < LOOKAHEAD_KEPT + LEAST ? 0u : buffer.records - LOOKAHEAD_KEPT;
+static uint32_t capacity(const struct lookahead_buffer* buffer) {
+  return buffer->records < LOOKAHEAD_KEPT + LEAST ? 0u : buffer->records - LOOKAHEAD_KEPT;
 }
 
 static uint32_t count_bits(uint32_t mask) {
@@ -41,25 +39,41 @@ static uint32_t count_bits(uint32_t mask) {
 }
 
 static void set_scale(uint32_t motor, double period) {
-  const double velocity = system_motor_velocity(motor) * period;
   slice_pause();
-  const double acceleration = system_motor_acceleration(motor) * period * period;
+  double velocity = system_motor_velocity(motor);
+  slice_pause();
+  velocity *= period;
+  slice_pause();
+  double acceleration = system_motor_acceleration(motor);
+  slice_pause();
+  acceleration *= period;
+  slice_pause();
+  acceleration *= period;
   slice_pause();
   const bool limited = acceleration > 0.0;
+  slice_pause();
   double one = limited ? acceleration : velocity > 0.0 ? velocity : 1.0;
   int32_t coarse = 0;
-  for (; one > 2.0 * SCALE_HALF; coarse++) one = math_scale(one, -1);
-  slice_pause();
-  for (; one <= SCALE_HALF && coarse > -SCALE_BITS; coarse--) one = math_scale(one, 1);
-  slice_pause();
+  for (; one > 2.0 * SCALE_HALF; coarse++) {
+    one = math_scale(one, -1);
+    slice_pause();
+  }
+  for (; one <= SCALE_HALF && coarse > -SCALE_BITS; coarse--) {
+    one = math_scale(one, 1);
+    slice_pause();
+  }
   scales[motor].coarse = coarse;
   scales[motor].before = scales[motor].last = 0;
+  slice_pause();
   const double fastest = math_scale(velocity, -coarse);
   slice_pause();
   scales[motor].fastest = fastest > (double)STEP_MOST ? 0 : (int32_t)fastest;
+  slice_pause();
   if (velocity > 0.0 && fastest < 1.0) scales[motor].fastest = 1;
   slice_pause();
-  const double mantissa = math_scale(1.0 / one, 32 + BEND_BITS);
+  const double inverse = 1.0 / one;
+  slice_pause();
+  const double mantissa = math_scale(inverse, 32 + BEND_BITS);
   scales[motor].mantissa = !limited ? 0 : mantissa < (double)INT32_MAX ? (int32_t)mantissa : INT32_MAX;
   slice_pause();
 }
@@ -69,15 +83,18 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   const uint32_t wanted = (uint32_t)i_integer(i_cs(cs, ISX20_LOOKAHEAD_LENGTH));
   l->motors = coordinate_systems[cs].motors;
   l->motor_count = count_bits(l->motors);
-  const uint32_t room = lookahead_capacity(cs, l->motor_count);
-  if (wanted == 0 || room == 0) return false;
+  slice_pause();
   lookahead_buffer_open(cs, l->motor_count, &l->buffer);
+  slice_pause();
+  const uint32_t room = capacity(&l->buffer);
+  if (wanted == 0 || room == 0) return false;
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
   l->limits = wanted > 1u;
   l->closed = l->begun = l->backward = l->single = l->was_single = false;
   l->added = l->front = l->part = 0;
-  l->rate = RATE_FULL;
+  l->rate = l->rooted = RATE_FULL;
+  l->root = RATE_FULL;
   l->state = LOOK_GOES;
   l->next = LOOKAHEAD_NONE;
   look_forget_sweeps(l);
@@ -131,15 +148,18 @@ static void set_limits(struct look* l, uint32_t motor, int32_t next, struct look
   if (fastest == 0 || l->added < SPLINE_POINTS - 1u) return;
   const int32_t most = largest(scales[motor].before, step, next);
   if (most <= fastest) return;
+  slice_pause();
   const int32_t cap = cap_of(fastest, most);
   if (cap < segment->cap) segment->cap = cap;
 }
 
 /* A point of the motors: with the one before it a step. */
-static void add_point(struct look* l, uint32_t at, const int64_t control[][SPLINE_POINTS]) {
-  struct lookahead_motor *to = lookahead_motors(&l->buffer, at), *knot = lookahead_motors(&l->buffer, at - 2u);
-  const struct lookahead_motor* last = lookahead_motors(&l->buffer, at - 1u);
-  struct lookahead_record* segment = lookahead_at(&l->buffer, at - 3u);
+static void add_point(struct look* l, struct lookahead_record* record, const int64_t control[][SPLINE_POINTS]) {
+  const uint32_t at = l->added;
+  struct lookahead_record *before = lookahead_before(&l->buffer, record), *two = lookahead_before(&l->buffer, before),
+                          *segment = lookahead_before(&l->buffer, two);
+  struct lookahead_motor *to = lookahead_of(record), *knot = lookahead_of(two);
+  const struct lookahead_motor* last = lookahead_of(before);
   for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     const int64_t point = control[motor][SPLINE_POINTS - 1];
@@ -162,10 +182,12 @@ void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t
   record->cap = RATE_FULL;
   record->number = number;
   record->line = *line;
-  add_point(l, l->added, control);
+  add_point(l, record, control);
   l->added++;
 }
 
 void lookahead_points(uint32_t cs, uint32_t segment, const struct lookahead_motor* points[SPLINE_POINTS]) {
-  for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = lookahead_motors(&looks[cs].buffer, segment + i);
+  const struct lookahead_buffer* b = &looks[cs].buffer;
+  struct lookahead_record* record = lookahead_at(b, segment);
+  for (uint32_t i = 0; i < SPLINE_POINTS; i++, record = lookahead_behind(b, record)) points[i] = lookahead_of(record);
 }

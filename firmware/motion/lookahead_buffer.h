@@ -31,8 +31,20 @@ void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_b
 static inline struct lookahead_record* lookahead_at(const struct lookahead_buffer* b, uint32_t number) {
   return (struct lookahead_record*)&b->words[(number % b->records) * b->stride];
 }
+/* Of a record, without the division: its neighbours and its motors. */
+static inline struct lookahead_record* lookahead_before(const struct lookahead_buffer* b, struct lookahead_record* r) {
+  uint64_t* words = (uint64_t*)r;
+  return (struct lookahead_record*)(words == b->words ? &b->words[(b->records - 1u) * b->stride] : words - b->stride);
+}
+static inline struct lookahead_record* lookahead_behind(const struct lookahead_buffer* b, struct lookahead_record* r) {
+  uint64_t* words = (uint64_t*)r + b->stride;
+  return (struct lookahead_record*)(words == &b->words[b->records * b->stride] ? b->words : words);
+}
+static inline struct lookahead_motor* lookahead_of(struct lookahead_record* r) {
+  return (struct lookahead_motor*)((uint64_t*)r + 4);
+}
 static inline struct lookahead_motor* lookahead_motors(const struct lookahead_buffer* b, uint32_t number) {
-  return (struct lookahead_motor*)&b->words[(number % b->records) * b->stride + 4u];
+  return lookahead_of(lookahead_at(b, number));
 }
 
 #endif

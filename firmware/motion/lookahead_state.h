@@ -25,7 +25,9 @@ struct look {
   /* the front: what is before it, in the direction of motion, has been handed over */
   uint32_t front, part; /* so many sixteenths into the segment of this number, forwards */
   int32_t rate;         /* w there */
-  bool begun;           /* something has been handed over */
+  int32_t rooted;       /* the last w of which the root was taken, and that */
+  uint32_t root;
+  bool begun; /* something has been handed over */
   enum look_state state;
   bool backward;
   enum lookahead_order next; /* once it stands */
