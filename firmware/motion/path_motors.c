@@ -128,7 +128,9 @@ static void look_by_program(uint32_t cs, const struct path_point* point) {
   at.by_program = coordinate_systems[cs].inverse_motors;
   if (at.by_program == 0) return;
   path_axes_at(&paths[cs], point, position);
+  slice_pause();
   system_motors_solve(cs, position);
+  slice_pause();
 }
 
 void path_motors_look(uint32_t cs, const struct path_point* point) {
@@ -156,8 +158,17 @@ static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t 
          fixed_share(way->second, at.moves[move].second);
 }
 
+static __attribute__((noinline)) int64_t by_program(uint32_t motor) {
+  slice_pause();
+  const double position = system_motor_solved(motor);
+  slice_pause();
+  const int64_t nearest = math_nearest(position);
+  slice_pause();
+  return nearest;
+}
+
 int64_t path_motor_at(uint32_t motor) {
-  if ((at.by_program >> motor & 1u) != 0) return math_nearest(system_motor_solved(motor));
+  if ((at.by_program >> motor & 1u) != 0) return by_program(motor);
   const struct way* ways = motors_of_path[motor].ways;
   int64_t position = motors_of_path[motor].start;
   for (uint32_t i = 0; i < at.count; i++) {

@@ -63,7 +63,10 @@ static int64_t bias_of(uint32_t motor) {
   return value;
 }
 
-double system_motor_solved(uint32_t motor) { return kinematics_at(motor) - (double)bias_of(motor); }
+double system_motor_solved(uint32_t motor) {
+  const int64_t bias = bias_of(motor);
+  return bias == 0 ? kinematics_at(motor) : kinematics_at(motor) - (double)bias;
+}
 
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
   if (maps[motor].by_program) return system_motor_solved(motor);
