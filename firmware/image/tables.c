@@ -52,7 +52,8 @@ static void servo(void) {
 
 const struct task_hooks task_hooks = {.servo = servo, .real_time = real_time, .phase_period = phase_period};
 
-const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
+const struct word_hooks word_hooks = {
+    .end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write, .write_long = live_word_write_long};
 
 const struct protection_hooks protection_hooks = {.abort = run_abort};
 
