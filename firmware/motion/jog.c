@@ -162,16 +162,13 @@ void jog_program_takes(uint32_t motor) {
 
 bool jog_is_moving(uint32_t motor) { return (jogs_busy & jog_bit(motor)) != 0u; }
 
-bool jog_is_of_program(uint32_t motor) {
-  const struct jog* j = &jogs[motor];
-  return jog_is_moving(motor) && (j->now.by_program || j->request.by_program);
-}
+bool jog_is_of_program(uint32_t motor) { return jog_is_moving(motor) && jog_by_program(&jogs[motor]); }
 
 bool jog_is_homing(uint32_t motor) { return jogs[motor].now.homes && jogs[motor].now.searches; }
 
 int64_t jog_commanded(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = motors[motor].trajectory;
+  const int64_t position = motors[motor].trajectory + motor_followed(motor);
   hal_unmask(state);
   return position;
 }

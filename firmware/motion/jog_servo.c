@@ -58,7 +58,7 @@ static void over(uint32_t motor) {
   struct motor_status_flags* status = &motors[motor].status;
   motors[motor].path = PATH_STANDS;
   status->timed_move = status->aborting = status->home_search = false;
-  j->now = (struct jog_motion){.aim = AIM_REST, .by_program = j->now.by_program};
+  j->now = (struct jog_motion){.aim = AIM_REST};
   if (!j->ready && (jogs_asked & jog_bit(motor)) == 0u) jogs_busy &= ~jog_bit(motor);
 }
 
@@ -70,7 +70,7 @@ static __attribute__((noinline)) void search(uint32_t motor) {
 
 static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
   const int32_t slew = coordinate_systems[motors[motor].cs].increment_slew;
-  return approach(jogs[motor].rate, target < 0 ? 0 : target, slew);
+  return approach(jogs[motor].rate, target, slew);
 }
 
 static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
@@ -84,7 +84,7 @@ static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
 static __attribute__((noinline)) void move(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
-  const int32_t target = jog_rate_of(motor, j->now.by_program);
+  const int32_t target = jog_rate_of(motor, jog_by_program(j));
   if (m->loop != LOOP_CLOSED) {
     jog_drop(motor);
     return;
