@@ -44,8 +44,10 @@ static void found(uint32_t motor, int64_t position) {
   then.together = 0;
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
-    jog_count_from(motor, then.target);
-    j->before = then.target = 0;
+    const int64_t followed = motor_followed(motor);
+    jog_count_from(motor, then.target + followed);
+    then.target = -followed;
+    j->before = 0;
     status->home_complete = true;
   }
   if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) return; /* something else has been asked for */
