@@ -16,12 +16,14 @@ static int32_t approach(int32_t present, int32_t target, int32_t slew) {
 
 static bool searches_without_end(const struct jog_motion* motion) { return motion->aim == AIM_SPEED; }
 
-/* The new path begins where the old one is: planned for this moment, a ramp off the path of a system about. */
-static void change_over(uint32_t motor) {
+/* The new path begins where the old one is, planned for this moment. A ramp off the path of a system, whose time may
+ * have changed since, begins where the motor is now: false. */
+static bool change_over(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
   struct own_path* path = &j->paths[j->current ^ 1u];
-  if (j->next.aim == AIM_RAMP && m->path == PATH_SYSTEM) path->shift = m->trajectory - path->start;
+  const bool as_planned = j->next.aim != AIM_RAMP || m->path != PATH_SYSTEM;
+  if (!as_planned) path->shift = m->trajectory - path->start;
   j->current ^= 1u;
   j->now = j->next;
   j->ready = false;
@@ -30,6 +32,7 @@ static void change_over(uint32_t motor) {
   m->status.aborting = j->now.aim == AIM_RAMP;
   m->status.home_search = j->now.searches;
   if (j->now.searches) capture_arm(&j->now.capture);
+  return as_planned;
 }
 
 static void found(uint32_t motor, int64_t position) {
@@ -78,8 +81,7 @@ static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t targ
 static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
   const int64_t since = jogs[motor].clock - jogs[motor].next_begins;
   if (since < 0) return false;
-  change_over(motor);
-  *elapsed = since;
+  *elapsed = change_over(motor) ? since : 0;
   return true;
 }
 
