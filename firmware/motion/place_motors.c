@@ -8,6 +8,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/spline_motor.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/velocity_change.h"
 
@@ -251,10 +252,24 @@ static void add_knots(uint32_t motor, double from, const struct knot* first, con
   add_cubic(motor, to, 3.0 * way - v0 - v0 - v1, v0 + v1 - way - way);
 }
 
-/* False: the sequence that it goes on with has ended meanwhile. */
-static bool place_cubic(struct move* next, uint32_t number) {
+/* In place of what ends the sequence, whose first cubic is the executing move; else behind all there is. False: it has
+ * ended meanwhile. */
+static bool go_on(struct move* next, bool continues) {
   struct coordinate_system* s = making.s;
   const struct move* m = &s->moves[s->executing];
+  next->blended = continues;
+  if (!continues) {
+    append(s);
+    return true;
+  }
+  const uint32_t state = hal_mask_servo();
+  s->placed = piece_ring_replace(&s->ring, m->straight, m->knot_time[0], making.added);
+  hal_unmask(state);
+  return s->placed;
+}
+
+static bool place_pvt(struct move* next, uint32_t number) {
+  struct coordinate_system* s = making.s;
   const bool continues = move_continues(s);
   making.added = 0;
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
@@ -273,15 +288,46 @@ static bool place_cubic(struct move* next, uint32_t number) {
       add_knots(motor, from, first, first + 1, milliseconds(next->knot_time[i]));
     }
   }
-  next->blended = continues;
-  if (!continues) {
-    append(s);
-    return true;
+  return go_on(next, continues);
+}
+
+/* As coordinate_system.moves. */
+static struct spline_motor splines[2][MOTORS];
+
+/* The time of the point before, in that of both, 2^-32. */
+static uint32_t share_of(int64_t first, int64_t second) {
+  if (first == second) return UINT32_C(1) << 31;
+  const double both = (double)(first + second);
+  return (uint32_t)math_to_integer(math_scale((double)first / both, 32));
+}
+
+/* Where the motor has come to: the first point takes along what stands beside its axes. */
+static struct spline_motor spline_from(uint32_t motor, const struct move* next) {
+  const double at = system_motor_at(motor, next->start);
+  slice_pause();
+  return (struct spline_motor){math_nearest(at), 0, math_nearest(system_motor_from(motor, next->start)), 0};
+}
+
+static bool place_spline(struct move* next, uint32_t index, uint32_t number) {
+  struct coordinate_system* s = making.s;
+  const bool continues = move_continues(s);
+  next->knot_time[0] = continues ? s->moves[index ^ 1u].time : next->time;
+  const uint32_t share = share_of(next->knot_time[0], next->time);
+  making.added = 0;
+  next->straight = s->ring.added;
+  for (uint32_t i = 0; i < SPLINE_PIECES; i++) begin_piece(i == 0 ? next->knot_time[0] : next->time, s->motors, number);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    struct cubic cubics[SPLINE_PIECES];
+    const struct spline_motor before = continues ? splines[index ^ 1u][motor] : spline_from(motor, next);
+    slice_pause();
+    const int64_t point = math_nearest(system_motor_at(motor, s->position));
+    slice_pause();
+    splines[index][motor] = spline_motor_point(&before, point, share, cubics);
+    for (uint32_t i = 0; i < SPLINE_PIECES; i++) *piece_ring_cubic(&s->ring, next->straight + i, motor) = cubics[i];
+    slice_pause();
   }
-  const uint32_t state = hal_mask_servo();
-  s->placed = piece_ring_replace(&s->ring, m->straight, m->knot_time[0], making.added);
-  hal_unmask(state);
-  return s->placed;
+  return go_on(next, continues);
 }
 
 bool move_place_motors(uint32_t cs) {
@@ -291,7 +337,8 @@ bool move_place_motors(uint32_t cs) {
   if (piece_ring_room(&s->ring) < MOST_PIECES) return false;
   making.s = s;
   making.after = motor_moves[index];
-  if (next->kind == MOVE_PVT || next->kind == MOVE_SPLINE) return place_cubic(next, number);
+  if (next->kind == MOVE_PVT) return place_pvt(next, number);
+  if (next->kind == MOVE_SPLINE) return place_spline(next, index, number);
   if (next->kind == MOVE_LINEAR && move_continues(s) && blend(next, number)) return true;
   from_rest(next, number);
   return true;

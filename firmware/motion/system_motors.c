@@ -19,6 +19,9 @@ struct motor_move motor_moves[2][MOTORS];
 /* What a motor stands beside where its axes have it, at the start of a program. */
 static double aside[MOTORS];
 
+/* What it had followed when axes were matched with motors, and has not taken its axes along. */
+static int64_t followed[MOTORS];
+
 /* How axes make a motor's position. */
 static struct {
   uint32_t count;
@@ -53,9 +56,10 @@ void system_motors_resolve(uint32_t cs) {
   coordinate_systems[cs].motors = mask;
 }
 
+/* What axes are ahead of the trajectory. */
 static double bias(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t value = motors[motor].bias;
+  const int64_t value = motors[motor].bias + followed[motor];
   hal_unmask(state);
   return (double)value;
 }
@@ -187,11 +191,19 @@ static void solve(const struct equations* e, double position[AXIS_COUNT]) {
   }
 }
 
+static void take_followed(uint32_t cs) {
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) followed[motor] = motor_followed(motor);
+  hal_unmask(state);
+}
+
 void system_motors_match(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   static struct equations e;
   bool all = true;
   system_motors_come_along(cs);
+  take_followed(cs);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0 && beside(motor, s->position) != 0) all = false;
   if (all) return;
