@@ -150,6 +150,8 @@ struct coordinate_system {
   bool waited;               /* for a line, since the last calculated move; a start is such a wait */
   bool sets_position;        /* the line is that of PSET */
   bool by_segments;          /* the line's path is made of segments */
+  bool slots_wait;           /* assignments in the slots of the lookahead buffer; */
+  bool slots_short;          /* one was lost since the start for want of one */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
   /* moves: moves[executing] is the one that executes or has been last, the other one is the next */
