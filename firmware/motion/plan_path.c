@@ -77,11 +77,11 @@ static bool feed_time(uint32_t cs, const struct path_move* m, uint32_t moving, d
 }
 
 static void set_times(uint32_t cs, struct path_move* m, double time) {
-  m->s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
-  m->acceleration = m->change = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), m->s_curve + m->s_curve);
+  const double s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
+  const double acceleration = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), s_curve + s_curve);
   slice_pause();
-  time = plan_larger(time, m->acceleration > 0.0 ? m->acceleration : LEAST_MS);
-  m->time = time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS;
+  time = plan_larger(time, acceleration > 0.0 ? acceleration : LEAST_MS);
+  path_set_times(m, time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, acceleration, s_curve);
 }
 
 /* Directions at its ends. */
