@@ -17,7 +17,8 @@ const std::vector<Bench>& all_benches() {
       variables_bench(),      status_bench(),        plc_bench(),
       servo_loop_bench(),     jog_home_bench(),      motion_bench(),
       limits_bench(),         commutation_bench(),   time_base_bench(),
-      follow_bench(),         task_load_bench(),
+      follow_bench(),         task_load_bench(),     circle_bench(),
+      lookahead_bench(),      reversal_bench(),      rotary_machining_bench(),
   };
   return benches;
 }
