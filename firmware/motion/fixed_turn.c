@@ -16,7 +16,7 @@ static const int64_t sine_terms[TERMS] = {
     INT64_C(-768614336404564608), INT64_C(38430716820228232), INT64_C(-915017067148291), INT64_C(12708570377060),
     INT64_C(-115532457973),       INT64_C(740592679),         INT64_C(-3526632)};
 
-static int64_t product(int64_t a, int64_t b) { return fixed_share(a / 4, b) * 4; }
+static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
 
 static int64_t series(const int64_t terms[TERMS], int64_t square) {
   int64_t sum = terms[TERMS - 1];

@@ -7,7 +7,6 @@
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 
-enum { SQUARE_PARTS = 2 * PIECE_PARTS * PIECE_PARTS };
 enum { STOP_PARTS = PIECE_PARTS / 4 }; /* a stop is at a quarter of a segment */
 enum { SLOWEST = 64 };                 /* a w that is no more than the rounding of sums: 0 */
 
@@ -15,35 +14,16 @@ _Static_assert(PIECE_WARP_ONE == RATE_FULL, "a part of 30 bits is both");
 #define TIME_MOST ((uint64_t)TRAJECTORY_LONGEST_MS << TRAJECTORY_FRACTION_BITS)
 
 static void load(const struct look* l, uint32_t segment) {
-  const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
-                               *next = lookahead_motors(&l->buffer, segment + 1u);
-  limits_begin();
-  for (uint32_t slot = 0; slot < l->motor_count; slot++)
-    limits_add(&(struct limits_motor){{at[slot].pace, next[slot].pace}, {at[slot].bend, next[slot].bend}}, PIECE_PARTS);
-  slice_pause();
+  limits_load(lookahead_motors(&l->buffer, segment), lookahead_motors(&l->buffer, segment + 1u), l->motor_count);
 }
 
-/* A part of a segment, in sixteenths of it: the motors at its ends. */
+/* A part of a segment, in sixteenths of it. */
 static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
-  if (last - first == PIECE_PARTS) {
+  if (last - first == PIECE_PARTS)
     load(l, segment);
-    return;
-  }
-  const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
-                               *next = lookahead_motors(&l->buffer, segment + 1u);
-  limits_begin();
-  for (uint32_t slot = 0; slot < l->motor_count; slot++) {
-    const int32_t a0 = at[slot].bend, turn = next[slot].bend - a0;
-    struct limits_motor m = {{at[slot].pace, next[slot].pace}, {a0, next[slot].bend}};
-    for (uint32_t i = 0; i < 2u; i++) {
-      const int32_t s = (int32_t)(i == 0 ? first : last);
-      if (s % PIECE_PARTS == 0) continue;
-      m.bend[i] = a0 + (int32_t)((int64_t)turn * s / PIECE_PARTS);
-      m.pace[i] = at[slot].pace + (int32_t)(((int64_t)a0 * 2 * PIECE_PARTS + (int64_t)turn * s) * s / SQUARE_PARTS);
-    }
-    limits_add(&m, last - first);
-    slice_pause();
-  }
+  else
+    limits_load_part(lookahead_motors(&l->buffer, segment), lookahead_motors(&l->buffer, segment + 1u), l->motor_count,
+                     first, last);
 }
 
 /* Of w at a knot: the velocities in the segments at both sides. */

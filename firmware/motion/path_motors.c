@@ -87,7 +87,7 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
     way->turns = false;
     motors_of_path[motor].end = end;
     slice_pause();
-    if (m->is_arc) turn(motor, m, largest, way);
+    if (m->is_arc && (system_motor_axes(motor) & AXIS_XYZ) != 0) turn(motor, m, largest, way);
   }
 }
 
@@ -99,7 +99,7 @@ void path_motors_pop(uint32_t cs) {
 }
 
 /* product of two parts */
-static int64_t product(int64_t a, int64_t b) { return fixed_share(a / 4, b) * 4; }
+static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
 
 void path_motors_look(uint32_t cs, const struct path_point* point) {
   at.count = 0;

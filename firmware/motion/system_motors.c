@@ -101,6 +101,12 @@ double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT
   return sum;
 }
 
+uint32_t system_motor_axes(uint32_t motor) {
+  uint32_t axes = 0;
+  for (uint32_t i = 0; i < maps[motor].count; i++) axes |= 1u << maps[motor].axis[i];
+  return axes;
+}
+
 double system_motor_counts(uint32_t motor, int64_t distance) { return (double)distance / maps[motor].unit; }
 
 bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AXIS_COUNT], int64_t* behind) {
