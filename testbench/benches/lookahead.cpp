@@ -50,7 +50,7 @@ std::vector<Case> cases() {
   return {
       {"corners",
        12,
-       {{12, 1}, {8, 0.6}},
+       {{9, 1}, {6, 0.6}},
        {"F18 X180", "Y-60", "X-90 Y-45", "CIRCLE2 X80 Y80 I0 J80", "LINEAR Y40"},
        {line_move(10, {180, 0}), line_move(kTa, {0, -60}), line_move(std::hypot(90, 45) / 18, {-90, -45}),
         arc_move(kPi / 2 * 80 / 18, {80, 80}, {{0, 80, 0}, {0, 0, 1}, kPi / 2}), line_move(kTa, {0, 40})},
