@@ -22,24 +22,25 @@ static int32_t inside = (1 << PRODUCT_BITS) - ROUNDING;
 static uint32_t likely; /* the motor that has been the narrowest last */
 
 static int32_t magnitude(int32_t value) { return value < 0 ? -value : value; }
-static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 
-/* With w up to 1 the limits hold anyway? */
+/* All below half of the limit: with w up to 1 it holds anyway. */
 static inline bool is_slow(const struct motor_part* m) {
-  const int32_t pace = larger(larger(magnitude(m->pace[0]), magnitude(m->pace[1])), magnitude(m->pace[2]));
-  return pace + larger(magnitude(m->bend[0]), magnitude(m->bend[1])) < 1 << BEND_BITS;
+  const uint32_t half = 1u << (BEND_BITS - 1);
+  const uint32_t bend = ((uint32_t)m->bend[0] + half) | ((uint32_t)m->bend[1] + half);
+  const uint32_t pace = ((uint32_t)m->pace[0] + half) | ((uint32_t)m->pace[1] + half);
+  return (bend | pace | ((uint32_t)m->pace[2] + half)) < 2u * half;
 }
 
 void limits_load(const struct lookahead_motor* at, const struct lookahead_motor* next, uint32_t motor_count) {
   count = 0;
   for (uint32_t i = 0; i < motor_count; i++) {
     struct motor_part* to = &motor_parts[count];
-    const int32_t bend = at[i].bend, pace = at[i].pace / 2;
+    const int32_t bend = at[i].bend, pace = at[i].pace >> 1;
     to->bend[0] = bend;
     to->bend[1] = next[i].bend;
     to->pace[0] = pace;
-    to->pace[1] = pace + bend / 4;
-    to->pace[2] = next[i].pace / 2;
+    to->pace[1] = pace + (bend >> 2);
+    to->pace[2] = next[i].pace >> 1;
     if (!is_slow(to)) count++;
     if (i % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
   }
@@ -80,6 +81,7 @@ struct edge {
 /* What the limits leave for the w at one end. */
 struct room {
   int32_t most;      /* below 0: nothing */
+  uint32_t by;       /* the motor that has narrowed it last, which need not be tried again; MOTORS: none has */
   bool narrowed;     /* by `upper` */
   struct edge upper; /* what says so */
   struct edge lower; /* of nothing: what asks for more */
@@ -96,7 +98,7 @@ static inline bool holds(const struct motor_part* m, int32_t w0, int32_t w1, int
   const int32_t h = w1 - w0, a0 = m->bend[0], a1 = m->bend[1];
   v->b[0] = fixed_high(a0, w0) + fixed_high(m->pace[0], h);
   v->b[2] = fixed_high(a1, w1) + fixed_high(m->pace[2], h);
-  v->b[1] = (fixed_high(a1, w0) + fixed_high(a0, w1)) / 2 + fixed_high(m->pace[1], h);
+  v->b[1] = ((fixed_high(a1, w0) + fixed_high(a0, w1)) >> 1) + fixed_high(m->pace[1], h);
   return is_within(v->b[0], most) && is_within(v->b[1], most) && is_within(v->b[2], most);
 }
 
@@ -106,10 +108,11 @@ static uint32_t beyond(const struct values* v, uint32_t met) {
   if (!is_within(b[0], inside) && (met & 1u) == 0) return 0;
   if (!is_within(b[2], inside) && (met >> (VALUES - 1u)) == 0) return VALUES - 1u;
   if (is_within(b[1], inside)) return VALUES;
-  for (uint32_t i = 1; i < VALUES - 1u; i++) {
-    const int8_t* of = quarters[i - 1u];
-    if (!is_within((b[0] * of[0] + b[1] * of[1] + b[2] * of[2]) >> 3, inside) && (met >> i & 1u) == 0) return i;
-  }
+  const int32_t from = 3 * b[0], to = 3 * b[2], middle = 4 * b[1]; /* as `quarters` has it */
+  if (!is_within((from + b[1]) >> 2, inside) && (met & 2u) == 0) return 1;
+  if (!is_within((from + middle + b[2]) >> 3, inside) && (met & 4u) == 0) return 2;
+  if (!is_within((b[0] + middle + to) >> 3, inside) && (met & 8u) == 0) return 3;
+  if (!is_within((b[1] + to) >> 2, inside) && (met & 16u) == 0) return 4;
   return VALUES;
 }
 
@@ -155,21 +158,25 @@ static inline bool holds_at(enum limits_end end, const struct motor_part* m, int
 static __attribute__((noinline)) bool narrow_by_motor(enum limits_end end, uint32_t i, int32_t w, struct room* r,
                                                       struct values* v) {
   const struct motor_part* m = &motor_parts[i];
+  slice_pause();
   for (uint32_t met = 0;;) {
     const uint32_t value = beyond(v, met);
     if (value == VALUES) return true;
     if (!narrow(end, edge_of(m, value), w, r)) return false;
-    likely = i;
+    likely = r->by = i;
+    slice_pause();
     met |= 1u << value;
     if (holds_at(end, m, w, r->most, v)) return true;
   }
 }
 
-static bool pass(enum limits_end end, int32_t w, struct room* r) {
+/* Of the first `number` motors. */
+static bool pass(enum limits_end end, int32_t w, struct room* r, uint32_t number) {
   struct values v;
-  for (uint32_t i = 0; i < count; i++) {
-    if (!holds_at(end, &motor_parts[i], w, r->most, &v) && !narrow_by_motor(end, i, w, r, &v)) return false;
-    if (i % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
+  for (uint32_t i = 0; i < number; i++) {
+    if (i != r->by && !holds_at(end, &motor_parts[i], w, r->most, &v) && !narrow_by_motor(end, i, w, r, &v))
+      return false;
+    if (i % PAUSE_MOTORS == 1u) slice_pause();
   }
   return true;
 }
@@ -177,13 +184,13 @@ static bool pass(enum limits_end end, int32_t w, struct room* r) {
 /* What has been narrowed on the way is looked at again by the motors that came before. The one that was the narrowest
  * last comes first, and mostly is so again. */
 static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
-  struct room r = {.most = most};
+  struct room r = {.most = most, .by = MOTORS};
   struct values v;
   bool possible =
       likely >= count || holds_at(end, &motor_parts[likely], w, most, &v) || narrow_by_motor(end, likely, w, &r, &v);
   const int32_t begun = r.most;
-  possible = possible && pass(end, w, &r);
-  if (possible && r.most != begun) possible = pass(end, w, &r);
+  possible = possible && pass(end, w, &r, count);
+  if (possible && r.most != begun) possible = pass(end, w, &r, r.by);
   if (!possible) r.most = -1;
   slice_pause();
   return r;

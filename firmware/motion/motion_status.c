@@ -7,8 +7,10 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/protection.h"
+#include "firmware/motion/segment.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
@@ -97,7 +99,8 @@ static uint32_t status3(uint32_t cs) {
   const bool stops = s->corner != CORNER_NONE && s->moves[s->executing ^ 1u].is_sharp;
   const uint32_t state = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE)) << S3_LOOKAHEAD_STATE;
   return state | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
-         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) | bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT);
+         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) |
+         bit(is_on_desired_limit(cs) || (segment_stands(cs) && lookahead_is_at_limit(cs)), S3_DESIRED_LIMIT);
 }
 
 uint32_t motion_cs_status(uint32_t cs, unsigned word) {

@@ -45,11 +45,22 @@ static void turn(uint32_t motor, const struct path_move* m, double largest, stru
     first[AXIS_X + i] = m->circle.first[i];
     second[AXIS_X + i] = m->circle.second[i];
   }
-  way->along = math_nearest(system_motor_velocity_at(motor, along));
   slice_pause();
-  way->first = math_nearest(system_motor_velocity_at(motor, first) * (largest + largest));
+  double value = system_motor_velocity_at(motor, along);
   slice_pause();
-  way->second = math_nearest(system_motor_velocity_at(motor, second) * largest);
+  way->along = math_nearest(value);
+  slice_pause();
+  value = system_motor_velocity_at(motor, first);
+  slice_pause();
+  value *= largest + largest;
+  slice_pause();
+  way->first = math_nearest(value);
+  slice_pause();
+  value = system_motor_velocity_at(motor, second);
+  slice_pause();
+  value *= largest;
+  slice_pause();
+  way->second = math_nearest(value);
   slice_pause();
   way->turns = way->first != 0 || way->second != 0;
 }
@@ -57,9 +68,13 @@ static void turn(uint32_t motor, const struct path_move* m, double largest, stru
 static double set_arc(uint32_t cs, uint32_t place, const struct circle* c) {
   const double end = c->radius + c->growth, largest = end > c->radius ? end : c->radius;
   slice_pause();
-  arcs[cs][place].angle = math_to_integer(math_scale(c->angle / TWO_PI, FIXED_TURN_BITS));
+  const double angle = c->angle / TWO_PI;
   slice_pause();
-  arcs[cs][place].growth = math_to_integer(math_scale(c->growth / largest, 62));
+  arcs[cs][place].angle = math_to_integer(math_scale(angle, FIXED_TURN_BITS));
+  slice_pause();
+  const double growth = c->growth / largest;
+  slice_pause();
+  arcs[cs][place].growth = math_to_integer(math_scale(growth, 62));
   arcs[cs][place].from = c->growth > 0.0 ? PATH_WHOLE - arcs[cs][place].growth : PATH_WHOLE;
   slice_pause();
   return largest;
@@ -79,10 +94,13 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
   const struct path_move* m = path_of(&paths[cs], ahead);
   const uint32_t place = place_of(&paths[cs], ahead);
   const double largest = m->is_arc ? set_arc(cs, place, &m->circle) : 0.0;
+  slice_pause();
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     struct way* way = &motors_of_path[motor].ways[place];
-    const int64_t end = math_nearest(system_motor_at(motor, m->end));
+    const double position = system_motor_at(motor, m->end);
+    slice_pause();
+    const int64_t end = math_nearest(position);
     way->whole = end - motors_of_path[motor].end;
     way->turns = false;
     motors_of_path[motor].end = end;
@@ -110,6 +128,7 @@ void path_motors_look(uint32_t cs, const struct path_point* point) {
     at.moves[n].place = place;
     at.moves[n].part = part;
     if (part == PATH_WHOLE || !path_of(&paths[cs], i)->is_arc) continue;
+    slice_pause();
     const struct fixed_direction to = fixed_direction_of(fixed_share(arcs[cs][place].angle, part));
     const int64_t radius = arcs[cs][place].from + product(arcs[cs][place].growth, part);
     at.moves[n].first = (product(to.cosine, radius) - arcs[cs][place].from) / 2;
@@ -118,18 +137,22 @@ void path_motors_look(uint32_t cs, const struct path_point* point) {
   }
 }
 
+static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t move) {
+  slice_pause();
+  return fixed_share(way->along, at.moves[move].part) + fixed_share(way->first, at.moves[move].first) +
+         fixed_share(way->second, at.moves[move].second);
+}
+
 int64_t path_motor_at(uint32_t motor) {
+  const struct way* ways = motors_of_path[motor].ways;
   int64_t position = motors_of_path[motor].start;
   for (uint32_t i = 0; i < at.count; i++) {
-    const struct way* way = &motors_of_path[motor].ways[at.moves[i].place];
+    const struct way* way = &ways[at.moves[i].place];
     const int64_t part = at.moves[i].part;
-    if (part == PATH_WHOLE)
-      position += way->whole;
-    else if (!way->turns)
-      position += fixed_share(way->whole, part);
+    if (part == PATH_WHOLE || !way->turns)
+      position += part == PATH_WHOLE ? way->whole : fixed_share(way->whole, part);
     else
-      position += fixed_share(way->along, part) + fixed_share(way->first, at.moves[i].first) +
-                  fixed_share(way->second, at.moves[i].second);
+      position += on_arc(way, i);
   }
   return position;
 }

@@ -53,15 +53,18 @@ void system_motors_resolve(uint32_t cs) {
   coordinate_systems[cs].motors = mask;
 }
 
-static double bias(uint32_t motor) {
+static int64_t bias_of(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
   const int64_t value = motors[motor].bias;
   hal_unmask(state);
-  return (double)value;
+  return value;
 }
 
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
-  double sum = maps[motor].offset - bias(motor);
+  const int64_t bias = bias_of(motor);
+  double sum = maps[motor].offset;
+  if (bias != 0) sum -= (double)bias;
+  slice_pause();
   for (uint32_t i = 0; i < maps[motor].count; i++) {
     sum += maps[motor].scale[i] * position[maps[motor].axis[i]];
     slice_pause();
@@ -157,7 +160,7 @@ static void add_equation(struct equations* e, uint32_t motor) {
     row[maps[motor].axis[i]] = maps[motor].scale[i];
     if (math_absolute(maps[motor].scale[i]) > largest) largest = math_absolute(maps[motor].scale[i]);
   }
-  row[AXIS_COUNT] = (double)commanded(motor) + bias(motor) - maps[motor].offset;
+  row[AXIS_COUNT] = (double)commanded(motor) + (double)bias_of(motor) - maps[motor].offset;
   for (uint32_t k = 0; k < e->count; k++) {
     const double factor = row[e->pivot[k]];
     if (factor == 0.0) continue;

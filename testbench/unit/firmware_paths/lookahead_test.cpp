@@ -225,4 +225,69 @@ TEST_F(Lookahead, SegmentOverride) {
   EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
 }
 
+// motion:7.5/6. Ixx24 bit 15: it stops on the path before what lies beyond, goes on into it a segment at a time, and
+// back as ever. Y is half as fast: where it is tells whether the path is the same.
+TEST_F(Lookahead, TheLimitOfADesiredPositionStopsOnThePath) {
+  fit({"1000X", "500X"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=1 I113=50000 I141=1000 I124=$8001"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F50 TA10 TS0", "X100"});
+  ASSERT_EQ(host("&1B1R"), "");
+  std::vector<double> x;
+  const auto go = [&](unsigned ticks) {
+    for (unsigned i = 0; i < ticks; ++i) {
+      platform::servo_ticks(1);
+      x.push_back(at(1));
+      ASSERT_NEAR(at(2), x.back() / 2, 0.01);
+      ASSERT_LE(x.back(), 49000);
+    }
+  };
+  go(ticks_of(1300));
+  const double stop = at(1);
+  EXPECT_GT(stop, 49000 - 3 * 250) << "three segments of 5 ms at 50 counts/ms";
+  EXPECT_EQ(host("I5121"), "0");
+  EXPECT_EQ(host("??").substr(12, 6).back() & 2, 2) << "bit 1 of word 3";
+  for (std::size_t n = 2; n < x.size(); ++n)
+    ASSERT_LE(std::abs(x[n] - 2 * x[n - 1] + x[n - 2]), 1.02 * kTickMs * kTickMs + 4 / kUnit);
+  ASSERT_EQ(host("&1<"), "");
+  go(ticks_of(600));
+  EXPECT_LT(at(1), stop - 5000);
+  ASSERT_EQ(host("&1>"), "");
+  go(ticks_of(1500));
+  EXPECT_EQ(at(1), stop) << "there again";
+}
+
+TEST_F(Lookahead, BeyondTheLimitASegmentAtATime) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=1 I113=50000 I124=$8001"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F50 TA10 TS0 FRAX(X)", "X100 Y100"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(1300));
+  const double stop = at(2);
+  EXPECT_LT(stop, 50000);
+  for (int i = 1; i <= 4; ++i) {
+    ASSERT_EQ(host(i % 2 == 0 ? "&1R" : "&1>"), "");
+    platform::servo_ticks(ticks_of(200));
+    EXPECT_NEAR(at(2), stop + 250 * i, 0.01) << "5 ms at 50 counts/ms";
+    EXPECT_LE(at(1), 50000);
+    EXPECT_EQ(host("??").substr(12, 6).back() & 2, 2);
+  }
+  EXPECT_EQ(motors[0].trajectory, 50000 * 3072) << "the target is held at the limit";
+  EXPECT_TRUE(run_is_running(0));
+}
+
+// Bit 14: on, with that motor at its limit.
+TEST_F(Lookahead, AtTheLimitOfADesiredPositionItGoesOn) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=1 I113=50000 I114=-100 I124=$C001"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F50 TA10 TS0", "X100 Y80", "X-2 Y20"});
+  double end = 0;
+  const auto found = extremes(2, &end);
+  EXPECT_LE(found[0].acceleration, 1.02);
+  EXPECT_EQ(motors[0].trajectory, -100 * 3072);
+  EXPECT_EQ(motors[1].trajectory, 20000 * 3072);
+}
+
 }  // namespace
