@@ -146,6 +146,8 @@ struct coordinate_system {
   bool first;                /* no move of this run has been placed yet */
   bool sets_position;        /* the line is that of PSET */
   bool by_segments;          /* the line's path is made of segments */
+  bool slots_wait;           /* assignments in the slots of the lookahead buffer; */
+  bool slots_short;          /* one was lost since the start for want of one */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
   /* moves: moves[executing] is the one that executes or has been last, the other one is the next */

@@ -324,6 +324,13 @@ uint32_t lookahead_state(uint32_t cs, bool moves) {
   return (moves ? 2u | direction : 0u) | (l->was_single ? 8u | 2u | direction : 0u);
 }
 
+bool lookahead_is_wrapped(uint32_t cs) { return look_oldest(&looks[cs]) != 0u; }
+bool lookahead_is_backward(uint32_t cs) { return looks[cs].backward; }
+bool lookahead_is_at_oldest(uint32_t cs) {
+  const struct look* l = &looks[cs];
+  return l->backward && l->front == look_oldest(l) && l->part == 0u;
+}
+
 bool lookahead_is_at_limit(uint32_t cs) { return looks[cs].state == LOOK_STANDS && is_at_limit(&looks[cs]); }
 
 bool lookahead_is_over(uint32_t cs) {

@@ -290,4 +290,74 @@ TEST_F(Lookahead, AtTheLimitOfADesiredPositionItGoesOn) {
   EXPECT_EQ(motors[1].trajectory, 20000 * 3072);
 }
 
+unsigned word3() { return static_cast<unsigned>(std::stoul(host("??").substr(12, 6), nullptr, 16)); }
+
+// motion:7.3/4. Assignments wait in the slots of the buffer: what has none is lost, and bit 19 of word 3 says so.
+TEST_F(Lookahead, AssignmentsWaitInTheSlotsOfTheBuffer) {
+  for (const unsigned slots : {0u, 3u, 40u}) {
+    SCOPED_TRACE(slots);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I5120=100 I116=50 I117=1 M1..40->* M1..40=0"), "");
+    const unsigned open = static_cast<unsigned>(std::stoul(host("SIZE")));
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 120," + std::to_string(slots)), "");
+    EXPECT_EQ(open - static_cast<unsigned>(std::stoul(host("SIZE"))), 120 * 6 + 2 * slots);
+    Lines lines = {"TM10 TA5 TS0 DWELL100"};
+    for (int i = 1; i <= 40; ++i) lines.push_back("M" + std::to_string(i) + "==1 X" + std::to_string(i * 0.1));
+    store(lines);
+    bool waited = false;
+    unsigned half = 99;
+    run([&](double) {
+      waited |= (word3() >> 20 & 1) != 0;
+      if (half == 99 && at(1) > 2000) {
+        half = 0;
+        for (int i = 1; i <= 40; ++i) half += m_variable_read(i) != 0;
+      }
+    });
+    platform::servo_ticks(5);
+    unsigned made = 0;
+    for (int i = 1; i <= 40; ++i) made += m_variable_read(i) != 0;
+    if (slots == 40) {
+      EXPECT_EQ(made, 40u);
+      EXPECT_NEAR(half, 21, 1);
+    } else {
+      EXPECT_LT(made, 30u);
+      EXPECT_GE(made, slots);
+    }
+    EXPECT_EQ(word3() >> 19 & 1, slots == 40 ? 0u : 1u);
+    EXPECT_EQ(waited, slots != 0);
+    EXPECT_EQ(word3() >> 20 & 1, 0u);
+    store({"TM10 X0"});
+    run();
+    EXPECT_EQ(word3() >> 19 & 1, 0u) << "of the last start";
+  }
+}
+
+// Bits 21 to 23 of word 3 (firmware:5.6): it stands at the oldest segment, goes backwards, has written over segments.
+TEST_F(Lookahead, StatusOfTheBuffer) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5 I5120=20 I116=50 I117=1"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,0"), "");
+  store({"TM1000 TA20 TS0", "X20"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(100));
+  EXPECT_EQ(word3() >> 21, 0u);
+  ASSERT_EQ(host("&1<"), "");
+  platform::servo_ticks(ticks_of(60));
+  EXPECT_EQ(word3() >> 21, 2u) << "backwards";
+  platform::servo_ticks(ticks_of(500));
+  EXPECT_EQ(word3() >> 21, 3u) << "at the oldest";
+  ASSERT_EQ(host("&1>"), "");
+  platform::servo_ticks(ticks_of(700));
+  EXPECT_EQ(word3() >> 21, 4u) << "60 segments of 5 ms are written over";
+  ASSERT_EQ(host("&1<"), "");
+  platform::servo_ticks(ticks_of(800));
+  EXPECT_EQ(word3() >> 21, 7u);
+  EXPECT_GT(at(1), 1000) << "what is written over is not come back to";
+  ASSERT_EQ(host("&1>"), "");
+  platform::servo_ticks(ticks_of(2500));
+  EXPECT_EQ(motors[0].trajectory, 20000 * 3072);
+  EXPECT_EQ(word3() >> 21, 0u);
+}
+
 }  // namespace
