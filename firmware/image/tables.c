@@ -54,7 +54,8 @@ static void servo(void) {
 
 const struct task_hooks task_hooks = {.servo = servo, .real_time = real_time, .phase_period = phase_period};
 
-const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
+const struct word_hooks word_hooks = {
+    .end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write, .write_long = live_word_write_long};
 
 enum run_time_error (*const kinematics_execute)(uint32_t cs, enum fixed_kind kind) = kinematic_program_execute;
 

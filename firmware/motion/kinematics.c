@@ -134,8 +134,9 @@ bool kinematics_inverse(uint32_t cs, const double position[AXIS_COUNT]) {
   return solve(cs, position, false, 1.0);
 }
 
-/* In units a Isx90, as behind `:`. */
-static bool solve_told(uint32_t cs, const struct knot* knot) {
+/* Velocities in units a Isx90, as behind `:`. */
+bool kinematics_inverse_knot(uint32_t cs, const struct knot* knot) {
+  if (coordinate_systems[cs].inverse_motors == 0) return true;
   const double time_unit = cs_real(cs, ISX90_FEEDRATE_TIME_UNIT);
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     const double velocity = knot->velocity[axis] * time_unit;
@@ -144,38 +145,6 @@ static bool solve_told(uint32_t cs, const struct knot* knot) {
     slice_pause();
   }
   return solve(cs, knot->position, true, time_unit > 0.0 ? time_unit : 1.0);
-}
-
-static bool solve_beside(uint32_t cs, const struct knot* knot, double ms) {
-  double position[AXIS_COUNT];
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    position[axis] = knot->position[axis] + knot->velocity[axis] * ms;
-    slice_pause();
-  }
-  return solve(cs, position, false, 1.0);
-}
-
-/* What lies one ms between. */
-static bool solve_difference(uint32_t cs, const struct knot* knot) {
-  const uint32_t motors_of = coordinate_systems[cs].inverse_motors;
-  bool moves = false;
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) moves = moves || knot->velocity[axis] != 0.0;
-  for (uint32_t motor = 0; motor < MOTORS; motor++)
-    if ((motors_of >> motor & 1u) != 0) velocities[motor] = 0.0;
-  if (moves && !solve_beside(cs, knot, -0.5)) return false;
-  for (uint32_t motor = 0; moves && motor < MOTORS; motor++)
-    if ((motors_of >> motor & 1u) != 0) velocities[motor] = -at[motor];
-  slice_pause();
-  if (moves && !solve_beside(cs, knot, 0.5)) return false;
-  for (uint32_t motor = 0; moves && motor < MOTORS; motor++)
-    if ((motors_of >> motor & 1u) != 0) velocities[motor] += at[motor];
-  slice_pause();
-  return kinematics_inverse(cs, knot->position);
-}
-
-bool kinematics_inverse_knot(uint32_t cs, const struct knot* knot, bool is_pvt) {
-  if (coordinate_systems[cs].inverse_motors == 0) return true;
-  return is_pvt ? solve_told(cs, knot) : solve_difference(cs, knot);
 }
 
 double kinematics_at(uint32_t motor) { return at[motor]; }

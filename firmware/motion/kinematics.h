@@ -25,9 +25,8 @@ void kinematics_stand(uint32_t cs, const double position[AXIS_COUNT]);
 /* Where they are with axes at `position`; what was asked for last is not executed again. False: it has failed, and
  * nothing of it counts. */
 bool kinematics_inverse(uint32_t cs, const double position[AXIS_COUNT]);
-/* The same with the velocities, a ms. Of a PVT move the program tells them too; else they are found by where motors are
- * shortly before and behind. */
-bool kinematics_inverse_knot(uint32_t cs, const struct knot* knot, bool is_pvt);
+/* The same of a PVT move, where the program tells velocities too, a ms. */
+bool kinematics_inverse_knot(uint32_t cs, const struct knot* knot);
 double kinematics_at(uint32_t motor);
 double kinematics_velocity(uint32_t motor); /* behind the last kinematics_inverse_knot */
 

@@ -159,7 +159,7 @@ static void run_time_error_by_user(uint32_t cs) {
   hal_unmask(state);
 }
 
-/* What a write leaves of the word is read in one piece with it: programs of the real-time task write there too. */
+/* What a write leaves of a word is read in one piece with it: programs of the real-time task write there too. */
 static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
   if (offset == CS_COMMANDED_TIME_BASE) write_time_base(cs, mask, bits);
   if (offset == CS_STATUS_1 && x && (mask & S1_CONTINUOUS_BIT) != 0u)
@@ -177,7 +177,7 @@ static void write_reference(uint32_t motor, uint32_t offset, bool x, uint32_t ma
 /* The commanded time base, blending (bit 4 of status word 1), the run-time error (bit 22 of word 2), the timers and the
  * phase reference error can be set, global status bits that stay can be cleared; the others belong to the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
-  uint32_t present[2] = {0, 0};
+  uint32_t present[2];
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
   if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
   const uint32_t in_systems = address - MEMORY_CS_WORDS;
@@ -186,8 +186,14 @@ bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   const uint32_t in_motors = address - MEMORY_MOTOR_WORDS, line = address - MEMORY_CONVERSION;
   if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS) {
     write_reference(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
-    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, (present[x] & ~mask) | bits);
+    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
   }
-  if (line < CONVERSION_LINES) i_variable_write(I8000_CONVERSION_TABLE + line, (present[0] & ~mask) | bits);
+  if (line < CONVERSION_LINES) i_variable_write_part(I8000_CONVERSION_TABLE + line, mask, bits);
   return true;
+}
+
+bool live_word_write_long(uint32_t address, uint32_t x, uint32_t y) {
+  const uint32_t in_motors = address - MEMORY_MOTOR_WORDS;
+  if (in_motors >= MOTORS_END - MEMORY_MOTOR_WORDS) return false;
+  return servo_word_write_long(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, y);
 }

@@ -7,13 +7,15 @@
 #include "firmware/motion/fixed_ratio.h"
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
+#include "firmware/motion/protection.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
   LEAST = 4, /* records ahead that make sense */
   SCALE_BITS = 16,
-  STEP_MOST = 1 << 29 /* 2^13 of an acceleration limit */
+  STEP_MOST = 1 << 29, /* 2^13 of an acceleration limit */
+  SATURATES = 1 << 14  /* Ixx24: on at the limit of a desired position */
 };
 
 #define SCALE_HALF 32768.0
@@ -23,8 +25,10 @@ enum {
 static struct {
   int32_t mantissa; /* 0: no limit */
   int32_t coarse;
-  int32_t fastest;      /* the largest step that Ixx16 allows; 0: no limit */
-  int32_t before, last; /* the last two steps */
+  int32_t fastest;         /* the largest step that Ixx16 allows; 0: no limit */
+  int32_t before, last;    /* the last two steps */
+  int64_t lowest, highest; /* of the desired position, Ixx24 bit 15 */
+  bool saturates;          /* bit 14 */
 } scales[MOTORS];
 
 /* Room for segments behind the three points that it takes besides. */
@@ -78,6 +82,13 @@ static void set_scale(uint32_t motor, double period) {
   slice_pause();
 }
 
+/* Whether there is one. */
+static bool set_guard(uint32_t motor) {
+  const uint32_t mode = (uint32_t)i_integer(i_motor(motor + 1u, IXX24_FLAG_MODE));
+  scales[motor].saturates = (mode & SATURATES) != 0u;
+  return protection_desired_limits(motor, &scales[motor].lowest, &scales[motor].highest);
+}
+
 bool lookahead_begin(uint32_t cs, uint32_t period) {
   struct look* l = &looks[cs];
   const uint32_t wanted = (uint32_t)i_integer(i_cs(cs, ISX20_LOOKAHEAD_LENGTH));
@@ -93,6 +104,7 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   l->limits = wanted > 1u;
   l->closed = l->begun = l->backward = l->single = l->was_single = false;
   l->added = l->front = l->part = 0;
+  l->guarded = 0;
   l->rate = l->rooted = RATE_FULL;
   l->root = RATE_FULL;
   l->state = LOOK_GOES;
@@ -100,7 +112,10 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   look_forget_sweeps(l);
   l->period = period;
   for (uint32_t motor = 0, left = l->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) set_scale(motor, (double)period);
+    if ((left & 1u) != 0) {
+      set_scale(motor, (double)period);
+      if (l->limits && set_guard(motor)) l->guarded |= 1u << motor;
+    }
   return true;
 }
 
@@ -153,6 +168,15 @@ static void set_limits(struct look* l, uint32_t motor, int32_t next, struct look
   if (cap < segment->cap) segment->cap = cap;
 }
 
+/* The limit instead of a point beyond it. With bit 14 = 0 it stands before the first segment that this changes: the
+ * knot that was the last one until now. */
+static int64_t guarded(uint32_t motor, int64_t point, struct lookahead_record* segment) {
+  const int64_t lowest = scales[motor].lowest, highest = scales[motor].highest;
+  if (point >= lowest && point <= highest) return point;
+  if (!scales[motor].saturates) segment->stops = true;
+  return point > highest ? highest : lowest;
+}
+
 /* A point of the motors: with the one before it a step. */
 static void add_point(struct look* l, struct lookahead_record* record, const int64_t control[][SPLINE_POINTS]) {
   const uint32_t at = l->added;
@@ -162,7 +186,8 @@ static void add_point(struct look* l, struct lookahead_record* record, const int
   const struct lookahead_motor* last = lookahead_of(before);
   for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t point = control[motor][SPLINE_POINTS - 1];
+    int64_t point = control[motor][SPLINE_POINTS - 1];
+    if ((l->guarded >> motor & 1u) != 0) point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
     to[slot] = (struct lookahead_motor){point, 0, 0};
     if (l->limits && at != 0) {
       const int32_t step = coarse_step(motor, point - last[slot].point);
@@ -180,6 +205,7 @@ void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t
   struct lookahead_record* record = lookahead_at(&l->buffer, l->added);
   record->rate = 0;
   record->cap = RATE_FULL;
+  record->stops = false;
   record->number = number;
   record->line = *line;
   add_point(l, record, control);

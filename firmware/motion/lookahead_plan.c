@@ -30,6 +30,7 @@ static void load_part(const struct look* l, uint32_t segment, uint32_t first, ui
 /* Of w at a knot: the velocities in the segments at both sides. */
 static int32_t cap_at(const struct look* l, uint32_t knot) {
   struct lookahead_record* ahead = lookahead_at(&l->buffer, knot);
+  if (ahead->stops && !l->backward) return 0;
   const int32_t before = knot == look_oldest(l) ? RATE_FULL : lookahead_before(&l->buffer, ahead)->cap;
   return before < ahead->cap || knot == look_end(l) ? before : ahead->cap;
 }
@@ -239,6 +240,12 @@ static bool may_go_on(const struct look* l, bool hurry) {
   return !l->sweeping || *rate_at(l, l->front + 1u) != 0;
 }
 
+/* It has come to a stop of the limit of a desired position. */
+static bool is_at_limit(const struct look* l) {
+  return l->limits && !l->backward && l->part == 0 && (!l->begun || l->rate == 0) &&
+         lookahead_at(&l->buffer, l->front)->stops;
+}
+
 static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
   struct next_part p;
   if (!find_part(l, &p)) {
@@ -246,6 +253,10 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
     return false;
   }
   if (l->single) return single(l, piece);
+  if (is_at_limit(l)) {
+    stand(l);
+    return false;
+  }
   if (!may_go_on(l, hurry)) return false;
   if (l->limits && is_free(l, l->front) && l->part == 0 && (!l->begun || l->rate == 0)) l->rate = *rate_at(l, l->front);
   int32_t to = RATE_FULL;
@@ -271,6 +282,7 @@ bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
     l->backward = order == LOOKAHEAD_BACKWARD || order == LOOKAHEAD_ONE_BACKWARD;
     l->single = l->was_single = order == LOOKAHEAD_ONE_FORWARD || order == LOOKAHEAD_ONE_BACKWARD;
     l->state = LOOK_GOES;
+    if (is_at_limit(l)) l->single = true; /* on into the limit a segment at a time */
     look_forget_sweeps(l);
   }
   if (l->state == LOOK_STANDS) return false;
@@ -311,6 +323,15 @@ uint32_t lookahead_state(uint32_t cs, bool moves) {
   const uint32_t direction = l->backward ? 1u : 0u;
   return (moves ? 2u | direction : 0u) | (l->was_single ? 8u | 2u | direction : 0u);
 }
+
+bool lookahead_is_wrapped(uint32_t cs) { return look_oldest(&looks[cs]) != 0u; }
+bool lookahead_is_backward(uint32_t cs) { return looks[cs].backward; }
+bool lookahead_is_at_oldest(uint32_t cs) {
+  const struct look* l = &looks[cs];
+  return l->backward && l->front == look_oldest(l) && l->part == 0u;
+}
+
+bool lookahead_is_at_limit(uint32_t cs) { return looks[cs].state == LOOK_STANDS && is_at_limit(&looks[cs]); }
 
 bool lookahead_is_over(uint32_t cs) {
   const struct look* l = &looks[cs];

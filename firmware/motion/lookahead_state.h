@@ -16,9 +16,10 @@ enum look_state { LOOK_GOES, LOOK_STOPS, LOOK_STANDS };
 
 struct look {
   struct lookahead_buffer buffer;
-  uint32_t length; /* Isx20, as far as the buffer has room */
-  bool limits;     /* Isx20 above 1 */
-  bool closed;     /* the points so far are all */
+  uint32_t length;  /* Isx20, as far as the buffer has room */
+  bool limits;      /* Isx20 above 1 */
+  bool closed;      /* the points so far are all */
+  uint32_t guarded; /* motors whose desired positions are limited */
   uint32_t motors, motor_count;
   uint32_t period; /* ms */
   uint32_t added;  /* points so far */

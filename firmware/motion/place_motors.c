@@ -8,6 +8,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/spline_motor.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/velocity_change.h"
 
@@ -258,7 +259,7 @@ static void find_knot(uint32_t cs, const struct move* next, uint32_t i) {
   const struct knot* knot = &next->knots[i];
   struct knot_of_motors* found = &ends[i & 1u];
   const bool runs_on = next->overruns && i == 2u;
-  if (!runs_on) system_motors_solve_knot(cs, knot, next->kind == MOVE_PVT);
+  if (!runs_on) system_motors_solve_knot(cs, knot);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     found->at[motor] = i == 0 ? system_motor_from(motor, knot->position) : system_motor_at(motor, knot->position);
@@ -280,10 +281,24 @@ static void add_knots(uint32_t motor, uint32_t i, double time) {
   add_cubic(motor, to, 3.0 * way - v0 - v0 - v1, v0 + v1 - way - way);
 }
 
-/* False: the sequence that it goes on with has ended meanwhile. */
-static bool place_cubic(uint32_t cs, struct move* next, uint32_t number) {
+/* In place of what ends the sequence, whose first cubic is the executing move; else behind all there is. False: it has
+ * ended meanwhile. */
+static bool go_on(struct move* next, bool continues) {
   struct coordinate_system* s = making.s;
   const struct move* m = &s->moves[s->executing];
+  next->blended = continues;
+  if (!continues) {
+    append(s);
+    return true;
+  }
+  const uint32_t state = hal_mask_servo();
+  s->placed = piece_ring_replace(&s->ring, m->straight, m->knot_time[0], making.added);
+  hal_unmask(state);
+  return s->placed;
+}
+
+static bool place_pvt(uint32_t cs, struct move* next, uint32_t number) {
+  struct coordinate_system* s = making.s;
   const bool continues = move_continues(s);
   making.added = 0;
   find_knot(cs, next, 0);
@@ -299,15 +314,52 @@ static bool place_cubic(uint32_t cs, struct move* next, uint32_t number) {
     for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
       if ((left & 1u) != 0) add_knots(motor, i, milliseconds(next->knot_time[i]));
   }
-  next->blended = continues;
-  if (!continues) {
-    append(s);
-    return true;
+  return go_on(next, continues);
+}
+
+/* As coordinate_system.moves. */
+static struct spline_motor splines[2][MOTORS];
+
+/* The time of the point before, in that of both, 2^-32. */
+static uint32_t share_of(int64_t first, int64_t second) {
+  if (first == second) return UINT32_C(1) << 31;
+  const double both = (double)(first + second);
+  return (uint32_t)math_to_integer(math_scale((double)first / both, 32));
+}
+
+/* Where motors have come to: the first point takes along what stands beside their axes. */
+static void begin_splines(uint32_t cs, const struct move* next, struct spline_motor begun[MOTORS]) {
+  system_motors_solve(cs, next->start);
+  for (uint32_t motor = 0, left = making.s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    begun[motor] = (struct spline_motor){.point = math_nearest(system_motor_at(motor, next->start))};
+    slice_pause();
+    begun[motor].knot = math_nearest(system_motor_from(motor, next->start));
+    slice_pause();
   }
-  const uint32_t state = hal_mask_servo();
-  s->placed = piece_ring_replace(&s->ring, m->straight, m->knot_time[0], making.added);
-  hal_unmask(state);
-  return s->placed;
+}
+
+static bool place_spline(uint32_t cs, struct move* next, uint32_t index, uint32_t number) {
+  struct coordinate_system* s = making.s;
+  const bool continues = move_continues(s);
+  struct spline_motor* before = splines[index ^ 1u];
+  next->knot_time[0] = continues ? s->moves[index ^ 1u].time : next->time;
+  const uint32_t share = share_of(next->knot_time[0], next->time);
+  making.added = 0;
+  next->straight = s->ring.added;
+  for (uint32_t i = 0; i < SPLINE_PIECES; i++) begin_piece(i == 0 ? next->knot_time[0] : next->time, s->motors, number);
+  if (!continues) begin_splines(cs, next, before);
+  system_motors_solve(cs, s->position);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    struct cubic cubics[SPLINE_PIECES];
+    const int64_t point = math_nearest(system_motor_at(motor, s->position));
+    slice_pause();
+    splines[index][motor] = spline_motor_point(&before[motor], point, share, cubics);
+    for (uint32_t i = 0; i < SPLINE_PIECES; i++) *piece_ring_cubic(&s->ring, next->straight + i, motor) = cubics[i];
+    slice_pause();
+  }
+  return go_on(next, continues);
 }
 
 bool move_place_motors(uint32_t cs) {
@@ -317,7 +369,8 @@ bool move_place_motors(uint32_t cs) {
   if (piece_ring_room(&s->ring) < MOST_PIECES) return false;
   making.s = s;
   making.after = motor_moves[index];
-  if (next->kind == MOVE_PVT || next->kind == MOVE_SPLINE) return place_cubic(cs, next, number);
+  if (next->kind == MOVE_PVT) return place_pvt(cs, next, number);
+  if (next->kind == MOVE_SPLINE) return place_spline(cs, next, index, number);
   if (next->kind == MOVE_LINEAR && move_continues(s) && blend(next, number)) return true;
   from_rest(next, number);
   return true;

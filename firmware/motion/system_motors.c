@@ -20,6 +20,9 @@ struct motor_move motor_moves[2][MOTORS];
 /* What a motor stands beside where its axes have it, at the start of a program. */
 static double aside[MOTORS];
 
+/* What it had followed when axes were matched with motors, and has not taken its axes along. */
+static int64_t followed[MOTORS];
+
 /* How axes make a motor's position. */
 static struct {
   bool by_program; /* motion/kinematics.h; else the sum of: */
@@ -56,9 +59,10 @@ void system_motors_resolve(uint32_t cs) {
   coordinate_systems[cs].motors = mask | kinematics_resolve(cs, by_program);
 }
 
+/* What axes are ahead of the trajectory. */
 static int64_t bias_of(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t value = motors[motor].bias;
+  const int64_t value = motors[motor].bias + followed[motor];
   hal_unmask(state);
   return value;
 }
@@ -206,6 +210,13 @@ static void solve(const struct equations* e, double position[AXIS_COUNT]) {
   }
 }
 
+static void take_followed(uint32_t cs) {
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) followed[motor] = motor_followed(motor);
+  hal_unmask(state);
+}
+
 /* Those whose definitions are sums of axes. */
 static uint32_t defined(const struct coordinate_system* s) { return s->motors & ~s->inverse_motors; }
 
@@ -237,6 +248,7 @@ static bool match_program(uint32_t cs) {
 bool system_motors_match(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   system_motors_come_along(cs);
+  take_followed(cs);
   const bool moved = any_beside(s);
   if (moved) match_definitions(s);
   if (s->kinematic && !match_program(cs)) return false;
@@ -248,9 +260,7 @@ bool system_motors_match(uint32_t cs) {
 
 void system_motors_solve(uint32_t cs, const double position[AXIS_COUNT]) { (void)kinematics_inverse(cs, position); }
 
-void system_motors_solve_knot(uint32_t cs, const struct knot* knot, bool is_pvt) {
-  (void)kinematics_inverse_knot(cs, knot, is_pvt);
-}
+void system_motors_solve_knot(uint32_t cs, const struct knot* knot) { (void)kinematics_inverse_knot(cs, knot); }
 
 void system_motors_take(uint32_t cs) {
   const uint32_t state = hal_mask_servo();

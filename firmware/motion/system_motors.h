@@ -24,7 +24,7 @@ void system_motors_resolve(uint32_t cs); /* its motors, scales and offsets; back
  * nothing then. */
 void system_motors_solve(uint32_t cs, const double position[AXIS_COUNT]);
 double system_motor_solved(uint32_t motor); /* behind it, of one that an inverse program moves */
-void system_motors_solve_knot(uint32_t cs, const struct knot* knot, bool is_pvt);
+void system_motors_solve_knot(uint32_t cs, const struct knot* knot);
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
 /* The same where a move begins: the first of a program takes motors along that stand beside their axes, because others
  * tell where those are. Once it is placed they do not. */

@@ -119,6 +119,7 @@ static bool calculate_word(uint32_t cs) {
   if (of_motion) executed = motion_statement(cs, &in);
   if (executed == EXECUTED_LATER) {
     if (of_motion && s->pending_axes == 0) p->under_way = false; /* it may wait for ever: a stop does not */
+    s->waited = true;
     return false;
   }
   if (executed == EXECUTED_LINE) line_ends(cs);
