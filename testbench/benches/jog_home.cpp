@@ -112,7 +112,9 @@ void JogHome::on_the_way() {
   host_.wait_ms(26);
   host_.expect("#2J/", "");
   host_.settle(200, kStill);
-  const auto profile = [](VelocityProfile p) -> MotorHost::Path { return [p](double t) { return p.position(t); }; };
+  const auto profile = [](const VelocityProfile& p) -> MotorHost::Path {
+    return [p](double t) { return p.position(t); };
+  };
   {
     const JogLimits l = limits_[0];
     report_fit(report(), "#1J+: profile",
