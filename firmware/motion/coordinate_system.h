@@ -100,7 +100,7 @@ enum run_time_error {
   RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
   RUN_TIME_READ,        /* READ where nothing has been called */
   RUN_TIME_FEEDRATE,    /* a move goes by a feedrate that is not above 0 */
-  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time, a spline no point, a path no segment */
+  RUN_TIME_LATE,        /* a PVT move in motion has no next one in time, a spline no point, a path no segment */
   RUN_TIME_IN_POSITION, /* motors are not in position within Isx81 */
   RUN_TIME_RADIUS,      /* there is no arc through the ends of a CIRCLE move */
   RUN_TIME_KINEMATIC,   /* a kinematic program does not end, or what it gives is no position */
