@@ -97,8 +97,8 @@ class RotaryMachining {
   void look();  // PR
   void breq(const std::string& step, unsigned least_raised);
   SplinePath path(std::size_t from, std::size_t to) const;
-  void judge_time(const System& s, const SplinePath& way, const PathHost::Followed& f, std::size_t lines);
-  void judge(const System& s, std::size_t from, std::size_t to, PathHost::Span span, bool timed);
+  void judge_time(const System& s, const SplinePath& way, PathHost::Span span, std::size_t lines);
+  void judge(const System& s, std::size_t from, std::size_t to, PathHost::Span span);
 
   BenchContext& b_;
   PathHost host_;
@@ -193,37 +193,31 @@ SplinePath RotaryMachining::path(std::size_t from, std::size_t to) const {
   return {moves, kTa, 0, kSegment};
 }
 
-// Of the part before the last lines: what comes behind those is not known in time.
-void RotaryMachining::judge_time(const System& s, const SplinePath& way, const PathHost::Followed& f,
-                                 std::size_t lines) {
+void RotaryMachining::judge_time(const System& s, const SplinePath& way, PathHost::Span span, std::size_t lines) {
   std::vector<optimum::Motor> motors;
   for (std::size_t i = 0; i < s.motors.size(); ++i) {
     motors.push_back({{}, limits()[i].velocity, limits()[i].acceleration});
     for (const MotorPoint& p : way.points()) motors.back().points.push_back(p[i]);
   }
-  const int segments = static_cast<int>(way.end() / kSegment) - static_cast<int>(kAhead + kI16);
-  const double best = optimum::Solver(motors, kSegment).time(segments);
-  const auto reached = std::find_if(f.times.begin(), f.times.end(), [&](double t) { return t >= segments * kSegment; });
-  const std::size_t from = host_.begins(s), to = static_cast<std::size_t>(reached - f.times.begin());
-  const double took = static_cast<double>(to - from) * host_.period();
+  const double best = optimum::Solver(motors, kSegment).time(), took = host_.lasts(s, span);
+  const std::size_t from = host_.begins(s, span.from) + 2,
+                    to = from + static_cast<std::size_t>(took / host_.period()) - 4;
   std::size_t stands = 0;
-  for (std::size_t i = from + 2; i < to; ++i)
+  for (std::size_t i = from; i < to; ++i)
     stands += std::all_of(s.motors.begin(), s.motors.end(), [&](unsigned m) {
       return host_.samples(m)[i].commanded == host_.samples(m)[i - 1].commanded;
     });
-  report().step(s.name + ": never dry", stands == 0 && reached != f.times.end(),
+  report().step(s.name + ": never dry", stands == 0 && to > from + 50,
                 fmt::format("stands in {} servo interrupts of {}, expected 0", stands, to - from));
-  report().step(
-      s.name + ": time", segments > 8 && took <= kSlower * best + 2 * host_.period(),
-      fmt::format("{:.1f} ms for {} segments of {} lines, {:.1f} a second; the optimum {:.1f}, expected up to "
-                  "{:.2f} of it",
-                  took, segments, lines, 1000 * segments / took, best, kSlower));
+  report().step(s.name + ": time", took <= kSlower * best + 2 * host_.period(),
+                fmt::format("{:.1f} ms for {} lines, {:.1f} a second; the optimum {:.1f}, expected up to {:.2f} of it",
+                            took, lines, 1000 * static_cast<double>(lines) / took, best, kSlower));
 }
 
-void RotaryMachining::judge(const System& s, std::size_t from, std::size_t to, PathHost::Span span, bool timed) {
+void RotaryMachining::judge(const System& s, std::size_t from, std::size_t to, PathHost::Span span) {
   const SplinePath way = path(from, to);
   const auto f = host_.followed(s, way, span, from == 0 ? MotorPoint{} : host_.at(s, span.from));
-  if (timed) judge_time(s, way, f, to - from);
+  judge_time(s, way, span, to - from);
   host_.report_followed(s, f, static_cast<std::size_t>(way.end() / host_.period()) - 4);
   host_.report_limits(s, limits(), 0.9, span);
 }
@@ -246,7 +240,7 @@ void RotaryMachining::run() {
   for (unsigned m = 1; m <= host_.motors(); ++m) s.motors.push_back(m);
   if (!host_.settle(1000, 6)) report().fail(s.name, "still moving");
   const std::size_t stood = host_.last(1);
-  judge(s, 0, count, {0, stood}, true);
+  judge(s, 0, count, {0, stood});
   look();
   host_.wait_ms(5);
   send(count, all);
@@ -254,7 +248,7 @@ void RotaryMachining::run() {
   if (!host_.settle(1000, 6)) report().fail(s.name, "still moving");
   breq("starved, then more: BREQ", 0);
   s.name = "behind the pause";
-  judge(s, count, all, {stood, ~std::size_t{0}}, false);
+  judge(s, count, all, {stood, ~std::size_t{0}});
   MotorPoint way(s.motors.size(), 0);
   for (const Line& l : lines_)
     for (std::size_t i = 0; i < way.size(); ++i) way[i] += l.move.way(1)[i];

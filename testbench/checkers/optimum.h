@@ -20,10 +20,9 @@ class Solver {
     knots_ = static_cast<int>(motors.front().points.size()) - 2;
     solve();
   }
-  double time() const { return time(knots_ - 1); }  // ms
-  double time(int segments) const {                 // of the first of them
+  double time() const {  // ms
     double sum = 0;
-    for (int k = 0; k < segments; ++k) sum += 2 * period_ / (std::sqrt(w_[k]) + std::sqrt(w_[k + 1]));
+    for (int k = 0; k + 1 < knots_; ++k) sum += 2 * period_ / (std::sqrt(w_[k]) + std::sqrt(w_[k + 1]));
     return sum;
   }
   // Longest stop from the optimum, in segments.

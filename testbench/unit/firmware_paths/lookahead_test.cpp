@@ -224,6 +224,28 @@ TEST_F(Lookahead, OffAndStoredOnly) {
   }
 }
 
+// Whether another line comes is not known at the end of a rotary buffer: the last one is its end all the same, in time
+// for one stop there and none on the way.
+TEST_F(Lookahead, ARotaryBufferThatRunsEmptyStopsOnceAtItsEnd) {
+  fit({"X"});
+  ASSERT_EQ(host("I5113=5 I5120=20 I116=24 I117=1"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 40,0 DEFINE ROTARY 100 B0 OPEN ROTARY"), "");
+  ASSERT_EQ(host("INC LINEAR TA4 TS0 TM5"), "");
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(host("X100"), "");
+  ASSERT_EQ(host("&1R"), "");
+  std::vector<double> slow;  // places of a velocity below 5, from 300 counts on
+  double before = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    platform::servo_ticks(1);
+    const double x = at(1);
+    if (x > 300 && x < 4000 && (x - before) / kTickMs < 5) slow.push_back(x);
+    before = x;
+  }
+  EXPECT_EQ(motors[0].trajectory, 4000 * 3072LL);
+  ASSERT_FALSE(slow.empty());
+  EXPECT_GT(slow.front(), 4000 - 5 * 5 / 2.0 - 10) << "5 counts/ms at 1 count/ms^2 are 12.5 counts";
+}
+
 // A host that stops sending in time: the move ends at rest; a little later it goes on.
 TEST_F(Lookahead, AStarvedRotaryBufferEndsItsMovesWithinTheLimits) {
   fit({"1000X"});
