@@ -196,9 +196,10 @@ void global_bits(BenchContext& b) {
   status.check({"motion program open", {"OPEN PROG 5"}, {"CLOSE"}, bit(1, 19) | bit(1, 11)});
   status.check({"fixed buffer full", {"I18=30000", "OPEN PROG 5"}, {"CLOSE", "I18=10"}, bit(1, 19)});
   status.check({"PLC open", {"OPEN PLC 5"}, {"CLOSE"}, bit(1, 17) | bit(1, 11)});
-  status.check({"kinematic program open", {"OPEN FORWARD"}, {"CLOSE"}, bit(1, 11)});
+  status.check({"forward kinematic program open", {"OPEN FORWARD"}, {"CLOSE"}, bit(1, 11) | bit(1, 15)});
+  status.check({"inverse kinematic program open", {"OPEN INVERSE"}, {"CLOSE"}, bit(1, 11) | bit(1, 14)});
   status.check({"no phase clock", {"I" + source + "=3", "wait"}, {"I" + source + "=0", "wait"}, bit(0, 3)});
-  status.verdict("global, ???", 7);
+  status.verdict("global, ???", 8);
   b.expect("DELETE ALL TEMPS", "");
 }
 
