@@ -8,6 +8,7 @@ precompiled headers, so a missing include shows here. Exit status 0 clean, 1 fin
 
 import argparse
 import concurrent.futures
+import functools
 import json
 import pathlib
 import re
@@ -20,6 +21,12 @@ from common import ROOT, finish
 
 MAJOR = 14  # Debian 12's; other versions have other checks
 FOLDERS = ("app", "firmware", "systemc", "testbench")
+
+
+@functools.cache
+def compilers_own_headers():
+    """Those of the sanitizers, which clang has in a package of their own."""
+    return subprocess.run(["gcc", "-print-file-name=include"], text=True, capture_output=True, check=True).stdout.strip()
 
 
 def arguments_for_clang(command):
@@ -35,7 +42,7 @@ def arguments_for_clang(command):
             skip_next = True
         elif not word.startswith(("-W", "-fsanitize", "-fno-")):
             kept.append(word)
-    return kept
+    return [*kept, "-idirafter", compilers_own_headers()]
 
 
 def one_by_one(entry):

@@ -180,6 +180,7 @@ static bool character(uint8_t c) {
       execute();
       return true;
     case CHECKSUM_SO_FAR:
+      host_port_open_output();
       host_port_send(checksum(texts[current].sent, length < LINE_LIMIT ? length : LINE_LIMIT));
       break;
     case LAST_LINE:

@@ -268,13 +268,13 @@ std::string RandomLines::program_statement() {
 
 // Of lines that are quick: each real-time interrupt waits for its end.
 void RandomLines::plc0() {
-  program_.push_back("CLOSE");
-  program_.push_back("OPEN PLC 0 CLEAR");
+  program_.emplace_back("CLOSE");
+  program_.emplace_back("OPEN PLC 0 CLEAR");
   for (unsigned i = 0, lines = 3 + below(20); i < lines; ++i)
     program_.push_back(pick({"P" + integer(50) + "=P" + integer(50) + "+1", "IF(P" + integer(50) + ">9)P1=0",
                              "M" + integer(50) + "=" + constant(), "CMD\"&1R\"", "SEND\"A\"",
                              pick({"ENA", "DIS", "PAUSE", "RESUME"}) + "PLC" + std::to_string(1 + below(31))}));
-  program_.push_back("CLOSE");
+  program_.emplace_back("CLOSE");
   program_.push_back("I5=" + integer(4) + " ENA PLC 0");
 }
 
@@ -282,9 +282,9 @@ void RandomLines::plc0() {
 void RandomLines::whole_program() {
   const std::string number = integer(12), plc = std::to_string(1 + below(31));
   const unsigned kind = below(4);
-  program_.push_back("CLOSE");
+  program_.emplace_back("CLOSE");
   if (!one_in(4))
-    program_.push_back(
+    program_.emplace_back(
         "\x01"
         "DELETE ALL TEMPS");
   program_.push_back(kind == 0   ? "OPEN PLC " + plc + " CLEAR"
@@ -294,25 +294,25 @@ void RandomLines::whole_program() {
   for (unsigned i = 0, lines = 3 + below(20); i < lines; ++i) {
     const std::string condition = "(" + expression(1) + pick({"=", "!=", "<", ">", "!<", "!>"}) + expression(1) + ")";
     if (one_in(6)) {
-      open.push_back("ENDIF");
+      open.emplace_back("ENDIF");
       program_.push_back("IF" + condition);
     } else if (one_in(8)) {
       const std::string counter = "P" + integer(100);
       program_.push_back(one_in(10) ? "WHILE" + condition : "WHILE(" + counter + "<" + integer(100) + ")");
       program_.push_back(counter + "=" + counter + "+1");
-      open.push_back("ENDWHILE");
+      open.emplace_back("ENDWHILE");
     } else if (!open.empty() && one_in(4)) {
       program_.push_back(open.back());
       open.pop_back();
     } else if (!open.empty() && open.back() == "ENDIF" && one_in(6)) {
-      program_.push_back("ELSE");
+      program_.emplace_back("ELSE");
     } else {
       program_.push_back(program_statement());
     }
   }
   for (; !open.empty(); open.pop_back())
     if (!one_in(20)) program_.push_back(open.back());
-  program_.push_back("CLOSE");
+  program_.emplace_back("CLOSE");
   if (kind == 0) program_.push_back("I5=" + integer(4) + " ENA PLC " + plc);
   if (kind > 1) program_.push_back("&" + integer(4) + "B" + number + pick({"R", "R", "S", ""}));
 }

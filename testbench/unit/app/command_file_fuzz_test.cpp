@@ -54,19 +54,13 @@ TEST(CommandFileFuzz, EndsInOrderOrWithAnErrorThatSaysWhatWasExpected) {
 }
 
 TEST(ReplyFuzz, EndsWhateverTheControllerSends) {
-  static const char* const kPieces[] = {"\x06",
-                                        "\x07",
-                                        "\n",
-                                        "\r",
-                                        "\x02",
-                                        "ERR003\r",
-                                        "25\r",
+  static const char* const kPieces[] = {"\x06", "\x07", "\n", "\r", "\x02", "ERR003\r", "25\r",
+                                        // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one line of eight words
                                         "850000000000 050000000000 050000000000 050000000000 "
                                         "050000000000 050000000000 050000000000 050000000000\r",
                                         "\x07"
                                         "ERR",
-                                        "t",
-                                        "u"};
+                                        "t", "u"};
   std::mt19937 random(random_seed(13));
   unsigned complete = 0, asked = 0;
   for (int i = 0; i < 50'000; ++i) {

@@ -66,7 +66,7 @@ std::string script(unsigned seed, bool broken) {
   const auto below = [&](std::size_t n) { return random() % n; };
   std::string text;
   for (unsigned n = 0; n < kLines; ++n) {
-    const std::string own = kOwn[below(kOwn.size() - (broken ? 0 : 1))];  // @expect may fail
+    const std::string& own = kOwn[below(kOwn.size() - (broken ? 0 : 1))];  // @expect may fail
     const std::string next = below(4) == 0 ? own : lines.next();
     if (broken || next == own || can_be_read(text, next)) text += next + '\n';
   }

@@ -100,7 +100,7 @@ std::string differences(const Engine& engine, const BusTraffic& buses, const Bus
   const auto answers = [&](const std::vector<Answer>& component, const std::vector<Answer>& block) {
     return difference({{}, component, {}}, {{}, block, {}}, end, binds);
   };
-  const std::string changes = difference(rig.seen, {expected.changes, {}, {}}, end, binds);
+  std::string changes = difference(rig.seen, {expected.changes, {}, {}}, end, binds);
   const std::string at_port_a = answers(cpu.answers, expected.port_a), at_isa = answers(host.answers, expected.isa);
   if (!changes.empty()) return changes;
   return !at_port_a.empty() ? "Port A: " + at_port_a : at_isa.empty() ? "" : "ISA: " + at_isa;

@@ -195,7 +195,7 @@ TEST(DpramSocket, DebugReadsTheContent) {
         [&self](Initiator& i) {
           set_word(i, 0xFFFE, 0xCAFE);
           set_word(i, 0xFFFC, 0x1234);
-          const sc_time now = sc_core::sc_time_stamp();
+          const auto now = sc_core::sc_time_stamp().value();
           EXPECT_EQ(i.socket->transport_dbg(*i.payload(kRead, 0xFFFD, 3)), 3u);
           EXPECT_EQ(i.data & 0xFFFFFF, 0xCAFE12u);
           EXPECT_EQ(i.socket->transport_dbg(*i.payload(kRead, 0xFFFF, 4)), 1u) << "what is there";
@@ -204,7 +204,7 @@ TEST(DpramSocket, DebugReadsTheContent) {
           EXPECT_EQ(i.socket->transport_dbg(*i.payload(kWrite, 0xFFFE, 2)), 0u);
           tlm::tlm_dmi dmi;
           EXPECT_FALSE(i.socket->get_direct_mem_ptr(*i.payload(kRead, 0), dmi)) << "BUSY may happen";
-          EXPECT_EQ(sc_core::sc_time_stamp(), now);
+          EXPECT_EQ(sc_core::sc_time_stamp().value(), now);
           self->small = true;
           sc_core::wait(1, sc_core::SC_US);
           EXPECT_EQ(i.socket->transport_dbg(*i.payload(kRead, 0xFFFE, 2)), 2u);

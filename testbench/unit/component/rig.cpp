@@ -74,7 +74,7 @@ std::string difference(Seen component, Seen block, Picoseconds end, const Binds&
     for (std::vector<Answer>* answers : {&seen->answers, &seen->others})
       cut(*answers, end, [](const Answer& a) { return a.first; });
   }
-  const std::string changes = first_difference("change", component.changes, block.changes);
+  std::string changes = first_difference("change", component.changes, block.changes);
   if (!changes.empty()) return changes;
   const std::string answers = first_difference("access", component.answers, block.answers);
   return answers.empty() ? first_difference("other access", component.others, block.others) : answers;

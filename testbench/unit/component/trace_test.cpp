@@ -75,7 +75,7 @@ Waveform traced(const Component& component, const Simulate& simulate) {
   sc_trace(file, component, "it");
   simulate();
   sc_core::sc_close_vcd_trace_file(file);
-  const Waveform wave = read_waveform(path + ".vcd");
+  Waveform wave = read_waveform(path + ".vcd");
   std::filesystem::remove(path + ".vcd");
   return wave;
 }

@@ -198,6 +198,15 @@ TEST(HostExchange, ChecksumsCountEveryByteOfALineInEachFraming) {
 TEST(HostExchange, ControlNAnswersTheChecksumSoFar) {
   Controller c;
   EXPECT_EQ(c.send("J+\x0E"), "\x75");  // before its CR: 0x4A + 0x2B = 117
+  EXPECT_EQ(c.send("\x18"), "\x18");
+  EXPECT_EQ(c.send("j+\x0E"), "\x95") << "behind ^X too, of the bytes that were sent";
+}
+
+TEST(HostExchange, ControlIRepeatsTheLastLineAlone) {
+  Controller c;
+  EXPECT_EQ(c.send("P1=P1+1\r"), "\x06");
+  EXPECT_EQ(c.send("P2=7\t"), "\x06") << "what was begun is forgotten";
+  EXPECT_EQ(c.line("P1 P2"), "2|0");
 }
 
 TEST(HostExchange, ControlXEmptiesTheLineAndIsEchoed) {

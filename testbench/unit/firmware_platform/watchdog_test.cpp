@@ -75,7 +75,7 @@ TEST_F(WatchdogTask, SlicesEndLongBeforeTheHardwareTrips) {
   for (const std::uint32_t begin = hal_cycles(); hal_cycles() - begin < hal_cycles_per_ms() / 2;) {}
   c_.servo(1);
   const std::uint32_t half = tasks_real_time_slice();
-  EXPECT_NEAR(half, hal_cycles_per_ms() / 4, hal_cycles_per_ms() / 100);
+  EXPECT_NEAR(half, hal_cycles_per_ms() / 4.0, hal_cycles_per_ms() / 100.0);
   c_.line("I8=9");
   EXPECT_NEAR(tasks_real_time_slice(), 10 * half, 10);
   c_.line("I8=255");

@@ -68,6 +68,25 @@ TEST_F(ControlCharacters, AAndKAbortAllSystems) {
   }
 }
 
+// What stops things does so in the next real-time task, whatever the background is at (firmware:6.1/3).
+TEST_F(ControlCharacters, StopsActBeforeTheBackgroundComesToThem) {
+  for (const char letter : {'A', 'K', 'O', 'Q', 'D'}) {
+    SCOPED_TRACE(letter);
+    platform::power_up();
+    run_all();
+    ASSERT_EQ(host("OPEN PLC 1 CLEAR P1=P1+1 CLOSE I5=2 ENABLE PLC 1"), "");
+    host_port_character(static_cast<std::uint8_t>(letter - '@'));
+    EXPECT_TRUE(hal_real_time_pending());
+    platform::real_time();
+    EXPECT_EQ(running(), letter == 'A' || letter == 'K' ? 0u : 0xFFFFu);
+    for (unsigned cs = 0; cs < kSystems; ++cs) {
+      EXPECT_EQ(coordinate_systems[cs].held, letter == 'O') << cs;
+      EXPECT_EQ(coordinate_systems[cs].quit, letter == 'Q') << cs;
+    }
+    EXPECT_EQ(plc_enabled(), letter == 'D' ? 0u : 1u << 1);
+  }
+}
+
 TEST_F(ControlCharacters, OHoldsAllSystemsAndRunGoesOn) {
   run_all();
   give('O');

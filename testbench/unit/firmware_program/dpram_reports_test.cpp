@@ -18,7 +18,6 @@ namespace {
 using brick::MotorReport;
 using platform::background;
 using platform::host;
-using platform::host_lines;
 using platform::servo_ticks;
 
 constexpr double kPositionScale = 32.0 * 96.0;  // 32 Ixx08, 32 Ixx09

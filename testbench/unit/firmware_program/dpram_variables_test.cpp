@@ -93,6 +93,9 @@ TEST_F(DpramVariables, SeveralUsersReleaseEntriesOneByOne) {
   EXPECT_EQ(data(2, 0), 1U);
   EXPECT_EQ(data(2, 1), 2U);
   EXPECT_EQ(ram.read(DPRAM_READ_CONTROL), DPRAM_READ_MULTI_USER);
+  platform::servo_ticks(100);
+  background(1);
+  EXPECT_EQ(ram.read(DPRAM_READ_TIMER), std::stoul(host("RX$0")) & 0xFFFF);
 }
 
 // 128 entries take several passes; nothing is ready before the last.

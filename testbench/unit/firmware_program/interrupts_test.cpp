@@ -117,7 +117,7 @@ std::string stream(std::uint32_t seed, std::uint32_t gap) {
   fake_interrupts_end();
   platform::servo_ticks(30);
   for (unsigned cs = 1; cs <= 2; ++cs) {
-    if (p_variable_read(cs) != kLines / 2) return "executed: " + std::to_string(p_variable_read(cs));
+    if (p_variable_read(cs) != kLines / 2.0) return "executed: " + std::to_string(p_variable_read(cs));
     for (unsigned i = 0; i < kLines / 2; ++i)
       if (p_variable_read(1000 * cs + i) != 2 * i + cs - 1) return "place " + std::to_string(i) + " is another line";
   }
@@ -170,7 +170,7 @@ std::string binary_stream(std::uint32_t seed, std::uint32_t gap, bool foreground
   fake_interrupts_end();
   platform::servo_ticks(30);
   for (unsigned cs = 1; cs <= 2; ++cs) {
-    if (p_variable_read(cs) != kBinaryLines / 2) return "executed: " + std::to_string(p_variable_read(cs));
+    if (p_variable_read(cs) != kBinaryLines / 2.0) return "executed: " + std::to_string(p_variable_read(cs));
     for (unsigned i = 0; i < kBinaryLines / 2; ++i)
       if (p_variable_read(1000 * cs + i) != 2 * i + cs - 1) return "place " + std::to_string(i) + " is another line";
   }

@@ -266,7 +266,7 @@ TEST_F(Jog, TimeIsThatOfTheCoordinateSystem) {
   for (int i = 0; i < 2000; ++i) step();
   const double before = position();
   for (int i = 0; i < 100; ++i) step();
-  EXPECT_NEAR(position() - before, 100 * platform::kDefaultI10 / 2 / kTimeUnits * 10, kTolerance) << "50 %";
+  EXPECT_NEAR(position() - before, 100 * (platform::kDefaultI10 / 2.0) / kTimeUnits * 10, kTolerance) << "50 %";
 }
 
 TEST_F(Jog, HoldStopsWhatAProgramMovesAndNothingElse) {

@@ -170,6 +170,9 @@ TEST(OutputQueue, LinesEndAtReturnAcknowledgeOrLineFeed) {
   EXPECT_EQ(queue.take_line(1400), "\x06");
   EXPECT_EQ(queue.take_line(1400), std::nullopt);
   EXPECT_EQ(queue.take(1400), "x");
+  queue.add("12345\r6");
+  EXPECT_EQ(queue.take_line(4), "1234") << "no more than is asked for";
+  EXPECT_EQ(queue.take_line(4), "5\r");
 }
 
 TEST(OutputQueue, HasALimit) {

@@ -65,8 +65,6 @@ TEST(EthernetPackets, DataFollowsTheseRequestsAndNoOthers) {
 
 // ethernet:2/6, at every byte.
 TEST(EthernetPackets, ComeInPiecesOfAnySize) {
-  const Bytes stream = kVersion + header(0xC0, 0xC5, 0, 0, 0x578) + header(0x40, 0xB0, 0, 0, 0) +
-                       header(0xC0, 0xB5, 16, 0, 5) + "\x40\xC0\0\r\n" + kVersion;
   const Bytes whole = header(0xC0, 0xB5, 16, 0, 5) + Bytes("\x40\xC0\0\r\n", 5);
   const Bytes all = kVersion + header(0xC0, 0xC5, 0, 0, 0x578) + header(0x40, 0xB0, 0, 0, 0) + whole + kVersion;
   for (std::size_t first = 0; first <= all.size(); ++first)

@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 std::string written(const std::string& text) {
-  const std::string path = ::testing::TempDir() + "waivers.toml";
+  std::string path = ::testing::TempDir() + "waivers.toml";
   std::ofstream(path) << text;
   return path;
 }
@@ -86,7 +86,7 @@ TEST(TimingWaivers, EveryMistakeIsOneLineWithItsPlace) {
   EXPECT_THAT(problem("[[waive]\n"), HasSubstr("expected TOML"));
   EXPECT_THAT(problem("waive = 3\n"), HasSubstr("a list in brackets"));
   try {
-    TimingWaivers("/nowhere/waivers.toml");
+    const TimingWaivers none("/nowhere/waivers.toml");
     FAIL();
   } catch (const UsageError& e) {
     EXPECT_THAT(e.what(), HasSubstr("--waive \"/nowhere/waivers.toml\": cannot be read"));
