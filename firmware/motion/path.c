@@ -110,7 +110,8 @@ void path_axes_at(struct path* p, const struct path_point* point, double positio
     const int64_t part = point->parts[i];
     if (part == 0) continue;
     slice_pause();
-    add(path_of(p, i), part == PATH_WHOLE ? 1.0 : math_scale((double)part, -62), position);
+    if (part != PATH_WHOLE) add(path_of(p, i), math_scale((double)part, -62), position);
+    for (uint32_t axis = 0; part == PATH_WHOLE && axis < AXIS_COUNT; axis++) position[axis] = path_of(p, i)->end[axis];
   }
 }
 

@@ -27,6 +27,7 @@ static struct { int64_t angle, from, growth; } arcs[COORDINATE_SYSTEMS][PATH_MOV
 
 /* What is looked at, of the system that is worked for: moves that have begun. */
 static struct {
+  uint32_t by_program; /* motors that an inverse program moves: it has been executed for the point */
   uint32_t count;
   struct {
     uint32_t place;
@@ -80,9 +81,12 @@ static double set_arc(uint32_t cs, uint32_t place, const struct circle* c) {
   return largest;
 }
 
+/* Those whose definitions are sums of axes. */
+static uint32_t defined(uint32_t cs) { return coordinate_systems[cs].motors & ~coordinate_systems[cs].inverse_motors; }
+
 void path_motors_begin(uint32_t cs) {
   const struct path_move* m = path_of(&paths[cs], 0);
-  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
+  for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     motors_of_path[motor].start = motors_of_path[motor].end = math_nearest(system_motor_from(motor, m->start));
     slice_pause();
@@ -95,7 +99,7 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
   const uint32_t place = place_of(&paths[cs], ahead);
   const double largest = m->is_arc ? set_arc(cs, place, &m->circle) : 0.0;
   slice_pause();
-  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
+  for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     struct way* way = &motors_of_path[motor].ways[place];
     const double position = system_motor_at(motor, m->end);
@@ -111,7 +115,7 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
 
 void path_motors_pop(uint32_t cs) {
   const uint32_t place = place_of(&paths[cs], 0);
-  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+  for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) motors_of_path[motor].start += motors_of_path[motor].ways[place].whole;
   slice_pause();
 }
@@ -119,7 +123,18 @@ void path_motors_pop(uint32_t cs) {
 /* product of two parts */
 static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
 
+static void look_by_program(uint32_t cs, const struct path_point* point) {
+  double position[AXIS_COUNT];
+  at.by_program = coordinate_systems[cs].inverse_motors;
+  if (at.by_program == 0) return;
+  path_axes_at(&paths[cs], point, position);
+  slice_pause();
+  system_motors_solve(cs, position);
+  slice_pause();
+}
+
 void path_motors_look(uint32_t cs, const struct path_point* point) {
+  look_by_program(cs, point);
   at.count = 0;
   for (uint32_t i = 0; i < point->count; i++) {
     const int64_t part = point->parts[i];
@@ -143,7 +158,17 @@ static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t 
          fixed_share(way->second, at.moves[move].second);
 }
 
+static __attribute__((noinline)) int64_t by_program(uint32_t motor) {
+  slice_pause();
+  const double position = system_motor_solved(motor);
+  slice_pause();
+  const int64_t nearest = math_nearest(position);
+  slice_pause();
+  return nearest;
+}
+
 int64_t path_motor_at(uint32_t motor) {
+  if ((at.by_program >> motor & 1u) != 0) return by_program(motor);
   const struct way* ways = motors_of_path[motor].ways;
   int64_t position = motors_of_path[motor].start;
   for (uint32_t i = 0; i < at.count; i++) {

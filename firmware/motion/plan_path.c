@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/axis_matrix.h"
 #include "firmware/motion/circle.h"
 #include "firmware/motion/corner.h"
 #include "firmware/motion/path.h"
@@ -34,6 +35,7 @@ static enum circle_kind find_circle(uint32_t cs, struct path_move* m) {
     line.vector[i] = s->pending_vector[i];
     line.normal[i] = s->normal[i];
   }
+  axis_matrix_normal(cs, line.normal);
   line.vectors = s->pending_vectors & (ARC_RADIUS_BIT - 1u);
   line.absolute = s->vector_absolute;
   line.by_radius = (s->pending_vectors & ARC_RADIUS_BIT) != 0;

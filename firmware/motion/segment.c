@@ -465,10 +465,11 @@ static bool go_ahead(uint32_t cs, bool alone) {
   }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < q->most, hurry = q->handed && ahead <= q->least;
+  const bool soon = hurry || (q->handed && ahead <= q->least + 1u && !s->next_valid && !path_is_full(cs));
   const bool grows = !q->made && !lookahead_is_full(cs);
   if ((room && release(cs, false)) || lookahead_sweep(cs, false)) return true;
   /* what has no next line in time comes to its end, before it has to stop where nothing more is known */
-  if (hurry && grows && alone && decide(cs, next_time(cs, override_of(cs)), false) == WAITS) return make_next(cs, true);
+  if (soon && grows && alone && decide(cs, next_time(cs, override_of(cs)), false) == WAITS) return make_next(cs, true);
   if (hurry && ((room && release(cs, true)) || lookahead_sweep(cs, true))) return true;
   if (grows) {
     if (make_next(cs, false)) return true;

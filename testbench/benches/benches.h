@@ -41,10 +41,15 @@ Bench status_bench();
 Bench servo_loop_bench();
 Bench jog_home_bench();
 Bench motion_bench();
+Bench kinematics_bench();
 Bench limits_bench();
 Bench commutation_bench();
 Bench time_base_bench();
 Bench follow_bench();
 Bench task_load_bench();
+Bench circle_bench();
+Bench lookahead_bench();
+Bench reversal_bench();
+Bench rotary_machining_bench();
 
 }  // namespace brick

@@ -199,6 +199,8 @@ TEST_F(Segments, CentripetalLimit) {
   ASSERT_EQ(host("I5113=5 I5178=40"), "");
   store({"F1000 TA0 TS0", "CIRCLE1 X0 Y0 I10 J0"});
   EXPECT_NEAR(run(), std::ceil(2 * kPi * 10 / 20 * 200) * 5 + 10, kTickMs);  // sqrt(40 x 10) = 20 a s
+  store({"F1000 TA0 TS0", "CIRCLE1 X15 Y0 I10 J0"});                         // half a turn from 10 to 5
+  EXPECT_NEAR(run(), std::ceil(std::hypot(kPi * 7.5, 5) / std::sqrt(40 * 5) * 200) * 5 + 10, kTickMs);
 }
 
 // Q and `/`: the end of the executing move; R goes on with the next.

@@ -59,5 +59,85 @@ TEST_F(MotionImage, LoopsWithoutAMoveGoRoundTwiceAnInterrupt) {
   EXPECT_NEAR(board.now_ms() - began, 500 * 3 * 3713991.0 / 8388608.0, 15.0) << "500 real-time interrupts";
 }
 
+// motion:5.4/6: eight axes, a point each 3 ms; each 1 ms is too much, and is said.
+TEST_F(MotionImage, SplinePointsOfEightAxesAreInTimeOrAnError) {
+  const char* axes = "XYZABCUV";
+  for (int m = 1; m <= 8; ++m) {
+    const std::string n = std::to_string(m);
+    accepted("I" + n + "00=1 I" + n + "24=$120001 I" + n + "11=0 &1#" + n + "->1000" + axes[m - 1]);
+  }
+  accepted("A");
+  board.run_ms(20);
+  accepted("M1->D:$88 M2->D:$408");  // motors 1 and 8
+  for (const int time : {3, 1}) {
+    store(1, {"SPLINE1 INC TM" + std::to_string(time) + " P1=0 WHILE(P1<40)",
+              "X.1 Y.2 Z(SIN(P1*10)) A-1 B.3 C.1 U1 V-.5 P1=P1+1", "ENDWHILE"});
+    const double first = value("M1"), eighth = value("M2");
+    accepted("B1R");
+    const double began = board.now_ms();
+    while ((std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0) board.run_ms(1);
+    const double took = board.now_ms() - began;
+    EXPECT_EQ(value("RY$2014"), time == 3 ? 0 : 9);
+    if (time != 3) continue;
+    EXPECT_NEAR(took, (40 + 2) * 3, 8) << "one sequence";
+    EXPECT_EQ(value("M1") - first, 4000 * 3072.0);
+    EXPECT_EQ(value("M2") - eighth, -20000 * 3072.0);
+  }
+}
+
+// motion:6.6: within 2 ms, also where planning and PLC 0 come every 113 ms only.
+TEST_F(MotionImage, ProtectionDoesNotWaitForI8) {
+  accepted("I100=1 I124=$100001 I111=0 I112=0 I122=10 I119=1 I120=0 I121=0");
+  const auto status = [this](unsigned word) {
+    return std::stoul(board.send("#1?\r").substr(6 * word, 6), nullptr, 16);
+  };
+  for (const char* period : {"I8=2", "I8=255"}) {
+    accepted(std::string(period) + " WX$78000,0");
+    board.run_ms(120);
+    accepted("#1J/");
+    board.run_ms(250);
+    accepted("J+");
+    board.run_ms(400);
+    ASSERT_EQ(status(0) >> 21 & 3u, 0u) << period;
+    ASSERT_EQ(status(1) >> 11 & 1u, 0u) << period << ": no limit has stopped it";
+    accepted("WX$78000,$20000");  // PLIM
+    board.run_ms(2);
+    EXPECT_EQ(status(1) >> 11 & 1u, 1u) << period << ": stopped on a limit";
+    accepted("WX$78000,0 I111=16");
+    board.run_ms(2);
+    EXPECT_EQ(status(1) >> 2 & 1u, 1u) << period << ": it has jogged, but stands at 0";
+    EXPECT_EQ(status(0) >> 18 & 1u, 1u) << period << ": the loop is open";
+    accepted("I111=0");
+  }
+}
+
+// motion:4.3/1: what was captured before is read away when a search begins; a jog leaves it to the user.
+class ReadsOfCapture : public ImageBoard {
+ public:
+  ReadsOfCapture() : ImageBoard(BRICK_FIRMWARE_ELF, 0x3) {}
+  Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override {
+    constexpr std::uint32_t kCaptured = 0x78003 * 8 + 4;  // X, behind the base of the PMAC words
+    if (!write && address % 0x1000000 == kCaptured) ++reads;
+    return ImageBoard::access(address, bytes, write, data, now);
+  }
+  unsigned reads = 0;
+};
+
+TEST(MotionOfCapture, ASearchReadsTheRegisterWhenItBegins) {
+  ReadsOfCapture board;
+  ASSERT_EQ(board.send("I6=1 I3=2 I100=1 I124=$120001 I111=0 I192=10\r"), "\x06");
+  ASSERT_EQ(board.send("#1J/\r"), "\x06");
+  board.run_ms(30);
+  const unsigned before = board.reads;
+  ASSERT_EQ(board.send("J:100\r"), "\x06");
+  board.run_ms(30);
+  EXPECT_EQ(board.reads, before) << "a jog";
+  ASSERT_EQ(board.send("HM\r"), "\x06");
+  board.run_ms(5);
+  EXPECT_EQ(board.reads, before) << "Ixx92 is not over";
+  board.run_ms(20);
+  EXPECT_EQ(board.reads, before + 1);
+}
+
 }  // namespace
 }  // namespace brick
