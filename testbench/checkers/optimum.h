@@ -45,13 +45,15 @@ class Solver {
   std::vector<Line> lines(int k) const {
     std::vector<Line> found;
     for (const Motor& m : motors_) {
-      if (m.acceleration <= 0) continue;
       const double* p = &m.points[static_cast<std::size_t>(k)];
       const double d0 = p[1] - p[0], d1 = p[2] - p[1], d2 = p[3] - p[2], by = m.acceleration * period_ * period_;
       for (int i = 0; i < kSamples; ++i) {
         const double s = i / (kSamples - 1.0), bend = (d1 - d0) * (1 - s) + (d2 - d1) * s;
         const double pace = (d0 + d1) / 2 + (d1 - d0) * s + (d2 - 2 * d1 + d0) * s * s / 2;
-        found.push_back({(bend * (1 - s) - pace / 2) / by, (bend * s + pace / 2) / by});
+        if (m.acceleration > 0) found.push_back({(bend * (1 - s) - pace / 2) / by, (bend * s + pace / 2) / by});
+        if (m.velocity <= 0) continue;
+        const double fast = std::pow(pace / period_ / m.velocity, 2);
+        if (fast > 1) found.push_back({fast * (1 - s), fast * s});
       }
     }
     return found;
