@@ -61,7 +61,14 @@ enum {
   HAL_STRAP_POWER_ON,
   HAL_STRAP_PRODUCT
 };
-enum { HAL_PRODUCT_JPAN = 1, HAL_PRODUCT_UMAC = 2, HAL_PRODUCT_ULTRALITE = 4, HAL_PRODUCT_TURBO_PMAC_1 = 8 };
+enum {
+  HAL_PRODUCT_JPAN = 1,
+  HAL_PRODUCT_UMAC = 2,
+  HAL_PRODUCT_ULTRALITE = 4,
+  HAL_PRODUCT_TURBO_PMAC_1 = 8,
+  HAL_PRODUCT_FEEDBACK_2 = 16, /* a Geo PMAC has its SSI inputs */
+  HAL_PRODUCT_GEO_PMAC = 32
+};
 uint32_t hal_strap(unsigned word);
 
 /* Flash store: plain memory, erased to all ones. A word is written whole, words in the order of the calls; power may go
