@@ -43,6 +43,7 @@ Bench jog_home_bench();
 Bench motion_bench();
 Bench limits_bench();
 Bench commutation_bench();
+Bench ssi_bench();
 Bench time_base_bench();
 Bench follow_bench();
 Bench task_load_bench();
