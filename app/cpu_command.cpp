@@ -51,7 +51,7 @@ std::string hex(std::uint32_t v) {
 }
 
 std::string place(const ElfFile& elf, std::uint32_t address) {
-  const std::string name = elf.symbol_at(address);
+  const std::string& name = elf.symbol_at(address);
   return hex(address) + (name.empty() ? "" : " (" + name + ")");
 }
 

@@ -26,9 +26,9 @@ using plant::Incident;
 using plant::kUnitsPerCount;
 
 const std::vector<std::string> kKeys{"title", "seed", "step", "dac_bits", "axis", "incident"};
-const std::vector<std::string> kAxisKeys{"axes",  "drive",     "start",   "load",       "encoder",
-                                         "motor", "amplifier", "stepper", "plus_limit", "minus_limit",
-                                         "home",  "noise",     "absolute"};
+const std::vector<std::string> kAxisKeys{"axes",        "drive",     "start",   "load",    "encoder",
+                                         "motor",       "amplifier", "stepper", "brake",   "plus_limit",
+                                         "minus_limit", "home",      "noise",   "absolute"};
 const std::vector<std::string> kEncoderKeys{"lines",       "index_at", "index_width", "wiring",     "halls",
                                             "hall_offset", "b_late",   "a_long",      "dark_lines", "joint_lines"};
 const std::vector<std::string> kMotorKeys{"inertia",    "viscous",    "coulomb",   "torque_constant",
@@ -38,6 +38,7 @@ const std::vector<std::string> kAmplifierKeys{"bus_volts", "full_scale_amps", "t
 const std::vector<std::string> kStepperKeys{"counts_per_step", "move_time", "min_width", "dir_setup"};
 const std::vector<std::string> kAbsoluteKeys{"bits",     "turns", "code",    "parity",
                                              "monoflop", "delay", "missing", "error_every"};
+const std::vector<std::string> kBrakeKeys{"torque", "opened_by", "delay"};
 const std::vector<std::string> kHomeKeys{"from", "to", "level"};
 const std::vector<std::string> kNoiseKeys{"every", "shortest", "longest", "pins"};
 const std::vector<std::string> kIncidentKeys{"at", "axes", "trip", "cut", "load", "turn", "within"};
@@ -143,7 +144,7 @@ class Reader {
   // Motors (1, 2, ...) that a table is about: 3, "1-8", "1,3,5-8".
   std::vector<unsigned> motors(const TomlTable& t) const {
     const toml::node& node = t.need("axes");
-    if (node.is_integer()) return {one_motor(t, node, node.value<std::int64_t>().value_or(0))};
+    if (node.is_integer()) return {one_motor(t, "axes", node, node.value<std::int64_t>().value_or(0))};
     const auto text = node.value_exact<std::string>();
     if (!text) t.fail(node, "axes", kAxesText);
     std::vector<unsigned> list;
@@ -151,9 +152,9 @@ class Reader {
       const std::size_t end = std::min(text->find(',', at), text->size());
       const std::string part = text->substr(at, end - at);
       const std::size_t dash = part.find('-');
-      const unsigned first = one_motor(t, node, number(t, node, part.substr(0, dash)));
+      const unsigned first = one_motor(t, "axes", node, number(t, node, part.substr(0, dash)));
       const unsigned last =
-          dash == std::string::npos ? first : one_motor(t, node, number(t, node, part.substr(dash + 1)));
+          dash == std::string::npos ? first : one_motor(t, "axes", node, number(t, node, part.substr(dash + 1)));
       if (last < first) t.fail(node, "axes", "the lower motor first");
       for (unsigned motor = first; motor <= last; ++motor) list.push_back(motor);
       at = end + 1;
@@ -165,9 +166,9 @@ class Reader {
       t.fail(node, "axes", kAxesText);
     return std::stol(digits);
   }
-  unsigned one_motor(const TomlTable& t, const toml::node& node, std::int64_t motor) const {
+  unsigned one_motor(const TomlTable& t, const std::string& key, const toml::node& node, std::int64_t motor) const {
     if (motor < 1 || motor > motors_)
-      t.fail(node, "axes",
+      t.fail(node, key,
              motors_ == 0 ? std::string("a board with servo ICs: this one has no motor outputs")
                           : fmt::format("motors 1 to {}: the board has no more", motors_));
     return static_cast<unsigned>(motor);
@@ -186,6 +187,7 @@ class Reader {
     axis.amplifier.adc = axis.drive == Drive::kBrush || axis.drive == Drive::kThreePhase;
     if (t.has("amplifier")) read_amplifier(t.table("amplifier", t.need("amplifier"), kAmplifierKeys), axis.amplifier);
     if (t.has("stepper")) read_stepper(t.table("stepper", t.need("stepper"), kStepperKeys), axis.stepper);
+    if (t.has("brake")) read_brake(t.table("brake", t.need("brake"), kBrakeKeys), axis.brake);
     read_switches(t, axis);
     if (t.has("noise")) read_noise(t.table("noise", t.need("noise"), kNoiseKeys), axis.noise);
     for (const unsigned motor : motors(t)) {
@@ -263,6 +265,17 @@ class Reader {
     read_time(t, "move_time", 1, s.move_time);
     read_time(t, "min_width", 0, s.min_width);
     read_time(t, "dir_setup", 0, s.dir_setup);
+  }
+
+  void read_brake(const TomlTable& t, plant::BrakeParameters& b) const {
+    t.need("torque");
+    read(t, "torque", 1e-9, kHuge, "N m, above 0", b.torque);
+    read_time(t, "delay", 0, b.delay);
+    const MotorPlace place =
+        *motor_place(fitted_, one_motor(t, "opened_by", t.need("opened_by"),
+                                        t.integer("opened_by", 0, INT64_MAX, "the motor whose AENA opens it")));
+    b.ic = place.ic;
+    b.channel = place.channel;
   }
 
   // A limit switch is open, which reads 1, beyond its place (motion:6.2/1).

@@ -2,10 +2,10 @@
 // path of two columns coloured by its speed. gnuplot reads the file and draws; this writes what it is told
 // (docs/record.md).
 #include <fnmatch.h>
-#include <stdio.h>
 #include <sys/wait.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 

@@ -14,6 +14,7 @@
 #include "firmware/command/table_commands.h"
 #include "firmware/language/statement_list.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/axis_matrix.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/run/run_control.h"
 
@@ -65,7 +66,9 @@ static error_t define_tbuf(struct lexer* lx) {
   uint32_t matrices;
   if (size_argument(lx, &matrices) != ERR_NONE) return ERR_DATA;
   const uint32_t most = UINT32_MAX / TBUF_WORDS_PER_MATRIX;
-  return region_define(REGION_TBUF, 0, (matrices < most ? matrices : most) * TBUF_WORDS_PER_MATRIX);
+  const error_t error = region_define(REGION_TBUF, 0, (matrices < most ? matrices : most) * TBUF_WORDS_PER_MATRIX);
+  if (error == ERR_NONE) axis_matrix_clear();
+  return error;
 }
 
 static error_t define_user(struct lexer* lx) {

@@ -4,6 +4,7 @@
 #include "firmware/base/memory_map.h"
 #include "firmware/command/reply.h"
 #include "firmware/hal/hal.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
@@ -44,11 +45,8 @@ void motor_report_position(uint32_t motor) {
   report_scaled(position, variable(motor, IXX08_POSITION_SCALE));
 }
 
-/* The word is that of a closure of the loop, every Ixx60 + 1 servo interrupts. */
 void motor_report_velocity(uint32_t motor) {
-  const int64_t interrupts = variable(motor, IXX60_SERVO_CYCLE_EXTENSION) + 1;
-  report_scaled(hal_signed(*hal_x(base(motor) + MEMORY_MOTOR_VELOCITY)),
-                interrupts * variable(motor, IXX09_VELOCITY_SCALE));
+  report_scaled(average_velocity(motor), variable(motor, IXX09_VELOCITY_SCALE));
 }
 
 void motor_report_following_error(uint32_t motor) {

@@ -68,6 +68,11 @@ static error_t cmd_point(struct lexer* lx) { /* B{n} */
 
 static error_t cmd_run(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, false) : not_alone(lx); }
 
+static error_t cmd_match(struct lexer* lx) { /* PMATCH */
+  (void)lx;
+  return run_match(session.cs);
+}
+
 static error_t cmd_step(struct lexer* lx) { return stands_alone(lx) ? run_start(session.cs, true) : not_alone(lx); }
 
 static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
@@ -149,6 +154,7 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"UNDEFINE", axis_undefine_command},
                                                  {"UNDEF", axis_undefine_command},
                                                  {"NOFRAX", cmd_nofrax},
+                                                 {"PMATCH", cmd_match},
                                                  {"DEFINE", define_command},
                                                  {"DELETE", delete_command},
                                                  {"DELAY", cmd_needs_buffer}, /* not DEL AY */

@@ -11,8 +11,6 @@
 #define TASK_REAL_TIME (1u << 19)
 #define TASK_ALL (TASK_PHASE | TASK_SERVO | TASK_HOST | TASK_REAL_TIME)
 
-#define CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
-
 static uint32_t cycles_per_ms = 78643u; /* 8 x 9.8304 MHz until I52 is known */
 static uint32_t cycles_per_us = 79u;    /* rounded up */
 static uint32_t host_signals;
@@ -20,27 +18,21 @@ static uint32_t watchdog_phase;
 
 static uint32_t mie_clear(uint32_t bits) {
   uint32_t old;
-  __asm__ volatile(CSR("csrrc %0, mie, %1") : "=r"(old) : "r"(bits) : "memory");
+  __asm__ volatile(HAL_CSR("csrrc %0, mie, %1") : "=r"(old) : "r"(bits) : "memory");
   return old;
 }
 
 uint32_t hal_mask_real_time(void) { return mie_clear(TASK_REAL_TIME); }
 uint32_t hal_mask_servo(void) { return mie_clear(TASK_REAL_TIME | TASK_SERVO); }
 uint32_t hal_mask_all(void) { return mie_clear(TASK_ALL); }
-void hal_unmask(uint32_t state) { __asm__ volatile(CSR("csrw mie, %0") : : "r"(state) : "memory"); }
-
-uint32_t hal_cycles(void) {
-  uint32_t cycles;
-  __asm__ volatile(CSR("csrr %0, mcycle") : "=r"(cycles));
-  return cycles;
-}
+void hal_unmask(uint32_t state) { __asm__ volatile(HAL_CSR("csrw mie, %0") : : "r"(state) : "memory"); }
 
 uint64_t hal_long_cycles(void) {
   uint32_t high, low, again;
   do {
-    __asm__ volatile(CSR("csrr %0, mcycleh") : "=r"(high));
+    __asm__ volatile(HAL_CSR("csrr %0, mcycleh") : "=r"(high));
     low = hal_cycles();
-    __asm__ volatile(CSR("csrr %0, mcycleh") : "=r"(again));
+    __asm__ volatile(HAL_CSR("csrr %0, mcycleh") : "=r"(again));
   } while (again != high);
   return ((uint64_t)high << 32) | low;
 }
@@ -78,32 +70,31 @@ void hal_host_signals(uint32_t set, uint32_t clear) {
 
 void hal_interrupts_off(void) {
   (void)mie_clear(~0u);
-  __asm__ volatile(CSR("csrc mip, %0") : : "r"(TASK_ALL) : "memory");
+  __asm__ volatile(HAL_CSR("csrc mip, %0") : : "r"(TASK_ALL) : "memory");
 }
 
 /* A clock edge of the time before counts no more: taken late, its task could run into the next one (servo error). */
 void hal_interrupts_on(void) {
-  __asm__ volatile(CSR("csrc mip, %0") : : "r"(TASK_PHASE | TASK_SERVO | TASK_REAL_TIME) : "memory");
-  __asm__ volatile(CSR("csrs mie, %0\n csrsi mstatus, 8") : : "r"(TASK_ALL) : "memory");
+  __asm__ volatile(HAL_CSR("csrc mip, %0") : : "r"(TASK_PHASE | TASK_SERVO | TASK_REAL_TIME) : "memory");
+  __asm__ volatile(HAL_CSR("csrs mie, %0\n csrsi mstatus, 8") : : "r"(TASK_ALL) : "memory");
 }
 
-void hal_request_real_time(void) { __asm__ volatile(CSR("csrs mip, %0") : : "r"(TASK_REAL_TIME) : "memory"); }
+void hal_request_real_time(void) { __asm__ volatile(HAL_CSR("csrs mip, %0") : : "r"(TASK_REAL_TIME) : "memory"); }
 
 static uint32_t pending(void) {
   uint32_t bits;
-  __asm__ volatile(CSR("csrr %0, mip") : "=r"(bits));
+  __asm__ volatile(HAL_CSR("csrr %0, mip") : "=r"(bits));
   return bits;
 }
 
-bool hal_real_time_pending(void) { return (pending() & TASK_REAL_TIME) != 0u; }
 bool hal_servo_pending(void) { return (pending() & TASK_SERVO) != 0u; }
 
 /* With mstatus.MIE clear an interrupt that arrives between the test and WFI still ends the sleep, and is taken
  * afterwards. */
 void hal_idle(const volatile uint32_t* work) {
-  __asm__ volatile(CSR("csrci mstatus, 8") : : : "memory");
+  __asm__ volatile(HAL_CSR("csrci mstatus, 8") : : : "memory");
   if (*work == 0u) __asm__ volatile("wfi" : : : "memory");
-  __asm__ volatile(CSR("csrsi mstatus, 8") : : : "memory");
+  __asm__ volatile(HAL_CSR("csrsi mstatus, 8") : : : "memory");
 }
 
 void hal_watchdog_strobe(void) {

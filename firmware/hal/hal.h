@@ -12,9 +12,24 @@
 #ifdef BRICK_NATIVE
 volatile uint32_t* hal_x(uint32_t address);
 volatile uint32_t* hal_y(uint32_t address);
+uint32_t hal_cycles(void); /* CPU cycle counter, low 32 bits */
+bool hal_real_time_pending(void);
 #else
 static inline volatile uint32_t* hal_x(uint32_t address) { return (volatile uint32_t*)(0xC0000004u + 8u * address); }
 static inline volatile uint32_t* hal_y(uint32_t address) { return (volatile uint32_t*)(0xC0000000u + 8u * address); }
+
+#define HAL_CSR(text) ".option push\n.option arch, +zicsr\n" text "\n.option pop\n"
+
+static inline uint32_t hal_cycles(void) {
+  uint32_t cycles;
+  __asm__ volatile(HAL_CSR("csrr %0, mcycle") : "=r"(cycles));
+  return cycles;
+}
+static inline bool hal_real_time_pending(void) {
+  uint32_t bits;
+  __asm__ volatile(HAL_CSR("csrr %0, mip") : "=r"(bits));
+  return (bits & 1u << 19) != 0u;
+}
 #endif
 
 /* A 24-bit word as a signed number. */
@@ -26,7 +41,6 @@ uint32_t hal_mask_servo(void);     /* holds off servo and real-time tasks */
 uint32_t hal_mask_all(void);       /* holds off every task and the host port */
 void hal_unmask(uint32_t state);
 
-uint32_t hal_cycles(void);                           /* CPU cycle counter, low 32 bits */
 uint64_t hal_long_cycles(void);                      /* all of it */
 const uint32_t* hal_image(uint32_t* words);          /* code and constants, and how many words they have */
 void hal_delay_us(uint32_t us);                      /* busy wait, 10 % longer at most */
@@ -40,7 +54,6 @@ uint32_t hal_cycles_per_ms(void);
 void hal_interrupts_off(void);    /* no task enabled, nothing latched */
 void hal_interrupts_on(void);     /* all tasks enabled; clock edges and requests until now forgotten */
 void hal_request_real_time(void); /* sets the real-time interrupt pending */
-bool hal_real_time_pending(void);
 void hal_idle(const volatile uint32_t* work); /* sleeps until the next interrupt unless *work is not zero already */
 void hal_watchdog_strobe(void);
 void hal_host_interrupts(bool receive, bool transmit); /* HRIE, HTIE of the host port */

@@ -7,6 +7,7 @@
 #include "firmware/hal/hal.h"
 #include "firmware/host/dpram_report.h"
 #include "firmware/kernel/background.h"
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/variables/i_variables.h"
@@ -49,7 +50,7 @@ static void write_motor(uint32_t motor) {
   const struct long_word commanded = read_long(words + MEMORY_MOTOR_COMMANDED);
   const struct long_word actual = read_long(words + MEMORY_MOTOR_ACTUAL), bias = split(m->bias);
   const struct long_word master = split(m->compensation);
-  const uint32_t velocity = *hal_x(words + MEMORY_MOTOR_VELOCITY);
+  const uint32_t velocity = average_velocity_word(motor);
   const int32_t output = m->output;
   hal_unmask(state);
   const uint64_t error = (uint64_t)(value(commanded) - value(actual));

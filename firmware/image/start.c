@@ -26,6 +26,7 @@
 #include "firmware/kernel/clock_watch.h"
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/axis_matrix.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/jog.h"
 #include "firmware/motion/motor_variables.h"
@@ -107,6 +108,7 @@ void start(enum start_mode mode) {
   buffer_request_initialize();
   panel_initialize();
   coordinate_systems_initialize();
+  axis_matrix_initialize();
   time_base_initialize();
   motor_variables_initialize();
   jog_initialize();

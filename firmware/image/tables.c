@@ -26,6 +26,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
+#include "firmware/motion/kinematics.h"
 #include "firmware/motion/live_words.h"
 #include "firmware/motion/motor_variables.h"
 #include "firmware/motion/phase_search.h"
@@ -34,6 +35,7 @@
 #include "firmware/motion/protection.h"
 #include "firmware/motion/servo_update.h"
 #include "firmware/motion/time_base.h"
+#include "firmware/run/kinematic_program.h"
 #include "firmware/run/run_control.h"
 #include "firmware/variables/i_table.h"
 #include "firmware/variables/i_variables.h"
@@ -52,7 +54,10 @@ static void servo(void) {
 
 const struct task_hooks task_hooks = {.servo = servo, .real_time = real_time, .phase_period = phase_period};
 
-const struct word_hooks word_hooks = {.end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write};
+const struct word_hooks word_hooks = {
+    .end = MEMORY_M_DEFINITIONS, .read = live_word_read, .write = live_word_write, .write_long = live_word_write_long};
+
+enum run_time_error (*const kinematics_execute)(uint32_t cs, enum fixed_kind kind) = kinematic_program_execute;
 
 const struct protection_hooks protection_hooks = {.abort = run_abort};
 

@@ -35,12 +35,22 @@ void average_velocity_shift(uint32_t motor, int64_t by) {
   for (uint32_t i = 0; i < SAMPLES; ++i) averages[motor].at[i] += by;
 }
 
+void average_velocity_restart(uint32_t motor) {
+  for (uint32_t i = 0; i < SAMPLES; ++i) averages[motor].at[i] = motors[motor].actual;
+  averages[motor].way = 0;
+}
+
 int64_t average_velocity(uint32_t motor) {
   const uint32_t shift = (uint32_t)i_integer(I61_FILTER_SHIFT);
   const uint32_t state = hal_mask_servo();
-  const int64_t way = averages[motor].way;
+  const int64_t way = (motors_active >> motor & 1u) != 0u ? averages[motor].way : 0;
   hal_unmask(state);
   const struct motor* m = &motors[motor];
   const int64_t mean = way >> (shift < LARGEST_SHIFT ? shift : LARGEST_SHIFT);
   return m->velocity_scale == m->position_scale ? mean : mean * m->velocity_scale / m->position_scale;
+}
+
+uint32_t average_velocity_word(uint32_t motor) {
+  const int64_t velocity = average_velocity(motor), most = HAL_WORD_MASK >> 1;
+  return (uint32_t)(velocity > most ? most : velocity < -most ? -most : velocity) & HAL_WORD_MASK;
 }

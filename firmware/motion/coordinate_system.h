@@ -79,6 +79,7 @@ struct move {
   int64_t knot_time[KNOTS - 1];
   struct knot knots[KNOTS];
   bool overruns;             /* it ends in motion: without a next one it runs on, to be stopped */
+  bool waited;               /* its line was waited for: who is late then is the host */
   uint32_t own;              /* OWN: the motors */
   bool homes;                /* they search for home */
   bool is_sharp, has_dwell;  /* not blended: for its corner; Isx82 counts */
@@ -99,9 +100,11 @@ enum run_time_error {
   RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
   RUN_TIME_READ,        /* READ where nothing has been called */
   RUN_TIME_FEEDRATE,    /* a move goes by a feedrate that is not above 0 */
-  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time, or a path no next segment */
+  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time, a spline no point, a path no segment */
   RUN_TIME_IN_POSITION, /* motors are not in position within Isx81 */
-  RUN_TIME_RADIUS       /* there is no arc through the ends of a CIRCLE move */
+  RUN_TIME_RADIUS,      /* there is no arc through the ends of a CIRCLE move */
+  RUN_TIME_KINEMATIC,   /* a kinematic program does not end, or what it gives is no position */
+  RUN_TIME_BY_USER      /* somebody has set the bit of run-time errors */
 };
 
 enum { ARC_VECTORS = 4, ARC_RADIUS_BIT = 8 }; /* I, J, K, R */
@@ -144,6 +147,7 @@ struct coordinate_system {
   bool sets_normal;          /* I, J, K are those of NORMAL, until the line ends or an axis comes */
   bool was_matched;          /* since the last MOVE_OWN */
   bool first;                /* no move of this run has been placed yet */
+  bool waited;               /* for a line, since the last calculated move; a start is such a wait */
   bool sets_position;        /* the line is that of PSET */
   bool by_segments;          /* the line's path is made of segments */
   struct program_trace line; /* being calculated */
@@ -156,6 +160,8 @@ struct coordinate_system {
   bool placed;                 /* R, S: the next one is in the ring; until then it does not start */
   volatile uint32_t started;   /* S: moves so far, counted as `planned` */
   uint32_t motors;             /* R, at the start of a program: those that its axes move; 0: the axes are virtual */
+  uint32_t inverse_motors;     /* R, as those: which of them the inverse program moves */
+  bool kinematic;              /* R, as those: Isx50, the forward program tells where the axes are */
   struct piece_ring ring;      /* piece.move is the number of the move, as `planned` counts */
   int64_t elapsed;             /* S: trajectory time since the executing move began to change velocity */
   enum corner_stop corner;     /* R */

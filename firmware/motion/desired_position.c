@@ -12,7 +12,7 @@
 #include "firmware/variables/i_variables.h"
 #include "firmware/variables/words.h"
 
-enum { FOLLOWS = 1, PART_OF_COUNT = 16, ERROR_SATURATES = 1 << 13 /* Ixx24 */ };
+enum { FOLLOWS = 1, OFFSET_MODE = 2, PART_OF_COUNT = 16, ERROR_SATURATES = 1 << 13 /* Ixx24 */ };
 
 static struct path {
   /* V */
@@ -57,12 +57,14 @@ void desired_position_motor_changed(uint32_t motor) {
   struct path* p = &paths[motor - 1u];
   const uint32_t address = (uint32_t)variable(motor, IXX05_MASTER_ADDRESS);
   const uint32_t share = share_of(i_variable_read(I_MOTOR_BLOCK * motor + (uint32_t)IXX40_DESIRED_POSITION_FILTER));
-  const bool follows = ((uint32_t)variable(motor, IXX06_FOLLOWING_MODE) & FOLLOWS) != 0u;
+  const uint32_t mode = (uint32_t)variable(motor, IXX06_FOLLOWING_MODE);
+  const bool follows = (mode & FOLLOWS) != 0u;
   const uint32_t state = hal_mask_servo();
   const volatile uint32_t* master = word_exists(true, address) ? hal_x(address) : &zero;
   if (master != p->master || (follows && !p->follows)) p->master_reading = *master; /* no movement until now */
   p->master = master;
   p->follows = follows;
+  motors[motor - 1u].origin_follows = (mode & OFFSET_MODE) != 0u;
   p->master_scale = variable(motor, IXX07_MASTER_SCALE);
   p->share = share;
   p->backlash = position_of(motor, variable(motor, IXX86_BACKLASH_SIZE));

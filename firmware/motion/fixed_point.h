@@ -13,6 +13,7 @@
  * | current         | int32_t  | 2^-28 of full scale                    | +-4: sums of two phases and their biases   |
  * | voltage         | int32_t  | 2^-23 of full voltage                  | +-256                                      |
  * | current gain    | int32_t  | 2^-27                                  | +-8                                        |
+ * | part            | int64_t  | 2^-62                                  | -1 <= x <= 1                               |
  */
 #ifndef FIRMWARE_MOTION_FIXED_POINT_H
 #define FIRMWARE_MOTION_FIXED_POINT_H
@@ -50,6 +51,16 @@ static inline int64_t fixed_part(int64_t value, uint32_t fraction) {
   const int64_t high = (int64_t)(int32_t)(value >> 32) * (int64_t)fraction;
   const uint64_t low = (uint64_t)(uint32_t)value * fraction;
   return high + (int64_t)(low >> 32);
+}
+
+/* value * part, rounded to nearest; |value| < 2^61. */
+static inline int64_t fixed_share(int64_t value, int64_t part) {
+  const int64_t scaled = value * 4;
+  const uint32_t a0 = (uint32_t)scaled, b0 = (uint32_t)part;
+  const int32_t a1 = (int32_t)(scaled >> 32), b1 = (int32_t)(part >> 32);
+  const int64_t one = (int64_t)b1 * (int64_t)a0, other = (int64_t)a1 * (int64_t)b0;
+  const uint64_t low = ((uint64_t)a0 * b0 >> 32) + (uint32_t)one + (uint32_t)other + 0x80000000u;
+  return (int64_t)a1 * b1 + (one >> 32) + (other >> 32) + (int64_t)(low >> 32);
 }
 
 #endif

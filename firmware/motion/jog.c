@@ -37,7 +37,7 @@ static double jog_speed(uint32_t motor) { return math_absolute(real(motor, IXX22
 
 static void leave_position(uint32_t motor) {
   struct jog* j = &jogs[motor];
-  if (!j->away) j->before = motors[motor].trajectory;
+  if (!j->away) j->before = motors[motor].trajectory + motor_followed(motor);
   j->away = true;
 }
 
@@ -86,7 +86,7 @@ bool jog_stop(uint32_t motor) {
   return ask(motor, &request);
 }
 
-/* `together`: of a program, which moves these. */
+/* `together`: of a program, which moves these. `target` is one of the trajectory. */
 static bool go(uint32_t motor, int64_t target, double speed, uint32_t together) {
   struct jog_motion request = make(motor, AIM_TARGET, speed);
   request.target = target;
@@ -105,10 +105,17 @@ static bool go_until(uint32_t motor, int64_t target, double speed, int64_t dista
   return ask(motor, &request);
 }
 
-bool jog_to(uint32_t motor, int64_t target) { return go(motor, target, jog_speed(motor), 0); }
+static int64_t followed(uint32_t motor) {
+  const uint32_t state = hal_mask_servo();
+  const int64_t way = motor_followed(motor);
+  hal_unmask(state);
+  return way;
+}
+
+bool jog_to(uint32_t motor, int64_t target) { return go(motor, target - followed(motor), jog_speed(motor), 0); }
 
 bool jog_until(uint32_t motor, int64_t target, int64_t distance) {
-  return go_until(motor, target, jog_speed(motor), distance, 0);
+  return go_until(motor, target - followed(motor), jog_speed(motor), distance, 0);
 }
 
 bool jog_rapid(uint32_t motor, int64_t target, double speed, uint32_t together) {
@@ -162,16 +169,13 @@ void jog_program_takes(uint32_t motor) {
 
 bool jog_is_moving(uint32_t motor) { return (jogs_busy & jog_bit(motor)) != 0u; }
 
-bool jog_is_of_program(uint32_t motor) {
-  const struct jog* j = &jogs[motor];
-  return jog_is_moving(motor) && (j->now.by_program || j->request.by_program);
-}
+bool jog_is_of_program(uint32_t motor) { return jog_is_moving(motor) && jog_by_program(&jogs[motor]); }
 
 bool jog_is_homing(uint32_t motor) { return jogs[motor].now.homes && jogs[motor].now.searches; }
 
 int64_t jog_commanded(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = motors[motor].trajectory;
+  const int64_t position = motors[motor].trajectory + motor_followed(motor);
   hal_unmask(state);
   return position;
 }
@@ -182,14 +186,14 @@ int64_t jog_trajectory_at(uint32_t motor, int64_t actual) {
 
 int64_t jog_actual(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = jog_trajectory_at(motor, motors[motor].actual);
+  const int64_t position = jog_trajectory_at(motor, motors[motor].actual) + motor_followed(motor);
   hal_unmask(state);
   return position;
 }
 
 int64_t jog_position_before(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = jogs[motor].away ? jogs[motor].before : motors[motor].trajectory;
+  const int64_t position = jogs[motor].away ? jogs[motor].before : motors[motor].trajectory + motor_followed(motor);
   hal_unmask(state);
   return position;
 }
@@ -205,10 +209,10 @@ void jog_make_whole(uint32_t motor) {
   const double whole = (double)math_nearest(motor_counts_of(motor, jog_commanded(motor)));
   const int64_t position = motor_position_of(motor, whole);
   const uint32_t state = hal_mask_servo();
-  if (motors[motor].loop == LOOP_CLOSED && motors[motor].path != PATH_OWN && !jog_is_moving(motor)) {
+  if (motors[motor].loop == LOOP_CLOSED && !jog_is_moving(motor)) {
     leave_position(motor);
     motors[motor].path = PATH_STANDS;
-    motors[motor].trajectory = position;
+    motors[motor].trajectory = position - motor_followed(motor);
   }
   hal_unmask(state);
 }
@@ -221,6 +225,7 @@ void jog_count_from(uint32_t motor, int64_t position) {
   j->requests++;                 /* what is being planned is about the old positions */
   motors[motor].of_system -= position;
   j->before =
-      motors[motor].loop == LOOP_CLOSED ? motors[motor].trajectory : jog_trajectory_at(motor, motors[motor].actual);
+      motor_followed(motor) +
+      (motors[motor].loop == LOOP_CLOSED ? motors[motor].trajectory : jog_trajectory_at(motor, motors[motor].actual));
   j->away = true;
 }

@@ -26,17 +26,22 @@ static uint32_t waiting; /* motors whose path is ready and begins with others th
 
 enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
 
-/* Where a program has it `ahead` from now, in its piece: a ramp that begins beyond it begins at its last speed. While
- * time stands so does the motor. Servo task held off. */
+/* Where a program has it `ahead` from now, in its last piece at the end of that. While time stands so does the motor.
+ * Servo task held off. */
 static struct own_path_place place_of_program(uint32_t motor, int64_t ahead) {
   const struct motor* m = &motors[motor];
   struct coordinate_system* s = &coordinate_systems[m->cs];
   struct piece_ring* ring = &s->ring;
   if (m->path == PATH_SYSTEM && s->active && s->increment > 0 && !piece_ring_is_empty(ring)) {
-    const struct piece* piece = piece_ring_at(ring, ring->executing);
-    const int64_t at = ring->elapsed + ahead;
+    uint32_t number = ring->executing;
+    int64_t at = ring->elapsed + ahead;
+    const struct piece* piece = piece_ring_at(ring, number);
+    while (at >= piece->end && number + 1u != ring->added) {
+      at -= piece->end;
+      piece = piece_ring_at(ring, ++number);
+    }
     if ((piece->motors >> motor & 1u) != 0u)
-      return (struct own_path_place){*piece_ring_cubic(ring, ring->executing, motor), piece->time,
+      return (struct own_path_place){*piece_ring_cubic(ring, number, motor), piece->time,
                                      at < piece->end ? at : piece->end - 1};
   }
   return own_path_stands(m->trajectory);

@@ -16,12 +16,14 @@ static int32_t approach(int32_t present, int32_t target, int32_t slew) {
 
 static bool searches_without_end(const struct jog_motion* motion) { return motion->aim == AIM_SPEED; }
 
-/* The new path begins where the old one is: planned for this moment, a ramp off the path of a system about. */
-static void change_over(uint32_t motor) {
+/* The new path begins where the old one is, planned for this moment. A ramp off the path of a system, whose time may
+ * have changed since, begins where the motor is now: false. */
+static bool change_over(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
   struct own_path* path = &j->paths[j->current ^ 1u];
-  if (j->next.aim == AIM_RAMP && m->path == PATH_SYSTEM) path->shift = m->trajectory - path->start;
+  const bool as_planned = j->next.aim != AIM_RAMP || m->path != PATH_SYSTEM;
+  if (!as_planned) path->shift = m->trajectory - path->start;
   j->current ^= 1u;
   j->now = j->next;
   j->ready = false;
@@ -30,6 +32,7 @@ static void change_over(uint32_t motor) {
   m->status.aborting = j->now.aim == AIM_RAMP;
   m->status.home_search = j->now.searches;
   if (j->now.searches) capture_arm(&j->now.capture);
+  return as_planned;
 }
 
 static void found(uint32_t motor, int64_t position) {
@@ -44,8 +47,10 @@ static void found(uint32_t motor, int64_t position) {
   then.together = 0;
   then.target = jog_trajectory_at(motor, position) + then.beyond;
   if (homes) {
-    jog_count_from(motor, then.target);
-    j->before = then.target = 0;
+    const int64_t followed = motor_followed(motor);
+    jog_count_from(motor, then.target + followed);
+    then.target = -followed;
+    j->before = 0;
     status->home_complete = true;
   }
   if (j->ready || (jogs_asked & jog_bit(motor)) != 0u) return; /* something else has been asked for */
@@ -58,7 +63,7 @@ static void over(uint32_t motor) {
   struct motor_status_flags* status = &motors[motor].status;
   motors[motor].path = PATH_STANDS;
   status->timed_move = status->aborting = status->home_search = false;
-  j->now = (struct jog_motion){.aim = AIM_REST, .by_program = j->now.by_program};
+  j->now = (struct jog_motion){.aim = AIM_REST};
   if (!j->ready && (jogs_asked & jog_bit(motor)) == 0u) jogs_busy &= ~jog_bit(motor);
 }
 
@@ -70,21 +75,20 @@ static __attribute__((noinline)) void search(uint32_t motor) {
 
 static __attribute__((noinline)) int32_t other_rate(uint32_t motor, int32_t target) {
   const int32_t slew = coordinate_systems[motors[motor].cs].increment_slew;
-  return approach(jogs[motor].rate, target < 0 ? 0 : target, slew);
+  return approach(jogs[motor].rate, target, slew);
 }
 
 static __attribute__((noinline)) bool begins(uint32_t motor, int64_t* elapsed) {
   const int64_t since = jogs[motor].clock - jogs[motor].next_begins;
   if (since < 0) return false;
-  change_over(motor);
-  *elapsed = since;
+  *elapsed = change_over(motor) ? since : 0;
   return true;
 }
 
 static __attribute__((noinline)) void move(uint32_t motor) {
   struct jog* j = &jogs[motor];
   struct motor* m = &motors[motor];
-  const int32_t target = jog_rate_of(motor, j->now.by_program);
+  const int32_t target = jog_rate_of(motor, jog_by_program(j));
   if (m->loop != LOOP_CLOSED) {
     jog_drop(motor);
     return;

@@ -12,6 +12,8 @@ int32_t jog_rate_of(uint32_t motor, bool by_program) {
   return s->held && !by_program ? s->increment_command : s->increment;
 }
 
+bool jog_by_program(const struct jog* j) { return j->now.aim == AIM_REST ? j->request.by_program : j->now.by_program; }
+
 void jog_post(uint32_t motor, const struct jog_motion* request) {
   struct jog* j = &jogs[motor];
   struct motor_status_flags* status = &motors[motor].status;

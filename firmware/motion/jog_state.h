@@ -48,7 +48,8 @@ extern struct jog jogs[MOTORS];
 extern volatile uint32_t jogs_busy, jogs_asked;
 
 static inline uint32_t jog_bit(uint32_t motor) { return 1u << motor; }
-int32_t jog_rate_of(uint32_t motor, bool by_program);            /* trajectory time a servo cycle */
+int32_t jog_rate_of(uint32_t motor, bool by_program);            /* trajectory time a servo cycle, 0 or more */
+bool jog_by_program(const struct jog* j);                        /* what it does, at rest what it waits for */
 void jog_post(uint32_t motor, const struct jog_motion* request); /* servo task held off, or in it */
 
 #endif

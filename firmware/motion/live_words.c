@@ -30,6 +30,7 @@ enum { /* of a coordinate system */
        CS_ERROR = 0x14, /* Y */
        CS_TIMERS = 0x15,
        CS_STATUS_2 = 0x3F,
+       S2_RUN_TIME_ERROR_BIT = 1 << 22,
        CS_STATUS_1 = 0x40, /* Y: word 3 */
        S1_CONTINUOUS_BIT = 1 << 4,
        CS_END = MEMORY_CS_WORDS + MEMORY_CS_STRIDE * COORDINATE_SYSTEMS
@@ -149,11 +150,21 @@ static void write_time_base(uint32_t cs, uint32_t mask, uint32_t bits) {
   hal_unmask(state);
 }
 
-/* What a write leaves of the word is read in one piece with it: programs of the real-time task write there too. */
+/* How a kinematic program says that there is no such place; the program that runs is stopped (motion:8.1/8);
+ * without one it means nothing. */
+static void run_time_error_by_user(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const uint32_t state = hal_mask_real_time();
+  if (s->failure == RUN_TIME_NONE) s->failure = RUN_TIME_BY_USER;
+  hal_unmask(state);
+}
+
+/* What a write leaves of a word is read in one piece with it: programs of the real-time task write there too. */
 static void write_cs(uint32_t cs, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
   if (offset == CS_COMMANDED_TIME_BASE) write_time_base(cs, mask, bits);
   if (offset == CS_STATUS_1 && x && (mask & S1_CONTINUOUS_BIT) != 0u)
     coordinate_systems[cs].unblended = (bits & S1_CONTINUOUS_BIT) == 0u;
+  if (offset == CS_STATUS_2 && !x && (mask & bits & S2_RUN_TIME_ERROR_BIT) != 0u) run_time_error_by_user(cs);
   if (offset == CS_TIMERS) write_timer(i_cs(cs, ISX11_TIMERS) + (x ? 0u : 1u), mask, bits);
 }
 
@@ -163,10 +174,10 @@ static void write_reference(uint32_t motor, uint32_t offset, bool x, uint32_t ma
   if (offset == MOTOR_STATUS_2 && !x && (mask & bit) != 0u) phasing_set_missing(motor, (bits & bit) != 0u);
 }
 
-/* The commanded time base, blending (bit 4 of status word 1), the timers and the phase reference error can be set,
- * global status bits that stay can be cleared; the others belong to the firmware. */
+/* The commanded time base, blending (bit 4 of status word 1), the run-time error (bit 22 of word 2), the timers and the
+ * phase reference error can be set, global status bits that stay can be cleared; the others belong to the firmware. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
-  uint32_t present[2] = {0, 0};
+  uint32_t present[2];
   if ((make(address, &present[1], &present[0]) & (x ? HALF_X : HALF_Y)) == 0u) return false;
   if (address == MEMORY_GLOBAL_STATUS && x) status_clear(mask & ~bits);
   const uint32_t in_systems = address - MEMORY_CS_WORDS;
@@ -175,8 +186,14 @@ bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
   const uint32_t in_motors = address - MEMORY_MOTOR_WORDS, line = address - MEMORY_CONVERSION;
   if (in_motors < MOTORS_END - MEMORY_MOTOR_WORDS) {
     write_reference(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
-    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, (present[x] & ~mask) | bits);
+    servo_word_write(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, mask, bits);
   }
-  if (line < CONVERSION_LINES) i_variable_write(I8000_CONVERSION_TABLE + line, (present[0] & ~mask) | bits);
+  if (line < CONVERSION_LINES) i_variable_write_part(I8000_CONVERSION_TABLE + line, mask, bits);
   return true;
+}
+
+bool live_word_write_long(uint32_t address, uint32_t x, uint32_t y) {
+  const uint32_t in_motors = address - MEMORY_MOTOR_WORDS;
+  if (in_motors >= MOTORS_END - MEMORY_MOTOR_WORDS) return false;
+  return servo_word_write_long(in_motors / MEMORY_MOTOR_WORDS, address % MEMORY_MOTOR_WORDS, x, y);
 }

@@ -9,5 +9,6 @@
 bool live_word_read(uint32_t address, uint32_t* x, uint32_t* y); /* replaces the halves that are made; false: none */
 /* Bits of `mask`. False: an ordinary word; else done, or not allowed. */
 bool live_word_write(bool x, uint32_t address, uint32_t mask, uint32_t bits);
+bool live_word_write_long(uint32_t address, uint32_t x, uint32_t y); /* a position, in one piece; false: none */
 
 #endif

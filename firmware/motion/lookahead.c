@@ -3,22 +3,28 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/fixed_ratio.h"
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
-  LEAST = 4,      /* records ahead that make sense */
-  SCALE_BITS = 30 /* of the mantissa of a motor's scale */
+  LEAST = 4, /* records ahead that make sense */
+  SCALE_BITS = 16,
+  STEP_MOST = 1 << 29 /* 2^13 of an acceleration limit */
 };
 
-/* Of a motor: x' and x'' as limits_motor has them are differences of points times mantissa / 2^shift; the largest
- * difference that Ixx16 allows. 0: no limit. */
+#define SCALE_HALF 32768.0
+
+/* Of a motor. Steps from point to point are shifted by `coarse`, to the right, so that the acceleration limit has 2^16
+ * of a period squared at most; x' and x'' as limits_motor has them are those times mantissa / 2^32. */
 static struct {
-  int32_t mantissa;
-  uint32_t shift;
-  int64_t fastest;
+  int32_t mantissa; /* 0: no limit */
+  int32_t coarse;
+  int32_t fastest;      /* the largest step that Ixx16 allows; 0: no limit */
+  int32_t before, last; /* the last two steps */
 } scales[MOTORS];
 
 /* Room for segments behind the three points that it takes besides. */
@@ -35,31 +41,37 @@ static uint32_t count_bits(uint32_t mask) {
 }
 
 static void set_scale(uint32_t motor, double period) {
-  const double velocity = system_motor_velocity(motor), acceleration = system_motor_acceleration(motor);
+  const double velocity = system_motor_velocity(motor) * period;
   slice_pause();
-  scales[motor].fastest = velocity > 0.0 ? math_nearest(velocity * period) : 0;
-  scales[motor].mantissa = 0;
+  const double acceleration = system_motor_acceleration(motor) * period * period;
   slice_pause();
-  if (!(acceleration > 0.0)) return;
-  double one = 1.0 / (acceleration * period * period) * (double)(1 << BEND_BITS);
-  uint32_t shift = 0;
+  const bool limited = acceleration > 0.0;
+  double one = limited ? acceleration : velocity > 0.0 ? velocity : 1.0;
+  int32_t coarse = 0;
+  for (; one > 2.0 * SCALE_HALF; coarse++) one = math_scale(one, -1);
   slice_pause();
-  while (one < (double)(1 << (SCALE_BITS - 1)) && shift < 62u) {
-    one *= 2.0;
-    shift++;
-    slice_pause();
-  }
-  scales[motor].shift = shift;
-  scales[motor].mantissa = one < (double)INT32_MAX ? (int32_t)one : INT32_MAX;
+  for (; one <= SCALE_HALF && coarse > -SCALE_BITS; coarse--) one = math_scale(one, 1);
+  slice_pause();
+  scales[motor].coarse = coarse;
+  scales[motor].before = scales[motor].last = 0;
+  const double fastest = math_scale(velocity, -coarse);
+  slice_pause();
+  scales[motor].fastest = fastest > (double)STEP_MOST ? 0 : (int32_t)fastest;
+  if (velocity > 0.0 && fastest < 1.0) scales[motor].fastest = 1;
+  slice_pause();
+  const double mantissa = math_scale(1.0 / one, 32 + BEND_BITS);
+  scales[motor].mantissa = !limited ? 0 : mantissa < (double)INT32_MAX ? (int32_t)mantissa : INT32_MAX;
+  slice_pause();
 }
 
 bool lookahead_begin(uint32_t cs, uint32_t period) {
   struct look* l = &looks[cs];
   const uint32_t wanted = (uint32_t)i_integer(i_cs(cs, ISX20_LOOKAHEAD_LENGTH));
   l->motors = coordinate_systems[cs].motors;
-  const uint32_t motor_count = count_bits(l->motors), room = lookahead_capacity(cs, motor_count);
+  l->motor_count = count_bits(l->motors);
+  const uint32_t room = lookahead_capacity(cs, l->motor_count);
   if (wanted == 0 || room == 0) return false;
-  lookahead_buffer_open(cs, motor_count, &l->buffer);
+  lookahead_buffer_open(cs, l->motor_count, &l->buffer);
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
   l->limits = wanted > 1u;
@@ -69,9 +81,9 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   l->state = LOOK_GOES;
   l->next = LOOKAHEAD_NONE;
   look_forget_sweeps(l);
-  l->period = (double)period;
+  l->period = period;
   for (uint32_t motor = 0, left = l->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) set_scale(motor, l->period);
+    if ((left & 1u) != 0) set_scale(motor, (double)period);
   return true;
 }
 
@@ -85,70 +97,75 @@ bool lookahead_is_full(uint32_t cs) {
 
 void lookahead_close(uint32_t cs) { looks[cs].closed = true; }
 
-static int32_t scaled(uint32_t motor, int64_t difference) {
-  uint32_t shift = scales[motor].shift;
-  while (difference > INT32_MAX || difference < INT32_MIN) {
-    if (shift == 0u) return difference > 0 ? BEND_MOST : -BEND_MOST;
-    difference /= 2;
-    shift--;
-  }
-  const int64_t value = (difference * scales[motor].mantissa) >> shift;
-  return value > BEND_MOST ? BEND_MOST : value < -BEND_MOST ? -BEND_MOST : (int32_t)value;
-}
-
 /* (fastest / way)^2 */
-static int32_t cap_of(int64_t fastest, int64_t way) {
-  if (fastest == 0 || way <= fastest) return RATE_FULL;
+static int32_t cap_of(int32_t fastest, int32_t way) {
+  const int64_t part = fixed_ratio(fastest, way) >> (62 - RATE_BITS);
   slice_pause();
-  const double part = (double)fastest / (double)way;
-  slice_pause();
-  return (int32_t)(part * part * (double)RATE_FULL);
+  return (int32_t)(part * part >> RATE_BITS);
 }
 
-static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
+static int32_t coarse_step(uint32_t motor, int64_t step) {
+  const int32_t coarse = scales[motor].coarse;
+  if (coarse >= 0) step >>= coarse;
+  if (step > STEP_MOST) step = STEP_MOST;
+  if (step < -STEP_MOST) step = -STEP_MOST;
+  if (coarse >= 0) return (int32_t)step;
+  step *= INT64_C(1) << -coarse;
+  return step > STEP_MOST ? STEP_MOST : step < -STEP_MOST ? -STEP_MOST : (int32_t)step;
+}
+
+static int32_t magnitude(int32_t value) { return value < 0 ? -value : value; }
+static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
+
+/* x' of the segment has these for Bernstein coefficients: it is nowhere larger. */
+static int32_t largest(int32_t before, int32_t step, int32_t next) {
+  return larger(magnitude(step), larger(magnitude(before + step), magnitude(step + next)) / 2);
+}
 
 /* With its third point a knot is known, with the fourth the segment before that. */
-static void set_limits(struct look* l, uint32_t at, uint32_t motor, uint32_t slot) {
-  if (at < 2u) return;
-  struct lookahead_motor* knot = &lookahead_motors(&l->buffer, at - 2u)[slot];
-  const int64_t first = lookahead_motors(&l->buffer, at - 1u)[slot].point - knot->point;
-  const int64_t second = lookahead_motors(&l->buffer, at)[slot].point - first - knot->point;
-  knot->pace = scaled(motor, first + second) / 2;
-  slice_pause();
-  knot->bend = scaled(motor, second - first);
-  if (at < 3u) return;
-  /* x' of the segment has these for Bernstein coefficients: it is nowhere larger */
-  const int64_t before = knot->point - lookahead_motors(&l->buffer, at - 3u)[slot].point;
-  int64_t most = magnitude(first);
-  if (magnitude(before + first) / 2 > most) most = magnitude(before + first) / 2;
-  if (magnitude(first + second) / 2 > most) most = magnitude(first + second) / 2;
-  slice_pause();
-  struct lookahead_record* segment = lookahead_at(&l->buffer, at - 3u);
-  const int32_t cap = cap_of(scales[motor].fastest, most);
+static void set_limits(struct look* l, uint32_t motor, int32_t next, struct lookahead_motor* knot,
+                       struct lookahead_record* segment) {
+  const int32_t step = scales[motor].last, fastest = scales[motor].fastest;
+  knot->pace = fixed_high(step + next, scales[motor].mantissa) / 2;
+  knot->bend = fixed_high(next - step, scales[motor].mantissa);
+  if (fastest == 0 || l->added < SPLINE_POINTS - 1u) return;
+  const int32_t most = largest(scales[motor].before, step, next);
+  if (most <= fastest) return;
+  const int32_t cap = cap_of(fastest, most);
   if (cap < segment->cap) segment->cap = cap;
-  slice_pause();
 }
 
-void lookahead_add(uint32_t cs, const int64_t point[], uint32_t number, const struct path_line* line) {
+/* A point of the motors: with the one before it a step. */
+static void add_point(struct look* l, uint32_t at, const int64_t control[][SPLINE_POINTS]) {
+  struct lookahead_motor *to = lookahead_motors(&l->buffer, at), *knot = lookahead_motors(&l->buffer, at - 2u);
+  const struct lookahead_motor* last = lookahead_motors(&l->buffer, at - 1u);
+  struct lookahead_record* segment = lookahead_at(&l->buffer, at - 3u);
+  for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    const int64_t point = control[motor][SPLINE_POINTS - 1];
+    to[slot] = (struct lookahead_motor){point, 0, 0};
+    if (l->limits && at != 0) {
+      const int32_t step = coarse_step(motor, point - last[slot].point);
+      if (at >= 2u) set_limits(l, motor, step, &knot[slot], segment);
+      scales[motor].before = scales[motor].last;
+      scales[motor].last = step;
+    }
+    slot++;
+    if ((slot & 1u) == 0) slice_pause();
+  }
+}
+
+void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t number, const struct path_line* line) {
   struct look* l = &looks[cs];
-  const uint32_t at = l->added;
-  struct lookahead_record* record = lookahead_at(&l->buffer, at);
+  struct lookahead_record* record = lookahead_at(&l->buffer, l->added);
   record->rate = 0;
   record->cap = RATE_FULL;
   record->number = number;
   record->line = *line;
-  struct lookahead_motor* motors = lookahead_motors(&l->buffer, at);
-  for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    motors[slot] = (struct lookahead_motor){point[motor], 0, 0};
-    if (l->limits) set_limits(l, at, motor, slot);
-    slot++;
-  }
+  add_point(l, l->added, control);
   l->added++;
 }
 
-void lookahead_points(uint32_t cs, uint32_t segment, uint32_t motor, int64_t points[SPLINE_POINTS]) {
-  const struct look* l = &looks[cs];
-  const uint32_t slot = count_bits(l->motors & ((1u << motor) - 1u));
-  for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = lookahead_motors(&l->buffer, segment + i)[slot].point;
+void lookahead_points(uint32_t cs, uint32_t segment, const struct lookahead_motor* points[SPLINE_POINTS]) {
+  for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = lookahead_motors(&looks[cs].buffer, segment + i);
 }

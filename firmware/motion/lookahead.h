@@ -16,6 +16,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/motion/lookahead_buffer.h"
 #include "firmware/motion/lookahead_order.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/segment_piece.h"
@@ -37,9 +38,10 @@ uint32_t lookahead_capacity(uint32_t cs, uint32_t motor_count);
 bool lookahead_begin(uint32_t cs, uint32_t period);
 bool lookahead_is_full(uint32_t cs);
 uint32_t lookahead_left(uint32_t cs); /* segments that are not handed over */
-/* The next control point: of the motors by number; move and line at it. */
-void lookahead_add(uint32_t cs, const int64_t point[], uint32_t number, const struct path_line* line);
+/* The next control point, the last ones of the motors by number; move and line at it. */
+void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t number, const struct path_line* line);
 void lookahead_close(uint32_t cs); /* the points so far are all */
-void lookahead_points(uint32_t cs, uint32_t segment, uint32_t motor, int64_t points[SPLINE_POINTS]);
+/* Of a segment: its control points, each of all motors in their order. */
+void lookahead_points(uint32_t cs, uint32_t segment, const struct lookahead_motor* points[SPLINE_POINTS]);
 
 #endif

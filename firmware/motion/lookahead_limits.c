@@ -1,71 +1,88 @@
 #include "firmware/motion/lookahead_limits.h"
 
 #include "firmware/base/dimensions.h"
-#include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/fixed_point.h"
+#include "firmware/motion/fixed_ratio.h"
 
-enum { BOUNDS_A_MOTOR = 6, PAUSE_BOUNDS = 24, SEARCHES = 3 };
+enum { PAUSE_MOTORS = 4, VALUES = 6, SEARCHES = 3 };
 enum { NEAR_ENOUGH = 4 }; /* 2^-4 of a w */
 
-/* Products are kept to 32 bits: 1 is 2^12 then, and sums are up to two less. A sweep keeps so much inside of the bounds
- * that rounding leaves a way for what is chosen by it. */
+/* Products are kept to 32 bits: 1 is 2^12 then, and sums are up to three less. A sweep keeps so much inside of the
+ * limits that rounding leaves a way for what is chosen by it. */
 enum { PRODUCT_BITS = RATE_BITS + BEND_BITS - 32, ROUNDING = 4, SWEEP_INSIDE = 16 };
 
-struct bound {
-  int32_t c[2];
+/* Of a motor: x'' at the ends of the part, and half of the Bernstein coefficients of x', in the part's own time. */
+struct motor_part {
+  int32_t bend[2], pace[3];
 };
-static struct bound bounds[MOTORS * BOUNDS_A_MOTOR];
+static struct motor_part motor_parts[MOTORS];
 static uint32_t count;
 static int32_t inside = (1 << PRODUCT_BITS) - ROUNDING;
-static uint32_t likely; /* the bound that has been the narrowest last */
+static uint32_t likely; /* the motor that has been the narrowest last */
 
 void limits_begin(void) { count = 0; }
 
 static int32_t magnitude(int32_t value) { return value < 0 ? -value : value; }
+static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 
-/* With w up to 1 the others hold anyway. */
-static void add(int32_t c0, int32_t c1) {
-  if (magnitude(c0) + magnitude(c1) < 1 << BEND_BITS) return;
-  bounds[count++] = (struct bound){{c0, c1}};
+void limits_add(const struct limits_motor* m, uint32_t parts) {
+  struct motor_part* to = &motor_parts[count];
+  to->bend[0] = m->bend[0];
+  to->bend[1] = m->bend[1];
+  to->pace[0] = parts == 16u ? m->pace[0] / 2 : m->pace[0] / (int32_t)parts * 8;
+  to->pace[2] = parts == 16u ? m->pace[1] / 2 : m->pace[1] / (int32_t)parts * 8;
+  to->pace[1] = to->pace[0] + to->bend[0] / 4;
+  /* with w up to 1 the others hold anyway */
+  const int32_t pace = larger(larger(magnitude(to->pace[0]), magnitude(to->pace[1])), magnitude(to->pace[2]));
+  if (pace + larger(magnitude(to->bend[0]), magnitude(to->bend[1])) >= 1 << BEND_BITS) count++;
 }
 
-/* Eighths of b0, b1, b2, each of which has bits to spare at the lower end. */
+/* The middle coefficients of the quarters, in eighths of those of the whole. */
+static const int8_t quarters[VALUES - 2][3] = {{6, 2, 0}, {3, 4, 1}, {1, 4, 3}, {0, 2, 6}};
+
 static int32_t mean(int32_t b0, int32_t b1, int32_t b2, const int8_t part[3]) {
   return (b0 >> 3) * part[0] + (b1 >> 3) * part[1] + (b2 >> 3) * part[2];
 }
 
-void limits_add(const struct limits_motor* m, uint32_t parts) {
-  static const int8_t of[4][3] = {{6, 2, 0}, {3, 4, 1}, {1, 4, 3}, {0, 2, 6}};
-  /* x' in the part's own time, halved: its Bernstein coefficients */
-  const int32_t a0 = m->bend[0], a1 = m->bend[1];
-  int32_t n0 = m->pace[0] / 2, n2 = m->pace[1] / 2;
-  if (parts != 16u) {
-    n0 = m->pace[0] / (int32_t)parts * 8;
-    n2 = m->pace[1] / (int32_t)parts * 8;
-  }
-  const int32_t n1 = n0 + a0 / 4;
-  const int32_t first[3] = {a0 - n0, a1 / 2 - n1, -n2}, second[3] = {n0, a0 / 2 + n1, a1 + n2};
-  add(first[0], second[0]);
-  for (uint32_t i = 0; i < 4u; i++)
-    add(mean(first[0], first[1], first[2], of[i]), mean(second[0], second[1], second[2], of[i]));
-  add(first[2], second[2]);
-  slice_pause();
-}
-
-/* A bound that is met: on which side. */
+/* |c[0] w0 + c[1] w1| <= 1, on the side where that is met. */
 struct edge {
-  uint32_t bound;
+  int32_t c[2];
   bool above;
 };
 
-/* What the bounds leave for the w at one end. */
+/* What the limits leave for the w at one end. */
 struct room {
   int32_t most;      /* below 0: nothing */
   bool narrowed;     /* by `upper` */
-  struct edge upper; /* the bound that says so */
-  struct edge lower; /* of nothing: the one that asks for more */
+  struct edge upper; /* what says so */
+  struct edge lower; /* of nothing: what asks for more */
 };
+
+/* A value of the two ends, or of the quarters, that is not within the limits at w0 and w1 and not among `met`; VALUES:
+ * none. The coefficients of the whole bound those of its quarters. */
+static uint32_t beyond(const struct motor_part* m, int32_t w0, int32_t w1, uint32_t met) {
+  const int32_t h = w1 - w0, most = inside;
+  const int32_t b0 = fixed_high(m->bend[0], w0) + fixed_high(m->pace[0], h);
+  const int32_t b2 = fixed_high(m->bend[1], w1) + fixed_high(m->pace[2], h);
+  if ((b0 > most || b0 < -most) && (met & 1u) == 0) return 0;
+  if ((b2 > most || b2 < -most) && (met >> (VALUES - 1u)) == 0) return VALUES - 1u;
+  const int32_t b1 = (fixed_high(m->bend[1], w0) + fixed_high(m->bend[0], w1)) / 2 + fixed_high(m->pace[1], h);
+  if (b1 <= most && b1 >= -most) return VALUES;
+  for (uint32_t i = 0; i < VALUES - 2u; i++) {
+    const int32_t value = (b0 * quarters[i][0] + b1 * quarters[i][1] + b2 * quarters[i][2]) >> 3;
+    if ((value > most || value < -most) && (met >> (i + 1u) & 1u) == 0) return i + 1u;
+  }
+  return VALUES;
+}
+
+static struct edge edge_of(const struct motor_part* m, uint32_t value) {
+  const int32_t a0 = m->bend[0], a1 = m->bend[1], *n = m->pace;
+  if (value == 0) return (struct edge){{a0 - n[0], n[0]}, false};
+  if (value == VALUES - 1u) return (struct edge){{-n[2], a1 + n[2]}, false};
+  const int8_t* of = quarters[value - 1u];
+  return (struct edge){{mean(a0 - n[0], a1 / 2 - n[1], -n[2], of), mean(n[0], a0 / 2 + n[1], a1 + n[2], of)}, false};
+}
 
 /* w * 2^32 / by, for w >= 0 */
 static int32_t divide(int32_t w, int32_t by) {
@@ -74,39 +91,49 @@ static int32_t divide(int32_t w, int32_t by) {
 }
 
 /* False: it leaves nothing. */
-static bool narrow(enum limits_end end, uint32_t i, int32_t w, struct room* r) {
-  const struct bound* b = &bounds[i];
-  const int32_t given = fixed_high(b->c[1 - end], w), by = b->c[end], sum = given + fixed_high(by, r->most);
+static bool narrow(enum limits_end end, struct edge e, int32_t w, struct room* r) {
+  const int32_t given = fixed_high(e.c[1 - end], w), by = e.c[end], sum = given + fixed_high(by, r->most);
   if (sum <= inside && sum >= -inside) return true;
-  const bool above = sum > 0;
-  if (by == 0 || (by > 0) != above) {
+  e.above = sum > 0;
+  if (by == 0 || (by > 0) != e.above) {
     if (sum <= inside + ROUNDING && sum >= -inside - ROUNDING) return true;
-    r->lower = (struct edge){i, above};
+    r->lower = e;
     return false;
   }
-  const int32_t left = above ? inside - given : inside + given;
-  r->upper = (struct edge){i, above};
+  const int32_t left = e.above ? inside - given : inside + given;
+  r->upper = e;
   r->narrowed = true;
   r->most = left < 0 ? (left < -6 ? -1 : 0) : divide(left, by);
-  likely = i;
   if (r->most >= 0) return true;
   r->lower = r->upper;
   return false;
 }
 
+/* What narrows is met, by rounding on either side of it. */
+static bool narrow_by_motor(enum limits_end end, uint32_t i, int32_t w, struct room* r) {
+  const struct motor_part* m = &motor_parts[i];
+  for (uint32_t met = 0;;) {
+    const uint32_t value = end == LIMITS_FIRST ? beyond(m, r->most, w, met) : beyond(m, w, r->most, met);
+    if (value == VALUES) return true;
+    if (!narrow(end, edge_of(m, value), w, r)) return false;
+    likely = i;
+    met |= 1u << value;
+  }
+}
+
 static bool pass(enum limits_end end, int32_t w, struct room* r) {
   for (uint32_t i = 0; i < count; i++) {
-    if (!narrow(end, i, w, r)) return false;
-    if (i % PAUSE_BOUNDS == PAUSE_BOUNDS - 1u) slice_pause();
+    if (!narrow_by_motor(end, i, w, r)) return false;
+    if (i % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
   }
   return true;
 }
 
-/* What has been narrowed on the way is looked at again by the bounds that came before. The one that was the narrowest
+/* What has been narrowed on the way is looked at again by the motors that came before. The one that was the narrowest
  * last comes first, and mostly is so again. */
 static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
   struct room r = {.most = most};
-  bool possible = likely >= count || narrow(end, likely, w, &r);
+  bool possible = likely >= count || narrow_by_motor(end, likely, w, &r);
   const int32_t begun = r.most;
   possible = possible && pass(end, w, &r);
   if (possible && r.most != begun) possible = pass(end, w, &r);
@@ -117,58 +144,61 @@ static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
 
 int32_t limits_most(enum limits_end end, int32_t w, int32_t most) { return room_of(end, w, most).most; }
 
+/* Raised by what asks for more than `least`. False: nothing that is more helps. */
+static bool raise(enum limits_end end, const struct edge* e, int32_t w, int32_t* least) {
+  const int32_t given = fixed_high(e->c[1 - end], w), by = e->c[end], sum = given + fixed_high(by, *least);
+  if (sum <= inside && sum >= -inside) return true;
+  const bool above = sum > 0;
+  if (by == 0 || (by > 0) == above) return sum <= inside + ROUNDING && sum >= -inside - ROUNDING;
+  const int32_t asked = divide(above ? given - inside : -inside - given, by);
+  if (asked >= *least) *least = asked < INT32_MAX ? asked + 1 : asked;
+  return true;
+}
+
 int32_t limits_least(enum limits_end end, int32_t w, int32_t most) {
   int32_t least = 0;
   for (uint32_t i = 0; i < count; i++) {
-    const struct bound* b = &bounds[i];
-    const int32_t given = fixed_high(b->c[1 - end], w), by = b->c[end], sum = given + fixed_high(by, least);
-    if (i % PAUSE_BOUNDS == PAUSE_BOUNDS - 1u) slice_pause();
-    if (sum <= inside && sum >= -inside) continue;
-    const bool above = sum > 0;
-    if (by == 0 || (by > 0) == above) {
-      if (sum <= inside + ROUNDING && sum >= -inside - ROUNDING) continue;
-      return -1;
+    for (uint32_t value = 0; value < VALUES; value++) {
+      const struct edge e = edge_of(&motor_parts[i], value);
+      if (!raise(end, &e, w, &least)) return -1;
     }
-    const int32_t asked = divide(above ? given - inside : -inside - given, by);
-    if (asked >= least) least = asked < INT32_MAX ? asked + 1 : asked;
+    slice_pause();
   }
-  slice_pause();
   return least > most ? -1 : least;
 }
 
-/* The w at the other end at which two bounds are met at once. */
-static double meeting(enum limits_end end, struct edge one, struct edge other) {
-  const struct bound *a = &bounds[one.bound], *b = &bounds[other.bound];
-  const int64_t x = one.above ? b->c[end] : -(int64_t)b->c[end], y = other.above ? a->c[end] : -(int64_t)a->c[end];
-  const int64_t by = (int64_t)a->c[end] * b->c[1 - end] - (int64_t)b->c[end] * a->c[1 - end];
-  slice_pause();
-  if (by == 0) return -1.0;
-  const double quotient = (double)(y - x) / (double)by;
-  slice_pause();
-  return math_scale(quotient, BEND_BITS + RATE_BITS);
+/* The w at the other end at which two limits are met at once; below 0: none from 0 to 1. */
+static int32_t meeting(enum limits_end end, const struct edge* a, const struct edge* b) {
+  int64_t over = (a->above ? b->c[end] : -(int64_t)b->c[end]);
+  over = (b->above ? a->c[end] : -(int64_t)a->c[end]) - over;
+  int64_t by = (int64_t)a->c[end] * b->c[1 - end] - (int64_t)b->c[end] * a->c[1 - end];
+  if (by < 0) {
+    by = -by;
+    over = -over;
+  }
+  over *= 1 << BEND_BITS;
+  if (over <= 0 || over > by) return -1;
+  return (int32_t)(fixed_ratio(over, by) >> (62 - RATE_BITS));
 }
 
 static bool rises(enum limits_end end, const struct room* r) {
-  const struct bound* b = &bounds[r->upper.bound];
-  return !r->narrowed || b->c[1 - end] == 0 || (b->c[end] > 0) != (b->c[1 - end] > 0);
+  const int32_t* c = r->upper.c;
+  return !r->narrowed || c[1 - end] == 0 || (c[end] > 0) != (c[1 - end] > 0);
 }
 
 /* What can be reached is concave in the w at the other end, and exists at 0: between a place where it rises and one
- * where it falls, or is not, the bounds that are met at both meet nearer to the largest. */
+ * where it falls, or is not, the limits that are met at both meet nearer to the largest. */
 static int32_t search(enum limits_end end, int32_t other, int32_t most) {
   struct room high = room_of(end, other, most);
   if (high.most >= 0 && rises(end, &high)) return high.most;
   struct room low = room_of(end, 0, most);
   int32_t from = 0, to = other, best = high.most > low.most ? high.most : low.most;
   for (uint32_t i = 0; i < SEARCHES && to - from > (to >> NEAR_ENOUGH) + 1; i++) {
-    const struct edge edge = high.most < 0 ? high.lower : high.upper;
-    double at =
-        meeting(end, high.most < 0 && high.narrowed && edge.bound != high.upper.bound ? high.upper : low.upper, edge);
+    const struct edge* edge = high.most < 0 ? &high.lower : &high.upper;
+    const bool same = edge->c[0] == high.upper.c[0] && edge->c[1] == high.upper.c[1];
+    int32_t w = meeting(end, high.most < 0 && high.narrowed && !same ? &high.upper : &low.upper, edge);
     slice_pause();
-    if (!(at > (double)from) || !(at < (double)to) || (i & 1u) != 0) at = ((double)from + (double)to) / 2.0;
-    slice_pause();
-    const int32_t w = (int32_t)at;
-    if (w <= from || w >= to) break;
+    if (w <= from || w >= to || (i & 1u) != 0) w = from + (to - from) / 2;
     const struct room r = room_of(end, w, most);
     if (r.most >= 0 && rises(end, &r)) {
       low = r;

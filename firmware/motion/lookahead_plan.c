@@ -1,8 +1,9 @@
 #include "firmware/motion/lookahead_plan.h"
 
-#include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/fixed_ratio.h"
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 
@@ -10,12 +11,28 @@ enum { SQUARE_PARTS = 2 * PIECE_PARTS * PIECE_PARTS };
 enum { STOP_PARTS = PIECE_PARTS / 4 }; /* a stop is at a quarter of a segment */
 enum { SLOWEST = 64 };                 /* a w that is no more than the rounding of sums: 0 */
 
-/* Of a part of a segment, in sixteenths of it: the motors at its ends. */
-static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
+_Static_assert(PIECE_WARP_ONE == RATE_FULL, "a part of 30 bits is both");
+#define TIME_MOST ((uint64_t)TRAJECTORY_LONGEST_MS << TRAJECTORY_FRACTION_BITS)
+
+static void load(const struct look* l, uint32_t segment) {
   const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
                                *next = lookahead_motors(&l->buffer, segment + 1u);
   limits_begin();
-  for (uint32_t slot = 0, left = l->motors; left != 0; left &= left - 1u, slot++) {
+  for (uint32_t slot = 0; slot < l->motor_count; slot++)
+    limits_add(&(struct limits_motor){{at[slot].pace, next[slot].pace}, {at[slot].bend, next[slot].bend}}, PIECE_PARTS);
+  slice_pause();
+}
+
+/* A part of a segment, in sixteenths of it: the motors at its ends. */
+static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
+  if (last - first == PIECE_PARTS) {
+    load(l, segment);
+    return;
+  }
+  const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
+                               *next = lookahead_motors(&l->buffer, segment + 1u);
+  limits_begin();
+  for (uint32_t slot = 0; slot < l->motor_count; slot++) {
     const int32_t a0 = at[slot].bend, turn = next[slot].bend - a0;
     struct limits_motor m = {{at[slot].pace, next[slot].pace}, {a0, next[slot].bend}};
     for (uint32_t i = 0; i < 2u; i++) {
@@ -25,10 +42,9 @@ static void load_part(const struct look* l, uint32_t segment, uint32_t first, ui
       m.pace[i] = at[slot].pace + (int32_t)(((int64_t)a0 * 2 * PIECE_PARTS + (int64_t)turn * s) * s / SQUARE_PARTS);
     }
     limits_add(&m, last - first);
+    slice_pause();
   }
 }
-
-static void load(const struct look* l, uint32_t segment) { load_part(l, segment, 0, PIECE_PARTS); }
 
 /* Of w at a knot: the velocities in the segments at both sides. */
 static int32_t cap_at(const struct look* l, uint32_t knot) {
@@ -121,37 +137,21 @@ bool lookahead_sweep(uint32_t cs, bool hurry) {
 
 /* Pieces ----------------------------------------------------------------------------------------------------------- */
 
-enum { ROOT_ONE = 1 << 30 };
-
-/* Root of a w, 2^30 for 1: a bit after the other. */
-static uint32_t root(int32_t w) {
-  uint64_t left = (uint64_t)(uint32_t)w << RATE_BITS, found = 0;
-  for (uint64_t bit = UINT64_C(1) << 60; bit != 0; bit >>= 2) {
-    const bool fits = left >= found + bit;
-    if (fits) left -= found + bit;
-    found = fits ? (found >> 1) + bit : found >> 1;
-  }
-  slice_pause();
-  return (uint32_t)found;
-}
-
 /* 2 T / (root w0 + root w1); the share of its time and that of the way differ by warp u (1 - u). */
 static void set_time(const struct look* l, int32_t from, int32_t to, struct lookahead_piece* piece) {
   const uint32_t parts = piece->last > piece->first ? piece->last - piece->first : piece->first - piece->last;
+  const uint64_t time = ((uint64_t)l->period << TRAJECTORY_FRACTION_BITS) * parts / PIECE_PARTS;
   piece->warp = 0;
-  piece->time = ((int64_t)(uint32_t)l->period << TRAJECTORY_FRACTION_BITS) * parts / PIECE_PARTS;
+  piece->time = (int64_t)time;
   if (from == RATE_FULL && to == RATE_FULL) return;
-  const uint32_t first = root(from), second = to == from ? first : root(to);
+  const uint32_t first = fixed_root((uint32_t)from), second = to == from ? first : fixed_root((uint32_t)to);
   slice_pause();
-  const double inverse = 1.0 / ((double)first + (double)second);
-  slice_pause();
-  const double time = (double)parts / 8.0 * l->period * inverse * (double)ROOT_ONE;
-  slice_pause();
-  piece->time = math_to_integer(
-      math_scale(time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, TRAJECTORY_FRACTION_BITS));
-  slice_pause();
-  if (from != to)
-    piece->warp = (int32_t)math_to_integer(((double)first - (double)second) * inverse * (double)PIECE_WARP_ONE);
+  const struct fixed_divisor by = fixed_divide_by(first + second != 0u ? first + second : 1u);
+  /* time 2^31 / sum, that is time 2^(31 + shift) inverse / 2^126 */
+  const uint64_t longer = fixed_multiply_high(time << 32, by.inverse) >> (63u - by.shift);
+  piece->time = longer < TIME_MOST ? (int64_t)longer : (int64_t)TIME_MOST;
+  const int32_t warp = (int32_t)(fixed_part_of(&by, first > second ? first - second : second - first) >> 32);
+  piece->warp = first > second ? warp : -warp;
 }
 
 /* To `last` sixteenths of a segment, with w there. */

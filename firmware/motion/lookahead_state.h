@@ -19,9 +19,9 @@ struct look {
   uint32_t length; /* Isx20, as far as the buffer has room */
   bool limits;     /* Isx20 above 1 */
   bool closed;     /* the points so far are all */
-  uint32_t motors;
-  double period;
-  uint32_t added; /* points so far */
+  uint32_t motors, motor_count;
+  uint32_t period; /* ms */
+  uint32_t added;  /* points so far */
   /* the front: what is before it, in the direction of motion, has been handed over */
   uint32_t front, part; /* so many sixteenths into the segment of this number, forwards */
   int32_t rate;         /* w there */

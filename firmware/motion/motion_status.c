@@ -32,12 +32,15 @@ enum {
   S3_RADIUS_ERROR = 3,
   S3_LOOKAHEAD_STATE = 8,
   S3_DESIRED_LIMIT = 1,
+  S3_MATCHING = 0,
   G2_ULTRALITE = 23,
   G2_BINARY_ROTARY_OPEN = 20,
   G2_MOTION_OPEN = 19,
   G2_ROTARY_OPEN = 18,
   G2_PLC_OPEN = 17,
   G2_UMAC = 16,
+  G2_FORWARD_OPEN = 15,
+  G2_INVERSE_OPEN = 14,
   G2_FIXED_FULL = 11
 };
 
@@ -97,7 +100,8 @@ static uint32_t status3(uint32_t cs) {
   const bool stops = s->corner != CORNER_NONE && s->moves[s->executing ^ 1u].is_sharp;
   const uint32_t state = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE)) << S3_LOOKAHEAD_STATE;
   return state | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
-         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) | bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT);
+         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) | bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT) |
+         bit(s->running && s->matching, S3_MATCHING);
 }
 
 uint32_t motion_cs_status(uint32_t cs, unsigned word) {
@@ -116,5 +120,6 @@ uint32_t motion_global_status2(void) {
   return bit((product & HAL_PRODUCT_ULTRALITE) != 0u, G2_ULTRALITE) | bit((product & HAL_PRODUCT_UMAC) != 0u, G2_UMAC) |
          bit(open == OPEN_BINARY_ROTARY, G2_BINARY_ROTARY_OPEN) |
          bit(rotary || open_buffer_is_fixed(FIXED_PROG), G2_MOTION_OPEN) | bit(rotary, G2_ROTARY_OPEN) |
-         bit(open_buffer_is_fixed(FIXED_PLC), G2_PLC_OPEN) | bit(buffer_request_fixed_full(), G2_FIXED_FULL);
+         bit(open_buffer_is_fixed(FIXED_PLC), G2_PLC_OPEN) | bit(open_buffer_is_fixed(FIXED_FORWARD), G2_FORWARD_OPEN) |
+         bit(open_buffer_is_fixed(FIXED_INVERSE), G2_INVERSE_OPEN) | bit(buffer_request_fixed_full(), G2_FIXED_FULL);
 }

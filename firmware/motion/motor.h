@@ -61,6 +61,7 @@ struct motor {
   int32_t position_scale;           /* Ixx08, at least 1 here */
   int32_t velocity_scale;           /* Ixx09 */
   uint32_t cs;                      /* coordinate system whose time base it moves by */
+  bool origin_follows;              /* Ixx06 bit 1: what commands count from goes with the master */
   struct motor_status_flags status; /* jogs, S or who asks for one, the servo task held off */
   struct motor_findings found;      /* B, but for what is S */
 };
@@ -68,6 +69,9 @@ struct motor {
 extern struct motor motors[MOTORS];
 extern volatile uint32_t motors_active;  /* V: bit n-1: Ixx00 of motor n */
 extern volatile uint32_t motors_enabled; /* C: bit n-1: motor n is not killed */
+
+/* What positions of commands are ahead of those of the trajectory (motion:1.2/4). Servo task held off, or in it. */
+static inline int64_t motor_followed(uint32_t motor) { return motors[motor].origin_follows ? 0 : motors[motor].master; }
 
 /* 1/(32 Ixx08) counts of `counts`; rounded to nearest. Floating point. */
 int64_t motor_position_of(uint32_t motor, double counts);

@@ -1,6 +1,7 @@
 #include "firmware/motion/motor_variables.h"
 
 #include "firmware/base/rework.h"
+#include "firmware/hal/hal.h"
 #include "firmware/motion/average_velocity.h"
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/conversion_table.h"
@@ -28,7 +29,10 @@ static void take_scales(uint32_t motor) {
 static void take_activated(uint32_t motor) {
   const uint32_t bit = 1u << (motor - 1u);
   if (i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0) {
+    const uint32_t state = hal_mask_servo();
+    if ((motors_active & bit) == 0u) average_velocity_restart(motor - 1u);
     motors_active |= bit;
+    hal_unmask(state);
   } else if ((motors_active & bit) != 0u) {
     motor_kill(motor - 1u);
     motors_active &= ~bit;

@@ -2,82 +2,100 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/fixed_point.h"
 
 struct path paths[COORDINATE_SYSTEMS];
 
+int64_t path_time(double milliseconds) { return math_to_integer(math_scale(milliseconds, PATH_TIME_BITS)); }
+
+void path_set_times(struct path_move* m, double time, double acceleration, double s_curve) {
+  m->time = path_time(time);
+  slice_pause();
+  m->acceleration = m->change = path_time(acceleration);
+  m->s_curve = path_time(s_curve);
+  slice_pause();
+  m->by_time = fixed_divide_by((uint64_t)m->time);
+}
+
 /* S-curves keep their share of a change that is shorter than it should be. */
-static double s_part(const struct path_move* m, double length) {
-  if (m->s_curve == 0.0 || length >= m->acceleration) return m->s_curve;
-  return m->s_curve * length / m->acceleration;
+static int64_t s_part(const struct path_move* m, int64_t length) {
+  if (m->s_curve == 0 || length >= m->acceleration) return m->s_curve;
+  return fixed_share(m->s_curve, fixed_ratio(length, m->acceleration));
 }
 
-/* Way after `t` of a velocity that rises from 0 to 1 during `length`, with S-parts of `s` at both ends. */
-static double risen(double t, double length, double s) {
-  if (t <= 0.0) return 0.0;
-  const double half = length / 2.0;
+/* Way after `t` of a velocity that rises from 0 to 1 during `length`, with S-parts of `s` at both ends: t^3 / (6 s (l -
+ * s)) in the first of them, then (s^2 / 6 + (t - s) t / 2) / (l - s) up to the middle. */
+static int64_t risen(int64_t t, int64_t length, int64_t s) {
+  const int64_t half = length / 2;
+  if (t <= 0) return 0;
   if (t >= length) return t - half;
-  if (t > half) {
-    slice_pause();
-    return t - half + risen(length - t, length, s);
-  }
+  if (t > half) return t - half + risen(length - t, length, s);
+  const struct fixed_divisor by = fixed_divide_by((uint64_t)(length - s));
+  const int64_t part = fixed_part_of(&by, t);
   slice_pause();
-  const double slope = 1.0 / (length - s);
-  slice_pause();
-  if (t < s) {
-    const double square = t * t * slope;
-    slice_pause();
-    return square * t / (6.0 * s);
-  }
-  const double straight = t - s;
-  slice_pause();
-  return slope * (s * s / 6.0 + straight * (s + straight) / 2.0);
+  if (t < s) return fixed_share(fixed_share(t, part), fixed_ratio(t, s)) / 6;
+  return fixed_share(s, fixed_part_of(&by, s)) / 6 + fixed_share(t - s, part) / 2;
 }
 
-double path_corner(struct path* p, uint32_t ahead) {
-  double corner = 0.0;
+int64_t path_corner(struct path* p, uint32_t ahead) {
+  int64_t corner = 0;
   for (uint32_t i = 0; i < ahead; i++) corner += path_of(p, i)->time;
   return corner;
 }
 
-double path_begins(struct path* p, uint32_t ahead) {
-  slice_pause();
-  return path_corner(p, ahead) - path_of(p, ahead)->change / 2.0;
-}
+int64_t path_begins(struct path* p, uint32_t ahead) { return path_corner(p, ahead) - path_of(p, ahead)->change / 2; }
 
 /* Of the last one before a stop: as at its beginning, as far as there is room behind that. */
-static double stop_length(const struct path_move* m) {
-  const double room = 2.0 * m->time - m->change;
+static int64_t stop_length(const struct path_move* m) {
+  const int64_t room = 2 * m->time - m->change;
   return m->acceleration < room ? m->acceleration : room;
 }
 
-double path_ends(struct path* p, uint32_t count) {
-  slice_pause();
-  return path_corner(p, count) + stop_length(path_of(p, count - 1u)) / 2.0;
+int64_t path_ends(struct path* p, uint32_t count) {
+  return path_corner(p, count) + stop_length(path_of(p, count - 1u)) / 2;
 }
 
-void path_blend(struct path* p, uint32_t ahead, double now) {
+void path_blend(struct path* p, uint32_t ahead, int64_t now) {
   struct path_move *m = path_of(p, ahead), *before = path_of(p, ahead - 1u);
-  const double corner = path_corner(p, ahead);
-  slice_pause();
-  const double left = 2.0 * (corner - now), room = 2.0 * before->time - before->change;
+  const int64_t left = 2 * (path_corner(p, ahead) - now), room = 2 * before->time - before->change;
   m->change = m->acceleration;
-  slice_pause();
   if (m->change > room) m->change = room;
-  if (m->change > left) m->change = left > 0.0 ? left : 0.0;
+  if (m->change > left) m->change = left > 0 ? left : 0;
 }
 
-/* What `progress` of its time has made of it, added to `position`. */
-static void add(const struct path_move* m, double progress, double position[AXIS_COUNT]) {
-  if (progress <= 0.0) return;
-  const double part = progress < m->time ? progress / m->time : 1.0;
-  slice_pause();
+static int64_t part_of(const struct path_move* m, int64_t progress) {
+  if (progress <= 0) return 0;
+  return progress >= m->time ? PATH_WHOLE : fixed_part_of(&m->by_time, progress);
+}
+
+/* What the velocity of one move loses about a corner the next one gains. */
+void path_at(struct path* p, struct path_reach reach, int64_t time, struct path_point* point) {
+  const struct path_move* m = path_of(p, 0);
+  int64_t begun = risen(time + m->change / 2, m->change, s_part(m, m->change)), corner = 0;
+  point->count = reach.count;
+  for (uint32_t i = 0; i < reach.count; i++) {
+    const struct path_move* next = i + 1u < reach.count ? path_of(p, i + 1u) : m;
+    const int64_t length = next != m ? next->change : reach.stops ? stop_length(m) : 0;
+    int64_t over = 0;
+    corner += m->time;
+    if ((next != m || reach.stops) && time > corner - length / 2)
+      over = risen(time - corner + length / 2, length, s_part(next, length));
+    slice_pause();
+    point->parts[i] = part_of(m, begun - over);
+    begun = over;
+    m = next;
+  }
+}
+
+/* What `part` of a move has made of it, added to `position`. */
+static void add(const struct path_move* m, double part, double position[AXIS_COUNT]) {
+  const bool turns = m->is_arc && part < 1.0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    const bool by_circle = m->is_arc && axis >= AXIS_X && axis <= AXIS_Z;
-    if (by_circle && part < 1.0) continue;
-    if (m->delta[axis] != 0.0) position[axis] += m->delta[axis] * part;
+    const bool by_circle = turns && axis >= AXIS_X && axis <= AXIS_Z;
+    if (!by_circle && m->delta[axis] != 0.0) position[axis] += m->delta[axis] * part;
     slice_pause();
   }
-  if (!m->is_arc || part >= 1.0) return;
+  if (!turns) return;
   double on[CIRCLE_AXES];
   circle_at(&m->circle, part, on);
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
@@ -86,26 +104,24 @@ static void add(const struct path_move* m, double progress, double position[AXIS
   }
 }
 
-void path_at(struct path* p, struct path_reach reach, double time, double position[AXIS_COUNT]) {
-  double corner = 0.0;
+void path_axes_at(struct path* p, const struct path_point* point, double position[AXIS_COUNT]) {
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = path_of(p, 0)->start[axis];
-  for (uint32_t i = 0; i < reach.count; i++) {
-    const struct path_move* m = path_of(p, i);
-    const bool last = i + 1u == reach.count;
-    const struct path_move* next = last ? 0 : path_of(p, i + 1u);
-    const double in = m->change, out = !last ? next->change : reach.stops ? stop_length(m) : 0.0;
+  for (uint32_t i = 0; i < point->count; i++) {
+    const int64_t part = point->parts[i];
+    if (part == 0) continue;
     slice_pause();
-    double progress = risen(time - corner + in / 2.0, in, s_part(m, in));
-    corner += m->time;
-    slice_pause();
-    if (!last || reach.stops) progress -= risen(time - corner + out / 2.0, out, s_part(last ? m : next, out));
-    slice_pause();
-    add(m, progress, position);
+    if (part != PATH_WHOLE) add(path_of(p, i), math_scale((double)part, -62), position);
+    for (uint32_t axis = 0; part == PATH_WHOLE && axis < AXIS_COUNT; axis++) position[axis] = path_of(p, i)->end[axis];
   }
 }
 
-double path_pop(struct path* p) {
-  const double time = path_of(p, 0)->time;
+void path_at_end(uint32_t count, struct path_point* point) {
+  point->count = count;
+  for (uint32_t i = 0; i < count; i++) point->parts[i] = PATH_WHOLE;
+}
+
+int64_t path_pop(struct path* p) {
+  const int64_t time = path_of(p, 0)->time;
   p->first = (p->first + 1u) % PATH_MOVES;
   p->count--;
   return time;

@@ -8,7 +8,7 @@
  *      _/  |      _/                   are under way, and what they have made adds up. A straight one so has the
  *   __/____|____ /                     velocities of motion:5.2, an arc stays on its circle.
  *
- * Times are ms of the program, counted from the corner at which the first move of the queue begins. */
+ * Times are of the program, in 2^-32 ms, counted from the corner at which the first move of the queue begins. */
 #ifndef FIRMWARE_MOTION_PATH_H
 #define FIRMWARE_MOTION_PATH_H
 
@@ -17,8 +17,9 @@
 
 #include "firmware/motion/circle.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/fixed_ratio.h"
 
-enum { PATH_MOVES = 4 };
+enum { PATH_MOVES = 4, PATH_TIME_BITS = 32 };
 
 /* A line of a program and, if that has been called, the line from which everything began. */
 struct path_line {
@@ -27,11 +28,12 @@ struct path_line {
 };
 
 struct path_move {
-  bool joins;          /* blends with the one before it */
-  bool sharp, dwells;  /* if not: for its corner; Isx82 counts */
-  bool is_arc;         /* X, Y, Z go by `circle`, their deltas are those of its ends */
-  double time, change; /* Tm; length of the change of velocity at its beginning */
-  double acceleration, s_curve;
+  bool joins;           /* blends with the one before it */
+  bool sharp, dwells;   /* if not: for its corner; Isx82 counts */
+  bool is_arc;          /* X, Y, Z go by `circle`, their deltas are those of its ends */
+  int64_t time, change; /* Tm; length of the change of velocity at its beginning */
+  int64_t acceleration, s_curve;
+  struct fixed_divisor by_time;
   double start[AXIS_COUNT], delta[AXIS_COUNT], end[AXIS_COUNT];
   struct circle circle;
   uint32_t number; /* as coordinate_system.planned counts */
@@ -57,12 +59,24 @@ struct path_reach {
   bool stops;
 };
 
+#define PATH_WHOLE (INT64_C(1) << 62)
+
+/* Where the trajectory is at a time: the parts of its moves that are made by then. */
+struct path_point {
+  uint32_t count;
+  int64_t parts[PATH_MOVES];
+};
+
+int64_t path_time(double milliseconds);
+void path_set_times(struct path_move* m, double time, double acceleration, double s_curve);
 /* A move that joins is blended no earlier than `now`: what is before that has been used already. */
-void path_blend(struct path* p, uint32_t ahead, double now);
-double path_begins(struct path* p, uint32_t ahead); /* its change of velocity */
-double path_ends(struct path* p, uint32_t count);   /* behind the stop of the last of `count` moves */
-double path_corner(struct path* p, uint32_t ahead);
-void path_at(struct path* p, struct path_reach reach, double time, double position[AXIS_COUNT]);
-double path_pop(struct path* p); /* the first one is over; what to take off times */
+void path_blend(struct path* p, uint32_t ahead, int64_t now);
+int64_t path_begins(struct path* p, uint32_t ahead); /* its change of velocity */
+int64_t path_ends(struct path* p, uint32_t count);   /* behind the stop of the last of `count` moves */
+int64_t path_corner(struct path* p, uint32_t ahead);
+void path_at(struct path* p, struct path_reach reach, int64_t time, struct path_point* point);
+void path_axes_at(struct path* p, const struct path_point* point, double position[AXIS_COUNT]); /* user units */
+void path_at_end(uint32_t count, struct path_point* point);                                     /* of so many moves */
+int64_t path_pop(struct path* p); /* the first one is over; what to take off times */
 
 #endif

@@ -2,10 +2,9 @@
 
 #include <stdatomic.h>
 
-#include "firmware/base/mathematics.h"
+#include "firmware/motion/fixed_ratio.h"
 
-/* inverse = 2^125 / (time << shift), with time << shift in [2^62, 2^63): as many bits as a double has, far more than
- * the fraction. */
+/* inverse = 2^125 / (time << shift), with time << shift in [2^62, 2^63): far more bits than the fraction has. */
 void piece_set_time(struct piece* piece, int64_t time) {
   if (time < 1) time = 1;
   piece->continues = false;
@@ -13,9 +12,9 @@ void piece_set_time(struct piece* piece, int64_t time) {
   piece->from = 0;
   piece->to = PIECE_PARTS;
   piece->time = piece->end = time;
-  piece->shift = (uint32_t)__builtin_clzll((uint64_t)time) - 1u;
-  const double normal = math_scale((double)time, (int)piece->shift - 62); /* [1, 2) */
-  piece->inverse = (uint64_t)math_to_integer(math_scale(1.0 / normal, 61)) << 2u;
+  const struct fixed_divisor by = fixed_divide_by((uint64_t)time);
+  piece->shift = by.shift - 1u;
+  piece->inverse = by.inverse;
 }
 
 static uint32_t fraction_of(const struct piece* piece, int64_t elapsed) {

@@ -58,7 +58,7 @@ static inline struct cubic* piece_ring_cubic(struct piece_ring* ring, uint32_t n
 }
 
 /* Planner: piece number `added` is filled, with room for it, then counted. */
-void piece_set_time(struct piece* piece, int64_t time); /* 1 to 2^47; uses floating point */
+void piece_set_time(struct piece* piece, int64_t time); /* 1 to 2^47 */
 void piece_ring_add(struct piece_ring* ring);
 /* Servo task held off: the pieces from `number` on are forgotten, which must not be the executing one or older. */
 void piece_ring_take_back(struct piece_ring* ring, uint32_t number);

@@ -89,11 +89,22 @@ static void place_virtual(struct coordinate_system* s) {
   s->placed = true;
 }
 
-/* A sequence of SPLINE moves that has come to its end meanwhile does not go on. */
+/* A sequence of SPLINE moves has come to its end meanwhile. */
 static bool is_late(const struct coordinate_system* s) {
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
   if (next->kind != MOVE_SPLINE || !next->joins) return false;
   return !move_continues(s) || (int32_t)(m->straight - s->ring.executing) < 0;
+}
+
+/* A point that was waited for begins a new sequence; one that took too long to calculate is an error. */
+static bool begins_anew(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (!s->moves[s->executing ^ 1u].waited) {
+    s->failure = RUN_TIME_LATE;
+    return false;
+  }
+  plan_spline_anew(cs);
+  return true;
 }
 
 /* What motors do on their own begins when the path has ended. */
@@ -109,7 +120,7 @@ bool move_place(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (segment_is_under_way(cs)) return false;
   if (!s->next_valid || s->placed || s->end_block || corner_waits(cs) || !begins_alone(cs)) return false;
-  if (is_late(s)) plan_spline_anew(cs);
+  if (is_late(s) && !begins_anew(cs)) return false;
   if (s->motors != 0) {
     const enum move_kind kind = s->moves[s->executing ^ 1u].kind;
     if (!move_place_motors(cs)) return false;
@@ -129,6 +140,7 @@ void move_take_back(uint32_t cs) {
   struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
   if (s->motors != 0 || !s->placed) return;
   s->placed = false;
+  next->waited = true; /* until R */
   if (!next->blended) {
     piece_ring_take_back(&s->ring, next->kind == MOVE_LINEAR ? next->straight - 1u : next->straight);
     return;

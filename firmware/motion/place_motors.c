@@ -8,6 +8,7 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/spline_motor.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/velocity_change.h"
 
@@ -240,39 +241,51 @@ static void from_rest(struct move* next, uint32_t number) {
   append(s);
 }
 
+/* Where the motors are at the knots before and behind a cubic, and their velocities a ms. */
+static struct knot_of_motors { double at[MOTORS], velocity[MOTORS]; } ends[2];
+
+/* What goes on at its last velocity does so motor by motor: there may be no place for the axes any more. */
+static void run_on(const struct knot_of_motors* before, struct knot_of_motors* found, double time) {
+  for (uint32_t motor = 0, left = making.s->inverse_motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    found->at[motor] = before->at[motor] + before->velocity[motor] * time;
+    found->velocity[motor] = before->velocity[motor];
+    slice_pause();
+  }
+}
+
+static void find_knot(uint32_t cs, const struct move* next, uint32_t i) {
+  const struct coordinate_system* s = making.s;
+  const struct knot* knot = &next->knots[i];
+  struct knot_of_motors* found = &ends[i & 1u];
+  const bool runs_on = next->overruns && i == 2u;
+  if (!runs_on) system_motors_solve_knot(cs, knot);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    found->at[motor] = i == 0 ? system_motor_from(motor, knot->position) : system_motor_at(motor, knot->position);
+    slice_pause();
+    found->velocity[motor] = system_motor_velocity_at(motor, knot->velocity);
+    slice_pause();
+  }
+  if (runs_on) run_on(&ends[1], found, milliseconds(next->knot_time[1]));
+}
+
 /* With the way D from where it is: v0 T u + (3 D - (2 v0 + v1) T) u^2 + ((v0 + v1) T - 2 D) u^3. */
-static void add_knots(uint32_t motor, double from, const struct knot* first, const struct knot* second, double time) {
-  const double to = system_motor_at(motor, second->position);
+static void add_knots(uint32_t motor, uint32_t i, double time) {
+  const struct knot_of_motors *first = &ends[i & 1u], *second = &ends[(i + 1u) & 1u];
+  const double to = second->at[motor], way = to - first->at[motor];
+  const double v0 = first->velocity[motor] * time;
   slice_pause();
-  const double v0 = system_motor_velocity_at(motor, first->velocity) * time;
-  slice_pause();
-  const double v1 = system_motor_velocity_at(motor, second->velocity) * time, way = to - from;
+  const double v1 = second->velocity[motor] * time;
   slice_pause();
   add_cubic(motor, to, 3.0 * way - v0 - v0 - v1, v0 + v1 - way - way);
 }
 
-/* False: the sequence that it goes on with has ended meanwhile. */
-static bool place_cubic(struct move* next, uint32_t number) {
+/* In place of what ends the sequence, whose first cubic is the executing move; else behind all there is. False: it has
+ * ended meanwhile. */
+static bool go_on(struct move* next, bool continues) {
   struct coordinate_system* s = making.s;
   const struct move* m = &s->moves[s->executing];
-  const bool continues = move_continues(s);
-  making.added = 0;
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    making.reached[motor] = math_nearest(system_motor_from(motor, next->knots[0].position));
-    slice_pause();
-  }
-  next->straight = s->ring.added;
-  for (uint32_t i = 0; i + 1u < next->knot_count; i++) {
-    begin_piece(next->knot_time[i], s->motors, number);
-    for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
-      if ((left & 1u) == 0) continue;
-      const struct knot* first = &next->knots[i];
-      const double from = i == 0 ? system_motor_from(motor, first->position) : system_motor_at(motor, first->position);
-      slice_pause();
-      add_knots(motor, from, first, first + 1, milliseconds(next->knot_time[i]));
-    }
-  }
   next->blended = continues;
   if (!continues) {
     append(s);
@@ -284,6 +297,71 @@ static bool place_cubic(struct move* next, uint32_t number) {
   return s->placed;
 }
 
+static bool place_pvt(uint32_t cs, struct move* next, uint32_t number) {
+  struct coordinate_system* s = making.s;
+  const bool continues = move_continues(s);
+  making.added = 0;
+  find_knot(cs, next, 0);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    making.reached[motor] = math_nearest(ends[0].at[motor]);
+    slice_pause();
+  }
+  next->straight = s->ring.added;
+  for (uint32_t i = 0; i + 1u < next->knot_count; i++) {
+    find_knot(cs, next, i + 1u);
+    begin_piece(next->knot_time[i], s->motors, number);
+    for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+      if ((left & 1u) != 0) add_knots(motor, i, milliseconds(next->knot_time[i]));
+  }
+  return go_on(next, continues);
+}
+
+/* As coordinate_system.moves. */
+static struct spline_motor splines[2][MOTORS];
+
+/* The time of the point before, in that of both, 2^-32. */
+static uint32_t share_of(int64_t first, int64_t second) {
+  if (first == second) return UINT32_C(1) << 31;
+  const double both = (double)(first + second);
+  return (uint32_t)math_to_integer(math_scale((double)first / both, 32));
+}
+
+/* Where motors have come to: the first point takes along what stands beside their axes. */
+static void begin_splines(uint32_t cs, const struct move* next, struct spline_motor begun[MOTORS]) {
+  system_motors_solve(cs, next->start);
+  for (uint32_t motor = 0, left = making.s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    begun[motor] = (struct spline_motor){.point = math_nearest(system_motor_at(motor, next->start))};
+    slice_pause();
+    begun[motor].knot = math_nearest(system_motor_from(motor, next->start));
+    slice_pause();
+  }
+}
+
+static bool place_spline(uint32_t cs, struct move* next, uint32_t index, uint32_t number) {
+  struct coordinate_system* s = making.s;
+  const bool continues = move_continues(s);
+  struct spline_motor* before = splines[index ^ 1u];
+  next->knot_time[0] = continues ? s->moves[index ^ 1u].time : next->time;
+  const uint32_t share = share_of(next->knot_time[0], next->time);
+  making.added = 0;
+  next->straight = s->ring.added;
+  for (uint32_t i = 0; i < SPLINE_PIECES; i++) begin_piece(i == 0 ? next->knot_time[0] : next->time, s->motors, number);
+  if (!continues) begin_splines(cs, next, before);
+  system_motors_solve(cs, s->position);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    struct cubic cubics[SPLINE_PIECES];
+    const int64_t point = math_nearest(system_motor_at(motor, s->position));
+    slice_pause();
+    splines[index][motor] = spline_motor_point(&before[motor], point, share, cubics);
+    for (uint32_t i = 0; i < SPLINE_PIECES; i++) *piece_ring_cubic(&s->ring, next->straight + i, motor) = cubics[i];
+    slice_pause();
+  }
+  return go_on(next, continues);
+}
+
 bool move_place_motors(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   const uint32_t index = s->executing ^ 1u, number = s->planned;
@@ -291,7 +369,8 @@ bool move_place_motors(uint32_t cs) {
   if (piece_ring_room(&s->ring) < MOST_PIECES) return false;
   making.s = s;
   making.after = motor_moves[index];
-  if (next->kind == MOVE_PVT || next->kind == MOVE_SPLINE) return place_cubic(next, number);
+  if (next->kind == MOVE_PVT) return place_pvt(cs, next, number);
+  if (next->kind == MOVE_SPLINE) return place_spline(cs, next, index, number);
   if (next->kind == MOVE_LINEAR && move_continues(s) && blend(next, number)) return true;
   from_rest(next, number);
   return true;

@@ -69,7 +69,9 @@ static void way_point(struct knot* knot, uint32_t axis, double before, double at
   slice_pause();
 }
 
-/* The move of point n is the way to way point n - 1, which point n makes known. What comes behind it, to point n, is
+/* Of virtual axes: those of motors are made where they are placed (motion/spline_motor.h).
+ *
+ * The move of point n is the way to way point n - 1, which point n makes known. What comes behind it, to point n, is
  * the end of the sequence as long as there is no further point. From rest that way begins at point n - 1. */
 static void set_knots(const struct move* before, struct move* m, const double target[AXIS_COUNT]) {
   const int64_t first = before != 0 ? before->time : m->time;
@@ -78,7 +80,6 @@ static void set_knots(const struct move* before, struct move* m, const double ta
   m->knot_time[0] = first;
   m->knot_time[1] = m->knot_time[2] = m->time;
   m->knot_count = 4;
-  m->overruns = false;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     const double at = target[axis] - m->delta[axis], from = before != 0 ? at - before->delta[axis] : at;
     m->knots[0].position[axis] = before != 0 ? before->knots[1].position[axis] : at;
@@ -100,7 +101,8 @@ void plan_spline(uint32_t cs) {
   (void)plan_targets(cs, m, target);
   m->time = cubic_time(cs);
   if (before->kind != MOVE_SPLINE || (s->mode == MODE_SPLINE1 && before->time != m->time)) s->may_join = false;
-  set_knots(s->may_join ? before : 0, m, target);
+  m->overruns = false;
+  if (s->motors == 0) set_knots(s->may_join ? before : 0, m, target);
   plan_finish(cs, m, true, target);
 }
 
@@ -108,5 +110,5 @@ void plan_spline_anew(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct move* m = &s->moves[s->executing ^ 1u];
   m->joins = false;
-  set_knots(0, m, s->position);
+  if (s->motors == 0) set_knots(0, m, s->position);
 }

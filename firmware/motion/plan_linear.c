@@ -54,9 +54,15 @@ static struct limits motor_limits(uint32_t cs, const double target[AXIS_COUNT]) 
   const struct coordinate_system* s = &coordinate_systems[cs];
   struct motor_move* moves = motor_moves[s->executing ^ 1u];
   struct limits found = {0.0, 0.0};
+  system_motors_solve(cs, s->position);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     moves[motor].from = system_motor_from(motor, s->position);
+    slice_pause();
+  }
+  system_motors_solve(cs, target);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
     moves[motor].to = system_motor_at(motor, target);
     slice_pause();
     const double distance = math_absolute(moves[motor].to - moves[motor].from);

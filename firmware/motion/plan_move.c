@@ -39,6 +39,8 @@ void plan_finish(uint32_t cs, struct move* m, bool blends, const double target[A
   struct coordinate_system* s = &coordinate_systems[cs];
   m->joins = blends && s->may_join;
   m->line = s->line;
+  m->waited = s->waited;
+  s->waited = false;
   m->time_before = s->last_time;
   s->last_time = m->time;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {

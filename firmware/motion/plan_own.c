@@ -11,7 +11,7 @@
 /* Of the calculated move: where the motors go, and for a trigger how far behind it. One record for both is enough of a
  * motor, as for its moves. */
 static struct {
-  int64_t target, beyond;
+  int64_t from, target, beyond;
   double speed; /* counts a ms */
   bool searches;
 } goals[MOTORS];
@@ -28,9 +28,16 @@ static uint32_t set_goals(uint32_t cs, const double target[AXIS_COUNT], double* 
   const struct coordinate_system* s = &coordinate_systems[cs];
   uint32_t moving = 0;
   *longest = 0.0;
+  system_motors_solve(cs, s->position);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t from = math_nearest(system_motor_from(motor, s->position));
+    goals[motor].from = math_nearest(system_motor_from(motor, s->position));
+    slice_pause();
+  }
+  system_motors_solve(cs, target);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    const int64_t from = goals[motor].from;
     goals[motor].target = math_nearest(system_motor_at(motor, target));
     slice_pause();
     goals[motor].searches = system_motor_behind(motor, s->pending_triggers, s->pending_trigger, &goals[motor].beyond);
@@ -48,13 +55,10 @@ static uint32_t set_goals(uint32_t cs, const double target[AXIS_COUNT], double* 
 
 /* Isx79 = 0: all take as long as the slowest, about. */
 static void stretch(uint32_t cs, uint32_t moving, double longest) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
   if (i_integer(i_cs(cs, ISX79_RAPID_CALCULATION)) != 0 || !(longest > 0.0)) return;
   for (uint32_t motor = 0, left = moving; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t from = math_nearest(system_motor_from(motor, s->position));
-    slice_pause();
-    const double way = math_absolute(system_motor_counts(motor, goals[motor].target - from));
+    const double way = math_absolute(system_motor_counts(motor, goals[motor].target - goals[motor].from));
     slice_pause();
     if (way > 0.0) goals[motor].speed = way / longest;
     slice_pause();

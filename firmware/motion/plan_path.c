@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/axis_matrix.h"
 #include "firmware/motion/circle.h"
 #include "firmware/motion/corner.h"
 #include "firmware/motion/path.h"
@@ -34,6 +35,7 @@ static enum circle_kind find_circle(uint32_t cs, struct path_move* m) {
     line.vector[i] = s->pending_vector[i];
     line.normal[i] = s->normal[i];
   }
+  axis_matrix_normal(cs, line.normal);
   line.vectors = s->pending_vectors & (ARC_RADIUS_BIT - 1u);
   line.absolute = s->vector_absolute;
   line.by_radius = (s->pending_vectors & ARC_RADIUS_BIT) != 0;
@@ -77,11 +79,11 @@ static bool feed_time(uint32_t cs, const struct path_move* m, uint32_t moving, d
 }
 
 static void set_times(uint32_t cs, struct path_move* m, double time) {
-  m->s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
-  m->acceleration = m->change = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), m->s_curve + m->s_curve);
+  const double s_curve = cs_variable(cs, ISX88_S_CURVE_TIME);
+  const double acceleration = plan_larger(cs_variable(cs, ISX87_ACCELERATION_TIME), s_curve + s_curve);
   slice_pause();
-  time = plan_larger(time, m->acceleration > 0.0 ? m->acceleration : LEAST_MS);
-  m->time = time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS;
+  time = plan_larger(time, acceleration > 0.0 ? acceleration : LEAST_MS);
+  path_set_times(m, time < TRAJECTORY_LONGEST_MS ? time : TRAJECTORY_LONGEST_MS, acceleration, s_curve);
 }
 
 /* Directions at its ends. */

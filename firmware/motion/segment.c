@@ -6,6 +6,7 @@
 #include "firmware/motion/corner.h"
 #include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/path.h"
+#include "firmware/motion/path_motors.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/motion/segment_piece.h"
 #include "firmware/motion/system_motors.h"
@@ -19,7 +20,8 @@ enum {
   AHEAD_MS = 24     /* more than so much is not made */
 };
 
-#define TIME_TOLERANCE 1e-6 /* ms by which a point may be before the end and still be it */
+#define TIME_TOLERANCE 4295     /* 1e-6 ms, by which a point may be before the end and still be it */
+#define OVERRIDE_ONE (1u << 30) /* Isx15 = 0 */
 
 /* The sequence that is being made. Owner: R, but for what is marked. */
 struct sequence {
@@ -33,14 +35,14 @@ struct sequence {
   bool closed;                         /* no further move joins: one of another kind waits for its place */
   bool stops;                          /* segment_stop: at the end of the move that is under way. B sets */
   uint32_t joined;
-  uint32_t points;    /* that are still to be made behind its end */
-  uint32_t unhanded;  /* pieces behind those that the servo task has */
-  int64_t period;     /* Isx13 */
-  double step;        /* program time of a segment: Isx13 with the override */
-  double override;    /* as it is now; 1: none */
-  double time;        /* of the last point */
-  struct piece timed; /* a piece of that period */
-  uint32_t under_way; /* moves of the queue that have begun at the last point, less one */
+  uint32_t points;      /* that are still to be made behind its end */
+  uint32_t unhanded;    /* pieces behind those that the servo task has */
+  int64_t period;       /* Isx13 */
+  uint32_t least, most; /* pieces ahead of the servo task: what is SHORT_MS, and all that are made */
+  uint32_t override;    /* as it is now */
+  int64_t time;         /* of the last point, as path.h has it */
+  struct piece timed;   /* a piece of that period */
+  uint32_t under_way;   /* moves of the queue that have begun at the last point, less one */
   /* number and line of the move at the last two points */
   uint32_t numbers[2];
   struct path_line lines[2];
@@ -130,6 +132,23 @@ static void hand_over(uint32_t cs) {
 }
 
 /* Between four control points: the last ones, or those of a segment of the lookahead buffer. */
+static void set_cubics(uint32_t cs, uint32_t number, struct piece* piece, const struct lookahead_piece* from) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  const struct lookahead_motor* at[SPLINE_POINTS];
+  piece->motors = 0;
+  if (from != 0) lookahead_points(cs, from->segment, at);
+  for (uint32_t motor = 0, slot = 0, left = s->motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    int64_t points[SPLINE_POINTS];
+    for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = from != 0 ? at[i][slot].point : control[motor][i];
+    const struct cubic c = segment_cubic(points);
+    if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
+    *piece_ring_cubic(&s->ring, number, motor) = c;
+    slot++;
+    if ((slot & 1u) == 0) slice_pause();
+  }
+}
+
 static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
@@ -143,20 +162,11 @@ static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
     piece->to = (uint8_t)from->last;
     looked[cs][number % PIECES] = *from;
   }
-  piece->motors = 0;
   piece->move = from == 0 ? q->numbers[0] : from->number;
   piece->continues = q->handed || q->unhanded != 0;
   piece_lines[cs][number % PIECES] = from == 0 ? q->lines[0] : from->line;
   slice_pause();
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    int64_t points[SPLINE_POINTS];
-    if (from != 0) lookahead_points(cs, from->segment, motor, points);
-    const struct cubic c = segment_cubic(from != 0 ? points : control[motor]);
-    if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
-    *piece_ring_cubic(&s->ring, number, motor) = c;
-    slice_pause();
-  }
+  set_cubics(cs, number, piece, from);
   q->unhanded++;
 }
 
@@ -171,21 +181,15 @@ static void set_move(uint32_t cs, uint32_t ahead) {
   q->lines[1] = m->line;
 }
 
-static uint32_t short_ahead(const struct sequence* q) {
-  return 1u + (uint32_t)(((int64_t)SHORT_MS << TRAJECTORY_FRACTION_BITS) / q->period);
-}
-
-static uint32_t most_ahead(const struct sequence* q) {
-  const uint32_t most =
-      short_ahead(q) + 2u + (uint32_t)(((int64_t)(AHEAD_MS - SHORT_MS) << TRAJECTORY_FRACTION_BITS) / q->period);
-  return most < PIECES - LEFT_OF_RING ? most : PIECES - LEFT_OF_RING;
+static void set_ahead(struct sequence* q, uint32_t period) {
+  q->least = 1u + SHORT_MS / period;
+  q->most = q->least + 2u + (AHEAD_MS - SHORT_MS) / period;
+  if (q->most > PIECES - LEFT_OF_RING) q->most = PIECES - LEFT_OF_RING;
 }
 
 static void look_at_point(uint32_t cs) {
   const struct sequence* q = &sequences[cs];
-  int64_t point[MOTORS];
-  for (uint32_t motor = 0; motor < MOTORS; motor++) point[motor] = control[motor][SPLINE_POINTS - 1];
-  lookahead_add(cs, point, q->numbers[1], &q->lines[1]);
+  lookahead_add(cs, (const int64_t(*)[SPLINE_POINTS])control, q->numbers[1], &q->lines[1]);
 }
 
 /* A control point has been added. */
@@ -214,16 +218,17 @@ static bool begin(uint32_t cs) {
   if (corner_waits(cs)) return false;
   const int32_t period = i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME));
   q->period = (int64_t)(period > 0 ? period : 1) << TRAJECTORY_FRACTION_BITS;
-  q->step = plan_milliseconds(q->period);
-  q->override = 1.0;
+  set_ahead(q, (uint32_t)(period > 0 ? period : 1));
+  q->override = OVERRIDE_ONE;
   slice_pause();
   piece_set_time(&q->timed, q->period);
   q->timed.continues = false;
   slice_pause();
+  path_motors_begin(cs);
+  path_motors_look(cs, &(struct path_point){.count = 0});
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t at = math_nearest(system_motor_from(motor, m->start));
-    for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = at;
+    for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = path_motor_at(motor);
     slice_pause();
   }
   system_motors_come_along(cs);
@@ -242,24 +247,33 @@ static bool begin(uint32_t cs) {
   return true;
 }
 
+/* Isx15 and what it asks of the rate, 0 to 2. */
+static uint32_t override_given(double isx15) {
+  if (isx15 == 0.0) return OVERRIDE_ONE;
+  const double wanted = isx15 < -1.0 ? 0.0 : isx15 > 1.0 ? 2.0 : isx15 + 1.0;
+  slice_pause();
+  return (uint32_t)math_to_integer(wanted * (double)OVERRIDE_ONE);
+}
+
 /* As Isx15 has it for the next segment: it goes to a new value by Isx16 a segment. */
-static double override_of(uint32_t cs) {
-  const struct sequence* q = &sequences[cs];
-  const double given = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE));
-  const double wanted = given < -1.0 ? 0.0 : given > 1.0 ? 2.0 : given + 1.0;
+static uint32_t override_of(uint32_t cs) {
+  const uint32_t present = sequences[cs].override;
+  const uint32_t wanted = override_given(i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE)));
+  if (present == wanted) return wanted;
+  const double isx16 = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
+  const bool at_once = !(isx16 > 0.0) || isx16 >= 2.0;
   slice_pause();
-  if (q->override == wanted) return wanted;
-  const double change = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
-  slice_pause();
-  if (!(change > 0.0) || math_absolute(wanted - q->override) <= change) return wanted;
-  return wanted > q->override ? q->override + change : q->override - change;
+  const uint32_t change = at_once ? 2u * OVERRIDE_ONE : (uint32_t)math_to_integer(isx16 * (double)OVERRIDE_ONE);
+  if (wanted > present) return wanted - present <= change ? wanted : present + change;
+  return present - wanted <= change ? wanted : present - change;
 }
 
 /* Program time of the next point. */
-static double next_time(uint32_t cs) {
+static int64_t next_time(uint32_t cs) {
   const struct sequence* q = &sequences[cs];
-  const double override = override_of(cs);
-  return q->time + (override == 1.0 ? q->step : q->step * override);
+  const uint32_t override = override_of(cs);
+  const int64_t step = q->period << (PATH_TIME_BITS - TRAJECTORY_FRACTION_BITS);
+  return q->time + (override == OVERRIDE_ONE ? step : fixed_share(step, (int64_t) override << 31) * 2);
 }
 
 /* Moves of the queue that belong to the sequence, each joined to the one before it no earlier than the last point. */
@@ -267,6 +281,7 @@ static void join(uint32_t cs) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
   while (!q->ends && !q->stops && q->joined < p->count && path_of(p, q->joined)->joins) {
+    path_motors_join(cs, q->joined);
     path_blend(p, q->joined++, q->time);
     q->late = false;
   }
@@ -283,28 +298,28 @@ static bool is_last(uint32_t cs) {
 enum decision { GOES_ON, ENDS, WAITS };
 
 /* What the point at `time` needs is known, the sequence ends, or a next move may still change it. */
-static enum decision decide(uint32_t cs, double time, bool starving) {
+static enum decision decide(uint32_t cs, int64_t time, bool starving) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
   const struct path_move* m = path_of(p, q->joined - 1u);
-  if (time <= path_corner(p, q->joined - 1u) + m->change / 2.0) return GOES_ON;
+  if (time <= path_corner(p, q->joined - 1u) + m->change / 2) return GOES_ON;
   if (is_last(cs) || s->quit || !s->running || !s->may_join) return ENDS;
   slice_pause();
   if (starving) q->late = true;
   if (!q->late) return WAITS;
-  const double stop = path_corner(p, q->joined);
+  const int64_t stop = path_corner(p, q->joined);
   if (time <= stop + stop - path_ends(p, q->joined)) return GOES_ON;
   return starving ? ENDS : WAITS;
 }
 
 /* Moves that are over before the point at `time`. */
-static void drop_moves(uint32_t cs, double* time) {
+static void drop_moves(uint32_t cs, int64_t* time) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  while (q->joined > 1u && *time >= path_corner(p, 1) + path_of(p, 1)->change / 2.0) {
-    slice_pause();
-    const double over = path_pop(p);
+  while (q->joined > 1u && *time >= path_corner(p, 1) + path_of(p, 1)->change / 2) {
+    path_motors_pop(cs);
+    const int64_t over = path_pop(p);
     *time -= over;
     q->time -= over;
     q->joined--;
@@ -312,11 +327,13 @@ static void drop_moves(uint32_t cs, double* time) {
   }
 }
 
-static void add_points(uint32_t cs, const double position[AXIS_COUNT]) {
+/* The control point of every motor at a place of the path. */
+static void add_points(uint32_t cs, const struct path_point* point) {
+  path_motors_look(cs, point);
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    add_point(motor, math_nearest(system_motor_at(motor, position)));
-    slice_pause();
+    add_point(motor, path_motor_at(motor));
+    if ((motor & 1u) != 0) slice_pause();
   }
 }
 
@@ -324,7 +341,9 @@ static void add_points(uint32_t cs, const double position[AXIS_COUNT]) {
 static void make_end(uint32_t cs) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  add_points(cs, path_of(p, q->joined - 1u)->end);
+  struct path_point end;
+  path_at_end(q->joined, &end);
+  add_points(cs, &end);
   set_move(cs, q->joined - 1u);
   use_point(cs);
   if (--q->points != 0) return;
@@ -333,12 +352,12 @@ static void make_end(uint32_t cs) {
   if (q->looks) lookahead_close(cs);
 }
 
-static void make_point(uint32_t cs, double time) {
+static void make_point(uint32_t cs, int64_t time) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
-  double position[AXIS_COUNT];
-  path_at(p, (struct path_reach){q->joined, q->ends}, time, position);
-  add_points(cs, position);
+  struct path_point point;
+  path_at(p, (struct path_reach){q->joined, q->ends}, time, &point);
+  add_points(cs, &point);
   uint32_t ahead = 0;
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
   set_move(cs, ahead);
@@ -363,7 +382,7 @@ static bool make_next(uint32_t cs, bool starving) {
   struct sequence* q = &sequences[cs];
   leave_out(cs);
   join(cs);
-  double time = next_time(cs);
+  int64_t time = next_time(cs);
   drop_moves(cs, &time);
   if (!q->ends) {
     const enum decision decision = decide(cs, time, starving);
@@ -379,8 +398,8 @@ static bool make_next(uint32_t cs, bool starving) {
 
 static bool work_at_once(uint32_t cs, bool alone) {
   struct sequence* q = &sequences[cs];
-  if (!make_next(cs, alone && ahead_of(&coordinate_systems[cs]) + q->unhanded <= short_ahead(q))) return false;
-  if (q->handed || q->made || q->unhanded > short_ahead(q)) hand_over(cs);
+  if (!make_next(cs, alone && ahead_of(&coordinate_systems[cs]) + q->unhanded <= q->least)) return false;
+  if (q->handed || q->made || q->unhanded > q->least) hand_over(cs);
   q->runs = !q->made;
   return true;
 }
@@ -391,7 +410,7 @@ static bool release(uint32_t cs, bool hurry) {
   if (!lookahead_release(cs, hurry, &piece)) return false;
   add_piece(cs, &piece);
   const bool over = q->made && lookahead_is_over(cs);
-  if (q->handed || over || lookahead_stands(cs) || q->unhanded > short_ahead(q)) hand_over(cs);
+  if (q->handed || over || lookahead_stands(cs) || q->unhanded > q->least) hand_over(cs);
   q->runs = !over;
   return true;
 }
@@ -438,7 +457,7 @@ static bool work_ahead(uint32_t cs, bool alone) {
     return true;
   }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
-  const bool room = ahead < most_ahead(q), hurry = q->handed && ahead <= short_ahead(q);
+  const bool room = ahead < q->most, hurry = q->handed && ahead <= q->least;
   const bool grows = !q->made && !lookahead_is_full(cs);
   if ((room && release(cs, false)) || lookahead_sweep(cs, false)) return true;
   /* what has no next line in time comes to its end, before it has to stop where nothing more is known */
@@ -467,5 +486,5 @@ bool segment_work(uint32_t cs, bool alone) {
     s->failure = RUN_TIME_LATE;
     return false;
   }
-  return ahead_of(s) + q->unhanded < most_ahead(q) && work_at_once(cs, alone);
+  return ahead_of(s) + q->unhanded < q->most && work_at_once(cs, alone);
 }

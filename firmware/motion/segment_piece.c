@@ -7,14 +7,14 @@ static int64_t sixth(int64_t value) {
   return shifted / 6;
 }
 
-static int64_t knot(int64_t before, int64_t at, int64_t after) { return at + sixth((before - at) + (after - at)); }
-
 /* What is lost by rounding of the inner coefficients is the linear one's: ends are knots. */
 struct cubic segment_cubic(const int64_t points[SPLINE_POINTS]) {
-  const int64_t first = points[1] - points[0], second = points[2] - points[1], third = points[3] - points[2];
-  struct cubic c = {.start = knot(points[0], points[1], points[2])};
-  c.square = (second - first) / 2;
-  c.cube = sixth((third - second) - (second - first));
-  c.linear = knot(points[1], points[2], points[3]) - c.start - c.square - c.cube;
+  const int64_t way = points[2] - points[1];
+  const int64_t bend = way - (points[1] - points[0]), next = points[3] - points[2] - way;
+  const int64_t out = sixth(bend), in = sixth(next);
+  struct cubic c = {.start = points[1] + out};
+  c.square = bend / 2;
+  c.cube = sixth(next - bend);
+  c.linear = way + in - out - c.square - c.cube;
   return c;
 }

@@ -10,7 +10,7 @@
 #include "firmware/variables/i_variables.h"
 
 enum { PREVIOUS_STEP = 0x07, INTEGRAL = 0x1E, PID_RESULT = 0x2E, CURRENT = 0x39 };
-enum { HALF_X = 1, HALF_Y = 2, BOTH = 3, LONG_X_SHIFT = 24, OUTPUT_LIMIT_SHIFT = 8 };
+enum { HALF_X = 1, HALF_Y = 2, BOTH = 3, LONG_X_SHIFT = 24, LONG_UNUSED_BITS = 16, OUTPUT_LIMIT_SHIFT = 8 };
 
 /* Variables that are words of the loop. */
 static const struct alias {
@@ -73,11 +73,16 @@ static unsigned put_long(int64_t value, uint32_t* x, uint32_t* y) {
   return BOTH;
 }
 
+/* What the word does not show of it. */
+static int64_t hidden_of(uint32_t motor, uint32_t offset) {
+  return offset == MEMORY_MOTOR_MASTER ? motors[motor].held_back : 0;
+}
+
 static unsigned read_position(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y) {
   const int64_t* position = position_of(motor, offset);
   if (position == 0) return 0;
   const uint32_t state = hal_mask_servo();
-  const int64_t value = *position - (offset == MEMORY_MOTOR_MASTER ? motors[motor].held_back : 0);
+  const int64_t value = *position - hidden_of(motor, offset);
   hal_unmask(state);
   return put_long(value, x, y);
 }
@@ -122,18 +127,26 @@ unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t*
   return (is_alias(offset) ? aliases_at(offset) : 0u) | read_state(motor, offset, x, y);
 }
 
-static void write_position(int64_t* position, bool x, uint32_t word) {
+/* False: there is none. What a write leaves of it is read in one piece with it: the servo task moves it. */
+static bool write_position(uint32_t motor, uint32_t offset, uint64_t mask, uint64_t bits) {
+  int64_t* position = position_of(motor, offset);
+  if (position == 0) return false;
   const uint32_t state = hal_mask_servo();
-  const int64_t low = (int64_t)((uint64_t)*position & HAL_WORD_MASK);
-  *position =
-      x ? ((int64_t)hal_signed(word) * (1 << LONG_X_SHIFT)) + low : *position - low + (int64_t)(word & HAL_WORD_MASK);
+  const int64_t hidden = hidden_of(motor, offset);
+  const uint64_t word = ((uint64_t)(*position - hidden) & ~mask) | bits;
+  *position = ((int64_t)(word << LONG_UNUSED_BITS) >> LONG_UNUSED_BITS) + hidden;
   hal_unmask(state);
+  return true;
 }
 
-void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t word) {
+void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t mask, uint32_t bits) {
   for (const struct alias* alias = ALIASES; alias < ALIASES + ALIAS_COUNT; ++alias)
     if (alias->offset == offset && (alias->half == HALF_X) == x)
-      i_variable_write(number_of(motor, alias), hal_signed(word) >> shift_of(alias));
-  int64_t* position = position_of(motor, offset);
-  if (position != 0) write_position(position, x, word);
+      i_variable_write_part(number_of(motor, alias), mask >> shift_of(alias), bits >> shift_of(alias));
+  const int half = x ? LONG_X_SHIFT : 0;
+  (void)write_position(motor, offset, (uint64_t)mask << half, (uint64_t)bits << half);
+}
+
+bool servo_word_write_long(uint32_t motor, uint32_t offset, uint32_t x, uint32_t y) {
+  return write_position(motor, offset, ~0ull, (uint64_t)x << LONG_X_SHIFT | y);
 }

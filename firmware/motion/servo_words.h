@@ -11,7 +11,8 @@ void servo_words_motor_changed(uint32_t motor);
 
 /* Motor 0..31, offset in its words. Which halves were made, bit 0 X, bit 1 Y; 0: an ordinary word. */
 unsigned servo_word_read(uint32_t motor, uint32_t offset, uint32_t* x, uint32_t* y);
-/* One that was made: the variable is assigned, a position set, anything else stays. */
-void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t word);
+/* Bits of `mask` of one that was made: the variable is assigned, a position set, anything else stays. */
+void servo_word_write(uint32_t motor, uint32_t offset, bool x, uint32_t mask, uint32_t bits);
+bool servo_word_write_long(uint32_t motor, uint32_t offset, uint32_t x, uint32_t y); /* false: no position */
 
 #endif

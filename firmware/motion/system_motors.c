@@ -6,6 +6,7 @@
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/jog.h"
+#include "firmware/motion/kinematics.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/rollover.h"
 #include "firmware/variables/i_variables.h"
@@ -19,8 +20,12 @@ struct motor_move motor_moves[2][MOTORS];
 /* What a motor stands beside where its axes have it, at the start of a program. */
 static double aside[MOTORS];
 
+/* What it had followed when axes were matched with motors, and has not taken its axes along. */
+static int64_t followed[MOTORS];
+
 /* How axes make a motor's position. */
 static struct {
+  bool by_program; /* motion/kinematics.h; else the sum of: */
   uint32_t count;
   uint8_t axis[AXES_OF_A_MOTOR];
   double scale[AXES_OF_A_MOTOR]; /* position a user unit */
@@ -30,6 +35,7 @@ static struct {
 static void resolve(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
   maps[motor].unit = (double)(POSITION_SUBCOUNT * motors[motor].position_scale);
+  maps[motor].by_program = d->kinematic;
   maps[motor].offset = d->offset * maps[motor].unit;
   maps[motor].count = 0;
   for (uint32_t axis = 0; axis < AXIS_COUNT && maps[motor].count < AXES_OF_A_MOTOR; axis++) {
@@ -42,25 +48,29 @@ static void resolve(uint32_t motor) {
 }
 
 void system_motors_resolve(uint32_t cs) {
-  uint32_t mask = 0;
+  uint32_t mask = 0, by_program = 0;
   for (uint32_t motor = 0; motor < MOTORS; motor++) {
     const struct axis_definition* d = &axis_definitions[motor];
-    if (!d->assigned || d->cs != cs || d->kinematic) continue;
-    mask |= 1u << motor;
+    if (!d->assigned || d->cs != cs) continue;
+    *(d->kinematic ? &by_program : &mask) |= 1u << motor;
     resolve(motor);
     slice_pause();
   }
-  coordinate_systems[cs].motors = mask;
+  coordinate_systems[cs].motors = mask | kinematics_resolve(cs, by_program);
 }
 
+/* What axes are ahead of the trajectory. */
 static double bias(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t value = motors[motor].bias;
+  const int64_t value = motors[motor].bias + followed[motor];
   hal_unmask(state);
   return (double)value;
 }
 
+double system_motor_solved(uint32_t motor) { return kinematics_at(motor) - bias(motor); }
+
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
+  if (maps[motor].by_program) return system_motor_solved(motor);
   double sum = maps[motor].offset - bias(motor);
   for (uint32_t i = 0; i < maps[motor].count; i++) {
     sum += maps[motor].scale[i] * position[maps[motor].axis[i]];
@@ -92,6 +102,7 @@ double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
 }
 
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]) {
+  if (maps[motor].by_program) return kinematics_velocity(motor);
   double sum = 0.0;
   for (uint32_t i = 0; i < maps[motor].count; i++) {
     const double of_axis = velocity[maps[motor].axis[i]];
@@ -187,21 +198,57 @@ static void solve(const struct equations* e, double position[AXIS_COUNT]) {
   }
 }
 
-void system_motors_match(uint32_t cs) {
-  struct coordinate_system* s = &coordinate_systems[cs];
+static void take_followed(uint32_t cs) {
+  const uint32_t state = hal_mask_servo();
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) followed[motor] = motor_followed(motor);
+  hal_unmask(state);
+}
+
+/* Those whose definitions are sums of axes. */
+static uint32_t defined(const struct coordinate_system* s) { return s->motors & ~s->inverse_motors; }
+
+static bool any_beside(const struct coordinate_system* s) {
+  for (uint32_t motor = 0, left = defined(s); left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && beside(motor, s->position) != 0) return true;
+  return false;
+}
+
+static void match_definitions(struct coordinate_system* s) {
   static struct equations e;
-  bool all = true;
-  system_motors_come_along(cs);
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0 && beside(motor, s->position) != 0) all = false;
-  if (all) return;
   e.count = 0;
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+  for (uint32_t motor = 0, left = defined(s); left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) add_equation(&e, motor);
   solve(&e, s->position);
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) aside[motor] = (double)beside(motor, s->position);
 }
+
+/* Axes that it does not tell are as the definitions have them. */
+static bool match_program(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  double position[AXIS_COUNT];
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = s->position[axis];
+  if (!kinematics_forward(cs, position)) return false;
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) s->position[axis] = position[axis];
+  kinematics_stand(cs, position);
+  return true;
+}
+
+bool system_motors_match(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  system_motors_come_along(cs);
+  take_followed(cs);
+  const bool moved = any_beside(s);
+  if (moved) match_definitions(s);
+  if (s->kinematic && !match_program(cs)) return false;
+  if (!moved && !s->kinematic) return true;
+  for (uint32_t motor = 0, left = defined(s); left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) aside[motor] = (double)beside(motor, s->position);
+  return true;
+}
+
+void system_motors_solve(uint32_t cs, const double position[AXIS_COUNT]) { (void)kinematics_inverse(cs, position); }
+
+void system_motors_solve_knot(uint32_t cs, const struct knot* knot) { (void)kinematics_inverse_knot(cs, knot); }
 
 void system_motors_take(uint32_t cs) {
   const uint32_t state = hal_mask_servo();
@@ -214,7 +261,7 @@ void system_motors_take(uint32_t cs) {
 }
 
 void system_motors_begin(uint32_t cs) {
-  system_motors_match(cs);
+  if (!system_motors_match(cs)) return;
   system_motors_take(cs);
   coordinate_systems[cs].matching = false;
   coordinate_systems[cs].was_matched = true;
@@ -245,11 +292,17 @@ void system_motors_ramp(uint32_t cs) {
 void system_motors_set_position(uint32_t cs, uint32_t axes, const double position[AXIS_COUNT]) {
   struct coordinate_system* s = &coordinate_systems[cs];
   double now[AXIS_COUNT];
+  static double was[MOTORS];
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
     now[axis] = ((axes >> axis) & 1u) != 0 ? position[axis] : s->position[axis];
+  system_motors_solve(cs, s->position);
+  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) was[motor] = system_motor_at(motor, s->position);
+  system_motors_solve(cs, now);
+  if (s->failure != RUN_TIME_NONE) return;
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t shift = math_nearest(system_motor_at(motor, now) - system_motor_at(motor, s->position));
+    const int64_t shift = math_nearest(system_motor_at(motor, now) - was[motor]);
     slice_pause();
     const uint32_t state = hal_mask_servo();
     motors[motor].bias += shift;

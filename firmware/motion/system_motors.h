@@ -19,6 +19,12 @@ struct motor_move {
 extern struct motor_move motor_moves[2][MOTORS];
 
 void system_motors_resolve(uint32_t cs); /* its motors, scales and offsets; background too */
+/* Before system_motor_at and system_motor_from of any of them for this position, and system_motor_velocity_at: motors
+ * that an inverse program moves have it executed. That can fail: coordinate_system.failure, the position counts for
+ * nothing then. */
+void system_motors_solve(uint32_t cs, const double position[AXIS_COUNT]);
+double system_motor_solved(uint32_t motor); /* behind it, of one that an inverse program moves */
+void system_motors_solve_knot(uint32_t cs, const struct knot* knot);
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
 /* The same where a move begins: the first of a program takes motors along that stand beside their axes, because others
  * tell where those are. Once it is placed they do not. */
@@ -30,7 +36,9 @@ double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT
 double system_motor_counts(uint32_t motor, int64_t distance);
 /* Of distances behind a trigger those of its axes in `axes`; false: it has none of them. */
 bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AXIS_COUNT], int64_t* behind);
-void system_motors_match(uint32_t cs);    /* axes are where motors are commanded to be; exact if they were */
+/* Axes are where motors are commanded to be; exact if they were, but for what a forward program tells. False: that one
+ * has failed (coordinate_system.failure). */
+bool system_motors_match(uint32_t cs);
 void system_motors_begin(uint32_t cs);    /* the same, and the program moves them from now on */
 bool system_motors_leave(uint32_t cs);    /* after an abort: some are still on its path, about to leave it */
 bool system_motors_are_away(uint32_t cs); /* not where the program has left them */

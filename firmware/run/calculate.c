@@ -69,6 +69,8 @@ static void planned(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   p->under_way = false;
   p->jumps_begin = p->x.jumps_back;
+  if (p->asks_time) synchronous_move_time(cs);
+  p->asks_time = false;
   if (s->stepping && !p->in_block) s->quit = true;
 }
 
@@ -106,11 +108,18 @@ static bool calculate_word(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   const uint32_t moves = s->planned;
   struct instruction in;
+  if (calls_prelude_is_due(p) && s->pending_axes == 0) {
+    const enum executed called = calls_prelude_call(p);
+    if (called == EXECUTED_ERROR) stop_with_error(cs);
+    return called == EXECUTED_LINE;
+  }
   enum executed executed = executor_step(&p->x, &in);
+  calls_note_label(p, executed, &in);
   const bool of_motion = executed == EXECUTED_STATEMENT;
   if (of_motion) executed = motion_statement(cs, &in);
   if (executed == EXECUTED_LATER) {
     if (of_motion && s->pending_axes == 0) p->under_way = false; /* it may wait for ever: a stop does not */
+    s->waited = true;
     return false;
   }
   if (executed == EXECUTED_LINE) line_ends(cs);
@@ -166,7 +175,7 @@ static void fail(uint32_t cs, enum run_time_error cause) {
   system_motors_ramp(cs);
   s->failure = RUN_TIME_NONE;
   s->error = cause;
-  s->running = s->quit = s->stepping = false;
+  s->running = s->quit = s->stepping = s->matching = false;
   s->settling = true;
 }
 
@@ -182,6 +191,15 @@ static bool runs_on(uint32_t cs) {
   return true;
 }
 
+/* PMATCH while no program runs: it leaves the motors alone. */
+static void match(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  s->failure = RUN_TIME_NONE;
+  s->error = system_motors_match(cs) ? RUN_TIME_NONE : s->failure;
+  s->failure = RUN_TIME_NONE;
+  s->matching = false;
+}
+
 /* Behind moves on which motors went for themselves the axes are where those are. */
 static bool has_gone_alone(const struct coordinate_system* s) {
   return s->moves[s->executing].kind == MOVE_OWN && !s->active && s->started == s->planned && !s->was_matched;
@@ -192,12 +210,19 @@ static bool turn(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (stands(cs)) return false;
   if (s->settling) return settle(cs);
-  if (!s->running) return false;
+  if (!s->running && !s->matching) return false;
+  if (!s->running) {
+    match(cs);
+    return true;
+  }
+  if (s->failure != RUN_TIME_NONE) {
+    fail(cs, s->failure);
+    return true;
+  }
   if (s->matching || has_gone_alone(s)) {
     system_motors_begin(cs);
     return true;
   }
-  if (s->failure != RUN_TIME_NONE) fail(cs, s->failure);
   if (runs_on(cs)) return true;
   if (move_place(cs) || segment_work(cs, false)) return true;
   if ((s->quit || s->end_block) && !motion_programs[cs].under_way) {
@@ -209,10 +234,11 @@ static bool turn(uint32_t cs) {
   return (!is_ahead(cs) && calculate_word(cs)) || segment_work(cs, true);
 }
 
+static bool is_awake(const struct coordinate_system* s) { return s->running || s->settling || s->matching; }
+
 static uint32_t systems(void) {
   for (uint32_t cs = 0, left = cs_awake; left != 0; cs++, left >>= 1)
-    if ((left & 1u) != 0 && !coordinate_systems[cs].running && !coordinate_systems[cs].settling)
-      cs_awake &= ~(1u << cs);
+    if ((left & 1u) != 0 && !is_awake(&coordinate_systems[cs])) cs_awake &= ~(1u << cs);
   return cs_awake;
 }
 

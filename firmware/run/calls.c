@@ -65,14 +65,17 @@ static enum executed not_found(struct motion_program* p, uint32_t program, enum 
   return executor_fail(&p->x, fixed_program_find(FIXED_PROG, program) != 0 ? RUN_TIME_BLOCK : RUN_TIME_PROGRAM);
 }
 
-/* The statement is passed when its target is known: an error leaves the program at it. */
-static enum executed call(struct motion_program* p, uint32_t program, uint32_t label) {
+/* The statement is passed when its target is known: an error leaves the program at it. PRELUDE has none. */
+static enum executed call(struct motion_program* p, uint32_t program, uint32_t label, bool has_statement) {
   uint32_t offset;
   if (p->depth == CALL_DEPTH) return executor_fail(&p->x, RUN_TIME_DEPTH);
   if (program == 0) return executor_fail(&p->x, RUN_TIME_PROGRAM);
   const enum reader_result found = calls_find(program, label, &offset);
   if (found != READER_WORD) return not_found(p, program, found);
-  (void)executor_pass(&p->x);
+  if (has_statement)
+    (void)executor_pass(&p->x);
+  else
+    p->x.at.in_line = true; /* READ looks there, and it is no beginning any more */
   p->callers[p->depth++] = p->x.at;
   reader_fixed(&p->x.at.reader, FIXED_PROG, program, offset);
   executor_begin(&p->x, p->x.cs);
@@ -82,6 +85,7 @@ static enum executed call(struct motion_program* p, uint32_t program, uint32_t l
 bool calls_return(struct motion_program* p) {
   if (p->depth == 0) return false;
   p->x.at = p->callers[--p->depth];
+  p->labelled = false;
   return true;
 }
 
@@ -143,9 +147,51 @@ static enum executed read(struct motion_program* p, uint32_t letters) {
   return passed;
 }
 
+static bool is_move(const struct instruction* in) {
+  if (in->operation == OP_AXIS || in->operation == OP_AXIS_POP) return true;
+  return (in->operation == OP_STATEMENT || in->operation == OP_STATEMENT_POP) && in->number >= KEY_ARC_VECTOR &&
+         in->number < KEY_TRIGGER;
+}
+
+bool calls_prelude_is_due(struct motion_program* p) {
+  struct instruction in;
+  if (!p->prelude.on || p->depth != 0 || p->x.at.begun || (p->x.at.in_line && !p->labelled)) return false;
+  return executor_next(&p->x, &in) && is_move(&in);
+}
+
+enum executed calls_prelude_call(struct motion_program* p) {
+  uint32_t program, label;
+  const struct instruction* in = &p->prelude.call;
+  const bool known =
+      in->number == KEY_CALL ? calls_split(in->value, &program, &label) : split_code(in, &program, &label);
+  p->labelled = false;
+  return known ? call(p, program, label, false) : executor_fail(&p->x, RUN_TIME_PROGRAM);
+}
+
+void calls_note_label(struct motion_program* p, enum executed executed, const struct instruction* in) {
+  const bool label =
+      executed == EXECUTED_STATEMENT && in->operation == OP_STATEMENT && (in->number == KEY_N || in->number == KEY_O);
+  p->labelled = label && (!p->x.at.in_line || p->labelled);
+}
+
 bool calls_is_call(const struct instruction* in) {
   if (in->operation != OP_STATEMENT && in->operation != OP_STATEMENT_POP) return false;
   return is_code(in) || in->number == KEY_CALL || in->number == KEY_GOSUB || in->number == KEY_GOTO;
+}
+
+/* PRELUDE1 and the call behind it, which is not made now: CALL, G, M, T or D. An expression has the value of now. */
+static enum executed prelude(struct motion_program* p, double value) {
+  struct instruction in;
+  p->prelude.on = false;
+  if (value == 0.0) return executor_pass(&p->x);
+  if (value != 1.0 || executor_pass(&p->x) != EXECUTED_WORD) return EXECUTED_ERROR;
+  enum executed executed;
+  while ((executed = executor_step(&p->x, &in)) == EXECUTED_WORD) slice_pause();
+  if (executed != EXECUTED_STATEMENT || !calls_is_call(&in) || in.number == KEY_GOSUB || in.number == KEY_GOTO)
+    return EXECUTED_ERROR;
+  p->prelude.call = in;
+  p->prelude.on = true;
+  return executor_pass(&p->x);
 }
 
 enum executed calls_execute(struct motion_program* p, const struct instruction* in) {
@@ -153,8 +199,10 @@ enum executed calls_execute(struct motion_program* p, const struct instruction* 
   if (in->operation == OP_LIST && in->group == KEY_READ) return read(p, in->number);
   if (in->operation != OP_STATEMENT && in->operation != OP_STATEMENT_POP) return EXECUTED_STATEMENT;
   if (is_code(in))
-    return split_code(in, &program, &label) ? call(p, program, label) : executor_fail(&p->x, RUN_TIME_PROGRAM);
+    return split_code(in, &program, &label) ? call(p, program, label, true) : executor_fail(&p->x, RUN_TIME_PROGRAM);
   switch (in->number) {
+    case KEY_PRELUDE:
+      return prelude(p, in->value);
     case KEY_N:
     case KEY_O:
       return executor_pass(&p->x);
@@ -164,10 +212,10 @@ enum executed calls_execute(struct motion_program* p, const struct instruction* 
     case KEY_GOTO:
       return jump(p, in->value);
     case KEY_GOSUB:
-      return within(p, in->value, &label) ? call(p, p->x.at.reader.number, label)
+      return within(p, in->value, &label) ? call(p, p->x.at.reader.number, label, true)
                                           : executor_fail(&p->x, RUN_TIME_LABEL);
     case KEY_CALL:
-      return calls_split(in->value, &program, &label) ? call(p, program, label)
+      return calls_split(in->value, &program, &label) ? call(p, program, label, true)
                                                       : executor_fail(&p->x, RUN_TIME_PROGRAM);
     default:
       return EXECUTED_STATEMENT;

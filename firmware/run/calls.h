@@ -8,6 +8,10 @@
 bool calls_is_call(const struct instruction* in); /* what stands before it on its line has to be done first */
 /* Executes it. STATEMENT: it is none of these. ERROR: no such program or label, or too many calls in each other. */
 enum executed calls_execute(struct motion_program* p, const struct instruction* in);
+/* PRELUDE (motion:8.4): before a line that begins with a move, behind its labels if it has any, comes the call. */
+bool calls_prelude_is_due(struct motion_program* p);
+enum executed calls_prelude_call(struct motion_program* p); /* LINE; LATER, ERROR as of a call */
+void calls_note_label(struct motion_program* p, enum executed executed, const struct instruction* in);
 bool calls_return(struct motion_program* p); /* false: nothing has called it */
 
 /* Offset of label N or O in a program, its top for 0. END, BAD: there is no such program or label. LATER: programs are

@@ -14,7 +14,7 @@ void motion_program_point(uint32_t cs, bool rotary, uint32_t number, uint32_t of
   executor_begin(&p->x, cs);
   p->x.at.line = reader_offset(&p->x.at.reader);
   p->depth = 0;
-  p->in_block = p->under_way = p->reading = false;
+  p->in_block = p->under_way = p->reading = p->asks_time = p->labelled = p->prelude.on = false;
 }
 
 void motion_program_end_read(struct motion_program* p) {

@@ -13,9 +13,15 @@ struct motion_program {
   uint32_t depth; /* calls under way */
   bool reading;   /* READ stands at its caller's values; its own place is kept in: */
   struct program_position reader;
-  uint32_t axes;        /* offset of the statement that gave the first target of the move being collected */
-  uint8_t axes_loops;   /* x.at.loop_count there: the line's end has left one */
-  bool in_block;        /* between BLOCKSTART and BLOCKSTOP */
+  uint32_t axes;      /* offset of the statement that gave the first target of the move being collected */
+  uint8_t axes_loops; /* x.at.loop_count there: the line's end has left one */
+  bool in_block;      /* between BLOCKSTART and BLOCKSTOP */
+  bool asks_time;     /* MOVETIME: of the next move */
+  bool labelled;      /* nothing but labels of the line has been executed */
+  struct {
+    bool on;
+    struct instruction call; /* before each line that begins with a move */
+  } prelude;
   bool under_way;       /* a stop waits for the end of the line */
   uint32_t interrupt;   /* real-time interrupt that these belong to: */
   uint32_t lines;       /* worked off in it */

@@ -2,6 +2,7 @@
 
 #include "firmware/language/statement_key.h"
 #include "firmware/motion/axis_definition.h"
+#include "firmware/motion/axis_matrix.h"
 #include "firmware/motion/homing.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/plan.h"
@@ -11,6 +12,7 @@
 #include "firmware/motion/segment.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/run/calls.h"
+#include "firmware/run/matrix_statements.h"
 #include "firmware/run/shared_statements.h"
 #include "firmware/run/synchronous.h"
 
@@ -32,9 +34,9 @@ static void set_axis(uint32_t cs, uint32_t axis, double value) {
   }
   const bool incremental = !s->sets_position && ((s->incremental >> axis) & 1u) != 0;
   if (incremental) {
-    const double way = value + s->carry[axis];
-    s->pending[axis] = s->position[axis] + way;
-    s->carry[axis] = way - (s->pending[axis] - s->position[axis]);
+    const double way = value + s->carry[axis], from = axis_matrix_programmed(cs, axis);
+    s->pending[axis] = from + way;
+    s->carry[axis] = way - (s->pending[axis] - from);
   } else {
     s->pending[axis] = s->sets_position ? value : system_motors_turn(cs, axis, value);
     s->carry[axis] = 0.0;
@@ -52,6 +54,7 @@ static void set_position(uint32_t cs) {
 
 enum executed motion_plan_line(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
+  axis_matrix_line(cs);
   if (coordinate_systems[cs].sets_position) {
     set_position(cs);
     return EXECUTED_WORD;
@@ -75,8 +78,8 @@ static bool is_list(const struct instruction* in, uint32_t key) { return in->ope
 /* The axes before it on its line move first; then it is met again. */
 static bool comes_after_axes(const struct instruction* in) {
   return (is_rate(in) && in->number >= RATE_DWELL) || calls_is_call(in) || is_key(in, KEY_STOP) ||
-         is_key(in, KEY_BLOCKSTART) || is_key(in, KEY_BLOCKSTOP) || is_key(in, KEY_WAIT) || is_key(in, KEY_PSET) ||
-         is_list(in, KEY_HOME) || is_list(in, KEY_HOMEZ);
+         matrix_statement_is(in) || is_key(in, KEY_BLOCKSTART) || is_key(in, KEY_BLOCKSTOP) || is_key(in, KEY_WAIT) ||
+         is_key(in, KEY_PSET) || is_list(in, KEY_HOME) || is_list(in, KEY_HOMEZ);
 }
 
 /* Those of PLCs too. What commands address is &1 #1, whoever executes (firmware:7.2). */
@@ -106,8 +109,9 @@ static enum executed rate(uint32_t cs, const struct instruction* in) {
   return executor_pass(&p->x);
 }
 
-/* What ends a step, a run, or the calculation of this interrupt: the line goes on behind it. */
-static bool is_stop(uint32_t cs, const struct instruction* in) {
+/* What ends a step, a run, or the calculation of this interrupt, or asks for something with the next move: the line
+ * goes on behind it. */
+static bool is_mark(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (in->operation != OP_STATEMENT) return false;
@@ -121,6 +125,9 @@ static bool is_stop(uint32_t cs, const struct instruction* in) {
     case KEY_BLOCKSTOP:
       if (p->in_block && s->stepping) s->quit = true;
       p->in_block = false;
+      break;
+    case KEY_MOVETIME:
+      p->asks_time = true;
       break;
     case KEY_WAIT:
       s->may_join = false;
@@ -160,13 +167,18 @@ static enum executed begin_normal(uint32_t cs, const struct instruction* in) {
   return executor_pass(&motion_programs[cs].x);
 }
 
+/* A distance behind a trigger is that of motors along their own axes. */
+static bool is_of_definitions(uint32_t cs) {
+  return coordinate_systems[cs].inverse_motors == 0 && !axis_matrix_is_selected(cs);
+}
+
 /* Behind an axis, by the mode that knows it. STATEMENT: it is something else. */
 static enum executed behind_axis(uint32_t cs, const struct instruction* in) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (is_among(in, KEY_ARC_VECTOR, ARC_VECTORS)) return arc_vector(cs, in->number - KEY_ARC_VECTOR, in->value);
   if (is_among(in, KEY_TRIGGER, AXIS_COUNT)) {
-    if (s->mode != MODE_RAPID || s->motors == 0) return EXECUTED_ERROR;
+    if (s->mode != MODE_RAPID || s->motors == 0 || !is_of_definitions(cs)) return EXECUTED_ERROR;
     s->pending_trigger[in->number - KEY_TRIGGER] = in->value;
     s->pending_triggers |= 1u << (in->number - KEY_TRIGGER);
     return executor_pass(&p->x);
@@ -261,10 +273,11 @@ enum executed motion_statement(uint32_t cs, const struct instruction* in) {
   struct motion_program* p = &motion_programs[cs];
   if (s->pending_axes != 0 && comes_after_axes(in)) return motion_plan_line(cs);
   if (waits_for_place(cs, in)) return EXECUTED_LATER;
-  if (is_mode(s, in) || is_stop(cs, in)) return executor_pass(&p->x);
+  if (is_mode(s, in) || is_mark(cs, in)) return executor_pass(&p->x);
   enum executed executed = behind_axis(cs, in);
   if (executed == EXECUTED_STATEMENT) executed = other_mode(cs, in);
   if (executed == EXECUTED_STATEMENT) executed = begin_normal(cs, in);
+  if (executed == EXECUTED_STATEMENT) executed = matrix_statement(cs, in);
   if (executed == EXECUTED_STATEMENT) executed = at_rest(cs, in);
   if (executed != EXECUTED_STATEMENT) return executed;
   if (is_list(in, KEY_HOME)) return home(cs, in);

@@ -17,6 +17,7 @@
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
 #include "firmware/run/calls.h"
+#include "firmware/run/kinematic_program.h"
 #include "firmware/run/motion_program.h"
 #include "firmware/variables/i_variables.h"
 
@@ -113,6 +114,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
   error_t error = check_motors(cs);
   if (error == ERR_NONE) error = check_program(cs);
+  if (error == ERR_NONE && !s->running) error = kinematic_program_check(cs);
   if (error != ERR_NONE) return error;
   if (s->running && (s->held || segment_stands(cs))) system_motors_take(cs);
   if (s->running) segment_order(cs, LOOKAHEAD_FORWARD);
@@ -127,6 +129,7 @@ error_t run_start(uint32_t cs, bool single_step) {
   uint32_t state = hal_mask_servo();
   if (!s->running) {
     s->matching = s->motors != 0;
+    s->waited = true;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
     s->ended = false;
@@ -138,11 +141,32 @@ error_t run_start(uint32_t cs, bool single_step) {
   s->stepping = single_step;
   s->continuous = !single_step;
   s->error = RUN_TIME_NONE;
+  if (!s->running) s->failure = RUN_TIME_NONE;
   s->running = true;
   cs_awake |= 1u << cs;
   cs_busy |= 1u << cs;
   hal_unmask(state);
   if (s->motors == 0) (void)move_place(cs); /* what `/` has kept out */
+  return ERR_NONE;
+}
+
+static bool moves(const struct coordinate_system* s) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  return (s->active && m->kind != MOVE_DWELL) || (s->next_valid && next->kind != MOVE_DWELL);
+}
+
+/* A DWELL may execute or wait: nothing is calculated behind it. */
+error_t run_match(uint32_t cs) {
+  struct coordinate_system* s = &coordinate_systems[cs];
+  if (motion_buffer_open()) return ERR_NO_PROGRAM;
+  const error_t error = kinematic_program_check(cs);
+  if (error != ERR_NONE) return error;
+  if (s->settling || moves(s) || segment_is_busy(cs)) return ERR_PROGRAM_RUNNING;
+  if (!s->running) system_motors_resolve(cs);
+  const uint32_t state = hal_mask_real_time();
+  s->matching = s->motors != 0;
+  cs_awake |= 1u << cs;
+  hal_unmask(state);
   return ERR_NONE;
 }
 

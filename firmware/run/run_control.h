@@ -11,6 +11,7 @@
 
 error_t run_point(uint32_t cs, double program);   /* B{n}: ERR001 while running; 0 is the rotary buffer */
 error_t run_start(uint32_t cs, bool single_step); /* R, S: ERR015 no valid program, ERR016 its blocks */
+error_t run_match(uint32_t cs);                   /* PMATCH: ERR001 while a move executes or waits, ERR015, ERR016 */
 void run_quit(uint32_t cs);                       /* Q: what is calculated is finished, then the program stops */
 void run_abort(uint32_t cs);                      /* A: calculated moves are lost, unread lines are kept */
 void run_hold(uint32_t cs);                       /* H: the time base goes to 0 at Isx95 */

@@ -3,12 +3,16 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/path.h"
+#include "firmware/motion/plan_move.h"
+#include "firmware/variables/i_variables.h"
 #include "firmware/variables/m_variables.h"
+
+enum { MOVE_TIME = 0xFF }; /* an action: Isx11, not an M-variable */
 
 struct assignment {
   uint32_t move; /* counted as coordinate_system.started */
   uint16_t number;
-  uint8_t action; /* enum synchronous */
+  uint8_t action; /* enum synchronous, MOVE_TIME */
   double value;
 };
 
@@ -55,8 +59,37 @@ enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
   return executor_pass(&p->x);
 }
 
+/* ms of the program that the move takes from rest to rest; 0: nobody knows. */
+static double time_of(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const struct move* m = &s->moves[s->executing ^ 1u];
+  if (paths[cs].count != 0) {
+    const struct path_move* last = path_of(&paths[cs], paths[cs].count - 1u);
+    return math_scale((double)(last->time + last->acceleration), -PATH_TIME_BITS);
+  }
+  return m->kind == MOVE_OWN ? 0.0 : plan_milliseconds(m->time + m->acceleration);
+}
+
+/* No room: it is left out, the timer tells nothing. */
+void synchronous_move_time(uint32_t cs) {
+  const double ahead = cs_real(cs, ISX14_END_OF_MOVE_ANTICIPATION), time = time_of(cs);
+  slice_pause();
+  if (ahead == 0.0 || time == 0.0 || queues[cs].count == SYNCHRONOUS_QUEUE) return;
+  const double units = math_scale(time + ahead, TRAJECTORY_FRACTION_BITS);
+  struct assignment* a = waiting(cs, queues[cs].count++);
+  a->move = coordinate_systems[cs].planned;
+  a->number = (uint16_t)cs;
+  a->action = MOVE_TIME;
+  a->value = units > 0.0 ? math_floor(units / (double)coordinate_systems[cs].increment_full + 0.5) : 0.0;
+  filled |= 1u << cs;
+}
+
 static void assign(const struct assignment* a) {
   const int64_t operand = math_to_integer(a->value);
+  if (a->action == MOVE_TIME) {
+    i_timer_write(i_cs(a->number, ISX11_TIMERS), (int32_t)operand);
+    return;
+  }
   if (a->action == SYNCHRONOUS_SET) {
     m_variable_write(a->number, a->value);
     return;

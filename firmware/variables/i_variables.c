@@ -80,12 +80,17 @@ static bool is_refused(struct i_place place, const struct i_entry* entry, uint32
   return entry->field == I_FIELD_IC_CHANNEL && place.channel == 0u && place.offset == I7MN1_COMPARE_CHANNEL;
 }
 
+/* Whether a write does anything now. */
+static bool is_open(struct i_place place, const struct i_entry* entry) {
+  if (entry->kind == I_KIND_R || i_of_absent_ic(place)) return false;
+  return (i_table_lock(place.group) & (uint32_t)i_integers[I41_VARIABLE_LOCK]) == 0u;
+}
+
 void i_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT) return;
   const struct i_place place = i_table_place(number);
   const struct i_entry* entry = i_table_entry(place);
-  if (entry->kind == I_KIND_R || i_of_absent_ic(place)) return;
-  if ((i_table_lock(place.group) & (uint32_t)i_integers[I41_VARIABLE_LOCK]) != 0u) return;
+  if (!is_open(place, entry)) return;
   double taken = i_table_value(entry, value);
   if (is_refused(place, entry, entry->kind == I_KIND_F ? 0u : (uint32_t)(int32_t)taken)) return;
   if (entry->field == I_FIELD_IC_CLOCK_DIRECTION)
@@ -96,6 +101,16 @@ void i_variable_write(uint32_t number, double value) {
   else
     store(number, taken);
   i_hardware_write(place, entry, (uint32_t)i_integers[number]);
+  hal_unmask(state);
+  if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
+}
+
+void i_variable_write_part(uint32_t number, uint32_t mask, uint32_t bits) {
+  const struct i_place place = i_table_place(number);
+  const struct i_entry* entry = i_table_entry(place);
+  if (!is_open(place, entry)) return;
+  const uint32_t state = hal_mask_real_time();
+  store(number, i_table_integer(entry, ((uint32_t)i_integers[number] & ~mask) | bits));
   hal_unmask(state);
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
 }

@@ -65,6 +65,7 @@ void word_write_part(bool x, uint32_t address, uint32_t mask, uint32_t bits) {
 void word_write(bool x, uint32_t address, uint32_t value) { word_write_part(x, address, HAL_WORD_MASK, value); }
 
 void word_write_long(uint32_t address, uint32_t x, uint32_t y) {
+  if (address < word_hooks.end && word_hooks.write_long(address, x & HAL_WORD_MASK, y & HAL_WORD_MASK)) return;
   const bool stores_x = is_stored(true, address, HAL_WORD_MASK, x);
   const bool stores_y = is_stored(false, address, HAL_WORD_MASK, y);
   const uint32_t state = hal_mask_servo();

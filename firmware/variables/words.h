@@ -12,6 +12,7 @@ struct word_hooks {
   uint32_t end;
   bool (*read)(uint32_t address, uint32_t* x, uint32_t* y);              /* replaces the halves that it makes, if any */
   bool (*write)(bool x, uint32_t address, uint32_t mask, uint32_t bits); /* false: an ordinary word */
+  bool (*write_long)(uint32_t address, uint32_t x, uint32_t y);          /* both at one moment; false: one by one */
 };
 extern const struct word_hooks word_hooks;
 

@@ -49,7 +49,7 @@ class LockstepChip final : public Chip {
   void begin(unsigned face, const Cycle& cycle) override {
     rtl_->begin(face, cycle);
     model_->begin(face, cycle);
-    under_way_.push_back({face, cycle});
+    under_way_.emplace_back(face, cycle);
   }
   void abandon(unsigned face) override {
     rtl_->abandon(face);

@@ -83,7 +83,7 @@ void Scheduler::touched() {
 void Scheduler::step() {
   if (stopped_) return;
   if (!started_) start();
-  const sc_time now = sc_core::sc_time_stamp();
+  const sc_time& now = sc_core::sc_time_stamp();
   const Tick tick = tick_at(now);
   if (left_ != kNoTime && left_ < now.value()) settle_left(now);
   for (Client* client : clients_) {

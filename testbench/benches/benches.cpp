@@ -17,7 +17,8 @@ const std::vector<Bench>& all_benches() {
       variables_bench(),      status_bench(),        plc_bench(),
       servo_loop_bench(),     jog_home_bench(),      motion_bench(),
       limits_bench(),         commutation_bench(),   time_base_bench(),
-      follow_bench(),         ssi_bench(),           task_load_bench(),
+      follow_bench(),         ssi_bench(),           kinematics_bench(),
+      task_load_bench(),
   };
   return benches;
 }

@@ -41,6 +41,7 @@ Bench status_bench();
 Bench servo_loop_bench();
 Bench jog_home_bench();
 Bench motion_bench();
+Bench kinematics_bench();
 Bench limits_bench();
 Bench commutation_bench();
 Bench ssi_bench();

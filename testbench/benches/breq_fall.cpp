@@ -13,9 +13,9 @@ namespace brick {
 namespace {
 
 constexpr TimeFs kMicrosecond = FallLimits::kMicrosecond;
-constexpr Tick kServo = 4 * (2 * 6527 + 3);  // default servo period
-constexpr unsigned kLines = 40;
-constexpr Tick kPause = ns_to_ticks(450'000);  // up to a servo period: lines come at any time of the tasks
+constexpr Tick kServo = 4 * (2 * 6527 + 3);       // default servo period
+constexpr unsigned kLines = 40, kLongLines = 10;  // of 255 characters, 9 ms each
+constexpr Tick kPause = ns_to_ticks(450'000);     // up to a servo period: lines come at any time of the tasks
 constexpr Tick kPatience = ns_to_ticks(20'000'000);
 
 struct Load {
@@ -81,28 +81,19 @@ class Measurement {
   Measurement(BenchContext& b, BreqHost& host) : b_(b), host_(host) {}
 
   // Sends lines while such lines are executed, one whenever BREQ is high.
-  std::vector<Fall> run(const std::function<std::string()>& line, bool of_axes, unsigned i16 = 60, unsigned i17 = 100) {
-    std::vector<Fall> falls;
-    host_.set_limits(i16, i17);
-    host_.line(line());
-    host_.line(line());
-    host_.run();
-    for (unsigned i = 0; i < kLines; ++i) {
-      if (!b_.bus.wait_pin(pin::kBreq, 1, kPatience)) break;
-      b_.bus.wait(host_.random(kPause));
-      const std::string sent = line();
-      host_.line(sent);
-      if (const auto time = host_.fall_time())
-        falls.push_back({time->whole, time->net, FallLimits::of_line(of_axes, sent.size())});
-    }
-    host_.stop();
-    return falls;
+  std::vector<Fall> run(const std::function<std::string()>& line, bool of_axes) {
+    host_.set_limits(60, 100);
+    return send(line, of_axes, kLines);
+  }
+  std::vector<Fall> run_long(const std::function<std::string()>& line) {
+    host_.set_limits(3, 4);  // some 130 words each
+    return send(line, false, kLongLines);
   }
 
   // BREQ was high, so each line took it low.
-  void step(const std::string& name, const std::vector<Fall>& falls) {
-    b_.report.step("T_FALL, " + name, FallLimits::keeps(falls, kLines),
-                   falls.size() != kLines ? fmt::format("{} lines, expected {}", falls.size(), kLines) : text(falls));
+  void step(const std::string& name, const std::vector<Fall>& falls, unsigned lines = kLines) {
+    b_.report.step("T_FALL, " + name, FallLimits::keeps(falls, lines),
+                   falls.size() != lines ? fmt::format("{} lines, expected {}", falls.size(), lines) : text(falls));
   }
 
   void of_axes(const std::string& name, const std::vector<Fall>& falls) {
@@ -131,6 +122,8 @@ class Measurement {
     host_.tasks().forget_runs();
   }
 
+  unsigned sent() const { return sent_; }
+
   void verdict() {
     const bool some = !all_.empty();
     const bool good = FallLimits::keeps(all_, all_.size()) && FallLimits::keeps_median(all_);
@@ -141,8 +134,27 @@ class Measurement {
   }
 
  private:
+  std::vector<Fall> send(const std::function<std::string()>& line, bool of_axes, unsigned lines) {
+    std::vector<Fall> falls;
+    sent_ += lines;
+    host_.line(line());
+    host_.line(line());
+    host_.run();
+    for (unsigned i = 0; i < lines; ++i) {
+      if (!b_.bus.wait_pin(pin::kBreq, 1, kPatience)) break;
+      b_.bus.wait(host_.random(kPause));
+      const std::string sent = line();
+      host_.line(sent);
+      if (const auto time = host_.fall_time())
+        falls.push_back({time->whole, time->net, FallLimits::of_line(of_axes, sent.size())});
+    }
+    host_.stop();
+    return falls;
+  }
+
   BenchContext& b_;
   BreqHost& host_;
+  unsigned sent_ = 0;
   std::vector<Fall> all_;
 };
 
@@ -150,7 +162,6 @@ class Measurement {
 
 void measure_fall_times(BenchContext& b, BreqHost& host) {
   Measurement measured(b, host);
-  unsigned runs = 0;
   for (const Load& load : kLoads) {
     host.must("CLOSE");
     host.must(load.setup);
@@ -165,13 +176,11 @@ void measure_fall_times(BenchContext& b, BreqHost& host) {
         measured.step(name, falls);
       else
         measured.of_axes(name, falls);
-      ++runs;
     }
     if (!load.enabled) {
       measured.step(fmt::format("expressions, {}", load.name), measured.run([&] { return expressions(host); }, false));
-      measured.step(fmt::format("255 characters, {}", load.name),
-                    measured.run([&] { return longest(host); }, false, 3, 4)); /* some 130 words each */
-      runs += 2;
+      measured.step(fmt::format("255 characters, {}", load.name), measured.run_long([&] { return longest(host); }),
+                    kLongLines);
     }
     measured.tasks(load);
   }
@@ -183,7 +192,7 @@ void measure_fall_times(BenchContext& b, BreqHost& host) {
   host.must("#1K#2K#3K#4K");
   host.must("I100,32,100=* I101,32,100=* I183,32,100=* I196,4,100=* I124,4,100=*");
   measured.verdict();
-  host.verdict("lines while T_FALL was measured", {runs * kLines, runs * kLines / 2, 0, 0, 0});
+  host.verdict("lines while T_FALL was measured", {measured.sent(), measured.sent() / 2, 0, 0, 0});
 }
 
 }  // namespace brick

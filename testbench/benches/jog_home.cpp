@@ -13,6 +13,7 @@ namespace {
 constexpr std::int64_t kLowFlag = 1400, kFastFlag = 2200, kTrigger = 400;  // counts at which home switches close
 constexpr std::int64_t kIndex = 2;                                         // where the encoder's index is high
 constexpr double kSlow = 4;                                                // counts/ms
+constexpr double kStill = 3;                                               // ms without a step: it has ended
 
 class JogHome {
  public:
@@ -72,7 +73,7 @@ void JogHome::jogs() {
   const Tick sent = host_.now();
   host_.expect(line, "");
   const Tick taken = host_.now();
-  host_.settle(200);
+  host_.settle(200, kStill);
   before_jogs_ = host_.samples(host_.motors()).front().commanded;
   for (unsigned motor = 1; motor <= host_.motors(); ++motor) {
     const JogLimits l = limits_[motor - 1];
@@ -108,10 +109,12 @@ void JogHome::on_the_way() {
   host_.wait_ms(22);
   const std::size_t turn = host_.last(1);
   host_.expect("#1J/ #2J- #3J=1300 #4J=", "");
-  host_.wait_ms(28);
+  host_.wait_ms(26);
   host_.expect("#2J/", "");
-  host_.settle(200);
-  const auto profile = [](VelocityProfile p) -> MotorHost::Path { return [p](double t) { return p.position(t); }; };
+  host_.settle(200, kStill);
+  const auto profile = [](const VelocityProfile& p) -> MotorHost::Path {
+    return [p](double t) { return p.position(t); };
+  };
   {
     const JogLimits l = limits_[0];
     report_fit(report(), "#1J+: profile",
@@ -155,7 +158,7 @@ std::vector<double> JogHome::slow_lag() {
   host_.say({all(fmt::format("I%22={}", kSlow))});
   host_.record();
   host_.expect(all("#%J:60"), "");
-  host_.settle(100, 3);
+  host_.settle(100, kStill);
   std::vector<double> lags;
   for (unsigned motor = 1; motor <= host_.motors(); ++motor) {
     const auto& s = host_.samples(motor);
@@ -195,7 +198,7 @@ void JogHome::searches() {
   const std::int64_t places[] = {kLowFlag - 1 + power_on(1), kIndex + power_on(2), kFastFlag + power_on(3)};
   host_.record();
   host_.expect("#1HM #2HM #3HM #4J:2000^-20", "");
-  report().equal("searches end", host_.settle(200), true);
+  report().equal("searches end", host_.settle(200, kStill), true);
   for (unsigned motor = 1; motor <= 3; ++motor) target(motor, fmt::format("#{}HM", motor), 0);
   std::vector<std::optional<std::uint32_t>> captured;
   for (unsigned motor = 1; motor <= 4; ++motor) captured.push_back(host_.captured(motor));

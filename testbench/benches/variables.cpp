@@ -89,7 +89,7 @@ class Store {
     auto& store = which == 0 ? p_ : which == 1 ? q_[cs] : m_;
     for (unsigned n = first; n <= (apart == 0 ? first : last); n += apart == 0 ? 1 : apart) {
       store[n] = told;
-      written_[which].push_back({cs, n});
+      written_[which].emplace_back(cs, n);
     }
   }
 

@@ -17,6 +17,7 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
       motor_(parameters.motor, encoder_.units_per_revolution(), parameters.start * kUnitsPerCount),
       amplifier_(parameters.amplifier),
       stepper_(parameters.stepper, parameters.start * kUnitsPerCount),
+      brake_(parameters.brake),
       motion_{0, 1, parameters.start * kUnitsPerCount, parameters.start * kUnitsPerCount},
       goal_(parameters.start * kUnitsPerCount) {
   if (par_.ic >= kMaxServoIcs || par_.channel >= kChannels) throw std::invalid_argument("axis: no such channel");
@@ -29,6 +30,7 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
     if (par_.ic > 1) throw std::invalid_argument("axis: no serial input for an absolute encoder");
     absolute_.emplace(*par_.absolute, seed, 2 * kChannels * kMaxServoIcs + ssi_channel());
   }
+  if (par_.brake.torque > 0 && !has_motor()) throw std::invalid_argument("axis: a brake without a motor");
   motor_.set_load(par_.load);
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
 }
@@ -56,6 +58,16 @@ MotorOutputs Axis::stops() const {
   MotorOutputs stops;
   if (par_.drive == Drive::kStepper) stops.set(motor_pin::kPfmPulse, par_.channel, 1);
   return stops;
+}
+
+MotorOutputs Axis::watched_brake() const {
+  MotorOutputs watched;
+  watched.set(motor_pin::kAena, par_.brake.channel, 1);
+  return watched;
+}
+
+void Axis::changed_brake(Tick tick, const MotorOutputs& after) {
+  brake_.output(tick, after.get(motor_pin::kAena, par_.brake.channel) != 0);
 }
 
 void Axis::changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest) {
@@ -117,6 +129,7 @@ void Axis::integrate(double dac_volts, const std::array<double, PwmMeter::kPhase
   const double dt = static_cast<double>(step_) / static_cast<double>(kPwmClockHz);
   const AmplifierParameters& amplifier = par_.amplifier;
   const double half_bus = amplifier.bus_volts / 2;
+  motor_.set_brake(brake_.torque(motion_.t1));
   if (!amplifier_.on())
     motor_.coast(dt);
   else if (par_.drive == Drive::kTorque)

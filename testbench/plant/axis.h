@@ -9,6 +9,7 @@
 
 #include "systemc/core/motor_pins.h"
 #include "testbench/plant/amplifier.h"
+#include "testbench/plant/brake.h"
 #include "testbench/plant/encoder.h"
 #include "testbench/plant/line_noise.h"
 #include "testbench/plant/motor.h"
@@ -30,6 +31,7 @@ struct AxisParameters {
   MotorParameters motor;
   AmplifierParameters amplifier;
   StepperParameters stepper;
+  BrakeParameters brake;
   std::vector<Switch> switches;
   NoiseParameters noise;
   // An absolute encoder on the same shaft, at the serial input of the axis's number (channels of servo ICs 0 and 1).
@@ -50,6 +52,8 @@ class Axis {
   bool has_pwm() const { return par_.drive == Drive::kBrush || par_.drive == Drive::kThreePhase; }
   bool has_amplifier() const { return par_.drive != Drive::kHand; }
   bool has_adc() const { return has_motor() && par_.amplifier.adc; }
+  const BrakeParameters& brake() const { return par_.brake; }
+  bool has_brake_at(unsigned ic) const { return brake().torque > 0 && brake().ic == ic; }
 
   // The plant's side, as MotorPeer.
   MotorOutputs watched(bool digest) const;  // but for the converters, which axes share
@@ -57,6 +61,8 @@ class Axis {
   void begin_pwm(Tick tick, const PwmTimes& times) { meter_.begin(tick, times); }
   void add_pwm(Tick now, const PwmTimes& times) { meter_.add(now, times); }  // before such a step(), with a digest
   MotorOutputs stops() const;
+  MotorOutputs watched_brake() const;  // at the brake's IC
+  void changed_brake(Tick tick, const MotorOutputs& after);
   void changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest);
   bool step(Tick now, double dac_volts, MotorInputs& inputs);
   Tick next_event() const { return next_; }
@@ -101,6 +107,7 @@ class Axis {
   Motor motor_;
   Amplifier amplifier_;
   Stepper stepper_;
+  Brake brake_;
   PwmMeter meter_;
   Motion motion_;
   std::int64_t goal_ = 0;  // of turn()

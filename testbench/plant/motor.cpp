@@ -23,11 +23,11 @@ double Motor::current_b() const { return three_phase_ ? -alpha_ / 2 + beta_ * kS
 void Motor::turn(double dt, double torque) {
   torque_ = torque;
   double speed = speed_ + dt / par_.inertia * (torque - load_ - par_.viscous * speed_);
-  const double brake = dt / par_.inertia * par_.coulomb;
-  if (std::fabs(speed) <= brake)
+  const double friction = dt / par_.inertia * (par_.coulomb + brake_);
+  if (std::fabs(speed) <= friction)
     speed = 0;
   else
-    speed -= speed > 0 ? brake : -brake;
+    speed -= speed > 0 ? friction : -friction;
   speed_ = speed;
 
   rest_ += speed_ * dt * (static_cast<double>(revolution_) / kTwoPi);

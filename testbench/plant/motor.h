@@ -34,6 +34,8 @@ class Motor {
     load_ = torque;
   }  // N m, against positive motion; acts in both directions as gravity does
 
+  void set_brake(double torque) { brake_ = torque; }  // N m, friction beside that of the motor
+
   double speed() const { return speed_; }              // rad/s
   std::int64_t position() const { return position_; }  // encoder units
   double current_a() const { return alpha_; }
@@ -45,7 +47,7 @@ class Motor {
 
   MotorParameters par_;
   std::int64_t revolution_;
-  double load_ = 0, speed_ = 0, rest_ = 0, torque_ = 0;
+  double load_ = 0, brake_ = 0, speed_ = 0, rest_ = 0, torque_ = 0;
   std::int64_t position_ = 0;
   double alpha_ = 0, beta_ = 0;  // currents; alpha_ alone when there is one winding
   bool three_phase_ = false;

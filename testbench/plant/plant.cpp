@@ -31,8 +31,10 @@ void Plant::happen(const Incident& incident) {
 
 std::uint32_t Plant::ics() const {
   std::uint32_t ics = 0;
-  for (const auto& axis : axes_)
+  for (const auto& axis : axes_) {
     if (axis->has_amplifier()) ics |= 1u << axis->ic();
+    if (axis->brake().torque > 0) ics |= 1u << axis->brake().ic;
+  }
   return ics;
 }
 
@@ -49,8 +51,10 @@ std::uint16_t Plant::drives(unsigned ic, unsigned channel) const {
 
 MotorOutputs Plant::watched(unsigned ic) const {
   MotorOutputs watched;
-  for (const auto& axis : axes_)
+  for (const auto& axis : axes_) {
     if (axis->ic() == ic) watched |= axis->watched(digest_ != nullptr);
+    if (axis->has_brake_at(ic)) watched |= axis->watched_brake();
+  }
   const auto found = converters_.find(ic);
   if (found == converters_.end()) return watched;
   if (found->second.uses_dac) watched |= DacPeer::watched(digest_ != nullptr);
@@ -88,6 +92,8 @@ std::uint8_t Plant::ssi_data(Tick now) {
 }
 
 void Plant::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
+  for (const auto& axis : axes_)
+    if (axis->has_brake_at(ic)) axis->changed_brake(tick, after);
   const auto found = converters_.find(ic);
   if (found == converters_.end()) return;
   if (digest_ != nullptr)

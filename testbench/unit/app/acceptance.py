@@ -31,9 +31,11 @@ def golden():
 
 # covers: CARD-3 BIN-2 BREQ-3 BREQ-4 I18-3 I19-1
 def exchanges():
-    """The golden exchanges and every command of firmware:11, byte for byte on each engine."""
-    for name, least in (("golden.txt", 100), ("commands.txt", 100)):
-        for engine in ("systemc", "rtl", "lockstep"):
+    """The golden exchanges and every command of firmware:11, byte for byte. Every command in lock-step alone: what the
+    RTL answers there it answers without the model, for which the golden ones are enough."""
+    engines = ("systemc", "lockstep", "rtl")
+    for name, least, on in (("golden.txt", 100, engines), ("commands.txt", 100, engines[:2])):
+        for engine in on:
             found, compared = exchange_file.differences(name, "--engine", engine)
             check(not found, f"{engine}: " + "\n".join(found))
             check(compared >= least, f"{engine} {name}: {compared} compared, expected {least} or more")

@@ -328,6 +328,15 @@ def motion_lockstep():
     bench_passes("motion", "lockstep", "6")
 
 
+def kinematics():
+    for seed in ("1", "2", "3"):
+        bench_passes("kinematics", "systemc", seed)
+
+
+def kinematics_lockstep():
+    bench_passes("kinematics", "lockstep", "7")
+
+
 def limits():
     for seed in ("1", "2", "3"):
         bench_passes("limits", "systemc", seed)

@@ -132,6 +132,47 @@ TEST_F(Lookahead, SingleSegments) {
   EXPECT_FALSE(run_is_running(0));
 }
 
+// The commands by Isx21: 4 stops on the path, 7 goes back, 6 forwards.
+TEST_F(Lookahead, OrdersByIsx21) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 300,10"), "");
+  store({"TM200 TA20 TS0", "X5", "X10"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(500);
+  ASSERT_EQ(host("I5121=4"), "");
+  platform::servo_ticks(500);
+  EXPECT_EQ(host("I5121"), "0");
+  const std::int64_t stopped = motors[0].trajectory;
+  ASSERT_EQ(host("I5121=7"), "");
+  platform::servo_ticks(50);
+  EXPECT_EQ(host("I5121"), "3");
+  EXPECT_LT(motors[0].trajectory, stopped);
+  platform::servo_ticks(3000);
+  EXPECT_EQ(motors[0].trajectory, 0) << "where the sequence began";
+  ASSERT_EQ(host("I5121=6"), "");
+  platform::servo_ticks(50);
+  EXPECT_EQ(host("I5121"), "2");
+  platform::servo_ticks(3000);
+  EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
+}
+
+// Isx20 below four is four: what moves is the same.
+TEST_F(Lookahead, FewerThanFourSegmentsAreFour) {
+  double times[3];
+  for (int i = 0; i < 3; ++i) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I116=50 I117=1 I5120=" + std::to_string(i + 2)), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"F100 TA10 TS0", "X2"});
+    times[i] = run();
+    EXPECT_EQ(motors[0].trajectory, 2000 * 3072);
+  }
+  EXPECT_EQ(times[0], times[2]);
+  EXPECT_EQ(times[1], times[2]);
+}
+
 // `<` runs back to the oldest point, assignments are made once, PE tells the line; after a jog it wants the motor back.
 TEST_F(Lookahead, BackToTheBeginOfTheSequence) {
   fit({"1000X"});

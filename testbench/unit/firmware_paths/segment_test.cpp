@@ -7,6 +7,7 @@
 
 extern "C" {
 #include "firmware/motion/path.h"
+#include "firmware/motion/path_motors.h"
 #include "firmware/motion/segment.h"
 }
 
@@ -110,6 +111,32 @@ TEST_F(Segments, ArcsBlendWithLines) {
   EXPECT_EQ(motors[2].trajectory, 500 * 3072);
 }
 
+// The same place in axes and in motors, of a line, a spiral and its way out of the plane.
+TEST_F(Segments, AxesAndMotorsOfAPointAgree) {
+  fit({"1000X+5", "-250Y+300X", "100Z", "40A"});
+  ASSERT_EQ(host("I5113=8"), "");
+  store({"F100 TA40 TS10 INC", "X10 A3", "CIRCLE2 X0 Y21 Z4 A-5 I0 J10"});
+  double widest = 0;
+  run([&](double t) {
+    path& queue = paths[0];
+    if (t < 80 || queue.count < 2) return;  // both have joined by then
+    for (int i = 0; i <= 10; ++i) {
+      const std::int64_t part = (std::int64_t{1} << 62) / 10 * i;
+      const path_point point = {2, {i == 0 ? part : PATH_WHOLE, part}};
+      double axes[AXIS_COUNT];
+      path_axes_at(&queue, &point, axes);
+      path_motors_look(0, &point);
+      const double x = axes[AXIS_X], y = axes[AXIS_Y];
+      widest = std::max(widest, x);
+      ASSERT_NEAR(static_cast<double>(path_motor_at(0)), (1000 * x + 5) * kUnit, 3);
+      ASSERT_NEAR(static_cast<double>(path_motor_at(1)), (300 * x - 250 * y) * kUnit, 3);
+      ASSERT_NEAR(static_cast<double>(path_motor_at(2)), 100 * axes[AXIS_Z] * kUnit, 3);
+      ASSERT_NEAR(static_cast<double>(path_motor_at(3)), 40 * axes[AXIS_A] * kUnit, 3);
+    }
+  });
+  EXPECT_GT(widest, 20) << "the spiral has not been looked at";
+}
+
 // 5000 mm/min on a radius of 50 mm, points every 10 ms: V^2 T^2 / (6 R) = 2.3 um (motion:7.1/4).
 TEST_F(Segments, InsideAnArcThePublishedErrorIsMet) {
   fit({"1000X", "1000Y"});  // um
@@ -172,6 +199,8 @@ TEST_F(Segments, CentripetalLimit) {
   ASSERT_EQ(host("I5113=5 I5178=40"), "");
   store({"F1000 TA0 TS0", "CIRCLE1 X0 Y0 I10 J0"});
   EXPECT_NEAR(run(), std::ceil(2 * kPi * 10 / 20 * 200) * 5 + 10, kTickMs);  // sqrt(40 x 10) = 20 a s
+  store({"F1000 TA0 TS0", "CIRCLE1 X15 Y0 I10 J0"});                         // half a turn from 10 to 5
+  EXPECT_NEAR(run(), std::ceil(std::hypot(kPi * 7.5, 5) / std::sqrt(40 * 5) * 200) * 5 + 10, kTickMs);
 }
 
 // Q and `/`: the end of the executing move; R goes on with the next.

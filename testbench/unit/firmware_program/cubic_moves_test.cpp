@@ -241,6 +241,47 @@ TEST_F(CubicMoves, SplinePointThatComesLate) {
   EXPECT_EQ(ticks, 2 * ticks_of(150));
 }
 
+// motion:5.4/6: one whose line was there all the time is an error, as for PVT.
+TEST_F(CubicMoves, SplinePointThatTakesTooLongToCalculate) {
+  for (const bool too_long : {false, true}) {
+    platform::power_up();
+    fit({"1000X"});
+    Lines lines = {"SPLINE1 TM20 X1", "X2"};
+    lines.insert(lines.end() - 1, too_long ? 700 : 200, "P1=P1+1");  // 32 lines a real-time interrupt of 1.33 ms
+    lines.push_back("P2=1");
+    store(lines);
+    run();
+    EXPECT_EQ(host("RY$2014"), too_long ? "9" : "0");
+    if (!too_long) { EXPECT_EQ(motors[0].trajectory, 2000 * 3072); }
+    platform::servo_ticks(ticks_of(300));
+    const std::int64_t stands = motors[0].trajectory;
+    platform::servo_ticks(ticks_of(20));
+    EXPECT_EQ(motors[0].trajectory, stands);
+    EXPECT_EQ(host("P2"), too_long ? "0" : "1");
+  }
+}
+
+// A stop in between is a wait for R, not a calculation that took too long.
+TEST_F(CubicMoves, SplinePointsGoOnBehindAStop) {
+  for (const char* stop : {"Q", "/", "S"}) {
+    for (const bool motors_move : {true, false}) {
+      platform::power_up();
+      if (motors_move) fit({"1000X"});
+      store({"SPLINE1 TM20 X1", "X2", "X3", "X4"});
+      ASSERT_EQ(host("&1B1R"), "");
+      platform::servo_ticks(ticks_of(45));
+      ASSERT_EQ(host(stop), "") << stop;
+      platform::servo_ticks(ticks_of(200));
+      for (int i = 0; i < 8 && cs().position[AXIS_X] != 4.0; ++i) {
+        ASSERT_EQ(host("R"), "") << stop;
+        platform::servo_ticks(ticks_of(200));
+      }
+      EXPECT_EQ(cs().position[AXIS_X], 4.0) << stop;
+      EXPECT_EQ(host("RY$2014"), "0") << stop;
+    }
+  }
+}
+
 // Virtual axes: an abort finds them on the curve.
 TEST_F(CubicMoves, AbortOfVirtualAxesIsOnTheCurve) {
   store({"SPLINE1 TM40", "X1", "X3", "X2.5", "PVT100 X5:10", "X7"});

@@ -7,7 +7,10 @@
 #include "testbench/unit/firmware_program/dpram_host.h"
 
 extern "C" {
+#include "firmware/host/dpram_motors.h"
 #include "firmware/host/dpram_report.h"
+#include "firmware/motion/average_velocity.h"
+#include "firmware/motion/motor.h"
 }
 
 namespace {
@@ -254,12 +257,15 @@ TEST_F(DpramReportsTest, TheTimerIsTheLowestBitsOfTheServoCounterInTwoWords) {
 TEST_F(DpramReportsTest, EachItemOfAMotorsBlockIsItsSource) {
   ASSERT_EQ(host("&3#5->1000X I500=0"), "");
   ASSERT_EQ(host("WX$288,$123456 WY$288,$789ABC WX$28B,$0F0E0D WY$28B,$8C0B0A WX$290,$111111 WY$290,$922222"), "");
-  ASSERT_EQ(host("WX$29D,$FEDCBA WX$2CC,$800001 WY$2CC,$700002"), "");
+  ASSERT_EQ(host("WX$2CC,$800001 WY$2CC,$700002 I60=0 I61=0"), "");
+  motors_active |= 1u << 4;  // for its velocity alone: one sample
+  motors[4].actual -= 0x12346;
+  average_velocity_servo();
   const std::uint32_t block = DPRAM_MOTOR_BLOCKS + DPRAM_MOTOR_STRIDE * 4;
   for (unsigned n = 0; n < DPRAM_MOTOR_STRIDE; n += 2) ram.write(block + n, 0x5555);
   reports.choose_motors(1U << 4);
   ASSERT_EQ(host("I47=1 I48=1"), "");
-  servo_ticks(1);
+  ASSERT_TRUE(dpram_motors_servo());
   // $123456789ABC - $0F0E0D8C0B0A = $032648EC8FB2
   const std::vector<std::uint32_t> items = {0xFFEC8FB2, 0x00032648, 0,          0x00050000, 0x00278000, 0x00700002,
                                             0xFF800001, 0xFFFEDCBA, 0xFF922222, 0x00111111, 0xFF8C0B0A, 0x000F0E0D};

@@ -8,6 +8,7 @@
 #include "testbench/unit/firmware_program/platform.h"
 
 extern "C" {
+#include "firmware/motion/motor.h"
 #include "firmware/variables/words.h"
 #include "testbench/unit/firmware_program/published.h"
 }
@@ -209,27 +210,37 @@ TEST_F(Interrupts, AxisModesWithoutMasksAreLost) {
 
 // The host sets the low byte of a word that is made when it is read, a program of the real-time task the high one. What
 // either writes last stays: interrupts are not looked at between the two of a write in parts.
-std::uint32_t shared_word;
-unsigned parts_written;
+struct SharedWord {
+  bool x;
+  std::uint32_t address;
+};
+// Time base and timer of system 1; Ixx31, Ixx69 and the master position of motor 1; I8150 of the conversion table.
+constexpr SharedWord kSharedWords[] = {{true, 0x2000}, {true, 0x2015}, {true, 0x92},
+                                       {false, 0xAE},  {true, 0x8D},   {false, 0x3501 + 150}};
+
+SharedWord shared_word;
+unsigned parts_written, writes_left;  // a try's: what a variable changes is made anew until nobody has written it again
 
 void write_high_byte(fake_task task) {
-  if (task != FAKE_REAL_TIME) return;
+  if (task != FAKE_REAL_TIME || writes_left == 0) return;
+  --writes_left;
   parts_written = parts_written % 0x70 + 1;
-  word_write_part(true, shared_word, 0xFF0000, parts_written << 16);
+  word_write_part(shared_word.x, shared_word.address, 0xFF0000, parts_written << 16);
 }
 
 // Tries after which the high byte was not the one written last.
-unsigned high_bytes_lost(std::uint32_t address, std::uint32_t seed, unsigned& written) {
+unsigned high_bytes_lost(const SharedWord& word, std::uint32_t seed, unsigned& written) {
   unsigned lost = 0;
-  shared_word = address;
+  shared_word = word;
   parts_written = 0;
-  word_write(true, address, 0);
+  word_write(word.x, word.address, 0x80);
   fake_interrupts_begin(seed, 15);
   fake_interrupts_on_take(write_high_byte);
-  for (unsigned i = 0; i < 100; ++i) {
-    word_write_part(true, address, 0xFF, 0x80);  // a timer counts down, but not as far as to borrow
+  for (unsigned i = 0; i < 40; ++i) {
+    writes_left = 2;
+    word_write_part(word.x, word.address, 0xFF, 0x80);  // a timer counts down, but not as far as to borrow
     const std::uint32_t state = hal_mask_real_time();
-    lost += word_read(true, address) >> 16 != parts_written ? 1u : 0u;
+    lost += word_read(word.x, word.address) >> 16 != parts_written ? 1u : 0u;
     hal_unmask(state);
   }
   written = fake_interrupts_counts().taken[FAKE_REAL_TIME];
@@ -238,24 +249,62 @@ unsigned high_bytes_lost(std::uint32_t address, std::uint32_t seed, unsigned& wr
   return lost;
 }
 
-constexpr std::uint32_t kTimeBase = 0x2000, kTimer = 0x2015;
-
 TEST_F(Interrupts, PartsOfALiveWordAreBothKept) {
-  for (const std::uint32_t address : {kTimeBase, kTimer})
+  for (const SharedWord& word : kSharedWords)
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
       unsigned written = 0;
-      EXPECT_EQ(high_bytes_lost(address, seed, written), 0u) << std::hex << address << ", seed " << seed;
+      EXPECT_EQ(high_bytes_lost(word, seed, written), 0u) << std::hex << word.address << ", seed " << seed;
       EXPECT_GT(written, 20u);
     }
 }
 
 TEST_F(Interrupts, PartsOfALiveWordWithoutMasksAreLost) {
   fake_tasks_ignore_masks(true);
-  for (const std::uint32_t address : {kTimeBase, kTimer}) {
+  for (const SharedWord& word : kSharedWords) {
     unsigned lost = 0, written = 0;
-    for (std::uint32_t seed = 1; seed <= 10 && lost == 0; ++seed) lost = high_bytes_lost(address, seed, written);
-    EXPECT_GT(lost, 0u) << std::hex << address;
+    for (std::uint32_t seed = 1; seed <= 50 && lost == 0; ++seed) lost = high_bytes_lost(word, seed, written);
+    EXPECT_GT(lost, 0u) << std::hex << word.address;
   }
+}
+
+// The host writes a position of two words while it moves: one word after the other it would be off by all of the low
+// one.
+constexpr std::uint32_t kBiasOfMotor1 = 0xCC;
+
+void move_bias(fake_task task) {
+  if (task == FAKE_SERVO) motors[0].bias += 3;
+}
+
+unsigned positions_torn(std::uint32_t seed, unsigned& moves) {
+  unsigned torn = 0;
+  fake_interrupts_begin(seed, 15);
+  fake_interrupts_on_take(move_bias);
+  for (unsigned i = 0; i < 100; ++i) {
+    word_write_long(kBiasOfMotor1, 0, 0xFFFFFE);
+    word_write_long(kBiasOfMotor1, 0, 0);
+    torn += motors[0].bias >= 1 << 20 ? 1 : 0;
+    word_write_long(kBiasOfMotor1, 0xFF, 0xFFFFFE);  // the carry into the upper half of 64 bits
+    torn += motors[0].bias < 0xFFFFFFFE ? 1 : 0;
+  }
+  moves = fake_interrupts_counts().taken[FAKE_SERVO];
+  fake_interrupts_on_take(nullptr);
+  fake_interrupts_end();
+  return torn;
+}
+
+TEST_F(Interrupts, APositionOfTwoWordsIsWrittenInOnePiece) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    unsigned moves = 0;
+    EXPECT_EQ(positions_torn(seed, moves), 0u) << "seed " << seed;
+    EXPECT_GT(moves, 50u);
+  }
+}
+
+TEST_F(Interrupts, APositionOfTwoWordsWithoutMasksIsTorn) {
+  fake_tasks_ignore_masks(true);
+  unsigned torn = 0, moves = 0;
+  for (std::uint32_t seed = 1; seed <= 10 && torn == 0; ++seed) torn = positions_torn(seed, moves);
+  EXPECT_GT(torn, 0u);
 }
 
 // What follows a write of I2, while the panel selects in turn a system whose buffer is full and one with room: the pin

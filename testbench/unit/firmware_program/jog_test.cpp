@@ -360,4 +360,17 @@ TEST_F(Jog, KilledMotorStandsAndTakesNoRequest) {
   EXPECT_EQ(step(), before);
 }
 
+// A request that has been dropped before it was planned comes back with none of those behind it.
+TEST_F(Jog, WhatHasBeenDroppedIsForgotten) {
+  set({0.25, 0, 50, 20}, 1);
+  ASSERT_TRUE(jog_to(0, units(1000)));
+  jog_drop(0);
+  for (int i = 0; i < 20; ++i) step();
+  ASSERT_TRUE(jog_to(0, units(-1000)));
+  double highest = -1000;
+  for (int i = 0; i < 2000 && jog_is_moving(0); ++i) highest = std::max(highest, step());
+  EXPECT_LE(highest, 0);
+  EXPECT_EQ(motors[0].trajectory, units(-1000));
+}
+
 }  // namespace

@@ -59,5 +59,31 @@ TEST_F(MotionImage, LoopsWithoutAMoveGoRoundTwiceAnInterrupt) {
   EXPECT_NEAR(board.now_ms() - began, 500 * 3 * 3713991.0 / 8388608.0, 15.0) << "500 real-time interrupts";
 }
 
+// motion:5.4/6: eight axes, a point each 3 ms; each 1 ms is too much, and is said.
+TEST_F(MotionImage, SplinePointsOfEightAxesAreInTimeOrAnError) {
+  const char* axes = "XYZABCUV";
+  for (int m = 1; m <= 8; ++m) {
+    const std::string n = std::to_string(m);
+    accepted("I" + n + "00=1 I" + n + "24=$120001 I" + n + "11=0 &1#" + n + "->1000" + axes[m - 1]);
+  }
+  accepted("A");
+  board.run_ms(20);
+  accepted("M1->D:$88 M2->D:$408");  // motors 1 and 8
+  for (const int time : {3, 1}) {
+    store(1, {"SPLINE1 INC TM" + std::to_string(time) + " P1=0 WHILE(P1<40)",
+              "X.1 Y.2 Z(SIN(P1*10)) A-1 B.3 C.1 U1 V-.5 P1=P1+1", "ENDWHILE"});
+    const double first = value("M1"), eighth = value("M2");
+    accepted("B1R");
+    const double began = board.now_ms();
+    while ((std::stoul(board.send("??\r").substr(0, 6), nullptr, 16) & 1u) != 0) board.run_ms(1);
+    const double took = board.now_ms() - began;
+    EXPECT_EQ(value("RY$2014"), time == 3 ? 0 : 9);
+    if (time != 3) continue;
+    EXPECT_NEAR(took, (40 + 2) * 3, 8) << "one sequence";
+    EXPECT_EQ(value("M1") - first, 4000 * 3072.0);
+    EXPECT_EQ(value("M2") - eighth, -20000 * 3072.0);
+  }
+}
+
 }  // namespace
 }  // namespace brick

@@ -22,6 +22,9 @@ using Lines = std::vector<std::string>;
 constexpr double kTickMs = platform::kDefaultI10 / 8388608.0;
 constexpr double kUnit = 32 * 96;  // of a position in a count, Ixx08 = 96
 
+// X words of channel 1, as Ixx25 = $78000 has it.
+constexpr std::uint32_t kStatus = 0x78000, kCaptured = 0x78003, kCaptureFlag = 1u << 11;
+
 inline unsigned ticks_of(double ms) { return static_cast<unsigned>(std::ceil(ms / kTickMs)); }
 
 // Way after `t` ms of a velocity that rises from 0 to 1 in `length` ms, S-shaped for `s` ms at both ends.

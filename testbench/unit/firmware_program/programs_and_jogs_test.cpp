@@ -13,8 +13,6 @@ namespace {
 
 using namespace moving_motors;
 
-constexpr std::uint32_t kStatus = 0x78000, kCaptured = 0x78003, kCaptureFlag = 1u << 11;
-
 class ProgramsAndJogs : public MovingMotors {
  protected:
   static void ticks(double ms) { platform::servo_ticks(ticks_of(ms)); }

@@ -181,6 +181,10 @@ TEST_F(DesiredPosition, ErrorBeyondIxx67WaitsInTheMasterPosition) {
   EXPECT_EQ(motors[0].desired_step, 3 * kCount);
   EXPECT_EQ(word().second, std::to_string(-40 * kCount)) << "40 counts less";
   EXPECT_EQ(hal_signed(*hal_y(0x8D)), -40 * kCount) << "in memory too";
+  c_.line("WX$8D," + word().first);
+  c_.line("WY$8D," + word().second);
+  EXPECT_EQ(desired(50), 10) << "what is read can be written back: nothing moves";
+  EXPECT_EQ(word().second, std::to_string(-40 * kCount));
   actual(25);
   EXPECT_EQ(desired(50), 35);
   actual(45);

@@ -3,13 +3,17 @@
 #include "testbench/unit/firmware_servo/position_loop_rig.h"
 
 extern "C" {
+#include "firmware/motion/average_velocity.h"
 #include "firmware/motion/conversion_table.h"
 }
 
 namespace brick {
 namespace {
 
-using LoopWords = PositionLoopRig;
+class LoopWords : public PositionLoopRig {
+ protected:
+  std::int32_t place_ = 0;
+};
 
 // motion:1.3: what the loop shows, in units of 1/(32 Ixx08) count and in bits of 24.
 TEST_F(LoopWords, WordsOfTheLoop) {
@@ -139,14 +143,63 @@ TEST_F(LoopWords, ExtensionSlowsTheLoopOnly) {
 
 // The raw word is that of a closure; V stays that of a servo interrupt.
 TEST_F(LoopWords, ReportedVelocityKnowsNoExtension) {
-  c_.line("I160=3");
+  c_.line("I160=3 I60=0 I61=4");
   close(0, 0);
   for (int n = 1; n <= 40; ++n) {
     at(n * 32 * 5, n * 32 * 5);
     position_loop_servo(0);
+    average_velocity_servo();
   }
   EXPECT_EQ(c_.line("RX$9D"), std::to_string(4 * 5 * 32 * 96));
   EXPECT_EQ(c_.line("#1V"), "5");
+}
+
+// motion:1.3/4: V is the way of sixteen samples, I60 + 1 interrupts apart, over 2^I61.
+TEST_F(LoopWords, VIsTheMeanOfSixteenSamples) {
+  struct Case {
+    unsigned spacing, shift;
+  };
+  for (const Case& c : {Case{0, 4}, {1, 5}, {3, 6}, {15, 8}, {3, 2}}) {
+    average_velocity_initialize();  // the next interrupt has a sample
+    c_.line("I109=48 I60=" + std::to_string(c.spacing) + " I61=" + std::to_string(c.shift));
+    c_.line("I100=0");
+    EXPECT_EQ(c_.line("#1V"), "0") << "not activated";
+    c_.line("I100=1");
+    EXPECT_EQ(c_.line("#1V"), "0") << "where it has been before does not count";
+    std::vector<std::int64_t> samples(16, motors[0].actual);
+    for (std::uint32_t n = 0; n < 600; ++n) {
+      place_ += 32 * (static_cast<int>(n % 7) - 2) * (n < 300 ? 1 : -3);
+      at(place_, place_);
+      position_loop_servo(0);
+      average_velocity_servo();
+      if (n % (c.spacing + 1) != 0) continue;
+      samples.push_back(motors[0].actual);
+      const auto way = static_cast<double>(samples.back() - samples[samples.size() - 17]);
+      const double mean = way / (32.0 * 96 * (1u << c.shift));
+      ASSERT_NEAR(std::stod(c_.line("#1V")), mean, 1.0 / 64 + 0.001) << n << ", I60 = " << c.spacing;
+      const std::int64_t word =
+          std::stoll(c_.line("RX$EF")) * 16777216 + (std::stoll(c_.line("RY$EF")) & HAL_WORD_MASK);
+      ASSERT_NEAR(static_cast<double>(word), mean * 32 * 48, 1.0) << "D:$EF";
+      ASSERT_EQ(average_velocity_word(0), static_cast<std::uint32_t>(word) & HAL_WORD_MASK);
+    }
+  }
+}
+
+TEST_F(LoopWords, TheVelocityOfABlockHasAnEnd) {
+  c_.line("I60=0 I61=0");
+  average_velocity_initialize();
+  c_.line("I100=0 I100=1");
+  for (const std::int64_t way : std::vector<std::int64_t>{8388606, 8388607, 8388608, 9000000000}) {
+    motors[0].actual += way;
+    average_velocity_servo();
+    EXPECT_EQ(average_velocity_word(0), std::min<std::int64_t>(way, 8388607)) << way;
+    motors[0].actual -= 2 * way;
+    c_.line("I100=0 I100=1");
+    motors[0].actual -= way;
+    average_velocity_servo();
+    EXPECT_EQ(average_velocity_word(0), (0x1000000 - std::min<std::int64_t>(way, 8388607)) & 0xFFFFFF) << way;
+    c_.line("I100=0 I100=1");
+  }
 }
 
 TEST_F(LoopWords, SourcesRollOver) {

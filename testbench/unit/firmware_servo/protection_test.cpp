@@ -388,13 +388,16 @@ TEST_F(Protection, OverloadTripsAfterItsTime) {
 }
 
 TEST_F(Protection, AFollowingErrorIsReported) {
-  c_.line("I111=0");
+  c_.line("I111=0 I60=0 I61=4");
   ASSERT_TRUE(motor_close(0));
+  servo(16);
   counts(1, -12.5);
   servo();
   EXPECT_EQ(c_.line("#1F"), "12.5");
   EXPECT_EQ(c_.line("#1P"), "-12.5");
-  EXPECT_EQ(c_.line("#1V"), "-12.5");
+  EXPECT_EQ(c_.line("#1V"), "-0.78125") << "a mean of sixteen";
+  servo(15);
+  EXPECT_EQ(c_.line("#1V"), "-0.78125");
   servo();
   EXPECT_EQ(c_.line("#1V"), "0");
 }

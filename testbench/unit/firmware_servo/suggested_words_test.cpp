@@ -4,6 +4,10 @@
 
 #include "testbench/unit/firmware_servo/protection_rig.h"
 
+extern "C" {
+#include "firmware/motion/average_velocity.h"
+}
+
 namespace brick {
 namespace {
 
@@ -31,6 +35,7 @@ class SuggestedWords : public ProtectionRig {
 };
 
 TEST_F(SuggestedWords, OfAJog) {
+  c_.line("I60=0 I61=4");
   close_all();
   follow(6);
   EXPECT_EQ(c_.line("M140 M133 M138 M139 M137 M5187"), "1|1|0|1|0|1");
@@ -196,7 +201,7 @@ TEST_F(SuggestedWords, DpramReportsTellOfMotion) {
   EXPECT_EQ(long_of(0x74 + 40), motors[0].actual);
   EXPECT_EQ(long_of(0x74), motors[0].commanded - motors[0].actual) << "following error";
   EXPECT_GT(long_of(0x74), 0);
-  EXPECT_EQ(item(0x74 + 28), static_cast<unsigned long>(motors[0].velocity));
+  EXPECT_EQ(item(0x74 + 28), average_velocity_word(0));
   EXPECT_EQ(item(0x74 + 8) & 0xFFFFFF, static_cast<unsigned long>(motors[0].output) & 0xFFFFFF);
   const unsigned long status = std::stoul(c_.line("#1?").substr(0, 6), nullptr, 16);
   EXPECT_EQ(item(0x74 + 12) & 0xFFFFFF, status);

@@ -53,6 +53,30 @@ TEST(PlantAtIc, StepperTurnsPfmPulsesIntoCounts) {
   EXPECT_FALSE(rig.status(1, status::kEncoderError));
 }
 
+// 0.5 N m of gravity on 1e-4 kg m2: 5000 rad/s2 once the brake has let go, 10 ms after AENA of channel 2 has risen; it
+// grips 10 ms after the fall. The amplifier of the axis itself is off.
+TEST(PlantAtIc, BrakeFollowsAnOutput) {
+  constexpr Tick kMs = kPwmClockHz / 1000;
+  PlantParameters parameters = one_axis(Drive::kTorque);
+  parameters.axes[0].load = -0.5;
+  parameters.axes[0].brake = {2.0, 0, 2, 10 * kMs};
+  Plant plant(parameters);
+  IcRig rig(plant);
+  rig.write(1, kControl, kX4 | kAena);
+  rig.run(20 * kMs);
+  EXPECT_EQ(plant.axis(0).counts(rig.now()), 0) << "that is another channel";
+  rig.write(2, kControl, kX4 | kAena);
+  rig.run(9 * kMs);
+  EXPECT_EQ(plant.axis(0).motor().speed(), 0) << "not yet";
+  rig.run(11 * kMs);
+  EXPECT_NEAR(plant.axis(0).motor().speed(), 50, 0.2);
+  rig.write(2, kControl, kX4);
+  rig.run(9 * kMs);
+  EXPECT_NEAR(plant.axis(0).motor().speed(), 95, 0.2) << "it has not gripped yet";
+  rig.run(8 * kMs);
+  EXPECT_EQ(plant.axis(0).motor().speed(), 0) << "100 rad/s at (2 - 0.5) N m are 6.7 ms";
+}
+
 // OUT A = $400000 is 5 V, half of full scale: 5 A x 0.1 N m/A on 1e-4 kg m2 = 5000 rad/s2. 10 ms: 50 rad/s, 0.25 rad =
 // 159 counts of 4000 a turn.
 TEST(PlantAtIc, DacTorqueAcceleratesTheMotor) {

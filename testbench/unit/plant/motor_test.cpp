@@ -64,6 +64,21 @@ TEST(Motor, LoadPullsBackwards) {
   EXPECT_LT(motor.position(), 0);
 }
 
+// Held by the brake up to its torque: 0.1 N m of gravity against 0.15, then 0.2.
+TEST(Motor, BrakeHoldsUpToItsTorque) {
+  Motor motor(MotorParameters{}, kRevolution);
+  motor.set_load(0.1);
+  motor.set_brake(0.15);
+  for (int i = 0; i < 1024; ++i) motor.coast(kDt);
+  EXPECT_EQ(motor.position(), 0);
+  motor.set_load(0.2);
+  for (int i = 0; i < 1024; ++i) motor.coast(kDt);
+  EXPECT_NEAR(motor.speed(), -(0.2 - 0.15) / 1e-4 * 0.01, 1e-9);
+  motor.set_brake(0.3);
+  for (int i = 0; i < 1024; ++i) motor.coast(kDt);
+  EXPECT_EQ(motor.speed(), 0) << "5 rad/s at 1000 rad/s^2: 5 ms";
+}
+
 // No load: 24 V / 0.1 V s = 240 rad/s. With 0.2 N m: 2 A take 2 V of it, 220 rad/s. Mechanical time constant J R / k2 =
 // 10 ms.
 TEST(Motor, BrushMotorRunsUpToItsBackVoltage) {

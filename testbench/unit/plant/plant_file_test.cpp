@@ -97,6 +97,10 @@ counts_per_step = 2.5
 move_time = "2us"
 min_width = "1us"
 dir_setup = "0.5us"
+[axis.brake]
+torque = 0.75
+opened_by = 6
+delay = "20ms"
 [axis.encoder]
 lines = 500
 index_at = 10
@@ -140,6 +144,10 @@ load = 1
   EXPECT_EQ(a.channel, 2u);
   EXPECT_EQ(a.start, -17);
   EXPECT_EQ(a.load, 0.25);
+  EXPECT_EQ(a.brake.torque, 0.75);
+  EXPECT_EQ(a.brake.ic, 1u);
+  EXPECT_EQ(a.brake.channel, 1u);
+  EXPECT_EQ(a.brake.delay, Tick{117'964'800} / 50);
   EXPECT_EQ(a.motor.inertia, 2e-5);
   EXPECT_EQ(a.motor.viscous, 1e-4);
   EXPECT_EQ(a.motor.coulomb, 0.01);
@@ -280,6 +288,13 @@ TEST(PlantFile, EveryMistakeHasItsLine) {
             ":4: dark_lines: found 10; expected lines 0 to 9");
   EXPECT_EQ(error_of(axis_with("encoder = { wiring = \"loose\" }\n")),
             ":4: wiring: found \"loose\"; expected one of none, halls, complements, halls-on-abc");
+  EXPECT_EQ(error_of(axis_with("brake = { opened_by = 1 }\n")), ":4: key torque is missing; expected torque = ...");
+  EXPECT_EQ(error_of(axis_with("brake = { torque = 0, opened_by = 1 }\n")),
+            ":4: torque: found 0; expected N m, above 0");
+  EXPECT_EQ(error_of(axis_with("brake = { torque = 1, opened_by = 9 }\n")),
+            ":4: opened_by: found 9; expected motors 1 to 8: the board has no more");
+  EXPECT_EQ(error_of(axis_with("brake = { torque = 1, opened_by = 1 }\n")),
+            ":2: axes: found \"1-2\"; expected an axis that can be: axis: a brake without a motor");
   EXPECT_EQ(error_of(axis_with("home = { from = 5, to = 5 }\n")), ":4: to: found 5; expected a place above `from`");
   EXPECT_EQ(error_of(axis_with("home = { from = 5 }\n")), ":4: key to is missing; expected to = ...");
   EXPECT_EQ(error_of(axis_with("noise = { shortest = \"1us\" }\n")), ":4: key every is missing; expected every = ...");

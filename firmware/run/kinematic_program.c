@@ -1,0 +1,49 @@
+#include "firmware/run/kinematic_program.h"
+
+#include "firmware/kernel/slice.h"
+#include "firmware/motion/axis_definition.h"
+#include "firmware/variables/i_variables.h"
+
+enum { WORDS_LIMIT = 5000 }; /* that one run takes: what goes on is taken to go on for ever (motion:8.1/7) */
+
+static struct executor x;
+
+static enum run_time_error end_of(enum executed executed) {
+  if (executed == EXECUTED_END) return RUN_TIME_NONE;
+  return x.error != RUN_TIME_NONE ? x.error : RUN_TIME_STATEMENT;
+}
+
+enum run_time_error kinematic_program_execute(uint32_t cs, enum fixed_kind kind) {
+  reader_fixed(&x.at.reader, kind, cs, 0);
+  executor_begin(&x, cs);
+  for (uint32_t words = 0; words < WORDS_LIMIT;) {
+    struct instruction in;
+    const enum executed executed = executor_step(&x, &in);
+    if (executed == EXECUTED_WORD || executed == EXECUTED_LINE)
+      words++;
+    else if (executed != EXECUTED_LATER) /* programs have just been moved: soon */
+      return end_of(executed);
+    slice_pause();
+  }
+  return RUN_TIME_KINEMATIC;
+}
+
+static error_t check(uint32_t cs, enum fixed_kind kind) {
+  struct program_reader reader;
+  if (fixed_program_find(kind, cs) == 0) return ERR_NO_PROGRAM;
+  reader_fixed(&reader, kind, cs, 0);
+  return reader_check(&reader) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
+}
+
+static bool needs_inverse(uint32_t cs) {
+  for (uint32_t motor = 0; motor < MOTORS; motor++)
+    if (axis_definitions[motor].assigned && axis_definitions[motor].cs == cs && axis_definitions[motor].kinematic)
+      return true;
+  return false;
+}
+
+error_t kinematic_program_check(uint32_t cs) {
+  if (i_integer(i_cs(cs, ISX50_KINEMATICS)) == 0) return ERR_NONE;
+  const error_t error = check(cs, FIXED_FORWARD);
+  return error != ERR_NONE || !needs_inverse(cs) ? error : check(cs, FIXED_INVERSE);
+}

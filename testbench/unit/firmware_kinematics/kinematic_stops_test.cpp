@@ -1,0 +1,247 @@
+// What kinematic programs are refused for, and what stops one (motion:8.1/6 to motion:8.1/8).
+#include "testbench/unit/firmware_kinematics/arm.h"
+
+namespace {
+
+using namespace moving_motors;
+using arm::Arm;
+
+class KinematicStops : public Arm {
+ protected:
+  // A run that ends with an error, at rest, with what was calculated lost; #3 of &2 moves on all the while.
+  static void stops_with(run_time_error error, const Lines& lines = {"TM400 TA100 TS0", "X300 Y-200"}) {
+    ASSERT_EQ(host("I300=1 I311=0 I312=0 I316=1000000 I317=1000000 I68=1 I5213=5"), "");
+    ASSERT_EQ(host("&2#3->1000X"), "");
+    motors[2] = {};
+    motors[2].loop = LOOP_CLOSED;
+    motors[2].position_scale = 96;
+    motors[2].cs = 1;
+    store({"TM100 TA50 TS0 INC P9=0 WHILE(P9<20)", "X1 P9=P9+1", "ENDWHILE"}, 2);
+    store(lines);
+    ASSERT_EQ(host("&1B1R&2B2R"), "");
+    for (int i = 0; i < 10000 && run_is_running(0); ++i) platform::servo_ticks(3);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(cs().error, error);
+    EXPECT_NE(motion_cs_status(0, 1) >> 22 & 1u, 0u);
+    EXPECT_EQ(host("RY$2014"), std::to_string(error));
+    platform::servo_ticks(1500);  // ramps
+    const double stands = at(1);
+    platform::servo_ticks(30);
+    EXPECT_EQ(at(1), stands) << "it is at rest";
+    for (int i = 0; i < 5000 && run_is_running(1); ++i) platform::servo_ticks(3);
+    EXPECT_EQ(coordinate_systems[1].error, RUN_TIME_NONE);
+    EXPECT_EQ(at(3), 20000) << "another system is not touched";
+  }
+};
+
+TEST_F(KinematicStops, AProgramThatNeverEnds) {
+  fit_arm();
+  program("INVERSE", {"WHILE(1=1)", "ENDWHILE"});
+  ASSERT_EQ(host("I5113=10"), "");
+  stops_with(RUN_TIME_KINEMATIC);
+}
+
+TEST_F(KinematicStops, InTheMiddleOfAPath) {
+  fit_arm();
+  Lines late = arm::inverse();
+  late.push_back("WHILE(P5>20)");
+  late.push_back("ENDWHILE");
+  program("INVERSE", late);
+  ASSERT_EQ(host("I5113=10"), "");
+  const double from = at(1);
+  stops_with(RUN_TIME_KINEMATIC);
+  EXPECT_GT(std::abs(at(1) - from), 500) << "it was on its way";
+}
+
+// From its speed to rest at Ixx15.
+TEST_F(KinematicStops, MotorsRamp) {
+  fit_arm();
+  Lines late = arm::inverse();
+  late.insert(late.end(), {"IF(P5>40)", "P1=1/0", "ENDIF"});
+  program("INVERSE", late);
+  ASSERT_EQ(host("I5113=10 I115=0.5 I215=0.5"), "");
+  store({"TM400 TA100 TS0", "X300 Y-200"});
+  ASSERT_EQ(host("&1B1R"), "");
+  for (int i = 0; i < 3000 && run_is_running(0); ++i) platform::servo_ticks(1);
+  EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
+  const double from = at(1);
+  platform::servo_ticks(1);
+  const double speed = std::abs(at(1) - from) / kTickMs;
+  EXPECT_GT(speed, 20);
+  platform::servo_ticks(2000);
+  EXPECT_NEAR(std::abs(at(1) - from), speed * speed / (2 * 0.5), 2 * speed * kTickMs + 1);
+}
+
+TEST_F(KinematicStops, AForwardProgramThatNeverEnds) {
+  fit_arm();
+  program("FORWARD", {"WHILE(1=1)", "Q7=1", "ENDWHILE"});
+  const double stands = at(1);
+  stops_with(RUN_TIME_KINEMATIC);
+  EXPECT_EQ(at(1), stands);
+  ASSERT_EQ(host("&1PMATCH"), "");
+  platform::servo_ticks(600);
+  EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC) << "PMATCH says so too";
+  EXPECT_FALSE(run_is_running(0));
+}
+
+// A long program is none that never ends.
+TEST_F(KinematicStops, ALongOneEnds) {
+  fit_arm();
+  Lines with = arm::inverse();
+  with.insert(with.begin(), {"Q50=0", "WHILE(Q50<400)", "Q50=Q50+1", "ENDWHILE"});
+  program("INVERSE", with);
+  store({"TM400 TA100 TS0", "X300 Y-200"});
+  run();
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+// 1/0 is 2^47 (firmware:10/9): no position of a motor.
+TEST_F(KinematicStops, ADivisionByZero) {
+  for (const char* isx13 : {"0", "10"}) {
+    SCOPED_TRACE(isx13);
+    platform::power_up();
+    fit_arm();
+    program("INVERSE", {"P1=Q8/0", "P2=0"});
+    ASSERT_EQ(host(std::string("I5113=") + isx13), "");
+    stops_with(RUN_TIME_KINEMATIC);
+  }
+}
+
+// The idiom of the field: the program finds that there is no such place and sets bit 22 of word 2 itself.
+TEST_F(KinematicStops, AProgramThatSetsTheErrorBit) {
+  for (const char* isx13 : {"0", "10"}) {
+    SCOPED_TRACE(isx13);
+    platform::power_up();
+    fit_arm();
+    ASSERT_EQ(host(std::string("I5113=") + isx13), "");
+    stops_with(RUN_TIME_BY_USER, {"TM400 TA100 TS0", "X600 Y100"});
+  }
+}
+
+TEST_F(KinematicStops, AHostThatSetsTheErrorBit) {
+  fit_arm();
+  ASSERT_EQ(host("M5182=1"), "");
+  EXPECT_EQ(cs().error, RUN_TIME_NONE) << "nothing runs";
+  store({"TM400 TA100 TS0", "X300 Y-200"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(300);
+  EXPECT_TRUE(run_is_running(0)) << "what was set before the start means nothing";
+  ASSERT_EQ(host("M5182=1"), "");
+  platform::servo_ticks(3);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(cs().error, RUN_TIME_BY_USER);
+}
+
+// PVT, SPLINE, RAPID, PSET, DELAY: whatever asks.
+TEST_F(KinematicStops, InEachMode) {
+  const Lines programs[] = {{"PVT100", "X600:0"}, {"SPLINE1 TM100", "X600"}, {"RAPID X600"}, {"PSET X600"}};
+  for (const Lines& lines : programs) {
+    SCOPED_TRACE(lines.front());
+    platform::power_up();
+    fit_arm();
+    const std::int64_t bias = motors[0].bias;
+    stops_with(RUN_TIME_BY_USER, lines);
+    EXPECT_EQ(motors[0].bias, bias);
+  }
+}
+
+TEST_F(KinematicStops, AnErrorStaysUntilTheNextStart) {
+  fit_arm();
+  stops_with(RUN_TIME_BY_USER, {"TM400 TA100 TS0", "X600 Y100"});
+  store({"TM100 TA50 TS0", "X350"});
+  run();
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  EXPECT_NEAR(hand().x, 350, 1e-3);
+}
+
+TEST_F(KinematicStops, WhatIsNotThereIsRefused) {
+  fit({"I", "I"});
+  store({"TM100 TA50 TS0", "X350"});
+  ASSERT_EQ(host("I5150=1"), "");
+  EXPECT_EQ(host("B1R"), "ERR015");
+  EXPECT_EQ(host("B1S"), "ERR015");
+  EXPECT_EQ(host("PMATCH"), "ERR015");
+  program("FORWARD", arm::forward());
+  EXPECT_EQ(host("B1R"), "ERR015") << "without an inverse program";
+  EXPECT_EQ(host("PMATCH"), "ERR015");
+  program("INVERSE", arm::inverse());
+  EXPECT_EQ(host("PMATCH"), "");
+  ASSERT_EQ(host("OPEN INVERSE"), "");
+  EXPECT_EQ(host("PMATCH"), "ERR015") << "while it is open";
+  ASSERT_EQ(host("CLEAR CLOSE I5150=0 B1"), "");
+  EXPECT_EQ(host("PMATCH"), "") << "nothing is asked for";
+  EXPECT_EQ(host("R"), "");
+}
+
+TEST_F(KinematicStops, AForwardProgramAloneIsEnoughForDefinedMotors) {
+  fit({"1000X"});
+  store({"TM100 TA50 TS0", "X3"});
+  program("FORWARD", {"Q7=P1/1000 P4=P4+1"});
+  ASSERT_EQ(host("I5150=1"), "");
+  run();
+  EXPECT_EQ(p(4), 1);
+  EXPECT_EQ(at(1), 3000);
+}
+
+TEST_F(KinematicStops, BlocksThatDoNotFitTogether) {
+  fit_arm();
+  store({"TM100 TA50 TS0", "X350"});
+  ASSERT_EQ(host("OPEN INVERSE CLEAR"), "");
+  ASSERT_EQ(host("WHILE(1=1)"), "");
+  EXPECT_EQ(host("CLOSE"), "ERR009");
+  EXPECT_EQ(host("B1R"), "ERR016");
+  EXPECT_EQ(host("PMATCH"), "ERR016");
+}
+
+TEST_F(KinematicStops, PmatchWhileMovesExecute) {
+  fit_arm();
+  store({"TM400 TA100 TS0", "X300 Y-200"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(300);
+  EXPECT_EQ(host("PMATCH"), "ERR001");
+  platform::servo_ticks(ticks_of(400));
+  EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+// An abort at any pause of a program: nothing of it is left, and the next run is as the first.
+TEST_F(KinematicStops, AnAbortInTheMiddle) {
+  fit_arm();
+  ASSERT_EQ(host("I5113=10"), "");
+  store({"TM100 TA50 TS0", "X350", "X300"});
+  for (unsigned at_pause = 1; at_pause < 200; at_pause += 7) {
+    ASSERT_EQ(host("&1B1R"), "");
+    unsigned pauses = 0;
+    for (int i = 0; i < 60 && pauses < at_pause; ++i) {
+      platform::real_time_in_slices([&] {
+        if (++pauses == at_pause) run_abort(0);
+      });
+      platform::servo_ticks(1);
+    }
+    platform::servo_ticks(1200);
+    EXPECT_FALSE(run_is_running(0));
+  }
+  run();
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+TEST_F(KinematicStops, AnAbortOnThePath) {
+  fit_arm();
+  ASSERT_EQ(host("I5113=10 I115=1 I215=1"), "");
+  store({"TM400 TA100 TS0", "X300 Y-200"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(500);
+  ASSERT_EQ(host("A"), "");
+  platform::servo_ticks(600);
+  EXPECT_FALSE(run_is_running(0));
+  const arm::Point stood = hand();
+  ASSERT_EQ(host("PMATCH"), "");
+  platform::servo_ticks(3);
+  EXPECT_NEAR(axis(AXIS_X), stood.x, 1e-4);
+  EXPECT_NEAR(axis(AXIS_Y), stood.y, 1e-4);
+  run();
+  EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+}  // namespace

@@ -1,0 +1,112 @@
+// What kinematic programs cost on the cross-compiled image: cycles of the CPU on the stack of slices, a segment, and
+// the longest way from pause to pause.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "testbench/unit/firmware_platform/image_board.h"
+
+namespace brick {
+namespace {
+
+constexpr std::uint32_t kSideStack = 0x20000000, kSideStackBytes = 8192;
+
+class KinematicsImage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    EXPECT_EQ(board.send("I6=1 I3=2\r"), "\x06");
+    accepted("I68=15 I15=0");
+  }
+  void accepted(const std::string& line) { ASSERT_EQ(board.send(line + "\r"), "\x06") << line; }
+  double value(const std::string& name) { return std::stod(board.send(name + "\r")); }
+  static std::string text(int n) { return std::to_string(n); }
+
+  void motor(int n, int cs, const std::string& definition) {
+    accepted("I" + text(n) + "00=1 I" + text(n) + "24=$120001 I" + text(n) + "11=0");
+    accepted("&" + text(cs) + "#" + text(n) + "->" + definition);
+  }
+  // An arm of two joints, its elbow at 60 degrees when its motors are at 0.
+  void fit_arm(int cs, int isx13) {
+    const std::string a = text(2 * cs - 1), b = text(2 * cs), error = "M" + text(5082 + 100 * cs);
+    motor(2 * cs - 1, cs, "I");
+    motor(2 * cs, cs, "I");
+    accepted("OPEN FORWARD CLEAR");
+    accepted("Q30=P" + a + "/1000 Q31=Q30+60+P" + b + "/1000");
+    accepted("Q7=300*COS(Q30)+250*COS(Q31) Q8=300*SIN(Q30)+250*SIN(Q31) CLOSE");
+    accepted("OPEN INVERSE CLEAR");
+    accepted("Q20=(Q7*Q7+Q8*Q8-152500)/150000 IF (ABS(Q20)!>1)");
+    accepted("Q21=ACOS(Q20) Q0=Q7 Q22=ATAN2(Q8) Q0=300+250*COS(Q21) Q23=ATAN2(250*SIN(Q21))");
+    accepted("P" + a + "=(Q22-Q23)*1000 P" + b + "=(Q21-60)*1000 P100=P100+1");
+    accepted("ELSE " + error + "=1 ENDIF CLOSE");
+    char address[16];
+    std::snprintf(address, sizeof address, "%X", 0x203F + 0x100 * (cs - 1));
+    accepted(error + "->Y:$" + address + ",22");
+    accepted("I5" + text(cs) + "50=1 I5" + text(cs) + "13=" + text(isx13));
+  }
+  void path(int isx13) {
+    accepted("OPEN PROG 1 CLEAR TM100 TA20 TS0 INC Q50=0 WHILE(Q50<4)");
+    accepted("LINEAR X-20 Y5");
+    accepted("CIRCLE1 X20 Y-5 I10 J0 Q50=Q50+1");
+    accepted("ENDWHILE CLOSE");
+    segments = (8 * 100 + 20) / isx13 + 3;
+  }
+  // Of programs that run in systems 1 to `count` at once.
+  double run(int count) {
+    for (int cs = 1; cs <= count; ++cs) accepted("&" + text(cs) + "A");
+    board.run_ms(30);
+    std::uint64_t spent = 0, last = 0;
+    board.on_instruction = [&] {
+      const std::uint64_t now = board.cpu().cycle();
+      if (board.cpu().reg(2) - kSideStack < kSideStackBytes) spent += now - last;
+      last = now;
+    };
+    accepted("P100=0");
+    for (int cs = 1; cs <= count; ++cs) accepted("&" + text(cs) + "B1R");
+    for (int i = 0; i < 200 && running(count); ++i) board.run_ms(20);
+    board.on_instruction = nullptr;
+    EXPECT_FALSE(running(count));
+    for (int cs = 0; cs < count; ++cs) {
+      char name[16];
+      std::snprintf(name, sizeof name, "RY$%X", 0x2014 + 0x100 * cs);
+      EXPECT_EQ(value(name), 0) << "a run-time error of &" << cs + 1;
+    }
+    return static_cast<double>(spent) / (count * segments);
+  }
+  bool running(int count) {
+    for (int cs = 1; cs <= count; ++cs)
+      if ((std::stoul(board.send("&" + text(cs) + "??\r").substr(0, 6), nullptr, 16) & 1u) != 0) return true;
+    return false;
+  }
+
+  double segments = 0;
+  ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
+};
+
+// With all others beside it, half of the time is for planning: 39,322 cycles a ms.
+TEST_F(KinematicsImage, ASegmentOfAnArm) {
+  motor(1, 1, "1000X");
+  motor(2, 1, "1000Y");
+  accepted("I5113=5");
+  path(5);
+  const double plain = run(1);
+  fit_arm(1, 5);
+  path(5);
+  const double arm = run(1);
+  EXPECT_NEAR(value("P100"), segments, 3) << "executions of the inverse program";
+  std::printf("%.0f cycles a segment by definitions, %.0f by the inverse program\n", plain, arm);
+  RecordProperty("cycles", std::to_string(arm));
+  EXPECT_LT(arm / 5, ImageBoard::kCyclesPerMs / 2);
+}
+
+TEST_F(KinematicsImage, TwoArmsAtOnce) {
+  for (int cs = 1; cs <= 2; ++cs) fit_arm(cs, 10);
+  path(10);
+  const double cycles = run(2);
+  std::printf("%.0f cycles a segment of each of two arms\n", cycles);
+  EXPECT_LT(2 * cycles / 10, ImageBoard::kCyclesPerMs / 2);
+}
+
+}  // namespace
+}  // namespace brick

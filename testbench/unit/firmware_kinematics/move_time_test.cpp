@@ -1,0 +1,64 @@
+// MOVETIME (motion:8.3): the timer Isx11 counts down to the end of the next move.
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+namespace {
+
+using namespace moving_motors;
+
+class MoveTime : public MovingMotors {
+ protected:
+  // ms before the end of the first move (from rest) at which I5111 reaches 0; -1: it never was above 0.
+  static double left_at_zero(const Lines& lines, double length) {
+    store(lines);
+    double zero = -1;
+    bool counted = false;
+    run([&](double t) {
+      const double value = std::stod(host("I5111"));
+      counted = counted || value > 0;
+      if (counted && value <= 0 && zero < 0) zero = t;
+    });
+    return counted ? length - zero : -1;
+  }
+  void SetUp() override {
+    MovingMotors::SetUp();
+    fit({"1000X"});
+  }
+};
+
+constexpr double kSlack = 4 * kTickMs;  // the real-time task comes every third servo interrupt
+
+TEST_F(MoveTime, ReachesZeroIsxFourteenBehindTheEnd) {
+  for (const double ahead : {-20.0, -0.5, 30.0}) {
+    SCOPED_TRACE(ahead);
+    ASSERT_EQ(host("I5114=" + std::to_string(ahead) + " I5111=0"), "");
+    EXPECT_NEAR(left_at_zero({"TM100 TA40 TS10", "MOVETIME X1", "DWELL100", "X0"}, 140), -ahead, kSlack);
+  }
+}
+
+TEST_F(MoveTime, ZeroIsOff) {
+  ASSERT_EQ(host("I5114=0"), "");
+  EXPECT_EQ(left_at_zero({"TM100 TA40 TS10", "MOVETIME X1"}, 140), -1);
+}
+
+TEST_F(MoveTime, OfTheNextMoveOnly) {
+  ASSERT_EQ(host("I5114=-1"), "");
+  EXPECT_NEAR(left_at_zero({"TM100 TA40 TS10", "MVTM", "P1=1", "X1", "DWELL200", "X2", "DWELL200"}, 140), 1, kSlack);
+  EXPECT_LT(std::stod(host("I5111")), 0) << "the second one does not load it";
+}
+
+TEST_F(MoveTime, InEachMode) {
+  ASSERT_EQ(host("I5114=-1 I5113=10"), "");
+  EXPECT_NEAR(left_at_zero({"TM100 TA40 TS10", "X1 MOVETIME", "DWELL100"}, 140), 1, kSlack) << "in segments";
+  ASSERT_EQ(host("I5113=0"), "");
+  EXPECT_NEAR(left_at_zero({"PVT120", "MOVETIME X2:0", "DWELL100"}, 120), 1, kSlack);
+  EXPECT_EQ(left_at_zero({"RAPID", "MOVETIME X3"}, 0), -1) << "nobody knows how long";
+}
+
+TEST_F(MoveTime, LongerThanNothingAtAll) {
+  ASSERT_EQ(host("I5114=-500 I5111=77"), "");
+  store({"TM100 TA40 TS10", "MOVETIME X1"});
+  run();
+  EXPECT_LE(std::stod(host("I5111")), 0);
+}
+
+}  // namespace

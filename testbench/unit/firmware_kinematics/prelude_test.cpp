@@ -1,0 +1,122 @@
+// PRELUDE (motion:8.4): a call before each line that begins with a move.
+#include "testbench/unit/firmware_program/motion_program.h"
+
+namespace {
+
+using motion_program::Lines;
+using motion_program::MotionProgram;
+using platform::host;
+
+class Prelude : public MotionProgram {
+ protected:
+  void SetUp() override {
+    MotionProgram::SetUp();
+    ASSERT_EQ(host("P0..20=0 I5187=1 I5188=0"), "");
+  }
+};
+
+TEST_F(Prelude, ComesBeforeEachMove) {
+  store(500, {"P1=P1+1", "RETURN"});
+  run({"F1000", "X1", "PRELUDE1 CALL500", "X2", "P2=P1", "Y3 X4", "PRELUDE0", "X5"});
+  EXPECT_EQ(p(1), 2);
+  EXPECT_EQ(p(2), 1) << "lines without a move have none";
+  EXPECT_EQ(x(), 5);
+}
+
+TEST_F(Prelude, ReadTakesTheMove) {
+  store(500, {"READ(X,Y)", "X(Q124*2)", "P1=Q100", "RETURN"});
+  run({"F1000", "PRELUDE1 CALL500", "X3 Y4", "P9=1"});
+  EXPECT_EQ(x(), 6) << "the move within is executed as it stands";
+  EXPECT_EQ(p(1), (1 << 23) + (1 << 24));
+  EXPECT_EQ(coordinate_systems[0].position[AXIS_Y], 0) << "what was read is not executed";
+  EXPECT_EQ(p(9), 1);
+}
+
+TEST_F(Prelude, WhatIsNotReadIsExecuted) {
+  store(500, {"READ(X)", "P1=Q124", "RETURN"});
+  run({"F1000", "PRELUDE1 CALL500", "X3 Y4"});
+  EXPECT_EQ(p(1), 3);
+  EXPECT_EQ(x(), 0);
+  EXPECT_EQ(coordinate_systems[0].position[AXIS_Y], 4);
+}
+
+TEST_F(Prelude, ByLabelsAndCodes) {
+  store(500, {"N100 P1=P1+1", "RETURN", "N200 P2=P2+1", "RETURN"});
+  store(1000, {"N5000 P3=P3+1", "RETURN"});
+  store(1001, {"N6000 P4=P4+1", "RETURN"});
+  run({"F1000 P5=500.001", "PRELUDE1 CALL(P5)", "P5=7", "X0", "PRELUDE1 CALL500.002", "X1", "PRELUDE1 G5", "X2",
+       "PRELUDE1M6", "X3"});
+  EXPECT_EQ(p(1), 1);
+  EXPECT_EQ(p(2), 1);
+  EXPECT_EQ(p(3), 1);
+  EXPECT_EQ(p(4), 1) << "each supersedes the one before";
+}
+
+TEST_F(Prelude, BehindALabelOnly) {
+  store(500, {"P1=P1+1", "RETURN"});
+  run({"F1000", "PRELUDE1 CALL500", "N10 X1", "N20N30 X2", "P2=1 X3", "IF(P2=1) X4", "LINEAR X5"});
+  EXPECT_EQ(p(1), 2) << "behind something else the move has none";
+  EXPECT_EQ(x(), 5);
+}
+
+TEST_F(Prelude, ExpressionsAndLoops) {
+  store(500, {"READ(X)", "P1=P1+Q124", "RETURN"});
+  run({"F1000", "PRELUDE1 CALL500", "WHILE(P2<5)", "P2=P2+1", "X(P2*10)", "ENDWHILE"});
+  EXPECT_EQ(p(1), 150);
+}
+
+TEST_F(Prelude, NotWithinCalls) {
+  store(500, {"P1=P1+1", "X7", "RETURN"});
+  store(600, {"X9", "RETURN"});
+  run({"F1000", "PRELUDE1 CALL500", "CALL600", "GOSUB50", "GOTO60", "N50 X3", "RETURN", "N60 X1"});
+  EXPECT_EQ(p(1), 1);
+  EXPECT_EQ(x(), 1);
+}
+
+TEST_F(Prelude, EndsWithTheProgram) {
+  store(500, {"P1=P1+1", "RETURN"});
+  run({"F1000", "PRELUDE1 CALL500", "X1"});
+  EXPECT_EQ(p(1), 1);
+  ASSERT_EQ(host("R"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(p(1), 2);
+  run({"F1000", "X2"});
+  EXPECT_EQ(p(1), 2);
+}
+
+TEST_F(Prelude, InARotaryBuffer) {
+  store(500, {"READ(X)", "P1=P1+Q124", "RETURN"});
+  ASSERT_EQ(host("&1DEFINE ROT 200 B0"), "");
+  ASSERT_EQ(host("OPEN ROT P3=5"), "");
+  for (const char* line : {"F1000", "PRELUDE1 CALL500", "X1", "X(P3*2) Y2", "PRELUDE0", "X4"})
+    ASSERT_EQ(host(line), "") << line;
+  ASSERT_EQ(host("CLOSE R"), "");
+  platform::servo_ticks(3000);
+  EXPECT_EQ(p(1), 11);
+  EXPECT_EQ(x(), 4);
+  EXPECT_EQ(coordinate_systems[0].position[AXIS_Y], 2);
+  EXPECT_FALSE(error());
+}
+
+TEST_F(Prelude, WhatIsNoCallIsARunTimeError) {
+  for (const char* line : {"PRELUDE1", "PRELUDE1 X1", "PRELUDE2 CALL500", "PRELUDE1 GOSUB5", "PRELUDE1 GOTO5"}) {
+    SCOPED_TRACE(line);
+    run({"F1000", line, "X1"});
+    EXPECT_TRUE(error());
+    EXPECT_EQ(coordinate_systems[0].error, RUN_TIME_STATEMENT);
+  }
+  run({"F1000", "PRELUDE1 CALL501", "X1"});
+  EXPECT_EQ(coordinate_systems[0].error, RUN_TIME_PROGRAM) << "at the move, when the program is not there";
+  EXPECT_EQ(x(), 0);
+}
+
+TEST_F(Prelude, AStepIsTheLineWithIt) {
+  store(500, {"P1=P1+1", "RETURN"});
+  store(1, {"F1000", "PRELUDE1 CALL500", "X1", "X2"});
+  ASSERT_EQ(host("B1S"), "");
+  ASSERT_TRUE(finish());
+  EXPECT_EQ(x(), 1);
+  EXPECT_EQ(p(1), 1);
+}
+
+}  // namespace

@@ -1,0 +1,67 @@
+// Integer divisions, roots and directions of the planner against doubles of the machine.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+extern "C" {
+#include "firmware/motion/fixed_point.h"
+#include "firmware/motion/fixed_ratio.h"
+#include "firmware/motion/fixed_turn.h"
+}
+
+namespace {
+
+constexpr double kPart = 4611686018427387904.0;  // 2^62
+
+TEST(Fixed, SharesAreRoundedToNearest) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const auto value = static_cast<std::int64_t>(random()) >> (3 + random() % 60);
+    const auto part = static_cast<std::int64_t>(random()) >> (1 + random() % 3);
+    const __int128 exact = static_cast<__int128>(value) * part;
+    const auto expected = static_cast<std::int64_t>((exact + (static_cast<__int128>(1) << 61)) >> 62);
+    ASSERT_NEAR(static_cast<double>(fixed_share(value, part) - expected), 0, 1) << value << " " << part;
+  }
+  EXPECT_EQ(fixed_share(1000, std::int64_t{1} << 62), 1000);
+  EXPECT_EQ(fixed_share(-1000, std::int64_t{1} << 61), -500);
+}
+
+TEST(Fixed, Ratios) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 20000; ++i) {
+    const auto by = static_cast<std::int64_t>((random() >> (2 + random() % 60)) + 1);
+    const auto value = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(by + 1));
+    const double expected = static_cast<double>(value) / static_cast<double>(by);
+    ASSERT_NEAR(static_cast<double>(fixed_ratio(value, by)) / kPart, expected, 1e-15) << value << " / " << by;
+  }
+  for (int bit = 0; bit < 62; ++bit) {
+    const std::int64_t by = std::int64_t{1} << bit;
+    EXPECT_NEAR(static_cast<double>(fixed_ratio(by, by)) / kPart, 1, 1e-16);
+  }
+}
+
+TEST(Fixed, Roots) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint32_t square = static_cast<std::uint32_t>(random()) >> (2 + random() % 30);
+    const double expected = std::sqrt(square / 1073741824.0) * 1073741824.0;
+    ASSERT_NEAR(fixed_root(square), expected, expected / (1 << 26) + 1) << square;
+  }
+  EXPECT_EQ(fixed_root(1 << 30), 1u << 30);
+  EXPECT_EQ(fixed_root(0), 0u);
+}
+
+TEST(Fixed, Directions) {
+  constexpr double kTurn = 288230376151711744.0, kPi = 3.14159265358979323846;  // 2^58
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 20000; ++i) {
+    const auto angle = static_cast<std::int64_t>(random() >> (2 + random() % 20));
+    const double radian = std::remainder(static_cast<double>(angle) / kTurn, 1) * 2 * kPi;
+    const fixed_direction d = fixed_direction_of(angle);
+    ASSERT_NEAR(static_cast<double>(d.cosine) / kPart, std::cos(radian), 2e-14) << angle;
+    ASSERT_NEAR(static_cast<double>(d.sine) / kPart, std::sin(radian), 2e-14) << angle;
+  }
+}
+
+}  // namespace
