@@ -59,7 +59,8 @@ struct BenchContext {
   bool negative;
   TimingBook& timing;  // what judges the buses of this run
   bool forced_wait_states;
-  plant::Plant* plant;  // of --plant; nullptr: none
+  plant::Plant* plant;     // of --plant; nullptr: none
+  std::uint64_t size = 0;  // --size: how much of what a bench can have more of; 0: as much as it has by itself
 
   std::string ask(const std::string& line) const;            // data lines joined by '|'
   std::vector<long> numbers(const std::string& line) const;  // data lines as numbers

@@ -47,6 +47,9 @@ struct Commands {
     add_run_options(*run, run_options, "lockstep");
     add_plant_options(*run, run_options);
     run->add_flag("--negative", negative, "negative control: a deliberate fault, with which the bench must fail");
+    run->add_option("--size", run_options.size,
+                    "how much of a bench that has no end of its own: lines of rotary-machining")
+        ->type_name("N");
     run->callback([this, run] {
       if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
       chosen = [this] { return run_bench(all_benches(), run_options, bench, negative); };

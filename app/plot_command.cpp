@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kWidth = 900, kPanelHeight = 190, kMargin = 60, kPathSize = 760;
-constexpr std::size_t kMostNames = 9;  // that a legend shows
+constexpr std::size_t kMostNames = 9;                 // that a legend shows
+constexpr std::size_t kLegend = 28, kLegendLine = 9;  // characters: its least width, the line beside a name
 
 // Names of a line of RFC 4180.
 std::vector<std::string> fields(const std::string& line) {
@@ -81,6 +82,7 @@ std::string label_of(const std::string& kind) {
   if (kind == "position" || kind == "error") return kind + ", counts";
   if (kind == "velocity") return kind + ", counts/ms";
   if (kind == "acceleration") return kind + ", counts/ms^2";
+  if (kind == "feed") return kind + ", units/ms";
   return kind;
 }
 
@@ -164,12 +166,16 @@ std::string series_script(const PlotOptions& o, const std::vector<Source>& sourc
     if (std::find(kinds.begin(), kinds.end(), l.kind) == kinds.end())
       throw UsageError(fmt::format("--limit {}: nothing of that kind is drawn; expected {}", beginning_of(l.kind),
                                    fmt::join(kinds, ", ")));
+  std::size_t legend = kLegend;  // its width in characters
+  for (const Source& s : sources)
+    for (const Column& column : s.columns)
+      legend = std::max(legend, s.prefix.size() + column.name.size() + kLegendLine);
   std::string script = terminal(o, kPanelHeight * static_cast<int>(kinds.size()) + kMargin);
   script += fmt::format(
       "\nset output {}\nset datafile separator ','\nset xrange {}\nset grid lc rgb '#dddddd'\nset key outside right "
       "top\n"
       "set lmargin 12\nset rmargin {}\nset multiplot layout {},1 title {}\n",
-      quoted(o.output), range(o), 28, kinds.size(), quoted(o.title));
+      quoted(o.output), range(o), legend, kinds.size(), quoted(o.title));
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     std::vector<std::string> curves;
     int colour = 0;
@@ -196,7 +202,8 @@ std::string path_script(const PlotOptions& o, const std::vector<Source>& sources
   std::string script =
       terminal(o, kPathSize) + fmt::format(
                                    "\nset output {}\nset datafile separator ','\nset grid lc rgb '#dddddd'\n"
-                                   "set size ratio -1\nset key off\nset title {}\nset cblabel 'speed, per ms'\n"
+                                   "set size ratio -1\nset offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\nset "
+                                   "key off\nset title {}\nset cblabel 'speed, per ms'\n"
                                    "set palette defined (0 '#440154', 1 '#31688e', 2 '#35b779', 3 '#fde725')\n",
                                    quoted(o.output), quoted(o.title));
   const std::string window = range(o);

@@ -17,13 +17,15 @@ namespace {
 
 constexpr std::uint32_t kMainMemory = 0xC0000000;  // docs/architecture.md, CPU memory map
 constexpr std::uint32_t kMainWords = 0x40000;
-constexpr unsigned kMotors = 32, kWordBits = 24;
+constexpr unsigned kMotors = 32, kSystems = 16, kWordBits = 24;
 constexpr unsigned kMotorWords = 0x80;  // firmware:1.10; offsets in them:
 constexpr std::uint32_t kCommanded = 0x08, kPositionScale = 0x09, kActual = 0x0B, kOutput = 0x3F;
+constexpr std::uint32_t kSystemWords = 0x2000, kSystemStride = 0x100, kRotary = 0x3E;  // firmware:1.10/9
 constexpr const char* kMotorNumbers[] = {"commanded", "actual", "error", "velocity", "acceleration", "output"};
 constexpr const char* kExpected =
-    "a signal of docs/signals.md, motorN.commanded, actual, error, velocity, acceleration or output, or a word of the "
-    "main memory as X:$BF,8,16,S, D:$88 or L:$1000, with /divisor behind it";
+    "a signal of docs/signals.md, motorN.commanded, actual, error, velocity, acceleration or output, csN.lines or "
+    "words, feed:1/1000,2/1000, or a word of the main memory as X:$BF,8,16,S, D:$88 or L:$1000, with /divisor behind "
+    "it";
 
 std::uint32_t word(Machine& machine, bool x, std::uint32_t address) {
   const std::uint8_t* p = machine.cpu().memory(kMainMemory + 8 * address + (x ? 4 : 0), 4);
@@ -72,6 +74,22 @@ std::vector<std::string> parts(const std::string& text, const std::string& divis
   return list;
 }
 
+// What stands behind a slash, which is taken away with it; 1 without one.
+double take_divisor(const std::string& item, std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) return 1;
+  double divisor = 0;
+  std::size_t used = 0;
+  const std::string digits = text.substr(slash + 1);
+  try {
+    divisor = std::stod(digits, &used);
+  } catch (const std::exception&) {}
+  if (used == 0 || used != digits.size() || !std::isfinite(divisor) || divisor == 0)
+    refuse(item, fmt::format("`{}` is no divisor", digits));
+  text.resize(slash);
+  return divisor;
+}
+
 std::function<double()> definition(Machine& machine, const std::string& item, const std::string& text) {
   const char form = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   const auto fields = parts(text.substr(2), ",");
@@ -97,26 +115,22 @@ std::function<double()> definition(Machine& machine, const std::string& item, co
   };
 }
 
+std::string column_name(const std::string& item, std::size_t equals) {
+  const std::string name = item.substr(0, equals);
+  if (name.empty() || name.find('"') != std::string::npos) refuse(item, "no name before `=`");
+  return name;
+}
+
 std::optional<RecordColumn> memory_column(Machine& machine, const std::string& item) {
   const std::size_t equals = item.find('=');
   std::string name = item, text = item;
-  if (equals != std::string::npos) name = item.substr(0, equals), text = item.substr(equals + 1);
+  if (equals != std::string::npos) text = item.substr(equals + 1);
   if (text.size() < 3 || text[1] != ':' || std::string("XYDLxydl").find(text[0]) == std::string::npos) {
     if (equals != std::string::npos) refuse(item, "no word of the main memory behind `=`");
     return std::nullopt;
   }
-  if (name.empty() || name.find('"') != std::string::npos) refuse(item, "no name before `=`");
-  double divisor = 1;
-  if (const std::size_t slash = text.find('/'); slash != std::string::npos) {
-    std::size_t used = 0;
-    const std::string digits = text.substr(slash + 1);
-    try {
-      divisor = std::stod(digits, &used);
-    } catch (const std::exception&) {}
-    if (used == 0 || used != digits.size() || !std::isfinite(divisor) || divisor == 0)
-      refuse(item, fmt::format("`{}` is no divisor", digits));
-    text.resize(slash);
-  }
+  if (equals != std::string::npos) name = column_name(item, equals);
+  const double divisor = take_divisor(item, text);
   return RecordColumn{
       name, [value = definition(machine, item, text), divisor](const RecordRow&) { return value() / divisor; }};
 }
@@ -150,6 +164,30 @@ std::function<double(const RecordRow&)> motor_number(Machine& machine, unsigned 
   return [&machine, base](const RecordRow&) { return signed_of(word(machine, true, base + kOutput), kWordBits) / 256; };
 }
 
+// `feed:1/1000,2/500`, `name=feed:1`: the vector of these motors' velocities, each by counts a unit.
+std::optional<RecordColumn> feed_column(Machine& machine, const std::string& item) {
+  static const std::string kFeed = "feed:";
+  const std::size_t equals = item.find('=');
+  const std::string text = equals == std::string::npos ? item : item.substr(equals + 1);
+  if (text.compare(0, kFeed.size(), kFeed) != 0) return std::nullopt;
+  struct Part {
+    std::function<double(const RecordRow&)> velocity;
+    double divisor;
+  };
+  std::vector<Part> sum;
+  for (std::string part : parts(text.substr(kFeed.size()), ",")) {
+    const double divisor = take_divisor(item, part);
+    const std::uint32_t motor = number(item, part, kMotors);
+    if (motor == 0) refuse(item, "there is no motor 0");
+    sum.push_back({motor_number(machine, motor, "velocity"), divisor});
+  }
+  return RecordColumn{equals == std::string::npos ? item : column_name(item, equals), [sum](const RecordRow& row) {
+                        double square = 0;
+                        for (const Part& part : sum) square += std::pow(part.velocity(row) / part.divisor, 2);
+                        return std::sqrt(square);
+                      }};
+}
+
 bool matches(const std::string& pattern, const std::string& name) {
   return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
 }
@@ -160,6 +198,11 @@ void add_named(Machine& machine, const std::string& item, std::vector<RecordColu
     for (const char* what : kMotorNumbers)
       if (const std::string name = fmt::format("motor{}.{}", motor, what); matches(item, name))
         columns.push_back({name, motor_number(machine, motor, what)});
+  for (unsigned system = 1; system <= kSystems; ++system)
+    for (const bool x : {true, false})
+      if (const std::string name = fmt::format("cs{}.{}", system, x ? "lines" : "words"); matches(item, name))
+        columns.push_back({name, [&machine, x, at = kSystemWords + kSystemStride * (system - 1) + kRotary](
+                                     const RecordRow&) { return static_cast<double>(word(machine, x, at)); }});
   Signals& signals = machine.signals();
   for (Signals::Id id = 0; id < signals.size(); ++id) {
     const Signals::Info& info = signals.info(id);
@@ -179,7 +222,9 @@ std::vector<RecordColumn> record_columns(Machine& machine, const std::string& te
   std::vector<RecordColumn> columns;
   for (const std::string& item : parts(text, " ;")) {
     if (item.empty()) continue;
-    if (auto column = memory_column(machine, item))
+    if (auto feed = feed_column(machine, item))
+      columns.push_back(std::move(*feed));
+    else if (auto column = memory_column(machine, item))
       columns.push_back(std::move(*column));
     else
       add_named(machine, item, columns);

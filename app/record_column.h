@@ -24,7 +24,8 @@ struct RecordColumn {
 // The columns that `text` asks for: items divided by blanks or semicolons, each
 //   a signal of docs/signals.md by name or glob, text signals apart;
 //   motorN.commanded, actual, error (counts), velocity, acceleration (of commanded; counts/ms, counts/ms^2), output
-//   (bits of 16); N may be a glob;
+//   (bits of 16); csN.lines, words (of the rotary buffer that are not calculated); N may be a glob;
+//   feed:N/counts a unit,... (the vector of these motors' velocities, a ms), also `name=feed:...`;
 //   an M definition X:, Y: (address, first bit, width, S or U), D: or L: of the main memory, also `name=definition`,
 //   with `/number` behind it divided by that.
 // Throws UsageError that says which item is wrong, and what was expected.

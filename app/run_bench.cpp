@@ -43,6 +43,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
                                  bench.need.what, config.board.name, bench.board));
   if (!bench.firmware) config.firmware.clear();
   if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
+  const std::uint64_t size = parse_count("--size", options.size);
   const SetUp set_up(options);
   if (!set_up.empty() && !bench.firmware)
     throw UsageError(fmt::format("--load {}: nobody takes it, because no firmware runs in {}; expected no --load",
@@ -64,9 +65,9 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
         if (!up) return;
         set_up.send(simulation);
       }
-      BenchContext context{simulation.machine(),   simulation.bus(),  simulation.link(), report,
-                           config.board,           config.seed,       negative,          simulation.timing(),
-                           config.bcr.has_value(), simulation.plant()};
+      BenchContext context{
+          simulation.machine(), simulation.bus(),       simulation.link(),  report, config.board, config.seed, negative,
+          simulation.timing(),  config.bcr.has_value(), simulation.plant(), size};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

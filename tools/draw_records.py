@@ -16,11 +16,31 @@ from common import ROOT
 
 IMAGES = ROOT / "docs/images"
 DAC8 = ["--plant", "dac8", "--load", "dac8"]
-# picture: script, columns, options of brick plot
+
+
+def contour(*orders, ahead):
+    """A corner, half a circle and a way back of two motors at 40 counts/ms, with Isx20."""
+    return ["#1J/", "#2J/", "@wait 20ms", "&1 UNDEFINE ALL #1->100X #2->100Y", "I116=40 I117=1 I216=40 I217=1",
+            f"I5190=1000 I5192=0 I5198=0 I5113=2 I5120={ahead}", "DELETE GATHER", "DEFINE LOOKAHEAD 120,0",
+            "OPEN PROG 1 CLEAR", "NORMAL K-1 INC F400 TA10 TS0", "X16", "Y10", "CIRCLE2 X-12 I-6 J0", "LINEAR Y-8 X2",
+            "CLOSE", "B1R", *orders]
+
+
+# picture: scripts by the name of their record, the second beside the first; columns, options of brick plot
 PICTURES = {
-    "record": (["#1J/", "@wait 30ms", "#1J:4000", "@wait 220ms"], "motor1.velocity motor1.acceleration",
+    "record": ({"record": ["#1J/", "@wait 30ms", "#1J:4000", "@wait 220ms"]}, "motor1.velocity motor1.acceleration",
                ["--from", "60ms", "--limit", "velocity=32", "--limit", "acceleration=1",
                 "--title", "#1J:4000"]),
+    "lookahead": ({"limited": contour("@wait 280ms", ahead=40), "unlimited": contour("@wait 280ms", ahead=0)},
+                  "motor1.velocity motor1.acceleration",
+                  ["--from", "60ms", "--to", "340ms", "--limit", "velocity=40", "--limit", "acceleration=1",
+                   "--title", "limited by lookahead, and without it"]),
+    "corner": ({"corner": contour("@wait 280ms", ahead=40)}, "motor1.commanded motor2.commanded",
+               ["--xy", "motor1.commanded motor2.commanded", "--from", "60ms", "--to", "340ms",
+                "--title", "speed along the path, counts/ms"]),
+    "reversal": ({"reversal": contour("@wait 110ms", "<", "@wait 90ms", ">", "@wait 240ms", ahead=40)},
+                 "motor1.commanded motor2.commanded feed=feed:1,2 motor1.acceleration",
+                 ["--from", "60ms", "--limit", "acceleration=1", "--title", "back with <, forwards with >"]),
 }
 
 
@@ -32,11 +52,13 @@ def run(*command, **options):
 
 def draw(brick, name, folder):
     """The picture as text, with the number of what it is made of."""
-    script, columns, options = PICTURES[name]
-    record, picture = pathlib.Path(folder, f"{name}.csv"), pathlib.Path(folder, f"{name}.svg")
-    run(brick, "exec", *DAC8, "--record", record, "--record-of", columns, "-", input="\n".join(script) + "\n")
-    run(brick, "plot", record, "-o", picture, *options)
-    number = hashlib.sha256(record.read_bytes() + repr(options).encode()).hexdigest()
+    scripts, columns, options = PICTURES[name]
+    picture, records = pathlib.Path(folder, f"{name}.svg"), []
+    for title, script in scripts.items():
+        records.append(pathlib.Path(folder, f"{title}.csv"))
+        run(brick, "exec", *DAC8, "--record", records[-1], "--record-of", columns, "-", input="\n".join(script) + "\n")
+    run(brick, "plot", records[0], *(["--beside", records[1]] if records[1:] else []), "-o", picture, *options)
+    number = hashlib.sha256(b"".join(r.read_bytes() for r in records) + repr(options).encode()).hexdigest()
     return picture.read_text().replace("<svg", f"<!-- record {number} -->\n<svg", 1)
 
 

@@ -108,15 +108,22 @@ double math_scale(double m, int exponent) {
   return b.value;
 }
 
+/* A product or a division takes some 400 cycles: no more than one of them from pause to pause. */
+static double paused(double value) {
+  mathematics_pause();
+  return value;
+}
+
 double math_divide(double a, double b) {
+  mathematics_pause();
   if (b == 0.0) return a < 0.0 ? -MATH_LARGEST : MATH_LARGEST;
-  return a / b;
+  return paused(a / b);
 }
 
 double math_modulo(double a, double b) {
   if (b == 0.0) return 0.0;
-  const double n = math_absolute(b), width = b > 0.0 ? n : 2.0 * n, from = b > 0.0 ? a : a + n;
-  const double rest = from - width * math_floor(from / width);
+  const double n = math_absolute(b), width = b > 0.0 ? n : n + n, from = b > 0.0 ? a : a + n;
+  const double rest = from - paused(width * math_floor(paused(from / width)));
   /* Rounding can give the upper end, and anything when the quotient has no fraction any more. */
   return (rest >= 0.0 && rest < width ? rest : 0.0) - (b > 0.0 ? 0.0 : n);
 }
@@ -126,20 +133,15 @@ double math_square_root(double x) {
   union bits b = {x};
   b.word = (b.word >> 1) + (UINT64_C(0x1FF8) << 48); /* halves the exponent: within 6 % of the root */
   double root = b.value;
-  for (int i = 0; i < 4; i++) {
-    root = 0.5 * (root + x / root);
-    mathematics_pause();
-  }
+  mathematics_pause();
+  for (int i = 0; i < 4; i++) { root = paused(0.5 * paused(root + paused(x / root))); }
   return root;
 }
 
 /* c[0] x^(n-1) + ... + c[n-1] */
 static double polynomial(double x, const double* c, unsigned n) {
   double p = c[0];
-  for (unsigned i = 1; i < n; i++) {
-    p = p * x + c[i];
-    mathematics_pause();
-  }
+  for (unsigned i = 1; i < n; i++) { p = paused(paused(p * x) + c[i]); }
   return p;
 }
 
@@ -147,23 +149,25 @@ static double polynomial(double x, const double* c, unsigned n) {
 static double sine_series(double x) {
   static const double TERMS[] = {-1.0 / 1307674368000.0, 1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0,
                                  -1.0 / 5040.0,          1.0 / 120.0,        -1.0 / 6.0};
-  double s = x * x;
-  return x + x * s * polynomial(s, TERMS, sizeof TERMS / sizeof TERMS[0]);
+  const double s = paused(x * x), cube = paused(x * s);
+  return x + paused(cube * polynomial(s, TERMS, sizeof TERMS / sizeof TERMS[0]));
 }
 
 static double cosine_series(double x) {
   static const double TERMS[] = {1.0 / 20922789888000.0, -1.0 / 87178291200.0, 1.0 / 479001600.0, -1.0 / 3628800.0,
                                  1.0 / 40320.0,          -1.0 / 720.0,         1.0 / 24.0};
-  double s = x * x;
-  return 1.0 - 0.5 * s + s * s * polynomial(s, TERMS, sizeof TERMS / sizeof TERMS[0]);
+  const double s = paused(x * x), fourth = paused(s * s), first = paused(1.0 - paused(0.5 * s));
+  return first + paused(fourth * polynomial(s, TERMS, sizeof TERMS / sizeof TERMS[0]));
 }
 
 /* Reduces to [-pi/4, pi/4] radians and returns the quadrant. Degrees are reduced before the conversion, so SIN(180) is
  * exactly 0. */
 static unsigned quadrant(double x, int degrees, double* reduced) {
   if (math_absolute(x) > MATH_LARGEST) x = 0.0; /* hardly anything of the angle is left */
-  double turns = math_floor(degrees ? x / 90.0 + 0.5 : x / (PI / 2.0) + 0.5);
-  *reduced = degrees ? (x - turns * 90.0) * (PI / 180.0) : (x - turns * HALF_PI_HIGH) - turns * HALF_PI_LOW;
+  mathematics_pause();
+  const double turns = paused(math_floor(paused(paused(x / (degrees ? 90.0 : PI / 2.0)) + 0.5)));
+  const double rest = paused(x - paused(turns * (degrees ? 90.0 : HALF_PI_HIGH)));
+  *reduced = degrees ? paused(rest * (PI / 180.0)) : paused(rest - paused(turns * HALF_PI_LOW));
   return (unsigned)(math_to_integer(turns) & 3);
 }
 
@@ -184,9 +188,11 @@ double math_cosine(double x, int degrees) {
   return circular(q + 1u, r);
 }
 
-double math_tangent(double x, int degrees) { return math_divide(math_sine(x, degrees), math_cosine(x, degrees)); }
+double math_tangent(double x, int degrees) {
+  return paused(math_divide(math_sine(x, degrees), math_cosine(x, degrees)));
+}
 
-/* A division costs as much as the rest of a step. */
+/* A division costs more than the rest of a step. */
 static const double odd_parts[] = {1.0 / 1.0,  1.0 / 3.0,  1.0 / 5.0,  1.0 / 7.0,  1.0 / 9.0,  1.0 / 11.0,
                                    1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0, 1.0 / 19.0, 1.0 / 21.0, 1.0 / 23.0};
 
@@ -194,40 +200,41 @@ static const double odd_parts[] = {1.0 / 1.0,  1.0 / 3.0,  1.0 / 5.0,  1.0 / 7.0
 static double arc_series(double x) {
   double factor = 1.0;
   for (int i = 0; i < 2; i++) {
-    x = x / (1.0 + math_square_root(1.0 + x * x));
+    x = paused(x / paused(1.0 + math_square_root(paused(1.0 + paused(x * x)))));
     factor *= 2.0;
   }
-  double s = x * x, sum = 0.0;
-  for (int k = 23; k >= 1; k -= 2) {
-    sum = odd_parts[k / 2] - s * sum;
-    mathematics_pause();
-  }
-  return factor * x * sum;
+  const double s = paused(x * x);
+  double sum = 0.0;
+  for (int k = 23; k >= 1; k -= 2) sum = paused(odd_parts[k / 2] - paused(s * sum));
+  return paused(paused(factor * x) * sum);
 }
 
 double math_arc_tangent(double x, int degrees) {
   double a = math_absolute(x);
-  double angle = a > 1.0 ? PI / 2.0 - arc_series(1.0 / a) : arc_series(a);
-  if (degrees) angle *= 180.0 / PI;
+  mathematics_pause();
+  double angle = a > 1.0 ? PI / 2.0 - arc_series(paused(1.0 / a)) : arc_series(a);
+  mathematics_pause();
+  if (degrees) angle = paused(angle * (180.0 / PI));
   return x < 0.0 ? -angle : angle;
 }
 
 double math_arc_tangent2(double y, double x, int degrees) {
   double half = degrees ? 180.0 : PI;
   if (x == 0.0) return y > 0.0 ? half / 2.0 : y < 0.0 ? -half / 2.0 : 0.0;
-  double angle = math_arc_tangent(y / x, degrees);
+  mathematics_pause();
+  double angle = math_arc_tangent(paused(y / x), degrees);
   if (x > 0.0) return angle;
   return y < 0.0 ? angle - half : angle + half;
 }
 
 double math_arc_sine(double x, int degrees) {
   if (math_absolute(x) > 1.0) return 0.0;
-  return math_arc_tangent2(x, math_square_root((1.0 - x) * (1.0 + x)), degrees);
+  return math_arc_tangent2(x, math_square_root(paused(paused(1.0 - x) * paused(1.0 + x))), degrees);
 }
 
 double math_arc_cosine(double x, int degrees) {
   if (math_absolute(x) > 1.0) return 0.0;
-  return math_arc_tangent2(math_square_root((1.0 - x) * (1.0 + x)), x, degrees);
+  return math_arc_tangent2(math_square_root(paused(paused(1.0 - x) * paused(1.0 + x))), x, degrees);
 }
 
 double math_logarithm(double x) {
@@ -238,22 +245,19 @@ double math_logarithm(double x) {
     m *= 2.0;
     exponent--;
   }
-  double t = (m - 1.0) / (m + 1.0), s = t * t, sum = 0.0;
-  for (int k = 21; k >= 1; k -= 2) {
-    sum = 1.0 / (double)k + s * sum;
-    mathematics_pause();
-  }
-  return (double)exponent * LN2_HIGH + (2.0 * t * sum + (double)exponent * LN2_LOW);
+  const double t = paused((m - 1.0) / (m + 1.0)), s = paused(t * t);
+  double sum = 0.0;
+  for (int k = 21; k >= 1; k -= 2) { sum = odd_parts[k / 2] + paused(s * sum); }
+  const double high = paused((double)exponent * LN2_HIGH), low = paused((double)exponent * LN2_LOW);
+  return high + (paused((t + t) * sum) + low);
 }
 
 double math_exponential(double x) {
   if (x > EXP_LARGEST) x = EXP_LARGEST;
   if (x < EXP_SMALLEST) return 0.0;
-  double k = math_floor(x / (LN2_HIGH + LN2_LOW) + 0.5);
-  double r = (x - k * LN2_HIGH) - k * LN2_LOW, sum = 1.0;
-  for (int i = 14; i >= 1; i--) {
-    sum = 1.0 + sum * r / (double)i;
-    mathematics_pause();
-  }
+  const double k = paused(math_floor(paused(x / (LN2_HIGH + LN2_LOW)) + 0.5));
+  const double high = paused(k * LN2_HIGH), r = (x - high) - paused(k * LN2_LOW);
+  double sum = 1.0;
+  for (int i = 14; i >= 1; i--) { sum = 1.0 + paused(paused(sum * r) / (double)i); }
   return math_scale(sum, (int)k);
 }

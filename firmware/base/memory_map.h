@@ -28,6 +28,7 @@ enum {
   MEMORY_DISPLAY = 0x001080,            /* Y: one character a word (run/display.h) */
   MEMORY_CS_WORDS = 0x002000,           /* registers of coordinate system 1, the others each CS_STRIDE on */
   MEMORY_CS_STRIDE = 0x100,
+  MEMORY_CS_ROTARY = 0x3E,           /* X: lines of the rotary buffer that are not calculated, Y: their words */
   MEMORY_CS_TARGETS = 0x41,          /* L: of A, B, C, U, V, W, X, Y, Z */
   MEMORY_PLC_STATUS = 0x003100,      /* Y: one word a PLC (run/plc_control.h) */
   MEMORY_GATHER_POINTERS = 0x003120, /* X: address of the buffer, Y: of what is gathered next */

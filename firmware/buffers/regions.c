@@ -5,6 +5,7 @@
 #include "firmware/base/buffers_end.h"
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/user_memory.h"
+#include "firmware/kernel/slice.h"
 #include "firmware/variables/i_variables.h"
 
 enum { OWNERS = MOTORS }; /* no fewer than coordinate systems */
@@ -53,8 +54,10 @@ uint32_t region_words(enum region_kind kind, uint32_t owner) { return regions.wo
 uint32_t region_base(enum region_kind kind, uint32_t owner) {
   const uint32_t index = owner_index(kind, owner);
   uint32_t base = regions.all - regions.user;
-  for (uint32_t before = 0; before < (uint32_t)kind; before++)
+  for (uint32_t before = 0; before < (uint32_t)kind; before++) {
     for (uint32_t any = 0; any < OWNERS; any++) base -= regions.words[before][any];
+    slice_pause();
+  }
   for (uint32_t higher = index; higher < OWNERS; higher++) base -= regions.words[kind][higher];
   return base;
 }

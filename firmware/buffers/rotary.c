@@ -3,6 +3,7 @@
 #include "firmware/buffers/rotary.h"
 
 #include "firmware/base/dimensions.h"
+#include "firmware/base/memory_map.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
@@ -11,17 +12,26 @@
 
 static volatile bool held; /* B, looked at by R */
 
-static void reset(struct rotary* ring) {
+/* Its fill, in the memory: under the mask. */
+static void show(uint32_t cs) {
+  const uint32_t address = MEMORY_CS_WORDS + MEMORY_CS_STRIDE * cs + MEMORY_CS_ROTARY;
+  *hal_x(address) = rotary_buffers[cs].lines;
+  *hal_y(address) = rotary_buffers[cs].used;
+}
+
+static void reset(uint32_t cs) {
+  struct rotary* ring = &rotary_buffers[cs];
   ring->generation++;
   ring->write = ring->read = 0;
   ring->used = ring->lines = 0;
   ring->full = false;
+  show(cs);
 }
 
 static void forget(uint32_t cs) {
   struct rotary* ring = &rotary_buffers[cs];
   uint32_t state = hal_mask_real_time();
-  reset(ring);
+  reset(cs);
   ring->size = 0;
   ring->requested = false;
   buffer_request_emptied(cs);
@@ -39,7 +49,7 @@ error_t rotary_define(uint32_t cs, uint32_t words) {
   struct rotary* ring = &rotary_buffers[cs];
   const uint32_t base = region_base(REGION_ROTARY, cs);
   uint32_t state = hal_mask_real_time();
-  reset(ring);
+  reset(cs);
   ring->base = base;
   ring->size = words;
   ring->requested = false;
@@ -67,7 +77,7 @@ bool rotary_any(void) {
 
 void rotary_clear(uint32_t cs) {
   uint32_t state = hal_mask_real_time();
-  reset(&rotary_buffers[cs]);
+  reset(cs);
   buffer_request_emptied(cs);
   hal_unmask(state);
 }
@@ -90,6 +100,7 @@ void rotary_publish(uint32_t cs, uint32_t count) {
   ring->used += count;
   ring->lines++;
   buffer_request_line_stored(cs);
+  show(cs);
   hal_unmask(state);
 }
 
@@ -140,6 +151,7 @@ bool rotary_consume(uint32_t cs, uint32_t count) {
     ring->lines = 0; /* also when a host has written over the marks */
   else if (ring->lines != 0)
     ring->lines--;
+  show(cs);
   buffer_request_line_calculated(cs);
   return true;
 }

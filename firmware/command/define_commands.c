@@ -16,6 +16,7 @@
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/axis_matrix.h"
 #include "firmware/motion/compensation.h"
+#include "firmware/motion/lookahead_buffer.h"
 #include "firmware/run/run_control.h"
 
 static error_t size_argument(struct lexer* lx, uint32_t* size) {
@@ -35,7 +36,9 @@ static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
   if (segment_words < LOOKAHEAD_WORDS_MINIMUM) segment_words = LOOKAHEAD_WORDS_MINIMUM;
   uint64_t words = (uint64_t)segments * segment_words + (uint64_t)outputs * LOOKAHEAD_WORDS_PER_OUTPUT;
   if (segments == 0) return ERR_DATA;
-  return region_define(REGION_LOOKAHEAD, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
+  const error_t error = region_define(REGION_LOOKAHEAD, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
+  if (error == ERR_NONE) lookahead_buffer_define(cs, outputs);
+  return error;
 }
 
 static error_t define_ccbuf(struct lexer* lx, uint32_t cs) {

@@ -136,13 +136,18 @@ double circle_length(const struct circle* c) {
 double circle_least_radius(const struct circle* c) { return c->growth < 0.0 ? c->radius + c->growth : c->radius; }
 
 void circle_at(const struct circle* c, double part, double position[CIRCLE_AXES]) {
-  const double angle = c->angle * part, radius = c->radius + c->growth * part;
+  const double angle = c->angle * part;
   slice_pause();
-  const double x = radius * math_cosine(angle, false), y = radius * math_sine(angle, false);
+  const double radius = c->radius + c->growth * part;
+  slice_pause();
+  const double x = radius * math_cosine(angle, false);
+  slice_pause();
+  const double y = radius * math_sine(angle, false);
   slice_pause();
   for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
     double at = c->centre[i];
     if (c->first[i] != 0.0) at += c->first[i] * x;
+    slice_pause();
     if (c->second[i] != 0.0) at += c->second[i] * y;
     slice_pause();
     if (c->along[i] != 0.0) at += c->along[i] * part;

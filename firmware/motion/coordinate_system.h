@@ -100,7 +100,7 @@ enum run_time_error {
   RUN_TIME_SYNCHRONOUS, /* more assignments before one move than can wait */
   RUN_TIME_READ,        /* READ where nothing has been called */
   RUN_TIME_FEEDRATE,    /* a move goes by a feedrate that is not above 0 */
-  RUN_TIME_LATE,        /* a PVT move that ends in motion has no next one in time, a spline no point, a path no segment */
+  RUN_TIME_LATE,        /* a PVT move in motion has no next one in time, a spline no point, a path no segment */
   RUN_TIME_IN_POSITION, /* motors are not in position within Isx81 */
   RUN_TIME_RADIUS,      /* there is no arc through the ends of a CIRCLE move */
   RUN_TIME_KINEMATIC,   /* a kinematic program does not end, or what it gives is no position */
@@ -150,6 +150,8 @@ struct coordinate_system {
   bool waited;               /* for a line, since the last calculated move; a start is such a wait */
   bool sets_position;        /* the line is that of PSET */
   bool by_segments;          /* the line's path is made of segments */
+  bool slots_wait;           /* assignments in the slots of the lookahead buffer; */
+  bool slots_short;          /* one was lost since the start for want of one */
   struct program_trace line; /* being calculated */
   uint32_t planned;          /* moves so far */
   /* moves: moves[executing] is the one that executes or has been last, the other one is the next */

@@ -53,14 +53,28 @@ static inline int64_t fixed_part(int64_t value, uint32_t fraction) {
   return high + (int64_t)(low >> 32);
 }
 
+/* The same of a number without a sign. */
+static inline int32_t fixed_high_mixed(int32_t a, uint32_t b) {
+#ifdef BRICK_NATIVE
+  return (int32_t)(((int64_t)a * (int64_t)b) >> 32);
+#else
+  int32_t high;
+  __asm__("mulhsu %0, %1, %2" : "=r"(high) : "r"(a), "r"(b));
+  return high;
+#endif
+}
+
 /* value * part, rounded to nearest; |value| < 2^61. */
 static inline int64_t fixed_share(int64_t value, int64_t part) {
   const int64_t scaled = value * 4;
   const uint32_t a0 = (uint32_t)scaled, b0 = (uint32_t)part;
   const int32_t a1 = (int32_t)(scaled >> 32), b1 = (int32_t)(part >> 32);
-  const int64_t one = (int64_t)b1 * (int64_t)a0, other = (int64_t)a1 * (int64_t)b0;
-  const uint64_t low = ((uint64_t)a0 * b0 >> 32) + (uint32_t)one + (uint32_t)other + 0x80000000u;
-  return (int64_t)a1 * b1 + (one >> 32) + (other >> 32) + (int64_t)(low >> 32);
+  const uint32_t one = (uint32_t)b1 * a0, other = (uint32_t)a1 * b0;
+  uint32_t low = (uint32_t)((uint64_t)a0 * b0 >> 32) + one;
+  uint32_t carry = low < one ? 1u : 0u;
+  low += other;
+  carry += (low < other ? 1u : 0u) + (low >> 31);
+  return (int64_t)a1 * b1 + fixed_high_mixed(b1, a0) + fixed_high_mixed(a1, b0) + (int64_t)carry;
 }
 
 #endif

@@ -8,14 +8,16 @@ enum { ROOT_STEPS = 4 };
 
 static uint32_t high(uint32_t a, uint32_t b) { return (uint32_t)((uint64_t)a * b >> 32); }
 
-/* Newton: each step doubles the bits that are right, 16 to begin with. */
+/* 2^63 / by, which has bit 31 set. Newton: each step doubles the bits that are right, 16 to begin with. */
+static inline uint32_t inverse_of(uint32_t by) {
+  const uint32_t inverse = (UINT32_MAX / (by >> 16)) << 15;
+  return high(inverse, 0u - high(by, inverse)) << 1;
+}
+
 struct fixed_divisor fixed_divide_by(uint64_t by) {
   const uint32_t shift = (uint32_t)__builtin_clzll(by);
   const uint64_t normal = by << shift;
-  const uint32_t upper = (uint32_t)(normal >> 32);
-  uint32_t inverse = (UINT32_MAX / (upper >> 16)) << 15; /* 2^63 / upper */
-  inverse = high(inverse, 0u - high(upper, inverse)) << 1;
-  const uint64_t found = (uint64_t)inverse << 31;
+  const uint64_t found = (uint64_t)inverse_of((uint32_t)(normal >> 32)) << 31;
   const uint64_t better = fixed_multiply_high(found, (UINT64_C(1) << 63) - fixed_multiply_high(normal, found)) << 2;
   return (struct fixed_divisor){better, shift};
 }
@@ -27,6 +29,11 @@ int64_t fixed_part_of(const struct fixed_divisor* by, int64_t value) {
 int64_t fixed_ratio(int64_t value, int64_t by) {
   const struct fixed_divisor divisor = fixed_divide_by((uint64_t)by);
   return fixed_part_of(&divisor, value);
+}
+
+uint32_t fixed_fraction(uint32_t value, uint32_t by) {
+  const uint32_t shift = (uint32_t)__builtin_clz(by);
+  return high(value << shift, inverse_of(by << shift)) << 1;
 }
 
 /* By Newton for 1 / root of m, a quarter to 1, from a line that is within an eleventh of it. */

@@ -3,26 +3,31 @@
 #include "firmware/kernel/slice.h"
 #include "firmware/motion/fixed_point.h"
 
-enum { TERMS = 7, QUARTER_BITS = FIXED_TURN_BITS - 2 };
+enum { TERMS = 5, QUARTER_BITS = FIXED_TURN_BITS - 2 };
 
 #define PART_ONE (INT64_C(1) << 62)
 #define EIGHTH_TURN INT64_C(3622009729038561280) /* pi / 4 */
 
-/* (-1)^k / (2 k)! and (-1)^k / (2 k + 1)!, k from 1 on */
-static const int64_t cosine_terms[TERMS] = {
-    INT64_C(-2305843009213693952), INT64_C(192153584101141152), INT64_C(-6405119470038039), INT64_C(114377133393536),
-    INT64_C(-1270857037706),       INT64_C(9627704831),         INT64_C(-52899477)};
-static const int64_t sine_terms[TERMS] = {
-    INT64_C(-768614336404564608), INT64_C(38430716820228232), INT64_C(-915017067148291), INT64_C(12708570377060),
-    INT64_C(-115532457973),       INT64_C(740592679),         INT64_C(-3526632)};
+/* 1 + first x + second x^2 + x^3 (...): what is behind it is small enough for 32 bits, the smallest term first. */
+struct series {
+  int64_t first, second;
+  int32_t rest[TERMS];
+  int32_t bits; /* what 1 is in them */
+};
+static const struct series cosine_series = {
+    INT64_C(-2305843009213693952), INT64_C(192153584101141152), {-13, 2295, -302996, 27269634, -1527099483}, 40};
+static const struct series sine_series = {
+    INT64_C(-768614336404564608), INT64_C(38430716820228232), {-7, 1413, -220361, 24239674, -1745256552}, 43};
 
-static int64_t product(int64_t a, int64_t b) { return fixed_share(a / 4, b) * 4; }
+static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
 
-static int64_t series(const int64_t terms[TERMS], int64_t square) {
-  int64_t sum = terms[TERMS - 1];
-  for (uint32_t i = TERMS - 1; i-- > 0;) sum = terms[i] + product(sum, square);
+static int64_t value(const struct series* s, int64_t square) {
+  const int32_t by = (int32_t)(square >> 31);
+  int32_t rest = s->rest[0];
+  for (uint32_t i = 1; i < TERMS; i++) rest = s->rest[i] + fixed_high(rest, by) * 2;
+  const int64_t behind = s->second + product(rest * (INT64_C(1) << (62 - s->bits)), square);
   slice_pause();
-  return PART_ONE + product(sum, square);
+  return PART_ONE + product(s->first + product(behind, square), square);
 }
 
 /* Within an eighth of a turn about one of its quarters by the series. */
@@ -32,7 +37,7 @@ struct fixed_direction fixed_direction_of(int64_t angle) {
   const int64_t rest = angle - ((from_eighth >> QUARTER_BITS) << QUARTER_BITS); /* half a quarter to either side */
   const int64_t radian = product(rest * 128, EIGHTH_TURN);
   const int64_t square = product(radian, radian);
-  const int64_t cosine = series(cosine_terms, square), sine = product(series(sine_terms, square), radian);
+  const int64_t cosine = value(&cosine_series, square), sine = product(value(&sine_series, square), radian);
   slice_pause();
   switch (quarter) {
     case 0:

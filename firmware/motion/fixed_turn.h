@@ -9,6 +9,6 @@ enum { FIXED_TURN_BITS = 58 }; /* an angle: 2^58 is a turn */
 struct fixed_direction {
   int64_t cosine, sine;
 };
-struct fixed_direction fixed_direction_of(int64_t angle); /* good to 2^-45 */
+struct fixed_direction fixed_direction_of(int64_t angle); /* good to 2^-39 */
 
 #endif

@@ -87,19 +87,26 @@ static bool is_solved(uint32_t cs, const double position[AXIS_COUNT]) {
   if (!solved[cs].known) return false;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++)
     if (solved[cs].position[axis] != position[axis]) return false;
+  slice_pause();
   return true;
 }
 
 /* Of a variable, in units of position; false: more than its words hold, as of what was divided by 0. */
 static bool read_motor(uint32_t motor, uint32_t first, double scale, double* value) {
-  const double read = p_variable_read(first + motor) * unit_of(motor);
+  const double read = p_variable_read(first + motor);
   slice_pause();
-  *value = scale == 1.0 ? read : read * scale;
+  const double unit = unit_of(motor);
+  slice_pause();
+  const double units = read * unit;
+  slice_pause();
+  *value = scale == 1.0 ? units : units * scale;
+  slice_pause();
   return math_absolute(*value) < LARGEST_POSITION;
 }
 
 static bool solve(uint32_t cs, const double position[AXIS_COUNT], bool velocity, double time_unit) {
   struct coordinate_system* s = &coordinate_systems[cs];
+  slice_pause();
   solved[cs].known = false;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
     q_variable_write(cs, Q_POSITIONS + axis, position[axis]);
@@ -116,6 +123,7 @@ static bool solve(uint32_t cs, const double position[AXIS_COUNT], bool velocity,
     if (velocity) fits = fits && read_motor(motor, P_VELOCITIES, 1.0 / time_unit, &velocities[motor]);
     slice_pause();
   }
+  slice_pause();
   if (!fits) s->failure = RUN_TIME_KINEMATIC;
   if (fits) remember(cs, position);
   return fits;

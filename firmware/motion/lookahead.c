@@ -7,13 +7,15 @@
 #include "firmware/motion/fixed_ratio.h"
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
+#include "firmware/motion/protection.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
   LEAST = 4, /* records ahead that make sense */
   SCALE_BITS = 16,
-  STEP_MOST = 1 << 29 /* 2^13 of an acceleration limit */
+  STEP_MOST = 1 << 29, /* 2^13 of an acceleration limit */
+  SATURATES = 1 << 14  /* Ixx24: on at the limit of a desired position */
 };
 
 #define SCALE_HALF 32768.0
@@ -23,15 +25,15 @@ enum {
 static struct {
   int32_t mantissa; /* 0: no limit */
   int32_t coarse;
-  int32_t fastest;      /* the largest step that Ixx16 allows; 0: no limit */
-  int32_t before, last; /* the last two steps */
+  int32_t fastest;         /* the largest step that Ixx16 allows; 0: no limit */
+  int32_t before, last;    /* the last two steps */
+  int64_t lowest, highest; /* of the desired position, Ixx24 bit 15 */
+  bool saturates;          /* bit 14 */
 } scales[MOTORS];
 
 /* Room for segments behind the three points that it takes besides. */
-uint32_t lookahead_capacity(uint32_t cs, uint32_t motor_count) {
-  struct lookahead_buffer buffer;
-  lookahead_buffer_open(cs, motor_count, &buffer);
-  return buffer.records < LOOKAHEAD_KEPT + LEAST ? 0u : buffer.records - LOOKAHEAD_KEPT;
+static uint32_t capacity(const struct lookahead_buffer* buffer) {
+  return buffer->records < LOOKAHEAD_KEPT + LEAST ? 0u : buffer->records - LOOKAHEAD_KEPT;
 }
 
 static uint32_t count_bits(uint32_t mask) {
@@ -41,27 +43,50 @@ static uint32_t count_bits(uint32_t mask) {
 }
 
 static void set_scale(uint32_t motor, double period) {
-  const double velocity = system_motor_velocity(motor) * period;
   slice_pause();
-  const double acceleration = system_motor_acceleration(motor) * period * period;
+  double velocity = system_motor_velocity(motor);
+  slice_pause();
+  velocity *= period;
+  slice_pause();
+  double acceleration = system_motor_acceleration(motor);
+  slice_pause();
+  acceleration *= period;
+  slice_pause();
+  acceleration *= period;
   slice_pause();
   const bool limited = acceleration > 0.0;
+  slice_pause();
   double one = limited ? acceleration : velocity > 0.0 ? velocity : 1.0;
   int32_t coarse = 0;
-  for (; one > 2.0 * SCALE_HALF; coarse++) one = math_scale(one, -1);
-  slice_pause();
-  for (; one <= SCALE_HALF && coarse > -SCALE_BITS; coarse--) one = math_scale(one, 1);
-  slice_pause();
+  for (; one > 2.0 * SCALE_HALF; coarse++) {
+    one = math_scale(one, -1);
+    slice_pause();
+  }
+  for (; one <= SCALE_HALF && coarse > -SCALE_BITS; coarse--) {
+    one = math_scale(one, 1);
+    slice_pause();
+  }
   scales[motor].coarse = coarse;
   scales[motor].before = scales[motor].last = 0;
+  slice_pause();
   const double fastest = math_scale(velocity, -coarse);
   slice_pause();
   scales[motor].fastest = fastest > (double)STEP_MOST ? 0 : (int32_t)fastest;
+  slice_pause();
   if (velocity > 0.0 && fastest < 1.0) scales[motor].fastest = 1;
   slice_pause();
-  const double mantissa = math_scale(1.0 / one, 32 + BEND_BITS);
+  const double inverse = 1.0 / one;
+  slice_pause();
+  const double mantissa = math_scale(inverse, 32 + BEND_BITS);
   scales[motor].mantissa = !limited ? 0 : mantissa < (double)INT32_MAX ? (int32_t)mantissa : INT32_MAX;
   slice_pause();
+}
+
+/* Whether there is one. */
+static bool set_guard(uint32_t motor) {
+  const uint32_t mode = (uint32_t)i_integer(i_motor(motor + 1u, IXX24_FLAG_MODE));
+  scales[motor].saturates = (mode & SATURATES) != 0u;
+  return protection_desired_limits(motor, &scales[motor].lowest, &scales[motor].highest);
 }
 
 bool lookahead_begin(uint32_t cs, uint32_t period) {
@@ -69,21 +94,28 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   const uint32_t wanted = (uint32_t)i_integer(i_cs(cs, ISX20_LOOKAHEAD_LENGTH));
   l->motors = coordinate_systems[cs].motors;
   l->motor_count = count_bits(l->motors);
-  const uint32_t room = lookahead_capacity(cs, l->motor_count);
-  if (wanted == 0 || room == 0) return false;
+  slice_pause();
   lookahead_buffer_open(cs, l->motor_count, &l->buffer);
+  slice_pause();
+  const uint32_t room = capacity(&l->buffer);
+  if (wanted == 0 || room == 0) return false;
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
   l->limits = wanted > 1u;
   l->closed = l->begun = l->backward = l->single = l->was_single = false;
   l->added = l->front = l->part = 0;
-  l->rate = RATE_FULL;
+  l->guarded = 0;
+  l->rate = l->rooted = RATE_FULL;
+  l->root = RATE_FULL;
   l->state = LOOK_GOES;
   l->next = LOOKAHEAD_NONE;
   look_forget_sweeps(l);
   l->period = period;
   for (uint32_t motor = 0, left = l->motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) set_scale(motor, (double)period);
+    if ((left & 1u) != 0) {
+      set_scale(motor, (double)period);
+      if (l->limits && set_guard(motor)) l->guarded |= 1u << motor;
+    }
   return true;
 }
 
@@ -131,18 +163,31 @@ static void set_limits(struct look* l, uint32_t motor, int32_t next, struct look
   if (fastest == 0 || l->added < SPLINE_POINTS - 1u) return;
   const int32_t most = largest(scales[motor].before, step, next);
   if (most <= fastest) return;
+  slice_pause();
   const int32_t cap = cap_of(fastest, most);
   if (cap < segment->cap) segment->cap = cap;
 }
 
+/* The limit instead of a point beyond it. With bit 14 = 0 it stands before the first segment that this changes: the
+ * knot that was the last one until now. */
+static int64_t guarded(uint32_t motor, int64_t point, struct lookahead_record* segment) {
+  const int64_t lowest = scales[motor].lowest, highest = scales[motor].highest;
+  if (point >= lowest && point <= highest) return point;
+  if (!scales[motor].saturates) segment->stops = true;
+  return point > highest ? highest : lowest;
+}
+
 /* A point of the motors: with the one before it a step. */
-static void add_point(struct look* l, uint32_t at, const int64_t control[][SPLINE_POINTS]) {
-  struct lookahead_motor *to = lookahead_motors(&l->buffer, at), *knot = lookahead_motors(&l->buffer, at - 2u);
-  const struct lookahead_motor* last = lookahead_motors(&l->buffer, at - 1u);
-  struct lookahead_record* segment = lookahead_at(&l->buffer, at - 3u);
+static void add_point(struct look* l, struct lookahead_record* record, const int64_t control[][SPLINE_POINTS]) {
+  const uint32_t at = l->added;
+  struct lookahead_record *before = lookahead_before(&l->buffer, record), *two = lookahead_before(&l->buffer, before),
+                          *segment = lookahead_before(&l->buffer, two);
+  struct lookahead_motor *to = lookahead_of(record), *knot = lookahead_of(two);
+  const struct lookahead_motor* last = lookahead_of(before);
   for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    const int64_t point = control[motor][SPLINE_POINTS - 1];
+    int64_t point = control[motor][SPLINE_POINTS - 1];
+    if ((l->guarded >> motor & 1u) != 0) point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
     to[slot] = (struct lookahead_motor){point, 0, 0};
     if (l->limits && at != 0) {
       const int32_t step = coarse_step(motor, point - last[slot].point);
@@ -160,12 +205,15 @@ void lookahead_add(uint32_t cs, const int64_t control[][SPLINE_POINTS], uint32_t
   struct lookahead_record* record = lookahead_at(&l->buffer, l->added);
   record->rate = 0;
   record->cap = RATE_FULL;
+  record->stops = false;
   record->number = number;
   record->line = *line;
-  add_point(l, l->added, control);
+  add_point(l, record, control);
   l->added++;
 }
 
 void lookahead_points(uint32_t cs, uint32_t segment, const struct lookahead_motor* points[SPLINE_POINTS]) {
-  for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = lookahead_motors(&looks[cs].buffer, segment + i);
+  const struct lookahead_buffer* b = &looks[cs].buffer;
+  struct lookahead_record* record = lookahead_at(b, segment);
+  for (uint32_t i = 0; i < SPLINE_POINTS; i++, record = lookahead_behind(b, record)) points[i] = lookahead_of(record);
 }

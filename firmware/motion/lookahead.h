@@ -31,9 +31,6 @@ struct lookahead_piece {
   struct path_line line;
 };
 
-/* DEFINE, DELETE: background. How many segments of a system with so many motors are there room for. */
-uint32_t lookahead_capacity(uint32_t cs, uint32_t motor_count);
-
 /* A sequence of segments of `period` ms begins: whether it is looked ahead. */
 bool lookahead_begin(uint32_t cs, uint32_t period);
 bool lookahead_is_full(uint32_t cs);

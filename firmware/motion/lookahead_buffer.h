@@ -4,6 +4,7 @@
 #ifndef FIRMWARE_MOTION_LOOKAHEAD_BUFFER_H
 #define FIRMWARE_MOTION_LOOKAHEAD_BUFFER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "firmware/motion/path.h"
@@ -16,6 +17,7 @@ struct lookahead_motor { /* 2 words */
 struct lookahead_record { /* 4 words, and the motors */
   int32_t rate;           /* w at the knot: that can stop, or once it is handed over the one taken */
   int32_t cap;            /* of w in the segment behind the knot, by the velocities */
+  bool stops;             /* at the knot, for the limit of a desired position behind it */
   uint32_t number;        /* of the move at the control point */
   struct path_line line;
 };
@@ -25,14 +27,30 @@ struct lookahead_buffer {
   uint32_t stride, records;
 };
 
+/* DEFINE, background: how many of its words are slots of two for assignments that wait for their segments. */
+void lookahead_buffer_define(uint32_t cs, uint32_t slots);
+bool lookahead_buffer_is_defined(uint32_t cs);
+uint32_t lookahead_slots(uint32_t cs, void** slots); /* so many, of 16 bytes; none without a buffer */
 /* The buffer of a system with so many motors; no records: there is none. */
 void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_buffer* buffer);
 
 static inline struct lookahead_record* lookahead_at(const struct lookahead_buffer* b, uint32_t number) {
   return (struct lookahead_record*)&b->words[(number % b->records) * b->stride];
 }
+/* Of a record, without the division: its neighbours and its motors. */
+static inline struct lookahead_record* lookahead_before(const struct lookahead_buffer* b, struct lookahead_record* r) {
+  uint64_t* words = (uint64_t*)r;
+  return (struct lookahead_record*)(words == b->words ? &b->words[(b->records - 1u) * b->stride] : words - b->stride);
+}
+static inline struct lookahead_record* lookahead_behind(const struct lookahead_buffer* b, struct lookahead_record* r) {
+  uint64_t* words = (uint64_t*)r + b->stride;
+  return (struct lookahead_record*)(words == &b->words[b->records * b->stride] ? b->words : words);
+}
+static inline struct lookahead_motor* lookahead_of(struct lookahead_record* r) {
+  return (struct lookahead_motor*)((uint64_t*)r + 4);
+}
 static inline struct lookahead_motor* lookahead_motors(const struct lookahead_buffer* b, uint32_t number) {
-  return (struct lookahead_motor*)&b->words[(number % b->records) * b->stride + 4u];
+  return lookahead_of(lookahead_at(b, number));
 }
 
 #endif

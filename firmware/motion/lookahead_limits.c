@@ -21,21 +21,48 @@ static uint32_t count;
 static int32_t inside = (1 << PRODUCT_BITS) - ROUNDING;
 static uint32_t likely; /* the motor that has been the narrowest last */
 
-void limits_begin(void) { count = 0; }
-
 static int32_t magnitude(int32_t value) { return value < 0 ? -value : value; }
-static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 
-void limits_add(const struct limits_motor* m, uint32_t parts) {
-  struct motor_part* to = &motor_parts[count];
-  to->bend[0] = m->bend[0];
-  to->bend[1] = m->bend[1];
-  to->pace[0] = parts == 16u ? m->pace[0] / 2 : m->pace[0] / (int32_t)parts * 8;
-  to->pace[2] = parts == 16u ? m->pace[1] / 2 : m->pace[1] / (int32_t)parts * 8;
-  to->pace[1] = to->pace[0] + to->bend[0] / 4;
-  /* with w up to 1 the others hold anyway */
-  const int32_t pace = larger(larger(magnitude(to->pace[0]), magnitude(to->pace[1])), magnitude(to->pace[2]));
-  if (pace + larger(magnitude(to->bend[0]), magnitude(to->bend[1])) >= 1 << BEND_BITS) count++;
+/* All below half of the limit: with w up to 1 it holds anyway. */
+static inline bool is_slow(const struct motor_part* m) {
+  const uint32_t half = 1u << (BEND_BITS - 1);
+  const uint32_t bend = ((uint32_t)m->bend[0] + half) | ((uint32_t)m->bend[1] + half);
+  const uint32_t pace = ((uint32_t)m->pace[0] + half) | ((uint32_t)m->pace[1] + half);
+  return (bend | pace | ((uint32_t)m->pace[2] + half)) < 2u * half;
+}
+
+void limits_load(const struct lookahead_motor* at, const struct lookahead_motor* next, uint32_t motor_count) {
+  count = 0;
+  for (uint32_t i = 0; i < motor_count; i++) {
+    struct motor_part* to = &motor_parts[count];
+    const int32_t bend = at[i].bend, pace = at[i].pace >> 1;
+    to->bend[0] = bend;
+    to->bend[1] = next[i].bend;
+    to->pace[0] = pace;
+    to->pace[1] = pace + (bend >> 2);
+    to->pace[2] = next[i].pace >> 1;
+    if (!is_slow(to)) count++;
+    if (i % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
+  }
+}
+
+void limits_load_part(const struct lookahead_motor* at, const struct lookahead_motor* next, uint32_t motor_count,
+                      uint32_t first, uint32_t last) {
+  const int32_t parts = (int32_t)(last - first);
+  count = 0;
+  for (uint32_t i = 0; i < motor_count; i++) {
+    struct motor_part* to = &motor_parts[count];
+    const int64_t bend = at[i].bend, turn = next[i].bend - bend;
+    for (uint32_t end = 0; end < 2u; end++) {
+      const int64_t s = end == 0 ? first : last;
+      to->bend[end] = (int32_t)(bend + turn * s / PIECE_PARTS);
+      const int64_t pace = at[i].pace + (bend * 2 * PIECE_PARTS + turn * s) * s / (2 * PIECE_PARTS * PIECE_PARTS);
+      to->pace[end * 2u] = (int32_t)pace / parts * (PIECE_PARTS / 2);
+    }
+    to->pace[1] = to->pace[0] + to->bend[0] / 4;
+    if (!is_slow(to)) count++;
+    slice_pause();
+  }
 }
 
 /* The middle coefficients of the quarters, in eighths of those of the whole. */
@@ -54,25 +81,38 @@ struct edge {
 /* What the limits leave for the w at one end. */
 struct room {
   int32_t most;      /* below 0: nothing */
+  uint32_t by;       /* the motor that has narrowed it last, which need not be tried again; MOTORS: none has */
   bool narrowed;     /* by `upper` */
   struct edge upper; /* what says so */
   struct edge lower; /* of nothing: what asks for more */
 };
 
-/* A value of the two ends, or of the quarters, that is not within the limits at w0 and w1 and not among `met`; VALUES:
- * none. The coefficients of the whole bound those of its quarters. */
-static uint32_t beyond(const struct motor_part* m, int32_t w0, int32_t w1, uint32_t met) {
-  const int32_t h = w1 - w0, most = inside;
-  const int32_t b0 = fixed_high(m->bend[0], w0) + fixed_high(m->pace[0], h);
-  const int32_t b2 = fixed_high(m->bend[1], w1) + fixed_high(m->pace[2], h);
-  if ((b0 > most || b0 < -most) && (met & 1u) == 0) return 0;
-  if ((b2 > most || b2 < -most) && (met >> (VALUES - 1u)) == 0) return VALUES - 1u;
-  const int32_t b1 = (fixed_high(m->bend[1], w0) + fixed_high(m->bend[0], w1)) / 2 + fixed_high(m->pace[1], h);
-  if (b1 <= most && b1 >= -most) return VALUES;
-  for (uint32_t i = 0; i < VALUES - 2u; i++) {
-    const int32_t value = (b0 * quarters[i][0] + b1 * quarters[i][1] + b2 * quarters[i][2]) >> 3;
-    if ((value > most || value < -most) && (met >> (i + 1u) & 1u) == 0) return i + 1u;
-  }
+/* Of x'' w + x' w' / 2 at w0 and w1. */
+struct values {
+  int32_t b[3]; /* Bernstein coefficients */
+};
+static inline bool is_within(int32_t value, int32_t most) { return value <= most && value >= -most; }
+
+/* Those of the ends are values; between them that of the middle bounds all that is. */
+static inline bool holds(const struct motor_part* m, int32_t w0, int32_t w1, int32_t most, struct values* v) {
+  const int32_t h = w1 - w0, a0 = m->bend[0], a1 = m->bend[1];
+  v->b[0] = fixed_high(a0, w0) + fixed_high(m->pace[0], h);
+  v->b[2] = fixed_high(a1, w1) + fixed_high(m->pace[2], h);
+  v->b[1] = ((fixed_high(a1, w0) + fixed_high(a0, w1)) >> 1) + fixed_high(m->pace[1], h);
+  return is_within(v->b[0], most) && is_within(v->b[1], most) && is_within(v->b[2], most);
+}
+
+/* A value of the two ends, or of the quarters, that is not within the limits and not among `met`; VALUES: none. */
+static uint32_t beyond(const struct values* v, uint32_t met) {
+  const int32_t* b = v->b;
+  if (!is_within(b[0], inside) && (met & 1u) == 0) return 0;
+  if (!is_within(b[2], inside) && (met >> (VALUES - 1u)) == 0) return VALUES - 1u;
+  if (is_within(b[1], inside)) return VALUES;
+  const int32_t from = 3 * b[0], to = 3 * b[2], middle = 4 * b[1]; /* as `quarters` has it */
+  if (!is_within((from + b[1]) >> 2, inside) && (met & 2u) == 0) return 1;
+  if (!is_within((from + middle + b[2]) >> 3, inside) && (met & 4u) == 0) return 2;
+  if (!is_within((b[0] + middle + to) >> 3, inside) && (met & 8u) == 0) return 3;
+  if (!is_within((b[1] + to) >> 2, inside) && (met & 16u) == 0) return 4;
   return VALUES;
 }
 
@@ -86,8 +126,8 @@ static struct edge edge_of(const struct motor_part* m, uint32_t value) {
 
 /* w * 2^32 / by, for w >= 0 */
 static int32_t divide(int32_t w, int32_t by) {
-  const uint64_t quotient = ((uint64_t)(uint32_t)w << 32) / (uint32_t)magnitude(by);
-  return quotient > (uint64_t)INT32_MAX ? INT32_MAX : (int32_t)quotient;
+  const uint32_t size = (uint32_t)magnitude(by);
+  return (uint32_t)w >= size / 2u ? INT32_MAX : (int32_t)fixed_fraction((uint32_t)w, size);
 }
 
 /* False: it leaves nothing. */
@@ -109,22 +149,34 @@ static bool narrow(enum limits_end end, struct edge e, int32_t w, struct room* r
   return false;
 }
 
+static inline bool holds_at(enum limits_end end, const struct motor_part* m, int32_t w, int32_t other,
+                            struct values* v) {
+  return end == LIMITS_FIRST ? holds(m, other, w, inside, v) : holds(m, w, other, inside, v);
+}
+
 /* What narrows is met, by rounding on either side of it. */
-static bool narrow_by_motor(enum limits_end end, uint32_t i, int32_t w, struct room* r) {
+static __attribute__((noinline)) bool narrow_by_motor(enum limits_end end, uint32_t i, int32_t w, struct room* r,
+                                                      struct values* v) {
   const struct motor_part* m = &motor_parts[i];
+  slice_pause();
   for (uint32_t met = 0;;) {
-    const uint32_t value = end == LIMITS_FIRST ? beyond(m, r->most, w, met) : beyond(m, w, r->most, met);
+    const uint32_t value = beyond(v, met);
     if (value == VALUES) return true;
     if (!narrow(end, edge_of(m, value), w, r)) return false;
-    likely = i;
+    likely = r->by = i;
+    slice_pause();
     met |= 1u << value;
+    if (holds_at(end, m, w, r->most, v)) return true;
   }
 }
 
-static bool pass(enum limits_end end, int32_t w, struct room* r) {
-  for (uint32_t i = 0; i < count; i++) {
-    if (!narrow_by_motor(end, i, w, r)) return false;
-    if (i % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
+/* Of the first `number` motors. */
+static bool pass(enum limits_end end, int32_t w, struct room* r, uint32_t number) {
+  struct values v;
+  for (uint32_t i = 0; i < number; i++) {
+    if (i != r->by && !holds_at(end, &motor_parts[i], w, r->most, &v) && !narrow_by_motor(end, i, w, r, &v))
+      return false;
+    if (i % PAUSE_MOTORS == 1u) slice_pause();
   }
   return true;
 }
@@ -132,11 +184,13 @@ static bool pass(enum limits_end end, int32_t w, struct room* r) {
 /* What has been narrowed on the way is looked at again by the motors that came before. The one that was the narrowest
  * last comes first, and mostly is so again. */
 static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
-  struct room r = {.most = most};
-  bool possible = likely >= count || narrow_by_motor(end, likely, w, &r);
+  struct room r = {.most = most, .by = MOTORS};
+  struct values v;
+  bool possible =
+      likely >= count || holds_at(end, &motor_parts[likely], w, most, &v) || narrow_by_motor(end, likely, w, &r, &v);
   const int32_t begun = r.most;
-  possible = possible && pass(end, w, &r);
-  if (possible && r.most != begun) possible = pass(end, w, &r);
+  possible = possible && pass(end, w, &r, count);
+  if (possible && r.most != begun) possible = pass(end, w, &r, r.by);
   if (!possible) r.most = -1;
   slice_pause();
   return r;

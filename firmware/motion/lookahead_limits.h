@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/motion/lookahead_buffer.h"
+
 enum { RATE_BITS = 30, BEND_BITS = 14 }; /* w: 2^30 is 1. x'/(A T^2), x''/(A T^2): 2^14 is 1, within +-2^13 */
 
 #define RATE_FULL (1 << RATE_BITS)
@@ -19,12 +21,10 @@ enum { RATE_BITS = 30, BEND_BITS = 14 }; /* w: 2^30 is 1. x'/(A T^2), x''/(A T^2
 
 enum limits_end { LIMITS_FIRST, LIMITS_SECOND };
 
-struct limits_motor {
-  int32_t pace[2], bend[2]; /* x' and x'' at the ends of the part, of the acceleration limit times T^2 */
-};
-
-void limits_begin(void);
-void limits_add(const struct limits_motor* m, uint32_t parts); /* of 1 to 16 sixteenths of a segment */
+/* Of the motors at the knots about a segment; and from one sixteenth of it to another. */
+void limits_load(const struct lookahead_motor* at, const struct lookahead_motor* next, uint32_t motor_count);
+void limits_load_part(const struct lookahead_motor* at, const struct lookahead_motor* next, uint32_t motor_count,
+                      uint32_t first, uint32_t last);
 /* The largest and the smallest w at one end, at most `most`, when it is `w` at the other. Below 0: there is none. */
 int32_t limits_most(enum limits_end end, int32_t w, int32_t most);
 int32_t limits_least(enum limits_end end, int32_t w, int32_t most);

@@ -7,7 +7,6 @@
 #include "firmware/motion/lookahead_limits.h"
 #include "firmware/motion/lookahead_state.h"
 
-enum { SQUARE_PARTS = 2 * PIECE_PARTS * PIECE_PARTS };
 enum { STOP_PARTS = PIECE_PARTS / 4 }; /* a stop is at a quarter of a segment */
 enum { SLOWEST = 64 };                 /* a w that is no more than the rounding of sums: 0 */
 
@@ -15,43 +14,28 @@ _Static_assert(PIECE_WARP_ONE == RATE_FULL, "a part of 30 bits is both");
 #define TIME_MOST ((uint64_t)TRAJECTORY_LONGEST_MS << TRAJECTORY_FRACTION_BITS)
 
 static void load(const struct look* l, uint32_t segment) {
-  const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
-                               *next = lookahead_motors(&l->buffer, segment + 1u);
-  limits_begin();
-  for (uint32_t slot = 0; slot < l->motor_count; slot++)
-    limits_add(&(struct limits_motor){{at[slot].pace, next[slot].pace}, {at[slot].bend, next[slot].bend}}, PIECE_PARTS);
-  slice_pause();
+  struct lookahead_record* at = lookahead_at(&l->buffer, segment);
+  limits_load(lookahead_of(at), lookahead_of(lookahead_behind(&l->buffer, at)), l->motor_count);
 }
 
-/* A part of a segment, in sixteenths of it: the motors at its ends. */
+/* A part of a segment, in sixteenths of it. */
 static void load_part(const struct look* l, uint32_t segment, uint32_t first, uint32_t last) {
-  if (last - first == PIECE_PARTS) {
+  if (last - first == PIECE_PARTS)
     load(l, segment);
-    return;
-  }
-  const struct lookahead_motor *at = lookahead_motors(&l->buffer, segment),
-                               *next = lookahead_motors(&l->buffer, segment + 1u);
-  limits_begin();
-  for (uint32_t slot = 0; slot < l->motor_count; slot++) {
-    const int32_t a0 = at[slot].bend, turn = next[slot].bend - a0;
-    struct limits_motor m = {{at[slot].pace, next[slot].pace}, {a0, next[slot].bend}};
-    for (uint32_t i = 0; i < 2u; i++) {
-      const int32_t s = (int32_t)(i == 0 ? first : last);
-      if (s % PIECE_PARTS == 0) continue;
-      m.bend[i] = a0 + (int32_t)((int64_t)turn * s / PIECE_PARTS);
-      m.pace[i] = at[slot].pace + (int32_t)(((int64_t)a0 * 2 * PIECE_PARTS + (int64_t)turn * s) * s / SQUARE_PARTS);
-    }
-    limits_add(&m, last - first);
-    slice_pause();
-  }
+  else
+    limits_load_part(lookahead_motors(&l->buffer, segment), lookahead_motors(&l->buffer, segment + 1u), l->motor_count,
+                     first, last);
 }
 
 /* Of w at a knot: the velocities in the segments at both sides. */
 static int32_t cap_at(const struct look* l, uint32_t knot) {
-  const int32_t behind = knot == look_oldest(l) ? RATE_FULL : lookahead_at(&l->buffer, knot - 1u)->cap;
-  const int32_t ahead = knot == look_end(l) ? RATE_FULL : lookahead_at(&l->buffer, knot)->cap;
-  return behind < ahead ? behind : ahead;
+  struct lookahead_record* ahead = lookahead_at(&l->buffer, knot);
+  if (ahead->stops && !l->backward) return 0;
+  const int32_t before = knot == look_oldest(l) ? RATE_FULL : lookahead_before(&l->buffer, ahead)->cap;
+  return before < ahead->cap || knot == look_end(l) ? before : ahead->cap;
 }
+
+enum { STEPS = 4 }; /* of a sweep, before something else has its turn */
 
 /* Sweeps ----------------------------------------------------------------------------------------------------------- */
 
@@ -80,6 +64,21 @@ static void end_sweep(struct look* l) {
   l->good = whole ? l->swept : l->swept > doubtful ? l->swept - doubtful : 0u;
 }
 
+/* What was possible still is, though the search has not come so near to it this time: something before it may count on
+ * it. From where nothing is new on all is as it was. */
+static void step_back(struct look* l, uint32_t last) {
+  const struct lookahead_buffer* b = &l->buffer;
+  struct lookahead_record *next = lookahead_at(b, l->sweep), *at = lookahead_before(b, next);
+  slice_pause();
+  limits_load(lookahead_of(at), lookahead_of(next), l->motor_count);
+  const int32_t rate = limits_reach(LIMITS_FIRST, next->rate, cap_at(l, l->sweep - 1u));
+  l->sweep--;
+  if (l->sweep < l->swept && rate <= at->rate)
+    l->sweep = last;
+  else
+    at->rate = rate;
+}
+
 static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
   const bool at_free = l->part == 0 && is_free(l, l->front); /* there it may begin with any w */
   const uint32_t end = look_end(l), last = at_free ? l->front : l->front + 1u;
@@ -89,23 +88,12 @@ static bool sweep_forward(uint32_t cs, struct look* l, bool hurry) {
     const bool closes = l->closed && l->good < end;
     if (!due && !closes && !(hurry && end > l->swept)) return false;
     begin_sweep(l, end);
-    return true;
   }
   if (l->sweep <= last) {
     end_sweep(l);
     return true;
   }
-  const uint32_t knot = l->sweep - 1u;
-  load(l, knot);
-  int32_t rate = limits_reach(LIMITS_FIRST, *rate_at(l, l->sweep), cap_at(l, knot));
-  l->sweep = knot;
-  /* What was possible still is, though the search has not come so near to it this time: something before it may count
-   * on it. From where nothing is new on all is as it was. */
-  if (knot < l->swept && rate <= *rate_at(l, knot)) {
-    rate = *rate_at(l, knot);
-    l->sweep = last;
-  }
-  *rate_at(l, knot) = rate;
+  for (uint32_t i = 0; i < STEPS && l->sweep > last; i++) step_back(l, last);
   return true;
 }
 
@@ -131,6 +119,7 @@ static bool sweep_back(struct look* l) {
 
 bool lookahead_sweep(uint32_t cs, bool hurry) {
   struct look* l = &looks[cs];
+  slice_pause();
   if (!l->limits || l->state != LOOK_GOES) return false;
   return l->backward ? sweep_back(l) : sweep_forward(cs, l, hurry);
 }
@@ -138,13 +127,16 @@ bool lookahead_sweep(uint32_t cs, bool hurry) {
 /* Pieces ----------------------------------------------------------------------------------------------------------- */
 
 /* 2 T / (root w0 + root w1); the share of its time and that of the way differ by warp u (1 - u). */
-static void set_time(const struct look* l, int32_t from, int32_t to, struct lookahead_piece* piece) {
+static void set_time(struct look* l, int32_t from, int32_t to, struct lookahead_piece* piece) {
   const uint32_t parts = piece->last > piece->first ? piece->last - piece->first : piece->first - piece->last;
   const uint64_t time = ((uint64_t)l->period << TRAJECTORY_FRACTION_BITS) * parts / PIECE_PARTS;
   piece->warp = 0;
   piece->time = (int64_t)time;
   if (from == RATE_FULL && to == RATE_FULL) return;
-  const uint32_t first = fixed_root((uint32_t)from), second = to == from ? first : fixed_root((uint32_t)to);
+  const uint32_t first = l->rooted == from ? l->root : fixed_root((uint32_t)from);
+  const uint32_t second = to == from ? first : fixed_root((uint32_t)to);
+  l->rooted = to;
+  l->root = second;
   slice_pause();
   const struct fixed_divisor by = fixed_divide_by(first + second != 0u ? first + second : 1u);
   /* time 2^31 / sum, that is time 2^(31 + shift) inverse / 2^126 */
@@ -248,6 +240,12 @@ static bool may_go_on(const struct look* l, bool hurry) {
   return !l->sweeping || *rate_at(l, l->front + 1u) != 0;
 }
 
+/* It has come to a stop of the limit of a desired position. */
+static bool is_at_limit(const struct look* l) {
+  return l->limits && !l->backward && l->part == 0 && (!l->begun || l->rate == 0) &&
+         lookahead_at(&l->buffer, l->front)->stops;
+}
+
 static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
   struct next_part p;
   if (!find_part(l, &p)) {
@@ -255,10 +253,15 @@ static bool go(struct look* l, bool hurry, struct lookahead_piece* piece) {
     return false;
   }
   if (l->single) return single(l, piece);
+  if (is_at_limit(l)) {
+    stand(l);
+    return false;
+  }
   if (!may_go_on(l, hurry)) return false;
   if (l->limits && is_free(l, l->front) && l->part == 0 && (!l->begun || l->rate == 0)) l->rate = *rate_at(l, l->front);
   int32_t to = RATE_FULL;
   if (l->limits) {
+    slice_pause();
     load_next(l, &p, p.last);
     to = limits_most(far_end(l), l->rate, *rate_at(l, p.knot));
     if (to < 0) to = *rate_at(l, p.knot);
@@ -279,6 +282,7 @@ bool lookahead_release(uint32_t cs, bool hurry, struct lookahead_piece* piece) {
     l->backward = order == LOOKAHEAD_BACKWARD || order == LOOKAHEAD_ONE_BACKWARD;
     l->single = l->was_single = order == LOOKAHEAD_ONE_FORWARD || order == LOOKAHEAD_ONE_BACKWARD;
     l->state = LOOK_GOES;
+    if (is_at_limit(l)) l->single = true; /* on into the limit a segment at a time */
     look_forget_sweeps(l);
   }
   if (l->state == LOOK_STANDS) return false;
@@ -319,6 +323,15 @@ uint32_t lookahead_state(uint32_t cs, bool moves) {
   const uint32_t direction = l->backward ? 1u : 0u;
   return (moves ? 2u | direction : 0u) | (l->was_single ? 8u | 2u | direction : 0u);
 }
+
+bool lookahead_is_wrapped(uint32_t cs) { return look_oldest(&looks[cs]) != 0u; }
+bool lookahead_is_backward(uint32_t cs) { return looks[cs].backward; }
+bool lookahead_is_at_oldest(uint32_t cs) {
+  const struct look* l = &looks[cs];
+  return l->backward && l->front == look_oldest(l) && l->part == 0u;
+}
+
+bool lookahead_is_at_limit(uint32_t cs) { return looks[cs].state == LOOK_STANDS && is_at_limit(&looks[cs]); }
 
 bool lookahead_is_over(uint32_t cs) {
   const struct look* l = &looks[cs];

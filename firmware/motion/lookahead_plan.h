@@ -15,7 +15,11 @@ bool lookahead_sweep(uint32_t cs, bool hurry); /* a step of it; false: nothing w
 void lookahead_take_back(uint32_t cs, const struct lookahead_piece* piece);
 void lookahead_do(uint32_t cs, enum lookahead_order order); /* in either direction it stops first if it has to turn */
 bool lookahead_stands(uint32_t cs);                         /* or will, behind what is handed over */
-uint32_t lookahead_state(uint32_t cs, bool moves);          /* for Isx21 */
-bool lookahead_is_over(uint32_t cs);                        /* all of the sequence is handed over */
+bool lookahead_is_at_limit(uint32_t cs);                    /* so because of that of a desired position */
+bool lookahead_is_wrapped(uint32_t cs);                     /* its oldest segments are written over */
+bool lookahead_is_backward(uint32_t cs);                    /* the direction in which it goes, or has gone last */
+bool lookahead_is_at_oldest(uint32_t cs);
+uint32_t lookahead_state(uint32_t cs, bool moves); /* for Isx21 */
+bool lookahead_is_over(uint32_t cs);               /* all of the sequence is handed over */
 
 #endif

@@ -16,16 +16,19 @@ enum look_state { LOOK_GOES, LOOK_STOPS, LOOK_STANDS };
 
 struct look {
   struct lookahead_buffer buffer;
-  uint32_t length; /* Isx20, as far as the buffer has room */
-  bool limits;     /* Isx20 above 1 */
-  bool closed;     /* the points so far are all */
+  uint32_t length;  /* Isx20, as far as the buffer has room */
+  bool limits;      /* Isx20 above 1 */
+  bool closed;      /* the points so far are all */
+  uint32_t guarded; /* motors whose desired positions are limited */
   uint32_t motors, motor_count;
   uint32_t period; /* ms */
   uint32_t added;  /* points so far */
   /* the front: what is before it, in the direction of motion, has been handed over */
   uint32_t front, part; /* so many sixteenths into the segment of this number, forwards */
   int32_t rate;         /* w there */
-  bool begun;           /* something has been handed over */
+  int32_t rooted;       /* the last w of which the root was taken, and that */
+  uint32_t root;
+  bool begun; /* something has been handed over */
   enum look_state state;
   bool backward;
   enum lookahead_order next; /* once it stands */

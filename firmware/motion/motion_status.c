@@ -7,8 +7,10 @@
 #include "firmware/hal/hal.h"
 #include "firmware/motion/axis_definition.h"
 #include "firmware/motion/coordinate_system.h"
+#include "firmware/motion/lookahead_plan.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/protection.h"
+#include "firmware/motion/segment.h"
 #include "firmware/variables/i_variables.h"
 
 enum {
@@ -30,6 +32,11 @@ enum {
   S3_SHARP_CORNER = 6,
   S3_CORNER_DWELL = 5,
   S3_RADIUS_ERROR = 3,
+  S3_WRAPPED = 23,
+  S3_BACKWARD = 22,
+  S3_OLDEST = 21,
+  S3_ASSIGNMENTS = 20,
+  S3_ASSIGNMENTS_LOST = 19,
   S3_LOOKAHEAD_STATE = 8,
   S3_DESIRED_LIMIT = 1,
   S3_MATCHING = 0,
@@ -99,8 +106,14 @@ static uint32_t status3(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const bool stops = s->corner != CORNER_NONE && s->moves[s->executing ^ 1u].is_sharp;
   const uint32_t state = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE)) << S3_LOOKAHEAD_STATE;
-  return state | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
-         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) | bit(is_on_desired_limit(cs), S3_DESIRED_LIMIT) |
+  const bool looks = segment_looks(cs);
+  const uint32_t buffer = bit(looks && lookahead_is_wrapped(cs), S3_WRAPPED) |
+                          bit(looks && lookahead_is_backward(cs), S3_BACKWARD) |
+                          bit(segment_stands(cs) && lookahead_is_at_oldest(cs), S3_OLDEST) |
+                          bit(s->slots_wait, S3_ASSIGNMENTS) | bit(s->slots_short, S3_ASSIGNMENTS_LOST);
+  return state | buffer | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
+         bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) |
+         bit(is_on_desired_limit(cs) || (segment_stands(cs) && lookahead_is_at_limit(cs)), S3_DESIRED_LIMIT) |
          bit(s->running && s->matching, S3_MATCHING);
 }
 

@@ -46,11 +46,22 @@ static void turn(uint32_t motor, const struct path_move* m, double largest, stru
     first[AXIS_X + i] = m->circle.first[i];
     second[AXIS_X + i] = m->circle.second[i];
   }
-  way->along = math_nearest(system_motor_velocity_at(motor, along));
   slice_pause();
-  way->first = math_nearest(system_motor_velocity_at(motor, first) * (largest + largest));
+  double value = system_motor_velocity_at(motor, along);
   slice_pause();
-  way->second = math_nearest(system_motor_velocity_at(motor, second) * largest);
+  way->along = math_nearest(value);
+  slice_pause();
+  value = system_motor_velocity_at(motor, first);
+  slice_pause();
+  value *= largest + largest;
+  slice_pause();
+  way->first = math_nearest(value);
+  slice_pause();
+  value = system_motor_velocity_at(motor, second);
+  slice_pause();
+  value *= largest;
+  slice_pause();
+  way->second = math_nearest(value);
   slice_pause();
   way->turns = way->first != 0 || way->second != 0;
 }
@@ -58,9 +69,13 @@ static void turn(uint32_t motor, const struct path_move* m, double largest, stru
 static double set_arc(uint32_t cs, uint32_t place, const struct circle* c) {
   const double end = c->radius + c->growth, largest = end > c->radius ? end : c->radius;
   slice_pause();
-  arcs[cs][place].angle = math_to_integer(math_scale(c->angle / TWO_PI, FIXED_TURN_BITS));
+  const double angle = c->angle / TWO_PI;
   slice_pause();
-  arcs[cs][place].growth = math_to_integer(math_scale(c->growth / largest, 62));
+  arcs[cs][place].angle = math_to_integer(math_scale(angle, FIXED_TURN_BITS));
+  slice_pause();
+  const double growth = c->growth / largest;
+  slice_pause();
+  arcs[cs][place].growth = math_to_integer(math_scale(growth, 62));
   arcs[cs][place].from = c->growth > 0.0 ? PATH_WHOLE - arcs[cs][place].growth : PATH_WHOLE;
   slice_pause();
   return largest;
@@ -83,15 +98,18 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
   const struct path_move* m = path_of(&paths[cs], ahead);
   const uint32_t place = place_of(&paths[cs], ahead);
   const double largest = m->is_arc ? set_arc(cs, place, &m->circle) : 0.0;
+  slice_pause();
   for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     struct way* way = &motors_of_path[motor].ways[place];
-    const int64_t end = math_nearest(system_motor_at(motor, m->end));
+    const double position = system_motor_at(motor, m->end);
+    slice_pause();
+    const int64_t end = math_nearest(position);
     way->whole = end - motors_of_path[motor].end;
     way->turns = false;
     motors_of_path[motor].end = end;
     slice_pause();
-    if (m->is_arc) turn(motor, m, largest, way);
+    if (m->is_arc && (system_motor_axes(motor) & AXIS_XYZ) != 0) turn(motor, m, largest, way);
   }
 }
 
@@ -103,14 +121,16 @@ void path_motors_pop(uint32_t cs) {
 }
 
 /* product of two parts */
-static int64_t product(int64_t a, int64_t b) { return fixed_share(a / 4, b) * 4; }
+static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
 
 static void look_by_program(uint32_t cs, const struct path_point* point) {
   double position[AXIS_COUNT];
   at.by_program = coordinate_systems[cs].inverse_motors;
   if (at.by_program == 0) return;
   path_axes_at(&paths[cs], point, position);
+  slice_pause();
   system_motors_solve(cs, position);
+  slice_pause();
 }
 
 void path_motors_look(uint32_t cs, const struct path_point* point) {
@@ -123,6 +143,7 @@ void path_motors_look(uint32_t cs, const struct path_point* point) {
     at.moves[n].place = place;
     at.moves[n].part = part;
     if (part == PATH_WHOLE || !path_of(&paths[cs], i)->is_arc) continue;
+    slice_pause();
     const struct fixed_direction to = fixed_direction_of(fixed_share(arcs[cs][place].angle, part));
     const int64_t radius = arcs[cs][place].from + product(arcs[cs][place].growth, part);
     at.moves[n].first = (product(to.cosine, radius) - arcs[cs][place].from) / 2;
@@ -131,19 +152,32 @@ void path_motors_look(uint32_t cs, const struct path_point* point) {
   }
 }
 
+static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t move) {
+  slice_pause();
+  return fixed_share(way->along, at.moves[move].part) + fixed_share(way->first, at.moves[move].first) +
+         fixed_share(way->second, at.moves[move].second);
+}
+
+static __attribute__((noinline)) int64_t by_program(uint32_t motor) {
+  slice_pause();
+  const double position = system_motor_solved(motor);
+  slice_pause();
+  const int64_t nearest = math_nearest(position);
+  slice_pause();
+  return nearest;
+}
+
 int64_t path_motor_at(uint32_t motor) {
-  if ((at.by_program >> motor & 1u) != 0) return math_nearest(system_motor_solved(motor));
+  if ((at.by_program >> motor & 1u) != 0) return by_program(motor);
+  const struct way* ways = motors_of_path[motor].ways;
   int64_t position = motors_of_path[motor].start;
   for (uint32_t i = 0; i < at.count; i++) {
-    const struct way* way = &motors_of_path[motor].ways[at.moves[i].place];
+    const struct way* way = &ways[at.moves[i].place];
     const int64_t part = at.moves[i].part;
-    if (part == PATH_WHOLE)
-      position += way->whole;
-    else if (!way->turns)
-      position += fixed_share(way->whole, part);
+    if (part == PATH_WHOLE || !way->turns)
+      position += part == PATH_WHOLE ? way->whole : fixed_share(way->whole, part);
     else
-      position += fixed_share(way->along, part) + fixed_share(way->first, at.moves[i].first) +
-                  fixed_share(way->second, at.moves[i].second);
+      position += on_arc(way, i);
   }
   return position;
 }

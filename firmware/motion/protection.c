@@ -201,6 +201,12 @@ static void check_desired(uint32_t motor, const struct view* view, int direction
   stop(motor);
 }
 
+bool protection_desired_limits(uint32_t motor, int64_t* lowest, int64_t* highest) {
+  *lowest = guards[motor].negative_desired;
+  *highest = guards[motor].positive_desired;
+  return *lowest != INT64_MIN || *highest != INT64_MAX;
+}
+
 static void check_limits(uint32_t motor, const struct view* view) {
   struct motor_findings* found = &motors[motor].found;
   if (view->desired_step != 0 && !motors[motor].status.aborting)

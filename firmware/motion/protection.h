@@ -26,4 +26,7 @@ static inline void protection_servo(uint32_t motor) { /* 0..31: overload, in pos
   if ((protection_watched >> motor & 1u) != 0u) protection_look(motor);
 }
 
+/* The limits of its desired position (Ixx24 bit 15); false: it has none. */
+bool protection_desired_limits(uint32_t motor, int64_t* lowest, int64_t* highest);
+
 #endif

@@ -27,6 +27,8 @@ enum {
 struct sequence {
   bool late; /* the next move has not come in time: the last one goes straight on, to its stop at most */
   bool runs;
+  bool rests; /* nothing was to be done but when the servo task has come further than this */
+  uint32_t rested;
   bool handed;                         /* the servo task has its first pieces */
   bool ends;                           /* it is known where: behind `joined` moves of the queue */
   bool looks;                          /* its segments go through the lookahead buffer */
@@ -112,11 +114,17 @@ void segment_line(uint32_t cs, struct program_trace* trace) {
   trace->places[trace->depth] = line->last;
 }
 
-/* A motor's next control point; the older ones move up. */
-static void add_point(uint32_t motor, int64_t at) {
-  int64_t* points = control[motor];
-  for (uint32_t i = 0; i + 1u < SPLINE_POINTS; i++) points[i] = points[i + 1u];
-  points[SPLINE_POINTS - 1] = at;
+/* The control point of every motor at a place of the path; the older ones move up. */
+static void add_points(uint32_t cs, const struct path_point* point) {
+  const bool looks = sequences[cs].looks; /* the lookahead buffer has the older ones */
+  path_motors_look(cs, point);
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    int64_t* points = control[motor];
+    for (uint32_t i = 0; !looks && i + 1u < SPLINE_POINTS; i++) points[i] = points[i + 1u];
+    points[SPLINE_POINTS - 1] = path_motor_at(motor);
+    slice_pause();
+  }
 }
 
 static void hand_over(uint32_t cs) {
@@ -139,11 +147,13 @@ static void set_cubics(uint32_t cs, uint32_t number, struct piece* piece, const 
   if (from != 0) lookahead_points(cs, from->segment, at);
   for (uint32_t motor = 0, slot = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    int64_t points[SPLINE_POINTS];
-    for (uint32_t i = 0; i < SPLINE_POINTS; i++) points[i] = from != 0 ? at[i][slot].point : control[motor][i];
-    const struct cubic c = segment_cubic(points);
-    if (c.linear != 0 || c.square != 0 || c.cube != 0) piece->motors |= 1u << motor;
-    *piece_ring_cubic(&s->ring, number, motor) = c;
+    struct cubic* c = piece_ring_cubic(&s->ring, number, motor);
+    const int64_t* p = control[motor];
+    if (from != 0)
+      segment_cubic(at[0][slot].point, at[1][slot].point, at[2][slot].point, at[3][slot].point, c);
+    else
+      segment_cubic(p[0], p[1], p[2], p[3], c);
+    if ((c->linear | c->square | c->cube) != 0) piece->motors |= 1u << motor;
     slot++;
     if ((slot & 1u) == 0) slice_pause();
   }
@@ -154,6 +164,7 @@ static void add_piece(uint32_t cs, const struct lookahead_piece* from) {
   struct sequence* q = &sequences[cs];
   const uint32_t number = s->ring.added + q->unhanded;
   struct piece* piece = piece_ring_at(&s->ring, number);
+  slice_pause();
   *piece = q->timed;
   if (from != 0 && from->time != q->period) piece_set_time(piece, from->time);
   if (from != 0) {
@@ -207,6 +218,7 @@ static bool begin(uint32_t cs) {
   const struct path_move* m = path_of(&paths[cs], 0);
   if (s->next_valid || q->stops) return false;
   struct move* slot = plan_begin(cs, MOVE_SEGMENTS);
+  slice_pause();
   slot->joins = slot->blended = slot->overruns = false;
   slot->is_sharp = m->sharp;
   slot->has_dwell = m->dwells;
@@ -225,21 +237,19 @@ static bool begin(uint32_t cs) {
   q->timed.continues = false;
   slice_pause();
   path_motors_begin(cs);
-  path_motors_look(cs, &(struct path_point){.count = 0});
-  for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    for (uint32_t i = 0; i < SPLINE_POINTS; i++) control[motor][i] = path_motor_at(motor);
-    slice_pause();
-  }
+  q->looks = false;
+  for (uint32_t i = 0; i < SPLINE_POINTS; i++) add_points(cs, &(struct path_point){.count = 0});
   system_motors_come_along(cs);
+  slice_pause();
   q->time = path_begins(&paths[cs], 0);
   set_move(cs, 0);
   set_move(cs, 0);
-  q->handed = q->ends = q->closed = q->late = false;
+  q->handed = q->ends = q->closed = q->late = q->rests = false;
   q->order = LOOKAHEAD_NONE;
   q->joined = 1;
   q->unhanded = 0;
   q->points = LAST_POINTS;
+  slice_pause();
   q->looks = lookahead_begin(cs, (uint32_t)(period > 0 ? period : 1));
   for (uint32_t i = 0; q->looks && i + 1u < SPLINE_POINTS; i++) look_at_point(cs);
   q->made = false;
@@ -268,10 +278,9 @@ static uint32_t override_of(uint32_t cs) {
   return present - wanted <= change ? wanted : present - change;
 }
 
-/* Program time of the next point. */
-static int64_t next_time(uint32_t cs) {
+/* Program time of the next point, `override` on from the last one. */
+static int64_t next_time(uint32_t cs, uint32_t override) {
   const struct sequence* q = &sequences[cs];
-  const uint32_t override = override_of(cs);
   const int64_t step = q->period << (PATH_TIME_BITS - TRAJECTORY_FRACTION_BITS);
   return q->time + (override == OVERRIDE_ONE ? step : fixed_share(step, (int64_t) override << 31) * 2);
 }
@@ -327,16 +336,6 @@ static void drop_moves(uint32_t cs, int64_t* time) {
   }
 }
 
-/* The control point of every motor at a place of the path. */
-static void add_points(uint32_t cs, const struct path_point* point) {
-  path_motors_look(cs, point);
-  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
-    if ((left & 1u) == 0) continue;
-    add_point(motor, path_motor_at(motor));
-    if ((motor & 1u) != 0) slice_pause();
-  }
-}
-
 /* The last point of a sequence, once more each time. */
 static void make_end(uint32_t cs) {
   struct sequence* q = &sequences[cs];
@@ -352,17 +351,20 @@ static void make_end(uint32_t cs) {
   if (q->looks) lookahead_close(cs);
 }
 
-static void make_point(uint32_t cs, int64_t time) {
+static void make_point(uint32_t cs, int64_t time, uint32_t override) {
   struct sequence* q = &sequences[cs];
   struct path* p = &paths[cs];
   struct path_point point;
+  slice_pause();
   path_at(p, (struct path_reach){q->joined, q->ends}, time, &point);
+  slice_pause();
   add_points(cs, &point);
   uint32_t ahead = 0;
   while (ahead + 1u < q->joined && time >= path_begins(p, ahead + 1u)) ahead++;
   set_move(cs, ahead);
   q->time = time;
-  q->override = override_of(cs);
+  q->override = override;
+  slice_pause();
   use_point(cs);
 }
 
@@ -380,10 +382,14 @@ static bool is_dry(const struct coordinate_system* s, const struct sequence* q) 
 /* The next point of the path. False: it waits for a further move. */
 static bool make_next(uint32_t cs, bool starving) {
   struct sequence* q = &sequences[cs];
+  slice_pause();
   leave_out(cs);
   join(cs);
-  int64_t time = next_time(cs);
+  slice_pause();
+  const uint32_t override = override_of(cs);
+  int64_t time = next_time(cs, override);
   drop_moves(cs, &time);
+  slice_pause();
   if (!q->ends) {
     const enum decision decision = decide(cs, time, starving);
     if (decision == WAITS) return false;
@@ -392,7 +398,7 @@ static bool make_next(uint32_t cs, bool starving) {
   if (q->ends && time > path_ends(&paths[cs], q->joined) - TIME_TOLERANCE)
     make_end(cs);
   else
-    make_point(cs, time);
+    make_point(cs, time, override);
   return true;
 }
 
@@ -446,11 +452,12 @@ static void show(uint32_t cs) {
 }
 
 /* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
-static bool work_ahead(uint32_t cs, bool alone) {
+static bool go_ahead(uint32_t cs, bool alone) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
+  const uint32_t executing = s->ring.executing;
+  q->rests = false;
   if (q->order != LOOKAHEAD_NONE) obey(cs);
-  show(cs);
   if (q->made && lookahead_is_over(cs)) {
     hand_over(cs);
     q->runs = false;
@@ -458,10 +465,11 @@ static bool work_ahead(uint32_t cs, bool alone) {
   }
   const uint32_t ahead = ahead_of(s) + q->unhanded;
   const bool room = ahead < q->most, hurry = q->handed && ahead <= q->least;
+  const bool soon = hurry || (q->handed && ahead <= q->least + 1u && !s->next_valid && !path_is_full(cs));
   const bool grows = !q->made && !lookahead_is_full(cs);
   if ((room && release(cs, false)) || lookahead_sweep(cs, false)) return true;
   /* what has no next line in time comes to its end, before it has to stop where nothing more is known */
-  if (hurry && grows && alone && decide(cs, next_time(cs), false) == WAITS) return make_next(cs, true);
+  if (soon && grows && alone && decide(cs, next_time(cs, override_of(cs)), false) == WAITS) return make_next(cs, true);
   if (hurry && ((room && release(cs, true)) || lookahead_sweep(cs, true))) return true;
   if (grows) {
     if (make_next(cs, false)) return true;
@@ -474,17 +482,32 @@ static bool work_ahead(uint32_t cs, bool alone) {
     hand_over(cs);
     return true;
   }
+  q->rests = !grows && s->active;
+  q->rested = executing;
   return false;
 }
 
-bool segment_work(uint32_t cs, bool alone) {
+static bool work_ahead(uint32_t cs, bool alone) {
+  if (go_ahead(cs, alone)) return true;
+  show(cs);
+  return false;
+}
+
+static __attribute__((noinline)) bool work(uint32_t cs, bool alone) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   if (!q->runs) return paths[cs].count != 0 && begin(cs);
+  slice_pause();
   if (q->looks) return work_ahead(cs, alone);
   if (is_dry(s, q)) {
     s->failure = RUN_TIME_LATE;
     return false;
   }
   return ahead_of(s) + q->unhanded < q->most && work_at_once(cs, alone);
+}
+
+bool segment_work(uint32_t cs, bool alone) {
+  const struct sequence* q = &sequences[cs];
+  const bool rests = q->runs && q->rests && q->rested == coordinate_systems[cs].ring.executing;
+  return (!rests || q->order != LOOKAHEAD_NONE) && work(cs, alone);
 }

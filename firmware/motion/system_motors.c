@@ -60,18 +60,24 @@ void system_motors_resolve(uint32_t cs) {
 }
 
 /* What axes are ahead of the trajectory. */
-static double bias(uint32_t motor) {
+static int64_t bias_of(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
   const int64_t value = motors[motor].bias + followed[motor];
   hal_unmask(state);
-  return (double)value;
+  return value;
 }
 
-double system_motor_solved(uint32_t motor) { return kinematics_at(motor) - bias(motor); }
+double system_motor_solved(uint32_t motor) {
+  const int64_t bias = bias_of(motor);
+  return bias == 0 ? kinematics_at(motor) : kinematics_at(motor) - (double)bias;
+}
 
 double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]) {
   if (maps[motor].by_program) return system_motor_solved(motor);
-  double sum = maps[motor].offset - bias(motor);
+  const int64_t bias = bias_of(motor);
+  double sum = maps[motor].offset;
+  if (bias != 0) sum -= (double)bias;
+  slice_pause();
   for (uint32_t i = 0; i < maps[motor].count; i++) {
     sum += maps[motor].scale[i] * position[maps[motor].axis[i]];
     slice_pause();
@@ -110,6 +116,12 @@ double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT
     slice_pause();
   }
   return sum;
+}
+
+uint32_t system_motor_axes(uint32_t motor) {
+  uint32_t axes = 0;
+  for (uint32_t i = 0; i < maps[motor].count; i++) axes |= 1u << maps[motor].axis[i];
+  return axes;
 }
 
 double system_motor_counts(uint32_t motor, int64_t distance) { return (double)distance / maps[motor].unit; }
@@ -162,7 +174,7 @@ static void add_equation(struct equations* e, uint32_t motor) {
     row[maps[motor].axis[i]] = maps[motor].scale[i];
     if (math_absolute(maps[motor].scale[i]) > largest) largest = math_absolute(maps[motor].scale[i]);
   }
-  row[AXIS_COUNT] = (double)commanded(motor) + bias(motor) - maps[motor].offset;
+  row[AXIS_COUNT] = (double)commanded(motor) + (double)bias_of(motor) - maps[motor].offset;
   for (uint32_t k = 0; k < e->count; k++) {
     const double factor = row[e->pivot[k]];
     if (factor == 0.0) continue;

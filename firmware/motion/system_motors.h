@@ -33,6 +33,7 @@ void system_motors_come_along(uint32_t cs);
 /* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */
 double system_motors_turn(uint32_t cs, uint32_t axis, double target);
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]);
+uint32_t system_motor_axes(uint32_t motor); /* those that move it */
 double system_motor_counts(uint32_t motor, int64_t distance);
 /* Of distances behind a trigger those of its axes in `axes`; false: it has none of them. */
 bool system_motor_behind(uint32_t motor, uint32_t axes, const double distance[AXIS_COUNT], int64_t* behind);

@@ -174,6 +174,7 @@ static enum executed assign(struct executor* x, const struct instruction* in) {
   if (in->operation != OP_ASSIGN && !evaluator_pop(&x->evaluator, &value)) return EXECUTED_ERROR;
   if (in->operation == OP_ASSIGN_INDEXED && !evaluator_pop(&x->evaluator, &number)) return EXECUTED_ERROR;
   variable_write(in->group, x->cs, number, value);
+  slice_pause();
   return end_statement(x, 1);
 }
 
@@ -182,7 +183,9 @@ static enum executed evaluate(struct executor* x, const struct instruction* in, 
   word48_t raw = 0;
   if (raw_count != 0 && reader_peek(&x->at.reader, 1, &raw) != READER_WORD) return EXECUTED_ERROR;
   x->prefix = 0;
-  return evaluator_execute(&x->evaluator, in, head, raw, x->cs) ? advance(x, 1u + raw_count) : EXECUTED_ERROR;
+  if (!evaluator_execute(&x->evaluator, in, head, raw, x->cs)) return EXECUTED_ERROR;
+  slice_pause();
+  return advance(x, 1u + raw_count);
 }
 
 /* The operations whose value was pushed before them. */
@@ -212,6 +215,7 @@ enum executed executor_step(struct executor* x, struct instruction* in) {
   }
   *in = word_decode(head);
   begin_word(x, head);
+  slice_pause(); /* to find it takes as long as to do it */
   if (in->operation >= OP_PUSH && in->operation <= OP_APPLY) return evaluate(x, in, head);
   switch (in->operation) {
     case OP_ILLEGAL:

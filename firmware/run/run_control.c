@@ -132,7 +132,7 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->waited = true;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
-    s->ended = false;
+    s->ended = s->slots_short = false;
     if (!s->next_valid) s->may_join = false;
   }
   s->end_block = false;

@@ -2,6 +2,7 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/kernel/slice.h"
+#include "firmware/motion/lookahead_buffer.h"
 #include "firmware/motion/path.h"
 #include "firmware/motion/plan_move.h"
 #include "firmware/variables/i_variables.h"
@@ -16,9 +17,13 @@ struct assignment {
   double value;
 };
 
+_Static_assert(sizeof(struct assignment) <= 16, "a slot is two words");
+
+/* A ring: `own`, or in lookahead the slots of its buffer (motion:7.3/4), as it was when the first one came. */
 static struct {
-  struct assignment waiting[SYNCHRONOUS_QUEUE]; /* a ring */
-  uint32_t first, count;
+  struct assignment own[SYNCHRONOUS_QUEUE];
+  struct assignment* ring;
+  uint32_t size, first, count;
 } queues[COORDINATE_SYSTEMS];
 
 static uint32_t filled; /* a bit a queue that is not empty */
@@ -29,18 +34,43 @@ void synchronous_initialize(void) {
 }
 
 static struct assignment* waiting(uint32_t cs, uint32_t ahead) {
-  return &queues[cs].waiting[(queues[cs].first + ahead) % SYNCHRONOUS_QUEUE];
+  return &queues[cs].ring[(queues[cs].first + ahead) % queues[cs].size];
 }
 
 bool synchronous_is_short(const struct instruction* in) {
   return in->operation == OP_STATEMENT && in->number >= WORD_KEY(4, 1, 0) && in->number < WORD_KEY(4, 5, 0);
 }
 
+static void show(uint32_t cs) {
+  coordinate_systems[cs].slots_wait = queues[cs].count != 0 && queues[cs].ring != queues[cs].own;
+}
+
+static bool looks(uint32_t cs) {
+  return coordinate_systems[cs].motors != 0 && i_integer(i_cs(cs, ISX13_SEGMENTATION_TIME)) != 0 &&
+         i_integer(i_cs(cs, ISX20_LOOKAHEAD_LENGTH)) != 0 && lookahead_buffer_is_defined(cs);
+}
+
+enum room { ROOM, ROOM_LATER, ROOM_NONE };
+
+/* In lookahead calculation does not wait: that would be for ever, where what has to come is behind it. */
+static enum room room_for_one(uint32_t cs) {
+  const bool ahead = looks(cs);
+  if (queues[cs].count == 0) {
+    void* slots = queues[cs].own;
+    queues[cs].size = ahead ? lookahead_slots(cs, &slots) : SYNCHRONOUS_QUEUE;
+    queues[cs].ring = slots;
+    queues[cs].first = 0;
+  }
+  if (queues[cs].count < queues[cs].size) return ROOM;
+  return ahead && queues[cs].ring != queues[cs].own ? ROOM_NONE : ROOM_LATER;
+}
+
 enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
   struct motion_program* p = &motion_programs[cs];
   const struct evaluator* ev = &p->x.evaluator;
   uint32_t number = in->number, action = in->group;
-  if (queues[cs].count == SYNCHRONOUS_QUEUE)
+  const enum room room = room_for_one(cs);
+  if (room == ROOM_LATER)
     return waiting(cs, 0)->move == coordinate_systems[cs].planned + 1u ? executor_fail(&p->x, RUN_TIME_SYNCHRONOUS)
                                                                        : EXECUTED_LATER;
   if (in->operation == OP_SYNCHRONOUS_INDEXED) {
@@ -50,12 +80,17 @@ enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
     number = (in->number & 0x3FFu) + p->x.prefix;
     action = (in->number >> 10 & 7u) - 1u;
   }
+  if (room == ROOM_NONE) {
+    coordinate_systems[cs].slots_short = true;
+    return executor_pass(&p->x);
+  }
   struct assignment* a = waiting(cs, queues[cs].count++);
   a->move = coordinate_systems[cs].planned + 1u;
   a->number = (uint16_t)(number % VARIABLE_COUNT);
   a->action = (uint8_t)action;
   a->value = in->value;
   filled |= 1u << cs;
+  show(cs);
   return executor_pass(&p->x);
 }
 
@@ -74,7 +109,7 @@ static double time_of(uint32_t cs) {
 void synchronous_move_time(uint32_t cs) {
   const double ahead = cs_real(cs, ISX14_END_OF_MOVE_ANTICIPATION), time = time_of(cs);
   slice_pause();
-  if (ahead == 0.0 || time == 0.0 || queues[cs].count == SYNCHRONOUS_QUEUE) return;
+  if (ahead == 0.0 || time == 0.0 || room_for_one(cs) != ROOM) return;
   const double units = math_scale(time + ahead, TRAJECTORY_FRACTION_BITS);
   struct assignment* a = waiting(cs, queues[cs].count++);
   a->move = coordinate_systems[cs].planned;
@@ -82,6 +117,7 @@ void synchronous_move_time(uint32_t cs) {
   a->action = MOVE_TIME;
   a->value = units > 0.0 ? math_floor(units / (double)coordinate_systems[cs].increment_full + 0.5) : 0.0;
   filled |= 1u << cs;
+  show(cs);
 }
 
 static void assign(const struct assignment* a) {
@@ -110,8 +146,9 @@ static bool is_due(uint32_t cs) {
 }
 
 static void remove_first(uint32_t cs) {
-  queues[cs].first = (queues[cs].first + 1u) % SYNCHRONOUS_QUEUE;
+  queues[cs].first = (queues[cs].first + 1u) % queues[cs].size;
   if (--queues[cs].count == 0) filled &= ~(1u << cs);
+  show(cs);
 }
 
 bool synchronous_waits(void) { return filled != 0; }
@@ -129,4 +166,5 @@ void synchronous_assign(void) {
 void synchronous_forget(uint32_t cs) {
   queues[cs].first = queues[cs].count = 0;
   filled &= ~(1u << cs);
+  show(cs);
 }

@@ -48,5 +48,9 @@ Bench ssi_bench();
 Bench time_base_bench();
 Bench follow_bench();
 Bench task_load_bench();
+Bench circle_bench();
+Bench lookahead_bench();
+Bench reversal_bench();
+Bench rotary_machining_bench();
 
 }  // namespace brick

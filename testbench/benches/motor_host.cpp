@@ -119,6 +119,7 @@ void MotorHost::look() {
     samples_[i].push_back({fs_to_tick(left_), counts(kCommanded), counts(kActual), word / 256, turned(i + 1),
                            !enables_[i].empty() && enables_[i].back().on});
   }
+  looked();
 }
 
 std::uint32_t MotorHost::word_at(std::uint32_t address, unsigned byte) {

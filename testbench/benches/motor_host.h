@@ -93,6 +93,7 @@ class MotorHost : public ServoHost, public MotorPeer {
   bool step(Tick, MotorInputPins&) override { return false; }
 
  private:
+  virtual void looked() {}  // behind each sample
   std::uint32_t word_at(std::uint32_t address, unsigned byte);
   void look();
   void task_changed(TimeFs time);

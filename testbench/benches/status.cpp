@@ -203,9 +203,10 @@ void global_bits(BenchContext& b) {
 }
 
 // What ^B, ^C, ^F, ^G, ^P and ^V say of motors 9 to 16 and of all systems, from words that are written for it. Ixx08
-// and Ixx09 are 96, so a register of 3,072 is one count (firmware:1.10/8, firmware:5.1).
+// and Ixx09 are 96, so a register of 3,072 is one count (firmware:1.10/8, firmware:5.1). Motors that are activated have
+// a word of memory for their encoder: its step is shared out to 256 servo interrupts (motion:1.3/4).
 void control_characters(BenchContext& b) {
-  constexpr int kMotors = 8, kFirst = 9, kSystems = 16, kCount = 32 * 96;
+  constexpr int kMotors = 8, kFirst = 9, kSystems = 16, kCount = 32 * 96, kEncoders = 0x10F0;
   Comparison compared;
   std::string statuses, positions, errors, velocities, systems;
   const auto number = [](double value) {
@@ -215,25 +216,33 @@ void control_characters(BenchContext& b) {
     return text;
   };
   const auto say = [&](const std::string& line) { compared.equal(line, b.ask(line), ""); };
+  const auto wait = [&b](unsigned ms) { b.machine.run_until(b.machine.now() + ms * kMillisecond); };
   for (int i = 0; i < kMotors; ++i) {
     const int motor = kFirst + i, at = 0x80 * motor, sign = i % 2 == 0 ? 1 : -1;
     const std::string space = i == 0 ? "" : " ";
-    say(fmt::format("M8..11->* M8->D:${:X} M9->D:${:X} M10->X:${:X},0,24,S", at + 0x08, at + 0x0B, at + 0x1D));
-    say(fmt::format("M8={} M9={} M10={}", sign * (motor + 5) * kCount, sign * (motor * kCount + kCount / 2),
-                    sign * (motor + 100) * kCount + kCount / 4));
-    if (motor % 3 == 0) say(fmt::format("I{}00=1 #{}HMZ", motor, motor));
     const bool activated =
         motor % 3 == 0;  // then the words are the loop's (motion:1.3/2): it stands where it was homed
+    const double velocity = sign * (motor + 100) + 0.25;
+    say(fmt::format("M8..11->* M8->D:${:X} M9->D:${:X}", at + 0x08, at + 0x0B));
+    say(fmt::format("M8={} M9={}", sign * (motor + 5) * kCount, sign * (motor * kCount + kCount / 2)));
+    if (activated) {
+      say(fmt::format("WX${0:X},0 I{1}03=${0:X} I{1}00=1", kEncoders + i, motor));
+      wait(1);
+      say(fmt::format("WX${:X},{:.0f}", kEncoders + i, velocity * 256 * 32));
+      wait(1);
+      say(fmt::format("#{}HMZ", motor));
+    }
     statuses += space + (activated ? "850000000400" : "050000000000");
     positions += space + number(activated ? 0 : sign * (motor + 0.5));
     errors += space + number(activated ? 0 : sign * 4.5);
-    velocities += space + number(activated ? 0 : sign * (motor + 100) + 0.25);
+    velocities += space + number(activated ? velocity : 0);
   }
   for (int cs = 1; cs <= kSystems; ++cs) {
     if (cs % 4 == 3) say(fmt::format("&{}INC(V)", cs));
     systems += (cs == 1 ? "" : " ") + std::string(cs % 4 == 3 ? "A84020" : "A80020") + "020000000000";
   }
   say("I68=15 ##1");
+  wait(8);  // the next of sixteen samples
   const auto line = [&b](std::uint8_t c) {
     const Reply reply = b.link.control(c);
     return reply.lines.empty() ? "nothing" : reply.lines.front();
@@ -248,7 +257,7 @@ void control_characters(BenchContext& b) {
   compared.equal("^F", line(0x06), errors);
   compared.equal("^V", line(0x16), velocities);
   for (int motor = kFirst; motor < kFirst + kMotors; ++motor)
-    if (motor % 3 == 0) say(fmt::format("#{}HM I{}00=0", motor, motor));
+    if (motor % 3 == 0) say(fmt::format("#{0}HM I{0}00=0 I{0}03=${1:X}", motor, 0x3500 + motor));
   for (int cs = 3; cs <= kSystems; cs += 4) say(fmt::format("&{}ABS(V)", cs));
   say("M8..11->* ##0");
   b.report.step("control characters", compared, 6, "^B ^C ^F ^G ^P ^V say what was written for them");

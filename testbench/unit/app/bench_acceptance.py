@@ -16,8 +16,9 @@ def run_json(bench, *options):
         return r, json.loads(pathlib.Path(f"{folder}/r.json").read_text())
 
 
-def bench_passes(name, engine, seed="1", firmware=True, board=None):
-    r, results = run_json(name, "--engine", engine, "--seed", seed, *(("--board", board) if board else ()))
+def bench_passes(name, engine, seed="1", firmware=True, board=None, size=None):
+    r, results = run_json(name, "--engine", engine, "--seed", seed, *(("--board", board) if board else ()),
+                          *(("--size", size) if size else ()))
     check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
     check(f"PASS {name}" in r.stdout and "ticks/s" in r.stdout and "instructions/s" in r.stdout, r.stdout)
     check(len(results["steps"]) > 5 and results["ticks"] > 0 and (results["instructions"] > 0) == firmware,
@@ -387,6 +388,47 @@ def follow_lockstep():
 def task_load():
     for seed in ("1", "2"):
         bench_passes("task-load", "systemc", seed)
+
+
+def circle():
+    for seed in ("1", "2"):
+        bench_passes("circle", "systemc", seed)
+
+
+def circle_lockstep():
+    bench_passes("circle", "lockstep", "11")
+
+
+# covers: LA-1 LA-2 LA-3 LA-4 LA-5
+def lookahead():
+    for seed in ("1", "2", "3"):
+        bench_passes("lookahead", "systemc", seed)
+
+
+# covers: LA-1 LA-2 LA-3 LA-4 LA-5
+def lookahead_lockstep():
+    bench_passes("lookahead", "lockstep", "12")
+
+
+# covers: LA-1 LA-2 LA-4
+def reversal():
+    for seed in ("1", "2", "3"):
+        bench_passes("reversal", "systemc", seed)
+
+
+# covers: LA-1 LA-2 LA-4
+def reversal_lockstep():
+    bench_passes("reversal", "lockstep", "13")
+
+
+# covers: BREQ-4 BIN-3 LA-3 LA-4
+def rotary_machining():
+    bench_passes("rotary-machining", "systemc", "1", size="300")
+
+
+# covers: BREQ-4 BIN-3 LA-3 LA-4
+def rotary_machining_lockstep():
+    bench_passes("rotary-machining", "lockstep", "14")
 
 
 if CASE.endswith("_negative"):

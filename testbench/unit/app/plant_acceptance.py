@@ -244,6 +244,19 @@ def plant_moves_none():
     check(int(said[5], 16) & 0x404 == 4, f"no home, tripped again: {said}")
 
 
+def plant_overload():
+    """More than the CPU can do (docs/watchdog.md): the watchdog takes the motors off and says so; a reset ends it."""
+    script = ["#1J/", "@wait 5ms", "@signal servo_ic0.ch1.aena", "I7000=1473", "@until watchdog.tripped=1 60ms",
+              "@signal host.wdo", "@signal servo_ic0.ch1.aena", "@reset", "???", "#1?", "I7000"]
+    r = play(script, "--plant", "servo8", "--load", "servo8")
+    check(r.returncode == 0, r.stderr)
+    said = r.stdout.split()
+    check(said[:3] == ["servo_ic0.ch1.aena=1", "host.wdo=1", "servo_ic0.ch1.aena=0"], str(said))
+    check(said[3:] == ["000000000800", "850000000000", "6527"], f"as at power-on: {said}")
+    r = play([*script[:5], "???"], "--plant", "servo8", "--load", "servo8")
+    check(r.returncode != 0 and "the watchdog has tripped" in r.stderr, r.stderr)
+
+
 def plant_first_minute():
     """The README's first minute, as printed: two commands, and a motor has moved, to be seen in the waveform's view."""
     tree = command.BOARDS.parent

@@ -65,6 +65,21 @@ def record_changes_nothing():
         check(len(names) == 8 * 3 + 2 and len(rows) > 500, names)
 
 
+def record_fill_and_feed():
+    """Four lines of two words wait for R, the first of them 50 units long at 0.5 a ms."""
+    script = ["#1J/", "#2J/", "@wait 20ms", "&1 UNDEFINE ALL #1->100X #2->200Y", "I5190=1 I5198=0 I5187=10 I5188=0",
+              "DELETE GATHER", "DEFINE ROT 20 B0", "OPEN ROT", "INC LINEAR F0.5", "X30Y40", "X-3Y-4", "X3Y4", "R",
+              "@wait 400ms"]
+    with tempfile.TemporaryDirectory() as folder:
+        _, names, rows, _ = recorded(folder, script, *DAC8, of="cs1.* feed:1/100,2/200 x=feed:1")
+        check(names == ["time_ms", "cs1.lines", "cs1.words", "feed:1/100,2/200", "x"], names)
+        at = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+        check(max(at["cs1.lines"]) == 4 and at["cs1.lines"][-1] == 0, max(at["cs1.lines"]))
+        check(max(at["cs1.words"]) == 9 and at["cs1.words"][-1] == 0, max(at["cs1.words"]))
+        check(abs(max(at["feed:1/100,2/200"]) - 0.5) < 0.001, max(at["feed:1/100,2/200"]))
+        check(abs(max(at["x"]) - 30) < 0.01, max(at["x"]))
+
+
 def record_mistakes():
     with tempfile.TemporaryDirectory() as folder:
         file = str(pathlib.Path(folder, "r.csv"))
@@ -73,6 +88,11 @@ def record_mistakes():
                 (("--record", "/no/such/r.csv"), "--record /no/such/r.csv: no such folder /no/such"),
                 (("--record-of", "motor1.error"), "--record-of needs a file; expected --record FILE.csv"),
                 (("--record", file, "--record-of", "motor33.error"), "no such signal or number; expected"),
+                (("--record", file, "--record-of", "cs17.lines"), "no such signal or number; expected"),
+                (("--record", file, "--record-of", "feed:1,33"), "33 is above 32"),
+                (("--record", file, "--record-of", "feed:0"), "there is no motor 0"),
+                (("--record", file, "--record-of", "feed:1/0"), "`0` is no divisor"),
+                (("--record", file, "--record-of", "=feed:1"), "no name before `=`"),
                 (("--record", file, "--record-of", "X:$40000"), "$40000 is above 262143"),
                 (("--record", file, "--record-of", "X:$BF,20,8"), "bits 20 and 8 on"),
                 (("--record", file, "--record-of", "X:$BF,0,8,T"), "`T` is neither S nor U"),

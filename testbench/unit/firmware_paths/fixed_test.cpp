@@ -59,8 +59,8 @@ TEST(Fixed, Directions) {
     const auto angle = static_cast<std::int64_t>(random() >> (2 + random() % 20));
     const double radian = std::remainder(static_cast<double>(angle) / kTurn, 1) * 2 * kPi;
     const fixed_direction d = fixed_direction_of(angle);
-    ASSERT_NEAR(static_cast<double>(d.cosine) / kPart, std::cos(radian), 2e-14) << angle;
-    ASSERT_NEAR(static_cast<double>(d.sine) / kPart, std::sin(radian), 2e-14) << angle;
+    ASSERT_NEAR(static_cast<double>(d.cosine) / kPart, std::cos(radian), 1e-12) << angle;
+    ASSERT_NEAR(static_cast<double>(d.sine) / kPart, std::sin(radian), 1e-12) << angle;
   }
 }
 

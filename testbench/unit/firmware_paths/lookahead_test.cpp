@@ -224,6 +224,28 @@ TEST_F(Lookahead, OffAndStoredOnly) {
   }
 }
 
+// Whether another line comes is not known at the end of a rotary buffer: the last one is its end all the same, in time
+// for one stop there and none on the way.
+TEST_F(Lookahead, ARotaryBufferThatRunsEmptyStopsOnceAtItsEnd) {
+  fit({"X"});
+  ASSERT_EQ(host("I5113=5 I5120=20 I116=24 I117=1"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 40,0 DEFINE ROTARY 100 B0 OPEN ROTARY"), "");
+  ASSERT_EQ(host("INC LINEAR TA4 TS0 TM5"), "");
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(host("X100"), "");
+  ASSERT_EQ(host("&1R"), "");
+  std::vector<double> slow;  // places of a velocity below 5, from 300 counts on
+  double before = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    platform::servo_ticks(1);
+    const double x = at(1);
+    if (x > 300 && x < 4000 && (x - before) / kTickMs < 5) slow.push_back(x);
+    before = x;
+  }
+  EXPECT_EQ(motors[0].trajectory, 4000 * 3072LL);
+  ASSERT_FALSE(slow.empty());
+  EXPECT_GT(slow.front(), 4000 - 5 * 5 / 2.0 - 10) << "5 counts/ms at 1 count/ms^2 are 12.5 counts";
+}
+
 // A host that stops sending in time: the move ends at rest; a little later it goes on.
 TEST_F(Lookahead, AStarvedRotaryBufferEndsItsMovesWithinTheLimits) {
   fit({"1000X"});
@@ -264,6 +286,141 @@ TEST_F(Lookahead, SegmentOverride) {
   store({"X3"});
   EXPECT_NEAR(run(), 60 + 10, kTickMs) << "saturated";
   EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
+}
+
+// motion:7.5/6. Ixx24 bit 15: it stops on the path before what lies beyond, goes on into it a segment at a time, and
+// back as ever. Y is half as fast: where it is tells whether the path is the same.
+TEST_F(Lookahead, TheLimitOfADesiredPositionStopsOnThePath) {
+  fit({"1000X", "500X"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=1 I113=50000 I141=1000 I124=$8001"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F50 TA10 TS0", "X100"});
+  ASSERT_EQ(host("&1B1R"), "");
+  std::vector<double> x;
+  const auto go = [&](unsigned ticks) {
+    for (unsigned i = 0; i < ticks; ++i) {
+      platform::servo_ticks(1);
+      x.push_back(at(1));
+      ASSERT_NEAR(at(2), x.back() / 2, 0.01);
+      ASSERT_LE(x.back(), 49000);
+    }
+  };
+  go(ticks_of(1300));
+  const double stop = at(1);
+  EXPECT_GT(stop, 49000 - 3 * 250) << "three segments of 5 ms at 50 counts/ms";
+  EXPECT_EQ(host("I5121"), "0");
+  EXPECT_EQ(host("??").substr(12, 6).back() & 2, 2) << "bit 1 of word 3";
+  for (std::size_t n = 2; n < x.size(); ++n)
+    ASSERT_LE(std::abs(x[n] - 2 * x[n - 1] + x[n - 2]), 1.02 * kTickMs * kTickMs + 4 / kUnit);
+  ASSERT_EQ(host("&1<"), "");
+  go(ticks_of(600));
+  EXPECT_LT(at(1), stop - 5000);
+  ASSERT_EQ(host("&1>"), "");
+  go(ticks_of(1500));
+  EXPECT_EQ(at(1), stop) << "there again";
+}
+
+TEST_F(Lookahead, BeyondTheLimitASegmentAtATime) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=1 I113=50000 I124=$8001"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F50 TA10 TS0 FRAX(X)", "X100 Y100"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(1300));
+  const double stop = at(2);
+  EXPECT_LT(stop, 50000);
+  for (int i = 1; i <= 4; ++i) {
+    ASSERT_EQ(host(i % 2 == 0 ? "&1R" : "&1>"), "");
+    platform::servo_ticks(ticks_of(200));
+    EXPECT_NEAR(at(2), stop + 250 * i, 0.01) << "5 ms at 50 counts/ms";
+    EXPECT_LE(at(1), 50000);
+    EXPECT_EQ(host("??").substr(12, 6).back() & 2, 2);
+  }
+  EXPECT_EQ(motors[0].trajectory, 50000 * 3072) << "the target is held at the limit";
+  EXPECT_TRUE(run_is_running(0));
+}
+
+// Bit 14: on, with that motor at its limit.
+TEST_F(Lookahead, AtTheLimitOfADesiredPositionItGoesOn) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=1 I113=50000 I114=-100 I124=$C001"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  store({"F50 TA10 TS0", "X100 Y80", "X-2 Y20"});
+  double end = 0;
+  const auto found = extremes(2, &end);
+  EXPECT_LE(found[0].acceleration, 1.02);
+  EXPECT_EQ(motors[0].trajectory, -100 * 3072);
+  EXPECT_EQ(motors[1].trajectory, 20000 * 3072);
+}
+
+unsigned word3() { return static_cast<unsigned>(std::stoul(host("??").substr(12, 6), nullptr, 16)); }
+
+// motion:7.3/4. Assignments wait in the slots of the buffer: what has none is lost, and bit 19 of word 3 says so.
+TEST_F(Lookahead, AssignmentsWaitInTheSlotsOfTheBuffer) {
+  for (const unsigned slots : {0u, 3u, 40u}) {
+    SCOPED_TRACE(slots);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I5120=100 I116=50 I117=1 M1..40->* M1..40=0"), "");
+    const unsigned open = static_cast<unsigned>(std::stoul(host("SIZE")));
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 120," + std::to_string(slots)), "");
+    EXPECT_EQ(open - static_cast<unsigned>(std::stoul(host("SIZE"))), 120 * 6 + 2 * slots);
+    Lines lines = {"TM10 TA5 TS0 DWELL100"};
+    for (int i = 1; i <= 40; ++i) lines.push_back("M" + std::to_string(i) + "==1 X" + std::to_string(i * 0.1));
+    store(lines);
+    bool waited = false;
+    unsigned half = 99;
+    run([&](double) {
+      waited |= (word3() >> 20 & 1) != 0;
+      if (half == 99 && at(1) > 2000) {
+        half = 0;
+        for (int i = 1; i <= 40; ++i) half += m_variable_read(i) != 0;
+      }
+    });
+    platform::servo_ticks(5);
+    unsigned made = 0;
+    for (int i = 1; i <= 40; ++i) made += m_variable_read(i) != 0;
+    if (slots == 40) {
+      EXPECT_EQ(made, 40u);
+      EXPECT_NEAR(half, 21, 1);
+    } else {
+      EXPECT_LT(made, 30u);
+      EXPECT_GE(made, slots);
+    }
+    EXPECT_EQ(word3() >> 19 & 1, slots == 40 ? 0u : 1u);
+    EXPECT_EQ(waited, slots != 0);
+    EXPECT_EQ(word3() >> 20 & 1, 0u);
+    store({"TM10 X0"});
+    run();
+    EXPECT_EQ(word3() >> 19 & 1, 0u) << "of the last start";
+  }
+}
+
+// Bits 21 to 23 of word 3 (firmware:5.6): it stands at the oldest segment, goes backwards, has written over segments.
+TEST_F(Lookahead, StatusOfTheBuffer) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5 I5120=20 I116=50 I117=1"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,0"), "");
+  store({"TM1000 TA20 TS0", "X20"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(100));
+  EXPECT_EQ(word3() >> 21, 0u);
+  ASSERT_EQ(host("&1<"), "");
+  platform::servo_ticks(ticks_of(60));
+  EXPECT_EQ(word3() >> 21, 2u) << "backwards";
+  platform::servo_ticks(ticks_of(500));
+  EXPECT_EQ(word3() >> 21, 3u) << "at the oldest";
+  ASSERT_EQ(host("&1>"), "");
+  platform::servo_ticks(ticks_of(700));
+  EXPECT_EQ(word3() >> 21, 4u) << "60 segments of 5 ms are written over";
+  ASSERT_EQ(host("&1<"), "");
+  platform::servo_ticks(ticks_of(800));
+  EXPECT_EQ(word3() >> 21, 7u);
+  EXPECT_GT(at(1), 1000) << "what is written over is not come back to";
+  ASSERT_EQ(host("&1>"), "");
+  platform::servo_ticks(ticks_of(2500));
+  EXPECT_EQ(motors[0].trajectory, 20000 * 3072);
+  EXPECT_EQ(word3() >> 21, 0u);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "testbench/unit/firmware_paths/optimum.h"
+#include "testbench/checkers/optimum.h"
 #include "testbench/unit/firmware_paths/spline_path.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
 

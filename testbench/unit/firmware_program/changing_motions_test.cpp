@@ -358,4 +358,24 @@ TEST_F(ChangingMotions, VirtualAxesStandInAWait) {
   }
 }
 
+// firmware:7.5: without a feedrate axis the longest way of the others counts, below a unit too.
+TEST_F(ChangingMotions, AShortWayOfOtherAxesTakesAShortTime) {
+  ASSERT_EQ(host("I5190=1000"), "");
+  store({"FRAX(Y) TA20 TS0 F10 X.5"});
+  EXPECT_NEAR(run(), 50.0 + 20.0, 1.5 * kTickMs);
+}
+
+// motion:5.3/2, word 3: bit 6 is a corner's, bit 5 any pause's.
+TEST_F(ChangingMotions, APauseBehindASharpCornerIsNone) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5183=0.5 I5185=0.5 I5182=100"), "");
+  store({"TM50 TA20 TS0 X1", "X1 Y1", "DWELL5", "Y2"});
+  std::vector<unsigned> seen;
+  run([&](double) {
+    const unsigned bits = motion_cs_status(0, 2) >> 5 & 3u;
+    if (seen.empty() || seen.back() != bits) seen.push_back(bits);
+  });
+  EXPECT_EQ(seen, (std::vector<unsigned>{0, 3, 0, 1, 0, 1, 0})) << "the corner, before DWELL, behind it";
+}
+
 }  // namespace

@@ -30,6 +30,23 @@ TEST_F(Rotary, FullRingRefusesTheLineAndKeepsTheRest) {
   EXPECT_EQ(rotary_buffers[0].used, 5u);
 }
 
+// firmware:1.10/9
+TEST_F(Rotary, FillStandsInTheMemory) {
+  ASSERT_EQ(host("&2 DEF ROT 20 B0"), "");
+  ASSERT_EQ(host("OPEN ROT"), "");
+  ASSERT_EQ(host("X1 Y1 F5"), "");
+  ASSERT_EQ(host("DWELL10"), "");
+  EXPECT_EQ(host("RX$213E"), "2");
+  EXPECT_EQ(host("RY$213E"), "4");
+  ASSERT_TRUE(rotary_consume(1, 3));
+  EXPECT_EQ(host("RX$213E"), "1");
+  EXPECT_EQ(host("RY$213E"), "1");
+  ASSERT_EQ(host("CLEAR"), "");
+  EXPECT_EQ(host("RX$213E"), "0");
+  EXPECT_EQ(host("RY$213E"), "0");
+  EXPECT_EQ(host("RX$203E"), "0") << "another system";
+}
+
 TEST_F(Rotary, RandomTrafficComesOutInOrderAndComplete) {
   define(17);
   std::mt19937 random(brick::random_seed(11));

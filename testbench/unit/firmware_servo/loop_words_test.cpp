@@ -160,10 +160,10 @@ TEST_F(LoopWords, VIsTheMeanOfSixteenSamples) {
     unsigned spacing, shift;
   };
   for (const Case& c : {Case{0, 4}, {1, 5}, {3, 6}, {15, 8}, {3, 2}}) {
-    average_velocity_initialize();  // the next interrupt has a sample
     c_.line("I109=48 I60=" + std::to_string(c.spacing) + " I61=" + std::to_string(c.shift));
     c_.line("I100=0");
     EXPECT_EQ(c_.line("#1V"), "0") << "not activated";
+    average_velocity_initialize();  // the next interrupt has a sample
     c_.line("I100=1");
     EXPECT_EQ(c_.line("#1V"), "0") << "where it has been before does not count";
     std::vector<std::int64_t> samples(16, motors[0].actual);
