@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "systemc/machine/board_family.h"
+
 namespace brick {
 
 bool BenchReport::step(const std::string& name, bool passed, const std::string& detail) {
@@ -73,6 +75,9 @@ const BenchNeed kServoIcs01{"servo ICs 0 and 1", [](const BoardConfig& b) { retu
 const BenchNeed kTwoIcs{"two servo or MACRO ICs", [](const BoardConfig& b) { return count(b.fitted) >= 2; }};
 const BenchNeed kAMacroIc{"a MACRO IC", [](const BoardConfig& b) { return (b.fitted & ~kServoIcMask) != 0; }};
 const BenchNeed kASlotOf16Bits{"a slot of 16 bits", [](const BoardConfig& b) { return !b.slot8; }};
+const BenchNeed kSerialInputs{"serial encoder inputs", [](const BoardConfig& b) {
+                                return b.ssi_kind == kSsiGeoPmac || b.ssi_kind == kSsiGeoBrick;
+                              }};
 
 BenchNeed without_8259(const BenchNeed& need) {
   const std::string controller = "an interrupt controller that is no 8259";

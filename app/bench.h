@@ -74,7 +74,7 @@ struct BenchNeed {
   std::string what;  // "" if any board will do
   std::function<bool(const BoardConfig&)> met = [](const BoardConfig&) { return true; };
 };
-extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc, kASlotOf16Bits;
+extern const BenchNeed kAnyBoard, kAServoIc, kServoIc0, kServoIcs01, kTwoIcs, kAMacroIc, kASlotOf16Bits, kSerialInputs;
 BenchNeed without_8259(const BenchNeed& need);  // and the interrupt controller of the Turbo boards
 
 // What `brick run --negative` does, and the proof that the bench sees it: the first step that fails.

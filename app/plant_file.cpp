@@ -26,9 +26,9 @@ using plant::Incident;
 using plant::kUnitsPerCount;
 
 const std::vector<std::string> kKeys{"title", "seed", "step", "dac_bits", "axis", "incident"};
-const std::vector<std::string> kAxisKeys{"axes",        "drive",     "start",   "load",  "encoder",
-                                         "motor",       "amplifier", "stepper", "brake", "plus_limit",
-                                         "minus_limit", "home",      "noise"};
+const std::vector<std::string> kAxisKeys{"axes",        "drive",     "start",   "load",    "encoder",
+                                         "motor",       "amplifier", "stepper", "brake",   "plus_limit",
+                                         "minus_limit", "home",      "noise",   "absolute"};
 const std::vector<std::string> kEncoderKeys{"lines",       "index_at", "index_width", "wiring",     "halls",
                                             "hall_offset", "b_late",   "a_long",      "dark_lines", "joint_lines"};
 const std::vector<std::string> kMotorKeys{"inertia",    "viscous",    "coulomb",   "torque_constant",
@@ -36,6 +36,8 @@ const std::vector<std::string> kMotorKeys{"inertia",    "viscous",    "coulomb",
 const std::vector<std::string> kAmplifierKeys{"bus_volts", "full_scale_amps", "trip_amps", "fault_level",
                                               "adc",       "adc_noise",       "always_on"};
 const std::vector<std::string> kStepperKeys{"counts_per_step", "move_time", "min_width", "dir_setup"};
+const std::vector<std::string> kAbsoluteKeys{"bits",     "turns", "code",    "parity",
+                                             "monoflop", "delay", "missing", "error_every"};
 const std::vector<std::string> kBrakeKeys{"torque", "opened_by", "delay"};
 const std::vector<std::string> kHomeKeys{"from", "to", "level"};
 const std::vector<std::string> kNoiseKeys{"every", "shortest", "longest", "pins"};
@@ -58,6 +60,9 @@ const Names<EncoderParameters::Wiring> kWirings{{"none", EncoderParameters::Wiri
                                                 {"halls", EncoderParameters::Wiring::kHalls},
                                                 {"complements", EncoderParameters::Wiring::kComplements},
                                                 {"halls-on-abc", EncoderParameters::Wiring::kHallsOnAbc}};
+using Parity = plant::SsiEncoderParameters::Parity;
+const Names<bool> kCodes{{"binary", false}, {"gray", true}};
+const Names<Parity> kParities{{"none", Parity::kNone}, {"odd", Parity::kOdd}, {"even", Parity::kEven}};
 const Names<Amplifier::Fault> kCauses{
     {"over-current", Amplifier::Fault::kOverCurrent},         {"shorted-bus", Amplifier::Fault::kShortedBus},
     {"under-voltage", Amplifier::Fault::kUnderVoltage},       {"over-voltage", Amplifier::Fault::kOverVoltage},
@@ -178,6 +183,7 @@ class Reader {
     if (t.has("motor")) read_motor(t.table("motor", t.need("motor"), kMotorKeys), axis.motor);
     axis.encoder.pole_pairs = axis.motor.pole_pairs;
     if (t.has("encoder")) read_encoder(t.table("encoder", t.need("encoder"), kEncoderKeys), axis.encoder);
+    if (t.has("absolute")) read_absolute(t.table("absolute", t.need("absolute"), kAbsoluteKeys), axis);
     axis.amplifier.adc = axis.drive == Drive::kBrush || axis.drive == Drive::kThreePhase;
     if (t.has("amplifier")) read_amplifier(t.table("amplifier", t.need("amplifier"), kAmplifierKeys), axis.amplifier);
     if (t.has("stepper")) read_stepper(t.table("stepper", t.need("stepper"), kStepperKeys), axis.stepper);
@@ -228,6 +234,20 @@ class Reader {
         lines->push_back(static_cast<unsigned>(*line));
       }
     }
+  }
+
+  static void read_absolute(const TomlTable& t, AxisParameters& axis) {
+    plant::SsiEncoderParameters& ssi = axis.absolute.emplace();
+    ssi.bits = 12;
+    read_whole(t, "bits", 1, 32, ssi.bits);
+    read_whole(t, "turns", 0, 32 - std::int64_t{ssi.bits}, axis.absolute_turns);
+    ssi.bits += axis.absolute_turns;
+    if (t.has("code")) ssi.gray = one_of(t, "code", kCodes);
+    if (t.has("parity")) ssi.parity = one_of(t, "parity", kParities);
+    read_time(t, "monoflop", 1, ssi.monoflop);
+    read_time(t, "delay", 0, ssi.delay);
+    read(t, "missing", ssi.missing);
+    read_whole(t, "error_every", 0, 1'000'000'000, ssi.error_every);
   }
 
   static void read_amplifier(const TomlTable& t, plant::AmplifierParameters& a) {

@@ -108,6 +108,8 @@ module brick_ecp5 (
     .macro_gate_i      (4'h0),
     .dpram_small_i, .jpan_fitted_i, .line_select_i, .pic_8259_i, .io_base_i, .io_decode16_i, .window_i, .window_flat_i,
     .slot8_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .pwr_good_i, .jpan_i, .mi1_i, .mi2_i, .axexp0_i, .axexp1_i,
+    .ssi_kind_i        (2'd0),  // no serial encoder inputs: their pads are for a product that has them
+    .ssi_data_i        (8'hFF),
     .motor_i           ({8'h00, motor_i}),
     .motor_o           (motor_out),
     .phase_o, .servo_o, .wdo_o, .wd_relay_o, .wd_led_o, .brld_n_o, .erld_n_o, .f1ld_n_o, .ipld_n_o, .source_conflict_o

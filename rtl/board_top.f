@@ -32,6 +32,11 @@ macro_ic/macro_ic_regs.sv
 macro_ic/macro_ic.sv
 board/clock_select.sv
 board/watchdog.sv
+ssi/ssi_edges.sv
+ssi/ssi_group.sv
+ssi/ssi_channel_regs.sv
+ssi/ssi_channel.sv
+ssi/ssi.sv
 host/isa_slave.sv
 host/host_port.sv
 host/host_signals.sv

@@ -35,6 +35,7 @@ ROWS = {
     "bus_sync": "Port A",
     "clock_select": "whose PHASE and SERVO the board takes",
     "watchdog": "watchdog",
+    "ssi": "serial encoder inputs",
 }
 
 PREPARE = "proc; opt; opt_clean; stat"

@@ -16,7 +16,7 @@ from common import ROOT, files, finish
 
 FIRMWARE = [{f"firmware/{name}"} for name in (
     "hal", "base", "kernel", "variables", "language", "buffers", "motion", "run", "command", "host", "image")]
-CPP = [{"testbench/clients"}, {"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host"},
+CPP = [{"testbench/clients"}, {"systemc/core"}, {"systemc/cpu", "systemc/servo_ic", "systemc/host", "systemc/ssi"},
        {"systemc/macro_ic"}, {"systemc/board"}, {"systemc/cosim"}, {"systemc/component"}, {"systemc/machine"},
        {"testbench/host", "testbench/plant"}, {"testbench/checkers"}, {"app"},
        {"testbench/benches"}, {"testbench/benchmark"}]

@@ -26,6 +26,7 @@ BLOCKS = {  # tops with a list; those with a page have a core too
     "macro_ic": Block("MACRO IC (DSPGATE2), clock part", "docs/macro_ic.md"),
     "clock_select": Block("Choice of the ICs that drive PHASE and SERVO", "docs/clock_select.md"),
     "watchdog": Block("Watchdog", "docs/watchdog.md"),
+    "ssi": Block("Serial encoder inputs (SSI)", "docs/ssi.md"),
     "interrupt_controller": Block("Interrupt controller of the host", "docs/interrupt_controller.md"),
     "pic_8259": Block("Interrupt controller 8259", "docs/pic_8259.md"),
     "host_interrupt": Block("Interrupt line of the host bus", "docs/interrupt_controller.md"),

@@ -2,6 +2,7 @@
  * is a list of sizes: a region lies below the sum of all that come before it. */
 #include "firmware/buffers/regions.h"
 
+#include "firmware/base/buffers_end.h"
 #include "firmware/base/dimensions.h"
 #include "firmware/buffers/user_memory.h"
 #include "firmware/kernel/slice.h"
@@ -13,6 +14,7 @@ static struct {
   uint32_t words[REGION_KINDS][OWNERS]; /* 0: does not exist. Those for all use index 0 only. Owner: background task */
   uint32_t fixed;                       /* words of fixed programs, from the lowest on */
   uint32_t user;                        /* of UBUFFER, the highest */
+  uint32_t all;                         /* there are, on this board */
   uint32_t open;                        /* of none, between: kept, because each line stored asks for it */
 } regions;
 
@@ -42,7 +44,7 @@ static void resize(uint32_t* words, uint32_t to) {
 
 void regions_initialize(void) {
   __builtin_memset(&regions, 0, sizeof regions);
-  regions.open = USER_MEMORY_WORDS;
+  regions.all = regions.open = memory_buffers_end() - MEMORY_BUFFERS;
 }
 
 uint32_t region_open_words(void) { return regions.open; }
@@ -51,7 +53,7 @@ uint32_t region_words(enum region_kind kind, uint32_t owner) { return regions.wo
 
 uint32_t region_base(enum region_kind kind, uint32_t owner) {
   const uint32_t index = owner_index(kind, owner);
-  uint32_t base = USER_MEMORY_WORDS - regions.user;
+  uint32_t base = regions.all - regions.user;
   for (uint32_t before = 0; before < (uint32_t)kind; before++) {
     for (uint32_t any = 0; any < OWNERS; any++) base -= regions.words[before][any];
     slice_pause();
@@ -94,7 +96,7 @@ void regions_delete_from(enum region_kind highest) {
 bool region_restore_user(uint32_t words) {
   if (words > regions.open + regions.user) return false;
   resize(&regions.user, words);
-  i_variable_set_open_memory_end(MEMORY_BUFFERS_END - words);
+  i_variable_set_open_memory_end(MEMORY_BUFFERS + regions.all - words);
   return true;
 }
 

@@ -51,9 +51,9 @@ enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL
 /* Kernel only. ----------------------------------------------------------------------------------------------------- */
 void hal_set_cpu_clock(uint32_t i52); /* cycles a microsecond for hal_delay_us and hal_cycles_per_ms */
 uint32_t hal_cycles_per_ms(void);
-void hal_interrupts_off(void);    /* no task enabled, nothing latched */
-void hal_interrupts_on(void);     /* all tasks enabled; clock edges and requests until now forgotten */
-void hal_request_real_time(void); /* sets the real-time interrupt pending */
+void hal_interrupts_off(void);                /* no task enabled, nothing latched */
+void hal_interrupts_on(void);                 /* all tasks enabled; clock edges and requests until now forgotten */
+void hal_request_real_time(void);             /* sets the real-time interrupt pending */
 void hal_idle(const volatile uint32_t* work); /* sleeps until the next interrupt unless *work is not zero already */
 void hal_watchdog_strobe(void);
 void hal_host_interrupts(bool receive, bool transmit); /* HRIE, HTIE of the host port */
@@ -74,7 +74,14 @@ enum {
   HAL_STRAP_POWER_ON,
   HAL_STRAP_PRODUCT
 };
-enum { HAL_PRODUCT_JPAN = 1, HAL_PRODUCT_UMAC = 2, HAL_PRODUCT_ULTRALITE = 4, HAL_PRODUCT_TURBO_PMAC_1 = 8 };
+enum {
+  HAL_PRODUCT_JPAN = 1,
+  HAL_PRODUCT_UMAC = 2,
+  HAL_PRODUCT_ULTRALITE = 4,
+  HAL_PRODUCT_TURBO_PMAC_1 = 8,
+  HAL_PRODUCT_FEEDBACK_2 = 16, /* a Geo PMAC has its SSI inputs */
+  HAL_PRODUCT_GEO_PMAC = 32
+};
 uint32_t hal_strap(unsigned word);
 
 /* Flash store: plain memory, erased to all ones. A word is written whole, words in the order of the calls; power may go

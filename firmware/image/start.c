@@ -1,7 +1,7 @@
 /* Start-up (firmware:8.4): clocks, variables, memory, and every layer in its turn. */
 #include "firmware/image/start.h"
 
-#include "firmware/base/memory_map.h"
+#include "firmware/base/buffers_end.h"
 #include "firmware/base/status.h"
 #include "firmware/buffers/buffer_request.h"
 #include "firmware/buffers/compensation_tables.h"
@@ -71,8 +71,9 @@ static void check_saved(void) {
 }
 
 static void load_user_memory(void) {
-  for (uint32_t first = 0; first < MEMORY_BUFFERS_END; first += CLEARED_AT_ONCE) {
-    hal_clear_words(first, CLEARED_AT_ONCE);
+  const uint32_t end = memory_buffers_end();
+  for (uint32_t first = 0; first < end; first += CLEARED_AT_ONCE) {
+    hal_clear_words(first, end - first < CLEARED_AT_ONCE ? end - first : CLEARED_AT_ONCE);
     hal_watchdog_strobe();
   }
   axis_definition_initialize();
@@ -100,6 +101,7 @@ void start(enum start_mode mode) {
   hal_watchdog_strobe();
   check_saved();
   load_user_memory();
+  i_variable_write_ssi();
   session_initialize();
   rotary_initialize();
   open_buffer_initialize(); /* the selections show what these have cleared */

@@ -2,7 +2,7 @@
  */
 #include "firmware/variables/i_defaults.h"
 
-#include "firmware/base/memory_map.h"
+#include "firmware/base/buffers_end.h"
 #include "firmware/hal/gate_ic.h"
 #include "firmware/hal/hal.h"
 
@@ -119,7 +119,7 @@ static double configuration(uint32_t offset) {
     case 4:
       return hal_strap(HAL_STRAP_DPRAM_WORDS) != 0u ? 1.0 : 0.0;
     case 8:
-      return MEMORY_BUFFERS_END;
+      return memory_buffers_end();
     /* Vendor 1 in bits 0..7, no options, revision 1 in bits 18..21, card number less 600000 in bits 22..35. */
     case 9:
       return 1.0 + 262144.0 + 4194304.0 * (card >= 600000u ? card - 600000u : card);

@@ -8,6 +8,7 @@
 #include "firmware/kernel/tasks.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/variables/i_defaults.h"
+#include "firmware/variables/ssi_inputs.h"
 
 static uint32_t directions_pending;       /* bit per IC: direction written, not yet in the IC */
 static uint8_t directions[GATE_IC_COUNT]; /* what was written */
@@ -87,6 +88,7 @@ void i_hardware_write(struct i_place place, const struct i_entry* entry, uint32_
   if (i_of_gate_ic(place)) return write_ic(place, entry, value);
   if (entry->field == I_FIELD_REAL_TIME_PERIOD) tasks_set_real_time_period(value);
   if (entry->field == I_FIELD_WATCHDOG_RELOAD) watchdog_set_reload(value);
+  if (entry->field == I_FIELD_SSI) ssi_inputs_set(place.offset, value);
 }
 
 /* Two ICs must never drive PHASE and SERVO together: every input first, the output when none drives any more. */

@@ -13,6 +13,7 @@ enum {
   I_BASE_GATHER = 5000,
   I_BASE_TABLE = 8000,
   I_BASE_MACRO = 6800, /* MACRO IC 0 */
+  I_BASE_SSI = 1015,
   I_BASE_SUPPLEMENTARY = 0,
   I_BASE_SERVO = 0,
   I_BASE_CHANNEL = 0,
@@ -28,7 +29,8 @@ enum {
   I_CS_FIRST = 5100,
   I_CS_BLOCK = 100,
   I_SERVO_FIRST = 7000,
-  I_IC_BLOCK = 50
+  I_IC_BLOCK = 50,
+  I_SSI_BLOCK = 5
 };
 
 #define I_NAMES_OF(name, group, first, count) name = I_BASE_##group + (first), name##_COUNT = (count),

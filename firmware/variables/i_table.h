@@ -2,6 +2,7 @@
 #ifndef FIRMWARE_VARIABLES_I_TABLE_H
 #define FIRMWARE_VARIABLES_I_TABLE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef enum {
@@ -16,6 +17,7 @@ typedef enum {
   I_GROUP_SERVO,
   I_GROUP_CHANNEL,
   I_GROUP_TABLE,
+  I_GROUP_SSI,
   I_GROUP_COUNT
 } i_group_t;
 
@@ -60,6 +62,7 @@ typedef enum {
   I_FIELD_IC_RING_CONTROL,
   I_FIELD_IC_NODE_ACTIVATION,
   I_FIELD_IC_SHADOW,
+  I_FIELD_SSI,
   I_FIELD_COUNT
 } i_field_t;
 
@@ -78,6 +81,7 @@ struct i_place {
 void i_table_initialize(void);
 struct i_place i_table_place(uint32_t number);
 struct i_place i_table_next_of_ic(struct i_place place); /* of the next number of the same IC, without a division */
+bool i_table_has_ssi(void);                              /* this board has I1015 to I1019 of its own */
 const struct i_entry* i_table_entry(struct i_place place);
 const struct i_entry* i_table_row(uint32_t number); /* both at once */
 uint32_t i_table_lock(i_group_t group);             /* the bit of I41 that locks it; 0: none does */

@@ -182,6 +182,7 @@ void i_variable_initialize(void) {
   clear_all();
   defaults(I_BASE_GLOBAL, I_MOTOR_BLOCK, source);
   repeat(i_motor(1, 0), MOTORS - 1, source);
+  if (i_table_has_ssi()) defaults(I_BASE_SSI, I_SSI_BLOCK, source);
   defaults(I_BASE_SYSTEM, CONFIGURATION_COUNT, source);
   defaults(I5061_ADC_RING, I5061_ADC_RING_COUNT, source);
   repeat(I_CS_FIRST, COORDINATE_SYSTEMS - 1, source);
@@ -236,6 +237,11 @@ static void write_ic(unsigned ic) {
     if (entry->field != I_FIELD_NONE && !i_of_absent_ic(place))
       i_hardware_write(place, entry, (uint32_t)i_integers[number]);
   }
+}
+
+void i_variable_write_ssi(void) {
+  for (uint32_t number = I_BASE_SSI; number < I_BASE_SSI + I_SSI_BLOCK && i_table_has_ssi(); ++number)
+    i_hardware_write(i_table_place(number), i_table_row(number), (uint32_t)i_integers[number]);
 }
 
 void i_variable_write_hardware(void) {

@@ -32,6 +32,7 @@ extern const i_effect_t i_effects[];
  */
 void i_variable_initialize(void);
 void i_variable_write_hardware(void); /* ICs and kernel from their I-variables */
+void i_variable_write_ssi(void);      /* SSI inputs of a Geo PMAC, when all that was saved is there */
 
 /* SAVE and restore. A restore begins with zeros, read-only values and the defaults of ICs that were not there when it
  * was saved. What the store holds is checked: a value that the variable cannot have is left out or reduced. */

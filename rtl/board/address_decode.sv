@@ -1,6 +1,7 @@
 // Decodes the synchronised Port A address into one select per register block (docs/architecture.md, memory map): gate
 // ICs in area AA1 at $078000..$07BFFF, latches in the default area at X:$070010..$070012, on-chip page by int_i, the
-// control panel port at Y:$078800. Combinational. What is not fitted is not selected: its words read 0.
+// control panel port at Y:$078800, serial encoder inputs at $078B20..$078B3F or in a page of their own of area AA1,
+// $00FF00..$00FFFF. Combinational. What is not fitted is not selected: its words read 0.
 `default_nettype none
 
 module address_decode (
@@ -10,22 +11,26 @@ module address_decode (
   input  wire logic        int_i,
   input  wire logic [21:0] fitted_i,      // servo IC 0..9, 2*..9*, MACRO IC 0..3
   input  wire logic        jpan_i,        // control panel port fitted
+  input  wire logic [1:0]  ssi_i,         // serial encoder inputs: 1 Geo PMAC, 2 Geo Brick LV, 3 the page without them
   output logic             sel_any_o,     // a register region: its read data goes to the bus
   output logic             sel_int_o,     // host port
   output logic             sel_signals_o, // X:$070010 host signals
   output logic             sel_strobe_o,  // X:$070011 watchdog strobe
   output logic             sel_ctrl_o,    // X:$070012 control outputs
   output logic             sel_panel_o,   // Y:$078800 control panel port
+  output logic             sel_ssi_o,     // serial encoder inputs
   output logic [21:0]      sel_ic_o
 );
 
   // Lowest bits of the address that a region has the choice of.
   localparam int GateBits  = $clog2(brick_regs_pkg::GateIcsSize);
   localparam int LatchBits = $clog2(brick_regs_pkg::LatchesSize);
+  localparam int PageBits  = $clog2(brick_regs_pkg::SsiPageSize);
 
-  logic gate, latch;
+  logic gate, latch, page;
   assign gate  = ~int_i & aa_i[1] & (addr_i[18:GateBits] == brick_regs_pkg::GateIcsBase[18:GateBits]);
   assign latch = ~int_i & (aa_i == 4'h0) & (addr_i[18:LatchBits] == brick_regs_pkg::LatchesBase[18:LatchBits]);
+  assign page  = ~int_i & aa_i[1] & ssi_i[0] & (addr_i[18:PageBits] == brick_regs_pkg::SsiPageBase[18:PageBits]);
 
   // Servo ICs 0, 1: $000, $100 of the first 4 KiB word page; 2..9: $200, $300 of pages 0..3; the starred ones $20
   // above. MACRO ICs: $400 of pages 0..3, 64 words each.
@@ -53,7 +58,9 @@ module address_decode (
   assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesWatchdogStrobeAddr[7:0]);
   assign sel_ctrl_o    = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesControlOutputsAddr[7:0]);
   assign sel_panel_o   = gate & ~x_i & jpan_i & (addr_i[13:0] == brick_regs_pkg::JpanInputsAddr[13:0]);
-  assign sel_any_o     = int_i | gate | latch;
+  assign sel_ssi_o     = (page & ~ssi_i[1] & (addr_i[7:6] == brick_regs_pkg::SsiGeoBase[7:6])) |
+                         (gate & (ssi_i == 2'd2) & (addr_i[13:5] == brick_regs_pkg::SsiBrickBase[13:5]));
+  assign sel_any_o     = int_i | gate | latch | page;
 
 endmodule : address_decode
 

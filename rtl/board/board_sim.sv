@@ -82,6 +82,7 @@ module board_sim #(
   logic [1:0]  ctrl;
   logic        wd_relay;
   logic        wd_led;
+  logic [7:0]  ssi_clk;
   // end of rows
 
   board_top #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_board (
@@ -117,6 +118,7 @@ module board_sim #(
     .line_select_i      (inputs_i[5][11:0]),
     .ext_clock_i        (inputs_i[4][28]),
     .pic_8259_i         (inputs_i[5][16]),
+    .ssi_kind_i         (inputs_i[5][18:17]),
     .jpan_i             (inputs_i[3][31:16]),
     .ext_phase_i        (inputs_i[4][29]),
     .ext_servo_i        (inputs_i[4][30]),
@@ -125,6 +127,7 @@ module board_sim #(
     .axexp0_i           (inputs_i[5][14]),
     .axexp1_i           (inputs_i[5][15]),
     .pwr_good_i         (inputs_i[7][0]),
+    .ssi_data_i         (inputs_i[7][15:8]),
     .pa_data_o          (pa_data),
     .pa_ta_n_o          (pa_ta_n),
     .irq_host_o         (irq_host),
@@ -160,6 +163,7 @@ module board_sim #(
     .ctrl_o             (ctrl),
     .wd_relay_o         (wd_relay),
     .wd_led_o           (wd_led),
+    .ssi_clk_o          (ssi_clk),
     // end of rows
     .motor_i            (motor_in),
     .motor_o            (motor_out)
@@ -206,9 +210,9 @@ module board_sim #(
                       isa_memcs16_n, isa_iochrdy, isa_sd};
   assign pins_o[2] = {pic_elr, pic_msk, pic_sig, pic_ist};
   assign pins_o[3][7:0] = {7'h0, pa_data_oe};
-  assign pins_o[3][15:8] = {4'h0, port_rxdf, port_txde, isa_sd_oe};
+  assign pins_o[3][15:8] = {2'h0, wd_led, wd_relay, port_rxdf, port_txde, isa_sd_oe};
   assign pins_o[3][23:16] = {2'h0, ctrl[1], ctrl[0], ipld_n, f1ld_n, erld_n, brld_n};
-  assign pins_o[3][31:24] = {6'h0, wd_led, wd_relay};
+  assign pins_o[3][31:24] = {ssi_clk};
   // end of rows
 
 endmodule : board_sim

@@ -50,6 +50,7 @@ module board_top #(
   // 15 AXEXP1
   input  wire logic [11:0] line_select_i,
   input  wire logic        pic_8259_i,     // the interrupt controller is an 8259
+  input  wire logic [1:0]  ssi_kind_i,     // serial encoder inputs: 0 none, 1 Geo PMAC, 2 Geo Brick LV, 3 page alone
   input  wire logic [7:0]  io_base_i,      // A11..A4 of the host's I/O block
   input  wire logic        io_decode16_i,
   input  wire logic [9:0]  window_i,       // A23..A14 of the host's memory window
@@ -64,6 +65,7 @@ module board_top #(
   input  wire logic        mi2_i,
   input  wire logic        axexp0_i,  // interrupt lines of an axis expansion board
   input  wire logic        axexp1_i,
+  input  wire logic [7:0]  ssi_data_i,  // absolute encoders, channel 1 in bit 0
   // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first; without any one bit, unused.
   // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
   // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks
@@ -93,6 +95,7 @@ module board_top #(
   output logic             f1ld_n_o,
   output logic             ipld_n_o,
   output logic [1:0]       ctrl_o,
+  output logic [7:0]       ssi_clk_o,
   output logic [7:0]       pic_ist_o,
   output logic [7:0]       pic_sig_o,
   output logic [7:0]       pic_msk_o,
@@ -111,6 +114,7 @@ module board_top #(
   logic [3:0]  macro_gate_q;
   logic        ext_clock_q, dpram_small_q, jpan_fitted_q, pic_8259_q;
   logic [11:0] line_select_q;
+  logic [1:0]  ssi_kind_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
       fitted_q      <= 22'h0;
@@ -120,6 +124,7 @@ module board_top #(
       jpan_fitted_q <= 1'b0;
       line_select_q <= 12'h0;
       pic_8259_q    <= 1'b0;
+      ssi_kind_q    <= 2'd0;
     end else begin
       fitted_q      <= fitted_i;
       macro_gate_q  <= macro_gate_i & MacroIcMask;
@@ -128,6 +133,7 @@ module board_top #(
       jpan_fitted_q <= jpan_fitted_i;
       line_select_q <= line_select_i;
       pic_8259_q    <= pic_8259_i;
+      ssi_kind_q    <= ssi_kind_i;
     end
   end
 
@@ -168,7 +174,7 @@ module board_top #(
     .rd_o    (bus_rd)
   );
 
-  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_ctrl, sel_panel;
+  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_ctrl, sel_panel, sel_ssi;
   logic [21:0] sel_ic;
   address_decode u_address_decode (
     .addr_i        (bus_addr),
@@ -177,12 +183,14 @@ module board_top #(
     .int_i         (bus_int),
     .fitted_i      (fitted_q & IcMask),
     .jpan_i        (jpan_fitted_q),
+    .ssi_i         (ssi_kind_q),
     .sel_any_o     (sel_any),
     .sel_int_o     (sel_int),
     .sel_signals_o (sel_signals),
     .sel_strobe_o  (sel_strobe),
     .sel_ctrl_o    (sel_ctrl),
     .sel_panel_o   (sel_panel),
+    .sel_ssi_o     (sel_ssi),
     .sel_ic_o      (sel_ic)
   );
   logic unused_sel;  // of ICs that are not built
@@ -303,6 +311,24 @@ module board_top #(
   );
   assign wdo_o    = wd_tripped_o;
   assign wd_led_o = wd_tripped_o;
+
+  // ------------------------------------------------------------------ absolute encoders
+  logic [23:0] ssi_rdata;
+  ssi u_ssi (
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .geo_i   (ssi_kind_q[0]),
+    .sel_i   (sel_ssi),
+    .x_i     (bus_x),
+    .addr_i  (bus_addr[5:0]),
+    .we_i    (bus_we),
+    .rd_i    (bus_rd),
+    .wdata_i (bus_wdata),
+    .rdata_o (ssi_rdata),
+    .phase_i (phase_o),
+    .servo_i (servo_o),
+    .data_i  (ssi_data_i),
+    .clk_o   (ssi_clk_o)
+  );
 
   // ------------------------------------------------------------------ host side
   logic       hp_sel, hp_rd, hp_rd_done, hp_wr;
@@ -496,6 +522,7 @@ module board_top #(
     else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
     else if (sel_ctrl)    reg_rdata = {22'h0, ctrl_o};
     else if (sel_panel)   reg_rdata = {8'h0, panel_rdata};
+    else if (sel_ssi)     reg_rdata = ssi_rdata;
   end
   bus_read u_bus_read (
     .clk_ref_i, .rst_ni, .pa_rd_ni,

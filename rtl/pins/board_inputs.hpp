@@ -52,6 +52,7 @@ inline constexpr std::tuple kInputFields{
     InputField{"line_select", &Straps::line_select, 5, 0, 12},
     InputField{"ext_clock", &Straps::ext_clock, 4, 28, 1},
     InputField{"pic_8259", &Straps::pic_8259, 5, 16, 1},
+    InputField{"ssi_kind", &Straps::ssi_kind, 5, 17, 2},
     InputField{"jpan", &ConnectorPins::jpan, 3, 16, 16},
     InputField{"ext_phase", &ConnectorPins::ext_phase, 4, 29, 1},
     InputField{"ext_servo", &ConnectorPins::ext_servo, 4, 30, 1},
@@ -59,7 +60,8 @@ inline constexpr std::tuple kInputFields{
     InputField{"mi2", &ConnectorPins::mi2, 5, 13, 1},
     InputField{"axexp0", &ConnectorPins::axexp0, 5, 14, 1},
     InputField{"axexp1", &ConnectorPins::axexp1, 5, 15, 1},
-    InputField{"pwr_good", &ConnectorPins::pwr_good, 7, 0, 1}
+    InputField{"pwr_good", &ConnectorPins::pwr_good, 7, 0, 1},
+    InputField{"ssi_data", &ConnectorPins::ssi_data, 7, 8, 8}
 };
 
 // A signal that shows an input as it is driven.
@@ -90,7 +92,8 @@ inline constexpr std::tuple kInputSignals{
     InputSignal{"host.mi2", &ConnectorPins::mi2, 1, false},
     InputSignal{"host.axexp0", &ConnectorPins::axexp0, 1, false},
     InputSignal{"host.axexp1", &ConnectorPins::axexp1, 1, false},
-    InputSignal{"watchdog.pwr_good", &ConnectorPins::pwr_good, 1, false}
+    InputSignal{"watchdog.pwr_good", &ConnectorPins::pwr_good, 1, false},
+    InputSignal{"ssi.data", &ConnectorPins::ssi_data, 8, true}
 };
 
 }  // namespace brick

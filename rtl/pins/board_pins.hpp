@@ -75,13 +75,14 @@ struct Straps {
   std::uint16_t line_select = 0x951;  // sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, then CTRL0, CTRL1, MI1, MI2, AXEXP0, AXEXP1 (host-bus:4.2)
   bool ext_clock = false;  // jumper E1: PHASE and SERVO come from outside (servo-ic:7.3)
   bool pic_8259 = false;  // the interrupt controller is an 8259 (host-bus:4.5)
+  std::uint8_t ssi_kind = 0;  // serial encoder inputs: 0 none, 1 two of a Geo PMAC, 2 eight of a Geo Brick LV, 3 none of a Geo PMAC, whose page is there (servo-ic:11.3)
 
-  static constexpr Straps none() { return {0, 0, false, false, 0, false, false}; }  // as a reset leaves what takes them over
+  static constexpr Straps none() { return {0, 0, false, false, 0, false, false, 0}; }  // as a reset leaves what takes them over
   bool operator==(const Straps& o) const {
     if constexpr (std::has_unique_object_representations_v<Straps>)
       return std::memcmp(this, &o, sizeof o) == 0;  // no byte between them
     else
-      return fitted == o.fitted && macro_gate == o.macro_gate && dpram_small == o.dpram_small && jpan_fitted == o.jpan_fitted && line_select == o.line_select && ext_clock == o.ext_clock && pic_8259 == o.pic_8259;
+      return fitted == o.fitted && macro_gate == o.macro_gate && dpram_small == o.dpram_small && jpan_fitted == o.jpan_fitted && line_select == o.line_select && ext_clock == o.ext_clock && pic_8259 == o.pic_8259 && ssi_kind == o.ssi_kind;
   }
   bool operator!=(const Straps& o) const { return !(*this == o); }
 };
@@ -95,12 +96,13 @@ struct ConnectorPins {
   bool axexp0 = false;  // interrupt line of an axis expansion board (host-bus:4.2)
   bool axexp1 = false;  // interrupt line of an axis expansion board (host-bus:4.2)
   bool pwr_good = true;  // 1 = 5 V is good, to the watchdog (servo-ic:10)
+  std::uint8_t ssi_data = 0xFF;  // serial data of absolute encoders, bit n - 1 for channel n; pulled up (servo-ic:11.9)
 
   bool operator==(const ConnectorPins& o) const {
     if constexpr (std::has_unique_object_representations_v<ConnectorPins>)
       return std::memcmp(this, &o, sizeof o) == 0;  // no byte between them
     else
-      return jpan == o.jpan && ext_phase == o.ext_phase && ext_servo == o.ext_servo && mi1 == o.mi1 && mi2 == o.mi2 && axexp0 == o.axexp0 && axexp1 == o.axexp1 && pwr_good == o.pwr_good;
+      return jpan == o.jpan && ext_phase == o.ext_phase && ext_servo == o.ext_servo && mi1 == o.mi1 && mi2 == o.mi2 && axexp0 == o.axexp0 && axexp1 == o.axexp1 && pwr_good == o.pwr_good && ssi_data == o.ssi_data;
   }
   bool operator!=(const ConnectorPins& o) const { return !(*this == o); }
 };
@@ -165,12 +167,14 @@ constexpr PinField kF1ldN{"host.f1ld_n", 3, 18, 1, false};  // lamp of F1ER on t
 constexpr PinField kIpldN{"host.ipld_n", 3, 19, 1, false};  // lamp of IPOS on the control panel, 0 = lit
 constexpr PinField kCtrl0{"host.ctrl0", 3, 20, 1, false};  // control output 0, X:$070012; 0 from a trip of the watchdog to the reset
 constexpr PinField kCtrl1{"host.ctrl1", 3, 21, 1, false};  // control output 1, X:$070012; 0 from a trip of the watchdog to the reset
-constexpr PinField kWdRelay{"watchdog.relay", 3, 24, 1, false};  // 1 = energised: from reset to trip (servo-ic:10/12)
-constexpr PinField kWdLed{"watchdog.led", 3, 25, 1, false};  // 1 = the red lamp is on: tripped
+constexpr PinField kWdRelay{"watchdog.relay", 3, 12, 1, false};  // 1 = energised: from reset to trip (servo-ic:10/12)
+constexpr PinField kWdLed{"watchdog.led", 3, 13, 1, false};  // 1 = the red lamp is on: tripped
+constexpr PinField kSsiClk{"ssi.clk", 3, 24, 8, true};  // serial clocks of absolute encoders, bit n - 1 for channel n
 inline constexpr std::array kAll{
     kPaData, kPaTaN, kIrqHost, kPhase, kServo, kBreq, kIpos, kEror, kF1er, kIsaSd, kIsaIochrdy, kIsaMemcs16N,
     kIsaIrq, kHreq, kWdo, kWdTripped, kBusyHost, kBusyCpu, kPhaseSource, kSourceConflict, kPicIst, kPicSig, kPicMsk,
-    kPicElr, kIsaSdOe, kTxde, kRxdf, kPaDataOe, kBrldN, kErldN, kF1ldN, kIpldN, kCtrl0, kCtrl1, kWdRelay, kWdLed
+    kPicElr, kIsaSdOe, kTxde, kRxdf, kPaDataOe, kBrldN, kErldN, kF1ldN, kIpldN, kCtrl0, kCtrl1, kWdRelay, kWdLed,
+    kSsiClk
 };
 }  // namespace pin
 

@@ -151,7 +151,7 @@ HEADER = ("| name | width, radix | what | valid |", "|---|---|---|---|")
 
 def signals_page(tables, text, path):
     shown_pins = [pin for pin in tables["board"].pins if pin.signal]
-    for scope in ("clock", "host", "dpram", "watchdog"):
+    for scope in ("clock", "host", "dpram", "ssi", "watchdog"):
         rows = [signal_row(pin.signal, pin) for pin in shown_pins if pin.signal.split(".")[0] == scope]
         text = replaced(text, f"<!-- signals of {scope} -->", "<!-- end -->", [*HEADER, *rows], path)
     rows = [signal_row(pin.signal, pin) for pin in shown_pins if pin.signal.split(".")[0] in ("bus", "cpu")]

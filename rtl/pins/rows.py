@@ -13,7 +13,7 @@ FOLDER = Path(__file__).resolve().parent
 COLUMNS = ("name", "direction", "width", "group", "place", "idle", "sampled", "rtl", "port", "signal", "drives", "rule",
            "sentence", "valid")
 COMPONENTS = ("servo_ic", "macro_ic", "clock_select", "interrupt_controller", "host_port", "dpram", "host_signals",
-              "watchdog")  # with those of the board all that there are
+              "ssi", "watchdog")  # with those of the board all that there are
 CHANNELS = 4
 
 

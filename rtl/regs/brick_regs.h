@@ -10,6 +10,10 @@
 #define MAIN_MEMORY_BASE 0x000000u
 #define MAIN_MEMORY_SIZE 0x40000u /* addresses */
 
+/* SSI page */
+#define SSI_PAGE_BASE 0x00FF00u
+#define SSI_PAGE_SIZE 0x100u /* addresses */
+
 /* Dual-ported RAM */
 #define DPRAM_BASE 0x060000u
 #define DPRAM_SIZE 0x4000u /* addresses */
@@ -140,6 +144,27 @@ enum clock_source {
   CLOCK_SOURCE_NONE = 31, /* No IC drives PHASE */
 };
 #endif
+
+/* SSI of a Geo PMAC */
+#define SSI_GEO_BASE 0x00FF54u
+#define SSI_GEO_Y_POSITION 0x00FF54u /* Channel 1, position */
+#define SSI_GEO_POSITION_RESET 0x000000u
+#define SSI_GEO_X_CONTROL 0x00FF54u /* Channel 1, control */
+#define SSI_GEO_CONTROL_RESET 0x000000u
+#define SSI_GEO_CONTROL_WRITTEN 0x00000Fu
+#define SSI_GEO_CONTROL_MODE_SHIFT 0u
+#define SSI_GEO_CONTROL_MODE_MASK 0x000003u /* 2 binary, 3 Gray; 0 and 1: off */
+#define SSI_GEO_CONTROL_LENGTH_SHIFT 2u
+#define SSI_GEO_CONTROL_LENGTH_MASK 0x00000Cu /* 12, 16, 20, 24 bits */
+#define SSI_GEO_X_TIMING 0x00FF55u /* Serial clock of both channels */
+#define SSI_GEO_TIMING_RESET 0x000000u
+#define SSI_GEO_TIMING_WRITTEN 0x000003u
+#define SSI_GEO_TIMING_RATE_SHIFT 0u
+#define SSI_GEO_TIMING_RATE_MASK 0x000003u /* 153.6, 307.2, 614.4 kHz, 1.2288 MHz */
+#define SSI_GEO_X_REFUSED 0x00FF56u /* Channel 1, refused triggers */
+#define SSI_GEO_REFUSED_RESET 0x000000u
+#define SSI_GEO_REFUSED_COUNT_SHIFT 0u
+#define SSI_GEO_REFUSED_COUNT_MASK 0x0000FFu /* Modulo 256 */
 
 /* Board latches */
 #define BOARD_LATCHES_BASE 0x070010u
@@ -426,6 +451,51 @@ enum clock_source {
 #define JPAN_INPUTS_FPD_MASK 0x000F00u /* FPD0/ to FPD3/: motor and coordinate system, inverted */
 #define JPAN_INPUTS_SPARE_SHIFT 12u
 #define JPAN_INPUTS_SPARE_MASK 0x00F000u /* Not brought out: 1 */
+
+/* Serial encoders of a Geo Brick LV */
+#define SSI_BRICK_BASE 0x078B20u
+#define SSI_BRICK_Y_POSITION 0x078B20u /* Channel 1, data A */
+#define SSI_BRICK_POSITION_RESET 0x000000u
+#define SSI_BRICK_X_CONTROL 0x078B20u /* Channel 1, control */
+#define SSI_BRICK_CONTROL_RESET 0x000000u
+#define SSI_BRICK_CONTROL_WRITTEN 0x00FC3Fu
+#define SSI_BRICK_CONTROL_BITS_SHIFT 0u
+#define SSI_BRICK_CONTROL_BITS_MASK 0x00003Fu /* Bits of the position, 12 to 32 */
+#define SSI_BRICK_CONTROL_DRIVER_SHIFT 10u
+#define SSI_BRICK_CONTROL_DRIVER_MASK 0x000400u /* Driver enable: shows the clock */
+#define SSI_BRICK_CONTROL_GRAY_SHIFT 11u
+#define SSI_BRICK_CONTROL_GRAY_MASK 0x000800u /* Gray code, converted */
+#define SSI_BRICK_CONTROL_TRIGGER_SHIFT 12u
+#define SSI_BRICK_CONTROL_TRIGGER_MASK 0x001000u /* Trigger enable */
+#define SSI_BRICK_CONTROL_ONE_SHOT_SHIFT 13u
+#define SSI_BRICK_CONTROL_ONE_SHOT_MASK 0x002000u /* One shot: trigger enable is cleared by the trigger */
+#define SSI_BRICK_CONTROL_PARITY_SHIFT 14u
+#define SSI_BRICK_CONTROL_PARITY_MASK 0x00C000u /* Parity: 1 odd, 2 even */
+#define SSI_BRICK_Y_POSITION_HIGH 0x078B21u /* Channel 1, data B */
+#define SSI_BRICK_POSITION_HIGH_RESET 0x000000u
+#define SSI_BRICK_POSITION_HIGH_HIGH_SHIFT 0u
+#define SSI_BRICK_POSITION_HIGH_HIGH_MASK 0x0000FFu /* Position 31..24 */
+#define SSI_BRICK_POSITION_HIGH_PARITY_ERROR_SHIFT 23u
+#define SSI_BRICK_POSITION_HIGH_PARITY_ERROR_MASK 0x800000u /* Parity error */
+#define SSI_BRICK_X_REFUSED 0x078B21u /* Channel 1, refused triggers */
+#define SSI_BRICK_REFUSED_RESET 0x000000u
+#define SSI_BRICK_REFUSED_COUNT_SHIFT 0u
+#define SSI_BRICK_REFUSED_COUNT_MASK 0x0000FFu /* Modulo 256 */
+#define SSI_BRICK_X_TIMING 0x078B2Fu /* Global control of channels 1 to 4 */
+#define SSI_BRICK_TIMING_RESET 0x000000u
+#define SSI_BRICK_TIMING_WRITTEN 0xFFF3FFu
+#define SSI_BRICK_TIMING_PROTOCOL_SHIFT 0u
+#define SSI_BRICK_TIMING_PROTOCOL_MASK 0x00000Fu /* Protocol: 2 = SSI */
+#define SSI_BRICK_TIMING_DELAY_SHIFT 4u
+#define SSI_BRICK_TIMING_DELAY_MASK 0x0000F0u /* Delay in serial periods */
+#define SSI_BRICK_TIMING_FALLING_SHIFT 8u
+#define SSI_BRICK_TIMING_FALLING_MASK 0x000100u /* Trigger edge: 1 = falling */
+#define SSI_BRICK_TIMING_ON_SERVO_SHIFT 9u
+#define SSI_BRICK_TIMING_ON_SERVO_MASK 0x000200u /* Trigger clock: 1 = SERVO, 0 = PHASE */
+#define SSI_BRICK_TIMING_POWER_SHIFT 12u
+#define SSI_BRICK_TIMING_POWER_MASK 0x00F000u /* N */
+#define SSI_BRICK_TIMING_DIVISOR_SHIFT 16u
+#define SSI_BRICK_TIMING_DIVISOR_MASK 0xFF0000u /* M */
 
 /* Host port HI08, CPU side */
 #define HI08_BASE 0xFFFFC2u

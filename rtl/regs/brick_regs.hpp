@@ -35,6 +35,8 @@ struct GateIc {
 
 constexpr std::uint32_t kMainMemoryBase = 0x0;  // Main memory
 constexpr std::uint32_t kMainMemorySize = 0x40000;  // addresses
+constexpr std::uint32_t kSsiPageBase = 0xFF00;  // SSI page
+constexpr std::uint32_t kSsiPageSize = 0x100;  // addresses
 constexpr std::uint32_t kDpramBase = 0x60000;  // Dual-ported RAM
 constexpr std::uint32_t kDpramSize = 0x4000;  // addresses
 constexpr std::uint32_t kLatchesBase = 0x70000;  // Latches
@@ -142,6 +144,24 @@ enum Code : std::uint32_t {
   kNone = 31,  // No IC drives PHASE
 };
 }  // namespace clock_source
+
+namespace ssi_geo {  // SSI of a Geo PMAC
+constexpr std::uint32_t kBase = 0xFF54;
+constexpr Register kPosition{'Y', 0xFF54, 0x0, 0x0, "position"};
+constexpr Register kControl{'X', 0xFF54, 0x0, 0xF, "control"};
+constexpr Register kTiming{'X', 0xFF55, 0x0, 0x3, "timing"};
+constexpr Register kRefused{'X', 0xFF56, 0x0, 0x0, "refused"};
+namespace control {
+constexpr Field kMode{0, 2, "mode"};
+constexpr Field kLength{2, 2, "length"};
+}  // namespace control
+namespace timing {
+constexpr Field kRate{0, 2, "rate"};
+}  // namespace timing
+namespace refused {
+constexpr Field kCount{0, 8, "count"};
+}  // namespace refused
+}  // namespace ssi_geo
 
 namespace board_latches {  // Board latches
 constexpr std::uint32_t kBase = 0x70010;
@@ -321,6 +341,38 @@ constexpr Field kFpd{8, 4, "fpd"};
 constexpr Field kSpare{12, 4, "spare"};
 }  // namespace inputs
 }  // namespace jpan
+
+namespace ssi_brick {  // Serial encoders of a Geo Brick LV
+constexpr std::uint32_t kBase = 0x78B20;
+constexpr Register kPosition{'Y', 0x78B20, 0x0, 0x0, "position"};
+constexpr Register kControl{'X', 0x78B20, 0x0, 0xFC3F, "control"};
+constexpr Register kPositionHigh{'Y', 0x78B21, 0x0, 0x0, "position_high"};
+constexpr Register kRefused{'X', 0x78B21, 0x0, 0x0, "refused"};
+constexpr Register kTiming{'X', 0x78B2F, 0x0, 0xFFF3FF, "timing"};
+namespace control {
+constexpr Field kBits{0, 6, "bits"};
+constexpr Field kDriver{10, 1, "driver"};
+constexpr Field kGray{11, 1, "gray"};
+constexpr Field kTrigger{12, 1, "trigger"};
+constexpr Field kOneShot{13, 1, "one_shot"};
+constexpr Field kParity{14, 2, "parity"};
+}  // namespace control
+namespace position_high {
+constexpr Field kHigh{0, 8, "high"};
+constexpr Field kParityError{23, 1, "parity_error"};
+}  // namespace position_high
+namespace refused {
+constexpr Field kCount{0, 8, "count"};
+}  // namespace refused
+namespace timing {
+constexpr Field kProtocol{0, 4, "protocol"};
+constexpr Field kDelay{4, 4, "delay"};
+constexpr Field kFalling{8, 1, "falling"};
+constexpr Field kOnServo{9, 1, "on_servo"};
+constexpr Field kPower{12, 4, "power"};
+constexpr Field kDivisor{16, 8, "divisor"};
+}  // namespace timing
+}  // namespace ssi_brick
 
 namespace hi08 {  // Host port HI08, CPU side
 constexpr std::uint32_t kBase = 0xFFFFC2;

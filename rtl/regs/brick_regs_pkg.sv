@@ -9,6 +9,10 @@ package brick_regs_pkg;
   localparam logic [23:0] MainMemoryBase = 24'h0;
   localparam int MainMemorySize = 262144;
 
+  // SSI page
+  localparam logic [23:0] SsiPageBase = 24'hFF00;
+  localparam int SsiPageSize = 256;
+
   // Dual-ported RAM
   localparam logic [23:0] DpramBase = 24'h60000;
   localparam int DpramSize = 16384;
@@ -113,6 +117,27 @@ package brick_regs_pkg;
     ClockSourceOutside   = 5'd30,
     ClockSourceNone      = 5'd31
   } clock_source_e;
+
+  // SSI of a Geo PMAC
+  localparam logic [23:0] SsiGeoBase = 24'h00FF54;
+  localparam logic [23:0] SsiGeoPositionAddr = 24'h00FF54;  // Y
+  localparam logic [23:0] SsiGeoPositionReset = 24'h000000;
+  localparam logic [23:0] SsiGeoControlAddr = 24'h00FF54;  // X
+  localparam logic [23:0] SsiGeoControlReset = 24'h000000;
+  localparam logic [23:0] SsiGeoControlWritten = 24'h00000F;
+  localparam int SsiGeoControlModeLsb = 0;
+  localparam int SsiGeoControlModeWidth = 2;
+  localparam int SsiGeoControlLengthLsb = 2;
+  localparam int SsiGeoControlLengthWidth = 2;
+  localparam logic [23:0] SsiGeoTimingAddr = 24'h00FF55;  // X
+  localparam logic [23:0] SsiGeoTimingReset = 24'h000000;
+  localparam logic [23:0] SsiGeoTimingWritten = 24'h000003;
+  localparam int SsiGeoTimingRateLsb = 0;
+  localparam int SsiGeoTimingRateWidth = 2;
+  localparam logic [23:0] SsiGeoRefusedAddr = 24'h00FF56;  // X
+  localparam logic [23:0] SsiGeoRefusedReset = 24'h000000;
+  localparam int SsiGeoRefusedCountLsb = 0;
+  localparam int SsiGeoRefusedCountWidth = 8;
 
   // Board latches
   localparam logic [23:0] BoardLatchesBase = 24'h070010;
@@ -345,6 +370,44 @@ package brick_regs_pkg;
   localparam int JpanInputsFpdWidth = 4;
   localparam int JpanInputsSpareLsb = 12;
   localparam int JpanInputsSpareWidth = 4;
+
+  // Serial encoders of a Geo Brick LV
+  localparam logic [23:0] SsiBrickBase = 24'h078B20;
+  localparam logic [23:0] SsiBrickPositionAddr = 24'h078B20;  // Y
+  localparam logic [23:0] SsiBrickPositionReset = 24'h000000;
+  localparam logic [23:0] SsiBrickControlAddr = 24'h078B20;  // X
+  localparam logic [23:0] SsiBrickControlReset = 24'h000000;
+  localparam logic [23:0] SsiBrickControlWritten = 24'h00FC3F;
+  localparam int SsiBrickControlBitsLsb = 0;
+  localparam int SsiBrickControlBitsWidth = 6;
+  localparam int SsiBrickControlDriverLsb = 10;
+  localparam int SsiBrickControlGrayLsb = 11;
+  localparam int SsiBrickControlTriggerLsb = 12;
+  localparam int SsiBrickControlOneShotLsb = 13;
+  localparam int SsiBrickControlParityLsb = 14;
+  localparam int SsiBrickControlParityWidth = 2;
+  localparam logic [23:0] SsiBrickPositionHighAddr = 24'h078B21;  // Y
+  localparam logic [23:0] SsiBrickPositionHighReset = 24'h000000;
+  localparam int SsiBrickPositionHighHighLsb = 0;
+  localparam int SsiBrickPositionHighHighWidth = 8;
+  localparam int SsiBrickPositionHighParityErrorLsb = 23;
+  localparam logic [23:0] SsiBrickRefusedAddr = 24'h078B21;  // X
+  localparam logic [23:0] SsiBrickRefusedReset = 24'h000000;
+  localparam int SsiBrickRefusedCountLsb = 0;
+  localparam int SsiBrickRefusedCountWidth = 8;
+  localparam logic [23:0] SsiBrickTimingAddr = 24'h078B2F;  // X
+  localparam logic [23:0] SsiBrickTimingReset = 24'h000000;
+  localparam logic [23:0] SsiBrickTimingWritten = 24'hFFF3FF;
+  localparam int SsiBrickTimingProtocolLsb = 0;
+  localparam int SsiBrickTimingProtocolWidth = 4;
+  localparam int SsiBrickTimingDelayLsb = 4;
+  localparam int SsiBrickTimingDelayWidth = 4;
+  localparam int SsiBrickTimingFallingLsb = 8;
+  localparam int SsiBrickTimingOnServoLsb = 9;
+  localparam int SsiBrickTimingPowerLsb = 12;
+  localparam int SsiBrickTimingPowerWidth = 4;
+  localparam int SsiBrickTimingDivisorLsb = 16;
+  localparam int SsiBrickTimingDivisorWidth = 8;
 
   // Host port HI08, CPU side
   localparam logic [23:0] Hi08Base = 24'hFFFFC2;

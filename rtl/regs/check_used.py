@@ -21,6 +21,8 @@ FOLDERS = {
     "macro_ic": ("rtl/macro_ic", "systemc/macro_ic"),
     "board_latches": ("rtl/board", "rtl/host", "systemc/board", "systemc/host"),
     "jpan": ("rtl/board", "systemc/board"),
+    "ssi_geo": ("rtl/ssi", "systemc/ssi"),
+    "ssi_brick": ("rtl/ssi", "systemc/ssi"),
     "hi08": ("rtl/host", "systemc/host"),
     "host_io": ("rtl/host", "systemc/host"),
     "pic_8259": ("rtl/host", "systemc/host"),

@@ -112,7 +112,7 @@ class Maps:
         self.blocks, self.ics, self.memories, self.codes = [], [], [], []
         self.compiler = compiler = RDLCompiler()
         compiler.compile_file(str(HERE / "brick.rdl"))
-        for top in ("brick_cpu", "brick_cpu_regions", "brick_host_io", "brick_host_memory"):
+        for top in ("brick_cpu", "brick_cpu_regions", "brick_cpu_geo_pmac", "brick_host_io", "brick_host_memory"):
             root = compiler.elaborate(top).top
             for node in root.children(unroll=True):
                 if isinstance(node, MemNode):

@@ -15,6 +15,7 @@ struct AddressSelect {
   bool strobe = false;    // X:$070011 watchdog strobe
   bool ctrl = false;      // X:$070012 control outputs
   bool panel = false;     // Y:$078800 control panel port
+  bool ssi = false;       // serial encoder inputs
   int ic = -1;            // servo or MACRO IC, index as in BoardInputs::fitted
 };
 
@@ -22,7 +23,7 @@ class AddressDecode : public sc_core::sc_module {
  public:
   explicit AddressDecode(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  static AddressSelect decode(const BusSync::Where& w, std::uint32_t fitted, bool jpan) {
+  static AddressSelect decode(const BusSync::Where& w, std::uint32_t fitted, bool jpan, unsigned ssi) {
     AddressSelect s;
     if (w.internal) {
       s.any = s.internal = true;
@@ -36,12 +37,18 @@ class AddressDecode : public sc_core::sc_module {
       s.ctrl = w.x && a == regs::board_latches::kControlOutputs.address;
     } else if ((w.aa & 2) != 0 && a - regs::kGateIcsBase < regs::kGateIcsSize) {
       s.any = true;
+      s.ssi = ssi == kSsiBrick && a >> 5 == regs::ssi_brick::kBase >> 5;
       s.panel = jpan && !w.x && a == regs::jpan::kInputs.address;
       const int ic = gate_ic(a - regs::kGateIcsBase);
       if (ic >= 0 && (fitted >> ic & 1) != 0) s.ic = ic;
+    } else if ((w.aa & 2) != 0 && (ssi & kSsiGeo) != 0 && a - regs::kSsiPageBase < regs::kSsiPageSize) {
+      s.any = true;
+      s.ssi = ssi == kSsiGeo && a >> 6 == regs::ssi_geo::kBase >> 6;
     }
     return s;
   }
+
+  static constexpr unsigned kSsiGeo = 1, kSsiBrick = 2;  // Straps::ssi_kind; both: a Geo PMAC without them
 
  private:
   // Servo IC 0 and 1 at $0000 and $0100; 2..9 at $200 and $300 of the pages $0000..$3000; IC m* is $20 above IC m.

@@ -21,6 +21,7 @@ BoardTop::BoardTop(const sc_core::sc_module_name& name, std::uint32_t ics, std::
       host_signals_("host_signals"),
       dpram_("dpram"),
       panel_port_("panel_port"),
+      ssi_("ssi"),
       gate_ics_(ics) {
   inputs_.fitted = ics;
   isa_slave_.leave_ends_out();
@@ -144,15 +145,28 @@ void BoardTop::execute(Tick t) {
     take_straps(inputs_, t);
     changed |= parts(kStraps);
   }
+  if (ic.read || ic.write) take_access(ic, t, changed);
+  now_ = t;
+  connect(changed);
+  schedule(touched_);
+  shown_ = changed | touched_ | own;
+}
+
+// What an access that the edge t saw does to the registers, which have executed it.
+void BoardTop::take_access(const IcAccess& ic, Tick t, Parts& changed) {
+  if (ic.ssi) {
+    if (!ic.write) return;
+    ssi_.advance(t);
+    ssi_.write(ic.where.x, ic.where.addr & Ssi::kPage, ic.wdata);
+    touched_ |= parts(kSsi);
+    changed |= parts(kSsi);
+    return;
+  }
   if (ic.read) gate_ics_.read_taken(ic.number, ic.where.x, ic.where.addr, t);
   if (ic.write) {
     gate_ics_.write(ic.number, ic.where.x, ic.where.addr, ic.wdata, t);
     changed |= parts(kIcClocks);
   }
-  now_ = t;
-  connect(changed);
-  schedule(touched_);
-  shown_ = changed | touched_ | own;
 }
 
 // The strobe of a Port A access that the edge t sees: of a read it takes the sample; an access of an IC is returned.
@@ -161,16 +175,22 @@ BoardTop::IcAccess BoardTop::take_strobe(Tick t) {
   const bool read = bus_sync_.rd(), write = bus_sync_.we();
   if (!read && !write) return {};
   select();
+  if (select_.ssi) ssi_.advance(t - 1);
   if (read && select_.any)
     bus_read_.take(read_data(t - 1), select_.internal);
   else if (read)
     bus_read_.take_nothing();
+  if (select_.ssi) {
+    if (read) ssi_.read_taken(bus_sync_.where().x, bus_sync_.where().addr & Ssi::kPage);
+    return {read, write, true, 0, bus_sync_.where(), bus_sync_.wdata()};
+  }
   if (select_.ic < 0) return {};
-  return {read, write, static_cast<unsigned>(select_.ic), bus_sync_.where(), bus_sync_.wdata()};
+  return {read, write, false, static_cast<unsigned>(select_.ic), bus_sync_.where(), bus_sync_.wdata()};
 }
 
 void BoardTop::select() {
-  select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted);
+  select_ = AddressDecode::decode(bus_sync_.where(), straps_.fitted & gate_ics_.built(), straps_.jpan_fitted,
+                                  straps_.ssi_kind);
 }
 
 std::uint32_t BoardTop::read_data(Tick t) const {
@@ -178,6 +198,7 @@ std::uint32_t BoardTop::read_data(Tick t) const {
   if (select_.signals) return host_signals_.rdata();
   if (select_.ctrl) return ctrl();
   if (select_.panel) return panel_port_.rdata();
+  if (select_.ssi) return ssi_.read(bus_sync_.where().x, bus_sync_.where().addr & Ssi::kPage);
   if (select_.ic < 0) return 0;
   return gate_ics_.read(static_cast<unsigned>(select_.ic), bus_sync_.where().x, bus_sync_.where().addr, t);
 }

@@ -31,6 +31,7 @@
 #include "systemc/host/interrupt_controller.h"
 #include "systemc/host/isa_slave.h"
 #include "systemc/host/pic_8259.h"
+#include "systemc/ssi/ssi.h"
 
 namespace brick {
 
@@ -96,6 +97,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
     kHostInterrupt,
     kHostSignals,
     kPanelPort,
+    kSsi,
     kBlocks,
     kIcClocks = kBlocks,
     kPortAPins,
@@ -148,12 +150,15 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
         case kPanelPort:
           f(kPanelPort, panel_port_);
           break;
+        case kSsi:
+          f(kSsi, ssi_);
+          break;
       }
     }
   }
 
-  struct IcAccess {  // of the CPU to a register of an IC
-    bool read = false, write = false;
+  struct IcAccess {  // of the CPU to a register of an IC, or of the serial encoder inputs
+    bool read = false, write = false, ssi = false;
     unsigned number = 0;
     BusSync::Where where;
     std::uint32_t wdata = 0;
@@ -163,6 +168,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   void drive_port_a();
   void execute(Tick t);
   IcAccess take_strobe(Tick t);
+  void take_access(const IcAccess& ic, Tick t, Parts& changed);
   void select();
   Parts due(Tick t) const;  // blocks whose next event has come
   void schedule(Parts which);
@@ -196,6 +202,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   void connect_host_interrupt(Parts& changed);
   void connect_isa(Parts& changed);
   void connect_panel(Parts& changed);
+  void connect_ssi(Parts& changed);
   template <class Block>
   class Wires;
   BoardOutputs pins(Parts changed) const;
@@ -223,6 +230,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   HostSignals host_signals_;
   Dpram dpram_;
   PanelPort panel_port_;
+  Ssi ssi_;
   GateIcs gate_ics_;
 
   BoardInputs inputs_;

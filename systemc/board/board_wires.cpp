@@ -44,6 +44,7 @@ void BoardTop::connect(Parts changed) {
   if (from(kInterruptController, kPic8259, kStraps)) connect_host_interrupt(changed);
   if (from(kIsaPins, kHostPort, kInterruptController, kPic8259, kDpram, kStraps)) connect_isa(changed);
   if (from(kConnectorPins, kHostSignals, kStraps)) connect_panel(changed);
+  if (from(kClockSelect, kConnectorPins, kStraps)) connect_ssi(changed);
 }
 
 void BoardTop::connect_port_a(Parts& changed) {
@@ -190,6 +191,16 @@ void BoardTop::connect_panel(Parts& changed) {
   to(panel_port_.ipos, host_signals_.ipos());
 }
 
+// A board without them leaves them asleep.
+void BoardTop::connect_ssi(Parts& changed) {
+  if (straps_.ssi_kind == 0) return;
+  Wires to(*this, kSsi, ssi_, changed);
+  to(ssi_.geo, (straps_.ssi_kind & AddressDecode::kSsiGeo) != 0);
+  to(ssi_.phase, clock_select_.phase());
+  to(ssi_.servo, clock_select_.servo());
+  to(ssi_.data, inputs_.ssi_data);
+}
+
 std::uint32_t BoardTop::selected_lines() const {
   const std::uint32_t fitted_equ = ((straps_.fitted & 1) != 0 ? 0x0Fu : 0u) | ((straps_.fitted & 2) != 0 ? 0xF0u : 0u);
   const auto at = [](bool level, unsigned source) { return (level ? 1u : 0u) << source; };
@@ -250,6 +261,7 @@ BoardOutputs BoardTop::pins(Parts changed) const {
     o.set(pin::kWdRelay, watchdog_.relay());
     o.set(pin::kWdLed, watchdog_.trip());
   }
+  if (from(kSsi)) o.set(pin::kSsiClk, ssi_.clk());
   if (from(kPanelPort)) {
     o.set(pin::kBrldN, panel_port_.brld_n());
     o.set(pin::kErldN, panel_port_.erld_n());

@@ -81,6 +81,7 @@ class ChipFactory {
   virtual std::unique_ptr<Chip> interrupt_controller() const = 0;
   virtual std::unique_ptr<Chip> host_signals() const = 0;
   virtual std::unique_ptr<Chip> watchdog() const = 0;
+  virtual std::unique_ptr<Chip> ssi() const = 0;
   virtual std::unique_ptr<Chip> macro_ic() const = 0;
   virtual std::unique_ptr<Chip> clock_select() const = 0;
   virtual std::unique_ptr<Chip> host_port() const = 0;

@@ -12,6 +12,7 @@ std::unique_ptr<Chip> model_interrupt_controller();
 
 std::unique_ptr<Chip> model_host_signals();
 std::unique_ptr<Chip> model_watchdog();
+std::unique_ptr<Chip> model_ssi();
 std::unique_ptr<Chip> model_macro_ic();
 std::unique_ptr<Chip> model_clock_select();
 std::unique_ptr<Chip> model_host_port();
@@ -24,6 +25,7 @@ class ModelFactory : public ChipFactory {
   std::unique_ptr<Chip> interrupt_controller() const override { return model_interrupt_controller(); }
   std::unique_ptr<Chip> host_signals() const override { return model_host_signals(); }
   std::unique_ptr<Chip> watchdog() const override { return model_watchdog(); }
+  std::unique_ptr<Chip> ssi() const override { return model_ssi(); }
   std::unique_ptr<Chip> macro_ic() const override { return model_macro_ic(); }
   std::unique_ptr<Chip> clock_select() const override { return model_clock_select(); }
   std::unique_ptr<Chip> host_port() const override { return model_host_port(); }

@@ -6,6 +6,7 @@
 #include <brick/macro_ic.h>
 #include <brick/rtl.h>
 #include <brick/servo_ic.h>
+#include <brick/ssi.h>
 #include <brick/watchdog.h>
 
 #include "systemc/board/model_board.h"
@@ -25,6 +26,7 @@ class RtlFactory final : public ChipFactory {
   std::unique_ptr<Chip> interrupt_controller() const override { return rtl_interrupt_controller(seed_); }
   std::unique_ptr<Chip> host_signals() const override { return rtl_host_signals(seed_); }
   std::unique_ptr<Chip> watchdog() const override { return rtl_watchdog(seed_); }
+  std::unique_ptr<Chip> ssi() const override { return rtl_ssi(seed_); }
   std::unique_ptr<Chip> macro_ic() const override { return rtl_macro_ic(seed_); }
   std::unique_ptr<Chip> clock_select() const override { return rtl_clock_select(seed_); }
   std::unique_ptr<Chip> host_port() const override { return rtl_host_port(seed_); }
@@ -52,6 +54,9 @@ class LockstepFactory final : public ChipFactory {
   }
   std::unique_ptr<Chip> watchdog() const override {
     return lockstep_chip("watchdog", rtl_.watchdog(), model_.watchdog(), Watchdog::pin_table());
+  }
+  std::unique_ptr<Chip> ssi() const override {
+    return lockstep_chip("ssi", rtl_.ssi(), model_.ssi(), Ssi::pin_table());
   }
   std::unique_ptr<Chip> macro_ic() const override {
     return lockstep_chip("macro_ic", rtl_.macro_ic(), model_.macro_ic(), MacroIc::pin_table());

@@ -23,6 +23,7 @@ constexpr Region kRegions[] = {
     {regs::kDpramBase, regs::kDpramSize, 2},
     {regs::kLatchesBase, regs::kLatchesSize, kDefaultArea},
     {regs::kGateIcsBase, regs::kGateIcsSize, 1},
+    {regs::kSsiPageBase, regs::kSsiPageSize, 1},  // where main memory leaves it out
 };
 constexpr std::uint32_t kOnChipAddressPins = 0x3F;
 

@@ -16,6 +16,7 @@ struct BoardFamily {
   std::string_view ics;    // the same in words
   bool jpan;               // can have the control panel port
   bool feedback_option_2;  // can have the SSI inputs of Feedback Option 2
+  std::uint8_t ssi_kind;   // serial encoder inputs that every such board has
   std::uint32_t product;   // bits of the straps page, Product below
   std::string_view type;   // answer to TYPE, up to the comma
   bool control_outputs;    // interrupt lines can come from CTRL0, CTRL1
@@ -28,8 +29,12 @@ enum Product : std::uint32_t {
   kProductUmac = 2,
   kProductUltralite = 4,
   kProductTurboPmac1 = 8,
-  kProductFeedback2 = 16
+  kProductFeedback2 = 16,
+  kProductGeoPmac = 32
 };
+
+// Straps::ssi_kind. A Geo PMAC without the option has the page of addresses, and both bits.
+constexpr std::uint8_t kSsiGeoPmac = 1, kSsiGeoBrick = 2;
 
 const BoardFamily* find_board_family(std::string_view name);  // nullptr: no such family
 std::vector<std::string> board_family_names();

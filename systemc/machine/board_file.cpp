@@ -102,6 +102,8 @@ class Reader {
     if (board.feedback_option_2 && !family_->feedback_option_2)
       file_.fail(file_.need("feedback_option_2"), "feedback_option_2", "false: that is an option of a geo-pmac only");
     if (board.feedback_option_2) board.product |= kProductFeedback2;
+    const bool page_alone = family_->ssi_kind == kSsiGeoPmac && !board.feedback_option_2;
+    board.ssi_kind = page_alone ? kSsiGeoPmac | kSsiGeoBrick : family_->ssi_kind;
     board.bus = file_.text("bus");
     if (std::find(kBuses.begin(), kBuses.end(), board.bus) == kBuses.end())
       file_.fail(file_.need("bus"), "bus", fmt::format("one of {}", fmt::join(kBuses, ", ")));

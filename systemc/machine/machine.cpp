@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "systemc/cosim/engines.h"
+#include "systemc/machine/board_family.h"
 #include "systemc/machine/machine_impl.h"
 
 namespace brick {
@@ -41,8 +42,11 @@ Straps straps(const BoardConfig& board) {
   s.jpan_fitted = board.jpan;
   s.line_select = static_cast<std::uint16_t>(board.line_select);
   s.pic_8259 = board.pic_8259;
+  s.ssi_kind = board.ssi_kind;
   return s;
 }
+
+bool has_ssi_page(const BoardConfig& board) { return (board.ssi_kind & kSsiGeoPmac) != 0; }
 
 IsaStraps isa_straps(const BoardConfig& board) {
   IsaStraps s;
@@ -103,7 +107,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
       board(wired(config, make_board(config))),
       motors(*board, signals, config.board.fitted),
       aperture(config.aperture, config.seed),
-      memory(cpu, config.flash_file) {
+      memory(cpu, config.flash_file, has_ssi_page(config.board)) {
   initiator.cpu = &cpu;
   if (config.board.bus == "pci") pci = std::make_unique<PciBridge>("pci_bridge", pci_local(config.board));
   if (!config.firmware.empty()) elf = std::make_unique<ElfFile>(config.firmware);
@@ -197,6 +201,8 @@ void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const B
   named.outputs(tick_to_fs(tick), before, after);
   port_a.board_changed(tick, after);
   if (port_a_watch != nullptr && before.differs(after, kPortA)) port_a_watch->board_moved(tick_to_fs(tick), after);
+  if (const std::uint32_t ssi = before.get(pin::kSsiClk), clk = after.get(pin::kSsiClk); ssi != clk)
+    motors.ssi_clocked(tick, static_cast<std::uint8_t>(ssi), static_cast<std::uint8_t>(clk));
   if (owner.on_outputs) owner.on_outputs(tick, before, after);
   if (before.differs(after, kHostBus)) host_bus_moved(tick_to_fs(tick));
   if (before.differs(after, stop_on)) stopped = true;
@@ -243,6 +249,13 @@ void Machine::Impl::apply_host_inputs(TimeFs time) {
   host_bus_moved(time);
   if (port_a_watch != nullptr && !elf) port_a_watch->board_moved(time, board->port_a_at_once());
   if (config.board.jpan) see_init();
+}
+
+// What absolute encoders show. Their pins are nobody else's, so nothing of the host moves.
+void Machine::Impl::drive_ssi() {
+  host_inputs.ssi_data = inputs.ssi_data = motors.ssi_data();
+  board->set_inputs(inputs);
+  named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
 }
 
 // While a move of the host is in doubt the board has a part of it; outside nothing moves before the host says when.

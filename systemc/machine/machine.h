@@ -46,6 +46,7 @@ struct BoardConfig {
   bool slot8 = false;              // in a slot of eight bits
   unsigned axes = 8;
   bool feedback_option_2 = false;
+  std::uint8_t ssi_kind = 2;       // as Straps::ssi_kind: kSsiGeoPmac, kSsiGeoBrick of board_family.h
   std::vector<std::string> notes;  // what differs from the product, for the user
 };
 

@@ -59,12 +59,13 @@ struct Machine::Impl {
   void begin_reset(bool power);
   void board_changed(Tick tick, const BoardOutputs& before, const BoardOutputs& after);
   void cycle_done(const PortACycle& cycle);
-  void main_memory_wait() { cpu.set_wait(MachineMemory::kMain, memory_wait(port_a.wait_states(0))); }
+  void main_memory_wait() { memory.set_main_wait(memory_wait(port_a.wait_states(0))); }
   void trace_cpu(bool on);
   void take_host_inputs();
   void apply_host_inputs(TimeFs time);
   void host_bus_moved(TimeFs time);
   void see_init();
+  void drive_ssi();
   void keep_flash();
 
   // run.cpp: the run-ahead rule

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "rtl/regs/brick_regs.hpp"
 #include "systemc/cpu/cpu.h"
@@ -21,7 +22,9 @@ class MachineMemory {
   static constexpr std::uint32_t kMain = 0xC000'0000, kMainBytes = 8 * regs::kMainMemorySize;  // X and Y words
 
   // Maps everything; reads `flash_file` or makes it. Throws std::runtime_error with one clear line.
-  MachineMemory(Cpu& cpu, std::string flash_file);
+  // `ssi_page`: that page of main memory belongs to Port A (servo-ic:11.4).
+  MachineMemory(Cpu& cpu, std::string flash_file, bool ssi_page = false);
+  void set_main_wait(Cycle wait);
 
   // Words of the straps page.
   enum class Strap : std::uint32_t { kJumperE3 = 0, kFitted, kCard, kDpramWords, kPowerOn, kProduct };
@@ -36,7 +39,11 @@ class MachineMemory {
   // The firmware's store: two slots, of each the first word is its state.
   static constexpr std::uint32_t kSlotStates[] = {kFlash, kFlash + kFlashBytes / 2}, kOutdated = 0;
 
+  struct Part {
+    std::uint32_t base, bytes;
+  };
   Cpu& cpu_;
+  std::vector<Part> main_;  // of main memory, around what belongs to others
   FlashFile flash_file_;
 };
 

@@ -41,6 +41,17 @@ class MotorPeer {
     return 0;
   }
 
+  // Absolute encoders (SSI): channels at which it has one, constant, bit n - 1 for channel n. Each edge of their clocks
+  // is told, with step() after it; ssi_data() is asked after each step(), the edge now + 1 is the first to see it.
+  virtual std::uint8_t ssi_channels() const { return 0; }
+  virtual void ssi_clocked(Tick tick, std::uint8_t before, std::uint8_t after) {
+    (void)tick, (void)before, (void)after;
+  }
+  virtual std::uint8_t ssi_data(Tick now) {
+    (void)now;
+    return 0xFF;
+  }
+
   // Tick at which step() is to be called next, after now(); kNever: only after a stop.
   virtual Tick next_event() const = 0;
 

@@ -149,9 +149,20 @@ void MotorSide::step_peers() {
     if (!p.stopped && p.peer->next_event() > now) continue;
     p.stopped = false;
     edited = p.peer->step(now, inputs_) || edited;
+    if (const std::uint8_t ssi = p.peer->ssi_channels(); ssi != 0)
+      ssi_data_ = static_cast<std::uint8_t>((ssi_data_ & ~ssi) | (p.peer->ssi_data(now) & ssi));
     if (p.peer->next_event() <= now) throw std::logic_error("a motor peer asks for a time that has passed");
   }
   if (edited) apply();
+}
+
+void MotorSide::ssi_clocked(Tick tick, std::uint8_t before, std::uint8_t after) {
+  for (Peer& p : peers_) {
+    const std::uint8_t ssi = p.peer->ssi_channels();
+    if (((before ^ after) & ssi) == 0) continue;
+    p.peer->ssi_clocked(tick, before, after);
+    p.stopped = true;
+  }
 }
 
 void MotorSide::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {

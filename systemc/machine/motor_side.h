@@ -42,6 +42,13 @@ class MotorSide {
     for (const Peer& p : peers_) next = std::min(next, p.peer->next_event());
     return next;
   }
+  // Absolute encoders: whether a run must stop at the edges of their clocks, an edge, the data pins as the peers drive
+  // them.
+  bool has_ssi() const {
+    return std::any_of(peers_.begin(), peers_.end(), [](const Peer& p) { return p.peer->ssi_channels() != 0; });
+  }
+  void ssi_clocked(Tick tick, std::uint8_t before, std::uint8_t after);
+  std::uint8_t ssi_data() const { return ssi_data_; }
   bool take_stop() { return std::exchange(stopped_, false); }  // a selected edge has come since the last call
 
  private:
@@ -82,7 +89,8 @@ class MotorSide {
   std::array<MotorOutputs, kMaxServoIcs> select_{};  // of the user
   std::array<MotorOutputs, kMaxServoIcs> traced_{};  // of the waveform
   MotorDigest* digest_ = nullptr;                    // that the peers have
-  unsigned attachments_ = 0;                         // as traced_ knows them
+  std::uint8_t ssi_data_ = 0xFF;
+  unsigned attachments_ = 0;  // as traced_ knows them
   bool stopped_ = false;
 };
 

@@ -13,6 +13,7 @@ namespace brick {
 namespace {
 constexpr BoardOutputs kWakesCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
 
+constexpr BoardOutputs kSsiClocks = select_pins(pin::kSsiClk);
 constexpr Tick kDebuggerLatency = 20'000;  // no advance is longer when a debugger may want to break in
 
 BoardOutputs both(BoardOutputs a, const BoardOutputs& b) {
@@ -26,12 +27,15 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
   motors.begin_run();
   stop_on = stop;
   stopped = false;
-  const BoardOutputs watched = both(kWakesCpu, stop_on);
+  // At a clock of an absolute encoder the board stops, the run does not.
+  const BoardOutputs stops = motors.has_ssi() ? both(stop_on, kSsiClocks) : stop_on;
+  const BoardOutputs watched = both(kWakesCpu, stops);
   const Tick begin = board->now();
   Tick now = begin;
   run_cpu(now);
   while (now < limit && !stopped) {
     motors.step();
+    if (host_inputs.ssi_data != motors.ssi_data() && motors.has_ssi()) drive_ssi();
     Tick target = std::min(std::min(limit, motors.next_event()), std::min(reset_until, init_at));
     if (config.batch > 0) target = std::min(target, now + config.batch);
     if (debugger != nullptr) {  // it must be heard while the CPU sleeps, too
@@ -41,7 +45,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
     if (cpu_runs && !port_a.running() && !cpu.asleep())
       run_cpu(std::max(now, std::min(target, board->quiet_until(watched))));
     target = board_limit(target, now);
-    if (target > now) now = board->run_until(target, cpu_runs && !port_a.running() && cpu.asleep() ? watched : stop_on);
+    if (target > now) now = board->run_until(target, cpu_runs && !port_a.running() && cpu.asleep() ? watched : stops);
     stopped = motors.take_stop() || stopped;
     if (now == init_at) {
       init_at = kNever;

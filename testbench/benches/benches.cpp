@@ -42,6 +42,7 @@ const std::vector<Bench>& all_benches() {
       commutation_bench(),
       time_base_bench(),
       follow_bench(),
+      ssi_bench(),
       task_load_bench(),
       circle_bench(),
       lookahead_bench(),

@@ -44,6 +44,7 @@ Bench motion_bench();
 Bench kinematics_bench();
 Bench limits_bench();
 Bench commutation_bench();
+Bench ssi_bench();
 Bench time_base_bench();
 Bench follow_bench();
 Bench task_load_bench();

@@ -26,6 +26,10 @@ Axis::Axis(const AxisParameters& parameters, std::uint64_t seed, Tick step)
   owned_ = static_cast<std::uint16_t>(owned_ | switches_.mask() | (has_amplifier() ? 1u << kFault : 0));
   if (par_.noise.every != 0 && (par_.noise.pins & ~unsigned{owned_}) != 0)
     throw std::invalid_argument("axis: noise on a pin of others");
+  if (par_.absolute) {
+    if (par_.ic > 1) throw std::invalid_argument("axis: no serial input for an absolute encoder");
+    absolute_.emplace(*par_.absolute, seed, 2 * kChannels * kMaxServoIcs + ssi_channel());
+  }
   if (par_.brake.torque > 0 && !has_motor()) throw std::invalid_argument("axis: a brake without a motor");
   motor_.set_load(par_.load);
   grids_.insert(grids_.end(), switches_.grids().begin(), switches_.grids().end());
@@ -42,6 +46,13 @@ MotorOutputs Axis::watched(bool digest) const {
       watched.set(pin, par_.channel, 1);
   return watched;
 }
+
+std::uint64_t Axis::absolute_position(Tick now) const {
+  const std::int64_t steps = std::int64_t{1} << (par_.absolute->bits - par_.absolute_turns);
+  return static_cast<std::uint64_t>(detail::scaled_down(position(now), steps, encoder_.units_per_revolution()));
+}
+
+void Axis::ssi_clocked(Tick tick, bool level) { absolute_->clock(tick, level, absolute_position(tick)); }
 
 MotorOutputs Axis::stops() const {
   MotorOutputs stops;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "systemc/core/motor_pins.h"
@@ -13,6 +14,7 @@
 #include "testbench/plant/line_noise.h"
 #include "testbench/plant/motor.h"
 #include "testbench/plant/pwm_meter.h"
+#include "testbench/plant/ssi_encoder.h"
 #include "testbench/plant/stepper.h"
 #include "testbench/plant/switches.h"
 
@@ -32,6 +34,10 @@ struct AxisParameters {
   BrakeParameters brake;
   std::vector<Switch> switches;
   NoiseParameters noise;
+  // An absolute encoder on the same shaft, at the serial input of the axis's number (channels of servo ICs 0 and 1).
+  // `absolute_turns` of its bits count revolutions.
+  std::optional<SsiEncoderParameters> absolute;
+  unsigned absolute_turns = 0;
   std::int64_t start = 0;  // counts, where it stands at power-on
   double load = 0;         // N m, as set_load()
 };
@@ -60,7 +66,12 @@ class Axis {
   void changed(Tick tick, const MotorOutputs& before, const MotorOutputs& after, bool digest);
   bool step(Tick now, double dac_volts, MotorInputs& inputs);
   Tick next_event() const { return next_; }
-  std::uint32_t adc_word(bool b);  // at the start of a conversion
+  unsigned ssi_channel() const { return kChannels * par_.ic + par_.channel; }  // from 0
+  const SsiEncoder* absolute() const { return absolute_ ? &*absolute_ : nullptr; }
+  void ssi_clocked(Tick tick, bool level);
+  bool ssi_level(Tick now) { return absolute_->level(now); }
+  std::uint64_t absolute_position(Tick now) const;  // in steps of the absolute encoder, revolutions counted on
+  std::uint32_t adc_word(bool b);                   // at the start of a conversion
   void command(std::uint32_t word) { amplifier_.command(par_.channel, word), wake(); }
 
   // For tests and benches, while the machine stands.
@@ -88,6 +99,7 @@ class Axis {
   Tick step_;
   std::uint16_t owned_;  // pins that it drives; the others of the channel belong to somebody else
   Encoder encoder_;
+  std::optional<SsiEncoder> absolute_;
   Switches switches_;
   std::vector<PositionGrid> grids_;
   LineNoise noise_;

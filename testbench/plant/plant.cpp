@@ -71,6 +71,26 @@ MotorOutputs Plant::stops(unsigned ic) const {
   return stops;
 }
 
+std::uint8_t Plant::ssi_channels() const {
+  unsigned channels = 0;
+  for (const auto& axis : axes_)
+    if (axis->absolute() != nullptr) channels |= 1u << axis->ssi_channel();
+  return static_cast<std::uint8_t>(channels);
+}
+
+void Plant::ssi_clocked(Tick tick, std::uint8_t before, std::uint8_t after) {
+  for (const auto& axis : axes_)
+    if (axis->absolute() != nullptr && ((before ^ after) >> axis->ssi_channel() & 1) != 0)
+      axis->ssi_clocked(tick, (after >> axis->ssi_channel() & 1) != 0);
+}
+
+std::uint8_t Plant::ssi_data(Tick now) {
+  unsigned data = 0xFF;
+  for (const auto& axis : axes_)
+    if (axis->absolute() != nullptr && !axis->ssi_level(now)) data &= ~(1u << axis->ssi_channel());
+  return static_cast<std::uint8_t>(data);
+}
+
 void Plant::changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) {
   for (const auto& axis : axes_)
     if (axis->has_brake_at(ic)) axis->changed_brake(tick, after);
@@ -135,6 +155,10 @@ bool Plant::step(Tick now, MotorInputPins& inputs) {
       edited = axis->step(now, converters_.at(axis->ic()).dac.volts(axis->channel()), inputs[axis->ic()]) || edited;
     }
     next_ = std::min(next_, axis->next_event());
+    if (axis->absolute() != nullptr) {
+      axis->ssi_level(now);  // what has come is no event any more
+      next_ = std::min(next_, axis->absolute()->next_change());
+    }
   }
   for (const auto& [ic, converters] : converters_) {
     next_ = std::min(next_, converters.adc.command_end());

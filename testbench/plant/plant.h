@@ -55,6 +55,9 @@ class Plant : public MotorPeer {
   std::uint16_t drives(unsigned ic, unsigned channel) const override;
   MotorOutputs stops(unsigned ic) const override;
   Tick next_event() const override { return next_; }
+  std::uint8_t ssi_channels() const override;
+  void ssi_clocked(Tick tick, std::uint8_t before, std::uint8_t after) override;
+  std::uint8_t ssi_data(Tick now) override;
   void changed(Tick tick, unsigned ic, const MotorOutputs& before, const MotorOutputs& after) override;
   bool step(Tick now, MotorInputPins& inputs) override;
 

@@ -39,6 +39,7 @@ const std::vector<PinInfo>& board_rows() {
       {"line_select", PinDirection::kIn, 5, 0, 12, 0x951, "host-bus:4.2", "sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, then CTRL0, CTRL1, MI1, MI2, AXEXP0, AXEXP1"},
       {"ext_clock", PinDirection::kIn, 4, 28, 1, 0x0, "servo-ic:7.3", "jumper E1: PHASE and SERVO come from outside"},
       {"pic_8259", PinDirection::kIn, 5, 16, 1, 0x0, "host-bus:4.5", "the interrupt controller is an 8259"},
+      {"ssi_kind", PinDirection::kIn, 5, 17, 2, 0x0, "servo-ic:11.3", "serial encoder inputs: 0 none, 1 two of a Geo PMAC, 2 eight of a Geo Brick LV, 3 none of a Geo PMAC, whose page is there"},
       {"jpan", PinDirection::kIn, 3, 16, 16, 0xffff, "servo-ic:11.8", "inputs of the control panel port, low-true, bits as Y:$078800"},
       {"ext_phase", PinDirection::kIn, 4, 29, 1, 0x1, "servo-ic:7.3", "PHASE from outside"},
       {"ext_servo", PinDirection::kIn, 4, 30, 1, 0x1, "servo-ic:7.3", "SERVO from outside"},
@@ -47,6 +48,7 @@ const std::vector<PinInfo>& board_rows() {
       {"axexp0", PinDirection::kIn, 5, 14, 1, 0x0, "host-bus:4.2", "interrupt line of an axis expansion board"},
       {"axexp1", PinDirection::kIn, 5, 15, 1, 0x0, "host-bus:4.2", "interrupt line of an axis expansion board"},
       {"pwr_good", PinDirection::kIn, 7, 0, 1, 0x1, "servo-ic:10", "1 = 5 V is good, to the watchdog"},
+      {"ssi_data", PinDirection::kIn, 7, 8, 8, 0xff, "servo-ic:11.9", "serial data of absolute encoders, bit n - 1 for channel n; pulled up"},
       {"pa_data_o", PinDirection::kOut, 0, 0, 24, 0x0, "host-bus:2.1", "D23..D0 as the board drives them"},
       {"pa_ta_n", PinDirection::kOut, 0, 24, 1, 0x0, "host-bus:2.1", "0 = transfer acknowledged; 1 stretches the cycle: high in each DPRAM cycle from the strobe until it is done"},
       {"irq_host", PinDirection::kOut, 0, 25, 1, 0x0, "host-bus:3.2", "interrupt of the host port to the CPU"},
@@ -81,8 +83,9 @@ const std::vector<PinInfo>& board_rows() {
       {"ipld_n", PinDirection::kOut, 3, 19, 1, 0x0, "host-bus:5.6", "lamp of IPOS on the control panel, 0 = lit"},
       {"ctrl0", PinDirection::kOut, 3, 20, 1, 0x0, "host-bus:4.2", "control output 0, X:$070012; 0 from a trip of the watchdog to the reset"},
       {"ctrl1", PinDirection::kOut, 3, 21, 1, 0x0, "host-bus:4.2", "control output 1, X:$070012; 0 from a trip of the watchdog to the reset"},
-      {"wd_relay", PinDirection::kOut, 3, 24, 1, 0x0, "servo-ic:10", "1 = energised: from reset to trip (servo-ic:10/12)"},
-      {"wd_led", PinDirection::kOut, 3, 25, 1, 0x0, "servo-ic:10", "1 = the red lamp is on: tripped"},
+      {"wd_relay", PinDirection::kOut, 3, 12, 1, 0x0, "servo-ic:10", "1 = energised: from reset to trip (servo-ic:10/12)"},
+      {"wd_led", PinDirection::kOut, 3, 13, 1, 0x0, "servo-ic:10", "1 = the red lamp is on: tripped"},
+      {"ssi_clk", PinDirection::kOut, 3, 24, 8, 0x0, "servo-ic:11.9", "serial clocks of absolute encoders, bit n - 1 for channel n"},
   };
   return table;
 }
@@ -118,6 +121,7 @@ BoardPins::BoardPins(Component& owner, const std::string& prefix)
       line_select(owner, prefix + "line_select"),
       ext_clock(owner, prefix + "ext_clock"),
       pic_8259(owner, prefix + "pic_8259"),
+      ssi_kind(owner, prefix + "ssi_kind"),
       jpan(owner, prefix + "jpan"),
       ext_phase(owner, prefix + "ext_phase"),
       ext_servo(owner, prefix + "ext_servo"),
@@ -126,6 +130,7 @@ BoardPins::BoardPins(Component& owner, const std::string& prefix)
       axexp0(owner, prefix + "axexp0"),
       axexp1(owner, prefix + "axexp1"),
       pwr_good(owner, prefix + "pwr_good"),
+      ssi_data(owner, prefix + "ssi_data"),
       pa_data_o(owner, prefix + "pa_data_o"),
       pa_ta_n(owner, prefix + "pa_ta_n"),
       irq_host(owner, prefix + "irq_host"),
@@ -157,6 +162,7 @@ BoardPins::BoardPins(Component& owner, const std::string& prefix)
       ctrl0(owner, prefix + "ctrl0"),
       ctrl1(owner, prefix + "ctrl1"),
       wd_relay(owner, prefix + "wd_relay"),
-      wd_led(owner, prefix + "wd_led") {}
+      wd_led(owner, prefix + "wd_led"),
+      ssi_clk(owner, prefix + "ssi_clk") {}
 
 }  // namespace brick::component

@@ -104,7 +104,7 @@ void AccessCpu::choose() {
       break;
     case 6:
       region_ = kNoIc;  // or a fitted one by chance
-      chosen_.address = kGateBase + pick(kGateSize);
+      pick(2) == 0 ? serial_inputs() : void(chosen_.address = kGateBase + pick(kGateSize));
       break;
     case 7:
       region_ = kPanel;
@@ -130,6 +130,18 @@ void AccessCpu::choose() {
       while (chosen_.address == regs::cpu_bus::kBcr.address || chosen_.address == regs::cpu_bus::kPctl.address);
       break;
   }
+}
+
+// Every channel of the serial encoder inputs enabled sooner or later, at short periods; and all of their words read.
+void AccessCpu::serial_inputs() {
+  using namespace regs::ssi_brick;
+  chosen_.address = kBase + pick(32);
+  if (!chosen_.write) return;
+  chosen_.x = true;
+  const bool times = pick(4) == 0;
+  chosen_.address = times ? kTiming.address + 0x10 * pick(2) : kControl.address + 4 * pick(8);
+  chosen_.data = times ? timing::kFalling.at(pick(2)) | timing::kOnServo.at(pick(2)) | timing::kProtocol.at(2)
+                       : control::kTrigger.at(1) | control::kDriver.at(1) | pick(64);
 }
 
 // EQU of a channel of servo IC 0 or 1 by hand: lines of the interrupt controller.

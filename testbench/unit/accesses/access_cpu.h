@@ -40,6 +40,7 @@ class AccessCpu final : public BusMaster {
   void choose();
   void clock_word();
   void compare_output();
+  void serial_inputs();
 
   Machine& machine_;
   bool too_fast_;

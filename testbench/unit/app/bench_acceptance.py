@@ -42,12 +42,13 @@ def every_board():
     one_servo_ic = {"watchdog", "reinit-e3", "clock-select", "clock-faults", "clock-macro", "port-a-phase", "task-load"}
     every_bench = {b["name"] for b in json.loads(brick("list", "--json").stdout)}
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
-               "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase", "task-load"},
+               "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase", "task-load", "ssi"},
+               "turbo-pmac2-pci": {"ssi"}, "turbo-pmac2-pc": {"ssi"},
                "geobrick-lv-8": {"clock-macro"},
-               "turbo-pmac-pci": {"clock-macro"},
+               "turbo-pmac-pci": {"clock-macro", "ssi"},
                "pmac-pc": {"clock-macro", "breq-rotary", "breq-fixed", "breq-select", "watchdog", "capture-compare",
-                           "isa-timing"},
-               "umac-turbo": {"watchdog", "reinit-e3", "pwm", "port-a-phase", "task-load"},
+                           "isa-timing", "ssi"},
+               "umac-turbo": {"ssi", "watchdog", "reinit-e3", "pwm", "port-a-phase", "task-load"},
                "turbo-pmac2-ultralite":
                     every_bench - {"smoke", "binary-rotary", "breq-rotary", "breq-fixed", "breq-select", "interrupts",
                                    "clock-macro", "dpram", "dpram-ascii", "dpram-reporting", "gather", "host-port",
@@ -353,6 +354,17 @@ def commutation_bench():
 
 def commutation_bench_lockstep():
     bench_passes("commutation", "lockstep", "8")
+
+
+# covers: SSI-1
+def ssi():
+    for board, seed in (("geo-pmac", "1"), ("geobrick-lv-8", "2")):
+        bench_passes("ssi", "systemc", seed, board=board)
+
+
+def ssi_lockstep():
+    for board, seed in (("geo-pmac", "3"), ("geobrick-lv-8", "4")):
+        bench_passes("ssi", "lockstep", seed, board=board)
 
 
 def time_base():

@@ -31,7 +31,8 @@ void start_clocks(Board& board, BoardInputs& inputs) {
   board.run_until(kClocksStarted);
 }
 
-BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed), options_(options) {
+BoardTraffic::BoardTraffic(std::uint64_t seed, Options options) : random_(seed), ssi_random_(~seed), options_(options) {
+  inputs_.ssi_kind = static_cast<std::uint8_t>(ssi_random_() % 4);
   for (unsigned line = 0; line < 3; ++line)
     inputs_.line_select = static_cast<std::uint16_t>(inputs_.line_select << 4 | (pick(8) == 0 ? 0 : 1 + pick(15)));
   inputs_.jpan_fitted = pick(2) != 0;
@@ -103,6 +104,7 @@ void BoardTraffic::outside_step() {
       inputs_.ext_phase = !inputs_.ext_phase;
       break;
   }
+  inputs_.ssi_data = static_cast<std::uint8_t>(ssi_random_());
   outside_at_ += 1 + pick(500);
 }
 
@@ -110,6 +112,25 @@ void BoardTraffic::pause() {
   if (options_.dense || pick(60) != 0) return;
   const Tick ticks = 1000 + pick(60'000);
   for (Tick* at : {&cpu_.at, &host_.at, &outside_at_}) *at += ticks;
+}
+
+// Words of the serial encoder inputs, mostly those that make frames follow each other: every channel, short periods.
+void BoardTraffic::choose_ssi() {
+  const auto below = [this](std::uint32_t n) { return static_cast<std::uint32_t>(ssi_random_() % n); };
+  const bool geo = inputs_.ssi_kind % 2 != 0;
+  inputs_.pa_aa = 2;
+  inputs_.pa_addr = geo ? regs::kSsiPageBase + below(4) * 0x20 + 0x14 + below(3) : regs::ssi_brick::kBase + below(32);
+  if (below(3) != 0) return;
+  inputs_.pa_x = true;
+  const bool timing = below(4) == 0;
+  if (geo) {
+    inputs_.pa_addr = regs::ssi_geo::kControl.address + (timing ? 1 : 0x20 * below(2));
+    inputs_.pa_wdata = 3;
+  } else {
+    inputs_.pa_addr =
+        timing ? regs::ssi_brick::kTiming.address + 0x10 * below(2) : regs::ssi_brick::kBase + 4 * below(8);
+    inputs_.pa_wdata = timing ? below(4) << 8 | 2 : 0x1400 | below(1u << 16);
+  }
 }
 
 void BoardTraffic::choose_cpu_address() {
@@ -157,6 +178,7 @@ void BoardTraffic::choose_cpu_address() {
       inputs_.pa_aa = static_cast<std::uint8_t>(pick(16));
       break;
   }
+  if (!inputs_.pa_int && ssi_random_() % 12 == 0) choose_ssi();
 }
 
 // Of both kinds of IC, whose fields are the same. The data goes with it.

@@ -67,7 +67,9 @@ class BoardTraffic {
   void choose_host_address();
   void choose_host_set_up();
 
-  std::mt19937_64 random_;
+  void choose_ssi();
+
+  std::mt19937_64 random_, ssi_random_;  // of all, of the serial encoder inputs
   Options options_;
   BoardInputs inputs_;
   Bus cpu_, host_;

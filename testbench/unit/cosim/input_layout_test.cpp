@@ -67,6 +67,24 @@ Changes census(const Edit& edit) {
   return changes;
 }
 
+// A frame on every channel of the serial encoder inputs of a Geo Brick LV, from a fall of SERVO; then all words are
+// read.
+Changes frames(const Edit& edit) {
+  Changes changes;
+  BoardRig rig(distorted(0x3, edit, changes), 0x3);
+  rig.in.ext_clock = true;
+  rig.in.ssi_kind = 2;
+  rig.apply();
+  rig.run(20);
+  for (unsigned group = 0; group < 2; ++group) rig.write(true, regs::ssi_brick::kTiming.address + 0x10 * group, 0x302);
+  for (unsigned n = 0; n < 8; ++n) rig.write(true, regs::ssi_brick::kControl.address + 4 * n, 0x140C);
+  rig.in.ext_servo = false;
+  rig.apply();
+  rig.run(1000);
+  for (unsigned n = 0; n < 8; ++n) rig.read(false, regs::ssi_brick::kPosition.address + 4 * n);
+  return changes;
+}
+
 // No board has two strobes of a bus at once: a strobe is held idle instead.
 template <class Field>
 void change(BoardInputs& in, const Field& field, unsigned bit) {
@@ -78,14 +96,19 @@ void change(BoardInputs& in, const Field& field, unsigned bit) {
 }
 
 TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
-  const Changes usual_traffic = traffic([](BoardInputs&) {}), usual_census = census([](BoardInputs&) {});
+  const Edit none = [](BoardInputs&) {};
+  const Changes usual_traffic = traffic(none), usual_census = census(none), usual_frames = frames(none);
   const auto check = [&](const auto& field) {
+    const bool encoders = field.name == "ssi_kind" || field.name == "ssi_data";
     const bool straps = field.name == "fitted" || field.name == "macro_gate" || field.name == "line_select";
     for (unsigned bit = 0; bit < field.width; ++bit) {
       SCOPED_TRACE(::testing::Message() << field.name << " bit " << bit);
       const Edit edit = [&](BoardInputs& in) { change(in, field, bit); };
       try {
-        EXPECT_TRUE(straps ? census(edit) != usual_census : traffic(edit) != usual_traffic) << "nothing moved";
+        EXPECT_TRUE(encoders ? frames(edit) != usual_frames
+                    : straps ? census(edit) != usual_census
+                             : traffic(edit) != usual_traffic)
+            << "nothing moved";
       } catch (const LockstepDifference& e) { ADD_FAILURE() << e.what(); }
     }
   };
@@ -94,10 +117,10 @@ TEST(InputLayout, EachBitOfEachFieldReachesTheRtlAsTheModel) {
 
 TEST(InputLayout, EachPinHasOnePlace) {
   // Port A: A, D, AA, X, internal, two strobes. ISA: LA, SA, SD, seven lines; its switches and window. Connectors:
-  // JPAN, two clocks, four interrupt lines, 5 V good. Straps: ICs, kinds of MACRO ICs, three digits of sources, kind of
-  // interrupt controller, three jumpers.
-  constexpr unsigned kPins =
-      (19 + 24 + 4 + 1 + 1 + 2) + (7 + 20 + 16 + 7) + (8 + 10 + 3) + (16 + 2 + 4 + 1) + (22 + 4 + 3 * 4 + 1 + 3);
+  // JPAN, two clocks, four interrupt lines, 5 V good, eight encoders. Straps: ICs, kinds of MACRO ICs, three digits of
+  // sources, kind of interrupt controller, three jumpers, kind of encoder inputs.
+  constexpr unsigned kPins = (19 + 24 + 4 + 1 + 1 + 2) + (7 + 20 + 16 + 7) + (8 + 10 + 3) + (16 + 2 + 4 + 1 + 8) +
+                             (22 + 4 + 3 * 4 + 1 + 3 + 2);
   unsigned pins = 0;
   BoardInputWords taken{};
   const auto check = [&](const auto& field) {

@@ -150,8 +150,22 @@ TEST(BoardFile, GeoPmacHasTwoAxesOnOneServoIc) {
   EXPECT_EQ(board.fitted, 1u);
   EXPECT_EQ(board.axes, 2u);
   EXPECT_TRUE(board.feedback_option_2);
-  EXPECT_EQ(board.product, kProductFeedback2);
+  EXPECT_EQ(board.product, kProductFeedback2 | kProductGeoPmac);
+  EXPECT_EQ(board.ssi_kind, kSsiGeoPmac);
   EXPECT_FALSE(board.jpan);
+}
+
+// servo-ic:11.3, servo-ic:11.4: which serial encoder inputs there are follows from the family; a Geo PMAC without the
+// option has their page.
+TEST(BoardFile, SerialEncoderInputsAreThoseOfTheFamily) {
+  const auto kind = [](const std::string& family, const std::string& more = "") {
+    const TemporaryFile file(with("bus", "bus = \"internal\"\n" + more, family));
+    return read_board_file(file.path()).ssi_kind;
+  };
+  EXPECT_EQ(kind("geo-brick-lv"), kSsiGeoBrick);
+  EXPECT_EQ(kind("geo-pmac", "feedback_option_2 = true"), kSsiGeoPmac);
+  EXPECT_EQ(kind("geo-pmac"), kSsiGeoPmac | kSsiGeoBrick);
+  EXPECT_EQ(kind("turbo-pmac2"), 0);
 }
 
 // Every file of the folder can be read and its ICs can make the clocks.

@@ -112,6 +112,15 @@ b_late = 0.25
 a_long = -0.25
 dark_lines = [3]
 joint_lines = [7, 499]
+[axis.absolute]
+bits = 13
+turns = 12
+code = "gray"
+parity = "even"
+monoflop = "25us"
+delay = "0.5us"
+missing = true
+error_every = 9
 [axis.noise]
 every = "1ms"
 shortest = "20ns"
@@ -167,6 +176,15 @@ load = 1
   EXPECT_EQ(a.encoder.a_long, -16384);
   EXPECT_EQ(a.encoder.dark_lines, std::vector<unsigned>{3});
   EXPECT_EQ(a.encoder.joint_lines, (std::vector<unsigned>{7, 499}));
+  ASSERT_TRUE(a.absolute);
+  EXPECT_EQ(a.absolute->bits, 25u);
+  EXPECT_EQ(a.absolute_turns, 12u);
+  EXPECT_TRUE(a.absolute->gray);
+  EXPECT_EQ(a.absolute->parity, plant::SsiEncoderParameters::Parity::kEven);
+  EXPECT_EQ(a.absolute->monoflop, 2950);  // 2949.12
+  EXPECT_EQ(a.absolute->delay, 59);
+  EXPECT_TRUE(a.absolute->missing);
+  EXPECT_EQ(a.absolute->error_every, 9u);
   EXPECT_EQ(a.noise.every, 117'965);
   EXPECT_EQ(a.noise.shortest, 3);
   EXPECT_EQ(a.noise.longest, 118);

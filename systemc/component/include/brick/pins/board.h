@@ -42,6 +42,7 @@ struct BoardPins {
   In<12> line_select;  // sources of IR5 (low digit), IR6, IR7: 0 none, 1..8 EQU1..EQU8, 9 WDO, then CTRL0, CTRL1, MI1, MI2, AXEXP0, AXEXP1 (host-bus:4.2); idle $951
   In<> ext_clock;  // jumper E1: PHASE and SERVO come from outside (servo-ic:7.3)
   In<> pic_8259;  // the interrupt controller is an 8259 (host-bus:4.5)
+  In<2> ssi_kind;  // serial encoder inputs: 0 none, 1 two of a Geo PMAC, 2 eight of a Geo Brick LV, 3 none of a Geo PMAC, whose page is there (servo-ic:11.3)
   In<16> jpan;  // inputs of the control panel port, low-true, bits as Y:$078800 (servo-ic:11.8); idle $FFFF
   In<> ext_phase;  // PHASE from outside (servo-ic:7.3); idle 1
   In<> ext_servo;  // SERVO from outside (servo-ic:7.3); idle 1
@@ -50,6 +51,7 @@ struct BoardPins {
   In<> axexp0;  // interrupt line of an axis expansion board (host-bus:4.2)
   In<> axexp1;  // interrupt line of an axis expansion board (host-bus:4.2)
   In<> pwr_good;  // 1 = 5 V is good, to the watchdog (servo-ic:10); idle 1
+  In<8> ssi_data;  // serial data of absolute encoders, bit n - 1 for channel n; pulled up (servo-ic:11.9); idle $FF
   Out<24> pa_data_o;  // D23..D0 as the board drives them (host-bus:2.1)
   Out<> pa_ta_n;  // 0 = transfer acknowledged; 1 stretches the cycle: high in each DPRAM cycle from the strobe until it is done (host-bus:2.1)
   Out<> irq_host;  // interrupt of the host port to the CPU (host-bus:3.2)
@@ -82,6 +84,7 @@ struct BoardPins {
   Out<> ctrl1;  // control output 1, X:$070012; 0 from a trip of the watchdog to the reset (host-bus:4.2)
   Out<> wd_relay;  // 1 = energised: from reset to trip (servo-ic:10/12)
   Out<> wd_led;  // 1 = the red lamp is on: tripped (servo-ic:10)
+  Out<8> ssi_clk;  // serial clocks of absolute encoders, bit n - 1 for channel n (servo-ic:11.9)
 };
 
 }  // namespace brick::component
