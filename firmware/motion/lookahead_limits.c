@@ -102,18 +102,27 @@ static inline bool holds(const struct motor_part* m, int32_t w0, int32_t w1, int
   return is_within(v->b[0], most) && is_within(v->b[1], most) && is_within(v->b[2], most);
 }
 
-/* A value of the two ends, or of the quarters, that is not within the limits and not among `met`; VALUES: none. */
+/* Whether a value is beyond its limit on a side that is not among `met`. */
+static inline bool is_out(int32_t b, uint32_t value, uint32_t met) {
+  return !is_within(b, inside) && (met >> (2u * value + (b > 0 ? 1u : 0u)) & 1u) == 0;
+}
+
+/* A value of the two ends, or of the quarters, that is out; VALUES: none. */
 static uint32_t beyond(const struct values* v, uint32_t met) {
   const int32_t* b = v->b;
-  if (!is_within(b[0], inside) && (met & 1u) == 0) return 0;
-  if (!is_within(b[2], inside) && (met >> (VALUES - 1u)) == 0) return VALUES - 1u;
+  if (is_out(b[0], 0, met)) return 0;
+  if (is_out(b[2], VALUES - 1u, met)) return VALUES - 1u;
   if (is_within(b[1], inside)) return VALUES;
   const int32_t from = 3 * b[0], to = 3 * b[2], middle = 4 * b[1]; /* as `quarters` has it */
-  if (!is_within((from + b[1]) >> 2, inside) && (met & 2u) == 0) return 1;
-  if (!is_within((from + middle + b[2]) >> 3, inside) && (met & 4u) == 0) return 2;
-  if (!is_within((b[0] + middle + to) >> 3, inside) && (met & 8u) == 0) return 3;
-  if (!is_within((b[1] + to) >> 2, inside) && (met & 16u) == 0) return 4;
-  return VALUES;
+  if (is_out((from + b[1]) >> 2, 1, met)) return 1;
+  if (is_out((from + middle + b[2]) >> 3, 2, met)) return 2;
+  if (is_out((b[0] + middle + to) >> 3, 3, met)) return 3;
+  return is_out((b[1] + to) >> 2, 4, met) ? 4u : VALUES;
+}
+
+/* On which side a value was out. */
+static inline uint32_t side_of(const struct edge* e, int32_t w0, int32_t w1) {
+  return fixed_high(e->c[0], w0) + fixed_high(e->c[1], w1) > 0 ? 1u : 0u;
 }
 
 static struct edge edge_of(const struct motor_part* m, uint32_t value) {
@@ -154,7 +163,7 @@ static inline bool holds_at(enum limits_end end, const struct motor_part* m, int
   return end == LIMITS_FIRST ? holds(m, other, w, inside, v) : holds(m, w, other, inside, v);
 }
 
-/* What narrows is met, by rounding on either side of it. */
+/* What narrows is met, a little more or less by rounding; on its other side it may still be out. */
 static __attribute__((noinline)) bool narrow_by_motor(enum limits_end end, uint32_t i, int32_t w, struct room* r,
                                                       struct values* v) {
   const struct motor_part* m = &motor_parts[i];
@@ -162,10 +171,12 @@ static __attribute__((noinline)) bool narrow_by_motor(enum limits_end end, uint3
   for (uint32_t met = 0;;) {
     const uint32_t value = beyond(v, met);
     if (value == VALUES) return true;
-    if (!narrow(end, edge_of(m, value), w, r)) return false;
+    const struct edge edge = edge_of(m, value);
+    const uint32_t side = end == LIMITS_FIRST ? side_of(&edge, r->most, w) : side_of(&edge, w, r->most);
+    if (!narrow(end, edge, w, r)) return false;
     likely = r->by = i;
     slice_pause();
-    met |= 1u << value;
+    met |= 1u << (2u * value + side);
     if (holds_at(end, m, w, r->most, v)) return true;
   }
 }
@@ -188,9 +199,13 @@ static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
   struct values v;
   bool possible =
       likely >= count || holds_at(end, &motor_parts[likely], w, most, &v) || narrow_by_motor(end, likely, w, &r, &v);
-  const int32_t begun = r.most;
+  int32_t begun = r.most;
   possible = possible && pass(end, w, &r, count);
-  if (possible && r.most != begun) possible = pass(end, w, &r, r.by);
+  if (possible && r.most != begun) {
+    begun = r.most;
+    possible = pass(end, w, &r, r.by);
+    if (possible && r.most != begun) possible = pass(end, w, &r, count);
+  }
   if (!possible) r.most = -1;
   slice_pause();
   return r;

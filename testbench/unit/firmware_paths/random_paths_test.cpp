@@ -245,7 +245,7 @@ int first_path() {
 TEST_F(RandomPaths, WhateverHappensThePathIsTheSame) {
   const int count = count_of_paths(2000), begin = first_path();
   unsigned turned = 0;
-  std::vector<int> seeds = {1280, 1119, 20076};  // what once went wrong
+  std::vector<int> seeds = {1280, 1119, 20076, 3746};  // what once went wrong
   for (int i = 0; i < count; ++i) seeds.push_back(begin + i);
   for (const int seed : seeds) {
     if (HasFailure()) break;
