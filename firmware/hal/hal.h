@@ -51,9 +51,9 @@ enum { HAL_SIGNAL_IPOS = 1, HAL_SIGNAL_BREQ = 2, HAL_SIGNAL_EROR = 4, HAL_SIGNAL
 /* Kernel only. ----------------------------------------------------------------------------------------------------- */
 void hal_set_cpu_clock(uint32_t i52); /* cycles a microsecond for hal_delay_us and hal_cycles_per_ms */
 uint32_t hal_cycles_per_ms(void);
-void hal_interrupts_off(void);    /* no task enabled, nothing latched */
-void hal_interrupts_on(void);     /* all tasks enabled; clock edges and requests until now forgotten */
-void hal_request_real_time(void); /* sets the real-time interrupt pending */
+void hal_interrupts_off(void);                /* no task enabled, nothing latched */
+void hal_interrupts_on(void);                 /* all tasks enabled; clock edges and requests until now forgotten */
+void hal_request_real_time(void);             /* sets the real-time interrupt pending */
 void hal_idle(const volatile uint32_t* work); /* sleeps until the next interrupt unless *work is not zero already */
 void hal_watchdog_strobe(void);
 void hal_host_interrupts(bool receive, bool transmit); /* HRIE, HTIE of the host port */
