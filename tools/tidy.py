@@ -26,7 +26,8 @@ FOLDERS = ("app", "firmware", "systemc", "testbench")
 @functools.cache
 def compilers_own_headers():
     """Those of the sanitizers, which clang has in a package of their own."""
-    return subprocess.run(["gcc", "-print-file-name=include"], text=True, capture_output=True, check=True).stdout.strip()
+    asked = ["gcc", "-print-file-name=include"]
+    return subprocess.run(asked, text=True, capture_output=True, check=True).stdout.strip()
 
 
 def arguments_for_clang(command):
