@@ -173,8 +173,8 @@ static enum executed assign(struct executor* x, const struct instruction* in) {
   double value = in->value, number = (double)(in->number + x->prefix);
   if (in->operation != OP_ASSIGN && !evaluator_pop(&x->evaluator, &value)) return EXECUTED_ERROR;
   if (in->operation == OP_ASSIGN_INDEXED && !evaluator_pop(&x->evaluator, &number)) return EXECUTED_ERROR;
-  variable_write(in->group, x->cs, number, value);
   slice_pause();
+  variable_write(in->group, x->cs, number, value); /* a line whose work is seen is told at once, so without a pause */
   return end_statement(x, 1);
 }
 
