@@ -8,7 +8,6 @@
 #include <stdbool.h>
 
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/tasks.h"
 
 enum { LEAST_CYCLES = 500, PATIENCE_MS = 5 };
 enum { LONGEST_SECTION = 2400 }; /* cycles between two pauses, with what the real-time task does beside the slice */
@@ -85,5 +84,5 @@ void slice_pause(void) {
 
 void slice_hurry_over(void) {
   slice_hurry = 0;
-  if (gave_way) tasks_ask_real_time();
+  if (gave_way) hal_request_real_time();
 }
