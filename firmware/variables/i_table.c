@@ -24,9 +24,12 @@ enum { ENTRY_COUNT = sizeof entries / sizeof entries[0], WIDEST_GROUP = 192, RES
 
 static uint8_t row_of[I_GROUP_COUNT][WIDEST_GROUP];
 
+static bool has_ssi; /* kept: a call in i_table_place would cost each look at a variable 30 cycles */
+
 _Static_assert(ENTRY_COUNT <= 256, "rows are indexed by a byte");
 
 void i_table_initialize(void) {
+  has_ssi = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_GEO_PMAC) != 0u;
   for (unsigned row = 1; row < ENTRY_COUNT; ++row)
     for (unsigned i = 0; i < entries[row].count; ++i) row_of[entries[row].group][entries[row].first + i] = (uint8_t)row;
 }
@@ -60,16 +63,15 @@ static struct i_place in_macro_ic(uint32_t inside_all) {
   return place;
 }
 
-bool i_table_has_ssi(void) { return (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_GEO_PMAC) != 0u; }
+bool i_table_has_ssi(void) { return has_ssi; }
 
 /* What is in no group is reserved, as a number of GATHER without a row is. */
-struct i_place i_table_place(uint32_t number) {
+__attribute__((noinline)) struct i_place i_table_place(uint32_t number) {
   if (number < I_MOTOR_BLOCK) return (struct i_place){I_GROUP_GLOBAL, number, 0, 0};
   if (number >= I_BASE_TABLE) return (struct i_place){I_GROUP_TABLE, number - I_BASE_TABLE, 0, 0};
   if (number >= I_SERVO_FIRST) return in_servo_ic(number - I_SERVO_FIRST);
   if (number >= I_BASE_MACRO) return in_macro_ic(number - I_BASE_MACRO);
-  if (number - I_BASE_SSI < I_SSI_BLOCK && i_table_has_ssi())
-    return (struct i_place){I_GROUP_SSI, number - I_BASE_SSI, 0, 0};
+  if (number - I_BASE_SSI < I_SSI_BLOCK && has_ssi) return (struct i_place){I_GROUP_SSI, number - I_BASE_SSI, 0, 0};
   if (number < I_ESA_FIRST) return in_blocks(I_GROUP_MOTOR, number - I_MOTOR_BLOCK, I_MOTOR_BLOCK, 1);
   if (number < I_BASE_SYSTEM) return in_blocks(I_GROUP_ESA, number - I_ESA_FIRST, I_ESA_BLOCK, 0);
   if (number < I_BASE_GATHER) return (struct i_place){I_GROUP_SYSTEM, number - I_BASE_SYSTEM, 0, 0};

@@ -153,10 +153,15 @@ static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
   }
 }
 
+/* The first time all is 0 already, and a start with 22 ICs has no 0.3 ms to spare. */
 static void clear_all(void) {
+  static bool used;
   i_table_initialize();
-  __builtin_memset(value_of, 0, sizeof value_of);
-  __builtin_memset(i_integers, 0, sizeof i_integers);
+  if (used) {
+    __builtin_memset(value_of, 0, sizeof value_of);
+    __builtin_memset(i_integers, 0, sizeof i_integers);
+  }
+  used = true;
   i_hardware_initialize();
 }
 
