@@ -1,9 +1,9 @@
 /* The servo task counts, runs timers, the watchdog counter and the trajectories, and every I8+1 cycles requests the
  * real-time task, which plans moves and strobes the hardware watchdog. When real-time interrupts are meant to be rare
  * (I8 up to 255, slow clocks), the servo task strobes between them: the hardware allows 25 ms only. Motors are not left
- * unwatched that long either: the real-time task then comes for its checks alone, in between. The phase task
- * works every I7+1 phase interrupts; without a commutated motor image/trap.S only notes the time and does not come
- * here. */
+ * unwatched that long either: the real-time task then comes for its checks alone, in between, and goes on with the
+ * slice that it left for them. The phase task works every I7+1 phase interrupts; without a commutated motor
+ * image/trap.S only notes the time and does not come here. */
 #include "firmware/kernel/tasks.h"
 
 #include <stdbool.h>
@@ -90,6 +90,8 @@ void tasks_servo_interrupt(void) {
   *hal_x(MEMORY_SERVO_COUNT) = count & HAL_WORD_MASK;
   watchdog_count();
   task_hooks.servo();
+  if (watchdog_strobe_is_old(began) && !real_time_active && !hal_real_time_pending())
+    watchdog_strobe(began); /* the real-time task has done its duty so far */
   if (++real_time_prescaler > real_time_period) {
     real_time_prescaler = check_prescaler = 0;
     request_real_time();
@@ -97,8 +99,6 @@ void tasks_servo_interrupt(void) {
     check_prescaler = 0;
     checks_due = true;
     hal_request_real_time();
-  } else if (watchdog_strobe_is_old(began) && !real_time_active && !hal_real_time_pending()) {
-    watchdog_strobe(began); /* the real-time task has done its duty, the next is not due yet */
   }
   show_duration(hal_y(MEMORY_TASK_DURATIONS), hal_cycles() - began + TRAP_CYCLES);
   if (hal_servo_pending()) status_set(STATUS_SERVO_ERROR);
