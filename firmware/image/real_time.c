@@ -16,6 +16,7 @@
 void real_time(void) {
   if (tasks_real_time_is_for_checks()) {
     protection_pass();
+    calculate_go_on(); /* the slice that was left for it */
     return;
   }
   if (host_port_urgent_codes != 0u) line_input_urgent();

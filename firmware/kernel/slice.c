@@ -18,7 +18,8 @@ volatile uint32_t slice_hurry;
 /* R. `inside` is seen true by the work itself only: interrupts above it never pause. */
 static void (*work_of_slices)(void);
 static bool inside;
-static uint32_t began, length, round_began;
+static uint32_t began, round_began;
+static uint32_t length;        /* what is left of the slice */
 static volatile bool gave_way; /* the last slice, before its time was over. R, read by B */
 
 static bool works;     /* the round, or the last one, came to a pause: there is something to do */
@@ -55,8 +56,7 @@ static bool gives_way(uint32_t now) {
   return slice_hurry != 0u && now - round_began < PATIENCE_MS * hal_cycles_per_ms();
 }
 
-void slice_run(uint32_t cycles) {
-  if (!gave_way) length = without_last_section(cycles);
+static void go_on(void) {
   began = hal_cycles();
   gave_way = works && gives_way(began);
   if (gave_way) return; /* to the end of the line: a section may take as long as it */
@@ -65,14 +65,20 @@ void slice_run(uint32_t cycles) {
   inside = false;
 }
 
+void slice_run(uint32_t cycles) {
+  if (!gave_way) length = without_last_section(cycles);
+  go_on();
+}
+
+void slice_go_on(void) {
+  if (under_way && length != 0u) go_on();
+}
+
 static __attribute__((noinline)) void leave(void) {
   const uint32_t now = hal_cycles(), ran = now - began;
-  if (ran >= LEAST_CYCLES && gives_way(now)) {
-    gave_way = true;
-    length = ran < length ? length - ran : 0u; /* what it has left */
-  } else if (ran < length && !hal_real_time_pending()) {
-    return;
-  }
+  gave_way = ran >= LEAST_CYCLES && gives_way(now);
+  if (!gave_way && ran < length && !hal_real_time_pending()) return;
+  length = ran < length ? length - ran : 0u;
   hal_side_change();
 }
 

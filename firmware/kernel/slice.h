@@ -12,6 +12,7 @@ void slice_restart(void);                  /* the same work; real-time task held
 bool slice_is_under_way(void);             /* real-time task: a round was left before its end */
 void slice_skip(void);                     /* real-time task: none is, and a new one would do nothing */
 void slice_run(uint32_t cycles);           /* real-time task: a slice, until its time is over or a round is made */
+void slice_go_on(void);                    /* the same: for what the last slice was left with, if it has not ended */
 /* Not 0: the background is at a line of the host, from its first character to BREQ. A slice gives way to it after a
  * little work of its own, unless its round has lasted too long already. The host port's interrupt sets it. */
 extern volatile uint32_t slice_hurry;

@@ -289,3 +289,7 @@ void calculate_programs(void) {
   }
   slice_run(tasks_real_time_left()); /* what checks of motors and the like have left */
 }
+
+void calculate_go_on(void) {
+  if (!stands(calculated)) slice_go_on();
+}

@@ -137,6 +137,7 @@ void fake_hal_fit(uint32_t ics) { fitted = ics; }
 uint32_t hal_cycles(void) {
   cycles += look;
   if (!clocks_stopped) tasks_phase_stamp = (uint32_t)cycles;
+  fake_tasks_time_passes();
   return (uint32_t)cycles;
 }
 uint64_t hal_long_cycles(void) { return cycles; }

@@ -164,6 +164,19 @@ bool fake_task_take(enum fake_task task) {
   return true;
 }
 
+static uint32_t servo_clock; /* cycles, 0: tests call it */
+static uint64_t servo_clock_due;
+
+void fake_tasks_servo_clock(uint32_t period) {
+  servo_clock = period;
+  servo_clock_due = hal_long_cycles() + period;
+}
+
+void fake_tasks_time_passes(void) {
+  if (servo_clock == 0 || hal_long_cycles() < servo_clock_due || !fake_task_take(FAKE_SERVO)) return;
+  servo_clock_due += servo_clock;
+}
+
 void fake_task_run_servo(void) { run(FAKE_SERVO); }
 void fake_task_run_real_time(void) { run(FAKE_REAL_TIME); }
 
@@ -218,6 +231,9 @@ void hal_side_begin(void (*task)(void)) {
 }
 
 static bool in_pause;
+static uint64_t slice_cycles;
+
+uint64_t fake_hal_slice_cycles(void) { return slice_cycles; }
 
 void hal_side_change(void) {
   fake_interrupts_mend();
@@ -239,14 +255,16 @@ void hal_side_change(void) {
     makecontext(&side, side_main, 0);
     is_new = false;
   }
+  const uint64_t entered = hal_long_cycles();
   on_side = true;
   change_to_side();
   on_side = false;
+  slice_cycles += hal_long_cycles() - entered;
 }
 
 void fake_tasks_power_on(void) {
   mask = level = FAKE_BACKGROUND;
   real_time = interrupts_on = ignored = servo_waits = false;
-  longest_mask = 0;
+  longest_mask = servo_clock = 0;
   input_first = input_last = output_length = 0;
 }

@@ -20,6 +20,9 @@ bool fake_task_take(enum fake_task task); /* runs it now as an interrupt would; 
 void fake_task_run_servo(void);           /* a test's servo interrupt, which cannot be held off */
 void fake_task_run_real_time(void);       /* the same of the real-time task; what asked for it is forgotten */
 void fake_tasks_servo_waits(bool waits);  /* whenever a servo task ends, the next is due already */
+/* A servo interrupt every so many cycles, whoever lets them pass by looking at them; 0: none but those of tests. */
+void fake_tasks_servo_clock(uint32_t period);
+void fake_tasks_time_passes(void);          /* fake_hal.c: they have */
 void fake_tasks_ignore_masks(bool ignored); /* hal_mask_... hold nobody off: whoever relies on them must fail */
 
 bool fake_hal_masked(void);           /* some task is held off */
@@ -29,7 +32,8 @@ uint32_t fake_hal_longest_mask(void); /* longest time that one was, in cycles, s
  * `leaves` it is left in earnest, until the next real-time task. Null: nothing. */
 void fake_hal_on_pause(void (*action)(void));
 void fake_hal_slices_leave(bool leave);
-bool fake_hal_slice_is_left(void); /* in the middle of its work */
+uint64_t fake_hal_slice_cycles(void); /* that it has had, with interrupts above it */
+bool fake_hal_slice_is_left(void);    /* in the middle of its work */
 
 /* The host. Characters that it sends come with the host port's interrupts, those that the firmware sends are read. */
 void fake_host_input(uint8_t c);

@@ -1,7 +1,13 @@
 // What the background does and sees between two slices of a calculation (docs/firmware.md, Slices).
 #include <algorithm>
 
+#include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/kernel/tasks.h"
+}
 
 namespace {
 
@@ -93,6 +99,42 @@ TEST_F(Slices, RunWhileABadLineIsSkippedDoesNotHideItsError) {
   EXPECT_TRUE(error());
   EXPECT_FALSE(run_is_running(0));
   EXPECT_EQ(host("PR"), "0");
+}
+
+// Half of the time from one real-time interrupt to the next, 5 ms at most, whoever comes in between for motors. Each
+// line has more words than a slice, 32 lines an interrupt are never calculated.
+TEST_F(Slices, PlanningHasItsTimeWhateverI8Is) {
+  constexpr std::uint32_t kServo = 34816, kLook = 500;  // cycles, of 0.4427 ms
+  ASSERT_EQ(host("OPEN PROG 1 CLEAR"), "");
+  std::string line;
+  for (int i = 0; i < 30; ++i) line += "P1=P1+1";
+  store(Lines(120, line));
+  ASSERT_EQ(host("CLOSE"), "");
+  for (const unsigned i8 : {0u, 2u, 5u, 6u, 9u, 20u, 255u}) {
+    ASSERT_EQ(host("I8=" + std::to_string(i8) + " B1R"), "");
+    fake_hal_slices_leave(true);
+    fake_hal_set_look(kLook);
+    fake_tasks_servo_clock(kServo);
+    std::vector<std::uint64_t> had;
+    for (unsigned period = 0; period < 4; ++period) {
+      const std::uint64_t before = fake_hal_slice_cycles();
+      for (const std::uint32_t first = tasks_servo_count(); tasks_servo_count() - first < i8 + 1;) {
+        (void)hal_cycles();
+        (void)fake_task_take(FAKE_REAL_TIME);
+      }
+      had.push_back(fake_hal_slice_cycles() - before);
+    }
+    const double slice = std::min((i8 + 1) * kServo / 2.0, 5.0 * hal_cycles_per_ms());
+    const double average = static_cast<double>(had[1] + had[2] + had[3]) / 3;
+    EXPECT_GT(average, 0.7 * slice) << "I8=" << i8 << ", less its last section, which is not begun";
+    EXPECT_LT(average, 1.1 * slice) << "I8=" << i8;
+    EXPECT_TRUE(run_is_running(0));
+    fake_tasks_servo_clock(0);
+    fake_hal_set_look(0);
+    fake_hal_slices_leave(false);
+    ASSERT_EQ(host("A"), "");
+    platform::real_time();
+  }
 }
 
 }  // namespace
