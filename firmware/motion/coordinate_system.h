@@ -74,9 +74,11 @@ struct move {
   double delta[AXIS_COUNT];
   double delta_before[AXIS_COUNT]; /* of the move before, and its Tm */
   int64_t time_before;
-  /* PVT, SPLINE: cubics from knot to knot. The first is the move; what is behind it is left for the next move */
+  /* PVT, SPLINE: cubics from knot to knot. The first is the move; what is behind it is left for the next move. Of a
+   * SPLINE point n the positions are those of points n - 3 to n, velocities are not kept (motion/position.c). */
   uint32_t knot_count;
   int64_t knot_time[KNOTS - 1];
+  int64_t time_ahead; /* SPLINE: of point n - 2 */
   struct knot knots[KNOTS];
   bool overruns;             /* it ends in motion: without a next one it runs on, to be stopped */
   bool waited;               /* its line was waited for: who is late then is the host */
