@@ -1,5 +1,6 @@
 // What kinematic programs are refused for, and what stops one (motion:8.1/6 to motion:8.1/8).
 #include "testbench/unit/firmware_kinematics/arm.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 
 namespace {
 
@@ -108,6 +109,29 @@ TEST_F(KinematicStops, ADivisionByZero) {
   }
 }
 
+// What could not be solved is not executed, in cubics neither: no motor moves at all.
+TEST_F(KinematicStops, NothingMovesByASolutionThatFailed) {
+  const Lines programs[] = {
+      {"PVT100", "X390:-200", "X370:0"}, {"SPLINE1 TM100", "X390", "X370"}, {"TM100 TA50", "X390"}};
+  for (const Lines& lines : programs) {
+    SCOPED_TRACE(lines.front());
+    platform::power_up();
+    fit_arm();
+    program("INVERSE", {"P1=Q8/0", "P2=0"});
+    store(lines);
+    const double stands = at(1), other = at(2);
+    ASSERT_EQ(host("&1B1R"), "");
+    bool moved = false;
+    for (int i = 0; i < 1000; ++i) {
+      platform::servo_ticks(1);
+      moved = moved || at(1) != stands || at(2) != other;
+    }
+    EXPECT_FALSE(moved);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
+  }
+}
+
 // The idiom of the field: the program finds that there is no such place and sets bit 22 of word 2 itself.
 TEST_F(KinematicStops, AProgramThatSetsTheErrorBit) {
   for (const char* isx13 : {"0", "10"}) {
@@ -202,6 +226,62 @@ TEST_F(KinematicStops, PmatchWhileMovesExecute) {
   EXPECT_EQ(host("PMATCH"), "ERR001");
   platform::servo_ticks(ticks_of(400));
   EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+// R, or PMATCH once more, while the forward program of PMATCH stands in a slice: it begins anew.
+TEST_F(KinematicStops, WhatComesInTheMiddleOfPmatch) {
+  fit_arm();
+  store({"TM20 TA10 TS0", "X350"});
+  for (const bool starts : {true, false}) {
+    unsigned within = 0;
+    for (unsigned slices = 1; slices < 200; slices += 3) {
+      SCOPED_TRACE(testing::Message() << (starts ? "R" : "PMATCH") << " behind " << slices << " slices");
+      put(arm::joints({400, 100}));
+      ASSERT_EQ(host("&1B1 PMATCH"), "");
+      fake_hal_on_pause([] {});
+      fake_hal_slices_leave(true);
+      for (unsigned i = 0; i < slices && cs().matching; ++i) fake_task_run_real_time();
+      const bool left = cs().matching;
+      within += left ? 1u : 0u;
+      put(arm::joints({420, 50}));
+      EXPECT_EQ(starts ? run_start(0, false) : run_match(0), ERR_NONE);
+      fake_hal_slices_leave(false);
+      fake_hal_on_pause(nullptr);
+      for (int i = 0; i < 500 && (run_is_running(0) || cs().matching); ++i) platform::servo_ticks(1);
+      ASSERT_EQ(cs().error, RUN_TIME_NONE);
+      ASSERT_NEAR(axis(AXIS_Y), 50, 1e-4);
+      ASSERT_NEAR(hand().x, starts ? 350 : 420, 1e-3);
+      ASSERT_NEAR(hand().y, 50, 1e-3);
+      if (!left) break;
+    }
+    EXPECT_GT(within, 20u);
+  }
+}
+
+// In a held program the motors are not the program's: one that jogs is not taken from its jog.
+TEST_F(KinematicStops, PmatchWhileAMotorOfAHeldProgramJogs) {
+  fit_arm();
+  ASSERT_EQ(host("I122=100 I119=10 I5195=200000 I5194=200000"), "");
+  store({"TM50 TA20 TS0", "X390", "DWELL1000", "X350"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(200));
+  ASSERT_EQ(host("H"), "");
+  platform::servo_ticks(ticks_of(100));
+  const double from = at(1);
+  ASSERT_EQ(host("#1J:3000"), "");
+  platform::servo_ticks(20);
+  EXPECT_EQ(host("PMATCH"), "ERR011");
+  platform::servo_ticks(ticks_of(300));
+  EXPECT_NEAR(at(1), from + 3000, 1e-3) << "the jog has come to its end";
+  EXPECT_EQ(host("PMATCH"), "");
+  platform::servo_ticks(30);
+  const arm::Point stands = hand();
+  EXPECT_NEAR(axis(AXIS_X), stands.x, 1e-4);
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(ticks_of(1500));
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  EXPECT_NEAR(hand().x, 350, 1e-3);
+  EXPECT_NEAR(hand().y, stands.y, 1e-3);
 }
 
 // An abort at any pause of a program: nothing of it is left, and the next run is as the first.
