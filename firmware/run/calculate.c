@@ -69,8 +69,10 @@ static void planned(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   p->under_way = false;
   p->jumps_begin = p->x.jumps_back;
-  if (p->asks_time) synchronous_move_time(cs);
-  p->asks_time = false;
+  if (p->asks_time && synchronous_is_move(cs)) {
+    synchronous_move_time(cs);
+    p->asks_time = false;
+  }
   if (s->stepping && !p->in_block) s->quit = true;
 }
 
