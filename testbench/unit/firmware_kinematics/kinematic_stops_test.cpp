@@ -1,6 +1,12 @@
 // What kinematic programs are refused for, and what stops one (motion:8.1/6 to motion:8.1/8).
 #include "testbench/unit/firmware_kinematics/arm.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
 #include "testbench/unit/firmware_platform/fake_tasks.h"
+
+extern "C" {
+#include "firmware/motion/axis_definition.h"
+#include "firmware/motion/jog.h"
+}
 
 namespace {
 
@@ -95,6 +101,62 @@ TEST_F(KinematicStops, ALongOneEnds) {
   run();
   EXPECT_EQ(cs().error, RUN_TIME_NONE);
   EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+// Of the time of slices, one after the other: the same 800 words with looks at the clock that take 20 and 3000 cycles.
+TEST_F(KinematicStops, TimeCounts) {
+  for (const unsigned cycles : {20u, 3000u}) {
+    SCOPED_TRACE(cycles);
+    platform::power_up();
+    fit_arm();
+    program("INVERSE", {"Q50=0", "WHILE(Q50<100)", "Q50=Q50+1", "ENDWHILE", "P1=Q7", "P2=Q8 P5=P5+1"});
+    store({"TM50 TA20 TS0", "X300 Y-200"});
+    ASSERT_EQ(host("&1B1R"), "");
+    fake_hal_on_pause([] {});
+    fake_hal_slices_leave(true);
+    fake_hal_set_look(cycles);
+    for (int i = 0; i < 10000 && p(5) == 0 && cs().error == RUN_TIME_NONE; ++i) fake_task_run_real_time();
+    fake_hal_slices_leave(false);
+    fake_hal_on_pause(nullptr);
+    fake_hal_set_look(100);
+    EXPECT_EQ(cs().error, cycles < 1000 ? RUN_TIME_NONE : RUN_TIME_KINEMATIC);
+    EXPECT_EQ(p(5), cycles < 1000 ? 1 : 0);
+  }
+}
+
+// While a program of &1 runs away, a motor of &2 begins its ramp.
+TEST_F(KinematicStops, RampsDoNotWait) {
+  fit_arm();
+  program("INVERSE", {"WHILE(1=1)", "ENDWHILE"});
+  ASSERT_EQ(host("I300=1 I311=0 I312=0 I315=1 I322=20 I319=1 I68=1"), "");
+  ASSERT_EQ(host("&2#3->1000X"), "");
+  ASSERT_EQ(host("#3->"), "1000X");
+  ASSERT_EQ(axis_definitions[2].cs, 1u);
+  motors[2] = {};
+  motors[2].loop = LOOP_CLOSED;
+  motors[2].position_scale = 96;
+  motors[2].cs = 1;
+  ASSERT_EQ(host("#3J+"), "");
+  platform::servo_ticks(300);
+  store({"TM50 TA20 TS0", "X300 Y-200"});
+  ASSERT_FALSE(jog_is_moving(0) || jog_is_moving(1));
+  ASSERT_EQ(host("&1B1R"), "");
+  fake_hal_on_pause([] {});
+  fake_hal_slices_leave(true);
+  for (int i = 0; i < 300; ++i) fake_task_run_real_time();  // within the program
+  ASSERT_EQ(host("#3J/"), "");
+  double before = at(3);
+  int still = 0;
+  for (int i = 0; i < 1500 && still < 2; ++i) {
+    fake_task_run_real_time();
+    platform::servo_ticks(1);
+    still = at(3) == before ? still + 1 : 0;
+    before = at(3);
+  }
+  EXPECT_TRUE(run_is_running(0)) << "the program still runs away";
+  fake_hal_slices_leave(false);
+  fake_hal_on_pause(nullptr);
+  EXPECT_EQ(still, 2) << "20 counts a ms at 1 a ms^2 is 20 ms, 45 servo interrupts";
 }
 
 // 1/0 is 2^47 (firmware:10/9): no position of a motor.
