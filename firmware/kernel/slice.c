@@ -18,6 +18,7 @@ volatile uint32_t slice_hurry;
 static void (*work_of_slices)(void);
 static bool inside;
 static uint32_t began, length, round_began;
+static uint32_t spent;         /* by the slices before this one */
 static volatile bool gave_way; /* the last slice, before its time was over. R, read by B */
 
 static bool works;     /* the round, or the last one, came to a pause: there is something to do */
@@ -62,7 +63,10 @@ void slice_run(uint32_t cycles) {
   inside = true;
   hal_side_change();
   inside = false;
+  spent += hal_cycles() - began;
 }
+
+uint32_t slice_spent(void) { return spent + (hal_cycles() - began); }
 
 static __attribute__((noinline)) void leave(void) {
   const uint32_t now = hal_cycles(), ran = now - began;

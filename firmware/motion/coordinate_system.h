@@ -124,7 +124,8 @@ struct coordinate_system {
   /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
    * it */
   volatile bool settling;
-  bool matching;             /* B at the start of a program, R clears: axes are to be where motors are */
+  bool matching;             /* B, R clears: axes are to be where motors are; before moves that wait at a start, */
+  bool starting;             /* which is this: B, R clears; else behind them */
   bool must_return;          /* B: stopped where a start goes on, so motors that were jogged meanwhile must be back */
   enum run_time_error error; /* R; B clears it when the program is started */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
@@ -201,6 +202,12 @@ void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uin
 static inline bool move_continues(const struct coordinate_system* s) {
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
   return s->active && next->joins && m->kind == next->kind;
+}
+
+/* Something but a DWELL is under way or waits. */
+static inline bool cs_moves(const struct coordinate_system* s) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  return (s->active && m->kind != MOVE_DWELL) || (s->next_valid && next->kind != MOVE_DWELL);
 }
 
 static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }
