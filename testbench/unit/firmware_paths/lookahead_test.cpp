@@ -1,5 +1,10 @@
 // Lookahead (motion:7.3, motion:7.4): what is executed keeps the limits, and the path.
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/lookahead_state.h"
+}
 
 namespace {
 
@@ -62,6 +67,29 @@ TEST_F(Lookahead, CornersAreSlowedDown) {
   EXPECT_LE(found[0].velocity, 40 * 1.005);
   EXPECT_GT(found[0].velocity, 39.5);
   RecordProperty("ms", static_cast<int>(end));
+}
+
+// An abort forgets what is being worked out, in the middle of it; what comes then has all of its limits.
+TEST_F(Lookahead, AbortsLeaveTheLimitsAsTheyAre) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=0.5"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+  store({"F40 TA10 TS0", "X1", "Y1", "X0", "Y0"});
+  const double before = run();
+  for (unsigned n = 0; n < 300; ++n) {
+    ASSERT_EQ(host("&1B1R"), "");
+    fake_hal_slices_leave(true);
+    looks[0].sweeping = false;  // that of the last round
+    for (unsigned slice = 0; slice < 10000 && !looks[0].sweeping; ++slice) platform::real_time();
+    ASSERT_TRUE(looks[0].sweeping);
+    for (unsigned slice = 0; slice < n % 20; ++slice) platform::real_time();
+    ASSERT_EQ(host("&1A"), "");
+    fake_hal_slices_leave(false);
+    platform::servo_ticks(10);
+    ASSERT_FALSE(run_is_running(0));
+  }
+  EXPECT_EQ(motors[0].trajectory, 0);
+  EXPECT_EQ(run(), before);
 }
 
 // LA-5: 400 counts/ms, 1 count/ms^2, 5 ms: StopTime / 2 = 200 ms are 40 segments, 4/3 of them 54. Half as many hold the
