@@ -424,6 +424,37 @@ TEST_F(Lookahead, AssignmentsWaitInTheSlotsOfTheBuffer) {
   }
 }
 
+// firmware:4.2/12. Assignments of moves that Q leaves for the next start wait in the buffer: it stays until A.
+TEST_F(Lookahead, ABufferInWhichAssignmentsWaitStays) {
+  for (const bool aborts : {false, true}) {
+    SCOPED_TRACE(aborts);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I5120=20 I116=50 I117=1 M1..4->* M1..4=0"), "");
+    ASSERT_EQ(host("DELETE GATHER"), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"TM200 TA20 TS0", "M1==1 X1", "M2==1 X2", "M3==1 X3", "M4==1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(150));
+    ASSERT_EQ(host("&1Q"), "");
+    platform::servo_ticks(ticks_of(1000));
+    ASSERT_FALSE(run_is_running(0));
+    ASSERT_EQ(word3() >> 20 & 1, 1u);
+    for (const char* command : {"&1DELETE LOOKAHEAD", "&1DEFINE LOOKAHEAD 60,10", "&2DELETE ALL", "DELETE ALL TEMPS"})
+      EXPECT_EQ(host(command), "ERR001") << command;
+    if (aborts) {
+      ASSERT_EQ(host("&1A"), "");
+      platform::servo_ticks(10);
+      EXPECT_EQ(host("&1DELETE LOOKAHEAD"), "");
+      continue;
+    }
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(1500));
+    for (int m = 1; m <= 4; ++m) EXPECT_EQ(m_variable_read(m), 1) << m;
+    EXPECT_EQ(host("&1DELETE LOOKAHEAD"), "");
+  }
+}
+
 // Bits 21 to 23 of word 3 (firmware:5.6): it stands at the oldest segment, goes backwards, has written over segments.
 TEST_F(Lookahead, StatusOfTheBuffer) {
   fit({"1000X"});
