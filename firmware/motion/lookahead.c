@@ -28,6 +28,7 @@ static struct {
   int32_t fastest;         /* the largest step that Ixx16 allows; 0: no limit */
   int32_t before, last;    /* the last two steps */
   int64_t lowest, highest; /* of the desired position, Ixx24 bit 15 */
+  int64_t held;            /* by which it holds the last point back */
   bool saturates;          /* bit 14 */
 } scales[MOTORS];
 
@@ -127,7 +128,15 @@ bool lookahead_is_full(uint32_t cs) {
   return look_end(l) - l->front >= l->length || l->added - l->front >= l->buffer.records - LOOKAHEAD_KEPT / 2;
 }
 
-void lookahead_close(uint32_t cs) { looks[cs].closed = true; }
+/* The axes are where the program has them: a motor that is held comes along with the next move. */
+void lookahead_close(uint32_t cs) {
+  struct look* l = &looks[cs];
+  l->closed = true;
+  for (uint32_t motor = 0, left = l->guarded; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) system_motor_stands_aside(motor, scales[motor].held);
+}
+
+bool lookahead_may_hold(uint32_t cs) { return looks[cs].guarded != 0; }
 
 /* (fastest / way)^2 */
 static int32_t cap_of(int32_t fastest, int32_t way) {
@@ -168,13 +177,22 @@ static void set_limits(struct look* l, uint32_t motor, int32_t next, struct look
   if (cap < segment->cap) segment->cap = cap;
 }
 
+/* A sequence that begins beyond a limit does not go further out. */
+static void widen(uint32_t motor, int64_t start) {
+  if (start < scales[motor].lowest) scales[motor].lowest = start;
+  if (start > scales[motor].highest) scales[motor].highest = start;
+}
+
 /* The limit instead of a point beyond it. With bit 14 = 0 it stands before the first segment that this changes: the
  * knot that was the last one until now. */
 static int64_t guarded(uint32_t motor, int64_t point, struct lookahead_record* segment) {
   const int64_t lowest = scales[motor].lowest, highest = scales[motor].highest;
+  scales[motor].held = 0;
   if (point >= lowest && point <= highest) return point;
   if (!scales[motor].saturates) segment->stops = true;
-  return point > highest ? highest : lowest;
+  const int64_t limit = point > highest ? highest : lowest;
+  scales[motor].held = limit - point;
+  return limit;
 }
 
 /* A point of the motors: with the one before it a step. */
@@ -187,7 +205,10 @@ static void add_point(struct look* l, struct lookahead_record* record, const int
   for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     int64_t point = control[motor][SPLINE_POINTS - 1];
-    if ((l->guarded >> motor & 1u) != 0) point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
+    if ((l->guarded >> motor & 1u) != 0) {
+      if (at == 0) widen(motor, point);
+      point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
+    }
     to[slot] = (struct lookahead_motor){point, 0, 0};
     if (l->limits && at != 0) {
       const int32_t step = coarse_step(motor, point - last[slot].point);
