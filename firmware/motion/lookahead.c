@@ -14,14 +14,15 @@
 enum {
   LEAST = 4, /* records ahead that make sense */
   SCALE_BITS = 16,
-  STEP_MOST = 1 << 29, /* 2^13 of an acceleration limit */
+  STEP_MOST = 1 << 29, /* 2^13 of the smaller limit */
   SATURATES = 1 << 14  /* Ixx24: on at the limit of a desired position */
 };
 
 #define SCALE_HALF 32768.0
 
-/* Of a motor. Steps from point to point are shifted by `coarse`, to the right, so that the acceleration limit has 2^16
- * of a period squared at most; x' and x'' as limits_motor has them are those times mantissa / 2^32. */
+/* Of a motor. Steps from point to point are shifted by `coarse`, to the right, so that the smaller of the limits, of
+ * the velocity and of the acceleration in the time of one, has 2^15 to 2^16; x' and x'' as limits_motor has them are
+ * those times mantissa / 2^32. */
 static struct {
   int32_t mantissa; /* 0: no limit */
   int32_t coarse;
@@ -58,6 +59,8 @@ static void set_scale(uint32_t motor, double period) {
   const bool limited = acceleration > 0.0;
   slice_pause();
   double one = limited ? acceleration : velocity > 0.0 ? velocity : 1.0;
+  slice_pause();
+  if (velocity > 0.0 && velocity < one) one = velocity;
   int32_t coarse = 0;
   for (; one > 2.0 * SCALE_HALF; coarse++) {
     one = math_scale(one, -1);
@@ -76,7 +79,9 @@ static void set_scale(uint32_t motor, double period) {
   slice_pause();
   if (velocity > 0.0 && fastest < 1.0) scales[motor].fastest = 1;
   slice_pause();
-  const double inverse = 1.0 / one;
+  acceleration = math_scale(acceleration, -coarse);
+  slice_pause();
+  const double inverse = limited ? 1.0 / acceleration : 0.0;
   slice_pause();
   const double mantissa = math_scale(inverse, 32 + BEND_BITS);
   scales[motor].mantissa = !limited ? 0 : mantissa < (double)INT32_MAX ? (int32_t)mantissa : INT32_MAX;

@@ -69,6 +69,25 @@ TEST_F(Lookahead, CornersAreSlowedDown) {
   RecordProperty("ms", static_cast<int>(end));
 }
 
+// A motor that comes to its velocity within a segment: that is not reckoned in the grain of its acceleration.
+TEST_F(Lookahead, VelocityIsLimitedWhateverTheAccelerationIs) {
+  for (const char* acceleration : {"1000", "1000000"})
+    for (const double velocity : {1.0, 4.0, 7.0}) {
+      SCOPED_TRACE(std::string(acceleration) + " " + std::to_string(velocity));
+      platform::power_up();
+      fit({"1000X"});
+      ASSERT_EQ(host("I5113=10 I5120=40 I116=" + std::to_string(velocity)), "");
+      ASSERT_EQ(host("I117=" + std::string(acceleration)), "");
+      ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+      store({"F40 TA10 TS0", "X2", "X0"});
+      double end = 0;
+      const auto found = extremes(1, &end);
+      EXPECT_LE(found[0].velocity, 1.001 * velocity + 2 / kUnit / kTickMs) << "two units of position";
+      EXPECT_GE(found[0].velocity, 0.999 * velocity - 2 / kUnit / kTickMs);
+      EXPECT_EQ(motors[0].trajectory, 0);
+    }
+}
+
 // An abort forgets what is being worked out, in the middle of it; what comes then has all of its limits.
 TEST_F(Lookahead, AbortsLeaveTheLimitsAsTheyAre) {
   fit({"1000X", "1000Y"});
