@@ -132,6 +132,7 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
 
 void path_motors_pop(uint32_t cs) {
   const uint32_t place = place_of(&paths[cs], 0);
+  slice_pause();
   for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) != 0) motors_of_path[motor].start = motors_of_path[motor].ways[place].end;
     if (motor % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
