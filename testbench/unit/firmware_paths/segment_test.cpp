@@ -160,6 +160,19 @@ TEST_F(Segments, AnArcOfLargeRadiusEndsAtItsEnd) {
   EXPECT_EQ(motors[1].trajectory, 700000LL * 3072);
 }
 
+// motion:7.2/9. A radius of 2^61 units of position: a way of 2^31 has no bend.
+TEST_F(Segments, AnArcBeyondAllRadiiIsStraight) {
+  fit({"10000000X", "10000000Y"});
+  ASSERT_EQ(host("I5113=10 I5190=1000 I5197=.0000000001"), "");
+  store({"F.1 TA100 TS0", "CIRCLE1 X.07 Y.07 R100000000"});
+  const double time = 10000 * std::hypot(.07, .07);  // ms
+  const Spline each([=](double t) { return 700000 * (risen(t, 100, 0) - risen(t - time, 100, 0)) / time; }, time + 100,
+                    10);
+  follow({each, each}, 2 * 512);
+  EXPECT_EQ(motors[0].trajectory, 700000LL * 3072);
+  EXPECT_EQ(motors[1].trajectory, 700000LL * 3072);
+}
+
 // A motor of an axis of the arc that does not stand where that is comes along evenly.
 TEST_F(Segments, AMotorBesideItsAxisComesAlongWithAnArc) {
   fit({"1000X", "1000X", "1000Y"});
