@@ -80,6 +80,15 @@ static error_t define_user(struct lexer* lx) {
   return open_buffer_kind() != OPEN_NONE ? ERR_BUFFER_OPEN : region_define_user(words);
 }
 
+/* A program runs, or assignments of moves that it has left for the next start are in the buffer. */
+static bool uses_lookahead(uint32_t cs) { return run_is_running(cs) || coordinate_systems[cs].slots_wait; }
+
+static bool any_uses_lookahead(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (uses_lookahead(cs)) return true;
+  return false;
+}
+
 static error_t define_any(struct lexer* lx) {
   error_t error;
   uint32_t cs = session.cs;
@@ -87,7 +96,7 @@ static error_t define_any(struct lexer* lx) {
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
     return running ? ERR_PROGRAM_RUNNING : define_rotary(lx, cs);
   if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
-    return running ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
+    return uses_lookahead(cs) ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : define_ccbuf(lx, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return define_gather(lx);
   if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : define_tbuf(lx);
@@ -105,7 +114,7 @@ static error_t delete_rotary(uint32_t cs) {
 /* DELETE ALL TEMPS; DELETE ALL takes the tables away too. */
 static error_t delete_all(bool tables) {
   if (open_buffer_kind() != OPEN_NONE) return ERR_DATA;
-  if (run_any_running()) return ERR_PROGRAM_RUNNING;
+  if (any_uses_lookahead()) return ERR_PROGRAM_RUNNING;
   gather_delete_always();
   rotary_delete_all();
   if (tables) compensation_tables_delete_all();
@@ -122,7 +131,7 @@ static error_t delete_any(struct lexer* lx) {
   if (lexer_keyword(lx, "ALL")) return delete_all(!lexer_keyword(lx, "TEMPS") && !lexer_keyword(lx, "TEMP"));
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return delete_rotary(cs);
   if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
-    return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
+    return uses_lookahead(cs) ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_CCBUF, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return gather_delete();
   if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : region_delete(REGION_TBUF, cs);

@@ -15,7 +15,7 @@ struct lookahead_motor { /* 2 words */
 };
 
 struct lookahead_record { /* 4 words, and the motors */
-  int32_t rate;           /* w at the knot: that can stop, or once it is handed over the one taken */
+  int32_t rate;           /* w at the knot: the largest from which it can stop, as the last sweep has found it */
   int32_t cap;            /* of w in the segment behind the knot, by the velocities */
   bool stops;             /* at the knot, for the limit of a desired position behind it */
   uint32_t number;        /* of the move at the control point */

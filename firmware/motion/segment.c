@@ -64,8 +64,10 @@ bool segment_is_busy(uint32_t cs) { return sequences[cs].runs || (paths[cs].coun
 bool segment_is_under_way(uint32_t cs) { return sequences[cs].runs; }
 
 bool segment_gives_way(uint32_t cs) {
-  if (!sequences[cs].runs || sequences[cs].handed) return true;
-  sequences[cs].closed = true;
+  struct sequence* q = &sequences[cs];
+  if (!q->runs) return true;
+  if (q->handed && !(q->looks && lookahead_may_hold(cs))) return true; /* it is known where that will end */
+  q->closed = true;
   return false;
 }
 

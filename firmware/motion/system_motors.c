@@ -90,6 +90,8 @@ void system_motors_come_along(uint32_t cs) {
     if ((left & 1u) != 0) aside[motor] = 0.0;
 }
 
+void system_motor_stands_aside(uint32_t motor, int64_t by) { aside[motor] = (double)by; }
+
 /* The first motor that carries it alone tells the turn. */
 double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
   const struct coordinate_system* s = &coordinate_systems[cs];
