@@ -493,10 +493,22 @@ static bool work_ahead(uint32_t cs, bool alone) {
   return false;
 }
 
+/* The servo task has executed the sequence that was looked ahead: it stands. */
+static __attribute__((noinline)) void end_look(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool waits = !s->active && s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_SEGMENTS;
+  if (waits || (s->active && s->moves[s->executing].kind == MOVE_SEGMENTS)) return;
+  sequences[cs].looks = false;
+  show(cs, 0);
+}
+
 static __attribute__((noinline)) bool work(uint32_t cs, bool alone) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
-  if (!q->runs) return paths[cs].count != 0 && begin(cs);
+  if (!q->runs) {
+    if (q->looks) end_look(cs);
+    return paths[cs].count != 0 && begin(cs);
+  }
   slice_pause();
   if (q->looks) return work_ahead(cs, alone);
   if (is_dry(s, q)) {
@@ -506,18 +518,8 @@ static __attribute__((noinline)) bool work(uint32_t cs, bool alone) {
   return ahead_of(s) + q->unhanded < q->most && work_at_once(cs, alone);
 }
 
-/* The servo task has executed the sequence that was looked ahead: it stands. */
-static void end_look(uint32_t cs) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  const bool waits = !s->active && s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_SEGMENTS;
-  if (waits || (s->active && s->moves[s->executing].kind == MOVE_SEGMENTS)) return;
-  sequences[cs].looks = false;
-  show(cs, 0);
-}
-
 bool segment_work(uint32_t cs, bool alone) {
   const struct sequence* q = &sequences[cs];
-  if (q->looks && !q->runs) end_look(cs);
   const bool rests = q->runs && q->rests && q->rested == coordinate_systems[cs].ring.executing;
   return (!rests || q->order != LOOKAHEAD_NONE) && work(cs, alone);
 }
