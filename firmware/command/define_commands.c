@@ -18,6 +18,7 @@
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/lookahead_buffer.h"
 #include "firmware/run/run_control.h"
+#include "firmware/variables/i_table.h"
 
 static error_t size_argument(struct lexer* lx, uint32_t* size) {
   int32_t value;
@@ -36,6 +37,7 @@ static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
   if (segment_words < LOOKAHEAD_WORDS_MINIMUM) segment_words = LOOKAHEAD_WORDS_MINIMUM;
   uint64_t words = (uint64_t)segments * segment_words + (uint64_t)outputs * LOOKAHEAD_WORDS_PER_OUTPUT;
   if (segments == 0) return ERR_DATA;
+  if (i_table_of_geo_pmac() && lookahead_buffer_is_anywhere()) return ERR_DATA; /* it has one only */
   const error_t error = region_define(REGION_LOOKAHEAD, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
   if (error == ERR_NONE) lookahead_buffer_define(cs, outputs);
   return error;
