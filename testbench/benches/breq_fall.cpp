@@ -14,7 +14,7 @@ namespace {
 
 constexpr TimeFs kMicrosecond = FallLimits::kMicrosecond;
 constexpr Tick kServo = 4 * (2 * 6527 + 3);       // default servo period
-constexpr unsigned kLines = 40, kLongLines = 10;  // of 255 characters, 9 ms each
+constexpr unsigned kLines = 40, kLongLines = 24;  // of 255 characters, 9 ms each
 constexpr Tick kPause = ns_to_ticks(450'000);     // up to a servo period: lines come at any time of the tasks
 constexpr Tick kPatience = ns_to_ticks(20'000'000);
 

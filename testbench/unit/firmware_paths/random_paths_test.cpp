@@ -73,10 +73,13 @@ class Trajectory {
   std::vector<double> corners_, ends_;
 };
 
-RandomPath random_path(std::mt19937& random) {
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+// What has come later draws from a generator of its own, `more`: a seed gives the same lines as ever, and without
+// `more` nothing but these.
+RandomPath random_path(std::mt19937& random, std::mt19937* more) {
+  const auto uniform_of = [](std::mt19937& from, double low, double high) {
+    return low + (high - low) * static_cast<double>(from()) / 4294967296.0;
   };
+  const auto uniform = [&](double low, double high) { return uniform_of(random, low, high); };
   const auto pick = [&](const std::vector<int>& from) { return from[random() % from.size()]; };
   RandomPath p;
   p.motor_count = 2 + random() % 7;
@@ -105,11 +108,12 @@ RandomPath random_path(std::mt19937& random) {
       p.ways[i].push_back(random() % 4 == 0 ? 0 : std::floor(uniform(-most, most)));
     }
     p.arcs.emplace_back();
-    if (p.motor_count < 3 || random() % 3 != 0) continue;
+    if (more == nullptr || p.motor_count < 3 || (*more)() % 3 != 0) continue;
     Arc& arc = p.arcs.back();
-    arc.begin = uniform(-kPi, kPi);
-    arc.angle = uniform(0.1, 6) * (random() % 2 == 0 ? 1 : -1);
-    arc.radius = std::min(p.velocity[1], p.velocity[2]) * time / std::abs(arc.angle) * std::exp(uniform(-3, 0.7));
+    arc.begin = uniform_of(*more, -kPi, kPi);
+    arc.angle = uniform_of(*more, 0.1, 6) * ((*more)() % 2 == 0 ? 1 : -1);
+    arc.radius =
+        std::min(p.velocity[1], p.velocity[2]) * time / std::abs(arc.angle) * std::exp(uniform_of(*more, -3, 0.7));
     p.ways[1].back() = arc.radius * (std::cos(arc.begin + arc.angle) - std::cos(arc.begin));
     p.ways[2].back() = arc.radius * (std::sin(arc.begin + arc.angle) - std::sin(arc.begin));
   }
@@ -230,6 +234,9 @@ class RandomPaths : public MovingMotors {
   }
 };
 
+// The second generator of a seed.
+std::mt19937 more_of(int seed) { return std::mt19937(static_cast<unsigned>(seed) + 0x9E3779B9u); }
+
 // How many paths, and the first seed.
 int count_of_paths(int usual) {
   const char* wanted = std::getenv("BRICK_RANDOM_PATHS");
@@ -245,16 +252,21 @@ int first_path() {
 TEST_F(RandomPaths, WhateverHappensThePathIsTheSame) {
   const int count = count_of_paths(2000), begin = first_path();
   unsigned turned = 0;
-  std::vector<int> seeds = {1280, 1119, 20076, 3746};  // what once went wrong
-  for (int i = 0; i < count; ++i) seeds.push_back(begin + i);
-  for (const int seed : seeds) {
+  struct Seed {
+    int seed;
+    bool plain;  // straight lines in time, quick stops and the way back alone
+  };
+  // What once went wrong; 2547 is a limit that was met and then out on its other side.
+  std::vector<Seed> seeds = {{1280, true}, {1119, true}, {20076, true}, {2547, false}};
+  for (int i = 0; i < count; ++i) seeds.push_back({begin + i, false});
+  for (const auto [seed, plain] : seeds) {
     if (HasFailure()) break;
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 random(static_cast<unsigned>(seed));
-    const RandomPath p = random_path(random);
+    std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);
+    const RandomPath p = random_path(random, plain ? nullptr : &more);
     prepare(p);
-    const bool speeds = random() % 2 == 0, late = random() % 2 == 0;
-    unsigned next = 20 + random() % 200, orders = 1 + random() % 8, dry = 100 + random() % 400, dry_end = 0;
+    const bool speeds = !plain && more() % 2 == 0, late = !plain && more() % 2 == 0;
+    unsigned next = 20 + random() % 200, orders = 1 + random() % 8, dry = 100 + more() % 400, dry_end = 0;
     const auto samples = execute(
         p,
         [&](unsigned tick) {
@@ -268,7 +280,7 @@ TEST_F(RandomPaths, WhateverHappensThePathIsTheSame) {
         },
         [&](unsigned tick) {
           if (!late || tick < dry) return Supply::kFlow;
-          if (tick > dry_end) dry = tick + 100 + random() % 400, dry_end = dry + random() % 500;
+          if (tick > dry_end) dry = tick + 100 + more() % 400, dry_end = dry + more() % 500;
           return tick >= dry ? Supply::kCalculated : Supply::kFlow;
         });
     for (unsigned i = 0; i < p.motor_count; ++i) {
@@ -288,8 +300,8 @@ TEST_F(RandomPaths, ADryBufferEndsMovesWithinTheLimits) {
   const int count = count_of_paths(500), begin = first_path();
   for (int seed = begin; seed < begin + count && !HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 random(static_cast<unsigned>(seed));
-    const RandomPath p = random_path(random);
+    std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);
+    const RandomPath p = random_path(random, &more);
     prepare(p);
     unsigned dry = 50 + random() % 300, dry_end = dry + random() % 500;
     const auto samples = execute(
@@ -314,8 +326,8 @@ TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
   for (int seed = first_path(); count > 0 && judged < count && !HasFailure(); ++seed) {
     ++judged;
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 random(static_cast<unsigned>(seed));
-    const RandomPath p = random_path(random);
+    std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);
+    const RandomPath p = random_path(random, &more);
     prepare(p);
     const auto samples = execute(p);
     for (unsigned i = 0; i < p.motor_count; ++i) {

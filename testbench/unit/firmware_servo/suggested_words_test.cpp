@@ -4,10 +4,6 @@
 
 #include "testbench/unit/firmware_servo/protection_rig.h"
 
-extern "C" {
-#include "firmware/motion/average_velocity.h"
-}
-
 namespace brick {
 namespace {
 
@@ -195,13 +191,15 @@ TEST_F(SuggestedWords, DpramReportsTellOfMotion) {
   const auto long_of = [&item](unsigned offset) {  // the low 24 bits first
     return static_cast<std::int64_t>((item(offset + 4) & 0xFFFFFF) << 24 | (item(offset) & 0xFFFFFF));
   };
-  c_.line("WY$6001C,$FF WX$6001C,0 WY$6019D,1 WX$6019D,0 I48=1 I47=1 I49=1 I50=1");
+  c_.line("WY$6001C,$FF WX$6001C,0 WY$6019D,1 WX$6019D,0 I48=1 I47=1 I49=1 I50=1 I60=0 I61=4");
   run({"TM400 TA50 TS0 X5000 Y2500", "X5100", "RAPID X9000 Y0"});
   follow(500);
   EXPECT_EQ(long_of(0x74 + 40), motors[0].actual);
   EXPECT_EQ(long_of(0x74), motors[0].commanded - motors[0].actual) << "following error";
   EXPECT_GT(long_of(0x74), 0);
-  EXPECT_EQ(item(0x74 + 28), average_velocity_word(0));
+  // 5000 counts in 400 ms, by the mean of sixteen interrupts.
+  const double step = 5000 / 400.0 * 3713991.0 / 8388608;
+  EXPECT_NEAR(static_cast<double>(item(0x74 + 28)) / kFine, step, 1.0 / 16) << "averaged velocity";
   EXPECT_EQ(item(0x74 + 8) & 0xFFFFFF, static_cast<unsigned long>(motors[0].output) & 0xFFFFFF);
   const unsigned long status = std::stoul(c_.line("#1?").substr(0, 6), nullptr, 16);
   EXPECT_EQ(item(0x74 + 12) & 0xFFFFFF, status);

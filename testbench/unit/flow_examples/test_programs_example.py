@@ -38,7 +38,9 @@ class Programs(Installed):
         self.bites("brake-plc.pmc", "Brake_Waits=30*", "Brake_Waits=1*", "`@expect 0`: got")
 
     def test_encoder_loss(self):
-        self.bites("encoder-loss-plc.pmc", 'CMD"A"', 'CMD"Q"', "`@until servo_ic0.ch2.aena=0 1300ms`", "encoder-loss")
+        """The wrong motor is switched off: Y's loop goes on without its encoder."""
+        self.bites("encoder-loss-plc.pmc", "ADDRESS#P400&P401", "ADDRESS#1&P401", "`@expect 1`: got `0`",
+                   "encoder-loss")
 
     def test_scara(self):
         """The elbow's share of the shoulder on the wrong side: the pen is nowhere near the slot."""
