@@ -30,7 +30,7 @@ struct lookahead_buffer {
 /* DEFINE, background: how many of its words are slots of two for assignments that wait for their segments. */
 void lookahead_buffer_define(uint32_t cs, uint32_t slots);
 bool lookahead_buffer_is_defined(uint32_t cs);
-bool lookahead_buffer_is_anywhere(void); /* of any system */
+bool lookahead_buffer_is_anywhere(void);             /* of any system */
 uint32_t lookahead_slots(uint32_t cs, void** slots); /* so many, of 16 bytes; none without a buffer */
 /* The buffer of a system with so many motors; no records: there is none. */
 void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_buffer* buffer);

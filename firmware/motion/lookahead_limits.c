@@ -5,7 +5,7 @@
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/fixed_ratio.h"
 
-enum { PAUSE_MOTORS = 4, VALUES = 6, SEARCHES = 3 };
+enum { PAUSE_MOTORS = 4, VALUES = 6, SEARCHES = 4 };
 enum { NEAR_ENOUGH = 4 }; /* 2^-4 of a w */
 
 /* Products are kept to 32 bits: 1 is 2^12 then, and sums are up to three less. A sweep keeps so much inside of the

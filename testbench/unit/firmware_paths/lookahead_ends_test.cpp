@@ -160,7 +160,7 @@ TEST_F(LookaheadEnds, BackAtAWaitIsAHold) {
 // motion:7.3/2: Isx20 beyond the buffer is its size less eight.
 TEST_F(LookaheadEnds, ALengthBeyondTheBufferIsTakenForItsSize) {
   double times[3];
-  const char* const lengths[] = {"32", "65535", "31"};
+  const char* const lengths[] = {"32", "65535", "28"};
   for (int i = 0; i < 3; ++i) {
     platform::power_up();
     prepare(40);
@@ -209,6 +209,38 @@ TEST_F(LookaheadEnds, AnAbortAtAnyTimeEndsItWithinTheLimits) {
   EXPECT_EQ(motors[0].trajectory, 0);
   EXPECT_EQ(motors[1].trajectory, 0);
   expect_clean();
+}
+
+// Orders one behind the other, before the one before has been obeyed: what is known of the rates on one way is not
+// taken for the other.
+TEST_F(LookaheadEnds, OrdersInHasteKeepTheLimits) {
+  unsigned seed = 62;  // its third one tells if rates of the other way are taken
+  const auto random = [&](unsigned below) { return (seed = seed * 1664525u + 1013904223u) / 65536 % below; };
+  for (const char* isx13 : {"2", "1", "5"}) {
+    platform::power_up();
+    prepare(600);
+    ASSERT_EQ(host(std::string("I5113=") + isx13), "");
+    store(contour());
+    for (int i = 0; i < 4 && !HasFailure(); ++i) {
+      SCOPED_TRACE(std::string("Isx13 ") + isx13 + ", " + std::to_string(i));
+      ASSERT_EQ(host("B1R"), "");
+      forget();
+      go(10 + random(400));
+      for (unsigned burst = 0; burst < 6; ++burst) {
+        for (unsigned n = 2 + random(6); n > 0; --n) {
+          const char* const orders[] = {"&1<", "&1>", "&1>", "&1\\"};
+          ASSERT_EQ(host(orders[random(4)]), "");
+          go(1 + random(25));
+        }
+        go(random(60));
+      }
+      ASSERT_EQ(host("&1>"), "");
+      go(1500);
+      ASSERT_FALSE(run_is_running(0));
+      EXPECT_EQ(motors[0].trajectory, 0);
+      EXPECT_EQ(motors[1].trajectory, 0);
+    }
+  }
 }
 
 // Assignments that waited with the sequence are not made any more.

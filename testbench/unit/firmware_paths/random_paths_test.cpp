@@ -323,7 +323,10 @@ TEST_F(RandomPaths, LimitsHoldAndTheTimeIsNearTheOptimum) {
   const int count = count_of_paths(2000);
   int judged = 0;
   double worst = 0;
-  for (int seed = first_path(); count > 0 && judged < count && !HasFailure(); ++seed) {
+  std::vector<int> seeds = {4032};  // the way back of a sweep was looked for too briefly
+  for (int i = 0; i < count; ++i) seeds.push_back(first_path() + i);
+  for (const int seed : seeds) {
+    if (count == 0 || HasFailure()) break;
     ++judged;
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);

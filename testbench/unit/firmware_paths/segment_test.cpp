@@ -83,6 +83,23 @@ TEST_F(Segments, ABlendHasTheRoomOfTheMoveBefore) {
   follow({Spline([&](double t) { return way(changes, t); }, 225, 5)});
 }
 
+// A next move that comes late: its change of velocity is about the corner, with what is left before that.
+TEST_F(Segments, ALateMoveBlendsInWhatIsLeft) {
+  path p = {};
+  p.count = 2;
+  for (path_move& m : p.moves) path_set_times(&m, 100, 40, 0);
+  const auto change = [&](double now) {
+    path_blend(&p, 1, path_time(now));
+    return static_cast<double>(p.moves[1].change) / 4294967296.0;
+  };
+  EXPECT_EQ(change(0), 40);
+  EXPECT_EQ(change(80), 40) << "it begins there";
+  EXPECT_EQ(change(81), 2 * 19);
+  EXPECT_EQ(change(99), 2);
+  EXPECT_EQ(change(100), 0);
+  EXPECT_EQ(change(101), 0);
+}
+
 // A line, half a circle and a helix that blend: what each has of its own way adds up.
 TEST_F(Segments, ArcsBlendWithLines) {
   fit({"1000X", "1000Y", "100Z"});
