@@ -23,7 +23,7 @@ function(brick_add_package_library name)
 endfunction()
 
 brick_add_package_library(systemc
-  PARTS brick_component brick_board brick_macro_ic brick_servo_ic brick_host_model brick_port_a
+  PARTS brick_component brick_board brick_ssi brick_macro_ic brick_servo_ic brick_host_model brick_port_a
   LIBRARIES PkgConfig::SYSTEMC Threads::Threads)
 brick_add_package_library(rtl
   PARTS brick_component_rtl brick_chips brick_cosim brick_rtl brick_verilated

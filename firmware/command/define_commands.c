@@ -18,6 +18,7 @@
 #include "firmware/motion/compensation.h"
 #include "firmware/motion/lookahead_buffer.h"
 #include "firmware/run/run_control.h"
+#include "firmware/variables/i_table.h"
 
 static error_t size_argument(struct lexer* lx, uint32_t* size) {
   int32_t value;
@@ -36,6 +37,7 @@ static error_t define_lookahead(struct lexer* lx, uint32_t cs) {
   if (segment_words < LOOKAHEAD_WORDS_MINIMUM) segment_words = LOOKAHEAD_WORDS_MINIMUM;
   uint64_t words = (uint64_t)segments * segment_words + (uint64_t)outputs * LOOKAHEAD_WORDS_PER_OUTPUT;
   if (segments == 0) return ERR_DATA;
+  if (i_table_of_geo_pmac() && lookahead_buffer_is_anywhere()) return ERR_DATA; /* it has one only */
   const error_t error = region_define(REGION_LOOKAHEAD, cs, words > UINT32_MAX ? UINT32_MAX : (uint32_t)words);
   if (error == ERR_NONE) lookahead_buffer_define(cs, outputs);
   return error;
@@ -80,6 +82,15 @@ static error_t define_user(struct lexer* lx) {
   return open_buffer_kind() != OPEN_NONE ? ERR_BUFFER_OPEN : region_define_user(words);
 }
 
+/* A program runs, or assignments of moves that it has left for the next start are in the buffer. */
+static bool uses_lookahead(uint32_t cs) { return run_is_running(cs) || coordinate_systems[cs].slots_wait; }
+
+static bool any_uses_lookahead(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (uses_lookahead(cs)) return true;
+  return false;
+}
+
 static error_t define_any(struct lexer* lx) {
   error_t error;
   uint32_t cs = session.cs;
@@ -87,7 +98,7 @@ static error_t define_any(struct lexer* lx) {
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT"))
     return running ? ERR_PROGRAM_RUNNING : define_rotary(lx, cs);
   if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
-    return running ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
+    return uses_lookahead(cs) ? ERR_PROGRAM_RUNNING : define_lookahead(lx, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : define_ccbuf(lx, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return define_gather(lx);
   if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : define_tbuf(lx);
@@ -105,7 +116,7 @@ static error_t delete_rotary(uint32_t cs) {
 /* DELETE ALL TEMPS; DELETE ALL takes the tables away too. */
 static error_t delete_all(bool tables) {
   if (open_buffer_kind() != OPEN_NONE) return ERR_DATA;
-  if (run_any_running()) return ERR_PROGRAM_RUNNING;
+  if (any_uses_lookahead()) return ERR_PROGRAM_RUNNING;
   gather_delete_always();
   rotary_delete_all();
   if (tables) compensation_tables_delete_all();
@@ -122,7 +133,7 @@ static error_t delete_any(struct lexer* lx) {
   if (lexer_keyword(lx, "ALL")) return delete_all(!lexer_keyword(lx, "TEMPS") && !lexer_keyword(lx, "TEMP"));
   if (lexer_keyword(lx, "ROTARY") || lexer_keyword(lx, "ROT")) return delete_rotary(cs);
   if (lexer_keyword(lx, "LOOKAHEAD") || lexer_keyword(lx, "LOOK"))
-    return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
+    return uses_lookahead(cs) ? ERR_PROGRAM_RUNNING : region_delete(REGION_LOOKAHEAD, cs);
   if (lexer_keyword(lx, "CCBUF")) return running ? ERR_PROGRAM_RUNNING : region_delete(REGION_CCBUF, cs);
   if (lexer_keyword(lx, "GATHER") || lexer_keyword(lx, "GAT")) return gather_delete();
   if (lexer_keyword(lx, "TBUF")) return run_any_running() ? ERR_PROGRAM_RUNNING : region_delete(REGION_TBUF, cs);

@@ -7,7 +7,6 @@
 #include "firmware/hal/hal.h"
 #include "firmware/kernel/background.h"
 #include "firmware/kernel/slice.h"
-#include "firmware/kernel/tasks.h"
 #include "firmware/kernel/watchdog.h"
 #include "firmware/motion/motor.h"
 #include "firmware/variables/i_variables.h"
@@ -106,7 +105,7 @@ void host_port_character(uint8_t c) {
   if (c >= ' ') return;
   if (((URGENT >> c) & 1u) != 0u) {
     host_port_urgent_codes |= 1u << c;
-    tasks_ask_real_time();
+    hal_request_real_time();
   }
   background_wake();
 }

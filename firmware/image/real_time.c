@@ -14,10 +14,6 @@
 #include "firmware/run/plc.h"
 
 void real_time(void) {
-  if (tasks_real_time_is_for_checks()) {
-    protection_pass();
-    return;
-  }
   if (host_port_urgent_codes != 0u) line_input_urgent();
   panel_select();
   buffer_request_poll();

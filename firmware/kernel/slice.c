@@ -8,7 +8,6 @@
 #include <stdbool.h>
 
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/tasks.h"
 
 enum { LEAST_CYCLES = 500, PATIENCE_MS = 5 };
 enum { LONGEST_SECTION = 2400 }; /* cycles between two pauses, with what the real-time task does beside the slice */
@@ -19,6 +18,7 @@ volatile uint32_t slice_hurry;
 static void (*work_of_slices)(void);
 static bool inside;
 static uint32_t began, length, round_began;
+static uint32_t spent;         /* by the slices before this one */
 static volatile bool gave_way; /* the last slice, before its time was over. R, read by B */
 
 static bool works;     /* the round, or the last one, came to a pause: there is something to do */
@@ -63,7 +63,10 @@ void slice_run(uint32_t cycles) {
   inside = true;
   hal_side_change();
   inside = false;
+  spent += hal_cycles() - began;
 }
+
+uint32_t slice_spent(void) { return spent + (hal_cycles() - began); }
 
 static __attribute__((noinline)) void leave(void) {
   const uint32_t now = hal_cycles(), ran = now - began;
@@ -85,5 +88,5 @@ void slice_pause(void) {
 
 void slice_hurry_over(void) {
   slice_hurry = 0;
-  if (gave_way) tasks_ask_real_time();
+  if (gave_way) hal_request_real_time();
 }

@@ -15,6 +15,7 @@ void slice_run(uint32_t cycles);           /* real-time task: a slice, until its
 /* Not 0: the background is at a line of the host, from its first character to BREQ. A slice gives way to it after a
  * little work of its own, unless its round has lasted too long already. The host port's interrupt sets it. */
 extern volatile uint32_t slice_hurry;
+uint32_t slice_spent(void);  /* CPU cycles that slices have had so far, modulo 2^32; within the work */
 void slice_hurry_over(void); /* background: the line is done; a slice that gave way goes on */
 void slice_pause(void);      /* a place to leave the work; anywhere else, as in the background, it does nothing */
 

@@ -1,7 +1,6 @@
 /* The servo task counts, runs timers, the watchdog counter and the trajectories, and every I8+1 cycles requests the
  * real-time task, which plans moves and strobes the hardware watchdog. When real-time interrupts are meant to be rare
- * (I8 up to 255, slow clocks), the servo task strobes between them: the hardware allows 25 ms only. Motors are not left
- * unwatched that long either: the real-time task then comes for its checks alone, in between. The phase task
+ * (I8 up to 255, slow clocks), the servo task strobes between them: the hardware allows 25 ms only. The phase task
  * works every I7+1 phase interrupts; without a commutated motor image/trap.S only notes the time and does not come
  * here. */
 #include "firmware/kernel/tasks.h"
@@ -15,7 +14,6 @@
 #include "firmware/kernel/watchdog.h"
 
 enum { LONGEST_SLICE_MS = 5 }; /* the watchdog is not strobed meanwhile */
-enum { CHECK_INTERRUPTS = 3 }; /* of the servo task, from one check of motors to the next at most (motion:6.6) */
 enum { TRAP_CYCLES = 122 };    /* entry and return of image/trap.S, which a handler does not see */
 
 volatile uint32_t tasks_phase_stamp;
@@ -25,10 +23,6 @@ static volatile uint32_t servo_count;      /* S */
 static uint32_t real_time_prescaler;       /* S */
 static volatile bool real_time_due;        /* S sets, R clears: not one that a control character asked for */
 static volatile bool real_time_active;     /* R: one that was due */
-static uint32_t check_prescaler;           /* S */
-static volatile bool checks_due;           /* S sets, R clears: between two that are due */
-static volatile bool real_time_asked;      /* anybody sets, R clears */
-static bool checks_alone;                  /* R: nothing else brought it about */
 static volatile bool real_time_late;       /* S sets, R clears: due again before it was done */
 static uint32_t real_time_began;           /* R, cycle counter */
 static uint32_t real_time_spent;           /* R, cycles since one was due */
@@ -37,8 +31,8 @@ static volatile uint32_t servo_period;     /* S, cycles between the last two */
 
 void tasks_initialize(void) {
   servo_count = 0;
-  real_time_prescaler = check_prescaler = 0;
-  real_time_due = real_time_active = real_time_late = checks_due = real_time_asked = checks_alone = false;
+  real_time_prescaler = 0;
+  real_time_due = real_time_active = real_time_late = false;
   real_time_spent = 0;
   servo_period = 0;
   servo_began = hal_cycles();
@@ -48,12 +42,6 @@ void tasks_initialize(void) {
 void tasks_set_real_time_period(uint32_t i8) { real_time_period = i8; }
 uint32_t tasks_servo_count(void) { return servo_count; }
 bool tasks_real_time_is_periodic(void) { return real_time_active; }
-bool tasks_real_time_is_for_checks(void) { return checks_alone; }
-
-void tasks_ask_real_time(void) {
-  real_time_asked = true;
-  hal_request_real_time();
-}
 
 /* Half of the time from one real-time interrupt to the next: the background has the rest. */
 uint32_t tasks_real_time_slice(void) {
@@ -91,12 +79,8 @@ void tasks_servo_interrupt(void) {
   watchdog_count();
   task_hooks.servo();
   if (++real_time_prescaler > real_time_period) {
-    real_time_prescaler = check_prescaler = 0;
+    real_time_prescaler = 0;
     request_real_time();
-  } else if (++check_prescaler >= CHECK_INTERRUPTS) {
-    check_prescaler = 0;
-    checks_due = true;
-    hal_request_real_time();
   } else if (watchdog_strobe_is_old(began) && !real_time_active && !hal_real_time_pending()) {
     watchdog_strobe(began); /* the real-time task has done its duty, the next is not due yet */
   }
@@ -121,15 +105,12 @@ static void judge_real_time(void) {
 
 void tasks_real_time_interrupt(void) {
   const uint32_t began = hal_cycles();
-  const bool due = real_time_due, asked = real_time_asked;
+  const bool due = real_time_due;
   real_time_began = began;
   real_time_active = due;
-  checks_alone = checks_due && !due && !asked;
   if (due) real_time_due = false; /* else the servo task may just have asked */
-  if (asked) real_time_asked = false;
-  checks_due = false;
   task_hooks.real_time();
-  if (!checks_alone) watchdog_strobe(began);
+  watchdog_strobe(began);
   background_wake();
   real_time_active = false;
   if (due) judge_real_time();

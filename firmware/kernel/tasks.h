@@ -22,9 +22,7 @@ extern volatile uint32_t tasks_phase_stamp; /* cycle counter at the last phase i
 
 void tasks_initialize(void);
 uint32_t tasks_servo_count(void);             /* servo interrupts since start, 32 bits */
-bool tasks_real_time_is_periodic(void);       /* real-time task: not one that somebody asked for */
-bool tasks_real_time_is_for_checks(void);     /* the same: I8 is large, nothing is due but checks of motors */
-void tasks_ask_real_time(void);               /* any task: now, not at the next servo interrupt for it */
+bool tasks_real_time_is_periodic(void);       /* real-time task: not one that a control character asked for */
 uint32_t tasks_real_time_slice(void);         /* CPU cycles that the real-time task may calculate at once */
 uint32_t tasks_real_time_left(void);          /* and what is left of them in this interrupt */
 void tasks_set_real_time_period(uint32_t i8); /* I8: servo interrupts between real-time tasks, less one. Any task */

@@ -74,9 +74,11 @@ struct move {
   double delta[AXIS_COUNT];
   double delta_before[AXIS_COUNT]; /* of the move before, and its Tm */
   int64_t time_before;
-  /* PVT, SPLINE: cubics from knot to knot. The first is the move; what is behind it is left for the next move */
+  /* PVT, SPLINE: cubics from knot to knot. The first is the move; what is behind it is left for the next move. Of a
+   * SPLINE point n the positions are those of points n - 3 to n, velocities are not kept (motion/position.c). */
   uint32_t knot_count;
   int64_t knot_time[KNOTS - 1];
+  int64_t time_ahead; /* SPLINE: of point n - 2 */
   struct knot knots[KNOTS];
   bool overruns;             /* it ends in motion: without a next one it runs on, to be stopped */
   bool waited;               /* its line was waited for: who is late then is the host */
@@ -122,7 +124,8 @@ struct coordinate_system {
   /* moves are dropped: set by B or R; virtual axes stand still, motors leave the path; R finds the position and clears
    * it */
   volatile bool settling;
-  bool matching;             /* B at the start of a program, R clears: axes are to be where motors are */
+  bool matching;             /* B, R clears: axes are to be where motors are; before moves that wait at a start, */
+  bool starting;             /* which is this: B, R clears; else behind them */
   bool must_return;          /* B: stopped where a start goes on, so motors that were jogged meanwhile must be back */
   enum run_time_error error; /* R; B clears it when the program is started */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */
@@ -199,6 +202,12 @@ void cs_set_axis_mode(struct coordinate_system* s, enum operation operation, uin
 static inline bool move_continues(const struct coordinate_system* s) {
   const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
   return s->active && next->joins && m->kind == next->kind;
+}
+
+/* Something but a DWELL is under way or waits. */
+static inline bool cs_moves(const struct coordinate_system* s) {
+  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
+  return (s->active && m->kind != MOVE_DWELL) || (s->next_valid && next->kind != MOVE_DWELL);
 }
 
 static inline double cs_variable(uint32_t cs, enum i_name isxnn) { return i_variable_read(i_cs(cs, isxnn)); }

@@ -16,7 +16,7 @@ struct fixed_divisor fixed_divide_by(uint64_t by); /* above 0 */
 int64_t fixed_part_of(const struct fixed_divisor* by, int64_t value);
 int64_t fixed_ratio(int64_t value, int64_t by);
 
-/* 2^32 value / by, for value < by / 2, good to 2^-29 of it. */
+/* 2^32 value / by, for value < by / 2: too small by 2^-28 of it and 2 at most, too large by 2^-30 of it. */
 uint32_t fixed_fraction(uint32_t value, uint32_t by);
 
 /* Root of 0..2^30, where 2^30 is 1; good to 2^-26 of it. */

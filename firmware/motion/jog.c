@@ -3,7 +3,6 @@
 
 #include "firmware/base/mathematics.h"
 #include "firmware/hal/hal.h"
-#include "firmware/kernel/tasks.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/jog_state.h"
@@ -70,7 +69,7 @@ static bool ask(uint32_t motor, const struct jog_motion* request) {
       if (!goes_into_limit(motor, request)) jog_post(motor, request);
     } else if (!stops_already(motor)) {
       jog_post(motor, request);
-      tasks_ask_real_time(); /* what stops a motor does not wait for its turn */
+      hal_request_real_time(); /* what stops a motor does not wait for its turn */
     }
   }
   hal_unmask(state);

@@ -41,8 +41,12 @@ static struct own_path_place place_of_program(uint32_t motor, int64_t ahead) {
       piece = piece_ring_at(ring, ++number);
     }
     if ((piece->motors >> motor & 1u) != 0u)
-      return (struct own_path_place){*piece_ring_cubic(ring, number, motor), piece->time,
-                                     at < piece->end ? at : piece->end - 1};
+      return (struct own_path_place){*piece_ring_cubic(ring, number, motor),
+                                     piece->time,
+                                     at < piece->end ? at : piece->end - 1,
+                                     piece->warp,
+                                     piece->from,
+                                     piece->to};
   }
   return own_path_stands(m->trajectory);
 }

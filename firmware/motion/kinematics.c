@@ -39,6 +39,7 @@ uint32_t kinematics_resolve(uint32_t cs, uint32_t by_program) {
 
 static bool execute(uint32_t cs, enum fixed_kind kind) {
   struct coordinate_system* s = &coordinate_systems[cs];
+  if (s->failure != RUN_TIME_NONE) return false; /* what has failed asks no more */
   const enum run_time_error error = kinematics_execute(cs, kind);
   if (error != RUN_TIME_NONE && s->failure == RUN_TIME_NONE) s->failure = error;
   return s->failure == RUN_TIME_NONE; /* the program can set the error itself */
@@ -46,7 +47,7 @@ static bool execute(uint32_t cs, enum fixed_kind kind) {
 
 static int64_t commanded(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t position = motors[motor].trajectory + motors[motor].bias;
+  const int64_t position = motors[motor].trajectory + motor_axes_ahead(motor);
   hal_unmask(state);
   return position;
 }

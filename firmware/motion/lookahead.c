@@ -14,20 +14,22 @@
 enum {
   LEAST = 4, /* records ahead that make sense */
   SCALE_BITS = 16,
-  STEP_MOST = 1 << 29, /* 2^13 of an acceleration limit */
+  STEP_MOST = 1 << 29, /* 2^13 of the smaller limit */
   SATURATES = 1 << 14  /* Ixx24: on at the limit of a desired position */
 };
 
 #define SCALE_HALF 32768.0
 
-/* Of a motor. Steps from point to point are shifted by `coarse`, to the right, so that the acceleration limit has 2^16
- * of a period squared at most; x' and x'' as limits_motor has them are those times mantissa / 2^32. */
+/* Of a motor. Steps from point to point are shifted by `coarse`, to the right, so that the smaller of the limits, of
+ * the velocity and of the acceleration in the time of one, has 2^15 to 2^16; x' and x'' as limits_motor has them are
+ * those times mantissa / 2^32. */
 static struct {
   int32_t mantissa; /* 0: no limit */
   int32_t coarse;
   int32_t fastest;         /* the largest step that Ixx16 allows; 0: no limit */
   int32_t before, last;    /* the last two steps */
   int64_t lowest, highest; /* of the desired position, Ixx24 bit 15 */
+  int64_t held;            /* by which it holds the last point back */
   bool saturates;          /* bit 14 */
 } scales[MOTORS];
 
@@ -57,6 +59,8 @@ static void set_scale(uint32_t motor, double period) {
   const bool limited = acceleration > 0.0;
   slice_pause();
   double one = limited ? acceleration : velocity > 0.0 ? velocity : 1.0;
+  slice_pause();
+  if (velocity > 0.0 && velocity < one) one = velocity;
   int32_t coarse = 0;
   for (; one > 2.0 * SCALE_HALF; coarse++) {
     one = math_scale(one, -1);
@@ -75,7 +79,9 @@ static void set_scale(uint32_t motor, double period) {
   slice_pause();
   if (velocity > 0.0 && fastest < 1.0) scales[motor].fastest = 1;
   slice_pause();
-  const double inverse = 1.0 / one;
+  acceleration = math_scale(acceleration, -coarse);
+  slice_pause();
+  const double inverse = limited ? 1.0 / acceleration : 0.0;
   slice_pause();
   const double mantissa = math_scale(inverse, 32 + BEND_BITS);
   scales[motor].mantissa = !limited ? 0 : mantissa < (double)INT32_MAX ? (int32_t)mantissa : INT32_MAX;
@@ -127,7 +133,15 @@ bool lookahead_is_full(uint32_t cs) {
   return look_end(l) - l->front >= l->length || l->added - l->front >= l->buffer.records - LOOKAHEAD_KEPT / 2;
 }
 
-void lookahead_close(uint32_t cs) { looks[cs].closed = true; }
+/* The axes are where the program has them: a motor that is held comes along with the next move. */
+void lookahead_close(uint32_t cs) {
+  struct look* l = &looks[cs];
+  l->closed = true;
+  for (uint32_t motor = 0, left = l->guarded; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0) system_motor_stands_aside(motor, scales[motor].held);
+}
+
+bool lookahead_may_hold(uint32_t cs) { return looks[cs].guarded != 0; }
 
 /* (fastest / way)^2 */
 static int32_t cap_of(int32_t fastest, int32_t way) {
@@ -168,13 +182,22 @@ static void set_limits(struct look* l, uint32_t motor, int32_t next, struct look
   if (cap < segment->cap) segment->cap = cap;
 }
 
+/* A sequence that begins beyond a limit does not go further out. */
+static void widen(uint32_t motor, int64_t start) {
+  if (start < scales[motor].lowest) scales[motor].lowest = start;
+  if (start > scales[motor].highest) scales[motor].highest = start;
+}
+
 /* The limit instead of a point beyond it. With bit 14 = 0 it stands before the first segment that this changes: the
  * knot that was the last one until now. */
 static int64_t guarded(uint32_t motor, int64_t point, struct lookahead_record* segment) {
   const int64_t lowest = scales[motor].lowest, highest = scales[motor].highest;
+  scales[motor].held = 0;
   if (point >= lowest && point <= highest) return point;
   if (!scales[motor].saturates) segment->stops = true;
-  return point > highest ? highest : lowest;
+  const int64_t limit = point > highest ? highest : lowest;
+  scales[motor].held = limit - point;
+  return limit;
 }
 
 /* A point of the motors: with the one before it a step. */
@@ -187,7 +210,10 @@ static void add_point(struct look* l, struct lookahead_record* record, const int
   for (uint32_t motor = 0, slot = 0, left = l->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     int64_t point = control[motor][SPLINE_POINTS - 1];
-    if ((l->guarded >> motor & 1u) != 0) point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
+    if ((l->guarded >> motor & 1u) != 0) {
+      if (at == 0) widen(motor, point);
+      point = guarded(motor, point, at < SPLINE_POINTS - 1u ? record : segment);
+    }
     to[slot] = (struct lookahead_motor){point, 0, 0};
     if (l->limits && at != 0) {
       const int32_t step = coarse_step(motor, point - last[slot].point);

@@ -17,6 +17,12 @@ void lookahead_buffer_define(uint32_t cs, uint32_t slots) { slots_of[cs] = slots
 
 bool lookahead_buffer_is_defined(uint32_t cs) { return region_words(REGION_LOOKAHEAD, cs) != 0; }
 
+bool lookahead_buffer_is_anywhere(void) {
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; cs++)
+    if (lookahead_buffer_is_defined(cs)) return true;
+  return false;
+}
+
 /* Behind the records. */
 uint32_t lookahead_slots(uint32_t cs, void** slots) {
   const uint32_t size = region_words(REGION_LOOKAHEAD, cs);

@@ -15,7 +15,7 @@ struct lookahead_motor { /* 2 words */
 };
 
 struct lookahead_record { /* 4 words, and the motors */
-  int32_t rate;           /* w at the knot: that can stop, or once it is handed over the one taken */
+  int32_t rate;           /* w at the knot: the largest from which it can stop, as the last sweep has found it */
   int32_t cap;            /* of w in the segment behind the knot, by the velocities */
   bool stops;             /* at the knot, for the limit of a desired position behind it */
   uint32_t number;        /* of the move at the control point */
@@ -30,6 +30,7 @@ struct lookahead_buffer {
 /* DEFINE, background: how many of its words are slots of two for assignments that wait for their segments. */
 void lookahead_buffer_define(uint32_t cs, uint32_t slots);
 bool lookahead_buffer_is_defined(uint32_t cs);
+bool lookahead_buffer_is_anywhere(void); /* of any system */
 uint32_t lookahead_slots(uint32_t cs, void** slots); /* so many, of 16 bytes; none without a buffer */
 /* The buffer of a system with so many motors; no records: there is none. */
 void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_buffer* buffer);

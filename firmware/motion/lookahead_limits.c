@@ -11,6 +11,7 @@ enum { NEAR_ENOUGH = 4 }; /* 2^-4 of a w */
 /* Products are kept to 32 bits: 1 is 2^12 then, and sums are up to three less. A sweep keeps so much inside of the
  * limits that rounding leaves a way for what is chosen by it. */
 enum { PRODUCT_BITS = RATE_BITS + BEND_BITS - 32, ROUNDING = 4, SWEEP_INSIDE = 16 };
+enum { INSIDE = (1 << PRODUCT_BITS) - ROUNDING };
 
 /* Of a motor: x'' at the ends of the part, and half of the Bernstein coefficients of x', in the part's own time. */
 struct motor_part {
@@ -18,7 +19,7 @@ struct motor_part {
 };
 static struct motor_part motor_parts[MOTORS];
 static uint32_t count;
-static int32_t inside = (1 << PRODUCT_BITS) - ROUNDING;
+static int32_t inside;  /* set by whoever is asked: an abort leaves in the middle of it */
 static uint32_t likely; /* the motor that has been the narrowest last */
 
 static int32_t magnitude(int32_t value) { return value < 0 ? -value : value; }
@@ -211,7 +212,10 @@ static struct room room_of(enum limits_end end, int32_t w, int32_t most) {
   return r;
 }
 
-int32_t limits_most(enum limits_end end, int32_t w, int32_t most) { return room_of(end, w, most).most; }
+int32_t limits_most(enum limits_end end, int32_t w, int32_t most) {
+  inside = INSIDE;
+  return room_of(end, w, most).most;
+}
 
 /* Raised by what asks for more than `least`. False: nothing that is more helps. */
 static bool raise(enum limits_end end, const struct edge* e, int32_t w, int32_t* least) {
@@ -226,6 +230,7 @@ static bool raise(enum limits_end end, const struct edge* e, int32_t w, int32_t*
 
 int32_t limits_least(enum limits_end end, int32_t w, int32_t most) {
   int32_t least = 0;
+  inside = INSIDE;
   for (uint32_t i = 0; i < count; i++) {
     for (uint32_t value = 0; value < VALUES; value++) {
       const struct edge e = edge_of(&motor_parts[i], value);
@@ -286,8 +291,6 @@ static int32_t search(enum limits_end end, int32_t other, int32_t most) {
 }
 
 int32_t limits_reach(enum limits_end end, int32_t other, int32_t most) {
-  inside -= SWEEP_INSIDE;
-  const int32_t reach = search(end, other, most);
-  inside += SWEEP_INSIDE;
-  return reach;
+  inside = INSIDE - SWEEP_INSIDE;
+  return search(end, other, most);
 }

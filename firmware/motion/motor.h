@@ -53,6 +53,7 @@ struct motor {
   int64_t bias;         /* D:+$4C: not part of the loop; axis offsets and the like */
   int32_t desired_step; /* net desired position, less that of the last servo interrupt: 0 is "desired velocity zero" */
   int32_t velocity;     /* X:+$1D, raw velocity */
+  int64_t matched;      /* R: what it had followed when axes were matched with motors, and has not taken them along */
   int64_t of_system;    /* where its coordinate system has it; R when a program takes it (motion/system_motors.h) */
   /* outputs, S */
   int32_t open_output; /* C: of a loop that is open, output */
@@ -72,6 +73,9 @@ extern volatile uint32_t motors_enabled; /* C: bit n-1: motor n is not killed */
 
 /* What positions of commands are ahead of those of the trajectory (motion:1.2/4). Servo task held off, or in it. */
 static inline int64_t motor_followed(uint32_t motor) { return motors[motor].origin_follows ? 0 : motors[motor].master; }
+
+/* What axes are ahead of the trajectory. The same. */
+static inline int64_t motor_axes_ahead(uint32_t motor) { return motors[motor].bias + motors[motor].matched; }
 
 /* 1/(32 Ixx08) counts of `counts`; rounded to nearest. Floating point. */
 int64_t motor_position_of(uint32_t motor, double counts);

@@ -104,7 +104,7 @@ static uint32_t status2(uint32_t motor) {
   const struct motor_findings* found = &m->found;
   const uint32_t word =
       bit(m->loop != LOOP_KILLED, M2_AMPLIFIER_ENABLED) |
-      bit(found->foreground_in_position && i_integer(I13_FOREGROUND_IN_POSITION) != 0, M2_FOREGROUND_IN_POSITION) |
+      bit(found->foreground_in_position && i_variable_foreground_in_position(), M2_FOREGROUND_IN_POSITION) |
       bit(found->on_desired_limit, M2_STOPPED_ON_DESIRED_LIMIT) | bit(found->on_limit, M2_STOPPED_ON_LIMIT) |
       bit(motors[motor].status.home_complete, M2_HOME_COMPLETE) | bit(phasing_is_searched(motor), M2_PHASING) |
       bit(phasing_is_missing(motor), M2_PHASE_REFERENCE_ERROR) |

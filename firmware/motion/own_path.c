@@ -162,7 +162,7 @@ bool own_path_advance(struct own_path* path, int64_t increment, int64_t* positio
 }
 
 struct own_path_place own_path_stands(int64_t position) {
-  return (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1};
+  return (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1, .to = PIECE_PARTS};
 }
 
 /* The stay, `elapsed` after its present part began. False: it is over by then. */
@@ -188,7 +188,7 @@ static struct own_path_place find(const struct own_path* path, int64_t ahead) {
       if (stays(path, &elapsed, &place)) return place;
       continue;
     }
-    if (elapsed < piece->time) return (struct own_path_place){piece->cubic, piece->time, elapsed};
+    if (elapsed < piece->time) return (struct own_path_place){piece->cubic, piece->time, elapsed, 0, 0, PIECE_PARTS};
     elapsed -= piece->time;
   }
   return place;
@@ -200,11 +200,34 @@ struct own_path_place own_path_place(const struct own_path* path, int64_t ahead)
   return place;
 }
 
+/* The part of its cubic that is made after a part of the time of a piece, and how fast that grows with it. */
+static double part_of_way(const struct own_path_place* place, double part, double* rate) {
+  *rate = 1.0;
+  if (place->warp != 0) {
+    const double warp = (double)place->warp / (double)PIECE_WARP_ONE;
+    slice_pause();
+    const double left = 1.0 - part, bulge = warp * part;
+    slice_pause();
+    *rate += warp * left - bulge;
+    slice_pause();
+    part += bulge * left;
+    slice_pause();
+  }
+  if (place->from == 0 && place->to == PIECE_PARTS) return part;
+  const double share = (double)(place->to - place->from) / (double)PIECE_PARTS;
+  slice_pause();
+  *rate *= share;
+  part *= share;
+  slice_pause();
+  return (double)place->from / (double)PIECE_PARTS + part;
+}
+
 struct own_path_state own_path_state(const struct own_path_place* place) {
   const struct cubic* c = &place->cubic;
+  double rate;
   if (place->elapsed >= place->time) return (struct own_path_state){(double)cubic_end(c), 0.0};
   slice_pause();
-  const double time = (double)place->time, part = (double)place->elapsed / time;
+  const double time = (double)place->time, part = part_of_way(place, (double)place->elapsed / time, &rate);
   slice_pause();
   const double square = (double)c->square, cube = (double)c->cube;
   slice_pause();
@@ -214,7 +237,7 @@ struct own_path_state own_path_state(const struct own_path_place* place) {
   slice_pause();
   const double turn = part * (2.0 * square + part * 3.0 * cube);
   slice_pause();
-  const double slope = (double)c->linear + turn;
+  const double slope = rate * ((double)c->linear + turn);
   slice_pause();
   return (struct own_path_state){(double)c->start + moved, slope / math_scale(time, -TIME_FRACTION_BITS)};
 }

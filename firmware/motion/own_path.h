@@ -53,6 +53,8 @@ bool own_path_advance(struct own_path* path, int64_t increment, int64_t* positio
 struct own_path_place {
   struct cubic cubic;
   int64_t time, elapsed; /* beyond its end: it stands there */
+  int32_t warp;          /* these as a piece has them */
+  uint8_t from, to;
 };
 struct own_path_place own_path_place(const struct own_path* path, int64_t ahead);
 struct own_path_place own_path_stands(int64_t position);

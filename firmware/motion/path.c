@@ -20,7 +20,9 @@ void path_set_times(struct path_move* m, double time, double acceleration, doubl
 /* S-curves keep their share of a change that is shorter than it should be. */
 static int64_t s_part(const struct path_move* m, int64_t length) {
   if (m->s_curve == 0 || length >= m->acceleration) return m->s_curve;
-  return fixed_share(m->s_curve, fixed_ratio(length, m->acceleration));
+  const int64_t part = fixed_ratio(length, m->acceleration);
+  slice_pause();
+  return fixed_share(m->s_curve, part);
 }
 
 /* Way after `t` of a velocity that rises from 0 to 1 during `length`, with S-parts of `s` at both ends: t^3 / (6 s (l -
@@ -30,10 +32,15 @@ static int64_t risen(int64_t t, int64_t length, int64_t s) {
   if (t <= 0) return 0;
   if (t >= length) return t - half;
   if (t > half) return t - half + risen(length - t, length, s);
+  slice_pause();
   const struct fixed_divisor by = fixed_divide_by((uint64_t)(length - s));
   const int64_t part = fixed_part_of(&by, t);
   slice_pause();
-  if (t < s) return fixed_share(fixed_share(t, part), fixed_ratio(t, s)) / 6;
+  if (t < s) {
+    const int64_t square = fixed_share(t, part), cube = fixed_share(square, fixed_ratio(t, s));
+    slice_pause();
+    return cube / 6;
+  }
   return fixed_share(s, fixed_part_of(&by, s)) / 6 + fixed_share(t - s, part) / 2;
 }
 

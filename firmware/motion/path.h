@@ -2,11 +2,10 @@
  * order of the program, and where their trajectory is at a time. A queue of those that are calculated and not over yet;
  * the first one that does not join ends a sequence of moves that blend.
  *
- *   progress of a move                 Each move goes along its own way: its progress rises from 0 to its time, with a
- *        _/|        /                  change of velocity at its corner and one at the next corner. In a blend two
- * moves
- *      _/  |      _/                   are under way, and what they have made adds up. A straight one so has the
- *   __/____|____ /                     velocities of motion:5.2, an arc stays on its circle.
+ *   progress of a move          Each move goes along its own way: its progress rises from 0 to its time, with a change
+ *        _/|        /           of velocity at its corner and one at the next corner. In a blend two moves are under
+ *      _/  |      _/            way, and what they have made adds up. A straight one so has the velocities of
+ *   __/____|____ /              motion:5.2, an arc stays on its circle.
  *
  * Times are of the program, in 2^-32 ms, counted from the corner at which the first move of the queue begins. */
 #ifndef FIRMWARE_MOTION_PATH_H

@@ -6,24 +6,36 @@
 #include "firmware/motion/fixed_turn.h"
 #include "firmware/motion/system_motors.h"
 
+enum { PAUSE_MOTORS = 8 };
+
 #define TWO_PI 6.28318530717958647692
 
-/* A move as a motor makes it: from its start to its end; of an arc what goes evenly, and what the larger of its radii
- * is in its two directions, in the first of them twice that: the part that goes with it is halved, from -2 to 0. */
+#define RADIUS_MOST (INT64_C(1) << 59) /* what is nearly straight in the range of positions is straight beyond this */
+
+/* A move as a motor makes it: where it ends and the way to there from the end before it; of an arc what the larger of
+ * its radii is in its two directions, in the first of them twice that: the part that goes with it is halved, from -2 to
+ * 0. What they do not make of the way goes evenly, `along`: an arc ends where its end is. */
 struct way {
-  int64_t whole, along, first, second;
+  int64_t end, whole, along, first, second;
   bool turns;
 };
 
-/* Of the first move's start and of the last one's end, and of the moves by their places in the queue. A motor belongs
- * to one system. */
+/* Of the first move's start, and of the moves by their places in the queue. A motor belongs to one system. */
 static struct {
-  int64_t start, end;
+  int64_t start;
   struct way ways[PATH_MOVES];
 } motors_of_path[MOTORS] __attribute__((section(".noinit")));
 
 /* An arc: its angle, and its radii at the start and what that grows by, of the larger one. */
-static struct { int64_t angle, from, growth; } arcs[COORDINATE_SYSTEMS][PATH_MOVES] __attribute__((section(".noinit")));
+struct arc {
+  int64_t angle, from, growth;
+};
+static struct arc arcs[COORDINATE_SYSTEMS][PATH_MOVES] __attribute__((section(".noinit")));
+
+/* What it has made of its radius in its two directions. */
+struct turned {
+  int64_t first, second;
+};
 
 /* What is looked at, of the system that is worked for: moves that have begun. */
 static struct {
@@ -31,39 +43,44 @@ static struct {
   uint32_t count;
   struct {
     uint32_t place;
-    int64_t part, first, second;
+    int64_t part;
+    struct turned turned;
   } moves[PATH_MOVES];
 } at;
 
 static uint32_t place_of(const struct path* p, uint32_t ahead) { return (p->first + ahead) % PATH_MOVES; }
 
-/* What goes evenly of an arc are the other axes, and its way out of the plane. */
-static void turn(uint32_t motor, const struct path_move* m, double largest, struct way* way) {
-  double along[AXIS_COUNT], first[AXIS_COUNT] = {0}, second[AXIS_COUNT] = {0};
-  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) along[axis] = m->delta[axis];
-  for (uint32_t i = 0; i < CIRCLE_AXES; i++) {
-    along[AXIS_X + i] = m->circle.along[i];
-    first[AXIS_X + i] = m->circle.first[i];
-    second[AXIS_X + i] = m->circle.second[i];
-  }
+static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
+
+/* product of two parts */
+static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
+
+static struct turned turned_of(const struct arc* arc, int64_t part) {
+  const struct fixed_direction to = fixed_direction_of(fixed_share(arc->angle, part));
   slice_pause();
-  double value = system_motor_velocity_at(motor, along);
+  const int64_t radius = arc->from + product(arc->growth, part);
+  return (struct turned){(product(to.cosine, radius) - arc->from) / 2, product(to.sine, radius)};
+}
+
+/* What a radius is in a direction of the plane. */
+static int64_t radius_in(uint32_t motor, const double direction[CIRCLE_AXES], double radius) {
+  double velocity[AXIS_COUNT] = {0};
+  for (uint32_t i = 0; i < CIRCLE_AXES; i++) velocity[AXIS_X + i] = direction[i];
   slice_pause();
-  way->along = math_nearest(value);
+  double value = system_motor_velocity_at(motor, velocity);
   slice_pause();
-  value = system_motor_velocity_at(motor, first);
+  value *= radius;
   slice_pause();
-  value *= largest + largest;
+  return math_to_integer(value + 0.5);
+}
+
+static void turn(uint32_t motor, const struct path_move* m, double largest, const struct turned* end, struct way* way) {
+  way->first = radius_in(motor, m->circle.first, largest + largest);
+  way->second = radius_in(motor, m->circle.second, largest);
   slice_pause();
-  way->first = math_nearest(value);
-  slice_pause();
-  value = system_motor_velocity_at(motor, second);
-  slice_pause();
-  value *= largest;
-  slice_pause();
-  way->second = math_nearest(value);
-  slice_pause();
-  way->turns = way->first != 0 || way->second != 0;
+  const bool is_round = way->first != 0 || way->second != 0;
+  way->turns = is_round && magnitude(way->first) < RADIUS_MOST && magnitude(way->second) < RADIUS_MOST;
+  if (way->turns) way->along = way->whole - fixed_share(way->first, end->first) - fixed_share(way->second, end->second);
 }
 
 static double set_arc(uint32_t cs, uint32_t place, const struct circle* c) {
@@ -88,7 +105,7 @@ void path_motors_begin(uint32_t cs) {
   const struct path_move* m = path_of(&paths[cs], 0);
   for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    motors_of_path[motor].start = motors_of_path[motor].end = math_nearest(system_motor_from(motor, m->start));
+    motors_of_path[motor].start = math_nearest(system_motor_from(motor, m->start));
     slice_pause();
   }
   path_motors_join(cs, 0);
@@ -99,29 +116,28 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
   const uint32_t place = place_of(&paths[cs], ahead);
   const double largest = m->is_arc ? set_arc(cs, place, &m->circle) : 0.0;
   slice_pause();
+  const struct turned turned = m->is_arc ? turned_of(&arcs[cs][place], PATH_WHOLE) : (struct turned){0};
   for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    struct way* way = &motors_of_path[motor].ways[place];
+    struct way *ways = motors_of_path[motor].ways, *way = &ways[place];
     const double position = system_motor_at(motor, m->end);
     slice_pause();
-    const int64_t end = math_nearest(position);
-    way->whole = end - motors_of_path[motor].end;
+    way->end = math_nearest(position);
+    way->whole = way->end - (ahead == 0 ? motors_of_path[motor].start : ways[place_of(&paths[cs], ahead - 1u)].end);
     way->turns = false;
-    motors_of_path[motor].end = end;
     slice_pause();
-    if (m->is_arc && (system_motor_axes(motor) & AXIS_XYZ) != 0) turn(motor, m, largest, way);
+    if (m->is_arc && (system_motor_axes(motor) & AXIS_XYZ) != 0) turn(motor, m, largest, &turned, way);
   }
 }
 
 void path_motors_pop(uint32_t cs) {
   const uint32_t place = place_of(&paths[cs], 0);
-  for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) motors_of_path[motor].start += motors_of_path[motor].ways[place].whole;
   slice_pause();
+  for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
+    if ((left & 1u) != 0) motors_of_path[motor].start = motors_of_path[motor].ways[place].end;
+    if (motor % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
+  }
 }
-
-/* product of two parts */
-static int64_t product(int64_t a, int64_t b) { return fixed_share(a >> 2, b) * 4; }
 
 static void look_by_program(uint32_t cs, const struct path_point* point) {
   double position[AXIS_COUNT];
@@ -144,18 +160,15 @@ void path_motors_look(uint32_t cs, const struct path_point* point) {
     at.moves[n].part = part;
     if (part == PATH_WHOLE || !path_of(&paths[cs], i)->is_arc) continue;
     slice_pause();
-    const struct fixed_direction to = fixed_direction_of(fixed_share(arcs[cs][place].angle, part));
-    const int64_t radius = arcs[cs][place].from + product(arcs[cs][place].growth, part);
-    at.moves[n].first = (product(to.cosine, radius) - arcs[cs][place].from) / 2;
-    at.moves[n].second = product(to.sine, radius);
+    at.moves[n].turned = turned_of(&arcs[cs][place], part);
     slice_pause();
   }
 }
 
 static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t move) {
   slice_pause();
-  return fixed_share(way->along, at.moves[move].part) + fixed_share(way->first, at.moves[move].first) +
-         fixed_share(way->second, at.moves[move].second);
+  return fixed_share(way->along, at.moves[move].part) + fixed_share(way->first, at.moves[move].turned.first) +
+         fixed_share(way->second, at.moves[move].turned.second);
 }
 
 static __attribute__((noinline)) int64_t by_program(uint32_t motor) {

@@ -254,17 +254,21 @@ static void run_on(const struct knot_of_motors* before, struct knot_of_motors* f
   }
 }
 
-static void find_knot(uint32_t cs, const struct move* next, uint32_t i) {
+/* From rest motors are where the last solution has them: an inverse program that is asked anew could find another. */
+static void find_knot(uint32_t cs, const struct move* next, uint32_t i, bool continues) {
   const struct coordinate_system* s = making.s;
   const struct knot* knot = &next->knots[i];
   struct knot_of_motors* found = &ends[i & 1u];
-  const bool runs_on = next->overruns && i == 2u;
-  if (!runs_on) system_motors_solve_knot(cs, knot);
+  const bool rests = i == 0 && !continues, runs_on = next->overruns && i == 2u;
+  if (rests)
+    system_motors_solve(cs, knot->position);
+  else if (!runs_on)
+    system_motors_solve_knot(cs, knot);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     found->at[motor] = i == 0 ? system_motor_from(motor, knot->position) : system_motor_at(motor, knot->position);
     slice_pause();
-    found->velocity[motor] = system_motor_velocity_at(motor, knot->velocity);
+    found->velocity[motor] = rests ? 0.0 : system_motor_velocity_at(motor, knot->velocity);
     slice_pause();
   }
   if (runs_on) run_on(&ends[1], found, milliseconds(next->knot_time[1]));
@@ -282,10 +286,11 @@ static void add_knots(uint32_t motor, uint32_t i, double time) {
 }
 
 /* In place of what ends the sequence, whose first cubic is the executing move; else behind all there is. False: it has
- * ended meanwhile. */
+ * ended meanwhile, or there is no solution. */
 static bool go_on(struct move* next, bool continues) {
   struct coordinate_system* s = making.s;
   const struct move* m = &s->moves[s->executing];
+  if (s->failure != RUN_TIME_NONE) return false;
   next->blended = continues;
   if (!continues) {
     append(s);
@@ -301,7 +306,7 @@ static bool place_pvt(uint32_t cs, struct move* next, uint32_t number) {
   struct coordinate_system* s = making.s;
   const bool continues = move_continues(s);
   making.added = 0;
-  find_knot(cs, next, 0);
+  find_knot(cs, next, 0, continues);
   for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     making.reached[motor] = math_nearest(ends[0].at[motor]);
@@ -309,7 +314,7 @@ static bool place_pvt(uint32_t cs, struct move* next, uint32_t number) {
   }
   next->straight = s->ring.added;
   for (uint32_t i = 0; i + 1u < next->knot_count; i++) {
-    find_knot(cs, next, i + 1u);
+    find_knot(cs, next, i + 1u, continues);
     begin_piece(next->knot_time[i], s->motors, number);
     for (uint32_t motor = 0, left = s->motors; left != 0; motor++, left >>= 1)
       if ((left & 1u) != 0) add_knots(motor, i, milliseconds(next->knot_time[i]));

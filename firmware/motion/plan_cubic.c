@@ -56,40 +56,22 @@ void plan_pvt(uint32_t cs) {
   plan_finish(cs, m, true, target);
 }
 
-/* Way points of a spline: (before + 4 at + after) / 6, and the velocity there, (after - before) / the time of both. */
-static void way_point(struct knot* knot, uint32_t axis, double before, double at, double after, double time) {
-  const double back = before - at, ahead = after - at;
-  knot->position[axis] = at;
-  knot->velocity[axis] = 0.0;
-  if (back == 0.0 && ahead == 0.0) return;
-  slice_pause();
-  knot->position[axis] = at + (back + ahead) / 6.0;
-  slice_pause();
-  knot->velocity[axis] = (ahead - back) / time;
-  slice_pause();
-}
-
-/* Of virtual axes: those of motors are made where they are placed (motion/spline_motor.h).
- *
- * The move of point n is the way to way point n - 1, which point n makes known. What comes behind it, to point n, is
- * the end of the sequence as long as there is no further point. From rest that way begins at point n - 1. */
-static void set_knots(const struct move* before, struct move* m, const double target[AXIS_COUNT]) {
-  const int64_t first = before != 0 ? before->time : m->time;
-  const double time = plan_milliseconds(m->time), both = time + plan_milliseconds(first);
-  slice_pause();
-  m->knot_time[0] = first;
+/* The move of point n is the way to way point n - 1, which point n makes known. What comes behind it, to point n, is
+ * the end of the sequence as long as there is no further point. From rest that way begins at point n - 1. Points are
+ * kept alone: motors have their own way points (motion/spline_motor.h), where axes are is seldom asked. */
+static void set_points(const struct move* before, struct move* m, const double start[AXIS_COUNT],
+                       const double target[AXIS_COUNT]) {
+  m->time_ahead = before != 0 ? before->knot_time[0] : m->time;
+  m->knot_time[0] = before != 0 ? before->time : m->time;
   m->knot_time[1] = m->knot_time[2] = m->time;
-  m->knot_count = 4;
+  m->knot_count = KNOTS;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    const double at = target[axis] - m->delta[axis], from = before != 0 ? at - before->delta[axis] : at;
-    m->knots[0].position[axis] = before != 0 ? before->knots[1].position[axis] : at;
-    m->knots[0].velocity[axis] = before != 0 ? before->knots[1].velocity[axis] : 0.0;
-    way_point(&m->knots[1], axis, from, at, target[axis], both);
-    way_point(&m->knots[2], axis, at, target[axis], target[axis], time + time);
+    m->knots[0].position[axis] = before != 0 ? before->knots[1].position[axis] : start[axis];
+    m->knots[1].position[axis] = before != 0 ? before->knots[2].position[axis] : start[axis];
+    m->knots[2].position[axis] = start[axis];
     m->knots[3].position[axis] = target[axis];
-    m->knots[3].velocity[axis] = 0.0;
-    slice_pause();
   }
+  slice_pause();
 }
 
 /* In SPLINE1 another time ends the sequence: this move begins a new one behind it. */
@@ -102,7 +84,7 @@ void plan_spline(uint32_t cs) {
   m->time = cubic_time(cs);
   if (before->kind != MOVE_SPLINE || (s->mode == MODE_SPLINE1 && before->time != m->time)) s->may_join = false;
   m->overruns = false;
-  if (s->motors == 0) set_knots(s->may_join ? before : 0, m, target);
+  set_points(s->may_join ? before : 0, m, s->position, target);
   plan_finish(cs, m, true, target);
 }
 
@@ -110,5 +92,5 @@ void plan_spline_anew(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct move* m = &s->moves[s->executing ^ 1u];
   m->joins = false;
-  if (s->motors == 0) set_knots(0, m, s->position);
+  set_points(0, m, m->start, s->position);
 }

@@ -32,18 +32,47 @@ static double s_part(const struct move* m, double length) {
 /* Most axes stand still in most moves: nothing is calculated for them. */
 static double velocity(double delta, double time) { return delta == 0.0 ? 0.0 : delta / time; }
 
+/* Of a spline, from its points: (before + 4 at + after) / 6, and the velocity there, (after - before) / the time of
+ * both (motion:5.4/4). Behind the last point there is none, at it everything stands. */
+static void way_point(const struct move* m, uint32_t i, uint32_t axis, double* position, double* velocity) {
+  const uint32_t last = KNOTS - 1u, here = i < last ? i + 1u : last, behind = here < last ? here + 1u : last;
+  const double at = m->knots[here].position[axis];
+  *position = at;
+  *velocity = 0.0;
+  if (i == last) return;
+  const double back = m->knots[i].position[axis] - at, ahead = m->knots[behind].position[axis] - at;
+  if (back == 0.0 && ahead == 0.0) return;
+  const int64_t both = i == 0 ? m->time_ahead + m->knot_time[0] : m->knot_time[i - 1u] + m->time;
+  slice_pause();
+  *position = at + (back + ahead) / 6.0;
+  slice_pause();
+  *velocity = (ahead - back) / math_scale((double)both, -TRAJECTORY_FRACTION_BITS);
+  slice_pause();
+}
+
+static void knot_of(const struct move* m, uint32_t i, uint32_t axis, double* position, double* velocity) {
+  if (m->kind == MOVE_SPLINE) {
+    way_point(m, i, axis, position, velocity);
+  } else {
+    *position = m->knots[i].position[axis];
+    *velocity = m->knots[i].velocity[axis];
+  }
+}
+
 /* Of PVT and SPLINE moves. */
 static void on_cubics(const struct move* m, int64_t elapsed, double position[AXIS_COUNT]) {
   uint32_t i = 0;
   while (i + 2u < m->knot_count && elapsed > m->knot_time[i]) elapsed -= m->knot_time[i++];
-  const struct knot *first = &m->knots[i], *second = &m->knots[i + 1u];
   const double time = math_scale((double)m->knot_time[i], -TRAJECTORY_FRACTION_BITS);
   const double u = elapsed < m->knot_time[i] ? (double)elapsed / (double)m->knot_time[i] : 1.0;
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
-    const double way = second->position[axis] - first->position[axis];
-    position[axis] = first->position[axis];
-    if (way == 0.0 && first->velocity[axis] == 0.0 && second->velocity[axis] == 0.0) continue;
-    const double v0 = first->velocity[axis] * time, v1 = second->velocity[axis] * time;
+    double from, to, first, second;
+    knot_of(m, i, axis, &from, &first);
+    knot_of(m, i + 1u, axis, &to, &second);
+    const double way = to - from;
+    position[axis] = from;
+    if (way == 0.0 && first == 0.0 && second == 0.0) continue;
+    const double v0 = first * time, v1 = second * time;
     slice_pause();
     const double cube = (v0 + v1 - way - way) * u;
     slice_pause();

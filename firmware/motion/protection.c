@@ -306,7 +306,7 @@ void protection_stand(bool still) { stands = still; }
 
 void protection_pass(void) {
   if (stands) return;
-  foreground = i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0;
+  foreground = i_variable_foreground_in_position();
   protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)

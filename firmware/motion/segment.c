@@ -64,8 +64,10 @@ bool segment_is_busy(uint32_t cs) { return sequences[cs].runs || (paths[cs].coun
 bool segment_is_under_way(uint32_t cs) { return sequences[cs].runs; }
 
 bool segment_gives_way(uint32_t cs) {
-  if (!sequences[cs].runs || sequences[cs].handed) return true;
-  sequences[cs].closed = true;
+  struct sequence* q = &sequences[cs];
+  if (!q->runs) return true;
+  if (q->handed && !(q->looks && lookahead_may_hold(cs))) return true; /* it is known where that will end */
+  q->closed = true;
   return false;
 }
 
@@ -97,7 +99,14 @@ void segment_stop(uint32_t cs) {
 
 void segment_go_on(uint32_t cs) { sequences[cs].stops = false; }
 
+/* Isx21 */
+static void show(uint32_t cs, uint32_t state) {
+  const uint32_t shown = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE));
+  if (shown != state) i_variable_set_lookahead_state(cs, state);
+}
+
 void segment_forget(uint32_t cs) {
+  if (sequences[cs].looks) show(cs, 0);
   sequences[cs].runs = sequences[cs].looks = sequences[cs].stops = false;
   paths[cs].count = 0;
 }
@@ -444,13 +453,6 @@ static void obey(uint32_t cs) {
   lookahead_do(cs, order);
 }
 
-/* Isx21: 2 it moves on the path, 1 backwards, 8 a segment only. */
-static void show(uint32_t cs) {
-  const struct coordinate_system* s = &coordinate_systems[cs];
-  const uint32_t state = lookahead_state(cs, s->active), shown = (uint32_t)i_integer(i_cs(cs, ISX21_LOOKAHEAD_STATE));
-  if (shown != state) i_variable_set_lookahead_state(cs, state);
-}
-
 /* Through the lookahead buffer: what can be handed over comes first, then what makes that possible. */
 static bool go_ahead(uint32_t cs, bool alone) {
   const struct coordinate_system* s = &coordinate_systems[cs];
@@ -489,14 +491,26 @@ static bool go_ahead(uint32_t cs, bool alone) {
 
 static bool work_ahead(uint32_t cs, bool alone) {
   if (go_ahead(cs, alone)) return true;
-  show(cs);
+  show(cs, lookahead_state(cs, coordinate_systems[cs].active));
   return false;
+}
+
+/* The servo task has executed the sequence that was looked ahead: it stands. */
+static __attribute__((noinline)) void end_look(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  const bool waits = !s->active && s->next_valid && s->moves[s->executing ^ 1u].kind == MOVE_SEGMENTS;
+  if (waits || (s->active && s->moves[s->executing].kind == MOVE_SEGMENTS)) return;
+  sequences[cs].looks = false;
+  show(cs, 0);
 }
 
 static __attribute__((noinline)) bool work(uint32_t cs, bool alone) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
-  if (!q->runs) return paths[cs].count != 0 && begin(cs);
+  if (!q->runs) {
+    if (q->looks) end_look(cs);
+    return paths[cs].count != 0 && begin(cs);
+  }
   slice_pause();
   if (q->looks) return work_ahead(cs, alone);
   if (is_dry(s, q)) {

@@ -20,9 +20,6 @@ struct motor_move motor_moves[2][MOTORS];
 /* What a motor stands beside where its axes have it, at the start of a program. */
 static double aside[MOTORS];
 
-/* What it had followed when axes were matched with motors, and has not taken its axes along. */
-static int64_t followed[MOTORS];
-
 /* How axes make a motor's position. */
 static struct {
   bool by_program; /* motion/kinematics.h; else the sum of: */
@@ -59,10 +56,9 @@ void system_motors_resolve(uint32_t cs) {
   coordinate_systems[cs].motors = mask | kinematics_resolve(cs, by_program);
 }
 
-/* What axes are ahead of the trajectory. */
 static int64_t bias_of(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const int64_t value = motors[motor].bias + followed[motor];
+  const int64_t value = motor_axes_ahead(motor);
   hal_unmask(state);
   return value;
 }
@@ -93,6 +89,8 @@ void system_motors_come_along(uint32_t cs) {
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) aside[motor] = 0.0;
 }
+
+void system_motor_stands_aside(uint32_t motor, int64_t by) { aside[motor] = (double)by; }
 
 /* The first motor that carries it alone tells the turn. */
 double system_motors_turn(uint32_t cs, uint32_t axis, double target) {
@@ -213,7 +211,7 @@ static void solve(const struct equations* e, double position[AXIS_COUNT]) {
 static void take_followed(uint32_t cs) {
   const uint32_t state = hal_mask_servo();
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) followed[motor] = motor_followed(motor);
+    if ((left & 1u) != 0) motors[motor].matched = motor_followed(motor);
   hal_unmask(state);
 }
 
@@ -275,7 +273,7 @@ void system_motors_take(uint32_t cs) {
 void system_motors_begin(uint32_t cs) {
   if (!system_motors_match(cs)) return;
   system_motors_take(cs);
-  coordinate_systems[cs].matching = false;
+  coordinate_systems[cs].matching = coordinate_systems[cs].starting = false;
   coordinate_systems[cs].was_matched = true;
 }
 

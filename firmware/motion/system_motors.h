@@ -30,6 +30,7 @@ double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
  * tell where those are. Once it is placed they do not. */
 double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]);
 void system_motors_come_along(uint32_t cs);
+void system_motor_stands_aside(uint32_t motor, int64_t by); /* a limit has held it */
 /* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */
 double system_motors_turn(uint32_t cs, uint32_t axis, double target);
 double system_motor_velocity_at(uint32_t motor, const double velocity[AXIS_COUNT]);

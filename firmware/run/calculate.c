@@ -69,8 +69,10 @@ static void planned(uint32_t cs) {
   struct motion_program* p = &motion_programs[cs];
   p->under_way = false;
   p->jumps_begin = p->x.jumps_back;
-  if (p->asks_time) synchronous_move_time(cs);
-  p->asks_time = false;
+  if (p->asks_time && synchronous_is_move(cs)) {
+    synchronous_move_time(cs);
+    p->asks_time = false;
+  }
   if (s->stepping && !p->in_block) s->quit = true;
 }
 
@@ -89,6 +91,7 @@ static bool is_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (s->next_valid || (s->active && waits_for(s->moves[s->executing].kind))) return true;
+  if (s->matching && s->pending_axes == 0) return true;
   if (path_is_full(cs) || (paths[cs].count != 0 && !segment_is_under_way(cs))) return true;
   if (p->interrupt != cs_interrupts) {
     p->interrupt = cs_interrupts;
@@ -205,6 +208,12 @@ static bool has_gone_alone(const struct coordinate_system* s) {
   return s->moves[s->executing].kind == MOVE_OWN && !s->active && s->started == s->planned && !s->was_matched;
 }
 
+/* PMATCH and HOMEZ in a program: behind the moves of what had been begun by then. */
+static bool may_match(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return s->starting || (s->pending_axes == 0 && !cs_moves(s) && !segment_is_busy(cs));
+}
+
 /* False: there is nothing to do for it at this interrupt. */
 static bool turn(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -219,7 +228,7 @@ static bool turn(uint32_t cs) {
     fail(cs, s->failure);
     return true;
   }
-  if (s->matching || has_gone_alone(s)) {
+  if ((s->matching && may_match(cs)) || has_gone_alone(s)) {
     system_motors_begin(cs);
     return true;
   }

@@ -164,11 +164,15 @@ enum executed calls_prelude_call(struct motion_program* p) {
   const struct instruction* in = &p->prelude.call;
   const bool known =
       in->number == KEY_CALL ? calls_split(in->value, &program, &label) : split_code(in, &program, &label);
-  p->labelled = false;
-  return known ? call(p, program, label, false) : executor_fail(&p->x, RUN_TIME_PROGRAM);
+  p->x.at.statement = reader_offset(&p->x.at.reader); /* it has not begun; nor has its line without labels */
+  if (!p->x.at.in_line) p->x.at.line = p->x.at.statement;
+  const enum executed called = known ? call(p, program, label, false) : executor_fail(&p->x, RUN_TIME_PROGRAM);
+  if (called != EXECUTED_LATER) p->labelled = false;
+  return called;
 }
 
 void calls_note_label(struct motion_program* p, enum executed executed, const struct instruction* in) {
+  if (executed == EXECUTED_LATER) return;
   const bool label =
       executed == EXECUTED_STATEMENT && in->operation == OP_STATEMENT && (in->number == KEY_N || in->number == KEY_O);
   p->labelled = label && (!p->x.at.in_line || p->labelled);

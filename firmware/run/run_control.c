@@ -110,6 +110,14 @@ static error_t check_program(uint32_t cs) {
   return s->running || reader_check(&reader) != READER_BAD ? ERR_NONE : ERR_BAD_PROGRAM;
 }
 
+/* A PMATCH that stands in a slice: what it finds is of motors as they were resolved for it. */
+static void forget_match(uint32_t cs) {
+  const uint32_t state = hal_mask_real_time();
+  calculate_forget(cs);
+  coordinate_systems[cs].matching = false;
+  hal_unmask(state);
+}
+
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
   error_t error = check_motors(cs);
@@ -125,10 +133,13 @@ error_t run_start(uint32_t cs, bool single_step) {
     s->continuous = false;
     return ERR_NONE;
   }
-  if (!s->running) system_motors_resolve(cs);
+  if (!s->running) {
+    forget_match(cs);
+    system_motors_resolve(cs);
+  }
   uint32_t state = hal_mask_servo();
   if (!s->running) {
-    s->matching = s->motors != 0;
+    s->matching = s->starting = s->motors != 0;
     s->waited = true;
     s->unblended = cs_variable(cs, ISX92_BLEND_DISABLE) != 0.0;
     s->first = true;
@@ -150,19 +161,25 @@ error_t run_start(uint32_t cs, bool single_step) {
   return ERR_NONE;
 }
 
-static bool moves(const struct coordinate_system* s) {
-  const struct move *m = &s->moves[s->executing], *next = &s->moves[s->executing ^ 1u];
-  return (s->active && m->kind != MOVE_DWELL) || (s->next_valid && next->kind != MOVE_DWELL);
+static bool any_jogs(uint32_t cs) {
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
+    if ((left & 1u) != 0 && jog_is_moving(motor) && !jog_is_of_program(motor)) return true;
+  return false;
 }
 
-/* A DWELL may execute or wait: nothing is calculated behind it. */
+/* A DWELL may execute or wait: nothing is calculated behind it. What is being calculated meanwhile is executed first.
+ */
 error_t run_match(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   if (motion_buffer_open()) return ERR_NO_PROGRAM;
   const error_t error = kinematic_program_check(cs);
   if (error != ERR_NONE) return error;
-  if (s->settling || moves(s) || segment_is_busy(cs)) return ERR_PROGRAM_RUNNING;
-  if (!s->running) system_motors_resolve(cs);
+  if (s->settling || cs_moves(s) || segment_is_busy(cs)) return ERR_PROGRAM_RUNNING;
+  if (s->running && any_jogs(cs)) return ERR_MOVE_IN_PROGRESS; /* in a held program, which would take it */
+  if (!s->running) {
+    forget_match(cs);
+    system_motors_resolve(cs);
+  }
   const uint32_t state = hal_mask_real_time();
   s->matching = s->motors != 0;
   cs_awake |= 1u << cs;

@@ -94,22 +94,36 @@ enum executed synchronous_add(uint32_t cs, const struct instruction* in) {
   return executor_pass(&p->x);
 }
 
+/* The move that was planned last, if segments make it; null: it is the calculated one. */
+static const struct path_move* of_segments(uint32_t cs) {
+  if (paths[cs].count == 0) return 0;
+  const struct path_move* last = path_of(&paths[cs], paths[cs].count - 1u);
+  return last->number == coordinate_systems[cs].planned ? last : 0;
+}
+
+bool synchronous_is_move(uint32_t cs) {
+  const struct coordinate_system* s = &coordinate_systems[cs];
+  return of_segments(cs) != 0 || s->moves[s->executing ^ 1u].kind != MOVE_DWELL;
+}
+
 /* ms of the program that the move takes from rest to rest; 0: nobody knows. */
 static double time_of(uint32_t cs) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   const struct move* m = &s->moves[s->executing ^ 1u];
-  if (paths[cs].count != 0) {
-    const struct path_move* last = path_of(&paths[cs], paths[cs].count - 1u);
-    return math_scale((double)(last->time + last->acceleration), -PATH_TIME_BITS);
-  }
+  const struct path_move* last = of_segments(cs);
+  if (last != 0) { return math_scale((double)(last->time + last->acceleration), -PATH_TIME_BITS); }
   return m->kind == MOVE_OWN ? 0.0 : plan_milliseconds(m->time + m->acceleration);
 }
 
-/* No room: it is left out, the timer tells nothing. */
+/* No room: it is left out, the timer tells nothing (motion:8.3/3). */
 void synchronous_move_time(uint32_t cs) {
   const double ahead = cs_real(cs, ISX14_END_OF_MOVE_ANTICIPATION), time = time_of(cs);
   slice_pause();
-  if (ahead == 0.0 || time == 0.0 || room_for_one(cs) != ROOM) return;
+  if (ahead == 0.0 || time == 0.0) return;
+  if (room_for_one(cs) != ROOM) {
+    coordinate_systems[cs].slots_short = true;
+    return;
+  }
   const double units = math_scale(time + ahead, TRAJECTORY_FRACTION_BITS);
   struct assignment* a = waiting(cs, queues[cs].count++);
   a->move = coordinate_systems[cs].planned;

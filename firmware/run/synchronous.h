@@ -11,6 +11,7 @@ void synchronous_initialize(void);
 bool synchronous_is_short(const struct instruction* in); /* with a constant, in the form of the binary rotary buffer */
 /* LATER: no room until the next move starts. ERROR: no room for that many before one move. */
 enum executed synchronous_add(uint32_t cs, const struct instruction* in);
+bool synchronous_is_move(uint32_t cs);   /* what was planned last is no DWELL: MOVETIME is for it */
 void synchronous_move_time(uint32_t cs); /* MOVETIME: the timer Isx11, with the move that was planned last */
 bool synchronous_waits(void);            /* there is one whose move may have started */
 void synchronous_assign(void);           /* those whose move has started since; pauses behind each */

@@ -14,6 +14,7 @@ enum {
   I_BASE_TABLE = 8000,
   I_BASE_MACRO = 6800, /* MACRO IC 0 */
   I_BASE_SSI = 1015,
+  I_BASE_ONLY = 0,
   I_BASE_SUPPLEMENTARY = 0,
   I_BASE_SERVO = 0,
   I_BASE_CHANNEL = 0,
@@ -30,7 +31,9 @@ enum {
   I_CS_BLOCK = 100,
   I_SERVO_FIRST = 7000,
   I_IC_BLOCK = 50,
-  I_SSI_BLOCK = 5
+  I_SSI_BLOCK = 5,
+  I_ONLY_SEGMENTATION_TIME = 13, /* of a Geo PMAC */
+  I_ONLY_LOOKAHEAD_LENGTH = 1020
 };
 
 #define I_NAMES_OF(name, group, first, count) name = I_BASE_##group + (first), name##_COUNT = (count),

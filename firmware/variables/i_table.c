@@ -24,9 +24,12 @@ enum { ENTRY_COUNT = sizeof entries / sizeof entries[0], WIDEST_GROUP = 192, RES
 
 static uint8_t row_of[I_GROUP_COUNT][WIDEST_GROUP];
 
+static bool geo_pmac; /* kept: a call in i_table_place would cost each look at a variable 30 cycles */
+
 _Static_assert(ENTRY_COUNT <= 256, "rows are indexed by a byte");
 
 void i_table_initialize(void) {
+  geo_pmac = (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_GEO_PMAC) != 0u;
   for (unsigned row = 1; row < ENTRY_COUNT; ++row)
     for (unsigned i = 0; i < entries[row].count; ++i) row_of[entries[row].group][entries[row].first + i] = (uint8_t)row;
 }
@@ -60,16 +63,25 @@ static struct i_place in_macro_ic(uint32_t inside_all) {
   return place;
 }
 
-bool i_table_has_ssi(void) { return (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_GEO_PMAC) != 0u; }
+bool i_table_of_geo_pmac(void) { return geo_pmac; }
+
+static bool is_of_geo_pmac(uint32_t number) {
+  return number == I_ONLY_SEGMENTATION_TIME || number - I_BASE_SSI <= I_SSI_BLOCK;
+}
+
+static struct i_place of_geo_pmac(uint32_t number) {
+  if (number == I_ONLY_SEGMENTATION_TIME) return (struct i_place){I_GROUP_ONLY, ONLY_SEGMENTATION_TIME, 0, 0};
+  if (number == I_ONLY_LOOKAHEAD_LENGTH) return (struct i_place){I_GROUP_ONLY, ONLY_LOOKAHEAD_LENGTH, 0, 0};
+  return (struct i_place){I_GROUP_SSI, number - I_BASE_SSI, 0, 0};
+}
 
 /* What is in no group is reserved, as a number of GATHER without a row is. */
-struct i_place i_table_place(uint32_t number) {
+__attribute__((noinline)) struct i_place i_table_place(uint32_t number) {
+  if (geo_pmac && is_of_geo_pmac(number)) return of_geo_pmac(number);
   if (number < I_MOTOR_BLOCK) return (struct i_place){I_GROUP_GLOBAL, number, 0, 0};
   if (number >= I_BASE_TABLE) return (struct i_place){I_GROUP_TABLE, number - I_BASE_TABLE, 0, 0};
   if (number >= I_SERVO_FIRST) return in_servo_ic(number - I_SERVO_FIRST);
   if (number >= I_BASE_MACRO) return in_macro_ic(number - I_BASE_MACRO);
-  if (number - I_BASE_SSI < I_SSI_BLOCK && i_table_has_ssi())
-    return (struct i_place){I_GROUP_SSI, number - I_BASE_SSI, 0, 0};
   if (number < I_ESA_FIRST) return in_blocks(I_GROUP_MOTOR, number - I_MOTOR_BLOCK, I_MOTOR_BLOCK, 1);
   if (number < I_BASE_SYSTEM) return in_blocks(I_GROUP_ESA, number - I_ESA_FIRST, I_ESA_BLOCK, 0);
   if (number < I_BASE_GATHER) return (struct i_place){I_GROUP_SYSTEM, number - I_BASE_SYSTEM, 0, 0};
@@ -102,8 +114,9 @@ const struct i_entry* i_table_row(uint32_t number) { return i_table_entry(i_tabl
 
 uint32_t i_table_lock(i_group_t group) {
   static const uint8_t LOCKS[I_GROUP_COUNT] = {
-      [I_GROUP_SSI] = 1,           [I_GROUP_MOTOR] = 1, [I_GROUP_ESA] = 1,     [I_GROUP_CS] = 2,   [I_GROUP_MACRO] = 4,
-      [I_GROUP_SUPPLEMENTARY] = 4, [I_GROUP_SERVO] = 4, [I_GROUP_CHANNEL] = 4, [I_GROUP_TABLE] = 8};
+      [I_GROUP_SSI] = 1,     [I_GROUP_MOTOR] = 1, [I_GROUP_ESA] = 1,           [I_GROUP_CS] = 2,
+      [I_GROUP_ONLY] = 2,    [I_GROUP_MACRO] = 4, [I_GROUP_SUPPLEMENTARY] = 4, [I_GROUP_SERVO] = 4,
+      [I_GROUP_CHANNEL] = 4, [I_GROUP_TABLE] = 8};
   return LOCKS[group];
 }
 

@@ -18,6 +18,7 @@ typedef enum {
   I_GROUP_CHANNEL,
   I_GROUP_TABLE,
   I_GROUP_SSI,
+  I_GROUP_ONLY,
   I_GROUP_COUNT
 } i_group_t;
 
@@ -47,6 +48,8 @@ typedef enum {
   I_FIELD_TIME_BASE,
   I_FIELD_TIME_BASE_SLEW,
   I_FIELD_LOOKAHEAD,
+  I_FIELD_SEGMENTATION_TIME, /* one value for all systems of a Geo PMAC */
+  I_FIELD_LOOKAHEAD_LENGTH,  /* the same */
   I_FIELD_CONVERSION,
   I_FIELD_COMPENSATION,
   I_FIELD_ADC_RING,
@@ -81,7 +84,7 @@ struct i_place {
 void i_table_initialize(void);
 struct i_place i_table_place(uint32_t number);
 struct i_place i_table_next_of_ic(struct i_place place); /* of the next number of the same IC, without a division */
-bool i_table_has_ssi(void);                              /* this board has I1015 to I1019 of its own */
+bool i_table_of_geo_pmac(void);                          /* this board has I13, I1015 to I1020 of its own */
 const struct i_entry* i_table_entry(struct i_place place);
 const struct i_entry* i_table_row(uint32_t number); /* both at once */
 uint32_t i_table_lock(i_group_t group);             /* the bit of I41 that locks it; 0: none does */

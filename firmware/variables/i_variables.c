@@ -86,6 +86,20 @@ static bool is_open(struct i_place place, const struct i_entry* entry) {
   return (i_table_lock(place.group) & (uint32_t)i_integers[I41_VARIABLE_LOCK]) == 0u;
 }
 
+/* On a Geo PMAC I13 is Isx13 and I1020 Isx20 of every system (firmware:3.8): one value, under all its numbers. */
+static void share(const struct i_entry* entry, double value) {
+  if (entry->field != I_FIELD_SEGMENTATION_TIME && entry->field != I_FIELD_LOOKAHEAD_LENGTH) return;
+  if (!i_table_of_geo_pmac()) return;
+  const bool is_time = entry->field == I_FIELD_SEGMENTATION_TIME;
+  store(is_time ? I_ONLY_SEGMENTATION_TIME : I_ONLY_LOOKAHEAD_LENGTH, value);
+  for (uint32_t cs = 0; cs < COORDINATE_SYSTEMS; ++cs)
+    store(i_cs(cs, is_time ? ISX13_SEGMENTATION_TIME : ISX20_LOOKAHEAD_LENGTH), value);
+}
+
+bool i_variable_foreground_in_position(void) {
+  return i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0 && !i_table_of_geo_pmac();
+}
+
 void i_variable_write(uint32_t number, double value) {
   if (number >= VARIABLE_COUNT) return;
   const struct i_place place = i_table_place(number);
@@ -100,6 +114,7 @@ void i_variable_write(uint32_t number, double value) {
     i_timer_write(number, (int32_t)taken);
   else
     store(number, taken);
+  share(entry, taken);
   i_hardware_write(place, entry, (uint32_t)i_integers[number]);
   hal_unmask(state);
   if (i_effects[entry->field] != 0) i_effects[entry->field](place.instance);
@@ -153,10 +168,15 @@ static void repeat(uint32_t first, uint32_t copies, uint32_t source) {
   }
 }
 
+/* The first time all is 0 already, and a start with 22 ICs has no 0.3 ms to spare. */
 static void clear_all(void) {
+  static bool used;
   i_table_initialize();
-  __builtin_memset(value_of, 0, sizeof value_of);
-  __builtin_memset(i_integers, 0, sizeof i_integers);
+  if (used) {
+    __builtin_memset(value_of, 0, sizeof value_of);
+    __builtin_memset(i_integers, 0, sizeof i_integers);
+  }
+  used = true;
   i_hardware_initialize();
 }
 
@@ -182,7 +202,7 @@ void i_variable_initialize(void) {
   clear_all();
   defaults(I_BASE_GLOBAL, I_MOTOR_BLOCK, source);
   repeat(i_motor(1, 0), MOTORS - 1, source);
-  if (i_table_has_ssi()) defaults(I_BASE_SSI, I_SSI_BLOCK, source);
+  if (i_table_of_geo_pmac()) defaults(I_BASE_SSI, I_SSI_BLOCK + 1u, source);
   defaults(I_BASE_SYSTEM, CONFIGURATION_COUNT, source);
   defaults(I5061_ADC_RING, I5061_ADC_RING_COUNT, source);
   repeat(I_CS_FIRST, COORDINATE_SYSTEMS - 1, source);
@@ -240,7 +260,7 @@ static void write_ic(unsigned ic) {
 }
 
 void i_variable_write_ssi(void) {
-  for (uint32_t number = I_BASE_SSI; number < I_BASE_SSI + I_SSI_BLOCK && i_table_has_ssi(); ++number)
+  for (uint32_t number = I_BASE_SSI; number < I_BASE_SSI + I_SSI_BLOCK && i_table_of_geo_pmac(); ++number)
     i_hardware_write(i_table_place(number), i_table_row(number), (uint32_t)i_integers[number]);
 }
 

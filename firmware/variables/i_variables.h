@@ -17,6 +17,7 @@ void i_variable_write_part(uint32_t number, uint32_t mask, uint32_t bits);
 void i_timer_write(uint32_t number, int32_t value);    /* Isx11, Isx12 as words of memory: 24 bits, whatever I41 says */
 double i_variable_default(uint32_t number);            /* what `I{number}=*` assigns */
 void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
+bool i_variable_foreground_in_position(void);          /* I13, but of a Geo PMAC, where that is something else */
 extern int32_t i_integers[];
 /* The same of one that is no timer (Isx11, Isx12), for what runs at each interrupt. */
 static inline int32_t i_plain_integer(uint32_t number) { return i_integers[number]; }

@@ -1,5 +1,12 @@
 // What kinematic programs are refused for, and what stops one (motion:8.1/6 to motion:8.1/8).
 #include "testbench/unit/firmware_kinematics/arm.h"
+#include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
+
+extern "C" {
+#include "firmware/motion/axis_definition.h"
+#include "firmware/motion/jog.h"
+}
 
 namespace {
 
@@ -96,6 +103,62 @@ TEST_F(KinematicStops, ALongOneEnds) {
   EXPECT_NEAR(hand().x, 300, 1e-3);
 }
 
+// Of the time of slices, one after the other: the same 800 words with looks at the clock that take 20 and 3000 cycles.
+TEST_F(KinematicStops, TimeCounts) {
+  for (const unsigned cycles : {20u, 3000u}) {
+    SCOPED_TRACE(cycles);
+    platform::power_up();
+    fit_arm();
+    program("INVERSE", {"Q50=0", "WHILE(Q50<100)", "Q50=Q50+1", "ENDWHILE", "P1=Q7", "P2=Q8 P5=P5+1"});
+    store({"TM50 TA20 TS0", "X300 Y-200"});
+    ASSERT_EQ(host("&1B1R"), "");
+    fake_hal_on_pause([] {});
+    fake_hal_slices_leave(true);
+    fake_hal_set_look(cycles);
+    for (int i = 0; i < 10000 && p(5) == 0 && cs().error == RUN_TIME_NONE; ++i) fake_task_run_real_time();
+    fake_hal_slices_leave(false);
+    fake_hal_on_pause(nullptr);
+    fake_hal_set_look(100);
+    EXPECT_EQ(cs().error, cycles < 1000 ? RUN_TIME_NONE : RUN_TIME_KINEMATIC);
+    EXPECT_EQ(p(5), cycles < 1000 ? 1 : 0);
+  }
+}
+
+// While a program of &1 runs away, a motor of &2 begins its ramp.
+TEST_F(KinematicStops, RampsDoNotWait) {
+  fit_arm();
+  program("INVERSE", {"WHILE(1=1)", "ENDWHILE"});
+  ASSERT_EQ(host("I300=1 I311=0 I312=0 I315=1 I322=20 I319=1 I68=1"), "");
+  ASSERT_EQ(host("&2#3->1000X"), "");
+  ASSERT_EQ(host("#3->"), "1000X");
+  ASSERT_EQ(axis_definitions[2].cs, 1u);
+  motors[2] = {};
+  motors[2].loop = LOOP_CLOSED;
+  motors[2].position_scale = 96;
+  motors[2].cs = 1;
+  ASSERT_EQ(host("#3J+"), "");
+  platform::servo_ticks(300);
+  store({"TM50 TA20 TS0", "X300 Y-200"});
+  ASSERT_FALSE(jog_is_moving(0) || jog_is_moving(1));
+  ASSERT_EQ(host("&1B1R"), "");
+  fake_hal_on_pause([] {});
+  fake_hal_slices_leave(true);
+  for (int i = 0; i < 300; ++i) fake_task_run_real_time();  // within the program
+  ASSERT_EQ(host("#3J/"), "");
+  double before = at(3);
+  int still = 0;
+  for (int i = 0; i < 1500 && still < 2; ++i) {
+    fake_task_run_real_time();
+    platform::servo_ticks(1);
+    still = at(3) == before ? still + 1 : 0;
+    before = at(3);
+  }
+  EXPECT_TRUE(run_is_running(0)) << "the program still runs away";
+  fake_hal_slices_leave(false);
+  fake_hal_on_pause(nullptr);
+  EXPECT_EQ(still, 2) << "20 counts a ms at 1 a ms^2 is 20 ms, 45 servo interrupts";
+}
+
 // 1/0 is 2^47 (firmware:10/9): no position of a motor.
 TEST_F(KinematicStops, ADivisionByZero) {
   for (const char* isx13 : {"0", "10"}) {
@@ -105,6 +168,29 @@ TEST_F(KinematicStops, ADivisionByZero) {
     program("INVERSE", {"P1=Q8/0", "P2=0"});
     ASSERT_EQ(host(std::string("I5113=") + isx13), "");
     stops_with(RUN_TIME_KINEMATIC);
+  }
+}
+
+// What could not be solved is not executed, in cubics neither: no motor moves at all.
+TEST_F(KinematicStops, NothingMovesByASolutionThatFailed) {
+  const Lines programs[] = {
+      {"PVT100", "X390:-200", "X370:0"}, {"SPLINE1 TM100", "X390", "X370"}, {"TM100 TA50", "X390"}};
+  for (const Lines& lines : programs) {
+    SCOPED_TRACE(lines.front());
+    platform::power_up();
+    fit_arm();
+    program("INVERSE", {"P1=Q8/0", "P2=0"});
+    store(lines);
+    const double stands = at(1), other = at(2);
+    ASSERT_EQ(host("&1B1R"), "");
+    bool moved = false;
+    for (int i = 0; i < 1000; ++i) {
+      platform::servo_ticks(1);
+      moved = moved || at(1) != stands || at(2) != other;
+    }
+    EXPECT_FALSE(moved);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_EQ(cs().error, RUN_TIME_KINEMATIC);
   }
 }
 
@@ -202,6 +288,62 @@ TEST_F(KinematicStops, PmatchWhileMovesExecute) {
   EXPECT_EQ(host("PMATCH"), "ERR001");
   platform::servo_ticks(ticks_of(400));
   EXPECT_NEAR(hand().x, 300, 1e-3);
+}
+
+// R, or PMATCH once more, while the forward program of PMATCH stands in a slice: it begins anew.
+TEST_F(KinematicStops, WhatComesInTheMiddleOfPmatch) {
+  fit_arm();
+  store({"TM20 TA10 TS0", "X350"});
+  for (const bool starts : {true, false}) {
+    unsigned within = 0;
+    for (unsigned slices = 1; slices < 200; slices += 3) {
+      SCOPED_TRACE(testing::Message() << (starts ? "R" : "PMATCH") << " behind " << slices << " slices");
+      put(arm::joints({400, 100}));
+      ASSERT_EQ(host("&1B1 PMATCH"), "");
+      fake_hal_on_pause([] {});
+      fake_hal_slices_leave(true);
+      for (unsigned i = 0; i < slices && cs().matching; ++i) fake_task_run_real_time();
+      const bool left = cs().matching;
+      within += left ? 1u : 0u;
+      put(arm::joints({420, 50}));
+      EXPECT_EQ(starts ? run_start(0, false) : run_match(0), ERR_NONE);
+      fake_hal_slices_leave(false);
+      fake_hal_on_pause(nullptr);
+      for (int i = 0; i < 500 && (run_is_running(0) || cs().matching); ++i) platform::servo_ticks(1);
+      ASSERT_EQ(cs().error, RUN_TIME_NONE);
+      ASSERT_NEAR(axis(AXIS_Y), 50, 1e-4);
+      ASSERT_NEAR(hand().x, starts ? 350 : 420, 1e-3);
+      ASSERT_NEAR(hand().y, 50, 1e-3);
+      if (!left) break;
+    }
+    EXPECT_GT(within, 20u);
+  }
+}
+
+// In a held program the motors are not the program's: one that jogs is not taken from its jog.
+TEST_F(KinematicStops, PmatchWhileAMotorOfAHeldProgramJogs) {
+  fit_arm();
+  ASSERT_EQ(host("I122=100 I119=10 I5195=200000 I5194=200000"), "");
+  store({"TM50 TA20 TS0", "X390", "DWELL1000", "X350"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(200));
+  ASSERT_EQ(host("H"), "");
+  platform::servo_ticks(ticks_of(100));
+  const double from = at(1);
+  ASSERT_EQ(host("#1J:3000"), "");
+  platform::servo_ticks(20);
+  EXPECT_EQ(host("PMATCH"), "ERR011");
+  platform::servo_ticks(ticks_of(300));
+  EXPECT_NEAR(at(1), from + 3000, 1e-3) << "the jog has come to its end";
+  EXPECT_EQ(host("PMATCH"), "");
+  platform::servo_ticks(30);
+  const arm::Point stands = hand();
+  EXPECT_NEAR(axis(AXIS_X), stands.x, 1e-4);
+  ASSERT_EQ(host("R"), "");
+  platform::servo_ticks(ticks_of(1500));
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  EXPECT_NEAR(hand().x, 350, 1e-3);
+  EXPECT_NEAR(hand().y, stands.y, 1e-3);
 }
 
 // An abort at any pause of a program: nothing of it is left, and the next run is as the first.

@@ -157,6 +157,27 @@ TEST_F(Kinematics, SplinesAreThoseOfTheJoints) {
   EXPECT_NEAR(hand().y, 70, 1e-3);
 }
 
+// The inverse program has the elbow on the other side: from rest a move begins where the joints are all the same.
+TEST_F(Kinematics, PvtBeginsWhereTheMotorsAre) {
+  fit({"I"});
+  program("FORWARD", {"Q7=ABS(P1)/1000"});
+  program("INVERSE", {"P1=Q7*1000 P101=Q17*1000 P6=P6+1"});
+  ASSERT_EQ(host("I5150=1 I5190=1000"), "");
+  store({"PVT100", "X2:10"});  // the last solution is one in motion
+  run();
+  platform::servo_ticks(1500);  // ramps to rest
+  motors[0].trajectory = std::llround(-1000 * kUnit);
+  store({"PVT100", "X2:10", "X3:0"});
+  double worst = 0;
+  run([&](double t) {  // 3000 counts from rest to 10 counts a ms
+    const double u = t / 100;
+    if (u < 1) worst = std::max(worst, std::abs(at(1) - (-1000 + 8000 * u * u - 5000 * u * u * u)));
+  });
+  EXPECT_LE(worst * kUnit, 4.0) << "units of position";
+  EXPECT_NEAR(at(1), 3000, 1e-3);
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+}
+
 // The way on of a PVT move without a next one leads out of what the arm reaches; nobody asks the program there.
 TEST_F(Kinematics, PvtRunsOnInTheJoints) {
   fit_arm({460, 0});
@@ -260,6 +281,52 @@ TEST_F(Kinematics, PmatchInAProgram) {
   EXPECT_NEAR(hand().x, 360, 1e-3);
 }
 
+// While X10 is calculated, PMATCH waits until it is over: X20 then goes from there, and not before.
+TEST_F(Kinematics, PmatchWhileAMoveIsCalculated) {
+  for (const char* isx13 : {"0", "10"}) {
+    unsigned accepted = 0, behind = 0;
+    for (unsigned at_pause = 1; at_pause < 400; ++at_pause) {
+      SCOPED_TRACE(testing::Message() << "Isx13=" << isx13 << ", pause " << at_pause);
+      platform::power_up();
+      fit({"1000X"});
+      ASSERT_EQ(host(std::string("I5113=") + isx13), "");
+      store({"TM30 TA20 TS0", "X10 Y0", "X20"});
+      ASSERT_EQ(host("&1B1R"), "");
+      unsigned pauses = 0;
+      bool waits = false, within = false;
+      double place = -1;
+      const auto look = [&] {
+        if (!waits || cs().matching) return;
+        waits = false;
+        within = cs().pending_axes != 0;
+        place = at(1);
+      };
+      for (int i = 0; i < 3 && pauses < at_pause; ++i)
+        platform::real_time_in_slices([&] {
+          look();
+          if (++pauses == at_pause && run_match(0) == ERR_NONE) waits = true, ++accepted;
+        });
+      double before = at(1), fastest = 0;
+      for (int i = 0; i < 1000 && run_is_running(0); ++i) {
+        platform::servo_ticks(1);
+        fastest = std::max(fastest, std::abs(at(1) - before));
+        before = at(1);
+        look();
+      }
+      ASSERT_FALSE(within) << "in the middle of a line";
+      ASSERT_TRUE(place == -1 || place == 0 || place == 10000) << place;
+      behind += place == 10000 ? 1u : 0u;
+      ASSERT_EQ(at(1), 20000);
+      ASSERT_EQ(axis(AXIS_X), 20);
+      ASSERT_LE(fastest, 10000 / 30.0 * kTickMs + 1);
+      ASSERT_EQ(cs().error, RUN_TIME_NONE);
+      if (pauses < at_pause) break;
+    }
+    EXPECT_GT(accepted, 10u) << isx13;
+    EXPECT_GT(behind, 5u) << isx13;
+  }
+}
+
 TEST_F(Kinematics, HomezFindsTheAxesAnew) {
   fit_arm();
   ASSERT_EQ(host("I5113=10"), "");
@@ -284,6 +351,40 @@ TEST_F(Kinematics, PsetIsTheBiasOfTheMotors) {
   store({"TM50 TA20 TS0 X400"});
   run();
   EXPECT_NEAR(at(1) + static_cast<double>(motors[0].bias) / kUnit, joints({400, 50}).shoulder, 0.01);
+}
+
+// motion:1.2/4: in normal mode a program takes back what has been followed, from where the motor is.
+TEST_F(Kinematics, AMotorThatHasFollowed) {
+  const Lines programs[] = {
+      {"TM100 TA20 TS0 X1"}, {"INC TM100 TA20 TS0 X1"}, {"RAPID X1"}, {"SPLINE1 TM50 X1"}, {"PVT100 X1:0"}};
+  const double normal[] = {1000, 1500, 1000, 1000, 1000};
+  for (unsigned i = 0; i < 5; ++i) {
+    for (const unsigned mode : {1u, 3u}) {
+      SCOPED_TRACE(testing::Message() << programs[i].front() << ", Ixx06=" << mode);
+      platform::power_up();
+      fit({"I"});
+      program("FORWARD", {"Q7=P1/1000"});
+      program("INVERSE", {"P1=Q7*1000"});
+      ASSERT_EQ(host("I5150=1 I119=1 I120=20 I121=0 I122=20 I105=$10F0 I107=96 I106=" + std::to_string(mode)), "");
+      platform::servo_ticks(3);
+      *hal_x(0x10F0) = 500 * 32;  // the master
+      platform::servo_ticks(1);
+      const auto commanded = [] { return static_cast<double>(motors[0].commanded) / kUnit; };
+      ASSERT_EQ(commanded(), 500);
+      store(programs[i]);
+      ASSERT_EQ(host("&1B1R"), "");
+      double before = commanded(), fastest = 0;
+      for (int tick = 0; tick < 3000 && run_is_running(0); ++tick) {
+        platform::servo_ticks(1);
+        fastest = std::max(fastest, std::abs(commanded() - before));
+        before = commanded();
+      }
+      EXPECT_NEAR(commanded(), mode == 1 ? normal[i] : 1500, 1e-3);
+      EXPECT_LT(fastest, 1500 / 50.0 * kTickMs) << "no leap";
+      EXPECT_EQ(motors[0].bias, 0);
+      EXPECT_EQ(cs().error, RUN_TIME_NONE);
+    }
+  }
 }
 
 // Isx50 is taken at the start of a program.

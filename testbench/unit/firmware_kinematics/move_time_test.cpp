@@ -54,6 +54,53 @@ TEST_F(MoveTime, InEachMode) {
   EXPECT_EQ(left_at_zero({"RAPID", "MOVETIME X3"}, 0), -1) << "nobody knows how long";
 }
 
+// A move of another kind that is calculated while segments execute: its own time, not that of the path.
+TEST_F(MoveTime, BehindAPathInSegments) {
+  ASSERT_EQ(host("I5114=-1 I5113=10 I5111=0"), "");
+  store({"TM300 TA40 TS10", "X1", "MOVETIME PVT150", "X2:0"});
+  double most = 0, begins = -1;
+  const double end = run([&](double t) {
+    const double value = std::stod(host("I5111"));
+    if (value > most) most = value, begins = t;
+  });
+  EXPECT_NEAR(most * kTickMs, 149, 4 * kSlack);
+  EXPECT_NEAR(end - begins, 150, 4 * kSlack);
+}
+
+// motion:8.3/1: a DWELL is no move, a DELAY is one; in segments and without.
+TEST_F(MoveTime, ADwellIsNoMove) {
+  for (const char* isx13 : {"0", "10"}) {
+    SCOPED_TRACE(isx13);
+    ASSERT_EQ(host(std::string("I5114=-1 I5111=0 I5113=") + isx13), "");
+    store({"TM100 TA40 TS10", "MOVETIME DWELL50", "DWELL30", "INC X1", "DWELL200"});
+    double begins = -1, most = 0;
+    run([&](double t) {
+      const double value = std::stod(host("I5111"));
+      if (value > 0 && begins < 0) begins = t;
+      most = std::max(most, value);
+    });
+    EXPECT_GE(begins, 80 - kSlack);
+    EXPECT_NEAR(most * kTickMs, 139, kSlack);
+    ASSERT_EQ(host("I5111=0"), "");
+    EXPECT_NEAR(left_at_zero({"TM100 TA40 TS10", "MOVETIME DELAY100", "DWELL200"}, 140), 1, 2 * kSlack);
+  }
+}
+
+// motion:8.3/3
+TEST_F(MoveTime, WithoutASlotInLookaheadItIsLostAndSaidSo) {
+  ASSERT_EQ(host("DELETE GATHER I5114=-1 I5113=10 I5120=60 I116=100 I117=1"), "");
+  for (const bool slot : {true, false}) {
+    ASSERT_EQ(host(std::string("&1DEFINE LOOKAHEAD 300,") + (slot ? "1" : "0")), "");
+    ASSERT_EQ(host("I5111=0"), "");
+    store({"TM100 TA40 TS10 INC", "MOVETIME X1"});
+    double most = 0;
+    run([&](double) { most = std::max(most, std::stod(host("I5111"))); });
+    EXPECT_EQ(most > 0, slot);
+    EXPECT_EQ(motion_cs_status(0, 2) >> 19 & 1u, slot ? 0u : 1u);
+    ASSERT_EQ(host("DELETE LOOKAHEAD"), "");
+  }
+}
+
 TEST_F(MoveTime, LongerThanNothingAtAll) {
   ASSERT_EQ(host("I5114=-500 I5111=77"), "");
   store({"TM100 TA40 TS10", "MOVETIME X1"});

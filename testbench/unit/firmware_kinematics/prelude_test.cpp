@@ -1,4 +1,5 @@
 // PRELUDE (motion:8.4): a call before each line that begins with a move.
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/motion_program.h"
 
 namespace {
@@ -108,6 +109,52 @@ TEST_F(Prelude, WhatIsNoCallIsARunTimeError) {
   run({"F1000", "PRELUDE1 CALL501", "X1"});
   EXPECT_EQ(coordinate_systems[0].error, RUN_TIME_PROGRAM) << "at the move, when the program is not there";
   EXPECT_EQ(x(), 0);
+}
+
+// Programs are moved in the middle of anything: each line has its call all the same, behind its labels too.
+TEST_F(Prelude, WhileProgramsAreMoved) {
+  unsigned moved = 0;
+  for (unsigned slices = 1; slices < 300; ++slices) {
+    SCOPED_TRACE(slices);
+    platform::power_up();
+    store(500, {"P3=3", "N20 P1=P1+1", "RETURN"});
+    store(1, {"F1000", "P1=0", "PRELUDE1 CALL500.0002", "N10N11 X1", "Y(1+1)", "P2=1"});
+    ASSERT_EQ(host("P1=0 P2=0 B1R"), "");
+    fake_hal_on_pause([] {});
+    fake_hal_slices_leave(true);
+    for (unsigned i = 0; i < slices && p(2) == 0; ++i) fake_task_run_real_time();
+    const bool over = p(2) != 0;
+    const unsigned before = fixed_programs_generation();
+    ASSERT_EQ(host("OPEN PLC 5 CLEAR P9=1 CLOSE"), "");
+    moved += fixed_programs_generation() != before ? 1u : 0u;
+    fake_hal_slices_leave(false);
+    fake_hal_on_pause(nullptr);
+    ASSERT_TRUE(finish());
+    ASSERT_FALSE(error());
+    ASSERT_EQ(p(1), 2);
+    if (over) break;
+  }
+  EXPECT_GT(moved, 20u);
+}
+
+// Before its line has begun: PE shows that line, and an error leaves the program at it.
+TEST_F(Prelude, TheCallIsOfTheLineThatItStandsBefore) {
+  store(500, {"DWELL1000", "RETURN"});
+  store(1, {"F1000", "PRELUDE1 CALL500", "N7", "X1"});
+  ASSERT_EQ(host("B1.00007"), "");
+  const std::string label = host("PC");
+  ASSERT_EQ(label.substr(0, 3), "P1:");
+  ASSERT_EQ(host("B1R"), "");
+  platform::servo_ticks(30);
+  const std::string line = "P1:" + std::to_string(std::stoi(label.substr(3)) + 1);
+  EXPECT_EQ(host("PE"), line + ">P500:0");
+  ASSERT_EQ(host("A"), "");
+  platform::servo_ticks(30);
+  store(1, {"F1000", "PRELUDE1 CALL501", "N7", "X1"});
+  ASSERT_EQ(host("B1R"), "");
+  platform::servo_ticks(30);
+  EXPECT_EQ(coordinate_systems[0].error, RUN_TIME_PROGRAM);
+  EXPECT_EQ(host("PC"), line) << "R begins there";
 }
 
 TEST_F(Prelude, AStepIsTheLineWithIt) {

@@ -21,7 +21,7 @@ TEST(Fixed, SharesAreRoundedToNearest) {
     const auto part = static_cast<std::int64_t>(random()) >> (1 + random() % 3);
     const __int128 exact = static_cast<__int128>(value) * part;
     const auto expected = static_cast<std::int64_t>((exact + (static_cast<__int128>(1) << 61)) >> 62);
-    ASSERT_NEAR(static_cast<double>(fixed_share(value, part) - expected), 0, 1) << value << " " << part;
+    ASSERT_EQ(fixed_share(value, part), expected) << value << " " << part;
   }
   EXPECT_EQ(fixed_share(1000, std::int64_t{1} << 62), 1000);
   EXPECT_EQ(fixed_share(-1000, std::int64_t{1} << 61), -500);
@@ -39,6 +39,21 @@ TEST(Fixed, Ratios) {
     const std::int64_t by = std::int64_t{1} << bit;
     EXPECT_NEAR(static_cast<double>(fixed_ratio(by, by)) / kPart, 1, 1e-16);
   }
+}
+
+TEST(Fixed, Fractions) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 40000; ++i) {
+    const std::uint32_t by =
+        (i % 2 == 0 ? static_cast<std::uint32_t>(random()) | 0xFFFFu : random()) >> (random() % 30);
+    if (by < 3) continue;
+    const auto value = static_cast<std::uint32_t>(random() % ((by + 1) / 2));
+    const double exact = static_cast<double>(value) * 4294967296.0 / by;
+    const auto found = static_cast<double>(fixed_fraction(value, by));
+    ASSERT_LE(found, exact + exact / (1 << 30)) << value << " / " << by;
+    ASSERT_GE(found, exact - exact / (1 << 28) - 2) << value << " / " << by;
+  }
+  EXPECT_EQ(fixed_fraction(0, 5), 0u);
 }
 
 TEST(Fixed, Roots) {

@@ -1,5 +1,10 @@
 // Lookahead (motion:7.3, motion:7.4): what is executed keeps the limits, and the path.
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/moving_motors.h"
+
+extern "C" {
+#include "firmware/motion/lookahead_state.h"
+}
 
 namespace {
 
@@ -62,6 +67,48 @@ TEST_F(Lookahead, CornersAreSlowedDown) {
   EXPECT_LE(found[0].velocity, 40 * 1.005);
   EXPECT_GT(found[0].velocity, 39.5);
   RecordProperty("ms", static_cast<int>(end));
+}
+
+// A motor that comes to its velocity within a segment: that is not reckoned in the grain of its acceleration.
+TEST_F(Lookahead, VelocityIsLimitedWhateverTheAccelerationIs) {
+  for (const char* acceleration : {"1000", "1000000"})
+    for (const double velocity : {1.0, 4.0, 7.0}) {
+      SCOPED_TRACE(std::string(acceleration) + " " + std::to_string(velocity));
+      platform::power_up();
+      fit({"1000X"});
+      ASSERT_EQ(host("I5113=10 I5120=40 I116=" + std::to_string(velocity)), "");
+      ASSERT_EQ(host("I117=" + std::string(acceleration)), "");
+      ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+      store({"F40 TA10 TS0", "X2", "X0"});
+      double end = 0;
+      const auto found = extremes(1, &end);
+      EXPECT_LE(found[0].velocity, 1.001 * velocity + 2 / kUnit / kTickMs) << "two units of position";
+      EXPECT_GE(found[0].velocity, 0.999 * velocity - 2 / kUnit / kTickMs);
+      EXPECT_EQ(motors[0].trajectory, 0);
+    }
+}
+
+// An abort forgets what is being worked out, in the middle of it; what comes then has all of its limits.
+TEST_F(Lookahead, AbortsLeaveTheLimitsAsTheyAre) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I216=50 I217=0.5"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+  store({"F40 TA10 TS0", "X1", "Y1", "X0", "Y0"});
+  const double before = run();
+  for (unsigned n = 0; n < 300; ++n) {
+    ASSERT_EQ(host("&1B1R"), "");
+    fake_hal_slices_leave(true);
+    looks[0].sweeping = false;  // that of the last round
+    for (unsigned slice = 0; slice < 10000 && !looks[0].sweeping; ++slice) platform::real_time();
+    ASSERT_TRUE(looks[0].sweeping);
+    for (unsigned slice = 0; slice < n % 20; ++slice) platform::real_time();
+    ASSERT_EQ(host("&1A"), "");
+    fake_hal_slices_leave(false);
+    platform::servo_ticks(10);
+    ASSERT_FALSE(run_is_running(0));
+  }
+  EXPECT_EQ(motors[0].trajectory, 0);
+  EXPECT_EQ(run(), before);
 }
 
 // LA-5: 400 counts/ms, 1 count/ms^2, 5 ms: StopTime / 2 = 200 ms are 40 segments, 4/3 of them 54. Half as many hold the
@@ -393,6 +440,37 @@ TEST_F(Lookahead, AssignmentsWaitInTheSlotsOfTheBuffer) {
     store({"TM10 X0"});
     run();
     EXPECT_EQ(word3() >> 19 & 1, 0u) << "of the last start";
+  }
+}
+
+// firmware:4.2/12. Assignments of moves that Q leaves for the next start wait in the buffer: it stays until A.
+TEST_F(Lookahead, ABufferInWhichAssignmentsWaitStays) {
+  for (const bool aborts : {false, true}) {
+    SCOPED_TRACE(aborts);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I5120=20 I116=50 I117=1 M1..4->* M1..4=0"), "");
+    ASSERT_EQ(host("DELETE GATHER"), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"TM200 TA20 TS0", "M1==1 X1", "M2==1 X2", "M3==1 X3", "M4==1"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(150));
+    ASSERT_EQ(host("&1Q"), "");
+    platform::servo_ticks(ticks_of(1000));
+    ASSERT_FALSE(run_is_running(0));
+    ASSERT_EQ(word3() >> 20 & 1, 1u);
+    for (const char* command : {"&1DELETE LOOKAHEAD", "&1DEFINE LOOKAHEAD 60,10", "&2DELETE ALL", "DELETE ALL TEMPS"})
+      EXPECT_EQ(host(command), "ERR001") << command;
+    if (aborts) {
+      ASSERT_EQ(host("&1A"), "");
+      platform::servo_ticks(10);
+      EXPECT_EQ(host("&1DELETE LOOKAHEAD"), "");
+      continue;
+    }
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(1500));
+    for (int m = 1; m <= 4; ++m) EXPECT_EQ(m_variable_read(m), 1) << m;
+    EXPECT_EQ(host("&1DELETE LOOKAHEAD"), "");
   }
 }
 

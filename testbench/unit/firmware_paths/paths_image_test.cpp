@@ -16,7 +16,7 @@ class PathsImage : public ::testing::Test {
   void accepted(const std::string& line) { ASSERT_EQ(board.send(line + "\r"), "\x06") << line; }
   double value(const std::string& name) { return std::stod(board.send(name + "\r")); }
 
-  // Eight motors along blended lines and arcs without end, 5 ms a segment.
+  // Eight motors along blended lines and arcs, 5 ms a segment, P3 times.
   void start(int ahead, const std::string& acceleration, const std::vector<std::string>& lines) {
     const char* axes = "XYZABCUV";
     for (int m = 1; m <= 8; ++m) {
@@ -31,9 +31,9 @@ class PathsImage : public ::testing::Test {
     accepted("A");
     board.run_ms(20);
     accepted("OPEN PROG 1 CLEAR");
-    accepted("TM40 TA10 TS0 INC P2=0 WHILE(1=1)");
+    accepted("TM40 TA10 TS0 INC P1=0 P2=0 P3=1000000 WHILE(P1<P3)");
     for (const std::string& line : lines) accepted(line);
-    accepted("ENDWHILE CLOSE");
+    accepted("P1=P1+1 ENDWHILE CLOSE");
     accepted("B1R");
   }
   // Mean of `count` segments behind the first `before`.
@@ -47,6 +47,13 @@ class PathsImage : public ::testing::Test {
                 static_cast<unsigned long long>(own.longest()), own.longest_at().c_str());
     EXPECT_EQ(value("RY$2014"), 0) << "a run-time error: the servo task came to the end of the segments";
     return mean;
+  }
+  // To the end of the program: how often it has been along the lines.
+  double finish() {
+    accepted("P3=P1+2");
+    for (int i = 0; (static_cast<int>(value("M3")) & 1) != 0 && i < 200; ++i) board.run_ms(20);
+    EXPECT_EQ(value("M3"), 0) << "it runs on";
+    return value("P3");
   }
   ImageBoard board{BRICK_FIRMWARE_ELF, 0x3};
 };
@@ -62,6 +69,16 @@ TEST_F(PathsImage, ASegmentOfEightAxesAtSpeed) {
   start(54, "0.06", kSmooth);
   OwnCycles own(board, "segment_work", "lookahead_add");
   EXPECT_LE(cycles_a_segment(own, 60, 400), 20000);
+  EXPECT_LE(own.longest(), 500u) << own.longest_at();
+}
+
+// S-curves, and changes of velocity that have less room than they ask for.
+TEST_F(PathsImage, ShortMovesPauseInTime) {
+  start(54, "1",
+        {"TM12 TA12 TS3 LINEAR X.1 Y.2 Z-.1 A.1 B.3 C.1 U.1 V-.1", "TM13 TA4 X-.1 Y.1 Z.2 A-.2 B.1 C-.1 U-.1"});
+  OwnCycles own(board, "segment_work", "lookahead_add");
+  cycles_a_segment(own, 60, 100);
+  EXPECT_LE(own.longest(), 500u) << own.longest_at();
 }
 
 TEST_F(PathsImage, ASegmentOfEightAxesWithCorners) {
@@ -70,11 +87,14 @@ TEST_F(PathsImage, ASegmentOfEightAxesWithCorners) {
   const double few = cycles_a_segment(own, 60, 1000);
   EXPECT_LE(few, 20000);
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
-  accepted("A");
-  board.run_ms(500);
+  accepted("M1->D:$88 M2->D:$108 M3->X:$2040,0");
+  const double rounds = finish();
+  EXPECT_EQ(value("M1") / 3072, rounds * 1900);
+  EXPECT_EQ(value("M2") / 3072, rounds * 1200);
   own.from_here();
   start(1000, "1", kCorners);
   const double many = cycles_a_segment(own, 1100, 500);
+  EXPECT_LE(own.longest(), 500u) << own.longest_at();
   EXPECT_LE(many, 1.2 * few);
   EXPECT_GE(many, few / 1.2);
 }

@@ -137,6 +137,56 @@ TEST_F(Segments, AxesAndMotorsOfAPointAgree) {
   EXPECT_GT(widest, 20) << "the spiral has not been looked at";
 }
 
+// Nearly straight: 990 units of way on a radius of 10^8, which is 2^48 units of position.
+TEST_F(Segments, AnArcOfLargeRadiusEndsAtItsEnd) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=10 I5190=1000"), "");
+  store({"F1000 TA100 TS0", "CIRCLE1 X700 Y700 R100000000"});
+  const double radius = 1e8, chord = std::hypot(700, 700), half = std::asin(chord / 2 / radius);
+  const double time = 2 * half * radius;  // ms, at one a ms
+  const auto part = [=](double t) { return (risen(t, 100, 0) - risen(t - time, 100, 0)) / time; };
+  const auto along = [=](double t) {  // from the middle: sin(a) is a
+    return chord / 2 + radius * half * (2 * part(t) - 1);
+  };
+  const auto beside = [=](double t) {  // cos(a) - cos(b) = 2 sin((b + a) / 2) sin((b - a) / 2)
+    return 2 * radius * half * part(t) * half * (1 - part(t));
+  };
+  const auto x = [=](double t) { return 1000 * std::sqrt(0.5) * (along(t) - beside(t)); };
+  const auto y = [=](double t) { return 1000 * std::sqrt(0.5) * (along(t) + beside(t)); };
+  EXPECT_NEAR(beside(time / 2 + 50), 1.225e-3, 1e-6) << "a count and a quarter";
+  const double tolerance = 2 * 512;  // directions are good to 2^-39
+  follow({Spline(x, time + 100, 10), Spline(y, time + 100, 10)}, tolerance);
+  EXPECT_EQ(motors[0].trajectory, 700000LL * 3072);
+  EXPECT_EQ(motors[1].trajectory, 700000LL * 3072);
+}
+
+// motion:7.2/9. A radius of 2^61 units of position: a way of 2^31 has no bend.
+TEST_F(Segments, AnArcBeyondAllRadiiIsStraight) {
+  fit({"10000000X", "10000000Y"});
+  ASSERT_EQ(host("I5113=10 I5190=1000 I5197=.0000000001"), "");
+  store({"F.1 TA100 TS0", "CIRCLE1 X.07 Y.07 R100000000"});
+  const double time = 10000 * std::hypot(.07, .07);  // ms
+  const Spline each([=](double t) { return 700000 * (risen(t, 100, 0) - risen(t - time, 100, 0)) / time; }, time + 100,
+                    10);
+  follow({each, each}, 2 * 512);
+  EXPECT_EQ(motors[0].trajectory, 700000LL * 3072);
+  EXPECT_EQ(motors[1].trajectory, 700000LL * 3072);
+}
+
+// A motor of an axis of the arc that does not stand where that is comes along evenly.
+TEST_F(Segments, AMotorBesideItsAxisComesAlongWithAnArc) {
+  fit({"1000X", "1000X", "1000Y"});
+  motors[1].trajectory = 100 * 3072;
+  ASSERT_EQ(host("I5113=5 I5190=1000"), "");
+  store({"F100 TA50 TS0", "CIRCLE1 X20 Y0 I10 J0"});
+  const double time = kPi * 10 / 100 * 1000;
+  const Spline beside([&](double t) { return 100 * (1 - (risen(t, 50, 0) - risen(t - time, 50, 0)) / time); },
+                      time + 50, 5);
+  run([&](double t) { ASSERT_NEAR((at(2) - at(1) - beside.at(t)) * kUnit, 0, 6) << t; });
+  EXPECT_EQ(motors[0].trajectory, 20000 * 3072);
+  EXPECT_EQ(motors[1].trajectory, 20000 * 3072);
+}
+
 // 5000 mm/min on a radius of 50 mm, points every 10 ms: V^2 T^2 / (6 R) = 2.3 um (motion:7.1/4).
 TEST_F(Segments, InsideAnArcThePublishedErrorIsMet) {
   fit({"1000X", "1000Y"});  // um
@@ -219,6 +269,24 @@ TEST_F(Segments, QuitStopsAtTheEndOfTheExecutingMove) {
     });
     EXPECT_EQ(motors[0].trajectory, 2000 * 3072);
     run([](double) {}, "&1R");
+    EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+  }
+}
+
+// A move that Q leaves out joins again, from where the one before it ends.
+TEST_F(Segments, RunWhileAMoveThatWasQuitStillBegins) {
+  for (const char* command : {"&1Q", "&1/"}) {
+    SCOPED_TRACE(command);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5"), "");
+    store({"TM200 TA200 TS0", "X1", "X2", "X3", "X4"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(20));
+    ASSERT_EQ(host(command), "");
+    platform::servo_ticks(ticks_of(5));
+    ASSERT_EQ(host("&1R"), "");
+    platform::servo_ticks(ticks_of(2000));
     EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
   }
 }

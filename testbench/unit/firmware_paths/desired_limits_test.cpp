@@ -1,0 +1,73 @@
+// Limits of desired positions in lookahead (motion:7.5/6): motors that stand beyond theirs, and what comes behind a
+// sequence in which they were held.
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+namespace {
+
+using namespace moving_motors;
+
+class DesiredLimits : public MovingMotors {
+ protected:
+  static void fit_x(const char* ixx24) {
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 I113=50000"), "");
+    ASSERT_EQ(host("I124=" + std::string(ixx24)), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+  }
+  // The program to its end: the largest step between two interrupts, in counts a ms.
+  static double fastest() {
+    double most = 0, before = at(1);
+    run([&](double) {
+      most = std::max(most, std::abs(at(1) - before) / kTickMs);
+      before = at(1);
+    });
+    return most;
+  }
+};
+
+// It comes in, and goes no further out.
+TEST_F(DesiredLimits, AMotorBeyondItsLimitDoesNotJump) {
+  for (const char* ixx24 : {"$8001", "$C001"})
+    for (const bool comes_in : {true, false}) {
+      SCOPED_TRACE(std::string(ixx24) + (comes_in ? " in" : " out"));
+      platform::power_up();
+      fit_x(ixx24);
+      motors[0].trajectory = 60000LL * 3072;
+      store({"F40 TA50 TS0", comes_in ? "X40" : "X70"});
+      if (comes_in || ixx24[1] == 'C') {
+        EXPECT_LE(fastest(), 40.1);
+      } else {
+        ASSERT_EQ(host("&1B1R"), "");
+        platform::servo_ticks(ticks_of(500));
+        EXPECT_TRUE(run_is_running(0)) << "it stands on its path";
+      }
+      EXPECT_EQ(motors[0].trajectory, (comes_in ? 40000LL : 60000LL) * 3072);
+    }
+}
+
+// motion:7.5/7. The axes are where the program has them; the motor comes from where it was held.
+TEST_F(DesiredLimits, BehindASequenceItGoesOnFromWhereItWasHeld) {
+  const Lines next[] = {{"X20"},
+                        {"DWELL100", "X20"},
+                        {"DWELL100", "INC", "X-34"},
+                        {"RAPID X20"},
+                        {"DWELL0", "RAPID X20"},
+                        {"DWELL100 I5113=0", "X20"},
+                        {"PVT1000", "X20:0"},
+                        {"I5113=0", "X20"}};
+  for (const Lines& lines : next) {
+    SCOPED_TRACE(lines.front() + " " + lines.back());
+    platform::power_up();
+    fit_x("$C001");
+    ASSERT_EQ(host("I5192=1"), "");
+    Lines all = {"F40 TA50 TS0", "X54"};
+    all.insert(all.end(), lines.begin(), lines.end());
+    store(all);
+    ASSERT_EQ(host("I122=40 I119=1 I120=50 I121=0"), "");
+    EXPECT_LE(fastest(), 95);
+    EXPECT_EQ(cs().error, RUN_TIME_NONE);
+    EXPECT_EQ(motors[0].trajectory, 20000LL * 3072);
+  }
+}
+
+}  // namespace
