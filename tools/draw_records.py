@@ -38,7 +38,7 @@ PICTURES = {
     "corner": ({"corner": contour("@wait 280ms", ahead=40)}, "motor1.commanded motor2.commanded",
                ["--xy", "motor1.commanded motor2.commanded", "--from", "60ms", "--to", "340ms",
                 "--title", "speed along the path, counts/ms"]),
-    "reversal": ({"reversal": contour("@wait 110ms", "<", "@wait 90ms", ">", "@wait 240ms", ahead=40)},
+    "reversal": ({"reversal": contour("@wait 110ms", "<", "@wait 90ms", ">", "@wait 265ms", ahead=40)},
                  "motor1.commanded motor2.commanded feed=feed:1,2 motor1.acceleration",
                  ["--from", "60ms", "--limit", "acceleration=1", "--title", "back with <, forwards with >"]),
 }
