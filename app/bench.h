@@ -93,6 +93,7 @@ struct Bench {
   BenchNeed need = kAnyBoard;
   std::string board = "geobrick-lv-8";  // without --board
   bool firmware = true;                 // false: no CPU runs, the bench drives Port A itself
+  std::uint64_t least_size = 0;         // of --size; 0: it has an end of its own, and takes none
 };
 
 const Bench* find_bench(const std::vector<Bench>& benches, const std::string& name);  // nullptr: none of that name

@@ -35,6 +35,7 @@ struct PlotOptions {
   std::string from, to;             // "" = all
   std::string title;                // "" = the file's name
   std::vector<std::string> limits;  // KIND=VALUE
+  bool script = false;              // print what gnuplot is told, draw nothing
 };
 int plot_command(const PlotOptions& options);
 

@@ -122,6 +122,7 @@ struct Commands {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     plot->add_option("--title", plot_options.title, "above the picture (default: the record's name)");
+    plot->add_flag("--script", plot_options.script, "print what gnuplot is told, draw nothing");
     plot->callback([this] { chosen = [this] { return plot_command(plot_options); }; });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");

@@ -34,7 +34,7 @@ struct RunOptions {
   std::string gdb;  // port, "" = no debugger
   std::string aperture = "0";
   std::string batch = "0";
-  std::string size = "0";
+  std::string size;                  // "" = the bench's own
   std::optional<std::string> bcr;    // hexadecimal; none: as the firmware sets it
   std::optional<std::string> waive;  // file of timing waivers
 };

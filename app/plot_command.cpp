@@ -250,8 +250,9 @@ int plot_command(const PlotOptions& given) {
   for (const Source& s : sources)
     if (!o.path.empty() && s.columns.size() != 2)
       throw UsageError(fmt::format("--xy {}: are {} columns; expected two", beginning_of(o.path), s.columns.size()));
-  draw(o.path.empty() ? series_script(o, sources) : path_script(o, sources));
-  fmt::print("{}\n", o.output);
+  const std::string script = o.path.empty() ? series_script(o, sources) : path_script(o, sources);
+  if (!o.script) draw(script);
+  fmt::print("{}\n", o.script ? script : o.output);
   return 0;
 }
 

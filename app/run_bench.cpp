@@ -23,6 +23,18 @@ const Bench& need_bench(const std::vector<Bench>& benches, const std::string& na
   throw UsageError(fmt::format("{}: no such bench; expected {}", name, fmt::join(names, " or ")));
 }
 
+// 0: as much as it has by itself.
+std::uint64_t size_of(const Bench& bench, const std::string& text) {
+  if (text.empty()) return 0;
+  if (bench.least_size == 0)
+    throw UsageError(fmt::format("--size {}: {} has an end of its own; expected no --size", text, bench.name));
+  const std::uint64_t size = parse_count("--size", text);
+  if (size < bench.least_size)
+    throw UsageError(
+        fmt::format("--size {}: is too little for {}; expected {} or more", text, bench.name, bench.least_size));
+  return size;
+}
+
 nlohmann::json steps_json(const BenchReport& report) {
   nlohmann::json list = nlohmann::json::array();
   for (const BenchStep& s : report.steps())
@@ -43,7 +55,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
                                  bench.need.what, config.board.name, bench.board));
   if (!bench.firmware) config.firmware.clear();
   if (negative && bench.negative.seed_bug) bench.negative.seed_bug(config);
-  const std::uint64_t size = parse_count("--size", options.size);
+  const std::uint64_t size = size_of(bench, options.size);
   const SetUp set_up(options);
   if (!set_up.empty() && !bench.firmware)
     throw UsageError(fmt::format("--load {}: nobody takes it, because no firmware runs in {}; expected no --load",

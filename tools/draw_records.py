@@ -2,7 +2,7 @@
 """Pictures of moves in the pages, from runs of the machine: draw_records.py [--check] [BRICK].
 
 Plays each script below with --record and draws the record with `brick plot` into docs/images. In the picture stands
-what it was made of, as a number; --check fails when a picture is not what its script gives today.
+what it was made of, as a number: its records and what gnuplot is told. --check fails when these are others today.
 """
 
 import argparse
@@ -38,28 +38,32 @@ PICTURES = {
     "corner": ({"corner": contour("@wait 280ms", ahead=40)}, "motor1.commanded motor2.commanded",
                ["--xy", "motor1.commanded motor2.commanded", "--from", "60ms", "--to", "340ms",
                 "--title", "speed along the path, counts/ms"]),
-    "reversal": ({"reversal": contour("@wait 110ms", "<", "@wait 90ms", ">", "@wait 240ms", ahead=40)},
+    "reversal": ({"reversal": contour("@wait 110ms", "<", "@wait 90ms", ">", "@wait 265ms", ahead=40)},
                  "motor1.commanded motor2.commanded feed=feed:1,2 motor1.acceleration",
                  ["--from", "60ms", "--limit", "acceleration=1", "--title", "back with <, forwards with >"]),
 }
 
 
 def run(*command, **options):
+    """What it prints."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
     if done.returncode != 0:
         sys.exit(f"draw_records: {done.stderr.strip()}")
+    return done.stdout
 
 
 def draw(brick, name, folder):
     """The picture as text, with the number of what it is made of."""
     scripts, columns, options = PICTURES[name]
-    picture, records = pathlib.Path(folder, f"{name}.svg"), []
-    for title, script in scripts.items():
-        records.append(pathlib.Path(folder, f"{title}.csv"))
-        run(brick, "exec", *DAC8, "--record", records[-1], "--record-of", columns, "-", input="\n".join(script) + "\n")
-    run(brick, "plot", records[0], *(["--beside", records[1]] if records[1:] else []), "-o", picture, *options)
-    number = hashlib.sha256(b"".join(r.read_bytes() for r in records) + repr(options).encode()).hexdigest()
-    return picture.read_text().replace("<svg", f"<!-- record {number} -->\n<svg", 1)
+    picture, records = f"{name}.svg", [f"{title}.csv" for title in scripts]  # in the folder: no path in what is told
+    for record, script in zip(records, scripts.values()):
+        run(brick, "exec", *DAC8, "--record", record, "--record-of", columns, "-", input="\n".join(script) + "\n",
+            cwd=folder)
+    plot = [brick, "plot", records[0], *(["--beside", records[1]] if records[1:] else []), "-o", picture, *options]
+    run(*plot, cwd=folder)
+    told = run(*plot, "--script", cwd=folder).encode()
+    number = hashlib.sha256(b"".join(pathlib.Path(folder, r).read_bytes() for r in records) + told).hexdigest()
+    return pathlib.Path(folder, picture).read_text().replace("<svg", f"<!-- record {number} -->\n<svg", 1)
 
 
 def number_of(text):
@@ -75,7 +79,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for name in PICTURES:
             page = IMAGES / f"{name}.svg"
-            text = draw(options.brick, name, folder)
+            text = draw(pathlib.Path(options.brick).resolve(), name, folder)
             if not options.check:
                 page.write_text(text)
             elif not page.exists() or number_of(page.read_text()) != number_of(text):

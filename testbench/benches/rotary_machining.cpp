@@ -1,7 +1,8 @@
 // rotary-machining: a contour of LINEAR and CIRCLE moves of eight axes, 200 lines a second, sent as binary lines
 // through the dual-ported RAM by a host that goes by BREQ alone. Every edge of BREQ is judged by I16 and I17
 // (testbench/checkers/breq_scoreboard.h), the buffer's fill by PR, the motors by path, limits and time (motion:7.4).
-// Then the host starves it: it stops at the end of what it has, and goes on. `--size`: how many lines.
+// Then the host stops sending in mid-contour: the motors stop at the end of what has come, and go on along the path
+// when more comes. `--size`: lines until then.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -18,11 +19,14 @@ namespace {
 using Limits = PathHost::Limits;
 using System = PathHost::System;
 
-constexpr unsigned kLines = 44, kLinesBehind = 6;     // by itself; that come after the pause
+constexpr unsigned kLines = 44, kLinesBehind = 24;    // by itself; that come after the pause
 constexpr double kLineMs = 5, kSegment = 5, kTa = 4;  // 200 lines a second
 constexpr double kWay = 100, kFine = 16;              // counts of a line; constants have sixteenths
 constexpr unsigned kI16 = 6, kI17 = 12, kRing = 200, kItems = 512, kAhead = 8;
-constexpr unsigned kCorner = 23;  // every so many lines
+constexpr unsigned kLook = 3, kLooks = 5;                          // lines between looks at PR; how many at least
+constexpr unsigned kLeast = 2 * kI17 + kLook * (kLooks - 1) + 1;   // lines for these
+constexpr double kPause = 60, kPauseMore = 30, kLongestDry = 500;  // ms: behind the last line calculated; until it
+constexpr unsigned kCorner = 23;                                   // every so many lines
 constexpr const char* kAxes = "XYZABCUV";
 constexpr double kSlower = 1.10;  // of the optimum (motion:7.4/5)
 constexpr Tick kPatience = ns_to_ticks(500'000'000), kCopied = ns_to_ticks(5'000'000);
@@ -94,10 +98,13 @@ class RotaryMachining {
   void define();
   void send(std::size_t from, std::size_t to);
   bool line(const std::string& text);
-  void look();  // PR
+  unsigned look();  // PR
+  void starve();
   void breq(const std::string& step, unsigned least_raised);
   SplinePath path(std::size_t from, std::size_t to) const;
-  void judge_time(const System& s, const SplinePath& way, PathHost::Span span, std::size_t lines);
+  MotorPoint way(std::size_t lines) const;  // of the first ones
+  std::size_t stop(const System& s, std::size_t lines);
+  void judge_time(const System& s, const SplinePath& along, PathHost::Span span, std::size_t lines);
   void judge(const System& s, std::size_t from, std::size_t to, PathHost::Span span);
 
   BenchContext& b_;
@@ -162,18 +169,28 @@ bool RotaryMachining::line(const std::string& text) {
   return true;
 }
 
-void RotaryMachining::look() {
+unsigned RotaryMachining::look() {
   const Tick from = host_.now();
   const auto ahead = static_cast<unsigned>(std::stoul(host_.ask("PR")));
   scoreboard_.lines_ahead(from, host_.now(), ahead);
   least_ = std::min(least_, ahead), most_ = std::max(most_, ahead), ++looks_;
+  return ahead;
+}
+
+// No line until all have been calculated, and a while longer. What has been calculated lasts some 30 ms before the path
+// has to end, and lookahead some 50 more: the motors come to rest, or are about to.
+void RotaryMachining::starve() {
+  double waited = 0;
+  for (; look() > 0 && waited < kLongestDry; ++waited) host_.wait_ms(1);
+  if (waited >= kLongestDry) report().fail("starved: PR", "lines after half a second, expected 0");
+  host_.wait_ms(kPause + host_.pick(1000) / 1000.0 * kPauseMore);
 }
 
 void RotaryMachining::send(std::size_t from, std::size_t to) {
   for (std::size_t i = from; i < to; ++i) {
     if (host_.bench().negative && i == 2 * kI17) host_.wait_ms(300);  // the control
     if (!line((i == 0 ? fmt::format("INC TM{}", kLineMs) : "") + lines_[i].text)) return;
-    if (i >= from + kI17 && i % 3 == 0) look();
+    if (i >= from + kI17 && i % kLook == 0) look();
   }
 }
 
@@ -193,11 +210,34 @@ SplinePath RotaryMachining::path(std::size_t from, std::size_t to) const {
   return {moves, kTa, 0, kSegment};
 }
 
-void RotaryMachining::judge_time(const System& s, const SplinePath& way, PathHost::Span span, std::size_t lines) {
+MotorPoint RotaryMachining::way(std::size_t lines) const {
+  MotorPoint sum(host_.motors(), 0);
+  for (std::size_t l = 0; l < lines; ++l)
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += lines_[l].move.way(1)[i];
+  return sum;
+}
+
+// The sample at the end of these lines, where motors are at rest, be it for less than a servo cycle.
+std::size_t RotaryMachining::stop(const System& s, std::size_t lines) {
+  const MotorPoint end = way(lines);
+  double nearest = 1e9;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i <= host_.last_of(s, {}); ++i) {
+    const MotorPoint p = host_.at(s, i);
+    double off = 0;
+    for (std::size_t m = 0; m < p.size(); ++m) off = std::max(off, std::fabs(p[m] - end[m]));
+    if (off < nearest) nearest = off, found = i;
+  }
+  report().step("starved: stops where the lines end", nearest <= PathHost::kNear,
+                fmt::format("{:.4f} counts off at sample {}, expected up to {}", nearest, found, PathHost::kNear));
+  return found;
+}
+
+void RotaryMachining::judge_time(const System& s, const SplinePath& along, PathHost::Span span, std::size_t lines) {
   std::vector<optimum::Motor> motors;
   for (std::size_t i = 0; i < s.motors.size(); ++i) {
     motors.push_back({{}, limits()[i].velocity, limits()[i].acceleration});
-    for (const MotorPoint& p : way.points()) motors.back().points.push_back(p[i]);
+    for (const MotorPoint& p : along.points()) motors.back().points.push_back(p[i]);
   }
   const double best = optimum::Solver(motors, kSegment).time(), took = host_.lasts(s, span);
   const std::size_t from = host_.begins(s, span.from) + 2,
@@ -215,17 +255,16 @@ void RotaryMachining::judge_time(const System& s, const SplinePath& way, PathHos
 }
 
 void RotaryMachining::judge(const System& s, std::size_t from, std::size_t to, PathHost::Span span) {
-  const SplinePath way = path(from, to);
-  const auto f = host_.followed(s, way, span, from == 0 ? MotorPoint{} : host_.at(s, span.from));
-  judge_time(s, way, span, to - from);
-  host_.report_followed(s, f, static_cast<std::size_t>(way.end() / host_.period()) - 4);
+  const SplinePath along = path(from, to);
+  const auto f = host_.followed(s, along, span, way(from));
+  judge_time(s, along, span, to - from);
+  host_.report_followed(s, f, static_cast<std::size_t>(along.end() / host_.period()) - 4);
   host_.report_limits(s, limits(), 0.9, span);
 }
 
 void RotaryMachining::run() {
   define();
-  const std::size_t count = b_.size == 0 ? kLines : std::max<std::size_t>(b_.size, kI17 + 1),
-                    all = count + kLinesBehind;
+  const std::size_t count = b_.size == 0 ? kLines : b_.size, all = count + kLinesBehind;
   Contour contour(host_.motors(), b_.seed);
   while (lines_.size() < all) lines_.push_back(contour.next());
   send(0, kI17);
@@ -234,25 +273,19 @@ void RotaryMachining::run() {
   host_.expect("R", "");
   send(kI17, count);
   breq("contour: BREQ at every edge", 2);
-  report().step("contour: lines in the buffer", least_ + 3 >= kI16 && most_ <= kI17 && looks_ >= 5,
+  report().step("contour: lines in the buffer", least_ + 3 >= kI16 && most_ <= kI17 && looks_ >= kLooks,
                 fmt::format("{} to {} in {} looks, expected {} to {}", least_, most_, looks_, kI16 - 3, kI17));
   System s{1, {}, "contour"};
   for (unsigned m = 1; m <= host_.motors(); ++m) s.motors.push_back(m);
-  if (!host_.settle(1000, 6)) report().fail(s.name, "still moving");
-  const std::size_t stood = host_.last(1);
-  judge(s, 0, count, {0, stood});
-  look();
-  host_.wait_ms(5);
+  starve();
   send(count, all);
-  for (unsigned waited = 0; waited < 50 && host_.begins(s, stood) == host_.last(1); ++waited) host_.wait_ms(1);
   if (!host_.settle(1000, 6)) report().fail(s.name, "still moving");
-  breq("starved, then more: BREQ", 0);
+  breq("starved, then more: BREQ", 1);
+  const std::size_t stood = stop(s, count);
+  judge(s, 0, count, {0, stood});
   s.name = "behind the pause";
   judge(s, count, all, {stood, ~std::size_t{0}});
-  MotorPoint way(s.motors.size(), 0);
-  for (const Line& l : lines_)
-    for (std::size_t i = 0; i < way.size(); ++i) way[i] += l.move.way(1)[i];
-  host_.report_end(s, way);
+  host_.report_end(s, way(all));
   host_.expect("PR", "0");
   report().equal("run-time error", host_.run_time_error(s), 0u);
   rotary_.disable();
@@ -263,13 +296,16 @@ void RotaryMachining::run() {
 
 // covers: BREQ-4 BIN-3 LA-3 LA-4
 Bench rotary_machining_bench() {
-  return {
-      "rotary-machining",
-      "a contour of all axes, 200 binary lines a second by BREQ alone, then starved: BREQ, fill, path, limits, time",
-      {"the host pauses in the middle", "contour: lines in the buffer", "looks, expected 3 to 12"},
-      [](BenchContext& b) { RotaryMachining(b).run(); },
-      BenchNeed{"a servo IC and a slot of 16 bits",
-                [](const BoardConfig& b) { return kAServoIc.met(b) && kASlotOf16Bits.met(b); }}};
+  return {"rotary-machining",
+          "a contour of all axes, 200 binary lines a second by BREQ alone, starved in the middle: BREQ, fill, path, "
+          "limits, time",
+          {"the host pauses in the middle", "contour: lines in the buffer", "looks, expected 3 to 12"},
+          [](BenchContext& b) { RotaryMachining(b).run(); },
+          BenchNeed{"a servo IC and a slot of 16 bits",
+                    [](const BoardConfig& b) { return kAServoIc.met(b) && kASlotOf16Bits.met(b); }},
+          "geobrick-lv-8",
+          true,
+          kLeast};
 }
 
 }  // namespace brick

@@ -17,12 +17,14 @@ def run_json(bench, *options):
 
 
 def bench_passes(name, engine, seed="1", firmware=True, board=None, size=None):
+    """Its results."""
     r, results = run_json(name, "--engine", engine, "--seed", seed, *(("--board", board) if board else ()),
                           *(("--size", size) if size else ()))
     check(r.returncode == 0 and results["verdict"] == "PASS", r.stdout + r.stderr)
     check(f"PASS {name}" in r.stdout and "ticks/s" in r.stdout and "instructions/s" in r.stdout, r.stdout)
     check(len(results["steps"]) > 5 and results["ticks"] > 0 and (results["instructions"] > 0) == firmware,
           str(results))
+    return results
 
 
 def fails_its_negative_control(name, engine="systemc", board=None, **other):
@@ -421,14 +423,26 @@ def reversal_lockstep():
     bench_passes("reversal", "lockstep", "13")
 
 
+def refuses_size(name, size, said):
+    r = brick("run", name, "--engine", "systemc", "--size", size)
+    check(r.returncode == 2 and r.stderr == f"brick run: {said}\n", f"exit {r.returncode}: {r.stderr}")
+
+
 # covers: BREQ-4 BIN-3 LA-3 LA-4
 def rotary_machining():
     bench_passes("rotary-machining", "systemc", "1", size="300")
+    for size, said in (("36", "--size 36: is too little for rotary-machining; expected 37 or more"),
+                       ("0", "--size 0: is too little for rotary-machining; expected 37 or more"),
+                       ("many", "--size many: is no number; expected an integer of 0 or more")):
+        refuses_size("rotary-machining", size, said)
+    refuses_size("smoke", "50", "--size 50: smoke has an end of its own; expected no --size")
+    bench_passes("rotary-machining", "systemc", "2", size="37")  # the least
 
 
 # covers: BREQ-4 BIN-3 LA-3 LA-4
 def rotary_machining_lockstep():
-    bench_passes("rotary-machining", "lockstep", "14")
+    results = bench_passes("rotary-machining", "lockstep", "14", size="48")
+    check(results["simulated_ns"] >= 500e6, f"{results['simulated_ns']} ns, expected half a second")
 
 
 if CASE.endswith("_negative"):

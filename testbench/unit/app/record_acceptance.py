@@ -121,6 +121,9 @@ def plot():
         again = svg.read_bytes()
         brick("plot", str(file), "--of", "motor1.velocity", "--beside", str(slow), "-o", str(svg))
         check(svg.read_bytes() == again, "the same picture twice differs")
+        told = brick("plot", str(file), "--of", "motor1.velocity", "-o", "none.svg", "--script")
+        check(told.returncode == 0 and "set output 'none.svg'" in told.stdout and str(file) in told.stdout and
+              not pathlib.Path("none.svg").exists(), told.stdout + told.stderr)
         png = pathlib.Path(folder, "path.png")
         r = brick("plot", str(file), "--xy", "motor1.commanded motor1.error", "-o", str(png), "--from", "50ms")
         check(r.returncode == 0 and png.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n", r.stderr)
