@@ -56,7 +56,7 @@ def draw(brick, name, folder):
     """The picture as text, with the number of what it is made of."""
     scripts, columns, options = PICTURES[name]
     picture, records = f"{name}.svg", [f"{title}.csv" for title in scripts]  # in the folder: no path in what is told
-    for record, script in zip(records, scripts.values()):
+    for record, script in zip(records, scripts.values(), strict=True):
         run(brick, "exec", *DAC8, "--record", record, "--record-of", columns, "-", input="\n".join(script) + "\n",
             cwd=folder)
     plot = [brick, "plot", records[0], *(["--beside", records[1]] if records[1:] else []), "-o", picture, *options]
