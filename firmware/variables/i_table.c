@@ -76,7 +76,7 @@ static struct i_place of_geo_pmac(uint32_t number) {
 }
 
 /* What is in no group is reserved, as a number of GATHER without a row is. */
-__attribute__((noinline)) struct i_place i_table_place(uint32_t number) {
+struct i_place i_table_place(uint32_t number) {
   if (geo_pmac && is_of_geo_pmac(number)) return of_geo_pmac(number);
   if (number < I_MOTOR_BLOCK) return (struct i_place){I_GROUP_GLOBAL, number, 0, 0};
   if (number >= I_BASE_TABLE) return (struct i_place){I_GROUP_TABLE, number - I_BASE_TABLE, 0, 0};

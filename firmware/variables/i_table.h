@@ -82,7 +82,7 @@ struct i_place {
 };
 
 void i_table_initialize(void);
-struct i_place i_table_place(uint32_t number);
+struct i_place i_table_place(uint32_t number) __attribute__((noinline)); /* in parts it would be slower */
 struct i_place i_table_next_of_ic(struct i_place place); /* of the next number of the same IC, without a division */
 bool i_table_of_geo_pmac(void);                          /* this board has I13, I1015 to I1020 of its own */
 const struct i_entry* i_table_entry(struct i_place place);
