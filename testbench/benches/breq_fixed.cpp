@@ -5,13 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "systemc/machine/board_family.h"
 #include "testbench/benches/benches.h"
 #include "testbench/checkers/fixed_scoreboard.h"
 
 namespace brick {
 namespace {
 
-constexpr unsigned kMemory = 26'624;  // words, firmware:1.10
+// Words of user memory, firmware:1.10; a Geo PMAC's end below its device registers, servo-ic:11.4.
+unsigned memory(const BenchContext& b) { return (b.board.ssi_kind & kSsiGeoPmac) != 0 ? 24'320 : 26'624; }
 constexpr std::uint8_t kBreqBit = 0x02;
 constexpr Tick kSettled = ns_to_ticks(60'000);
 constexpr Tick kNoInterrupt = ns_to_ticks(100'000);
@@ -176,7 +178,7 @@ void ownership(FixedHost& host) {
   host.settle();
   host.verdict("no fixed buffer: the full rotary one is shown", 0, 0, 0, 1);
   host.must("R");
-  host.board().opened(kMemory - 2 * kRing);
+  host.board().opened(memory(b) - 2 * kRing);
   host.does("OPEN PLC 3");
   for (const char* command : {"&2", "&1", "&3", "&1"}) {
     host.board().nothing();
@@ -190,7 +192,7 @@ void ownership(FixedHost& host) {
   host.board().rotary(true);
   host.board().closed();
   host.does("CLOSE");
-  host.board().opened(kMemory - 2 * kRing);
+  host.board().opened(memory(b) - 2 * kRing);
   host.does("OPEN PLC 3");
   host.board().nothing();
   host.does("&3");  // it has no rotary buffer
@@ -203,8 +205,8 @@ void ownership(FixedHost& host) {
 void run(BenchContext& b) {
   FixedHost host(b);
   host.must("DELETE GATHER");
-  for (const Kind& kind : kKinds) fill(host, kind, kMemory);
-  for (const Kind& kind : kKinds) by_interrupt(host, kind, kMemory);
+  for (const Kind& kind : kKinds) fill(host, kind, memory(b));
+  for (const Kind& kind : kKinds) by_interrupt(host, kind, memory(b));
   ownership(host);
 }
 
