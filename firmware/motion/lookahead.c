@@ -104,6 +104,7 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   lookahead_buffer_open(cs, l->motor_count, &l->buffer);
   slice_pause();
   const uint32_t room = capacity(&l->buffer);
+  slice_pause();
   if (wanted == 0 || room == 0) return false;
   l->length = wanted < room ? wanted : room;
   if (l->length < LEAST) l->length = LEAST;
@@ -120,6 +121,7 @@ bool lookahead_begin(uint32_t cs, uint32_t period) {
   for (uint32_t motor = 0, left = l->motors; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) {
       set_scale(motor, (double)period);
+      slice_pause();
       if (l->limits && set_guard(motor)) l->guarded |= 1u << motor;
     }
   return true;

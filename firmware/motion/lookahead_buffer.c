@@ -2,6 +2,7 @@
 
 #include "firmware/buffers/regions.h"
 #include "firmware/buffers/user_memory.h"
+#include "firmware/kernel/slice.h"
 
 enum { RECORD_WORDS = 4, MOTOR_WORDS = 2 };
 
@@ -33,6 +34,7 @@ uint32_t lookahead_slots(uint32_t cs, void** slots) {
 
 void lookahead_buffer_open(uint32_t cs, uint32_t motor_count, struct lookahead_buffer* buffer) {
   buffer->words = &words[region_base(REGION_LOOKAHEAD, cs)];
+  slice_pause();
   buffer->stride = RECORD_WORDS + MOTOR_WORDS * motor_count;
   const uint32_t size = region_words(REGION_LOOKAHEAD, cs);
   buffer->records = size == 0 ? 0u : (size - LOOKAHEAD_WORDS_PER_OUTPUT * slots_of[cs]) / buffer->stride;

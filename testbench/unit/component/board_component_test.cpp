@@ -57,7 +57,8 @@ const std::map<std::string, std::string> kPorts{{"pa_wdata", "pa_data_i"},
                                                 {"clock.source_ic", "phase_source"},
                                                 {"clock.conflict", "source_conflict"},
                                                 {"host.port.txde", "txde"},
-                                                {"host.port.rxdf", "rxdf"}};
+                                                {"host.port.rxdf", "rxdf"},
+                                                {"ssi.clk", "ssi_clk"}};
 std::string port(std::string_view name) {
   const auto place = kPorts.find(std::string(name));
   return place == kPorts.end() ? std::string(name) : place->second;

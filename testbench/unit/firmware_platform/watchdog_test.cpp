@@ -104,8 +104,9 @@ TEST_F(WatchdogTask, ServoTaskStrobesBetweenRareRealTimeTasks) {
   }
 }
 
+// Due once in the 100 cycles at least.
 TEST_F(WatchdogTask, NobodyStrobesForARealTimeTaskThatDoesNotRun) {
-  for (const unsigned i8 : {0u, 9u, 255u}) {
+  for (const unsigned i8 : {0u, 9u}) {
     c_.line("I40=0 I8=" + std::to_string(i8));
     c_.servo(2 * (i8 + 1));
     const unsigned before = fake_hal_strobes();

@@ -18,7 +18,7 @@ except ImportError as missing:
 
 IPXACT = {"ipxact": "http://www.accellera.org/XMLSchema/IPXACT/1685-2014"}
 # What the CPU reaches outside the board's registers and memories: regions of its bus that hold other blocks.
-REGIONS = ("main_memory", "latches", "gate_ics", "on_chip")
+REGIONS = ("main_memory", "ssi_page", "latches", "gate_ics", "on_chip")
 ACCESS = {"r": "read-only", "w": "write-only", "rw": "read-write", "r, w1c": "read-write"}
 
 
