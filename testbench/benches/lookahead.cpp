@@ -86,7 +86,7 @@ class Lookahead {
 void Lookahead::define() {
   host_.expect("DELETE GATHER", "");
   std::string words;
-  for (unsigned s = host_.motors() / 2; s >= 1; --s) {
+  for (unsigned s = host_.systems(); s >= 1; --s) {
     host_.expect(fmt::format("&{}#{}->1X#{}->1Y", s, 2 * s - 1, 2 * s), "");
     host_.expect(fmt::format("DEFINE LOOKAHEAD {},0", kRecords), "");
     host_.say({fmt::format("I5{0}13={1} I5{0}90=1 I5{0}98=0", s, kSegment)});
@@ -204,7 +204,7 @@ void Lookahead::round(const std::vector<Case>& all, std::size_t first, unsigned 
 }
 
 void Lookahead::run() {
-  const unsigned systems = host_.motors() / 2;
+  const unsigned systems = host_.systems();
   if (systems < 1) return report().fail("channels", "expected two");
   host_.set_up();
   host_.variables(92, 0);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "systemc/machine/board_family.h"
+
 namespace brick {
 
 namespace {
@@ -14,6 +16,11 @@ constexpr double kFirstUnits = 2, kSecondUnits = 4;
 constexpr double kMoreTime = 1.02;  // of a servo cycle, that `followed` looks to either side
 
 }  // namespace
+
+unsigned PathHost::systems() {
+  const bool one = (bench().board.ssi_kind & kSsiGeoPmac) != 0;
+  return one ? std::min(motors() / 2, 1u) : motors() / 2;
+}
 
 MotorPoint PathHost::at(const System& s, std::size_t sample) const {
   MotorPoint p;

@@ -29,6 +29,8 @@ class PathHost : public MotorHost {
     std::string name;              // of its case
   };
 
+  // Of two motors each; of a Geo PMAC one, since one has the lookahead buffer there (firmware:3.8).
+  unsigned systems();
   MotorPoint at(const System& s, std::size_t sample) const;  // counts from the first sample
   std::size_t last_of(const System& s, Span span) const;
   std::size_t begins(const System& s, std::size_t from = 0) const;  // first sample behind `from` that differs

@@ -87,7 +87,7 @@ class Reversal {
 
 // The highest system first, the lowest deleted first.
 void Reversal::define(unsigned count, const std::vector<Case>& all, std::size_t first) {
-  for (unsigned s = 1; first > 0 && s <= host_.motors() / 2; ++s)
+  for (unsigned s = 1; first > 0 && s <= host_.systems(); ++s)
     host_.expect(fmt::format("&{}DELETE LOOKAHEAD", s), "");
   for (unsigned s = count; s >= 1; --s) {
     const Case& c = all[first + s - 1];
@@ -189,7 +189,7 @@ void Reversal::judge(const Case& c, const System& s) {
 }
 
 void Reversal::run() {
-  const unsigned systems = host_.motors() / 2;
+  const unsigned systems = host_.systems();
   if (systems < 1) return report().fail("channels", "expected two");
   host_.set_up();
   for (const auto& [k, value] : {std::pair{92u, 0.0}, {16u, kSpeed}, {17u, kAcceleration}}) host_.variables(k, value);
