@@ -87,8 +87,7 @@ class Reversal {
 
 // The highest system first, the lowest deleted first.
 void Reversal::define(unsigned count, const std::vector<Case>& all, std::size_t first) {
-  for (unsigned s = 1; first > 0 && s <= host_.systems(); ++s)
-    host_.expect(fmt::format("&{}DELETE LOOKAHEAD", s), "");
+  for (unsigned s = 1; first > 0 && s <= host_.systems(); ++s) host_.expect(fmt::format("&{}DELETE LOOKAHEAD", s), "");
   for (unsigned s = count; s >= 1; --s) {
     const Case& c = all[first + s - 1];
     host_.expect(fmt::format("&{}DEFINE LOOKAHEAD {},{}", s, c.records, kSlots), "");

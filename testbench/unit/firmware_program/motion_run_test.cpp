@@ -234,7 +234,7 @@ TEST_F(MotionProgram, QuitStopsAStatementThatWaitsForRoom) {
   platform::servo_ticks(9);  // the background does not run
   ASSERT_TRUE(run_is_running(0));
   run_quit(0);
-  platform::servo_ticks(3);
+  platform::servo_ticks(9);  // the word under way has its pauses, and interrupts in them
   EXPECT_FALSE(run_is_running(0));
   EXPECT_EQ(p(1), 0.0);
   EXPECT_EQ(host("R").find("ERR"), std::string::npos);
