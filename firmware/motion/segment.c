@@ -140,7 +140,10 @@ static void hand_over(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct sequence* q = &sequences[cs];
   const uint32_t state = hal_mask_servo();
-  if (!q->handed) s->next_valid = s->placed = true;
+  if (!q->handed)
+    s->next_valid = s->placed = true;
+  else if (q->unhanded != 0 && !s->placed)
+    s->active = true; /* it may have stood: who looks before the servo task does must not take it for over */
   for (; q->unhanded != 0; q->unhanded--) piece_ring_add(&s->ring);
   hal_unmask(state);
   q->handed = true;
