@@ -4,11 +4,11 @@
 #include <cmath>
 #include <random>
 
+#include "testbench/unit/random_seed.h"
 extern "C" {
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/fixed_ratio.h"
 #include "firmware/motion/fixed_turn.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace {

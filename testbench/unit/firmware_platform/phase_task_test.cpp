@@ -7,11 +7,11 @@
 #include <string>
 
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/hal/hal.h"
 #include "firmware/motion/phase_task.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {

@@ -5,6 +5,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/command/control_characters.h"
@@ -16,7 +17,6 @@ extern "C" {
 #include "firmware/motion/motor_state.h"
 #include "firmware/motion/motor_status.h"
 #include "firmware/motion/rollover.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace {

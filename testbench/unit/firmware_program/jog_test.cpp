@@ -4,6 +4,7 @@
 
 #include "testbench/unit/firmware_program/jog_model.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/motion/jog.h"
@@ -11,7 +12,6 @@ extern "C" {
 #include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
-#include "testbench/unit/random_seed.h"
 }
 
 namespace {
