@@ -9,6 +9,7 @@
 
 extern "C" {
 #include "firmware/motion/overload.h"
+#include "testbench/unit/random_seed.h"
 }
 
 namespace brick {
@@ -47,7 +48,7 @@ class CurrentLoop : public CommutationRig {
 };
 
 TEST_F(CurrentLoop, AgreesWithTheDataSheetOverRandomCurrents) {
-  std::mt19937 random(5);
+  std::mt19937 random(random_seed(5));
   const auto real = [&random](double first, double last) {
     return std::uniform_real_distribution<double>(first, last)(random);
   };
@@ -165,7 +166,7 @@ TEST_F(CurrentLoop, OutputsAreClippedAtThePwmScale) {
 
 // Under the sanitizers: largest gains, largest biases, currents and commands that jump from end to end.
 TEST_F(CurrentLoop, NothingOverflowsAtTheEndsOfAllRanges) {
-  std::mt19937 random(7);
+  std::mt19937 random(random_seed(7));
   const auto one_of = [&random](std::initializer_list<int> values) { return values.begin()[random() % values.size()]; };
   for (int round = 0; round < 40; ++round) {
     const int gain = one_of({-9, 9});

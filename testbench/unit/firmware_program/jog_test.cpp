@@ -11,6 +11,7 @@ extern "C" {
 #include "firmware/motion/jog_servo.h"
 #include "firmware/motion/motor.h"
 #include "firmware/motion/motor_state.h"
+#include "testbench/unit/random_seed.h"
 }
 
 namespace {
@@ -107,7 +108,7 @@ TEST_F(JogProfile, CheckOfTheDataSheetTakes200And400Ms) {
 }
 
 TEST_F(JogProfile, RandomMovesAndNewTargetsOnTheWayStayWithinASixteenthOfACount) {
-  std::mt19937 random(22);
+  std::mt19937 random(brick::random_seed(22));
   std::uniform_real_distribution<> unit(0, 1), duration(-1, 4.3);
   Followed result;
   unsigned moves = 0;
