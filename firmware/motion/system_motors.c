@@ -85,6 +85,8 @@ double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]) {
   return system_motor_at(motor, position) + aside[motor];
 }
 
+double system_motor_aside(uint32_t motor) { return aside[motor]; }
+
 void system_motors_come_along(uint32_t cs) {
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) aside[motor] = 0.0;

@@ -13,6 +13,7 @@
 #include "firmware/motion/path.h"
 #include "firmware/motion/place.h"
 #include "firmware/motion/segment.h"
+#include "firmware/motion/segment_ring.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
@@ -291,7 +292,7 @@ void run_executing(uint32_t cs, struct program_trace* trace) {
   const uint32_t state = hal_mask_servo();
   const bool active = s->active;
   if (active && s->moves[s->executing].kind == MOVE_SEGMENTS)
-    segment_line(cs, trace);
+    segment_ring_line(cs, trace);
   else if (active)
     *trace = s->moves[s->executing].line;
   hal_unmask(state);

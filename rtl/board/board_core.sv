@@ -229,13 +229,9 @@ module board_core #(
   assign ic_phase_oe[17:0] = ic_phase_oe_i;
   assign ic_servo_oe[17:0] = ic_servo_oe_i;
 
+  logic [4*24-1:0] macro_rdata;  // 0 of each that is not selected
+
   for (genvar i = 18; i < 22; i++) begin : gen_macro_ic
-    logic [23:0] rdata, rdata_chain;
-    if (i == 18) begin : gen_first
-      assign rdata_chain = ic_rdata_i | rdata;
-    end else begin : gen_next
-      assign rdata_chain = gen_macro_ic[i-1].rdata_chain | rdata;
-    end
     if (IcMask[i]) begin : gen_built
       macro_ic u_macro_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
@@ -245,7 +241,7 @@ module board_core #(
         .addr_i     (bus_addr[5:0]),
         .we_i       (bus_we),
         .wdata_i    (bus_wdata),
-        .rdata_o    (rdata),
+        .rdata_o    (macro_rdata[24*(i-18)+:24]),
         .phase_i,
         .servo_i,
         .phase_o    (ic_phase[i]),
@@ -254,7 +250,7 @@ module board_core #(
         .servo_oe_o (ic_servo_oe[i])
       );
     end else begin : gen_absent
-      assign rdata              = 24'h0;
+      assign macro_rdata[24*(i-18)+:24] = 24'h0;
       assign ic_phase[i]        = 1'b1;
       assign ic_servo[i]        = 1'b1;
       assign ic_phase_oe[i]     = 1'b0;
@@ -493,7 +489,10 @@ module board_core #(
   logic [23:0] reg_rdata, bus_rdata;
   logic        bus_rdata_oe;
   always_comb begin
-    reg_rdata = gen_macro_ic[21].rdata_chain;
+    reg_rdata = ic_rdata_i;
+    for (int unsigned i = 0; i < 4; i++) begin
+      if (MacroIcMask[i]) reg_rdata = reg_rdata | macro_rdata[24*i+:24];
+    end
     if (sel_int)          reg_rdata = int_rdata;
     else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
     else if (sel_ctrl)    reg_rdata = {22'h0, ctrl_o};

@@ -62,12 +62,10 @@ module board_top #(
   input  wire logic        axexp0_i,  // interrupt lines of an axis expansion board
   input  wire logic        axexp1_i,
   input  wire logic [7:0]  ssi_data_i,  // absolute encoders, channel 1 in bit 0
-  // Motor side, 64 bits for each servo IC that is built, lowest bit of ServoIcMask first; without any one bit, unused.
-  // In: 47..0 pins of channels 1..4, 51..48 ADC A, 55..52 ADC B.
-  // Out: 23..0 PWM, 27..24 PULSE, 31..28 DIR, 35..32 DAC A, 39..36 DAC B, 43..40 AENA, 47..44 EQU, 51..48 serial clocks
-  // and strobes.
-  input  wire logic [(ServoIcMask == 0 ? 1 : 64*$countones(ServoIcMask))-1:0] motor_i,
-  output logic [(ServoIcMask == 0 ? 1 : 64*$countones(ServoIcMask))-1:0]      motor_o,
+  // Motor side, as rtl/pins/servo_ic.pins has it, for each servo IC that is built, lowest bit of ServoIcMask first;
+  // without any one bit, unused.
+  input  wire logic [(ServoIcMask == 0 ? 1 : motor_pins_pkg::Stride*$countones(ServoIcMask))-1:0] motor_i,
+  output logic [(ServoIcMask == 0 ? 1 : motor_pins_pkg::Stride*$countones(ServoIcMask))-1:0]      motor_o,
   // clocks, host signals, watchdog, interrupt controller as seen from outside
   output logic             phase_o,
   output logic             servo_o,
@@ -102,19 +100,15 @@ module board_top #(
   logic [17:0] ic_sel, ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
   logic        bus_x, bus_we, bus_rd;
   logic [4:0]  bus_addr;
-  logic [23:0] bus_wdata;
+  logic [23:0] bus_wdata, rdata;
+  logic [18*24-1:0] ic_rdata;  // 0 of each that is not selected
   logic [71:0] equ;  // EQU of channels 1..4 of each servo IC
   logic        phase_oe, servo_oe;
 
   for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
-    logic [23:0] rdata, rdata_chain;  // read data of this IC, and of this one or any before it
-    if (i == 0) begin : gen_first
-      assign rdata_chain = rdata;
-    end else begin : gen_next
-      assign rdata_chain = gen_servo_ic[i-1].rdata_chain | rdata;
-    end
     if (ServoIcMask[i]) begin : gen_built
-      localparam integer Motor = 64 * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));  // its first bit there
+      // Its first bit there.
+      localparam integer Motor = motor_pins_pkg::Stride * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
         .sel_i       (ic_sel[i]),
@@ -123,7 +117,7 @@ module board_top #(
         .we_i        (bus_we),
         .wdata_i     (bus_wdata),
         .rd_i        (bus_rd),
-        .rdata_o     (rdata),
+        .rdata_o     (ic_rdata[24*i+:24]),
         .phase_i     (phase_o),
         .servo_i     (servo_o),
         .phase_o     (ic_phase[i]),
@@ -131,16 +125,17 @@ module board_top #(
         .phase_oe_o  (ic_phase_oe[i]),
         .servo_oe_o  (ic_servo_oe[i]),
         .trip_i      (wd_tripped_o),
-        .pins_i      (motor_i[Motor+:48]),
-        .adc_a_i     (motor_i[Motor+48+:4]),
-        .adc_b_i     (motor_i[Motor+52+:4]),
+        .pins_i      (motor_i[Motor + motor_pins_pkg::PinsLsb +: motor_pins_pkg::PinsWidth]),
+        .adc_a_i     (motor_i[Motor + motor_pins_pkg::AdcALsb +: motor_pins_pkg::AdcAWidth]),
+        .adc_b_i     (motor_i[Motor + motor_pins_pkg::AdcBLsb +: motor_pins_pkg::AdcBWidth]),
         .equ_o       (equ[4*i+:4]),
-        .motor_o     (motor_o[Motor+:64])
+        .motor_o     (motor_o[Motor +: motor_pins_pkg::Stride])
       );
       logic unused_in;
-      assign unused_in = &{1'b0, motor_i[Motor+56+:8]};
+      assign unused_in = &{1'b0, motor_i[Motor + motor_pins_pkg::InBits +: motor_pins_pkg::Stride -
+                                         motor_pins_pkg::InBits]};
     end else begin : gen_absent
-      assign rdata              = 24'h0;
+      assign ic_rdata[24*i+:24] = 24'h0;
       assign ic_phase[i]        = 1'b1;
       assign ic_servo[i]        = 1'b1;
       assign ic_phase_oe[i]     = 1'b0;
@@ -152,6 +147,13 @@ module board_top #(
     logic unused_in;
     assign unused_in = &{1'b0, motor_i};
     assign motor_o   = 1'b0;
+  end
+
+  always_comb begin
+    rdata = 24'h0;
+    for (int unsigned i = 0; i < 18; i++) begin
+      if (ServoIcMask[i]) rdata = rdata | ic_rdata[24*i+:24];
+    end
   end
 
   board_core #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_core (
@@ -179,7 +181,7 @@ module board_top #(
     .bus_we_o      (bus_we),
     .bus_rd_o      (bus_rd),
     .bus_wdata_o   (bus_wdata),
-    .ic_rdata_i    (gen_servo_ic[17].rdata_chain),
+    .ic_rdata_i    (rdata),
     .ic_phase_i    (ic_phase),
     .ic_servo_i    (ic_servo),
     .ic_phase_oe_i (ic_phase_oe),
