@@ -50,8 +50,8 @@ module brick_ecp5 (
   input  wire logic        axexp0_i,
   input  wire logic        axexp1_i,
   // motor side of the servo IC, as in board_top
-  input  wire logic [55:0] motor_i,
-  output logic [51:0]      motor_o,
+  input  wire logic [motor_pins_pkg::InBits-1:0] motor_i,
+  output logic [motor_pins_pkg::OutBits-1:0]     motor_o,
   // clocks, signals, watchdog
   output logic             phase_o,
   output logic             servo_o,
@@ -82,8 +82,8 @@ module brick_ecp5 (
   ecp5_pads               u_iochrdy (.pad_io(isa_iochrdy_io), .d_i(1'b0), .oe_i(~iochrdy), .q_o(unused_line[0]));
   ecp5_pads               u_memcs16 (.pad_io(isa_memcs16_nio), .d_i(1'b0), .oe_i(~memcs16_n), .q_o(unused_line[1]));
 
-  logic [63:0] motor_out;
-  assign motor_o = motor_out[51:0];
+  logic [motor_pins_pkg::Stride-1:0] motor_out;
+  assign motor_o = motor_out[motor_pins_pkg::OutBits-1:0];
 
   board_top #(.ServoIcMask(18'h00001), .MacroIcMask(4'h0)) u_board (
     .clk_pwm_i         (clk_pwm),
@@ -110,7 +110,7 @@ module brick_ecp5 (
     .slot8_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .pwr_good_i, .jpan_i, .mi1_i, .mi2_i, .axexp0_i, .axexp1_i,
     .ssi_kind_i        (2'd0),  // no serial encoder inputs: their pads are for a product that has them
     .ssi_data_i        (8'hFF),
-    .motor_i           ({8'h00, motor_i}),
+    .motor_i           (motor_pins_pkg::Stride'(motor_i)),
     .motor_o           (motor_out),
     .phase_o, .servo_o, .wdo_o, .wd_relay_o, .wd_led_o, .brld_n_o, .erld_n_o, .f1ld_n_o, .ipld_n_o, .source_conflict_o
   );

@@ -1,5 +1,6 @@
 // Servo IC (DSPGATE1): clocks and four channels: what servo_ic is made of, in compile order.
 // Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+pins/motor_pins_pkg.sv
 regs/brick_regs_pkg.sv
 servo_ic/servo_ic_regs.sv
 common/sync2.sv

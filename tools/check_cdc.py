@@ -2,9 +2,10 @@
 """Checks that nothing asynchronous feeds logic: check_cdc.py [--root ROOT].
 
 Walks from each input pin of board_top, and from each flip-flop that a strobe clocks, through the logic to the
-flip-flops of clk_pwm_i and clk_ref_i. What is allowed stands pin by pin in rtl/pins/board.pins, `sampled`:
+flip-flops of clk_pwm_i and clk_ref_i. What is allowed stands pin by pin in rtl/pins/board.pins, and for the motor side
+in servo_ic.pins, `sampled`:
   synchroniser: its first flip-flop; it and its only load, the second one, carry the attribute async_reg
-    (rtl/common/sync2.sv); nothing but a wire in front of it, or what a jumper selects (selected);
+    (rtl/common/sync2.sv); nothing but a wire in front of it, or multiplexers that straps alone select (selected);
   a register that takes it for a reason: what it takes stands still when it counts;
   a flip-flop that it clocks, or resets; an output whose row says that it follows it.
 A row that says more than the RTL does is a problem too, so the rows say what is. Exit status 0, 1: problems, 77: no
@@ -29,10 +30,6 @@ from rows import Table
 
 TOP = "board_top"
 CLOCKS = {"clk_pwm_i", "clk_ref_i"}
-# Only what no row has: the motor side, whose width depends on the ICs that are built.
-MOTOR = "changes with the fall of ADC_CLK, is taken at its rise"
-MOTOR_SAMPLED = [("motor_i", "*.u_adc_[ab].*", MOTOR)]
-
 FLIP_FLOPS = ("$dff", "$adff", "$dffe", "$adffe", "$sdff", "$sdffe", "$aldff", "$dffsr")
 
 
@@ -55,21 +52,40 @@ class Rules:
     """What the rows allow, by port."""
 
     def __init__(self, root):
-        self.sampled, self.clocks, self.through = list(MOTOR_SAMPLED), [], []
-        self.synchronised, self.selected, self.resets = {"motor_i"}, set(), set()
+        self.sampled, self.clocks, self.through = [], [], []
+        self.synchronised, self.selected, self.resets = set(), set(), set()
+        self.straps = set()
+        self.motor = {}  # bit of motor_i: its name here
+        servo = Table("servo_ic", root / "rtl/pins")
+        for pin in servo.pins:
+            if pin.is_input and pin.motor:
+                self.motor |= dict.fromkeys(pin.motor_bits(), f"motor_i.{pin.name}")
+                self.take(f"motor_i.{pin.name}", pin, servo.settings, "*.")
         board = Table("board", root / "rtl/pins")
-        sets = {"synchroniser": self.synchronised, "selected": self.selected, "resets": self.resets}
         for pin in board.pins:
-            for kind, registers in pin.sampled:
-                if kind in sets:
-                    sets[kind].add(pin.rtl)
-                elif kind == "clocks":
-                    self.clocks += [(pin.rtl, pattern) for pattern in registers]
-                elif kind == "through":
-                    self.through += [(pin.rtl, pattern) for pattern in registers]
-                else:
-                    reason = board.settings[f"reason {kind}"]
-                    self.sampled += [(pin.rtl, pattern, reason) for pattern in registers]
+            self.take(pin.rtl, pin, board.settings)
+
+    def take(self, name, pin, settings, inside=""):
+        sets = {"synchroniser": self.synchronised, "selected": self.selected, "resets": self.resets}
+        for kind, registers in pin.sampled:
+            if kind in sets:
+                sets[kind].add(name)
+            elif kind == "clocks":
+                self.clocks += [(name, pattern) for pattern in registers]
+            elif kind == "through":
+                self.through += [(name, pattern) for pattern in registers]
+            else:
+                self.sampled += [(name, inside + pattern, settings[f"reason {kind}"]) for pattern in registers]
+                if kind == "strap":
+                    self.straps.update(registers)
+
+    def strap(self, register):
+        """Stands still: a strap's register."""
+        return any(fnmatch.fnmatch(register, pattern) for pattern in self.straps)
+
+    def name(self, port, place):
+        """Of a bit of a port: the motor side has a row for each pin."""
+        return self.motor.get(place, port) if port == "motor_i" else port
 
     def row(self, rows, name, end):
         """The rows that allow this end of this port, or of an output this source."""
@@ -84,11 +100,11 @@ class Rules:
 
 
 class Walk:
-    def __init__(self, module):
+    def __init__(self, module, strap=lambda name: False):
         self.names, self.marked = {}, set()
         for name, net in sorted(module["netnames"].items(), key=lambda n: (n[0].endswith("_q"), -len(n[0]), n[0])):
             for bit in net["bits"]:
-                self.names[bit] = name  # the name of a register wins, then the shortest
+                self.names[bit] = name.removeprefix("u_core.")  # a register's name wins, then the shortest
                 if "async_reg" in net["attributes"]:
                     self.marked.add(bit)
         self.inputs = {n: p["bits"] for n, p in module["ports"].items() if p["direction"] == "input"}
@@ -97,6 +113,7 @@ class Walk:
         self.loads = collections.defaultdict(list)  # bit -> (kind, cell, output bits)
         self.foreign = {}                           # outputs of flip-flops that no clock of ours works
         self.inverse = collections.defaultdict(list)
+        self.data_of = collections.defaultdict(list)  # bit -> outputs of multiplexers that straps select
         for cell in module["cells"].values():
             pins = cell["connections"]
             if cell["type"] in FLIP_FLOPS:
@@ -122,6 +139,10 @@ class Walk:
                     self.loads[a].append(("logic", [y], None))
             else:
                 out = [b for pin, bits in pins.items() if cell["port_directions"][pin] == "output" for b in bits]
+                select = {"$mux": "S", "$pmux": "S", "$shiftx": "B"}.get(cell["type"])
+                if select and all(isinstance(b, str) or strap(self.names[b]) for b in pins[select]):
+                    for bit in (b for pin in "AB" if pin != select for b in pins[pin]):
+                        self.data_of[bit] += out
                 for pin, bits in pins.items():
                     if cell["port_directions"][pin] == "input":
                         for bit in bits:
@@ -143,17 +164,31 @@ class Walk:
                     found.add((kind, target, clock))
         return found
 
+    def selected(self, bit):
+        """All that the bit reaches through multiplexers which straps select, if no other logic looks at any of it."""
+        seen, todo = {bit}, [bit]
+        while todo:
+            at = todo.pop()
+            passed = set(self.data_of[at])
+            if any(not passed.issuperset(target) for kind, target, _ in self.loads[at] if kind == "logic"):
+                return set()
+            todo += passed - seen
+            seen |= passed
+        return seen
+
     def synchroniser(self, bit, selected, q, clock):
         """The bit, or its inverse, goes into a marked flip-flop whose only load is another of the same clock."""
-        straight = selected or any(("data", q, clock) in self.loads[b] for b in [bit, *self.inverse[bit]])
+        near = self.selected(bit) if selected else [bit, *self.inverse[bit]]
+        straight = any(("data", q, clock) in self.loads[b] for b in near)
         second = self.loads[q]
         return (straight and q in self.marked and q not in self.outputs and len(second) == 1 and
                 second[0][0] == "data" and second[0][2] == clock and second[0][1] in self.marked)
 
 
 def check(module, rules):
-    walk, used, problems = Walk(module), set(), set()
-    sources = [(name, bit) for name, bits in walk.inputs.items() if name not in CLOCKS for bit in bits]
+    walk, used, problems = Walk(module, rules.strap), set(), set()
+    sources = [(rules.name(name, place), bit) for name, bits in walk.inputs.items() if name not in CLOCKS
+               for place, bit in enumerate(bits)]
     sources += [(walk.names[q], q) for q in walk.foreign]
     for name, bit in sources:
         strobed = bit in walk.foreign
@@ -178,8 +213,8 @@ def check(module, rules):
             used.update(needs)
             if not needs:
                 problems.add(f"{name} reaches {end} ({kind.lower()}); expected a synchroniser, rtl/common/sync2.sv, or "
-                             "what rtl/pins/board.pins says of it")
-    problems |= {f"{' '.join(row[:2])}: rtl/pins/board.pins allows it, nothing needs it"
+                             "what its row in rtl/pins says of it")
+    problems |= {f"{' '.join(row[:2])}: a row in rtl/pins allows it, nothing needs it"
                  for row in rules.all() if row not in used}
     return len(sources), sorted(problems)
 

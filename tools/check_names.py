@@ -8,7 +8,7 @@ import pathlib
 
 from common import ROOT, finish
 
-NO_BLOCK = {"common", "regs"}                        # cores of several small modules, of a generated package
+NO_BLOCK = {"common", "motor_pins", "regs"}          # cores of several small modules, of generated packages
 PAGES = {"board_top": "architecture",                # the whole
          "host_interrupt": "interrupt_controller"}   # its last flip-flops, the 8259's too
 TESTS = {"board_top": "board"}

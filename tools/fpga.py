@@ -73,7 +73,8 @@ def clock(name):
 
 def plain(name):
     """A flip-flop without what the tools have added to its name."""
-    name = re.sub(r"_(TRELLIS_FF|LUT4|CCU2C|PFUMX|L6MUX21|DP16KD).*", "", name).removeprefix("u_board.")
+    name = re.sub(r"_(TRELLIS_FF|LUT4|CCU2C|PFUMX|L6MUX21|DP16KD).*", "", name)
+    name = name.removeprefix("u_board.").removeprefix("u_core.")
     return re.sub(r"gen_servo_ic\[\d+\]\.gen_built\.|u_channels\.gen_channel\[\d+\]\.", "", name)
 
 

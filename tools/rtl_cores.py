@@ -40,6 +40,7 @@ BLOCKS = {  # tops with a list; those with a page have a core too
 # What several cores share is a core of its own, so that two of them in one design bring it once.
 SHARED = {
     "regs": ("Register maps of all blocks, a package", ["brick_regs_pkg"]),
+    "motor_pins": ("Places of a servo IC's pins in its vectors, a package", ["motor_pins_pkg"]),
     "common": ("Synchronisers", ["sync2", "reset_sync"]),
     "clock_gen": ("Clock chain of servo IC and MACRO IC", ["clock_gen"]),
 }

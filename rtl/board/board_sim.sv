@@ -17,12 +17,12 @@ module board_sim #(
   input  wire logic [31:0] start_seed_i,
   input  wire logic        seeded_bug_i,
   output logic [31:0]      pins_o[4],
-  input  wire logic [63:0] motor_i[18],  // each servo IC as in board_top, also those not built
-  output logic [63:0]      motor_o[18],
+  input  wire logic [motor_pins_pkg::Stride-1:0] motor_i[18],  // each servo IC as in board_top, also those not built
+  output logic [motor_pins_pkg::Stride-1:0] motor_o[18],
   output logic [31:0]      count_o[72]   // no pins: position counters, channel n of IC i in word 4 * i + n - 1
 );
 
-  localparam integer MotorBits = ServoIcMask == 0 ? 1 : 64 * $countones(ServoIcMask);
+  localparam integer MotorBits = ServoIcMask == 0 ? 1 : motor_pins_pkg::Stride * $countones(ServoIcMask);
   logic [MotorBits-1:0] motor_in, motor_out;
   if (ServoIcMask == 0) begin : gen_no_motors
     logic unused_out;
@@ -31,15 +31,15 @@ module board_sim #(
   end
   for (genvar i = 0; i < 18; i++) begin : gen_motor
     if (ServoIcMask[i]) begin : gen_built
-      localparam integer Motor = 64 * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));
-      assign motor_in[Motor+:64] = motor_i[i];
-      assign motor_o[i]          = motor_out[Motor+:64];
+      localparam integer Motor = motor_pins_pkg::Stride * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));
+      assign motor_in[Motor +: motor_pins_pkg::Stride] = motor_i[i];
+      assign motor_o[i]          = motor_out[Motor +: motor_pins_pkg::Stride];
       for (genvar n = 0; n < 4; n++) begin : gen_count
         assign count_o[4*i+n] =
             {8'h0, u_board.gen_servo_ic[i].gen_built.u_servo_ic.u_channels.gen_channel[n].u_channel.counter_o};
       end
     end else begin : gen_absent
-      assign motor_o[i] = 64'h0;
+      assign motor_o[i] = '0;
       for (genvar n = 0; n < 4; n++) begin : gen_count
         assign count_o[4*i+n] = 32'h0;
       end
@@ -178,11 +178,11 @@ module board_sim #(
   endfunction
 
   initial begin
-    for (int i = 0; i < 32768; i++) u_board.u_dpram.u_memory.mem[i] = start_word(start_seed_i, i);
+    for (int i = 0; i < 32768; i++) u_board.u_core.u_dpram.u_memory.mem[i] = start_word(start_seed_i, i);
   end
 
   // A simulator resets at the fall of a reset only, so the board's must have been high before the first.
-  initial u_board.u_reset_sync.u_pwm.sync2_q = 1'b1;
+  initial u_board.u_core.u_reset_sync.u_pwm.sync2_q = 1'b1;
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
   logic       bug_q, servo_last_q;

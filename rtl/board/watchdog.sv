@@ -18,16 +18,17 @@ module watchdog (
 
   logic [9:0]  prescale_q;
   logic [15:0] strobe_left_d, strobe_left_q, servo_left_d, servo_left_q;
-  (* async_reg = "true" *) logic good1_q, good2_q;
-  logic        servo1_q, servo2_q, trip_d, trip_q, relay_q;
+  logic        good, servo1_q, servo2_q, trip_d, trip_q, relay_q;
   logic        count, servo_edge;
   assign count      = &prescale_q;
   assign servo_edge = servo1_q != servo2_q;
 
+  sync2 #(.Reset(1'b1)) u_good_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(pwr_good_i), .q_o(good));
+
   always_comb begin
     strobe_left_d = strobe_left_q;
     servo_left_d  = servo_left_q;
-    trip_d        = trip_q | ~good2_q;
+    trip_d        = trip_q | ~good;
     if (count && !trip_q) begin
       strobe_left_d = strobe_left_q - 16'd1;
       servo_left_d  = servo_left_q - 16'd1;
@@ -44,8 +45,6 @@ module watchdog (
       servo_left_q  <= Timeout;
       servo1_q      <= 1'b1;
       servo2_q      <= 1'b1;
-      good1_q       <= 1'b1;
-      good2_q       <= 1'b1;
       trip_q        <= 1'b0;
       relay_q       <= 1'b0;
     end else begin
@@ -54,8 +53,6 @@ module watchdog (
       servo_left_q  <= servo_left_d;
       servo1_q      <= servo_i;
       servo2_q      <= servo1_q;
-      good1_q       <= pwr_good_i;
-      good2_q       <= good1_q;
       trip_q        <= trip_d;
       relay_q       <= ~trip_d;
     end

@@ -29,11 +29,11 @@ module interrupt_controller (
   localparam logic [1:0] AddrMask      = brick_regs_pkg::HostIoPicMaskAddr[1:0];
   localparam logic [1:0] AddrEdgeLevel = brick_regs_pkg::HostIoPicEdgeLevelAddr[1:0];
 
-  (* async_reg = "true" *) logic [7:0] line1_q, line2_q;
-  logic [7:0] line3_q;  // line2_q one clock ago, for the edge
+  logic [7:0] line2_q, line3_q;  // behind the synchroniser, and that one clock ago, for the edge
   logic [7:0] msk_d, msk_q, elr_d, elr_q, latch_d, latch_q, rise;
   logic       clear;
 
+  sync2 #(.Width(8)) u_line_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(line_i), .q_o(line2_q));
   assign rise    = line2_q & ~line3_q;
   assign clear   = wr_i & (addr_i == AddrStatus);
 
@@ -50,15 +50,11 @@ module interrupt_controller (
 
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      line1_q <= 8'h00;
-      line2_q <= 8'h00;
       line3_q <= 8'h00;
       latch_q <= 8'h00;
       msk_q   <= brick_regs_pkg::HostIoPicMaskReset;
       elr_q   <= brick_regs_pkg::HostIoPicEdgeLevelReset;
     end else begin
-      line1_q <= line_i;
-      line2_q <= line1_q;
       line3_q <= line2_q;
       latch_q <= latch_d;
       msk_q   <= msk_d;

@@ -32,7 +32,7 @@ module pic_8259 (
   localparam logic [1:0] Second      = brick_regs_pkg::Pic8259Ocw1Addr[1:0];
   localparam logic [1:0] Acknowledge = brick_regs_pkg::Pic8259VectorAddr[1:0];
 
-  (* async_reg = "true" *) logic [7:0] line1_q, line2_q;
+  logic [7:0] line2_q;  // behind the synchroniser
   logic [7:0] armed_d, armed_q;  // the line has been low since its last acknowledge
   logic [7:0] isr_d, isr_q, imr_d, imr_q;
   logic [2:0] lowest_d, lowest_q;  // level of the lowest priority
@@ -154,10 +154,10 @@ module pic_8259 (
     end
   end
 
+  sync2 #(.Width(8)) u_line_sync (.clk_i(clk_ref_i), .rst_ni, .d_i(line_i), .q_o(line2_q));
+
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      line1_q    <= 8'h00;
-      line2_q    <= 8'h00;
       armed_q    <= 8'h00;
       isr_q      <= 8'h00;
       imr_q      <= brick_regs_pkg::Pic8259Ocw1Reset;
@@ -173,8 +173,6 @@ module pic_8259 (
       read_isr_q <= 1'b0;
       poll_q     <= 1'b0;
     end else begin
-      line1_q    <= line_i;
-      line2_q    <= line1_q;
       armed_q    <= armed_d;
       isr_q      <= isr_d;
       imr_q      <= imr_d;

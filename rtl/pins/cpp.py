@@ -1,6 +1,6 @@
 """C++ of the pins: structures, packed words and drive tables of board and motor side (.hpp), of the components their
 members (public headers), pin tables, and places in the packed words with the ports of the Verilated module."""
-from rows import CHANNELS, camel
+from rows import CHANNELS, camel, fail
 
 ON = "// clang-format off"
 
@@ -110,6 +110,9 @@ def write_board_inputs(board, notice):
 def write_motor_pins(servo, notice):
     channel = servo.of("channel")
     flags = [pin for pin in channel if pin.is_input and not pin.name.startswith("adc_")]
+    adc = {pin.name: pin.motor[0] for pin in channel if pin.is_input and pin not in flags}
+    if any(pin.motor != (flags[0].motor[0] + pin.lsb, flags[0].motor[1]) for pin in flags):
+        fail(servo.path.name, "a channel's pins stand in motor_i otherwise than in its word; expected them alike")
     idle = " | ".join(f"1u << {pin.constant}" for pin in reversed(flags) if pin.idle)
     outputs = [pin for pin in servo.pins if not pin.is_input and pin.group in ("channel", "serial", "count")]
     words = 1 + max(pin.word + (CHANNELS - 1) * pin.word_step for pin in outputs)
@@ -123,7 +126,11 @@ def write_motor_pins(servo, notice):
                 "constexpr std::array<std::string_view, kChannelPins> kChannelPinNames{")
     yield from listed(f'"{pin.name}"' for pin in flags)
     yield from ("};", "// Nothing connected: these are pulled up, the others show 0 (servo-ic:5.15/6).",
-                f"constexpr std::uint16_t kIdleChannelPins = {idle};", "",
+                f"constexpr std::uint16_t kIdleChannelPins = {idle};",
+                "// motor_i of the RTL: channel n has its pins from kMotorPinsLsb + n * kMotorPinsStep on, ADCs at",
+                "// kMotorAdcALsb + n, kMotorAdcBLsb + n.",
+                f"constexpr unsigned kMotorPinsLsb = {flags[0].motor[0]}, kMotorPinsStep = {flags[0].motor[1]};",
+                f"constexpr unsigned kMotorAdcALsb = {adc['adc_a']}, kMotorAdcBLsb = {adc['adc_b']};", "",
                 f"constexpr unsigned kMotorOutputWords = {words};", "",
                 "// A field that every channel has: channel n (0..3) has it at lsb + n * stride, or in word + n when",
                 "// the stride is 0.", "struct MotorField {",

@@ -27,6 +27,7 @@ def contents(tables, root):
     files = {"rtl/pins/board_pins.hpp": cpp.write_board_pins(board, notice["board"]),
              "rtl/pins/board_inputs.hpp": cpp.write_board_inputs(board, notice["board"]),
              "rtl/pins/motor_pins.hpp": cpp.write_motor_pins(servo, notice["servo_ic"]),
+             "rtl/pins/motor_pins_pkg.sv": pages.write_motor_package(servo, notice["servo_ic"]),
              "docs/pins.md": pages.write_pins_page(tables, notice["board"])}
     for name, table in tables.items():
         folder = f"systemc/component/{name}"

@@ -30,6 +30,10 @@ constexpr std::array<std::string_view, kChannelPins> kChannelPinNames{
 };
 // Nothing connected: these are pulled up, the others show 0 (servo-ic:5.15/6).
 constexpr std::uint16_t kIdleChannelPins = 1u << kT | 1u << kU | 1u << kV | 1u << kW | 1u << kUser | 1u << kEncB;
+// motor_i of the RTL: channel n has its pins from kMotorPinsLsb + n * kMotorPinsStep on, ADCs at
+// kMotorAdcALsb + n, kMotorAdcBLsb + n.
+constexpr unsigned kMotorPinsLsb = 0, kMotorPinsStep = 12;
+constexpr unsigned kMotorAdcALsb = 48, kMotorAdcBLsb = 52;
 
 constexpr unsigned kMotorOutputWords = 6;
 

@@ -84,6 +84,22 @@ def sim_packing(board):
             yield f"  assign pins_o[{word}][{low + 7}:{low}] = {concatenation(some, low, low + 7)};"
 
 
+def write_motor_package(servo, notice):
+    """Where board_top and its users find the pins of a servo IC: vectors of all four channels."""
+    yield from (f"// {notice}",
+                "// The motor side of a servo IC: where motor_i and motor_o have its pins, vectors of all channels,",
+                "// the first one lowest.",
+                "`default_nettype none", "", "package motor_pins_pkg;", "",
+                "  localparam int Stride = 64;  // bits of motor_i and of motor_o for each servo IC that is built")
+    for inputs, word in ((True, "In"), (False, "Out")):
+        fields = servo.motor_fields(inputs)
+        yield from ("", f"  localparam int {word}Bits = {sum(map(len, fields.values()))};  // of these in use")
+        for name, bits in fields.items():
+            yield f"  localparam int {camel(name) + 'Lsb':<14} = {bits[0]};"
+            yield f"  localparam int {camel(name) + 'Width':<14} = {len(bits)};"
+    yield from ("", "endpackage : motor_pins_pkg", "", "`default_nettype wire", "")
+
+
 def board_sim(board, text, path):
     end = "// end of rows"
     for mark, lines in (("nets", sim_nets), ("ports", sim_ports), ("words", sim_packing)):

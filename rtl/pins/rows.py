@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
-COLUMNS = ("name", "direction", "width", "group", "place", "idle", "sampled", "rtl", "port", "signal", "drives", "rule",
-           "sentence", "valid")
+COLUMNS = ("name", "direction", "width", "group", "place", "motor", "idle", "sampled", "rtl", "port", "signal",
+           "drives", "rule", "sentence", "valid")
 COMPONENTS = ("servo_ic", "macro_ic", "clock_select", "interrupt_controller", "host_port", "dpram", "host_signals",
               "ssi", "watchdog")  # with those of the board all that there are
 CHANNELS = 4
@@ -36,6 +36,7 @@ class Pin:
     word_step: int    # a channel
     lsb: int
     lsb_step: int
+    motor: tuple | None  # (bit, step a channel) in motor_i of the RTL
     idle: int
     sampled: tuple    # of (way, patterns of registers)
     rtl: str          # port, without the bit
@@ -65,6 +66,11 @@ class Pin:
     def bits(self):
         return self.width * self.count
 
+    def motor_bits(self):
+        """Its bits in motor_i or motor_o of the RTL, of all channels that have one of their own."""
+        bit, step = self.motor if self.is_input else (32 * self.word + self.lsb, self.lsb_step)
+        return [bit + n * step for n in range(CHANNELS if step else 1)]
+
     def range(self, word):
         """Its bits of a packed vector, as SystemVerilog writes them."""
         return f"{word}[{self.lsb}]" if self.bits == 1 else f"{word}[{self.lsb + self.bits - 1}:{self.lsb}]"
@@ -92,6 +98,13 @@ def sampled_ways(text):
         yield kind, tuple(registers)
 
 
+def motor_place(where, cells):
+    place = re.fullmatch(r"(?:(\d+)(?:\+(\d+))?)?", cells.get("motor", ""))
+    if not place:
+        fail(where, f"motor is '{cells['motor']}'; expected BIT or BIT+STEP")
+    return (int(place[1]), int(place[2] or 0)) if place[1] else None
+
+
 def make_pin(where, cells):
     name = re.fullmatch(r"([a-z][a-z0-9_]*)(?:\[(\d+)\])?", cells["name"])
     if not name:
@@ -113,7 +126,8 @@ def make_pin(where, cells):
     return Pin(
         name=name[1], direction=cells["direction"], width=width, count=count, group=cells.get("group", ""),
         word=None if word is None else int(word), word_step=1 if step else 0, lsb=int(lsb or 0),
-        lsb_step=int(lsb_step or 0), idle=number(where, "idle", cells.get("idle") or "0", 2 ** width - 1),
+        lsb_step=int(lsb_step or 0), motor=motor_place(where, cells),
+        idle=number(where, "idle", cells.get("idle") or "0", 2 ** width - 1),
         sampled=tuple(sampled_ways(cells.get("sampled", ""))), rtl=rtl[1] or rtl_port(name[1], cells["direction"]),
         rtl_bit=None if rtl[2] is None else int(rtl[2]), port=cells.get("port") or name[1], signal=signal,
         hex=radix == ["hex"] if radix else width > 1, drives=cells.get("drives", ""), rule=cells["rule"],
@@ -180,6 +194,20 @@ class Table:
 
     def of(self, group):
         return [pin for pin in self.pins if pin.group == group]
+
+    def motor_fields(self, inputs):
+        """{vector of the RTL: its bits of motor_i or motor_o}, each without a gap, lowest first."""
+        fields = {}
+        for pin in self.pins:
+            if pin.group in ("channel", "serial") and pin.is_input == inputs:
+                fields.setdefault(pin.rtl, []).extend(pin.motor_bits())
+        taken = sorted(bit for bits in fields.values() for bit in bits)
+        if taken != list(range(len(taken))):
+            fail(self.path.name, f"motor_{'i' if inputs else 'o'} has bits {taken}; expected each from 0 on once")
+        for name, bits in fields.items():
+            if max(bits) - min(bits) >= len(bits):
+                fail(self.path.name, f"{name} has bits {sorted(bits)}; expected one range")
+        return {name: sorted(bits) for name, bits in fields.items()}
 
     def words(self, inputs):
         return 1 + max(pin.word for pin in self.pins if pin.is_input == inputs and pin.word is not None)

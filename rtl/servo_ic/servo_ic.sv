@@ -28,7 +28,7 @@ module servo_ic (
   input  wire logic [3:0]  adc_a_i,
   input  wire logic [3:0]  adc_b_i,
   output logic [3:0]       equ_o,        // as in motor_o, for the interrupt controller
-  output logic [63:0]      motor_o       // serial clocks and strobes, EQU, AENA, DAC B, DAC A, DIR, PULSE, PWM
+  output logic [motor_pins_pkg::Stride-1:0] motor_o
 );
 
   logic [11:0] clock_dividers;
@@ -60,7 +60,8 @@ module servo_ic (
   );
 
   logic [23:0] pwm;
-  logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ, serial;
+  logic [3:0]  pulse, dir, dac_a, dac_b, aena, equ;
+  logic        dac_clk, dac_strobe_pin, adc_clk, adc_strobe_pin;
   servo_channels u_channels (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .sel_i, .x_i, .addr_i, .we_i, .wdata_i, .rd_i, .rdata_o(channel_rdata),
@@ -68,15 +69,31 @@ module servo_ic (
     .cnt_i(cnt), .turn_i(turn), .phase_rise_i(phase_rise), .phase_fall_i(phase_fall), .servo_fall_i(servo_fall),
     .pins_i, .adc_a_i, .adc_b_i,
     .pwm_o(pwm), .pulse_o(pulse), .dir_o(dir), .dac_a_o(dac_a), .dac_b_o(dac_b), .aena_o(aena), .equ_o(equ),
-    .dac_clk_o(serial[0]), .dac_strobe_o(serial[1]), .adc_clk_o(serial[2]), .adc_strobe_o(serial[3])
+    .dac_clk_o(dac_clk), .dac_strobe_o(dac_strobe_pin), .adc_clk_o(adc_clk), .adc_strobe_o(adc_strobe_pin)
   );
   assign rdata_o = ic_rdata | channel_rdata;
   assign equ_o   = equ;
 
   // What moves with clk_ref only stands apart, so that a simulator packs it only then: docs/simulation-speed.md.
-  logic [23:0] slow;
-  assign slow    = {equ, aena, dac_b, dac_a, dir, pulse};
-  assign motor_o = {12'h0, serial, slow, pwm};
+  logic [motor_pins_pkg::Stride-1:0] slow, fast;
+  always_comb begin
+    slow = '0;
+    slow[motor_pins_pkg::PulseLsb +: motor_pins_pkg::PulseWidth]         = pulse;
+    slow[motor_pins_pkg::DirLsb +: motor_pins_pkg::DirWidth]             = dir;
+    slow[motor_pins_pkg::DacALsb +: motor_pins_pkg::DacAWidth]           = dac_a;
+    slow[motor_pins_pkg::DacBLsb +: motor_pins_pkg::DacBWidth]           = dac_b;
+    slow[motor_pins_pkg::AenaLsb +: motor_pins_pkg::AenaWidth]           = aena;
+    slow[motor_pins_pkg::EquLsb +: motor_pins_pkg::EquWidth]             = equ;
+    slow[motor_pins_pkg::DacStrobeLsb +: motor_pins_pkg::DacStrobeWidth] = dac_strobe_pin;
+    slow[motor_pins_pkg::AdcStrobeLsb +: motor_pins_pkg::AdcStrobeWidth] = adc_strobe_pin;
+  end
+  always_comb begin
+    fast = '0;
+    fast[motor_pins_pkg::PwmLsb +: motor_pins_pkg::PwmWidth]       = pwm;
+    fast[motor_pins_pkg::DacClkLsb +: motor_pins_pkg::DacClkWidth] = dac_clk;
+    fast[motor_pins_pkg::AdcClkLsb +: motor_pins_pkg::AdcClkWidth] = adc_clk;
+  end
+  assign motor_o = slow | fast;
 
 endmodule : servo_ic
 

@@ -32,10 +32,11 @@ void drive(Ports& ports, const BoardInputs& in) {
   for (unsigned i = 0; i < kBoardInputWords; ++i) ports.inputs_i[i] = words[i];
 }
 
-// Pins of channel n from bit 12 n up, ADC A from 48, ADC B from 52.
 constexpr std::uint64_t pack(const MotorInputs& in) {
-  std::uint64_t word = std::uint64_t{in.adc_a & 0xFu} << 48 | std::uint64_t{in.adc_b & 0xFu} << 52;
-  for (unsigned n = 0; n < kChannels; ++n) word |= std::uint64_t{in.pins[n] & 0xFFFu} << 12 * n;
+  std::uint64_t word = std::uint64_t{in.adc_a & 0xFu} << kMotorAdcALsb | std::uint64_t{in.adc_b & 0xFu}
+                                                                             << kMotorAdcBLsb;
+  for (unsigned n = 0; n < kChannels; ++n)
+    word |= std::uint64_t{in.pins[n] & 0xFFFu} << (kMotorPinsLsb + kMotorPinsStep * n);
   return word;
 }
 

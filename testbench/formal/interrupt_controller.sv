@@ -9,7 +9,7 @@
 //   + ((rise & msk_q & ~elr_q) | (latch_q & msk_q)) & ~{8{clear}}
 // fault R6: the end of a high level counts as a second rise (rtl/host/interrupt_controller.sv)
 //   - line2_q & ~line3_q
-//   + line2_q & ~(line3_q & line1_q)
+//   + line2_q & ~(line3_q & line_i)
 // fault R8: an edge is remembered while its line is masked (rtl/host/interrupt_controller.sv)
 //   - (rise & msk_q & ~elr_q)
 //   + (rise & ~elr_q)

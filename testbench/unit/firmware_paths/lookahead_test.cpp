@@ -88,6 +88,21 @@ TEST_F(Lookahead, VelocityIsLimitedWhateverTheAccelerationIs) {
     }
 }
 
+// motion:7.4/1: a velocity of 7,000 times what a segment adds to it; 8,192 are the range.
+TEST_F(Lookahead, VelocityIsLimitedThoughItIsGainedInThousandsOfSegments) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=1 I5120=4300 I116=7 I117=0.001"), "");
+  ASSERT_EQ(host("DELETE GATHER"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 4350,0"), "");
+  store({"F8 TA10 TS0", "X60"});
+  double end = 0;
+  const auto found = extremes(1, &end);
+  EXPECT_LE(found[0].velocity, 1.001 * 7 + 2 / kUnit / kTickMs);
+  EXPECT_GE(found[0].velocity, 6.9) << "7^2 / 0.001 are 49,000 counts";
+  EXPECT_LE(found[0].acceleration, 0.001 * 1.02 + 4 / kUnit / (64 * kTickMs * kTickMs));
+  EXPECT_EQ(motors[0].trajectory, 60000 * 3072LL);
+}
+
 // An abort forgets what is being worked out, in the middle of it; what comes then has all of its limits.
 TEST_F(Lookahead, AbortsLeaveTheLimitsAsTheyAre) {
   fit({"1000X", "1000Y"});
