@@ -40,7 +40,7 @@ module trip_rules (
 
   logic [23:0] rdata;
   logic [3:0]  equ_line;
-  logic [63:0] motor;
+  logic [motor_pins_pkg::Stride-1:0] motor;
   logic        phase, servo, phase_oe, servo_oe;
   servo_ic dut (.clk_pwm_i(clk_i), .clk_ref_i(clk_i), .rst_ni(1'b1), .sel_i, .x_i, .addr_i, .we_i, .wdata_i,
                 .rd_i, .rdata_o(rdata), .phase_i, .servo_i, .phase_o(phase), .servo_o(servo), .phase_oe_o(phase_oe),
@@ -50,13 +50,13 @@ module trip_rules (
   (* anyconst *) logic [1:0] n;
   logic [5:0] pwm;
   logic       pulse, dir, dac_a, dac_b, aena, equ;
-  assign pwm   = motor[6*n +: 6];
-  assign pulse = motor[24 + n];
-  assign dir   = motor[28 + n];
-  assign dac_a = motor[32 + n];
-  assign dac_b = motor[36 + n];
-  assign aena  = motor[40 + n];
-  assign equ   = motor[44 + n];
+  assign pwm   = motor[motor_pins_pkg::PwmLsb + 6*n +: 6];
+  assign pulse = motor[motor_pins_pkg::PulseLsb + n];
+  assign dir   = motor[motor_pins_pkg::DirLsb + n];
+  assign dac_a = motor[motor_pins_pkg::DacALsb + n];
+  assign dac_b = motor[motor_pins_pkg::DacBLsb + n];
+  assign aena  = motor[motor_pins_pkg::AenaLsb + n];
+  assign equ   = motor[motor_pins_pkg::EquLsb + n];
 
   // From inside: the words, the DAC stream.
   (* hierconn *) wire logic [23:0] \dut.u_channels.gen_channel[0].u_channel.u_regs.control_q ;
@@ -170,13 +170,13 @@ module trip_rules (
 
     // R8: It has its strobe, bit by bit.
     if (bits_q != 5'd0 && bits_q != 5'd25) begin
-      R8: assert (motor[49] == dac_strobe_kept[5'd24 - bits_q]);
-      C8: cover (bits_q == 5'd3 && motor[49]);
+      R8: assert (motor[motor_pins_pkg::DacStrobeLsb] == dac_strobe_kept[5'd24 - bits_q]);
+      C8: cover (bits_q == 5'd3 && motor[motor_pins_pkg::DacStrobeLsb]);
     end
 
     // R9: Pins that nobody has stay low.
-    R9: assert (motor[63:52] == 12'h0);
-    C9: cover (motor[51:48] == 4'hF);
+    R9: assert (motor[motor_pins_pkg::Stride-1:motor_pins_pkg::OutBits] == '0);
+    C9: cover (aena == 1'b0 && motor[motor_pins_pkg::AdcStrobeLsb]);
   end
 
 endmodule : trip_rules
