@@ -43,7 +43,8 @@ class Figures(Tree):
         self.broken("README.md", "110", "60", "docs/cosim.md says 110, README.md says 60")
 
     def test_two_speeds_of_a_host_that_polls_fail(self):
-        self.broken("docs/simulation-speed.md", "1.2", "1.1", "docs/cosim.md says 1.2, docs/simulation-speed.md says 1.1")
+        self.broken("docs/simulation-speed.md", "1.2", "1.1",
+                    "docs/cosim.md says 1.2, docs/simulation-speed.md says 1.1")
 
     def test_two_speeds_of_the_rtl_fail(self):
         self.broken("docs/cosim.md", "4.5", "5", "docs/cosim.md says 3 to 5 M ticks/s, README.md says 3 to 4.5")
