@@ -182,7 +182,7 @@ error_t run_match(uint32_t cs) {
     system_motors_resolve(cs);
   }
   const uint32_t state = hal_mask_real_time();
-  s->matching = s->motors != 0;
+  s->matching = s->matching_anew = s->motors != 0;
   cs_awake |= 1u << cs;
   hal_unmask(state);
   return ERR_NONE;
