@@ -114,7 +114,7 @@ class ClockCrossings(Tree):
 
     def test_a_line_that_logic_selects_and_no_strap_fails(self):
         choice = "line_source[line_select_q[7:4]]"
-        self.plant("rtl/board/board_top.sv", choice, choice.replace("[7:4]", "[7:4] ^ equ[3:0]"))
+        self.plant("rtl/board/board_core.sv", choice, choice.replace("[7:4]", "[7:4] ^ equ[3:0]"))
         self.expect(self.run_tool("check_cdc.py"), 1, "mi1_i reaches u_interrupt_controller.u_line_sync.sync1_q (data)")
 
     def test_a_pin_of_a_motor_that_feeds_logic_fails(self):
