@@ -100,6 +100,30 @@ TEST_F(Segments, ALateMoveBlendsInWhatIsLeft) {
   EXPECT_EQ(change(101), 0);
 }
 
+// One that came late is waited for no more, the next one is: it has all of its blend, 10 ms for 50 counts/ms.
+TEST_F(Segments, BehindALateMoveTheNextOneIsWaitedFor) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=2"), "");
+  ASSERT_EQ(host("DELETE GATHER"), "");
+  ASSERT_EQ(host("&1DEFINE ROTARY 100 B0 OPEN ROTARY"), "");
+  ASSERT_EQ(host("INC TM100 TA10 TS0 X10"), "");
+  ASSERT_EQ(host("&1R"), "");
+  for (int i = 0; i < 100 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(50));  // the first one already goes straight on
+  ASSERT_EQ(host("X10"), "");
+  platform::servo_ticks(ticks_of(200 - 17 - 50));
+  ASSERT_EQ(host("X15"), "");
+  double sharpest = 0, last[2] = {at(1), at(1)};
+  for (unsigned n = 0; n < ticks_of(60); ++n) {
+    platform::servo_ticks(1);
+    if (n > 1) sharpest = std::max(sharpest, std::abs(at(1) - 2 * last[1] + last[0]) / (kTickMs * kTickMs));
+    last[0] = last[1], last[1] = at(1);
+  }
+  EXPECT_NEAR(sharpest, 5, 0.1) << "50 counts/ms in 10 ms";
+  platform::servo_ticks(ticks_of(200));
+  EXPECT_EQ(motors[0].trajectory, 35000 * 3072);
+}
+
 // motion:7.1/7: what is not there 12 ms before it is needed is not waited for; 4 more for what is made meanwhile.
 TEST_F(Segments, ANextMoveIsWaitedForUntilTwelveMsBeforeItsBlend) {
   for (const double before : {16.5, 9.5}) {
