@@ -94,7 +94,7 @@ class KinematicsBench {
 
   MotorHost host_;
   Arm arm_{};
-  double period_ = 5;  // Isx13
+  double period_ = 4;  // Isx13
 };
 
 double KinematicsBench::control(const Course& c, int which, int n) const {
@@ -157,7 +157,7 @@ std::vector<Course> KinematicsBench::courses() {
   const Point corner = {start.x + way * std::cos(angle), start.y + way * std::sin(angle)};
   const Point centre = {corner.x + radius * std::cos(angle / 2), corner.y + radius * std::sin(angle / 2)};
   const bool right = host_.pick(2) != 0;
-  const double tm = 16, round = 20;
+  const double tm = 18, round = 37;
   Course line{"line",
               fmt::format("TM{} TA16 TS4 X{:.9f} Y{:.9f}", tm, corner.x, corner.y),
               [=](double part) {
@@ -269,9 +269,10 @@ void KinematicsBench::judge(const Course& c) {
 void KinematicsBench::run() {
   if (host_.motors() < 2) return report().fail("channels", "expected two");
   arm_ = {pick(250, 350), pick(180, 250), pick(90, 140), {pick(-30, 30), pick(50, 100)}};
-  period_ = 4 + host_.pick(3);
+  period_ = 4 + host_.pick(2);
   host_.set_up();
   host_.variables(11, 0);
+  host_.variables(92, 0);
   host_.expect("I15=0 M5182->Y:$203F,22", "");
   host_.expect("&1#1->I #2->I", "");
   host_.say({fmt::format("I5150=1 I5113={} I5192=1", period_)});

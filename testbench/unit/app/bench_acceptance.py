@@ -343,7 +343,7 @@ def kinematics():
 
 
 def kinematics_lockstep():
-    short_lockstep("kinematics", "7")
+    short_lockstep("kinematics", "822")
 
 
 def limits():
