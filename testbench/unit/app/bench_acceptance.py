@@ -364,6 +364,7 @@ def ssi():
         bench_passes("ssi", "systemc", seed, board=board)
 
 
+# covers: SSI-1
 def ssi_lockstep():
     for board, seed in (("geo-pmac", "3"), ("geobrick-lv-8", "4")):
         bench_passes("ssi", "lockstep", seed, board=board)

@@ -219,6 +219,32 @@ TEST_F(Lookahead, OrdersByIsx21) {
   EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
 }
 
+// motion:7.5/1: at the first quarter of a segment that is far enough. 10 counts/ms, segments of 200 counts about knots
+// at 200 k - 100: a stop takes 5, 83, 125, 179 counts.
+TEST_F(Lookahead, StopsAreAtQuarters) {
+  const std::pair<const char*, int> cases[] = {{"10", 1}, {"0.6", 2}, {"0.4", 3}, {"0.28", 4}};
+  for (const auto& [acceleration, quarters] : cases) {
+    SCOPED_TRACE(acceleration);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host(std::string("I5113=20 I5120=20 I116=50 I117=") + acceleration), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"TM1000 TA20 TS0", "X10"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(500));
+    const double from = at(1);
+    ASSERT_EQ(host("&1\\"), "");
+    platform::servo_ticks(ticks_of(150));
+    const double x = at(1), last = x - 50 * quarters;  // the knot before
+    EXPECT_NEAR(std::remainder(last + 100, 200), 0, 0.01) << x;
+    EXPECT_GE(last, from + 10 * 12 - 10) << "12 ms are left as they were";
+    EXPECT_LE(last, from + 10 * 12 + 200 + 10) << "and no more than a segment";
+    ASSERT_EQ(host("&1>"), "");
+    platform::servo_ticks(ticks_of(1000));
+    EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
+  }
+}
+
 // Isx20 below four is four: what moves is the same.
 TEST_F(Lookahead, FewerThanFourSegmentsAreFour) {
   double times[3];
