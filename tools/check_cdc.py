@@ -104,7 +104,7 @@ class Walk:
         self.names, self.marked = {}, set()
         for name, net in sorted(module["netnames"].items(), key=lambda n: (n[0].endswith("_q"), -len(n[0]), n[0])):
             for bit in net["bits"]:
-                self.names[bit] = name  # the name of a register wins, then the shortest
+                self.names[bit] = name.removeprefix("u_core.")  # a register's name wins, then the shortest
                 if "async_reg" in net["attributes"]:
                     self.marked.add(bit)
         self.inputs = {n: p["bits"] for n, p in module["ports"].items() if p["direction"] == "input"}

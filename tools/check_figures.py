@@ -17,6 +17,8 @@ PAIRS = (
      ("docs/datasheet/firmware.md", r"acknowledged when it is done, (\d+) ms and more")),
     ("speed of an idle machine", ("docs/cosim.md", r"idle firmware (\d+) simulated s/s"),
      ("README.md", r"idle firmware: (\d+) simulated\s+seconds a second")),
+    ("speed of a host that polls", ("docs/cosim.md", r"a host that polls ([\d.]+) simulated s/s"),
+     ("docs/simulation-speed.md", r"a host reads its status without pause \| ([\d.]+) simulated s/s")),
     ("speed of the RTL", ("docs/cosim.md", r"\| 8 axes ([\d.]+ to [\d.]+ M ticks/s),"),
      ("README.md", r"the Verilated RTL \| ([\d.]+ to [\d.]+ M ticks/s),")),
 )

@@ -18,7 +18,7 @@ void real_time(void) {
   panel_select();
   buffer_request_poll();
   binary_rotary_real_time();
-  if (tasks_real_time_is_periodic()) protection_pass();
+  if (tasks_real_time_is_periodic() || protection_is_asked_for()) protection_pass();
   calculate_programs();
   if (tasks_real_time_is_periodic()) plc_real_time();
   stack_watch_check();

@@ -20,7 +20,8 @@ struct way {
   bool turns;
 };
 
-/* Of the first move's start, and of the moves by their places in the queue. A motor belongs to one system. */
+/* Of the first move's start, and of the moves by their places in the queue. A motor belongs to one system. Of one that
+ * an inverse program moves: what it stands beside that, and comes along with the first move. */
 static struct {
   int64_t start;
   struct way ways[PATH_MOVES];
@@ -98,7 +99,7 @@ static double set_arc(uint32_t cs, uint32_t place, const struct circle* c) {
   return largest;
 }
 
-/* Those whose definitions are sums of axes. */
+/* Those whose definitions are sums of axes; the others are moved by a program. */
 static uint32_t defined(uint32_t cs) { return coordinate_systems[cs].motors & ~coordinate_systems[cs].inverse_motors; }
 
 void path_motors_begin(uint32_t cs) {
@@ -106,6 +107,11 @@ void path_motors_begin(uint32_t cs) {
   for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
     motors_of_path[motor].start = math_nearest(system_motor_from(motor, m->start));
+    slice_pause();
+  }
+  for (uint32_t motor = 0, left = coordinate_systems[cs].inverse_motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    motors_of_path[motor].start = math_nearest(system_motor_aside(motor));
     slice_pause();
   }
   path_motors_join(cs, 0);
@@ -132,9 +138,11 @@ void path_motors_join(uint32_t cs, uint32_t ahead) {
 
 void path_motors_pop(uint32_t cs) {
   const uint32_t place = place_of(&paths[cs], 0);
+  const uint32_t by_program = coordinate_systems[cs].inverse_motors;
   slice_pause();
-  for (uint32_t motor = 0, left = defined(cs); left != 0; motor++, left >>= 1) {
+  for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) != 0) motors_of_path[motor].start = motors_of_path[motor].ways[place].end;
+    if ((by_program >> motor & 1u) != 0) motors_of_path[motor].start = 0;
     if (motor % PAUSE_MOTORS == PAUSE_MOTORS - 1u) slice_pause();
   }
 }
@@ -172,12 +180,14 @@ static __attribute__((noinline)) int64_t on_arc(const struct way* way, uint32_t 
 }
 
 static __attribute__((noinline)) int64_t by_program(uint32_t motor) {
+  const int64_t aside = motors_of_path[motor].start;
   slice_pause();
   const double position = system_motor_solved(motor);
   slice_pause();
   const int64_t nearest = math_nearest(position);
   slice_pause();
-  return nearest;
+  if (aside == 0) return nearest;
+  return nearest + aside - (at.count == 0 ? 0 : fixed_share(aside, at.moves[0].part));
 }
 
 int64_t path_motor_at(uint32_t motor) {

@@ -332,14 +332,13 @@ static uint32_t share_of(int64_t first, int64_t second) {
   return (uint32_t)math_to_integer(math_scale((double)first / both, 32));
 }
 
-/* Where motors have come to: the first point takes along what stands beside their axes. */
+/* Where motors have come to: the way to the first point takes along what stands beside their axes. */
 static void begin_splines(uint32_t cs, const struct move* next, struct spline_motor begun[MOTORS]) {
   system_motors_solve(cs, next->start);
   for (uint32_t motor = 0, left = making.s->motors; left != 0; motor++, left >>= 1) {
     if ((left & 1u) == 0) continue;
-    begun[motor] = (struct spline_motor){.point = math_nearest(system_motor_at(motor, next->start))};
-    slice_pause();
-    begun[motor].knot = math_nearest(system_motor_from(motor, next->start));
+    const int64_t from = math_nearest(system_motor_from(motor, next->start));
+    begun[motor] = (struct spline_motor){.point = from, .knot = from};
     slice_pause();
   }
 }

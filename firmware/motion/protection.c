@@ -27,7 +27,11 @@ static struct guard {
   enum others others;
 } guards[MOTORS];
 
-volatile uint32_t protection_watched;
+uint32_t protection_watched;
+
+enum { TURNS = 4, FIRST_TURN = 0x11111111 }; /* servo interrupts in which all motors are looked at; those of one */
+static uint32_t turn, urgent_watched;        /* S: which it is; bit n: what is urgent about motor n is looked for */
+static volatile bool asked;                  /* S sets, R clears: a pass does not wait for its turn */
 
 static volatile bool foreground; /* I13, as the last pass has seen it */
 static volatile bool stands;     /* B */
@@ -36,8 +40,8 @@ static uint32_t shown;           /* B: signals that are on */
 void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
-  foreground = stands = false;
-  protection_watched = 0;
+  foreground = stands = asked = false;
+  turn = 0;
   shown = 0;
 }
 
@@ -77,21 +81,25 @@ void protection_motor_changed(uint32_t motor) {
   g->limit_kills = (mode & LIMIT_KILLS) != 0u;
   g->others = (enum others)(mode >> OTHERS_SHIFT & 3u);
   overload_motor_changed(motor);
-  protection_watched |= overload_watched;
 }
 
 /* What there is to see --------------------------------------------------------------------------------------------- */
 
 struct view { /* of one moment */
   int64_t actual, commanded;
-  int32_t velocity, desired_step, open_output;
+  int32_t velocity, desired_step;
   enum motor_loop loop;
 };
 
-static struct view look(uint32_t motor) {
+/* Servo task held off, or in it. */
+static inline struct view look_now(uint32_t motor) {
   const struct motor* m = &motors[motor];
+  return (struct view){m->actual, m->commanded, m->velocity, m->desired_step, m->loop};
+}
+
+static struct view look(uint32_t motor) {
   const uint32_t state = hal_mask_servo();
-  const struct view view = {m->actual, m->commanded, m->velocity, m->desired_step, m->open_output, m->loop};
+  const struct view view = look_now(motor);
   hal_unmask(state);
   return view;
 }
@@ -163,15 +171,27 @@ static bool goes(const struct view* view, int direction) {
   return direction > 0 ? by > 0 : by < 0;
 }
 
+static bool is_at_input(uint32_t motor, bool up) {
+  return up ? motor_flags_positive_limit(motor) : motor_flags_negative_limit(motor);
+}
+
+static bool is_at_software_limit(uint32_t motor, const struct view* view, bool up) {
+  const struct guard* g = &guards[motor];
+  return (up ? view->actual >= g->positive_limit : view->actual <= g->negative_limit) && !jog_is_homing(motor);
+}
+
+static bool is_beyond_desired(uint32_t motor, const struct view* view, bool up) {
+  const struct guard* g = &guards[motor];
+  return (up ? view->commanded > g->positive_desired : view->commanded < g->negative_desired) && !jog_is_homing(motor);
+}
+
 /* Overtravel input and software limit. */
 static void check_limit(uint32_t motor, const struct view* view, int direction) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
   const bool up = direction > 0;
-  const bool input = up ? motor_flags_positive_limit(motor) : motor_flags_negative_limit(motor);
+  const bool input = is_at_input(motor, up), beyond = is_at_software_limit(motor, view, up);
   const bool has_software = up ? g->positive_limit != INT64_MAX : g->negative_limit != INT64_MIN;
-  const bool beyond =
-      !jog_is_homing(motor) && (up ? view->actual >= g->positive_limit : view->actual <= g->negative_limit);
   const bool limited = input || beyond, kills = input && g->limit_kills && has_software && !beyond;
   if (limited && goes(view, direction) && (kills || !motors[motor].status.aborting)) {
     if (kills)
@@ -188,10 +208,8 @@ static void check_limit(uint32_t motor, const struct view* view, int direction) 
 
 /* Of the desired position, Ixx24 bit 15. */
 static void check_desired(uint32_t motor, const struct view* view, int direction) {
-  const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
-  const bool beyond = !jog_is_homing(motor) &&
-                      (direction > 0 ? view->commanded > g->positive_desired : view->commanded < g->negative_desired);
+  const bool beyond = is_beyond_desired(motor, view, direction > 0);
   if (direction > 0)
     found->positive_desired = beyond;
   else
@@ -227,11 +245,15 @@ static bool check_fault(uint32_t motor) {
   return true;
 }
 
+static int64_t error_of(const struct view* view) { return magnitude(view->commanded - view->actual); }
+
+static bool integral_trips(uint32_t motor) { return guards[motor].integral_trips && position_loop_is_limited(motor); }
+
 static bool check_error(uint32_t motor, const struct view* view) {
   const struct guard* g = &guards[motor];
   struct motor_findings* found = &motors[motor].found;
-  const int64_t error = magnitude(view->commanded - view->actual);
-  const bool integral = g->integral_trips && position_loop_is_limited(motor);
+  const int64_t error = error_of(view);
+  const bool integral = integral_trips(motor);
   found->warning_error = error > g->warning_error;
   if (error <= g->fatal_error && !integral) return false;
   trip(motor);
@@ -306,18 +328,42 @@ void protection_stand(bool still) { stands = still; }
 
 void protection_pass(void) {
   if (stands) return;
+  asked = false;
   foreground = i_variable_foreground_in_position();
-  protection_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)
     if ((left & 1u) != 0u) check(motor);
   show_signals();
 }
 
+bool protection_is_asked_for(void) { return asked; }
+
 /* Servo task ------------------------------------------------------------------------------------------------------- */
+
+/* What the pass would act upon. A motor that stands in a limit is none of it. */
+static bool is_urgent(uint32_t motor) {
+  const struct view view = look_now(motor);
+  const bool closed = view.loop == LOOP_CLOSED, up = goes(&view, 1);
+  if (motor_flags_fault(motor) || ((overload_watched >> motor & 1u) != 0u && overload_is_too_much(motor))) return true;
+  if (closed && (error_of(&view) > guards[motor].fatal_error || integral_trips(motor))) return true;
+  if (!up && !goes(&view, -1)) return false;
+  return is_at_input(motor, up) || is_at_software_limit(motor, &view, up) ||
+         (closed && is_beyond_desired(motor, &view, up));
+}
+
+void protection_begin_servo(void) {
+  const bool rare = i_plain_integer(I8_REAL_TIME_PERIOD) >= TURNS && !stands;
+  urgent_watched = rare ? motors_enabled & (uint32_t)FIRST_TURN << turn : 0u;
+  turn = (turn + 1u) % TURNS;
+  protection_watched = foreground ? UINT32_MAX : overload_watched | urgent_watched;
+}
 
 void protection_look(uint32_t motor) {
   if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
+  if ((urgent_watched >> motor & 1u) != 0u && is_urgent(motor)) {
+    asked = true;
+    hal_request_real_time();
+  }
   if (!foreground) return;
   const struct motor* m = &motors[motor];
   motors[motor].found.foreground_in_position =

@@ -1,5 +1,6 @@
 /* Following error, limits, faults, overload, in position (motion:6): looked at in each real-time interrupt that is due,
- * before programs are calculated, so that nothing a host or a PLC asks for comes before it. */
+ * before programs are calculated, so that nothing a host or a PLC asks for comes before it. Where those are rare (I8),
+ * the servo task looks at a quarter of the motors in turn, and asks for one when something is to be done. */
 #ifndef FIRMWARE_MOTION_PROTECTION_H
 #define FIRMWARE_MOTION_PROTECTION_H
 
@@ -15,14 +16,17 @@ extern const struct protection_hooks protection_hooks;
 void protection_initialize(void);
 void protection_motor_changed(uint32_t motor); /* 1..32: a variable of it was written */
 void protection_pass(void);                    /* real-time task: all motors */
+bool protection_is_asked_for(void);            /* real-time task: the servo task has seen what does not wait */
 void protection_stand(bool still);             /* background: nothing is looked at (SAVE) */
 /* As found, and not jogged since: who asks at once behind a command would take it for done. */
 bool protection_in_position(uint32_t motor);  /* 0..31 */
 bool protection_all_in_position(uint32_t cs); /* those of a coordinate system; false: it has none */
 
-extern volatile uint32_t protection_watched; /* bit n: the servo task looks at motor n */
+extern uint32_t protection_watched; /* S; bit n: the servo task looks at motor n in this interrupt */
+void protection_begin_servo(void);  /* once an interrupt, before protection_servo */
 void protection_look(uint32_t motor);
-static inline void protection_servo(uint32_t motor) { /* 0..31: overload, in position of the foreground */
+static inline void protection_servo(
+    uint32_t motor) { /* 0..31: overload, in position of the foreground, urgent things */
   if ((protection_watched >> motor & 1u) != 0u) protection_look(motor);
 }
 

@@ -25,6 +25,5 @@ void segment_order(uint32_t cs, enum lookahead_order order);
 bool segment_stands(uint32_t cs);                                /* by such an order */
 void segment_forget(uint32_t cs);                                /* servo task held off: all of it, an abort */
 void segment_start_of(uint32_t cs, double position[AXIS_COUNT]); /* where the moves that wait begin */
-void segment_line(uint32_t cs, struct program_trace* trace);     /* servo task held off: of the executing piece */
 
 #endif

@@ -26,6 +26,7 @@ static void motor_servo(uint32_t motor) {
 void servo_update(void) {
   conversion_table_servo();
   if (cs_busy != 0) system_path_servo();
+  protection_begin_servo();
   for (uint32_t motor = 0, left = motors_active; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) motor_servo(motor);
   average_velocity_servo();

@@ -85,6 +85,8 @@ double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]) {
   return system_motor_at(motor, position) + aside[motor];
 }
 
+double system_motor_aside(uint32_t motor) { return aside[motor]; }
+
 void system_motors_come_along(uint32_t cs) {
   for (uint32_t motor = 0, left = coordinate_systems[cs].motors; left != 0; motor++, left >>= 1)
     if ((left & 1u) != 0) aside[motor] = 0.0;
@@ -271,10 +273,12 @@ void system_motors_take(uint32_t cs) {
 }
 
 void system_motors_begin(uint32_t cs) {
-  if (!system_motors_match(cs)) return;
+  struct coordinate_system* s = &coordinate_systems[cs];
+  s->matching_anew = false;
+  if (!system_motors_match(cs) || s->matching_anew) return;
   system_motors_take(cs);
-  coordinate_systems[cs].matching = coordinate_systems[cs].starting = false;
-  coordinate_systems[cs].was_matched = true;
+  s->matching = s->starting = false;
+  s->was_matched = true;
 }
 
 bool system_motors_leave(uint32_t cs) {

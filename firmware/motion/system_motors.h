@@ -29,6 +29,7 @@ double system_motor_at(uint32_t motor, const double position[AXIS_COUNT]);
 /* The same where a move begins: the first of a program takes motors along that stand beside their axes, because others
  * tell where those are. Once it is placed they do not. */
 double system_motor_from(uint32_t motor, const double position[AXIS_COUNT]);
+double system_motor_aside(uint32_t motor); /* by which they differ */
 void system_motors_come_along(uint32_t cs);
 void system_motor_stands_aside(uint32_t motor, int64_t by); /* a limit has held it */
 /* Where an absolute move of a rotary axis goes that is told to go to `target` (motion/rollover.h); others as told. */

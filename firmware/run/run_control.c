@@ -13,6 +13,7 @@
 #include "firmware/motion/path.h"
 #include "firmware/motion/place.h"
 #include "firmware/motion/segment.h"
+#include "firmware/motion/segment_ring.h"
 #include "firmware/motion/system_motors.h"
 #include "firmware/motion/time_base.h"
 #include "firmware/run/calculate.h"
@@ -181,7 +182,7 @@ error_t run_match(uint32_t cs) {
     system_motors_resolve(cs);
   }
   const uint32_t state = hal_mask_real_time();
-  s->matching = s->motors != 0;
+  s->matching = s->matching_anew = s->motors != 0;
   cs_awake |= 1u << cs;
   hal_unmask(state);
   return ERR_NONE;
@@ -291,7 +292,7 @@ void run_executing(uint32_t cs, struct program_trace* trace) {
   const uint32_t state = hal_mask_servo();
   const bool active = s->active;
   if (active && s->moves[s->executing].kind == MOVE_SEGMENTS)
-    segment_line(cs, trace);
+    segment_ring_line(cs, trace);
   else if (active)
     *trace = s->moves[s->executing].line;
   hal_unmask(state);

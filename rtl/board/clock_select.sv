@@ -20,6 +20,8 @@ module clock_select (
   input  wire logic        ext_servo_i,
   output logic             phase_o,
   output logic             servo_o,
+  output logic             phase_oe_o,      // a driver was granted; where nobody is the net idles high
+  output logic             servo_oe_o,
   output logic [4:0]       phase_source_o,  // brick_regs_pkg::clock_source_e: index as in fitted_i, outside, none
   output logic             conflict_o
 );
@@ -75,6 +77,7 @@ module clock_select (
   // Drivers at different levels, which takes several.
   logic disagree, conflict_d, conflict_q;
   logic phase_q, servo_q;              // the nets
+  logic phase_oe_q, servo_oe_q;
   logic [1:0] disagree_d, disagree_q;  // clk since they do
   logic [43:0] level_q;                // of the ICs, {servo, phase}
   logic [21:0] phase_low, phase_high, servo_low, servo_high;
@@ -101,17 +104,23 @@ module clock_select (
       conflict_q <= 1'b0;
       phase_q    <= 1'b1;
       servo_q    <= 1'b1;
+      phase_oe_q <= 1'b0;
+      servo_oe_q <= 1'b0;
     end else begin
       level_q    <= {servo_i, phase_i};
       disagree_q <= disagree_d;
       conflict_q <= conflict_d;
       phase_q    <= phase_idle_q | (drivers_q[44] & ext_phase) | (|(phase_grant_q & level_q[21:0]));
       servo_q    <= servo_idle_q | (drivers_q[44] & ext_servo) | (|(servo_grant_q & level_q[43:22]));
+      phase_oe_q <= ~phase_idle_q;
+      servo_oe_q <= ~servo_idle_q;
     end
   end
 
   assign phase_o        = phase_q;
   assign servo_o        = servo_q;
+  assign phase_oe_o     = phase_oe_q;
+  assign servo_oe_o     = servo_oe_q;
   assign phase_source_o = source_q;
   assign conflict_o     = conflict_q & several_q;
 

@@ -66,14 +66,23 @@ void ServoChannels::catch_up_pwm(Tick t) const {
   pwm_now_ = t;
 }
 
-// Edges of clk_ref up to t. PHASE rises at t or not at all.
-void ServoChannels::run_ref(Tick t, bool phase_rise) {
+void ServoChannels::run_dac(Tick t, bool phase_rise) {
   dac_.advance(
       t, phase_rise, divider(kDac), in.dac_strobe,
       [this] {
         for (ServoChannel& channel : channel_) channel.load_dac(in.trip);
       },
       [](unsigned, unsigned) {});
+}
+
+// Edges of clk_ref up to t. PHASE rises at t or not at all. After a trip it cuts no word of the DACs.
+void ServoChannels::run_ref(Tick t, bool phase_rise) {
+  if (phase_rise && in.trip) {
+    run_dac(t - 1, false);
+    run_dac(t, dac_.left() == 0);
+  } else {
+    run_dac(t, phase_rise);
+  }
   adc_.advance(
       t, phase_rise, divider(kAdc), in.adc_strobe,
       [this] {

@@ -135,6 +135,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
     catch_up_pwm();
     for (const ServoChannel& channel : channel_) channel.settle_pwm_times(now_, in.trip);
   }
+  void run_dac(Tick t, bool phase_rise);
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
 

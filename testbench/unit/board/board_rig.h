@@ -83,7 +83,8 @@ class BoardRig {
   void select(bool x, std::uint32_t address) {
     in.pa_addr = address & 0x7FFFF;
     in.pa_x = x;
-    in.pa_aa = address >= 0x78000 && address < 0x7C000 ? 2 : address >= 0x60000 && address < 0x64000 ? 4 : 0;
+    const bool registers = (address >= 0x78000 && address < 0x7C000) || (address >= 0xFF00 && address < 0x10000);
+    in.pa_aa = registers ? 2 : address >= 0x60000 && address < 0x64000 ? 4 : 0;
   }
   void deselect() {
     in.pa_aa = 0;

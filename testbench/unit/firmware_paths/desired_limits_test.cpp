@@ -15,14 +15,18 @@ class DesiredLimits : public MovingMotors {
     ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
   }
   // The program to its end: the largest step between two interrupts, in counts a ms.
-  static double fastest() {
+  double fastest() {
     double most = 0, before = at(1);
+    highest_ = before;
     run([&](double) {
       most = std::max(most, std::abs(at(1) - before) / kTickMs);
+      highest_ = std::max(highest_, at(1));
       before = at(1);
     });
     return most;
   }
+
+  double highest_ = 0;  // where it has been
 };
 
 // It comes in, and goes no further out.
@@ -50,24 +54,34 @@ TEST_F(DesiredLimits, BehindASequenceItGoesOnFromWhereItWasHeld) {
   const Lines next[] = {{"X20"},
                         {"DWELL100", "X20"},
                         {"DWELL100", "INC", "X-34"},
+                        {"DWELL100", "X46", "X20"},
                         {"RAPID X20"},
                         {"DWELL0", "RAPID X20"},
                         {"DWELL100 I5113=0", "X20"},
                         {"PVT1000", "X20:0"},
+                        {"SPLINE1 TM400", "X45", "X30", "X20"},
                         {"I5113=0", "X20"}};
-  for (const Lines& lines : next) {
-    SCOPED_TRACE(lines.front() + " " + lines.back());
-    platform::power_up();
-    fit_x("$C001");
-    ASSERT_EQ(host("I5192=1"), "");
-    Lines all = {"F40 TA50 TS0", "X54"};
-    all.insert(all.end(), lines.begin(), lines.end());
-    store(all);
-    ASSERT_EQ(host("I122=40 I119=1 I120=50 I121=0"), "");
-    EXPECT_LE(fastest(), 95);
-    EXPECT_EQ(cs().error, RUN_TIME_NONE);
-    EXPECT_EQ(motors[0].trajectory, 20000LL * 3072);
-  }
+  for (const bool by_program : {false, true})
+    for (const Lines& lines : next) {
+      SCOPED_TRACE(lines.front() + " " + lines.back() + (by_program ? " I" : ""));
+      platform::power_up();
+      fit_x("$C001");
+      if (by_program) {
+        ASSERT_EQ(host("&1#1->I I5150=1"), "");
+        for (const char* line :
+             {"&1OPEN FORWARD CLEAR", "Q7=P1/1000", "CLOSE", "&1OPEN INVERSE CLEAR", "P1=Q7*1000", "CLOSE"})
+          ASSERT_EQ(host(line), "");
+      }
+      ASSERT_EQ(host("I5192=1"), "");
+      Lines all = {"F40 TA50 TS0", "X54"};
+      all.insert(all.end(), lines.begin(), lines.end());
+      store(all);
+      ASSERT_EQ(host("I122=40 I119=1 I120=50 I121=0"), "");
+      EXPECT_LE(fastest(), 95);
+      EXPECT_LE(highest_, 50000) << "never outward";
+      EXPECT_EQ(cs().error, RUN_TIME_NONE);
+      EXPECT_EQ(motors[0].trajectory, 20000LL * 3072);
+    }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What ends lookahead or breaks into it (motion:7.3, motion:7.5): DWELL and the end of a program, WHILE..WAIT, a buffer
 // that is too small, aborts, kills, DELETE LOOKAHEAD, holds with jogs. What is executed keeps the limits throughout.
 #include "testbench/unit/firmware_program/moving_motors.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/command/control_characters.h"
@@ -214,7 +215,7 @@ TEST_F(LookaheadEnds, AnAbortAtAnyTimeEndsItWithinTheLimits) {
 // Orders one behind the other, before the one before has been obeyed: what is known of the rates on one way is not
 // taken for the other.
 TEST_F(LookaheadEnds, OrdersInHasteKeepTheLimits) {
-  unsigned seed = 62;  // its third one tells if rates of the other way are taken
+  unsigned seed = brick::random_seed(62);  // its third one tells if rates of the other way are taken
   const auto random = [&](unsigned below) { return (seed = seed * 1664525u + 1013904223u) / 65536 % below; };
   for (const char* isx13 : {"2", "1", "5"}) {
     platform::power_up();
@@ -240,6 +241,31 @@ TEST_F(LookaheadEnds, OrdersInHasteKeepTheLimits) {
       EXPECT_EQ(motors[0].trajectory, 0);
       EXPECT_EQ(motors[1].trajectory, 0);
     }
+  }
+}
+
+// From a stand that is nearer to the end than what is made ahead: all of the rest is handed over at once. The program
+// runs, and orders are those of lookahead, until the end is reached.
+TEST_F(LookaheadEnds, FromAStandNearItsEndItRunsUntilThat) {
+  ASSERT_EQ(host("I5113=2"), "");
+  store({"F20 TA10 TS0", "X2"});
+  for (unsigned t = 60; t < 90; t += 3) {
+    SCOPED_TRACE(t);
+    ASSERT_EQ(host("#1HMZ B1R"), "");
+    forget();
+    go(t);
+    ASSERT_EQ(host("&1\\"), "");
+    go(100);
+    ASSERT_TRUE(segment_stands(0));
+    ASSERT_EQ(host("&1>"), "");
+    for (unsigned n = 0; n < 2000 && motors[0].trajectory != 2000 * 3072; ++n) {
+      go(kTickMs);
+      ASSERT_TRUE(run_is_running(0) || stands()) << at(1);
+      ASSERT_TRUE(segment_looks(0) || stands()) << at(1);
+    }
+    go(20);
+    EXPECT_FALSE(run_is_running(0));
+    expect_clean();
   }
 }
 

@@ -88,6 +88,21 @@ TEST_F(Lookahead, VelocityIsLimitedWhateverTheAccelerationIs) {
     }
 }
 
+// motion:7.4/1: a velocity of 7,000 times what a segment adds to it; 8,192 are the range.
+TEST_F(Lookahead, VelocityIsLimitedThoughItIsGainedInThousandsOfSegments) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=1 I5120=4300 I116=7 I117=0.001"), "");
+  ASSERT_EQ(host("DELETE GATHER"), "");
+  ASSERT_EQ(host("&1DEFINE LOOKAHEAD 4350,0"), "");
+  store({"F8 TA10 TS0", "X60"});
+  double end = 0;
+  const auto found = extremes(1, &end);
+  EXPECT_LE(found[0].velocity, 1.001 * 7 + 2 / kUnit / kTickMs);
+  EXPECT_GE(found[0].velocity, 6.9) << "7^2 / 0.001 are 49,000 counts";
+  EXPECT_LE(found[0].acceleration, 0.001 * 1.02 + 4 / kUnit / (64 * kTickMs * kTickMs));
+  EXPECT_EQ(motors[0].trajectory, 60000 * 3072LL);
+}
+
 // An abort forgets what is being worked out, in the middle of it; what comes then has all of its limits.
 TEST_F(Lookahead, AbortsLeaveTheLimitsAsTheyAre) {
   fit({"1000X", "1000Y"});
@@ -202,6 +217,32 @@ TEST_F(Lookahead, OrdersByIsx21) {
   EXPECT_EQ(host("I5121"), "2");
   platform::servo_ticks(3000);
   EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
+}
+
+// motion:7.5/1: at the first quarter of a segment that is far enough. 10 counts/ms, segments of 200 counts about knots
+// at 200 k - 100: a stop takes 5, 83, 125, 179 counts.
+TEST_F(Lookahead, StopsAreAtQuarters) {
+  const std::pair<const char*, int> cases[] = {{"10", 1}, {"0.6", 2}, {"0.4", 3}, {"0.28", 4}};
+  for (const auto& [acceleration, quarters] : cases) {
+    SCOPED_TRACE(acceleration);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host(std::string("I5113=20 I5120=20 I116=50 I117=") + acceleration), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"TM1000 TA20 TS0", "X10"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(500));
+    const double from = at(1);
+    ASSERT_EQ(host("&1\\"), "");
+    platform::servo_ticks(ticks_of(150));
+    const double x = at(1), last = x - 50 * quarters;  // the knot before
+    EXPECT_NEAR(std::remainder(last + 100, 200), 0, 0.01) << x;
+    EXPECT_GE(last, from + 10 * 12 - 10) << "12 ms are left as they were";
+    EXPECT_LE(last, from + 10 * 12 + 200 + 10) << "and no more than a segment";
+    ASSERT_EQ(host("&1>"), "");
+    platform::servo_ticks(ticks_of(1000));
+    EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
+  }
 }
 
 // Isx20 below four is four: what moves is the same.

@@ -100,6 +100,32 @@ TEST_F(Segments, ALateMoveBlendsInWhatIsLeft) {
   EXPECT_EQ(change(101), 0);
 }
 
+// motion:7.1/7: what is not there 12 ms before it is needed is not waited for; 4 more for what is made meanwhile.
+TEST_F(Segments, ANextMoveIsWaitedForUntilTwelveMsBeforeItsBlend) {
+  for (const double before : {16.5, 9.5}) {
+    SCOPED_TRACE(before);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=2"), "");
+    ASSERT_EQ(host("DELETE GATHER"), "");
+    ASSERT_EQ(host("&1DEFINE ROTARY 100 B0 OPEN ROTARY"), "");
+    ASSERT_EQ(host("TM100 TA10 TS0 X10"), "");
+    ASSERT_EQ(host("&1R"), "");
+    for (int i = 0; i < 100 && !cs().active; ++i) platform::servo_ticks(1);
+    platform::servo_ticks(ticks_of(100 - before));  // the change of velocity begins at 100
+    ASSERT_EQ(host("X20"), "");
+    double slowest = 1000, last = at(1);
+    for (unsigned n = ticks_of(60); n > 0; --n) {
+      platform::servo_ticks(1);
+      slowest = std::min(slowest, (at(1) - last) / kTickMs);
+      last = at(1);
+    }
+    EXPECT_NEAR(slowest, before > 12 ? 100 : 0, 1);
+    platform::servo_ticks(ticks_of(120));
+    EXPECT_EQ(motors[0].trajectory, 20000 * 3072);
+  }
+}
+
 // A line, half a circle and a helix that blend: what each has of its own way adds up.
 TEST_F(Segments, ArcsBlendWithLines) {
   fit({"1000X", "1000Y", "100Z"});

@@ -5,6 +5,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
 #include "testbench/unit/firmware_platform/framing.h"
 
 #define error_t firmware_error_t  // the C library has a type of this name
@@ -83,6 +84,7 @@ TEST(HostExchange, MacroBasesOfAbsentIcsAreZero) {
 }
 
 TEST(HostExchange, IdentifiesItself) {
+  fake_interrupts_leave_time();
   Controller c;
   EXPECT_EQ(c.send("cid\r"), "603382\r\x06");
   EXPECT_EQ(c.send("TYPE\r"), "TURBO2, X4\r\x06");
@@ -255,6 +257,7 @@ TEST(HostExchange, BackspaceTakesTheLastCharacter) {
 }
 
 TEST(HostExchange, ControlCharactersActInsideALine) {
+  fake_interrupts_leave_time();
   Controller c;
   EXPECT_EQ(c.send("P1=\x07"
                    "4\r"),

@@ -8,7 +8,7 @@
 
 enum { SOON = 16 };
 
-static bool on, soon;
+static bool on, soon, leaves_time;
 static uint32_t random_state, average, left; /* left: accesses until the next */
 static struct fake_interrupt_counts counts;
 static void (*on_take)(enum fake_task task);
@@ -111,7 +111,7 @@ void fake_interrupts_begin(uint32_t seed, uint32_t gap) {
   average = gap;
   left = 1 + chance(2 * average);
   torn.halves = NULL;
-  soon = false;
+  soon = leaves_time = false;
   memset(&counts, 0, sizeof counts);
   fake_hal_slices_leave(true);
   on = true;
@@ -130,6 +130,8 @@ void fake_interrupts_soon(void) {
 }
 
 bool fake_interrupts_are_on(void) { return on; }
+void fake_interrupts_leave_time(void) { leaves_time = true; }
+bool fake_interrupts_time_is_left(void) { return on && leaves_time; }
 struct fake_interrupt_counts fake_interrupts_counts(void) {
   return counts;
 }

@@ -51,7 +51,19 @@ void hal_unmask(uint32_t state) {
 
 void hal_interrupts_off(void) { real_time = interrupts_on = false; }
 void hal_interrupts_on(void) { interrupts_on = true; }
-void hal_request_real_time(void) { real_time = true; }
+
+/* Servo interrupts from one that asked for the real-time task to the next; how many there were since the last. */
+static unsigned servo_period, servo_count;
+static bool real_time_runs;
+
+void hal_request_real_time(void) {
+  real_time = true;
+  if (level != FAKE_SERVO) return;
+  servo_period = servo_count;
+  servo_count = 0;
+}
+
+static bool comes_too_soon(void) { return (real_time || real_time_runs) && servo_count + 1u >= servo_period; }
 
 static bool servo_waits;
 void fake_tasks_servo_waits(bool waits) { servo_waits = waits; }
@@ -138,9 +150,12 @@ static void run(enum fake_task task) {
   switch (task) {
     case FAKE_REAL_TIME:
       real_time = false;
+      real_time_runs = true;
       tasks_real_time_interrupt();
+      real_time_runs = false;
       break;
     case FAKE_SERVO:
+      ++servo_count;
       tasks_servo_interrupt();
       break;
     case FAKE_PHASE:
@@ -160,6 +175,7 @@ bool fake_task_take(enum fake_task task) {
   if (!interrupts_on || task <= level || (task <= mask && !ignored)) return false;
   if (task == FAKE_REAL_TIME && !real_time) return false;
   if (task == FAKE_HOST && !host_interrupts()) return false;
+  if (task == FAKE_SERVO && fake_interrupts_time_is_left() && comes_too_soon()) return false;
   run(task);
   return true;
 }

@@ -1,5 +1,6 @@
 // Lines as drivers of whole installations send them: many queries glued into one, a comma behind some, assignments
 // between them. Every part of the answer is asserted, each worked out here from the settings that the test makes.
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
 #include "testbench/unit/firmware_program/platform.h"
 
 namespace {
@@ -86,6 +87,7 @@ TEST_F(DriverPolls, NumbersThatAreNoCountAreStillErrors) {
 
 // Status, positions, PLCs and settings of all motors and systems, as a driver polls them several times a second.
 TEST_F(DriverPolls, StatusPositionsAndVariablesInOneLine) {
+  fake_interrupts_leave_time();
   ASSERT_EQ(host("I108=96 P575=38.7 I10=1705244 M7000->* M7000=0"), "");
   ASSERT_EQ(host("&2Q81=12.5 Q82=-3"), "");
   ASSERT_EQ(host("M5003->Y:$3103,22 M5004->Y:$3104,22 OPEN PLC 4 CLEAR P1=P1 CLOSE I5=2 DISABLE PLC 3 ENABLE PLC 4"),

@@ -1,5 +1,6 @@
 // Data gathering (firmware:4.3, host-bus:6.8): sources, packing, period, modes of I5000, commands and their errors. The
 // servo counter X:$0 says at which interrupt a sample was taken.
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
 #include "testbench/unit/firmware_program/dpram_host.h"
 
 namespace {
@@ -191,6 +192,7 @@ TEST_F(Gather, CommandsAndTheirErrors) {
 
 // host-bus:6.8/8: no board brings machine input 2 to the CPU, so nothing could ever begin.
 TEST_F(Gather, ThereIsNoTriggerToWaitFor) {
+  fake_interrupts_leave_time();
   ASSERT_EQ(host("I5001=$400000 I5050=1 I5049=1 DEF GAT 50"), "");
   for (const char* line : {"GATHER TRIGGER", "GAT TRIG", "GATHERTRIGGER"}) EXPECT_EQ(host(line), "ERR003") << line;
   servo_ticks(5);

@@ -85,5 +85,59 @@ TEST_F(MotionImage, SplinePointsOfEightAxesAreInTimeOrAnError) {
   }
 }
 
+// motion:6.6/1: within 2 ms, also where planning and PLC 0 come every 113 ms only.
+TEST_F(MotionImage, ProtectionDoesNotWaitForI8) {
+  accepted("I100=1 I124=$100001 I111=0 I112=0 I122=10 I119=1 I120=0 I121=0");
+  const auto status = [this](unsigned word) {
+    return std::stoul(board.send("#1?\r").substr(6 * word, 6), nullptr, 16);
+  };
+  for (const char* period : {"I8=2", "I8=255"}) {
+    accepted(std::string(period) + " WX$78000,0");
+    board.run_ms(120);
+    accepted("#1J/");
+    board.run_ms(250);
+    accepted("J+");
+    board.run_ms(400);
+    ASSERT_EQ(status(0) >> 21 & 3u, 0u) << period;
+    ASSERT_EQ(status(1) >> 11 & 1u, 0u) << period << ": no limit has stopped it";
+    accepted("WX$78000,$20000");  // PLIM
+    board.run_ms(2);
+    EXPECT_EQ(status(1) >> 11 & 1u, 1u) << period << ": stopped on a limit";
+    accepted("WX$78000,0 I111=16");
+    board.run_ms(2);
+    EXPECT_EQ(status(1) >> 2 & 1u, 1u) << period << ": it has jogged, but stands at 0";
+    EXPECT_EQ(status(0) >> 18 & 1u, 1u) << period << ": the loop is open";
+    accepted("I111=0");
+  }
+}
+
+// motion:4.3/1: what was captured before is read away when a search begins; a jog leaves it to the user.
+class ReadsOfCapture : public ImageBoard {
+ public:
+  ReadsOfCapture() : ImageBoard(BRICK_FIRMWARE_ELF, 0x3) {}
+  Result access(std::uint32_t address, unsigned bytes, bool write, std::uint32_t data, Cycle now) override {
+    constexpr std::uint32_t kCaptured = 0x78003 * 8 + 4;  // X, behind the base of the PMAC words
+    if (!write && address % 0x1000000 == kCaptured) ++reads;
+    return ImageBoard::access(address, bytes, write, data, now);
+  }
+  unsigned reads = 0;
+};
+
+TEST(MotionOfCapture, ASearchReadsTheRegisterWhenItBegins) {
+  ReadsOfCapture board;
+  ASSERT_EQ(board.send("I6=1 I3=2 I100=1 I124=$120001 I111=0 I192=10\r"), "\x06");
+  ASSERT_EQ(board.send("#1J/\r"), "\x06");
+  board.run_ms(30);
+  const unsigned before = board.reads;
+  ASSERT_EQ(board.send("J:100\r"), "\x06");
+  board.run_ms(30);
+  EXPECT_EQ(board.reads, before) << "a jog";
+  ASSERT_EQ(board.send("HM\r"), "\x06");
+  board.run_ms(5);
+  EXPECT_EQ(board.reads, before) << "Ixx92 is not over";
+  board.run_ms(20);
+  EXPECT_EQ(board.reads, before + 1);
+}
+
 }  // namespace
 }  // namespace brick

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_interrupts.h"
 #include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/platform.h"
 
@@ -215,6 +216,7 @@ TEST_F(ProgramTexts, ProgramHasABufferOfItsOwn) {
 }
 
 TEST_F(ProgramTexts, ControlCharacterOfACommandActs) {
+  fake_interrupts_leave_time();
   ASSERT_EQ(host("I5=3"), "");
   load(2, {"P2=P2+1"});
   ASSERT_EQ(host("ENABLE PLC 2"), "");

@@ -1,7 +1,13 @@
 // What the background does and sees between two slices of a calculation (docs/firmware.md, Slices).
 #include <algorithm>
 
+#include "testbench/unit/firmware_platform/fake_hal.h"
+#include "testbench/unit/firmware_platform/fake_tasks.h"
 #include "testbench/unit/firmware_program/platform.h"
+
+extern "C" {
+#include "firmware/kernel/slice.h"
+}
 
 namespace {
 
@@ -93,6 +99,34 @@ TEST_F(Slices, RunWhileABadLineIsSkippedDoesNotHideItsError) {
   EXPECT_TRUE(error());
   EXPECT_FALSE(run_is_running(0));
   EXPECT_EQ(host("PR"), "0");
+}
+
+// A host that never stops sending holds what is under way up for 5 ms (docs/firmware.md, Slices), and no longer.
+TEST_F(Slices, RoundOfFiveMillisecondsGivesWayNoMore) {
+  constexpr std::uint32_t kPiece = 1'000, kSlice = 20'000, kPeriod = 7'864, kPieces = 120;  // cycles; 0.1 ms
+  static std::uint32_t done;
+  done = 0;
+  fake_hal_slices_leave(true);
+  slice_initialize([] {
+    for (; done < kPieces; ++done) {
+      fake_hal_pass(kPiece);
+      slice_pause();
+    }
+  });
+  slice_hurry = 1;
+  const std::uint32_t began = hal_cycles();
+  double waited_ms = 0.0;
+  do {
+    slice_run(kSlice);
+    if (done < 2) waited_ms = (hal_cycles() - began) / static_cast<double>(hal_cycles_per_ms());
+    fake_hal_pass(kPeriod);
+  } while (slice_is_under_way());
+  const double took_ms = (hal_cycles() - began) / static_cast<double>(hal_cycles_per_ms());
+  slice_hurry = 0;
+  fake_hal_slices_leave(false);
+  EXPECT_EQ(done, kPieces);
+  EXPECT_NEAR(waited_ms, 5.0, 0.3) << "one piece, as the first slice works for 500 cycles before it gives way";
+  EXPECT_LT(took_ms, 5.0 + 4.0) << "whole slices from there on";
 }
 
 }  // namespace

@@ -1,75 +1,16 @@
 // Frames of both products with an encoder at the wires, the same expectations on both engines. Edges of the clock are
 // compared with arithmetic on servo-ic:11.3 and servo-ic:11.4, results with the position that the encoder had.
-#include <gtest/gtest.h>
-
-#include <vector>
-
-#include "testbench/plant/ssi_encoder.h"
 #include "testbench/unit/covers.h"
-#include "testbench/unit/ssi/ssi_rig.h"
+#include "testbench/unit/ssi/ssi_fixture.h"
 
 namespace brick {
 namespace {
 
-using plant::SsiEncoder;
-using plant::SsiEncoderParameters;
-using Parity = SsiEncoderParameters::Parity;
-
-constexpr Tick kRest = 2360;  // 20 us
-constexpr unsigned kGeoResult[] = {0x14, 0x34}, kGeoClock = 0x15, kGeoRefused[] = {0x16, 0x36};
-constexpr unsigned brick_word(unsigned channel) { return 0x20 + 4 * (channel - 1); }
-constexpr unsigned brick_group(unsigned channel) { return channel <= 4 ? 0x2F : 0x3F; }
-
-class SsiNames {
- public:
-  template <class T>
-  static std::string GetName(int i) {
-    return i == 0 ? "Rtl" : "Model";
-  }
-};
-
 template <class Rig>
-class SsiOn : public ::testing::Test {
- protected:
-  // An encoder at channel n; its clock's edges are written down.
-  void wire(unsigned channel, const SsiEncoderParameters& parameters, std::uint64_t position) {
-    encoder.emplace(parameters, 1, 1);
-    edges.clear();
-    bool last = true;
-    rig.encoders = [=, this_ = this](Tick now, unsigned clk) mutable {
-      const bool level = (clk >> (channel - 1) & 1) != 0;
-      if (level != last) {
-        this_->edges.push_back(now);
-        this_->encoder->clock(now, level, position);
-        last = level;
-      }
-      const unsigned others = 0xFFu & ~(1u << (channel - 1));
-      return others | (this_->encoder->level(now) ? 1u : 0u) << (channel - 1);
-    };
-  }
-  void frame_over() {
-    Tick quiet = 0;
-    for (std::size_t seen = edges.size(); quiet < kRest + 20; ++quiet) {
-      rig.run(1);
-      if (edges.size() != seen || edges.size() % 2 != 0) quiet = 0;
-      seen = edges.size();
-    }
-  }
-  // Triggers at a fall of SERVO; returns the tick whose edge sees it.
-  Tick trigger() {
-    const Tick seen = rig.now() + 1;
-    rig.trigger();
-    return seen;
-  }
+class SsiFrames : public SsiOn<Rig> {};
+TYPED_TEST_SUITE(SsiFrames, SsiEngines, SsiNames);
 
-  SsiBench<Rig> rig;
-  std::optional<SsiEncoder> encoder;
-  std::vector<Tick> edges;
-};
-using Engines = ::testing::Types<RtlSsiRig, ModelSsiRig>;
-TYPED_TEST_SUITE(SsiOn, Engines, SsiNames);
-
-TYPED_TEST(SsiOn, GeoReadsEveryLengthAndCodeAtEveryClock) {
+TYPED_TEST(SsiFrames, GeoReadsEveryLengthAndCodeAtEveryClock) {
   BRICK_COVERS("SSI-1");
   std::uint64_t position = 0xA5C396;
   for (unsigned clock = 0; clock < 4; ++clock)
@@ -100,46 +41,7 @@ TYPED_TEST(SsiOn, GeoReadsEveryLengthAndCodeAtEveryClock) {
         }
 }
 
-TYPED_TEST(SsiOn, GeoModesZeroAndOneLeaveTheClockHigh) {
-  BRICK_COVERS("SSI-1");
-  for (unsigned mode = 0; mode < 2; ++mode) {
-    this->rig.encoders = nullptr;
-    this->rig.reset(true);
-    this->wire(1, {}, 0x123456);
-    this->rig.write(true, kGeoResult[0], 0xC | mode);
-    this->trigger();
-    this->rig.run(30'000);
-    EXPECT_TRUE(this->edges.empty());
-    EXPECT_EQ(this->rig.read(false, kGeoResult[0]), 0u);
-  }
-}
-
-// Both channels share the trigger: the shorter word waits for the longer (servo-ic:11.9/6).
-TYPED_TEST(SsiOn, TriggersAreRefusedUntilTheClockHasRested) {
-  this->rig.reset(true);
-  this->wire(1, {}, 0x777777);
-  this->rig.write(true, kGeoClock, 3);
-  this->rig.write(true, kGeoResult[0], 0x2);
-  this->rig.write(true, kGeoResult[1], 0xE);
-  const Tick seen = this->trigger(), last_rise = seen + (2 * 24 + 1) * 48;
-  const auto trigger_at = [&](Tick edge) {
-    this->rig.run(edge - 1 - this->rig.now());
-    this->trigger();
-  };
-  trigger_at(seen + 50);
-  trigger_at(seen + (2 * 12 + 1) * 48 + 500);  // channel 1 has its word
-  trigger_at(last_rise + kRest);
-  EXPECT_EQ(this->edges.size(), 26u);
-  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 3u);
-  EXPECT_EQ(this->rig.read(true, kGeoRefused[1]), 3u);
-  this->frame_over();
-  const Tick again = this->trigger();
-  trigger_at(again + (2 * 24 + 1) * 48 + kRest + 1);
-  EXPECT_EQ(this->edges.size(), 2 * 26u + 1);
-  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 3u);
-}
-
-TYPED_TEST(SsiOn, BrickReadsEveryNumberOfBitsWithParityAndGray) {
+TYPED_TEST(SsiFrames, BrickReadsEveryNumberOfBitsWithParityAndGray) {
   std::uint64_t position = 0x9D2C5680;
   for (unsigned bits = 12; bits <= 32; ++bits) {
     const unsigned channel = 1 + bits % 8, gray = bits & 1, parity = bits % 3;
@@ -163,7 +65,7 @@ TYPED_TEST(SsiOn, BrickReadsEveryNumberOfBitsWithParityAndGray) {
   }
 }
 
-TYPED_TEST(SsiOn, BrickTellsAParityError) {
+TYPED_TEST(SsiFrames, BrickTellsAParityError) {
   for (const unsigned parity : {1u, 2u}) {
     this->rig.encoders = nullptr;
     this->rig.reset(false);
@@ -179,8 +81,62 @@ TYPED_TEST(SsiOn, BrickTellsAParityError) {
   }
 }
 
+// The error belongs to the word: the next right one takes it away.
+TYPED_TEST(SsiFrames, BrickTellsAParityErrorOfTheLastWordOnly) {
+  this->rig.reset(false);
+  this->rig.write(true, 0x2F, 0x180302);
+  this->rig.write(true, brick_word(3), 1u << 14 | 0x1400 | 24);
+  for (const Parity parity : {Parity::kEven, Parity::kOdd, Parity::kEven}) {
+    SsiEncoderParameters p;
+    p.parity = parity;
+    this->wire(3, p, 0x654321);
+    this->trigger();
+    this->frame_over();
+    EXPECT_EQ(this->rig.read(false, brick_word(3)), 0x654321u);
+    EXPECT_EQ(this->rig.read(false, brick_word(3) + 1), parity == Parity::kEven ? 0x800000u : 0u);
+  }
+}
+
+// Bits 15, 14 = 11 are reserved: no parity, no clock for it, no error.
+TYPED_TEST(SsiFrames, BrickTakesTheReservedParityForNone) {
+  for (const std::uint64_t position : {0x654321u, 0x654320u}) {
+    this->rig.encoders = nullptr;
+    this->rig.reset(false);
+    this->wire(3, {}, position);
+    this->rig.write(true, 0x2F, 0x180302);
+    this->rig.write(true, brick_word(3), 3u << 14 | 0x1400 | 24);
+    this->trigger();
+    this->frame_over();
+    EXPECT_EQ(this->edges.size(), 50u);
+    EXPECT_EQ(this->rig.read(false, brick_word(3)), position);
+    EXPECT_EQ(this->rig.read(false, brick_word(3) + 1), 0u);
+  }
+}
+
+// servo-ic:11.3/6.
+TYPED_TEST(SsiFrames, BrickTakesTwelveToThirtyTwoBits) {
+  struct Case {
+    unsigned asked, bits;
+  };
+  for (const Case c : {Case{0, 12}, {4, 12}, {11, 12}, {33, 32}, {48, 32}, {63, 32}}) {
+    SCOPED_TRACE(c.asked);
+    this->rig.encoders = nullptr;
+    this->rig.reset(false);
+    SsiEncoderParameters p;
+    p.bits = c.bits;
+    this->wire(6, p, 0x89ABCDEF);
+    this->rig.write(true, 0x3F, 0x180302);
+    this->rig.write(true, brick_word(6), 0x1400 | c.asked);
+    this->trigger();
+    this->frame_over();
+    EXPECT_EQ(this->edges.size(), 2 * (c.bits + 1));
+    EXPECT_EQ(this->rig.read(false, brick_word(6)), c.bits == 12 ? 0xDEFu : 0xABCDEFu);
+    EXPECT_EQ(this->rig.read(false, brick_word(6) + 1), c.bits == 12 ? 0u : 0x89u);
+  }
+}
+
 // Cycle n of 100 MHz ends at the first tick not before n x 18432/15625 (servo-ic:11.3/3).
-TYPED_TEST(SsiOn, BrickDividesAHundredMegahertz) {
+TYPED_TEST(SsiFrames, BrickDividesAHundredMegahertz) {
   struct Case {
     unsigned word;
     Tick period;
@@ -209,74 +165,23 @@ TYPED_TEST(SsiOn, BrickDividesAHundredMegahertz) {
   }
 }
 
-TYPED_TEST(SsiOn, BrickTriggersOnEveryEdgeAfterEveryDelay) {
-  for (unsigned source = 0; source < 4; ++source) {  // bit 1 SERVO, bit 0 falling
-    for (const unsigned delay : {0u, 1u, 2u, 15u}) {
-      SCOPED_TRACE(::testing::Message() << source << " delay " << delay);
-      const bool servo = (source & 2) != 0, falling = (source & 1) != 0;
-      this->rig.encoders = nullptr;
-      this->rig.reset(false);
-      this->rig.nets(servo || falling, !servo || falling);
-      this->rig.run(5);
-      this->wire(1, {}, 0);
-      this->rig.write(true, 0x2F, 0x180002 | source << 8 | delay << 4);
-      this->rig.write(true, brick_word(1), 0x1400 | 12);
-      this->rig.nets(servo != falling, true);  // the other net's edges of both kinds, and this one's of the other
-      this->rig.nets(servo || falling, !servo || falling);
-      for (int i = 0; i < 2; ++i) {
-        this->rig.nets(servo ? i == 0 : falling, servo ? falling : i == 0);
-        this->rig.run(9);
-      }
-      ASSERT_TRUE(this->edges.empty());
-      const Tick seen = this->rig.now() + 1;
-      this->rig.nets(servo ? false : !falling, servo ? !falling : false);
-      this->rig.run(1000);
-      ASSERT_FALSE(this->edges.empty());
-      EXPECT_EQ(this->edges[0], seen + (Tick{delay} * 25 * 18432 + 15624) / 15625);
-    }
-  }
-}
-
-TYPED_TEST(SsiOn, BrickTakesOneShotOnly) {
-  this->rig.reset(false);
-  this->wire(2, {}, 0xABCDEF);
-  this->rig.write(true, 0x2F, 0x180302);
-  this->rig.write(true, brick_word(2), 0x3400 | 24);
-  EXPECT_EQ(this->rig.read(true, brick_word(2)), 0x3000u | 24);
-  this->trigger();
-  EXPECT_EQ(this->rig.read(true, brick_word(2)), 0x2000u | 24);
-  this->frame_over();
-  EXPECT_EQ(this->rig.read(false, brick_word(2)), 0xABCDEFu);
-  this->trigger();
-  this->rig.run(5000);
-  EXPECT_EQ(this->edges.size(), 50u);
-  EXPECT_EQ(this->rig.read(true, brick_word(2) + 1), 0u);
-  this->rig.write(true, brick_word(2), 0x3400 | 24);
-  this->trigger();
-  this->frame_over();
-  EXPECT_EQ(this->edges.size(), 100u);
-}
-
-TYPED_TEST(SsiOn, BrickIsSilentWithoutProtocolEnableOrDriver) {
-  struct Case {
-    unsigned group, control;
-    std::uint32_t result;
-  };
-  for (const Case c : {Case{0x18030B, 0x1418, 0}, {0x180302, 0x0418, 0}, {0x180302, 0x1018, 0xFFFFFF}}) {  // pulled up
+// The first low half at high powers of two, and of the largest divisor that a simulation can wait for.
+TYPED_TEST(SsiFrames, BrickDividesByEveryPowerOfTwo) {
+  for (unsigned power = 5; power < 16; ++power) {
+    const unsigned divisor = power < 15 ? 1 : 2, half = divisor << power >> 1;
     this->rig.encoders = nullptr;
     this->rig.reset(false);
-    this->wire(1, {}, 0x111111);
-    this->rig.write(true, 0x2F, c.group);
-    this->rig.write(true, brick_word(1), c.control);
-    this->trigger();
-    this->rig.run(5000);
-    EXPECT_TRUE(this->edges.empty());
-    EXPECT_EQ(this->rig.read(false, brick_word(1)), c.result);
+    this->wire(1, {}, 0);
+    this->rig.write(true, 0x2F, (divisor - 1) << 16 | power << 12 | 0x302);
+    this->rig.write(true, brick_word(1), 0x1400 | 12);
+    const Tick seen = this->trigger(), rise = seen + (Tick{half} * 18432 + 15624) / 15625;
+    this->rig.run(rise - this->rig.now());
+    EXPECT_EQ(this->edges, (std::vector<Tick>{seen, rise})) << power;
   }
 }
 
 // servo-ic:11.3/7: the high part that is read belongs to the low part that was read last.
-TYPED_TEST(SsiOn, BrickHoldsTheHighPartOfAReadPosition) {
+TYPED_TEST(SsiFrames, BrickHoldsTheHighPartOfAReadPosition) {
   this->rig.reset(false);
   SsiEncoderParameters p;
   p.bits = 32;
@@ -297,7 +202,7 @@ TYPED_TEST(SsiOn, BrickHoldsTheHighPartOfAReadPosition) {
 }
 
 // servo-ic:11.9/2: at 96 ticks a period a line may be late by 93; by 94 each bit is read as the one before.
-TYPED_TEST(SsiOn, ALineMayBeLateByAPeriodLessThreeTicks) {
+TYPED_TEST(SsiFrames, ALineMayBeLateByAPeriodLessThreeTicks) {
   for (const Tick delay : {0, 48, 93, 94}) {
     this->rig.encoders = nullptr;
     this->rig.reset(true);
@@ -313,7 +218,7 @@ TYPED_TEST(SsiOn, ALineMayBeLateByAPeriodLessThreeTicks) {
 }
 
 // The result stands until one edge after the last rise, and then is the next as a whole.
-TYPED_TEST(SsiOn, TheResultIsLoadedOneTickAfterTheLastRise) {
+TYPED_TEST(SsiFrames, TheResultIsLoadedOneTickAfterTheLastRise) {
   for (Tick place = 0; place < 3; ++place) {  // of the trigger between edges of clk_ref
     this->rig.encoders = nullptr;
     this->rig.reset(true);

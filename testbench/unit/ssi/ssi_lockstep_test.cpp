@@ -5,6 +5,7 @@
 #include <random>
 
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/ssi/ssi_rig.h"
 
 namespace brick {
@@ -86,7 +87,7 @@ class SsiLockstep : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(SsiLockstep, EnginesAgreeAtEveryTickOnRandomStimulus) {
   LockstepSsiRig rig;
-  Stimulus stimulus(rig, GetParam());
+  Stimulus stimulus(rig, random_seed(GetParam()));
   stimulus.run(300'000);
   EXPECT_EQ(rig.difference, "") << "seed " << GetParam();
   EXPECT_GT(stimulus.clocks(), 500u);

@@ -122,7 +122,7 @@ class ClockCrossings(Tree):
         self.expect(self.run_tool("check_cdc.py"), 1, "motor_i.enc_a reaches gen_servo_ic[0].gen_built.u_servo_ic")
 
     def test_an_output_that_follows_another_pin_than_its_own_fails(self):
-        self.plant("rtl/board/board_top.sv", "bus_rdata_oe | dpram_drive;", "bus_rdata_oe | dpram_drive | isa_aen_i;")
+        self.plant("rtl/board/board_core.sv", "bus_rdata_oe | dpram_drive;", "bus_rdata_oe | dpram_drive | isa_aen_i;")
         self.expect(self.run_tool("check_cdc.py"), 1, "isa_aen_i reaches pa_data_oe_o (output)")
 
     def test_a_row_of_a_pin_that_the_rtl_does_not_follow_fails(self):

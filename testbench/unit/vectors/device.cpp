@@ -92,17 +92,21 @@ const std::vector<DeviceKind>& device_kinds() {
   static const std::vector<DeviceKind> kinds{
       {"channels",
        channels_signals(),
+       32,
        true,
        false,
        {"rtl", "systemc", "both", "board_rtl", "board_systemc", "board_both"}},
-      {"controller", controller_signals(), false, true, {"rtl", "systemc", "both"}},
-      {"buses", buses_signals(), false, false, {"rtl", "systemc", "both"}}};
+      {"controller", controller_signals(), 0, false, true, {"rtl", "systemc", "both"}},
+      {"buses", buses_signals(), 0, false, false, {"rtl", "systemc", "both"}},
+      {"ssi", ssi_signals(), 64, false, false, {"rtl", "systemc", "both"}}};
   return kinds;
 }
 
 std::unique_ptr<Device> make_device(const std::string& kind, const std::string& engine, const std::string& board) {
   if (kind == "controller") return make_controller(engine, board);
   if (kind == "buses") return make_buses(engine);
+  if (kind == "ssi" && engine == "both") return compared(make_ssi(true), make_ssi(false));
+  if (kind == "ssi") return make_ssi(engine == "rtl");
   const std::string on_board = "board_";
   if (engine.rfind(on_board, 0) == 0) return make_board_device(engine.substr(on_board.size()));
   if (engine == "both") return compared(make_channels(true), make_channels(false));

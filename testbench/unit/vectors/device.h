@@ -41,7 +41,7 @@ class Device {
   // An input as the next edge will see it.
   virtual void drive(unsigned signal, std::uint32_t value) = 0;
 
-  // Bus cycles; time passes. Address: word of the IC.
+  // Bus cycles; time passes. Address: word of the IC, of the page of serial encoder inputs.
   virtual void write(bool x, unsigned addr, std::uint32_t value) = 0;
   virtual std::uint32_t read(bool x, unsigned addr) = 0;
   // A command line to the firmware; data lines of the reply joined by '|'.
@@ -54,7 +54,8 @@ class Device {
 struct DeviceKind {
   std::string name;                   // as vectors name it
   std::vector<DeviceSignal> signals;  // what vectors may name
-  bool words, commands;               // has write and read, command
+  unsigned words;                     // that write and read reach, X and Y of each
+  bool encoders, commands;            // has turn, command
   std::vector<std::string> engines;
 };
 const std::vector<DeviceKind>& device_kinds();
@@ -66,13 +67,15 @@ std::unique_ptr<Device> make_device(const std::string& kind, const std::string& 
 // Two devices of one kind, one step at a time; DeviceError at the first difference.
 std::unique_ptr<Device> compared(std::unique_ptr<Device> first, std::unique_ptr<Device> second);
 
-// The kinds (channels_device.cpp, board_device.cpp, controller_device.cpp, buses_device.cpp).
+// The kinds (channels_device.cpp, board_device.cpp, controller_device.cpp, buses_device.cpp, ssi_device.cpp).
 std::vector<DeviceSignal> channels_signals();
 std::unique_ptr<Device> make_channels(bool rtl);
 std::unique_ptr<Device> make_board_device(const std::string& engine);  // rtl, systemc, both
 std::vector<DeviceSignal> controller_signals();
 std::vector<DeviceSignal> buses_signals();
 std::unique_ptr<Device> make_buses(const std::string& engine);  // rtl, systemc, both
+std::vector<DeviceSignal> ssi_signals();
+std::unique_ptr<Device> make_ssi(bool rtl);
 std::unique_ptr<Device> make_controller(const std::string& engine, const std::string& board);
 
 }  // namespace brick

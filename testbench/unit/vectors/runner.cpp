@@ -49,9 +49,10 @@ class Runner {
     result_.record.change(t, signal, value);
     shift(signal, value);
   }
-  // A serial converter puts out its next bit when the clock falls.
+  // A serial converter puts out its next bit when the clock falls, an absolute encoder when it rises.
   void shift(unsigned clock, std::uint32_t value) {
-    if (sender_ == nullptr || clock != sender_->clock || value != 0) return;
+    if (sender_ == nullptr || clock != sender_->clock || (value != 0) != sender_->rises) return;
+    if (sender_->rises) return drive(sender_->signal, bit_ < 24 ? sender_->word >> (23 - bit_++) & 1 : 0);
     bit_ = bit_ < 23 ? bit_ + 1 : 23;
     drive(sender_->signal, sender_->word >> (23 - bit_) & 1);
   }
@@ -131,7 +132,7 @@ class Runner {
   void act(const step::Send& s) {
     sender_ = &s;
     bit_ = 0;
-    drive(s.signal, s.word >> 23 & 1);
+    drive(s.signal, s.rises ? 1 : s.word >> 23 & 1);
   }
   void act(const step::Command& c) {
     const bool other = corrupted(Corruption::kCommand) && corruption_->line == c.line;

@@ -39,13 +39,13 @@ SignalEdge Statement::signal_edge() {
 }
 
 Word Statement::register_word() {
-  constexpr unsigned kWords = 32;
+  const unsigned words = vector_.kind().words;
   const std::string text = peek();
   const std::string space = text.substr(0, 3), digits = text.size() > 3 ? text.substr(3) : "";
   const bool good = (space == "X:$" || space == "Y:$") && !digits.empty() && digits.size() <= 2 &&
                     std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
-  const unsigned long addr = good ? std::stoul(digits, nullptr, 16) : kWords;
-  if (addr >= kWords) fail("a word of the IC, X:$00 to X:$1F or Y:$00 to Y:$1F");
+  const unsigned long addr = good ? std::stoul(digits, nullptr, 16) : words;
+  if (addr >= words) fail(fmt::format("a word, X:$00 to X:${0:02X} or Y:$00 to Y:${0:02X}", words - 1));
   word("");
   return {space[0] == 'X', static_cast<unsigned>(addr)};
 }

@@ -60,13 +60,13 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
   if (s.take("wait")) return step::Wait{s.duration()};
   if (s.take("expect")) return expectation(s);
   if (s.take("write")) {
-    only(kind.words, "registers");
+    only(kind.words > 0, "registers");
     const Word word = s.register_word();
     s.expect("=");
     return step::Write{word, s.bits24()};
   }
   if (s.take("read")) {
-    only(kind.words, "registers");
+    only(kind.words > 0, "registers");
     step::Read read{s.register_word(), 0xFFFFFF, 0};
     if (s.at_end()) {
       read.mask = 0;
@@ -93,7 +93,7 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
     return step::Mark{marks.back()};
   }
   if (s.take("turn")) {
-    only(kind.words, "encoders");
+    only(kind.encoders, "encoders");
     unsigned channel = 0;
     while (channel < 4 && !s.take(fmt::format("ch{}", channel + 1))) ++channel;
     if (channel == 4) s.fail("ch1 to ch4");
@@ -107,7 +107,8 @@ Action action(Statement& s, const Vector& vector, std::vector<std::string>& mark
     s.expect("to");
     const unsigned signal = s.input();
     s.expect("on");
-    return step::Send{word, signal, s.signal()};
+    const unsigned clock = s.signal();
+    return step::Send{word, signal, clock, s.take("rises")};
   }
   if (s.take("command")) {
     only(kind.commands, "command lines");

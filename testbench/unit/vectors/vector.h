@@ -62,6 +62,7 @@ struct Turn {  // a quadrature encoder
 struct Send {  // a serial converter: bit 23 first, the next after each fall of the clock
   std::uint32_t word;
   unsigned signal, clock;
+  bool rises;  // an absolute encoder: bit 23 after the first rise, the next after each, zeros after the last
 };
 struct Command {
   std::string line;

@@ -35,7 +35,7 @@ TEST(VectorErrors, NameLineFoundAndExpected) {
             "a.vec:7: `ch5.enc_a` is not known; expected a signal of the device 'channels', as ch1.enc_a");
   EXPECT_EQ(step_error("pin ch1.equ = 1"), "a.vec:7: `ch1.equ` is not known; expected an input pin");
   EXPECT_EQ(step_error("write X:$20 = 1"),
-            "a.vec:7: `X:$20` is not known; expected a word of the IC, X:$00 to X:$1F or Y:$00 to Y:$1F");
+            "a.vec:7: `X:$20` is not known; expected a word, X:$00 to X:$1F or Y:$00 to Y:$1F");
   EXPECT_EQ(step_error("write X:$04 1"), "a.vec:7: `1` is not known; expected =");
   EXPECT_EQ(step_error("write X:$04 = 1 << 24"), "a.vec:7: `1` is not known; expected a value of 24 bits");
   EXPECT_EQ(step_error("write X:$04 = $"), "a.vec:7: `$` is not known; expected a number, decimal or $hex");
@@ -59,7 +59,7 @@ TEST(VectorErrors, WholeFile) {
             "a.vec:2: unknown key foo; expected title, section, number, device, board, units, steps, negative, wave");
   EXPECT_EQ(error("title = 3"), "a.vec:1: title: found 3; expected a text in quotes");
   EXPECT_EQ(error("title = \"t\"\nsection = \"s\"\ndevice = \"toaster\""),
-            "a.vec:3: device: found \"toaster\"; expected channels or controller or buses");
+            "a.vec:3: device: found \"toaster\"; expected channels or controller or buses or ssi");
   EXPECT_EQ(error(with_steps("wait 3")),
             "a.vec:5: steps: found \"wait 3 \"; expected a line with 'expect', 'read' or a reply");
   const std::string good = with_steps("expect ch1.equ is 0");

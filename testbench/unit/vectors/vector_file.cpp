@@ -68,10 +68,9 @@ class Reader {
     if (std::find(names.begin(), names.end(), vector_.device) == names.end())
       file_.fail(file_.need("device"), "device", fmt::format("{}", fmt::join(names, " or ")));
     vector_.signals = vector_.kind().signals;
-    if (vector_.kind().words) {
-      for (unsigned n = 1; n <= 4; ++n) vector_.signals.push_back({fmt::format("ch{}.position", n), false});
-      vector_.signals.push_back({"bus", false});
-    }
+    for (unsigned n = 1; vector_.kind().encoders && n <= 4; ++n)
+      vector_.signals.push_back({fmt::format("ch{}.position", n), false});
+    if (vector_.kind().words > 0) vector_.signals.push_back({"bus", false});
     if (vector_.kind().commands) vector_.board = file_.text("board");
   }
 

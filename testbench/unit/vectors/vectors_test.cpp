@@ -24,7 +24,8 @@ const std::set<std::string> kNames = {
     "compare",    "dac_strobe",   "decode_direction",   "default_words",  "encoder_error",   "encoder_filter",
     "equ_write",  "hall",         "hardware_clocks",    "isa_read_waits", "isa_write_waits", "mldt",
     "pfm",        "phase_clock",  "port_a_read",        "port_a_write",   "pwm_command",     "pwm_dead_time",
-    "pwm_update", "reinitialize", "reinitialize_macro", "trip",           "turnaround"};
+    "pwm_update", "reinitialize", "reinitialize_macro", "trip",           "turnaround",      "ssi_change",
+    "ssi_frame",  "ssi_geo",      "ssi_parity",         "ssi_trigger"};
 
 std::vector<std::string> vector_files() {
   std::vector<std::string> found;

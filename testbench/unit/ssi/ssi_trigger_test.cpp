@@ -1,0 +1,315 @@
+// When frames begin and when not, on both engines: edges, delays, refused triggers, single frames, and what words do
+// that are written in a frame.
+#include "testbench/unit/covers.h"
+#include "testbench/unit/ssi/ssi_fixture.h"
+
+namespace brick {
+namespace {
+
+template <class Rig>
+class SsiTriggers : public SsiOn<Rig> {};
+TYPED_TEST_SUITE(SsiTriggers, SsiEngines, SsiNames);
+
+constexpr std::uint32_t kFast = 0x180302;  // 4 MHz, falling SERVO: bits 9, 8
+
+TYPED_TEST(SsiTriggers, BrickTriggersOnEveryEdgeAfterEveryDelay) {
+  for (unsigned source = 0; source < 4; ++source) {  // bit 1 SERVO, bit 0 falling
+    for (const unsigned delay : {0u, 1u, 2u, 15u}) {
+      SCOPED_TRACE(::testing::Message() << source << " delay " << delay);
+      const bool servo = (source & 2) != 0, falling = (source & 1) != 0;
+      this->rig.encoders = nullptr;
+      this->rig.reset(false);
+      this->rig.nets(servo || falling, !servo || falling);
+      this->rig.run(5);
+      this->wire(1, {}, 0);
+      this->rig.write(true, 0x2F, 0x180002 | source << 8 | delay << 4);
+      this->rig.write(true, brick_word(1), 0x1400 | 12);
+      this->rig.nets(servo != falling, true);  // the other net's edges of both kinds, and this one's of the other
+      this->rig.nets(servo || falling, !servo || falling);
+      for (int i = 0; i < 2; ++i) {
+        this->rig.nets(servo ? i == 0 : falling, servo ? falling : i == 0);
+        this->rig.run(9);
+      }
+      ASSERT_TRUE(this->edges.empty());
+      const Tick seen = this->rig.now() + 1;
+      this->rig.nets(servo ? false : !falling, servo ? !falling : false);
+      this->rig.run(1000);
+      ASSERT_FALSE(this->edges.empty());
+      EXPECT_EQ(this->edges[0], seen + (Tick{delay} * 25 * 18432 + 15624) / 15625);
+    }
+  }
+}
+
+// Both channels share the trigger: the shorter word waits for the longer (servo-ic:11.9/6).
+TYPED_TEST(SsiTriggers, TriggersAreRefusedUntilTheClockHasRested) {
+  this->rig.reset(true);
+  this->wire(1, {}, 0x777777);
+  this->rig.write(true, kGeoClock, 3);
+  this->rig.write(true, kGeoResult[0], 0x2);
+  this->rig.write(true, kGeoResult[1], 0xE);
+  const Tick seen = this->trigger(), last_rise = seen + (2 * 24 + 1) * 48;
+  const auto trigger_at = [&](Tick edge) {
+    this->rig.run(edge - 1 - this->rig.now());
+    this->trigger();
+  };
+  trigger_at(seen + 50);
+  trigger_at(seen + (2 * 12 + 1) * 48 + 500);  // channel 1 has its word
+  trigger_at(last_rise + kRest);
+  EXPECT_EQ(this->edges.size(), 26u);
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 3u);
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[1]), 3u);
+  this->frame_over();
+  const Tick again = this->trigger();
+  trigger_at(again + (2 * 24 + 1) * 48 + kRest + 1);
+  EXPECT_EQ(this->edges.size(), 2 * 26u + 1);
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 3u);
+}
+
+TYPED_TEST(SsiTriggers, BrickTakesOneShotOnly) {
+  this->rig.reset(false);
+  this->wire(2, {}, 0xABCDEF);
+  this->rig.write(true, 0x2F, 0x180302);
+  this->rig.write(true, brick_word(2), 0x3400 | 24);
+  EXPECT_EQ(this->rig.read(true, brick_word(2)), 0x3000u | 24);
+  this->trigger();
+  EXPECT_EQ(this->rig.read(true, brick_word(2)), 0x2000u | 24);
+  this->frame_over();
+  EXPECT_EQ(this->rig.read(false, brick_word(2)), 0xABCDEFu);
+  this->trigger();
+  this->rig.run(5000);
+  EXPECT_EQ(this->edges.size(), 50u);
+  EXPECT_EQ(this->rig.read(true, brick_word(2) + 1), 0u);
+  this->rig.write(true, brick_word(2), 0x3400 | 24);
+  this->trigger();
+  this->frame_over();
+  EXPECT_EQ(this->edges.size(), 100u);
+}
+
+TYPED_TEST(SsiTriggers, BrickIsSilentWithoutProtocolEnableOrDriver) {
+  struct Case {
+    unsigned group, control;
+    std::uint32_t result;
+  };
+  for (const Case c : {Case{0x18030B, 0x1418, 0}, {0x180302, 0x0418, 0}, {0x180302, 0x1018, 0xFFFFFF}}) {  // pulled up
+    this->rig.encoders = nullptr;
+    this->rig.reset(false);
+    this->wire(1, {}, 0x111111);
+    this->rig.write(true, 0x2F, c.group);
+    this->rig.write(true, brick_word(1), c.control);
+    this->trigger();
+    this->rig.run(5000);
+    EXPECT_TRUE(this->edges.empty());
+    EXPECT_EQ(this->rig.read(false, brick_word(1)), c.result);
+  }
+}
+
+TYPED_TEST(SsiTriggers, GeoModesZeroAndOneLeaveTheClockHigh) {
+  BRICK_COVERS("SSI-1");
+  for (unsigned mode = 0; mode < 2; ++mode) {
+    this->rig.encoders = nullptr;
+    this->rig.reset(true);
+    this->wire(1, {}, 0x123456);
+    this->rig.write(true, kGeoResult[0], 0xC | mode);
+    this->trigger();
+    this->rig.run(30'000);
+    EXPECT_TRUE(this->edges.empty());
+    EXPECT_EQ(this->rig.read(false, kGeoResult[0]), 0u);
+  }
+}
+
+// What a channel has refused is counted modulo 256, and only while it is enabled (servo-ic:11.9/6).
+TYPED_TEST(SsiTriggers, RefusedOnesAreCountedModulo256) {
+  this->rig.reset(true);
+  this->wire(1, {}, 0);
+  this->rig.write(true, kGeoClock, 0);
+  this->rig.write(true, kGeoResult[0], 0xE);
+  this->trigger();
+  for (int i = 0; i < 200; ++i) {
+    this->rig.run(3);
+    this->trigger();
+  }
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 200u);
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[1]), 0u);
+  this->rig.write(true, kGeoResult[1], 0xE);
+  for (int i = 0; i < 100; ++i) {
+    this->rig.run(3);
+    this->trigger();
+  }
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 300u - 256u);
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[1]), 100u);
+  this->frame_over();
+  EXPECT_EQ(this->edges.size(), 50u);
+  this->trigger();
+  EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 300u - 256u) << "a trigger that is taken leaves the count";
+}
+
+TYPED_TEST(SsiTriggers, OfAnotherProtocolAreNeitherTakenNorRefused) {
+  this->rig.reset(false);
+  this->wire(1, {}, 0x5A5A5A);
+  this->rig.write(true, 0x2F, kFast);
+  this->rig.write(true, brick_word(1), 0x1400 | 24);
+  this->trigger();
+  for (const unsigned protocol : {0u, 1u, 3u, 6u, 10u, 11u}) {
+    this->rig.write(true, 0x2F, (kFast & ~0xFu) | protocol);
+    this->trigger();
+  }
+  this->frame_over();
+  EXPECT_EQ(this->edges.size(), 50u) << "the frame that had begun";
+  EXPECT_EQ(this->rig.read(false, brick_word(1)), 0x5A5A5Au);
+  this->trigger();
+  this->rig.run(500);
+  EXPECT_EQ(this->edges.size(), 50u);
+  EXPECT_EQ(this->rig.read(true, brick_word(1) + 1), 0u);
+}
+
+// A trigger that no channel waits for begins nothing, so the next one is not refused.
+TYPED_TEST(SsiTriggers, WithoutAnEnabledChannelLeaveTheGroupIdle) {
+  this->rig.reset(false);
+  this->wire(3, {}, 0x123456);
+  this->rig.write(true, 0x2F, kFast);
+  this->rig.write(true, brick_word(3), 0x0400 | 24);
+  this->trigger();
+  this->rig.write(true, brick_word(3), 0x1400 | 24);
+  const Tick seen = this->trigger();
+  ASSERT_FALSE(this->edges.empty());
+  EXPECT_EQ(this->edges[0], seen);
+  EXPECT_EQ(this->rig.read(true, brick_word(3) + 1), 0u);
+}
+
+// The groups have their own: one at work refuses nothing for the other.
+TYPED_TEST(SsiTriggers, OfOneGroupAreNothingToTheOther) {
+  this->rig.reset(false);
+  this->wire(8, {}, 0xC0FFEE);
+  this->rig.write(true, 0x2F, 0x630202);  // PHASE would be bit 9 = 0: SERVO rises, 1 MHz
+  this->rig.write(true, 0x3F, 0x180102);  // PHASE falls, 4 MHz
+  this->rig.write(true, brick_word(2), 0x1400 | 32);
+  this->rig.write(true, brick_word(8), 0x1400 | 24);
+  this->rig.nets(true, false);
+  this->rig.run(5);
+  this->rig.nets(true, true);
+  this->rig.run(100);
+  EXPECT_TRUE(this->edges.empty());
+  const Tick seen = this->rig.now() + 1;
+  this->rig.nets(false, true);
+  this->rig.run(5);
+  this->rig.nets(true, true);
+  this->rig.run(1);
+  ASSERT_FALSE(this->edges.empty());
+  EXPECT_EQ(this->edges[0], seen);
+  EXPECT_EQ(this->rig.read(true, brick_word(2) + 1), 0u);
+  EXPECT_EQ(this->rig.read(true, brick_word(8) + 1), 0u);
+  this->rig.nets(false, true);
+  this->rig.run(5);
+  EXPECT_EQ(this->rig.read(true, brick_word(2) + 1), 0u);
+  EXPECT_EQ(this->rig.read(true, brick_word(8) + 1), 1u);
+}
+
+// A word that is written at the edge of clk_ref that would end a single frame's enable stands: there is one more frame.
+TYPED_TEST(SsiTriggers, AWriteStandsAgainstTheEndOfASingleFrame) {
+  for (Tick place = 0; place < 3; ++place) {
+    SCOPED_TRACE(place);
+    this->rig.encoders = nullptr;
+    this->rig.reset(false);
+    this->wire(2, {}, 0);
+    this->rig.write(true, 0x2F, kFast);
+    this->rig.write(true, brick_word(2), 0x3400 | 12);
+    this->rig.run(place);
+    this->rig.begin({true, true, brick_word(2), 0x3400 | 13});
+    this->trigger();
+    // At place 2 the edge that sees the trigger is the one that writes; the enable ends with the next.
+    EXPECT_EQ(this->rig.read(true, brick_word(2)), (place == 2 ? 0x2000u : 0x3000u) | 13);
+    this->frame_over();
+    EXPECT_EQ(this->edges.size(), 26u);
+    this->trigger();
+    this->frame_over();
+    EXPECT_EQ(this->edges.size(), place == 2 ? 26u : 26u + 28u);
+  }
+}
+
+// servo-ic:11.9/7: what is written in a frame. Enable and number of bits wait for the next trigger.
+TYPED_TEST(SsiTriggers, AFrameEndsAsItBeganThoughItsChannelIsDisabled) {
+  this->rig.reset(false);
+  this->wire(4, {}, 0x89ABCD);
+  this->rig.write(true, 0x2F, kFast);
+  this->rig.write(true, brick_word(4), 0x1400 | 24);
+  this->trigger();
+  this->rig.run(200);
+  this->rig.write(true, brick_word(4), 0x0400 | 12);
+  this->frame_over();
+  EXPECT_EQ(this->edges.size(), 50u);
+  EXPECT_EQ(this->rig.read(false, brick_word(4)), 0x89ABCDu);
+  this->trigger();
+  this->rig.run(500);
+  EXPECT_EQ(this->edges.size(), 50u);
+}
+
+// The driver acts at the next fall, and a pulse that has begun is never cut.
+TYPED_TEST(SsiTriggers, TheDriverActsAtOnceAndCutsNoPulse) {
+  this->rig.reset(false);
+  this->wire(1, {}, 0);
+  this->rig.write(true, 0x2F, 0x630302);  // falls 0, 118, 236, 354, 472 ticks after the trigger, rises 59 later
+  this->rig.write(true, brick_word(1), 0x1400 | 12);
+  const Tick seen = this->trigger();
+  this->rig.run(seen + 120 - this->rig.now());  // low
+  this->rig.write(true, brick_word(1), 0x1000 | 12);
+  this->rig.run(seen + 360 - this->rig.now());
+  EXPECT_EQ(this->edges, (std::vector<Tick>{seen, seen + 59, seen + 118, seen + 177}));
+  this->rig.write(true, brick_word(1), 0x1400 | 12);
+  this->rig.run(seen + 480 - this->rig.now());
+  ASSERT_EQ(this->edges.size(), 5u);
+  EXPECT_EQ(this->edges[4], seen + 472);
+}
+
+// Parity and Gray act at once: the number of clocks stands, and the last is parity if it is asked for by then. Of the
+// 13 bits that the encoder sends, 101101 0011101, six have been taken when the word is written.
+TYPED_TEST(SsiTriggers, ParityAndGrayActAtOnceOnANumberOfClocksThatStands) {
+  constexpr unsigned kOdd = 1u << 14, kGray = 1u << 11;
+  struct Case {
+    unsigned before, after;
+    std::uint32_t result;
+    unsigned clocks;
+  };
+  for (const Case c : {Case{0, kOdd, 0b101101'00111, 13},
+                       {kOdd, 0, 0b101101'0011101, 14},
+                       {0, kGray, 0b101101'110100, 13},  // 1 ^ 0, 1 ^ 0, 1 ^ 1, 0 ^ 1, 1 ^ 1, 0 ^ 0
+                       {kGray, 0, 0b110110'001110, 13}}) {
+    SCOPED_TRACE(::testing::Message() << std::hex << c.before << " then " << c.after);
+    this->rig.encoders = nullptr;
+    this->rig.reset(false);
+    SsiEncoderParameters p;
+    p.bits = 13;
+    this->wire(1, p, 0b101101'0011101);
+    this->rig.write(true, 0x2F, 0x630302);
+    this->rig.write(true, brick_word(1), c.before | 0x1400 | 12);
+    const Tick seen = this->trigger();
+    this->rig.run(seen + 7 * 118 - this->rig.now());  // the seventh rise was at 6 x 118 + 59
+    this->rig.write(true, brick_word(1), c.after | 0x1400 | 12);
+    this->frame_over();
+    EXPECT_EQ(this->edges.size(), 2 * c.clocks);
+    EXPECT_EQ(this->rig.read(false, brick_word(1)), c.result);
+  }
+}
+
+// servo-ic:11.9/9: a reset in a frame lets the clock up at once; nothing of the frame is left.
+TYPED_TEST(SsiTriggers, AResetInAFrameLetsTheClockUpAndTheGroupIdle) {
+  this->rig.reset(true);
+  this->wire(1, {}, 0xFFFFFF);
+  for (int i = 0; i < 2; ++i) {
+    this->rig.write(true, kGeoClock, 3);
+    this->rig.write(true, kGeoResult[0], 0xE);
+    const Tick seen = this->trigger();
+    this->rig.run(seen + 20 * 96 + 20 - this->rig.now());
+    EXPECT_EQ(this->edges.size(), 41u);
+    EXPECT_EQ(this->rig.clk() & 1, 0u);
+    this->rig.reset(true);
+    EXPECT_EQ(this->rig.clk(), 0xFFu);
+    this->rig.run(3000);
+    EXPECT_EQ(this->edges.size(), 42u);
+    EXPECT_EQ(this->rig.read(true, kGeoResult[0]), 0u);
+    EXPECT_EQ(this->rig.read(false, kGeoResult[0]), 0u);
+    EXPECT_EQ(this->rig.read(true, kGeoRefused[0]), 0u);
+    this->edges.clear();
+  }
+}
+}  // namespace
+}  // namespace brick
