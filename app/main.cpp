@@ -9,9 +9,11 @@
 #include <CLI/CLI.hpp>
 #include <systemc>
 
+#include "app/build_info.h"
 #include "app/byte_text.h"
 #include "app/commands.h"
 #include "app/cpu_command.h"
+#include "app/regress/command.h"
 #include "app/run_bench.h"
 #include "systemc/core/usage_error.h"
 #include "testbench/benches/benches.h"
@@ -23,6 +25,13 @@ constexpr const char* kAbout =
     "brick: a virtual Turbo PMAC2 / Geo Brick LV, as RTL and as SystemC model, with its firmware";
 constexpr const char* kDefaultInstructions = "10000000000";
 
+unsigned job_count(const std::string& text) {
+  constexpr std::uint64_t kMostJobs = 1024;
+  const std::uint64_t jobs = parse_count("--jobs", text);
+  if (jobs == 0 || jobs > kMostJobs) throw UsageError(fmt::format("--jobs {}: expected 1 to {}", text, kMostJobs));
+  return static_cast<unsigned>(jobs);
+}
+
 struct Commands {
   CLI::App app{kAbout, "brick"};
   std::function<int()> chosen;
@@ -31,13 +40,14 @@ struct Commands {
   ServeOptions serve_options;
   TimingOptions timing_options;
   PlotOptions plot_options;
-  std::string bench, script, history, elf, board, max_instructions = kDefaultInstructions;
+  RegressOptions regress_options;
+  std::string bench, script, history, elf, board, jobs, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
   Commands() {
     app.require_subcommand(1);
     app.footer("Exit status: 0 passed; 1 failed; 2 bad usage or bad input.");
-    app.set_version_flag("--version", std::string("brick ") + BRICK_VERSION);
+    app.set_version_flag("--version", version_text());
     auto* list = app.add_subcommand("list", "benches with one line each");
     list->add_flag("--json", list_json, "as JSON");
     list->callback([this] { chosen = [this] { return list_command(all_benches(), list_json); }; });
@@ -124,6 +134,32 @@ struct Commands {
     plot->add_option("--title", plot_options.title, "above the picture (default: the record's name)");
     plot->add_flag("--script", plot_options.script, "print what gnuplot is told, draw nothing");
     plot->callback([this] { chosen = [this] { return plot_command(plot_options); }; });
+
+    auto* regress = app.add_subcommand(
+        "regress", "the runs of a plan in parallel: benches x engines x boards x seeds; kinds of failure, reports");
+    regress->add_option("PLAN", regress_options.plan, "plan in TOML (docs/regress.md)")->required();
+    regress
+        ->add_option("--output,-o", regress_options.output,
+                     "folder of results and reports (default: waves/out/regress/ and the plan's name)")
+        ->type_name("DIR");
+    regress->add_option("--jobs,-j", jobs, "runs at the same time (default: one a processor)")->type_name("N");
+    regress->add_flag("--resume", regress_options.resume,
+                      "keep what this build has made already, make what is missing");
+    regress->add_flag("--rerun-failed", regress_options.rerun_failed, "the same, but make again what failed");
+    regress->add_flag("--list", regress_options.list, "print the command of each run, run nothing");
+    regress->add_flag("--no-replay", regress_options.no_replay, "no waveform of the first run of each kind of failure");
+    regress
+        ->add_option("--fresh-from", regress_options.fresh_from,
+                     "where seeds of `fresh` come from (default: the clock)")
+        ->type_name("N");
+    regress->add_option("--minutes", regress_options.minutes, "begins no run after so many minutes")
+        ->check(CLI::NonNegativeNumber);
+    regress->callback([this] {
+      chosen = [this] {
+        if (!jobs.empty()) regress_options.jobs = job_count(jobs);
+        return regress_command(all_benches(), regress_options);
+      };
+    });
 
     auto* boards = app.add_subcommand("boards", "the boards and what is fitted");
     boards->add_option("BOARD", board, "NAME or FILE.toml: all about this one (default: a table of all)");

@@ -77,4 +77,9 @@ std::string setup_path(const std::string& name_or_file) {
   return (share_folder() / "setups" / (name_or_file + ".pmc")).string();
 }
 
+std::string view_path(const std::string& bench) {
+  const fs::path view = share_folder() / "waves" / (bench + ".gtkw");
+  return fs::exists(view) ? view.string() : "";
+}
+
 }  // namespace brick

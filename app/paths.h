@@ -18,4 +18,6 @@ std::vector<std::string> plant_names();  // "none" is not among them
 std::string plant_path(const std::string& name_or_file);
 std::string setup_path(const std::string& name_or_file);
 
+std::string view_path(const std::string& bench);  // its GTKWave save file, in share/brick/waves; "" where there is none
+
 }  // namespace brick

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "app/build_info.h"
 #include "app/script_player.h"
 #include "app/set_up.h"
 #include "app/simulation.h"
@@ -107,6 +108,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   results["steps"] = steps_json(report);
   if (!options.wave.empty()) results["wave"] = options.wave;
   if (extras.after) extras.after(simulation, results);
+  add_origin(results, config.firmware);
   if (!options.json.empty()) write_json(options.json, results);
   return passed ? 0 : 1;
 }

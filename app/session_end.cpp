@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/build_info.h"
 #include "app/byte_text.h"
 
 namespace brick {
@@ -54,6 +55,7 @@ int end_session(Simulation& simulation, const ScriptPlayer& player, const RunOpt
     results["passed"] = failures.empty();
     if (!failures.empty()) results["failure"] = utf8_text(failures.front());
     results["exchanges"] = exchanges_json(player);
+    add_origin(results, config.firmware);
     write_json(options.json, results);
   }
   return failures.empty() ? 0 : 1;

@@ -13,6 +13,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 find_path(ASIO_INCLUDE_DIR asio.hpp REQUIRED)  # sockets of the debugger's server and the Ethernet port
 pkg_check_modules(LIBEDIT REQUIRED IMPORTED_TARGET libedit)  # line editing of brick console
+find_package(pugixml REQUIRED)  # JUnit's XML of brick regress
 find_package(ZLIB REQUIRED)  # FST files
 pkg_check_modules(TOMLPP REQUIRED IMPORTED_TARGET tomlplusplus)
 

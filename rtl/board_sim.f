@@ -2,12 +2,8 @@
 // Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
 pins/motor_pins_pkg.sv
 regs/brick_regs_pkg.sv
-common/sync2.sv
-common/reset_sync.sv
-board/bus_strobes.sv
-board/bus_sync.sv
-board/address_decode.sv
 servo_ic/servo_ic_regs.sv
+common/sync2.sv
 servo_ic/clock_gen.sv
 servo_ic/channel_divider.sv
 servo_ic/channel_strobe.sv
@@ -21,6 +17,7 @@ servo_ic/channel_counter.sv
 servo_ic/channel_subcount.sv
 servo_ic/channel_capture.sv
 servo_ic/channel_compare.sv
+servo_ic/channel_triangle.sv
 servo_ic/channel_pwm.sv
 servo_ic/channel_pfm.sv
 servo_ic/channel_dac.sv
@@ -29,6 +26,10 @@ servo_ic/channel_regs.sv
 servo_ic/servo_channel.sv
 servo_ic/servo_channels.sv
 servo_ic/servo_ic.sv
+common/reset_sync.sv
+board/bus_strobes.sv
+board/bus_sync.sv
+board/address_decode.sv
 macro_ic/macro_ic_regs.sv
 macro_ic/macro_ic.sv
 board/clock_select.sv
@@ -48,5 +49,6 @@ board/panel_port.sv
 host/dpram_memory.sv
 host/dpram.sv
 board/bus_read.sv
+board/board_core.sv
 board/board_top.sv
 board/board_sim.sv

@@ -7,6 +7,7 @@ assert, each with a cover of its premise. Its header says how, in comment lines:
   clocks: one | several      several: every clock is a signal that the file makes, time runs in steps of its own
   steps: N                   within which premises are reached and faults refuted
   edit: what and why (FILE)  an edit of the RTL for the proof, such as a shallower memory; its text as of a fault
+  free: MODULE, MODULE       taken out of the design: whatever these might do, the rules hold
   fault RULE: what is wrong (FILE), then '  - old text' and '  + new text': with that edit this rule, judged
                              alone, must be refuted; the waveform is DIR/NAME.fault.RULE.vcd
 Every verdict needs the solver's words of success: no answer in time is a failure. docs/formal.md.
@@ -59,6 +60,7 @@ class Rules:
         found = re.findall(r"^// (?:fault )?(edit|R\d+): (.*) \((\S+)\)\n//   - (.*)\n//   \+ ?(.*)\n", self.text, re.M)
         self.faults = [Edit(*row) for row in found if row[0] != "edit"]
         self.edits = [Edit(*row) for row in found if row[0] == "edit"]
+        self.free = re.findall(r"\w+", " ".join(re.findall(r"^// free: (.*)$", self.text, re.M)))
         self.check()
 
     def setting(self, key, form):
@@ -135,7 +137,8 @@ def build(rules, solvers, fault=None):
     (solvers.out / "cover.v").write_text(COVER)
     script = [f"read_verilog -sv -formal -defer {' '.join(map(str, sources.values()))}",
               f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules",
-              f"proc -norom; flatten; setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
+              *(f"select -assert-min 1 t:{module}; delete t:{module}" for module in rules.free),
+              f"proc -norom; flatten; {'setundef -undriven -expose; ' if rules.free else ''}setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
               f"write_smt2 -wires {stem}.smt2",
               "techmap -map cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
     for label in labels:

@@ -40,8 +40,10 @@
 #include "firmware/run/calculate.h"
 #include "firmware/run/plc.h"
 #include "firmware/variables/i_variables.h"
+#include "firmware/variables/ssi_inputs.h"
 
 enum { CLEARED_AT_ONCE = MEMORY_BUFFERS_END / 8 };
+enum { LONGEST_SERVO_MS = 25, SERIAL_FRAME_US = 200 }; /* the watchdog's time; 25 clocks of 153.6 kHz and the rest */
 
 static saved_t saved;        /* what the flash store had for this start */
 static uint32_t initial_ics; /* ICs found at the last re-initialisation */
@@ -87,6 +89,21 @@ static void load_user_memory(void) {
   if (saved == SAVED_GOOD) saved_data_restore_rest();
 }
 
+static bool is_serial(uint32_t motor) {
+  return ssi_inputs_have((uint32_t)i_integer(i_motor(motor, IXX10_POWER_ON_ADDRESS))) ||
+         ssi_inputs_have((uint32_t)i_integer(i_motor(motor, IXX81_POWER_ON_PHASE_ADDRESS)));
+}
+
+/* The first word of a serial encoder begins with the next servo clock. */
+static void await_serial_encoders(void) {
+  uint32_t motor = 1;
+  while (motor <= MOTORS && !is_serial(motor)) ++motor;
+  if (motor > MOTORS) return;
+  const uint32_t began = hal_cycles(), count = tasks_servo_count();
+  while (tasks_servo_count() == count && hal_cycles() - began < LONGEST_SERVO_MS * hal_cycles_per_ms()) {}
+  hal_delay_us(SERIAL_FRAME_US);
+}
+
 /* The hardware watchdog runs from reset on: 25 ms for the first servo clock edge, and 25 ms from strobe to strobe. So
  * the clocks come first, at the CPU clock after reset, and the steps that take long are strobed. */
 void start(enum start_mode mode) {
@@ -113,7 +130,6 @@ void start(enum start_mode mode) {
   motor_variables_initialize();
   jog_initialize();
   phasing_initialize();
-  power_on_positions_initialize();
   calculate_initialize();
   plc_initialize();
   program_texts_initialize();
@@ -131,6 +147,8 @@ void start(enum start_mode mode) {
     sine_table_later(); /* nobody commutates yet, and a start has 25 ms */
   hal_interrupts_on();
   clock_watch_start();
+  await_serial_encoders();
+  power_on_positions_read();
   phasing_power_on();
   background_wake();
 }

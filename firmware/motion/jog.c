@@ -7,6 +7,7 @@
 #include "firmware/motion/desired_position.h"
 #include "firmware/motion/jog_state.h"
 #include "firmware/motion/motor.h"
+#include "firmware/motion/position_loop.h"
 #include "firmware/variables/i_variables.h"
 
 #define FASTEST 2147483648.0 /* 1/(32 Ixx08) counts a ms */
@@ -220,6 +221,7 @@ void jog_make_whole(uint32_t motor) {
 void jog_count_from(uint32_t motor, int64_t position) {
   struct jog* j = &jogs[motor];
   desired_position_shift(motor, -position);
+  position_loop_show(motor); /* who asks behind `HMZ` is told 0 */
   for (uint32_t path = 0; path < 2u; path++) j->paths[path].shift -= position;
   j->request.target -= position; /* a place: it stays where it is */
   j->requests++;                 /* what is being planned is about the old positions */

@@ -73,6 +73,7 @@ void motor_variables_initialize(void) {
   protection_initialize();
   average_velocity_initialize();
   compensation_initialize();
+  conversion_table_servo(); /* where encoders stand now is position 0 */
   for (uint32_t motor = 1; motor <= MOTORS; ++motor) {
     if (i_integer(i_motor(motor, IXX00_ACTIVATED)) != 0) {
       motor_variables_changed(motor);

@@ -109,8 +109,11 @@ void path_motors_begin(uint32_t cs) {
     motors_of_path[motor].start = math_nearest(system_motor_from(motor, m->start));
     slice_pause();
   }
-  for (uint32_t motor = 0, left = coordinate_systems[cs].inverse_motors; left != 0; motor++, left >>= 1)
-    if ((left & 1u) != 0) motors_of_path[motor].start = math_nearest(system_motor_aside(motor));
+  for (uint32_t motor = 0, left = coordinate_systems[cs].inverse_motors; left != 0; motor++, left >>= 1) {
+    if ((left & 1u) == 0) continue;
+    motors_of_path[motor].start = math_nearest(system_motor_aside(motor));
+    slice_pause();
+  }
   path_motors_join(cs, 0);
 }
 

@@ -244,6 +244,10 @@ static inline void publish(uint32_t motor, const struct motor* m) {
   *hal_x(words + MEMORY_MOTOR_FILTER_OUTPUT) = (uint32_t)m->output & HAL_WORD_MASK;
 }
 
+void position_loop_show(uint32_t motor) {
+  if ((motors_active >> motor & 1u) != 0u) publish(motor, &motors[motor]);
+}
+
 /* Of a killed motor commanded and actual position are the same, and there are 32. */
 static __attribute__((noinline)) void run_killed(uint32_t motor, struct motor* m, struct loop* l) {
   desired_position_take_actual(motor);

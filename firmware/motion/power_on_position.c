@@ -84,7 +84,7 @@ bool power_on_position_read(uint32_t motor) {
   return true;
 }
 
-void power_on_positions_initialize(void) {
+void power_on_positions_read(void) {
   for (uint32_t motor = 0; motor < MOTORS; motor++) {
     if (variable(motor, IXX10_POWER_ON_ADDRESS) == 0u || !is_built(motor)) continue;
     if ((variable(motor, IXX80_POWER_UP_MODE) & NOT_AT_POWER_ON) == 0u) set_position(motor, sensor(motor));

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-void power_on_positions_initialize(void); /* start-up: sensors are read, but where Ixx80 bit 2 says not to */
+void power_on_positions_read(void); /* behind a start: sensors, but where Ixx80 bit 2 says not to */
 /* Kills the motor (0..31), counts its encoder from 0, sets its position. False: its format is not built. Background. */
 bool power_on_position_read(uint32_t motor);
 

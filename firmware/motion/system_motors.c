@@ -273,10 +273,12 @@ void system_motors_take(uint32_t cs) {
 }
 
 void system_motors_begin(uint32_t cs) {
-  if (!system_motors_match(cs)) return;
+  struct coordinate_system* s = &coordinate_systems[cs];
+  s->matching_anew = false;
+  if (!system_motors_match(cs) || s->matching_anew) return;
   system_motors_take(cs);
-  coordinate_systems[cs].matching = coordinate_systems[cs].starting = false;
-  coordinate_systems[cs].was_matched = true;
+  s->matching = s->starting = false;
+  s->was_matched = true;
 }
 
 bool system_motors_leave(uint32_t cs) {

@@ -86,12 +86,18 @@ static void line_ends(uint32_t cs) {
 
 static bool waits_for(enum move_kind kind) { return kind == MOVE_DWELL || kind == MOVE_OWN; }
 
+/* The last calculated move is a PVT that does not end at rest: it needs one behind it. */
+static bool needs_next(const struct coordinate_system* s) {
+  const struct move* m = &s->moves[s->next_valid ? s->executing ^ 1u : s->executing];
+  return (s->next_valid || s->active) && m->kind == MOVE_PVT && m->overruns;
+}
+
 /* What has to wait for a later interrupt: a move to be started, or the limits of this one. */
 static bool is_ahead(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
   struct motion_program* p = &motion_programs[cs];
   if (s->next_valid || (s->active && waits_for(s->moves[s->executing].kind))) return true;
-  if (s->matching && s->pending_axes == 0) return true;
+  if (s->matching && s->pending_axes == 0 && !needs_next(s)) return true;
   if (path_is_full(cs) || (paths[cs].count != 0 && !segment_is_under_way(cs))) return true;
   if (p->interrupt != cs_interrupts) {
     p->interrupt = cs_interrupts;

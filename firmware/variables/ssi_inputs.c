@@ -15,9 +15,15 @@ static void write_channel(uint32_t channel) {
       mode << SSI_GEO_CONTROL_MODE_SHIFT | length << SSI_GEO_CONTROL_LENGTH_SHIFT;
 }
 
+static bool is_fitted(void) { return (hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_FEEDBACK_2) != 0u; }
+
+bool ssi_inputs_have(uint32_t address) {
+  return is_fitted() && (address == SSI_GEO_Y_POSITION || address == SSI_GEO_Y_POSITION + CHANNEL_STRIDE);
+}
+
 void ssi_inputs_set(uint32_t which, uint32_t value) {
   settings[which] = (uint8_t)value;
-  if ((hal_strap(HAL_STRAP_PRODUCT) & HAL_PRODUCT_FEEDBACK_2) == 0u) return;
+  if (!is_fitted()) return;
   if (which == CLOCK)
     *hal_x(SSI_GEO_X_TIMING) = value;
   else

@@ -3,9 +3,11 @@
 #ifndef FIRMWARE_VARIABLES_SSI_INPUTS_H
 #define FIRMWARE_VARIABLES_SSI_INPUTS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Variable I(1015 + `which`) has this value. Background and real-time tasks, the other held off. */
 void ssi_inputs_set(uint32_t which, uint32_t value);
+bool ssi_inputs_have(uint32_t address); /* one of them sends it: behind a start it is 0 until it has */
 
 #endif

@@ -178,11 +178,11 @@ module board_sim #(
   endfunction
 
   initial begin
-    for (int i = 0; i < 32768; i++) u_board.u_dpram.u_memory.mem[i] = start_word(start_seed_i, i);
+    for (int i = 0; i < 32768; i++) u_board.u_core.u_dpram.u_memory.mem[i] = start_word(start_seed_i, i);
   end
 
   // A simulator resets at the fall of a reset only, so the board's must have been high before the first.
-  initial u_board.u_reset_sync.u_pwm.sync2_q = 1'b1;
+  initial u_board.u_core.u_reset_sync.u_pwm.sync2_q = 1'b1;
 
   // The deliberate bug: one tick of high level is added in front of one low phase of SERVO.
   logic       bug_q, servo_last_q;

@@ -1,9 +1,5 @@
-// The controller board: servo and MACRO ICs, clock selection, bus decoding, watchdog and the host side, from Port A
-// pins to ISA pins. clk_ref_i rises together with every third clk_pwm_i edge; both are of one phase, so crossing
-// between them is synchronous. ServoIcMask and MacroIcMask say which ICs are built (bits 17..0 and 21..18 as in
-// fitted_i), fitted_i which of those are present at run time, macro_gate_i which MACRO ICs are of the kind MACROGATE.
-// Outputs are registers or gates behind registers, but for what a strobe moves without a clock: /TA, data enables.
-// docs/architecture.md has the map.
+// The controller board: board_core and the servo ICs of ServoIcMask, bit m for IC m, m + 8 for IC m*; fitted_i says
+// which of those, and of the MACRO ICs of MacroIcMask, are present at run time. docs/architecture.md has the map.
 `default_nettype none
 
 module board_top #(
@@ -100,117 +96,24 @@ module board_top #(
   output logic [7:0]       pic_elr_o
 );
 
-  logic rst_ni;  // of every block
-  reset_sync u_reset_sync (
-    .clk_pwm_i, .clk_ref_i, .rst_pin_ni,
-    .rst_no (rst_ni)
-  );
-
-  // ------------------------------------------------------------------ straps, taken over on clk_ref
-  localparam logic [21:0] IcMask = {MacroIcMask, ServoIcMask};
-  logic [21:0] fitted_q;
-  logic [3:0]  macro_gate_q;
-  logic        ext_clock_q, dpram_small_q, jpan_fitted_q, pic_8259_q;
-  logic [11:0] line_select_q;
-  logic [1:0]  ssi_kind_q;
-  always_ff @(posedge clk_ref_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      fitted_q      <= 22'h0;
-      macro_gate_q  <= 4'h0;
-      ext_clock_q   <= 1'b0;
-      dpram_small_q <= 1'b0;
-      jpan_fitted_q <= 1'b0;
-      line_select_q <= 12'h0;
-      pic_8259_q    <= 1'b0;
-      ssi_kind_q    <= 2'd0;
-    end else begin
-      fitted_q      <= fitted_i;
-      macro_gate_q  <= macro_gate_i & MacroIcMask;
-      ext_clock_q   <= ext_clock_i;
-      dpram_small_q <= dpram_small_i;
-      jpan_fitted_q <= jpan_fitted_i;
-      line_select_q <= line_select_i;
-      pic_8259_q    <= pic_8259_i;
-      ssi_kind_q    <= ssi_kind_i;
-    end
-  end
-
-  // ------------------------------------------------------------------ Port A: synchroniser and decoding
-  logic [18:0] bus_addr;
-  logic        bus_x, bus_int, bus_we, bus_rd;
-  logic [3:0]  bus_aa;
-  logic [23:0] bus_wdata;
-
-  // Registers see the strobes of their own regions only: main memory and the dual-ported RAM have shorter cycles, whose
-  // address is gone when clk_ref looks. The RAM sees every strobe, for the next one ends its access.
-  logic own, rd_toggle, wr_toggle, any_rd_toggle, any_wr_toggle;
-  assign own = pa_int_i | pa_aa_i[1] | (pa_aa_i == 4'h0);
-  bus_strobes u_bus_strobes (
-    .rst_ni, .pa_rd_ni, .pa_wr_ni,
-    .sel_i       (own),
-    .rd_toggle_o (rd_toggle),
-    .wr_toggle_o (wr_toggle)
-  );
-  bus_strobes u_any_strobes (
-    .rst_ni, .pa_rd_ni, .pa_wr_ni,
-    .sel_i       (1'b1),
-    .rd_toggle_o (any_rd_toggle),
-    .wr_toggle_o (any_wr_toggle)
-  );
-
-  bus_sync u_bus_sync (
-    .clk_ref_i, .rst_ni,
-    .rd_toggle_i (rd_toggle),
-    .wr_toggle_i (wr_toggle),
-    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_wdata_i,
-    .addr_o  (bus_addr),
-    .x_o     (bus_x),
-    .aa_o    (bus_aa),
-    .int_o   (bus_int),
-    .wdata_o (bus_wdata),
-    .we_o    (bus_we),
-    .rd_o    (bus_rd)
-  );
-
-  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_ctrl, sel_panel, sel_ssi;
-  logic [21:0] sel_ic;
-  address_decode u_address_decode (
-    .addr_i        (bus_addr),
-    .x_i           (bus_x),
-    .aa_i          (bus_aa),
-    .int_i         (bus_int),
-    .fitted_i      (fitted_q & IcMask),
-    .jpan_i        (jpan_fitted_q),
-    .ssi_i         (ssi_kind_q),
-    .sel_any_o     (sel_any),
-    .sel_int_o     (sel_int),
-    .sel_signals_o (sel_signals),
-    .sel_strobe_o  (sel_strobe),
-    .sel_ctrl_o    (sel_ctrl),
-    .sel_panel_o   (sel_panel),
-    .sel_ssi_o     (sel_ssi),
-    .sel_ic_o      (sel_ic)
-  );
-  logic unused_sel;  // of ICs that are not built
-  assign unused_sel = &{1'b0, sel_ic};
-
-  // ------------------------------------------------------------------ servo ICs, MACRO ICs and the board's clock nets
-  logic [21:0]      ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
-
-  logic [22*24-1:0] ic_rdata;  // 0 of each that is not selected
-
+  logic        rst_ni, rst_ref_n;
+  logic [17:0] ic_sel, ic_phase, ic_servo, ic_phase_oe, ic_servo_oe;
+  logic        bus_x, bus_we, bus_rd;
+  logic [4:0]  bus_addr;
+  logic [23:0] bus_wdata, rdata;
+  logic [18*24-1:0] ic_rdata;  // 0 of each that is not selected
   logic [71:0] equ;  // EQU of channels 1..4 of each servo IC
+  logic        phase_oe, servo_oe;
 
   for (genvar i = 0; i < 18; i++) begin : gen_servo_ic
     if (ServoIcMask[i]) begin : gen_built
       // Its first bit there.
       localparam integer Motor = motor_pins_pkg::Stride * $countones(ServoIcMask & ((18'd1 << i) - 18'd1));
-      logic [3:0] ic_equ;
       servo_ic u_servo_ic (
         .clk_pwm_i, .clk_ref_i, .rst_ni,
-        .sel_i       (sel_ic[i]),
+        .sel_i       (ic_sel[i]),
         .x_i         (bus_x),
-        .addr_i      (bus_addr[4:0]),
+        .addr_i      (bus_addr),
         .we_i        (bus_we),
         .wdata_i     (bus_wdata),
         .rd_i        (bus_rd),
@@ -225,10 +128,9 @@ module board_top #(
         .pins_i      (motor_i[Motor + motor_pins_pkg::PinsLsb +: motor_pins_pkg::PinsWidth]),
         .adc_a_i     (motor_i[Motor + motor_pins_pkg::AdcALsb +: motor_pins_pkg::AdcAWidth]),
         .adc_b_i     (motor_i[Motor + motor_pins_pkg::AdcBLsb +: motor_pins_pkg::AdcBWidth]),
-        .equ_o       (ic_equ),
+        .equ_o       (equ[4*i+:4]),
         .motor_o     (motor_o[Motor +: motor_pins_pkg::Stride])
       );
-      assign equ[4*i+:4] = ic_equ & {4{fitted_q[i]}};
       logic unused_in;
       assign unused_in = &{1'b0, motor_i[Motor + motor_pins_pkg::InBits +: motor_pins_pkg::Stride -
                                          motor_pins_pkg::InBits]};
@@ -247,288 +149,49 @@ module board_top #(
     assign motor_o   = 1'b0;
   end
 
-  for (genvar i = 18; i < 22; i++) begin : gen_macro_ic
-    if (IcMask[i]) begin : gen_built
-      macro_ic u_macro_ic (
-        .clk_pwm_i, .clk_ref_i, .rst_ni,
-        .gate_i     (macro_gate_q[i-18]),
-        .sel_i      (sel_ic[i]),
-        .x_i        (bus_x),
-        .addr_i     (bus_addr[5:0]),
-        .we_i       (bus_we),
-        .wdata_i    (bus_wdata),
-        .rdata_o    (ic_rdata[24*i+:24]),
-        .phase_i    (phase_o),
-        .servo_i    (servo_o),
-        .phase_o    (ic_phase[i]),
-        .servo_o    (ic_servo[i]),
-        .phase_oe_o (ic_phase_oe[i]),
-        .servo_oe_o (ic_servo_oe[i])
-      );
-    end else begin : gen_absent
-      assign ic_rdata[24*i+:24] = 24'h0;
-      assign ic_phase[i]        = 1'b1;
-      assign ic_servo[i]        = 1'b1;
-      assign ic_phase_oe[i]     = 1'b0;
-      assign ic_servo_oe[i]     = 1'b0;
-    end
-  end
-
-  // Kinds of MACRO ICs that are not built mean nothing.
-  logic unused_gate;
-  assign unused_gate = &{1'b0, macro_gate_q};
-
-  clock_select u_clock_select (
-    .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .fitted_i    (fitted_q),
-    .phase_i     (ic_phase),
-    .servo_i     (ic_servo),
-    .phase_oe_i  (ic_phase_oe),
-    .servo_oe_i  (ic_servo_oe),
-    .ext_clock_i (ext_clock_q),
-    .ext_phase_i, .ext_servo_i,
-    .phase_o, .servo_o, .phase_source_o,
-    .conflict_o  (source_conflict_o)
-  );
-
-  watchdog u_watchdog (
-    .clk_ref_i, .rst_ni,
-    .strobe_i (bus_we & sel_strobe),
-    .servo_i  (servo_o),
-    .pwr_good_i,
-    .trip_o   (wd_tripped_o),
-    .relay_o  (wd_relay_o)
-  );
-  assign wdo_o    = wd_tripped_o;
-  assign wd_led_o = wd_tripped_o;
-
-  // ------------------------------------------------------------------ absolute encoders
-  logic [23:0] ssi_rdata;
-  ssi u_ssi (
-    .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .geo_i   (ssi_kind_q[0]),
-    .sel_i   (sel_ssi),
-    .x_i     (bus_x),
-    .addr_i  (bus_addr[5:0]),
-    .we_i    (bus_we),
-    .rd_i    (bus_rd),
-    .wdata_i (bus_wdata),
-    .rdata_o (ssi_rdata),
-    .phase_i (phase_o),
-    .servo_i (servo_o),
-    .data_i  (ssi_data_i),
-    .clk_o   (ssi_clk_o)
-  );
-
-  // ------------------------------------------------------------------ host side
-  logic       hp_sel, hp_rd, hp_rd_done, hp_wr;
-  logic [2:0] hp_addr;
-  logic [7:0] hp_wdata, hp_rdata;
-  logic       pic_sel, pic_wr, pic_rd, host_reset;
-  logic [1:0] pic_addr;
-  logic [7:0] pic_wdata, pic_rdata;
-  logic        mem_sel, mem_rd, mem_wr, mem_busy;
-  logic [14:0] mem_addr;
-  logic [1:0]  mem_be;
-  logic [15:0] mem_wdata, mem_rdata;
-
-  isa_slave u_isa_slave (
-    .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .isa_la_i, .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
-    .isa_resetdrv_i, .isa_sd_o, .isa_sd_oe_o, .isa_iochrdy_o,
-    .isa_memcs16_no (isa_memcs16_n_o),
-    .io_base_i, .io_decode16_i, .window_i, .window_flat_i, .slot8_i,
-    .host_reset_o   (host_reset),
-    .hp_sel_o       (hp_sel),
-    .hp_rd_o        (hp_rd),
-    .hp_rd_done_o   (hp_rd_done),
-    .hp_wr_o        (hp_wr),
-    .hp_addr_o      (hp_addr),
-    .hp_wdata_o     (hp_wdata),
-    .hp_rdata_i     (hp_rdata),
-    .pic_sel_o      (pic_sel),
-    .pic_wr_o       (pic_wr),
-    .pic_rd_o       (pic_rd),
-    .pic_addr_o     (pic_addr),
-    .pic_wdata_o    (pic_wdata),
-    .pic_rdata_i    (pic_rdata),
-    .mem_sel_o      (mem_sel),
-    .mem_rd_o       (mem_rd),
-    .mem_wr_o       (mem_wr),
-    .mem_addr_o     (mem_addr),
-    .mem_be_o       (mem_be),
-    .mem_wdata_o    (mem_wdata),
-    .mem_rdata_i    (mem_rdata),
-    .mem_busy_i     (mem_busy)
-  );
-
-  logic [23:0] int_rdata;
-  host_port u_host_port (
-    .clk_ref_i, .rst_ni,
-    .hp_sel_i      (hp_sel),
-    .hp_rd_i       (hp_rd),
-    .hp_rd_done_i  (hp_rd_done),
-    .hp_wr_i       (hp_wr),
-    .hp_addr_i     (hp_addr),
-    .hp_wdata_i    (hp_wdata),
-    .hp_rdata_o    (hp_rdata),
-    .hp_reset_i    (host_reset),
-    .dsp_sel_i     (sel_int),
-    .dsp_we_i      (bus_we),
-    .dsp_rd_i      (bus_rd),
-    .dsp_addr_i    (bus_addr[5:0]),
-    .dsp_wdata_i   (bus_wdata),
-    .dsp_rdata_o   (int_rdata),
-    .hreq_o,
-    .irq_o         (irq_host_o),
-    .txde_o        (port_txde_o),
-    .rxdf_o        (port_rxdf_o)
-  );
-
-  // A trip turns the control outputs off at once, as all others; a clock later their latch is empty, so that nothing
-  // comes back with the reset.
-  logic [3:0] signals_rdata;
-  logic [1:0] ctrl_latch;
-  assign ctrl_o = ctrl_latch & {2{~wd_tripped_o}};
-  host_signals u_host_signals (
-    .clk_ref_i, .rst_ni,
-    .trip_i    (wd_tripped_o),
-    .wr_i      (bus_we & sel_signals),
-    .ctrl_wr_i (bus_we & sel_ctrl),
-    .wdata_i   (bus_wdata[3:0]),
-    .rdata_o   (signals_rdata),
-    .ctrl_o    (ctrl_latch),
-    .ipos_o, .breq_o, .eror_o, .f1er_o
-  );
-
-  // Lines of the interrupt controller: IPOS, BREQ, EROR, F1ER, HREQ from bit 0 up, then three that the board chooses.
-  // EQU1..EQU4 are the channels of servo IC 0, EQU5..EQU8 those of IC 1. The choice is a strap: it stands still while
-  // lines from outside pass on to the flip-flops in the controllers, which are the first to look at them.
-  logic [7:0]  pic_line;
-  logic [15:0] line_source;
-  logic        unused_equ;
-  assign unused_equ  = &{1'b0, equ[71:8]};
-  assign line_source = {axexp1_i, axexp0_i, mi2_i, mi1_i, ctrl_o, wdo_o, equ[7:0], 1'b0};
-  assign pic_line = {line_source[line_select_q[11:8]], line_source[line_select_q[7:4]], line_source[line_select_q[3:0]],
-                     hreq_o, f1er_o, eror_o, breq_o, ipos_o};
-  logic [7:0] turbo_rdata, turbo_ist, turbo_msk, turbo_elr, old_rdata, old_irr, old_isr, old_imr;
-  logic       turbo_request, turbo_served, old_request, old_served, old_level;
-  interrupt_controller u_interrupt_controller (
-    .clk_ref_i, .rst_ni,
-    .reset_i   (host_reset),
-    .line_i    (pic_line),
-    .wr_i      (pic_sel & pic_wr & ~pic_8259_q),
-    .addr_i    (pic_addr),
-    .wdata_i   (pic_wdata),
-    .rdata_o   (turbo_rdata),
-    .ist_o     (turbo_ist),
-    .sig_o     (pic_sig_o),
-    .msk_o     (turbo_msk),
-    .elr_o     (turbo_elr),
-    .request_o (turbo_request),
-    .served_o  (turbo_served)
-  );
-
-  pic_8259 u_pic_8259 (
-    .clk_ref_i, .rst_ni,
-    .line_i    (pic_line),
-    .rd_i      (pic_rd & pic_8259_q),
-    .wr_i      (pic_sel & pic_wr & pic_8259_q),
-    .addr_i    (pic_addr),
-    .wdata_i   (pic_wdata),
-    .rdata_o   (old_rdata),
-    .irr_o     (old_irr),
-    .isr_o     (old_isr),
-    .imr_o     (old_imr),
-    .level_o   (old_level),
-    .request_o (old_request),
-    .served_o  (old_served)
-  );
-  logic unused_isr;
-  assign unused_isr = &{1'b0, old_isr};
-  assign pic_rdata  = pic_8259_q ? old_rdata : turbo_rdata;
-  assign pic_ist_o  = pic_8259_q ? old_irr & ~old_imr : turbo_ist;
-  assign pic_msk_o  = pic_8259_q ? ~old_imr : turbo_msk;
-  assign pic_elr_o  = pic_8259_q ? {8{old_level}} : turbo_elr;
-
-  host_interrupt u_host_interrupt (
-    .clk_ref_i, .rst_ni,
-    .request_i (pic_8259_q ? old_request : turbo_request),
-    .served_i  (pic_8259_q ? old_served : turbo_served),
-    .irq_o     (isa_irq_o)
-  );
-
-  logic [15:0] panel_rdata;
-  panel_port u_panel_port (
-    .clk_ref_i, .rst_ni, .jpan_i,
-    .rdata_o  (panel_rdata),
-    .fitted_i (jpan_fitted_q),
-    .breq_i   (breq_o),
-    .eror_i   (eror_o),
-    .f1er_i   (f1er_o),
-    .ipos_i   (ipos_o),
-    .brld_no  (brld_n_o),
-    .erld_no  (erld_n_o),
-    .f1ld_no  (f1ld_n_o),
-    .ipld_no  (ipld_n_o)
-  );
-
-  logic        dpram_sel;
-  logic [15:0] dpram_rdata;
-  logic        dpram_drive;
-  assign dpram_sel = pa_aa_i[2] & ~pa_int_i;
-  dpram u_dpram (
-    .clk_pwm_i, .clk_ref_i, .rst_ni,
-    .small_i     (dpram_small_q),
-    .rd_toggle_i (any_rd_toggle),
-    .wr_toggle_i (any_wr_toggle),
-    .cpu_sel_i   (dpram_sel),
-    .cpu_x_i     (pa_x_i),
-    .cpu_addr_i  (pa_addr_i[13:0]),
-    .cpu_rd_ni   (pa_rd_ni),
-    .cpu_wr_ni   (pa_wr_ni),
-    .cpu_wdata_i (pa_wdata_i[15:0]),
-    .cpu_rdata_o (dpram_rdata),
-    .cpu_drive_o (dpram_drive),
-    .cpu_wait_o  (pa_ta_n_o),
-    .cpu_busy_o  (busy_cpu_o),
-    .mem_sel_i   (mem_sel),
-    .mem_rd_i    (mem_rd),
-    .mem_wr_i    (mem_wr),
-    .mem_addr_i  (mem_addr),
-    .mem_be_i    (mem_be),
-    .mem_wdata_i (mem_wdata),
-    .mem_rdata_o (mem_rdata),
-    .mem_busy_o  (mem_busy),
-    .host_busy_o (busy_host_o)
-  );
-
-  // ------------------------------------------------------------------ read data towards the CPU
-  logic [23:0] reg_rdata, bus_rdata;
-  logic        bus_rdata_oe;
   always_comb begin
-    reg_rdata = 24'h0;
-    for (int unsigned i = 0; i < 22; i++) begin
-      if (IcMask[i]) reg_rdata = reg_rdata | ic_rdata[24*i+:24];
+    rdata = 24'h0;
+    for (int unsigned i = 0; i < 18; i++) begin
+      if (ServoIcMask[i]) rdata = rdata | ic_rdata[24*i+:24];
     end
-    if (sel_int)          reg_rdata = int_rdata;
-    else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
-    else if (sel_ctrl)    reg_rdata = {22'h0, ctrl_o};
-    else if (sel_panel)   reg_rdata = {8'h0, panel_rdata};
-    else if (sel_ssi)     reg_rdata = ssi_rdata;
   end
-  bus_read u_bus_read (
-    .clk_ref_i, .rst_ni, .pa_rd_ni,
-    .rd_i      (bus_rd),
-    .sel_any_i (sel_any),
-    .sel_int_i (sel_int),
-    .data_i    (reg_rdata),
-    .data_o    (bus_rdata),
-    .oe_o      (bus_rdata_oe)
-  );
 
-  assign pa_data_o    = dpram_drive ? {8'h0, dpram_rdata} : bus_rdata;
-  assign pa_data_oe_o = bus_rdata_oe | dpram_drive;
+  board_core #(.ServoIcMask(ServoIcMask), .MacroIcMask(MacroIcMask)) u_core (
+    .clk_pwm_i, .clk_ref_i, .rst_pin_ni,
+    .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_rd_ni, .pa_wr_ni, .pa_wdata_i, .pa_data_o, .pa_data_oe_o, .pa_ta_n_o,
+    .irq_host_o,
+    .isa_la_i, .isa_sa_i, .isa_sd_i, .isa_ior_ni, .isa_iow_ni, .isa_memr_ni, .isa_memw_ni, .isa_aen_i, .isa_sbhe_ni,
+    .isa_resetdrv_i, .isa_sd_o, .isa_sd_oe_o, .isa_iochrdy_o, .isa_memcs16_n_o, .isa_irq_o,
+    .fitted_i, .macro_gate_i, .dpram_small_i, .jpan_fitted_i, .line_select_i, .pic_8259_i, .ssi_kind_i, .io_base_i,
+    .io_decode16_i, .window_i, .window_flat_i, .slot8_i, .ext_clock_i, .ext_phase_i, .ext_servo_i, .pwr_good_i, .jpan_i,
+    .mi1_i, .mi2_i, .axexp0_i, .axexp1_i, .ssi_data_i,
+    .breq_o, .ipos_o, .eror_o, .f1er_o, .hreq_o, .port_txde_o, .port_rxdf_o, .wdo_o, .wd_tripped_o, .wd_relay_o,
+    .wd_led_o, .busy_host_o, .busy_cpu_o, .phase_source_o, .source_conflict_o, .brld_n_o, .erld_n_o, .f1ld_n_o,
+    .ipld_n_o, .ctrl_o, .ssi_clk_o, .pic_ist_o, .pic_sig_o, .pic_msk_o, .pic_elr_o,
+    .phase_i       (phase_o),
+    .servo_i       (servo_o),
+    .phase_o, .servo_o,
+    .phase_oe_o    (phase_oe),
+    .servo_oe_o    (servo_oe),
+    .rst_no        (rst_ni),
+    .rst_ref_no    (rst_ref_n),
+    .ic_sel_o      (ic_sel),
+    .bus_x_o       (bus_x),
+    .bus_addr_o    (bus_addr),
+    .bus_we_o      (bus_we),
+    .bus_rd_o      (bus_rd),
+    .bus_wdata_o   (bus_wdata),
+    .ic_rdata_i    (rdata),
+    .ic_phase_i    (ic_phase),
+    .ic_servo_i    (ic_servo),
+    .ic_phase_oe_i (ic_phase_oe),
+    .ic_servo_oe_i (ic_servo_oe),
+    .equ_i         (equ[7:0])
+  );
+  // Only chips need the enables and that reset; ICs that are not built have no use for the bus.
+  logic unused_core;
+  assign unused_core = &{1'b0, rst_ni, rst_ref_n, ic_sel, bus_x, bus_addr, bus_we, bus_rd, bus_wdata, phase_oe,
+                         servo_oe, equ[71:8]};
 
 endmodule : board_top
 

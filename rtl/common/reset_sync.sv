@@ -7,12 +7,12 @@ module reset_sync (
   input  wire logic clk_pwm_i,
   input  wire logic clk_ref_i,
   input  wire logic rst_pin_ni,
+  output logic      rst_ref_no,  // released with clk_ref_i: for another chip, whose second half is a sync2 as u_pwm
   output logic      rst_no
 );
 
-  logic rst_ref_n;
-  sync2 u_ref (.clk_i(clk_ref_i), .rst_ni(rst_pin_ni), .d_i(1'b1),      .q_o(rst_ref_n));
-  sync2 u_pwm (.clk_i(clk_pwm_i), .rst_ni(rst_pin_ni), .d_i(rst_ref_n), .q_o(rst_no));
+  sync2 u_ref (.clk_i(clk_ref_i), .rst_ni(rst_pin_ni), .d_i(1'b1),       .q_o(rst_ref_no));
+  sync2 u_pwm (.clk_i(clk_pwm_i), .rst_ni(rst_pin_ni), .d_i(rst_ref_no), .q_o(rst_no));
 
 endmodule : reset_sync
 

@@ -1,6 +1,7 @@
 // What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref
 // sees them, and the strobe words with their serial clocks. A trip of the watchdog starts a DAC stream of its own,
-// whose words are zero, when the one under way has ended: PHASE may have stopped. Clock clk_ref_i; on clk_pwm_i run the
+// whose words are zero, when the one under way has ended: PHASE may have stopped. From then on PHASE cuts no word: it may
+// have become too fast. Clock clk_ref_i; on clk_pwm_i run the
 // edges' way to clk_ref_i and the pads of the serial clocks.
 `default_nettype none
 
@@ -106,7 +107,7 @@ module channel_clocks (
 
   channel_strobe u_dac_stream (
     .clk_ref_i, .rst_ni,
-    .start_i(phase_rise | (zero_q & ~dac_busy)),
+    .start_i((phase_rise & ~(trip_i & dac_busy)) | (zero_q & ~dac_busy)),
     .ce_i(dac_ce), .mid_i(dac_mid), .fast_i(dac_fast), .word_i(dac_strobe_i),
     .busy_o(dac_busy), .load_o(dac_load_o), .shift_o(dac_shift_o), .sample_o(dac_sample), .bit_o(dac_bit),
     .clk_d_o(dac_clk_d), .fast_o(dac_runs_fast), .strobe_o(dac_strobe_o)

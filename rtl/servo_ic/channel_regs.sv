@@ -62,8 +62,9 @@ module channel_regs (
   localparam logic [3:0] CompareIncrement = {1'b1, brick_regs_pkg::ServoChannelCompareIncrementAddr[2:0]};
   localparam logic [3:0] CompareB         = {1'b1, brick_regs_pkg::ServoChannelCompareBAddr[2:0]};
   localparam int         EquWrite         = brick_regs_pkg::ServoChannelControlEquWriteLsb;
-  // Bits of the control word that say what the output pins are and which level is off.
-  localparam logic [23:0] OutputBits = 24'd1 << brick_regs_pkg::ServoChannelControlAbInvertLsb |
+  // Bits of the control word that say what the output pins are and which level is off, and the sense of DIR.
+  localparam logic [23:0] OutputBits = 24'd1 << brick_regs_pkg::ServoChannelControlPfmDirInvertLsb |
+                                       24'd1 << brick_regs_pkg::ServoChannelControlAbInvertLsb |
                                        24'd1 << brick_regs_pkg::ServoChannelControlCInvertLsb |
                                        24'd1 << brick_regs_pkg::ServoChannelControlAbDacLsb |
                                        24'd1 << brick_regs_pkg::ServoChannelControlCPfmLsb;

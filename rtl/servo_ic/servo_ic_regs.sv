@@ -41,7 +41,7 @@ module servo_ic_regs (
     end else if (sel_i && we_i && x_i) begin
       case (addr_i)
         ClockControl: clock_q      <= wdata_i & brick_regs_pkg::ServoIcClockControlWritten;
-        DacStrobe:    dac_strobe_q <= wdata_i;
+        DacStrobe:    if (!trip_i) dac_strobe_q <= wdata_i;
         AdcStrobe:    if (!trip_i) adc_strobe_q <= wdata_i;
         PwmControl:   pwm_q        <= wdata_i & brick_regs_pkg::ServoIcPwmControlWritten;
         default: ;

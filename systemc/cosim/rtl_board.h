@@ -17,8 +17,8 @@ namespace brick {
 // The memory of the dual-ported RAM, where the Verilated class has it as an array.
 template <class Root>
 auto dpram_word(const Root& root, unsigned index, int) -> decltype(std::optional<std::uint16_t>(
-    root.board_sim__DOT__u_board__DOT__u_dpram__DOT__u_memory__DOT__mem[index])) {
-  return root.board_sim__DOT__u_board__DOT__u_dpram__DOT__u_memory__DOT__mem[index];
+    root.board_sim__DOT__u_board__DOT__u_core__DOT__u_dpram__DOT__u_memory__DOT__mem[index])) {
+  return root.board_sim__DOT__u_board__DOT__u_core__DOT__u_dpram__DOT__u_memory__DOT__mem[index];
 }
 template <class Root>
 std::optional<std::uint16_t> dpram_word(const Root&, unsigned, long) {

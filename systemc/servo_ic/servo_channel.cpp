@@ -27,9 +27,10 @@ constexpr bool in_order() {
 }
 static_assert(std::size(kInputs) == kChannelPins && in_order());
 
-// What the output pins are and which level is off: a trip holds them.
-constexpr std::uint32_t kOutputBits = channel_control::kAbInvert.mask() | channel_control::kCInvert.mask() |
-                                      channel_control::kAbDac.mask() | channel_control::kCPfm.mask();
+// What the output pins are, which level is off and the sense of DIR: a trip holds them.
+constexpr std::uint32_t kOutputBits = channel_control::kPfmDirInvert.mask() | channel_control::kAbInvert.mask() |
+                                      channel_control::kCInvert.mask() | channel_control::kAbDac.mask() |
+                                      channel_control::kCPfm.mask();
 
 }  // namespace
 

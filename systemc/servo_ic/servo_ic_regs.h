@@ -24,10 +24,11 @@ class ServoIcRegs : public sc_core::sc_module {
     const unsigned i = place(x, offset);
     return i == kRegister.size() ? 0 : word_[i];
   }
-  // After a trip of the watchdog the ADC strobe stays: it commands amplifiers.
+  // After a trip of the watchdog the strobes stay: that of the ADCs commands amplifiers, that of the DACs latches.
   void write(bool x, unsigned offset, std::uint32_t value, bool trip) {
     const unsigned i = place(x, offset);
-    if (i != kRegister.size() && !(trip && i == kAdcStrobe)) word_[i] = value & kRegister[i].written;
+    if (i != kRegister.size() && !(trip && (i == kDacStrobe || i == kAdcStrobe)))
+      word_[i] = value & kRegister[i].written;
   }
 
   bool phase_ext() const {

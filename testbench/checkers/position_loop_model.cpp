@@ -7,6 +7,7 @@ namespace brick {
 
 namespace {
 double within(double value, double limit) { return std::clamp(value, -limit, limit); }
+constexpr double kSumMost = 0x1p39 / 32;  // motion:1.1/10
 }  // namespace
 
 double PositionLoopModel::output(double commanded, double actual) {
@@ -16,7 +17,7 @@ double PositionLoopModel::output(double commanded, double actual) {
   if (!clipped_ && !(g_.integrate_at_rest && cv != 0)) integrator_ += g_.i * shaped / 8388608;
   integrator_ = within(integrator_, std::fabs(g_.limit_i) / 16);
   const double v = (g_.vff * cv + g_.aff * ca) / 128 * g_.position_scale - g_.d * av / 128 * g_.velocity_scale;
-  const double u = g_.p / 524288 * (g_.position_scale * (shaped + integrator_) + v);
+  const double u = g_.p / 524288 * within(g_.position_scale * (shaped + integrator_) + v, kSumMost);
   const double y = u + g_.notch[0] * in_[0] + g_.notch[1] * in_[1] - g_.notch[2] * out_[0] - g_.notch[3] * out_[1];
   in_ = {u, in_[0]};
   out_ = {y, out_[0]};

@@ -1,9 +1,12 @@
-// Rules of the PWM outputs, servo-ic:5.11, for each of the three phases (`k` is any) and anything that triangle,
-// commands, turnarounds and the dead time do, which may change while it runs. Two switches of a phase that are on at
-// once burn an amplifier. Nothing is assumed but that a run starts in reset.
+// Rules of the PWM outputs at the pins of a channel, servo-ic:5.11, for each of the three phases (`k` is any) and anything
+// that triangle, turnarounds, dead time, commands, control word and trip do, at any clock. Two switches of a phase that
+// are on at once burn an amplifier. On is the level that X:+5 makes of it: high, inverted low. All of the channel but its
+// PWM and the way from there to the pins is free. Nothing is assumed but that a run starts in reset.
 // proof: induction 2
 // clocks: one
 // steps: 40
+// free: channel_input, channel_index, channel_decode, channel_counter, channel_subcount, channel_capture
+// free: channel_compare, channel_pfm, channel_dac, channel_adc, channel_regs
 // fault R1: a change of the comparison leaves the switch on that is on (rtl/servo_ic/channel_pwm.sv)
 //   - {~raw_q[k], raw_q[k]} & {2{deadtime_i == 8'd0}};
 //   + switch_q[2*k+:2] | ({~raw_q[k], raw_q[k]} & {2{deadtime_i == 8'd0}});
@@ -13,57 +16,79 @@
 // fault R3: the top switch is on where command and triangle are equal (rtl/servo_ic/channel_pwm.sv)
 //   - command_b_q > cnt
 //   + command_b_q >= cnt
+// fault R4: the pair of a PFM output takes part in the inversion (rtl/servo_ic/servo_channel.sv)
+//   - if (!c_pfm)  pwm_inv[5:4]
+//   + pwm_inv[5:4]
+// fault R5: a trip leaves phase A on (rtl/servo_ic/servo_channel.sv)
+//   - if (!trip_i) pwm_on = {{2{~c_pfm}}, {4{~ab_dac}}};
+//   + pwm_on = {{2{~c_pfm & ~trip_i}}, {4{~ab_dac}}};
 `default_nettype none
 
 module channel_pwm_rules (
   input wire logic        clk_i,
   input wire logic        rst_ni,
+  input wire logic        trip_i,
   input wire logic [16:0] cnt_i,
   input wire logic        turn_i,
-  input wire logic [7:0]  deadtime_i,
-  input wire logic [47:0] command_i
+  input wire logic [7:0]  deadtime_i
 );
 
-  logic [5:0] switches;
-  channel_pwm dut (.clk_pwm_i(clk_i), .rst_ni, .cnt_i, .turn_i, .deadtime_i, .command_a_i(command_i[15:0]),
-                   .command_b_i(command_i[31:16]), .command_c_i(command_i[47:32]), .switch_o(switches));
-  (* hierconn *) wire logic [35:0] \dut.wait_q ;
-  (* hierconn *) wire logic [16:0] \dut.command_a_q , \dut.command_b_q , \dut.command_c_q ;
-  (* hierconn *) wire logic [2:0]  \dut.raw_q , \dut.last_q ;
+  logic [5:0] pins;
+  servo_channel dut (.clk_pwm_i(clk_i), .clk_ref_i(clk_i), .rst_ni, .trip_i, .cnt_i, .turn_i, .deadtime_i, .pwm_o(pins),
+                     .x_i(1'b0), .addr_i(3'd0), .sel_i(1'b0), .we_i(1'b0), .wdata_i(24'h0), .read_capture_i(1'b0),
+                     .sclk_ce_i(1'b0), .pfm_ce_i(1'b0), .phase_fall_i(1'b0), .servo_fall_i(1'b0), .dac_load_i(1'b0),
+                     .dac_shift_i(1'b0), .adc_sample_i(1'b0), .adc_bit_i(5'd0), .count1_i(1'b0), .down1_i(1'b0),
+                     .hold1_i(1'b0), .counter1_i(24'd0), .fraction1_i(12'd0), .pins_i(12'd0), .adc_a_i(1'b0),
+                     .adc_b_i(1'b0));
+  // What the registers, which are free, say.
+  (* hierconn *) wire logic [23:0] \dut.control , \dut.out_a , \dut.out_b , \dut.out_c ;
+  // From inside, for the inductions.
+  (* hierconn *) wire logic [35:0] \dut.u_pwm.wait_q ;
+  (* hierconn *) wire logic [16:0] \dut.u_pwm.command_a_q , \dut.u_pwm.command_b_q , \dut.u_pwm.command_c_q ;
+  (* hierconn *) wire logic [2:0]  \dut.u_pwm.raw_q , \dut.u_pwm.last_q ;
+  (* hierconn *) wire logic [5:0]  \dut.u_pwm.switch_q ;
 
+  // Phase and switch: which are on, bottom and top; the one that is looked at and the other.
   (* anyconst *) logic [1:0] k;
-  logic [1:0]  pair;  // bottom, top
-  assign pair = switches[2*k +: 2];
+  (* anyconst *) logic       top;
+  logic        pwm, inverted, mine, other;
+  logic [1:0]  pair, on, inside;
+  logic [15:0] written;
+  assign pwm      = (k == 2'd2) ? !\dut.control [23] : !\dut.control [22];
+  assign inverted = (k == 2'd2) ? \dut.control [21] : \dut.control [20];
+  assign pair     = pins[2*k +: 2];
+  assign on       = pair ^ {2{inverted}};
+  assign mine     = pwm && on[!top];
+  assign other    = pwm && on[top];
+  assign inside   = \dut.u_pwm.switch_q [2*k +: 2];
+  assign written  = (k == 2'd0) ? \dut.out_a [23:8] : (k == 2'd1) ? \dut.out_b [23:8] : \dut.out_c [23:8];
 
-  // From inside, for the inductions: what is left of the pause, command in use, comparison.
+  // What is left of the pause, command in use.
   logic [11:0] left;
   logic [16:0] command;
-  assign left    = \dut.wait_q [12*k +: 12];
-  assign command = (k == 2'd0) ? \dut.command_a_q : (k == 2'd1) ? \dut.command_b_q : \dut.command_c_q ;
+  assign left    = \dut.u_pwm.wait_q [12*k +: 12];
+  assign command = (k == 2'd0) ? \dut.u_pwm.command_a_q : (k == 2'd1) ? \dut.u_pwm.command_b_q : \dut.u_pwm.command_c_q ;
 
   // The command in use, and what it was against the triangle one and two clocks ago.
   logic signed [15:0] command_q;
   logic               above, above_q, above2_q;
   assign above = 17'(command_q) > $signed(cnt_i);
 
-  // The pause: clocks since a switch was on, and the shortest dead time set since.
+  // The pause: clocks since the other switch was on, and the shortest dead time set since.
   logic        started_q = 1'b0;
-  logic [1:0]  pair_q;
   logic [11:0] dark_q;
   logic [7:0]  shortest_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       command_q  <= 16'sd0;
       {above_q, above2_q} <= 2'b00;
-      pair_q     <= 2'b00;
       dark_q     <= 12'd0;
       shortest_q <= 8'd15;
     end else begin
-      if (turn_i) command_q <= command_i[16*k +: 16];
+      if (turn_i) command_q <= written;
       {above_q, above2_q} <= {above, above_q};
-      pair_q  <= pair;
-      dark_q  <= (pair != 2'b00) ? 12'd0 : (dark_q == 12'hFFF) ? dark_q : dark_q + 12'd1;
-      if (pair != 2'b00 || deadtime_i < shortest_q) shortest_q <= deadtime_i;
+      dark_q  <= other ? 12'd0 : (dark_q == 12'hFFF) ? dark_q : dark_q + 12'd1;
+      if (other || deadtime_i < shortest_q) shortest_q <= deadtime_i;
     end
   end
 
@@ -73,28 +98,42 @@ module channel_pwm_rules (
     assume (k != 2'd3);
     if (rst_ni) begin
       // R1: Top and bottom switch of a phase are never on together.
-      R1: assert (pair != 2'b11);
-      C1: cover (switches == 6'b100101);
+      if (pwm) begin
+        R1: assert (on != 2'b11);
+        C1: cover (on == 2'b01 && inverted);
+      end
 
-      // R2: A switch comes on when both have been off for the dead time, the shortest set meanwhile, or more.
-      if (pair != 2'b00 && pair != pair_q) begin
+      // R2: A switch is on only when the other has been off for the dead time, the shortest set meanwhile, or more.
+      if (mine) begin
         R2: assert (dark_q >= {shortest_q, 4'd0});
-        C2: cover (dark_q == 12'd16 && shortest_q == 8'd1 && started_q);
+        C2: cover (dark_q == 12'd16 && shortest_q == 8'd1 && top);
       end
 
       // R3: A top switch is on only if the command was above the triangle two clocks ago, a bottom one if it was not.
-      if (pair != 2'b00) begin
-        R3: assert (pair[0] == above2_q);
-        C3: cover (pair[0]);
+      if (pwm && on != 2'b00) begin
+        R3: assert (on[0] == above2_q);
+        C3: cover (on[0]);
+      end
+
+      // R4: A pair that is no PWM output rests low, inverted or not.
+      if (!pwm) begin
+        R4: assert (pair == 2'b00);
+        C4: cover (inverted && k == 2'd2 && inside != 2'b00);
+      end
+
+      // R5: A trip turns both switches off.
+      if (trip_i && pwm) begin
+        R5: assert (on == 2'b00);
+        C5: cover (inverted && inside != 2'b00);
       end
 
       // I1: While something of the pause is left both switches are off; it and what has passed make the dead time.
-      I1: assert (left == 12'd0 ? pair == {~above2_q, above2_q}
-                                : pair == 2'b00 && {1'b0, left} + {1'b0, dark_q} >= {1'b0, shortest_q, 4'd0});
+      I1: assert (left == 12'd0 ? inside == {~above2_q, above2_q} && (!inside[!top] || dark_q >= {shortest_q, 4'd0})
+                                : inside == 2'b00 && {1'b0, left} + {1'b0, dark_q} >= {1'b0, shortest_q, 4'd0});
 
       // I2: Command and comparison inside are those that the pins asked for.
-      I2: assert (command == {~command_q[15], command_q} && \dut.raw_q [k] == above_q &&
-                  \dut.last_q [k] == above2_q);
+      I2: assert (command == {~command_q[15], command_q} && \dut.u_pwm.raw_q [k] == above_q &&
+                  \dut.u_pwm.last_q [k] == above2_q);
     end
   end
 

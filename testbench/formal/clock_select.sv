@@ -1,6 +1,8 @@
 // Rules of the PHASE and SERVO nets, servo-ic:7.2/5 to servo-ic:7.2/7 and servo-ic:7.3/1, for any IC (`n`) and whatever
-// ICs, jumper and pins do: at most one driver, the right one, and its level. A step is half a period of clk_pwm; every
-// input may change at any. Nothing is assumed but that a run starts in reset.
+// ICs, jumper and pins do: at most one driver, the right one, its level, and conflicts. A step is half a period of
+// clk_pwm; every input may change at any. Nothing is assumed but that a run starts in reset. R9 and R10 are about ICs
+// that take turns, one at a time and high from a change of direction to the next edge of clk_ref, as rules R7 to R9 of
+// `clock_gen` have it.
 // proof: pdr
 // clocks: several
 // steps: 24
@@ -10,6 +12,12 @@
 // fault R4: an IC that is not fitted can be the source (rtl/board/clock_select.sv)
 //   - phase_oe_i & fitted_i};
 //   + phase_oe_i};
+// fault R8: the conflict of SERVO is overlooked (rtl/board/clock_select.sv)
+//   - (|phase_low & |phase_high) | (|servo_low & |servo_high)
+//   + (|phase_low & |phase_high)
+// fault R9: a net without a driver keeps its last level for one clk_ref (rtl/board/clock_select.sv)
+//   - phase_idle_q  <= phase_idle_d;
+//   + phase_idle_q  <= phase_idle_d & (drivers_q == drivers_d);
 `default_nettype none
 
 module clock_select_rules (
@@ -47,6 +55,9 @@ module clock_select_rules (
   (* hierconn *) wire logic        \dut.phase_idle_q ;
   (* hierconn *) wire logic        \dut.servo_idle_q ;
   (* hierconn *) wire logic [44:0] \dut.drivers_q ;
+  (* hierconn *) wire logic        \dut.several_q ;
+  (* hierconn *) wire logic [1:0]  \dut.disagree_q ;
+  (* hierconn *) wire logic        \dut.conflict_q ;
   logic [23:0] phase_drivers, servo_drivers;
   assign phase_drivers = {\dut.drivers_q [44], \dut.phase_idle_q , \dut.phase_grant_q };
   assign servo_drivers = {\dut.drivers_q [44], \dut.servo_idle_q , \dut.servo_grant_q };
@@ -74,7 +85,39 @@ module clock_select_rules (
     servo_stood_q <= servo_stands ? servo_stood_q + {1'b0, servo_stood_q != 2'd3} : 2'd0;
   end
 
-  assign several = |(phase_oe_q & (phase_oe_q - 22'h1)) | (|(servo_oe_q & (servo_oe_q - 22'h1)));
+  assign several = outside_q ? (phase_oe_q | servo_oe_q) != 22'h0
+                             : |(phase_oe_q & (phase_oe_q - 22'h1)) | (|(servo_oe_q & (servo_oe_q - 22'h1)));
+
+  // Levels of the outside behind two flip-flops; for how many clk drivers of a net have disagreed; their conflict.
+  logic       ext_phase1_q = 1'b1, ext_phase2_q = 1'b1, ext_servo1_q = 1'b1, ext_servo2_q = 1'b1;
+  logic       phase_differs, servo_differs, conflict_q = 1'b0;
+  logic [1:0] differ_q = 2'd0;
+  assign phase_differs = (phase_oe_q & ~phase_i) != 22'h0 && (phase_oe_q & phase_i) != 22'h0 ||
+                         outside_q && (phase_oe_q & (phase_i ^ {22{ext_phase2_q}})) != 22'h0;
+  assign servo_differs = (servo_oe_q & ~servo_i) != 22'h0 && (servo_oe_q & servo_i) != 22'h0 ||
+                         outside_q && (servo_oe_q & (servo_i ^ {22{ext_servo2_q}})) != 22'h0;
+
+  // The nets as wires with a pull-up; whether ICs have taken turns so far: no two of them drive, and from a change of
+  // direction to the edge of clk_ref that sees it an IC is high. IC 2 has been the source of both once.
+  logic        phase_wire_q = 1'b1, servo_wire_q = 1'b1, phase_turns_q = 1'b1, servo_turns_q = 1'b1, passed_q = 1'b0;
+  logic [21:0] phase_oe, servo_oe;
+  assign phase_oe = phase_oe_i & fitted_i;
+  assign servo_oe = servo_oe_i & fitted_i;
+  always @($global_clock) begin
+    if (!clk_pwm_q && rst_ni) begin
+      {ext_phase2_q, ext_phase1_q} <= {ext_phase1_q, ext_phase_i};
+      {ext_servo2_q, ext_servo1_q} <= {ext_servo1_q, ext_servo_i};
+      differ_q   <= !(phase_differs || servo_differs) ? 2'd0 : differ_q + {1'b0, !differ_q[1]};
+      conflict_q <= several && (conflict_q || ((phase_differs || servo_differs) && differ_q[1]));
+      phase_wire_q <= &(phase_i | ~phase_oe);
+      servo_wire_q <= &(servo_i | ~servo_oe);
+    end
+    passed_q <= passed_q | (phase_drivers[2] & servo_drivers[2]);
+    if (ext_clock_i || outside_q || (phase_oe & (phase_oe - 22'h1)) != 22'h0 ||
+        ((phase_oe ^ phase_oe_q) & ~phase_i) != 22'h0) phase_turns_q <= 1'b0;
+    if (ext_clock_i || outside_q || (servo_oe & (servo_oe - 22'h1)) != 22'h0 ||
+        ((servo_oe ^ servo_oe_q) & ~servo_i) != 22'h0) servo_turns_q <= 1'b0;
+  end
 
   always @($global_clock) if (rst_ni) begin
     // R1: PHASE has exactly one driver: an IC, the outside, or the pull-up.
@@ -116,10 +159,21 @@ module clock_select_rules (
       C7: cover (phase_i == 22'h0);
     end
 
-    // R8: A conflict shows only while a net has more than one driver that asks for it.
-    if (conflict) begin
-      R8: assert (several || (outside_q && (phase_oe_q | servo_oe_q) != 22'h0));
-      C8: cover (!outside_q);
+    // R8: A conflict shows from the third clk on for which drivers of a net disagree, until each net has one, never else.
+    R8: assert (conflict == (several && conflict_q) && \dut.drivers_q == {outside_q, servo_oe_q, phase_oe_q} &&
+                \dut.several_q == several && \dut.disagree_q == differ_q && \dut.conflict_q == conflict_q);
+    C8: cover (conflict && !outside_q && (phase_oe_q & (phase_oe_q - 22'h1)) == 22'h0);
+
+    // R9: While ICs take turns PHASE is what a wire would be, a clk later: no level is cut or doubled in the hand-over.
+    if (phase_turns_q) begin
+      R9: assert (phase == phase_wire_q);
+      C9: cover (!phase && \dut.phase_grant_q [3] && passed_q);
+    end
+
+    // R10: So is SERVO.
+    if (servo_turns_q) begin
+      R10: assert (servo == servo_wire_q);
+      C10: cover (!servo && \dut.servo_grant_q [3] && passed_q);
     end
   end
 

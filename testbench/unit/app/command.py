@@ -4,7 +4,8 @@ import subprocess
 import sys
 
 BRICK, CASE = sys.argv[1], sys.argv[2]
-BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
+BOARDS, EXAMPLES = REPOSITORY / "boards", REPOSITORY / "examples"
 
 
 def brick(*arguments, script=None, timeout=240):

@@ -4,6 +4,9 @@ phase references, closed loops, cycles of the phase task. docs/commutation.md
 usage: commutation_acceptance.py BRICK CASE; each CASE is one test.
 """
 
+import pathlib
+import tempfile
+
 import command
 from command import check, play
 
@@ -72,6 +75,58 @@ def commutation_stepper():
     check(found[4] == in_position(1), f"after its jog: {found[4]}")
     check(found[5] == in_position(2), f"after its jog: {found[5]}")
     check(abs(float(found[6]) - 1000) <= 1, f"at {found[6]}, expected 1000")
+
+
+def commutation_serial():
+    """A motor whose phase is read from an SSI encoder of 12 bits and commutated by it; four cycles are 4096 of it."""
+    plant = (command.EXAMPLES / "plants" / "servo8.toml").read_text() + "\n[axis.absolute]\nbits = 12\n"
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "serial.toml"
+        file.write_text(plant)
+        # 2 MHz, from the fall of PHASE, SSI; trigger and driver enable, 12 bits (servo-ic:11.3)
+        lines = ["M50->X:$78B2F,0,24 M51->X:$78B20,0,24 M50=$310102 M51=$140C", "#1J=137", "@wait 120ms",
+                 "#1K I101=0", "I171=4096 I183=$78B20 I101=3 I181=$78B20 I191=$0C0000", "#1?", "#1$",
+                 "RX$B4", "RY$78B20", "@wait 2ms", "#1?", "#1J=1137", "@wait 150ms", "#1?", "#1P",
+                 "#1K I110=$78B20 I195=$0C0000", "#1$*", "#1P", "RY$78B20"]
+        r = play(lines, "--plant", str(file), "--load", "servo8")
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    before, phase, sensor, after, rest, at, absolute, read = r.stdout.split()
+    check(before == status(1, (*WORD_1_BITS, 7), (15, 8)), f"no reference: {before}")
+    check(abs(int(sensor) - 137 * 4096 / 4000) <= 2, f"137 of 4000 counts are {sensor} of 4096")
+    off = (int(phase) - 4 * int(sensor) + 2048) % 4096 - 2048
+    check(abs(off) <= 8, f"phase position {phase} at {sensor}")
+    check(after == status(1, (*CLOSED_BITS, 7), (15, 14, 0)), f"with its reference: {after}")
+    check(rest == after, f"behind its jog: {rest}")
+    check(abs(float(at) - 1137) <= 1, f"at {at}, expected 1137")
+    check(absolute == read, f"its position is {absolute}, the sensor says {read}")
+
+
+def commutation_serial_at_power_on():
+    """A Geo PMAC's SSI input at a servo clock of 1.8 ms: a start waits for its first word, a counter does not count."""
+    plant = """
+[[axis]]
+axes = 1
+drive = "hand"
+absolute = { bits = 12 }
+[[incident]]
+at = "1ms"
+axes = 1
+turn = 1000
+within = "1ms"
+"""
+    clocks = "I7002=15 I10=14855964"
+    with tempfile.TemporaryDirectory() as folder:
+        file, flash = pathlib.Path(folder) / "serial.toml", pathlib.Path(folder) / "flash"
+        file.write_text(plant)
+        options = "--board", "geo-pmac", "--plant", str(file), "--flash", str(flash)
+        first = play(["I1016=2 I1017=0 I100=1 I110=$FF54 I195=$180000", clocks, "SAVE"], *options)
+        check(first.returncode == 0, f"exit {first.returncode}: {first.stderr}")
+        r = play(["#1P", "#1?", "RX$78001", "$$$", "@wait 40ms", "#1P"], *options)
+    check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
+    position, word_1_and_2, counted, again = r.stdout.split()
+    check(int(counted) != 0, "the encoder has not turned before")
+    check(position == again == str(1000 * 4096 // 4000), f"at {position} and {again}, 1000 of 4000 counts are 1024")
+    check(int(word_1_and_2[6:], 16) & 1 << 10, f"home is not complete: {word_1_and_2}")
 
 
 def commutation_cycles():

@@ -11,6 +11,7 @@
 #include "systemc/servo_ic/channel_decode.h"
 #include "systemc/servo_ic/channel_serial.h"
 #include "testbench/unit/channel_choices/rtl_choices.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -151,7 +152,7 @@ TEST_P(CompareRule, WithFractionsEquTogglesBeyondTheCompareOrOnIt) {
 
 // A counter walks near its compares, which are written now and then; the model says in advance for how long EQU stays.
 TEST_P(CompareRule, EnginesAgreeOnRandomWalksAndThePromiseHolds) {
-  std::mt19937 random(leave_ ? 1 : 2);
+  std::mt19937 random(random_seed(leave_ ? 1 : 2));
   const auto value = [&](std::uint32_t limit) {
     return std::uniform_int_distribution<std::uint32_t>(0, limit)(random);
   };
@@ -221,7 +222,7 @@ TEST(DecodeSense, ALeadingCountsUpOrDownByTheParameter) {
 TEST(DecodeSense, PulseAndDirectionAndHallDoNotDependOnIt) {
   for (unsigned mode : {0u, 4u, 8u, 11u, 15u}) {
     RtlChoices rtl;
-    std::mt19937 random(mode);
+    std::mt19937 random(random_seed(mode));
     int counted = 0;
     rtl.in.mode = mode;
     for (int i = 0; i < 2000; ++i) {
@@ -240,7 +241,7 @@ template <bool ALeadsUp>
 void random_decode(std::uint32_t seed) {
   RtlChoices rtl;
   BasicChannelDecode<ALeadsUp> model;
-  std::mt19937 random(seed);
+  std::mt19937 random(random_seed(seed));
   for (int i = 0; i < 50'000; ++i) {
     RtlChoices::Inputs& in = rtl.in;
     if (random() % 50 == 0) in.mode = random() % 16;

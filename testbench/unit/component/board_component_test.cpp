@@ -16,6 +16,7 @@
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/cosim/motor_traffic.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick::component {
 namespace {
@@ -141,7 +142,7 @@ class Recorder final : public brick::Board {
   BoardInputs inputs_;
   std::array<MotorInputs, kMaxServoIcs> motors_{};
   bool first_ = true;
-  std::mt19937 random_{7};
+  std::mt19937 random_{random_seed(7)};
   Tick at_ = -1;
   Picoseconds place_ = 0;
 };

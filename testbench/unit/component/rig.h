@@ -16,6 +16,7 @@
 #include "testbench/unit/component/own_process.h"
 #include "testbench/unit/component/player.h"
 #include "testbench/unit/component/traffic.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick::component {
 
@@ -111,11 +112,11 @@ void agrees(Block& block, Traffic traffic, const Engine& engine, const sc_core::
 // its own.
 template <class Simulation>
 void on_each_engine(const Simulation& simulation) {
-  std::uint32_t seed = 0;
+  std::uint32_t number = 0;
   for (const double quantum_us : {0.0, 3.0, 10.0})
     for (const auto& engine : {+[](std::uint64_t) { return model_engine(); }, &rtl_engine, &lockstep_engine}) {
-      ++seed;
-      SCOPED_TRACE(::testing::Message() << "engine " << (seed - 1) % 3 << " (model, rtl, lockstep), quantum "
+      const std::uint32_t seed = random_seed(++number);
+      SCOPED_TRACE(::testing::Message() << "engine " << (number - 1) % 3 << " (model, rtl, lockstep), quantum "
                                         << quantum_us << " us");
       in_own_process([&] { simulation(engine(seed), sc_core::sc_time(quantum_us, sc_core::SC_US), seed); });
     }

@@ -4,6 +4,7 @@
 #include "systemc/cosim/engines.h"
 #include "testbench/unit/cosim/board_traffic.h"
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -22,8 +23,8 @@ std::vector<Change> changes(Board& board, Tick longest) {
   board.on_change = [&](Tick t, const BoardOutputs& before, const BoardOutputs& after) {
     list.push_back({t, before, after});
   };
-  BoardTraffic traffic(77);
-  std::mt19937_64 random(static_cast<std::uint64_t>(longest));
+  BoardTraffic traffic(random_seed(77));
+  std::mt19937_64 random(random_seed(static_cast<std::uint64_t>(longest)));
   while (board.now() < kEnd) {
     const Tick end = std::min(traffic.next(), kEnd);
     while (board.now() < end) {

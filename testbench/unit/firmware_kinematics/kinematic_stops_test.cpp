@@ -320,6 +320,65 @@ TEST_F(KinematicStops, WhatComesInTheMiddleOfPmatch) {
   }
 }
 
+// In a running program, behind a DWELL: one that comes while another is being worked out counts too.
+TEST_F(KinematicStops, PmatchOnceMoreInARunningProgram) {
+  fit_arm();
+  Lines tool = arm::forward();
+  tool[0] += "+P10";
+  program("FORWARD", tool);
+  ASSERT_EQ(host("P10=0"), "");
+  store({"TM50 TA20 TS0", "X390", "DWELL3000"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(200));
+  ASSERT_TRUE(run_is_running(0));
+  unsigned within = 0;
+  for (unsigned at_pause = 1; at_pause < 400; at_pause += 3) {
+    SCOPED_TRACE(at_pause);
+    ASSERT_EQ(host("P10=50 PMATCH"), "");
+    unsigned pauses = 0;
+    for (int i = 0; i < 3; ++i)
+      platform::real_time_in_slices([&] {
+        if (++pauses != at_pause || !cs().matching) return;
+        ++within;
+        p_variable_write(10, 80);
+        ASSERT_EQ(run_match(0), ERR_NONE);
+      });
+    ASSERT_FALSE(cs().matching);
+    ASSERT_EQ(cs().error, RUN_TIME_NONE);
+    ASSERT_NEAR(axis(AXIS_X), hand().x + p(10), 1e-4);
+    if (pauses < at_pause) break;
+  }
+  EXPECT_GT(within, 20u);
+  EXPECT_EQ(p(10), 50) << "the last one was left alone";
+}
+
+// While the first move of a sequence that goes on in motion is calculated: it waits until one ends at rest.
+TEST_F(KinematicStops, PmatchWhileAPvtMoveIsCalculated) {
+  unsigned accepted = 0;
+  for (unsigned at_pause = 1; at_pause < 400; ++at_pause) {
+    SCOPED_TRACE(at_pause);
+    platform::power_up();
+    fit({"1000X"});
+    store({"PVT100", "X5:100", "X15:100", "X20:0", "X10:0"});
+    ASSERT_EQ(host("&1B1R"), "");
+    unsigned pauses = 0;
+    for (int i = 0; i < 3 && pauses < at_pause; ++i)
+      platform::real_time_in_slices([&] { accepted += ++pauses == at_pause && run_match(0) == ERR_NONE; });
+    double highest = 0;
+    for (int i = 0; i < 2000 && run_is_running(0); ++i) {
+      if (cs().matching && cs().started > 3) ADD_FAILURE() << "it waits longer than it has to";
+      platform::servo_ticks(1);
+      highest = std::max(highest, at(1));
+    }
+    ASSERT_EQ(cs().error, RUN_TIME_NONE);
+    ASSERT_EQ(at(1), 10000);
+    ASSERT_NEAR(highest, 20000, 60);
+    ASSERT_FALSE(cs().matching);
+    if (pauses < at_pause) break;
+  }
+  EXPECT_GT(accepted, 10u);
+}
+
 // In a held program the motors are not the program's: one that jogs is not taken from its jog.
 TEST_F(KinematicStops, PmatchWhileAMotorOfAHeldProgramJogs) {
   fit_arm();

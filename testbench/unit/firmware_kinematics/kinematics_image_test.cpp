@@ -54,7 +54,7 @@ class KinematicsImage : public ::testing::Test {
   double run(int count) {
     for (int cs = 1; cs <= count; ++cs) accepted("&" + text(cs) + "A");
     board.run_ms(30);
-    OwnCycles own(board, "segment_work", "hand_over");
+    OwnCycles own(board, "segment_work", "segment_ring_hand_over");
     accepted("P100=0");
     for (int cs = 1; cs <= count; ++cs) accepted("&" + text(cs) + "B1R");
     for (int i = 0; i < 200 && running(count); ++i) board.run_ms(20);
@@ -93,7 +93,8 @@ TEST_F(KinematicsImage, ASegmentOfAnArm) {
   std::printf("%.0f cycles a segment by definitions, %.0f by the inverse program\n", plain, arm);
   RecordProperty("cycles", std::to_string(arm));
   EXPECT_LT(arm / 5, ImageBoard::kCyclesPerMs / 2);
-  EXPECT_LE(longest, 550u) << longest_at << ": a division alone takes up to 490";
+  std::printf("%llu between two pauses at %s\n", static_cast<unsigned long long>(longest), longest_at.c_str());
+  EXPECT_LE(longest, 500u) << longest_at;
 }
 
 TEST_F(KinematicsImage, TwoArmsAtOnce) {
@@ -104,18 +105,34 @@ TEST_F(KinematicsImage, TwoArmsAtOnce) {
   EXPECT_LT(2 * cycles / 10, ImageBoard::kCyclesPerMs / 2);
 }
 
-// motion:8.1/7: 25 ms of calculation are 50 ms in all, 10 more for its start.
+// motion:8.1/7: 10 ms of calculation are 20 ms in all, 10 more for its start. So long paths of others last: seven
+// motors of &2 go on, without lookahead, to which it would be an error to come to the end of their segments.
 TEST_F(KinematicsImage, ARunawayEnds) {
   fit_arm(1, 10);
   path(10);
-  accepted("OPEN INVERSE CLEAR WHILE(1=1) ENDWHILE CLOSE");
-  accepted("&1A");
+  accepted("&1OPEN INVERSE CLEAR WHILE(1=1) ENDWHILE CLOSE");
+  const char* const axes = "XYZABCU";
+  for (int n = 3; n <= 9; ++n) motor(n, 2, std::string("1000") + axes[n - 3]);
+  accepted("I5213=5 OPEN PROG 2 CLEAR TM40 TA10 TS0 INC P7=0 WHILE(P7<30)");
+  accepted("CIRCLE1 X1 Y1 I1 J0 Z.3 A1 B1 C1 U1 P7=P7+1 ENDWHILE CLOSE");
+  accepted("&1A&2A");
   board.run_ms(30);
-  accepted("B1R");
-  board.run_ms(15);
-  EXPECT_EQ(value("RY$2014"), 0);
-  board.run_ms(45);
-  EXPECT_EQ(value("RY$2014"), 12);
+  accepted("&2B2R");
+  for (int i = 0; i < 6; ++i) {
+    board.run_ms(90 + 7 * i);
+    accepted("&1B1R");
+    board.run_ms(8);
+    EXPECT_EQ(value("RY$2014"), 0);
+    board.run_ms(25);
+    EXPECT_EQ(value("RY$2014"), 12);
+    EXPECT_EQ(value("RY$2114"), 0);
+  }
+  for (int i = 0; i < 100 && (std::stoul(board.send("&2??\r").substr(0, 6), nullptr, 16) & 1u) != 0; ++i)
+    board.run_ms(20);
+  EXPECT_EQ(value("RY$2114"), 0);
+  EXPECT_EQ(value("P7"), 30);
+  accepted("M1->D:$208");
+  EXPECT_EQ(value("M1") / 3072, 30 * 1000);
 }
 
 }  // namespace

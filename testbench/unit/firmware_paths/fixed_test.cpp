@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "testbench/unit/random_seed.h"
 extern "C" {
 #include "firmware/motion/fixed_point.h"
 #include "firmware/motion/fixed_ratio.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr double kPart = 4611686018427387904.0;  // 2^62
 
 TEST(Fixed, SharesAreRoundedToNearest) {
-  std::mt19937_64 random(1);
+  std::mt19937_64 random(brick::random_seed(1));
   for (int i = 0; i < 20000; ++i) {
     const auto value = static_cast<std::int64_t>(random()) >> (3 + random() % 60);
     const auto part = static_cast<std::int64_t>(random()) >> (1 + random() % 3);
@@ -28,7 +29,7 @@ TEST(Fixed, SharesAreRoundedToNearest) {
 }
 
 TEST(Fixed, Ratios) {
-  std::mt19937_64 random(2);
+  std::mt19937_64 random(brick::random_seed(2));
   for (int i = 0; i < 20000; ++i) {
     const auto by = static_cast<std::int64_t>((random() >> (2 + random() % 60)) + 1);
     const auto value = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(by + 1));
@@ -42,7 +43,7 @@ TEST(Fixed, Ratios) {
 }
 
 TEST(Fixed, Fractions) {
-  std::mt19937 random(5);
+  std::mt19937 random(brick::random_seed(5));
   for (int i = 0; i < 40000; ++i) {
     const std::uint32_t by =
         (i % 2 == 0 ? static_cast<std::uint32_t>(random()) | 0xFFFFu : random()) >> (random() % 30);
@@ -57,7 +58,7 @@ TEST(Fixed, Fractions) {
 }
 
 TEST(Fixed, Roots) {
-  std::mt19937 random(3);
+  std::mt19937 random(brick::random_seed(3));
   for (int i = 0; i < 20000; ++i) {
     const std::uint32_t square = static_cast<std::uint32_t>(random()) >> (2 + random() % 30);
     const double expected = std::sqrt(square / 1073741824.0) * 1073741824.0;
@@ -69,7 +70,7 @@ TEST(Fixed, Roots) {
 
 TEST(Fixed, Directions) {
   constexpr double kTurn = 288230376151711744.0, kPi = 3.14159265358979323846;  // 2^58
-  std::mt19937_64 random(4);
+  std::mt19937_64 random(brick::random_seed(4));
   for (int i = 0; i < 20000; ++i) {
     const auto angle = static_cast<std::int64_t>(random() >> (2 + random() % 20));
     const double radian = std::remainder(static_cast<double>(angle) / kTurn, 1) * 2 * kPi;

@@ -219,6 +219,32 @@ TEST_F(Lookahead, OrdersByIsx21) {
   EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
 }
 
+// motion:7.5/1: at the first quarter of a segment that is far enough. 10 counts/ms, segments of 200 counts about knots
+// at 200 k - 100: a stop takes 5, 83, 125, 179 counts.
+TEST_F(Lookahead, StopsAreAtQuarters) {
+  const std::pair<const char*, int> cases[] = {{"10", 1}, {"0.6", 2}, {"0.4", 3}, {"0.28", 4}};
+  for (const auto& [acceleration, quarters] : cases) {
+    SCOPED_TRACE(acceleration);
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host(std::string("I5113=20 I5120=20 I116=50 I117=") + acceleration), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 60,10"), "");
+    store({"TM1000 TA20 TS0", "X10"});
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(500));
+    const double from = at(1);
+    ASSERT_EQ(host("&1\\"), "");
+    platform::servo_ticks(ticks_of(150));
+    const double x = at(1), last = x - 50 * quarters;  // the knot before
+    EXPECT_NEAR(std::remainder(last + 100, 200), 0, 0.01) << x;
+    EXPECT_GE(last, from + 10 * 12 - 10) << "12 ms are left as they were";
+    EXPECT_LE(last, from + 10 * 12 + 200 + 10) << "and no more than a segment";
+    ASSERT_EQ(host("&1>"), "");
+    platform::servo_ticks(ticks_of(1000));
+    EXPECT_EQ(motors[0].trajectory, 10000 * 3072);
+  }
+}
+
 // Isx20 below four is four: what moves is the same.
 TEST_F(Lookahead, FewerThanFourSegmentsAreFour) {
   double times[3];
@@ -348,6 +374,17 @@ TEST_F(Lookahead, SegmentOverride) {
   store({"X3"});
   EXPECT_NEAR(run(), 60 + 10, kTickMs) << "saturated";
   EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
+}
+
+// Isx16: from 1 on by 0.05 a segment. Ten segments of 1.05 to 1.5 are 63.75 ms of 120, then 8 of 7.5; of 0.95 to 0.5
+// they are 36.25, then 34 of 2.5.
+TEST_F(Lookahead, SegmentOverrideIsSlewed) {
+  fit({"1000X"});
+  store({"TM100 TA20 TS0 INC", "X3"});
+  for (const auto& [isx15, segments] : {std::pair{"0.5", 18}, {"-0.5", 44}}) {
+    ASSERT_EQ(host(std::string("I5113=5 I5116=0.05 I5115=") + isx15), "");
+    EXPECT_NEAR(run(), 5 * (segments + 2), kTickMs) << isx15;
+  }
 }
 
 // motion:7.5/6. Ixx24 bit 15: it stops on the path before what lies beyond, goes on into it a segment at a time, and

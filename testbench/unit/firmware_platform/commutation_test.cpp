@@ -4,6 +4,7 @@
 #include <random>
 
 #include "testbench/unit/firmware_platform/commutation_rig.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -32,7 +33,7 @@ TEST_F(Commutation, SineTableIsThatOfTheDataSheet) {
 }
 
 TEST_F(Commutation, SineOutputsAreThoseOfTheDataSheet) {
-  std::mt19937 random(3);
+  std::mt19937 random(random_seed(3));
   const auto pick = [&random](int first, int last) { return std::uniform_int_distribution<int>(first, last)(random); };
   for (int round = 0; round < 60; ++round) {
     const int cycle = round % 10 == 0 ? 1 << pick(4, 18) : pick(20, 260000), phi = pick(0, 2047);

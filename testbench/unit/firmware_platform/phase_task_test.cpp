@@ -7,6 +7,7 @@
 #include <string>
 
 #include "testbench/unit/firmware_platform/controller.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/hal/hal.h"
@@ -46,7 +47,7 @@ class PhaseTaskArithmetic : public ::testing::Test {
 };
 
 TEST_F(PhaseTaskArithmetic, AgreesWithTheDefinitionOverRandomMovement) {
-  std::mt19937 random(1);
+  std::mt19937 random(random_seed(1));
   const auto pick = [&random](std::int64_t first, std::int64_t last) {
     return std::uniform_int_distribution<std::int64_t>(first, last)(random);
   };

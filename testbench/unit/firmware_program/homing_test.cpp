@@ -5,6 +5,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/command/control_characters.h"
@@ -99,7 +100,7 @@ class Homing : public FirmwareTest {
 };
 
 TEST_F(Homing, ZeroIsTheCapturedCountAtAnySpeedUpTo100CountsAMs) {
-  std::mt19937 random(7);
+  std::mt19937 random(brick::random_seed(7));
   std::uniform_real_distribution<> speed(0.5, 100), way(50, 5000), start(-8e6, 8e6);
   begin(std::floor(start(random)));
   for (int i = 0; i < 200; ++i) {
@@ -121,7 +122,7 @@ TEST_F(Homing, ZeroIsTheCapturedCountAtAnySpeedUpTo100CountsAMs) {
 }
 
 TEST_F(Homing, CapturedFractionCountsWithIxx24Bit12) {
-  std::mt19937 random(8);
+  std::mt19937 random(brick::random_seed(8));
   std::uniform_real_distribution<> way(50, 500);
   parts_ = 32;
   ASSERT_EQ(host("I8000=$CF8000 I124=$21001 I123=-15.5 I126=160"), "");

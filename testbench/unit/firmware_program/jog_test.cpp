@@ -4,6 +4,7 @@
 
 #include "testbench/unit/firmware_program/jog_model.h"
 #include "testbench/unit/firmware_program/platform.h"
+#include "testbench/unit/random_seed.h"
 
 extern "C" {
 #include "firmware/motion/jog.h"
@@ -107,7 +108,7 @@ TEST_F(JogProfile, CheckOfTheDataSheetTakes200And400Ms) {
 }
 
 TEST_F(JogProfile, RandomMovesAndNewTargetsOnTheWayStayWithinASixteenthOfACount) {
-  std::mt19937 random(22);
+  std::mt19937 random(brick::random_seed(22));
   std::uniform_real_distribution<> unit(0, 1), duration(-1, 4.3);
   Followed result;
   unsigned moves = 0;

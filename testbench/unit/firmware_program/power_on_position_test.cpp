@@ -5,6 +5,7 @@
 
 extern "C" {
 #include "firmware/motion/motor.h"
+#include "rtl/regs/brick_regs.h"
 }
 
 namespace {
@@ -50,6 +51,39 @@ TEST_F(PowerOnPosition, ClearsTheBias) {
   ASSERT_EQ(host("#1$*"), "");
   EXPECT_EQ(motors[0].bias, 0);
   EXPECT_EQ(host("#1P"), "0");
+}
+
+// Who asks before the next servo interrupt is told the new position.
+TEST_F(PowerOnPosition, IsShownAtOnce) {
+  ASSERT_EQ(host("I8000=0 I103=$10F0 I104=$10F0 I100=1 I110=$10F8 I195=$180000 I126=-160"), "");
+  *hal_x(0x10F0) = 77 * 32;
+  *hal_y(0x10F8) = 123456;
+  platform::servo_ticks(3);
+  ASSERT_EQ(host("#1P"), "77");
+  ASSERT_EQ(host("#1$*"), "");
+  EXPECT_EQ(host("#1P"), "123466");
+  platform::servo_ticks(3);
+  EXPECT_EQ(host("#1P"), "123466");
+  ASSERT_EQ(host("#1HMZ"), "");
+  EXPECT_EQ(host("#1P"), "0");
+}
+
+// motion:4.4/5: what an encoder has counted before a start is no movement, and a sensor's position is what it says.
+TEST_F(PowerOnPosition, CountsFromTheStartOn) {
+  constexpr std::uint32_t kCounter = 0x78000 + SERVO_CHANNEL_X_SERVO_POSITION;  // twice the count
+  for (const int active : {0, 1}) {
+    ASSERT_EQ(host("I8000=$C78000 I8001=0 I103=$3501 I104=$3501 I110=$10F8 I195=$180000 I180=4"), "");
+    ASSERT_EQ(host("I100=" + std::to_string(active) + " SAVE"), "");
+    *hal_x(kCounter) = 2 * 1000;
+    platform::reset("$$$");
+    *hal_y(0x10F8) = 5555;
+    ASSERT_EQ(host("I100=1"), "");
+    platform::servo_ticks(3);
+    EXPECT_EQ(host("#1P"), "0") << active;
+    *hal_x(kCounter) = 2 * 1003;
+    platform::servo_ticks(3);
+    EXPECT_EQ(host("#1P"), "3") << active;
+  }
 }
 
 }  // namespace

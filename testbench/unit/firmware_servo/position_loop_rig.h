@@ -42,7 +42,7 @@ class LoopModel {
     if (!saturated_ && !(ixx(34) == 1 && cv != 0)) integral_ += ixx(33) * integrand / 8388608;
     integral_ = clamp(integral_, std::abs(ixx(63)) / 16);
     const double v = (ixx(32) * cv + ixx(35) * ca) / 128 * ixx(8) - ixx(31) * av / 128 * ixx(9);
-    const double u = ixx(30) * (ixx(8) * (ep + integral_) + v) / 524288;
+    const double u = ixx(30) * clamp(ixx(8) * (ep + integral_) + v, 0x1p39 / 32) / 524288;  // motion:1.1/10
     const double y = u + ixx(36) * u_[0] + ixx(37) * u_[1] - ixx(38) * y_[0] - ixx(39) * y_[1];
     u_[1] = u_[0];
     u_[0] = u;

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "testbench/unit/firmware_servo/position_loop_rig.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using PositionLoop = PositionLoopRig;
 
 struct Pick {
-  std::mt19937_64 random{1};
+  std::mt19937_64 random{random_seed(1)};
   double real(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); }
   std::int64_t whole(std::int64_t from, std::int64_t to) {
     return std::uniform_int_distribution<std::int64_t>(from, to)(random);

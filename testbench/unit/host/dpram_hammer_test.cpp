@@ -6,6 +6,7 @@
 
 #include "testbench/checkers/dpram_scoreboard.h"
 #include "testbench/unit/host/dpram_bench.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -162,7 +163,7 @@ TEST(DpramHammer, RandomAccessesAreOldOrNew) {
   Met sum;
   DpramScoreboard::Counts counts;
   for (unsigned seed = 1; seed <= 8; ++seed) {
-    Hammer h(seed);
+    Hammer h(random_seed(seed));
     random_accesses(h, 4000, 1 + seed % 3);
     EXPECT_THAT(h.scoreboard.judge(), ::testing::IsEmpty()) << seed;
     EXPECT_LOCKSTEP(h.both);

@@ -1,4 +1,5 @@
 #include "testbench/unit/host/dpram_bench.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -292,14 +293,14 @@ TEST_F(DpramSmallTest, WordsThatAreNotFittedReadZeroAndIgnoreWrites) {
 
 TEST_F(DpramSmallTest, RandomAccessesAgree) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    random_run(seed, 6000, 32768);
+    random_run(random_seed(seed), 6000, 32768);
     ASSERT_EQ(both.difference(), "") << "seed " << seed;
   }
 }
 
 TEST_F(DpramTest, RandomMeetingsOfBothSidesAgree) {
   for (unsigned seed = 1; seed <= 24; ++seed) {
-    random_run(seed, 6000, 1 + seed % 4);
+    random_run(random_seed(seed), 6000, 1 + seed % 4);
     ASSERT_EQ(both.difference(), "") << "seed " << seed;
   }
 }

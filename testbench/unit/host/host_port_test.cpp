@@ -1,5 +1,6 @@
 // Registers, flags, interrupts and commands of the host port. The data paths are in host_port_data_test.cpp.
 #include "testbench/unit/host/host_port_bench.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -161,7 +162,7 @@ TEST_F(HostPortTest, ResetdrvEmptiesBothWays) {
 
 TEST_F(HostPortTest, RandomAccessesOfBothSidesAgree) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    random_run(seed, 6000);
+    random_run(random_seed(seed), 6000);
     ASSERT_EQ(both_.difference(), "") << "seed " << seed;
   }
 }

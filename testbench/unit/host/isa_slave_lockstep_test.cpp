@@ -1,13 +1,14 @@
 // The ISA slave and its model through random cycles, switches and resets; and that the comparison sees a slave that is
 // wired wrongly.
 #include "testbench/unit/host/isa_slave_fixture.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
 
 TEST_F(IsaSlaveTest, RandomCyclesAgree) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    random_run(seed, 6000);
+    random_run(random_seed(seed), 6000);
     ASSERT_EQ(both.difference(), "") << "seed " << seed;
   }
 }

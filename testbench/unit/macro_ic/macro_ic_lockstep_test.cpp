@@ -6,6 +6,7 @@
 
 #include "testbench/unit/covers.h"
 #include "testbench/unit/macro_ic/macro_ic_rig.h"
+#include "testbench/unit/random_seed.h"
 
 namespace brick {
 namespace {
@@ -75,7 +76,7 @@ class MacroIcLockstep : public ::testing::TestWithParam<std::uint32_t> {};
 TEST_P(MacroIcLockstep, EnginesAgreeAtEveryTickOnRandomStimulus) {
   BRICK_COVERS("CARD-2 CLK-1");
   LockstepMacroRig rig;
-  Stimulus(rig, GetParam()).run(300'000);
+  Stimulus(rig, random_seed(GetParam())).run(300'000);
   EXPECT_EQ(rig.difference, "") << "seed " << GetParam();
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, MacroIcLockstep, ::testing::Range(1u, 13u));

@@ -122,15 +122,34 @@ TEST_F(ChannelTripTest, DacLinesKeepTheirSense) {
   }
 }
 
-// The ADC strobe commands amplifiers: the word and what goes out stay. Its neighbours are written.
-TEST_F(ChannelTripTest, AdcStrobeKeepsItsWord) {
+// DIR stands, whatever is written into bit 19, and at the level that it had at the trip.
+TEST_F(ChannelTripTest, DirectionStands) {
+  for (const std::uint32_t word : {kPfm, kPfm | kInvertDir}) {
+    rig_.in.trip = false;
+    rig_.reset();
+    control(4, word);
+    rig_.write(4, words::kOutC, 0xC00000);
+    rig_.ticks(1000);
+    const bool level = rig_.other(kDir, 4);
+    EXPECT_EQ(level, (word & kInvertDir) == 0) << "downwards";
+    trip();
+    control(4, word ^ kInvertDir);
+    EXPECT_EQ(rig_.peek(4, words::kControl), word);
+    rig_.write(4, words::kOutC, 0x400000);
+    rig_.ticks(1000);
+    EXPECT_EQ(rig_.other(kDir, 4), level);
+  }
+}
+
+// The ADC strobe commands amplifiers, the DAC strobe latches what DACs get: the words and what goes out stay.
+TEST_F(ChannelTripTest, StrobesKeepTheirWords) {
   constexpr std::uint32_t kWord = 0xF84DFE;
   rig_.write(ic_words::kAdcStrobe, kWord);
   trip();
   rig_.write(ic_words::kAdcStrobe, 0xFC0DFE);
   rig_.write(ic_words::kDacStrobe, 0x7FFF00);
   EXPECT_EQ(rig_.peek(true, ic_words::kAdcStrobe.address), kWord);
-  EXPECT_EQ(rig_.peek(true, ic_words::kDacStrobe.address), 0x7FFF00u);
+  EXPECT_EQ(rig_.peek(true, ic_words::kDacStrobe.address), ic_words::kDacStrobe.reset);
   rig_.write(ic_words::kPwmControl, pwm_control(6527, 15));
   rig_.ticks(2 * 13057);
   while (rig_.pins().phase) rig_.tick();

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "testbench/unit/covers.h"
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/servo_ic/servo_ic_rig.h"
 
 namespace brick {
@@ -86,7 +87,7 @@ class ServoIcLockstep : public ::testing::TestWithParam<std::uint32_t> {};
 TEST_P(ServoIcLockstep, EnginesAgreeAtEveryTickOnRandomStimulus) {
   BRICK_COVERS("CLK-6");
   LockstepRig rig;
-  Stimulus(rig, GetParam()).run(400'000);
+  Stimulus(rig, random_seed(GetParam())).run(400'000);
   EXPECT_EQ(rig.difference, "") << "seed " << GetParam();
   for (unsigned offset = 0; offset < 32; ++offset) {
     rig.read(true, offset);

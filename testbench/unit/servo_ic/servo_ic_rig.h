@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -130,7 +131,11 @@ class ModelRigOf : public ServoIcRig {
     while (now_ % kTicksPerRef != 0);
     write_now(x, offset, value);
   }
-  std::uint32_t read(bool x, unsigned offset) override { return ic_.read(x, offset); }
+  // Who reads, brings it up to date first, as the board does: what is read makes no event (servo_ic.h).
+  std::uint32_t read(bool x, unsigned offset) override {
+    if (!in_reset_) ic_.advance(now_);
+    return ic_.read(x, offset);
+  }
   // Levels of pins that are not driven mean nothing outside; the model does not predict them.
   bool phase() override { return shown_.phase; }
   bool servo() override { return shown_.servo; }
@@ -200,8 +205,12 @@ class LockstepRigOf : public ServoIcRig {
   }
   bool writing() const { return pending_; }
   std::uint32_t read(bool x, unsigned offset) override {
-    const std::uint32_t value = rtl_.read(x, offset);
-    if (value != model_.read(x, offset)) note("register");
+    const std::uint32_t value = rtl_.read(x, offset), other = model_.read(x, offset);
+    if (value != other) {
+      std::ostringstream what;
+      what << std::hex << (x ? "X" : "Y") << ":+$" << offset << ", $" << value << " for the model's $" << other << ",";
+      note(what.str());
+    }
     return value;
   }
   bool phase() override { return rtl_.phase(); }
@@ -222,8 +231,8 @@ class LockstepRigOf : public ServoIcRig {
     if (rtl_.phase_oe() && rtl_.phase() != model_.phase()) note("PHASE");
     if (rtl_.servo_oe() && servo != model_.servo()) note("SERVO");
   }
-  void note(const char* what) {
-    if (difference.empty()) difference = std::string(what) + " differs at tick " + std::to_string(now());
+  void note(const std::string& what) {
+    if (difference.empty()) difference = what + " differs at tick " + std::to_string(now());
   }
 
   RtlRigOf<RtlIc> rtl_;

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "systemc/machine/board_file.h"
+#include "testbench/unit/random_seed.h"
 #include "testbench/unit/system/controller.h"
 
 namespace brick {
@@ -163,7 +164,7 @@ TEST_P(SavedVariables, AllAtOnceComeBackWithinTheHardwareWatchdogsTime) {
 // count: all that comes back is of one SAVE.
 TEST_P(SavedDataFile, AStartInsideSaveLeavesOldOrNew) {
   start();
-  std::mt19937 random(7);
+  std::mt19937 random(random_seed(7));
   int stored = 1;
   const auto set = [this](int n) { ask("I17=" + std::to_string(n) + " P1=" + std::to_string(n) + " P8000=P1"); };
   const auto text = [](int n) { return std::to_string(n) + "|" + std::to_string(n) + "|" + std::to_string(n); };

@@ -1,0 +1,57 @@
+#include "app/build_info.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <systemc>
+
+#include "app/byte_text.h"
+#include "build_commit.h"
+
+namespace brick {
+
+nlohmann::json build_info() {
+  return {{"version", BRICK_VERSION},
+          {"commit", BRICK_COMMIT},
+          {"dirty", BRICK_DIRTY != 0},
+          {"tools",
+           {{"compiler", BRICK_COMPILER},
+            {"verilator", BRICK_VERILATOR},
+            {"systemc", fmt::format("{}.{}.{}", SC_VERSION_MAJOR, SC_VERSION_MINOR, SC_VERSION_PATCH)},
+            {"build_type", BRICK_BUILD_TYPE}}}};
+}
+
+std::string version_text() {
+  const nlohmann::json build = build_info();
+  const std::string commit = build.at("commit");
+  std::string text = fmt::format("brick {}\n", build.at("version").get<std::string>());
+  if (!commit.empty())
+    text += fmt::format("commit {}{}\n", commit, build.at("dirty").get<bool>() ? ", with changes" : "");
+  for (const auto& [tool, version] : build.at("tools").items())
+    text += fmt::format("{} {}\n", tool, version.get<std::string>());
+  text.pop_back();
+  return text;
+}
+
+void add_origin(nlohmann::json& results, const std::string& firmware) {
+  std::ifstream words("/proc/self/cmdline", std::ios::binary);
+  nlohmann::json command = nlohmann::json::array();
+  for (std::string word; std::getline(words, word, '\0');) command.push_back(utf8_text(word));
+  results["build"] = build_info();
+  results["command"] = command;
+  if (!firmware.empty()) results["image"] = {{"file", utf8_text(firmware)}, {"hash", file_hash(firmware)}};
+}
+
+std::string file_hash(const std::string& path) {
+  constexpr std::uint64_t kOffset = 0xcbf29ce484222325, kPrime = 0x100000001b3;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return "";
+  std::uint64_t hash = kOffset;
+  for (std::istreambuf_iterator<char> at(file), end; at != end; ++at)
+    hash = (hash ^ static_cast<unsigned char>(*at)) * kPrime;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace brick

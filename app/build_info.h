@@ -1,0 +1,22 @@
+// Who made a result: version, commit, tools. It stands in every result as JSON and decides which results of `brick
+// regress` are still good.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace brick {
+
+// version, commit ("" of a tree without git), dirty (tracked files differed from it when this was built), tools: names
+// and versions.
+nlohmann::json build_info();
+std::string version_text();  // the same as lines, the first `brick VERSION`
+
+// What made the results of a run: build, image ("" for none) and command line.
+void add_origin(nlohmann::json& results, const std::string& firmware);
+
+// FNV-1a of 64 bits, in hexadecimal; "" of a file that cannot be read.
+std::string file_hash(const std::string& path);
+
+}  // namespace brick

@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+"""brick regress: plans, verdicts, kinds of failure, reports, results that are gone on with, and nobody left behind.
+usage: regress_acceptance.py BRICK CASE"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import xml.etree.ElementTree as xml
+
+import command
+from command import brick, check
+
+MIXED = """
+title = "mixed"
+[[row]]
+bench = "smoke"
+seeds = [31, 32]
+[[row]]
+bench = "smoke"
+negative = true
+seeds = "41-42"
+[[row]]
+name = "odd"
+command = ["sh", "-c", "echo step {seed}: Error: 0x1F and 2.5; exit $(({seed} % 2))"]
+seeds = "1-5"
+[[row]]
+name = "late"
+command = ["sh", "-c", "sleep 60 & sleep 60"]
+limit = "300ms"
+[[row]]
+name = "crash"
+command = ["sh", "-c", "kill -SEGV $$"]
+[[row]]
+name = "bad"
+command = ["sh", "-c", "echo no such thing >&2; exit 2"]
+[[row]]
+name = "absent"
+command = ["/no/such/program"]
+"""
+
+
+class Folder:
+    def __init__(self, plan):
+        self.kept = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.kept.name)
+        self.plan, self.out = self.path / "plan.toml", self.path / "out"
+        self.write(plan)
+
+    def write(self, plan):
+        self.plan.write_text(plan)
+
+    def regress(self, *options):
+        return brick("regress", str(self.plan), "-o", str(self.out), *options)
+
+    def report(self):
+        return json.loads((self.out / "report.json").read_text())
+
+    def verdicts(self):
+        return {r["name"]: r["verdict"] for r in self.report()["runs"]}
+
+
+def bucket(report, group):
+    return [b for b in report["buckets"] if b["group"] == group]
+
+
+def regress_mistakes():
+    """A plan that is wrong is one line and status 2 before anything runs."""
+    good = '[[row]]\nname = "a"\ncommand = ["touch", "{plan}/ran"]\n'
+    for text, wanted in ((good + '[[row]]\nbench = "smok"\n', "plan.toml:5: bench: found \"smok\"; expected one of"),
+                         (good + '[[row]]\nbench = "smoke"\nengine = "verilog"\n', "engine verilog"),
+                         (good + '[[row]]\nbench = "smoke"\nboard = "none"\n', "board none: no such board"),
+                         (good + '[[row]]\nbench = "clock-macro"\nboard = "geobrick-lv-8"\n', "it needs"),
+                         (good + '[[row]]\nbench = "smoke"\nseeds = "9-1"\n', "seeds: found \"9-1\"; expected seeds"),
+                         (good + '[[row]]\nbench = "smoke"\nseeds = -1\n', "seeds: found -1"),
+                         (good + '[[row]]\nbench = "smoke"\nfresh = 0\n', "fresh: found 0"),
+                         (good + '[[row]]\nbench = "smoke"\nlimit = "soon"\n', "limit: found \"soon\""),
+                         (good + '[[row]]\nbench = "smoke"\nsize = 3\n', "an end of its own"),
+                         (good + '[[row]]\nbench = "smoke"\nspeed = 3\n', "unknown key speed"),
+                         (good + '[[row]]\ncommand = []\n', "a program and its arguments"),
+                         (good + '[[row]]\nseeds = 1\n', "key bench is missing"),
+                         ("title = 3\n" + good, "a text in quotes"),
+                         ("row = []\n", "rows that make one run or more"),
+                         ("[[row]\n", "expected TOML")):
+        folder = Folder(text)
+        r = folder.regress()
+        check(r.returncode == 2 and wanted in r.stderr and r.stderr.count("\n") == 1, f"{text!r}: {r}")
+        check(not folder.out.exists() and not (folder.path / "ran").exists(), f"{text!r}: something was made")
+    folder = Folder(good)
+    for options, wanted in ((["--jobs", "0"], "--jobs 0"), (["--fresh-from", "x"], "--fresh-from"),
+                            (["-o", str(folder.plan)], "cannot be written")):
+        r = brick("regress", str(folder.plan), *options)
+        check(r.returncode == 2 and wanted in r.stderr, f"{options}: {r}")
+    r = brick("regress", str(folder.path / "none.toml"))
+    check(r.returncode == 2 and "cannot be read; expected a plan" in r.stderr, str(r))
+    (folder.out / "runs").mkdir(parents=True)
+    r = folder.regress()
+    check(r.returncode == 2 and "somebody else" in r.stderr, f"a folder of others: {r}")
+
+
+def regress_kinds():
+    """Each verdict; failures in kinds, with seeds, the command that repeats one and its waveform; three reports."""
+    folder = Folder(MIXED)
+    r = folder.regress("--jobs", "2")
+    check(r.returncode == 1, f"exit {r.returncode}: {r.stdout}{r.stderr}")
+    verdicts = folder.verdicts()
+    wanted = {"smoke.systemc_geobrick-lv-8.seed-31": "passed", "smoke.systemc_geobrick-lv-8.seed-32": "passed",
+              "smoke.systemc_geobrick-lv-8_negative.seed-41": "failed",
+              "smoke.systemc_geobrick-lv-8_negative.seed-42": "failed", "late.seed-1": "limit",
+              "crash.seed-1": "crashed", "bad.seed-1": "bad", "absent.seed-1": "crashed"}
+    wanted.update({f"odd.seed-{n}": "failed" if n % 2 else "passed" for n in range(1, 6)})
+    check(verdicts == wanted, f"{verdicts}")
+    report = folder.report()
+    check(report["counts"] == {"runs": 13, "passed": 4, "failed": 9, "not_run": 0}, str(report["counts"]))
+    odd, smoke = bucket(report, "odd"), bucket(report, "smoke")
+    check(len(odd) == 1 and odd[0]["seeds"] == [1, 3, 5] and odd[0]["says"] == "step #: Error: # and #", str(odd))
+    check(len(smoke) == 1 and smoke[0]["count"] == 2 and smoke[0]["step"] == "servo period #, ticks", str(smoke))
+    for words, group in (("no end within", "late"), ("SIGSEGV", "crash"), ("no such thing", "bad"),
+                         ("/no/such/program: cannot be run", "absent")):
+        check(words in bucket(report, group)[0]["says"], f"{group}: {bucket(report, group)}")
+    again = subprocess.run(smoke[0]["command"].replace("brick", command.BRICK, 1), shell=True, capture_output=True,
+                           text=True)
+    check(again.returncode == 1 and "FAIL  servo period 1, ticks" in again.stdout, f"the command: {again}")
+    replay = smoke[0]["replay"]
+    check((folder.out / replay["wave"]).stat().st_size > 1000 and replay["note"] == "", str(replay))
+    check((folder.out / replay["view"]).read_text().count("servo"), "the view of the bench")
+    build = report["build"]
+    check(build["version"] in brick("--version").stdout and len(build["image"]) == 16, str(build))
+    suites = xml.parse(folder.out / "report.xml").getroot()
+    sums = {s.get("name"): [s.get(k) for k in ("tests", "failures", "errors", "skipped")] for s in suites}
+    check(sums["smoke"] == ["4", "2", "0", "0"] and sums["late"] == ["1", "0", "1", "0"], str(sums))
+    check(sum(len(s) for s in suites) == 13, "a case a run")
+    page = (folder.out / "report.html").read_text()
+    embedded = page.split('id="report">')[1].split("</script>")[0]
+    check(json.loads(embedded) == report, "the page holds another report")
+    check("http" not in page.replace("http-equiv", ""), "the page asks somebody")
+    check("echo step" in embedded and "</" not in embedded, "what stands in the page ends its script")
+
+
+def regress_rows():
+    """Every choice of a row, each run once though two rows ask for it; of a pattern what boards can do."""
+    folder = Folder('[[row]]\nbench = "smoke"\nengine = ["systemc", "rtl"]\nboard = ["geobrick-lv-8", "umac-turbo"]\n'
+                    'seeds = [7, "7-8"]\n[[row]]\nbench = "smo*"\nseeds = 8\n[[row]]\nbench = "clock-m*"\n'
+                    'board = ["geobrick-lv-8", "turbo-pmac2-ultralite"]\naperture = ["0.5", "1"]\n'
+                    '[[row]]\nbench = "rotary-machining"\nsize = 50\n')
+    r = folder.regress("--list")
+    lines = r.stdout.splitlines()
+    check(len(lines) == len(set(lines)) == 11, r.stdout + r.stderr)
+    for wanted in ("smoke --engine rtl --board umac-turbo --seed 8",
+                   "smoke --engine systemc --board geobrick-lv-8 --seed 7",
+                   "clock-macro --engine systemc --board turbo-pmac2-ultralite --aperture 0.5 --seed 1",
+                   "rotary-machining --engine systemc --board geobrick-lv-8 --size 50 --seed 1"):
+        check(f"brick run {wanted}" in lines, f"{wanted} in {lines}")
+    check(not folder.out.exists(), "--list has made something")
+    for plan in sorted(pathlib.Path(__file__).resolve().parents[3].glob("plans/*.toml")):
+        r = brick("regress", str(plan), "--list")
+        check(r.returncode == 0 and len(r.stdout.splitlines()) >= 10, f"{plan.name}: {r.stderr}")
+
+
+def regress_resume():
+    """What is there is not made again, more seeds add to it, failures are made again if asked for, and nothing of
+    another command counts."""
+    plan = '[[row]]\nname = "n"\ncommand = ["sh", "-c", "echo x >> {plan}/log; exit {seed}"]\nseeds = "0-1"\n'
+    folder = Folder(plan)
+    log = folder.path / "log"
+
+    def runs():
+        return len(log.read_text().splitlines()) if log.exists() else 0
+
+    check(folder.regress().returncode == 1 and runs() == 2, "both")
+    r = folder.regress("--resume")
+    check(r.returncode == 1 and runs() == 2 and "2 taken over" in r.stdout, f"again: {r}")
+    folder.write(plan.replace("0-1", "0-2"))
+    folder.regress("--resume")
+    check(runs() == 3 and folder.report()["counts"]["runs"] == 3, "one seed more")
+    folder.regress("--rerun-failed")
+    check(runs() == 5, f"{runs()} runs, expected the two that failed again")
+    (folder.out / "runs/n.seed-0/result.json").write_text('{"verdict": "passed"')
+    folder.regress("--resume")
+    check(runs() == 6, "half a result counts")
+    folder.write(plan.replace("echo x", "echo  x"))
+    folder.regress("--resume")
+    check(runs() == 8, "results of another command count")
+    folder.regress()
+    check(runs() == 10, "without --resume")
+    r = folder.regress("--minutes", "0")
+    check(r.returncode == 1 and runs() == 10 and "2 not run: --resume makes them" in r.stdout, f"no time: {r}")
+    fresh = Folder('[[row]]\nname = "n"\ncommand = ["true", "{seed}"]\nfresh = 40\n')
+    fresh.regress()
+    before = set(fresh.verdicts())
+    r = fresh.regress("--resume")
+    check("40 taken over" in r.stdout and set(fresh.verdicts()) == before and len(before) == 40, f"fresh seeds: {r}")
+    check(all(int(name.split("-")[1]) > 30 for name in before), "a usual seed is none that is fresh")
+
+
+def sleepers(mark):
+    found = []
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            words = (process / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if words[:2] == [b"sleep", mark.encode()]:
+            found.append(int(process.name))
+    return found
+
+
+def wait_for(condition, what):
+    end = time.monotonic() + 60
+    while not condition():
+        check(time.monotonic() < end, what)
+        time.sleep(0.02)
+
+
+def regress_killed():
+    """SIGINT ends with reports of what is there; whatever kills it, nothing of it lives on; --resume goes on."""
+    mark = f"{1000 + os.getpid()}.5"
+    plan = ('[[row]]\nname = "quick"\ncommand = ["true", "{seed}"]\nseeds = "1-3"\n'
+            f'[[row]]\nname = "slow"\ncommand = ["sh", "-c", "sleep {mark} & sleep {mark}; exit 0"]\nseeds = "1-2"\n')
+    for kind in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+        folder = Folder(plan)
+        r = subprocess.Popen([command.BRICK, "regress", str(folder.plan), "-o", str(folder.out), "--jobs", "2"],
+                             stdout=subprocess.PIPE, text=True)
+        wait_for(lambda: len(sleepers(mark)) == 4, "the slow ones do not run")
+        r.send_signal(kind)
+        said, _ = r.communicate(timeout=60)
+        wait_for(lambda: not sleepers(mark), f"{kind.name}: {sleepers(mark)} live on")
+        if kind == signal.SIGKILL:
+            check(r.returncode == -kind, f"exit {r.returncode}")
+        else:
+            check(r.returncode == 1 and "2 not run: --resume makes them" in said,
+                  f"{kind.name}: {r.returncode} {said}")
+            check(folder.report()["counts"] == {"runs": 5, "passed": 3, "failed": 0, "not_run": 2}, "counts")
+        folder.write(plan.replace(f"sleep {mark}", "true"))
+        r = folder.regress("--resume")
+        check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
+
+
+globals()[command.CASE]()
