@@ -159,7 +159,8 @@ module clock_select_rules (
       C7: cover (phase_i == 22'h0);
     end
 
-    // R8: A conflict shows from the third clk on for which drivers of a net disagree, until each net has one, never else.
+    // R8: A conflict shows from the third clk on for which drivers of a net disagree, until each net has one, never
+    // else.
     R8: assert (conflict == (several && conflict_q) && \dut.drivers_q == {outside_q, servo_oe_q, phase_oe_q} &&
                 \dut.several_q == several && \dut.disagree_q == differ_q && \dut.conflict_q == conflict_q);
     C8: cover (conflict && !outside_q && (phase_oe_q & (phase_oe_q - 22'h1)) == 22'h0);
