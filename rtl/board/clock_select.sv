@@ -1,8 +1,9 @@
 // The board's PHASE and SERVO nets: of the ICs that drive a net the lowest-numbered wins; with no driver the net idles
 // high; with jumper E1 (ext_clock_i) both come from outside. The conflict flag rises when drivers of one net have
 // disagreed for more than 2 clk, and stays until there is one driver again. The choice is registered on clk_ref_i.
-// External clocks pass a synchroniser on clk_pwm_i; the nets leave through flip-flops, a clk later than the IC's level.
-// Asynchronous reset. docs/clock_select.md.
+// External clocks pass a synchroniser on clk_pwm_i; levels of the ICs, which may stand far away, come through
+// flip-flops and the nets leave through others, two clk later than an IC's own level. Asynchronous reset.
+// docs/clock_select.md.
 `default_nettype none
 
 module clock_select (
@@ -78,6 +79,7 @@ module clock_select (
   logic phase_q, servo_q;              // the nets
   logic phase_oe_q, servo_oe_q;
   logic [1:0] disagree_d, disagree_q;  // clk since they do
+  logic [43:0] level_q;                // of the ICs, {servo, phase}
   logic [21:0] phase_low, phase_high, servo_low, servo_high;
   always_comb begin
     {servo_low, phase_low}   = 44'h0;
@@ -86,8 +88,8 @@ module clock_select (
     disagree_d = 2'd0;
     conflict_d = 1'b0;
     if (several_q) begin
-      {servo_low, phase_low}   = drivers_q[43:0] & ~{servo_i, phase_i};
-      {servo_high, phase_high} = drivers_q[43:0] & {servo_i, phase_i};
+      {servo_low, phase_low}   = drivers_q[43:0] & ~level_q;
+      {servo_high, phase_high} = drivers_q[43:0] & level_q;
       if (drivers_q[44]) disagree = (ext_phase ? |phase_low : |phase_high) | (ext_servo ? |servo_low : |servo_high);
       else               disagree = (|phase_low & |phase_high) | (|servo_low & |servo_high);
       if (disagree) disagree_d = (disagree_q == Tolerated) ? Tolerated : disagree_q + 2'd1;
@@ -97,6 +99,7 @@ module clock_select (
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      level_q    <= '1;
       disagree_q <= 2'd0;
       conflict_q <= 1'b0;
       phase_q    <= 1'b1;
@@ -104,10 +107,11 @@ module clock_select (
       phase_oe_q <= 1'b0;
       servo_oe_q <= 1'b0;
     end else begin
+      level_q    <= {servo_i, phase_i};
       disagree_q <= disagree_d;
       conflict_q <= conflict_d;
-      phase_q    <= phase_idle_q | (drivers_q[44] & ext_phase) | (|(phase_grant_q & phase_i));
-      servo_q    <= servo_idle_q | (drivers_q[44] & ext_servo) | (|(servo_grant_q & servo_i));
+      phase_q    <= phase_idle_q | (drivers_q[44] & ext_phase) | (|(phase_grant_q & level_q[21:0]));
+      servo_q    <= servo_idle_q | (drivers_q[44] & ext_servo) | (|(servo_grant_q & level_q[43:22]));
       phase_oe_q <= ~phase_idle_q;
       servo_oe_q <= ~servo_idle_q;
     end

@@ -1,6 +1,7 @@
 // PHASE or SERVO of a chip as a pin of two ways: how clock_gen drives it, to the pad, with the flip-flops that a board
-// has in clock_select: the enable counts from a clk_ref edge on, level and enable leave through flip-flops on clk_pwm,
-// a clk later than the IC's own level. So the wire is the net of the board at the same tick. Asynchronous reset.
+// has in clock_select: the enable counts from a clk_ref edge on, the level passes one flip-flop on clk_pwm, both leave
+// through others, two clk later than the IC's own level. So the wire is the net of the board at the same tick.
+// Asynchronous reset.
 // docs/chips.md.
 `default_nettype none
 
@@ -14,17 +15,19 @@ module clock_pin (
   output logic      pad_oe_o
 );
 
-  logic grant_q, pad_q, pad_oe_q;
+  logic grant_q, level_q, pad_q, pad_oe_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) grant_q <= 1'b0;
     else         grant_q <= oe_i;
   end
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      level_q  <= 1'b1;
       pad_q    <= 1'b1;
       pad_oe_q <= 1'b0;
     end else begin
-      pad_q    <= level_i | ~grant_q;
+      level_q  <= level_i;
+      pad_q    <= level_q | ~grant_q;
       pad_oe_q <= grant_q;
     end
   end

@@ -1,6 +1,6 @@
 // The PWM outputs of a channel, phases A, B, C: command against the triangle counter, dead time between the top and the
 // bottom switch. A new command is used from the turnaround on. The comparison is registered, so that the switches move
-// a clk later than it, as PHASE and SERVO leave the board one later. Clock clk_pwm_i, asynchronous reset.
+// a clk later than it. Clock clk_pwm_i, asynchronous reset.
 // docs/servo_channel.md, PWM.
 `default_nettype none
 

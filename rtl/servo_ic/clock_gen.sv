@@ -11,7 +11,7 @@
 module clock_gen (
   input  wire logic        clk_pwm_i,
   input  wire logic        rst_ni,
-  input  wire logic [14:0] max_count_i,   // I7m00
+  input  wire logic [14:0] max_count_i,   // I7m00; a register is in use from the second edge after its own on
   input  wire logic [3:0]  phase_div_i,   // I7m01
   input  wire logic [3:0]  servo_div_i,   // I7m02
   input  wire logic        phase_ext_i,   // I7m07 bit 0: the PHASE pin is an input
@@ -31,6 +31,8 @@ module clock_gen (
 
   localparam logic [14:0] MaxCountReset =
       brick_regs_pkg::ServoIcPwmControlReset[brick_regs_pkg::ServoIcPwmControlMaxCountLsb +: 15];
+  localparam logic [3:0] PhaseDivReset =
+      brick_regs_pkg::ServoIcClockControlReset[brick_regs_pkg::ServoIcClockControlPhaseDividerLsb +: 4];
   localparam logic [3:0] ServoDivReset =
       brick_regs_pkg::ServoIcClockControlReset[brick_regs_pkg::ServoIcClockControlServoDividerLsb +: 4];
   localparam logic [16:0] Window = 17'd8;   // clk in which a turnaround follows the external edge at once
@@ -40,6 +42,7 @@ module clock_gen (
   logic [14:0] max_q;                     // I of the running half triangle
   logic [16:0] close_from_q;              // I - Window: from this ramp on the coming turnaround is in the window next
   logic [16:0] recent_to_q;               // Window - 2 - I: below this ramp the last one is, next
+  logic [15:0] larger_q;                  // I + Window: an I from this on is far larger
   logic        up_q;
   logic        at_top_d, at_top_q, at_middle_d, at_middle_q;
   logic        close_d, close_q;          // the coming turnaround is in the window
@@ -57,17 +60,37 @@ module clock_gen (
   sync2 #(.Reset(1'b1)) u_phase_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(phase_i), .q_o(phase_pin));
   sync2 #(.Reset(1'b1)) u_servo_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(servo_i), .q_o(servo_pin));
 
+  // The registers of the IC, again on clk_pwm_i: they stand far away and each is looked at in many places.
+  logic [14:0] max_count_q;
+  logic [3:0]  phase_div_q, servo_div_q;
+  logic        phase_ext_q, servo_ext_q;
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      max_count_q <= MaxCountReset;
+      phase_div_q <= PhaseDivReset;
+      servo_div_q <= ServoDivReset;
+      phase_ext_q <= 1'b1;
+      servo_ext_q <= 1'b1;
+    end else begin
+      max_count_q <= max_count_i;
+      phase_div_q <= phase_div_i;
+      servo_div_q <= servo_div_i;
+      phase_ext_q <= phase_ext_i;
+      servo_ext_q <= servo_ext_i;
+    end
+  end
+
   // Every other tick is just one more step of the ramp. Of an IC that follows a pin no edge is told apart here: that
   // would be the longest path there is.
   logic ext_rise, phase_release, servo_release, special, turn, retard;
-  assign phase_ext = phase_ext_i & ~phase_oe_q;
-  assign servo_ext = servo_ext_i & ~servo_oe_q;
+  assign phase_ext = phase_ext_q & ~phase_oe_q;
+  assign servo_ext = servo_ext_q & ~servo_oe_q;
   assign ext_rise  = phase_ext & phase_pin & ~phase_q;
   // A pin that is to become an input goes while it is high. SERVO rises with an edge of PHASE, so PHASE waits for
   // SERVO.
-  assign servo_release = servo_oe_q & servo_ext_i & servo_q;
-  assign phase_release = phase_oe_q & phase_ext_i & phase_q & (servo_q | ~(servo_oe_q & servo_ext_i));
-  assign special   = at_top_q | at_middle_q | phase_ext_i | servo_ext_i;
+  assign servo_release = servo_oe_q & servo_ext_q & servo_q;
+  assign phase_release = phase_oe_q & phase_ext_q & phase_q & (servo_q | ~(servo_oe_q & servo_ext_q));
+  assign special   = at_top_q | at_middle_q | phase_ext_q | servo_ext_q;
 
   // External rising edge: the nearest turnaround is moved to this edge, in the first half of the way the last one back,
   // in the second half the coming one forward.
@@ -97,7 +120,7 @@ module clock_gen (
       ramp_d      = ~{2'b00, max_q};
       at_top_d    = 1'b0;
       at_middle_d = max_q == 15'd0;
-      recent_d    = up_q | ~turn | ({1'b0, max_count_i} <= {1'b0, max_q} + 16'd7);  // not with a new I far larger
+      recent_d    = up_q | ~turn | ({1'b0, max_count_q} < larger_q);  // not with a new I far larger
     end
   end
 
@@ -112,15 +135,15 @@ module clock_gen (
       // nothing
     end else if (phase_ext) begin
       phase_d     = phase_pin;
-      phase_cnt_d = phase_div_i;
+      phase_cnt_d = phase_div_q;
       fall_cnt_d  = 4'd0;
       odd_d       = 1'b0;
     end else if (at_top_q) begin
       if (phase_cnt_q == 4'd0) begin
         phase_d     = 1'b1;
-        phase_cnt_d = phase_div_i;
-        fall_cnt_d  = {1'b0, phase_div_i[3:1]} + {3'b000, phase_div_i[0]};
-        odd_d       = ~phase_div_i[0];
+        phase_cnt_d = phase_div_q;
+        fall_cnt_d  = {1'b0, phase_div_q[3:1]} + {3'b000, phase_div_q[0]};
+        odd_d       = ~phase_div_q[0];
       end else begin
         phase_cnt_d = phase_cnt_q - 4'd1;
         if (fall_cnt_q != 4'd0) fall_cnt_d = fall_cnt_q - 4'd1;
@@ -141,13 +164,13 @@ module clock_gen (
       // nothing
     end else if (servo_ext) begin
       servo_d     = servo_pin;
-      servo_cnt_d = servo_div_i;
+      servo_cnt_d = servo_div_q;
     end else if (phase_q != phase_d) begin
       if (phase_d) begin
         if (servo_cnt_q == 4'd0) servo_d = 1'b1;
       end else if (servo_cnt_q == 4'd0) begin
         servo_d     = 1'b0;
-        servo_cnt_d = servo_div_i;
+        servo_cnt_d = servo_div_q;
       end else begin
         servo_d     = 1'b1;
         servo_cnt_d = servo_cnt_q - 4'd1;
@@ -162,6 +185,7 @@ module clock_gen (
       max_q       <= MaxCountReset;
       close_from_q <= {2'b00, MaxCountReset} - Window;
       recent_to_q <= Window - 17'd2 - {2'b00, MaxCountReset};
+      larger_q    <= {1'b0, MaxCountReset} + Window[15:0];
       up_q        <= 1'b1;
       at_top_q    <= 1'b0;
       at_middle_q <= 1'b0;
@@ -185,9 +209,10 @@ module clock_gen (
       if (turn) begin
         up_q <= ~up_q;
         if (!up_q) begin
-          max_q    <= max_count_i;
-          close_from_q <= {2'b00, max_count_i} - Window;
-          recent_to_q  <= Window - 17'd2 - {2'b00, max_count_i};
+          max_q    <= max_count_q;
+          close_from_q <= {2'b00, max_count_q} - Window;
+          recent_to_q  <= Window - 17'd2 - {2'b00, max_count_q};
+          larger_q     <= {1'b0, max_count_q} + Window[15:0];
         end
       end
       if (special) begin
@@ -199,9 +224,9 @@ module clock_gen (
         phase_q     <= phase_d;
         servo_q     <= servo_d;
         if (phase_release)                                           phase_oe_q <= 1'b0;
-        else if (!phase_ext_i && !phase_q && phase_d && phase_pin)  phase_oe_q <= 1'b1;
+        else if (!phase_ext_q && !phase_q && phase_d && phase_pin)  phase_oe_q <= 1'b1;
         if (servo_release)                                           servo_oe_q <= 1'b0;
-        else if (!servo_ext_i && !servo_q && servo_d && servo_pin)  servo_oe_q <= 1'b1;
+        else if (!servo_ext_q && !servo_q && servo_d && servo_pin)  servo_oe_q <= 1'b1;
       end
     end
   end

@@ -161,9 +161,16 @@ module servo_channel (
   assign equ_o = equ & ~trip_i;
 
   // Outputs
-  logic [5:0] pwm, pwm_on, pwm_inv;
-  channel_pwm u_pwm (
+  logic [16:0] cnt;
+  logic        turn;
+  logic [7:0]  deadtime;
+  logic [5:0]  pwm, pwm_on, pwm_inv;
+  channel_triangle u_triangle (
     .clk_pwm_i, .rst_ni, .cnt_i, .turn_i, .deadtime_i,
+    .cnt_o(cnt), .turn_o(turn), .deadtime_o(deadtime)
+  );
+  channel_pwm u_pwm (
+    .clk_pwm_i, .rst_ni, .cnt_i(cnt), .turn_i(turn), .deadtime_i(deadtime),
     .command_a_i(out_a[23:8]), .command_b_i(out_b[23:8]), .command_c_i(out_c[23:8]),
     .switch_o(pwm)
   );

@@ -39,6 +39,7 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
 
   Tick next_event() const override {
     if (q_.ext && (ext_phase_.moves(ext_phase) || ext_servo_.moves(ext_servo))) return now_ + 1;
+    if (phase_level != phase_level_q_ || servo_level != servo_level_q_) return now_ + 1;
     if (phase_net() != phase_q_ || servo_net() != servo_q_) return now_ + 1;
     const Tick conflict_rises = !conflict_ && disagree() ? now_ + kTolerated + 1 - disagree_ : kNever;
     return std::min(conflict_rises, in != q_ ? next_ref_edge(now_) : kNever);
@@ -51,6 +52,8 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
     conflict_ = conflict_ && several();
     phase_q_ = phase_net();
     servo_q_ = servo_net();
+    phase_level_q_ = phase_level;
+    servo_level_q_ = servo_level;
     ext_phase_.advance(ext_phase, t - now_);
     ext_servo_.advance(ext_servo, t - now_);
     if (next_ref_edge(now_) <= t) q_ = in;
@@ -61,6 +64,7 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
     conflict_ = false;
     disagree_ = 0;
     ext_phase_ = ext_servo_ = Sync2{true, true};
+    phase_level_q_ = servo_level_q_ = ~0u;
     phase_q_ = servo_q_ = true;
     now_ = t;
   }
@@ -74,14 +78,14 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
   }
   bool disagree() const {
     return several() &&
-           (fight(q_.phase, phase_level, ext_phase_.level()) || fight(q_.servo, servo_level, ext_servo_.level()));
+           (fight(q_.phase, phase_level_q_, ext_phase_.level()) || fight(q_.servo, servo_level_q_, ext_servo_.level()));
   }
   bool fight(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
     const bool low = (drivers & ~level) != 0, high = (drivers & level) != 0;
     return q_.ext ? (ext_level ? low : high) : low && high;
   }
-  bool phase_net() const { return net(q_.phase, phase_level, ext_phase_.level()); }
-  bool servo_net() const { return net(q_.servo, servo_level, ext_servo_.level()); }
+  bool phase_net() const { return net(q_.phase, phase_level_q_, ext_phase_.level()); }
+  bool servo_net() const { return net(q_.servo, servo_level_q_, ext_servo_.level()); }
   bool net(std::uint32_t drivers, std::uint32_t level, bool ext_level) const {
     if (q_.ext) return ext_level;
     return drivers == 0 || (level & drivers & (0u - drivers)) != 0;  // lowest-numbered driver wins, idle is high
@@ -89,7 +93,8 @@ class ClockSelect final : public sc_core::sc_module, public ModelBlock {
 
   Drivers q_;
   Sync2 ext_phase_{true, true}, ext_servo_{true, true};
-  bool phase_q_ = true, servo_q_ = true;  // the nets
+  std::uint32_t phase_level_q_ = ~0u, servo_level_q_ = ~0u;  // of the ICs, a tick later
+  bool phase_q_ = true, servo_q_ = true;                     // the nets
   bool conflict_ = false;
   Tick disagree_ = 0;  // ticks for which they have, kTolerated at most
   Tick now_ = 0;

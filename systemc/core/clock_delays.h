@@ -6,8 +6,8 @@
 
 namespace brick {
 
-constexpr Tick kNetDelay = 1;  // PHASE and SERVO leave the board through flip-flops: after the IC that drives them
+constexpr Tick kNetDelay = 2;  // PHASE and SERVO reach the nets through two flip-flops: after the IC that drives them
 constexpr Tick kPinDelay = 3;  // two flip-flops: an IC acts on an edge of PHASE or SERVO at the third tick
-constexpr Tick kPwmDelay = 1;  // the switches follow the comparison with the triangle
+constexpr Tick kPwmDelay = 2;  // the triangle reaches a channel through a flip-flop, the switches follow the comparison
 
 }  // namespace brick

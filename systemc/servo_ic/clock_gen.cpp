@@ -25,7 +25,7 @@ void ClockGen::reset(Tick t) {
 Tick ClockGen::next_special_edge() const {
   Tick next = next_turn();
   if (s_.ramp < 0) next = std::min(next, now_ - s_.ramp);  // half way: ramp == -1 before the edge
-  if (phase_release() || servo_release()) return now_ + 1;
+  if (phase_release() || servo_release() || settings_move()) return now_ + 1;
   if (phase_ext()) next = std::min(next, now_ + edges_until_change(s_.phase, s_.phase2, s_.phase1, in.phase));
   if (servo_ext()) next = std::min(next, now_ + edges_until_change(s_.servo, s_.servo2, s_.servo1, in.servo));
   return next;
@@ -39,8 +39,8 @@ void ClockGen::skip(Tick edges) {
   s_.servo2 = edges > 1 ? in.servo : s_.servo1;
   s_.phase1 = in.phase;
   s_.servo1 = in.servo;
-  if (phase_ext()) s_.phase_cnt = in.phase_div, s_.fall_cnt = 0, s_.odd = false;  // kept ready for a full period
-  if (servo_ext()) s_.servo_cnt = in.servo_div;
+  if (phase_ext()) s_.phase_cnt = s_.set.phase_div, s_.fall_cnt = 0, s_.odd = false;  // kept ready for a full period
+  if (servo_ext()) s_.servo_cnt = s_.set.servo_div;
 }
 
 // At a rising edge of the external phase clock. Returns true when the coming turnaround is moved here; `retard` is set
@@ -69,15 +69,15 @@ void ClockGen::step() {
 
   if (phase_follows) {
     s_.phase = s_.phase2;
-    s_.phase_cnt = in.phase_div;
+    s_.phase_cnt = s_.set.phase_div;
     s_.fall_cnt = 0;
     s_.odd = false;
   } else if (turn) {
     if (s_.phase_cnt == 0) {
       s_.phase = true;
-      s_.phase_cnt = in.phase_div;
-      s_.fall_cnt = (in.phase_div + 1) / 2;
-      s_.odd = in.phase_div % 2 == 0;
+      s_.phase_cnt = s_.set.phase_div;
+      s_.fall_cnt = (s_.set.phase_div + 1) / 2;
+      s_.odd = s_.set.phase_div % 2 == 0;
     } else {
       --s_.phase_cnt;
       if (s_.fall_cnt == 1 && !s_.odd) s_.phase = false;
@@ -90,13 +90,13 @@ void ClockGen::step() {
 
   if (servo_follows) {
     s_.servo = s_.servo2;
-    s_.servo_cnt = in.servo_div;
+    s_.servo_cnt = s_.set.servo_div;
   } else if (s_.phase && !last_phase) {
     if (s_.servo_cnt == 0) s_.servo = true;
   } else if (!s_.phase && last_phase) {
     if (s_.servo_cnt == 0) {
       s_.servo = false;
-      s_.servo_cnt = in.servo_div;
+      s_.servo_cnt = s_.set.servo_div;
     } else {
       s_.servo = true;
       --s_.servo_cnt;
@@ -107,18 +107,19 @@ void ClockGen::step() {
 
   if (phase_goes) s_.phase_oe = false;
   if (servo_goes) s_.servo_oe = false;
-  if (!in.phase_ext && !last_phase && s_.phase && s_.phase2) s_.phase_oe = true;
-  if (!in.servo_ext && !last_servo && s_.servo && s_.servo2) s_.servo_oe = true;
+  if (!s_.set.phase_ext && !last_phase && s_.phase && s_.phase2) s_.phase_oe = true;
+  if (!s_.set.servo_ext && !last_servo && s_.servo && s_.servo2) s_.servo_oe = true;
 
   s_.ramp = turn || retard ? -s_.top : s_.ramp + 1;
   if (turn) {
     s_.up = !s_.up;
-    if (s_.up) s_.top = static_cast<int>(in.max_count) + 1;  // that was the bottom
+    if (s_.up) s_.top = static_cast<int>(s_.set.max_count) + 1;  // that was the bottom
   }
   s_.phase2 = s_.phase1;
   s_.servo2 = s_.servo1;
   s_.phase1 = in.phase;
   s_.servo1 = in.servo;
+  s_.set = in;
   ++now_;
 }
 
@@ -141,7 +142,7 @@ Tick ClockGen::turn_after(unsigned turns) const {
   bool up = s_.up;
   for (unsigned i = 1; i < turns; ++i) {
     const int last = top;
-    if (!up) top = static_cast<int>(in.max_count) + 1;
+    if (!up) top = static_cast<int>(s_.set.max_count) + 1;
     up = !up;
     at += last + top + 1;
   }
@@ -150,7 +151,7 @@ Tick ClockGen::turn_after(unsigned turns) const {
 
 Tick ClockGen::next_event() const {
   if (!active()) return kNever;
-  if (phase_release() || servo_release()) return now_ + 1;
+  if (phase_release() || servo_release() || settings_move()) return now_ + 1;
   Tick next = kNever;
   if (phase_ext()) {
     next = now_ + edges_until_change(s_.phase, s_.phase2, s_.phase1, in.phase);
@@ -164,7 +165,7 @@ Tick ClockGen::next_event() const {
       int top = s_.top;
       bool up = s_.up;
       for (unsigned i = 1; i < s_.fall_cnt; ++i, up = !up)
-        if (!up) top = static_cast<int>(in.max_count) + 1;
+        if (!up) top = static_cast<int>(s_.set.max_count) + 1;
       next = turn + top;
     }
   } else if (s_.phase && s_.fall_cnt != 0) {

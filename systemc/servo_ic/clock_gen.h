@@ -24,18 +24,21 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
  public:
   explicit ClockGen(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  struct Inputs {
+  struct Settings {
     unsigned max_count = kMaxCountReset;  // I7m00
     unsigned phase_div = kPhaseDivReset;  // I7m01
     unsigned servo_div = kServoDivReset;  // I7m02
     bool phase_ext = true;                // I7m07 bit 0
     bool servo_ext = true;                // I7m07 bit 1
-    bool phase = true;                    // pins
-    bool servo = true;
-    bool operator==(const Inputs& o) const {
+    bool operator==(const Settings& o) const {
       return max_count == o.max_count && phase_div == o.phase_div && servo_div == o.servo_div &&
-             phase_ext == o.phase_ext && servo_ext == o.servo_ext && phase == o.phase && servo == o.servo;
+             phase_ext == o.phase_ext && servo_ext == o.servo_ext;
     }
+  };
+  struct Inputs : Settings {  // settings are taken over by an edge and act from the next one on
+    bool phase = true;        // pins
+    bool servo = true;
+    bool operator==(const Inputs& o) const { return Settings::operator==(o) && phase == o.phase && servo == o.servo; }
   };
   Inputs in;
 
@@ -44,7 +47,9 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
   bool phase_oe() const { return s_.phase_oe; }  // the pin is driven
   bool servo_oe() const { return s_.servo_oe; }
   // Drives a pin, or will.
-  bool active() const { return s_.phase_oe || s_.servo_oe || !in.phase_ext || !in.servo_ext; }
+  bool active() const {
+    return s_.phase_oe || s_.servo_oe || !in.phase_ext || !in.servo_ext || !s_.set.phase_ext || !s_.set.servo_ext;
+  }
   bool phase_clock() const { return s_.phase; }  // own or external
   bool servo_clock() const { return s_.servo; }
   int cnt() const { return s_.up ? s_.ramp : ~s_.ramp; }
@@ -71,14 +76,16 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
 
  private:
   // The pin is followed: a pin still driven is not.
-  bool phase_ext() const { return in.phase_ext && !s_.phase_oe; }
-  bool servo_ext() const { return in.servo_ext && !s_.servo_oe; }
-  bool servo_release() const { return s_.servo_oe && in.servo_ext && s_.servo; }
+  bool phase_ext() const { return s_.set.phase_ext && !s_.phase_oe; }
+  bool servo_ext() const { return s_.set.servo_ext && !s_.servo_oe; }
+  bool servo_release() const { return s_.servo_oe && s_.set.servo_ext && s_.servo; }
   bool phase_release() const {
-    return s_.phase_oe && in.phase_ext && s_.phase && (s_.servo || !(s_.servo_oe && in.servo_ext));
+    return s_.phase_oe && s_.set.phase_ext && s_.phase && (s_.servo || !(s_.servo_oe && s_.set.servo_ext));
   }
+  bool settings_move() const { return !(s_.set == in); }
 
   struct State {
+    Settings set;  // those that act
     int ramp = 0;  // up ? cnt : ~cnt, counts up from -top to top
     int top = static_cast<int>(kMaxCountReset) + 1;
     bool up = true;
@@ -88,10 +95,10 @@ class ClockGen : public sc_core::sc_module, public ModelBlock {
     bool phase_oe = false, servo_oe = false;
     bool phase1 = true, phase2 = true, servo1 = true, servo2 = true;  // synchroniser
     bool operator==(const State& o) const {
-      return ramp == o.ramp && top == o.top && up == o.up && phase_cnt == o.phase_cnt && fall_cnt == o.fall_cnt &&
-             servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase && servo == o.servo &&
-             phase_oe == o.phase_oe && servo_oe == o.servo_oe && phase1 == o.phase1 && phase2 == o.phase2 &&
-             servo1 == o.servo1 && servo2 == o.servo2;
+      return set == o.set && ramp == o.ramp && top == o.top && up == o.up && phase_cnt == o.phase_cnt &&
+             fall_cnt == o.fall_cnt && servo_cnt == o.servo_cnt && miss == o.miss && odd == o.odd && phase == o.phase &&
+             servo == o.servo && phase_oe == o.phase_oe && servo_oe == o.servo_oe && phase1 == o.phase1 &&
+             phase2 == o.phase2 && servo1 == o.servo1 && servo2 == o.servo2;
     }
   };
 

@@ -6,6 +6,10 @@ namespace brick {
 
 void ServoChannels::reset(Tick t) {
   now_ = phase_rise_ = pwm_now_ = t;
+  pwm_line_ = {};
+  pwm_deadtime_ = kDeadtimeReset;
+  turned_ = false;
+  started_ = true;
   for (ServoChannel& channel : channel_) channel.reset(t);
   sclk_.reset(t);
   pfm_.reset(t);
@@ -25,12 +29,15 @@ void ServoChannels::write(bool x, unsigned offset, std::uint32_t value) {
 
 void ServoChannels::advance(Tick t) {
   if (t <= now_) return;
-  if (in.line != pwm_line_.after(now_ - pwm_now_) || in.deadtime != pwm_deadtime_) {
-    catch_up_pwm();
+  if (pwm_inputs_move()) {  // the next edge still sees what the flip-flops of the channels have
+    catch_up_pwm(now_ + 1);
+    if (turned_)
+      for (ServoChannel& channel : channel_) channel.load_pwm();
+    turned_ = started_ = false;
     pwm_line_ = in.line;
     pwm_deadtime_ = in.deadtime;
   }
-  in.line = in.line.after(t - now_);
+  in.line = line_ = in.line.after(t - now_);
 
   // An edge of PHASE or SERVO acts at the next edge of clk_ref; all latches take what was there before it.
   const Tick edge = next_ref_edge(now_);
@@ -52,11 +59,11 @@ void ServoChannels::advance(Tick t) {
   now_ = t;
 }
 
-void ServoChannels::catch_up_pwm() const {
-  if (pwm_now_ == now_) return;
-  for (const ServoChannel& channel : channel_) channel.run_pwm(pwm_now_, now_, pwm_line_, pwm_deadtime_);
-  pwm_line_ = pwm_line_.after(now_ - pwm_now_);
-  pwm_now_ = now_;
+void ServoChannels::catch_up_pwm(Tick t) const {
+  if (pwm_now_ == t) return;
+  for (const ServoChannel& channel : channel_) channel.run_pwm(pwm_now_, t, pwm_line_, pwm_deadtime_);
+  pwm_line_ = pwm_line_.after(t - pwm_now_);
+  pwm_now_ = t;
 }
 
 void ServoChannels::run_dac(Tick t, bool phase_rise) {
@@ -171,16 +178,20 @@ unsigned ServoChannels::adc_lines(bool b) const {
 Tick ServoChannels::next_event(const MotorOutputs& select) const {
   const Tick ref = next_ref_edge(now_);
   Tick next = kNever;
-  if (has_pwm(select)) catch_up_pwm();
+  if (has_pwm(select)) {
+    catch_up_pwm();
+    if (pwm_inputs_move()) next = now_ + 1;
+  }
   const bool dac = has_dac(select), adc = has_adc(select);
-  if (dac) next = dac_.next_event(now_, divider(kDac), (select.w[1] & kDacClk) != 0, has_dac_data(select));
+  if (dac)
+    next = std::min(next, dac_.next_event(now_, divider(kDac), (select.w[1] & kDacClk) != 0, has_dac_data(select)));
   if (adc) next = std::min(next, adc_.next_event(now_, divider(kAdc), (select.w[1] & kAdcClk) != 0, false));
   if ((dac || adc) && phase_rises_ != in.phase_rises) next = std::min(next, ref);
   const bool position = has_position(select), pfm_pins = has_pfm(select);
   for (const ServoChannel& channel : channel_) {
     if (position && !channel.quiet(now_)) next = std::min(next, ref);
     if (position && !channel.settled()) next = std::min(next, sclk_.next());
-    if (!in.trip && has_pwm(select)) next = std::min(next, channel.next_pwm_event(now_, in.line));
+    if (!in.trip && has_pwm(select)) next = std::min(next, channel.next_pwm_event(now_, pwm_line_));
     if (!position && !pfm_pins) continue;
     const ChannelPfm::Inputs pfm = channel.pfm_inputs(in.trip, in.deadtime);
     const std::int64_t periods = channel.pfm().periods_to_change(pfm);

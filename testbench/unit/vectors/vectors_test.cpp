@@ -20,12 +20,12 @@ constexpr const char* kFigures = "docs/images/vectors/";
 
 // Every vector there is: one that is gone would not be missed by the tests that are made of what is found.
 const std::set<std::string> kNames = {
-    "adc_strobe",   "adc_word",           "capture_armed",  "capture_home",    "capture_index",  "compare",
-    "dac_strobe",   "decode_direction",   "default_words",  "encoder_error",   "encoder_filter", "equ_write",
-    "hall",         "hardware_clocks",    "isa_read_waits", "isa_write_waits", "mldt",           "pfm",
-    "phase_clock",  "port_a_read",        "port_a_write",   "pwm_command",     "pwm_dead_time",  "pwm_update",
-    "reinitialize", "reinitialize_macro", "trip",           "turnaround",      "ssi_change",     "ssi_frame",
-    "ssi_geo",      "ssi_parity",         "ssi_trigger"};
+    "adc_strobe", "adc_word",     "alignment",          "capture_armed",  "capture_home",    "capture_index",
+    "compare",    "dac_strobe",   "decode_direction",   "default_words",  "encoder_error",   "encoder_filter",
+    "equ_write",  "hall",         "hardware_clocks",    "isa_read_waits", "isa_write_waits", "mldt",
+    "pfm",        "phase_clock",  "port_a_read",        "port_a_write",   "pwm_command",     "pwm_dead_time",
+    "pwm_update", "reinitialize", "reinitialize_macro", "trip",           "turnaround",      "ssi_change",
+    "ssi_frame",  "ssi_geo",      "ssi_parity",         "ssi_trigger"};
 
 std::vector<std::string> vector_files() {
   std::vector<std::string> found;
@@ -87,13 +87,21 @@ void figure_is_fresh(const std::string& file) {
   }
 }
 
+// PHASE and SERVO are pins of an IC by itself; on the board they are nets that the board makes.
+bool drives_a_net(const std::string& file) {
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return text.find("\npin clock.") != std::string::npos;
+}
+
 // Before main(), where the TEST macros register theirs. A file that cannot be read is a test that fails.
 void add_tests_of(const std::string& file) {
   const std::string name = std::filesystem::path(file).stem().string();
   try {
     const Vector vector = read_vector(file);
     for (const std::string& engine : vector.kind().engines)
-      add(name + "_" + engine, [file, engine] { passes(file, engine); });
+      if (!drives_a_net(file) || engine.find("board") != 0)
+        add(name + "_" + engine, [file, engine] { passes(file, engine); });
     add("negative_" + name, [file] { fails_when_corrupted(file); });
     if (vector.wave) add("figure_" + name, [file] { figure_is_fresh(file); });
   } catch (const UsageError& error) {

@@ -1,0 +1,172 @@
+"""Delays between pads and flip-flops in a placed design, from the SDF file that nextpnr writes; docs/fpga.md.
+
+nextpnr judges what runs from clock to clock. Here is the rest: pad to flip-flop, flip-flop to pad, pad to pad without a
+clock, flip-flop to the resets of others; and what that means for the rows of the data sheet of Port A and ISA.
+"""
+
+import collections
+import math
+import re
+import sys
+
+TICK = 1000 / 117.9648
+CPU = 9.8304  # MHz, times I52 + 1
+# What nextpnr does not know, of an LFE5U of grade 8 with LVCMOS33 and a clock from a PLL: rows of "External Switching
+# Characteristics" in Lattice's ECP5 family data sheet, FPGA-DS-02012. A pad into a register beside it sets up in
+# tSUPLL; tCOPLL is clock, register and pad, so the register counts twice here.
+PAD_IN, PAD_OUT, SKEW = 0.70, 3.50, 0.42  # tSUPLL, tCOPLL, tSKEW_PRI
+# Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
+PORT_A_IN, PORT_A_OUT, ISA_IN = r"pa_.*_n?io?", r"pa_(d_io|ta_no)", r"isa_(?!sd_io|resetdrv).*_n?i"
+Row = collections.namedtuple("Row", "rule what has limit")
+
+Graph = collections.namedtuple("Graph", "after before setup launch")
+UNIT = 1000.0  # ps in the file, ns here
+
+
+def parts(name):
+    """cell/port of a name with the escapes of an SDF file."""
+    cell, port = name.replace("\\", "").rsplit("/", 1)
+    return cell, port
+
+
+def triple(text):
+    return float(text.strip("()").split(":")[2]) / UNIT  # the slowest
+
+
+def read(lines):
+    """The wires and cells of an SDF file: (cell, port) -> its followers with their delays."""
+    after, before, setup, launch = (collections.defaultdict(list), collections.defaultdict(list), {}, {})
+    kind = cell = None
+
+    def edge(a, b, delay):
+        after[a].append((b, delay))
+        before[b].append((a, delay))
+
+    for line in lines:
+        word = line.split()
+        if not word:
+            continue
+        if word[0] == "(CELLTYPE":
+            kind = word[1].strip('")')
+        elif word[0] == "(INSTANCE" and len(word) > 1:
+            cell = word[1].removesuffix(")").replace("\\", "")
+        elif word[0] == "(INTERCONNECT":
+            edge(parts(word[1]), parts(word[2]), triple(word[3]))
+        elif word[0] == "(IOPATH" and kind == "TRELLIS_COMB":
+            edge((cell, word[1]), (cell, word[2]), triple(word[3]))
+        elif word[0] == "(IOPATH":  # of a flip-flop or a memory: from its clock
+            launch[cell, word[2]] = triple(word[3])
+        elif word[0] == "(SETUPHOLD":
+            port = word[2].strip(")")
+            setup[cell, port] = max(setup.get((cell, port), 0.0), triple(word[5]))
+    return Graph(after, before, setup, launch)
+
+
+def longest(edges, ends):
+    """node -> the longest way from it to one of `ends` (node -> delay there), None: there is none."""
+    known = dict(ends)
+
+    def visit(start):
+        todo = [start]
+        while todo:
+            node = todo[-1]
+            if node in known:
+                todo.pop()
+                continue
+            fresh = [n for n, _ in edges.get(node, ()) if n not in known]
+            if fresh and todo.count(node) == 1:
+                todo += fresh
+                continue
+            ways = [known[n] + delay for n, delay in edges.get(node, ()) if known.get(n) is not None]
+            known[node] = max(ways, default=None)
+            todo.pop()
+        return known[start]
+
+    return visit
+
+
+def pad(cell):
+    return cell.removesuffix("$tr_io") if cell.endswith("$tr_io") else None
+
+
+def bus(name):
+    return re.sub(r"\[\d+\]$", "", name)
+
+
+def delays(graph):
+    """{pad, a bus as one: {"in": pad to flip-flop, "out": flip-flop to pad, "through": pad to pad}}, and the reset."""
+    nodes = set(graph.after) | set(graph.before)
+    flip_flops = {node: delay for node, delay in graph.setup.items() if node[1] != "LSR"}
+    to_pads = {node: 0.0 for node in nodes if pad(node[0]) and node[1] in ("I", "T")}
+    pads_in = {node: 0.0 for node in nodes if pad(node[0]) and node[1] == "O"}
+    inwards, outwards = longest(graph.after, flip_flops), longest(graph.before, graph.launch)
+    from_pads, resets = longest(graph.before, pads_in), longest(graph.before, graph.launch)
+    found = collections.defaultdict(dict)
+    for node in sorted(pads_in):
+        keep(found[bus(pad(node[0]))], "in", inwards(node))
+    for node in sorted(to_pads):
+        keep(found[bus(pad(node[0]))], "out", outwards(node))
+        keep(found[bus(pad(node[0]))], "through", from_pads(node))
+    reset = [resets(node) + delay for node, delay in graph.setup.items() if node[1] == "LSR" and resets(node)]
+    return dict(found), max(reset, default=None)
+
+
+def keep(row, kind, delay):
+    if delay is not None:
+        row[kind] = max(row.get(kind, 0.0), delay)
+
+
+def worst(found, pattern, kind):
+    ways = [ways[kind] for name, ways in found.items() if re.fullmatch(pattern, name) and kind in ways]
+    return max(ways, default=0.0)
+
+
+def rows(found):
+    """The rows of the data sheet that pads decide, the one with the least to spare first."""
+    a_in = worst(found, PORT_A_IN, "in") + PAD_IN + SKEW
+    isa_in = worst(found, ISA_IN, "in") + PAD_IN + SKEW
+    out = {name: worst(found, name, "out") + PAD_OUT + SKEW
+           for name in ("pa_d_io", "pa_ta_no", "isa_sd_io", "isa_iochrdy_io", "isa_memcs16_nio")}
+    table = [Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK),
+             Row("host-bus:2.6", "clock to D", out["pa_d_io"], 10.0),
+             Row("host-bus:2.6", "clock to /TA", out["pa_ta_no"], 10.0),
+             Row("host-bus:3.4, t8", "command to IOCHRDY low, 7 ticks between", 7 * TICK + isa_in +
+                 out["isa_iochrdy_io"], 70.0),
+             Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between", 8 * TICK + isa_in + out["isa_sd_io"], 120.0),
+             Row("host-bus:3.4, row 14", "MEMR# to data, 11 ticks between", 11 * TICK + isa_in + out["isa_sd_io"],
+                 173.0),
+             Row("host-bus:3.4, row 16", "LA to MEMCS16#, 3 ticks between", 3 * TICK + isa_in +
+                 out["isa_memcs16_nio"], 66.0)]
+    return sorted(table, key=lambda row: row.limit - row.has)
+
+
+def wait_states(found, i52):
+    """The least for gate ICs at a CPU clock, by row 105, (WS + 0.25) TC - 5 ns; None: 31 are too few."""
+    need = 9 * TICK + 1.0 + worst(found, PORT_A_IN, "in") + PAD_IN + SKEW + \
+        worst(found, "pa_d_io", "out") + PAD_OUT + SKEW
+    clock = 1000 / (CPU * (i52 + 1))
+    least = max(1, math.ceil((need + 5.0) / clock - 0.25))
+    return least if least <= 31 else None
+
+
+def page(found, reset):
+    yield from ("| rule | what | ns here | ns allowed | to spare |", "|---|---|---|---|---|")
+    for row in rows(found):
+        missed = "" if row.has <= row.limit else " **missed**"
+        yield f"| {row.rule} | {row.what} | {row.has:.1f} | {row.limit:.1f} | {row.limit - row.has:.1f}{missed} |"
+    least = ((i52, wait_states(found, i52)) for i52 in (0, 7, 9, 15, 23, 31))
+    told = ", ".join(f"{'none' if states is None else states} at {i52}" for i52, states in least)
+    yield from ("", f"Least wait states of gate ICs on this chip, by I52: {told}.", "",
+                "| pads | pad to flip-flop ns | flip-flop to pad ns | pad to pad ns |", "|---|---|---|---|")
+    shown = ((name, ways) for name, ways in found.items() if re.match("pa_|isa_", name))
+    for name, ways in sorted(shown, key=lambda item: -max(item[1].values(), default=0.0)):
+        cells = (f"{ways[kind]:.2f}" if kind in ways else "" for kind in ("in", "out", "through"))
+        yield f"| `{name}` | {' | '.join(cells)} |"
+    if reset is not None:
+        missed = "" if reset <= TICK else " **missed**"
+        yield from ("", f"The reset reaches the last flip-flop {reset:.2f} ns after its clock, of {TICK:.2f}{missed}.")
+
+
+if __name__ == "__main__":
+    with open(sys.argv[1]) as sdf:
+        print("\n".join(page(*delays(read(sdf)))))
