@@ -1,4 +1,4 @@
-"""Negative controls of tools/fpga.py and fpga_pads.py: what is judged how, delays from a file, one reset of a design."""
+"""Negative controls of tools/fpga.py and fpga_pads.py: what is judged how, delays from a file, one reset a design."""
 
 import json
 import pathlib
