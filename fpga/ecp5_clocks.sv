@@ -1,6 +1,6 @@
-// Both clocks of the board from one oscillator of 39.3216 MHz: a PLL of the ECP5. VCO 589.824 MHz, /5 is clk_pwm (three
-// times the oscillator, fed back), /15 is clk_ref; both dividers start at the same VCO edge (equal CPHASE), so each
-// rising edge of clk_ref meets one of clk_pwm. Lock joins the reset. docs/fpga.md.
+// Both clocks from one oscillator of 39.3216 MHz: a PLL of the ECP5. VCO 589.824 MHz, /15 is clk_ref, fed back, so that
+// it is in phase with the oscillator in each chip that has the same one; /5 is clk_pwm. Both dividers start at the same
+// VCO edge (equal CPHASE), so each rising edge of clk_ref meets one of clk_pwm. Lock joins the reset. docs/fpga.md.
 `default_nettype none
 
 module ecp5_clocks (
@@ -14,8 +14,8 @@ module ecp5_clocks (
      ICP_CURRENT = "12", LPF_RESISTOR = "8", MFG_ENABLE_FILTEROPAMP = "1", MFG_GMCREF_SEL = "2" *)
   EHXPLLL #(
     .CLKI_DIV       (1),
-    .CLKFB_DIV      (3),
-    .FEEDBK_PATH    ("CLKOP"),
+    .CLKFB_DIV      (1),
+    .FEEDBK_PATH    ("CLKOS"),
     .CLKOP_ENABLE   ("ENABLED"),
     .CLKOP_DIV      (5),
     .CLKOP_CPHASE   (2),
@@ -33,7 +33,7 @@ module ecp5_clocks (
     .OUTDIVIDER_MUXC("DIVC"),
     .OUTDIVIDER_MUXD("DIVD")
   ) u_pll (
-    .CLKI(clk_i), .CLKFB(clk_pwm_o), .CLKOP(clk_pwm_o), .CLKOS(clk_ref_o), .LOCK(locked_o),
+    .CLKI(clk_i), .CLKFB(clk_ref_o), .CLKOP(clk_pwm_o), .CLKOS(clk_ref_o), .LOCK(locked_o),
     .RST(1'b0), .STDBY(1'b0), .ENCLKOP(1'b0), .ENCLKOS(1'b0), .PLLWAKESYNC(1'b0),
     .PHASESEL0(1'b0), .PHASESEL1(1'b0), .PHASEDIR(1'b1), .PHASESTEP(1'b1), .PHASELOADREG(1'b1)
   );

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Checks that nothing asynchronous feeds logic: check_cdc.py [--root ROOT].
 
-Walks from each input pin of board_top, and from each flip-flop that a strobe clocks, through the logic to the
-flip-flops of clk_pwm_i and clk_ref_i. What is allowed stands pin by pin in rtl/pins/board.pins, and for the motor side
-in servo_ic.pins, `sampled`:
+Walks from each input pin of board_top, and of the chips that a board can be made of (docs/chips.md), and from each
+flip-flop that a strobe clocks, through the logic to the flip-flops of clk_pwm_i and clk_ref_i. What is allowed stands
+pin by pin in rtl/pins/board.pins, for the motor side in servo_ic.pins, for what a chip has of its own in the tables of
+its name, `sampled`:
   synchroniser: its first flip-flop; it and its only load, the second one, carry the attribute async_reg
     (rtl/common/sync2.sv); nothing but a wire in front of it, or multiplexers that straps alone select (selected);
   a register that takes it for a reason: what it takes stands still when it counts;
@@ -28,18 +29,19 @@ from lint_rtl import SIMULATION_ONLY, rtl_files
 sys.path.append(str(ROOT / "rtl/pins"))
 from rows import Table
 
-TOP = "board_top"
+TOPS = {"board_top": "-set ServoIcMask 18'h00001 -set MacroIcMask 4'h1", "board_chip": "-set MacroIcMask 4'h1",
+        "servo_ic_chip": ""}
 CLOCKS = {"clk_pwm_i", "clk_ref_i"}
 FLIP_FLOPS = ("$dff", "$adff", "$dffe", "$adffe", "$sdff", "$sdffe", "$aldff", "$dffsr")
 
 
-def netlist(root):
+def netlist(root, top):
     packages, modules = rtl_files(root)
     sources = " ".join(str(f) for f in packages + modules if f.stem not in SIMULATION_ONLY)
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "netlist.json"
-        script = (f"read_verilog -sv {sources}; chparam -set ServoIcMask 18'h00001 "
-                  f"-set MacroIcMask 4'h1 {TOP}; hierarchy -check -top {TOP}; "
+        script = (f"read_verilog -sv {sources}; {f'chparam {TOPS[top]} {top};' if TOPS[top] else ''} "
+                  f"hierarchy -check -top {top}; "
                   f"proc; flatten; opt_clean; write_json {out}")
         done = subprocess.run(["yosys", "-q", "-p", script], cwd=root, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -49,21 +51,29 @@ def netlist(root):
 
 
 class Rules:
-    """What the rows allow, by port."""
+    """What the rows allow, by port of a top."""
 
-    def __init__(self, root):
+    def __init__(self, root, top):
         self.sampled, self.clocks, self.through = [], [], []
         self.synchronised, self.selected, self.resets = set(), set(), set()
         self.straps = set()
         self.motor = {}  # bit of motor_i: its name here
+        self.borrowed = set()  # ports whose rows are those of another top: what they allow need not be needed
         servo = Table("servo_ic", root / "rtl/pins")
         for pin in servo.pins:
-            if pin.is_input and pin.motor:
+            if pin.is_input and pin.motor and top != "board_chip":
                 self.motor |= dict.fromkeys(pin.motor_bits(), f"motor_i.{pin.name}")
                 self.take(f"motor_i.{pin.name}", pin, servo.settings, "*.")
         board = Table("board", root / "rtl/pins")
         for pin in board.pins:
-            self.take(pin.rtl, pin, board.settings)
+            if top == "servo_ic_chip":
+                self.borrowed.add(pin.rtl)
+            if top != "servo_ic_chip" or pin.name.startswith("pa_"):
+                self.take(pin.rtl, pin, board.settings)
+        if top != "board_top":
+            own = Table(top, root / "rtl/pins")
+            for pin in own.pins:
+                self.take(pin.rtl, pin, own.settings)
 
     def take(self, name, pin, settings, inside=""):
         sets = {"synchroniser": self.synchronised, "selected": self.selected, "resets": self.resets}
@@ -215,7 +225,7 @@ def check(module, rules):
                 problems.add(f"{name} reaches {end} ({kind.lower()}); expected a synchroniser, rtl/common/sync2.sv, or "
                              "what its row in rtl/pins says of it")
     problems |= {f"{' '.join(row[:2])}: a row in rtl/pins allows it, nothing needs it"
-                 for row in rules.all() if row not in used}
+                 for row in rules.all() if row not in used and rules.borrowed.isdisjoint(row[:2])}
     return len(sources), sorted(problems)
 
 
@@ -225,8 +235,12 @@ def main():
     options = parser.parse_args()
     if shutil.which("yosys") is None:
         skip("yosys is not installed")
-    number, problems = check(netlist(options.root), Rules(options.root))
-    finish(f"{number} asynchronous bits", problems)
+    total, problems = 0, []
+    for top in TOPS:
+        number, found = check(netlist(options.root, top), Rules(options.root, top))
+        total += number
+        problems += found if top == "board_top" else [f"{top}: {problem}" for problem in found]
+    finish(f"{total} asynchronous bits", problems)
 
 
 if __name__ == "__main__":

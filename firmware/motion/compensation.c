@@ -9,6 +9,7 @@
 #include "firmware/base/mathematics.h"
 #include "firmware/base/memory_map.h"
 #include "firmware/base/rework.h"
+#include "firmware/base/status.h"
 #include "firmware/buffers/compensation_tables.h"
 #include "firmware/buffers/regions.h"
 #include "firmware/hal/hal.h"
@@ -72,6 +73,7 @@ static void change(void) {
   compensation_of_torque = set->of_torque;
   for (uint32_t motor = 0; motor < MOTORS; ++motor) motors[motor].compensation = 0; /* made anew, if there is one */
   hal_unmask(state);
+  status_show(STATUS_COMPENSATION, i_integer(I51_COMPENSATION_TABLES) != 0);
 }
 
 void compensation_initialize(void) {

@@ -21,6 +21,7 @@ enum {
   S1_STEP = 1,
   S1_RUNNING = 0,
   S1_AXIS_A = 6,
+  S2_LOOKAHEAD = 23,
   S2_RUN_TIME_ERROR = 22,
   S2_AMPLIFIER_FAULT = 20,
   S2_FATAL_ERROR = 19,
@@ -29,9 +30,11 @@ enum {
   S2_ROTARY_FULL = 16,
   S2_END_BLOCK = 14,
   S2_DWELL = 12,
+  S2_SEGMENTS = 7,
   S3_SHARP_CORNER = 6,
   S3_CORNER_DWELL = 5,
   S3_RADIUS_ERROR = 3,
+  S3_RESUME_ERROR = 2,
   S3_WRAPPED = 23,
   S3_BACKWARD = 22,
   S3_OLDEST = 21,
@@ -57,9 +60,10 @@ static const uint8_t MODES[] = {0x00, 0x02, 0x01, 0x03, 0x11, 0x11, 0x12};
 static uint32_t bit(bool value, unsigned position) { return value ? 1u << position : 0u; }
 
 static uint32_t status1(const struct coordinate_system* s) {
+  const bool steps = s->running && (s->stepping || (s->quit && !s->ended)); /* behind `Q`, too */
   uint32_t word = bit(!s->vector_absolute, S1_VECTOR_INCREMENTAL) |
                   bit(s->running && s->continuous && !s->unblended, S1_CONTINUOUS) | bit(s->time_mode, S1_TIME_MODE) |
-                  bit(s->active && s->moves[s->executing].blended, S1_BLENDING) | bit(s->stepping, S1_STEP) |
+                  bit(s->active && s->moves[s->executing].blended, S1_BLENDING) | bit(steps, S1_STEP) |
                   bit(s->running, S1_RUNNING);
   for (uint32_t axis = 0; axis < AXIS_COUNT;
        axis++) { /* A lowest, Z highest: incremental, then feedrate axis above it */
@@ -111,7 +115,8 @@ static uint32_t status3(uint32_t cs) {
                           bit(looks && lookahead_is_backward(cs), S3_BACKWARD) |
                           bit(segment_stands(cs) && lookahead_is_at_oldest(cs), S3_OLDEST) |
                           bit(s->slots_wait, S3_ASSIGNMENTS) | bit(s->slots_short, S3_ASSIGNMENTS_LOST);
-  return state | buffer | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) | bit(stops, S3_SHARP_CORNER) |
+  return state | buffer | bit(s->error == RUN_TIME_RADIUS, S3_RADIUS_ERROR) |
+         bit(s->must_have_returned, S3_RESUME_ERROR) | bit(stops, S3_SHARP_CORNER) |
          bit(s->corner == CORNER_DWELL, S3_CORNER_DWELL) |
          bit(is_on_desired_limit(cs) || (segment_stands(cs) && lookahead_is_at_limit(cs)), S3_DESIRED_LIMIT) |
          bit(s->running && s->matching, S3_MATCHING);
@@ -121,7 +126,9 @@ uint32_t motion_cs_status(uint32_t cs, unsigned word) {
   const struct coordinate_system* s = &coordinate_systems[cs];
   if (word == 0) return status1(s);
   if (word == 2) return status3(cs);
-  return bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(is_in_position(cs), S2_IN_POSITION) |
+  const bool segments = s->active && s->moves[s->executing].kind == MOVE_SEGMENTS;
+  return bit(segments && segment_looks(cs), S2_LOOKAHEAD) | bit(segments, S2_SEGMENTS) |
+         bit(s->error != RUN_TIME_NONE, S2_RUN_TIME_ERROR) | bit(is_in_position(cs), S2_IN_POSITION) |
          bit(rotary_buffers[cs].full, S2_ROTARY_FULL) | bit(s->end_block, S2_END_BLOCK) | bit(has_dwell(s), S2_DWELL) |
          faults(cs) | MODES[s->mode];
 }

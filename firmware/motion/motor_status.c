@@ -21,6 +21,7 @@ enum {
   M1_MOVE_TIMER = 17,
   M1_INTEGRATION_MODE = 16,
   M1_DWELL = 15,
+  M1_DATA_BLOCK_ERROR = 14,
   M1_DESIRED_VELOCITY_ZERO = 13,
   M1_ABORT_DECELERATION = 12,
   M1_SEARCH = 10,    /* for a trigger */
@@ -61,6 +62,13 @@ static bool dwells(uint32_t motor) {
   return d->assigned && s->active && s->moves[s->executing].kind == MOVE_DWELL;
 }
 
+/* The next move of its program did not come in time; until that is started again. */
+static bool had_no_data(uint32_t motor) {
+  const struct axis_definition* d = &axis_definitions[motor];
+  const struct coordinate_system* s = &coordinate_systems[d->cs];
+  return d->assigned && s->error == RUN_TIME_LATE && (s->motors >> motor & 1u) != 0u;
+}
+
 /* A move of a program is timed, and so is one of a jog whose end is known. */
 static bool is_timed(uint32_t motor) {
   const struct axis_definition* d = &axis_definitions[motor];
@@ -85,7 +93,7 @@ static uint32_t status1(uint32_t motor) {
   return of_variables(motor) | bit(m->found.negative_limit, M1_NEGATIVE_LIMIT) |
          bit(m->found.positive_limit, M1_POSITIVE_LIMIT) | bit(m->loop != LOOP_KILLED, M1_AMPLIFIER_ENABLED) |
          bit(!closed, M1_OPEN_LOOP) | bit(is_timed(motor), M1_MOVE_TIMER) | bit(dwells(motor), M1_DWELL) |
-         bit(closed && m->desired_step == 0, M1_DESIRED_VELOCITY_ZERO) |
+         bit(had_no_data(motor), M1_DATA_BLOCK_ERROR) | bit(closed && m->desired_step == 0, M1_DESIRED_VELOCITY_ZERO) |
          bit(motors[motor].status.aborting, M1_ABORT_DECELERATION) | bit(motors[motor].status.home_search, M1_SEARCH);
 }
 

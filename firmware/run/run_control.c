@@ -63,7 +63,7 @@ error_t run_point(uint32_t cs, double program) {
     s->settling = true;
     cs_awake |= 1u << cs;
   }
-  s->end_block = s->must_return = false;
+  s->end_block = s->must_return = s->must_have_returned = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
     s->pointer = POINTER_ROTARY;
@@ -98,6 +98,13 @@ static error_t check_motors(uint32_t cs) {
   return (s->must_return || segment_stands(cs)) && system_motors_are_away(cs) ? ERR_MOVED : ERR_NONE;
 }
 
+/* A start or an order that goes on, and what is told of one that was refused for it. */
+static error_t check_return(uint32_t cs) {
+  const error_t error = check_motors(cs);
+  coordinate_systems[cs].must_have_returned = error == ERR_MOVED;
+  return error;
+}
+
 /* None runs while an open buffer may change it; a PLC changes none. */
 static bool motion_buffer_open(void) { return open_buffer_kind() == OPEN_FIXED && !open_buffer_is_fixed(FIXED_PLC); }
 
@@ -121,7 +128,7 @@ static void forget_match(uint32_t cs) {
 
 error_t run_start(uint32_t cs, bool single_step) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  error_t error = check_motors(cs);
+  error_t error = check_return(cs);
   if (error == ERR_NONE) error = check_program(cs);
   if (error == ERR_NONE && !s->running) error = kinematic_program_check(cs);
   if (error != ERR_NONE) return error;
@@ -201,6 +208,7 @@ void run_abort(uint32_t cs) {
   uint32_t state = hal_mask_servo();
   drop_moves(cs);
   s->running = s->quit = s->end_block = s->stepping = s->continuous = s->matching = s->must_return = false;
+  s->must_have_returned = false;
   hal_unmask(state);
   release_hold(cs);
 }
@@ -228,7 +236,7 @@ void run_stop_on_path(uint32_t cs) {
 /* In the direction of an order: motors are back on the path. */
 static error_t go(uint32_t cs, enum lookahead_order order) {
   struct coordinate_system* s = &coordinate_systems[cs];
-  const error_t error = check_motors(cs);
+  const error_t error = check_return(cs);
   if (error != ERR_NONE) return error;
   if (s->held || segment_stands(cs)) system_motors_take(cs);
   s->must_return = false;

@@ -1,5 +1,5 @@
-// The controller board: board_core and the servo ICs of ServoIcMask, bit m for IC m, m + 8 for IC m*; fitted_i says which
-// of those, and of the MACRO ICs of MacroIcMask, are present at run time. docs/architecture.md has the map.
+// The controller board: board_core and the servo ICs of ServoIcMask, bit m for IC m, m + 8 for IC m*; fitted_i says
+// which of those, and of the MACRO ICs of MacroIcMask, are present at run time. docs/architecture.md has the map.
 `default_nettype none
 
 module board_top #(
@@ -190,8 +190,8 @@ module board_top #(
   );
   // Only chips need the enables and that reset; ICs that are not built have no use for the bus.
   logic unused_core;
-  assign unused_core = &{1'b0, rst_ni, rst_ref_n, ic_sel, bus_x, bus_addr, bus_we, bus_rd, bus_wdata, phase_oe, servo_oe,
-                         equ[71:8]};
+  assign unused_core = &{1'b0, rst_ni, rst_ref_n, ic_sel, bus_x, bus_addr, bus_we, bus_rd, bus_wdata, phase_oe,
+                         servo_oe, equ[71:8]};
 
 endmodule : board_top
 

@@ -107,6 +107,29 @@ def write_board_inputs(board, notice):
     yield from ("};", "", "}  // namespace brick", "")
 
 
+def write_board_ports(board, notice):
+    """For a Verilated module with the board's ports themselves."""
+    ports = [pin for pin in board.pins if pin.word is not None]
+    yield from (f"// {notice}", "// The ports of a Verilated board_chip, or another module with those of board_top.", ON,
+                "#pragma once", "", "#include <cstdint>", "", "namespace brick {", "", "// `in`: BoardInputs.",
+                "template <class Chip, class Inputs>", "void drive_ports(Chip& chip, const Inputs& in) {")
+    for pin in ports:
+        if pin.is_input:
+            yield f"  chip.{pin.rtl} = in.{pin.name};"
+    yield from ("}", "", "// `out`: BoardOutputs.", "template <class Chip, class Outputs>",
+                "void read_ports(const Chip& chip, Outputs& out) {")
+    for word in range(board.words(False)):
+        parts = []
+        for pin in ports:
+            if not pin.is_input and pin.word == word:
+                value = f"std::uint32_t{{chip.{pin.rtl}}}"
+                if pin.rtl_bit is not None:
+                    value = f"({value} >> {pin.rtl_bit} & 1u)"
+                parts.append(value if pin.lsb == 0 else f"{value} << {pin.lsb}")
+        yield f"  out.w[{word}] = {(' |' + chr(10) + ' ' * 13).join(parts)};"
+    yield from ("}", "", "}  // namespace brick", "")
+
+
 def write_motor_pins(servo, notice):
     channel = servo.of("channel")
     flags = [pin for pin in channel if pin.is_input and not pin.name.startswith("adc_")]

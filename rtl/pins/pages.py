@@ -176,6 +176,51 @@ def signals_page(tables, text, path):
     return replaced(text, "<!-- signals of motors -->", "<!-- end -->", [*HEADER, *rows], path)
 
 
+# docs/chips.md -----------------------------------------------------------------------------------------------------
+PORT = re.compile(r"^\s*(input|output|inout)\s+(?:wire\s+)?(?:logic\s*)?(?:\[([^\]]*):0\])?\s*(\w+)\s*,?\s*(?://.*)?$",
+                  re.M)
+BOTH_WAYS = {"pa_data": "D23..D0", "isa_sd": "SD15..SD0"}  # of which the rows tell one way each
+
+
+def pad_rows(top, chip, tables, text, path):
+    """(pad, bits, direction, sentence, rule) of each port of a top of fpga/, its rows those of the chip, else the
+    board's."""
+    rows = {}
+    for pin in (*tables["board"].pins, *chip.pins):
+        rows[pin.name] = rows[re.sub(r"_[io]$", "", pin.rtl)] = pin
+    servo = tables["servo_ic"]
+    header = re.search(rf"module {top} \((.*?)\);", text, re.S)[1]
+    for direction, high, name in PORT.findall(header):
+        base = re.sub(r"_n[io]$", "_n", re.sub(r"_(io|i|o)$", "", name))
+        way = {"input": "in", "output": "out", "inout": "both"}[direction]
+        if base == "clk":
+            yield name, 1, way, "oscillator of 39.3216 MHz, the same for all chips", "servo-ic:3.3"
+        elif base == "motor":
+            pins = [pin for pin in servo.pins if pin.is_input == (way == "in") and pin.group in ("channel", "serial")]
+            shared = [f"`{pin.name}`" for pin in pins if pin.group == "serial"]
+            of_channel = ", ".join(f"`{pin.name}`" for pin in pins if pin.group == "channel")
+            yield (name, sum(map(len, servo.motor_fields(way == "in").values())), way, f"of each channel {of_channel}" +
+                   (f"; {', '.join(shared)}" if shared else ""), "servo-ic:5")
+        elif base not in rows:
+            raise SystemExit(f"{path}: port {name} has no row in rtl/pins")
+        else:
+            bits = int(high or 0) + 1 if not high or high.isdigit() else 0
+            if not 0 < bits <= rows[base].bits:
+                raise SystemExit(f"{path}: port {name} has {bits} bits; expected at most {rows[base].bits}, of its row")
+            yield name, bits, way, BOTH_WAYS.get(base, rows[base].sentence), rows[base].rule
+
+
+def chips_page(tables, chips, root, text, path):
+    for name, chip in chips.items():
+        top = f"fpga/{name}_ecp5.sv"
+        rows = list(pad_rows(f"{name}_ecp5", chip, tables, (root / top).read_text(), top))
+        lines = ["| pad | pads | | what | data sheet |", "|---|---|---|---|---|",
+                 *(f"| `{pad}` | {bits} | {way} | {sentence} | {rule} |" for pad, bits, way, sentence, rule in rows),
+                 f"| all | {sum(row[1] for row in rows)} | | | |"]
+        text = replaced(text, f"<!-- pads of {name} -->", "<!-- end -->", lines, path)
+    return text
+
+
 # docs/pins.md ------------------------------------------------------------------------------------------------------
 def way(board, kind, registers):
     if f"reason {kind}" in board.settings:

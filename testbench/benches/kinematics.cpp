@@ -94,7 +94,7 @@ class KinematicsBench {
 
   MotorHost host_;
   Arm arm_{};
-  double period_ = 5;  // Isx13
+  double period_ = 4;  // Isx13
 };
 
 double KinematicsBench::control(const Course& c, int which, int n) const {
@@ -157,7 +157,7 @@ std::vector<Course> KinematicsBench::courses() {
   const Point corner = {start.x + way * std::cos(angle), start.y + way * std::sin(angle)};
   const Point centre = {corner.x + radius * std::cos(angle / 2), corner.y + radius * std::sin(angle / 2)};
   const bool right = host_.pick(2) != 0;
-  const double tm = 30, round = 50;
+  const double tm = 18, round = 37;
   Course line{"line",
               fmt::format("TM{} TA16 TS4 X{:.9f} Y{:.9f}", tm, corner.x, corner.y),
               [=](double part) {
@@ -185,7 +185,7 @@ std::vector<Course> KinematicsBench::courses() {
 
 void KinematicsBench::axes_are_found(const std::string& when) {
   host_.expect("PMATCH", "");
-  host_.wait_ms(4);
+  host_.wait_ms(3);
   const Point hand = arm_.hand(stands());
   const Point axes = {std::stod(host_.ask("RL$2047")), std::stod(host_.ask("RL$2048"))};
   const double off = std::hypot(axes.x - hand.x, axes.y - hand.y);
@@ -269,29 +269,29 @@ void KinematicsBench::judge(const Course& c) {
 void KinematicsBench::run() {
   if (host_.motors() < 2) return report().fail("channels", "expected two");
   arm_ = {pick(250, 350), pick(180, 250), pick(90, 140), {pick(-30, 30), pick(50, 100)}};
-  period_ = 4 + host_.pick(3);
+  period_ = 4 + host_.pick(2);
   host_.set_up();
   host_.variables(11, 0);
+  host_.variables(92, 0);
   host_.expect("I15=0 M5182->Y:$203F,22", "");
   host_.expect("&1#1->I #2->I", "");
   host_.say({fmt::format("I5150=1 I5113={} I5192=1", period_)});
   programs();
   host_.close_all();
-  host_.wait_ms(2);
   axes_are_found("at the start");
   for (const Course& c : courses()) {
     enter("PROG 1", {c.line});
     host_.record();
     host_.expect("P100=0 B1R", "");
     host_.wait_ms(c.tm);
-    if (!host_.settle(c.ta + 60)) report().fail(c.name, "still moving");
+    if (!host_.settle(c.ta + 60, 3)) report().fail(c.name, "still moving");
     judge(c);
     report().equal(c.name + ": run-time error", host_.ask("RY$2014"), std::string("0"));
   }
   host_.record();
-  host_.expect("#1J:200 #2J:-100", "");
+  host_.expect("#1J:80 #2J:-40", "");
   host_.wait_ms(8);
-  if (!host_.settle(100)) report().fail("jog", "still moving");
+  if (!host_.settle(100, 3)) report().fail("jog", "still moving");
   axes_are_found("behind a jog");
   const Joints there = {stands().shoulder - 100, stands().elbow + 60};
   const Point goal = arm_.hand(there);
@@ -299,7 +299,7 @@ void KinematicsBench::run() {
   host_.record();
   host_.expect("B1R", "");
   host_.wait_ms(8);
-  if (!host_.settle(100)) report().fail("RAPID", "still moving");
+  if (!host_.settle(100, 3)) report().fail("RAPID", "still moving");
   const Joints end = commanded();
   const double off = std::max(std::fabs(end.shoulder - there.shoulder), std::fabs(end.elbow - there.elbow));
   report().step("RAPID: joints at the end", off < 1e-2, fmt::format("{:.5f} counts off, expected up to 0.01", off));

@@ -1,8 +1,10 @@
 // lookahead: programs that ask for more than their motors may, in several coordinate systems at once, each with another
 // Isx20. Limits are first and second differences over servo interrupts, the path is geometry, and the time is held
 // against the optimum that testbench/checkers/optimum.h finds for itself (motion:7.3, motion:7.4). The sizing of LA-5,
-// a host that starves its rotary buffer, and what Isx20 = 0 and 1 leave alone.
+// a host that starves its rotary buffer, what Isx20 = 0 and 1 leave alone, and motors that come to the limit of their
+// desired position (motion:7.5/6).
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -40,13 +42,20 @@ struct Case {
   std::vector<std::string> program;  // behind INC and TA, in counts
   std::vector<SplineMove> moves;
   MotorPoint way;
-  enum { kLimited, kShort, kFree } kind = kLimited;  // kShort: looks not far enough; kFree: limits do not count
+  // kShort: looks not far enough; kFree: limits do not count; X comes to the limit of its desired position, and is held
+  // there, or all stop
+  enum { kLimited, kShort, kFree, kHeld, kStopped } kind = kLimited;
 };
+constexpr double kHeldBy = 180;              // counts of X to its limit, and a part of one
+constexpr double kActual = 40;               // counts behind it where the actual position would abort
+constexpr unsigned kDesiredLimit = 1u << 1;  // of word 3
 
 std::vector<Case> cases() {
   const std::string line = fmt::format("F{} X700 Y-350", kSpeed * std::sqrt(1.25));
   const std::vector<SplineMove> straight{line_move(700 / kSpeed, {700, -350})};
-  const std::vector<Limits> sized{{kSpeed, 1}, {kSpeed, 1}};
+  const std::vector<Limits> sized{{kSpeed, 1}, {kSpeed, 1}}, held{{9, 1}, {9, 1}};
+  const std::string beyond = "F16 X240 Y120";
+  const std::vector<SplineMove> past{line_move(std::hypot(240, 120) / 16, {240, 120})};
   return {
       {"corners",
        12,
@@ -59,6 +68,8 @@ std::vector<Case> cases() {
       {fmt::format("Isx20={}, half of it", kSized / 2), kSized / 2, sized, {line}, straight, {700, -350}, Case::kShort},
       {"Isx20=1", 1, sized, {line}, straight, {700, -350}, Case::kFree},
       {"Isx20=0", 0, sized, {line}, straight, {700, -350}, Case::kFree},
+      {"held at a desired limit", 12, held, {beyond}, past, {kHeldBy, 120}, Case::kHeld},
+      {"stopped at a desired limit", 12, held, {beyond}, past, {}, Case::kStopped},
   };
 }
 
@@ -72,6 +83,7 @@ class Lookahead {
   void define();
   System system(unsigned number, const std::string& name) const { return {number, {2 * number - 1, 2 * number}, name}; }
   void load(const Case& c, unsigned number);
+  void judge_held(const Case& c, const System& s, const SplinePath& path);
   void judge(const Case& c, const System& s);
   void judge_time(const Case& c, const System& s, const SplinePath& path);
   double starve();  // where X is then
@@ -79,7 +91,8 @@ class Lookahead {
   void round(const std::vector<Case>& all, std::size_t first, unsigned count, bool starves);
 
   PathHost host_;
-  std::vector<double> times_;  // of the sized cases
+  std::vector<double> times_;        // of the sized cases
+  std::map<unsigned, double> most_;  // of X of a system: its limit, from where it starts
 };
 
 // The highest system first.
@@ -101,6 +114,14 @@ void Lookahead::load(const Case& c, unsigned number) {
     const bool ignored = host_.bench().negative && i == 1;
     words.push_back(fmt::format("I{0}16={1} I{0}17={2}", s.motors[i], c.limits[i].velocity,
                                 ignored ? 50 : c.limits[i].acceleration));
+  }
+  if (c.kind == Case::kHeld || c.kind == Case::kStopped) {
+    const unsigned motor = s.motors[0];
+    const double from = static_cast<double>(host_.d(0x88 + 0x80 * (motor - 1))) / PathHost::kUnits;
+    const double limit = std::ceil(from) + kHeldBy;
+    most_[number] = limit - from;
+    words.push_back(fmt::format("I{0}13={1} I{0}41={2} I{0}24=${3}", motor, limit + kActual, kActual,
+                                c.kind == Case::kHeld ? "80C001" : "808001"));
   }
   host_.say(words);
   host_.expect(fmt::format("OPEN PROG {} CLEAR", number), "");
@@ -124,9 +145,34 @@ void Lookahead::judge_time(const Case& c, const System& s, const SplinePath& pat
                             took, best.time(), kSlower, best.longest_stop()));
 }
 
+// Its control points are held, and the others go on; or all stand at the knot before the first segment that would have
+// one of these.
+void Lookahead::judge_held(const Case& c, const System& s, const SplinePath& path) {
+  const double most = most_[s.number];
+  const SplinePath along = path.held(0, most);
+  host_.report_limits(s, c.limits, 0.95);
+  host_.report_followed(s, host_.followed(s, along), 60);
+  if (c.kind == Case::kHeld) {
+    judge_time(c, s, along);
+    host_.report_end(s, {most, c.way[1]});
+  } else {
+    const double knot = static_cast<double>(path.first_beyond(0, most) - 3) * kSegment;
+    const MotorPoint at = host_.at(s, host_.last_of(s, {})), expected = path.at(knot);
+    const double off = std::max(std::fabs(at[0] - expected[0]), std::fabs(at[1] - expected[1]));
+    report().step(s.name + ": stands", off <= PathHost::kNear,
+                  fmt::format("at ({:.4f}, {:.4f}), expected the knot ({:.4f}, {:.4f}) before the limit {:.4f}", at[0],
+                              at[1], expected[0], expected[1], most));
+    report().equal(s.name + ": word 3 bit 1", host_.status_word(s, 3) & kDesiredLimit, kDesiredLimit);
+    host_.expect(fmt::format("&{}A", s.number), "");
+  }
+  host_.say({fmt::format("I{0}13=0 I{0}24=$800001", s.motors[0])});
+}
+
 void Lookahead::judge(const Case& c, const System& s) {
   const SplinePath path(c.moves, kTa, 0, kSegment);
-  if (c.kind == Case::kFree) {  // as if there were no buffer
+  if (c.kind == Case::kHeld || c.kind == Case::kStopped) {
+    judge_held(c, s, path);
+  } else if (c.kind == Case::kFree) {  // as if there were no buffer
     host_.report_fitted(s, path, host_.fitted(s, path));
     const auto used = host_.use(s.motors[0], c.limits[0]);
     report().step(s.name + ": nothing is limited", used.acceleration > 2,
@@ -143,7 +189,7 @@ void Lookahead::judge(const Case& c, const System& s) {
                   fmt::format("{:.0f} % of Ixx16, expected up to {:.0f} %; {:.1f} ms, {:.1f} with all of it",
                               100 * used.velocity, 100 * most, took, times_.back()));
   }
-  host_.report_end(s, c.way);
+  if (!c.way.empty() && c.kind != Case::kHeld) host_.report_end(s, c.way);
   report().equal(s.name + ": run-time error", host_.run_time_error(s), 0u);
 }
 
@@ -224,7 +270,8 @@ void Lookahead::run() {
 Bench lookahead_bench() {
   return {
       "lookahead",
-      "paths that ask for more than their motors may, Isx20 = 0, 1 and more, a starving host: limits, path and time",
+      "paths that ask for more than their motors may, Isx20 = 0, 1 and more, a starving host, desired limits: limits, "
+      "path and time",
       {"Ixx17 of every second motor is not told to the controller", "corners: limits", "exceeds Ixx17"},
       [](BenchContext& b) { Lookahead(b).run(); },
       kAServoIc};

@@ -1,7 +1,8 @@
 // reversal: one contour in several coordinate systems at once, each stopped and turned round by other orders at times
 // of its own: quick stops, back to the start, back to the oldest stored segment, single segments, H and %, and the same
-// orders where there is no lookahead. Backwards is judged by the same path as forwards, to 1/16 count; limits as
-// differences; synchronous assignments by the word that they write, at each servo interrupt (motion:7.5).
+// orders where there is no lookahead; then back to a DWELL and not beyond it. Backwards is judged by the same path as
+// forwards, to 1/16 count; limits as differences; synchronous assignments by the word that they write, at each servo
+// interrupt (motion:7.5).
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -28,10 +29,14 @@ struct Order {
 constexpr double kJitter = 3;
 constexpr double kStep = 0.5, kLongest = 250;  // ms
 
+constexpr const char* kDwelling = "B9R";        // the program that dwells
+constexpr double kThere = 28, kBackFeed = 1.75;  // counts; counts/ms on the slow way from the DWELL
+
 struct Case {
   std::string name;
   unsigned ahead, records;
   std::vector<Order> orders;
+  bool dwells = false;  // the second program follows, with a DWELL in it
   bool limited = true;  // by Ixx16 and Ixx17, as nothing but lookahead changes the rate
   enum { kStays, kToStart, kToOldest, kTurns } back = kStays;
 };
@@ -41,16 +46,23 @@ std::vector<Case> cases() {
            12,
            kRecords,
            {{12, "\\"}, {24, "I5{}21=14"}, {32, "I5{}21=14"}, {40, "I5{}21=15"}, {50, ">"}},
+           false,
            true,
            Case::kTurns},
-          {"< to the oldest segment", 12, kFewRecords, {{28, "<"}, {72, ">"}}, true, Case::kToOldest},
+          {"< to the oldest segment", 12, kFewRecords, {{28, "<"}, {72, ">"}}, false, true, Case::kToOldest},
           {"Isx20=1: H, %, < to the start",
            1,
            kRecords,
            {{6, "H"}, {11, "R"}, {15, "%50"}, {20, "<"}, {28, "%100"}, {64, ">"}},
            false,
+           false,
            Case::kToStart},
-          {"Isx20=0: < is H, > is R", 0, kRecords, {{14, "<"}, {26, ">"}}, false}};
+          {"Isx20=0: < is H, > is R",
+           0,
+           kRecords,
+           {{6, "<"}, {16, ">"}, {59, "I5{}20=12"}, {60, kDwelling}, {91, "<"}, {131, ">"}},
+           true,
+           false}};
 }
 
 struct Contour {
@@ -78,11 +90,13 @@ class Reversal {
   void define(unsigned systems, const std::vector<Case>& all, std::size_t first);
   void give_orders(const std::vector<Case>& all, std::size_t first, unsigned count);
   void judge(const Case& c, const System& s);
+  void judge_dwell(const System& s, std::size_t from);
   void judge_assignments(const System& s, const PathHost::Followed& f);
   void judge_turn(const Case& c, const System& s, const SplinePath& path, const PathHost::Followed& f);
 
   PathHost host_;
   Contour contour_ = contour();
+  std::size_t dwelling_ = 0;  // the sample at which that program is started
 };
 
 // The highest system first, the lowest deleted first.
@@ -117,6 +131,7 @@ void Reversal::give_orders(const std::vector<Case>& all, std::size_t first, unsi
       if (o.left.empty() || !o.began) continue;
       if (host_.now() - *o.began < ns_to_ticks(static_cast<std::uint64_t>(o.left.front().ms * 1e6))) continue;
       const std::string line = fmt::format(fmt::runtime(o.left.front().line), s);
+      if (line == kDwelling) dwelling_ = host_.last(2 * s - 1);
       host_.expect(fmt::format("&{}{}", s, line), "");
       if (line == ">" && std::exchange(again, false)) host_.say({fmt::format("M{}=1", 200 + s)});
       o.left.erase(o.left.begin());
@@ -176,9 +191,36 @@ void Reversal::judge_turn(const Case& c, const System& s, const SplinePath& path
   }
 }
 
+// There, a DWELL, and slowly back: `<` goes to where the DWELL was and stays there, `>` to the end.
+void Reversal::judge_dwell(const System& s, std::size_t from) {
+  const System named{s.number, s.motors, "behind a DWELL"};
+  const MotorPoint dwell{contour_.way[0] + kThere, contour_.way[1]};
+  std::size_t there = from;
+  const auto is_there = [&](std::size_t sample) {  // to the unit of a position word
+    const MotorPoint p = host_.at(s, sample);
+    return std::hypot(p[0] - dwell[0], p[1] - dwell[1]) < 0.5 / PathHost::kUnits;
+  };
+  while (there < host_.last_of(s, {}) && !is_there(there)) ++there;
+  const SplinePath path({line_move(kThere / kBackFeed, {-kThere, 0})}, kTa, 0, kSegment);
+  const auto f = host_.followed(named, path, {there, ~std::size_t{0}}, dwell);
+  host_.report_followed(named, f, 80);
+  host_.report_limits(named, {{kSpeed, kAcceleration}, {kSpeed, kAcceleration}}, 0.9, {from, ~std::size_t{0}});
+  double high = 0, back = 0;
+  std::size_t stands = 0;
+  for (std::size_t i = 0; i < f.times.size(); ++i) {
+    high = std::max(high, f.times[i]);
+    back = std::max(back, high - f.times[i]);
+    stands += high > 4 * kSegment && is_there(there + i);
+  }
+  report().step(named.name + ": back to it, not beyond", back > 4 * kSegment && stands > 2,
+                fmt::format("{:.2f} ms back, exactly there in {} servo interrupts, expected {} ms and 3", back, stands,
+                            4 * kSegment));
+}
+
 void Reversal::judge(const Case& c, const System& s) {
   const SplinePath path(contour_.moves, kTa, 0, kSegment);
-  const auto f = host_.followed(s, path);
+  const auto f = host_.followed(s, path, {0, c.dwells ? dwelling_ : ~std::size_t{0}});
+  if (c.dwells) judge_dwell(s, dwelling_);
   host_.report_followed(s, f, 80);
   if (c.limited) host_.report_limits(s, {{kSpeed, kAcceleration}, {kSpeed, kAcceleration}}, 0.9);
   judge_turn(c, s, path, f);
@@ -204,6 +246,9 @@ void Reversal::run() {
     for (const std::string& text : contour_.program) host_.expect(fmt::format(fmt::runtime(text), 200 + s), "");
     host_.expect("CLOSE", "");
   }
+  host_.expect("OPEN PROG 9 CLEAR", "");
+  host_.expect(fmt::format("INC F{} TA{} TS0 X{} DWELL4 F{} X{}", kFeed, kTa, kThere, kBackFeed, -kThere), "");
+  host_.expect("CLOSE", "");
   host_.close_all();
   const auto all = cases();
   for (std::size_t first = 0; first < all.size(); first += systems) {
@@ -225,8 +270,8 @@ void Reversal::run() {
 Bench reversal_bench() {
   return {
       "reversal",
-      "a contour stopped and turned round on its way: back to the oldest segment, single segments, H, %; assignments "
-      "once",
+      "a contour stopped and turned round on its way: back to the oldest segment, to a DWELL, single segments, H, %; "
+      "assignments once",
       {"an assignment is made a second time", "*: assignments", "at sample *: 1, expected"},
       [](BenchContext& b) { Reversal(b).run(); },
       kAServoIc};

@@ -107,6 +107,18 @@ MotorPoint SplinePath::at(double t) const {
   return p;
 }
 
+SplinePath SplinePath::held(std::size_t motor, double most) const {
+  SplinePath path = *this;
+  for (MotorPoint& p : path.points_) p[motor] = std::min(p[motor], most);
+  return path;
+}
+
+std::size_t SplinePath::first_beyond(std::size_t motor, double most) const {
+  std::size_t k = 0;
+  while (k < points_.size() && points_[k][motor] <= most) ++k;
+  return k;
+}
+
 double SplinePath::distance2(const MotorPoint& point, double t) const {
   const double inside = std::min(std::max(t, 0.0), end());
   const auto k = std::min(static_cast<std::size_t>(inside / period_), points_.size() - 4);

@@ -39,6 +39,9 @@ class SplinePath {
   std::size_t motors() const { return points_.front().size(); }
   const std::vector<MotorPoint>& points() const { return points_; }
   MotorPoint at(double t) const;
+  // The same with the points of a motor no further up than `most` (motion:7.5/6).
+  SplinePath held(std::size_t motor, double most) const;
+  std::size_t first_beyond(std::size_t motor, double most) const;  // of its points
 
   // How far a point is from the path, and where on it that is, between two times.
   struct Nearest {

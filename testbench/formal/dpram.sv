@@ -5,7 +5,8 @@
 //   from fall to rise, write data from 12.7 ns after the fall to the rise (rows 101 to 117); a strobe of this RAM ends
 //   after /TA is low (row 118), one of another device lasts 50.9 ns or more;
 // - of isa_slave: its outputs change with clk_ref, direction and address stand from the command's start to the clock
-//   after its end, in which a write has its strobe. It may end a command at any time, BUSY or not.
+//   after its end, in which a write may have its strobe (`isa_slave`, R3 and R4). It may end a command at any time, BUSY
+//   or not, with or without a strobe.
 // edit: four words of memory instead of 32768, and nothing else asked for (rtl/host/dpram_memory.sv)
 //   - mem [0:32767]
 //   + mem [0:3]
@@ -60,15 +61,11 @@ module dpram_rules (
              .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
              .mem_wdata_i(host_wdata_i), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
              .host_busy_o(host_busy_pin));
-  // From inside: who owns which word, and the ports of the memory.
-  (* hierconn *) wire logic        \dut.grant ;
-  (* hierconn *) wire logic        \dut.own_q ;
-  (* hierconn *) wire logic        \dut.own_wr_q ;
-  (* hierconn *) wire logic        \dut.host_own_q ;
-  (* hierconn *) wire logic [14:0] \dut.cell_q ;
+  // From inside the ports of the memory, and nothing of the arbiter.
   (* hierconn *) wire logic        \dut.u_memory.a_we_i ;
   (* hierconn *) wire logic        \dut.u_memory.a_re_i ;
   (* hierconn *) wire logic [14:0] \dut.u_memory.a_addr_i ;
+  (* hierconn *) wire logic [15:0] \dut.u_memory.a_wdata_i ;
   (* hierconn *) wire logic [1:0]  \dut.u_memory.b_we_i ;
   (* hierconn *) wire logic        \dut.u_memory.b_re_i ;
 
@@ -104,23 +101,22 @@ module dpram_rules (
       assume (host_sel_i == host_sel_q && host_wr_i == host_wr_q && host_wdata_i == host_wdata_q);
       assume (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q);
     end else begin
-      assume (host_wr_i == (host_sel_q && !host_sel_i && !host_rd_q));
+      assume (!host_wr_i || (host_sel_q && !host_sel_i && !host_rd_q));
       assume (!host_sel_q ||
               (host_rd_i == host_rd_q && host_addr_i == host_addr_q && host_be_i == host_be_q));
     end
   end
 
   // ---------------------------------------------------------------- what an observer of the pins counts
-  logic       conflict, host_here, host_ends, granted_q = 1'b0, ended_q = 1'b0, cpu_busy_q = 1'b0;
+  logic       conflict, host_here, host_ends, asked_q = 1'b0, ended_q = 1'b0, cpu_busy_q = 1'b0;
   logic [3:0] cpu_steps_q = 4'd0, host_steps_q = 4'd0;
   logic [1:0] turns_q = 2'd0;
-  assign host_here = host_sel_i | host_wr_i;
+  assign host_here = host_sel_i | (asked_q & ~host_rd_i);  // a write ends with the clock after its command
   assign conflict  = host_here & (host_addr_i == addr_i) & (~host_rd_i | ~wr_ni);
   assign host_ends = host_sel_q & ~host_sel_i;
   always @($global_clock) begin
     cpu_busy_q <= cpu_busy;
-    // The CPU: was its access granted; steps of /TA since its fall or the host's end; host accesses that it waited for.
-    granted_q   <= (was_low & granted_q) | (~clk_pwm_q & \dut.grant );
+    // The CPU: steps of /TA since its fall or the host's end; host accesses that it waited for.
     cpu_steps_q <= (!cpu_wait || conflict) ? 4'd0 : cpu_steps_q + {3'd0, cpu_steps_q != 4'd15};
     turns_q     <= !cpu_busy ? 2'd0 : turns_q + {1'd0, host_ends && conflict && turns_q != 2'd3};
     // The host: steps of BUSY since the CPU's strobe has first been high.
@@ -134,6 +130,30 @@ module dpram_rules (
   assign touch_a = write_a | \dut.u_memory.a_re_i ;
   assign touch_b = write_b | \dut.u_memory.b_re_i ;
 
+  // Who may have a word, as the two sides must believe. The CPU: in a read from the edge at which the memory was read for
+  // it to the rise; in a write from /TA low on until the memory has been written. The host: from the edge of clk_ref that
+  // found its command and left BUSY low, to its end.
+  (* anyconst *) logic [3:0] b;  // any bit of the data
+  logic       edge_pwm, read_q = 1'b0, made_q = 1'b0, due_q = 1'b0, due_bit_q, drive_q = 1'b0;
+  logic       cpu_reads, cpu_writes, host_in, made;
+  logic [1:0] due_addr_q;
+  logic [2:0] due_steps_q = 3'd0;
+  assign edge_pwm   = !clk_pwm_q;  // at the end of this step
+  assign cpu_reads  = !rd_ni && sel_i && read_q;
+  assign cpu_writes = !wr_ni && sel_i && !cpu_wait && !made_q;
+  assign host_in    = host_here && asked_q && !host_busy;
+  assign made       = edge_pwm && write_a && \dut.u_memory.a_addr_i [1:0] == (due_q ? due_addr_q : addr_i) &&
+                      \dut.u_memory.a_wdata_i [b] == (due_q ? due_bit_q : wdata_i[b]);
+  always @($global_clock) begin
+    drive_q <= cpu_drive;
+    read_q  <= !rd_ni && (read_q || (edge_pwm && \dut.u_memory.a_re_i && \dut.u_memory.a_addr_i [1:0] == addr_i));
+    made_q  <= !wr_ni && (made_q || (made && !due_q));
+    if (edge_ref) asked_q <= host_sel_i;
+    // A write whose strobe has ended, after /TA was low, may be made a little later.
+    if (rise && !wr_nq && sel_q && !made_q) {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q[b], 3'd0};
+    else if (due_q) {due_q, due_steps_q} <= {!made, due_steps_q + 3'd1};
+  end
+
   always @($global_clock) begin
     // R1: The ports never touch one word at one edge if one of them writes: mutual exclusion in the memory.
     if (edge_ref && touch_a && touch_b && \dut.u_memory.a_addr_i [1:0] == host_addr_i) begin
@@ -141,15 +161,22 @@ module dpram_rules (
       C1: cover (!cpu_busy);
     end
 
-    // R2: From its grant to the end of its strobe or command a side is alone in its word, if one of the two writes.
-    if (\dut.own_q && \dut.host_own_q && \dut.cell_q [1:0] == host_addr_i) begin
-      R2: assert (!\dut.own_wr_q && (host_rd_i || (!host_sel_i && !host_wr_i)));
+    // R2: No side touches a word that the other may have, if one of the two writes.
+    if ((edge_pwm && touch_a && host_in && \dut.u_memory.a_addr_i [1:0] == host_addr_i) ||
+        (edge_ref && touch_b && ((cpu_reads || cpu_writes) && addr_i == host_addr_i ||
+                                 due_q && due_addr_q == host_addr_i))) begin
+      R2: assert ((!touch_a || !edge_pwm || !host_in || \dut.u_memory.a_addr_i [1:0] != host_addr_i ||
+                   (!write_a && host_rd_i)) &&
+                  (!touch_b || !edge_ref || !(cpu_reads && addr_i == host_addr_i && write_b)) &&
+                  (!touch_b || !edge_ref || !(cpu_writes && addr_i == host_addr_i)) &&
+                  (!touch_b || !edge_ref || !(due_q && due_addr_q == host_addr_i)));
       C2: cover (host_sel_i && was_low);
     end
 
-    // R3: BUSY means wait: /TA is up with BUSY, and no strobe that heeds /TA ends before its access was granted.
-    R3: assert ((!cpu_busy || cpu_wait) && (!rise || !sel_q || granted_q));
-    C3: cover (rise && sel_q && granted_q);
+    // R3: BUSY means wait: /TA is up with BUSY. A strobe that heeds /TA gets its word: by the end of /RD the memory was read
+    // at its address, and a write is made, with its address and data, at most 8 steps after /WR.
+    R3: assert ((!cpu_busy || cpu_wait) && (!rise || !sel_q || rd_nq || read_q) && due_steps_q < 3'd7);
+    C3: cover (due_q && due_steps_q == 3'd1);
 
     // R4: The CPU is let in within 8 steps, 34 ns, of its fall or the end of the host's access to its word.
     if (cpu_wait) begin
@@ -175,8 +202,8 @@ module dpram_rules (
       C7: cover (host_rd_q);
     end
 
-    // R8: The CPU's data pins are driven while /RD is low and its own access has been granted, never else.
-    R8: assert (!cpu_drive || (!rd_ni && granted_q));
+    // R8: The CPU's data pins are driven while /RD is low and the memory has been read at its address, never else, and stand.
+    R8: assert (!cpu_drive || (cpu_reads && (!drive_q || rdata[b] == rdata_q[b])));
     C8: cover (cpu_drive && cpu_wait);
   end
 

@@ -84,10 +84,10 @@ def commutation_serial():
         file = pathlib.Path(folder) / "serial.toml"
         file.write_text(plant)
         # 2 MHz, from the fall of PHASE, SSI; trigger and driver enable, 12 bits (servo-ic:11.3)
-        lines = ["M50->X:$78B2F,0,24 M51->X:$78B20,0,24 M50=$310102 M51=$140C", "#1J=137", "@wait 120ms", "#1K I101=0",
-                 "I171=4096 I183=$78B20 I101=3 I181=$78B20 I191=$0C0000", "#1?", "#1$", "RX$B4", "RY$78B20", "@wait 2ms",
-                 "#1?", "#1J=1137", "@wait 150ms", "#1?", "#1P", "#1K I110=$78B20 I195=$0C0000", "#1$*", "#1P",
-                 "RY$78B20"]
+        lines = ["M50->X:$78B2F,0,24 M51->X:$78B20,0,24 M50=$310102 M51=$140C", "#1J=137", "@wait 120ms",
+                 "#1K I101=0", "I171=4096 I183=$78B20 I101=3 I181=$78B20 I191=$0C0000", "#1?", "#1$",
+                 "RX$B4", "RY$78B20", "@wait 2ms", "#1?", "#1J=1137", "@wait 150ms", "#1?", "#1P",
+                 "#1K I110=$78B20 I195=$0C0000", "#1$*", "#1P", "RY$78B20"]
         r = play(lines, "--plant", str(file), "--load", "servo8")
     check(r.returncode == 0, f"exit {r.returncode}: {r.stderr}")
     before, phase, sensor, after, rest, at, absolute, read = r.stdout.split()

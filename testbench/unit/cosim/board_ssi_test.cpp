@@ -12,10 +12,17 @@ namespace {
 
 // Straps::ssi_kind.
 constexpr std::uint8_t kNone = 0, kGeo = 1, kGeoBrick = 2, kGeoPageAlone = 3;
-const auto kEngineNames = [](const auto& engine) { return std::string(engine.param ? "Rtl" : "Model"); };
 
-class BoardSsi : public BoardMap {
+std::unique_ptr<Board> make_board(const std::string& engine) {
+  if (engine == "Rtl") return make_rtl_board(kTwoServoIcs);
+  if (engine == "Model") return make_model_board(kTwoServoIcs);
+  return make_lockstep_board(make_rtl_board(kTwoServoIcs), make_model_board(kTwoServoIcs));
+}
+
+class BoardSsi : public ::testing::TestWithParam<const char*> {
  protected:
+  BoardSsi() : rig(make_board(GetParam()), kTwoServoIcs) {}
+
   void start(std::uint8_t kind) {
     rig.in.ssi_kind = kind;
     rig.in.ext_clock = true;
@@ -47,6 +54,8 @@ class BoardSsi : public BoardMap {
     }
     return kNever;
   }
+
+  BoardRig rig;
 };
 
 // servo-ic:11.4/5: the page is device registers on a Geo PMAC, with the option or without, and reads 0 where nothing
@@ -167,7 +176,8 @@ TEST_P(BoardSsi, ATripOfTheWatchdogIsNothingToAFrame) {
   EXPECT_EQ(rig.read(false, 0xFF54), 0xFFFFFFu);
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, BoardSsi, ::testing::Bool(), kEngineNames);
+INSTANTIATE_TEST_SUITE_P(Engines, BoardSsi, ::testing::Values("Rtl", "Model", "Lockstep"),
+                         [](const auto& engine) { return std::string(engine.param); });
 
 }  // namespace
 }  // namespace brick

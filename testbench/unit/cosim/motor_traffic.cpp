@@ -108,7 +108,7 @@ void MotorTraffic::bus_step() {
     default:
       if (one_in(2)) inputs_.pa_aa = 0;
       bus_step_ = 0;
-      bus_at_ += started_ < 6 * ics_.size() ? 1 : 1 + up_to(one_in(10) ? 20'000 : options_.bus_pause);
+      bus_at_ += started_ < 6 * ics_.size() ? 1 : 1 + up_to(one_in(10) ? options_.long_pause : options_.bus_pause);
       if (options_.fail_every != 0) fail_or_recover();
       if (reset_at_ != kNever) break;
       if (options_.reset_one_in != 0 && one_in(options_.reset_one_in)) {

@@ -14,7 +14,7 @@ namespace brick {
 
 struct MotorTrafficOptions {
   std::uint32_t ics = 1;      // that take part, as in BoardInputs::fitted; the lowest drives the clocks
-  Tick bus_pause = 300;       // between two accesses at most; one in ten times 20000
+  Tick bus_pause = 300;       // between two accesses at most, but for long_pause
   Tick pins_pause = 750;      // between two changes of the pins of an IC, about at most
   bool moving_clocks = true;  // short periods, changed now and then; else as after a reset, and left alone
   unsigned reset_one_in =
@@ -24,6 +24,7 @@ struct MotorTrafficOptions {
   // Accesses between two failures of 5 V, each followed by 60 more, every fifth a write of a channel's control word,
   // and a reset; 0 = none.
   unsigned fail_every = 0;
+  Tick long_pause = 20'000;  // of one in ten accesses, at most
 };
 
 class MotorTraffic {

@@ -100,7 +100,7 @@ TEST_F(OnlyLookahead, IsNoSwitchOfInPosition) {
     ASSERT_EQ(host("I13=1"), "");
     EXPECT_EQ(i_variable_foreground_in_position(), product == 0);
     protection_pass();
-    protection_begin_servo();
+    protection_begin_servo();  // the next interrupt
     EXPECT_EQ(protection_watched == UINT32_MAX, product == 0) << "every motor at each interrupt";
   }
 }

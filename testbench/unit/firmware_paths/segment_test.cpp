@@ -100,6 +100,31 @@ TEST_F(Segments, ALateMoveBlendsInWhatIsLeft) {
   EXPECT_EQ(change(101), 0);
 }
 
+// Behind one for which the sequence has gone straight on, nothing is made beyond the corner until it is needed: the
+// next move has all of its blend, 50 ms about 135 for 50 counts/ms.
+TEST_F(Segments, BehindALateMoveTheNextOneIsWaitedFor) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=2"), "");
+  ASSERT_EQ(host("DELETE GATHER"), "");
+  ASSERT_EQ(host("&1DEFINE ROTARY 100 B0 OPEN ROTARY"), "");
+  ASSERT_EQ(host("INC TM100 TA10 TS0 X10"), "");
+  ASSERT_EQ(host("&1R"), "");
+  for (int i = 0; i < 100 && !cs().active; ++i) platform::servo_ticks(1);
+  platform::servo_ticks(ticks_of(50));  // the first one already goes straight on
+  ASSERT_EQ(host("TM30 X3"), "");
+  platform::servo_ticks(ticks_of(95 - 50));
+  ASSERT_EQ(host("TM100 TA50 X15"), "");
+  double sharpest = 0, last[2] = {at(1), at(1)};
+  for (unsigned n = 0; n < ticks_of(100); ++n) {
+    platform::servo_ticks(1);
+    if (n > 1) sharpest = std::max(sharpest, std::abs(at(1) - 2 * last[1] + last[0]) / (kTickMs * kTickMs));
+    last[0] = last[1], last[1] = at(1);
+  }
+  EXPECT_NEAR(sharpest, 50.0 / 50, 0.02);
+  platform::servo_ticks(ticks_of(200));
+  EXPECT_EQ(motors[0].trajectory, 28000 * 3072);
+}
+
 // motion:7.1/7: what is not there 12 ms before it is needed is not waited for; 4 more for what is made meanwhile.
 TEST_F(Segments, ANextMoveIsWaitedForUntilTwelveMsBeforeItsBlend) {
   for (const double before : {16.5, 9.5}) {

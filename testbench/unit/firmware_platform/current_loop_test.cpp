@@ -9,6 +9,7 @@
 #include "testbench/unit/random_seed.h"
 
 extern "C" {
+#include "firmware/motion/motor_state.h"
 #include "firmware/motion/overload.h"
 }
 
@@ -124,6 +125,21 @@ TEST_F(CurrentLoop, TheSumStopsAtFullVoltageAndComesBackAtOnce) {
   command(-16384);
   phase(26);
   EXPECT_LT(x_word(kIntegrators), 0);
+}
+
+// `O` behind `O` is a new command and nothing else.
+TEST_F(CurrentLoop, AnotherOpenLoopCommandKeepsTheSum) {
+  gains(0.01, 0, 0);
+  set("I100=1");
+  ASSERT_TRUE(motor_open(0, 5000 << 8));
+  measure(0, 0);
+  command(5000);
+  phase(5);
+  const std::int64_t sum = x_word(kIntegrators);
+  ASSERT_GT(sum, 10000);
+  ASSERT_TRUE(motor_open(0, 6000 << 8));
+  phase();
+  EXPECT_NEAR(x_word(kIntegrators), sum * 6.0 / 5.0, sum / 20.0);
 }
 
 // Vq = -4 * 1 * -0.3 - ... is at its end, and the sum goes the other way.

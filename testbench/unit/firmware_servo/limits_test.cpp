@@ -169,6 +169,24 @@ TEST_F(MotionLimits, AnInputKillsWhileAnAbortIsUnderWay) {
 }
 
 // An open loop that comes to a limit is closed; O is refused as long as it stands there.
+// What comes to rest already is left alone, and was not stopped by the limit.
+TEST_F(MotionLimits, ARampThatIsUnderWayIsLeftAlone) {
+  c_.line("#1J+");
+  follow(60);
+  ASSERT_EQ(c_.line("&1A"), "");
+  follow_until([] { return motors[0].status.aborting; });
+  const double begins = at(1);
+  c_.line("I113=" + std::to_string(std::lround(begins) - 1));
+  flags(1, kPositive);
+  follow(20);
+  EXPECT_TRUE(status1(1, 21));
+  EXPECT_FALSE(status2(1, 11));
+  follow(200);
+  EXPECT_NEAR(at(1) - begins, 512, 20);
+  EXPECT_FALSE(status2(1, 11));
+  EXPECT_EQ(loop(1), LOOP_CLOSED);
+}
+
 TEST_F(MotionLimits, AnOpenLoopIsClosed) {
   c_.line("I113=100");
   ASSERT_EQ(c_.line("#1O10"), "");

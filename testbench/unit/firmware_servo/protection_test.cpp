@@ -209,10 +209,26 @@ TEST_F(Protection, NothingIsControlledWithoutClocks) {
   }
   EXPECT_FALSE(runs());
   EXPECT_EQ(c_.line("#1J/"), "ERR018");
+  EXPECT_FALSE(motor_close(0));
+  EXPECT_FALSE(motor_open(0, 0));
   status_show(STATUS_NO_PHASE_CLOCK, false);
   flags(1, 0);
   EXPECT_EQ(c_.line("#1J/"), "");
   EXPECT_EQ(loop(1), LOOP_CLOSED);
+}
+
+// Of all motors those that are not activated are none: their words are the user's (motion:1.5/2).
+TEST_F(Protection, ATripLeavesMotorsThatAreNotActivatedAlone) {
+  constexpr std::uint32_t kOutput = 0x78012, kAmplifier = 0x78015;  // of motor 3
+  c_.line("I302=$78012 I325=$78010");
+  *hal_y(kOutput) = 0x123456;
+  *hal_x(kAmplifier) |= kEnable;
+  ASSERT_TRUE(motor_close(0));
+  flags(1, kFault);
+  servo(3);
+  ASSERT_EQ(loop(1), LOOP_KILLED);
+  EXPECT_EQ(*hal_y(kOutput), 0x123456u);
+  EXPECT_NE(*hal_x(kAmplifier) & kEnable, 0u);
 }
 
 TEST_F(Protection, AmplifierFault) {

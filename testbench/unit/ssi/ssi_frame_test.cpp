@@ -42,6 +42,7 @@ TYPED_TEST(SsiFrames, GeoReadsEveryLengthAndCodeAtEveryClock) {
 }
 
 TYPED_TEST(SsiFrames, BrickReadsEveryNumberOfBitsWithParityAndGray) {
+  BRICK_COVERS("SSI-1");
   std::uint64_t position = 0x9D2C5680;
   for (unsigned bits = 12; bits <= 32; ++bits) {
     const unsigned channel = 1 + bits % 8, gray = bits & 1, parity = bits % 3;
@@ -66,6 +67,7 @@ TYPED_TEST(SsiFrames, BrickReadsEveryNumberOfBitsWithParityAndGray) {
 }
 
 TYPED_TEST(SsiFrames, BrickTellsAParityError) {
+  BRICK_COVERS("SSI-1");
   for (const unsigned parity : {1u, 2u}) {
     this->rig.encoders = nullptr;
     this->rig.reset(false);
@@ -83,6 +85,7 @@ TYPED_TEST(SsiFrames, BrickTellsAParityError) {
 
 // The error belongs to the word: the next right one takes it away.
 TYPED_TEST(SsiFrames, BrickTellsAParityErrorOfTheLastWordOnly) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->rig.write(true, 0x2F, 0x180302);
   this->rig.write(true, brick_word(3), 1u << 14 | 0x1400 | 24);
@@ -99,6 +102,7 @@ TYPED_TEST(SsiFrames, BrickTellsAParityErrorOfTheLastWordOnly) {
 
 // Bits 15, 14 = 11 are reserved: no parity, no clock for it, no error.
 TYPED_TEST(SsiFrames, BrickTakesTheReservedParityForNone) {
+  BRICK_COVERS("SSI-1");
   for (const std::uint64_t position : {0x654321u, 0x654320u}) {
     this->rig.encoders = nullptr;
     this->rig.reset(false);
@@ -115,6 +119,7 @@ TYPED_TEST(SsiFrames, BrickTakesTheReservedParityForNone) {
 
 // servo-ic:11.3/6.
 TYPED_TEST(SsiFrames, BrickTakesTwelveToThirtyTwoBits) {
+  BRICK_COVERS("SSI-1");
   struct Case {
     unsigned asked, bits;
   };
@@ -137,6 +142,7 @@ TYPED_TEST(SsiFrames, BrickTakesTwelveToThirtyTwoBits) {
 
 // Cycle n of 100 MHz ends at the first tick not before n x 18432/15625 (servo-ic:11.3/3).
 TYPED_TEST(SsiFrames, BrickDividesAHundredMegahertz) {
+  BRICK_COVERS("SSI-1");
   struct Case {
     unsigned word;
     Tick period;
@@ -167,6 +173,7 @@ TYPED_TEST(SsiFrames, BrickDividesAHundredMegahertz) {
 
 // The first low half at high powers of two, and of the largest divisor that a simulation can wait for.
 TYPED_TEST(SsiFrames, BrickDividesByEveryPowerOfTwo) {
+  BRICK_COVERS("SSI-1");
   for (unsigned power = 5; power < 16; ++power) {
     const unsigned divisor = power < 15 ? 1 : 2, half = divisor << power >> 1;
     this->rig.encoders = nullptr;
@@ -182,6 +189,7 @@ TYPED_TEST(SsiFrames, BrickDividesByEveryPowerOfTwo) {
 
 // servo-ic:11.3/7: the high part that is read belongs to the low part that was read last.
 TYPED_TEST(SsiFrames, BrickHoldsTheHighPartOfAReadPosition) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   SsiEncoderParameters p;
   p.bits = 32;
@@ -203,6 +211,7 @@ TYPED_TEST(SsiFrames, BrickHoldsTheHighPartOfAReadPosition) {
 
 // servo-ic:11.9/2: at 96 ticks a period a line may be late by 93; by 94 each bit is read as the one before.
 TYPED_TEST(SsiFrames, ALineMayBeLateByAPeriodLessThreeTicks) {
+  BRICK_COVERS("SSI-1");
   for (const Tick delay : {0, 48, 93, 94}) {
     this->rig.encoders = nullptr;
     this->rig.reset(true);
@@ -219,6 +228,7 @@ TYPED_TEST(SsiFrames, ALineMayBeLateByAPeriodLessThreeTicks) {
 
 // The result stands until one edge after the last rise, and then is the next as a whole.
 TYPED_TEST(SsiFrames, TheResultIsLoadedOneTickAfterTheLastRise) {
+  BRICK_COVERS("SSI-1");
   for (Tick place = 0; place < 3; ++place) {  // of the trigger between edges of clk_ref
     this->rig.encoders = nullptr;
     this->rig.reset(true);

@@ -86,6 +86,7 @@ class Stimulus {
 class SsiLockstep : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(SsiLockstep, EnginesAgreeAtEveryTickOnRandomStimulus) {
+  BRICK_COVERS("SSI-1");
   LockstepSsiRig rig;
   Stimulus stimulus(rig, random_seed(GetParam()));
   stimulus.run(300'000);

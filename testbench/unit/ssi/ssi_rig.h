@@ -89,13 +89,16 @@ class ModelSsiRig {
       if (!access_.write) ssi_.read_taken(access_.x, access_.address);
     }
     ++now_;
-    if (here || now_ >= ssi_.next_event()) {
+    const bool due = now_ >= ssi_.next_event();
+    woken_ += due ? 1 : 0;
+    if (here || due) {
       ssi_.advance(now_);
       clk_ = ssi_.clk();
     }
     if (here && access_.write) ssi_.write(access_.x, access_.address, access_.value);
     if (here) pending_ = false;
   }
+  int woken() const { return woken_; }  // edges that it asked for
   std::uint32_t taken() const { return taken_; }
 
  private:
@@ -104,6 +107,7 @@ class ModelSsiRig {
   bool pending_ = false;
   unsigned clk_ = 0xFF;
   std::uint32_t taken_ = 0;
+  int woken_ = 0;
   Tick now_ = 0;
 };
 

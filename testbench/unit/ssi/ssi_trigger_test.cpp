@@ -13,6 +13,7 @@ TYPED_TEST_SUITE(SsiTriggers, SsiEngines, SsiNames);
 constexpr std::uint32_t kFast = 0x180302;  // 4 MHz, falling SERVO: bits 9, 8
 
 TYPED_TEST(SsiTriggers, BrickTriggersOnEveryEdgeAfterEveryDelay) {
+  BRICK_COVERS("SSI-1");
   for (unsigned source = 0; source < 4; ++source) {  // bit 1 SERVO, bit 0 falling
     for (const unsigned delay : {0u, 1u, 2u, 15u}) {
       SCOPED_TRACE(::testing::Message() << source << " delay " << delay);
@@ -42,6 +43,7 @@ TYPED_TEST(SsiTriggers, BrickTriggersOnEveryEdgeAfterEveryDelay) {
 
 // Both channels share the trigger: the shorter word waits for the longer (servo-ic:11.9/6).
 TYPED_TEST(SsiTriggers, TriggersAreRefusedUntilTheClockHasRested) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(true);
   this->wire(1, {}, 0x777777);
   this->rig.write(true, kGeoClock, 3);
@@ -66,6 +68,7 @@ TYPED_TEST(SsiTriggers, TriggersAreRefusedUntilTheClockHasRested) {
 }
 
 TYPED_TEST(SsiTriggers, BrickTakesOneShotOnly) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->wire(2, {}, 0xABCDEF);
   this->rig.write(true, 0x2F, 0x180302);
@@ -86,6 +89,7 @@ TYPED_TEST(SsiTriggers, BrickTakesOneShotOnly) {
 }
 
 TYPED_TEST(SsiTriggers, BrickIsSilentWithoutProtocolEnableOrDriver) {
+  BRICK_COVERS("SSI-1");
   struct Case {
     unsigned group, control;
     std::uint32_t result;
@@ -119,6 +123,7 @@ TYPED_TEST(SsiTriggers, GeoModesZeroAndOneLeaveTheClockHigh) {
 
 // What a channel has refused is counted modulo 256, and only while it is enabled (servo-ic:11.9/6).
 TYPED_TEST(SsiTriggers, RefusedOnesAreCountedModulo256) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(true);
   this->wire(1, {}, 0);
   this->rig.write(true, kGeoClock, 0);
@@ -144,6 +149,7 @@ TYPED_TEST(SsiTriggers, RefusedOnesAreCountedModulo256) {
 }
 
 TYPED_TEST(SsiTriggers, OfAnotherProtocolAreNeitherTakenNorRefused) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->wire(1, {}, 0x5A5A5A);
   this->rig.write(true, 0x2F, kFast);
@@ -164,6 +170,7 @@ TYPED_TEST(SsiTriggers, OfAnotherProtocolAreNeitherTakenNorRefused) {
 
 // A trigger that no channel waits for begins nothing, so the next one is not refused.
 TYPED_TEST(SsiTriggers, WithoutAnEnabledChannelLeaveTheGroupIdle) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->wire(3, {}, 0x123456);
   this->rig.write(true, 0x2F, kFast);
@@ -178,6 +185,7 @@ TYPED_TEST(SsiTriggers, WithoutAnEnabledChannelLeaveTheGroupIdle) {
 
 // The groups have their own: one at work refuses nothing for the other.
 TYPED_TEST(SsiTriggers, OfOneGroupAreNothingToTheOther) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->wire(8, {}, 0xC0FFEE);
   this->rig.write(true, 0x2F, 0x630202);  // PHASE would be bit 9 = 0: SERVO rises, 1 MHz
@@ -206,6 +214,7 @@ TYPED_TEST(SsiTriggers, OfOneGroupAreNothingToTheOther) {
 
 // A word that is written at the edge of clk_ref that would end a single frame's enable stands: there is one more frame.
 TYPED_TEST(SsiTriggers, AWriteStandsAgainstTheEndOfASingleFrame) {
+  BRICK_COVERS("SSI-1");
   for (Tick place = 0; place < 3; ++place) {
     SCOPED_TRACE(place);
     this->rig.encoders = nullptr;
@@ -228,6 +237,7 @@ TYPED_TEST(SsiTriggers, AWriteStandsAgainstTheEndOfASingleFrame) {
 
 // servo-ic:11.9/7: what is written in a frame. Enable and number of bits wait for the next trigger.
 TYPED_TEST(SsiTriggers, AFrameEndsAsItBeganThoughItsChannelIsDisabled) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->wire(4, {}, 0x89ABCD);
   this->rig.write(true, 0x2F, kFast);
@@ -245,6 +255,7 @@ TYPED_TEST(SsiTriggers, AFrameEndsAsItBeganThoughItsChannelIsDisabled) {
 
 // The driver acts at the next fall, and a pulse that has begun is never cut.
 TYPED_TEST(SsiTriggers, TheDriverActsAtOnceAndCutsNoPulse) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(false);
   this->wire(1, {}, 0);
   this->rig.write(true, 0x2F, 0x630302);  // falls 0, 118, 236, 354, 472 ticks after the trigger, rises 59 later
@@ -263,6 +274,7 @@ TYPED_TEST(SsiTriggers, TheDriverActsAtOnceAndCutsNoPulse) {
 // Parity and Gray act at once: the number of clocks stands, and the last is parity if it is asked for by then. Of the
 // 13 bits that the encoder sends, 101101 0011101, six have been taken when the word is written.
 TYPED_TEST(SsiTriggers, ParityAndGrayActAtOnceOnANumberOfClocksThatStands) {
+  BRICK_COVERS("SSI-1");
   constexpr unsigned kOdd = 1u << 14, kGray = 1u << 11;
   struct Case {
     unsigned before, after;
@@ -292,6 +304,7 @@ TYPED_TEST(SsiTriggers, ParityAndGrayActAtOnceOnANumberOfClocksThatStands) {
 
 // servo-ic:11.9/9: a reset in a frame lets the clock up at once; nothing of the frame is left.
 TYPED_TEST(SsiTriggers, AResetInAFrameLetsTheClockUpAndTheGroupIdle) {
+  BRICK_COVERS("SSI-1");
   this->rig.reset(true);
   this->wire(1, {}, 0xFFFFFF);
   for (int i = 0; i < 2; ++i) {
@@ -311,5 +324,29 @@ TYPED_TEST(SsiTriggers, AResetInAFrameLetsTheClockUpAndTheGroupIdle) {
     this->edges.clear();
   }
 }
+// What the model costs: it asks for the edges of the serial clock and for none else, neither for nets that move while
+// no channel waits, nor for refused triggers, the rest, the end of a frame.
+TEST(SsiModel, WakesForTheEdgesOfFramesOnly) {
+  SsiBench<ModelSsiRig> rig;
+  rig.reset(true);
+  rig.write(true, kGeoClock, 3);
+  for (int i = 0; i < 100; ++i) {
+    rig.run(500);
+    rig.trigger();
+  }
+  EXPECT_EQ(rig.woken(), 0);
+  rig.write(true, kGeoResult[0], 0xE);
+  rig.write(true, kGeoResult[1], 0x2);
+  for (int frame = 1; frame <= 10; ++frame) {
+    rig.trigger();
+    for (int i = 0; i < 9; ++i) {
+      rig.run(470);
+      rig.trigger();
+    }
+    rig.run(500);
+    EXPECT_EQ(rig.woken(), 50 * frame);
+  }
+}
+
 }  // namespace
 }  // namespace brick

@@ -14,9 +14,9 @@ LEVEL = "pwr_good | in | 1 | ConnectorPins | 7.0 |"
 class Pins(Tree):
     def setUp(self):
         super().setUp()
-        for folder in ("rtl/pins", "rtl/board", "systemc/component"):
+        for folder in ("rtl/pins", "rtl/board", "systemc/component", "fpga"):
             shutil.copytree(TOOLS.parent / folder, self.root / folder)
-        for page in ("components", "signals", "pins"):
+        for page in ("components", "signals", "pins", "chips"):
             self.write(f"docs/{page}.md", (TOOLS.parent / f"docs/{page}.md").read_text())
 
     def replace(self, path, old, new):
@@ -33,6 +33,13 @@ class Pins(Tree):
     def test_the_tree_is_fresh(self):
         self.check(0, "")
 
+    def test_a_pad_of_no_pin_is_refused(self):
+        top = "fpga/servo_ic_chip_ecp5.sv"
+        self.replace(top, "logic        trip_i,", "logic        trap_i,")
+        self.check(1, f"{top}: port trap_i has no row in rtl/pins")
+        self.replace(top, "logic        trap_i,", "logic [1:0]  trip_i,")
+        self.check(1, f"{top}: port trip_i has 2 bits; expected at most 1, of its row")
+
     def test_what_was_changed_by_hand_is_stale(self):
         for path, old in (("rtl/pins/board_pins.hpp", "pwr_good = true"),
                           ("rtl/pins/board_inputs.hpp", '"pwr_good", &ConnectorPins::pwr_good, 7, 0'),
@@ -43,7 +50,8 @@ class Pins(Tree):
                           ("systemc/component/include/brick/pins/board.h", "In<> pwr_good"),
                           ("docs/components.md", "| `gate` | in |"),
                           ("docs/signals.md", "| `host.jpan` | 16 hex |"),
-                          ("docs/pins.md", "| `pwr_good` | 1 |")):
+                          ("docs/pins.md", "| `pwr_good` | 1 |"),
+                          ("docs/chips.md", "| `pwr_good_i` | 1 |")):
             with self.subTest(path):
                 before = (self.root / path).read_text()
                 self.replace(path, old, old + "2")

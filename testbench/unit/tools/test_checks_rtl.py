@@ -114,12 +114,16 @@ class ClockCrossings(Tree):
 
     def test_a_line_that_logic_selects_and_no_strap_fails(self):
         choice = "line_source[line_select_q[7:4]]"
-        self.plant("rtl/board/board_top.sv", choice, choice.replace("[7:4]", "[7:4] ^ equ[3:0]"))
+        self.plant("rtl/board/board_core.sv", choice, choice.replace("[7:4]", "[7:4] ^ equ[3:0]"))
         self.expect(self.run_tool("check_cdc.py"), 1, "mi1_i reaches u_interrupt_controller.u_line_sync.sync1_q (data)")
 
     def test_a_pin_of_a_motor_that_feeds_logic_fails(self):
         self.plant("rtl/servo_ic/servo_channels.sv", ".pins_i(pins[12*n +: 12])", ".pins_i(pins_i[12*n +: 12])")
         self.expect(self.run_tool("check_cdc.py"), 1, "motor_i.enc_a reaches gen_servo_ic[0].gen_built.u_servo_ic")
+
+    def test_a_pin_of_a_chip_that_feeds_logic_fails(self):
+        self.plant("rtl/chips/servo_ic_chip.sv", "18'h1 << number_q", "18'h1 << number_i")
+        self.expect(self.run_tool("check_cdc.py"), 1, "servo_ic_chip: number_i reaches u_bus_read.data_q (data)")
 
     def test_an_output_that_follows_another_pin_than_its_own_fails(self):
         self.plant("rtl/board/board_core.sv", "bus_rdata_oe | dpram_drive;", "bus_rdata_oe | dpram_drive | isa_aen_i;")

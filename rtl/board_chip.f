@@ -1,0 +1,30 @@
+// The board without servo ICs as a chip of its own: what board_chip is made of, in compile order.
+// Written by tools/rtl_cores.py from the RTL (./dev cores). Do not edit.
+regs/brick_regs_pkg.sv
+common/sync2.sv
+common/reset_sync.sv
+board/bus_strobes.sv
+board/bus_sync.sv
+board/address_decode.sv
+macro_ic/macro_ic_regs.sv
+servo_ic/clock_gen.sv
+macro_ic/macro_ic.sv
+board/clock_select.sv
+board/watchdog.sv
+ssi/ssi_edges.sv
+ssi/ssi_group.sv
+ssi/ssi_channel_regs.sv
+ssi/ssi_channel.sv
+ssi/ssi.sv
+host/isa_slave.sv
+host/host_port.sv
+host/host_signals.sv
+host/interrupt_controller.sv
+host/pic_8259.sv
+host/host_interrupt.sv
+board/panel_port.sv
+host/dpram_memory.sv
+host/dpram.sv
+board/bus_read.sv
+board/board_core.sv
+chips/board_chip.sv
