@@ -21,6 +21,7 @@ servo_ic/channel_counter.sv
 servo_ic/channel_subcount.sv
 servo_ic/channel_capture.sv
 servo_ic/channel_compare.sv
+servo_ic/channel_triangle.sv
 servo_ic/channel_pwm.sv
 servo_ic/channel_pfm.sv
 servo_ic/channel_dac.sv
