@@ -15,7 +15,7 @@
 //   - at_middle_d = &ramp_q[16:1] & ~ramp_q[0];
 //   + at_middle_d = &ramp_q[16:1];
 // fault R7: PHASE does not wait for SERVO (rtl/servo_ic/clock_gen.sv)
-//   - & phase_q & (servo_q | ~(servo_oe_q & servo_ext_i));
+//   - & phase_q & (servo_q | ~(servo_oe_q & servo_ext_q));
 //   + & phase_q;
 // fault R8: a pin is taken while the net is low (rtl/servo_ic/clock_gen.sv)
 //   - !phase_q && phase_d && phase_pin)
@@ -42,6 +42,21 @@ module clock_gen_rules (
                  .servo_fall_o(servo_fall));
 
   // ---------------------------------------------------------------- the second description
+  // Settings as taken over: they act from the next edge on.
+  logic [14:0] max_count_set_q;
+  logic [3:0]  phase_div_set_q, servo_div_set_q;
+  logic        phase_ext_set_q, servo_ext_set_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      max_count_set_q <= brick_regs_pkg::ServoIcPwmControlReset[22:8];
+      {phase_div_set_q, servo_div_set_q} <= {4'd0, 4'd3};
+      {phase_ext_set_q, servo_ext_set_q} <= 2'b11;
+    end else begin
+      max_count_set_q <= max_count_i;
+      {phase_div_set_q, servo_div_set_q} <= {phase_div_i, servo_div_i};
+      {phase_ext_set_q, servo_ext_set_q} <= {phase_ext_i, servo_ext_i};
+    end
+  end
   // Triangle: which way, how far along it (0 in the middle), its end I, that of the way's start.
   logic               up_q;
   logic signed [16:0] along_q, end_now;
@@ -60,8 +75,8 @@ module clock_gen_rules (
   logic       phase_in, servo_in, rise_in, near, moved, turns, phase_tick, half, rises, falls;
   logic       phase_goes, servo_goes, phase_taken, servo_taken, servo_d, phase_d;
   logic [4:0] periods;  // turnarounds of this period of PHASE
-  assign phase_in = phase_ext_i && !phase_oe_q;
-  assign servo_in = servo_ext_i && !servo_oe_q;
+  assign phase_in = phase_ext_set_q && !phase_oe_q;
+  assign servo_in = servo_ext_set_q && !servo_oe_q;
   assign rise_in  = phase_in && phase_pin_q[1] && !phase_q;
   // The last turnaround, the coming one is 8 ticks away or less.
   assign near     = (along_q < 17'sd0) ? along_q + end_now + 17'sd2 <= 17'sd8 : end_now + 17'sd1 - along_q <= 17'sd8;
@@ -73,8 +88,8 @@ module clock_gen_rules (
   assign half       = ticked_q && (periods[0] ? turns_q >= periods[4:1] && along_q == -17'sd1
                                               : turns && {1'b0, turns_q} + 5'd1 == {1'b0, periods[4:1]});
   // A pin that is to become an input goes while it is high, PHASE with or after SERVO.
-  assign servo_goes = servo_oe_q && servo_ext_i && servo_q;
-  assign phase_goes = phase_oe_q && phase_ext_i && phase_q && (servo_q || !(servo_oe_q && servo_ext_i));
+  assign servo_goes = servo_oe_q && servo_ext_set_q && servo_q;
+  assign phase_goes = phase_oe_q && phase_ext_set_q && phase_q && (servo_q || !(servo_oe_q && servo_ext_set_q));
   always_comb begin
     phase_d = phase_q;
     if (phase_in)        phase_d = phase_pin_q[1];
@@ -92,8 +107,8 @@ module clock_gen_rules (
     else if (rises && falls_q == servo_div_q)            servo_d = 1'b1;
     if (servo_goes)                                      servo_d = 1'b1;
   end
-  assign phase_taken = !phase_ext_i && rises && phase_pin_q[1];
-  assign servo_taken = !servo_ext_i && servo_d && !servo_q && servo_pin_q[1];
+  assign phase_taken = !phase_ext_set_q && rises && phase_pin_q[1];
+  assign servo_taken = !servo_ext_set_q && servo_d && !servo_q && servo_pin_q[1];
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -113,18 +128,18 @@ module clock_gen_rules (
         along_q <= -end_now - 17'sd1;
         up_q    <= up_q ^ turns;
         start_q <= end_q;
-        if (turns && !up_q) end_q <= max_count_i;
+        if (turns && !up_q) end_q <= max_count_set_q;
       end
       if (rise_in) missed_q <= moved ? 2'd0 : missed_q + 2'd1;
       {phase_pin_q, servo_pin_q} <= {phase_pin_q[0], phase_i, servo_pin_q[0], servo_i};
       if (phase_in) begin
-        {turns_q, phase_div_q, ticked_q} <= {4'd0, phase_div_i, 1'b0};
+        {turns_q, phase_div_q, ticked_q} <= {4'd0, phase_div_set_q, 1'b0};
       end else if (phase_tick) begin
-        {turns_q, phase_div_q, ticked_q} <= {4'd0, phase_div_i, 1'b1};
+        {turns_q, phase_div_q, ticked_q} <= {4'd0, phase_div_set_q, 1'b1};
       end else if (turns) begin
         turns_q <= turns_q + 4'd1;
       end
-      if (servo_in || (falls && falls_q == servo_div_q)) {falls_q, servo_div_q} <= {4'd0, servo_div_i};
+      if (servo_in || (falls && falls_q == servo_div_q)) {falls_q, servo_div_q} <= {4'd0, servo_div_set_q};
       else if (falls)                                    falls_q <= falls_q + 4'd1;
       {phase_q, servo_q} <= {phase_d, servo_d};
       phase_oe_q <= phase_goes ? 1'b0 : phase_oe_q | phase_taken;
@@ -135,8 +150,11 @@ module clock_gen_rules (
 
   // ---------------------------------------------------------------- from inside, for the induction
   (* hierconn *) wire logic [16:0] \dut.ramp_q , \dut.close_from_q , \dut.recent_to_q ;
-  (* hierconn *) wire logic [14:0] \dut.max_q ;
+  (* hierconn *) wire logic [15:0] \dut.larger_q ;
+  (* hierconn *) wire logic [14:0] \dut.max_q , \dut.max_count_q ;
   (* hierconn *) wire logic [3:0]  \dut.phase_cnt_q , \dut.fall_cnt_q , \dut.servo_cnt_q ;
+  (* hierconn *) wire logic [3:0]  \dut.phase_div_q , \dut.servo_div_q ;
+  (* hierconn *) wire logic        \dut.phase_ext_q , \dut.servo_ext_q ;
   (* hierconn *) wire logic [1:0]  \dut.miss_q ;
   (* hierconn *) wire logic        \dut.up_q , \dut.at_top_q , \dut.at_middle_q ;
   (* hierconn *) wire logic        \dut.close_q , \dut.recent_q , \dut.odd_q ;
@@ -179,8 +197,8 @@ module clock_gen_rules (
       // R7: A pin that is to become an input is driven on until it is high, PHASE until SERVO goes too; then it is
       // high.
       if (phase_oe_q != phase_oe || !phase_oe || !servo_oe) begin
-        R7: assert (phase_oe == phase_oe_q && servo_oe == servo_oe_q && (phase_oe || !phase_ext_i || phase) &&
-                    (servo_oe || !servo_ext_i || servo));
+        R7: assert (phase_oe == phase_oe_q && servo_oe == servo_oe_q && (phase_oe || !phase_ext_set_q || phase) &&
+                    (servo_oe || !servo_ext_set_q || servo));
         C7: cover (phase_goes && !phase_in);
       end
 
@@ -197,10 +215,15 @@ module clock_gen_rules (
         C9: cover (taken_q == 3'd2);
       end
 
+      // I6: Both have taken over the same settings.
+      I6: assert ({\dut.max_count_q , \dut.phase_div_q , \dut.servo_div_q , \dut.phase_ext_q , \dut.servo_ext_q } ==
+                  {max_count_set_q, phase_div_set_q, servo_div_set_q, phase_ext_set_q, servo_ext_set_q});
+
       // I1: Both descriptions agree about the triangle; flags are true of this tick.
       I1: assert (\dut.ramp_q == along_q && \dut.up_q == up_q && \dut.max_q == end_q && \dut.miss_q == missed_q &&
                   \dut.at_top_q == (along_q == end_now + 17'sd1) && \dut.at_middle_q == (along_q == -17'sd1) &&
                   \dut.close_from_q == end_now - 17'sd8 && \dut.recent_to_q == 17'sd6 - end_now &&
+                  \dut.larger_q == {1'b0, end_q} + 16'd8 &&
                   along_q <= end_now + 17'sd1 && along_q >= -$signed({2'b00, start_q}) - 17'sd1);
 
       // I2: And about the windows, except right after a reset, when PHASE is high and does not rise.

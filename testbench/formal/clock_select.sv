@@ -55,6 +55,7 @@ module clock_select_rules (
   (* hierconn *) wire logic        \dut.phase_idle_q ;
   (* hierconn *) wire logic        \dut.servo_idle_q ;
   (* hierconn *) wire logic [44:0] \dut.drivers_q ;
+  (* hierconn *) wire logic [43:0] \dut.level_q ;
   (* hierconn *) wire logic        \dut.several_q ;
   (* hierconn *) wire logic [1:0]  \dut.disagree_q ;
   (* hierconn *) wire logic        \dut.conflict_q ;
@@ -92,13 +93,15 @@ module clock_select_rules (
   logic       ext_phase1_q = 1'b1, ext_phase2_q = 1'b1, ext_servo1_q = 1'b1, ext_servo2_q = 1'b1;
   logic       phase_differs, servo_differs, conflict_q = 1'b0;
   logic [1:0] differ_q = 2'd0;
-  assign phase_differs = (phase_oe_q & ~phase_i) != 22'h0 && (phase_oe_q & phase_i) != 22'h0 ||
-                         outside_q && (phase_oe_q & (phase_i ^ {22{ext_phase2_q}})) != 22'h0;
-  assign servo_differs = (servo_oe_q & ~servo_i) != 22'h0 && (servo_oe_q & servo_i) != 22'h0 ||
-                         outside_q && (servo_oe_q & (servo_i ^ {22{ext_servo2_q}})) != 22'h0;
+  logic [21:0] phase_seen_q = ~22'h0, servo_seen_q = ~22'h0;  // of the ICs, a clk later
+  assign phase_differs = (phase_oe_q & ~phase_seen_q) != 22'h0 && (phase_oe_q & phase_seen_q) != 22'h0 ||
+                         outside_q && (phase_oe_q & (phase_seen_q ^ {22{ext_phase2_q}})) != 22'h0;
+  assign servo_differs = (servo_oe_q & ~servo_seen_q) != 22'h0 && (servo_oe_q & servo_seen_q) != 22'h0 ||
+                         outside_q && (servo_oe_q & (servo_seen_q ^ {22{ext_servo2_q}})) != 22'h0;
 
   // The nets as wires with a pull-up; whether ICs have taken turns so far: no two of them drive, and from a change of
   // direction to the edge of clk_ref that sees it an IC is high. IC 2 has been the source of both once.
+  logic        phase_wire1_q = 1'b1, servo_wire1_q = 1'b1;
   logic        phase_wire_q = 1'b1, servo_wire_q = 1'b1, phase_turns_q = 1'b1, servo_turns_q = 1'b1, passed_q = 1'b0;
   logic [21:0] phase_oe, servo_oe;
   assign phase_oe = phase_oe_i & fitted_i;
@@ -109,8 +112,9 @@ module clock_select_rules (
       {ext_servo2_q, ext_servo1_q} <= {ext_servo1_q, ext_servo_i};
       differ_q   <= !(phase_differs || servo_differs) ? 2'd0 : differ_q + {1'b0, !differ_q[1]};
       conflict_q <= several && (conflict_q || ((phase_differs || servo_differs) && differ_q[1]));
-      phase_wire_q <= &(phase_i | ~phase_oe);
-      servo_wire_q <= &(servo_i | ~servo_oe);
+      {phase_seen_q, servo_seen_q} <= {phase_i, servo_i};
+      {phase_wire_q, phase_wire1_q} <= {phase_wire1_q, &(phase_i | ~phase_oe)};
+      {servo_wire_q, servo_wire1_q} <= {servo_wire1_q, &(servo_i | ~servo_oe)};
     end
     passed_q <= passed_q | (phase_drivers[2] & servo_drivers[2]);
     if (ext_clock_i || outside_q || (phase_oe & (phase_oe - 22'h1)) != 22'h0 ||
@@ -159,13 +163,14 @@ module clock_select_rules (
       C7: cover (phase_i == 22'h0);
     end
 
-    // R8: A conflict shows from the third clk on for which drivers of a net disagree, until each net has one, never
-    // else.
+    // R8: A conflict shows from the clk after the third on for which drivers of a net disagree, until each net has one,
+    // never else.
     R8: assert (conflict == (several && conflict_q) && \dut.drivers_q == {outside_q, servo_oe_q, phase_oe_q} &&
-                \dut.several_q == several && \dut.disagree_q == differ_q && \dut.conflict_q == conflict_q);
+                \dut.several_q == several && \dut.disagree_q == differ_q && \dut.conflict_q == conflict_q &&
+                \dut.level_q == {servo_seen_q, phase_seen_q});
     C8: cover (conflict && !outside_q && (phase_oe_q & (phase_oe_q - 22'h1)) == 22'h0);
 
-    // R9: While ICs take turns PHASE is what a wire would be, a clk later: no level is cut or doubled in the hand-over.
+    // R9: While ICs take turns PHASE is what a wire would be, two clk later: no level cut nor doubled at the hand-over.
     if (phase_turns_q) begin
       R9: assert (phase == phase_wire_q);
       C9: cover (!phase && \dut.phase_grant_q [3] && passed_q);

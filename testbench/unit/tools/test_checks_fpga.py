@@ -1,0 +1,115 @@
+"""Negative controls of tools/fpga.py and fpga_pads.py: what is judged how, delays from a file, one reset a design."""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from tree import TOOLS, run
+
+sys.path.insert(0, str(TOOLS))
+import fpga
+import fpga_pads
+
+
+def path(source, target, delay):
+    ends = {"cell": "u_board.a_q_TRELLIS_FF_Q"}, {"cell": "u_board.b_q_TRELLIS_FF_Q"}
+    step = {"type": "routing", "delay": delay, "from": ends[0], "to": ends[1]}
+    return {"from": f"posedge $glbnet${source}", "to": f"posedge $glbnet${target}", "path": [step]}
+
+
+class Judged(unittest.TestCase):
+    def tables(self, *delays):
+        paths = [path(*pair, delay) for pair, delay in zip(fpga.PAIRS, delays, strict=True)]
+        report = {"utilization": {"TRELLIS_COMB": {"used": 5, "available": 9}}, "critical_paths": paths}
+        return fpga.tables([("8", 3, report), ("6", 1, report)])
+
+    def test_a_period_is_enough(self):
+        lines, problems = self.tables(8.47, 8.47, 8.47, 21.2)
+        self.assertEqual(problems, [])
+        self.assertIn("| 8 | 3 | 118.1 | 118.1 | 118.1 | 47.2 |", lines)
+
+    def test_a_crossing_is_judged_by_clk_pwm_and_accepted_from_114(self):
+        lines, problems = self.tables(8.4, 8.7, 8.4, 20.0)
+        self.assertEqual(problems, [])
+        self.assertIn("| 3 | clk_pwm | clk_ref | 8.70 | 0.00 | `a_q` to `b_q` |", lines)
+        self.assertIn("(accepted)", "".join(lines))
+        _, problems = self.tables(8.4, 8.4, 8.8, 20.0)
+        self.assertEqual(problems, ["seed 3: clk_ref to clk_pwm at 113.6 MHz, expected 114 or more"])
+
+    def test_clk_ref_has_a_goal_of_its_own(self):
+        _, problems = self.tables(8.4, 8.4, 8.4, 21.5)
+        self.assertEqual(problems, ["seed 3: clk_ref to clk_ref at 46.5 MHz, expected 47 or more"])
+
+
+# D in to a flip-flop by a LUT, the flip-flop to /TA, /RD to /TA without a clock, the reset.
+SDF = r"""
+(CELL (CELLTYPE "top")
+  (INTERCONNECT pa_d_io\[3\]\$tr_io/O lut/A (100:200:1000) (100:200:1000))
+  (INTERCONNECT lut/F ff/M (100:200:2000) (100:200:2000))
+  (INTERCONNECT ff/Q pa_ta_no\$tr_io/I (100:200:3000) (100:200:3000))
+  (INTERCONNECT pa_rd_ni\$tr_io/O pa_ta_no\$tr_io/T (100:200:700) (100:200:700))
+  (INTERCONNECT ff/Q far/LSR (100:200:4000) (100:200:4000))
+)
+(CELL
+  (CELLTYPE "TRELLIS_COMB")
+  (INSTANCE lut)
+  (IOPATH A F (100:200:240) (100:200:240))
+)
+(CELL
+  (CELLTYPE "TRELLIS_FF")
+  (INSTANCE ff)
+  (IOPATH CLK Q (300:350:400) (300:350:400))
+  (SETUPHOLD (posedge M) (posedge CLK) (0:0:50) (1:1:1))
+)
+(CELL
+  (CELLTYPE "TRELLIS_FF")
+  (INSTANCE far)
+  (SETUPHOLD (posedge LSR) (posedge CLK) (187:237:287) (0:0:0))
+)
+"""
+
+
+class Pads(unittest.TestCase):
+    def setUp(self):
+        self.found, self.reset = fpga_pads.delays(fpga_pads.read(SDF.splitlines()))
+
+    def test_ways_are_the_longest(self):
+        self.assertAlmostEqual(self.found["pa_d_io"]["in"], 1.0 + 0.24 + 2.0 + 0.05)
+        self.assertAlmostEqual(self.found["pa_ta_no"]["out"], 0.4 + 3.0)
+        self.assertAlmostEqual(self.found["pa_ta_no"]["through"], 0.7)
+        self.assertAlmostEqual(self.reset, 0.4 + 4.0 + 0.287)
+
+    def test_a_pad_that_is_late_is_the_first_row_and_missed(self):
+        found = {"pa_ta_no": {"out": 6.2}, "pa_a_i": {"in": 2.0}}
+        text = list(fpga_pads.page(found, 9.0))
+        self.assertIn("clock to /TA | 10.1 | 10.0 | -0.1 **missed** |", text[2])
+        self.assertIn("9.00 ns after its clock, of 8.48 **missed**", text[-1])
+
+    def test_wait_states_are_those_of_row_105(self):
+        # 76.3 ns and an aperture of 1, pads 2.0 + 1.12, D 3.0 + 3.92: 87.3 ns. Row 105 has 87.2 with 7, 99.9 with 8.
+        found = {"pa_rd_ni": {"in": 2.0}, "pa_d_io": {"out": 3.0}}
+        self.assertEqual(fpga_pads.wait_states(found, 7), 8)
+        self.assertIsNone(fpga_pads.wait_states({"pa_d_io": {"out": 20.0}}, 31))
+
+
+@unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
+class Resets(unittest.TestCase):
+    def test_flip_flops_share_one_inverter(self):
+        with tempfile.TemporaryDirectory() as folder:
+            netlist = pathlib.Path(folder) / "k.json"
+            (netlist.parent / "k.sv").write_text(
+                "module k (input clk_i, input rst_ni, input [7:0] d_i, output reg [7:0] q_o);\n"
+                "  always @(posedge clk_i or negedge rst_ni) if (!rst_ni) q_o <= 8'h0; else q_o <= d_i;\n"
+                "endmodule\n")
+            script = f"read_verilog -sv {netlist.parent}/k.sv; {fpga.MAP.format(top='k', netlist=netlist)}"
+            subprocess.run(["yosys", "-q", "-p", script], check=True)
+            cells = json.loads(netlist.read_text())["modules"]["k"]["cells"].values()
+            self.assertEqual([c["type"] for c in cells].count("LUT4"), 1)
+
+
+if __name__ == "__main__":
+    run()
