@@ -23,7 +23,7 @@
 //   + phase_rise
 `default_nettype none
 
-module trip_rules (
+module servo_ic_rules (
   input wire logic        clk_i,
   input wire logic        trip_i,
   input wire logic        sel_i,
@@ -180,6 +180,6 @@ module trip_rules (
     C9: cover (aena == 1'b0 && motor[motor_pins_pkg::AdcStrobeLsb]);
   end
 
-endmodule : trip_rules
+endmodule : servo_ic_rules
 
 `default_nettype wire
