@@ -88,6 +88,10 @@ def longest(edges, ends):
 
 
 def pad(cell):
+    """The port that the cell is a pad of; those of two ways are cells of the tops (fpga/ecp5_pads.sv)."""
+    both = re.search(r"\bu_(\w+)\.gen_pad\[\d+\]\.u_pad$", cell)
+    if both:
+        return {"iochrdy": "isa_iochrdy", "memcs16": "isa_memcs16_n"}.get(both[1], both[1]) + "_io"
     return cell.removesuffix("$tr_io") if cell.endswith("$tr_io") else None
 
 
