@@ -10,7 +10,6 @@
 #include "firmware/motion/motor.h"
 
 #define LONGEST_CHANGE_MS 8388608.0
-#define STANDS_STILL 0.5 /* a speed below this is what roundings have left */
 
 enum { SERVO_CYCLES_TO_PLAN = 2, SERVO_CYCLES_GIVEN_UP = 1024 };
 
@@ -28,7 +27,7 @@ enum look { LOOK_NOTHING, LOOK_LATER, LOOK_PLAN };
 
 /* Where a program has it `ahead` from now, in its last piece at the end of that. While time stands so does the motor.
  * Servo task held off. */
-static struct own_path_place place_of_program(uint32_t motor, int64_t ahead) {
+static void place_of_program(struct own_path_place* place, uint32_t motor, int64_t ahead) {
   const struct motor* m = &motors[motor];
   struct coordinate_system* s = &coordinate_systems[m->cs];
   struct piece_ring* ring = &s->ring;
@@ -40,15 +39,18 @@ static struct own_path_place place_of_program(uint32_t motor, int64_t ahead) {
       at -= piece->end;
       piece = piece_ring_at(ring, ++number);
     }
-    if ((piece->motors >> motor & 1u) != 0u)
-      return (struct own_path_place){*piece_ring_cubic(ring, number, motor),
-                                     piece->time,
-                                     at < piece->end ? at : piece->end - 1,
-                                     piece->warp,
-                                     piece->from,
-                                     piece->to};
+    if ((piece->motors >> motor & 1u) != 0u) {
+      place->cubic = *piece_ring_cubic(ring, number, motor);
+      place->time = piece->time;
+      place->elapsed = at < piece->end ? at : piece->end - 1;
+      place->warp = piece->warp;
+      place->from = piece->from;
+      place->to = piece->to;
+      place->shape = SHAPE_OF_CUBIC;
+      return;
+    }
   }
-  return own_path_stands(m->trajectory);
+  own_path_stands(place, m->trajectory);
 }
 
 /* Servo task held off. */
@@ -66,8 +68,11 @@ static enum look look(uint32_t motor, uint32_t cycles, struct beginning* b) {
   b->motion = j->request;
   b->begins = j->clock + (int64_t)j->rate * (int64_t)cycles;
   if (b->begins < j->request_begins) b->begins = j->request_begins;
-  b->place = m->path == PATH_OWN ? own_path_place(&j->paths[j->current], b->begins - j->clock)
-                                 : place_of_program(motor, b->begins - j->clock);
+  if (m->path == PATH_OWN) {
+    own_path_place(&b->place, &j->paths[j->current], b->begins - j->clock);
+  } else {
+    place_of_program(&b->place, motor, b->begins - j->clock);
+  }
   return LOOK_PLAN;
 }
 
@@ -82,7 +87,6 @@ static void to_target(struct own_path* path, struct jog_motion* m, double speed)
 }
 
 static void build(struct own_path* path, struct jog_motion* m, struct own_path_state from) {
-  if (math_absolute(from.speed) < STANDS_STILL) from.speed = 0.0;
   slice_pause();
   own_path_begin(path, math_to_integer(from.position + 0.5));
   const double fastest = math_absolute(from.speed) + math_absolute(m->speed), least = fastest / LONGEST_CHANGE_MS;

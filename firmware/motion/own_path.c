@@ -7,6 +7,7 @@ enum { TIME_FRACTION_BITS = 23, STAY_TIME_BITS = 36 }; /* a part of a stay lasts
 
 #define STAY_MS 8192.0
 #define CARRY_ONE 4294967296.0
+#define STANDS_STILL 0.5 /* a speed below this is what the roundings of a cubic have left */
 
 static int64_t nearest(double value) { return math_to_integer(value + 0.5); }
 
@@ -27,6 +28,11 @@ static void set_time(struct own_piece* piece, int64_t time) {
   piece->inverse = inverse > (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)inverse;
 }
 
+static uint8_t shape_of(double acceleration, double jerk) {
+  if (jerk == 0.0) return acceleration == 0.0 ? SHAPE_STRAIGHT : SHAPE_EVEN;
+  return acceleration == 0.0 ? SHAPE_FROM_0 : SHAPE_TO_0;
+}
+
 /* From the end so far: speed at its start, acceleration there and the constant change of that. What each end is rounded
  * by does not add up. */
 static void add(struct own_path* path, double time, double speed, double acceleration, double jerk) {
@@ -34,7 +40,8 @@ static void add(struct own_path* path, double time, double speed, double acceler
   struct cubic* cubic = &piece->cubic;
   slice_pause();
   set_time(piece, nearest(math_scale(time, TIME_FRACTION_BITS)));
-  piece->straight = acceleration == 0.0 && jerk == 0.0;
+  piece->speed = speed;
+  piece->shape = shape_of(acceleration, jerk);
   slice_pause();
   const double linear = speed * time, square = acceleration * time * time / 2.0;
   slice_pause();
@@ -82,7 +89,8 @@ static void add_repeated(struct own_path* path, double speed, uint32_t repeats) 
   slice_pause();
   const double distance = speed * STAY_MS;
   set_time(piece, INT64_C(1) << STAY_TIME_BITS);
-  piece->straight = true;
+  piece->speed = speed;
+  piece->shape = SHAPE_STRAIGHT;
   slice_pause();
   piece->cubic = (struct cubic){.start = path->end, .linear = math_to_integer(distance)};
   path->carry = (uint32_t)math_to_integer((distance - (double)piece->cubic.linear) * CARRY_ONE);
@@ -156,48 +164,57 @@ bool own_path_advance(struct own_path* path, int64_t increment, int64_t* positio
   path->elapsed = elapsed;
   const uint32_t fraction = fraction_of(piece, elapsed);
   const struct cubic* cubic = &piece->cubic;
-  const int64_t at = piece->straight ? cubic->start + fixed_part(cubic->linear, fraction) : cubic_at(cubic, fraction);
+  const int64_t at =
+      piece->shape == SHAPE_STRAIGHT ? cubic->start + fixed_part(cubic->linear, fraction) : cubic_at(cubic, fraction);
   *position = at + path->shift;
   return true;
 }
 
-struct own_path_place own_path_stands(int64_t position) {
-  return (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1, .to = PIECE_PARTS};
+void own_path_stands(struct own_path_place* place, int64_t position) {
+  *place = (struct own_path_place){.cubic.start = position, .time = 1, .elapsed = 1, .to = PIECE_PARTS};
 }
 
 /* The stay, `elapsed` after its present part began. False: it is over by then. */
-static bool stays(const struct own_path* path, int64_t* elapsed, struct own_path_place* place) {
+static bool stays(const struct own_path* path, int64_t* elapsed) {
   const int64_t parts = *elapsed >> STAY_TIME_BITS;
   if (path->repeats != OWN_PATH_ENDLESS && parts > (int64_t)path->repeats) {
     *elapsed -= ((int64_t)path->repeats + 1) << STAY_TIME_BITS;
     return false;
   }
-  place->cubic = path->pieces[path->repeated].cubic;
-  place->cubic.start += place->cubic.linear * parts;
-  place->time = INT64_C(1) << STAY_TIME_BITS;
-  place->elapsed = *elapsed - (parts << STAY_TIME_BITS);
   return true;
 }
 
-static struct own_path_place find(const struct own_path* path, int64_t ahead) {
-  struct own_path_place place = own_path_stands(path->end);
-  int64_t elapsed = path->elapsed + ahead;
-  for (uint32_t number = path->executing; number != path->count; number++) {
-    const struct own_piece* piece = &path->pieces[number];
-    if (path->repeats != 0u && number == path->repeated) {
-      if (stays(path, &elapsed, &place)) return place;
-      continue;
-    }
-    if (elapsed < piece->time) return (struct own_path_place){piece->cubic, piece->time, elapsed, 0, 0, PIECE_PARTS};
-    elapsed -= piece->time;
-  }
-  return place;
+static void lies_in(struct own_path_place* place, const struct own_path* path, uint32_t number, int64_t elapsed) {
+  const struct own_piece* piece = &path->pieces[number];
+  place->cubic = piece->cubic;
+  place->cubic.start += path->shift;
+  place->time = piece->time;
+  place->elapsed = elapsed;
+  place->warp = 0;
+  place->from = 0;
+  place->to = PIECE_PARTS;
+  place->shape = piece->shape;
+  place->speed = piece->speed;
+  place->then = number + 1u != path->count ? piece[1].speed : 0.0;
 }
 
-struct own_path_place own_path_place(const struct own_path* path, int64_t ahead) {
-  struct own_path_place place = find(path, ahead);
-  place.cubic.start += path->shift;
-  return place;
+void own_path_place(struct own_path_place* place, const struct own_path* path, int64_t ahead) {
+  int64_t elapsed = path->elapsed + ahead;
+  for (uint32_t number = path->executing; number != path->count; number++) {
+    if (path->repeats != 0u && number == path->repeated) {
+      if (!stays(path, &elapsed)) continue;
+      const int64_t parts = elapsed >> STAY_TIME_BITS;
+      lies_in(place, path, number, elapsed - (parts << STAY_TIME_BITS));
+      place->cubic.start += place->cubic.linear * parts;
+      return;
+    }
+    if (elapsed < path->pieces[number].time) {
+      lies_in(place, path, number, elapsed);
+      return;
+    }
+    elapsed -= path->pieces[number].time;
+  }
+  own_path_stands(place, path->end + path->shift);
 }
 
 /* The part of its cubic that is made after a part of the time of a piece, and how fast that grows with it. */
@@ -222,6 +239,31 @@ static double part_of_way(const struct own_path_place* place, double part, doubl
   return (double)place->from / (double)PIECE_PARTS + part;
 }
 
+/* After a part of its time. Not of the cubic: what the roundings of a short one make of its speed would be counts at
+ * the end of a long change that begins there. */
+static double exact_speed(const struct own_path_place* place, double part) {
+  double share = part;
+  if (place->shape == SHAPE_STRAIGHT) return place->speed; /* also without an end */
+  if (place->shape == SHAPE_FROM_0) share = part * part;
+  if (place->shape == SHAPE_TO_0) share = part * (2.0 - part);
+  slice_pause();
+  const double gained = (place->then - place->speed) * share;
+  slice_pause();
+  return place->speed + gained;
+}
+
+static double speed_of_cubic(const struct own_path_place* place, double part, double rate) {
+  const struct cubic* c = &place->cubic;
+  const double square = (double)c->square, cube = (double)c->cube;
+  slice_pause();
+  const double turn = part * (2.0 * square + part * 3.0 * cube);
+  slice_pause();
+  const double slope = rate * ((double)c->linear + turn);
+  slice_pause();
+  const double speed = slope / math_scale((double)place->time, -TIME_FRACTION_BITS);
+  return math_absolute(speed) < STANDS_STILL ? 0.0 : speed;
+}
+
 struct own_path_state own_path_state(const struct own_path_place* place) {
   const struct cubic* c = &place->cubic;
   double rate;
@@ -235,9 +277,8 @@ struct own_path_state own_path_state(const struct own_path_place* place) {
   slice_pause();
   const double moved = part * ((double)c->linear + bend);
   slice_pause();
-  const double turn = part * (2.0 * square + part * 3.0 * cube);
+  const bool exact = place->shape != SHAPE_OF_CUBIC;
+  const double speed = exact ? exact_speed(place, part) : speed_of_cubic(place, part, rate);
   slice_pause();
-  const double slope = rate * ((double)c->linear + turn);
-  slice_pause();
-  return (struct own_path_state){(double)c->start + moved, slope / math_scale(time, -TIME_FRACTION_BITS)};
+  return (struct own_path_state){(double)c->start + moved, speed};
 }

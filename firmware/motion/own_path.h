@@ -13,10 +13,20 @@
 #define OWN_PATH_ENDLESS UINT32_MAX
 enum { OWN_PATH_PIECES = 8 }; /* two changes of three, and a stay of two */
 
+/* How its speed goes over from that of its begin to that of its end. */
+enum own_shape {
+  SHAPE_STRAIGHT, /* both are the same */
+  SHAPE_EVEN,     /* at one acceleration */
+  SHAPE_FROM_0,   /* the acceleration begins at 0 */
+  SHAPE_TO_0,     /* it ends at 0 */
+  SHAPE_OF_CUBIC  /* known of its cubic alone: a piece of a program */
+};
+
 struct own_piece {
   int64_t time; /* trajectory time, above 0 */
   struct cubic cubic;
-  bool straight;    /* at one speed */
+  double speed;     /* P: at its begin, not rounded; its end is the begin of the next, or rest */
+  uint8_t shape;    /* enum own_shape */
   int32_t shift;    /* to the left, of a time: 32 bits of it with `time` in the upper half of their range */
   uint32_t inverse; /* 2^63 / `time` so shifted */
 };
@@ -55,9 +65,11 @@ struct own_path_place {
   int64_t time, elapsed; /* beyond its end: it stands there */
   int32_t warp;          /* these as a piece has them */
   uint8_t from, to;
+  uint8_t shape;
+  double speed, then; /* at begin and end; not of SHAPE_OF_CUBIC */
 };
-struct own_path_place own_path_place(const struct own_path* path, int64_t ahead);
-struct own_path_place own_path_stands(int64_t position);
+void own_path_place(struct own_path_place* place, const struct own_path* path, int64_t ahead);
+void own_path_stands(struct own_path_place* place, int64_t position);
 struct own_path_state own_path_state(const struct own_path_place* place);
 
 #endif
