@@ -205,7 +205,8 @@ void own_path_place(struct own_path_place* place, const struct own_path* path, i
       if (!stays(path, &elapsed)) continue;
       const int64_t parts = elapsed >> STAY_TIME_BITS;
       lies_in(place, path, number, elapsed - (parts << STAY_TIME_BITS));
-      place->cubic.start += place->cubic.linear * parts;
+      const uint64_t carried = path->carried + (uint64_t)path->carry * (uint64_t)parts;
+      place->cubic.start += place->cubic.linear * parts + (int64_t)(carried >> 32);
       return;
     }
     if (elapsed < path->pieces[number].time) {

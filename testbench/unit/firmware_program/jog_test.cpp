@@ -191,6 +191,22 @@ TEST_F(JogProfile, EndlessJogKeepsItsSpeedForHours) {
   EXPECT_LT(position(), -3e6);
 }
 
+// Ixx92 at its largest: what a new motion begins with is looked for 1023 parts of the stay ahead.
+TEST_F(JogProfile, StopThatWaitsForHoursBeginsWhereTheMotorIs) {
+  Limits l{1, 0, 10, 0.1234567};
+  set(l, 10);
+  increment(INT32_MAX / 2);  // 128 ms
+  ASSERT_TRUE(jog_continuous(0, 1));
+  Followed result;
+  const Motion steady = jog_model::at_speed(l, {0, 0}, l.ixx22);
+  follow(Motion({0, 0}), 0, steady, 3 * step_ms(), 10, result);
+  const double elapsed = 7 * step_ms(), ixx92 = 8388607;
+  set(l, 8388607);
+  ASSERT_TRUE(jog_stop(0));
+  follow(steady, elapsed, jog_model::at_speed(l, steady.at(elapsed + ixx92), 0), ixx92, 65540, result);
+  EXPECT_FALSE(jog_is_moving(0));
+}
+
 TEST_F(JogProfile, LongMoveAtASmallSpeedStaysWithinASixteenthOfACount) {
   const Limits l{1, 0, 10, 0.7};
   set(l, 400);
