@@ -16,7 +16,9 @@ CPU = 9.8304  # MHz, times I52 + 1
 # tSUPLL; tCOPLL is clock, register and pad, so the register counts twice here.
 PAD_IN, PAD_OUT, SKEW = 0.70, 3.50, 0.42  # tSUPLL, tCOPLL, tSKEW_PRI
 # Which pads must keep a time, and the rows of host-bus they are for: to a flip-flop, or from one.
-PORT_A_IN, PORT_A_OUT, ISA_IN = r"pa_.*_n?io?", r"pa_(d_io|ta_no)", r"isa_(?!sd_io|resetdrv).*_n?i"
+PORT_A_IN, ISA_IN = r"pa_.*_n?io?", r"isa_(?!sd_io|resetdrv).*_n?i"
+D, TA, MEMCS16, CLOCKS = r"pa_d(ata)?_io", r"pa_ta_n_?o", r"isa_memcs16_n_?io", r"(phase|servo)_io"
+SHOWN = r"(pa|isa|phase|servo|trip|equ|wdo|rst_ref)_"
 Row = collections.namedtuple("Row", "rule what has limit")
 
 Graph = collections.namedtuple("Graph", "after before setup launch")
@@ -86,6 +88,10 @@ def longest(edges, ends):
 
 
 def pad(cell):
+    """The port that the cell is a pad of; those of two ways are cells of the tops (fpga/ecp5_pads.sv)."""
+    both = re.search(r"\bu_(\w+)\.gen_pad\[\d+\]\.u_pad$", cell)
+    if both:
+        return {"iochrdy": "isa_iochrdy", "memcs16": "isa_memcs16_n"}.get(both[1], both[1]) + "_io"
     return cell.removesuffix("$tr_io") if cell.endswith("$tr_io") else None
 
 
@@ -126,24 +132,28 @@ def rows(found):
     a_in = worst(found, PORT_A_IN, "in") + PAD_IN + SKEW
     isa_in = worst(found, ISA_IN, "in") + PAD_IN + SKEW
     out = {name: worst(found, name, "out") + PAD_OUT + SKEW
-           for name in ("pa_d_io", "pa_ta_no", "isa_sd_io", "isa_iochrdy_io", "isa_memcs16_nio")}
-    table = [Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK),
-             Row("host-bus:2.6", "clock to D", out["pa_d_io"], 10.0),
-             Row("host-bus:2.6", "clock to /TA", out["pa_ta_no"], 10.0),
-             Row("host-bus:3.4, t8", "command to IOCHRDY low, 7 ticks between", 7 * TICK + isa_in +
-                 out["isa_iochrdy_io"], 70.0),
-             Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between", 8 * TICK + isa_in + out["isa_sd_io"], 120.0),
-             Row("host-bus:3.4, row 14", "MEMR# to data, 11 ticks between", 11 * TICK + isa_in + out["isa_sd_io"],
-                 173.0),
-             Row("host-bus:3.4, row 16", "LA to MEMCS16#, 3 ticks between", 3 * TICK + isa_in +
-                 out["isa_memcs16_nio"], 66.0)]
-    return sorted(table, key=lambda row: row.limit - row.has)
+           for name in (D, TA, "isa_sd_io", "isa_iochrdy_io", MEMCS16, CLOCKS)}
+    table = [(PORT_A_IN, Row("host-bus:2.6", "pads of Port A to a flip-flop", a_in, TICK)),
+             (D, Row("host-bus:2.6", "clock to D", out[D], 10.0)),
+             (TA, Row("host-bus:2.6", "clock to /TA", out[TA], 10.0)),
+             (CLOCKS, Row("servo-ic:5.1/11", "PHASE, SERVO from chip to chip, without the wire",
+                          out[CLOCKS] + worst(found, CLOCKS, "in") + PAD_IN, TICK)),
+             (ISA_IN, Row("host-bus:3.4, t8", "command to IOCHRDY low, 7 ticks between", 7 * TICK + isa_in +
+                          out["isa_iochrdy_io"], 70.0)),
+             (ISA_IN, Row("host-bus:3.4, t4", "IOR# to data, 8 ticks between", 8 * TICK + isa_in + out["isa_sd_io"],
+                          120.0)),
+             (ISA_IN, Row("host-bus:3.4, row 14", "MEMR# to data, 11 ticks between", 11 * TICK + isa_in +
+                          out["isa_sd_io"], 173.0)),
+             (ISA_IN, Row("host-bus:3.4, row 16", "LA to MEMCS16#, 3 ticks between", 3 * TICK + isa_in +
+                          out[MEMCS16], 66.0))]
+    there = (row for pads, row in table if any(re.fullmatch(pads, name) for name in found))  # a chip has some alone
+    return sorted(there, key=lambda row: row.limit - row.has)
 
 
 def wait_states(found, i52):
     """The least for gate ICs at a CPU clock, by row 105, (WS + 0.25) TC - 5 ns; None: 31 are too few."""
     need = 9 * TICK + 1.0 + worst(found, PORT_A_IN, "in") + PAD_IN + SKEW + \
-        worst(found, "pa_d_io", "out") + PAD_OUT + SKEW
+        worst(found, D, "out") + PAD_OUT + SKEW
     clock = 1000 / (CPU * (i52 + 1))
     least = max(1, math.ceil((need + 5.0) / clock - 0.25))
     return least if least <= 31 else None
@@ -158,7 +168,7 @@ def page(found, reset):
     told = ", ".join(f"{'none' if states is None else states} at {i52}" for i52, states in least)
     yield from ("", f"Least wait states of gate ICs on this chip, by I52: {told}.", "",
                 "| pads | pad to flip-flop ns | flip-flop to pad ns | pad to pad ns |", "|---|---|---|---|")
-    shown = ((name, ways) for name, ways in found.items() if re.match("pa_|isa_", name))
+    shown = ((name, ways) for name, ways in found.items() if re.match(SHOWN, name))
     for name, ways in sorted(shown, key=lambda item: -max(item[1].values(), default=0.0)):
         cells = (f"{ways[kind]:.2f}" if kind in ways else "" for kind in ("in", "out", "through"))
         yield f"| `{name}` | {' | '.join(cells)} |"

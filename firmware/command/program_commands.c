@@ -11,6 +11,7 @@
 #include "firmware/language/statement_list.h"
 #include "firmware/motion/coordinate_system.h"
 #include "firmware/run/motor_stops.h"
+#include "firmware/run/restart.h"
 #include "firmware/run/run_control.h"
 
 static error_t cmd_rotary_lines(struct lexer* lx) { /* PR */
@@ -83,6 +84,14 @@ static error_t control(struct lexer* lx, void (*action)(uint32_t cs)) {
 
 static error_t cmd_quit(struct lexer* lx) { return control(lx, run_quit); }
 static error_t cmd_abort(struct lexer* lx) { return control(lx, motors_abort); }
+
+static error_t cmd_abort_and_run(struct lexer* lx) { /* ABR{n} */
+  double program = 0.0;
+  const bool has_number = lexer_constant(lx, &program) == ERR_NONE;
+  if (!has_number && !stands_alone(lx)) return not_alone(lx);
+  return restart_begin(session.cs, has_number, program);
+}
+
 static error_t cmd_hold(struct lexer* lx) { return control(lx, run_hold); }
 
 static error_t cmd_enable(struct lexer* lx) { /* E */
@@ -160,6 +169,7 @@ const struct command_entry program_commands[] = {{"->", axis_definition_command}
                                                  {"DELAY", cmd_needs_buffer}, /* not DEL AY */
                                                  {"FRAX", cmd_frax},
                                                  {"ABS", cmd_abs},
+                                                 {"ABR", cmd_abort_and_run},
                                                  {"INC", cmd_inc},
                                                  {"DEF", define_command},
                                                  {"DEL", delete_command},

@@ -23,6 +23,7 @@
 #include "firmware/motion/phase_search.h"
 #include "firmware/motion/sine_table.h"
 #include "firmware/run/plc.h"
+#include "firmware/run/restart.h"
 #include "firmware/variables/i_hardware.h"
 #include "firmware/variables/i_variables.h"
 
@@ -41,6 +42,7 @@ void background_meanwhile(void) {
   }
   desired_position_pass();
   phasing_pass();
+  restart_pass();
   sine_table_pass();
   image_checksum_pass();
   stack_watch_pass();

@@ -128,6 +128,7 @@ struct coordinate_system {
   bool starting;             /* which is this: B, R clears; else behind them */
   bool matching_anew;        /* B: asked for once more, while it is worked out */
   bool must_return;          /* B: stopped where a start goes on, so motors that were jogged meanwhile must be back */
+  volatile bool restarts;    /* B, an abort clears it: a program begins when the motors stand (run/restart.h) */
   bool must_have_returned;   /* B: a start was refused because they are not */
   enum run_time_error error; /* R; B clears it when the program is started */
   /* modal state of the program, R (B for on-line ABS, INC, FRAX) */

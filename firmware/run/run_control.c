@@ -63,7 +63,7 @@ error_t run_point(uint32_t cs, double program) {
     s->settling = true;
     cs_awake |= 1u << cs;
   }
-  s->end_block = s->must_return = s->must_have_returned = false;
+  s->end_block = s->must_return = s->must_have_returned = s->restarts = false;
   s->pointer = POINTER_NONE;
   if (program == 0.0) {
     s->pointer = POINTER_ROTARY;
@@ -208,7 +208,7 @@ void run_abort(uint32_t cs) {
   uint32_t state = hal_mask_servo();
   drop_moves(cs);
   s->running = s->quit = s->end_block = s->stepping = s->continuous = s->matching = s->must_return = false;
-  s->must_have_returned = false;
+  s->must_have_returned = s->restarts = false;
   hal_unmask(state);
   release_hold(cs);
 }

@@ -242,7 +242,7 @@ def write_pins_page(tables, notice):
                 "words have them, and how the RTL may look at them, which `lint.cdc` holds. A row here is a row of",
                 "`rtl/pins/board.pins`; what is made of it, and what a new one takes, is in "
                 f"{link('architecture', '#board-pins')}.", f"Signals of waveforms and scripts: {link('signals')}. "
-                f"Pins of single blocks: {link('components')}.", "")
+                f"Pins of single blocks: {link('components')}; pads of a board of several chips: {link('chips')}.", "")
     for key, text in board.settings.items():
         if key.startswith("reason "):
             yield f"- *{key.removeprefix('reason ')}*: {text}"

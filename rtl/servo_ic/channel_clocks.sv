@@ -1,8 +1,7 @@
 // What the four channels of a servo IC share: SCLK, PFM_CLK, DAC_CLK, ADC_CLK, the edges of PHASE and SERVO as clk_ref
-// sees them, and the strobe words with their serial clocks. A trip of the watchdog starts a DAC stream of its own,
-// whose words are zero, when the one under way has ended: PHASE may have stopped. From then on PHASE cuts no word: it may
-// have become too fast. Clock clk_ref_i; on clk_pwm_i run the
-// edges' way to clk_ref_i and the pads of the serial clocks.
+// sees them, and the strobe words with their serial clocks. A trip of the watchdog starts a DAC stream of its own, of
+// zeros, when the one under way has ended: PHASE may have stopped. From then on PHASE cuts no word: it may have become
+// too fast. Clock clk_ref_i; on clk_pwm_i run the edges' way to clk_ref_i and the pads of the serial clocks.
 `default_nettype none
 
 module channel_clocks (

@@ -48,7 +48,7 @@ module ssi (
   );
 
   logic [7:0]  enable, active;
-  logic [1:0]  start, refuse, fall, rise;
+  logic [1:0]  moves, start, refuse, fall, rise;
   logic [43:0] group_word;  // without bits 11, 10
   for (genvar g = 0; g < 2; g++) begin : gen_group
     logic [21:0] word_q;
@@ -75,11 +75,15 @@ module ssi (
       .start_o      (start[g]),
       .refuse_o     (refuse[g]),
       .fall_o       (fall[g]),
-      .rise_o       (rise[g])
+      .rise_o       (rise[g]),
+      .moves_o      (moves[g])
     );
   end
 
   // ------------------------------------------------------------------ channels
+  logic [7:0]   data;
+  sync2 #(.Width(8), .Reset(8'hFF)) u_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(data_i), .q_o(data));
+
   logic [127:0] control;
   logic [255:0] position;
   logic [71:0]  high;
@@ -109,6 +113,7 @@ module ssi (
     );
     ssi_channel u_channel (
       .clk_pwm_i, .rst_ni,
+      .moves_i        (moves[n/4]),
       .start_i        (start[n/4]),
       .refuse_i       (refuse[n/4]),
       .fall_i         (fall[n/4]),
@@ -120,7 +125,7 @@ module ssi (
       .gray_i         (gray),
       .odd_i          (odd),
       .even_i         (even),
-      .data_i         (data_i[n]),
+      .data_i         (data[n]),
       .clk_o          (clk_o[n]),
       .active_o       (active[n]),
       .shot_o         (shot),
@@ -131,15 +136,22 @@ module ssi (
   end
 
   // ------------------------------------------------------------------ reading
-  logic [8:0]  high_part;
-  logic [21:0] word;
-  logic [23:0] x_word, y_word;
-  assign high_part = high[9*channel+:9];
-  assign word      = channel[2] ? group_word[43:22] : group_word[21:0];
-  assign x_word    = (place == 2'd2) ? {word[21:10], 2'b00, word[9:0]}
-                   : (place == 2'd1) ? {16'h0, refused[8*channel+:8]} : {8'h0, control[16*channel+:16]};
-  assign y_word    = (place == 2'd1) ? {high_part[8], 15'h0, high_part[7:0]} : position[32*channel+:24];
-  assign rdata_o   = !hit ? 24'h0 : x_i ? x_word : y_word;
+  logic [8:0] high_part;
+  always_comb begin
+    high_part = 9'h0;
+    rdata_o   = 24'h0;
+    if (hit) begin
+      high_part = high[9*channel+:9];
+      case ({x_i, place})
+        3'b100:  rdata_o = {8'h0, control[16*channel+:16]};
+        3'b101:  rdata_o = {16'h0, refused[8*channel+:8]};
+        3'b110:  rdata_o = channel[2] ? {group_word[43:32], 2'b00, group_word[31:22]}
+                                      : {group_word[21:10], 2'b00, group_word[9:0]};
+        3'b001:  rdata_o = {high_part[8], 15'h0, high_part[7:0]};
+        default: rdata_o = position[32*channel+:24];
+      endcase
+    end
+  end
 
 endmodule : ssi
 

@@ -7,6 +7,7 @@
 module ssi_channel (
   input  wire logic       clk_pwm_i,
   input  wire logic       rst_ni,
+  input  wire logic       moves_i,   // with any of the next four: a channel that rests costs a simulation little
   input  wire logic       start_i,
   input  wire logic       refuse_i,
   input  wire logic       fall_i,
@@ -18,7 +19,7 @@ module ssi_channel (
   input  wire logic       gray_i,
   input  wire logic       odd_i,     // one bit of parity more
   input  wire logic       even_i,
-  input  wire logic       data_i,    // pin
+  input  wire logic       data_i,    // pin, behind two flip-flops
   output logic            clk_o,     // pin
   output logic            active_o,
   output logic            shot_o,    // turns when a single frame has begun
@@ -27,17 +28,12 @@ module ssi_channel (
   output logic [7:0]      refused_o
 );
 
-  logic data;
-  sync2 #(.Reset(1'b1)) u_sync (.clk_i(clk_pwm_i), .rst_ni, .d_i(data_i), .q_o(data));
-
-  logic        begins, parity_bit, value, clk_d, clk_q, shot_q, active_q, first_q, load_q, odd_q, error_q;
+  logic        begins, parity_bit, clk_q, shot_q, active_q, first_q, load_q, odd_q, error_q;
   logic [5:0]  rises_q;
   logic [31:0] shift_q, position_q;
   logic [7:0]  refused_q;
   assign begins     = start_i & enable_i;
   assign parity_bit = (odd_i | even_i) & (rises_q == 6'd1);
-  assign value      = data ^ (gray_i & shift_q[0]);
-  assign clk_d      = (clk_q | rise_i) & ~(fall_i & driver_i & (active_q | begins));
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -53,30 +49,32 @@ module ssi_channel (
       position_q <= 32'h0;
       refused_q  <= 8'd0;
     end else begin
-      clk_q  <= clk_d;
-      load_q <= 1'b0;
-      if (begins) begin
-        active_q <= 1'b1;
-        first_q  <= 1'b1;
-        shift_q  <= 32'h0;
-        odd_q    <= 1'b0;
-        rises_q  <= bits_i + {5'd0, odd_i | even_i} + 6'd1;
-        shot_q   <= shot_q ^ shot_i;
-      end else if (rise_i && active_q) begin
-        first_q <= 1'b0;
-        rises_q <= rises_q - 6'd1;
-        if (!first_q) odd_q <= odd_q ^ data;
-        if (!first_q && !parity_bit) shift_q <= {shift_q[30:0], value};
-        if (rises_q == 6'd1) begin
-          active_q <= 1'b0;
-          load_q   <= 1'b1;
+      if (moves_i) begin
+        clk_q <= (clk_q | rise_i) & ~(fall_i & driver_i & (active_q | begins));
+        if (begins) begin
+          active_q <= 1'b1;
+          first_q  <= 1'b1;
+          shift_q  <= 32'h0;
+          odd_q    <= 1'b0;
+          rises_q  <= bits_i + {5'd0, odd_i | even_i} + 6'd1;
+          shot_q   <= shot_q ^ shot_i;
+        end else if (rise_i && active_q) begin
+          first_q <= 1'b0;
+          rises_q <= rises_q - 6'd1;
+          if (!first_q) odd_q <= odd_q ^ data_i;
+          if (!first_q && !parity_bit) shift_q <= {shift_q[30:0], data_i ^ (gray_i & shift_q[0])};
+          if (rises_q == 6'd1) begin
+            active_q <= 1'b0;
+            load_q   <= 1'b1;
+          end
         end
+        if (refuse_i && enable_i) refused_q <= refused_q + 8'd1;
       end
       if (load_q) begin
+        load_q     <= 1'b0;
         position_q <= shift_q;
         error_q    <= (odd_i & ~odd_q) | (even_i & odd_q);
       end
-      if (refuse_i && enable_i) refused_q <= refused_q + 8'd1;
     end
   end
 

@@ -29,7 +29,7 @@ struct Order {
 constexpr double kJitter = 3;
 constexpr double kStep = 0.5, kLongest = 250;  // ms
 
-constexpr const char* kDwelling = "B9R";        // the program that dwells
+constexpr const char* kDwelling = "B9R";         // the program that dwells
 constexpr double kThere = 28, kBackFeed = 1.75;  // counts; counts/ms on the slow way from the DWELL
 
 struct Case {

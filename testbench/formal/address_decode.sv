@@ -1,6 +1,6 @@
-// Rules of the address decoder, host-bus:1.1 with the bases of servo-ic:1.2, servo-ic:1.3 and servo-ic:11.3, servo-ic:11.4,
-// for every address, space, area and equipment: who is selected is told by the bases, not by bits of the address.
-// Combinational; nothing is assumed.
+// Rules of the address decoder, host-bus:1.1 with the bases of servo-ic:1.2, servo-ic:1.3 and servo-ic:11.3,
+// servo-ic:11.4, for every address, space, area and equipment: who is selected is told by the bases, not by bits of the
+// address. Combinational; nothing is assumed.
 // proof: pdr
 // clocks: one
 // steps: 4
@@ -79,11 +79,13 @@ module address_decode_rules (
     end
 
     // R3: The latches are X words of the default area: host signals, watchdog strobe, control outputs.
-    R3: assert (signals == (latches && x_i && addr_i == 19'h70010) && strobe == (latches && x_i && addr_i == 19'h70011) &&
+    R3: assert (signals == (latches && x_i && addr_i == 19'h70010) &&
+                strobe == (latches && x_i && addr_i == 19'h70011) &&
                 ctrl == (latches && x_i && addr_i == 19'h70012));
     C3: cover (ctrl);
 
-    // R4: The regions are the on-chip page, gate ICs in AA1, latches in the default area and the page of a Geo PMAC in AA1.
+    // R4: The regions are the on-chip page, gate ICs in AA1, latches in the default area and the page of a Geo PMAC in
+    // AA1.
     R4: assert (any == (int_i || gates || latches || page) && on_chip == int_i);
     C4: cover (any && page && !ssi);
 

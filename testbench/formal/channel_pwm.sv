@@ -1,7 +1,7 @@
-// Rules of the PWM outputs at the pins of a channel, servo-ic:5.11, for each of the three phases (`k` is any) and anything
-// that triangle, turnarounds, dead time, commands, control word and trip do, at any clock. Two switches of a phase that
-// are on at once burn an amplifier. On is the level that X:+5 makes of it: high, inverted low. All of the channel but its
-// PWM and the way from there to the pins is free. Nothing is assumed but that a run starts in reset.
+// Rules of the PWM outputs at the pins of a channel, servo-ic:5.11, for each of the three phases (`k` is any) and
+// anything that triangle, turnarounds, dead time, commands, control word and trip do, at any clock. Two switches of a
+// phase that are on at once burn an amplifier. On is the level that X:+5 makes of it: high, inverted low. All of the
+// channel but its PWM and the way from there to the pins is free. Nothing is assumed but that a run starts in reset.
 // proof: induction 2
 // clocks: one
 // steps: 40
@@ -67,7 +67,8 @@ module channel_pwm_rules (
   logic [11:0] left;
   logic [16:0] command;
   assign left    = \dut.u_pwm.wait_q [12*k +: 12];
-  assign command = (k == 2'd0) ? \dut.u_pwm.command_a_q : (k == 2'd1) ? \dut.u_pwm.command_b_q : \dut.u_pwm.command_c_q ;
+  assign command = (k == 2'd0) ? \dut.u_pwm.command_a_q :
+                   (k == 2'd1) ? \dut.u_pwm.command_b_q : \dut.u_pwm.command_c_q ;
 
   // The command in use, and what it was against the triangle one and two clocks ago.
   logic signed [15:0] command_q;

@@ -1,7 +1,7 @@
-// Rules of the clock chain, servo-ic:5.1, for any dividers, directions and clock pins, which may change at any clock: the
-// triangle, PHASE and SERVO, pins that change their direction, and the alignment to a PHASE from outside. They are told by
-// a second description that counts up from what has been, where the design looks a tick ahead. Nothing is assumed but that
-// a run starts in reset.
+// Rules of the clock chain, servo-ic:5.1, for any dividers, directions and clock pins, which may change at any clock:
+// the triangle, PHASE and SERVO, pins that change their direction, and the alignment to a PHASE from outside. They are
+// told by a second description that counts up from what has been, where the design looks a tick ahead. Nothing is
+// assumed but that a run starts in reset.
 // edit: I7m00 is 2 after a reset, not 6527, so that a few steps reach all of it (rtl/regs/brick_regs_pkg.sv)
 //   - ServoIcPwmControlReset = 24'h197F0F;
 //   + ServoIcPwmControlReset = 24'h00020F;
@@ -156,7 +156,8 @@ module clock_gen_rules (
   (* hierconn *) wire logic [3:0]  \dut.phase_div_q , \dut.servo_div_q ;
   (* hierconn *) wire logic        \dut.phase_ext_q , \dut.servo_ext_q ;
   (* hierconn *) wire logic [1:0]  \dut.miss_q ;
-  (* hierconn *) wire logic        \dut.up_q , \dut.at_top_q , \dut.at_middle_q , \dut.close_q , \dut.recent_q , \dut.odd_q ;
+  (* hierconn *) wire logic        \dut.up_q , \dut.at_top_q , \dut.at_middle_q ;
+  (* hierconn *) wire logic        \dut.close_q , \dut.recent_q , \dut.odd_q ;
   (* hierconn *) wire logic        \dut.phase_q , \dut.servo_q , \dut.phase_pin , \dut.servo_pin ;
   (* hierconn *) wire logic        \dut.u_phase_sync.sync1_q , \dut.u_servo_sync.sync1_q ;
 
@@ -169,8 +170,9 @@ module clock_gen_rules (
       R1: assert (cnt <= end_now + 17'sd1 && cnt >= -$signed({2'b00, up_q ? start_q : end_q}) - 17'sd2);
       C1: cover (end_q == 15'd2 && cnt == -17'sd4);
 
-      // R2: It moves one step a tick, turns at its ends, which last a tick, and is moved by a PHASE from outside only: the
-      // turnaround that is 8 ticks away or less comes or begins anew, one further away with the fourth such edge in a row.
+      // R2: It moves one step a tick, turns at its ends, which last a tick, and is moved by a PHASE from outside only:
+      // the turnaround that is 8 ticks away or less comes or begins anew, one further away with the fourth such edge in
+      // a row.
       R2: assert (cnt == (up_q ? along_q : ~along_q));
       C2: cover (cnt == 17'sd9);
 
@@ -178,8 +180,8 @@ module clock_gen_rules (
       R3: assert (turn == turns);
       C3: cover (moved && along_q < 17'sd0);
 
-      // R4: PHASE rises at each (I7m01 + 1)-th turnaround and falls half a period later, rounded down; as an input it is
-      // its pin behind two flip-flops. A fall that meets the release of the pin is none.
+      // R4: PHASE rises at each (I7m01 + 1)-th turnaround and falls half a period later, rounded down; as an input it
+      // is its pin behind two flip-flops. A fall that meets the release of the pin is none.
       R4: assert (phase_rise == rises && phase_fall == falls);
       C4: cover (falls && ticked_q && !phase_in && phase_div_q == 4'd1);
 
@@ -187,19 +189,21 @@ module clock_gen_rules (
       R5: assert (servo_fall == (servo_q && !servo_d));
       C5: cover (servo_fall && !servo_in && servo_div_q == 4'd1);
 
-      // R6: The pins have these levels, SERVO up again with the next fall of PHASE or, without a divider, its rise; what is
-      // an input is high.
+      // R6: The pins have these levels, SERVO up again with the next fall of PHASE or, without a divider, its rise;
+      // what is an input is high.
       R6: assert (phase == (phase_q || phase_in) && servo == (servo_q || servo_in));
       C6: cover (!servo && servo_oe_q);
 
-      // R7: A pin that is to become an input is driven on until it is high, PHASE until SERVO goes too; then it is high.
+      // R7: A pin that is to become an input is driven on until it is high, PHASE until SERVO goes too; then it is
+      // high.
       if (phase_oe_q != phase_oe || !phase_oe || !servo_oe) begin
         R7: assert (phase_oe == phase_oe_q && servo_oe == servo_oe_q && (phase_oe || !phase_ext_set_q || phase) &&
                     (servo_oe || !servo_ext_set_q || servo));
         C7: cover (phase_goes && !phase_in);
       end
 
-      // R8: A pin that is to be driven is taken with a rise of the own clock while the net is high, and at no other time.
+      // R8: A pin that is to be driven is taken with a rise of the own clock while the net is high, and at no other
+      // time.
       if (phase_oe || servo_oe) begin
         R8: assert (phase_oe == phase_oe_q && servo_oe == servo_oe_q);
         C8: cover (phase_oe && servo_taken);
@@ -227,14 +231,15 @@ module clock_gen_rules (
 
       // I3: And about the clocks and their pins.
       I3: assert ({\dut.phase_q , \dut.servo_q , \dut.phase_pin , \dut.servo_pin } ==
-                  {phase_q, servo_q, phase_pin_q[1], servo_pin_q[1]} && phase_oe == phase_oe_q && servo_oe == servo_oe_q &&
+                  {phase_q, servo_q, phase_pin_q[1], servo_pin_q[1]} &&
+                  phase_oe == phase_oe_q && servo_oe == servo_oe_q &&
                   {\dut.u_phase_sync.sync1_q , \dut.u_servo_sync.sync1_q } == {phase_pin_q[0], servo_pin_q[0]} &&
                   \dut.phase_cnt_q == phase_div_q - turns_q && turns_q <= phase_div_q &&
                   \dut.servo_cnt_q == servo_div_q - falls_q && falls_q <= servo_div_q);
 
       // I4: And about the fall of PHASE to come.
       I4: assert (\dut.odd_q == (ticked_q && periods[0]) &&
-                  \dut.fall_cnt_q == ((ticked_q && {1'b0, turns_q} <= {1'b0, periods[4:1]}) ? periods[4:1] - turns_q : 4'd0));
+                  \dut.fall_cnt_q == ((ticked_q && turns_q <= periods[4:1]) ? periods[4:1] - turns_q : 4'd0));
 
       // I5: After a take the way is as old as that, and PHASE is high for its first half.
       if (taken_q < 3'd3 && phase_oe) begin

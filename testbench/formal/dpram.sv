@@ -5,7 +5,8 @@
 //   from fall to rise, write data from 12.7 ns after the fall to the rise (rows 101 to 117); a strobe of this RAM ends
 //   after /TA is low (row 118), one of another device lasts 50.9 ns or more;
 // - of isa_slave: its outputs change with clk_ref, direction and address stand from the command's start to the clock
-//   after its end, in which a write may have its strobe (`isa_slave`, R3 and R4). It may end a command at any time, BUSY
+//   after its end, in which a write may have its strobe (`isa_slave`, R3 and R4). It may end a command at any time,
+// BUSY
 //   or not, with or without a strobe.
 // edit: four words of memory instead of 32768, and nothing else asked for (rtl/host/dpram_memory.sv)
 //   - mem [0:32767]
@@ -130,9 +131,9 @@ module dpram_rules (
   assign touch_a = write_a | \dut.u_memory.a_re_i ;
   assign touch_b = write_b | \dut.u_memory.b_re_i ;
 
-  // Who may have a word, as the two sides must believe. The CPU: in a read from the edge at which the memory was read for
-  // it to the rise; in a write from /TA low on until the memory has been written. The host: from the edge of clk_ref that
-  // found its command and left BUSY low, to its end.
+  // Who may have a word, as the two sides must believe. The CPU: in a read from the edge at which the memory was read
+  // for it to the rise; in a write from /TA low on until the memory has been written. The host: from the edge of
+  // clk_ref that found its command and left BUSY low, to its end.
   (* anyconst *) logic [3:0] b;  // any bit of the data
   logic       edge_pwm, read_q = 1'b0, made_q = 1'b0, due_q = 1'b0, due_bit_q, drive_q = 1'b0;
   logic       cpu_reads, cpu_writes, host_in, made;
@@ -150,8 +151,11 @@ module dpram_rules (
     made_q  <= !wr_ni && (made_q || (made && !due_q));
     if (edge_ref) asked_q <= host_sel_i;
     // A write whose strobe has ended, after /TA was low, may be made a little later.
-    if (rise && !wr_nq && sel_q && !made_q) {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q[b], 3'd0};
-    else if (due_q) {due_q, due_steps_q} <= {!made, due_steps_q + 3'd1};
+    if (rise && !wr_nq && sel_q && !made_q) begin
+      {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q[b], 3'd0};
+    end else if (due_q) begin
+      {due_q, due_steps_q} <= {!made, due_steps_q + 3'd1};
+    end
   end
 
   always @($global_clock) begin
@@ -173,8 +177,8 @@ module dpram_rules (
       C2: cover (host_sel_i && was_low);
     end
 
-    // R3: BUSY means wait: /TA is up with BUSY. A strobe that heeds /TA gets its word: by the end of /RD the memory was read
-    // at its address, and a write is made, with its address and data, at most 8 steps after /WR.
+    // R3: BUSY means wait: /TA is up with BUSY. A strobe that heeds /TA gets its word: by the end of /RD the memory was
+    // read at its address, and a write is made, with its address and data, at most 8 steps after /WR.
     R3: assert ((!cpu_busy || cpu_wait) && (!rise || !sel_q || rd_nq || read_q) && due_steps_q < 3'd7);
     C3: cover (due_q && due_steps_q == 3'd1);
 
@@ -202,7 +206,8 @@ module dpram_rules (
       C7: cover (host_rd_q);
     end
 
-    // R8: The CPU's data pins are driven while /RD is low and the memory has been read at its address, never else, and stand.
+    // R8: The CPU's data pins are driven while /RD is low and the memory has been read at its address, never else, and
+    // stand.
     R8: assert (!cpu_drive || (cpu_reads && (!drive_q || rdata[b] == rdata_q[b])));
     C8: cover (cpu_drive && cpu_wait);
   end

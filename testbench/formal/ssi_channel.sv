@@ -11,9 +11,9 @@
 // fault R3: a bit is seen in the result before the word is whole (rtl/ssi/ssi_channel.sv)
 //   - if (load_q) begin
 //   + if (load_q || rise_i) begin
-// fault R6: a bit as the pin was a tick before (rtl/ssi/ssi_channel.sv)
-//   - .q_o(data));
-//   + .q_o()); assign data = u_sync.sync1_q;
+// fault R6: each bit turned over (rtl/ssi/ssi_channel.sv)
+//   - data_i ^ (gray_i
+//   + ~data_i ^ (gray_i
 // fault R7: parity of the position alone (rtl/ssi/ssi_channel.sv)
 //   - if (!first_q) odd_q
 //   + if (!first_q && !parity_bit) odd_q
@@ -24,6 +24,7 @@
 
 module ssi_channel_rules (
   input wire logic       clk_i,
+  input wire logic       more_i,   // the group moves for another reason
   input wire logic       start_i,
   input wire logic       refuse_i,
   input wire logic       fall_i,
@@ -48,10 +49,13 @@ module ssi_channel_rules (
                          .enable_o(enable), .shot_o(single), .driver_o(driver), .bits_o(bits), .gray_o(gray),
                          .odd_o(odd), .even_o(even));
   logic [31:0] position;
+  logic        data;
+  sync2 #(.Reset(1'b1)) sync (.clk_i, .rst_ni(rst_nq), .d_i(data_i), .q_o(data));
   logic [7:0]  refused;
-  ssi_channel dut (.clk_pwm_i(clk_i), .rst_ni(rst_nq), .start_i, .refuse_i, .fall_i, .rise_i, .enable_i(enable),
+  ssi_channel dut (.clk_pwm_i(clk_i), .rst_ni(rst_nq), .moves_i(start_i | refuse_i | fall_i | rise_i | more_i),
+                   .start_i, .refuse_i, .fall_i, .rise_i, .enable_i(enable),
                    .shot_i(single), .driver_i(driver), .bits_i(bits), .gray_i(gray), .odd_i(odd), .even_i(even),
-                   .data_i, .clk_o(clk), .active_o(active), .shot_o(shot), .position_o(position),
+                   .data_i(data), .clk_o(clk), .active_o(active), .shot_o(shot), .position_o(position),
                    .parity_error_o(parity_error), .refused_o(refused));
 
   // The group: at rest, clock high, clock low.
@@ -111,7 +115,7 @@ module ssi_channel_rules (
 
   // From inside: the clocks left, a whole word.
   (* hierconn *) wire logic [5:0] \dut.rises_q ;
-  (* hierconn *) wire logic       \dut.load_q , \dut.first_q , \dut.odd_q , \dut.u_sync.sync1_q , \dut.u_sync.sync2_q ;
+  (* hierconn *) wire logic       \dut.load_q , \dut.first_q , \dut.odd_q , \sync.sync1_q , \sync.sync2_q ;
   (* hierconn *) wire logic [31:0] \dut.shift_q ;
 
   always @(posedge clk_i) if (rst_nq) begin
@@ -123,7 +127,7 @@ module ssi_channel_rules (
     L2: assert (\dut.load_q == whole_q);
 
     // L3: Two flip-flops take the pin; the first clock takes no bit, and the number of ones is that of the taken.
-    L3: assert (\dut.u_sync.sync1_q == data1_q && \dut.u_sync.sync2_q == data2_q &&
+    L3: assert (\sync.sync1_q == data1_q && \sync.sync2_q == data2_q &&
                 (!frame_q || (\dut.first_q == (seen_q == 6'd0))) && \dut.odd_q == ones_q && all_q <= 6'd34 &&
                 (!frame_q || (all_q >= 6'd13)));
 

@@ -1,7 +1,7 @@
-// Rules of an SSI group, servo-ic:11.3, servo-ic:11.4, servo-ic:11.9, for whatever word, which may change at every tick,
-// and any moves of PHASE and SERVO: what starts a frame and what is refused, when the serial clock falls and rises, how
-// long it rests. They are what ssi_channel.sv assumes. Of the channels is assumed what is proved there: they are at work
-// from a start on, each until one of the rises.
+// Rules of an SSI group, servo-ic:11.3, servo-ic:11.4, servo-ic:11.9, for whatever word, which may change at every
+// tick, and any moves of PHASE and SERVO: what starts a frame and what is refused, when the serial clock falls and
+// rises, how long it rests. They are what ssi_channel.sv assumes. Of the channels is assumed what is proved there: they
+// are at work from a start on, each until one of the rises.
 // proof: induction 3
 // clocks: one
 // steps: 110
@@ -9,8 +9,8 @@
 //   - RestTicks = 24'd2360
 //   + RestTicks = 24'd20
 // fault R1: the trigger of a Geo PMAC as a Brick's word says (rtl/ssi/ssi_group.sv)
-//   - trigger   = geo_i ? servo_fall_i :
-//   + trigger   =
+//   - trigger  = geo_i ? servo_fall_i :
+//   + trigger  =
 // fault R2: no refusal in the rest (rtl/ssi/ssi_group.sv)
 //   - trigger & (state_q != Idle);
 //   + trigger & (state_q != Idle) & (state_q != Rest);
@@ -52,12 +52,13 @@ module ssi_group_rules (
 
   (* anyconst *) logic geo;  // product
 
-  logic start, refuse, fall, rise;
+  logic start, refuse, fall, rise, moves;
   logic active_q = 1'b0;
   always @(posedge clk_i) active_q <= rst_nq & (start | (active_q & ~(rise & stop_i)));
   ssi_group dut (.clk_pwm_i(clk_i), .rst_ni(rst_nq), .geo_i(geo), .divisor_i, .power_i, .servo_i, .falling_i, .delay_i,
                  .code_i, .phase_rise_i, .phase_fall_i, .servo_rise_i, .servo_fall_i, .enabled_i, .active_i(active_q),
-                 .start_o(start), .refuse_o(refuse), .fall_o(fall), .rise_o(rise));
+                 .start_o(start), .refuse_o(refuse), .fall_o(fall), .rise_o(rise),
+                 .moves_o(moves));
 
   // What the word asks for.
   logic [31:0] period, low_half;
@@ -137,7 +138,8 @@ module ssi_group_rules (
   always @(posedge clk_i) if (rst_nq) begin
     // L1: The states of the design are the frame's here.
     L1: assert (\dut.state_q == (!run_q ? 3'd0 : before_q ? 3'd1 : low_q ? 3'd2 : rest_q ? 3'd4 : 3'd3) &&
-                (run_q || (!before_q && !low_q && !rest_q)) && !(before_q && low_q) && !(rest_q && (before_q || low_q)) &&
+                (run_q || (!before_q && !low_q && !rest_q)) && !(before_q && low_q) &&
+                !(rest_q && (before_q || low_q)) &&
                 (run_q || !active_q) && (!(before_q || low_q) || active_q) && !(rest_q && active_q));
 
     // L2: So are its counts, in the rest of ticks.
@@ -147,8 +149,8 @@ module ssi_group_rules (
                 (!run_q || before_q || low_q || rest_q || active_q || since_q == 13'd0) &&
                 (!run_q || rest_q || left_q != 32'd0) && (!before_q || periods_q != 4'd0));
 
-    // R1: A frame starts with the move that the word asks for, a fall of SERVO on a Geo PMAC, when nothing runs and some
-    //     channel waits.
+    // R1: A frame starts with the move that the word asks for, a fall of SERVO on a Geo PMAC, when nothing runs and
+    //     some channel waits.
     R1: assert (start == (trigger && enabled_i && !run_q));
     C1: cover (start && !geo && servo_i && !falling_i);
 
@@ -169,8 +171,14 @@ module ssi_group_rules (
     end
 
     // R5: A period has (M + 1) 2^N cycles, at least 25, on a Geo PMAC 768 to 96 ticks.
-    R5: assert ({8'd0, \dut.period } == period);
-    C5: cover (!geo && period == 32'h800000);
+    if (run_q || start) begin
+      R5: assert ({8'd0, \dut.period } == period);
+      C5: cover (!geo && period == 32'h800000);
+    end
+
+    // R8: The channels are told whenever there is anything for them.
+    R8: assert (moves == (start || refuse || fall || rise));
+    C8: cover (moves);
 
     // R6: 20 us after the last rise, and no tick later, the next move is taken: at the 2361st tick, here the 21st.
     if (since_q == 13'd20 && $past(rest_q)) begin

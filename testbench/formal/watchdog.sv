@@ -1,6 +1,6 @@
-// Rules of the watchdog's circuit, servo-ic:10/4 to servo-ic:10/7 and servo-ic:10/12, for whatever strobes, SERVO and the
-// 5 V supply do. A step is one clk_ref, 25.43 ns; the times are those of the real counters, 960 periods of 1024. Nothing
-// is assumed but that a run starts in reset.
+// Rules of the watchdog's circuit, servo-ic:10/4 to servo-ic:10/7 and servo-ic:10/12, for whatever strobes, SERVO and
+// the 5 V supply do. A step is one clk_ref, 25.43 ns; the times are those of the real counters, 960 periods of 1024.
+// Nothing is assumed but that a run starts in reset.
 // proof: induction 2
 // clocks: one
 // steps: 16

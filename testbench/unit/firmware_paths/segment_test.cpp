@@ -9,6 +9,7 @@ extern "C" {
 #include "firmware/motion/path.h"
 #include "firmware/motion/path_motors.h"
 #include "firmware/motion/segment.h"
+#include "firmware/motion/system_path.h"
 }
 
 namespace {
@@ -98,6 +99,20 @@ TEST_F(Segments, ALateMoveBlendsInWhatIsLeft) {
   EXPECT_EQ(change(99), 2);
   EXPECT_EQ(change(100), 0);
   EXPECT_EQ(change(101), 0);
+}
+
+// motion:7.1/10: the real-time task does not come for 60 ms, the servo task comes to the end of what is made.
+TEST_F(Segments, TheEndOfWhatIsMadeIsARunTimeError) {
+  fit({"1000X"});
+  ASSERT_EQ(host("I5113=5"), "");
+  store({"TM300 TA20 TS0", "X10"});
+  ASSERT_EQ(host("&1B1R"), "");
+  platform::servo_ticks(ticks_of(100));
+  for (unsigned n = ticks_of(60); n > 0; --n) system_path_servo();
+  EXPECT_EQ(cs().error, RUN_TIME_NONE);
+  platform::servo_ticks(10);
+  EXPECT_EQ(cs().error, RUN_TIME_LATE);
+  EXPECT_FALSE(run_is_running(0));
 }
 
 // Behind one for which the sequence has gone straight on, nothing is made beyond the corner until it is needed: the

@@ -274,4 +274,27 @@ TEST_F(HoldsAndAborts, JogsGoOutOfALimitOnly) {
   }
 }
 
+// A motor of the program that does not move stands through the abort, whatever its moves before were.
+TEST_F(HoldsAndAborts, AMotorThatStandsStandsThroughAnAbort) {
+  for (int moment = 0; moment < 40; ++moment) {
+    platform::power_up();
+    fit({"1000X", "1000Y"});
+    ASSERT_EQ(host("I115=0.5 I215=0.5"), "");
+    Lines lines = {"TM30 TA10 TS2"};
+    for (int i = 1; i <= 12; ++i) lines.push_back("X" + std::to_string(i) + "Y" + std::to_string(i % 2));
+    for (int i = 13; i <= 30; ++i) lines.push_back("X" + std::to_string(i));
+    store(lines);
+    ASSERT_EQ(host("&1B1R"), "");
+    platform::servo_ticks(ticks_of(430 + 3.3 * moment));
+    const double stood = at(2);
+    ASSERT_EQ(stood, 0.0);
+    ASSERT_GT(at(1), 13000.0);
+    ASSERT_EQ(host("A"), "");
+    for (int tick = 0; tick < 200; ++tick) {
+      platform::servo_ticks(1);
+      ASSERT_EQ(at(2), stood) << moment << ", " << tick;
+    }
+  }
+}
+
 }  // namespace

@@ -115,6 +115,8 @@ TEST(PortA, EachRegionHasItsAreaAndWaitStates) {
                         {'X', 0x063FFF, 4, 3},
                         {'X', 0x070010, 0, 5},
                         {'X', 0x0700FF, 0, 5},
+                        {'Y', 0x00FF00, 2, 2},  // servo-ic:11.4/5
+                        {'X', 0x00FFFF, 2, 2},
                         {'Y', 0x078000, 2, 2},
                         {'X', 0x07BFFF, 2, 2}}) {
     rig.read(c.space, c.address);

@@ -88,9 +88,10 @@ class SsiLockstep : public ::testing::TestWithParam<std::uint32_t> {};
 TEST_P(SsiLockstep, EnginesAgreeAtEveryTickOnRandomStimulus) {
   BRICK_COVERS("SSI-1");
   LockstepSsiRig rig;
-  Stimulus stimulus(rig, random_seed(GetParam()));
+  const std::uint32_t seed = random_seed(GetParam());
+  Stimulus stimulus(rig, seed);
   stimulus.run(300'000);
-  EXPECT_EQ(rig.difference, "") << "seed " << GetParam();
+  EXPECT_EQ(rig.difference, "") << "seed " << seed;
   EXPECT_GT(stimulus.clocks(), 500u);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, SsiLockstep, ::testing::Range(1u, 13u));

@@ -70,7 +70,6 @@ class LateTimes : public Controller {
     }
     machine().on_bus_cycle = nullptr;
     machine().on_task = nullptr;
-    finish();
     return events;
   }
 };

@@ -77,6 +77,16 @@ class Pads(unittest.TestCase):
     def setUp(self):
         self.found, self.reset = fpga_pads.delays(fpga_pads.read(SDF.splitlines()))
 
+    def test_pads_of_two_ways_have_their_names(self):
+        for cell, name in (("u_phase.gen_pad[0].u_pad", "phase_io"), ("u_memcs16.gen_pad[0].u_pad", "isa_memcs16_n_io"),
+                           ("gen_isa_sd[1].u_isa_sd.gen_pad[3].u_pad", "isa_sd_io"), ("trip_i$tr_io", "trip_i"),
+                           ("u_chip.u_phase_pin.pad_q_TRELLIS_FF_Q", None)):
+            self.assertEqual(fpga_pads.pad(cell), name)
+
+    def test_a_chip_has_rows_of_its_pads_alone(self):
+        found = {"phase_io": {"in": 2.0, "out": 3.0}, "pa_x_i": {"in": 1.0}}
+        self.assertEqual([row.rule for row in fpga_pads.rows(found)], ["servo-ic:5.1/11", "host-bus:2.6"])
+
     def test_ways_are_the_longest(self):
         self.assertAlmostEqual(self.found["pa_d_io"]["in"], 1.0 + 0.24 + 2.0 + 0.05)
         self.assertAlmostEqual(self.found["pa_ta_no"]["out"], 0.4 + 3.0)

@@ -1,8 +1,9 @@
 // Rules of the outputs after a trip of the watchdog, servo-ic:10/10 and servo-ic:10/11, of a whole servo IC with its
 // pins: every register begins with anything, the trip comes when it likes, and the bus does what it likes before and
-// after. Off is as servo-ic:5.11/9, servo-ic:5.12/6 and servo-ic:5.13/6 say it, for X:+5 as it stood at the trip. `n` is
-// any of the four channels. Encoders, compare, converters, the switches behind the dead time and PHASE are free: they do
-// anything. So all of clk_pwm is, and a step is one clk_ref. Assumed: no reset, and a trip that stays (`watchdog`, R1).
+// after. Off is as servo-ic:5.11/9, servo-ic:5.12/6 and servo-ic:5.13/6 say it, for X:+5 as it stood at the trip. `n`
+// is any of the four channels. Encoders, compare, converters, the switches behind the dead time and PHASE are free:
+// they do anything. So all of clk_pwm is, and a step is one clk_ref. Assumed: no reset, and a trip that stays
+// (`watchdog`, R1).
 // proof: pdr
 // clocks: one
 // steps: 30
@@ -22,7 +23,7 @@
 //   + phase_rise
 `default_nettype none
 
-module trip_rules (
+module servo_ic_rules (
   input wire logic        clk_i,
   input wire logic        trip_i,
   input wire logic        sel_i,
@@ -179,6 +180,6 @@ module trip_rules (
     C9: cover (aena == 1'b0 && motor[motor_pins_pkg::AdcStrobeLsb]);
   end
 
-endmodule : trip_rules
+endmodule : servo_ic_rules
 
 `default_nettype wire
