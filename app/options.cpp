@@ -71,6 +71,9 @@ void add_run_options(CLI::App& command, RunOptions& o, const std::string& engine
                   "at random, by --seed; up to 1")
       ->type_name("NS")
       ->capture_default_str();
+  command.add_flag("--skew", o.skew,
+                   "each line of the CPU's bus comes to the board with a delay of its own, 0 to 8.48 ns by --seed, and "
+                   "D and /TA come back 10 ns after their clock");
   command.add_option("--json", o.json, "write the results to FILE");
   command.add_option("--gdb", o.gdb, "wait for a debugger on 127.0.0.1:PORT, 0 = a free port (docs/debugging.md)")
       ->type_name("PORT");
@@ -151,6 +154,7 @@ MachineConfig machine_config(const RunOptions& o) {
     throw UsageError(fmt::format("--engine {}: no such engine; expected rtl, systemc or lockstep", o.engine));
   config.seed = parse_count("--seed", o.seed);
   config.aperture = parse_aperture(o.aperture);
+  config.skew = o.skew;
   config.batch = static_cast<Tick>(parse_count("--batch", o.batch));
   if (config.batch < 0 || config.batch >= kNever)
     throw UsageError(fmt::format("--batch {}: is too large; expected ticks", o.batch));

@@ -33,6 +33,7 @@ struct RunOptions {
   std::string json;
   std::string gdb;  // port, "" = no debugger
   std::string aperture = "0";
+  bool skew = false;
   std::string batch = "0";
   std::string size;                  // "" = the bench's own
   std::optional<std::string> bcr;    // hexadecimal; none: as the firmware sets it

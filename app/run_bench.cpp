@@ -64,10 +64,10 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   Simulation simulation(options, config, bench.name);
   set_up.check(simulation);
   if (extras.before) extras.before(simulation);
-  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}\n", bench.name, bench.description, options.engine,
-                           config.board.name, config.seed,
+  std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}{}\n", bench.name, bench.description,
+                           options.engine, config.board.name, config.seed,
                            config.aperture > 0 ? fmt::format(", aperture {} ns", options.aperture) : "",
-                           negative ? ", NEGATIVE CONTROL: " + bench.negative.does : "");
+                           config.skew ? ", skew" : "", negative ? ", NEGATIVE CONTROL: " + bench.negative.does : "");
   BenchReport report(std::cout, simulation.machine());
   try {
     simulation.run([&] {

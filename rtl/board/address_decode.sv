@@ -13,7 +13,8 @@ module address_decode (
   input  wire logic        jpan_i,        // control panel port fitted
   input  wire logic [1:0]  ssi_i,         // serial encoder inputs: 1 Geo PMAC, 2 Geo Brick LV, 3 the page without them
   output logic             sel_any_o,     // a register region: its read data goes to the bus
-  output logic             sel_int_o,     // host port
+  output logic             sel_int_o,     // the on-chip page
+  output logic             sel_port_o,    // its half with the words of the host port
   output logic             sel_signals_o, // X:$070010 host signals
   output logic             sel_strobe_o,  // X:$070011 watchdog strobe
   output logic             sel_ctrl_o,    // X:$070012 control outputs
@@ -54,6 +55,7 @@ module address_decode (
   end
 
   assign sel_int_o     = int_i;
+  assign sel_port_o    = int_i & (addr_i[6] == brick_regs_pkg::Hi08HcrAddr[6]);
   assign sel_signals_o = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesHostSignalsAddr[7:0]);
   assign sel_strobe_o  = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesWatchdogStrobeAddr[7:0]);
   assign sel_ctrl_o    = latch & x_i & (addr_i[7:0] == brick_regs_pkg::BoardLatchesControlOutputsAddr[7:0]);

@@ -162,27 +162,18 @@ module board_core #(
   logic [3:0]  bus_aa;
   logic [23:0] bus_wdata;
 
-  // Registers see the strobes of their own regions only: main memory and the dual-ported RAM have shorter cycles, whose
-  // address is gone when clk_ref looks. The RAM sees every strobe, for the next one ends its access.
-  logic own, rd_toggle, wr_toggle, any_rd_toggle, any_wr_toggle;
-  assign own = pa_int_i | pa_aa_i[1] | (pa_aa_i == 4'h0);
+  logic [1:0] rd_falls, wr_falls, bus_rd_falls;
   bus_strobes u_bus_strobes (
     .rst_ni, .pa_rd_ni, .pa_wr_ni,
-    .sel_i       (own),
-    .rd_toggle_o (rd_toggle),
-    .wr_toggle_o (wr_toggle)
-  );
-  bus_strobes u_any_strobes (
-    .rst_ni, .pa_rd_ni, .pa_wr_ni,
-    .sel_i       (1'b1),
-    .rd_toggle_o (any_rd_toggle),
-    .wr_toggle_o (any_wr_toggle)
+    .rd_falls_o (rd_falls),
+    .wr_falls_o (wr_falls)
   );
 
   bus_sync u_bus_sync (
-    .clk_ref_i, .rst_ni,
-    .rd_toggle_i (rd_toggle),
-    .wr_toggle_i (wr_toggle),
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .rd_falls_i (rd_falls),
+    .wr_falls_i (wr_falls),
+    .pa_rd_ni, .pa_wr_ni,
     .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_wdata_i,
     .addr_o  (bus_addr),
     .x_o     (bus_x),
@@ -190,10 +181,11 @@ module board_core #(
     .int_o   (bus_int),
     .wdata_o (bus_wdata),
     .we_o    (bus_we),
-    .rd_o    (bus_rd)
+    .rd_o    (bus_rd),
+    .rd_falls_o (bus_rd_falls)
   );
 
-  logic        sel_any, sel_int, sel_signals, sel_strobe, sel_ctrl, sel_panel, sel_ssi;
+  logic        sel_any, sel_int, sel_port, sel_signals, sel_strobe, sel_ctrl, sel_panel, sel_ssi;
   logic [21:0] sel_ic;
   address_decode u_address_decode (
     .addr_i        (bus_addr),
@@ -205,6 +197,7 @@ module board_core #(
     .ssi_i         (ssi_kind_q),
     .sel_any_o     (sel_any),
     .sel_int_o     (sel_int),
+    .sel_port_o    (sel_port),
     .sel_signals_o (sel_signals),
     .sel_strobe_o  (sel_strobe),
     .sel_ctrl_o    (sel_ctrl),
@@ -355,7 +348,7 @@ module board_core #(
     .hp_wdata_i    (hp_wdata),
     .hp_rdata_o    (hp_rdata),
     .hp_reset_i    (host_reset),
-    .dsp_sel_i     (sel_int),
+    .dsp_sel_i     (sel_port),
     .dsp_we_i      (bus_we),
     .dsp_rd_i      (bus_rd),
     .dsp_addr_i    (bus_addr[5:0]),
@@ -462,8 +455,8 @@ module board_core #(
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni,
     .small_i     (dpram_small_q),
-    .rd_toggle_i (any_rd_toggle),
-    .wr_toggle_i (any_wr_toggle),
+    .rd_falls_i  (rd_falls),
+    .wr_falls_i  (wr_falls),
     .cpu_sel_i   (dpram_sel),
     .cpu_x_i     (pa_x_i),
     .cpu_addr_i  (pa_addr_i[13:0]),
@@ -493,7 +486,7 @@ module board_core #(
     for (int unsigned i = 0; i < 4; i++) begin
       if (MacroIcMask[i]) reg_rdata = reg_rdata | macro_rdata[24*i+:24];
     end
-    if (sel_int)          reg_rdata = int_rdata;
+    if (sel_int)          reg_rdata = int_rdata & {24{sel_port}};
     else if (sel_signals) reg_rdata = {20'h0, signals_rdata};
     else if (sel_ctrl)    reg_rdata = {22'h0, ctrl_o};
     else if (sel_panel)   reg_rdata = {8'h0, panel_rdata};
@@ -503,12 +496,14 @@ module board_core #(
   assign answers = sel_any & ~(ServoChips & (ic_sel_o != 18'h0));
   bus_read u_bus_read (
     .clk_ref_i, .rst_ni, .pa_rd_ni,
-    .rd_i      (bus_rd),
-    .sel_any_i (answers),
-    .sel_int_i (sel_int),
-    .data_i    (reg_rdata),
-    .data_o    (bus_rdata),
-    .oe_o      (bus_rdata_oe)
+    .rd_falls_i (rd_falls),
+    .rd_i       (bus_rd),
+    .of_i       (bus_rd_falls),
+    .sel_any_i  (answers),
+    .sel_int_i  (sel_int),
+    .data_i     (reg_rdata),
+    .data_o     (bus_rdata),
+    .oe_o       (bus_rdata_oe)
   );
 
   assign pa_data_o    = dpram_drive ? {8'h0, dpram_rdata} : bus_rdata;

@@ -1,15 +1,20 @@
-// Port A synchroniser: the falls of /RD and /WR, each as a level that turns over (bus_strobes), pass two flip-flops on
-// clk_ref_i; a third finds the edge. we_o, rd_o: the one edge at which a write is made, at which a read takes its
-// sample and has its side effects, the third after the fall. Address and data are sampled freely; those that stand here
-// then were sampled an edge before, when the strobe had been low for a period, and are stable. Asynchronous reset.
-// docs/port_a.md.
+// Port A synchroniser of the register regions. All pins pass flip-flops on clk_pwm_i; what they mean is decided on
+// clk_ref_i. Pins have delays of their own, up to a period of clk_pwm, so an address is looked at only between two
+// samples of its strobe: a period or more after one that has found it low, and the strobe must be found low again, with
+// no fall in between, a period or more after the address. Then it is that strobe's own address, whatever the delays.
+//   the edge of clk_ref that finds a new strobe low and one of our regions selected: address and data are taken
+//   the next one: we_o or rd_o, if the strobe was still low at the first; the write is made, a read has its sample
+// A strobe of others, or one too short, does nothing. Asynchronous reset. docs/port_a.md.
 `default_nettype none
 
 module bus_sync (
+  input  wire logic        clk_pwm_i,
   input  wire logic        clk_ref_i,
   input  wire logic        rst_ni,
-  input  wire logic        rd_toggle_i,
-  input  wire logic        wr_toggle_i,
+  input  wire logic [1:0]  rd_falls_i,  // of bus_strobes
+  input  wire logic [1:0]  wr_falls_i,
+  input  wire logic        pa_rd_ni,
+  input  wire logic        pa_wr_ni,
   input  wire logic [18:0] pa_addr_i,
   input  wire logic        pa_x_i,
   input  wire logic [3:0]  pa_aa_i,
@@ -20,41 +25,83 @@ module bus_sync (
   output logic [3:0]       aa_o,
   output logic             int_o,
   output logic [23:0]      wdata_o,
-  output logic             we_o,
-  output logic             rd_o
+  output logic             we_o,        // one clk_pwm, before the edge of clk_ref
+  output logic             rd_o,
+  output logic [1:0]       rd_falls_o   // the count of the read whose sample it is
 );
 
-  (* async_reg = "true" *) logic rd1_q, rd2_q, wr1_q, wr2_q;  // only the second stage looks at the first
-  logic        rd3_q, wr3_q;
-  logic [24:0] where_q;  // {int, aa, x, addr}
-  logic [23:0] wdata_q;
+  // ---------------------------------------------------------------- clk_pwm: pins
+  // Only the second stage looks at the first. The address has one: it counts when it stands.
+  (* async_reg = "true" *) logic [1:0] rd1_q, rd2_q, wr1_q, wr2_q;
+  (* async_reg = "true" *) logic       rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q;
+  logic [1:0]  rd3_q, wr3_q;
+  logic [24:0] pins_q;  // {int, aa, x, addr}
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      {rd1_q, rd2_q, rd3_q}                        <= 6'h0;
+      {wr1_q, wr2_q, wr3_q}                        <= 6'h0;
+      {rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q} <= 4'h0;
+      pins_q                                       <= 25'h0;
+    end else begin
+      {rd1_q, rd2_q, rd3_q}  <= {rd_falls_i, rd1_q, rd2_q};
+      {wr1_q, wr2_q, wr3_q}  <= {wr_falls_i, wr1_q, wr2_q};
+      {rd_low1_q, rd_low2_q} <= {~pa_rd_ni, rd_low1_q};
+      {wr_low1_q, wr_low2_q} <= {~pa_wr_ni, wr_low1_q};
+      pins_q                 <= {pa_int_i, pa_aa_i, pa_x_i, pa_addr_i};
+    end
+  end
 
+  // ---------------------------------------------------------------- clk_ref: address and data
+  // A level may come a clock after the fall that it belongs to, so the count of a clock earlier names it.
+  logic        own, rd_take, wr_take, rd_taken_q, wr_taken_q, ref_q;
+  logic [1:0]  rd_seen_q, wr_seen_q;  // the counts, as they were at the last edge of clk_ref
+  logic [24:0] where_q;
+  logic [23:0] wdata_q;
+  assign own     = pins_q[24] | pins_q[21] | (pins_q[23:20] == 4'h0);  // on-chip page, AA1, default area
+  assign rd_take = own & (rd3_q != rd_seen_q) & (rd2_q == rd3_q) & rd_low2_q;
+  assign wr_take = own & (wr3_q != wr_seen_q) & (wr2_q == wr3_q) & wr_low2_q;
   always_ff @(posedge clk_ref_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      rd1_q   <= 1'b0;
-      rd2_q   <= 1'b0;
-      rd3_q   <= 1'b0;
-      wr1_q   <= 1'b0;
-      wr2_q   <= 1'b0;
-      wr3_q   <= 1'b0;
-      where_q <= 25'h0;
-      wdata_q <= 24'h0;
+      rd_seen_q  <= 2'd0;
+      wr_seen_q  <= 2'd0;
+      rd_taken_q <= 1'b0;
+      wr_taken_q <= 1'b0;
+      ref_q      <= 1'b0;
+      where_q    <= 25'h0;
+      wdata_q    <= 24'h0;
     end else begin
-      rd1_q   <= rd_toggle_i;
-      rd2_q   <= rd1_q;
-      rd3_q   <= rd2_q;
-      wr1_q   <= wr_toggle_i;
-      wr2_q   <= wr1_q;
-      wr3_q   <= wr2_q;
-      where_q <= {pa_int_i, pa_aa_i, pa_x_i, pa_addr_i};
-      wdata_q <= pa_wdata_i;
+      rd_seen_q  <= rd3_q;
+      wr_seen_q  <= wr3_q;
+      rd_taken_q <= rd_take;
+      wr_taken_q <= wr_take;
+      ref_q      <= ~ref_q;
+      where_q    <= pins_q;
+      wdata_q    <= pa_wdata_i;
+    end
+  end
+
+  // ---------------------------------------------------------------- clk_pwm: was the strobe still low then?
+  logic ref1_q, ref2_q, we_q, rd_q;
+  always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      ref1_q <= 1'b0;
+      ref2_q <= 1'b0;
+      we_q   <= 1'b0;
+      rd_q   <= 1'b0;
+    end else begin
+      ref1_q <= ref_q;
+      ref2_q <= ref1_q;
+      // Two edges after one of clk_ref: what the second stage shows are the pins of that edge.
+      we_q   <= (ref1_q ^ ref2_q) & wr_taken_q & wr_low2_q & (wr2_q == wr_seen_q);
+      rd_q   <= (ref1_q ^ ref2_q) & rd_taken_q & rd_low2_q & (rd2_q == rd_seen_q);
     end
   end
 
   assign {int_o, aa_o, x_o, addr_o} = where_q;
-  assign wdata_o = wdata_q;
-  assign we_o    = wr2_q ^ wr3_q;
-  assign rd_o    = rd2_q ^ rd3_q;
+  assign wdata_o    = wdata_q;
+  assign we_o       = we_q;
+  assign rd_o       = rd_q;
+  assign rd_falls_o = rd_seen_q;
 
 endmodule : bus_sync
 

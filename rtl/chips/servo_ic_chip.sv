@@ -43,13 +43,11 @@ module servo_ic_chip (
   end
 
   // ------------------------------------------------------------------ Port A, as in board_core
-  logic own, rd_toggle, wr_toggle;
-  assign own = pa_int_i | pa_aa_i[1] | (pa_aa_i == 4'h0);
+  logic [1:0] rd_falls, wr_falls, bus_rd_falls;
   bus_strobes u_bus_strobes (
     .rst_ni, .pa_rd_ni, .pa_wr_ni,
-    .sel_i       (own),
-    .rd_toggle_o (rd_toggle),
-    .wr_toggle_o (wr_toggle)
+    .rd_falls_o (rd_falls),
+    .wr_falls_o (wr_falls)
   );
 
   logic [18:0] bus_addr;
@@ -57,9 +55,10 @@ module servo_ic_chip (
   logic        bus_x, bus_int, bus_we, bus_rd;
   logic [23:0] bus_wdata;
   bus_sync u_bus_sync (
-    .clk_ref_i, .rst_ni,
-    .rd_toggle_i (rd_toggle),
-    .wr_toggle_i (wr_toggle),
+    .clk_pwm_i, .clk_ref_i, .rst_ni,
+    .rd_falls_i (rd_falls),
+    .wr_falls_i (wr_falls),
+    .pa_rd_ni, .pa_wr_ni,
     .pa_addr_i, .pa_x_i, .pa_aa_i, .pa_int_i, .pa_wdata_i,
     .addr_o      (bus_addr),
     .x_o         (bus_x),
@@ -67,12 +66,13 @@ module servo_ic_chip (
     .int_o       (bus_int),
     .wdata_o     (bus_wdata),
     .we_o        (bus_we),
-    .rd_o        (bus_rd)
+    .rd_o        (bus_rd),
+    .rd_falls_o  (bus_rd_falls)
   );
 
   logic [17:0] number;  // this IC, of those there can be
   logic [21:0] sel_ic;
-  logic [6:0]  unused_sel;
+  logic [7:0]  unused_sel;
   logic        sel;
   assign number = 18'h1 << number_q;
   address_decode u_address_decode (
@@ -90,6 +90,7 @@ module servo_ic_chip (
     .sel_ctrl_o    (unused_sel[4]),
     .sel_panel_o   (unused_sel[5]),
     .sel_ssi_o     (unused_sel[6]),
+    .sel_port_o    (unused_sel[7]),
     .sel_ic_o      (sel_ic)
   );
   assign sel = sel_ic != 22'h0;
@@ -97,12 +98,14 @@ module servo_ic_chip (
   logic [23:0] rdata;
   bus_read u_bus_read (
     .clk_ref_i, .rst_ni, .pa_rd_ni,
-    .rd_i      (bus_rd),
-    .sel_any_i (sel),
-    .sel_int_i (1'b0),
-    .data_i    (rdata),
-    .data_o    (pa_data_o),
-    .oe_o      (pa_data_oe_o)
+    .rd_falls_i (rd_falls),
+    .rd_i       (bus_rd),
+    .of_i       (bus_rd_falls),
+    .sel_any_i  (sel),
+    .sel_int_i  (1'b0),
+    .data_i     (rdata),
+    .data_o     (pa_data_o),
+    .oe_o       (pa_data_oe_o)
   );
 
   // ------------------------------------------------------------------ the IC and its clock pins

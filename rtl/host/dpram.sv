@@ -11,8 +11,8 @@ module dpram (
   input  wire logic        rst_ni,
   input  wire logic        small_i,      // strap: only the first 8192 words are fitted
   // CPU side: Port A pins and the falls of its strobes (bus_strobes), not yet synchronised
-  input  wire logic        rd_toggle_i,
-  input  wire logic        wr_toggle_i,
+  input  wire logic [1:0]  rd_falls_i,
+  input  wire logic [1:0]  wr_falls_i,
   input  wire logic        cpu_sel_i,
   input  wire logic        cpu_x_i,
   input  wire logic [13:0] cpu_addr_i,
@@ -36,65 +36,63 @@ module dpram (
 );
 
   // ---------------------------------------------------------------- CPU side, pins
-  // Toggles and levels of the strobes pass two flip-flops. Select and address stand from before the fall to the end of
-  // the strobe, so one flip-flop is enough: it is read when the toggle has come through two.
-  (* async_reg = "true" *) logic rd1_q, rd2_q, wr1_q, wr2_q, rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q;
+  // Falls and levels of the strobes pass two flip-flops. Select and address have one, so they are looked at a clock
+  // later than the strobe: pins have delays of their own, up to a clock, and what is taken is taken back when the
+  // strobe has ended before it acts.
+  (* async_reg = "true" *) logic [1:0] rd1_q, rd2_q, wr1_q, wr2_q;
+  (* async_reg = "true" *) logic       rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q;
+  logic [1:0]  rd3_q, wr3_q;
   logic        sel_q;
   logic [14:0] pins_q;
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {rd1_q, rd2_q, wr1_q, wr2_q}                 <= 4'h0;
+      {rd1_q, rd2_q, rd3_q}                        <= 6'h0;
+      {wr1_q, wr2_q, wr3_q}                        <= 6'h0;
       {rd_low1_q, rd_low2_q, wr_low1_q, wr_low2_q} <= 4'h0;
       sel_q                                        <= 1'b0;
       pins_q                                       <= 15'h0;
     end else begin
-      {rd1_q, rd2_q, wr1_q, wr2_q} <= {rd_toggle_i, rd1_q, wr_toggle_i, wr1_q};
-      {rd_low1_q, rd_low2_q}       <= {~cpu_rd_ni, rd_low1_q};
-      {wr_low1_q, wr_low2_q}       <= {~cpu_wr_ni, wr_low1_q};
-      sel_q                        <= cpu_sel_i;
-      pins_q                       <= {cpu_addr_i, cpu_x_i};
+      {rd1_q, rd2_q, rd3_q}  <= {rd_falls_i, rd1_q, rd2_q};
+      {wr1_q, wr2_q, wr3_q}  <= {wr_falls_i, wr1_q, wr2_q};
+      {rd_low1_q, rd_low2_q} <= {~cpu_rd_ni, rd_low1_q};
+      {wr_low1_q, wr_low2_q} <= {~cpu_wr_ni, wr_low1_q};
+      sel_q                  <= cpu_sel_i;
+      pins_q                 <= {cpu_addr_i, cpu_x_i};
     end
   end
 
   // ---------------------------------------------------------------- CPU side, arbitration
-  // A strobe is a request until its done toggle has followed: at once if it is not for this RAM, when it is granted, or
-  // when it is high again. It is granted only while it is seen low: what has ended takes nothing of the next one's.
-  // A grant reads at once. A write samples its data there and is made two edges later, if /WR then proves to have been
-  // low, and no other strobe to have fallen, from the address' sample to that of the data.
-  logic        rd_done_q, rd_ack_q, wr_done_q, busy_q, own_q, own_wr_q, sampled_q, proven_q, show_q;
-  logic        rd_waits_q, wr_waits_q;  // not done a clock ago: a strobe's level may come a clock after its fall
+  // A strobe is a request until its done count has followed: when it is granted, or when it is found, a clock after its
+  // fall, to be high again or not for this RAM; level and select may come a clock after the fall. It is granted only
+  // while it is seen low. A grant reads at once. A write samples its data there and is made two edges later, if /WR
+  // then proves to have been low, and no other strobe to have fallen, up to that sample, a clock after the address'.
+  logic [1:0]  rd_done_q, rd_ack_q, wr_done_q;
+  logic        busy_q, own_q, own_wr_q, sampled_q, proven_q, show_q;
   logic [14:0] cell_q;
   logic [15:0] wdata_q;
-  logic        rd_new, wr_new, rd_low, wr_low, rd_over, wr_over, rd_follows, wr_follows, fallen, still;
-  logic        rd_replaced, wr_replaced;  // the next one has fallen before the end of this was seen
+  logic        rd_new, wr_new, rd_low, wr_low, rd_vain, wr_vain, fallen, still;
   logic        request, conflict, blocked, grant, pins_here, cell_here;
   logic        host_own_q, mem_busy_q;
-  assign rd_new      = rd2_q ^ rd_done_q;
-  assign wr_new      = wr2_q ^ wr_done_q;
-  assign rd_low      = rd_new & rd_low2_q;
-  assign wr_low      = wr_new & wr_low2_q;
-  assign rd_over     = rd_waits_q & ~rd_low2_q;
-  assign wr_over     = wr_waits_q & ~wr_low2_q;
-  assign fallen      = rd_new | wr_new;  // so the strobe before has ended, even if it was not seen high
-  assign still       = wr_low2_q & ~wr_new;  // the write under way, not a next one
-  assign request     = sel_q & (rd_low | wr_low) & ~sampled_q & ~proven_q;
-  assign conflict    = (pins_q == mem_addr_i) & (wr_low | ~mem_rd_i);
-  assign blocked     = (host_own_q | mem_busy_q) & conflict;  // the host is there, or was first to wait
-  assign grant       = request & ~blocked;
-  assign rd_follows  = rd_new & (~sel_q | rd_over | (grant & ~wr_low));
-  assign wr_follows  = wr_new & (~sel_q | wr_over | grant);
-  assign rd_replaced = rd_waits_q & ~rd_new;
-  assign wr_replaced = wr_waits_q & ~wr_new;
-  assign pins_here   = ~small_i | (pins_q[14:13] == 2'b00);
-  assign cell_here   = ~small_i | (cell_q[14:13] == 2'b00);
+  assign rd_new    = rd2_q != rd_done_q;
+  assign wr_new    = wr2_q != wr_done_q;
+  assign rd_low    = rd_new & rd_low2_q;
+  assign wr_low    = wr_new & wr_low2_q;
+  assign rd_vain   = (rd2_q == rd3_q) & ~(sel_q & rd_low2_q);
+  assign wr_vain   = (wr2_q == wr3_q) & ~(sel_q & wr_low2_q);
+  assign fallen    = rd_new | wr_new;  // so the strobe before has ended, even if it was not seen high
+  assign still     = wr_low2_q & ~wr_new;  // the write under way, not a next one
+  assign request   = sel_q & (rd_low | wr_low) & ~sampled_q & ~proven_q;
+  assign conflict  = (pins_q == mem_addr_i) & (wr_low | ~mem_rd_i);
+  assign blocked   = (host_own_q | mem_busy_q) & conflict;  // the host is there, or was first to wait
+  assign grant     = request & ~blocked;
+  assign pins_here = ~small_i | (pins_q[14:13] == 2'b00);
+  assign cell_here = ~small_i | (cell_q[14:13] == 2'b00);
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      rd_done_q  <= 1'b0;
-      rd_ack_q   <= 1'b0;
-      rd_waits_q <= 1'b0;
-      wr_done_q  <= 1'b0;
-      wr_waits_q <= 1'b0;
+      rd_done_q  <= 2'd0;
+      rd_ack_q   <= 2'd0;
+      wr_done_q  <= 2'd0;
       busy_q     <= 1'b0;
       own_q      <= 1'b0;
       own_wr_q   <= 1'b0;
@@ -104,13 +102,9 @@ module dpram (
       cell_q     <= 15'h0;
       wdata_q    <= 16'h0;
     end else begin
-      if (rd_follows)       rd_done_q <= rd2_q;
-      else if (rd_replaced) rd_done_q <= ~rd2_q;
-      if (wr_follows)       wr_done_q <= wr2_q;
-      else if (wr_replaced) wr_done_q <= ~wr2_q;
+      if (rd_vain || (grant && !wr_low)) rd_done_q <= rd2_q;
+      if (wr_vain || grant)              wr_done_q <= wr2_q;
       rd_ack_q   <= rd_done_q;  // a clock after the data: /TA may be sampled later than they are
-      rd_waits_q <= rd_new & ~rd_follows;
-      wr_waits_q <= wr_new & ~wr_follows;
       busy_q     <= request & blocked;
       sampled_q  <= grant & wr_low;
       proven_q   <= sampled_q & still;
@@ -126,9 +120,11 @@ module dpram (
     end
   end
 
-  // The pins show a word of this RAM from its grant to the end of /RD, without a clock there. A read that was given up
-  // may be granted when the next has fallen already: its word is not that one's.
-  logic rd_low_n, drive_q, drive_rd_q;
+  // The pins show a word of this RAM from its grant to the end of /RD, without a clock there, and only of the read that
+  // was granted. That it is still low then is what proves its address: a strobe of others that was granted by the next
+  // one's address has ended.
+  logic       rd_low_n, drive_q;
+  logic [1:0] drive_rd_q;
   assign rd_low_n = rst_ni & ~cpu_rd_ni;
   always_ff @(posedge clk_pwm_i or negedge rd_low_n) begin
     if (!rd_low_n)             drive_q <= 1'b0;
@@ -136,12 +132,12 @@ module dpram (
   end
 
   always_ff @(posedge clk_pwm_i or negedge rst_ni) begin
-    if (!rst_ni)               drive_rd_q <= 1'b0;
+    if (!rst_ni)               drive_rd_q <= 2'd0;
     else if (grant && !wr_low) drive_rd_q <= rd2_q;
   end
 
-  assign cpu_drive_o = drive_q & (rd_toggle_i == drive_rd_q);
-  assign cpu_wait_o = cpu_sel_i & ((rd_toggle_i ^ rd_ack_q) | (wr_toggle_i ^ wr_done_q));
+  assign cpu_drive_o = drive_q & (rd_falls_i == drive_rd_q);
+  assign cpu_wait_o = cpu_sel_i & ((rd_falls_i != rd_ack_q) | (wr_falls_i != wr_done_q));
   assign cpu_busy_o = busy_q;
 
   // ---------------------------------------------------------------- host side

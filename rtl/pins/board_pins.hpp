@@ -12,7 +12,7 @@
 namespace brick {
 
 struct PortAPins {
-  std::uint32_t pa_addr = 0;  // address A18..A0; A5..A0 of the on-chip peripheral when pa_int is 1 (host-bus:2.1)
+  std::uint32_t pa_addr = 0;  // address A18..A0; A6..A0 of the on-chip peripheral when pa_int is 1 (host-bus:2.1)
   bool pa_x = false;  // 1 = X space, 0 = Y space (host-bus:2.1)
   std::uint8_t pa_aa = 0;  // AA3..AA0, 1 = region selected (host-bus:2.1)
   bool pa_int = false;  // 1 = on-chip peripheral page X:$FFFF80..$FFFFFF: the CPU's side of the host port (host-bus:2.6)

@@ -110,8 +110,8 @@ def write_board_inputs(board, notice):
 def write_board_ports(board, notice):
     """For a Verilated module with the board's ports themselves."""
     ports = [pin for pin in board.pins if pin.word is not None]
-    yield from (f"// {notice}", "// The ports of a Verilated board_chip, or another module with those of board_top.", ON,
-                "#pragma once", "", "#include <cstdint>", "", "namespace brick {", "", "// `in`: BoardInputs.",
+    yield from (f"// {notice}", "// The ports of a Verilated board_chip, or another module with those of board_top.",
+                ON, "#pragma once", "", "#include <cstdint>", "", "namespace brick {", "", "// `in`: BoardInputs.",
                 "template <class Chip, class Inputs>", "void drive_ports(Chip& chip, const Inputs& in) {")
     for pin in ports:
         if pin.is_input:

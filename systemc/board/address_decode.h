@@ -10,7 +10,8 @@ namespace brick {
 
 struct AddressSelect {
   bool any = false;       // a register region: its read data goes to the bus
-  bool internal = false;  // host port
+  bool internal = false;  // the on-chip page
+  bool port = false;      // its half with the words of the host port
   bool signals = false;   // X:$070010 host signals
   bool strobe = false;    // X:$070011 watchdog strobe
   bool ctrl = false;      // X:$070012 control outputs
@@ -27,6 +28,7 @@ class AddressDecode : public sc_core::sc_module {
     AddressSelect s;
     if (w.internal) {
       s.any = s.internal = true;
+      s.port = ((w.addr ^ regs::hi08::kHcr.address) & 0x40) == 0;
       return s;
     }
     const std::uint32_t a = w.addr;

@@ -59,12 +59,10 @@ void BoardTop::set_port_a(const BoardInputs& inputs) {
 // the next edge, so there is nothing to wire on; while no strobe moves or is on its way nobody takes notice of the
 // rest.
 void BoardTop::drive_port_a() {
-  const bool strobe = any_strobes_.moves(inputs_) || held();
+  const bool strobe = bus_strobes_.moves(inputs_) || held();
   if (strobe) {
-    const bool own = inputs_.pa_int || (inputs_.pa_aa & 2) != 0 || (inputs_.pa_aa & 0xF) == 0;
-    bus_strobes_.set_pins(inputs_, own, !held());
-    any_strobes_.set_pins(inputs_, true, !held());
-    bus_read_.set_rd_n(inputs_.pa_rd_n);
+    bus_strobes_.set_pins(inputs_, !held());
+    bus_read_.set_rd(inputs_.pa_rd_n, bus_strobes_.rd_falls());
   }
   if (strobe || bus_sync_.under_way()) {
     bus_sync_.advance(now_);
@@ -76,7 +74,7 @@ void BoardTop::drive_port_a() {
     dpram_.advance(now_);
     touched_ |= parts(kDpram);
   }
-  dpram_.in.set_cpu_pins(inputs_, any_strobes_.rd_toggle(), any_strobes_.wr_toggle());
+  dpram_.in.set_cpu_pins(inputs_, bus_strobes_.rd_falls(), bus_strobes_.wr_falls());
   dpram_.rd_moved();
   const bool oe = bus_read_.oe() || dpram_.cpu_drive();
   if (oe != (outputs_.get(pin::kPaDataOe) != 0) || dpram_.cpu_wait() != (outputs_.get(pin::kPaTaN) != 0))
@@ -177,7 +175,7 @@ BoardTop::IcAccess BoardTop::take_strobe(Tick t) {
   select();
   if (select_.ssi) ssi_.advance(t - 1);
   if (read && select_.any)
-    bus_read_.take(read_data(t - 1), select_.internal);
+    bus_read_.take(read_data(t - 1), bus_sync_.rd_falls(), select_.internal);
   else if (read)
     bus_read_.take_nothing();
   if (select_.ssi) {
@@ -194,7 +192,7 @@ void BoardTop::select() {
 }
 
 std::uint32_t BoardTop::read_data(Tick t) const {
-  if (select_.internal) return host_port_.dsp_rdata();
+  if (select_.internal) return select_.port ? host_port_.dsp_rdata() : 0;
   if (select_.signals) return host_signals_.rdata();
   if (select_.ctrl) return ctrl();
   if (select_.panel) return panel_port_.rdata();

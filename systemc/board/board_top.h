@@ -216,7 +216,7 @@ class BoardTop : public sc_core::sc_module, public Board, private MotorDigest {
   std::uint32_t read_data(Tick t) const;  // of the selected register, after the edge t
   void take_straps(const Straps& straps, Tick t);
 
-  BusStrobes bus_strobes_, any_strobes_;  // of the register regions, of all
+  BusStrobes bus_strobes_;
   BusSync bus_sync_;
   BusRead bus_read_;
   AddressDecode address_decode_;

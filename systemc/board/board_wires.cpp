@@ -99,7 +99,7 @@ void BoardTop::connect_host_port(Parts& changed) {
   HostPort::Inputs& in = host_port_.in;
   Wires to(*this, kHostPort, host_port_, changed);
   if ((changed & parts(kBusSync, kStraps)) != 0) {
-    to(in.dsp_sel, select_.internal);
+    to(in.dsp_sel, select_.port);
     to(in.dsp_we, bus_sync_.we());
     to(in.dsp_rd, bus_sync_.rd());
     to(in.dsp_addr, bus_sync_.where().addr & 0x3F);

@@ -8,25 +8,30 @@ namespace brick {
 class BusRead {
  public:
   std::uint32_t data() const { return data_; }
-  bool oe() const { return oe_; }
+  bool oe() const { return oe_ && falls_ == of_; }
 
-  void set_rd_n(bool rd_n) {
+  // /RD and the falls it has had, as they are.
+  void set_rd(bool rd_n, std::uint8_t falls) {
     rd_n_ = rd_n;
+    falls_ = falls;
     if (rd_n) oe_ = false;  // without a clock
   }
-  // The sample of a read in a register region, of one elsewhere.
-  void take(std::uint32_t data, bool on_chip) {
+  // The sample of a read in a register region, with its count; of one elsewhere.
+  void take(std::uint32_t data, std::uint8_t of, bool on_chip) {
     data_ = data;
+    of_ = of;
     oe_ = !rd_n_ && !on_chip;
   }
   void take_nothing() { oe_ = false; }
   void reset() {
     data_ = 0;
+    of_ = 0;
     oe_ = false;
   }
 
  private:
   std::uint32_t data_ = 0;
+  std::uint8_t of_ = 0, falls_ = 0;
   bool rd_n_ = true, oe_ = false;
 };
 

@@ -1,5 +1,6 @@
-// Model of rtl/board/bus_sync.sv: the falls of /RD and /WR through three stages on clk_ref, one strobe an access.
-// Address and data are executed only where a strobe uses them.
+// Model of rtl/board/bus_sync.sv: strobes, address and data of Port A through flip-flops on clk_pwm; an access is taken
+// at the edge of clk_ref that finds a new strobe low, and made at the next one if the strobe was still low then. Edges
+// that nobody can see are executed when the next one matters.
 #pragma once
 
 #include <algorithm>
@@ -22,49 +23,56 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
     std::uint8_t aa = 0;
     bool x = false;
     bool internal = false;  // on-chip peripheral page
+
+    bool own() const { return internal || (aa & 2) != 0 || aa == 0; }  // a register region
   };
 
   void set_pins(const PortAPins& pins, const BusStrobes& strobes) {
-    where0_ = {pins.pa_addr & 0x7FFFF, static_cast<std::uint8_t>(pins.pa_aa & 0xF), pins.pa_x, pins.pa_int};
+    pins0_ = {pins.pa_addr & 0x7FFFF, static_cast<std::uint8_t>(pins.pa_aa & 0xF), pins.pa_x, pins.pa_int};
     wdata0_ = pins.pa_wdata & 0xFFFFFF;
-    rd_.set(strobes.rd_toggle());
-    wr_.set(strobes.wr_toggle());
+    rd_.set(strobes.rd_falls(), !pins.pa_rd_n);
+    wr_.set(strobes.wr_falls(), !pins.pa_wr_n);
   }
 
   // Of the access whose strobe is next, right when rd() or we() is.
   const Where& where() const { return where_; }
   std::uint32_t wdata() const { return wdata_; }
-  bool we() const { return wr_.strobe(); }
-  bool rd() const { return rd_.strobe(); }
+  bool we() const { return wr_.shown; }
+  bool rd() const { return rd_.shown; }
+  std::uint8_t rd_falls() const { return rd_.seen; }
   bool under_way() const { return rd_.under_way() || wr_.under_way(); }
   // A write is under way; an access that the on-chip page may see is.
   bool write_pending() const { return wr_.under_way(); }
-  bool internal_pending() const { return where0_.internal || under_way(); }
+  bool internal_pending() const { return pins0_.internal || under_way(); }
 
-  // The edge with which a strobe begins or ends. One of a read acts at its end only, when the sample is taken: where
-  // nobody else wants to know of it (the on-chip page does) it has no beginning.
+  // The edge with which a strobe begins or ends, at the earliest. One of a read acts at its end only, when the sample
+  // is taken: where nobody else wants to know of it (the on-chip page does) it has no beginning.
   Tick next_event() const override {
     const bool write = wr_.under_way();
     if (!write && !rd_.under_way()) return kNever;
-    const Tick edge = next_ref_edge(now_);
-    if (rd() || we()) return edge;
-    const Tick begin =
-        std::min(edge + kTicksPerRef * rd_.edges_to_strobe(), edge + kTicksPerRef * wr_.edges_to_strobe());
-    return write || where0_.internal ? begin : begin + kTicksPerRef;
+    if (rd() || we()) return now_ + 1;
+    const Tick made = std::min(rd_.made(now_), wr_.made(now_));
+    return write || pins0_.internal ? std::max(made - 1, now_ + 1) : made;
   }
 
   void advance(Tick t) override {
-    for (Tick edge = next_ref_edge(now_); under_way() && edge <= t; edge += kTicksPerRef) {
-      where_ = where0_;
-      wdata_ = wdata0_;
-      rd_.shift();
-      wr_.shift();
+    while (now_ < t && under_way()) {
+      ++now_;
+      const bool last = now_ % kTicksPerRef == kTicksPerRef - 1;
+      const bool ref = is_ref_edge(now_), own = pins_.own();
+      rd_.edge(last, ref, own);
+      wr_.edge(last, ref, own);
+      if (ref) {
+        where_ = pins_;
+        wdata_ = wdata0_;
+      }
+      pins_ = pins0_;
     }
     now_ = t;
   }
 
   void reset(Tick t) override {
-    where_ = Where{};
+    pins_ = where_ = Where{};
     wdata_ = 0;
     rd_.reset();
     wr_.reset();
@@ -72,28 +80,52 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
   }
 
  private:
-  // A level and three stages behind it, the level in bit 0.
-  class Stages {
-   public:
-    void set(bool level) { bits_ = (bits_ & 14u) | (level ? 1u : 0u); }
-    void shift() { bits_ = (bits_ << 1 | (bits_ & 1)) & 15; }
-    void reset() { bits_ = bits_ & 1; }
-    bool under_way() const { return bits_ != 0 && bits_ != 15; }
-    bool strobe() const { return ((bits_ >> 2 ^ bits_ >> 3) & 1) != 0; }
-    // Edges before the one with which a strobe begins; many when none does.
-    Tick edges_to_strobe() const {
-      const unsigned moves = bits_ ^ bits_ >> 1;
-      return (moves & 2) != 0 ? 0 : (moves & 1) != 0 ? 1 : kMany;
-    }
+  // A strobe's pins, what the stages of clk_pwm show, and the access.
+  struct Strobe {
+    std::uint8_t falls0 = 0, falls1 = 0, falls2 = 0, falls3 = 0, seen = 0;
+    bool low0 = false, low1 = false, low2 = false;
+    bool taken = false, shown = false;
 
-   private:
-    static constexpr Tick kMany = 1 << 20;
-    unsigned bits_ = 0;
+    void set(std::uint8_t falls, bool low) {
+      falls0 = falls;
+      low0 = low;
+    }
+    void edge(bool last, bool ref, bool own) {
+      shown = last && taken && low2 && falls2 == seen;
+      if (ref) {
+        taken = own && falls3 != seen && falls2 == falls3 && low2;
+        seen = falls3;
+      }
+      falls3 = falls2;
+      falls2 = falls1;
+      falls1 = falls0;
+      low2 = low1;
+      low1 = low0;
+    }
+    void reset() {
+      falls1 = falls2 = falls3 = seen = 0;
+      low1 = low2 = taken = shown = false;
+    }
+    // Another edge changes something that may come to show: a count that all have followed does not, whatever the
+    // level.
+    bool under_way() const {
+      return falls0 != falls1 || falls1 != falls2 || falls2 != falls3 || falls3 != seen || taken || shown;
+    }
+    // The edge at which the access is made, at the earliest.
+    Tick made(Tick now) const {
+      if (taken || shown) return next_ref_edge(now);
+      const Tick arrives = falls3 != seen     ? 1
+                           : falls2 != falls3 ? 2
+                           : falls1 != falls2 ? 3
+                           : falls0 != falls1 ? 4
+                                              : kNever;
+      return arrives == kNever ? kNever : next_ref_edge(now + arrives - 1) + kTicksPerRef;
+    }
   };
 
-  Where where0_, where_;
+  Where pins0_, pins_, where_;
   std::uint32_t wdata0_ = 0, wdata_ = 0;
-  Stages rd_, wr_;
+  Strobe rd_, wr_;
   Tick now_ = 0;
 };
 

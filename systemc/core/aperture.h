@@ -40,12 +40,15 @@ class Aperture {
     return first(time) != last(time);
   }
 
-  // A single line: the edge that sees it move.
-  Tick seen(TimeFs time) {
-    if (!in_doubt(time)) return last(time);
-    const bool early = early_ ? *early_ : (draw(time) & 1) != 0;
-    ++(early ? counts_.early : counts_.late);
-    return early ? first(time) : last(time);
+  // A line: the edge that sees it move. Lines that resolve one by one say which they are.
+  Tick taken(TimeFs time, unsigned line) const {
+    const Tick may = first(time), will = last(time);
+    return may != will && (early_ ? *early_ : (draw(time + line) & 1) != 0) ? may : will;
+  }
+  // Lines that move together, as they were taken: some of those in doubt early, some late.
+  void count(bool early, bool late) {
+    ++counts_.moves;
+    if (early || late) ++(early && late ? counts_.split : early ? counts_.early : counts_.late);
   }
 
   // A bus whose move at `time` is in doubt: what the edge first(time) sees. Lines that stay are nobody's choice.

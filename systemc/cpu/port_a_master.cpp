@@ -25,7 +25,7 @@ constexpr Region kRegions[] = {
     {regs::kGateIcsBase, regs::kGateIcsSize, 1},
     {regs::kSsiPageBase, regs::kSsiPageSize, 1},  // where main memory leaves it out
 };
-constexpr std::uint32_t kOnChipAddressPins = 0x3F;
+constexpr std::uint32_t kOnChipAddressPins = 0x7F;
 
 bool is_on_chip(std::uint32_t address, bool x) { return x && address - regs::kOnChipBase < regs::kOnChipSize; }
 const Region* region_of(std::uint32_t address) {
@@ -42,7 +42,9 @@ void PortAMaster::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   clock_.restart(edge, cycle, regs::cpu_bus::pctl::kMultiplier.get(pctl_) + 1);
   state_ = State::kIdle;
   stand_ = edge;
-  in_doubt_ = false;
+  wires_.forget();
+  shown_.clear();
+  arrived_ = {};
   moving_ta_.reset();
   levels_ = {};
   if (watch_ != nullptr) watch_->bus_reset();
@@ -50,6 +52,7 @@ void PortAMaster::reset(Tick edge, std::int64_t cycle, PortAPins& pins) {
   pins.pa_aa = 0;
   pins.pa_int = false;
   pins.pa_rd_n = pins.pa_wr_n = true;
+  driven_ = pins;
   const TimeFs now = tick_to_fs(edge);
   show(PortALine::kAa, now, 0);
   show(PortALine::kRdN, now, 1);
@@ -131,38 +134,40 @@ void PortAMaster::next(Step step) {
   step_ = step;
   time_ = time_of(step);
   const Tick before = stand_;  // what comes later is not seen earlier
-  in_doubt_ = resumed_ = false;
-  if (aperture_ == nullptr || !aperture_->on()) {
-    stand_ = late_ = fs_to_tick(time_) - 1;
-  } else if (step == Step::kStrobeLow || step == Step::kStrobeHigh) {
-    late_ = aperture_->seen(time_) - 1;
-    // What the board shows as the strobe rises is not what it shows later.
-    stand_ = step == Step::kStrobeLow ? late_ : std::min(late_, fs_to_tick(time_) - 1);
-  } else {
-    stand_ = aperture_->first(time_) - 1;
-    in_doubt_ = aperture_->in_doubt(time_) && aperture_->last(time_) - 1 > std::max(stand_, before);
-  }
+  stand_ = (wires_.plain() ? fs_to_tick(time_) : wires_.first(time_)) - 1;
+  // What the board shows as the strobe rises is not what it shows later.
+  if (!wires_.plain() && step == Step::kStrobeHigh)
+    stand_ = std::min(wires_.seen(cycle_.write ? kWrLine : kRdLine, time_), fs_to_tick(time_)) - 1;
   stand_ = std::max(stand_, before);
 }
 
-void PortAMaster::move_bus(PortAPins& pins) const {
+void PortAMaster::move(PortAPins& pins) {
+  const PortAPins before = driven_;
   switch (step_) {
     case Step::kAddress:
-      pins.pa_addr = address_pins();
-      pins.pa_x = cycle_.x;
-      pins.pa_aa = cycle_.aa;
-      pins.pa_int = cycle_.on_chip;
+      driven_.pa_addr = address_pins();
+      driven_.pa_x = cycle_.x;
+      driven_.pa_aa = cycle_.aa;
+      driven_.pa_int = cycle_.on_chip;
       break;
     case Step::kDriveData:
-      pins.pa_wdata = cycle_.data;
+      driven_.pa_wdata = cycle_.data;
+      break;
+    case Step::kStrobeLow:
+      (cycle_.write ? driven_.pa_wr_n : driven_.pa_rd_n) = false;
+      break;
+    case Step::kStrobeHigh:
+      driven_.pa_rd_n = driven_.pa_wr_n = true;
       break;
     case Step::kEnd:
-      pins.pa_aa = 0;
-      pins.pa_int = false;
-      break;
-    default:
+      driven_.pa_aa = 0;
+      driven_.pa_int = false;
       break;
   }
+  if (!wires_.plain()) return wires_.move(time_, before, driven_, stand_);
+  static_cast<PortAPins&>(pins) = driven_;
+  strobe_moved_ = step_ == Step::kStrobeLow || step_ == Step::kStrobeHigh;
+  follows_at_ = time_;
 }
 
 void PortAMaster::see(TimeFs time, const BoardOutputs& board) {
@@ -217,17 +222,6 @@ void PortAMaster::take_data() {
   if (moved != 0) cycle_.data = (cycle_.data & ~moved) | (random() & moved);
 }
 
-// The first half of a step that takes two.
-void PortAMaster::half_step(PortAPins& pins) {
-  const PortAPins from = pins;
-  PortAPins to = pins;
-  move_bus(to);
-  pins = aperture_->mixed(from, to, time_);
-  stand_ = aperture_->last(time_) - 1;
-  in_doubt_ = false;
-  resumed_ = true;
-}
-
 // The strobe has ended for the CPU; false if it goes on.
 bool PortAMaster::end_strobe() {
   if (!acknowledged()) {  // one clock more
@@ -238,10 +232,7 @@ bool PortAMaster::end_strobe() {
   }
   if (!cycle_.write) take_data();
   cycle_.strobe_high = time_;
-  tell_watch();
-  resumed_ = late_ > stand_;
-  stand_ = std::max(stand_, late_);
-  return !resumed_;
+  return true;
 }
 
 // What the lines do at this step, whenever the board's flip-flops see it.
@@ -277,17 +268,24 @@ void PortAMaster::tell_watch() {
 
 void PortAMaster::step(PortAPins& pins, const BoardOutputs& board) {
   strobe_moved_ = false;
-  if (step_ != Step::kStrobeHigh && !resumed_) tell_watch();
-  if (in_doubt_) return half_step(pins);
+  if (!running() || wires_.next() <= stand_) {
+    const PortAWires::Taken taken = wires_.take(pins);
+    strobe_moved_ = taken.follows;
+    follows_at_ = taken.time;
+    return;
+  }
+  arrive_until(time_);
+  if (step_ == Step::kStrobeHigh && !end_strobe()) return;
+  tell_watch();
+  move(pins);
   const bool shown = !cycle_.on_chip;
-  move_bus(pins);
   switch (step_) {
     case Step::kAddress:
       cycle_.start = time_;
       seen_.clear();
-      see(time_, board);
+      see(time_, wires_.skew().on() ? arrived_ : board);
       if (shown) {
-        show(PortALine::kAddr, time_, pins.pa_addr);
+        show(PortALine::kAddr, time_, driven_.pa_addr);
         show(PortALine::kX, time_, cycle_.x);
         show(PortALine::kAa, time_, cycle_.aa);
       }
@@ -300,16 +298,11 @@ void PortAMaster::step(PortAPins& pins, const BoardOutputs& board) {
       break;
     case Step::kStrobeLow:
       cycle_.strobe_low = time_;
-      (cycle_.write ? pins.pa_wr_n : pins.pa_rd_n) = false;
-      strobe_moved_ = true;
       if (shown) show(cycle_.write ? PortALine::kWrN : PortALine::kRdN, time_, 0);
       if (shown && !cycle_.write) show(PortALine::kData, time_, board.get(pin::kPaData));
       next(cycle_.write && shape_.data_driven > shape_.strobe_low ? Step::kDriveData : Step::kStrobeHigh);
       break;
     case Step::kStrobeHigh:
-      if (!resumed_ && !end_strobe()) break;
-      pins.pa_rd_n = pins.pa_wr_n = true;
-      strobe_moved_ = true;
       if (shown) show(cycle_.write ? PortALine::kWrN : PortALine::kRdN, time_, 1);
       next(Step::kEnd);
       break;
@@ -323,18 +316,35 @@ void PortAMaster::step(PortAPins& pins, const BoardOutputs& board) {
   }
 }
 
-void PortAMaster::board_follows(const BoardOutputs& board) {
-  const TimeFs time = step_ == Step::kEnd ? cycle_.strobe_high : cycle_.strobe_low;
-  see(time, board);
+// What the board shows comes to the CPU, and to who watches.
+void PortAMaster::arrive(TimeFs time, const BoardOutputs& board) {
+  arrived_ = board;
+  if (running() && step_ != Step::kAddress) see(time, board);
   if (watch_ != nullptr) watch_->board_moved(time, board);
 }
 
+void PortAMaster::arrive_until(TimeFs time) {
+  std::size_t count = 0;
+  for (; count < shown_.size() && shown_[count].time <= time; ++count) arrive(shown_[count].time, shown_[count].board);
+  shown_.erase(shown_.begin(), shown_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+void PortAMaster::board_follows(const BoardOutputs& board) {
+  if (!wires_.skew().on()) return arrive(follows_at_, board);
+  shown_.push_back({shown_.empty() ? follows_at_ : std::max(follows_at_, shown_.back().time), board});
+}
+
+// The peripherals on the CPU's chip have no pads.
 void PortAMaster::board_changed(Tick tick, const BoardOutputs& board) {
-  if (state_ != State::kRunning || step_ == Step::kAddress) return;
-  const TimeFs time = tick_to_fs(tick);
-  see(time, board);
-  if (cycle_.write || cycle_.on_chip || step_ == Step::kStrobeLow || step_ == Step::kEnd) return;
-  show(PortALine::kData, time, board.get(pin::kPaData));
+  const TimeFs edge = tick_to_fs(tick);
+  if (wires_.skew().on()) {
+    const TimeFs time = edge + (running() && cycle_.on_chip ? 0 : PinSkew::kOutput);
+    shown_.push_back({shown_.empty() ? time : std::max(time, shown_.back().time), board});
+  } else {
+    arrive(edge, board);
+  }
+  if (!running() || cycle_.write || cycle_.on_chip) return;
+  if (step_ == Step::kStrobeHigh) show(PortALine::kData, edge, board.get(pin::kPaData));
 }
 
 }  // namespace brick

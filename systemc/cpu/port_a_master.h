@@ -4,16 +4,17 @@
 // knows no SystemC; the socket of our CPU is in port_a.h, that of the board's component in systemc/component.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
-#include "systemc/core/aperture.h"
 #include "systemc/core/board_pins.h"
 #include "systemc/core/cpu_clock.h"
 #include "systemc/cpu/port_a_timing.h"
 #include "systemc/cpu/port_a_watch.h"
+#include "systemc/cpu/port_a_wires.h"
 
 namespace brick {
 
@@ -62,7 +63,9 @@ class PortAMaster {
 
   // Registers to their reset values, no cycle under way; CPU cycle `cycle` begins with edge `edge`. Pins go idle.
   void reset(Tick edge, std::int64_t cycle, PortAPins& pins);
-  void set_aperture(Aperture* aperture) { aperture_ = aperture; }  // not owned
+  void set_aperture(Aperture* aperture) { wires_.set_aperture(aperture); }  // not owned
+  void set_skew(const PinSkew& skew) { wires_.set_skew(skew); }
+  const PinSkew& skew() const { return wires_.skew(); }
   const CpuClock& clock() const { return clock_; }
   std::int64_t free_at() const { return next_start_; }  // CPU cycle at which the next access may begin
   unsigned wait_states(unsigned area) const;            // AA0..AA2, 3 = default area
@@ -89,14 +92,17 @@ class PortAMaster {
   std::uint32_t control(bool bcr) const { return bcr ? bcr_ : pctl_; }
 
   // A cycle under way is moved along by whoever advances the board: run the board to exactly stands_at(), then step().
+  // Lines may still be on their way to the board when it is over.
   bool running() const { return state_ == State::kRunning; }
-  Tick stands_at() const { return stand_; }
+  bool moving() const { return running() || wires_.next() != kNever; }
+  Tick stands_at() const { return running() ? std::min(stand_, wires_.next()) : wires_.next(); }
+  Tick stood_at() const { return stand_; }                       // for the last step
   TimeFs started_at() const { return clock_.time(origin_, 0); }  // the cycle under way, or not before then
   void step(PortAPins& pins, const BoardOutputs& board);         // pins are seen first by the edge after stands_at()
-  // That step moved a strobe: what of the board follows without a clock does so at its time.
+  // That step moved a strobe at the board: what of the board follows without a clock does so at its time.
   bool strobe_moved() const { return strobe_moved_; }
   void board_follows(const BoardOutputs& board);
-  void board_changed(Tick tick, const BoardOutputs& board);  // after each edge that changes an output
+  void board_changed(Tick tick, const BoardOutputs& board);  // after each edge that changes D, its enable or /TA
 
   std::function<void(const PortACycle&)> on_cycle;  // at the end of each cycle
   std::function<void()> on_control;                 // BCR or PCTL was written
@@ -116,12 +122,13 @@ class PortAMaster {
     if (lines_ != nullptr) lines_->line_moved(line, time, value);
   }
   void next(Step step);
-  void move_bus(PortAPins& pins) const;  // of a step at which lines move together
-  void half_step(PortAPins& pins);
+  void move(PortAPins& pins);  // the lines of this step
   bool end_strobe();
   bool forces_wait_states() const;
   TimeFs time_of(Step step) const;
   void see(TimeFs time, const BoardOutputs& board);
+  void arrive(TimeFs time, const BoardOutputs& board);
+  void arrive_until(TimeFs time);
   std::size_t seen_at(TimeFs time) const;
   bool acknowledged();
   void take_data();
@@ -142,12 +149,17 @@ class PortAMaster {
   State state_ = State::kIdle;
   Step step_ = Step::kAddress;
   Tick stand_ = 0;
-  Aperture* aperture_ = nullptr;
-  Tick late_ = 0;          // where the strobe moves
-  bool in_doubt_ = false;  // of a bus at this step: the next edge sees a part of it
-  bool resumed_ = false;   // the step has begun
+  PortAWires wires_;
+  PortAPins driven_;  // as the CPU drives the lines
   bool strobe_moved_ = false;
-  TimeFs time_ = 0;  // of step_
+  TimeFs follows_at_ = 0;  // what of the board has no clock
+  struct Shown {           // by the board, not yet at the CPU
+    TimeFs time;
+    BoardOutputs board;
+  };
+  std::vector<Shown> shown_;  // oldest first
+  BoardOutputs arrived_;      // the last that was
+  TimeFs time_ = 0;           // of step_
   PortAShape shape_{};
   PortACycle cycle_;
   std::int64_t start_ = 0;       // CPU cycle at which the cycle begins

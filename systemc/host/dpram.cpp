@@ -6,14 +6,15 @@ namespace brick {
 
 // One more tick would change nothing.
 bool Dpram::cpu_settled() const {
-  const auto still = [](const Strobe& s, bool toggle, bool strobe_n) {
-    return s.toggle1 == toggle && s.toggle2 == toggle && s.low1 == !strobe_n && s.low2 == !strobe_n;
+  const auto still = [](const Strobe& s, std::uint8_t falls, bool strobe_n) {
+    return s.falls1 == falls && s.falls2 == falls && s.falls3 == falls && s.low1 == !strobe_n && s.low2 == !strobe_n;
   };
+  const auto follows = [this](const Strobe& s) { return s.pending() && s.vain(sel_); };
   if (rd_.acknowledged != rd_.done) return false;  // of a write nobody waits for it
-  if (!still(rd_, in.rd_toggle, in.cpu_rd_n) || !still(wr_, in.wr_toggle, in.cpu_wr_n)) return false;
+  if (!still(rd_, in.rd_falls, in.cpu_rd_n) || !still(wr_, in.wr_falls, in.cpu_wr_n)) return false;
   if (sel_ != in.cpu_sel || pins_ != pin_cell() || sampled_ || proven_) return false;
-  if (rd_.waits != rd_.pending() || wr_.waits != wr_.pending()) return false;
-  if (rd_.pending() || wr_.pending()) return request() && cpu_busy_ && cpu_blocked() && !rd_.over() && !wr_.over();
+  if (follows(rd_) || follows(wr_)) return false;
+  if (rd_.pending() || wr_.pending()) return request() && cpu_busy_ && cpu_blocked();
   return !cpu_busy_ && !(own_ && released());
 }
 
@@ -49,21 +50,22 @@ void Dpram::advance(Tick t) {
   now_ = t;
 }
 
-// Nothing of them but their way through the stages, which is four edges long: not selected, a strobe is done as it
-// arrives.
+// Nothing of them but their way through the stages, which is five edges long: not selected, a strobe is done when the
+// last of them shows it.
 void Dpram::let_others_pass(Tick count) {
-  if (count >= 4 && !rd_.waits && !wr_.waits) {
-    const auto arrive = [](Strobe& s, bool toggle, bool strobe_n) {
-      s.toggle1 = s.toggle2 = s.done = toggle;
+  constexpr Tick kEdges = 5;
+  if (count >= kEdges) {
+    const auto arrive = [](Strobe& s, std::uint8_t falls, bool strobe_n) {
+      s.falls1 = s.falls2 = s.falls3 = s.done = falls;
       s.low1 = s.low2 = !strobe_n;
     };
-    arrive(rd_, in.rd_toggle, in.cpu_rd_n);
-    arrive(wr_, in.wr_toggle, in.cpu_wr_n);
+    arrive(rd_, in.rd_falls, in.cpu_rd_n);
+    arrive(wr_, in.wr_falls, in.cpu_wr_n);
     rd_.acknowledged = rd_.done;
     pins_ = pin_cell();
     return;
   }
-  for (Tick n = std::min<Tick>(count, 4); n > 0; --n) {
+  for (Tick n = count; n > 0; --n) {
     cpu_edge(false);
     cpu_pins();
   }
@@ -77,9 +79,7 @@ void Dpram::cpu_edge(bool blocked) {
   sampled_ = grant && write;
   rd_.acknowledged = rd_.done;
   const auto follow = [this](Strobe& s, bool granted) {
-    const bool replaced = s.waits && !s.pending();  // the next one has fallen before the end of this was seen
-    if (replaced || (s.pending() && (!sel_ || s.over() || granted))) s.done = !s.done;
-    s.waits = s.pending() && !replaced;
+    if (granted || s.vain(sel_)) s.done = s.falls2;
   };
   follow(rd_, grant && !write);
   follow(wr_, grant);
@@ -92,7 +92,7 @@ void Dpram::cpu_edge(bool blocked) {
     if (!write) {
       cpu_rdata_ = peek(cell_);
       drive_ = !in.cpu_rd_n;
-      drive_rd_ = rd_.toggle2;
+      drive_rd_ = rd_.falls2;
     }
   } else if (over_since) {
     own_ = false;
@@ -100,14 +100,15 @@ void Dpram::cpu_edge(bool blocked) {
 }
 
 void Dpram::cpu_pins() {
-  const auto sample = [](Strobe& s, bool toggle, bool strobe_n) {
-    s.toggle2 = s.toggle1;
-    s.toggle1 = toggle;
+  const auto sample = [](Strobe& s, std::uint8_t falls, bool strobe_n) {
+    s.falls3 = s.falls2;
+    s.falls2 = s.falls1;
+    s.falls1 = falls;
     s.low2 = s.low1;
     s.low1 = !strobe_n;
   };
-  sample(rd_, in.rd_toggle, in.cpu_rd_n);
-  sample(wr_, in.wr_toggle, in.cpu_wr_n);
+  sample(rd_, in.rd_falls, in.cpu_rd_n);
+  sample(wr_, in.wr_falls, in.cpu_wr_n);
   sel_ = in.cpu_sel;
   pins_ = pin_cell();
 }
@@ -123,7 +124,8 @@ void Dpram::host_edge(bool blocked) {
 // A write that was granted but not made yet is lost; the memory keeps its content.
 void Dpram::reset(Tick t) {
   rd_ = wr_ = Strobe{};
-  drive_ = drive_rd_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
+  drive_rd_ = 0;
+  drive_ = sel_ = cpu_busy_ = own_ = own_wr_ = sampled_ = proven_ = host_own_ = mem_busy_ = false;
   pins_ = cell_ = wdata_ = cpu_rdata_ = mem_rdata_ = 0;
   now_ = t;
 }

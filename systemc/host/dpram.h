@@ -23,12 +23,12 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Inputs in;
 
   std::uint16_t cpu_rdata() const { return cpu_rdata_; }
-  bool cpu_drive() const { return drive_ && !in.cpu_rd_n && in.rd_toggle == drive_rd_; }
+  bool cpu_drive() const { return drive_ && !in.cpu_rd_n && in.rd_falls == drive_rd_; }
   // Whoever moves /RD says so: what it turns off without a clock stays off, though it falls again before the next edge.
   void rd_moved() {
     if (in.cpu_rd_n) drive_ = false;
   }
-  bool cpu_wait() const { return in.cpu_sel && (in.rd_toggle != rd_.acknowledged || in.wr_toggle != wr_.done); }
+  bool cpu_wait() const { return in.cpu_sel && (in.rd_falls != rd_.acknowledged || in.wr_falls != wr_.done); }
   bool cpu_busy() const { return cpu_busy_; }
   std::uint16_t mem_rdata() const { return mem_rdata_; }
   bool mem_busy() const { return mem_busy_; }
@@ -47,11 +47,12 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
  private:
   static constexpr unsigned kSmallWords = 8192;
   struct Strobe {
-    bool toggle1 = false, toggle2 = false, low1 = false, low2 = false, done = false, acknowledged = false;
-    bool waits = false;  // not done a tick ago: the level may come a tick after the fall
-    bool pending() const { return toggle2 != done; }
+    std::uint8_t falls1 = 0, falls2 = 0, falls3 = 0, done = 0, acknowledged = 0;
+    bool low1 = false, low2 = false;
+    bool pending() const { return falls2 != done; }
     bool low() const { return pending() && low2; }
-    bool over() const { return waits && !low2; }
+    // A tick after its fall, since level and select may come so late: nothing for this RAM.
+    bool vain(bool sel) const { return falls2 == falls3 && !(sel && low2); }
   };
 
   unsigned fitted() const { return in.small ? kSmallWords : kWords; }
@@ -82,7 +83,8 @@ class Dpram final : public sc_core::sc_module, public ModelBlock {
   Strobe rd_, wr_;
   bool sel_ = false;
   std::uint16_t pins_ = 0;
-  bool drive_ = false, drive_rd_ = false;  // the word of a read stands; which one it was
+  bool drive_ = false;         // the word of a read stands
+  std::uint8_t drive_rd_ = 0;  // which one it was
   bool cpu_busy_ = false, own_ = false, own_wr_ = false, sampled_ = false, proven_ = false;
   std::uint16_t cell_ = 0, wdata_ = 0, cpu_rdata_ = 0;
   // host side

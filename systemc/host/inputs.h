@@ -47,7 +47,7 @@ struct HostPortInputs {
 struct DpramInputs {
   bool small = false;  // strap: only the first 8192 words are fitted
   // Port A pins and the falls of its strobes
-  bool rd_toggle = false, wr_toggle = false;
+  std::uint8_t rd_falls = 0, wr_falls = 0;  // two bits, Gray: bus_strobes
   bool cpu_sel = false, cpu_x = false;
   std::uint16_t cpu_addr = 0;  // 14 bits
   bool cpu_rd_n = true, cpu_wr_n = true;
@@ -59,9 +59,9 @@ struct DpramInputs {
   std::uint16_t mem_wdata = 0;
 
   static bool selected(const PortAPins& pins) { return (pins.pa_aa & 4) != 0 && !pins.pa_int; }
-  void set_cpu_pins(const PortAPins& pins, bool rd_fall, bool wr_fall) {
-    rd_toggle = rd_fall;
-    wr_toggle = wr_fall;
+  void set_cpu_pins(const PortAPins& pins, std::uint8_t falls_of_rd, std::uint8_t falls_of_wr) {
+    rd_falls = falls_of_rd;
+    wr_falls = falls_of_wr;
     cpu_sel = selected(pins);
     cpu_x = pins.pa_x;
     cpu_addr = static_cast<std::uint16_t>(pins.pa_addr & 0x3FFF);

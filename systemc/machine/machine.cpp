@@ -115,6 +115,7 @@ Machine::Impl::Impl(Machine& machine, const MachineConfig& machine_config)
     board_changed(t, before, after);
   };
   port_a.set_aperture(&aperture);
+  if (config.skew) port_a.set_skew(PinSkew(config.seed));
   port_a.seed(config.seed);
   if (config.bcr) port_a.force_wait_states(*config.bcr);
   port_a.on_cycle = [this](const PortACycle& c) { cycle_done(c); };
@@ -199,8 +200,7 @@ void Machine::Impl::board_changed(Tick tick, const BoardOutputs& before, const B
   static constexpr BoardOutputs kPortA = select_pins(pin::kPaData, pin::kPaDataOe, pin::kPaTaN);
   static constexpr BoardOutputs kSeenByCpu = select_pins(pin::kPhase, pin::kServo, pin::kIrqHost, pin::kWdTripped);
   named.outputs(tick_to_fs(tick), before, after);
-  port_a.board_changed(tick, after);
-  if (port_a_watch != nullptr && before.differs(after, kPortA)) port_a_watch->board_moved(tick_to_fs(tick), after);
+  if (before.differs(after, kPortA)) port_a.board_changed(tick, after);
   if (const std::uint32_t ssi = before.get(pin::kSsiClk), clk = after.get(pin::kSsiClk); ssi != clk)
     motors.ssi_clocked(tick, static_cast<std::uint8_t>(ssi), static_cast<std::uint8_t>(clk));
   if (owner.on_outputs) owner.on_outputs(tick, before, after);
@@ -303,6 +303,7 @@ MotorOutputs Machine::motor_outputs(unsigned ic) const { return impl_->board->mo
 void Machine::stop_on_motor(unsigned ic, const MotorOutputs& select) { impl_->motors.stop_on(ic, select); }
 void Machine::attach(MotorPeer& peer) { impl_->motors.attach(peer); }
 void Machine::detach(MotorPeer& peer) { impl_->motors.detach(peer); }
+const PinSkew& Machine::skew() const { return impl_->port_a.skew(); }
 Aperture& Machine::aperture() { return impl_->aperture; }
 Cpu& Machine::cpu() { return impl_->cpu; }
 std::uint64_t Machine::instructions() const { return impl_->cpu.instructions(); }

@@ -15,6 +15,7 @@
 #include "systemc/core/board.h"
 #include "systemc/core/signals.h"
 #include "systemc/cpu/cpu.h"
+#include "systemc/cpu/port_a_wires.h"
 #include "systemc/machine/motor_peer.h"
 
 namespace brick {
@@ -58,6 +59,7 @@ struct MachineConfig {
   bool jumper_e3 = false;
   std::uint64_t seed = 1;            // content of RAM, DPRAM (1: zero) and of RTL flip-flops before the reset
   TimeFs aperture = 0;               // of the board's inputs, systemc/core/aperture.h; 0 = none
+  bool skew = false;                 // each line of Port A has a delay, by the seed: systemc/cpu/port_a_wires.h
   Tick batch = 0;                    // 0 = as long as the rule allows; else no advance longer than this many ticks
   std::optional<std::uint32_t> bcr;  // wait states, whatever the firmware writes to BCR
   std::function<std::unique_ptr<Board>(std::unique_ptr<Board>)> rewire;  // negative controls: a board that is faulty
@@ -117,7 +119,8 @@ class Machine : public sc_core::sc_module {
   void attach(MotorPeer& peer);  // not owned; detach() it before it goes; told the outputs at once
   void detach(MotorPeer& peer);
 
-  Aperture& aperture();  // of the pins that CPU and host drive; a host's pins move by it
+  const PinSkew& skew() const;  // of the lines of Port A
+  Aperture& aperture();         // of the pins that CPU and host drive; a host's pins move by it
 
   Signals& signals();  // every named signal of docs/signals.md
   Cpu& cpu();

@@ -53,7 +53,7 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
       begin_reset(false);
     }
     if (now == reset_until) start_cpu();
-    while (port_a.running() && now == port_a.stands_at()) {
+    while (port_a.moving() && now == port_a.stands_at()) {
       port_a.step(inputs, board->outputs());
       board->set_port_a(inputs);
       if (port_a.strobe_moved()) port_a.board_follows(board->port_a_at_once());
@@ -69,9 +69,10 @@ Tick Machine::Impl::run_until(Tick limit, const BoardOutputs& stop) {
 
 // Never past a tick at which the CPU could change the board's inputs.
 Tick Machine::Impl::board_limit(Tick limit, Tick now) const {
-  if (port_a.running()) {
+  if (port_a.moving()) {
     if (port_a.stands_at() < now) throw std::logic_error("the board has run past an edge of the bus cycle under way");
-    return std::min(limit, port_a.stands_at());
+    limit = std::min(limit, port_a.stands_at());
+    if (port_a.running()) return limit;
   }
   if (!cpu_runs || cpu.asleep()) return limit;
   const Tick next = port_a.clock().tick(cpu.cycle()) - 1;
@@ -111,7 +112,7 @@ void Machine::Impl::run_master() {
     Cycle start = clock.first_cycle(board->now());
     if (clock.tick(start) == board->now()) ++start;  // begins with an edge that has been
     start = std::max(port_a.free_at(), start);
-    while (std::max(aperture.first(clock.time(start)) - 1, port_a.stands_at()) < board->now())
+    while (std::max(aperture.first(clock.time(start)) - 1, port_a.stood_at()) < board->now())
       ++start;  // an edge that might have seen it has been
     if (begin) {
       start += master_access->idle;

@@ -30,6 +30,7 @@ const std::vector<Bench>& all_benches() {
       host_port_bench(),
       isa_timing_bench(),
       port_a_phase_bench(),
+      port_a_hammer_bench(),
       bus_timing_bench(),
       listing_bench(),
       variables_bench(),

@@ -33,6 +33,7 @@ Bench pwm_bench();
 Bench pfm_bench();
 Bench serial_dac_adc_bench();
 Bench port_a_phase_bench();
+Bench port_a_hammer_bench();
 Bench host_port_bench();
 Bench isa_timing_bench();
 Bench listing_bench();

@@ -1,14 +1,19 @@
 #include "testbench/benches/port_a_driver.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace brick {
 
 namespace {
 
 constexpr TimeFs kRefPeriod = tick_to_fs(kTicksPerRef);
+constexpr std::size_t kShown = 64;  // changes of outputs: more than any cycle's
+constexpr TimeFs kStuck = 100'000 * kFsPerNs;
 constexpr TimeFs kClockAtOne = 101'725'260;  // TC at I52 = 0: 12 ticks, in femtoseconds
 
 }  // namespace
@@ -36,13 +41,37 @@ PortALimits port_a_limits(unsigned i52, unsigned wait_states, bool write) {
 }
 
 PortADriver::PortADriver(Machine& machine, std::uint64_t seed)
-    : machine_(machine), aperture_(kAperture, seed), random_(seed) {}
+    : machine_(machine), aperture_(kAperture, seed), driven_(machine.port_a()), random_(seed) {
+  wires_.set_aperture(&aperture_);
+  wires_.set_skew(machine.skew());
+  shown_.emplace_back(machine.now(), machine.outputs());
+  others_ = machine.on_outputs;
+  machine_.on_outputs = [this](Tick tick, const BoardOutputs& before, const BoardOutputs& after) {
+    if (before.get(pin::kPaDataOe) != 0) driving_until_ = tick - 1;
+    shown_.emplace_back(tick, after);
+    if (shown_.size() > kShown) shown_.pop_front();
+    if (others_) others_(tick, before, after);
+  };
+}
+
+PortADriver::~PortADriver() { machine_.on_outputs = others_; }
 
 unsigned PortADriver::least_phase(bool write) const {
   return *std::min_element(phases_[write].begin(), phases_[write].end());
 }
 
+// With the lines that are under way.
 void PortADriver::run_to(Tick tick) {
+  while (wires_.next() <= tick) {
+    board_to(wires_.next());
+    const TimeFs time = wires_.take(machine_.port_a()).time;
+    machine_.apply();
+    if (machine_.signals().traced()) show(time);
+  }
+  board_to(tick);
+}
+
+void PortADriver::board_to(Tick tick) {
   if (then_at_ <= tick) {
     machine_.run_until(std::exchange(then_at_, kNever));
     std::exchange(then_, nullptr)();
@@ -64,20 +93,34 @@ void PortADriver::show(TimeFs time) {
 }
 
 void PortADriver::move(TimeFs time, const std::function<void(PortAPins&)>& edit) {
-  run_to(aperture_.first(time) - 1);
-  PortAPins& pins = machine_.port_a();
-  const PortAPins from = pins;
-  edit(pins);
-  if (aperture_.in_doubt(time) && aperture_.last(time) - 1 > machine_.now()) {
-    const PortAPins to = pins;
-    pins = aperture_.mixed(from, to, time);
-    machine_.apply();
-    show(time);
-    run_to(aperture_.last(time) - 1);
-    pins = to;
-  }
-  machine_.apply();
-  if (machine_.signals().traced()) show(time);
+  run_to(wires_.first(time) - 1);
+  const PortAPins from = driven_;
+  edit(driven_);
+  wires_.move(time, from, driven_, machine_.now());
+}
+
+// What the board shows that has come to the CPU by then, if it is so long on its way.
+const BoardOutputs& PortADriver::at_cpu(TimeFs time, TimeFs way) {
+  const Tick edge = fs_to_tick_floor(time - way);
+  run_to(edge);
+  auto last = shown_.end() - 1;
+  while (last != shown_.begin() && last->first > edge) --last;
+  return last->second;
+}
+
+// /TA rises without a clock and falls with one.
+bool PortADriver::acknowledged(TimeFs time) {
+  return at_cpu(time, output_delay()).get(pin::kPaTaN) == 0 && at_cpu(time, 0).get(pin::kPaTaN) == 0;
+}
+
+bool PortADriver::foreign(const Place& place, bool write, std::uint32_t data) {
+  const TimeFs own = own_read_end_, start = free_at_;
+  const PortALimits l = port_a_limits(i52_, place.wait_states, write);
+  cycle(place, write, data);
+  own_read_end_ = own;
+  const TimeFs fall = start + l.setup, last_own = own + PinSkew::kMost + tick_to_fs(1);
+  const TimeFs driven = tick_to_fs(driving_until_);
+  return !write && driven > fall && driven > last_own;
 }
 
 std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t data) {
@@ -96,18 +139,24 @@ std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t d
   TimeFs rise = fall + l.low;
   if (write && spoiled_ > 0) move(rise - spoiled_, [&](PortAPins& p) { p.pa_wdata = ~data & 0xFFFFFF; });
   for (; !place.on_chip; rise += l.clock, ++stretched_) {
-    run_to(fs_to_tick_floor(rise - l.ready));
-    if (machine_.outputs().get(pin::kPaTaN) == 0) break;
+    if (acknowledged(rise - l.ready)) break;
+    if (rise - fall > kStuck)
+      throw std::runtime_error(fmt::format(
+          "/TA is high for ever at ${:06X}, AA {}, {}: AA {} at the board, /RD {}, /WR {}", place.address, place.aa,
+          write ? "write" : "read", machine_.port_a().pa_aa, machine_.port_a().pa_rd_n, machine_.port_a().pa_wr_n));
   }
   std::uint32_t word = 0;
   if (!write) {
-    run_to(fs_to_tick_floor(rise - (l.low - l.sample)));
-    word = machine_.outputs().get(pin::kPaData);
-    floating_ += !place.on_chip && machine_.outputs().get(pin::kPaDataOe) == 0;
+    const TimeFs sample = rise - (l.low - l.sample);
+    const BoardOutputs& shown = at_cpu(sample, place.on_chip ? 0 : output_delay());
+    word = shown.get(pin::kPaData);
+    floating_ += place.aa != 1 && place.aa != 8 && !place.on_chip && shown.get(pin::kPaDataOe) == 0;
+    own_read_end_ = rise;
   }
   move(rise, [](PortAPins& p) { p.pa_rd_n = p.pa_wr_n = true; });
   if (write) move(rise + l.data_hold, [&](PortAPins& p) { p.pa_wdata = random() & 0xFFFFFF; });
   free_at_ = rise + l.hold;
+  if (machine_.outputs().get(pin::kPaDataOe) != 0) driving_until_ = machine_.now();
   // Nothing holds the lines until the next address; it comes at once, or this is what stands there.
   move(free_at_, [&](PortAPins& p) {
     p.pa_addr = random() & 0x7FFFF;

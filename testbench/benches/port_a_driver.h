@@ -1,14 +1,18 @@
 // Port A without a CPU: cycles at the limits of host-bus:2.2 on a machine that has no firmware, at any time to the
 // femtosecond. Every time is the least that a row allows, all at once: addresses late and gone early, write data late
 // and gone early, the shortest lows and highs. In between the lines show random levels. Each line that moves within a
-// nanosecond of a clock edge is taken early or late (systemc/core/aperture.h).
+// nanosecond of a clock edge is taken early or late (systemc/core/aperture.h); with --skew each has its delay, too, and
+// what the board shows comes later (systemc/cpu/port_a_wires.h).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <random>
+#include <utility>
 
+#include "systemc/cpu/port_a_wires.h"
 #include "systemc/machine/machine.h"
 
 namespace brick {
@@ -39,6 +43,10 @@ class PortADriver {
   };
 
   PortADriver(Machine& machine, std::uint64_t seed);
+  ~PortADriver();
+
+  void set_skew(const PinSkew& skew) { wires_.set_skew(skew); }
+  void set_aperture(TimeFs width, std::uint64_t seed) { aperture_ = Aperture(width, seed); }
 
   void set_clock(unsigned i52) { i52_ = i52; }
   void spoil_data(TimeFs before) { spoiled_ = before; }  // write data gone so long before /WR rises: against row 109
@@ -48,6 +56,9 @@ class PortADriver {
   TimeFs free_at() const { return free_at_; }
   void write(const Place& place, std::uint32_t data) { cycle(place, true, data); }
   std::uint32_t read(const Place& place) { return cycle(place, false, 0); }
+  // A cycle of another device, whose data are nobody's here. True: the board drove D in it, but for the end of a read
+  // of its own, which lets go as late as /RD comes to it.
+  bool foreign(const Place& place, bool write, std::uint32_t data);
   void rest();  // the board stands at the end of the last cycle
   void at(Tick tick, std::function<void()> then) { then_at_ = tick, then_ = std::move(then); }  // on the way there
 
@@ -62,10 +73,20 @@ class PortADriver {
   std::uint32_t cycle(const Place& place, bool write, std::uint32_t data);
   void move(TimeFs time, const std::function<void(PortAPins&)>& edit);
   void run_to(Tick tick);
+  void board_to(Tick tick);
+  bool acknowledged(TimeFs time);
+  TimeFs output_delay() const { return wires_.skew().on() ? PinSkew::kOutput : 0; }
+  const BoardOutputs& at_cpu(TimeFs time, TimeFs way);
   void show(TimeFs time);  // the pins in the waveform
 
   Machine& machine_;
   Aperture aperture_;
+  PortAWires wires_;
+  PortAPins driven_;                                 // as the master drives the lines
+  TimeFs own_read_end_ = 0;                          // /RD of the last read that is not another device's
+  decltype(Machine::on_outputs) others_;             // who else is told
+  Tick driving_until_ = 0;                           // the last edge that showed D driven
+  std::deque<std::pair<Tick, BoardOutputs>> shown_;  // by the board, at these edges; oldest first
   std::mt19937_64 random_;
   unsigned i52_ = 7;
   TimeFs free_at_ = 0, spoiled_ = 0;

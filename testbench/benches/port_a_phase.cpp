@@ -133,7 +133,7 @@ class PortAPhase {
   void host_port() {
     namespace hsr = regs::hi08::hsr;
     const auto place = [&](const regs::Register& word) {
-      return Place{word.address & 0x3F, true, 0, true, std::max(7u, clock_.i52)};
+      return Place{word.address & 0x7F, true, 0, true, std::max(7u, clock_.i52)};
     };
     const Place horx = place(regs::hi08::kHorx), hotx = place(regs::hi08::kHotx), status = place(regs::hi08::kHsr);
     Comparison same;

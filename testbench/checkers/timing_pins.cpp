@@ -53,7 +53,8 @@ void PinWatch::board_moved(TimeFs time, const BoardOutputs& board) {
   const Board now{time, board.get(pin::kPaData), board.get(pin::kPaDataOe) != 0, board.get(pin::kPaTaN) != 0};
   const Board& was = seen_.back();
   if (now.data == was.data && now.driven == was.driven && now.busy == was.busy) return;
-  if (now.driven != was.driven && cpu_.rd_n) drives_outside_ = drives_outside_ || now.driven || time > rd_high_;
+  if (now.driven != was.driven && cpu_.rd_n)
+    drives_outside_ = drives_outside_ || now.driven || time - rd_high_ > pin_delay_;
   board_drives_.set(now.driven, now.time);
   if (state_ == State::kIdle)
     seen_.assign(1, now);
@@ -105,7 +106,8 @@ void PinWatch::finish(TimeFs time) {
   } else {
     read_data();
   }
-  cycle_.drives_outside = drives_outside_ || (seen_.back().driven && (cycle_.write || time > cycle_.strobe_high));
+  cycle_.drives_outside =
+      drives_outside_ || (seen_.back().driven && (cycle_.write || time > cycle_.strobe_high + pin_delay_));
   drives_outside_ = false;
   acknowledge();
   turnaround(time);

@@ -51,6 +51,9 @@ class PinWatch final : public PortAWatch {
  public:
   std::function<void(const PinCycle&)> on_cycle;
 
+  // The board lets go of D with /RD, which comes to it so late at most (--skew).
+  void set_pin_delay(TimeFs most) { pin_delay_ = most; }
+
   void cpu_moved(TimeFs time, const PortALevels& levels) override;
   void board_moved(TimeFs time, const BoardOutputs& board) override;
   void bus_reset() override;
@@ -88,7 +91,7 @@ class PinWatch final : public PortAWatch {
   PortALevels cpu_;
   TimeFs address_time_ = 0, data_time_ = 0;   // of their last moves
   static constexpr TimeFs kReset = kForever;  // lets go of D without /RD
-  TimeFs rd_high_ = kReset;
+  TimeFs rd_high_ = kReset, pin_delay_ = 0;
   bool drives_outside_ = false;
   Driving cpu_drives_, board_drives_;
   std::vector<Board> seen_{1};  // since the address came, oldest first

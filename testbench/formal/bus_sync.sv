@@ -1,117 +1,140 @@
-// Rules of the Port A synchroniser with the flip-flops that its strobes turn over (bus_strobes): one strobe a cycle, at
-// one edge, with the cycle's own address and data. A step is half a period of clk_ref, 12.7 ns; a pin may change at
-// any. An edge of clk_ref that comes with a change takes the old level, one a step later the new one: between them lies
-// every phase, and a pin that is taken early or late at random. Assumed of the bus, of host-bus:2.2 with the wait
-// states of host-bus:2.5 (least: /WR low 78.7 ns at I52 = 7):
-// - /RD and /WR are never low together (host-bus:2.1/2); low for 5 steps or more, the next fall 6 or more after the
-//   last (rows 102, 113, 114, 116);
-// - address, space and AA stand from the fall to the rise (rows 101, 103, 115, 117), write data from a step after the
-//   fall on (rows 108 to 110).
+// Rules of the Port A front end, bus_strobes and bus_sync: no strobe of another device is ever taken for one of ours,
+// and each of ours is made once, at its own address, with its own data. A step is half a period of clk_pwm, 4.24 ns; an
+// edge takes what stood a step before. Each line comes to the board at once or two steps after the CPU has moved it,
+// always the same: pads and wires of up to 8.477 ns, of which the ends are the worst. Assumed of the bus, of
+// host-bus:2.2 at I52 from 0 to 15, and nothing else of another device's cycle:
+// - /RD and /WR are never low together; low and high last a step or more (rows 113, 114: 7.1 ns, 116: 8.5 ns);
+// - address, space and AA stand from the fall to a step after the rise (rows 101, 103, 115, 117 and the clock between
+//   cycles of few wait states: 5.9 ns), in a write of ours the data, too;
+// - a strobe of ours is low for 21 steps or more (row 102 with the wait states of host-bus:2.6/4: 91.4 ns).
 // proof: pdr
 // clocks: several
-// steps: 16
-// fault R1: a fall takes effect at two edges (rtl/board/bus_sync.sv)
-//   - wr2_q ^ wr3_q
-//   + wr1_q ^ wr3_q
-// fault R2: /RD is sampled as a level, so short highs are missed (rtl/board/bus_strobes.sv)
-//   - else if (sel_i) rd_q <= ~rd_q;
-//   + else if (sel_i) rd_q <= pa_rd_ni;
-// fault R4: data are sampled with the strobe, not after it (rtl/board/bus_sync.sv)
-//   - wdata_q <= pa_wdata_i;
-//   + if (wr_toggle_i != wr1_q) wdata_q <= pa_wdata_i;
+// steps: 70
+// fault R1: a strobe that has ended is made nevertheless (rtl/board/bus_sync.sv)
+//   - wr_taken_q & wr_low2_q & (wr2_q == wr_seen_q)
+//   + wr_taken_q
+// fault R2: a strobe of any device is taken (rtl/board/bus_sync.sv)
+//   - assign rd_take = own &
+//   + assign rd_take =
+// fault R3: falls are counted in one bit (rtl/board/bus_strobes.sv)
+//   - else         wr_q <= {wr_q[0], ~wr_q[1]};
+//   + else         wr_q <= {1'b0, ~wr_q[0]};
+// fault R4: /RD is a level, so a short high is missed (rtl/board/bus_strobes.sv)
+//   - else         rd_q <= {rd_q[0], ~rd_q[1]};
+//   + else         rd_q <= 2'd0;
+// fault R5: data are taken with the strobe, before they stand (rtl/board/bus_sync.sv)
+//   - wdata_q    <= pa_wdata_i;
+//   + if (wr_falls_i != wr1_q) wdata_q <= pa_wdata_i;
 `default_nettype none
 
 module bus_sync_rules (
-  input wire logic        rst_ni,
-  input wire logic        rd_ni,
-  input wire logic        wr_ni,
-  input wire logic [24:0] where_i,  // int, AA, space, address
-  input wire logic [23:0] wdata_i
+  input wire logic rst_ni,
+  input wire logic rd_ni,    // as the CPU drives them
+  input wire logic wr_ni,
+  input wire logic ours_i,   // AA1, else AA0
+  input wire logic addr_i,
+  input wire logic wdata_i
 );
 
-  logic clk_q = 1'b0;
-  always @($global_clock) clk_q <= ~clk_q;
-
-  logic        rd_toggle, wr_toggle, we, rd;
-  logic [24:0] where;
-  logic [23:0] wdata;
-  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .sel_i(1'b1),
-                       .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle));
-  bus_sync dut (.clk_ref_i(clk_q), .rst_ni, .rd_toggle_i(rd_toggle), .wr_toggle_i(wr_toggle),
-                .pa_int_i(where_i[24]), .pa_aa_i(where_i[23:20]), .pa_x_i(where_i[19]), .pa_addr_i(where_i[18:0]),
-                .pa_wdata_i(wdata_i), .addr_o(where[18:0]), .x_o(where[19]), .aa_o(where[23:20]), .int_o(where[24]),
-                .wdata_o(wdata), .we_o(we), .rd_o(rd));
-
-  // The bus a step ago, and the steps since the last fall. No cycle begins before the reset has been gone for a step.
-  logic        started_q = 1'b0, awake_q = 1'b0, rd_nq = 1'b1, wr_nq = 1'b1, fall;
-  logic [2:0]  age_q = 3'd6;
-  logic [24:0] where_q;
-  logic [23:0] wdata_q;
-  assign fall = (rd_nq & ~rd_ni) | (wr_nq & ~wr_ni);
+  // Time: clk_pwm rises with every other step, clk_ref with every third of these.
+  logic [2:0] step_q = 3'd0;
+  logic       clk_pwm_q = 1'b0, clk_ref_q = 1'b0;
   always @($global_clock) begin
-    {started_q, awake_q, rd_nq, wr_nq} <= {1'b1, started_q, rd_ni, wr_ni};
-    age_q   <= fall ? 3'd1 : age_q + {2'd0, age_q != 3'd6};
-    where_q <= where_i;
-    wdata_q <= wdata_i;
+    step_q    <= (step_q == 3'd5) ? 3'd0 : step_q + 3'd1;
+    clk_pwm_q <= ~clk_pwm_q;
+    clk_ref_q <= step_q < 3'd3;
+  end
+
+  // Lines at the board: as they were so many steps ago.
+  (* anyconst *) logic [4:0] late;
+  logic [4:0] now, one_q, two_q, there;
+  assign now = {rd_ni, wr_ni, ours_i, addr_i, wdata_i};
+  initial {one_q, two_q} = {2{5'b11000}};
+  always @($global_clock) {one_q, two_q} <= {now, one_q};
+  for (genvar i = 0; i < 5; i++) begin : gen_line
+    assign there[i] = late[i] ? two_q[i] : now[i];
+  end
+
+  logic [1:0]  rd_falls, wr_falls, rd_of;
+  logic [18:0] addr;
+  logic [3:0]  aa;
+  logic [23:0] wdata;
+  logic        x, onchip, we, rd;
+  bus_strobes strobes (.rst_ni, .pa_rd_ni(there[4]), .pa_wr_ni(there[3]), .rd_falls_o(rd_falls),
+                       .wr_falls_o(wr_falls));
+  bus_sync dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .rd_falls_i(rd_falls), .wr_falls_i(wr_falls),
+                .pa_rd_ni(there[4]), .pa_wr_ni(there[3]), .pa_addr_i({18'd0, there[1]}), .pa_x_i(1'b0),
+                .pa_aa_i(there[2] ? 4'd2 : 4'd1), .pa_int_i(1'b0), .pa_wdata_i({23'd0, there[0]}),
+                .addr_o(addr), .x_o(x), .aa_o(aa), .int_o(onchip), .wdata_o(wdata), .we_o(we), .rd_o(rd),
+                .rd_falls_o(rd_of));
+
+  // The bus a step ago, steps since the last edge of a strobe, and the cycle of ours that is under way or was the last.
+  logic       started_q = 1'b0, rd_nq = 1'b1, wr_nq = 1'b1, ours_q, addr_q, wdata_q, fall, rise, low;
+  logic [4:0] age_q = 5'd31;
+  logic [3:0] awake_q = 4'd0;
+  assign fall = (rd_nq & ~rd_ni) | (wr_nq & ~wr_ni);
+  assign low  = ~rd_nq | ~wr_nq;
+  assign rise = low & rd_ni & wr_ni;
+  always @($global_clock) begin
+    {started_q, rd_nq, wr_nq} <= {1'b1, rd_ni, wr_ni};
+    {ours_q, addr_q, wdata_q} <= {ours_i, addr_i, wdata_i};
+    age_q   <= (fall || rise) ? 5'd1 : age_q + {4'd0, age_q != 5'd31};
+    awake_q <= awake_q + {3'd0, awake_q != 4'd15};
   end
   always_comb begin
     assume (rst_ni == started_q);
-    assume (awake_q || (rd_ni && wr_ni));
+    assume (awake_q == 4'd15 || (rd_ni && wr_ni));
     assume (rd_ni || wr_ni);
-    assume (!fall || age_q == 3'd6);
-    if (!rd_nq || !wr_nq) begin
-      assume (age_q >= 3'd5 || (rd_ni == rd_nq && wr_ni == wr_nq));
-      assume (where_i == where_q);
-      assume (wr_nq || age_q < 3'd2 || wdata_i == wdata_q);
+    if (low) begin
+      assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
+      assume (ours_i == ours_q && addr_i == addr_q && wdata_i == wdata_q);
+      assume (!rise || !ours_q || age_q >= 5'd21);
     end
   end
 
-  // What a cycle carries, from its pins; the edges of clk_ref and the strobes since its fall. The pins change with an
-  // edge after it: an edge comes at the end of each step with clk_q low.
-  logic        write_q = 1'b0, read_q = 1'b0;
-  logic [1:0]  edges_q = 2'd3, writes_q = 2'd0, reads_q = 2'd0;
-  logic [24:0] there_q;
-  logic [23:0] carried_q;
+  // What has come of the cycle: pulses of we and rd, one clk_pwm each, counted with the edge that ends them.
+  logic       write_q = 1'b0, read_q = 1'b0, where_q = 1'b0, data_q = 1'b0;
+  logic [1:0] writes_q = 2'd0, reads_q = 2'd0;
+  logic       edge_pwm;
+  assign edge_pwm = ~clk_pwm_q;  // at the end of this step
   always @($global_clock) begin
-    if (fall) begin
-      {write_q, read_q} <= {~wr_ni, ~rd_ni};
-      there_q           <= where_i;
-      edges_q           <= {1'b0, ~clk_q};
-      {writes_q, reads_q} <= 4'd0;
-    end else if (!clk_q) begin
-      if (edges_q != 2'd3)   edges_q  <= edges_q + 2'd1;
+    if (fall && ours_i) begin
+      {write_q, read_q, where_q, data_q} <= {~wr_ni, ~rd_ni, addr_i, wdata_i};
+      {writes_q, reads_q}                <= 4'd0;
+    end else if (edge_pwm) begin
       if (we && !(&writes_q)) writes_q <= writes_q + 2'd1;
       if (rd && !(&reads_q))  reads_q  <= reads_q + 2'd1;
     end
-    if (age_q == 3'd1) carried_q <= wdata_i;
   end
 
   always @($global_clock) begin
-    if (fall) begin
-      // R1: From one fall to the next a write cycle makes one write strobe, a read cycle none.
-      R1: assert (writes_q == {1'b0, write_q});
-      C1: cover (write_q);
-
-      // R2: From one fall to the next a read cycle makes one read strobe, a write cycle none.
-      R2: assert (reads_q == {1'b0, read_q});
-      C2: cover (read_q && !rd_ni);
+    if (edge_pwm && we) begin
+      // R1: A write is made only while a strobe of ours is low, or was a step before: never of another device's.
+      R1: assert (write_q && ours_q && (!wr_nq || age_q <= 5'd2));
+      C1: cover (wr_nq == 1'b0);
     end
-    if (!clk_q) begin
-      // R3: A strobe comes at the third edge after the fall, and at no other.
-      R3: assert ((we || rd) == (edges_q == 2'd2));
-      C3: cover (we || rd);
-
-      // R4: At the edge of a write strobe address and data are those of the cycle.
-      if (we) begin
-        R4: assert (where == there_q && wdata == carried_q);
-        C4: cover (wdata != 24'h0);
+    if (edge_pwm && rd) begin
+      // R2: A read takes its sample only while a strobe of ours is low: never of another device's.
+      R2: assert (read_q && ours_q && !rd_nq);
+      C2: cover (addr_i);
+    end
+    if (fall) begin
+      // R3: From one cycle of ours to the next a write has been made once, a read has made none.
+      if (ours_i) begin
+        R3: assert (writes_q == {1'b0, write_q});
+        C3: cover (write_q);
       end
 
-      // R5: At the edge of a read strobe the address is that of the cycle.
-      if (rd) begin
-        R5: assert (where == there_q);
-        C5: cover (where != 25'h0);
+      // R4: From one cycle of ours to the next a read has taken one sample, a write none.
+      if (ours_i) begin
+        R4: assert (reads_q == {1'b0, read_q});
+        C4: cover (read_q && !wr_ni);
       end
+    end
+    if (edge_pwm && (we || rd)) begin
+      // R5: Where and with what a write is made, and where a read is, is the address and the data of that cycle.
+      R5: assert (aa == 4'd2 && addr[0] == where_q && (!we || wdata[0] == data_q));
+      C5: cover (we && wdata[0]);
     end
   end
 

@@ -101,7 +101,9 @@ module clock_select_rules (
 
   // The nets as wires with a pull-up; whether ICs have taken turns so far: no two of them drive, and from a change of
   // direction to the edge of clk_ref that sees it an IC is high. IC 2 has been the source of both once.
-  logic        phase_wire1_q = 1'b1, servo_wire1_q = 1'b1;
+  logic        phase_next, servo_next, phase_next_q = 1'b1, servo_next_q = 1'b1;  // what the nets take next
+  assign phase_next = \dut.phase_idle_q | (|(\dut.phase_grant_q & \dut.level_q [21:0]));
+  assign servo_next = \dut.servo_idle_q | (|(\dut.servo_grant_q & \dut.level_q [43:22]));
   logic        phase_wire_q = 1'b1, servo_wire_q = 1'b1, phase_turns_q = 1'b1, servo_turns_q = 1'b1, passed_q = 1'b0;
   logic [21:0] phase_oe, servo_oe;
   assign phase_oe = phase_oe_i & fitted_i;
@@ -113,8 +115,9 @@ module clock_select_rules (
       differ_q   <= !(phase_differs || servo_differs) ? 2'd0 : differ_q + {1'b0, !differ_q[1]};
       conflict_q <= several && (conflict_q || ((phase_differs || servo_differs) && differ_q[1]));
       {phase_seen_q, servo_seen_q} <= {phase_i, servo_i};
-      {phase_wire_q, phase_wire1_q} <= {phase_wire1_q, &(phase_i | ~phase_oe)};
-      {servo_wire_q, servo_wire1_q} <= {servo_wire1_q, &(servo_i | ~servo_oe)};
+      phase_wire_q <= &(phase_i | ~phase_oe);
+      servo_wire_q <= &(servo_i | ~servo_oe);
+      {phase_next_q, servo_next_q} <= {phase_next, servo_next};
     end
     passed_q <= passed_q | (phase_drivers[2] & servo_drivers[2]);
     if (ext_clock_i || outside_q || (phase_oe & (phase_oe - 22'h1)) != 22'h0 ||
@@ -172,13 +175,13 @@ module clock_select_rules (
 
     // R9: While ICs take turns PHASE is what a wire would be, two clk later: no level cut nor doubled at the hand-over.
     if (phase_turns_q) begin
-      R9: assert (phase == phase_wire_q);
+      R9: assert (phase_next == phase_wire_q && phase == phase_next_q);
       C9: cover (!phase && \dut.phase_grant_q [3] && passed_q);
     end
 
     // R10: So is SERVO.
     if (servo_turns_q) begin
-      R10: assert (servo == servo_wire_q);
+      R10: assert (servo_next == servo_wire_q && servo == servo_next_q);
       C10: cover (!servo && \dut.servo_grant_q [3] && passed_q);
     end
   end

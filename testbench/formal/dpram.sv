@@ -50,12 +50,12 @@ module dpram_rules (
   end
   assign edge_ref = step_q == 3'd0;  // at the end of this step
 
-  logic        rd_toggle, wr_toggle, cpu_drive, cpu_wait, cpu_busy, host_busy, host_busy_pin;
+  logic [1:0]  rd_falls, wr_falls;
+  logic        cpu_drive, cpu_wait, cpu_busy, host_busy, host_busy_pin;
   logic [15:0] rdata, host_rdata;
-  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .sel_i(1'b1),
-                       .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle));
-  dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_toggle_i(rd_toggle),
-             .wr_toggle_i(wr_toggle), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
+  bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .rd_falls_o(rd_falls), .wr_falls_o(wr_falls));
+  dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_falls_i(rd_falls),
+             .wr_falls_i(wr_falls), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
              .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i(wdata_i), .cpu_rdata_o(rdata),
              .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy),
              .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i), .mem_wr_i(host_wr_i),

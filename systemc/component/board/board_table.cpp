@@ -10,7 +10,7 @@ namespace brick::component {
 const std::vector<PinInfo>& board_rows() {
   static const std::vector<PinInfo> table{
       {"rst_n", PinDirection::kIn, 8, 0, 1, 0x1, "host-bus:2.6", "reset, asynchronous, active low"},
-      {"pa_addr", PinDirection::kIn, 0, 0, 19, 0x0, "host-bus:2.1", "address A18..A0; A5..A0 of the on-chip peripheral when pa_int is 1"},
+      {"pa_addr", PinDirection::kIn, 0, 0, 19, 0x0, "host-bus:2.1", "address A18..A0; A6..A0 of the on-chip peripheral when pa_int is 1"},
       {"pa_x", PinDirection::kIn, 0, 23, 1, 0x0, "host-bus:2.1", "1 = X space, 0 = Y space"},
       {"pa_aa", PinDirection::kIn, 0, 19, 4, 0x0, "host-bus:2.1", "AA3..AA0, 1 = region selected"},
       {"pa_int", PinDirection::kIn, 0, 24, 1, 0x0, "host-bus:2.6", "1 = on-chip peripheral page X:$FFFF80..$FFFFFF: the CPU's side of the host port"},

@@ -58,8 +58,8 @@ class DpramModel final : public ModelChip {
 
   void set_cpu(const PortAPins& pins) {
     pins_ = pins;
-    strobes_.set_pins(pins, DpramInputs::selected(pins), rst_n_);
-    ram_.in.set_cpu_pins(pins, strobes_.rd_toggle(), strobes_.wr_toggle());
+    strobes_.set_pins(pins, rst_n_);
+    ram_.in.set_cpu_pins(pins, strobes_.rd_falls(), strobes_.wr_falls());
     ram_.rd_moved();
   }
 

@@ -31,15 +31,16 @@ module dpram_pins (
   output logic [15:0]      peek_o
 );
 
-  logic rd_toggle, wr_toggle, unused_drive;
+  logic [1:0] rd_falls, wr_falls;
+  logic       unused_drive;
 
   bus_strobes u_bus_strobes (
-    .rst_ni, .pa_rd_ni(cpu_rd_ni), .pa_wr_ni(cpu_wr_ni), .sel_i(cpu_sel_i),
-    .rd_toggle_o(rd_toggle), .wr_toggle_o(wr_toggle)
+    .rst_ni, .pa_rd_ni(cpu_rd_ni), .pa_wr_ni(cpu_wr_ni),
+    .rd_falls_o(rd_falls), .wr_falls_o(wr_falls)
   );
   dpram u_dpram (
     .clk_pwm_i, .clk_ref_i, .rst_ni, .small_i,
-    .rd_toggle_i(rd_toggle), .wr_toggle_i(wr_toggle),
+    .rd_falls_i(rd_falls), .wr_falls_i(wr_falls),
     .cpu_sel_i, .cpu_x_i, .cpu_addr_i, .cpu_rd_ni, .cpu_wr_ni, .cpu_wdata_i,
     .cpu_rdata_o, .cpu_drive_o(unused_drive), .cpu_wait_o, .cpu_busy_o,
     .mem_sel_i, .mem_rd_i, .mem_wr_i, .mem_addr_i, .mem_be_i, .mem_wdata_i,

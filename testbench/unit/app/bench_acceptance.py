@@ -41,16 +41,17 @@ def fails_its_negative_control(name, engine="systemc", board=None, **other):
 def every_board():
     """Every bench on every board: it passes, or says in one line what the board has not; nothing in between."""
     # and nothing else
-    one_servo_ic = {"watchdog", "reinit-e3", "clock-select", "clock-faults", "clock-macro", "port-a-phase", "task-load"}
+    one_servo_ic = {"watchdog", "reinit-e3", "clock-select", "clock-faults", "clock-macro", "port-a-phase",
+                    "port-a-hammer", "task-load"}
     every_bench = {b["name"] for b in json.loads(brick("list", "--json").stdout)}
     refused = {"geo-pmac": one_servo_ic, "geobrick-lv-4": one_servo_ic,
-               "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase", "task-load", "ssi"},
+               "turbo-pmac2-pci-lite": {"watchdog", "reinit-e3", "port-a-phase", "port-a-hammer", "task-load", "ssi"},
                "turbo-pmac2-pci": {"ssi"}, "turbo-pmac2-pc": {"ssi"},
                "geobrick-lv-8": {"clock-macro"},
                "turbo-pmac-pci": {"clock-macro", "ssi"},
                "pmac-pc": {"clock-macro", "breq-rotary", "breq-fixed", "breq-select", "watchdog", "capture-compare",
                            "isa-timing", "ssi"},
-               "umac-turbo": {"ssi", "watchdog", "reinit-e3", "pwm", "port-a-phase", "task-load"},
+               "umac-turbo": {"ssi", "watchdog", "reinit-e3", "pwm", "port-a-phase", "port-a-hammer", "task-load"},
                "turbo-pmac2-ultralite":
                     every_bench - {"smoke", "binary-rotary", "breq-rotary", "breq-fixed", "breq-select", "interrupts",
                                    "clock-macro", "dpram", "dpram-ascii", "dpram-reporting", "gather", "host-port",
@@ -234,6 +235,11 @@ def serial_dac_adc():
 def port_a_phase():
     for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "4")):
         bench_passes("port-a-phase", engine, seed, firmware=False)
+
+
+def port_a_hammer():
+    for engine, seed in (("systemc", "1"), ("systemc", "2"), ("lockstep", "4")):
+        bench_passes("port-a-hammer", engine, seed, firmware=False)
 
 
 def host_port():

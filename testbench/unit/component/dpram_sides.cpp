@@ -1,5 +1,6 @@
 #include "testbench/unit/component/dpram_sides.h"
 
+#include "systemc/board/bus_strobes.h"
 #include "systemc/core/start_value.h"
 #include "testbench/unit/random_seed.h"
 
@@ -14,7 +15,7 @@ void DpramSides::set(const std::string& pin, std::uint32_t value) {
   if (pin == "small") ram_.in.small = value != 0;
   if (pin == "rst_n") reset_ = value == 0;
   if (reset_) {
-    ram_.in.rd_toggle = ram_.in.wr_toggle = false;  // flip-flops that the strobes clock
+    ram_.in.rd_falls = ram_.in.wr_falls = 0;  // flip-flops that the strobes clock
     ram_.reset(now_);
   }
 }
@@ -71,8 +72,8 @@ void DpramSides::before(unsigned side) {
     in.cpu_addr = static_cast<std::uint16_t>(cpu_.address / 4);
     in.cpu_wdata = static_cast<std::uint16_t>(cpu_.value);
     bool& strobe_n = cpu_.write ? in.cpu_wr_n : in.cpu_rd_n;
-    bool& toggle = cpu_.write ? in.wr_toggle : in.rd_toggle;
-    toggle = toggle != strobe_n;  // it falls once
+    std::uint8_t& falls = cpu_.write ? in.wr_falls : in.rd_falls;
+    if (strobe_n) falls = next_fall(falls);  // it falls once
     strobe_n = false;
   }
 }

@@ -62,7 +62,7 @@ class BoardMap : public ::testing::TestWithParam<bool> {
   }
   // On-chip page X:$FFFFxx. A read is left under way, so that a test can look before its end.
   void on_chip_write(unsigned address, std::uint32_t value) {
-    rig.in.pa_addr = address & 0x3F;
+    rig.in.pa_addr = address & 0x7F;
     rig.in.pa_x = rig.in.pa_int = true;
     rig.in.pa_wdata = value;
     rig.in.pa_wr_n = false;
@@ -76,7 +76,7 @@ class BoardMap : public ::testing::TestWithParam<bool> {
     rig.run(6);
   }
   void begin_on_chip_read(unsigned address) {
-    rig.in.pa_addr = address & 0x3F;
+    rig.in.pa_addr = address & 0x7F;
     rig.in.pa_x = rig.in.pa_int = true;
     rig.in.pa_rd_n = false;
     rig.apply();

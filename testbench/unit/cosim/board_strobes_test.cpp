@@ -126,10 +126,11 @@ TEST_P(BoardMap, WritesBackToBackDoNotMerge) {
   }
 }
 
-// host-bus:2.6/1: lows of a tick, 33.9 ns apart. The two words that HOTX gets go to RX one after the other; of the two
-// that the host has sent each read frees one.
-TEST_P(BoardMap, EachFallOfAStrobeIsAnAccessHoweverShortAndSoon) {
-  const auto strobes = [this](bool BoardInputs::*strobe, unsigned word, Tick phase, Tick apart) {
+// host-bus:2.6/1: low for 50.9 ns at the edges of clk_pwm, a strobe is an access however soon the next one follows; too
+// short, it is none. The two words that HOTX gets go to RX one after the other; of the two that the host has sent each
+// read frees one.
+TEST_P(BoardMap, AStrobeOfSixTicksIsAnAccessHoweverSoonTheNextAndAShortOneIsNone) {
+  const auto strobes = [this](bool BoardInputs::*strobe, unsigned word, Tick phase, Tick low) {
     rig.in.pa_addr = word;
     rig.in.pa_x = rig.in.pa_int = true;
     rig.apply();
@@ -138,7 +139,7 @@ TEST_P(BoardMap, EachFallOfAStrobeIsAnAccessHoweverShortAndSoon) {
       for (const bool level : {false, true}) {
         rig.in.*strobe = level;
         rig.apply();
-        rig.run(level ? apart - 1 : 1);
+        rig.run(level ? 1 : low);
       }
     rig.run(9);
     rig.in.pa_int = false;
@@ -148,7 +149,9 @@ TEST_P(BoardMap, EachFallOfAStrobeIsAnAccessHoweverShortAndSoon) {
   for (Tick phase = 0; phase < 3; ++phase) {
     rig.run(30);
     rig.in.pa_wdata = 0x41;
-    strobes(&BoardInputs::pa_wr_n, 0x07, phase, 4);  // X:$FFFFC7
+    for (const Tick low : {1, 2, 3}) strobes(&BoardInputs::pa_wr_n, 0x47, phase, low);  // X:$FFFFC7
+    EXPECT_EQ(io_read(2) & kRxdf, 0u) << "phase " << phase;
+    strobes(&BoardInputs::pa_wr_n, 0x47, phase, 6);
     for (int word = 0; word < 2; ++word) {
       EXPECT_NE(io_read(2) & kRxdf, 0u) << "word " << word << ", phase " << phase;
       EXPECT_EQ(io_read(7), 0x41u);
@@ -156,10 +159,129 @@ TEST_P(BoardMap, EachFallOfAStrobeIsAnAccessHoweverShortAndSoon) {
     EXPECT_EQ(io_read(2) & kRxdf, 0u);
     io_write(7, 0x42);
     io_write(7, 0x43);
-    EXPECT_EQ(io_read(2) & kTrdy, 0u);
-    strobes(&BoardInputs::pa_rd_n, 0x06, phase, 7);  // X:$FFFFC6: the second word needs a period to come
+    for (const Tick low : {1, 2, 3}) strobes(&BoardInputs::pa_rd_n, 0x46, phase, low);  // X:$FFFFC6
+    EXPECT_EQ(io_read(2) & kTrdy, 0u) << "phase " << phase;
+    strobes(&BoardInputs::pa_rd_n, 0x46, phase, 6);
     EXPECT_NE(io_read(2) & kTrdy, 0u) << "phase " << phase;
   }
+}
+
+// host-bus:2.6/2: the lines of the bus may come a tick later than the strobe, as pads and wires make them, and go a
+// tick earlier than it.
+TEST_P(BoardMap, SelectsMayComeATickBehindTheStrobe) {
+  struct Place {
+    std::uint32_t address;
+    std::uint8_t aa;
+    std::uint32_t value;
+  };
+  for (const Place& at : {Place{kHostSignals, 0, 0x6}, {kServoIcBase[0] + 6, 2, 0x123456}, {0x060007, 4, 0x89AB}})
+    for (Tick phase = 0; phase < 3; ++phase)
+      for (const bool write : {true, false}) {
+        rig.run(30 + phase);
+        rig.in.pa_aa = 1;
+        rig.in.pa_addr = ~at.address & 0x7FFFF;
+        rig.in.pa_x = true;
+        rig.in.pa_wdata = at.value;
+        (write ? rig.in.pa_wr_n : rig.in.pa_rd_n) = false;
+        rig.apply();
+        rig.run(1);
+        rig.in.pa_aa = at.aa;
+        rig.in.pa_addr = at.address;
+        rig.apply();
+        rig.run(9);
+        if (!write) {
+          EXPECT_EQ(rig.get(pin::kPaDataOe), 1u) << std::hex << at.address << ", phase " << phase;
+          EXPECT_EQ(rig.get(pin::kPaData), at.value) << std::hex << at.address << ", phase " << phase;
+        }
+        rig.in.pa_aa = 1;
+        rig.apply();
+        rig.run(1);
+        rig.in.pa_wr_n = rig.in.pa_rd_n = true;
+        rig.apply();
+        rig.run(3);
+      }
+}
+
+// host-bus:2.6/9: the selects of the cycle before or of the next one, on the bus while another device's strobe is still
+// or already seen low, make it none of ours: nothing is written, and D is not driven.
+TEST_P(BoardMap, StrobesOfOthersMeetTheSelectsOfTheirNeighbours) {
+  struct Place {
+    std::uint32_t address;
+    std::uint8_t aa;
+    std::uint32_t value;
+  };
+  for (const Place& at : {Place{kHostSignals, 0, 0x6}, {kServoIcBase[0] + 6, 2, 0x123456}, {0x060007, 4, 0x89AB}}) {
+    rig.write(true, at.address, at.value);
+    for (Tick phase = 0; phase < 3; ++phase)
+      for (const Tick low : {1, 2, 3, 4, 7, 8, 9, 20})
+        for (const bool write : {true, false}) {
+          rig.run(30 + phase);
+          const auto select = [&](bool ours) {
+            rig.in.pa_aa = ours ? at.aa : 1;
+            rig.in.pa_addr = at.address;
+            rig.in.pa_x = true;
+            rig.in.pa_wdata = ~at.value & 0xFFFFFF;
+            rig.apply();
+          };
+          bool driven = false;
+          const auto run = [&](Tick ticks) {
+            for (; ticks > 0; --ticks) {
+              rig.run(1);
+              driven = driven || rig.get(pin::kPaDataOe) != 0;
+            }
+          };
+          select(true);
+          (write ? rig.in.pa_wr_n : rig.in.pa_rd_n) = false;
+          rig.apply();
+          run(1);
+          if (low > 2) {
+            select(false);
+            run(low - 2);
+          }
+          select(true);
+          if (low > 1) run(1);
+          rig.in.pa_wr_n = rig.in.pa_rd_n = true;
+          rig.apply();
+          run(12);
+          EXPECT_FALSE(driven) << std::hex << at.address << ", phase " << phase << ", low " << low;
+          EXPECT_EQ(rig.read(true, at.address), at.value)
+              << std::hex << at.address << ", phase " << phase << ", low " << low << (write ? ", write" : ", read");
+        }
+  }
+}
+
+// host-bus:2.5/8, host-bus:6.9/8: a strobe of another device, two ticks before that of the RAM, takes nothing of the
+// RAM's /TA: it is high until the word stands.
+TEST_P(BoardMap, TaOfTheRamIsNotTakenAwayByTheStrobeBeforeIt) {
+  for (Tick phase = 0; phase < 3; ++phase)
+    for (const unsigned before : {1u, 2u})
+      for (const bool write : {false, true}) {
+        rig.run(30 + phase);
+        bool& strobe_n = write ? rig.in.pa_wr_n : rig.in.pa_rd_n;
+        rig.in.pa_aa = 1;
+        for (unsigned i = 0; i < before; ++i)
+          for (const bool level : {false, true}) {
+            strobe_n = level;
+            rig.apply();
+            rig.run(1);
+          }
+        rig.in.pa_aa = 4;
+        rig.in.pa_addr = 0x060000;
+        rig.in.pa_x = true;
+        strobe_n = false;
+        rig.apply();
+        for (unsigned edge = 1; edge <= (write ? 2u : 3u); ++edge) {
+          rig.run(1);
+          EXPECT_EQ(rig.get(pin::kPaTaN), 1u) << "edge " << edge << ", phase " << phase << ", after " << before;
+        }
+        rig.run(3);
+        EXPECT_EQ(rig.get(pin::kPaTaN), 0u);
+        strobe_n = true;
+        rig.apply();
+        rig.run(6);
+        rig.in.pa_aa = 0;
+        rig.apply();
+      }
 }
 
 // host-bus:2.6/9: the strobe of a RAM cycle, /WR 22.3 ns before the next cycle's /RD as at I52 = 31, is none of the

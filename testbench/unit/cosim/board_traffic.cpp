@@ -168,7 +168,7 @@ void BoardTraffic::choose_cpu_address() {
       inputs_.pa_aa = 0;
       break;
     case 6:
-      inputs_.pa_addr = pick(4) == 0 ? pick(64) : 2 + pick(6);
+      inputs_.pa_addr = pick(4) == 0 ? pick(128) : 0x42 + pick(6);
       inputs_.pa_x = true;
       inputs_.pa_int = true;
       inputs_.pa_aa = 0;

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "systemc/board/bus_strobes.h"
 #include "systemc/host/dpram.h"
 #include "testbench/unit/covers.h"
 #include "testbench/unit/host/lockstep.h"
@@ -123,8 +124,8 @@ class DpramBench {
  private:
   void cpu_start(unsigned word, bool read, unsigned value) {
     both.in.cpu_sel = true;
-    both.in.rd_toggle ^= read;  // as bus_strobes makes them
-    both.in.wr_toggle ^= !read;
+    std::uint8_t& falls = read ? both.in.rd_falls : both.in.wr_falls;
+    falls = next_fall(falls);
     both.in.cpu_addr = static_cast<std::uint16_t>(word / 2);
     both.in.cpu_x = word % 2;
     both.in.cpu_rd_n = !read;

@@ -166,7 +166,7 @@ TEST_F(DpramCollisionTest, HostIsLetInByTheNextStrobeIfTheHighBeforeItWasTooShor
   both.ref(2);
   EXPECT_TRUE(host_busy());
   both.in.cpu_sel = false;  // another device's write follows, /WR is low at every edge
-  both.in.wr_toggle ^= true;
+  both.in.wr_falls = next_fall(both.in.wr_falls);
   both.ticks(3);
   both.ref(2);
   EXPECT_FALSE(host_busy());

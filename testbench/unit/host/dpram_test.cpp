@@ -57,7 +57,7 @@ TEST_F(DpramTest, YWordIsAtTheEvenAndXWordAtTheOddHostWord) {
       both.in.cpu_addr = static_cast<std::uint16_t>(address);
       both.in.cpu_x = x;
       both.in.cpu_rd_n = false;
-      both.in.rd_toggle = !both.in.rd_toggle;
+      both.in.rd_falls = next_fall(both.in.rd_falls);
       both.ticks(kAccess);
       EXPECT_EQ(both.get("cpu_rdata"), (x ? 0x5000 : 0xA000) + address) << (x ? "X" : "Y");
       cpu_end();

@@ -77,7 +77,10 @@ class CpuCycles : public DpramBench {
       in.cpu_x = word % 2;
       in.cpu_addr = static_cast<std::uint16_t>(word / 2);
     });
-    at(quarters(s.strobe_low), [&in, write] { (write ? in.wr_toggle : in.rd_toggle) ^= true; });
+    at(quarters(s.strobe_low), [&in, write] {
+      std::uint8_t& falls = write ? in.wr_falls : in.rd_falls;
+      falls = next_fall(falls);
+    });
     at(quarters(s.strobe_low), [&in, write] { (write ? in.cpu_wr_n : in.cpu_rd_n) = false; });
     if (write) {
       in.cpu_wdata = static_cast<std::uint16_t>(~value);

@@ -82,8 +82,8 @@ Outputs sample(const Vhost_port& v) {
 
 void drive(Vdpram& v, const DpramInputs& in) {
   v.small_i = in.small;
-  v.rd_toggle_i = in.rd_toggle;
-  v.wr_toggle_i = in.wr_toggle;
+  v.rd_falls_i = in.rd_falls;
+  v.wr_falls_i = in.wr_falls;
   v.cpu_sel_i = in.cpu_sel;
   v.cpu_x_i = in.cpu_x;
   v.cpu_addr_i = in.cpu_addr;

@@ -40,6 +40,10 @@ Tick Machine::now() const { return impl_->now; }
 HostInputs& Machine::inputs() { return impl_->pins; }
 const BoardOutputs& Machine::outputs() const { return impl_->outputs; }
 PciBridge* Machine::pci() { return nullptr; }
+const PinSkew& Machine::skew() const {
+  static const PinSkew kNone;
+  return kNone;
+}
 Aperture& Machine::aperture() { return impl_->aperture; }
 void Machine::apply_partly() {}
 Signals& Machine::signals() { return impl_->signals; }

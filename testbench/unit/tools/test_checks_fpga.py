@@ -11,8 +11,9 @@ import unittest
 from tree import TOOLS, run
 
 sys.path.insert(0, str(TOOLS))
-import fpga
 import fpga_pads
+
+import fpga
 
 
 def path(source, target, delay):

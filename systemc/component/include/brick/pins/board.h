@@ -13,7 +13,7 @@ namespace brick::component {
 struct BoardPins {
   BoardPins(Component& owner, const std::string& prefix);
   In<> rst_n;  // reset, asynchronous, active low (host-bus:2.6); idle 1
-  In<19> pa_addr;  // address A18..A0; A5..A0 of the on-chip peripheral when pa_int is 1 (host-bus:2.1)
+  In<19> pa_addr;  // address A18..A0; A6..A0 of the on-chip peripheral when pa_int is 1 (host-bus:2.1)
   In<> pa_x;  // 1 = X space, 0 = Y space (host-bus:2.1)
   In<4> pa_aa;  // AA3..AA0, 1 = region selected (host-bus:2.1)
   In<> pa_int;  // 1 = on-chip peripheral page X:$FFFF80..$FFFFFF: the CPU's side of the host port (host-bus:2.6)
