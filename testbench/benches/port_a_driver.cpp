@@ -155,7 +155,9 @@ std::uint32_t PortADriver::cycle(const Place& place, bool write, std::uint32_t d
   }
   move(rise, [](PortAPins& p) { p.pa_rd_n = p.pa_wr_n = true; });
   if (write) move(rise + l.data_hold, [&](PortAPins& p) { p.pa_wdata = random() & 0xFFFFFF; });
-  free_at_ = rise + l.hold;
+  // Up to three wait states an idle clock follows, in which the lines stand; row 117 has it in it from two on.
+  const bool idles = place.wait_states <= 3 && (write || place.wait_states == 1);
+  free_at_ = rise + l.hold + (idles ? l.clock : 0);
   if (machine_.outputs().get(pin::kPaDataOe) != 0) driving_until_ = machine_.now();
   // Nothing holds the lines until the next address; it comes at once, or this is what stands there.
   move(free_at_, [&](PortAPins& p) {

@@ -21,9 +21,9 @@ constexpr std::array<const MotorField*, kPhases> kBottom{&motor_pin::kPwmABot, &
                                                          &motor_pin::kPwmCBot};
 constexpr std::array<unsigned, kPhases> kVariable{2, 4, 7};  // M102, M104, M107
 constexpr std::array<regs::Register, kPhases> kOut{word::kOutA, word::kOutB, word::kOutC};
-// A turn takes what was written before it, and the turns that are seen are late by kPwmDelay (servo-ic:5.1/5,
-// servo-ic:5.11/4).
-constexpr Tick kBeforeTurn = kPwmDelay + 1;
+// A turn takes what was written before it: commands a tick later, because the turn reaches a channel a tick late
+// (servo-ic:5.11/4), I7m00 a tick earlier (servo-ic:5.1/5, servo-ic:5.1/12). Turns that are seen are late by kPwmDelay.
+constexpr Tick kCommandBeforeTurn = kPwmDelay, kLimitBeforeTurn = kPwmDelay + 2;
 constexpr Tick kNear = 8;  // of a turn to the edge of PHASE, servo-ic:5.1/6
 enum Switches : unsigned { kOff = 0, kUpper = 1, kLower = 2, kShort = 3 };
 
@@ -107,7 +107,7 @@ void Pwm::command(const std::vector<std::pair<unsigned, int>>& values) {
   for (const auto& [phase, value] : values) {
     const Tick at = host_.written(phase / kPhases, kOut[phase % kPhases]);
     if (at < 0) report_.fail(name(phase), "the command never came to its word");
-    commands_[phase].push_back({at + kBeforeTurn, value});
+    commands_[phase].push_back({at + kCommandBeforeTurn, value});
   }
 }
 
@@ -303,7 +303,7 @@ void Pwm::new_limits() {
   for (unsigned i = 0; i < 4; ++i) {
     limit_[0] = 3500 + host_.pick(3500);
     host_.say({fmt::format("I7000={}", limit_[0])});
-    changes_.push_back({host_.written(0, regs::servo_ic::kPwmControl) + kBeforeTurn, limit_[0]});
+    changes_.push_back({host_.written(0, regs::servo_ic::kPwmControl) + kLimitBeforeTurn, limit_[0]});
     list += fmt::format("{}{}", i == 0 ? "" : ", ", limit_[0]);
     host_.wait(period(0) + host_.pick(static_cast<unsigned>(period(0))));
   }
