@@ -44,6 +44,8 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
   // A write is under way; an access that the on-chip page may see is.
   bool write_pending() const { return wr_.under_way(); }
   bool internal_pending() const { return pins0_.internal || under_way(); }
+  // The pins may have gone on to the next access by now.
+  bool may_be_internal() const { return pins0_.internal || pins_.internal || where_.internal; }
 
   // The edge with which a strobe begins or ends, at the earliest. One of a read acts at its end only, when the sample
   // is taken: where nobody else wants to know of it (the on-chip page does) it has no beginning.
@@ -52,7 +54,7 @@ class BusSync final : public sc_core::sc_module, public ModelBlock {
     if (!write && !rd_.under_way()) return kNever;
     if (rd() || we()) return now_ + 1;
     const Tick made = std::min(rd_.made(now_), wr_.made(now_));
-    return write || pins0_.internal ? std::max(made - 1, now_ + 1) : made;
+    return write || may_be_internal() ? std::max(made - 1, now_ + 1) : made;
   }
 
   void advance(Tick t) override {
