@@ -316,6 +316,13 @@ void lookahead_do(uint32_t cs, enum lookahead_order order) {
   l->state = LOOK_GOES;
 }
 
+bool lookahead_is_sweeping(uint32_t cs) { return looks[cs].sweeping; }
+
+bool lookahead_rests(uint32_t cs) {
+  const struct look* l = &looks[cs];
+  return l->rate < SLOWEST || (l->part == 0 && is_free(l, l->front));
+}
+
 bool lookahead_stands(uint32_t cs) { return looks[cs].state == LOOK_STANDS && looks[cs].next == LOOKAHEAD_NONE; }
 
 uint32_t lookahead_state(uint32_t cs, bool moves) {

@@ -109,7 +109,13 @@ static bool go_ahead(uint32_t cs, bool alone) {
   const bool room = ahead < q->most, hurry = q->handed && ahead <= q->least;
   const bool soon = hurry || (q->handed && ahead <= q->least + 1u && !s->next_valid && !path_is_full(cs));
   const bool grows = !q->made && !lookahead_is_full(cs);
-  if ((room && release(cs, false)) || lookahead_sweep(cs, false)) return true;
+  if (room && release(cs, false)) return true;
+  /* a long sweep is not waited for: what the one before it has found still holds */
+  if (q->handed && ahead <= (q->least + 1u) / 2u && lookahead_is_sweeping(cs)) {
+    slice_pause();
+    if (release(cs, true)) return true;
+  }
+  if (lookahead_sweep(cs, false)) return true;
   /* what has no next line in time comes to its end, before it has to stop where nothing more is known */
   if (soon && grows && alone && segment_points_wait(cs)) return segment_points_make(cs, true);
   if (hurry && ((room && release(cs, true)) || lookahead_sweep(cs, true))) return true;
@@ -152,11 +158,11 @@ static __attribute__((noinline)) bool work(uint32_t cs, bool alone) {
     return paths[cs].count != 0 && segment_points_begin(cs);
   }
   slice_pause();
-  if (q->looks) return work_ahead(cs, alone);
-  if (segment_ring_is_dry(cs)) {
+  if (segment_ring_is_dry(cs) && !(q->looks && lookahead_rests(cs))) {
     s->failure = RUN_TIME_LATE;
     return false;
   }
+  if (q->looks) return work_ahead(cs, alone);
   return segment_ring_ahead(cs) < q->most && work_at_once(cs, alone);
 }
 

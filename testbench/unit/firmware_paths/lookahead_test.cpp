@@ -361,32 +361,6 @@ TEST_F(Lookahead, AStarvedRotaryBufferEndsItsMovesWithinTheLimits) {
   EXPECT_GT(fastest, 25 * kUnit * kTickMs);
 }
 
-// Isx15: the path is gone through at (Isx15 + 1) times its speed.
-TEST_F(Lookahead, SegmentOverride) {
-  fit({"1000X"});
-  ASSERT_EQ(host("I5113=5 I5115=-0.5"), "");
-  store({"TM100 TA20 TS0", "X3"});
-  EXPECT_NEAR(run(), 240 + 10, kTickMs);
-  ASSERT_EQ(host("I5115=0.5"), "");
-  store({"X0"});
-  EXPECT_NEAR(run(), 80 + 10, kTickMs);
-  ASSERT_EQ(host("I5115=7"), "");
-  store({"X3"});
-  EXPECT_NEAR(run(), 60 + 10, kTickMs) << "saturated";
-  EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
-}
-
-// Isx16: from 1 on by 0.05 a segment. Ten segments of 1.05 to 1.5 are 63.75 ms of 120, then 8 of 7.5; of 0.95 to 0.5
-// they are 36.25, then 34 of 2.5.
-TEST_F(Lookahead, SegmentOverrideIsSlewed) {
-  fit({"1000X"});
-  store({"TM100 TA20 TS0 INC", "X3"});
-  for (const auto& [isx15, segments] : {std::pair{"0.5", 18}, {"-0.5", 44}}) {
-    ASSERT_EQ(host(std::string("I5113=5 I5116=0.05 I5115=") + isx15), "");
-    EXPECT_NEAR(run(), 5 * (segments + 2), kTickMs) << isx15;
-  }
-}
-
 // motion:7.5/6. Ixx24 bit 15: it stops on the path before what lies beyond, goes on into it a segment at a time, and
 // back as ever. Y is half as fast: where it is tells whether the path is the same.
 TEST_F(Lookahead, TheLimitOfADesiredPositionStopsOnThePath) {

@@ -68,7 +68,7 @@ const std::vector<std::string> kSmooth = {
 TEST_F(PathsImage, ASegmentOfEightAxesAtSpeed) {
   start(54, "0.06", kSmooth);
   OwnCycles own(board, "segment_work", "lookahead_add");
-  EXPECT_LE(cycles_a_segment(own, 60, 400), 20000);
+  EXPECT_LE(cycles_a_segment(own, 60, 1000), 20000);
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
 }
 
@@ -93,7 +93,7 @@ TEST_F(PathsImage, ASegmentOfEightAxesWithCorners) {
   EXPECT_EQ(value("M2") / 3072, rounds * 1200);
   own.from_here();
   start(1000, "1", kCorners);
-  const double many = cycles_a_segment(own, 1100, 500);
+  const double many = cycles_a_segment(own, 1100, 1000);
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
   EXPECT_LE(many, 1.2 * few);
   EXPECT_GE(many, few / 1.2);

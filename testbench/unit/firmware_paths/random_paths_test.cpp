@@ -284,8 +284,8 @@ TEST_F(RandomPaths, WhateverHappensThePathIsTheSame) {
         [&](unsigned tick) {
           if (tick != next) return;
           next = tick + 1 + random() % 400;
-          static const char* kOrders[] = {"\\", "<", ">", "R", "H", "%37", "%100", "%5"};
-          const std::string order = orders > 0 ? kOrders[random() % (speeds ? 8 : 4)] : speeds ? "%100R" : ">";
+          static const char* kOrders[] = {"\\", "<", ">", "R", "H", "%37", "%100", "%5", "%150"};
+          const std::string order = orders > 0 ? kOrders[random() % (speeds ? 9 : 4)] : speeds ? "%100R" : ">";
           if (orders > 0) --orders;
           const std::string reply = host("&1" + order);
           ASSERT_TRUE(reply.empty() || reply == "ERR011") << order << " " << reply;
