@@ -139,7 +139,8 @@ def build(rules, solvers, fault=None):
     script = [f"read_verilog -sv -formal -defer {' '.join(map(str, sources.values()))}",
               f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules",
               *(f"select -assert-min 1 t:{module}; delete t:{module}" for module in rules.free),
-              f"proc -norom; setattr -mod -unset keep_hierarchy; flatten; {expose} setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
+              "proc -norom; setattr -mod -unset keep_hierarchy; flatten",
+              f"{expose} setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
               f"write_smt2 -wires {stem}.smt2",
               "techmap -map cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
     for label in labels:

@@ -1,7 +1,7 @@
-// Rules of the read data towards Port A, host-bus:2.6/3 and host-bus:2.6/5, with the strobes' counters as they are: when
-// the board drives D, and what. A step is half a period of clk_ref; /RD may change at any, and an edge takes what stood a
-// step before it. When a read is taken, of which count and of what region is free. Nothing is assumed but that a run
-// starts in reset.
+// Rules of the read data towards Port A, host-bus:2.6/3 and host-bus:2.6/5, with the strobes' counters as they are:
+// when the board drives D, and what. A step is half a period of clk_ref; /RD may change at any, and an edge takes what
+// stood a step before it. When a read is taken, of which count and of what region is free. Nothing is assumed but that
+// a run starts in reset.
 // proof: pdr
 // clocks: several
 // steps: 16

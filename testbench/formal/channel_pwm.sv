@@ -1,7 +1,8 @@
 // Rules of the PWM outputs at the pins of a channel, servo-ic:5.11, for each of the three phases (`k` is any) and
 // anything that triangle, turnarounds, dead time, commands, control word and trip do, at any clock. Two switches of a
 // phase that are on at once burn an amplifier. On is the level that X:+5 makes of it: high, inverted low. All of the
-// channel but its PWM, with the clock that the triangle takes to it, and the way from there to the pins is free. Nothing is assumed but that a run starts in reset.
+// channel but its PWM, with the clock that the triangle takes to it, and the way from there to the pins is free.
+// Nothing is assumed but that a run starts in reset.
 // proof: induction 2
 // clocks: one
 // steps: 40
