@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Proves the rules of testbench/formal/NAME.sv: prove.py [NAME...] [--out DIR] [--limit SECONDS].
+"""Proves the rules of testbench/formal/NAME.sv: prove.py [NAME...] [--out DIR] [--limit SECONDS] [--quick].
 
 A file holds the module NAME_rules: the design under test, assumptions, and numbered rules in English, each above its
 assert, each with a cover of its premise. Its header says how, in comment lines:
@@ -139,7 +139,8 @@ def build(rules, solvers, fault=None):
     script = [f"read_verilog -sv -formal -defer {' '.join(map(str, sources.values()))}",
               f"read_verilog -sv -formal {rules.root / rules.path}; hierarchy -check -top {rules.name}_rules",
               *(f"select -assert-min 1 t:{module}; delete t:{module}" for module in rules.free),
-              f"proc -norom; flatten; {expose} setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
+              "proc -norom; setattr -mod -unset keep_hierarchy; flatten",
+              f"{expose} setundef -undriven -anyseq; {PREPARE[rules.clocks]}; opt_clean",
               f"write_smt2 -wires {stem}.smt2",
               "techmap -map cover.v; techmap; abc -g AND -fast; opt_clean; design -save m"]
     for label in labels:
@@ -188,7 +189,7 @@ def prove(rules, solvers):
     return how
 
 
-def judge(root, name, solvers):
+def judge(root, name, solvers, quick):
     """Proves one file and prints its verdicts."""
     rules = Rules(root, name)
     build(rules, solvers)
@@ -202,7 +203,8 @@ def judge(root, name, solvers):
         step = solvers.search(stem, fault.rule, rules.steps)
         if step is None:
             raise Failed(f"{rules.path}: with '{fault.what}' {fault.rule} still holds for {rules.steps} steps")
-        print(f"{name} {fault.rule} refuted at step {step} with '{fault.what}': {solvers.trace(stem, fault.rule)}")
+        shown = "" if quick else f": {solvers.trace(stem, fault.rule)}"
+        print(f"{name} {fault.rule} refuted at step {step} with '{fault.what}'{shown}")
 
 
 def main():
@@ -210,6 +212,7 @@ def main():
     parser.add_argument("names", nargs="*", metavar="NAME", help="all when none is given")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/formal", help="folder of models and traces")
     parser.add_argument("--limit", type=float, default=300, help="seconds that a solver may take")
+    parser.add_argument("--quick", action="store_true", help="no waveforms of planted faults")
     parser.add_argument("--root", type=pathlib.Path, default=ROOT)
     options = parser.parse_args()
     for program in ("yosys", "yosys-abc", "yosys-smtbmc", "z3"):
@@ -221,7 +224,7 @@ def main():
     problems = []
     for name in options.names or sorted(f.stem for f in (options.root / FOLDER).glob("*.sv")):
         try:
-            judge(options.root.resolve(), name, solvers)
+            judge(options.root.resolve(), name, solvers, options.quick)
         except Failed as failed:
             problems.append(str(failed))
     finish("proofs", problems)

@@ -7,6 +7,9 @@
 // fault R2: starred servo ICs answer 256 words too high (rtl/board/address_decode.sv)
 //   - assign star       = addr_i[5];
 //   + assign star       = addr_i[8];
+// fault R7: the half with the words of the host port is not told from the other (rtl/board/address_decode.sv)
+//   - assign sel_port_o    = int_i & (
+//   + assign sel_port_o    = int_i | (
 // fault R4: area AA1 is not looked at (rtl/board/address_decode.sv)
 //   - assign gate  = ~int_i & aa_i[1] &
 //   + assign gate  = ~int_i &
@@ -23,11 +26,11 @@ module address_decode_rules (
   input wire logic [1:0]  ssi_i
 );
 
-  logic        any, on_chip, signals, strobe, ctrl, panel, ssi;
+  logic        any, on_chip, port, signals, strobe, ctrl, panel, ssi;
   logic [21:0] ic;
   address_decode dut (.addr_i, .x_i, .aa_i, .int_i, .fitted_i, .jpan_i, .ssi_i, .sel_any_o(any), .sel_int_o(on_chip),
-                      .sel_signals_o(signals), .sel_strobe_o(strobe), .sel_ctrl_o(ctrl), .sel_panel_o(panel),
-                      .sel_ssi_o(ssi), .sel_ic_o(ic));
+                      .sel_port_o(port), .sel_signals_o(signals), .sel_strobe_o(strobe), .sel_ctrl_o(ctrl),
+                      .sel_panel_o(panel), .sel_ssi_o(ssi), .sel_ic_o(ic));
 
   // Any IC: its base and its words, servo-ic:1.2 and servo-ic:1.3.
   (* anyconst *) logic [4:0] n;
@@ -97,6 +100,10 @@ module address_decode_rules (
     R6: assert (ssi == ((gates && ssi_i == 2'd2 && addr_i >= 19'h78B20 && addr_i <= 19'h78B3F) ||
                         (page && ssi_i == 2'd1 && addr_i >= 19'h0FF40 && addr_i <= 19'h0FF7F)));
     C6: cover (ssi && page);
+
+    // R7: The half with the words of the host port is X:$FFFFC0 to X:$FFFFFF of the on-chip page.
+    R7: assert (port == (on_chip && addr_i[6:0] >= 7'h40));
+    C7: cover (port);
   end
 
 endmodule : address_decode_rules

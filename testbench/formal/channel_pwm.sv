@@ -1,7 +1,8 @@
 // Rules of the PWM outputs at the pins of a channel, servo-ic:5.11, for each of the three phases (`k` is any) and
 // anything that triangle, turnarounds, dead time, commands, control word and trip do, at any clock. Two switches of a
 // phase that are on at once burn an amplifier. On is the level that X:+5 makes of it: high, inverted low. All of the
-// channel but its PWM and the way from there to the pins is free. Nothing is assumed but that a run starts in reset.
+// channel but its PWM, with the clock that the triangle takes to it, and the way from there to the pins is free.
+// Nothing is assumed but that a run starts in reset.
 // proof: induction 2
 // clocks: one
 // steps: 40
@@ -48,6 +49,10 @@ module channel_pwm_rules (
   (* hierconn *) wire logic [2:0]  \dut.u_pwm.raw_q , \dut.u_pwm.last_q ;
   (* hierconn *) wire logic [5:0]  \dut.u_pwm.switch_q ;
 
+  (* hierconn *) wire logic [16:0] \dut.u_triangle.cnt_q ;
+  (* hierconn *) wire logic        \dut.u_triangle.turn_q ;
+  (* hierconn *) wire logic [7:0]  \dut.u_triangle.deadtime_q ;
+
   // Phase and switch: which are on, bottom and top; the one that is looked at and the other.
   (* anyconst *) logic [1:0] k;
   (* anyconst *) logic       top;
@@ -70,10 +75,19 @@ module channel_pwm_rules (
   assign command = (k == 2'd0) ? \dut.u_pwm.command_a_q :
                    (k == 2'd1) ? \dut.u_pwm.command_b_q : \dut.u_pwm.command_c_q ;
 
+  // Triangle, turnaround and dead time come a clock later to a channel.
+  logic [16:0] cnt_q;
+  logic        turn_q;
+  logic [7:0]  deadtime_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) {cnt_q, turn_q, deadtime_q} <= {17'd0, 1'b0, 8'd15};
+    else         {cnt_q, turn_q, deadtime_q} <= {cnt_i, turn_i, deadtime_i};
+  end
+
   // The command in use, and what it was against the triangle one and two clocks ago.
   logic signed [15:0] command_q;
   logic               above, above_q, above2_q;
-  assign above = 17'(command_q) > $signed(cnt_i);
+  assign above = 17'(command_q) > $signed(cnt_q);
 
   // The pause: clocks since the other switch was on, and the shortest dead time set since.
   logic        started_q = 1'b0;
@@ -86,10 +100,10 @@ module channel_pwm_rules (
       dark_q     <= 12'd0;
       shortest_q <= 8'd15;
     end else begin
-      if (turn_i) command_q <= written;
+      if (turn_q) command_q <= written;
       {above_q, above2_q} <= {above, above_q};
       dark_q  <= other ? 12'd0 : (dark_q == 12'hFFF) ? dark_q : dark_q + 12'd1;
-      if (other || deadtime_i < shortest_q) shortest_q <= deadtime_i;
+      if (other || deadtime_q < shortest_q) shortest_q <= deadtime_q;
     end
   end
 
@@ -110,7 +124,7 @@ module channel_pwm_rules (
         C2: cover (dark_q == 12'd16 && shortest_q == 8'd1 && top);
       end
 
-      // R3: A top switch is on only if the command was above the triangle two clocks ago, a bottom one if it was not.
+      // R3: A top switch is on only if the command was above the triangle three clocks ago, a bottom one if it was not.
       if (pwm && on != 2'b00) begin
         R3: assert (on[0] == above2_q);
         C3: cover (on[0]);
@@ -135,6 +149,10 @@ module channel_pwm_rules (
       // I2: Command and comparison inside are those that the pins asked for.
       I2: assert (command == {~command_q[15], command_q} && \dut.u_pwm.raw_q [k] == above_q &&
                   \dut.u_pwm.last_q [k] == above2_q);
+
+      // I3: So are triangle, turnaround and dead time.
+      I3: assert ({\dut.u_triangle.cnt_q , \dut.u_triangle.turn_q , \dut.u_triangle.deadtime_q } ==
+                  {cnt_q, turn_q, deadtime_q});
     end
   end
 

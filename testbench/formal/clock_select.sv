@@ -3,7 +3,7 @@
 // clk_pwm; every input may change at any. Nothing is assumed but that a run starts in reset. R9 and R10 are about ICs
 // that take turns, one at a time and high from a change of direction to the next edge of clk_ref, as rules R7 to R9 of
 // `clock_gen` have it.
-// proof: pdr
+// proof: induction 6
 // clocks: several
 // steps: 24
 // fault R1: each IC that drives is let onto the net (rtl/board/clock_select.sv)
@@ -59,6 +59,10 @@ module clock_select_rules (
   (* hierconn *) wire logic        \dut.several_q ;
   (* hierconn *) wire logic [1:0]  \dut.disagree_q ;
   (* hierconn *) wire logic        \dut.conflict_q ;
+  (* hierconn *) wire logic        \dut.u_phase_sync.sync1_q ;
+  (* hierconn *) wire logic        \dut.u_phase_sync.sync2_q ;
+  (* hierconn *) wire logic        \dut.u_servo_sync.sync1_q ;
+  (* hierconn *) wire logic        \dut.u_servo_sync.sync2_q ;
   logic [23:0] phase_drivers, servo_drivers;
   assign phase_drivers = {\dut.drivers_q [44], \dut.phase_idle_q , \dut.phase_grant_q };
   assign servo_drivers = {\dut.drivers_q [44], \dut.servo_idle_q , \dut.servo_grant_q };
@@ -127,6 +131,25 @@ module clock_select_rules (
   end
 
   always @($global_clock) if (rst_ni) begin
+    // I1: The clocks are as the steps count.
+    I1: assert (step_q <= 3'd5 && clk_pwm_q == step_q[0] && clk_ref_q == (step_q >= 3'd1 && step_q <= 3'd3));
+
+    // I2: Who is let onto the nets is who drove at the last edge of clk_ref.
+    I2: assert (\dut.phase_grant_q == (outside_q ? 22'h0 : phase_oe_q & -phase_oe_q) &&
+                \dut.servo_grant_q == (outside_q ? 22'h0 : servo_oe_q & -servo_oe_q) &&
+                \dut.phase_idle_q == (!outside_q && phase_oe_q == 22'h0) &&
+                \dut.servo_idle_q == (!outside_q && servo_oe_q == 22'h0) &&
+                (source == brick_regs_pkg::ClockSourceOutside) == outside_q &&
+                (source == brick_regs_pkg::ClockSourceNone) == \dut.phase_idle_q );
+
+    // I3: While ICs take turns one of them at most drove at the last edge of clk_ref.
+    I3: assert ((!phase_turns_q || (!outside_q && (phase_oe_q & (phase_oe_q - 22'h1)) == 22'h0)) &&
+                (!servo_turns_q || (!outside_q && (servo_oe_q & (servo_oe_q - 22'h1)) == 22'h0)));
+
+    // I4: The levels of the outside are behind two flip-flops.
+    I4: assert (\dut.u_phase_sync.sync1_q == ext_phase1_q && \dut.u_phase_sync.sync2_q == ext_phase2_q &&
+                \dut.u_servo_sync.sync1_q == ext_servo1_q && \dut.u_servo_sync.sync2_q == ext_servo2_q);
+
     // R1: PHASE has exactly one driver: an IC, the outside, or the pull-up.
     R1: assert (phase_drivers != 24'h0 && (phase_drivers & (phase_drivers - 24'h1)) == 24'h0);
     C1: cover (\dut.drivers_q [43:0] == 44'h6);

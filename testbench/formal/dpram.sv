@@ -1,13 +1,13 @@
 // Rules of the dual-ported RAM's arbiter, host-bus:6.9: the two sides never meet in a word, and both come to their
 // turn. That what either reads is what was last written is tested, not proved. A step is half a period of clk_pwm, 4.2
 // ns; a pin of the CPU may change at any, and an edge takes what stood a step before it. Assumed, and all else is free:
-// - of the CPU, host-bus:2.2: /RD and /WR are never low together, high for a step or more; select and address stand
-//   from fall to rise, write data from 12.7 ns after the fall to the rise (rows 101 to 117); a strobe of this RAM ends
-//   after /TA is low (row 118), one of another device lasts 50.9 ns or more;
+// - of the CPU, host-bus:2.2: /RD and /WR are never low together, high and low for a step or more; two falls of one are
+//   four steps apart or more, 17 ns (19.1 ns with the wait states of host-bus:2.5); select and address stand from fall
+//   to rise, the select a step longer (host-bus:2.6/9), write data from 12.7 ns after the fall to the rise; a strobe of
+//   this RAM ends after /TA is low (row 118), of others nothing more is asked. No line is later than another;
 // - of isa_slave: its outputs change with clk_ref, direction and address stand from the command's start to the clock
 //   after its end, in which a write may have its strobe (`isa_slave`, R3 and R4). It may end a command at any time,
-// BUSY
-//   or not, with or without a strobe.
+//   BUSY or not, with or without a strobe.
 // edit: four words of memory instead of 32768, and nothing else asked for (rtl/host/dpram_memory.sv)
 //   - mem [0:32767]
 //   + mem [0:3]
@@ -20,6 +20,9 @@
 // fault R6: only a new strobe of this RAM ends the one before (rtl/host/dpram.sv)
 //   - (fallen || !(own_wr_q
 //   + (request || !(own_wr_q
+// fault R9: a write is made though another strobe has fallen since its data were taken (rtl/host/dpram.sv)
+//   - = wr_low2_q & ~wr_new;
+//   + = wr_low2_q;
 // fault R8: the end of /RD does not turn the pins off (rtl/host/dpram.sv)
 //   - rst_ni & ~cpu_rd_ni
 //   + rst_ni
@@ -31,13 +34,13 @@ module dpram_rules (
   input wire logic        wr_ni,
   input wire logic        sel_i,
   input wire logic [1:0]  addr_i,
-  input wire logic [15:0] wdata_i,
+  input wire logic        wdata_i,       // on all lines of D, as the next
   input wire logic        host_sel_i,
   input wire logic        host_rd_i,
   input wire logic        host_wr_i,
   input wire logic [1:0]  host_addr_i,
   input wire logic [1:0]  host_be_i,
-  input wire logic [15:0] host_wdata_i
+  input wire logic        host_wdata_i
 );
 
   // Time: clk_pwm rises with every other step, clk_ref with every third of these.
@@ -56,11 +59,11 @@ module dpram_rules (
   bus_strobes strobes (.rst_ni, .pa_rd_ni(rd_ni), .pa_wr_ni(wr_ni), .rd_falls_o(rd_falls), .wr_falls_o(wr_falls));
   dpram dut (.clk_pwm_i(clk_pwm_q), .clk_ref_i(clk_ref_q), .rst_ni, .small_i(1'b0), .rd_falls_i(rd_falls),
              .wr_falls_i(wr_falls), .cpu_sel_i(sel_i), .cpu_x_i(addr_i[0]), .cpu_addr_i({13'd0, addr_i[1]}),
-             .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i(wdata_i), .cpu_rdata_o(rdata),
+             .cpu_rd_ni(rd_ni), .cpu_wr_ni(wr_ni), .cpu_wdata_i({16{wdata_i}}), .cpu_rdata_o(rdata),
              .cpu_drive_o(cpu_drive), .cpu_wait_o(cpu_wait), .cpu_busy_o(cpu_busy),
              .mem_sel_i(host_sel_i), .mem_rd_i(host_rd_i), .mem_wr_i(host_wr_i),
              .mem_addr_i({13'd0, host_addr_i}), .mem_be_i(host_be_i),
-             .mem_wdata_i(host_wdata_i), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
+             .mem_wdata_i({16{host_wdata_i}}), .mem_rdata_o(host_rdata), .mem_busy_o(host_busy),
              .host_busy_o(host_busy_pin));
   // From inside the ports of the memory, and nothing of the arbiter.
   (* hierconn *) wire logic        \dut.u_memory.a_we_i ;
@@ -74,28 +77,35 @@ module dpram_rules (
   logic        started_q = 1'b0, awake_q = 1'b0, rd_nq = 1'b1, wr_nq = 1'b1, wait_q = 1'b0;
   logic        sel_q, host_sel_q = 1'b0, host_rd_q, host_wr_q = 1'b0;
   logic [1:0]  addr_q, host_addr_q, host_be_q;
-  logic [15:0] wdata_q, host_wdata_q, rdata_q;
-  logic [3:0]  low_q = 4'd0;  // steps that a strobe has been low
+  logic        wdata_q, host_wdata_q;
+  logic [15:0] rdata_q;
+  logic [2:0]  rd_fell_q = 3'b000, wr_fell_q = 3'b000;
+  logic [2:0]  low_q = 3'd0;  // steps that a strobe has been low
   always @($global_clock) begin
     {started_q, awake_q, rd_nq, wr_nq, wait_q} <= {1'b1, started_q, rd_ni, wr_ni, cpu_wait};
     {sel_q, addr_q, wdata_q, rdata_q} <= {sel_i, addr_i, wdata_i, rdata};
     {host_sel_q, host_rd_q, host_wr_q} <= {host_sel_i, host_rd_i, host_wr_i};
     {host_addr_q, host_be_q, host_wdata_q} <= {host_addr_i, host_be_i, host_wdata_i};
-    low_q <= (rd_ni & wr_ni) ? 4'd0 : low_q + {3'd0, low_q != 4'd12};
+    low_q <= (rd_ni & wr_ni) ? 3'd0 : low_q + {2'b00, low_q != 3'd5};
+    rd_fell_q <= {rd_fell_q[1:0], rd_nq & ~rd_ni};
+    wr_fell_q <= {wr_fell_q[1:0], wr_nq & ~wr_ni};
   end
-  logic was_low, rise, host_moves;
+  logic was_low, rise, ours, host_moves;
   assign was_low    = ~rd_nq | ~wr_nq;
   assign rise       = was_low & rd_ni & wr_ni;
+  assign ours       = was_low && sel_q && low_q >= 3'd3 && (~rd_ni | ~wr_ni);
   assign host_moves = step_q == 3'd1;
   always_comb begin
     assume (rst_ni == started_q);
     assume (awake_q || (rd_ni && wr_ni && !host_sel_i && !host_wr_i));
     assume (rd_ni || wr_ni);
+    assume ((!rd_nq || rd_ni || rd_fell_q == 3'b000) && (!wr_nq || wr_ni || wr_fell_q == 3'b000));
+    if (low_q != 3'd0) assume (sel_i == sel_q);
     if (was_low) begin
       assume ((rd_nq || wr_ni) && (wr_nq || rd_ni));
       assume (sel_i == sel_q && addr_i == addr_q);
-      assume (low_q < 4'd3 || wdata_i == wdata_q);
-      assume (!rise || (sel_q ? !wait_q : low_q == 4'd12));
+      assume (low_q < 3'd3 || wdata_i == wdata_q);
+      assume (!rise || !sel_q || !wait_q);
     end
     assume (!host_wr_i || (!host_sel_i && !host_rd_i));
     if (!host_moves) begin
@@ -118,7 +128,7 @@ module dpram_rules (
   always @($global_clock) begin
     cpu_busy_q <= cpu_busy;
     // The CPU: steps of /TA since its fall or the host's end; host accesses that it waited for.
-    cpu_steps_q <= (!cpu_wait || conflict) ? 4'd0 : cpu_steps_q + {3'd0, cpu_steps_q != 4'd15};
+    cpu_steps_q <= (!cpu_wait || conflict || !was_low) ? 4'd0 : cpu_steps_q + {3'd0, cpu_steps_q != 4'd15};
     turns_q     <= !cpu_busy ? 2'd0 : turns_q + {1'd0, host_ends && conflict && turns_q != 2'd3};
     // The host: steps of BUSY since the CPU's strobe has first been high.
     ended_q      <= host_busy & (ended_q | (rd_ni & wr_ni));
@@ -131,28 +141,27 @@ module dpram_rules (
   assign touch_a = write_a | \dut.u_memory.a_re_i ;
   assign touch_b = write_b | \dut.u_memory.b_re_i ;
 
-  // Who may have a word, as the two sides must believe. The CPU: in a read from the edge at which the memory was read
-  // for it to the rise; in a write from /TA low on until the memory has been written. The host: from the edge of
+  // Who may have a word, as the two sides must believe. The CPU: in a read while its pins are driven; in a write from
+  // /TA low on until the memory has been written. The host: from the edge of
   // clk_ref that found its command and left BUSY low, to its end.
-  (* anyconst *) logic [3:0] b;  // any bit of the data
   logic       edge_pwm, read_q = 1'b0, made_q = 1'b0, due_q = 1'b0, due_bit_q, drive_q = 1'b0;
   logic       cpu_reads, cpu_writes, host_in, made;
   logic [1:0] due_addr_q;
   logic [2:0] due_steps_q = 3'd0;
   assign edge_pwm   = !clk_pwm_q;  // at the end of this step
-  assign cpu_reads  = !rd_ni && sel_i && read_q;
+  assign cpu_reads  = !rd_ni && sel_i && cpu_drive;
   assign cpu_writes = !wr_ni && sel_i && !cpu_wait && !made_q;
   assign host_in    = host_here && asked_q && !host_busy;
   assign made       = edge_pwm && write_a && \dut.u_memory.a_addr_i [1:0] == (due_q ? due_addr_q : addr_i) &&
-                      \dut.u_memory.a_wdata_i [b] == (due_q ? due_bit_q : wdata_i[b]);
+                      \dut.u_memory.a_wdata_i == {16{due_q ? due_bit_q : wdata_i}};
   always @($global_clock) begin
     drive_q <= cpu_drive;
-    read_q  <= !rd_ni && (read_q || (edge_pwm && \dut.u_memory.a_re_i && \dut.u_memory.a_addr_i [1:0] == addr_i));
+    read_q  <= edge_pwm && \dut.u_memory.a_re_i && \dut.u_memory.a_addr_i [1:0] == addr_i;
     made_q  <= !wr_ni && (made_q || (made && !due_q));
     if (edge_ref) asked_q <= host_sel_i;
     // A write whose strobe has ended, after /TA was low, may be made a little later.
     if (rise && !wr_nq && sel_q && !made_q) begin
-      {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q[b], 3'd0};
+      {due_q, due_addr_q, due_bit_q, due_steps_q} <= {!made, addr_q, wdata_q, 3'd0};
     end else if (due_q) begin
       {due_q, due_steps_q} <= {!made, due_steps_q + 3'd1};
     end
@@ -177,9 +186,9 @@ module dpram_rules (
       C2: cover (host_sel_i && was_low);
     end
 
-    // R3: BUSY means wait: /TA is up with BUSY. A strobe that heeds /TA gets its word: by the end of /RD the memory was
-    // read at its address, and a write is made, with its address and data, at most 8 steps after /WR.
-    R3: assert ((!cpu_busy || cpu_wait) && (!rise || !sel_q || rd_nq || read_q) && due_steps_q < 3'd7);
+    // R3: BUSY means wait: /TA is up with BUSY. A strobe that heeds /TA gets its word: it is driven at the end of /RD,
+    // and a write is made, with its address and data, at most 8 steps after /WR.
+    R3: assert ((!cpu_busy || cpu_wait || !ours) && (!rise || !sel_q || rd_nq || drive_q) && due_steps_q < 3'd7);
     C3: cover (due_q && due_steps_q == 3'd1);
 
     // R4: The CPU is let in within 8 steps, 34 ns, of its fall or the end of the host's access to its word.
@@ -200,16 +209,24 @@ module dpram_rules (
       C6: cover (host_steps_q == 4'd6 && !rd_ni);
     end
 
-    // R7: The CPU becomes BUSY only by the word that the host is at or has just left, and if one of the two writes.
-    if (cpu_busy && !cpu_busy_q) begin
+    // R7: From five steps after its fall on, when the remains of others are gone, the CPU becomes BUSY only by the word
+    // that the host is at or has just left, and if one of the two writes.
+    if (cpu_busy && !cpu_busy_q && ours && low_q == 3'd5) begin
       R7: assert (addr_q == host_addr_q && (!host_rd_q || !wr_nq));
       C7: cover (host_rd_q);
     end
 
-    // R8: The CPU's data pins are driven while /RD is low and the memory has been read at its address, never else, and
-    // stand.
-    R8: assert (!cpu_drive || (cpu_reads && (!drive_q || rdata[b] == rdata_q[b])));
+    // R8: The CPU's data pins are driven while /RD is low, from the edge on that has read the memory at its address,
+    // never else, and stand.
+    R8: assert (!cpu_drive || (cpu_reads && (drive_q ? rdata == rdata_q : read_q)));
     C8: cover (cpu_drive && cpu_wait);
+
+    // R9: The memory is written by the CPU's side once for a write of this RAM, at its address and with its data, and
+    // never else.
+    if (edge_pwm && write_a) begin
+      R9: assert (made && (due_q || (!wr_nq && sel_q && !made_q)));
+      C9: cover (!due_q);
+    end
   end
 
 endmodule : dpram_rules
