@@ -11,10 +11,7 @@
 #include "firmware/motion/system_motors.h"
 #include "firmware/variables/i_variables.h"
 
-enum {
-  ISX16 = 1,      /* behind Isx15 */
-  LAST_POINTS = 3 /* the first and the last point of a sequence stand so often */
-};
+enum { LAST_POINTS = 3 }; /* the first and the last point of a sequence stand so often */
 
 #define TIME_TOLERANCE 4295     /* 1e-6 ms, by which a point may be before the end and still be it */
 #define OVERRIDE_ONE (1u << 30) /* Isx15 = 0 */
@@ -120,7 +117,7 @@ static uint32_t override_of(uint32_t cs) {
   const uint32_t present = sequences[cs].override;
   const uint32_t wanted = override_given(i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE)));
   if (present == wanted) return wanted;
-  const double isx16 = i_variable_read(i_cs_real(cs, ISX15_SEGMENT_OVERRIDE) + ISX16);
+  const double isx16 = i_variable_read(i_cs_real(cs, ISX16_SEGMENT_OVERRIDE_SLEW));
   const bool at_once = !(isx16 > 0.0) || isx16 >= 2.0;
   slice_pause();
   const uint32_t change = at_once ? 2u * OVERRIDE_ONE : (uint32_t)math_to_integer(isx16 * (double)OVERRIDE_ONE);

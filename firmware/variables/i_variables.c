@@ -210,9 +210,13 @@ void i_variable_initialize(void) {
   defaults(I_BASE_TABLE, GATE_IC_MACRO * GATE_IC_CHANNELS, source); /* a line each channel of the servo ICs */
 }
 
+static bool is_state(i_field_t field) {
+  return field == I_FIELD_TIMER || field == I_FIELD_UNTIL_RESET || field == I_FIELD_LOOKAHEAD;
+}
+
 i_kept_t i_variable_kept(uint32_t number) {
   const struct i_entry* entry = i_table_row(number);
-  if (entry->kind == I_KIND_R || entry->field == I_FIELD_TIMER || value_of[number] == 0.0) return I_NOT_KEPT;
+  if (entry->kind == I_KIND_R || is_state(entry->field) || value_of[number] == 0.0) return I_NOT_KEPT;
   return entry->kind == I_KIND_F ? I_KEPT_FLOAT : I_KEPT_INTEGER;
 }
 

@@ -39,7 +39,7 @@ void i_variable_write_ssi(void);      /* SSI inputs of a Geo PMAC, when all that
  * was saved. What the store holds is checked: a value that the variable cannot have is left out or reduced. */
 typedef enum { I_NOT_KEPT, I_KEPT_INTEGER, I_KEPT_FLOAT } i_kept_t;
 bool i_variable_is_early(uint32_t number);         /* the clocks or the bus need it: globals and those of ICs */
-i_kept_t i_variable_kept(uint32_t number);         /* NOT: zero, a timer or read-only */
+i_kept_t i_variable_kept(uint32_t number);         /* NOT: zero, a state or read-only */
 void i_variable_begin_restore(uint32_t saved_ics); /* bit per IC of hal/gate_ic.h */
 void i_variable_restore_integer(uint32_t number, int32_t value);
 void i_variable_restore_float(uint32_t number, double value);

@@ -22,6 +22,14 @@ TEST_F(SegmentOverride, IsOfTheSpeed) {
   EXPECT_EQ(motors[0].trajectory, 3000 * 3072);
 }
 
+// Neither the override nor the state of a path outlasts a reset, saved or not; Isx16 does.
+TEST_F(SegmentOverride, AndStateAreNotSaved) {
+  ASSERT_EQ(host("I5115=-0.5 I5116=0.25 I5120=40 I5121=4 I6615=0.5 SAVE"), "");
+  EXPECT_EQ(host("I5115 I5121"), "-0.5|4") << "no path has taken the order";
+  platform::reset();
+  EXPECT_EQ(host("I5115 I5116 I5120 I5121 I6615"), "0|0.25|40|0|0");
+}
+
 // motion:7.1/6, motion:7.4 on the way: slower, faster than the program, not at all, and on. Limits and path are as
 // ever: Y goes a half of X's way.
 TEST_F(SegmentOverride, OnTheWayInLookahead) {
