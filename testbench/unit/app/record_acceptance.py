@@ -65,6 +65,32 @@ def record_changes_nothing():
         check(len(names) == 8 * 3 + 2 and len(rows) > 500, names)
 
 
+def record_of_bench():
+    """A bench takes the same options, passes as ever and leaves the same columns."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "r.csv")
+        r = brick("run", "jog-home", "--engine", "systemc", "--seed", "5", "--record", str(file),
+                  "--record-of", "motor1.commanded host.breq")
+        check(r.returncode == 0, f"exit {r.returncode}: {r.stdout}{r.stderr}")
+        with file.open(newline="") as lines:
+            names, *rows = csv.reader(lines)
+        check(names == ["time_ms", "motor1.commanded", "host.breq"] and len(rows) > 500, f"{names}, {len(rows)} rows")
+        check(len({row[1] for row in rows}) > 100, "no motor has moved")
+
+
+def record_of_console():
+    """So does the console; what is sent to it moves the motor."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "r.csv")
+        r = brick("console", *DAC8, "--record", str(file), "--record-of", "motor1.commanded",
+                  script="\n".join(MOVE) + "\n")
+        check(r.returncode == 0, f"exit {r.returncode}: {r.stdout}{r.stderr}")
+        with file.open(newline="") as lines:
+            names, *rows = csv.reader(lines)
+        check(names == ["time_ms", "motor1.commanded"] and len(rows) > 500, f"{names}, {len(rows)} rows")
+        check(float(rows[-1][1]) == 2000, rows[-1])
+
+
 def record_fill_and_feed():
     """Four lines of two words wait for R, the first of them 50 units long at 0.5 a ms."""
     script = ["#1J/", "#2J/", "@wait 20ms", "&1 UNDEFINE ALL #1->100X #2->200Y", "I5190=1 I5198=0 I5187=10 I5188=0",
