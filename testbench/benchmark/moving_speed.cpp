@@ -8,6 +8,7 @@
 
 #include "app/command_file.h"
 #include "app/plant_file.h"
+#include "app/time_text.h"
 #include "testbench/benchmark/benchmark.h"
 #include "testbench/benchmark/measure.h"
 #include "testbench/host/host_link.h"
@@ -53,9 +54,16 @@ class Controller {
   HostLink link_;
 };
 
+// Lines for the controller, and waits.
 void set_up(Controller& controller, const std::string& file) {
+  const std::string wait = "@wait ";
   std::ifstream in(file);
-  for (const SourceLine& line : read_command_file(in, file)) controller.ask(line.text);
+  for (const SourceLine& line : read_command_file(in, file)) {
+    if (line.text.compare(0, wait.size(), wait) == 0)
+      controller.wait(static_cast<double>(parse_time(line.text.substr(wait.size()))) * 1e-15);
+    else
+      controller.ask(line.text);
+  }
 }
 
 // Whoever stands still costs nothing: each motor has gone its way while it was measured.
