@@ -102,7 +102,7 @@ TEST_F(ChangingMotions, AnAbortAmongShortSegmentsBeginsAtTheVelocityOfItsMoment)
 
 // The same in a piece that the blend of the next move has cut short.
 TEST_F(ChangingMotions, AnAbortBeforeABlendBeginsAtTheVelocityOfItsMove) {
-  store({"TM100 TA20 TS0 X1", "X3"});
+  store({"TM100 TA20 TS0 X1", "TA60 X3"});
   begin();
   ticks(50);
   ASSERT_EQ(host("A"), "");
