@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 """brick regress: plans, verdicts, kinds of failure, reports, results that are gone on with, and nobody left behind.
 usage: regress_acceptance.py BRICK CASE"""
+import getpass
 import json
 import os
 import pathlib
+import shutil
 import signal
+import socket
 import subprocess
+import sys
 import tempfile
 import time
 import xml.etree.ElementTree as xml
@@ -236,6 +240,108 @@ def regress_killed():
         folder.write(plan.replace(f"sleep {mark}", "true"))
         r = folder.regress("--resume")
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
+
+
+class Slurm:
+    """A cluster of this machine alone: its two daemons with a configuration of their own, as this user."""
+
+    def __init__(self, folder):
+        daemons = [shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin:/sbin") for name in ("slurmctld", "slurmd")]
+        if not all(daemons) or not shutil.which("sbatch"):
+            print("slurmctld, slurmd and slurm-client are not installed (./dev setup does it)")
+            sys.exit(77)
+        ports = []
+        for _ in range(2):
+            with socket.socket() as s:
+                s.bind(("127.0.0.1", 0))
+                ports.append(s.getsockname()[1])
+        host, user = socket.gethostname().split(".")[0], getpass.getuser()
+        for name in ("state", "spool"):
+            (folder / name).mkdir()
+        (folder / "slurm.conf").write_text(f"""ClusterName=brick
+SlurmctldHost={host}(127.0.0.1)
+AuthType=auth/none
+CredType=cred/none
+SlurmUser={user}
+SlurmdUser={user}
+SlurmctldPort={ports[0]}
+SlurmdPort={ports[1]}
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmdParameters=config_overrides
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=2
+NodeName={host} NodeAddr=127.0.0.1 CPUs=4
+PartitionName=main Nodes=ALL Default=YES
+""")
+        os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
+        self.running = []
+        for daemon in daemons:
+            with open(folder / f"{pathlib.Path(daemon).name}.log", "w") as log:
+                self.running.append(subprocess.Popen([daemon, "-D"], stdout=log, stderr=log))
+
+    def said(self, *words):
+        return subprocess.run(words, capture_output=True, text=True).stdout
+
+    def __enter__(self):
+        wait_for(lambda: "idle" in self.said("sinfo", "--noheader"), "no node is idle")
+        return self
+
+    def __exit__(self, *_):
+        for daemon in self.running:
+            daemon.terminate()
+            daemon.wait()
+
+
+def alike(report):
+    """Without times, hosts and paths."""
+    del report["wall_seconds"]
+    for run in report["runs"]:
+        del run["wall_seconds"], run["host"]
+    return report
+
+
+def regress_slurm():
+    """On a cluster the report is the same; a task that is killed costs its run alone, and --resume makes that."""
+    plan = ('[[row]]\nbench = "smoke"\nseeds = 31\n[[row]]\nbench = "smoke"\nnegative = true\nseeds = 41\n'
+            '[[row]]\nname = "odd"\ncommand = ["sh", "-c", "echo step {seed}: Error: 0x1F; exit $(({seed} % 2))"]\n'
+            'seeds = "1-9"\n[[row]]\nname = "crash"\ncommand = ["sh", "-c", "kill -SEGV $$"]\n'
+            '[[row]]\nname = "slow"\ncommand = ["sh", "-c", "test -e {plan}/quick || sleep 60"]\n'
+            '[[row]]\nname = "late"\ncommand = ["sleep", "60"]\nlimit = "300ms"\n')
+    folder = Folder(plan)
+    (folder.path / "cluster").mkdir()
+    with Slurm(folder.path / "cluster") as slurm:
+        on_cluster = ("--slurm", "--task-seconds", "2", "--jobs", "3", "--no-replay", "--fresh-from", "7")
+        r = subprocess.Popen([command.BRICK, "regress", str(folder.plan), "-o", str(folder.out), *on_cluster],
+                             stdout=subprocess.PIPE, text=True)
+        tasks = folder.out / "slurm"
+        wait_for((folder.out / "runs/slow.seed-1").exists, "the slow one does not run")
+        files = {t.name: json.loads(t.read_text()) for t in tasks.glob("*.json")}
+        check(1 < len(files) < 14, f"{len(files)} tasks of 14 runs, expected some of some runs each")
+        slow = [n for n, t in files.items() if "slow.seed-1" in [p["run"]["name"] for p in t["parts"]]]
+        number = slow[0].split("-")[1].split(".")[0]
+        slurm.said("scancel", f"{(tasks / 'job.txt').read_text().strip()}_{number}")
+        said, _ = r.communicate(timeout=60)
+        check(r.returncode == 1 and "1 not run: --resume makes them" in said, f"a task was killed: {said}")
+        check(folder.verdicts()["slow.seed-1"] == "not run", "what was killed has a verdict")
+        check(not (tasks / "job.txt").exists() and not slurm.said("squeue", "--noheader"), "somebody still works")
+        (folder.path / "quick").touch()
+        r = folder.regress("--resume", *on_cluster)
+        check(folder.verdicts()["slow.seed-1"] == "passed" and "13 taken over" in r.stdout, f"resumed: {r}")
+        on_it = alike(folder.report())
+        folder.out = folder.path / "local"
+        folder.regress("--no-replay", "--jobs", "2", "--fresh-from", "7")
+        here = alike(folder.report())
+        check(on_it == here, f"another report than the local one: {on_it}\n{here}")
+        os.environ["PATH"] = ""
+        r = folder.regress("--slurm")
+        check(r.returncode == 2 and "sbatch: " in r.stderr and "expected a cluster" in r.stderr, f"no cluster: {r}")
 
 
 globals()[command.CASE]()
