@@ -20,6 +20,7 @@
 #include "app/build_info.h"
 #include "app/options.h"
 #include "app/paths.h"
+#include "app/regress/picture.h"
 #include "app/regress/plan.h"
 #include "app/regress/pool.h"
 #include "app/regress/report.h"
@@ -38,6 +39,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kReplayedMs = 1.0;  // of waveform before the step that failed
 constexpr std::size_t kMostReplays = 20;
+constexpr const char* kUsualView = "smoke";  // of a bench that has none of its own
 constexpr std::chrono::milliseconds kPatience{200}, kMostPatience{5000};
 constexpr double kUnknownOfTask = 4;  // so many runs whose length nobody knows fill a task
 
@@ -234,10 +236,12 @@ class Regression {
         replays_[b].note = "the run that was to be replayed " +
                            (again.passed() ? "passed this time" : fmt::format("failed elsewhere: {}", again.step));
       if (fs::exists(beside + "/" + name + ".fst")) replays_[b].wave = name + "/" + name + ".fst";
-      if (const std::string view = view_path(run.group); !view.empty()) {
-        fs::copy_file(view, beside + "/" + name + ".gtkw", fs::copy_options::overwrite_existing);
-        replays_[b].view = name + "/" + name + ".gtkw";
-      }
+      const std::string own = view_path(run.group), view = own.empty() ? view_path(kUsualView) : own;
+      if (view.empty()) continue;
+      fs::copy_file(view, beside + "/" + name + ".gtkw", fs::copy_options::overwrite_existing);
+      replays_[b].view = name + "/" + name + ".gtkw";
+      if (!replays_[b].wave.empty())
+        replays_[b].picture = picture_of(folder_ + "/" + replays_[b].wave, view, result.at_ms);
     }
   }
 
