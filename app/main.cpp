@@ -173,6 +173,13 @@ struct Commands {
         ->add_option("--fresh-from", regress_options.fresh_from,
                      "where seeds of `fresh` come from (default: the clock)")
         ->type_name("N");
+    auto* slurm =
+        regress->add_flag("--slurm", regress_options.slurm, "job arrays of a Slurm cluster, --jobs tasks at once");
+    regress->add_option("--task-seconds", regress_options.task_seconds, "how long a task of the cluster should take")
+        ->capture_default_str()
+        ->check(CLI::Range(1.0, 86400.0))
+        ->needs(slurm);
+    regress->add_flag("--task", regress_options.task, "PLAN is the file of a task of --slurm")->group("");
     regress->add_option("--minutes", regress_options.minutes, "begins no run after so many minutes")
         ->check(CLI::NonNegativeNumber);
     regress->callback([this] {
