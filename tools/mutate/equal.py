@@ -1,8 +1,9 @@
 """The filter: proves that a mutant is the module it was made from, without a bound, with Yosys and abc.
 
-Both stand side by side with the same inputs; from the first reset on every output is compared at every step. Nothing
-else is assumed, so that what is proved holds under any neighbour. Memories and flip-flops without a reset start as
-zero. Who gets no proof within the limit is left to the other judges: equal for N steps only says nothing.
+Both stand side by side with the same inputs; from the first reset on every output is compared at every step. Assumed
+is that clk_ref rises with every third edge of clk_pwm, and nothing else: what is proved holds under any neighbour.
+Memories and flip-flops without a reset start as zero. Who gets no proof within the limit is left to the other judges:
+equal for N steps only says nothing.
 """
 
 import json
@@ -14,6 +15,14 @@ from lint_rtl import SIMULATION_ONLY, rtl_files
 
 ONE = "memory_map; opt -full; async2sync; dffunmap"
 SEVERAL = "memory_collect; opt -full; clk2fflogic; memory_map -formal; opt -full"
+
+CLOCKS = """reg [2:0] step = 3'd0;
+reg clk_pwm_i = 1'b0, clk_ref_i = 1'b0;
+always @($global_clock) begin
+  step <= (step == 3'd5) ? 3'd0 : step + 3'd1;
+  clk_pwm_i <= ~clk_pwm_i;
+  clk_ref_i <= step < 3'd3;
+end"""
 
 
 class Filter:
@@ -61,11 +70,12 @@ class Filter:
         clocks = [name for name in self.ports if name.startswith("clk_")]
         inputs = [name for name, port in self.ports.items() if port["direction"] == "input"]
         outputs = [name for name in self.ports if name not in inputs]
+        made = clocks if len(clocks) == 2 else []
         time = "$global_clock" if len(clocks) != 1 else f"posedge {clocks[0]}"
         width = {name: len(port["bits"]) for name, port in self.ports.items()}
-        head = ", ".join(f"input wire [{width[n] - 1}:0] {n}" for n in inputs)
+        head = ", ".join(f"input wire [{width[n] - 1}:0] {n}" for n in inputs if n not in made)
         lines = [f"module both ({head});", "reg started = 1'b0;", f"always @({time}) started <= 1'b1;",
-                 "wire rst = rst_ni & started;" if "rst_ni" in inputs else ""]
+                 CLOCKS if made else "", "wire rst = rst_ni & started;" if "rst_ni" in inputs else ""]
         for design in ("gold", "gate"):
             lines += [f"wire [{width[n] - 1}:0] {design}_{n};" for n in outputs]
             pins = [f".{n}({'rst' if n == 'rst_ni' else n})" for n in inputs]

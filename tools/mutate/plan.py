@@ -17,7 +17,7 @@ class Unknown(Exception):
 class Module:
     name: str
     file: str
-    top: str  # of the filter; "": no filter
+    tops: tuple  # of the filter, in turn; none: no filter
     proof: str  # of testbench/formal; "": none
     opinion: tuple
     board: tuple
@@ -42,8 +42,9 @@ def read(file=FILE):
     kinds = {}
     for kind, modules in table.items():
         kinds[kind] = {
-            name: Module(name, row["file"], row.get("top", name), row.get("proof", ""), tests(row["opinion"], sets),
-                         tests(row.get("board", []), sets), tests(row.get("slip", []), sets))
+            name: Module(name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
+                         tests(row["opinion"], sets), tests(row.get("board", []), sets),
+                         tests(row.get("slip", []), sets))
             for name, row in modules.items()}
     return kinds
 

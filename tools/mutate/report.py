@@ -152,7 +152,7 @@ def page(results, given):
                 where = f"`{row['file']}`, `{row['text']}`"
                 slip = " (lock-step sees it)" if row["status"] == KILLED else ""
                 lines.append(f"- {where}: {row['operator']}, `{row['change']}`{slip}. "
-                             + given.get(records.key(row), "No reason yet."))
+                             + " ".join(given.get(records.key(row), "No reason yet.").split()))
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"
 

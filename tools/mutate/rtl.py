@@ -15,7 +15,7 @@ from mutant import hash_of, mutants_of
 from runner import ALIVE, EQUAL, KILLED, Verdict
 
 FOLDER = pathlib.Path(__file__).parent
-FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT = 60, 120, 600  # s
+FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT = 20, 120, 600  # s
 
 
 class BadBuild(Exception):
@@ -38,7 +38,8 @@ class Judge:
         self.source = (root / module.file).read_bytes()
         self.mutants = mutants_of(module.file, self.source, verilog.places(self.source))
         self.out = root / "build/mutate" / module.name
-        self.filter = Filter(root, module.top, module.file, self.out / "filter", FILTER_LIMIT) if module.top else None
+        self.designs = [Filter(root, top, module.file, self.out / f"filter_{top}", FILTER_LIMIT)
+                           for top in module.tops]
         self.stages = [Stage("tests", module.opinion, False, False), Stage("board", module.board, True, False),
                        Stage("slip", module.slip, True, True)]
         self.binaries, self.filters, self.limits, self.build_seconds = {}, {}, {}, 0.0
@@ -104,11 +105,13 @@ class Judge:
 
     def by_filter(self, mutant):
         begin = time.monotonic()
-        folder = self.out / "filter" / str(mutant.number)
-        folder.mkdir(parents=True, exist_ok=True)
-        single = folder / "mutant.sv"
-        single.write_bytes(schemata.single(self.source, mutant))
-        equal = self.filter is not None and self.filter.equal(single, folder)
+        equal = False
+        for one in self.designs:
+            folder = one.out / str(mutant.number)
+            folder.mkdir(parents=True, exist_ok=True)
+            single = folder / "mutant.sv"
+            single.write_bytes(schemata.single(self.source, mutant))
+            equal = equal or one.equal(single, folder)
         return Verdict(EQUAL if equal else ALIVE, "proved equal" if equal else "", time.monotonic() - begin)
 
     def by_proof(self, mutant):

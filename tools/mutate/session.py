@@ -17,6 +17,16 @@ DEFAULT_COUNT = 150
 SAVE_EVERY = 25
 
 
+def tree():
+    """Which commit is judged, and whether the tree differs from it in more than what is written here."""
+    def git(*command):
+        return subprocess.run([*GIT, "-C", str(ROOT), *command], capture_output=True, text=True, check=False).stdout
+
+    differs = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results", ":!docs/mutation.md",
+                  ":!tools/mutate/reasons.toml")
+    return {"commit": git("rev-parse", "--short=10", "HEAD").strip(), "dirty": bool(differs.strip())}
+
+
 class Session:
     def __init__(self, judge, options):
         self.judge, self.options = judge, options
@@ -24,6 +34,7 @@ class Session:
         self.inputs = judge.inputs()
         self.rows, self.faults, self.begin = {}, [], time.monotonic()
         self.known = self.read_known()
+        self.tree = tree()
 
     def read_known(self):
         """{number: row} of results that have the same inputs."""
@@ -73,14 +84,10 @@ class Session:
                 self.faults.append(mutant.number)
 
     def save(self, taken):
-        def git(*command):
-            return subprocess.run([*GIT, "-C", str(ROOT), *command], capture_output=True, text=True, check=False).stdout
-
         head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
                 "source": hash_of(self.judge.source),
                 "seed": self.options.seed, "mutants": len(self.judge.mutants), "all": self.options.all,
-                "commit": git("rev-parse", "--short=10", "HEAD").strip(),
-                "dirty": bool(git("status", "--porcelain", "--untracked-files=no").strip()),
+                **self.tree,
                 "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
                 "build_seconds": round(self.judge.build_seconds, 1),
                 "seconds": round(time.monotonic() - self.begin, 1), "equal_yet_killed": self.faults}

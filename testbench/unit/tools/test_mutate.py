@@ -2,6 +2,7 @@
 """The mutation tool on small texts: which places its parser finds, what it writes, how it judges what programs say."""
 
 import pathlib
+import shutil
 import sys
 import tempfile
 import unittest
@@ -16,6 +17,7 @@ except ImportError:
     print("skipped: pyslang is not installed (./dev setup)")
     sys.exit(77)
 
+import equal  # noqa: E402
 import mutant  # noqa: E402
 import plan  # noqa: E402
 import records  # noqa: E402
@@ -143,6 +145,30 @@ class Verdicts(unittest.TestCase):
     def test_no_test_at_all_is_outside(self):
         self.assertEqual(self.judge(0, "[==========] 0 tests from 0 test suites ran.\n")[0], "outside")
         self.assertEqual(self.judge(0, "[==========] 3 tests from 1 test suite ran.\n"), ("alive", ""))
+
+
+class Equal(unittest.TestCase):
+    COUNTER = (b"module c (input wire logic clk_ref_i, rst_ni, en_i, output logic [1:0] q_o, output logic top_o);\n"
+               b"  logic [1:0] q_q;\n  always_ff @(posedge clk_ref_i or negedge rst_ni) begin\n"
+               b"    if (!rst_ni) q_q <= 2'd0;\n    else if (en_i) q_q <= (q_q == 2'd2) ? 2'd0 : q_q + 2'd1;\n  end\n"
+               b"  assign q_o = q_q;\n  assign top_o = q_q >= 2'd2;\nendmodule\n")
+
+    @unittest.skipUnless(shutil.which("yosys-abc"), "Yosys is not installed")
+    def test_what_no_input_can_tell_apart_is_proved_and_nothing_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "rtl").mkdir()
+            (root / "rtl/c.sv").write_bytes(self.COUNTER)
+            judge = equal.Filter(root, "c", "rtl/c.sv", root / "out", 30)
+            wanted = {"q_q == 2'd2 => q_q != 2'd2": False, "q_q >= 2'd2 => q_q > 2'd2": False,
+                      "without q_q <= 2'd0;": False, "2'd2 => 2'd3": False}
+            for m in mutant.mutants_of("rtl/c.sv", self.COUNTER, verilog.places(self.COUNTER)):
+                if m.change in wanted:
+                    (root / "mutant.sv").write_bytes(schemata.single(self.COUNTER, m))
+                    self.assertEqual(judge.equal(root / "mutant.sv", root / str(m.number)), wanted[m.change], m.change)
+            # The count never is 3, so from 2 on is 2: equal, by what a reset makes of it.
+            (root / "mutant.sv").write_bytes(self.COUNTER.replace(b"q_q >= 2'd2", b"q_q == 2'd2"))
+            self.assertTrue(judge.equal(root / "mutant.sv", root / "same"))
 
 
 class Reports(unittest.TestCase):
