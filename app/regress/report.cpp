@@ -138,7 +138,9 @@ void write_reports(const Report& report, const std::string& folder) {
   const nlohmann::json content = report_json(report);
   write(folder + "/report.json", content.dump(1) + "\n");
   write(folder + "/report.xml", junit_text(report));
-  write(folder + "/report.html", page_text(content));
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const Replay& replay : report.replays) pictures.push_back(replay.picture);
+  write(folder + "/report.html", page_text(content, pictures));
 }
 
 }  // namespace brick::regress
