@@ -173,6 +173,7 @@ struct Commands {
         ->add_option("--fresh-from", regress_options.fresh_from,
                      "where seeds of `fresh` come from (default: the clock)")
         ->type_name("N");
+    regress->add_flag("--rank", regress_options.rank, "the runs by what each adds to the covers of those before");
     auto* slurm =
         regress->add_flag("--slurm", regress_options.slurm, "job arrays of a Slurm cluster, --jobs tasks at once");
     regress->add_option("--task-seconds", regress_options.task_seconds, "how long a task of the cluster should take")
