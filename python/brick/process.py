@@ -6,6 +6,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from typing import IO
@@ -26,6 +27,12 @@ def executable() -> str:
     if found := shutil.which("brick"):
         return found
     raise ControllerGone("no command brick; expected it on the path, or its place in $BRICK")
+
+
+def main() -> None:
+    """The command `brick` of the wheel."""
+    program = executable()
+    os.execv(program, [program, *sys.argv[1:]])
 
 
 class Child:
