@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <thread>
 
@@ -19,10 +20,14 @@
 #include "app/build_info.h"
 #include "app/options.h"
 #include "app/paths.h"
+#include "app/regress/covers.h"
+#include "app/regress/picture.h"
 #include "app/regress/plan.h"
 #include "app/regress/pool.h"
 #include "app/regress/report.h"
 #include "app/regress/result.h"
+#include "app/regress/slurm.h"
+#include "app/regress/task.h"
 #include "systemc/core/usage_error.h"
 
 namespace brick {
@@ -35,12 +40,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kReplayedMs = 1.0;  // of waveform before the step that failed
 constexpr std::size_t kMostReplays = 20;
-constexpr std::chrono::milliseconds kPatience{200};
+constexpr const char* kUsualView = "smoke";  // of a bench that has none of its own
+constexpr std::chrono::milliseconds kPatience{200}, kMostPatience{5000};
+constexpr double kUnknownOfTask = 4;  // so many runs whose length nobody knows fill a task
 
 volatile std::sig_atomic_t asked_to_stop = 0;
 void stop(int signal) { asked_to_stop = signal; }
-
-std::string this_executable() { return fs::read_symlink("/proc/self/exe").string(); }
 
 class Regression {
  public:
@@ -61,11 +66,23 @@ class Regression {
   int run() {
     take_over();
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
-    make();
+    if (options_.slurm)
+      make_on_cluster();
+    else
+      make();
     clear_line();
     buckets_ = buckets_of(plan_.runs, results_);
     if (!options_.no_replay && asked_to_stop == 0) replay();
-    const Report report{plan_, results_, buckets_, replays_, build_, fresh_from_, seconds()};
+    const Coverage coverage(plan_.runs, results_, [this](const Run& run) { return folder_of(run); });
+    const Report report{plan_,
+                        results_,
+                        buckets_,
+                        replays_,
+                        build_,
+                        coverage,
+                        options_.rank ? coverage.rank() : std::vector<Ranked>{},
+                        fresh_from_,
+                        seconds()};
     write_reports(report, folder_);
     return tell(report);
   }
@@ -101,36 +118,25 @@ class Regression {
     done_ = taken_over_;
     while (asked_to_stop == 0) {
       while (!pool.full() && next < plan_.runs.size() && !late()) {
-        if (!results_[next]) start(pool, next);
+        if (!results_[next]) begin(pool, next, plan_.runs[next], folder_of(plan_.runs[next]));
         ++next;
       }
       if (pool.empty()) break;
-      show(pool.size());
+      show(fmt::format("{} running", pool.size()));
       if (const auto ended = pool.wait(kPatience)) take(*ended);
     }
   }
 
-  void start(Pool& pool, std::size_t number) {
-    const Run& run = plan_.runs[number];
-    const std::string folder = folder_of(run);
-    std::error_code failed;
-    fs::remove_all(folder, failed);
-    fs::create_directories(folder, failed);
-    if (failed) throw UsageError(fmt::format("{}: {}; expected room for results", folder, failed.message()));
-    std::vector<std::string> words = run.words;
-    if (run.bench()) words.insert(words.end(), {"--json", "run.json"});
-    if (words[0] == "brick")
-      words[0] = this_executable();
-    else if (words[0].find('/') != std::string::npos)
-      words[0] = fs::absolute(words[0]).string();  // from where the caller is, not the run
-    pool.start(number, words, folder, run.limit_seconds);
-  }
-
   void take(const Ended& ended) {
     const Run& run = plan_.runs[ended.id];
-    results_[ended.id] = judge(run, ended, folder_of(run));
-    const Result& result = *results_[ended.id];
+    const Result result = judge(run, ended, folder_of(run));
     keep(run, result, build_of(run), folder_of(run));
+    take(ended.id, result);
+  }
+
+  void take(std::size_t number, const Result& result) {
+    const Run& run = plan_.runs[number];
+    results_[number] = result;
     ++done_;
     if (result.passed()) return;
     ++failed_;
@@ -138,6 +144,78 @@ class Regression {
     std::cout << fmt::format("FAIL {}: {}{}\n     {}\n", result.verdict, result.step.empty() ? "" : result.step + ": ",
                              result.says, command_text(run.words))
               << std::flush;
+  }
+
+  // In arrays of tasks, each as long as asked for, until nothing is left that no task has begun. How long a run takes
+  // is known from those of its kind; a task that was wrong about it leaves runs for the next array. What has begun and
+  // left no result was lost with its task and is not begun again: it may be what the machine died of.
+  void make_on_cluster() {
+    done_ = taken_over_;
+    std::vector<std::size_t> waiting;
+    for (std::size_t i = 0; i < plan_.runs.size(); ++i)
+      if (!results_[i]) {
+        fs::remove_all(folder_of(plan_.runs[i]));
+        waiting.push_back(i);
+      }
+    Cluster cluster(fs::absolute(folder_).string(), options_.jobs);
+    while (!waiting.empty() && asked_to_stop == 0 && !late()) {
+      const std::size_t before = waiting.size();
+      double longest = 0;
+      for (const std::size_t i : waiting) longest = std::max(longest, plan_.runs[i].limit_seconds);
+      cluster.submit(tasks_of(waiting), options_.task_seconds + longest);
+      std::chrono::milliseconds patience = kPatience;
+      for (bool working = true; working && !waiting.empty() && asked_to_stop == 0;) {
+        std::this_thread::sleep_for(patience);
+        working = cluster.working();  // before the results: what ends between them counts
+        patience = collect(waiting) ? kPatience : std::min(2 * patience, kMostPatience);
+        show(fmt::format("{} on the cluster", waiting.size()));
+      }
+      waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
+                                   [this](std::size_t i) { return fs::exists(folder_of(plan_.runs[i])); }),
+                    waiting.end());
+      if (waiting.size() == before) break;  // tasks that begin nothing
+    }
+  }
+
+  std::vector<Task> tasks_of(const std::vector<std::size_t>& waiting) const {
+    std::map<std::string, std::pair<double, double>> seconds;  // sum and count of each kind
+    const auto kind = [](const Run& run) { return run.group + "\n" + run.column; };
+    for (std::size_t i = 0; i < plan_.runs.size(); ++i)
+      if (results_[i]) {
+        auto& [sum, count] = seconds[kind(plan_.runs[i])];
+        sum += results_[i]->wall_seconds;
+        count += 1;
+      }
+    std::vector<Task> tasks;
+    double length = options_.task_seconds;
+    for (const std::size_t i : waiting) {
+      if (length >= options_.task_seconds) {
+        if (tasks.size() == Cluster::kMostTasks) break;
+        tasks.push_back({{}, options_.task_seconds, until()});
+        length = 0;
+      }
+      const Run& run = plan_.runs[i];
+      const auto known = seconds.find(kind(run));
+      length +=
+          known == seconds.end() ? options_.task_seconds / kUnknownOfTask : known->second.first / known->second.second;
+      tasks.back().parts.push_back({run, fs::absolute(folder_of(run)).string(), build_of(run)});
+    }
+    return tasks;
+  }
+
+  // Takes what has a result now from those that wait; whether there was any.
+  bool collect(std::vector<std::size_t>& waiting) {
+    const std::size_t before = waiting.size();
+    waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
+                                 [this](std::size_t i) {
+                                   const Run& run = plan_.runs[i];
+                                   const std::optional<Result> result = kept(run, build_of(run), folder_of(run));
+                                   if (!result) return false;
+                                   take(i, *result);
+                                   return true;
+                                 }),
+                  waiting.end());
+    return waiting.size() != before;
   }
 
   // The first run of each kind again, with the last millisecond before the failure as a waveform and the view of its
@@ -168,20 +246,22 @@ class Regression {
         replays_[b].note = "the run that was to be replayed " +
                            (again.passed() ? "passed this time" : fmt::format("failed elsewhere: {}", again.step));
       if (fs::exists(beside + "/" + name + ".fst")) replays_[b].wave = name + "/" + name + ".fst";
-      if (const std::string view = view_path(run.group); !view.empty()) {
-        fs::copy_file(view, beside + "/" + name + ".gtkw", fs::copy_options::overwrite_existing);
-        replays_[b].view = name + "/" + name + ".gtkw";
-      }
+      const std::string own = view_path(run.group), view = own.empty() ? view_path(kUsualView) : own;
+      if (view.empty()) continue;
+      fs::copy_file(view, beside + "/" + name + ".gtkw", fs::copy_options::overwrite_existing);
+      replays_[b].view = name + "/" + name + ".gtkw";
+      if (!replays_[b].wave.empty())
+        replays_[b].picture = picture_of(folder_ + "/" + replays_[b].wave, view, result.at_ms);
     }
   }
 
-  void show(std::size_t running) {
+  void show(const std::string& others) {
     if (!terminal_) return;
     const double left = done_ > taken_over_ ? seconds() / static_cast<double>(done_ - taken_over_) *
                                                   static_cast<double>(plan_.runs.size() - done_)
                                             : 0;
-    std::cerr << fmt::format("\r\033[K{}/{} runs, {} failed, {} running, {:.0f} s, {:.0f} s left", done_,
-                             plan_.runs.size(), failed_, running, seconds(), left)
+    std::cerr << fmt::format("\r\033[K{}/{} runs, {} failed, {}, {:.0f} s, {:.0f} s left", done_, plan_.runs.size(),
+                             failed_, others, seconds(), left)
               << std::flush;
     line_shown_ = true;
   }
@@ -202,6 +282,10 @@ class Regression {
         std::cout << fmt::format("    gtkwave {}/{}{}\n", folder_, replays_[b].wave,
                                  replays_[b].view.empty() ? "" : " " + folder_ + "/" + replays_[b].view);
     }
+    for (const Ranked& r : report.ranked)
+      std::cout << fmt::format("{:8.1f} new, {} covers: {}\n", r.adds, r.reached,
+                               command_text(plan_.runs[r.run].words));
+    tell(report.coverage);
     const auto missing = counts.at("not_run").get<std::size_t>();
     const bool passed = counts.at("passed").get<std::size_t>() == plan_.runs.size();
     std::cout << fmt::format("{} {}: {} runs, {} failed", passed ? "PASS" : "FAIL", plan_.title, plan_.runs.size(),
@@ -212,7 +296,24 @@ class Regression {
     return passed ? 0 : 1;
   }
 
+  static void tell(const Coverage& coverage) {
+    std::size_t reached = 0;
+    for (const auto& [name, cover] : coverage.merged()) {
+      reached += cover.reached() ? 1u : 0u;
+      for (const auto& [engine, count] : cover.counts)
+        if (count < cover.least)
+          std::cout << fmt::format("cover {} on {}: {}, expected {} or more\n", name, engine, count, cover.least);
+    }
+    if (!coverage.merged().empty()) std::cout << fmt::format("{} of {} covers\n", reached, coverage.merged().size());
+  }
+
   bool late() const { return options_.minutes && seconds() >= 60 * *options_.minutes; }
+
+  // Second of the clock after which nothing begins.
+  std::int64_t until() const {
+    if (!options_.minutes) return std::numeric_limits<std::int64_t>::max();
+    return std::time(nullptr) + static_cast<std::int64_t>(60 * *options_.minutes - seconds());
+  }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
@@ -256,6 +357,7 @@ void prepare(const RegressOptions& options, const std::string& folder, std::uint
 }  // namespace
 
 int regress_command(const std::vector<Bench>& benches, const RegressOptions& options) {
+  if (options.task) return task_command(options.plan);
   const std::string folder = options.output.empty() ? "waves/out/regress/" + fs::path(options.plan).stem().string()
                                                     : fs::path(options.output).lexically_normal().string();
   const std::uint64_t fresh_from = origin_of_seeds(options, folder);
@@ -264,6 +366,7 @@ int regress_command(const std::vector<Bench>& benches, const RegressOptions& opt
     for (const Run& run : plan.runs) std::cout << command_text(run.words) << '\n';
     return 0;
   }
+  Cluster::cancel_left_over(folder);
   prepare(options, folder, fresh_from);
   return Regression(plan, options, folder, fresh_from).run();
 }

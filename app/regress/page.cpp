@@ -6,13 +6,22 @@
 
 namespace brick::regress {
 
-std::string page_text(const nlohmann::json& report) {
-  constexpr const char* kPlace = "@REPORT@";
-  std::string content, page = kRegressPage;
-  for (const char c : report.dump())  // no tag of it ends the script it stands in
-    content += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  const std::size_t at = page.find(kPlace);
-  return page.replace(at, std::string(kPlace).size(), content);
+namespace {
+
+// No tag of it ends the script it stands in.
+void put(std::string& page, const std::string& place, const nlohmann::json& content) {
+  std::string text;
+  for (const char c : content.dump()) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  page.replace(page.find(place), place.size(), text);
+}
+
+}  // namespace
+
+std::string page_text(const nlohmann::json& report, const nlohmann::json& pictures) {
+  std::string page = kRegressPage;
+  put(page, "@PICTURES@", pictures);
+  put(page, "@REPORT@", report);
+  return page;
 }
 
 }  // namespace brick::regress

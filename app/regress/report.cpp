@@ -80,6 +80,8 @@ nlohmann::json report_json(const Report& report) {
           {"fresh_from", report.fresh_from},
           {"wall_seconds", report.wall_seconds},
           {"buckets", buckets},
+          {"covers", covers_json(report.coverage)},
+          {"ranked", ranked_json(report.ranked, plan.runs)},
           {"runs", runs}};
 }
 
@@ -138,7 +140,9 @@ void write_reports(const Report& report, const std::string& folder) {
   const nlohmann::json content = report_json(report);
   write(folder + "/report.json", content.dump(1) + "\n");
   write(folder + "/report.xml", junit_text(report));
-  write(folder + "/report.html", page_text(content));
+  nlohmann::json pictures = nlohmann::json::array();
+  for (const Replay& replay : report.replays) pictures.push_back(replay.picture);
+  write(folder + "/report.html", page_text(content, pictures));
 }
 
 }  // namespace brick::regress

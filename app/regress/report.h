@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/regress/covers.h"
 #include "app/regress/result.h"
 
 namespace brick::regress {
@@ -15,6 +16,7 @@ struct Replay {
   std::string command;  // the failure again, with a waveform
   std::string wave;     // file, beside the report; "" where it was not made
   std::string view;     // GTKWave's save file; "" where there is none
+  std::string picture;  // of both, SVG; "" where there is none
   std::string note;     // what is odd: it passed this time, or failed elsewhere
 };
 
@@ -24,6 +26,8 @@ struct Report {
   const std::vector<Bucket>& buckets;
   const std::vector<Replay>& replays;  // of each bucket
   nlohmann::json build;
+  const Coverage& coverage;
+  std::vector<Ranked> ranked;  // of --rank
   std::uint64_t fresh_from;
   double wall_seconds;
 };
@@ -32,7 +36,8 @@ struct Report {
 void write_reports(const Report& report, const std::string& folder);
 
 nlohmann::json report_json(const Report& report);
-std::string junit_text(const Report& report);         // JUnit's XML: a suite a bench, a case a run
-std::string page_text(const nlohmann::json& report);  // HTML with all it needs; asks for nothing outside (page.cpp)
+std::string junit_text(const Report& report);  // JUnit's XML: a suite a bench, a case a run
+// HTML with all it needs; asks for nothing outside (page.cpp). `pictures`: a list, of each bucket.
+std::string page_text(const nlohmann::json& report, const nlohmann::json& pictures);
 
 }  // namespace brick::regress

@@ -1,7 +1,10 @@
 #include "app/regress/result.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <climits>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +28,11 @@ constexpr std::streamoff kEndOfOutput = 64 * 1024;
 std::string shortened(std::string text) {
   text = readable_text(text);
   return text.size() > kLongestText ? text.substr(0, kLongestText) + "..." : text;
+}
+
+std::string host_name() {
+  char name[HOST_NAME_MAX + 1] = "";
+  return gethostname(name, sizeof name - 1) == 0 ? name : "";
 }
 
 nlohmann::json json_of(const std::string& file) {
@@ -104,8 +112,9 @@ std::string without_numbers(const std::string& text) {
 Result judge(const Run& run, const Ended& ended, const std::string& folder) {
   Result result;
   result.wall_seconds = ended.seconds;
+  result.host = host_name();
   const std::string output = folder + "/output.txt";
-  if (run.bench()) read_steps(json_of(folder + "/run.json"), result);
+  read_steps(json_of(folder + "/run.json"), result);  // a bench of somebody else may leave one too
   switch (ended.how) {
     case Ended::How::kLimit:
       result.verdict = "limit";
@@ -140,7 +149,8 @@ nlohmann::json result_json(const Run& run, const Result& result) {
           {"says", result.says},
           {"at_ms", result.at_ms},
           {"simulated_ms", result.simulated_ms},
-          {"wall_seconds", result.wall_seconds}};
+          {"wall_seconds", result.wall_seconds},
+          {"host", result.host}};
 }
 
 void keep(const Run& run, const Result& result, const nlohmann::json& build, const std::string& folder) {
@@ -167,7 +177,7 @@ std::optional<Result> kept(const Run& run, const nlohmann::json& build, const st
     result.at_ms = content.at("at_ms");
     result.simulated_ms = content.at("simulated_ms");
     result.wall_seconds = content.at("wall_seconds");
-    result.taken_over = true;
+    result.host = content.at("host");
     return result;
   } catch (const nlohmann::json::exception&) { return std::nullopt; }  // not of ours
 }

@@ -1,16 +1,22 @@
 #!/usr/bin/env python3
 """brick regress: plans, verdicts, kinds of failure, reports, results that are gone on with, and nobody left behind.
 usage: regress_acceptance.py BRICK CASE"""
+import getpass
 import json
 import os
 import pathlib
+import re
+import shutil
 import signal
+import socket
 import subprocess
+import sys
 import tempfile
 import time
 import xml.etree.ElementTree as xml
 
 import command
+from browser import Browser
 from command import brick, check
 
 MIXED = """
@@ -135,8 +141,37 @@ def regress_kinds():
     page = (folder.out / "report.html").read_text()
     embedded = page.split('id="report">')[1].split("</script>")[0]
     check(json.loads(embedded) == report, "the page holds another report")
-    check("http" not in page.replace("http-equiv", ""), "the page asks somebody")
     check("echo step" in embedded and "</" not in embedded, "what stands in the page ends its script")
+    look_at_page(folder, report)
+
+
+def look_at_page(folder, report):
+    """In a browser: filter, table and links work, pictures are there, no word of error, nothing asked from outside."""
+    with Browser() as page:
+        page.open(folder.out / "report.html")
+        rows = "[...document.querySelectorAll('#runs tbody tr')].map(r => r.textContent)"
+        filtered = f"document.getElementById('filter').value = '%s'; show(); {rows}"
+        check(len(page.value(rows)) == 13, "a row a run")
+        for words, wanted in (("odd 3 failed", 1), ("smoke", 4), ("SMOKE seed-41", 1), ("nothing", 0), ("", 13)):
+            found = page.value(filtered.replace("show()", "document.getElementById('filter').oninput()") % words)
+            check(len(found) == wanted, f"filter {words!r}: {found}, expected {wanted}")
+        cell = "document.querySelector('#matrix button[aria-label^=\"odd, \"]')"
+        check(page.value(f"{cell}.textContent") == "2/5", "passed of all")
+        check(len(page.value(f"{cell}.click(); {rows}")) == 5 and len(page.value(f"{cell}.click(); {rows}")) == 13,
+              "the cells choose")
+        links = page.value("[...document.querySelectorAll('a')].map(a => a.getAttribute('href'))")
+        check(len(links) == 1 and (folder.out / links[0]).is_file(), f"links: {links}")
+        sizes = page.value("Promise.all([...document.querySelectorAll('.bucket img')].map(i => "
+                           "i.decode().then(() => [i.naturalWidth, i.naturalHeight])))")
+        check(len(sizes) == 1 and sizes[0][0] > 900 and sizes[0][1] > 300, f"pictures: {sizes}")
+        drawn = page.value("JSON.parse(document.getElementById('pictures').textContent)[1]").splitlines()
+        phase = [drawn[i + 1] for i, line in enumerate(drawn) if ">clock.phase<" in line]
+        turns = len(re.findall("V[0-9]", phase[0]))  # of 1.001 ms at 9.04 kHz
+        check(turns in (18, 19) and "c4302b" in drawn[-2], f"{turns} turns of PHASE, expected 18 or 19")
+        check(not page.said, f"the page complains: {page.said}")
+        check(all(u.startswith(("file:", "data:")) for u in page.asked) and len(page.asked) < 4, f"asks: {page.asked}")
+        if "BRICK_PAGE_PNG" in os.environ:
+            page.picture(os.environ["BRICK_PAGE_PNG"])
 
 
 def regress_rows():
@@ -195,6 +230,30 @@ def regress_resume():
     check(all(int(name.split("-")[1]) > 30 for name in before), "a usual seed is none that is fresh")
 
 
+def regress_rank():
+    """Covers of the runs that passed, together; the runs by what each adds, until none adds anything."""
+    folder = Folder('[[row]]\nname = "own"\n'
+                    'command = ["sh", "-c", "cp {plan}/{seed}.json run.json; exit $(({seed} / 5))"]\n'
+                    'seeds = "1-5"\n[[row]]\nbench = "smoke"\nseeds = "7-8"\n')
+    brought = {"a": 1, "b": 1}, {"a": 7, "c": 5}, {"c": 10, "d": 1, "e": 1}, {"a": 1}, {"f": 1}
+    for seed, counts in enumerate(brought, 1):
+        covers = {name: {"count": n, "least": 10 if name == "c" else 1} for name, n in counts.items()}
+        (folder.path / f"{seed}.json").write_text(json.dumps({"covers": covers}))
+    r = folder.regress("--rank")
+    report = folder.report()
+    covers = {c["name"]: (c["counts"], c["least"], c["reached"]) for c in report["covers"]}
+    ours = {name: c for name, c in covers.items() if len(name) == 1}
+    check(ours == {"a": ({"own": 9}, 1, True), "b": ({"own": 1}, 1, True), "c": ({"own": 15}, 10, True),
+                   "d": ({"own": 1}, 1, True), "e": ({"own": 1}, 1, True)}, f"{ours}: expected none of the failed run")
+    # seed 3 brings c, d, e; then seed 1 brings a and b; nothing is left for seeds 2 and 4
+    ranked = [(k["run"], k["adds"]) for k in report["ranked"] if k["run"].startswith("own")]
+    check(ranked == [("own.seed-3", 3.0), ("own.seed-1", 2.0)], f"{ranked}")
+    check("3.0 new" in r.stdout and f"{len(covers)} of {len(covers)} covers" in r.stdout, r.stdout)
+    # 16 walking ones of either run
+    check(covers["smoke: dual-ported RAM, walking ones"] == ({"systemc": 32}, 16, True), f"{covers}")
+    check(any(name.startswith("bus: 104, ") for name in covers), "rules of the bus by region")
+
+
 def sleepers(mark):
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):
@@ -236,6 +295,108 @@ def regress_killed():
         folder.write(plan.replace(f"sleep {mark}", "true"))
         r = folder.regress("--resume")
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
+
+
+class Slurm:
+    """A cluster of this machine alone: its two daemons with a configuration of their own, as this user."""
+
+    def __init__(self, folder):
+        daemons = [shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin:/sbin") for name in ("slurmctld", "slurmd")]
+        if not all(daemons) or not shutil.which("sbatch"):
+            print("slurmctld, slurmd and slurm-client are not installed (./dev setup does it)")
+            sys.exit(77)
+        ports = []
+        for _ in range(2):
+            with socket.socket() as s:
+                s.bind(("127.0.0.1", 0))
+                ports.append(s.getsockname()[1])
+        host, user = socket.gethostname().split(".")[0], getpass.getuser()
+        for name in ("state", "spool"):
+            (folder / name).mkdir()
+        (folder / "slurm.conf").write_text(f"""ClusterName=brick
+SlurmctldHost={host}(127.0.0.1)
+AuthType=auth/none
+CredType=cred/none
+SlurmUser={user}
+SlurmdUser={user}
+SlurmctldPort={ports[0]}
+SlurmdPort={ports[1]}
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmdParameters=config_overrides
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=2
+NodeName={host} NodeAddr=127.0.0.1 CPUs=4
+PartitionName=main Nodes=ALL Default=YES
+""")
+        os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
+        self.running = []
+        for daemon in daemons:
+            with open(folder / f"{pathlib.Path(daemon).name}.log", "w") as log:
+                self.running.append(subprocess.Popen([daemon, "-D"], stdout=log, stderr=log))
+
+    def said(self, *words):
+        return subprocess.run(words, capture_output=True, text=True).stdout
+
+    def __enter__(self):
+        wait_for(lambda: "idle" in self.said("sinfo", "--noheader"), "no node is idle")
+        return self
+
+    def __exit__(self, *_):
+        for daemon in self.running:
+            daemon.terminate()
+            daemon.wait()
+
+
+def alike(report):
+    """Without times, hosts and paths."""
+    del report["wall_seconds"]
+    for run in report["runs"]:
+        del run["wall_seconds"], run["host"]
+    return report
+
+
+def regress_slurm():
+    """On a cluster the report is the same; a task that is killed costs its run alone, and --resume makes that."""
+    plan = ('[[row]]\nbench = "smoke"\nseeds = 31\n[[row]]\nbench = "smoke"\nnegative = true\nseeds = 41\n'
+            '[[row]]\nname = "odd"\ncommand = ["sh", "-c", "echo step {seed}: Error: 0x1F; exit $(({seed} % 2))"]\n'
+            'seeds = "1-9"\n[[row]]\nname = "crash"\ncommand = ["sh", "-c", "kill -SEGV $$"]\n'
+            '[[row]]\nname = "slow"\ncommand = ["sh", "-c", "test -e {plan}/quick || sleep 60"]\n'
+            '[[row]]\nname = "late"\ncommand = ["sleep", "60"]\nlimit = "300ms"\n')
+    folder = Folder(plan)
+    (folder.path / "cluster").mkdir()
+    with Slurm(folder.path / "cluster") as slurm:
+        on_cluster = ("--slurm", "--task-seconds", "2", "--jobs", "3", "--no-replay", "--fresh-from", "7")
+        r = subprocess.Popen([command.BRICK, "regress", str(folder.plan), "-o", str(folder.out), *on_cluster],
+                             stdout=subprocess.PIPE, text=True)
+        tasks = folder.out / "slurm"
+        wait_for((folder.out / "runs/slow.seed-1").exists, "the slow one does not run")
+        files = {t.name: json.loads(t.read_text()) for t in tasks.glob("*.json")}
+        check(1 < len(files) < 14, f"{len(files)} tasks of 14 runs, expected some of some runs each")
+        slow = [n for n, t in files.items() if "slow.seed-1" in [p["run"]["name"] for p in t["parts"]]]
+        number = slow[0].split("-")[1].split(".")[0]
+        slurm.said("scancel", f"{(tasks / 'job.txt').read_text().strip()}_{number}")
+        said, _ = r.communicate(timeout=60)
+        check(r.returncode == 1 and "1 not run: --resume makes them" in said, f"a task was killed: {said}")
+        check(folder.verdicts()["slow.seed-1"] == "not run", "what was killed has a verdict")
+        check(not (tasks / "job.txt").exists() and not slurm.said("squeue", "--noheader"), "somebody still works")
+        (folder.path / "quick").touch()
+        r = folder.regress("--resume", *on_cluster)
+        check(folder.verdicts()["slow.seed-1"] == "passed" and "13 taken over" in r.stdout, f"resumed: {r}")
+        on_it = alike(folder.report())
+        folder.out = folder.path / "local"
+        folder.regress("--no-replay", "--jobs", "2", "--fresh-from", "7")
+        here = alike(folder.report())
+        check(on_it == here, f"another report than the local one: {on_it}\n{here}")
+        os.environ["PATH"] = ""
+        r = folder.regress("--slurm")
+        check(r.returncode == 2 and "sbatch: " in r.stderr and "expected a cluster" in r.stderr, f"no cluster: {r}")
 
 
 globals()[command.CASE]()
