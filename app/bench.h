@@ -20,7 +20,8 @@ namespace brick {
 
 namespace plant {
 class Plant;
-}
+struct AxisParameters;
+}  // namespace plant
 
 struct BenchStep {
   Tick at = 0;
@@ -71,7 +72,8 @@ struct BenchContext {
   bool negative;
   TimingBook& timing;  // what judges the buses of this run
   bool forced_wait_states;
-  plant::Plant* plant;     // of --plant; nullptr: none
+  plant::Plant* plant;     // of --plant, or the bench's own motors; nullptr: none
+  unsigned motors = 0;     // so many of its own, as there are channels for
   std::uint64_t size = 0;  // --size: how much of what a bench can have more of; 0: as much as it has by itself
 
   std::string ask(const std::string& line) const;            // data lines joined by '|'
@@ -95,6 +97,10 @@ struct NegativeControl {
   std::string step;                                   // its name; '*', '?' for what depends on the seed
   std::string says;                                   // part of its detail, likewise
   std::function<void(MachineConfig&)> seed_bug = {};  // changes the machine; empty if the bench does it itself
+  struct Also {
+    std::string step, says;
+  };
+  std::vector<Also> also = {};  // steps that fail by a fault of their own, which `does` says too
 };
 
 struct Bench {
@@ -103,6 +109,8 @@ struct Bench {
   NegativeControl negative;
   std::function<void(BenchContext&)> run;
   BenchNeed need = kAnyBoard;
+  std::vector<plant::AxisParameters> (*motors)() =
+      nullptr;                          // at the first channels, unless --plant stands others there
   std::string board = "geobrick-lv-8";  // without --board
   bool firmware = true;                 // false: no CPU runs, the bench drives Port A itself
   std::uint64_t least_size = 0;         // of --size; 0: it has an end of its own, and takes none

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/build_info.h"
+#include "app/hand_encoder.h"
 #include "app/script_player.h"
 #include "app/set_up.h"
 #include "app/simulation.h"
@@ -34,6 +35,20 @@ std::uint64_t size_of(const Bench& bench, const std::string& text) {
     throw UsageError(
         fmt::format("--size {}: is too little for {}; expected {} or more", text, bench.name, bench.least_size));
   return size;
+}
+
+// The motors that it brings along, at channels of this board.
+std::vector<plant::AxisParameters> motors_of(const Bench& bench, std::uint32_t fitted) {
+  std::vector<plant::AxisParameters> motors;
+  if (bench.motors == nullptr) return motors;
+  for (plant::AxisParameters& axis : bench.motors()) {
+    const auto place = motor_place(fitted, static_cast<unsigned>(motors.size()) + 1);
+    if (!place) break;
+    axis.ic = place->ic;
+    axis.channel = place->channel;
+    motors.push_back(axis);
+  }
+  return motors;
 }
 
 nlohmann::json steps_json(const BenchReport& report) {
@@ -76,7 +91,8 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   if (!set_up.empty() && !bench.firmware)
     throw UsageError(fmt::format("--load {}: nobody takes it, because no firmware runs in {}; expected no --load",
                                  options.load, bench.name));
-  Simulation simulation(options, config, bench.name);
+  const auto motors = motors_of(bench, config.board.fitted);
+  Simulation simulation(options, config, bench.name, motors);
   set_up.check(simulation);
   if (extras.before) extras.before(simulation);
   std::cout << fmt::format("{}: {}, engine {}, board {}, seed {}{}{}{}\n", bench.name, bench.description,
@@ -93,9 +109,18 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
         if (!up) return;
         set_up.send(simulation);
       }
-      BenchContext context{
-          simulation.machine(), simulation.bus(),       simulation.link(),  report, config.board, config.seed, negative,
-          simulation.timing(),  config.bcr.has_value(), simulation.plant(), size};
+      BenchContext context{simulation.machine(),
+                           simulation.bus(),
+                           simulation.link(),
+                           report,
+                           config.board,
+                           config.seed,
+                           negative,
+                           simulation.timing(),
+                           config.bcr.has_value(),
+                           simulation.plant(),
+                           static_cast<unsigned>(motors.size()),
+                           size};
       bench.run(context);
     });
   } catch (const LockstepDifference& e) { report.fail("engines agree", e.what()); } catch (const HostBusError& e) {

@@ -62,16 +62,24 @@ std::unique_ptr<Machine> make_machine(const MachineConfig& config) {
   } catch (const std::exception& e) { throw UsageError(e.what()); }
 }
 
-std::unique_ptr<plant::Plant> make_plant(const RunOptions& options, const MachineConfig& config) {
-  if (options.plant == "none") return nullptr;
+std::unique_ptr<plant::Plant> make_plant(const RunOptions& options, const MachineConfig& config,
+                                         const std::vector<plant::AxisParameters>& motors) {
+  if (options.plant == "none" && motors.empty()) return nullptr;
+  if (options.plant == "none") {
+    plant::PlantParameters parameters;
+    parameters.seed = config.seed;
+    parameters.axes = motors;
+    return std::make_unique<plant::Plant>(parameters);
+  }
   return std::make_unique<plant::Plant>(read_plant_file(plant_path(options.plant), config.board.fitted, config.seed));
 }
 
 }  // namespace
 
-Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title)
+Simulation::Simulation(const RunOptions& options, const MachineConfig& config, std::string title,
+                       const std::vector<plant::AxisParameters>& motors)
     : title_(std::move(title)),
-      plant_(make_plant(options, config)),
+      plant_(make_plant(options, config, motors)),
       machine_(make_machine(config)),
       timing_(std::make_unique<TimingBook>(*machine_)),
       forced_bcr_(options.bcr),

@@ -33,7 +33,9 @@ class Interrupted : public std::runtime_error {
 class Simulation {
  public:
   // Throws UsageError for everything that is wrong with board, firmware, flash or waveform file.
-  Simulation(const RunOptions& options, const MachineConfig& config, std::string title);
+  // `motors` stand where no --plant is given.
+  Simulation(const RunOptions& options, const MachineConfig& config, std::string title,
+             const std::vector<plant::AxisParameters>& motors = {});
   ~Simulation();
 
   // Runs `host` to its end; what it throws comes out here. Afterwards the waveform is complete.
@@ -42,7 +44,7 @@ class Simulation {
   Machine& machine() { return *machine_; }
   HostBus& bus() { return bus_; }
   HostLink& link() { return link_; }
-  plant::Plant* plant() { return plant_.get(); }  // of --plant; nullptr: none
+  plant::Plant* plant() { return plant_.get(); }  // of --plant, else the motors; nullptr: none
   TimingBook& timing() { return *timing_; }
 
   // What broke a rule of the buses, one line each: what fails the run, what a waiver excuses, waivers not needed and

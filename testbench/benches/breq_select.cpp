@@ -426,6 +426,7 @@ Bench breq_select_bench() {
            "FPDn/, I59=0", "is selected (&*I2=0, I59=0"},
           [](BenchContext& b) { BreqSelect(b).run(); },
           without_8259(kAnyBoard),
+          nullptr,
           "turbo-pmac-pci"};
 }
 

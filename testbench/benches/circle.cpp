@@ -104,7 +104,7 @@ std::vector<Case> cases(double feed) {
 
 class Circle {
  public:
-  explicit Circle(BenchContext& b) : host_(b, std::vector<plant::AxisParameters>(8, dac_axis())) {}
+  explicit Circle(BenchContext& b) : host_(b) {}
   void run();
 
  private:
@@ -220,7 +220,8 @@ Bench circle_bench() {
       {"the scoreboard is told that Isx13 is a tenth longer", "full turn, CIRCLE1, helix: radius",
        "counts smaller, expected V^2 T^2"},
       [](BenchContext& b) { Circle(b).run(); },
-      kAServoIc};
+      kAServoIc,
+      dac_axes<8>};
 }
 
 }  // namespace brick

@@ -146,6 +146,7 @@ Bench clock_macro_bench() {
            "MACRO IC *, 6.67 kHz phase and 3.33 kHz servo", "violations but *SERVO does not fall"},
           [](BenchContext& b) { MacroBench(b).run(); },
           kAMacroIc,
+          nullptr,
           "all-ics"};
 }
 

@@ -319,6 +319,7 @@ Bench clock_select_bench() {
            "violations but *SERVO does not fall"},
           [](BenchContext& b) { SelectBench(b).sources(); },
           kTwoIcs,
+          nullptr,
           "all-ics"};
 }
 
@@ -330,6 +331,7 @@ Bench clock_faults_bench() {
            "violations but *SERVO does not fall"},
           [](BenchContext& b) { SelectBench(b).faults(); },
           kTwoIcs,
+          nullptr,
           "turbo-pmac2-pc"};
 }
 

@@ -20,11 +20,10 @@ constexpr double kSearch = 2000, kFullAmps = 10, kTripAmps = 15;    // Ixx73
 
 class Commutation {
  public:
-  explicit Commutation(BenchContext& b) : host_(b, axes()) {}
+  explicit Commutation(BenchContext& b) : host_(b) {}
   void run();
 
  private:
-  static std::vector<plant::AxisParameters> axes();
   BenchReport& report() { return host_.report(); }
   void set_up(unsigned motor);
   void reference(unsigned motor, const std::string& name, double degrees);
@@ -37,7 +36,7 @@ class Commutation {
   MotorHost host_;
 };
 
-std::vector<plant::AxisParameters> Commutation::axes() {
+std::vector<plant::AxisParameters> axes() {
   plant::AxisParameters a;
   a.drive = plant::Drive::kThreePhase;
   a.motor.inertia = 1e-5;
@@ -222,7 +221,8 @@ Bench commutation_bench() {
           "phase references, direct PWM with current loops, a brush motor; the wrong phase angle trips",
           {"Ixx72 of motor 1 is that of the opposite sense", "two guesses: *", "expected"},
           [](BenchContext& b) { Commutation(b).run(); },
-          kAServoIc};
+          kAServoIc,
+          axes};
 }
 
 }  // namespace brick

@@ -19,11 +19,10 @@ constexpr double kOnTheWay = 25, kAtRest = 1.5;  // counts of following error
 
 class Follow {
  public:
-  explicit Follow(BenchContext& b) : host_(b, axes()) {}
+  explicit Follow(BenchContext& b) : host_(b) {}
   void run();
 
  private:
-  static std::vector<plant::AxisParameters> axes();
   BenchReport& report() { return host_.report(); }
   double master(unsigned motor) { return static_cast<double>(host_.d(0x8D + 0x80 * (motor - 1))) / MotorHost::kUnits; }
   void turn(const std::string& name, int counts, double ms, const std::vector<double>& jogs);
@@ -33,7 +32,7 @@ class Follow {
   std::vector<double> factors_;  // Ixx07 of motors 2, 3, 4
 };
 
-std::vector<plant::AxisParameters> Follow::axes() {
+std::vector<plant::AxisParameters> axes() {
   std::vector<plant::AxisParameters> axes(4, dac_axis());
   axes[0].drive = plant::Drive::kHand;
   axes[0].start = kStart;
@@ -168,7 +167,8 @@ Bench follow_bench() {
           "motors that follow a shaft, at ratios of their own, jogging meanwhile",
           {"the scoreboard is told that Ixx07 is a hundredth higher", "up: master position", "expected"},
           [](BenchContext& b) { Follow(b).run(); },
-          kAServoIc};
+          kAServoIc,
+          axes};
 }
 
 }  // namespace brick

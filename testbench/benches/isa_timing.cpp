@@ -321,6 +321,7 @@ Bench isa_timing_bench() {
           {"the host ends I/O commands 1 ns too early", "t2", "529.000 ns"},
           [](BenchContext& b) { IsaTimingBench(b).run(); },
           without_8259(kAnyBoard),
+          nullptr,
           "turbo-pmac2-pc"};
 }
 

@@ -17,11 +17,10 @@ constexpr double kStill = 3;                                               // ms
 
 class JogHome {
  public:
-  explicit JogHome(BenchContext& b) : host_(b, axes()) {}
+  explicit JogHome(BenchContext& b) : host_(b) {}
   void run();
 
  private:
-  static std::vector<plant::AxisParameters> axes();
   BenchReport& report() { return host_.report(); }
   std::string all(const std::string& form);  // form for motors 1 to n, % stands for the number
   void limits();
@@ -38,7 +37,7 @@ class JogHome {
   double before_jogs_ = 0;  // of motor 4
 };
 
-std::vector<plant::AxisParameters> JogHome::axes() {
+std::vector<plant::AxisParameters> axes() {
   std::vector<plant::AxisParameters> axes(4, dac_axis());
   axes[0].switches = {{kHmfl, -1'000'000, kLowFlag}};
   axes[2].switches = {{kHmfl, kFastFlag, 1'000'000}};
@@ -238,7 +237,8 @@ Bench jog_home_bench() {
           "jogs and homing searches: profiles at each servo interrupt, exact targets, captured positions",
           {"the scoreboard is told that Ixx21 is a millisecond longer", "#1J:900: profile", "counts off"},
           [](BenchContext& b) { JogHome(b).run(); },
-          kAServoIc};
+          kAServoIc,
+          axes};
 }
 
 }  // namespace brick

@@ -64,7 +64,7 @@ struct Course {
 
 class KinematicsBench {
  public:
-  explicit KinematicsBench(BenchContext& b) : host_(b, std::vector<plant::AxisParameters>(2, dac_axis())) {}
+  explicit KinematicsBench(BenchContext& b) : host_(b) {}
   void run();
 
  private:
@@ -272,6 +272,7 @@ void KinematicsBench::run() {
   period_ = 4 + host_.pick(2);
   host_.set_up();
   host_.variables(11, 0);
+  host_.variables(21, 2);
   host_.variables(92, 0);
   host_.expect("I15=0 M5182->Y:$203F,22", "");
   host_.expect("&1#1->I #2->I", "");
@@ -314,7 +315,8 @@ Bench kinematics_bench() {
       "behind a jog",
       {"a wrong sign in the inverse program", "line, shoulder: path", "counts off"},
       [](BenchContext& b) { KinematicsBench(b).run(); },
-      kAServoIc};
+      kAServoIc,
+      dac_axes<2>};
 }
 
 }  // namespace brick

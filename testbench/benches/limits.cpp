@@ -19,11 +19,10 @@ constexpr std::uint16_t kQuadrature = 1u << kEncA | 1u << kEncB;
 
 class Limits {
  public:
-  explicit Limits(BenchContext& b) : host_(b, axes()) {}
+  explicit Limits(BenchContext& b) : host_(b) {}
   void run();
 
  private:
-  static std::vector<plant::AxisParameters> axes();
   BenchReport& report() { return host_.report(); }
   double ms(Tick ticks) const { return static_cast<double>(ticks) / kTicksPerMs; }
   void bit(unsigned motor, unsigned word, unsigned bit, const char* what, bool expected = true);
@@ -39,7 +38,7 @@ class Limits {
   MotorHost host_;
 };
 
-std::vector<plant::AxisParameters> Limits::axes() {
+std::vector<plant::AxisParameters> axes() {
   std::vector<plant::AxisParameters> axes(4, dac_axis());
   axes[0].switches = {{kPlim, kEnd, 1'000'000}};
   axes[2].switches = {{kMlim, -1'000'000, -kEnd}};
@@ -234,7 +233,8 @@ Bench limits_bench() {
       "end switches, software limits, following error, I2T, amplifier fault, ^K: reaction, ramp, status",
       {"the scoreboard is told that Ixx15 is half of what it is", "positive end switch: ramp of Ixx15", "counts off"},
       [](BenchContext& b) { Limits(b).run(); },
-      kAServoIc};
+      kAServoIc,
+      axes};
 }
 
 }  // namespace brick

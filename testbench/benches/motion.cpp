@@ -120,7 +120,7 @@ std::vector<Section> sections(double share) {
 
 class MotionBench {
  public:
-  explicit MotionBench(BenchContext& b) : host_(b, std::vector<plant::AxisParameters>(8, dac_axis())) {}
+  explicit MotionBench(BenchContext& b) : host_(b) {}
   void run();
 
  private:
@@ -248,7 +248,8 @@ Bench motion_bench() {
       {"the scoreboard is told that TS is a millisecond longer", "LINEAR, three moves blended, motor 1: path",
        "counts off"},
       [](BenchContext& b) { MotionBench(b).run(); },
-      kAServoIc};
+      kAServoIc,
+      dac_axes<8>};
 }
 
 }  // namespace brick

@@ -21,18 +21,6 @@ std::int64_t long_word(std::uint32_t high, std::uint32_t low) {
   return static_cast<std::int64_t>((static_cast<std::uint64_t>(high) << 24 | low) << 16) >> 16;
 }
 
-plant::PlantParameters parameters(const BenchContext& b, const ServoHost& host,
-                                  const std::vector<plant::AxisParameters>& axes) {
-  plant::PlantParameters p;
-  p.seed = b.seed;
-  for (unsigned i = 0; i < axes.size() && i < host.channels(); ++i) {
-    p.axes.push_back(axes[i]);
-    p.axes.back().ic = host.ic(i / kChannels);
-    p.axes.back().channel = i % kChannels;
-  }
-  return p;
-}
-
 }  // namespace
 
 plant::AxisParameters dac_axis() {
@@ -48,17 +36,15 @@ plant::AxisParameters dac_axis() {
   return axis;
 }
 
-MotorHost::MotorHost(BenchContext& b, const std::vector<plant::AxisParameters>& axes)
+MotorHost::MotorHost(BenchContext& b)
     : ServoHost(b, b.seed * 7'919 + 11),
-      motors_(std::min<unsigned>(static_cast<unsigned>(axes.size()), channels())),
-      own_(b.plant == nullptr ? std::make_unique<plant::Plant>(parameters(b, *this, axes)) : nullptr),
-      plant_(own_ ? own_.get() : b.plant),
+      motors_(std::min(b.motors, channels())),
+      plant_(b.plant),
       output_(motors_),
       captured_(motors_),
       samples_(motors_),
       enables_(motors_),
       on_task_(b.machine.on_task) {
-  if (own_) b.machine.attach(*own_);
   b.machine.attach(*this);
   b.machine.on_bus_cycle = [this](const PortACycle& c) { cycle(c); };
   b.machine.on_task = [this](TimeFs time) { task_changed(time); };
@@ -69,7 +55,6 @@ MotorHost::~MotorHost() {
   bench().machine.on_task = on_task_;
   bench().machine.on_bus_cycle = nullptr;
   bench().machine.detach(*this);
-  if (own_) bench().machine.detach(*own_);
 }
 
 std::uint32_t MotorHost::ics() const {

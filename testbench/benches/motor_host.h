@@ -21,6 +21,10 @@ constexpr double kTicksPerMs = kPwmClockHz / 1000.0;
 
 // A small motor whose amplifier takes +-10 V as +-1 N m, 4000 counts a turn: one bit of 16 makes 1943 counts/s^2.
 plant::AxisParameters dac_axis();
+template <std::size_t kCount>
+std::vector<plant::AxisParameters> dac_axes() {
+  return std::vector<plant::AxisParameters>(kCount, dac_axis());
+}
 
 class MotorHost : public ServoHost, public MotorPeer {
  public:
@@ -38,9 +42,8 @@ class MotorHost : public ServoHost, public MotorPeer {
     bool on;
   };
 
-  // A motor at each of the first channels, as many as there are axes, or channels if those are fewer. What --plant has
-  // put there stays, and is the plant.
-  MotorHost(BenchContext& bench, const std::vector<plant::AxisParameters>& axes);
+  // As many motors as the bench brings along, at the first channels (Bench::motors).
+  explicit MotorHost(BenchContext& bench);
   ~MotorHost() override;
 
   unsigned motors() const { return motors_; }
@@ -100,7 +103,6 @@ class MotorHost : public ServoHost, public MotorPeer {
   void cycle(const PortACycle& c);
 
   unsigned motors_;
-  std::unique_ptr<plant::Plant> own_;
   plant::Plant* plant_;
   double period_ = 0;
   bool in_servo_ = false;

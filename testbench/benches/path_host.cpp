@@ -13,7 +13,8 @@ namespace {
 constexpr double kLateStart = 4;                             // servo cycles that a cubic start may need to show
 constexpr double kSlope = 1.005, kBend = 1.02, kSpan = 400;  // motion:7.4/4
 constexpr double kFirstUnits = 2, kSecondUnits = 4;
-constexpr double kMoreTime = 1.02;  // of a servo cycle, that `followed` looks to either side
+constexpr double kMoreTime = 1.02;                    // of a servo cycle, that `followed` looks to either side
+constexpr double kInPosition = 1, kComesToRest = 10;  // counts; ms
 
 }  // namespace
 
@@ -153,7 +154,17 @@ void PathHost::report_end(const System& s, const MotorPoint& way) {
   for (std::size_t m = 0; m < way.size(); ++m)
     compared.equal(fmt::format("motor {}: way in units of 1/3072 count", s.motors[m]), std::llround(end[m] * kUnits),
                    std::llround(way[m] * kUnits));
-  report().step(s.name + ": end", compared, static_cast<unsigned>(way.size()), "exactly where the program goes");
+  const auto off = [&](std::size_t m) {
+    const auto& all = samples(s.motors[m]);
+    return all.back().actual - all.front().commanded - way[m];
+  };
+  for (std::size_t m = 0; m < way.size(); ++m) {
+    for (double waited = 0; std::fabs(off(m)) > kInPosition && waited < kComesToRest; waited += 0.5) wait_ms(0.5);
+    compared.judged(fmt::format("motor {}", s.motors[m]),
+                    std::fabs(off(m)) <= kInPosition ? "" : fmt::format("is {:.2f} counts from there", off(m)));
+  }
+  report().step(s.name + ": end", compared, static_cast<unsigned>(way.size() * 2),
+                "exactly where the program goes, the motors within a count");
 }
 
 void PathHost::watch(const std::vector<std::uint32_t>& addresses) {

@@ -20,7 +20,7 @@ class PathHost : public MotorHost {
  public:
   static constexpr double kNear = 1.0 / 16;  // counts beside a path
 
-  PathHost(BenchContext& bench, const std::vector<plant::AxisParameters>& axes) : MotorHost(bench, axes) {}
+  using MotorHost::MotorHost;
 
   using Span = SampleSpan;
   struct System {
@@ -70,7 +70,8 @@ class PathHost : public MotorHost {
   void watch(const std::vector<std::uint32_t>& addresses);
   const std::vector<std::uint32_t>& watched(std::size_t word) const { return watched_.at(word); }
 
-  void report_end(const System& s, const MotorPoint& way);  // to the unit of a position word
+  // Commanded to the unit of a position word; the motor within a count of it, 10 ms behind that at most.
+  void report_end(const System& s, const MotorPoint& way);
   unsigned run_time_error(const System& s);
   std::uint32_t status_word(const System& s, unsigned word);  // of `??`, 1 to 3
 

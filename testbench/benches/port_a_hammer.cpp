@@ -126,6 +126,7 @@ Bench port_a_hammer_bench() {
           {"chip selects 34 ns late", "I52=*", "expected $"},
           [](BenchContext& b) { PortAHammer(b).run(); },
           kServoIcs01,
+          nullptr,
           "geobrick-lv-8",
           false};
 }

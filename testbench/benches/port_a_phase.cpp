@@ -230,6 +230,7 @@ Bench port_a_phase_bench() {
           {"write data gone 35 ns before /WR rises", "I52=7, gate ICs", "expected $"},
           [](BenchContext& b) { PortAPhase(b).run(); },
           kServoIcs01,
+          nullptr,
           "geobrick-lv-8",
           false};
 }

@@ -60,7 +60,7 @@ std::vector<Case> cases() {
           {"Isx20=0: < is H, > is R",
            0,
            kRecords,
-           {{6, "<"}, {16, ">"}, {59, "I5{}20=12"}, {60, kDwelling}, {91, "<"}, {131, ">"}},
+           {{6, "<"}, {16, ">"}, {59, "I5{}20=12"}, {60, kDwelling}, {93, "<"}, {133, ">"}},
            true,
            false}};
 }
@@ -82,7 +82,7 @@ Contour contour() {
 
 class Reversal {
  public:
-  explicit Reversal(BenchContext& b) : host_(b, std::vector<plant::AxisParameters>(8, dac_axis())) {}
+  explicit Reversal(BenchContext& b) : host_(b) {}
   void run();
 
  private:
@@ -274,7 +274,8 @@ Bench reversal_bench() {
       "assignments once",
       {"an assignment is made a second time", "*: assignments", "at sample *: 1, expected"},
       [](BenchContext& b) { Reversal(b).run(); },
-      kAServoIc};
+      kAServoIc,
+      dac_axes<8>};
 }
 
 }  // namespace brick

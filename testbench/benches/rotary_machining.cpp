@@ -116,8 +116,7 @@ class RotaryMachining {
   BreqScoreboard::Counts counted_;
 };
 
-RotaryMachining::RotaryMachining(BenchContext& b)
-    : b_(b), host_(b, std::vector<plant::AxisParameters>(8, dac_axis())), rotary_(b.bus, 1) {
+RotaryMachining::RotaryMachining(BenchContext& b) : b_(b), host_(b), rotary_(b.bus, 1) {
   b.bus.watch(select_pins(pin::kBreq), [this](Tick now, const BoardOutputs&, const BoardOutputs& after) {
     scoreboard_.edge(now, after.get(pin::kBreq) != 0);
   });
@@ -303,6 +302,7 @@ Bench rotary_machining_bench() {
           [](BenchContext& b) { RotaryMachining(b).run(); },
           BenchNeed{"a servo IC and a slot of 16 bits",
                     [](const BoardConfig& b) { return kAServoIc.met(b) && kASlotOf16Bits.met(b); }},
+          dac_axes<8>,
           "geobrick-lv-8",
           true,
           kLeast};

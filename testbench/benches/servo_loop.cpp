@@ -18,7 +18,7 @@ constexpr double kTelling = 1;  // bits of 16
 
 class ServoLoop {
  public:
-  explicit ServoLoop(BenchContext& b) : host_(b, std::vector<plant::AxisParameters>(4, dac_axis())) {}
+  explicit ServoLoop(BenchContext& b) : host_(b) {}
   void run();
 
  private:
@@ -200,7 +200,8 @@ Bench servo_loop_bench() {
           {"the scoreboard is told that Ixx30 is a hundredth higher", "output of the model, motor 1: reference gains",
            "expected"},
           [](BenchContext& b) { ServoLoop(b).run(); },
-          kAServoIc};
+          kAServoIc,
+          dac_axes<4>};
 }
 
 }  // namespace brick

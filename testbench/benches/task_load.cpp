@@ -1,7 +1,7 @@
 // task-load: what the controller's tasks may cost with eight motors that it commutates, all moving, and a host that
-// never pauses (motion:1.6). Own times of each run of a task, which are its length less what interrupted it; interrupts
-// taken against the falls of PHASE and SERVO; characters of the host port in each phase period. At the factory clocks
-// and at a Brick's, with I52 = 24.
+// never pauses (motion:1.6), in moves and in segments looked ahead. Own times of each run of a task, which are its
+// length less what interrupted it; interrupts taken against the falls of PHASE and SERVO; characters of the host port
+// in each phase period. At the factory clocks and at a Brick's, with I52 = 24.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -16,7 +16,8 @@
 namespace brick {
 namespace {
 
-constexpr unsigned kPace = 8;  // characters in a phase period while a motor is enabled
+constexpr unsigned kPace = 8;                  // characters in a phase period while a motor is enabled
+constexpr unsigned kSegment = 5, kAhead = 20;  // ms; Isx20
 constexpr std::uint64_t kGatheringServo = 10'000, kBrickPhase = 6'000, kBrickServo = 10'000;
 
 // What the CPU does from now on, until it goes.
@@ -65,23 +66,23 @@ class Watch {
 
 class TaskLoad {
  public:
-  explicit TaskLoad(BenchContext& b) : b_(b), host_(b, axes()) {}
+  explicit TaskLoad(BenchContext& b) : b_(b), host_(b) {}
   void run();
 
  private:
-  static std::vector<plant::AxisParameters> axes();
   void set_up();
   void start();
   void own_times(const std::string& name, double ms, std::uint64_t phase, std::uint64_t servo);
   void moved(const std::string& name);
-  void never_pausing_host(double ms);
+  void never_pausing_host(const std::string& name, double ms);
+  void segments();
   void brick_clocks();
 
   BenchContext& b_;
   MotorHost host_;
 };
 
-std::vector<plant::AxisParameters> TaskLoad::axes() {
+std::vector<plant::AxisParameters> axes() {
   plant::AxisParameters a;
   a.drive = plant::Drive::kThreePhase;
   a.motor.inertia = 1e-5;
@@ -181,7 +182,7 @@ void TaskLoad::own_times(const std::string& name, double ms, std::uint64_t phase
 }
 
 // It writes whenever there is room and reads whatever there is. Half of its lines are answered at length.
-void TaskLoad::never_pausing_host(double ms) {
+void TaskLoad::never_pausing_host(const std::string& name, double ms) {
   static const std::string lines = "#1?P#2?P#3?P\rP1=1 P2=2 P3=3 P4=4 P5=5\r??\r";
   Watch watch(b_);
   const Tick end = b_.bus.now() + ns_to_ticks(static_cast<std::uint64_t>(ms * 1e6));
@@ -190,17 +191,34 @@ void TaskLoad::never_pausing_host(double ms) {
     (void)b_.bus.get_char(0);
   }
   const auto near = [](unsigned a, unsigned b) { return a + 1 >= b && a <= b + 1; };  // one is under way
-  b_.report.step("a host that never pauses: phase interrupts", watch.phase > 50 && near(watch.phase, watch.phase_falls),
+  b_.report.step(name + ": phase interrupts", watch.phase > 50 && near(watch.phase, watch.phase_falls),
                  fmt::format("{} for {} falls of PHASE", watch.phase, watch.phase_falls));
-  b_.report.step("a host that never pauses: servo interrupts", watch.servo > 10 && near(watch.servo, watch.servo_falls),
+  b_.report.step(name + ": servo interrupts", watch.servo > 10 && near(watch.servo, watch.servo_falls),
                  fmt::format("{} for {} falls of SERVO", watch.servo, watch.servo_falls));
   const unsigned busy = watch.all_characters / std::max(watch.phase, 1u);
-  b_.report.step("characters in a phase period", watch.most_characters <= kPace && busy >= kPace / 2,
+  b_.report.step(name + ": characters in a phase period", watch.most_characters <= kPace && busy >= kPace / 2,
                  fmt::format("{} at most, {} on the whole in {}; expected {} at most", watch.most_characters,
                              watch.all_characters, watch.phase, kPace));
   b_.bus.put_char(0x18, ns_to_ticks(1'000'000));  // ^X: what it has not read
   while (b_.bus.get_char(ns_to_ticks(2'000'000))) {}
   b_.report.step("the controller answers", b_.link.connect(ns_to_ticks(50'000'000)), "I3=2 I6=1 I4=0");
+}
+
+// The same program in segments that are looked ahead, from its start on: segments are made as fast as they can be until
+// the buffer is full, and the motors are limited.
+void TaskLoad::segments() {
+  host_.expect("&1A", "");
+  host_.wait_ms(10);
+  host_.expect("DELETE GATHER", "");
+  host_.expect(fmt::format("&1DEFINE LOOKAHEAD {},10", 2 * kAhead), "");
+  host_.say({fmt::format("I5113={} I5120={}", kSegment, kAhead)});
+  host_.variables(17, 1);
+  host_.record();
+  host_.expect("&1B1R", "");
+  never_pausing_host("segments, a host that never pauses", 60);
+  moved("segments");
+  b_.report.equal("segments: run-time error", host_.ask("RY$2014"), std::string("0"));
+  host_.say({"I5113=0 I5120=0"});
 }
 
 // servo-ic:11.2; I52 counts from the start on.
@@ -226,8 +244,9 @@ void TaskLoad::run() {
   host_.expect("GATHER I48=1", "");
   own_times("eight gathered words and I48", 12, FallLimits::kPhaseCycles, kGatheringServo);
   host_.expect("ENDGATHER I48=0", "");
-  never_pausing_host(10);
+  never_pausing_host("a host that never pauses", 10);
   moved("factory clocks");
+  segments();
   brick_clocks();
   start();
   own_times("Brick clocks, I52=24", 10, kBrickPhase, kBrickServo);
@@ -241,7 +260,8 @@ Bench task_load_bench() {
           "eight commutated motors, gathering, a host that never pauses: own times of the tasks, no interrupt lost",
           {"24 motors more are activated", "servo task, eight axes", "cycles of its own at most, of 8000"},
           [](BenchContext& b) { TaskLoad(b).run(); },
-          kServoIcs01};
+          kServoIcs01,
+          axes};
 }
 
 }  // namespace brick

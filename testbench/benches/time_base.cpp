@@ -17,11 +17,10 @@ constexpr double kShaft = 32;  // counts/ms that are 100 %: the real-time freque
 
 class TimeBase {
  public:
-  explicit TimeBase(BenchContext& b) : host_(b, axes()) {}
+  explicit TimeBase(BenchContext& b) : host_(b) {}
   void run();
 
  private:
-  static std::vector<plant::AxisParameters> axes();
   BenchReport& report() { return host_.report(); }
   void load(double distance, double time, bool more = false);
   void constant(double percent);
@@ -34,7 +33,7 @@ class TimeBase {
   MotorHost host_;
 };
 
-std::vector<plant::AxisParameters> TimeBase::axes() {
+std::vector<plant::AxisParameters> axes() {
   std::vector<plant::AxisParameters> axes(2, dac_axis());
   axes[1].drive = plant::Drive::kHand;
   return axes;
@@ -195,7 +194,8 @@ Bench time_base_bench() {
           "program time: %, its slew, hold and resume, a shaft as the time base; the path stays",
           {"the scoreboard is told a rate that is a hundredth higher", "%100: path", "counts off"},
           [](BenchContext& b) { TimeBase(b).run(); },
-          kAServoIc};
+          kAServoIc,
+          axes};
 }
 
 }  // namespace brick
