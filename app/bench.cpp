@@ -22,10 +22,22 @@ bool BenchReport::step(const std::string& name, bool passed, const std::string& 
 }
 
 bool BenchReport::step(const std::string& name, const Comparison& compared, unsigned least, const std::string& detail) {
+  cover(name, compared.made(), least);
   if (!compared.difference().empty()) return step(name, false, compared.difference());
   if (compared.made() < least)
     return step(name, false, fmt::format("{} compared, expected {} or more", compared.made(), least));
   return step(name, true, detail);
+}
+
+bool BenchReport::reached(const std::string& name, std::uint64_t count, std::uint64_t least) {
+  cover(name, count, least);
+  return step(name, count >= least, fmt::format("{}, at least {}", count, least));
+}
+
+void BenchReport::cover(const std::string& name, std::uint64_t count, std::uint64_t least) {
+  Cover& cover = covers_[name];
+  cover.count += count;
+  cover.least = least;
 }
 
 bool BenchReport::passed() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,25 +29,36 @@ struct BenchStep {
   std::string detail;  // what was measured; with a failure also what was expected
 };
 
+// How often something happened that a verdict rests on, and how often it has to in all runs together.
+struct Cover {
+  std::uint64_t count = 0, least = 1;
+};
+
 // Collects steps, and prints each as it comes.
 class BenchReport {
  public:
   BenchReport(std::ostream& out, Machine& machine) : out_(out), machine_(machine) {}
 
   bool step(const std::string& name, bool passed, const std::string& detail);
-  // Passes when nothing differs in `least` comparisons or more; `detail` is for a step that passes.
+  // Passes when nothing differs in `least` comparisons or more; `detail` is for a step that passes. A cover too.
   bool step(const std::string& name, const Comparison& compared, unsigned least, const std::string& detail);
   template <class T>
   bool equal(const std::string& name, const T& measured, const T& expected);
+  // A step that passes when it happened so often, and a cover.
+  bool reached(const std::string& name, std::uint64_t count, std::uint64_t least);
+  // A cover alone (docs/covers.md); counts of one name are added.
+  void cover(const std::string& name, std::uint64_t count, std::uint64_t least = 1);
   void fail(const std::string& name, const std::string& detail) { step(name, false, detail); }
 
   const std::vector<BenchStep>& steps() const { return steps_; }
+  const std::map<std::string, Cover>& covers() const { return covers_; }
   bool passed() const;  // at least one step, and none failed
 
  private:
   std::ostream& out_;
   Machine& machine_;
   std::vector<BenchStep> steps_;
+  std::map<std::string, Cover> covers_;
 };
 
 struct BenchContext {

@@ -43,6 +43,21 @@ nlohmann::json steps_json(const BenchReport& report) {
   return list;
 }
 
+// Those of the bench by its name; those of the buses, which every bench has, by rule and region.
+nlohmann::json covers_json(const Bench& bench, const BenchReport& report, const TimingBook& timing) {
+  nlohmann::json list = nlohmann::json::object();
+  const auto add = [&](const std::string& name, const Cover& cover) {
+    list[name] = {{"count", cover.count}, {"least", cover.least}};
+  };
+  for (const auto& [name, cover] : report.covers()) add(bench.name + ": " + name, cover);
+  for (const TimingLedger* ledger : timing.ledgers())
+    for (unsigned rule = 0; rule < ledger->rules().size(); ++rule)
+      for (unsigned region = 0; region < ledger->regions().size(); ++region)
+        if (const std::uint64_t judged = ledger->row(rule, region).evaluations; judged > 0)
+          add(fmt::format("bus: {}, {}", ledger->rules()[rule].id, ledger->regions()[region]), {judged, 1});
+  return list;
+}
+
 }  // namespace
 
 int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const std::string& name, bool negative,
@@ -106,6 +121,7 @@ int run_bench(const std::vector<Bench>& benches, const RunOptions& given, const 
   results["negative"] = negative;
   results["verdict"] = passed ? "PASS" : "FAIL";
   results["steps"] = steps_json(report);
+  results["covers"] = covers_json(bench, report, simulation.timing());
   if (!options.wave.empty()) results["wave"] = options.wave;
   if (extras.after) extras.after(simulation, results);
   add_origin(results, config.firmware);

@@ -20,6 +20,7 @@
 #include "app/build_info.h"
 #include "app/options.h"
 #include "app/paths.h"
+#include "app/regress/covers.h"
 #include "app/regress/picture.h"
 #include "app/regress/plan.h"
 #include "app/regress/pool.h"
@@ -72,7 +73,16 @@ class Regression {
     clear_line();
     buckets_ = buckets_of(plan_.runs, results_);
     if (!options_.no_replay && asked_to_stop == 0) replay();
-    const Report report{plan_, results_, buckets_, replays_, build_, fresh_from_, seconds()};
+    const Coverage coverage(plan_.runs, results_, [this](const Run& run) { return folder_of(run); });
+    const Report report{plan_,
+                        results_,
+                        buckets_,
+                        replays_,
+                        build_,
+                        coverage,
+                        options_.rank ? coverage.rank() : std::vector<Ranked>{},
+                        fresh_from_,
+                        seconds()};
     write_reports(report, folder_);
     return tell(report);
   }
@@ -272,6 +282,10 @@ class Regression {
         std::cout << fmt::format("    gtkwave {}/{}{}\n", folder_, replays_[b].wave,
                                  replays_[b].view.empty() ? "" : " " + folder_ + "/" + replays_[b].view);
     }
+    for (const Ranked& r : report.ranked)
+      std::cout << fmt::format("{:8.1f} new, {} covers: {}\n", r.adds, r.reached,
+                               command_text(plan_.runs[r.run].words));
+    tell(report.coverage);
     const auto missing = counts.at("not_run").get<std::size_t>();
     const bool passed = counts.at("passed").get<std::size_t>() == plan_.runs.size();
     std::cout << fmt::format("{} {}: {} runs, {} failed", passed ? "PASS" : "FAIL", plan_.title, plan_.runs.size(),
@@ -280,6 +294,17 @@ class Regression {
     if (taken_over_ != 0) std::cout << fmt::format(", {} taken over", taken_over_);
     std::cout << fmt::format("; {:.1f} s\n{}/report.html\n", seconds(), folder_);
     return passed ? 0 : 1;
+  }
+
+  static void tell(const Coverage& coverage) {
+    std::size_t reached = 0;
+    for (const auto& [name, cover] : coverage.merged()) {
+      reached += cover.reached() ? 1u : 0u;
+      for (const auto& [engine, count] : cover.counts)
+        if (count < cover.least)
+          std::cout << fmt::format("cover {} on {}: {}, expected {} or more\n", name, engine, count, cover.least);
+    }
+    if (!coverage.merged().empty()) std::cout << fmt::format("{} of {} covers\n", reached, coverage.merged().size());
   }
 
   bool late() const { return options_.minutes && seconds() >= 60 * *options_.minutes; }

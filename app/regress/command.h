@@ -15,6 +15,7 @@ struct RegressOptions {
   std::string output;  // "" = waves/out/regress/NAME of the plan
   unsigned jobs = 0;   // 0 = one a processor
   bool resume = false, rerun_failed = false, list = false, no_replay = false;
+  bool rank = false;                      // the runs by what they add to the covers
   bool slurm = false;                     // on a cluster, in tasks as long as this
   double task_seconds = 60;               //
   bool task = false;                      // this is such a task, `plan` its file

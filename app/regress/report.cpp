@@ -80,6 +80,8 @@ nlohmann::json report_json(const Report& report) {
           {"fresh_from", report.fresh_from},
           {"wall_seconds", report.wall_seconds},
           {"buckets", buckets},
+          {"covers", covers_json(report.coverage)},
+          {"ranked", ranked_json(report.ranked, plan.runs)},
           {"runs", runs}};
 }
 

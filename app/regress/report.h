@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/regress/covers.h"
 #include "app/regress/result.h"
 
 namespace brick::regress {
@@ -25,6 +26,8 @@ struct Report {
   const std::vector<Bucket>& buckets;
   const std::vector<Replay>& replays;  // of each bucket
   nlohmann::json build;
+  const Coverage& coverage;
+  std::vector<Ranked> ranked;  // of --rank
   std::uint64_t fresh_from;
   double wall_seconds;
 };

@@ -202,7 +202,15 @@ bool BreqHost::verdict(const std::string& step, const BreqScoreboard::Counts& le
     return fmt::format("{} lines, BREQ pulsed {} times, stayed low {} times, raised by execution {} times, {} queries",
                        n.lines, n.pulses, n.stays_low, n.raised_by_execution, n.queries);
   };
+  const auto cover = [&](const char* what, unsigned count, unsigned needed) {
+    if (needed > 0 || count > 0) context_.report.cover(fmt::format("{}, {}", step, what), count, needed);
+  };
   std::string detail = text(c);
+  cover("lines", c.lines, least.lines);
+  cover("pulses of BREQ", c.pulses, least.pulses);
+  cover("BREQ stays low", c.stays_low, least.stays_low);
+  cover("BREQ raised by execution", c.raised_by_execution, least.raised_by_execution);
+  cover("queries", c.queries, least.queries);
   if (!c.reaches(least)) detail += "; expected at least " + text(least);
   const bool good = violations.size() == reported_;
   if (!good) {

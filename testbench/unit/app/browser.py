@@ -19,18 +19,12 @@ class Browser:
             sys.exit(77)
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         (its_input, self.output), (self.input, its_output) = os.pipe(), os.pipe()
-
-        def pipes():  # it reads from 3 and writes to 4; neither end may lie where the other goes
-            ends = os.dup(its_input), os.dup(its_output)
-            high = [os.dup2(end, 100 + i) for i, end in enumerate(ends)]
-            os.dup2(high[0], 3)
-            os.dup2(high[1], 4)
-
         self.process = subprocess.Popen(
-            [program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+            ["bash", "-c", f'exec "$0" "$@" 3<&{its_input} 4>&{its_output}',  # where it reads and writes
+             program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
              "--disable-background-networking", "--disable-extensions", "--remote-debugging-pipe",
              f"--user-data-dir={self.profile.name}"],
-            preexec_fn=pipes, pass_fds=(3, 4), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            pass_fds=(its_input, its_output), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(its_input)
         os.close(its_output)
         self.number, self.rest, self.session = 0, b"", None

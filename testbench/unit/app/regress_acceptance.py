@@ -230,6 +230,30 @@ def regress_resume():
     check(all(int(name.split("-")[1]) > 30 for name in before), "a usual seed is none that is fresh")
 
 
+def regress_rank():
+    """Covers of the runs that passed, together; the runs by what each adds, until none adds anything."""
+    folder = Folder('[[row]]\nname = "own"\n'
+                    'command = ["sh", "-c", "cp {plan}/{seed}.json run.json; exit $(({seed} / 5))"]\n'
+                    'seeds = "1-5"\n[[row]]\nbench = "smoke"\nseeds = "7-8"\n')
+    brought = {"a": 1, "b": 1}, {"a": 7, "c": 5}, {"c": 10, "d": 1, "e": 1}, {"a": 1}, {"f": 1}
+    for seed, counts in enumerate(brought, 1):
+        covers = {name: {"count": n, "least": 10 if name == "c" else 1} for name, n in counts.items()}
+        (folder.path / f"{seed}.json").write_text(json.dumps({"covers": covers}))
+    r = folder.regress("--rank")
+    report = folder.report()
+    covers = {c["name"]: (c["counts"], c["least"], c["reached"]) for c in report["covers"]}
+    ours = {name: c for name, c in covers.items() if len(name) == 1}
+    check(ours == {"a": ({"own": 9}, 1, True), "b": ({"own": 1}, 1, True), "c": ({"own": 15}, 10, True),
+                   "d": ({"own": 1}, 1, True), "e": ({"own": 1}, 1, True)}, f"{ours}: expected none of the failed run")
+    # seed 3 brings c, d, e; then seed 1 brings a and b; nothing is left for seeds 2 and 4
+    ranked = [(k["run"], k["adds"]) for k in report["ranked"] if k["run"].startswith("own")]
+    check(ranked == [("own.seed-3", 3.0), ("own.seed-1", 2.0)], f"{ranked}")
+    check("3.0 new" in r.stdout and f"{len(covers)} of {len(covers)} covers" in r.stdout, r.stdout)
+    # 16 walking ones of either run
+    check(covers["smoke: dual-ported RAM, walking ones"] == ({"systemc": 32}, 16, True), f"{covers}")
+    check(any(name.startswith("bus: 104, ") for name in covers), "rules of the bus by region")
+
+
 def sleepers(mark):
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):

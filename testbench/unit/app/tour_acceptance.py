@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Runs the commands of docs/tour.md in the tree: statuses as their comments say, and each line that the page quotes is
+printed. Left out: programs with a window.
+usage: tour_acceptance.py BRICK CASE"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import command
+from command import REPOSITORY, check
+
+WINDOWS = "gtkwave", "xdg-open"
+
+
+def commands(block):
+    """(text, exit status) of each, a here-document with the command it belongs to."""
+    lines = block.splitlines()
+    while lines:
+        text = lines.pop(0)
+        if here := re.search(r"<<'(\w+)'", text):
+            while not text.endswith("\n" + here[1]):
+                text += "\n" + lines.pop(0)
+        status = re.search(r"# exit status (\d)$", text)
+        yield text, int(status[1]) if status else 0
+
+
+def tour():
+    os.environ["PATH"] = f"{pathlib.Path(command.BRICK).resolve().parent}:{os.environ['PATH']}"
+    if shutil.which("ccache"):
+        os.environ["MAKEFLAGS"] = r"-- CC=ccache\ riscv64-unknown-elf-gcc"
+    printed, quoted, ran = "", 0, 0
+    for kind, block in re.findall(r"^```(\w*)\n(.*?)^```$", (REPOSITORY / "docs/tour.md").read_text(), re.M | re.S):
+        if kind != "sh":
+            for line in block.splitlines():
+                check(f"\n{line}\n" in f"\n{printed}", f"the page quotes `{line}`; printed: {printed}")
+                quoted += 1
+            continue
+        printed = ""
+        for text, status in commands(block):
+            if text.startswith((*WINDOWS, "export ")):
+                continue
+            r = subprocess.run(["bash", "-c", text], cwd=REPOSITORY, capture_output=True, text=True)
+            check(r.returncode == status, f"{text}: exit {r.returncode}, expected {status}: {r.stdout}{r.stderr}")
+            printed += r.stdout
+            ran += 1
+    check(ran >= 8 and quoted >= 6, f"{ran} commands, {quoted} lines quoted")
+    made = REPOSITORY / "build/tour"
+    check((made / "bug.fst").stat().st_size > 1000 and (made / "seeds/report.html").exists(), "waveform and page")
+
+
+globals()[command.CASE]()
