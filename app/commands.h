@@ -19,6 +19,7 @@ struct ServeOptions {
   std::string listen = "127.0.0.1:1025";
   bool free = false;             // simulated time does not follow the clock on the wall
   bool save_takes_long = false;  // SAVE is answered before it is over
+  int end_with = 0;              // process that it ends with, 0: none
 };
 int serve_command(const ServeOptions& options);
 struct TimingOptions {

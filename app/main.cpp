@@ -12,6 +12,7 @@
 #include "app/build_info.h"
 #include "app/byte_text.h"
 #include "app/commands.h"
+#include "app/control/command.h"
 #include "app/cpu_command.h"
 #include "app/line_cover.h"
 #include "app/regress/command.h"
@@ -33,12 +34,19 @@ unsigned job_count(const std::string& text) {
   return static_cast<unsigned>(jobs);
 }
 
+void add_end_with(CLI::App& command, int& parent) {
+  command.add_option("--end-with", parent, "ends when process PID, which has started it, has ended")
+      ->type_name("PID")
+      ->check(CLI::PositiveNumber);
+}
+
 struct Commands {
   CLI::App app{kAbout, "brick"};
   std::function<int()> chosen;
 
   RunOptions run_options, exec_options, console_options;
   ServeOptions serve_options;
+  ControlOptions control_options;
   TimingOptions timing_options;
   PlotOptions plot_options;
   RegressOptions regress_options;
@@ -102,7 +110,20 @@ struct Commands {
                     "the interface does not wait for the end of SAVE: it answers NUL");
     add_run_options(*serve, serve_options.run, "systemc");
     add_plant_options(*serve, serve_options.run);
+    add_end_with(*serve, serve_options.end_with);
     serve->callback([this] { chosen = [this] { return serve_command(serve_options); }; });
+
+    auto* control = app.add_subcommand(
+        "control", "a controller for a program that holds its clock: JSON-RPC 2.0 on a socket (docs/control.md)");
+    control
+        ->add_option("SOCKET", control_options.place, "path of a Unix socket that is made, or fd:N, one that is open")
+        ->required();
+    control->add_flag("--realtime", control_options.realtime,
+                      "between calls simulated time follows the clock on the wall, if it can (default: it stands)");
+    add_run_options(*control, control_options.run, "systemc");
+    add_plant_options(*control, control_options.run);
+    add_end_with(*control, control_options.end_with);
+    control->callback([this] { chosen = [this] { return control_command(control_options); }; });
 
     auto* timing = app.add_subcommand(
         "timing", "bus-timing report of a testbench: rules, margins, BREQ and interrupt times, bus load");

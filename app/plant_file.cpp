@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/byte_text.h"
 #include "app/hand_encoder.h"
 #include "app/time_text.h"
 #include "systemc/core/usage_error.h"
@@ -357,6 +358,27 @@ class Reader {
 
 plant::PlantParameters read_plant_file(const std::string& path, std::uint32_t fitted, std::uint64_t seed) {
   return Reader(path, fitted).read_all(seed);
+}
+
+Amplifier::Fault amplifier_fault(const std::string& cause) {
+  std::vector<std::string> known;
+  for (const auto& [name, fault] : kCauses) {
+    if (name == cause) return fault;
+    known.push_back(name);
+  }
+  throw UsageError(fmt::format("{} is no cause; expected one of {}", beginning_of(cause), fmt::join(known, ", ")));
+}
+
+std::uint16_t channel_pins(const std::vector<std::string>& names) {
+  unsigned pins = 0;
+  for (const std::string& name : names) {
+    const auto* found = std::find(kChannelPinNames.begin(), kChannelPinNames.end(), name);
+    if (found == kChannelPinNames.end())
+      throw UsageError(fmt::format("{} is no input pin of a channel; expected one of {}", beginning_of(name),
+                                   fmt::join(kChannelPinNames, ", ")));
+    pins |= 1u << (found - kChannelPinNames.begin());
+  }
+  return static_cast<std::uint16_t>(pins);
 }
 
 }  // namespace brick

@@ -66,6 +66,7 @@ int serve_command(const ServeOptions& options) {
   const SetUp set_up(options.run);
   EthernetServer server(options.listen);
   Simulation simulation(options.run, config, "serve");
+  simulation.end_with(options.end_with);
   set_up.check(simulation);
   CommunicationsProcessor processor(simulation.bus(), {config.board.dpram_words, options.save_takes_long});
   SimulationLoop loop(simulation.bus(), options.free);

@@ -90,22 +90,41 @@ Simulation::Simulation(const RunOptions& options, const MachineConfig& config, s
     if (debugger_ && waivers_.reason(ledger, violation).empty()) debugger_->bus_error(timing_->text(ledger, violation));
   };
   if (!options.gdb.empty()) wait_for_debugger(gdb_port(options));
-  if (!options.record.empty())
-    recorder_ = std::make_unique<Recorder>(*machine_, options.record, options.record_of, usual_columns());
-  if (options.wave.empty()) return;
-  wave_ = options.wave;
-  const WaveWindow window = wave_window(options);
-  const TraceGroups groups = trace_groups(options);
+  if (!options.record.empty()) open_record(options.record, options.record_of);
+  if (!options.wave.empty()) open_wave(options.wave, wave_window(options), trace_groups(options));
+}
+
+void Simulation::open_wave(const std::string& file, const WaveWindow& window, const TraceGroups& groups) {
+  if (trace_) throw UsageError(fmt::format("--wave {}: there is {} already; expected its end first", file, wave_));
   if (const auto unknown = groups.unmatched(machine_->signals()))
-    throw UsageError(fmt::format("--trace {}: board {} has no such signal; expected names or globs of docs/signals.md",
-                                 *unknown, config.board.name));
+    throw UsageError(
+        fmt::format("--trace {}: this board has no such signal; expected names or globs of docs/signals.md", *unknown));
   try {
-    const auto folder = std::filesystem::path(options.wave).parent_path();
+    const auto folder = std::filesystem::path(file).parent_path();
     std::error_code ignored;  // opening the file says what is wrong
     if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
-    trace_ = TraceWriter::open(options.wave, window.from, window.to);
+    trace_ = TraceWriter::open(file, window.from, window.to);
   } catch (const std::exception& e) { throw UsageError(fmt::format("--wave {}; expected a writable place", e.what())); }
+  wave_ = file;
   machine_->signals().attach(trace_.get(), groups);
+}
+
+void Simulation::close_wave() {
+  if (!trace_) return;
+  machine_->signals().attach(nullptr);
+  trace_->close();
+  trace_.reset();
+}
+
+void Simulation::open_record(const std::string& file, const std::string& of) {
+  if (recorder_) throw UsageError(fmt::format("--record {}: there is one already; expected its end first", file));
+  recorder_ = std::make_unique<Recorder>(*machine_, file, of, usual_columns());
+}
+
+void Simulation::close_record() {
+  if (!recorder_) return;
+  recorder_->close();
+  recorder_.reset();
 }
 
 void Simulation::wait_for_debugger(std::uint16_t port) {
@@ -141,11 +160,8 @@ void Simulation::run(const std::function<void()>& host) {
   begin_ = last_progress_ = std::chrono::steady_clock::now();
   sc_core::sc_start();  // returns when the thread has ended: nothing else is scheduled
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  if (trace_) {
-    machine_->signals().attach(nullptr);
-    trace_->close();
-  }
-  if (recorder_) recorder_->close();
+  close_wave();
+  close_record();
   clear_progress();
   if (thread.error()) std::rethrow_exception(thread.error());
 }
@@ -164,6 +180,8 @@ void Simulation::progress() {
                                   : asked_to_stop == SIGTERM ? "SIGTERM"
                                                              : "SIGHUP",
                                   static_cast<double>(machine_->now_fs()) * 1e-12));
+  if (parent_ != 0 && getppid() != parent_)
+    throw Interrupted(fmt::format("process {} has gone, with which it was to end", parent_));
   if (show_progress) return show_progress();
   if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();

@@ -52,6 +52,15 @@ class Simulation {
   };
   TimingVerdict timing_verdict();
 
+  // From now on, until it is ended or the run has ended; one of each at a time. Throw UsageError.
+  void open_wave(const std::string& file, const WaveWindow& window, const TraceGroups& groups);
+  void close_wave();
+  void open_record(const std::string& file, const std::string& of);  // "" = the usual columns
+  void close_record();
+
+  // The run ends as with SIGTERM when this process is no child of process `parent` any more.
+  void end_with(int parent) { parent_ = parent; }
+
   bool go_on();  // after Interrupted: true when a key asked to stop (SIGINT), which may be asked again
 
   std::function<std::string()> progress_text;  // more for the line that a terminal shows
@@ -85,6 +94,7 @@ class Simulation {
   std::string wave_;
   std::chrono::steady_clock::time_point begin_, last_progress_;
   double seconds_ = 0;
+  int parent_ = 0;  // 0: whatever it is
   bool terminal_ = false, prints_to_terminal_ = false, shown_ = false;
 };
 

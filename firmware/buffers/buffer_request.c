@@ -167,7 +167,7 @@ void buffer_request_host_selects(uint32_t cs) { select(&request.host, cs); }
 void buffer_request_panel_selects(uint32_t cs) { select(&request.panel, cs); }
 
 void buffer_request_poll(void) {
-  if (request.on != i_plain_integer(I16_ROTARY_REQUEST_ON) || request.off != i_plain_integer(I17_ROTARY_REQUEST_OFF) ||
-      request.fixed != i_plain_integer(I18_FIXED_BUFFER_WARNING))
+  if (request.on != i_integer(I16_ROTARY_REQUEST_ON) || request.off != i_integer(I17_ROTARY_REQUEST_OFF) ||
+      request.fixed != i_integer(I18_FIXED_BUFFER_WARNING))
     buffer_request_evaluate();
 }

@@ -61,7 +61,7 @@ static bool renew(void) {
     hal_host_interrupts(false, false);
     return false;
   }
-  if (spare == 0u) {
+  if (host_port_renewed != 0u) { /* what was left of the period before goes with it */
     host_port_renewed = 0;
     host_port_granted = room >= HOST_PORT_PACE ? HOST_PORT_PACE : 0;
     spare = room >= HOST_PORT_PACE ? 0u : HOST_PORT_PACE;

@@ -127,6 +127,22 @@ void path_at_end(uint32_t count, struct path_point* point) {
   for (uint32_t i = 0; i < count; i++) point->parts[i] = PATH_WHOLE;
 }
 
+static void move_by(struct path_move* m, uint32_t axis, double shift) {
+  m->start[axis] += shift;
+  m->end[axis] += shift;
+  if (axis >= AXIS_X && axis <= AXIS_Z) m->circle.centre[axis - AXIS_X] += shift;
+  slice_pause();
+}
+
+void path_begin_at(struct path* p, double position[AXIS_COUNT]) {
+  for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) {
+    const double shift = position[axis] - path_of(p, 0)->start[axis];
+    for (uint32_t i = 0; shift != 0.0 && i < p->count; i++) move_by(path_of(p, i), axis, shift);
+    position[axis] = path_of(p, p->count - 1u)->end[axis];
+    slice_pause();
+  }
+}
+
 int64_t path_pop(struct path* p) {
   const int64_t time = path_of(p, 0)->time;
   p->first = (p->first + 1u) % PATH_MOVES;

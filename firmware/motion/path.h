@@ -77,5 +77,7 @@ void path_at(struct path* p, struct path_reach reach, int64_t time, struct path_
 void path_axes_at(struct path* p, const struct path_point* point, double position[AXIS_COUNT]); /* user units */
 void path_at_end(uint32_t count, struct path_point* point);                                     /* of so many moves */
 int64_t path_pop(struct path* p); /* the first one is over; what to take off times */
+/* Its moves begin at `position`, and go the ways that they were to go: it becomes the end of the last. */
+void path_begin_at(struct path* p, double position[AXIS_COUNT]);
 
 #endif

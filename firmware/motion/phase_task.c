@@ -75,7 +75,7 @@ static inline void commutate(struct phase_motor* m, uint32_t words) {
 
 /* A smaller I7 acts at once: the count may be beyond it already. */
 void phase_task_interrupt(void) {
-  if (++prescaler <= (uint32_t)i_plain_integer(I7_PHASE_CYCLE_EXTENSION)) return;
+  if (++prescaler <= (uint32_t)i_integer(I7_PHASE_CYCLE_EXTENSION)) return;
   prescaler = 0;
   struct phase_motor* m = phase_motors;
   uint32_t words = MEMORY_MOTOR_WORDS;

@@ -28,10 +28,11 @@ static struct guard {
 } guards[MOTORS];
 
 uint32_t protection_watched;
+volatile uint32_t protection_always_watched;
 
-enum { TURNS = 4, FIRST_TURN = 0x11111111 }; /* servo interrupts in which all motors are looked at; those of one */
-static uint32_t turn, urgent_watched;        /* S: which it is; bit n: what is urgent about motor n is looked for */
-static volatile bool asked;                  /* S sets, R clears: a pass does not wait for its turn */
+enum { FIRST_TURN = 0x11111111 };     /* motors that are looked at in the first of PROTECTION_TURNS */
+static uint32_t turn, urgent_watched; /* S: which it is; bit n: what is urgent about motor n is looked for */
+static volatile bool asked;           /* S sets, R clears: a pass does not wait for its turn */
 
 static volatile bool foreground; /* I13, as the last pass has seen it */
 static volatile bool stands;     /* B */
@@ -41,7 +42,7 @@ void protection_initialize(void) {
   __builtin_memset(guards, 0, sizeof guards);
   overload_initialize();
   foreground = stands = asked = false;
-  turn = 0;
+  protection_watched = protection_always_watched = turn = urgent_watched = 0;
   shown = 0;
 }
 
@@ -330,6 +331,7 @@ void protection_pass(void) {
   if (stands) return;
   asked = false;
   foreground = i_variable_foreground_in_position();
+  protection_always_watched = foreground ? UINT32_MAX : overload_watched;
   uint32_t left = motors_active;
   for (uint32_t motor = 0; left != 0u; ++motor, left >>= 1)
     if ((left & 1u) != 0u) check(motor);
@@ -351,16 +353,15 @@ static bool is_urgent(uint32_t motor) {
          (closed && is_beyond_desired(motor, &view, up));
 }
 
-void protection_begin_servo(void) {
-  const bool rare = i_plain_integer(I8_REAL_TIME_PERIOD) >= TURNS && !stands;
-  urgent_watched = rare ? motors_enabled & (uint32_t)FIRST_TURN << turn : 0u;
-  turn = (turn + 1u) % TURNS;
+void protection_take_turn(void) {
+  urgent_watched = stands ? 0u : motors_enabled & (uint32_t)FIRST_TURN << turn;
+  turn = (turn + 1u) % PROTECTION_TURNS;
   protection_watched = foreground ? UINT32_MAX : overload_watched | urgent_watched;
 }
 
 void protection_look(uint32_t motor) {
   if ((overload_watched >> motor & 1u) != 0u) overload_servo(motor);
-  if ((urgent_watched >> motor & 1u) != 0u && is_urgent(motor)) {
+  if (protection_takes_turns() && (urgent_watched >> motor & 1u) != 0u && is_urgent(motor)) {
     asked = true;
     hal_request_real_time();
   }

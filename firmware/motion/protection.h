@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/variables/i_variables.h"
+
 /* What a trip needs of higher layers; image/tables.c fills it in. */
 struct protection_hooks {
   void (*abort)(uint32_t cs); /* the program of a coordinate system and all its motors */
@@ -22,9 +24,18 @@ void protection_stand(bool still);             /* background: nothing is looked 
 bool protection_in_position(uint32_t motor);  /* 0..31 */
 bool protection_all_in_position(uint32_t cs); /* those of a coordinate system; false: it has none */
 
-extern uint32_t protection_watched; /* S; bit n: the servo task looks at motor n in this interrupt */
-void protection_begin_servo(void);  /* once an interrupt, before protection_servo */
+extern uint32_t protection_watched;                 /* S; bit n: the servo task looks at motor n in this interrupt */
+extern volatile uint32_t protection_always_watched; /* R; in each, as the last pass has left it */
+enum { PROTECTION_TURNS = 4 };                      /* servo interrupts in which all motors are looked at */
+static inline bool protection_takes_turns(void) { return i_integer(I8_REAL_TIME_PERIOD) >= PROTECTION_TURNS; }
+void protection_take_turn(void);
 void protection_look(uint32_t motor);
+static inline void protection_begin_servo(void) { /* once an interrupt, before protection_servo */
+  if (protection_takes_turns())
+    protection_take_turn();
+  else
+    protection_watched = protection_always_watched;
+}
 static inline void protection_servo(
     uint32_t motor) { /* 0..31: overload, in position of the foreground, urgent things */
   if ((protection_watched >> motor & 1u) != 0u) protection_look(motor);

@@ -66,6 +66,10 @@ void segment_start_of(uint32_t cs, double position[AXIS_COUNT]) {
   for (uint32_t axis = 0; axis < AXIS_COUNT; axis++) position[axis] = path_of(&paths[cs], 0)->start[axis];
 }
 
+void segment_begin_at(uint32_t cs, double position[AXIS_COUNT]) {
+  if (paths[cs].count != 0) path_begin_at(&paths[cs], position);
+}
+
 static bool work_at_once(uint32_t cs, bool alone) {
   struct sequence* q = &sequences[cs];
   if (!segment_points_make(cs, alone && segment_ring_ahead(cs) <= q->least)) return false;

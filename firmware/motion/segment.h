@@ -25,5 +25,6 @@ void segment_order(uint32_t cs, enum lookahead_order order);
 bool segment_stands(uint32_t cs);                                /* by such an order */
 void segment_forget(uint32_t cs);                                /* servo task held off: all of it, an abort */
 void segment_start_of(uint32_t cs, double position[AXIS_COUNT]); /* where the moves that wait begin */
+void segment_begin_at(uint32_t cs, double position[AXIS_COUNT]); /* they do there; it becomes where they end */
 
 #endif

@@ -220,6 +220,15 @@ static bool may_match(uint32_t cs) {
   return s->starting || (s->pending_axes == 0 && !cs_moves(s) && !segment_is_busy(cs));
 }
 
+/* Axes are where the motors are, and motors the program's. Moves that a stop has left waiting are still to be made:
+ * they begin there, the program goes on where they end. */
+static void begin(uint32_t cs) {
+  double* position = coordinate_systems[cs].position;
+  segment_start_of(cs, position);
+  system_motors_begin(cs);
+  segment_begin_at(cs, position);
+}
+
 /* False: there is nothing to do for it at this interrupt. */
 static bool turn(uint32_t cs) {
   struct coordinate_system* s = &coordinate_systems[cs];
@@ -235,7 +244,7 @@ static bool turn(uint32_t cs) {
     return true;
   }
   if ((s->matching && may_match(cs)) || has_gone_alone(s)) {
-    system_motors_begin(cs);
+    begin(cs);
     return true;
   }
   if (runs_on(cs)) return true;

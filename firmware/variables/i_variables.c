@@ -40,7 +40,7 @@ static __attribute__((noinline)) int32_t timer_read(uint32_t number) {
   return left < TIMER_LOWEST ? TIMER_LOWEST : (int32_t)left;
 }
 
-int32_t i_integer(uint32_t number) { return is_timer(number) ? timer_read(number) : i_integers[number]; }
+int32_t i_integer_of(uint32_t number) { return is_timer(number) ? timer_read(number) : i_integers[number]; }
 
 double i_variable_read(uint32_t number) {
   if (number >= VARIABLE_COUNT) return 0.0;
@@ -97,7 +97,7 @@ static void share(const struct i_entry* entry, double value) {
 }
 
 bool i_variable_foreground_in_position(void) {
-  return i_plain_integer(I13_FOREGROUND_IN_POSITION) != 0 && !i_table_of_geo_pmac();
+  return i_integer(I13_FOREGROUND_IN_POSITION) != 0 && !i_table_of_geo_pmac();
 }
 
 void i_variable_write(uint32_t number, double value) {

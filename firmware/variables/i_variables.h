@@ -19,10 +19,13 @@ double i_variable_default(uint32_t number);            /* what `I{number}=*` ass
 void i_variable_set_open_memory_end(uint32_t address); /* I4908, which nobody else writes */
 bool i_variable_foreground_in_position(void);          /* I13, but of a Geo PMAC, where that is something else */
 extern int32_t i_integers[];
-/* The same of one that is no timer (Isx11, Isx12), for what runs at each interrupt. */
-static inline int32_t i_plain_integer(uint32_t number) { return i_integers[number]; }
 void i_variable_set_lookahead_state(uint32_t cs, uint32_t state); /* Isx21, as it is: no order */
-int32_t i_integer(uint32_t number); /* fast read of an integer, any task; of a real it would have the whole part only */
+int32_t i_integer_of(uint32_t number);                            /* i_integer of a number that is not known before */
+/* Fast read of an integer, any task; of a real it would have the whole part only. Below the variables of coordinate
+ * systems no timer stands: a constant number there is one load. */
+static inline int32_t i_integer(uint32_t number) {
+  return __builtin_constant_p(number) && number < I_CS_FIRST ? i_integers[number] : i_integer_of(number);
+}
 
 /* What a write of an I-variable does in higher layers, by enum i_field of the table; image/tables.c fills it in. Called
  * after the value is stored, without it where the entry is null. `instance`: motor, coordinate system or IC. */

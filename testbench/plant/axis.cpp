@@ -92,6 +92,7 @@ bool Axis::step(Tick now, double dac_volts, MotorInputs& inputs) {
   unsigned pins = present;
   if (has_amplifier()) pins |= static_cast<unsigned>(amplifier_.fault_pin()) << kFault;
   pins ^= noise_.mask(seen);
+  pins = (pins & ~unsigned{held_}) | (held_levels_ & held_);
   std::uint16_t& shown = inputs.pins[par_.channel];
   const auto edited = static_cast<std::uint16_t>((shown & ~unsigned{owned_}) | (pins & owned_));
   const bool differs = edited != shown;

@@ -79,6 +79,10 @@ class Axis {
   void cut(std::uint16_t wires) { encoder_.cut(wires), wake(); }
   void trip(Amplifier::Fault cause) { amplifier_.trip(cause), wake(); }
   void set_load(double torque) { motor_.set_load(torque); }
+  // Of its pins, those of `pins` show `levels` whatever the axis does, all others what it does.
+  void hold(std::uint16_t pins, std::uint16_t levels) { held_ = pins, held_levels_ = levels, wake(); }
+  std::uint16_t held() const { return held_; }
+  std::uint16_t held_levels() const { return held_levels_; }
   std::int64_t position(Tick now) const { return motion_.at(now); }  // units, kUnitsPerCount
   std::int64_t counts(Tick now) const { return detail::floor_div(position(now), kUnitsPerCount); }
   double velocity(Tick now) const;  // counts/s
@@ -98,6 +102,7 @@ class Axis {
   AxisParameters par_;
   Tick step_;
   std::uint16_t owned_;  // pins that it drives; the others of the channel belong to somebody else
+  std::uint16_t held_ = 0, held_levels_ = 0;
   Encoder encoder_;
   std::optional<SsiEncoder> absolute_;
   Switches switches_;

@@ -198,9 +198,10 @@ def serve_stops():
 def serve_polls():
     """The driver in C polls eight axes while they go, from one connection, and sends them from another."""
     driver = pathlib.Path(command.BRICK).with_name("poll_driver")
+    states = "".join(f"#{motor}?" for motor in range(1, 9))
     go = "".join(f"#{motor}J={1000 * motor}" for motor in range(1, 9))
     with moving() as server:
-        r = subprocess.run([driver, str(server.port), "400", "&1E", go, "#1?"], text=True, capture_output=True,
+        r = subprocess.run([driver, str(server.port), "400", "&1E", states, go], text=True, capture_output=True,
                            timeout=PATIENCE, check=False)
         check(r.returncode == 0, r.stderr)
         with server.client() as client:
@@ -209,6 +210,8 @@ def serve_polls():
                 axes.arrives(motor, 1000 * motor)
     polls = [line.split("|")[:-1] for line in r.stdout.splitlines() if line.count("|") == 32]
     check(len(polls) == 400, f"{len(polls)} polls")
+    enabled = [line.split("|")[:-1] for line in r.stdout.splitlines() if line.count("|") == 8]
+    check(len(enabled) == 1 and all(int(word, 16) >> ENABLED & 1 for word in enabled[0]), f"behind &1E: {enabled}")
     for motor in range(8):
         places = [float(poll[4 * motor + 1]) for poll in polls]
         speeds = [float(poll[4 * motor + 2]) for poll in polls]

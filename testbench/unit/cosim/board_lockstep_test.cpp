@@ -98,7 +98,7 @@ void play(std::uint32_t ics, int seed, BoardTraffic::Options options, Tick end, 
   options.ics = ics;
   auto board = make_lockstep_board(make_rtl_board(ics), make_model_board(ics));
   const Life life(*board);
-  BoardTraffic traffic(static_cast<std::uint64_t>(seed), options);
+  BoardTraffic traffic(random_seed(static_cast<std::uint64_t>(seed)), options);
   ASSERT_NO_THROW(traffic.run(*board, end));
   EXPECT_EQ(board->now(), end);
   EXPECT_THAT(life.lacks(traffic, least), ::testing::IsEmpty());
@@ -136,7 +136,7 @@ TEST_P(BoardLockstep, IsEqualAtEveryTickAfterTripsWithWritesBehindThem) {
     trips += after.get(pin::kWdTripped) & ~before.get(pin::kWdTripped);
     high += after.get(pin::kWdTripped) != 0 && (after.get(pin::kCtrl0) | after.get(pin::kCtrl1)) != 0;
   };
-  BoardTraffic traffic(static_cast<std::uint64_t>(seed()), options);
+  BoardTraffic traffic(random_seed(static_cast<std::uint64_t>(seed())), options);
   for (Tick end = 50'000; trips < kTrips; end += 50'000) ASSERT_NO_THROW(traffic.run(*board, end));
   EXPECT_EQ(high, 0u) << "a control output is high after a trip";
   EXPECT_GE(traffic.seen().writes_tripped, 10 * (kTrips - 1));

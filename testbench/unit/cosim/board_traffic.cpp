@@ -111,7 +111,8 @@ void BoardTraffic::outside_step() {
 void BoardTraffic::pause() {
   if (options_.dense || pick(60) != 0) return;
   const Tick ticks = 1000 + pick(60'000);
-  for (Tick* at : {&cpu_.at, &host_.at, &outside_at_}) *at += ticks;
+  for (Tick* at : {&cpu_.at, &host_.at, &outside_at_})
+    if (*at != rests_until_) *at += ticks;
 }
 
 // Words of the serial encoder inputs, mostly those that make frames follow each other: every channel, short periods.
@@ -284,7 +285,7 @@ void BoardTraffic::cpu_step() {
         reset_at_ = cpu_.at + pick(20);
       if (cpu_.at >= options_.silent_at && reset_at_ == kNever) {
         options_.silent_at = kNever;
-        cpu_.at += kTripTime;
+        rests_until_ = cpu_.at += kTripTime;
         reset_at_ = cpu_.at + pick(200'000);
       }
       break;

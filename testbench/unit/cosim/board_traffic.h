@@ -76,6 +76,7 @@ class BoardTraffic {
   std::vector<unsigned> ics_;  // indices
   unsigned driver_ = 0;        // of the clocks, mostly
   Tick outside_at_ = 0, reset_at_ = kNever;
+  Tick rests_until_ = kNever;  // the CPU, so that the watchdog trips
   bool in_reset_ = true;
   bool hurries_ = false;           // the CPU's next cycle follows at once
   unsigned tripped_accesses_ = 0;  // still to be made before the reset

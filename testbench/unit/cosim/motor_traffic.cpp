@@ -141,7 +141,7 @@ bool MotorTraffic::start_access() {
   else if (!options_.moving_clocks)
     write(ic, true, kGlobal, &ic == &ics_.front() ? kOwnClocks : kOwnClocks | kInputs);
   else if (step % 2 == 0)
-    write(ic, true, kGlobal, clock_word(&ic == &ics_.front() && !options_.macro_drives));
+    write(ic, true, kGlobal, options_.macro_drives ? clock_word(false) | kInputs : clock_word(&ic == &ics_.front()));
   else if (step == 1 && options_.macro_drives)
     write_at(macro_ics_.front() + regs::macro_ic::kClockControl.address, true, clock_word(true) & ~kInputs);
   else if (step == 3 && options_.macro_drives)

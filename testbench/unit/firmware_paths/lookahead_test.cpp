@@ -261,7 +261,7 @@ TEST_F(Lookahead, FewerThanFourSegmentsAreFour) {
   EXPECT_EQ(times[1], times[2]);
 }
 
-// `<` runs back to the oldest point, assignments are made once, PE tells the line; after a jog it wants the motor back.
+// `<` runs back to the oldest point, assignments are made once; after a jog it wants the motor back.
 TEST_F(Lookahead, BackToTheBeginOfTheSequence) {
   fit({"1000X"});
   ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 M1->* M2->*"), "");

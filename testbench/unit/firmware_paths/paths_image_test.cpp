@@ -36,15 +36,18 @@ class PathsImage : public ::testing::Test {
     accepted("P1=P1+1 ENDWHILE CLOSE");
     accepted("B1R");
   }
-  // Mean of `count` segments behind the first `before`.
+  // Mean of `count` segments behind the first `before`. Steps of the sweeps: six a segment at most (docs/paths.md).
   double cycles_a_segment(OwnCycles& own, unsigned before, unsigned count) {
     for (int i = 0; own.points() < before && i < 1000; ++i) board.run_ms(5);
     own.from_here();
     for (int i = 0; own.points() < count && i < 3000; ++i) board.run_ms(5);
     EXPECT_GE(own.points(), count);
     const double mean = static_cast<double>(own.cycles()) / own.points();
-    std::printf("%.0f cycles a segment, %llu between two pauses at %s\n", mean,
+    const double steps = static_cast<double>(own.steps()) / own.points();
+    std::printf("%.0f cycles a segment, %.2f steps, %llu between two pauses at %s\n", mean, steps,
                 static_cast<unsigned long long>(own.longest()), own.longest_at().c_str());
+    EXPECT_LE(steps, 6);
+    EXPECT_GE(steps, 1) << "of a sweep, each segment one at least";
     EXPECT_EQ(value("RY$2014"), 0) << "a run-time error: the servo task came to the end of the segments";
     return mean;
   }
@@ -67,7 +70,7 @@ const std::vector<std::string> kSmooth = {
 
 TEST_F(PathsImage, ASegmentOfEightAxesAtSpeed) {
   start(54, "0.06", kSmooth);
-  OwnCycles own(board, "segment_work", "lookahead_add");
+  OwnCycles own(board, "segment_work", "lookahead_add", "limits_reach");
   EXPECT_LE(cycles_a_segment(own, 60, 1000), 20000);
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
 }
@@ -76,14 +79,14 @@ TEST_F(PathsImage, ASegmentOfEightAxesAtSpeed) {
 TEST_F(PathsImage, ShortMovesPauseInTime) {
   start(54, "1",
         {"TM12 TA12 TS3 LINEAR X.1 Y.2 Z-.1 A.1 B.3 C.1 U.1 V-.1", "TM13 TA4 X-.1 Y.1 Z.2 A-.2 B.1 C-.1 U-.1"});
-  OwnCycles own(board, "segment_work", "lookahead_add");
+  OwnCycles own(board, "segment_work", "lookahead_add", "limits_reach");
   cycles_a_segment(own, 60, 100);
   EXPECT_LE(own.longest(), 500u) << own.longest_at();
 }
 
 TEST_F(PathsImage, ASegmentOfEightAxesWithCorners) {
   start(54, "1", kCorners);
-  OwnCycles own(board, "segment_work", "lookahead_add");
+  OwnCycles own(board, "segment_work", "lookahead_add", "limits_reach");
   const double few = cycles_a_segment(own, 60, 1000);
   EXPECT_LE(few, 20000);
   EXPECT_LE(own.longest(), 500u) << own.longest_at();

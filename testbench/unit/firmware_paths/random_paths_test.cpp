@@ -309,7 +309,7 @@ TEST_F(RandomPaths, WhateverHappensThePathIsTheSame) {
 
 // No line comes for a while: the moves end at rest, and the next ones begin there. Nothing jumps.
 TEST_F(RandomPaths, ADryBufferEndsMovesWithinTheLimits) {
-  const int count = count_of_paths(500), begin = first_path();
+  const int count = count_of_paths(2000), begin = first_path();
   for (int seed = begin; seed < begin + count && !HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(static_cast<unsigned>(seed)), more = more_of(seed);

@@ -343,7 +343,9 @@ TEST_F(Segments, QuitStopsAtTheEndOfTheExecutingMove) {
     platform::power_up();
     fit({"1000X"});
     ASSERT_EQ(host("I5113=5"), "");
-    store({"TM100 TA20 TS0", "X1", "X2", "X3", "X4"});
+    Lines lines = {"TM100 TA20 TS0 INC"};
+    for (int i = 0; i < 12; ++i) lines.emplace_back("X1");
+    store(lines);
     bool asked = false;
     run([&](double t) {
       if (t <= 150 || asked) return;
@@ -351,9 +353,41 @@ TEST_F(Segments, QuitStopsAtTheEndOfTheExecutingMove) {
       asked = true;
     });
     EXPECT_EQ(motors[0].trajectory, 2000 * 3072);
-    run([](double) {}, "&1R");
-    EXPECT_EQ(motors[0].trajectory, 4000 * 3072);
+    double before = at(1);
+    run(
+        [&](double) {
+          ASSERT_LE(std::abs(at(1) - before), 10.01 * kTickMs) << "10 counts/ms";
+          before = at(1);
+        },
+        "&1R");
+    EXPECT_EQ(motors[0].trajectory, 12000 * 3072) << "those that waited are made";
   }
+}
+
+// Home where Q has stopped: the moves that wait, an arc among them, begin there and go the ways that they were to go.
+TEST_F(Segments, MovesThatWaitBeginWhereTheMotorsAre) {
+  fit({"1000X", "1000Y"});
+  ASSERT_EQ(host("I5113=5"), "");
+  store({"TM100 TA20 TS0 INC", "X1", "X1", "CIRCLE1 X1 Y1 I1 J0", "LINEAR X1", "X1", "X1", "X1", "X1"});
+  bool asked = false;
+  run([&](double t) {
+    if (t <= 150 || asked) return;
+    EXPECT_EQ(host("&1Q"), "");
+    asked = true;
+  });
+  ASSERT_EQ(at(1), 2000);
+  ASSERT_EQ(host("#1HMZ#2HMZ"), "");
+  platform::servo_ticks(5);
+  ASSERT_EQ(at(1), 0);
+  double x = 0, y = 0;
+  run(
+      [&](double) {
+        ASSERT_LE(std::hypot(at(1) - x, at(2) - y), 16 * kTickMs) << "10 counts/ms; the arc has 15.7";
+        x = at(1), y = at(2);
+      },
+      "&1R");
+  EXPECT_EQ(motors[0].trajectory, 6000 * 3072);
+  EXPECT_EQ(motors[1].trajectory, 1000 * 3072);
 }
 
 // A move that Q leaves out joins again, from where the one before it ends.

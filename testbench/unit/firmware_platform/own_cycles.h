@@ -10,14 +10,15 @@
 namespace brick {
 
 // Own cycles of one function with all that it calls on the stack of slices, interrupts above it taken off; how often
-// `point` is reached in it.
+// `point` is reached in it, and `step`.
 class OwnCycles {
  public:
-  OwnCycles(ImageBoard& board, const std::string& function, const std::string& point)
+  OwnCycles(ImageBoard& board, const std::string& function, const std::string& point, const std::string& step = "")
       : board_(board), elf_(BRICK_FIRMWARE_ELF) {
     begin_ = *elf_.symbol(function);
     pause_ = *elf_.symbol("slice_pause");
     point_ = *elf_.symbol(point);
+    if (!step.empty()) step_ = *elf_.symbol(step);
     trap_ = *elf_.symbol("trap_vector"), trap_end_ = *elf_.symbol("trap_real_time");
     board.on_instruction = [this] { look(); };
   }
@@ -26,7 +27,8 @@ class OwnCycles {
   std::uint64_t longest() const { return longest_; }  // between two pauses
   std::string longest_at() const { return longest_at_; }
   unsigned points() const { return points_; }
-  void from_here() { cycles_ = points_ = 0; }
+  unsigned steps() const { return steps_; }
+  void from_here() { cycles_ = points_ = steps_ = 0; }
 
  private:
   static constexpr std::uint32_t kSideStack = 0x20000000, kSideStackBytes = 8192;
@@ -54,6 +56,7 @@ class OwnCycles {
         since_pause_ = 0;
       }
       points_ += pc == point_;
+      steps_ += pc == step_;
       inside_ = pc != return_ || sp != sp_;
     } else if (pc == begin_) {
       inside_ = true, since_pause_ = 0;
@@ -62,12 +65,12 @@ class OwnCycles {
   }
   ImageBoard& board_;
   const ElfFile elf_;
-  std::uint32_t begin_, pause_, point_, trap_, trap_end_;
+  std::uint32_t begin_, pause_, point_, step_ = 0, trap_, trap_end_;
   bool inside_ = false, interrupted_ = false;
   std::uint32_t return_ = 0, sp_ = 0, before_pc_ = 0, before_sp_ = 0;
   std::uint64_t last_ = 0, cycles_ = 0, since_pause_ = 0, longest_ = 0;
   std::string longest_at_;
-  unsigned points_ = 0;
+  unsigned points_ = 0, steps_ = 0;
 };
 
 }  // namespace brick

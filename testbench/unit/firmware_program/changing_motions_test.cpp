@@ -38,6 +38,19 @@ class ChangingMotions : public MovingMotors {
     *hal_x(kCaptured) = count;
     *hal_x(kStatus) |= kCaptureFlag;
   }
+  // After an abort: interrupts until its ramp begins, and from which velocity: the way of the ramp is v^2 / 2 Ixx15.
+  struct Ramp {
+    unsigned ticks = 0;
+    double from = 0;
+  };
+  static Ramp ramp(double ixx15) {
+    Ramp is;
+    for (; is.ticks < 20 && !motors[0].status.aborting; ++is.ticks) platform::servo_ticks(1);
+    const double begins = at(1);
+    rest();
+    is.from = std::sqrt(2 * ixx15 * (at(1) - begins));
+    return is;
+  }
   // Counts a ms over the next servo interrupt.
   static double speed() {
     const double before = at(1);
@@ -67,6 +80,54 @@ TEST_F(ChangingMotions, AnAbortAtAnyMomentLeavesTheVelocityAsItIs) {
     }
     EXPECT_EQ(last, 0.0);
   }
+}
+
+// The same where two servo cycles pass over whole segments: at 225 % they are 1.99 ms. The velocity is 1 count a ms^2
+// times the time of the path, which is 1 ms behind (motion:7.1/3).
+TEST_F(ChangingMotions, AnAbortAmongShortSegmentsBeginsAtTheVelocityOfItsMoment) {
+  for (unsigned when = 30; when < 50; ++when) {
+    platform::power_up();
+    SetUp();
+    ASSERT_EQ(host("I115=10 I5113=1"), "");
+    ASSERT_EQ(host("%225"), "");
+    ticks(50);
+    store({"TM200 TA100 TS0 X20"});
+    begin();
+    platform::servo_ticks(when);
+    ASSERT_EQ(host("A"), "");
+    const Ramp is = ramp(10);
+    EXPECT_NEAR(is.from, (when + is.ticks) * 2.25 * kTickMs - 1.0, 0.01) << when;
+  }
+}
+
+// The same in a piece that the blend of the next move has cut short.
+TEST_F(ChangingMotions, AnAbortBeforeABlendBeginsAtTheVelocityOfItsMove) {
+  store({"TM100 TA20 TS0 X1", "TA60 X3"});
+  begin();
+  ticks(50);
+  ASSERT_EQ(host("A"), "");
+  EXPECT_NEAR(ramp(1).from, 10.0, 0.01);
+}
+
+// motion:7.1/10: segments that the real-time task does not go on with, aborted within two interrupts of their end.
+TEST_F(ChangingMotions, AnAbortAtTheEndOfWhatIsMadeRamps) {
+  ASSERT_EQ(host("I5113=5"), "");
+  store({"TM200 TA20 TS0 X4", "X8"});
+  begin();
+  ticks(60);
+  const auto left = [] {
+    piece_ring& ring = cs().ring;
+    std::int64_t sum = -ring.elapsed;
+    for (std::uint32_t n = ring.executing; n != ring.added; ++n) sum += piece_ring_at(&ring, n)->end;
+    return static_cast<double>(sum) / 8388608.0;
+  };
+  for (int i = 0; i < 200 && left() > 1.9 * kTickMs; ++i) fake_task_run_servo();
+  ASSERT_GT(left(), 0.0);
+  const double before = at(1);
+  ASSERT_EQ(host("A"), "");
+  ticks(40);
+  EXPECT_FALSE(jog_is_moving(0));
+  EXPECT_NEAR(at(1) - before, 20 * 20 / 2.0, 20 * 2 * kTickMs) << "Ixx15 = 1";
 }
 
 // The ramp is planned for a moment at which the time base is another: the place is what it was by then.

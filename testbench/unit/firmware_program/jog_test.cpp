@@ -233,6 +233,22 @@ TEST_F(JogProfile, NoChangeTakesLongerThan2To23Ms) {
   EXPECT_NEAR(position(), 20.0 * 8388608.0 / 2 + 20 * (since - 8388608.0), 20 * step_ms());
 }
 
+// Ixx19 counts as 30 / 2^23: from 20 to 10 counts a ms in a third of 2^23 ms.
+TEST_F(JogProfile, TheSlowestAccelerationIsThatOfBothSpeeds) {
+  const Limits quick{1, 0, 0, 20}, least{30 / 8388608.0, 0, 0, 10};
+  set(quick, 10);
+  ASSERT_TRUE(jog_continuous(0, 1));
+  for (int i = 0; i < 100; ++i) step();
+  const State at{position(), 20};
+  set({1e-12, 0, 0, 10}, 400);
+  increment(INT32_MAX / 2);  // 128 ms
+  ASSERT_TRUE(jog_continuous(0, 1));
+  Followed result;
+  const Motion slower = jog_model::at_speed(least, {at.position + 20 * 400, 20}, 10);
+  EXPECT_DOUBLE_EQ(slower.time(), 8388608.0 / 3);
+  follow(Motion(at), 0, slower, 400, 22000, result);
+}
+
 // Faster ones would not fit into a word.
 TEST_F(JogProfile, SpeedsEndAt2To31UnitsAMs) {
   for (const double sign : {1.0, -1.0}) {
@@ -272,6 +288,21 @@ TEST_F(JogProfile, RampStopsAtOneDeceleration) {
     ASSERT_NEAR(positions[i], t < 0 ? at.position + 20 * now : ramp.at(t).position, kTolerance) << i;
   }
   EXPECT_GT(positions.size(), 90u) << "40 ms";
+}
+
+// motion:4.5/1: no ramp lasts 2^23 ms. What would is none.
+TEST_F(JogProfile, ARampWithoutADecelerationStopsOnTheSpot) {
+  for (const double ixx15 : {0.0, 19.9 / 8388608.0, 20.1 / 8388608.0}) {
+    set({0.25, 0, 50, 20}, 10);
+    ASSERT_TRUE(jog_continuous(0, 1));
+    for (int i = 0; i < 1000; ++i) step();
+    ASSERT_TRUE(jog_stop_at(0, ixx15));
+    for (int i = 0; i < 4; ++i) step();
+    const double before = position(), ramps = ixx15 * 8388608.0 > 20 ? 20 : 0;
+    EXPECT_NEAR(step() - before, ramps * step_ms(), kTolerance) << ixx15;
+    EXPECT_EQ(jog_is_moving(0), ramps != 0);
+    jog_drop(0);
+  }
 }
 
 // Protection asks again in each of its passes: the ramp that is under way, or about to be, goes on.

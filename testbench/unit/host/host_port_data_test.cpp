@@ -135,6 +135,27 @@ TEST_F(HostPortTest, ReadingAnEmptyRegisterDoesNotEatTheWordThatArrives) {
   EXPECT_EQ(host_read(kData7), 0x42u);
 }
 
+// host-bus:3.8/3: its end, should it still come, takes no word that arrives after the reset.
+TEST_F(HostPortTest, AReadUnderWayAtTheResetIsVoid) {
+  cpu_write(kHotx, 0x123456);
+  both_.ref();
+  both_.in.hp_sel = both_.in.hp_rd = true;
+  both_.in.hp_addr = kData7;
+  both_.ref();
+  both_.in.hp_sel = both_.in.hp_rd = false;
+  both_.reset();
+  cpu_write(kHotx, 0xABCDEF);
+  both_.ref();
+  ASSERT_EQ(isr() & kRxdf, kRxdf);
+  both_.in.hp_sel = both_.in.hp_rd_done = true;
+  both_.in.hp_addr = kData7;
+  both_.ref();
+  both_.in.hp_sel = both_.in.hp_rd_done = false;
+  EXPECT_EQ(isr() & kRxdf, kRxdf);
+  EXPECT_EQ(host_read(kData7), 0xEFu);
+  EXPECT_EQ(isr() & kRxdf, 0u);
+}
+
 TEST_F(HostPortTest, WritingAFullRegisterOverwritesIt) {
   host_send(1);
   both_.ref();

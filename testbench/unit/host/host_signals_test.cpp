@@ -54,6 +54,8 @@ TEST_F(HostSignalsTest, ControlOutputsAndHostSignalsDoNotTouchEachOther) {
     write(value);
     EXPECT_EQ(both_.get("ctrl"), ~value & 3);
   }
+  write_ctrl(3);
+  ASSERT_EQ(both_.get("ctrl"), 3u) << "what the reset is to clear";
   both_.reset();
   EXPECT_EQ(both_.get("ctrl"), 0u);
   EXPECT_LOCKSTEP(both_);

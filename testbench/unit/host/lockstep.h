@@ -12,6 +12,7 @@
 
 #include "systemc/core/model_block.h"
 #include "testbench/unit/host/rtl_blocks.h"
+#include "testbench/unit/rtl/comparison.h"
 
 namespace brick {
 
@@ -94,7 +95,7 @@ class Lockstep {
     }
   }
   void note(const std::string& text) {
-    if (difference_.empty()) difference_ = "tick " + std::to_string(now()) + ": " + text;
+    if (difference_.empty() && engines_compared()) difference_ = "tick " + std::to_string(now()) + ": " + text;
   }
 
   RtlBlock<Inputs, Outputs> rtl_;

@@ -16,7 +16,8 @@ using plant::SsiEncoder;
 using plant::SsiEncoderParameters;
 using Parity = SsiEncoderParameters::Parity;
 
-inline constexpr Tick kRest = 2360;  // 20 us
+inline constexpr Tick kRest = 2360;             // 20 us
+inline constexpr Tick kLongestFrame = 200'000;  // more than any of these tests asks for, 1.7 ms
 inline constexpr unsigned kGeoResult[] = {0x14, 0x34}, kGeoClock = 0x15, kGeoRefused[] = {0x16, 0x36};
 constexpr unsigned brick_word(unsigned channel) { return 0x20 + 4 * (channel - 1); }
 constexpr unsigned brick_group(unsigned channel) { return channel <= 4 ? 0x2F : 0x3F; }
@@ -49,8 +50,13 @@ class SsiOn : public ::testing::Test {
     };
   }
   void frame_over() {
+    const Tick limit = rig.now() + kLongestFrame;
     Tick quiet = 0;
     for (std::size_t seen = edges.size(); quiet < kRest + 20; ++quiet) {
+      if (rig.now() > limit) {
+        ADD_FAILURE() << "the clock does not come to rest";
+        return;
+      }
       rig.run(1);
       if (edges.size() != seen || edges.size() % 2 != 0) quiet = 0;
       seen = edges.size();

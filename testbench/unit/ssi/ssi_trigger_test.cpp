@@ -84,6 +84,7 @@ TYPED_TEST(SsiTriggers, BrickTakesOneShotOnly) {
   EXPECT_EQ(this->rig.read(true, brick_word(2) + 1), 0u);
   this->rig.write(true, brick_word(2), 0x3400 | 24);
   this->trigger();
+  EXPECT_EQ(this->rig.read(true, brick_word(2)), 0x2000u | 24) << "the second as the first";
   this->frame_over();
   EXPECT_EQ(this->edges.size(), 100u);
 }

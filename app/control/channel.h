@@ -1,0 +1,44 @@
+// The socket of the control channel: one client's end of a stream, and whether that client is still there.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "app/control/json_rpc.h"
+
+namespace brick {
+
+// The client has gone: nobody wants the rest of the session.
+class ChannelClosed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class ControlChannel {
+ public:
+  // `fd:N`: a socket that whoever started this process has left open. Else the path of a socket that is made here, for
+  // this user alone, and removed with this. Throws UsageError.
+  explicit ControlChannel(const std::string& place);
+  ~ControlChannel();
+  ControlChannel(const ControlChannel&) = delete;
+  ControlChannel& operator=(const ControlChannel&) = delete;
+
+  // Waits for a client, then for a whole line. `idle` is called in between, and says for how long it may be left alone.
+  using Idle = std::function<std::chrono::milliseconds()>;
+  void accept(const Idle& idle);
+  std::string read(const Idle& idle);
+  void write(const std::string& line, const Idle& idle);
+  bool closed() const;  // the client has gone, whatever of it is not read yet
+
+ private:
+  bool ready(int fd, short events, const Idle& idle) const;
+
+  int listener_ = -1, client_ = -1;
+  std::string path_;  // of the listener
+  RpcLines lines_;
+};
+
+}  // namespace brick

@@ -1,0 +1,331 @@
+"""A controller, its motors and its clock in a program's hand."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any
+
+from brick.channel import PROTOCOL, START_LIMIT, Channel
+from brick.errors import BrickError, ControllerGone, MotorOff, NoAnswer, RulesBroken, SimulatedTimeout
+from brick.record import Record
+
+WALL_LIMIT = 60.0  # seconds of the wall that a call may take, unless told otherwise
+_SEEN_BY = 20  # ms: what a command begins shows in the status by then (motion:6.6/1)
+_STATUS_EVERY = 1  # ms
+_VARIABLE = re.compile(r"[IPQM]\d{1,4}", re.IGNORECASE)
+_ENCODER = ("enc_a", "enc_b", "enc_c")
+_LIMITS = {"+": "plim", "-": "mlim"}
+_FIVE_VOLTS = "watchdog.pwr_good"
+_CHANNELS = 4  # of a servo IC
+
+
+def run_options(**values: str | int | None) -> list[str]:
+    """Options of the command line, of those that have a value."""
+    return [f"--{name}={value}" for name, value in values.items() if value is not None]
+
+
+class Status:
+    """The two status words of a motor (firmware:5.2, firmware:5.3)."""
+
+    def __init__(self, word1: int, word2: int) -> None:
+        self.word1 = word1
+        self.word2 = word2
+
+    @property
+    def enabled(self) -> bool:
+        return bool(self.word1 >> 19 & 1)
+
+    @property
+    def closed(self) -> bool:
+        """The loop is closed: enabled, and not open."""
+        return self.enabled and not self.word1 >> 18 & 1
+
+    @property
+    def at_rest(self) -> bool:
+        """Loop closed, desired velocity 0."""
+        return bool(self.word1 >> 13 & 1)
+
+    @property
+    def in_position(self) -> bool:
+        return bool(self.word2 & 1)
+
+    @property
+    def on_limit(self) -> bool:
+        """In a limit, or stopped by one."""
+        return bool(self.word1 >> 21 & 3 or self.word2 >> 11 & 1)
+
+    @property
+    def following_error(self) -> bool:
+        """Tripped by the following error."""
+        return bool(self.word2 >> 2 & 1)
+
+    @property
+    def amplifier_fault(self) -> bool:
+        """Tripped by a fault input or by overload."""
+        return bool(self.word2 >> 3 & 1)
+
+    @property
+    def home_complete(self) -> bool:
+        return bool(self.word2 >> 10 & 1)
+
+    def __repr__(self) -> str:
+        return f"Status({self.word1:06X} {self.word2:06X})"
+
+
+class Controller:
+    """A started controller. Use it with `with`: its process ends there, and with this process in any case.
+
+    board, plant, setup, engine, seed: as --board, --plant, --load, --engine and --seed of the command.
+    wave: a waveform from the start. realtime: between calls simulated time follows the clock on the wall; else it
+    stands, and the same calls with the same seed give the same answers at the same instants. wall_limit: seconds of the
+    wall that a call may take. check: at the end, RulesBroken where a rule of the buses was broken.
+    """
+
+    def __init__(self, board: str | None = None, plant: str | None = None, setup: str | None = None, *,
+                 engine: str | None = None, seed: int | None = None, wave: str | None = None,
+                 realtime: bool = False, wall_limit: float = WALL_LIMIT, check: bool = True,
+                 options: Sequence[str] = ()) -> None:
+        self.options = run_options(board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
+        self.options += [*(["--realtime"] if realtime else []), *options]
+        self.wall_limit = wall_limit
+        self._check = check
+        self._texts: list[str] = []  # that have come beside answers
+        self._channel = Channel(self.options)
+        try:
+            self.about = self._channel.call("hello", START_LIMIT, protocol=PROTOCOL)
+        except BaseException:
+            self._channel.close()
+            raise
+
+    def __enter__(self) -> Controller:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
+        self._check = self._check and kind is None
+        self.close()
+
+    def close(self) -> None:
+        """Ends the controller; waveform and record are whole then."""
+        failures: list[str] = []
+        try:
+            if self._check:
+                failures = self.failures()
+        finally:
+            self._check = False
+            self._channel.close()
+        if failures:
+            raise RulesBroken(failures)
+
+    def abandon(self) -> None:
+        """Ends the controller without a look at what it did."""
+        self._check = False
+        self.close()
+
+    @property
+    def pid(self) -> int:
+        return self._channel.child.process.pid
+
+    @property
+    def calls(self) -> list[tuple[str, dict[str, Any]]]:
+        """What has been asked of the controller, to play it again (`replay`)."""
+        return self._channel.calls
+
+    def call(self, method: str, wall_limit: float | None = None, **params: Any) -> dict[str, Any]:
+        """A method of docs/control.md as it stands there."""
+        result = self._channel.call(method, self.wall_limit if wall_limit is None else wall_limit, **params)
+        self._texts += result.get("texts", [])
+        return result
+
+    # ---- Time: it passes in these and in commands
+
+    @property
+    def time(self) -> float:
+        """Simulated time in seconds since power-on."""
+        return self._channel.ns * 1e-9
+
+    @property
+    def time_ns(self) -> int:
+        return self._channel.ns
+
+    @property
+    def tick(self) -> int:
+        """Simulated time in ticks of the 117.9648 MHz clock, exact."""
+        return self._channel.tick
+
+    def run(self, *, s: float = 0, ms: float = 0, us: float = 0, wall_limit: float | None = None) -> None:
+        """Lets so much simulated time pass."""
+        self.call("run", wall_limit, ns=round(s * 1e9 + ms * 1e6 + us * 1e3))
+
+    # ---- The controller's language
+
+    def command(self, line: str, wall_limit: float | None = None) -> str:
+        """Sends a line; its answer, lines with LF between, at the instant at which it ends.
+
+        CommandRefused has the controller's number, NoAnswer says that there was none. A control character alone is sent
+        as it is: command("\\x01") is ^A.
+        """
+        return "\n".join(self.call("command", wall_limit, line=line)["lines"])
+
+    def script(self, text: str, wall_limit: float | None = None) -> list[str]:
+        """Plays lines of a host script (docs/scripts.md): @dpram, @jumper, @reset, @power, ...; what it prints."""
+        lines: list[str] = self.call("script", wall_limit, text=text)["lines"]
+        return lines
+
+    def load(self, file: str, wall_limit: float | None = None) -> None:
+        """Sends a command file. BrickError where a line of it is refused."""
+        refused = self.call("script", wall_limit, text=f'#include "{file}"\n')
+        if refused["refused"]:
+            raise BrickError(f"{file}: {refused['refused']} lines refused: {' '.join(refused['lines'])}")
+
+    def texts(self) -> list[str]:
+        """Lines that programs have sent since the last call (SEND, CMD)."""
+        self.call("texts")
+        texts, self._texts = self._texts, []
+        return texts
+
+    def __getitem__(self, name: str) -> int | float:
+        """A variable: c["P1"], c["I130"]. An I variable that is shown in hexadecimal is a number too."""
+        text = self.command(self._variable(name))
+        if text.startswith("$"):
+            return int(text[1:], 16)
+        try:
+            return int(text)
+        except ValueError:
+            return float(text)
+
+    def __setitem__(self, name: str, value: float) -> None:
+        number = str(value) if isinstance(value, int) else f"{value:.12f}".rstrip("0").rstrip(".")
+        self.command(f"{self._variable(name)}={number}")
+
+    @staticmethod
+    def _variable(name: str) -> str:
+        if not _VARIABLE.fullmatch(name):
+            raise ValueError(f"{name!r} is no variable; expected one like P1, Q20, M102 or I130")
+        return name.upper()
+
+    # ---- Motors
+
+    def position(self, motor: int) -> float:
+        """Actual position in counts."""
+        return float(self.command(f"#{motor}P"))
+
+    def status(self, motor: int) -> Status:
+        """Leaves the addressed motor as it is."""
+        word = 0x80 * motor
+        lines = self.command(f"RHX${word + 0x30:X} RHY${word + 0x40:X}").split()
+        if len(lines) != 2:
+            raise NoAnswer(f"status of motor {motor}: {lines}; expected two words")
+        return Status(int(lines[0], 16), int(lines[1], 16))
+
+    def wait_in_position(self, *motors: int, ms: float = 10_000, wall_limit: float | None = None) -> None:
+        """Until all of them are at rest and in position, asked once a simulated millisecond.
+
+        What a command begins shows in the status within 20 ms, which are waited first. MotorOff where one is not
+        enabled, SimulatedTimeout after `ms`.
+        """
+        limit = self._channel.ns + round(ms * 1e6)
+        waiting = list(motors)
+        self.run(ms=min(_SEEN_BY, ms), wall_limit=wall_limit)
+        while waiting:
+            status = self.status(waiting[0])
+            if not status.enabled:
+                raise MotorOff(f"motor {waiting[0]} is off: {status}")
+            if status.in_position and status.at_rest:
+                waiting.pop(0)
+            elif self._channel.ns >= limit:
+                raise SimulatedTimeout(f"motor {waiting[0]} is not in position after {ms} ms: {status}")
+            else:
+                self.run(ms=_STATUS_EVERY, wall_limit=wall_limit)
+
+    # ---- Signals and pins (docs/signals.md)
+
+    def signal(self, name: str) -> int | float | str:
+        """What a signal shows."""
+        return _number(self.call("signal", name=name)["value"])
+
+    def signals(self, pattern: str = "all") -> list[str]:
+        """Names of signals, by name or glob."""
+        names: list[str] = self.call("signals", pattern=pattern)["names"]
+        return names
+
+    def wait_signal(self, name: str, value: int | str, *, ms: float, wall_limit: float | None = None) -> None:
+        """Until the signal shows the value. SimulatedTimeout after `ms`."""
+        self.call("until", wall_limit, name=name, value=str(value), ns=round(ms * 1e6))
+
+    def set_pin(self, name: str, level: int | None) -> None:
+        """Drives an input pin, against the plant if that drives it; None gives it back."""
+        self.call("input", name=name, level=level)
+
+    def channel(self, motor: int) -> str:
+        """Scope of the signals of a motor's channel, on boards whose ICs are fitted in order: servo_ic0.ch1."""
+        return f"servo_ic{(motor - 1) // _CHANNELS}.ch{(motor - 1) % _CHANNELS + 1}"
+
+    # ---- What can go wrong at the plant (docs/plant.md)
+
+    def open_limit(self, motor: int, side: str, active: bool = True) -> None:
+        """Opens the end switch "+" or "-" of a motor, as a cut wire does, or closes it."""
+        if side not in _LIMITS:
+            raise ValueError(f"{side!r} is no side; expected + or -")
+        self.set_pin(f"{self.channel(motor)}.{_LIMITS[side]}", 1 if active else None)
+
+    def trip_amplifier(self, motor: int, cause: str = "over-current") -> None:
+        """Trips the amplifier: over-current, shorted-bus, under-voltage, over-voltage, over-temperature, i2t."""
+        self.call("plant.trip", motor=motor, cause=cause)
+
+    def lose_encoder(self, motor: int, pins: Sequence[str] = _ENCODER) -> None:
+        """Cuts wires of the encoder; no pins: all are whole again."""
+        self.call("plant.cut", motor=motor, pins=list(pins))
+
+    def set_load(self, motor: int, torque: float) -> None:
+        """Torque on the shaft, N m."""
+        self.call("plant.load", motor=motor, torque=torque)
+
+    def lose_five_volts(self, lost: bool = True) -> None:
+        """The supervisor of the 5 V supply says that it has failed, or that it is there."""
+        self.set_pin(_FIVE_VOLTS, 0 if lost else 1)
+
+    # ---- Files
+
+    def start_wave(self, file: str, trace: str | None = None) -> None:
+        """A waveform from now on, FILE.vcd or FILE.fst; trace: names or globs with commas between."""
+        self.call("wave.start", file=file, trace=trace)
+
+    def stop_wave(self) -> None:
+        self.call("wave.stop")
+
+    def record(self, of: str = "", file: str | None = None) -> Record:
+        """Records what happens inside a `with`, see Record. of: columns of docs/record.md."""
+        return Record(self.call, of, file)
+
+    def failures(self) -> list[str]:
+        """Rules of the buses that were broken, and clocks with two sources, so far: one line each."""
+        failures: list[str] = self.call("check")["failures"]
+        return failures
+
+    def replay(self, wave: str) -> None:
+        """The calls so far once more, in a new controller with a waveform from its start. Errors are as they were."""
+        options = [option for option in self.options if not option.startswith("--wave=")]
+        with Controller(wave=wave, options=options, wall_limit=self.wall_limit, check=False) as again:
+            for method, params in list(self.calls):
+                if method == "hello" or method.startswith(("wave.", "record.")):
+                    continue
+                try:
+                    again.call(method, **params)
+                except ControllerGone:
+                    raise
+                except (BrickError, ValueError):
+                    pass
+
+
+def _number(text: str) -> int | float | str:
+    try:
+        return int(text[1:], 16) if text.startswith("$") else int(text)
+    except ValueError:
+        pass
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -1,0 +1,69 @@
+"""The brick command as a child that ends with whoever started it."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from typing import IO
+
+from brick.errors import ControllerGone
+
+_PATIENCE = 10  # seconds of the wall for an end
+
+
+def executable() -> str:
+    """The command: $BRICK, else the one of this package, of the tree this stands in, or on the path."""
+    if named := os.environ.get("BRICK"):
+        return named
+    here = pathlib.Path(__file__).resolve().parent
+    for place in (here / "_installed/bin/brick", here.parents[1] / "build/release/bin/brick"):
+        if place.is_file():
+            return str(place)
+    if found := shutil.which("brick"):
+        return found
+    raise ControllerGone("no command brick; expected it on the path, or its place in $BRICK")
+
+
+def main() -> None:
+    """The command `brick` of the wheel."""
+    program = executable()
+    os.execv(program, [program, *sys.argv[1:]])
+
+
+class Child:
+    """A running command; what it says on stderr is kept for the message of an error."""
+
+    def __init__(self, arguments: Sequence[str], pass_fds: Sequence[int] = (),
+                 stdout: int = subprocess.DEVNULL) -> None:
+        self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
+        # The process is to end with this one, however this one ends.
+        command = [executable(), *arguments, "--end-with", str(os.getpid())]
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
+                                        pass_fds=pass_fds)
+
+    def said(self) -> str:
+        self._said.seek(0)
+        return self._said.read().decode(errors="replace").strip()
+
+    def end(self, patience: float = _PATIENCE) -> int:
+        """Waits for an end that is under way, ends it where there is none."""
+        try:
+            status = self.process.wait(patience)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            status = self.process.wait()
+        if self.process.stdout is not None:
+            self.process.stdout.close()
+        return status
+
+    def stop(self) -> int:
+        self.process.terminate()
+        return self.end()
+
+    def close(self) -> None:
+        self._said.close()

@@ -1,0 +1,96 @@
+"""pytest fixtures: a controller in the test's hand, and the port of one for host software under test (docs/python.md).
+
+`brick_controller` is a brick.Controller; when its test fails, what the test did to it is done once more with a
+waveform. `brick_port` is the number of a free TCP port of 127.0.0.1 with a controller behind it; its waveform is made
+from the start, with --brick-wave. A test chooses its controller by a marker:
+
+    @pytest.mark.brick(plant="dac8", setup="dac8", seed=7)
+"""
+
+from __future__ import annotations
+
+import pathlib
+import re
+from collections.abc import Generator
+from typing import Any
+
+import pytest
+
+from brick.controller import Controller
+from brick.errors import BrickError
+from brick.served import Served
+
+_REPORT = pytest.StashKey[dict[str, bool]]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("brick")
+    group.addoption("--brick-engine", metavar="ENGINE", help="rtl, systemc or lockstep (default: systemc)")
+    group.addoption("--brick-seed", type=int, metavar="N", help="seed of controllers whose test chooses none")
+    group.addoption("--brick-wave", metavar="DIR",
+                    help="folder of waveforms; with it brick_port makes one from the start of each test")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "brick(board, plant, setup, engine, seed, options, ...): the controller of "
+                                       "brick_controller and brick_port, arguments of brick.Controller")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    item.stash.setdefault(_REPORT, {})[report.when or ""] = report.failed
+    return report
+
+
+def _arguments(request: pytest.FixtureRequest) -> dict[str, Any]:
+    chosen: dict[str, Any] = {}
+    for name in ("engine", "seed"):
+        value = request.config.getoption(f"--brick-{name}")
+        if value is not None:
+            chosen[name] = value
+    marker = request.node.get_closest_marker("brick")
+    return {**chosen, **(marker.kwargs if marker else {})}
+
+
+def _wave(request: pytest.FixtureRequest, temporary: pathlib.Path) -> pathlib.Path:
+    """A name of its own for each test, whatever process of pytest-xdist runs it."""
+    folder = request.config.getoption("--brick-wave")
+    place = pathlib.Path(folder) if folder else temporary
+    place.mkdir(parents=True, exist_ok=True)
+    return place.absolute() / (re.sub(r"[^\w.-]+", "-", request.node.nodeid).strip("-") + ".fst")
+
+
+@pytest.fixture
+def brick_controller(request: pytest.FixtureRequest, tmp_path: pathlib.Path) -> Generator[Controller, None, None]:
+    """A started controller, a new one for each test."""
+    controller = Controller(**_arguments(request))
+    try:
+        yield controller
+    finally:
+        if not request.node.stash.get(_REPORT, {}).get("call"):
+            controller.close()
+        else:
+            _replay(request, controller, _wave(request, tmp_path))
+
+
+def _replay(request: pytest.FixtureRequest, controller: Controller, wave: pathlib.Path) -> None:
+    try:
+        controller.abandon()
+        controller.replay(str(wave))
+        said = f"its {len(controller.calls)} calls once more: waveform {wave}"
+    except BrickError as error:
+        said = f"its calls once more: {error}"
+    request.node.add_report_section("call", "brick", said)
+    print(f"brick_controller: {said}")
+
+
+@pytest.fixture
+def brick_port(request: pytest.FixtureRequest, tmp_path: pathlib.Path) -> Generator[int, None, None]:
+    """The port of a started controller, which speaks the protocol of docs/ethernet.md; a new one for each test."""
+    arguments = _arguments(request)
+    wave = _wave(request, tmp_path) if request.config.getoption("--brick-wave") else None
+    with Served(wave=str(wave) if wave else None, **arguments) as served:
+        yield served.port
+    if wave:
+        print(f"brick_port: waveform {wave}")

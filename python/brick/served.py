@@ -1,0 +1,51 @@
+"""`brick serve` on a free port, for host software that speaks to a controller by TCP (docs/ethernet.md)."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Sequence
+from types import TracebackType
+
+from brick.controller import run_options
+from brick.errors import ControllerGone
+from brick.process import Child
+
+
+class Served:
+    """A controller behind 127.0.0.1:port. Simulated time passes while a client waits, and stands in between."""
+
+    def __init__(self, board: str | None = None, plant: str | None = None, setup: str | None = None, *,
+                 engine: str | None = None, seed: int | None = None, wave: str | None = None, realtime: bool = False,
+                 options: Sequence[str] = ()) -> None:
+        chosen = run_options(board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
+        pace = [] if realtime else ["--free"]
+        self._child = Child(["serve", "--listen", "127.0.0.1:0", *pace, *chosen, *options], stdout=subprocess.PIPE)
+        assert self._child.process.stdout is not None
+        line = self._child.process.stdout.readline().decode()
+        found = re.match(r"listening on 127\.0\.0\.1:(\d+)", line)
+        if not found:
+            self._child.end()
+            said = self._child.said()
+            self._child.close()
+            raise ControllerGone(said or "brick serve has ended")
+        self.port = int(found[1])
+
+    @property
+    def pid(self) -> int:
+        return self._child.process.pid
+
+    def close(self) -> None:
+        """Ends it; its waveform is whole then. Raises ControllerGone if it had failed."""
+        status = self._child.stop()
+        said = self._child.said()
+        self._child.close()
+        if status != 0:
+            raise ControllerGone(f"{said} (exit status {status})")
+
+    def __enter__(self) -> Served:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
+        self.close()

@@ -1,0 +1,117 @@
+// Orders to a program that is looked ahead: what they leave as it was, where it stops, which line it shows
+// (motion:7.1/8, motion:7.1/9, motion:7.5).
+#include "testbench/unit/firmware_program/moving_motors.h"
+
+namespace {
+
+using namespace moving_motors;
+
+constexpr int kAhead = 40, kSegmentMs = 5;
+
+class LookaheadOrders : public MovingMotors {
+ protected:
+  static void begin(const Lines& lines) {
+    platform::power_up();
+    fit({"1000X"});
+    ASSERT_EQ(host("I5113=5 I5120=40 I116=50 I117=1 M1->*"), "");
+    ASSERT_EQ(host("DELETE GATHER"), "");
+    ASSERT_EQ(host("&1DEFINE LOOKAHEAD 600,10"), "");
+    store(lines);
+  }
+  static void wait_ms(double ms) { platform::servo_ticks(ticks_of(ms)); }
+};
+
+// A step stays one, however it is stopped and sent back on its way, by `>`; R makes a run of it.
+TEST_F(LookaheadOrders, AStepStaysAStepUntilR) {
+  for (const char* stop : {"&1\\", "&1<", "I5121=4", "I5121=7"})
+    for (const auto& [on, end] : {std::pair{"&1>", 5000}, {"I5121=6", 5000}, {"&1R", 15000}}) {
+      SCOPED_TRACE(std::string(stop) + " " + on);
+      begin({"TM200 TA20 TS0", "X5", "X10", "X15"});
+      ASSERT_EQ(host("&1B1S"), "");
+      wait_ms(130);
+      ASSERT_EQ(host(stop), "");
+      wait_ms(400);
+      ASSERT_LT(at(1), 5000);
+      ASSERT_TRUE(run_is_running(0));
+      ASSERT_EQ(host(on), "");
+      wait_ms(1200);
+      EXPECT_EQ(motors[0].trajectory, end * 3072);
+      EXPECT_FALSE(run_is_running(0));
+      ASSERT_EQ(host("&1R"), "") << "what is left, or all of it again";
+      wait_ms(1200);
+      EXPECT_EQ(motors[0].trajectory, 15000 * 3072);
+    }
+}
+
+// S ends a run behind the moves that are calculated: PC is the line of the next one, before and after.
+TEST_F(LookaheadOrders, SLetsTheCalculatedMovesFinish) {
+  Lines lines = {"TM100 TA20 TS0 INC"};
+  for (int i = 0; i < 30; ++i) lines.emplace_back("X2");
+  begin(lines);
+  ASSERT_EQ(host("&1B1R"), "");
+  wait_ms(300);
+  ASSERT_EQ(host("&1S"), "");
+  const std::string next = host("&1PC");
+  const double from = at(1);
+  wait_ms(1500);
+  EXPECT_FALSE(run_is_running(0));
+  EXPECT_EQ(host("&1PC"), next);
+  const int made = static_cast<int>(at(1)) / 2000;
+  EXPECT_EQ(motors[0].trajectory, made * 2000 * 3072) << "at the end of a move";
+  EXPECT_EQ(next, "P1:" + std::to_string(4 + made)) << "statements: TM, TA, TS, INC, and a move each";
+  EXPECT_GE(at(1), from + 20 * kAhead * kSegmentMs - 500) << "20 counts/ms; what is made is calculated";
+  EXPECT_LT(made, 15);
+  ASSERT_EQ(host("&1R"), "");
+  wait_ms(4000);
+  EXPECT_EQ(motors[0].trajectory, 60000 * 3072);
+}
+
+// Q and `/`: the move in which the last segment lies that is made; what is calculated behind it waits for R.
+TEST_F(LookaheadOrders, QuitStopsAtTheEndOfTheMoveThatIsMade) {
+  Lines lines = {"TM100 TA20 TS0 INC"};
+  for (int i = 0; i < 30; ++i) lines.emplace_back("X2");
+  for (const char* command : {"&1Q", "&1/"}) {
+    SCOPED_TRACE(command);
+    begin(lines);
+    ASSERT_EQ(host("&1B1R"), "");
+    wait_ms(300);
+    const double made = at(1) + 20 * kAhead * kSegmentMs;  // 20 counts/ms
+    ASSERT_EQ(host(command), "");
+    wait_ms(1500);
+    EXPECT_FALSE(run_is_running(0));
+    EXPECT_NEAR(std::remainder(at(1), 2000), 0, 1e-9) << at(1);
+    EXPECT_GE(at(1), made - 500);
+    EXPECT_LE(at(1), made + 2000 + 500) << "and 12 ms that are handed over";
+    ASSERT_EQ(host("&1R"), "");
+    wait_ms(4000);
+    EXPECT_EQ(motors[0].trajectory, 60000 * 3072);
+  }
+}
+
+// PE is the line that executes, on the way back too: away from the corners it goes by the place alone.
+TEST_F(LookaheadOrders, PeIsTheLineThatExecutesBackwardsToo) {
+  begin({"TM200 TA20 TS0", "X5", "M1==1 X10", "X15"});
+  const char* lines[] = {"P1:3", "P1:4", "P1:6"};  // numbers of statements: TM, TA, TS, X, M, X, X
+  ASSERT_EQ(host("&1B1R"), "");
+  const auto go = [&](double ms) {  // which lines were seen
+    unsigned seen = 0;
+    for (unsigned tick = 0; tick < ticks_of(ms) && !HasFailure(); tick += 5) {
+      platform::servo_ticks(5);
+      const int move = static_cast<int>(at(1)) / 5000;
+      const double within = std::fmod(at(1), 5000);
+      if (within < 1000 || within > 4000) continue;
+      EXPECT_EQ(host("&1PE"), lines[move]) << at(1);
+      seen |= 1u << move;
+    }
+    return seen;
+  };
+  EXPECT_EQ(go(580), 7u);
+  ASSERT_EQ(host("&1<"), "");
+  EXPECT_EQ(go(1500), 7u);
+  EXPECT_EQ(motors[0].trajectory, 0);
+  ASSERT_EQ(host("&1>"), "");
+  EXPECT_EQ(go(1500), 7u);
+  EXPECT_EQ(motors[0].trajectory, 15000 * 3072);
+}
+
+}  // namespace

@@ -1,0 +1,197 @@
+"""brick.Controller (docs/python.md): what it does to the controller, and that it does it twice alike."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import brick
+import numpy
+import pytest
+
+PATIENCE = 60
+
+
+@pytest.fixture(scope="module")
+def moving():
+    with brick.Controller(plant="dac8", setup="dac8") as controller:
+        yield controller
+
+
+def test_variables_are_items(moving):
+    moving["P1"] = 12
+    moving["q2"] = -0.125
+    assert (moving["P1"], moving["Q2"]) == (12, -0.125)
+    assert moving["I130"] == 112450 and moving["I102"] == 0x78002  # examples/setups/dac8.pmc
+    for wrong in ("frob", "P1=3", "#1J+", "P1 P2"):
+        with pytest.raises(ValueError, match="no variable"):
+            moving[wrong]
+
+
+def test_an_error_is_an_exception_with_its_number(moving):
+    with pytest.raises(brick.CommandRefused) as refused:
+        moving.command("P1 frob")
+    assert (refused.value.number, refused.value.line) == (3, "P1 frob")
+    with pytest.raises(ValueError, match="no signal"):
+        moving.signal("frob")
+
+
+def test_a_jog_arrives_and_its_record_shows_it(moving):
+    moving.command("#2J/")
+    moving.run(ms=50)
+    with moving.record("motor2.commanded motor2.velocity host.breq") as record:
+        moving.command("#2J:2000")
+        moving.wait_in_position(2)
+    assert abs(moving.position(2) - 2000) < 10  # I228: in position within 10 counts
+    assert record.names == ["time_ms", "motor2.commanded", "motor2.velocity", "host.breq"]
+    assert record["motor2.commanded"][-1] == 2000
+    table, frame = record.array(), record.frame()
+    assert table.shape == (len(record), 4) and frame.shape == (len(record), 3)
+    # I222: 32 counts/ms at most, I219: 1 count/ms^2, so 2000 counts need no more than sqrt(2000) of speed
+    assert 30 < numpy.max(table[:, 2]) <= 32.1 and frame["motor2.velocity"].max() == table[:, 2].max()
+    servo = numpy.diff(table[:, 0])
+    assert numpy.allclose(servo, 1e3 / 2258.65, rtol=1e-3)  # default clocks
+
+
+def test_faults_of_the_plant_reach_the_motor(moving):
+    moving.command("#3J+")
+    moving.run(ms=50)
+    moving.open_limit(3, "+")
+    moving.run(ms=100)
+    assert moving.status(3).on_limit and moving.status(3).at_rest
+    moving.open_limit(3, "+", False)
+    moving.command("#3J-")
+    moving.run(ms=50)
+    assert not moving.status(3).on_limit
+    moving.trip_amplifier(3, "over-temperature")
+    moving.run(ms=20)
+    assert moving.status(3).amplifier_fault and not moving.status(3).enabled
+    with pytest.raises(brick.MotorOff):
+        moving.wait_in_position(3)
+    moving.command("#4J+")
+    moving.run(ms=100)
+    moving.lose_encoder(4)
+    moving.run(ms=200)
+    assert moving.status(4).following_error and not moving.status(4).enabled
+    moving.lose_encoder(4, [])
+
+
+def test_a_pin_of_the_plant_is_held_and_given_back(moving):
+    assert moving.signal("servo_ic0.ch1.fault") == 0
+    moving.set_pin("servo_ic0.ch1.fault", 1)
+    moving.run(us=1)
+    assert moving.signal("servo_ic0.ch1.fault") == 1
+    moving.set_pin("servo_ic0.ch1.fault", None)
+    moving.run(us=1)
+    assert moving.signal("servo_ic0.ch1.fault") == 0
+
+
+def test_waits_have_a_simulated_and_a_wall_limit(moving):
+    begin = moving.time_ns
+    with pytest.raises(brick.SimulatedTimeout):
+        moving.wait_signal("host.breq", 1, ms=3)
+    assert abs(moving.time_ns - begin - 3_000_000) < 200
+    with pytest.raises(brick.WallTimeout):
+        moving.run(s=3600, wall_limit=0.2)
+    assert moving["P1"] == 12  # it goes on
+    moving.command("#5J/")
+    moving.run(ms=50)
+    moving.command("#5J+")
+    with pytest.raises(brick.SimulatedTimeout):
+        moving.wait_in_position(5, ms=30)
+    moving.command("#5K")
+
+
+def test_loss_of_five_volts_trips_and_shows():
+    with brick.Controller(check=False) as c:
+        c.lose_five_volts()
+        c.run(ms=5)
+        assert c.signal("host.wdo") == 1
+        with pytest.raises(brick.NoAnswer, match="watchdog"):
+            c.command("P1")
+
+
+def session(wave):
+    """Everything that is answered, and when."""
+    with brick.Controller(plant="dac8", setup="dac8", seed=4711) as c:
+        told = [c.tick]
+        c.start_wave(str(wave))
+        c.command("#1J/")
+        c.run(ms=20)
+        for line in ("#1J:500", "P1=1.5", "P1", "#1P", "frob", "I7000..7003"):
+            try:
+                told.append(c.command(line))
+            except brick.CommandRefused as error:
+                told.append(str(error))
+            told.append(c.tick)
+        c.wait_in_position(1)
+        c.stop_wave()
+        return [*told, c.tick, c.position(1)]
+
+
+def test_the_same_script_and_seed_give_the_same_bytes_at_the_same_instants(tmp_path):
+    first, second = tmp_path / "1.vcd", tmp_path / "2.vcd"
+    answers = session(first)
+    time.sleep(0.1)
+    assert session(second) == answers
+    assert first.read_bytes() == second.read_bytes() and first.stat().st_size > 10_000
+
+
+def test_time_follows_the_wall_when_asked_to():
+    with brick.Controller(realtime=True) as c:
+        begin, wall = c.time, time.monotonic()
+        time.sleep(0.2)
+        c.run()
+        waited = time.monotonic() - wall
+        assert 0 < c.time - begin < waited + 0.5  # a loaded machine may be behind, never ahead by more than its lead
+
+
+def test_a_start_that_fails_says_why():
+    with pytest.raises(brick.ControllerGone, match="no such board"):
+        brick.Controller(board="frob")
+    with pytest.raises(brick.ControllerGone, match="no such plant"):
+        brick.Controller(plant="frob")
+
+
+def gone(pid):
+    limit = time.monotonic() + PATIENCE
+    while time.monotonic() < limit:
+        try:
+            if pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
+                return True
+        except FileNotFoundError:
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def test_a_killed_controller_is_an_error_and_no_orphan():
+    with pytest.raises(brick.ControllerGone), brick.Controller(check=False) as c:
+        os.kill(c.pid, signal.SIGKILL)
+        c.run(ms=1)
+    assert gone(c.pid)
+
+
+@pytest.mark.parametrize("work", ["time.sleep(600)", "c.run(s=3600, wall_limit=600)"])
+def test_a_killed_script_leaves_no_orphan(work):
+    text = ("import brick, os, time\nc = brick.Controller()\n"
+            "if os.fork() == 0: os.close(1); os.read(0, 1); os._exit(0)\n"
+            f"print(c.pid, flush=True)\n{work}\n")
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    script = subprocess.Popen([sys.executable, "-c", text], text=True, **pipes)
+    pid = int(script.stdout.readline())
+    script.kill()
+    assert gone(pid)  # although a fork of the script still has the socket
+    script.communicate()
+
+
+def test_a_replay_does_the_same_with_a_waveform(tmp_path):
+    with brick.Controller(plant="dac8", setup="dac8", seed=5) as c:
+        c.command("#1J:100")
+        with pytest.raises(brick.CommandRefused):
+            c.command("frob")
+        c.run(ms=5)
+        c.replay(str(tmp_path / "replay.vcd"))
+    assert (tmp_path / "replay.vcd").stat().st_size > 10_000

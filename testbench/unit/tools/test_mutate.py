@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+"""The mutation tool on small texts: which places its parser finds, what it writes, how it judges what programs say."""
+
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+from typing import ClassVar
+from unittest import mock
+
+TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
+sys.path[:0] = [str(TOOLS / "mutate"), str(TOOLS)]
+try:
+    import pyslang  # noqa: F401
+except ImportError:
+    print("skipped: pyslang is not installed (./dev setup)")
+    sys.exit(77)
+
+import equal  # noqa: E402
+import mutant  # noqa: E402
+import plan  # noqa: E402
+import records  # noqa: E402
+import report  # noqa: E402
+import runner  # noqa: E402
+import schemata  # noqa: E402
+import verilog  # noqa: E402
+
+MODULE = b"""// \xc2\xb5s in a comment: places are bytes
+module m #(parameter int Width = 4) (input wire logic clk_i, rst_ni, input wire logic [3:0] a_i, output logic [3:0] q);
+  localparam logic [3:0] Top = 4'd9;
+  typedef enum logic {Idle, Busy} state_e;
+  state_e state_d, state_q;
+  logic [3:0] q_d, q_q;
+  always_comb begin
+    q_d = q_q;
+    state_d = state_q;
+    if (a_i[2] && q_q < Top) q_d = q_q + 4'd1;
+    unique case (state_q)
+      Idle: state_d = Busy;
+      default: begin
+        state_d = Idle;
+        q_d = {2{a_i[1:0]}};
+      end
+    endcase
+  end
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      q_q <= '0;
+      state_q <= Idle;
+    end else begin
+      q_q <= q_d;
+      state_q <= state_d;
+    end
+  end
+  assign q = ~q_q;
+endmodule
+"""
+
+
+def changes(operator):
+    found = mutant.mutants_of("m.sv", MODULE, verilog.places(MODULE))
+    return [(m.line, m.change) for m in found if m.place.operator == operator]
+
+
+class Places(unittest.TestCase):
+    def test_operators_and_comparisons(self):
+        self.assertEqual(changes("operator"), [
+            (10, "a_i[2] && q_q < Top => a_i[2] || (q_q < Top)"), (10, "q_q + 4'd1 => q_q - 4'd1"),
+            (28, "~q_q => q_q")])
+        self.assertEqual(changes("comparison"), [(10, "q_q < Top => q_q <= Top"), (10, "q_q < Top => q_q >= Top")])
+
+    def test_constants_but_none_that_is_fixed_before_the_model_runs(self):
+        self.assertEqual(changes("constant"), [
+            (10, "2 => 3"), (10, "Top => Top ^ 1'b1"), (10, "4'd1 => 4'd2"), (12, "Busy => Idle"), (14, "Idle => Busy"),
+            (21, "'0 => '1"), (22, "Idle => Busy")])
+
+    def test_conditions_case_items_and_resets(self):
+        self.assertEqual(changes("condition"), [(10, f"a_i[2] && q_q < Top => 1'b{bit}") for bit in (0, 1)])
+        self.assertEqual(changes("case item"), [(12, "Idle => ~(state_q)")])
+        self.assertEqual(changes("reset"), [(20, "!rst_ni => 1'b0"), (21, "without q_q <= '0;"),
+                                            (22, "without state_q <= Idle;")])
+
+    def test_what_is_left_out_leaves_no_latch_and_is_no_condition_again(self):
+        self.assertEqual(changes("statement"), [
+            (12, "without state_d = Busy;"), (14, "without state_d = Idle;"), (15, "without q_d = {2{a_i[1:0]}};"),
+            (24, "without q_q <= q_d;"), (25, "without state_q <= state_d;")])
+
+    def test_text_that_is_no_verilog_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "slang does not read it"):
+            verilog.places(b"module m; always_comb begin endmodule")
+
+
+class Texts(unittest.TestCase):
+    def setUp(self):
+        self.mutants = mutant.mutants_of("m.sv", MODULE, verilog.places(MODULE))
+
+    def test_all_in_one_is_read_again_and_chooses_by_number(self):
+        text = schemata.write(MODULE, self.mutants, schemata.Verilog())
+        verilog.places(text)  # slang reads it
+        for m in self.mutants:
+            self.assertEqual(text.decode().count(f"mutant_pkg::number == {m.number} ")
+                             + text.decode().count(f"mutant_pkg::number != {m.number})")
+                             + text.decode().count(f"mutant_pkg::number != {m.number} &&"), 1, m.change)
+
+    def test_one_alone_differs_in_its_line_only(self):
+        for m in self.mutants:
+            text = schemata.single(MODULE, m).decode().splitlines()
+            differ = [i for i, (a, b) in enumerate(zip(text, MODULE.decode().splitlines(), strict=True), 1)
+                      if a != b]
+            self.assertEqual(differ, [m.line], m.change)
+
+    def test_drawn_evenly_by_seed_and_the_rest_comes_after(self):
+        first, rest = mutant.draw(self.mutants, 6, 3)
+        self.assertEqual(sorted(m.number for m in first + rest), [m.number for m in self.mutants])
+        for i, m in enumerate(first):  # one of each sixth
+            self.assertIn(m.number - 1, range(i * len(self.mutants) // 6, (i + 1) * len(self.mutants) // 6))
+        self.assertEqual((first, rest), mutant.draw(self.mutants, 6, 3))
+        self.assertNotEqual(first, mutant.draw(self.mutants, 6, 4)[0])
+
+    def test_keys_outlive_lines_that_come_above(self):
+        moved = mutant.mutants_of("m.sv", b"\n" + MODULE, verilog.places(b"\n" + MODULE))
+        self.assertEqual([m.key for m in moved], [m.key for m in self.mutants])
+        self.assertEqual(len({m.key for m in self.mutants}), len(self.mutants))
+
+
+class Verdicts(unittest.TestCase):
+    TESTS = runner.Tests("unit_m", "*")
+
+    def judge(self, status, said):
+        verdict = runner.judge(status, said, self.TESTS, 1.0)
+        return verdict.status, verdict.by
+
+    def test_a_failed_expectation_kills(self):
+        self.assertEqual(self.judge(1, "a.cpp:3: Failure\n[  FAILED  ] A.B/2, where GetParam() = 5 (3 ms)\n"),
+                         ("killed", "unit_m: A.B/2"))
+
+    def test_a_report_with_its_place_kills(self):
+        self.assertEqual(self.judge(134, "x/a.c:7:3: runtime error: index 4 out of bounds\n")[0], "killed")
+        self.assertEqual(self.judge(134, "%Error: a.sv:31: Assertion failed in TOP.m\n")[0], "killed")
+
+    def test_a_crash_without_one_is_outside(self):
+        self.assertEqual(self.judge(-11, ""), ("outside", "unit_m: ends with status -11"))
+
+    def test_no_test_at_all_is_outside(self):
+        self.assertEqual(self.judge(0, "[==========] 0 tests from 0 test suites ran.\n")[0], "outside")
+        self.assertEqual(self.judge(0, "[==========] 3 tests from 1 test suite ran.\n"), ("alive", ""))
+
+
+class Equal(unittest.TestCase):
+    COUNTER = (b"module c (input wire logic clk_ref_i, rst_ni, en_i, output logic [1:0] q_o, output logic top_o);\n"
+               b"  logic [1:0] q_q;\n  always_ff @(posedge clk_ref_i or negedge rst_ni) begin\n"
+               b"    if (!rst_ni) q_q <= 2'd0;\n    else if (en_i) q_q <= (q_q == 2'd2) ? 2'd0 : q_q + 2'd1;\n  end\n"
+               b"  assign q_o = q_q;\n  assign top_o = q_q >= 2'd2;\nendmodule\n")
+
+    @unittest.skipUnless(shutil.which("yosys-abc"), "Yosys is not installed")
+    def test_what_no_input_can_tell_apart_is_proved_and_nothing_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "rtl").mkdir()
+            (root / "rtl/c.sv").write_bytes(self.COUNTER)
+            judge = equal.Filter(root, "c", "rtl/c.sv", root / "out", 30)
+            wanted = {"q_q == 2'd2 => q_q != 2'd2": False, "q_q >= 2'd2 => q_q > 2'd2": False,
+                      "without q_q <= 2'd0;": False, "2'd2 => 2'd3": False}
+            for m in mutant.mutants_of("rtl/c.sv", self.COUNTER, verilog.places(self.COUNTER)):
+                if m.change in wanted:
+                    (root / "mutant.sv").write_bytes(schemata.single(self.COUNTER, m))
+                    self.assertEqual(judge.equal(root / "mutant.sv", root / str(m.number)), wanted[m.change], m.change)
+            # The count never is 3, so from 2 on is 2: equal, by what a reset makes of it.
+            (root / "mutant.sv").write_bytes(self.COUNTER.replace(b"q_q >= 2'd2", b"q_q == 2'd2"))
+            self.assertTrue(judge.equal(root / "mutant.sv", root / "same"))
+
+
+class Reports(unittest.TestCase):
+    ROW: ClassVar = {"number": 1, "file": "rtl/m.sv", "line": 4, "text": "a & b", "operator": "operator",
+                     "change": "a & b => a | b", "repeat": 0, "status": "alive", "stage": "", "by": "", "seconds": 1.0}
+    HEAD: ClassVar = {"mutants": 9, "seed": 1, "commit": "c", "dirty": False, "build_seconds": 1.0,
+                      "equal_yet_killed": []}
+
+    def problems(self, row, given, head=None):
+        return report.problems_of({("rtl", "m"): ([{**self.HEAD, **(head or {})}], [{**self.ROW, **row}])}, given)
+
+    def test_a_survivor_needs_its_reason(self):
+        key = records.key(self.ROW)
+        self.assertIn("survivor without a reason", self.problems({}, {})[0])
+        self.assertEqual(self.problems({}, {key: "it is so"}), [])
+
+    def test_what_lock_step_alone_kills_is_a_survivor_too(self):
+        self.assertIn("survivor without a reason", self.problems({"status": "killed", "stage": "slip"}, {})[0])
+
+    def test_a_reason_for_a_dead_mutant_is_a_problem(self):
+        key = records.key(self.ROW)
+        self.assertIn("that is killed", self.problems({"status": "killed", "stage": "tests"}, {key: "it is so"})[0])
+        self.assertIn("no result has this mutant", self.problems({"status": "killed", "stage": "tests"},
+                                                                 {("rtl/x.sv", *key[1:]): "it is so"})[0])
+
+    def test_equal_yet_killed_is_a_fault(self):
+        self.assertIn("a test kills it", self.problems({"status": "killed", "stage": "tests"}, {},
+                                                       {"equal_yet_killed": [1]})[0])
+
+    def test_the_lower_bound_is_wilsons(self):
+        # 140 of 150, z 1.6449: (0.93333 + 0.00902 - 1.6449 * sqrt(0.06222 + 0.00451) / sqrt(150)) / 1.01804
+        self.assertAlmostEqual(report.wilson(140, 150), 0.8916, places=4)
+        self.assertEqual(report.wilson(0, 0), 0.0)
+
+    def test_score_leaves_equal_and_outside_out(self):
+        rows = [{**self.ROW, "status": s, "stage": t} for s, t in (
+            ("killed", "tests"), ("killed", "proof"), ("killed", "slip"), ("alive", ""), ("equal", "filter"),
+            ("outside", "tests"))]
+        self.assertEqual(report.Score(rows).cells(True), ["50.0 %", "50.0 %", "75.0 %"])
+
+
+class Names(unittest.TestCase):
+    def test_unknown_names_say_what_there_is(self):
+        with self.assertRaisesRegex(plan.Unknown, "no 'verilog' is mutated; there is: rtl"):
+            plan.choose("verilog", [])
+        with self.assertRaisesRegex(plan.Unknown, "no module pic_8260; there is: .*pic_8259"):
+            plan.choose("rtl", ["pic_8259", "pic_8260"])
+
+    def test_every_module_of_the_plan_has_its_file(self):
+        for module in plan.choose("rtl", []):
+            self.assertTrue((TOOLS.parent / module.file).exists(), module.file)
+            self.assertTrue(module.opinion or module.board, module.name)
+            if module.proof:
+                self.assertTrue((TOOLS.parent / f"testbench/formal/{module.proof}.sv").exists(), module.proof)
+
+    def test_parts_are_kept_apart_and_read_together(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(records, "FOLDER", pathlib.Path(folder)):
+            head = {"inputs": "x", "time": "2026-01-01", "source": "s"}
+            for k in (1, 2):
+                records.write(records.path_of("rtl", "m", (k, 2)), head, [{"number": k}])
+            records.write(records.path_of("rtl", "m", None), {**head, "inputs": "old", "time": "2025"}, [{"number": 9}])
+            self.assertEqual(sorted(row["number"] for row in records.of_module("rtl", "m")[1]), [1, 2])
+
+
+if __name__ == "__main__":
+    unittest.main()

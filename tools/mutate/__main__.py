@@ -1,0 +1,96 @@
+"""./dev mutate KIND [NAME...]: mutants of the sources, and which test kills each. docs/mutation.md has the scores.
+
+  mutate rtl pic_8259              150 mutants of the module, drawn evenly; all where there are fewer
+  mutate rtl --changed --resume    modules whose inputs differ from those of their results
+  mutate report [--check]          docs/mutation.md from results/mutation; --check: it is fresh, each survivor explained
+  mutate again [--count 20]        mutants that the results have as killed; each must die again
+Exit status: 0 done, 1 number 0 fails, something cannot be built or a check fails, 2 there is no such thing.
+"""
+
+import argparse
+import os
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+
+import plan
+import report
+from common import ROOT, skip
+
+
+def part_of(text):
+    k, _, n = text.partition("/")
+    if not (k.isdigit() and n.isdigit() and 1 <= int(k) <= int(n)):
+        raise argparse.ArgumentTypeError(f"'{text}': a part is K/N, with K from 1 to N")
+    return int(k), int(n)
+
+
+def positive(text):
+    if not text.isdigit() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"'{text}': a number from 1 on")
+    return int(text)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="./dev mutate", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", help="rtl, report or again")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="modules; all when none is given")
+    parser.add_argument("--seed", type=int, default=1, help="of the drawing (1)")
+    parser.add_argument("--count", type=positive, help="mutants a module that are not proved equal (150; again: 20)")
+    parser.add_argument("--all", action="store_true", help="every mutant of the module")
+    parser.add_argument("--changed", action="store_true", help="modules whose results are of other inputs")
+    parser.add_argument("--part", type=part_of, metavar="K/N", help="every Nth of the drawn mutants")
+    parser.add_argument("--resume", action="store_true", help="keep what stands in the results for the same inputs")
+    parser.add_argument("--control", type=int, default=50, metavar="N",
+                        help="killed mutants that the filter must not prove equal (50)")
+    parser.add_argument("--check", action="store_true", help="report: write nothing")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="the built tree")
+    parser.add_argument("--jobs", type=positive, default=int(os.environ.get("BRICK_JOBS", os.cpu_count() or 2)))
+    options = parser.parse_args()
+    if options.all and options.count:
+        parser.error("--all and --count: one of them")
+    return options
+
+
+def run(modules, options):
+    try:
+        import again
+        from overlay import NoBuild
+        from session import Session
+
+        from rtl import BadBuild, Judge
+    except ImportError as missing:  # of a package of tools/requirements.txt
+        skip(f"{missing.name} is not installed (./dev setup)")
+    if options.kind == "again":
+        return again.main(modules, options)
+    status = 0
+    for module in modules:
+        try:
+            session = Session(Judge(ROOT, options.build, module), options)
+            if options.changed and session.is_fresh():
+                continue
+            session.run()
+            print(session.summary(), flush=True)
+            status = status or len(session.faults) > 0
+        except (BadBuild, NoBuild, ValueError) as bad:
+            print(f"mutate: {module.name}: {bad}", file=sys.stderr, flush=True)
+            status = 1
+    return int(status)
+
+
+def main():
+    options = arguments()
+    try:
+        if options.kind == "report":
+            sys.exit(report.main(options.check))
+        modules = plan.choose("rtl" if options.kind == "again" else options.kind, options.names)
+    except plan.Unknown as unknown:
+        print(f"mutate: {unknown}", file=sys.stderr)
+        sys.exit(2)
+    sys.exit(run(modules, options))
+
+
+if __name__ == "__main__":
+    main()

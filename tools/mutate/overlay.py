@@ -1,0 +1,140 @@
+"""Builds a test program with other source files in the place of some, beside the build tree it is taken from.
+
+The commands are ninja's own. Verilator and compiler run anew for what reads a replaced file, with the new folders first
+in the include path; the objects are linked in front of the libraries, so that their symbols win. Nothing in the build
+tree is written.
+"""
+
+import dataclasses
+import pathlib
+import re
+import shlex
+import subprocess
+
+BIGGEST = "Vboard_all"  # of the boards; what runs on it judges nobody, and it takes as long as all else
+
+
+class NoBuild(Exception):
+    """A command failed: what it said."""
+
+
+def run(command, folder):
+    done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace")
+    if done.returncode != 0:
+        raise NoBuild(f"{shlex.join(command)[:300]}\n{done.stdout[-3000:]}")
+    return done.stdout
+
+
+@dataclasses.dataclass
+class Model:
+    """A Verilated model of the program: its command and its files."""
+
+    prefix: str
+    mdir: str
+    sources: list
+    command: list
+    folder: str
+
+
+class Program:
+    """How ninja builds one executable of `tree`."""
+
+    def __init__(self, tree, name):
+        self.tree, self.name = tree, name
+        lines = run(["ninja", "-t", "commands", f"bin/{name}"], tree).splitlines()
+        self.compiles, self.models, self.link = {}, {}, None
+        for line in lines:
+            verilate = re.search(r"^cd (\S+) && (\S*verilator_bin .*?)(?: &&|$)", line)
+            if verilate:
+                self.model(verilate.group(1), shlex.split(verilate.group(2)))
+            elif f" -o bin/{name} " in line:
+                self.link = shlex.split(re.search(r"&& (\S*c\+\+ .*?)(?: &&|$)", line).group(1))
+            elif " -c " in line and " -o " in line:
+                words = shlex.split(line)
+                self.compiles[words[words.index("-o") + 1]] = words
+        if self.link is None:
+            raise NoBuild(f"{tree}: no program {name}; build it first")
+
+    def model(self, folder, words):
+        prefix, mdir = words[words.index("--prefix") + 1], words[words.index("--Mdir") + 1]
+        sources = [w for w in words if re.search(r"\.(sv|v|vlt)$", w)]
+        self.models[prefix] = Model(prefix, mdir, sources, words, folder)
+
+    def readers(self, files):
+        """Objects whose compilation reads one of `files` (absolute), by ninja's log of dependencies."""
+        log, found, target = run(["ninja", "-t", "deps", *self.compiles], self.tree), [], None
+        for line in log.splitlines():
+            if line and not line[0].isspace():
+                target = line.split(":")[0]
+            elif line.strip() and target not in found and str((self.tree / line.strip()).resolve()) in files:
+                found.append(target)
+        return found
+
+
+class Overlay:
+    """Of `replaced` {path as the build knows it: file to take instead}, built below `out`."""
+
+    def __init__(self, tree, out, replaced, flags):
+        self.tree, self.out, self.flags = tree, out, flags
+        self.replaced = {str(pathlib.Path(old).resolve()): new for old, new in replaced.items()}
+
+    def verilate(self, model):
+        mdir = self.out / f"{model.prefix}.dir"
+        mdir.mkdir(parents=True, exist_ok=True)
+        words = [w for w in model.command if w not in ("-Wall",)]
+        words[words.index("--Mdir") + 1] = str(mdir)
+        for i, word in enumerate(words):
+            if word in model.sources:
+                full = str((pathlib.Path(model.folder) / word).resolve())
+                words[i] = str(self.replaced.get(full, word))
+        run([*words, "-Wno-fatal", "-Wno-lint", "-Wno-style", "-Wno-LATCH", "-Wno-MULTIDRIVEN"], model.folder)
+        return mdir
+
+    def joined(self, model, mdir):
+        """The two files that the build compiles of a model (cmake/BrickRtl.cmake), of the new code."""
+        for part in ("fast", "slow"):
+            slow = [f for f in sorted(mdir.glob("*.cpp")) if re.search(r"__(Slow|Syms)\.cpp$", f.name)]
+            files = slow if part == "slow" else [f for f in sorted(mdir.glob("*.cpp")) if f not in slow]
+            (self.out / f"{model.prefix}_{part}.cpp").write_text("".join(f'#include "{f}"\n' for f in files))
+
+    def build(self, program, boards):
+        """The program, built; `boards`: also its models of whole boards with two and five ICs."""
+        models = [m for m in program.models.values()
+                  if any(str((pathlib.Path(m.folder) / s).resolve()) in self.replaced for s in m.sources)
+                  and (not m.prefix.startswith("Vboard_") or (boards and m.prefix != BIGGEST))]
+        includes, objects, headers = [], [], []
+        for model in models:
+            mdir = self.verilate(model)
+            self.joined(model, mdir)
+            includes.append(f"-I{mdir}")
+            headers += [str(f.resolve()) for f in pathlib.Path(model.mdir).glob("*.h")]
+        for target in program.readers(set(headers) | set(self.replaced)):
+            words = list(program.compiles[target])
+            source = pathlib.Path(words[words.index("-c") + 1])
+            own = self.out / source.name
+            joined = any(source.name in (f"{m.prefix}_fast.cpp", f"{m.prefix}_slow.cpp") for m in models)
+            if joined and own.exists():
+                words[words.index("-c") + 1] = str(own)
+            elif str(source.resolve()) in self.replaced:
+                words[words.index("-c") + 1] = str(self.replaced[str(source.resolve())])
+            made = self.out / target.replace("/", "_")
+            words[words.index("-o") + 1] = str(made)
+            for option in ("-MF", "-MT"):
+                if option in words:
+                    words[words.index(option) + 1] = f"{made}.d"
+            compiler = next(i for i, w in enumerate(words) if re.search(r"(c\+\+|g\+\+|cc|gcc)$", w))
+            words[compiler + 1:compiler + 1] = includes
+            run([*words, *self.flags], self.tree)
+            objects.append(str(made))
+        words, binary = list(program.link), self.out / program.name
+        words[words.index("-o") + 1] = str(binary)
+        own = [w for w in words if w.endswith(".o")]
+        for target in own:  # an object of the program itself: the new one in its place
+            new = str(self.out / target.replace("/", "_"))
+            if new in objects:
+                words[words.index(target)] = new
+                objects.remove(new)
+        at = next(i for i, w in enumerate(words) if w.endswith(".a"))
+        run(words[:at] + objects + words[at:], self.tree)
+        return binary

@@ -1,0 +1,60 @@
+"""modules.toml, read: what is mutated, and by which tests it is judged."""
+
+import dataclasses
+import pathlib
+import tomllib
+
+from runner import Tests
+
+FILE = pathlib.Path(__file__).parent / "modules.toml"
+
+
+class Unknown(Exception):
+    """What the user asks for is not there."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Module:
+    name: str
+    file: str
+    tops: tuple  # of the filter, in turn; none: no filter
+    proof: str  # of testbench/formal; "": none
+    opinion: tuple
+    board: tuple
+    slip: tuple
+
+
+def tests(entries, sets):
+    found = []
+    for entry in entries:
+        if entry in sets:
+            found += tests(sets[entry], sets)
+        else:
+            program, _, which = entry.partition(" ")
+            found.append(Tests(program, which or "*"))
+    return tuple(found)
+
+
+def read(file=FILE):
+    """{kind: {name: Module}}"""
+    table = tomllib.loads(file.read_text())
+    sets = table.pop("sets", {})
+    kinds = {}
+    for kind, modules in table.items():
+        kinds[kind] = {
+            name: Module(name, row["file"], tuple(row.get("tops", [name])), row.get("proof", ""),
+                         tests(row["opinion"], sets), tests(row.get("board", []), sets),
+                         tests(row.get("slip", []), sets))
+            for name, row in modules.items()}
+    return kinds
+
+
+def choose(kind, names):
+    """The modules of a kind that have these names, all where there are none."""
+    kinds = read()
+    if kind not in kinds:
+        raise Unknown(f"no '{kind}' is mutated; there is: {', '.join(kinds)}")
+    unknown = [name for name in names if name not in kinds[kind]]
+    if unknown:
+        raise Unknown(f"{kind}: no module {', '.join(unknown)}; there is: {', '.join(kinds[kind])}")
+    return [module for name, module in kinds[kind].items() if not names or name in names]

@@ -1,0 +1,171 @@
+"""docs/mutation.md, made of the results in results/mutation and of the reasons in reasons.toml.
+
+A survivor without a reason is a problem; so is a reason whose mutant is dead, or of which no result knows.
+"""
+
+import collections
+import math
+import pathlib
+import tomllib
+
+import plan
+import records
+from common import ROOT
+from runner import ALIVE, EQUAL, KILLED, OUTSIDE
+
+PAGE = ROOT / "docs/mutation.md"
+REASONS = pathlib.Path(__file__).parent / "reasons.toml"
+Z = 1.6449  # a normal variable is below it 95 times in a hundred
+COLUMNS = ("module", "mutants", "judged", "equal", "outside", "alive", "score", "at least", "slip", "s", "seed",
+           "commit")
+MOST_OUTSIDE = 0.05  # of a module, without being listed
+HEAD = """# Mutants
+
+<!-- Written by `./dev mutate report` from results/mutation and tools/mutate/reasons.toml. Do not edit. -->
+What would the tests notice? A mutant is the source with one place changed: an operator, a comparison, a constant, a
+case item, an enable, a reset, a condition, a statement left out. `./dev mutate rtl NAME` finds the places with slang's
+parser, puts many mutants into one Verilated model, of which a number chooses one, and runs the module's tests on each;
+number 0 is the module as it is and passes. The first failure stops.
+
+- **score**: killed of killed and alive. The mutant stands in the RTL alone and every comparison of RTL and model is
+  off: the tests have values of their own, the proof has its rules. This holds when both sides misread a rule alike.
+- **slip**: with lock-step and component tests on what was left: a mistake in the RTL alone.
+- **equal**: proved, without a bound, to be the module it was made from; out of the count, another takes its place.
+- **outside**: ended by the wall clock or a crash without a report that names its place; out of the count too.
+- **at least**: the lower end of what the score of all mutants of the module may be, at 95 % (Wilson's interval, one
+  side), from those drawn; the score itself where all were judged.
+
+Not mutated: what is fixed before a model runs (widths, parameters, generate blocks, sensitivity lists); `board_sim` and
+the test bench. Which tests judge a module says `tools/mutate/modules.toml`. `./dev mutate --help` has the options.
+"""
+
+
+def wilson(hits, tries):
+    """The lower end of the interval for the share of hits."""
+    if tries == 0:
+        return 0.0
+    share, square = hits / tries, Z * Z
+    centre, spread = share + square / (2 * tries), Z * math.sqrt((share * (1 - share) + square / (4 * tries)) / tries)
+    return max(0.0, (centre - spread) / (1 + square / tries))
+
+
+class Score:
+    """Of the rows of a module, or of several."""
+
+    def __init__(self, rows):
+        count = collections.Counter(row["status"] for row in rows)
+        self.slip_only = sum(row["status"] == KILLED and row["stage"] == "slip" for row in rows)
+        self.killed, self.equal, self.outside = count[KILLED] - self.slip_only, count[EQUAL], count[OUTSIDE]
+        self.alive = count[ALIVE] + self.slip_only
+        self.seconds = sum(row["seconds"] for row in rows)
+
+    def counted(self):
+        return self.killed + self.alive
+
+    def cells(self, complete):
+        counted = self.counted()
+        if counted == 0:
+            return ["-", "-", "-"]
+        low = self.killed / counted if complete else wilson(self.killed, counted)
+        slip = (self.killed + self.slip_only) / counted
+        return [percent(self.killed / counted), percent(low), percent(slip)]
+
+
+def percent(share):
+    return f"{math.floor(share * 1000) / 10:.1f} %"
+
+
+def reasons():
+    """{key: reason}"""
+    table = tomllib.loads(REASONS.read_text()) if REASONS.exists() else {}
+    return {(r["file"], r["line"], r["operator"], r["change"], r.get("repeat", 0)): r["reason"]
+            for r in table.get("survivor", [])}
+
+
+def survivors(rows):
+    """What a module's own tests and proofs leave alive, in the order of the file."""
+    return [row for row in sorted(rows, key=lambda r: r["number"])
+            if row["status"] == ALIVE or (row["status"] == KILLED and row["stage"] == "slip")]
+
+
+def gather(kinds):
+    """{(kind, module name): (heads, rows)} of those that have results."""
+    found = {(kind, name): records.of_module(kind, name) for kind, modules in kinds.items() for name in modules}
+    return {key: value for key, value in found.items() if value[1]}
+
+
+def problems_of(results, given):
+    problems, seen = [], set()
+    for (kind, name), (heads, rows) in results.items():
+        where = f"results/mutation/{kind}/{name}"
+        for row in survivors(rows):
+            key = records.key(row)
+            seen.add(key)
+            if key not in given:
+                problems.append(f"{where}: {row['file']}:{row['line']}: survivor without a reason in "
+                                f"tools/mutate/reasons.toml: {row['operator']}: {row['change']}")
+        for row in rows:
+            key = records.key(row)
+            if key in given and key not in seen:
+                seen.add(key)
+                problems.append(f"tools/mutate/reasons.toml: a reason for a mutant that is {row['status']} "
+                                f"({row['by']}): {row['file']}: {row['change']}")
+        outside = [row for row in rows if row["status"] == OUTSIDE]
+        if len(outside) > MOST_OUTSIDE * len(rows):
+            problems += [f"{where}: outside the score, and more than {MOST_OUTSIDE:.0%} of the module: "
+                         f"{row['file']}:{row['line']}: {row['change']}: {row['by']}" for row in outside
+                         if records.key(row) not in given]
+            seen |= {records.key(row) for row in outside}
+        for head in heads:
+            problems += [f"{where}: mutant {n} is proved equal, yet a test kills it" for n in head["equal_yet_killed"]]
+    problems += [f"tools/mutate/reasons.toml: no result has this mutant: {key[0]}: {key[1]}: {key[3]}"
+                 for key in given if key not in seen]
+    return problems
+
+
+def page(results, given):
+    lines = [HEAD]
+    for kind in sorted({kind for kind, _ in results}):
+        title = {"rtl": "RTL"}.get(kind, kind.capitalize())
+        lines += [f"## {title}", "| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
+        everything = []
+        for (of, name), (heads, rows) in results.items():
+            if of != kind:
+                continue
+            score, head = Score(rows), heads[0]
+            everything += rows
+            complete = score.counted() + score.equal + score.outside == head["mutants"]
+            tree = head["commit"] + (" and changes" if head["dirty"] else "")
+            lines.append("| " + " | ".join(map(str, [
+                f"`{name}`", head["mutants"], len(rows), score.equal, score.outside, score.alive,
+                *score.cells(complete), f"{score.seconds + sum(h['build_seconds'] for h in heads):.0f}", head["seed"],
+                tree])) + " |")
+        score = Score(everything)
+        lines.append("| " + " | ".join(map(str, [
+            "together", sum(h[0]["mutants"] for (of, _), (h, _) in results.items() if of == kind), len(everything),
+            score.equal, score.outside, score.alive, *score.cells(False), f"{score.seconds:.0f}", "", ""])) + " |")
+        lines += ["", "### Survivors", ""]
+        if score.alive == 0:
+            lines.append("None.")
+        for (of, _), (_, rows) in results.items():
+            for row in survivors(rows) if of == kind else []:
+                where = f"`{row['file']}`, `{row['text']}`"
+                slip = " (lock-step sees it)" if row["status"] == KILLED else ""
+                lines.append(f"- {where}: {row['operator']}, `{row['change']}`{slip}. "
+                             + " ".join(given.get(records.key(row), "No reason yet.").split()))
+        lines.append("")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def main(check):
+    kinds, given = plan.read(), reasons()
+    results = gather(kinds)
+    text, problems = page(results, given), problems_of(results, given)
+    if check and (not PAGE.exists() or PAGE.read_text() != text):
+        problems.append("docs/mutation.md is stale: ./dev mutate report")
+    if not check:
+        PAGE.write_text(text)
+    for problem in problems:
+        print(problem)
+    print(f"mutation: {len(problems)} problem(s)" if problems else "mutation: clean")
+    return 1 if problems else 0

@@ -1,0 +1,140 @@
+"""Judges the mutants of one RTL module: number 0 first, then each by its tests, filter, proof, boards and lock-step."""
+
+import dataclasses
+import pathlib
+import threading
+import time
+
+import overlay
+import proofs
+import runner
+import schemata
+import verilog
+from equal import Filter
+from mutant import hash_of, mutants_of
+from runner import ALIVE, EQUAL, KILLED, Verdict
+
+FOLDER = pathlib.Path(__file__).parent
+FILTER_LIMIT, PROOF_LIMIT, ZERO_LIMIT = 20, 120, 600  # s
+
+
+class BadBuild(Exception):
+    """Number 0 does not pass, or nothing can be built."""
+
+
+@dataclasses.dataclass
+class Stage:
+    """Tests with one kind of build."""
+
+    name: str
+    tests: tuple
+    boards: bool
+    compare: bool
+
+
+class Judge:
+    def __init__(self, root, tree, module):
+        self.root, self.tree, self.module = root, tree, module
+        self.source = (root / module.file).read_bytes()
+        self.mutants = mutants_of(module.file, self.source, verilog.places(self.source))
+        self.out = root / "build/mutate" / module.name
+        self.designs = [Filter(root, top, module.file, self.out / f"filter_{top}", FILTER_LIMIT)
+                           for top in module.tops]
+        self.stages = [Stage("tests", module.opinion, False, False), Stage("board", module.board, True, False),
+                       Stage("slip", module.slip, True, True)]
+        self.binaries, self.filters, self.limits, self.build_seconds = {}, {}, {}, 0.0
+        self.built, self.lock = set(), threading.Lock()
+
+    def inputs(self):
+        """A hash of all that decides: the mutated file, the programs as built, the proof, where places are found."""
+        programs = {t.program for stage in self.stages for t in stage.tests}
+        proof = self.root / f"testbench/formal/{self.module.proof}.sv"
+        return hash_of(self.source, *(self.tree / "bin" / p for p in sorted(programs)),
+                       proof if self.module.proof else "", repr(self.module), FOLDER / "verilog.py")
+
+    def write(self, chosen):
+        """The file with `chosen` in it, of which build() makes programs."""
+        mutated = self.out / self.module.file
+        mutated.parent.mkdir(parents=True, exist_ok=True)
+        mutated.write_bytes(schemata.write(self.source, chosen, schemata.Verilog()))
+
+    def build(self, stage):
+        """Its programs, once, when the first mutant comes to it; number 0 passes in each."""
+        with self.lock:
+            if stage.name in self.built:
+                return
+            begin, folder = time.monotonic(), self.out / ("board" if stage.boards else "module")
+            folder.mkdir(parents=True, exist_ok=True)
+            replaced = {self.root / self.module.file: self.out / self.module.file}
+            for tests in stage.tests:
+                key = (tests.program, stage.boards)
+                if key not in self.binaries:
+                    program = overlay.Program(self.tree, tests.program)
+                    one = overlay.Overlay(self.tree, folder, replaced, ["-O1"])
+                    self.binaries[key] = one.build(program, stage.boards)
+                self.pass_zero(stage, tests)
+            self.built.add(stage.name)
+            self.build_seconds += time.monotonic() - begin
+
+    def pass_zero(self, stage, tests):
+        """Number 0, the module as it is, passes. What it fails when nothing is compared is a control of the
+        comparison, and judges nobody."""
+        binary = self.binaries[(tests.program, stage.boards)]
+        verdict = runner.run(binary, tests, 0, ZERO_LIMIT, True, self.root)
+        if verdict.status != ALIVE:
+            raise BadBuild(f"number 0, the module as it is, does not pass: {verdict.by}")
+        if not stage.compare:
+            controls = runner.failures(binary, tests, ZERO_LIMIT, self.root)
+            left_out = ("" if not controls else ":" if "-" in tests.filter else "-") + ":".join(controls)
+            self.filters[(stage.name, tests)] = dataclasses.replace(tests, filter=tests.filter + left_out)
+        self.limits[(stage.name, tests)] = 5 + 10 * verdict.seconds
+
+    def run(self, stage, tests, number):
+        binary, key = self.binaries[(tests.program, stage.boards)], (stage.name, tests)
+        return runner.run(binary, self.filters.get(key, tests), number, self.limits[key], stage.compare, self.root)
+
+    def by_tests(self, stage, mutant):
+        self.build(stage)
+        seconds, verdict = 0.0, Verdict(ALIVE, "", 0.0)
+        for tests in stage.tests:
+            verdict = self.run(stage, tests, mutant.number)
+            seconds += verdict.seconds
+            if verdict.status != ALIVE:
+                break
+        return dataclasses.replace(verdict, seconds=seconds)
+
+    def by_filter(self, mutant):
+        begin = time.monotonic()
+        equal = False
+        for one in self.designs:
+            folder = one.out / str(mutant.number)
+            folder.mkdir(parents=True, exist_ok=True)
+            single = folder / "mutant.sv"
+            single.write_bytes(schemata.single(self.source, mutant))
+            equal = equal or one.equal(single, folder)
+        return Verdict(EQUAL if equal else ALIVE, "proved equal" if equal else "", time.monotonic() - begin)
+
+    def by_proof(self, mutant):
+        if not self.module.proof:
+            return Verdict(ALIVE, "", 0.0)
+        begin = time.monotonic()
+        single = schemata.single(self.source, mutant).decode()
+        rule = proofs.refuted(self.root, self.module.proof, self.module.file, self.source.decode(), single,
+                              self.out / "proof" / str(mutant.number), PROOF_LIMIT)
+        seconds = time.monotonic() - begin
+        return Verdict(KILLED, f"proof {self.module.proof}: {rule}", seconds) if rule else Verdict(ALIVE, "", seconds)
+
+    def judge(self, mutant):
+        """(stage, verdict): of the first that does not leave it alive. What lock-step alone kills has stage 'slip' and
+        counts as alive for the score of misreadings."""
+        tests, board, slip = self.stages
+        steps = [("tests", lambda: self.by_tests(tests, mutant)), ("filter", lambda: self.by_filter(mutant)),
+                 ("proof", lambda: self.by_proof(mutant)), ("board", lambda: self.by_tests(board, mutant)),
+                 ("slip", lambda: self.by_tests(slip, mutant))]
+        seconds = 0.0
+        for name, step in steps:
+            verdict = step()
+            seconds += verdict.seconds
+            if verdict.status != ALIVE:
+                return name, dataclasses.replace(verdict, seconds=seconds)
+        return "", Verdict(ALIVE, "", seconds)

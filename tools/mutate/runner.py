@@ -1,0 +1,68 @@
+"""Runs a test program on one mutant and says what came of it: the first failure stops.
+
+Killed: a failed expectation (a bench's limit in simulated time is one), or a report of an assertion or sanitizer that
+names its place. Wall-time limits and other crashes are neither killed nor alive, but 'outside' the score.
+"""
+
+import dataclasses
+import os
+import re
+import subprocess
+import time
+
+ALIVE, KILLED, EQUAL, OUTSIDE = "alive", "killed", "equal", "outside"
+REPORTS = re.compile(r"^(\S+:\d+(?::\d+)?: runtime error: .*|.*ERROR: AddressSanitizer: .*|\S+: Assertion `.*"
+                     r"|\S+:\d+: .*Assertion.*failed.*|%Error: \S+:\d+: Assertion failed.*)$", re.M)
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+    status: str
+    by: str  # the test that failed first, or why it is outside
+    seconds: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Tests:
+    """A program and which of its tests."""
+
+    program: str
+    filter: str
+
+
+def run(binary, tests, number, limit, compare, folder):
+    """`compare`: rigs with both engines compare them."""
+    environment = {**os.environ, "BRICK_MUTANT": str(number), "BRICK_COMPARE": "on" if compare else "off"}
+    environment.pop("GTEST_TOTAL_SHARDS", None)
+    begin = time.monotonic()
+    command = [str(binary), f"--gtest_filter={tests.filter}", "--gtest_brief=1", "--gtest_fail_fast"]
+    try:
+        done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, timeout=limit, text=True, errors="replace")
+    except subprocess.TimeoutExpired:
+        return Verdict(OUTSIDE, f"{tests.program}: no end within {limit:.0f} s", time.monotonic() - begin)
+    return judge(done.returncode, done.stdout, tests, time.monotonic() - begin)
+
+
+def failures(binary, tests, limit, folder):
+    """The tests that fail on number 0 when nothing compares RTL and model: controls of that comparison."""
+    environment = {**os.environ, "BRICK_MUTANT": "0", "BRICK_COMPARE": "off"}
+    done = subprocess.run([str(binary), f"--gtest_filter={tests.filter}", "--gtest_brief=1"], cwd=folder,
+                          env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          timeout=limit, text=True, errors="replace")
+    return sorted({name.rstrip(",") for name in re.findall(r"^\[  FAILED  \] ([^\s,]+[./][^\s,]+)", done.stdout, re.M)})
+
+
+def judge(status, said, tests, seconds):
+    if status == 0:
+        ran = re.search(r"^\[==========\] (\d+) tests? from", said, re.M)
+        if ran is None or ran.group(1) == "0":
+            return Verdict(OUTSIDE, f"{tests.program}: no test is called {tests.filter}", seconds)
+        return Verdict(ALIVE, "", seconds)
+    failed = re.search(r"^\[  FAILED  \] (\S+)", said, re.M)
+    if failed:
+        return Verdict(KILLED, f"{tests.program}: {failed.group(1).rstrip(',')}", seconds)
+    report = REPORTS.search(said)
+    if report:
+        return Verdict(KILLED, f"{tests.program}: {report.group(1)[:200]}", seconds)
+    return Verdict(OUTSIDE, f"{tests.program}: ends with status {status}", seconds)

@@ -1,0 +1,65 @@
+"""Many mutants in one text, of which the number chooses one when the program runs; or one of them alone."""
+
+
+class Verilog:
+    """The number is a variable of a package, read from the environment when the model is made. Only Verilator reads
+    this text: $c32 is its way into C++."""
+
+    head = ('package mutant_pkg;\n  int unsigned number = $c32("(std::getenv(\\"BRICK_MUTANT\\") ? '
+            'std::atoi(std::getenv(\\"BRICK_MUTANT\\")) : 0)");\nendpackage\n')
+    number = "mutant_pkg::number"
+
+    def expression(self, mutants, inner):
+        chosen = "".join(f"{self.number} == {m.number} ? ({m.place.new}) : " for m in mutants)
+        return f"({chosen}({inner}))"
+
+    def statement(self, mutants, inner):
+        wanted = " && ".join(f"{self.number} != {m.number}" for m in mutants)
+        return f"begin if ({wanted}) {inner} end"
+
+
+class C:
+    """The number is a variable that mutant_number.c defines."""
+
+    head = "extern int brick_mutant_number;\n"
+    number = "brick_mutant_number"
+
+    def expression(self, mutants, inner):
+        chosen = "".join(f"{self.number} == {m.number} ? ({m.place.new}) : " for m in mutants)
+        return f"({chosen}({inner}))"
+
+    def statement(self, mutants, inner):
+        wanted = " && ".join(f"{self.number} != {m.number}" for m in mutants)
+        return f"{{ if ({wanted}) {inner} }}"
+
+
+def write(source, mutants, language):
+    """The text with all of `mutants` in it. What a mutant puts in its place is the original text below it: one number
+    is chosen at a time."""
+    spans = {}
+    for mutant in mutants:
+        spans.setdefault((mutant.place.start, mutant.place.end), []).append(mutant)
+    order = sorted(spans, key=lambda span: (span[0], -span[1]))
+
+    def render(start, end, inside):
+        text, at, i = b"", start, 0
+        while i < len(inside):
+            a, b = inside[i]
+            nested = []
+            while i + 1 + len(nested) < len(inside) and inside[i + 1 + len(nested)][0] < b:
+                nested.append(inside[i + 1 + len(nested)])
+            inner = render(a, b, nested).decode()
+            here = spans[(a, b)]
+            form = language.statement if here[0].place.statement else language.expression
+            text += source[at:a] + form(here, inner).encode()
+            at, i = b, i + 1 + len(nested)
+        return text + source[at:end]
+
+    return language.head.encode() + render(0, len(source), order)
+
+
+def single(source, mutant):
+    """The file as this mutant has it."""
+    place = mutant.place
+    new = place.new if place.statement else f"({place.new})"
+    return source[:place.start] + new.encode() + source[place.end:]

@@ -1,0 +1,108 @@
+"""One module, judged: mutants are drawn, built together, run, filtered and written down."""
+
+import collections
+import concurrent.futures
+import datetime
+import itertools
+import random
+import subprocess
+import time
+
+import records
+from common import GIT, ROOT
+from mutant import draw, hash_of
+from runner import EQUAL, KILLED
+
+DEFAULT_COUNT = 150
+SAVE_EVERY = 25
+
+
+def tree():
+    """Which commit is judged, and whether the tree differs from it in more than what is written here."""
+    def git(*command):
+        return subprocess.run([*GIT, "-C", str(ROOT), *command], capture_output=True, text=True, check=False).stdout
+
+    differs = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results", ":!docs/mutation.md",
+                  ":!tools/mutate/reasons.toml")
+    return {"commit": git("rev-parse", "--short=10", "HEAD").strip(), "dirty": bool(differs.strip())}
+
+
+class Session:
+    def __init__(self, judge, options):
+        self.judge, self.options = judge, options
+        self.path = records.path_of("rtl", judge.module.name, options.part)
+        self.inputs = judge.inputs()
+        self.rows, self.faults, self.begin = {}, [], time.monotonic()
+        self.known = self.read_known()
+        self.tree = tree()
+
+    def read_known(self):
+        """{number: row} of results that have the same inputs."""
+        if not self.path.exists():
+            return {}
+        head, rows = records.read(self.path)
+        return {row["number"]: row for row in rows} if head["inputs"] == self.inputs else {}
+
+    def is_fresh(self):
+        return bool(self.known)
+
+    def run(self):
+        options = self.options
+        first, rest = draw(self.judge.mutants, None if options.all else options.count or DEFAULT_COUNT, options.seed)
+        if options.part:
+            k, n = options.part
+            first, rest = first[k - 1::n], rest[k - 1::n]
+        if options.resume:
+            self.rows = {m.number: self.known[m.number] for m in first + rest if m.number in self.known}
+        known = set(self.rows)
+        self.judge.write([m for m in first + rest if m.number not in known])
+        order, taken = iter(first + rest), []
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            # One that is proved equal does not count: the next of the list comes in its place.
+            while batch := list(itertools.islice(order, len(first) - self.counted(taken))):
+                taken += batch
+                missing = [m for m in batch if m.number not in self.rows]
+                judged = pool.map(self.judge.judge, missing)
+                for done, (mutant, (stage, verdict)) in enumerate(zip(missing, judged, strict=True), 1):
+                    self.rows[mutant.number] = records.record(mutant, verdict, stage)
+                    if done % SAVE_EVERY == 0:
+                        self.save(taken)
+            self.save(taken)
+            self.control(pool, taken)
+        self.save(taken)
+
+    def counted(self, taken):
+        return sum(self.rows[m.number]["status"] != EQUAL for m in taken)
+
+    def control(self, pool, taken):
+        """The filter must not prove equal what a test has killed."""
+        killed = [m for m in taken
+                  if self.rows[m.number]["status"] == KILLED and self.rows[m.number]["stage"] in ("tests", "board")]
+        chosen = random.Random(self.options.seed).sample(killed, min(self.options.control, len(killed)))
+        for mutant, verdict in zip(chosen, pool.map(self.judge.by_filter, chosen), strict=True):
+            if verdict.status == EQUAL:
+                self.faults.append(mutant.number)
+
+    def save(self, taken):
+        head = {"module": self.judge.module.name, "file": self.judge.module.file, "inputs": self.inputs,
+                "source": hash_of(self.judge.source),
+                "seed": self.options.seed, "mutants": len(self.judge.mutants), "all": self.options.all,
+                **self.tree,
+                "time": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+                "build_seconds": round(self.judge.build_seconds, 1),
+                "seconds": round(time.monotonic() - self.begin, 1), "equal_yet_killed": self.faults}
+        records.write(self.path, head, [self.rows[m.number] for m in taken if m.number in self.rows])
+
+    def summary(self):
+        """A line for the terminal, and one for each survivor."""
+        rows = list(self.rows.values())
+        count = collections.Counter(row["status"] for row in rows)
+        lines = [f"{self.judge.module.name}: {len(rows)} of {len(self.judge.mutants)} mutants, "
+                 + ", ".join(f"{n} {status}" for status, n in sorted(count.items()))
+                 + f"; {time.monotonic() - self.begin:.0f} s, {self.judge.build_seconds:.0f} s of them building"]
+        for row in sorted(rows, key=lambda r: r["number"]):
+            if row["status"] not in (KILLED, EQUAL) or row["stage"] == "slip":
+                what = f"{row['status']} ({row['stage']})" if row["stage"] else row["status"]
+                lines.append(f"  {row['file']}:{row['line']}: {what}: {row['operator']}: {row['change']} {row['by']}")
+        lines += [f"  {n}: proved equal, yet a test has killed it: a fault of the filter" for n in self.faults]
+        return "\n".join(lines)

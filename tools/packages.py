@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Makes the wheel and the Debian packages of a finished build and tries them: packages.py BUILD DIR [--root].
+
+--root, as root: in a clean Debian 12 of its own below DIR (debootstrap, chroot; apt and pip configured as here) the
+wheel is installed without a compiler and moves a motor, the packages are installed, `brick --version` says the same
+everywhere, and a design of somebody else's builds against brick-dev. Without a program that it needs: exit status 77.
+"""
+
+import argparse
+import contextlib
+import pathlib
+import shutil
+import subprocess
+
+import wheel
+from common import finish, skip
+
+SUITE, MIRROR = "bookworm", "http://deb.debian.org/debian"
+SHARED = ["/etc/apt/sources.list", "/etc/apt/sources.list.d", "/etc/apt/apt.conf.d", "/etc/apt/auth.conf.d",
+          "/etc/apt/trusted.gpg.d", "/usr/share/keyrings", "/etc/pip.conf", "/etc/ssl/certs",
+          "/usr/local/share/ca-certificates", "/etc/resolv.conf", "/etc/hosts"]
+EXAMPLE = "/usr/share/brick/examples/servo_ic"
+
+
+def debian_packages(build, folder):
+    wheel.run("cpack", "-G", "DEB", "-B", folder / "deb", cwd=build)
+    return sorted((folder / "deb").glob("*.deb"))
+
+
+def lintian(packages):
+    done = subprocess.run(["lintian", "--fail-on", "error", "--tag-display-limit", "0", *packages],
+                          capture_output=True, text=True)
+    return [line for line in done.stdout.splitlines() if line.startswith("E:")]
+
+
+class Root:
+    """A clean Debian below a folder."""
+
+    def __init__(self, place):
+        self.place = place
+        shutil.rmtree(place, ignore_errors=True)
+        wheel.run("debootstrap", "--variant=minbase", SUITE, place, MIRROR)
+        (place / "etc/apt/sources.list").unlink()  # that of debootstrap: those of here come instead
+        for name in SHARED:
+            source, target = pathlib.Path(name), place / name[1:]
+            if source.is_dir():
+                shutil.copytree(source, target, symlinks=True, dirs_exist_ok=True)
+            elif source.exists():
+                target.unlink(missing_ok=True)
+                shutil.copy(source, target)
+
+    def run(self, *command):
+        return wheel.run("chroot", self.place, *command)
+
+    @contextlib.contextmanager
+    def mounted(self):
+        """/proc, where a command looks for itself."""
+        wheel.run("mount", "-t", "proc", "proc", self.place / "proc")
+        try:
+            yield
+        finally:
+            wheel.run("umount", self.place / "proc")
+
+    def install(self, *packages):
+        self.run("apt-get", "install", "-y", "-q", "--no-install-recommends", *packages)
+
+
+def problems_in(root, build, made, packages):
+    expected = wheel.run(build / "bin/brick", "--version")
+    for file in [made, *packages]:
+        shutil.copy(file, root.place / "tmp")
+    root.run("apt-get", "update", "-q")
+    root.install("python3-venv")
+    root.run("python3", "-m", "venv", "/wheel")
+    root.run("/wheel/bin/pip", "install", "--quiet", f"/tmp/{made.name}")
+    if root.run("/wheel/bin/brick", "--version") != expected:
+        yield "brick --version of the wheel is another than that of the build"
+    root.run("/wheel/bin/python", "-c", wheel.TRIAL)
+    root.install(*(f"/tmp/{package.name}" for package in packages))
+    if root.run("/usr/bin/brick", "--version") != expected:
+        yield "brick --version of the package is another than that of the build"
+    root.install("g++", "cmake", "make", "pkg-config")
+    root.run("cmake", "-S", EXAMPLE, "-B", "/tmp/bench")
+    root.run("cmake", "--build", "/tmp/bench")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--root", action="store_true")
+    options = parser.parse_args()
+    needed = ["cpack", "lintian", *(["debootstrap", "chroot"] if options.root else [])]
+    if missing := [program for program in needed if shutil.which(program) is None]:
+        skip(f"not installed: {', '.join(missing)}")
+    build, folder = options.build.resolve(), options.folder.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    made = wheel.make(build, folder)
+    problems = [*wheel.lacks(made)]
+    packages = debian_packages(build, folder)
+    problems += lintian(packages)
+    if options.root and not problems:
+        root = Root(folder / "root")
+        with root.mounted():
+            problems += problems_in(root, build, made, packages)
+    finish("packages", problems)
+
+
+if __name__ == "__main__":
+    main()
