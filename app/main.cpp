@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/control/command.h"
 #include "app/cpu_command.h"
+#include "app/line_cover.h"
 #include "app/regress/command.h"
 #include "app/run_bench.h"
 #include "systemc/core/usage_error.h"
@@ -49,7 +50,7 @@ struct Commands {
   TimingOptions timing_options;
   PlotOptions plot_options;
   RegressOptions regress_options;
-  std::string bench, script, history, elf, board, jobs, max_instructions = kDefaultInstructions;
+  std::string cover, bench, script, history, elf, board, jobs, max_instructions = kDefaultInstructions;
   bool negative = false, raw = false, list_json = false, boards_json = false;
 
   Commands() {
@@ -68,9 +69,13 @@ struct Commands {
     run->add_option("--size", run_options.size,
                     "how much of a bench that has no end of its own: lines of rotary-machining")
         ->type_name("N");
+    run->add_option("--cover", cover, "the lines of the firmware that were executed, as lcov's tracefile, to FILE")
+        ->type_name("FILE");
     run->callback([this, run] {
       if (run->count("--board") == 0) run_options.board.clear();  // the bench's own
-      chosen = [this] { return run_bench(all_benches(), run_options, bench, negative); };
+      chosen = [this] {
+        return run_bench(all_benches(), run_options, bench, negative, line_cover(cover, run_options));
+      };
     });
 
     auto* exec =

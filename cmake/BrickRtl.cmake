@@ -37,6 +37,24 @@ function(brick_verilate library)
   brick_join_verilated(${library} ${V_PREFIX})
 endfunction()
 
+# brick_netlist(sources servo_ic): the same as gates, of board_top with what stands around it. Made when CMake runs, as
+# Verilator's code is.
+function(brick_netlist sources top)
+  set(folder ${CMAKE_BINARY_DIR}/netlist)
+  brick_rtl_list(rtl ${top})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${rtl} ${CMAKE_SOURCE_DIR}/tools/netlist.py)
+  if(BRICK_NETLIST_PLANTED)
+    set(planted --planted)
+  endif()
+  execute_process(COMMAND ${Python3_EXECUTABLE} tools/netlist.py ${top} ${folder} ${planted}
+                  WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} COMMAND_ERROR_IS_FATAL ANY)
+  set(files ${BRICK_RTL}/pins/motor_pins_pkg.sv ${folder}/${top}.v)
+  if(top STREQUAL board_top)
+    list(APPEND files ${BRICK_RTL}/host/dpram_memory.sv ${folder}/board_sim.sv)
+  endif()
+  set(${sources} ${files} PARENT_SCOPE)
+endfunction()
+
 # A model is some ten files, most of them short, which all read the same headers: two thirds of the compiler's work. So
 # they are compiled as two: what runs at each evaluation, and what runs once.
 function(brick_join_verilated library prefix)

@@ -49,6 +49,9 @@ foreach(pair "debian brick" "debian_dev brick-dev")
   list(GET pair 1 package)
   install(FILES ${debian}/copyright ${debian}/changelog.gz DESTINATION share/doc/${package} COMPONENT ${component})
 endforeach()
+# The pages are those of brick, on which brick-dev depends. This is the last component of its group.
+install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/doc/brick\")"
+  COMPONENT debian_dev EXCLUDE_FROM_ALL)
 include(CPack)
 cpack_add_component_group(brick)
 cpack_add_component_group(dev)

@@ -1,6 +1,8 @@
 # Warnings, sanitizers, coverage and compiler cache.
 option(BRICK_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 option(BRICK_COVERAGE "Line coverage of C++ and of the RTL" OFF)
+option(BRICK_NETLIST "Yosys' gates of the servo IC and of the board of two in the place of their RTL" OFF)
+option(BRICK_NETLIST_PLANTED "Those of RTL with a fault (tools/netlist.py)" OFF)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()

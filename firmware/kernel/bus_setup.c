@@ -8,13 +8,14 @@
 enum { RESET_I52 = 7, AREAS = 5 };
 
 /* Areas AA0 main memory, AA1 gate ICs, AA2 DPRAM, AA3 flash, default. The rows above I52 = 15 are the same device
- * budgets at the higher clock: access time (W + 0.75) Tc - 5 ns. At I52 = 0 and 1 the DPRAM needs write data sooner
- * after the strobe than three wait states give them. */
+ * budgets at the higher clock: the word of a gate IC is there 95.8 ns after the strobe, where the CPU gives it
+ * (W + 0.25) Tc - 5 ns; at I52 = 31 the most there is, 31, gives 94.3. At I52 = 0 to 4 the DPRAM needs write data
+ * sooner after the strobe than three wait states give them. */
 static const struct {
   uint8_t i52, wait[AREAS];
 } rows[] = {
-    {1, {1, 7, 4, 7, 15}},   {7, {1, 7, 3, 7, 15}},   {9, {1, 10, 4, 7, 15}},
-    {15, {2, 15, 7, 7, 31}}, {23, {4, 22, 7, 7, 31}}, {31, {5, 31, 7, 7, 31}},
+    {4, {1, 8, 4, 7, 15}},   {7, {1, 8, 3, 7, 15}},   {9, {1, 10, 4, 7, 15}},
+    {15, {2, 16, 7, 7, 31}}, {23, {4, 24, 7, 7, 31}}, {31, {5, 31, 7, 7, 31}},
 };
 
 static const struct {

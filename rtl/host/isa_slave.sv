@@ -172,7 +172,7 @@ module isa_slave (
   } cycle_e;
   cycle_e      cycle_d, cycle_q;
   logic        active, finish;
-  logic        drive_q;            // Show or Shown: a flip-flop of its own, because it leads to pads
+  logic        drive_q, asks_q;    // Show or Shown; Start of ours at the RAM: flip-flops, because they lead to pads
   logic [3:0]  kind_q, target_q;
   logic [1:0]  lanes_q, be_q, page_q;
   logic [14:0] mem_addr_q;
@@ -224,6 +224,7 @@ module isa_slave (
     if (!rst_ni) begin
       cycle_q    <= Hold;
       drive_q    <= 1'b0;
+      asks_q     <= 1'b0;
       kind_q     <= 4'h0;
       target_q   <= 4'h0;
       lanes_q    <= 2'b00;
@@ -237,6 +238,7 @@ module isa_slave (
     end else begin
       cycle_q <= cycle_d;
       drive_q <= (cycle_d == Show) | (cycle_d == Shown);
+      asks_q  <= (cycle_d == Start) & decoded[Memory];
       if (start) begin
         kind_q     <= cmd2_q;
         target_q   <= decoded;
@@ -289,7 +291,7 @@ module isa_slave (
   assign read_low = ((kind_q[Ior] & ~isa_ior_ni) | (kind_q[Memr] & ~isa_memr_ni)) & isa_iow_ni & isa_memw_ni;
   assign isa_sd_o       = sd_q;
   assign isa_sd_oe_o    = lanes_q & {2{drive_q & read_low}};
-  assign isa_iochrdy_o  = ~mem_busy_i;
+  assign isa_iochrdy_o  = ~(asks_q | mem_busy_i);
   assign isa_memcs16_no = ~la_hit_q[0];
 
 endmodule : isa_slave

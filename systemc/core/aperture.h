@@ -26,6 +26,7 @@ class Aperture {
   Aperture(TimeFs width, std::uint64_t seed) : width_(width), seed_(seed) {}
 
   TimeFs width() const { return early_ ? kMost : width_; }
+  void set_width(TimeFs width) { width_ = width; }
   bool on() const { return width() > 0; }
   // Until called again: all moves within the greatest width are taken early, late; none: as above.
   void take(std::optional<bool> early) { early_ = early; }

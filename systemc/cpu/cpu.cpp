@@ -50,6 +50,12 @@ std::vector<Cpu::Mapping> Cpu::mappings() const {
   return list;
 }
 
+std::vector<std::uint32_t> Cpu::executed() const {
+  std::set<std::uint32_t> all = s_->executed;
+  s_->add_decoded(all);
+  return {all.begin(), all.end()};
+}
+
 void Cpu::reset(std::uint32_t pc) {
   State& s = *s_;
   s.x.fill(0);

@@ -61,6 +61,9 @@ class Cpu {
     bool mask24;
   };
   std::vector<Mapping> mappings() const;  // in the order of mapping
+  // Addresses of all instructions that have been executed, ascending: those that are decoded, so keeping them costs
+  // nothing.
+  std::vector<std::uint32_t> executed() const;
 
   // State ------------------------------------------------------------------------------------------------------------
   void reset(std::uint32_t pc);  // registers zero, interrupts off, asleep false; memory is kept

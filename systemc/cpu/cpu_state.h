@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -91,6 +92,7 @@ struct Cpu::State {
   bool fetch(std::uint32_t at, std::uint32_t& word, std::uint32_t& fault_address);
   void code_changed(std::uint32_t address, unsigned bytes);
   void invalidate_code();
+  void add_decoded(std::set<std::uint32_t>& addresses) const;  // an instruction is decoded when it is executed
 
   // csr.cpp
   bool csr_instruction(std::uint32_t word);  // false: illegal
@@ -122,6 +124,7 @@ struct Cpu::State {
   std::array<cpu::StoreEntry, cpu::kTlbSize> store_tlb;
   std::array<cpu::CodePage*, cpu::kTlbSize> code_tlb{};
   std::unordered_map<std::uint32_t, std::unique_ptr<cpu::CodePage>> code_pages;  // by page address
+  std::set<std::uint32_t> executed;  // of pages that have been cleared since
 
   std::uint32_t value = 0;       // result of a slow load
   std::uint32_t fault = 0;       // cause after Access::kFault

@@ -138,7 +138,14 @@ void Cpu::State::code_changed(std::uint32_t address, unsigned bytes) {
   }
 }
 
+void Cpu::State::add_decoded(std::set<std::uint32_t>& addresses) const {
+  for (const auto& [base, page] : code_pages)
+    for (std::uint32_t i = 0; i < kPageEntries; ++i)
+      if (page->entry[i].op != Op::kDecode) addresses.insert(base + 2 * i);
+}
+
 void Cpu::State::invalidate_code() {
+  add_decoded(executed);
   for (auto& [base, page] : code_pages) page->clear();
 }
 

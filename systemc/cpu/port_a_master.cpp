@@ -138,7 +138,7 @@ void PortAMaster::next(Step step) {
   // What the board shows as the strobe rises is not what it shows later.
   if (!wires_.plain() && step == Step::kStrobeHigh)
     stand_ = std::min(wires_.seen(cycle_.write ? kWrLine : kRdLine, time_), fs_to_tick(time_)) - 1;
-  stand_ = std::max(stand_, before);
+  stand_ = std::max({stand_, before, wires_.followed_until(time_)});
 }
 
 void PortAMaster::move(PortAPins& pins) {
@@ -329,9 +329,17 @@ void PortAMaster::arrive_until(TimeFs time) {
   shown_.erase(shown_.begin(), shown_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
+// It overtakes what an edge before it has sent on its longer way: that comes later, as the strobe has left it.
 void PortAMaster::board_follows(const BoardOutputs& board) {
   if (!wires_.skew().on()) return arrive(follows_at_, board);
-  shown_.push_back({shown_.empty() ? follows_at_ : std::max(follows_at_, shown_.back().time), board});
+  const BoardOutputs before = shown_.empty() ? arrived_ : shown_.back().board;
+  auto at = shown_.begin();
+  while (at != shown_.end() && at->time <= follows_at_) ++at;
+  const BoardOutputs there = at == shown_.begin() ? arrived_ : (at - 1)->board;
+  at = shown_.insert(at, {follows_at_, there});
+  for (; at != shown_.end(); ++at)
+    for (const auto& line : {pin::kPaData, pin::kPaDataOe, pin::kPaTaN})
+      if (board.get(line) != before.get(line)) at->board.set(line, board.get(line));
 }
 
 // The peripherals on the CPU's chip have no pads.

@@ -53,7 +53,6 @@ Tick PortAWires::seen(unsigned line, TimeFs time) const {
 
 void PortAWires::move(TimeFs time, const PortAPins& from, const PortAPins& to, Tick now) {
   const PortALineBits levels = port_a_lines(to);
-  const PortALineBits followed = kStrobes | (skew_.on() ? kSelects : 0);  // one move each, since each has its own time
   bool early = false, late = false;
   for (PortALineBits left = port_a_lines(from) ^ levels; left != 0; left &= left - 1) {
     const auto line = static_cast<unsigned>(__builtin_ctzll(left));
@@ -65,7 +64,7 @@ void PortAWires::move(TimeFs time, const PortAPins& from, const PortAPins& to, T
     if (aperture_ != nullptr && aperture_->first(there) != aperture_->last(there))
       (edge == aperture_->first(there) ? early : late) = true;
     const auto same = std::find_if(moves_.begin(), moves_.end(), [&](const Move& m) {
-      return m.stand == stand && m.time == there && ((m.lines | bit(line)) & followed) == 0;
+      return m.stand == stand && m.time == there && ((m.lines | bit(line)) & followed()) == 0;
     });
     if (same != moves_.end()) {
       same->lines |= bit(line);
@@ -84,8 +83,17 @@ PortAWires::Taken PortAWires::take(PortAPins& pins) {
   const Move move = moves_.front();
   moves_.erase(moves_.begin());
   set_port_a_lines(pins, (port_a_lines(pins) & ~move.lines) | move.levels);
-  const PortALineBits followed = kStrobes | (skew_.on() ? kSelects : 0);
-  return {move.time, (move.lines & followed) != 0};
+  return {move.time, (move.lines & followed()) != 0};
+}
+
+// Lines that the board follows without a clock; one move each, since each has its own time.
+PortALineBits PortAWires::followed() const { return kStrobes | (skew_.on() ? kSelects : 0); }
+
+Tick PortAWires::followed_until(TimeFs time) const {
+  Tick stand = 0;
+  for (const Move& m : moves_)
+    if (m.time <= time && (m.lines & followed()) != 0) stand = std::max(stand, m.stand);
+  return stand;
 }
 
 }  // namespace brick

@@ -31,6 +31,7 @@ class PinSkew {
   explicit PinSkew(std::uint64_t seed);
   bool on() const { return on_; }
   TimeFs of(unsigned line) const { return delay_[line]; }
+  TimeFs of_strobe(bool write) const { return delay_[write ? kWrLine : kRdLine]; }
   void set(unsigned line, TimeFs delay) { on_ = true, delay_[line] = delay; }
 
  private:
@@ -53,6 +54,8 @@ class PortAWires {
   void move(TimeFs time, const PortAPins& from, const PortAPins& to, Tick now);
   // The board must stand there for the next of these moves; kNever: none is under way.
   Tick next() const { return moves_.empty() ? kNever : moves_.front().stand; }
+  // Where it must stand so that it has followed what moves without a clock up to `time`; 0: anywhere.
+  Tick followed_until(TimeFs time) const;
   struct Taken {
     TimeFs time;   // at which the lines move at the board
     bool follows;  // the board follows them without a clock
@@ -66,6 +69,8 @@ class PortAWires {
     TimeFs time;
     PortALineBits lines, levels;
   };
+
+  PortALineBits followed() const;
 
   Aperture* aperture_ = nullptr;
   PinSkew skew_;

@@ -23,7 +23,7 @@ class IsaSlave final : public sc_core::sc_module, public ModelBlock {
   // Host bus
   std::uint16_t isa_sd() const { return sd_; }
   std::uint8_t isa_sd_oe() const { return drives() && read_low() ? lanes_ : 0; }
-  bool isa_iochrdy() const { return !in.mem_busy; }
+  bool isa_iochrdy() const { return !(mem_target() && cycle_ == Cycle::kStart) && !in.mem_busy; }
   bool isa_memcs16_n() const { return (la_hits_ & 1) == 0; }
   bool host_reset() const { return (resetdrv_ & 2) != 0; }
   // The block that the present cycle is for, or the last one was: only its wires move.

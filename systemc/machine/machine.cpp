@@ -247,7 +247,8 @@ void Machine::Impl::apply_host_inputs(TimeFs time) {
   take_host_inputs();
   named.inputs(tick_to_fs(board->now()), inputs, board->outputs());
   host_bus_moved(time);
-  if (port_a_watch != nullptr && !elf) port_a_watch->board_moved(time, board->port_a_at_once());
+  // Pins of Port A that a program moves itself; a bus master says what has come to it.
+  if (port_a_watch != nullptr && !elf && master == nullptr) port_a_watch->board_moved(time, board->port_a_at_once());
   if (config.board.jpan) see_init();
 }
 

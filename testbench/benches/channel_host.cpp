@@ -72,7 +72,7 @@ void ChannelHost::cycle(const PortACycle& c) {
   constexpr unsigned kBackground = 0;  // cpu.task
   if (bench().machine.task() != kBackground) return;
   if (c.write || c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
-  const Tick sample = bus_edge(c.strobe_low), before = sample - 1 - kTicksPerRef;  // what falls there is latched
+  const Tick sample = bus_edge(c, bench().machine), before = sample - 1 - kTicksPerRef;  // what falls there is latched
   const auto next = std::upper_bound(servo_falls_.begin(), servo_falls_.end(), before);
   reads_[2 * c.address + (c.x ? 1 : 0)] = {before, c.data, next == servo_falls_.begin() ? -1 : *std::prev(next),
                                            sample};

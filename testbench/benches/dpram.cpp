@@ -73,7 +73,7 @@ class Sides {
     const std::uint32_t place = 2 * (c.address - regs::kDpramBase) + (c.x ? 1 : 0) - kWord;
     if (c.on_chip || c.address < regs::kDpramBase || place >= kPlaces) return;
     ++cpu_accesses;
-    const Tick low = fs_to_tick(c.strobe_low);
+    const Tick low = fs_to_tick(c.strobe_low + b_.machine.skew().of_strobe(c.write));  // at the board
     period = low - strobe;
     strobe = low;
     if (c.write)

@@ -76,10 +76,10 @@ constexpr Activity kActivity[] = {
 };
 static_assert(std::size(kActivity) == IsaChecker::kRules);
 
-// The cross of kind, width and IOCHRDY.
+// The cross of kind, width and whether IOCHRDY had the host wait.
 struct Cycles {
   IsaChecker::Kind kind;
-  bool wide, stretched;
+  bool wide, waited;
   unsigned least;
 };
 constexpr Cycles kCross[] = {
@@ -300,10 +300,9 @@ class IsaTimingBench {
   void cross() {
     constexpr const char* kKinds[] = {"I/O read", "I/O write", "memory read", "memory write"};
     for (const Cycles& c : kCross) {
-      const std::uint64_t cycles = isa_.cycles(c.kind, c.wide ? 1 : 0, c.stretched ? 1 : 0);
-      b_.report.reached(
-          fmt::format("{}, {} bits{}", kKinds[c.kind], c.wide ? 16 : 8, c.stretched ? ", IOCHRDY low" : ""), cycles,
-          c.least);
+      const std::uint64_t cycles = isa_.cycles(c.kind, c.wide ? 1 : 0, c.waited ? 1 : 0);
+      b_.report.reached(fmt::format("{}, {} bits{}", kKinds[c.kind], c.wide ? 16 : 8, c.waited ? ", made to wait" : ""),
+                        cycles, c.least);
     }
   }
 

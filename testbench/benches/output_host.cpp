@@ -47,7 +47,7 @@ Tick OutputHost::written(unsigned channel, const regs::Register& word) const {
 
 void OutputHost::cycle(const PortACycle& c) {
   if (c.on_chip || c.address < 0x78000 || c.address > 0x7BFFF) return;
-  accesses_.push_back({bus_edge(c.strobe_low) - (c.write ? 0 : 1), c.write, c.x, c.address, c.data});
+  accesses_.push_back({bus_edge(c, bench().machine) - (c.write ? 0 : 1), c.write, c.x, c.address, c.data});
 }
 
 }  // namespace brick

@@ -99,6 +99,11 @@ void PortADriver::move(TimeFs time, const std::function<void(PortAPins&)>& edit)
   wires_.move(time, from, driven_, machine_.now());
 }
 
+void PortADriver::set_clock(unsigned i52) {
+  i52_ = i52;
+  aperture_.set_width(wires_.skew().on() && i52 > kWholeAperture ? kAperture / 2 : kAperture);
+}
+
 // What the board shows that has come to the CPU by then, if it is so long on its way.
 const BoardOutputs& PortADriver::at_cpu(TimeFs time, TimeFs way) {
   const Tick edge = fs_to_tick_floor(time - way);

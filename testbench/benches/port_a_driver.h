@@ -32,7 +32,8 @@ PortALimits port_a_limits(unsigned i52, unsigned wait_states, bool write);
 class PortADriver {
  public:
   static constexpr TimeFs kAperture = kFsPerNs;
-  static constexpr unsigned kBins = 64;  // of the phase of a strobe's fall to clk_ref, 0.4 ns each
+  static constexpr unsigned kWholeAperture = 11;  // I52: with skew row 115 leaves the RAM less than twice that above
+  static constexpr unsigned kBins = 64;           // of the phase of a strobe's fall to clk_ref, 0.4 ns each
 
   struct Place {
     std::uint32_t address = 0;
@@ -46,9 +47,9 @@ class PortADriver {
   ~PortADriver();
 
   void set_skew(const PinSkew& skew) { wires_.set_skew(skew); }
-  void set_aperture(TimeFs width, std::uint64_t seed) { aperture_ = Aperture(width, seed); }
 
-  void set_clock(unsigned i52) { i52_ = i52; }
+  void set_clock(unsigned i52);
+  TimeFs aperture() const { return aperture_.width(); }
   void spoil_data(TimeFs before) { spoiled_ = before; }  // write data gone so long before /WR rises: against row 109
 
   // The next address is not shown before `time`; else cycles follow each other at once.

@@ -15,7 +15,6 @@ namespace brick {
 namespace {
 
 constexpr unsigned kCycles = 3000;               // at each clock
-constexpr unsigned kWholeAperture = 11;          // I52: above, row 115 leaves the RAM less than twice a nanosecond
 constexpr std::uint8_t kMemory = 1, kFlash = 8;  // AA0, AA3
 
 // Wait states of host-bus:2.5.
@@ -59,7 +58,6 @@ class PortAHammer {
 
   void at_clock(const Clock& clock) {
     driver_.set_clock(clock.i52);
-    driver_.set_aperture(aperture(clock), b_.seed);
     driver_.rest();
     driver_.wait_until(b_.machine.now_fs() + tick_to_fs(30 + below(3)) + driver_.random() % 8'000'000);
     Comparison same;
@@ -101,11 +99,10 @@ class PortAHammer {
     same.word(fmt::format("{}:${:06X}", word.x ? 'X' : 'Y', word.address), driver_.read(place(word, clock)) & word.mask,
               word.value);
   }
-  static TimeFs aperture(const Clock& clock) { return clock.i52 > kWholeAperture ? kFsPerNs / 2 : kFsPerNs; }
   // As short as the clock lets it be (host-bus:2.2/5, host-bus:2.6/9), or longer than any of ours.
   bool other(const Word& word, const Clock& clock) {
     const bool write = below(2) != 0;
-    const bool one = clock.i52 < 15 && port_a_limits(clock.i52, 1, write).setup >= 2 * aperture(clock);
+    const bool one = clock.i52 < 15 && port_a_limits(clock.i52, 1, write).setup >= 2 * driver_.aperture();
     const unsigned least = one ? 1 : 2;
     const unsigned ws = below(3) != 0 ? least + below(3) : least + below(30);
     return driver_.foreign({word.address, word.x, below(2) != 0 ? kMemory : kFlash, false, ws}, write,

@@ -24,9 +24,10 @@ constexpr regs::Field bits(unsigned lsb, unsigned width) {
 constexpr regs::Field span(regs::Field low, regs::Field high) { return bits(low.lsb, high.lsb + high.width - low.lsb); }
 
 // The edge at which a write takes place and a read takes its sample: the third of clk_ref after the strobe falls
-// (host-bus:2.6).
-constexpr Tick bus_edge(TimeFs strobe_low) {
-  return (fs_to_tick(strobe_low) + kTicksPerRef - 1) / kTicksPerRef * kTicksPerRef + 2 * kTicksPerRef;
+// (host-bus:2.6) at the board, which with --skew is later than at the CPU.
+inline Tick bus_edge(const PortACycle& c, const Machine& machine) {
+  const Tick low = fs_to_tick(c.strobe_low + machine.skew().of_strobe(c.write));
+  return (low + kTicksPerRef - 1) / kTicksPerRef * kTicksPerRef + 2 * kTicksPerRef;
 }
 
 // Channels are numbered 0, 1, ... over the first two fitted servo ICs in rising order; `place` is 0 or 1. Names:

@@ -168,14 +168,15 @@ SsiBench::SsiBench(BenchContext& b)
     const PinField& net = on_phase_ ? pin::kPhase : pin::kServo;
     if (before.get(net) != after.get(net)) encoders_.net_moved(t, (before.get(net) != 0) == falling_);
   };
-  b.machine.on_bus_cycle = [this](const PortACycle& c) {
+  b.machine.on_bus_cycle = [this, &machine = b.machine](const PortACycle& c) {
     if (cycle_) cycle_(c);
+    const Tick edge = bus_edge(c, machine);
     if (c.x && !c.write && c.address == (geo_ ? regs::ssi_geo::kRefused : regs::ssi_brick::kRefused).address)
-      counts_.push_back({bus_edge(c.strobe_low), c.data});
+      counts_.push_back({edge, c.data});
     if (c.x || c.write || c.on_chip) return;
     for (unsigned n = 0; n < channels(); ++n)
       if (c.address - position_word(n) < (geo_ ? 1u : 2u))
-        reads_[n].push_back({bus_edge(c.strobe_low), c.address != position_word(n), c.data});
+        reads_[n].push_back({edge, c.address != position_word(n), c.data});
   };
   b.machine.attach(encoders_);
 }

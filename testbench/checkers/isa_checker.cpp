@@ -8,9 +8,10 @@ namespace {
 
 constexpr TimeFs kNs = kFsPerNs;
 constexpr TimeFs kBclk = 120 * kNs;
-constexpr TimeFs kHold = 25 * kNs;                                // t3, t7, t15
-constexpr TimeFs kTakenBefore = 9 * kNs, kTakenAfter = 17 * kNs;  // host-bus:3.9/2
-constexpr TimeFs kLongestWait = 15'600 * kNs;                     // row 10
+constexpr TimeFs kHold = 25 * kNs;                                             // t3, t7, t15
+constexpr TimeFs kTakenBefore = 9 * kNs, kTakenAfter = 17 * kNs;               // host-bus:3.9/2
+constexpr TimeFs kLongestWait = 15'600 * kNs;                                  // row 10
+constexpr TimeFs kAsked = 3 * detail::kBlockFs / detail::kBlockTicks + 1'000;  // IOCHRDY low in each access to the RAM
 constexpr TimeFs kT2Limit = 530 * kNs, kT4Limit = 489 * kNs, kT13Limit = 219 * kNs, kT14Limit = 173 * kNs;
 constexpr TimeFs kT16Limit = 66 * kNs;
 constexpr TimeFs kUsualPeriod = 12'500'000;  // 80 MHz
@@ -271,7 +272,8 @@ void IsaChecker::end(TimeFs t, const BoardInputs& in, const BoardOutputs& out) {
   in_cycle_ = false;
   const bool stretched = cycle_.ready_low != kNone;
   if (cycle_.alone) {
-    ++cycles_[cycle_.kind][cycle_.wide][stretched];
+    const bool waited = stretched && (cycle_.ready_high == kNone || cycle_.ready_high - cycle_.ready_low > kAsked);
+    ++cycles_[cycle_.kind][cycle_.wide][waited];
     ledger_.holds(kOneCommand, region(cycle_), true, place(t));
   }
   ledger_.holds(kAddressStands, region(cycle_), !cycle_.moved, place(t));

@@ -58,8 +58,9 @@ class IsaChecker {
   TimingLedger& ledger() { return ledger_; }
   const TimingLedger& ledger() const { return ledger_; }
 
-  // Cycles that have ended, by kind, width (0: 8 bits, 1: 16) and whether IOCHRDY was low.
-  std::uint64_t cycles(Kind kind, unsigned wide, unsigned stretched) const { return cycles_[kind][wide][stretched]; }
+  // Cycles that have ended, by kind, width (0: 8 bits, 1: 16) and whether IOCHRDY was low for longer than it is in each
+  // access to the RAM, a period of clk_ref (host-bus:3.4): this one had to wait.
+  std::uint64_t cycles(Kind kind, unsigned wide, unsigned waited) const { return cycles_[kind][wide][waited]; }
   std::uint64_t read_cycles_answered() const { return answered_; }  // that got data from the board
 
  private:

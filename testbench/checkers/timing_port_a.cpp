@@ -34,7 +34,7 @@ std::vector<TimingRule> port_a_rules() {
           {"119", "/TA hold after /RD or /WR high", "host-bus:2.2/119", kLeast},
           {"w1", "/WR low to write data valid", "host-bus:2.6/6", kMost},
           {"w2", "/WR low to address or write data invalid", "host-bus:2.6/7", kLeast},
-          {"s1", "fall of a strobe to its next fall", "host-bus:2.6/8", kLeast},
+          {"s1", "/RD or /WR low", "host-bus:2.6/8", kLeast},
           {"a", "/RD and /WR never low together", "host-bus:2.5/6", kHolds},
           {"b", "address, AA stand through the strobe", "host-bus:2.5/7", kHolds},
           {"c", "board lets go of D to CPU drives it", "host-bus:2.5/9", kLeast},
@@ -124,20 +124,20 @@ std::optional<TimeFs> PortATiming::required(Rule rule, const PortAConditions& at
   }
 }
 
-// Periods of clk_ref (three ticks) and of clk_pwm, and a nanosecond for the flip-flop that misses or just catches an
-// edge.
+// Periods of clk_ref (three ticks) and of clk_pwm, a nanosecond for the flip-flop that misses or just catches an edge,
+// and the most that one pin comes later than another.
 std::optional<TimeFs> PortATiming::needed(Rule rule, Region region) {
-  constexpr TimeFs kAperture = kFsPerNs;
+  constexpr TimeFs kAperture = kFsPerNs, kPins = detail::kBlockFs / detail::kBlockTicks;
   constexpr Tick kRef = kTicksPerRef;
   switch (rule) {
     case kW1:
-      return tick_to_fs(region == kDpram ? 2 : kRef) - kAperture;
+      return tick_to_fs(region == kDpram ? 2 : kRef) - kAperture - kPins;
     case kW2:
       if (region == kDpram) return std::nullopt;
-      return tick_to_fs(2 * kRef) + kAperture;
+      return tick_to_fs(2 * kRef) + kAperture + kPins;
     case kS1:
       if (region == kDpram) return std::nullopt;
-      return tick_to_fs(kRef) + kAperture;
+      return tick_to_fs(2 * kRef) + kAperture;
     default:
       return std::nullopt;
   }
@@ -193,7 +193,7 @@ void PortATiming::read(const PinCycle& c, const Limits& rows) {
     worst_margin_ = margin;
     worst_read_ = c;
   }
-  if (last_read_ && last_read_->aa == c.aa) need(kS1, c.strobe_low - last_read_->strobe_low);
+  need(kS1, c.strobe_high - c.strobe_low);
   if (last_read_) between(k113, *last_read_, c, c.strobe_low - last_read_->strobe_high);
 }
 
@@ -208,7 +208,7 @@ void PortATiming::write(const PinCycle& c, const Limits& rows) {
   enter(k111, rows, c.data_off - c.strobe_high);
   need(kW1, c.data_valid - c.strobe_low);
   need(kW2, std::min(c.end, c.data_held) - c.strobe_low);
-  if (last_write_ && last_write_->aa == c.aa) need(kS1, c.strobe_low - last_write_->strobe_low);
+  need(kS1, c.strobe_high - c.strobe_low);
   if (last_read_) between(k112, *last_read_, c, c.data_on - last_read_->strobe_high);
   if (last_write_) between(k114, *last_write_, c, c.strobe_low - last_write_->strobe_high);
 }

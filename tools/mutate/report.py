@@ -6,6 +6,7 @@ A survivor without a reason is a problem; so is a reason whose mutant is dead, o
 import collections
 import math
 import pathlib
+import textwrap
 import tomllib
 
 import plan
@@ -151,8 +152,9 @@ def page(results, given):
             for row in survivors(rows) if of == kind else []:
                 where = f"`{row['file']}`, `{row['text']}`"
                 slip = " (lock-step sees it)" if row["status"] == KILLED else ""
-                lines.append(f"- {where}: {row['operator']}, `{row['change']}`{slip}. "
-                             + " ".join(given.get(records.key(row), "No reason yet.").split()))
+                reason = " ".join(given.get(records.key(row), "No reason yet.").split())
+                lines.append(textwrap.fill(f"- {where}: {row['operator']}, `{row['change']}`{slip}. {reason}", 120,
+                                           subsequent_indent="  ", break_long_words=False, break_on_hyphens=False))
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"
 

@@ -18,8 +18,8 @@ constexpr std::uint32_t kLatchBase = 0x070000, kOnChipBase = 0xFFFF80;
 struct LeastWaitStates {
   unsigned i52, gate, dpram, latches;
 };
-constexpr LeastWaitStates kLeast[] = {{1, 7, 4, 15},   {7, 7, 3, 15},   {9, 10, 4, 15},
-                                      {15, 15, 7, 31}, {23, 22, 7, 31}, {31, 31, 7, 31}};
+constexpr LeastWaitStates kLeast[] = {{4, 8, 4, 15},   {7, 8, 3, 15},   {9, 10, 4, 15},
+                                      {15, 16, 7, 31}, {23, 24, 7, 31}, {31, 31, 7, 31}};
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void AccessCpu::done(const Access& access, std::uint32_t) {
 // Another clock with slow cycles, then the wait states for it. A few cycles later the clock stands at another phase.
 void AccessCpu::another_clock() {
   using namespace regs::cpu_bus::bcr;
-  const unsigned i52 = too_fast_ ? 7 : pick(32);
+  const unsigned i52 = too_fast_ ? 7 : pick(machine_.skew().on() ? 16 : 32);  // host-bus:2.5 promises no more
   const LeastWaitStates* least = kLeast;
   while (least->i52 < i52) ++least;
   const auto from = [this](unsigned ws, unsigned most) {

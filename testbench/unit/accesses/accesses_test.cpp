@@ -24,11 +24,14 @@ struct Fault {
   bool too_fast = false;  // gate ICs with 2 wait states
 };
 
-// Boards of all kinds by the seed, every second one with pins that are taken early or late.
+// Boards of all kinds by the seed, every second one with pins that are taken early or late, and in turns with lines of
+// Port A that have a delay each.
 MachineConfig config(std::uint64_t seed) {
   MachineConfig c;
   c.seed = seed;
-  c.aperture = seed % 2 == 0 ? Aperture::kMost : 0;
+  const bool long_run = std::getenv("BRICK_ACCESSES") != nullptr;
+  c.aperture = seed % 2 == 0 || long_run ? Aperture::kMost : 0;
+  c.skew = seed % 4 < 2 || long_run;
   BoardConfig& b = c.board;
   b.bus = "isa";
   b.fitted = seed % 3 == 0 ? kFiveIcs : kTwoIcs;
@@ -74,7 +77,8 @@ void live(Engine engine, std::uint64_t seed, std::uint64_t accesses, const Fault
   made.moves.split += moves.split;
 }
 
-// BRICK_ACCESSES=10000000 in the environment asks for more than the hundred thousand of the test suite.
+// BRICK_ACCESSES=10000000 in the environment asks for more than the hundred thousand of the test suite, all of them
+// with aperture and skew.
 TEST(Accesses, AHundredThousandInLockstepBreakNoRuleAndLeaveNoLineAtRest) {
   BRICK_COVERS("CARD-5 CARD-6");
   const char* asked = std::getenv("BRICK_ACCESSES");

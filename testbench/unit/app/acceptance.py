@@ -13,7 +13,7 @@ import tempfile
 
 import command
 import exchange_file
-from command import BOARDS, brick, check, play
+from command import BOARDS, REPOSITORY, brick, check, play
 
 GOLDEN = ["VERSION", "CID", "I19", "I16", "I17", "I124", "I124=I124|$20000", "I124", "i20 i21 i22 i23",
           "M1->X:$078001,0,24,S", "M1->", "#1?", "&2DEFINE ROTARY 200", "&1DEFINE ROTARY 200", "&2DEFINE ROTARY 50"]
@@ -259,6 +259,48 @@ def contention():
                            r.stderr), r.stderr)
     r = play(["I7107=0 I7007=3", "@wait 1ms", "I7007=0 I7107=3", "@wait 1ms"])
     check(r.returncode == 0 and r.stderr == "", f"moved there and back: exit {r.returncode}: {r.stderr}")
+
+
+def line_cover():
+    """--cover: the lines of the firmware that a bench has executed, as lcov; the run is the same."""
+    def run(folder, name, *options):
+        results = folder / f"{name}.json"
+        r = brick("run", "smoke", "--engine", "systemc", "--json", str(results), *options)
+        check(r.returncode == 0, f"{options}: {r}")
+        found = json.loads(results.read_text())
+        return found["ticks"], found["instructions"]
+
+    def lines_with(file, text):
+        source = (REPOSITORY / "firmware" / file).read_text().splitlines()
+        found = [n for n, line in enumerate(source, 1) if text in line]
+        check(found, f"no `{text}` in {file}")
+        return found
+
+    with tempfile.TemporaryDirectory() as place:
+        folder = pathlib.Path(place)
+        info = folder / "cover.info"
+        check(run(folder, "with", "--cover", str(info)) == run(folder, "without"), "--cover changes the run")
+        hits, record = {}, {}
+        for line in info.read_text().splitlines():
+            key, _, value = line.partition(":")
+            if key == "SF":
+                record = hits.setdefault(value.split("/firmware/")[-1], {})
+            elif key == "DA":
+                number, hit = map(int, value.split(","))
+                check(number not in record, f"{line} twice")
+                record[number] = hit
+            elif key in ("LF", "LH"):
+                wanted = len(record) if key == "LF" else sum(record.values())
+                check(int(value) == wanted, f"{line}, expected {wanted}")
+        # The host asks for VERSION; no line is stored into a rotary buffer, and nothing traps.
+        for file, text, hit in (("buffers/buffer_request.c", "void buffer_request_line_stored(uint32_t cs) {", 0),
+                                ("image/main.c", "hal_idle(&background_work)", 1)):
+            check(file in hits, f"{file}: not in {sorted(hits)}")
+            seen = [hits[file][n] for n in lines_with(file, text) if n in hits[file]]
+            check(seen and max(seen) == hit, f"{file}, {text}: {seen}, expected {hit}")
+        check(len([f for f in hits if f.endswith(".c")]) > 100, f"files: {sorted(hits)}")
+        r = brick("run", "smoke", "--cover", str(folder / "none/cover.info"))
+        check(r.returncode == 2 and "--cover" in r.stderr and r.stderr.count("\n") == 1, f"{r}")
 
 
 def bad_input():

@@ -141,6 +141,40 @@ TEST_P(BoardMap, ThreeLinesOfTheInterruptControllerAreChosenByTheBoard) {
   EXPECT_EQ(rig.get(pin::kPicSig), 0xA0u) << "WDO";
 }
 
+// host-bus:1.1: the on-chip page has 128 words, and those of the host port are in it once: 64 below nothing is written,
+// nothing is taken.
+TEST_P(BoardMap, TheHostPortIsInTheOnChipPageOnce) {
+  constexpr unsigned kHcr = 0x42, kHorx = 0x46, kHotx = 0x47, kOther = 0x40;
+  constexpr std::uint32_t kHf2 = 1 << 3;
+  on_chip_write(kHotx ^ kOther, 0x41);
+  on_chip_write(kHcr ^ kOther, kHf2);
+  EXPECT_EQ(rig.get(pin::kRxdf), 0u);
+  EXPECT_EQ(io_read(2), 0x06u);
+  on_chip_write(kHotx, 0x41);
+  on_chip_write(kHcr, kHf2);
+  EXPECT_EQ(rig.get(pin::kRxdf), 1u);
+  EXPECT_EQ(io_read(2), 0x0Fu) << "RXDF, TXDE, TRDY, HF2";
+  io_write(7, 0x42);
+  io_write(7, 0x43);
+  EXPECT_EQ(rig.get(pin::kTxde), 0u) << "HORX and TX are full";
+  const auto read = [&](unsigned address) {
+    begin_on_chip_read(address);
+    rig.run(9);
+    const std::uint32_t word = rig.get(pin::kPaData);
+    rig.in.pa_rd_n = true;
+    rig.apply();
+    rig.run(6);
+    rig.in.pa_int = false;
+    rig.apply();
+    rig.run(6);
+    return word;
+  };
+  EXPECT_EQ(read(kHorx ^ kOther), 0u);
+  EXPECT_EQ(rig.get(pin::kTxde), 0u);
+  EXPECT_EQ(read(kHorx), 0x42u);
+  EXPECT_EQ(rig.get(pin::kTxde), 1u);
+}
+
 // host-bus:1.1: the latches are X words.
 TEST_P(BoardMap, YWordsOfTheLatchesDoNothing) {
   rig.write(true, kHostSignals, 0x5);

@@ -42,6 +42,7 @@ class PortARig {
           if (board_(now + 1) != board_(now)) port_a.board_changed(now + 1, board_(now + 1));
         const BoardInputs before = pins;
         port_a.step(pins, board_(now));
+        if (port_a.strobe_moved()) port_a.board_follows(board_(now));
         if (on_pins) on_pins(now, before, pins);
       }
     }

@@ -86,6 +86,49 @@ TEST(PortASamples, TaThatMovesInItsWindowIsSeenOrNotBySeed) {
   EXPECT_LT(seen, 48u);
 }
 
+// The board lets go of D as /RD comes to it, and that is at the CPU before a word of the edge before, which has its 10
+// ns on the way (docs/port_a.md, Skew).
+TEST(PortASamples, TheEndOfDIsAsLateAsItsStrobeAndNoLater) {
+  BRICK_COVERS("CARD-5");
+  struct Watch final : PortAWatch {
+    void cpu_moved(TimeFs, const PortALevels&) override {}
+    void board_moved(TimeFs time, const BoardOutputs& board) override { moves.emplace_back(time, board); }
+    void bus_reset() override {}
+    std::vector<std::pair<TimeFs, BoardOutputs>> moves;
+  };
+  for (const TimeFs pad : {TimeFs{0}, PinSkew::kMost / 2, PinSkew::kMost}) {
+    unsigned overtaken = 0;
+    for (Tick before = -3; before < 4; ++before) {
+      SCOPED_TRACE(::testing::Message() << fs_to_ns(pad) << " ns, word " << before << " edges before");
+      Watch watch;
+      PortARig* board = nullptr;
+      Tick moves = kNever;
+      PortARig rig([&](Tick t) { return shows(t < moves ? 1 : 2, board != nullptr && !board->pins.pa_rd_n); });
+      board = &rig;
+      PinSkew skew;
+      skew.set(kRdLine, pad);
+      rig.port_a.set_skew(skew);
+      rig.read('X', 0x078000);
+      const TimeFs low = rig.last->strobe_high - rig.last->strobe_low;
+      rig.on_pins = [&](Tick now, const BoardInputs&, const BoardInputs& after) {
+        if (!after.pa_rd_n) moves = std::min(moves, now + fs_to_tick_floor(low) - before);
+      };
+      rig.port_a.set_watch(&watch);
+      rig.read('X', 0x078000);
+      const TimeFs off = rig.last->strobe_high + pad;
+      bool driven = false;
+      for (const auto& [time, shown] : watch.moves) {
+        const bool drives = shown.get(pin::kPaDataOe) != 0;
+        EXPECT_TRUE(drives ? time < off : !driven || time == off);
+        overtaken += time > off;
+        driven = drives;
+      }
+      EXPECT_FALSE(driven);
+    }
+    EXPECT_GT(overtaken, 0u);
+  }
+}
+
 TEST(PortASamples, ForcedWaitStatesWinOverTheProgram) {
   PortARig rig;
   rig.port_a.force_wait_states(9 << 5);

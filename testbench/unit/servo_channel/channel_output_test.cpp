@@ -347,6 +347,36 @@ TEST_F(ChannelSerialTest, AdcKeepsEighteenBitsAfterTheHeader) {
   }
 }
 
+// servo-ic:5.14/2: a line that shows each bit for one tick alone, and its inverse else. The edge that finds the bit is
+// the rise of ADC_CLK; at n = 0, where that comes a tick after the fall, it is the next fall, the end of the bit.
+TEST_F(ChannelSerialTest, AdcTakesItsLineAtOneEdgeOfEachBit) {
+  const std::uint32_t a = 0x2B5D3, b = 0x1A2C6;  // 18 bits each
+  for (const unsigned n : {0u, 1u, 2u, 5u}) {
+    rig_.write(ic_words::kClockControl, ic_words::clock_control::kAdcDivider.set(kOwnClocks, n));
+    wait_for_phase(true);
+    wait_for_phase(true);
+    const Tick bit = 3 << n;
+    Tick first = kNever;  // edge that takes the first bit, which is dropped
+    bool last = false;
+    while (rig_.pins().phase) {
+      const Tick behind = first == kNever ? 1 : rig_.now() + 1 - first, place = behind / bit;
+      const auto level = [&](std::uint32_t word) {
+        const std::uint32_t right = place < 4 || place > 21 ? 0 : word >> (21 - place) & 1;
+        return behind % bit == 0 ? right : right ^ 1;
+      };
+      rig_.in.adc_a = level(a);
+      rig_.in.adc_b = level(b);
+      rig_.tick();
+      const bool now = (rig_.pins().serial & kAdcClk) != 0;
+      if (first == kNever && (n == 0 ? last && !now : now && !last)) first = rig_.now();
+      last = now;
+    }
+    rig_.ref(2);
+    EXPECT_EQ(rig_.peek(1, words::kAdcA), a << 6) << "n " << n;
+    EXPECT_EQ(rig_.peek(1, words::kAdcB), b << 6) << "n " << n;
+  }
+}
+
 // What the written words hold, bit by bit, is in unit_register_bits. Here every other word is made to hold something,
 // the clocks are taken away so that it stays, and nothing that is written to it or beside it may show.
 TEST_F(ChannelTest, WritesOfReadOnlyWordsChangeNothing) {

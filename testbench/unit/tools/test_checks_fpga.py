@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -105,6 +106,32 @@ class Pads(unittest.TestCase):
         found = {"pa_rd_ni": {"in": 2.0}, "pa_d_io": {"out": 3.0}}
         self.assertEqual(fpga_pads.wait_states(found, 7), 8)
         self.assertIsNone(fpga_pads.wait_states({"pa_d_io": {"out": 20.0}}, 31))
+
+
+# A, B, C, FAULT, HMFL, PLIM, MLIM, USER, W, V, U, T
+FOUR_CHANNELS = ["DOWN", "UP", *["DOWN"] * 5, *["UP"] * 5] * 4
+
+
+def pulls(lpf):
+    """Pulls of the motor inputs by a pad file, in order of their bits."""
+    found = re.findall(r'^IOBUF PORT "motor_i\[(\d+)\]" IO_TYPE=LVCMOS33 PULLMODE=(\w+);$', lpf, re.MULTILINE)
+    return [pull for _, pull in sorted((int(bit), pull) for bit, pull in found)]
+
+
+class Pulls(unittest.TestCase):
+    """servo-ic:5.15/6: T, U, V, W, USER and B of each channel read 1 when open, its other flags 0."""
+
+    def test_each_chip_with_a_motor_side_has_them(self):
+        for top in ("brick_ecp5", "servo_ic_chip_ecp5"):
+            with self.subTest(top):
+                self.assertEqual(pulls((TOOLS.parent / "fpga" / f"{top}.lpf").read_text()), FOUR_CHANNELS)
+
+    def test_one_that_is_missing_or_the_other_way_is_found(self):
+        lpf = (TOOLS.parent / "fpga/brick_ecp5.lpf").read_text()
+        line = 'IOBUF PORT "motor_i[25]" IO_TYPE=LVCMOS33 PULLMODE=UP;'
+        self.assertIn(line, lpf)
+        self.assertNotEqual(pulls(lpf.replace(line, "")), FOUR_CHANNELS)
+        self.assertNotEqual(pulls(lpf.replace(line, line.replace("UP", "DOWN"))), FOUR_CHANNELS)
 
 
 @unittest.skipUnless(shutil.which("yosys"), "yosys is not installed")
