@@ -254,6 +254,28 @@ def regress_rank():
     check(any(name.startswith("bus: 104, ") for name in covers), "rules of the bus by region")
 
 
+def regress_foreign():
+    """A run.json or words of somebody else, of any form, are no steps and no covers; every run has its verdict."""
+    files = ('{"steps": 5}', '{"steps": [5]}', '{"steps": [{"name": 3}]}', '{"simulated_ns": "long"}', "[1]", "{",
+             '{"covers": {"a": 3}}', '{"covers": [1]}', '{"covers": {"a": {"count": "x"}}}', '{"covers": 5}',
+             '{"covers": {"b": {"count": 1, "least": 0}}}')
+    folder = Folder('[[row]]\nname = "own"\n'
+                    'command = ["sh", "-c", "cp {plan}/$(({seed} / 2)).json run.json; exit $(({seed} % 2))"]\n'
+                    f'seeds = "0-{2 * len(files) - 1}"\n'
+                    '[[row]]\nname = "words"\ncommand = ["sh", "-c", "cat {plan}/words; exit 1"]\n')
+    for number, text in enumerate(files):
+        (folder.path / f"{number}.json").write_text(text)
+    (folder.path / "words").write_bytes(b"FAIL \xf9" + "é".encode() * 200)
+    r = folder.regress("--rank")
+    wanted = {f"own.seed-{n}": "failed" if n % 2 else "passed" for n in range(2 * len(files))}
+    check(r.returncode == 1 and folder.verdicts() == {**wanted, "words.seed-1": "failed"}, f"{r}")
+    covers = {c["name"]: (c["counts"], c["least"]) for c in folder.report()["covers"]}
+    check(covers == {"b": ({"own": 1}, 1)}, f"covers: {covers}")
+    check(folder.report()["ranked"][0]["adds"] == 1.0, "a least of nothing asks for one")
+    # 300 bytes: 9 of `FAIL <F9>`, which is a number here, and 145 times two; the next would be cut
+    check(bucket(folder.report(), "words")[0]["says"] == "FAIL <#>" + 145 * "é" + "...", "cut between characters")
+
+
 def sleepers(mark):
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):
