@@ -158,18 +158,21 @@ class Regression {
         waiting.push_back(i);
       }
     Cluster cluster(fs::absolute(folder_).string(), options_.jobs);
-    while (!waiting.empty() && asked_to_stop == 0 && !late()) {
+    while (!waiting.empty() && asked_to_stop == 0 && !late() && cluster.answers()) {
       const std::size_t before = waiting.size();
       double longest = 0;
       for (const std::size_t i : waiting) longest = std::max(longest, plan_.runs[i].limit_seconds);
       cluster.submit(tasks_of(waiting), options_.task_seconds + longest);
       std::chrono::milliseconds patience = kPatience;
-      for (bool working = true; working && !waiting.empty() && asked_to_stop == 0;) {
+      bool working = true;
+      while (working && !waiting.empty() && asked_to_stop == 0) {
         std::this_thread::sleep_for(patience);
         working = cluster.working();  // before the results: what ends between them counts
         patience = collect(waiting) ? kPatience : std::min(2 * patience, kMostPatience);
         show(fmt::format("{} on the cluster", waiting.size()));
       }
+      if (working) cluster.cancel();
+      collect(waiting);  // what has ended until then
       waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
                                    [this](std::size_t i) { return fs::exists(folder_of(plan_.runs[i])); }),
                     waiting.end());

@@ -138,7 +138,7 @@ std::string junit_text(const Report& report) {
 
 void write_reports(const Report& report, const std::string& folder) {
   const nlohmann::json content = report_json(report);
-  write(folder + "/report.json", content.dump(1) + "\n");
+  write(folder + "/report.json", text_of(content, 1) + "\n");
   write(folder + "/report.xml", junit_text(report));
   nlohmann::json pictures = nlohmann::json::array();
   for (const Replay& replay : report.replays) pictures.push_back(replay.picture);

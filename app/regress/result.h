@@ -31,6 +31,8 @@ void keep(const Run& run, const Result& result, const nlohmann::json& build, con
 std::optional<Result> kept(const Run& run, const nlohmann::json& build, const std::string& folder);
 
 nlohmann::json result_json(const Run& run, const Result& result);
+// A folder's name may be no UTF-8, and stands in commands.
+std::string text_of(const nlohmann::json& content, int indent = -1);
 
 // Failures of one kind: bench, step, and what was said but for its numbers.
 struct Bucket {
