@@ -256,7 +256,8 @@ def regress_rank():
 
 def regress_skips():
     """A command that ends with 77 lacks something: no failure, but said wherever results are."""
-    folder = Folder('[[row]]\nname = "n"\ncommand = ["sh", "-c", "echo no lintian; exit {seed}"]\nseeds = [0, 77]\n')
+    folder = Folder('[[row]]\nname = "n"\ncommand = ["sh", "-c", "echo no lintian; exit {seed}"]\n'
+                    'seeds = [0, 77]\n')
     r = folder.regress()
     check(r.returncode == 0 and "SKIP: no lintian" in r.stdout and "2 runs, 0 failed, 1 skipped" in r.stdout, f"{r}")
     report = folder.report()
@@ -329,7 +330,8 @@ def regress_killed():
         else:
             check(r.returncode == 1 and "2 not run: --resume makes them" in said,
                   f"{kind.name}: {r.returncode} {said}")
-            check(folder.report()["counts"] == {"runs": 5, "passed": 3, "failed": 0, "skipped": 0, "not_run": 2}, "counts")
+            wanted = {"runs": 5, "passed": 3, "failed": 0, "skipped": 0, "not_run": 2}
+            check(folder.report()["counts"] == wanted, "counts")
         folder.write(plan.replace(f"sleep {mark}", "true"))
         r = folder.regress("--resume")
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
