@@ -18,7 +18,7 @@ struct Result {
   std::string says;     // what it measured, or what the run said last
   double at_ms = 0;     // simulated time of that step
   double simulated_ms = 0, wall_seconds = 0;
-  std::string host;  // the machine that made it
+  std::string host{};  // the machine that made it
   bool passed() const { return verdict == "passed"; }
   bool skipped() const { return verdict == "skipped"; }
 };
