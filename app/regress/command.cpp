@@ -139,10 +139,10 @@ class Regression {
     results_[number] = result;
     ++done_;
     if (result.passed()) return;
-    ++failed_;
+    failed_ += result.skipped() ? 0u : 1u;
     clear_line();
-    std::cout << fmt::format("FAIL {}: {}{}\n     {}\n", result.verdict, result.step.empty() ? "" : result.step + ": ",
-                             result.says, command_text(run.words))
+    std::cout << fmt::format("{}: {}{}\n     {}\n", result.skipped() ? "SKIP" : "FAIL " + result.verdict,
+                             result.step.empty() ? "" : result.step + ": ", result.says, command_text(run.words))
               << std::flush;
   }
 
@@ -275,7 +275,7 @@ class Regression {
   }
 
   int tell(const Report& report) const {
-    const nlohmann::json counts = report_json(report).at("counts");
+    const nlohmann::json content = report_json(report), counts = content.at("counts");
     for (std::size_t b = 0; b < buckets_.size(); ++b) {
       const Bucket& bucket = buckets_[b];
       std::cout << fmt::format("{} x {}: {}{}{}\n", bucket.runs.size(), bucket.group, bucket.verdict,
@@ -289,10 +289,11 @@ class Regression {
       std::cout << fmt::format("{:8.1f} new, {} covers: {}\n", r.adds, r.reached,
                                command_text(plan_.runs[r.run].words));
     tell(report.coverage);
-    const auto missing = counts.at("not_run").get<std::size_t>();
-    const bool passed = counts.at("passed").get<std::size_t>() == plan_.runs.size();
+    const auto missing = counts.at("not_run").get<std::size_t>(), skipped = counts.at("skipped").get<std::size_t>();
+    const bool passed = content.at("verdict") == "passed";
     std::cout << fmt::format("{} {}: {} runs, {} failed", passed ? "PASS" : "FAIL", plan_.title, plan_.runs.size(),
                              counts.at("failed").get<std::size_t>());
+    if (skipped != 0) std::cout << fmt::format(", {} skipped", skipped);
     if (missing != 0) std::cout << fmt::format(", {} not run: --resume makes them", missing);
     if (taken_over_ != 0) std::cout << fmt::format(", {} taken over", taken_over_);
     std::cout << fmt::format("; {:.1f} s\n{}/report.html\n", seconds(), folder_);

@@ -23,6 +23,7 @@ namespace brick::regress {
 namespace {
 
 constexpr std::size_t kLongestText = 300;
+constexpr int kSkipped = 77;  // exit status, as ctest and automake have it
 constexpr std::streamoff kEndOfOutput = 64 * 1024;
 
 std::string shortened(const std::string& bytes) {
@@ -136,6 +137,11 @@ Result judge(const Run& run, const Ended& ended, const std::string& folder) {
   }
   if (ended.code == 0) {
     result.verdict = "passed";
+    return result;
+  }
+  if (ended.code == kSkipped && !run.bench()) {
+    result.verdict = "skipped";
+    result.says = last_said(output);
     return result;
   }
   result.verdict = ended.code == 1 ? "failed" : ended.code == 2 ? "bad" : "crashed";

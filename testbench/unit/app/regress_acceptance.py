@@ -119,7 +119,7 @@ def regress_kinds():
     wanted.update({f"odd.seed-{n}": "failed" if n % 2 else "passed" for n in range(1, 6)})
     check(verdicts == wanted, f"{verdicts}")
     report = folder.report()
-    check(report["counts"] == {"runs": 13, "passed": 4, "failed": 9, "not_run": 0}, str(report["counts"]))
+    check(report["counts"] == {"runs": 13, "passed": 4, "failed": 9, "skipped": 0, "not_run": 0}, str(report["counts"]))
     odd, smoke = bucket(report, "odd"), bucket(report, "smoke")
     check(len(odd) == 1 and odd[0]["seeds"] == [1, 3, 5] and odd[0]["says"] == "step #: Error: # and #", str(odd))
     check(len(smoke) == 1 and smoke[0]["count"] == 2 and smoke[0]["step"] == "servo period #, ticks", str(smoke))
@@ -254,6 +254,23 @@ def regress_rank():
     check(any(name.startswith("bus: 104, ") for name in covers), "rules of the bus by region")
 
 
+def regress_skips():
+    """A command that ends with 77 lacks something: no failure, but said wherever results are."""
+    folder = Folder('[[row]]\nname = "n"\ncommand = ["sh", "-c", "echo no lintian; exit {seed}"]\n'
+                    'seeds = [0, 77]\n')
+    r = folder.regress()
+    check(r.returncode == 0 and "SKIP: no lintian" in r.stdout and "2 runs, 0 failed, 1 skipped" in r.stdout, f"{r}")
+    report = folder.report()
+    check(report["verdict"] == "passed" and folder.verdicts()["n.seed-77"] == "skipped", str(report))
+    check(report["counts"] == {"runs": 2, "passed": 1, "failed": 0, "skipped": 1, "not_run": 0}, str(report["counts"]))
+    check([(b["verdict"], b["says"]) for b in report["buckets"]] == [("skipped", "no lintian")], str(report["buckets"]))
+    suite = xml.parse(folder.out / "report.xml").getroot()[0]
+    check([suite.get(k) for k in ("failures", "errors", "skipped")] == ["0", "0", "1"], "JUnit")
+    folder.write(folder.plan.read_text().replace("[0, 77]", "[1, 77]"))
+    r = folder.regress("--resume")
+    check(r.returncode == 1 and "1 taken over" in r.stdout, f"a failure beside it: {r}")
+
+
 def regress_foreign():
     """A run.json or words of somebody else, of any form, are no steps and no covers; every run has its verdict."""
     files = ('{"steps": 5}', '{"steps": [5]}', '{"steps": [{"name": 3}]}', '{"simulated_ns": "long"}', "[1]", "{",
@@ -313,7 +330,8 @@ def regress_killed():
         else:
             check(r.returncode == 1 and "2 not run: --resume makes them" in said,
                   f"{kind.name}: {r.returncode} {said}")
-            check(folder.report()["counts"] == {"runs": 5, "passed": 3, "failed": 0, "not_run": 2}, "counts")
+            wanted = {"runs": 5, "passed": 3, "failed": 0, "skipped": 0, "not_run": 2}
+            check(folder.report()["counts"] == wanted, "counts")
         folder.write(plan.replace(f"sleep {mark}", "true"))
         r = folder.regress("--resume")
         check(r.returncode == 0 and "3 taken over" in r.stdout, f"resumed: {r}")
