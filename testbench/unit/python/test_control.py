@@ -171,6 +171,15 @@ def test_limits_of_simulated_and_of_wall_time(shared):
     assert shared.call("command", line="P9")["result"]["lines"] == ["0"]
 
 
+def test_a_limit_of_wall_time_leaves_no_bus_cycle_half_done():
+    reads = "@dpram 0 8\n@dpram 0=1234\n" * 4000
+    with control() as client:
+        cut = [client.call("script", text=reads, wall_s=0.006 + n * 1e-4).get("error", {}).get("code")
+               for n in range(50)]
+        assert cut.count(4) > 40, cut
+        assert client.call("check")["result"]["failures"] == []
+
+
 def test_a_script_prints_what_brick_exec_prints(shared):
     result = shared.call("script", text="P1=5\nP1\n@signal host.breq\n@dpram 0 1\nfrob\n")["result"]
     assert result["lines"][:2] == ["5", "host.breq=0"] and result["lines"][3].startswith("ERR003")
