@@ -180,6 +180,22 @@ def test_a_limit_of_wall_time_leaves_no_bus_cycle_half_done():
         assert client.call("check")["result"]["failures"] == []
 
 
+@pytest.mark.parametrize("opened", ["OPEN PROG 7 CLEAR", "OPEN PLC 3 CLEAR"])
+def test_a_line_that_was_cut_off_is_dropped_and_nothing_is_typed(opened):
+    with control() as client:
+        client.call("command", line=opened)
+        line = "P1=" + "+".join(["1"] * 120)
+        cut = [client.call("command", line=line, wall_s=n * 5e-4).get("error", {}).get("code") for n in range(20)]
+        assert 4 in cut, cut
+        client.call("command", line="CLOSE")
+        name = opened.replace("OPEN", "LIST").replace(" CLEAR", "")
+        listed = client.call("command", line=name)["result"]["lines"]
+        whole = [one for one in listed if one.strip() not in ("RET", "RETURN", "")]
+        assert set(whole) <= {line}, listed
+        assert client.call("texts")["result"]["texts"] == []
+        assert client.call("command", line="I3 I4 I6")["result"]["lines"] == ["2", "0", "1"]
+
+
 def test_a_script_prints_what_brick_exec_prints(shared):
     result = shared.call("script", text="P1=5\nP1\n@signal host.breq\n@dpram 0 1\nfrob\n")["result"]
     assert result["lines"][:2] == ["5", "host.breq=0"] and result["lines"][3].startswith("ERR003")
