@@ -220,26 +220,37 @@ def test_a_signal_ends_it_and_says_so():
         assert status == 1 and "stopped by SIGTERM" in said
 
 
-def test_a_path_is_for_this_user_alone_and_goes_with_the_end(tmp_path):
+def test_a_path_is_for_this_user_alone_and_for_the_first_who_speaks(tmp_path):
     place = tmp_path / "control"
     left_over = socket.socket(socket.AF_UNIX)
     left_over.bind(str(place))
     left_over.close()  # nobody listens there
     process = subprocess.Popen([BRICK, "control", place], stderr=subprocess.PIPE, text=True)
-    with socket.socket(socket.AF_UNIX) as client:
-        limit = time.monotonic() + PATIENCE
-        while client.connect_ex(str(place)) != 0:
-            assert time.monotonic() < limit
-            time.sleep(0.01)
-        assert stat.S_IMODE(place.stat().st_mode) == 0o600
-        other = subprocess.run([BRICK, "control", place], capture_output=True, text=True,
-                          timeout=PATIENCE)
-        assert other.returncode == 2 and "expected a place for a new socket" in other.stderr
+    limit = time.monotonic() + PATIENCE
+    silent = socket.socket(socket.AF_UNIX)
+    while silent.connect_ex(str(place)) != 0:
+        assert time.monotonic() < limit
+        time.sleep(0.01)
+    assert stat.S_IMODE(place.stat().st_mode) == 0o600
+    silent.close()
+    other = subprocess.run([BRICK, "control", place], capture_output=True, text=True, timeout=PATIENCE)
+    assert other.returncode == 2 and "expected a place for a new socket" in other.stderr
+    with socket.socket(socket.AF_UNIX) as client, socket.socket(socket.AF_UNIX) as second:
+        client.connect(str(place))
+        client.settimeout(PATIENCE)
         client.sendall(b'{"jsonrpc": "2.0", "id": 1, "method": "hello", "params": {"protocol": "1.0"}}\n')
         client.shutdown(socket.SHUT_WR)  # requests that are there are answered
         assert json.loads(client.makefile().readline())["result"]["protocol"] == "1.0"
+        assert not place.exists() and second.connect_ex(str(place)) != 0
     assert process.communicate(timeout=PATIENCE) == (None, "") and process.returncode == 0
-    assert not place.exists()
+
+
+@pytest.mark.parametrize("option", ["--gdb=0", "--json=results.json"])
+def test_options_that_mean_nothing_here_are_refused(tmp_path, option):
+    done = subprocess.run([BRICK, "control", "socket", option], cwd=tmp_path, capture_output=True, text=True,
+                          timeout=PATIENCE)
+    assert done.returncode == 2 and "not with brick control" in done.stderr and done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("place", ["fd:0", "fd:", "fd:99", "fd:x", "", "/dev/null/no", "x" * 200])
