@@ -46,7 +46,7 @@ sockaddr_un address_of(const std::string& path) {
 bool is_left_over(const sockaddr_un& address) {
   struct stat status {};
   if (lstat(address.sun_path, &status) != 0 || !S_ISSOCK(status.st_mode)) return false;
-  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);  // it may have no room for one more
   const bool refused =
       connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 && errno == ECONNREFUSED;
   ::close(fd);
@@ -79,9 +79,14 @@ ControlChannel::ControlChannel(const std::string& place) {
 
 ControlChannel::~ControlChannel() {
   if (client_ >= 0) ::close(client_);
+  stop_listening();
+}
+
+void ControlChannel::stop_listening() {
   if (listener_ < 0) return;
-  ::close(listener_);
   unlink(path_.c_str());
+  ::close(listener_);
+  listener_ = -1;
 }
 
 bool ControlChannel::closed() const {
@@ -95,10 +100,18 @@ bool ControlChannel::ready(int fd, short events, const Idle& idle) const {
   return poll(&one, 1, static_cast<int>(idle().count())) > 0;
 }
 
+// One that leaves without a byte was none: another `brick control` looks so whether anybody listens at the path.
 void ControlChannel::accept(const Idle& idle) {
-  while (client_ < 0) {
-    if (!ready(listener_, POLLIN, idle)) continue;
-    client_ = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+  while (listener_ >= 0) {
+    if (!ready(client_ < 0 ? listener_ : client_, POLLIN, idle)) continue;
+    if (client_ < 0) {
+      client_ = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+      continue;
+    }
+    char first;
+    if (recv(client_, &first, 1, MSG_PEEK | MSG_DONTWAIT) == 1) return stop_listening();
+    ::close(client_);
+    client_ = -1;
   }
 }
 

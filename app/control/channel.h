@@ -20,13 +20,14 @@ class ChannelClosed : public std::runtime_error {
 class ControlChannel {
  public:
   // `fd:N`: a socket that whoever started this process has left open. Else the path of a socket that is made here, for
-  // this user alone, and removed with this. Throws UsageError.
+  // this user alone, and removed when a client has spoken. Throws UsageError.
   explicit ControlChannel(const std::string& place);
   ~ControlChannel();
   ControlChannel(const ControlChannel&) = delete;
   ControlChannel& operator=(const ControlChannel&) = delete;
 
-  // Waits for a client, then for a whole line. `idle` is called in between, and says for how long it may be left alone.
+  // Waits for a client that says something, then for a whole line. `idle` is called in between, and says for how long
+  // it may be left alone.
   using Idle = std::function<std::chrono::milliseconds()>;
   void accept(const Idle& idle);
   std::string read(const Idle& idle);
@@ -34,6 +35,7 @@ class ControlChannel {
   bool closed() const;  // the client has gone, whatever of it is not read yet
 
  private:
+  void stop_listening();  // a second client is refused instead of left waiting
   bool ready(int fd, short events, const Idle& idle) const;
 
   int listener_ = -1, client_ = -1;

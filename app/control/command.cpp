@@ -104,6 +104,9 @@ class ControlServer {
 }  // namespace
 
 int control_command(const ControlOptions& options) {
+  // A controller that stands in a debugger would not see that its client has gone; results are the client's.
+  for (const auto& [option, value] : {std::pair{"--gdb", options.run.gdb}, {"--json", options.run.json}})
+    if (!value.empty()) throw UsageError(fmt::format("{}: not with brick control; expected brick exec for it", option));
   const MachineConfig config = machine_config(options.run);
   const SetUp set_up(options.run);
   ControlChannel channel(options.place);

@@ -50,9 +50,9 @@ unsigned error_number(const std::string& text) {
 
 const ControlSession::Method ControlSession::kMethods[] = {
     {"hello", &ControlSession::hello},
-    {"command", &ControlSession::command},
-    {"script", &ControlSession::script},
-    {"texts", &ControlSession::texts},
+    {"command", &ControlSession::command, true},
+    {"script", &ControlSession::script, true},
+    {"texts", &ControlSession::texts, true},
     {"run", &ControlSession::run},
     {"until", &ControlSession::until},
     {"signal", &ControlSession::signal},
@@ -94,9 +94,8 @@ json ControlSession::call(RpcRequest& request) {
     wall_limit_.reset();
     return result;
   } catch (const RpcError& e) {
-    const bool cut_off = e.code() == rpc::kWallLimit;
     wall_limit_.reset();
-    if (cut_off) reconnect();  // of a dialogue that was cut off half-way
+    if (e.code() == rpc::kWallLimit && method->talks) forget_dialogue();
     throw RpcError(e.code(), e.what(), stamped(e.data()));
   }
 }
@@ -109,9 +108,12 @@ json ControlSession::perform(const Method& method, RpcParams& params) {
   } catch (const ScriptFailure& e) { throw RpcError(rpc::kNoAnswer, utf8_text(e.what())); }
 }
 
-void ControlSession::reconnect() {
-  if (!simulation_.link().connect(HostLink::kBootTime))
-    throw RpcError(rpc::kNoAnswer, "the controller does not answer any more; see @reset and @power of `script`");
+// Half a line may stand in the controller, and half an answer here: ^X drops both, and types nothing into a buffer. The
+// framing is asked for anew. What does not answer even now will say so in the next call.
+void ControlSession::forget_dialogue() {
+  constexpr std::uint8_t kControlX = 0x18;
+  (void)simulation_.link().control(kControlX);
+  (void)simulation_.link().take_unsolicited();
 }
 
 json ControlSession::hello(RpcParams& params) {

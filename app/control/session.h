@@ -27,6 +27,7 @@ class ControlSession {
   struct Method {
     const char* name;
     Json (ControlSession::*run)(RpcParams&);
+    bool talks = false;  // with the controller, by its host port
   };
   static const Method kMethods[];
 
@@ -51,7 +52,7 @@ class ControlSession {
   Json perform(const Method& method, RpcParams& params);
   plant::Axis& axis(RpcParams& params);
   void drive(const std::string& name, std::optional<bool> level);
-  void reconnect();
+  void forget_dialogue();
   Json stamped(Json result) const;
 
   Simulation& simulation_;

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import select
 import socket
+import time
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,6 +18,7 @@ START_LIMIT = 120.0  # seconds of the wall for the start of the controller, and 
 _KINDS: dict[int, type[BrickError]] = {2: NoAnswer, 3: SimulatedTimeout, 4: WallTimeout, 5: ControllerGone}
 _BAD_PARAMETERS = -32602
 _REFUSED = 1
+_WALL_LIMIT = 4
 
 
 class Channel:
@@ -25,6 +28,8 @@ class Channel:
         self.tick = 0
         self.ns = 0
         self.calls: list[tuple[str, dict[str, Any]]] = []
+        self.exact: int | None = None  # calls before the first that was cut off; None: there was none
+        self._sound = True  # nothing was cut off in the middle of a transfer
         self._count = 0
         self._waiting = b""
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -38,37 +43,66 @@ class Channel:
 
     def call(self, method: str, wall_limit: float, **params: Any) -> dict[str, Any]:
         """The result; a wall_limit of seconds stands beside the parameters."""
+        if not self._sound:
+            raise ControllerGone("the way to the controller is closed: by close(), or an exception in a transfer")
+        request = {"jsonrpc": "2.0", "id": self._count + 1, "method": method,
+                   "params": {**params, "wall_s": wall_limit}}
+        line = json.dumps(request, allow_nan=False).encode() + b"\n"
         self._count += 1
         self.calls.append((method, params))
-        request = {"jsonrpc": "2.0", "id": self._count, "method": method, "params": {**params, "wall_s": wall_limit}}
+        cut_off = True
         try:
             self._socket.settimeout(wall_limit + START_LIMIT)
-            self._socket.sendall(json.dumps(request).encode() + b"\n")
-            answer = json.loads(self._line())
+            self._send(line)
+            answer = self._answer(time.monotonic() + wall_limit + START_LIMIT)
+            cut_off = "error" in answer and answer["error"]["code"] == _WALL_LIMIT
         except TimeoutError:
             self.child.process.kill()
             raise WallTimeout(f"{method}: no answer of the simulation") from None
         except OSError as error:
             raise self._gone(str(error)) from None
+        finally:
+            if cut_off and self.exact is None:
+                self.exact = len(self.calls) - 1
         if "error" in answer:
             self._raise(answer["error"])
         result: dict[str, Any] = answer["result"]
         self._take_time(result)
         return result
 
-    def close(self) -> int:
-        """The end of the controller, and its exit status."""
+    def close(self) -> tuple[int, str]:
+        """The end of the controller: its exit status, and what it said last."""
+        self._sound = False
         self._socket.close()
         status = self.child.end()
+        said = self.child.said()
         self.child.close()
-        return status
+        return status, said
 
-    def _line(self) -> bytes:
+    def _send(self, line: bytes) -> None:
+        self._sound = False
+        self._socket.sendall(line)
+        self._sound = True
+
+    def _answer(self, limit: float) -> dict[str, Any]:
+        """That of the last call; those of calls that an exception has cut off come before it and are dropped."""
+        while True:
+            answer: dict[str, Any] = json.loads(self._line(limit))
+            if answer["id"] in (self._count, None):  # None: the line was no request
+                return answer
+
+    def _line(self, limit: float) -> bytes:
+        waiting = select.poll()
+        waiting.register(self._socket, select.POLLIN)
         while b"\n" not in self._waiting:
+            if not waiting.poll(max(0.0, limit - time.monotonic()) * 1e3):  # the place where an exception does no harm
+                raise TimeoutError
+            self._sound = False
             piece = self._socket.recv(1 << 16)
+            self._waiting += piece
+            self._sound = True
             if not piece:
                 raise self._gone("the simulation has ended")
-            self._waiting += piece
         line, _, self._waiting = self._waiting.partition(b"\n")
         return line
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import decimal
+import math
+import operator
+import pathlib
 import re
-from collections.abc import Sequence
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Any
 
 from brick.channel import PROTOCOL, START_LIMIT, Channel
-from brick.errors import BrickError, ControllerGone, MotorOff, NoAnswer, RulesBroken, SimulatedTimeout
+from brick.errors import BrickError, ControllerGone, MotorOff, NoAnswer, RulesBroken, SimulatedTimeout, WallTimeout
 from brick.record import Record
 
 WALL_LIMIT = 60.0  # seconds of the wall that a call may take, unless told otherwise
@@ -17,7 +23,9 @@ _STATUS_EVERY = 1  # ms
 _VARIABLE = re.compile(r"[IPQM]\d{1,4}", re.IGNORECASE)
 _ENCODER = ("enc_a", "enc_b", "enc_c")
 _LIMITS = {"+": "plim", "-": "mlim"}
+_RULES_BROKEN = 1  # exit status, of other failures too
 _FIVE_VOLTS = "watchdog.pwr_good"
+_FILES = ("--wave", "--record")  # that a replay does not write over
 _CHANNELS = 4  # of a servo IC
 
 
@@ -91,7 +99,11 @@ class Controller:
         self.options += [*(["--realtime"] if realtime else []), *options]
         self.wall_limit = wall_limit
         self._check = check
+        self._closed = False
         self._texts: list[str] = []  # that have come beside answers
+        # As it is now, for a replay: at the end it holds what was saved.
+        self._flash = next((pathlib.Path(file).read_bytes() for file in _values(self.options, "--flash")
+                            if pathlib.Path(file).is_file()), None)
         self._channel = Channel(self.options)
         try:
             self.about = self._channel.call("hello", START_LIMIT, protocol=PROTOCOL)
@@ -104,25 +116,34 @@ class Controller:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        self._check = self._check and kind is None
-        self.close()
+        if kind is None:
+            self.close()
+        else:
+            self.abandon()
 
     def close(self) -> None:
-        """Ends the controller; waveform and record are whole then."""
+        """Ends the controller; waveform, record and flash file are whole then. ControllerGone where they are not."""
+        if self._closed:
+            return
         failures: list[str] = []
         try:
             if self._check:
                 failures = self.failures()
         finally:
-            self._check = False
-            self._channel.close()
+            status, said = self._end()
         if failures:
             raise RulesBroken(failures)
+        if status != 0 and (self._check or status != _RULES_BROKEN):
+            raise ControllerGone(f"{said} (exit status {status})")
 
     def abandon(self) -> None:
         """Ends the controller without a look at what it did."""
-        self._check = False
-        self.close()
+        if not self._closed:
+            self._end()
+
+    def _end(self) -> tuple[int, str]:
+        self._closed = True
+        return self._channel.close()
 
     @property
     def pid(self) -> int:
@@ -197,8 +218,7 @@ class Controller:
             return float(text)
 
     def __setitem__(self, name: str, value: float) -> None:
-        number = str(value) if isinstance(value, int) else f"{value:.12f}".rstrip("0").rstrip(".")
-        self.command(f"{self._variable(name)}={number}")
+        self.command(f"{self._variable(name)}={_digits(value)}")
 
     @staticmethod
     def _variable(name: str) -> str:
@@ -212,33 +232,34 @@ class Controller:
         """Actual position in counts."""
         return float(self.command(f"#{motor}P"))
 
-    def status(self, motor: int) -> Status:
+    def status(self, motor: int, wall_limit: float | None = None) -> Status:
         """Leaves the addressed motor as it is."""
         word = 0x80 * motor
-        lines = self.command(f"RHX${word + 0x30:X} RHY${word + 0x40:X}").split()
+        lines = self.command(f"RHX${word + 0x30:X} RHY${word + 0x40:X}", wall_limit).split()
         if len(lines) != 2:
             raise NoAnswer(f"status of motor {motor}: {lines}; expected two words")
         return Status(int(lines[0], 16), int(lines[1], 16))
 
     def wait_in_position(self, *motors: int, ms: float = 10_000, wall_limit: float | None = None) -> None:
-        """Until all of them are at rest and in position, asked once a simulated millisecond.
+        """Until all of them are at rest and in position at once, asked once a simulated millisecond.
 
         What a command begins shows in the status within 20 ms, which are waited first. MotorOff where one is not
-        enabled, SimulatedTimeout after `ms`.
+        enabled, SimulatedTimeout after `ms`, WallTimeout where the wait as a whole takes longer than the wall_limit.
         """
         limit = self._channel.ns + round(ms * 1e6)
-        waiting = list(motors)
-        self.run(ms=min(_SEEN_BY, ms), wall_limit=wall_limit)
-        while waiting:
-            status = self.status(waiting[0])
-            if not status.enabled:
-                raise MotorOff(f"motor {waiting[0]} is off: {status}")
-            if status.in_position and status.at_rest:
-                waiting.pop(0)
-            elif self._channel.ns >= limit:
-                raise SimulatedTimeout(f"motor {waiting[0]} is not in position after {ms} ms: {status}")
-            else:
-                self.run(ms=_STATUS_EVERY, wall_limit=wall_limit)
+        wall = time.monotonic() + (self.wall_limit if wall_limit is None else wall_limit)
+        self.run(ms=min(_SEEN_BY, ms), wall_limit=_left(wall))
+        while True:
+            status = {motor: self.status(motor, _left(wall)) for motor in motors}
+            for motor, one in status.items():
+                if not one.enabled:
+                    raise MotorOff(f"motor {motor} is off: {one}")
+            late = [motor for motor, one in status.items() if not (one.in_position and one.at_rest)]
+            if not late:
+                return
+            if self._channel.ns >= limit:
+                raise SimulatedTimeout(f"motor {late[0]} is not in position after {ms} ms: {status[late[0]]}")
+            self.run(ms=_STATUS_EVERY, wall_limit=_left(wall))
 
     # ---- Signals and pins (docs/signals.md)
 
@@ -306,18 +327,73 @@ class Controller:
         return failures
 
     def replay(self, wave: str) -> None:
-        """The calls so far once more, in a new controller with a waveform from its start. Errors are as they were."""
-        options = [option for option in self.options if not option.startswith("--wave=")]
-        with Controller(wave=wave, options=options, wall_limit=self.wall_limit, check=False) as again:
-            for method, params in list(self.calls):
-                if method == "hello" or method.startswith(("wave.", "record.")):
-                    continue
-                try:
-                    again.call(method, **params)
-                except ControllerGone:
-                    raise
-                except (BrickError, ValueError):
-                    pass
+        """The calls so far once more, in a new controller with a waveform from its start. Errors are as they were.
+
+        WallTimeout where a call was cut off, then or now: nobody knows where it stood, and the waveform ends before it.
+        The flash file is that of the start, and stays as it is.
+        """
+        calls = list(self.calls)
+        whole = self._channel.exact
+        with tempfile.TemporaryDirectory() as folder:
+            options = [*_without(self.options, *_FILES, "--flash"), *self._flash_options(folder)]
+            with Controller(wave=wave, options=options, wall_limit=self.wall_limit, check=False) as again:
+                for n, (method, params) in enumerate(calls):
+                    if n == whole:
+                        raise WallTimeout(f"call {n} ({method}) was cut off: {wave} ends before it")
+                    if method == "hello" or method.startswith(("wave.", "record.")):
+                        continue
+                    try:
+                        again.call(method, **params)
+                    except WallTimeout:
+                        raise WallTimeout(f"call {n} ({method}) was cut off: {wave} ends within it") from None
+                    except ControllerGone:
+                        raise
+                    except (BrickError, ValueError):
+                        pass
+
+    def _flash_options(self, folder: str) -> list[str]:
+        if self._flash is None:
+            return []
+        copy = pathlib.Path(folder) / "flash"
+        copy.write_bytes(self._flash)
+        return [f"--flash={copy}"]
+
+
+def _values(options: Sequence[str], name: str) -> Iterator[str]:
+    """Those of an option of the command line, NAME=VALUE or NAME VALUE."""
+    for at, option in enumerate(options):
+        if option == name:
+            yield from options[at + 1:at + 2]
+        elif option.startswith(name + "="):
+            yield option[len(name) + 1:]
+
+
+def _without(options: Sequence[str], *names: str) -> list[str]:
+    left: list[str] = []
+    rest = iter(options)
+    for option in rest:
+        if option in names:
+            next(rest, None)
+        elif option != "--realtime" and not option.startswith(tuple(name + "=" for name in names)):
+            left.append(option)
+    return left
+
+
+def _left(wall: float) -> float:
+    left = wall - time.monotonic()
+    if left <= 0:
+        raise WallTimeout("the limit of wall time of the wait has passed")
+    return left
+
+
+def _digits(value: float) -> str:
+    """As the controller takes numbers: all digits that tell this float from others, without an exponent."""
+    try:
+        return str(operator.index(value))  # type: ignore[arg-type]
+    except TypeError:
+        if not math.isfinite(value):
+            raise ValueError(f"{value!r} is no number for a variable; expected a finite one") from None
+        return f"{decimal.Decimal(repr(float(value))):f}".removesuffix(".0")
 
 
 def _number(text: str) -> int | float | str:

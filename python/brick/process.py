@@ -41,10 +41,10 @@ class Child:
     def __init__(self, arguments: Sequence[str], pass_fds: Sequence[int] = (),
                  stdout: int = subprocess.DEVNULL) -> None:
         self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115  until close()
-        # The process is to end with this one, however this one ends.
+        # The process is to end with this one, however this one ends, and not by a Ctrl-C that this one survives.
         command = [executable(), *arguments, "--end-with", str(os.getpid())]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=self._said,
-                                        pass_fds=pass_fds)
+                                        pass_fds=pass_fds, process_group=0)
 
     def said(self) -> str:
         self._said.seek(0)

@@ -9,6 +9,7 @@ from the start, with --brick-wave. A test chooses its controller by a marker:
 
 from __future__ import annotations
 
+import hashlib
 import pathlib
 import re
 from collections.abc import Generator
@@ -20,6 +21,7 @@ from brick.controller import Controller
 from brick.errors import BrickError
 from brick.served import Served
 
+_LONGEST = 200  # characters of a test's name in that of a file
 _REPORT = pytest.StashKey[dict[str, bool]]()
 
 
@@ -36,11 +38,11 @@ def pytest_configure(config: pytest.Config) -> None:
                                        "brick_controller and brick_port, arguments of brick.Controller")
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    report = yield
+@pytest.hookimpl(hookwrapper=True)  # not wrapper=True, which the pluggy of Debian 12 does not know
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, None]:
+    outcome = yield
+    report = outcome.get_result()
     item.stash.setdefault(_REPORT, {})[report.when or ""] = report.failed
-    return report
 
 
 def _arguments(request: pytest.FixtureRequest) -> dict[str, Any]:
@@ -54,11 +56,14 @@ def _arguments(request: pytest.FixtureRequest) -> dict[str, Any]:
 
 
 def _wave(request: pytest.FixtureRequest, temporary: pathlib.Path) -> pathlib.Path:
-    """A name of its own for each test, whatever process of pytest-xdist runs it."""
+    """A name of its own for each test, whatever process of pytest-xdist runs it and whatever characters it has."""
     folder = request.config.getoption("--brick-wave")
     place = pathlib.Path(folder) if folder else temporary
     place.mkdir(parents=True, exist_ok=True)
-    return place.absolute() / (re.sub(r"[^\w.-]+", "-", request.node.nodeid).strip("-") + ".fst")
+    name = request.node.nodeid
+    digits = hashlib.sha256(name.encode(errors="surrogateescape")).hexdigest()[:8]
+    readable = re.sub(r"[^\w.-]+", "-", name).strip("-")[:_LONGEST]
+    return place.absolute() / f"{readable}-{digits}.fst"
 
 
 @pytest.fixture

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import select
 import subprocess
 from collections.abc import Sequence
 from types import TracebackType
 
+from brick.channel import START_LIMIT
 from brick.controller import run_options
-from brick.errors import ControllerGone
+from brick.errors import ControllerGone, WallTimeout
 from brick.process import Child
 
 
@@ -21,15 +23,22 @@ class Served:
         chosen = run_options(board=board, plant=plant, load=setup, engine=engine, seed=seed, wave=wave)
         pace = [] if realtime else ["--free"]
         self._child = Child(["serve", "--listen", "127.0.0.1:0", *pace, *chosen, *options], stdout=subprocess.PIPE)
+        try:
+            self.port = self._listening()
+        except BaseException:
+            self._child.stop()
+            self._child.close()
+            raise
+
+    def _listening(self) -> int:
         assert self._child.process.stdout is not None
-        line = self._child.process.stdout.readline().decode()
-        found = re.match(r"listening on 127\.0\.0\.1:(\d+)", line)
+        if not select.select([self._child.process.stdout], [], [], START_LIMIT)[0]:
+            raise WallTimeout("brick serve does not listen")
+        found = re.match(rb"listening on 127\.0\.0\.1:(\d+)", self._child.process.stdout.readline())
         if not found:
             self._child.end()
-            said = self._child.said()
-            self._child.close()
-            raise ControllerGone(said or "brick serve has ended")
-        self.port = int(found[1])
+            raise ControllerGone(self._child.said() or "brick serve has ended")
+        return int(found[1])
 
     @property
     def pid(self) -> int:

@@ -26,10 +26,15 @@ void IsaHost::step_to(Tick limit, const BoardOutputs& stop_on) {
   if (before.differs(machine_.outputs(), watched_)) on_edge_(machine_.now(), before, machine_.outputs());
 }
 
+// What the heartbeat throws must not leave a strobe low: within a cycle it waits for the end.
+void IsaHost::beat() const {
+  if (!isa_.running()) heartbeat();
+}
+
 void IsaHost::advance_to(Tick tick) {
   for (Tick at = now(); at < tick; at = now()) {
     step_to(std::min(tick, at + kHeartbeat), {});
-    heartbeat();
+    beat();
   }
 }
 
@@ -42,7 +47,7 @@ void IsaHost::wait_change(const PinField& pin, Tick limit) {
   const std::uint32_t value = machine_.outputs().get(pin);
   while (now() < limit && machine_.outputs().get(pin) == value) {
     step_to(std::min(limit, now() + kHeartbeat), select_pins(pin));
-    heartbeat();
+    beat();
   }
 }
 
@@ -119,6 +124,7 @@ IsaResult IsaHost::cycle(const IsaCycle& c) {
                       c.write() ? "write" : "read", c.memory() ? "memory address 0x" : "I/O address 0x", c.address));
   }
   free_at_ = isa_.free_at();
+  beat();
   return isa_.result();
 }
 

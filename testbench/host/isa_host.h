@@ -68,6 +68,7 @@ class IsaHost : public IsaCycles {
   template <class Edit>
   void drive(TimeFs time, const Edit& edit);
   TimeFs cycle_start();
+  void beat() const;
   void step_to(Tick limit, const BoardOutputs& stop_on);
 
   Machine& machine_;

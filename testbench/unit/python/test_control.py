@@ -171,6 +171,31 @@ def test_limits_of_simulated_and_of_wall_time(shared):
     assert shared.call("command", line="P9")["result"]["lines"] == ["0"]
 
 
+def test_a_limit_of_wall_time_leaves_no_bus_cycle_half_done():
+    reads = "@dpram 0 8\n@dpram 0=1234\n" * 4000
+    with control() as client:
+        cut = [client.call("script", text=reads, wall_s=0.006 + n * 1e-4).get("error", {}).get("code")
+               for n in range(50)]
+        assert cut.count(4) > 40, cut
+        assert client.call("check")["result"]["failures"] == []
+
+
+@pytest.mark.parametrize("opened", ["OPEN PROG 7 CLEAR", "OPEN PLC 3 CLEAR"])
+def test_a_line_that_was_cut_off_is_dropped_and_nothing_is_typed(opened):
+    with control() as client:
+        client.call("command", line=opened)
+        line = "P1=" + "+".join(["1"] * 120)
+        cut = [client.call("command", line=line, wall_s=n * 5e-4).get("error", {}).get("code") for n in range(20)]
+        assert 4 in cut, cut
+        client.call("command", line="CLOSE")
+        name = opened.replace("OPEN", "LIST").replace(" CLEAR", "")
+        listed = client.call("command", line=name)["result"]["lines"]
+        whole = [one for one in listed if one.strip() not in ("RET", "RETURN", "")]
+        assert set(whole) <= {line}, listed
+        assert client.call("texts")["result"]["texts"] == []
+        assert client.call("command", line="I3 I4 I6")["result"]["lines"] == ["2", "0", "1"]
+
+
 def test_a_script_prints_what_brick_exec_prints(shared):
     result = shared.call("script", text="P1=5\nP1\n@signal host.breq\n@dpram 0 1\nfrob\n")["result"]
     assert result["lines"][:2] == ["5", "host.breq=0"] and result["lines"][3].startswith("ERR003")
@@ -195,26 +220,37 @@ def test_a_signal_ends_it_and_says_so():
         assert status == 1 and "stopped by SIGTERM" in said
 
 
-def test_a_path_is_for_this_user_alone_and_goes_with_the_end(tmp_path):
+def test_a_path_is_for_this_user_alone_and_for_the_first_who_speaks(tmp_path):
     place = tmp_path / "control"
     left_over = socket.socket(socket.AF_UNIX)
     left_over.bind(str(place))
     left_over.close()  # nobody listens there
     process = subprocess.Popen([BRICK, "control", place], stderr=subprocess.PIPE, text=True)
-    with socket.socket(socket.AF_UNIX) as client:
-        limit = time.monotonic() + PATIENCE
-        while client.connect_ex(str(place)) != 0:
-            assert time.monotonic() < limit
-            time.sleep(0.01)
-        assert stat.S_IMODE(place.stat().st_mode) == 0o600
-        other = subprocess.run([BRICK, "control", place], capture_output=True, text=True,
-                          timeout=PATIENCE)
-        assert other.returncode == 2 and "expected a place for a new socket" in other.stderr
+    limit = time.monotonic() + PATIENCE
+    silent = socket.socket(socket.AF_UNIX)
+    while silent.connect_ex(str(place)) != 0:
+        assert time.monotonic() < limit
+        time.sleep(0.01)
+    assert stat.S_IMODE(place.stat().st_mode) == 0o600
+    silent.close()
+    other = subprocess.run([BRICK, "control", place], capture_output=True, text=True, timeout=PATIENCE)
+    assert other.returncode == 2 and "expected a place for a new socket" in other.stderr
+    with socket.socket(socket.AF_UNIX) as client, socket.socket(socket.AF_UNIX) as second:
+        client.connect(str(place))
+        client.settimeout(PATIENCE)
         client.sendall(b'{"jsonrpc": "2.0", "id": 1, "method": "hello", "params": {"protocol": "1.0"}}\n')
         client.shutdown(socket.SHUT_WR)  # requests that are there are answered
         assert json.loads(client.makefile().readline())["result"]["protocol"] == "1.0"
+        assert not place.exists() and second.connect_ex(str(place)) != 0
     assert process.communicate(timeout=PATIENCE) == (None, "") and process.returncode == 0
-    assert not place.exists()
+
+
+@pytest.mark.parametrize("option", ["--gdb=0", "--json=results.json"])
+def test_options_that_mean_nothing_here_are_refused(tmp_path, option):
+    done = subprocess.run([BRICK, "control", "socket", option], cwd=tmp_path, capture_output=True, text=True,
+                          timeout=PATIENCE)
+    assert done.returncode == 2 and "not with brick control" in done.stderr and done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("place", ["fd:0", "fd:", "fd:99", "fd:x", "", "/dev/null/no", "x" * 200])

@@ -30,6 +30,22 @@ def test_variables_are_items(moving):
             moving[wrong]
 
 
+def test_a_variable_keeps_its_digits(moving):
+    sent = moving.calls
+    for value, digits in ((1e-13, "0.0000000000001"), (0.1 + 0.2, "0.30000000000000004"), (True, "1"), (-3, "-3"),
+                          (2.5e9, "2500000000"), (numpy.float64(-0.5), "-0.5"), (numpy.int32(7), "7")):
+        moving["P3"] = value
+        assert sent[-1][1]["line"] == f"P3={digits}"
+    moving["P3"] = 1e-13
+    moving.command("P4=P3*1000000*1000000*10")
+    assert moving["P4"] == pytest.approx(1)
+    for wrong in (float("nan"), float("inf"), -float("inf")):
+        with pytest.raises(ValueError, match="expected a finite one"):
+            moving["P3"] = wrong
+    with pytest.raises(ValueError, match="JSON"):
+        moving.set_load(1, float("nan"))
+
+
 def test_an_error_is_an_exception_with_its_number(moving):
     with pytest.raises(brick.CommandRefused) as refused:
         moving.command("P1 frob")
@@ -102,6 +118,99 @@ def test_waits_have_a_simulated_and_a_wall_limit(moving):
     with pytest.raises(brick.SimulatedTimeout):
         moving.wait_in_position(5, ms=30)
     moving.command("#5K")
+
+
+def test_a_wait_for_motors_looks_at_all_of_them_and_has_one_limit_of_the_wall(moving):
+    moving.command("#6J/")
+    moving.command("#6J+")
+    moving.run(ms=50)
+    begin = time.monotonic()
+    with pytest.raises(brick.MotorOff, match="motor 7"):
+        moving.wait_in_position(6, 7, ms=100_000, wall_limit=PATIENCE)
+    with pytest.raises(brick.WallTimeout):
+        moving.wait_in_position(6, ms=1e6, wall_limit=0.3)
+    assert time.monotonic() - begin < PATIENCE
+    moving.command("#6K")
+
+
+class Alarm(Exception):
+    pass
+
+
+@pytest.fixture
+def alarm():
+    def ring(number, frame):
+        raise Alarm
+
+    before = signal.signal(signal.SIGALRM, ring)
+    yield lambda seconds: signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def test_an_exception_in_a_call_leaves_no_old_answer(moving, alarm):
+    for n in range(5):
+        moving["P1"] = n
+        alarm(0.05)
+        with pytest.raises(Alarm):
+            moving.run(s=3600, wall_limit=0.2)
+        assert moving["P1"] == n and moving.call("signal", name="host.breq")["name"] == "host.breq"
+
+
+def test_a_request_that_was_sent_in_part_ends_the_channel(alarm):
+    with brick.Controller(check=False) as c:
+        os.kill(c.pid, signal.SIGSTOP)
+        alarm(0.2)
+        with pytest.raises(Alarm):
+            c.script("; comment\n" * 90_000)
+        os.kill(c.pid, signal.SIGCONT)
+        with pytest.raises(brick.ControllerGone, match="transfer"):
+            c.command("P1")
+
+
+def test_nothing_is_asked_of_a_closed_controller():
+    c = brick.Controller()
+    c.close()
+    c.close()
+    with pytest.raises(brick.ControllerGone, match="closed"):
+        c.command("P1")
+
+
+def test_an_end_that_failed_is_an_error():
+    c = brick.Controller(check=False)
+    os.kill(c.pid, signal.SIGKILL)
+    with pytest.raises(brick.ControllerGone, match="exit status -9"):
+        c.close()
+    c = brick.Controller()
+    c.failures = lambda: os.kill(c.pid, signal.SIGTERM) or []
+    with pytest.raises(brick.ControllerGone, match="SIGTERM"):
+        c.close()
+
+
+def test_ctrl_c_of_the_script_leaves_the_controller():
+    text = ("import brick, os, time\nwith brick.Controller() as c:\n"
+            "    try:\n        print(os.getpid(), flush=True)\n        time.sleep(60)\n"
+            "    except KeyboardInterrupt:\n        time.sleep(0.3)\n        c['P1'] = 4\n        print(c['P1'])\n")
+    script = subprocess.Popen([sys.executable, "-c", text], text=True, stdout=subprocess.PIPE, start_new_session=True)
+    group = int(script.stdout.readline())
+    os.killpg(group, signal.SIGINT)  # as a terminal does
+    assert script.communicate(timeout=PATIENCE)[0] == "4\n" and script.returncode == 0
+
+
+def test_a_command_that_does_not_listen_is_ended(tmp_path, monkeypatch, alarm):
+    fake = tmp_path / "brick"
+    fake.write_text(f"#!/bin/sh\necho $$ > {tmp_path}/pid\nexec sleep 60\n")
+    fake.chmod(0o755)
+    monkeypatch.setenv("BRICK", str(fake))
+    monkeypatch.setattr("brick.served.START_LIMIT", 0.3)
+    with pytest.raises(brick.WallTimeout):
+        brick.Served()
+    assert gone(int((tmp_path / "pid").read_text()))
+    monkeypatch.setattr("brick.served.START_LIMIT", PATIENCE)
+    alarm(0.3)
+    with pytest.raises(Alarm):
+        brick.Served()
+    assert gone(int((tmp_path / "pid").read_text()))
 
 
 def test_loss_of_five_volts_trips_and_shows():
@@ -195,3 +304,30 @@ def test_a_replay_does_the_same_with_a_waveform(tmp_path):
         c.run(ms=5)
         c.replay(str(tmp_path / "replay.vcd"))
     assert (tmp_path / "replay.vcd").stat().st_size > 10_000
+
+
+def test_a_replay_ends_where_a_call_was_cut_off(tmp_path):
+    with brick.Controller(realtime=True, options=["--wave", str(tmp_path / "own.vcd")]) as c:
+        c["P1"] = 3
+        with pytest.raises(brick.WallTimeout):
+            c.run(s=3600, wall_limit=0.2)
+        c["P1"] = 4
+        own = (tmp_path / "own.vcd").stat().st_ino
+        with pytest.raises(brick.WallTimeout, match=r"call 2 \(run\) was cut off: .*replay.vcd ends before"):
+            c.replay(str(tmp_path / "replay.vcd"))
+        assert (tmp_path / "own.vcd").stat().st_ino == own
+    assert (tmp_path / "replay.vcd").stat().st_size > 1000
+
+
+def test_a_replay_has_the_flash_of_the_start_and_leaves_the_file(tmp_path):
+    flash, wave = tmp_path / "flash", tmp_path / "wave.vcd"
+    for option in (["--flash", str(flash)], [f"--flash={flash}"]):
+        c = brick.Controller(options=option)
+        c.command(f"I5={len(option)}")
+        c.command("SAVE")
+        c.close()
+        saved = flash.read_bytes()
+        flash.write_bytes(b"")  # a replay that reads or writes this one shows
+        c.replay(str(wave))
+        assert flash.read_bytes() == b"" and wave.stat().st_size > 1000
+        flash.write_bytes(saved)

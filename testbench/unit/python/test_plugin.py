@@ -1,6 +1,8 @@
 """The pytest plugin (docs/python.md), with tests of its own in a pytest of their own."""
 
+import hashlib
 import os
+import re
 import subprocess
 import sys
 
@@ -11,7 +13,8 @@ import pathlib, socket, struct
 import pytest
 
 @pytest.mark.brick(plant="dac8", setup="dac8")
-def test_that_fails(brick_controller):
+@pytest.mark.parametrize("sign", ["+", "*"])
+def test_that_fails(brick_controller, sign):
     brick_controller.command("#1J:200")
     brick_controller.run(ms=3)
     assert brick_controller["P1"] == 5
@@ -29,6 +32,14 @@ def test_of_a_host_program(brick_port):
 """
 
 
+FAILING = ["test_that_fails[+]", "test_that_fails[*]"]  # alike in a file's name
+
+
+def wave_of(test):
+    name = re.sub(r"[^\w.-]+", "-", test).strip("-")
+    return f"waves/{name}-{hashlib.sha256(test.encode()).hexdigest()[:8]}.fst"
+
+
 @pytest.fixture(scope="module", params=[[], ["-n", "2"]], ids=["alone", "xdist"])
 def run(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("tests")
@@ -40,17 +51,18 @@ def run(request, tmp_path_factory):
 
 def test_tests_pass_and_fail_as_they_should(run):
     _, done = run
-    assert "1 failed, 3 passed" in done.stdout, done.stdout + done.stderr
+    assert "2 failed, 3 passed" in done.stdout, done.stdout + done.stderr
 
 
 def test_a_failed_test_is_played_once_more_with_a_waveform(run):
     folder, done = run
-    wave = folder / "waves/test_them.py-test_that_fails.fst"
-    assert f"waveform {wave}" in done.stdout
-    assert wave.stat().st_size > 1000
+    for test in FAILING:
+        wave = folder / wave_of(f"test_them.py::{test}")
+        assert f"waveform {wave}" in done.stdout
+        assert wave.stat().st_size > 1000
 
 
 def test_a_port_has_its_waveform_from_the_start_and_no_other_test_has_one(run):
     folder, _ = run
-    assert (folder / "waves/test_them.py-test_of_a_host_program.fst").stat().st_size > 1000
-    assert len(list((folder / "waves").iterdir())) == 2
+    assert (folder / wave_of("test_them.py::test_of_a_host_program")).stat().st_size > 1000
+    assert len(list((folder / "waves").iterdir())) == 3
