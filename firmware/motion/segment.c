@@ -85,7 +85,7 @@ static bool release(uint32_t cs, bool hurry) {
   segment_ring_add(cs, &piece);
   const bool over = q->made && lookahead_is_over(cs);
   if (q->handed || over || lookahead_stands(cs) || q->unhanded > q->least) segment_ring_hand_over(cs);
-  q->runs = !over;
+  q->runs = !over || q->order != LOOKAHEAD_NONE; /* one may have come in a pause of this */
   return true;
 }
 
@@ -106,7 +106,7 @@ static bool go_ahead(uint32_t cs, bool alone) {
   if (q->order != LOOKAHEAD_NONE) obey(cs);
   if (q->made && lookahead_is_over(cs)) {
     segment_ring_hand_over(cs);
-    q->runs = false;
+    q->runs = q->order != LOOKAHEAD_NONE; /* the same */
     return true;
   }
   const uint32_t ahead = segment_ring_ahead(cs);
