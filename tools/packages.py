@@ -7,7 +7,6 @@ everywhere, and a design of somebody else's builds against brick-dev. Without a 
 """
 
 import argparse
-import contextlib
 import pathlib
 import shutil
 import subprocess
@@ -50,16 +49,9 @@ class Root:
                 shutil.copy(source, target)
 
     def run(self, *command):
-        return wheel.run("chroot", self.place, *command)
-
-    @contextlib.contextmanager
-    def mounted(self):
-        """/proc, where a command looks for itself."""
-        wheel.run("mount", "-t", "proc", "proc", self.place / "proc")
-        try:
-            yield
-        finally:
-            wheel.run("umount", self.place / "proc")
+        """With /proc, where a command looks for itself: mounted for the command alone, so that a kill leaves none."""
+        return wheel.run("unshare", "--mount", "--fork", "--kill-child", "sh", "-e", "-c",
+                         'mount -t proc proc "$0/proc"; exec chroot "$0" "$@"', self.place, *command)
 
     def install(self, *packages):
         self.run("apt-get", "install", "-y", "-q", "--no-install-recommends", *packages)
@@ -90,7 +82,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--root", action="store_true")
     options = parser.parse_args()
-    needed = ["cpack", "lintian", *(["debootstrap", "chroot"] if options.root else [])]
+    needed = ["cpack", "lintian", *(["debootstrap", "chroot", "unshare"] if options.root else [])]
     if missing := [program for program in needed if shutil.which(program) is None]:
         skip(f"not installed: {', '.join(missing)}")
     build, folder = options.build.resolve(), options.folder.resolve()
@@ -100,9 +92,7 @@ def main():
     packages = debian_packages(build, folder)
     problems += lintian(packages)
     if options.root and not problems:
-        root = Root(folder / "root")
-        with root.mounted():
-            problems += problems_in(root, build, made, packages)
+        problems += problems_in(Root(folder / "root"), build, made, packages)
     finish("packages", problems)
 
 
